@@ -48,6 +48,17 @@ static struct ray slice_ray(const struct eo_geometry *g, int member, const struc
   return (struct ray){.arm = qy * nx - qx * ny, .distance = qx * nx + qy * ny, .angle = roll + atan2(ny, nx)};
 }
 
+void eo_slice_point_at(const struct eo_geometry *g, int member, const struct eo_modification_shape *shape, double u,
+                       struct eo_slice_point *point)
+{
+  struct ray ray = slice_ray(g, member, shape, u, 0);
+  double c = cos(ray.angle), s = sin(ray.angle);
+  point->normal[0] = c;
+  point->normal[1] = s;
+  point->position[0] = ray.distance * c - ray.arm * s;
+  point->position[1] = ray.distance * s + ray.arm * c;
+}
+
 static struct ray involute_ray(const struct eo_geometry *g, int member, double distance)
 {
   double base = g->base_radius[member], start = base * tan(g->transverse_pressure_angle);

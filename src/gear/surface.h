@@ -18,6 +18,15 @@ struct eo_surface_point {
 void eo_surface_evaluate(const struct eo_geometry *geometry, int member, const struct eo_modification_shape *shape, double u, double v,
                          struct eo_surface_point *point);
 
+/* The flank in the transverse slice z = 0, lead modification apart; same frame. */
+struct eo_slice_point {
+  double position[2];
+  double normal[2]; /* unit, transverse, out of the tooth */
+};
+
+void eo_slice_point_at(const struct eo_geometry *geometry, int member, const struct eo_modification_shape *shape, double u,
+                       struct eo_slice_point *point);
+
 /* ---- slice gap ----
    Two transverse slices in mesh at the working centre distance, profile modification on either member. At pinion phase c (base-circle
    arc, c = s of the unmodified contact) the gear has to come back by gap(c) / cos(beta_b) for the slices to touch. Contact needs the
