@@ -184,6 +184,7 @@ enum eo_code eo_contact_grid_new(struct eo_contact_grid **result, const struct e
     return eo_error_memory(error);
   double nu = material->poissons_ratio;
   grid->geometry = *geometry;
+  grid->material = *material;
   eo_corner_gap_init(grid->corner, geometry);
   grid->compliance_scale = 2 * (1 - nu * nu) / (M_PI * material->youngs_modulus);
   grid->positions = settings->positions;

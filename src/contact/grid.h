@@ -36,6 +36,7 @@ struct eo_contact_position {
 
 struct eo_contact_grid {
   struct eo_geometry geometry;
+  struct eo_material material;
   struct eo_corner_gap corner[2];
   double compliance_scale;      /* K = 2 (1 - nu^2) / (pi E), 1/Pa */
   int positions;
