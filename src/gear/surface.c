@@ -9,8 +9,9 @@ void eo_surface_evaluate(const struct eo_geometry *g, int member, const struct e
   double sa = sin(g->normal_pressure_angle), ca = cos(g->normal_pressure_angle), sb = sin(g->helix_angle), cb = cos(g->helix_angle);
   const double e[3] = {cb, 0, -sb}, t[3] = {sb, 0, cb}, across[3] = {0, 1, 0};
   double rack = u + g->rack_offset[member], r = g->reference_radius[member];
-  double skew = sa * sb / cb, profile_slope[2], lead_slope;
-  double delta = eo_modification_profile(shape, u, profile_slope) + eo_modification_lead(shape, v + rack * skew, &lead_slope);
+  double skew = sa * sb / cb, side = member == EO_PINION ? 1 : -1, profile_slope[2], lead_slope;
+  double delta = eo_modification_profile(shape, u, profile_slope) + eo_modification_lead(shape, side * (v + rack * skew), &lead_slope);
+  lead_slope *= side;
   double du = (profile_slope[0] + profile_slope[1]) / 2 + lead_slope * skew, dv = lead_slope, x[3], n[3];
   for (int i = 0; i < 3; i++) {
     double f = -sa * e[i] + ca * across[i], m = ca * e[i] + sa * across[i];
