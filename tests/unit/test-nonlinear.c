@@ -2,7 +2,7 @@
 #include <string.h>
 
 #include "numerics/nonlinear.h"
-#include "tests/tap.h"
+#include "../tap.h"
 
 /* Rosenbrock's valley as a system: 10 (y - x^2) = 0, 1 - x = 0; solution (1, 1). */
 static int rosenbrock(void *context, const double *x, double *r)
