@@ -36,11 +36,11 @@ struct eo_pulse {
 struct eo_cycle {
   double frequency;                    /* angular mesh frequency, rad/s, > 0 */
   const struct eo_law *law[2];    /* borrowed */
-  double shift[2];                     /* end j's law, pulse and motion are taken at phi + shift[j] */
+  double shift[2];                     /* end j's law and pulse are taken at phi + shift[j] */
   double mesh_damping;                 /* c_m, N s/m: c_m X' is part of F */
   bool gated;                          /* c_m X' acts only in contact */
   struct eo_pulse pulse[2];
-  int motion_order;                    /* prescribed motion added to the deflections, for instance sin(beta_b) eps_z(phi) */
+  int motion_order;                    /* prescribed motion added to the deflections at phi, for instance sin(beta_b) eps_z(phi) */
   const double *motion[2];             /* [1 + 2 order] Fourier series, m; its mean is ignored; NULL: none */
 };
 
