@@ -10,9 +10,18 @@ void eo_json_number(char *text, int size, double value)
 {
   for (int digits = 15; digits <= 17; digits++) {
     snprintf(text, (size_t)size, "%.*g", digits, value);
-    if (digits == 17 || strtod(text, NULL) == value)
-      return;
+    if (strtod(text, NULL) == value)
+      break;
   }
+  char *exponent = strchr(text, 'e'); /* 1e-07 -> 1e-7, 1e+20 -> 1e20 */
+  if (!exponent)
+    return;
+  char *to = exponent + 1, *from = to;
+  if (*from == '-')
+    to = ++from;
+  while (*from == '+' || (*from == '0' && from[1]))
+    from++;
+  memmove(to, from, strlen(from) + 1);
 }
 
 static void write_string(struct eo_text *text, const char *string)

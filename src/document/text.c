@@ -67,32 +67,30 @@ void eo_text_done(struct eo_text *text)
   *text = (struct eo_text){0};
 }
 
-static enum eo_code read_stream(struct eo_text *text, FILE *stream, const char *name, size_t limit, struct eo_error *error)
+static enum eo_code read_stream(struct eo_text *text, FILE *stream, size_t limit, struct eo_error *error)
 {
   char block[16384];
   size_t got;
   while ((got = fread(block, 1, sizeof block, stream)) > 0) {
     if (text->size + got > limit)
-      return eo_error_set(error, EO_ERROR_INPUT, "", "%s is larger than the limit of %zu bytes.", name, limit);
+      return eo_error_set(error, EO_ERROR_INPUT, "", "The input is larger than the limit of %zu bytes.", limit);
     eo_text_add_bytes(text, block, got);
     if (text->failed)
       return eo_error_memory(error);
   }
   if (ferror(stream))
-    return eo_error_set(error, EO_ERROR_INPUT, "", "%s cannot be read: %s.", name, strerror(errno));
+    return eo_error_set(error, EO_ERROR_INPUT, "", "The input cannot be read: %s.", strerror(errno));
   return EO_OK;
 }
 
 enum eo_code eo_text_read(struct eo_text *text, const char *path, size_t limit, struct eo_error *error)
 {
   bool standard = strcmp(path, "-") == 0;
-  char name[120];
-  eo_text_clean(name, sizeof name, standard ? "Standard input" : path);
   FILE *stream = standard ? stdin : fopen(path, "rb");
   if (!stream)
-    return eo_error_set(error, EO_ERROR_INPUT, "", "%s cannot be opened: %s.", name, strerror(errno));
+    return eo_error_set(error, EO_ERROR_INPUT, "", "The file cannot be opened: %s.", strerror(errno));
   struct eo_text read = {0};
-  enum eo_code code = read_stream(&read, stream, name, limit, error);
+  enum eo_code code = read_stream(&read, stream, limit, error);
   if (!standard)
     fclose(stream);
   if (code)
