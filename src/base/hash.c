@@ -1,5 +1,6 @@
 #include "base/hash.h"
 
+<<<<<<< HEAD
 #include <math.h>
 #include <string.h>
 
@@ -39,4 +40,13 @@ void eo_hash_finish(struct eo_hash *hash, char key[EO_HASH_LENGTH + 1])
     key[2 * i + 1] = digit[digest[i] & 15];
   }
   key[EO_HASH_LENGTH] = 0;
+=======
+#include <sys/types.h>
+
+#include <sha2.h>
+
+void eo_hash_hex(const void *data, size_t size, char hex[EO_HASH_HEX])
+{
+  SHA256Data(data, size, hex);
+>>>>>>> document
 }
