@@ -1,6 +1,5 @@
 #include "base/hash.h"
 
-<<<<<<< HEAD
 #include <math.h>
 #include <string.h>
 
@@ -40,13 +39,12 @@ void eo_hash_finish(struct eo_hash *hash, char key[EO_HASH_LENGTH + 1])
     key[2 * i + 1] = digit[digest[i] & 15];
   }
   key[EO_HASH_LENGTH] = 0;
-=======
-#include <sys/types.h>
+}
 
-#include <sha2.h>
-
-void eo_hash_hex(const void *data, size_t size, char hex[EO_HASH_HEX])
+void eo_hash_hex(const void *data, size_t size, char key[EO_HASH_LENGTH + 1])
 {
-  SHA256Data(data, size, hex);
->>>>>>> document
+  struct eo_hash hash;
+  eo_hash_init(&hash);
+  eo_hash_add(&hash, data, size);
+  eo_hash_finish(&hash, key);
 }

@@ -1,13 +1,8 @@
-<<<<<<< HEAD
 /* SHA-256 (FIPS 180-4) as a hexadecimal key: what a result depends on, in one file name. */
-=======
-/* SHA-256 (FIPS 180-4), for names of things that must change whenever their content does. */
->>>>>>> document
 #ifndef EASEOFF_BASE_HASH_H
 #define EASEOFF_BASE_HASH_H
 
 #include <stddef.h>
-<<<<<<< HEAD
 #include <sys/types.h>
 
 #include <sha2.h>
@@ -27,12 +22,8 @@ void eo_hash_add_text(struct eo_hash *hash, const char *name, const char *text);
 
 /* Writes the key, lower case, and ends the use of *hash. */
 void eo_hash_finish(struct eo_hash *hash, char key[EO_HASH_LENGTH + 1]);
-=======
 
-enum { EO_HASH_HEX = 65 }; /* 64 digits and the end of the string */
-
-/* Writes the lower-case hexadecimal SHA-256 of data[size]. Thread-safe. */
-void eo_hash_hex(const void *data, size_t size, char hex[EO_HASH_HEX]);
->>>>>>> document
+/* The key of data[size] alone. */
+void eo_hash_hex(const void *data, size_t size, char key[EO_HASH_LENGTH + 1]);
 
 #endif
