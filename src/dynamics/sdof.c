@@ -161,7 +161,7 @@ static enum eo_code follow(const struct eo_sdof *sdof, double low, double high, 
     options.low = low * 0.999;
     options.high = high;
     options.size = sdof->mean_force;
-    options.longest_step = 0.1;
+    options.longest_step = 0.04;
     code = eo_branch_follow(setup.balance, &setup.oscillator, &setup.cycle, x, 1, &options, visit, context, &end, error);
   }
   free_setup(&setup);
@@ -206,28 +206,38 @@ enum eo_code eo_sdof_solve(const struct eo_sdof *sdof, enum eo_sdof_start start,
   return code;
 }
 
-struct fold_list {
-  int count;
-  double *frequency;
-  bool *going_up;
+/* What the visitor remembers between two points. */
+struct fold_search {
+  struct eo_sdof_folds found;
+  double before, margin_before; /* frequency and least margin of the point visited last */
 };
 
+/* Folds, and the frequency at which the least margin first passes zero. */
 static int note_fold(void *context, const struct eo_branch_point *point)
 {
-  struct fold_list *list = context;
-  if (point->fold && list->count < EO_SDOF_MAX_FOLDS) {
-    list->frequency[list->count] = point->frequency;
-    list->going_up[list->count++] = point->direction < 0;
+  struct fold_search *s = context;
+  struct eo_sdof_folds *f = &s->found;
+  const struct eo_time_end *e = &point->grid->end[0];
+  double margin = e->margin[0];
+  for (int i = 1; i < point->grid->samples; i++)
+    margin = fmin(margin, e->margin[i]);
+  if (isnan(f->contact_lost) && s->before > 0 && s->margin_before > 0 && margin <= 0)
+    f->contact_lost = s->before + (point->frequency - s->before) * s->margin_before / (s->margin_before - margin);
+  s->before = point->frequency;
+  s->margin_before = margin;
+  if (point->fold && f->count < EO_SDOF_MAX_FOLDS) {
+    f->frequency[f->count] = point->frequency;
+    f->going_up[f->count++] = point->direction < 0;
   }
   return 0;
 }
 
-enum eo_code eo_sdof_folds(const struct eo_sdof *sdof, double low, double high, int *count,
-                           double frequency[EO_SDOF_MAX_FOLDS], bool going_up[EO_SDOF_MAX_FOLDS], struct eo_error *error)
+enum eo_code eo_sdof_folds(const struct eo_sdof *sdof, double low, double high, struct eo_sdof_folds *folds, struct eo_error *error)
 {
-  struct fold_list list = {0, frequency, going_up};
-  enum eo_code code = follow(sdof, low, high, note_fold, &list, error);
-  *count = code ? 0 : list.count;
+  struct fold_search search = {.found = {.contact_lost = NAN}};
+  enum eo_code code = follow(sdof, low, high, note_fold, &search, error);
+  if (!code)
+    *folds = search.found;
   return code;
 }
 

@@ -38,10 +38,16 @@ enum eo_code eo_sdof_solve(const struct eo_sdof *sdof, enum eo_sdof_start start,
 
 enum { EO_SDOF_MAX_FOLDS = 16 };
 
-/* Folds met while following the branch from W = low upwards until it leaves low..high: frequency[count]; going_up[i] tells
-   whether the branch went towards higher frequencies before it turned (an upward sweep jumps there). sdof->frequency is not used. */
-enum eo_code eo_sdof_folds(const struct eo_sdof *sdof, double low, double high, int *count,
-                           double frequency[EO_SDOF_MAX_FOLDS], bool going_up[EO_SDOF_MAX_FOLDS], struct eo_error *error);
+struct eo_sdof_folds {
+  int count;
+  double frequency[EO_SDOF_MAX_FOLDS];
+  bool going_up[EO_SDOF_MAX_FOLDS]; /* the branch went towards higher frequencies before it turned: an upward sweep jumps here */
+  double contact_lost;              /* where the branch first leaves full contact, a little before the jump; NaN: nowhere */
+};
+
+/* Folds met while following the branch from W = low upwards until it leaves low..high. sdof->frequency is not used.
+   Errors: as eo_sdof_solve(). */
+enum eo_code eo_sdof_folds(const struct eo_sdof *sdof, double low, double high, struct eo_sdof_folds *folds, struct eo_error *error);
 
 /* Frequencies at which the linear response (e = 0) just leaves contact: F_h W^2 / |1 - W^2 + 2 i z W| = F_m.
    Returns how many there are (0..2), ascending. */
