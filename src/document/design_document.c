@@ -96,7 +96,7 @@ enum eo_code eo_design_complete(struct eo_design *design, struct eo_geometry *ge
   return code;
 }
 
-static enum eo_code hash_document(json_t *document, char hex[EO_HASH_HEX], struct eo_error *error)
+static enum eo_code hash_document(json_t *document, char hex[EO_HASH_LENGTH + 1], struct eo_error *error)
 {
   struct eo_text text = {0};
   if (document)
@@ -109,12 +109,12 @@ static enum eo_code hash_document(json_t *document, char hex[EO_HASH_HEX], struc
   return code;
 }
 
-enum eo_code eo_design_hash(const struct eo_design *design, char hex[EO_HASH_HEX], struct eo_error *error)
+enum eo_code eo_design_hash(const struct eo_design *design, char hex[EO_HASH_LENGTH + 1], struct eo_error *error)
 {
   return hash_document(eo_design_encode(design), hex, error);
 }
 
-enum eo_code eo_design_problem_hash(const struct eo_design *design, char hex[EO_HASH_HEX], struct eo_error *error)
+enum eo_code eo_design_problem_hash(const struct eo_design *design, char hex[EO_HASH_LENGTH + 1], struct eo_error *error)
 {
   static const char *const without[] = {"name", "modification", "objective", "optimization"};
   json_t *document = eo_design_encode(design);

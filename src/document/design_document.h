@@ -35,9 +35,9 @@ json_t *eo_design_encode(const struct eo_design *design);
 enum eo_code eo_design_complete(struct eo_design *design, struct eo_geometry *geometry, struct eo_error *error);
 
 /* SHA-256 of the canonical document (keys sorted, shortest decimals, no spaces). */
-enum eo_code eo_design_hash(const struct eo_design *design, char hex[EO_HASH_HEX], struct eo_error *error);
+enum eo_code eo_design_hash(const struct eo_design *design, char hex[EO_HASH_LENGTH + 1], struct eo_error *error);
 
 /* The same over what one evaluation of a modification depends on: without name, modification, objective and optimization. */
-enum eo_code eo_design_problem_hash(const struct eo_design *design, char hex[EO_HASH_HEX], struct eo_error *error);
+enum eo_code eo_design_problem_hash(const struct eo_design *design, char hex[EO_HASH_LENGTH + 1], struct eo_error *error);
 
 #endif

@@ -9,8 +9,9 @@ void eo_surface_evaluate(const struct eo_geometry *g, int member, const struct e
   double sa = sin(g->normal_pressure_angle), ca = cos(g->normal_pressure_angle), sb = sin(g->helix_angle), cb = cos(g->helix_angle);
   const double e[3] = {cb, 0, -sb}, t[3] = {sb, 0, cb}, across[3] = {0, 1, 0};
   double rack = u + g->rack_offset[member], r = g->reference_radius[member];
-  double skew = sa * sb / cb, profile_slope[2], lead_slope;
-  double delta = eo_modification_profile(shape, u, profile_slope) + eo_modification_lead(shape, v + rack * skew, &lead_slope);
+  double skew = sa * sb / cb, side = member == EO_PINION ? 1 : -1, profile_slope[2], lead_slope;
+  double delta = eo_modification_profile(shape, u, profile_slope) + eo_modification_lead(shape, side * (v + rack * skew), &lead_slope);
+  lead_slope *= side;
   double du = (profile_slope[0] + profile_slope[1]) / 2 + lead_slope * skew, dv = lead_slope, x[3], n[3];
   for (int i = 0; i < 3; i++) {
     double f = -sa * e[i] + ca * across[i], m = ca * e[i] + sa * across[i];
@@ -46,6 +47,17 @@ static struct ray slice_ray(const struct eo_geometry *g, int member, const struc
   ny /= length;
   double roll = (y * nx / ny - x) / r, qx = x + r * roll, qy = y + r;
   return (struct ray){.arm = qy * nx - qx * ny, .distance = qx * nx + qy * ny, .angle = roll + atan2(ny, nx)};
+}
+
+void eo_slice_point_at(const struct eo_geometry *g, int member, const struct eo_modification_shape *shape, double u,
+                       struct eo_slice_point *point)
+{
+  struct ray ray = slice_ray(g, member, shape, u, 0);
+  double c = cos(ray.angle), s = sin(ray.angle);
+  point->normal[0] = c;
+  point->normal[1] = s;
+  point->position[0] = ray.distance * c - ray.arm * s;
+  point->position[1] = ray.distance * s + ray.arm * c;
 }
 
 static struct ray involute_ray(const struct eo_geometry *g, int member, double distance)

@@ -5,7 +5,8 @@
 #include "gear/modification.h"
 
 /* Point of a member's flank. Frame: z = axis (from the middle of the face), y through the position of the pitch point of the
-   generating rack at roll 0, x tangential towards the rack's motion (the pinion's direction of motion).
+   generating rack at roll 0, x tangential, out of the flank: the pinion's direction of motion, against the gear's. z runs with eta on
+   the pinion and against it on the gear; reflected through the origin the gear's flank has the hand that meshes with the pinion's.
    u: profile coordinate of the modification (0 at the pitch point s = 0), m; v: along the rack's trace, m.
    The rack's point is moved by delta(u, x), x = v + u_rack sin(alpha_n) tan(beta), along its normal; the roll angle follows from the
    equation of meshing. normal: unit, out of the tooth. */
@@ -17,6 +18,15 @@ struct eo_surface_point {
 
 void eo_surface_evaluate(const struct eo_geometry *geometry, int member, const struct eo_modification_shape *shape, double u, double v,
                          struct eo_surface_point *point);
+
+/* The flank in the transverse slice z = 0, lead modification apart; same frame. */
+struct eo_slice_point {
+  double position[2];
+  double normal[2]; /* unit, transverse, out of the tooth */
+};
+
+void eo_slice_point_at(const struct eo_geometry *geometry, int member, const struct eo_modification_shape *shape, double u,
+                       struct eo_slice_point *point);
 
 /* ---- slice gap ----
    Two transverse slices in mesh at the working centre distance, profile modification on either member. At pinion phase c (base-circle
