@@ -32,6 +32,7 @@ static int count_faults(json_t *document)
 }
 
 static int expected_faults, missed_faults;
+static char long_text[1000];
 
 /* The complete document with one value replaced (or removed) must give one fault, at that value. */
 static void provoke(const json_t *complete, const char *pointer, json_t *value)
@@ -100,7 +101,7 @@ static void provoke_field(const json_t *complete, const char *pointer, const str
     if (field->choices)
       provoke(complete, pointer, json_string("Other"));
     else
-      provoke(complete, pointer, json_string(memset(calloc(1000, 1), 'x', 999)));
+      provoke(complete, pointer, json_string(long_text));
     break;
   case EO_FIELD_NUMBERS:
     provoke(complete, pointer, json_array());
@@ -138,6 +139,7 @@ static void test_every_fault(void)
 {
   static struct eo_design complete;
   struct eo_geometry geometry;
+  memset(long_text, 'x', sizeof long_text - 1);
   eo_example_build("paper-case-b", &complete);
   complete.objective.robust = EO_ROBUST_MEAN;
   complete.modification.flank[EO_GEAR][EO_LEFT].lead_slope = 1e-6; /* so that the gear is in the document */
@@ -368,7 +370,7 @@ static void test_contradictions(void)
 
 static void test_hashes(void)
 {
-  char first[EO_HASH_HEX], second[EO_HASH_HEX], problem[2][EO_HASH_HEX];
+  char first[EO_HASH_LENGTH + 1], second[EO_HASH_LENGTH + 1], problem[2][EO_HASH_LENGTH + 1];
   eo_example_build("paper", &design);
   eo_design_hash(&design, first, NULL);
   eo_design_problem_hash(&design, problem[0], NULL);

@@ -173,7 +173,7 @@ static void test_examples(void)
     static struct eo_design design, back, complete, again;
     struct eo_geometry geometry, geometry_again;
     struct eo_error error = {0};
-    char hash[EO_HASH_HEX], hash_again[EO_HASH_HEX];
+    char hash[EO_HASH_LENGTH + 1], hash_again[EO_HASH_LENGTH + 1];
     ok(eo_example_build(example->name, &design) && through_text(&design, &back) && same_design(&design, &back), "%s survives its document", example->name);
     complete = design;
     if (!ok(eo_design_complete(&complete, &geometry, &error) == EO_OK, "%s is a possible design %s %s", example->name, error.pointer, error.text))
