@@ -6,13 +6,18 @@ struct input {
   struct eo_gear_pair gear_pair;
   struct eo_material material;
   double torque, blank_factor;
+  enum eo_iso_virtual virtual_teeth;
 };
+
+static const char *const virtual_teeth[] = {"cos_cubed", "base_helix", NULL};
 
 static const struct eo_field input[] = {
     EO_OBJECT(struct input, gear_pair, "gear_pair", &eo_gear_pair_table, "as in a design document"),
     EO_OBJECT(struct input, material, "material", &eo_material_table, "as in a design document"),
     EO_NUMBER(struct input, torque, "torque_Nm", &eo_unit_Nm, 1e-3, 1e8, 1, "on the pinion shaft, all ends together"),
     EO_NUMBER(struct input, blank_factor, "blank_factor", NULL, 0.1, 1, 1, "C_R; 1: solid discs"),
+    EO_CHOICE(struct input, virtual_teeth, "virtual_teeth", virtual_teeth, EO_ISO_VIRTUAL_CUBED,
+              "for the stiffness: z/cos^3 beta (ISO 6336-1) or z/(cos^2 beta_b cos beta)"),
 };
 static const struct eo_table input_table = EO_TABLE("the input", struct input, input);
 
@@ -66,6 +71,7 @@ static enum eo_code run(const void *in, void *out, struct eo_error *error)
     return code;
   eo_design_resolve(&design, &geometry);
   struct eo_iso_stiffness_input rack = {.teeth = {pair->teeth[0], pair->teeth[1]},
+                                        .virtual_teeth = given->virtual_teeth,
                                         .normal_pressure_angle = pair->normal_pressure_angle,
                                         .helix_angle = pair->helix_angle,
                                         .profile_shift = {pair->profile_shift[0], pair->profile_shift[1]},

@@ -70,6 +70,7 @@ static void check_stiffness_row(struct eo_verification *v, const json_t *row)
   double blank = eo_verify_number(row, "C_R"), ratio = eo_verify_number(row, "eps_alpha"), tolerance = eo_verify_number(row, "tol_rel");
   if (read_pair(row, &pair, v, where)) {
     struct eo_iso_stiffness_input input = {.teeth = {pair.teeth[0], pair.teeth[1]},
+                                           .virtual_teeth = EO_ISO_VIRTUAL_EXACT, /* as the case file's formula has it */
                                            .normal_pressure_angle = pair.normal_pressure_angle,
                                            .helix_angle = pair.helix_angle,
                                            .profile_shift = {pair.profile_shift[0], pair.profile_shift[1]},

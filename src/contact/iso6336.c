@@ -21,7 +21,9 @@ void eo_iso_stiffness(struct eo_iso_stiffness *stiffness, const struct eo_iso_st
   int small = input->teeth[0] <= input->teeth[1] ? 0 : 1;
   struct eo_iso_stiffness c = {0};
   for (int i = 0; i < 2; i++)
-    c.virtual_teeth[i] = virtual_teeth(input->teeth[i], input->normal_pressure_angle, input->helix_angle);
+    c.virtual_teeth[i] = input->virtual_teeth == EO_ISO_VIRTUAL_CUBED
+                             ? input->teeth[i] / pow(cos(input->helix_angle), 3)
+                             : virtual_teeth(input->teeth[i], input->normal_pressure_angle, input->helix_angle);
   c.flexibility = pair_flexibility(c.virtual_teeth[small], c.virtual_teeth[1 - small], input->profile_shift[small], input->profile_shift[1 - small]);
   c.theoretical = 1 / c.flexibility;
   c.rack_factor = (1 + 0.5 * (1.2 - input->dedendum_coefficient)) * (1 - 0.02 * (20 - input->normal_pressure_angle * 180 / M_PI));

@@ -5,9 +5,14 @@
 
 #include "gear/geometry.h"
 
+/* Teeth of the virtual spur gear: z/cos^3 beta as ISO 6336-1 approximates it, or z/(cos^2 beta_b cos beta) as ISO 6336-3 has it.
+   At 24 degrees of helix q' differs by 0.45 %. */
+enum eo_iso_virtual { EO_ISO_VIRTUAL_CUBED, EO_ISO_VIRTUAL_EXACT };
+
 /* ISO 6336-1 9.3 */
 struct eo_iso_stiffness_input {
   int teeth[2];
+  enum eo_iso_virtual virtual_teeth;
   double normal_pressure_angle, helix_angle; /* rad */
   double profile_shift[2];
   double dedendum_coefficient;     /* h_fP / m_n */

@@ -101,7 +101,7 @@ void eo_table_describe(const struct eo_table *table, bool output, struct eo_text
 #define EO_INTEGER(type, member, key_, low_, high_, fallback_, help_)                                                                \
   {.key = key_, .kind = EO_FIELD_INTEGER, .offset = offsetof(type, member), .low = low_, .high = high_, .fallback = fallback_, .help = help_}
 #define EO_INTEGER_REQUIRED(type, member, key_, low_, high_, help_)                                                                  \
-  {.key = key_, .kind = EO_FIELD_INTEGER, .flags = EO_FIELD_REQUIRED, .offset = offsetof(type, member), .low = low_, .high = high_, .help = help_}
+  {.key = key_, .kind = EO_FIELD_INTEGER, .flags = EO_FIELD_REQUIRED, .offset = offsetof(type, member), .low = low_, .high = high_, .fallback = NAN, .help = help_}
 #define EO_FLAG(type, member, key_, fallback_, help_)                                                                                \
   {.key = key_, .kind = EO_FIELD_FLAG, .offset = offsetof(type, member), .fallback = fallback_, .help = help_}
 #define EO_CHOICE(type, member, key_, choices_, fallback_, help_)                                                                    \
