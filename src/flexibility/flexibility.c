@@ -86,8 +86,12 @@ struct eo_kernel eo_flexibility_kernel(const struct eo_flexibility *flexibility)
 struct eo_root eo_flexibility_root(const struct eo_flexibility *flexibility, int member)
 {
   const struct eo_table *table = &flexibility->table[member];
-  return (struct eo_root){.points = table->root_points, .layers = table->layers, .arc = table->arc, .position = table->root,
-                          .width = flexibility->width, .twist = flexibility->twist[member]};
+  struct eo_root root = {.points = table->root_points, .layers = table->layers, .arc = table->arc, .position = table->root,
+                         .width = flexibility->width, .twist = flexibility->twist[member]};
+  while (root.first < root.points - 1 &&
+         hypot(root.position[2 * root.first], root.position[2 * root.first + 1]) > flexibility->form_radius[member])
+    root.first++;
+  return root;
 }
 
 /* The table of stresses for loads on a pair, relative to the pair whose root is asked; NULL when they do not count. */

@@ -64,6 +64,7 @@ struct eo_kernel eo_flexibility_kernel(const struct eo_flexibility *flexibility)
 /* Nodes of the root surface, [points][layers + 1]: from the start of the active profile (point 0) to the middle of the tooth space. */
 struct eo_root {
   int points, layers;
+  int first;              /* first point that lies on the fillet, not on the involute remainder above it */
   const double *arc;      /* [points], along the profile from the start of the active profile, m */
   const double *position; /* [points][2], transverse, tooth centre along +y and loaded flank at x > 0, m */
   double width;           /* of the face, m; layer l lies at eta = width (l / layers - 1/2) */
