@@ -33,8 +33,8 @@ static double contract(const struct eo_grid *grid, const struct eo_grid_weights 
 }
 
 /* Adds one member's compliance between loads j and points from..to-1, whose weights are given. */
-static void add_member(const struct eo_flexibility *flexibility, int member, int n, const struct eo_flank_point *point, int from,
-                       int to, const struct eo_grid_weights *weights, double *compliance)
+static void add_block(const struct eo_flexibility *flexibility, int member, int n, const struct eo_flank_point *point, int from,
+                      int to, const struct eo_grid_weights *weights, double *compliance)
 {
   const struct eo_table *table = &flexibility->table[member];
   const struct eo_grid *grid = &table->flank;
@@ -64,18 +64,23 @@ static void add_member(const struct eo_flexibility *flexibility, int member, int
   }
 }
 
+void eo_flexibility_add_compliance(const struct eo_flexibility *flexibility, int member, int n,
+                                   const struct eo_flank_point *point, double *compliance)
+{
+  for (int from = 0; from < n; from += BLOCK) {
+    struct eo_grid_weights weights[BLOCK];
+    int to = from + BLOCK < n ? from + BLOCK : n;
+    for (int i = from; i < to; i++)
+      eo_grid_weights(&flexibility->table[member].flank, point[i].s[member], point[i].eta, &weights[i - from]);
+    add_block(flexibility, member, n, point, from, to, weights, compliance);
+  }
+}
+
 static void evaluate(const void *context, int n, const struct eo_flank_point *point, double *compliance)
 {
-  const struct eo_flexibility *flexibility = context;
   memset(compliance, 0, (size_t)n * (size_t)n * sizeof *compliance);
-  for (int member = 0; member < 2; member++)
-    for (int from = 0; from < n; from += BLOCK) {
-      struct eo_grid_weights weights[BLOCK];
-      int to = from + BLOCK < n ? from + BLOCK : n;
-      for (int i = from; i < to; i++)
-        eo_grid_weights(&flexibility->table[member].flank, point[i].s[member], point[i].eta, &weights[i - from]);
-      add_member(flexibility, member, n, point, from, to, weights, compliance);
-    }
+  eo_flexibility_add_compliance(context, EO_PINION, n, point, compliance);
+  eo_flexibility_add_compliance(context, EO_GEAR, n, point, compliance);
 }
 
 struct eo_kernel eo_flexibility_kernel(const struct eo_flexibility *flexibility)

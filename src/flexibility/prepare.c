@@ -195,7 +195,8 @@ static enum eo_code fill(struct eo_flexibility *f, struct worker worker[2], cons
   }
   for (int m = 0; m < 2 && !code && f->report.from_cache; m++)
     code = eo_table_connect(&f->table[m], f->width, error);
-  memcpy(f->report.note, cache.note, sizeof f->report.note);
+  if (!f->report.from_cache)
+    memcpy(f->report.note, cache.note, sizeof f->report.note);
   eo_cache_close(&cache);
   return code;
 }

@@ -1,5 +1,5 @@
 /* Our solver against CalculiX on our own mesh: same nodes, same loads, C3D8I. The two elements are the same for parallelepipeds (see
-   test-flexibility-element); elsewhere CalculiX leaves the ratio of the Jacobians out of the incompatible modes, which ours has so that
+   test-element); elsewhere CalculiX leaves the ratio of the Jacobians out of the incompatible modes, which ours has so that
    it passes the patch test. That is the whole of the difference seen here. */
 #include "flexibility/export.h"
 #include "tests/paper_pair.h"

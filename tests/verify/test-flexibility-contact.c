@@ -1,4 +1,5 @@
-/* One tooth pair pressed together by 7.2 um: load and root stress against the three-dimensional contact analysis of CalculiX
+/* Bulk compliance against an independent computation (tests/cases/contact.json, fe_bulk: deflection under a line load along a row).
+   One tooth pair pressed together by 7.2 um: load and root stress against the three-dimensional contact analysis of CalculiX
    (tests/cases/calculix.json: unmodified pair, 3-tooth sectors, no neighbour coupling). The contact is solved here in a few lines, so
    that this test stands on the flexibility alone. */
 #include "flexibility/flexibility.h"
@@ -153,6 +154,42 @@ static void compare_pairs(const struct eo_flexibility *flexibility, const struct
   }
 }
 
+/* Deflection at both ends and the middle of a row under a uniform line load of 1 N per mm of face width, um. The table is not symmetric
+   in eta, so it tells the hand of the helix and the side that meets first. */
+static void compare_bulk(const struct eo_flexibility *flexibility, const struct eo_geometry *g, json_t *reference)
+{
+  static const char *const name[2] = {"pinion", "gear"};
+  enum { N = 28 + 1 };
+  double tolerance = json_number_value(json_object_get(reference, "tol_rel"));
+  for (int member = 0; member < 2; member++) {
+    size_t index;
+    json_t *row;
+    json_array_foreach(json_object_get(reference, name[member]), index, row)
+    {
+      struct eo_flank_point point[N];
+      double compliance[N * N] = {0}, s = 1e-3 * json_number_value(json_object_get(row, "s"));
+      for (int i = 0; i < N; i++)
+        point[i] = (struct eo_flank_point){.s = {s, s}, .eta = g->face_width * ((double)i / (N - 1) - 0.5)};
+      eo_flexibility_add_compliance(flexibility, member, N, point, compliance);
+      for (int k = 0; k < 3; k++) {
+        double deflection = 0, at = json_number_value(json_array_get(json_object_get(row, "d"), (size_t)k));
+        for (int j = 0; j < N; j++)
+          deflection += (j == 0 || j == N - 1 ? 0.5 : 1) * compliance[k * (N - 1) / 2 * N + j];
+        char what[100];
+        snprintf(what, sizeof what, "%s, s %.4f mm, eta %+.1f b: deflection, um", name[member], 1e3 * s, 0.5 * (k - 1));
+        near(1e6 * 1e3 * g->face_width / (N - 1) * deflection, at, tolerance, what);
+      }
+    }
+  }
+}
+
+static json_t *load_cases(const char *name)
+{
+  char path[1000];
+  snprintf(path, sizeof path, "%s/%s", getenv("CASES") ? getenv("CASES") : "tests/cases", name);
+  return json_load_file(path, 0, NULL);
+}
+
 int main(void)
 {
   struct eo_gear_pair pair = paper_pair();
@@ -161,18 +198,19 @@ int main(void)
   struct eo_flexibility *flexibility = NULL;
   struct eo_geometry geometry;
   struct eo_error error = {0};
-  char path[1000];
-  snprintf(path, sizeof path, "%s/calculix.json", getenv("CASES") ? getenv("CASES") : "tests/cases");
-  json_t *cases = json_load_file(path, 0, NULL);
+  json_t *calculix = load_cases("calculix.json"), *contact = load_cases("contact.json");
   settings.sector_teeth = 3;
   settings.neighbour_coupling = false;
-  ok(cases != NULL, "the cases can be read");
+  ok(calculix && contact, "the cases can be read");
   ok(!eo_geometry_init(&geometry, &pair, &error) &&
          !eo_flexibility_prepare(&geometry, &pair, &material, &settings, NULL, NULL, &flexibility, &error),
      "the paper's pair is prepared %s", error.text);
-  if (cases && flexibility)
-    compare_pairs(flexibility, &geometry, &material, json_object_get(cases, "unmodified"));
-  json_decref(cases);
+  if (calculix && contact && flexibility) {
+    compare_bulk(flexibility, &geometry, json_object_get(contact, "fe_bulk"));
+    compare_pairs(flexibility, &geometry, &material, json_object_get(calculix, "unmodified"));
+  }
+  json_decref(calculix);
+  json_decref(contact);
   eo_flexibility_free(flexibility);
   return tap_done();
 }
