@@ -34,31 +34,35 @@ void eo_root_history_done(struct eo_root_history *history)
   *history = (struct eo_root_history){0};
 }
 
+void eo_root_find_largest(const struct eo_flexibility *flexibility, int member, int tooth, int n, const struct eo_flank_point *point,
+                          const double *force, double *stress, struct eo_root_place *place)
+{
+  struct eo_root root = eo_flexibility_root(flexibility, member);
+  *place = (struct eo_root_place){0};
+  eo_flexibility_root_stress(flexibility, member, tooth, n, point, force, 0, root.points, stress);
+  for (int i = 0; i < root.points; i++)
+    for (int layer = 0; layer <= root.layers; layer++) {
+      double s = eo_stress_principal(stress + (i * (root.layers + 1) + layer) * EO_STRESSES);
+      if (s > place->stress)
+        *place = (struct eo_root_place){s, root.arc[i], root.width * ((double)layer / root.layers - 0.5), i, layer};
+    }
+}
+
 enum { MOST_POINTS = 4096 };
 
 /* Largest principal stress in one root under the loads of one position. */
-static double root_stress(const struct eo_flexibility *flexibility, int member, const struct eo_root *root, const struct eo_contact_position *p,
-                          int tooth, const double *line_load, double *stress, double *arc, double *eta)
+static void position_stress(const struct eo_flexibility *flexibility, int member, const struct eo_contact_position *p, int tooth,
+                            const double *line_load, double *stress, struct eo_root_place *place)
 {
   struct eo_flank_point point[MOST_POINTS];
-  double force[MOST_POINTS], largest = 0;
+  double force[MOST_POINTS];
   int loaded = 0;
   for (int i = 0; i < p->points && loaded < MOST_POINTS; i++)
     if (line_load[i] > 0) {
       point[loaded] = p->point[i];
       force[loaded++] = line_load[i] * p->length[i];
     }
-  eo_flexibility_root_stress(flexibility, member, tooth, loaded, point, force, 0, root->points, stress);
-  for (int i = 0; i < root->points; i++)
-    for (int layer = 0; layer <= root->layers; layer++) {
-      double s = eo_stress_principal(stress + (i * (root->layers + 1) + layer) * EO_STRESSES);
-      if (s > largest) {
-        largest = s;
-        *arc = root->arc[i];
-        *eta = root->width * ((double)layer / root->layers - 0.5);
-      }
-    }
-  return largest;
+  eo_root_find_largest(flexibility, member, tooth, loaded, point, force, stress, place);
 }
 
 void eo_root_history_compute(struct eo_root_history *history, const struct eo_flexibility *flexibility, int member,
@@ -73,13 +77,14 @@ void eo_root_history_compute(struct eo_root_history *history, const struct eo_fl
   for (int tooth = range[0]; stress && tooth <= range[1]; tooth++)
     for (int j = 0; j < grid->positions; j += step) {
       const struct eo_contact_position *p = &grid->position[j];
-      double arc = 0, eta = 0, s = root_stress(flexibility, member, &root, p, tooth, end->line_load + p->first, stress, &arc, &eta);
+      struct eo_root_place place;
+      position_stress(flexibility, member, p, tooth, end->line_load + p->first, stress, &place);
       history->phase[history->phases] = p->phase / grid->geometry.transverse_base_pitch + tooth;
-      history->stress[history->phases++] = s;
-      if (s > history->maximum) {
-        history->maximum = s;
-        history->arc = arc;
-        history->eta = eta;
+      history->stress[history->phases++] = place.stress;
+      if (place.stress > history->maximum) {
+        history->maximum = place.stress;
+        history->arc = place.arc;
+        history->eta = place.eta;
       }
     }
   free(stress);
