@@ -89,7 +89,7 @@ static const struct eo_field load_output[] = {
     EO_OUT(struct load_output, torque, "torque_Nm", &eo_unit_Nm, "on the pinion shaft"),
     EO_OUT(struct load_output, mean, "mean_um", &eo_unit_um, "of the pair's loaded transmission error, transverse, over the phases given"),
     EO_OUT(struct load_output, peak_to_peak, "peak_to_peak_um", &eo_unit_um, "of the same"),
-    EO_OUT(struct load_output, float_mean, "axial_float_um", &eo_unit_um, "mean displacement of the pinion towards the right end: (Z_left - Z_right) / (2 sin beta_b)"),
+    EO_OUT(struct load_output, float_mean, "axial_float_um", &eo_unit_um, "mean axial displacement of the pinion, (Z_left - Z_right) / (2 sin beta_b)"),
     EO_OUT_SERIES(struct load_output, transmission, "transmission_error_um", &eo_unit_um, "of the pair: mean of the ends, transverse"),
     EO_OBJECT(struct load_output, left, "left", &end_table, "left end"),
     EO_OPTIONAL(struct load_output, right, two, "right", &end_table, "the pair has one end", "right end"),

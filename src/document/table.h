@@ -87,8 +87,8 @@ void eo_table_settle(const struct eo_table *table, void *target);
 /* Frees SERIES members, in the rows of lists too. */
 void eo_table_done(const struct eo_table *table, void *target);
 
-/* Adds one line per key to the text: path, type, unit, range, default, help; nested tables follow indented. With output set,
-   ranges and defaults are left out. */
+/* Adds one line per key to the text: path, type, unit, range, default, help; nested tables follow indented, each once. With output
+   set, defaults are left out. */
 void eo_table_describe(const struct eo_table *table, bool output, struct eo_text *text);
 
 /* The ways to write a row of a table. low and high are inclusive and in the document's unit. */
