@@ -5,11 +5,9 @@
 #include <string.h>
 
 #include "app/app.h"
+#include "app/verify_optimizer.h"
 #include "document/json.h"
 #include "document/sheet.h"
-
-static const struct eo_verify_kind *const kinds[] = {&eo_verify_standards};
-enum { KINDS = sizeof kinds / sizeof kinds[0] };
 
 static void done(struct eo_verification *v)
 {
@@ -22,6 +20,20 @@ static void done(struct eo_verification *v)
   free((char *)v->folder);
   *v = (struct eo_verification){0};
 }
+
+static void add_judged(void *context, const struct eo_verify_row *row)
+{
+  eo_verify_judged(context, row->name, row->quantity, row->value, row->expected, row->tolerance, row->pass);
+}
+
+static enum eo_code run_optimizer(const json_t *cases, struct eo_verification *v, struct eo_error *error)
+{
+  return eo_verify_optimizer((json_t *)cases, add_judged, v, error);
+}
+
+static const struct eo_verify_kind kind_optimizer = {"optimizer", run_optimizer};
+static const struct eo_verify_kind *const kinds[] = {&kind_optimizer, &eo_verify_kind_standards};
+enum { KINDS = sizeof kinds / sizeof kinds[0] };
 
 static enum eo_code run_kind(const json_t *cases, struct eo_verification *v, struct eo_error *error)
 {
@@ -64,7 +76,7 @@ static double severity(const struct eo_check *check)
 {
   double deviation = fabs(check->value - check->expected);
   if (isnan(deviation))
-    return INFINITY;
+    return check->pass ? 0 : INFINITY;
   return check->tolerance > 0 ? deviation / check->tolerance : (deviation > 0 ? INFINITY : 0);
 }
 
