@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "app/app.h"
-#include "app/verify_optimizer.h"
 #include "document/json.h"
 #include "document/sheet.h"
 
@@ -21,29 +20,18 @@ static void done(struct eo_verification *v)
   *v = (struct eo_verification){0};
 }
 
-static void add_judged(void *context, const struct eo_verify_row *row)
-{
-  eo_verify_judged(context, row->name, row->quantity, row->value, row->expected, row->tolerance, row->pass);
-}
-
-static enum eo_code run_optimizer(const json_t *cases, struct eo_verification *v, struct eo_error *error)
-{
-  return eo_verify_optimizer((json_t *)cases, add_judged, v, error);
-}
-
-static const struct eo_verify_kind kind_optimizer = {"optimizer", run_optimizer};
-static const struct eo_verify_kind *const kinds[] = {&kind_optimizer, &eo_verify_kind_standards};
-enum { KINDS = sizeof kinds / sizeof kinds[0] };
-
 static enum eo_code run_kind(const json_t *cases, struct eo_verification *v, struct eo_error *error)
 {
   const char *kind = json_string_value(json_object_get(cases, "kind"));
   struct eo_text known = {0};
   enum eo_code code = EO_ERROR_INPUT;
-  for (int i = 0; i < KINDS; i++) {
-    if (kind && strcmp(kind, kinds[i]->name) == 0)
-      return kinds[i]->run(cases, v, error);
-    eo_text_print(&known, "%s%s", i ? ", " : "", kinds[i]->name);
+  const struct eo_verify_kind *candidate;
+  for (int i = 0; (candidate = eo_verify_kind_at(i)); i++) {
+    if (kind && strcmp(kind, candidate->name) == 0) {
+      eo_text_done(&known);
+      return candidate->run(cases, v, error);
+    }
+    eo_text_print(&known, "%s%s", i ? ", " : "", candidate->name);
   }
   eo_error_set(error, code, "/kind", "\"%.40s\" is not a kind of case file; known: %s.", kind ? kind : "(none)", known.data ? known.data : "");
   eo_text_done(&known);

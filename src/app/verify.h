@@ -56,6 +56,10 @@ struct eo_verify_kind {
   enum eo_code (*run)(const json_t *cases, struct eo_verification *verification, struct eo_error *error);
 };
 
-extern const struct eo_verify_kind eo_verify_kind_standards;
+/* NULL after the last. */
+const struct eo_verify_kind *eo_verify_kind_at(int index);
+
+/* Worked numbers of standards and published reports. */
+enum eo_code eo_verify_standards(const json_t *cases, struct eo_verification *verification, struct eo_error *error);
 
 #endif

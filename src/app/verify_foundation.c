@@ -116,14 +116,26 @@ enum eo_code eo_verify_load_distribution(double stiffness, double line_load, dou
   return code;
 }
 
+/* Mesh positions as far as can be from those at which a contact line enters or leaves: springs of a vanishing line's cells would be soft
+   beyond measure. In base pitches, lines enter at s_A less the lean of the line, and leave eps_alpha later (eps_beta is whole). */
+static void spread_positions(const struct eo_geometry *geometry, int positions, double *phase)
+{
+  double step = 1. / positions, leave = fmod(geometry->transverse_contact_ratio, step);
+  double offset = leave > step / 2 ? leave / 2 : (leave + step) / 2;
+  double enter = geometry->path_start / geometry->transverse_base_pitch - geometry->overlap_ratio / 2;
+  for (int i = 0; i < positions; i++) {
+    double place = enter + offset + i * step;
+    phase[i] = geometry->transverse_base_pitch * (place - floor(place));
+  }
+}
+
 enum eo_code eo_verify_overlap(const struct eo_geometry *geometry, double *peak_to_peak, double *length_variation, struct eo_error *error)
 {
   enum { POSITIONS = 16, CELLS = 20 };
   const double stiffness = 15e9, load = 300e3 * geometry->face_width;
   double phase[POSITIONS], low = INFINITY, high = -INFINITY, shortest = INFINITY, longest = 0;
   struct rig rig = {0};
-  for (int i = 0; i < POSITIONS; i++)
-    phase[i] = geometry->transverse_base_pitch * (i + 0.5) / POSITIONS;
+  spread_positions(geometry, POSITIONS, phase);
   enum eo_code code = init(&rig, geometry, POSITIONS, CELLS, phase, &stiffness, error);
   if (!code)
     code = solve(&rig, load, 0, error);

@@ -249,7 +249,7 @@ static bool begins(const char *text, const char *prefix)
   return strncmp(text, prefix, strlen(prefix)) == 0;
 }
 
-static enum eo_code run(const json_t *cases, struct eo_verification *v, struct eo_error *error)
+enum eo_code eo_verify_standards(const json_t *cases, struct eo_verification *v, struct eo_error *error)
 {
   const char *key;
   json_t *block;
@@ -272,5 +272,3 @@ static enum eo_code run(const json_t *cases, struct eo_verification *v, struct e
   }
   return EO_OK;
 }
-
-const struct eo_verify_kind eo_verify_kind_standards = {"standards", run};

@@ -15,12 +15,13 @@ void eo_hash_add(struct eo_hash *hash, const void *data, size_t size)
 
 void eo_hash_add_number(struct eo_hash *hash, const char *name, double value)
 {
+  unsigned char bytes[sizeof value] = {0}; /* of 0, whatever its sign */
   if (isnan(value))
     value = NAN;
-  else if (value == 0)
-    value = 0;
+  if (value != 0)
+    memcpy(bytes, &value, sizeof bytes);
   eo_hash_add(hash, name, strlen(name) + 1);
-  eo_hash_add(hash, &value, sizeof value);
+  eo_hash_add(hash, bytes, sizeof bytes);
 }
 
 void eo_hash_add_text(struct eo_hash *hash, const char *name, const char *text)

@@ -7,7 +7,7 @@
 #include "numerics/dense.h"
 #include "numerics/fourier.h"
 
-enum { END_ARRAYS = 10 };
+enum { END_ARRAYS = 11 };
 
 static int make_end(struct eo_time_end *end, int samples)
 {
@@ -15,7 +15,8 @@ static int make_end(struct eo_time_end *end, int samples)
   if (!all)
     return -1;
   double **array[END_ARRAYS] = {&end->x,      &end->v,            &end->force, &end->elastic, &end->slope,
-                                &end->margin, &end->margin_slope, &end->cell,  &end->gate, &end->work};
+                                &end->margin, &end->margin_slope, &end->cell,  &end->gate, &end->work,
+                                &end->weight};
   for (int i = 0; i < END_ARRAYS; i++)
     *array[i] = all + (size_t)i * samples;
   return 0;
@@ -103,8 +104,10 @@ void eo_alternating_gate(struct eo_alternating *g, int end, bool gated)
   int n = g->samples;
   for (int i = 0; i < n; i++)
     e->cell[i] = contact_share(e->margin[i], e->margin[(i + 1) % n]);
-  for (int i = 0; i < n; i++)
-    e->gate[i] = gated ? (e->cell[i] + e->cell[(i + n - 1) % n]) / 2 : 1;
+  for (int i = 0; i < n; i++) {
+    e->weight[i] = (e->cell[i] + e->cell[(i + n - 1) % n]) / 2;
+    e->gate[i] = gated ? e->weight[i] : 1;
+  }
 }
 
 void eo_alternating_transform(const struct eo_alternating *g, int terms, const double *sample, double *series)
@@ -144,9 +147,12 @@ void eo_alternating_force(struct eo_alternating *g, int end, const struct eo_cyc
     e->margin[i] = f.margin;
     e->margin_slope[i] = f.margin_slope;
   }
-  eo_alternating_gate(g, end, cycle->gated && !attached);
-  for (int i = 0; i < n; i++)
-    e->force[i] = e->elastic[i] + cycle->mesh_damping * e->gate[i] * e->v[i];
+  eo_alternating_gate(g, end, cycle->gated);
+  for (int i = 0; i < n; i++) {
+    if (attached)
+      e->weight[i] = e->gate[i] = 1;
+    e->force[i] = e->weight[i] * e->elastic[i] + cycle->mesh_damping * e->gate[i] * e->v[i];
+  }
   eo_alternating_transform(g, eo_fourier_terms(g->harmonics), e->force, force);
 }
 
@@ -212,6 +218,7 @@ static void moments(struct eo_alternating *g, const double *f, double **a, doubl
 /* The share of a cell in which contact begins or ends depends on both its margins: one rank-one term per such cell. */
 static void add_crossings(struct eo_alternating *g, const struct eo_time_end *e, double damping, int stride, double *matrix)
 {
+  /* row: the forces whose weights change; column: how the share changes with the deflections */
   int n = g->samples, terms = eo_fourier_terms(g->harmonics);
   double *row = g->scratch, *column = g->scratch + terms;
   for (int i = 0; i < n; i++) {
@@ -219,11 +226,12 @@ static void add_crossings(struct eo_alternating *g, const struct eo_time_end *e,
     double a = e->margin[i], b = e->margin[next];
     if ((a > 0) == (b > 0))
       continue;
+    double here = e->elastic[i] + damping * e->v[i], there = e->elastic[next] + damping * e->v[next];
     double width = (a - b) * (a - b), sign = a > b ? 1 : -1;
     double slope_a = -sign * b / width * e->margin_slope[i], slope_b = sign * a / width * e->margin_slope[next];
     for (int t = 0; t < terms; t++) {
       const double *basis = g->basis + (size_t)t * n;
-      row[t] = (t ? 1.0 : 0.5) * damping * (e->v[i] * basis[i] + e->v[next] * basis[next]) / n;
+      row[t] = (t ? 1.0 : 0.5) * (here * basis[i] + there * basis[next]) / n;
       column[t] = slope_a * basis[i] + slope_b * basis[next];
     }
     for (int s = 0; s < terms; s++)
@@ -237,8 +245,12 @@ void eo_alternating_jacobian(struct eo_alternating *g, int end, const struct eo_
 {
   struct eo_time_end *e = &g->end[end];
   double *a, *b;
-  moments(g, e->slope, &a, &b);
+  for (int i = 0; i < g->samples; i++)
+    e->work[i] = e->weight[i] * e->slope[i];
+  moments(g, e->work, &a, &b);
   add_multiplication(g->harmonics, a, b, stride, jacobian);
+  if (!attached)
+    add_crossings(g, e, cycle->gated ? cycle->mesh_damping : 0, stride, jacobian);
   if (cycle->mesh_damping == 0)
     return;
   moments(g, e->gate, &a, &b);
@@ -247,8 +259,6 @@ void eo_alternating_jacobian(struct eo_alternating *g, int end, const struct eo_
     b[k] *= cycle->mesh_damping;
   }
   add_rate_multiplication(g->harmonics, cycle->frequency, a, b, stride, jacobian);
-  if (cycle->gated && !attached)
-    add_crossings(g, e, cycle->mesh_damping, stride, jacobian);
 }
 
 void eo_alternating_frequency_slope(struct eo_alternating *g, int end, const struct eo_cycle *cycle, double *slope)

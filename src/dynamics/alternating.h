@@ -1,6 +1,6 @@
 /* Alternating frequency-time: a mesh law evaluated on equidistant phases of a truncated Fourier series, and brought back
-   (Cameron and Griffin 1989). Where teeth separate between two samples the gate of the mesh damping changes within the cell
-   in proportion, so that force and Jacobian stay continuous. */
+   (Cameron and Griffin 1989). Where teeth separate between two samples both count by the share of their cells that is in
+   contact, so that force and Jacobian stay continuous and do not feel the samples. */
 #ifndef EASEOFF_DYNAMICS_ALTERNATING_H
 #define EASEOFF_DYNAMICS_ALTERNATING_H
 
@@ -13,12 +13,13 @@ struct eo_time_end {
   double *row;          /* [samples][rows] of the law */
   int capacity;         /* numbers that fit into row */
   double *x, *v;        /* deflection, m, and its rate, m/s */
-  double *force;        /* law and damping, N */
+  double *force;        /* law and damping, both weighted, N */
   double *elastic;      /* law alone, N */
   double *slope;        /* d law / dX */
   double *margin, *margin_slope;
   double *cell;         /* share of contact between this sample and the next */
-  double *gate;         /* weight of the mesh damping at this sample */
+  double *weight;       /* share of contact of the two half cells about this sample: 0..1 */
+  double *gate;         /* weight of the mesh damping: the same, or 1 when it always acts */
   double *work;
 };
 
@@ -54,7 +55,7 @@ void eo_alternating_transform(const struct eo_alternating *grid, int terms, cons
 /* sample[samples] of series[1 + 2 harmonics]. */
 void eo_alternating_synthesis(const struct eo_alternating *grid, const double *series, double *sample);
 
-/* Fills cell and gate of an end from its margins; eo_alternating_force() does so itself. */
+/* Fills cell, weight and gate of an end from its margins; eo_alternating_force() does so itself. */
 void eo_alternating_gate(struct eo_alternating *grid, int end, bool gated);
 
 /* Share of the cycle out of contact, 0..1, of the last eo_alternating_force(). */

@@ -34,7 +34,7 @@ enum eo_code eo_balance_new(struct eo_balance **workspace, int harmonics, int sa
   if (harmonics < 1 || harmonics > EO_MAX_HARMONICS)
     return eo_error_set(error, EO_ERROR_INPUT, "/resolution/harmonics", "The harmonic balance takes 1 to %d harmonics, not %d.",
                         EO_MAX_HARMONICS, harmonics);
-  int fine = samples ? samples : SAMPLES_PER_HARMONIC * harmonics, coarse = 4;
+  int fine = samples ? samples : SAMPLES_PER_HARMONIC * harmonics, coarse = MIN_SAMPLES;
   if (fine < MIN_SAMPLES && !samples)
     fine = MIN_SAMPLES;
   while (coarse < 4 * harmonics)

@@ -10,7 +10,7 @@
 enum { MAX_LAW_ROWS = 1024 };
 
 const struct eo_integration_options eo_integration_defaults = {
-    .relative_tolerance = 1e-8, .settled = 1e-7, .max_periods = 3000, .samples = 1024};
+    .relative_tolerance = 1e-8, .settled = 1e-7, .max_periods = 1000, .samples = 1024};
 
 /* The state handed to CVODE is the departure from the start, its velocity per phase: tolerances then see the swing. */
 struct run {

@@ -14,7 +14,7 @@ struct eo_integration_options {
   int samples;               /* of the period that is recorded, >= 2 */
 };
 
-/* rtol 1e-8, settled 1e-7, 3000 periods, 1024 samples. */
+/* rtol 1e-8, settled 1e-7, 1000 periods, 1024 samples. */
 extern const struct eo_integration_options eo_integration_defaults;
 
 /* One mesh at one instant. */

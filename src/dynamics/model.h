@@ -61,4 +61,10 @@ struct eo_dynamics_modes {
 enum eo_code eo_dynamics_model_modes(const struct eo_dynamics_model *model, const double mesh_stiffness[2],
                                      struct eo_dynamics_modes *modes, struct eo_error *error);
 
+/* Negative control: the pole with the largest real part when the groove springs and dampers carry the signs printed in (6)
+   and (7), k_pz (z_p2 + z_p1), c_pz (z_p2' + z_p1') and - c_gz (z_g2' - z_g1'). Such a model flutters. Two ends only.
+   Errors: EO_ERROR_INPUT, EO_ERROR_NUMERIC. */
+enum eo_code eo_dynamics_model_printed_pole(const struct eo_dynamics_model *model, const double mesh_stiffness[2],
+                                            double complex *pole, struct eo_error *error);
+
 #endif

@@ -233,12 +233,14 @@ static void fill_spectrum(struct eo_vibration_solver *s, const struct eo_cycle *
   }
 }
 
-static void read_mesh(const struct eo_alternating *grid, int from, const struct eo_cycle *cycle, int end, double load,
+static void read_mesh(const struct eo_vibration_solver *s, const struct eo_alternating *grid, int from, const struct eo_cycle *cycle, int end, double load,
                       struct eo_vibration *result)
 {
   const struct eo_time_end *e = &grid->end[from];
-  struct range force = range_of(grid->samples, e->force), x = range_of(grid->samples, e->x);
-  result->force_mean[end] = force.mean;
+  for (int i = 0; i < grid->samples; i++)
+    e->work[i] = e->elastic[i] + (cycle->gated && e->margin[i] <= 0 ? 0 : cycle->mesh_damping * e->v[i]);
+  struct range force = range_of(grid->samples, e->work), x = range_of(grid->samples, e->x);
+  result->force_mean[end] = creal(s->spectrum.force[end][0]);
   result->force_min[end] = force.least;
   result->force_max[end] = force.most;
   result->dynamic_factor[end] = force.most / load;
@@ -248,7 +250,7 @@ static void read_mesh(const struct eo_alternating *grid, int from, const struct 
   for (int i = 0; i < grid->samples; i++) {
     if (e->margin[i] > 0 && e->margin_slope[i] < 0)
       result->back_contact = true;
-    result->power_supplied -= e->elastic[i] * e->v[i] / grid->samples;
+    result->power_supplied -= e->weight[i] * e->elastic[i] * e->v[i] / grid->samples;
     result->power_dissipated += cycle->mesh_damping * e->gate[i] * e->v[i] * e->v[i] / grid->samples;
   }
 }
@@ -290,7 +292,7 @@ void eo_vibration_read_balance(struct eo_vibration_solver *s, const struct eo_vi
   }
   fill_spectrum(s, cycle, report, result);
   for (int end = 0; end < s->spectrum.ends; end++)
-    read_mesh(report->grid, end % report->ends, cycle, end, eo_dynamics_mesh_load(&s->model.parameters, load->torque), result);
+    read_mesh(s, report->grid, end % report->ends, cycle, end, eo_dynamics_mesh_load(&s->model.parameters, load->torque), result);
   read_accelerations(s, result);
   read_bearings(s, report->grid, result);
   set_outcome(s, true, result);

@@ -33,8 +33,8 @@ static double contract(const struct eo_grid *grid, const struct eo_grid_weights 
 }
 
 /* Adds one member's compliance between loads j and points from..to-1, whose weights are given. */
-static void add_member(const struct eo_flexibility *flexibility, int member, int n, const struct eo_flank_point *point, int from,
-                       int to, const struct eo_grid_weights *weights, double *compliance)
+static void add_block(const struct eo_flexibility *flexibility, int member, int n, const struct eo_flank_point *point, int from,
+                      int to, const struct eo_grid_weights *weights, double *compliance)
 {
   const struct eo_flank_table *table = &flexibility->table[member];
   const struct eo_grid *grid = &table->flank;
@@ -64,18 +64,23 @@ static void add_member(const struct eo_flexibility *flexibility, int member, int
   }
 }
 
+void eo_flexibility_add_compliance(const struct eo_flexibility *flexibility, int member, int n,
+                                   const struct eo_flank_point *point, double *compliance)
+{
+  for (int from = 0; from < n; from += BLOCK) {
+    struct eo_grid_weights weights[BLOCK];
+    int to = from + BLOCK < n ? from + BLOCK : n;
+    for (int i = from; i < to; i++)
+      eo_grid_weights(&flexibility->table[member].flank, point[i].s[member], point[i].eta, &weights[i - from]);
+    add_block(flexibility, member, n, point, from, to, weights, compliance);
+  }
+}
+
 static void evaluate(const void *context, int n, const struct eo_flank_point *point, double *compliance)
 {
-  const struct eo_flexibility *flexibility = context;
   memset(compliance, 0, (size_t)n * (size_t)n * sizeof *compliance);
-  for (int member = 0; member < 2; member++)
-    for (int from = 0; from < n; from += BLOCK) {
-      struct eo_grid_weights weights[BLOCK];
-      int to = from + BLOCK < n ? from + BLOCK : n;
-      for (int i = from; i < to; i++)
-        eo_grid_weights(&flexibility->table[member].flank, point[i].s[member], point[i].eta, &weights[i - from]);
-      add_member(flexibility, member, n, point, from, to, weights, compliance);
-    }
+  eo_flexibility_add_compliance(context, EO_PINION, n, point, compliance);
+  eo_flexibility_add_compliance(context, EO_GEAR, n, point, compliance);
 }
 
 struct eo_kernel eo_flexibility_kernel(const struct eo_flexibility *flexibility)
@@ -86,8 +91,12 @@ struct eo_kernel eo_flexibility_kernel(const struct eo_flexibility *flexibility)
 struct eo_root eo_flexibility_root(const struct eo_flexibility *flexibility, int member)
 {
   const struct eo_flank_table *table = &flexibility->table[member];
-  return (struct eo_root){.points = table->root_points, .layers = table->layers, .arc = table->arc, .position = table->root,
-                          .width = flexibility->width, .twist = flexibility->twist[member]};
+  struct eo_root root = {.points = table->root_points, .layers = table->layers, .arc = table->arc, .position = table->root,
+                         .width = flexibility->width, .twist = flexibility->twist[member]};
+  while (root.first < root.points - 1 &&
+         hypot(root.position[2 * root.first], root.position[2 * root.first + 1]) > flexibility->form_radius[member])
+    root.first++;
+  return root;
 }
 
 /* The table of stresses for loads on a pair, relative to the pair whose root is asked; NULL when they do not count. */

@@ -61,9 +61,14 @@ struct eo_member_settings eo_flexibility_member_settings(const struct eo_flexibi
    by up to one row or half a layer are extrapolated straight, beyond that they count as if there. */
 struct eo_kernel eo_flexibility_kernel(const struct eo_flexibility *flexibility);
 
+/* Adds one member's share of it to compliance[n][n]. */
+void eo_flexibility_add_compliance(const struct eo_flexibility *flexibility, int member, int n,
+                                   const struct eo_flank_point *point, double *compliance);
+
 /* Nodes of the root surface, [points][layers + 1]: from the start of the active profile (point 0) to the middle of the tooth space. */
 struct eo_root {
   int points, layers;
+  int first;              /* first point that lies on the fillet, not on the involute remainder above it */
   const double *arc;      /* [points], along the profile from the start of the active profile, m */
   const double *position; /* [points][2], transverse, tooth centre along +y and loaded flank at x > 0, m */
   double width;           /* of the face, m; layer l lies at eta = width (l / layers - 1/2) */

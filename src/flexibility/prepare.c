@@ -195,7 +195,8 @@ static enum eo_code fill(struct eo_flexibility *f, struct worker worker[2], cons
   }
   for (int m = 0; m < 2 && !code && f->report.from_cache; m++)
     code = eo_flank_table_connect(&f->table[m], f->width, error);
-  memcpy(f->report.note, cache.note, sizeof f->report.note);
+  if (!f->report.from_cache)
+    memcpy(f->report.note, cache.note, sizeof f->report.note);
   eo_cache_close(&cache);
   return code;
 }
@@ -217,6 +218,7 @@ enum eo_code eo_flexibility_prepare(const struct eo_geometry *geometry, const st
   f->settings = *settings;
   f->width = geometry->face_width;
   for (int m = 0; m < 2; m++) {
+    f->form_radius[m] = geometry->form_radius[m];
     f->twist[m] = eo_sector_twist(geometry, m);
     bore[m] = eo_flexibility_bore_radius(geometry, pair, m);
     worker[m] = (struct worker){.shared = &shared, .flexibility = f, .geometry = geometry, .material = material, .member = m,

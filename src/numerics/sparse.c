@@ -4,6 +4,7 @@
 #include <cholmod.h>
 #include <dlfcn.h>
 #include <lapacke.h>
+#include <math.h>
 #include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
@@ -215,6 +216,15 @@ static void copy_trailing(const cholmod_factor *pattern, int n, int kept, double
   }
 }
 
+/* OpenBLAS lets NaN through without a word. */
+static int pivots_are_good(const double *trailing, size_t kept)
+{
+  for (size_t k = 0; k < kept; k++)
+    if (!(trailing[k * kept + k] > 0 && trailing[k * kept + k] < INFINITY))
+      return 0;
+  return 1;
+}
+
 /* The kept unknowns are one clique once all others are gone, so the post-ordering leaves them last and in order. */
 static int order_was_kept(const struct eo_sparse_factor *factor)
 {
@@ -244,6 +254,8 @@ enum eo_code eo_sparse_factorise(struct eo_sparse_factor *factor, struct eo_erro
   factor->entries = (double)factor->pattern->xsize;
   cholmod_free_factor(&factor->pattern, common);
   factor->matrix = NULL;
+  if (!pivots_are_good(factor->trailing, kept))
+    return eo_error_set(error, EO_ERROR_NUMERIC, "", "The stiffness matrix holds numbers that are not finite.");
   return EO_OK;
 }
 
