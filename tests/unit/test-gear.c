@@ -158,9 +158,11 @@ static void test_refusals(void)
   pair.teeth[0] = 9;
   refused(pair, "/gear_pair/pinion_profile_shift");
   pair = paper_pair();
-  pair.profile_shift[0] = 1.3;
-  pair.profile_shift[1] = -1.3;
-  pair.addendum_coefficient = 0.95;
+  pair.teeth[0] = 12;
+  pair.profile_shift[0] = 1.0;
+  pair.profile_shift[1] = -0.2;
+  pair.addendum_coefficient = 1.15;
+  pair.dedendum_coefficient = 1.4;
   refused(pair, "/gear_pair/pinion_profile_shift");
   pair = paper_pair();
   pair.backlash = 0;
@@ -176,7 +178,7 @@ static void test_refusals(void)
   pair.addendum_coefficient = 1.24;
   refused(pair, "/gear_pair/addendum_coefficient");
   pair = paper_pair();
-  pair.fillet_radius_coefficient = 0.8;
+  pair.fillet_radius_coefficient = 0.6;
   refused(pair, "/gear_pair/fillet_radius_coefficient");
 }
 
