@@ -41,3 +41,11 @@ void eo_hash_finish(struct eo_hash *hash, char key[EO_HASH_LENGTH + 1])
   }
   key[EO_HASH_LENGTH] = 0;
 }
+
+void eo_hash_hex(const void *data, size_t size, char key[EO_HASH_LENGTH + 1])
+{
+  struct eo_hash hash;
+  eo_hash_init(&hash);
+  eo_hash_add(&hash, data, size);
+  eo_hash_finish(&hash, key);
+}

@@ -23,4 +23,7 @@ void eo_hash_add_text(struct eo_hash *hash, const char *name, const char *text);
 /* Writes the key, lower case, and ends the use of *hash. */
 void eo_hash_finish(struct eo_hash *hash, char key[EO_HASH_LENGTH + 1]);
 
+/* The key of data[size] alone. */
+void eo_hash_hex(const void *data, size_t size, char key[EO_HASH_LENGTH + 1]);
+
 #endif

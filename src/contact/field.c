@@ -69,7 +69,7 @@ static double corner_value(const struct eo_gap_field *field, int tip, double s, 
   rate = (difference + (r - t) * (a * r + b * t) + t * r * (b - a)) / h;
   *place = table->path[i] * r + table->path[i + 1] * t;
   double gap = table->gap[i] * r + table->gap[i + 1] * t + t * r * (a * r + b * t);
-  gap += eo_slice_gap_at(&field->alone[1 - tip], *place, &side, NULL) + eo_slice_gap_at(&field->alone[tip], end, NULL, NULL);
+  gap += eo_slice_gap_at(&field->alone[1 - tip], *place, &side) + eo_slice_gap_at(&field->alone[tip], end, NULL);
   *slope = (tip == EO_GEAR ? -rate : rate) + side * (table->path[i + 1] - table->path[i]) / h * (tip == EO_GEAR ? -1 : 1);
   return gap;
 }
@@ -81,6 +81,8 @@ void eo_gap_field_init(struct eo_gap_field *field, const struct eo_geometry *g, 
   double sign = end == EO_LEFT ? -1 : 1;
   field->geometry = g;
   field->corner = corner;
+  field->lean = tan(g->base_helix_angle);
+  field->stretch = 1 / cos(g->helix_angle);
   eo_modification_init(&field->shape[EO_PINION], g, EO_PINION, pinion);
   eo_modification_init(&field->shape[EO_GEAR], g, EO_GEAR, gear);
   eo_slice_gap_init(&field->slice, g, field->shape);
@@ -96,16 +98,16 @@ void eo_gap_field_init(struct eo_gap_field *field, const struct eo_geometry *g, 
   field->misalignment_offset = field->misalignment * pivot;
 }
 
-double eo_gap_field_at(const struct eo_gap_field *field, double s, double eta, double *slope, double path[2], int *hint)
+double eo_gap_field_at(const struct eo_gap_field *field, double s, double eta, double *slope, double path[2])
 {
   const struct eo_geometry *g = field->geometry;
-  double rate, unused, place = s, gap, x = eta / cos(g->helix_angle), tangent = tan(g->base_helix_angle);
+  double rate, unused, place = s, gap, x = eta * field->stretch, tangent = field->lean;
   int tip = -1;
   if (s < g->path_start || s > g->path_end) {
     tip = s < g->path_start ? EO_GEAR : EO_PINION;
     gap = corner_value(field, tip, s, &rate, &place);
   } else {
-    gap = eo_slice_gap_at(&field->slice, s, &rate, hint);
+    gap = eo_slice_gap_at(&field->slice, s, &rate);
   }
   if (path) {
     path[EO_PINION] = tip == EO_PINION ? g->path_end : place;
@@ -132,32 +134,40 @@ bool eo_gap_field_line_range(const struct eo_geometry *g, double c, double low, 
 
 double eo_gap_field_line_minimum(const struct eo_gap_field *field, double c, bool edges, double *at)
 {
-  enum { SAMPLES = 48, GOLDEN_STEPS = 40 };
+  enum { SAMPLES = 32, GOLDEN_STEPS = 18 };
   const struct eo_geometry *g = field->geometry;
-  double range[2], tangent = tan(g->base_helix_angle), best = INFINITY, best_eta = 0;
+  double range[2], tangent = field->lean, best = INFINITY, best_eta = 0;
   double reach = edges ? field->corner[0].reach / 2 : 0;
   if (!eo_gap_field_line_range(g, c, g->path_start - reach, g->path_end + reach, range))
     return INFINITY;
   double step = (range[1] - range[0]) / SAMPLES;
-  int hint = 0;
   for (int i = 0; i <= SAMPLES; i++) {
-    double eta = range[0] + i * step, gap = eo_gap_field_at(field, c + eta * tangent, eta, NULL, NULL, &hint);
+    double eta = range[0] + i * step, gap = eo_gap_field_at(field, c + eta * tangent, eta, NULL, NULL);
     if (gap < best) {
       best = gap;
       best_eta = eta;
     }
   }
   double low = fmax(range[0], best_eta - step), high = fmin(range[1], best_eta + step), ratio = 0.6180339887498949;
+  double a = high - ratio * (high - low), b = low + ratio * (high - low);
+  double fa = eo_gap_field_at(field, c + a * tangent, a, NULL, NULL), fb = eo_gap_field_at(field, c + b * tangent, b, NULL, NULL);
   for (int i = 0; i < GOLDEN_STEPS; i++) {
-    double a = high - ratio * (high - low), b = low + ratio * (high - low);
-    double fa = eo_gap_field_at(field, c + a * tangent, a, NULL, NULL, &hint), fb = eo_gap_field_at(field, c + b * tangent, b, NULL, NULL, &hint);
-    if (fa < fb)
-      high = b;
-    else
-      low = a;
     if (fmin(fa, fb) < best) {
       best = fmin(fa, fb);
       best_eta = fa < fb ? a : b;
+    }
+    if (fa < fb) {
+      high = b;
+      b = a;
+      fb = fa;
+      a = high - ratio * (high - low);
+      fa = eo_gap_field_at(field, c + a * tangent, a, NULL, NULL);
+    } else {
+      low = a;
+      a = b;
+      fa = fb;
+      b = low + ratio * (high - low);
+      fb = eo_gap_field_at(field, c + b * tangent, b, NULL, NULL);
     }
   }
   if (at)
@@ -170,11 +180,10 @@ double eo_gap_field_datum(const struct eo_gap_field *field)
   enum { SAMPLES = 400 };
   const struct eo_geometry *g = field->geometry;
   double tangent = tan(g->base_helix_angle), profile = INFINITY, lead = INFINITY, unused;
-  int hint = 0;
   /* The field is a sum of a function of s and one of eta, so the smallest values add up. */
   for (int i = 0; i <= SAMPLES; i++) {
     double s = g->path_start + (g->path_end - g->path_start) * i / SAMPLES;
-    profile = fmin(profile, eo_slice_gap_at(&field->slice, s, NULL, &hint) + field->misalignment * s * tangent);
+    profile = fmin(profile, eo_slice_gap_at(&field->slice, s, NULL) + field->misalignment * s * tangent);
     double eta = g->face_width * ((double)i / SAMPLES - 0.5), x = eta / cos(g->helix_angle);
     lead = fmin(lead, eo_modification_lead(&field->shape[0], x, &unused) + eo_modification_lead(&field->shape[1], x, &unused) +
                           field->misalignment * eta);

@@ -22,6 +22,7 @@ struct eo_gap_field {
   struct eo_modification_shape shape[2];  /* [member] */
   const struct eo_corner_gap *corner;     /* [2], borrowed */
   struct eo_slice_gap slice, alone[2];    /* of both members together, and of each one's relief alone [member] */
+  double lean, stretch;                   /* tan(beta_b); 1/cos(beta), from eta to x */
   double misalignment;                    /* slope of the misalignment gap along eta + s tan(beta_b) */
   double misalignment_offset;             /* its constant, m (removed by axial float) */
 };
@@ -34,8 +35,8 @@ void eo_gap_field_init(struct eo_gap_field *field, const struct eo_geometry *geo
 
 /* Gap at (s, eta), m, normal; beyond the path of contact the tip corner's against the modified flank at the
    corner's radius. *slope (may be NULL): its derivative along s at constant eta.
-   path (may be NULL): [member] place on each flank. hint as in eo_slice_gap_at(), may be NULL. */
-double eo_gap_field_at(const struct eo_gap_field *field, double s, double eta, double *slope, double path[2], int *hint);
+   path (may be NULL): [member] place on each flank. */
+double eo_gap_field_at(const struct eo_gap_field *field, double s, double eta, double *slope, double path[2]);
 
 /* The smallest gap anywhere on the active flank (rectangle s_A..s_E x face width), m. */
 double eo_gap_field_datum(const struct eo_gap_field *field);

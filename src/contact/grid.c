@@ -1,5 +1,6 @@
 #include "contact/grid.h"
 
+#include "numerics/gram.h"
 #include "numerics/lowrank.h"
 
 #include <math.h>
@@ -83,7 +84,7 @@ static void fill_line(struct eo_contact_position *p, int first, const struct eo_
     point->pair = pair;
     point->eta = eta[0] + (i + 0.5) * width;
     double s = p->phase + pair * g->transverse_base_pitch + point->eta * tangent, clamped = fmin(fmax(s, g->path_start), g->path_end);
-    eo_gap_field_at(field, s, point->eta, NULL, point->s, NULL);
+    eo_gap_field_at(field, s, point->eta, NULL, point->s);
     p->path[first + i] = s;
     p->kind[first + i] = stretch->kind;
     p->length[first + i] = width / cos(g->base_helix_angle);
@@ -113,10 +114,29 @@ static enum eo_code fill_position(struct eo_contact_position *p, const struct eo
   return code;
 }
 
+/* The few strongest modes carry Newton's matrix; what they leave is added back as a correction, so the compliance is exact. */
 static enum eo_code factor_position(struct eo_contact_position *p, struct eo_kernel kernel, double *compliance, struct eo_error *error)
 {
+  static const double TOLERANCE = 2e-3;
+  size_t n = (size_t)p->points, stride;
   kernel.evaluate(kernel.context, p->points, p->point, compliance);
-  return eo_lowrank_factor(p->points, compliance, 3e-6, &p->rank, &p->stride, &p->factor, error);
+  p->remainder_stride = (p->points + EO_GRAM_FLOATS - 1) / EO_GRAM_FLOATS * EO_GRAM_FLOATS;
+  p->remainder = (float *)eo_gram_allocate((long)p->points * p->remainder_stride / 2);
+  if (!p->remainder)
+    return eo_error_memory(error);
+  enum eo_code code = eo_lowrank_factor(p->points, compliance, TOLERANCE, &p->rank, &p->stride, &p->factor, error);
+  if (code)
+    return code;
+  kernel.evaluate(kernel.context, p->points, p->point, compliance);
+  stride = (size_t)p->stride;
+  for (size_t i = 0; i < n; i++)
+    for (size_t j = 0; j < n; j++) {
+      double sum = compliance[i * n + j];
+      for (int k = 0; k < p->rank; k++)
+        sum -= p->factor[i * stride + (size_t)k] * p->factor[j * stride + (size_t)k];
+      p->remainder[i * (size_t)p->remainder_stride + j] = (float)sum;
+    }
+  return EO_OK;
 }
 
 static void free_position(struct eo_contact_position *p)
@@ -129,6 +149,7 @@ static void free_position(struct eo_contact_position *p)
   free(p->law);
   free(p->radius);
   free(p->factor);
+  free(p->remainder);
 }
 
 void eo_contact_grid_free(struct eo_contact_grid *grid)

@@ -30,8 +30,10 @@ struct eo_contact_position {
   double *length;               /* of the point's piece of contact line, m */
   double *law;                  /* L of the local law: delta = K q (L - ln q), q in N/m */
   double *radius;               /* relative curvature radius rho_n, m */
-  int rank, stride;             /* of the factor; stride: rank rounded up to a multiple of 4 */
-  double *factor;               /* [points][stride], bulk compliance = factor factor', m/N */
+  int rank, stride;             /* of the factor; stride: see numerics/gram.h */
+  double *factor;               /* [points][stride]: bulk compliance = factor factor' + remainder, m/N */
+  int remainder_stride;
+  float *remainder;             /* [points][remainder_stride]: what the low rank leaves, some thousandths */
 };
 
 struct eo_contact_grid {

@@ -1,6 +1,7 @@
 #include "contact/loaded.h"
 
-#include <lapacke.h>
+#include "numerics/gram.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -27,11 +28,13 @@ static double law_root(double t)
 struct eo_loaded_workspace {
   double (*law)[2];                /* [LAW_NODES]: x and step * dx/dt at t = LAW_LOW + i step */
   double law_step;
-  int (*assemble)(const struct eo_contact_position *, const double *rate, double *matrix);
+  const struct eo_gram *gram;
   double *load, *rate, *gap;       /* [most_points]: p, dp/dg, scaled gaps */
+  double *bend, *correction;       /* [most_points]: deflection by the modes, and by what they leave of the compliance */
   double *mode, *trial;            /* [most_rank + 1]: a and Z */
   double *residual, *step, *tangent; /* [most_rank + 1] */
-  double *matrix;                  /* [stride + 4][stride + 4] */
+  double *matrix, *packed;         /* scratch of the kernel */
+  float *blend;
 };
 
 static double law_inverse(const struct eo_loaded_workspace *ws, double t)
@@ -44,63 +47,6 @@ static double law_inverse(const struct eo_loaded_workspace *ws, double t)
   double a = ws->law[i][1] - difference, b = difference - ws->law[i + 1][1];
   return ws->law[i][0] * l + ws->law[i + 1][0] * r + r * l * (a * l + b * r);
 }
-
-/* ---- matrix of the Newton step: I + sum rate f f', bordered by Z; lower triangle, row-major, leading dimension stride + 4 ---- */
-
-static inline __attribute__((always_inline)) void add_four(int stride, const double *const f[4], const double w[4], double *matrix)
-{
-  int ld = stride + 4;
-  for (int j = 0; j < stride; j++) {
-    double t0 = w[0] * f[0][j], t1 = w[1] * f[1][j], t2 = w[2] * f[2][j], t3 = w[3] * f[3][j], *row = matrix + (size_t)j * (size_t)ld;
-    int end = (j / 4 + 1) * 4;
-    for (int k = 0; k < end; k++)
-      row[k] += t0 * f[0][k] + t1 * f[1][k] + t2 * f[2][k] + t3 * f[3][k];
-  }
-  double *last = matrix + (size_t)stride * (size_t)ld;
-  for (int k = 0; k < stride; k++)
-    last[k] -= w[0] * f[0][k] + w[1] * f[1][k] + w[2] * f[2][k] + w[3] * f[3][k];
-  last[stride] += w[0] + w[1] + w[2] + w[3];
-}
-
-static inline __attribute__((always_inline)) int assemble_body(const struct eo_contact_position *p, const double *rate, double *matrix)
-{
-  int stride = p->stride, ld = stride + 4, filled = 0;
-  const double *f[4];
-  double w[4];
-  memset(matrix, 0, sizeof *matrix * (size_t)ld * (size_t)(stride + 1));
-  for (int j = 0; j < stride; j++)
-    matrix[(size_t)j * (size_t)(ld + 1)] = 1;
-  for (int i = 0; i < p->points; i++) {
-    if (rate[i] <= 0)
-      continue;
-    f[filled] = p->factor + (size_t)i * (size_t)stride;
-    w[filled++] = rate[i];
-    if (filled == 4) {
-      add_four(stride, f, w, matrix);
-      filled = 0;
-    }
-  }
-  if (filled) {
-    for (int i = filled; i < 4; i++) {
-      f[i] = f[0];
-      w[i] = 0;
-    }
-    add_four(stride, f, w, matrix);
-  }
-  return stride + 1;
-}
-
-static int assemble_plain(const struct eo_contact_position *p, const double *rate, double *matrix)
-{
-  return assemble_body(p, rate, matrix);
-}
-
-#if defined(__x86_64__)
-__attribute__((target("avx2,fma"))) static int assemble_avx2(const struct eo_contact_position *p, const double *rate, double *matrix)
-{
-  return assemble_body(p, rate, matrix);
-}
-#endif
 
 /* ---- one position ---- */
 
@@ -118,26 +64,32 @@ static void evaluate(struct eo_loaded_workspace *ws, const struct problem *probl
   const struct eo_contact_position *p = problem->position;
   int stride = p->stride;
   double approach = mode[stride], sum = 0;
-  memcpy(ws->residual, mode, sizeof *mode * (size_t)stride);
+  ws->gram->apply(p->points, stride, p->factor, mode, ws->bend);
   for (int i = 0; i < p->points; i++) {
-    const double *f = p->factor + (size_t)i * (size_t)stride;
-    double bend[4] = {0};
-    for (int k = 0; k < stride; k += 4)
-      for (int l = 0; l < 4; l++)
-        bend[l] += f[k + l] * mode[k + l];
-    double local = approach - problem->gap[i] - ((bend[0] + bend[1]) + (bend[2] + bend[3]));
+    double local = approach - problem->gap[i] - ws->bend[i] - ws->correction[i];
     ws->load[i] = ws->rate[i] = 0;
     if (local <= 0)
       continue;
     double scaled = local / problem->scale, x = law_inverse(ws, p->law[i] - log(scaled));
-    double load = p->length[i] * scaled / x;
-    ws->load[i] = load;
+    ws->load[i] = p->length[i] * scaled / x;
     ws->rate[i] = p->length[i] / (problem->scale * (x - 1));
-    sum += load;
-    for (int k = 0; k < stride; k++)
-      ws->residual[k] -= load * f[k];
+    sum += ws->load[i];
   }
+  memcpy(ws->residual, mode, sizeof *mode * (size_t)stride);
+  ws->gram->gather(p->points, stride, p->factor, ws->load, ws->residual);
   ws->residual[stride] = sum - problem->force;
+}
+
+/* Deflection of the present loads by the part of the compliance that the modes leave out; returns its largest change. */
+static double correct(struct eo_loaded_workspace *ws, const struct eo_contact_position *p)
+{
+  double change = 0;
+  ws->gram->blend(p->points, p->remainder_stride, p->remainder, ws->load, ws->blend);
+  for (int i = 0; i < p->points; i++) {
+    change = fmax(change, fabs((double)ws->blend[i] - ws->correction[i]));
+    ws->correction[i] = (double)ws->blend[i];
+  }
+  return change;
 }
 
 static double dot(int n, const double *a, const double *b)
@@ -150,13 +102,8 @@ static double dot(int n, const double *a, const double *b)
 
 static bool factorise(struct eo_loaded_workspace *ws, const struct eo_contact_position *p)
 {
-  ws->assemble(p, ws->rate, ws->matrix);
-  return LAPACKE_dpotrf_work(LAPACK_COL_MAJOR, 'U', p->stride + 1, ws->matrix, p->stride + 4) == 0;
-}
-
-static void back_solve(const struct eo_loaded_workspace *ws, const struct eo_contact_position *p, double *vector)
-{
-  LAPACKE_dpotrs_work(LAPACK_COL_MAJOR, 'U', p->stride + 1, 1, ws->matrix, p->stride + 4, vector, p->stride + 1);
+  ws->gram->assemble(p->points, p->stride, p->factor, ws->rate, ws->packed, ws->matrix);
+  return ws->gram->factor(p->stride + 1, p->stride, ws->matrix);
 }
 
 /* Raises Z until the loads at a = 0 carry P: a start from nowhere, with every point that matters in contact. */
@@ -167,6 +114,7 @@ static void start_cold(struct eo_loaded_workspace *ws, const struct problem *pro
   for (int i = 0; i < problem->position->points; i++)
     lowest = fmin(lowest, problem->gap[i]);
   memset(mode, 0, sizeof *mode * (size_t)stride);
+  memset(ws->correction, 0, sizeof *ws->correction * (size_t)problem->position->points);
   for (int i = 0; i < 60; i++, rise *= 1.5) {
     mode[stride] = lowest + rise;
     evaluate(ws, problem, mode);
@@ -175,48 +123,72 @@ static void start_cold(struct eo_loaded_workspace *ws, const struct problem *pro
   }
 }
 
-/* Newton on the convex function of (a, Z) from ws->mode. A step that passes the minimum along its own line is cut back.
+/* One step along ws->step from ws->mode; a step that passes the minimum along its own line is cut back. */
+static void advance(struct eo_loaded_workspace *ws, const struct problem *problem)
+{
+  enum { CUTS = 30 };
+  int n = problem->position->stride + 1;
+  double slope = dot(n, ws->residual, ws->step), length = 1;
+  for (int cut = 0; cut < CUTS; cut++) {
+    for (int k = 0; k < n; k++)
+      ws->trial[k] = ws->mode[k] + length * ws->step[k];
+    evaluate(ws, problem, ws->trial);
+    double there = dot(n, ws->residual, ws->step);
+    if (there <= 0 || there < -0.5 * slope)
+      break;
+    length *= fmax(0.1, slope / (slope - there));
+  }
+  memcpy(ws->mode, ws->trial, sizeof *ws->mode * (size_t)n);
+}
+
+static void newton_step(struct eo_loaded_workspace *ws, const struct eo_contact_position *p)
+{
+  int n = p->stride + 1;
+  for (int k = 0; k < n; k++)
+    ws->step[k] = -ws->residual[k];
+  ws->gram->solve(n, p->stride, ws->matrix, ws->step);
+}
+
+/* Newton on the convex function of (a, Z) from ws->mode. Once a step is small the matrix is good enough for the steps that follow,
+   which also take in the correction of the compliance, until nothing moves by more than a thousandth of a nanometre.
    Leaves the loads, the factored matrix and (a, Z) of the solution; returns whether it converged. */
 static bool newton(struct eo_loaded_workspace *ws, const struct problem *problem)
 {
-  enum { STEPS = 60, CUTS = 30 };
+  enum { STEPS = 60, POLISH = 12 };
+  static const double NEAR = 3e-9, DONE = 1e-12;
   const struct eo_contact_position *p = problem->position;
-  int n = p->stride + 1;
+  bool near = false;
   evaluate(ws, problem, ws->mode);
-  for (int i = 0; i < STEPS; i++) {
+  for (int i = 0; i < STEPS && !near; i++) {
     if (!factorise(ws, p)) {
       start_cold(ws, problem, ws->mode);
       if (!factorise(ws, p))
         return false;
     }
-    for (int k = 0; k < n; k++)
-      ws->step[k] = -ws->residual[k];
-    back_solve(ws, p, ws->step);
-    double slope = dot(n, ws->residual, ws->step), length = 1, approach_step = ws->step[n - 1];
-    bool small = fabs(approach_step) < 2e-11 && fabs(ws->residual[n - 1]) < 1e-5 * problem->force;
-    for (int cut = 0; cut < CUTS; cut++) {
-      for (int k = 0; k < n; k++)
-        ws->trial[k] = ws->mode[k] + length * ws->step[k];
-      evaluate(ws, problem, ws->trial);
-      double there = dot(n, ws->residual, ws->step);
-      if (there <= 0 || there < -0.5 * slope)
-        break;
-      length *= fmax(0.1, slope / (slope - there));
-    }
-    memcpy(ws->mode, ws->trial, sizeof *ws->mode * (size_t)n);
-    if (small)
+    newton_step(ws, p);
+    advance(ws, problem);
+    near = fabs(ws->step[p->stride]) < NEAR && fabs(ws->residual[p->stride]) < 1e-3 * problem->force;
+    if (!near || i == 0)
+      correct(ws, p);
+  }
+  for (int i = 0; i < POLISH && near; i++) {
+    double change = correct(ws, p);
+    evaluate(ws, problem, ws->mode);
+    newton_step(ws, p);
+    advance(ws, problem);
+    if (change < DONE && fabs(ws->step[p->stride]) < DONE)
       return true;
   }
   return false;
 }
 
-/* d(a, Z)/dP and the tangent stiffness from the last factorisation (one Newton step old: its error is of the second order). */
+/* d(a, Z)/dP and the tangent stiffness from the last factorisation, some nanometres of approach from the solution: good to 1e-4. */
 static double tangent_of(struct eo_loaded_workspace *ws, const struct eo_contact_position *p)
 {
   int n = p->stride + 1;
   memset(ws->tangent, 0, sizeof *ws->tangent * (size_t)n);
   ws->tangent[n - 1] = 1;
-  back_solve(ws, p, ws->tangent);
+  ws->gram->solve(n, p->stride, ws->matrix, ws->tangent);
   return 1 / ws->tangent[n - 1];
 }
 
@@ -245,6 +217,7 @@ static void start_from(struct eo_loaded_workspace *ws, const struct eo_contact_p
     for (int k = 0; ws->load[i] > 0 && k < p->stride; k++)
       ws->mode[k] += ws->load[i] * problem->force / sum * p->factor[(size_t)i * (size_t)p->stride + (size_t)k];
   ws->mode[p->stride] = approach;
+  correct(ws, p);
   if (sum <= 0)
     start_cold(ws, problem, ws->mode);
 }
@@ -338,32 +311,28 @@ enum eo_code eo_loaded_workspace_new(struct eo_loaded_workspace **result, const 
   struct eo_loaded_workspace *ws = calloc(1, sizeof *ws);
   if (!ws)
     return eo_error_memory(error);
-  size_t points = (size_t)grid->most_points, modes = (size_t)grid->most_rank + 8;
-  ws->law = malloc(sizeof *ws->law * LAW_NODES);
-  ws->load = malloc(sizeof(double) * (3 * points + 5 * modes + modes * modes));
-  if (!ws->law || !ws->load) {
+  long points = grid->most_points + EO_GRAM_LANE, modes = 0;
+  for (int j = 0; j < grid->positions; j++)
+    modes = grid->position[j].stride > modes ? grid->position[j].stride : modes;
+  double **vector[] = {&ws->load, &ws->rate, &ws->gap, &ws->bend, &ws->correction};
+  double **modal[] = {&ws->mode, &ws->trial, &ws->residual, &ws->step, &ws->tangent};
+  bool complete = (ws->law = malloc(sizeof *ws->law * LAW_NODES)) != NULL;
+  for (int i = 0; i < 5; i++)
+    complete = (*vector[i] = eo_gram_allocate(points)) && (*modal[i] = eo_gram_allocate(modes + EO_GRAM_LANE)) && complete;
+  complete = (ws->matrix = eo_gram_allocate((modes + EO_GRAM_LANE) * (modes + EO_GRAM_LANE))) && complete;
+  complete = (ws->packed = eo_gram_allocate(2 * points * modes)) && complete;
+  complete = (ws->blend = (float *)eo_gram_allocate(points + EO_GRAM_FLOATS)) && complete;
+  if (!complete) {
     eo_loaded_workspace_free(ws);
     return eo_error_memory(error);
   }
-  ws->rate = ws->load + points;
-  ws->gap = ws->rate + points;
-  ws->mode = ws->gap + points;
-  ws->trial = ws->mode + modes;
-  ws->residual = ws->trial + modes;
-  ws->step = ws->residual + modes;
-  ws->tangent = ws->step + modes;
-  ws->matrix = ws->tangent + modes;
   ws->law_step = (LAW_HIGH - LAW_LOW) / (LAW_NODES - 1);
   for (int i = 0; i < LAW_NODES; i++) {
     double x = law_root(LAW_LOW + i * ws->law_step);
     ws->law[i][0] = x;
     ws->law[i][1] = ws->law_step * x / (x - 1);
   }
-  ws->assemble = assemble_plain;
-#if defined(__x86_64__)
-  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))
-    ws->assemble = assemble_avx2;
-#endif
+  ws->gram = eo_gram_select();
   *result = ws;
   return EO_OK;
 }
@@ -372,8 +341,12 @@ void eo_loaded_workspace_free(struct eo_loaded_workspace *ws)
 {
   if (!ws)
     return;
+  double *const owned[] = {ws->load, ws->rate, ws->gap, ws->bend, ws->correction, ws->mode, ws->trial, ws->residual, ws->step, ws->tangent,
+                           ws->matrix, ws->packed};
+  for (size_t i = 0; i < sizeof owned / sizeof *owned; i++)
+    free(owned[i]);
+  free(ws->blend);
   free(ws->law);
-  free(ws->load);
   free(ws);
 }
 
@@ -399,15 +372,18 @@ void eo_loaded_gaps_set(struct eo_loaded_gaps *gaps, const struct eo_contact_gri
   for (int j = 0; j < grid->positions; j++) {
     const struct eo_contact_position *p = &grid->position[j];
     bool edges = false;
-    int hint = 0;
-    for (int i = 0; i < p->points; i++)
-      gaps->gap[p->first + i] = eo_gap_field_at(field, p->path[i], p->point[i].eta, NULL, NULL, &hint);
+      for (int i = 0; i < p->points; i++)
+      gaps->gap[p->first + i] = eo_gap_field_at(field, p->path[i], p->point[i].eta, NULL, NULL);
     gaps->unloaded[j] = INFINITY;
     for (int l = 0; l < p->lines; l++)
       edges |= p->line[l].kind != EO_POINT_LINE;
     for (int l = 0; l < p->lines; l++) {
+      bool seen = false;
+      for (int m = 0; m < l; m++)
+        seen |= p->line[m].pair == p->line[l].pair;
       double c = p->phase + p->line[l].pair * grid->geometry.transverse_base_pitch;
-      gaps->unloaded[j] = fmin(gaps->unloaded[j], eo_gap_field_line_minimum(field, c, edges, NULL));
+      if (!seen)
+        gaps->unloaded[j] = fmin(gaps->unloaded[j], eo_gap_field_line_minimum(field, c, edges, NULL));
     }
   }
 }

@@ -30,10 +30,9 @@ static double sampled_minimum(const struct search *search, double c, double *eta
 {
   const struct eo_geometry *g = &search->grid->geometry;
   double best = INFINITY, reach = search->field->corner[0].reach / 2;
-  int hint = 0;
   for (int i = 0; i < search->stations; i++) {
     double at = g->face_width * ((double)i / (search->stations - 1) - 0.5), s = c + at * tan(g->base_helix_angle);
-    double gap = s < g->path_start - reach || s > g->path_end ? INFINITY : eo_gap_field_at(search->field, s, at, NULL, NULL, &hint);
+    double gap = s < g->path_start - reach || s > g->path_end ? INFINITY : eo_gap_field_at(search->field, s, at, NULL, NULL);
     if (gap < best) {
       best = gap;
       *eta = at;
@@ -122,7 +121,7 @@ void eo_impact_find(struct eo_impact *impact, const struct eo_contact_grid *grid
     return;
   impact->path = impact->phase + impact->eta * tan(g->base_helix_angle);
   impact->off_line = impact->path < g->path_start;
-  eo_gap_field_at(field, impact->path, impact->eta, &slope, place, NULL);
+  eo_gap_field_at(field, impact->path, impact->eta, &slope, place);
   impact->pinion_radius = eo_geometry_radius_at(g, EO_PINION, place[EO_PINION]);
   impact->speed = fmax(0, -slope) * speed * g->base_radius[EO_PINION];
   impact->start = impact->phase / g->transverse_base_pitch - floor(impact->phase / g->transverse_base_pitch);

@@ -36,7 +36,7 @@ static double contract(const struct eo_grid *grid, const struct eo_grid_weights 
 static void add_block(const struct eo_flexibility *flexibility, int member, int n, const struct eo_flank_point *point, int from,
                       int to, const struct eo_grid_weights *weights, double *compliance)
 {
-  const struct eo_table *table = &flexibility->table[member];
+  const struct eo_flank_table *table = &flexibility->table[member];
   const struct eo_grid *grid = &table->flank;
   size_t points = (size_t)grid->points;
   for (int j = 0; j < n; j++) {
@@ -90,7 +90,7 @@ struct eo_kernel eo_flexibility_kernel(const struct eo_flexibility *flexibility)
 
 struct eo_root eo_flexibility_root(const struct eo_flexibility *flexibility, int member)
 {
-  const struct eo_table *table = &flexibility->table[member];
+  const struct eo_flank_table *table = &flexibility->table[member];
   struct eo_root root = {.points = table->root_points, .layers = table->layers, .arc = table->arc, .position = table->root,
                          .width = flexibility->width, .twist = flexibility->twist[member]};
   while (root.first < root.points - 1 &&
@@ -102,7 +102,7 @@ struct eo_root eo_flexibility_root(const struct eo_flexibility *flexibility, int
 /* The table of stresses for loads on a pair, relative to the pair whose root is asked; NULL when they do not count. */
 static const double *stress_table(const struct eo_flexibility *flexibility, int member, int ahead_by, const struct eo_grid **grid)
 {
-  const struct eo_table *table = &flexibility->table[member];
+  const struct eo_flank_table *table = &flexibility->table[member];
   *grid = ahead_by == 0 ? &table->flank : &table->next;
   if (ahead_by == 0)
     return table->stress;
@@ -114,7 +114,7 @@ static const double *stress_table(const struct eo_flexibility *flexibility, int 
 void eo_flexibility_root_influence(const struct eo_flexibility *flexibility, int member, int pair, int n,
                                    const struct eo_flank_point *point, int from, int to, double *influence)
 {
-  const struct eo_table *table = &flexibility->table[member];
+  const struct eo_flank_table *table = &flexibility->table[member];
   size_t line = ((size_t)table->layers + 1) * EO_STRESSES, length = (size_t)(to - from) * line;
   for (int j = 0; j < n; j++, influence += length) {
     const struct eo_grid *grid;
@@ -132,7 +132,7 @@ void eo_flexibility_root_influence(const struct eo_flexibility *flexibility, int
 void eo_flexibility_root_stress(const struct eo_flexibility *flexibility, int member, int pair, int n,
                                 const struct eo_flank_point *point, const double *force, int from, int to, double *stress)
 {
-  const struct eo_table *table = &flexibility->table[member];
+  const struct eo_flank_table *table = &flexibility->table[member];
   size_t line = ((size_t)table->layers + 1) * EO_STRESSES, length = (size_t)(to - from) * line;
   memset(stress, 0, length * sizeof *stress);
   for (int ahead_by = -1; ahead_by <= 1; ahead_by++) {
@@ -171,7 +171,7 @@ void eo_flexibility_free(struct eo_flexibility *flexibility)
 {
   if (!flexibility)
     return;
-  eo_table_done(&flexibility->table[0]);
-  eo_table_done(&flexibility->table[1]);
+  eo_flank_table_done(&flexibility->table[0]);
+  eo_flank_table_done(&flexibility->table[1]);
   free(flexibility);
 }

@@ -151,7 +151,7 @@ static void *compute_member(void *context)
   w->code = eo_member_compute(&result, w->geometry, w->member, w->material, &w->settings, &progress, &report->times[w->member],
                               &w->error);
   if (!w->code)
-    w->code = eo_table_fill(&w->flexibility->table[w->member], &result, w->flexibility->width,
+    w->code = eo_flank_table_fill(&w->flexibility->table[w->member], &result, w->flexibility->width,
                             &report->smallest_eigenvalue[w->member], &w->error);
   eo_member_result_done(&result);
   if (w->code) {
@@ -194,7 +194,7 @@ static enum eo_code fill(struct eo_flexibility *f, struct worker worker[2], cons
       eo_cache_write(&cache, part, 2);
   }
   for (int m = 0; m < 2 && !code && f->report.from_cache; m++)
-    code = eo_table_connect(&f->table[m], f->width, error);
+    code = eo_flank_table_connect(&f->table[m], f->width, error);
   if (!f->report.from_cache)
     memcpy(f->report.note, cache.note, sizeof f->report.note);
   eo_cache_close(&cache);
@@ -224,7 +224,7 @@ enum eo_code eo_flexibility_prepare(const struct eo_geometry *geometry, const st
     worker[m] = (struct worker){.shared = &shared, .flexibility = f, .geometry = geometry, .material = material, .member = m,
                                 .settings = eo_flexibility_member_settings(settings, bore[m])};
     if (!code)
-      code = eo_table_init(&f->table[m], &worker[m].settings, error);
+      code = eo_flank_table_init(&f->table[m], &worker[m].settings, error);
   }
   make_key(geometry, material, settings, bore, f->report.key);
   if (!code)

@@ -4,10 +4,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum eo_code eo_table_init(struct eo_table *table, const struct eo_member_settings *settings, struct eo_error *error)
+enum eo_code eo_flank_table_init(struct eo_flank_table *table, const struct eo_member_settings *settings, struct eo_error *error)
 {
   const struct eo_section_settings *section = &settings->section;
-  *table = (struct eo_table){.rows = section->loaded.rows + 1, .next_rows = section->next.rows + 1, .layers = settings->layers,
+  *table = (struct eo_flank_table){.rows = section->loaded.rows + 1, .next_rows = section->next.rows + 1, .layers = settings->layers,
                              .root_points = section->loaded.fillet[1] - 1};
   size_t across = (size_t)table->layers + 1, rows = (size_t)table->rows, next_rows = (size_t)table->next_rows;
   size_t flank = rows * across, next = next_rows * across, points = (size_t)table->root_points;
@@ -34,14 +34,14 @@ static void grid_done(struct eo_grid *grid)
   eo_spline_done(&grid->eta);
 }
 
-void eo_table_done(struct eo_table *table)
+void eo_flank_table_done(struct eo_flank_table *table)
 {
   if (!table)
     return;
   free(table->data);
   grid_done(&table->flank);
   grid_done(&table->next);
-  *table = (struct eo_table){0};
+  *table = (struct eo_flank_table){0};
 }
 
 static enum eo_code grid_init(struct eo_grid *grid, int rows, const double *s, int layers, double width, struct eo_error *error)
@@ -56,7 +56,7 @@ static enum eo_code grid_init(struct eo_grid *grid, int rows, const double *s, i
   return code;
 }
 
-enum eo_code eo_table_connect(struct eo_table *table, double width, struct eo_error *error)
+enum eo_code eo_flank_table_connect(struct eo_flank_table *table, double width, struct eo_error *error)
 {
   enum eo_code code = grid_init(&table->flank, table->rows, table->s, table->layers, width, error);
   return code ? code : grid_init(&table->next, table->next_rows, table->next_s, table->layers, width, error);
@@ -112,7 +112,7 @@ static enum eo_code to_coefficients_twice(const struct eo_grid *grid, double *ma
 }
 
 /* Response on a neighbour's coarser rows to the rows of the flank: [flank][next] to [flank][flank]. */
-static enum eo_code refine(const struct eo_table *table, const double *coarse, double *fine)
+static enum eo_code refine(const struct eo_flank_table *table, const double *coarse, double *fine)
 {
   size_t rows = (size_t)table->rows, next_rows = (size_t)table->next_rows, across = (size_t)table->layers + 1;
   size_t flank = rows * across, next = next_rows * across;
@@ -133,7 +133,7 @@ static enum eo_code refine(const struct eo_table *table, const double *coarse, d
 
 /* C(k + 1, k) from the sector's own columns. The sector is not the same seen from tooth k + 1 as from k, so the mean of the response ahead
    and of the transposed response behind is taken: then C(k + 1, k) = C(k, k + 1)' exactly. */
-static enum eo_code fill_ahead(struct eo_table *table, const struct eo_member_result *result)
+static enum eo_code fill_ahead(struct eo_flank_table *table, const struct eo_member_result *result)
 {
   size_t n = (size_t)table->flank.points;
   double *behind = malloc(n * n * sizeof *behind);
@@ -148,7 +148,7 @@ static enum eo_code fill_ahead(struct eo_table *table, const struct eo_member_re
 }
 
 /* Smallest over largest eigenvalue of bulk + sign (ahead + ahead'), the worse of the three signs 0, +, -. */
-static enum eo_code measure(const struct eo_table *table, double *smallest, struct eo_error *error)
+static enum eo_code measure(const struct eo_flank_table *table, double *smallest, struct eo_error *error)
 {
   size_t n = (size_t)table->flank.points;
   double *matrix = malloc(n * n * sizeof *matrix);
@@ -166,7 +166,7 @@ static enum eo_code measure(const struct eo_table *table, double *smallest, stru
   return code;
 }
 
-enum eo_code eo_table_fill(struct eo_table *table, const struct eo_member_result *result, double width, double *smallest,
+enum eo_code eo_flank_table_fill(struct eo_flank_table *table, const struct eo_member_result *result, double width, double *smallest,
                            struct eo_error *error)
 {
   size_t n = (size_t)(result->rows * (result->layers + 1)), next = (size_t)(result->next_rows * (result->layers + 1));
@@ -179,7 +179,7 @@ enum eo_code eo_table_fill(struct eo_table *table, const struct eo_member_result
     memcpy(table->next_stress[k], result->next_stress[k], next * table->stresses * sizeof *table->stress);
   for (size_t i = 0; i < n * n; i++)
     table->bulk[i] = result->full[i] - result->half[i];
-  enum eo_code code = eo_table_connect(table, width, error);
+  enum eo_code code = eo_flank_table_connect(table, width, error);
   if (!code)
     code = fill_ahead(table, result);
   if (!code)

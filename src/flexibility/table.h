@@ -17,7 +17,7 @@ struct eo_grid_weights {
   double weight[16];       /* [row][layer] */
 };
 
-struct eo_table {
+struct eo_flank_table {
   int rows, next_rows, layers, root_points;
   struct eo_grid flank, next;
   size_t stresses;         /* root_points * (layers + 1) * EO_STRESSES */
@@ -34,16 +34,16 @@ struct eo_table {
 };
 
 /* Allocates for the settings; the numbers are still to be filled. */
-enum eo_code eo_table_init(struct eo_table *table, const struct eo_member_settings *settings, struct eo_error *error);
-void eo_table_done(struct eo_table *table);
+enum eo_code eo_flank_table_init(struct eo_flank_table *table, const struct eo_member_settings *settings, struct eo_error *error);
+void eo_flank_table_done(struct eo_flank_table *table);
 
 /* Fills the data from finite-element results. smallest: smallest eigenvalue of the compliance of a flank with its neighbours
    moving alike or against each other, over the largest. */
-enum eo_code eo_table_fill(struct eo_table *table, const struct eo_member_result *result, double width, double *smallest,
+enum eo_code eo_flank_table_fill(struct eo_flank_table *table, const struct eo_member_result *result, double width, double *smallest,
                            struct eo_error *error);
 
 /* Makes the splines from the data; width: of the face. */
-enum eo_code eo_table_connect(struct eo_table *table, double width, struct eo_error *error);
+enum eo_code eo_flank_table_connect(struct eo_flank_table *table, double width, struct eo_error *error);
 
 static inline void eo_grid_weights(const struct eo_grid *grid, double s, double eta, struct eo_grid_weights *out)
 {

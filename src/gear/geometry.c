@@ -160,14 +160,14 @@ static enum eo_code set_root(struct eo_geometry *g, int i, struct eo_error *erro
 static enum eo_code check_tip(struct eo_geometry *g, int i, const struct eo_gear_pair *pair, struct eo_error *error)
 {
   int other = 1 - i;
-  if (g->start_radius[i] < g->form_radius[i])
-    return eo_error_set(error, EO_ERROR_INPUT, isnan(pair->tip_diameter[other]) ? "/gear_pair/addendum_coefficient" : tip_key[other],
-                        "The tip of the %s interferes with the fillet of the %s: the active profile would start at radius %.6g mm, the involute at %.6g mm.",
-                        name[other], name[i], 1e3 * g->start_radius[i], 1e3 * g->form_radius[i]);
   g->tip_thickness[i] = 2 * g->tip_radius[i] * half_thickness_angle(g, i, g->tip_radius[i]);
   if (g->tip_thickness[i] <= 0)
     return eo_error_set(error, EO_ERROR_INPUT, shift_key[i], "The teeth of the %s are pointed below the tip radius %.6g mm.", name[i],
                         1e3 * g->tip_radius[i]);
+  if (g->start_radius[i] < g->form_radius[i])
+    return eo_error_set(error, EO_ERROR_INPUT, isnan(pair->tip_diameter[other]) ? "/gear_pair/addendum_coefficient" : tip_key[other],
+                        "The tip of the %s interferes with the fillet of the %s: the active profile would start at radius %.6g mm, the involute at %.6g mm.",
+                        name[other], name[i], 1e3 * g->start_radius[i], 1e3 * g->form_radius[i]);
   g->tip_clearance[i] = g->centre_distance - g->tip_radius[i] - g->root_radius[other];
   if (g->tip_clearance[i] <= 0)
     return eo_error_set(error, EO_ERROR_INPUT, "/gear_pair/dedendum_coefficient", "The tip of the %s touches the root of the %s (clearance %.4g mm).",

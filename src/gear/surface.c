@@ -140,6 +140,18 @@ static int collect_breaks(const struct eo_geometry *g, const struct eo_modificat
   return count;
 }
 
+static void fill_buckets(struct eo_slice_gap *table)
+{
+  int piece = 0, last = table->nodes - 2;
+  double width = (table->phase[last + 1] - table->phase[0]) / EO_SLICE_BUCKETS;
+  table->bucket_rate = 1 / width;
+  for (int i = 0; i < EO_SLICE_BUCKETS; i++) {
+    while (piece < last && table->phase[piece + 1] <= table->phase[0] + i * width)
+      piece++;
+    table->bucket[i] = (unsigned char)piece;
+  }
+}
+
 void eo_slice_gap_init(struct eo_slice_gap *table, const struct eo_geometry *g, const struct eo_modification_shape shape[2])
 {
   enum { PIECES = 40 }; /* per segment between two breaks: interpolation error below 1e-12 m */
@@ -152,41 +164,29 @@ void eo_slice_gap_init(struct eo_slice_gap *table, const struct eo_geometry *g, 
   for (int k = 0; k + 1 < count; k++)
     for (int i = 0; i <= PIECES; i++) {
       double u = breaks[k] + (breaks[k + 1] - breaks[k]) * i / PIECES;
-      if (table->nodes == EO_SLICE_NODES)
-        return;
       struct ray p = pinion ? slice_ray(g, EO_PINION, &shape[EO_PINION], u, i == PIECES ? 0 : 1)
                             : involute_ray(g, EO_PINION, g->tangent_length[EO_PINION] + u / g->rack_factor);
       add_node(table, g, gear ? &shape[EO_GEAR] : NULL, &p);
     }
+  fill_buckets(table);
 }
 
-double eo_slice_gap_at(const struct eo_slice_gap *table, double c, double *slope, int *hint)
+double eo_slice_gap_at(const struct eo_slice_gap *table, double c, double *slope)
 {
   double unused;
-  int zero = 0;
   slope = slope ? slope : &unused;
   *slope = 0;
   if (table->nodes == 0)
     return 0;
-  int last = table->nodes - 1, i = hint ? *hint : zero;
+  int last = table->nodes - 1, i;
   if (c <= table->phase[0] || c >= table->phase[last]) {
     i = c <= table->phase[0] ? 0 : last;
     *slope = table->slope[i];
     return table->gap[i] + table->slope[i] * (c - table->phase[i]);
   }
-  int low = 0, high = last;
-  if (i < 0 || i >= last || table->phase[i] > c || table->phase[i + 1] < c) {
-    while (high - low > 1) {
-      int middle = (low + high) / 2;
-      if (table->phase[middle] <= c)
-        low = middle;
-      else
-        high = middle;
-    }
-    i = low;
-  }
-  if (hint)
-    *hint = i;
+  i = table->bucket[(int)((c - table->phase[0]) * table->bucket_rate) & (EO_SLICE_BUCKETS - 1)];
+  while (i < last - 1 && table->phase[i + 1] < c)
+    i++;
   double h = table->phase[i + 1] - table->phase[i], t = (c - table->phase[i]) / h, r = 1 - t;
   double difference = table->gap[i + 1] - table->gap[i], a = table->slope[i] * h - difference, b = difference - table->slope[i + 1] * h;
   *slope = (difference + (r - t) * (a * r + b * t) + t * r * (b - a)) / h;

@@ -34,19 +34,21 @@ void eo_slice_point_at(const struct eo_geometry *geometry, int member, const str
    flank normals in line: the common normal has arms h_p, h_g about the axes, cos(alpha') = (h_p + h_g)/a, and the distances along it
    add up to a sin(alpha'). Slope: d gap_t/dc = 1 - h_p r_bg / (h_g r_bp), exactly. Table with cubic Hermite pieces. */
 
-enum { EO_SLICE_NODES = 256 };
+enum { EO_SLICE_NODES = 256, EO_SLICE_BUCKETS = 256 };
 
 struct eo_slice_gap {
   int nodes;                         /* 0: no profile modification, the gap is zero */
   double phase[EO_SLICE_NODES];      /* c, m, increasing */
   double gap[EO_SLICE_NODES];        /* normal to the flank, m */
   double slope[EO_SLICE_NODES];      /* d gap / dc */
+  double bucket_rate;                /* buckets per m */
+  unsigned char bucket[EO_SLICE_BUCKETS]; /* the piece in which each of equal stretches of c starts */
 };
 
 /* shape: [member] of one end. The table covers [s_A, s_E] and a margin beyond (the relief parabolas go on); outside it the last piece goes on in a line. */
 void eo_slice_gap_init(struct eo_slice_gap *table, const struct eo_geometry *geometry, const struct eo_modification_shape shape[2]);
 
-/* Gap at c, m, normal; *slope (may be NULL) its derivative. hint: index of the last piece, for neighbouring calls (may be NULL). */
-double eo_slice_gap_at(const struct eo_slice_gap *table, double c, double *slope, int *hint);
+/* Gap at c, m, normal; *slope (may be NULL) its derivative. */
+double eo_slice_gap_at(const struct eo_slice_gap *table, double c, double *slope);
 
 #endif

@@ -1,5 +1,7 @@
 #include "numerics/lowrank.h"
 
+#include "numerics/gram.h"
+
 #include <lapacke.h>
 #include <math.h>
 #include <stdlib.h>
@@ -29,8 +31,8 @@ enum eo_code eo_lowrank_factor(int n, double *matrix, double tolerance, int *ran
   }
   if (largest > 0)
     LAPACKE_dpstrf(LAPACK_COL_MAJOR, 'L', n, matrix, n, pivot, &r, tolerance * largest);
-  int width = r > 0 ? (r + 3) / 4 * 4 : 4;
-  double *rows = calloc((size_t)n * (size_t)width, sizeof *rows);
+  int width = r > 0 ? ((int)r + EO_GRAM_LANE - 1) / EO_GRAM_LANE * EO_GRAM_LANE : EO_GRAM_LANE;
+  double *rows = eo_gram_allocate((long)n * width);
   for (int i = 0; rows && i < n; i++)
     for (int j = 0; j < r && j <= i; j++)
       rows[(size_t)(pivot[i] - 1) * (size_t)width + (size_t)j] = matrix[(size_t)j * (size_t)n + (size_t)i];
