@@ -70,7 +70,7 @@ void eo_flexibility_add_compliance(const struct eo_flexibility *flexibility, int
 /* Nodes of the root surface, [points][layers + 1]: from the start of the active profile (point 0) to the middle of the tooth space. */
 struct eo_root {
   int points, layers;
-  int first;              /* first point on the fillet: below it is no involute, and no loaded node is within two elements */
+  int first;              /* first point that counts as root: on the fillet and two elements away from loaded nodes, whose dents the first ones feel */
   const double *arc;      /* [points], along the profile from the start of the active profile, m */
   const double *position; /* [points][2], transverse, tooth centre along +y and loaded flank at x > 0, m */
   double width;           /* of the face, m; layer l lies at eta = width (l / layers - 1/2) */
