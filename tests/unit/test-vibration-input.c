@@ -115,7 +115,8 @@ static void undamped_resonance(void)
       load.impact = impact ? EO_IMPACT_CONSISTENT : EO_IMPACT_NONE;
       load.pulse[0] = load.pulse[1] = (struct eo_pulse){EO_PULSE_HALF_SINE, 5000, 0, 0.2};
       enum eo_code code = eo_vibration_solve(solver, &load, EO_START_COLD, &r, NULL);
-      ok(!code && all_finite(&r), "undamped at %.1f Hz%s: outcome %d, RMS %.3g", modes.frequency[mode], impact ? " with impacts" : "", (int)r.outcome,
+      /* without a varying force nothing may move, however singular the equations */
+      ok(!code && all_finite(&r) && (impact || r.rms_pair[0] < 1e-6), "undamped at %.1f Hz%s: outcome %d, RMS %.3g", modes.frequency[mode], impact ? " with impacts" : "", (int)r.outcome,
          r.rms_pair[0]);
     }
   eo_vibration_free(solver);
