@@ -1,0 +1,19 @@
+/* One stage of the chain alone, with explicit input: a pair of structs with field tables, and the function between them. */
+#ifndef EASEOFF_APP_STAGE_H
+#define EASEOFF_APP_STAGE_H
+
+#include "base/error.h"
+#include "document/table.h"
+
+struct eo_stage {
+  const char *name;
+  const char *summary; /* one line */
+  const struct eo_table *input, *output;
+  /* Both structs belong to the caller; *output is zeroed before. Series in *output are allocated with malloc() and freed by
+     the caller, also after an error. */
+  enum eo_code (*run)(const void *input, void *output, struct eo_error *error);
+};
+
+extern const struct eo_stage eo_stage_geometry, eo_stage_hertz, eo_stage_iso6336;
+
+#endif

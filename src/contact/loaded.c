@@ -1,0 +1,415 @@
+#include "contact/loaded.h"
+
+#include "numerics/gram.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- the local law and its inverse ----
+   delta = K q (L - ln q). With x = L - ln q and t = L - ln(delta/K): x - ln x = t, x > 1 (q below the law's turning point), q = delta/(K x),
+   dq/ddelta = 1/(K (x - 1)). x(t) is one universal function, tabulated with its slope x/(x - 1). */
+
+enum { LAW_NODES = 4096 };
+static const double LAW_LOW = 1.02, LAW_HIGH = 84.0;
+
+static double law_root(double t)
+{
+  double x = t + log(t) + 0.5;
+  for (int i = 0; i < 60; i++) {
+    double step = (x - log(x) - t) / (1 - 1 / x);
+    x = fmax(x - step, 1 + (x - 1) / 8);
+    if (fabs(step) < 1e-15 * x)
+      break;
+  }
+  return x;
+}
+
+struct eo_loaded_workspace {
+  double (*law)[2];                /* [LAW_NODES]: x and step * dx/dt at t = LAW_LOW + i step */
+  double law_step;
+  const struct eo_gram *gram;
+  double *load, *rate, *gap;       /* [most_points]: p, dp/dg, scaled gaps */
+  double *bend, *correction;       /* [most_points]: deflection by the modes, and by what they leave of the compliance */
+  double *mode, *trial;            /* [most_rank + 1]: a and Z */
+  double *residual, *step, *tangent; /* [most_rank + 1] */
+  double *matrix, *packed;         /* scratch of the kernel */
+  float *blend;
+};
+
+static double law_inverse(const struct eo_loaded_workspace *ws, double t)
+{
+  double u = (t - LAW_LOW) / ws->law_step;
+  if (!(u >= 0 && u < LAW_NODES - 1))
+    return law_root(fmax(t, 1 + 1e-9));
+  int i = (int)u;
+  double r = u - i, l = 1 - r, difference = ws->law[i + 1][0] - ws->law[i][0];
+  double a = ws->law[i][1] - difference, b = difference - ws->law[i + 1][1];
+  return ws->law[i][0] * l + ws->law[i + 1][0] * r + r * l * (a * l + b * r);
+}
+
+/* ---- one position ---- */
+
+/* The problem of one position in units of the unscaled compliance: gaps and approach are divided by the compliance factor. */
+struct problem {
+  const struct eo_contact_position *position;
+  const double *gap; /* [points] */
+  double scale;      /* K */
+  double force;      /* P */
+};
+
+/* Loads and their rates at (a, Z); residual of the rank + 1 equations. */
+static void evaluate(struct eo_loaded_workspace *ws, const struct problem *problem, const double *mode)
+{
+  const struct eo_contact_position *p = problem->position;
+  int stride = p->stride;
+  double approach = mode[stride], sum = 0;
+  ws->gram->apply(p->points, stride, p->factor, mode, ws->bend);
+  for (int i = 0; i < p->points; i++) {
+    double local = approach - problem->gap[i] - ws->bend[i] - ws->correction[i];
+    ws->load[i] = ws->rate[i] = 0;
+    if (local <= 0)
+      continue;
+    double scaled = local / problem->scale, x = law_inverse(ws, p->law[i] - log(scaled));
+    ws->load[i] = p->length[i] * scaled / x;
+    ws->rate[i] = p->length[i] / (problem->scale * (x - 1));
+    sum += ws->load[i];
+  }
+  memcpy(ws->residual, mode, sizeof *mode * (size_t)stride);
+  ws->gram->gather(p->points, stride, p->factor, ws->load, ws->residual);
+  ws->residual[stride] = sum - problem->force;
+}
+
+/* Deflection of the present loads by the part of the compliance that the modes leave out; returns its largest change. */
+static double correct(struct eo_loaded_workspace *ws, const struct eo_contact_position *p)
+{
+  double change = 0;
+  ws->gram->blend(p->points, p->remainder_stride, p->remainder, ws->load, ws->blend);
+  for (int i = 0; i < p->points; i++) {
+    change = fmax(change, fabs((double)ws->blend[i] - ws->correction[i]));
+    ws->correction[i] = (double)ws->blend[i];
+  }
+  return change;
+}
+
+static double dot(int n, const double *a, const double *b)
+{
+  double sum = 0;
+  for (int i = 0; i < n; i++)
+    sum += a[i] * b[i];
+  return sum;
+}
+
+static bool factorise(struct eo_loaded_workspace *ws, const struct eo_contact_position *p)
+{
+  ws->gram->assemble(p->points, p->stride, p->factor, ws->rate, ws->packed, ws->matrix);
+  return ws->gram->factor(p->stride + 1, p->stride, ws->matrix);
+}
+
+/* Raises Z until the loads at a = 0 carry P: a start from nowhere, with every point that matters in contact. */
+static void start_cold(struct eo_loaded_workspace *ws, const struct problem *problem, double *mode)
+{
+  int stride = problem->position->stride;
+  double lowest = INFINITY, rise = 1e-6;
+  for (int i = 0; i < problem->position->points; i++)
+    lowest = fmin(lowest, problem->gap[i]);
+  memset(mode, 0, sizeof *mode * (size_t)stride);
+  memset(ws->correction, 0, sizeof *ws->correction * (size_t)problem->position->points);
+  for (int i = 0; i < 60; i++, rise *= 1.5) {
+    mode[stride] = lowest + rise;
+    evaluate(ws, problem, mode);
+    if (ws->residual[stride] > 0)
+      break;
+  }
+}
+
+/* One step along ws->step from ws->mode; a step that passes the minimum along its own line is cut back. */
+static void advance(struct eo_loaded_workspace *ws, const struct problem *problem)
+{
+  enum { CUTS = 30 };
+  int n = problem->position->stride + 1;
+  double slope = dot(n, ws->residual, ws->step), length = 1;
+  for (int cut = 0; cut < CUTS; cut++) {
+    for (int k = 0; k < n; k++)
+      ws->trial[k] = ws->mode[k] + length * ws->step[k];
+    evaluate(ws, problem, ws->trial);
+    double there = dot(n, ws->residual, ws->step);
+    if (there <= 0 || there < -0.5 * slope)
+      break;
+    length *= fmax(0.1, slope / (slope - there));
+  }
+  memcpy(ws->mode, ws->trial, sizeof *ws->mode * (size_t)n);
+}
+
+static void newton_step(struct eo_loaded_workspace *ws, const struct eo_contact_position *p)
+{
+  int n = p->stride + 1;
+  for (int k = 0; k < n; k++)
+    ws->step[k] = -ws->residual[k];
+  ws->gram->solve(n, p->stride, ws->matrix, ws->step);
+}
+
+/* Newton on the convex function of (a, Z) from ws->mode. Once a step is small the matrix is good enough for the steps that follow,
+   which also take in the correction of the compliance, until nothing moves by more than a thousandth of a nanometre.
+   Leaves the loads, the factored matrix and (a, Z) of the solution; returns whether it converged. */
+static bool newton(struct eo_loaded_workspace *ws, const struct problem *problem)
+{
+  enum { STEPS = 60, POLISH = 12 };
+  static const double NEAR = 3e-9, DONE = 1e-12;
+  const struct eo_contact_position *p = problem->position;
+  bool near = false;
+  evaluate(ws, problem, ws->mode);
+  for (int i = 0; i < STEPS && !near; i++) {
+    if (!factorise(ws, p)) {
+      start_cold(ws, problem, ws->mode);
+      if (!factorise(ws, p))
+        return false;
+    }
+    newton_step(ws, p);
+    advance(ws, problem);
+    near = fabs(ws->step[p->stride]) < NEAR && fabs(ws->residual[p->stride]) < 1e-3 * problem->force;
+    if (!near || i == 0)
+      correct(ws, p);
+  }
+  for (int i = 0; i < POLISH && near; i++) {
+    double change = correct(ws, p);
+    evaluate(ws, problem, ws->mode);
+    newton_step(ws, p);
+    advance(ws, problem);
+    if (change < DONE && fabs(ws->step[p->stride]) < DONE)
+      return true;
+  }
+  return false;
+}
+
+/* d(a, Z)/dP and the tangent stiffness from the last factorisation, some nanometres of approach from the solution: good to 1e-4. */
+static double tangent_of(struct eo_loaded_workspace *ws, const struct eo_contact_position *p)
+{
+  int n = p->stride + 1;
+  memset(ws->tangent, 0, sizeof *ws->tangent * (size_t)n);
+  ws->tangent[n - 1] = 1;
+  ws->gram->solve(n, p->stride, ws->matrix, ws->tangent);
+  return 1 / ws->tangent[n - 1];
+}
+
+static const struct eo_contact_line *same_line(const struct eo_contact_position *p, const struct eo_contact_line *line)
+{
+  for (int i = 0; i < p->lines; i++)
+    if (p->line[i].pair == line->pair && p->line[i].kind == line->kind && p->line[i].cells == line->cells)
+      return &p->line[i];
+  return NULL;
+}
+
+/* Start from the neighbouring position: the same line loads on the same lines, scaled to carry P. */
+static void start_from(struct eo_loaded_workspace *ws, const struct eo_contact_position *from, const double *line_load, double approach,
+                       const struct problem *problem)
+{
+  const struct eo_contact_position *p = problem->position;
+  double sum = 0;
+  memset(ws->load, 0, sizeof *ws->load * (size_t)p->points);
+  for (int l = 0; l < p->lines; l++) {
+    const struct eo_contact_line *line = &p->line[l], *old = same_line(from, line);
+    for (int i = 0; old && i < line->cells; i++)
+      sum += ws->load[line->first + i] = line_load[old->first + i] * p->length[line->first + i];
+  }
+  memset(ws->mode, 0, sizeof *ws->mode * (size_t)p->stride);
+  for (int i = 0; sum > 0 && i < p->points; i++)
+    for (int k = 0; ws->load[i] > 0 && k < p->stride; k++)
+      ws->mode[k] += ws->load[i] * problem->force / sum * p->factor[(size_t)i * (size_t)p->stride + (size_t)k];
+  ws->mode[p->stride] = approach;
+  correct(ws, p);
+  if (sum <= 0)
+    start_cold(ws, problem, ws->mode);
+}
+
+/* Solves from ws->mode and writes position j of the result. */
+static void solve_position(struct eo_loaded_workspace *ws, const struct problem *problem, int j, double factor, struct eo_loaded_end *result)
+{
+  const struct eo_contact_position *p = problem->position;
+  bool converged = newton(ws, problem);
+  if (!converged) {
+    start_cold(ws, problem, ws->mode);
+    converged = newton(ws, problem);
+  }
+  result->failures += !converged;
+  result->load[j] = problem->force;
+  result->tangent[j] = tangent_of(ws, p) / factor;
+  result->approach[j] = ws->mode[p->stride] * factor;
+  for (int i = 0; i < p->points; i++)
+    result->line_load[p->first + i] = ws->load[i] / p->length[i];
+}
+
+static const double *scaled_gaps(struct eo_loaded_workspace *ws, const struct eo_contact_position *p, const double *gap, double factor)
+{
+  if (factor == 1)
+    return gap + p->first;
+  for (int i = 0; i < p->points; i++)
+    ws->gap[i] = gap[p->first + i] / factor;
+  return ws->gap;
+}
+
+void eo_loaded_solve(struct eo_loaded_workspace *ws, const struct eo_contact_grid *grid, const struct eo_loaded_gaps *gaps,
+                     double compliance_factor, int loads, const double *load, struct eo_loaded_end *result)
+{
+  for (int l = 0; l < loads; l++)
+    result[l].failures = 0;
+  for (int j = 0; j < grid->positions; j++) {
+    const struct eo_contact_position *p = &grid->position[j];
+    struct problem problem = {p, scaled_gaps(ws, p, gaps->gap, compliance_factor), grid->compliance_scale, load[0]};
+    if (j == 0)
+      start_cold(ws, &problem, ws->mode);
+    else
+      start_from(ws, &grid->position[j - 1], result[0].line_load + grid->position[j - 1].first, result[0].approach[j - 1] / compliance_factor,
+                 &problem);
+    for (int l = 0; l < loads; l++) {
+      problem.force = load[l];
+      for (int k = 0; l > 0 && k <= p->stride; k++) /* along the tangent from the load before */
+        ws->mode[k] += (load[l] - load[l - 1]) * ws->tangent[k];
+      solve_position(ws, &problem, j, compliance_factor, &result[l]);
+    }
+  }
+}
+
+/* ---- axially held pinion ---- */
+
+static void resolve_end(struct eo_loaded_workspace *ws, const struct eo_contact_grid *grid, const struct eo_loaded_gaps *gaps, double factor,
+                        int j, double force, struct eo_loaded_end *end)
+{
+  const struct eo_contact_position *p = &grid->position[j];
+  struct problem problem = {p, scaled_gaps(ws, p, gaps->gap, factor), grid->compliance_scale, force};
+  start_from(ws, p, end->line_load + p->first, end->approach[j] / factor, &problem);
+  solve_position(ws, &problem, j, factor, end);
+}
+
+void eo_loaded_balance(struct eo_loaded_workspace *ws, const struct eo_contact_grid *grid, const struct eo_loaded_gaps gaps[2],
+                       double compliance_factor, double stiffness, int stagger, double load, struct eo_loaded_end result[2])
+{
+  enum { STEPS = 40 };
+  double lean = sin(grid->geometry.base_helix_angle), soft = isinf(stiffness) ? 0 : 4 * lean * lean / stiffness;
+  if (stiffness <= 0 || lean == 0)
+    return;
+  for (int j = 0; j < grid->positions; j++) {
+    int other = (j + grid->positions - stagger % grid->positions) % grid->positions;
+    double shift = 0; /* P_L = P + shift, P_R = P - shift; equilibrium of the pinion along its axis: Z_L - Z_R + shift 4 sin^2/k = 0 */
+    for (int i = 0; i < STEPS; i++) {
+      double miss = result[0].approach[j] - result[1].approach[other] + soft * shift;
+      double rate = 1 / result[0].tangent[j] + 1 / result[1].tangent[other] + soft;
+      double next = fmax(-0.999 * load, fmin(0.999 * load, shift - miss / rate));
+      if (fabs(next - shift) < 1e-7 * load)
+        break;
+      shift = next;
+      resolve_end(ws, grid, &gaps[0], compliance_factor, j, load + shift, &result[0]);
+      resolve_end(ws, grid, &gaps[1], compliance_factor, other, load - shift, &result[1]);
+    }
+  }
+}
+
+/* ---- storage ---- */
+
+enum eo_code eo_loaded_workspace_new(struct eo_loaded_workspace **result, const struct eo_contact_grid *grid, struct eo_error *error)
+{
+  struct eo_loaded_workspace *ws = calloc(1, sizeof *ws);
+  if (!ws)
+    return eo_error_memory(error);
+  long points = grid->most_points + EO_GRAM_LANE, modes = 0;
+  for (int j = 0; j < grid->positions; j++)
+    modes = grid->position[j].stride > modes ? grid->position[j].stride : modes;
+  double **vector[] = {&ws->load, &ws->rate, &ws->gap, &ws->bend, &ws->correction};
+  double **modal[] = {&ws->mode, &ws->trial, &ws->residual, &ws->step, &ws->tangent};
+  bool complete = (ws->law = malloc(sizeof *ws->law * LAW_NODES)) != NULL;
+  for (int i = 0; i < 5; i++)
+    complete = (*vector[i] = eo_gram_allocate(points)) && (*modal[i] = eo_gram_allocate(modes + EO_GRAM_LANE)) && complete;
+  complete = (ws->matrix = eo_gram_allocate((modes + EO_GRAM_LANE) * (modes + EO_GRAM_LANE))) && complete;
+  complete = (ws->packed = eo_gram_allocate(2 * points * modes)) && complete;
+  complete = (ws->blend = (float *)eo_gram_allocate(points + EO_GRAM_FLOATS)) && complete;
+  if (!complete) {
+    eo_loaded_workspace_free(ws);
+    return eo_error_memory(error);
+  }
+  ws->law_step = (LAW_HIGH - LAW_LOW) / (LAW_NODES - 1);
+  for (int i = 0; i < LAW_NODES; i++) {
+    double x = law_root(LAW_LOW + i * ws->law_step);
+    ws->law[i][0] = x;
+    ws->law[i][1] = ws->law_step * x / (x - 1);
+  }
+  ws->gram = eo_gram_select();
+  *result = ws;
+  return EO_OK;
+}
+
+void eo_loaded_workspace_free(struct eo_loaded_workspace *ws)
+{
+  if (!ws)
+    return;
+  double *const owned[] = {ws->load, ws->rate, ws->gap, ws->bend, ws->correction, ws->mode, ws->trial, ws->residual, ws->step, ws->tangent,
+                           ws->matrix, ws->packed};
+  for (size_t i = 0; i < sizeof owned / sizeof *owned; i++)
+    free(owned[i]);
+  free(ws->blend);
+  free(ws->law);
+  free(ws);
+}
+
+enum eo_code eo_loaded_gaps_init(struct eo_loaded_gaps *gaps, const struct eo_contact_grid *grid, struct eo_error *error)
+{
+  gaps->gap = calloc((size_t)grid->points, sizeof(double));
+  gaps->unloaded = calloc((size_t)grid->positions, sizeof(double));
+  if (gaps->gap && gaps->unloaded)
+    return EO_OK;
+  eo_loaded_gaps_done(gaps);
+  return eo_error_memory(error);
+}
+
+void eo_loaded_gaps_done(struct eo_loaded_gaps *gaps)
+{
+  free(gaps->gap);
+  free(gaps->unloaded);
+  gaps->gap = gaps->unloaded = NULL;
+}
+
+void eo_loaded_gaps_set(struct eo_loaded_gaps *gaps, const struct eo_contact_grid *grid, const struct eo_gap_field *field)
+{
+  for (int j = 0; j < grid->positions; j++) {
+    const struct eo_contact_position *p = &grid->position[j];
+    bool edges = false;
+      for (int i = 0; i < p->points; i++)
+      gaps->gap[p->first + i] = eo_gap_field_at(field, p->path[i], p->point[i].eta, NULL, NULL);
+    gaps->unloaded[j] = INFINITY;
+    for (int l = 0; l < p->lines; l++)
+      edges |= p->line[l].kind != EO_POINT_LINE;
+    for (int l = 0; l < p->lines; l++) {
+      bool seen = false;
+      for (int m = 0; m < l; m++)
+        seen |= p->line[m].pair == p->line[l].pair;
+      double c = p->phase + p->line[l].pair * grid->geometry.transverse_base_pitch;
+      if (!seen)
+        gaps->unloaded[j] = fmin(gaps->unloaded[j], eo_gap_field_line_minimum(field, c, edges, NULL));
+    }
+  }
+}
+
+enum eo_code eo_loaded_end_init(struct eo_loaded_end *end, const struct eo_contact_grid *grid, struct eo_error *error)
+{
+  size_t n = (size_t)grid->positions;
+  *end = (struct eo_loaded_end){.load = calloc(n, sizeof(double)), .approach = calloc(n, sizeof(double)),
+    .tangent = calloc(n, sizeof(double)), .line_load = calloc((size_t)grid->points, sizeof(double))};
+  if (end->load && end->approach && end->tangent && end->line_load)
+    return EO_OK;
+  eo_loaded_end_done(end);
+  return eo_error_memory(error);
+}
+
+void eo_loaded_end_done(struct eo_loaded_end *end)
+{
+  free(end->load);
+  free(end->approach);
+  free(end->tangent);
+  free(end->line_load);
+  *end = (struct eo_loaded_end){0};
+}
+
+double eo_loaded_pressure(const struct eo_contact_grid *grid, double line_load, double radius)
+{
+  /* p = sqrt(q E* / (pi rho)) with 1/E* = 2 (1 - nu^2)/E = pi K */
+  return sqrt(line_load / (M_PI * M_PI * grid->compliance_scale * radius));
+}

@@ -1,0 +1,86 @@
+#include "contact/root.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+static void tooth_range(const struct eo_contact_grid *grid, int range[2])
+{
+  range[0] = 0;
+  range[1] = 0;
+  for (int j = 0; j < grid->positions; j++)
+    for (int l = 0; l < grid->position[j].lines; l++) {
+      int pair = grid->position[j].line[l].pair;
+      range[0] = pair < range[0] ? pair : range[0];
+      range[1] = pair > range[1] ? pair : range[1];
+    }
+}
+
+enum eo_code eo_root_history_init(struct eo_root_history *history, const struct eo_contact_grid *grid, struct eo_error *error)
+{
+  int range[2];
+  tooth_range(grid, range);
+  size_t most = (size_t)((range[1] - range[0] + 1) * grid->positions);
+  *history = (struct eo_root_history){.phase = calloc(most, sizeof(double)), .stress = calloc(most, sizeof(double))};
+  if (history->phase && history->stress)
+    return EO_OK;
+  eo_root_history_done(history);
+  return eo_error_memory(error);
+}
+
+void eo_root_history_done(struct eo_root_history *history)
+{
+  free(history->phase);
+  free(history->stress);
+  *history = (struct eo_root_history){0};
+}
+
+enum { MOST_POINTS = 4096 };
+
+/* Largest principal stress in one root under the loads of one position. */
+static double root_stress(const struct eo_flexibility *flexibility, int member, const struct eo_root *root, const struct eo_contact_position *p,
+                          int tooth, const double *line_load, double *stress, double *arc, double *eta)
+{
+  struct eo_flank_point point[MOST_POINTS];
+  double force[MOST_POINTS], largest = 0;
+  int loaded = 0;
+  for (int i = 0; i < p->points && loaded < MOST_POINTS; i++)
+    if (line_load[i] > 0) {
+      point[loaded] = p->point[i];
+      force[loaded++] = line_load[i] * p->length[i];
+    }
+  eo_flexibility_root_stress(flexibility, member, tooth, loaded, point, force, 0, root->points, stress);
+  for (int i = root->first; i < root->points; i++)
+    for (int layer = 0; layer <= root->layers; layer++) {
+      double s = eo_stress_principal(stress + (i * (root->layers + 1) + layer) * EO_STRESSES);
+      if (s > largest) {
+        largest = s;
+        *arc = root->arc[i];
+        *eta = root->width * ((double)layer / root->layers - 0.5);
+      }
+    }
+  return largest;
+}
+
+void eo_root_history_compute(struct eo_root_history *history, const struct eo_flexibility *flexibility, int member,
+                             const struct eo_contact_grid *grid, const struct eo_loaded_end *end, int step)
+{
+  struct eo_root root = eo_flexibility_root(flexibility, member);
+  double *stress = malloc(sizeof *stress * (size_t)(root.points * (root.layers + 1) * EO_STRESSES));
+  int range[2];
+  tooth_range(grid, range);
+  history->phases = 0;
+  history->maximum = 0;
+  for (int tooth = range[0]; stress && tooth <= range[1]; tooth++)
+    for (int j = 0; j < grid->positions; j += step) {
+      const struct eo_contact_position *p = &grid->position[j];
+      double arc = 0, eta = 0, s = root_stress(flexibility, member, &root, p, tooth, end->line_load + p->first, stress, &arc, &eta);
+      history->phase[history->phases] = p->phase / grid->geometry.transverse_base_pitch + tooth;
+      history->stress[history->phases++] = s;
+      if (s > history->maximum) {
+        history->maximum = s;
+        history->arc = arc;
+        history->eta = eta;
+      }
+    }
+  free(stress);
+}

@@ -1,0 +1,130 @@
+#include "numerics/minimise.h"
+
+#include <math.h>
+#include <stdbool.h>
+#include <string.h>
+
+struct iterate {
+  int n;
+  const double *low, *high;
+  double x[EO_MINIMISE_MAX], gradient[EO_MINIMISE_MAX], value;
+  double inverse[EO_MINIMISE_MAX * EO_MINIMISE_MAX]; /* of the Hessian, [n][n] */
+};
+
+static void reset_inverse(struct iterate *it)
+{
+  memset(it->inverse, 0, (size_t)it->n * (size_t)it->n * sizeof(double));
+  for (int k = 0; k < it->n; k++)
+    it->inverse[k * it->n + k] = 1;
+}
+
+static bool is_held(const struct iterate *it, int k)
+{
+  return (it->x[k] <= it->low[k] && it->gradient[k] > 0) || (it->x[k] >= it->high[k] && it->gradient[k] < 0);
+}
+
+/* Returns the slope along the direction, < 0 unless every variable is held. */
+static double find_direction(const struct iterate *it, double *direction)
+{
+  double slope = 0;
+  for (int k = 0; k < it->n; k++) {
+    direction[k] = 0;
+    for (int l = 0; l < it->n && !is_held(it, k); l++)
+      direction[k] -= is_held(it, l) ? 0 : it->inverse[k * it->n + l] * it->gradient[l];
+    slope += direction[k] * it->gradient[k];
+  }
+  return slope;
+}
+
+/* Before anything is known of the curvature, the first step should be of the size of the box. */
+static double first_length(const struct iterate *it, const double *direction)
+{
+  double length = 1;
+  for (int k = 0; k < it->n; k++)
+    if (direction[k] != 0)
+      length = fmin(length, (it->high[k] - it->low[k]) / (2 * fabs(direction[k])));
+  return length;
+}
+
+static bool search_line(struct iterate *next, const struct iterate *it, eo_smooth_function *function, void *context,
+                        const double *direction, double length)
+{
+  for (int halving = 0; halving < 20; halving++, length /= 2) {
+    double predicted = 0;
+    for (int k = 0; k < it->n; k++) {
+      next->x[k] = fmin(fmax(it->x[k] + length * direction[k], it->low[k]), it->high[k]);
+      predicted += it->gradient[k] * (next->x[k] - it->x[k]);
+    }
+    next->value = function(context, next->x, next->gradient);
+    if (predicted < 0 && next->value <= it->value + 1e-4 * predicted)
+      return true;
+  }
+  return false;
+}
+
+/* BFGS on the inverse; skipped when the curvature along the step is not positive. */
+static void update_inverse(struct iterate *it, const double *step, const double *change)
+{
+  const int n = it->n;
+  double curvature = 0, scaled[EO_MINIMISE_MAX], quadratic = 0, length = 0, turn = 0;
+  for (int k = 0; k < n; k++) {
+    curvature += step[k] * change[k];
+    length += step[k] * step[k];
+    turn += change[k] * change[k];
+  }
+  if (!(curvature > 1e-10 * sqrt(length * turn)))
+    return;
+  for (int k = 0; k < n; k++) {
+    scaled[k] = 0;
+    for (int l = 0; l < n; l++)
+      scaled[k] += it->inverse[k * n + l] * change[l];
+    quadratic += change[k] * scaled[k];
+  }
+  for (int k = 0; k < n; k++)
+    for (int l = 0; l < n; l++)
+      it->inverse[k * n + l] += (1 + quadratic / curvature) * step[k] * step[l] / curvature -
+                                (scaled[k] * step[l] + step[k] * scaled[l]) / curvature;
+}
+
+static double accept(struct iterate *it, const struct iterate *next)
+{
+  double step[EO_MINIMISE_MAX], change[EO_MINIMISE_MAX], moved = 0;
+  for (int k = 0; k < it->n; k++) {
+    step[k] = next->x[k] - it->x[k];
+    change[k] = next->gradient[k] - it->gradient[k];
+    moved = fmax(moved, fabs(step[k]));
+  }
+  memcpy(it->x, next->x, sizeof it->x);
+  memcpy(it->gradient, next->gradient, sizeof it->gradient);
+  it->value = next->value;
+  update_inverse(it, step, change);
+  return moved;
+}
+
+double eo_minimise(eo_smooth_function *function, void *context, const double *low, const double *high, int n, int steps,
+                   double tolerance, double *x)
+{
+  struct iterate it = {.n = n, .low = low, .high = high}, next = it;
+  double direction[EO_MINIMISE_MAX];
+  bool fresh = true;
+  memcpy(it.x, x, (size_t)n * sizeof *x);
+  it.value = function(context, it.x, it.gradient);
+  reset_inverse(&it);
+  for (int step = 0; step < steps; step++) {
+    if (!(find_direction(&it, direction) < 0))
+      break;
+    const double length = fresh ? first_length(&it, direction) : 1;
+    if (search_line(&next, &it, function, context, direction, length)) {
+      fresh = false;
+      if (accept(&it, &next) < tolerance)
+        break;
+    } else if (fresh) {
+      break;
+    } else {
+      reset_inverse(&it);
+      fresh = true;
+    }
+  }
+  memcpy(x, it.x, (size_t)n * sizeof *x);
+  return it.value;
+}

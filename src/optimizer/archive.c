@@ -1,0 +1,105 @@
+#include "optimizer/archive.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum eo_code eo_archive_init(struct eo_archive *archive, int variables, int objectives, struct eo_error *error)
+{
+  *archive = (struct eo_archive){.variables = variables, .objectives = objectives, .best = -1};
+  return eo_archive_reserve(archive, 64, error);
+}
+
+void eo_archive_done(struct eo_archive *archive)
+{
+  free(archive->x);
+  free(archive->value);
+  free(archive->violation);
+  free(archive->objective);
+  free(archive->generation);
+  free(archive->individual);
+  free(archive->next);
+  free(archive->bucket);
+  *archive = (struct eo_archive){.best = -1};
+}
+
+/* FNV-1a over the bits (Fowler, Noll, Vo). */
+static uint64_t hash(const double *x, int n)
+{
+  uint64_t h = 0xCBF29CE484222325u;
+  for (int k = 0; k < n; k++) {
+    uint64_t bits;
+    memcpy(&bits, &x[k], sizeof bits);
+    h = (h ^ bits) * 0x100000001B3u;
+    h ^= h >> 29;
+  }
+  return h;
+}
+
+static void chain(struct eo_archive *archive, int row)
+{
+  const uint64_t h = hash(archive->x + (size_t)row * archive->variables, archive->variables);
+  int *bucket = &archive->bucket[h % (uint64_t)archive->bucket_count];
+  archive->next[row] = *bucket;
+  *bucket = row;
+}
+
+/* The array enlarged, or as it was and *failed set. */
+static void *grow(void *array, size_t count, size_t size, bool *failed)
+{
+  void *larger = realloc(array, count * size + 1);
+  *failed |= !larger;
+  return larger ? larger : array;
+}
+
+enum eo_code eo_archive_reserve(struct eo_archive *archive, int rows, struct eo_error *error)
+{
+  if (archive->count + rows <= archive->capacity)
+    return EO_OK;
+  const int capacity = archive->count + rows > 2 * archive->capacity ? archive->count + rows : 2 * archive->capacity;
+  const size_t c = (size_t)capacity;
+  bool failed = false;
+  archive->x = grow(archive->x, c * (size_t)archive->variables, sizeof(double), &failed);
+  archive->value = grow(archive->value, c, sizeof(double), &failed);
+  archive->violation = grow(archive->violation, c, sizeof(double), &failed);
+  archive->objective = grow(archive->objective, c * (size_t)archive->objectives, sizeof(double), &failed);
+  archive->generation = grow(archive->generation, c, sizeof(int), &failed);
+  archive->individual = grow(archive->individual, c, sizeof(int), &failed);
+  archive->next = grow(archive->next, c, sizeof(int), &failed);
+  archive->bucket = grow(archive->bucket, 2 * c, sizeof(int), &failed);
+  if (failed)
+    return eo_error_memory(error);
+  archive->capacity = capacity;
+  archive->bucket_count = 2 * capacity;
+  for (int i = 0; i < archive->bucket_count; i++)
+    archive->bucket[i] = -1;
+  for (int row = 0; row < archive->count; row++)
+    chain(archive, row);
+  return EO_OK;
+}
+
+int eo_archive_add(struct eo_archive *archive, const double *x, double value, double violation, const double *objectives,
+                   int generation, int individual)
+{
+  const int row = archive->count++, n = archive->variables, m = archive->objectives;
+  memcpy(archive->x + (size_t)row * n, x, (size_t)n * sizeof *x);
+  archive->value[row] = isfinite(value) ? value : INFINITY;
+  archive->violation[row] = violation;
+  for (int k = 0; k < m; k++)
+    archive->objective[(size_t)row * m + k] = objectives ? objectives[k] : archive->value[row];
+  archive->generation[row] = generation;
+  archive->individual[row] = individual;
+  chain(archive, row);
+  if (isfinite(value) && (archive->best < 0 || value < archive->value[archive->best]))
+    archive->best = row;
+  return row;
+}
+
+int eo_archive_find(const struct eo_archive *archive, const double *x)
+{
+  const size_t bytes = (size_t)archive->variables * sizeof *x;
+  int row = archive->bucket[hash(x, archive->variables) % (uint64_t)archive->bucket_count];
+  while (row >= 0 && memcmp(archive->x + (size_t)row * archive->variables, x, bytes) != 0)
+    row = archive->next[row];
+  return row;
+}

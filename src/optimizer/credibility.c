@@ -1,0 +1,414 @@
+/* `credibility-ga` */
+#include "optimizer/internal.h"
+#include "optimizer/local.h"
+#include "optimizer/operators.h"
+#include "optimizer/surrogate.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const double search_spread[] = {0, 0, 0.003, 0.003, 0.01, 0.03, 0.1, 0.2};
+static const double polish_spread[] = {0, 0, 0.001, 0.003};
+
+struct credibility {
+  int epoch, epoch_first; /* first archive row of the epoch */
+  int batch;              /* batches so far, counts the random numbers */
+  int stalled;
+  double epoch_best;      /* when the epoch last gained */
+  bool fresh;             /* the epoch's latin hypercube is still to come */
+  bool polishing;
+  int local_count;        /* proposals of the trust region at the head of the pending batch */
+  int *taboo;             /* archive rows; owned, as all below */
+  int taboo_count, taboo_capacity;
+  int parents_max, children;
+  double *parents, *parent_score;  /* [parents_max][n], [parents_max] */
+  double *pool, *pool_score;       /* [children][n], [children] */
+  int *rows;                       /* [model_rows] of the surrogate */
+  double *x, *y, *sorted;          /* [model_rows][n], [model_rows], likewise */
+  double *chosen;                  /* [batch][n] */
+  int *index;                      /* scratch [max(children, population)] */
+  double spread_of_values;         /* s */
+  bool modelled;
+  struct eo_surrogate surrogate;
+  struct eo_local local;
+};
+
+static void stop(struct eo_optimizer *o)
+{
+  struct credibility *c = o->state;
+  if (!c)
+    return;
+  free(c->taboo);
+  free(c->parents);
+  free(c->parent_score);
+  free(c->pool);
+  free(c->pool_score);
+  free(c->rows);
+  free(c->x);
+  free(c->y);
+  free(c->sorted);
+  free(c->chosen);
+  free(c->index);
+  eo_surrogate_done(&c->surrogate);
+  eo_local_done(&c->local);
+  free(c);
+}
+
+static enum eo_code start(struct eo_optimizer *o, struct eo_error *error)
+{
+  const struct eo_optimizer_settings *s = &o->settings;
+  const size_t n = (size_t)s->variables, rows = (size_t)s->model_rows;
+  struct credibility *c = o->state = calloc(1, sizeof *c);
+  if (!c)
+    return eo_error_memory(error);
+  c->fresh = true;
+  c->epoch_best = INFINITY;
+  c->parents_max = s->population;
+  c->children = s->children;
+  const size_t parents = (size_t)c->parents_max, children = (size_t)c->children;
+  const size_t initial = (size_t)s->initial_factor * n, batch = (size_t)s->batch > initial ? (size_t)s->batch : initial;
+  c->parents = malloc(parents * n * sizeof(double));
+  c->parent_score = malloc(parents * sizeof(double));
+  c->pool = malloc(children * n * sizeof(double));
+  c->pool_score = malloc(children * sizeof(double));
+  c->rows = malloc(rows * sizeof(int));
+  c->x = malloc(rows * n * sizeof(double));
+  c->y = malloc(rows * sizeof(double));
+  c->sorted = malloc((rows + initial) * sizeof(double));
+  c->chosen = malloc(batch * n * sizeof(double));
+  c->index = malloc((children + parents) * sizeof(int));
+  if (!c->parents || !c->parent_score || !c->pool || !c->pool_score || !c->rows || !c->x || !c->y || !c->sorted ||
+      !c->chosen || !c->index)
+    return eo_error_memory(error);
+  enum eo_code code = eo_surrogate_init(&c->surrogate, s->variables, s->model_rows, 1, EO_TAIL_LINEAR, error);
+  if (code == EO_OK)
+    code = eo_local_init(&c->local, s->variables, error);
+  eo_local_restart(&c->local, o->settings.local_radius);
+  return code == EO_OK ? eo_optimizer_reserve_batch(o, (int)batch, error) : code;
+}
+
+static const double *row_x(const struct eo_optimizer *o, int row)
+{
+  return o->archive.x + (size_t)row * o->settings.variables;
+}
+
+static double distance(const double *a, const double *b, int n)
+{
+  double sum = 0;
+  for (int k = 0; k < n; k++)
+    sum += (a[k] - b[k]) * (a[k] - b[k]);
+  return sqrt(sum);
+}
+
+static bool is_taboo(const struct eo_optimizer *o, const double *x)
+{
+  const struct credibility *c = o->state;
+  const int n = o->settings.variables;
+  const double radius = o->settings.taboo_radius * sqrt(n);
+  for (int i = 0; i < c->taboo_count && !c->polishing; i++)
+    if (distance(row_x(o, c->taboo[i]), x, n) < radius)
+      return true;
+  return false;
+}
+
+/* The best rows that may be parents, best first. */
+static int gather_parents(struct eo_optimizer *o)
+{
+  struct credibility *c = o->state;
+  const int n = o->settings.variables;
+  int count = 0, *index = c->index;
+  for (int row = c->polishing ? 0 : c->epoch_first; row < o->archive.count; row++) {
+    const double value = o->archive.value[row];
+    if (eo_archive_failed(&o->archive, row) || is_taboo(o, row_x(o, row)) ||
+        (count == c->parents_max && value >= o->archive.value[index[count - 1]]))
+      continue;
+    int j = count < c->parents_max ? count++ : count - 1;
+    for (; j > 0 && o->archive.value[index[j - 1]] > value; j--)
+      index[j] = index[j - 1];
+    index[j] = row;
+  }
+  for (int i = 0; i < count; i++) {
+    memcpy(c->parents + (size_t)i * n, row_x(o, index[i]), (size_t)n * sizeof(double));
+    c->parent_score[i] = -o->archive.value[index[i]];
+  }
+  return count;
+}
+
+static int compare_doubles(const void *a, const void *b)
+{
+  const double p = *(const double *)a, q = *(const double *)b;
+  return (p > q) - (p < q);
+}
+
+struct ranked {
+  double key;
+  int row;
+};
+
+static int compare_ranked(const void *a, const void *b)
+{
+  const struct ranked *p = a, *q = b;
+  return p->key != q->key ? (p->key > q->key) - (p->key < q->key) : p->row - q->row;
+}
+
+/* At most model_rows rows: a third the best, a third the newest, the rest nearest to the best of the epoch. */
+static int gather_model_rows(struct eo_optimizer *o, const double *centre)
+{
+  struct credibility *c = o->state;
+  const struct eo_archive *a = &o->archive;
+  const int limit = o->settings.model_rows, n = o->settings.variables;
+  int count = 0;
+  if (a->count <= limit) {
+    for (int row = 0; row < a->count; row++)
+      if (!eo_archive_failed(a, row))
+        c->rows[count++] = row;
+    return count;
+  }
+  struct ranked *ranked = malloc((size_t)a->count * sizeof *ranked);
+  bool *used = calloc((size_t)a->count, sizeof *used);
+  for (int pass = 0; pass < 3 && ranked && used; pass++) {
+    int candidates = 0;
+    for (int row = 0; row < a->count; row++)
+      if (!eo_archive_failed(a, row) && !used[row])
+        ranked[candidates++] =
+            (struct ranked){pass == 0 ? a->value[row] : pass == 1 ? -row : distance(row_x(o, row), centre, n), row};
+    qsort(ranked, (size_t)candidates, sizeof *ranked, compare_ranked);
+    const int share = pass == 2 ? limit - count : limit / 3;
+    for (int i = 0; i < share && i < candidates; i++) {
+      used[ranked[i].row] = true;
+      c->rows[count++] = ranked[i].row;
+    }
+  }
+  free(ranked);
+  free(used);
+  return count;
+}
+
+static void fit_model(struct eo_optimizer *o, const double *centre)
+{
+  struct credibility *c = o->state;
+  const int n = o->settings.variables, count = gather_model_rows(o, centre);
+  c->modelled = false;
+  if (count < n + 3)
+    return;
+  for (int j = 0; j < count; j++) {
+    memcpy(c->x + (size_t)j * n, row_x(o, c->rows[j]), (size_t)n * sizeof(double));
+    c->sorted[j] = c->y[j] = o->archive.value[c->rows[j]];
+  }
+  qsort(c->sorted, (size_t)count, sizeof(double), compare_doubles);
+  const double median = c->sorted[count / 2];
+  c->spread_of_values = median - c->sorted[0];
+  for (int j = 0; j < count; j++)
+    c->y[j] = fmin(c->y[j], median);
+  if (!(c->spread_of_values > 0))
+    return;
+  c->modelled = eo_surrogate_fit(&c->surrogate, EO_TAIL_LINEAR, 1e-9, c->x, c->y, count, 1);
+  if (c->modelled)
+    eo_surrogate_set_scale(&c->surrogate, c->spread_of_values);
+}
+
+/* Negative: to maximise. Without a surrogate every child is as good as any other. */
+static double score(struct eo_optimizer *o, const double *x)
+{
+  struct credibility *c = o->state;
+  if (!c->modelled)
+    return 0;
+  eo_surrogate_visit(&c->surrogate, x);
+  const double length = o->settings.credibility_length * sqrt(o->settings.variables);
+  const double doubt = 1 - eo_surrogate_credibility(&c->surrogate, length);
+  return -(eo_surrogate_value(&c->surrogate, 0) + o->settings.exploration * c->spread_of_values * doubt);
+}
+
+static void breed(struct eo_optimizer *o, int parents, int round)
+{
+  struct credibility *c = o->state;
+  eo_breed(&o->settings, c->parents, c->parent_score, parents, 3 * c->batch + round, 0, c->pool, c->children);
+  for (int i = 0; i < c->children; i++)
+    c->pool_score[i] = score(o, c->pool + (size_t)i * o->settings.variables);
+}
+
+static void rank_pool(struct credibility *c)
+{
+  for (int i = 0; i < c->children; i++) {
+    int j = i;
+    for (; j > 0 && c->pool_score[c->index[j - 1]] < c->pool_score[i]; j--)
+      c->index[j] = c->index[j - 1];
+    c->index[j] = i;
+  }
+}
+
+static int select_parents(struct eo_optimizer *o)
+{
+  struct credibility *c = o->state;
+  const int n = o->settings.variables, count = c->children < c->parents_max ? c->children : c->parents_max;
+  for (int i = 0; i < count; i++) {
+    memcpy(c->parents + (size_t)i * n, c->pool + (size_t)c->index[i] * n, (size_t)n * sizeof(double));
+    c->parent_score[i] = c->pool_score[c->index[i]];
+  }
+  return count;
+}
+
+static bool is_apart(const struct eo_optimizer *o, const double *x, int chosen, double apart)
+{
+  const struct credibility *c = o->state;
+  const int n = o->settings.variables;
+  for (int j = 0; j < chosen; j++)
+    if (distance(c->chosen + (size_t)j * n, x, n) <= apart)
+      return false;
+  for (int j = 0; j < o->archive.count; j++)
+    if (distance(row_x(o, j), x, n) <= apart)
+      return false;
+  return true;
+}
+
+/* Fills c->chosen from `first` on with the best of the pool that keep their distance. */
+static int choose(struct eo_optimizer *o, int first, int count)
+{
+  struct credibility *c = o->state;
+  const int n = o->settings.variables;
+  int chosen = first;
+  rank_pool(c);
+  for (int slot = 0; slot < count - first; slot++) {
+    const double apart = sqrt(n) * (c->polishing ? polish_spread[slot * 4 / (count - first)] : search_spread[slot * 8 / (count - first)]);
+    for (int i = 0; i < c->children; i++) {
+      const double *x = c->pool + (size_t)c->index[i] * n;
+      if (is_taboo(o, x) || !is_apart(o, x, chosen, apart))
+        continue;
+      memcpy(c->chosen + (size_t)chosen++ * n, x, (size_t)n * sizeof(double));
+      break;
+    }
+  }
+  return chosen;
+}
+
+static void request_chosen(struct eo_optimizer *o, int count)
+{
+  struct credibility *c = o->state;
+  bool known;
+  for (int i = 0; i < count; i++)
+    if (eo_optimizer_request(o, c->chosen + (size_t)i * o->settings.variables, c->batch, i, false, &known) < 0)
+      break;
+}
+
+static void propose_epoch(struct eo_optimizer *o)
+{
+  struct credibility *c = o->state;
+  const int n = o->settings.variables, count = o->settings.initial_factor * n;
+  eo_latin_hypercube(c->chosen, count, n, o->settings.seed, c->epoch, c->sorted);
+  request_chosen(o, count);
+  c->fresh = false;
+}
+
+static void propose_children(struct eo_optimizer *o)
+{
+  struct credibility *c = o->state;
+  int parents = gather_parents(o);
+  int chosen = 0;
+  c->local_count = 0;
+  if (parents > 0) {
+    const int centre = c->index[0];
+    const int slots = (int)(o->settings.local_share * o->settings.batch + 0.5);
+    chosen = c->local_count = c->polishing ? o->settings.batch : slots;
+    if (chosen > 0)
+      eo_local_propose(&c->local, &o->archive, centre, o->settings.seed, c->batch, chosen, c->chosen);
+    if (chosen < o->settings.batch) {
+      fit_model(o, row_x(o, centre));
+      for (int round = 0; round < 3; round++) {
+        breed(o, parents, round);
+        rank_pool(c);
+        if (round < 2)
+          parents = select_parents(o);
+      }
+      chosen = choose(o, chosen, o->settings.batch);
+    }
+  }
+  request_chosen(o, chosen);
+  if (o->batch_count == 0)
+    c->fresh = true;
+}
+
+static enum eo_code propose(struct eo_optimizer *o, struct eo_error *error)
+{
+  struct credibility *c = o->state;
+  (void)error;
+  if (eo_optimizer_left(o) <= 0) {
+    o->finished = true;
+    return EO_OK;
+  }
+  if (!c->fresh)
+    propose_children(o);
+  while (c->fresh) {
+    c->fresh = false;
+    propose_epoch(o);
+    if (o->batch_count == 0) {
+      c->epoch++;
+      c->fresh = true;
+    }
+  }
+  return EO_OK;
+}
+
+static double best_of_epoch(const struct eo_optimizer *o, int *best)
+{
+  const struct credibility *c = o->state;
+  double value = INFINITY;
+  *best = -1;
+  for (int row = c->polishing ? 0 : c->epoch_first; row < o->archive.count; row++)
+    if (o->archive.value[row] < value && !is_taboo(o, row_x(o, row))) {
+      value = o->archive.value[row];
+      *best = row;
+    }
+  return value;
+}
+
+static enum eo_code begin_epoch(struct eo_optimizer *o, int best, struct eo_error *error)
+{
+  struct credibility *c = o->state;
+  if (c->taboo_count == c->taboo_capacity) {
+    const size_t capacity = 2 * (size_t)c->taboo_capacity + 16;
+    int *larger = realloc(c->taboo, capacity * sizeof *larger);
+    if (!larger)
+      return eo_error_memory(error);
+    c->taboo = larger;
+    c->taboo_capacity = (int)capacity;
+  }
+  if (best >= 0)
+    c->taboo[c->taboo_count++] = best;
+  c->epoch++;
+  c->epoch_first = o->archive.count;
+  c->epoch_best = INFINITY;
+  c->stalled = 0;
+  c->fresh = true;
+  eo_local_restart(&c->local, o->settings.local_radius);
+  return EO_OK;
+}
+
+static enum eo_code absorb(struct eo_optimizer *o, struct eo_error *error)
+{
+  struct credibility *c = o->state;
+  const struct eo_generation statistics = {.true_count = o->batch_count, .epoch = c->epoch};
+  const enum eo_code code = eo_optimizer_close_generation(o, &statistics, error);
+  if (code != EO_OK)
+    return code;
+  if (c->local_count > 0)
+    eo_local_learn(&c->local, &o->archive, o->archive.count - o->batch_count,
+                   c->local_count < o->batch_count ? c->local_count : o->batch_count);
+  c->local_count = 0;
+  c->batch++;
+  int best;
+  const double value = best_of_epoch(o, &best);
+  const bool gained = value < c->epoch_best - o->settings.stall_gain * fabs(c->epoch_best) || c->epoch_best > 1e300;
+  c->stalled = gained ? 0 : c->stalled + 1;
+  if (gained)
+    c->epoch_best = value;
+  if (!c->polishing && eo_optimizer_left(o) + o->batch_count <= o->settings.polish_share * o->budget) {
+    c->polishing = true;
+    eo_local_restart(&c->local, o->settings.local_radius / 4);
+  } else if (!c->polishing && c->stalled >= o->settings.stall_batches) {
+    return begin_epoch(o, best, error);
+  }
+  return EO_OK;
+}
+
+const struct eo_algorithm_functions eo_credibility_algorithm = {start, propose, absorb, stop};

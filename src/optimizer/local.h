@@ -1,0 +1,37 @@
+/* Trust region round the best row: a local surrogate in coordinates scaled by the radius, its minimum in the box
+   |x - centre| <= radius, and the radius that follows how well this went (Powell 2009, Regis and Shoemaker 2013).
+   Which polynomial tail the surrogate has is decided by leave-one-out each time. */
+#ifndef EASEOFF_OPTIMIZER_LOCAL_H
+#define EASEOFF_OPTIMIZER_LOCAL_H
+
+#include "optimizer/archive.h"
+#include "optimizer/surrogate.h"
+
+struct eo_local {
+  int variables, rows_max;
+  double radius;          /* of the box, in the unit cube */
+  int proposed_first, proposed_count; /* archive rows the last proposals became */
+  double centre_value;
+  double proposed_reach;  /* largest |step| / radius among the last proposals that came from a model */
+  struct eo_surrogate surrogate;
+  int *row;               /* [rows_max] rows of the local surrogate; owned, as all below */
+  double *distance;       /* [rows_max] */
+  double *u;              /* [rows_max][variables] (x - centre) / radius */
+  double *y;              /* [rows_max] */
+};
+
+enum eo_code eo_local_init(struct eo_local *local, int variables, struct eo_error *error);
+void eo_local_done(struct eo_local *local);
+
+/* Starts anew with the given radius. */
+void eo_local_restart(struct eo_local *local, double radius);
+
+/* Up to count points x[][variables] to evaluate round row `centre`; they must become the archive's next rows, in order.
+   Returns how many; generation counts the calls for the random numbers. */
+int eo_local_propose(struct eo_local *local, const struct eo_archive *archive, int centre, uint64_t seed, int generation,
+                     int count, double *x);
+
+/* Learns from the rows first .. first + count - 1, the last proposals: grows, keeps or shrinks the radius. */
+void eo_local_learn(struct eo_local *local, const struct eo_archive *archive, int first, int count);
+
+#endif

@@ -1,0 +1,278 @@
+#include "optimizer/optimizer.h"
+
+#include "optimizer/internal.h"
+#include "optimizer/pareto.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const struct eo_algorithm_functions *const algorithms[EO_ALGORITHMS] = {
+    [EO_GA] = &eo_genetic_algorithm,
+    [EO_FPGA] = &eo_genetic_algorithm,
+    [EO_CREDIBILITY_GA] = &eo_credibility_algorithm,
+    [EO_NSGA2] = &eo_nsga2_algorithm,
+};
+
+enum eo_code eo_optimizer_new(const struct eo_optimizer_settings *settings, struct eo_optimizer **optimizer,
+                              struct eo_error *error)
+{
+  enum eo_code code = eo_optimizer_settings_check(settings, error);
+  if (code != EO_OK)
+    return code;
+  struct eo_optimizer *o = calloc(1, sizeof *o);
+  if (!o)
+    return eo_error_memory(error);
+  o->settings = *settings;
+  o->algorithm = algorithms[settings->algorithm];
+  o->budget = eo_optimizer_budget(settings);
+  code = eo_archive_init(&o->archive, settings->variables, settings->algorithm == EO_NSGA2 ? settings->objectives : 0, error);
+  if (code != EO_OK) {
+    eo_optimizer_free(o);
+    return code;
+  }
+  *optimizer = o;
+  return EO_OK;
+}
+
+void eo_optimizer_free(struct eo_optimizer *optimizer)
+{
+  if (!optimizer)
+    return;
+  optimizer->algorithm->stop(optimizer);
+  eo_archive_done(&optimizer->archive);
+  free(optimizer->batch_x);
+  free(optimizer->candidate);
+  free(optimizer->outcome);
+  free(optimizer->batch_objective);
+  free(optimizer->told);
+  free(optimizer->prediction_x);
+  free(optimizer->prediction);
+  free(optimizer->generation);
+  free(optimizer);
+}
+
+static bool has_failed(const struct eo_optimizer *o, const struct eo_outcome *outcome)
+{
+  bool failed = outcome->failed || !isfinite(outcome->value) || !(outcome->violation >= 0);
+  for (int k = 0; k < o->archive.objectives && !failed; k++)
+    failed = !outcome->objectives || !isfinite(outcome->objectives[k]);
+  return failed;
+}
+
+static void store(struct eo_optimizer *o, const double *x, const struct eo_outcome *outcome, int generation, int individual)
+{
+  const bool failed = has_failed(o, outcome);
+  eo_archive_add(&o->archive, x, failed ? INFINITY : outcome->value, failed ? INFINITY : outcome->violation,
+                 failed ? NULL : outcome->objectives, generation, individual);
+}
+
+enum eo_code eo_optimizer_import(struct eo_optimizer *optimizer, const double *x, const struct eo_outcome *outcome,
+                                 struct eo_error *error)
+{
+  if (optimizer->started)
+    return eo_error_set(error, EO_ERROR_INPUT, "", "Rows can be imported before the first ask only.");
+  for (int k = 0; k < optimizer->settings.variables; k++)
+    if (!(x[k] >= 0 && x[k] <= 1))
+      return eo_error_set(error, EO_ERROR_INPUT, "", "Variable %d of an imported row is %g, outside 0..1.", k + 1, x[k]);
+  if (eo_archive_find(&optimizer->archive, x) >= 0)
+    return EO_OK;
+  const enum eo_code code = eo_archive_reserve(&optimizer->archive, 1, error);
+  if (code == EO_OK)
+    store(optimizer, x, outcome, -1, -1);
+  return code;
+}
+
+enum eo_code eo_optimizer_ask(struct eo_optimizer *optimizer, struct eo_batch *batch, struct eo_error *error)
+{
+  if (optimizer->told_count < optimizer->batch_count)
+    return eo_error_set(error, EO_ERROR_INPUT, "", "%d of %d candidates of the last batch were not told.",
+                        optimizer->batch_count - optimizer->told_count, optimizer->batch_count);
+  optimizer->batch_count = optimizer->told_count = optimizer->prediction_count = 0;
+  enum eo_code code = EO_OK;
+  if (!optimizer->started) {
+    optimizer->started = true;
+    code = optimizer->algorithm->start(optimizer, error);
+  }
+  if (code == EO_OK && !optimizer->finished)
+    code = optimizer->algorithm->propose(optimizer, error);
+  if (code == EO_OK)
+    code = eo_archive_reserve(&optimizer->archive, optimizer->batch_count, error);
+  if (code != EO_OK) {
+    optimizer->finished = true;
+    optimizer->batch_count = 0;
+    return code;
+  }
+  *batch = (struct eo_batch){optimizer->batch_count, optimizer->candidate, optimizer->prediction_count, optimizer->prediction};
+  return EO_OK;
+}
+
+static void apply_batch(struct eo_optimizer *o)
+{
+  for (int i = 0; i < o->batch_count; i++)
+    store(o, o->candidate[i].x, &o->outcome[i], o->candidate[i].generation, o->candidate[i].individual);
+  o->true_evaluations += o->batch_count;
+}
+
+enum eo_code eo_optimizer_tell(struct eo_optimizer *optimizer, int candidate, const struct eo_outcome *outcome,
+                               struct eo_error *error)
+{
+  if (candidate < 0 || candidate >= optimizer->batch_count || optimizer->told[candidate])
+    return eo_error_set(error, EO_ERROR_INPUT, "", "Candidate %d is not waiting for an outcome.", candidate);
+  const int m = optimizer->archive.objectives;
+  struct eo_outcome *kept = &optimizer->outcome[candidate];
+  *kept = *outcome;
+  kept->objectives = NULL;
+  if (m > 0 && outcome->objectives) {
+    double *objectives = optimizer->batch_objective + (size_t)candidate * m;
+    memcpy(objectives, outcome->objectives, (size_t)m * sizeof *objectives);
+    kept->objectives = objectives;
+  }
+  optimizer->told[candidate] = true;
+  if (++optimizer->told_count < optimizer->batch_count)
+    return EO_OK;
+  apply_batch(optimizer);
+  return optimizer->algorithm->absorb(optimizer, error);
+}
+
+int eo_optimizer_left(const struct eo_optimizer *optimizer)
+{
+  return optimizer->budget - optimizer->true_evaluations - optimizer->batch_count;
+}
+
+static int find_pending(const struct eo_optimizer *o, const double *x)
+{
+  const size_t bytes = (size_t)o->settings.variables * sizeof *x;
+  for (int i = 0; i < o->batch_count; i++)
+    if (memcmp(o->candidate[i].x, x, bytes) == 0)
+      return o->archive.count + i;
+  return -1;
+}
+
+int eo_optimizer_request(struct eo_optimizer *optimizer, const double *x, int generation, int individual, bool repeat,
+                         bool *known)
+{
+  int row = repeat ? -1 : eo_archive_find(&optimizer->archive, x);
+  if (row < 0 && !repeat)
+    row = find_pending(optimizer, x);
+  *known = row >= 0;
+  if (row >= 0)
+    return row;
+  if (eo_optimizer_left(optimizer) <= 0)
+    return -1;
+  const int i = optimizer->batch_count++, n = optimizer->settings.variables;
+  double *copy = optimizer->batch_x + (size_t)i * n;
+  memcpy(copy, x, (size_t)n * sizeof *x);
+  optimizer->candidate[i] = (struct eo_candidate){copy, generation, individual};
+  optimizer->told[i] = false;
+  return optimizer->archive.count + i;
+}
+
+enum eo_code eo_optimizer_reserve_batch(struct eo_optimizer *o, int count, struct eo_error *error)
+{
+  const size_t c = (size_t)count, n = (size_t)o->settings.variables, m = (size_t)o->archive.objectives;
+  o->batch_capacity = count;
+  o->batch_x = malloc(c * n * sizeof(double));
+  o->candidate = malloc(c * sizeof *o->candidate);
+  o->outcome = malloc(c * sizeof *o->outcome);
+  o->batch_objective = malloc((c * m + 1) * sizeof(double));
+  o->told = malloc(c * sizeof *o->told);
+  return o->batch_x && o->candidate && o->outcome && o->batch_objective && o->told ? EO_OK : eo_error_memory(error);
+}
+
+static enum eo_code reserve_prediction(struct eo_optimizer *o, struct eo_error *error)
+{
+  if (o->prediction_count < o->prediction_capacity)
+    return EO_OK;
+  const size_t n = (size_t)o->settings.variables, capacity = 2 * (size_t)o->prediction_capacity + 256;
+  double *x = realloc(o->prediction_x, capacity * n * sizeof *x);
+  if (x)
+    o->prediction_x = x;
+  struct eo_prediction *prediction = realloc(o->prediction, capacity * sizeof *prediction);
+  if (prediction)
+    o->prediction = prediction;
+  if (!x || !prediction)
+    return eo_error_memory(error);
+  o->prediction_capacity = (int)capacity;
+  for (int i = 0; i < o->prediction_count; i++)
+    prediction[i].x = x + (size_t)i * n;
+  return EO_OK;
+}
+
+enum eo_code eo_optimizer_note_prediction(struct eo_optimizer *optimizer, const struct eo_prediction *prediction,
+                                          struct eo_error *error)
+{
+  const enum eo_code code = reserve_prediction(optimizer, error);
+  if (code != EO_OK)
+    return code;
+  const int i = optimizer->prediction_count++, n = optimizer->settings.variables;
+  double *copy = optimizer->prediction_x + (size_t)i * n;
+  memcpy(copy, prediction->x, (size_t)n * sizeof *copy);
+  optimizer->prediction[i] = *prediction;
+  optimizer->prediction[i].x = copy;
+  return EO_OK;
+}
+
+enum eo_code eo_optimizer_close_generation(struct eo_optimizer *optimizer, const struct eo_generation *generation,
+                                           struct eo_error *error)
+{
+  if (optimizer->generation_count == optimizer->generation_capacity) {
+    const size_t capacity = 2 * (size_t)optimizer->generation_capacity + 64;
+    struct eo_generation *larger = realloc(optimizer->generation, capacity * sizeof *larger);
+    if (!larger)
+      return eo_error_memory(error);
+    optimizer->generation = larger;
+    optimizer->generation_capacity = (int)capacity;
+  }
+  struct eo_generation *closed = &optimizer->generation[optimizer->generation_count++];
+  *closed = *generation;
+  closed->best_value = optimizer->archive.best < 0 ? INFINITY : optimizer->archive.value[optimizer->archive.best];
+  optimizer->predicted += closed->predicted_count;
+  optimizer->reused += closed->reused_count;
+  return EO_OK;
+}
+
+int eo_optimizer_rows(const struct eo_optimizer *optimizer)
+{
+  return optimizer->archive.count;
+}
+
+struct eo_row eo_optimizer_row(const struct eo_optimizer *optimizer, int index)
+{
+  const struct eo_archive *a = &optimizer->archive;
+  return (struct eo_row){
+      .x = a->x + (size_t)index * a->variables,
+      .objectives = a->objectives ? a->objective + (size_t)index * a->objectives : NULL,
+      .value = a->value[index],
+      .violation = a->violation[index],
+      .failed = eo_archive_failed(a, index),
+      .imported = a->generation[index] < 0,
+      .generation = a->generation[index],
+      .individual = a->individual[index],
+  };
+}
+
+int eo_optimizer_best(const struct eo_optimizer *optimizer)
+{
+  return optimizer->archive.best;
+}
+
+struct eo_counters eo_optimizer_counters(const struct eo_optimizer *optimizer)
+{
+  struct eo_counters counters = {
+      .true_evaluations = optimizer->true_evaluations, .predicted = optimizer->predicted, .reused = optimizer->reused};
+  counters.individuals = counters.true_evaluations + counters.predicted + counters.reused;
+  counters.fitness_computed = counters.individuals ? (double)counters.true_evaluations / counters.individuals : 0;
+  return counters;
+}
+
+const struct eo_generation *eo_optimizer_generations(const struct eo_optimizer *optimizer, int *count)
+{
+  *count = optimizer->generation_count;
+  return optimizer->generation;
+}
+
+struct eo_front eo_optimizer_front(const struct eo_optimizer *optimizer, int *front)
+{
+  return eo_pareto_front(&optimizer->archive, front);
+}

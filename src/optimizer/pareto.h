@@ -1,0 +1,27 @@
+/* Pareto dominance with constraints, all objectives minimised: a row with less violation dominates, among equals (two
+   feasible rows) the usual order decides. Sorting and crowding after Deb, Pratap, Agarwal, Meyarivan 2002. */
+#ifndef EASEOFF_OPTIMIZER_PARETO_H
+#define EASEOFF_OPTIMIZER_PARETO_H
+
+#include "optimizer/archive.h"
+#include "optimizer/optimizer.h"
+
+bool eo_pareto_dominates(const double *a, double violation_a, const double *b, double violation_b, int objectives);
+
+/* Front number of every point, 0 the best; objective: [count][objectives]. scratch: [2 count]. */
+void eo_pareto_rank(const double *objective, const double *violation, int count, int objectives, int *rank, int *scratch);
+
+/* Crowding distance of every point within its front; infinite at the ends. scratch: [count]. */
+void eo_pareto_crowding(const double *objective, const int *rank, int count, int objectives, double *crowding, int *scratch);
+
+/* Indices of all points by rank, then falling crowding, then index. */
+void eo_pareto_order(const int *rank, const double *crowding, int count, int *order);
+
+/* The front of the feasible (else least violating) true rows, see eo_optimizer_front(). */
+struct eo_front eo_pareto_front(const struct eo_archive *archive, int *front);
+
+/* Volume dominated within the box up to reference[objectives], by slicing (exact; meant for 2 and 3 objectives).
+   Points beyond the reference count nothing. point: [count][objectives], reordered. */
+double eo_pareto_hypervolume(double *point, int count, int objectives, const double *reference);
+
+#endif

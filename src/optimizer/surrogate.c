@@ -1,0 +1,213 @@
+#include "optimizer/surrogate.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+int eo_surrogate_terms(enum eo_tail tail, int n)
+{
+  return tail == EO_TAIL_LINEAR ? n + 1 : tail == EO_TAIL_SEPARABLE ? 2 * n + 1 : (n + 1) * (n + 2) / 2;
+}
+
+enum eo_code eo_surrogate_init(struct eo_surrogate *surrogate, int variables, int rows_max, int outputs_max, enum eo_tail tail,
+                               struct eo_error *error)
+{
+  *surrogate = (struct eo_surrogate){.variables = variables, .rows_max = rows_max, .outputs_max = outputs_max};
+  const int terms_max = eo_surrogate_terms(tail, variables);
+  const size_t n = (size_t)variables, m = (size_t)rows_max, o = (size_t)outputs_max, q = (size_t)terms_max;
+  surrogate->mean = malloc(n * sizeof(double));
+  surrogate->x = malloc(n * m * sizeof(double));
+  surrogate->coefficient = malloc(o * m * sizeof(double));
+  surrogate->polynomial = malloc(o * q * sizeof(double));
+  surrogate->residual = malloc(o * m * sizeof(double));
+  surrogate->belief = malloc(m * sizeof(double));
+  surrogate->distance = malloc(m * sizeof(double));
+  surrogate->term = malloc(q * sizeof(double));
+  surrogate->point = malloc(n * sizeof(double));
+  surrogate->matrix = malloc(m * m * sizeof(double));
+  surrogate->columns = malloc(q * m * sizeof(double));
+  surrogate->diagonal = malloc(m * sizeof(double));
+  if (surrogate->mean && surrogate->x && surrogate->coefficient && surrogate->polynomial && surrogate->residual &&
+      surrogate->belief && surrogate->distance && surrogate->term && surrogate->point && surrogate->matrix &&
+      surrogate->columns && surrogate->diagonal)
+    return eo_saddle_init(&surrogate->saddle, rows_max, terms_max, error);
+  eo_surrogate_done(surrogate);
+  return eo_error_memory(error);
+}
+
+void eo_surrogate_done(struct eo_surrogate *surrogate)
+{
+  free(surrogate->mean);
+  free(surrogate->x);
+  free(surrogate->coefficient);
+  free(surrogate->polynomial);
+  free(surrogate->residual);
+  free(surrogate->belief);
+  free(surrogate->distance);
+  free(surrogate->term);
+  free(surrogate->point);
+  free(surrogate->matrix);
+  free(surrogate->columns);
+  free(surrogate->diagonal);
+  eo_saddle_done(&surrogate->saddle);
+  *surrogate = (struct eo_surrogate){0};
+}
+
+/* p(z): 1, z_k; then z_k^2; then z_k z_l, k < l. */
+static void fill_terms(enum eo_tail tail, int n, const double *z, double *term, int stride)
+{
+  int t = 0;
+  term[stride * t++] = 1;
+  for (int k = 0; k < n; k++)
+    term[stride * t++] = z[k];
+  for (int k = 0; k < n && tail != EO_TAIL_LINEAR; k++)
+    term[stride * t++] = z[k] * z[k];
+  for (int k = 0; k < n && tail == EO_TAIL_QUADRATIC; k++)
+    for (int l = k + 1; l < n; l++)
+      term[stride * t++] = z[k] * z[l];
+}
+
+static void copy_rows(struct eo_surrogate *s, const double *x, int rows)
+{
+  const int n = s->variables;
+  for (int k = 0; k < n; k++) {
+    double sum = 0;
+    for (int j = 0; j < rows; j++)
+      sum += x[(size_t)j * n + k];
+    s->mean[k] = sum / rows;
+    for (int j = 0; j < rows; j++)
+      s->x[(size_t)k * s->rows_max + j] = x[(size_t)j * n + k] - s->mean[k];
+  }
+}
+
+static void measure(const struct eo_surrogate *s, const double *z, int rows, double *distance)
+{
+  memset(distance, 0, (size_t)rows * sizeof *distance);
+  for (int k = 0; k < s->variables; k++) {
+    const double *column = s->x + (size_t)k * s->rows_max, zk = z[k];
+    for (int j = 0; j < rows; j++)
+      distance[j] += (column[j] - zk) * (column[j] - zk);
+  }
+  for (int j = 0; j < rows; j++)
+    distance[j] = sqrt(distance[j]);
+}
+
+static void fill_matrices(struct eo_surrogate *s, double ridge)
+{
+  const int m = s->rows;
+  for (int i = 0; i < m; i++) {
+    double *row = s->matrix + (size_t)i * m;
+    for (int k = 0; k < s->variables; k++)
+      s->point[k] = s->x[(size_t)k * s->rows_max + i];
+    measure(s, s->point, i, row);
+    for (int j = 0; j < i; j++)
+      row[j] = s->matrix[(size_t)j * m + i] = row[j] * row[j] * row[j];
+    row[i] = ridge;
+    fill_terms(s->tail, s->variables, s->point, s->columns + i, m);
+  }
+}
+
+bool eo_surrogate_fit(struct eo_surrogate *surrogate, enum eo_tail tail, double ridge, const double *x, const double *y,
+                      int rows, int outputs)
+{
+  struct eo_surrogate *s = surrogate;
+  s->tail = tail;
+  s->rows = rows;
+  s->terms = eo_surrogate_terms(tail, s->variables);
+  s->outputs = outputs;
+  if (rows <= s->terms || rows > s->rows_max)
+    return false;
+  copy_rows(s, x, rows);
+  fill_matrices(s, ridge);
+  if (!eo_saddle_factor(&s->saddle, rows, s->terms, s->matrix, s->columns))
+    return false;
+  eo_saddle_inverse_diagonal(&s->saddle, s->diagonal);
+  for (int o = 0; o < outputs; o++) {
+    double *c = s->coefficient + (size_t)o * s->rows_max, *e = s->residual + (size_t)o * s->rows_max;
+    eo_saddle_solve(&s->saddle, y + (size_t)o * rows, c, s->polynomial + (size_t)o * s->terms);
+    for (int j = 0; j < rows; j++)
+      e[j] = fabs(c[j] / s->diagonal[j]);
+  }
+  return true;
+}
+
+double eo_surrogate_error(const struct eo_surrogate *surrogate, int output)
+{
+  const double *e = surrogate->residual + (size_t)output * surrogate->rows_max;
+  double sum = 0;
+  for (int j = 0; j < surrogate->rows; j++)
+    sum += e[j] * e[j];
+  return sqrt(sum / surrogate->rows);
+}
+
+void eo_surrogate_visit(struct eo_surrogate *surrogate, const double *x)
+{
+  for (int k = 0; k < surrogate->variables; k++)
+    surrogate->point[k] = x[k] - surrogate->mean[k];
+  measure(surrogate, surrogate->point, surrogate->rows, surrogate->distance);
+  fill_terms(surrogate->tail, surrogate->variables, surrogate->point, surrogate->term, 1);
+}
+
+double eo_surrogate_value(const struct eo_surrogate *surrogate, int output)
+{
+  const double *c = surrogate->coefficient + (size_t)output * surrogate->rows_max, *d = surrogate->distance;
+  const double *b = surrogate->polynomial + (size_t)output * surrogate->terms;
+  double value = 0;
+  for (int j = 0; j < surrogate->rows; j++)
+    value += c[j] * (d[j] * d[j] * d[j]);
+  for (int t = 0; t < surrogate->terms; t++)
+    value += b[t] * surrogate->term[t];
+  return value;
+}
+
+static void add_tail_gradient(const struct eo_surrogate *s, const double *b, double *gradient)
+{
+  const int n = s->variables;
+  int t = 1;
+  for (int k = 0; k < n; k++)
+    gradient[k] += b[t++];
+  for (int k = 0; k < n && s->tail != EO_TAIL_LINEAR; k++)
+    gradient[k] += 2 * b[t++] * s->point[k];
+  for (int k = 0; k < n && s->tail == EO_TAIL_QUADRATIC; k++)
+    for (int l = k + 1; l < n; l++, t++) {
+      gradient[k] += b[t] * s->point[l];
+      gradient[l] += b[t] * s->point[k];
+    }
+}
+
+void eo_surrogate_gradient(const struct eo_surrogate *surrogate, int output, double *gradient)
+{
+  const double *c = surrogate->coefficient + (size_t)output * surrogate->rows_max, *d = surrogate->distance;
+  for (int k = 0; k < surrogate->variables; k++) {
+    const double *column = surrogate->x + (size_t)k * surrogate->rows_max, z = surrogate->point[k];
+    double sum = 0;
+    for (int j = 0; j < surrogate->rows; j++)
+      sum += c[j] * d[j] * (z - column[j]);
+    gradient[k] = 3 * sum;
+  }
+  add_tail_gradient(surrogate, surrogate->polynomial + (size_t)output * surrogate->terms, gradient);
+}
+
+void eo_surrogate_set_scale(struct eo_surrogate *surrogate, double scale)
+{
+  for (int j = 0; j < surrogate->rows; j++)
+    surrogate->belief[j] = exp(-3 * surrogate->residual[j] / scale);
+}
+
+double eo_surrogate_credibility(const struct eo_surrogate *surrogate, double length)
+{
+  const double negligible = 40; /* exp(-40) is below the rounding of the sum */
+  const double *d = surrogate->distance;
+  double nearest = INFINITY, sum = 0, believed = 0;
+  for (int j = 0; j < surrogate->rows; j++)
+    nearest = d[j] < nearest ? d[j] : nearest;
+  for (int j = 0; j < surrogate->rows; j++) {
+    const double exponent = (d[j] - nearest) / length;
+    if (exponent > negligible)
+      continue;
+    const double w = exp(-exponent);
+    sum += w;
+    believed += w * surrogate->belief[j];
+  }
+  return exp(-nearest / (4 * length)) * believed / sum;
+}
