@@ -19,17 +19,17 @@ static void parameters(void)
     double value;
     const char *pointer;
   } bad[] = {
-      {offsetof(struct eo_dynamics_parameters, mass[0]), 0, "/supports/pinion_mass"},
-      {offsetof(struct eo_dynamics_parameters, mass[1]), -1, "/supports/gear_mass"},
-      {offsetof(struct eo_dynamics_parameters, inertia[0]), NAN, "/supports/pinion_inertia"},
-      {offsetof(struct eo_dynamics_parameters, bearing_stiffness[0]), 0, "/supports/pinion_bearing_stiffness"},
-      {offsetof(struct eo_dynamics_parameters, bearing_stiffness[1]), -1e9, "/supports/gear_bearing_stiffness"},
-      {offsetof(struct eo_dynamics_parameters, bearing_damping[1]), -1, "/supports/gear_bearing_damping"},
-      {offsetof(struct eo_dynamics_parameters, gear_axial_stiffness[1]), INFINITY, "/supports/gear_axial_stiffness_right"},
-      {offsetof(struct eo_dynamics_parameters, groove_axial_stiffness[0]), 0, "/supports/pinion_groove_axial_stiffness"},
-      {offsetof(struct eo_dynamics_parameters, groove_torsional_stiffness[1]), -1, "/supports/gear_groove_torsional_stiffness"},
-      {offsetof(struct eo_dynamics_parameters, groove_torsional_damping[0]), 1, "/supports/pinion_groove_torsional_stiffness"},
-      {offsetof(struct eo_dynamics_parameters, mesh_damping), -1, "/supports/mesh_damping"},
+      {offsetof(struct eo_dynamics_parameters, mass[0]), 0, "/supports/pinion_mass_kg"},
+      {offsetof(struct eo_dynamics_parameters, mass[1]), -1, "/supports/gear_mass_kg"},
+      {offsetof(struct eo_dynamics_parameters, inertia[0]), NAN, "/supports/pinion_inertia_kg_m2"},
+      {offsetof(struct eo_dynamics_parameters, bearing_stiffness[0]), 0, "/supports/pinion_bearing_stiffness_N_per_um"},
+      {offsetof(struct eo_dynamics_parameters, bearing_stiffness[1]), -1e9, "/supports/gear_bearing_stiffness_N_per_um"},
+      {offsetof(struct eo_dynamics_parameters, bearing_damping[1]), -1, "/supports/bearing_damping_ratio"},
+      {offsetof(struct eo_dynamics_parameters, gear_axial_stiffness[1]), INFINITY, "/supports/gear_axial_stiffness_right_N_per_um"},
+      {offsetof(struct eo_dynamics_parameters, groove_axial_stiffness[0]), 0, "/supports/pinion_groove_axial_stiffness_N_per_um"},
+      {offsetof(struct eo_dynamics_parameters, groove_torsional_stiffness[1]), -1, "/supports/gear_groove_torsional_stiffness_Nm_per_rad"},
+      {offsetof(struct eo_dynamics_parameters, groove_torsional_damping[0]), 1, "/supports/pinion_groove_torsional_stiffness_Nm_per_rad"},
+      {offsetof(struct eo_dynamics_parameters, mesh_damping), -1, "/supports/mesh_damping_ratio"},
       {offsetof(struct eo_dynamics_parameters, base_radius[1]), 0, "/gear_pair"},
   };
   for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
