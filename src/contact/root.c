@@ -35,6 +35,20 @@ void eo_root_history_done(struct eo_root_history *history)
   *history = (struct eo_root_history){0};
 }
 
+void eo_root_find_largest(const struct eo_flexibility *flexibility, int member, int tooth, int n, const struct eo_flank_point *point,
+                          const double *force, double *stress, struct eo_root_place *place)
+{
+  struct eo_root root = eo_flexibility_root(flexibility, member);
+  *place = (struct eo_root_place){0};
+  eo_flexibility_root_stress(flexibility, member, tooth, n, point, force, 0, root.points, stress);
+  for (int i = root.first; i < root.points; i++)
+    for (int layer = 0; layer <= root.layers; layer++) {
+      double s = eo_stress_principal(stress + (i * (root.layers + 1) + layer) * EO_STRESSES);
+      if (s > place->stress)
+        *place = (struct eo_root_place){s, root.arc[i], root.width * ((double)layer / root.layers - 0.5), i, layer};
+    }
+}
+
 struct eo_root_workspace {
   double *force;        /* [most points] */
   double *load;         /* [positions][slots] */

@@ -5,6 +5,18 @@
 #include "contact/loaded.h"
 #include "flexibility/root_modes.h"
 
+/* The largest principal stress on a loaded root. */
+struct eo_root_place {
+  double stress;    /* Pa; 0 when nothing is in tension */
+  double arc, eta;  /* along the root from the start of the active profile, from mid face, m */
+  int point, layer; /* of the root's nodes */
+};
+
+/* On the root of `tooth` under the normal forces force[n], N, at the points. stress[root points][layers + 1][EO_STRESSES] receives
+   the whole field (eo_flexibility_root()). */
+void eo_root_find_largest(const struct eo_flexibility *flexibility, int member, int tooth, int n, const struct eo_flank_point *point,
+                          const double *force, double *stress, struct eo_root_place *place);
+
 struct eo_root_history {
   int phases;          /* 0: not computed */
   double *phase;       /* [phases]: c of the tooth's pair over base pitches, ascending */

@@ -31,7 +31,7 @@ static const struct eo_field scenario[] = {
     EO_NUMBER(struct eo_scenario, compliance, "compliance_factor", NULL, 0.1, 10, 1, "on the flexibility of the teeth"),
     EO_NUMBER(struct eo_scenario, speed, "speed_factor", NULL, 0.01, 100, 1, "on the speed of every load case"),
 };
-static const struct eo_table scenario_table = EO_TABLE("a scenario", struct eo_scenario, scenario);
+const struct eo_table eo_scenario_table = EO_TABLE("a scenario", struct eo_scenario, scenario);
 
 static const struct eo_field objective[] = {
     EO_NUMBERS(struct eo_objective, weight, "weights", 3, NULL, 0, 1e6, 0, NUMBERS(0.4, 0.15, 0.45), NULL,
@@ -41,7 +41,7 @@ static const struct eo_field objective[] = {
     EO_NUMBER(struct eo_objective, penalty, "penalty", NULL, 0, 1e9, 10, "factor on the relative excess over each limit"),
     EO_CHOICE(struct eo_objective, robust, "robust", robust, EO_ROBUST_OFF, "objective over the scenarios: their mean, the worst, or the nominal one alone"),
     {.key = "scenarios", .kind = EO_FIELD_LIST, .offset = offsetof(struct eo_objective, scenario), .low = 0, .high = EO_MAX_SCENARIOS, .count = EO_MAX_SCENARIOS,
-     .count_offset = offsetof(struct eo_objective, scenarios), .table = &scenario_table,
+     .count_offset = offsetof(struct eo_objective, scenarios), .table = &eo_scenario_table,
      .derived = "nominal; shaft error +-20 % (at least 0.01 deg); compliance +-10 %; speed +-5 %, when robust is not off",
      .help = "alignments, compliances and speeds around the nominal ones"},
 };
