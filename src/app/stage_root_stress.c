@@ -168,11 +168,20 @@ static enum eo_code run_points(const struct input *given, struct output *found, 
 
 static enum eo_code read_history(struct member_output *out, const struct eo_stage_mesh *mesh, int member, int end, struct eo_error *error)
 {
-  struct eo_root_history history;
-  enum eo_code code = eo_root_history_init(&history, mesh->pair->grid, error);
-  if (code)
+  const struct eo_pair *pair = mesh->pair;
+  const struct eo_root_modes *const modes[2] = {pair->root[0], pair->root[1]};
+  struct eo_root root = eo_flexibility_root(pair->flexibility, member);
+  struct eo_root_workspace *workspace = NULL;
+  struct eo_root_history history = {0};
+  enum eo_code code = eo_root_workspace_new(&workspace, pair->grid, modes, error);
+  if (!code)
+    code = eo_root_history_init(&history, pair->grid, error);
+  if (code) {
+    eo_root_workspace_free(workspace);
     return code;
-  eo_root_history_compute(&history, mesh->pair->flexibility, member, mesh->pair->grid, &mesh->end[end], 1);
+  }
+  eo_root_history_compute(&history, workspace, &root, modes[member], pair->grid, &mesh->end[end], 1);
+  eo_root_workspace_free(workspace);
   out->maximum = history.maximum;
   out->arc = history.arc;
   out->eta = history.eta;

@@ -21,6 +21,11 @@ static struct eo_check *next_check(struct eo_verification *v)
 
 void eo_verify_add(struct eo_verification *v, const char *label, const char *quantity, double value, double expected, double tolerance)
 {
+  eo_verify_judged(v, label, quantity, value, expected, tolerance, fabs(value - expected) <= tolerance);
+}
+
+void eo_verify_judged(struct eo_verification *v, const char *label, const char *quantity, double value, double expected, double tolerance, bool pass)
+{
   struct eo_check *check = v->failed ? NULL : next_check(v);
   char *label_copy = strdup(label), *quantity_copy = strdup(quantity);
   if (!check || !label_copy || !quantity_copy) {
@@ -29,7 +34,7 @@ void eo_verify_add(struct eo_verification *v, const char *label, const char *qua
     v->failed = true;
     return;
   }
-  *check = (struct eo_check){label_copy, quantity_copy, value, expected, tolerance, fabs(value - expected) <= tolerance};
+  *check = (struct eo_check){label_copy, quantity_copy, value, expected, tolerance, pass};
   v->count++;
 }
 

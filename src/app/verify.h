@@ -25,8 +25,12 @@ struct eo_verification {
   bool failed;            /* an allocation failed */
 };
 
-/* One computed number. Formats of label: printf. */
+/* One computed number. */
 void eo_verify_add(struct eo_verification *verification, const char *label, const char *quantity, double value, double expected, double tolerance);
+
+/* The same with the verdict of the caller, for what a tolerance cannot judge (infinite values). */
+void eo_verify_judged(struct eo_verification *verification, const char *label, const char *quantity, double value, double expected, double tolerance,
+                      bool pass);
 
 /* The computation itself failed where a number was expected: a check that does not pass, and the reason. */
 void eo_verify_broken(struct eo_verification *verification, const char *label, const struct eo_error *error);
@@ -52,6 +56,10 @@ struct eo_verify_kind {
   enum eo_code (*run)(const json_t *cases, struct eo_verification *verification, struct eo_error *error);
 };
 
-extern const struct eo_verify_kind eo_verify_standards;
+/* NULL after the last. */
+const struct eo_verify_kind *eo_verify_kind_at(int index);
+
+/* Worked numbers of standards and published reports. */
+enum eo_code eo_verify_standards(const json_t *cases, struct eo_verification *verification, struct eo_error *error);
 
 #endif

@@ -16,6 +16,7 @@ struct eo_evaluator {
   struct eo_loaded_end spare[2];           /* [end]: for the compliance band */
   struct eo_loaded_end *table;             /* [TABLE_LOADS] of the table law, one end at a time; NULL until asked for */
   double *table_rows;                      /* [TABLE_LOADS][positions] */
+  struct eo_root_workspace *root;          /* NULL until asked for */
   struct eo_vibration_solver *vibration;
   int vibration_harmonics;
   struct eo_law (*law)[2];                 /* [most_cases][end] */
@@ -323,15 +324,21 @@ static enum eo_code find_band(struct eo_evaluator *e, const struct eo_design *de
 
 /* ---- the order ---- */
 
-static void find_root_stress(struct eo_evaluator *e)
+static enum eo_code find_root_stress(struct eo_evaluator *e, struct eo_error *error)
 {
   enum { STEP = 2 };
   struct eo_evaluation *r = &e->result;
-  for (int k = 0; k < r->cases && e->pair->flexibility; k++)
+  const struct eo_pair *pair = e->pair;
+  const struct eo_root_modes *const modes[2] = {pair->root[0], pair->root[1]};
+  enum eo_code code = e->root ? EO_OK : eo_root_workspace_new(&e->root, pair->grid, modes, error);
+  for (int k = 0; k < r->cases && !code; k++)
     for (int end = 0; end < r->ends; end++)
-      for (int member = 0; member < 2; member++)
-        eo_root_history_compute(&r->load_case[k].end[end].root[member], e->pair->flexibility, member, e->pair->grid,
+      for (int member = 0; member < 2; member++) {
+        struct eo_root root = eo_flexibility_root(pair->flexibility, member);
+        eo_root_history_compute(&r->load_case[k].end[end].root[member], e->root, &root, modes[member], pair->grid,
                                 &r->load_case[k].end[end].loaded, STEP);
+      }
+  return code;
 }
 
 static void collect_objectives(struct eo_evaluation *r, bool root)
@@ -395,38 +402,55 @@ static enum eo_code fit_vibration(struct eo_evaluator *e, int harmonics, struct 
   return EO_OK;
 }
 
-enum eo_code eo_evaluator_run(struct eo_evaluator *e, const struct eo_design *design, const struct eo_scenario *scenario, int want,
-                              const struct eo_evaluation **evaluation, struct eo_error *error)
+static void solve_static(struct eo_evaluator *e, const struct eo_design *design, const struct eo_scenario *scenario)
 {
-  static const struct eo_scenario nominal = {NAN, NAN, 1, 1};
-  const struct eo_scenario *s = scenario ? scenario : &nominal;
   struct eo_evaluation *r = &e->result;
-  bool root = e->pair->flexibility && (want & EO_WANT_ROOT || design->objective.root_stress.enabled);
-  enum eo_code code = fit_vibration(e, design->resolution.harmonics, error);
-  if (code)
-    return code;
   double start = milliseconds();
   set_cases(e, design);
-  set_fields(e, design, s);
-  solve_contact(e, design, s->compliance);
+  set_fields(e, design, scenario);
+  solve_contact(e, design, scenario->compliance);
   for (int k = 0; k < r->cases; k++) {
     for (int end = 0; end < r->ends; end++)
       summarise_end(e, &r->load_case[k], end);
     summarise_pair(e, design, &r->load_case[k]);
   }
   double contact = milliseconds();
-  find_impacts(e, s->speed, s->compliance);
+  find_impacts(e, scenario->speed, scenario->compliance);
+  r->static_ms = contact - start;
+  r->impact_ms = milliseconds() - contact;
+}
+
+static const struct eo_scenario nominal_scenario = {NAN, NAN, 1, 1};
+
+enum eo_code eo_evaluator_contact(struct eo_evaluator *e, const struct eo_design *design, const struct eo_evaluation **evaluation,
+                                  struct eo_error *error)
+{
+  (void)error;
+  solve_static(e, design, &nominal_scenario);
+  *evaluation = &e->result;
+  return EO_OK;
+}
+
+enum eo_code eo_evaluator_run(struct eo_evaluator *e, const struct eo_design *design, const struct eo_scenario *scenario, int want,
+                              const struct eo_evaluation **evaluation, struct eo_error *error)
+{
+  const struct eo_scenario *s = scenario ? scenario : &nominal_scenario;
+  struct eo_evaluation *r = &e->result;
+  bool root = e->pair->flexibility && (want & EO_WANT_ROOT || design->objective.root_stress.enabled);
+  enum eo_code code = fit_vibration(e, design->resolution.harmonics, error);
+  if (code)
+    return code;
+  solve_static(e, design, s);
   double impact = milliseconds();
   if (root)
-    find_root_stress(e);
+    code = find_root_stress(e, error);
   double rooted = milliseconds();
-  code = solve_dynamics(e, design, s->speed, s->compliance, want, error);
+  if (!code)
+    code = solve_dynamics(e, design, s->speed, s->compliance, want, error);
   if (!code && want & EO_WANT_CURVES)
     code = find_modes(e, error);
   r->dynamics_ms = milliseconds() - rooted;
   r->root_ms = rooted - impact;
-  r->impact_ms = impact - contact;
-  r->static_ms = contact - start;
   if (!code && want & EO_WANT_BAND)
     code = find_band(e, design, s->speed, s->compliance, error);
   if (code)
@@ -591,6 +615,7 @@ void eo_evaluator_free(struct eo_evaluator *e)
   free(e->table);
   free(e->table_rows);
   eo_loaded_workspace_free(e->contact);
+  eo_root_workspace_free(e->root);
   eo_vibration_free(e->vibration);
   free(e->law);
   free(r->load_case);
