@@ -40,7 +40,7 @@ struct eo_case_result {
   double peak_to_peak, mean;   /* of it, m */
   double dynamic_force_factor; /* largest dynamic over static mesh force */
   struct eo_vibration vibration;
-  double band[2];              /* pair's normal RMS at 0.9 and 1.1 times the compliance; NaN unless asked for */
+  double band[EO_READINGS][2]; /* pair's RMS at 0.9 and 1.1 times the compliance; NaN unless asked for */
   int contact_failures;        /* positions whose loaded contact did not converge */
 };
 
@@ -78,5 +78,11 @@ void eo_evaluator_combine(const struct eo_design *design, const struct eo_geomet
 
 /* The mesh law of an end in the last evaluation, for sweeps: borrowed, valid until the next run. */
 const struct eo_law *eo_evaluator_law(const struct eo_evaluator *evaluator, int load_case, int end);
+
+/* The gap field of an end in the last evaluation: borrowed, valid until the next run. */
+const struct eo_gap_field *eo_evaluator_field(const struct eo_evaluator *evaluator, int end);
+
+/* Positions by which the right end lags behind the left one. */
+int eo_evaluator_stagger(const struct eo_design *design, int positions);
 
 #endif
