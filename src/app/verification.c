@@ -29,7 +29,7 @@ void eo_verify_add(struct eo_verification *v, const char *label, const char *qua
     v->failed = true;
     return;
   }
-  *check = (struct eo_check){label_copy, quantity_copy, value, expected, tolerance, fabs(value - expected) <= tolerance};
+  *check = (struct eo_check){label_copy, quantity_copy, value, expected, tolerance, value == expected || fabs(value - expected) <= tolerance};
   v->count++;
 }
 
@@ -68,6 +68,12 @@ double eo_verify_number(const json_t *object, const char *key)
 {
   const json_t *value = json_object_get(object, key);
   return json_is_number(value) ? json_number_value(value) : NAN;
+}
+
+double eo_verify_number_or(const json_t *object, const char *key, double missing)
+{
+  double value = eo_verify_number(object, key);
+  return isnan(value) ? missing : value;
 }
 
 double eo_verify_element(const json_t *object, const char *key, int index)

@@ -8,7 +8,7 @@
 #include "document/json.h"
 #include "document/sheet.h"
 
-static const struct eo_verify_kind *const kinds[] = {&eo_verify_standards};
+static const struct eo_verify_kind *const kinds[] = {&eo_verify_dynamics, &eo_verify_optimizer, &eo_verify_standards};
 enum { KINDS = sizeof kinds / sizeof kinds[0] };
 
 static void done(struct eo_verification *v)
@@ -62,7 +62,7 @@ static enum eo_code verify_file(const char *path, struct eo_verification *v, str
 /* How far out, in tolerances; what should be exact counts as far out as it can. */
 static double severity(const struct eo_check *check)
 {
-  double deviation = fabs(check->value - check->expected);
+  double deviation = check->value == check->expected ? 0 : fabs(check->value - check->expected);
   if (isnan(deviation))
     return INFINITY;
   return check->tolerance > 0 ? deviation / check->tolerance : (deviation > 0 ? INFINITY : 0);

@@ -13,7 +13,7 @@
 struct eo_check {
   char *label;     /* owned: the case */
   char *quantity;  /* owned */
-  double value, expected, tolerance; /* in the case file's unit; |value - expected| <= tolerance passes, NaN does not */
+  double value, expected, tolerance; /* in the case file's unit; passes when equal or |value - expected| <= tolerance */
   bool pass;
 };
 
@@ -38,6 +38,7 @@ void eo_verify_unknown(struct eo_verification *verification, const char *where, 
 
 /* Numbers of a case object: NaN when the key is absent or no number; element index of an array key. */
 double eo_verify_number(const json_t *object, const char *key);
+double eo_verify_number_or(const json_t *object, const char *key, double missing);
 double eo_verify_element(const json_t *object, const char *key, int index);
 
 /* Half a unit in the last decimal that a printed number shows: 2.35 -> 0.005. */
@@ -52,6 +53,6 @@ struct eo_verify_kind {
   enum eo_code (*run)(const json_t *cases, struct eo_verification *verification, struct eo_error *error);
 };
 
-extern const struct eo_verify_kind eo_verify_standards;
+extern const struct eo_verify_kind eo_verify_dynamics, eo_verify_optimizer, eo_verify_standards;
 
 #endif
