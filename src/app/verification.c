@@ -21,6 +21,7 @@ static struct eo_check *next_check(struct eo_verification *v)
 
 void eo_verify_add(struct eo_verification *v, const char *label, const char *quantity, double value, double expected, double tolerance)
 {
+  bool pass = value == expected || fabs(value - expected) <= tolerance;
   struct eo_check *check = v->failed ? NULL : next_check(v);
   char *label_copy = strdup(label), *quantity_copy = strdup(quantity);
   if (!check || !label_copy || !quantity_copy) {
@@ -29,7 +30,7 @@ void eo_verify_add(struct eo_verification *v, const char *label, const char *qua
     v->failed = true;
     return;
   }
-  *check = (struct eo_check){label_copy, quantity_copy, value, expected, tolerance, value == expected || fabs(value - expected) <= tolerance};
+  *check = (struct eo_check){label_copy, quantity_copy, value, expected, tolerance, pass};
   v->count++;
 }
 

@@ -25,7 +25,7 @@ struct eo_verification {
   bool failed;            /* an allocation failed */
 };
 
-/* One computed number. Formats of label: printf. */
+/* One computed number. */
 void eo_verify_add(struct eo_verification *verification, const char *label, const char *quantity, double value, double expected, double tolerance);
 
 /* The computation itself failed where a number was expected: a check that does not pass, and the reason. */
@@ -53,6 +53,16 @@ struct eo_verify_kind {
   enum eo_code (*run)(const json_t *cases, struct eo_verification *verification, struct eo_error *error);
 };
 
-extern const struct eo_verify_kind eo_verify_dynamics, eo_verify_optimizer, eo_verify_standards;
+/* NULL after the last. */
+const struct eo_verify_kind *eo_verify_kind_at(int index);
+
+/* The lumped model: modes, periodic responses, the single degree of freedom. */
+enum eo_code eo_verify_dynamics(const json_t *cases, struct eo_verification *verification, struct eo_error *error);
+
+/* The optimizer's random numbers, prediction, history, operators and whole runs. */
+enum eo_code eo_verify_optimizer(const json_t *cases, struct eo_verification *verification, struct eo_error *error);
+
+/* Worked numbers of standards and published reports. */
+enum eo_code eo_verify_standards(const json_t *cases, struct eo_verification *verification, struct eo_error *error);
 
 #endif

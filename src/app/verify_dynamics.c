@@ -425,7 +425,7 @@ static void note_unknown(const json_t *cases, struct eo_verification *v)
   }
 }
 
-static enum eo_code run(const json_t *cases, struct eo_verification *v, struct eo_error *error)
+enum eo_code eo_verify_dynamics(const json_t *cases, struct eo_verification *v, struct eo_error *error)
 {
   char buffer[NAME_LENGTH];
   enum eo_code code = EO_OK;
@@ -446,5 +446,3 @@ static enum eo_code run(const json_t *cases, struct eo_verification *v, struct e
   note_unknown(cases, v);
   return code;
 }
-
-const struct eo_verify_kind eo_verify_dynamics = {"dynamics", run};

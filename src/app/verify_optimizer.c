@@ -496,7 +496,7 @@ static enum eo_code verify_item(struct verifier *v, const struct block *block, c
   return v->code = EO_OK;
 }
 
-static enum eo_code run(const json_t *cases, struct eo_verification *to, struct eo_error *error)
+enum eo_code eo_verify_optimizer(const json_t *cases, struct eo_verification *to, struct eo_error *error)
 {
   static const char *const other[] = {"kind", "about", "conventions", "histories", "invariants", "note", "source"};
   enum { OTHERS = sizeof other / sizeof *other };
@@ -517,5 +517,3 @@ static enum eo_code run(const json_t *cases, struct eo_verification *to, struct 
   eo_verify_unknown(to, "the file", cases, known);
   return v.code;
 }
-
-const struct eo_verify_kind eo_verify_optimizer = {"optimizer", run};

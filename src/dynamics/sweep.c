@@ -1,12 +1,15 @@
 #include "dynamics/sweep.h"
 
 #include <math.h>
+#include <stdlib.h>
 
 #include "dynamics/vibration-internal.h"
 #include "numerics/fourier.h"
 
 static enum eo_code check_speeds(int count, const struct eo_vibration_case *load, struct eo_error *error)
 {
+  if (count < 1)
+    return eo_error_set(error, EO_ERROR_INPUT, "", "A sweep needs at least one speed.");
   for (int i = 1; i < count; i++)
     if (!(load[i].speed > load[i - 1].speed))
       return eo_error_set(error, EO_ERROR_INPUT, "", "The speeds of a sweep must ascend; number %d is %g rad/s after %g.", i, load[i].speed,
@@ -32,6 +35,43 @@ enum eo_code eo_vibration_follow(struct eo_vibration_solver *s, int count, const
     separated = result[i].outcome == EO_VIBRATION_CONTACT_LOST;
     before = i;
   }
+  return code;
+}
+
+static enum eo_code solve_alone(struct eo_vibration_solver *s, int count, const struct eo_vibration_case *load, struct eo_vibration *alone,
+                                const struct eo_progress *progress, struct eo_error *error)
+{
+  enum eo_code code = EO_OK;
+  for (int i = 0; i < count && !code; i++) {
+    code = eo_vibration_solve(s, &load[i], EO_START_COLD, &alone[i], error);
+    if (!code && eo_progress_report(progress, "speed sweep", (double)(i + 1) / count))
+      code = eo_error_set(error, EO_ERROR_CANCELLED, "", "The sweep was cancelled.");
+  }
+  return code;
+}
+
+enum eo_code eo_vibration_sweep(struct eo_vibration_solver *s, const struct eo_vibration_case *load, int count,
+                                const double *speed, struct eo_vibration *up, struct eo_vibration *down,
+                                const struct eo_progress *progress, struct eo_error *error)
+{
+  size_t n = count > 0 ? (size_t)count : 1;
+  struct eo_vibration_case *at = calloc(n, sizeof *at);
+  struct eo_vibration *alone = calloc(n, sizeof *alone);
+  enum eo_code code = at && alone ? EO_OK : eo_error_memory(error);
+  for (int i = 0; i < count && !code; i++) {
+    at[i] = *load;
+    at[i].speed = speed[i];
+  }
+  if (!code)
+    code = check_speeds(count, at, error);
+  if (!code)
+    code = solve_alone(s, count, at, alone, progress, error);
+  if (!code && up)
+    code = eo_vibration_follow(s, count, at, alone, +1, up, error);
+  if (!code && down)
+    code = eo_vibration_follow(s, count, at, alone, -1, down, error);
+  free(at);
+  free(alone);
   return code;
 }
 

@@ -14,6 +14,12 @@
 enum eo_code eo_vibration_follow(struct eo_vibration_solver *solver, int count, const struct eo_vibration_case *load,
                                  const struct eo_vibration *alone, int direction, struct eo_vibration *result, struct eo_error *error);
 
+/* Both directions of a sweep at speed[count] (pinion, rad/s, ascending; load->speed is not used) on one thread. up and down
+   [count], either may be NULL. Errors: also EO_ERROR_CANCELLED. */
+enum eo_code eo_vibration_sweep(struct eo_vibration_solver *solver, const struct eo_vibration_case *load, int count,
+                                const double *speed, struct eo_vibration *up, struct eo_vibration *down,
+                                const struct eo_progress *progress, struct eo_error *error);
+
 struct eo_trace_point {
   double speed;           /* of the pinion, rad/s */
   double rms[2];          /* of the normal acceleration X" at each end, m/s2 */
