@@ -123,7 +123,7 @@ static enum eo_code read_case(struct case_output *out, const struct eo_evaluatio
   for (int i = 0; i < EO_READINGS; i++)
     out->rms[i] = c->vibration.rms_pair[i];
   for (int i = 0; i < 2; i++)
-    out->band[i] = c->band[i];
+    out->band[i] = c->band[EO_READING_NORMAL][i];
   enum eo_code code = eo_stage_copy(&out->transmission, evaluation->positions, c->transmission, error);
   if (!code)
     code = read_end(&out->left, c, EO_LEFT, evaluation->positions, error);

@@ -39,6 +39,26 @@ static enum eo_code reserve(struct eo_law *law, int rows, int order, struct eo_e
   return EO_OK;
 }
 
+enum eo_code eo_law_copy(struct eo_law *law, const struct eo_law *source, struct eo_error *error)
+{
+  if (!source->rows) {
+    eo_law_done(law);
+    return EO_OK;
+  }
+  enum eo_code code = reserve(law, source->rows, source->order, error);
+  if (code)
+    return code;
+  struct eo_law copy = *source;
+  copy.series = law->series;
+  copy.load = law->load;
+  copy.capacity = law->capacity;
+  memcpy(copy.series, source->series, (size_t)source->rows * (size_t)eo_fourier_terms(source->order) * sizeof *copy.series);
+  if (source->kind == EO_MESH_TABLE)
+    memcpy(copy.load, source->load, (size_t)source->rows * sizeof *copy.load);
+  *law = copy;
+  return EO_OK;
+}
+
 static int all_finite(int n, const double *value)
 {
   for (int i = 0; i < n; i++)

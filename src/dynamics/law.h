@@ -65,6 +65,9 @@ enum eo_code eo_law_set_back(struct eo_law *law, double back, double stiffness, 
 enum eo_code eo_law_set_secant(struct eo_law *law, int positions, const double *deflection, double nominal,
                                     double datum, int order, double back, struct eo_error *error);
 
+/* The same law in memory of its own. Errors: EO_ERROR_MEMORY. */
+enum eo_code eo_law_copy(struct eo_law *law, const struct eo_law *source, struct eo_error *error);
+
 /* Values of the rows at one phase, row[rows]; law->rows numbers. */
 void eo_law_rows(const struct eo_law *law, double phase, double *row);
 

@@ -20,6 +20,10 @@ struct eo_evaluator {
   struct eo_vibration_solver *vibration;
   int vibration_harmonics;
   struct eo_law (*law)[2];                 /* [most_cases][end] */
+  struct vibration_problem {
+    struct eo_dynamics_parameters parameters;
+    struct eo_vibration_case load;
+  } *problem;                              /* [most_cases], as last solved */
   struct eo_evaluation result;
 };
 
@@ -233,15 +237,14 @@ static enum eo_code set_law(struct eo_evaluator *e, const struct eo_design *desi
   return eo_law_set_tangent(law, n, loaded->approach, loaded->tangent, c->force, order, back, error);
 }
 
-static void set_pulses(const struct eo_evaluator *e, const struct eo_case_result *c, double speed, struct eo_vibration_case *load)
+void eo_evaluator_pulses(const struct eo_pair *pair, const struct eo_impact *impact, double speed, struct eo_pulse *pulse)
 {
-  double period = 2 * M_PI / (speed * e->pair->geometry.teeth[EO_PINION]);
-  for (int end = 0; end < e->result.ends; end++) {
-    const struct eo_impact *impact = &c->end[end].impact;
-    load->pulse[end] = (struct eo_pulse){.shape = EO_PULSE_NONE};
-    if (impact->touched && impact->force > 0)
-      load->pulse[end] = (struct eo_pulse){.shape = EO_PULSE_HALF_SINE, .amplitude = impact->force, .start = impact->start,
-        .duration = fmin(1, impact->duration / period)};
+  double period = 2 * M_PI / (speed * pair->geometry.teeth[EO_PINION]);
+  for (int end = 0; end < pair->gear_pair.ends; end++) {
+    pulse[end] = (struct eo_pulse){.shape = EO_PULSE_NONE};
+    if (impact[end].touched && impact[end].force > 0)
+      pulse[end] = (struct eo_pulse){.shape = EO_PULSE_HALF_SINE, .amplitude = impact[end].force, .start = impact[end].start,
+        .duration = fmin(1, impact[end].duration / period)};
   }
 }
 
@@ -265,8 +268,9 @@ static enum eo_code vibrate(struct eo_evaluator *e, const struct eo_design *desi
     load.law[end] = &e->law[k][end];
     code = set_law(e, design, &e->law[k][end], c, end, loaded[end], factor, error);
   }
-  if (!code && load.impact != EO_IMPACT_NONE)
-    set_pulses(e, c, load.speed, &load);
+  if (load.impact != EO_IMPACT_NONE)
+    eo_evaluator_pulses(e->pair, (struct eo_impact[2]){c->end[0].impact, c->end[1].impact}, load.speed, load.pulse);
+  e->problem[k] = (struct vibration_problem){parameters, load};
   if (!code)
     code = design->resolution.solver == EO_SOLVER_TIME_INTEGRATION
                ? eo_vibration_integrate(e->vibration, &load, NULL, vibration, NULL, error)
@@ -462,9 +466,11 @@ enum eo_code eo_evaluator_run(struct eo_evaluator *e, const struct eo_design *de
   return EO_OK;
 }
 
-const struct eo_law *eo_evaluator_law(const struct eo_evaluator *e, int load_case, int end)
+void eo_evaluator_vibration(const struct eo_evaluator *e, int load_case, struct eo_dynamics_parameters *parameters,
+                            struct eo_vibration_case *load)
 {
-  return &e->law[load_case][end];
+  *parameters = e->problem[load_case].parameters;
+  *load = e->problem[load_case].load;
 }
 
 const struct eo_gap_field *eo_evaluator_field(const struct eo_evaluator *e, int end)
@@ -569,7 +575,8 @@ static enum eo_code init_storage(struct eo_evaluator *e, struct eo_error *error)
   r->load_case = calloc(most, sizeof *r->load_case);
   r->objective = calloc(most, sizeof *r->objective);
   e->law = calloc(most, sizeof *e->law);
-  if (!r->load_case || !r->objective || !e->law)
+  e->problem = calloc(most, sizeof *e->problem);
+  if (!r->load_case || !r->objective || !e->law || !e->problem)
     return eo_error_memory(error);
   for (int k = 0; k < e->most_cases && !code; k++) {
     r->load_case[k].transmission = calloc((size_t)grid->positions, sizeof(double));
@@ -625,6 +632,7 @@ void eo_evaluator_free(struct eo_evaluator *e)
   eo_root_workspace_free(e->root);
   eo_vibration_free(e->vibration);
   free(e->law);
+  free(e->problem);
   free(r->load_case);
   free(r->objective);
   free(e);

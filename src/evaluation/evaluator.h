@@ -76,8 +76,13 @@ enum eo_code eo_evaluator_raw(struct eo_evaluator *evaluator, const struct eo_de
 void eo_evaluator_combine(const struct eo_design *design, const struct eo_geometry *geometry, const struct eo_objective_case *raw,
                           const struct eo_objective_case *unmodified, struct eo_objective_value *value);
 
-/* The mesh law of an end in the last evaluation, for sweeps: borrowed, valid until the next run. */
-const struct eo_law *eo_evaluator_law(const struct eo_evaluator *evaluator, int load_case, int end);
+/* The vibration problem of a load case as the last evaluation (without a compliance band) solved it, for sweeps over speed. The
+   laws in load are borrowed, valid until the next run. */
+void eo_evaluator_vibration(const struct eo_evaluator *evaluator, int load_case, struct eo_dynamics_parameters *parameters,
+                            struct eo_vibration_case *load);
+
+/* Impacts of one load case as pulses of the equations of motion. impact[2], pulse[2]: [end]; speed: of the pinion, rad/s. */
+void eo_evaluator_pulses(const struct eo_pair *pair, const struct eo_impact *impact, double speed, struct eo_pulse *pulse);
 
 /* The gap field of an end in the last evaluation: borrowed, valid until the next run. */
 const struct eo_gap_field *eo_evaluator_field(const struct eo_evaluator *evaluator, int end);

@@ -9,6 +9,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "numerics/blas.h"
+
 struct eo_sparse_factor {
   cholmod_common common;
   const struct eo_sparse *matrix; /* borrowed, until factorised */
@@ -21,17 +23,11 @@ struct eo_sparse_factor {
 
 /* METIS keeps a global random state and swaps signal handlers while it runs. */
 static pthread_mutex_t metis_mutex = PTHREAD_MUTEX_INITIALIZER;
-static pthread_once_t blas_once = PTHREAD_ONCE_INIT;
-
-static void set_blas_threads(void)
-{
-  openblas_set_num_threads(1);
-}
 
 /* CHOLMOD's OpenMP loops ask for a fixed number of threads; only the nesting limit of the calling thread stops them. */
 static void limit_threads(void)
 {
-  pthread_once(&blas_once, set_blas_threads);
+  eo_blas_single_thread();
   void (*set_levels)(int) = (void (*)(int))dlsym(RTLD_DEFAULT, "omp_set_max_active_levels");
   if (set_levels)
     set_levels(0);
