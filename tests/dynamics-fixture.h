@@ -3,6 +3,7 @@
 #define EASEOFF_TESTS_DYNAMICS_FIXTURE_H
 
 #include <math.h>
+#include <stddef.h>
 
 #include "dynamics/vibration.h"
 

@@ -2,7 +2,9 @@
 #include <math.h>
 
 #include "app/verify.h"
+#include "app/verify_contact.h"
 #include "app/verify_dynamics.h"
+#include "app/verify_evaluation.h"
 #include "app/verify_optimizer.h"
 
 static void add_judged(void *context, const struct eo_verify_row *row)
@@ -29,7 +31,10 @@ static enum eo_code run_dynamics(const json_t *cases, struct eo_verification *v,
 }
 
 static const struct eo_verify_kind kinds[] = {
+    {"calculix", eo_verify_calculix},
+    {"contact", eo_verify_contact},
     {"dynamics", run_dynamics},
+    {"evaluation", eo_verify_evaluation},
     {"optimizer", run_optimizer},
     {"standards", eo_verify_standards},
 };

@@ -222,15 +222,34 @@ static void start_from(struct eo_loaded_workspace *ws, const struct eo_contact_p
     start_cold(ws, problem, ws->mode);
 }
 
+/* The long way when Newton fails: from a load so high that every point touches, down in steps along the tangent. */
+static bool descend(struct eo_loaded_workspace *ws, const struct problem *problem)
+{
+  enum { TRIES = 6, STEPS = 400 };
+  int n = problem->position->stride + 1;
+  for (int start = 2; start < TRIES; start++) {
+    struct problem high = *problem;
+    high.force *= pow(10, start);
+    start_cold(ws, &high, ws->mode);
+    double factor = 2;
+    for (int i = 0; i < STEPS && newton(ws, &high); i++) {
+      if (high.force == problem->force)
+        return true;
+      double next = fmax(problem->force, high.force / factor);
+      tangent_of(ws, problem->position);
+      for (int k = 0; k < n; k++)
+        ws->mode[k] += (next - high.force) * ws->tangent[k];
+      high.force = next;
+    }
+  }
+  return false;
+}
+
 /* Solves from ws->mode and writes position j of the result. */
 static void solve_position(struct eo_loaded_workspace *ws, const struct problem *problem, int j, double factor, struct eo_loaded_end *result)
 {
   const struct eo_contact_position *p = problem->position;
-  bool converged = newton(ws, problem);
-  if (!converged) {
-    start_cold(ws, problem, ws->mode);
-    converged = newton(ws, problem);
-  }
+  bool converged = newton(ws, problem) || descend(ws, problem);
   result->failures += !converged;
   result->load[j] = problem->force;
   result->tangent[j] = tangent_of(ws, p) / factor;

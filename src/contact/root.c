@@ -49,7 +49,7 @@ static double root_stress(const struct eo_flexibility *flexibility, int member, 
       force[loaded++] = line_load[i] * p->length[i];
     }
   eo_flexibility_root_stress(flexibility, member, tooth, loaded, point, force, 0, root->points, stress);
-  for (int i = 0; i < root->points; i++)
+  for (int i = root->first; i < root->points; i++)
     for (int layer = 0; layer <= root->layers; layer++) {
       double s = eo_stress_principal(stress + (i * (root->layers + 1) + layer) * EO_STRESSES);
       if (s > largest) {

@@ -395,27 +395,45 @@ static enum eo_code fit_vibration(struct eo_evaluator *e, int harmonics, struct 
   return EO_OK;
 }
 
-enum eo_code eo_evaluator_run(struct eo_evaluator *e, const struct eo_design *design, const struct eo_scenario *scenario, int want,
-                              const struct eo_evaluation **evaluation, struct eo_error *error)
+static void solve_static(struct eo_evaluator *e, const struct eo_design *design, const struct eo_scenario *scenario)
 {
-  static const struct eo_scenario nominal = {NAN, NAN, 1, 1};
-  const struct eo_scenario *s = scenario ? scenario : &nominal;
   struct eo_evaluation *r = &e->result;
-  bool root = e->pair->flexibility && (want & EO_WANT_ROOT || design->objective.root_stress.enabled);
-  enum eo_code code = fit_vibration(e, design->resolution.harmonics, error);
-  if (code)
-    return code;
   double start = milliseconds();
   set_cases(e, design);
-  set_fields(e, design, s);
-  solve_contact(e, design, s->compliance);
+  set_fields(e, design, scenario);
+  solve_contact(e, design, scenario->compliance);
   for (int k = 0; k < r->cases; k++) {
     for (int end = 0; end < r->ends; end++)
       summarise_end(e, &r->load_case[k], end);
     summarise_pair(e, design, &r->load_case[k]);
   }
   double contact = milliseconds();
-  find_impacts(e, s->speed, s->compliance);
+  find_impacts(e, scenario->speed, scenario->compliance);
+  r->static_ms = contact - start;
+  r->impact_ms = milliseconds() - contact;
+}
+
+static const struct eo_scenario nominal_scenario = {NAN, NAN, 1, 1};
+
+enum eo_code eo_evaluator_contact(struct eo_evaluator *e, const struct eo_design *design, const struct eo_evaluation **evaluation,
+                                  struct eo_error *error)
+{
+  (void)error;
+  solve_static(e, design, &nominal_scenario);
+  *evaluation = &e->result;
+  return EO_OK;
+}
+
+enum eo_code eo_evaluator_run(struct eo_evaluator *e, const struct eo_design *design, const struct eo_scenario *scenario, int want,
+                              const struct eo_evaluation **evaluation, struct eo_error *error)
+{
+  const struct eo_scenario *s = scenario ? scenario : &nominal_scenario;
+  struct eo_evaluation *r = &e->result;
+  bool root = e->pair->flexibility && (want & EO_WANT_ROOT || design->objective.root_stress.enabled);
+  enum eo_code code = fit_vibration(e, design->resolution.harmonics, error);
+  if (code)
+    return code;
+  solve_static(e, design, s);
   double impact = milliseconds();
   if (root)
     find_root_stress(e);
@@ -425,8 +443,6 @@ enum eo_code eo_evaluator_run(struct eo_evaluator *e, const struct eo_design *de
     code = find_modes(e, error);
   r->dynamics_ms = milliseconds() - rooted;
   r->root_ms = rooted - impact;
-  r->impact_ms = impact - contact;
-  r->static_ms = contact - start;
   if (!code && want & EO_WANT_BAND)
     code = find_band(e, design, s->speed, s->compliance, error);
   if (code)

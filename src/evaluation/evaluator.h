@@ -64,6 +64,10 @@ void eo_evaluator_free(struct eo_evaluator *evaluator);
 enum eo_code eo_evaluator_run(struct eo_evaluator *evaluator, const struct eo_design *design, const struct eo_scenario *scenario, int want,
                               const struct eo_evaluation **evaluation, struct eo_error *error);
 
+/* The static half alone: loaded contact and entering impact, no vibration. */
+enum eo_code eo_evaluator_contact(struct eo_evaluator *evaluator, const struct eo_design *design, const struct eo_evaluation **evaluation,
+                                  struct eo_error *error);
+
 /* Raw values over the scenarios that count (the nominal one, or those of a robust objective): raw[eo_evaluator_scenarios()][cases]. */
 int eo_evaluator_scenarios(const struct eo_design *design);
 enum eo_code eo_evaluator_raw(struct eo_evaluator *evaluator, const struct eo_design *design, struct eo_objective_case *raw, struct eo_error *error);

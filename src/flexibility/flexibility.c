@@ -92,7 +92,7 @@ struct eo_root eo_flexibility_root(const struct eo_flexibility *flexibility, int
 {
   const struct eo_flank_table *table = &flexibility->table[member];
   struct eo_root root = {.points = table->root_points, .layers = table->layers, .arc = table->arc, .position = table->root,
-                         .width = flexibility->width, .twist = flexibility->twist[member]};
+                         .width = flexibility->width, .twist = flexibility->twist[member], .first = 2};
   while (root.first < root.points - 1 &&
          hypot(root.position[2 * root.first], root.position[2 * root.first + 1]) > flexibility->form_radius[member])
     root.first++;

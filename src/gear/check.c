@@ -82,9 +82,9 @@ static enum eo_code check_start_bounds(const struct eo_range *range, double acti
 
 static enum eo_code check_optimization(const struct eo_optimization *optimization, const struct eo_geometry *geometry, struct eo_error *error)
 {
-  if (optimization->credibility_floor >= optimization->trust_threshold)
-    return eo_error_set(error, EO_ERROR_INPUT, "/optimization/credibility_floor",
-                        "%.6g is not below the trust threshold %.6g: no prediction would survive a generation.", optimization->credibility_floor,
+  if (optimization->removal_threshold >= optimization->trust_threshold)
+    return eo_error_set(error, EO_ERROR_INPUT, "/optimization/removal_threshold",
+                        "%.6g is not below the trust threshold %.6g: no prediction would survive a generation.", optimization->removal_threshold,
                         optimization->trust_threshold);
   enum eo_code code = check_start_bounds(&optimization->tip_relief_start, geometry->rack_top, "/optimization/bounds/tip_relief_start_mm", error);
   if (!code)
