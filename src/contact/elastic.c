@@ -8,9 +8,17 @@
 
 enum { MODES = EO_SHAFT_MODES, PART = 2 * EO_DEFLECTION_NODES };
 
+/* Where a point stands among the nodes of its end. */
+struct place {
+  int node;      /* the one below */
+  double weight; /* of the one above */
+  double path;   /* s, where its gap is taken: on the flank that a tip corner meets */
+};
+
 struct eo_elastic {
   const struct eo_contact_grid *grid;
   struct eo_shaft_influence influence;
+  struct place *place[2];                  /* [end][most_points] of the present position */
   double *gap[2];                          /* [end][grid->points] of the bent bodies */
   double *change, *answer;                 /* [most_points] */
   struct eo_deflection deflection[2];      /* [end] at the present position, and what its loads ask for */
@@ -18,42 +26,48 @@ struct eo_elastic {
   struct eo_deflection response[MODES][2]; /* H V: load given up per unit of a mode */
   struct eo_deflection shifted[2];         /* load taken on per N of shift */
   double shift;                            /* P_L - P */
-  double rate;                             /* d(Z_L - Z_R) / d shift, the support included, m/N */
+  double rate[2];                          /* [end] dZ/dP, m/N */
   struct eo_deflection *history[2];        /* [end][positions] */
 };
 
 /* ---- between points and nodes ---- */
 
-/* Where the gap of a point is taken: on the flank that a tip corner meets. */
-static double place_of(const struct eo_contact_position *p, int i)
+static void set_places(const struct eo_elastic *el, const struct eo_contact_position *p, struct place *place)
 {
-  return p->kind[i] == EO_POINT_GEAR_TIP ? p->point[i].s[EO_PINION] : p->point[i].s[EO_GEAR];
+  for (int i = 0; i < p->points; i++) {
+    double u = (p->point[i].eta / el->grid->geometry.face_width + 0.5) * (EO_DEFLECTION_NODES - 1);
+    place[i].node = (int)fmax(0, fmin(EO_DEFLECTION_NODES - 2, floor(u)));
+    place[i].weight = u - place[i].node;
+    place[i].path = p->kind[i] == EO_POINT_GEAR_TIP ? p->point[i].s[EO_PINION] : p->point[i].s[EO_GEAR];
+  }
 }
 
-static void clear(struct eo_deflection *deflection)
+static void gather(int points, const struct place *place, const double *load, struct eo_deflection *nodal)
 {
-  memset(deflection, 0, sizeof *deflection);
+  memset(nodal, 0, sizeof *nodal);
+  for (int i = 0; i < points; i++) {
+    double upper = load[i] * place[i].weight, lower = load[i] - upper;
+    nodal->part[0][place[i].node] += lower;
+    nodal->part[0][place[i].node + 1] += upper;
+    nodal->part[1][place[i].node] += place[i].path * lower;
+    nodal->part[1][place[i].node + 1] += place[i].path * upper;
+  }
 }
 
-static void gather(const struct eo_elastic *el, const struct eo_contact_position *p, const double *load, struct eo_deflection *nodal)
+static void spread(int points, const struct place *place, const struct eo_deflection *deflection, double *change)
 {
-  clear(nodal);
+  for (int i = 0; i < points; i++) {
+    const double *level = deflection->part[0] + place[i].node, *tilt = deflection->part[1] + place[i].node;
+    change[i] = level[0] + place[i].weight * (level[1] - level[0]) + place[i].path * (tilt[0] + place[i].weight * (tilt[1] - tilt[0]));
+  }
+}
+
+static void gather_loads(struct eo_elastic *el, int end, int j, const struct eo_loaded_end *result)
+{
+  const struct eo_contact_position *p = &el->grid->position[j];
   for (int i = 0; i < p->points; i++)
-    if (load[i] != 0)
-      eo_shaft_load_add(nodal, el->grid->geometry.face_width, place_of(p, i), p->point[i].eta, load[i]);
-}
-
-static void spread(const struct eo_elastic *el, const struct eo_contact_position *p, const struct eo_deflection *deflection, double *change)
-{
-  for (int i = 0; i < p->points; i++)
-    change[i] = eo_deflection_at(deflection, el->grid->geometry.face_width, place_of(p, i), p->point[i].eta);
-}
-
-static void gather_loads(struct eo_elastic *el, const struct eo_contact_position *p, const struct eo_loaded_end *end, struct eo_deflection *nodal)
-{
-  for (int i = 0; i < p->points; i++)
-    el->answer[i] = end->line_load[p->first + i] * p->length[i];
-  gather(el, p, el->answer, nodal);
+    el->answer[i] = result->line_load[p->first + i] * p->length[i];
+  gather(p->points, el->place[end], el->answer, &el->load[end]);
 }
 
 static double product(const struct eo_deflection *a, const double *b)
@@ -82,12 +96,13 @@ static void resolve(struct eo_elastic *el, struct eo_loaded_workspace *ws, const
                     double load, bool first, struct eo_loaded_end *result)
 {
   const struct eo_contact_position *p = &el->grid->position[j];
-  double rise = 0, total = 0;
-  spread(el, p, &el->deflection[end], el->change);
+  double rise = 0, total = 0, *gap = el->gap[end] + p->first;
+  const double *rigid = gaps->gap + p->first;
+  spread(p->points, el->place[end], &el->deflection[end], el->change);
   for (int i = 0; i < p->points; i++) {
-    double before = first ? gaps->gap[p->first + i] : el->gap[end][p->first + i], force = result->line_load[p->first + i] * p->length[i];
-    el->gap[end][p->first + i] = gaps->gap[p->first + i] + el->change[i];
-    rise += force * (el->gap[end][p->first + i] - before);
+    double before = first ? rigid[i] : gap[i], force = result->line_load[p->first + i] * p->length[i];
+    gap[i] = rigid[i] + el->change[i];
+    rise += force * (gap[i] - before);
     total += force;
   }
   result->approach[j] += total > 0 ? rise / total : 0;
@@ -101,21 +116,21 @@ static void respond(struct eo_elastic *el, struct eo_loaded_workspace *ws, doubl
   for (int k = 0; k < MODES; k++) {
     struct eo_deflection mode;
     memcpy(&mode, el->influence.mode + k * el->influence.size + end * PART, sizeof mode);
-    spread(el, p, &mode, el->change);
+    spread(p->points, el->place[end], &mode, el->change);
     eo_loaded_response(ws, p, factor, el->change, el->answer);
     for (int i = 0; i < p->points; i++)
       el->answer[i] = -el->answer[i];
-    gather(el, p, el->answer, &el->response[k][end]);
+    gather(p->points, el->place[end], el->answer, &el->response[k][end]);
   }
-  el->rate += eo_loaded_response(ws, p, factor, NULL, el->answer);
+  el->rate[end] = eo_loaded_response(ws, p, factor, NULL, el->answer);
   for (int i = 0; end == EO_RIGHT && i < p->points; i++)
     el->answer[i] = -el->answer[i];
-  gather(el, p, el->answer, &el->shifted[end]);
+  gather(p->points, el->place[end], el->answer, &el->shifted[end]);
 }
 
 /* Newton's correction of the deflection and, when the pinion is held, of the shift: [M, -V'g; g'V, rate] [c; d shift] = -[(HV)'r; miss + g'r]
    with g the load taken on per N of shift (which is also how Z_L - Z_R follows the gaps). */
-static void correct(struct eo_elastic *el, bool held, double miss)
+static void correct(struct eo_elastic *el, bool held, double soft, double miss)
 {
   int ends = el->influence.ends, n = el->influence.size, rows = MODES + held, pivot[MODES + 1];
   double matrix[(MODES + 1) * (MODES + 1)] = {0}, step[MODES + 1] = {0};
@@ -139,7 +154,7 @@ static void correct(struct eo_elastic *el, bool held, double miss)
   for (int k = 0; k < MODES; k++)
     matrix[k * rows + k] += 1;
   if (held) {
-    matrix[MODES * rows + MODES] = el->rate;
+    matrix[MODES * rows + MODES] = el->rate[EO_LEFT] + el->rate[EO_RIGHT] + soft;
     step[MODES] -= miss;
   }
   if (eo_dense_solve(rows, matrix, pivot, 1, step))
@@ -153,33 +168,46 @@ static void correct(struct eo_elastic *el, bool held, double miss)
   el->shift += held ? step[MODES] : 0;
 }
 
-/* Iterates at position j of the left end and `other` of the right one, from the deflection of the position before; returns the number of
-   iterations, 0 when they did not converge. */
+/* How far the deflection is from what the loads ask for, m. */
+static double departure(const struct eo_elastic *el)
+{
+  double most = 0;
+  for (int end = 0; end < el->influence.ends; end++)
+    most = fmax(most, largest(el, &el->asked[end], &el->deflection[end]));
+  return most;
+}
+
+/* Iterates at position j of the left end and `other` of the right one, from the present deflection; returns the number of iterations, 0 when
+   they did not converge. The contact's answer is asked for once, and again when the iteration slows down. */
 static int solve_position(struct eo_elastic *el, struct eo_loaded_workspace *ws, const struct eo_loaded_gaps *gaps, const struct eo_elastic_case *c,
-                          double soft, int j, int other, struct eo_loaded_end *result)
+                          double soft, const int at[2], struct eo_loaded_end *result)
 {
   enum { ITERATIONS = 40 };
-  static const double DONE = 1e-12;
-  int ends = el->influence.ends, at[2] = {j, other};
-  bool held = ends == 2 && c->axial_stiffness > 0;
+  static const double DONE = 1e-11, SLOW = 0.1;
+  int ends = el->influence.ends;
+  bool held = ends == 2 && c->axial_stiffness > 0, ask = true;
+  double before = INFINITY;
+  for (int end = 0; end < ends; end++)
+    set_places(el, &el->grid->position[at[end]], el->place[end]);
   for (int iteration = 1; iteration <= ITERATIONS; iteration++) {
-    double error = 0, miss = 0;
-    el->rate = soft;
+    double miss = 0;
     el->shift = fmax(-0.999 * c->load, fmin(0.999 * c->load, el->shift));
     for (int end = 0; end < ends; end++) {
-      resolve(el, ws, &gaps[end], c->compliance_factor, end, at[end], end == EO_LEFT ? c->load + el->shift : c->load - el->shift, iteration == 1,
-              &result[end]);
-      respond(el, ws, c->compliance_factor, end, at[end]);
-      gather_loads(el, &el->grid->position[at[end]], &result[end], &el->load[end]);
+      double load = end == EO_LEFT ? c->load + el->shift : c->load - el->shift;
+      resolve(el, ws, &gaps[end], c->compliance_factor, end, at[end], load, iteration == 1, &result[end]);
+      if (ask)
+        respond(el, ws, c->compliance_factor, end, at[end]);
+      gather_loads(el, end, at[end], &result[end]);
     }
     eo_shaft_deflect(&el->influence, el->load, el->asked);
-    for (int end = 0; end < ends; end++)
-      error = fmax(error, largest(el, &el->asked[end], &el->deflection[end]));
     if (held)
-      miss = result[EO_LEFT].approach[j] - result[EO_RIGHT].approach[other] + soft * el->shift;
-    if (error < DONE && fabs(miss) < DONE)
+      miss = result[EO_LEFT].approach[at[EO_LEFT]] - result[EO_RIGHT].approach[at[EO_RIGHT]] + soft * el->shift;
+    double error = fmax(departure(el), fabs(miss));
+    if (error < DONE)
       return iteration;
-    correct(el, held, miss);
+    ask = error > SLOW * before;
+    before = error;
+    correct(el, held, soft, miss);
   }
   return 0;
 }
@@ -205,6 +233,20 @@ static void summarise(const struct eo_elastic *el, struct eo_elastic_report *rep
   }
 }
 
+/* Start of position j: on from the two positions before. */
+static void extrapolate(struct eo_elastic *el, int j, int stagger)
+{
+  int n = el->grid->positions;
+  for (int end = 0; end < 2; end++) {
+    int behind[2] = {j - 1, j - 2};
+    for (int k = 0; k < 2; k++)
+      behind[k] = end == EO_LEFT ? (behind[k] + n) % n : other_position(el, behind[k], stagger);
+    const double *last = &el->history[end][behind[0]].part[0][0], *earlier = &el->history[end][behind[1]].part[0][0];
+    for (int i = 0; i < PART; i++)
+      (&el->deflection[end].part[0][0])[i] = j < 2 ? (j == 0 ? 0 : last[i]) : 2 * last[i] - earlier[i];
+  }
+}
+
 void eo_elastic_solve(struct eo_elastic *el, struct eo_loaded_workspace *ws, const struct eo_loaded_gaps *gaps, const struct eo_elastic_case *c,
                       struct eo_loaded_end *result, struct eo_elastic_report *report)
 {
@@ -212,15 +254,15 @@ void eo_elastic_solve(struct eo_elastic *el, struct eo_loaded_workspace *ws, con
   double soft = c->axial_stiffness > 0 && isfinite(c->axial_stiffness) ? 4 * lean * lean / c->axial_stiffness : 0;
   *report = (struct eo_elastic_report){0};
   el->shift = 0;
-  clear(&el->deflection[EO_LEFT]);
-  clear(&el->deflection[EO_RIGHT]);
   for (int j = 0; j < el->grid->positions; j++) {
-    int other = other_position(el, j, c->stagger), count = solve_position(el, ws, gaps, c, soft, j, other, result);
+    int at[2] = {j, other_position(el, j, c->stagger)};
+    extrapolate(el, j, c->stagger);
+    int count = solve_position(el, ws, gaps, c, soft, at, result);
     report->failures += count == 0;
     report->iterations += count;
     report->most_iterations = count > report->most_iterations ? count : report->most_iterations;
-    el->history[EO_LEFT][j] = el->deflection[EO_LEFT];
-    el->history[EO_RIGHT][other] = el->deflection[EO_RIGHT];
+    for (int end = 0; end < 2; end++)
+      el->history[end][at[end]] = el->deflection[end];
   }
   summarise(el, report);
 }
@@ -231,10 +273,12 @@ void eo_elastic_gaps(struct eo_elastic *el, const struct eo_loaded_gaps *gaps, i
   for (int j = 0; j < el->grid->positions; j++) {
     int at[2] = {j, other_position(el, j, stagger)};
     const struct eo_contact_position *p = &el->grid->position[at[end]];
-    for (int e = 0; e < el->influence.ends; e++)
-      gather_loads(el, &el->grid->position[at[e]], &result[e], &el->load[e]);
+    for (int e = 0; e < el->influence.ends; e++) {
+      set_places(el, &el->grid->position[at[e]], el->place[e]);
+      gather_loads(el, e, at[e], &result[e]);
+    }
     eo_shaft_deflect(&el->influence, el->load, el->asked);
-    spread(el, p, &el->asked[end], el->change);
+    spread(p->points, el->place[end], &el->asked[end], el->change);
     for (int i = 0; i < p->points; i++)
       bent[p->first + i] = gaps[end].gap[p->first + i] + el->change[i];
   }
@@ -247,7 +291,7 @@ static enum eo_code allocate(struct eo_elastic *el, struct eo_error *error)
   size_t points = (size_t)el->grid->points, most = (size_t)el->grid->most_points, positions = (size_t)el->grid->positions;
   bool complete = (el->change = calloc(most, sizeof(double))) && (el->answer = calloc(most, sizeof(double)));
   for (int end = 0; end < 2; end++)
-    complete = complete && (el->gap[end] = calloc(points, sizeof(double))) &&
+    complete = complete && (el->gap[end] = calloc(points, sizeof(double))) && (el->place[end] = calloc(most, sizeof(struct place))) &&
                (el->history[end] = calloc(positions, sizeof(struct eo_deflection)));
   return complete ? EO_OK : eo_error_memory(error);
 }
@@ -276,6 +320,7 @@ void eo_elastic_free(struct eo_elastic *el)
   eo_shaft_influence_done(&el->influence);
   for (int end = 0; end < 2; end++) {
     free(el->gap[end]);
+    free(el->place[end]);
     free(el->history[end]);
   }
   free(el->change);

@@ -5,7 +5,7 @@
    the minimum of a convex function), and S is nearly V V' with a few modes V, so
        correction = r - V (I + V'H V)^-1 (H V)' r,   r = S f(d) - d ;
    what V leaves out is small enough for plain iteration. With an axially held pinion the shift of load between the ends is one unknown more.
-   Ends when no gap moves by more than a thousandth of a nanometre.
+   Ends when no gap is off by more than a hundredth of a nanometre.
 
    The tangent stiffness stays that of the teeth at these gaps: the bodies' own compliance belongs to the dynamics, where they move. */
 #ifndef EASEOFF_CONTACT_ELASTIC_H
