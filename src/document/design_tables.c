@@ -114,6 +114,7 @@ static const struct eo_field optimization[] = {
     PARAMETER(stall_gain, 0, 1, 0.002, "gain that counts, relative (credibility-ga)"),
     PARAMETER(polish_share, 0, 1, 0.2, "share of the budget that only improves the best (credibility-ga)"),
     PARAMETER(local_share, 0, 1, 0.375, "share of each batch for the trust region round the best (credibility-ga)"),
+    PARAMETER(local_radius, 1e-6, 0.5, 0.1, "radius of that trust region at the start of an epoch (credibility-ga)"),
     COUNT(front_population, 4, 1000, 48, "individuals of a generation (nsga2)"),
     COUNT(front_verified, 1, 1000, 12, "true evaluations per cycle (nsga2)"),
     COUNT(front_rounds, 1, 1000, 20, "generations on the surrogates per cycle (nsga2)"),
