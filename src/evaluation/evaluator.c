@@ -289,7 +289,7 @@ static enum eo_code set_law(struct eo_evaluator *e, const struct eo_design *desi
 {
   const struct eo_resolution *resolution = &design->resolution;
   int n = e->pair->grid->positions, order = resolution->te_harmonics < n / 2 ? resolution->te_harmonics : n / 2 - 1;
-  double back = -design->gear_pair.backlash;
+  double back = c->end[end].deflection.part[0][EO_DEFLECTION_NODES / 2] - design->gear_pair.backlash;
   switch (resolution->mesh_law) {
   case EO_LAW_SECANT:
     return eo_law_set_secant(law, n, loaded->approach, c->force, c->end[end].datum, order, back, error);
