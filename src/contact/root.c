@@ -3,22 +3,10 @@
 #include <math.h>
 #include <stdlib.h>
 
-static void tooth_range(const struct eo_contact_grid *grid, int range[2])
-{
-  range[0] = 0;
-  range[1] = 0;
-  for (int j = 0; j < grid->positions; j++)
-    for (int l = 0; l < grid->position[j].lines; l++) {
-      int pair = grid->position[j].line[l].pair;
-      range[0] = pair < range[0] ? pair : range[0];
-      range[1] = pair > range[1] ? pair : range[1];
-    }
-}
-
 enum eo_code eo_root_history_init(struct eo_root_history *history, const struct eo_contact_grid *grid, struct eo_error *error)
 {
   int range[2];
-  tooth_range(grid, range);
+  eo_contact_grid_pairs(grid, range);
   size_t most = (size_t)((range[1] - range[0] + 1) * grid->positions);
   *history = (struct eo_root_history){.phase = calloc(most, sizeof(double)), .stress = calloc(most, sizeof(double))};
   if (history->phase && history->stress)
@@ -67,7 +55,7 @@ void eo_root_history_compute(struct eo_root_history *history, const struct eo_fl
   struct eo_root root = eo_flexibility_root(flexibility, member);
   double *stress = malloc(sizeof *stress * (size_t)(root.points * (root.layers + 1) * EO_STRESSES));
   int range[2];
-  tooth_range(grid, range);
+  eo_contact_grid_pairs(grid, range);
   history->phases = 0;
   history->maximum = 0;
   for (int tooth = range[0]; stress && tooth <= range[1]; tooth++)

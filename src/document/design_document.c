@@ -67,6 +67,15 @@ bool eo_design_decode(const json_t *document, struct eo_design *design, struct e
   return true;
 }
 
+void eo_design_note_assumptions(const json_t *document, const struct eo_design *design, struct eo_warnings *warnings)
+{
+  if (!json_object_get(json_object_get(document, "alignment"), "shaft_angle_error_in_plane_deg"))
+    eo_warnings_add(warnings, "The shaft angle error is not stated: %.6g deg in the plane of the axes is assumed.",
+                    eo_unit_out(&eo_unit_deg, design->alignment.shaft_angle_in_plane));
+  if (!json_object_get(document, "load_cases"))
+    eo_warnings_add(warnings, "No load cases are stated: the paper's duty cycle is assumed.");
+}
+
 json_t *eo_design_encode(const struct eo_design *design)
 {
   json_t *document = eo_table_encode(&eo_design_table, design), *modification = json_object_get(document, "modification");
@@ -114,11 +123,22 @@ enum eo_code eo_design_hash(const struct eo_design *design, char hex[EO_HASH_LEN
   return hash_document(eo_design_encode(design), hex, error);
 }
 
-enum eo_code eo_design_problem_hash(const struct eo_design *design, char hex[EO_HASH_LENGTH + 1], struct eo_error *error)
+static enum eo_code hash_without(const struct eo_design *design, const char *const *without, char hex[EO_HASH_LENGTH + 1], struct eo_error *error)
 {
-  static const char *const without[] = {"name", "modification", "objective", "optimization"};
   json_t *document = eo_design_encode(design);
-  for (size_t i = 0; i < sizeof without / sizeof without[0] && document; i++)
+  for (int i = 0; without[i] && document; i++)
     json_object_del(document, without[i]);
   return hash_document(document, hex, error);
+}
+
+enum eo_code eo_design_evaluation_hash(const struct eo_design *design, char hex[EO_HASH_LENGTH + 1], struct eo_error *error)
+{
+  static const char *const without[] = {"name", "objective", "optimization", NULL};
+  return hash_without(design, without, hex, error);
+}
+
+enum eo_code eo_design_problem_hash(const struct eo_design *design, char hex[EO_HASH_LENGTH + 1], struct eo_error *error)
+{
+  static const char *const without[] = {"name", "modification", "objective", "optimization", NULL};
+  return hash_without(design, without, hex, error);
 }

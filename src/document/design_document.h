@@ -26,6 +26,9 @@ void eo_warnings_add(struct eo_warnings *warnings, const char *format, ...) __at
    warnings may be NULL. */
 bool eo_design_decode(const json_t *document, struct eo_design *design, struct eo_warnings *warnings, struct eo_faults *faults);
 
+/* Says which assumption stands in for a key that decides the result and that the document leaves out. */
+void eo_design_note_assumptions(const json_t *document, const struct eo_design *design, struct eo_warnings *warnings);
+
 /* New document with every key; derived values that are not resolved are null. NULL without memory. */
 json_t *eo_design_encode(const struct eo_design *design);
 
@@ -36,6 +39,9 @@ enum eo_code eo_design_complete(struct eo_design *design, struct eo_geometry *ge
 
 /* SHA-256 of the canonical document (keys sorted, shortest decimals, no spaces). */
 enum eo_code eo_design_hash(const struct eo_design *design, char hex[EO_HASH_LENGTH + 1], struct eo_error *error);
+
+/* The same over what the raw values of one evaluation depend on: without name, objective and optimization. */
+enum eo_code eo_design_evaluation_hash(const struct eo_design *design, char hex[EO_HASH_LENGTH + 1], struct eo_error *error);
 
 /* The same over what one evaluation of a modification depends on: without name, modification, objective and optimization. */
 enum eo_code eo_design_problem_hash(const struct eo_design *design, char hex[EO_HASH_LENGTH + 1], struct eo_error *error);

@@ -71,7 +71,7 @@ static void load_end(struct eo_evaluator *e, const struct eo_design *design, int
     r->load_case[k].end[end].loaded.failures = loaded[k].failures;
 }
 
-static int stagger_positions(const struct eo_design *design, int positions)
+int eo_evaluator_stagger(const struct eo_design *design, int positions)
 {
   return (int)lround(design->alignment.stagger * positions) % positions;
 }
@@ -114,7 +114,7 @@ static void solve_contact(struct eo_evaluator *e, const struct eo_design *design
         copy_end(grid, &r->load_case[k].end[end].loaded, &r->load_case[k].end[EO_LEFT].loaded);
     else
       load_end(e, design, end, factor);
-  int stagger = stagger_positions(design, grid->positions);
+  int stagger = eo_evaluator_stagger(design, grid->positions);
   if (r->ends == 2 && stiffness > 0 && !(r->equal_ends && stagger == 0))
     for (int k = 0; k < r->cases; k++) {
       struct eo_loaded_gaps gaps[2] = {e->gaps[EO_LEFT], e->gaps[kept_at(e, EO_RIGHT)]};
@@ -154,7 +154,7 @@ static void summarise_end(struct eo_evaluator *e, struct eo_case_result *c, int 
 /* LTE of the pair: the mean of the ends, the right one behind by the stagger. */
 static void summarise_pair(struct eo_evaluator *e, const struct eo_design *design, struct eo_case_result *c)
 {
-  int n = e->pair->grid->positions, stagger = stagger_positions(design, n), last = e->result.ends - 1;
+  int n = e->pair->grid->positions, stagger = eo_evaluator_stagger(design, n), last = e->result.ends - 1;
   double low = INFINITY, high = -INFINITY, normal = cos(e->pair->geometry.base_helix_angle);
   c->mean = 0;
   for (int j = 0; j < n; j++) {
@@ -320,7 +320,8 @@ static enum eo_code find_band(struct eo_evaluator *e, const struct eo_design *de
         else
           eo_loaded_solve(e->contact, e->pair->grid, &e->gaps[end], scaled, 1, &c->force, &e->spare[end]);
       code = vibrate(e, design, k, speed_factor, scaled, loaded, &vibration, error);
-      c->band[side] = code || vibration.outcome == EO_VIBRATION_NOT_CONVERGED ? NAN : vibration.rms_pair[EO_READING_NORMAL];
+      for (int reading = 0; reading < EO_READINGS; reading++)
+        c->band[reading][side] = code || vibration.outcome == EO_VIBRATION_NOT_CONVERGED ? NAN : vibration.rms_pair[reading];
     }
   return code;
 }
@@ -378,7 +379,8 @@ static void set_cases(struct eo_evaluator *e, const struct eo_design *design)
     r->load_case[k].load_case = design->load_case[k];
     r->load_case[k].force = design->load_case[k].torque /
                             (r->ends * e->pair->geometry.base_radius[EO_PINION] * cos(e->pair->geometry.base_helix_angle));
-    r->load_case[k].band[0] = r->load_case[k].band[1] = NAN;
+    for (int reading = 0; reading < EO_READINGS; reading++)
+      r->load_case[k].band[reading][0] = r->load_case[k].band[reading][1] = NAN;
     for (int end = 0; end < 2; end++)
       for (int member = 0; member < 2; member++)
         r->load_case[k].end[end].root[member].phases = 0;
@@ -461,6 +463,11 @@ void eo_evaluator_vibration(const struct eo_evaluator *e, int load_case, struct 
 {
   *parameters = e->problem[load_case].parameters;
   *load = e->problem[load_case].load;
+}
+
+const struct eo_gap_field *eo_evaluator_field(const struct eo_evaluator *e, int end)
+{
+  return &e->field[kept_at(e, end)];
 }
 
 /* ---- fitness ---- */

@@ -40,7 +40,7 @@ struct eo_case_result {
   double peak_to_peak, mean;   /* of it, m */
   double dynamic_force_factor; /* largest dynamic over static mesh force */
   struct eo_vibration vibration;
-  double band[2];              /* pair's normal RMS at 0.9 and 1.1 times the compliance; NaN unless asked for */
+  double band[EO_READINGS][2]; /* pair's RMS at 0.9 and 1.1 times the compliance; NaN unless asked for */
   int contact_failures;        /* positions whose loaded contact did not converge */
 };
 
@@ -83,5 +83,11 @@ void eo_evaluator_vibration(const struct eo_evaluator *evaluator, int load_case,
 
 /* Impacts of one load case as pulses of the equations of motion. impact[2], pulse[2]: [end]; speed: of the pinion, rad/s. */
 void eo_evaluator_pulses(const struct eo_pair *pair, const struct eo_impact *impact, double speed, struct eo_pulse *pulse);
+
+/* The gap field of an end in the last evaluation: borrowed, valid until the next run. */
+const struct eo_gap_field *eo_evaluator_field(const struct eo_evaluator *evaluator, int end);
+
+/* Positions by which the right end lags behind the left one. */
+int eo_evaluator_stagger(const struct eo_design *design, int positions);
 
 #endif
