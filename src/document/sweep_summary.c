@@ -35,7 +35,7 @@ static void add_point(const struct eo_sweep *s, int i, struct eo_sheet *sheet)
   for (int v = 0; v < 2; v++)
     eo_sheet_number(sheet, t[v]->peak_to_peak, &eo_unit_um, DIGITS);
   for (int v = 0; v < 2; v++)
-    eo_sheet_number(sheet, worse(s, p[v]->impact), &eo_unit_N, DIGITS);
+    eo_sheet_number(sheet, worse(s, p[v]->impact), &eo_unit_N, DIGITS + 1);
   for (int v = 0; v < 2; v++)
     eo_sheet_number(sheet, p[v]->rms_pair[EO_READING_NORMAL], &eo_unit_m_per_s2, DIGITS);
   eo_sheet_number(sheet, p[0]->rms_pair[EO_READING_TRANSVERSE], &eo_unit_m_per_s2, DIGITS);

@@ -333,11 +333,26 @@ static enum eo_code run_job(struct job *job, const struct eo_progress *progress,
   return code ? code : eo_parallel_run(&p, problems * EO_SWEEP_DIRECTIONS, error);
 }
 
+/* More than the residual of the harmonic balance leaves open. */
+static bool differ(const struct eo_sweep_point *a, const struct eo_sweep_point *b)
+{
+  static const double CLOSE = 1e-6;
+  double up = a->rms_pair[EO_READING_NORMAL], down = b->rms_pair[EO_READING_NORMAL];
+  return a->outcome != b->outcome || fabs(up - down) > CLOSE * fmax(up, down);
+}
+
+/* Where one direction found no periodic state and the other did, the other's is a state of that speed too. */
 static void compare_branches(struct eo_sweep *s)
 {
-  size_t size = (size_t)s->torques * (size_t)s->speeds * sizeof **s->point[0];
   for (int v = 0; v < EO_SWEEP_VARIANTS; v++)
-    s->branches[v] = memcmp(s->point[v][EO_SWEEP_UP], s->point[v][EO_SWEEP_DOWN], size) != 0;
+    for (int i = 0; i < s->torques * s->speeds; i++) {
+      struct eo_sweep_point *up = &s->point[v][EO_SWEEP_UP][i], *down = &s->point[v][EO_SWEEP_DOWN][i];
+      if (up->outcome == EO_VIBRATION_NOT_CONVERGED)
+        *up = *down;
+      else if (down->outcome == EO_VIBRATION_NOT_CONVERGED)
+        *down = *up;
+      s->branches[v] = s->branches[v] || differ(up, down);
+    }
 }
 
 static bool crosses(const struct eo_sweep *s, int torque, int mode, int order, int teeth, struct eo_sweep_crossing *crossing)
