@@ -117,10 +117,11 @@ static double mean(int n, const double *value)
   return sum / n;
 }
 
-static void read_point(struct eo_sweep_point *p, const struct eo_vibration *r)
+/* sound: the loaded contact converged; where it did not, everything built on it means nothing. */
+static void read_point(struct eo_sweep_point *p, const struct eo_vibration *r, bool sound)
 {
-  bool found = r->outcome != EO_VIBRATION_NOT_CONVERGED;
-  p->outcome = r->outcome;
+  bool found = sound && r->outcome != EO_VIBRATION_NOT_CONVERGED;
+  p->outcome = sound ? r->outcome : EO_VIBRATION_NOT_CONVERGED;
   p->back_contact = found && r->back_contact;
   for (int reading = 0; reading < EO_READINGS; reading++) {
     p->rms_pair[reading] = found ? r->rms_pair[reading] : NAN;
@@ -268,6 +269,7 @@ static enum eo_code solve_branch(void *context, int thread, int item, struct eo_
   size_t speeds = (size_t)s->speeds, first = (size_t)(problem % s->torques) * speeds;
   const struct eo_vibration *alone = job->alone + (size_t)problem * speeds;
   struct eo_sweep_point *point = s->point[problem / s->torques][direction] + first;
+  bool sound = s->at_torque[problem / s->torques][problem % s->torques].contact_failures == 0;
   struct eo_vibration_case *load = calloc(speeds, sizeof *load);
   struct eo_vibration *followed = calloc(speeds, sizeof *followed);
   enum eo_code code = load && followed ? take_model(job, w, problem, error) : eo_error_memory(error);
@@ -277,7 +279,7 @@ static enum eo_code solve_branch(void *context, int thread, int item, struct eo_
   if (follow)
     code = eo_vibration_follow(w->solver, s->speeds, load, alone, direction == EO_SWEEP_UP ? +1 : -1, followed, error);
   for (int j = 0; j < s->speeds && !code; j++)
-    read_point(&point[j], follow ? &followed[j] : &alone[j]);
+    read_point(&point[j], follow ? &followed[j] : &alone[j], sound);
   free(load);
   free(followed);
   return code;
@@ -331,11 +333,26 @@ static enum eo_code run_job(struct job *job, const struct eo_progress *progress,
   return code ? code : eo_parallel_run(&p, problems * EO_SWEEP_DIRECTIONS, error);
 }
 
+/* More than the residual of the harmonic balance leaves open. */
+static bool differ(const struct eo_sweep_point *a, const struct eo_sweep_point *b)
+{
+  static const double CLOSE = 1e-6;
+  double up = a->rms_pair[EO_READING_NORMAL], down = b->rms_pair[EO_READING_NORMAL];
+  return a->outcome != b->outcome || fabs(up - down) > CLOSE * fmax(up, down);
+}
+
+/* Where one direction found no periodic state and the other did, the other's is a state of that speed too. */
 static void compare_branches(struct eo_sweep *s)
 {
-  size_t size = (size_t)s->torques * (size_t)s->speeds * sizeof **s->point[0];
   for (int v = 0; v < EO_SWEEP_VARIANTS; v++)
-    s->branches[v] = memcmp(s->point[v][EO_SWEEP_UP], s->point[v][EO_SWEEP_DOWN], size) != 0;
+    for (int i = 0; i < s->torques * s->speeds; i++) {
+      struct eo_sweep_point *up = &s->point[v][EO_SWEEP_UP][i], *down = &s->point[v][EO_SWEEP_DOWN][i];
+      if (up->outcome == EO_VIBRATION_NOT_CONVERGED)
+        *up = *down;
+      else if (down->outcome == EO_VIBRATION_NOT_CONVERGED)
+        *down = *up;
+      s->branches[v] = s->branches[v] || differ(up, down);
+    }
 }
 
 static bool crosses(const struct eo_sweep *s, int torque, int mode, int order, int teeth, struct eo_sweep_crossing *crossing)

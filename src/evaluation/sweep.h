@@ -27,7 +27,7 @@ struct eo_sweep_torque {
   struct eo_dynamics_modes modes;  /* with the mean tangent stiffness */
 };
 
-/* At one torque and speed. Numbers of the vibration are NaN where no periodic state was found. */
+/* At one torque and speed. Where only one direction found a periodic state it stands for both. Numbers of the vibration are NaN where no periodic state was found. */
 struct eo_sweep_point {
   enum eo_vibration_outcome outcome;
   double impact[2];                /* general entering impact [end], N */
