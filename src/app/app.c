@@ -135,6 +135,8 @@ bool eo_app_load_design(const char *path, struct eo_design *design, struct eo_ge
     *status = eo_app_fail_all(path, faults);
   else if (eo_design_complete(design, geometry, &error))
     *status = eo_app_fail(path, &error);
+  else if (warnings)
+    eo_design_note_assumptions(document, design, warnings);
 out:
   json_decref(document);
   free(faults);

@@ -21,11 +21,7 @@ static struct eo_check *next_check(struct eo_verification *v)
 
 void eo_verify_add(struct eo_verification *v, const char *label, const char *quantity, double value, double expected, double tolerance)
 {
-  eo_verify_judged(v, label, quantity, value, expected, tolerance, fabs(value - expected) <= tolerance);
-}
-
-void eo_verify_judged(struct eo_verification *v, const char *label, const char *quantity, double value, double expected, double tolerance, bool pass)
-{
+  bool pass = value == expected || fabs(value - expected) <= tolerance;
   struct eo_check *check = v->failed ? NULL : next_check(v);
   char *label_copy = strdup(label), *quantity_copy = strdup(quantity);
   if (!check || !label_copy || !quantity_copy) {
@@ -73,6 +69,12 @@ double eo_verify_number(const json_t *object, const char *key)
 {
   const json_t *value = json_object_get(object, key);
   return json_is_number(value) ? json_number_value(value) : NAN;
+}
+
+double eo_verify_number_or(const json_t *object, const char *key, double missing)
+{
+  double value = eo_verify_number(object, key);
+  return isnan(value) ? missing : value;
 }
 
 double eo_verify_element(const json_t *object, const char *key, int index)

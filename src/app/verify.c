@@ -62,9 +62,9 @@ static enum eo_code verify_file(const char *path, struct eo_verification *v, str
 /* How far out, in tolerances; what should be exact counts as far out as it can. */
 static double severity(const struct eo_check *check)
 {
-  double deviation = fabs(check->value - check->expected);
+  double deviation = check->value == check->expected ? 0 : fabs(check->value - check->expected);
   if (isnan(deviation))
-    return check->pass ? 0 : INFINITY;
+    return INFINITY;
   return check->tolerance > 0 ? deviation / check->tolerance : (deviation > 0 ? INFINITY : 0);
 }
 

@@ -162,6 +162,18 @@ void eo_contact_grid_free(struct eo_contact_grid *grid)
   free(grid);
 }
 
+void eo_contact_grid_pairs(const struct eo_contact_grid *grid, int range[2])
+{
+  range[0] = 0;
+  range[1] = 0;
+  for (int j = 0; j < grid->positions; j++)
+    for (int l = 0; l < grid->position[j].lines; l++) {
+      int pair = grid->position[j].line[l].pair;
+      range[0] = pair < range[0] ? pair : range[0];
+      range[1] = pair > range[1] ? pair : range[1];
+    }
+}
+
 static enum eo_code fill_grid(struct eo_contact_grid *grid, const struct eo_material *material,
                               const struct eo_contact_grid_settings *settings, const double *phase, struct eo_kernel kernel,
                               const struct eo_progress *progress, struct eo_error *error)

@@ -34,6 +34,11 @@ json_t *eo_json_real(double value, const struct eo_unit *unit);
 /* digits: significant digits kept, for curves that people and pages read; 0 keeps all. stride: between values. */
 json_t *eo_json_reals(int count, const double *value, int stride, const struct eo_unit *unit, int digits);
 
+/* What stands at a path of keys, "lte/pair_um": borrowed; NULL when it is not there. */
+const json_t *eo_json_find(const json_t *value, const char *path);
+/* The number there; NaN when there is none. */
+double eo_json_find_number(const json_t *value, const char *path);
+
 /* Sets object[key] and takes the value over; a NULL value or a failed insertion sets *failed (may be set before). */
 void eo_json_put(json_t *object, const char *key, json_t *value, bool *failed);
 

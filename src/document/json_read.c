@@ -1,3 +1,4 @@
+#include <math.h>
 #include <string.h>
 
 #include "document/json.h"
@@ -65,4 +66,20 @@ json_t *eo_json_load(const char *path, size_t limit, struct eo_error *error)
   json_t *value = eo_json_parse(text.data ? text.data : "", text.size, error);
   eo_text_done(&text);
   return value;
+}
+
+const json_t *eo_json_find(const json_t *value, const char *path)
+{
+  while (value && *path) {
+    size_t length = strcspn(path, "/");
+    value = json_object_getn(value, path, length);
+    path += length + (path[length] == '/');
+  }
+  return value;
+}
+
+double eo_json_find_number(const json_t *value, const char *path)
+{
+  const json_t *found = eo_json_find(value, path);
+  return json_is_number(found) ? json_number_value(found) : NAN;
 }

@@ -19,9 +19,14 @@ struct eo_evaluator {
   struct eo_loaded_end spare[2];           /* [end]: for the compliance band */
   struct eo_loaded_end *table;             /* [TABLE_LOADS] of the table law, one end at a time; NULL until asked for */
   double *table_rows;                      /* [TABLE_LOADS][positions] */
+  struct eo_root_workspace *root;          /* NULL until asked for */
   struct eo_vibration_solver *vibration;
   int vibration_harmonics;
   struct eo_law (*law)[2];                 /* [most_cases][end] */
+  struct vibration_problem {
+    struct eo_dynamics_parameters parameters;
+    struct eo_vibration_case load;
+  } *problem;                              /* [most_cases], as last solved */
   struct eo_evaluation result;
 };
 
@@ -70,7 +75,7 @@ static void load_end(struct eo_evaluator *e, const struct eo_design *design, int
     r->load_case[k].end[end].loaded.failures = loaded[k].failures;
 }
 
-static int stagger_positions(const struct eo_design *design, int positions)
+int eo_evaluator_stagger(const struct eo_design *design, int positions)
 {
   return (int)lround(design->alignment.stagger * positions) % positions;
 }
@@ -120,7 +125,7 @@ static enum eo_code fit_bodies(struct eo_evaluator *e, const struct eo_shafts *s
 static void bend_bodies(struct eo_evaluator *e, const struct eo_design *design, double force, double factor, struct eo_loaded_end both[2],
                         struct eo_elastic_report *report)
 {
-  struct eo_elastic_case load = {force, factor, axial_stiffness(&design->alignment), stagger_positions(design, e->pair->grid->positions)};
+  struct eo_elastic_case load = {force, factor, axial_stiffness(&design->alignment), eo_evaluator_stagger(design, e->pair->grid->positions)};
   eo_elastic_solve(e->bodies, e->contact, e->gaps, &load, both, report);
   both[EO_LEFT].failures += report->failures;
 }
@@ -159,7 +164,7 @@ static void solve_contact(struct eo_evaluator *e, const struct eo_design *design
         copy_end(grid, &r->load_case[k].end[end].loaded, &r->load_case[k].end[EO_LEFT].loaded);
     else
       load_end(e, design, end, factor);
-  int stagger = stagger_positions(design, grid->positions);
+  int stagger = eo_evaluator_stagger(design, grid->positions);
   if (e->bodies)
     bend_cases(e, design, factor);
   else if (r->ends == 2 && stiffness > 0 && !(r->equal_ends && stagger == 0))
@@ -204,7 +209,7 @@ static void summarise_end(struct eo_evaluator *e, struct eo_case_result *c, int 
 /* LTE of the pair: the mean of the ends, the right one behind by the stagger. */
 static void summarise_pair(struct eo_evaluator *e, const struct eo_design *design, struct eo_case_result *c)
 {
-  int n = e->pair->grid->positions, stagger = stagger_positions(design, n), last = e->result.ends - 1;
+  int n = e->pair->grid->positions, stagger = eo_evaluator_stagger(design, n), last = e->result.ends - 1;
   double low = INFINITY, high = -INFINITY, normal = cos(e->pair->geometry.base_helix_angle);
   c->mean = 0;
   for (int j = 0; j < n; j++) {
@@ -250,7 +255,7 @@ static const struct eo_loaded_gaps *gaps_of(struct eo_evaluator *e, const struct
   if (!e->bodies)
     return &e->gaps[kept_at(e, end)];
   const struct eo_loaded_end both[2] = {c->end[EO_LEFT].loaded, c->end[EO_RIGHT].loaded};
-  eo_elastic_gaps(e->bodies, e->gaps, stagger_positions(design, e->pair->grid->positions), both, end, e->bent.gap);
+  eo_elastic_gaps(e->bodies, e->gaps, eo_evaluator_stagger(design, e->pair->grid->positions), both, end, e->bent.gap);
   return &e->bent;
 }
 
@@ -296,15 +301,14 @@ static enum eo_code set_law(struct eo_evaluator *e, const struct eo_design *desi
   return eo_law_set_tangent(law, n, loaded->approach, loaded->tangent, c->force, order, back, error);
 }
 
-static void set_pulses(const struct eo_evaluator *e, const struct eo_case_result *c, double speed, struct eo_vibration_case *load)
+void eo_evaluator_pulses(const struct eo_pair *pair, const struct eo_impact *impact, double speed, struct eo_pulse *pulse)
 {
-  double period = 2 * M_PI / (speed * e->pair->geometry.teeth[EO_PINION]);
-  for (int end = 0; end < e->result.ends; end++) {
-    const struct eo_impact *impact = &c->end[end].impact;
-    load->pulse[end] = (struct eo_pulse){.shape = EO_PULSE_NONE};
-    if (impact->touched && impact->force > 0)
-      load->pulse[end] = (struct eo_pulse){.shape = EO_PULSE_HALF_SINE, .amplitude = impact->force, .start = impact->start,
-        .duration = fmin(1, impact->duration / period)};
+  double period = 2 * M_PI / (speed * pair->geometry.teeth[EO_PINION]);
+  for (int end = 0; end < pair->gear_pair.ends; end++) {
+    pulse[end] = (struct eo_pulse){.shape = EO_PULSE_NONE};
+    if (impact[end].touched && impact[end].force > 0)
+      pulse[end] = (struct eo_pulse){.shape = EO_PULSE_HALF_SINE, .amplitude = impact[end].force, .start = impact[end].start,
+        .duration = fmin(1, impact[end].duration / period)};
   }
 }
 
@@ -328,8 +332,9 @@ static enum eo_code vibrate(struct eo_evaluator *e, const struct eo_design *desi
     load.law[end] = &e->law[k][end];
     code = set_law(e, design, &e->law[k][end], c, end, loaded[end], factor, error);
   }
-  if (!code && load.impact != EO_IMPACT_NONE)
-    set_pulses(e, c, load.speed, &load);
+  if (load.impact != EO_IMPACT_NONE)
+    eo_evaluator_pulses(e->pair, (struct eo_impact[2]){c->end[0].impact, c->end[1].impact}, load.speed, load.pulse);
+  e->problem[k] = (struct vibration_problem){parameters, load};
   if (!code)
     code = design->resolution.solver == EO_SOLVER_TIME_INTEGRATION
                ? eo_vibration_integrate(e->vibration, &load, NULL, vibration, NULL, error)
@@ -382,22 +387,29 @@ static enum eo_code find_band(struct eo_evaluator *e, const struct eo_design *de
       if (e->bodies)
         bend_bodies(e, design, c->force, scaled, e->spare, &(struct eo_elastic_report){0});
       code = vibrate(e, design, k, speed_factor, scaled, loaded, &vibration, error);
-      c->band[side] = code || vibration.outcome == EO_VIBRATION_NOT_CONVERGED ? NAN : vibration.rms_pair[EO_READING_NORMAL];
+      for (int reading = 0; reading < EO_READINGS; reading++)
+        c->band[reading][side] = code || vibration.outcome == EO_VIBRATION_NOT_CONVERGED ? NAN : vibration.rms_pair[reading];
     }
   return code;
 }
 
 /* ---- the order ---- */
 
-static void find_root_stress(struct eo_evaluator *e)
+static enum eo_code find_root_stress(struct eo_evaluator *e, struct eo_error *error)
 {
   enum { STEP = 2 };
   struct eo_evaluation *r = &e->result;
-  for (int k = 0; k < r->cases && e->pair->flexibility; k++)
+  const struct eo_pair *pair = e->pair;
+  const struct eo_root_modes *const modes[2] = {pair->root[0], pair->root[1]};
+  enum eo_code code = e->root ? EO_OK : eo_root_workspace_new(&e->root, pair->grid, modes, error);
+  for (int k = 0; k < r->cases && !code; k++)
     for (int end = 0; end < r->ends; end++)
-      for (int member = 0; member < 2; member++)
-        eo_root_history_compute(&r->load_case[k].end[end].root[member], e->pair->flexibility, member, e->pair->grid,
+      for (int member = 0; member < 2; member++) {
+        struct eo_root root = eo_flexibility_root(pair->flexibility, member);
+        eo_root_history_compute(&r->load_case[k].end[end].root[member], e->root, &root, modes[member], pair->grid,
                                 &r->load_case[k].end[end].loaded, STEP);
+      }
+  return code;
 }
 
 static void collect_objectives(struct eo_evaluation *r, bool root)
@@ -440,7 +452,8 @@ static void set_cases(struct eo_evaluator *e, const struct eo_design *design)
     r->load_case[k].load_case = design->load_case[k];
     r->load_case[k].force = design->load_case[k].torque /
                             (r->ends * e->pair->geometry.base_radius[EO_PINION] * cos(e->pair->geometry.base_helix_angle));
-    r->load_case[k].band[0] = r->load_case[k].band[1] = NAN;
+    for (int reading = 0; reading < EO_READINGS; reading++)
+      r->load_case[k].band[reading][0] = r->load_case[k].band[reading][1] = NAN;
     r->load_case[k].body_iterations = 0;
     for (int end = 0; end < 2; end++) {
       r->load_case[k].end[end].deflection = (struct eo_deflection){0};
@@ -511,9 +524,10 @@ enum eo_code eo_evaluator_run(struct eo_evaluator *e, const struct eo_design *de
     return code;
   double impact = milliseconds();
   if (root)
-    find_root_stress(e);
+    code = find_root_stress(e, error);
   double rooted = milliseconds();
-  code = solve_dynamics(e, design, s->speed, s->compliance, want, error);
+  if (!code)
+    code = solve_dynamics(e, design, s->speed, s->compliance, want, error);
   if (!code && want & EO_WANT_CURVES)
     code = find_modes(e, error);
   r->dynamics_ms = milliseconds() - rooted;
@@ -527,9 +541,16 @@ enum eo_code eo_evaluator_run(struct eo_evaluator *e, const struct eo_design *de
   return EO_OK;
 }
 
-const struct eo_law *eo_evaluator_law(const struct eo_evaluator *e, int load_case, int end)
+void eo_evaluator_vibration(const struct eo_evaluator *e, int load_case, struct eo_dynamics_parameters *parameters,
+                            struct eo_vibration_case *load)
 {
-  return &e->law[load_case][end];
+  *parameters = e->problem[load_case].parameters;
+  *load = e->problem[load_case].load;
+}
+
+const struct eo_gap_field *eo_evaluator_field(const struct eo_evaluator *e, int end)
+{
+  return &e->field[kept_at(e, end)];
 }
 
 /* ---- fitness ---- */
@@ -629,7 +650,8 @@ static enum eo_code init_storage(struct eo_evaluator *e, struct eo_error *error)
   r->load_case = calloc(most, sizeof *r->load_case);
   r->objective = calloc(most, sizeof *r->objective);
   e->law = calloc(most, sizeof *e->law);
-  if (!r->load_case || !r->objective || !e->law)
+  e->problem = calloc(most, sizeof *e->problem);
+  if (!r->load_case || !r->objective || !e->law || !e->problem)
     return eo_error_memory(error);
   for (int k = 0; k < e->most_cases && !code; k++) {
     r->load_case[k].transmission = calloc((size_t)grid->positions, sizeof(double));
@@ -682,10 +704,12 @@ void eo_evaluator_free(struct eo_evaluator *e)
   free(e->table);
   free(e->table_rows);
   eo_loaded_workspace_free(e->contact);
+  eo_root_workspace_free(e->root);
   eo_elastic_free(e->bodies);
   eo_loaded_gaps_done(&e->bent);
   eo_vibration_free(e->vibration);
   free(e->law);
+  free(e->problem);
   free(r->load_case);
   free(r->objective);
   free(e);

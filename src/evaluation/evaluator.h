@@ -42,7 +42,7 @@ struct eo_case_result {
   double peak_to_peak, mean;   /* of it, m */
   double dynamic_force_factor; /* largest dynamic over static mesh force */
   struct eo_vibration vibration;
-  double band[2];              /* pair's normal RMS at 0.9 and 1.1 times the compliance; NaN unless asked for */
+  double band[EO_READINGS][2]; /* pair's RMS at 0.9 and 1.1 times the compliance; NaN unless asked for */
   int contact_failures;        /* positions whose loaded contact did not converge */
   int body_iterations;         /* the most that elastic bodies took at one position; 0: rigid */
 };
@@ -79,7 +79,18 @@ enum eo_code eo_evaluator_raw(struct eo_evaluator *evaluator, const struct eo_de
 void eo_evaluator_combine(const struct eo_design *design, const struct eo_geometry *geometry, const struct eo_objective_case *raw,
                           const struct eo_objective_case *unmodified, struct eo_objective_value *value);
 
-/* The mesh law of an end in the last evaluation, for sweeps: borrowed, valid until the next run. */
-const struct eo_law *eo_evaluator_law(const struct eo_evaluator *evaluator, int load_case, int end);
+/* The vibration problem of a load case as the last evaluation (without a compliance band) solved it, for sweeps over speed. The
+   laws in load are borrowed, valid until the next run. */
+void eo_evaluator_vibration(const struct eo_evaluator *evaluator, int load_case, struct eo_dynamics_parameters *parameters,
+                            struct eo_vibration_case *load);
+
+/* Impacts of one load case as pulses of the equations of motion. impact[2], pulse[2]: [end]; speed: of the pinion, rad/s. */
+void eo_evaluator_pulses(const struct eo_pair *pair, const struct eo_impact *impact, double speed, struct eo_pulse *pulse);
+
+/* The gap field of an end in the last evaluation: borrowed, valid until the next run. */
+const struct eo_gap_field *eo_evaluator_field(const struct eo_evaluator *evaluator, int end);
+
+/* Positions by which the right end lags behind the left one. */
+int eo_evaluator_stagger(const struct eo_design *design, int positions);
 
 #endif

@@ -145,7 +145,7 @@ struct eo_optimization {
   int batch, initial_factor, model_rows, children;
   double exploration, credibility_length, taboo_radius;
   int stall_batches;
-  double stall_gain, polish_share, local_share;
+  double stall_gain, polish_share, local_share, local_radius;
   int front_population, front_verified, front_rounds;
   uint64_t seed;
 };
