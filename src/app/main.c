@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include "app/app.h"
+#include "numerics/threads.h"
 
 static const struct eo_command *const commands[] = {&eo_command_analyze, &eo_command_example, &eo_command_stage, &eo_command_sweep, &eo_command_verify};
 enum { COMMANDS = sizeof commands / sizeof commands[0] };
@@ -26,6 +27,7 @@ static int print_version(void)
 
 int main(int argc, char **argv)
 {
+  eo_threads_limit();
   const char *name = argc > 1 ? argv[1] : "";
   for (int i = 0; i < COMMANDS; i++)
     if (strcmp(name, commands[i]->name) == 0)

@@ -57,7 +57,8 @@ void eo_corner_gap_init(struct eo_corner_gap corner[2], const struct eo_geometry
   }
 }
 
-/* Corner gap of the unmodified pair, plus what relief takes off the flank there and off the tip; *place: s on the flank. */
+/* Corner gap of the unmodified pair, plus what relief takes off the flank there and off the tip; *place: s on the flank; *slope: by s,
+   with that of the misalignment gap at the place. */
 static double corner_value(const struct eo_gap_field *field, int tip, double s, double *slope, double *place)
 {
   const struct eo_corner_gap *table = &field->corner[tip == EO_GEAR ? 0 : 1];
@@ -69,8 +70,9 @@ static double corner_value(const struct eo_gap_field *field, int tip, double s, 
   rate = (difference + (r - t) * (a * r + b * t) + t * r * (b - a)) / h;
   *place = table->path[i] * r + table->path[i + 1] * t;
   double gap = table->gap[i] * r + table->gap[i + 1] * t + t * r * (a * r + b * t);
-  gap += eo_slice_gap_at(&field->alone[1 - tip], *place, &side) + eo_slice_gap_at(&field->alone[tip], end, NULL);
-  *slope = (tip == EO_GEAR ? -rate : rate) + side * (table->path[i + 1] - table->path[i]) / h * (tip == EO_GEAR ? -1 : 1);
+  gap += eo_slice_gap_at(&field->alone[1 - tip], *place, &side) + field->tip_gap[tip];
+  double travel = (table->path[i + 1] - table->path[i]) / h; /* of the place, by the distance */
+  *slope = (rate + (side + field->misalignment * field->lean) * travel) * (tip == EO_GEAR ? -1 : 1);
   return gap;
 }
 
@@ -101,12 +103,19 @@ void eo_gap_field_init(struct eo_gap_field *field, const struct eo_geometry *g, 
   field->stretch = 1 / cos(g->helix_angle);
   eo_modification_init(&field->shape[EO_PINION], g, EO_PINION, pinion);
   eo_modification_init(&field->shape[EO_GEAR], g, EO_GEAR, gear);
-  eo_slice_gap_init(&field->slice, g, field->shape);
   static const struct eo_modification_shape none = {0};
   for (int member = 0; member < 2; member++) {
     struct eo_modification_shape alone[2] = {none, none};
     alone[member] = field->shape[member];
     eo_slice_gap_init(&field->alone[member], g, alone);
+  }
+  if (field->alone[EO_PINION].nodes > 0 && field->alone[EO_GEAR].nodes > 0)
+    eo_slice_gap_init(&field->slice, g, field->shape);
+  else
+    field->slice = field->alone[field->alone[EO_PINION].nodes > 0 ? EO_PINION : EO_GEAR];
+  for (int tip = 0; tip < 2; tip++) {
+    double at = tip == EO_GEAR ? g->path_start : g->path_end;
+    field->tip_gap[tip] = eo_slice_gap_at(&field->slice, at, NULL) - eo_slice_gap_at(&field->alone[1 - tip], at, NULL);
   }
   /* physics: D = end cos(beta_b) (gamma cos(alpha_t) - kappa sin(alpha_t)) (eta + s tan(beta_b)) */
   field->misalignment = sign * cos(g->base_helix_angle) *
@@ -125,6 +134,7 @@ double eo_gap_field_at(const struct eo_gap_field *field, double s, double eta, d
     gap = corner_value(field, tip, s, &rate, &place);
   } else {
     gap = eo_slice_gap_at(&field->slice, s, &rate);
+    rate += field->misalignment * tangent;
   }
   if (path) {
     path[EO_PINION] = tip == EO_PINION ? g->path_end : place;
@@ -135,7 +145,7 @@ double eo_gap_field_at(const struct eo_gap_field *field, double s, double eta, d
     deflection_parts(field->deflection, g->face_width, eta, body);
   gap += field->misalignment * (eta + place * tangent) + field->misalignment_offset + body[0] + place * body[1];
   if (slope)
-    *slope = rate + (tip < 0 ? field->misalignment * tangent + body[1] : 0);
+    *slope = rate + (tip < 0 ? body[1] : 0);
   return gap;
 }
 

@@ -31,6 +31,7 @@ struct eo_gap_field {
   struct eo_modification_shape shape[2];  /* [member] */
   const struct eo_corner_gap *corner;     /* [2], borrowed */
   struct eo_slice_gap slice, alone[2];    /* of both members together, and of each one's relief alone [member] */
+  double tip_gap[2];                      /* [member]: what relief takes off its tip corner, m: no step where the path ends */
   double lean, stretch;                   /* tan(beta_b); 1/cos(beta), from eta to x */
   double misalignment;                    /* slope of the misalignment gap along eta + s tan(beta_b) */
   double misalignment_offset;             /* its constant, m (removed by axial float) */

@@ -1,6 +1,6 @@
 #include "evaluation/pair.h"
 
-#include "numerics/blas.h"
+#include "numerics/threads.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -37,7 +37,7 @@ enum eo_code eo_pair_new(struct eo_pair **result, const struct eo_design *design
                          const struct eo_progress *progress, struct eo_error *error)
 {
   double start = seconds();
-  eo_blas_single_thread();
+  eo_threads_limit();
   struct eo_pair *pair = calloc(1, sizeof *pair);
   if (!pair)
     return eo_error_memory(error);
