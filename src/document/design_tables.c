@@ -31,7 +31,7 @@ static const struct eo_field scenario[] = {
     EO_NUMBER(struct eo_scenario, compliance, "compliance_factor", NULL, 0.1, 10, 1, "on the flexibility of the teeth"),
     EO_NUMBER(struct eo_scenario, speed, "speed_factor", NULL, 0.01, 100, 1, "on the speed of every load case"),
 };
-static const struct eo_table scenario_table = EO_TABLE("a scenario", struct eo_scenario, scenario);
+const struct eo_table eo_scenario_table = EO_TABLE("a scenario", struct eo_scenario, scenario);
 
 static const struct eo_field objective[] = {
     EO_NUMBERS(struct eo_objective, weight, "weights", 3, NULL, 0, 1e6, 0, NUMBERS(0.4, 0.15, 0.45), NULL,
@@ -41,7 +41,7 @@ static const struct eo_field objective[] = {
     EO_NUMBER(struct eo_objective, penalty, "penalty", NULL, 0, 1e9, 10, "factor on the relative excess over each limit"),
     EO_CHOICE(struct eo_objective, robust, "robust", robust, EO_ROBUST_OFF, "objective over the scenarios: their mean, the worst, or the nominal one alone"),
     {.key = "scenarios", .kind = EO_FIELD_LIST, .offset = offsetof(struct eo_objective, scenario), .low = 0, .high = EO_MAX_SCENARIOS, .count = EO_MAX_SCENARIOS,
-     .count_offset = offsetof(struct eo_objective, scenarios), .table = &scenario_table,
+     .count_offset = offsetof(struct eo_objective, scenarios), .table = &eo_scenario_table,
      .derived = "nominal; shaft error +-20 % (at least 0.01 deg); compliance +-10 %; speed +-5 %, when robust is not off",
      .help = "alignments, compliances and speeds around the nominal ones"},
 };
@@ -114,6 +114,7 @@ static const struct eo_field optimization[] = {
     PARAMETER(stall_gain, 0, 1, 0.002, "gain that counts, relative (credibility-ga)"),
     PARAMETER(polish_share, 0, 1, 0.2, "share of the budget that only improves the best (credibility-ga)"),
     PARAMETER(local_share, 0, 1, 0.375, "share of each batch for the trust region round the best (credibility-ga)"),
+    PARAMETER(local_radius, 1e-6, 0.5, 0.1, "radius of that trust region at the start of an epoch (credibility-ga)"),
     COUNT(front_population, 4, 1000, 48, "individuals of a generation (nsga2)"),
     COUNT(front_verified, 1, 1000, 12, "true evaluations per cycle (nsga2)"),
     COUNT(front_rounds, 1, 1000, 20, "generations on the surrogates per cycle (nsga2)"),

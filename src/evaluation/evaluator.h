@@ -3,6 +3,7 @@
 #ifndef EASEOFF_EVALUATION_EVALUATOR_H
 #define EASEOFF_EVALUATION_EVALUATOR_H
 
+#include "contact/elastic.h"
 #include "contact/loaded.h"
 #include "dynamics/vibration.h"
 #include "evaluation/pair.h"
@@ -22,6 +23,7 @@ struct eo_end_result {
   double *unloaded;            /* [positions] Z0, m, normal */
   double *stiffness;           /* [positions] P / (Z - Z0), N/m, normal */
   double datum;                /* smallest gap anywhere on the flank, m */
+  struct eo_deflection deflection; /* of elastic bodies, mean over the mesh cycle; unloaded and datum are measured from it. 0: rigid */
   struct eo_impact impact;
   double max_pressure;         /* Pa */
   double max_line_load;        /* N/m */
@@ -42,6 +44,7 @@ struct eo_case_result {
   struct eo_vibration vibration;
   double band[EO_READINGS][2]; /* pair's RMS at 0.9 and 1.1 times the compliance; NaN unless asked for */
   int contact_failures;        /* positions whose loaded contact did not converge */
+  int body_iterations;         /* the most that elastic bodies took at one position; 0: rigid */
 };
 
 struct eo_evaluation {

@@ -27,8 +27,10 @@ static enum eo_code prepare(struct eo_pair *pair, const struct eo_pair_options *
     if (code)
       return code;
     pair->kernel = eo_flexibility_kernel(pair->flexibility);
+    for (int member = 0; member < 2 && !code; member++)
+      code = eo_root_modes_new(&pair->root[member], pair->flexibility, member, error);
   }
-  return eo_contact_grid_new(&pair->grid, &pair->geometry, &pair->material, &grid, options->phase, pair->kernel, progress, error);
+  return code ? code : eo_contact_grid_new(&pair->grid, &pair->geometry, &pair->material, &grid, options->phase, pair->kernel, progress, error);
 }
 
 enum eo_code eo_pair_new(struct eo_pair **result, const struct eo_design *design, const struct eo_pair_options *options,
@@ -63,6 +65,8 @@ void eo_pair_free(struct eo_pair *pair)
   if (!pair)
     return;
   eo_contact_grid_free(pair->grid);
+  for (int member = 0; member < 2; member++)
+    eo_root_modes_free(pair->root[member]);
   eo_flexibility_free(pair->flexibility);
   free(pair);
 }

@@ -29,6 +29,13 @@ void eo_surface_evaluate(const struct eo_geometry *g, int member, const struct e
   point->normal[2] = n[2] / length;
 }
 
+void eo_surface_coordinates(const struct eo_geometry *g, int member, double s, double eta, double *u, double *v)
+{
+  *u = g->rack_factor * eo_geometry_own_path(member, s);
+  double rack = *u + g->rack_offset[member];
+  *v = ((member == EO_PINION ? eta : -eta) - rack * sin(g->normal_pressure_angle) * sin(g->helix_angle)) / cos(g->helix_angle);
+}
+
 /* What a slice's flank shows to its partner: the arm of its normal about its own axis, the distance along the normal from the foot
    of that arm, and the direction angle it has when the tooth stands at roll 0. */
 struct ray {

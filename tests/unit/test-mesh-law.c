@@ -71,6 +71,11 @@ static void table(void)
   near(at(&law, 0, 5e-5 + 2 * z[16] - z[8]).force, 5000, 1e-9, "linear beyond the last load");
   ok(at(&law, 0, 5e-5 + 0.9 * z[0]).force == 0, "nothing below the first");
   check_slope(&law, 0.3, 5.3e-5, "slope");
+  ok(at(&law, 0, -1).force == 0, "without back flanks nothing ever pushes back");
+  ok(!eo_law_set_back(&law, -5e-5, 1e9, NULL), "back flanks are set");
+  near(at(&law, 0, -5.2e-5).force, -2000, 1e-9, "and push");
+  ok(at(&law, 0, -4.9e-5).force == 0 && at(&law, 0, -4.9e-5).margin_slope == -1, "once they are reached");
+  ok(eo_law_set_back(&law, 6e-5, 1e9, NULL) == EO_ERROR_INPUT, "but not before the front flanks");
   const double row[3] = {1e-7, 2e-6, 5e-6};
   near(eo_law_force(&law, row, eo_law_deflection(&law, row, 4000), 0).force, 4000, 1e-12, "deflection inverts force");
   eo_law_done(&law);

@@ -70,7 +70,7 @@ static const struct eo_nonlinear_options usual = {.residual_tolerance = 1e-12, .
 static struct eo_nonlinear_report solve(int n, eo_nonlinear_residual *residual, double *x)
 {
   struct eo_nonlinear *w = NULL;
-  struct eo_nonlinear_report report;
+  struct eo_nonlinear_report report = {0};
   struct eo_nonlinear_problem problem = {residual, NULL, NULL};
   int failed = eo_nonlinear_new(&w, n, NULL) || eo_nonlinear_solve(w, &problem, &usual, x, &report, NULL);
   ok(!failed, "workspace and options of %d unknowns are accepted", n);

@@ -19,17 +19,17 @@ static void parameters(void)
     double value;
     const char *pointer;
   } bad[] = {
-      {offsetof(struct eo_dynamics_parameters, mass[0]), 0, "/supports/pinion_mass"},
-      {offsetof(struct eo_dynamics_parameters, mass[1]), -1, "/supports/gear_mass"},
-      {offsetof(struct eo_dynamics_parameters, inertia[0]), NAN, "/supports/pinion_inertia"},
-      {offsetof(struct eo_dynamics_parameters, bearing_stiffness[0]), 0, "/supports/pinion_bearing_stiffness"},
-      {offsetof(struct eo_dynamics_parameters, bearing_stiffness[1]), -1e9, "/supports/gear_bearing_stiffness"},
-      {offsetof(struct eo_dynamics_parameters, bearing_damping[1]), -1, "/supports/gear_bearing_damping"},
-      {offsetof(struct eo_dynamics_parameters, gear_axial_stiffness[1]), INFINITY, "/supports/gear_axial_stiffness_right"},
-      {offsetof(struct eo_dynamics_parameters, groove_axial_stiffness[0]), 0, "/supports/pinion_groove_axial_stiffness"},
-      {offsetof(struct eo_dynamics_parameters, groove_torsional_stiffness[1]), -1, "/supports/gear_groove_torsional_stiffness"},
-      {offsetof(struct eo_dynamics_parameters, groove_torsional_damping[0]), 1, "/supports/pinion_groove_torsional_stiffness"},
-      {offsetof(struct eo_dynamics_parameters, mesh_damping), -1, "/supports/mesh_damping"},
+      {offsetof(struct eo_dynamics_parameters, mass[0]), 0, "/supports/pinion_mass_kg"},
+      {offsetof(struct eo_dynamics_parameters, mass[1]), -1, "/supports/gear_mass_kg"},
+      {offsetof(struct eo_dynamics_parameters, inertia[0]), NAN, "/supports/pinion_inertia_kg_m2"},
+      {offsetof(struct eo_dynamics_parameters, bearing_stiffness[0]), 0, "/supports/pinion_bearing_stiffness_N_per_um"},
+      {offsetof(struct eo_dynamics_parameters, bearing_stiffness[1]), -1e9, "/supports/gear_bearing_stiffness_N_per_um"},
+      {offsetof(struct eo_dynamics_parameters, bearing_damping[1]), -1, "/supports/bearing_damping_ratio"},
+      {offsetof(struct eo_dynamics_parameters, gear_axial_stiffness[1]), INFINITY, "/supports/gear_axial_stiffness_right_N_per_um"},
+      {offsetof(struct eo_dynamics_parameters, groove_axial_stiffness[0]), 0, "/supports/pinion_groove_axial_stiffness_N_per_um"},
+      {offsetof(struct eo_dynamics_parameters, groove_torsional_stiffness[1]), -1, "/supports/gear_groove_torsional_stiffness_Nm_per_rad"},
+      {offsetof(struct eo_dynamics_parameters, groove_torsional_damping[0]), 1, "/supports/pinion_groove_torsional_stiffness_Nm_per_rad"},
+      {offsetof(struct eo_dynamics_parameters, mesh_damping), -1, "/supports/mesh_damping_ratio"},
       {offsetof(struct eo_dynamics_parameters, base_radius[1]), 0, "/gear_pair"},
   };
   for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
@@ -123,6 +123,30 @@ static void undamped_resonance(void)
   eo_law_done(&law);
 }
 
+/* A spur gear's axial motion is felt by no mesh; undamped and exactly at its resonance it must not stop anything. */
+static void unfelt_resonance(void)
+{
+  struct eo_dynamics_parameters p = paper_pair();
+  struct eo_vibration_solver *solver = NULL;
+  struct eo_law law = {0};
+  struct eo_vibration r;
+  p.ends = 1;
+  p.base_helix_angle = 0;
+  scale_damping(&p, 0);
+  p.mass[0] = p.mass[1] = 4;
+  p.groove_axial_stiffness[0] = p.gear_axial_stiffness[0] = 4 * 1024.0 * 1024.0;
+  stiffness_law(&law, 1);
+  eo_vibration_new(&solver, 8, 0, NULL);
+  eo_vibration_set_model(solver, &p, NULL);
+  struct eo_vibration_case load = paper_case(&law, NULL);
+  load.pinion_teeth = 16;
+  load.speed = 64;
+  ok(!eo_vibration_solve(solver, &load, EO_START_COLD, &r, NULL) && r.outcome == EO_VIBRATION_CONVERGED && all_finite(&r),
+     "a resonance that no mesh feels does no harm");
+  eo_vibration_free(solver);
+  eo_law_done(&law);
+}
+
 static void single_freedom(void)
 {
   struct eo_error error = {0};
@@ -142,6 +166,7 @@ int main(void)
   parameters();
   cases();
   undamped_resonance();
+  unfelt_resonance();
   single_freedom();
   return tap_done();
 }
