@@ -130,11 +130,11 @@ static void bend_bodies(struct eo_evaluator *e, const struct eo_design *design, 
   both[EO_LEFT].failures += report->failures;
 }
 
-/* The gap field of an end as the bodies of a load case hold it. */
+/* The gap field of an end as the bodies of a load case hold it; on rigid ones with c NULL. */
 static const struct eo_gap_field *field_of(struct eo_evaluator *e, const struct eo_case_result *c, int end)
 {
   struct eo_gap_field *field = &e->field[kept_at(e, end)];
-  field->deflection = e->bodies ? &c->end[end].deflection : NULL;
+  field->deflection = c && e->bodies ? &c->end[end].deflection : NULL;
   return field;
 }
 
@@ -183,12 +183,14 @@ static void summarise_end(struct eo_evaluator *e, struct eo_case_result *c, int 
   const struct eo_contact_grid *grid = e->pair->grid;
   struct eo_end_result *r = &c->end[end];
   double low = INFINITY, high = -INFINITY;
-  if (e->bodies)
-    eo_loaded_first_contact(grid, field_of(e, c, end), r->unloaded);
-  else
-    memcpy(r->unloaded, e->gaps[kept_at(e, end)].unloaded, sizeof *r->unloaded * (size_t)grid->positions);
+  const double *first_contact = e->bodies ? e->bent.unloaded : r->unloaded;
+  memcpy(r->unloaded, e->gaps[kept_at(e, end)].unloaded, sizeof *r->unloaded * (size_t)grid->positions);
   r->max_pressure = r->max_line_load = r->edge_share = 0;
-  r->datum = eo_gap_field_datum(field_of(e, c, end));
+  r->datum = r->loaded_datum = eo_gap_field_datum(field_of(e, NULL, end));
+  if (e->bodies) {
+    r->loaded_datum = eo_gap_field_datum(field_of(e, c, end));
+    eo_loaded_first_contact(grid, field_of(e, c, end), e->bent.unloaded);
+  }
   for (int j = 0; j < grid->positions; j++) {
     const struct eo_contact_position *p = &grid->position[j];
     double edge = 0;
@@ -199,7 +201,7 @@ static void summarise_end(struct eo_evaluator *e, struct eo_case_result *c, int 
       edge += p->kind[i] == EO_POINT_LINE ? 0 : q * p->length[i];
     }
     r->edge_share = fmax(r->edge_share, edge / r->loaded.load[j]);
-    r->stiffness[j] = r->loaded.load[j] / (r->loaded.approach[j] - r->unloaded[j]);
+    r->stiffness[j] = r->loaded.load[j] / (r->loaded.approach[j] - first_contact[j]);
     low = fmin(low, r->loaded.approach[j]);
     high = fmax(high, r->loaded.approach[j]);
   }
@@ -237,6 +239,8 @@ static void find_impacts(struct eo_evaluator *e, double speed_factor, double fac
         eo_impact_find(&c->end[end].impact, e->pair->grid, field_of(e, c, end), e->pair->kernel, &e->pair->impact,
                        c->end[end].loaded.approach, c->load_case.speed * speed_factor, factor);
     }
+  for (int end = 0; end < r->ends; end++)
+    field_of(e, NULL, end);
 }
 
 /* ---- dynamics ---- */
@@ -292,7 +296,7 @@ static enum eo_code set_law(struct eo_evaluator *e, const struct eo_design *desi
   double back = c->end[end].deflection.part[0][EO_DEFLECTION_NODES / 2] - design->gear_pair.backlash;
   switch (resolution->mesh_law) {
   case EO_LAW_SECANT:
-    return eo_law_set_secant(law, n, loaded->approach, c->force, c->end[end].datum, order, back, error);
+    return eo_law_set_secant(law, n, loaded->approach, c->force, c->end[end].loaded_datum, order, back, error);
   case EO_LAW_TABLE:
     return set_table_law(e, design, law, c, end, factor, order, error);
   case EO_LAW_TANGENT:
