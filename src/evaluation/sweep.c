@@ -123,6 +123,8 @@ static void read_point(struct eo_sweep_point *p, const struct eo_vibration *r, b
   bool found = sound && r->outcome != EO_VIBRATION_NOT_CONVERGED;
   p->outcome = sound ? r->outcome : EO_VIBRATION_NOT_CONVERGED;
   p->back_contact = found && r->back_contact;
+  for (int end = 0; end < 2 && !sound; end++)
+    p->impact[end] = NAN;
   for (int reading = 0; reading < EO_READINGS; reading++) {
     p->rms_pair[reading] = found ? r->rms_pair[reading] : NAN;
     p->rms_of_mean[reading] = found ? r->rms_of_mean[reading] : NAN;
@@ -140,17 +142,20 @@ static enum eo_code read_torque(struct eo_sweep_torque *t, const struct eo_evalu
 {
   const struct eo_case_result *c = &r->load_case[0];
   struct eo_dynamics_model model;
-  t->peak_to_peak = c->peak_to_peak;
-  t->mean = c->mean;
+  double known = c->contact_failures ? NAN : 1;
+  t->peak_to_peak = known * c->peak_to_peak;
+  t->mean = known * c->mean;
   t->contact_failures = c->contact_failures;
   for (int end = 0; end < 2; end++) {
     const struct eo_end_result *from = &c->end[end < r->ends ? end : 0];
-    t->stiffness[end] = mean(r->positions, from->stiffness);
-    t->tangent[end] = mean(r->positions, from->loaded.tangent);
-    t->max_pressure[end] = from->max_pressure;
-    t->max_line_load[end] = from->max_line_load;
-    t->edge_share[end] = from->edge_share;
+    t->stiffness[end] = known * mean(r->positions, from->stiffness);
+    t->tangent[end] = known * mean(r->positions, from->loaded.tangent);
+    t->max_pressure[end] = known * from->max_pressure;
+    t->max_line_load[end] = known * from->max_line_load;
+    t->edge_share[end] = known * from->edge_share;
   }
+  if (c->contact_failures)
+    return EO_OK;
   enum eo_code code = eo_dynamics_model_init(&model, parameters, error);
   return code ? code : eo_dynamics_model_modes(&model, t->tangent, &t->modes, error);
 }
@@ -275,7 +280,7 @@ static enum eo_code solve_branch(void *context, int thread, int item, struct eo_
   enum eo_code code = load && followed ? take_model(job, w, problem, error) : eo_error_memory(error);
   for (int j = 0; j < s->speeds && !code; j++)
     load[j] = case_at(job, &job->problem[problem], s->speed[j], point[j].impact);
-  bool follow = !code && separates(job, alone);
+  bool follow = !code && sound && separates(job, alone);
   if (follow)
     code = eo_vibration_follow(w->solver, s->speeds, load, alone, direction == EO_SWEEP_UP ? +1 : -1, followed, error);
   for (int j = 0; j < s->speeds && !code; j++)
