@@ -89,11 +89,11 @@ void eo_evaluator_bend_bodies(struct eo_evaluator *e, const struct eo_design *de
   both[EO_LEFT].failures += report->failures;
 }
 
-/* The gap field of an end as the bodies of a load case hold it. */
+/* The gap field of an end as the bodies of a load case hold it; on rigid ones with c NULL. */
 const struct eo_gap_field *eo_evaluator_field_of(struct eo_evaluator *e, const struct eo_case_result *c, int end)
 {
   struct eo_gap_field *field = &e->field[eo_evaluator_kept_at(e, end)];
-  field->deflection = e->bodies ? &c->end[end].deflection : NULL;
+  field->deflection = c && e->bodies ? &c->end[end].deflection : NULL;
   return field;
 }
 
@@ -142,12 +142,14 @@ void eo_evaluator_summarise_end(struct eo_evaluator *e, struct eo_case_result *c
   const struct eo_contact_grid *grid = e->pair->grid;
   struct eo_end_result *r = &c->end[end];
   double low = INFINITY, high = -INFINITY;
-  if (e->bodies)
-    eo_loaded_first_contact(grid, eo_evaluator_field_of(e, c, end), r->unloaded);
-  else
-    memcpy(r->unloaded, e->gaps[eo_evaluator_kept_at(e, end)].unloaded, sizeof *r->unloaded * (size_t)grid->positions);
+  const double *first_contact = e->bodies ? e->bent.unloaded : r->unloaded;
+  memcpy(r->unloaded, e->gaps[eo_evaluator_kept_at(e, end)].unloaded, sizeof *r->unloaded * (size_t)grid->positions);
   r->max_pressure = r->max_line_load = r->edge_share = 0;
-  r->datum = eo_gap_field_datum(eo_evaluator_field_of(e, c, end));
+  r->datum = r->loaded_datum = eo_gap_field_datum(eo_evaluator_field_of(e, NULL, end));
+  if (e->bodies) {
+    r->loaded_datum = eo_gap_field_datum(eo_evaluator_field_of(e, c, end));
+    eo_loaded_first_contact(grid, eo_evaluator_field_of(e, c, end), e->bent.unloaded);
+  }
   for (int j = 0; j < grid->positions; j++) {
     const struct eo_contact_position *p = &grid->position[j];
     double edge = 0;
@@ -158,7 +160,7 @@ void eo_evaluator_summarise_end(struct eo_evaluator *e, struct eo_case_result *c
       edge += p->kind[i] == EO_POINT_LINE ? 0 : q * p->length[i];
     }
     r->edge_share = fmax(r->edge_share, edge / r->loaded.load[j]);
-    r->stiffness[j] = r->loaded.load[j] / (r->loaded.approach[j] - r->unloaded[j]);
+    r->stiffness[j] = r->loaded.load[j] / (r->loaded.approach[j] - first_contact[j]);
     low = fmin(low, r->loaded.approach[j]);
     high = fmax(high, r->loaded.approach[j]);
   }
@@ -196,4 +198,6 @@ void eo_evaluator_find_impacts(struct eo_evaluator *e, double speed_factor, doub
         eo_impact_find(&c->end[end].impact, e->pair->grid, eo_evaluator_field_of(e, c, end), e->pair->kernel, &e->pair->impact,
                        c->end[end].loaded.approach, c->load_case.speed * speed_factor, factor);
     }
+  for (int end = 0; end < r->ends; end++)
+    eo_evaluator_field_of(e, NULL, end);
 }

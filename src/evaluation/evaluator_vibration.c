@@ -51,7 +51,7 @@ static enum eo_code set_law(struct eo_evaluator *e, const struct eo_design *desi
   double back = c->end[end].deflection.part[0][EO_DEFLECTION_NODES / 2] - design->gear_pair.backlash;
   switch (resolution->mesh_law) {
   case EO_LAW_SECANT:
-    return eo_law_set_secant(law, n, loaded->approach, c->force, c->end[end].datum, order, back, error);
+    return eo_law_set_secant(law, n, loaded->approach, c->force, c->end[end].loaded_datum, order, back, error);
   case EO_LAW_TABLE:
     return set_table_law(e, design, law, c, end, factor, order, error);
   case EO_LAW_TANGENT:
