@@ -6,8 +6,17 @@
 #include "app/app.h"
 #include "document/json.h"
 
-static const struct eo_stage *const stages[] = {&eo_stage_geometry, &eo_stage_hertz, &eo_stage_iso6336};
+static const struct eo_stage *const stages[] = {
+    &eo_stage_geometry, &eo_stage_modification, &eo_stage_surface, &eo_stage_gap,     &eo_stage_tca,       &eo_stage_flexibility, &eo_stage_hertz,
+    &eo_stage_contact,  &eo_stage_impact,       &eo_stage_root_stress, &eo_stage_iso6336, &eo_stage_dynamics,  &eo_stage_sdof,
+    &eo_stage_objective, &eo_stage_evaluation,
+};
 enum { STAGES = sizeof stages / sizeof stages[0] };
+
+const struct eo_stage *eo_stage_at(int index)
+{
+  return index < STAGES ? stages[index] : NULL;
+}
 
 static int list_stages(void)
 {
@@ -67,6 +76,8 @@ static int run_stage(const struct eo_stage *stage, const char *path)
     goto out;
   }
   drop_design_keys(document, stage->input);
+  if (stage->has_design)
+    eo_table_defaults(&eo_design_table, input);
   eo_table_decode(stage->input, document, NULL, input, faults);
   status = faults->count ? eo_app_fail_all(path, faults) : run_decoded(stage, path, input, output);
 out:

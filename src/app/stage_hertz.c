@@ -58,4 +58,4 @@ static enum eo_code run(const void *in, void *out, struct eo_error *error)
   return EO_OK;
 }
 
-const struct eo_stage eo_stage_hertz = {"hertz", "line contact of two teeth: pressure, width and local approach", &input_table, &output_table, run};
+const struct eo_stage eo_stage_hertz = {"hertz", "line contact of two teeth: pressure, width and local approach", &input_table, &output_table, false, run};

@@ -88,4 +88,4 @@ static enum eo_code run(const void *in, void *out, struct eo_error *error)
   return EO_OK;
 }
 
-const struct eo_stage eo_stage_iso6336 = {"iso6336", "the standard's estimates: mesh stiffness and nominal root stress", &input_table, &output_table, run};
+const struct eo_stage eo_stage_iso6336 = {"iso6336", "the standard's estimates: mesh stiffness and nominal root stress", &input_table, &output_table, false, run};

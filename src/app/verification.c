@@ -21,6 +21,7 @@ static struct eo_check *next_check(struct eo_verification *v)
 
 void eo_verify_add(struct eo_verification *v, const char *label, const char *quantity, double value, double expected, double tolerance)
 {
+  bool pass = value == expected || fabs(value - expected) <= tolerance;
   struct eo_check *check = v->failed ? NULL : next_check(v);
   char *label_copy = strdup(label), *quantity_copy = strdup(quantity);
   if (!check || !label_copy || !quantity_copy) {
@@ -29,7 +30,7 @@ void eo_verify_add(struct eo_verification *v, const char *label, const char *qua
     v->failed = true;
     return;
   }
-  *check = (struct eo_check){label_copy, quantity_copy, value, expected, tolerance, fabs(value - expected) <= tolerance};
+  *check = (struct eo_check){label_copy, quantity_copy, value, expected, tolerance, pass};
   v->count++;
 }
 
@@ -70,9 +71,21 @@ double eo_verify_number(const json_t *object, const char *key)
   return json_is_number(value) ? json_number_value(value) : NAN;
 }
 
+double eo_verify_number_or(const json_t *object, const char *key, double missing)
+{
+  double value = eo_verify_number(object, key);
+  return isnan(value) ? missing : value;
+}
+
 double eo_verify_element(const json_t *object, const char *key, int index)
 {
   const json_t *value = json_array_get(json_object_get(object, key), (size_t)index);
+  return json_is_number(value) ? json_number_value(value) : NAN;
+}
+
+double eo_verify_at(const json_t *array, size_t index)
+{
+  const json_t *value = json_array_get(array, index);
   return json_is_number(value) ? json_number_value(value) : NAN;
 }
 

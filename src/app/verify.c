@@ -8,9 +8,6 @@
 #include "document/json.h"
 #include "document/sheet.h"
 
-static const struct eo_verify_kind *const kinds[] = {&eo_verify_standards};
-enum { KINDS = sizeof kinds / sizeof kinds[0] };
-
 static void done(struct eo_verification *v)
 {
   for (int i = 0; i < v->count; i++) {
@@ -28,10 +25,13 @@ static enum eo_code run_kind(const json_t *cases, struct eo_verification *v, str
   const char *kind = json_string_value(json_object_get(cases, "kind"));
   struct eo_text known = {0};
   enum eo_code code = EO_ERROR_INPUT;
-  for (int i = 0; i < KINDS; i++) {
-    if (kind && strcmp(kind, kinds[i]->name) == 0)
-      return kinds[i]->run(cases, v, error);
-    eo_text_print(&known, "%s%s", i ? ", " : "", kinds[i]->name);
+  const struct eo_verify_kind *candidate;
+  for (int i = 0; (candidate = eo_verify_kind_at(i)); i++) {
+    if (kind && strcmp(kind, candidate->name) == 0) {
+      eo_text_done(&known);
+      return candidate->run(cases, v, error);
+    }
+    eo_text_print(&known, "%s%s", i ? ", " : "", candidate->name);
   }
   eo_error_set(error, code, "/kind", "\"%.40s\" is not a kind of case file; known: %s.", kind ? kind : "(none)", known.data ? known.data : "");
   eo_text_done(&known);
@@ -62,7 +62,7 @@ static enum eo_code verify_file(const char *path, struct eo_verification *v, str
 /* How far out, in tolerances; what should be exact counts as far out as it can. */
 static double severity(const struct eo_check *check)
 {
-  double deviation = fabs(check->value - check->expected);
+  double deviation = check->value == check->expected ? 0 : fabs(check->value - check->expected);
   if (isnan(deviation))
     return INFINITY;
   return check->tolerance > 0 ? deviation / check->tolerance : (deviation > 0 ? INFINITY : 0);

@@ -13,7 +13,7 @@
 struct eo_check {
   char *label;     /* owned: the case */
   char *quantity;  /* owned */
-  double value, expected, tolerance; /* in the case file's unit; |value - expected| <= tolerance passes, NaN does not */
+  double value, expected, tolerance; /* in the case file's unit; passes when equal or |value - expected| <= tolerance */
   bool pass;
 };
 
@@ -25,7 +25,7 @@ struct eo_verification {
   bool failed;            /* an allocation failed */
 };
 
-/* One computed number. Formats of label: printf. */
+/* One computed number. */
 void eo_verify_add(struct eo_verification *verification, const char *label, const char *quantity, double value, double expected, double tolerance);
 
 /* The computation itself failed where a number was expected: a check that does not pass, and the reason. */
@@ -38,7 +38,9 @@ void eo_verify_unknown(struct eo_verification *verification, const char *where, 
 
 /* Numbers of a case object: NaN when the key is absent or no number; element index of an array key. */
 double eo_verify_number(const json_t *object, const char *key);
+double eo_verify_number_or(const json_t *object, const char *key, double missing);
 double eo_verify_element(const json_t *object, const char *key, int index);
+double eo_verify_at(const json_t *array, size_t index);
 
 /* Half a unit in the last decimal that a printed number shows: 2.35 -> 0.005. */
 double eo_verify_rounding(double printed);
@@ -52,6 +54,16 @@ struct eo_verify_kind {
   enum eo_code (*run)(const json_t *cases, struct eo_verification *verification, struct eo_error *error);
 };
 
-extern const struct eo_verify_kind eo_verify_standards;
+/* NULL after the last. */
+const struct eo_verify_kind *eo_verify_kind_at(int index);
+
+/* The lumped model: modes, periodic responses, the single degree of freedom. */
+enum eo_code eo_verify_dynamics(const json_t *cases, struct eo_verification *verification, struct eo_error *error);
+
+/* The optimizer's random numbers, prediction, history, operators and whole runs. */
+enum eo_code eo_verify_optimizer(const json_t *cases, struct eo_verification *verification, struct eo_error *error);
+
+/* Worked numbers of standards and published reports. */
+enum eo_code eo_verify_standards(const json_t *cases, struct eo_verification *verification, struct eo_error *error);
 
 #endif

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "app/verify.h"
+#include "app/verify_foundation.h"
 #include "contact/hertz.h"
 #include "contact/iso6336.h"
 #include "document/design_document.h"
@@ -182,12 +183,73 @@ static void check_fzg(struct eo_verification *v, const char *label, const json_t
   eo_verify_unknown(v, label, block, known);
 }
 
+static void check_distribution(struct eo_verification *v, const char *label, const json_t *block)
+{
+  static const char *const known[] = {"source", "c_N_per_mm_um", "w_N_per_mm", "F_by_um", "K_H_beta", "note", "about", NULL};
+  double stiffness = 1e9 * eo_verify_number(block, "c_N_per_mm_um"), line_load = 1e3 * eo_verify_number(block, "w_N_per_mm");
+  size_t count = json_array_size(json_object_get(block, "F_by_um"));
+  for (size_t i = 0; i < count; i++) {
+    double misalignment = eo_verify_element(block, "F_by_um", (int)i), expected = eo_verify_element(block, "K_H_beta", (int)i), factor;
+    char quantity[60];
+    struct eo_error error;
+    snprintf(quantity, sizeof quantity, "K_H_beta at F_by %.6g um", misalignment);
+    if (eo_verify_load_distribution(stiffness, line_load, misalignment / 1e6, &factor, &error))
+      eo_verify_broken(v, label, &error);
+    else
+      eo_verify_add(v, label, quantity, factor, expected, 1e-4 * fabs(expected));
+  }
+  eo_verify_unknown(v, label, block, known);
+}
+
+/* A pair with eps_beta whole (axial pitches in the face), or a spur pair whose tips reach one base pitch to either side. */
+static enum eo_code overlap_geometry(struct eo_geometry *geometry, double helix, int overlap, struct eo_error *error)
+{
+  struct eo_gear_pair pair;
+  memset(&pair, 0, sizeof pair);
+  eo_table_defaults(&eo_gear_pair_table, &pair);
+  pair.ends = 1;
+  pair.teeth[0] = pair.teeth[1] = 60;
+  pair.normal_module = 3e-3;
+  pair.helix_angle = helix;
+  pair.face_width = helix > 0 ? overlap * M_PI * pair.normal_module / sin(helix) : 0.03;
+  pair.dedendum_coefficient = 1.4;
+  enum eo_code code = eo_geometry_init(geometry, &pair, error);
+  if (code || helix > 0)
+    return code;
+  for (int i = 0; i < 2; i++)
+    pair.tip_diameter[i] = 2 * hypot(geometry->base_radius[i], geometry->tangent_length[i] + geometry->transverse_base_pitch);
+  return eo_geometry_init(geometry, &pair, error);
+}
+
+static void check_overlap(struct eo_verification *v, const char *label)
+{
+  static const struct {
+    const char *what;
+    double helix_deg;
+    int overlap;
+  } cases[] = {{"eps_beta = 1", 24, 1}, {"eps_beta = 2", 15, 2}, {"eps_alpha = 2, spur", 0, 0}};
+  for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+    struct eo_geometry geometry;
+    struct eo_error error;
+    double peak_to_peak, variation;
+    char quantity[80];
+    if (overlap_geometry(&geometry, radians(cases[i].helix_deg), cases[i].overlap, &error) || eo_verify_overlap(&geometry, &peak_to_peak, &variation, &error)) {
+      eo_verify_broken(v, label, &error);
+      continue;
+    }
+    snprintf(quantity, sizeof quantity, "peak-to-peak LTE, um, %s", cases[i].what);
+    eo_verify_add(v, label, quantity, 1e6 * peak_to_peak, 0, 1e-6);
+    snprintf(quantity, sizeof quantity, "variation of the contact length, %s", cases[i].what);
+    eo_verify_add(v, label, quantity, variation, 0, 1e-12);
+  }
+}
+
 static bool begins(const char *text, const char *prefix)
 {
   return strncmp(text, prefix, strlen(prefix)) == 0;
 }
 
-static enum eo_code run(const json_t *cases, struct eo_verification *v, struct eo_error *error)
+enum eo_code eo_verify_standards(const json_t *cases, struct eo_verification *v, struct eo_error *error)
 {
   const char *key;
   json_t *block;
@@ -199,6 +261,10 @@ static enum eo_code run(const json_t *cases, struct eo_verification *v, struct e
       check_geometry(v, key, block);
     else if (begins(key, "fzg"))
       check_fzg(v, key, block);
+    else if (begins(key, "load_distribution"))
+      check_distribution(v, key, block);
+    else if (begins(key, "integer_overlap"))
+      check_overlap(v, key);
     else if (begins(key, "paper"))
       eo_verify_ignore(v, "%s: printed levels of the paper, for information; its absolute values depend on data it does not give", key);
     else if (strcmp(key, "kind") && strcmp(key, "about"))
@@ -206,5 +272,3 @@ static enum eo_code run(const json_t *cases, struct eo_verification *v, struct e
   }
   return EO_OK;
 }
-
-const struct eo_verify_kind eo_verify_standards = {"standards", run};

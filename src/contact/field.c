@@ -57,7 +57,8 @@ void eo_corner_gap_init(struct eo_corner_gap corner[2], const struct eo_geometry
   }
 }
 
-/* Corner gap of the unmodified pair, plus what relief takes off the flank there and off the tip; *place: s on the flank. */
+/* Corner gap of the unmodified pair, plus what relief takes off the flank there and off the tip; *place: s on the flank; *slope: by s,
+   with that of the misalignment gap at the place. */
 static double corner_value(const struct eo_gap_field *field, int tip, double s, double *slope, double *place)
 {
   const struct eo_corner_gap *table = &field->corner[tip == EO_GEAR ? 0 : 1];
@@ -69,9 +70,26 @@ static double corner_value(const struct eo_gap_field *field, int tip, double s, 
   rate = (difference + (r - t) * (a * r + b * t) + t * r * (b - a)) / h;
   *place = table->path[i] * r + table->path[i + 1] * t;
   double gap = table->gap[i] * r + table->gap[i + 1] * t + t * r * (a * r + b * t);
-  gap += eo_slice_gap_at(&field->alone[1 - tip], *place, &side) + eo_slice_gap_at(&field->alone[tip], end, NULL);
-  *slope = (tip == EO_GEAR ? -rate : rate) + side * (table->path[i + 1] - table->path[i]) / h * (tip == EO_GEAR ? -1 : 1);
+  gap += eo_slice_gap_at(&field->alone[1 - tip], *place, &side) + field->tip_gap[tip];
+  double travel = (table->path[i + 1] - table->path[i]) / h; /* of the place, by the distance */
+  *slope = (rate + (side + field->misalignment * field->lean) * travel) * (tip == EO_GEAR ? -1 : 1);
   return gap;
+}
+
+/* Values of both parts at eta. */
+static void deflection_parts(const struct eo_deflection *deflection, double face_width, double eta, double part[2])
+{
+  double u = (eta / face_width + 0.5) * (EO_DEFLECTION_NODES - 1);
+  int i = (int)fmax(0, fmin(EO_DEFLECTION_NODES - 2, floor(u)));
+  for (int k = 0; k < 2; k++)
+    part[k] = deflection->part[k][i] + (u - i) * (deflection->part[k][i + 1] - deflection->part[k][i]);
+}
+
+double eo_deflection_at(const struct eo_deflection *deflection, double face_width, double s, double eta)
+{
+  double part[2];
+  deflection_parts(deflection, face_width, eta, part);
+  return part[0] + s * part[1];
 }
 
 void eo_gap_field_init(struct eo_gap_field *field, const struct eo_geometry *g, const struct eo_flank_modification *pinion,
@@ -85,38 +103,49 @@ void eo_gap_field_init(struct eo_gap_field *field, const struct eo_geometry *g, 
   field->stretch = 1 / cos(g->helix_angle);
   eo_modification_init(&field->shape[EO_PINION], g, EO_PINION, pinion);
   eo_modification_init(&field->shape[EO_GEAR], g, EO_GEAR, gear);
-  eo_slice_gap_init(&field->slice, g, field->shape);
   static const struct eo_modification_shape none = {0};
   for (int member = 0; member < 2; member++) {
     struct eo_modification_shape alone[2] = {none, none};
     alone[member] = field->shape[member];
     eo_slice_gap_init(&field->alone[member], g, alone);
   }
+  if (field->alone[EO_PINION].nodes > 0 && field->alone[EO_GEAR].nodes > 0)
+    eo_slice_gap_init(&field->slice, g, field->shape);
+  else
+    field->slice = field->alone[field->alone[EO_PINION].nodes > 0 ? EO_PINION : EO_GEAR];
+  for (int tip = 0; tip < 2; tip++) {
+    double at = tip == EO_GEAR ? g->path_start : g->path_end;
+    field->tip_gap[tip] = eo_slice_gap_at(&field->slice, at, NULL) - eo_slice_gap_at(&field->alone[1 - tip], at, NULL);
+  }
   /* physics: D = end cos(beta_b) (gamma cos(alpha_t) - kappa sin(alpha_t)) (eta + s tan(beta_b)) */
   field->misalignment = sign * cos(g->base_helix_angle) *
                         (out_of_plane * cos(g->working_pressure_angle) - in_plane * sin(g->working_pressure_angle));
   field->misalignment_offset = field->misalignment * pivot;
+  field->deflection = NULL;
 }
 
 double eo_gap_field_at(const struct eo_gap_field *field, double s, double eta, double *slope, double path[2])
 {
   const struct eo_geometry *g = field->geometry;
-  double rate, unused, place = s, gap, x = eta * field->stretch, tangent = field->lean;
+  double rate, unused, place = s, gap, x = eta * field->stretch, tangent = field->lean, body[2] = {0, 0};
   int tip = -1;
   if (s < g->path_start || s > g->path_end) {
     tip = s < g->path_start ? EO_GEAR : EO_PINION;
     gap = corner_value(field, tip, s, &rate, &place);
   } else {
     gap = eo_slice_gap_at(&field->slice, s, &rate);
+    rate += field->misalignment * tangent;
   }
   if (path) {
     path[EO_PINION] = tip == EO_PINION ? g->path_end : place;
     path[EO_GEAR] = tip == EO_GEAR ? g->path_start : place;
   }
   gap += eo_modification_lead(&field->shape[EO_PINION], x, &unused) + eo_modification_lead(&field->shape[EO_GEAR], x, &unused);
-  gap += field->misalignment * (eta + place * tangent) + field->misalignment_offset;
+  if (field->deflection)
+    deflection_parts(field->deflection, g->face_width, eta, body);
+  gap += field->misalignment * (eta + place * tangent) + field->misalignment_offset + body[0] + place * body[1];
   if (slope)
-    *slope = rate + (tip < 0 ? field->misalignment * tangent : 0);
+    *slope = rate + (tip < 0 ? body[1] : 0);
   return gap;
 }
 
@@ -175,18 +204,31 @@ double eo_gap_field_line_minimum(const struct eo_gap_field *field, double c, boo
   return best;
 }
 
+/* The smallest gap over the path of contact in the transverse slice at eta, lead modification and what else is constant there apart. */
+static double lowest_profile(int samples, const double *path, const double *profile, double tilt)
+{
+  double lowest = INFINITY;
+  for (int i = 0; i < samples; i++)
+    lowest = fmin(lowest, profile[i] + path[i] * tilt);
+  return lowest;
+}
+
 double eo_gap_field_datum(const struct eo_gap_field *field)
 {
-  enum { SAMPLES = 400 };
+  enum { SAMPLES = 401 };
   const struct eo_geometry *g = field->geometry;
-  double tangent = tan(g->base_helix_angle), profile = INFINITY, lead = INFINITY, unused;
-  /* The field is a sum of a function of s and one of eta, so the smallest values add up. */
-  for (int i = 0; i <= SAMPLES; i++) {
-    double s = g->path_start + (g->path_end - g->path_start) * i / SAMPLES;
-    profile = fmin(profile, eo_slice_gap_at(&field->slice, s, NULL) + field->misalignment * s * tangent);
-    double eta = g->face_width * ((double)i / SAMPLES - 0.5), x = eta / cos(g->helix_angle);
-    lead = fmin(lead, eo_modification_lead(&field->shape[0], x, &unused) + eo_modification_lead(&field->shape[1], x, &unused) +
-                          field->misalignment * eta);
+  double path[SAMPLES], profile[SAMPLES], unused, lowest = INFINITY;
+  for (int i = 0; i < SAMPLES; i++) {
+    path[i] = g->path_start + (g->path_end - g->path_start) * i / (SAMPLES - 1);
+    profile[i] = eo_slice_gap_at(&field->slice, path[i], NULL) + field->misalignment * path[i] * field->lean;
   }
-  return profile + lead + field->misalignment_offset;
+  double common = lowest_profile(SAMPLES, path, profile, 0);
+  for (int i = 0; i < SAMPLES; i++) {
+    double eta = g->face_width * ((double)i / (SAMPLES - 1) - 0.5), x = eta * field->stretch, body[2] = {0, 0};
+    double lead = eo_modification_lead(&field->shape[0], x, &unused) + eo_modification_lead(&field->shape[1], x, &unused) + field->misalignment * eta;
+    if (field->deflection)
+      deflection_parts(field->deflection, g->face_width, eta, body);
+    lowest = fmin(lowest, lead + body[0] + (field->deflection ? lowest_profile(SAMPLES, path, profile, body[1]) : common));
+  }
+  return lowest + field->misalignment_offset;
 }

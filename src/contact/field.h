@@ -17,14 +17,25 @@ struct eo_corner_gap {
 
 void eo_corner_gap_init(struct eo_corner_gap corner[2], const struct eo_geometry *geometry);
 
+/* How far elastic bodies open the gap of one end: part[0](eta) + s part[1](eta), linear between nodes at equal steps from
+   eta = -b/2 to +b/2. The second part is the local slope of the bodies, which acts as a shaft angle error does. */
+enum { EO_DEFLECTION_NODES = 33 };
+struct eo_deflection {
+  double part[2][EO_DEFLECTION_NODES]; /* m, normal; m per m of s */
+};
+
+double eo_deflection_at(const struct eo_deflection *deflection, double face_width, double s, double eta);
+
 struct eo_gap_field {
   const struct eo_geometry *geometry;     /* borrowed */
   struct eo_modification_shape shape[2];  /* [member] */
   const struct eo_corner_gap *corner;     /* [2], borrowed */
   struct eo_slice_gap slice, alone[2];    /* of both members together, and of each one's relief alone [member] */
+  double tip_gap[2];                      /* [member]: what relief takes off its tip corner, m: no step where the path ends */
   double lean, stretch;                   /* tan(beta_b); 1/cos(beta), from eta to x */
   double misalignment;                    /* slope of the misalignment gap along eta + s tan(beta_b) */
   double misalignment_offset;             /* its constant, m (removed by axial float) */
+  const struct eo_deflection *deflection; /* of the bodies; borrowed; NULL: rigid, as eo_gap_field_init() leaves it */
 };
 
 /* end: EO_LEFT or EO_RIGHT (sign -1, +1). in_plane (kappa), out_of_plane (gamma): shaft angle errors, rad.

@@ -222,15 +222,34 @@ static void start_from(struct eo_loaded_workspace *ws, const struct eo_contact_p
     start_cold(ws, problem, ws->mode);
 }
 
+/* The long way when Newton fails: from a load so high that every point touches, down in steps along the tangent. */
+static bool descend(struct eo_loaded_workspace *ws, const struct problem *problem)
+{
+  enum { TRIES = 6, STEPS = 400 };
+  int n = problem->position->stride + 1;
+  for (int start = 2; start < TRIES; start++) {
+    struct problem high = *problem;
+    high.force *= pow(10, start);
+    start_cold(ws, &high, ws->mode);
+    double factor = 2;
+    for (int i = 0; i < STEPS && newton(ws, &high); i++) {
+      if (high.force == problem->force)
+        return true;
+      double next = fmax(problem->force, high.force / factor);
+      tangent_of(ws, problem->position);
+      for (int k = 0; k < n; k++)
+        ws->mode[k] += (next - high.force) * ws->tangent[k];
+      high.force = next;
+    }
+  }
+  return false;
+}
+
 /* Solves from ws->mode and writes position j of the result. */
 static void solve_position(struct eo_loaded_workspace *ws, const struct problem *problem, int j, double factor, struct eo_loaded_end *result)
 {
   const struct eo_contact_position *p = problem->position;
-  bool converged = newton(ws, problem);
-  if (!converged) {
-    start_cold(ws, problem, ws->mode);
-    converged = newton(ws, problem);
-  }
+  bool converged = newton(ws, problem) || descend(ws, problem);
   result->failures += !converged;
   result->load[j] = problem->force;
   result->tangent[j] = tangent_of(ws, p) / factor;
@@ -270,16 +289,38 @@ void eo_loaded_solve(struct eo_loaded_workspace *ws, const struct eo_contact_gri
   }
 }
 
-/* ---- axially held pinion ---- */
+/* ---- one position again ---- */
 
-static void resolve_end(struct eo_loaded_workspace *ws, const struct eo_contact_grid *grid, const struct eo_loaded_gaps *gaps, double factor,
-                        int j, double force, struct eo_loaded_end *end)
+void eo_loaded_resolve(struct eo_loaded_workspace *ws, const struct eo_contact_grid *grid, const double *gap, double factor, int j, double load,
+                       struct eo_loaded_end *result)
 {
   const struct eo_contact_position *p = &grid->position[j];
-  struct problem problem = {p, scaled_gaps(ws, p, gaps->gap, factor), grid->compliance_scale, force};
-  start_from(ws, p, end->line_load + p->first, end->approach[j] / factor, &problem);
-  solve_position(ws, &problem, j, factor, end);
+  struct problem problem = {p, scaled_gaps(ws, p, gap, factor), grid->compliance_scale, load};
+  start_from(ws, p, result->line_load + p->first, result->approach[j] / factor, &problem);
+  solve_position(ws, &problem, j, factor, result);
 }
+
+double eo_loaded_response(struct eo_loaded_workspace *ws, const struct eo_contact_position *p, double factor, const double *change,
+                          double *load_change)
+{
+  int stride = p->stride;
+  double *mode = change ? ws->step : ws->tangent;
+  if (change) {
+    memset(mode, 0, sizeof *mode * (size_t)(stride + EO_GRAM_LANE));
+    for (int i = 0; i < p->points; i++) {
+      ws->load[i] = ws->rate[i] * change[i] / factor;
+      mode[stride] += ws->load[i];
+    }
+    ws->gram->gather(p->points, stride, p->factor, ws->load, mode);
+    ws->gram->solve(stride + 1, stride, ws->matrix, mode);
+  }
+  ws->gram->apply(p->points, stride, p->factor, mode, ws->bend);
+  for (int i = 0; i < p->points; i++)
+    load_change[i] = ws->rate[i] * (mode[stride] - ws->bend[i] - (change ? change[i] / factor : 0));
+  return mode[stride] * factor;
+}
+
+/* ---- axially held pinion ---- */
 
 void eo_loaded_balance(struct eo_loaded_workspace *ws, const struct eo_contact_grid *grid, const struct eo_loaded_gaps gaps[2],
                        double compliance_factor, double stiffness, int stagger, double load, struct eo_loaded_end result[2])
@@ -298,8 +339,8 @@ void eo_loaded_balance(struct eo_loaded_workspace *ws, const struct eo_contact_g
       if (fabs(next - shift) < 1e-7 * load)
         break;
       shift = next;
-      resolve_end(ws, grid, &gaps[0], compliance_factor, j, load + shift, &result[0]);
-      resolve_end(ws, grid, &gaps[1], compliance_factor, other, load - shift, &result[1]);
+      eo_loaded_resolve(ws, grid, gaps[0].gap, compliance_factor, j, load + shift, &result[0]);
+      eo_loaded_resolve(ws, grid, gaps[1].gap, compliance_factor, other, load - shift, &result[1]);
     }
   }
 }
@@ -367,14 +408,12 @@ void eo_loaded_gaps_done(struct eo_loaded_gaps *gaps)
   gaps->gap = gaps->unloaded = NULL;
 }
 
-void eo_loaded_gaps_set(struct eo_loaded_gaps *gaps, const struct eo_contact_grid *grid, const struct eo_gap_field *field)
+void eo_loaded_first_contact(const struct eo_contact_grid *grid, const struct eo_gap_field *field, double *unloaded)
 {
   for (int j = 0; j < grid->positions; j++) {
     const struct eo_contact_position *p = &grid->position[j];
     bool edges = false;
-      for (int i = 0; i < p->points; i++)
-      gaps->gap[p->first + i] = eo_gap_field_at(field, p->path[i], p->point[i].eta, NULL, NULL);
-    gaps->unloaded[j] = INFINITY;
+    unloaded[j] = INFINITY;
     for (int l = 0; l < p->lines; l++)
       edges |= p->line[l].kind != EO_POINT_LINE;
     for (int l = 0; l < p->lines; l++) {
@@ -383,9 +422,19 @@ void eo_loaded_gaps_set(struct eo_loaded_gaps *gaps, const struct eo_contact_gri
         seen |= p->line[m].pair == p->line[l].pair;
       double c = p->phase + p->line[l].pair * grid->geometry.transverse_base_pitch;
       if (!seen)
-        gaps->unloaded[j] = fmin(gaps->unloaded[j], eo_gap_field_line_minimum(field, c, edges, NULL));
+        unloaded[j] = fmin(unloaded[j], eo_gap_field_line_minimum(field, c, edges, NULL));
     }
   }
+}
+
+void eo_loaded_gaps_set(struct eo_loaded_gaps *gaps, const struct eo_contact_grid *grid, const struct eo_gap_field *field)
+{
+  for (int j = 0; j < grid->positions; j++) {
+    const struct eo_contact_position *p = &grid->position[j];
+    for (int i = 0; i < p->points; i++)
+      gaps->gap[p->first + i] = eo_gap_field_at(field, p->path[i], p->point[i].eta, NULL, NULL);
+  }
+  eo_loaded_first_contact(grid, field, gaps->unloaded);
 }
 
 enum eo_code eo_loaded_end_init(struct eo_loaded_end *end, const struct eo_contact_grid *grid, struct eo_error *error)

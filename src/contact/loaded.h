@@ -50,6 +50,18 @@ void eo_loaded_solve(struct eo_loaded_workspace *workspace, const struct eo_cont
 void eo_loaded_balance(struct eo_loaded_workspace *workspace, const struct eo_contact_grid *grid, const struct eo_loaded_gaps gaps[2],
                        double compliance_factor, double stiffness, int stagger, double load, struct eo_loaded_end result[2]);
 
+/* Position j of one end again, at gaps [grid->points] and a load that may have changed a little, from the result it has there. */
+void eo_loaded_resolve(struct eo_loaded_workspace *workspace, const struct eo_contact_grid *grid, const double *gap, double compliance_factor,
+                       int j, double load, struct eo_loaded_end *result);
+
+/* How the position solved last answers: the change of its loads, N, and of its approach, m, per unit of a change of its gaps
+   [points], m, at constant load P; or, with change NULL, per N of P. Within some thousandths. */
+double eo_loaded_response(struct eo_loaded_workspace *workspace, const struct eo_contact_position *position, double compliance_factor,
+                          const double *change, double *load_change);
+
+/* First contact of the unloaded flanks over the mesh cycle: Z0 [positions], m. */
+void eo_loaded_first_contact(const struct eo_contact_grid *grid, const struct eo_gap_field *field, double *unloaded);
+
 /* Peak Hertz pressure of line contact, Pa, at line load q, N/m, and relative radius, m. */
 double eo_loaded_pressure(const struct eo_contact_grid *grid, double line_load, double radius);
 

@@ -101,14 +101,6 @@ static int residual(void *context, const double *x, double *r)
   return 0;
 }
 
-/* Rack coordinates of the place (s, eta) on a member's flank. */
-static void rack_coordinates(const struct eo_geometry *g, int member, double s, double eta, double *u, double *v)
-{
-  *u = g->rack_factor * eo_geometry_own_path(member, s);
-  double rack = *u + g->rack_offset[member];
-  *v = ((member == EO_PINION ? eta : -eta) - rack * sin(g->normal_pressure_angle) * sin(g->helix_angle)) / cos(g->helix_angle);
-}
-
 static enum eo_code touch_exact(struct eo_nonlinear *solver, struct contact *contact, const struct eo_unloaded *seed, struct eo_unloaded *result,
                                 struct eo_error *error)
 {
@@ -119,8 +111,8 @@ static enum eo_code touch_exact(struct eo_nonlinear *solver, struct contact *con
     .step_tolerance = 1e-13, .max_iterations = 100};
   struct eo_nonlinear_report report;
   double x[5];
-  rack_coordinates(g, EO_PINION, seed->path, seed->eta, &x[0], &x[1]);
-  rack_coordinates(g, EO_GEAR, seed->path, seed->eta, &x[2], &x[3]);
+  eo_surface_coordinates(g, EO_PINION, seed->path, seed->eta, &x[0], &x[1]);
+  eo_surface_coordinates(g, EO_GEAR, seed->path, seed->eta, &x[2], &x[3]);
   x[4] = contact->phase + seed->transmission_error;
   enum eo_code code = eo_nonlinear_solve(solver, &problem, &options, x, &report, error);
   if (code)

@@ -33,6 +33,18 @@ static void default_rows(const struct eo_field *field, void *target)
   *(int *)((char *)target + field->count_offset) = field->row_count;
 }
 
+static bool may_be_null(const struct eo_field *field)
+{
+  return field->flags & EO_FIELD_NULLABLE;
+}
+
+/* Whether an object that may be null is there. */
+static void set_present(const struct eo_field *field, void *target, bool present)
+{
+  if (may_be_null(field))
+    *(int *)((char *)target + field->count_offset) = present;
+}
+
 static void default_field(const struct eo_field *field, void *target)
 {
   void *place = member(target, field);
@@ -61,6 +73,7 @@ static void default_field(const struct eo_field *field, void *target)
     break;
   case EO_FIELD_OBJECT:
     eo_table_defaults(field->table, place);
+    set_present(field, target, false);
     break;
   case EO_FIELD_LIST:
     default_rows(field, target);
@@ -219,8 +232,9 @@ static void decode_list(const struct eo_field *field, const json_t *value, const
   *(int *)((char *)target + field->count_offset) = (int)count;
 }
 
-static void decode_null(const struct eo_field *field, void *place)
+static void decode_null(const struct eo_field *field, void *target)
 {
+  void *place = member(target, field);
   if (field->kind == EO_FIELD_NUMBER)
     *(double *)place = NAN;
   else if (field->kind == EO_FIELD_INTEGER)
@@ -230,6 +244,8 @@ static void decode_null(const struct eo_field *field, void *place)
   else if (field->kind == EO_FIELD_NUMBERS)
     for (int i = 0; i < field->count; i++)
       ((double *)place)[i] = NAN;
+  else if (field->kind == EO_FIELD_OBJECT)
+    set_present(field, target, false);
 }
 
 static void decode_field(const struct eo_field *field, const json_t *value, const struct eo_path *path, void *target, struct eo_faults *faults)
@@ -237,8 +253,8 @@ static void decode_field(const struct eo_field *field, const json_t *value, cons
   void *place = member(target, field);
   double number;
   int choice;
-  if (json_is_null(value) && field->flags & EO_FIELD_NULLABLE) {
-    decode_null(field, place);
+  if (json_is_null(value) && may_be_null(field)) {
+    decode_null(field, target);
     return;
   }
   switch (field->kind) {
@@ -276,6 +292,7 @@ static void decode_field(const struct eo_field *field, const json_t *value, cons
       *(struct eo_constraint *)place = (struct eo_constraint){true, eo_unit_in(field->unit, number)};
     break;
   case EO_FIELD_OBJECT:
+    set_present(field, target, true);
     eo_table_decode(field->table, value, path, place, faults);
     break;
   case EO_FIELD_LIST:
@@ -333,7 +350,7 @@ static void report_unknown(const struct eo_table *table, const char *key, const 
 /* Objects that are absent are read as empty ones, so that each required key in them is named. */
 static void decode_absent(const struct eo_field *field, const struct eo_path *path, void *target, struct eo_faults *faults)
 {
-  if (field->kind == EO_FIELD_OBJECT) {
+  if (field->kind == EO_FIELD_OBJECT && !may_be_null(field)) {
     json_t *empty = json_object();
     eo_table_decode(field->table, empty, path, member(target, field), faults);
     json_decref(empty);

@@ -47,8 +47,9 @@ static void describe_type(const struct eo_field *field, struct eo_text *text)
     describe_range(field, field->low, field->high, text);
     break;
   case EO_FIELD_SERIES:
-    eo_text_add(text, "numbers, ");
-    describe_range(field, field->series_low, field->series_high, text);
+    eo_text_add(text, field->unit || isfinite(field->series_low) ? "numbers, " : "numbers");
+    if (field->unit || isfinite(field->series_low))
+      describe_range(field, field->series_low, field->series_high, text);
     break;
   case EO_FIELD_OBJECT:
     eo_text_add(text, "object");
@@ -79,21 +80,42 @@ static void describe_default(const struct eo_field *field, struct eo_text *text)
       eo_text_print(text, "%s%.15g%s", i ? ", " : "; default [", field->fallbacks[i], i == field->count - 1 ? "]" : "");
 }
 
-static void describe(const struct eo_table *table, bool output, int indent, struct eo_text *text)
+/* Tables that were described already, and under which key. */
+struct seen {
+  int count;
+  const struct eo_field *field[64];
+};
+
+static const struct eo_field *find_seen(const struct seen *seen, const struct eo_table *table)
+{
+  for (int i = 0; i < seen->count; i++)
+    if (seen->field[i]->table == table)
+      return seen->field[i];
+  return NULL;
+}
+
+static void describe(const struct eo_table *table, bool output, int indent, struct seen *seen, struct eo_text *text)
 {
   for (int i = 0; i < table->count; i++) {
     const struct eo_field *field = &table->field[i];
     eo_text_print(text, "%*s%-*s  %s (", indent, "", 44 - indent, field->key, field->help ? field->help : "");
     describe_type(field, text);
+    const struct eo_field *before = field->table ? find_seen(seen, field->table) : NULL;
+    if (before)
+      eo_text_print(text, ", keys as in %s", before->key);
     if (!output)
       describe_default(field, text);
     eo_text_add(text, ")\n");
-    if (field->table)
-      describe(field->table, output, indent + 2, text);
+    if (!field->table || before)
+      continue;
+    if (seen->count < (int)(sizeof seen->field / sizeof seen->field[0]))
+      seen->field[seen->count++] = field;
+    describe(field->table, output, indent + 2, seen, text);
   }
 }
 
 void eo_table_describe(const struct eo_table *table, bool output, struct eo_text *text)
 {
-  describe(table, output, 2, text);
+  struct seen seen = {0};
+  describe(table, output, 2, &seen, text);
 }

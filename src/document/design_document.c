@@ -18,25 +18,24 @@ void eo_warnings_add(struct eo_warnings *warnings, const char *format, ...)
   va_end(arguments);
 }
 
-/* All shares or none; scaled to the sum 1. */
-static void settle_shares(struct eo_design *design, struct eo_warnings *warnings, struct eo_faults *faults)
+void eo_load_cases_settle(struct eo_load_case *load_case, int count, struct eo_warnings *warnings, struct eo_faults *faults)
 {
   double sum = 0;
   int stated = 0;
-  for (int i = 0; i < design->load_cases; i++) {
-    stated += !isnan(design->load_case[i].share);
-    sum += isnan(design->load_case[i].share) ? 0 : design->load_case[i].share;
+  for (int i = 0; i < count; i++) {
+    stated += !isnan(load_case[i].share);
+    sum += isnan(load_case[i].share) ? 0 : load_case[i].share;
   }
-  if (stated && stated < design->load_cases)
-    eo_faults_add(faults, "/load_cases", "Either every load case states its share of operating time or none does; %d of %d do.", stated, design->load_cases);
+  if (stated && stated < count)
+    eo_faults_add(faults, "/load_cases", "Either every load case states its share of operating time or none does; %d of %d do.", stated, count);
   else if (stated && sum <= 0)
     eo_faults_add(faults, "/load_cases", "The shares of operating time sum to 0.");
   else if (stated && fabs(sum - 1) > 1e-9)
     eo_warnings_add(warnings, "The shares of operating time of the load cases summed to %.9g; they were scaled to sum to 1.", sum);
   if (stated && fabs(sum - 1) <= 1e-9)
     return;
-  for (int i = 0; i < design->load_cases; i++)
-    design->load_case[i].share = stated ? design->load_case[i].share / sum : 1. / design->load_cases;
+  for (int i = 0; i < count; i++)
+    load_case[i].share = stated ? load_case[i].share / sum : 1. / count;
 }
 
 /* A pair with one end has no right flanks. */
@@ -59,7 +58,7 @@ bool eo_design_decode(const json_t *document, struct eo_design *design, struct e
   memset(&read, 0, sizeof read);
   eo_table_decode(&eo_design_table, document, NULL, &read, faults);
   if (faults->count == before)
-    settle_shares(&read, warnings, faults);
+    eo_load_cases_settle(read.load_case, read.load_cases, warnings, faults);
   if (faults->count != before)
     return false;
   drop_right_end(document, &read, warnings);

@@ -12,7 +12,7 @@
 
 extern const struct eo_table eo_design_table, eo_gear_pair_table, eo_material_table, eo_alignment_table, eo_supports_table, eo_shafts_table,
     eo_load_case_table, eo_flank_modification_table, eo_member_modification_table, eo_modification_table, eo_objective_table,
-    eo_optimization_table, eo_resolution_table;
+    eo_scenario_table, eo_optimization_table, eo_resolution_table;
 
 /* What was changed or left out in reading a design that is otherwise right. */
 struct eo_warnings {
@@ -25,6 +25,9 @@ void eo_warnings_add(struct eo_warnings *warnings, const char *format, ...) __at
    end that does not exist is dropped, each with a warning. False when there is a fault; *design is then untouched.
    warnings may be NULL. */
 bool eo_design_decode(const json_t *document, struct eo_design *design, struct eo_warnings *warnings, struct eo_faults *faults);
+
+/* The load cases as part of another document than a design: all state their share or none does; scaled to the sum 1. */
+void eo_load_cases_settle(struct eo_load_case *load_case, int count, struct eo_warnings *warnings, struct eo_faults *faults);
 
 /* Says which assumption stands in for a key that decides the result and that the document leaves out. */
 void eo_design_note_assumptions(const json_t *document, const struct eo_design *design, struct eo_warnings *warnings);

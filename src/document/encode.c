@@ -59,6 +59,8 @@ static json_t *encode_field(const struct eo_field *field, const void *source)
   case EO_FIELD_LIMIT:
     return limit->enabled ? eo_json_real(limit->limit, field->unit) : json_null();
   case EO_FIELD_OBJECT:
+    if (field->flags & EO_FIELD_NULLABLE && !*(const int *)((const char *)source + field->count_offset))
+      return json_null();
     return eo_table_encode(field->table, place);
   case EO_FIELD_LIST:
     return encode_list(field, source);
@@ -152,12 +154,14 @@ void eo_table_done(const struct eo_table *table, void *target)
 {
   for (int i = 0; i < table->count; i++) {
     const struct eo_field *field = &table->field[i];
-    void *place = (char *)target + field->offset;
-    if (field->kind == EO_FIELD_OBJECT)
-      eo_table_done(field->table, place);
-    else if (field->kind == EO_FIELD_SERIES) {
-      free(((struct eo_series *)place)->value);
-      *(struct eo_series *)place = (struct eo_series){0};
+    char *place = (char *)target + field->offset;
+    int rows = field->kind == EO_FIELD_OBJECT ? 1 : field->kind == EO_FIELD_LIST ? *(const int *)((const char *)target + field->count_offset) : 0;
+    for (int j = 0; j < rows; j++)
+      eo_table_done(field->table, place + (size_t)j * field->table->size);
+    if (field->kind == EO_FIELD_SERIES) {
+      struct eo_series *series = (void *)place;
+      free(series->value);
+      *series = (struct eo_series){0};
     }
   }
 }

@@ -1,5 +1,5 @@
 /* JSON text in and out, on top of jansson (RFC 8259). Reading is strict: bounded size and depth, no duplicate keys, every
-   number a finite double. Writing gives the shortest decimals that read back as the same doubles. */
+   number a finite double or a 64 bit integer. Writing gives the shortest decimals that read back as the same doubles. */
 #ifndef EASEOFF_DOCUMENT_JSON_H
 #define EASEOFF_DOCUMENT_JSON_H
 

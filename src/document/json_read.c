@@ -47,8 +47,7 @@ json_t *eo_json_parse(const char *data, size_t size, struct eo_error *error)
     return NULL;
   }
   json_error_t fault;
-  /* Every number as a double: JSON knows one kind, and a whole number out of range then fails its range, not the syntax. */
-  json_t *value = json_loadb(data, size, JSON_REJECT_DUPLICATES | JSON_DECODE_INT_AS_REAL, &fault);
+  json_t *value = json_loadb(data, size, JSON_REJECT_DUPLICATES, &fault);
   if (!value)
     report(&fault, error);
   else if (!json_is_object(value)) {

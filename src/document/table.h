@@ -30,7 +30,7 @@ enum eo_field_kind {
 
 enum {
   EO_FIELD_REQUIRED = 1,   /* no default */
-  EO_FIELD_NULLABLE = 2,   /* null is allowed: NaN inside, `derived` says what stands in its place */
+  EO_FIELD_NULLABLE = 2,   /* null is allowed: NaN inside (OBJECT: see count_offset), `derived` says what stands in its place */
   EO_FIELD_ASCENDING = 4,  /* NUMBERS: strictly increasing */
   EO_FIELD_OMIT = 8,       /* OBJECT: left out of the encoded document while everything in it has its default */
 };
@@ -55,7 +55,7 @@ struct eo_field {
   const char *fallback_text;  /* TEXT */
   const char *const *choices; /* CHOICE, TEXT: ends with NULL */
   int count;                  /* NUMBERS: how many; TEXT: bytes; LIST: capacity */
-  size_t count_offset;        /* LIST */
+  size_t count_offset;        /* LIST: int, number of rows; nullable OBJECT: int, 1 when it is there, 0 for null */
   const void *rows;           /* LIST: default rows, [row_count] structs */
   int row_count;
   double series_low, series_high; /* SERIES: range of each number */
@@ -84,11 +84,11 @@ json_t *eo_table_encode(const struct eo_table *table, const void *source);
 /* Moves every number to the nearest one the document can express, so that decode(encode(x)) is x bit for bit. */
 void eo_table_settle(const struct eo_table *table, void *target);
 
-/* Frees SERIES members. */
+/* Frees SERIES members, in the rows of lists too. */
 void eo_table_done(const struct eo_table *table, void *target);
 
-/* Adds one line per key to the text: path, type, unit, range, default, help; nested tables follow indented. With output set,
-   ranges and defaults are left out. */
+/* Adds one line per key to the text: path, type, unit, range, default, help; nested tables follow indented, each once. With output
+   set, defaults are left out. */
 void eo_table_describe(const struct eo_table *table, bool output, struct eo_text *text);
 
 /* The ways to write a row of a table. low and high are inclusive and in the document's unit. */
@@ -112,8 +112,15 @@ void eo_table_describe(const struct eo_table *table, bool output, struct eo_text
   {.key = key_, .kind = EO_FIELD_LIMIT, .flags = EO_FIELD_NULLABLE, .offset = offsetof(type, member), .unit = unit_, .low = low_, .high = high_, .fallback = NAN, .derived = "off", .help = help_}
 #define EO_OBJECT(type, member, key_, table_, help_)                                                                                 \
   {.key = key_, .kind = EO_FIELD_OBJECT, .offset = offsetof(type, member), .table = table_, .help = help_}
+/* An object that may be left out or null: the int `present` tells. */
+#define EO_OPTIONAL(type, member, present, key_, table_, derived_, help_)                                                            \
+  {.key = key_, .kind = EO_FIELD_OBJECT, .flags = EO_FIELD_NULLABLE, .offset = offsetof(type, member), .count_offset = offsetof(type, present), .table = table_, .derived = derived_, .help = help_}
 /* A group of keys whose members stand in the surrounding struct itself. */
 #define EO_GROUP(key_, table_, help_) {.key = key_, .kind = EO_FIELD_OBJECT, .table = table_, .help = help_}
+#define EO_LIST(type, member, rows, key_, table_, low_, capacity_, help_)                                                            \
+  {.key = key_, .kind = EO_FIELD_LIST, .flags = (low_) > 0 ? EO_FIELD_REQUIRED : 0, .offset = offsetof(type, member), .low = low_, .high = capacity_, .count = capacity_, .count_offset = offsetof(type, rows), .table = table_, .help = help_}
+#define EO_TEXT(type, member, key_, help_)                                                                                           \
+  {.key = key_, .kind = EO_FIELD_TEXT, .offset = offsetof(type, member), .count = sizeof ((type *)0)->member, .help = help_}
 #define EO_SERIES(type, member, key_, unit_, most_, low_, high_, flags_, help_)                                                      \
   {.key = key_, .kind = EO_FIELD_SERIES, .flags = flags_, .offset = offsetof(type, member), .unit = unit_, .low = 0, .high = most_, .series_low = low_, .series_high = high_, .help = help_}
 /* Rows of output tables: no range. */

@@ -9,7 +9,7 @@
 #include "numerics/nonlinear.h"
 
 enum { MAX_ITERATIONS = 60, MIN_SAMPLES = 256, SAMPLES_PER_HARMONIC = 16 };
-static const double tolerance = 1e-10, acceptable = 1e-7, step_tolerance = 1e-14;
+static const double tolerance = 1e-10, acceptable = 1e-7, step_tolerance = 1e-14, sound = 1e-8;
 
 struct eo_balance {
   int harmonics, terms; /* terms = 1 + 2 harmonics */
@@ -266,19 +266,33 @@ static double largest_residual(struct eo_balance *w, const double *x)
   return largest / mean_load(w);
 }
 
-/* One Newton step from the static curve with the teeth held together solves an affine law. Returns whether the matrix is regular. */
+/* Takes one Newton step with the factored Jacobian; returns its size against that of x. */
+static double step(struct eo_balance *w, double *x)
+{
+  int all = w->ends * w->terms;
+  double change = 0, size = 0;
+  eo_dense_substitute(all, w->jacobian, w->pivot, 1, w->residual);
+  for (int i = 0; i < all; i++) {
+    x[i] -= w->residual[i];
+    change = fmax(change, fabs(w->residual[i]));
+    size = fmax(size, fabs(x[i]));
+  }
+  return size > 0 ? change / size : 0;
+}
+
+/* Two Newton steps from zero with the teeth held together: the first solves an affine law, the second refines it and tells
+   whether the matrix is so nearly singular (an undamped resonance) that the solution means nothing. Returns whether it is sound. */
 static bool solve_linear(struct eo_balance *w, double *x)
 {
   int all = w->ends * w->terms;
-  for (int i = 0; i < all; i++)
-    x[i] = 0;
+  memset(x, 0, sizeof *x * all);
   memset(w->jacobian, 0, sizeof *w->jacobian * all * all);
   balance_jacobian(w, x, w->jacobian);
-  if (eo_dense_solve(all, w->jacobian, w->pivot, 1, w->residual))
+  if (eo_dense_factor(all, w->jacobian, w->pivot))
     return false;
-  for (int i = 0; i < all; i++)
-    x[i] -= w->residual[i];
-  return true;
+  step(w, x);
+  balance_residual(w, x, w->residual);
+  return step(w, x) < sound;
 }
 
 static enum eo_code solve_nonlinear(struct eo_balance *w, double *x, struct eo_balance_report *report, struct eo_error *error)
@@ -319,13 +333,14 @@ enum eo_code eo_balance_solve(struct eo_balance *w, const struct eo_oscillator *
                               struct eo_balance_report *report, struct eo_error *error)
 {
   assemble(w, oscillator, harmonic, cycle, mirror_ends(oscillator, cycle));
-  bool affine = eo_law_is_affine(cycle->law[0]) && (oscillator->ends == 1 || eo_law_is_affine(cycle->law[1]));
+  bool guessed = warm, affine = eo_law_is_affine(cycle->law[0]) && (oscillator->ends == 1 || eo_law_is_affine(cycle->law[1]));
   *report = (struct eo_balance_report){.ends = w->ends};
   enum eo_code code = EO_OK;
   if (!warm && affine) {
     if ((code = use_grid(w, w->coarse, true, error)))
       return code;
-    if (solve_linear(w, x)) {
+    guessed = solve_linear(w, x);
+    if (guessed) {
       report->residual = largest_residual(w, x);
       report->converged = report->linear = in_contact(w) && report->residual <= acceptable;
       report->grid = w->grid;
@@ -334,7 +349,7 @@ enum eo_code eo_balance_solve(struct eo_balance *w, const struct eo_oscillator *
   if (!report->converged) {
     if ((code = use_grid(w, w->fine, false, error)))
       return code;
-    if (!warm && !affine)
+    if (!guessed)
       static_guess(w, x);
     code = solve_nonlinear(w, x, report, error);
     report->grid = w->grid;

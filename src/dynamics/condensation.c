@@ -5,7 +5,7 @@
 
 #include "numerics/dense.h"
 
-enum { N = EO_MAX_COORDINATES };
+enum { N = EO_MAX_COORDINATES, ATTEMPTS = 8 };
 
 static void set_dynamic_stiffness(const struct eo_oscillator *o, double w, double shift, double complex *d)
 {
@@ -106,10 +106,12 @@ static void condense_one(const struct eo_oscillator *o, double frequency, int k,
 {
   int n = o->n, ends = o->ends;
   double complex b[5 * N], compliance[2][2] = {0}, impact[2][2] = {0}, inverse[2][2], mean[2] = {0};
-  double shift = o->shift;
-  /* The shifted system may have an undamped resonance just here; any other shift will do. */
-  while (solve_responses(o, k * frequency, shift, b))
+  double shift = o->shift, w = k * frequency;
+  /* An undamped resonance just here: another shift moves it if the meshes feel it, a hair's breadth in frequency avoids it if not. */
+  for (int attempt = 0; attempt < ATTEMPTS && solve_responses(o, w, shift, b); attempt++) {
     shift *= 1.37;
+    w *= 1 + 1e-10;
+  }
   memset(h, 0, sizeof *h);
   for (int end = 0; end < ends; end++) {
     memcpy(h->mesh_response[end], b + end * n, n * sizeof *b);

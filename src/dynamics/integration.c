@@ -7,7 +7,9 @@
 #include "numerics/fourier.h"
 #include "numerics/ode.h"
 
-enum { MAX_LAW_ROWS = 1024 };
+enum { MAX_LAW_ROWS = 1024, PATIENCE = 30 };
+/* Where the integration's own noise keeps the state from settling further. */
+static const double noise = 1e-5, progress_factor = 0.9;
 
 const struct eo_integration_options eo_integration_defaults = {
     .relative_tolerance = 1e-8, .settled = 1e-7, .max_periods = 1000, .samples = 1024};
@@ -172,8 +174,8 @@ static enum eo_code one_period(struct eo_ode *ode, const struct run *run, int pe
 static enum eo_code run_periods(struct eo_ode *ode, const struct run *run, const struct eo_integration_options *options,
                                 double *y, struct eo_integration *result, const struct eo_progress *progress, struct eo_error *error)
 {
-  int n = run->oscillator->n, period = 0;
-  double before[2 * EO_MAX_COORDINATES];
+  int n = run->oscillator->n, period = 0, idle = 0;
+  double before[2 * EO_MAX_COORDINATES], best = INFINITY;
   result->periodic = false;
   result->change = 0;
   while (period < options->max_periods - 1 && !result->periodic) {
@@ -185,7 +187,12 @@ static enum eo_code run_periods(struct eo_ode *ode, const struct run *run, const
     for (int i = 0; i < n; i++)
       change = fmax(change, fmax(fabs(y[i] - before[i]), fabs(y[n + i] - before[n + i]) / (2 * M_PI)));
     result->change = swing > 0 ? change / swing : 0;
-    result->periodic = result->change <= options->settled;
+    if (result->change < progress_factor * best) {
+      best = result->change;
+      idle = 0;
+    } else
+      idle++;
+    result->periodic = result->change <= options->settled || (idle >= PATIENCE && result->change <= noise);
     if (eo_progress_report(progress, "time integration", (double)period / options->max_periods))
       return eo_error_set(error, EO_ERROR_CANCELLED, "", "The time integration was cancelled.");
   }

@@ -9,7 +9,8 @@
 
 struct eo_integration_options {
   double relative_tolerance; /* of CVODE, > 0 */
-  double settled;            /* periodic when the state changes over one period by less than this share of its swing, > 0 */
+  double settled;            /* periodic when the state changes over one period by less than this share of its swing, > 0;
+                                or by less than 1e-5 of it without settling further, which is the integration's own noise */
   int max_periods;           /* >= 1 */
   int samples;               /* of the period that is recorded, >= 2 */
 };

@@ -39,6 +39,26 @@ static enum eo_code reserve(struct eo_law *law, int rows, int order, struct eo_e
   return EO_OK;
 }
 
+enum eo_code eo_law_copy(struct eo_law *law, const struct eo_law *source, struct eo_error *error)
+{
+  if (!source->rows) {
+    eo_law_done(law);
+    return EO_OK;
+  }
+  enum eo_code code = reserve(law, source->rows, source->order, error);
+  if (code)
+    return code;
+  struct eo_law copy = *source;
+  copy.series = law->series;
+  copy.load = law->load;
+  copy.capacity = law->capacity;
+  memcpy(copy.series, source->series, (size_t)source->rows * (size_t)eo_fourier_terms(source->order) * sizeof *copy.series);
+  if (source->kind == EO_MESH_TABLE)
+    memcpy(copy.load, source->load, (size_t)source->rows * sizeof *copy.load);
+  *law = copy;
+  return EO_OK;
+}
+
 static int all_finite(int n, const double *value)
 {
   for (int i = 0; i < n; i++)
@@ -154,6 +174,15 @@ enum eo_code eo_law_set_tangent(struct eo_law *law, int positions, const double 
   return EO_OK;
 }
 
+enum eo_code eo_law_set_back(struct eo_law *law, double back, double stiffness, struct eo_error *error)
+{
+  if (!isfinite(back) || !(back < law->front) || !(stiffness > 0 && isfinite(stiffness)))
+    return eo_error_set(error, EO_ERROR_INPUT, "", "Back flanks at %g m with a stiffness of %g N/m make no backlash.", back, stiffness);
+  law->back = back;
+  law->back_stiffness = stiffness;
+  return EO_OK;
+}
+
 enum eo_code eo_law_set_secant(struct eo_law *law, int positions, const double *deflection, double nominal,
                                     double datum, int order, double back, struct eo_error *error)
 {
@@ -199,11 +228,22 @@ static struct eo_mesh_force stiffness_force(double k, double x, double front, do
   return (struct eo_mesh_force){0, 0, back - x, -1};
 }
 
+/* Out of contact in front by the (negative) margin: the back flanks, if there are any. */
+static struct eo_mesh_force behind(const struct eo_law *law, double x, double margin)
+{
+  double back = law->back_stiffness > 0 ? law->back - x : -INFINITY;
+  if (back > 0)
+    return (struct eo_mesh_force){-law->back_stiffness * back, law->back_stiffness, back, -1};
+  if (margin >= back)
+    return (struct eo_mesh_force){0, 0, margin, 1};
+  return (struct eo_mesh_force){0, 0, back, -1};
+}
+
 static struct eo_mesh_force power_force(const struct eo_law *law, const double *row, double x)
 {
   double margin = x - law->front - row[1];
   if (margin <= 0)
-    return (struct eo_mesh_force){0, 0, margin, 1};
+    return behind(law, x, margin);
   double force = row[0] * pow(margin, law->exponent);
   return (struct eo_mesh_force){force, law->exponent * force / margin, margin, 1};
 }
@@ -212,7 +252,7 @@ static struct eo_mesh_force table_force(const struct eo_law *law, const double *
 {
   double z = x - law->front;
   if (z <= row[0])
-    return (struct eo_mesh_force){0, 0, z - row[0], 1};
+    return behind(law, x, z - row[0]);
   int low = 0, high = law->rows - 1;
   while (high - low > 1) {
     int middle = (low + high) / 2;
@@ -228,14 +268,9 @@ static struct eo_mesh_force table_force(const struct eo_law *law, const double *
 static struct eo_mesh_force tangent_force(const struct eo_law *law, const double *row, double x, int attached)
 {
   double k = row[1], force = law->nominal + k * (x - law->front - row[0]);
-  double back = law->back_stiffness > 0 ? law->back - x : -INFINITY;
   if (force > 0 || attached)
     return (struct eo_mesh_force){force, k, force / k, 1};
-  if (back > 0)
-    return (struct eo_mesh_force){-law->back_stiffness * back, law->back_stiffness, back, -1};
-  if (force / k >= back)
-    return (struct eo_mesh_force){0, 0, force / k, 1};
-  return (struct eo_mesh_force){0, 0, back, -1};
+  return behind(law, x, force / k);
 }
 
 struct eo_mesh_force eo_law_force(const struct eo_law *law, const double *row, double x, int attached)

@@ -57,9 +57,16 @@ enum eo_code eo_law_set_table(struct eo_law *law, int rows, int positions, const
 enum eo_code eo_law_set_tangent(struct eo_law *law, int positions, const double *deflection,
                                      const double *tangent, double nominal, int order, double back, struct eo_error *error);
 
+/* Back flanks of a power or table law (its set function leaves it without): they touch where X < back, with a constant
+   stiffness > 0. Errors: EO_ERROR_INPUT. */
+enum eo_code eo_law_set_back(struct eo_law *law, double back, double stiffness, struct eo_error *error);
+
 /* Secant law k_m = P / (Z - datum) of the same arrays, X counted from the datum (first contact anywhere on the flank). */
 enum eo_code eo_law_set_secant(struct eo_law *law, int positions, const double *deflection, double nominal,
                                     double datum, int order, double back, struct eo_error *error);
+
+/* The same law in memory of its own. Errors: EO_ERROR_MEMORY. */
+enum eo_code eo_law_copy(struct eo_law *law, const struct eo_law *source, struct eo_error *error);
 
 /* Values of the rows at one phase, row[rows]; law->rows numbers. */
 void eo_law_rows(const struct eo_law *law, double phase, double *row);

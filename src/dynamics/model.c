@@ -245,13 +245,13 @@ void eo_dynamics_model_load(struct eo_dynamics_model *model, double torque, enum
 
 double eo_dynamics_model_impact_drift(const struct eo_dynamics_model *model, const double mean[2])
 {
-  double largest = 0;
+  double square = 0;
   for (int z = 0; z < model->zero_modes; z++) {
     double work = 0;
     for (int end = 0; end < model->parameters.ends; end++)
       for (int i = 0; i < model->freedoms; i++)
         work += model->zero[i * model->zero_modes + z] * model->theta_impact[end][i] * mean[end];
-    largest = fmax(largest, fabs(work));
+    square += work * work;
   }
-  return largest;
+  return sqrt(square);
 }

@@ -44,7 +44,7 @@ enum eo_code eo_dynamics_model_init(struct eo_dynamics_model *model, const struc
 void eo_dynamics_model_load(struct eo_dynamics_model *model, double torque, enum eo_impact_in_dynamics impact);
 
 /* Work of the mean impacts on the zero modes: with the paper's theta-only form the mean of W_1 - W_2 does work on the
-   pinion's screw motion. Returns the largest generalised force, N/sqrt(kg); it has no periodic response and is left out. */
+   pinion's screw motion. Returns the generalised force on all of them together, N/sqrt(kg); it has no periodic response and is left out. */
 double eo_dynamics_model_impact_drift(const struct eo_dynamics_model *model, const double mean[2]);
 
 struct eo_dynamics_modes {

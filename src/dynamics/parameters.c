@@ -3,9 +3,10 @@
 #include <math.h>
 #include <stdio.h>
 
-/* One row per number to be checked: where it is and what it must be. */
+/* One row per number to be checked: its key in the design's supports (of what it follows from, if it has none itself),
+   what people call it, and what it must be. */
 struct rule {
-  const char *key;
+  const char *key, *name;
   double value;
   bool positive; /* else >= 0 */
 };
@@ -16,7 +17,7 @@ static enum eo_code check_rules(int n, const struct rule *rule, struct eo_error 
     char pointer[sizeof error->pointer];
     snprintf(pointer, sizeof pointer, "/supports/%s", rule[i].key);
     if (!isfinite(rule[i].value) || rule[i].value < 0 || (rule[i].positive && rule[i].value == 0))
-      return eo_error_set(error, EO_ERROR_INPUT, pointer, "%s must be a finite %s number, not %g.", rule[i].key,
+      return eo_error_set(error, EO_ERROR_INPUT, pointer, "The %s must be a finite %s number, not %g.", rule[i].name,
                           rule[i].positive ? "positive" : "non-negative", rule[i].value);
   }
   return EO_OK;
@@ -24,7 +25,8 @@ static enum eo_code check_rules(int n, const struct rule *rule, struct eo_error 
 
 static enum eo_code check_dampers(const struct eo_dynamics_parameters *p, struct eo_error *error)
 {
-  static const char *const torsional[2] = {"/supports/pinion_groove_torsional_stiffness", "/supports/gear_groove_torsional_stiffness"};
+  static const char *const torsional[2] = {"/supports/pinion_groove_torsional_stiffness_Nm_per_rad",
+                                             "/supports/gear_groove_torsional_stiffness_Nm_per_rad"};
   for (int m = 0; m < 2; m++)
     if (p->groove_torsional_stiffness[m] == 0 && p->groove_torsional_damping[m] > 0)
       return eo_error_set(error, EO_ERROR_INPUT, torsional[m], "A torsional damper between the ends needs its spring.");
@@ -40,27 +42,28 @@ enum eo_code eo_dynamics_parameters_check(const struct eo_dynamics_parameters *p
     return eo_error_set(error, EO_ERROR_INPUT, "/gear_pair", "Base radii %g and %g m with a base helix angle of %g rad make no gear pair.",
                         p->base_radius[0], p->base_radius[1], p->base_helix_angle);
   const struct rule rule[] = {
-      {"pinion_mass", p->mass[0], true},
-      {"gear_mass", p->mass[1], true},
-      {"pinion_inertia", p->inertia[0], true},
-      {"gear_inertia", p->inertia[1], true},
-      {"pinion_bearing_stiffness", p->bearing_stiffness[0], true},
-      {"gear_bearing_stiffness", p->bearing_stiffness[1], true},
-      {"pinion_bearing_damping", p->bearing_damping[0], false},
-      {"gear_bearing_damping", p->bearing_damping[1], false},
-      {"gear_axial_stiffness_left", p->gear_axial_stiffness[0], true},
-      {"gear_axial_damping_left", p->gear_axial_damping[0], false},
-      {"pinion_groove_axial_stiffness", p->groove_axial_stiffness[0], true},
-      {"pinion_groove_axial_damping", p->groove_axial_damping[0], false},
-      {"mesh_damping", p->mesh_damping, false},
-      {"gear_axial_stiffness_right", p->gear_axial_stiffness[1], true}, /* from here on with two ends only */
-      {"gear_axial_damping_right", p->gear_axial_damping[1], false},
-      {"gear_groove_axial_stiffness", p->groove_axial_stiffness[1], true},
-      {"gear_groove_axial_damping", p->groove_axial_damping[1], false},
-      {"pinion_groove_torsional_stiffness", p->groove_torsional_stiffness[0], false},
-      {"gear_groove_torsional_stiffness", p->groove_torsional_stiffness[1], false},
-      {"pinion_groove_torsional_damping", p->groove_torsional_damping[0], false},
-      {"gear_groove_torsional_damping", p->groove_torsional_damping[1], false},
+      {"pinion_mass_kg", "mass of the pinion", p->mass[0], true},
+      {"gear_mass_kg", "mass of the gear", p->mass[1], true},
+      {"pinion_inertia_kg_m2", "inertia of the pinion", p->inertia[0], true},
+      {"gear_inertia_kg_m2", "inertia of the gear", p->inertia[1], true},
+      {"pinion_bearing_stiffness_N_per_um", "pinion's bearing stiffness", p->bearing_stiffness[0], true},
+      {"gear_bearing_stiffness_N_per_um", "gear's bearing stiffness", p->bearing_stiffness[1], true},
+      {"bearing_damping_ratio", "pinion's bearing damping", p->bearing_damping[0], false},
+      {"bearing_damping_ratio", "gear's bearing damping", p->bearing_damping[1], false},
+      {"gear_axial_stiffness_left_N_per_um", "gear's axial stiffness on the left", p->gear_axial_stiffness[0], true},
+      {"bearing_damping_ratio", "gear's axial damping on the left", p->gear_axial_damping[0], false},
+      {"pinion_groove_axial_stiffness_N_per_um", "pinion's axial stiffness", p->groove_axial_stiffness[0], true},
+      {"groove_damping_ratio", "pinion's axial damping", p->groove_axial_damping[0], false},
+      {"mesh_damping_ratio", "mesh damping", p->mesh_damping, false},
+      /* from here on with two ends only */
+      {"gear_axial_stiffness_right_N_per_um", "gear's axial stiffness on the right", p->gear_axial_stiffness[1], true},
+      {"bearing_damping_ratio", "gear's axial damping on the right", p->gear_axial_damping[1], false},
+      {"gear_groove_axial_stiffness_N_per_um", "axial stiffness of the gear's groove", p->groove_axial_stiffness[1], true},
+      {"groove_damping_ratio", "axial damping of the gear's groove", p->groove_axial_damping[1], false},
+      {"pinion_groove_torsional_stiffness_Nm_per_rad", "torsional stiffness of the pinion's groove", p->groove_torsional_stiffness[0], false},
+      {"gear_groove_torsional_stiffness_Nm_per_rad", "torsional stiffness of the gear's groove", p->groove_torsional_stiffness[1], false},
+      {"groove_damping_ratio", "torsional damping of the pinion's groove", p->groove_torsional_damping[0], false},
+      {"groove_damping_ratio", "torsional damping of the gear's groove", p->groove_torsional_damping[1], false},
   };
   int all = sizeof rule / sizeof *rule;
   enum eo_code code = check_rules(p->ends == 2 ? all : all - 8, rule, error);
@@ -168,10 +171,10 @@ static enum eo_code set_groove(struct eo_dynamics_parameters *p, const struct eo
 static enum eo_code check_supports(const struct eo_supports *s, double mean_mesh_stiffness, struct eo_error *error)
 {
   const struct rule rule[] = {
-      {"bearing_damping_ratio", s->bearing_damping_ratio, false},
-      {"groove_damping_ratio", s->groove_damping_ratio, false},
-      {"mesh_damping_ratio", s->mesh_damping_ratio, false},
-      {"mesh_damping_stiffness", or_default(s->mesh_damping_stiffness, mean_mesh_stiffness), true},
+      {"bearing_damping_ratio", "damping ratio of the bearings", s->bearing_damping_ratio, false},
+      {"groove_damping_ratio", "damping ratio of the groove", s->groove_damping_ratio, false},
+      {"mesh_damping_ratio", "damping ratio of the mesh", s->mesh_damping_ratio, false},
+      {"mesh_damping_stiffness_N_per_um", "mesh stiffness that sets the mesh damping", or_default(s->mesh_damping_stiffness, mean_mesh_stiffness), true},
   };
   return check_rules(sizeof rule / sizeof *rule, rule, error);
 }

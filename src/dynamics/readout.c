@@ -85,23 +85,16 @@ void eo_vibration_history(const struct eo_vibration_solver *s, enum eo_channel c
     history[i] = eo_fourier_value(s->spectrum.harmonics, series, (double)i / samples);
 }
 
-/* Displacements q_k from those of the oscillator, and the zero modes, which only impacts drive and only alternating ones. */
-static void spread(struct eo_vibration_solver *s, int k, const double complex *response, const double complex impact[2])
+/* Displacements q_k from those of the oscillator; the zero modes have no part in them. */
+static void spread(struct eo_vibration_solver *s, int k, const double complex *response)
 {
   const struct eo_dynamics_model *m = &s->model;
-  int n = m->oscillator.n, zeros = m->zero_modes;
-  double complex *q = s->spectrum.freedom + (size_t)k * m->freedoms, zero[3] = {0};
-  double w2 = pow(k * s->spectrum.frequency, 2);
-  for (int z = 0; z < zeros && k && s->condensed_impact == EO_IMPACT_PAPER; z++)
-    for (int end = 0; end < m->parameters.ends; end++)
-      for (int i = 0; i < m->freedoms; i++)
-        zero[z] += m->zero[i * zeros + z] * m->theta_impact[end][i] * impact[end] / w2;
+  int n = m->oscillator.n;
+  double complex *q = s->spectrum.freedom + (size_t)k * m->freedoms;
   for (int i = 0; i < m->freedoms; i++) {
     q[i] = 0;
     for (int j = 0; j < n; j++)
       q[i] += m->basis[i * n + j] * response[j];
-    for (int z = 0; z < zeros; z++)
-      q[i] += m->zero[i * zeros + z] * zero[z];
   }
 }
 
@@ -227,7 +220,7 @@ static void fill_spectrum(struct eo_vibration_solver *s, const struct eo_cycle *
       result->power_supplied += creal(f[end] * conj(I * k * cycle->frequency * motion)) / 2;
     }
     eo_condensed_response(o, s->harmonic, k, f, x, w, response);
-    spread(s, k, response, w);
+    spread(s, k, response);
     result->power_dissipated += dissipation(o, k * cycle->frequency, response);
     result->power_supplied -= impact_power(o, k * cycle->frequency, response, w);
   }

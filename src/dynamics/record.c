@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "dynamics/vibration-internal.h"
+#include "numerics/dense.h"
 #include "numerics/fourier.h"
 
 enum eo_code eo_vibration_make_run(struct eo_integration *run, const struct eo_oscillator *o, int samples, struct eo_error *error)
@@ -42,39 +43,16 @@ static void fill_grid(const struct eo_cycle *cycle, const struct eo_integration 
   }
 }
 
-/* Accelerations of the twelve coordinates at one phase; impacts also drive the zero modes, but for their mean. */
-static void freedom_accelerations(const struct eo_dynamics_model *m, const struct eo_cycle *cycle, enum eo_impact_in_dynamics impact,
-                                  double phase, const double *r, double *q)
-{
-  int n = m->oscillator.n, zeros = m->zero_modes;
-  for (int i = 0; i < m->freedoms; i++) {
-    q[i] = 0;
-    for (int j = 0; j < n; j++)
-      q[i] += m->basis[i * n + j] * r[j];
-  }
-  for (int end = 0; end < m->parameters.ends && impact == EO_IMPACT_PAPER; end++) {
-    const struct eo_pulse *pulse = &cycle->pulse[end];
-    double force = eo_pulse_value(pulse, cycle->frequency, phase + cycle->shift[end]) - creal(eo_pulse_harmonic(pulse, cycle->frequency, 0, 0));
-    for (int z = 0; z < zeros; z++) {
-      double work = 0;
-      for (int i = 0; i < m->freedoms; i++)
-        work += m->zero[i * zeros + z] * m->theta_impact[end][i];
-      for (int i = 0; i < m->freedoms; i++)
-        q[i] -= m->zero[i * zeros + z] * work * force;
-    }
-  }
-}
-
 /* RMS straight from the time history of the accelerations, no harmonic left out. */
-static void read_rms(const struct eo_vibration_solver *s, const struct eo_vibration_case *load, const struct eo_cycle *cycle,
-                     const struct eo_integration *run, int samples, struct eo_vibration *result)
+static void read_rms(const struct eo_vibration_solver *s, const struct eo_cycle *cycle, const struct eo_integration *run,
+                     int samples, struct eo_vibration *result)
 {
   const struct eo_dynamics_model *m = &s->model;
   int ends = m->oscillator.ends;
   double sum[EO_READINGS][3] = {0}, square[EO_READINGS][3] = {0}; /* left, right, mean of both */
   for (int i = 0; i < samples; i++) {
     double q[EO_MAX_FREEDOMS], phase = (double)i / samples;
-    freedom_accelerations(m, cycle, load->impact, phase, run->acceleration + (size_t)i * m->oscillator.n, q);
+    eo_dense_multiply(m->freedoms, m->oscillator.n, m->basis, run->acceleration + (size_t)i * m->oscillator.n, q);
     for (int reading = 0; reading < EO_READINGS; reading++) {
       double value[3] = {0};
       for (int end = 0; end < ends; end++) {
@@ -114,7 +92,7 @@ enum eo_code eo_vibration_read_run(struct eo_vibration_solver *s, const struct e
   eo_vibration_read_balance(s, load, cycle, &report, result);
   result->periods = run->periods;
   if (run->periodic)
-    read_rms(s, load, cycle, run, samples, result);
+    read_rms(s, cycle, run, samples, result);
   eo_alternating_free(grid);
   return EO_OK;
 }

@@ -1,82 +1,77 @@
 #include "dynamics/sweep.h"
 
 #include <math.h>
+#include <stdlib.h>
 
 #include "dynamics/vibration-internal.h"
 #include "numerics/fourier.h"
 
-static enum eo_code check_speeds(int count, const double *speed, struct eo_error *error)
+static enum eo_code check_speeds(int count, const struct eo_vibration_case *load, struct eo_error *error)
 {
   if (count < 1)
     return eo_error_set(error, EO_ERROR_INPUT, "", "A sweep needs at least one speed.");
-  for (int i = 0; i < count; i++)
-    if (!(speed[i] > 0 && isfinite(speed[i])) || (i && speed[i] < speed[i - 1]))
-      return eo_error_set(error, EO_ERROR_INPUT, "", "The speeds of a sweep must be positive and ascend; number %d is %g rad/s.", i, speed[i]);
+  for (int i = 1; i < count; i++)
+    if (!(load[i].speed > load[i - 1].speed))
+      return eo_error_set(error, EO_ERROR_INPUT, "", "The speeds of a sweep must ascend; number %d is %g rad/s after %g.", i, load[i].speed,
+                          load[i - 1].speed);
   return EO_OK;
 }
 
-/* From the last solution where it had lost contact, else, or when that leads nowhere, afresh. */
-static enum eo_code solve_next(struct eo_vibration_solver *s, const struct eo_vibration_case *load, bool *separated,
-                               struct eo_vibration *result, struct eo_error *error)
+enum eo_code eo_vibration_follow(struct eo_vibration_solver *s, int count, const struct eo_vibration_case *load,
+                                 const struct eo_vibration *alone, int direction, struct eo_vibration *result, struct eo_error *error)
 {
-  enum eo_code code = EO_OK;
-  bool found = false;
-  if (*separated) {
-    code = eo_vibration_solve(s, load, EO_START_WARM, result, error);
-    found = !code && result->outcome != EO_VIBRATION_NOT_CONVERGED;
+  enum eo_code code = check_speeds(count, load, error);
+  bool separated = false, holds = false; /* at the neighbour; the solver holds its solution */
+  for (int step = 0, before = 0; step < count && !code; step++) {
+    int i = direction > 0 ? step : count - 1 - step;
+    struct eo_vibration again;
+    if (separated && !holds)
+      code = eo_vibration_solve(s, &load[before], EO_START_COLD, &again, error);
+    if (separated && !code)
+      code = eo_vibration_solve(s, &load[i], EO_START_WARM, &result[i], error);
+    holds = separated && !code && result[i].outcome != EO_VIBRATION_NOT_CONVERGED;
+    if (!holds)
+      result[i] = alone[i];
+    separated = result[i].outcome == EO_VIBRATION_CONTACT_LOST;
+    before = i;
   }
-  if (!code && !found)
-    code = eo_vibration_solve(s, load, EO_START_COLD, result, error);
-  *separated = !code && result->outcome == EO_VIBRATION_CONTACT_LOST;
   return code;
 }
 
-static enum eo_code sweep_up(struct eo_vibration_solver *s, struct eo_vibration_case *load, int count, const double *speed,
-                             struct eo_vibration *up, const struct eo_progress *progress, struct eo_error *error)
+static enum eo_code solve_alone(struct eo_vibration_solver *s, int count, const struct eo_vibration_case *load, struct eo_vibration *alone,
+                                const struct eo_progress *progress, struct eo_error *error)
 {
-  bool separated = false;
-  for (int i = 0; i < count; i++) {
-    load->speed = speed[i];
-    enum eo_code code = solve_next(s, load, &separated, &up[i], error);
-    if (!code && eo_progress_report(progress, "speed sweep", 0.5 * i / count))
+  enum eo_code code = EO_OK;
+  for (int i = 0; i < count && !code; i++) {
+    code = eo_vibration_solve(s, &load[i], EO_START_COLD, &alone[i], error);
+    if (!code && eo_progress_report(progress, "speed sweep", (double)(i + 1) / count))
       code = eo_error_set(error, EO_ERROR_CANCELLED, "", "The sweep was cancelled.");
-    if (code)
-      return code;
   }
-  return EO_OK;
-}
-
-/* A state in full contact does not depend on the direction, so it is taken over from the way up. */
-static enum eo_code sweep_down(struct eo_vibration_solver *s, struct eo_vibration_case *load, int count, const double *speed,
-                               const struct eo_vibration *up, struct eo_vibration *down, const struct eo_progress *progress,
-                               struct eo_error *error)
-{
-  bool separated = false;
-  for (int i = count - 1; i >= 0; i--) {
-    if (up && !separated && up[i].outcome == EO_VIBRATION_CONVERGED) {
-      down[i] = up[i];
-      continue;
-    }
-    load->speed = speed[i];
-    enum eo_code code = solve_next(s, load, &separated, &down[i], error);
-    if (!code && eo_progress_report(progress, "speed sweep", 1 - 0.5 * i / count))
-      code = eo_error_set(error, EO_ERROR_CANCELLED, "", "The sweep was cancelled.");
-    if (code)
-      return code;
-  }
-  return EO_OK;
+  return code;
 }
 
 enum eo_code eo_vibration_sweep(struct eo_vibration_solver *s, const struct eo_vibration_case *load, int count,
                                 const double *speed, struct eo_vibration *up, struct eo_vibration *down,
                                 const struct eo_progress *progress, struct eo_error *error)
 {
-  struct eo_vibration_case at = *load;
-  enum eo_code code = check_speeds(count, speed, error);
+  size_t n = count > 0 ? (size_t)count : 1;
+  struct eo_vibration_case *at = calloc(n, sizeof *at);
+  struct eo_vibration *alone = calloc(n, sizeof *alone);
+  enum eo_code code = at && alone ? EO_OK : eo_error_memory(error);
+  for (int i = 0; i < count && !code; i++) {
+    at[i] = *load;
+    at[i].speed = speed[i];
+  }
+  if (!code)
+    code = check_speeds(count, at, error);
+  if (!code)
+    code = solve_alone(s, count, at, alone, progress, error);
   if (!code && up)
-    code = sweep_up(s, &at, count, speed, up, progress, error);
+    code = eo_vibration_follow(s, count, at, alone, +1, up, error);
   if (!code && down)
-    code = sweep_down(s, &at, count, speed, up, down, progress, error);
+    code = eo_vibration_follow(s, count, at, alone, -1, down, error);
+  free(at);
+  free(alone);
   return code;
 }
 

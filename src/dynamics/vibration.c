@@ -65,12 +65,22 @@ enum eo_code eo_vibration_set_model(struct eo_vibration_solver *s, const struct 
                                     struct eo_error *error)
 {
   struct eo_dynamics_model model;
-  enum eo_code code = eo_dynamics_model_init(&model, parameters, error);
+  struct eo_dynamics_parameters but_damping = *parameters;
+  enum eo_code code = eo_dynamics_parameters_check(parameters, error);
+  if (code)
+    return code;
+  s->solved = false;
+  /* the mesh damping is part of the mesh force: a new value leaves everything else as it is */
+  but_damping.mesh_damping = s->model.parameters.mesh_damping;
+  if (s->model.freedoms && !memcmp(&but_damping, &s->model.parameters, sizeof but_damping)) {
+    s->model.parameters.mesh_damping = parameters->mesh_damping;
+    return EO_OK;
+  }
+  code = eo_dynamics_model_init(&model, parameters, error);
   if (code)
     return code;
   s->model = model;
   s->condensed_frequency = 0;
-  s->solved = false;
   return EO_OK;
 }
 
@@ -97,6 +107,9 @@ static enum eo_code check_case(const struct eo_vibration_solver *s, const struct
   if (!isfinite(load->phase_right) || load->axial_order < 0 || load->axial_order > EO_MAX_HARMONICS)
     return eo_error_set(error, EO_ERROR_INPUT, "", "Phases must be finite and the axial motion at most %d harmonics.", EO_MAX_HARMONICS);
   enum eo_code code = EO_OK;
+  for (int end = 0; end < s->model.parameters.ends && !code; end++)
+    if (!load->law[end] || load->law[end]->rows < 1)
+      code = eo_error_set(error, EO_ERROR_NUMERIC, "", "The mesh law of end %d has not been set.", end + 1);
   for (int end = 0; end < s->model.parameters.ends && !code; end++)
     code = load->impact == EO_IMPACT_NONE ? EO_OK : check_pulse(&load->pulse[end], error);
   return code;

@@ -34,7 +34,10 @@ enum eo_vibration_outcome {
   EO_VIBRATION_NOT_CONVERGED, /* none was found; the numbers below are all zero */
 };
 
-/* Accelerations in m/s2, [reading] as enum eo_reading; RMS over a mesh period without the mean. */
+/* The zero modes are no part of any number here: neither torques nor meshes nor consistent impacts excite them. The paper's
+   impacts do when they differ between the ends, because they leave out the axial component of the force; their mean would
+   let the pinion drift away and their alternating part rattle it along its screw, so both are dropped with the modes.
+   Accelerations in m/s2, [reading] as enum eo_reading; RMS over a mesh period without the mean. */
 struct eo_vibration {
   enum eo_vibration_outcome outcome;
   int ends, harmonics;
@@ -57,7 +60,7 @@ struct eo_vibration {
   double axial_force_mean[2], axial_force_max[2]; /* gear thrust bearings [end]; with one end: gear, pinion */
   double power_supplied;                /* by the varying mesh (law and impacts) to the vibration, W */
   double power_dissipated;              /* in mesh, bearings and groove, W; equal in the periodic state */
-  double impact_drift;                  /* mean impact load on the zero modes that was left out, N/sqrt(kg) */
+  double impact_drift;                  /* mean impact load on the zero modes, left out like all motion in them, N/sqrt(kg) */
 };
 
 /* Complex amplitudes over the mesh harmonics: value = a_0 + Re sum a_k exp(2 pi i k phi). */
@@ -66,7 +69,7 @@ struct eo_spectrum {
   double frequency;
   double complex *deflection[2]; /* [1 + harmonics], m */
   double complex *force[2];      /* N */
-  double complex *freedom;       /* [1 + harmonics][freedoms], displacements without zero-mode means */
+  double complex *freedom;       /* [1 + harmonics][freedoms], displacements without the zero modes */
 };
 
 struct eo_vibration_solver; /* opaque */

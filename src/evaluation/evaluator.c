@@ -13,12 +13,20 @@ struct eo_evaluator {
   struct eo_gap_field field[2];            /* [end] */
   struct eo_loaded_gaps gaps[2];           /* [end] */
   struct eo_loaded_workspace *contact;
+  struct eo_elastic *bodies;               /* NULL: rigid */
+  struct eo_shafts shafts;                 /* those of the bodies */
+  struct eo_loaded_gaps bent;              /* of one end on bodies that stay as they are */
   struct eo_loaded_end spare[2];           /* [end]: for the compliance band */
   struct eo_loaded_end *table;             /* [TABLE_LOADS] of the table law, one end at a time; NULL until asked for */
   double *table_rows;                      /* [TABLE_LOADS][positions] */
+  struct eo_root_workspace *root;          /* NULL until asked for */
   struct eo_vibration_solver *vibration;
   int vibration_harmonics;
   struct eo_law (*law)[2];                 /* [most_cases][end] */
+  struct vibration_problem {
+    struct eo_dynamics_parameters parameters;
+    struct eo_vibration_case load;
+  } *problem;                              /* [most_cases], as last solved */
   struct eo_evaluation result;
 };
 
@@ -83,7 +91,7 @@ static void set_fields(struct eo_evaluator *e, const struct eo_design *design, c
   const struct eo_modification *m = &design->modification;
   double in_plane = isnan(scenario->in_plane) ? design->alignment.shaft_angle_in_plane : scenario->in_plane;
   double out_of_plane = isnan(scenario->out_of_plane) ? design->alignment.shaft_angle_out_of_plane : scenario->out_of_plane;
-  e->result.equal_ends = e->result.ends == 2 && same_flanks(m) && in_plane == 0 && out_of_plane == 0;
+  e->result.equal_ends = e->result.ends == 2 && same_flanks(m) && in_plane == 0 && out_of_plane == 0 && !e->bodies;
   for (int end = 0; end < e->result.ends; end++) {
     if (end == EO_RIGHT && e->result.equal_ends)
       continue;
@@ -99,6 +107,52 @@ static int kept_at(const struct eo_evaluator *e, int end)
   return e->result.equal_ends ? EO_LEFT : end;
 }
 
+/* Makes the bodies' influence when the design asks for elastic bodies and they have changed. */
+static enum eo_code fit_bodies(struct eo_evaluator *e, const struct eo_shafts *shafts, struct eo_error *error)
+{
+  if (shafts->enabled && e->bodies && memcmp(shafts, &e->shafts, sizeof *shafts) == 0)
+    return EO_OK;
+  eo_elastic_free(e->bodies);
+  e->bodies = NULL;
+  if (!shafts->enabled)
+    return EO_OK;
+  enum eo_code code = e->bent.gap ? EO_OK : eo_loaded_gaps_init(&e->bent, e->pair->grid, error);
+  memcpy(&e->shafts, shafts, sizeof *shafts);
+  return code ? code : eo_elastic_new(&e->bodies, e->pair->grid, &e->pair->gear_pair, shafts, error);
+}
+
+/* From the solution on rigid bodies to that on elastic ones. */
+static void bend_bodies(struct eo_evaluator *e, const struct eo_design *design, double force, double factor, struct eo_loaded_end both[2],
+                        struct eo_elastic_report *report)
+{
+  struct eo_elastic_case load = {force, factor, axial_stiffness(&design->alignment), eo_evaluator_stagger(design, e->pair->grid->positions)};
+  eo_elastic_solve(e->bodies, e->contact, e->gaps, &load, both, report);
+  both[EO_LEFT].failures += report->failures;
+}
+
+/* The gap field of an end as the bodies of a load case hold it. */
+static const struct eo_gap_field *field_of(struct eo_evaluator *e, const struct eo_case_result *c, int end)
+{
+  struct eo_gap_field *field = &e->field[kept_at(e, end)];
+  field->deflection = e->bodies ? &c->end[end].deflection : NULL;
+  return field;
+}
+
+static void bend_cases(struct eo_evaluator *e, const struct eo_design *design, double factor)
+{
+  for (int k = 0; k < e->result.cases; k++) {
+    struct eo_case_result *c = &e->result.load_case[k];
+    struct eo_loaded_end both[2] = {c->end[EO_LEFT].loaded, c->end[EO_RIGHT].loaded};
+    struct eo_elastic_report report;
+    bend_bodies(e, design, c->force, factor, both, &report);
+    c->body_iterations = report.most_iterations;
+    for (int end = 0; end < e->result.ends; end++) {
+      c->end[end].loaded.failures = both[end].failures;
+      c->end[end].deflection = report.mean[end];
+    }
+  }
+}
+
 static void solve_contact(struct eo_evaluator *e, const struct eo_design *design, double factor)
 {
   struct eo_evaluation *r = &e->result;
@@ -111,7 +165,9 @@ static void solve_contact(struct eo_evaluator *e, const struct eo_design *design
     else
       load_end(e, design, end, factor);
   int stagger = eo_evaluator_stagger(design, grid->positions);
-  if (r->ends == 2 && stiffness > 0 && !(r->equal_ends && stagger == 0))
+  if (e->bodies)
+    bend_cases(e, design, factor);
+  else if (r->ends == 2 && stiffness > 0 && !(r->equal_ends && stagger == 0))
     for (int k = 0; k < r->cases; k++) {
       struct eo_loaded_gaps gaps[2] = {e->gaps[EO_LEFT], e->gaps[kept_at(e, EO_RIGHT)]};
       struct eo_loaded_end both[2] = {r->load_case[k].end[EO_LEFT].loaded, r->load_case[k].end[EO_RIGHT].loaded};
@@ -127,9 +183,12 @@ static void summarise_end(struct eo_evaluator *e, struct eo_case_result *c, int 
   const struct eo_contact_grid *grid = e->pair->grid;
   struct eo_end_result *r = &c->end[end];
   double low = INFINITY, high = -INFINITY;
-  memcpy(r->unloaded, e->gaps[kept_at(e, end)].unloaded, sizeof *r->unloaded * (size_t)grid->positions);
+  if (e->bodies)
+    eo_loaded_first_contact(grid, field_of(e, c, end), r->unloaded);
+  else
+    memcpy(r->unloaded, e->gaps[kept_at(e, end)].unloaded, sizeof *r->unloaded * (size_t)grid->positions);
   r->max_pressure = r->max_line_load = r->edge_share = 0;
-  r->datum = eo_gap_field_datum(&e->field[kept_at(e, end)]);
+  r->datum = eo_gap_field_datum(field_of(e, c, end));
   for (int j = 0; j < grid->positions; j++) {
     const struct eo_contact_position *p = &grid->position[j];
     double edge = 0;
@@ -175,7 +234,7 @@ static void find_impacts(struct eo_evaluator *e, double speed_factor, double fac
       if (end == EO_RIGHT && r->equal_ends && c->end[0].loaded.load[0] == c->end[1].loaded.load[0])
         c->end[end].impact = c->end[EO_LEFT].impact;
       else
-        eo_impact_find(&c->end[end].impact, e->pair->grid, &e->field[kept_at(e, end)], e->pair->kernel, &e->pair->impact,
+        eo_impact_find(&c->end[end].impact, e->pair->grid, field_of(e, c, end), e->pair->kernel, &e->pair->impact,
                        c->end[end].loaded.approach, c->load_case.speed * speed_factor, factor);
     }
 }
@@ -190,9 +249,19 @@ static double mean(int n, const double *value)
   return sum / n;
 }
 
+/* The gaps at which an end is loaded: elastic bodies stay as the load case bends them. */
+static const struct eo_loaded_gaps *gaps_of(struct eo_evaluator *e, const struct eo_design *design, const struct eo_case_result *c, int end)
+{
+  if (!e->bodies)
+    return &e->gaps[kept_at(e, end)];
+  const struct eo_loaded_end both[2] = {c->end[EO_LEFT].loaded, c->end[EO_RIGHT].loaded};
+  eo_elastic_gaps(e->bodies, e->gaps, eo_evaluator_stagger(design, e->pair->grid->positions), both, end, e->bent.gap);
+  return &e->bent;
+}
+
 /* F(X, phi) from loaded contact at many loads. */
-static enum eo_code set_table_law(struct eo_evaluator *e, struct eo_law *law, const struct eo_case_result *c, int end, double factor, int order,
-                                  struct eo_error *error)
+static enum eo_code set_table_law(struct eo_evaluator *e, const struct eo_design *design, struct eo_law *law, const struct eo_case_result *c,
+                                  int end, double factor, int order, struct eo_error *error)
 {
   int n = e->pair->grid->positions;
   double load[TABLE_LOADS];
@@ -209,7 +278,7 @@ static enum eo_code set_table_law(struct eo_evaluator *e, struct eo_law *law, co
         return code;
     }
   }
-  eo_loaded_solve(e->contact, e->pair->grid, &e->gaps[kept_at(e, end)], factor, TABLE_LOADS, load, e->table);
+  eo_loaded_solve(e->contact, e->pair->grid, gaps_of(e, design, c, end), factor, TABLE_LOADS, load, e->table);
   for (int i = 0; i < TABLE_LOADS; i++)
     memcpy(e->table_rows + i * n, e->table[i].approach, sizeof(double) * (size_t)n);
   return eo_law_set_table(law, TABLE_LOADS, n, load, e->table_rows, order, 0, error);
@@ -220,27 +289,26 @@ static enum eo_code set_law(struct eo_evaluator *e, const struct eo_design *desi
 {
   const struct eo_resolution *resolution = &design->resolution;
   int n = e->pair->grid->positions, order = resolution->te_harmonics < n / 2 ? resolution->te_harmonics : n / 2 - 1;
-  double back = -design->gear_pair.backlash;
+  double back = c->end[end].deflection.part[0][EO_DEFLECTION_NODES / 2] - design->gear_pair.backlash;
   switch (resolution->mesh_law) {
   case EO_LAW_SECANT:
     return eo_law_set_secant(law, n, loaded->approach, c->force, c->end[end].datum, order, back, error);
   case EO_LAW_TABLE:
-    return set_table_law(e, law, c, end, factor, order, error);
+    return set_table_law(e, design, law, c, end, factor, order, error);
   case EO_LAW_TANGENT:
     break;
   }
   return eo_law_set_tangent(law, n, loaded->approach, loaded->tangent, c->force, order, back, error);
 }
 
-static void set_pulses(const struct eo_evaluator *e, const struct eo_case_result *c, double speed, struct eo_vibration_case *load)
+void eo_evaluator_pulses(const struct eo_pair *pair, const struct eo_impact *impact, double speed, struct eo_pulse *pulse)
 {
-  double period = 2 * M_PI / (speed * e->pair->geometry.teeth[EO_PINION]);
-  for (int end = 0; end < e->result.ends; end++) {
-    const struct eo_impact *impact = &c->end[end].impact;
-    load->pulse[end] = (struct eo_pulse){.shape = EO_PULSE_NONE};
-    if (impact->touched && impact->force > 0)
-      load->pulse[end] = (struct eo_pulse){.shape = EO_PULSE_HALF_SINE, .amplitude = impact->force, .start = impact->start,
-        .duration = fmin(1, impact->duration / period)};
+  double period = 2 * M_PI / (speed * pair->geometry.teeth[EO_PINION]);
+  for (int end = 0; end < pair->gear_pair.ends; end++) {
+    pulse[end] = (struct eo_pulse){.shape = EO_PULSE_NONE};
+    if (impact[end].touched && impact[end].force > 0)
+      pulse[end] = (struct eo_pulse){.shape = EO_PULSE_HALF_SINE, .amplitude = impact[end].force, .start = impact[end].start,
+        .duration = fmin(1, impact[end].duration / period)};
   }
 }
 
@@ -264,8 +332,9 @@ static enum eo_code vibrate(struct eo_evaluator *e, const struct eo_design *desi
     load.law[end] = &e->law[k][end];
     code = set_law(e, design, &e->law[k][end], c, end, loaded[end], factor, error);
   }
-  if (!code && load.impact != EO_IMPACT_NONE)
-    set_pulses(e, c, load.speed, &load);
+  if (load.impact != EO_IMPACT_NONE)
+    eo_evaluator_pulses(e->pair, (struct eo_impact[2]){c->end[0].impact, c->end[1].impact}, load.speed, load.pulse);
+  e->problem[k] = (struct vibration_problem){parameters, load};
   if (!code)
     code = design->resolution.solver == EO_SOLVER_TIME_INTEGRATION
                ? eo_vibration_integrate(e->vibration, &load, NULL, vibration, NULL, error)
@@ -315,6 +384,8 @@ static enum eo_code find_band(struct eo_evaluator *e, const struct eo_design *de
           loaded[end] = &e->spare[EO_LEFT];
         else
           eo_loaded_solve(e->contact, e->pair->grid, &e->gaps[end], scaled, 1, &c->force, &e->spare[end]);
+      if (e->bodies)
+        bend_bodies(e, design, c->force, scaled, e->spare, &(struct eo_elastic_report){0});
       code = vibrate(e, design, k, speed_factor, scaled, loaded, &vibration, error);
       for (int reading = 0; reading < EO_READINGS; reading++)
         c->band[reading][side] = code || vibration.outcome == EO_VIBRATION_NOT_CONVERGED ? NAN : vibration.rms_pair[reading];
@@ -324,15 +395,21 @@ static enum eo_code find_band(struct eo_evaluator *e, const struct eo_design *de
 
 /* ---- the order ---- */
 
-static void find_root_stress(struct eo_evaluator *e)
+static enum eo_code find_root_stress(struct eo_evaluator *e, struct eo_error *error)
 {
   enum { STEP = 2 };
   struct eo_evaluation *r = &e->result;
-  for (int k = 0; k < r->cases && e->pair->flexibility; k++)
+  const struct eo_pair *pair = e->pair;
+  const struct eo_root_modes *const modes[2] = {pair->root[0], pair->root[1]};
+  enum eo_code code = e->root ? EO_OK : eo_root_workspace_new(&e->root, pair->grid, modes, error);
+  for (int k = 0; k < r->cases && !code; k++)
     for (int end = 0; end < r->ends; end++)
-      for (int member = 0; member < 2; member++)
-        eo_root_history_compute(&r->load_case[k].end[end].root[member], e->pair->flexibility, member, e->pair->grid,
+      for (int member = 0; member < 2; member++) {
+        struct eo_root root = eo_flexibility_root(pair->flexibility, member);
+        eo_root_history_compute(&r->load_case[k].end[end].root[member], e->root, &root, modes[member], pair->grid,
                                 &r->load_case[k].end[end].loaded, STEP);
+      }
+  return code;
 }
 
 static void collect_objectives(struct eo_evaluation *r, bool root)
@@ -377,9 +454,12 @@ static void set_cases(struct eo_evaluator *e, const struct eo_design *design)
                             (r->ends * e->pair->geometry.base_radius[EO_PINION] * cos(e->pair->geometry.base_helix_angle));
     for (int reading = 0; reading < EO_READINGS; reading++)
       r->load_case[k].band[reading][0] = r->load_case[k].band[reading][1] = NAN;
-    for (int end = 0; end < 2; end++)
+    r->load_case[k].body_iterations = 0;
+    for (int end = 0; end < 2; end++) {
+      r->load_case[k].end[end].deflection = (struct eo_deflection){0};
       for (int member = 0; member < 2; member++)
         r->load_case[k].end[end].root[member].phases = 0;
+    }
   }
 }
 
@@ -397,38 +477,61 @@ static enum eo_code fit_vibration(struct eo_evaluator *e, int harmonics, struct 
   return EO_OK;
 }
 
-enum eo_code eo_evaluator_run(struct eo_evaluator *e, const struct eo_design *design, const struct eo_scenario *scenario, int want,
-                              const struct eo_evaluation **evaluation, struct eo_error *error)
+static enum eo_code solve_static(struct eo_evaluator *e, const struct eo_design *design, const struct eo_scenario *scenario,
+                                 struct eo_error *error)
 {
-  static const struct eo_scenario nominal = {NAN, NAN, 1, 1};
-  const struct eo_scenario *s = scenario ? scenario : &nominal;
   struct eo_evaluation *r = &e->result;
-  bool root = e->pair->flexibility && (want & EO_WANT_ROOT || design->objective.root_stress.enabled);
-  enum eo_code code = fit_vibration(e, design->resolution.harmonics, error);
+  enum eo_code code = fit_bodies(e, &design->shafts, error);
   if (code)
     return code;
   double start = milliseconds();
   set_cases(e, design);
-  set_fields(e, design, s);
-  solve_contact(e, design, s->compliance);
+  set_fields(e, design, scenario);
+  solve_contact(e, design, scenario->compliance);
   for (int k = 0; k < r->cases; k++) {
     for (int end = 0; end < r->ends; end++)
       summarise_end(e, &r->load_case[k], end);
     summarise_pair(e, design, &r->load_case[k]);
   }
   double contact = milliseconds();
-  find_impacts(e, s->speed, s->compliance);
+  find_impacts(e, scenario->speed, scenario->compliance);
+  r->static_ms = contact - start;
+  r->impact_ms = milliseconds() - contact;
+  return EO_OK;
+}
+
+static const struct eo_scenario nominal_scenario = {NAN, NAN, 1, 1};
+
+enum eo_code eo_evaluator_contact(struct eo_evaluator *e, const struct eo_design *design, const struct eo_evaluation **evaluation,
+                                  struct eo_error *error)
+{
+  enum eo_code code = solve_static(e, design, &nominal_scenario, error);
+  if (!code)
+    *evaluation = &e->result;
+  return code;
+}
+
+enum eo_code eo_evaluator_run(struct eo_evaluator *e, const struct eo_design *design, const struct eo_scenario *scenario, int want,
+                              const struct eo_evaluation **evaluation, struct eo_error *error)
+{
+  const struct eo_scenario *s = scenario ? scenario : &nominal_scenario;
+  struct eo_evaluation *r = &e->result;
+  bool root = e->pair->flexibility && (want & EO_WANT_ROOT || design->objective.root_stress.enabled);
+  enum eo_code code = fit_vibration(e, design->resolution.harmonics, error);
+  if (!code)
+    code = solve_static(e, design, s, error);
+  if (code)
+    return code;
   double impact = milliseconds();
   if (root)
-    find_root_stress(e);
+    code = find_root_stress(e, error);
   double rooted = milliseconds();
-  code = solve_dynamics(e, design, s->speed, s->compliance, want, error);
+  if (!code)
+    code = solve_dynamics(e, design, s->speed, s->compliance, want, error);
   if (!code && want & EO_WANT_CURVES)
     code = find_modes(e, error);
   r->dynamics_ms = milliseconds() - rooted;
   r->root_ms = rooted - impact;
-  r->impact_ms = impact - contact;
-  r->static_ms = contact - start;
   if (!code && want & EO_WANT_BAND)
     code = find_band(e, design, s->speed, s->compliance, error);
   if (code)
@@ -438,9 +541,11 @@ enum eo_code eo_evaluator_run(struct eo_evaluator *e, const struct eo_design *de
   return EO_OK;
 }
 
-const struct eo_law *eo_evaluator_law(const struct eo_evaluator *e, int load_case, int end)
+void eo_evaluator_vibration(const struct eo_evaluator *e, int load_case, struct eo_dynamics_parameters *parameters,
+                            struct eo_vibration_case *load)
 {
-  return &e->law[load_case][end];
+  *parameters = e->problem[load_case].parameters;
+  *load = e->problem[load_case].load;
 }
 
 const struct eo_gap_field *eo_evaluator_field(const struct eo_evaluator *e, int end)
@@ -545,7 +650,8 @@ static enum eo_code init_storage(struct eo_evaluator *e, struct eo_error *error)
   r->load_case = calloc(most, sizeof *r->load_case);
   r->objective = calloc(most, sizeof *r->objective);
   e->law = calloc(most, sizeof *e->law);
-  if (!r->load_case || !r->objective || !e->law)
+  e->problem = calloc(most, sizeof *e->problem);
+  if (!r->load_case || !r->objective || !e->law || !e->problem)
     return eo_error_memory(error);
   for (int k = 0; k < e->most_cases && !code; k++) {
     r->load_case[k].transmission = calloc((size_t)grid->positions, sizeof(double));
@@ -598,8 +704,12 @@ void eo_evaluator_free(struct eo_evaluator *e)
   free(e->table);
   free(e->table_rows);
   eo_loaded_workspace_free(e->contact);
+  eo_root_workspace_free(e->root);
+  eo_elastic_free(e->bodies);
+  eo_loaded_gaps_done(&e->bent);
   eo_vibration_free(e->vibration);
   free(e->law);
+  free(e->problem);
   free(r->load_case);
   free(r->objective);
   free(e);

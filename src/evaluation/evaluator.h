@@ -3,6 +3,7 @@
 #ifndef EASEOFF_EVALUATION_EVALUATOR_H
 #define EASEOFF_EVALUATION_EVALUATOR_H
 
+#include "contact/elastic.h"
 #include "contact/loaded.h"
 #include "dynamics/vibration.h"
 #include "evaluation/pair.h"
@@ -22,6 +23,7 @@ struct eo_end_result {
   double *unloaded;            /* [positions] Z0, m, normal */
   double *stiffness;           /* [positions] P / (Z - Z0), N/m, normal */
   double datum;                /* smallest gap anywhere on the flank, m */
+  struct eo_deflection deflection; /* of elastic bodies, mean over the mesh cycle; unloaded and datum are measured from it. 0: rigid */
   struct eo_impact impact;
   double max_pressure;         /* Pa */
   double max_line_load;        /* N/m */
@@ -42,6 +44,7 @@ struct eo_case_result {
   struct eo_vibration vibration;
   double band[EO_READINGS][2]; /* pair's RMS at 0.9 and 1.1 times the compliance; NaN unless asked for */
   int contact_failures;        /* positions whose loaded contact did not converge */
+  int body_iterations;         /* the most that elastic bodies took at one position; 0: rigid */
 };
 
 struct eo_evaluation {
@@ -64,6 +67,10 @@ void eo_evaluator_free(struct eo_evaluator *evaluator);
 enum eo_code eo_evaluator_run(struct eo_evaluator *evaluator, const struct eo_design *design, const struct eo_scenario *scenario, int want,
                               const struct eo_evaluation **evaluation, struct eo_error *error);
 
+/* The static half alone: loaded contact and entering impact, no vibration. */
+enum eo_code eo_evaluator_contact(struct eo_evaluator *evaluator, const struct eo_design *design, const struct eo_evaluation **evaluation,
+                                  struct eo_error *error);
+
 /* Raw values over the scenarios that count (the nominal one, or those of a robust objective): raw[eo_evaluator_scenarios()][cases]. */
 int eo_evaluator_scenarios(const struct eo_design *design);
 enum eo_code eo_evaluator_raw(struct eo_evaluator *evaluator, const struct eo_design *design, struct eo_objective_case *raw, struct eo_error *error);
@@ -72,8 +79,13 @@ enum eo_code eo_evaluator_raw(struct eo_evaluator *evaluator, const struct eo_de
 void eo_evaluator_combine(const struct eo_design *design, const struct eo_geometry *geometry, const struct eo_objective_case *raw,
                           const struct eo_objective_case *unmodified, struct eo_objective_value *value);
 
-/* The mesh law of an end in the last evaluation, for sweeps: borrowed, valid until the next run. */
-const struct eo_law *eo_evaluator_law(const struct eo_evaluator *evaluator, int load_case, int end);
+/* The vibration problem of a load case as the last evaluation (without a compliance band) solved it, for sweeps over speed. The
+   laws in load are borrowed, valid until the next run. */
+void eo_evaluator_vibration(const struct eo_evaluator *evaluator, int load_case, struct eo_dynamics_parameters *parameters,
+                            struct eo_vibration_case *load);
+
+/* Impacts of one load case as pulses of the equations of motion. impact[2], pulse[2]: [end]; speed: of the pinion, rad/s. */
+void eo_evaluator_pulses(const struct eo_pair *pair, const struct eo_impact *impact, double speed, struct eo_pulse *pulse);
 
 /* The gap field of an end in the last evaluation: borrowed, valid until the next run. */
 const struct eo_gap_field *eo_evaluator_field(const struct eo_evaluator *evaluator, int end);

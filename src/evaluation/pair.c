@@ -1,5 +1,7 @@
 #include "evaluation/pair.h"
 
+#include "numerics/threads.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -25,14 +27,17 @@ static enum eo_code prepare(struct eo_pair *pair, const struct eo_pair_options *
     if (code)
       return code;
     pair->kernel = eo_flexibility_kernel(pair->flexibility);
+    for (int member = 0; member < 2 && !code; member++)
+      code = eo_root_modes_new(&pair->root[member], pair->flexibility, member, error);
   }
-  return eo_contact_grid_new(&pair->grid, &pair->geometry, &pair->material, &grid, options->phase, pair->kernel, progress, error);
+  return code ? code : eo_contact_grid_new(&pair->grid, &pair->geometry, &pair->material, &grid, options->phase, pair->kernel, progress, error);
 }
 
 enum eo_code eo_pair_new(struct eo_pair **result, const struct eo_design *design, const struct eo_pair_options *options,
                          const struct eo_progress *progress, struct eo_error *error)
 {
   double start = seconds();
+  eo_threads_limit();
   struct eo_pair *pair = calloc(1, sizeof *pair);
   if (!pair)
     return eo_error_memory(error);
@@ -60,6 +65,8 @@ void eo_pair_free(struct eo_pair *pair)
   if (!pair)
     return;
   eo_contact_grid_free(pair->grid);
+  for (int member = 0; member < 2; member++)
+    eo_root_modes_free(pair->root[member]);
   eo_flexibility_free(pair->flexibility);
   free(pair);
 }

@@ -16,6 +16,7 @@ struct eo_pair {
   struct eo_flexibility *flexibility;   /* NULL with a foreign kernel */
   struct eo_kernel kernel;
   struct eo_contact_grid *grid;
+  struct eo_root_modes *root[2];        /* [member]; NULL with a foreign kernel */
 
   struct eo_impact_settings impact;
   double pivot[2];                      /* [end]: mid face from the pivot of the shaft angle errors, m */

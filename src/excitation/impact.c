@@ -89,13 +89,19 @@ static double patch_bulk(const struct eo_geometry *g, struct eo_kernel kernel, d
   return sum / (POINTS * POINTS);
 }
 
-/* The Hertz part depends on the force it helps to make: fixed point on the secant of the local law. */
-static void strike(struct eo_impact *impact, const struct eo_contact_grid *grid, double bulk, double law, double length, double mass,
-                   double factor)
+void eo_impact_strike(struct eo_impact *impact, const struct eo_contact_grid *grid, const struct eo_impact_settings *settings, double speed,
+                      double compliance_factor)
 {
-  double force = impact->speed * sqrt(mass / (factor * 2 * bulk));
+  const struct eo_geometry *g = &grid->geometry;
+  double s = fmax(impact->path, g->path_start), length = fmin(settings->patch, g->face_width) / cos(g->base_helix_angle);
+  double law = eo_contact_local_constant(g, &grid->material, s), mass = eo_impact_mass(g, settings->inertia);
+  if (!impact->touched)
+    return;
+  impact->speed = fmax(0, -impact->slope) * speed * g->base_radius[EO_PINION];
+  /* The Hertz part depends on the force it helps to make: fixed point on the secant of the local law. */
+  double force = impact->speed * sqrt(mass / (compliance_factor * 2 * impact->bulk));
   for (int i = 0; i < 200; i++) {
-    impact->compliance = factor * (bulk + grid->compliance_scale / length * (law - log(force / length)));
+    impact->compliance = compliance_factor * (impact->bulk + grid->compliance_scale / length * (law - log(force / length)));
     double next = impact->speed * sqrt(mass / impact->compliance);
     bool settled = fabs(next - force) <= 1e-12 * next;
     force = next;
@@ -112,7 +118,7 @@ void eo_impact_find(struct eo_impact *impact, const struct eo_contact_grid *grid
 {
   const struct eo_geometry *g = &grid->geometry;
   struct eo_periodic spline;
-  double place[2], slope;
+  double place[2];
   *impact = (struct eo_impact){0};
   eo_periodic_init(&spline, grid->positions, approach);
   struct search search = {grid, field, &spline, settings->stations};
@@ -121,11 +127,9 @@ void eo_impact_find(struct eo_impact *impact, const struct eo_contact_grid *grid
     return;
   impact->path = impact->phase + impact->eta * tan(g->base_helix_angle);
   impact->off_line = impact->path < g->path_start;
-  eo_gap_field_at(field, impact->path, impact->eta, &slope, place);
+  eo_gap_field_at(field, impact->path, impact->eta, &impact->slope, place);
   impact->pinion_radius = eo_geometry_radius_at(g, EO_PINION, place[EO_PINION]);
-  impact->speed = fmax(0, -slope) * speed * g->base_radius[EO_PINION];
   impact->start = impact->phase / g->transverse_base_pitch - floor(impact->phase / g->transverse_base_pitch);
-  double s = fmax(impact->path, g->path_start), length = fmin(settings->patch, g->face_width) / cos(g->base_helix_angle);
-  strike(impact, grid, patch_bulk(g, kernel, settings->patch, s, impact->eta), eo_contact_local_constant(g, &grid->material, s), length,
-         eo_impact_mass(g, settings->inertia), compliance_factor);
+  impact->bulk = patch_bulk(g, kernel, settings->patch, fmax(impact->path, g->path_start), impact->eta);
+  eo_impact_strike(impact, grid, settings, speed, compliance_factor);
 }

@@ -24,6 +24,8 @@ struct eo_impact {
   double eta;           /* where on the face, m */
   double path;          /* s of the touch, m: path_start - s is the lead before A */
   double pinion_radius; /* of the touch, m */
+  double slope;         /* of the gap there over the roll distance, negative while closing */
+  double bulk;          /* compliance of the patch without the Hertz part, m/N */
   double speed;         /* closing, normal, m/s, at the given pinion speed */
   double compliance;    /* q_s of the patch, bulk + Hertz, m/N */
   double force;         /* general impact F_s = v sqrt(m_e/q_s), N */
@@ -35,5 +37,9 @@ struct eo_impact {
 /* approach: Z over the mesh cycle, [grid->positions], m. speed: of the pinion, rad/s. compliance_factor as in eo_loaded_solve(). */
 void eo_impact_find(struct eo_impact *impact, const struct eo_contact_grid *grid, const struct eo_gap_field *field, struct eo_kernel kernel,
                     const struct eo_impact_settings *settings, const double *approach, double speed, double compliance_factor);
+
+/* Closing speed, force and duration of a touch already found, at another speed of the pinion: where it is does not depend on speed. */
+void eo_impact_strike(struct eo_impact *impact, const struct eo_contact_grid *grid, const struct eo_impact_settings *settings, double speed,
+                      double compliance_factor);
 
 #endif

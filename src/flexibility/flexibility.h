@@ -1,6 +1,8 @@
 /* Flexibility of a gear pair: 3-D finite elements of a sector of both members, once per pair, kept on disk; then the compliance
    between any points of the flanks and the stress in the roots, from cubic tensor splines (physics: Chang, Liu, Wu 2015).
-   C_bulk = C_full - C_half: the dent under a point load, which depends on the mesh, goes; the contact adds its own local law.
+   C_bulk = C_full - C_half: the dent under a point load, which depends on the mesh, goes; the contact adds its own local law. C_half is the
+   material between tooth centre and loaded flank outside the root cylinder, both surfaces held (see flexibility/sector.h): of all ways to
+   cut the half tooth it is the one that reproduces independently computed levels (tests/cases/contact.json, fe_bulk) within 2 %.
    Both members are computed at the same time by two threads; the result is the same to the last bit for any number of threads.
    A prepared flexibility is constant: any number of threads may evaluate it at once. */
 #ifndef EASEOFF_FLEXIBILITY_FLEXIBILITY_H
@@ -68,7 +70,8 @@ void eo_flexibility_add_compliance(const struct eo_flexibility *flexibility, int
 /* Nodes of the root surface, [points][layers + 1]: from the start of the active profile (point 0) to the middle of the tooth space. */
 struct eo_root {
   int points, layers;
-  int first;              /* first point that lies on the fillet, not on the involute remainder above it */
+  int first;              /* first point at or below the 30 degree tangent, ISO 6336-3's critical section: above it the surface feels the
+                             dent of a contact close by, which the mesh of the root does not resolve, more than the bending of the tooth */
   const double *arc;      /* [points], along the profile from the start of the active profile, m */
   const double *position; /* [points][2], transverse, tooth centre along +y and loaded flank at x > 0, m */
   double width;           /* of the face, m; layer l lies at eta = width (l / layers - 1/2) */

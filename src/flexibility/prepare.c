@@ -218,7 +218,6 @@ enum eo_code eo_flexibility_prepare(const struct eo_geometry *geometry, const st
   f->settings = *settings;
   f->width = geometry->face_width;
   for (int m = 0; m < 2; m++) {
-    f->form_radius[m] = geometry->form_radius[m];
     f->twist[m] = eo_sector_twist(geometry, m);
     bore[m] = eo_flexibility_bore_radius(geometry, pair, m);
     worker[m] = (struct worker){.shared = &shared, .flexibility = f, .geometry = geometry, .material = material, .member = m,

@@ -46,7 +46,7 @@ static void resolve_shafts(struct eo_shafts *shafts, const struct eo_gear_pair *
   for (int i = 0; i < 2; i++) {
     fill(&shafts->bearing_position[i][EO_LEFT], -outside);
     fill(&shafts->bearing_position[i][EO_RIGHT], outside);
-    fill(&shafts->shaft_diameter[i], 0.8 * pair->groove_diameter[i]);
+    fill(&shafts->shaft_diameter[i], fmax(0.8 * pair->groove_diameter[i], (pair->groove_diameter[i] + pair->bore[i]) / 2));
   }
 }
 
@@ -83,7 +83,7 @@ static void resolve_start_range(struct eo_range *range, double active, double mo
 static void resolve_optimization(struct eo_optimization *optimization, const struct eo_gear_pair *pair, const struct eo_geometry *geometry)
 {
   int variables = optimization->variables == EO_VARIABLES_PER_END && pair->ends == 2 ? 10 : 5;
-  fill(&optimization->sharing_radius, 0.03 * pow(variables / 5., 1.9));
+  fill(&optimization->share_radius, 0.03 * pow(variables / 5., 1.9));
   resolve_start_range(&optimization->tip_relief_start, geometry->rack_top, pair->normal_module);
   resolve_start_range(&optimization->root_relief_start, -geometry->rack_bottom, pair->normal_module);
 }

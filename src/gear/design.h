@@ -64,12 +64,13 @@ struct eo_supports {
   double mesh_damping_stiffness;       /* k in c_m = 2 zeta sqrt(k m_e)/cos b, N/m; NaN: the mean mesh stiffness of the load case */
 };
 
-/* Torsional wind-up and bending of the two bodies (off by default). Positions are measured from the middle of the groove, + to the right. */
+/* Torsional wind-up and bending of the two bodies in their bearings (off by default; contact/shaft.h says how). Positions are measured from
+   the middle of the groove (of the face, with one end), + to the right. The bore runs through. */
 enum eo_drive_side { EO_DRIVE_LEFT, EO_DRIVE_RIGHT };
 struct eo_shafts {
   bool enabled;
   double bearing_position[2][2];   /* [member][left, right], m; NaN: face end + half a face width outside */
-  double shaft_diameter[2];        /* outside the toothed body, m; NaN: 0.8 of the groove diameter */
+  double shaft_diameter[2];        /* outside the toothed body, m; NaN: 0.8 of the groove diameter, at least midway from the bore to it */
   enum eo_drive_side drive_side[2];/* where torque enters the pinion and leaves the gear */
 };
 
@@ -123,25 +124,29 @@ struct eo_objective {
 };
 
 enum eo_variable_set { EO_VARIABLES_SHARED, EO_VARIABLES_PER_END };
-enum eo_fitness_order { EO_ORDER_BATCH, EO_ORDER_SEQUENTIAL };
-enum eo_redundancy_rule { EO_REDUNDANCY_TWIN, EO_REDUNDANCY_LITERAL };
 struct eo_range { double low, high; };
 struct eo_optimization {
   enum eo_variable_set variables;
   char algorithm[32];
   struct eo_range tip_relief, root_relief, tip_relief_start, root_relief_start, lead_crowning; /* m; NaN: derived */
-  int population, generations;
-  double crossover, mutation;
-  double crossover_index, mutation_index; /* eta of SBX and of polynomial mutation */
+
+  /* What the optimizer can be told, member by member as in its own table (optimizer/settings.h), which also explains it. Choices are
+     indices there. */
+  int true_evaluations; /* budget; 0: none stated */
+  double crossover, crossover_index, mutation, mutation_index;
+  int mutation_mode;
+  int population, generations, elite, fitness_form;
   double trust_threshold, redundancy_threshold; /* R*, I_r* */
-  double distance_decay;      /* alpha of (15) */
-  double credibility_decay;   /* beta of (18) */
-  double credibility_floor;   /* R_0 < R* */
-  double sharing_radius;      /* r_share; NaN: 0.03 (n/5)^1.9 for n variables */
-  int verify;                 /* best predicted individuals that are evaluated in every generation */
-  enum eo_fitness_order order;
-  enum eo_redundancy_rule redundancy;
-  int true_evaluations; /* budget; 0: none */
+  double share_radius;                          /* r_share; NaN: 0.03 (n/5)^1.9 for n variables */
+  double weight_decay, credibility_loss;        /* alpha of (15), beta of (18) */
+  double removal_threshold;                     /* R_0 < R* */
+  int verify, distance_norm, weight_sum, decision_order;
+  bool store_predicted, literal_redundancy, reuse;
+  int batch, initial_factor, model_rows, children;
+  double exploration, credibility_length, taboo_radius;
+  int stall_batches;
+  double stall_gain, polish_share, local_share, local_radius;
+  int front_population, front_verified, front_rounds;
   uint64_t seed;
 };
 

@@ -19,6 +19,9 @@ struct eo_surface_point {
 void eo_surface_evaluate(const struct eo_geometry *geometry, int member, const struct eo_modification_shape *shape, double u, double v,
                          struct eo_surface_point *point);
 
+/* u and v of the place (s, eta) on the unmodified flank; a relief moves the point off that place by some of its own size. */
+void eo_surface_coordinates(const struct eo_geometry *geometry, int member, double s, double eta, double *u, double *v);
+
 /* The flank in the transverse slice z = 0, lead modification apart; same frame. */
 struct eo_slice_point {
   double position[2];

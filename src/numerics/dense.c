@@ -5,11 +5,22 @@
 #include <stdlib.h>
 
 /* LAPACK sees the transpose of a row-major matrix, so every solve asks for the transposed system. */
+int eo_dense_factor(int n, double *a, int *pivot)
+{
+  return LAPACKE_dgetrf_work(LAPACK_COL_MAJOR, n, n, a, n, pivot);
+}
+
+void eo_dense_substitute(int n, const double *a, const int *pivot, int columns, double *b)
+{
+  LAPACKE_dgetrs_work(LAPACK_COL_MAJOR, 'T', n, columns, a, n, pivot, b, n);
+}
+
 int eo_dense_solve(int n, double *a, int *pivot, int columns, double *b)
 {
-  if (LAPACKE_dgetrf_work(LAPACK_COL_MAJOR, n, n, a, n, pivot))
-    return 1;
-  return LAPACKE_dgetrs_work(LAPACK_COL_MAJOR, 'T', n, columns, a, n, pivot, b, n);
+  int singular = eo_dense_factor(n, a, pivot);
+  if (!singular)
+    eo_dense_substitute(n, a, pivot, columns, b);
+  return singular;
 }
 
 int eo_dense_complex_solve(int n, double complex *a, int *pivot, int columns, double complex *b)

@@ -8,6 +8,11 @@
 /* Solves a x = b for `columns` right-hand sides; b[columns][n] is replaced by the solutions, a[n][n] by its factors,
    pivot[n] is scratch. Returns 0, or non-zero when a is singular (b is then meaningless). */
 int eo_dense_solve(int n, double *a, int *pivot, int columns, double *b);
+
+/* The same in two halves: a[n][n] becomes its factors, which then solve for any b[columns][n]. */
+int eo_dense_factor(int n, double *a, int *pivot);
+void eo_dense_substitute(int n, const double *a, const int *pivot, int columns, double *b);
+
 int eo_dense_complex_solve(int n, double complex *a, int *pivot, int columns, double complex *b);
 
 /* y[rows] = a[rows][columns] x[columns], and y[columns] = a' x[rows]. */

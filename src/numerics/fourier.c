@@ -1,17 +1,35 @@
 #include "numerics/fourier.h"
 
 #include <math.h>
+#include <stdbool.h>
+#include <stddef.h>
+
+enum { TABLE = 1024 };
+
+/* One pair of coefficients; cosine and sine are tables of n entries, or NULL when n is too large for them. */
+static void coefficients(int n, const double *sample, int k, const double *cosine, const double *sine, double *c, double *s)
+{
+  *c = *s = 0;
+  for (int i = 0, at = 0; i < n; i++) {
+    *c += sample[i] * (cosine ? cosine[at] : cos(2 * M_PI * at / n));
+    *s += sample[i] * (sine ? sine[at] : sin(2 * M_PI * at / n));
+    at += k;
+    if (at >= n)
+      at -= n;
+  }
+}
 
 void eo_fourier_series(int n, const double *sample, int order, double *series)
 {
+  double cosine[TABLE], sine[TABLE];
+  bool tabulated = n <= TABLE;
+  for (int i = 0; i < n && tabulated; i++) {
+    cosine[i] = cos(2 * M_PI * i / n);
+    sine[i] = sin(2 * M_PI * i / n);
+  }
   for (int k = 0; k <= order; k++) {
-    double c = 0, s = 0;
-    for (int i = 0; i < n; i++) {
-      double angle = 2 * M_PI * (double)((long)k * i % n) / n;
-      c += sample[i] * cos(angle);
-      s += sample[i] * sin(angle);
-    }
-    double weight = (k == 0 || 2 * k == n) ? 1.0 / n : 2.0 / n;
+    double c, s, weight = (k == 0 || 2 * k == n) ? 1.0 / n : 2.0 / n;
+    coefficients(n, sample, k, tabulated ? cosine : NULL, tabulated ? sine : NULL, &c, &s);
     if (k == 0)
       series[0] = weight * c;
     else {

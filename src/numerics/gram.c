@@ -10,8 +10,9 @@ typedef float float_lane __attribute__((vector_size(64), aligned(64), may_alias)
 
 #define INLINE static inline __attribute__((always_inline))
 
-INLINE double sum_lane(lane v)
+INLINE double sum_lane(const lane *vector)
 {
+  lane v = *vector;
   return ((v[0] + v[4]) + (v[2] + v[6])) + ((v[1] + v[5]) + (v[3] + v[7]));
 }
 
@@ -24,7 +25,7 @@ INLINE void apply_body(int rows, int stride, const double *f, const double *x, d
     lane sum = {0};
     for (int k = 0; k < lanes; k++)
       sum += row[k] * vector[k];
-    product[i] = sum_lane(sum);
+    product[i] = sum_lane(&sum);
   }
 }
 
@@ -117,7 +118,7 @@ INLINE bool factor_body(int n, int stride, double *matrix)
     lane square = {0};
     for (int k = 0; k < lanes; k++)
       square += pivot[k] * pivot[k];
-    double rest = row[j] - sum_lane(square);
+    double rest = row[j] - sum_lane(&square);
     if (!(rest > 0))
       return false;
     row[j] = sqrt(rest);
@@ -131,14 +132,14 @@ INLINE bool factor_body(int n, int stride, double *matrix)
         for (int m = 0; m < 4; m++)
           sum[m] += at[m * step + k] * pivot[k];
       for (int m = 0; m < 4; m++)
-        matrix[(long)(i + m) * ld + j] = (matrix[(long)(i + m) * ld + j] - sum_lane(sum[m])) * scale;
+        matrix[(long)(i + m) * ld + j] = (matrix[(long)(i + m) * ld + j] - sum_lane(&sum[m])) * scale;
     }
     for (; i < n; i++) {
       lane sum = {0};
       const lane *at = (const lane *)(matrix + (long)i * ld);
       for (int k = 0; k < lanes; k++)
         sum += at[k] * pivot[k];
-      matrix[(long)i * ld + j] = (matrix[(long)i * ld + j] - sum_lane(sum)) * scale;
+      matrix[(long)i * ld + j] = (matrix[(long)i * ld + j] - sum_lane(&sum)) * scale;
     }
   }
   return true;
@@ -158,7 +159,7 @@ INLINE void solve_body(int n, int stride, const double *matrix, double *x)
     x[i] = 0;
     for (int k = 0; k <= i / EO_GRAM_LANE; k++)
       sum += ((const lane *)row)[k] * vector[k];
-    x[i] = (mine - sum_lane(sum)) / row[i];
+    x[i] = (mine - sum_lane(&sum)) / row[i];
   }
   for (int i = n - 1; i >= 0; i--) {
     const double *row = matrix + (long)i * ld;
@@ -199,18 +200,23 @@ INLINE void solve_body(int n, int stride, const double *matrix, double *x)
 VERSION(plain, )
 #if defined(__x86_64__)
 VERSION(avx2, __attribute__((target("avx2,fma"))))
-VERSION(avx512, __attribute__((target("avx512f,avx512dq,avx512vl,fma,prefer-vector-width=512"))))
+VERSION(avx512, __attribute__((target("avx512f,avx512dq,avx512vl,fma"))))
 #endif
+
+const struct eo_gram *eo_gram_version(int index)
+{
+#if defined(__x86_64__)
+  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl") && index-- == 0)
+    return &version_avx512;
+  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && index-- == 0)
+    return &version_avx2;
+#endif
+  return index == 0 ? &version_plain : NULL;
+}
 
 const struct eo_gram *eo_gram_select(void)
 {
-#if defined(__x86_64__)
-  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl"))
-    return &version_avx512;
-  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))
-    return &version_avx2;
-#endif
-  return &version_plain;
+  return eo_gram_version(0);
 }
 
 double *eo_gram_allocate(long count)

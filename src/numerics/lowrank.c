@@ -44,3 +44,10 @@ enum eo_code eo_lowrank_factor(int n, double *matrix, double tolerance, int *ran
   *factor = rows;
   return EO_OK;
 }
+
+enum eo_code eo_lowrank_solve(int n, double *matrix, int columns, double *rhs, struct eo_error *error)
+{
+  if (LAPACKE_dposv(LAPACK_ROW_MAJOR, 'L', n, columns, matrix, n, rhs, columns) == 0)
+    return EO_OK;
+  return eo_error_set(error, EO_ERROR_NUMERIC, "", "A normal matrix is not positive definite.");
+}

@@ -9,4 +9,7 @@
    padded with zeros to a stride that is a multiple of EO_GRAM_LANE. Errors: memory; EO_ERROR_NUMERIC when an entry is not finite or a diagonal entry is negative. */
 enum eo_code eo_lowrank_factor(int n, double *matrix, double tolerance, int *rank, int *stride, double **factor, struct eo_error *error);
 
+/* Solves matrix[n][n] (symmetric positive definite, destroyed) X = rhs[n][columns] in place. Errors: EO_ERROR_NUMERIC. */
+enum eo_code eo_lowrank_solve(int n, double *matrix, int columns, double *rhs, struct eo_error *error);
+
 #endif

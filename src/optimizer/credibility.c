@@ -10,7 +10,6 @@
 
 static const double search_spread[] = {0, 0, 0.003, 0.003, 0.01, 0.03, 0.1, 0.2};
 static const double polish_spread[] = {0, 0, 0.001, 0.003};
-static const double start_radius = 0.1;
 
 struct credibility {
   int epoch, epoch_first; /* first archive row of the epoch */
@@ -85,7 +84,7 @@ static enum eo_code start(struct eo_optimizer *o, struct eo_error *error)
   enum eo_code code = eo_surrogate_init(&c->surrogate, s->variables, s->model_rows, 1, EO_TAIL_LINEAR, error);
   if (code == EO_OK)
     code = eo_local_init(&c->local, s->variables, error);
-  eo_local_restart(&c->local, start_radius);
+  eo_local_restart(&c->local, o->settings.local_radius);
   return code == EO_OK ? eo_optimizer_reserve_batch(o, (int)batch, error) : code;
 }
 
@@ -381,7 +380,7 @@ static enum eo_code begin_epoch(struct eo_optimizer *o, int best, struct eo_erro
   c->epoch_best = INFINITY;
   c->stalled = 0;
   c->fresh = true;
-  eo_local_restart(&c->local, start_radius);
+  eo_local_restart(&c->local, o->settings.local_radius);
   return EO_OK;
 }
 
@@ -405,7 +404,7 @@ static enum eo_code absorb(struct eo_optimizer *o, struct eo_error *error)
     c->epoch_best = value;
   if (!c->polishing && eo_optimizer_left(o) + o->batch_count <= o->settings.polish_share * o->budget) {
     c->polishing = true;
-    eo_local_restart(&c->local, start_radius / 4);
+    eo_local_restart(&c->local, o->settings.local_radius / 4);
   } else if (!c->polishing && c->stalled >= o->settings.stall_batches) {
     return begin_epoch(o, best, error);
   }

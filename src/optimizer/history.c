@@ -159,11 +159,12 @@ void eo_history_measure_redundancy(struct eo_history *history)
   }
 }
 
+/* A true row is replaced by another true row only. */
 static bool has_twin(const struct eo_history *history, int row, double threshold)
 {
   const int n = history->variables;
   for (int j = 0; j < history->count; j++)
-    if (j != row && !history->removed[j] &&
+    if (j != row && !history->removed[j] && (history->predicted[row] || !history->predicted[j]) &&
         distance(history->x + (size_t)j * n, history->x + (size_t)row * n, n) < threshold)
       return true;
   return false;
@@ -173,13 +174,12 @@ int eo_history_mark_redundant(struct eo_history *history, const struct eo_histor
 {
   int removed = 0;
   eo_history_measure_redundancy(history);
-  for (int pass = 1; pass >= 0; pass--) /* predicted rows first: a true row survives its predicted twin */
-    for (int j = 0; j < history->count; j++) {
-      if (history->predicted[j] != pass || !(history->redundancy[j] < law->redundancy_threshold))
-        continue;
-      history->removed[j] = law->literal_redundancy || has_twin(history, j, law->redundancy_threshold);
-      removed += history->removed[j];
-    }
+  for (int j = 0; j < history->count; j++) {
+    if (!(history->redundancy[j] < law->redundancy_threshold))
+      continue;
+    history->removed[j] = law->literal_redundancy || has_twin(history, j, law->redundancy_threshold);
+    removed += history->removed[j];
+  }
   return removed;
 }
 

@@ -3,7 +3,7 @@
    - the region is closed (e <= r_share); an empty one has credibility 0;
    - (15) sums over the m rows of the region (the printed n is a misprint; option all keeps every row);
    - (17) as printed deletes rows that are unique in space when each coordinate has neighbours; unless literal is set, a
-     row goes only when another row is within the threshold of it, and predicted rows go first;
+     row goes only when another row is within the threshold of it, a true row only when a true one is;
    - S6: redundant rows leave, then predicted rows lose credibility, then those below R_0 leave. */
 #ifndef EASEOFF_OPTIMIZER_HISTORY_H
 #define EASEOFF_OPTIMIZER_HISTORY_H

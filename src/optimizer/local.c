@@ -7,10 +7,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double reaches[] = {1, 0.35, 2.5}; /* boxes tried side by side, in radii */
+static const double reaches[] = {1, 2.5}; /* boxes tried side by side, in radii */
 static const double smallest_radius = 1e-9, largest_radius = 0.5;
 static const double ridge = 1e-8;
-enum { REACHES = 3, SAMPLES = 200, MINIMISE_STEPS = 60 };
+enum { REACHES = 2, SAMPLES = 200, MINIMISE_STEPS = 60, WANDER_STEPS = 10 };
+static const double gain_kept = 0.5;
+static const int level_samples = 1;
 
 enum eo_code eo_local_init(struct eo_local *local, int variables, struct eo_error *error)
 {
@@ -163,6 +165,44 @@ static void fill_gap(const struct eo_local *local, const double *low, const doub
   }
 }
 
+/* A point where the surrogate still promises a gain: hit and run (Smith 1984) from the minimum through the part of the
+   box where the surrogate stays below `level`. */
+static void wander(struct eo_local *local, const double *low, const double *high, const double *from, double level,
+                   struct eo_random random, double *u)
+{
+  const int n = local->variables;
+  double direction[EO_MAX_VARIABLES], trial[EO_MAX_VARIABLES];
+  uint64_t draw = 0;
+  memcpy(u, from, (size_t)n * sizeof *u);
+  for (int step = 0; step < WANDER_STEPS; step++) {
+    double length = 0, least = -INFINITY, most = INFINITY;
+    for (int k = 0; k < n; k++) {
+      direction[k] = eo_random_normal(random, draw++);
+      length += direction[k] * direction[k];
+    }
+    for (int k = 0; k < n; k++) {
+      direction[k] /= sqrt(length);
+      const double to_low = (low[k] - u[k]) / direction[k], to_high = (high[k] - u[k]) / direction[k];
+      least = fmax(least, fmin(to_low, to_high));
+      most = fmin(most, fmax(to_low, to_high));
+    }
+    for (int shrink = 0; shrink < 8; shrink++) {
+      const double t = least + (most - least) * eo_random_unit(random, 1000000 + draw++);
+      for (int k = 0; k < n; k++)
+        trial[k] = fmin(fmax(u[k] + t * direction[k], low[k]), high[k]);
+      eo_surrogate_visit(&local->surrogate, trial);
+      if (eo_surrogate_value(&local->surrogate, 0) <= level) {
+        memcpy(u, trial, (size_t)n * sizeof *u);
+        break;
+      }
+      if (t < 0)
+        least = t;
+      else
+        most = t;
+    }
+  }
+}
+
 int eo_local_propose(struct eo_local *local, const struct eo_archive *archive, int centre, uint64_t seed, int generation,
                      int count, double *x)
 {
@@ -173,17 +213,29 @@ int eo_local_propose(struct eo_local *local, const struct eo_archive *archive, i
   local->centre_value = archive->value[centre];
   scale_rows(local, archive, c, rows);
   const bool fitted = fit_best(local, rows);
+  double level = 0;
   for (int i = 0; i < count; i++) { /* x holds u until the end */
     double *u = x + (size_t)i * n;
+    const struct eo_random random = eo_random_at(seed, EO_STREAM_LOCAL, (uint64_t)generation, (uint64_t)i);
     box(local, c, i < REACHES ? reaches[i] : 1, low, high);
     if (fitted && i < REACHES) {
       memset(u, 0, (size_t)n * sizeof *u);
-      eo_minimise(surrogate_at, &local->surrogate, low, high, n, MINIMISE_STEPS, 1e-6, u);
+      const double least = eo_minimise(surrogate_at, &local->surrogate, low, high, n, MINIMISE_STEPS, 1e-6, u);
+      if (i == 0) {
+        memset(low, 0, sizeof low);
+        eo_surrogate_visit(&local->surrogate, low);
+        level = least + gain_kept * (eo_surrogate_value(&local->surrogate, 0) - least);
+      }
       if (fmin(nearest_square(local->u, rows, n, u), nearest_square(x, i, n, u)) > 1e-6)
         continue;
-      box(local, c, 0.5, low, high);
     }
-    fill_gap(local, low, high, rows, x, i, eo_random_at(seed, EO_STREAM_LOCAL, (uint64_t)generation, (uint64_t)i), u);
+    box(local, c, 1, low, high);
+    if (fitted && i > 0 && level_samples)
+      wander(local, low, high, x, level, random, u);
+    else {
+      box(local, c, 0.5, low, high);
+      fill_gap(local, low, high, rows, x, i, random, u);
+    }
   }
   for (int i = 0; i < count; i++)
     for (int k = 0; k < n; k++)

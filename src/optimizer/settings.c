@@ -71,6 +71,7 @@ static const struct eo_parameter parameters[] = {
     NUMBER(stall_gain, 0, 1, 0.002, CREDIBILITY, "Gain that counts, relative."),
     NUMBER(polish_share, 0, 1, 0.2, CREDIBILITY, "Share of the budget that only improves the best."),
     NUMBER(local_share, 0, 1, 0.375, CREDIBILITY, "Share of each batch for the trust region round the best."),
+    NUMBER(local_radius, 1e-6, 0.5, 0.1, CREDIBILITY, "Radius of the trust region at the start of an epoch."),
     INTEGER(front_population, 4, 1000, 48, NSGA2, "Individuals of a generation."),
     INTEGER(front_verified, 1, 1000, 12, NSGA2, "True evaluations per cycle."),
     INTEGER(front_rounds, 1, 1000, 20, NSGA2, "Generations on the surrogates per cycle."),
@@ -97,7 +98,7 @@ int eo_optimizer_algorithm_find(const char *name)
   return -1;
 }
 
-static void put(struct eo_optimizer_settings *settings, const struct eo_parameter *p, double value)
+void eo_optimizer_put(struct eo_optimizer_settings *settings, const struct eo_parameter *p, double value)
 {
   char *member = (char *)settings + p->offset;
   if (p->kind == EO_PARAMETER_NUMBER)
@@ -108,7 +109,7 @@ static void put(struct eo_optimizer_settings *settings, const struct eo_paramete
     memcpy(member, &(int){(int)value}, sizeof(int));
 }
 
-static double get(const struct eo_optimizer_settings *settings, const struct eo_parameter *p)
+double eo_optimizer_get(const struct eo_optimizer_settings *settings, const struct eo_parameter *p)
 {
   const char *member = (const char *)settings + p->offset;
   if (p->kind == EO_PARAMETER_NUMBER) {
@@ -130,7 +131,7 @@ void eo_optimizer_defaults(struct eo_optimizer_settings *settings, int algorithm
 {
   *settings = (struct eo_optimizer_settings){.algorithm = algorithm, .variables = variables, .objectives = 1};
   for (int i = 0; i < PARAMETERS; i++)
-    put(settings, &parameters[i], parameters[i].standard);
+    eo_optimizer_put(settings, &parameters[i], parameters[i].standard);
 }
 
 static enum eo_code fault(struct eo_error *error, const char *key, const char *sentence)
@@ -143,7 +144,7 @@ static enum eo_code fault(struct eo_error *error, const char *key, const char *s
 static enum eo_code check_range(const struct eo_optimizer_settings *settings, const struct eo_parameter *p,
                                 struct eo_error *error)
 {
-  const double value = get(settings, p);
+  const double value = eo_optimizer_get(settings, p);
   if (value >= p->low && value <= p->high)
     return EO_OK;
   char sentence[200];

@@ -61,6 +61,7 @@ struct eo_optimizer_settings {
   double stall_gain;         /* relative to the spread of the values */
   double polish_share;       /* of the budget, at the end */
   double local_share;        /* of each batch, to the trust region round the best */
+  double local_radius;       /* of the trust region at the start of an epoch */
 
   /* nsga2 */
   int front_population;
@@ -82,6 +83,10 @@ struct eo_parameter {
 
 /* All parameters, in the order of a form. */
 const struct eo_parameter *eo_optimizer_parameters(int *count);
+
+/* Reads and sets a parameter, whatever its kind. */
+double eo_optimizer_get(const struct eo_optimizer_settings *settings, const struct eo_parameter *parameter);
+void eo_optimizer_put(struct eo_optimizer_settings *settings, const struct eo_parameter *parameter, double value);
 
 /* "ga", "fpga", "credibility-ga", "nsga2"; find returns -1 for an unknown name. */
 const char *eo_optimizer_algorithm_name(int algorithm);

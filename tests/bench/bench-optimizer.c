@@ -1,7 +1,7 @@
 /* Optimizers on test problems, beside NLopt's when it is there: medians (quartiles) of the best value found after 100,
    200, 400 and 1000 true evaluations, and the optimizer's own time. Prints a table; asserts nothing.
 
-     bench-optimizer [--quick] [--seeds N] [--variables N] [--problem NAME] [--algorithm NAME] */
+     bench-optimizer [--quick] [--seeds N] [--variables N] [--problem NAME] [--algorithm NAME] [--set KEY=NUMBER]... */
 #include "config.h"
 #include "base/random.h"
 #include "optimizer/optimizer.h"
@@ -39,6 +39,21 @@ static double evaluate(struct trace *trace, const double *x)
   return value;
 }
 
+static struct { const char *text[32]; int count; } changes;
+
+/* --set: parameters other than the defaults. */
+static void apply_changes(struct eo_optimizer_settings *settings)
+{
+  int count;
+  const struct eo_parameter *parameter = eo_optimizer_parameters(&count);
+  for (int c = 0; c < changes.count; c++)
+    for (int i = 0; i < count; i++) {
+      const size_t length = strlen(parameter[i].key);
+      if (strncmp(changes.text[c], parameter[i].key, length) == 0 && changes.text[c][length] == '=')
+        eo_optimizer_put(settings, &parameter[i], atof(changes.text[c] + length + 1));
+    }
+}
+
 static void run_own(struct trace *trace, int algorithm, uint64_t seed)
 {
   struct eo_optimizer_settings settings;
@@ -49,6 +64,7 @@ static void run_own(struct trace *trace, int algorithm, uint64_t seed)
   settings.seed = seed;
   settings.true_evaluations = BUDGET;
   settings.fitness_form = EO_FITNESS_NEGATIVE;
+  apply_changes(&settings);
   if (eo_optimizer_new(&settings, &optimizer, &error) != EO_OK)
     batch.count = 0;
   while (batch.count > 0 && eo_optimizer_ask(optimizer, &batch, &error) == EO_OK)
@@ -184,6 +200,8 @@ int main(int argc, char **argv)
       choice.problem = value, i++;
     else if (strcmp(argv[i], "--algorithm") == 0)
       choice.algorithm = value, i++;
+    else if (strcmp(argv[i], "--set") == 0 && changes.count < 32)
+      changes.text[changes.count++] = value, i++;
   }
   choice.seeds = choice.seeds < 1 ? 1 : choice.seeds > SEEDS_MAX ? SEEDS_MAX : choice.seeds;
   printf("%-13s %2s  %-15s", "problem", "n", "algorithm");

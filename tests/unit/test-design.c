@@ -6,6 +6,7 @@
 #include "document/design_document.h"
 #include "document/example.h"
 #include "document/json.h"
+#include "document/study.h"
 #include "tap.h"
 
 static struct eo_faults faults;
@@ -265,10 +266,10 @@ static void test_derived(void)
   close_to(design.gear_pair.centre_distance, 0.2003184389666066, 1e-15, "centre distance");
   close_to(design.modification.flank[EO_PINION][EO_LEFT].lead_crowning, 12.23e-6, 0.005e-6, "a_l 1.35e-8/um at the face ends");
   ok(isnan(design.supports.mesh_damping_stiffness), "mesh damping waits for the mesh stiffness");
-  close_to(design.optimization.sharing_radius, 0.03, 1e-15, "r_share for 5 variables");
+  close_to(design.optimization.share_radius, 0.03, 1e-15, "r_share for 5 variables");
   eo_example_build("paper-case-b", &design);
   eo_design_complete(&design, &geometry, &error);
-  close_to(design.optimization.sharing_radius, 0.11, 0.005, "r_share for 10 variables");
+  close_to(design.optimization.share_radius, 0.11, 0.005, "r_share for 10 variables");
   close_to(design.shafts.bearing_position[EO_PINION][EO_RIGHT], 0.025 + 0.055 + 0.0275, 1e-15, "right bearing half a face width outside");
 }
 
@@ -308,10 +309,25 @@ static void long_end_reliefs(struct eo_design *d)
 }
 static void wide_bounds(struct eo_design *d) { d->optimization.tip_relief_start.high = 5.2e-3; }
 static void wide_root_bounds(struct eo_design *d) { d->optimization.root_relief_start.high = 5.8e-3; }
-static void high_floor(struct eo_design *d) { d->optimization.credibility_floor = 0.6; }
+static void high_floor(struct eo_design *d) { d->optimization.removal_threshold = 0.6; }
 static void even_sector(struct eo_design *d) { d->resolution.sector_teeth = 4; }
 static void many_harmonics(struct eo_design *d) { d->resolution.te_harmonics = 33; }
 static void crossed_bearings(struct eo_design *d) { d->shafts.bearing_position[EO_GEAR][EO_LEFT] = 0.2; }
+static void bearing_inside(struct eo_design *d)
+{
+  d->shafts.enabled = true;
+  d->shafts.bearing_position[EO_PINION][EO_RIGHT] = 0.079;
+}
+static void left_bearing_inside(struct eo_design *d)
+{
+  d->shafts.enabled = true;
+  d->shafts.bearing_position[EO_GEAR][EO_LEFT] = -0.0799;
+}
+static void thin_shaft(struct eo_design *d)
+{
+  d->shafts.enabled = true;
+  d->shafts.shaft_diameter[EO_GEAR] = 0.09;
+}
 static void no_weights(struct eo_design *d) { d->objective.weight[0] = d->objective.weight[1] = d->objective.weight[2] = 0; }
 static void undercut(struct eo_design *d) { d->gear_pair.teeth[EO_PINION] = 8; }
 static void pointed(struct eo_design *d)
@@ -340,10 +356,13 @@ static const struct contradiction contradictions[] = {
     {"end reliefs that overlap", "/modification/pinion/left/leading_end_relief_length_mm", long_end_reliefs},
     {"tip start bounds outside the flank", "/optimization/bounds/tip_relief_start_mm", wide_bounds},
     {"root start bounds outside the flank", "/optimization/bounds/root_relief_start_mm", wide_root_bounds},
-    {"R_0 >= R*", "/optimization/credibility_floor", high_floor},
+    {"R_0 >= R*", "/optimization/removal_threshold", high_floor},
     {"a sector without a middle tooth", "/resolution/sector_teeth", even_sector},
     {"more harmonics than positions resolve", "/resolution/te_harmonics", many_harmonics},
     {"bearings in the wrong order", "/shafts/gear_left_bearing_mm", crossed_bearings},
+    {"right bearing inside the toothed body", "/shafts/pinion_right_bearing_mm", bearing_inside},
+    {"left bearing inside the toothed body", "/shafts/gear_left_bearing_mm", left_bearing_inside},
+    {"a shaft no thicker than its bore", "/shafts/gear_shaft_diameter_mm", thin_shaft},
     {"no weight", "/objective/weights", no_weights},
     {"undercut", "/gear_pair/pinion_profile_shift", undercut},
     {"pointed or interfering tip", NULL, pointed},
@@ -386,6 +405,46 @@ static void test_hashes(void)
   ok(strcmp(first, "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad") == 0, "SHA-256 of \"abc\" (FIPS 180-4)");
 }
 
+/* The document's optimization and the optimizer's own table say the same. */
+static void test_study(void)
+{
+  int count, strange = 0;
+  const struct eo_parameter *parameter = eo_optimizer_parameters(&count);
+  for (int i = 0; i < count; i++) {
+    const struct eo_field *field = NULL;
+    for (int j = 0; j < eo_optimization_table.count; j++)
+      if (strcmp(eo_optimization_table.field[j].key, parameter[i].key) == 0)
+        field = &eo_optimization_table.field[j];
+    bool same = field != NULL;
+    for (int k = 0; same && field->choices && parameter[i].choices && (field->choices[k] || parameter[i].choices[k]); k++)
+      same = field->choices[k] && parameter[i].choices[k] && strcmp(field->choices[k], parameter[i].choices[k]) == 0;
+    if (same && field->kind != EO_FIELD_CHOICE && field->kind != EO_FIELD_FLAG && !(field->flags & EO_FIELD_NULLABLE))
+      same = field->low == parameter[i].low && field->high == parameter[i].high;
+    if (same && !(field->flags & EO_FIELD_NULLABLE))
+      same = field->fallback == parameter[i].standard;
+    if (!same)
+      printf("# %s\n", parameter[i].key);
+    strange += !same;
+  }
+  ok(strange == 0, "%d optimizer parameters: keys, ranges, defaults and choices agree", count);
+  struct eo_optimizer_settings settings, standard;
+  struct eo_error error = {0};
+  eo_example_build("paper-case-b", &design);
+  eo_design_study(&design, &settings);
+  eo_optimizer_defaults(&standard, EO_CREDIBILITY_GA, 10);
+  standard.objectives = 3;
+  ok(memcmp(&settings, &standard, sizeof settings) == 0, "an example gives the optimizer's defaults with ten variables");
+  design.optimization.seed = 77;
+  design.optimization.trust_threshold = 0.7;
+  design.optimization.literal_redundancy = true;
+  design.optimization.decision_order = EO_ORDER_SEQUENTIAL;
+  snprintf(design.optimization.algorithm, sizeof design.optimization.algorithm, "fpga");
+  eo_design_study(&design, &settings);
+  ok(settings.seed == 77 && settings.trust_threshold == 0.7 && settings.literal_redundancy == 1 && settings.decision_order == EO_ORDER_SEQUENTIAL &&
+         settings.algorithm == EO_FPGA && eo_optimizer_settings_check(&settings, &error) == EO_OK,
+     "what the design says reaches the optimizer");
+}
+
 int main(void)
 {
   test_every_fault();
@@ -398,5 +457,6 @@ int main(void)
   test_robust();
   test_contradictions();
   test_hashes();
+  test_study();
   return tap_done();
 }
