@@ -23,6 +23,7 @@ struct eo_evaluator {
   struct vibration_problem {
     struct eo_dynamics_parameters parameters;
     struct eo_vibration_case load;
+    bool solvable;                         /* false: no mesh law, or no converged contact to make one from */
   } *problem;                              /* [most_cases], as last solved */
   struct eo_evaluation result;
 };

@@ -81,8 +81,8 @@ void eo_evaluator_combine(const struct eo_design *design, const struct eo_geomet
                           const struct eo_objective_case *unmodified, struct eo_objective_value *value);
 
 /* The vibration problem of a load case as the last evaluation (without a compliance band) solved it, for sweeps over speed. The
-   laws in load are borrowed, valid until the next run. */
-void eo_evaluator_vibration(const struct eo_evaluator *evaluator, int load_case, struct eo_dynamics_parameters *parameters,
+   laws in load are borrowed, valid until the next run. False: the loaded contact gave no mesh law; that case has no periodic state. */
+bool eo_evaluator_vibration(const struct eo_evaluator *evaluator, int load_case, struct eo_dynamics_parameters *parameters,
                             struct eo_vibration_case *load);
 
 /* Impacts of one load case as pulses of the equations of motion. impact[2], pulse[2]: [end]; speed: of the pinion, rad/s. */
