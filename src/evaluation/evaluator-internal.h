@@ -9,6 +9,13 @@ struct eo_evaluator {
   int most_cases;
   struct eo_gap_field field[2];            /* [end] */
   struct eo_loaded_gaps gaps[2];           /* [end] */
+  struct eo_end_key {                      /* what an end's fields, gaps and loads depend on beside the pair */
+    struct eo_flank_modification flank[2]; /* [member] */
+    double in_plane, out_of_plane, factor;
+    int cases;
+    double force[EO_MAX_LOAD_CASES];
+  } known[2];                              /* [end]: of what is kept; cases 0: nothing is */
+  bool fresh[2];                           /* [end]: to be solved in this run; the other end is as the last run left it */
   struct eo_loaded_workspace *contact;
   struct eo_elastic *bodies;               /* NULL: rigid */
   struct eo_shafts shafts;                 /* those of the bodies */

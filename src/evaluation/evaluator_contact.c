@@ -5,8 +5,8 @@
 
 bool eo_evaluator_same_flanks(const struct eo_modification *m)
 {
-  return memcmp(&m->flank[EO_PINION][EO_LEFT], &m->flank[EO_PINION][EO_RIGHT], sizeof m->flank[0][0]) == 0 &&
-         memcmp(&m->flank[EO_GEAR][EO_LEFT], &m->flank[EO_GEAR][EO_RIGHT], sizeof m->flank[0][0]) == 0;
+  return eo_modification_equal(&m->flank[EO_PINION][EO_LEFT], &m->flank[EO_PINION][EO_RIGHT]) &&
+         eo_modification_equal(&m->flank[EO_GEAR][EO_LEFT], &m->flank[EO_GEAR][EO_RIGHT]);
 }
 
 static void copy_end(const struct eo_contact_grid *grid, struct eo_loaded_end *to, const struct eo_loaded_end *from)
@@ -45,6 +45,25 @@ static double axial_stiffness(const struct eo_alignment *alignment)
          : alignment->pinion_axial == EO_AXIAL_SPRING ? alignment->pinion_axial_stiffness : 0;
 }
 
+static bool same_key(const struct eo_end_key *a, const struct eo_end_key *b)
+{
+  return a->cases == b->cases && a->in_plane == b->in_plane && a->out_of_plane == b->out_of_plane && a->factor == b->factor &&
+         eo_modification_equal(&a->flank[0], &b->flank[0]) && eo_modification_equal(&a->flank[1], &b->flank[1]) &&
+         memcmp(a->force, b->force, sizeof *a->force * (size_t)a->cases) == 0;
+}
+
+/* Notes what an end is about to be solved for; false when that is what is kept. */
+static bool is_news(struct eo_evaluator *e, const struct eo_modification *m, int end, double in_plane, double out_of_plane, double factor)
+{
+  struct eo_end_key key = {.flank = {m->flank[EO_PINION][end], m->flank[EO_GEAR][end]}, .in_plane = in_plane, .out_of_plane = out_of_plane,
+                           .factor = factor, .cases = e->result.cases};
+  for (int k = 0; k < key.cases; k++)
+    key.force[k] = e->result.load_case[k].force;
+  bool news = !same_key(&key, &e->known[end]);
+  e->known[end] = key;
+  return news;
+}
+
 void eo_evaluator_set_fields(struct eo_evaluator *e, const struct eo_design *design, const struct eo_scenario *scenario)
 {
   const struct eo_modification *m = &design->modification;
@@ -52,8 +71,10 @@ void eo_evaluator_set_fields(struct eo_evaluator *e, const struct eo_design *des
   double out_of_plane = isnan(scenario->out_of_plane) ? design->alignment.shaft_angle_out_of_plane : scenario->out_of_plane;
   e->result.equal_ends = e->result.ends == 2 && eo_evaluator_same_flanks(m) && in_plane == 0 && out_of_plane == 0 && !e->bodies;
   for (int end = 0; end < e->result.ends; end++) {
-    if (end == EO_RIGHT && e->result.equal_ends)
+    e->fresh[end] = false;
+    if ((end == EO_RIGHT && e->result.equal_ends) || !is_news(e, m, end, in_plane, out_of_plane, scenario->compliance))
       continue;
+    e->fresh[end] = true;
     eo_gap_field_init(&e->field[end], &e->pair->geometry, &m->flank[EO_PINION][end], &m->flank[EO_GEAR][end], end, in_plane, out_of_plane,
                       e->pair->pivot[end], e->pair->grid->corner);
     eo_loaded_gaps_set(&e->gaps[end], e->pair->grid, &e->field[end]);
@@ -121,9 +142,13 @@ void eo_evaluator_solve_contact(struct eo_evaluator *e, const struct eo_design *
     if (end == EO_RIGHT && r->equal_ends)
       for (int k = 0; k < r->cases; k++)
         copy_end(grid, &r->load_case[k].end[end].loaded, &r->load_case[k].end[EO_LEFT].loaded);
-    else
+    else if (e->fresh[end])
       load_end(e, design, end, factor);
+  if (r->equal_ends)
+    e->known[EO_RIGHT].cases = 0; /* its fields stayed behind */
   int stagger = eo_evaluator_stagger(design, grid->positions);
+  if (e->bodies || stiffness > 0)
+    e->known[EO_LEFT].cases = e->known[EO_RIGHT].cases = 0; /* the loads below are no longer those of the ends alone */
   if (e->bodies)
     bend_cases(e, design, factor);
   else if (r->ends == 2 && stiffness > 0 && !(r->equal_ends && stagger == 0))
