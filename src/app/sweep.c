@@ -150,12 +150,13 @@ static int run_request(struct request *request)
   enum eo_code code = prepare(request, &watch.progress, &pair, &error);
   if (!code)
     code = eo_sweep_run(&sweep, pair, &request->design, &plan, &watch.progress, &error);
-  eo_watch_end(&watch);
-  if (eo_watch_stopped())
+  eo_watch_clear(&watch);
+  if (watch.stopped)
     code = eo_error_set(&error, EO_ERROR_CANCELLED, "", "Stopped.");
   if (!code && request->csv)
     code = save_csv(&sweep, request->csv, &error);
   int status = code ? eo_app_fail(code == EO_ERROR_INPUT ? request->file : NULL, &error) : show(request, &sweep);
+  eo_watch_end(&watch);
   eo_sweep_done(&sweep);
   eo_pair_free(pair);
   return status;

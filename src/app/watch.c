@@ -1,19 +1,10 @@
 #include "app/watch.h"
 
-#include "base/clock.h"
-
-#include <signal.h>
 #include <stdio.h>
 #include <unistd.h>
 
-/* A signal handler can reach nothing else. */
-static volatile sig_atomic_t stopped;
-
-static void stop(int signal)
-{
-  (void)signal;
-  stopped = 1;
-}
+#include "app/app.h"
+#include "base/clock.h"
 
 static int report(void *context, const char *what, double fraction)
 {
@@ -26,26 +17,50 @@ static int report(void *context, const char *what, double fraction)
     watch->last = now;
     watch->shown = true;
   }
-  return stopped;
+  return watch->stopped;
+}
+
+static void *wait_for_signals(void *context)
+{
+  struct eo_watch *watch = context;
+  for (int signal;;)
+    if (sigwait(&watch->signals, &signal) == 0 && atomic_exchange(&watch->stopped, true))
+      _exit(EO_EXIT_FAILED);
+}
+
+/* A signal that whoever started the program wants ignored stays ignored. */
+static void listen(struct eo_watch *watch, int signal)
+{
+  struct sigaction action;
+  if (sigaction(signal, NULL, &action) == 0 && action.sa_handler != SIG_IGN)
+    sigaddset(&watch->signals, signal);
 }
 
 void eo_watch_start(struct eo_watch *watch)
 {
-  struct sigaction action = {.sa_handler = stop, .sa_flags = (int)SA_RESETHAND};
   *watch = (struct eo_watch){.progress = {.report = report, .context = watch}, .terminal = isatty(STDERR_FILENO)};
-  sigemptyset(&action.sa_mask);
-  sigaction(SIGINT, &action, NULL);
-  sigaction(SIGTERM, &action, NULL);
+  sigemptyset(&watch->signals);
+  listen(watch, SIGINT);
+  listen(watch, SIGTERM);
+  pthread_sigmask(SIG_BLOCK, &watch->signals, &watch->before);
+  watch->waiting = pthread_create(&watch->thread, NULL, wait_for_signals, watch) == 0;
+  if (!watch->waiting)
+    pthread_sigmask(SIG_SETMASK, &watch->before, NULL);
 }
 
-void eo_watch_end(struct eo_watch *watch)
+void eo_watch_clear(struct eo_watch *watch)
 {
   if (watch->shown)
     fputs("\r\033[K", stderr);
   watch->shown = false;
 }
 
-bool eo_watch_stopped(void)
+void eo_watch_end(struct eo_watch *watch)
 {
-  return stopped;
+  eo_watch_clear(watch);
+  if (!watch->waiting)
+    return;
+  pthread_cancel(watch->thread);
+  pthread_join(watch->thread, NULL);
+  pthread_sigmask(SIG_SETMASK, &watch->before, NULL);
 }

@@ -45,6 +45,9 @@ void eo_result_put(struct eo_result_object *object, const char *key, json_t *val
 void eo_result_put_number(struct eo_result_object *object, const char *key, double value, const struct eo_unit *unit);
 json_t *eo_result_close(struct eo_result_object *object); /* NULL when anything failed */
 
+/* Normal force that one end carries, mean over the mesh cycle, N. */
+double eo_result_mean_load(const struct eo_result_source *source, const struct eo_case_result *load_case, int end);
+
 /* Each returns a new value, NULL without memory. */
 json_t *eo_result_position(const struct eo_result_source *source);
 json_t *eo_result_unloaded(struct eo_result_source *source);

@@ -92,13 +92,25 @@ static enum eo_code check_optimization(const struct eo_optimization *optimizatio
   return code;
 }
 
-static enum eo_code check_resolution(const struct eo_resolution *resolution, struct eo_error *error)
+/* Contact points at one mesh position, roughly: every contact line across the face, and the pieces of tip edges. */
+static double contact_points(const struct eo_resolution *resolution, const struct eo_geometry *geometry)
 {
+  return (geometry->transverse_contact_ratio + geometry->overlap_ratio + 1) * (resolution->cells_per_line + (resolution->tip_edge_contact ? 24 : 0));
+}
+
+static enum eo_code check_resolution(const struct eo_resolution *resolution, const struct eo_geometry *geometry, struct eo_error *error)
+{
+  static const double MOST_POINTS = 2000, MOST_BYTES = 1 << 30;
+  double points = contact_points(resolution, geometry), bytes = sizeof(float) * points * points * resolution->positions;
   if (resolution->sector_teeth == 4)
     return eo_error_set(error, EO_ERROR_INPUT, "/resolution/sector_teeth", "The sector has its loaded tooth in the middle: 3 or 5 teeth, not 4.");
   if (2 * resolution->te_harmonics > resolution->positions)
     return eo_error_set(error, EO_ERROR_INPUT, "/resolution/te_harmonics", "%d harmonics cannot be told apart on %d mesh positions: at most %d.",
                         resolution->te_harmonics, resolution->positions, resolution->positions / 2);
+  if (points > MOST_POINTS || bytes > MOST_BYTES)
+    return eo_error_set(error, EO_ERROR_INPUT, "/resolution/cells_per_line",
+                        "%d cells on each of up to %.0f contact lines, at %d mesh positions, are too many: at most %.0f points at a position and 1 GiB in all.",
+                        resolution->cells_per_line, ceil(geometry->transverse_contact_ratio + geometry->overlap_ratio), resolution->positions, MOST_POINTS);
   return EO_OK;
 }
 
@@ -150,7 +162,7 @@ enum eo_code eo_design_check(const struct eo_design *design, const struct eo_geo
   if (!code)
     code = check_optimization(&design->optimization, geometry, error);
   if (!code)
-    code = check_resolution(&design->resolution, error);
+    code = check_resolution(&design->resolution, geometry, error);
   if (!code)
     code = check_shafts(&design->shafts, &design->gear_pair, error);
   if (!code)
