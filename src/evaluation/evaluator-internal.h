@@ -55,7 +55,7 @@ void eo_evaluator_find_impacts(struct eo_evaluator *e, double speed_factor, doub
 void eo_evaluator_bend_bodies(struct eo_evaluator *e, const struct eo_design *design, double force, double factor,
                               struct eo_loaded_end both[2], struct eo_elastic_report *report);
 
-/* The gap field of an end with the deflection of its bodies, valid until the next call. */
+/* The gap field of an end with the deflection of its bodies in a load case (NULL: rigid), valid until the next call. */
 const struct eo_gap_field *eo_evaluator_field_of(struct eo_evaluator *e, const struct eo_case_result *c, int end);
 
 /* The vibration half: every load case, then again at other compliances. */
