@@ -1,23 +1,16 @@
 #include "app/watch.h"
 
 #include <stdio.h>
-#include <time.h>
 #include <unistd.h>
 
 #include "app/app.h"
-
-static double seconds(void)
-{
-  struct timespec now;
-  clock_gettime(CLOCK_MONOTONIC, &now);
-  return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
+#include "base/clock.h"
 
 static int report(void *context, const char *what, double fraction)
 {
   static const double INTERVAL = 0.1;
   struct eo_watch *watch = context;
-  double now = seconds();
+  double now = 1e-3 * eo_clock_milliseconds();
   if (watch->terminal && now - watch->last >= INTERVAL) {
     fprintf(stderr, "\r\033[K%3.0f %% %.60s", 100 * fraction, what);
     fflush(stderr);

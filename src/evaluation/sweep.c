@@ -1,5 +1,6 @@
 #include "evaluation/sweep.h"
 
+#include "numerics/periodic.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -109,14 +110,6 @@ void eo_sweep_done(struct eo_sweep *s)
 
 /* ---- one torque: contact, mesh laws, impacts, modes ---- */
 
-static double mean(int n, const double *value)
-{
-  double sum = 0;
-  for (int i = 0; i < n; i++)
-    sum += value[i];
-  return sum / n;
-}
-
 /* sound: the loaded contact converged; where it did not, everything built on it means nothing. */
 static void read_point(struct eo_sweep_point *p, const struct eo_vibration *r, bool sound)
 {
@@ -148,8 +141,8 @@ static enum eo_code read_torque(struct eo_sweep_torque *t, const struct eo_evalu
   t->contact_failures = c->contact_failures;
   for (int end = 0; end < 2; end++) {
     const struct eo_end_result *from = &c->end[end < r->ends ? end : 0];
-    t->stiffness[end] = known * mean(r->positions, from->stiffness);
-    t->tangent[end] = known * mean(r->positions, from->loaded.tangent);
+    t->stiffness[end] = known * eo_periodic_mean(r->positions, from->stiffness);
+    t->tangent[end] = known * eo_periodic_mean(r->positions, from->loaded.tangent);
     t->max_pressure[end] = known * from->max_pressure;
     t->max_line_load[end] = known * from->max_line_load;
     t->edge_share[end] = known * from->edge_share;
