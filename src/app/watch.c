@@ -10,7 +10,7 @@ static int report(void *context, const char *what, double fraction)
 {
   static const double INTERVAL = 0.1;
   struct eo_watch *watch = context;
-  double now = (1e-3 * eo_clock_milliseconds());
+  double now = 1e-3 * eo_clock_milliseconds();
   if (watch->terminal && now - watch->last >= INTERVAL) {
     fprintf(stderr, "\r\033[K%3.0f %% %.60s", 100 * fraction, what);
     fflush(stderr);
