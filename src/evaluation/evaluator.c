@@ -99,23 +99,29 @@ static int kept_at(const struct eo_evaluator *e, int end)
   return e->result.equal_ends ? EO_LEFT : end;
 }
 
+/* Whether an axially held pinion shares its load unevenly between the ends. */
+static bool shares_unevenly(const struct eo_evaluator *e, const struct eo_design *design)
+{
+  const struct eo_evaluation *r = &e->result;
+  return r->ends == 2 && axial_stiffness(&design->alignment) > 0 && !(r->equal_ends && stagger_positions(design, e->pair->grid->positions) == 0);
+}
+
 static void solve_contact(struct eo_evaluator *e, const struct eo_design *design, double factor)
 {
   struct eo_evaluation *r = &e->result;
   const struct eo_contact_grid *grid = e->pair->grid;
-  double stiffness = axial_stiffness(&design->alignment);
   for (int end = 0; end < r->ends; end++)
     if (end == EO_RIGHT && r->equal_ends)
       for (int k = 0; k < r->cases; k++)
         copy_end(grid, &r->load_case[k].end[end].loaded, &r->load_case[k].end[EO_LEFT].loaded);
     else
       load_end(e, design, end, factor);
-  int stagger = stagger_positions(design, grid->positions);
-  if (r->ends == 2 && stiffness > 0 && !(r->equal_ends && stagger == 0))
+  if (shares_unevenly(e, design))
     for (int k = 0; k < r->cases; k++) {
       struct eo_loaded_gaps gaps[2] = {e->gaps[EO_LEFT], e->gaps[kept_at(e, EO_RIGHT)]};
       struct eo_loaded_end both[2] = {r->load_case[k].end[EO_LEFT].loaded, r->load_case[k].end[EO_RIGHT].loaded};
-      eo_loaded_balance(e->contact, grid, gaps, factor, stiffness, stagger, r->load_case[k].force, both);
+      eo_loaded_balance(e->contact, grid, gaps, factor, axial_stiffness(&design->alignment), stagger_positions(design, grid->positions),
+                        r->load_case[k].force, both);
       for (int end = 0; end < 2; end++)
         r->load_case[k].end[end].loaded.failures = both[end].failures;
     }
@@ -166,13 +172,14 @@ static void summarise_pair(struct eo_evaluator *e, const struct eo_design *desig
     c->contact_failures += c->end[end].loaded.failures;
 }
 
-static void find_impacts(struct eo_evaluator *e, double speed_factor, double factor)
+static void find_impacts(struct eo_evaluator *e, const struct eo_design *design, double speed_factor, double factor)
 {
   struct eo_evaluation *r = &e->result;
+  bool same = r->equal_ends && !shares_unevenly(e, design);
   for (int k = 0; k < r->cases; k++)
     for (int end = 0; end < r->ends; end++) {
       struct eo_case_result *c = &r->load_case[k];
-      if (end == EO_RIGHT && r->equal_ends && c->end[0].loaded.load[0] == c->end[1].loaded.load[0])
+      if (end == EO_RIGHT && same)
         c->end[end].impact = c->end[EO_LEFT].impact;
       else
         eo_impact_find(&c->end[end].impact, e->pair->grid, &e->field[kept_at(e, end)], e->pair->kernel, &e->pair->impact,
@@ -244,6 +251,15 @@ static void set_pulses(const struct eo_evaluator *e, const struct eo_case_result
   }
 }
 
+/* An end that carries nothing somewhere in the cycle has no mesh law about its load. */
+static bool carries_throughout(const struct eo_loaded_end *end, int positions)
+{
+  bool carries = true;
+  for (int j = 0; j < positions; j++)
+    carries = carries && end->load[j] > 0;
+  return carries;
+}
+
 static enum eo_code vibrate(struct eo_evaluator *e, const struct eo_design *design, int k, double speed_factor, double factor,
                             const struct eo_loaded_end *loaded[2], struct eo_vibration *vibration, struct eo_error *error)
 {
@@ -260,6 +276,10 @@ static enum eo_code vibrate(struct eo_evaluator *e, const struct eo_design *desi
                                                   ends == 2 && !same_flanks(&design->modification), stiffness, error);
   if (!code)
     code = eo_vibration_set_model(e->vibration, &parameters, error);
+  if (!code && !(carries_throughout(loaded[0], n) && carries_throughout(loaded[ends - 1], n))) {
+    *vibration = (struct eo_vibration){.outcome = EO_VIBRATION_NOT_CONVERGED, .ends = ends, .harmonics = e->vibration_harmonics};
+    return EO_OK;
+  }
   for (int end = 0; end < ends && !code; end++) {
     load.law[end] = &e->law[k][end];
     code = set_law(e, design, &e->law[k][end], c, end, loaded[end], factor, error);
@@ -408,7 +428,7 @@ static void solve_static(struct eo_evaluator *e, const struct eo_design *design,
     summarise_pair(e, design, &r->load_case[k]);
   }
   double contact = milliseconds();
-  find_impacts(e, scenario->speed, scenario->compliance);
+  find_impacts(e, design, scenario->speed, scenario->compliance);
   r->static_ms = contact - start;
   r->impact_ms = milliseconds() - contact;
 }
