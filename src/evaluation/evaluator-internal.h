@@ -49,7 +49,7 @@ void eo_evaluator_set_fields(struct eo_evaluator *e, const struct eo_design *des
 void eo_evaluator_solve_contact(struct eo_evaluator *e, const struct eo_design *design, double factor);
 void eo_evaluator_summarise_end(struct eo_evaluator *e, struct eo_case_result *c, int end);
 void eo_evaluator_summarise_pair(struct eo_evaluator *e, const struct eo_design *design, struct eo_case_result *c);
-void eo_evaluator_find_impacts(struct eo_evaluator *e, double speed_factor, double factor);
+void eo_evaluator_find_impacts(struct eo_evaluator *e, const struct eo_design *design, double speed_factor, double factor);
 
 /* Both ends of one load case on elastic bodies, from their solution on rigid ones. */
 void eo_evaluator_bend_bodies(struct eo_evaluator *e, const struct eo_design *design, double force, double factor,

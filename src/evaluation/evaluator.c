@@ -109,7 +109,7 @@ static enum eo_code solve_static(struct eo_evaluator *e, const struct eo_design 
     eo_evaluator_summarise_pair(e, design, &r->load_case[k]);
   }
   double contact = eo_clock_milliseconds();
-  eo_evaluator_find_impacts(e, scenario->speed, scenario->compliance);
+  eo_evaluator_find_impacts(e, design, scenario->speed, scenario->compliance);
   r->static_ms = contact - start;
   r->impact_ms = eo_clock_milliseconds() - contact;
   return EO_OK;

@@ -133,6 +133,14 @@ static void bend_cases(struct eo_evaluator *e, const struct eo_design *design, d
   }
 }
 
+/* Whether an axially held pinion shares its load unevenly between the ends. */
+static bool shares_unevenly(const struct eo_evaluator *e, const struct eo_design *design)
+{
+  const struct eo_evaluation *r = &e->result;
+  return r->ends == 2 && axial_stiffness(&design->alignment) > 0 &&
+         !(r->equal_ends && eo_evaluator_stagger(design, e->pair->grid->positions) == 0);
+}
+
 void eo_evaluator_solve_contact(struct eo_evaluator *e, const struct eo_design *design, double factor)
 {
   struct eo_evaluation *r = &e->result;
@@ -151,7 +159,7 @@ void eo_evaluator_solve_contact(struct eo_evaluator *e, const struct eo_design *
     e->known[EO_LEFT].cases = e->known[EO_RIGHT].cases = 0; /* the loads below are no longer those of the ends alone */
   if (e->bodies)
     bend_cases(e, design, factor);
-  else if (r->ends == 2 && stiffness > 0 && !(r->equal_ends && stagger == 0))
+  else if (shares_unevenly(e, design))
     for (int k = 0; k < r->cases; k++) {
       struct eo_loaded_gaps gaps[2] = {e->gaps[EO_LEFT], e->gaps[eo_evaluator_kept_at(e, EO_RIGHT)]};
       struct eo_loaded_end both[2] = {r->load_case[k].end[EO_LEFT].loaded, r->load_case[k].end[EO_RIGHT].loaded};
@@ -184,7 +192,7 @@ void eo_evaluator_summarise_end(struct eo_evaluator *e, struct eo_case_result *c
       r->max_pressure = fmax(r->max_pressure, q > 0 ? eo_loaded_pressure(grid, q, p->radius[i]) : 0);
       edge += p->kind[i] == EO_POINT_LINE ? 0 : q * p->length[i];
     }
-    r->edge_share = fmax(r->edge_share, edge / r->loaded.load[j]);
+    r->edge_share = fmax(r->edge_share, r->loaded.load[j] > 0 ? edge / r->loaded.load[j] : 0);
     r->stiffness[j] = r->loaded.load[j] / (r->loaded.approach[j] - first_contact[j]);
     low = fmin(low, r->loaded.approach[j]);
     high = fmax(high, r->loaded.approach[j]);
@@ -211,13 +219,13 @@ void eo_evaluator_summarise_pair(struct eo_evaluator *e, const struct eo_design 
     c->contact_failures += c->end[end].loaded.failures;
 }
 
-void eo_evaluator_find_impacts(struct eo_evaluator *e, double speed_factor, double factor)
+void eo_evaluator_find_impacts(struct eo_evaluator *e, const struct eo_design *design, double speed_factor, double factor)
 {
   struct eo_evaluation *r = &e->result;
   for (int k = 0; k < r->cases; k++)
     for (int end = 0; end < r->ends; end++) {
       struct eo_case_result *c = &r->load_case[k];
-      if (end == EO_RIGHT && r->equal_ends && c->end[0].loaded.load[0] == c->end[1].loaded.load[0])
+      if (end == EO_RIGHT && r->equal_ends && !shares_unevenly(e, design))
         c->end[end].impact = c->end[EO_LEFT].impact;
       else
         eo_impact_find(&c->end[end].impact, e->pair->grid, eo_evaluator_field_of(e, c, end), e->pair->kernel, &e->pair->impact,

@@ -71,6 +71,15 @@ void eo_evaluator_pulses(const struct eo_pair *pair, const struct eo_impact *imp
   }
 }
 
+/* An end that carries nothing somewhere in the cycle has no mesh law about its load. */
+static bool carries_throughout(const struct eo_loaded_end *end, int positions)
+{
+  bool carries = true;
+  for (int j = 0; j < positions; j++)
+    carries = carries && end->load[j] > 0;
+  return carries;
+}
+
 static enum eo_code vibrate(struct eo_evaluator *e, const struct eo_design *design, int k, double speed_factor, double factor,
                             const struct eo_loaded_end *loaded[2], struct eo_vibration *vibration, struct eo_error *error)
 {
@@ -87,8 +96,8 @@ static enum eo_code vibrate(struct eo_evaluator *e, const struct eo_design *desi
                                                   ends == 2 && !eo_evaluator_same_flanks(&design->modification), stiffness, error);
   if (!code)
     code = eo_vibration_set_model(e->vibration, &parameters, error);
-  bool lawful = true;
-  for (int end = 0; end < ends && !code; end++) {
+  bool lawful = carries_throughout(loaded[0], n) && carries_throughout(loaded[ends - 1], n);
+  for (int end = 0; end < ends && !code && lawful; end++) {
     load.law[end] = &e->law[k][end];
     code = set_law(e, design, &e->law[k][end], c, end, loaded[end], factor, error);
     /* next to no load: stiffness so uneven that its first harmonics are negative somewhere */
