@@ -95,7 +95,8 @@ static enum eo_code prepare(struct bench *b, const json_t *item, struct eo_error
   if (code)
     return code;
   struct eo_contact_grid_settings grid = eo_contact_grid_default(&b->design.resolution);
-  struct eo_pair_options options = {.grid = &grid, .impact_stations = 221, .own_pivots = true};
+  struct eo_pair_options options = {.grid = &grid, .impact_stations = 221, .own_pivots = true,
+    .corner_at_radius = strstr(text_of(json_object_get(b->file, "defaults"), "gap"), "at the pinion radius of the corner") != NULL};
   grid.edge_cells = 12;
   grid.edge_reach = 1.6e-3;
   if (strcmp(flexibility, "synthetic") == 0) {

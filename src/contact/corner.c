@@ -170,6 +170,7 @@ void eo_corner_gap_init(struct eo_corner_gap table[2], const struct eo_geometry 
   static const struct eo_modification_shape none[2];
   for (int side = 0; side < 2; side++) {
     struct corner corner;
+    table[side].at_radius = false;
     table[side].start = 0;
     table[side].reach = 0.25 * g->transverse_base_pitch;
     corner_init(&corner, g, none, side, table[side].reach);
@@ -190,6 +191,28 @@ void eo_corner_gap_modified(struct eo_corner_gap table[2], const struct eo_geome
     double step = eo_slice_gap_at(slice, phase_at(&corner, table[side].start), NULL) - table[side].gap[0];
     for (int i = 0; i < EO_CORNER_NODES; i++)
       table[side].gap[i] += step;
+  }
+}
+
+void eo_corner_gap_at_radius(struct eo_corner_gap table[2], const struct eo_geometry *g, const struct eo_modification_shape shape[2])
+{
+  static const struct eo_modification_shape none;
+  struct eo_slice_gap slice[2];
+  for (int member = 0; member < 2; member++) {
+    struct eo_modification_shape alone[2] = {none, none};
+    alone[member] = shape[member];
+    eo_slice_gap_init(&slice[member], g, alone);
+  }
+  for (int side = 0; side < 2; side++) {
+    int tip = side == 0 ? EO_GEAR : EO_PINION;
+    double at_tip = eo_slice_gap_at(&slice[tip], side == 0 ? g->path_start : g->path_end, NULL);
+    for (int i = 0; i < EO_CORNER_NODES; i++) {
+      int before = i > 0 ? i - 1 : 0, after = i + 1 < EO_CORNER_NODES ? i + 1 : i;
+      double unit = table[side].reach / ((EO_CORNER_NODES - 1) * (EO_CORNER_NODES - 1)), slope;
+      double travel = (table[side].path[after] - table[side].path[before]) / (unit * (after * after - before * before));
+      table[side].gap[i] += eo_slice_gap_at(&slice[1 - tip], table[side].path[i], &slope) + at_tip;
+      table[side].slope[i] += slope * travel;
+    }
   }
 }
 

@@ -9,6 +9,7 @@
    flanks still meet inside the tip, because relief has moved the contact away from it: there the slice gap goes on. */
 enum { EO_CORNER_NODES = 41 };
 struct eo_corner_gap {
+  bool at_radius;                   /* relief by eo_corner_gap_at_radius() instead of exactly */
   double start;                     /* d from which the corner is nearest, m; 0 for unmodified flanks */
   double reach;                     /* the table covers start .. reach, m */
   double gap[EO_CORNER_NODES];      /* m */
@@ -22,6 +23,10 @@ void eo_corner_gap_init(struct eo_corner_gap corner[2], const struct eo_geometry
 /* Flanks with profile relief (shape: [member]) and their slice gap, which the corner's joins without a step. */
 void eo_corner_gap_modified(struct eo_corner_gap corner[2], const struct eo_geometry *geometry, const struct eo_modification_shape shape[2],
                             const struct eo_slice_gap *slice);
+
+/* A shorter convention, for reference cases that state it: the unmodified table plus the slice gap of each member's relief at the corner's
+   own place. It is up to some micrometres too small just beyond the path, where the slices still meet inside the tip. */
+void eo_corner_gap_at_radius(struct eo_corner_gap corner[2], const struct eo_geometry *geometry, const struct eo_modification_shape shape[2]);
 
 /* d >= start; *slope: by d; *place: s on the flank; *travel: its derivative by d. */
 double eo_corner_gap_at(const struct eo_corner_gap *corner, double d, double *slope, double *place, double *travel);

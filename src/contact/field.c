@@ -50,10 +50,11 @@ void eo_gap_field_init(struct eo_gap_field *field, const struct eo_geometry *g, 
   eo_modification_init(&field->shape[EO_PINION], g, EO_PINION, pinion);
   eo_modification_init(&field->shape[EO_GEAR], g, EO_GEAR, gear);
   eo_slice_gap_init(&field->slice, g, field->shape);
-  if (field->slice.nodes > 0)
+  memcpy(field->corner, corner, sizeof field->corner);
+  if (field->slice.nodes > 0 && corner[0].at_radius)
+    eo_corner_gap_at_radius(field->corner, g, field->shape);
+  else if (field->slice.nodes > 0)
     eo_corner_gap_modified(field->corner, g, field->shape, &field->slice);
-  else
-    memcpy(field->corner, corner, sizeof field->corner);
   /* physics: D = end cos(beta_b) (gamma cos(alpha_t) - kappa sin(alpha_t)) (eta + s tan(beta_b)) */
   field->misalignment = sign * cos(g->base_helix_angle) *
                         (out_of_plane * cos(g->working_pressure_angle) - in_plane * sin(g->working_pressure_angle));

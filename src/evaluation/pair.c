@@ -23,7 +23,11 @@ static enum eo_code prepare(struct eo_pair *pair, const struct eo_pair_options *
     for (int member = 0; member < 2 && !code; member++)
       code = eo_root_modes_new(&pair->root[member], pair->flexibility, member, error);
   }
-  return code ? code : eo_contact_grid_new(&pair->grid, &pair->geometry, &pair->material, &grid, options->phase, pair->kernel, progress, error);
+  if (!code)
+    code = eo_contact_grid_new(&pair->grid, &pair->geometry, &pair->material, &grid, options->phase, pair->kernel, progress, error);
+  for (int side = 0; side < 2 && !code; side++)
+    pair->grid->corner[side].at_radius = options->corner_at_radius;
+  return code;
 }
 
 enum eo_code eo_pair_new(struct eo_pair **result, const struct eo_design *design, const struct eo_pair_options *options,
