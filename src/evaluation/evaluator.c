@@ -48,13 +48,16 @@ static enum eo_code find_modes(struct eo_evaluator *e, struct eo_error *error)
   for (int k = 1; k < r->cases; k++)
     if (r->load_case[k].load_case.share > r->load_case[heaviest].load_case.share)
       heaviest = k;
-  if (r->load_case[heaviest].contact_failures) {
+  double stiffness[2];
+  bool elastic = r->load_case[heaviest].contact_failures == 0;
+  for (int end = 0; end < 2; end++) {
+    stiffness[end] = eo_periodic_mean(n, r->load_case[heaviest].end[end < r->ends ? end : 0].loaded.tangent);
+    elastic = elastic && stiffness[end] > 0; /* an end may carry nothing */
+  }
+  if (!elastic) {
     r->modes = (struct eo_dynamics_modes){0};
     return EO_OK;
   }
-  double stiffness[2];
-  for (int end = 0; end < 2; end++)
-    stiffness[end] = eo_periodic_mean(n, r->load_case[heaviest].end[end < r->ends ? end : 0].loaded.tangent);
   return eo_dynamics_model_modes(eo_vibration_model(e->vibration), stiffness, &r->modes, error);
 }
 
