@@ -58,8 +58,8 @@ void eo_corner_gap_init(struct eo_corner_gap corner[2], const struct eo_geometry
 }
 
 /* Corner gap of the unmodified pair, plus what relief takes off the flank there and off the tip; *place: s on the flank; *slope: by s,
-   with that of the misalignment gap at the place. */
-static double corner_value(const struct eo_gap_field *field, int tip, double s, double *slope, double *place)
+   with tilt, that of misalignment and bodies, at the place. */
+static double corner_value(const struct eo_gap_field *field, int tip, double s, double tilt, double *slope, double *place)
 {
   const struct eo_corner_gap *table = &field->corner[tip == EO_GEAR ? 0 : 1];
   double end = tip == EO_GEAR ? field->geometry->path_start : field->geometry->path_end, d = fabs(s - end), rate, side;
@@ -72,7 +72,7 @@ static double corner_value(const struct eo_gap_field *field, int tip, double s, 
   double gap = table->gap[i] * r + table->gap[i + 1] * t + t * r * (a * r + b * t);
   gap += eo_slice_gap_at(&field->alone[1 - tip], *place, &side) + field->tip_gap[tip];
   double travel = (table->path[i + 1] - table->path[i]) / h; /* of the place, by the distance */
-  *slope = (rate + (side + field->misalignment * field->lean) * travel) * (tip == EO_GEAR ? -1 : 1);
+  *slope = (rate + (side + tilt) * travel) * (tip == EO_GEAR ? -1 : 1);
   return gap;
 }
 
@@ -129,23 +129,24 @@ double eo_gap_field_at(const struct eo_gap_field *field, double s, double eta, d
   const struct eo_geometry *g = field->geometry;
   double rate, unused, place = s, gap, x = eta * field->stretch, tangent = field->lean, body[2] = {0, 0};
   int tip = -1;
+  if (field->deflection)
+    deflection_parts(field->deflection, g->face_width, eta, body);
+  double tilt = field->misalignment * tangent + body[1];
   if (s < g->path_start || s > g->path_end) {
     tip = s < g->path_start ? EO_GEAR : EO_PINION;
-    gap = corner_value(field, tip, s, &rate, &place);
+    gap = corner_value(field, tip, s, tilt, &rate, &place);
   } else {
     gap = eo_slice_gap_at(&field->slice, s, &rate);
-    rate += field->misalignment * tangent;
+    rate += tilt;
   }
   if (path) {
     path[EO_PINION] = tip == EO_PINION ? g->path_end : place;
     path[EO_GEAR] = tip == EO_GEAR ? g->path_start : place;
   }
   gap += eo_modification_lead(&field->shape[EO_PINION], x, &unused) + eo_modification_lead(&field->shape[EO_GEAR], x, &unused);
-  if (field->deflection)
-    deflection_parts(field->deflection, g->face_width, eta, body);
-  gap += field->misalignment * (eta + place * tangent) + field->misalignment_offset + body[0] + place * body[1];
+  gap += field->misalignment * eta + field->misalignment_offset + body[0] + place * tilt;
   if (slope)
-    *slope = rate + (tip < 0 ? body[1] : 0);
+    *slope = rate;
   return gap;
 }
 

@@ -155,7 +155,7 @@ static void newton_step(struct eo_loaded_workspace *ws, const struct eo_contact_
 static bool newton(struct eo_loaded_workspace *ws, const struct problem *problem)
 {
   enum { STEPS = 60, POLISH = 12 };
-  static const double NEAR = 3e-9, DONE = 1e-12;
+  static const double NEAR = 2e-8, DONE = 1e-12;
   const struct eo_contact_position *p = problem->position;
   bool near = false;
   evaluate(ws, problem, ws->mode);
@@ -182,14 +182,22 @@ static bool newton(struct eo_loaded_workspace *ws, const struct problem *problem
   return false;
 }
 
-/* d(a, Z)/dP and the tangent stiffness from the last factorisation, some nanometres of approach from the solution: good to 1e-4. */
+/* d(a, Z)/dP at the solution, for the matrix as it is there. What the modes leave of the compliance adds s'Es to dZ/dP, s = dp/dP. */
 static double tangent_of(struct eo_loaded_workspace *ws, const struct eo_contact_position *p)
 {
   int n = p->stride + 1;
+  double rest = 0;
+  factorise(ws, p);
   memset(ws->tangent, 0, sizeof *ws->tangent * (size_t)n);
   ws->tangent[n - 1] = 1;
   ws->gram->solve(n, p->stride, ws->matrix, ws->tangent);
-  return 1 / ws->tangent[n - 1];
+  ws->gram->apply(p->points, p->stride, p->factor, ws->tangent, ws->bend);
+  for (int i = 0; i < p->points; i++)
+    ws->bend[i] = ws->rate[i] * (ws->tangent[n - 1] - ws->bend[i]);
+  ws->gram->blend(p->points, p->remainder_stride, p->remainder, ws->bend, ws->blend);
+  for (int i = 0; i < p->points; i++)
+    rest += ws->bend[i] * (double)ws->blend[i];
+  return 1 / (ws->tangent[n - 1] + rest);
 }
 
 static const struct eo_contact_line *same_line(const struct eo_contact_position *p, const struct eo_contact_line *line)
@@ -280,11 +288,16 @@ void eo_loaded_solve(struct eo_loaded_workspace *ws, const struct eo_contact_gri
     else
       start_from(ws, &grid->position[j - 1], result[0].line_load + grid->position[j - 1].first, result[0].approach[j - 1] / compliance_factor,
                  &problem);
+    bool sound = true;
     for (int l = 0; l < loads; l++) {
+      int failures = result[l].failures;
       problem.force = load[l];
-      for (int k = 0; l > 0 && k <= p->stride; k++) /* along the tangent from the load before */
+      for (int k = 0; l > 0 && sound && k <= p->stride; k++) /* along the tangent from the load before */
         ws->mode[k] += (load[l] - load[l - 1]) * ws->tangent[k];
+      if (!sound)
+        start_cold(ws, &problem, ws->mode);
       solve_position(ws, &problem, j, compliance_factor, &result[l]);
+      sound = result[l].failures == failures;
     }
   }
 }

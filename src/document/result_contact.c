@@ -230,6 +230,21 @@ json_t *eo_result_contact(struct eo_result_source *source, int k)
   return eo_result_close(&o);
 }
 
+/* ---- elastic bodies ---- */
+
+json_t *eo_result_bodies(struct eo_result_source *source, const struct eo_case_result *c)
+{
+  double eta[EO_DEFLECTION_NODES];
+  struct eo_result_object o = eo_result_open();
+  for (int i = 0; i < EO_DEFLECTION_NODES; i++)
+    eta[i] = source->pair->geometry.face_width * ((double)i / (EO_DEFLECTION_NODES - 1) - 0.5);
+  eo_result_put(&o, "eta_mm", eo_json_reals(EO_DEFLECTION_NODES, eta, 1, &eo_unit_mm, EO_DIGITS_CURVE));
+  for (int end = 0; end < source->ends; end++)
+    eo_result_put(&o, end ? "right_um" : "left_um", eo_json_reals(EO_DEFLECTION_NODES, c->end[end].deflection.part[0], 1, &eo_unit_um, EO_DIGITS_CURVE));
+  eo_result_put(&o, "most_iterations", json_integer(c->body_iterations));
+  return eo_result_close(&o);
+}
+
 /* ---- impact ---- */
 
 static json_t *encode_impact_end(const struct eo_result_source *source, const struct eo_impact *impact)

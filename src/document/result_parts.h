@@ -54,6 +54,8 @@ json_t *eo_result_unloaded(struct eo_result_source *source);
 json_t *eo_result_lte(struct eo_result_source *source, const struct eo_case_result *load_case);
 json_t *eo_result_stiffness(struct eo_result_source *source, const struct eo_case_result *load_case);
 json_t *eo_result_contact(struct eo_result_source *source, int load_case);
+/* Normal gap that the bodies open at the pitch point, mean over the mesh cycle. */
+json_t *eo_result_bodies(struct eo_result_source *source, const struct eo_case_result *load_case);
 json_t *eo_result_impact(struct eo_result_source *source, const struct eo_case_result *load_case);
 json_t *eo_result_root_stress(struct eo_result_source *source, const struct eo_case_result *load_case);
 json_t *eo_result_vibration(struct eo_result_source *source, const struct eo_case_result *load_case);

@@ -9,6 +9,13 @@ struct eo_evaluator {
   int most_cases;
   struct eo_gap_field field[2];            /* [end] */
   struct eo_loaded_gaps gaps[2];           /* [end] */
+  struct eo_end_key {                      /* what an end's fields, gaps and loads depend on beside the pair */
+    struct eo_flank_modification flank[2]; /* [member] */
+    double in_plane, out_of_plane, factor;
+    int cases;
+    double force[EO_MAX_LOAD_CASES];
+  } known[2];                              /* [end]: of what is kept; cases 0: nothing is */
+  bool fresh[2];                           /* [end]: to be solved in this run; the other end is as the last run left it */
   struct eo_loaded_workspace *contact;
   struct eo_elastic *bodies;               /* NULL: rigid */
   struct eo_shafts shafts;                 /* those of the bodies */
@@ -23,6 +30,7 @@ struct eo_evaluator {
   struct vibration_problem {
     struct eo_dynamics_parameters parameters;
     struct eo_vibration_case load;
+    bool solvable;                         /* false: no mesh law, or no converged contact to make one from */
   } *problem;                              /* [most_cases], as last solved */
   struct eo_evaluation result;
 };
@@ -47,7 +55,7 @@ void eo_evaluator_find_impacts(struct eo_evaluator *e, double speed_factor, doub
 void eo_evaluator_bend_bodies(struct eo_evaluator *e, const struct eo_design *design, double force, double factor,
                               struct eo_loaded_end both[2], struct eo_elastic_report *report);
 
-/* The gap field of an end with the deflection of its bodies, valid until the next call. */
+/* The gap field of an end with the deflection of its bodies in a load case (NULL: rigid), valid until the next call. */
 const struct eo_gap_field *eo_evaluator_field_of(struct eo_evaluator *e, const struct eo_case_result *c, int end);
 
 /* The vibration half: every load case, then again at other compliances. */

@@ -48,6 +48,10 @@ static enum eo_code find_modes(struct eo_evaluator *e, struct eo_error *error)
   for (int k = 1; k < r->cases; k++)
     if (r->load_case[k].load_case.share > r->load_case[heaviest].load_case.share)
       heaviest = k;
+  if (r->load_case[heaviest].contact_failures) {
+    r->modes = (struct eo_dynamics_modes){0};
+    return EO_OK;
+  }
   double stiffness[2];
   for (int end = 0; end < 2; end++)
     stiffness[end] = eo_periodic_mean(n, r->load_case[heaviest].end[end < r->ends ? end : 0].loaded.tangent);
@@ -152,11 +156,12 @@ enum eo_code eo_evaluator_run(struct eo_evaluator *e, const struct eo_design *de
   return EO_OK;
 }
 
-void eo_evaluator_vibration(const struct eo_evaluator *e, int load_case, struct eo_dynamics_parameters *parameters,
+bool eo_evaluator_vibration(const struct eo_evaluator *e, int load_case, struct eo_dynamics_parameters *parameters,
                             struct eo_vibration_case *load)
 {
   *parameters = e->problem[load_case].parameters;
   *load = e->problem[load_case].load;
+  return e->problem[load_case].solvable;
 }
 
 const struct eo_gap_field *eo_evaluator_field(const struct eo_evaluator *e, int end)

@@ -5,8 +5,8 @@
 
 bool eo_evaluator_same_flanks(const struct eo_modification *m)
 {
-  return memcmp(&m->flank[EO_PINION][EO_LEFT], &m->flank[EO_PINION][EO_RIGHT], sizeof m->flank[0][0]) == 0 &&
-         memcmp(&m->flank[EO_GEAR][EO_LEFT], &m->flank[EO_GEAR][EO_RIGHT], sizeof m->flank[0][0]) == 0;
+  return eo_modification_equal(&m->flank[EO_PINION][EO_LEFT], &m->flank[EO_PINION][EO_RIGHT]) &&
+         eo_modification_equal(&m->flank[EO_GEAR][EO_LEFT], &m->flank[EO_GEAR][EO_RIGHT]);
 }
 
 static void copy_end(const struct eo_contact_grid *grid, struct eo_loaded_end *to, const struct eo_loaded_end *from)
@@ -45,6 +45,25 @@ static double axial_stiffness(const struct eo_alignment *alignment)
          : alignment->pinion_axial == EO_AXIAL_SPRING ? alignment->pinion_axial_stiffness : 0;
 }
 
+static bool same_key(const struct eo_end_key *a, const struct eo_end_key *b)
+{
+  return a->cases == b->cases && a->in_plane == b->in_plane && a->out_of_plane == b->out_of_plane && a->factor == b->factor &&
+         eo_modification_equal(&a->flank[0], &b->flank[0]) && eo_modification_equal(&a->flank[1], &b->flank[1]) &&
+         memcmp(a->force, b->force, sizeof *a->force * (size_t)a->cases) == 0;
+}
+
+/* Notes what an end is about to be solved for; false when that is what is kept. */
+static bool is_news(struct eo_evaluator *e, const struct eo_modification *m, int end, double in_plane, double out_of_plane, double factor)
+{
+  struct eo_end_key key = {.flank = {m->flank[EO_PINION][end], m->flank[EO_GEAR][end]}, .in_plane = in_plane, .out_of_plane = out_of_plane,
+                           .factor = factor, .cases = e->result.cases};
+  for (int k = 0; k < key.cases; k++)
+    key.force[k] = e->result.load_case[k].force;
+  bool news = !same_key(&key, &e->known[end]);
+  e->known[end] = key;
+  return news;
+}
+
 void eo_evaluator_set_fields(struct eo_evaluator *e, const struct eo_design *design, const struct eo_scenario *scenario)
 {
   const struct eo_modification *m = &design->modification;
@@ -52,8 +71,10 @@ void eo_evaluator_set_fields(struct eo_evaluator *e, const struct eo_design *des
   double out_of_plane = isnan(scenario->out_of_plane) ? design->alignment.shaft_angle_out_of_plane : scenario->out_of_plane;
   e->result.equal_ends = e->result.ends == 2 && eo_evaluator_same_flanks(m) && in_plane == 0 && out_of_plane == 0 && !e->bodies;
   for (int end = 0; end < e->result.ends; end++) {
-    if (end == EO_RIGHT && e->result.equal_ends)
+    e->fresh[end] = false;
+    if ((end == EO_RIGHT && e->result.equal_ends) || !is_news(e, m, end, in_plane, out_of_plane, scenario->compliance))
       continue;
+    e->fresh[end] = true;
     eo_gap_field_init(&e->field[end], &e->pair->geometry, &m->flank[EO_PINION][end], &m->flank[EO_GEAR][end], end, in_plane, out_of_plane,
                       e->pair->pivot[end], e->pair->grid->corner);
     eo_loaded_gaps_set(&e->gaps[end], e->pair->grid, &e->field[end]);
@@ -89,11 +110,11 @@ void eo_evaluator_bend_bodies(struct eo_evaluator *e, const struct eo_design *de
   both[EO_LEFT].failures += report->failures;
 }
 
-/* The gap field of an end as the bodies of a load case hold it. */
+/* The gap field of an end as the bodies of a load case hold it; on rigid ones with c NULL. */
 const struct eo_gap_field *eo_evaluator_field_of(struct eo_evaluator *e, const struct eo_case_result *c, int end)
 {
   struct eo_gap_field *field = &e->field[eo_evaluator_kept_at(e, end)];
-  field->deflection = e->bodies ? &c->end[end].deflection : NULL;
+  field->deflection = c && e->bodies ? &c->end[end].deflection : NULL;
   return field;
 }
 
@@ -121,9 +142,13 @@ void eo_evaluator_solve_contact(struct eo_evaluator *e, const struct eo_design *
     if (end == EO_RIGHT && r->equal_ends)
       for (int k = 0; k < r->cases; k++)
         copy_end(grid, &r->load_case[k].end[end].loaded, &r->load_case[k].end[EO_LEFT].loaded);
-    else
+    else if (e->fresh[end])
       load_end(e, design, end, factor);
+  if (r->equal_ends)
+    e->known[EO_RIGHT].cases = 0; /* its fields stayed behind */
   int stagger = eo_evaluator_stagger(design, grid->positions);
+  if (e->bodies || stiffness > 0)
+    e->known[EO_LEFT].cases = e->known[EO_RIGHT].cases = 0; /* the loads below are no longer those of the ends alone */
   if (e->bodies)
     bend_cases(e, design, factor);
   else if (r->ends == 2 && stiffness > 0 && !(r->equal_ends && stagger == 0))
@@ -142,12 +167,14 @@ void eo_evaluator_summarise_end(struct eo_evaluator *e, struct eo_case_result *c
   const struct eo_contact_grid *grid = e->pair->grid;
   struct eo_end_result *r = &c->end[end];
   double low = INFINITY, high = -INFINITY;
-  if (e->bodies)
-    eo_loaded_first_contact(grid, eo_evaluator_field_of(e, c, end), r->unloaded);
-  else
-    memcpy(r->unloaded, e->gaps[eo_evaluator_kept_at(e, end)].unloaded, sizeof *r->unloaded * (size_t)grid->positions);
+  const double *first_contact = e->bodies ? e->bent.unloaded : r->unloaded;
+  memcpy(r->unloaded, e->gaps[eo_evaluator_kept_at(e, end)].unloaded, sizeof *r->unloaded * (size_t)grid->positions);
   r->max_pressure = r->max_line_load = r->edge_share = 0;
-  r->datum = eo_gap_field_datum(eo_evaluator_field_of(e, c, end));
+  r->datum = r->loaded_datum = eo_gap_field_datum(eo_evaluator_field_of(e, NULL, end));
+  if (e->bodies) {
+    r->loaded_datum = eo_gap_field_datum(eo_evaluator_field_of(e, c, end));
+    eo_loaded_first_contact(grid, eo_evaluator_field_of(e, c, end), e->bent.unloaded);
+  }
   for (int j = 0; j < grid->positions; j++) {
     const struct eo_contact_position *p = &grid->position[j];
     double edge = 0;
@@ -158,7 +185,7 @@ void eo_evaluator_summarise_end(struct eo_evaluator *e, struct eo_case_result *c
       edge += p->kind[i] == EO_POINT_LINE ? 0 : q * p->length[i];
     }
     r->edge_share = fmax(r->edge_share, edge / r->loaded.load[j]);
-    r->stiffness[j] = r->loaded.load[j] / (r->loaded.approach[j] - r->unloaded[j]);
+    r->stiffness[j] = r->loaded.load[j] / (r->loaded.approach[j] - first_contact[j]);
     low = fmin(low, r->loaded.approach[j]);
     high = fmax(high, r->loaded.approach[j]);
   }
@@ -196,4 +223,6 @@ void eo_evaluator_find_impacts(struct eo_evaluator *e, double speed_factor, doub
         eo_impact_find(&c->end[end].impact, e->pair->grid, eo_evaluator_field_of(e, c, end), e->pair->kernel, &e->pair->impact,
                        c->end[end].loaded.approach, c->load_case.speed * speed_factor, factor);
     }
+  for (int end = 0; end < r->ends; end++)
+    eo_evaluator_field_of(e, NULL, end);
 }

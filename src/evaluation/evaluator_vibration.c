@@ -51,7 +51,7 @@ static enum eo_code set_law(struct eo_evaluator *e, const struct eo_design *desi
   double back = c->end[end].deflection.part[0][EO_DEFLECTION_NODES / 2] - design->gear_pair.backlash;
   switch (resolution->mesh_law) {
   case EO_LAW_SECANT:
-    return eo_law_set_secant(law, n, loaded->approach, c->force, c->end[end].datum, order, back, error);
+    return eo_law_set_secant(law, n, loaded->approach, c->force, c->end[end].loaded_datum, order, back, error);
   case EO_LAW_TABLE:
     return set_table_law(e, design, law, c, end, factor, order, error);
   case EO_LAW_TANGENT:
@@ -87,14 +87,20 @@ static enum eo_code vibrate(struct eo_evaluator *e, const struct eo_design *desi
                                                   ends == 2 && !eo_evaluator_same_flanks(&design->modification), stiffness, error);
   if (!code)
     code = eo_vibration_set_model(e->vibration, &parameters, error);
+  bool lawful = true;
   for (int end = 0; end < ends && !code; end++) {
     load.law[end] = &e->law[k][end];
     code = set_law(e, design, &e->law[k][end], c, end, loaded[end], factor, error);
+    /* next to no load: stiffness so uneven that its first harmonics are negative somewhere */
+    lawful = lawful && code != EO_ERROR_INPUT;
+    code = code == EO_ERROR_INPUT ? EO_OK : code;
   }
   if (load.impact != EO_IMPACT_NONE)
     eo_evaluator_pulses(e->pair, (struct eo_impact[2]){c->end[0].impact, c->end[1].impact}, load.speed, load.pulse);
-  e->problem[k] = (struct vibration_problem){parameters, load};
-  if (!code)
+  e->problem[k] = (struct vibration_problem){parameters, load, lawful};
+  if (!code && !lawful)
+    *vibration = (struct eo_vibration){.outcome = EO_VIBRATION_NOT_CONVERGED, .ends = ends};
+  else if (!code)
     code = design->resolution.solver == EO_SOLVER_TIME_INTEGRATION
                ? eo_vibration_integrate(e->vibration, &load, NULL, vibration, NULL, error)
                : eo_vibration_solve(e->vibration, &load, EO_START_COLD, vibration, error);
@@ -117,7 +123,12 @@ enum eo_code eo_evaluator_solve_dynamics(struct eo_evaluator *e, const struct eo
   for (int k = 0; k < e->result.cases && !code; k++) {
     struct eo_case_result *c = &e->result.load_case[k];
     const struct eo_loaded_end *loaded[2] = {&c->end[0].loaded, &c->end[1].loaded};
-    code = vibrate(e, design, k, speed_factor, factor, loaded, &c->vibration, error);
+    if (c->contact_failures > 0) {
+      e->problem[k].solvable = false;
+      c->vibration = (struct eo_vibration){.outcome = EO_VIBRATION_NOT_CONVERGED, .ends = e->result.ends};
+    } else {
+      code = vibrate(e, design, k, speed_factor, factor, loaded, &c->vibration, error);
+    }
     c->dynamic_force_factor = 1;
     for (int end = 0; end < e->result.ends && !code; end++)
       c->dynamic_force_factor = fmax(c->dynamic_force_factor, c->vibration.dynamic_factor[end]);
@@ -133,7 +144,7 @@ enum eo_code eo_evaluator_find_band(struct eo_evaluator *e, const struct eo_desi
   struct eo_evaluation *r = &e->result;
   enum eo_code code = EO_OK;
   for (int k = 0; k < r->cases && !code; k++)
-    for (int side = 0; side < 2 && !code; side++) {
+    for (int side = 0; side < 2 && !code && !r->load_case[k].contact_failures; side++) {
       struct eo_case_result *c = &r->load_case[k];
       struct eo_vibration vibration;
       double scaled = factor * (side ? 1.1 : 0.9);

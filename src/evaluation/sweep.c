@@ -14,6 +14,7 @@ struct problem {
   struct eo_vibration_case load; /* laws are those below */
   struct eo_law law[2];
   struct eo_impact impact[2];
+  bool solvable;                 /* false: there is no mesh law */
 };
 
 /* One thread's own. */
@@ -156,10 +157,11 @@ static enum eo_code read_torque(struct eo_sweep_torque *t, const struct eo_evalu
 static enum eo_code keep_problem(struct problem *p, const struct eo_evaluator *evaluator, const struct eo_evaluation *r, struct eo_error *error)
 {
   enum eo_code code = EO_OK;
-  eo_evaluator_vibration(evaluator, 0, &p->parameters, &p->load);
+  p->solvable = eo_evaluator_vibration(evaluator, 0, &p->parameters, &p->load);
   for (int end = 0; end < r->ends && !code; end++) {
     p->impact[end] = r->load_case[0].end[end].impact;
-    code = eo_law_copy(&p->law[end], p->load.law[end], error);
+    if (p->solvable)
+      code = eo_law_copy(&p->law[end], p->load.law[end], error);
     p->load.law[end] = &p->law[end];
   }
   return code;
@@ -240,6 +242,10 @@ static enum eo_code solve_speed(void *context, int thread, int item, struct eo_e
   struct worker *w = &job->worker[thread];
   int others = job->sweep->speeds - 1, problem = item / others, j = 1 + item % others;
   struct eo_vibration *result = &job->alone[(size_t)problem * (size_t)job->sweep->speeds + (size_t)j];
+  if (!job->problem[problem].solvable) {
+    result->outcome = EO_VIBRATION_NOT_CONVERGED;
+    return EO_OK;
+  }
   enum eo_code code = take_model(job, w, problem, error);
   if (code)
     return code;
@@ -270,11 +276,13 @@ static enum eo_code solve_branch(void *context, int thread, int item, struct eo_
   bool sound = s->at_torque[problem / s->torques][problem % s->torques].contact_failures == 0;
   struct eo_vibration_case *load = calloc(speeds, sizeof *load);
   struct eo_vibration *followed = calloc(speeds, sizeof *followed);
-  enum eo_code code = load && followed ? take_model(job, w, problem, error) : eo_error_memory(error);
+  enum eo_code code = load && followed ? EO_OK : eo_error_memory(error);
   for (int j = 0; j < s->speeds && !code; j++)
     load[j] = case_at(job, &job->problem[problem], s->speed[j], point[j].impact);
-  bool follow = !code && sound && separates(job, alone);
+  bool follow = !code && separates(job, alone);
   if (follow)
+    code = take_model(job, w, problem, error);
+  if (follow && !code)
     code = eo_vibration_follow(w->solver, s->speeds, load, alone, direction == EO_SWEEP_UP ? +1 : -1, followed, error);
   for (int j = 0; j < s->speeds && !code; j++)
     read_point(&point[j], follow ? &followed[j] : &alone[j], sound);
