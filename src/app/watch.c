@@ -23,9 +23,11 @@ static int report(void *context, const char *what, double fraction)
 static void *wait_for_signals(void *context)
 {
   struct eo_watch *watch = context;
-  for (int signal;;)
-    if (sigwait(&watch->signals, &signal) == 0 && atomic_exchange(&watch->stopped, true))
+  int signal;
+  while (sigwait(&watch->signals, &signal) == 0 && !watch->ended)
+    if (atomic_exchange(&watch->stopped, true))
       _exit(EO_EXIT_FAILED);
+  return NULL;
 }
 
 /* A signal that whoever started the program wants ignored stays ignored. */
@@ -33,7 +35,7 @@ static void listen(struct eo_watch *watch, int signal)
 {
   struct sigaction action;
   if (sigaction(signal, NULL, &action) == 0 && action.sa_handler != SIG_IGN)
-    sigaddset(&watch->signals, signal);
+    sigaddset(&watch->signals, watch->listens = signal);
 }
 
 void eo_watch_start(struct eo_watch *watch)
@@ -42,6 +44,8 @@ void eo_watch_start(struct eo_watch *watch)
   sigemptyset(&watch->signals);
   listen(watch, SIGINT);
   listen(watch, SIGTERM);
+  if (!watch->listens)
+    return;
   pthread_sigmask(SIG_BLOCK, &watch->signals, &watch->before);
   watch->waiting = pthread_create(&watch->thread, NULL, wait_for_signals, watch) == 0;
   if (!watch->waiting)
@@ -60,7 +64,8 @@ void eo_watch_end(struct eo_watch *watch)
   eo_watch_clear(watch);
   if (!watch->waiting)
     return;
-  pthread_cancel(watch->thread);
+  watch->ended = true;
+  pthread_kill(watch->thread, watch->listens);
   pthread_join(watch->thread, NULL);
   pthread_sigmask(SIG_SETMASK, &watch->before, NULL);
 }

@@ -14,6 +14,8 @@
 struct eo_watch {
   struct eo_progress progress; /* to hand to the work */
   atomic_bool stopped;         /* a stop was asked for */
+  atomic_bool ended;           /* the thread that waits for signals has nothing more to wait for */
+  int listens;                 /* one of the signals that ask for a stop; 0: none does */
   bool terminal, shown, waiting;
   double last;                 /* when the line was written, s */
   sigset_t signals, before;

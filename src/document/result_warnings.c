@@ -47,14 +47,25 @@ static void say_contact(struct list *list, const struct eo_result_source *source
     say(list, "The loaded contact did not converge %s (%d mesh positions): the numbers of this load case mean nothing.", place.text, c->contact_failures);
   for (int end = 0; end < source->ends; end++) {
     const struct eo_end_result *r = &c->end[end];
-    if (r->edge_share > NOTICEABLE)
-      say(list, "Edge contact %s%s: tip edges carry up to %.3g %% of the load.", place.text, end_of(source, end), 100 * r->edge_share);
-    if (r->max_pressure > 0 && source->edge_pressure[k][end] >= 0.999 * r->max_pressure)
-      say(list, "The largest contact pressure %s%s, %.4g MPa, is on a tip edge, where it is a nominal figure.", place.text, end_of(source, end),
-          r->max_pressure / 1e6);
+    if (r->edge_share > NOTICEABLE) {
+      char peak[80] = "";
+      if (source->edge_pressure[k][end] >= 0.999 * r->max_pressure)
+        snprintf(peak, sizeof peak, "; the largest pressure, %.4g MPa (nominal), is there", r->max_pressure / 1e6);
+      say(list, "Edge contact %s%s: tip edges carry up to %.3g %% of the load%s.", place.text, end_of(source, end), 100 * r->edge_share, peak);
+    }
     if (!r->impact.touched)
       say(list, "No incoming tooth touches %s%s: there is no entering impact to speak of.", place.text, end_of(source, end));
   }
+}
+
+/* The tangent law is straight: where the force swings widely (ends coupled in torsion and misaligned), the contact's stiffening counts. */
+static void say_swing(struct list *list, const struct eo_result_source *source, const struct eo_case_result *c, int end)
+{
+  static const double WIDE = 0.1;
+  double swing = fmax(c->vibration.force_max[end] / c->force - 1, 1 - c->vibration.force_min[end] / c->force);
+  if (source->design->resolution.mesh_law == EO_LAW_TANGENT && swing > WIDE)
+    say(list, "The mesh force swings by %.2g %% %s%s, more than the tangent law follows well: compare mesh_law \"table\".", 100 * swing,
+        place_of(&c->load_case).text, end_of(source, end));
 }
 
 static void say_vibration(struct list *list, const struct eo_result_source *source, const struct eo_case_result *c)
@@ -66,6 +77,8 @@ static void say_vibration(struct list *list, const struct eo_result_source *sour
   for (int end = 0; end < source->ends && v->outcome == EO_VIBRATION_CONTACT_LOST; end++)
     if (v->contact_loss[end] > 0)
       say(list, "Contact is lost %s%s, for %.3g %% of the mesh cycle.", place.text, end_of(source, end), 100 * v->contact_loss[end]);
+  for (int end = 0; end < source->ends && v->outcome != EO_VIBRATION_NOT_CONVERGED; end++)
+    say_swing(list, source, c, end);
   if (v->back_contact)
     say(list, "The back flanks touch %s: the vibration is larger than the backlash.", place.text);
 }
