@@ -55,4 +55,37 @@ __attribute__((unused)) static struct eo_flank_modification random_modification(
     .end_relief_length = {g->face_width * random_between(index, first + 11, 0.05, 0.4), g->face_width * random_between(index, first + 12, 0.05, 0.4)}};
 }
 
+/* A random gear pair that can be made: modules of 1 to 20 mm, spur to 38 degrees, overlap 0 to 4, profile shift of both signs.
+   False when fifty tries found none. */
+__attribute__((unused)) static bool random_pair(int index, struct eo_gear_pair *pair, struct eo_geometry *geometry)
+{
+  for (int attempt = 0; attempt < 50; attempt++) {
+    int draw = 1000 + 100 * attempt;
+    struct eo_error error;
+    *pair = paper_pair();
+    pair->teeth[EO_PINION] = (int)random_between(index, draw, 14, 45);
+    pair->teeth[EO_GEAR] = (int)random_between(index, draw + 1, 20, 120);
+    pair->normal_module = exp(random_between(index, draw + 2, log(1e-3), log(20e-3)));
+    pair->normal_pressure_angle = random_between(index, draw + 3, 15, 25) * M_PI / 180;
+    pair->helix_angle = random_between(index, draw + 4, 0, 1) < 0.15 ? 0 : random_between(index, draw + 5, 3, 38) * M_PI / 180;
+    pair->face_width = pair->normal_module * exp(random_between(index, draw + 6, log(1.5), log(30)));
+    pair->groove_width = 8 * pair->normal_module;
+    pair->backlash = 0.02 * pair->normal_module;
+    pair->profile_shift[EO_PINION] = random_between(index, draw + 7, -0.2, 0.6);
+    pair->profile_shift[EO_GEAR] = random_between(index, draw + 8, -0.3, 0.4);
+    pair->addendum_coefficient = random_between(index, draw + 9, 0.8, 1.2);
+    pair->dedendum_coefficient = pair->addendum_coefficient + 0.25;
+    pair->fillet_radius_coefficient = 0.25;
+    if (eo_geometry_init(geometry, pair, &error) == EO_OK)
+      return true;
+  }
+  return false;
+}
+
+/* Normal force of one end under a torque on the pinion. */
+__attribute__((unused)) static double force_of(const struct eo_geometry *g, double torque)
+{
+  return torque / (2 * g->base_radius[EO_PINION] * cos(g->base_helix_angle));
+}
+
 #endif

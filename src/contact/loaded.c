@@ -164,7 +164,7 @@ static void newton_step(struct eo_loaded_workspace *ws, const struct eo_contact_
    Leaves the loads, the factored matrix and (a, Z) of the solution; returns whether it converged. */
 static bool newton(struct eo_loaded_workspace *ws, const struct problem *problem)
 {
-  enum { STEPS = 60, POLISH = 12 };
+  enum { STEPS = 60, POLISH = 24, RENEW = 8 };
   static const double NEAR = 3e-9, DONE = 1e-12, BALANCE = 5e-10;
   const struct eo_contact_position *p = problem->position;
   bool near = false;
@@ -185,6 +185,8 @@ static bool newton(struct eo_loaded_workspace *ws, const struct problem *problem
   for (int i = 0; i < POLISH && near && !(settled && balanced); i++) {
     double change = correct(ws, p);
     evaluate(ws, problem, ws->mode);
+    if (i % RENEW == RENEW - 1 && !factorise(ws, p))
+      return false;
     newton_step(ws, p);
     advance(ws, problem);
     settled = change < DONE && fabs(ws->step[p->stride]) < DONE;
