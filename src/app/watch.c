@@ -2,6 +2,7 @@
 
 #include <signal.h>
 #include <stdio.h>
+#include <sys/ioctl.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -21,16 +22,29 @@ static double seconds(void)
   return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-static int report(void *context, const char *what, double fraction)
+bool eo_watch_due(const struct eo_watch *watch)
 {
   static const double INTERVAL = 0.1;
+  return watch->terminal && seconds() - watch->last >= INTERVAL;
+}
+
+void eo_watch_show(struct eo_watch *watch, const char *line)
+{
+  struct winsize size;
+  int width = ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 1 ? size.ws_col - 1 : 79;
+  fprintf(stderr, "\r\033[K%.*s", width, line);
+  fflush(stderr);
+  watch->last = seconds();
+  watch->shown = true;
+}
+
+static int report(void *context, const char *what, double fraction)
+{
   struct eo_watch *watch = context;
-  double now = seconds();
-  if (watch->terminal && now - watch->last >= INTERVAL) {
-    fprintf(stderr, "\r\033[K%3.0f %% %.60s", 100 * fraction, what);
-    fflush(stderr);
-    watch->last = now;
-    watch->shown = true;
+  char line[80];
+  if (eo_watch_due(watch)) {
+    snprintf(line, sizeof line, "%3.0f %% %.60s", 100 * fraction, what);
+    eo_watch_show(watch, line);
   }
   return stopped;
 }

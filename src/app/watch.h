@@ -15,6 +15,12 @@ struct eo_watch {
 /* From here on SIGINT and SIGTERM ask for a stop; a second one ends the program at once. */
 void eo_watch_start(struct eo_watch *watch);
 
+/* True when the line may be written anew: at a terminal, and not more often than eyes follow. */
+bool eo_watch_due(const struct eo_watch *watch);
+
+/* Writes the line, cut to the terminal's width. */
+void eo_watch_show(struct eo_watch *watch, const char *line);
+
 /* Wipes the line. */
 void eo_watch_end(struct eo_watch *watch);
 

@@ -52,7 +52,7 @@ enum eo_code eo_store_find_evaluation(struct eo_store *store, int64_t problem, c
 enum eo_code eo_store_add_evaluation(struct eo_store *store, int64_t problem, struct eo_stored_evaluation *row, struct eo_error *error);
 
 /* Calls visit for the rows with number <= upto (0: all) in ascending order, until it returns an error. row is borrowed. x[size]: the
-   point of the unit cube that a job with this space (NULL: none) last asked for, or NULL. */
+   point of the unit cube for which the row was computed, when that was in this space (NULL: none); else NULL. */
 typedef enum eo_code eo_store_visit(void *context, const struct eo_stored_evaluation *row, const double *x, int size, struct eo_error *error);
 enum eo_code eo_store_each_evaluation(struct eo_store *store, int64_t problem, int64_t upto, const char *space, int scenarios, int cases,
                                       eo_store_visit *visit, void *context, struct eo_error *error);

@@ -54,9 +54,14 @@ enum eo_code eo_store_resume_job(struct eo_store *store, const char *study, bool
 enum eo_code eo_store_update_job(struct eo_store *store, const struct eo_stored_job *job, struct eo_error *error)
 {
   return EO_STATEMENT_RUN(store, error, "UPDATE job SET state = ?, stopped = ?, true_evaluations = ?, individuals = ?, best = nullif(?, 0), best_value = ?,"
-                                        " result = coalesce(?, result), updated = strftime('%Y-%m-%dT%H:%M:%fZ', 'now') WHERE id = ?",
-                          "ttnnirti", state_names[job->state], job->stopped ? job->stopped : "", job->true_evaluations, job->individuals, job->best,
-                          job->best_value, job->result, job->id);
+                                        " updated = strftime('%Y-%m-%dT%H:%M:%fZ', 'now') WHERE id = ?",
+                          "ttnniri", state_names[job->state], job->stopped ? job->stopped : "", job->true_evaluations, job->individuals, job->best,
+                          job->best_value, job->id);
+}
+
+enum eo_code eo_store_keep_result(struct eo_store *store, int64_t job, const char *result, struct eo_error *error)
+{
+  return EO_STATEMENT_RUN(store, error, "UPDATE job SET result = ? WHERE id = ?", "ti", result, job);
 }
 
 enum eo_code eo_store_log_candidate(struct eo_store *store, struct eo_stored_candidate *c, struct eo_error *error)

@@ -37,8 +37,11 @@ enum eo_code eo_store_add_job(struct eo_store *store, struct eo_stored_job *job,
    job->id, import_upto; id 0: none. */
 enum eo_code eo_store_resume_job(struct eo_store *store, const char *study, bool fresh, struct eo_stored_job *job, struct eo_error *error);
 
-/* State, stopped, counters, best and, when not NULL, the result. */
+/* State, stopped, counters and best. */
 enum eo_code eo_store_update_job(struct eo_store *store, const struct eo_stored_job *job, struct eo_error *error);
+
+/* Keeps the document of a job's result. */
+enum eo_code eo_store_keep_result(struct eo_store *store, int64_t job, const char *result, struct eo_error *error);
 
 /* A true evaluation the job asked for; what the job logged before under this ordinal stays, and *reused tells what stands there. */
 struct eo_stored_candidate {

@@ -100,7 +100,7 @@ static enum eo_code connect(struct eo_store *store, int flags, struct eo_error *
     return eo_store_fault(store, fault, error);
   sqlite3_extended_result_codes(store->handle, 1);
   eo_store_wait(store, WAIT_MS);
-  return execute(store, "PRAGMA foreign_keys = ON; PRAGMA trusted_schema = OFF", error);
+  return execute(store, "PRAGMA foreign_keys = ON", error);
 }
 
 /* The journal's mode can change only while nobody else is there, and SQLite then does not wait on its own. */
