@@ -19,7 +19,7 @@ CREATE TABLE job (
   created          TEXT NOT NULL DEFAULT (strftime('%Y-%m-%dT%H:%M:%fZ', 'now')),
   updated          TEXT NOT NULL DEFAULT (strftime('%Y-%m-%dT%H:%M:%fZ', 'now'))
 ) STRICT;
-CREATE INDEX job_unfinished ON job (study) WHERE state IN ('running', 'cancelled');
+CREATE INDEX job_study ON job (study);
 
 -- The true evaluations a job asked for, in its order. x: doubles in the unit cube, little endian.
 CREATE TABLE candidate (

@@ -152,11 +152,12 @@ const struct eo_command eo_command_optimize = {
     "optimize", "DESIGN.json [--algorithm NAME] [--budget N] [--threads N] [--data DIR] [--fresh] [--restart] [--json]",
     "searches the modification that runs quietest over the duty cycle",
     "Every evaluation is kept in the history (see easeoff history) and used again by later searches of the same pair, whatever their\n"
-    "weights, bounds and algorithm. A search that was interrupted is taken up where it stopped; Ctrl-C prints the best so far.\n\n"
+    "weights, bounds and algorithm. Ctrl-C prints the best so far. The same search once more takes up an interrupted one where it stopped\n"
+    "and gives the result of a finished one again; --restart searches on.\n\n"
     "  --algorithm NAME  credibility-ga, fpga, ga or nsga2, in place of the design's\n"
     "  --budget N        most true evaluations, in place of the design's true_evaluations\n"
     "  --threads N       evaluations at a time (default: all cores); the result does not depend on it\n"
     "  --fresh           the algorithm is told nothing of earlier searches; what it asks for is still looked up\n"
-    "  --restart         a new search even when an interrupted one could be taken up\n"
+    "  --restart         a new search of the same kind, which knows what the earlier ones found\n"
     "  --json            the result document, as the server returns it\n\n"
     EO_APP_HISTORY_HELP EO_APP_DATA_HELP, run};

@@ -2,7 +2,8 @@
 
    Every true evaluation is looked up in the history first and is saved with the rest of its batch in one transaction; the optimizer is
    told in the order it asked. So a study gives the same bytes for any number of threads, and one that was cut short (kill -9, power,
-   Ctrl-C) is taken up by going through it again from the start with the history as memory: the same path, nothing computed twice.
+   Ctrl-C) is taken up by going through it again from the start with the history as memory: the same path, nothing computed twice. One
+   that is done gives its result once more in this way.
    Rows of other jobs are imported as they stood when the job began. */
 #ifndef EASEOFF_JOBS_STUDY_H
 #define EASEOFF_JOBS_STUDY_H
@@ -29,7 +30,7 @@ struct eo_study_plan {
   struct eo_store *store;            /* of the calling thread */
   int threads;                       /* 0: eo_parallel_cores() */
   bool fresh;                        /* the algorithm is told nothing of earlier jobs; what it asks for is still looked up */
-  bool restart;                      /* a new job even where an interrupted one could be taken up */
+  bool restart;                      /* a new job even where one of the same study could be taken up */
   eo_study_watch *watch;             /* may be NULL */
   void *context;
 };

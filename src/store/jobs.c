@@ -35,7 +35,7 @@ enum eo_code eo_store_add_job(struct eo_store *store, struct eo_stored_job *job,
 
 enum eo_code eo_store_resume_job(struct eo_store *store, const char *study, bool fresh, struct eo_stored_job *job, struct eo_error *error)
 {
-  struct eo_statement s = eo_statement_begin(store, "SELECT id, import_upto FROM job WHERE study = ? AND fresh = ? AND state IN ('running', 'cancelled')"
+  struct eo_statement s = eo_statement_begin(store, "SELECT id, import_upto FROM job WHERE study = ? AND fresh = ? AND state IN ('running', 'cancelled', 'done')"
                                                     " ORDER BY id DESC", "tn", study, (int)fresh);
   enum eo_code code = EO_OK;
   bool taken = false;

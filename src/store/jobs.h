@@ -33,8 +33,7 @@ const char *eo_store_job_state_name(enum eo_job_state state);
 /* Adds a job in the state given; fills job->id and, as it stands now, ->import_upto. */
 enum eo_code eo_store_add_job(struct eo_store *store, struct eo_stored_job *job, struct eo_error *error);
 
-/* The newest job of this study that was cut short (running or cancelled) and that nobody works on, claimed for this store;
-   job->id, import_upto; id 0: none. */
+/* The newest job of this study, cut short or done, that nobody works on, claimed for this store; job->id, import_upto; id 0: none. */
 enum eo_code eo_store_resume_job(struct eo_store *store, const char *study, bool fresh, struct eo_stored_job *job, struct eo_error *error);
 
 /* State, stopped, counters and best. */

@@ -100,7 +100,8 @@ static enum eo_code connect(struct eo_store *store, int flags, struct eo_error *
     return eo_store_fault(store, fault, error);
   sqlite3_extended_result_codes(store->handle, 1);
   eo_store_wait(store, WAIT_MS);
-  return execute(store, "PRAGMA foreign_keys = ON", error);
+  /* NORMAL: a commit survives the death of the process; after a power failure the last ones may be missing, whole, and are computed anew. */
+  return execute(store, "PRAGMA foreign_keys = ON; PRAGMA synchronous = NORMAL", error);
 }
 
 /* The journal's mode can change only while nobody else is there, and SQLite then does not wait on its own. */
