@@ -170,11 +170,9 @@ static enum eo_code remove_outdated(struct eo_store *store, int64_t *rows, struc
 
 static enum eo_code refuse_running(void *context, const struct eo_stored_job *job, struct eo_error *error)
 {
-  bool taken = false;
-  enum eo_code code = job->state == EO_JOB_RUNNING ? eo_store_job_is_taken(context, job->id, &taken, error) : EO_OK;
-  if (!code && taken)
-    code = eo_error_set(error, EO_ERROR_INPUT, "", "Job %lld is running; prune when it has ended.", (long long)job->id);
-  return code;
+  if (job->state != EO_JOB_RUNNING || !eo_store_job_is_taken(context, job->id))
+    return EO_OK;
+  return eo_error_set(error, EO_ERROR_INPUT, "", "Job %lld is running; prune when it has ended.", (long long)job->id);
 }
 
 static enum eo_code prune(struct request *q, int64_t *rows, int64_t *predictions, struct eo_error *error)

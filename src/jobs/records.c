@@ -40,9 +40,8 @@ struct job_list {
 static enum eo_code add_job(void *context, const struct eo_stored_job *j, struct eo_error *error)
 {
   struct job_list *list = context;
-  bool taken = true;
+  bool taken = j->state != EO_JOB_RUNNING || eo_store_job_is_taken(list->store, j->id);
   struct eo_result_object o = eo_result_open();
-  enum eo_code code = j->state == EO_JOB_RUNNING ? eo_store_job_is_taken(list->store, j->id, &taken, error) : EO_OK;
   eo_result_put(&o, "id", json_integer(j->id));
   eo_result_put(&o, "problem", json_integer(j->problem));
   eo_result_put(&o, "name", json_string(j->name));
@@ -56,11 +55,7 @@ static enum eo_code add_job(void *context, const struct eo_stored_job *j, struct
   eo_result_put(&o, "has_result", json_boolean(*j->result));
   eo_result_put(&o, "created", json_string(j->created));
   eo_result_put(&o, "updated", json_string(j->updated));
-  json_t *row = eo_result_close(&o);
-  if (!code)
-    return append(list->array, row, error);
-  json_decref(row);
-  return code;
+  return append(list->array, eo_result_close(&o), error);
 }
 
 enum eo_code eo_records_list(struct eo_store *store, json_t **document, struct eo_error *error)

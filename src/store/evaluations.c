@@ -60,7 +60,8 @@ static enum eo_code damaged(const struct eo_store *store, int64_t id, struct eo_
 
 enum eo_code eo_store_find_problem(struct eo_store *store, const struct eo_stored_problem *problem, int64_t *id, struct eo_error *error)
 {
-  enum eo_code code = EO_STATEMENT_RUN(store, error, "INSERT OR IGNORE INTO problem (hash, spec, name, evaluator, scenarios, cases) VALUES (?, ?, ?, ?, ?, ?)",
+  enum eo_code code = EO_STATEMENT_RUN(store, error, "INSERT INTO problem (hash, spec, name, evaluator, scenarios, cases) VALUES (?, ?, ?, ?, ?, ?)"
+                                                     " ON CONFLICT (hash) DO NOTHING",
                                        "tttnnn", problem->hash, problem->spec, problem->name, problem->evaluator, problem->scenarios, problem->cases);
   if (code)
     return code;
@@ -185,8 +186,8 @@ enum eo_code eo_store_add_evaluation(struct eo_store *store, int64_t problem, st
   char digest[EO_HASH_LENGTH + 1];
   blank(row);
   find_digest(row, digest);
-  enum eo_code code = EO_STATEMENT_RUN(store, error, "INSERT OR IGNORE INTO evaluation (problem, modification, outcome, reason, cost_s, digest)"
-                                                     " VALUES (?, ?, ?, ?, ?, ?)", "itttrt",
+  enum eo_code code = EO_STATEMENT_RUN(store, error, "INSERT INTO evaluation (problem, modification, outcome, reason, cost_s, digest)"
+                                                     " VALUES (?, ?, ?, ?, ?, ?) ON CONFLICT (problem, modification) DO NOTHING", "itttrt",
                                        problem, row->modification, outcome_names[row->outcome], row->reason, row->cost, digest);
   if (code)
     return code;

@@ -66,8 +66,8 @@ enum eo_code eo_store_keep_result(struct eo_store *store, int64_t job, const cha
 
 enum eo_code eo_store_log_candidate(struct eo_store *store, struct eo_stored_candidate *c, struct eo_error *error)
 {
-  enum eo_code code = EO_STATEMENT_RUN(store, error, "INSERT OR IGNORE INTO candidate (job, ordinal, generation, individual, evaluation, reused, x)"
-                                                     " VALUES (?, ?, ?, ?, ?, ?, ?)", "innninb",
+  enum eo_code code = EO_STATEMENT_RUN(store, error, "INSERT INTO candidate (job, ordinal, generation, individual, evaluation, reused, x)"
+                                                     " VALUES (?, ?, ?, ?, ?, ?, ?) ON CONFLICT (job, ordinal) DO NOTHING", "innninb",
                                        c->job, c->ordinal, c->generation, c->individual, c->evaluation, (int)c->reused, (const void *)c->x,
                                        (size_t)c->size * sizeof *c->x);
   if (code || sqlite3_changes(store->handle))
@@ -80,7 +80,8 @@ enum eo_code eo_store_log_candidate(struct eo_store *store, struct eo_stored_can
 
 enum eo_code eo_store_log_prediction(struct eo_store *store, const struct eo_stored_prediction *p, struct eo_error *error)
 {
-  return EO_STATEMENT_RUN(store, error, "INSERT OR IGNORE INTO prediction (job, generation, individual, fitness, credibility, x) VALUES (?, ?, ?, ?, ?, ?)",
+  return EO_STATEMENT_RUN(store, error, "INSERT INTO prediction (job, generation, individual, fitness, credibility, x) VALUES (?, ?, ?, ?, ?, ?)"
+                                        " ON CONFLICT (job, generation, individual) DO NOTHING",
                           "innrrb", p->job, p->generation, p->individual, p->fitness, p->credibility, (const void *)p->x, (size_t)p->size * sizeof *p->x);
 }
 

@@ -11,7 +11,7 @@
 enum eo_code eo_store_claim_job(struct eo_store *store, int64_t job, bool *taken, struct eo_error *error);
 void eo_store_release_job(struct eo_store *store, int64_t job);
 
-/* Whether any other store, in this process or another, works on the job. */
-enum eo_code eo_store_job_is_taken(struct eo_store *store, int64_t job, bool *taken, struct eo_error *error);
+/* Whether any other store, in this process or another, works on the job. Without a lock file nobody does. */
+bool eo_store_job_is_taken(struct eo_store *store, int64_t job);
 
 #endif

@@ -93,9 +93,9 @@ static enum eo_code make_folder(const char *directory, struct eo_error *error)
   return eo_error_set(error, EO_ERROR_FILE, "", "The data folder %.200s cannot be made: %s.", directory, strerror(errno == EEXIST ? ENOTDIR : errno));
 }
 
-static enum eo_code connect(struct eo_store *store, int flags, struct eo_error *error)
+static enum eo_code connect(struct eo_store *store, const char *name, int flags, struct eo_error *error)
 {
-  int fault = sqlite3_open_v2(store->path, &store->handle, flags | SQLITE_OPEN_NOMUTEX, NULL);
+  int fault = sqlite3_open_v2(name, &store->handle, flags | SQLITE_OPEN_NOMUTEX, NULL);
   if (fault)
     return eo_store_fault(store, fault, error);
   sqlite3_extended_result_codes(store->handle, 1);
@@ -119,12 +119,41 @@ static enum eo_code use_journal(struct eo_store *store, struct eo_error *error)
 static enum eo_code open_for_writing(struct eo_store *store, int flags, struct eo_error *error)
 {
   int schema = 0;
-  enum eo_code code = connect(store, SQLITE_OPEN_READWRITE | flags, error);
+  enum eo_code code = connect(store, store->path, SQLITE_OPEN_READWRITE | flags, error);
   if (!code)
     code = identify(store, &schema, error);
   if (!code)
     code = use_journal(store, error);
   return code ? code : migrate(store, error);
+}
+
+/* "file:PATH?immutable=1": a database in WAL mode cannot be read in the usual way where its journal cannot be made. */
+static char *name_immutable(const char *path)
+{
+  static const char before[] = "file:", after[] = "?immutable=1";
+  char *name = malloc(3 * strlen(path) + sizeof before + sizeof after), *end = name;
+  if (!name)
+    return NULL;
+  end += sprintf(end, "%s", before);
+  for (const unsigned char *c = (const unsigned char *)path; *c; c++)
+    end += strchr("?#%", *c) || *c <= ' ' ? sprintf(end, "%%%02X", *c) : sprintf(end, "%c", *c);
+  strcpy(end, after);
+  return name;
+}
+
+/* Where nobody can write nobody does, unless a journal is left: then SQLite has to see it. */
+static enum eo_code open_unwritable(struct eo_store *store, struct eo_error *error)
+{
+  char *name = name_immutable(store->path), *journal = malloc(strlen(store->path) + sizeof "-wal");
+  enum eo_code code = name && journal ? EO_OK : eo_error_memory(error);
+  if (!code) {
+    sprintf(journal, "%s-wal", store->path);
+    bool left = access(journal, F_OK) == 0;
+    code = connect(store, left ? store->path : name, SQLITE_OPEN_READONLY | (left ? 0 : SQLITE_OPEN_URI), error);
+  }
+  free(name);
+  free(journal);
+  return code ? code : expect_present(store, error);
 }
 
 static enum eo_code open_for_reading(struct eo_store *store, struct eo_error *error)
@@ -133,8 +162,7 @@ static enum eo_code open_for_reading(struct eo_store *store, struct eo_error *er
     return eo_error_set(error, EO_ERROR_INPUT, "", "There is no history in %.200s.", store->directory);
   if (access(store->path, W_OK) == 0 && access(store->directory, W_OK) == 0)
     return open_for_writing(store, 0, error);
-  enum eo_code code = connect(store, SQLITE_OPEN_READONLY, error);
-  return code ? code : expect_present(store, error);
+  return open_unwritable(store, error);
 }
 
 static enum eo_code name_files(struct eo_store *store, const char *directory, struct eo_error *error)
