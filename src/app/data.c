@@ -22,6 +22,18 @@ static void make_parents(char *path)
     }
 }
 
+enum eo_code eo_app_data_directory(const char *option, struct eo_text *path, struct eo_error *error)
+{
+  *path = (struct eo_text){0};
+  if (!use(path, option, "") && !use(path, getenv("EASEOFF_DATA"), "") && !use(path, getenv("XDG_DATA_HOME"), "/easeoff") &&
+      !use(path, getenv("HOME"), "/.local/share/easeoff"))
+    return eo_error_set(error, EO_ERROR_INPUT, "", "There is no place for the history; --data names one.");
+  if (path->failed)
+    return eo_error_memory(error);
+  make_parents(path->data);
+  return EO_OK;
+}
+
 bool eo_app_cache_directory(const char *option, struct eo_text *path)
 {
   *path = (struct eo_text){0};

@@ -1,21 +1,35 @@
 #include "app/watch.h"
 
 #include <stdio.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include "app/app.h"
 #include "base/clock.h"
 
-static int report(void *context, const char *what, double fraction)
+bool eo_watch_due(const struct eo_watch *watch)
 {
   static const double INTERVAL = 0.1;
+  return watch->terminal && 1e-3 * eo_clock_milliseconds() - watch->last >= INTERVAL;
+}
+
+void eo_watch_show(struct eo_watch *watch, const char *line)
+{
+  struct winsize size;
+  int width = ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 1 ? size.ws_col - 1 : 79;
+  fprintf(stderr, "\r\033[K%.*s", width, line);
+  fflush(stderr);
+  watch->last = 1e-3 * eo_clock_milliseconds();
+  watch->shown = true;
+}
+
+static int report(void *context, const char *what, double fraction)
+{
   struct eo_watch *watch = context;
-  double now = 1e-3 * eo_clock_milliseconds();
-  if (watch->terminal && now - watch->last >= INTERVAL) {
-    fprintf(stderr, "\r\033[K%3.0f %% %.60s", 100 * fraction, what);
-    fflush(stderr);
-    watch->last = now;
-    watch->shown = true;
+  char line[80];
+  if (eo_watch_due(watch)) {
+    snprintf(line, sizeof line, "%3.0f %% %.60s", 100 * fraction, what);
+    eo_watch_show(watch, line);
   }
   return watch->stopped;
 }

@@ -26,6 +26,12 @@ struct eo_watch {
    where it is until eo_watch_end(). */
 void eo_watch_start(struct eo_watch *watch);
 
+/* True when the line may be written anew: at a terminal, and not more often than eyes follow. */
+bool eo_watch_due(const struct eo_watch *watch);
+
+/* Writes the line, cut to the terminal's width. */
+void eo_watch_show(struct eo_watch *watch, const char *line);
+
 /* Wipes the line. */
 void eo_watch_clear(struct eo_watch *watch);
 

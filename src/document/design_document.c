@@ -4,6 +4,8 @@
 #include <string.h>
 
 #include "document/json.h"
+#include "document/study.h"
+#include "evaluation/evaluator.h"
 #include "gear/check.h"
 
 void eo_warnings_add(struct eo_warnings *warnings, const char *format, ...)
@@ -89,6 +91,7 @@ enum eo_code eo_design_complete(struct eo_design *design, struct eo_geometry *ge
 {
   struct eo_design complete = *design;
   struct eo_geometry made;
+  struct eo_study_space space;
   enum eo_code code = eo_geometry_init(&made, &complete.gear_pair, error);
   if (code)
     return code;
@@ -97,6 +100,8 @@ enum eo_code eo_design_complete(struct eo_design *design, struct eo_geometry *ge
   code = eo_geometry_init(&made, &complete.gear_pair, error);
   if (!code)
     code = eo_design_check(&complete, &made, error);
+  if (!code)
+    code = eo_study_space_init(&space, &complete, &made, error);
   if (!code) {
     *design = complete;
     *geometry = made;
@@ -136,8 +141,51 @@ enum eo_code eo_design_evaluation_hash(const struct eo_design *design, char hex[
   return hash_without(design, without, hex, error);
 }
 
-enum eo_code eo_design_problem_hash(const struct eo_design *design, char hex[EO_HASH_LENGTH + 1], struct eo_error *error)
+/* Scenarios, root stress: what of the objective decides which values a row has. */
+static json_t *encode_wants(const struct eo_design *design)
 {
-  static const char *const without[] = {"name", "modification", "objective", "optimization", NULL};
-  return hash_without(design, without, hex, error);
+  json_t *wants = json_object();
+  bool failed = !wants;
+  if (design->objective.robust != EO_ROBUST_OFF && design->objective.scenarios > 0) {
+    json_t *objective = eo_table_encode(&eo_objective_table, &design->objective);
+    eo_json_put(wants, "scenarios", json_incref(json_object_get(objective, "scenarios")), &failed);
+    json_decref(objective);
+  }
+  eo_json_put(wants, "root_stress", json_boolean(design->objective.root_stress.enabled), &failed);
+  eo_json_put(wants, "evaluator", json_integer(EO_EVALUATOR_VERSION), &failed);
+  if (!failed)
+    return wants;
+  json_decref(wants);
+  return NULL;
+}
+
+static json_t *encode_problem(const struct eo_design *design)
+{
+  static const char *const without[] = {"name", "modification", "objective", "optimization"};
+  json_t *document = eo_design_encode(design), *load_case;
+  bool failed = !document;
+  size_t i;
+  for (i = 0; i < sizeof without / sizeof without[0]; i++)
+    json_object_del(document, without[i]);
+  json_object_del(json_object_get(document, "resolution"), "marking_thickness_um");
+  json_array_foreach(json_object_get(document, "load_cases"), i, load_case)
+    json_object_del(load_case, "share");
+  eo_json_put(document, "wants", encode_wants(design), &failed);
+  if (!failed)
+    return document;
+  json_decref(document);
+  return NULL;
+}
+
+enum eo_code eo_design_problem(const struct eo_design *design, struct eo_text *spec, char hex[EO_HASH_LENGTH + 1], struct eo_error *error)
+{
+  json_t *document = encode_problem(design);
+  size_t before = spec->size;
+  if (document)
+    eo_json_write(spec, document, EO_JSON_CANONICAL);
+  enum eo_code code = !document || spec->failed ? eo_error_memory(error) : EO_OK;
+  if (!code)
+    eo_hash_hex(spec->data + before, spec->size - before, hex);
+  json_decref(document);
+  return code;
 }

@@ -14,6 +14,9 @@ extern const struct eo_table eo_design_table, eo_gear_pair_table, eo_material_ta
     eo_load_case_table, eo_flank_modification_table, eo_member_modification_table, eo_modification_table, eo_objective_table,
     eo_scenario_table, eo_optimization_table, eo_resolution_table;
 
+/* Keys of a flank's modification that may be optimized; ends with NULL. */
+extern const char *const eo_variable_parameters[];
+
 /* What was changed or left out in reading a design that is otherwise right. */
 struct eo_warnings {
   int count;
@@ -46,7 +49,9 @@ enum eo_code eo_design_hash(const struct eo_design *design, char hex[EO_HASH_LEN
 /* The same over what the raw values of one evaluation depend on: without name, objective and optimization. */
 enum eo_code eo_design_evaluation_hash(const struct eo_design *design, char hex[EO_HASH_LENGTH + 1], struct eo_error *error);
 
-/* The same over what one evaluation of a modification depends on: without name, modification, objective and optimization. */
-enum eo_code eo_design_problem_hash(const struct eo_design *design, char hex[EO_HASH_LENGTH + 1], struct eo_error *error);
+/* Everything the raw values of one evaluation depend on but the modification, as canonical JSON, and its hash: the design without name,
+   modification, objective, optimization, shares of the load cases and what only shows; the scenarios of a robust objective, whether root
+   stress is wanted, and the evaluator's version. Appends to spec. */
+enum eo_code eo_design_problem(const struct eo_design *design, struct eo_text *spec, char hex[EO_HASH_LENGTH + 1], struct eo_error *error);
 
 #endif

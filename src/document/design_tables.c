@@ -46,7 +46,12 @@ static const struct eo_field objective[] = {
      .help = "alignments, compliances and speeds around the nominal ones"},
 };
 
-static const char *const variables[] = {"shared", "per_end", NULL};
+static const char *const variables[] = {"shared", "per_end", "listed", NULL};
+static const char *const variable_members[] = {"pinion", "gear", NULL};
+static const char *const variable_ends[] = {"left", "right", "both", NULL};
+const char *const eo_variable_parameters[] = {
+    "tip_relief_um", "root_relief_um", "tip_relief_start_mm", "root_relief_start_mm", "lead_crowning_um", "lead_slope_um", "lead_offset_um",
+    "profile_crowning_per_mm", "leading_end_relief_um", "leading_end_relief_length_mm", "trailing_end_relief_um", "trailing_end_relief_length_mm", NULL};
 static const char *const algorithms[] = {"credibility-ga", "fpga", "ga", "nsga2", NULL};
 static const char *const mutation_modes[] = {"gene", "individual", NULL};
 static const char *const fitness_forms[] = {"reciprocal", "negative", NULL};
@@ -71,8 +76,19 @@ static const struct eo_field bounds[] = {
 };
 static const struct eo_table bounds_table = EO_TABLE("bounds", struct eo_optimization, bounds);
 
+static const struct eo_field listed_variable[] = {
+    EO_CHOICE(struct eo_listed_variable, member, "member", variable_members, EO_PINION, "whose flank"),
+    EO_CHOICE(struct eo_listed_variable, end, "end", variable_ends, EO_BOTH_ENDS, "which end; both: one variable for both ends"),
+    {.key = "parameter", .kind = EO_FIELD_CHOICE, .flags = EO_FIELD_REQUIRED, .offset = offsetof(struct eo_listed_variable, parameter),
+     .choices = eo_variable_parameters, .fallback = NAN, .help = "key of the flank's modification"},
+    EO_NUMBERS(struct eo_listed_variable, bounds, "bounds", 2, NULL, -5000, 5000, EO_FIELD_ASCENDING | EO_FIELD_NULLABLE, NULL,
+               "those of the same key in bounds", "lowest and highest value in the unit of the parameter's key"),
+};
+static const struct eo_table listed_variable_table = EO_TABLE("a variable", struct eo_listed_variable, listed_variable);
+
 static const struct eo_field optimization[] = {
-    EO_CHOICE(struct eo_optimization, variables, "variables", variables, EO_VARIABLES_SHARED, "5 shared by both ends (case A) or 10, 5 per end (case B)"),
+    EO_CHOICE(struct eo_optimization, variables, "variables", variables, EO_VARIABLES_SHARED, "5 of the pinion shared by both ends (case A), 10, 5 per end (case B), or those in variable_list"),
+    EO_LIST(struct eo_optimization, list, listed, "variable_list", &listed_variable_table, 0, EO_MAX_LISTED, "the variables, when variables is listed"),
     {.key = "algorithm", .kind = EO_FIELD_TEXT, .offset = offsetof(struct eo_optimization, algorithm), .count = sizeof ((struct eo_optimization *)0)->algorithm,
      .choices = algorithms, .fallback_text = "credibility-ga", .help = "optimizer"},
     EO_GROUP("bounds", &bounds_table, "lowest and highest value of each variable"),

@@ -122,7 +122,7 @@ static json_t *encode_cases(struct eo_result_source *source)
 
 /* ---- objectives ---- */
 
-static json_t *encode_raw_case(const struct eo_load_case *load_case, const struct eo_objective_case *raw)
+json_t *eo_result_raw_case(const struct eo_load_case *load_case, const struct eo_objective_case *raw)
 {
   struct eo_result_object o = eo_result_open();
   double known = raw->failed ? NAN : 1;
@@ -142,14 +142,14 @@ static json_t *encode_raw(const struct eo_result_source *source, const struct eo
 {
   json_t *cases = json_array();
   for (int k = 0; k < source->evaluation->cases && cases; k++)
-    if (json_array_append_new(cases, encode_raw_case(&source->design->load_case[k], &raw[k])) != 0) {
+    if (json_array_append_new(cases, eo_result_raw_case(&source->design->load_case[k], &raw[k])) != 0) {
       json_decref(cases);
       cases = NULL;
     }
   return cases;
 }
 
-static void put_value(struct eo_result_object *o, const struct eo_objective_value *value)
+void eo_result_put_value(struct eo_result_object *o, const struct eo_objective_value *value)
 {
   double known = value->sums.failed ? NAN : 1;
   eo_result_put_number(o, "f1_um", known * value->sums.f[0], &eo_unit_um);
@@ -164,8 +164,8 @@ static json_t *encode_objectives(const struct eo_result_source *source)
 {
   const struct eo_analysis *a = source->analysis;
   struct eo_result_object o = eo_result_open(), unmodified = eo_result_open();
-  put_value(&o, &a->value);
-  put_value(&unmodified, &a->unmodified_value);
+  eo_result_put_value(&o, &a->value);
+  eo_result_put_value(&unmodified, &a->unmodified_value);
   eo_result_put(&o, "load_cases", encode_raw(source, source->evaluation->objective));
   eo_result_put(&unmodified, "load_cases", encode_raw(source, a->unmodified));
   eo_result_put(&o, "unmodified", eo_result_close(&unmodified));

@@ -48,7 +48,11 @@ json_t *eo_result_close(struct eo_result_object *object); /* NULL when anything 
 /* Normal force that one end carries, mean over the mesh cycle, N. */
 double eo_result_mean_load(const struct eo_result_source *source, const struct eo_case_result *load_case, int end);
 
+/* f1, f2, f3, J, fitness and violation into an object. */
+void eo_result_put_value(struct eo_result_object *object, const struct eo_objective_value *value);
+
 /* Each returns a new value, NULL without memory. */
+json_t *eo_result_raw_case(const struct eo_load_case *load_case, const struct eo_objective_case *raw);
 json_t *eo_result_position(const struct eo_result_source *source);
 json_t *eo_result_unloaded(struct eo_result_source *source);
 json_t *eo_result_lte(struct eo_result_source *source, const struct eo_case_result *load_case);

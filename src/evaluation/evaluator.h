@@ -9,6 +9,9 @@
 #include "evaluation/pair.h"
 #include "objective/objective.h"
 
+/* Raised with every change after which the same design gives other numbers: what a history keeps belongs to one version. */
+enum { EO_EVALUATOR_VERSION = 1 };
+
 /* What to compute beyond the objectives. */
 enum {
   EO_WANT_ROOT = 1,    /* root stress (computed anyway when it is constrained) */

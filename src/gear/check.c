@@ -56,7 +56,7 @@ static enum eo_code check_end_reliefs(const struct eo_flank_modification *flank,
   return EO_OK;
 }
 
-static enum eo_code check_modification(const struct eo_design *design, const struct eo_geometry *geometry, struct eo_error *error)
+enum eo_code eo_modification_check(const struct eo_design *design, const struct eo_geometry *geometry, struct eo_error *error)
 {
   const double tip[2] = {geometry->rack_top, -geometry->rack_bottom}; /* the pinion's tip meets the gear's root */
   enum eo_code code = EO_OK;
@@ -158,7 +158,7 @@ enum eo_code eo_design_check(const struct eo_design *design, const struct eo_geo
   for (int i = 0; i < 2 && !code; i++)
     code = check_body(&design->gear_pair, geometry, i, error);
   if (!code)
-    code = check_modification(design, geometry, error);
+    code = eo_modification_check(design, geometry, error);
   if (!code)
     code = check_optimization(&design->optimization, geometry, error);
   if (!code)

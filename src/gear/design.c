@@ -82,7 +82,8 @@ static void resolve_start_range(struct eo_range *range, double active, double mo
 
 static void resolve_optimization(struct eo_optimization *optimization, const struct eo_gear_pair *pair, const struct eo_geometry *geometry)
 {
-  int variables = optimization->variables == EO_VARIABLES_PER_END && pair->ends == 2 ? 10 : 5;
+  int variables = optimization->variables == EO_VARIABLES_LISTED ? optimization->listed
+                  : optimization->variables == EO_VARIABLES_PER_END && pair->ends == 2 ? 10 : 5;
   fill(&optimization->share_radius, 0.03 * pow(variables / 5., 1.9));
   resolve_start_range(&optimization->tip_relief_start, geometry->rack_top, pair->normal_module);
   resolve_start_range(&optimization->root_relief_start, -geometry->rack_bottom, pair->normal_module);

@@ -123,10 +123,21 @@ struct eo_objective {
   struct eo_scenario { double in_plane, out_of_plane, compliance, speed; } scenario[EO_MAX_SCENARIOS]; /* rad, rad (NaN: nominal), factor, factor */
 };
 
-enum eo_variable_set { EO_VARIABLES_SHARED, EO_VARIABLES_PER_END };
+enum eo_variable_set { EO_VARIABLES_SHARED, EO_VARIABLES_PER_END, EO_VARIABLES_LISTED };
+enum { EO_BOTH_ENDS = 2, EO_MAX_LISTED = 48 };
 struct eo_range { double low, high; };
+
+/* A modification parameter to be optimized, chosen by its key, on one end or alike on both. */
+struct eo_listed_variable {
+  int member, end;        /* end: EO_LEFT, EO_RIGHT, EO_BOTH_ENDS */
+  int parameter;          /* index of eo_variable_parameters in document/design_document.h */
+  struct eo_range bounds; /* in the unit of the parameter's key; NaN: the bounds of the optimization */
+};
+
 struct eo_optimization {
   enum eo_variable_set variables;
+  int listed;             /* rows below, with EO_VARIABLES_LISTED */
+  struct eo_listed_variable list[EO_MAX_LISTED];
   char algorithm[32];
   struct eo_range tip_relief, root_relief, tip_relief_start, root_relief_start, lead_crowning; /* m; NaN: derived */
 

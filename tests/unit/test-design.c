@@ -390,17 +390,19 @@ static void test_contradictions(void)
 static void test_hashes(void)
 {
   char first[EO_HASH_LENGTH + 1], second[EO_HASH_LENGTH + 1], problem[2][EO_HASH_LENGTH + 1];
+  struct eo_text spec = {0};
   eo_example_build("paper", &design);
   eo_design_hash(&design, first, NULL);
-  eo_design_problem_hash(&design, problem[0], NULL);
+  eo_design_problem(&design, &spec, problem[0], NULL);
   design.modification.flank[EO_PINION][EO_LEFT].tip_relief = 1e-6;
   design.optimization.seed = 7;
   eo_design_hash(&design, second, NULL);
-  eo_design_problem_hash(&design, problem[1], NULL);
+  eo_design_problem(&design, &spec, problem[1], NULL);
   ok(strcmp(first, second) != 0 && strcmp(problem[0], problem[1]) == 0, "modification and seed change the design's hash, not its problem's");
   design.material.density = nextafter(7850, 8000);
-  eo_design_problem_hash(&design, problem[1], NULL);
+  eo_design_problem(&design, &spec, problem[1], NULL);
   ok(strcmp(problem[0], problem[1]) != 0, "one bit of the density changes both");
+  eo_text_done(&spec);
   eo_hash_hex("abc", 3, first);
   ok(strcmp(first, "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad") == 0, "SHA-256 of \"abc\" (FIPS 180-4)");
 }

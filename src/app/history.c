@@ -1,0 +1,274 @@
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "app/app.h"
+#include "app/data.h"
+#include "app/number.h"
+#include "document/json.h"
+#include "document/sheet.h"
+#include "document/study_result.h"
+#include "evaluation/evaluator.h"
+#include "jobs/records.h"
+#include "store/evaluations.h"
+#include "store/jobs.h"
+#include "store/lock.h"
+
+struct request {
+  const char *data, *job, *problem;
+  bool json, predictions, outdated, damaged;
+  const char *operand[2];
+  struct eo_store *store;
+};
+
+static enum eo_code read_id(const char *text, const char *what, int *id, struct eo_error *error)
+{
+  return eo_app_read_whole(text, what, 1, 2000000000, id, error) ? EO_OK : EO_ERROR_INPUT;
+}
+
+/* ---- list ---- */
+
+static void print_problems(const json_t *list, struct eo_text *text)
+{
+  static const char *const headings[] = {"problem", "name", "hash", "evaluations", "failed", "model time, s", "since"};
+  const json_t *row;
+  size_t i;
+  struct eo_sheet sheet;
+  eo_sheet_init(&sheet, 7, headings);
+  json_array_foreach(json_object_get(list, "problems"), i, row) {
+    char name[60], hash[16];
+    eo_text_clean(name, sizeof name, json_string_value(json_object_get(row, "name")));
+    snprintf(hash, sizeof hash, "%.12s", json_string_value(json_object_get(row, "hash")));
+    eo_sheet_number(&sheet, eo_json_find_number(row, "id"), NULL, 0);
+    eo_sheet_string(&sheet, name);
+    eo_sheet_string(&sheet, hash);
+    eo_sheet_number(&sheet, eo_json_find_number(row, "evaluations"), NULL, 0);
+    eo_sheet_number(&sheet, eo_json_find_number(row, "failed"), NULL, 0);
+    eo_sheet_number(&sheet, eo_json_find_number(row, "cost_s"), NULL, 4);
+    eo_sheet_string(&sheet, json_string_value(json_object_get(row, "created")));
+  }
+  eo_sheet_print(&sheet, 0, text);
+  eo_sheet_done(&sheet);
+}
+
+static void print_jobs(const json_t *list, struct eo_text *text)
+{
+  static const char *const headings[] = {"job", "problem", "name", "algorithm", "state", "true", "individuals", "best J", "last"};
+  const json_t *row;
+  size_t i;
+  struct eo_sheet sheet;
+  eo_sheet_init(&sheet, 9, headings);
+  json_array_foreach(json_object_get(list, "jobs"), i, row) {
+    char name[60];
+    eo_text_clean(name, sizeof name, json_string_value(json_object_get(row, "name")));
+    eo_sheet_number(&sheet, eo_json_find_number(row, "id"), NULL, 0);
+    eo_sheet_number(&sheet, eo_json_find_number(row, "problem"), NULL, 0);
+    eo_sheet_string(&sheet, name);
+    eo_sheet_string(&sheet, json_string_value(json_object_get(row, "algorithm")));
+    eo_sheet_string(&sheet, json_string_value(json_object_get(row, "state")));
+    eo_sheet_number(&sheet, eo_json_find_number(row, "true_evaluations"), NULL, 0);
+    eo_sheet_number(&sheet, eo_json_find_number(row, "individuals"), NULL, 0);
+    eo_sheet_number(&sheet, eo_json_find_number(row, "best_value"), NULL, 4);
+    eo_sheet_string(&sheet, json_string_value(json_object_get(row, "updated")));
+  }
+  eo_sheet_print(&sheet, 0, text);
+  eo_sheet_done(&sheet);
+}
+
+static int run_list(struct request *q)
+{
+  struct eo_error error;
+  struct eo_text text = {0};
+  json_t *list = NULL;
+  if (eo_records_list(q->store, &list, &error))
+    return eo_app_fail(NULL, &error);
+  if (q->json)
+    return eo_app_print_json(list, false);
+  print_problems(list, &text);
+  eo_text_add(&text, "\n");
+  print_jobs(list, &text);
+  json_decref(list);
+  return eo_app_print(&text);
+}
+
+/* ---- show, export ---- */
+
+static int run_show(struct request *q)
+{
+  struct eo_error error;
+  struct eo_text text = {0};
+  json_t *document = NULL;
+  int id;
+  if (read_id(q->operand[1], "show", &id, &error) || eo_records_result(q->store, id, &document, &error))
+    return eo_app_fail(NULL, &error);
+  if (q->json)
+    return eo_app_print_json(document, false);
+  eo_study_result_summary(document, &text);
+  json_decref(document);
+  return eo_app_print(&text);
+}
+
+static int export_path(struct request *q)
+{
+  struct eo_error error;
+  struct eo_text text = {0};
+  int id;
+  if (!read_id(q->job, "--job", &id, &error) && !eo_records_path_csv(q->store, id, &text, &error))
+    return eo_app_print(&text);
+  eo_text_done(&text);
+  return eo_app_fail(NULL, &error);
+}
+
+static int run_export(struct request *q)
+{
+  struct eo_error error;
+  struct eo_text text = {0};
+  json_t *rows = NULL;
+  int id;
+  if (q->job)
+    return export_path(q);
+  if (read_id(q->operand[1], "export", &id, &error) || eo_records_rows(q->store, id, &rows, &error))
+    return eo_app_fail(NULL, &error);
+  if (q->json)
+    return eo_app_print_json(rows, false);
+  enum eo_code code = eo_records_rows_csv(rows, &text, &error);
+  json_decref(rows);
+  if (!code)
+    return eo_app_print(&text);
+  eo_text_done(&text);
+  return eo_app_fail(NULL, &error);
+}
+
+/* ---- prune ---- */
+
+struct outdated {
+  int count;
+  int64_t problem[1000];
+};
+
+static enum eo_code note_outdated(void *context, const struct eo_stored_problem *problem, struct eo_error *error)
+{
+  struct outdated *list = context;
+  (void)error;
+  if (problem->evaluator != EO_EVALUATOR_VERSION && list->count < (int)(sizeof list->problem / sizeof list->problem[0]))
+    list->problem[list->count++] = problem->id;
+  return EO_OK;
+}
+
+static enum eo_code remove_outdated(struct eo_store *store, int64_t *rows, struct eo_error *error)
+{
+  struct outdated list = {0};
+  enum eo_code code = eo_store_each_problem(store, note_outdated, &list, error);
+  for (int i = 0; i < list.count && !code; i++) {
+    int64_t removed;
+    code = eo_store_remove_problem(store, list.problem[i], &removed, error);
+    *rows += code ? 0 : removed;
+  }
+  return code;
+}
+
+static enum eo_code refuse_running(void *context, const struct eo_stored_job *job, struct eo_error *error)
+{
+  if (job->state != EO_JOB_RUNNING || !eo_store_job_is_taken(context, job->id))
+    return EO_OK;
+  return eo_error_set(error, EO_ERROR_INPUT, "", "Job %lld is running; prune when it has ended.", (long long)job->id);
+}
+
+static enum eo_code prune(struct request *q, int64_t *rows, int64_t *predictions, struct eo_error *error)
+{
+  int problem = 0;
+  int64_t removed = 0;
+  enum eo_code code = eo_store_each_job(q->store, 0, refuse_running, q->store, error);
+  if (!code && q->problem)
+    code = read_id(q->problem, "--problem", &problem, error);
+  if (!code)
+    code = eo_store_begin(q->store, error);
+  if (!code && (q->predictions || (!q->outdated && !q->damaged && !q->problem)))
+    code = eo_store_remove_predictions(q->store, predictions, error);
+  if (!code && q->outdated)
+    code = remove_outdated(q->store, rows, error);
+  if (!code && q->problem) {
+    code = eo_store_remove_problem(q->store, problem, &removed, error);
+    *rows += removed;
+  }
+  if (!code && q->damaged) {
+    code = eo_store_remove_damaged(q->store, &removed, error);
+    *rows += removed;
+  }
+  if (!code)
+    code = eo_store_commit(q->store, error);
+  if (code)
+    eo_store_rollback(q->store);
+  return code ? code : eo_store_compact(q->store, error);
+}
+
+static int run_prune(struct request *q)
+{
+  struct eo_error error;
+  struct eo_text text = {0};
+  int64_t rows = 0, predictions = 0;
+  if (prune(q, &rows, &predictions, &error))
+    return eo_app_fail(NULL, &error);
+  eo_text_print(&text, "%lld true rows and %lld predictions removed\n", (long long)rows, (long long)predictions);
+  return eo_app_print(&text);
+}
+
+/* ---- the command ---- */
+
+static const struct action {
+  const char *name;
+  int operands; /* with the name */
+  int (*run)(struct request *request);
+} actions[] = {{"list", 1, run_list}, {"show", 2, run_show}, {"export", 2, run_export}, {"prune", 1, run_prune}};
+
+static const struct action *find_action(const struct request *q, int operands, struct eo_error *error)
+{
+  for (size_t i = 0; i < sizeof actions / sizeof actions[0]; i++)
+    if (strcmp(actions[i].name, q->operand[0]) == 0) {
+      bool by_job = actions[i].run == run_export && q->job;
+      if (operands == actions[i].operands - by_job)
+        return &actions[i];
+      eo_error_set(error, EO_ERROR_INPUT, "", "history %s takes %s number; see easeoff history --help.", actions[i].name,
+                   actions[i].operands == 2 && !by_job ? "one" : "no");
+      return NULL;
+    }
+  eo_error_set(error, EO_ERROR_INPUT, "", "\"%.40s\" is no action: list, show, export or prune.", q->operand[0]);
+  return NULL;
+}
+
+static int run_action(struct request *q, int operands)
+{
+  struct eo_error error;
+  struct eo_text directory = {0};
+  const struct action *action = find_action(q, operands, &error);
+  enum eo_code code = action ? eo_app_data_directory(q->data, &directory, &error) : EO_ERROR_INPUT;
+  if (!code)
+    code = eo_store_open(&q->store, directory.data, EO_STORE_READ, &error);
+  int status = code ? eo_app_fail(NULL, &error) : action->run(q);
+  eo_store_close(q->store);
+  eo_text_done(&directory);
+  return status;
+}
+
+static int run(const struct eo_command *command, int argc, char **argv)
+{
+  struct request q = {0};
+  int operands, status;
+  const struct eo_option options[] = {{.name = "--data", .value = &q.data}, {.name = "--json", .flag = &q.json}, {.name = "--job", .value = &q.job},
+                                      {.name = "--problem", .value = &q.problem}, {.name = "--predictions", .flag = &q.predictions},
+                                      {.name = "--outdated", .flag = &q.outdated}, {.name = "--damaged", .flag = &q.damaged}, {.name = NULL}};
+  if (eo_app_arguments(command, argc, argv, options, 1, 2, q.operand, &operands, &status))
+    status = run_action(&q, operands);
+  return status;
+}
+
+const struct eo_command eo_command_history = {
+    "history", "list | show JOB | export PROBLEM | export --job JOB | prune  [--data DIR] [--json]", "what was evaluated and searched before",
+    "  list            problems (what an evaluation depends on but the modification) and jobs\n"
+    "  show JOB        the result of a search, as optimize printed it\n"
+    "  export PROBLEM  every true row as comma-separated values: modification, values per load case\n"
+    "  export --job JOB  the path of a search: each individual, whether computed, known or predicted\n"
+    "  prune           removes predictions of searches that have ended; or instead\n"
+    "    --predictions, --outdated (rows of an older model), --problem N (with its jobs), --damaged (wrong check sum)\n\n"
+    EO_APP_HISTORY_HELP, run};

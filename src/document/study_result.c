@@ -1,0 +1,329 @@
+#include "document/study_result.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "document/json.h"
+#include "document/result_parts.h"
+#include "document/sheet.h"
+
+#include <config.h>
+
+static const char *const stop_names[] = {"budget", "converged", "cancelled"};
+
+const char *eo_study_stop_name(enum eo_study_stop stop)
+{
+  return stop_names[stop];
+}
+
+void eo_study_result_done(struct eo_study_result *result)
+{
+  free(result->unmodified.raw);
+  free(result->best.raw);
+  free(result->generation);
+  free(result->front);
+  *result = (struct eo_study_result){.knee = -1, .weighted = -1};
+}
+
+/* ---- JSON ---- */
+
+static json_t *encode_variable(const struct eo_study_result *result, const struct eo_study_variable *v)
+{
+  static const char *const ends[] = {"left", "right", "both"};
+  struct eo_result_object o = eo_result_open();
+  char name[80];
+  eo_study_variable_name(v, name, sizeof name);
+  eo_result_put(&o, "name", json_string(name));
+  eo_result_put(&o, "member", json_string(eo_result_member[v->member]));
+  eo_result_put(&o, "end", json_string(ends[v->end]));
+  eo_result_put(&o, "parameter", json_string(v->field->key));
+  eo_result_put(&o, "bounds", json_pack("[o,o]", json_real(v->low), json_real(v->high)));
+  eo_result_put(&o, "best", result->best.there ? json_real(eo_study_variable_value(v, &result->best.modification)) : json_null());
+  return eo_result_close(&o);
+}
+
+/* Appends value to array; a failure of either leaves NULL. */
+static json_t *append(json_t *array, json_t *value)
+{
+  if (array && json_array_append_new(array, value) == 0)
+    return array;
+  json_decref(array);
+  return NULL;
+}
+
+static json_t *encode_variables(const struct eo_study_result *result)
+{
+  json_t *array = json_array();
+  for (int i = 0; i < result->space.count && array; i++)
+    array = append(array, encode_variable(result, &result->space.variable[i]));
+  return array;
+}
+
+static json_t *encode_point(const struct eo_study_point *point, const struct eo_design *design)
+{
+  struct eo_result_object o = eo_result_open();
+  json_t *cases = json_array();
+  eo_result_put_value(&o, &point->value);
+  for (int k = 0; k < design->load_cases && cases; k++)
+    cases = append(cases, eo_result_raw_case(&design->load_case[k], &point->raw[k]));
+  eo_result_put(&o, "load_cases", cases);
+  return eo_result_close(&o);
+}
+
+/* In per cent of the unmodified pair, positive when better, for every load case of the analysis. */
+static json_t *encode_reductions(const json_t *analysis)
+{
+  static const struct { const char *key, *value; } row[] = {
+      {"peak_to_peak", "peak_to_peak_um"}, {"impact", "impact_N"}, {"rms", "rms_m_per_s2"}, {"contact_pressure", "contact_pressure_MPa"},
+      {"root_stress", "root_stress_MPa"}};
+  const json_t *after = eo_json_find(analysis, "objectives/load_cases"), *before = eo_json_find(analysis, "objectives/unmodified/load_cases");
+  json_t *array = json_array();
+  for (size_t k = 0; k < json_array_size(after) && array; k++) {
+    struct eo_result_object o = eo_result_open();
+    const json_t *a = json_array_get(after, k), *b = json_array_get(before, k);
+    eo_result_put(&o, "torque_Nm", json_incref(json_object_get(a, "torque_Nm")));
+    eo_result_put(&o, "speed_rpm", json_incref(json_object_get(a, "speed_rpm")));
+    for (size_t i = 0; i < sizeof row / sizeof *row; i++)
+      eo_result_put_number(&o, row[i].key, 100 * (1 - eo_json_find_number(a, row[i].value) / eo_json_find_number(b, row[i].value)), NULL);
+    array = append(array, eo_result_close(&o));
+  }
+  return array;
+}
+
+static json_t *encode_modification(const struct eo_design *design, const struct eo_modification *modification)
+{
+  struct eo_design *with = malloc(sizeof *with);
+  if (!with)
+    return NULL;
+  *with = *design;
+  with->modification = *modification;
+  json_t *document = eo_design_encode(with), *part = json_incref(json_object_get(document, "modification"));
+  json_decref(document);
+  free(with);
+  return part;
+}
+
+static json_t *encode_best(const struct eo_study_result *result, const struct eo_design *design, const json_t *analysis)
+{
+  struct eo_result_object o = eo_result_open();
+  eo_result_put(&o, "modification", encode_modification(design, &result->best.modification));
+  eo_result_put(&o, "objectives", encode_point(&result->best, design));
+  eo_result_put(&o, "reductions_percent", encode_reductions(analysis));
+  eo_result_put(&o, "result", analysis ? json_incref((json_t *)analysis) : json_null());
+  return eo_result_close(&o);
+}
+
+static json_t *encode_generation(const struct eo_study_generation *g)
+{
+  struct eo_result_object o = eo_result_open();
+  eo_result_put_number(&o, "best", g->best, NULL);
+  eo_result_put_number(&o, "mean", g->mean, NULL);
+  eo_result_put(&o, "true", json_integer(g->true_count));
+  eo_result_put(&o, "predicted", json_integer(g->predicted_count));
+  eo_result_put(&o, "repeated", json_integer(g->repeated_count));
+  eo_result_put(&o, "history_rows", json_integer(g->history_rows));
+  eo_result_put(&o, "epoch", json_integer(g->epoch));
+  return eo_result_close(&o);
+}
+
+static json_t *encode_generations(const struct eo_study_result *result)
+{
+  json_t *array = json_array();
+  for (int i = 0; i < result->generations && array; i++)
+    array = append(array, encode_generation(&result->generation[i]));
+  return array;
+}
+
+static json_t *encode_front(const struct eo_study_result *result)
+{
+  json_t *array = json_array();
+  for (int i = 0; i < result->front_count && array; i++) {
+    const struct eo_study_point *point = &result->front[i];
+    struct eo_result_object o = eo_result_open();
+    json_t *values = json_array();
+    for (int j = 0; j < result->space.count && values; j++)
+      values = append(values, json_real(eo_study_variable_value(&result->space.variable[j], &point->modification)));
+    eo_result_put(&o, "values", values);
+    eo_result_put_value(&o, &point->value);
+    eo_result_put(&o, "knee", json_boolean(i == result->knee));
+    eo_result_put(&o, "weighted", json_boolean(i == result->weighted));
+    array = append(array, eo_result_close(&o));
+  }
+  return array;
+}
+
+static json_t *encode_warnings(const struct eo_warnings *warnings)
+{
+  json_t *array = json_array();
+  for (int i = 0; warnings && i < warnings->count && array; i++)
+    array = append(array, json_string(warnings->text[i]));
+  return array;
+}
+
+static json_t *encode_run(const struct eo_study_result *r)
+{
+  struct eo_result_object o = eo_result_open();
+  eo_result_put(&o, "job", json_integer(r->job));
+  eo_result_put(&o, "taken_up", json_boolean(r->resumed));
+  eo_result_put(&o, "computed_evaluations", json_integer(r->computed));
+  eo_result_put(&o, "threads", json_integer(r->threads));
+  eo_result_put(&o, "wall_s", json_real(round(1e3 * r->seconds) / 1e3));
+  eo_result_put(&o, "model_s", json_real(round(1e3 * r->model_seconds) / 1e3));
+  eo_result_put(&o, "optimizer_s", json_real(round(1e3 * r->optimizer_seconds) / 1e3));
+  eo_result_put(&o, "history_s", json_real(round(1e3 * r->store_seconds) / 1e3));
+  return eo_result_close(&o);
+}
+
+static void put_counts(struct eo_result_object *o, const struct eo_study_result *r)
+{
+  const struct { const char *key; int value; } row[] = {
+      {"individuals", r->individuals}, {"true_evaluations", r->true_evaluations}, {"reused_evaluations", r->reused},
+      {"failed_evaluations", r->failed}, {"predicted_individuals", r->predicted}, {"repeated_individuals", r->repeated},
+      {"imported_rows", r->imported}};
+  for (size_t i = 0; i < sizeof row / sizeof *row; i++)
+    eo_result_put(o, row[i].key, json_integer(row[i].value));
+  eo_result_put_number(o, "pfc_percent", r->individuals ? 100. * r->true_evaluations / r->individuals : NAN, NULL);
+}
+
+json_t *eo_study_result_encode(const struct eo_study_result *result, const struct eo_design *design, const json_t *analysis,
+                               const struct eo_warnings *warnings)
+{
+  struct eo_result_object o = eo_result_open();
+  char hash[EO_HASH_LENGTH + 1];
+  eo_result_put(&o, "program", json_string(PACKAGE_STRING));
+  eo_result_put(&o, "design", eo_design_encode(design));
+  eo_result_put(&o, "design_hash", eo_design_hash(design, hash, NULL) ? NULL : json_string(hash));
+  eo_result_put(&o, "algorithm", json_string(design->optimization.algorithm));
+  eo_result_put(&o, "seed", json_integer((json_int_t)design->optimization.seed));
+  eo_result_put(&o, "variables", encode_variables(result));
+  eo_result_put(&o, "best", result->best.there ? encode_best(result, design, analysis) : json_null());
+  eo_result_put(&o, "unmodified", encode_point(&result->unmodified, design));
+  put_counts(&o, result);
+  eo_result_put(&o, "generations", encode_generations(result));
+  if (strcmp(design->optimization.algorithm, "nsga2") == 0)
+    eo_result_put(&o, "front", encode_front(result));
+  eo_result_put(&o, "stopped", json_string(stop_names[result->stopped]));
+  eo_result_put(&o, "warnings", encode_warnings(warnings));
+  eo_result_put(&o, "run", encode_run(result));
+  return eo_result_close(&o);
+}
+
+/* ---- for people ---- */
+
+static const char *find_text(const json_t *value, const char *path)
+{
+  const char *text = json_string_value(eo_json_find(value, path));
+  return text ? text : "";
+}
+
+static void print_variables(const json_t *document, struct eo_text *text)
+{
+  static const char *const headings[] = {"variable", "lowest", "highest", "best"};
+  const json_t *row;
+  size_t i;
+  struct eo_sheet sheet;
+  eo_sheet_init(&sheet, 4, headings);
+  json_array_foreach(json_object_get(document, "variables"), i, row) {
+    eo_sheet_string(&sheet, find_text(row, "name"));
+    for (size_t j = 0; j < 2; j++)
+      eo_sheet_number(&sheet, json_number_value(json_array_get(json_object_get(row, "bounds"), j)), NULL, 5);
+    eo_sheet_number(&sheet, eo_json_find_number(row, "best"), NULL, 5);
+  }
+  eo_sheet_print(&sheet, 2, text);
+  eo_sheet_done(&sheet);
+  eo_text_add(text, "\n");
+}
+
+static void add_reduction(struct eo_sheet *sheet, double before, double after)
+{
+  char change[40] = "";
+  double percent = 100 * (1 - after / before);
+  if (isfinite(percent))
+    snprintf(change, sizeof change, "%.*f %%", fabs(percent) < 9.95 ? 1 : 0, percent);
+  eo_sheet_string(sheet, change);
+}
+
+static const struct quantity {
+  const char *key, *name, *unit;
+} sums[] = {{"f1_um", "f1", "um"}, {"f2_N", "f2", "N"}, {"f3_m_per_s2", "f3", "m/s2"}, {"J", "J", ""}},
+  per_case[] = {{"peak_to_peak_um", "peak-to-peak loaded TE", "um"}, {"impact_N", "entering impact", "N"},
+                {"rms_m_per_s2", "vibration, RMS normal", "m/s2"}, {"contact_pressure_MPa", "contact pressure", "MPa"},
+                {"root_stress_MPa", "root stress", "MPa"}};
+
+static void add_rows(struct eo_sheet *sheet, const struct quantity *quantity, size_t count, const json_t *before, const json_t *after)
+{
+  for (size_t i = 0; i < count; i++) {
+    double a = eo_json_find_number(before, quantity[i].key), b = eo_json_find_number(after, quantity[i].key);
+    eo_sheet_string(sheet, quantity[i].name);
+    eo_sheet_string(sheet, quantity[i].unit);
+    eo_sheet_number(sheet, a, NULL, 4);
+    eo_sheet_number(sheet, b, NULL, 4);
+    add_reduction(sheet, a, b);
+  }
+}
+
+static void print_comparison(const struct quantity *quantity, size_t count, const json_t *before, const json_t *after, struct eo_text *text)
+{
+  static const char *const headings[] = {"", "", "unmodified", "optimum", "reduction"};
+  struct eo_sheet sheet;
+  eo_sheet_init(&sheet, 5, headings);
+  add_rows(&sheet, quantity, count, before, after);
+  eo_sheet_print(&sheet, 2, text);
+  eo_sheet_done(&sheet);
+  eo_text_add(text, "\n");
+}
+
+static void print_cases(const json_t *document, struct eo_text *text)
+{
+  const json_t *after = eo_json_find(document, "best/result/objectives/load_cases"), *row;
+  const json_t *before = eo_json_find(document, "best/result/objectives/unmodified/load_cases");
+  size_t k;
+  json_array_foreach((json_t *)after, k, row) {
+    eo_text_print(text, "%.6g N m, %.6g rpm\n", eo_json_find_number(row, "torque_Nm"), eo_json_find_number(row, "speed_rpm"));
+    print_comparison(per_case, sizeof per_case / sizeof *per_case, json_array_get(before, k), row, text);
+  }
+}
+
+static void print_effort(const json_t *document, struct eo_text *text)
+{
+  eo_text_print(text, "%s: %.0f true evaluations of %.0f individuals (PFC %.1f %%), %.0f of them known from the history, %.0f failed; %.0f earlier rows imported\n",
+                find_text(document, "algorithm"), eo_json_find_number(document, "true_evaluations"), eo_json_find_number(document, "individuals"),
+                eo_json_find_number(document, "pfc_percent"), eo_json_find_number(document, "reused_evaluations"),
+                eo_json_find_number(document, "failed_evaluations"), eo_json_find_number(document, "imported_rows"));
+  eo_text_print(text, "Job %.0f%s, %.0f evaluations computed now in %.1f s on %.0f threads (model %.1f s, optimizer %.1f s, history %.1f s); stopped: %s\n",
+                eo_json_find_number(document, "run/job"), json_is_true(eo_json_find(document, "run/taken_up")) ? ", taken up" : "",
+                eo_json_find_number(document, "run/computed_evaluations"), eo_json_find_number(document, "run/wall_s"),
+                eo_json_find_number(document, "run/threads"), eo_json_find_number(document, "run/model_s"),
+                eo_json_find_number(document, "run/optimizer_s"), eo_json_find_number(document, "run/history_s"), find_text(document, "stopped"));
+}
+
+static void print_notes(const json_t *warnings, struct eo_text *text)
+{
+  const json_t *row;
+  size_t i;
+  json_array_foreach((json_t *)warnings, i, row)
+    eo_text_print(text, "Note: %s\n", json_string_value(row));
+}
+
+void eo_study_result_summary(const json_t *document, struct eo_text *text)
+{
+  char name[200];
+  const json_t *best = json_object_get(document, "best"), *front = json_object_get(document, "front");
+  eo_text_clean(name, sizeof name, find_text(document, "design/name"));
+  eo_text_print(text, "%s%s", name, *name ? "\n" : "");
+  print_variables(document, text);
+  if (json_is_null(best))
+    eo_text_add(text, "No evaluation has given a value yet.\n\n");
+  else {
+    print_comparison(sums, sizeof sums / sizeof *sums, json_object_get(document, "unmodified"), json_object_get(best, "objectives"), text);
+    print_cases(document, text);
+  }
+  if (eo_json_find_number(best, "objectives/violation") > 0)
+    eo_text_print(text, "Constraints are violated by %.4g in sum.\n", eo_json_find_number(best, "objectives/violation"));
+  if (front)
+    eo_text_print(text, "Pareto front: %zu points (--json lists them)\n", json_array_size(front));
+  print_effort(document, text);
+  print_notes(json_object_get(document, "warnings"), text);
+  print_notes(eo_json_find(best, "result/warnings"), text);
+}

@@ -1,0 +1,163 @@
+#include "store/jobs.h"
+
+#include "store/evaluations.h"
+#include "store/lock.h"
+#include "store/statement.h"
+
+#include <string.h>
+
+static const char *const state_names[] = {"queued", "running", "cancelled", "done", "failed"};
+
+const char *eo_store_job_state_name(enum eo_job_state state)
+{
+  return state_names[state];
+}
+
+static enum eo_job_state find_state(const char *name)
+{
+  int i = 0;
+  while (i < EO_JOB_FAILED && strcmp(state_names[i], name) != 0)
+    i++;
+  return (enum eo_job_state)i;
+}
+
+enum eo_code eo_store_add_job(struct eo_store *store, struct eo_stored_job *job, struct eo_error *error)
+{
+  enum eo_code code = eo_store_last_evaluation(store, &job->import_upto, error);
+  if (!code)
+    code = EO_STATEMENT_RUN(store, error, "INSERT INTO job (problem, study, space, design, name, algorithm, fresh, import_upto, state)"
+                                          " VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)", "itttttnit",
+                            job->problem, job->study, job->space, job->design, job->name, job->algorithm, (int)job->fresh, job->import_upto,
+                            state_names[job->state]);
+  job->id = sqlite3_last_insert_rowid(store->handle);
+  return code;
+}
+
+enum eo_code eo_store_resume_job(struct eo_store *store, const char *study, bool fresh, struct eo_stored_job *job, struct eo_error *error)
+{
+  struct eo_statement s = eo_statement_begin(store, "SELECT id, import_upto FROM job WHERE study = ? AND fresh = ? AND state IN ('running', 'cancelled', 'done')"
+                                                    " ORDER BY id DESC", "tn", study, (int)fresh);
+  enum eo_code code = EO_OK;
+  bool taken = false;
+  job->id = 0;
+  while (!code && !taken && eo_statement_step(&s)) {
+    job->id = eo_column_integer(&s, 0);
+    job->import_upto = eo_column_integer(&s, 1);
+    code = eo_store_claim_job(store, job->id, &taken, error);
+  }
+  enum eo_code end = eo_statement_end(&s, code ? NULL : error);
+  if (!taken)
+    job->id = 0;
+  return code ? code : end;
+}
+
+enum eo_code eo_store_update_job(struct eo_store *store, const struct eo_stored_job *job, struct eo_error *error)
+{
+  return EO_STATEMENT_RUN(store, error, "UPDATE job SET state = ?, stopped = ?, true_evaluations = ?, individuals = ?, best = nullif(?, 0), best_value = ?,"
+                                        " updated = strftime('%Y-%m-%dT%H:%M:%fZ', 'now') WHERE id = ?",
+                          "ttnniri", state_names[job->state], job->stopped ? job->stopped : "", job->true_evaluations, job->individuals, job->best,
+                          job->best_value, job->id);
+}
+
+enum eo_code eo_store_keep_result(struct eo_store *store, int64_t job, const char *result, struct eo_error *error)
+{
+  return EO_STATEMENT_RUN(store, error, "UPDATE job SET result = ? WHERE id = ?", "ti", result, job);
+}
+
+enum eo_code eo_store_log_candidate(struct eo_store *store, struct eo_stored_candidate *c, struct eo_error *error)
+{
+  enum eo_code code = EO_STATEMENT_RUN(store, error, "INSERT INTO candidate (job, ordinal, generation, individual, evaluation, reused, x)"
+                                                     " VALUES (?, ?, ?, ?, ?, ?, ?) ON CONFLICT (job, ordinal) DO NOTHING", "innninb",
+                                       c->job, c->ordinal, c->generation, c->individual, c->evaluation, (int)c->reused, (const void *)c->x,
+                                       (size_t)c->size * sizeof *c->x);
+  if (code || sqlite3_changes(store->handle))
+    return code;
+  struct eo_statement s = eo_statement_begin(store, "SELECT reused FROM candidate WHERE job = ? AND ordinal = ?", "in", c->job, c->ordinal);
+  if (eo_statement_step(&s))
+    c->reused = eo_column_integer(&s, 0) != 0;
+  return eo_statement_end(&s, error);
+}
+
+enum eo_code eo_store_log_prediction(struct eo_store *store, const struct eo_stored_prediction *p, struct eo_error *error)
+{
+  return EO_STATEMENT_RUN(store, error, "INSERT INTO prediction (job, generation, individual, fitness, credibility, x) VALUES (?, ?, ?, ?, ?, ?)"
+                                        " ON CONFLICT (job, generation, individual) DO NOTHING",
+                          "innrrb", p->job, p->generation, p->individual, p->fitness, p->credibility, (const void *)p->x, (size_t)p->size * sizeof *p->x);
+}
+
+enum eo_code eo_store_each_job(struct eo_store *store, int64_t problem, eo_store_visit_job *visit, void *context, struct eo_error *error)
+{
+  struct eo_statement s = eo_statement_begin(store, "SELECT id, problem, study, space, design, name, algorithm, fresh, import_upto, state, stopped,"
+                                                    " true_evaluations, individuals, best, best_value, result, created, updated"
+                                                    " FROM job WHERE ?1 = 0 OR problem = ?1 ORDER BY id", "i", problem);
+  enum eo_code code = EO_OK;
+  while (!code && eo_statement_step(&s)) {
+    const struct eo_stored_job job = {
+        .id = eo_column_integer(&s, 0), .problem = eo_column_integer(&s, 1), .study = eo_column_text(&s, 2), .space = eo_column_text(&s, 3),
+        .design = eo_column_text(&s, 4), .name = eo_column_text(&s, 5), .algorithm = eo_column_text(&s, 6), .fresh = eo_column_integer(&s, 7) != 0,
+        .import_upto = eo_column_integer(&s, 8), .state = find_state(eo_column_text(&s, 9)), .stopped = eo_column_text(&s, 10),
+        .true_evaluations = (int)eo_column_integer(&s, 11), .individuals = (int)eo_column_integer(&s, 12), .best = eo_column_integer(&s, 13),
+        .best_value = eo_column_number(&s, 14), .result = eo_column_text(&s, 15), .created = eo_column_text(&s, 16), .updated = eo_column_text(&s, 17)};
+    code = visit(context, &job, error);
+  }
+  enum eo_code end = eo_statement_end(&s, code ? NULL : error);
+  return code ? code : end;
+}
+
+/* SQLite aligns a blob's bytes for nothing in particular. */
+struct point {
+  double x[64];
+  int size;
+};
+
+static void read_point(const struct eo_statement *s, int column, struct point *point)
+{
+  size_t bytes = (size_t)sqlite3_column_bytes(s->handle, column);
+  const void *x = sqlite3_column_blob(s->handle, column);
+  if (!x || bytes > sizeof point->x)
+    bytes = 0;
+  point->size = (int)(bytes / sizeof point->x[0]);
+  if (bytes)
+    memcpy(point->x, x, bytes);
+}
+
+enum eo_code eo_store_each_candidate(struct eo_store *store, int64_t job, eo_store_visit_candidate *visit, void *context, struct eo_error *error)
+{
+  struct eo_statement s = eo_statement_begin(store, "SELECT evaluation, ordinal, generation, individual, reused, x FROM candidate WHERE job = ? ORDER BY ordinal",
+                                             "i", job);
+  enum eo_code code = EO_OK;
+  struct point point;
+  while (!code && eo_statement_step(&s)) {
+    read_point(&s, 5, &point);
+    const struct eo_stored_candidate candidate = {
+        .job = job, .evaluation = eo_column_integer(&s, 0), .ordinal = (int)eo_column_integer(&s, 1), .generation = (int)eo_column_integer(&s, 2),
+        .individual = (int)eo_column_integer(&s, 3), .reused = eo_column_integer(&s, 4) != 0, .x = point.x, .size = point.size};
+    code = visit(context, &candidate, error);
+  }
+  enum eo_code end = eo_statement_end(&s, code ? NULL : error);
+  return code ? code : end;
+}
+
+enum eo_code eo_store_each_prediction(struct eo_store *store, int64_t job, eo_store_visit_prediction *visit, void *context, struct eo_error *error)
+{
+  struct eo_statement s = eo_statement_begin(store, "SELECT generation, individual, fitness, credibility, x FROM prediction WHERE job = ?"
+                                                    " ORDER BY generation, individual", "i", job);
+  enum eo_code code = EO_OK;
+  struct point point;
+  while (!code && eo_statement_step(&s)) {
+    read_point(&s, 4, &point);
+    const struct eo_stored_prediction prediction = {.job = job, .generation = (int)eo_column_integer(&s, 0), .individual = (int)eo_column_integer(&s, 1),
+                                                    .fitness = eo_column_number(&s, 2), .credibility = eo_column_number(&s, 3), .x = point.x,
+                                                    .size = point.size};
+    code = visit(context, &prediction, error);
+  }
+  enum eo_code end = eo_statement_end(&s, code ? NULL : error);
+  return code ? code : end;
+}
+
+enum eo_code eo_store_remove_predictions(struct eo_store *store, int64_t *removed, struct eo_error *error)
+{
+  enum eo_code code = EO_STATEMENT_RUN(store, error, "DELETE FROM prediction WHERE job IN (SELECT id FROM job WHERE state IN ('done', 'failed'))", "");
+  *removed = code ? 0 : sqlite3_changes64(store->handle);
+  return code;
+}

@@ -1,0 +1,126 @@
+#include "store/statement.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <string.h>
+
+enum eo_code eo_store_fault(const struct eo_store *store, int fault, struct eo_error *error)
+{
+  static const struct { int fault; const char *what; } known[] = {
+      {SQLITE_BUSY, "another process has kept it locked for too long"},
+      {SQLITE_LOCKED, "another process has kept it locked for too long"},
+      {SQLITE_READONLY, "it or its folder cannot be written"},
+      {SQLITE_PERM, "access is denied"},
+      {SQLITE_CANTOPEN, "it cannot be opened"},
+      {SQLITE_FULL, "the disk is full; what was saved before is kept"},
+      {SQLITE_CORRUPT, "it is damaged; move it away, or restore it from a copy"},
+      {SQLITE_NOTADB, "it is damaged or no database; move it away, or restore it from a copy"},
+      {SQLITE_IOERR, "reading or writing failed; what was saved before is kept"},
+  };
+  if ((fault & 0xff) == SQLITE_NOMEM)
+    return eo_error_memory(error);
+  const char *what = "the database refuses this";
+  for (size_t i = 0; i < sizeof known / sizeof known[0]; i++)
+    if (known[i].fault == (fault & 0xff))
+      what = known[i].what;
+  const char *detail = store->handle ? sqlite3_errmsg(store->handle) : sqlite3_errstr(fault);
+  return eo_error_set(error, EO_ERROR_FILE, "", "%.150s: %s (%.100s).", store->path, what, detail);
+}
+
+/* The statement prepared before under the same address, or a new one in the first free place. */
+static int prepare(struct eo_store *store, const char *sql, sqlite3_stmt **handle)
+{
+  int i = 0;
+  while (i < EO_STATEMENTS_KEPT - 1 && store->kept[i].sql && store->kept[i].sql != sql)
+    i++;
+  struct eo_prepared *kept = &store->kept[i];
+  if (kept->sql != sql) {
+    sqlite3_finalize(kept->handle);
+    *kept = (struct eo_prepared){0};
+    int fault = sqlite3_prepare_v3(store->handle, sql, -1, SQLITE_PREPARE_PERSISTENT, &kept->handle, NULL);
+    if (fault)
+      return fault;
+    kept->sql = sql;
+  }
+  *handle = kept->handle;
+  return SQLITE_OK;
+}
+
+static int bind_number(sqlite3_stmt *handle, int i, double value)
+{
+  return isfinite(value) ? sqlite3_bind_double(handle, i, value) : sqlite3_bind_null(handle, i);
+}
+
+struct eo_statement eo_statement_begin(struct eo_store *store, const char *sql, const char *values, ...)
+{
+  struct eo_statement s = {.store = store};
+  va_list list;
+  s.fault = prepare(store, sql, &s.handle);
+  va_start(list, values);
+  for (int i = 1; values[i - 1] && !s.fault; i++) {
+    const void *data;
+    switch (values[i - 1]) {
+    case 'i':
+      s.fault = sqlite3_bind_int64(s.handle, i, va_arg(list, int64_t));
+      break;
+    case 'n':
+      s.fault = sqlite3_bind_int(s.handle, i, va_arg(list, int));
+      break;
+    case 'r':
+      s.fault = bind_number(s.handle, i, va_arg(list, double));
+      break;
+    case 't':
+      s.fault = sqlite3_bind_text(s.handle, i, va_arg(list, const char *), -1, SQLITE_TRANSIENT);
+      break;
+    case 'b':
+      data = va_arg(list, const void *);
+      s.fault = sqlite3_bind_blob64(s.handle, i, data, va_arg(list, size_t), SQLITE_TRANSIENT);
+      break;
+    }
+  }
+  va_end(list);
+  return s;
+}
+
+bool eo_statement_step(struct eo_statement *s)
+{
+  if (s->fault)
+    return false;
+  int code = sqlite3_step(s->handle);
+  if (code != SQLITE_ROW && code != SQLITE_DONE)
+    s->fault = code;
+  return code == SQLITE_ROW;
+}
+
+enum eo_code eo_statement_end(struct eo_statement *s, struct eo_error *error)
+{
+  enum eo_code code = s->fault ? eo_store_fault(s->store, s->fault, error) : EO_OK;
+  if (s->handle) {
+    sqlite3_reset(s->handle);
+    sqlite3_clear_bindings(s->handle);
+  }
+  return code;
+}
+
+enum eo_code eo_statement_finish(struct eo_statement s, struct eo_error *error)
+{
+  while (eo_statement_step(&s))
+    ;
+  return eo_statement_end(&s, error);
+}
+
+int64_t eo_column_integer(const struct eo_statement *s, int column)
+{
+  return sqlite3_column_int64(s->handle, column);
+}
+
+double eo_column_number(const struct eo_statement *s, int column)
+{
+  return sqlite3_column_type(s->handle, column) == SQLITE_NULL ? NAN : sqlite3_column_double(s->handle, column);
+}
+
+const char *eo_column_text(const struct eo_statement *s, int column)
+{
+  const unsigned char *text = sqlite3_column_text(s->handle, column);
+  return text ? (const char *)text : "";
+}

@@ -1,0 +1,246 @@
+#include "store/store.h"
+
+#include "store/migrations.h"
+#include "store/statement.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+/* "EASE": tells our files from any other database. */
+enum { APPLICATION_ID = 0x45415345, WAIT_MS = 10000 };
+
+static enum eo_code execute(struct eo_store *store, const char *sql, struct eo_error *error)
+{
+  int fault = sqlite3_exec(store->handle, sql, NULL, NULL, NULL);
+  return fault ? eo_store_fault(store, fault, error) : EO_OK;
+}
+
+static enum eo_code read_integer(struct eo_store *store, const char *sql, int *value, struct eo_error *error)
+{
+  struct eo_statement s = eo_statement_begin(store, sql, "");
+  if (eo_statement_step(&s))
+    *value = (int)eo_column_integer(&s, 0);
+  return eo_statement_end(&s, error);
+}
+
+/* Whose database this is and how old; both 0 in a new file. */
+static enum eo_code identify(struct eo_store *store, int *schema, struct eo_error *error)
+{
+  int application = 0, tables = 0;
+  enum eo_code code = read_integer(store, "PRAGMA application_id", &application, error);
+  if (!code)
+    code = read_integer(store, "PRAGMA user_version", schema, error);
+  if (!code)
+    code = read_integer(store, "SELECT count(*) FROM sqlite_schema", &tables, error);
+  if (code)
+    return code;
+  if (application != APPLICATION_ID && (application || tables || *schema))
+    return eo_error_set(error, EO_ERROR_FILE, "", "%.200s is the database of another program.", store->path);
+  if (*schema > eo_store_schema)
+    return eo_error_set(error, EO_ERROR_FILE, "", "%.200s has schema %d, this program knows only %d: a newer version of the program wrote it.",
+                        store->path, *schema, eo_store_schema);
+  return EO_OK;
+}
+
+/* Within a transaction: another process may have been faster. */
+static enum eo_code apply_steps(struct eo_store *store, struct eo_error *error)
+{
+  int schema = 0;
+  char mark[96];
+  enum eo_code code = identify(store, &schema, error);
+  for (; schema < eo_store_schema && !code; schema++)
+    code = execute(store, eo_store_migrations[schema], error);
+  snprintf(mark, sizeof mark, "PRAGMA application_id = %d; PRAGMA user_version = %d", APPLICATION_ID, eo_store_schema);
+  return code ? code : execute(store, mark, error);
+}
+
+static enum eo_code migrate(struct eo_store *store, struct eo_error *error)
+{
+  int schema = 0;
+  enum eo_code code = identify(store, &schema, error);
+  if (code || schema == eo_store_schema)
+    return code;
+  code = eo_store_begin(store, error);
+  if (!code)
+    code = apply_steps(store, error);
+  if (!code)
+    code = eo_store_commit(store, error);
+  if (code)
+    eo_store_rollback(store);
+  return code;
+}
+
+/* Readers of a folder that cannot be written can bring nothing up to date. */
+static enum eo_code expect_present(struct eo_store *store, struct eo_error *error)
+{
+  int schema = 0;
+  enum eo_code code = identify(store, &schema, error);
+  if (!code && schema != eo_store_schema)
+    return eo_error_set(error, EO_ERROR_FILE, "", "%.200s has the older schema %d and cannot be brought to %d, because it cannot be written.", store->path,
+                        schema, eo_store_schema);
+  return code;
+}
+
+static enum eo_code make_folder(const char *directory, struct eo_error *error)
+{
+  struct stat status;
+  if (mkdir(directory, 0777) == 0 || (stat(directory, &status) == 0 && S_ISDIR(status.st_mode)))
+    return EO_OK;
+  return eo_error_set(error, EO_ERROR_FILE, "", "The data folder %.200s cannot be made: %s.", directory, strerror(errno == EEXIST ? ENOTDIR : errno));
+}
+
+static enum eo_code connect(struct eo_store *store, const char *name, int flags, struct eo_error *error)
+{
+  int fault = sqlite3_open_v2(name, &store->handle, flags | SQLITE_OPEN_NOMUTEX, NULL);
+  if (fault)
+    return eo_store_fault(store, fault, error);
+  sqlite3_extended_result_codes(store->handle, 1);
+  eo_store_wait(store, WAIT_MS);
+  /* NORMAL: a commit survives the death of the process; after a power failure the last ones may be missing, whole, and are computed anew. */
+  return execute(store, "PRAGMA foreign_keys = ON; PRAGMA synchronous = NORMAL", error);
+}
+
+/* The journal's mode can change only while nobody else is there, and SQLite then does not wait on its own. */
+static enum eo_code use_journal(struct eo_store *store, struct eo_error *error)
+{
+  int fault = SQLITE_BUSY;
+  for (int i = 0; i < 100 && (fault & 0xff) == SQLITE_BUSY; i++) {
+    if (i)
+      sqlite3_sleep(50);
+    fault = sqlite3_exec(store->handle, "PRAGMA journal_mode = WAL", NULL, NULL, NULL);
+  }
+  return fault ? eo_store_fault(store, fault, error) : EO_OK;
+}
+
+static enum eo_code open_for_writing(struct eo_store *store, int flags, struct eo_error *error)
+{
+  int schema = 0;
+  enum eo_code code = connect(store, store->path, SQLITE_OPEN_READWRITE | flags, error);
+  if (!code)
+    code = identify(store, &schema, error);
+  if (!code)
+    code = use_journal(store, error);
+  return code ? code : migrate(store, error);
+}
+
+/* "file:PATH?immutable=1": a database in WAL mode cannot be read in the usual way where its journal cannot be made. */
+static char *name_immutable(const char *path)
+{
+  static const char before[] = "file:", after[] = "?immutable=1";
+  char *name = malloc(3 * strlen(path) + sizeof before + sizeof after), *end = name;
+  if (!name)
+    return NULL;
+  end += sprintf(end, "%s", before);
+  for (const unsigned char *c = (const unsigned char *)path; *c; c++)
+    end += strchr("?#%", *c) || *c <= ' ' ? sprintf(end, "%%%02X", *c) : sprintf(end, "%c", *c);
+  strcpy(end, after);
+  return name;
+}
+
+/* Where nobody can write nobody does, unless a journal is left: then SQLite has to see it. */
+static enum eo_code open_unwritable(struct eo_store *store, struct eo_error *error)
+{
+  char *name = name_immutable(store->path), *journal = malloc(strlen(store->path) + sizeof "-wal");
+  enum eo_code code = name && journal ? EO_OK : eo_error_memory(error);
+  if (!code) {
+    sprintf(journal, "%s-wal", store->path);
+    bool left = access(journal, F_OK) == 0;
+    code = connect(store, left ? store->path : name, SQLITE_OPEN_READONLY | (left ? 0 : SQLITE_OPEN_URI), error);
+  }
+  free(name);
+  free(journal);
+  return code ? code : expect_present(store, error);
+}
+
+static enum eo_code open_for_reading(struct eo_store *store, struct eo_error *error)
+{
+  if (access(store->path, F_OK))
+    return eo_error_set(error, EO_ERROR_INPUT, "", "There is no history in %.200s.", store->directory);
+  if (access(store->path, W_OK) == 0 && access(store->directory, W_OK) == 0)
+    return open_for_writing(store, 0, error);
+  return open_unwritable(store, error);
+}
+
+static enum eo_code name_files(struct eo_store *store, const char *directory, struct eo_error *error)
+{
+  store->directory = strdup(directory);
+  store->path = malloc(strlen(directory) + sizeof "/easeoff.db");
+  if (!store->directory || !store->path)
+    return eo_error_memory(error);
+  sprintf(store->path, "%s/easeoff.db", directory);
+  return EO_OK;
+}
+
+enum eo_code eo_store_open(struct eo_store **result, const char *directory, enum eo_store_mode mode, struct eo_error *error)
+{
+  struct eo_store *store = calloc(1, sizeof *store);
+  if (!store)
+    return eo_error_memory(error);
+  store->lock = -1;
+  enum eo_code code = name_files(store, directory, error);
+  if (!code && mode == EO_STORE_WRITE)
+    code = make_folder(directory, error);
+  if (!code)
+    code = mode == EO_STORE_WRITE ? open_for_writing(store, SQLITE_OPEN_CREATE, error) : open_for_reading(store, error);
+  if (code)
+    eo_store_close(store);
+  else
+    *result = store;
+  return code;
+}
+
+void eo_store_close(struct eo_store *store)
+{
+  if (!store)
+    return;
+  for (int i = 0; i < EO_STATEMENTS_KEPT; i++)
+    sqlite3_finalize(store->kept[i].handle);
+  sqlite3_close(store->handle);
+  if (store->lock >= 0)
+    close(store->lock);
+  free(store->directory);
+  free(store->path);
+  free(store);
+}
+
+void eo_store_wait(struct eo_store *store, int milliseconds)
+{
+  sqlite3_busy_timeout(store->handle, milliseconds);
+}
+
+/* Immediate: a transaction that begins as a reader cannot become a writer once somebody else has written. */
+enum eo_code eo_store_begin(struct eo_store *store, struct eo_error *error)
+{
+  return execute(store, "BEGIN IMMEDIATE", error);
+}
+
+enum eo_code eo_store_commit(struct eo_store *store, struct eo_error *error)
+{
+  return execute(store, "COMMIT", error);
+}
+
+void eo_store_rollback(struct eo_store *store)
+{
+  if (!sqlite3_get_autocommit(store->handle))
+    sqlite3_exec(store->handle, "ROLLBACK", NULL, NULL, NULL);
+}
+
+enum eo_code eo_store_compact(struct eo_store *store, struct eo_error *error)
+{
+  enum eo_code code = execute(store, "VACUUM", error);
+  return code ? code : execute(store, "PRAGMA wal_checkpoint(TRUNCATE)", error);
+}
+
+enum eo_code eo_store_inspect(struct eo_store *store, struct eo_error *error)
+{
+  enum eo_code code = EO_OK;
+  struct eo_statement s = eo_statement_begin(store, "PRAGMA integrity_check(1)", "");
+  if (eo_statement_step(&s) && strcmp(eo_column_text(&s, 0), "ok") != 0)
+    code = eo_error_set(error, EO_ERROR_FILE, "", "%.150s is damaged: %.200s.", store->path, eo_column_text(&s, 0));
+  enum eo_code end = eo_statement_end(&s, code ? NULL : error);
+  return code ? code : end;
+}

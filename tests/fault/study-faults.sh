@@ -1,0 +1,206 @@
+#!/bin/sh
+# optimize and history from outside: exit status, one-line errors, folders that cannot be written, full disks, files that are wrong.
+: "${EASEOFF:=./easeoff}"
+folder=$(mktemp -d) || exit 99
+mounted=
+trap '[ -z "$mounted" ] || umount "$mounted"; chmod -R u+w "$folder"; rm -rf "$folder"' EXIT
+count=0 failed=0
+
+result() # condition-status, what
+{
+  count=$((count + 1))
+  if [ "$1" -eq 0 ]; then echo "ok $count - $2"; else
+    failed=1
+    echo "not ok $count - $2"
+    sed 's/^/# /' "$folder/err" | head -3
+  fi
+}
+
+expect() # STATUS WHAT COMMAND...
+{
+  wanted=$1 what=$2
+  shift 2
+  "$@" >"$folder/out" 2>"$folder/err"
+  status=$?
+  good=1
+  lines=$(wc -l <"$folder/err")
+  if [ "$status" -eq "$wanted" ]; then
+    if [ "$wanted" -eq 0 ]; then [ "$lines" -eq 0 ] && good=0; else [ "$lines" -eq 1 ] && good=0; fi
+  fi
+  result $good "$what: exit $status, expected $wanted; $(head -c 150 "$folder/err")"
+}
+
+says() # TEXT
+{
+  grep -q -e "$1" "$folder/err"
+  result $? "says \"$1\""
+}
+
+prints() # TEXT
+{
+  grep -q -e "$1" "$folder/out"
+  result $? "prints \"$1\""
+}
+
+skip() # WHAT
+{
+  count=$((count + 1))
+  echo "ok $count - $1 # SKIP not possible here"
+}
+
+cat >"$folder/design.json" <<'DESIGN'
+{ "name": "coarse", "gear_pair": { "pinion_teeth": 17, "gear_teeth": 44, "normal_module_mm": 6, "helix_angle_deg": 24, "face_width_mm": 55 },
+  "alignment": { "shaft_angle_error_in_plane_deg": 0.1 }, "load_cases": [ { "torque_Nm": 828 } ],
+  "optimization": { "true_evaluations": 40 },
+  "resolution": { "positions": 16, "cells_per_line": 6, "sector_teeth": 3, "neighbour_coupling": false, "layers": 6, "flank_rows": 4,
+    "fillet_elements": 6, "harmonics": 6, "te_harmonics": 6 } }
+DESIGN
+data="$folder/data"
+
+expect 0 "optimize" "$EASEOFF" optimize "$folder/design.json" --data "$data"
+prints "pinion/both/tip_relief_um"
+prints "40 true evaluations of 40 individuals"
+cp "$folder/out" "$folder/first"
+expect 0 "once more" "$EASEOFF" optimize "$folder/design.json" --data "$data" --threads 1
+prints "taken up, 0 evaluations computed"
+expect 0 "--json" "$EASEOFF" optimize - --data "$data" --json <"$folder/design.json"
+prints '"pfc_percent": 100'
+expect 0 "list" "$EASEOFF" history list --data "$data"
+prints "credibility-ga *done *40"
+expect 0 "list --json" "$EASEOFF" history list --data "$data" --json
+prints '"true_evaluations": 40'
+expect 0 "show" "$EASEOFF" history show 1 --data "$data"
+grep -v -e '^Job' "$folder/out" >"$folder/a"
+grep -v -e '^Job' "$folder/first" >"$folder/b"
+cmp -s "$folder/a" "$folder/b"
+result $? "shows what was printed"
+expect 0 "export" "$EASEOFF" history export 1 --data "$data"
+[ "$(wc -l <"$folder/out")" -eq 42 ]
+result $? "has a heading and 41 rows"
+expect 0 "the path" "$EASEOFF" history export --job 1 --data "$data"
+[ "$(grep -c computed "$folder/out")" -eq 40 ]
+result $? "has 40 steps"
+expect 0 "another algorithm" "$EASEOFF" optimize "$folder/design.json" --data "$data" --algorithm fpga --budget 60 --fresh
+prints "^fpga: 60 true evaluations of"
+expect 0 "prune" "$EASEOFF" history prune --data "$data"
+prints "^0 true rows and [1-9][0-9]* predictions removed"
+
+expect 1 "no such algorithm" "$EASEOFF" optimize "$folder/design.json" --data "$data" --algorithm luck
+says '"luck" is no algorithm'
+expect 1 "a budget of nothing" "$EASEOFF" optimize "$folder/design.json" --data "$data" --budget 0
+says '"0"'
+expect 1 "threads in words" "$EASEOFF" optimize "$folder/design.json" --data "$data" --threads two
+expect 1 "no such job" "$EASEOFF" history show 99 --data "$data"
+says "no job 99"
+expect 1 "no such problem" "$EASEOFF" history export 99 --data "$data"
+expect 1 "a word for a number" "$EASEOFF" history show best --data "$data"
+expect 1 "no action" "$EASEOFF" history
+expect 1 "no such action" "$EASEOFF" history forget --data "$data"
+expect 1 "no history" "$EASEOFF" history list --data "$folder/none"
+says "no history"
+[ ! -e "$folder/none" ]
+result $? "and none is made"
+sed 's/"true_evaluations"/"bounds": { "tip_relief_um": [20, 10] }, "true_evaluations"/' "$folder/design.json" >"$folder/bad.json"
+expect 1 "bounds that fall" "$EASEOFF" optimize "$folder/bad.json" --data "$data"
+says "/optimization/bounds/tip_relief_um"
+sed 's/"true_evaluations"/"bounds": { "tip_relief_start_mm": [1, 5.5] }, "true_evaluations"/' "$folder/design.json" >"$folder/bad.json"
+expect 1 "bounds outside the flank" "$EASEOFF" optimize "$folder/bad.json" --data "$data"
+says "/optimization/bounds/tip_relief_start_mm"
+
+# Ctrl-C keeps the history and prints the best so far
+sed 's/40 }/100000 }/' "$folder/design.json" >"$folder/long.json"
+"$EASEOFF" optimize "$folder/long.json" --data "$data" --restart >"$folder/out" 2>"$folder/err" &
+child=$!
+sleep 2
+kill -INT $child 2>/dev/null || kill -TERM $child
+wait $child
+status=$?
+[ $status -eq 0 ] && grep -q "stopped: cancelled" "$folder/out"
+result $? "an interrupt: exit $status, the best so far"
+expect 0 "its state" "$EASEOFF" history list --data "$data"
+prints "credibility-ga *cancelled"
+
+# a folder that cannot be written: root may write everywhere, so try as nobody
+mkdir "$folder/closed"
+cp "$data/easeoff.db" "$folder/closed/"
+cp -r "$data/flexibility" "$folder/closed/"
+chmod 755 "$folder"
+chmod -R a+rX "$folder/closed"
+chmod 555 "$folder/closed"
+chmod 444 "$folder/closed/easeoff.db"
+as_nobody=
+if [ "$(id -u)" = 0 ]; then
+  as_nobody="setpriv --reuid=65534 --regid=65534 --clear-groups"
+  $as_nobody test -r "$folder/design.json" -a -x "$EASEOFF" 2>/dev/null || as_nobody=none
+fi
+if [ "$as_nobody" != none ]; then
+  expect 2 "optimize in a folder that cannot be written" $as_nobody "$EASEOFF" optimize "$folder/design.json" --data "$folder/closed"
+  says "cannot be written"
+  expect 0 "list there" $as_nobody "$EASEOFF" history list --data "$folder/closed"
+  prints "credibility-ga"
+  expect 2 "prune there" $as_nobody "$EASEOFF" history prune --data "$folder/closed"
+else
+  skip "a folder that cannot be written"
+fi
+
+# files that are wrong
+mkdir "$folder/wrong"
+printf 'This is no database, and it is long enough to have been one once upon a time.........................' >"$folder/wrong/easeoff.db"
+expect 2 "no database" "$EASEOFF" optimize "$folder/design.json" --data "$folder/wrong"
+says "damaged"
+cp "$data/easeoff.db" "$folder/wrong/easeoff.db"
+printf '\000\000\000\143' | dd of="$folder/wrong/easeoff.db" bs=1 seek=60 conv=notrunc 2>/dev/null
+expect 2 "a newer schema" "$EASEOFF" optimize "$folder/design.json" --data "$folder/wrong"
+says "newer version of the program"
+head -c 20000 "$data/easeoff.db" >"$folder/wrong/easeoff.db"
+expect 2 "half a database" "$EASEOFF" optimize "$folder/design.json" --data "$folder/wrong"
+expect 2 "half a database" "$EASEOFF" history list --data "$folder/wrong"
+
+# a full disk: what was saved is kept, and is used when there is room again
+mkdir "$folder/small"
+if mount -t tmpfs -o size=1m none "$folder/small" 2>/dev/null; then
+  mounted="$folder/small"
+  full="$folder/small"
+  limit=
+else
+  full="$folder/small"
+  limit=$(( $(wc -c <"$data/easeoff.db") / 512 / 2 ))
+fi
+fill()
+{
+  if [ -z "$limit" ]; then "$@"; else (trap '' XFSZ; ulimit -f "$limit"; exec "$@"); fi
+}
+sed 's/40 }/3000, "algorithm": "ga" }/' "$folder/design.json" >"$folder/many.json"
+ln -s "$data/flexibility" "$full/flexibility"
+expect 2 "a full disk" fill "$EASEOFF" optimize "$folder/many.json" --data "$full"
+says "what was saved before is kept"
+expect 0 "its history" "$EASEOFF" history list --data "$full" --json
+prints '"interrupted"'
+rows=$(sed -n 's/.*"evaluations": \([0-9]*\),.*/\1/p' "$folder/out" | head -n 1)
+[ "${rows:-0}" -gt 20 ]
+result $? "$rows rows are kept"
+rm -f "$folder/wrong"/easeoff.db*
+cp "$full"/easeoff.db* "$folder/wrong/"
+sed "s/3000/$((rows + 20))/" "$folder/many.json" >"$folder/more.json"
+expect 0 "with room again" "$EASEOFF" optimize "$folder/more.json" --data "$folder/wrong" --fresh
+prints "$((rows - 1)) of them known from the history"
+
+# two processes on one folder
+mkdir "$folder/shared"
+ln -s "$data/flexibility" "$folder/shared/flexibility"
+sed 's/40 }/150 }/' "$folder/design.json" >"$folder/two.json"
+"$EASEOFF" optimize "$folder/two.json" --data "$folder/shared" --fresh >"$folder/one" 2>"$folder/err" &
+child=$!
+"$EASEOFF" optimize "$folder/two.json" --data "$folder/shared" --fresh >"$folder/two" 2>>"$folder/err"
+status=$?
+wait $child || status=$?
+grep -v -e '^Job' -e ' true evaluations' "$folder/one" >"$folder/a"
+grep -v -e '^Job' -e ' true evaluations' "$folder/two" >"$folder/b"
+[ $status -eq 0 ] && cmp -s "$folder/a" "$folder/b" && [ ! -s "$folder/err" ]
+result $? "two processes on one folder: the same result"
+"$EASEOFF" history export 1 --data "$folder/shared" >"$folder/out" 2>"$folder/err"
+[ "$(wc -l <"$folder/out")" -eq 152 ]
+result $? "and each row once"
+
+echo "1..$count"
+exit $failed
