@@ -265,14 +265,15 @@ enum eo_code eo_verify_evaluation(const json_t *file, struct eo_verification *v,
     return eo_error_memory(error);
   b->file = file;
   b->v = v;
-  json_array_foreach(json_object_get(file, "cases"), index, item)
-    if (run_case(b, item, error)) {
-      if (error->code != EO_ERROR_INPUT && error->code != EO_ERROR_NUMERIC)
-        break;
+  enum eo_code code = EO_OK;
+  json_array_foreach(json_object_get(file, "cases"), index, item) {
+    code = run_case(b, item, error);
+    if (code && code != EO_ERROR_INPUT && code != EO_ERROR_NUMERIC)
+      break;
+    if (code) /* this case alone */
       eo_verify_broken(v, text_of(item, "id"), error);
-      error->code = EO_OK;
-    }
-  enum eo_code code = error->code;
+    code = EO_OK;
+  }
   eo_evaluator_free(b->evaluator);
   eo_pair_free(b->pair);
   free(b);

@@ -112,7 +112,7 @@ sed 's/40 }/100000 }/' "$folder/design.json" >"$folder/long.json"
 "$EASEOFF" optimize "$folder/long.json" --data "$data" --restart >"$folder/out" 2>"$folder/err" &
 child=$!
 sleep 2
-kill -INT $child 2>/dev/null || kill -TERM $child
+kill -TERM $child # a background job of a script ignores SIGINT
 wait $child
 status=$?
 [ $status -eq 0 ] && grep -q "stopped: cancelled" "$folder/out"
