@@ -1,6 +1,7 @@
-#include "app/verify_optimizer.h"
-
+/* Kind "optimizer": the counter, prediction, redundancy, decay, clean-up, operators, whole runs, and the successor's latin
+   hypercube, surrogate and credibility. */
 #include "app/formula.h"
+#include "app/verify.h"
 #include "base/random.h"
 #include "optimizer/history.h"
 #include "optimizer/operators.h"
@@ -15,9 +16,8 @@
 #include <string.h>
 
 struct verifier {
-  json_t *root;
-  eo_verify_row_function *emit;
-  void *context;
+  const json_t *root;
+  struct eo_verification *to;
   struct eo_error *error;
   enum eo_code code; /* of the first fault; later steps do nothing */
   const char *block; /* the case under work */
@@ -44,16 +44,13 @@ __attribute__((format(printf, 4, 5))) static void compare(struct verifier *v, do
   va_end(arguments);
   snprintf(name, sizeof name, "%s[%d]", v->block, v->index);
   const double tolerance = v->relative * (expected == 0 || isinf(expected) ? 1 : fabs(expected));
-  const bool same = isinf(expected) || isnan(expected) ? isinf(value) == isinf(expected) && isnan(value) == isnan(expected)
-                                                       : fabs(value - expected) <= tolerance;
-  const struct eo_verify_row row = {name, quantity, value, expected, tolerance, same};
-  v->emit(v->context, &row);
+  eo_verify_add(v->to, name, quantity, value, expected, tolerance);
 }
 
 /* The value of a key; a missing one is a fault. */
-static json_t *need(struct verifier *v, json_t *object, const char *key)
+static const json_t *need(struct verifier *v, const json_t *object, const char *key)
 {
-  json_t *value = json_object_get(object, key);
+  const json_t *value = json_object_get(object, key);
   if (value)
     return value;
   char text[120];
@@ -63,34 +60,34 @@ static json_t *need(struct verifier *v, json_t *object, const char *key)
 }
 
 /* A number; null stands for infinite. */
-static double number(struct verifier *v, json_t *object, const char *key)
+static double number(struct verifier *v, const json_t *object, const char *key)
 {
-  json_t *value = need(v, object, key);
+  const json_t *value = need(v, object, key);
   if (value && !json_is_number(value) && !json_is_null(value) && !json_is_boolean(value))
     fault(v, "A number is expected.");
   return !value || json_is_null(value) ? INFINITY : json_is_true(value) ? 1 : json_number_value(value);
 }
 
-static double number_or(json_t *object, const char *key, double standard)
+static double number_or(const json_t *object, const char *key, double standard)
 {
-  json_t *value = json_object_get(object, key);
+  const json_t *value = json_object_get(object, key);
   return json_is_number(value) ? json_number_value(value) : json_is_boolean(value) ? json_is_true(value) : standard;
 }
 
-static uint64_t seed_of(struct verifier *v, json_t *object, const char *key)
+static uint64_t seed_of(struct verifier *v, const json_t *object, const char *key)
 {
-  json_t *value = need(v, object, key);
-  return json_is_string(value) ? strtoull(json_string_value(value), NULL, 10) : (uint64_t)json_integer_value(value);
+  const json_t *value = need(v, object, key);
+  return json_is_string(value) ? strtoull(json_string_value(value), NULL, 10) : (uint64_t)json_number_value(value);
 }
 
-static double element(json_t *array, size_t i)
+static double element(const json_t *array, size_t i)
 {
-  json_t *value = json_array_get(array, i);
+  const json_t *value = json_array_get(array, i);
   return json_is_number(value) ? json_number_value(value) : json_is_true(value) ? 1 : json_is_null(value) ? INFINITY : 0;
 }
 
 /* An array of numbers, or of rows of numbers of equal length; freed by the caller. *columns is 1 for a flat one. */
-static double *numbers(struct verifier *v, json_t *array, int *rows, int *columns)
+static double *numbers(struct verifier *v, const json_t *array, int *rows, int *columns)
 {
   *rows = (int)json_array_size(array);
   *columns = 1;
@@ -103,7 +100,7 @@ static double *numbers(struct verifier *v, json_t *array, int *rows, int *column
     return NULL;
   }
   for (int i = 0; i < *rows; i++) {
-    json_t *row = json_array_get(array, (size_t)i);
+    const json_t *row = json_array_get(array, (size_t)i);
     if (json_is_array(row) && (int)json_array_size(row) != *columns)
       fault(v, "The rows of an array differ in length.");
     for (int k = 0; k < *columns; k++)
@@ -112,7 +109,7 @@ static double *numbers(struct verifier *v, json_t *array, int *rows, int *column
   return result;
 }
 
-static void compare_all(struct verifier *v, const double *value, int count, json_t *expected, const char *quantity)
+static void compare_all(struct verifier *v, const double *value, int count, const json_t *expected, const char *quantity)
 {
   compare(v, count, (double)json_array_size(expected), "length of %s", quantity);
   for (int i = 0; i < count && i < (int)json_array_size(expected); i++)
@@ -120,7 +117,7 @@ static void compare_all(struct verifier *v, const double *value, int count, json
 }
 
 /* The positions that are set in mark against a list of them. */
-static void compare_marks(struct verifier *v, const bool *mark, int count, json_t *expected, const char *quantity)
+static void compare_marks(struct verifier *v, const bool *mark, int count, const json_t *expected, const char *quantity)
 {
   size_t seen = 0;
   for (int i = 0; i < count; i++) {
@@ -132,7 +129,7 @@ static void compare_marks(struct verifier *v, const bool *mark, int count, json_
   compare(v, (double)seen, (double)json_array_size(expected), "length of %s", quantity);
 }
 
-static void verify_random(struct verifier *v, json_t *item)
+static void verify_random(struct verifier *v, const json_t *item)
 {
   const struct eo_random random = eo_random_at(seed_of(v, item, "seed"), (uint64_t)number(v, item, "stream"),
                                                (uint64_t)number(v, item, "gen"), (uint64_t)number(v, item, "idx"));
@@ -144,14 +141,14 @@ static void verify_random(struct verifier *v, json_t *item)
 }
 
 /* Rows from {x, fit, R, pred}; what is missing is a true row. */
-static void load_history(struct verifier *v, struct eo_history *history, json_t *object)
+static void load_history(struct verifier *v, struct eo_history *history, const json_t *object)
 {
   int rows, n;
   double *x = numbers(v, need(v, object, "x"), &rows, &n);
   if (x && v->code == EO_OK)
     v->code = eo_history_init(history, n, rows + 1, v->error);
   for (int i = 0; i < rows && v->code == EO_OK; i++) {
-    json_t *credibility = json_array_get(json_object_get(object, "R"), (size_t)i);
+    const json_t *credibility = json_array_get(json_object_get(object, "R"), (size_t)i);
     v->code = eo_history_add(history, x + (size_t)i * n, element(json_object_get(object, "fit"), (size_t)i),
                              credibility ? json_number_value(credibility) : 1,
                              element(json_object_get(object, "pred"), (size_t)i) != 0, v->error);
@@ -159,13 +156,13 @@ static void load_history(struct verifier *v, struct eo_history *history, json_t 
   free(x);
 }
 
-static bool is_choice(json_t *object, const char *key, const char *choice)
+static bool is_choice(const json_t *object, const char *key, const char *choice)
 {
   const char *value = json_string_value(json_object_get(object, key));
   return value && strcmp(value, choice) == 0;
 }
 
-static void verify_estimate(struct verifier *v, json_t *item, struct eo_history *history)
+static void verify_estimate(struct verifier *v, const json_t *item, struct eo_history *history)
 {
   const struct eo_history_law law = {.share_radius = number(v, item, "r_share"), .weight_decay = number(v, item, "alpha"),
                                      .rms = is_choice(item, "norm", "rms"), .weights_over_all = is_choice(item, "wnorm", "all")};
@@ -185,15 +182,17 @@ static void verify_estimate(struct verifier *v, json_t *item, struct eo_history 
     compare(v, estimate.credibility, number(v, item, "R"), "R");
     const bool predicts = eo_history_trusts(&estimate, number_or(item, "Rstar", 0.6));
     compare(v, predicts, is_choice(item, "decision_at_Rstar_0_6", "predict"), "predicted (1) or evaluated (0)");
-    if (json_is_number(json_object_get(item, "weighted_fitness")))
-      compare(v, estimate.fitness, number(v, item, "weighted_fitness"), "weighted fitness");
+    static const char *const fitness[] = {"fitness", "weighted_fitness"};
+    for (int i = 0; i < 2; i++)
+      if (json_is_number(json_object_get(item, fitness[i])))
+        compare(v, estimate.fitness, number(v, item, fitness[i]), "%s", fitness[i]);
   } else if (v->code == EO_OK) {
     fault(v, "x has another length than the rows of its history.");
   }
   free(x);
 }
 
-static void verify_predict(struct verifier *v, json_t *item)
+static void verify_predict(struct verifier *v, const json_t *item)
 {
   struct eo_history history = {0};
   const char *name = json_string_value(need(v, item, "history"));
@@ -203,7 +202,7 @@ static void verify_predict(struct verifier *v, json_t *item)
   eo_history_done(&history);
 }
 
-static void verify_redundancy(struct verifier *v, json_t *item)
+static void verify_redundancy(struct verifier *v, const json_t *item)
 {
   struct eo_history history = {0};
   load_history(v, &history, item);
@@ -216,12 +215,12 @@ static void verify_redundancy(struct verifier *v, json_t *item)
   eo_history_done(&history);
 }
 
-static void verify_decay(struct verifier *v, json_t *item)
+static void verify_decay(struct verifier *v, const json_t *item)
 {
   struct eo_history history = {0};
   const struct eo_history_law law = {.credibility_loss = number(v, item, "beta"), .removal_threshold = number(v, item, "R0")};
   const double origin = 0, trust = number_or(item, "Rstar", 0.6);
-  json_t *expected = need(v, item, "R_after_each_generation");
+  const json_t *expected = need(v, item, "R_after_each_generation");
   v->code = v->code == EO_OK ? eo_history_init(&history, 1, 1, v->error) : v->code;
   if (v->code == EO_OK)
     v->code = eo_history_add(&history, &origin, 1, number(v, item, "R"), true, v->error);
@@ -239,15 +238,15 @@ static void verify_decay(struct verifier *v, json_t *item)
 }
 
 /* Compares ids of the marked rows (redundant), then of those that decay marks in addition. */
-static void verify_clean_up(struct verifier *v, json_t *item)
+static void verify_clean_up(struct verifier *v, const json_t *item)
 {
   struct eo_history history = {0};
-  json_t *before = need(v, item, "before"), *after = need(v, item, "after");
+  const json_t *before = need(v, item, "before"), *after = need(v, item, "after");
   load_history(v, &history, before);
   if (v->code == EO_OK) {
     const struct eo_history_law law = {.redundancy_threshold = number(v, item, "Ir"), .literal_redundancy = true,
                                        .credibility_loss = number(v, item, "beta"), .removal_threshold = number(v, item, "R0")};
-    json_t *ids = need(v, before, "id"), *redundant = need(v, item, "removed_redundant"),
+    const json_t *ids = need(v, before, "id"), *redundant = need(v, item, "removed_redundant"),
            *decayed = need(v, item, "removed_decayed"), *kept_ids = need(v, after, "id");
     eo_history_mark_redundant(&history, &law);
     size_t seen[3] = {0};
@@ -273,7 +272,7 @@ static void verify_clean_up(struct verifier *v, json_t *item)
 }
 
 /* The parameters of the files' operators and runs blocks. */
-static void read_parameters(struct eo_optimizer_settings *s, json_t *p)
+static void read_parameters(struct eo_optimizer_settings *s, const json_t *p)
 {
   s->crossover = number_or(p, "pc", s->crossover);
   s->mutation = number_or(p, "pm", s->mutation);
@@ -299,12 +298,12 @@ static void read_parameters(struct eo_optimizer_settings *s, json_t *p)
   s->reuse = number_or(p, "reuse", 0) != 0;
 }
 
-static void verify_operators(struct verifier *v, json_t *item)
+static void verify_operators(struct verifier *v, const json_t *item)
 {
   int size, n, count, columns;
   double *parents = numbers(v, need(v, item, "parents"), &size, &n);
   double *fitness = numbers(v, need(v, item, "fitness"), &count, &columns);
-  json_t *expected = need(v, item, "children");
+  const json_t *expected = need(v, item, "children");
   const int children = (int)json_array_size(expected);
   double *child = calloc((size_t)children * (size_t)n + 1, sizeof *child);
   struct eo_optimizer_settings settings;
@@ -339,11 +338,11 @@ static void run_to_the_end(struct verifier *v, struct eo_optimizer *optimizer, c
   }
 }
 
-static void compare_run(struct verifier *v, const struct eo_optimizer *optimizer, json_t *item)
+static void compare_run(struct verifier *v, const struct eo_optimizer *optimizer, const json_t *item)
 {
   int generations, true_evaluations = 0;
   const struct eo_generation *g = eo_optimizer_generations(optimizer, &generations);
-  json_t *expected = need(v, item, "true_evaluations_after_generation");
+  const json_t *expected = need(v, item, "true_evaluations_after_generation");
   compare(v, generations, (double)json_array_size(expected), "generations");
   for (int i = 0; i < generations; i++) {
     true_evaluations += g[i].true_count;
@@ -361,7 +360,7 @@ static void compare_run(struct verifier *v, const struct eo_optimizer *optimizer
                 need(v, item, "best_x"), "best_x");
 }
 
-static void verify_run(struct verifier *v, json_t *item)
+static void verify_run(struct verifier *v, const json_t *item)
 {
   const char *formula = json_string_value(need(v, item, "fitness"));
   const int n = (int)number(v, item, "n");
@@ -383,16 +382,16 @@ static void verify_run(struct verifier *v, json_t *item)
 }
 
 /* Reads "... ridge 1e-9" from the description of the surrogate. */
-static double ridge_of(json_t *item)
+static double ridge_of(const json_t *item)
 {
   const char *text = json_string_value(json_object_get(item, "rbf"));
   const char *ridge = text ? strstr(text, "ridge") : NULL;
   return ridge ? strtod(ridge + strlen("ridge"), NULL) : 0;
 }
 
-static void compare_surrogate(struct verifier *v, json_t *item, struct eo_surrogate *s, const double *query, int queries)
+static void compare_surrogate(struct verifier *v, const json_t *item, struct eo_surrogate *s, const double *query, int queries)
 {
-  json_t *credibility = need(v, item, "credibility");
+  const json_t *credibility = need(v, item, "credibility");
   const double length = number(v, credibility, "ell");
   compare_all(v, s->residual, s->rows, need(v, item, "loo_abs"), "loo_abs");
   compare_all(v, s->residual, s->rows, need(v, item, "loo_by_refit"), "loo_by_refit");
@@ -404,7 +403,7 @@ static void compare_surrogate(struct verifier *v, json_t *item, struct eo_surrog
   }
 }
 
-static void verify_surrogate(struct verifier *v, json_t *item, const double *x, int m, int n)
+static void verify_surrogate(struct verifier *v, const json_t *item, const double *x, int m, int n)
 {
   int rows, columns, queries;
   double *y = numbers(v, need(v, item, "y"), &rows, &columns);
@@ -423,9 +422,9 @@ static void verify_surrogate(struct verifier *v, json_t *item, const double *x, 
   free(y);
 }
 
-static void verify_successor(struct verifier *v, json_t *item)
+static void verify_successor(struct verifier *v, const json_t *item)
 {
-  json_t *latin = need(v, item, "lhs");
+  const json_t *latin = need(v, item, "lhs");
   const int n = (int)number(v, latin, "n"), m = (int)number(v, latin, "m");
   if (v->code != EO_OK || n < 1 || n > EO_MAX_VARIABLES || m < 1 || m > 100000) {
     fault(v, "lhs does not say how many points of how many variables.");
@@ -446,24 +445,75 @@ static void verify_successor(struct verifier *v, json_t *item)
   free(x);
 }
 
-enum eo_code eo_verify_optimizer(json_t *root, eo_verify_row_function *emit, void *context, struct eo_error *error)
+static const char *const random_keys[] = {"seed", "stream", "gen", "idx", "draw", "u64", "u01", NULL};
+static const char *const predict_keys[] = {"history", "x", "r_share", "alpha", "norm", "wnorm", "Rstar", "region", "e", "w", "R", "decision_at_Rstar_0_6",
+                                           "fitness", "weighted_fitness", NULL};
+static const char *const redundancy_keys[] = {"x", "fit", "R", "pred", "threshold", "I_r", "removed", NULL};
+static const char *const decay_keys[] = {"R", "beta", "R0", "Rstar", "R_after_each_generation", "removed_after_generation",
+                                         "last_generation_with_R_at_least_Rstar", NULL};
+static const char *const clean_up_keys[] = {"before", "after", "beta", "R0", "Ir", "removed_redundant", "removed_decayed", NULL};
+static const char *const operator_keys[] = {"seed", "gen", "parents", "fitness", "params", "children", NULL};
+static const char *const run_keys[] = {"fitness", "n", "seed", "params", "true_evaluations_after_generation", "rows_after_generation", "removed_redundant",
+                                       "removed_decayed", "best_true_fitness", "pfc", "best_x", NULL};
+static const char *const successor_keys[] = {"lhs", "y", "rbf", "query", "prediction", "loo_abs", "loo_by_refit", "credibility", NULL};
+
+static const struct block {
+  const char *key;
+  void (*verify)(struct verifier *, const json_t *);
+  const char *const *keys;
+} blocks[] = {{"rng", verify_random, random_keys},         {"predict", verify_predict, predict_keys}, {"redundancy", verify_redundancy, redundancy_keys},
+              {"decay", verify_decay, decay_keys},         {"S6", verify_clean_up, clean_up_keys},    {"operators", verify_operators, operator_keys},
+              {"runs", verify_run, run_keys},              {"successor", verify_successor, successor_keys}};
+enum { BLOCKS = sizeof blocks / sizeof *blocks };
+
+/* Keys of a case that its block does not read; every case may carry words for people and its own tolerance. */
+static void note_unknown(struct verifier *v, const json_t *object, const char *const *keys)
 {
-  static const struct { const char *key; void (*verify)(struct verifier *, json_t *); } blocks[] = {
-      {"rng", verify_random},         {"predict", verify_predict}, {"redundancy", verify_redundancy},
-      {"decay", verify_decay},        {"S6", verify_clean_up},     {"operators", verify_operators},
-      {"runs", verify_run},           {"successor", verify_successor}};
-  const double relative = number_or(json_object_get(root, "conventions"), "rel_tol", 1e-12);
-  struct verifier v = {.root = root, .emit = emit, .context = context, .error = error};
-  for (size_t b = 0; b < sizeof blocks / sizeof *blocks; b++) {
-    json_t *block = json_object_get(root, blocks[b].key);
-    const size_t items = json_is_array(block) ? json_array_size(block) : block != NULL;
-    v.block = blocks[b].key;
-    for (size_t i = 0; i < items && v.code == EO_OK; i++) {
-      json_t *item = json_is_array(block) ? json_array_get(block, i) : block;
-      v.index = (int)i;
+  static const char *const always[] = {"name", "id", "about", "note", "rel_tol", NULL};
+  const char *key;
+  json_t *value;
+  json_object_foreach((json_t *)object, key, value) {
+    bool found = false;
+    for (int i = 0; keys[i] && !found; i++)
+      found = strcmp(keys[i], key) == 0;
+    for (int i = 0; always[i] && !found; i++)
+      found = strcmp(always[i], key) == 0;
+    if (!found)
+      eo_verify_ignore(v->to, "%s[%d]: \"%s\" is not a key of this block", v->block, v->index, key);
+  }
+}
+
+/* One case; what cannot be computed is a failed check of its own. */
+static enum eo_code verify_item(struct verifier *v, const struct block *block, const json_t *item)
+{
+  char name[100];
+  note_unknown(v, item, block->keys);
+  block->verify(v, item);
+  if (v->code != EO_ERROR_INPUT && v->code != EO_ERROR_NUMERIC)
+    return v->code;
+  snprintf(name, sizeof name, "%s[%d]", v->block, v->index);
+  eo_verify_broken(v->to, name, v->error);
+  return v->code = EO_OK;
+}
+
+enum eo_code eo_verify_optimizer(const json_t *cases, struct eo_verification *to, struct eo_error *error)
+{
+  static const char *const other[] = {"kind", "about", "conventions", "histories", "invariants", "note", "source"};
+  enum { OTHERS = sizeof other / sizeof *other };
+  const double relative = number_or(json_object_get(cases, "conventions"), "rel_tol", 1e-12);
+  struct verifier v = {.root = cases, .to = to, .error = error};
+  const char *known[BLOCKS + OTHERS + 1] = {NULL};
+  for (int b = 0; b < BLOCKS; b++) {
+    const json_t *block = json_object_get(cases, blocks[b].key);
+    const int items = json_is_array(block) ? (int)json_array_size(block) : block != NULL;
+    v.block = known[b] = blocks[b].key;
+    for (v.index = 0; v.index < items && v.code == EO_OK; v.index++) {
+      const json_t *item = json_is_array(block) ? json_array_get(block, (size_t)v.index) : block;
       v.relative = number_or(item, "rel_tol", relative);
-      blocks[b].verify(&v, item);
+      verify_item(&v, &blocks[b], item);
     }
   }
+  memcpy(known + BLOCKS, other, sizeof other);
+  eo_verify_unknown(to, "the file", cases, known);
   return v.code;
 }

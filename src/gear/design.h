@@ -18,14 +18,14 @@ struct eo_gear_pair {
   double normal_pressure_angle;   /* alpha_n, rad */
   double helix_angle;             /* beta at the pitch cylinder, rad, >= 0 (right end; the left end has the other hand) */
   double face_width;              /* b of one end, m */
-  double groove_width;            /* tool withdrawal groove between the ends, m */
+  double groove_width;            /* tool withdrawal groove between the ends, m; NaN: 8 m_n with two ends, 0 with one */
   double addendum_coefficient;    /* h_aP* */
   double dedendum_coefficient;    /* h_fP* = h_aP* + c* */
   double fillet_radius_coefficient; /* rho_fP* of the basic rack */
   double profile_shift[2];        /* x */
   double centre_distance;         /* working centre distance a_w, m; NaN: without backlash for the given profile shift */
   double tip_diameter[2];         /* d_a, m; NaN: from addendum, profile shift and centre distance */
-  double bore[2];                 /* bore diameter, m; NaN: pinion solid, gear 15 m_n (at most half its root diameter) */
+  double bore[2];                 /* bore diameter, m, 0: solid; NaN: pinion solid, gear 15 m_n (at most half its root diameter) */
   double groove_diameter[2];      /* body diameter between the ends, m; NaN: root diameter - 2 mm */
   double rim_thickness_coefficient; /* rim below the root that flexes, times m_n; a larger bore cuts it shorter */
   double backlash;                /* 2 tau, normal, m */
@@ -64,19 +64,20 @@ struct eo_supports {
   double mesh_damping_stiffness;       /* k in c_m = 2 zeta sqrt(k m_e)/cos b, N/m; NaN: the mean mesh stiffness of the load case */
 };
 
-/* Torsional wind-up and bending of the two bodies (off by default). Positions are measured from the middle of the groove, + to the right. */
+/* Torsional wind-up and bending of the two bodies in their bearings (off by default; contact/shaft.h says how). Positions are measured from
+   the middle of the groove (of the face, with one end), + to the right. The bore runs through. */
 enum eo_drive_side { EO_DRIVE_LEFT, EO_DRIVE_RIGHT };
 struct eo_shafts {
   bool enabled;
   double bearing_position[2][2];   /* [member][left, right], m; NaN: face end + half a face width outside */
-  double shaft_diameter[2];        /* outside the toothed body, m; NaN: 0.8 of the groove diameter */
+  double shaft_diameter[2];        /* outside the toothed body, m; NaN: 0.8 of the groove diameter, at least midway from the bore to it */
   enum eo_drive_side drive_side[2];/* where torque enters the pinion and leaves the gear */
 };
 
 struct eo_load_case {
   double torque; /* total on the pinion shaft, N m, > 0 */
   double speed;  /* pinion, rad/s, > 0 */
-  double share;  /* of operating time; normalised to sum 1 */
+  double share;  /* of operating time; they sum to 1 */
 };
 
 /* What is taken off one flank, normal to it; positive removes material. u: rack coordinate, x = eta / cos(beta). */
@@ -119,7 +120,7 @@ struct eo_objective {
   double penalty;                         /* factor on every violated constraint */
   enum eo_robust robust;
   int scenarios;                          /* number of rows below */
-  struct eo_scenario { double in_plane, out_of_plane, compliance, speed; } scenario[EO_MAX_SCENARIOS]; /* rad, rad, factor, factor */
+  struct eo_scenario { double in_plane, out_of_plane, compliance, speed; } scenario[EO_MAX_SCENARIOS]; /* rad, rad (NaN: nominal), factor, factor */
 };
 
 enum eo_variable_set { EO_VARIABLES_SHARED, EO_VARIABLES_PER_END };
@@ -128,10 +129,24 @@ struct eo_optimization {
   enum eo_variable_set variables;
   char algorithm[32];
   struct eo_range tip_relief, root_relief, tip_relief_start, root_relief_start, lead_crowning; /* m; NaN: derived */
-  int population, generations;
-  double crossover, mutation;
-  double trust_threshold, redundancy_threshold;
-  int true_evaluations; /* budget; 0: none */
+
+  /* What the optimizer can be told, member by member as in its own table (optimizer/settings.h), which also explains it. Choices are
+     indices there. */
+  int true_evaluations; /* budget; 0: none stated */
+  double crossover, crossover_index, mutation, mutation_index;
+  int mutation_mode;
+  int population, generations, elite, fitness_form;
+  double trust_threshold, redundancy_threshold; /* R*, I_r* */
+  double share_radius;                          /* r_share; NaN: 0.03 (n/5)^1.9 for n variables */
+  double weight_decay, credibility_loss;        /* alpha of (15), beta of (18) */
+  double removal_threshold;                     /* R_0 < R* */
+  int verify, distance_norm, weight_sum, decision_order;
+  bool store_predicted, literal_redundancy, reuse;
+  int batch, initial_factor, model_rows, children;
+  double exploration, credibility_length, taboo_radius;
+  int stall_batches;
+  double stall_gain, polish_share, local_share, local_radius;
+  int front_population, front_verified, front_rounds;
   uint64_t seed;
 };
 
@@ -169,5 +184,11 @@ struct eo_design {
   struct eo_optimization optimization;
   struct eo_resolution resolution;
 };
+
+struct eo_geometry;
+
+/* Puts the derived default in place of every NaN whose rule does not need the loaded contact (mesh_damping_stiffness stays NaN:
+   it is the mean mesh stiffness of each load case). geometry: of design->gear_pair. Idempotent; cannot fail. */
+void eo_design_resolve(struct eo_design *design, const struct eo_geometry *geometry);
 
 #endif

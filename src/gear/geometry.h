@@ -1,4 +1,4 @@
-/* Macro-geometry of a cylindrical involute pair (ISO 21771:2007; basic rack ISO 53). One end; both ends share it but for the hand. */
+/* Macro-geometry of a cylindrical involute pair (ISO 21771:2007; basic rack ISO 53:1998). One end; both ends share it but for the hand. */
 #ifndef EASEOFF_GEAR_GEOMETRY_H
 #define EASEOFF_GEAR_GEOMETRY_H
 
@@ -19,6 +19,7 @@ struct eo_geometry {
   double tip_radius[2];        /* r_a */
   double root_radius[2];       /* r_f */
   double form_radius[2];       /* r_Ff, where the generated fillet meets the involute */
+  double start_radius[2];      /* r_SAP, where the active profile starts (contact with the other member's tip) */
   double profile_shift[2];     /* x */
   double centre_distance;      /* a_w */
   double transverse_base_pitch;/* p_bt */
@@ -27,35 +28,51 @@ struct eo_geometry {
   double path_start;           /* s_A < 0: contact starts at the gear's tip */
   double path_end;             /* s_E > 0: contact ends at the pinion's tip */
   double transverse_contact_ratio, overlap_ratio; /* eps_alpha, eps_beta */
-  double rack_factor;          /* k_u = u / s of the pinion's generating rack */
-  double rack_offset;          /* u of the pitch point (s = 0) on the pinion's generating rack: 0 unless profile shift moves it */
-  double rack_bottom, rack_top;/* u_A, u_E */
-  double addendum[2];          /* of the generating rack above/below, h_a, m (tip shortening included) */
+  double rack_factor;          /* k_u = sin(alpha_t)/cos(alpha_n): u = k_u s, the profile coordinate of modifications */
+  double rack_offset[2];       /* generating rack coordinate of the pitch point: 0 without profile shift */
+  double rack_bottom, rack_top;/* u_A, u_E of the pinion; of the gear -u_E, -u_A */
+  double dedendum;             /* h_fP, m, of the basic rack */
+  double fillet_radius;        /* rho_fP, m */
   double tip_thickness[2];     /* transverse arc at the tip, m */
-  double transverse_backlash;  /* circumferential at the working circles, from x, a_w and the stated backlash, m */
+  double tip_clearance[2];     /* between the member's tip and the other's root, m */
+  double normal_backlash;      /* the stated backlash and what the centre distance adds, m */
 };
 
 /* Computes everything above. Errors (EO_ERROR_INPUT with the key): undercut, pointed tip, interference with a fillet,
-   no continuous contact (eps_gamma < 1), centre distance that leaves negative backlash, a bore that cuts the rim. */
+   no continuous contact (eps_gamma < 1), a centre distance that leaves no backlash, no tip clearance. */
 enum eo_code eo_geometry_init(struct eo_geometry *geometry, const struct eo_gear_pair *pair, struct eo_error *error);
 
-/* The transverse profile of one flank of a member in its own frame: tooth centre line along +y, flank at x > 0.
-   Roll length r = sqrt(radius^2 - r_b^2) runs along the involute; below the form radius the generated trochoid. */
+/* Sum of the profile shift coefficients without backlash at the working pressure angle alpha_wt (ISO 21771 (56)). */
+double eo_geometry_shift_sum(const int teeth[2], double normal_pressure_angle, double transverse_pressure_angle,
+                             double working_pressure_angle);
 
-/* Point of the involute at the given radius (form_radius <= radius <= tip_radius); normal points out of the tooth. */
+/* inv(alpha) = tan(alpha) - alpha. */
+double eo_geometry_involute_function(double angle);
+
+/* The path coordinate as a member sees it: sigma = s on the pinion, -s on the gear; + towards its own tip. */
+static inline double eo_geometry_own_path(int member, double s)
+{
+  return member == EO_PINION ? s : -s;
+}
+
+/* The transverse profile of one flank of a member in its own frame: tooth centre line along +y, flank at x > 0,
+   tooth without thickness allowance. normal: unit, out of the tooth. */
+
+/* Point of the involute at the given radius (base_radius <= radius <= tip_radius). */
 void eo_geometry_involute(const struct eo_geometry *geometry, int member, double radius, double point[2], double normal[2]);
 
-/* Point of the generated fillet, t = 0 at the root circle (middle of the tooth space side), t = 1 at the form radius;
-   normal points out of the tooth. */
+/* Point of the root: t = 0 in the middle of the tooth space, t = 1 at the form radius, t in proportion to the arc length;
+   root circle first, then the trochoid that the rack's rounded tip generates (both meshed exactly in the normal section). */
 void eo_geometry_fillet(const struct eo_geometry *geometry, int member, double t, double point[2], double normal[2]);
 
-/* Radius on the member's flank that contacts at transverse path coordinate s. */
+/* Radius on the member's flank that contacts at transverse path coordinate s, and back. */
 double eo_geometry_radius_at(const struct eo_geometry *geometry, int member, double s);
+double eo_geometry_path_at(const struct eo_geometry *geometry, int member, double radius);
 
 /* Relative curvature radius normal to the flank at s: rho_n = (T1C+s)(T2C-s)/((T1C+T2C) cos beta_b), m. */
 double eo_geometry_relative_radius(const struct eo_geometry *geometry, double s);
 
-/* Distance from the flank to the tooth centre surface, along the flank normal, at s (Weber-Banaschek's h), m. */
+/* Distance from the flank to the tooth centre surface, along the flank normal, at s (Weber and Banaschek's h), m. */
 double eo_geometry_depth(const struct eo_geometry *geometry, int member, double s);
 
 #endif

@@ -1,0 +1,113 @@
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "app/app.h"
+#include "app/data.h"
+#include "app/watch.h"
+#include "document/json.h"
+#include "document/result.h"
+#include "evaluation/analysis.h"
+
+struct request {
+  const char *file, *csv, *data;
+  bool json, no_cache;
+  struct eo_design design;
+  struct eo_geometry geometry;
+  struct eo_warnings warnings;
+};
+
+static enum eo_code cancelled(struct eo_error *error)
+{
+  return eo_error_set(error, EO_ERROR_CANCELLED, "", "Stopped.");
+}
+
+static enum eo_code prepare(struct request *request, const struct eo_progress *progress, struct eo_pair **pair, struct eo_error *error)
+{
+  struct eo_text directory = {0};
+  bool keep = !request->no_cache && eo_app_cache_directory(request->data, &directory);
+  struct eo_pair_options options = {.cache_directory = keep ? directory.data : NULL};
+  if (!keep && !request->no_cache)
+    eo_warnings_add(&request->warnings, "There is no place to keep the flexibility of this gear pair; --data names one.");
+  enum eo_code code = eo_pair_new(pair, &request->design, &options, progress, error);
+  eo_text_done(&directory);
+  return code;
+}
+
+static enum eo_code analyze(const struct request *request, const struct eo_pair *pair, json_t **result, struct eo_error *error)
+{
+  struct eo_analysis *analysis = NULL;
+  enum eo_code code = eo_analysis_new(&analysis, pair, error);
+  if (!code)
+    code = eo_analysis_run(analysis, &request->design, EO_WANT_ROOT | EO_WANT_BAND | EO_WANT_CURVES, error);
+  if (!code && !(*result = eo_result_encode(analysis, &request->design, &request->warnings)))
+    code = eo_error_memory(error);
+  eo_analysis_free(analysis);
+  return code;
+}
+
+static enum eo_code save_files(const json_t *result, const char *directory, struct eo_error *error)
+{
+  struct eo_bundle bundle = {0};
+  eo_result_files(result, &bundle);
+  enum eo_code code = eo_bundle_save(&bundle, directory, error);
+  eo_bundle_done(&bundle);
+  return code;
+}
+
+static int show(const struct request *request, json_t *result)
+{
+  struct eo_text text = {0};
+  if (request->json)
+    return eo_app_print_json(json_incref(result), false);
+  if (request->csv)
+    return EO_EXIT_DONE;
+  eo_result_summary(result, &text);
+  return eo_app_print(&text);
+}
+
+static int run_request(struct request *request)
+{
+  struct eo_watch watch;
+  struct eo_error error;
+  struct eo_pair *pair = NULL;
+  json_t *result = NULL;
+  eo_watch_start(&watch);
+  enum eo_code code = prepare(request, &watch.progress, &pair, &error);
+  if (!code)
+    code = analyze(request, pair, &result, &error);
+  eo_watch_clear(&watch);
+  if (watch.stopped)
+    code = cancelled(&error);
+  if (!code && request->csv)
+    code = save_files(result, request->csv, &error);
+  int status = code ? eo_app_fail(code == EO_ERROR_INPUT ? request->file : NULL, &error) : show(request, result);
+  eo_watch_end(&watch);
+  json_decref(result);
+  eo_pair_free(pair);
+  return status;
+}
+
+static int run(const struct eo_command *command, int argc, char **argv)
+{
+  struct request *request = calloc(1, sizeof *request);
+  struct eo_error error;
+  int operands, status;
+  if (!request) {
+    eo_error_memory(&error);
+    return eo_app_fail(NULL, &error);
+  }
+  const struct eo_option options[] = {{.name = "--json", .flag = &request->json}, {.name = "--csv", .value = &request->csv},
+                                      {.name = "--data", .value = &request->data}, {.name = "--no-cache", .flag = &request->no_cache}, {.name = NULL}};
+  if (eo_app_arguments(command, argc, argv, options, 1, 1, &request->file, &operands, &status) &&
+      eo_app_load_design(request->file, &request->design, &request->geometry, &request->warnings, &status))
+    status = run_request(request);
+  free(request);
+  return status;
+}
+
+const struct eo_command eo_command_analyze = {
+    "analyze", "DESIGN.json [--json] [--csv DIR] [--data DIR] [--no-cache]", "one true evaluation of a design, everything it computed",
+    "Without --json or --csv, a summary for people: every load case unmodified and as designed, the objectives, notes, where the\n"
+    "time went. --json prints the result document; --csv writes its curves as files into DIR, which is made when missing.\n\n"
+    EO_APP_DATA_HELP
+    "--no-cache neither reads nor keeps it.\n", run};

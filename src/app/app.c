@@ -1,0 +1,144 @@
+#include "app/app.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "document/json.h"
+
+#include <config.h>
+
+const char eo_program[] = PACKAGE_STRING;
+
+static int wrong_usage(const struct eo_command *command, const char *what, const char *argument)
+{
+  char shown[80];
+  eo_text_clean(shown, sizeof shown, argument);
+  fprintf(stderr, "easeoff %s: %s%s; usage: easeoff %s %s\n", command->name, what, shown, command->name, command->usage);
+  return EO_EXIT_INPUT;
+}
+
+static int print_help(const struct eo_command *command)
+{
+  struct eo_text text = {0};
+  eo_text_print(&text, "usage: easeoff %s %s\n\n%s.\n", command->name, command->usage, command->summary);
+  if (command->help)
+    eo_text_print(&text, "\n%s", command->help);
+  return eo_app_print(&text);
+}
+
+/* The option at argv[*i], consuming its value; NULL when it is none of the list or lacks its value. */
+static const struct eo_option *take_option(const struct eo_option *options, int argc, char **argv, int *i)
+{
+  size_t length = strcspn(argv[*i], "=");
+  for (const struct eo_option *option = options; option && option->name; option++) {
+    if (strlen(option->name) != length || strncmp(option->name, argv[*i], length) != 0)
+      continue;
+    bool joined = argv[*i][length] == '=';
+    if (option->flag ? joined : !joined && *i + 1 >= argc)
+      return NULL;
+    if (option->flag)
+      *option->flag = true;
+    else
+      *option->value = joined ? argv[*i] + length + 1 : argv[++*i];
+    return option;
+  }
+  return NULL;
+}
+
+bool eo_app_arguments(const struct eo_command *command, int argc, char **argv, const struct eo_option *options, int least, int most,
+                      const char **operand, int *operands, int *status)
+{
+  bool only_operands = false;
+  *operands = 0;
+  for (int i = 1; i < argc; i++) {
+    bool is_option = !only_operands && argv[i][0] == '-' && argv[i][1];
+    if (is_option && strcmp(argv[i], "--") == 0)
+      only_operands = true;
+    else if (is_option && strcmp(argv[i], "--help") == 0) {
+      *status = print_help(command);
+      return false;
+    } else if (is_option && !take_option(options, argc, argv, &i)) {
+      *status = wrong_usage(command, "unknown or incomplete option ", argv[i]);
+      return false;
+    } else if (!is_option && *operands == most) {
+      *status = wrong_usage(command, "one argument too many: ", argv[i]);
+      return false;
+    } else if (!is_option)
+      operand[(*operands)++] = argv[i];
+  }
+  if (*operands >= least)
+    return true;
+  *status = wrong_usage(command, "an argument is missing", "");
+  return false;
+}
+
+int eo_app_fail(const char *file, const struct eo_error *error)
+{
+  char shown[120] = "";
+  if (file)
+    eo_text_clean(shown, sizeof shown, strcmp(file, "-") == 0 ? "standard input" : file);
+  fprintf(stderr, "easeoff: %s%s%s%s%s\n", shown, file ? ": " : "", error->pointer, *error->pointer ? ": " : "", error->text);
+  return error->code == EO_ERROR_INPUT ? EO_EXIT_INPUT : EO_EXIT_FAILED;
+}
+
+int eo_app_fail_all(const char *file, const struct eo_faults *faults)
+{
+  int shown = faults->count < EO_MAX_FAULTS ? faults->count : EO_MAX_FAULTS;
+  for (int i = 0; i < shown; i++)
+    eo_app_fail(file, &faults->fault[i]);
+  if (shown < faults->count)
+    fprintf(stderr, "easeoff: and %d faults more.\n", faults->count - shown);
+  return EO_EXIT_INPUT;
+}
+
+int eo_app_print(struct eo_text *text)
+{
+  struct eo_error error;
+  int status = EO_EXIT_DONE;
+  if (eo_text_write(text, stdout, "Standard output", &error))
+    status = eo_app_fail(NULL, &error);
+  eo_text_done(text);
+  return status;
+}
+
+int eo_app_print_json(json_t *document, bool compact)
+{
+  struct eo_text text = {0};
+  struct eo_error error;
+  if (!document) {
+    eo_error_memory(&error);
+    return eo_app_fail(NULL, &error);
+  }
+  eo_json_write(&text, document, compact ? EO_JSON_COMPACT : EO_JSON_PRETTY);
+  if (compact)
+    eo_text_add(&text, "\n");
+  json_decref(document);
+  return eo_app_print(&text);
+}
+
+bool eo_app_load_design(const char *path, struct eo_design *design, struct eo_geometry *geometry, struct eo_warnings *warnings, int *status)
+{
+  struct eo_error error;
+  struct eo_faults *faults = calloc(1, sizeof *faults);
+  json_t *document = NULL;
+  *status = EO_EXIT_DONE;
+  if (!faults) {
+    eo_error_memory(&error);
+    *status = eo_app_fail(path, &error);
+    goto out;
+  }
+  document = eo_json_load(path, EO_JSON_DESIGN_BYTES, &error);
+  if (!document)
+    *status = eo_app_fail(path, &error);
+  else if (!eo_design_decode(document, design, warnings, faults))
+    *status = eo_app_fail_all(path, faults);
+  else if (eo_design_complete(design, geometry, &error))
+    *status = eo_app_fail(path, &error);
+  else if (warnings)
+    eo_design_note_assumptions(document, design, warnings);
+out:
+  json_decref(document);
+  free(faults);
+  return *status == EO_EXIT_DONE;
+}

@@ -1,0 +1,56 @@
+/* The program: sub-commands, their options, and how they end. Exit status 0: done; 1: the input is wrong; 2: it failed. */
+#ifndef EASEOFF_APP_APP_H
+#define EASEOFF_APP_APP_H
+
+#include <stdbool.h>
+
+#include <jansson.h>
+
+#include "base/error.h"
+#include "document/design_document.h"
+#include "document/faults.h"
+#include "document/text.h"
+
+enum { EO_EXIT_DONE = 0, EO_EXIT_INPUT = 1, EO_EXIT_FAILED = 2 };
+
+struct eo_command {
+  const char *name;
+  const char *usage;   /* operands and options, one line */
+  const char *summary; /* one line */
+  const char *help;    /* more for --help, ends with a newline; may be NULL */
+  int (*run)(const struct eo_command *command, int argc, char **argv); /* argv[0]: the sub-command; returns the exit status */
+};
+
+extern const struct eo_command eo_command_analyze, eo_command_example, eo_command_stage, eo_command_sweep, eo_command_verify;
+
+/* "easeoff 0.1.0" */
+extern const char eo_program[];
+
+/* An option is a flag or takes a value ("--csv DIR" or "--csv=DIR"); --help is known to every command. */
+struct eo_option {
+  const char *name;   /* with its dashes; NULL ends the list */
+  bool *flag;         /* set to true, or */
+  const char **value; /* set to the argument */
+};
+
+/* Sorts options from operands; operand[most] is filled and *operands counted. Returns true to go on; false when the command
+   is over (help printed, or wrong usage told on standard error) with *status set. */
+bool eo_app_arguments(const struct eo_command *command, int argc, char **argv, const struct eo_option *options, int least, int most,
+                      const char **operand, int *operands, int *status);
+
+/* One line on standard error; returns the exit status that belongs to the error. file: NULL when no file is concerned. */
+int eo_app_fail(const char *file, const struct eo_error *error);
+
+/* One line per fault. */
+int eo_app_fail_all(const char *file, const struct eo_faults *faults);
+
+/* Prints to standard output in one go and frees the text. */
+int eo_app_print(struct eo_text *text);
+
+/* Prints a document and releases it; NULL: no memory. */
+int eo_app_print_json(json_t *document, bool compact);
+
+/* Reads, decodes and completes a design ("-": standard input), warnings collected. False with *status set and told. */
+bool eo_app_load_design(const char *path, struct eo_design *design, struct eo_geometry *geometry, struct eo_warnings *warnings, int *status);
+
+#endif

@@ -1,0 +1,231 @@
+#include "contact/grid.h"
+
+#include "numerics/gram.h"
+#include "numerics/lowrank.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+struct eo_contact_grid_settings eo_contact_grid_default(const struct eo_resolution *resolution)
+{
+  return (struct eo_contact_grid_settings){.positions = resolution->positions, .cells = resolution->cells_per_line,
+    .tip_edges = resolution->tip_edge_contact, .edge_cells = 12, .edge_reach = NAN};
+}
+
+double eo_contact_local_constant(const struct eo_geometry *g, const struct eo_material *material, double s)
+{
+  double nu = material->poissons_ratio, modulus = material->youngs_modulus / (1 - nu * nu);
+  double depth = eo_geometry_depth(g, EO_PINION, s) * eo_geometry_depth(g, EO_GEAR, s);
+  return log(4 * depth * M_PI * modulus / (8 * eo_geometry_relative_radius(g, s))) - nu / (1 - nu);
+}
+
+/* The stretches of s that carry points: the path of contact, then the two corners. */
+struct stretch {
+  double low, high;
+  int cells;
+  enum eo_point_kind kind;
+};
+
+static int list_stretches(const struct eo_geometry *g, const struct eo_contact_grid_settings *settings, struct stretch stretch[3])
+{
+  double reach = isnan(settings->edge_reach) ? g->normal_module * 4 / 15 : settings->edge_reach;
+  stretch[0] = (struct stretch){g->path_start, g->path_end, settings->cells, EO_POINT_LINE};
+  stretch[1] = (struct stretch){g->path_start - reach, g->path_start, settings->edge_cells, EO_POINT_GEAR_TIP};
+  stretch[2] = (struct stretch){g->path_end, g->path_end + reach, settings->edge_cells, EO_POINT_PINION_TIP};
+  return settings->tip_edges ? 3 : 1;
+}
+
+/* Pairs whose contact line can cross [low, high] anywhere on the face. */
+static void pair_range(const struct eo_geometry *g, double phase, const struct stretch *stretch, int range[2])
+{
+  double lean = g->face_width / 2 * tan(g->base_helix_angle);
+  range[0] = (int)floor((stretch->low - lean - phase) / g->transverse_base_pitch);
+  range[1] = (int)ceil((stretch->high + lean - phase) / g->transverse_base_pitch);
+}
+
+static int count_points(const struct eo_geometry *g, double phase, const struct stretch *stretch, int stretches, int *lines)
+{
+  int count = 0;
+  *lines = 0;
+  for (int i = 0; i < stretches; i++) {
+    int range[2];
+    double eta[2];
+    pair_range(g, phase, &stretch[i], range);
+    for (int k = range[0]; k <= range[1]; k++)
+      if (eo_gap_field_line_range(g, phase + k * g->transverse_base_pitch, stretch[i].low, stretch[i].high, eta)) {
+        count += stretch[i].cells;
+        ++*lines;
+      }
+  }
+  return count;
+}
+
+static enum eo_code allocate_position(struct eo_contact_position *p, struct eo_error *error)
+{
+  size_t n = (size_t)p->points;
+  p->line = calloc((size_t)p->lines, sizeof *p->line);
+  p->point = calloc(n, sizeof *p->point);
+  p->path = calloc(n, sizeof *p->path);
+  p->kind = calloc(n, sizeof *p->kind);
+  p->length = calloc(n, sizeof *p->length);
+  p->law = calloc(n, sizeof *p->law);
+  p->radius = calloc(n, sizeof *p->radius);
+  return p->line && p->point && p->path && p->kind && p->length && p->law && p->radius ? EO_OK : eo_error_memory(error);
+}
+
+static void fill_line(struct eo_contact_position *p, int first, const struct eo_gap_field *field, const struct eo_material *material,
+                      const struct stretch *stretch, int pair, const double eta[2])
+{
+  const struct eo_geometry *g = field->geometry;
+  double tangent = tan(g->base_helix_angle), width = (eta[1] - eta[0]) / stretch->cells;
+  for (int i = 0; i < stretch->cells; i++) {
+    struct eo_flank_point *point = &p->point[first + i];
+    point->pair = pair;
+    point->eta = eta[0] + (i + 0.5) * width;
+    double s = p->phase + pair * g->transverse_base_pitch + point->eta * tangent, clamped = fmin(fmax(s, g->path_start), g->path_end);
+    eo_gap_field_at(field, s, point->eta, NULL, point->s);
+    p->path[first + i] = s;
+    p->kind[first + i] = stretch->kind;
+    p->length[first + i] = width / cos(g->base_helix_angle);
+    p->law[first + i] = eo_contact_local_constant(g, material, clamped);
+    p->radius[first + i] = eo_geometry_relative_radius(g, clamped);
+  }
+}
+
+static enum eo_code fill_position(struct eo_contact_position *p, const struct eo_gap_field *field, const struct eo_material *material,
+                                  const struct stretch *stretch, int stretches, struct eo_error *error)
+{
+  const struct eo_geometry *g = field->geometry;
+  p->points = count_points(g, p->phase, stretch, stretches, &p->lines);
+  enum eo_code code = allocate_position(p, error);
+  int filled = 0, lines = 0;
+  for (int i = 0; i < stretches && !code; i++) {
+    int range[2];
+    double eta[2];
+    pair_range(g, p->phase, &stretch[i], range);
+    for (int k = range[0]; k <= range[1]; k++)
+      if (eo_gap_field_line_range(g, p->phase + k * g->transverse_base_pitch, stretch[i].low, stretch[i].high, eta)) {
+        p->line[lines++] = (struct eo_contact_line){k, stretch[i].kind, filled, stretch[i].cells};
+        fill_line(p, filled, field, material, &stretch[i], k, eta);
+        filled += stretch[i].cells;
+      }
+  }
+  return code;
+}
+
+/* The few strongest modes carry Newton's matrix; what they leave is added back as a correction, so the compliance is exact. */
+static enum eo_code factor_position(struct eo_contact_position *p, struct eo_kernel kernel, double *compliance, struct eo_error *error)
+{
+  static const double TOLERANCE = 2e-3;
+  size_t n = (size_t)p->points, stride;
+  kernel.evaluate(kernel.context, p->points, p->point, compliance);
+  p->remainder_stride = (p->points + EO_GRAM_FLOATS - 1) / EO_GRAM_FLOATS * EO_GRAM_FLOATS;
+  p->remainder = (float *)eo_gram_allocate((long)p->points * p->remainder_stride / 2);
+  if (!p->remainder)
+    return eo_error_memory(error);
+  enum eo_code code = eo_lowrank_factor(p->points, compliance, TOLERANCE, &p->rank, &p->stride, &p->factor, error);
+  if (code)
+    return code;
+  kernel.evaluate(kernel.context, p->points, p->point, compliance);
+  stride = (size_t)p->stride;
+  for (size_t i = 0; i < n; i++)
+    for (size_t j = 0; j < n; j++) {
+      double sum = compliance[i * n + j];
+      for (int k = 0; k < p->rank; k++)
+        sum -= p->factor[i * stride + (size_t)k] * p->factor[j * stride + (size_t)k];
+      p->remainder[i * (size_t)p->remainder_stride + j] = (float)sum;
+    }
+  return EO_OK;
+}
+
+static void free_position(struct eo_contact_position *p)
+{
+  free(p->line);
+  free(p->point);
+  free(p->path);
+  free(p->kind);
+  free(p->length);
+  free(p->law);
+  free(p->radius);
+  free(p->factor);
+  free(p->remainder);
+}
+
+void eo_contact_grid_free(struct eo_contact_grid *grid)
+{
+  if (!grid)
+    return;
+  for (int i = 0; grid->position && i < grid->positions; i++)
+    free_position(&grid->position[i]);
+  free(grid->position);
+  free(grid);
+}
+
+void eo_contact_grid_pairs(const struct eo_contact_grid *grid, int range[2])
+{
+  range[0] = 0;
+  range[1] = 0;
+  for (int j = 0; j < grid->positions; j++)
+    for (int l = 0; l < grid->position[j].lines; l++) {
+      int pair = grid->position[j].line[l].pair;
+      range[0] = pair < range[0] ? pair : range[0];
+      range[1] = pair > range[1] ? pair : range[1];
+    }
+}
+
+static enum eo_code fill_grid(struct eo_contact_grid *grid, const struct eo_material *material,
+                              const struct eo_contact_grid_settings *settings, const double *phase, struct eo_kernel kernel,
+                              const struct eo_progress *progress, struct eo_error *error)
+{
+  struct eo_gap_field *field = malloc(sizeof *field);
+  struct stretch stretch[3];
+  int stretches = list_stretches(&grid->geometry, settings, stretch);
+  const struct eo_flank_modification none = {0};
+  double *compliance = NULL;
+  enum eo_code code = EO_OK;
+  if (!field)
+    return eo_error_memory(error);
+  eo_gap_field_init(field, &grid->geometry, &none, &none, EO_RIGHT, 0, 0, 0, grid->corner);
+  for (int i = 0; i < grid->positions && !code; i++) {
+    struct eo_contact_position *p = &grid->position[i];
+    p->phase = phase ? phase[i] : grid->geometry.transverse_base_pitch * i / grid->positions;
+    code = fill_position(p, field, material, stretch, stretches, error);
+    p->first = grid->points;
+    grid->points += p->points;
+    grid->most_points = p->points > grid->most_points ? p->points : grid->most_points;
+  }
+  if (!code && !(compliance = malloc(sizeof *compliance * (size_t)grid->most_points * (size_t)grid->most_points)))
+    code = eo_error_memory(error);
+  for (int i = 0; i < grid->positions && !code; i++) {
+    code = factor_position(&grid->position[i], kernel, compliance, error);
+    grid->most_rank = grid->position[i].rank > grid->most_rank ? grid->position[i].rank : grid->most_rank;
+    if (!code && eo_progress_report(progress, "contact grid", (i + 1.0) / grid->positions))
+      code = eo_error_set(error, EO_ERROR_CANCELLED, "", "Cancelled.");
+  }
+  free(compliance);
+  free(field);
+  return code;
+}
+
+enum eo_code eo_contact_grid_new(struct eo_contact_grid **result, const struct eo_geometry *geometry, const struct eo_material *material,
+                                 const struct eo_contact_grid_settings *settings, const double *phase, struct eo_kernel kernel,
+                                 const struct eo_progress *progress, struct eo_error *error)
+{
+  struct eo_contact_grid *grid = calloc(1, sizeof *grid);
+  if (!grid)
+    return eo_error_memory(error);
+  double nu = material->poissons_ratio;
+  grid->geometry = *geometry;
+  grid->material = *material;
+  eo_corner_gap_init(grid->corner, geometry);
+  grid->compliance_scale = 2 * (1 - nu * nu) / (M_PI * material->youngs_modulus);
+  grid->positions = settings->positions;
+  grid->position = calloc((size_t)settings->positions, sizeof *grid->position);
+  enum eo_code code = grid->position ? fill_grid(grid, material, settings, phase, kernel, progress, error) : eo_error_memory(error);
+  if (code)
+    eo_contact_grid_free(grid);
+  else
+    *result = grid;
+  return code;
+}

@@ -1,0 +1,135 @@
+#include "contact/root.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum eo_code eo_root_history_init(struct eo_root_history *history, const struct eo_contact_grid *grid, struct eo_error *error)
+{
+  int range[2];
+  eo_contact_grid_pairs(grid, range);
+  size_t most = (size_t)((range[1] - range[0] + 1) * grid->positions);
+  *history = (struct eo_root_history){.phase = calloc(most, sizeof(double)), .stress = calloc(most, sizeof(double))};
+  if (history->phase && history->stress)
+    return EO_OK;
+  eo_root_history_done(history);
+  return eo_error_memory(error);
+}
+
+void eo_root_history_done(struct eo_root_history *history)
+{
+  free(history->phase);
+  free(history->stress);
+  *history = (struct eo_root_history){0};
+}
+
+void eo_root_find_largest(const struct eo_flexibility *flexibility, int member, int tooth, int n, const struct eo_flank_point *point,
+                          const double *force, double *stress, struct eo_root_place *place)
+{
+  struct eo_root root = eo_flexibility_root(flexibility, member);
+  *place = (struct eo_root_place){0};
+  eo_flexibility_root_stress(flexibility, member, tooth, n, point, force, 0, root.points, stress);
+  for (int i = root.first; i < root.points; i++)
+    for (int layer = 0; layer <= root.layers; layer++) {
+      double s = eo_stress_principal(stress + (i * (root.layers + 1) + layer) * EO_STRESSES);
+      if (s > place->stress)
+        *place = (struct eo_root_place){s, root.arc[i], root.width * ((double)layer / root.layers - 0.5), i, layer};
+    }
+}
+
+struct eo_root_workspace {
+  double *force;        /* [most points] */
+  double *load;         /* [positions][slots] */
+  double *scratch;      /* [positions][rank] */
+  double *stress;       /* [positions][nodes][EO_STRESSES] */
+};
+
+enum eo_code eo_root_workspace_new(struct eo_root_workspace **result, const struct eo_contact_grid *grid,
+                                   const struct eo_root_modes *const modes[2], struct eo_error *error)
+{
+  struct eo_root_workspace *ws = calloc(1, sizeof *ws);
+  size_t n = (size_t)grid->positions, rank = 1, nodes = 1, slots = 1;
+  if (!ws)
+    return eo_error_memory(error);
+  for (int member = 0; member < 2; member++) {
+    size_t r = (size_t)eo_root_modes_rank(modes[member]), m = (size_t)eo_root_modes_nodes(modes[member]);
+    rank = r > rank ? r : rank;
+    nodes = m > nodes ? m : nodes;
+    m = (size_t)eo_root_modes_slots(modes[member]);
+    slots = m > slots ? m : slots;
+  }
+  ws->force = malloc(sizeof(double) * (size_t)grid->most_points);
+  ws->load = malloc(sizeof(double) * n * slots);
+  ws->scratch = malloc(sizeof(double) * n * rank);
+  ws->stress = malloc(sizeof(double) * n * nodes * EO_STRESSES);
+  if (!ws->force || !ws->load || !ws->scratch || !ws->stress) {
+    eo_root_workspace_free(ws);
+    return eo_error_memory(error);
+  }
+  *result = ws;
+  return EO_OK;
+}
+
+void eo_root_workspace_free(struct eo_root_workspace *ws)
+{
+  if (!ws)
+    return;
+  free(ws->force);
+  free(ws->load);
+  free(ws->scratch);
+  free(ws->stress);
+  free(ws);
+}
+
+/* The larger principal stress is (s1 + s2 + sqrt((s1 - s2)^2 + 4 t^2))/2; the root is taken only where it raises the largest so far. */
+static double largest_principal(int nodes, const double *stress, int *where)
+{
+  double largest = 0;
+  for (int i = 0; i < nodes; i++) {
+    const double *s = stress + i * EO_STRESSES;
+    double sum = s[0] + s[1], room = 2 * largest - sum, difference = s[0] - s[1], square = difference * difference + 4 * s[2] * s[2];
+    if (room >= 0 && square <= room * room)
+      continue;
+    largest = (sum + sqrt(square)) / 2;
+    *where = i;
+  }
+  return largest;
+}
+
+/* Loads of every step-th position on the teeth around one tooth. */
+static void collect(struct eo_root_workspace *ws, const struct eo_root_modes *modes, const struct eo_contact_grid *grid,
+                    const struct eo_loaded_end *end, int tooth, int step)
+{
+  int slots = eo_root_modes_slots(modes);
+  double *load = ws->load;
+  for (int j = 0; j < grid->positions; j += step, load += slots) {
+    const struct eo_contact_position *p = &grid->position[j];
+    for (int i = 0; i < p->points; i++)
+      ws->force[i] = end->line_load[p->first + i] * p->length[i];
+    memset(load, 0, sizeof *load * (size_t)slots);
+    eo_root_modes_add(modes, tooth, p->points, p->point, ws->force, load);
+  }
+}
+
+void eo_root_history_compute(struct eo_root_history *history, struct eo_root_workspace *ws, const struct eo_root *root,
+                             const struct eo_root_modes *modes, const struct eo_contact_grid *grid, const struct eo_loaded_end *end, int step)
+{
+  int range[2], nodes = eo_root_modes_nodes(modes), count = (grid->positions + step - 1) / step, at = 0;
+  eo_contact_grid_pairs(grid, range);
+  history->phases = 0;
+  history->maximum = 0;
+  for (int tooth = range[0]; tooth <= range[1]; tooth++) {
+    collect(ws, modes, grid, end, tooth, step);
+    eo_root_modes_stress(modes, count, ws->load, ws->scratch, ws->stress);
+    for (int j = 0; j < count; j++) {
+      double s = largest_principal(nodes, ws->stress + (size_t)(j * nodes * EO_STRESSES), &at);
+      history->phase[history->phases] = grid->position[j * step].phase / grid->geometry.transverse_base_pitch + tooth;
+      history->stress[history->phases++] = s;
+      if (s > history->maximum) {
+        history->maximum = s;
+        history->arc = root->arc[root->first + at / (root->layers + 1)];
+        history->eta = root->width * ((double)(at % (root->layers + 1)) / root->layers - 0.5);
+      }
+    }
+  }
+}

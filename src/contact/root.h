@@ -1,0 +1,42 @@
+/* Root bending stress of one tooth through its mesh, from the contact loads and the stress influence of the finite-element model. */
+#ifndef EASEOFF_CONTACT_ROOT_H
+#define EASEOFF_CONTACT_ROOT_H
+
+#include "contact/loaded.h"
+#include "flexibility/root_modes.h"
+
+/* The largest principal stress on a loaded root. */
+struct eo_root_place {
+  double stress;    /* Pa; 0 when nothing is in tension */
+  double arc, eta;  /* along the root from the start of the active profile, from mid face, m */
+  int point, layer; /* of the root's nodes */
+};
+
+/* On the root of `tooth` under the normal forces force[n], N, at the points. stress[root points][layers + 1][EO_STRESSES] receives
+   the whole field (eo_flexibility_root()). */
+void eo_root_find_largest(const struct eo_flexibility *flexibility, int member, int tooth, int n, const struct eo_flank_point *point,
+                          const double *force, double *stress, struct eo_root_place *place);
+
+struct eo_root_history {
+  int phases;          /* 0: not computed */
+  double *phase;       /* [phases]: c of the tooth's pair over base pitches, ascending */
+  double *stress;      /* [phases]: largest principal stress of the loaded root over face and fillet, from the 30 degree tangent inwards, Pa */
+  double maximum;      /* of the history, Pa */
+  double arc, eta;     /* where it is: along the root from the start of the active profile, from mid face, m */
+};
+
+/* Room for the mesh of a tooth over every position of the grid. */
+enum eo_code eo_root_history_init(struct eo_root_history *history, const struct eo_contact_grid *grid, struct eo_error *error);
+void eo_root_history_done(struct eo_root_history *history);
+
+/* Scratch of one thread for the histories below. */
+struct eo_root_workspace;
+enum eo_code eo_root_workspace_new(struct eo_root_workspace **workspace, const struct eo_contact_grid *grid,
+                                   const struct eo_root_modes *const modes[2], struct eo_error *error);
+void eo_root_workspace_free(struct eo_root_workspace *workspace);
+
+/* root: of the member's flexibility. step: every step-th position of the grid counts (the stress is a smooth function of the phase). */
+void eo_root_history_compute(struct eo_root_history *history, struct eo_root_workspace *workspace, const struct eo_root *root,
+                             const struct eo_root_modes *modes, const struct eo_contact_grid *grid, const struct eo_loaded_end *end, int step);
+
+#endif

@@ -1,0 +1,384 @@
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "document/json.h"
+#include "document/table.h"
+#include "gear/design.h"
+
+static void *member(void *target, const struct eo_field *field)
+{
+  return (char *)target + field->offset;
+}
+
+static void set_text(char *target, int size, const char *value)
+{
+  memset(target, 0, (size_t)size);
+  strncpy(target, value, (size_t)size - 1);
+}
+
+static void default_numbers(const struct eo_field *field, double *value)
+{
+  for (int i = 0; i < field->count; i++)
+    value[i] = field->fallbacks ? eo_unit_in(field->unit, field->fallbacks[i]) : NAN;
+}
+
+static void default_rows(const struct eo_field *field, void *target)
+{
+  char *row = member(target, field);
+  for (int i = 0; i < field->count; i++)
+    eo_table_defaults(field->table, row + (size_t)i * field->table->size);
+  if (field->row_count)
+    memcpy(row, field->rows, (size_t)field->row_count * field->table->size);
+  *(int *)((char *)target + field->count_offset) = field->row_count;
+}
+
+static bool may_be_null(const struct eo_field *field)
+{
+  return field->flags & EO_FIELD_NULLABLE;
+}
+
+/* Whether an object that may be null is there. */
+static void set_present(const struct eo_field *field, void *target, bool present)
+{
+  if (may_be_null(field))
+    *(int *)((char *)target + field->count_offset) = present;
+}
+
+static void default_field(const struct eo_field *field, void *target)
+{
+  void *place = member(target, field);
+  switch (field->kind) {
+  case EO_FIELD_NUMBER:
+    *(double *)place = eo_unit_in(field->unit, field->fallback);
+    break;
+  case EO_FIELD_INTEGER:
+  case EO_FIELD_CHOICE:
+    *(int *)place = isnan(field->fallback) ? 0 : (int)field->fallback;
+    break;
+  case EO_FIELD_SEED:
+    *(uint64_t *)place = (uint64_t)field->fallback;
+    break;
+  case EO_FIELD_FLAG:
+    *(bool *)place = field->fallback != 0;
+    break;
+  case EO_FIELD_TEXT:
+    set_text(place, field->count, field->fallback_text ? field->fallback_text : "");
+    break;
+  case EO_FIELD_NUMBERS:
+    default_numbers(field, place);
+    break;
+  case EO_FIELD_LIMIT:
+    *(struct eo_constraint *)place = (struct eo_constraint){!isnan(field->fallback), eo_unit_in(field->unit, field->fallback)};
+    break;
+  case EO_FIELD_OBJECT:
+    eo_table_defaults(field->table, place);
+    set_present(field, target, false);
+    break;
+  case EO_FIELD_LIST:
+    default_rows(field, target);
+    break;
+  case EO_FIELD_SERIES:
+    *(struct eo_series *)place = (struct eo_series){0};
+    break;
+  }
+}
+
+void eo_table_defaults(const struct eo_table *table, void *target)
+{
+  for (int i = 0; i < table->count; i++)
+    default_field(&table->field[i], target);
+}
+
+static const char *type_name(const json_t *value)
+{
+  static const char *const name[] = {[JSON_OBJECT] = "an object", [JSON_ARRAY] = "an array",  [JSON_STRING] = "a string", [JSON_INTEGER] = "a number",
+                                     [JSON_REAL] = "a number",    [JSON_TRUE] = "true",       [JSON_FALSE] = "false",     [JSON_NULL] = "null"};
+  return name[json_typeof(value)];
+}
+
+/* A number within the range, in the document's unit; false and a fault otherwise. */
+static bool read_number(const json_t *value, const struct eo_field *field, double low, double high, const struct eo_path *path,
+                        struct eo_faults *faults, double *number)
+{
+  if (!json_is_number(value)) {
+    eo_faults_at(faults, path, "Must be a number, not %s.", type_name(value));
+    return false;
+  }
+  *number = json_number_value(value);
+  const char *symbol = field->unit ? field->unit->symbol : "";
+  if (!isfinite(*number) || *number < low || *number > high) {
+    eo_faults_at(faults, path, "%.15g is outside %.15g .. %.15g%s%s.", *number, low, high, *symbol ? " " : "", symbol);
+    return false;
+  }
+  return true;
+}
+
+static bool read_whole(const json_t *value, const struct eo_field *field, const struct eo_path *path, struct eo_faults *faults, double *number)
+{
+  if (!read_number(value, field, field->low, field->high, path, faults, number))
+    return false;
+  if (*number == floor(*number))
+    return true;
+  eo_faults_at(faults, path, "%.15g is not a whole number.", *number);
+  return false;
+}
+
+static void list_choices(const char *const *choices, struct eo_text *text)
+{
+  for (int i = 0; choices[i]; i++)
+    eo_text_print(text, "%s\"%s\"", i ? ", " : "", choices[i]);
+}
+
+/* Index of the string among the choices; -1 and a fault otherwise. */
+static int read_choice(const json_t *value, const struct eo_field *field, const struct eo_path *path, struct eo_faults *faults)
+{
+  struct eo_text list = {0};
+  list_choices(field->choices, &list);
+  int found = -1;
+  if (!json_is_string(value))
+    eo_faults_at(faults, path, "Must be one of %s, not %s.", list.data ? list.data : "its values", type_name(value));
+  else {
+    for (int i = 0; field->choices[i] && found < 0; i++)
+      found = strcmp(field->choices[i], json_string_value(value)) == 0 ? i : -1;
+    if (found < 0)
+      eo_faults_at(faults, path, "\"%.60s\" is none of %s.", json_string_value(value), list.data ? list.data : "its values");
+  }
+  eo_text_done(&list);
+  return found;
+}
+
+static void decode_text(const struct eo_field *field, const json_t *value, const struct eo_path *path, char *place, struct eo_faults *faults)
+{
+  if (field->choices) {
+    int choice = read_choice(value, field, path, faults);
+    if (choice >= 0)
+      set_text(place, field->count, field->choices[choice]);
+  } else if (!json_is_string(value))
+    eo_faults_at(faults, path, "Must be a string, not %s.", type_name(value));
+  else if (json_string_length(value) >= (size_t)field->count)
+    eo_faults_at(faults, path, "A string of %zu bytes is longer than the %d allowed.", json_string_length(value), field->count - 1);
+  else
+    set_text(place, field->count, json_string_value(value));
+}
+
+/* Numbers of an array; low and high per number. Returns false when one was wrong. */
+static bool read_numbers(const json_t *value, const struct eo_field *field, double low, double high, const struct eo_path *path, int count,
+                         double *number, struct eo_faults *faults)
+{
+  bool good = true;
+  for (int i = 0; i < count; i++) {
+    struct eo_path element = {path, NULL, i};
+    double outside;
+    if (read_number(json_array_get(value, (size_t)i), field, low, high, &element, faults, &outside))
+      number[i] = eo_unit_in(field->unit, outside);
+    else
+      good = false;
+  }
+  for (int i = 1; i < count && good && field->flags & EO_FIELD_ASCENDING; i++)
+    if (number[i] <= number[i - 1]) {
+      eo_faults_at(faults, path, "The numbers must increase.");
+      good = false;
+    }
+  return good;
+}
+
+static void decode_numbers(const struct eo_field *field, const json_t *value, const struct eo_path *path, double *place, struct eo_faults *faults)
+{
+  if (!json_is_array(value) || json_array_size(value) != (size_t)field->count)
+    eo_faults_at(faults, path, "Must be an array of %d numbers, not %s%s.", field->count, type_name(value), json_is_array(value) ? " of another length" : "");
+  else
+    read_numbers(value, field, field->low, field->high, path, field->count, place, faults);
+}
+
+static bool check_length(const struct eo_field *field, const json_t *value, const struct eo_path *path, struct eo_faults *faults)
+{
+  if (!json_is_array(value)) {
+    eo_faults_at(faults, path, "Must be an array, not %s.", type_name(value));
+    return false;
+  }
+  double length = (double)json_array_size(value);
+  if (length < field->low || length > field->high) {
+    eo_faults_at(faults, path, "%.0f entries are outside %.0f .. %.0f.", length, field->low, field->high);
+    return false;
+  }
+  return true;
+}
+
+static void decode_series(const struct eo_field *field, const json_t *value, const struct eo_path *path, struct eo_series *series, struct eo_faults *faults)
+{
+  if (!check_length(field, value, path, faults))
+    return;
+  int count = (int)json_array_size(value);
+  double *number = calloc(count ? (size_t)count : 1, sizeof *number);
+  if (!number) {
+    eo_faults_at(faults, path, "Not enough memory for %d numbers.", count);
+    return;
+  }
+  read_numbers(value, field, field->series_low, field->series_high, path, count, number, faults);
+  *series = (struct eo_series){count, number};
+}
+
+static void decode_list(const struct eo_field *field, const json_t *value, const struct eo_path *path, void *target, struct eo_faults *faults)
+{
+  if (!check_length(field, value, path, faults))
+    return;
+  size_t count = json_array_size(value);
+  char *row = member(target, field);
+  for (int i = 0; i < (int)count; i++) {
+    struct eo_path element = {path, NULL, i};
+    eo_table_decode(field->table, json_array_get(value, (size_t)i), &element, row + (size_t)i * field->table->size, faults);
+  }
+  *(int *)((char *)target + field->count_offset) = (int)count;
+}
+
+static void decode_null(const struct eo_field *field, void *target)
+{
+  void *place = member(target, field);
+  if (field->kind == EO_FIELD_NUMBER)
+    *(double *)place = NAN;
+  else if (field->kind == EO_FIELD_INTEGER)
+    *(int *)place = 0;
+  else if (field->kind == EO_FIELD_LIMIT)
+    *(struct eo_constraint *)place = (struct eo_constraint){false, NAN};
+  else if (field->kind == EO_FIELD_NUMBERS)
+    for (int i = 0; i < field->count; i++)
+      ((double *)place)[i] = NAN;
+  else if (field->kind == EO_FIELD_OBJECT)
+    set_present(field, target, false);
+}
+
+static void decode_field(const struct eo_field *field, const json_t *value, const struct eo_path *path, void *target, struct eo_faults *faults)
+{
+  void *place = member(target, field);
+  double number;
+  int choice;
+  if (json_is_null(value) && may_be_null(field)) {
+    decode_null(field, target);
+    return;
+  }
+  switch (field->kind) {
+  case EO_FIELD_NUMBER:
+    if (read_number(value, field, field->low, field->high, path, faults, &number))
+      *(double *)place = eo_unit_in(field->unit, number);
+    break;
+  case EO_FIELD_INTEGER:
+    if (read_whole(value, field, path, faults, &number))
+      *(int *)place = (int)number;
+    break;
+  case EO_FIELD_SEED:
+    if (read_whole(value, field, path, faults, &number))
+      *(uint64_t *)place = (uint64_t)number;
+    break;
+  case EO_FIELD_FLAG:
+    if (json_is_boolean(value))
+      *(bool *)place = json_is_true(value);
+    else
+      eo_faults_at(faults, path, "Must be true or false, not %s.", type_name(value));
+    break;
+  case EO_FIELD_TEXT:
+    decode_text(field, value, path, place, faults);
+    break;
+  case EO_FIELD_CHOICE:
+    choice = read_choice(value, field, path, faults);
+    if (choice >= 0)
+      *(int *)place = choice;
+    break;
+  case EO_FIELD_NUMBERS:
+    decode_numbers(field, value, path, place, faults);
+    break;
+  case EO_FIELD_LIMIT:
+    if (read_number(value, field, field->low, field->high, path, faults, &number))
+      *(struct eo_constraint *)place = (struct eo_constraint){true, eo_unit_in(field->unit, number)};
+    break;
+  case EO_FIELD_OBJECT:
+    set_present(field, target, true);
+    eo_table_decode(field->table, value, path, place, faults);
+    break;
+  case EO_FIELD_LIST:
+    decode_list(field, value, path, target, faults);
+    break;
+  case EO_FIELD_SERIES:
+    decode_series(field, value, path, place, faults);
+    break;
+  }
+}
+
+static const struct eo_field *find_field(const struct eo_table *table, const char *key)
+{
+  for (int i = 0; i < table->count; i++)
+    if (strcmp(table->field[i].key, key) == 0)
+      return &table->field[i];
+  return NULL;
+}
+
+/* Levenshtein's distance between two keys, at most 63 bytes of each. */
+static int key_distance(const char *a, const char *b)
+{
+  int row[64], m = (int)strnlen(a, 63), n = (int)strnlen(b, 63);
+  for (int j = 0; j <= n; j++)
+    row[j] = j;
+  for (int i = 1; i <= m; i++) {
+    int diagonal = row[0];
+    row[0] = i;
+    for (int j = 1; j <= n; j++) {
+      int change = diagonal + (a[i - 1] != b[j - 1]), gap = 1 + (row[j] < row[j - 1] ? row[j] : row[j - 1]);
+      diagonal = row[j];
+      row[j] = change < gap ? change : gap;
+    }
+  }
+  return row[n];
+}
+
+static void report_unknown(const struct eo_table *table, const char *key, const struct eo_path *path, struct eo_faults *faults)
+{
+  const char *nearest = NULL;
+  int best = (int)strnlen(key, 63) / 3 + 1;
+  for (int i = 0; i < table->count; i++) {
+    int distance = key_distance(key, table->field[i].key);
+    if (distance <= best) {
+      best = distance - 1;
+      nearest = table->field[i].key;
+    }
+  }
+  if (nearest)
+    eo_faults_at(faults, path, "Unknown key; did you mean \"%s\"?", nearest);
+  else
+    eo_faults_at(faults, path, "Unknown key in %s.", table->name);
+}
+
+/* Objects that are absent are read as empty ones, so that each required key in them is named. */
+static void decode_absent(const struct eo_field *field, const struct eo_path *path, void *target, struct eo_faults *faults)
+{
+  if (field->kind == EO_FIELD_OBJECT && !may_be_null(field)) {
+    json_t *empty = json_object();
+    eo_table_decode(field->table, empty, path, member(target, field), faults);
+    json_decref(empty);
+  } else if (field->flags & EO_FIELD_REQUIRED)
+    eo_faults_at(faults, path, "This key is required.");
+}
+
+void eo_table_decode(const struct eo_table *table, const json_t *object, const struct eo_path *path, void *target, struct eo_faults *faults)
+{
+  eo_table_defaults(table, target);
+  if (!json_is_object(object)) {
+    eo_faults_at(faults, path, "Must be an object, not %s.", object ? type_name(object) : "missing");
+    return;
+  }
+  for (int i = 0; i < table->count; i++) {
+    const struct eo_field *field = &table->field[i];
+    const json_t *value = json_object_get(object, field->key);
+    struct eo_path place = {path, field->key, 0};
+    if (value)
+      decode_field(field, value, &place, target, faults);
+    else
+      decode_absent(field, &place, target, faults);
+  }
+  const char *key;
+  json_t *value;
+  json_object_foreach((json_t *)object, key, value)
+    if (!find_field(table, key)) {
+      struct eo_path place = {path, key, 0};
+      report_unknown(table, key, &place, faults);
+    }
+}

@@ -1,0 +1,143 @@
+#include "document/design_document.h"
+
+#include <stdarg.h>
+#include <string.h>
+
+#include "document/json.h"
+#include "gear/check.h"
+
+void eo_warnings_add(struct eo_warnings *warnings, const char *format, ...)
+{
+  int most = (int)(sizeof warnings->text / sizeof warnings->text[0]);
+  if (!warnings || warnings->count >= most)
+    return;
+  char *text = warnings->text[warnings->count++];
+  va_list arguments;
+  va_start(arguments, format);
+  vsnprintf(text, sizeof warnings->text[0], format, arguments);
+  va_end(arguments);
+}
+
+void eo_load_cases_settle(struct eo_load_case *load_case, int count, struct eo_warnings *warnings, struct eo_faults *faults)
+{
+  double sum = 0;
+  int stated = 0;
+  for (int i = 0; i < count; i++) {
+    stated += !isnan(load_case[i].share);
+    sum += isnan(load_case[i].share) ? 0 : load_case[i].share;
+  }
+  if (stated && stated < count)
+    eo_faults_add(faults, "/load_cases", "Either every load case states its share of operating time or none does; %d of %d do.", stated, count);
+  else if (stated && sum <= 0)
+    eo_faults_add(faults, "/load_cases", "The shares of operating time sum to 0.");
+  else if (stated && fabs(sum - 1) > 1e-9)
+    eo_warnings_add(warnings, "The shares of operating time of the load cases summed to %.9g; they were scaled to sum to 1.", sum);
+  if (stated && fabs(sum - 1) <= 1e-9)
+    return;
+  for (int i = 0; i < count; i++)
+    load_case[i].share = stated ? load_case[i].share / sum : 1. / count;
+}
+
+/* A pair with one end has no right flanks. */
+static void drop_right_end(const json_t *document, struct eo_design *design, struct eo_warnings *warnings)
+{
+  static const char *const member[2] = {"pinion", "gear"};
+  const json_t *modification = json_object_get(document, "modification");
+  for (int i = 0; i < 2 && design->gear_pair.ends == 1; i++) {
+    const json_t *right = json_object_get(json_object_get(modification, member[i]), "right");
+    if (right)
+      eo_warnings_add(warnings, "The modification of the %s's right end is ignored: the pair has one end, the left one.", member[i]);
+    eo_table_defaults(&eo_flank_modification_table, &design->modification.flank[i][EO_RIGHT]);
+  }
+}
+
+bool eo_design_decode(const json_t *document, struct eo_design *design, struct eo_warnings *warnings, struct eo_faults *faults)
+{
+  struct eo_design read;
+  int before = faults->count;
+  memset(&read, 0, sizeof read);
+  eo_table_decode(&eo_design_table, document, NULL, &read, faults);
+  if (faults->count == before)
+    eo_load_cases_settle(read.load_case, read.load_cases, warnings, faults);
+  if (faults->count != before)
+    return false;
+  drop_right_end(document, &read, warnings);
+  *design = read;
+  return true;
+}
+
+void eo_design_note_assumptions(const json_t *document, const struct eo_design *design, struct eo_warnings *warnings)
+{
+  if (!json_object_get(json_object_get(document, "alignment"), "shaft_angle_error_in_plane_deg"))
+    eo_warnings_add(warnings, "The shaft angle error is not stated: %.6g deg in the plane of the axes is assumed.",
+                    eo_unit_out(&eo_unit_deg, design->alignment.shaft_angle_in_plane));
+  if (!json_object_get(document, "load_cases"))
+    eo_warnings_add(warnings, "No load cases are stated: the paper's duty cycle is assumed.");
+}
+
+json_t *eo_design_encode(const struct eo_design *design)
+{
+  json_t *document = eo_table_encode(&eo_design_table, design), *modification = json_object_get(document, "modification");
+  if (design->gear_pair.ends == 1) {
+    json_object_del(json_object_get(modification, "pinion"), "right");
+    json_object_del(json_object_get(modification, "gear"), "right");
+  }
+  return document;
+}
+
+enum eo_code eo_design_complete(struct eo_design *design, struct eo_geometry *geometry, struct eo_error *error)
+{
+  struct eo_design complete = *design;
+  struct eo_geometry made;
+  enum eo_code code = eo_geometry_init(&made, &complete.gear_pair, error);
+  if (code)
+    return code;
+  eo_design_resolve(&complete, &made);
+  eo_table_settle(&eo_design_table, &complete);
+  code = eo_geometry_init(&made, &complete.gear_pair, error);
+  if (!code)
+    code = eo_design_check(&complete, &made, error);
+  if (!code) {
+    *design = complete;
+    *geometry = made;
+  }
+  return code;
+}
+
+static enum eo_code hash_document(json_t *document, char hex[EO_HASH_LENGTH + 1], struct eo_error *error)
+{
+  struct eo_text text = {0};
+  if (document)
+    eo_json_write(&text, document, EO_JSON_CANONICAL);
+  enum eo_code code = !document || text.failed ? eo_error_memory(error) : EO_OK;
+  if (!code)
+    eo_hash_hex(text.data, text.size, hex);
+  eo_text_done(&text);
+  json_decref(document);
+  return code;
+}
+
+enum eo_code eo_design_hash(const struct eo_design *design, char hex[EO_HASH_LENGTH + 1], struct eo_error *error)
+{
+  return hash_document(eo_design_encode(design), hex, error);
+}
+
+static enum eo_code hash_without(const struct eo_design *design, const char *const *without, char hex[EO_HASH_LENGTH + 1], struct eo_error *error)
+{
+  json_t *document = eo_design_encode(design);
+  for (int i = 0; without[i] && document; i++)
+    json_object_del(document, without[i]);
+  return hash_document(document, hex, error);
+}
+
+enum eo_code eo_design_evaluation_hash(const struct eo_design *design, char hex[EO_HASH_LENGTH + 1], struct eo_error *error)
+{
+  static const char *const without[] = {"name", "objective", "optimization", NULL};
+  return hash_without(design, without, hex, error);
+}
+
+enum eo_code eo_design_problem_hash(const struct eo_design *design, char hex[EO_HASH_LENGTH + 1], struct eo_error *error)
+{
+  static const char *const without[] = {"name", "modification", "objective", "optimization", NULL};
+  return hash_without(design, without, hex, error);
+}

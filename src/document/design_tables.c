@@ -1,0 +1,168 @@
+/* Field tables of the duty cycle, the objective, the optimization and the resolution, and of the whole design. */
+#include "document/design_document.h"
+
+#define NUMBERS(...) (const double[]){__VA_ARGS__}
+
+static const struct eo_field load_case[] = {
+    EO_NUMBER_REQUIRED(struct eo_load_case, torque, "torque_Nm", &eo_unit_Nm, 1e-3, 1e8, "total on the pinion shaft, half of it per end"),
+    EO_NUMBER(struct eo_load_case, speed, "speed_rpm", &eo_unit_rpm, 0.1, 1e6, 2000, "of the pinion"),
+    EO_NUMBER_DERIVED(struct eo_load_case, share, "share", NULL, 0, 1e6, "equal, when no load case states its share",
+                      "of operating time; shares that do not sum to 1 are scaled, with a warning"),
+};
+
+static const char *const normalise[] = {"unmodified", "none", NULL};
+static const char *const robust[] = {"off", "mean", "worst", NULL};
+
+static const struct eo_field constraints[] = {
+    EO_LIMIT(struct eo_objective, contact_pressure, "contact_pressure_MPa", &eo_unit_MPa, 1, 1e5, "largest Hertz pressure"),
+    EO_LIMIT(struct eo_objective, root_stress, "root_stress_MPa", &eo_unit_MPa, 1, 1e5, "largest root bending stress"),
+    EO_LIMIT(struct eo_objective, peak_to_peak, "peak_to_peak_um", &eo_unit_um, 1e-3, 1e4, "peak-to-peak loaded transmission error of any load case"),
+    EO_LIMIT(struct eo_objective, edge_load_share, "edge_load_share", NULL, 0, 1, "static load carried by tip edges, share of the end's load"),
+    EO_LIMIT(struct eo_objective, contact_loss, "contact_loss", NULL, 0, 1, "part of the mesh cycle out of contact"),
+    EO_FLAG(struct eo_objective, relief_inside_active_flank, "relief_inside_active_flank", 1, "reliefs must start inside the active flank"),
+    EO_FLAG(struct eo_objective, no_worse_than_unmodified, "no_worse_than_unmodified", 0, "no objective may be worse than unmodified at any load case"),
+};
+static const struct eo_table constraints_table = EO_TABLE("constraints", struct eo_objective, constraints);
+
+static const struct eo_field scenario[] = {
+    EO_NUMBER_DERIVED(struct eo_scenario, in_plane, "shaft_angle_error_in_plane_deg", &eo_unit_deg, -2, 2, "as in alignment", "shaft angle error in the plane of the axes"),
+    EO_NUMBER_DERIVED(struct eo_scenario, out_of_plane, "shaft_angle_error_out_of_plane_deg", &eo_unit_deg, -2, 2, "as in alignment",
+                      "shaft angle error out of the plane of the axes"),
+    EO_NUMBER(struct eo_scenario, compliance, "compliance_factor", NULL, 0.1, 10, 1, "on the flexibility of the teeth"),
+    EO_NUMBER(struct eo_scenario, speed, "speed_factor", NULL, 0.01, 100, 1, "on the speed of every load case"),
+};
+const struct eo_table eo_scenario_table = EO_TABLE("a scenario", struct eo_scenario, scenario);
+
+static const struct eo_field objective[] = {
+    EO_NUMBERS(struct eo_objective, weight, "weights", 3, NULL, 0, 1e6, 0, NUMBERS(0.4, 0.15, 0.45), NULL,
+               "of peak-to-peak transmission error, impact force and vibration"),
+    EO_CHOICE(struct eo_objective, normalise, "normalise", normalise, EO_NORMALISE_UNMODIFIED, "what each objective is divided by"),
+    EO_GROUP("constraints", &constraints_table, "limits; null: off"),
+    EO_NUMBER(struct eo_objective, penalty, "penalty", NULL, 0, 1e9, 10, "factor on the relative excess over each limit"),
+    EO_CHOICE(struct eo_objective, robust, "robust", robust, EO_ROBUST_OFF, "objective over the scenarios: their mean, the worst, or the nominal one alone"),
+    {.key = "scenarios", .kind = EO_FIELD_LIST, .offset = offsetof(struct eo_objective, scenario), .low = 0, .high = EO_MAX_SCENARIOS, .count = EO_MAX_SCENARIOS,
+     .count_offset = offsetof(struct eo_objective, scenarios), .table = &eo_scenario_table,
+     .derived = "nominal; shaft error +-20 % (at least 0.01 deg); compliance +-10 %; speed +-5 %, when robust is not off",
+     .help = "alignments, compliances and speeds around the nominal ones"},
+};
+
+static const char *const variables[] = {"shared", "per_end", NULL};
+static const char *const algorithms[] = {"credibility-ga", "fpga", "ga", "nsga2", NULL};
+static const char *const mutation_modes[] = {"gene", "individual", NULL};
+static const char *const fitness_forms[] = {"reciprocal", "negative", NULL};
+static const char *const distance_norms[] = {"range", "rms", NULL};
+static const char *const weight_sums[] = {"region", "all", NULL};
+static const char *const decision_orders[] = {"batch", "sequential", NULL};
+
+/* The optimizer's own names, ranges and defaults: optimizer/settings.h has the same table in its terms, and a test compares them. */
+#define PARAMETER(key, low, high, fallback, help) EO_NUMBER(struct eo_optimization, key, #key, NULL, low, high, fallback, help)
+#define COUNT(key, low, high, fallback, help) EO_INTEGER(struct eo_optimization, key, #key, low, high, fallback, help)
+#define FLAG(key, fallback, help) EO_FLAG(struct eo_optimization, key, #key, fallback, help)
+#define CHOICE(key, choices, fallback, help) EO_CHOICE(struct eo_optimization, key, #key, choices, fallback, help)
+
+static const struct eo_field bounds[] = {
+    EO_NUMBERS(struct eo_optimization, tip_relief, "tip_relief_um", 2, &eo_unit_um, 0, 1000, EO_FIELD_ASCENDING, NUMBERS(0, 40), NULL, "d_tr"),
+    EO_NUMBERS(struct eo_optimization, root_relief, "root_relief_um", 2, &eo_unit_um, 0, 1000, EO_FIELD_ASCENDING, NUMBERS(0, 40), NULL, "d_br"),
+    EO_NUMBERS(struct eo_optimization, tip_relief_start, "tip_relief_start_mm", 2, &eo_unit_mm, 0, 200, EO_FIELD_ASCENDING | EO_FIELD_NULLABLE, NULL,
+               "0.05 m_n .. nine tenths of the active profile", "u_ts"),
+    EO_NUMBERS(struct eo_optimization, root_relief_start, "root_relief_start_mm", 2, &eo_unit_mm, 0, 200, EO_FIELD_ASCENDING | EO_FIELD_NULLABLE, NULL,
+               "0.05 m_n .. nine tenths of the active profile", "u_bs"),
+    EO_NUMBERS(struct eo_optimization, lead_crowning, "lead_crowning_um", 2, &eo_unit_um, 0, 1000, EO_FIELD_ASCENDING, NUMBERS(0, 36), NULL, "at the face ends"),
+};
+static const struct eo_table bounds_table = EO_TABLE("bounds", struct eo_optimization, bounds);
+
+static const struct eo_field optimization[] = {
+    EO_CHOICE(struct eo_optimization, variables, "variables", variables, EO_VARIABLES_SHARED, "5 shared by both ends (case A) or 10, 5 per end (case B)"),
+    {.key = "algorithm", .kind = EO_FIELD_TEXT, .offset = offsetof(struct eo_optimization, algorithm), .count = sizeof ((struct eo_optimization *)0)->algorithm,
+     .choices = algorithms, .fallback_text = "credibility-ga", .help = "optimizer"},
+    EO_GROUP("bounds", &bounds_table, "lowest and highest value of each variable"),
+    {.key = "seed", .kind = EO_FIELD_SEED, .offset = offsetof(struct eo_optimization, seed), .low = 0, .high = 9007199254740991., .fallback = 1,
+     .help = "equal seeds give equal results"},
+    {.key = "true_evaluations", .kind = EO_FIELD_INTEGER, .flags = EO_FIELD_NULLABLE, .offset = offsetof(struct eo_optimization, true_evaluations), .low = 1,
+     .high = 1e7, .fallback = NAN, .derived = "none for ga and fpga, 500 + 100 n for the others", .help = "most evaluations by the model"},
+    PARAMETER(crossover, 0, 1, 0.8, "probability p_c that a pair of parents is crossed"),
+    PARAMETER(crossover_index, 0, 1000, 10, "eta of the simulated binary crossover; larger stays nearer the parents"),
+    PARAMETER(mutation, 0, 1, 0.3, "probability p_m of mutation"),
+    PARAMETER(mutation_index, 0, 1000, 20, "eta of the polynomial mutation; larger changes less"),
+    CHOICE(mutation_mode, mutation_modes, 0, "what p_m counts for"),
+    COUNT(population, 4, 1000, 50, "individuals of a generation (ga, fpga, credibility-ga)"),
+    COUNT(generations, 1, 100000, 200, "generations, the first included (ga, fpga)"),
+    COUNT(elite, 0, 100, 1, "best individuals that cannot be lost (ga, fpga)"),
+    CHOICE(fitness_form, fitness_forms, 0, "fitness from the value J to minimise: 1/J or -J (ga, fpga)"),
+    PARAMETER(trust_threshold, 0, 1, 0.6, "R*: an individual at least this credible is predicted (fpga)"),
+    PARAMETER(redundancy_threshold, 0, 1, 1e-7, "I_r*: rows closer than this to their neighbours leave the history (fpga)"),
+    EO_NUMBER_DERIVED(struct eo_optimization, share_radius, "share_radius", NULL, 1e-6, 10, "0.03 (n/5)^1.9 for n variables",
+                      "r_share, radius in the unit cube of the region that predicts (fpga)"),
+    PARAMETER(weight_decay, 0, 10000, 20, "alpha of equation (15) (fpga)"),
+    PARAMETER(credibility_loss, 0, 1, 0.8, "beta of equation (18): factor on predicted rows per generation (fpga)"),
+    PARAMETER(removal_threshold, 0, 1, 0.1, "R_0: predicted rows less credible leave the history; below trust_threshold (fpga)"),
+    COUNT(verify, 0, 1, 1, "1: the best predicted individual of each generation is evaluated; 0: as printed (fpga)"),
+    CHOICE(distance_norm, distance_norms, 0, "Euclidean distance of normalised variables, or that over sqrt n (fpga)"),
+    CHOICE(weight_sum, weight_sums, 0, "rows in the sum of (15) (fpga)"),
+    CHOICE(decision_order, decision_orders, 0, "history frozen for a generation, or used as it grows (fpga)"),
+    FLAG(store_predicted, 1, "predicted individuals enter the history too (fpga)"),
+    FLAG(literal_redundancy, 0, "redundancy exactly as printed, which deletes unique rows too (fpga)"),
+    FLAG(reuse, 1, "an individual equal to an evaluated one takes its value (ga, fpga)"),
+    COUNT(batch, 1, 1024, 8, "true evaluations at a time (credibility-ga)"),
+    COUNT(initial_factor, 1, 100, 4, "latin hypercube points per variable at the start of an epoch (credibility-ga)"),
+    COUNT(model_rows, 20, 1000, 300, "most rows of the surrogate (credibility-ga, nsga2)"),
+    COUNT(children, 4, 10000, 100, "children bred for each batch (credibility-ga)"),
+    PARAMETER(exploration, 0, 100, 0.3, "kappa: how much doubt counts against a predicted gain (credibility-ga)"),
+    PARAMETER(credibility_length, 1e-6, 10, 0.05, "length over sqrt n at which credibility fades (credibility-ga)"),
+    PARAMETER(taboo_radius, 0, 1, 0.03, "radius over sqrt n round finished optima (credibility-ga)"),
+    COUNT(stall_batches, 1, 10000, 4, "batches without gain before a new epoch (credibility-ga)"),
+    PARAMETER(stall_gain, 0, 1, 0.002, "gain that counts, relative (credibility-ga)"),
+    PARAMETER(polish_share, 0, 1, 0.2, "share of the budget that only improves the best (credibility-ga)"),
+    PARAMETER(local_share, 0, 1, 0.375, "share of each batch for the trust region round the best (credibility-ga)"),
+    PARAMETER(local_radius, 1e-6, 0.5, 0.1, "radius of that trust region at the start of an epoch (credibility-ga)"),
+    COUNT(front_population, 4, 1000, 48, "individuals of a generation (nsga2)"),
+    COUNT(front_verified, 1, 1000, 12, "true evaluations per cycle (nsga2)"),
+    COUNT(front_rounds, 1, 1000, 20, "generations on the surrogates per cycle (nsga2)"),
+};
+
+static const char *const mesh_laws[] = {"tangent", "secant", "table", NULL};
+static const char *const solvers[] = {"harmonic_balance", "time_integration", NULL};
+static const char *const impacts[] = {"none", "paper", "consistent", NULL};
+
+static const struct eo_field resolution[] = {
+    EO_INTEGER(struct eo_resolution, positions, "positions", 8, 1024, 64, "mesh positions over one base pitch"),
+    EO_INTEGER(struct eo_resolution, cells_per_line, "cells_per_line", 4, 400, 30, "equal cells of a contact line"),
+    EO_FLAG(struct eo_resolution, tip_edge_contact, "tip_edge_contact", 1, "contact of the tip edges outside the path of contact"),
+    EO_INTEGER(struct eo_resolution, sector_teeth, "sector_teeth", 3, 5, 5, "teeth of the finite-element sector, 3 or 5"),
+    EO_FLAG(struct eo_resolution, neighbour_coupling, "neighbour_coupling", 1, "compliance between neighbouring tooth pairs"),
+    EO_INTEGER(struct eo_resolution, layers, "layers", 4, 120, 28, "finite elements over the face width"),
+    EO_INTEGER(struct eo_resolution, flank_rows, "flank_rows", 4, 60, 10, "finite elements over the active profile"),
+    EO_INTEGER(struct eo_resolution, fillet_elements, "fillet_elements", 4, 80, 18, "finite elements along the loaded fillet"),
+    EO_NUMBER(struct eo_resolution, impact_patch, "impact_patch_mm", &eo_unit_mm, 0.1, 100, 5, "length of the patch that an entering impact loads"),
+    EO_NUMBER(struct eo_resolution, marking_thickness, "marking_thickness_um", &eo_unit_um, 0.1, 100, 6.35, "marking compound of the contact pattern"),
+    EO_CHOICE(struct eo_resolution, mesh_law, "mesh_law", mesh_laws, EO_LAW_TANGENT, "mesh force in the dynamics"),
+    EO_CHOICE(struct eo_resolution, solver, "solver", solvers, EO_SOLVER_HARMONIC_BALANCE, "of the equations of motion"),
+    EO_CHOICE(struct eo_resolution, impact_in_dynamics, "impact_in_dynamics", impacts, EO_IMPACT_NONE, "impact pulses in the equations of motion"),
+    EO_INTEGER(struct eo_resolution, harmonics, "harmonics", 1, 256, 24, "mesh harmonics of the response"),
+    EO_INTEGER(struct eo_resolution, te_harmonics, "te_harmonics", 1, 128, 10, "mesh harmonics kept of transmission error and stiffness"),
+};
+
+const struct eo_table eo_load_case_table = EO_TABLE("a load case", struct eo_load_case, load_case);
+const struct eo_table eo_objective_table = EO_TABLE("objective", struct eo_objective, objective);
+const struct eo_table eo_optimization_table = EO_TABLE("optimization", struct eo_optimization, optimization);
+const struct eo_table eo_resolution_table = EO_TABLE("resolution", struct eo_resolution, resolution);
+
+static const struct eo_load_case paper_duty_cycle[] = {
+    {621, 2000 * (M_PI / 30), 0.2}, {828, 2000 * (M_PI / 30), 0.5}, {1035, 2000 * (M_PI / 30), 0.3}};
+
+static const struct eo_field design[] = {
+    {.key = "name", .kind = EO_FIELD_TEXT, .offset = offsetof(struct eo_design, name), .count = EO_NAME_LENGTH, .help = "for people"},
+    EO_OBJECT(struct eo_design, gear_pair, "gear_pair", &eo_gear_pair_table, "macro-geometry"),
+    EO_OBJECT(struct eo_design, material, "material", &eo_material_table, "of both members"),
+    EO_OBJECT(struct eo_design, alignment, "alignment", &eo_alignment_table, "errors and axial freedom of the shafts"),
+    EO_OBJECT(struct eo_design, supports, "supports", &eo_supports_table, "bearings, groove and masses for the dynamics"),
+    EO_OBJECT(struct eo_design, shafts, "shafts", &eo_shafts_table, "elastic bodies, off by default"),
+    {.key = "load_cases", .kind = EO_FIELD_LIST, .offset = offsetof(struct eo_design, load_case), .low = 1, .high = EO_MAX_LOAD_CASES, .count = EO_MAX_LOAD_CASES,
+     .count_offset = offsetof(struct eo_design, load_cases), .table = &eo_load_case_table, .rows = paper_duty_cycle, .row_count = 3,
+     .derived = "the paper's: 621, 828 and 1035 N m at 2000 rpm for 0.2, 0.5 and 0.3 of the time", .help = "the duty cycle"},
+    EO_OBJECT(struct eo_design, modification, "modification", &eo_modification_table, "material taken off the flanks"),
+    EO_OBJECT(struct eo_design, objective, "objective", &eo_objective_table, "what is good"),
+    EO_OBJECT(struct eo_design, optimization, "optimization", &eo_optimization_table, "how the best is searched for"),
+    EO_OBJECT(struct eo_design, resolution, "resolution", &eo_resolution_table, "how finely it is computed"),
+};
+const struct eo_table eo_design_table = EO_TABLE("the design", struct eo_design, design);

@@ -1,0 +1,167 @@
+#include <stdint.h>
+#include <stdlib.h>
+
+#include "document/json.h"
+#include "document/table.h"
+#include "gear/design.h"
+
+static const void *member(const void *source, const struct eo_field *field)
+{
+  return (const char *)source + field->offset;
+}
+
+static json_t *encode_numbers(const struct eo_field *field, const double *value)
+{
+  bool all_null = field->flags & EO_FIELD_NULLABLE;
+  for (int i = 0; i < field->count; i++)
+    all_null = all_null && isnan(value[i]);
+  return all_null ? json_null() : eo_json_reals(field->count, value, 1, field->unit, 0);
+}
+
+static json_t *encode_list(const struct eo_field *field, const void *source)
+{
+  json_t *array = json_array();
+  int count = *(const int *)((const char *)source + field->count_offset);
+  const char *row = member(source, field);
+  for (int i = 0; i < count && array; i++)
+    if (json_array_append_new(array, eo_table_encode(field->table, row + (size_t)i * field->table->size)) != 0) {
+      json_decref(array);
+      array = NULL;
+    }
+  return array;
+}
+
+static json_t *encode_integer(const struct eo_field *field, int value)
+{
+  return value == 0 && field->flags & EO_FIELD_NULLABLE ? json_null() : json_integer(value);
+}
+
+static json_t *encode_field(const struct eo_field *field, const void *source)
+{
+  const void *place = member(source, field);
+  const struct eo_constraint *limit = place;
+  const struct eo_series *series = place;
+  switch (field->kind) {
+  case EO_FIELD_NUMBER:
+    return eo_json_real(*(const double *)place, field->unit);
+  case EO_FIELD_INTEGER:
+    return encode_integer(field, *(const int *)place);
+  case EO_FIELD_SEED:
+    return json_integer((json_int_t) * (const uint64_t *)place);
+  case EO_FIELD_FLAG:
+    return json_boolean(*(const bool *)place);
+  case EO_FIELD_TEXT:
+    return json_string(place);
+  case EO_FIELD_CHOICE:
+    return json_string(field->choices[*(const int *)place]);
+  case EO_FIELD_NUMBERS:
+    return encode_numbers(field, place);
+  case EO_FIELD_LIMIT:
+    return limit->enabled ? eo_json_real(limit->limit, field->unit) : json_null();
+  case EO_FIELD_OBJECT:
+    if (field->flags & EO_FIELD_NULLABLE && !*(const int *)((const char *)source + field->count_offset))
+      return json_null();
+    return eo_table_encode(field->table, place);
+  case EO_FIELD_LIST:
+    return encode_list(field, source);
+  case EO_FIELD_SERIES:
+    return eo_json_reals(series->count, series->value, 1, field->unit, 0);
+  }
+  return NULL;
+}
+
+/* True when an encoded object is what the table's defaults give. */
+static bool is_default(const struct eo_table *table, const json_t *encoded)
+{
+  void *defaults = calloc(1, table->size);
+  if (!defaults)
+    return false;
+  eo_table_defaults(table, defaults);
+  json_t *other = eo_table_encode(table, defaults);
+  bool same = other && json_equal(encoded, other);
+  json_decref(other);
+  free(defaults);
+  return same;
+}
+
+json_t *eo_table_encode(const struct eo_table *table, const void *source)
+{
+  json_t *object = json_object();
+  bool failed = !object;
+  for (int i = 0; i < table->count && !failed; i++) {
+    const struct eo_field *field = &table->field[i];
+    json_t *value = encode_field(field, source);
+    if (value && field->flags & EO_FIELD_OMIT && is_default(field->table, value))
+      json_decref(value);
+    else
+      eo_json_put(object, field->key, value, &failed);
+  }
+  if (failed) {
+    json_decref(object);
+    return NULL;
+  }
+  return object;
+}
+
+static void settle_numbers(const struct eo_unit *unit, int count, double *value)
+{
+  for (int i = 0; i < count; i++)
+    value[i] = eo_unit_in(unit, eo_unit_out(unit, value[i]));
+}
+
+static void settle_field(const struct eo_field *field, void *target)
+{
+  void *place = (char *)target + field->offset;
+  struct eo_series *series = place;
+  int rows;
+  switch (field->kind) {
+  case EO_FIELD_NUMBER:
+    settle_numbers(field->unit, 1, place);
+    break;
+  case EO_FIELD_NUMBERS:
+    settle_numbers(field->unit, field->count, place);
+    break;
+  case EO_FIELD_LIMIT:
+    settle_numbers(field->unit, 1, &((struct eo_constraint *)place)->limit);
+    break;
+  case EO_FIELD_OBJECT:
+    eo_table_settle(field->table, place);
+    break;
+  case EO_FIELD_LIST:
+    rows = *(const int *)((const char *)target + field->count_offset);
+    for (int i = 0; i < rows; i++)
+      eo_table_settle(field->table, (char *)place + (size_t)i * field->table->size);
+    break;
+  case EO_FIELD_SERIES:
+    settle_numbers(field->unit, series->count, series->value);
+    break;
+  case EO_FIELD_INTEGER:
+  case EO_FIELD_SEED:
+  case EO_FIELD_FLAG:
+  case EO_FIELD_TEXT:
+  case EO_FIELD_CHOICE:
+    break;
+  }
+}
+
+void eo_table_settle(const struct eo_table *table, void *target)
+{
+  for (int i = 0; i < table->count; i++)
+    settle_field(&table->field[i], target);
+}
+
+void eo_table_done(const struct eo_table *table, void *target)
+{
+  for (int i = 0; i < table->count; i++) {
+    const struct eo_field *field = &table->field[i];
+    char *place = (char *)target + field->offset;
+    int rows = field->kind == EO_FIELD_OBJECT ? 1 : field->kind == EO_FIELD_LIST ? *(const int *)((const char *)target + field->count_offset) : 0;
+    for (int j = 0; j < rows; j++)
+      eo_table_done(field->table, place + (size_t)j * field->table->size);
+    if (field->kind == EO_FIELD_SERIES) {
+      struct eo_series *series = (void *)place;
+      free(series->value);
+      *series = (struct eo_series){0};
+    }
+  }
+}

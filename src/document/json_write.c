@@ -1,0 +1,235 @@
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "document/json.h"
+
+enum { LINE = 110 }; /* columns up to which a value stays on one line */
+
+void eo_json_number(char *text, int size, double value)
+{
+  for (int digits = 15; digits <= 17; digits++) {
+    snprintf(text, (size_t)size, "%.*g", digits, value);
+    if (strtod(text, NULL) == value)
+      break;
+  }
+  char *exponent = strchr(text, 'e'); /* 1e-07 -> 1e-7, 1e+20 -> 1e20 */
+  if (!exponent)
+    return;
+  char *to = exponent + 1, *from = to;
+  if (*from == '-')
+    to = ++from;
+  while (*from == '+' || (*from == '0' && from[1]))
+    from++;
+  memmove(to, from, strlen(from) + 1);
+}
+
+static void write_string(struct eo_text *text, const char *string)
+{
+  eo_text_add(text, "\"");
+  for (const char *c = string; *c; c++) {
+    if (*c == '"' || *c == '\\')
+      eo_text_print(text, "\\%c", *c);
+    else if ((unsigned char)*c < 32)
+      eo_text_print(text, "\\u%04x", (unsigned)*c);
+    else
+      eo_text_add_bytes(text, c, 1);
+  }
+  eo_text_add(text, "\"");
+}
+
+static void write_scalar(struct eo_text *text, const json_t *value)
+{
+  char number[40];
+  switch (json_typeof(value)) {
+  case JSON_STRING:
+    write_string(text, json_string_value(value));
+    break;
+  case JSON_REAL:
+    eo_json_number(number, sizeof number, json_real_value(value));
+    eo_text_add(text, number);
+    break;
+  case JSON_INTEGER:
+    eo_text_print(text, "%" JSON_INTEGER_FORMAT, json_integer_value(value));
+    break;
+  case JSON_TRUE:
+  case JSON_FALSE:
+    eo_text_add(text, json_is_true(value) ? "true" : "false");
+    break;
+  default:
+    eo_text_add(text, "null");
+  }
+}
+
+static int compare_keys(const void *a, const void *b)
+{
+  return strcmp(*(const char *const *)a, *(const char *const *)b);
+}
+
+/* The keys in the order of the style; the caller frees the list, not the keys. NULL: no memory. */
+static const char **list_keys(const json_t *object, enum eo_json_style style)
+{
+  const char **keys = malloc((json_object_size(object) + 1) * sizeof *keys), *key;
+  if (!keys)
+    return NULL;
+  size_t n = 0;
+  json_t *value;
+  json_object_foreach((json_t *)object, key, value)
+    keys[n++] = key;
+  if (style == EO_JSON_CANONICAL)
+    qsort(keys, n, sizeof *keys, compare_keys);
+  return keys;
+}
+
+static void write_value(struct eo_text *text, const json_t *value, enum eo_json_style style, int indent);
+
+/* One line: indent < 0; else each member on its own line. */
+static void begin_member(struct eo_text *text, size_t i, enum eo_json_style style, int indent)
+{
+  if (i)
+    eo_text_add(text, ",");
+  if (indent >= 0)
+    eo_text_print(text, "\n%*s", indent + 2, "");
+  else if (style == EO_JSON_PRETTY)
+    eo_text_add(text, " ");
+}
+
+static void end_members(struct eo_text *text, size_t n, enum eo_json_style style, int indent)
+{
+  if (n && indent >= 0)
+    eo_text_print(text, "\n%*s", indent, "");
+  else if (n && style == EO_JSON_PRETTY)
+    eo_text_add(text, " ");
+}
+
+static void write_object(struct eo_text *text, const json_t *object, enum eo_json_style style, int indent)
+{
+  const char **keys = list_keys(object, style);
+  if (!keys) {
+    text->failed = true;
+    return;
+  }
+  size_t n = json_object_size(object);
+  eo_text_add(text, "{");
+  for (size_t i = 0; i < n; i++) {
+    begin_member(text, i, style, indent);
+    write_string(text, keys[i]);
+    eo_text_add(text, style == EO_JSON_PRETTY ? ": " : ":");
+    write_value(text, json_object_get(object, keys[i]), style, indent < 0 ? -1 : indent + 2);
+  }
+  end_members(text, n, style, indent);
+  eo_text_add(text, "}");
+  free(keys);
+}
+
+static bool holds_containers(const json_t *array)
+{
+  return json_array_size(array) && !(json_is_number(json_array_get(array, 0)) || json_is_null(json_array_get(array, 0)));
+}
+
+static void write_array(struct eo_text *text, const json_t *array, enum eo_json_style style, int indent)
+{
+  if (!holds_containers(array))
+    indent = -1; /* numbers always stand in one row */
+  size_t n = json_array_size(array);
+  eo_text_add(text, "[");
+  for (size_t i = 0; i < n; i++) {
+    if (indent >= 0 || i)
+      begin_member(text, i, style, indent);
+    write_value(text, json_array_get(array, i), style, indent < 0 ? -1 : indent + 2);
+  }
+  if (indent >= 0)
+    end_members(text, n, style, indent);
+  eo_text_add(text, "]");
+}
+
+/* What is left of a line after a value; negative: it does not fit. Stops early on large values. */
+static int room_after(const json_t *value, int room)
+{
+  const char *key;
+  json_t *member;
+  size_t i;
+  if (json_is_object(value)) {
+    json_object_foreach((json_t *)value, key, member) {
+      if (room < 0)
+        break;
+      room = room_after(member, room - (int)strlen(key) - 4);
+    }
+  } else if (json_is_array(value)) {
+    json_array_foreach(value, i, member) {
+      if (room < 0)
+        break;
+      room = room_after(member, room - 2);
+    }
+  } else
+    room -= 1;
+  return room;
+}
+
+/* indent: of the line on which the value starts; negative: everything on this line. */
+static void write_value(struct eo_text *text, const json_t *value, enum eo_json_style style, int indent)
+{
+  if (indent >= 0 && (json_is_object(value) || json_is_array(value)) && room_after(value, LINE - indent) >= 0) {
+    struct eo_text line = {0};
+    write_value(&line, value, style, -1);
+    bool short_enough = line.size + (size_t)indent <= LINE;
+    if (line.failed)
+      text->failed = true;
+    else if (short_enough)
+      eo_text_add_bytes(text, line.data, line.size);
+    eo_text_done(&line);
+    if (short_enough || text->failed)
+      return;
+  }
+  if (json_is_object(value))
+    write_object(text, value, style, indent);
+  else if (json_is_array(value))
+    write_array(text, value, style, indent);
+  else
+    write_scalar(text, value);
+}
+
+void eo_json_write(struct eo_text *text, const json_t *value, enum eo_json_style style)
+{
+  write_value(text, value, style, style == EO_JSON_PRETTY ? 0 : -1);
+  if (style == EO_JSON_PRETTY)
+    eo_text_add(text, "\n");
+}
+
+json_t *eo_json_real(double value, const struct eo_unit *unit)
+{
+  double outside = eo_unit_out(unit, value);
+  return isfinite(outside) ? json_real(outside) : json_null();
+}
+
+static double round_digits(double value, int digits)
+{
+  char text[40];
+  snprintf(text, sizeof text, "%.*g", digits, value);
+  return strtod(text, NULL);
+}
+
+json_t *eo_json_reals(int count, const double *value, int stride, const struct eo_unit *unit, int digits)
+{
+  json_t *array = json_array();
+  bool failed = !array;
+  for (int i = 0; i < count && !failed; i++) {
+    double si = value[(long)i * stride];
+    double outside = digits ? round_digits(unit ? (unit->divide ? si * unit->factor : si / unit->factor) : si, digits) : eo_unit_out(unit, si);
+    failed = json_array_append_new(array, isfinite(outside) ? json_real(outside) : json_null()) != 0;
+  }
+  if (failed) {
+    json_decref(array);
+    return NULL;
+  }
+  return array;
+}
+
+void eo_json_put(json_t *object, const char *key, json_t *value, bool *failed)
+{
+  if (*failed || !value) {
+    json_decref(value);
+    *failed = true;
+  } else if (json_object_set_new(object, key, value) != 0)
+    *failed = true;
+}

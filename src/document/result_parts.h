@@ -1,0 +1,65 @@
+/* The parts the result document is put together from; see result.h. */
+#ifndef EASEOFF_DOCUMENT_RESULT_PARTS_H
+#define EASEOFF_DOCUMENT_RESULT_PARTS_H
+
+#include "contact/pattern.h"
+#include "document/json.h"
+#include "document/result.h"
+
+enum { EO_DIGITS_CURVE = 9, EO_DIGITS_MAP = 6, EO_DIGITS_NUMBER = 12 };
+
+struct eo_result_source {
+  const struct eo_analysis *analysis;
+  const struct eo_evaluation *evaluation;
+  const struct eo_pair *pair;
+  const struct eo_design *design;
+  int ends, positions, lag;            /* lag: positions by which the right end's columns are shifted */
+  double normal;                       /* cos(beta_b): normal = transverse times it */
+  struct eo_contact_pattern *pattern;  /* scratch */
+  double *scratch;                     /* [positions] */
+  double edge_pressure[EO_MAX_LOAD_CASES][2]; /* Pa; filled with the load cases, for the warnings */
+};
+
+/* "left", "right". */
+extern const char *const eo_result_end[2];
+extern const char *const eo_result_member[2];
+
+json_t *eo_result_number(double value, const struct eo_unit *unit);
+
+/* value[count] times scale. */
+json_t *eo_result_column(int count, const double *value, double scale, const struct eo_unit *unit, int digits);
+
+/* A column over the mesh positions of one end, shifted so that both ends stand at the same instant. */
+json_t *eo_result_end_column(const struct eo_result_source *source, int end, const double *value, double scale, const struct eo_unit *unit);
+
+/* [rows][columns] as an array of rows. */
+json_t *eo_result_map(int rows, int columns, const double *value, const struct eo_unit *unit);
+
+/* object[key] = value; what is missing marks the object itself as failed. */
+struct eo_result_object {
+  json_t *json;
+  bool failed;
+};
+struct eo_result_object eo_result_open(void);
+void eo_result_put(struct eo_result_object *object, const char *key, json_t *value);
+void eo_result_put_number(struct eo_result_object *object, const char *key, double value, const struct eo_unit *unit);
+json_t *eo_result_close(struct eo_result_object *object); /* NULL when anything failed */
+
+/* Normal force that one end carries, mean over the mesh cycle, N. */
+double eo_result_mean_load(const struct eo_result_source *source, const struct eo_case_result *load_case, int end);
+
+/* Each returns a new value, NULL without memory. */
+json_t *eo_result_position(const struct eo_result_source *source);
+json_t *eo_result_unloaded(struct eo_result_source *source);
+json_t *eo_result_lte(struct eo_result_source *source, const struct eo_case_result *load_case);
+json_t *eo_result_stiffness(struct eo_result_source *source, const struct eo_case_result *load_case);
+json_t *eo_result_contact(struct eo_result_source *source, int load_case);
+/* Normal gap that the bodies open at the pitch point, mean over the mesh cycle. */
+json_t *eo_result_bodies(struct eo_result_source *source, const struct eo_case_result *load_case);
+json_t *eo_result_impact(struct eo_result_source *source, const struct eo_case_result *load_case);
+json_t *eo_result_root_stress(struct eo_result_source *source, const struct eo_case_result *load_case);
+json_t *eo_result_vibration(struct eo_result_source *source, const struct eo_case_result *load_case);
+json_t *eo_result_modification(struct eo_result_source *source);
+json_t *eo_result_warnings(const struct eo_result_source *source, const struct eo_warnings *before);
+
+#endif

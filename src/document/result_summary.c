@@ -1,0 +1,158 @@
+/* The result for people at a terminal. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "document/json.h"
+#include "document/result.h"
+#include "document/sheet.h"
+
+static double find(const json_t *value, const char *path)
+{
+  return eo_json_find_number(value, path);
+}
+
+static const char *find_text(const json_t *value, const char *path)
+{
+  const char *text = json_string_value(eo_json_find(value, path));
+  return text ? text : "";
+}
+
+static void print_pair(const json_t *result, struct eo_text *text)
+{
+  const json_t *pair = eo_json_find(result, "design/gear_pair"), *geometry = json_object_get(result, "geometry");
+  bool double_helical = find(pair, "ends") == 2;
+  char name[200];
+  eo_text_clean(name, sizeof name, find_text(result, "design/name"));
+  eo_text_print(text, "%s%s", name, *name ? "\n" : "");
+  eo_text_print(text, "  %.0f/%.0f teeth, m_n %.6g mm, beta %.6g deg, face %s%.6g mm, a %.7g mm, eps_alpha %.4g, eps_beta %.4g\n",
+                find(pair, "pinion_teeth"), find(pair, "gear_teeth"), find(pair, "normal_module_mm"), find(pair, "helix_angle_deg"),
+                double_helical ? "2 x " : "", find(pair, "face_width_mm"), find(geometry, "centre_distance_mm"),
+                find(geometry, "transverse_contact_ratio"), find(geometry, "overlap_ratio"));
+  eo_text_print(text, "  shaft angle error %.4g deg in plane, %.4g deg out of plane; pinion axially %s\n",
+                find(result, "design/alignment/shaft_angle_error_in_plane_deg"), find(result, "design/alignment/shaft_angle_error_out_of_plane_deg"),
+                find_text(result, "design/alignment/pinion_axial"));
+  eo_text_print(text, "  design %.16s, %.0f mesh positions, %.0f cells per line, mesh law %s\n\n", find_text(result, "design_hash"),
+                find(result, "resolution/positions"), find(result, "resolution/cells_per_line"), find_text(result, "resolution/mesh_law"));
+}
+
+static void add_change(struct eo_sheet *sheet, double before, double after)
+{
+  char change[40] = "";
+  double percent = 100 * (after / before - 1);
+  if (isfinite(percent))
+    snprintf(change, sizeof change, "%+.*f %%", fabs(percent) < 9.95 ? 1 : 0, percent);
+  eo_sheet_string(sheet, change);
+}
+
+static void add_row(struct eo_sheet *sheet, const char *quantity, const char *unit, double before, double after, double scale)
+{
+  eo_sheet_string(sheet, quantity);
+  eo_sheet_string(sheet, unit);
+  eo_sheet_number(sheet, before * scale, NULL, 4);
+  eo_sheet_number(sheet, after * scale, NULL, 4);
+  add_change(sheet, before, after);
+}
+
+/* What stands on the same line as a load case's vibration: where it goes within +-10 % compliance. */
+static void print_band(const json_t *load_case, struct eo_text *text)
+{
+  const json_t *band = eo_json_find(load_case, "vibration/rms_band_m_per_s2/normal");
+  double low = json_number_value(json_array_get(band, 0)), high = json_number_value(json_array_get(band, 1));
+  if (json_is_number(json_array_get(band, 0)))
+    eo_text_print(text, "  (vibration %.4g .. %.4g m/s2 over +-10 %% compliance; rotational %.4g, transverse %.4g m/s2)\n", low, high,
+                  find(load_case, "vibration/rms_m_per_s2/rotational"), find(load_case, "vibration/rms_m_per_s2/transverse"));
+}
+
+static const struct quantity {
+  const char *name, *unit, *key;
+  double scale;
+} quantities[] = {
+    {"peak-to-peak loaded TE", "um", "peak_to_peak_um", 1}, {"entering impact", "N", "impact_N", 1}, {"vibration, RMS normal", "m/s2", "rms_m_per_s2", 1},
+    {"contact pressure", "MPa", "contact_pressure_MPa", 1}, {"root stress", "MPa", "root_stress_MPa", 1}, {"load on tip edges", "%", "edge_load_share", 100},
+};
+
+static void start_table(struct eo_sheet *sheet)
+{
+  static const char *const headings[] = {"", "", "unmodified", "design", "change"};
+  eo_sheet_init(sheet, 5, headings);
+}
+
+static void print_case(const json_t *result, size_t k, struct eo_text *text)
+{
+  const json_t *load_case = json_array_get(json_object_get(result, "load_cases"), k);
+  const json_t *after = json_array_get(eo_json_find(result, "objectives/load_cases"), k);
+  const json_t *before = json_array_get(eo_json_find(result, "objectives/unmodified/load_cases"), k);
+  struct eo_sheet sheet;
+  eo_text_print(text, "%.6g N m, %.6g rpm, share %.4g: %s\n", find(load_case, "torque_Nm"), find(load_case, "speed_rpm"), find(load_case, "share"),
+                find_text(load_case, "outcome"));
+  start_table(&sheet);
+  for (size_t i = 0; i < sizeof quantities / sizeof *quantities; i++) {
+    const struct quantity *q = &quantities[i];
+    if (isfinite(find(after, q->key)))
+      add_row(&sheet, q->name, q->unit, find(before, q->key), find(after, q->key), q->scale);
+  }
+  eo_sheet_print(&sheet, 2, text);
+  eo_sheet_done(&sheet);
+  print_band(load_case, text);
+  eo_text_add(text, "\n");
+}
+
+static void print_objectives(const json_t *result, struct eo_text *text)
+{
+  const json_t *after = json_object_get(result, "objectives"), *before = json_object_get(after, "unmodified");
+  double violation = find(after, "violation");
+  struct eo_sheet sheet;
+  eo_text_add(text, "Objectives\n");
+  start_table(&sheet);
+  add_row(&sheet, "f1", "um", find(before, "f1_um"), find(after, "f1_um"), 1);
+  add_row(&sheet, "f2", "N", find(before, "f2_N"), find(after, "f2_N"), 1);
+  add_row(&sheet, "f3", "m/s2", find(before, "f3_m_per_s2"), find(after, "f3_m_per_s2"), 1);
+  add_row(&sheet, "J", "", find(before, "J"), find(after, "J"), 1);
+  add_row(&sheet, "fitness", "", find(before, "fitness"), find(after, "fitness"), 1);
+  eo_sheet_print(&sheet, 2, text);
+  eo_sheet_done(&sheet);
+  if (violation > 0)
+    eo_text_print(text, "  Constraints are violated by %.4g in sum.\n", violation);
+  eo_text_add(text, "\n");
+}
+
+static void print_frequencies(const json_t *result, struct eo_text *text)
+{
+  const json_t *frequencies = json_object_get(result, "eigenfrequencies_Hz");
+  if (!json_array_size(frequencies))
+    return;
+  eo_text_add(text, "Eigenfrequencies, Hz:");
+  for (size_t i = 0; i < json_array_size(frequencies); i++)
+    eo_text_print(text, " %.5g", json_number_value(json_array_get(frequencies, i)));
+  eo_text_add(text, "\n");
+}
+
+static void print_warnings(const json_t *result, struct eo_text *text)
+{
+  const json_t *warnings = json_object_get(result, "warnings");
+  for (size_t i = 0; i < json_array_size(warnings); i++)
+    eo_text_print(text, "Note: %s\n", json_string_value(json_array_get(warnings, i)));
+}
+
+static void print_timing(const json_t *result, struct eo_text *text)
+{
+  const json_t *timing = json_object_get(result, "timing_ms");
+  const char *key;
+  json_t *value;
+  eo_text_add(text, "Time, ms:");
+  json_object_foreach((json_t *)timing, key, value)
+    eo_text_print(text, " %s %.3g", key, json_number_value(value));
+  eo_text_add(text, "\n");
+}
+
+void eo_result_summary(const json_t *result, struct eo_text *text)
+{
+  print_pair(result, text);
+  for (size_t k = 0; k < json_array_size(json_object_get(result, "load_cases")); k++)
+    print_case(result, k, text);
+  print_objectives(result, text);
+  print_frequencies(result, text);
+  print_warnings(result, text);
+  print_timing(result, text);
+}

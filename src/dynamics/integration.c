@@ -1,0 +1,231 @@
+#include "dynamics/integration.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "numerics/fourier.h"
+#include "numerics/ode.h"
+
+enum { MAX_LAW_ROWS = 1024, PATIENCE = 30 };
+/* Where the integration's own noise keeps the state from settling further. */
+static const double noise = 1e-5, progress_factor = 0.9;
+
+const struct eo_integration_options eo_integration_defaults = {
+    .relative_tolerance = 1e-8, .settled = 1e-7, .max_periods = 1000, .samples = 1024};
+
+/* The state handed to CVODE is the departure from the start, its velocity per phase: tolerances then see the swing. */
+struct run {
+  const struct eo_oscillator *oscillator;
+  const struct eo_cycle *cycle;
+  double period;
+  const double *origin; /* [n] */
+};
+
+/* Prescribed motion and its rate at one phase; the mean is left out. */
+static void prescribed(const struct eo_cycle *cycle, int end, double phase, double *value, double *rate)
+{
+  *value = *rate = 0;
+  for (int k = 1; cycle->motion[end] && k <= cycle->motion_order; k++) {
+    double c = cycle->motion[end][2 * k - 1], s = cycle->motion[end][2 * k], angle = 2 * M_PI * k * phase;
+    *value += c * cos(angle) + s * sin(angle);
+    *rate += cycle->frequency * k * (s * cos(angle) - c * sin(angle));
+  }
+}
+
+/* *slope and *damping: of the mesh force with deflection and rate. */
+static struct eo_mesh_state mesh_at(const struct eo_oscillator *o, const struct eo_cycle *cycle, int end, double phase,
+                                    const double *position, const double *velocity, double *slope, double *damping)
+{
+  double row[MAX_LAW_ROWS];
+  struct eo_mesh_state m;
+  prescribed(cycle, end, phase, &m.deflection, &m.rate);
+  for (int i = 0; i < o->n; i++) {
+    m.deflection += o->mesh[end][i] * position[i];
+    m.rate += o->mesh[end][i] * velocity[i];
+  }
+  eo_law_rows(cycle->law[end], phase + cycle->shift[end], row);
+  struct eo_mesh_force f = eo_law_force(cycle->law[end], row, m.deflection, 0);
+  *slope = f.slope;
+  *damping = cycle->gated && f.margin <= 0 ? 0 : cycle->mesh_damping;
+  m.elastic = f.force;
+  m.force = f.force + *damping * m.rate;
+  m.margin = f.margin;
+  m.margin_slope = f.margin_slope;
+  return m;
+}
+
+void eo_oscillator_acceleration(const struct eo_oscillator *o, const struct eo_cycle *cycle, double phase,
+                                const double *position, const double *velocity, double *acceleration,
+                                struct eo_mesh_state *mesh)
+{
+  int n = o->n;
+  for (int i = 0; i < n; i++) {
+    acceleration[i] = o->load[i];
+    for (int j = 0; j < n; j++)
+      acceleration[i] -= o->stiffness[i * n + j] * position[j] + o->damping[i * n + j] * velocity[j];
+  }
+  for (int end = 0; end < o->ends; end++) {
+    double slope, damping;
+    struct eo_mesh_state m = mesh_at(o, cycle, end, phase, position, velocity, &slope, &damping);
+    double impact = eo_pulse_value(&cycle->pulse[end], cycle->frequency, phase + cycle->shift[end]);
+    for (int i = 0; i < n; i++)
+      acceleration[i] -= o->mesh[end][i] * m.force + o->pulse[end][i] * impact;
+    if (mesh)
+      mesh[end] = m;
+  }
+}
+
+static void unpack(const struct run *run, const double *y, double *position, double *velocity)
+{
+  int n = run->oscillator->n;
+  for (int i = 0; i < n; i++) {
+    position[i] = run->origin[i] + y[i];
+    velocity[i] = y[n + i] / run->period;
+  }
+}
+
+static int slope_of(void *context, double t, const double *y, double *slope)
+{
+  const struct run *run = context;
+  int n = run->oscillator->n;
+  double position[EO_MAX_COORDINATES], velocity[EO_MAX_COORDINATES], acceleration[EO_MAX_COORDINATES];
+  unpack(run, y, position, velocity);
+  eo_oscillator_acceleration(run->oscillator, run->cycle, t, position, velocity, acceleration, NULL);
+  for (int i = 0; i < n; i++) {
+    slope[i] = y[n + i];
+    slope[n + i] = acceleration[i] * run->period * run->period;
+  }
+  return 0;
+}
+
+static int jacobian_of(void *context, double t, const double *y, double *jacobian)
+{
+  const struct run *run = context;
+  const struct eo_oscillator *o = run->oscillator;
+  int n = o->n, size = 2 * n;
+  double position[EO_MAX_COORDINATES], velocity[EO_MAX_COORDINATES], slope[2], damping[2];
+  unpack(run, y, position, velocity);
+  for (int end = 0; end < o->ends; end++)
+    mesh_at(o, run->cycle, end, t, position, velocity, &slope[end], &damping[end]);
+  for (int i = 0; i < n; i++) {
+    jacobian[i * size + n + i] = 1;
+    for (int j = 0; j < n; j++) {
+      double k = o->stiffness[i * n + j], c = o->damping[i * n + j];
+      for (int end = 0; end < o->ends; end++) {
+        k += slope[end] * o->mesh[end][i] * o->mesh[end][j];
+        c += damping[end] * o->mesh[end][i] * o->mesh[end][j];
+      }
+      jacobian[(n + i) * size + j] = -k * run->period * run->period;
+      jacobian[(n + i) * size + n + j] = -c * run->period;
+    }
+  }
+  return 0;
+}
+
+/* A size for the swing: what the oscillator's static position and its loads let expect. */
+static void set_tolerances(const struct run *run, double relative, double *tolerance)
+{
+  int n = run->oscillator->n;
+  double largest = 0;
+  for (int i = 0; i < n; i++)
+    largest = fmax(largest, fabs(run->origin[i]));
+  double floor = relative * 1e-3 * (largest > 0 ? largest : 1);
+  for (int i = 0; i < n; i++) {
+    tolerance[i] = floor;
+    tolerance[n + i] = 2 * M_PI * floor;
+  }
+}
+
+static double longest_step(const struct eo_cycle *cycle, int ends)
+{
+  double step = 0.05;
+  for (int end = 0; end < ends; end++)
+    if (cycle->pulse[end].shape == EO_PULSE_HALF_SINE)
+      step = fmin(step, cycle->pulse[end].duration / 8);
+  return step;
+}
+
+static void record(const struct run *run, int sample, double phase, const double *y, struct eo_integration *r)
+{
+  double position[EO_MAX_COORDINATES], velocity[EO_MAX_COORDINATES];
+  unpack(run, y, position, velocity);
+  eo_oscillator_acceleration(run->oscillator, run->cycle, phase, position, velocity,
+                             r->acceleration + (size_t)sample * run->oscillator->n, r->mesh + 2 * sample);
+}
+
+/* One period from integer phase `period`; y is the state, *swing the largest departure met. With `r` it is recorded. */
+static enum eo_code one_period(struct eo_ode *ode, const struct run *run, int period, int samples, double *y, double *swing,
+                               struct eo_integration *r, struct eo_error *error)
+{
+  int n = run->oscillator->n;
+  for (int i = 0; i < samples; i++) {
+    if (r)
+      record(run, i, (double)i / samples, y, r);
+    enum eo_code code = eo_ode_advance(ode, period + (i + 1.0) / samples, y, error);
+    if (code)
+      return code;
+    for (int j = 0; j < n; j++)
+      *swing = fmax(*swing, fabs(y[j]));
+  }
+  return EO_OK;
+}
+
+static enum eo_code run_periods(struct eo_ode *ode, const struct run *run, const struct eo_integration_options *options,
+                                double *y, struct eo_integration *result, const struct eo_progress *progress, struct eo_error *error)
+{
+  int n = run->oscillator->n, period = 0, idle = 0;
+  double before[2 * EO_MAX_COORDINATES], best = INFINITY;
+  result->periodic = false;
+  result->change = 0;
+  while (period < options->max_periods - 1 && !result->periodic) {
+    double swing = 0, change = 0;
+    memcpy(before, y, sizeof *y * 2 * n);
+    enum eo_code code = one_period(ode, run, period++, 8, y, &swing, NULL, error);
+    if (code)
+      return code;
+    for (int i = 0; i < n; i++)
+      change = fmax(change, fmax(fabs(y[i] - before[i]), fabs(y[n + i] - before[n + i]) / (2 * M_PI)));
+    result->change = swing > 0 ? change / swing : 0;
+    if (result->change < progress_factor * best) {
+      best = result->change;
+      idle = 0;
+    } else
+      idle++;
+    result->periodic = result->change <= options->settled || (idle >= PATIENCE && result->change <= noise);
+    if (eo_progress_report(progress, "time integration", (double)period / options->max_periods))
+      return eo_error_set(error, EO_ERROR_CANCELLED, "", "The time integration was cancelled.");
+  }
+  double swing = 0;
+  result->periods = period + 1;
+  enum eo_code code = one_period(ode, run, period, options->samples, y, &swing, result, error);
+  unpack(run, y, result->state, result->state + n);
+  return code;
+}
+
+enum eo_code eo_integrate(const struct eo_oscillator *oscillator, const struct eo_cycle *cycle,
+                          const struct eo_integration_options *options, const double *start, struct eo_integration *result,
+                          const struct eo_progress *progress, struct eo_error *error)
+{
+  int n = oscillator->n;
+  struct run run = {oscillator, cycle, 2 * M_PI / cycle->frequency, start};
+  double y[2 * EO_MAX_COORDINATES], tolerance[2 * EO_MAX_COORDINATES];
+  struct eo_ode *ode = NULL;
+  for (int i = 0; i < n; i++) {
+    y[i] = 0;
+    y[n + i] = start[n + i] * run.period;
+  }
+  set_tolerances(&run, options->relative_tolerance, tolerance);
+  const struct eo_ode_problem problem = {.function = slope_of, .jacobian = jacobian_of, .context = &run,
+                                         .relative_tolerance = options->relative_tolerance, .absolute_tolerance = tolerance,
+                                         .max_step = longest_step(cycle, oscillator->ends)};
+  enum eo_code code = eo_ode_new(&ode, 2 * n, error);
+  if (!code)
+    code = eo_ode_start(ode, &problem, 0, y, error);
+  if (!code)
+    code = run_periods(ode, &run, options, y, result, progress, error);
+  if (!code)
+    result->steps = eo_ode_steps(ode);
+  eo_ode_free(ode);
+  return code;
+}

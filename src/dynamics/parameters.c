@@ -1,0 +1,207 @@
+#include "dynamics/parameters.h"
+
+#include <math.h>
+#include <stdio.h>
+
+/* One row per number to be checked: its key in the design's supports (of what it follows from, if it has none itself),
+   what people call it, and what it must be. */
+struct rule {
+  const char *key, *name;
+  double value;
+  bool positive; /* else >= 0 */
+};
+
+static enum eo_code check_rules(int n, const struct rule *rule, struct eo_error *error)
+{
+  for (int i = 0; i < n; i++) {
+    char pointer[sizeof error->pointer];
+    snprintf(pointer, sizeof pointer, "/supports/%s", rule[i].key);
+    if (!isfinite(rule[i].value) || rule[i].value < 0 || (rule[i].positive && rule[i].value == 0))
+      return eo_error_set(error, EO_ERROR_INPUT, pointer, "The %s must be a finite %s number, not %g.", rule[i].name,
+                          rule[i].positive ? "positive" : "non-negative", rule[i].value);
+  }
+  return EO_OK;
+}
+
+static enum eo_code check_dampers(const struct eo_dynamics_parameters *p, struct eo_error *error)
+{
+  static const char *const torsional[2] = {"/supports/pinion_groove_torsional_stiffness_Nm_per_rad",
+                                             "/supports/gear_groove_torsional_stiffness_Nm_per_rad"};
+  for (int m = 0; m < 2; m++)
+    if (p->groove_torsional_stiffness[m] == 0 && p->groove_torsional_damping[m] > 0)
+      return eo_error_set(error, EO_ERROR_INPUT, torsional[m], "A torsional damper between the ends needs its spring.");
+  return EO_OK;
+}
+
+enum eo_code eo_dynamics_parameters_check(const struct eo_dynamics_parameters *p, struct eo_error *error)
+{
+  if (p->ends != 1 && p->ends != 2)
+    return eo_error_set(error, EO_ERROR_INPUT, "/gear_pair/ends", "A gear has one or two ends, not %d.", p->ends);
+  if (!(p->base_radius[0] > 0 && p->base_radius[1] > 0 && isfinite(p->base_radius[0] + p->base_radius[1])) ||
+      !(fabs(p->base_helix_angle) < 1.5))
+    return eo_error_set(error, EO_ERROR_INPUT, "/gear_pair", "Base radii %g and %g m with a base helix angle of %g rad make no gear pair.",
+                        p->base_radius[0], p->base_radius[1], p->base_helix_angle);
+  const struct rule rule[] = {
+      {"pinion_mass_kg", "mass of the pinion", p->mass[0], true},
+      {"gear_mass_kg", "mass of the gear", p->mass[1], true},
+      {"pinion_inertia_kg_m2", "inertia of the pinion", p->inertia[0], true},
+      {"gear_inertia_kg_m2", "inertia of the gear", p->inertia[1], true},
+      {"pinion_bearing_stiffness_N_per_um", "pinion's bearing stiffness", p->bearing_stiffness[0], true},
+      {"gear_bearing_stiffness_N_per_um", "gear's bearing stiffness", p->bearing_stiffness[1], true},
+      {"bearing_damping_ratio", "pinion's bearing damping", p->bearing_damping[0], false},
+      {"bearing_damping_ratio", "gear's bearing damping", p->bearing_damping[1], false},
+      {"gear_axial_stiffness_left_N_per_um", "gear's axial stiffness on the left", p->gear_axial_stiffness[0], true},
+      {"bearing_damping_ratio", "gear's axial damping on the left", p->gear_axial_damping[0], false},
+      {"pinion_groove_axial_stiffness_N_per_um", "pinion's axial stiffness", p->groove_axial_stiffness[0], true},
+      {"groove_damping_ratio", "pinion's axial damping", p->groove_axial_damping[0], false},
+      {"mesh_damping_ratio", "mesh damping", p->mesh_damping, false},
+      /* from here on with two ends only */
+      {"gear_axial_stiffness_right_N_per_um", "gear's axial stiffness on the right", p->gear_axial_stiffness[1], true},
+      {"bearing_damping_ratio", "gear's axial damping on the right", p->gear_axial_damping[1], false},
+      {"gear_groove_axial_stiffness_N_per_um", "axial stiffness of the gear's groove", p->groove_axial_stiffness[1], true},
+      {"groove_damping_ratio", "axial damping of the gear's groove", p->groove_axial_damping[1], false},
+      {"pinion_groove_torsional_stiffness_Nm_per_rad", "torsional stiffness of the pinion's groove", p->groove_torsional_stiffness[0], false},
+      {"gear_groove_torsional_stiffness_Nm_per_rad", "torsional stiffness of the gear's groove", p->groove_torsional_stiffness[1], false},
+      {"groove_damping_ratio", "torsional damping of the pinion's groove", p->groove_torsional_damping[0], false},
+      {"groove_damping_ratio", "torsional damping of the gear's groove", p->groove_torsional_damping[1], false},
+  };
+  int all = sizeof rule / sizeof *rule;
+  enum eo_code code = check_rules(p->ends == 2 ? all : all - 8, rule, error);
+  return code || p->ends == 1 ? code : check_dampers(p, error);
+}
+
+double eo_dynamics_equivalent_mass(const struct eo_dynamics_parameters *p)
+{
+  const double *r = p->base_radius, *j = p->inertia;
+  return j[0] * j[1] / (j[0] * r[1] * r[1] + j[1] * r[0] * r[0]);
+}
+
+double eo_dynamics_mesh_damping(const struct eo_dynamics_parameters *p, double damping_ratio, double stiffness)
+{
+  return 2 * damping_ratio * sqrt(stiffness * eo_dynamics_equivalent_mass(p)) / cos(p->base_helix_angle);
+}
+
+double eo_dynamics_mesh_load(const struct eo_dynamics_parameters *p, double torque)
+{
+  return torque / (p->ends * p->base_radius[EO_PINION] * cos(p->base_helix_angle));
+}
+
+/* Ring of outer radius r and length l: mass and polar inertia are added to *mass and *inertia. */
+static void add_ring(double r, double bore, double length, double density, double *mass, double *inertia)
+{
+  double ring = density * M_PI * (r * r - bore * bore) * length;
+  *mass += ring;
+  *inertia += ring * (r * r + bore * bore) / 2;
+}
+
+/* The groove body as a bar; its length and section may vanish, the spring then has no default. */
+struct groove {
+  double radius, bore, length;
+};
+
+static struct groove groove_of(const struct eo_geometry *g, const struct eo_gear_pair *pair, int member)
+{
+  double bore = pair->bore[member];
+  if (isnan(bore))
+    bore = member == EO_PINION ? 0 : fmin(15 * pair->normal_module, g->root_radius[member]);
+  double diameter = pair->groove_diameter[member];
+  if (isnan(diameter))
+    diameter = 2 * g->root_radius[member] - 2e-3;
+  return (struct groove){diameter / 2, bore / 2, pair->ends == 2 ? pair->groove_width : 0};
+}
+
+static double or_default(double given, double otherwise)
+{
+  return isnan(given) ? otherwise : given;
+}
+
+static void set_bodies(struct eo_dynamics_parameters *p, const struct eo_geometry *g, const struct eo_gear_pair *pair,
+                       const struct eo_material *material, const struct eo_supports *supports)
+{
+  for (int m = 0; m < 2; m++) {
+    struct groove body = groove_of(g, pair, m);
+    double mass = 0, inertia = 0;
+    add_ring(g->reference_radius[m], body.bore, pair->face_width, material->density, &mass, &inertia);
+    add_ring(body.radius, body.bore, body.length / 2, material->density, &mass, &inertia);
+    p->mass[m] = or_default(supports->mass[m], mass);
+    p->inertia[m] = or_default(supports->inertia[m], inertia);
+  }
+}
+
+static void set_bearings(struct eo_dynamics_parameters *p, const struct eo_supports *supports)
+{
+  double zeta = supports->bearing_damping_ratio;
+  for (int i = 0; i < 2; i++) {
+    p->bearing_stiffness[i] = supports->bearing_stiffness[i];
+    p->bearing_damping[i] = 2 * zeta * sqrt(p->bearing_stiffness[i] * p->mass[i]);
+    p->gear_axial_stiffness[i] = supports->gear_axial_stiffness[i];
+    p->gear_axial_damping[i] = 2 * zeta * sqrt(p->gear_axial_stiffness[i] * p->mass[EO_GEAR]);
+  }
+}
+
+static void set_single_axial(struct eo_dynamics_parameters *p, const struct eo_supports *supports)
+{
+  p->groove_axial_stiffness[EO_PINION] = or_default(supports->groove_axial_stiffness[EO_PINION], p->gear_axial_stiffness[0]);
+  p->groove_axial_damping[EO_PINION] =
+      2 * supports->bearing_damping_ratio * sqrt(p->groove_axial_stiffness[EO_PINION] * p->mass[EO_PINION]);
+}
+
+static enum eo_code set_groove(struct eo_dynamics_parameters *p, const struct eo_geometry *g, const struct eo_gear_pair *pair,
+                               const struct eo_material *material, const struct eo_supports *supports, bool coupled,
+                               struct eo_error *error)
+{
+  double shear = material->youngs_modulus / (2 * (1 + material->poissons_ratio)), zeta = supports->groove_damping_ratio;
+  for (int m = 0; m < 2; m++) {
+    struct groove body = groove_of(g, pair, m);
+    double r2 = body.radius * body.radius, b2 = body.bore * body.bore;
+    double axial = supports->groove_axial_stiffness[m], torsional = supports->groove_torsional_stiffness[m];
+    if ((isnan(axial) || (coupled && isnan(torsional))) && !(body.length > 0 && r2 > b2))
+      return eo_error_set(error, EO_ERROR_INPUT, "/gear_pair/groove_width_mm",
+                          "Without a groove of positive width and section its stiffnesses must be given in the supports.");
+    p->groove_axial_stiffness[m] = or_default(axial, material->youngs_modulus * M_PI * (r2 - b2) / body.length);
+    p->groove_axial_damping[m] = 2 * zeta * sqrt(p->groove_axial_stiffness[m] * p->mass[m] / 2);
+    if (!coupled)
+      continue;
+    p->groove_torsional_stiffness[m] = or_default(torsional, shear * M_PI / 2 * (r2 * r2 - b2 * b2) / body.length);
+    p->groove_torsional_damping[m] = 2 * zeta * sqrt(p->groove_torsional_stiffness[m] * p->inertia[m] / 2);
+  }
+  return EO_OK;
+}
+
+static enum eo_code check_supports(const struct eo_supports *s, double mean_mesh_stiffness, struct eo_error *error)
+{
+  const struct rule rule[] = {
+      {"bearing_damping_ratio", "damping ratio of the bearings", s->bearing_damping_ratio, false},
+      {"groove_damping_ratio", "damping ratio of the groove", s->groove_damping_ratio, false},
+      {"mesh_damping_ratio", "damping ratio of the mesh", s->mesh_damping_ratio, false},
+      {"mesh_damping_stiffness_N_per_um", "mesh stiffness that sets the mesh damping", or_default(s->mesh_damping_stiffness, mean_mesh_stiffness), true},
+  };
+  return check_rules(sizeof rule / sizeof *rule, rule, error);
+}
+
+enum eo_code eo_dynamics_parameters_init(struct eo_dynamics_parameters *parameters, const struct eo_geometry *geometry,
+                                         const struct eo_gear_pair *pair, const struct eo_material *material,
+                                         const struct eo_supports *supports, bool ends_differ, double mean_mesh_stiffness,
+                                         struct eo_error *error)
+{
+  enum eo_code code = check_supports(supports, mean_mesh_stiffness, error);
+  if (code)
+    return code;
+  struct eo_dynamics_parameters p = {.ends = pair->ends, .base_helix_angle = geometry->base_helix_angle};
+  p.base_radius[0] = geometry->base_radius[0];
+  p.base_radius[1] = geometry->base_radius[1];
+  set_bodies(&p, geometry, pair, material, supports);
+  set_bearings(&p, supports);
+  bool coupled = supports->torsional_coupling == EO_COUPLING_ON ||
+                 (supports->torsional_coupling == EO_COUPLING_PAPER && ends_differ);
+  if (pair->ends == 1)
+    set_single_axial(&p, supports);
+  else if ((code = set_groove(&p, geometry, pair, material, supports, coupled, error)))
+    return code;
+  p.mesh_damping = eo_dynamics_mesh_damping(&p, supports->mesh_damping_ratio,
+                                            or_default(supports->mesh_damping_stiffness, mean_mesh_stiffness));
+  if ((code = eo_dynamics_parameters_check(&p, error)))
+    return code;
+  *parameters = p;
+  return EO_OK;
+}

@@ -1,0 +1,98 @@
+/* A period recorded by time integration, brought into the same spectrum and result as the harmonic balance. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "dynamics/vibration-internal.h"
+#include "numerics/dense.h"
+#include "numerics/fourier.h"
+
+enum eo_code eo_vibration_make_run(struct eo_integration *run, const struct eo_oscillator *o, int samples, struct eo_error *error)
+{
+  *run = (struct eo_integration){0};
+  run->acceleration = calloc((size_t)samples * o->n, sizeof *run->acceleration);
+  run->mesh = calloc((size_t)samples * 2, sizeof *run->mesh);
+  if (run->acceleration && run->mesh)
+    return EO_OK;
+  eo_vibration_free_run(run);
+  return eo_error_memory(error);
+}
+
+void eo_vibration_free_run(struct eo_integration *run)
+{
+  free(run->acceleration);
+  free(run->mesh);
+}
+
+/* The recorded meshes on a time grid like the harmonic balance's, and their deflections as series. */
+static void fill_grid(const struct eo_cycle *cycle, const struct eo_integration *run, int ends, struct eo_alternating *grid, double *x)
+{
+  for (int end = 0; end < ends; end++) {
+    struct eo_time_end *e = &grid->end[end];
+    for (int i = 0; i < grid->samples; i++) {
+      const struct eo_mesh_state *m = &run->mesh[2 * i + end];
+      e->x[i] = m->deflection;
+      e->v[i] = m->rate;
+      e->force[i] = m->force;
+      e->elastic[i] = m->elastic;
+      e->margin[i] = m->margin;
+      e->margin_slope[i] = m->margin_slope;
+    }
+    eo_alternating_gate(grid, end, cycle->gated);
+    eo_alternating_transform(grid, eo_fourier_terms(grid->harmonics), e->x, x + end * eo_fourier_terms(grid->harmonics));
+  }
+}
+
+/* RMS straight from the time history of the accelerations, no harmonic left out. */
+static void read_rms(const struct eo_vibration_solver *s, const struct eo_cycle *cycle, const struct eo_integration *run,
+                     int samples, struct eo_vibration *result)
+{
+  const struct eo_dynamics_model *m = &s->model;
+  int ends = m->oscillator.ends;
+  double sum[EO_READINGS][3] = {0}, square[EO_READINGS][3] = {0}; /* left, right, mean of both */
+  for (int i = 0; i < samples; i++) {
+    double q[EO_MAX_FREEDOMS], phase = (double)i / samples;
+    eo_dense_multiply(m->freedoms, m->oscillator.n, m->basis, run->acceleration + (size_t)i * m->oscillator.n, q);
+    for (int reading = 0; reading < EO_READINGS; reading++) {
+      double value[3] = {0};
+      for (int end = 0; end < ends; end++) {
+        value[end] = reading == EO_READING_NORMAL ? eo_motion_acceleration(cycle, end, phase) : 0;
+        for (int f = 0; f < m->freedoms; f++)
+          value[end] += m->reading[reading][end][f] * q[f];
+        value[2] += value[end] / ends;
+      }
+      for (int c = 0; c < 3; c++) {
+        sum[reading][c] += value[c] / samples;
+        square[reading][c] += value[c] * value[c] / samples;
+      }
+    }
+  }
+  for (int reading = 0; reading < EO_READINGS; reading++) {
+    double rms[3];
+    for (int c = 0; c < 3; c++)
+      rms[c] = sqrt(fmax(0, square[reading][c] - sum[reading][c] * sum[reading][c]));
+    result->rms[reading][0] = rms[0];
+    result->rms[reading][1] = ends == 2 ? rms[1] : 0;
+    result->rms_pair[reading] = ends == 2 ? (rms[0] + rms[1]) / 2 : rms[0];
+    result->rms_of_mean[reading] = rms[2];
+  }
+}
+
+enum eo_code eo_vibration_read_run(struct eo_vibration_solver *s, const struct eo_vibration_case *load,
+                                   const struct eo_cycle *cycle, const struct eo_integration *run, int samples,
+                                   struct eo_vibration *result, struct eo_error *error)
+{
+  struct eo_alternating *grid = NULL;
+  enum eo_code code = eo_alternating_new(&grid, s->harmonics, samples, error);
+  if (code)
+    return code;
+  fill_grid(cycle, run, s->model.parameters.ends, grid, s->x);
+  const struct eo_balance_report report = {.converged = run->periodic, .residual = run->change, .grid = grid,
+                                           .ends = s->model.parameters.ends};
+  eo_vibration_read_balance(s, load, cycle, &report, result);
+  result->periods = run->periods;
+  if (run->periodic)
+    read_rms(s, cycle, run, samples, result);
+  eo_alternating_free(grid);
+  return EO_OK;
+}

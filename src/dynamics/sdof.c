@@ -1,0 +1,258 @@
+#include "dynamics/sdof.h"
+
+#include <complex.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "dynamics/continuation.h"
+#include "dynamics/integration.h"
+#include "dynamics/stability.h"
+#include "numerics/fourier.h"
+
+enum { HARMONICS = 40, TERMS = 1 + 2 * HARMONICS, SAMPLES = 2048, BRANCH_HARMONICS = 20, BRANCH_SAMPLES = 1024, LEAD_PERIODS = 3 };
+
+/* The oscillator, its law and the workspace. */
+struct setup {
+  struct eo_oscillator oscillator;
+  struct eo_law law;
+  struct eo_cycle cycle;
+  struct eo_balance *balance;
+};
+
+static enum eo_code check_sdof(const struct eo_sdof *s, struct eo_error *error)
+{
+  if (!(s->damping >= 0 && isfinite(s->damping)))
+    return eo_error_set(error, EO_ERROR_INPUT, "/z", "The damping must not be negative, but is %g.", s->damping);
+  if (!(s->mean_force > 0 && isfinite(s->mean_force)))
+    return eo_error_set(error, EO_ERROR_INPUT, "/Fm", "The mean force must be positive, not %g.", s->mean_force);
+  if (!isfinite(s->alternating_force))
+    return eo_error_set(error, EO_ERROR_INPUT, "/Fh", "The alternating force must be finite.");
+  if (!(fabs(s->stiffness_share) < 1))
+    return eo_error_set(error, EO_ERROR_INPUT, "/e", "The stiffness must stay positive: |e| < 1, not %g.", s->stiffness_share);
+  if (!(s->frequency > 0 && isfinite(s->frequency)))
+    return eo_error_set(error, EO_ERROR_INPUT, "/W", "The frequency must be positive, not %g.", s->frequency);
+  return EO_OK;
+}
+
+static enum eo_code make_setup(struct setup *setup, const struct eo_sdof *s, int harmonics, int samples, struct eo_error *error)
+{
+  const double stiffness[3] = {1, s->stiffness_share, 0};
+  enum eo_code code = check_sdof(s, error);
+  *setup = (struct setup){0};
+  if (!code)
+    code = eo_law_set_stiffness(&setup->law, 1, stiffness, 1, -1, error);
+  if (!code)
+    code = eo_balance_new(&setup->balance, harmonics, samples, error);
+  setup->oscillator = (struct eo_oscillator){.n = 1, .ends = 1, .damping = {2 * s->damping}, .mesh = {{1}}, .pulse = {{1}},
+                                             .load = {s->mean_force}, .shift = 1};
+  setup->cycle = (struct eo_cycle){.frequency = s->frequency, .law = {&setup->law, &setup->law},
+                                   .pulse = {{.shape = EO_PULSE_COSINE, .amplitude = -s->alternating_force}}};
+  return code;
+}
+
+static void free_setup(struct setup *setup)
+{
+  eo_balance_free(setup->balance);
+  eo_law_done(&setup->law);
+}
+
+static enum eo_code balance_at(struct setup *setup, bool warm, double *x, struct eo_balance_report *report, struct eo_error *error)
+{
+  struct eo_harmonic harmonic[1 + HARMONICS];
+  eo_condense(&setup->oscillator, setup->cycle.frequency, eo_balance_harmonics(setup->balance), false, harmonic);
+  return eo_balance_solve(setup->balance, &setup->oscillator, harmonic, &setup->cycle, warm, x, report, error);
+}
+
+/* A few periods of time integration from the given state make the guess for Newton. */
+static enum eo_code guess_from_state(struct setup *setup, const double state[2], double *x, struct eo_error *error)
+{
+  double acceleration[SAMPLES], deflection[SAMPLES];
+  struct eo_mesh_state *mesh = malloc(sizeof *mesh * 2 * SAMPLES);
+  if (!mesh)
+    return eo_error_memory(error);
+  const struct eo_integration_options options = {1e-9, 1e-12, LEAD_PERIODS, SAMPLES};
+  struct eo_integration run = {.acceleration = acceleration, .mesh = mesh};
+  enum eo_code code = eo_integrate(&setup->oscillator, &setup->cycle, &options, state, &run, NULL, error);
+  for (int i = 0; i < SAMPLES && !code; i++)
+    deflection[i] = mesh[2 * i].deflection;
+  if (!code)
+    eo_fourier_series(SAMPLES, deflection, HARMONICS, x);
+  free(mesh);
+  return code;
+}
+
+static void read_response(const double *x, const struct eo_alternating *grid, struct eo_sdof_response *r)
+{
+  const struct eo_time_end *e = &grid->end[0];
+  double least = e->x[0], most = e->x[0], square = 0;
+  for (int i = 0; i < grid->samples; i++) {
+    least = fmin(least, e->x[i]);
+    most = fmax(most, e->x[i]);
+    if (e->x[i] < -1)
+      r->back_contact = true;
+  }
+  for (int i = 1; i < eo_fourier_terms(grid->harmonics); i++)
+    square += x[i] * x[i] / 2;
+  r->mean = x[0];
+  r->rms = sqrt(square);
+  r->peak_to_peak = most - least;
+  r->amplitude[0] = hypot(x[1], x[2]);
+  r->amplitude[1] = hypot(x[3], x[4]);
+  r->contact_loss = eo_alternating_loss(grid, 0);
+}
+
+/* Newton from x, then the reading and the stability of what it found. */
+static enum eo_code finish(struct setup *setup, bool warm, double *x, struct eo_sdof_response *r, struct eo_error *error)
+{
+  struct eo_balance_report report;
+  double complex multiplier[2];
+  enum eo_code code = balance_at(setup, warm, x, &report, error);
+  *r = (struct eo_sdof_response){0};
+  if (code || !report.converged)
+    return code;
+  r->converged = true;
+  read_response(x, report.grid, r);
+  code = eo_floquet(&setup->oscillator, &setup->cycle, HARMONICS, x, multiplier, error);
+  r->floquet = code ? 0 : cabs(multiplier[0]);
+  return code;
+}
+
+/* All passages of the branch through one frequency. */
+struct passages {
+  double frequency;
+  int count;
+  double before, x_before[TERMS]; /* the point visited last */
+  double x[EO_SDOF_MAX_FOLDS][TERMS];
+  int terms;
+};
+
+static int note_passage(void *context, const struct eo_branch_point *point)
+{
+  struct passages *p = context;
+  double now = point->frequency;
+  if (p->before > 0 && (p->before - p->frequency) * (now - p->frequency) <= 0 && now != p->before && p->count < EO_SDOF_MAX_FOLDS) {
+    double share = (p->frequency - p->before) / (now - p->before);
+    for (int i = 0; i < p->terms; i++)
+      p->x[p->count][i] = p->x_before[i] + share * (point->x[i] - p->x_before[i]);
+    p->count++;
+  }
+  p->before = now;
+  memcpy(p->x_before, point->x, sizeof *p->x_before * p->terms);
+  return 0;
+}
+
+/* The branch starts where the response is small: at low frequency the alternating force vanishes. */
+static enum eo_code follow(const struct eo_sdof *sdof, double low, double high, eo_branch_visit *visit, void *context, struct eo_error *error)
+{
+  struct setup setup;
+  struct eo_sdof at = *sdof;
+  struct eo_balance_report report;
+  double x[2 * TERMS];
+  at.frequency = low;
+  enum eo_code code = make_setup(&setup, &at, BRANCH_HARMONICS, BRANCH_SAMPLES, error);
+  if (!code)
+    code = balance_at(&setup, false, x, &report, error);
+  if (!code && !report.converged)
+    code = eo_error_set(error, EO_ERROR_NUMERIC, "", "No periodic response was found at the frequency %g where the branch starts.", low);
+  if (!code) {
+    struct eo_branch_options options = eo_branch_defaults;
+    enum eo_branch_end end;
+    options.low = low * 0.999;
+    options.high = high;
+    options.size = sdof->mean_force;
+    options.longest_step = 0.04;
+    code = eo_branch_follow(setup.balance, &setup.oscillator, &setup.cycle, x, 1, &options, visit, context, &end, error);
+  }
+  free_setup(&setup);
+  return code;
+}
+
+static enum eo_code solve_by_branch(const struct eo_sdof *sdof, enum eo_sdof_start start, struct setup *setup,
+                                    struct eo_sdof_response *response, struct eo_error *error)
+{
+  struct passages *p = calloc(1, sizeof *p);
+  if (!p)
+    return eo_error_memory(error);
+  p->frequency = sdof->frequency;
+  p->terms = 1 + 2 * BRANCH_HARMONICS;
+  enum eo_code code = follow(sdof, fmin(0.2, 0.5 * sdof->frequency), fmax(3, 2 * sdof->frequency), note_passage, p, error);
+  *response = (struct eo_sdof_response){0};
+  for (int i = 0; i < p->count && !code; i++) {
+    struct eo_sdof_response r;
+    code = finish(setup, true, p->x[i], &r, error);
+    bool better = !response->converged || (start == EO_SDOF_LOW ? r.rms < response->rms : r.rms > response->rms);
+    if (!code && r.converged && r.floquet < 1 && better)
+      *response = r;
+  }
+  free(p);
+  return code;
+}
+
+enum eo_code eo_sdof_solve(const struct eo_sdof *sdof, enum eo_sdof_start start, const double state[2],
+                           struct eo_sdof_response *response, struct eo_error *error)
+{
+  struct setup setup;
+  double x[2 * TERMS] = {0};
+  struct eo_sdof_response found = {0};
+  enum eo_code code = make_setup(&setup, sdof, HARMONICS, SAMPLES, error);
+  if (!code && start == EO_SDOF_STATE)
+    code = guess_from_state(&setup, state, x, error);
+  if (!code)
+    code = start == EO_SDOF_STATE ? finish(&setup, true, x, &found, error) : solve_by_branch(sdof, start, &setup, &found, error);
+  free_setup(&setup);
+  if (!code)
+    *response = found;
+  return code;
+}
+
+/* What the visitor remembers between two points. */
+struct fold_search {
+  struct eo_sdof_folds found;
+  double before, margin_before; /* frequency and least margin of the point visited last */
+};
+
+/* Folds, and the frequency at which the least margin first passes zero. */
+static int note_fold(void *context, const struct eo_branch_point *point)
+{
+  struct fold_search *s = context;
+  struct eo_sdof_folds *f = &s->found;
+  const struct eo_time_end *e = &point->grid->end[0];
+  double margin = e->margin[0];
+  for (int i = 1; i < point->grid->samples; i++)
+    margin = fmin(margin, e->margin[i]);
+  if (isnan(f->contact_lost) && s->before > 0 && s->margin_before > 0 && margin <= 0)
+    f->contact_lost = s->before + (point->frequency - s->before) * s->margin_before / (s->margin_before - margin);
+  s->before = point->frequency;
+  s->margin_before = margin;
+  if (point->fold && f->count < EO_SDOF_MAX_FOLDS) {
+    f->frequency[f->count] = point->frequency;
+    f->going_up[f->count++] = point->direction < 0;
+  }
+  return 0;
+}
+
+enum eo_code eo_sdof_folds(const struct eo_sdof *sdof, double low, double high, struct eo_sdof_folds *folds, struct eo_error *error)
+{
+  struct fold_search search = {.found = {.contact_lost = NAN}};
+  enum eo_code code = follow(sdof, low, high, note_fold, &search, error);
+  if (!code)
+    *folds = search.found;
+  return code;
+}
+
+int eo_sdof_grazing(const struct eo_sdof *s, double frequency[2])
+{
+  /* With u = W^2: (1 - (F_h / F_m)^2) u^2 + (4 z^2 - 2) u + 1 = 0. */
+  double a = 1 - pow(s->alternating_force / s->mean_force, 2), b = 4 * s->damping * s->damping - 2;
+  double discriminant = b * b - 4 * a;
+  int count = 0;
+  if (discriminant < 0)
+    return 0;
+  double q = -0.5 * (b - sqrt(discriminant));
+  double root[2] = {1 / q, a != 0 ? q / a : INFINITY};
+  for (int i = 0; i < 2; i++)
+    if (root[i] > 0 && isfinite(root[i]))
+      frequency[count++] = sqrt(root[i]);
+  return count;
+}

@@ -1,0 +1,163 @@
+#include "dynamics/stability.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "numerics/dense.h"
+#include "numerics/fourier.h"
+
+enum { N = EO_MAX_COORDINATES, MAX_STEPS = 200000, MIN_STEPS = 512, MAX_LAW_ROWS = 1024 };
+
+/* The linearised mesh at one phase of the orbit. */
+struct mesh_slope {
+  double stiffness[2], damping[2], margin[2], margin_slope[2], rate[2];
+};
+
+struct orbit {
+  const struct eo_oscillator *oscillator;
+  const struct eo_cycle *cycle;
+  int harmonics;
+  const double *x; /* [2][1 + 2 harmonics] */
+  double period;
+};
+
+static struct mesh_slope slope_at(const struct orbit *orbit, double phase)
+{
+  const struct eo_cycle *cycle = orbit->cycle;
+  int terms = eo_fourier_terms(orbit->harmonics);
+  double basis[1 + 2 * EO_MAX_HARMONICS], row[MAX_LAW_ROWS];
+  struct mesh_slope m = {0};
+  eo_fourier_basis(orbit->harmonics, phase, basis);
+  for (int end = 0; end < orbit->oscillator->ends; end++) {
+    const double *series = orbit->x + end * terms;
+    double x = series[0], v = 0;
+    for (int k = 1; k <= orbit->harmonics; k++) {
+      x += series[2 * k - 1] * basis[2 * k - 1] + series[2 * k] * basis[2 * k];
+      v += cycle->frequency * k * (series[2 * k] * basis[2 * k - 1] - series[2 * k - 1] * basis[2 * k]);
+    }
+    eo_law_rows(cycle->law[end], phase + cycle->shift[end], row);
+    struct eo_mesh_force f = eo_law_force(cycle->law[end], row, x, 0);
+    m.stiffness[end] = f.slope;
+    m.damping[end] = cycle->gated && f.margin <= 0 ? 0 : cycle->mesh_damping;
+    m.margin[end] = f.margin;
+    m.margin_slope[end] = f.margin_slope;
+    m.rate[end] = v;
+  }
+  return m;
+}
+
+/* d(disturbance)/d phase; y[2 n][columns]: positions, then velocities per phase. */
+static void disturb(const struct orbit *orbit, const struct mesh_slope *m, const double *y, double *slope)
+{
+  const struct eo_oscillator *o = orbit->oscillator;
+  int n = o->n, columns = 2 * n;
+  double k[N * N], c[N * N], t = orbit->period;
+  for (int i = 0; i < n; i++)
+    for (int j = 0; j < n; j++) {
+      double stiffness = o->stiffness[i * n + j], damping = o->damping[i * n + j];
+      for (int end = 0; end < o->ends; end++) {
+        stiffness += m->stiffness[end] * o->mesh[end][i] * o->mesh[end][j];
+        damping += m->damping[end] * o->mesh[end][i] * o->mesh[end][j];
+      }
+      k[i * n + j] = stiffness * t * t;
+      c[i * n + j] = damping * t;
+    }
+  memcpy(slope, y + n * columns, sizeof *y * n * columns);
+  for (int i = 0; i < n; i++) {
+    double *out = slope + (size_t)(n + i) * columns;
+    memset(out, 0, sizeof *out * columns);
+    for (int j = 0; j < n; j++)
+      for (int l = 0; l < columns; l++)
+        out[l] -= k[i * n + j] * y[(size_t)j * columns + l] + c[i * n + j] * y[(size_t)(n + j) * columns + l];
+  }
+}
+
+struct work {
+  double y[4 * N * N], k[4][4 * N * N], trial[4 * N * N];
+};
+
+static void advance(const struct orbit *orbit, struct work *w, double h, const struct mesh_slope *begin,
+                    const struct mesh_slope *middle, const struct mesh_slope *end)
+{
+  int size = 4 * orbit->oscillator->n * orbit->oscillator->n;
+  const struct mesh_slope *at[4] = {begin, middle, middle, end};
+  const double share[4] = {0, 0.5, 0.5, 1};
+  for (int stage = 0; stage < 4; stage++) {
+    for (int i = 0; i < size; i++)
+      w->trial[i] = w->y[i] + (stage ? share[stage] * h * w->k[stage - 1][i] : 0);
+    disturb(orbit, at[stage], w->trial, w->k[stage]);
+  }
+  for (int i = 0; i < size; i++)
+    w->y[i] += h / 6 * (w->k[0][i] + 2 * w->k[1][i] + 2 * w->k[2][i] + w->k[3][i]);
+}
+
+/* The damping force c X' is switched where the margin passes zero; a disturbed orbit passes earlier by -dX/X'. */
+static void salt(const struct orbit *orbit, struct work *w, double h, const struct mesh_slope *a, const struct mesh_slope *b)
+{
+  const struct eo_oscillator *o = orbit->oscillator;
+  int n = o->n, columns = 2 * n;
+  for (int end = 0; end < o->ends && orbit->cycle->gated; end++) {
+    if ((a->margin[end] > 0) == (b->margin[end] > 0) || a->margin_slope[end] != b->margin_slope[end])
+      continue;
+    double rate = (b->margin[end] - a->margin[end]) / h;
+    double jump = orbit->cycle->mesh_damping * (a->rate[end] + b->rate[end]) / 2 * a->margin_slope[end] / fabs(rate);
+    double impulse = jump * orbit->period * orbit->period;
+    for (int l = 0; l < columns; l++) {
+      double x = 0;
+      for (int i = 0; i < n; i++)
+        x += o->mesh[end][i] * w->y[(size_t)i * columns + l];
+      for (int i = 0; i < n; i++)
+        w->y[(size_t)(n + i) * columns + l] -= impulse * o->mesh[end][i] * x;
+    }
+  }
+}
+
+/* Steps that follow the fastest oscillation: a tenth of a radian each. */
+static int choose_steps(const struct orbit *orbit)
+{
+  const struct eo_oscillator *o = orbit->oscillator;
+  double norm = 0;
+  struct mesh_slope m = slope_at(orbit, 0);
+  for (int i = 0; i < o->n; i++) {
+    norm += o->stiffness[i * o->n + i];
+    for (int end = 0; end < o->ends; end++)
+      norm += fmax(m.stiffness[end], o->shift) * o->mesh[end][i] * o->mesh[end][i];
+  }
+  double steps = 10 * orbit->period * sqrt(norm);
+  return steps > MAX_STEPS ? -1 : (int)fmax(steps, MIN_STEPS);
+}
+
+static int by_size(const void *a, const void *b)
+{
+  double x = cabs(*(const double complex *)a), y = cabs(*(const double complex *)b);
+  return (x < y) - (x > y);
+}
+
+enum eo_code eo_floquet(const struct eo_oscillator *oscillator, const struct eo_cycle *cycle, int harmonics, const double *x,
+                        double complex *multiplier, struct eo_error *error)
+{
+  struct orbit orbit = {oscillator, cycle, harmonics, x, 2 * M_PI / cycle->frequency};
+  int size = 2 * oscillator->n, steps = choose_steps(&orbit);
+  if (steps < 0)
+    return eo_error_set(error, EO_ERROR_NUMERIC, "", "The stability at %g rad/s would need too many steps.", cycle->frequency);
+  struct work *w = calloc(1, sizeof *w);
+  if (!w)
+    return eo_error_memory(error);
+  for (int i = 0; i < size; i++)
+    w->y[i * size + i] = 1;
+  double h = 1.0 / steps;
+  struct mesh_slope begin = slope_at(&orbit, 0);
+  for (int step = 0; step < steps; step++) {
+    struct mesh_slope middle = slope_at(&orbit, (step + 0.5) * h), end = slope_at(&orbit, (step + 1) * h);
+    advance(&orbit, w, h, &begin, &middle, &end);
+    salt(&orbit, w, h, &begin, &end);
+    begin = end;
+  }
+  int failed = eo_dense_eigenvalues(size, w->y, multiplier);
+  free(w);
+  if (failed)
+    return eo_error_set(error, EO_ERROR_NUMERIC, "", "The Floquet multipliers could not be found.");
+  qsort(multiplier, size, sizeof *multiplier, by_size);
+  return EO_OK;
+}

@@ -1,0 +1,124 @@
+#include "dynamics/sweep.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "dynamics/vibration-internal.h"
+#include "numerics/fourier.h"
+
+static enum eo_code check_speeds(int count, const struct eo_vibration_case *load, struct eo_error *error)
+{
+  if (count < 1)
+    return eo_error_set(error, EO_ERROR_INPUT, "", "A sweep needs at least one speed.");
+  for (int i = 1; i < count; i++)
+    if (!(load[i].speed > load[i - 1].speed))
+      return eo_error_set(error, EO_ERROR_INPUT, "", "The speeds of a sweep must ascend; number %d is %g rad/s after %g.", i, load[i].speed,
+                          load[i - 1].speed);
+  return EO_OK;
+}
+
+enum eo_code eo_vibration_follow(struct eo_vibration_solver *s, int count, const struct eo_vibration_case *load,
+                                 const struct eo_vibration *alone, int direction, struct eo_vibration *result, struct eo_error *error)
+{
+  enum eo_code code = check_speeds(count, load, error);
+  bool separated = false, holds = false; /* at the neighbour; the solver holds its solution */
+  for (int step = 0, before = 0; step < count && !code; step++) {
+    int i = direction > 0 ? step : count - 1 - step;
+    struct eo_vibration again;
+    if (separated && !holds)
+      code = eo_vibration_solve(s, &load[before], EO_START_COLD, &again, error);
+    if (separated && !code)
+      code = eo_vibration_solve(s, &load[i], EO_START_WARM, &result[i], error);
+    holds = separated && !code && result[i].outcome != EO_VIBRATION_NOT_CONVERGED;
+    if (!holds)
+      result[i] = alone[i];
+    separated = result[i].outcome == EO_VIBRATION_CONTACT_LOST;
+    before = i;
+  }
+  return code;
+}
+
+static enum eo_code solve_alone(struct eo_vibration_solver *s, int count, const struct eo_vibration_case *load, struct eo_vibration *alone,
+                                const struct eo_progress *progress, struct eo_error *error)
+{
+  enum eo_code code = EO_OK;
+  for (int i = 0; i < count && !code; i++) {
+    code = eo_vibration_solve(s, &load[i], EO_START_COLD, &alone[i], error);
+    if (!code && eo_progress_report(progress, "speed sweep", (double)(i + 1) / count))
+      code = eo_error_set(error, EO_ERROR_CANCELLED, "", "The sweep was cancelled.");
+  }
+  return code;
+}
+
+enum eo_code eo_vibration_sweep(struct eo_vibration_solver *s, const struct eo_vibration_case *load, int count,
+                                const double *speed, struct eo_vibration *up, struct eo_vibration *down,
+                                const struct eo_progress *progress, struct eo_error *error)
+{
+  size_t n = count > 0 ? (size_t)count : 1;
+  struct eo_vibration_case *at = calloc(n, sizeof *at);
+  struct eo_vibration *alone = calloc(n, sizeof *alone);
+  enum eo_code code = at && alone ? EO_OK : eo_error_memory(error);
+  for (int i = 0; i < count && !code; i++) {
+    at[i] = *load;
+    at[i].speed = speed[i];
+  }
+  if (!code)
+    code = check_speeds(count, at, error);
+  if (!code)
+    code = solve_alone(s, count, at, alone, progress, error);
+  if (!code && up)
+    code = eo_vibration_follow(s, count, at, alone, +1, up, error);
+  if (!code && down)
+    code = eo_vibration_follow(s, count, at, alone, -1, down, error);
+  free(at);
+  free(alone);
+  return code;
+}
+
+struct trace {
+  int teeth, harmonics, ends, capacity, count;
+  struct eo_trace_point *point;
+};
+
+static int note_point(void *context, const struct eo_branch_point *p)
+{
+  struct trace *t = context;
+  struct eo_trace_point *out = &t->point[t->count++];
+  *out = (struct eo_trace_point){.speed = p->frequency / t->teeth, .direction = p->direction, .fold = p->fold};
+  for (int end = 0; end < t->ends; end++) {
+    double square = 0;
+    const double *x = p->x + end * eo_fourier_terms(t->harmonics);
+    for (int k = 1; k <= t->harmonics; k++)
+      square += pow(k * p->frequency, 4) * (x[2 * k - 1] * x[2 * k - 1] + x[2 * k] * x[2 * k]) / 2;
+    out->rms[end] = sqrt(square);
+    out->contact_loss[end] = eo_alternating_loss(p->grid, end);
+  }
+  return t->count >= t->capacity;
+}
+
+enum eo_code eo_vibration_trace(struct eo_vibration_solver *s, const struct eo_vibration_case *load, double low, double high,
+                                int direction, int capacity, struct eo_trace_point *point, int *count,
+                                enum eo_branch_end *end, struct eo_error *error)
+{
+  struct eo_vibration start;
+  struct eo_cycle cycle;
+  if (!(low > 0 && low < high && load->speed >= low && load->speed <= high) || capacity < 1)
+    return eo_error_set(error, EO_ERROR_INPUT, "", "A branch is traced within 0 < low <= speed <= high, not %g, %g, %g rad/s.", low,
+                        load->speed, high);
+  *count = 0;
+  enum eo_code code = eo_vibration_solve(s, load, EO_START_COLD, &start, error);
+  if (!code)
+    code = eo_vibration_prepare(s, load, &cycle, error);
+  if (code || start.outcome == EO_VIBRATION_NOT_CONVERGED)
+    return code;
+  struct trace trace = {load->pinion_teeth, s->harmonics, s->model.parameters.ends, capacity, 0, point};
+  struct eo_branch_options options = eo_branch_defaults;
+  options.low = low * load->pinion_teeth * (1 - 1e-12);
+  options.high = high * load->pinion_teeth * (1 + 1e-12);
+  options.max_points = capacity;
+  options.size = fmax(start.deflection_swing[0], start.force_mean[0] / s->model.oscillator.shift);
+  code = eo_branch_follow(s->balance, &s->model.oscillator, &cycle, s->x, direction, &options, note_point, &trace, end, error);
+  s->solved = false;
+  *count = trace.count;
+  return code;
+}

@@ -1,0 +1,223 @@
+#include "evaluation/evaluator-internal.h"
+
+#include "base/clock.h"
+#include "numerics/periodic.h"
+
+#include <math.h>
+#include <string.h>
+
+static enum eo_code find_root_stress(struct eo_evaluator *e, struct eo_error *error)
+{
+  enum { STEP = 2 };
+  struct eo_evaluation *r = &e->result;
+  const struct eo_pair *pair = e->pair;
+  const struct eo_root_modes *const modes[2] = {pair->root[0], pair->root[1]};
+  enum eo_code code = e->root ? EO_OK : eo_root_workspace_new(&e->root, pair->grid, modes, error);
+  for (int k = 0; k < r->cases && !code; k++)
+    for (int end = 0; end < r->ends; end++)
+      for (int member = 0; member < 2; member++) {
+        struct eo_root root = eo_flexibility_root(pair->flexibility, member);
+        eo_root_history_compute(&r->load_case[k].end[end].root[member], e->root, &root, modes[member], pair->grid,
+                                &r->load_case[k].end[end].loaded, STEP);
+      }
+  return code;
+}
+
+static void collect_objectives(struct eo_evaluation *r, bool root)
+{
+  for (int k = 0; k < r->cases; k++) {
+    const struct eo_case_result *c = &r->load_case[k];
+    struct eo_objective_case *o = &r->objective[k];
+    *o = (struct eo_objective_case){.peak_to_peak = c->peak_to_peak, .rms = c->vibration.rms_pair[EO_READING_NORMAL], .root_stress = root ? 0 : NAN,
+      .failed = c->contact_failures > 0 || c->vibration.outcome == EO_VIBRATION_NOT_CONVERGED};
+    for (int end = 0; end < r->ends; end++) {
+      o->impact = fmax(o->impact, c->end[end].impact.force);
+      o->contact_pressure = fmax(o->contact_pressure, c->end[end].max_pressure);
+      o->edge_load_share = fmax(o->edge_load_share, c->end[end].edge_share);
+      o->contact_loss = fmax(o->contact_loss, c->vibration.contact_loss[end]);
+      for (int member = 0; root && member < 2; member++)
+        o->root_stress = fmax(o->root_stress, c->end[end].root[member].maximum);
+    }
+  }
+}
+
+static enum eo_code find_modes(struct eo_evaluator *e, struct eo_error *error)
+{
+  struct eo_evaluation *r = &e->result;
+  int n = e->pair->grid->positions, heaviest = 0;
+  for (int k = 1; k < r->cases; k++)
+    if (r->load_case[k].load_case.share > r->load_case[heaviest].load_case.share)
+      heaviest = k;
+  double stiffness[2];
+  bool elastic = r->load_case[heaviest].contact_failures == 0;
+  for (int end = 0; end < 2; end++) {
+    stiffness[end] = eo_periodic_mean(n, r->load_case[heaviest].end[end < r->ends ? end : 0].loaded.tangent);
+    elastic = elastic && stiffness[end] > 0; /* an end may carry nothing */
+  }
+  if (!elastic) {
+    r->modes = (struct eo_dynamics_modes){0};
+    return EO_OK;
+  }
+  return eo_dynamics_model_modes(eo_vibration_model(e->vibration), stiffness, &r->modes, error);
+}
+
+static void set_cases(struct eo_evaluator *e, const struct eo_design *design)
+{
+  struct eo_evaluation *r = &e->result;
+  r->ends = design->gear_pair.ends;
+  r->cases = design->load_cases;
+  for (int k = 0; k < r->cases; k++) {
+    r->load_case[k].load_case = design->load_case[k];
+    r->load_case[k].force = design->load_case[k].torque /
+                            (r->ends * e->pair->geometry.base_radius[EO_PINION] * cos(e->pair->geometry.base_helix_angle));
+    for (int reading = 0; reading < EO_READINGS; reading++)
+      r->load_case[k].band[reading][0] = r->load_case[k].band[reading][1] = NAN;
+    r->load_case[k].body_iterations = 0;
+    for (int end = 0; end < 2; end++) {
+      r->load_case[k].end[end].deflection = (struct eo_deflection){0};
+      for (int member = 0; member < 2; member++)
+        r->load_case[k].end[end].root[member].phases = 0;
+    }
+  }
+}
+
+static enum eo_code fit_vibration(struct eo_evaluator *e, int harmonics, struct eo_error *error)
+{
+  if (e->vibration && e->vibration_harmonics == harmonics)
+    return EO_OK;
+  struct eo_vibration_solver *solver;
+  enum eo_code code = eo_vibration_new(&solver, harmonics, 0, error);
+  if (code)
+    return code;
+  eo_vibration_free(e->vibration);
+  e->vibration = solver;
+  e->vibration_harmonics = e->result.harmonics = harmonics;
+  return EO_OK;
+}
+
+static enum eo_code solve_static(struct eo_evaluator *e, const struct eo_design *design, const struct eo_scenario *scenario,
+                                 struct eo_error *error)
+{
+  struct eo_evaluation *r = &e->result;
+  enum eo_code code = eo_evaluator_fit_bodies(e, &design->shafts, error);
+  if (code)
+    return code;
+  double start = eo_clock_milliseconds();
+  set_cases(e, design);
+  eo_evaluator_set_fields(e, design, scenario);
+  eo_evaluator_solve_contact(e, design, scenario->compliance);
+  for (int k = 0; k < r->cases; k++) {
+    for (int end = 0; end < r->ends; end++)
+      eo_evaluator_summarise_end(e, &r->load_case[k], end);
+    eo_evaluator_summarise_pair(e, design, &r->load_case[k]);
+  }
+  double contact = eo_clock_milliseconds();
+  eo_evaluator_find_impacts(e, design, scenario->speed, scenario->compliance);
+  r->static_ms = contact - start;
+  r->impact_ms = eo_clock_milliseconds() - contact;
+  return EO_OK;
+}
+
+static const struct eo_scenario nominal_scenario = {NAN, NAN, 1, 1};
+
+enum eo_code eo_evaluator_contact(struct eo_evaluator *e, const struct eo_design *design, const struct eo_evaluation **evaluation,
+                                  struct eo_error *error)
+{
+  enum eo_code code = solve_static(e, design, &nominal_scenario, error);
+  if (!code)
+    *evaluation = &e->result;
+  return code;
+}
+
+enum eo_code eo_evaluator_run(struct eo_evaluator *e, const struct eo_design *design, const struct eo_scenario *scenario, int want,
+                              const struct eo_evaluation **evaluation, struct eo_error *error)
+{
+  const struct eo_scenario *s = scenario ? scenario : &nominal_scenario;
+  struct eo_evaluation *r = &e->result;
+  bool root = e->pair->flexibility && (want & EO_WANT_ROOT || design->objective.root_stress.enabled);
+  enum eo_code code = fit_vibration(e, design->resolution.harmonics, error);
+  if (!code)
+    code = solve_static(e, design, s, error);
+  if (code)
+    return code;
+  double impact = eo_clock_milliseconds();
+  if (root)
+    code = find_root_stress(e, error);
+  double rooted = eo_clock_milliseconds();
+  if (!code)
+    code = eo_evaluator_solve_dynamics(e, design, s->speed, s->compliance, want, error);
+  if (!code && want & EO_WANT_CURVES)
+    code = find_modes(e, error);
+  r->dynamics_ms = eo_clock_milliseconds() - rooted;
+  r->root_ms = rooted - impact;
+  if (!code && want & EO_WANT_BAND)
+    code = eo_evaluator_find_band(e, design, s->speed, s->compliance, error);
+  if (code)
+    return code;
+  collect_objectives(r, root);
+  *evaluation = r;
+  return EO_OK;
+}
+
+bool eo_evaluator_vibration(const struct eo_evaluator *e, int load_case, struct eo_dynamics_parameters *parameters,
+                            struct eo_vibration_case *load)
+{
+  *parameters = e->problem[load_case].parameters;
+  *load = e->problem[load_case].load;
+  return e->problem[load_case].solvable;
+}
+
+const struct eo_gap_field *eo_evaluator_field(const struct eo_evaluator *e, int end)
+{
+  return &e->field[eo_evaluator_kept_at(e, end)];
+}
+
+/* ---- fitness ---- */
+
+int eo_evaluator_scenarios(const struct eo_design *design)
+{
+  return design->objective.robust == EO_ROBUST_OFF || design->objective.scenarios == 0 ? 1 : design->objective.scenarios;
+}
+
+enum eo_code eo_evaluator_raw(struct eo_evaluator *e, const struct eo_design *design, struct eo_objective_case *raw, struct eo_error *error)
+{
+  int scenarios = eo_evaluator_scenarios(design);
+  bool nominal = design->objective.robust == EO_ROBUST_OFF || design->objective.scenarios == 0;
+  for (int s = 0; s < scenarios; s++) {
+    const struct eo_evaluation *r;
+    enum eo_code code = eo_evaluator_run(e, design, nominal ? NULL : &design->objective.scenario[s], 0, &r, error);
+    if (code)
+      return code;
+    memcpy(raw + s * r->cases, r->objective, sizeof *raw * (size_t)r->cases);
+  }
+  return EO_OK;
+}
+
+void eo_evaluator_combine(const struct eo_design *design, const struct eo_geometry *geometry, const struct eo_objective_case *raw,
+                          const struct eo_objective_case *unmodified, struct eo_objective_value *value)
+{
+  int scenarios = eo_evaluator_scenarios(design), cases = design->load_cases;
+  bool outside = eo_objective_relief_outside(&design->modification, geometry->rack_bottom, geometry->rack_top);
+  struct eo_objective_value sum = {0}, one;
+  for (int s = 0; s < scenarios; s++) {
+    eo_objective_value(&design->objective, cases, design->load_case, raw + s * cases, unmodified + s * cases, outside, &one);
+    bool worst = design->objective.robust == EO_ROBUST_WORST;
+    if (s == 0 || (worst && one.fitness < sum.fitness)) {
+      sum = one;
+    } else if (!worst) {
+      for (int i = 0; i < 3; i++)
+        sum.sums.f[i] += one.sums.f[i];
+      sum.sums.failed |= one.sums.failed;
+      sum.objective += one.objective;
+      sum.violation += one.violation;
+    }
+  }
+  *value = sum;
+  if (design->objective.robust != EO_ROBUST_MEAN || scenarios == 1)
+    return;
+  for (int i = 0; i < 3; i++)
+    value->sums.f[i] /= scenarios;
+  value->objective /= scenarios;
+  value->violation /= scenarios;
+  value->fitness = value->sums.failed ? EO_FITNESS_WORST : 1 / value->objective - design->objective.penalty * value->violation;
+}

@@ -1,0 +1,79 @@
+#include "evaluation/pair.h"
+
+#include "base/clock.h"
+#include "numerics/threads.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static enum eo_code prepare(struct eo_pair *pair, const struct eo_pair_options *options, const struct eo_progress *progress,
+                            struct eo_error *error)
+{
+  struct eo_flexibility_settings settings = eo_flexibility_settings_of(&pair->resolution);
+  struct eo_contact_grid_settings grid = options->grid ? *options->grid : eo_contact_grid_default(&pair->resolution);
+  enum eo_code code = EO_OK;
+  pair->kernel = options->kernel;
+  if (!pair->kernel.evaluate) {
+    code = eo_flexibility_prepare(&pair->geometry, &pair->gear_pair, &pair->material, &settings, options->cache_directory, progress,
+                                  &pair->flexibility, error);
+    if (code)
+      return code;
+    pair->kernel = eo_flexibility_kernel(pair->flexibility);
+    for (int member = 0; member < 2 && !code; member++)
+      code = eo_root_modes_new(&pair->root[member], pair->flexibility, member, error);
+  }
+  if (!code)
+    code = eo_contact_grid_new(&pair->grid, &pair->geometry, &pair->material, &grid, options->phase, pair->kernel, progress, error);
+  for (int side = 0; side < 2 && !code; side++)
+    pair->grid->corner[side].at_radius = options->corner_at_radius;
+  return code;
+}
+
+enum eo_code eo_pair_new(struct eo_pair **result, const struct eo_design *design, const struct eo_pair_options *options,
+                         const struct eo_progress *progress, struct eo_error *error)
+{
+  double start = (1e-3 * eo_clock_milliseconds());
+  eo_threads_limit();
+  struct eo_pair *pair = calloc(1, sizeof *pair);
+  if (!pair)
+    return eo_error_memory(error);
+  pair->gear_pair = design->gear_pair;
+  pair->material = design->material;
+  pair->resolution = design->resolution;
+  enum eo_code code = eo_geometry_init(&pair->geometry, &pair->gear_pair, error);
+  if (!code)
+    code = prepare(pair, options, progress, error);
+  if (code) {
+    eo_pair_free(pair);
+    return code;
+  }
+  pair->impact = (struct eo_impact_settings){.patch = design->resolution.impact_patch, .stations = options->impact_stations};
+  eo_impact_inertia(&pair->geometry, &pair->material, pair->impact.inertia);
+  for (int end = 0; end < 2; end++)
+    pair->pivot[end] = options->own_pivots || pair->gear_pair.ends == 1 ? 0 : (pair->geometry.face_width + pair->gear_pair.groove_width) / 2;
+  pair->seconds = (1e-3 * eo_clock_milliseconds()) - start;
+  *result = pair;
+  return EO_OK;
+}
+
+void eo_pair_free(struct eo_pair *pair)
+{
+  if (!pair)
+    return;
+  eo_contact_grid_free(pair->grid);
+  for (int member = 0; member < 2; member++)
+    eo_root_modes_free(pair->root[member]);
+  eo_flexibility_free(pair->flexibility);
+  free(pair);
+}
+
+bool eo_pair_serves(const struct eo_pair *pair, const struct eo_design *design)
+{
+  const struct eo_resolution *a = &pair->resolution, *b = &design->resolution;
+  return memcmp(&pair->gear_pair, &design->gear_pair, sizeof pair->gear_pair) == 0 &&
+         memcmp(&pair->material, &design->material, sizeof pair->material) == 0 && a->positions == b->positions &&
+         a->cells_per_line == b->cells_per_line && a->tip_edge_contact == b->tip_edge_contact && a->sector_teeth == b->sector_teeth &&
+         a->neighbour_coupling == b->neighbour_coupling && a->layers == b->layers && a->flank_rows == b->flank_rows &&
+         a->fillet_elements == b->fillet_elements && a->impact_patch == b->impact_patch;
+}

@@ -1,0 +1,403 @@
+#include "evaluation/sweep.h"
+
+#include "numerics/periodic.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/parallel.h"
+#include "dynamics/sweep.h"
+
+/* What the speeds of one torque share. */
+struct problem {
+  struct eo_dynamics_parameters parameters;
+  struct eo_vibration_case load; /* laws are those below */
+  struct eo_law law[2];
+  struct eo_impact impact[2];
+  bool solvable;                 /* false: there is no mesh law */
+};
+
+/* One thread's own. */
+struct worker {
+  struct eo_design *design;      /* with one load case */
+  struct eo_evaluator *evaluator;
+  struct eo_vibration_solver *solver;
+  int model;                     /* problem whose model the solver holds; -1: none */
+};
+
+struct job {
+  struct eo_sweep *sweep;
+  const struct eo_pair *pair;
+  const struct eo_design *design;
+  int threads;
+  struct worker *worker;         /* [threads] */
+  struct problem *problem;       /* [variant][torque] */
+  struct eo_vibration *alone;    /* [variant][torque][speed]: every point on its own */
+};
+
+/* ---- plan ---- */
+
+static enum eo_code check_axis(int count, const double *value, const char *what, struct eo_error *error)
+{
+  for (int i = 0; i < count; i++)
+    if (!(value[i] > 0 && isfinite(value[i])))
+      return eo_error_set(error, EO_ERROR_INPUT, "", "A %s must be positive; number %d of the sweep is %g.", what, i + 1, value[i]);
+    else if (i && !(value[i] > value[i - 1]))
+      return eo_error_set(error, EO_ERROR_INPUT, "", "Each %s of a sweep must be larger than the one before; number %d is not.", what, i + 1);
+  return EO_OK;
+}
+
+static enum eo_code check_plan(const struct eo_sweep_plan *plan, struct eo_error *error)
+{
+  enum eo_code code = check_axis(plan->torques, plan->torque, "torque", error);
+  if (!code)
+    code = check_axis(plan->speeds, plan->speed, "speed", error);
+  double points = fmax(plan->torques, 1) * fmax(plan->speeds, 1);
+  if (!code && points > EO_SWEEP_MOST_POINTS)
+    code = eo_error_set(error, EO_ERROR_INPUT, "", "%.0f points are more than a sweep may have (%d).", points, EO_SWEEP_MOST_POINTS);
+  return code;
+}
+
+static const struct eo_load_case *heaviest(const struct eo_design *design)
+{
+  int k = 0;
+  for (int i = 1; i < design->load_cases; i++)
+    if (design->load_case[i].share > design->load_case[k].share)
+      k = i;
+  return &design->load_case[k];
+}
+
+static double *copy_axis(int count, const double *value, const double *otherwise)
+{
+  double *copy = malloc((size_t)(count ? count : 1) * sizeof *copy);
+  if (copy)
+    memcpy(copy, count ? value : otherwise, (size_t)(count ? count : 1) * sizeof *copy);
+  return copy;
+}
+
+static enum eo_code make_sweep(struct eo_sweep *s, const struct eo_design *design, const struct eo_sweep_plan *plan, struct eo_error *error)
+{
+  const struct eo_load_case *standard = heaviest(design);
+  *s = (struct eo_sweep){.ends = design->gear_pair.ends, .torques = plan->torques ? plan->torques : 1, .speeds = plan->speeds ? plan->speeds : 1};
+  size_t torques = (size_t)s->torques, points = torques * (size_t)s->speeds;
+  s->torque = copy_axis(plan->torques, plan->torque, &standard->torque);
+  s->speed = copy_axis(plan->speeds, plan->speed, &standard->speed);
+  bool made = s->torque && s->speed;
+  for (int v = 0; v < EO_SWEEP_VARIANTS; v++) {
+    s->at_torque[v] = calloc(torques, sizeof *s->at_torque[v]);
+    made = made && s->at_torque[v];
+    for (int d = 0; d < EO_SWEEP_DIRECTIONS; d++) {
+      s->point[v][d] = calloc(points, sizeof *s->point[v][d]);
+      made = made && s->point[v][d];
+    }
+  }
+  return made ? EO_OK : eo_error_memory(error);
+}
+
+void eo_sweep_done(struct eo_sweep *s)
+{
+  if (!s)
+    return;
+  free(s->torque);
+  free(s->speed);
+  free(s->crossing);
+  for (int v = 0; v < EO_SWEEP_VARIANTS; v++) {
+    free(s->at_torque[v]);
+    for (int d = 0; d < EO_SWEEP_DIRECTIONS; d++)
+      free(s->point[v][d]);
+  }
+  *s = (struct eo_sweep){0};
+}
+
+/* ---- one torque: contact, mesh laws, impacts, modes ---- */
+
+/* sound: the loaded contact converged; where it did not, everything built on it means nothing. */
+static void read_point(struct eo_sweep_point *p, const struct eo_vibration *r, bool sound)
+{
+  bool found = sound && r->outcome != EO_VIBRATION_NOT_CONVERGED;
+  p->outcome = sound ? r->outcome : EO_VIBRATION_NOT_CONVERGED;
+  p->back_contact = found && r->back_contact;
+  for (int end = 0; end < 2 && !sound; end++)
+    p->impact[end] = NAN;
+  for (int reading = 0; reading < EO_READINGS; reading++) {
+    p->rms_pair[reading] = found ? r->rms_pair[reading] : NAN;
+    p->rms_of_mean[reading] = found ? r->rms_of_mean[reading] : NAN;
+    for (int end = 0; end < 2; end++)
+      p->rms[reading][end] = found ? r->rms[reading][end] : NAN;
+  }
+  for (int end = 0; end < 2; end++) {
+    p->dynamic_factor[end] = found ? r->dynamic_factor[end] : NAN;
+    p->contact_loss[end] = found ? r->contact_loss[end] : NAN;
+  }
+}
+
+static enum eo_code read_torque(struct eo_sweep_torque *t, const struct eo_evaluation *r, const struct eo_dynamics_parameters *parameters,
+                                struct eo_error *error)
+{
+  const struct eo_case_result *c = &r->load_case[0];
+  struct eo_dynamics_model model;
+  double known = c->contact_failures ? NAN : 1;
+  t->peak_to_peak = known * c->peak_to_peak;
+  t->mean = known * c->mean;
+  t->contact_failures = c->contact_failures;
+  for (int end = 0; end < 2; end++) {
+    const struct eo_end_result *from = &c->end[end < r->ends ? end : 0];
+    t->stiffness[end] = known * eo_periodic_mean(r->positions, from->stiffness);
+    t->tangent[end] = known * eo_periodic_mean(r->positions, from->loaded.tangent);
+    t->max_pressure[end] = known * from->max_pressure;
+    t->max_line_load[end] = known * from->max_line_load;
+    t->edge_share[end] = known * from->edge_share;
+  }
+  if (c->contact_failures)
+    return EO_OK;
+  enum eo_code code = eo_dynamics_model_init(&model, parameters, error);
+  return code ? code : eo_dynamics_model_modes(&model, t->tangent, &t->modes, error);
+}
+
+static enum eo_code keep_problem(struct problem *p, const struct eo_evaluator *evaluator, const struct eo_evaluation *r, struct eo_error *error)
+{
+  enum eo_code code = EO_OK;
+  p->solvable = eo_evaluator_vibration(evaluator, 0, &p->parameters, &p->load);
+  for (int end = 0; end < r->ends && !code; end++) {
+    p->impact[end] = r->load_case[0].end[end].impact;
+    if (p->solvable)
+      code = eo_law_copy(&p->law[end], p->load.law[end], error);
+    p->load.law[end] = &p->law[end];
+  }
+  return code;
+}
+
+static enum eo_code make_worker(struct job *job, struct worker *w, struct eo_error *error)
+{
+  if (w->design)
+    return EO_OK;
+  enum eo_code code = eo_evaluator_new(&w->evaluator, job->pair, 1, error);
+  if (!code)
+    code = eo_vibration_new(&w->solver, job->design->resolution.harmonics, 0, error);
+  if (code)
+    return code;
+  w->model = -1;
+  w->design = malloc(sizeof *w->design);
+  if (!w->design)
+    return eo_error_memory(error);
+  *w->design = *job->design;
+  w->design->load_cases = 1;
+  return EO_OK;
+}
+
+static enum eo_code solve_torque(void *context, int thread, int item, struct eo_error *error)
+{
+  struct job *job = context;
+  struct eo_sweep *s = job->sweep;
+  struct worker *w = &job->worker[thread];
+  const struct eo_evaluation *r;
+  int variant = item / s->torques, k = item % s->torques;
+  enum eo_code code = make_worker(job, w, error);
+  if (code)
+    return code;
+  w->design->load_case[0] = (struct eo_load_case){.torque = s->torque[k], .speed = s->speed[0], .share = 1};
+  w->design->modification = variant == EO_SWEEP_UNMODIFIED ? (struct eo_modification){0} : job->design->modification;
+  code = eo_evaluator_run(w->evaluator, w->design, NULL, 0, &r, error);
+  if (!code)
+    code = keep_problem(&job->problem[item], w->evaluator, r, error);
+  if (!code)
+    code = read_torque(&s->at_torque[variant][k], r, &job->problem[item].parameters, error);
+  if (code)
+    return code;
+  job->alone[(size_t)item * (size_t)s->speeds] = r->load_case[0].vibration;
+  return EO_OK;
+}
+
+/* ---- one speed ---- */
+
+static struct eo_vibration_case case_at(const struct job *job, const struct problem *p, double speed, double impact[2])
+{
+  struct eo_vibration_case load = p->load;
+  struct eo_impact strike[2] = {p->impact[0], p->impact[1]};
+  load.speed = speed;
+  for (int end = 0; end < job->sweep->ends; end++) {
+    eo_impact_strike(&strike[end], job->pair->grid, &job->pair->impact, speed, 1);
+    if (impact)
+      impact[end] = strike[end].touched ? strike[end].force : 0;
+  }
+  if (load.impact != EO_IMPACT_NONE)
+    eo_evaluator_pulses(job->pair, strike, speed, load.pulse);
+  return load;
+}
+
+static enum eo_code take_model(struct job *job, struct worker *w, int problem, struct eo_error *error)
+{
+  enum eo_code code = make_worker(job, w, error);
+  if (!code && w->model != problem)
+    code = eo_vibration_set_model(w->solver, &job->problem[problem].parameters, error);
+  if (!code)
+    w->model = problem;
+  return code;
+}
+
+/* The first speed of each torque is known from the evaluation. */
+static enum eo_code solve_speed(void *context, int thread, int item, struct eo_error *error)
+{
+  struct job *job = context;
+  struct worker *w = &job->worker[thread];
+  int others = job->sweep->speeds - 1, problem = item / others, j = 1 + item % others;
+  struct eo_vibration *result = &job->alone[(size_t)problem * (size_t)job->sweep->speeds + (size_t)j];
+  if (!job->problem[problem].solvable) {
+    result->outcome = EO_VIBRATION_NOT_CONVERGED;
+    return EO_OK;
+  }
+  enum eo_code code = take_model(job, w, problem, error);
+  if (code)
+    return code;
+  struct eo_vibration_case load = case_at(job, &job->problem[problem], job->sweep->speed[j], NULL);
+  return job->design->resolution.solver == EO_SOLVER_TIME_INTEGRATION ? eo_vibration_integrate(w->solver, &load, NULL, result, NULL, error)
+                                                                      : eo_vibration_solve(w->solver, &load, EO_START_COLD, result, error);
+}
+
+/* ---- the branches of one torque ---- */
+
+static bool separates(const struct job *job, const struct eo_vibration *alone)
+{
+  bool lost = false;
+  for (int j = 0; j < job->sweep->speeds; j++)
+    lost = lost || alone[j].outcome == EO_VIBRATION_CONTACT_LOST;
+  return lost && job->design->resolution.solver != EO_SOLVER_TIME_INTEGRATION;
+}
+
+static enum eo_code solve_branch(void *context, int thread, int item, struct eo_error *error)
+{
+  struct job *job = context;
+  struct eo_sweep *s = job->sweep;
+  struct worker *w = &job->worker[thread];
+  int problem = item / EO_SWEEP_DIRECTIONS, direction = item % EO_SWEEP_DIRECTIONS;
+  size_t speeds = (size_t)s->speeds, first = (size_t)(problem % s->torques) * speeds;
+  const struct eo_vibration *alone = job->alone + (size_t)problem * speeds;
+  struct eo_sweep_point *point = s->point[problem / s->torques][direction] + first;
+  bool sound = s->at_torque[problem / s->torques][problem % s->torques].contact_failures == 0;
+  struct eo_vibration_case *load = calloc(speeds, sizeof *load);
+  struct eo_vibration *followed = calloc(speeds, sizeof *followed);
+  enum eo_code code = load && followed ? EO_OK : eo_error_memory(error);
+  for (int j = 0; j < s->speeds && !code; j++)
+    load[j] = case_at(job, &job->problem[problem], s->speed[j], point[j].impact);
+  bool follow = !code && separates(job, alone);
+  if (follow)
+    code = take_model(job, w, problem, error);
+  if (follow && !code)
+    code = eo_vibration_follow(w->solver, s->speeds, load, alone, direction == EO_SWEEP_UP ? +1 : -1, followed, error);
+  for (int j = 0; j < s->speeds && !code; j++)
+    read_point(&point[j], follow ? &followed[j] : &alone[j], sound);
+  free(load);
+  free(followed);
+  return code;
+}
+
+/* ---- the order ---- */
+
+static enum eo_code make_job(struct job *job, struct eo_error *error)
+{
+  size_t problems = (size_t)(EO_SWEEP_VARIANTS * job->sweep->torques);
+  job->worker = calloc((size_t)job->threads, sizeof *job->worker);
+  job->problem = calloc(problems, sizeof *job->problem);
+  job->alone = calloc(problems * (size_t)job->sweep->speeds, sizeof *job->alone);
+  return job->worker && job->problem && job->alone ? EO_OK : eo_error_memory(error);
+}
+
+static void done_job(struct job *job)
+{
+  for (int i = 0; job->worker && i < job->threads; i++) {
+    eo_evaluator_free(job->worker[i].evaluator);
+    eo_vibration_free(job->worker[i].solver);
+    free(job->worker[i].design);
+  }
+  for (int i = 0; job->problem && i < EO_SWEEP_VARIANTS * job->sweep->torques; i++)
+    for (int end = 0; end < 2; end++)
+      eo_law_done(&job->problem[i].law[end]);
+  free(job->worker);
+  free(job->problem);
+  free(job->alone);
+}
+
+static enum eo_code run_job(struct job *job, const struct eo_progress *progress, struct eo_error *error)
+{
+  enum { TORQUE_COST = 20, BRANCH_SHARE = 4 }; /* in vibrations of one speed */
+  const struct eo_sweep *s = job->sweep;
+  int problems = EO_SWEEP_VARIANTS * s->torques;
+  double torques = TORQUE_COST * problems, speeds = (double)problems * s->speeds, all = torques + speeds + speeds / BRANCH_SHARE;
+  struct eo_parallel p = {.threads = job->threads, .work = solve_torque, .context = job, .progress = progress, .what = "loaded contact",
+                          .first = 0, .last = torques / all};
+  enum eo_code code = eo_parallel_run(&p, problems, error);
+  p.first = p.last;
+  p.last = (torques + speeds) / all;
+  p.work = solve_speed;
+  p.what = "vibration";
+  if (!code)
+    code = eo_parallel_run(&p, problems * (s->speeds - 1), error);
+  p.first = p.last;
+  p.last = 1;
+  p.work = solve_branch;
+  p.what = "branches";
+  return code ? code : eo_parallel_run(&p, problems * EO_SWEEP_DIRECTIONS, error);
+}
+
+/* More than the residual of the harmonic balance leaves open. */
+static bool differ(const struct eo_sweep_point *a, const struct eo_sweep_point *b)
+{
+  static const double CLOSE = 1e-6;
+  double up = a->rms_pair[EO_READING_NORMAL], down = b->rms_pair[EO_READING_NORMAL];
+  return a->outcome != b->outcome || fabs(up - down) > CLOSE * fmax(up, down);
+}
+
+/* Where one direction found no periodic state and the other did, the other's is a state of that speed too. */
+static void compare_branches(struct eo_sweep *s)
+{
+  for (int v = 0; v < EO_SWEEP_VARIANTS; v++)
+    for (int i = 0; i < s->torques * s->speeds; i++) {
+      struct eo_sweep_point *up = &s->point[v][EO_SWEEP_UP][i], *down = &s->point[v][EO_SWEEP_DOWN][i];
+      if (up->outcome == EO_VIBRATION_NOT_CONVERGED)
+        *up = *down;
+      else if (down->outcome == EO_VIBRATION_NOT_CONVERGED)
+        *down = *up;
+      s->branches[v] = s->branches[v] || differ(up, down);
+    }
+}
+
+static bool crosses(const struct eo_sweep *s, int torque, int mode, int order, int teeth, struct eo_sweep_crossing *crossing)
+{
+  double frequency = s->at_torque[EO_SWEEP_DESIGN][torque].modes.frequency[mode];
+  *crossing = (struct eo_sweep_crossing){torque, mode, order, frequency, 2 * M_PI * frequency / (order * teeth)};
+  return crossing->speed >= s->speed[0] && crossing->speed <= s->speed[s->speeds - 1];
+}
+
+static enum eo_code find_crossings(struct eo_sweep *s, int teeth, int orders, struct eo_error *error)
+{
+  s->crossing = malloc((size_t)(s->torques * EO_MAX_COORDINATES * orders) * sizeof *s->crossing);
+  if (!s->crossing)
+    return eo_error_memory(error);
+  for (int k = 0; k < s->torques; k++)
+    for (int mode = 0; mode < s->at_torque[EO_SWEEP_DESIGN][k].modes.n; mode++)
+      for (int order = 1; order <= orders; order++)
+        s->crossings += crosses(s, k, mode, order, teeth, &s->crossing[s->crossings]);
+  return EO_OK;
+}
+
+enum eo_code eo_sweep_run(struct eo_sweep *sweep, const struct eo_pair *pair, const struct eo_design *design, const struct eo_sweep_plan *plan,
+                          const struct eo_progress *progress, struct eo_error *error)
+{
+  struct job job = {.sweep = sweep, .pair = pair, .design = design};
+  *sweep = (struct eo_sweep){0};
+  enum eo_code code = check_plan(plan, error);
+  if (code)
+    return code;
+  job.threads = plan->threads < 1 ? eo_parallel_cores() : plan->threads > EO_MAX_THREADS ? EO_MAX_THREADS : plan->threads;
+  code = make_sweep(sweep, design, plan, error);
+  if (!code)
+    code = make_job(&job, error);
+  if (!code)
+    code = run_job(&job, progress, error);
+  if (!code)
+    code = find_crossings(sweep, pair->geometry.teeth[EO_PINION], design->resolution.te_harmonics, error);
+  if (!code)
+    compare_branches(sweep);
+  done_job(&job);
+  return code;
+}

@@ -1,0 +1,135 @@
+#include "excitation/impact.h"
+
+#include "numerics/periodic.h"
+
+#include <math.h>
+#include <stddef.h>
+
+void eo_impact_inertia(const struct eo_geometry *g, const struct eo_material *material, double inertia[2])
+{
+  for (int i = 0; i < 2; i++)
+    inertia[i] = M_PI / 2 * material->density * g->face_width * pow(g->working_radius[i], 4);
+}
+
+double eo_impact_mass(const struct eo_geometry *g, const double inertia[2])
+{
+  double p = g->base_radius[EO_PINION], q = g->base_radius[EO_GEAR], c = cos(g->base_helix_angle);
+  return inertia[0] * inertia[1] / (inertia[0] * q * q + inertia[1] * p * p) / (c * c);
+}
+
+/* The search for the first touch: the incoming line's smallest gap against the loaded approach. */
+struct search {
+  const struct eo_contact_grid *grid;
+  const struct eo_gap_field *field;
+  const struct eo_periodic *approach;
+  int stations;
+};
+
+/* The smallest gap of the incoming line at fixed stations over the face. */
+static double sampled_minimum(const struct search *search, double c, double *eta)
+{
+  const struct eo_geometry *g = &search->grid->geometry;
+  double best = INFINITY, reach = search->field->corner[0].reach / 2;
+  for (int i = 0; i < search->stations; i++) {
+    double at = g->face_width * ((double)i / (search->stations - 1) - 0.5), s = c + at * tan(g->base_helix_angle);
+    double gap = s < g->path_start - reach || s > g->path_end ? INFINITY : eo_gap_field_at(search->field, s, at, NULL, NULL);
+    if (gap < best) {
+      best = gap;
+      *eta = at;
+    }
+  }
+  return best;
+}
+
+/* Gap left between the incoming line at phase c and the loaded approach, m; negative once it touches. */
+static double clearance(const struct search *search, double c, double *eta)
+{
+  double phase = c / search->grid->geometry.transverse_base_pitch;
+  double gap = search->stations > 1 ? sampled_minimum(search, c, eta) : eo_gap_field_line_minimum(search->field, c, true, eta);
+  return gap - eo_periodic_at(search->approach, phase - floor(phase), NULL);
+}
+
+/* Marches the incoming line towards mesh until it touches, then bisects; false when it passes the whole path untouched. */
+static bool first_touch(const struct search *search, double *c, double *eta)
+{
+  enum { STEPS_PER_PITCH = 48, BISECTIONS = 60 };
+  const struct eo_geometry *g = &search->grid->geometry;
+  double lean = g->face_width / 2 * tan(g->base_helix_angle), reach = search->field->corner[0].reach / 2;
+  double low = g->path_start - lean - reach, end = g->path_end + lean, step = g->transverse_base_pitch / STEPS_PER_PITCH, high = low + step;
+  while (high < end && clearance(search, high, eta) > 0) {
+    low = high;
+    high += step;
+  }
+  if (high >= end)
+    return false;
+  for (int i = 0; i < BISECTIONS && high - low > 1e-10; i++) {
+    double middle = (low + high) / 2;
+    if (clearance(search, middle, eta) > 0)
+      low = middle;
+    else
+      high = middle;
+  }
+  *c = high;
+  clearance(search, high, eta);
+  return true;
+}
+
+/* Bulk compliance of the patch: the mean deflection of its points under an even load (10 points at the place of the touch). */
+static double patch_bulk(const struct eo_geometry *g, struct eo_kernel kernel, double patch, double s, double eta)
+{
+  enum { POINTS = 10 };
+  struct eo_flank_point point[POINTS];
+  double matrix[POINTS * POINTS], sum = 0, half = g->face_width / 2, length = fmin(patch, g->face_width);
+  double low = fmax(-half, fmin(half - length, eta - length / 2));
+  for (int i = 0; i < POINTS; i++)
+    point[i] = (struct eo_flank_point){.pair = 0, .s = {s, s}, .eta = low + length * (i + 0.5) / POINTS};
+  kernel.evaluate(kernel.context, POINTS, point, matrix);
+  for (int i = 0; i < POINTS * POINTS; i++)
+    sum += matrix[i];
+  return sum / (POINTS * POINTS);
+}
+
+void eo_impact_strike(struct eo_impact *impact, const struct eo_contact_grid *grid, const struct eo_impact_settings *settings, double speed,
+                      double compliance_factor)
+{
+  const struct eo_geometry *g = &grid->geometry;
+  double s = fmax(impact->path, g->path_start), length = fmin(settings->patch, g->face_width) / cos(g->base_helix_angle);
+  double law = eo_contact_local_constant(g, &grid->material, s), mass = eo_impact_mass(g, settings->inertia);
+  if (!impact->touched)
+    return;
+  impact->speed = fmax(0, -impact->slope) * speed * g->base_radius[EO_PINION];
+  /* The Hertz part depends on the force it helps to make: fixed point on the secant of the local law. */
+  double force = impact->speed * sqrt(mass / (compliance_factor * 2 * impact->bulk));
+  for (int i = 0; i < 200; i++) {
+    impact->compliance = compliance_factor * (impact->bulk + grid->compliance_scale / length * (law - log(force / length)));
+    double next = impact->speed * sqrt(mass / impact->compliance);
+    bool settled = fabs(next - force) <= 1e-12 * next;
+    force = next;
+    if (settled || force == 0)
+      break;
+  }
+  impact->force = force;
+  impact->classical = impact->off_line ? force : 0;
+  impact->duration = M_PI * sqrt(mass * impact->compliance);
+}
+
+void eo_impact_find(struct eo_impact *impact, const struct eo_contact_grid *grid, const struct eo_gap_field *field, struct eo_kernel kernel,
+                    const struct eo_impact_settings *settings, const double *approach, double speed, double compliance_factor)
+{
+  const struct eo_geometry *g = &grid->geometry;
+  struct eo_periodic spline;
+  double place[2];
+  *impact = (struct eo_impact){0};
+  eo_periodic_init(&spline, grid->positions, approach);
+  struct search search = {grid, field, &spline, settings->stations};
+  impact->touched = first_touch(&search, &impact->phase, &impact->eta);
+  if (!impact->touched)
+    return;
+  impact->path = impact->phase + impact->eta * tan(g->base_helix_angle);
+  impact->off_line = impact->path < g->path_start;
+  eo_gap_field_at(field, impact->path, impact->eta, &impact->slope, place);
+  impact->pinion_radius = eo_geometry_radius_at(g, EO_PINION, place[EO_PINION]);
+  impact->start = impact->phase / g->transverse_base_pitch - floor(impact->phase / g->transverse_base_pitch);
+  impact->bulk = patch_bulk(g, kernel, settings->patch, fmax(impact->path, g->path_start), impact->eta);
+  eo_impact_strike(impact, grid, settings, speed, compliance_factor);
+}

@@ -1,0 +1,183 @@
+#include "flexibility/flexibility.h"
+
+#include "flexibility/prepared.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Points whose weights are kept at a time, and the largest grid a table may have (see the settings' ranges). */
+enum { BLOCK = 128, MAX_POINTS = 33 * 97 };
+
+/* column[points] = rows of matrix[points][stride] from `from` on, combined by the sixteen weights. */
+static void combine(const struct eo_grid *grid, const struct eo_grid_weights *at, const double *matrix, size_t stride,
+                    size_t points, double *column)
+{
+  memset(column, 0, points * sizeof *column);
+  for (int r = 0; r < EO_SPLINE_WIDTH; r++) {
+    const double *a = matrix + (size_t)(at->first + r * grid->eta.count) * stride;
+    const double *b = a + stride, *c = b + stride, *d = c + stride, *w = at->weight + EO_SPLINE_WIDTH * r;
+    for (size_t i = 0; i < points; i++)
+      column[i] += w[0] * a[i] + w[1] * b[i] + w[2] * c[i] + w[3] * d[i];
+  }
+}
+
+static double contract(const struct eo_grid *grid, const struct eo_grid_weights *at, const double *column)
+{
+  double sum = 0;
+  for (int r = 0; r < EO_SPLINE_WIDTH; r++) {
+    const double *c = column + at->first + r * grid->eta.count, *w = at->weight + EO_SPLINE_WIDTH * r;
+    sum += w[0] * c[0] + w[1] * c[1] + w[2] * c[2] + w[3] * c[3];
+  }
+  return sum;
+}
+
+/* Adds one member's compliance between loads j and points from..to-1, whose weights are given. */
+static void add_block(const struct eo_flexibility *flexibility, int member, int n, const struct eo_flank_point *point, int from,
+                      int to, const struct eo_grid_weights *weights, double *compliance)
+{
+  const struct eo_flank_table *table = &flexibility->table[member];
+  const struct eo_grid *grid = &table->flank;
+  size_t points = (size_t)grid->points;
+  for (int j = 0; j < n; j++) {
+    double own[MAX_POINTS], ahead[MAX_POINTS];
+    int have_own = 0, have_ahead = 0;
+    struct eo_grid_weights at;
+    eo_grid_weights(grid, point[j].s[member], point[j].eta, &at);
+    for (int i = from; i < to; i++) {
+      int ahead_by = point[i].pair - point[j].pair;
+      if (ahead_by == 0 && i <= j) {
+        if (!have_own++)
+          combine(grid, &at, table->bulk, points, points, own);
+        double value = contract(grid, &weights[i - from], own);
+        compliance[(size_t)i * (size_t)n + (size_t)j] += value;
+        if (i != j)
+          compliance[(size_t)j * (size_t)n + (size_t)i] += value;
+      } else if (ahead_by == 1 && flexibility->settings.neighbour_coupling) {
+        if (!have_ahead++)
+          combine(grid, &at, table->ahead, points, points, ahead);
+        double value = contract(grid, &weights[i - from], ahead);
+        compliance[(size_t)i * (size_t)n + (size_t)j] += value;
+        compliance[(size_t)j * (size_t)n + (size_t)i] += value;
+      }
+    }
+  }
+}
+
+void eo_flexibility_add_compliance(const struct eo_flexibility *flexibility, int member, int n,
+                                   const struct eo_flank_point *point, double *compliance)
+{
+  for (int from = 0; from < n; from += BLOCK) {
+    struct eo_grid_weights weights[BLOCK];
+    int to = from + BLOCK < n ? from + BLOCK : n;
+    for (int i = from; i < to; i++)
+      eo_grid_weights(&flexibility->table[member].flank, point[i].s[member], point[i].eta, &weights[i - from]);
+    add_block(flexibility, member, n, point, from, to, weights, compliance);
+  }
+}
+
+static void evaluate(const void *context, int n, const struct eo_flank_point *point, double *compliance)
+{
+  memset(compliance, 0, (size_t)n * (size_t)n * sizeof *compliance);
+  eo_flexibility_add_compliance(context, EO_PINION, n, point, compliance);
+  eo_flexibility_add_compliance(context, EO_GEAR, n, point, compliance);
+}
+
+struct eo_kernel eo_flexibility_kernel(const struct eo_flexibility *flexibility)
+{
+  return (struct eo_kernel){.evaluate = evaluate, .context = flexibility};
+}
+
+/* Whether the profile at point i leans at least 30 degrees from the tooth's centre line. */
+static bool is_critical(const double *position, int i)
+{
+  const double *before = position + 2 * (i - 1), *after = position + 2 * (i + 1);
+  return fabs(after[0] - before[0]) >= tan(M_PI / 6) * fabs(after[1] - before[1]);
+}
+
+struct eo_root eo_flexibility_root(const struct eo_flexibility *flexibility, int member)
+{
+  const struct eo_flank_table *table = &flexibility->table[member];
+  struct eo_root root = {.points = table->root_points, .layers = table->layers, .arc = table->arc, .position = table->root,
+                         .width = flexibility->width, .twist = flexibility->twist[member], .first = 2};
+  while (root.first < root.points - 2 && !is_critical(root.position, root.first))
+    root.first++;
+  return root;
+}
+
+/* The table of stresses for loads on a pair, relative to the pair whose root is asked; NULL when they do not count. */
+static const double *stress_table(const struct eo_flexibility *flexibility, int member, int ahead_by, const struct eo_grid **grid)
+{
+  const struct eo_flank_table *table = &flexibility->table[member];
+  *grid = ahead_by == 0 ? &table->flank : &table->next;
+  if (ahead_by == 0)
+    return table->stress;
+  if (!flexibility->settings.neighbour_coupling || ahead_by < -1 || ahead_by > 1)
+    return NULL;
+  return table->next_stress[ahead_by > 0];
+}
+
+void eo_flexibility_root_influence(const struct eo_flexibility *flexibility, int member, int pair, int n,
+                                   const struct eo_flank_point *point, int from, int to, double *influence)
+{
+  const struct eo_flank_table *table = &flexibility->table[member];
+  size_t line = ((size_t)table->layers + 1) * EO_STRESSES, length = (size_t)(to - from) * line;
+  for (int j = 0; j < n; j++, influence += length) {
+    const struct eo_grid *grid;
+    const double *stress = stress_table(flexibility, member, point[j].pair - pair, &grid);
+    struct eo_grid_weights at;
+    if (!stress) {
+      memset(influence, 0, length * sizeof *influence);
+      continue;
+    }
+    eo_grid_weights(grid, point[j].s[member], point[j].eta, &at);
+    combine(grid, &at, stress + (size_t)from * line, table->stresses, length, influence);
+  }
+}
+
+void eo_flexibility_root_stress(const struct eo_flexibility *flexibility, int member, int pair, int n,
+                                const struct eo_flank_point *point, const double *force, int from, int to, double *stress)
+{
+  const struct eo_flank_table *table = &flexibility->table[member];
+  size_t line = ((size_t)table->layers + 1) * EO_STRESSES, length = (size_t)(to - from) * line;
+  memset(stress, 0, length * sizeof *stress);
+  for (int ahead_by = -1; ahead_by <= 1; ahead_by++) {
+    double load[MAX_POINTS];
+    const struct eo_grid *grid;
+    const double *row = stress_table(flexibility, member, ahead_by, &grid);
+    if (!row)
+      continue;
+    memset(load, 0, (size_t)grid->points * sizeof *load);
+    for (int j = 0; j < n; j++) {
+      struct eo_grid_weights at;
+      if (point[j].pair - pair != ahead_by)
+        continue;
+      eo_grid_weights(grid, point[j].s[member], point[j].eta, &at);
+      for (int k = 0; k < 16; k++)
+        load[at.first + k / 4 * grid->eta.count + k % 4] += force[j] * at.weight[k];
+    }
+    row += (size_t)from * line;
+    for (int p = 0; p < grid->points; p++, row += table->stresses)
+      for (size_t i = 0; i < length && load[p] != 0; i++)
+        stress[i] += load[p] * row[i];
+  }
+}
+
+double eo_stress_principal(const double stress[EO_STRESSES])
+{
+  return 0.5 * (stress[0] + stress[1]) + hypot(0.5 * (stress[0] - stress[1]), stress[2]);
+}
+
+const struct eo_flexibility_report *eo_flexibility_report(const struct eo_flexibility *flexibility)
+{
+  return &flexibility->report;
+}
+
+void eo_flexibility_free(struct eo_flexibility *flexibility)
+{
+  if (!flexibility)
+    return;
+  eo_flank_table_done(&flexibility->table[0]);
+  eo_flank_table_done(&flexibility->table[1]);
+  free(flexibility);
+}

@@ -1,0 +1,291 @@
+#include "flexibility/member.h"
+
+#include "base/clock.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Unknowns of the sector that are wanted, in the order in which the solver keeps them. */
+struct wanted {
+  int *unknown;  /* [count] */
+  int count;
+  int root;      /* first of the root's displacements: [root_nodes][layers + 1][3], the flank's own normal left out */
+  int next[2];   /* first of the normal displacements of pair k - 1, k + 1 */
+  int flank;     /* first of the normal displacements of the loaded flank, the last of all */
+};
+
+struct job {
+  struct eo_member_result *result;
+  const struct eo_geometry *geometry;
+  const struct eo_material *material;
+  const struct eo_member_settings *settings;
+  const struct eo_progress *progress;
+  struct eo_member_times *times;
+  struct eo_error *error;
+  int member;
+  struct eo_section section;
+  struct eo_sector sector;
+};
+
+static enum eo_code report(const struct job *job, const char *step, double fraction)
+{
+  static const char *const name[2] = {"pinion", "gear"};
+  char what[64];
+  if (!job->progress)
+    return EO_OK;
+  what[0] = 0;
+  strcat(strcat(strcat(what, name[job->member]), ": "), step);
+  if (eo_progress_report(job->progress, what, fraction))
+    return eo_error_set(job->error, EO_ERROR_CANCELLED, "", "The preparation of the flexibility was stopped.");
+  return EO_OK;
+}
+
+static void add_normals(const struct eo_sector *sector, const struct eo_flank_nodes *flank, struct wanted *wanted)
+{
+  for (int k = 0; k < flank->count; k++)
+    for (int l = 0; l <= sector->layers; l++)
+      wanted->unknown[wanted->count++] = eo_sector_unknown(sector, flank->node[k], l, 0);
+}
+
+static enum eo_code list_wanted(const struct eo_sector *sector, struct wanted *wanted)
+{
+  const struct eo_section *s = sector->section;
+  int across = sector->layers + 1, nodes = 3 * s->root_nodes + s->flank.count + s->next_flank[0].count + s->next_flank[1].count;
+  *wanted = (struct wanted){.unknown = malloc((size_t)(nodes * across) * sizeof *wanted->unknown)};
+  if (!wanted->unknown)
+    return EO_ERROR_MEMORY;
+  for (int i = 0; i < s->root_nodes; i++)
+    for (int l = 0; l < across; l++)
+      for (int c = i == 0; c < 3; c++)
+        wanted->unknown[wanted->count++] = eo_sector_unknown(sector, s->root[i], l, c);
+  for (int k = 0; k < 2; k++) {
+    wanted->next[k] = wanted->count;
+    add_normals(sector, &s->next_flank[k], wanted);
+  }
+  wanted->flank = wanted->count;
+  add_normals(sector, &s->flank, wanted);
+  return EO_OK;
+}
+
+/* Displacements of the root, [root_nodes][layers + 1][3] in the frames of the layers, from one row of kept values. */
+static void root_displacement(const struct eo_sector *sector, const struct wanted *wanted, const double *kept, double *displacement)
+{
+  const struct eo_section *s = sector->section;
+  int across = sector->layers + 1, corner_row = 0;
+  while (s->flank.node[corner_row] != s->root[0])
+    corner_row++;
+  const double(*frame)[3] = (const double(*)[3])sector->frame[s->root[0]];
+  for (int l = 0; l < across; l++) {
+    double local[3] = {kept[wanted->flank + corner_row * across + l], kept[wanted->root + 2 * l], kept[wanted->root + 2 * l + 1]};
+    for (int c = 0; c < 3; c++)
+      displacement[3 * l + c] = frame[0][c] * local[0] + frame[1][c] * local[1] + frame[2][c] * local[2];
+  }
+  memcpy(displacement + 3 * across, kept + wanted->root + 2 * across,
+         (size_t)(3 * across * (s->root_nodes - 1)) * sizeof *displacement);
+}
+
+/* Splits the inverse, one row per load (pair k - 1, pair k + 1, the tooth itself), into the results. */
+static enum eo_code split_inverse(struct job *job, const struct wanted *wanted, const double *inverse)
+{
+  struct eo_member_result *r = job->result;
+  const struct eo_section *s = &job->section;
+  int across = r->layers + 1, flank = r->rows * across, next = r->next_rows * across;
+  size_t stresses = (size_t)(r->root_points * across * EO_STRESSES);
+  struct eo_stress_operator operator= {0};
+  double *displacement = malloc((size_t)(s->root_nodes * across * 3) * sizeof *displacement);
+  enum eo_code code = eo_stress_operator_init(&operator, &job->sector, job->material, job->error);
+  if (!displacement)
+    code = EO_ERROR_MEMORY;
+  for (int load = 0; load < wanted->count - wanted->next[0] && !code; load++) {
+    const double *kept = inverse + (size_t)load * (size_t)wanted->count;
+    int own = load - (wanted->flank - wanted->next[0]), side = load >= next;
+    double *stress = own >= 0 ? r->stress + (size_t)own * stresses : r->next_stress[side] + (size_t)(load - side * next) * stresses;
+    root_displacement(&job->sector, wanted, kept, displacement);
+    eo_stress_operator_apply(&operator, displacement, stress);
+    if (own < 0)
+      continue;
+    memcpy(r->full + (size_t)own * (size_t)flank, kept + wanted->flank, (size_t)flank * sizeof *kept);
+    for (int k = 0; k < 2; k++)
+      memcpy(r->next[k] + (size_t)own * (size_t)next, kept + wanted->next[k], (size_t)next * sizeof *kept);
+  }
+  eo_stress_operator_done(&operator);
+  free(displacement);
+  return code;
+}
+
+static enum eo_code solve_whole(struct job *job)
+{
+  struct wanted wanted = {0};
+  struct eo_sparse_factor *factor = NULL;
+  double *inverse = NULL, start = (1e-3 * eo_clock_milliseconds());
+  enum eo_code code = eo_sector_init(&job->sector, &job->section, job->settings->layers, job->geometry->face_width,
+                                     eo_sector_twist(job->geometry, job->member), job->material, EO_WHOLE_SECTOR, job->error);
+  if (!code)
+    code = list_wanted(&job->sector, &wanted);
+  job->times->mesh += (1e-3 * eo_clock_milliseconds()) - start;
+  if (!code)
+    code = report(job, "ordering", 0.05);
+  if (code)
+    goto out;
+  start = (1e-3 * eo_clock_milliseconds());
+  code = eo_sparse_analyse(&job->sector.matrix, job->sector.group, job->sector.matrix.n / 3, wanted.unknown, wanted.count,
+                           &factor, job->error);
+  job->times->ordering = (1e-3 * eo_clock_milliseconds()) - start;
+  if (!code)
+    code = report(job, "factorisation", 0.15);
+  if (code)
+    goto out;
+  start = (1e-3 * eo_clock_milliseconds());
+  code = eo_sparse_factorise(factor, job->error);
+  job->times->factorisation = (1e-3 * eo_clock_milliseconds()) - start;
+  if (!code)
+    code = report(job, "compliance", 0.85);
+  if (code)
+    goto out;
+  job->times->unknowns = job->sector.matrix.n;
+  job->times->entries = eo_sparse_entries(factor);
+  job->times->memory = (double)eo_sparse_peak_memory(factor);
+  start = (1e-3 * eo_clock_milliseconds());
+  int loaded = wanted.count - wanted.next[0];
+  inverse = malloc((size_t)loaded * (size_t)wanted.count * sizeof *inverse);
+  code = inverse ? eo_sparse_inverse(factor, loaded, inverse, job->error) : EO_ERROR_MEMORY;
+  job->times->compliance = (1e-3 * eo_clock_milliseconds()) - start;
+  start = (1e-3 * eo_clock_milliseconds());
+  if (!code)
+    code = split_inverse(job, &wanted, inverse);
+  job->times->stress = (1e-3 * eo_clock_milliseconds()) - start;
+out:
+  eo_sparse_factor_free(factor);
+  free(inverse);
+  free(wanted.unknown);
+  return code;
+}
+
+/* Compliance of the half tooth; rows whose nodes it holds stay 0. */
+static enum eo_code solve_half(struct job *job)
+{
+  struct eo_sector half = {0};
+  struct eo_sparse_factor *factor = NULL;
+  int across = job->result->layers + 1, flank = job->result->rows * across, kept = 0;
+  int *keep = malloc((size_t)flank * sizeof *keep), *place = malloc((size_t)flank * sizeof *place);
+  double *inverse = malloc((size_t)flank * (size_t)flank * sizeof *inverse);
+  enum eo_code code = EO_ERROR_MEMORY;
+  if (!keep || !place || !inverse)
+    goto out;
+  code = eo_sector_init(&half, &job->section, job->settings->layers, job->geometry->face_width,
+                        eo_sector_twist(job->geometry, job->member), job->material, EO_HALF_TOOTH, job->error);
+  if (code)
+    goto out;
+  for (int i = 0; i < flank; i++) {
+    int unknown = eo_sector_unknown(&half, job->section.flank.node[i / across], i % across, 0);
+    place[kept] = i;
+    if (unknown >= 0)
+      keep[kept++] = unknown;
+  }
+  code = eo_sparse_analyse(&half.matrix, half.group, half.matrix.n / 3, keep, kept, &factor, job->error);
+  if (!code)
+    code = eo_sparse_factorise(factor, job->error);
+  if (!code)
+    code = eo_sparse_inverse(factor, kept, inverse, job->error);
+  for (int i = 0; i < kept && !code; i++)
+    for (int j = 0; j < kept; j++)
+      job->result->half[place[i] * flank + place[j]] = 0.5 * (inverse[i * kept + j] + inverse[j * kept + i]);
+out:
+  eo_sparse_factor_free(factor);
+  eo_sector_done(&half);
+  free(keep);
+  free(place);
+  free(inverse);
+  return code;
+}
+
+static void symmetrise(double *matrix, int n)
+{
+  for (int i = 0; i < n; i++)
+    for (int j = 0; j < i; j++)
+      matrix[i * n + j] = matrix[j * n + i] = 0.5 * (matrix[i * n + j] + matrix[j * n + i]);
+}
+
+static enum eo_code allocate(struct job *job)
+{
+  struct eo_member_result *r = job->result;
+  const struct eo_section *s = &job->section;
+  size_t across = (size_t)job->settings->layers + 1;
+  *r = (struct eo_member_result){.rows = s->flank.count, .next_rows = s->next_flank[0].count, .layers = job->settings->layers,
+                                 .root_points = s->root_nodes - 2};
+  size_t flank = (size_t)r->rows * across, next = (size_t)r->next_rows * across;
+  size_t stresses = (size_t)r->root_points * across * EO_STRESSES;
+  r->s = malloc((size_t)r->rows * sizeof *r->s);
+  r->next_s = malloc((size_t)r->next_rows * sizeof *r->next_s + 1);
+  r->root = malloc((size_t)r->root_points * 2 * sizeof *r->root);
+  r->arc = malloc((size_t)r->root_points * sizeof *r->arc);
+  r->full = calloc(flank * flank, sizeof *r->full);
+  r->half = calloc(flank * flank, sizeof *r->half);
+  r->stress = malloc(flank * stresses * sizeof *r->stress);
+  int complete = r->s && r->next_s && r->root && r->arc && r->full && r->half && r->stress;
+  for (int k = 0; k < 2; k++) {
+    r->next[k] = malloc(flank * next * sizeof(double) + 1);
+    r->next_stress[k] = malloc(next * stresses * sizeof(double) + 1);
+    complete = complete && r->next[k] && r->next_stress[k];
+  }
+  if (!complete)
+    return EO_ERROR_MEMORY;
+  memcpy(r->s, s->flank.s, (size_t)r->rows * sizeof *r->s);
+  if (r->next_rows)
+    memcpy(r->next_s, s->next_flank[0].s, (size_t)r->next_rows * sizeof *r->next_s);
+  for (int i = 0; i < r->root_points; i++) {
+    const double *point = s->point + 2 * s->root[i + 1], *before = s->point + 2 * s->root[i];
+    memcpy(r->root + 2 * i, point, 2 * sizeof *point);
+    r->arc[i] = (i ? r->arc[i - 1] : 0) + hypot(point[0] - before[0], point[1] - before[1]);
+  }
+  return EO_OK;
+}
+
+enum eo_code eo_member_compute(struct eo_member_result *result, const struct eo_geometry *geometry, int member,
+                               const struct eo_material *material, const struct eo_member_settings *settings,
+                               const struct eo_progress *progress, struct eo_member_times *times, struct eo_error *error)
+{
+  struct job job = {.result = result, .geometry = geometry, .material = material, .settings = settings, .progress = progress,
+                    .times = times, .error = error, .member = member};
+  *result = (struct eo_member_result){0};
+  *times = (struct eo_member_times){0};
+  double start = (1e-3 * eo_clock_milliseconds());
+  enum eo_code code = eo_section_init(&job.section, geometry, member, settings->bore_radius, &settings->section, error);
+  if (!code)
+    code = allocate(&job);
+  times->mesh = (1e-3 * eo_clock_milliseconds()) - start;
+  if (!code)
+    code = solve_whole(&job);
+  start = (1e-3 * eo_clock_milliseconds());
+  if (!code)
+    code = report(&job, "half tooth", 0.95);
+  if (!code)
+    code = solve_half(&job);
+  times->half_tooth = (1e-3 * eo_clock_milliseconds()) - start;
+  if (!code)
+    symmetrise(result->full, result->rows * (result->layers + 1));
+  eo_sector_done(&job.sector);
+  eo_section_done(&job.section);
+  if (code)
+    eo_member_result_done(result);
+  return code == EO_ERROR_MEMORY ? eo_error_memory(error) : code;
+}
+
+void eo_member_result_done(struct eo_member_result *result)
+{
+  if (!result)
+    return;
+  free(result->s);
+  free(result->next_s);
+  free(result->root);
+  free(result->arc);
+  free(result->full);
+  free(result->half);
+  free(result->stress);
+  for (int k = 0; k < 2; k++) {
+    free(result->next[k]);
+    free(result->next_stress[k]);
+  }
+  *result = (struct eo_member_result){0};
+}

@@ -1,0 +1,233 @@
+#include "flexibility/cache.h"
+
+#include "base/clock.h"
+#include "flexibility/flexibility.h"
+#include "flexibility/prepared.h"
+
+#include <config.h>
+#include <math.h>
+#include <pthread.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Raise whenever the same input may give other numbers. */
+#define TABLE_FORMAT "1"
+
+/* What the two threads share: the caller's progress is called by one at a time, and the first error stops both. */
+struct shared {
+  pthread_mutex_t mutex;
+  const struct eo_progress *progress;
+  double fraction[2];
+  bool stop;
+};
+
+struct worker {
+  struct shared *shared;
+  struct eo_flexibility *flexibility;
+  const struct eo_geometry *geometry;
+  const struct eo_material *material;
+  struct eo_member_settings settings;
+  int member;
+  enum eo_code code;
+  struct eo_error error;
+};
+
+struct eo_flexibility_settings eo_flexibility_settings_of(const struct eo_resolution *resolution)
+{
+  return (struct eo_flexibility_settings){.sector_teeth = resolution->sector_teeth,
+                                          .neighbour_coupling = resolution->neighbour_coupling, .layers = resolution->layers,
+                                          .flank_rows = resolution->flank_rows,
+                                          .fillet_elements = resolution->fillet_elements, .columns = 8, .rim_elements = 8};
+}
+
+double eo_flexibility_bore_radius(const struct eo_geometry *geometry, const struct eo_gear_pair *pair, int member)
+{
+  double root = geometry->root_radius[member], rim = root - pair->rim_thickness_coefficient * geometry->normal_module;
+  return fmax(fmax(rim, 0.5 * pair->bore[member]), 0.2 * root);
+}
+
+struct eo_member_settings eo_flexibility_member_settings(const struct eo_flexibility_settings *settings, double bore_radius)
+{
+  int half_rows = settings->flank_rows / 2 > 3 ? settings->flank_rows / 2 : 3;
+  int columns = settings->columns, free_side = settings->fillet_elements / 2 < 8 ? settings->fillet_elements / 2 : 8;
+  return (struct eo_member_settings){
+      .section = {.teeth = settings->sector_teeth,
+                  .loaded = {columns, settings->flank_rows, {free_side, settings->fillet_elements}},
+                  .next = {columns > 6 ? 6 : 4, half_rows, {6, 6}},
+                  .outer = {4, 3, {4, 4}},
+                  .rim = settings->rim_elements},
+      .layers = settings->layers,
+      .bore_radius = bore_radius};
+}
+
+static enum eo_code check(const struct eo_flexibility_settings *settings, struct eo_error *error)
+{
+  const struct {
+    int value, low, high;
+    const char *key;
+  } range[] = {{settings->layers, 4, 96, "layers"},
+               {settings->flank_rows, 4, 32, "flank_rows"},
+               {settings->fillet_elements, 6, 64, "fillet_elements"},
+               {settings->columns, 4, 32, "columns"},
+               {settings->rim_elements, 3, 32, "rim_elements"},
+               {settings->sector_teeth, 3, 5, "sector_teeth"}};
+  for (size_t i = 0; i < sizeof range / sizeof *range; i++) {
+    char pointer[64];
+    snprintf(pointer, sizeof pointer, "/resolution/%s", range[i].key);
+    if (range[i].value < range[i].low || range[i].value > range[i].high)
+      return eo_error_set(error, EO_ERROR_INPUT, pointer, "%s is %d, but must be between %d and %d.", range[i].key,
+                          range[i].value, range[i].low, range[i].high);
+  }
+  if (settings->sector_teeth == 4)
+    return eo_error_set(error, EO_ERROR_INPUT, "/resolution/sector_teeth", "sector_teeth is 4, but must be 3 or 5.");
+  if (settings->columns % 2)
+    return eo_error_set(error, EO_ERROR_INPUT, "/resolution/columns", "columns is %d, but must be even.", settings->columns);
+  return EO_OK;
+}
+
+/* Everything the numbers depend on. */
+static void make_key(const struct eo_geometry *g, const struct eo_material *material, const struct eo_flexibility_settings *s,
+                     const double bore[2], char key[EO_HASH_LENGTH + 1])
+{
+  struct eo_hash hash;
+  eo_hash_init(&hash);
+  eo_hash_add_text(&hash, "format", TABLE_FORMAT);
+  eo_hash_add_text(&hash, "program", PACKAGE_VERSION);
+  const struct {
+    const char *name;
+    double value;
+  } number[] = {{"sector_teeth", s->sector_teeth}, {"layers", s->layers}, {"flank_rows", s->flank_rows},
+                {"fillet_elements", s->fillet_elements}, {"columns", s->columns}, {"rim_elements", s->rim_elements},
+                {"youngs_modulus", material->youngs_modulus}, {"poissons_ratio", material->poissons_ratio},
+                {"normal_module", g->normal_module}, {"normal_pressure_angle", g->normal_pressure_angle},
+                {"transverse_pressure_angle", g->transverse_pressure_angle},
+                {"working_pressure_angle", g->working_pressure_angle}, {"helix_angle", g->helix_angle},
+                {"face_width", g->face_width}, {"centre_distance", g->centre_distance}, {"path_start", g->path_start},
+                {"path_end", g->path_end}, {"dedendum", g->dedendum}, {"fillet_radius", g->fillet_radius}};
+  for (size_t i = 0; i < sizeof number / sizeof *number; i++)
+    eo_hash_add_number(&hash, number[i].name, number[i].value);
+  for (int m = 0; m < 2; m++) {
+    eo_hash_add_number(&hash, "teeth", g->teeth[m]);
+    eo_hash_add_number(&hash, "profile_shift", g->profile_shift[m]);
+    eo_hash_add_number(&hash, "reference_radius", g->reference_radius[m]);
+    eo_hash_add_number(&hash, "base_radius", g->base_radius[m]);
+    eo_hash_add_number(&hash, "start_radius", g->start_radius[m]);
+    eo_hash_add_number(&hash, "form_radius", g->form_radius[m]);
+    eo_hash_add_number(&hash, "root_radius", g->root_radius[m]);
+    eo_hash_add_number(&hash, "tip_radius", g->tip_radius[m]);
+    eo_hash_add_number(&hash, "tangent_length", g->tangent_length[m]);
+    eo_hash_add_number(&hash, "bore", bore[m]);
+  }
+  eo_hash_finish(&hash, key);
+}
+
+/* One member's progress, as half of the whole. */
+static int forward_progress(void *context, const char *what, double fraction)
+{
+  struct worker *worker = context;
+  struct shared *shared = worker->shared;
+  pthread_mutex_lock(&shared->mutex);
+  shared->fraction[worker->member] = fraction;
+  if (!shared->stop && eo_progress_report(shared->progress, what, 0.5 * (shared->fraction[0] + shared->fraction[1])))
+    shared->stop = true;
+  int stop = shared->stop;
+  pthread_mutex_unlock(&shared->mutex);
+  return stop;
+}
+
+static void *compute_member(void *context)
+{
+  struct worker *w = context;
+  struct eo_member_result result = {0};
+  struct eo_flexibility_report *report = &w->flexibility->report;
+  struct eo_progress progress = {.report = forward_progress, .context = w};
+  w->code = eo_member_compute(&result, w->geometry, w->member, w->material, &w->settings, &progress, &report->times[w->member],
+                              &w->error);
+  if (!w->code)
+    w->code = eo_flank_table_fill(&w->flexibility->table[w->member], &result, w->flexibility->width,
+                            &report->smallest_eigenvalue[w->member], &w->error);
+  eo_member_result_done(&result);
+  if (w->code) {
+    pthread_mutex_lock(&w->shared->mutex);
+    w->shared->stop = true;
+    pthread_mutex_unlock(&w->shared->mutex);
+  }
+  return NULL;
+}
+
+/* The pinion in a thread of its own, the gear in this one. */
+static enum eo_code compute(struct worker worker[2], struct eo_error *error)
+{
+  pthread_t thread;
+  bool apart = !pthread_create(&thread, NULL, compute_member, &worker[0]);
+  if (!apart)
+    compute_member(&worker[0]);
+  compute_member(&worker[1]);
+  if (apart)
+    pthread_join(thread, NULL);
+  /* A worker that was only stopped by the other's error does not hide that error. */
+  int first = worker[0].code && worker[0].code != EO_ERROR_CANCELLED ? 0 : worker[1].code ? 1 : 0;
+  if (worker[first].code && error)
+    *error = worker[first].error;
+  return worker[first].code;
+}
+
+static enum eo_code fill(struct eo_flexibility *f, struct worker worker[2], const char *cache_directory,
+                         const struct eo_progress *progress, struct eo_error *error)
+{
+  struct eo_cache cache;
+  struct eo_cache_part part[2] = {{f->table[0].data, f->table[0].size}, {f->table[1].data, f->table[1].size}};
+  enum eo_code code = eo_cache_open(&cache, cache_directory, f->report.key, progress, error);
+  if (code)
+    return code;
+  f->report.from_cache = eo_cache_read(&cache, part, 2);
+  if (!f->report.from_cache) {
+    code = compute(worker, error);
+    if (!code)
+      eo_cache_write(&cache, part, 2);
+  }
+  for (int m = 0; m < 2 && !code && f->report.from_cache; m++)
+    code = eo_flank_table_connect(&f->table[m], f->width, error);
+  if (!f->report.from_cache)
+    memcpy(f->report.note, cache.note, sizeof f->report.note);
+  eo_cache_close(&cache);
+  return code;
+}
+
+enum eo_code eo_flexibility_prepare(const struct eo_geometry *geometry, const struct eo_gear_pair *pair,
+                                    const struct eo_material *material, const struct eo_flexibility_settings *settings,
+                                    const char *cache_directory, const struct eo_progress *progress,
+                                    struct eo_flexibility **flexibility, struct eo_error *error)
+{
+  double start = (1e-3 * eo_clock_milliseconds()), bore[2];
+  enum eo_code code = check(settings, error);
+  if (code)
+    return code;
+  struct eo_flexibility *f = calloc(1, sizeof *f);
+  if (!f)
+    return eo_error_memory(error);
+  struct shared shared = {.mutex = PTHREAD_MUTEX_INITIALIZER, .progress = progress};
+  struct worker worker[2];
+  f->settings = *settings;
+  f->width = geometry->face_width;
+  for (int m = 0; m < 2; m++) {
+    f->twist[m] = eo_sector_twist(geometry, m);
+    bore[m] = eo_flexibility_bore_radius(geometry, pair, m);
+    worker[m] = (struct worker){.shared = &shared, .flexibility = f, .geometry = geometry, .material = material, .member = m,
+                                .settings = eo_flexibility_member_settings(settings, bore[m])};
+    if (!code)
+      code = eo_flank_table_init(&f->table[m], &worker[m].settings, error);
+  }
+  make_key(geometry, material, settings, bore, f->report.key);
+  if (!code)
+    code = fill(f, worker, cache_directory, progress, error);
+  pthread_mutex_destroy(&shared.mutex);
+  if (code) {
+    eo_flexibility_free(f);
+    return code;
+  }
+  f->report.seconds = (1e-3 * eo_clock_milliseconds()) - start;
+  *flexibility = f;
+  return EO_OK;
+}

@@ -1,0 +1,16 @@
+/* The inside of a prepared flexibility, shared by its making and its evaluation. */
+#ifndef EASEOFF_FLEXIBILITY_PREPARED_H
+#define EASEOFF_FLEXIBILITY_PREPARED_H
+
+#include "flexibility/flexibility.h"
+#include "flexibility/table.h"
+
+struct eo_flexibility {
+  struct eo_flexibility_settings settings;
+  struct eo_flexibility_report report;
+  struct eo_flank_table table[2]; /* [member] */
+  double width;             /* of the face, m */
+  double twist[2];          /* [member], rad/m */
+};
+
+#endif

@@ -1,0 +1,153 @@
+#include "flexibility/root_modes.h"
+
+#include "flexibility/prepared.h"
+#include "numerics/lowrank.h"
+
+#include <cblas.h>
+#include <stdlib.h>
+#include <string.h>
+
+struct eo_root_modes {
+  const struct eo_flank_table *table;
+  bool coupled;
+  int member, rank, length;     /* length = nodes x EO_STRESSES */
+  int slots, slot[3];           /* grid points of loads on pair k - 1, k, k + 1, and where each begins */
+  double *coefficient;          /* [slots][rank] */
+  double *shape;                /* [rank][length] */
+};
+
+static const struct eo_grid *grid_of(const struct eo_root_modes *modes, int ahead_by)
+{
+  return ahead_by == 0 ? &modes->table->flank : &modes->table->next;
+}
+
+static const double *rows_of(const struct eo_root_modes *modes, int ahead_by)
+{
+  return ahead_by == 0 ? modes->table->stress : modes->table->next_stress[ahead_by > 0];
+}
+
+static void count_slots(struct eo_root_modes *modes)
+{
+  for (int ahead = -1; ahead <= 1; ahead++) {
+    modes->slot[ahead + 1] = modes->slots;
+    modes->slots += ahead == 0 || modes->coupled ? grid_of(modes, ahead)->points : 0;
+  }
+}
+
+/* All influence rows below each other: [slots][length], Pa/N, from the root's first point on. */
+static double *stack_rows(const struct eo_root_modes *modes, size_t skip)
+{
+  double *stack = malloc(sizeof *stack * (size_t)modes->slots * (size_t)modes->length), *to = stack;
+  for (int ahead = -1; stack && ahead <= 1; ahead++)
+    for (int i = 0; (ahead == 0 || modes->coupled) && i < grid_of(modes, ahead)->points; i++, to += modes->length)
+      memcpy(to, rows_of(modes, ahead) + (size_t)i * modes->table->stresses + skip, sizeof *to * (size_t)modes->length);
+  return stack;
+}
+
+/* stack = factor x shape in the least-squares sense: (factor' factor) shape = factor' stack. */
+static enum eo_code fit_shapes(struct eo_root_modes *modes, int rows, int stride, const double *factor, const double *stack, struct eo_error *error)
+{
+  int rank = modes->rank;
+  double *normal = malloc(sizeof *normal * (size_t)rank * (size_t)rank);
+  modes->shape = malloc(sizeof *modes->shape * (size_t)rank * (size_t)modes->length);
+  if (!normal || !modes->shape) {
+    free(normal);
+    return eo_error_memory(error);
+  }
+  cblas_dgemm(CblasRowMajor, CblasTrans, CblasNoTrans, rank, modes->length, rows, 1, factor, stride, stack, modes->length, 0, modes->shape,
+              modes->length);
+  cblas_dgemm(CblasRowMajor, CblasTrans, CblasNoTrans, rank, rank, rows, 1, factor, stride, factor, stride, 0, normal, rank);
+  enum eo_code code = eo_lowrank_solve(rank, normal, modes->length, modes->shape, error);
+  free(normal);
+  return code;
+}
+
+static enum eo_code keep_coefficients(struct eo_root_modes *modes, int stride, const double *factor, struct eo_error *error)
+{
+  modes->coefficient = malloc(sizeof *modes->coefficient * (size_t)modes->slots * (size_t)modes->rank);
+  for (int i = 0; modes->coefficient && i < modes->slots; i++)
+    memcpy(modes->coefficient + (size_t)i * (size_t)modes->rank, factor + (size_t)i * (size_t)stride, sizeof(double) * (size_t)modes->rank);
+  return modes->coefficient ? EO_OK : eo_error_memory(error);
+}
+
+enum eo_code eo_root_modes_new(struct eo_root_modes **result, const struct eo_flexibility *flexibility, int member, struct eo_error *error)
+{
+  static const double TOLERANCE = 3e-6; /* of squares */
+  struct eo_root root = eo_flexibility_root(flexibility, member);
+  struct eo_root_modes *modes = calloc(1, sizeof *modes);
+  if (!modes)
+    return eo_error_memory(error);
+  modes->table = &flexibility->table[member];
+  modes->coupled = flexibility->settings.neighbour_coupling;
+  modes->member = member;
+  modes->length = (root.points - root.first) * (root.layers + 1) * EO_STRESSES;
+  count_slots(modes);
+  int rows = modes->slots, stride = 0;
+  double *stack = stack_rows(modes, (size_t)(root.first * (root.layers + 1) * EO_STRESSES)), *factor = NULL;
+  double *gram = malloc(sizeof *gram * (size_t)rows * (size_t)rows);
+  enum eo_code code = stack && gram ? EO_OK : eo_error_memory(error);
+  if (!code) {
+    cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasTrans, rows, rows, modes->length, 1, stack, modes->length, stack, modes->length, 0, gram, rows);
+    code = eo_lowrank_factor(rows, gram, TOLERANCE, &modes->rank, &stride, &factor, error);
+  }
+  if (!code)
+    code = fit_shapes(modes, rows, stride, factor, stack, error);
+  if (!code)
+    code = keep_coefficients(modes, stride, factor, error);
+  free(stack);
+  free(gram);
+  free(factor);
+  if (code)
+    eo_root_modes_free(modes);
+  else
+    *result = modes;
+  return code;
+}
+
+void eo_root_modes_free(struct eo_root_modes *modes)
+{
+  if (!modes)
+    return;
+  free(modes->coefficient);
+  free(modes->shape);
+  free(modes);
+}
+
+int eo_root_modes_rank(const struct eo_root_modes *modes)
+{
+  return modes->rank;
+}
+
+int eo_root_modes_nodes(const struct eo_root_modes *modes)
+{
+  return modes->length / EO_STRESSES;
+}
+
+int eo_root_modes_slots(const struct eo_root_modes *modes)
+{
+  return modes->slots;
+}
+
+void eo_root_modes_add(const struct eo_root_modes *modes, int pair, int n, const struct eo_flank_point *point, const double *force,
+                       double *load)
+{
+  for (int j = 0; j < n; j++) {
+    int ahead = point[j].pair - pair;
+    if (force[j] == 0 || ahead < -1 || ahead > 1 || (ahead != 0 && !modes->coupled))
+      continue;
+    const struct eo_grid *grid = grid_of(modes, ahead);
+    struct eo_grid_weights at;
+    eo_grid_weights(grid, point[j].s[modes->member], point[j].eta, &at);
+    for (int r = 0; r < EO_SPLINE_WIDTH; r++)
+      for (int l = 0; l < EO_SPLINE_WIDTH; l++)
+        load[modes->slot[ahead + 1] + at.first + r * grid->eta.count + l] += force[j] * at.weight[EO_SPLINE_WIDTH * r + l];
+  }
+}
+
+void eo_root_modes_stress(const struct eo_root_modes *modes, int count, const double *load, double *scratch, double *stress)
+{
+  cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, count, modes->rank, modes->slots, 1, load, modes->slots, modes->coefficient,
+              modes->rank, 0, scratch, modes->rank);
+  cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, count, modes->length, modes->rank, 1, scratch, modes->rank, modes->shape,
+              modes->length, 0, stress, modes->length);
+}

@@ -1,0 +1,26 @@
+/* Root stress of many load distributions at once: the stress influence of flank loads in the form coefficient x shape with a few dozen
+   shapes, so that a history over the mesh cycle costs a small matrix product. The shapes are the stresses of some flank points, picked
+   by pivoted Cholesky, and every other point is a combination of them. */
+#ifndef EASEOFF_FLEXIBILITY_ROOT_MODES_H
+#define EASEOFF_FLEXIBILITY_ROOT_MODES_H
+
+#include "flexibility/flexibility.h"
+
+struct eo_root_modes; /* constant once made; borrows the flexibility */
+
+/* Error of the stress under distributed flank loads below about 1e-3 of the largest. Errors: memory, EO_ERROR_NUMERIC. */
+enum eo_code eo_root_modes_new(struct eo_root_modes **modes, const struct eo_flexibility *flexibility, int member, struct eo_error *error);
+void eo_root_modes_free(struct eo_root_modes *modes);
+
+int eo_root_modes_rank(const struct eo_root_modes *modes);
+int eo_root_modes_slots(const struct eo_root_modes *modes);  /* numbers that describe a load distribution */
+int eo_root_modes_nodes(const struct eo_root_modes *modes);  /* of the root: [point][layer] from root.first on */
+
+/* Adds the loads force[n], N, at the points to load[slots] of the root of tooth pair `pair`. */
+void eo_root_modes_add(const struct eo_root_modes *modes, int pair, int n, const struct eo_flank_point *point, const double *force,
+                       double *load);
+
+/* stress[count][nodes][EO_STRESSES], Pa, under load[count][slots]. scratch: [count][rank]. */
+void eo_root_modes_stress(const struct eo_root_modes *modes, int count, const double *load, double *scratch, double *stress);
+
+#endif

@@ -1,0 +1,351 @@
+#include "flexibility/section.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MAX_TEETH = 5 };
+
+/* The nodes of one tooth, as grids of node numbers. */
+struct tooth {
+  const struct eo_tooth_division *division;
+  int place;    /* 0: the loaded tooth; + counterclockwise */
+  int *core;    /* [rows + rim + 1][columns + 1] */
+  int *side[2]; /* [rim + 1][fillet + 1]; column 0 is the core's edge, the last column the radial cut */
+};
+
+struct builder {
+  struct eo_section *section;
+  const struct eo_geometry *geometry;
+  const struct eo_section_settings *settings;
+  int member;
+  double pitch_angle;
+  double involute_share; /* of the root curve: from the start of the active profile to the form radius */
+  double inner_angle;    /* of the core's edge on the bore, from the tooth's centre line */
+  double *level;         /* [rim + 1]: 0 at the root .. 1 at the bore */
+  struct tooth tooth[MAX_TEETH];
+};
+
+/* Node at polar coordinates of a tooth; the angle counts from its centre line, + towards x > 0. */
+static int add_node(struct builder *b, const struct tooth *tooth, double radius, double angle)
+{
+  struct eo_section *s = b->section;
+  double turned = angle - tooth->place * b->pitch_angle;
+  s->point[2 * s->nodes] = radius * sin(turned);
+  s->point[2 * s->nodes + 1] = radius * cos(turned);
+  return s->nodes++;
+}
+
+/* Quadrilateral between grid columns i, i + 1 and rows j (outer), j + 1 (inner); flipped where columns run to x < 0.
+   half: it is on the loaded side of the loaded tooth. */
+static void add_quad(struct builder *b, const int *grid, int columns, int j, int i, int flipped, int half)
+{
+  struct eo_section *s = b->section;
+  const int *outer = grid + j * (columns + 1) + i, *inner = outer + columns + 1;
+  int *quad = s->quad + 4 * s->quads;
+  quad[0] = inner[flipped];
+  quad[1] = inner[!flipped];
+  quad[2] = outer[!flipped];
+  quad[3] = outer[flipped];
+  double radius = 0;
+  for (int k = 0; k < 4; k++)
+    radius += 0.25 * hypot(s->point[2 * quad[k]], s->point[2 * quad[k] + 1]);
+  s->half[s->quads++] = half && radius > b->geometry->root_radius[b->member];
+}
+
+/* Levels between root and bore: the first step has the given share, the others grow geometrically. */
+static void grade_levels(double *level, int count, double first)
+{
+  double low = 1, high = 10, ratio = 1;
+  for (int i = 0; i < 60; i++) {
+    double sum = 0, step = first;
+    ratio = 0.5 * (low + high);
+    for (int k = 0; k < count; k++, step *= ratio)
+      sum += step;
+    if (sum < 1)
+      low = ratio;
+    else
+      high = ratio;
+  }
+  double sum = 0, step = 1;
+  level[0] = 0;
+  for (int k = 0; k < count; k++, step *= ratio)
+    level[k + 1] = sum += step;
+  for (int k = 1; k <= count; k++)
+    level[k] /= sum;
+}
+
+/* Length of the root from the form radius to the middle of the tooth space. */
+static double fillet_length(const struct builder *b)
+{
+  enum { PIECES = 64 };
+  double length = 0, last[2], point[2], normal[2];
+  eo_geometry_fillet(b->geometry, b->member, 1, last, normal);
+  for (int i = 1; i <= PIECES; i++) {
+    eo_geometry_fillet(b->geometry, b->member, 1 - (double)i / PIECES, point, normal);
+    length += hypot(point[0] - last[0], point[1] - last[1]);
+    memcpy(last, point, sizeof last);
+  }
+  return length;
+}
+
+/* Point and outward normal at share q of the way from the start of the active profile to the middle of the tooth space. */
+static void root_point(const struct builder *b, double q, double point[2], double normal[2])
+{
+  const struct eo_geometry *g = b->geometry;
+  double start = g->start_radius[b->member];
+  if (q <= b->involute_share) {
+    double way = b->involute_share > 0 ? q / b->involute_share : 0;
+    eo_geometry_involute(g, b->member, start + way * (g->form_radius[b->member] - start), point, normal);
+  } else {
+    eo_geometry_fillet(g, b->member, (1 - q) / (1 - b->involute_share), point, normal);
+  }
+}
+
+/* Share u of a cubic line from share q of the root down to the bore. It leaves the root halfway between the inward normal and
+   the radius and arrives radially. */
+static void line_point(const struct builder *b, double q, double u, double *radius, double *angle)
+{
+  double top[2], normal[2], p[2], bottom = b->inner_angle + q * (b->pitch_angle / 2 - b->inner_angle);
+  root_point(b, q, top, normal);
+  double down[2] = {-sin(bottom), -cos(bottom)}, bore = b->section->bore_radius, r = hypot(top[0], top[1]);
+  double start[2] = {-normal[0] - top[0] / r, -normal[1] - top[1] / r}, size = hypot(start[0], start[1]);
+  double length = hypot(top[0] + bore * down[0], top[1] + bore * down[1]), v = 1 - u;
+  for (int i = 0; i < 2; i++)
+    p[i] = (1 + 2 * u) * v * v * top[i] - u * u * (3 - 2 * u) * bore * down[i] +
+           length * (u * v * v * start[i] / size - u * u * v * down[i]);
+  *radius = hypot(p[0], p[1]);
+  *angle = atan2(p[0], p[1]);
+}
+
+/* Path coordinate of row j: 0 at the tip, rows at the start of the active profile. */
+static double row_path(const struct builder *b, int rows, int j)
+{
+  const struct eo_geometry *g = b->geometry;
+  double share = (double)j / rows;
+  return b->member == EO_PINION ? g->path_end + share * (g->path_start - g->path_end)
+                                : g->path_start + share * (g->path_end - g->path_start);
+}
+
+static void add_core_nodes(struct builder *b, struct tooth *tooth)
+{
+  int columns = tooth->division->columns, rows = tooth->division->rows, *node = tooth->core;
+  for (int j = 0; j <= rows + b->settings->rim; j++) {
+    double radius, angle, point[2], normal[2];
+    if (j < rows) {
+      radius = eo_geometry_radius_at(b->geometry, b->member, row_path(b, rows, j));
+      eo_geometry_involute(b->geometry, b->member, radius, point, normal);
+      angle = atan2(point[0], point[1]);
+    } else {
+      line_point(b, 0, b->level[j - rows], &radius, &angle);
+    }
+    for (int i = 0; i <= columns; i++)
+      *node++ = add_node(b, tooth, radius, angle * (2.0 * i / columns - 1));
+  }
+}
+
+/* The radial cut on the counterclockwise side (side 0) was made by nobody yet; on side 1 the previous tooth made it. */
+static void add_side_nodes(struct builder *b, struct tooth *tooth, int side, const struct tooth *before)
+{
+  int columns = tooth->division->columns, fillet = tooth->division->fillet[side], *node = tooth->side[side];
+  const int *edge = tooth->core + tooth->division->rows * (columns + 1) + (side ? columns : 0);
+  for (int j = 0; j <= b->settings->rim; j++, node += fillet + 1) {
+    node[0] = edge[j * (columns + 1)];
+    int last = side && before ? fillet : fillet + 1;
+    for (int i = 1; i < last; i++) {
+      double radius, angle;
+      line_point(b, (double)i / fillet, b->level[j], &radius, &angle);
+      node[i] = add_node(b, tooth, radius, side ? angle : -angle);
+    }
+    if (side && before)
+      node[fillet] = before->side[0][j * (before->division->fillet[0] + 1) + before->division->fillet[0]];
+  }
+}
+
+static void add_quads(struct builder *b, const struct tooth *tooth)
+{
+  const struct eo_tooth_division *d = tooth->division;
+  for (int j = 0; j < d->rows + b->settings->rim; j++)
+    for (int i = 0; i < d->columns; i++)
+      add_quad(b, tooth->core, d->columns, j, i, 0, !tooth->place && i >= d->columns / 2);
+  for (int side = 0; side < 2; side++)
+    for (int j = 0; j < b->settings->rim; j++)
+      for (int i = 0; i < d->fillet[side]; i++)
+        add_quad(b, tooth->side[side], d->fillet[side], j, i, !side, !tooth->place && side);
+}
+
+static void mark_cut(const struct builder *b, const struct tooth *tooth, int side)
+{
+  int fillet = tooth->division->fillet[side];
+  for (int j = 0; j <= b->settings->rim; j++)
+    b->section->fixed[tooth->side[side][j * (fillet + 1) + fillet]] = 1;
+}
+
+static void mark_nodes(struct builder *b)
+{
+  struct eo_section *s = b->section;
+  int teeth = b->settings->teeth;
+  for (int i = 0; i < s->nodes; i++)
+    s->fixed[i] = hypot(s->point[2 * i], s->point[2 * i + 1]) < s->bore_radius * (1 + 1e-9);
+  mark_cut(b, &b->tooth[0], 1);
+  mark_cut(b, &b->tooth[teeth - 1], 0);
+  const struct tooth *loaded = &b->tooth[teeth / 2];
+  int columns = loaded->division->columns;
+  for (int j = 0; j <= loaded->division->rows + b->settings->rim; j++)
+    s->centre[loaded->core[j * (columns + 1) + columns / 2]] = 1;
+}
+
+static enum eo_code list_flank(const struct builder *b, const struct tooth *tooth, struct eo_flank_nodes *flank)
+{
+  int rows = tooth->division->rows, columns = tooth->division->columns;
+  flank->node = malloc((size_t)(rows + 1) * sizeof *flank->node);
+  flank->s = malloc((size_t)(rows + 1) * sizeof *flank->s);
+  flank->normal = malloc((size_t)(rows + 1) * 2 * sizeof *flank->normal);
+  if (!flank->node || !flank->s || !flank->normal)
+    return EO_ERROR_MEMORY;
+  flank->count = rows + 1;
+  for (int k = 0; k <= rows; k++) {
+    int j = b->member == EO_PINION ? rows - k : k;
+    double point[2], normal[2], turn = -tooth->place * b->pitch_angle;
+    flank->node[k] = tooth->core[j * (columns + 1) + columns];
+    flank->s[k] = row_path(b, rows, j);
+    eo_geometry_involute(b->geometry, b->member, eo_geometry_radius_at(b->geometry, b->member, flank->s[k]), point, normal);
+    flank->normal[2 * k] = normal[0] * cos(turn) + normal[1] * sin(turn);
+    flank->normal[2 * k + 1] = -normal[0] * sin(turn) + normal[1] * cos(turn);
+  }
+  return EO_OK;
+}
+
+/* Both flanks lead the motion of the pinion and trail that of the gear: pair k + 1 is clockwise on the pinion. */
+static enum eo_code list_boundary(struct builder *b)
+{
+  struct eo_section *s = b->section;
+  int middle = b->settings->teeth / 2, ahead = b->member == EO_PINION ? -1 : 1;
+  const struct tooth *loaded = &b->tooth[middle];
+  enum eo_code code = list_flank(b, loaded, &s->flank);
+  for (int k = 0; k < 2 && middle > 0 && !code; k++)
+    code = list_flank(b, &b->tooth[middle + (k ? ahead : -ahead)], &s->next_flank[k]);
+  s->root = malloc((size_t)(loaded->division->fillet[1] + 1) * sizeof *s->root);
+  if (code || !s->root)
+    return EO_ERROR_MEMORY;
+  s->root_nodes = loaded->division->fillet[1] + 1;
+  memcpy(s->root, loaded->side[1], (size_t)s->root_nodes * sizeof *s->root);
+  return EO_OK;
+}
+
+/* Upper bounds of the number of nodes and quadrilaterals, and the grids of node numbers. */
+static enum eo_code allocate(struct builder *b)
+{
+  int rim = b->settings->rim;
+  size_t nodes = 0, quads = 0;
+  for (int t = 0; t < b->settings->teeth; t++) {
+    struct tooth *tooth = &b->tooth[t];
+    tooth->place = t - b->settings->teeth / 2;
+    tooth->division = !tooth->place ? &b->settings->loaded : abs(tooth->place) == 1 ? &b->settings->next : &b->settings->outer;
+    const struct eo_tooth_division *d = tooth->division;
+    size_t core = (size_t)(d->rows + rim + 1) * (size_t)(d->columns + 1);
+    tooth->core = malloc(core * sizeof *tooth->core);
+    nodes += core;
+    quads += core;
+    for (int side = 0; side < 2; side++) {
+      size_t block = (size_t)(rim + 1) * (size_t)(d->fillet[side] + 1);
+      tooth->side[side] = malloc(block * sizeof *tooth->side[side]);
+      nodes += block;
+      quads += block;
+      if (!tooth->core || !tooth->side[side])
+        return EO_ERROR_MEMORY;
+    }
+  }
+  struct eo_section *s = b->section;
+  s->point = malloc(nodes * 2 * sizeof *s->point);
+  s->quad = malloc(quads * 4 * sizeof *s->quad);
+  s->half = malloc(quads);
+  s->fixed = calloc(nodes, 1);
+  s->centre = calloc(nodes, 1);
+  b->level = malloc((size_t)(rim + 1) * sizeof *b->level);
+  return s->point && s->quad && s->half && s->fixed && s->centre && b->level ? EO_OK : EO_ERROR_MEMORY;
+}
+
+static enum eo_code check(const struct builder *b, struct eo_error *error)
+{
+  static const char *const name[2] = {"pinion", "gear"};
+  if (b->settings->teeth >= b->geometry->teeth[b->member])
+    return eo_error_set(error, EO_ERROR_INPUT, "/resolution/sector_teeth",
+                        "A sector of %d teeth does not fit round the %s with its %d teeth.", b->settings->teeth,
+                        name[b->member], b->geometry->teeth[b->member]);
+  if (!(b->section->bore_radius > 0 && b->section->bore_radius < 0.98 * b->geometry->root_radius[b->member]))
+    return eo_error_set(error, EO_ERROR_INPUT, b->member ? "/gear_pair/gear_bore_mm" : "/gear_pair/pinion_bore_mm",
+                        "The bore of the %s leaves no rim below its teeth.", name[b->member]);
+  return EO_OK;
+}
+
+static void build(struct builder *b)
+{
+  const struct eo_geometry *g = b->geometry;
+  double point[2], normal[2], start = g->start_radius[b->member];
+  double fillet = fillet_length(b), involute = start - g->form_radius[b->member];
+  b->pitch_angle = 2 * M_PI / g->teeth[b->member];
+  b->involute_share = involute > 1e-6 * fillet ? involute / (involute + fillet) : 0;
+  eo_geometry_involute(g, b->member, start, point, normal);
+  b->inner_angle = 0.6 * fmin(atan2(point[0], point[1]), 0.35 * b->pitch_angle);
+  double depth = g->root_radius[b->member] - b->section->bore_radius;
+  grade_levels(b->level, b->settings->rim, (fillet + involute) / b->settings->loaded.fillet[1] / depth);
+  for (int t = 0; t < b->settings->teeth; t++) {
+    struct tooth *tooth = &b->tooth[t];
+    const struct tooth *before = t ? tooth - 1 : NULL;
+    add_core_nodes(b, tooth);
+    add_side_nodes(b, tooth, 1, before);
+    add_side_nodes(b, tooth, 0, NULL);
+    add_quads(b, tooth);
+  }
+  mark_nodes(b);
+}
+
+enum eo_code eo_section_init(struct eo_section *section, const struct eo_geometry *geometry, int member, double bore_radius,
+                             const struct eo_section_settings *settings, struct eo_error *error)
+{
+  struct builder b = {.section = section, .geometry = geometry, .settings = settings, .member = member};
+  *section = (struct eo_section){.bore_radius = bore_radius};
+  enum eo_code code = check(&b, error);
+  if (code)
+    return code;
+  code = allocate(&b);
+  if (!code)
+    build(&b);
+  if (!code)
+    code = list_boundary(&b);
+  for (int t = 0; t < settings->teeth; t++) {
+    free(b.tooth[t].core);
+    free(b.tooth[t].side[0]);
+    free(b.tooth[t].side[1]);
+  }
+  free(b.level);
+  if (code) {
+    eo_section_done(section);
+    return eo_error_memory(error);
+  }
+  return EO_OK;
+}
+
+static void free_flank(struct eo_flank_nodes *flank)
+{
+  free(flank->node);
+  free(flank->s);
+  free(flank->normal);
+}
+
+void eo_section_done(struct eo_section *section)
+{
+  if (!section)
+    return;
+  free(section->point);
+  free(section->quad);
+  free(section->half);
+  free(section->fixed);
+  free(section->centre);
+  free(section->root);
+  free_flank(&section->flank);
+  free_flank(&section->next_flank[0]);
+  free_flank(&section->next_flank[1]);
+  *section = (struct eo_section){0};
+}

@@ -1,0 +1,102 @@
+#include "gear/design.h"
+
+#include <math.h>
+
+#include "gear/geometry.h"
+
+static void fill(double *value, double derived)
+{
+  if (isnan(*value))
+    *value = derived;
+}
+
+static void resolve_gear_pair(struct eo_gear_pair *pair, const struct eo_geometry *geometry)
+{
+  fill(&pair->groove_width, pair->ends == 2 ? 8 * pair->normal_module : 0);
+  fill(&pair->centre_distance, geometry->centre_distance);
+  for (int i = 0; i < 2; i++) {
+    double root = 2 * geometry->root_radius[i];
+    fill(&pair->tip_diameter[i], 2 * geometry->tip_radius[i]);
+    fill(&pair->bore[i], i == EO_PINION ? 0 : fmin(15 * pair->normal_module, root / 2));
+    fill(&pair->groove_diameter[i], fmax(root - 2e-3, 0.9 * root));
+  }
+}
+
+/* Solid pitch cylinder of one end and half the groove body, less the bore. */
+static void resolve_inertia(struct eo_supports *supports, const struct eo_gear_pair *pair, double density, int i, double pitch_radius)
+{
+  double groove = pair->ends == 2 ? pair->groove_width / 2 : 0, body = pair->groove_diameter[i] / 2, bore = pair->bore[i] / 2;
+  double area = pitch_radius * pitch_radius * pair->face_width + body * body * groove - bore * bore * (pair->face_width + groove);
+  double polar = pow(pitch_radius, 4) * pair->face_width + pow(body, 4) * groove - pow(bore, 4) * (pair->face_width + groove);
+  fill(&supports->mass[i], density * M_PI * area);
+  fill(&supports->inertia[i], density * M_PI / 2 * polar);
+}
+
+static void resolve_groove(struct eo_supports *supports, const struct eo_gear_pair *pair, const struct eo_material *material, int i)
+{
+  double body = pair->groove_diameter[i] / 2, bore = pair->bore[i] / 2;
+  double shear_modulus = material->youngs_modulus / (2 * (1 + material->poissons_ratio));
+  fill(&supports->groove_axial_stiffness[i], material->youngs_modulus * M_PI * (body * body - bore * bore) / pair->groove_width);
+  fill(&supports->groove_torsional_stiffness[i], shear_modulus * M_PI / 2 * (pow(body, 4) - pow(bore, 4)) / pair->groove_width);
+}
+
+static void resolve_shafts(struct eo_shafts *shafts, const struct eo_gear_pair *pair)
+{
+  double outside = pair->ends == 2 ? pair->groove_width / 2 + 1.5 * pair->face_width : pair->face_width;
+  for (int i = 0; i < 2; i++) {
+    fill(&shafts->bearing_position[i][EO_LEFT], -outside);
+    fill(&shafts->bearing_position[i][EO_RIGHT], outside);
+    fill(&shafts->shaft_diameter[i], fmax(0.8 * pair->groove_diameter[i], (pair->groove_diameter[i] + pair->bore[i]) / 2));
+  }
+}
+
+static void add_scenario(struct eo_objective *objective, double in_plane, double out_of_plane, double compliance, double speed)
+{
+  objective->scenario[objective->scenarios++] = (struct eo_scenario){in_plane, out_of_plane, compliance, speed};
+}
+
+static void resolve_scenarios(struct eo_objective *objective, const struct eo_alignment *alignment)
+{
+  double in = alignment->shaft_angle_in_plane, out = alignment->shaft_angle_out_of_plane;
+  double step = fmax(0.2 * fabs(in), 0.01 * M_PI / 180);
+  for (int i = 0; i < objective->scenarios; i++) {
+    fill(&objective->scenario[i].in_plane, in);
+    fill(&objective->scenario[i].out_of_plane, out);
+  }
+  if (objective->robust == EO_ROBUST_OFF || objective->scenarios)
+    return;
+  add_scenario(objective, in, out, 1, 1);
+  for (int sign = -1; sign <= 1; sign += 2) {
+    add_scenario(objective, in + sign * step, out, 1, 1);
+    add_scenario(objective, in, out, 1 + 0.1 * sign, 1);
+    add_scenario(objective, in, out, 1, 1 + 0.05 * sign);
+  }
+}
+
+static void resolve_start_range(struct eo_range *range, double active, double module)
+{
+  double high = 0.9 * active;
+  fill(&range->high, high);
+  fill(&range->low, fmin(0.05 * module, 0.5 * range->high));
+}
+
+static void resolve_optimization(struct eo_optimization *optimization, const struct eo_gear_pair *pair, const struct eo_geometry *geometry)
+{
+  int variables = optimization->variables == EO_VARIABLES_PER_END && pair->ends == 2 ? 10 : 5;
+  fill(&optimization->share_radius, 0.03 * pow(variables / 5., 1.9));
+  resolve_start_range(&optimization->tip_relief_start, geometry->rack_top, pair->normal_module);
+  resolve_start_range(&optimization->root_relief_start, -geometry->rack_bottom, pair->normal_module);
+}
+
+void eo_design_resolve(struct eo_design *design, const struct eo_geometry *geometry)
+{
+  resolve_gear_pair(&design->gear_pair, geometry);
+  for (int i = 0; i < 2; i++) {
+    resolve_inertia(&design->supports, &design->gear_pair, design->material.density, i, geometry->reference_radius[i]);
+    if (design->gear_pair.ends == 2 && design->gear_pair.groove_width > 0)
+      resolve_groove(&design->supports, &design->gear_pair, &design->material, i);
+  }
+  resolve_shafts(&design->shafts, &design->gear_pair);
+  resolve_scenarios(&design->objective, &design->alignment);
+  resolve_optimization(&design->optimization, &design->gear_pair, geometry);
+}

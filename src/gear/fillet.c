@@ -1,0 +1,64 @@
+/* The root of a generated tooth: the trochoid of the rack's rounded tip and the root circle between two trochoids. */
+#include "gear/geometry.h"
+
+#include <math.h>
+
+/* The tip of the rack in its normal section: centre of the rounding (across, up from the rolling pitch line). */
+struct tip {
+  double centre[2];
+  double land_angle; /* root circle between the end of the trochoid and the middle of the tooth space, rad */
+};
+
+static struct tip rack_tip(const struct eo_geometry *g, int member)
+{
+  double shift = g->profile_shift[member] * g->normal_module, slope = tan(g->normal_pressure_angle);
+  double half_thickness = M_PI * g->normal_module / 4 + shift * slope; /* of the generated tooth on the pitch line */
+  struct tip tip;
+  tip.centre[1] = shift - g->dedendum + g->fillet_radius;
+  tip.centre[0] = half_thickness - tip.centre[1] * slope + g->fillet_radius / cos(g->normal_pressure_angle);
+  tip.land_angle = fmax(0, M_PI / g->teeth[member] - tip.centre[0] / cos(g->helix_angle) / g->reference_radius[member]);
+  return tip;
+}
+
+/* Trochoid point generated at angle psi of the rounding (alpha_n at the flank, pi/2 at its lowest point). */
+static void trochoid(const struct eo_geometry *g, int member, const struct tip *tip, double psi, double point[2], double normal[2])
+{
+  double r = g->reference_radius[member], stretch = 1 / cos(g->helix_angle);
+  double x = (tip->centre[0] - g->fillet_radius * cos(psi)) * stretch, y = tip->centre[1] - g->fillet_radius * sin(psi);
+  double n[2] = {cos(psi), sin(psi) * stretch}; /* out of the generated tooth, into the rack */
+  double roll = x - y * n[0] / n[1], angle = roll / r, c = cos(angle), s = sin(angle), length = hypot(n[0], n[1]);
+  point[0] = (x - roll) * c + (y + r) * s;
+  point[1] = -(x - roll) * s + (y + r) * c;
+  normal[0] = (n[0] * c + n[1] * s) / length;
+  normal[1] = (-n[0] * s + n[1] * c) / length;
+}
+
+enum { PIECES = 256 };
+
+void eo_geometry_fillet(const struct eo_geometry *g, int member, double t, double point[2], double normal[2])
+{
+  struct tip tip = rack_tip(g, member);
+  double land = tip.land_angle * g->root_radius[member], low = M_PI / 2, high = g->normal_pressure_angle;
+  double length[PIECES + 1], last[2], unused[2];
+  length[0] = 0;
+  trochoid(g, member, &tip, low, last, unused);
+  for (int i = 1; i <= PIECES; i++) {
+    double next[2];
+    trochoid(g, member, &tip, low + (high - low) * i / PIECES, next, unused);
+    length[i] = length[i - 1] + hypot(next[0] - last[0], next[1] - last[1]);
+    last[0] = next[0];
+    last[1] = next[1];
+  }
+  double wanted = t * (land + length[PIECES]) - land;
+  if (wanted <= 0) {
+    double angle = M_PI / g->teeth[member] - tip.land_angle * (land > 0 ? 1 + wanted / land : 0);
+    point[0] = g->root_radius[member] * (normal[0] = sin(angle));
+    point[1] = g->root_radius[member] * (normal[1] = cos(angle));
+    return;
+  }
+  int i = 0;
+  while (i < PIECES - 1 && length[i + 1] < wanted)
+    i++;
+  double part = (wanted - length[i]) / (length[i + 1] - length[i]);
+  trochoid(g, member, &tip, low + (high - low) * fmin(1, (i + part) / PIECES), point, normal);
+}

@@ -1,0 +1,350 @@
+#include "gear/surface.h"
+
+#include <math.h>
+#include <stddef.h>
+
+void eo_surface_evaluate(const struct eo_geometry *g, int member, const struct eo_modification_shape *shape, double u, double v,
+                         struct eo_surface_point *point)
+{
+  double sa = sin(g->normal_pressure_angle), ca = cos(g->normal_pressure_angle), sb = sin(g->helix_angle), cb = cos(g->helix_angle);
+  const double e[3] = {cb, 0, -sb}, t[3] = {sb, 0, cb}, across[3] = {0, 1, 0};
+  double rack = u + g->rack_offset[member], r = g->reference_radius[member];
+  double skew = sa * sb / cb, side = member == EO_PINION ? 1 : -1, profile_slope[2], lead_slope;
+  double delta = eo_modification_profile(shape, u, profile_slope) + eo_modification_lead(shape, side * (v + rack * skew), &lead_slope);
+  lead_slope *= side;
+  double du = (profile_slope[0] + profile_slope[1]) / 2 + lead_slope * skew, dv = lead_slope, x[3], n[3];
+  for (int i = 0; i < 3; i++) {
+    double f = -sa * e[i] + ca * across[i], m = ca * e[i] + sa * across[i];
+    x[i] = rack * f + v * t[i] - delta * m;
+    n[i] = m + du * f + dv * t[i];
+  }
+  double roll = (x[1] * n[0] / n[1] - x[0]) / r, c = cos(roll), s = sin(roll), length = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+  double y0 = x[0] + r * roll, y1 = x[1] + r;
+  point->roll = roll;
+  point->position[0] = c * y0 - s * y1;
+  point->position[1] = s * y0 + c * y1;
+  point->position[2] = x[2];
+  point->normal[0] = (c * n[0] - s * n[1]) / length;
+  point->normal[1] = (s * n[0] + c * n[1]) / length;
+  point->normal[2] = n[2] / length;
+}
+
+void eo_surface_coordinates(const struct eo_geometry *g, int member, double s, double eta, double *u, double *v)
+{
+  *u = g->rack_factor * eo_geometry_own_path(member, s);
+  double rack = *u + g->rack_offset[member];
+  *v = ((member == EO_PINION ? eta : -eta) - rack * sin(g->normal_pressure_angle) * sin(g->helix_angle)) / cos(g->helix_angle);
+}
+
+/* What a slice's flank shows to its partner: the arm of its normal about its own axis, the distance along the normal from the foot
+   of that arm, and the direction angle it has when the tooth stands at roll 0. */
+struct ray {
+  double arm, distance, angle;
+};
+
+/* delta, d: relief at u and its slope (at a kink any slope between those of its two sides: the normal there turns about the vertex). */
+static struct ray sloped_ray(const struct eo_geometry *g, int member, double u, double delta, double d)
+{
+  double sa = sin(g->normal_pressure_angle), ca = cos(g->normal_pressure_angle), sb = sin(g->helix_angle), cb = cos(g->helix_angle);
+  double rack = u + g->rack_offset[member], r = g->reference_radius[member];
+  /* Moved along the rack's trace back into the slice: the gap would come out sin^2(beta_b) too small without. */
+  double z = (rack * sa + delta * ca) * sb, x = -(rack * sa + delta * ca) * cb - z * sb / cb, y = rack * ca - delta * sa;
+  double nx = (ca - d * sa) * cb, ny = sa + d * ca, length = hypot(nx, ny);
+  nx /= length;
+  ny /= length;
+  double roll = (y * nx / ny - x) / r, qx = x + r * roll, qy = y + r;
+  return (struct ray){.arm = qy * nx - qx * ny, .distance = qx * nx + qy * ny, .angle = roll + atan2(ny, nx)};
+}
+
+/* side: 0 takes the slope just below u, 1 just above. */
+static struct ray slice_ray(const struct eo_geometry *g, int member, const struct eo_modification_shape *shape, double u, int side)
+{
+  double slope[2], delta = eo_modification_profile(shape, u, slope);
+  return sloped_ray(g, member, u, delta, slope[side]);
+}
+
+void eo_slice_point_at(const struct eo_geometry *g, int member, const struct eo_modification_shape *shape, double u,
+                       struct eo_slice_point *point)
+{
+  struct ray ray = slice_ray(g, member, shape, u, 0);
+  double c = cos(ray.angle), s = sin(ray.angle);
+  point->normal[0] = c;
+  point->normal[1] = s;
+  point->position[0] = ray.distance * c - ray.arm * s;
+  point->position[1] = ray.distance * s + ray.arm * c;
+}
+
+static struct ray involute_ray(const struct eo_geometry *g, int member, double distance)
+{
+  double base = g->base_radius[member], start = base * tan(g->transverse_pressure_angle);
+  return (struct ray){.arm = base, .distance = distance, .angle = (distance - start) / base + g->transverse_pressure_angle};
+}
+
+/* Angle of the common normal for two arms. */
+static double common_angle(const struct eo_geometry *g, const struct ray *p, const struct ray *q)
+{
+  return acos((p->arm + q->arm) / g->centre_distance);
+}
+
+/* ---- walks: every normal of a flank in order, so that the one in line with a given normal of the partner can be found ----
+   The coordinate w is u, stretched at each kink by the width of a fan in which the normal turns about the vertex. */
+
+enum { MOST_KINKS = 3, MOST_BREAKS = 12 };
+static const double FAN = 1e-3;
+
+struct walk {
+  const struct eo_geometry *geometry;
+  const struct eo_modification_shape *shape;
+  int member, kinks;
+  double kink[MOST_KINKS]; /* u, increasing */
+  double low, high;        /* w at the ends */
+};
+
+/* Vertices of a shape, increasing: where its curvature jumps, and perhaps its slope. */
+static int collect_vertices(const struct eo_modification_shape *shape, double vertex[2])
+{
+  int count = 0;
+  for (int side = 0; side < 2; side++) {
+    double u = (side ? 1 : -1) * shape->side[side].start;
+    if (shape->side[side].length > 0 && !(count == 1 && vertex[0] == u))
+      vertex[count++] = u;
+  }
+  return count;
+}
+
+static void walk_init(struct walk *walk, const struct eo_geometry *g, int member, const struct eo_modification_shape *shape)
+{
+  double margin = 0.3 * (g->rack_top - g->rack_bottom), vertex[2];
+  *walk = (struct walk){.geometry = g, .shape = shape, .member = member};
+  walk->low = (member == EO_PINION ? g->rack_bottom : -g->rack_top) - margin;
+  walk->high = (member == EO_PINION ? g->rack_top : -g->rack_bottom) + margin;
+  int vertices = collect_vertices(shape, vertex);
+  for (int i = 0; i < vertices; i++) {
+    double slope[2];
+    eo_modification_profile(shape, vertex[i], slope);
+    if (fabs(slope[1] - slope[0]) > 1e-12) {
+      walk->kink[walk->kinks++] = vertex[i];
+      walk->high += FAN;
+    }
+  }
+}
+
+static struct ray walk_ray(const struct walk *walk, double w)
+{
+  double last = -INFINITY, slope[2];
+  for (int i = 0; i < walk->kinks && w > walk->kink[i]; i++) {
+    last = walk->kink[i];
+    if (w < last + FAN) {
+      double delta = eo_modification_profile(walk->shape, last, slope);
+      return sloped_ray(walk->geometry, walk->member, last, delta, slope[0] + (slope[1] - slope[0]) * (w - last) / FAN);
+    }
+    w = fmax(w - FAN, last);
+  }
+  return slice_ray(walk->geometry, walk->member, walk->shape, w, w == last);
+}
+
+/* The coordinate of a place u: before (side 0) or behind (side 1) the fan of a kink there. */
+static double walk_place(const struct walk *walk, double u, int side)
+{
+  double w = u;
+  for (int i = 0; i < walk->kinks; i++)
+    if (u > walk->kink[i] || (side == 1 && u == walk->kink[i]))
+      w += FAN;
+  return w;
+}
+
+/* How far two normals are from lying in one line: their distances along it have to add up to a sin(alpha'). */
+static double miss_of(const struct eo_geometry *g, const struct ray *p, const struct ray *q)
+{
+  return g->centre_distance * sin(common_angle(g, p, q)) - p->distance - q->distance;
+}
+
+/* The ray of the walk in line with that of the other member, near the place *w: the miss falls along a convex flank; regula falsi with
+   halving (Illinois). False when there is none: beyond reliefs so steep that the flank's normals leave the mesh. */
+static bool in_line_with(const struct walk *walk, const struct ray *other, double *w, struct ray *q)
+{
+  enum { STEPS = 80 };
+  double span = 0.01 * (walk->high - walk->low), end[2], miss[2] = {-1, 1};
+  for (int widen = 0; widen < 7 && !(miss[0] >= 0 && miss[1] <= 0); widen++, span *= 2)
+    for (int i = 0; i < 2; i++) {
+      end[i] = fmin(walk->high, fmax(walk->low, *w + (i ? span : -span)));
+      *q = walk_ray(walk, end[i]);
+      miss[i] = miss_of(walk->geometry, other, q);
+    }
+  if (!(miss[0] >= 0 && miss[1] <= 0))
+    return false;
+  for (int i = 0, last = -1; i < STEPS; i++) {
+    *w = (end[0] * miss[1] - end[1] * miss[0]) / (miss[1] - miss[0]);
+    *q = walk_ray(walk, *w);
+    double here = miss_of(walk->geometry, other, q);
+    if (fabs(here) < 1e-14 || end[1] - end[0] < 1e-15)
+      return true;
+    int side = here > 0 ? 0 : 1;
+    end[side] = *w;
+    miss[side] = here;
+    if (side == last)
+      miss[1 - side] /= 2;
+    last = side;
+  }
+  return fabs(miss_of(walk->geometry, other, q)) < 1e-10;
+}
+
+/* The unmodified flank's ray in line with that of the other member: its arm is the base radius. */
+static struct ray involute_in_line_with(const struct eo_geometry *g, int member, const struct ray *other)
+{
+  struct ray q = involute_ray(g, member, 0);
+  return involute_ray(g, member, g->centre_distance * sin(common_angle(g, other, &q)) - other->distance);
+}
+
+/* Base-circle phase of a member whose ray lies in the common normal. */
+static double phase_of(const struct eo_geometry *g, int member, const struct ray *ray, double common)
+{
+  double offset = eo_geometry_involute_function(g->working_pressure_angle) - eo_geometry_involute_function(g->transverse_pressure_angle);
+  return g->base_radius[member] * (ray->angle - common - offset);
+}
+
+struct node {
+  double phase, gap, slope;
+};
+
+static struct node node_of(const struct eo_geometry *g, const struct ray *p, const struct ray *q)
+{
+  double common = common_angle(g, p, q), c = phase_of(g, EO_PINION, p, common), normal = cos(g->base_helix_angle);
+  double rate = p->arm * g->base_radius[EO_GEAR] / (q->arm * g->base_radius[EO_PINION]);
+  return (struct node){c, (c + phase_of(g, EO_GEAR, q, common)) * normal, (1 - rate) * normal};
+}
+
+static bool profile_is_modified(const struct eo_modification_shape *shape)
+{
+  return shape->crowning != 0 || shape->side[0].length > 0 || shape->side[1].length > 0;
+}
+
+static void sort(int count, double *value)
+{
+  for (int i = 1; i < count; i++)
+    for (int j = i; j > 0 && value[j] < value[j - 1]; j--) {
+      double swap = value[j];
+      value[j] = value[j - 1];
+      value[j - 1] = swap;
+    }
+}
+
+/* Places on the leading member, which the table follows, where its own shape or that of the other member changes, sorted. */
+static int collect_breaks(const struct walk *lead, const struct walk *other, double breaks[MOST_BREAKS])
+{
+  const struct eo_geometry *g = lead->geometry;
+  double margin = 0.15 * (g->rack_top - g->rack_bottom), vertex[2];
+  double low = walk_place(lead, (lead->member == EO_PINION ? g->rack_bottom : -g->rack_top) - margin, 0);
+  double high = walk_place(lead, (lead->member == EO_PINION ? g->rack_top : -g->rack_bottom) + margin, 1);
+  int count = 0, kept = 0, vertices = collect_vertices(lead->shape, vertex);
+  breaks[count++] = low;
+  breaks[count++] = high;
+  for (int i = 0; i < 2 * vertices; i++)
+    breaks[count++] = walk_place(lead, vertex[i / 2], i % 2);
+  vertices = other ? collect_vertices(other->shape, vertex) : 0;
+  for (int i = 0; i < 2 * vertices; i++) {
+    struct ray q = walk_ray(other, walk_place(other, vertex[i / 2], i % 2)), p;
+    double w = walk_place(lead, -vertex[i / 2], 0);
+    if (in_line_with(lead, &q, &w, &p))
+      breaks[count++] = w;
+  }
+  sort(count, breaks);
+  for (int i = 0; i < count; i++)
+    if (breaks[i] >= low && breaks[i] <= high && (kept == 0 || breaks[i] - breaks[kept - 1] > 1e-9))
+      breaks[kept++] = breaks[i];
+  return kept;
+}
+
+/* Places between the breaks, most evenly; returns how many. */
+static int spread_places(int breaks, const double *at, double place[EO_SLICE_NODES])
+{
+  enum { PIECES = 40 }; /* per segment between two breaks: interpolation error below 1e-12 m */
+  int most = (EO_SLICE_NODES - 1) / (breaks - 1), pieces = most < PIECES ? most : PIECES, count = 0;
+  for (int k = 0; k + 1 < breaks; k++)
+    for (int i = 0; i < pieces; i++)
+      place[count++] = at[k] + (at[k + 1] - at[k]) * i / pieces;
+  place[count++] = at[breaks - 1];
+  return count;
+}
+
+static void fill_buckets(struct eo_slice_gap *table)
+{
+  int piece = 0, last = table->nodes - 2;
+  double width = (table->phase[last + 1] - table->phase[0]) / EO_SLICE_BUCKETS;
+  table->bucket_rate = 1 / width;
+  for (int i = 0; i < EO_SLICE_BUCKETS; i++) {
+    while (piece < last && table->phase[piece + 1] <= table->phase[0] + i * width)
+      piece++;
+    table->bucket[i] = (unsigned char)piece;
+  }
+}
+
+/* Nodes of the table from the place `first` on in one direction, until the other member has no normal left to offer. Where normals
+   fold back (concave vertices) the outer branch counts. Returns how many. */
+static int follow(const struct walk *lead, const struct walk *other, int places, const double *place, int first, int direction, struct node *node)
+{
+  const struct eo_geometry *g = lead->geometry;
+  double w = -place[first];
+  int count = 0, sense = lead->member == EO_PINION ? direction : -direction;
+  for (int i = first; i >= 0 && i < places; i += direction) {
+    struct ray p = walk_ray(lead, place[i]), q;
+    if (!other)
+      q = involute_in_line_with(g, 1 - lead->member, &p);
+    else if (!in_line_with(other, &p, &w, &q))
+      break;
+    struct node here = lead->member == EO_PINION ? node_of(g, &p, &q) : node_of(g, &q, &p);
+    if (!isfinite(here.phase + here.gap + here.slope))
+      break;
+    if (count == 0 || sense * (here.phase - node[count - 1].phase) > 0)
+      node[count++] = here;
+  }
+  return count;
+}
+
+void eo_slice_gap_init(struct eo_slice_gap *table, const struct eo_geometry *g, const struct eo_modification_shape shape[2])
+{
+  bool pinion = profile_is_modified(&shape[EO_PINION]), gear = profile_is_modified(&shape[EO_GEAR]);
+  table->nodes = 0;
+  if (!pinion && !gear)
+    return;
+  struct walk walk[2];
+  struct node node[2][EO_SLICE_NODES]; /* before and behind the pitch point */
+  double breaks[MOST_BREAKS], place[EO_SLICE_NODES];
+  walk_init(&walk[0], g, pinion ? EO_PINION : EO_GEAR, &shape[pinion ? EO_PINION : EO_GEAR]);
+  walk_init(&walk[1], g, EO_GEAR, &shape[EO_GEAR]);
+  const struct walk *other = pinion && gear ? &walk[1] : NULL;
+  int count = spread_places(collect_breaks(&walk[0], other, breaks), breaks, place), middle = 0;
+  while (middle < count - 1 && place[middle] < 0)
+    middle++;
+  int outwards[2] = {follow(&walk[0], other, count, place, middle, pinion ? -1 : 1, node[0]),
+                     follow(&walk[0], other, count, place, middle, pinion ? 1 : -1, node[1])};
+  for (int i = -outwards[0] + 1; i < outwards[1]; i++) {
+    const struct node *n = i <= 0 ? &node[0][-i] : &node[1][i];
+    table->phase[table->nodes] = n->phase;
+    table->gap[table->nodes] = n->gap;
+    table->slope[table->nodes++] = n->slope;
+  }
+  fill_buckets(table);
+}
+
+double eo_slice_gap_at(const struct eo_slice_gap *table, double c, double *slope)
+{
+  double unused;
+  slope = slope ? slope : &unused;
+  *slope = 0;
+  if (table->nodes == 0)
+    return 0;
+  int last = table->nodes - 1, i;
+  if (c <= table->phase[0] || c >= table->phase[last]) {
+    i = c <= table->phase[0] ? 0 : last;
+    *slope = table->slope[i];
+    return table->gap[i] + table->slope[i] * (c - table->phase[i]);
+  }
+  i = table->bucket[(int)((c - table->phase[0]) * table->bucket_rate) & (EO_SLICE_BUCKETS - 1)];
+  while (i < last - 1 && table->phase[i + 1] < c)
+    i++;
+  double h = table->phase[i + 1] - table->phase[i], t = (c - table->phase[i]) / h, r = 1 - t;
+  double difference = table->gap[i + 1] - table->gap[i], a = table->slope[i] * h - difference, b = difference - table->slope[i + 1] * h;
+  *slope = (difference + (r - t) * (a * r + b * t) + t * r * (b - a)) / h;
+  return table->gap[i] * r + table->gap[i + 1] * t + t * r * (a * r + b * t);
+}

@@ -1,0 +1,58 @@
+#include "numerics/dense.h"
+
+#include <cblas.h>
+#include <lapacke.h>
+#include <stdlib.h>
+
+/* LAPACK sees the transpose of a row-major matrix, so every solve asks for the transposed system. */
+int eo_dense_factor(int n, double *a, int *pivot)
+{
+  return LAPACKE_dgetrf_work(LAPACK_COL_MAJOR, n, n, a, n, pivot);
+}
+
+void eo_dense_substitute(int n, const double *a, const int *pivot, int columns, double *b)
+{
+  LAPACKE_dgetrs_work(LAPACK_COL_MAJOR, 'T', n, columns, a, n, pivot, b, n);
+}
+
+int eo_dense_solve(int n, double *a, int *pivot, int columns, double *b)
+{
+  int singular = eo_dense_factor(n, a, pivot);
+  if (!singular)
+    eo_dense_substitute(n, a, pivot, columns, b);
+  return singular;
+}
+
+int eo_dense_complex_solve(int n, double complex *a, int *pivot, int columns, double complex *b)
+{
+  if (LAPACKE_zgetrf_work(LAPACK_COL_MAJOR, n, n, a, n, pivot))
+    return 1;
+  return LAPACKE_zgetrs_work(LAPACK_COL_MAJOR, 'T', n, columns, a, n, pivot, b, n);
+}
+
+void eo_dense_multiply(int rows, int columns, const double *a, const double *x, double *y)
+{
+  cblas_dgemv(CblasRowMajor, CblasNoTrans, rows, columns, 1, a, columns, x, 1, 0, y, 1);
+}
+
+void eo_dense_multiply_transposed(int rows, int columns, const double *a, const double *x, double *y)
+{
+  cblas_dgemv(CblasRowMajor, CblasTrans, rows, columns, 1, a, columns, x, 1, 0, y, 1);
+}
+
+int eo_dense_symmetric_eigen(int n, double *a, double *values)
+{
+  return LAPACKE_dsyev(LAPACK_COL_MAJOR, 'V', 'U', n, a, n, values);
+}
+
+int eo_dense_eigenvalues(int n, double *a, double complex *values)
+{
+  double *part = malloc(sizeof *part * 2 * n);
+  if (!part)
+    return 1;
+  int failed = LAPACKE_dgeev(LAPACK_COL_MAJOR, 'N', 'N', n, a, n, part, part + n, NULL, 1, NULL, 1);
+  for (int i = 0; i < n && !failed; i++)
+    values[i] = part[i] + part[n + i] * I;
+  free(part);
+  return failed;
+}

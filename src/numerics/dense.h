@@ -1,0 +1,29 @@
+/* Small dense matrices by LAPACK and BLAS: linear systems, products, eigenvalues. Row-major everywhere. No allocation
+   but where stated. The functions are pure; a caller that wants the same bytes on every machine load keeps BLAS on one thread. */
+#ifndef EASEOFF_NUMERICS_DENSE_H
+#define EASEOFF_NUMERICS_DENSE_H
+
+#include <complex.h>
+
+/* Solves a x = b for `columns` right-hand sides; b[columns][n] is replaced by the solutions, a[n][n] by its factors,
+   pivot[n] is scratch. Returns 0, or non-zero when a is singular (b is then meaningless). */
+int eo_dense_solve(int n, double *a, int *pivot, int columns, double *b);
+
+/* The same in two halves: a[n][n] becomes its factors, which then solve for any b[columns][n]. */
+int eo_dense_factor(int n, double *a, int *pivot);
+void eo_dense_substitute(int n, const double *a, const int *pivot, int columns, double *b);
+
+int eo_dense_complex_solve(int n, double complex *a, int *pivot, int columns, double complex *b);
+
+/* y[rows] = a[rows][columns] x[columns], and y[columns] = a' x[rows]. */
+void eo_dense_multiply(int rows, int columns, const double *a, const double *x, double *y);
+void eo_dense_multiply_transposed(int rows, int columns, const double *a, const double *x, double *y);
+
+/* Eigenvalues (ascending) and orthonormal eigenvectors of the symmetric a[n][n]: row i of a becomes the i-th vector.
+   Allocates. Returns 0, or non-zero when memory runs out or the iteration fails. */
+int eo_dense_symmetric_eigen(int n, double *a, double *values);
+
+/* Eigenvalues of a general a[n][n], which is destroyed; order as LAPACK finds them. Allocates. Returns as above. */
+int eo_dense_eigenvalues(int n, double *a, double complex *values);
+
+#endif

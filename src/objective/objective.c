@@ -1,0 +1,77 @@
+#include "objective/objective.h"
+
+#include <math.h>
+
+void eo_objective_sum(int cases, const struct eo_load_case *load_case, const struct eo_objective_case *value, struct eo_objective_sums *sums)
+{
+  *sums = (struct eo_objective_sums){0};
+  for (int k = 0; k < cases; k++) {
+    sums->f[0] += load_case[k].share * fabs(value[k].peak_to_peak) / cases;
+    sums->f[1] += load_case[k].share * fabs(value[k].impact) / cases;
+    sums->f[2] += load_case[k].share * value[k].rms / cases;
+    sums->failed |= value[k].failed;
+  }
+  for (int i = 0; i < 3; i++)
+    sums->failed |= !isfinite(sums->f[i]);
+}
+
+static double excess(const struct eo_constraint *constraint, double value)
+{
+  if (!constraint->enabled || !(value > constraint->limit))
+    return 0;
+  return constraint->limit > 0 ? value / constraint->limit - 1 : value;
+}
+
+static double worse(double value, double before)
+{
+  return before > 0 && value > before ? value / before - 1 : 0;
+}
+
+static double violation(const struct eo_objective *o, const struct eo_objective_case *v, const struct eo_objective_case *before)
+{
+  double sum = excess(&o->contact_pressure, v->contact_pressure) + excess(&o->root_stress, v->root_stress) +
+               excess(&o->peak_to_peak, v->peak_to_peak) + excess(&o->edge_load_share, v->edge_load_share) +
+               excess(&o->contact_loss, v->contact_loss);
+  if (o->no_worse_than_unmodified)
+    sum += worse(v->peak_to_peak, before->peak_to_peak) + worse(v->impact, before->impact) + worse(v->rms, before->rms);
+  return sum;
+}
+
+void eo_objective_value(const struct eo_objective *objective, int cases, const struct eo_load_case *load_case,
+                        const struct eo_objective_case *value, const struct eo_objective_case *unmodified, bool relief_outside,
+                        struct eo_objective_value *result)
+{
+  struct eo_objective_sums before;
+  *result = (struct eo_objective_value){0};
+  eo_objective_sum(cases, load_case, value, &result->sums);
+  eo_objective_sum(cases, load_case, unmodified, &before);
+  for (int i = 0; i < 3; i++) {
+    double scale = objective->normalise == EO_NORMALISE_NONE ? 1 : before.f[i];
+    if (objective->weight[i] == 0)
+      continue;
+    /* An objective that the unmodified pair already has at zero cannot be normalised; it counts only once it is there. */
+    result->objective += objective->weight[i] * (scale > 0 ? result->sums.f[i] / scale : result->sums.f[i] > 0);
+  }
+  for (int k = 0; k < cases; k++)
+    result->violation += violation(objective, &value[k], &unmodified[k]);
+  if (objective->relief_inside_active_flank && relief_outside)
+    result->violation += 1;
+  if (result->sums.failed || !(result->objective > 0)) {
+    result->objective = NAN;
+    result->fitness = EO_FITNESS_WORST;
+    return;
+  }
+  result->fitness = 1 / result->objective - objective->penalty * result->violation;
+}
+
+bool eo_objective_relief_outside(const struct eo_modification *modification, double bottom, double top)
+{
+  for (int member = 0; member < 2; member++)
+    for (int end = 0; end < 2; end++) {
+      const struct eo_flank_modification *m = &modification->flank[member][end];
+      double own_top = member == EO_PINION ? top : -bottom, own_bottom = member == EO_PINION ? -bottom : top;
+      if ((m->tip_relief > 0 && m->tip_relief_start >= own_top) || (m->root_relief > 0 && m->root_relief_start >= own_bottom))
+        return true;
+    }
+  return false;
+}

@@ -1,0 +1,45 @@
+/* The three objectives, the constraints and the fitness (paper (19)-(23) with the gaps settled; see the notes at each). */
+#ifndef EASEOFF_OBJECTIVE_OBJECTIVE_H
+#define EASEOFF_OBJECTIVE_OBJECTIVE_H
+
+#include "gear/design.h"
+
+/* What the objectives need of one load case: raw, before weights, so that a history can serve any later weighting. */
+struct eo_objective_case {
+  double peak_to_peak;     /* PPLTE of the pair, m */
+  double impact;           /* general entering impact, worse end, N */
+  double rms;              /* normal acceleration, mean of the ends' RMS, m/s2 */
+  double contact_pressure; /* largest, Pa */
+  double root_stress;      /* largest, Pa; NaN when it was not computed */
+  double edge_load_share;  /* largest share of P on tip-edge points */
+  double contact_loss;     /* largest fraction of the cycle out of contact */
+  bool failed;             /* contact or vibration did not converge: the numbers above mean nothing */
+};
+
+/* f_i = sum_k share_k value_ik / 3: the /3 is kept as printed, for three cases; n cases divide by n. */
+struct eo_objective_sums {
+  double f[3]; /* f1 PPLTE (m), f2 impact (N), f3 RMS (m/s2) */
+  bool failed;
+};
+
+struct eo_objective_value {
+  struct eo_objective_sums sums;
+  double objective;  /* J, dimensionless when normalised; NaN when failed */
+  double violation;  /* sum of relative excesses over the constraints */
+  double fitness;    /* 1/J - penalty * violation; EO_FITNESS_WORST when failed (the paper prints the penalty with +) */
+};
+
+static const double EO_FITNESS_WORST = -1e9;
+
+void eo_objective_sum(int cases, const struct eo_load_case *load_case, const struct eo_objective_case *value, struct eo_objective_sums *sums);
+
+/* J = sum w_i f_i / f_i(unmodified) (normalise: unmodified) or sum w_i f_i in SI units (none). unmodified: [cases], the same design
+   without modification; needed to normalise and for no_worse_than_unmodified. relief_outside: 1 when a relief starts outside the active flank. */
+void eo_objective_value(const struct eo_objective *objective, int cases, const struct eo_load_case *load_case,
+                        const struct eo_objective_case *value, const struct eo_objective_case *unmodified, bool relief_outside,
+                        struct eo_objective_value *result);
+
+/* True when a relief of the modification starts at or beyond the end of the active profile; bottom, top: u_A < 0 < u_E of the pinion, m. */
+bool eo_objective_relief_outside(const struct eo_modification *modification, double bottom, double top);
+
+#endif

@@ -1,0 +1,100 @@
+#!/bin/sh
+# The reference cases of the dynamics and of the optimizer through `easeoff verify`: every number within tolerance, wrong ones
+# noticed, other files of the same kinds read.
+: "${EASEOFF:=./easeoff}" "${CASES:=tests/cases}"
+folder=$(mktemp -d) || exit 99
+trap 'rm -rf "$folder"' EXIT
+count=0 failed=0
+
+result() # condition-status, what
+{
+  count=$((count + 1))
+  if [ "$1" -eq 0 ]; then echo "ok $count - $2"; else
+    failed=1
+    echo "not ok $count - $2"
+    sed 's/^/# /' "$folder/out" "$folder/err" | head -20
+  fi
+}
+
+verify() # STATUS WHAT FILE...
+{
+  wanted=$1 what=$2
+  shift 2
+  "$EASEOFF" verify "$@" >"$folder/out" 2>"$folder/err"
+  status=$?
+  [ "$status" -eq "$wanted" ]
+  result $? "$what: exit $status, expected $wanted"
+}
+
+prints() # PATTERN
+{
+  grep -q -e "$1" "$folder/out"
+  result $? "prints $1"
+}
+
+checks() # LEAST: at least so many numbers are compared, each with a verdict in the document
+{
+  passed=$(grep -c '"pass": true' "$folder/out")
+  [ "$passed" -ge "$1" ]
+  result $? "$passed numbers within tolerance, at least $1 expected"
+}
+
+changed() # FILE FROM TO: a copy with one change, which must have taken place
+{
+  sed "$2" "$CASES/$1" >"$folder/$1"
+  ! cmp -s "$CASES/$1" "$folder/$1"
+  result $? "$1 changed by $2"
+}
+
+verify 0 "dynamics" --json "$CASES/dynamics.json"
+checks 260
+verify 0 "optimizer" --json "$CASES/optimizer.json"
+checks 250
+verify 0 "both, for people" "$CASES/dynamics.json" "$CASES/optimizer.json"
+prints "K1-828-impact-paper .* pass"
+prints "SDOF-A-0.78-hi .* pass"
+prints "folds.A .* pass"
+prints "runs\[0\] .* pass"
+prints "All [0-9]* checks are within tolerance"
+[ "$(grep -c 'note:' "$folder/out")" -eq 0 ]
+result $? "every key is read"
+
+# An RMS that is off by 3e-4 is noticed, in both kinds of output.
+changed dynamics.json 's/"rms_meanLR": 18.703694/"rms_meanLR": 18.71/'
+verify 1 "a wrong RMS" "$folder/dynamics.json"
+prints "K1-828 .*rms_meanLR.*FAIL (1)"
+prints "^1 of "
+changed optimizer.json 's/0.5660471698879699/0.5660471698879/'
+verify 1 "a wrong draw" "$folder/optimizer.json"
+prints "rng\[0\].*u01.*FAIL (1)"
+
+# A case that cannot be computed fails alone, with its reason.
+changed dynamics.json 's/"law": "K1"/"law": "K99"/'
+verify 1 "an unknown law" "$folder/dynamics.json"
+prints "K1-828 .*computed at all.*FAIL"
+prints "K1-828 could not be computed: /table_K99"
+prints "T1-828 .* pass"
+changed optimizer.json 's/"fitness": "1\/(1+sum((x-c)^2)), c=\[0.3,0.6,0.45\]"/"fitnes": "1"/'
+verify 1 "a missing key" "$folder/optimizer.json"
+prints "runs\[0\] could not be computed: /runs/0"
+prints 'runs\[0\]: "fitnes" is not a key'
+prints "successor\[0\] .* pass"
+
+# Another file of the kind, one end and no responses; unknown keys are named. Expected: m w^2 = k for the axial motions, the
+# eigenvalues of the 4 by 4 rest from numpy, and |1/(1 - W^2 + 2 i z W)| W^2.
+cat >"$folder/single.json" <<'END'
+{"kind": "dynamics", "wheels": 1,
+ "sdof": {"cases": [{"id": "linear", "z": 0.05, "Fm": 10, "Fh": 1, "e": 0, "W": 0.5, "colour": "red",
+   "expected": {"mean": 11, "h1": 0.3326, "contact_loss_fraction": 0}}]},
+ "eigen": [{"id": "one end", "km": [4e8], "params": {"ends": 1, "beta": 0, "Rp": 0.05, "Rg": 0.1, "mp": 5, "mg": 20, "Ip": 0.006, "Ig": 0.1,
+   "kpy": 1e9, "kgy": 1e9, "kg1z": 1e8, "kg2z": 1e8, "kpz": 1e8, "kgz": 1e8, "cpy": 0, "cgy": 0, "cg1z": 0, "cg2z": 0, "cpz": 0, "cgz": 0, "cm": 0},
+   "zero_modes": 1, "freq_hz": [355.881272, 711.762543, 1052.93839, 1745.31818, 3153.68302]}]}
+END
+verify 0 "another file" "$folder/single.json"
+prints '"wheels" is not a block'
+prints 'linear: "colour" is not a key'
+prints "linear  *4 .* pass"
+prints "one end  *7 .* pass"
+
+echo "1..$count"
+exit $failed
