@@ -93,6 +93,11 @@ static void evaluate(struct eo_loaded_workspace *ws, const struct problem *probl
   ws->residual[stride] = sum - problem->force;
 }
 
+static inline double larger(double a, double b)
+{
+  return a > b ? a : b;
+}
+
 /* Half the change of the local approach over each cell, from its neighbours on the line; returns its largest change. */
 static double spread_cells(struct eo_loaded_workspace *ws, const struct eo_contact_position *p)
 {
@@ -101,9 +106,9 @@ static double spread_cells(struct eo_loaded_workspace *ws, const struct eo_conta
     int first = p->line[l].first, last = first + p->line[l].cells - 1;
     for (int i = first; i <= last; i++) {
       int a = i > first ? i - 1 : i, b = i < last ? i + 1 : i;
-      double spread = b > a ? fabs(ws->local[b] - ws->local[a]) / (2 * (b - a)) : 0;
-      if (fabs(ws->local[i]) < fmax(spread, ws->spread[i]))
-        change = fmax(change, fabs(spread - ws->spread[i]));
+      double spread = b > a ? fabs(ws->local[b] - ws->local[a]) / (2 * (b - a)) : 0, moved = fabs(spread - ws->spread[i]);
+      if (fabs(ws->local[i]) < larger(spread, ws->spread[i]))
+        change = larger(change, moved);
       ws->spread[i] = spread;
     }
   }
@@ -125,7 +130,7 @@ static double correct(struct eo_loaded_workspace *ws, const struct eo_contact_po
   double change = 0;
   ws->gram->blend(p->points, p->remainder_stride, p->remainder, ws->load, ws->blend);
   for (int i = 0; i < p->points; i++) {
-    change = fmax(change, fabs((double)ws->blend[i] - ws->correction[i]));
+    change = larger(change, fabs((double)ws->blend[i] - ws->correction[i]));
     ws->correction[i] = (double)ws->blend[i];
   }
   if (ws->partial)
@@ -294,8 +299,10 @@ static void start_from(struct eo_loaded_workspace *ws, const struct eo_contact_p
   }
   memset(ws->mode, 0, sizeof *ws->mode * (size_t)p->stride);
   for (int i = 0; sum > 0 && i < p->points; i++)
-    for (int k = 0; ws->load[i] > 0 && k < p->stride; k++)
-      ws->mode[k] += ws->load[i] * problem->force / sum * p->factor[(size_t)i * (size_t)p->stride + (size_t)k];
+    ws->load[i] *= problem->force / sum;
+  ws->gram->gather(p->points, p->stride, p->factor, ws->load, ws->mode);
+  for (int k = 0; k < p->stride; k++)
+    ws->mode[k] = -ws->mode[k];
   ws->mode[p->stride] = approach;
   spread_gaps(ws, problem);
   correct(ws, p);
