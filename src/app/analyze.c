@@ -75,12 +75,13 @@ static int run_request(struct request *request)
   enum eo_code code = prepare(request, &watch.progress, &pair, &error);
   if (!code)
     code = analyze(request, pair, &result, &error);
-  eo_watch_end(&watch);
-  if (eo_watch_stopped())
+  eo_watch_clear(&watch);
+  if (watch.stopped)
     code = cancelled(&error);
   if (!code && request->csv)
     code = save_files(result, request->csv, &error);
   int status = code ? eo_app_fail(code == EO_ERROR_INPUT ? request->file : NULL, &error) : show(request, result);
+  eo_watch_end(&watch);
   json_decref(result);
   eo_pair_free(pair);
   return status;

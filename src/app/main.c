@@ -1,9 +1,13 @@
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "app/app.h"
+#include "numerics/threads.h"
 
-static const struct eo_command *const commands[] = {&eo_command_analyze, &eo_command_example, &eo_command_history, &eo_command_optimize, &eo_command_reproduce, &eo_command_stage, &eo_command_verify};
+static const struct eo_command *const commands[] = {&eo_command_analyze, &eo_command_example, &eo_command_history, &eo_command_optimize,
+                                                    &eo_command_reproduce, &eo_command_stage, &eo_command_sweep, &eo_command_verify};
 enum { COMMANDS = sizeof commands / sizeof commands[0] };
 
 static int print_overview(void)
@@ -24,8 +28,26 @@ static int print_version(void)
   return eo_app_print(&text);
 }
 
+/* OpenBLAS starts its threads while the program is loaded, before anybody can block a signal for them: a SIGTERM that one of them takes
+   runs METIS's handler in the wrong thread. Only the environment keeps them away, so the program starts itself a second time. Where
+   that cannot be done it goes on as it is. */
+static void start_without_library_threads(char **argv)
+{
+  static const char *const variable[] = {"OPENBLAS_NUM_THREADS", "OMP_THREAD_LIMIT"};
+  bool again = false;
+  for (int i = 0; i < 2; i++) {
+    const char *value = getenv(variable[i]);
+    if (!value || strcmp(value, "1") != 0)
+      again = setenv(variable[i], "1", 1) == 0 || again;
+  }
+  if (again)
+    execv("/proc/self/exe", argv);
+}
+
 int main(int argc, char **argv)
 {
+  start_without_library_threads(argv);
+  eo_threads_limit();
   const char *name = argc > 1 ? argv[1] : "";
   for (int i = 0; i < COMMANDS; i++)
     if (strcmp(name, commands[i]->name) == 0)

@@ -45,7 +45,7 @@ static int show_progress(void *context, const struct eo_study_report *r)
              r->true_evaluations, r->reused, r->predicted, r->individuals ? 100. * r->true_evaluations / r->individuals : 100, best, left);
     eo_watch_show(watch, line);
   }
-  return eo_watch_stopped();
+  return watch->stopped;
 }
 
 /* What the command line says in place of the design. */
@@ -96,7 +96,7 @@ static int run_study(struct request *q, const struct eo_pair *pair, struct eo_st
   enum eo_code code = eo_study_run(&plan, &result, &error);
   if (!code)
     code = eo_study_document(&plan, &result, &q->warnings, &document, &error);
-  eo_watch_end(watch);
+  eo_watch_clear(watch);
   eo_study_result_done(&result);
   return code ? eo_app_fail(code == EO_ERROR_INPUT ? q->file : NULL, &error) : show(q, document);
 }
@@ -117,11 +117,12 @@ static int run_request(struct request *q)
   eo_watch_start(&watch);
   if (!code)
     code = prepare(q, &watch.progress, &pair, &error);
-  eo_watch_end(&watch);
+  eo_watch_clear(&watch);
   if (code)
     status = eo_app_fail(code == EO_ERROR_INPUT ? q->file : NULL, &error);
   else
     status = run_study(q, pair, store, &watch);
+  eo_watch_end(&watch);
   eo_pair_free(pair);
   eo_store_close(store);
   eo_text_done(&directory);

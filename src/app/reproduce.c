@@ -59,10 +59,11 @@ static int run_request(struct request *q)
                                             .progress = &watch.progress};
   if (!code)
     code = eo_reproduction_run(&plan, &document, &error);
-  eo_watch_end(&watch);
+  eo_watch_clear(&watch);
   if (!code)
     code = save(q, document, &error);
   int status = code ? eo_app_fail(NULL, &error) : show(q, document);
+  eo_watch_end(&watch);
   eo_store_close(store);
   eo_text_done(&data);
   eo_text_done(&cache);

@@ -8,9 +8,15 @@
 
 static const struct eo_stage *const stages[] = {
     &eo_stage_geometry, &eo_stage_modification, &eo_stage_surface, &eo_stage_gap,     &eo_stage_tca,       &eo_stage_flexibility, &eo_stage_hertz,
-    &eo_stage_contact,  &eo_stage_impact,       &eo_stage_root_stress, &eo_stage_iso6336, &eo_stage_objective, &eo_stage_evaluation,
+    &eo_stage_contact,  &eo_stage_impact,       &eo_stage_root_stress, &eo_stage_iso6336, &eo_stage_dynamics,  &eo_stage_sdof,
+    &eo_stage_objective, &eo_stage_evaluation,
 };
 enum { STAGES = sizeof stages / sizeof stages[0] };
+
+const struct eo_stage *eo_stage_at(int index)
+{
+  return index < STAGES ? stages[index] : NULL;
+}
 
 static int list_stages(void)
 {

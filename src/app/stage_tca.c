@@ -28,11 +28,11 @@ static const struct eo_table input_table = EO_TABLE("the input", struct input, i
 static const char *const touches[] = {"point", "edge", "none", NULL};
 
 static const struct eo_field contact[] = {
-    EO_CHOICE(struct eo_unloaded, touch, "touch", touches, EO_TOUCH_POINT, "inside the flank; at its edge or the end of the path; no pair in mesh"),
+    EO_CHOICE(struct eo_unloaded, touch, "touch", touches, EO_TOUCH_POINT, "inside the flank; at its edge, or along a line; no pair in mesh"),
     EO_OUT(struct eo_unloaded, transmission_error, "transmission_error_um", &eo_unit_um, "of the gear, transverse; negative when it lags"),
     EO_OUT(struct eo_unloaded, path, "s_mm", &eo_unit_mm, "of the contact"),
     EO_OUT(struct eo_unloaded, eta, "eta_mm", &eo_unit_mm, "of the contact"),
-    EO_OUT(struct eo_unloaded, residual, "residual", NULL, "largest of the five equations, relative to 1 m and to 1; 0 for the smallest gap"),
+    EO_OUT(struct eo_unloaded, residual, "residual", NULL, "largest of the five equations, in m and in parts of 1; 0 for the smallest gap"),
 };
 static const struct eo_table contact_table = EO_TABLE("a contact", struct eo_unloaded, contact);
 
@@ -43,7 +43,7 @@ struct row {
 
 static const struct eo_field row[] = {
     EO_OUT(struct row, phase, "phase_mm", &eo_unit_mm, "c"),
-    EO_OBJECT(struct row, exact, "exact", &contact_table, "of the exact surfaces: equal positions and normals (Litvin)"),
+    EO_OBJECT(struct row, exact, "exact", &contact_table, "of the exact surfaces: equal positions and normals (Litvin); null unless they touch in a point"),
     EO_OBJECT(struct row, minimum, "minimum_gap", &contact_table, "smallest gap along the contact line"),
     EO_OUT(struct row, difference, "difference_um", &eo_unit_um, "exact minus smallest gap, less the mean difference; null unless both touch in a point"),
 };
@@ -61,6 +61,14 @@ static const struct eo_field output[] = {
     EO_LIST(struct output, row, rows, "phases", &row_table, 0, MOST_PHASES, "one row per phase"),
 };
 static const struct eo_table output_table = EO_TABLE("the output", struct output, output);
+
+/* Where surfaces do not touch in a point the five equations have no solution on the flanks, or a whole line of them; without a pair in mesh
+   nothing has a meaning. */
+static void drop_meaningless(struct eo_unloaded *found, bool point_only)
+{
+  if (found->touch == EO_TOUCH_NONE || (point_only && found->touch == EO_TOUCH_EDGE))
+    found->transmission_error = found->path = found->eta = found->residual = NAN;
+}
 
 static void compare(struct output *found)
 {
@@ -102,6 +110,10 @@ static enum eo_code run(const void *in, void *out, struct eo_error *error)
       found->row[i] = (struct row){.phase = given->phase.value[i], .exact = result[i], .minimum = result[rows + i]};
     found->rows = rows;
     compare(found);
+    for (int i = 0; i < rows; i++) {
+      drop_meaningless(&found->row[i].exact, true);
+      drop_meaningless(&found->row[i].minimum, false);
+    }
   }
   free(result);
   return code;

@@ -83,6 +83,12 @@ double eo_verify_element(const json_t *object, const char *key, int index)
   return json_is_number(value) ? json_number_value(value) : NAN;
 }
 
+double eo_verify_at(const json_t *array, size_t index)
+{
+  const json_t *value = json_array_get(array, index);
+  return json_is_number(value) ? json_number_value(value) : NAN;
+}
+
 double eo_verify_rounding(double printed)
 {
   char text[40];

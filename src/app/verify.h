@@ -40,6 +40,7 @@ void eo_verify_unknown(struct eo_verification *verification, const char *where, 
 double eo_verify_number(const json_t *object, const char *key);
 double eo_verify_number_or(const json_t *object, const char *key, double missing);
 double eo_verify_element(const json_t *object, const char *key, int index);
+double eo_verify_at(const json_t *array, size_t index);
 
 /* Half a unit in the last decimal that a printed number shows: 2.35 -> 0.005. */
 double eo_verify_rounding(double printed);

@@ -9,18 +9,6 @@
 #include "contact/iso6336.h"
 #include "contact/unloaded.h"
 
-static double number_or(const json_t *object, const char *key, double fallback)
-{
-  double value = eo_verify_number(object, key);
-  return isnan(value) ? fallback : value;
-}
-
-static double at(const json_t *array, size_t index)
-{
-  json_t *value = json_array_get(array, index);
-  return json_is_number(value) ? json_number_value(value) : NAN;
-}
-
 void eo_contact_case_modification(struct eo_contact_case *c, const char *name, struct eo_flank_modification *flank)
 {
   const json_t *mods = json_object_get(json_object_get(c->file, "modification"), "mods");
@@ -41,7 +29,7 @@ static void check_macro(struct eo_contact_case *c)
 {
   const json_t *macro = json_object_get(c->file, "macro"), *o = json_object_get(macro, "output"), *list;
   const struct eo_geometry *g = &c->geometry;
-  double tolerance = number_or(macro, "tol_rel", 1e-9);
+  double tolerance = eo_verify_number_or(macro, "tol_rel", 1e-9);
   const struct { const char *key; double value; } row[] = {
     {"mt", 1e3 * g->transverse_module}, {"at", g->transverse_pressure_angle}, {"bb", g->base_helix_angle}, {"r1", 1e3 * g->reference_radius[0]},
     {"r2", 1e3 * g->reference_radius[1]}, {"rb1", 1e3 * g->base_radius[0]}, {"rb2", 1e3 * g->base_radius[1]}, {"ra1", 1e3 * g->tip_radius[0]},
@@ -54,7 +42,7 @@ static void check_macro(struct eo_contact_case *c)
     check_relative(c->v, "macro", o, row[i].key, row[i].value, tolerance);
   list = json_object_get(macro, "fillet_form_radius");
   for (size_t i = 0; i < json_array_size(list) && i < 2; i++)
-    eo_verify_add(c->v, "macro", i ? "fillet_form_radius gear" : "fillet_form_radius pinion", 1e3 * g->form_radius[i], at(list, i), tolerance * at(list, i));
+    eo_verify_add(c->v, "macro", i ? "fillet_form_radius gear" : "fillet_form_radius pinion", 1e3 * g->form_radius[i], eo_verify_at(list, i), tolerance * eo_verify_at(list, i));
   const char *key;
   json_t *value;
   json_object_foreach(json_object_get(macro, "rho_n"), key, value)
@@ -62,14 +50,14 @@ static void check_macro(struct eo_contact_case *c)
                   tolerance * json_number_value(value));
   json_object_foreach(json_object_get(macro, "h_depth"), key, value)
     for (int member = 0; member < 2; member++)
-      eo_verify_add(c->v, "macro h_depth", key, 1e3 * eo_geometry_depth(g, member, 1e-3 * atof(key)), at(value, (size_t)member),
-                    tolerance * at(value, (size_t)member));
+      eo_verify_add(c->v, "macro h_depth", key, 1e3 * eo_geometry_depth(g, member, 1e-3 * atof(key)), eo_verify_at(value, (size_t)member),
+                    tolerance * eo_verify_at(value, (size_t)member));
 }
 
 static void check_modification(struct eo_contact_case *c)
 {
   const json_t *block = json_object_get(c->file, "modification"), *points = json_object_get(block, "points");
-  double tolerance = number_or(block, "tol_um", 1e-6);
+  double tolerance = eo_verify_number_or(block, "tol_um", 1e-6);
   const char *name;
   json_t *expected;
   json_object_foreach(json_object_get(block, "delta_um"), name, expected) {
@@ -80,11 +68,11 @@ static void check_modification(struct eo_contact_case *c)
     eo_modification_init(&shape, &c->geometry, EO_PINION, &flank);
     snprintf(label, sizeof label, "modification %.40s", name);
     for (size_t i = 0; i < json_array_size(points); i++) {
-      double s = 1e-3 * at(json_array_get(points, i), 0), eta = 1e-3 * at(json_array_get(points, i), 1), slope[2], lead;
+      double s = 1e-3 * eo_verify_at(json_array_get(points, i), 0), eta = 1e-3 * eo_verify_at(json_array_get(points, i), 1), slope[2], lead;
       double value = eo_modification_profile(&shape, c->geometry.rack_factor * s, slope) +
                      eo_modification_lead(&shape, eta / cos(c->geometry.helix_angle), &lead);
       snprintf(quantity, sizeof quantity, "delta_um at s %g, eta %g", 1e3 * s, 1e3 * eta);
-      eo_verify_add(c->v, label, quantity, 1e6 * value, at(expected, i), tolerance);
+      eo_verify_add(c->v, label, quantity, 1e6 * value, eo_verify_at(expected, i), tolerance);
     }
   }
 }
@@ -95,7 +83,7 @@ static void check_surface(struct eo_contact_case *c, const char *name, const jso
   struct eo_modification_shape shape;
   size_t index;
   json_t *row;
-  double tolerance = number_or(block, "tol_mm", 1e-8);
+  double tolerance = eo_verify_number_or(block, "tol_mm", 1e-8);
   char label[80], quantity[60];
   eo_contact_case_modification(c, name, &flank);
   eo_modification_init(&shape, &c->geometry, EO_PINION, &flank);
@@ -119,7 +107,7 @@ static void check_slice_gap(struct eo_contact_case *c, const char *name, const j
   struct eo_modification_shape shape[2] = {{0}, {0}};
   struct eo_slice_gap *table = malloc(sizeof *table);
   const json_t *phase = json_object_get(block, "c"), *exact = json_object_get(block, "exact_um");
-  double tolerance = number_or(block, "tol_um", 0.002);
+  double tolerance = eo_verify_number_or(block, "tol_um", 0.002);
   char label[80], quantity[60];
   eo_contact_case_modification(c, name, &flank);
   eo_modification_init(&shape[EO_PINION], &c->geometry, EO_PINION, &flank);
@@ -127,8 +115,8 @@ static void check_slice_gap(struct eo_contact_case *c, const char *name, const j
   if (table)
     eo_slice_gap_init(table, &c->geometry, shape);
   for (size_t i = 0; table && i < json_array_size(phase); i++) {
-    snprintf(quantity, sizeof quantity, "gap_um at c %g", at(phase, i));
-    eo_verify_add(c->v, label, quantity, 1e6 * eo_slice_gap_at(table, 1e-3 * at(phase, i), NULL), at(exact, i), tolerance);
+    snprintf(quantity, sizeof quantity, "gap_um at c %g", eo_verify_at(phase, i));
+    eo_verify_add(c->v, label, quantity, 1e6 * eo_slice_gap_at(table, 1e-3 * eo_verify_at(phase, i), NULL), eo_verify_at(exact, i), tolerance);
   }
   free(table);
 }
@@ -140,11 +128,11 @@ static void compare_errors(struct eo_contact_case *c, const char *label, const c
   size_t n = json_array_size(expected);
   double shift = 0;
   for (size_t i = 0; i < n; i++)
-    shift += (1e6 * got[i].transmission_error - at(expected, i)) / (double)n;
+    shift += (1e6 * got[i].transmission_error - eo_verify_at(expected, i)) / (double)n;
   for (size_t i = 0; i < n; i++) {
     char quantity[60];
     snprintf(quantity, sizeof quantity, "%s [%zu]", what, i);
-    eo_verify_add(c->v, label, quantity, 1e6 * got[i].transmission_error - shift, at(expected, i), tolerance);
+    eo_verify_add(c->v, label, quantity, 1e6 * got[i].transmission_error - shift, eo_verify_at(expected, i), tolerance);
   }
 }
 
@@ -156,7 +144,7 @@ static enum eo_code check_unloaded(struct eo_contact_case *c, const json_t *item
   struct eo_corner_gap corner[2];
   struct eo_gap_field *field = malloc(sizeof *field);
   struct eo_unloaded exact[MOST], least[MOST];
-  double phase[MOST], tolerance = number_or(item, "tol_um", 0.04);
+  double phase[MOST], tolerance = eo_verify_number_or(item, "tol_um", 0.04);
   const json_t *list = json_object_get(item, "phase");
   const char *label = json_string_value(json_object_get(item, "name")), *end = json_string_value(json_object_get(item, "end"));
   int n = (int)json_array_size(list);
@@ -164,10 +152,10 @@ static enum eo_code check_unloaded(struct eo_contact_case *c, const json_t *item
   if (!field)
     return eo_error_memory(error);
   for (int i = 0; i < n && i < MOST; i++)
-    phase[i] = 1e-3 * at(list, (size_t)i);
+    phase[i] = 1e-3 * eo_verify_at(list, (size_t)i);
   eo_contact_case_modification(c, json_string_value(json_object_get(item, "mod")), &flank);
   eo_case_misalignment(json_object_get(item, "mis"), &alignment);
-  int side = (end && strcmp(end, "left") == 0) || number_or(item, "end", 1) < 0 ? EO_LEFT : EO_RIGHT;
+  int side = (end && strcmp(end, "left") == 0) || eo_verify_number_or(item, "end", 1) < 0 ? EO_LEFT : EO_RIGHT;
   double sign = side == EO_LEFT ? -1 : 1;
   eo_corner_gap_init(corner, &c->geometry);
   eo_gap_field_init(field, &c->geometry, &flank, &none, side, alignment.shaft_angle_in_plane, alignment.shaft_angle_out_of_plane, 0, corner);
@@ -180,7 +168,7 @@ static enum eo_code check_unloaded(struct eo_contact_case *c, const json_t *item
     compare_errors(c, label, "TE_mingap_um", json_object_get(item, "TE_mingap_um"), least, tolerance);
     for (int i = 0; i < n; i++) {
       char quantity[60];
-      double s = at(json_object_get(item, "s"), (size_t)i), eta = at(json_object_get(item, "eta"), (size_t)i);
+      double s = eo_verify_at(json_object_get(item, "s"), (size_t)i), eta = eo_verify_at(json_object_get(item, "eta"), (size_t)i);
       snprintf(quantity, sizeof quantity, "s mm [%d]", i);
       if (!isnan(s) && exact[i].touch == EO_TOUCH_POINT)
         eo_verify_add(c->v, label, quantity, 1e3 * exact[i].path, s, 0.05);
@@ -196,16 +184,16 @@ static enum eo_code check_unloaded(struct eo_contact_case *c, const json_t *item
 static void check_hertz(struct eo_contact_case *c, const json_t *block)
 {
   const json_t *q = json_object_get(block, "q"), *s = json_object_get(block, "s"), *expected = json_object_get(block, "delta_um");
-  double relative = number_or(block, "tol_rel", 1e-6);
+  double relative = eo_verify_number_or(block, "tol_rel", 1e-6);
   for (size_t i = 0; i < json_array_size(q); i++)
     for (size_t j = 0; j < json_array_size(s); j++) {
       struct eo_local_law law;
-      double place = 1e-3 * at(s, j), depth[2] = {eo_geometry_depth(&c->geometry, 0, place), eo_geometry_depth(&c->geometry, 1, place)};
-      double wanted = at(json_array_get(expected, i), j);
+      double place = 1e-3 * eo_verify_at(s, j), depth[2] = {eo_geometry_depth(&c->geometry, 0, place), eo_geometry_depth(&c->geometry, 1, place)};
+      double wanted = eo_verify_at(json_array_get(expected, i), j);
       char quantity[60];
       eo_local_law_init(&law, c->design.material.youngs_modulus, c->design.material.poissons_ratio, eo_geometry_relative_radius(&c->geometry, place), depth);
-      snprintf(quantity, sizeof quantity, "delta_um at q %g, s %g", at(q, i), at(s, j));
-      eo_verify_add(c->v, "hertz", quantity, 1e6 * eo_local_law_approach(&law, 1e3 * at(q, i)), wanted, relative * fabs(wanted));
+      snprintf(quantity, sizeof quantity, "delta_um at q %g, s %g", eo_verify_at(q, i), eo_verify_at(s, j));
+      eo_verify_add(c->v, "hertz", quantity, 1e6 * eo_local_law_approach(&law, 1e3 * eo_verify_at(q, i)), wanted, relative * fabs(wanted));
     }
 }
 

@@ -7,18 +7,6 @@
 #include "app/case_pair.h"
 #include "evaluation/evaluator.h"
 
-static double at(const json_t *array, size_t index)
-{
-  json_t *value = json_array_get(array, index);
-  return json_is_number(value) ? json_number_value(value) : NAN;
-}
-
-static double number_or(const json_t *object, const char *key, double fallback)
-{
-  double value = eo_verify_number(object, key);
-  return isnan(value) ? fallback : value;
-}
-
 static void check_one(struct eo_contact_case *c, const char *label, const char *quantity, double value, double expected, double tolerance)
 {
   if (!isnan(expected))
@@ -30,7 +18,7 @@ static void check_pair(struct eo_contact_case *c, const char *label, const char 
 {
   for (int end = 0; end < 2; end++) {
     char name[80];
-    double wanted = at(expected, (size_t)end);
+    double wanted = eo_verify_at(expected, (size_t)end);
     snprintf(name, sizeof name, "%s %s", quantity, end ? "right" : "left");
     check_one(c, label, name, value[end], wanted, fmax(relative * fabs(wanted), least));
   }
@@ -73,13 +61,13 @@ static void check_row(struct eo_contact_case *c, const char *label, const json_t
       for (int i = 0; i < p->points; i++)
         load += p->point[i].pair == atoi(key) ? loaded->line_load[p->first + i] * p->length[i] : 0;
       snprintf(quantity, sizeof quantity, "load of pair %.10s, N, c %.6g %s", key, eo_verify_number(row, "c"), end ? "right" : "left");
-      eo_verify_add(c->v, label, quantity, load, json_number_value(share), fmax(number_or(block, "tol_rel_share", 0.01) * json_number_value(share), 1));
+      eo_verify_add(c->v, label, quantity, load, json_number_value(share), fmax(eo_verify_number_or(block, "tol_rel_share", 0.01) * json_number_value(share), 1));
     }
   }
   snprintf(quantity, sizeof quantity, "Z_um at c %.6g", eo_verify_number(row, "c"));
-  check_pair(c, label, quantity, json_object_get(row, "Z_um"), z, number_or(block, "tol_rel_Z", 0.002), 0);
+  check_pair(c, label, quantity, json_object_get(row, "Z_um"), z, eo_verify_number_or(block, "tol_rel_Z", 0.002), 0);
   snprintf(quantity, sizeof quantity, "qmax at c %.6g", eo_verify_number(row, "c"));
-  check_pair(c, label, quantity, json_object_get(row, "qmax"), q, number_or(block, "tol_rel_qmax", 0.03), 0);
+  check_pair(c, label, quantity, json_object_get(row, "qmax"), q, eo_verify_number_or(block, "tol_rel_qmax", 0.03), 0);
 }
 
 static enum eo_code check_synthetic(struct eo_contact_case *c, const json_t *block, const json_t *item, const struct eo_closed_form *form,
@@ -100,7 +88,7 @@ static enum eo_code check_synthetic(struct eo_contact_case *c, const json_t *blo
     for (size_t i = 0; i < n; i++)
       phase[i] = 1e-3 * eo_verify_number(json_array_get(rows, i), "c");
     *design = c->design;
-    design->load_case[0].torque = number_or(item, "T", NAN);
+    design->load_case[0].torque = eo_verify_number_or(item, "T", NAN);
     design->alignment.pinion_axial = json_is_true(json_object_get(item, "fixed")) ? EO_AXIAL_FIXED : EO_AXIAL_FLOATING;
     eo_case_misalignment(json_object_get(item, "mis"), &design->alignment);
     set_modification(c, item, design);
@@ -154,7 +142,7 @@ static enum eo_code check_impact(struct eo_contact_case *c, const json_t *block,
   struct eo_flank_modification flank, none = {0};
   struct eo_alignment alignment;
   struct eo_impact impact;
-  double approach[POSITIONS], speed = number_or(block, "rpm", 2000) * M_PI / 30;
+  double approach[POSITIONS], speed = eo_verify_number_or(block, "rpm", 2000) * M_PI / 30;
   struct eo_impact_settings how = {.patch = c->design.resolution.impact_patch};
   const char *label = json_string_value(json_object_get(item, "name"));
   enum eo_code code = field ? eo_contact_grid_new(&grid, &c->geometry, &c->design.material, &settings, NULL, kernel, NULL, error)
@@ -163,10 +151,10 @@ static enum eo_code check_impact(struct eo_contact_case *c, const json_t *block,
     eo_impact_inertia(&c->geometry, &c->design.material, how.inertia);
     eo_case_modification(json_object_get(item, "mod"), &c->design.gear_pair, &flank);
     eo_case_misalignment(json_object_get(item, "mis"), &alignment);
-    eo_gap_field_init(field, &c->geometry, &flank, &none, number_or(item, "end", 1) < 0 ? EO_LEFT : EO_RIGHT, alignment.shaft_angle_in_plane,
+    eo_gap_field_init(field, &c->geometry, &flank, &none, eo_verify_number_or(item, "end", 1) < 0 ? EO_LEFT : EO_RIGHT, alignment.shaft_angle_in_plane,
                       alignment.shaft_angle_out_of_plane, 0, grid->corner);
     for (int j = 0; j < POSITIONS; j++)
-      approach[j] = 1e-6 * number_or(item, "Z_um", NAN);
+      approach[j] = 1e-6 * eo_verify_number_or(item, "Z_um", NAN);
     eo_impact_find(&impact, grid, field, kernel, &how, approach, speed, 1);
     bool off = json_is_true(json_object_get(item, "off_line"));
     double wanted = eo_verify_number(item, "closing_speed_mm_s");
@@ -192,7 +180,7 @@ static void check_bulk(struct eo_contact_case *c, const struct eo_flexibility *f
 {
   enum { N = 111 };
   double *compliance = malloc(sizeof *compliance * N * N);
-  double relative = number_or(block, "tol_rel", 0.06), width = c->geometry.face_width;
+  double relative = eo_verify_number_or(block, "tol_rel", 0.06), width = c->geometry.face_width;
   size_t index;
   json_t *row;
   json_array_foreach(json_object_get(block, member ? "gear" : "pinion"), index, row) {
@@ -232,7 +220,7 @@ static void check_table_row(struct eo_contact_case *c, const json_t *row, const 
   const struct eo_case_result *o = &r->load_case[0];
   const struct eo_end_result *e = o->end;
   char label[100];
-  double k[2] = {0, 0}, k0[2] = {0, 0}, kt[2], low = INFINITY, high = -INFINITY, pp = number_or(row, "PPLTE_um", 0);
+  double k[2] = {0, 0}, k0[2] = {0, 0}, kt[2], low = INFINITY, high = -INFINITY, pp = eo_verify_number_or(row, "PPLTE_um", 0);
   double normal = cos(c->geometry.base_helix_angle);
   snprintf(label, sizeof label, "table: %s, %s, %g N m", json_string_value(json_object_get(row, "case")),
            json_string_value(json_object_get(row, "mis")), eo_verify_number(row, "T"));
@@ -252,7 +240,7 @@ static void check_table_row(struct eo_contact_case *c, const json_t *row, const 
   check_pair(c, label, "PPLTE_um of the end", json_object_get(row, "PPLTE_ends_um"),
              (double[]){1e6 * e[0].transmission_peak, 1e6 * e[1].transmission_peak}, 0.2, 0.15);
   check_one(c, label, "LTE_mean_um", 1e6 * o->mean, eo_verify_number(row, "LTE_mean_um"), 0.08 * eo_verify_number(row, "LTE_mean_um"));
-  check_one(c, label, "TE0_pp_um", 1e6 * (high - low), eo_verify_number(row, "TE0_pp_um"), fmax(0.15, 0.2 * number_or(row, "TE0_pp_um", 0)));
+  check_one(c, label, "TE0_pp_um", 1e6 * (high - low), eo_verify_number(row, "TE0_pp_um"), fmax(0.15, 0.2 * eo_verify_number_or(row, "TE0_pp_um", 0)));
   check_pair(c, label, "k_PZ_N_um", json_object_get(row, "k_PZ_N_um"), k, 0.08, 0);
   check_pair(c, label, "k_PZ0_N_um", json_object_get(row, "k_PZ0_N_um"), k0, 0.08, 0);
   check_pair(c, label, "kt_N_um", json_object_get(row, "kt_N_um"), kt, 0.08, 0);
@@ -306,7 +294,7 @@ static enum eo_code check_finite_elements(struct eo_contact_case *c, struct eo_e
   json_array_foreach(json_object_get(table, "rows"), index, row) {
     if (code)
       break;
-    design->load_case[0] = (struct eo_load_case){number_or(row, "T", NAN), number_or(json_object_get(c->file, "impact"), "rpm", 2000) * M_PI / 30, 1};
+    design->load_case[0] = (struct eo_load_case){eo_verify_number_or(row, "T", NAN), eo_verify_number_or(json_object_get(c->file, "impact"), "rpm", 2000) * M_PI / 30, 1};
     eo_case_misalignment(json_object_get(row, "mis"), &design->alignment);
     set_modification(c, row, design);
     code = eo_evaluator_contact(evaluator, design, &r, error);

@@ -26,12 +26,6 @@ static const char *text_of(const json_t *object, const char *key)
   return text ? text : "";
 }
 
-static double number_or(const json_t *object, const char *key, double fallback)
-{
-  double value = eo_verify_number(object, key);
-  return isnan(value) ? fallback : value;
-}
-
 /* The file's dynamics parameters for a pair, or what the design derives where the file is silent. A mesh damping that differs from the
    usual one scales the damping ratio. */
 static void set_supports(struct eo_supports *s, const json_t *p, const json_t *usually)
@@ -39,15 +33,15 @@ static void set_supports(struct eo_supports *s, const json_t *p, const json_t *u
   static const char *const bearing[2] = {"kpy", "kgy"}, *const axial[2] = {"kg1z", "kg2z"}, *const groove[2] = {"kpz", "kgz"};
   static const char *const torsion[2] = {"kt_p", "kt_g"}, *const mass[2] = {"mp", "mg"}, *const inertia[2] = {"Ip", "Ig"};
   for (int i = 0; i < 2; i++) {
-    s->bearing_stiffness[i] = number_or(p, bearing[i], s->bearing_stiffness[i]);
-    s->gear_axial_stiffness[i] = number_or(p, axial[i], s->gear_axial_stiffness[i]);
-    s->groove_axial_stiffness[i] = number_or(p, groove[i], s->groove_axial_stiffness[i]);
-    s->mass[i] = number_or(p, mass[i], s->mass[i]);
-    s->inertia[i] = number_or(p, inertia[i], s->inertia[i]);
-    double cm = number_or(p, "cm", NAN), usual = number_or(usually, "cm", NAN);
+    s->bearing_stiffness[i] = eo_verify_number_or(p, bearing[i], s->bearing_stiffness[i]);
+    s->gear_axial_stiffness[i] = eo_verify_number_or(p, axial[i], s->gear_axial_stiffness[i]);
+    s->groove_axial_stiffness[i] = eo_verify_number_or(p, groove[i], s->groove_axial_stiffness[i]);
+    s->mass[i] = eo_verify_number_or(p, mass[i], s->mass[i]);
+    s->inertia[i] = eo_verify_number_or(p, inertia[i], s->inertia[i]);
+    double cm = eo_verify_number_or(p, "cm", NAN), usual = eo_verify_number_or(usually, "cm", NAN);
     if (i == 0 && cm > 0 && usual > 0)
       s->mesh_damping_ratio *= cm / usual;
-    double kt = number_or(p, torsion[i], 0);
+    double kt = eo_verify_number_or(p, torsion[i], 0);
     if (kt > 0) {
       s->groove_torsional_stiffness[i] = kt;
       s->torsional_coupling = EO_COUPLING_ON;
@@ -67,9 +61,9 @@ static enum eo_code set_design(struct bench *b, const json_t *pair, struct eo_er
   if (!isnan(bore))
     d->gear_pair.bore[EO_GEAR] = 2 * bore;
   struct eo_resolution *r = &d->resolution;
-  r->positions = (int)number_or(defaults, "positions", 64);
-  r->cells_per_line = (int)number_or(defaults, "cells_per_line", 30);
-  r->harmonics = (int)number_or(defaults, "hb_harmonics", 24);
+  r->positions = (int)eo_verify_number_or(defaults, "positions", 64);
+  r->cells_per_line = (int)eo_verify_number_or(defaults, "cells_per_line", 30);
+  r->harmonics = (int)eo_verify_number_or(defaults, "hb_harmonics", 24);
   r->te_harmonics = 10;
   r->sector_teeth = eo_case_count(text_of(defaults, "fe_flexibility"), "-tooth sector", 3);
   r->neighbour_coupling = strstr(text_of(defaults, "neighbour_tooth_coupling"), "off") == NULL;
@@ -101,7 +95,8 @@ static enum eo_code prepare(struct bench *b, const json_t *item, struct eo_error
   if (code)
     return code;
   struct eo_contact_grid_settings grid = eo_contact_grid_default(&b->design.resolution);
-  struct eo_pair_options options = {.grid = &grid, .impact_stations = 221, .own_pivots = true};
+  struct eo_pair_options options = {.grid = &grid, .impact_stations = 221, .own_pivots = true,
+    .corner_at_radius = strstr(text_of(json_object_get(b->file, "defaults"), "gap"), "at the pinion radius of the corner") != NULL};
   grid.edge_cells = 12;
   grid.edge_reach = 1.6e-3;
   if (strcmp(flexibility, "synthetic") == 0) {
@@ -236,8 +231,8 @@ static enum eo_code run_case(struct bench *b, const json_t *item, struct eo_erro
   for (int end = 0; end < 2; end++)
     eo_case_modification(json_object_get(mods, text_of(item, end_name[end])), &design.gear_pair,
                          &design.modification.flank[EO_PINION][end]);
-  design.load_case[0] = (struct eo_load_case){number_or(item, "T_Nm", NAN), number_or(item, "rpm", 2000) * M_PI / 30, 1};
-  design.alignment.stagger = fmod(2 - number_or(item, "shift_right", 0), 1);
+  design.load_case[0] = (struct eo_load_case){eo_verify_number_or(item, "T_Nm", NAN), eo_verify_number_or(item, "rpm", 2000) * M_PI / 30, 1};
+  design.alignment.stagger = fmod(2 - eo_verify_number_or(item, "shift_right", 0), 1);
   const json_t *usual = json_object_get(parameters, b->pair_name);
   set_supports(&design.supports, usual, usual);
   set_supports(&design.supports, json_object_get(item, "dyn_changes"), usual);

@@ -8,6 +8,8 @@
 
 enum { MODES = EO_SHAFT_MODES, PART = 2 * EO_DEFLECTION_NODES };
 
+static const double MOST_SHIFT = 0.999; /* of P: an axially held pinion may all but unload one end */
+
 /* Where a point stands among the nodes of its end. */
 struct place {
   int node;      /* the one below */
@@ -177,6 +179,18 @@ static double departure(const struct eo_elastic *el)
   return most;
 }
 
+/* Z_L - Z_R against the support; 0 when the pinion floats, or when an end is already as good as unloaded and would let go. */
+static double axial_miss(const struct eo_elastic *el, const struct eo_elastic_case *c, double soft, const int at[2],
+                         const struct eo_loaded_end *result, bool *held)
+{
+  *held = el->influence.ends == 2 && c->axial_stiffness > 0;
+  if (!*held)
+    return 0;
+  double miss = result[EO_LEFT].approach[at[EO_LEFT]] - result[EO_RIGHT].approach[at[EO_RIGHT]] + soft * el->shift;
+  *held = fabs(el->shift) < MOST_SHIFT * c->load || miss * el->shift > 0;
+  return *held ? miss : 0;
+}
+
 /* Iterates at position j of the left end and `other` of the right one, from the present deflection; returns the number of iterations, 0 when
    they did not converge. The contact's answer is asked for once, and again when the iteration slows down. */
 static int solve_position(struct eo_elastic *el, struct eo_loaded_workspace *ws, const struct eo_loaded_gaps *gaps, const struct eo_elastic_case *c,
@@ -185,13 +199,12 @@ static int solve_position(struct eo_elastic *el, struct eo_loaded_workspace *ws,
   enum { ITERATIONS = 40 };
   static const double DONE = 1e-11, SLOW = 0.1;
   int ends = el->influence.ends;
-  bool held = ends == 2 && c->axial_stiffness > 0, ask = true;
+  bool held, ask = true;
   double before = INFINITY;
   for (int end = 0; end < ends; end++)
     set_places(el, &el->grid->position[at[end]], el->place[end]);
   for (int iteration = 1; iteration <= ITERATIONS; iteration++) {
-    double miss = 0;
-    el->shift = fmax(-0.999 * c->load, fmin(0.999 * c->load, el->shift));
+    el->shift = fmax(-MOST_SHIFT * c->load, fmin(MOST_SHIFT * c->load, el->shift));
     for (int end = 0; end < ends; end++) {
       double load = end == EO_LEFT ? c->load + el->shift : c->load - el->shift;
       resolve(el, ws, &gaps[end], c->compliance_factor, end, at[end], load, iteration == 1, &result[end]);
@@ -200,9 +213,7 @@ static int solve_position(struct eo_elastic *el, struct eo_loaded_workspace *ws,
       gather_loads(el, end, at[end], &result[end]);
     }
     eo_shaft_deflect(&el->influence, el->load, el->asked);
-    if (held)
-      miss = result[EO_LEFT].approach[at[EO_LEFT]] - result[EO_RIGHT].approach[at[EO_RIGHT]] + soft * el->shift;
-    double error = fmax(departure(el), fabs(miss));
+    double miss = axial_miss(el, c, soft, at, result, &held), error = fmax(departure(el), fabs(miss));
     if (error < DONE)
       return iteration;
     ask = error > SLOW * before;

@@ -2,75 +2,24 @@
 
 #include <math.h>
 #include <stddef.h>
+#include <string.h>
 
-/* What the tip of member `tip` shows to the flank of the other one; see eo_corner_gap. Coordinates from the pitch point, pinion centre
-   at (0, -r_w1), gear centre at (0, r_w2); the pinion turns clockwise, the flank normal points to (cos alpha_wt, sin alpha_wt). */
-struct corner {
-  double gap, path;
-};
-
-static void place_on_path(const struct eo_geometry *g, double s, double point[2])
+/* Beyond the path of contact: the slices as long as they meet inside the tip, then the tip's corner. *place: s on the flank, joined without
+   a step; *slope: by s, with tilt, that of misalignment and bodies, at the place. */
+static double beyond_path(const struct eo_gap_field *field, int tip, double s, double tilt, double *slope, double *place)
 {
-  point[0] = s * cos(g->working_pressure_angle);
-  point[1] = s * sin(g->working_pressure_angle);
-}
-
-static void turn(double point[2], double centre, double angle)
-{
-  double x = point[0], y = point[1] - centre;
-  point[0] = cos(angle) * x - sin(angle) * y;
-  point[1] = centre + sin(angle) * x + cos(angle) * y;
-}
-
-static struct corner corner_at(const struct eo_geometry *g, int side, double distance)
-{
-  int tip = side == 0 ? EO_GEAR : EO_PINION, flank = 1 - tip;
-  double end = side == 0 ? g->path_start : g->path_end, c = end + (side == 0 ? -distance : distance);
-  double centre[2] = {-g->working_radius[EO_PINION], g->working_radius[EO_GEAR]}, sense[2] = {-1, 1}, point[2], place[2];
-  place_on_path(g, end, point);
-  turn(point, centre[tip], sense[tip] * (c - end) / g->base_radius[tip]);
-  struct corner corner;
-  corner.path = eo_geometry_path_at(g, flank, hypot(point[0], point[1] - centre[flank]));
-  place_on_path(g, corner.path, place);
-  turn(place, centre[flank], sense[flank] * (c - corner.path) / g->base_radius[flank]);
-  double cross = place[0] * (point[1] - centre[flank]) - (place[1] - centre[flank]) * point[0];
-  double angle = atan2(cross, place[0] * point[0] + (place[1] - centre[flank]) * (point[1] - centre[flank]));
-  /* The flank has to turn in its driving sense (pinion) or back (gear) to reach the corner. */
-  double arc = g->base_radius[flank] * angle * (flank == EO_PINION ? sense[flank] : -sense[flank]);
-  corner.gap = arc * cos(g->base_helix_angle);
-  return corner;
-}
-
-void eo_corner_gap_init(struct eo_corner_gap corner[2], const struct eo_geometry *g)
-{
-  for (int side = 0; side < 2; side++) {
-    struct eo_corner_gap *table = &corner[side];
-    table->reach = 0.25 * g->transverse_base_pitch;
-    /* Nodes crowd near the end of the path, where contact happens: d = reach (i/n)^2. */
-    for (int i = 0; i < EO_CORNER_NODES; i++) {
-      double t = (double)i / (EO_CORNER_NODES - 1), d = table->reach * t * t, h = 1e-5 * table->reach, below = fmax(0, d - h);
-      struct corner here = corner_at(g, side, d), before = corner_at(g, side, below), after = corner_at(g, side, d + h);
-      table->gap[i] = here.gap;
-      table->path[i] = here.path;
-      table->slope[i] = (after.gap - before.gap) / (d + h - below);
-    }
+  const struct eo_corner_gap *corner = &field->corner[tip == EO_GEAR ? 0 : 1];
+  double end = tip == EO_GEAR ? field->geometry->path_start : field->geometry->path_end, d = fabs(s - end), rate, travel, gap;
+  int sign = tip == EO_GEAR ? -1 : 1;
+  if (d < corner->start) {
+    gap = eo_slice_gap_at(&field->slice, s, &rate);
+    rate *= sign;
+    travel = (corner->path[0] - end) / corner->start;
+    *place = end + d * travel;
+  } else {
+    gap = eo_corner_gap_at(corner, d, &rate, place, &travel);
   }
-}
-
-/* Corner gap of the unmodified pair, plus what relief takes off the flank there and off the tip; *place: s on the flank. */
-static double corner_value(const struct eo_gap_field *field, int tip, double s, double *slope, double *place)
-{
-  const struct eo_corner_gap *table = &field->corner[tip == EO_GEAR ? 0 : 1];
-  double end = tip == EO_GEAR ? field->geometry->path_start : field->geometry->path_end, d = fabs(s - end), rate, side;
-  int last = EO_CORNER_NODES - 1, i = (int)fmin(last - 1, sqrt(d / table->reach) * last);
-  double low = table->reach * (double)(i * i) / (last * last), high = table->reach * (double)((i + 1) * (i + 1)) / (last * last);
-  double h = high - low, t = (d - low) / h, r = 1 - t;
-  double difference = table->gap[i + 1] - table->gap[i], a = table->slope[i] * h - difference, b = difference - table->slope[i + 1] * h;
-  rate = (difference + (r - t) * (a * r + b * t) + t * r * (b - a)) / h;
-  *place = table->path[i] * r + table->path[i + 1] * t;
-  double gap = table->gap[i] * r + table->gap[i + 1] * t + t * r * (a * r + b * t);
-  gap += eo_slice_gap_at(&field->alone[1 - tip], *place, &side) + eo_slice_gap_at(&field->alone[tip], end, NULL);
-  *slope = (tip == EO_GEAR ? -rate : rate) + side * (table->path[i + 1] - table->path[i]) / h * (tip == EO_GEAR ? -1 : 1);
+  *slope = (rate + tilt * travel) * sign;
   return gap;
 }
 
@@ -96,18 +45,16 @@ void eo_gap_field_init(struct eo_gap_field *field, const struct eo_geometry *g, 
 {
   double sign = end == EO_LEFT ? -1 : 1;
   field->geometry = g;
-  field->corner = corner;
   field->lean = tan(g->base_helix_angle);
   field->stretch = 1 / cos(g->helix_angle);
   eo_modification_init(&field->shape[EO_PINION], g, EO_PINION, pinion);
   eo_modification_init(&field->shape[EO_GEAR], g, EO_GEAR, gear);
   eo_slice_gap_init(&field->slice, g, field->shape);
-  static const struct eo_modification_shape none = {0};
-  for (int member = 0; member < 2; member++) {
-    struct eo_modification_shape alone[2] = {none, none};
-    alone[member] = field->shape[member];
-    eo_slice_gap_init(&field->alone[member], g, alone);
-  }
+  memcpy(field->corner, corner, sizeof field->corner);
+  if (field->slice.nodes > 0 && corner[0].at_radius)
+    eo_corner_gap_at_radius(field->corner, g, field->shape);
+  else if (field->slice.nodes > 0)
+    eo_corner_gap_modified(field->corner, g, field->shape, &field->slice);
   /* physics: D = end cos(beta_b) (gamma cos(alpha_t) - kappa sin(alpha_t)) (eta + s tan(beta_b)) */
   field->misalignment = sign * cos(g->base_helix_angle) *
                         (out_of_plane * cos(g->working_pressure_angle) - in_plane * sin(g->working_pressure_angle));
@@ -120,22 +67,24 @@ double eo_gap_field_at(const struct eo_gap_field *field, double s, double eta, d
   const struct eo_geometry *g = field->geometry;
   double rate, unused, place = s, gap, x = eta * field->stretch, tangent = field->lean, body[2] = {0, 0};
   int tip = -1;
+  if (field->deflection)
+    deflection_parts(field->deflection, g->face_width, eta, body);
+  double tilt = field->misalignment * tangent + body[1];
   if (s < g->path_start || s > g->path_end) {
     tip = s < g->path_start ? EO_GEAR : EO_PINION;
-    gap = corner_value(field, tip, s, &rate, &place);
+    gap = beyond_path(field, tip, s, tilt, &rate, &place);
   } else {
     gap = eo_slice_gap_at(&field->slice, s, &rate);
+    rate += tilt;
   }
   if (path) {
     path[EO_PINION] = tip == EO_PINION ? g->path_end : place;
     path[EO_GEAR] = tip == EO_GEAR ? g->path_start : place;
   }
   gap += eo_modification_lead(&field->shape[EO_PINION], x, &unused) + eo_modification_lead(&field->shape[EO_GEAR], x, &unused);
-  if (field->deflection)
-    deflection_parts(field->deflection, g->face_width, eta, body);
-  gap += field->misalignment * (eta + place * tangent) + field->misalignment_offset + body[0] + place * body[1];
+  gap += field->misalignment * eta + field->misalignment_offset + body[0] + place * tilt;
   if (slope)
-    *slope = rate + (tip < 0 ? field->misalignment * tangent + body[1] : 0);
+    *slope = rate;
   return gap;
 }
 

@@ -2,20 +2,8 @@
 #ifndef EASEOFF_CONTACT_FIELD_H
 #define EASEOFF_CONTACT_FIELD_H
 
+#include "contact/corner.h"
 #include "gear/surface.h"
-
-/* Unmodified flanks: gap of a tip corner that runs ahead of the path of contact against the other member's flank, over the distance
-   d >= 0 from the end of the path (transverse, m): normal to the flank, the tip at its nominal phase; and the place on the flank at the
-   corner's radius. [0]: gear tip before s_A, [1]: pinion tip after s_E. Depends on the macro-geometry alone. */
-enum { EO_CORNER_NODES = 41 };
-struct eo_corner_gap {
-  double reach;                     /* largest tabulated d, m */
-  double gap[EO_CORNER_NODES];      /* m */
-  double slope[EO_CORNER_NODES];    /* d gap / d d */
-  double path[EO_CORNER_NODES];     /* s of the place on the other member's flank, m */
-};
-
-void eo_corner_gap_init(struct eo_corner_gap corner[2], const struct eo_geometry *geometry);
 
 /* How far elastic bodies open the gap of one end: part[0](eta) + s part[1](eta), linear between nodes at equal steps from
    eta = -b/2 to +b/2. The second part is the local slope of the bodies, which acts as a shaft angle error does. */
@@ -29,8 +17,8 @@ double eo_deflection_at(const struct eo_deflection *deflection, double face_widt
 struct eo_gap_field {
   const struct eo_geometry *geometry;     /* borrowed */
   struct eo_modification_shape shape[2];  /* [member] */
-  const struct eo_corner_gap *corner;     /* [2], borrowed */
-  struct eo_slice_gap slice, alone[2];    /* of both members together, and of each one's relief alone [member] */
+  struct eo_slice_gap slice;              /* of both members' profile relief */
+  struct eo_corner_gap corner[2];         /* beyond s_A, beyond s_E */
   double lean, stretch;                   /* tan(beta_b); 1/cos(beta), from eta to x */
   double misalignment;                    /* slope of the misalignment gap along eta + s tan(beta_b) */
   double misalignment_offset;             /* its constant, m (removed by axial float) */
@@ -38,7 +26,8 @@ struct eo_gap_field {
 };
 
 /* end: EO_LEFT or EO_RIGHT (sign -1, +1). in_plane (kappa), out_of_plane (gamma): shaft angle errors, rad.
-   pivot: distance of the end's mid face from the pivot of the error, m ((b + groove)/2 for the middle of the groove, 0 for its own mid face). */
+   pivot: distance of the end's mid face from the pivot of the error, m ((b + groove)/2 for the middle of the groove, 0 for its own mid face).
+   corner: of the unmodified pair. */
 void eo_gap_field_init(struct eo_gap_field *field, const struct eo_geometry *geometry, const struct eo_flank_modification *pinion,
                        const struct eo_flank_modification *gear, int end, double in_plane, double out_of_plane, double pivot,
                        const struct eo_corner_gap corner[2]);

@@ -8,10 +8,11 @@
 
 /* ---- the local law and its inverse ----
    delta = K q (L - ln q). With x = L - ln q and t = L - ln(delta/K): x - ln x = t, x > 1 (q below the law's turning point), q = delta/(K x),
-   dq/ddelta = 1/(K (x - 1)). x(t) is one universal function, tabulated with its slope x/(x - 1). */
+   dq/ddelta = 1/(K (x - 1)). x(t) is one universal function, tabulated with its slope x/(x - 1). From x = 2 on, where the contact is as
+   wide as the tooth is thick and the law has lost its meaning, q goes on in a straight line, so that every load has its solution. */
 
 enum { LAW_NODES = 4096 };
-static const double LAW_LOW = 1.02, LAW_HIGH = 84.0;
+static const double LAW_STRAIGHT = 2, LAW_LOW = 1.3068528194400546 /* 2 - ln 2 */, LAW_HIGH = 84.0;
 
 static double law_root(double t)
 {
@@ -40,8 +41,8 @@ struct eo_loaded_workspace {
 static double law_inverse(const struct eo_loaded_workspace *ws, double t)
 {
   double u = (t - LAW_LOW) / ws->law_step;
-  if (!(u >= 0 && u < LAW_NODES - 1))
-    return law_root(fmax(t, 1 + 1e-9));
+  if (!(u < LAW_NODES - 1))
+    return law_root(t);
   int i = (int)u;
   double r = u - i, l = 1 - r, difference = ws->law[i + 1][0] - ws->law[i][0];
   double a = ws->law[i][1] - difference, b = difference - ws->law[i + 1][1];
@@ -70,9 +71,15 @@ static void evaluate(struct eo_loaded_workspace *ws, const struct problem *probl
     ws->load[i] = ws->rate[i] = 0;
     if (local <= 0)
       continue;
-    double scaled = local / problem->scale, x = law_inverse(ws, p->law[i] - log(scaled));
-    ws->load[i] = p->length[i] * scaled / x;
-    ws->rate[i] = p->length[i] / (problem->scale * (x - 1));
+    double scaled = local / problem->scale, t = p->law[i] - log(scaled);
+    if (t > LAW_LOW) {
+      double x = law_inverse(ws, t);
+      ws->load[i] = p->length[i] * scaled / x;
+      ws->rate[i] = p->length[i] / (problem->scale * (x - 1));
+    } else {
+      ws->load[i] = p->length[i] * (scaled - exp(p->law[i] - LAW_STRAIGHT)) / (LAW_STRAIGHT - 1);
+      ws->rate[i] = p->length[i] / (problem->scale * (LAW_STRAIGHT - 1));
+    }
     sum += ws->load[i];
   }
   memcpy(ws->residual, mode, sizeof *mode * (size_t)stride);
@@ -123,10 +130,12 @@ static void start_cold(struct eo_loaded_workspace *ws, const struct problem *pro
   }
 }
 
-/* One step along ws->step from ws->mode; a step that passes the minimum along its own line is cut back. */
+/* One step along ws->step from ws->mode; a step that passes the minimum along its own line is cut back, but for steps so small (below a
+   nanometre) that rounding would decide. */
 static void advance(struct eo_loaded_workspace *ws, const struct problem *problem)
 {
   enum { CUTS = 30 };
+  static const double SMALL = 1e-13;
   int n = problem->position->stride + 1;
   double slope = dot(n, ws->residual, ws->step), length = 1;
   for (int cut = 0; cut < CUTS; cut++) {
@@ -134,7 +143,7 @@ static void advance(struct eo_loaded_workspace *ws, const struct problem *proble
       ws->trial[k] = ws->mode[k] + length * ws->step[k];
     evaluate(ws, problem, ws->trial);
     double there = dot(n, ws->residual, ws->step);
-    if (there <= 0 || there < -0.5 * slope)
+    if (there <= 0 || there < -0.5 * slope || fabs(there) < SMALL * problem->force)
       break;
     length *= fmax(0.1, slope / (slope - there));
   }
@@ -150,12 +159,13 @@ static void newton_step(struct eo_loaded_workspace *ws, const struct eo_contact_
 }
 
 /* Newton on the convex function of (a, Z) from ws->mode. Once a step is small the matrix is good enough for the steps that follow,
-   which also take in the correction of the compliance, until nothing moves by more than a thousandth of a nanometre.
+   which also take in the correction of the compliance, until nothing moves by more than a thousandth of a nanometre and the loads
+   add up to P.
    Leaves the loads, the factored matrix and (a, Z) of the solution; returns whether it converged. */
 static bool newton(struct eo_loaded_workspace *ws, const struct problem *problem)
 {
-  enum { STEPS = 60, POLISH = 12 };
-  static const double NEAR = 3e-9, DONE = 1e-12;
+  enum { STEPS = 60, POLISH = 24, RENEW = 8 };
+  static const double NEAR = 3e-9, DONE = 1e-12, BALANCE = 5e-10;
   const struct eo_contact_position *p = problem->position;
   bool near = false;
   evaluate(ws, problem, ws->mode);
@@ -171,25 +181,49 @@ static bool newton(struct eo_loaded_workspace *ws, const struct problem *problem
     if (!near || i == 0)
       correct(ws, p);
   }
-  for (int i = 0; i < POLISH && near; i++) {
+  bool settled = false, balanced = false;
+  for (int i = 0; i < POLISH && near && !(settled && balanced); i++) {
     double change = correct(ws, p);
     evaluate(ws, problem, ws->mode);
+    if (i % RENEW == RENEW - 1 && !factorise(ws, p))
+      return false;
     newton_step(ws, p);
     advance(ws, problem);
-    if (change < DONE && fabs(ws->step[p->stride]) < DONE)
-      return true;
+    settled = change < DONE && fabs(ws->step[p->stride]) < DONE;
+    balanced = fabs(ws->residual[p->stride]) < BALANCE * problem->force;
   }
-  return false;
+  return settled;
 }
 
-/* d(a, Z)/dP and the tangent stiffness from the last factorisation, some nanometres of approach from the solution: good to 1e-4. */
-static double tangent_of(struct eo_loaded_workspace *ws, const struct eo_contact_position *p)
+/* d(a, Z)/dP, unscaled, from the last factorisation: some nanometres of approach from the solution. */
+static void follow_load(struct eo_loaded_workspace *ws, const struct eo_contact_position *p)
 {
   int n = p->stride + 1;
   memset(ws->tangent, 0, sizeof *ws->tangent * (size_t)n);
   ws->tangent[n - 1] = 1;
   ws->gram->solve(n, p->stride, ws->matrix, ws->tangent);
-  return 1 / ws->tangent[n - 1];
+}
+
+/* dZ/dP = the least value of dp'(C + diag(dg/dp))dp over load changes dp that sum to 1. With dp from the last factorisation but the
+   rates of the solution it is right to the square of what dp is wrong. Overwrites the loads. */
+static double tangent_compliance(struct eo_loaded_workspace *ws, const struct eo_contact_position *p)
+{
+  double sum = 0, square = 0, *change = ws->load, *mode = ws->trial;
+  follow_load(ws, p);
+  ws->gram->apply(p->points, p->stride, p->factor, ws->tangent, ws->bend);
+  for (int i = 0; i < p->points; i++) {
+    double local = ws->tangent[p->stride] - ws->bend[i];
+    change[i] = ws->rate[i] * local;
+    square += change[i] * local;
+    sum += change[i];
+  }
+  memset(mode, 0, sizeof *mode * (size_t)p->stride);
+  ws->gram->gather(p->points, p->stride, p->factor, change, mode);
+  ws->gram->blend(p->points, p->remainder_stride, p->remainder, change, ws->blend);
+  square += dot(p->stride, mode, mode);
+  for (int i = 0; i < p->points; i++)
+    square += change[i] * (double)ws->blend[i];
+  return square / (sum * sum);
 }
 
 static const struct eo_contact_line *same_line(const struct eo_contact_position *p, const struct eo_contact_line *line)
@@ -236,7 +270,7 @@ static bool descend(struct eo_loaded_workspace *ws, const struct problem *proble
       if (high.force == problem->force)
         return true;
       double next = fmax(problem->force, high.force / factor);
-      tangent_of(ws, problem->position);
+      follow_load(ws, problem->position);
       for (int k = 0; k < n; k++)
         ws->mode[k] += (next - high.force) * ws->tangent[k];
       high.force = next;
@@ -252,10 +286,10 @@ static void solve_position(struct eo_loaded_workspace *ws, const struct problem 
   bool converged = newton(ws, problem) || descend(ws, problem);
   result->failures += !converged;
   result->load[j] = problem->force;
-  result->tangent[j] = tangent_of(ws, p) / factor;
   result->approach[j] = ws->mode[p->stride] * factor;
   for (int i = 0; i < p->points; i++)
     result->line_load[p->first + i] = ws->load[i] / p->length[i];
+  result->tangent[j] = 1 / (tangent_compliance(ws, p) * factor);
 }
 
 static const double *scaled_gaps(struct eo_loaded_workspace *ws, const struct eo_contact_position *p, const double *gap, double factor)
@@ -280,11 +314,16 @@ void eo_loaded_solve(struct eo_loaded_workspace *ws, const struct eo_contact_gri
     else
       start_from(ws, &grid->position[j - 1], result[0].line_load + grid->position[j - 1].first, result[0].approach[j - 1] / compliance_factor,
                  &problem);
+    bool sound = true;
     for (int l = 0; l < loads; l++) {
+      int failures = result[l].failures;
       problem.force = load[l];
-      for (int k = 0; l > 0 && k <= p->stride; k++) /* along the tangent from the load before */
+      for (int k = 0; l > 0 && sound && k <= p->stride; k++) /* along the tangent from the load before */
         ws->mode[k] += (load[l] - load[l - 1]) * ws->tangent[k];
+      if (!sound)
+        start_cold(ws, &problem, ws->mode);
       solve_position(ws, &problem, j, compliance_factor, &result[l]);
+      sound = result[l].failures == failures;
     }
   }
 }
@@ -322,26 +361,68 @@ double eo_loaded_response(struct eo_loaded_workspace *ws, const struct eo_contac
 
 /* ---- axially held pinion ---- */
 
-void eo_loaded_balance(struct eo_loaded_workspace *ws, const struct eo_contact_grid *grid, const struct eo_loaded_gaps gaps[2],
+/* Position j of an end that carries nothing. */
+static void release_end(const struct eo_contact_grid *grid, int j, double approach, struct eo_loaded_end *end)
+{
+  const struct eo_contact_position *p = &grid->position[j];
+  end->load[j] = end->tangent[j] = 0;
+  end->approach[j] = approach;
+  memset(end->line_load + p->first, 0, sizeof *end->line_load * (size_t)p->points);
+}
+
+static double least_gap(const struct eo_contact_grid *grid, const struct eo_loaded_gaps *gaps, int j)
+{
+  const struct eo_contact_position *p = &grid->position[j];
+  double least = INFINITY;
+  for (int i = 0; i < p->points; i++)
+    least = fmin(least, gaps->gap[p->first + i]);
+  return least;
+}
+
+/* One mesh position of both ends: P_L = P + shift, P_R = P - shift. Equilibrium of the pinion along its axis,
+   Z_L - Z_R + shift 4 sin^2(beta_b)/k = 0, grows with the shift: Newton, kept between the shifts already known to be too small and too large.
+   When even the whole load does not bring the other end into contact, that end carries nothing. */
+static bool balance_position(struct eo_loaded_workspace *ws, const struct eo_contact_grid *grid, const struct eo_loaded_gaps gaps[2],
+                             double factor, double soft, const int at[2], double load, struct eo_loaded_end result[2])
+{
+  enum { STEPS = 60 };
+  double shift = 0, bound[2] = {-load, load};
+  bool tried[2] = {false, false};
+  for (int i = 0; i < STEPS; i++) {
+    double miss = result[0].approach[at[0]] - result[1].approach[at[1]] + soft * shift;
+    double rate = 1 / result[0].tangent[at[0]] + 1 / result[1].tangent[at[1]] + soft, next = shift - miss / rate;
+    int up = miss < 0, heavy = up ? EO_LEFT : EO_RIGHT, light = 1 - heavy;
+    bound[1 - up] = shift;
+    if (fabs(next - shift) < 1e-9 * load)
+      return true;
+    if (!(next > bound[0] && next < bound[1])) {
+      if (fabs(bound[up]) == load && !tried[up]) {
+        tried[up] = true;
+        eo_loaded_resolve(ws, grid, gaps[heavy].gap, factor, at[heavy], 2 * load, &result[heavy]);
+        double approach = result[heavy].approach[at[heavy]] + soft * load;
+        if (approach <= least_gap(grid, &gaps[light], at[light])) {
+          release_end(grid, at[light], approach, &result[light]);
+          return true;
+        }
+      }
+      next = (shift + bound[up]) / 2;
+    }
+    shift = next;
+    eo_loaded_resolve(ws, grid, gaps[EO_LEFT].gap, factor, at[EO_LEFT], load + shift, &result[EO_LEFT]);
+    eo_loaded_resolve(ws, grid, gaps[EO_RIGHT].gap, factor, at[EO_RIGHT], load - shift, &result[EO_RIGHT]);
+  }
+  return false;
+}
+
+void eo_loaded_balance(struct eo_loaded_workspace *workspace, const struct eo_contact_grid *grid, const struct eo_loaded_gaps gaps[2],
                        double compliance_factor, double stiffness, int stagger, double load, struct eo_loaded_end result[2])
 {
-  enum { STEPS = 40 };
   double lean = sin(grid->geometry.base_helix_angle), soft = isinf(stiffness) ? 0 : 4 * lean * lean / stiffness;
   if (stiffness <= 0 || lean == 0)
     return;
   for (int j = 0; j < grid->positions; j++) {
-    int other = (j + grid->positions - stagger % grid->positions) % grid->positions;
-    double shift = 0; /* P_L = P + shift, P_R = P - shift; equilibrium of the pinion along its axis: Z_L - Z_R + shift 4 sin^2/k = 0 */
-    for (int i = 0; i < STEPS; i++) {
-      double miss = result[0].approach[j] - result[1].approach[other] + soft * shift;
-      double rate = 1 / result[0].tangent[j] + 1 / result[1].tangent[other] + soft;
-      double next = fmax(-0.999 * load, fmin(0.999 * load, shift - miss / rate));
-      if (fabs(next - shift) < 1e-7 * load)
-        break;
-      shift = next;
-      eo_loaded_resolve(ws, grid, gaps[0].gap, compliance_factor, j, load + shift, &result[0]);
-      eo_loaded_resolve(ws, grid, gaps[1].gap, compliance_factor, other, load - shift, &result[1]);
-    }
+    int at[2] = {j, (j + grid->positions - stagger % grid->positions) % grid->positions};
+    result[EO_LEFT].failures += !balance_position(workspace, grid, gaps, compliance_factor, soft, at, load, result);
   }
 }
 

@@ -46,7 +46,8 @@ void eo_loaded_solve(struct eo_loaded_workspace *workspace, const struct eo_cont
 
 /* Both ends of an axially held pinion: P_L + P_R = 2 load. stiffness: of the axial support, N/m; INFINITY: fixed (one Z for both ends).
    A displacement z towards + loads the left end less and the right end more: Z_L = Z_m + sin(beta_b) z, Z_R = Z_m - sin(beta_b) z.
-   stagger: positions by which the right end lags. Works on results of eo_loaded_solve() for the same load. */
+   stagger: positions by which the right end lags. Works on results of eo_loaded_solve() for the same load. An end that does not touch
+   although the other one carries 2 load has load, tangent and line loads 0, and the approach that the axial condition gives it. */
 void eo_loaded_balance(struct eo_loaded_workspace *workspace, const struct eo_contact_grid *grid, const struct eo_loaded_gaps gaps[2],
                        double compliance_factor, double stiffness, int stagger, double load, struct eo_loaded_end result[2]);
 

@@ -20,7 +20,7 @@ void eo_root_find_largest(const struct eo_flexibility *flexibility, int member, 
 struct eo_root_history {
   int phases;          /* 0: not computed */
   double *phase;       /* [phases]: c of the tooth's pair over base pitches, ascending */
-  double *stress;      /* [phases]: largest principal stress on the loaded root over profile and face, Pa */
+  double *stress;      /* [phases]: largest principal stress of the loaded root over face and fillet, from the 30 degree tangent inwards, Pa */
   double maximum;      /* of the history, Pa */
   double arc, eta;     /* where it is: along the root from the start of the active profile, from mid face, m */
 };

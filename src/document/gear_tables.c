@@ -94,19 +94,19 @@ static const struct eo_field supports[] = {
 static const char *const side[] = {"left", "right", NULL};
 
 static const struct eo_field shafts[] = {
-    EO_FLAG(struct eo_shafts, enabled, "enabled", 0, "torsional wind-up and bending of both bodies"),
+    EO_FLAG(struct eo_shafts, enabled, "enabled", 0, "torsional wind-up and bending of both bodies, iterated with the load distribution"),
     EO_NUMBER_DERIVED(struct eo_shafts, bearing_position[EO_PINION][EO_LEFT], "pinion_left_bearing_mm", &eo_unit_mm, -TO_MM, TO_MM,
-                      "half a face width outside the face end", "from the middle of the groove (of the face, with one end), + to the right"),
+                      "half a face width outside the face end", "simple support, from the middle of the groove (of the face, with one end), + to the right"),
     EO_NUMBER_DERIVED(struct eo_shafts, bearing_position[EO_PINION][EO_RIGHT], "pinion_right_bearing_mm", &eo_unit_mm, -TO_MM, TO_MM,
-                      "half a face width outside the face end", "from the middle of the groove (of the face, with one end), + to the right"),
+                      "half a face width outside the face end", "simple support, from the middle of the groove (of the face, with one end), + to the right"),
     EO_NUMBER_DERIVED(struct eo_shafts, bearing_position[EO_GEAR][EO_LEFT], "gear_left_bearing_mm", &eo_unit_mm, -TO_MM, TO_MM,
-                      "half a face width outside the face end", "from the middle of the groove (of the face, with one end), + to the right"),
+                      "half a face width outside the face end", "simple support, from the middle of the groove (of the face, with one end), + to the right"),
     EO_NUMBER_DERIVED(struct eo_shafts, bearing_position[EO_GEAR][EO_RIGHT], "gear_right_bearing_mm", &eo_unit_mm, -TO_MM, TO_MM,
-                      "half a face width outside the face end", "from the middle of the groove (of the face, with one end), + to the right"),
-    EO_NUMBER_DERIVED(struct eo_shafts, shaft_diameter[EO_PINION], "pinion_shaft_diameter_mm", &eo_unit_mm, 1e-3, TO_MM, "0.8 of the groove diameter",
-                      "outside the toothed body"),
-    EO_NUMBER_DERIVED(struct eo_shafts, shaft_diameter[EO_GEAR], "gear_shaft_diameter_mm", &eo_unit_mm, 1e-3, TO_MM, "0.8 of the groove diameter",
-                      "outside the toothed body"),
+                      "half a face width outside the face end", "simple support, from the middle of the groove (of the face, with one end), + to the right"),
+    EO_NUMBER_DERIVED(struct eo_shafts, shaft_diameter[EO_PINION], "pinion_shaft_diameter_mm", &eo_unit_mm, 1e-3, TO_MM, "0.8 of the groove diameter, at least midway from the bore to it",
+                      "outside the toothed body; the bore runs through"),
+    EO_NUMBER_DERIVED(struct eo_shafts, shaft_diameter[EO_GEAR], "gear_shaft_diameter_mm", &eo_unit_mm, 1e-3, TO_MM, "0.8 of the groove diameter, at least midway from the bore to it",
+                      "outside the toothed body; the bore runs through"),
     EO_CHOICE(struct eo_shafts, drive_side[EO_PINION], "pinion_drive_side", side, EO_DRIVE_LEFT, "where torque enters the pinion"),
     EO_CHOICE(struct eo_shafts, drive_side[EO_GEAR], "gear_drive_side", side, EO_DRIVE_LEFT, "where torque leaves the gear"),
 };

@@ -101,6 +101,8 @@ static json_t *encode_case(struct eo_result_source *source, int k)
   eo_result_put(&o, "lte", eo_result_lte(source, c));
   eo_result_put(&o, "mesh_stiffness", eo_result_stiffness(source, c));
   eo_result_put(&o, "contact", eo_result_contact(source, k));
+  if (source->design->shafts.enabled)
+    eo_result_put(&o, "body_deflection", eo_result_bodies(source, c));
   eo_result_put(&o, "impact", eo_result_impact(source, c));
   eo_result_put(&o, "root_stress", eo_result_root_stress(source, c));
   eo_result_put(&o, "vibration", eo_result_vibration(source, c));

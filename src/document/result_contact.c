@@ -53,6 +53,16 @@ static void put_end_columns(struct eo_result_object *o, const struct eo_result_s
   }
 }
 
+/* Where a floating pinion settles: z = (Z_L - Z_R)/(2 sin beta_b). */
+static json_t *encode_float(const struct eo_result_source *source, const double *const approach[2])
+{
+  int n = source->positions;
+  double scale = 1 / (2 * sqrt(fmax(0, 1 - source->normal * source->normal)));
+  for (int j = 0; j < n; j++)
+    source->scratch[j] = approach[0][j] - approach[1][(j + n - source->lag) % n];
+  return eo_result_column(n, source->scratch, scale, &eo_unit_um, EO_DIGITS_CURVE);
+}
+
 json_t *eo_result_lte(struct eo_result_source *source, const struct eo_case_result *c)
 {
   const double *const approach[2] = {c->end[0].loaded.approach, c->end[1].loaded.approach};
@@ -64,6 +74,8 @@ json_t *eo_result_lte(struct eo_result_source *source, const struct eo_case_resu
     eo_result_put_number(&o, end ? "right_peak_to_peak_um" : "left_peak_to_peak_um", c->end[end].transmission_peak, &eo_unit_um);
   eo_result_put_number(&o, "mean_um", c->mean, &eo_unit_um);
   eo_result_put(&o, "orders_um", encode_orders(source->positions, c->transmission, &eo_unit_um));
+  if (source->ends == 2 && source->design->alignment.pinion_axial == EO_AXIAL_FLOATING)
+    eo_result_put(&o, "axial_float_um", encode_float(source, approach));
   return eo_result_close(&o);
 }
 
@@ -189,25 +201,47 @@ static json_t *encode_pattern(struct eo_result_source *source, int k)
   return eo_result_close(&o);
 }
 
+double eo_result_mean_load(const struct eo_result_source *source, const struct eo_case_result *c, int end)
+{
+  return mean(source->positions, c->end[end].loaded.load);
+}
+
 json_t *eo_result_contact(struct eo_result_source *source, int k)
 {
   const struct eo_case_result *c = &source->evaluation->load_case[k];
   struct eo_result_object o = eo_result_open(), pressure = eo_result_open(), line_load = eo_result_open(), edge = eo_result_open(),
-                          edge_pressure = eo_result_open();
+                          edge_pressure = eo_result_open(), load = eo_result_open();
   json_t *pattern = encode_pattern(source, k);
   for (int end = 0; end < source->ends; end++) {
     const struct eo_end_result *r = &c->end[end];
+    eo_result_put_number(&load, eo_result_end[end], eo_result_mean_load(source, c, end), &eo_unit_N);
     eo_result_put_number(&pressure, eo_result_end[end], r->max_pressure, &eo_unit_MPa);
     eo_result_put_number(&line_load, eo_result_end[end], r->max_line_load, &eo_unit_N_per_mm);
     eo_result_put_number(&edge, eo_result_end[end], r->edge_share, NULL);
     eo_result_put_number(&edge_pressure, eo_result_end[end], source->edge_pressure[k][end], &eo_unit_MPa);
   }
+  eo_result_put(&o, "mean_load_N", eo_result_close(&load));
   eo_result_put(&o, "max_pressure_MPa", eo_result_close(&pressure));
   eo_result_put(&o, "max_line_load_N_per_mm", eo_result_close(&line_load));
   eo_result_put(&o, "edge_load_share", eo_result_close(&edge));
   eo_result_put(&o, "edge_pressure_MPa", eo_result_close(&edge_pressure));
   eo_result_put(&o, "load_share", encode_shares(source, c));
   eo_result_put(&o, "pattern", pattern);
+  return eo_result_close(&o);
+}
+
+/* ---- elastic bodies ---- */
+
+json_t *eo_result_bodies(struct eo_result_source *source, const struct eo_case_result *c)
+{
+  double eta[EO_DEFLECTION_NODES];
+  struct eo_result_object o = eo_result_open();
+  for (int i = 0; i < EO_DEFLECTION_NODES; i++)
+    eta[i] = source->pair->geometry.face_width * ((double)i / (EO_DEFLECTION_NODES - 1) - 0.5);
+  eo_result_put(&o, "eta_mm", eo_json_reals(EO_DEFLECTION_NODES, eta, 1, &eo_unit_mm, EO_DIGITS_CURVE));
+  for (int end = 0; end < source->ends; end++)
+    eo_result_put(&o, end ? "right_um" : "left_um", eo_json_reals(EO_DEFLECTION_NODES, c->end[end].deflection.part[0], 1, &eo_unit_um, EO_DIGITS_CURVE));
+  eo_result_put(&o, "most_iterations", json_integer(c->body_iterations));
   return eo_result_close(&o);
 }
 

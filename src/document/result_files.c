@@ -71,6 +71,7 @@ static void save_curves(const json_t *load_case, struct eo_text *text)
   add_column(&table, eo_json_find(load_case, "position"), "position");
   add_column(&table, eo_json_find(load_case, "lte/pair_um"), "lte_pair_um");
   add_ends(&table, load_case, "lte_%s_um", "lte/%s_um");
+  add_column(&table, eo_json_find(load_case, "lte/axial_float_um"), "axial_float_um");
   add_ends(&table, load_case, "mesh_stiffness_%s_N_per_um", "mesh_stiffness/%s_N_per_um");
   add_ends(&table, load_case, "tangent_stiffness_%s_N_per_um", "mesh_stiffness/tangent_%s_N_per_um");
   for (int end = 0; end < 2; end++)

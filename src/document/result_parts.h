@@ -48,6 +48,9 @@ json_t *eo_result_close(struct eo_result_object *object); /* NULL when anything 
 /* f1, f2, f3, J, fitness and violation into an object. */
 void eo_result_put_value(struct eo_result_object *object, const struct eo_objective_value *value);
 
+/* Normal force that one end carries, mean over the mesh cycle, N. */
+double eo_result_mean_load(const struct eo_result_source *source, const struct eo_case_result *load_case, int end);
+
 /* Each returns a new value, NULL without memory. */
 json_t *eo_result_raw_case(const struct eo_load_case *load_case, const struct eo_objective_case *raw);
 json_t *eo_result_position(const struct eo_result_source *source);
@@ -55,6 +58,8 @@ json_t *eo_result_unloaded(struct eo_result_source *source);
 json_t *eo_result_lte(struct eo_result_source *source, const struct eo_case_result *load_case);
 json_t *eo_result_stiffness(struct eo_result_source *source, const struct eo_case_result *load_case);
 json_t *eo_result_contact(struct eo_result_source *source, int load_case);
+/* Normal gap that the bodies open at the pitch point, mean over the mesh cycle. */
+json_t *eo_result_bodies(struct eo_result_source *source, const struct eo_case_result *load_case);
 json_t *eo_result_impact(struct eo_result_source *source, const struct eo_case_result *load_case);
 json_t *eo_result_root_stress(struct eo_result_source *source, const struct eo_case_result *load_case);
 json_t *eo_result_vibration(struct eo_result_source *source, const struct eo_case_result *load_case);

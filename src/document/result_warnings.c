@@ -47,14 +47,25 @@ static void say_contact(struct list *list, const struct eo_result_source *source
     say(list, "The loaded contact did not converge %s (%d mesh positions): the numbers of this load case mean nothing.", place.text, c->contact_failures);
   for (int end = 0; end < source->ends; end++) {
     const struct eo_end_result *r = &c->end[end];
-    if (r->edge_share > NOTICEABLE)
-      say(list, "Edge contact %s%s: tip edges carry up to %.2g %% of the load.", place.text, end_of(source, end), 100 * r->edge_share);
-    if (r->max_pressure > 0 && source->edge_pressure[k][end] >= 0.999 * r->max_pressure)
-      say(list, "The largest contact pressure %s%s, %.4g MPa, is on a tip edge, where it is a nominal figure.", place.text, end_of(source, end),
-          r->max_pressure / 1e6);
+    if (r->edge_share > NOTICEABLE) {
+      char peak[80] = "";
+      if (source->edge_pressure[k][end] >= 0.999 * r->max_pressure)
+        snprintf(peak, sizeof peak, "; the largest pressure, %.4g MPa (nominal), is there", r->max_pressure / 1e6);
+      say(list, "Edge contact %s%s: tip edges carry up to %.3g %% of the load%s.", place.text, end_of(source, end), 100 * r->edge_share, peak);
+    }
     if (!r->impact.touched)
       say(list, "No incoming tooth touches %s%s: there is no entering impact to speak of.", place.text, end_of(source, end));
   }
+}
+
+/* The tangent law is straight: where the force swings widely (ends coupled in torsion and misaligned), the contact's stiffening counts. */
+static void say_swing(struct list *list, const struct eo_result_source *source, const struct eo_case_result *c, int end)
+{
+  static const double WIDE = 0.1;
+  double swing = fmax(c->vibration.force_max[end] / c->force - 1, 1 - c->vibration.force_min[end] / c->force);
+  if (source->design->resolution.mesh_law == EO_LAW_TANGENT && swing > WIDE)
+    say(list, "The mesh force swings by %.2g %% %s%s, more than the tangent law follows well: compare mesh_law \"table\".", 100 * swing,
+        place_of(&c->load_case).text, end_of(source, end));
 }
 
 static void say_vibration(struct list *list, const struct eo_result_source *source, const struct eo_case_result *c)
@@ -65,7 +76,9 @@ static void say_vibration(struct list *list, const struct eo_result_source *sour
     say(list, "No periodic vibration was found %s: the teeth may hammer without a period.", place.text);
   for (int end = 0; end < source->ends && v->outcome == EO_VIBRATION_CONTACT_LOST; end++)
     if (v->contact_loss[end] > 0)
-      say(list, "Contact is lost %s%s, for %.2g %% of the mesh cycle.", place.text, end_of(source, end), 100 * v->contact_loss[end]);
+      say(list, "Contact is lost %s%s, for %.3g %% of the mesh cycle.", place.text, end_of(source, end), 100 * v->contact_loss[end]);
+  for (int end = 0; end < source->ends && v->outcome != EO_VIBRATION_NOT_CONVERGED; end++)
+    say_swing(list, source, c, end);
   if (v->back_contact)
     say(list, "The back flanks touch %s: the vibration is larger than the backlash.", place.text);
 }
@@ -74,8 +87,8 @@ static void say_limit(struct list *list, const struct eo_constraint *limit, doub
 {
   if (!limit->enabled || !(value > limit->limit))
     return;
-  say(list, "The limit on the %s is exceeded %s: %.4g %s, allowed %.4g.", what, place, eo_unit_out(unit, value), unit ? unit->symbol : "",
-      eo_unit_out(unit, limit->limit));
+  say(list, "The limit on the %s is exceeded %s: %.4g%s%s, allowed %.4g.", what, place, eo_unit_out(unit, value), unit ? " " : "",
+      unit ? unit->symbol : "", eo_unit_out(unit, limit->limit));
 }
 
 static void say_limits(struct list *list, const struct eo_result_source *source, int k)
@@ -92,12 +105,29 @@ static void say_limits(struct list *list, const struct eo_result_source *source,
     say(list, "The design is worse than the unmodified pair %s.", place.text);
 }
 
+/* An axially held pinion lets one end carry more than the other. */
+static void say_held(struct list *list, const struct eo_result_source *source)
+{
+  static const double UNEVEN = 0.6;
+  if (source->ends == 1 || source->design->alignment.pinion_axial == EO_AXIAL_FLOATING)
+    return;
+  for (int k = 0; k < source->evaluation->cases; k++) {
+    const struct eo_case_result *c = &source->evaluation->load_case[k];
+    double left = eo_result_mean_load(source, c, EO_LEFT), right = eo_result_mean_load(source, c, EO_RIGHT);
+    if (fmax(left, right) > UNEVEN * (left + right))
+      say(list, "The ends share the load unevenly %s: the %s end carries %.3g %% of it.", place_of(&c->load_case).text, left > right ? "left" : "right",
+          100 * fmax(left, right) / (left + right));
+  }
+  say(list, "The pinion is held along its axis in the loaded contact; the vibration is that of a floating pinion.");
+}
+
 static void say_modelling(struct list *list, const struct eo_result_source *source)
 {
   const struct eo_geometry *g = &source->pair->geometry;
   const char *note = source->pair->flexibility ? eo_flexibility_report(source->pair->flexibility)->note : "";
   if (*note)
     say(list, "%s", note);
+  say_held(list, source);
   if (source->design->objective.relief_inside_active_flank && eo_objective_relief_outside(&source->design->modification, g->rack_bottom, g->rack_top))
     say(list, "A relief starts outside the active flank and takes nothing off where the teeth touch.");
   if (source->analysis->value.sums.failed)

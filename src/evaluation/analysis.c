@@ -1,17 +1,10 @@
 #include "evaluation/analysis.h"
 
+#include "base/clock.h"
 #include "gear/modification.h"
 
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
-
-static double milliseconds(void)
-{
-  struct timespec now;
-  clock_gettime(CLOCK_MONOTONIC, &now);
-  return 1e3 * (double)now.tv_sec + 1e-6 * (double)now.tv_nsec;
-}
 
 enum eo_code eo_analysis_new(struct eo_analysis **result, const struct eo_pair *pair, struct eo_error *error)
 {
@@ -118,13 +111,13 @@ static void copy_reference(struct eo_analysis *a)
 static enum eo_code run_both(struct eo_analysis *a, const struct eo_design *design, const struct eo_design *bare, int want, struct eo_error *error)
 {
   bool own_reference = is_unmodified(design), known = a->known_root >= a->root && memcmp(a->known, bare, sizeof *bare) == 0;
-  double start = milliseconds();
+  double start = eo_clock_milliseconds();
   enum eo_code code = known || own_reference ? EO_OK : find_unmodified(a, bare, want, error);
-  a->unmodified_ms = known || own_reference ? 0 : milliseconds() - start;
-  start = milliseconds();
+  a->unmodified_ms = known || own_reference ? 0 : eo_clock_milliseconds() - start;
+  start = eo_clock_milliseconds();
   if (!code)
     code = find_design(a, design, want, error);
-  a->design_ms = milliseconds() - start;
+  a->design_ms = eo_clock_milliseconds() - start;
   if (code) {
     memset(a->known, 0, sizeof *a->known);
     return code;

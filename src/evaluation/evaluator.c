@@ -1,399 +1,10 @@
-#include "evaluation/evaluator.h"
+#include "evaluation/evaluator-internal.h"
 
+#include "base/clock.h"
 #include "numerics/periodic.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
-#include <time.h>
-
-struct eo_evaluator {
-  const struct eo_pair *pair;
-  int most_cases;
-  struct eo_gap_field field[2];            /* [end] */
-  struct eo_loaded_gaps gaps[2];           /* [end] */
-  struct eo_loaded_workspace *contact;
-  struct eo_elastic *bodies;               /* NULL: rigid */
-  struct eo_shafts shafts;                 /* those of the bodies */
-  struct eo_loaded_gaps bent;              /* of one end on bodies that stay as they are */
-  struct eo_loaded_end spare[2];           /* [end]: for the compliance band */
-  struct eo_loaded_end *table;             /* [TABLE_LOADS] of the table law, one end at a time; NULL until asked for */
-  double *table_rows;                      /* [TABLE_LOADS][positions] */
-  struct eo_root_workspace *root;          /* NULL until asked for */
-  struct eo_vibration_solver *vibration;
-  int vibration_harmonics;
-  struct eo_law (*law)[2];                 /* [most_cases][end] */
-  struct vibration_problem {
-    struct eo_dynamics_parameters parameters;
-    struct eo_vibration_case load;
-  } *problem;                              /* [most_cases], as last solved */
-  struct eo_evaluation result;
-};
-
-enum { CURVE_SAMPLES = 256, TABLE_LOADS = 12 };
-
-/* Loads of the table law over P: close together where contact lines grow from nothing. */
-static const double TABLE_LOAD[TABLE_LOADS] = {1e-4, 0.03, 0.08, 0.2, 0.4, 0.6, 0.8, 1, 1.25, 1.6, 2.2, 3.2};
-
-static double milliseconds(void)
-{
-  struct timespec now;
-  clock_gettime(CLOCK_MONOTONIC, &now);
-  return 1e3 * (double)now.tv_sec + 1e-6 * (double)now.tv_nsec;
-}
-
-/* ---- contact ---- */
-
-static bool same_flanks(const struct eo_modification *m)
-{
-  return memcmp(&m->flank[EO_PINION][EO_LEFT], &m->flank[EO_PINION][EO_RIGHT], sizeof m->flank[0][0]) == 0 &&
-         memcmp(&m->flank[EO_GEAR][EO_LEFT], &m->flank[EO_GEAR][EO_RIGHT], sizeof m->flank[0][0]) == 0;
-}
-
-static void copy_end(const struct eo_contact_grid *grid, struct eo_loaded_end *to, const struct eo_loaded_end *from)
-{
-  size_t n = (size_t)grid->positions;
-  memcpy(to->load, from->load, n * sizeof(double));
-  memcpy(to->approach, from->approach, n * sizeof(double));
-  memcpy(to->tangent, from->tangent, n * sizeof(double));
-  memcpy(to->line_load, from->line_load, (size_t)grid->points * sizeof(double));
-  to->failures = from->failures;
-}
-
-/* Loaded contact of every load case at one end. */
-static void load_end(struct eo_evaluator *e, const struct eo_design *design, int end, double factor)
-{
-  struct eo_evaluation *r = &e->result;
-  double force[EO_MAX_LOAD_CASES];
-  struct eo_loaded_end loaded[EO_MAX_LOAD_CASES];
-  for (int k = 0; k < r->cases; k++) {
-    force[k] = r->load_case[k].force;
-    loaded[k] = r->load_case[k].end[end].loaded;
-  }
-  eo_loaded_solve(e->contact, e->pair->grid, &e->gaps[end], factor, design->load_cases, force, loaded);
-  for (int k = 0; k < r->cases; k++)
-    r->load_case[k].end[end].loaded.failures = loaded[k].failures;
-}
-
-int eo_evaluator_stagger(const struct eo_design *design, int positions)
-{
-  return (int)lround(design->alignment.stagger * positions) % positions;
-}
-
-static double axial_stiffness(const struct eo_alignment *alignment)
-{
-  return alignment->pinion_axial == EO_AXIAL_FIXED ? INFINITY
-         : alignment->pinion_axial == EO_AXIAL_SPRING ? alignment->pinion_axial_stiffness : 0;
-}
-
-static void set_fields(struct eo_evaluator *e, const struct eo_design *design, const struct eo_scenario *scenario)
-{
-  const struct eo_modification *m = &design->modification;
-  double in_plane = isnan(scenario->in_plane) ? design->alignment.shaft_angle_in_plane : scenario->in_plane;
-  double out_of_plane = isnan(scenario->out_of_plane) ? design->alignment.shaft_angle_out_of_plane : scenario->out_of_plane;
-  e->result.equal_ends = e->result.ends == 2 && same_flanks(m) && in_plane == 0 && out_of_plane == 0 && !e->bodies;
-  for (int end = 0; end < e->result.ends; end++) {
-    if (end == EO_RIGHT && e->result.equal_ends)
-      continue;
-    eo_gap_field_init(&e->field[end], &e->pair->geometry, &m->flank[EO_PINION][end], &m->flank[EO_GEAR][end], end, in_plane, out_of_plane,
-                      e->pair->pivot[end], e->pair->grid->corner);
-    eo_loaded_gaps_set(&e->gaps[end], e->pair->grid, &e->field[end]);
-  }
-}
-
-/* Where the gaps and fields of an end are kept: equal ends share the left one's. */
-static int kept_at(const struct eo_evaluator *e, int end)
-{
-  return e->result.equal_ends ? EO_LEFT : end;
-}
-
-/* Makes the bodies' influence when the design asks for elastic bodies and they have changed. */
-static enum eo_code fit_bodies(struct eo_evaluator *e, const struct eo_shafts *shafts, struct eo_error *error)
-{
-  if (shafts->enabled && e->bodies && memcmp(shafts, &e->shafts, sizeof *shafts) == 0)
-    return EO_OK;
-  eo_elastic_free(e->bodies);
-  e->bodies = NULL;
-  if (!shafts->enabled)
-    return EO_OK;
-  enum eo_code code = e->bent.gap ? EO_OK : eo_loaded_gaps_init(&e->bent, e->pair->grid, error);
-  memcpy(&e->shafts, shafts, sizeof *shafts);
-  return code ? code : eo_elastic_new(&e->bodies, e->pair->grid, &e->pair->gear_pair, shafts, error);
-}
-
-/* From the solution on rigid bodies to that on elastic ones. */
-static void bend_bodies(struct eo_evaluator *e, const struct eo_design *design, double force, double factor, struct eo_loaded_end both[2],
-                        struct eo_elastic_report *report)
-{
-  struct eo_elastic_case load = {force, factor, axial_stiffness(&design->alignment), eo_evaluator_stagger(design, e->pair->grid->positions)};
-  eo_elastic_solve(e->bodies, e->contact, e->gaps, &load, both, report);
-  both[EO_LEFT].failures += report->failures;
-}
-
-/* The gap field of an end as the bodies of a load case hold it. */
-static const struct eo_gap_field *field_of(struct eo_evaluator *e, const struct eo_case_result *c, int end)
-{
-  struct eo_gap_field *field = &e->field[kept_at(e, end)];
-  field->deflection = e->bodies ? &c->end[end].deflection : NULL;
-  return field;
-}
-
-static void bend_cases(struct eo_evaluator *e, const struct eo_design *design, double factor)
-{
-  for (int k = 0; k < e->result.cases; k++) {
-    struct eo_case_result *c = &e->result.load_case[k];
-    struct eo_loaded_end both[2] = {c->end[EO_LEFT].loaded, c->end[EO_RIGHT].loaded};
-    struct eo_elastic_report report;
-    bend_bodies(e, design, c->force, factor, both, &report);
-    c->body_iterations = report.most_iterations;
-    for (int end = 0; end < e->result.ends; end++) {
-      c->end[end].loaded.failures = both[end].failures;
-      c->end[end].deflection = report.mean[end];
-    }
-  }
-}
-
-static void solve_contact(struct eo_evaluator *e, const struct eo_design *design, double factor)
-{
-  struct eo_evaluation *r = &e->result;
-  const struct eo_contact_grid *grid = e->pair->grid;
-  double stiffness = axial_stiffness(&design->alignment);
-  for (int end = 0; end < r->ends; end++)
-    if (end == EO_RIGHT && r->equal_ends)
-      for (int k = 0; k < r->cases; k++)
-        copy_end(grid, &r->load_case[k].end[end].loaded, &r->load_case[k].end[EO_LEFT].loaded);
-    else
-      load_end(e, design, end, factor);
-  int stagger = eo_evaluator_stagger(design, grid->positions);
-  if (e->bodies)
-    bend_cases(e, design, factor);
-  else if (r->ends == 2 && stiffness > 0 && !(r->equal_ends && stagger == 0))
-    for (int k = 0; k < r->cases; k++) {
-      struct eo_loaded_gaps gaps[2] = {e->gaps[EO_LEFT], e->gaps[kept_at(e, EO_RIGHT)]};
-      struct eo_loaded_end both[2] = {r->load_case[k].end[EO_LEFT].loaded, r->load_case[k].end[EO_RIGHT].loaded};
-      eo_loaded_balance(e->contact, grid, gaps, factor, stiffness, stagger, r->load_case[k].force, both);
-      for (int end = 0; end < 2; end++)
-        r->load_case[k].end[end].loaded.failures = both[end].failures;
-    }
-}
-
-/* Peaks over the mesh cycle and the secant stiffness of one end. */
-static void summarise_end(struct eo_evaluator *e, struct eo_case_result *c, int end)
-{
-  const struct eo_contact_grid *grid = e->pair->grid;
-  struct eo_end_result *r = &c->end[end];
-  double low = INFINITY, high = -INFINITY;
-  if (e->bodies)
-    eo_loaded_first_contact(grid, field_of(e, c, end), r->unloaded);
-  else
-    memcpy(r->unloaded, e->gaps[kept_at(e, end)].unloaded, sizeof *r->unloaded * (size_t)grid->positions);
-  r->max_pressure = r->max_line_load = r->edge_share = 0;
-  r->datum = eo_gap_field_datum(field_of(e, c, end));
-  for (int j = 0; j < grid->positions; j++) {
-    const struct eo_contact_position *p = &grid->position[j];
-    double edge = 0;
-    for (int i = 0; i < p->points; i++) {
-      double q = r->loaded.line_load[p->first + i];
-      r->max_line_load = fmax(r->max_line_load, q);
-      r->max_pressure = fmax(r->max_pressure, q > 0 ? eo_loaded_pressure(grid, q, p->radius[i]) : 0);
-      edge += p->kind[i] == EO_POINT_LINE ? 0 : q * p->length[i];
-    }
-    r->edge_share = fmax(r->edge_share, edge / r->loaded.load[j]);
-    r->stiffness[j] = r->loaded.load[j] / (r->loaded.approach[j] - r->unloaded[j]);
-    low = fmin(low, r->loaded.approach[j]);
-    high = fmax(high, r->loaded.approach[j]);
-  }
-  r->transmission_peak = (high - low) / cos(grid->geometry.base_helix_angle);
-}
-
-/* LTE of the pair: the mean of the ends, the right one behind by the stagger. */
-static void summarise_pair(struct eo_evaluator *e, const struct eo_design *design, struct eo_case_result *c)
-{
-  int n = e->pair->grid->positions, stagger = eo_evaluator_stagger(design, n), last = e->result.ends - 1;
-  double low = INFINITY, high = -INFINITY, normal = cos(e->pair->geometry.base_helix_angle);
-  c->mean = 0;
-  for (int j = 0; j < n; j++) {
-    double z = (c->end[EO_LEFT].loaded.approach[j] + c->end[last].loaded.approach[(j + n - stagger) % n]) / 2 / normal;
-    c->transmission[j] = z;
-    c->mean += z / n;
-    low = fmin(low, z);
-    high = fmax(high, z);
-  }
-  c->peak_to_peak = high - low;
-  c->contact_failures = 0;
-  for (int end = 0; end <= last; end++)
-    c->contact_failures += c->end[end].loaded.failures;
-}
-
-static void find_impacts(struct eo_evaluator *e, double speed_factor, double factor)
-{
-  struct eo_evaluation *r = &e->result;
-  for (int k = 0; k < r->cases; k++)
-    for (int end = 0; end < r->ends; end++) {
-      struct eo_case_result *c = &r->load_case[k];
-      if (end == EO_RIGHT && r->equal_ends && c->end[0].loaded.load[0] == c->end[1].loaded.load[0])
-        c->end[end].impact = c->end[EO_LEFT].impact;
-      else
-        eo_impact_find(&c->end[end].impact, e->pair->grid, field_of(e, c, end), e->pair->kernel, &e->pair->impact,
-                       c->end[end].loaded.approach, c->load_case.speed * speed_factor, factor);
-    }
-}
-
-/* ---- dynamics ---- */
-
-static double mean(int n, const double *value)
-{
-  double sum = 0;
-  for (int i = 0; i < n; i++)
-    sum += value[i];
-  return sum / n;
-}
-
-/* The gaps at which an end is loaded: elastic bodies stay as the load case bends them. */
-static const struct eo_loaded_gaps *gaps_of(struct eo_evaluator *e, const struct eo_design *design, const struct eo_case_result *c, int end)
-{
-  if (!e->bodies)
-    return &e->gaps[kept_at(e, end)];
-  const struct eo_loaded_end both[2] = {c->end[EO_LEFT].loaded, c->end[EO_RIGHT].loaded};
-  eo_elastic_gaps(e->bodies, e->gaps, eo_evaluator_stagger(design, e->pair->grid->positions), both, end, e->bent.gap);
-  return &e->bent;
-}
-
-/* F(X, phi) from loaded contact at many loads. */
-static enum eo_code set_table_law(struct eo_evaluator *e, const struct eo_design *design, struct eo_law *law, const struct eo_case_result *c,
-                                  int end, double factor, int order, struct eo_error *error)
-{
-  int n = e->pair->grid->positions;
-  double load[TABLE_LOADS];
-  for (int i = 0; i < TABLE_LOADS; i++)
-    load[i] = TABLE_LOAD[i] * c->force;
-  if (!e->table) {
-    e->table = calloc(TABLE_LOADS, sizeof *e->table);
-    e->table_rows = malloc(sizeof(double) * (size_t)(TABLE_LOADS * n));
-    if (!e->table || !e->table_rows)
-      return eo_error_memory(error);
-    for (int i = 0; i < TABLE_LOADS; i++) {
-      enum eo_code code = eo_loaded_end_init(&e->table[i], e->pair->grid, error);
-      if (code)
-        return code;
-    }
-  }
-  eo_loaded_solve(e->contact, e->pair->grid, gaps_of(e, design, c, end), factor, TABLE_LOADS, load, e->table);
-  for (int i = 0; i < TABLE_LOADS; i++)
-    memcpy(e->table_rows + i * n, e->table[i].approach, sizeof(double) * (size_t)n);
-  return eo_law_set_table(law, TABLE_LOADS, n, load, e->table_rows, order, 0, error);
-}
-
-static enum eo_code set_law(struct eo_evaluator *e, const struct eo_design *design, struct eo_law *law, const struct eo_case_result *c, int end,
-                            const struct eo_loaded_end *loaded, double factor, struct eo_error *error)
-{
-  const struct eo_resolution *resolution = &design->resolution;
-  int n = e->pair->grid->positions, order = resolution->te_harmonics < n / 2 ? resolution->te_harmonics : n / 2 - 1;
-  double back = -design->gear_pair.backlash;
-  switch (resolution->mesh_law) {
-  case EO_LAW_SECANT:
-    return eo_law_set_secant(law, n, loaded->approach, c->force, c->end[end].datum, order, back, error);
-  case EO_LAW_TABLE:
-    return set_table_law(e, design, law, c, end, factor, order, error);
-  case EO_LAW_TANGENT:
-    break;
-  }
-  return eo_law_set_tangent(law, n, loaded->approach, loaded->tangent, c->force, order, back, error);
-}
-
-void eo_evaluator_pulses(const struct eo_pair *pair, const struct eo_impact *impact, double speed, struct eo_pulse *pulse)
-{
-  double period = 2 * M_PI / (speed * pair->geometry.teeth[EO_PINION]);
-  for (int end = 0; end < pair->gear_pair.ends; end++) {
-    pulse[end] = (struct eo_pulse){.shape = EO_PULSE_NONE};
-    if (impact[end].touched && impact[end].force > 0)
-      pulse[end] = (struct eo_pulse){.shape = EO_PULSE_HALF_SINE, .amplitude = impact[end].force, .start = impact[end].start,
-        .duration = fmin(1, impact[end].duration / period)};
-  }
-}
-
-static enum eo_code vibrate(struct eo_evaluator *e, const struct eo_design *design, int k, double speed_factor, double factor,
-                            const struct eo_loaded_end *loaded[2], struct eo_vibration *vibration, struct eo_error *error)
-{
-  struct eo_case_result *c = &e->result.load_case[k];
-  struct eo_dynamics_parameters parameters;
-  int ends = e->result.ends, n = e->pair->grid->positions;
-  double stiffness = mean(n, loaded[0]->tangent);
-  if (ends == 2)
-    stiffness = (stiffness + mean(n, loaded[1]->tangent)) / 2;
-  struct eo_vibration_case load = {.torque = c->load_case.torque, .speed = c->load_case.speed * speed_factor,
-    .pinion_teeth = e->pair->geometry.teeth[EO_PINION], .phase_right = -design->alignment.stagger, .gated = true,
-    .impact = design->resolution.impact_in_dynamics};
-  enum eo_code code = eo_dynamics_parameters_init(&parameters, &e->pair->geometry, &design->gear_pair, &design->material, &design->supports,
-                                                  ends == 2 && !same_flanks(&design->modification), stiffness, error);
-  if (!code)
-    code = eo_vibration_set_model(e->vibration, &parameters, error);
-  for (int end = 0; end < ends && !code; end++) {
-    load.law[end] = &e->law[k][end];
-    code = set_law(e, design, &e->law[k][end], c, end, loaded[end], factor, error);
-  }
-  if (load.impact != EO_IMPACT_NONE)
-    eo_evaluator_pulses(e->pair, (struct eo_impact[2]){c->end[0].impact, c->end[1].impact}, load.speed, load.pulse);
-  e->problem[k] = (struct vibration_problem){parameters, load};
-  if (!code)
-    code = design->resolution.solver == EO_SOLVER_TIME_INTEGRATION
-               ? eo_vibration_integrate(e->vibration, &load, NULL, vibration, NULL, error)
-               : eo_vibration_solve(e->vibration, &load, EO_START_COLD, vibration, error);
-  return code;
-}
-
-static void read_curves(struct eo_evaluator *e, struct eo_case_result *c)
-{
-  for (int end = 0; end < e->result.ends; end++)
-    for (int channel = 0; channel < EO_CURVE_CHANNELS; channel++) {
-      eo_vibration_history(e->vibration, (enum eo_channel)channel, end, CURVE_SAMPLES, c->end[end].curve[channel]);
-      eo_vibration_orders(e->vibration, (enum eo_channel)channel, end, c->end[end].order[channel]);
-    }
-}
-
-static enum eo_code solve_dynamics(struct eo_evaluator *e, const struct eo_design *design, double speed_factor, double factor, int want,
-                                   struct eo_error *error)
-{
-  enum eo_code code = EO_OK;
-  for (int k = 0; k < e->result.cases && !code; k++) {
-    struct eo_case_result *c = &e->result.load_case[k];
-    const struct eo_loaded_end *loaded[2] = {&c->end[0].loaded, &c->end[1].loaded};
-    code = vibrate(e, design, k, speed_factor, factor, loaded, &c->vibration, error);
-    c->dynamic_force_factor = 1;
-    for (int end = 0; end < e->result.ends && !code; end++)
-      c->dynamic_force_factor = fmax(c->dynamic_force_factor, c->vibration.dynamic_factor[end]);
-    if (!code && want & EO_WANT_CURVES && c->vibration.outcome != EO_VIBRATION_NOT_CONVERGED)
-      read_curves(e, c);
-  }
-  return code;
-}
-
-/* RMS at other compliances: contact and dynamics again, one load case at a time. */
-static enum eo_code find_band(struct eo_evaluator *e, const struct eo_design *design, double speed_factor, double factor, struct eo_error *error)
-{
-  struct eo_evaluation *r = &e->result;
-  enum eo_code code = EO_OK;
-  for (int k = 0; k < r->cases && !code; k++)
-    for (int side = 0; side < 2 && !code; side++) {
-      struct eo_case_result *c = &r->load_case[k];
-      struct eo_vibration vibration;
-      double scaled = factor * (side ? 1.1 : 0.9);
-      const struct eo_loaded_end *loaded[2] = {&e->spare[0], &e->spare[1]};
-      for (int end = 0; end < r->ends; end++)
-        if (end == EO_RIGHT && r->equal_ends)
-          loaded[end] = &e->spare[EO_LEFT];
-        else
-          eo_loaded_solve(e->contact, e->pair->grid, &e->gaps[end], scaled, 1, &c->force, &e->spare[end]);
-      if (e->bodies)
-        bend_bodies(e, design, c->force, scaled, e->spare, &(struct eo_elastic_report){0});
-      code = vibrate(e, design, k, speed_factor, scaled, loaded, &vibration, error);
-      for (int reading = 0; reading < EO_READINGS; reading++)
-        c->band[reading][side] = code || vibration.outcome == EO_VIBRATION_NOT_CONVERGED ? NAN : vibration.rms_pair[reading];
-    }
-  return code;
-}
-
-/* ---- the order ---- */
 
 static enum eo_code find_root_stress(struct eo_evaluator *e, struct eo_error *error)
 {
@@ -438,8 +49,15 @@ static enum eo_code find_modes(struct eo_evaluator *e, struct eo_error *error)
     if (r->load_case[k].load_case.share > r->load_case[heaviest].load_case.share)
       heaviest = k;
   double stiffness[2];
-  for (int end = 0; end < 2; end++)
-    stiffness[end] = mean(n, r->load_case[heaviest].end[end < r->ends ? end : 0].loaded.tangent);
+  bool elastic = r->load_case[heaviest].contact_failures == 0;
+  for (int end = 0; end < 2; end++) {
+    stiffness[end] = eo_periodic_mean(n, r->load_case[heaviest].end[end < r->ends ? end : 0].loaded.tangent);
+    elastic = elastic && stiffness[end] > 0; /* an end may carry nothing */
+  }
+  if (!elastic) {
+    r->modes = (struct eo_dynamics_modes){0};
+    return EO_OK;
+  }
   return eo_dynamics_model_modes(eo_vibration_model(e->vibration), stiffness, &r->modes, error);
 }
 
@@ -481,22 +99,22 @@ static enum eo_code solve_static(struct eo_evaluator *e, const struct eo_design 
                                  struct eo_error *error)
 {
   struct eo_evaluation *r = &e->result;
-  enum eo_code code = fit_bodies(e, &design->shafts, error);
+  enum eo_code code = eo_evaluator_fit_bodies(e, &design->shafts, error);
   if (code)
     return code;
-  double start = milliseconds();
+  double start = eo_clock_milliseconds();
   set_cases(e, design);
-  set_fields(e, design, scenario);
-  solve_contact(e, design, scenario->compliance);
+  eo_evaluator_set_fields(e, design, scenario);
+  eo_evaluator_solve_contact(e, design, scenario->compliance);
   for (int k = 0; k < r->cases; k++) {
     for (int end = 0; end < r->ends; end++)
-      summarise_end(e, &r->load_case[k], end);
-    summarise_pair(e, design, &r->load_case[k]);
+      eo_evaluator_summarise_end(e, &r->load_case[k], end);
+    eo_evaluator_summarise_pair(e, design, &r->load_case[k]);
   }
-  double contact = milliseconds();
-  find_impacts(e, scenario->speed, scenario->compliance);
+  double contact = eo_clock_milliseconds();
+  eo_evaluator_find_impacts(e, design, scenario->speed, scenario->compliance);
   r->static_ms = contact - start;
-  r->impact_ms = milliseconds() - contact;
+  r->impact_ms = eo_clock_milliseconds() - contact;
   return EO_OK;
 }
 
@@ -522,18 +140,18 @@ enum eo_code eo_evaluator_run(struct eo_evaluator *e, const struct eo_design *de
     code = solve_static(e, design, s, error);
   if (code)
     return code;
-  double impact = milliseconds();
+  double impact = eo_clock_milliseconds();
   if (root)
     code = find_root_stress(e, error);
-  double rooted = milliseconds();
+  double rooted = eo_clock_milliseconds();
   if (!code)
-    code = solve_dynamics(e, design, s->speed, s->compliance, want, error);
+    code = eo_evaluator_solve_dynamics(e, design, s->speed, s->compliance, want, error);
   if (!code && want & EO_WANT_CURVES)
     code = find_modes(e, error);
-  r->dynamics_ms = milliseconds() - rooted;
+  r->dynamics_ms = eo_clock_milliseconds() - rooted;
   r->root_ms = rooted - impact;
   if (!code && want & EO_WANT_BAND)
-    code = find_band(e, design, s->speed, s->compliance, error);
+    code = eo_evaluator_find_band(e, design, s->speed, s->compliance, error);
   if (code)
     return code;
   collect_objectives(r, root);
@@ -541,16 +159,17 @@ enum eo_code eo_evaluator_run(struct eo_evaluator *e, const struct eo_design *de
   return EO_OK;
 }
 
-void eo_evaluator_vibration(const struct eo_evaluator *e, int load_case, struct eo_dynamics_parameters *parameters,
+bool eo_evaluator_vibration(const struct eo_evaluator *e, int load_case, struct eo_dynamics_parameters *parameters,
                             struct eo_vibration_case *load)
 {
   *parameters = e->problem[load_case].parameters;
   *load = e->problem[load_case].load;
+  return e->problem[load_case].solvable;
 }
 
 const struct eo_gap_field *eo_evaluator_field(const struct eo_evaluator *e, int end)
 {
-  return &e->field[kept_at(e, end)];
+  return &e->field[eo_evaluator_kept_at(e, end)];
 }
 
 /* ---- fitness ---- */
@@ -601,116 +220,4 @@ void eo_evaluator_combine(const struct eo_design *design, const struct eo_geomet
   value->objective /= scenarios;
   value->violation /= scenarios;
   value->fitness = value->sums.failed ? EO_FITNESS_WORST : 1 / value->objective - design->objective.penalty * value->violation;
-}
-
-/* ---- storage ---- */
-
-static enum eo_code init_end(struct eo_end_result *end, const struct eo_contact_grid *grid, struct eo_error *error)
-{
-  size_t n = (size_t)grid->positions;
-  enum eo_code code = eo_loaded_end_init(&end->loaded, grid, error);
-  for (int member = 0; member < 2 && !code; member++)
-    code = eo_root_history_init(&end->root[member], grid, error);
-  if (code)
-    return code;
-  end->unloaded = calloc(n, sizeof(double));
-  end->stiffness = calloc(n, sizeof(double));
-  if (!end->unloaded || !end->stiffness)
-    return eo_error_memory(error);
-  for (int i = 0; i < EO_CURVE_CHANNELS; i++) {
-    end->curve[i] = calloc(CURVE_SAMPLES, sizeof(double));
-    end->order[i] = calloc(EO_MAX_HARMONICS + 1, sizeof(double complex));
-    if (!end->curve[i] || !end->order[i])
-      return eo_error_memory(error);
-  }
-  return EO_OK;
-}
-
-static void done_end(struct eo_end_result *end)
-{
-  eo_loaded_end_done(&end->loaded);
-  for (int member = 0; member < 2; member++)
-    eo_root_history_done(&end->root[member]);
-  free(end->unloaded);
-  free(end->stiffness);
-  for (int i = 0; i < EO_CURVE_CHANNELS; i++) {
-    free(end->curve[i]);
-    free(end->order[i]);
-  }
-}
-
-static enum eo_code init_storage(struct eo_evaluator *e, struct eo_error *error)
-{
-  const struct eo_contact_grid *grid = e->pair->grid;
-  struct eo_evaluation *r = &e->result;
-  size_t most = (size_t)e->most_cases;
-  enum eo_code code = EO_OK;
-  r->positions = grid->positions;
-  r->samples = CURVE_SAMPLES;
-  r->load_case = calloc(most, sizeof *r->load_case);
-  r->objective = calloc(most, sizeof *r->objective);
-  e->law = calloc(most, sizeof *e->law);
-  e->problem = calloc(most, sizeof *e->problem);
-  if (!r->load_case || !r->objective || !e->law || !e->problem)
-    return eo_error_memory(error);
-  for (int k = 0; k < e->most_cases && !code; k++) {
-    r->load_case[k].transmission = calloc((size_t)grid->positions, sizeof(double));
-    if (!r->load_case[k].transmission)
-      return eo_error_memory(error);
-    for (int end = 0; end < 2 && !code; end++)
-      code = init_end(&r->load_case[k].end[end], grid, error);
-  }
-  for (int end = 0; end < 2 && !code; end++) {
-    code = eo_loaded_gaps_init(&e->gaps[end], grid, error);
-    if (!code)
-      code = eo_loaded_end_init(&e->spare[end], grid, error);
-  }
-  return code ? code : eo_loaded_workspace_new(&e->contact, grid, error);
-}
-
-enum eo_code eo_evaluator_new(struct eo_evaluator **evaluator, const struct eo_pair *pair, int most_cases, struct eo_error *error)
-{
-  struct eo_evaluator *e = calloc(1, sizeof *e);
-  if (!e)
-    return eo_error_memory(error);
-  e->pair = pair;
-  e->most_cases = most_cases;
-  enum eo_code code = init_storage(e, error);
-  if (code)
-    eo_evaluator_free(e);
-  else
-    *evaluator = e;
-  return code;
-}
-
-void eo_evaluator_free(struct eo_evaluator *e)
-{
-  if (!e)
-    return;
-  struct eo_evaluation *r = &e->result;
-  for (int k = 0; r->load_case && k < e->most_cases; k++) {
-    free(r->load_case[k].transmission);
-    for (int end = 0; end < 2; end++) {
-      done_end(&r->load_case[k].end[end]);
-      eo_law_done(e->law ? &e->law[k][end] : NULL);
-    }
-  }
-  for (int end = 0; end < 2; end++) {
-    eo_loaded_gaps_done(&e->gaps[end]);
-    eo_loaded_end_done(&e->spare[end]);
-  }
-  for (int i = 0; e->table && i < TABLE_LOADS; i++)
-    eo_loaded_end_done(&e->table[i]);
-  free(e->table);
-  free(e->table_rows);
-  eo_loaded_workspace_free(e->contact);
-  eo_root_workspace_free(e->root);
-  eo_elastic_free(e->bodies);
-  eo_loaded_gaps_done(&e->bent);
-  eo_vibration_free(e->vibration);
-  free(e->law);
-  free(e->problem);
-  free(r->load_case);
-  free(r->objective);
-  free(e);
 }

@@ -24,9 +24,10 @@ enum { EO_CURVE_CHANNELS = EO_CHANNELS };
 struct eo_end_result {
   struct eo_loaded_end loaded;
   double *unloaded;            /* [positions] Z0, m, normal */
-  double *stiffness;           /* [positions] P / (Z - Z0), N/m, normal */
+  double *stiffness;           /* [positions] P / (Z - Z0), N/m, normal; Z0 with the bodies as the load holds them */
   double datum;                /* smallest gap anywhere on the flank, m */
-  struct eo_deflection deflection; /* of elastic bodies, mean over the mesh cycle; unloaded and datum are measured from it. 0: rigid */
+  double loaded_datum;         /* the same with the bodies as the load holds them */
+  struct eo_deflection deflection; /* of elastic bodies, mean over the mesh cycle; 0: rigid */
   struct eo_impact impact;
   double max_pressure;         /* Pa */
   double max_line_load;        /* N/m */
@@ -83,14 +84,14 @@ void eo_evaluator_combine(const struct eo_design *design, const struct eo_geomet
                           const struct eo_objective_case *unmodified, struct eo_objective_value *value);
 
 /* The vibration problem of a load case as the last evaluation (without a compliance band) solved it, for sweeps over speed. The
-   laws in load are borrowed, valid until the next run. */
-void eo_evaluator_vibration(const struct eo_evaluator *evaluator, int load_case, struct eo_dynamics_parameters *parameters,
+   laws in load are borrowed, valid until the next run. False: the loaded contact gave no mesh law; that case has no periodic state. */
+bool eo_evaluator_vibration(const struct eo_evaluator *evaluator, int load_case, struct eo_dynamics_parameters *parameters,
                             struct eo_vibration_case *load);
 
 /* Impacts of one load case as pulses of the equations of motion. impact[2], pulse[2]: [end]; speed: of the pinion, rad/s. */
 void eo_evaluator_pulses(const struct eo_pair *pair, const struct eo_impact *impact, double speed, struct eo_pulse *pulse);
 
-/* The gap field of an end in the last evaluation: borrowed, valid until the next run. */
+/* The gap field of an end on rigid bodies in the last evaluation: borrowed, valid until the next run. */
 const struct eo_gap_field *eo_evaluator_field(const struct eo_evaluator *evaluator, int end);
 
 /* Positions by which the right end lags behind the left one. */

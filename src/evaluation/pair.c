@@ -1,18 +1,11 @@
 #include "evaluation/pair.h"
 
-#include "numerics/blas.h"
+#include "base/clock.h"
+#include "numerics/threads.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
-
-static double seconds(void)
-{
-  struct timespec now;
-  clock_gettime(CLOCK_MONOTONIC, &now);
-  return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
 
 static enum eo_code prepare(struct eo_pair *pair, const struct eo_pair_options *options, const struct eo_progress *progress,
                             struct eo_error *error)
@@ -30,14 +23,18 @@ static enum eo_code prepare(struct eo_pair *pair, const struct eo_pair_options *
     for (int member = 0; member < 2 && !code; member++)
       code = eo_root_modes_new(&pair->root[member], pair->flexibility, member, error);
   }
-  return code ? code : eo_contact_grid_new(&pair->grid, &pair->geometry, &pair->material, &grid, options->phase, pair->kernel, progress, error);
+  if (!code)
+    code = eo_contact_grid_new(&pair->grid, &pair->geometry, &pair->material, &grid, options->phase, pair->kernel, progress, error);
+  for (int side = 0; side < 2 && !code; side++)
+    pair->grid->corner[side].at_radius = options->corner_at_radius;
+  return code;
 }
 
 enum eo_code eo_pair_new(struct eo_pair **result, const struct eo_design *design, const struct eo_pair_options *options,
                          const struct eo_progress *progress, struct eo_error *error)
 {
-  double start = seconds();
-  eo_blas_single_thread();
+  double start = (1e-3 * eo_clock_milliseconds());
+  eo_threads_limit();
   struct eo_pair *pair = calloc(1, sizeof *pair);
   if (!pair)
     return eo_error_memory(error);
@@ -55,7 +52,7 @@ enum eo_code eo_pair_new(struct eo_pair **result, const struct eo_design *design
   eo_impact_inertia(&pair->geometry, &pair->material, pair->impact.inertia);
   for (int end = 0; end < 2; end++)
     pair->pivot[end] = options->own_pivots || pair->gear_pair.ends == 1 ? 0 : (pair->geometry.face_width + pair->gear_pair.groove_width) / 2;
-  pair->seconds = seconds() - start;
+  pair->seconds = (1e-3 * eo_clock_milliseconds()) - start;
   *result = pair;
   return EO_OK;
 }

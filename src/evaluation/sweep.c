@@ -1,5 +1,6 @@
 #include "evaluation/sweep.h"
 
+#include "numerics/periodic.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -13,6 +14,7 @@ struct problem {
   struct eo_vibration_case load; /* laws are those below */
   struct eo_law law[2];
   struct eo_impact impact[2];
+  bool solvable;                 /* false: there is no mesh law */
 };
 
 /* One thread's own. */
@@ -109,19 +111,14 @@ void eo_sweep_done(struct eo_sweep *s)
 
 /* ---- one torque: contact, mesh laws, impacts, modes ---- */
 
-static double mean(int n, const double *value)
+/* sound: the loaded contact converged; where it did not, everything built on it means nothing. */
+static void read_point(struct eo_sweep_point *p, const struct eo_vibration *r, bool sound)
 {
-  double sum = 0;
-  for (int i = 0; i < n; i++)
-    sum += value[i];
-  return sum / n;
-}
-
-static void read_point(struct eo_sweep_point *p, const struct eo_vibration *r)
-{
-  bool found = r->outcome != EO_VIBRATION_NOT_CONVERGED;
-  p->outcome = r->outcome;
+  bool found = sound && r->outcome != EO_VIBRATION_NOT_CONVERGED;
+  p->outcome = sound ? r->outcome : EO_VIBRATION_NOT_CONVERGED;
   p->back_contact = found && r->back_contact;
+  for (int end = 0; end < 2 && !sound; end++)
+    p->impact[end] = NAN;
   for (int reading = 0; reading < EO_READINGS; reading++) {
     p->rms_pair[reading] = found ? r->rms_pair[reading] : NAN;
     p->rms_of_mean[reading] = found ? r->rms_of_mean[reading] : NAN;
@@ -139,17 +136,20 @@ static enum eo_code read_torque(struct eo_sweep_torque *t, const struct eo_evalu
 {
   const struct eo_case_result *c = &r->load_case[0];
   struct eo_dynamics_model model;
-  t->peak_to_peak = c->peak_to_peak;
-  t->mean = c->mean;
+  double known = c->contact_failures ? NAN : 1;
+  t->peak_to_peak = known * c->peak_to_peak;
+  t->mean = known * c->mean;
   t->contact_failures = c->contact_failures;
   for (int end = 0; end < 2; end++) {
     const struct eo_end_result *from = &c->end[end < r->ends ? end : 0];
-    t->stiffness[end] = mean(r->positions, from->stiffness);
-    t->tangent[end] = mean(r->positions, from->loaded.tangent);
-    t->max_pressure[end] = from->max_pressure;
-    t->max_line_load[end] = from->max_line_load;
-    t->edge_share[end] = from->edge_share;
+    t->stiffness[end] = known * eo_periodic_mean(r->positions, from->stiffness);
+    t->tangent[end] = known * eo_periodic_mean(r->positions, from->loaded.tangent);
+    t->max_pressure[end] = known * from->max_pressure;
+    t->max_line_load[end] = known * from->max_line_load;
+    t->edge_share[end] = known * from->edge_share;
   }
+  if (c->contact_failures)
+    return EO_OK;
   enum eo_code code = eo_dynamics_model_init(&model, parameters, error);
   return code ? code : eo_dynamics_model_modes(&model, t->tangent, &t->modes, error);
 }
@@ -157,10 +157,11 @@ static enum eo_code read_torque(struct eo_sweep_torque *t, const struct eo_evalu
 static enum eo_code keep_problem(struct problem *p, const struct eo_evaluator *evaluator, const struct eo_evaluation *r, struct eo_error *error)
 {
   enum eo_code code = EO_OK;
-  eo_evaluator_vibration(evaluator, 0, &p->parameters, &p->load);
+  p->solvable = eo_evaluator_vibration(evaluator, 0, &p->parameters, &p->load);
   for (int end = 0; end < r->ends && !code; end++) {
     p->impact[end] = r->load_case[0].end[end].impact;
-    code = eo_law_copy(&p->law[end], p->load.law[end], error);
+    if (p->solvable)
+      code = eo_law_copy(&p->law[end], p->load.law[end], error);
     p->load.law[end] = &p->law[end];
   }
   return code;
@@ -241,6 +242,10 @@ static enum eo_code solve_speed(void *context, int thread, int item, struct eo_e
   struct worker *w = &job->worker[thread];
   int others = job->sweep->speeds - 1, problem = item / others, j = 1 + item % others;
   struct eo_vibration *result = &job->alone[(size_t)problem * (size_t)job->sweep->speeds + (size_t)j];
+  if (!job->problem[problem].solvable) {
+    result->outcome = EO_VIBRATION_NOT_CONVERGED;
+    return EO_OK;
+  }
   enum eo_code code = take_model(job, w, problem, error);
   if (code)
     return code;
@@ -268,16 +273,19 @@ static enum eo_code solve_branch(void *context, int thread, int item, struct eo_
   size_t speeds = (size_t)s->speeds, first = (size_t)(problem % s->torques) * speeds;
   const struct eo_vibration *alone = job->alone + (size_t)problem * speeds;
   struct eo_sweep_point *point = s->point[problem / s->torques][direction] + first;
+  bool sound = s->at_torque[problem / s->torques][problem % s->torques].contact_failures == 0;
   struct eo_vibration_case *load = calloc(speeds, sizeof *load);
   struct eo_vibration *followed = calloc(speeds, sizeof *followed);
-  enum eo_code code = load && followed ? take_model(job, w, problem, error) : eo_error_memory(error);
+  enum eo_code code = load && followed ? EO_OK : eo_error_memory(error);
   for (int j = 0; j < s->speeds && !code; j++)
     load[j] = case_at(job, &job->problem[problem], s->speed[j], point[j].impact);
   bool follow = !code && separates(job, alone);
   if (follow)
+    code = take_model(job, w, problem, error);
+  if (follow && !code)
     code = eo_vibration_follow(w->solver, s->speeds, load, alone, direction == EO_SWEEP_UP ? +1 : -1, followed, error);
   for (int j = 0; j < s->speeds && !code; j++)
-    read_point(&point[j], follow ? &followed[j] : &alone[j]);
+    read_point(&point[j], follow ? &followed[j] : &alone[j], sound);
   free(load);
   free(followed);
   return code;
@@ -331,11 +339,26 @@ static enum eo_code run_job(struct job *job, const struct eo_progress *progress,
   return code ? code : eo_parallel_run(&p, problems * EO_SWEEP_DIRECTIONS, error);
 }
 
+/* More than the residual of the harmonic balance leaves open. */
+static bool differ(const struct eo_sweep_point *a, const struct eo_sweep_point *b)
+{
+  static const double CLOSE = 1e-6;
+  double up = a->rms_pair[EO_READING_NORMAL], down = b->rms_pair[EO_READING_NORMAL];
+  return a->outcome != b->outcome || fabs(up - down) > CLOSE * fmax(up, down);
+}
+
+/* Where one direction found no periodic state and the other did, the other's is a state of that speed too. */
 static void compare_branches(struct eo_sweep *s)
 {
-  size_t size = (size_t)s->torques * (size_t)s->speeds * sizeof **s->point[0];
   for (int v = 0; v < EO_SWEEP_VARIANTS; v++)
-    s->branches[v] = memcmp(s->point[v][EO_SWEEP_UP], s->point[v][EO_SWEEP_DOWN], size) != 0;
+    for (int i = 0; i < s->torques * s->speeds; i++) {
+      struct eo_sweep_point *up = &s->point[v][EO_SWEEP_UP][i], *down = &s->point[v][EO_SWEEP_DOWN][i];
+      if (up->outcome == EO_VIBRATION_NOT_CONVERGED)
+        *up = *down;
+      else if (down->outcome == EO_VIBRATION_NOT_CONVERGED)
+        *down = *up;
+      s->branches[v] = s->branches[v] || differ(up, down);
+    }
 }
 
 static bool crosses(const struct eo_sweep *s, int torque, int mode, int order, int teeth, struct eo_sweep_crossing *crossing)

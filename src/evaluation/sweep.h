@@ -16,18 +16,18 @@ struct eo_sweep_plan {
   int threads;           /* 0: eo_parallel_cores() */
 };
 
-/* Static: at one torque. */
+/* Static: at one torque. NaN, and no modes, where the loaded contact did not converge. */
 struct eo_sweep_torque {
   double peak_to_peak, mean;       /* LTE of the pair, transverse, m */
   double stiffness[2], tangent[2]; /* [end] means over the mesh cycle of P/(Z - Z0) and dP/dZ, N/m, normal */
   double max_pressure[2];          /* Pa */
   double max_line_load[2];         /* N/m */
   double edge_share[2];            /* largest share of P on tip edges */
-  int contact_failures;            /* positions that did not converge */
+  int contact_failures;            /* positions of the mesh cycle that did not converge */
   struct eo_dynamics_modes modes;  /* with the mean tangent stiffness */
 };
 
-/* At one torque and speed. Numbers of the vibration are NaN where no periodic state was found. */
+/* At one torque and speed. Where only one direction found a periodic state it stands for both. Numbers of the vibration are NaN where no periodic state was found. */
 struct eo_sweep_point {
   enum eo_vibration_outcome outcome;
   double impact[2];                /* general entering impact [end], N */

@@ -88,13 +88,19 @@ struct eo_kernel eo_flexibility_kernel(const struct eo_flexibility *flexibility)
   return (struct eo_kernel){.evaluate = evaluate, .context = flexibility};
 }
 
+/* Whether the profile at point i leans at least 30 degrees from the tooth's centre line. */
+static bool is_critical(const double *position, int i)
+{
+  const double *before = position + 2 * (i - 1), *after = position + 2 * (i + 1);
+  return fabs(after[0] - before[0]) >= tan(M_PI / 6) * fabs(after[1] - before[1]);
+}
+
 struct eo_root eo_flexibility_root(const struct eo_flexibility *flexibility, int member)
 {
   const struct eo_flank_table *table = &flexibility->table[member];
   struct eo_root root = {.points = table->root_points, .layers = table->layers, .arc = table->arc, .position = table->root,
                          .width = flexibility->width, .twist = flexibility->twist[member], .first = 2};
-  while (root.first < root.points - 1 &&
-         hypot(root.position[2 * root.first], root.position[2 * root.first + 1]) > flexibility->form_radius[member])
+  while (root.first < root.points - 2 && !is_critical(root.position, root.first))
     root.first++;
   return root;
 }

@@ -70,7 +70,8 @@ void eo_flexibility_add_compliance(const struct eo_flexibility *flexibility, int
 /* Nodes of the root surface, [points][layers + 1]: from the start of the active profile (point 0) to the middle of the tooth space. */
 struct eo_root {
   int points, layers;
-  int first;              /* first point that counts as root: on the fillet and two elements away from loaded nodes, whose dents the first ones feel */
+  int first;              /* first point at or below the 30 degree tangent, ISO 6336-3's critical section: above it the surface feels the
+                             dent of a contact close by, which the mesh of the root does not resolve, more than the bending of the tooth */
   const double *arc;      /* [points], along the profile from the start of the active profile, m */
   const double *position; /* [points][2], transverse, tooth centre along +y and loaded flank at x > 0, m */
   double width;           /* of the face, m; layer l lies at eta = width (l / layers - 1/2) */

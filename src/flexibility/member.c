@@ -1,9 +1,10 @@
 #include "flexibility/member.h"
 
+#include "base/clock.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 /* Unknowns of the sector that are wanted, in the order in which the solver keeps them. */
 struct wanted {
@@ -26,13 +27,6 @@ struct job {
   struct eo_section section;
   struct eo_sector sector;
 };
-
-static double now(void)
-{
-  struct timespec t;
-  clock_gettime(CLOCK_MONOTONIC, &t);
-  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 static enum eo_code report(const struct job *job, const char *step, double fraction)
 {
@@ -124,27 +118,27 @@ static enum eo_code solve_whole(struct job *job)
 {
   struct wanted wanted = {0};
   struct eo_sparse_factor *factor = NULL;
-  double *inverse = NULL, start = now();
+  double *inverse = NULL, start = (1e-3 * eo_clock_milliseconds());
   enum eo_code code = eo_sector_init(&job->sector, &job->section, job->settings->layers, job->geometry->face_width,
                                      eo_sector_twist(job->geometry, job->member), job->material, EO_WHOLE_SECTOR, job->error);
   if (!code)
     code = list_wanted(&job->sector, &wanted);
-  job->times->mesh += now() - start;
+  job->times->mesh += (1e-3 * eo_clock_milliseconds()) - start;
   if (!code)
     code = report(job, "ordering", 0.05);
   if (code)
     goto out;
-  start = now();
+  start = (1e-3 * eo_clock_milliseconds());
   code = eo_sparse_analyse(&job->sector.matrix, job->sector.group, job->sector.matrix.n / 3, wanted.unknown, wanted.count,
                            &factor, job->error);
-  job->times->ordering = now() - start;
+  job->times->ordering = (1e-3 * eo_clock_milliseconds()) - start;
   if (!code)
     code = report(job, "factorisation", 0.15);
   if (code)
     goto out;
-  start = now();
+  start = (1e-3 * eo_clock_milliseconds());
   code = eo_sparse_factorise(factor, job->error);
-  job->times->factorisation = now() - start;
+  job->times->factorisation = (1e-3 * eo_clock_milliseconds()) - start;
   if (!code)
     code = report(job, "compliance", 0.85);
   if (code)
@@ -152,15 +146,15 @@ static enum eo_code solve_whole(struct job *job)
   job->times->unknowns = job->sector.matrix.n;
   job->times->entries = eo_sparse_entries(factor);
   job->times->memory = (double)eo_sparse_peak_memory(factor);
-  start = now();
+  start = (1e-3 * eo_clock_milliseconds());
   int loaded = wanted.count - wanted.next[0];
   inverse = malloc((size_t)loaded * (size_t)wanted.count * sizeof *inverse);
   code = inverse ? eo_sparse_inverse(factor, loaded, inverse, job->error) : EO_ERROR_MEMORY;
-  job->times->compliance = now() - start;
-  start = now();
+  job->times->compliance = (1e-3 * eo_clock_milliseconds()) - start;
+  start = (1e-3 * eo_clock_milliseconds());
   if (!code)
     code = split_inverse(job, &wanted, inverse);
-  job->times->stress = now() - start;
+  job->times->stress = (1e-3 * eo_clock_milliseconds()) - start;
 out:
   eo_sparse_factor_free(factor);
   free(inverse);
@@ -256,19 +250,19 @@ enum eo_code eo_member_compute(struct eo_member_result *result, const struct eo_
                     .times = times, .error = error, .member = member};
   *result = (struct eo_member_result){0};
   *times = (struct eo_member_times){0};
-  double start = now();
+  double start = (1e-3 * eo_clock_milliseconds());
   enum eo_code code = eo_section_init(&job.section, geometry, member, settings->bore_radius, &settings->section, error);
   if (!code)
     code = allocate(&job);
-  times->mesh = now() - start;
+  times->mesh = (1e-3 * eo_clock_milliseconds()) - start;
   if (!code)
     code = solve_whole(&job);
-  start = now();
+  start = (1e-3 * eo_clock_milliseconds());
   if (!code)
     code = report(&job, "half tooth", 0.95);
   if (!code)
     code = solve_half(&job);
-  times->half_tooth = now() - start;
+  times->half_tooth = (1e-3 * eo_clock_milliseconds()) - start;
   if (!code)
     symmetrise(result->full, result->rows * (result->layers + 1));
   eo_sector_done(&job.sector);

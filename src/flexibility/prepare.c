@@ -1,4 +1,6 @@
 #include "flexibility/cache.h"
+
+#include "base/clock.h"
 #include "flexibility/flexibility.h"
 #include "flexibility/prepared.h"
 
@@ -8,7 +10,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 /* Raise whenever the same input may give other numbers. */
 #define TABLE_FORMAT "1"
@@ -31,13 +32,6 @@ struct worker {
   enum eo_code code;
   struct eo_error error;
 };
-
-static double now(void)
-{
-  struct timespec t;
-  clock_gettime(CLOCK_MONOTONIC, &t);
-  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 struct eo_flexibility_settings eo_flexibility_settings_of(const struct eo_resolution *resolution)
 {
@@ -206,7 +200,7 @@ enum eo_code eo_flexibility_prepare(const struct eo_geometry *geometry, const st
                                     const char *cache_directory, const struct eo_progress *progress,
                                     struct eo_flexibility **flexibility, struct eo_error *error)
 {
-  double start = now(), bore[2];
+  double start = (1e-3 * eo_clock_milliseconds()), bore[2];
   enum eo_code code = check(settings, error);
   if (code)
     return code;
@@ -218,7 +212,6 @@ enum eo_code eo_flexibility_prepare(const struct eo_geometry *geometry, const st
   f->settings = *settings;
   f->width = geometry->face_width;
   for (int m = 0; m < 2; m++) {
-    f->form_radius[m] = geometry->form_radius[m];
     f->twist[m] = eo_sector_twist(geometry, m);
     bore[m] = eo_flexibility_bore_radius(geometry, pair, m);
     worker[m] = (struct worker){.shared = &shared, .flexibility = f, .geometry = geometry, .material = material, .member = m,
@@ -234,7 +227,7 @@ enum eo_code eo_flexibility_prepare(const struct eo_geometry *geometry, const st
     eo_flexibility_free(f);
     return code;
   }
-  f->report.seconds = now() - start;
+  f->report.seconds = (1e-3 * eo_clock_milliseconds()) - start;
   *flexibility = f;
   return EO_OK;
 }

@@ -10,7 +10,6 @@ struct eo_flexibility {
   struct eo_flexibility_report report;
   struct eo_flank_table table[2]; /* [member] */
   double width;             /* of the face, m */
-  double form_radius[2];    /* [member], m */
   double twist[2];          /* [member], rad/m */
 };
 

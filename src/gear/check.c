@@ -92,24 +92,57 @@ static enum eo_code check_optimization(const struct eo_optimization *optimizatio
   return code;
 }
 
-static enum eo_code check_resolution(const struct eo_resolution *resolution, struct eo_error *error)
+/* Contact points at one mesh position, roughly: every contact line across the face, and the pieces of tip edges. */
+static double contact_points(const struct eo_resolution *resolution, const struct eo_geometry *geometry)
 {
+  return (geometry->transverse_contact_ratio + geometry->overlap_ratio + 1) * (resolution->cells_per_line + (resolution->tip_edge_contact ? 24 : 0));
+}
+
+static enum eo_code check_resolution(const struct eo_resolution *resolution, const struct eo_geometry *geometry, struct eo_error *error)
+{
+  static const double MOST_POINTS = 2000, MOST_BYTES = 1 << 30;
+  double points = contact_points(resolution, geometry), bytes = sizeof(float) * points * points * resolution->positions;
   if (resolution->sector_teeth == 4)
     return eo_error_set(error, EO_ERROR_INPUT, "/resolution/sector_teeth", "The sector has its loaded tooth in the middle: 3 or 5 teeth, not 4.");
   if (2 * resolution->te_harmonics > resolution->positions)
     return eo_error_set(error, EO_ERROR_INPUT, "/resolution/te_harmonics", "%d harmonics cannot be told apart on %d mesh positions: at most %d.",
                         resolution->te_harmonics, resolution->positions, resolution->positions / 2);
+  if (points > MOST_POINTS || bytes > MOST_BYTES)
+    return eo_error_set(error, EO_ERROR_INPUT, "/resolution/cells_per_line",
+                        "%d cells on each of up to %.0f contact lines, at %d mesh positions, are too many: at most %.0f points at a position and 1 GiB in all.",
+                        resolution->cells_per_line, ceil(geometry->transverse_contact_ratio + geometry->overlap_ratio), resolution->positions, MOST_POINTS);
   return EO_OK;
 }
 
-static enum eo_code check_shafts(const struct eo_shafts *shafts, struct eo_error *error)
+static enum eo_code check_shaft(const struct eo_shafts *shafts, const struct eo_gear_pair *pair, int i, struct eo_error *error)
 {
-  for (int i = 0; i < 2; i++)
+  const double *bearing = shafts->bearing_position[i];
+  double half = pair->ends == 2 ? pair->groove_width / 2 + pair->face_width : pair->face_width / 2;
+  char key[64];
+  for (int k = 0; k < 2; k++) {
+    snprintf(key, sizeof key, "/shafts/%s_%s_bearing_mm", member_name[i], end_name[k]);
+    if (k == EO_LEFT ? bearing[k] > -half : bearing[k] < half)
+      return eo_error_set(error, EO_ERROR_INPUT, key, "The %s bearing at %.6g mm is not outside the toothed body, which ends at %.6g mm.", end_name[k],
+                          1e3 * bearing[k], 1e3 * (k == EO_LEFT ? -half : half));
+  }
+  snprintf(key, sizeof key, "/shafts/%s_shaft_diameter_mm", member_name[i]);
+  if (shafts->shaft_diameter[i] <= pair->bore[i])
+    return eo_error_set(error, EO_ERROR_INPUT, key, "The shaft, %.6g mm, must be thicker than the bore that runs through it, %.6g mm.",
+                        1e3 * shafts->shaft_diameter[i], 1e3 * pair->bore[i]);
+  return EO_OK;
+}
+
+static enum eo_code check_shafts(const struct eo_shafts *shafts, const struct eo_gear_pair *pair, struct eo_error *error)
+{
+  enum eo_code code = EO_OK;
+  for (int i = 0; i < 2 && !code; i++)
     if (!(shafts->bearing_position[i][EO_LEFT] < shafts->bearing_position[i][EO_RIGHT]))
       return eo_error_set(error, EO_ERROR_INPUT, i ? "/shafts/gear_left_bearing_mm" : "/shafts/pinion_left_bearing_mm",
                           "The left bearing at %.6g mm is not left of the right one at %.6g mm.", 1e3 * shafts->bearing_position[i][EO_LEFT],
                           1e3 * shafts->bearing_position[i][EO_RIGHT]);
-  return EO_OK;
+    else if (shafts->enabled)
+      code = check_shaft(shafts, pair, i, error);
+  return code;
 }
 
 static enum eo_code check_objective(const struct eo_objective *objective, struct eo_error *error)
@@ -129,9 +162,9 @@ enum eo_code eo_design_check(const struct eo_design *design, const struct eo_geo
   if (!code)
     code = check_optimization(&design->optimization, geometry, error);
   if (!code)
-    code = check_resolution(&design->resolution, error);
+    code = check_resolution(&design->resolution, geometry, error);
   if (!code)
-    code = check_shafts(&design->shafts, error);
+    code = check_shafts(&design->shafts, &design->gear_pair, error);
   if (!code)
     code = check_objective(&design->objective, error);
   return code;

@@ -46,7 +46,7 @@ static void resolve_shafts(struct eo_shafts *shafts, const struct eo_gear_pair *
   for (int i = 0; i < 2; i++) {
     fill(&shafts->bearing_position[i][EO_LEFT], -outside);
     fill(&shafts->bearing_position[i][EO_RIGHT], outside);
-    fill(&shafts->shaft_diameter[i], 0.8 * pair->groove_diameter[i]);
+    fill(&shafts->shaft_diameter[i], fmax(0.8 * pair->groove_diameter[i], (pair->groove_diameter[i] + pair->bore[i]) / 2));
   }
 }
 

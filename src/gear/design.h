@@ -64,12 +64,13 @@ struct eo_supports {
   double mesh_damping_stiffness;       /* k in c_m = 2 zeta sqrt(k m_e)/cos b, N/m; NaN: the mean mesh stiffness of the load case */
 };
 
-/* Torsional wind-up and bending of the two bodies (off by default). Positions are measured from the middle of the groove, + to the right. */
+/* Torsional wind-up and bending of the two bodies in their bearings (off by default; contact/shaft.h says how). Positions are measured from
+   the middle of the groove (of the face, with one end), + to the right. The bore runs through. */
 enum eo_drive_side { EO_DRIVE_LEFT, EO_DRIVE_RIGHT };
 struct eo_shafts {
   bool enabled;
   double bearing_position[2][2];   /* [member][left, right], m; NaN: face end + half a face width outside */
-  double shaft_diameter[2];        /* outside the toothed body, m; NaN: 0.8 of the groove diameter */
+  double shaft_diameter[2];        /* outside the toothed body, m; NaN: 0.8 of the groove diameter, at least midway from the bore to it */
   enum eo_drive_side drive_side[2];/* where torque enters the pinion and leaves the gear */
 };
 

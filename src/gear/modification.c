@@ -1,6 +1,15 @@
 #include "gear/modification.h"
 
 #include <math.h>
+#include <stddef.h>
+#include <string.h>
+
+bool eo_modification_equal(const struct eo_flank_modification *a, const struct eo_flank_modification *b)
+{
+  /* behind the shape there are doubles only: no padding */
+  size_t from = offsetof(struct eo_flank_modification, tip_relief);
+  return a->shape == b->shape && memcmp((const char *)a + from, (const char *)b + from, sizeof *a - from) == 0;
+}
 
 bool eo_modification_is_none(const struct eo_flank_modification *m)
 {

@@ -33,6 +33,9 @@ double eo_modification_lead(const struct eo_modification_shape *shape, double x,
 /* a_l of a lead crowning given at the face ends, 1/m, and back. */
 double eo_modification_lead_coefficient(const struct eo_geometry *geometry, double crowning);
 
+/* True when both take off the same. */
+bool eo_modification_equal(const struct eo_flank_modification *a, const struct eo_flank_modification *b);
+
 /* True when nothing is taken off. */
 bool eo_modification_is_none(const struct eo_flank_modification *flank);
 

@@ -42,11 +42,11 @@ struct ray {
   double arm, distance, angle;
 };
 
-static struct ray slice_ray(const struct eo_geometry *g, int member, const struct eo_modification_shape *shape, double u, int side)
+/* delta, d: relief at u and its slope (at a kink any slope between those of its two sides: the normal there turns about the vertex). */
+static struct ray sloped_ray(const struct eo_geometry *g, int member, double u, double delta, double d)
 {
   double sa = sin(g->normal_pressure_angle), ca = cos(g->normal_pressure_angle), sb = sin(g->helix_angle), cb = cos(g->helix_angle);
-  double slope[2], delta = eo_modification_profile(shape, u, slope), d = slope[side], rack = u + g->rack_offset[member];
-  double r = g->reference_radius[member];
+  double rack = u + g->rack_offset[member], r = g->reference_radius[member];
   /* Moved along the rack's trace back into the slice: the gap would come out sin^2(beta_b) too small without. */
   double z = (rack * sa + delta * ca) * sb, x = -(rack * sa + delta * ca) * cb - z * sb / cb, y = rack * ca - delta * sa;
   double nx = (ca - d * sa) * cb, ny = sa + d * ca, length = hypot(nx, ny);
@@ -54,6 +54,13 @@ static struct ray slice_ray(const struct eo_geometry *g, int member, const struc
   ny /= length;
   double roll = (y * nx / ny - x) / r, qx = x + r * roll, qy = y + r;
   return (struct ray){.arm = qy * nx - qx * ny, .distance = qx * nx + qy * ny, .angle = roll + atan2(ny, nx)};
+}
+
+/* side: 0 takes the slope just below u, 1 just above. */
+static struct ray slice_ray(const struct eo_geometry *g, int member, const struct eo_modification_shape *shape, double u, int side)
+{
+  double slope[2], delta = eo_modification_profile(shape, u, slope);
+  return sloped_ray(g, member, u, delta, slope[side]);
 }
 
 void eo_slice_point_at(const struct eo_geometry *g, int member, const struct eo_modification_shape *shape, double u,
@@ -79,25 +86,114 @@ static double common_angle(const struct eo_geometry *g, const struct ray *p, con
   return acos((p->arm + q->arm) / g->centre_distance);
 }
 
-/* The gear's ray in contact with the pinion's: distances along the common normal add up to a sin(alpha'). */
-static struct ray partner(const struct eo_geometry *g, const struct eo_modification_shape *shape, const struct ray *p)
+/* ---- walks: every normal of a flank in order, so that the one in line with a given normal of the partner can be found ----
+   The coordinate w is u, stretched at each kink by the width of a fan in which the normal turns about the vertex. */
+
+enum { MOST_KINKS = 3, MOST_BREAKS = 12 };
+static const double FAN = 1e-3;
+
+struct walk {
+  const struct eo_geometry *geometry;
+  const struct eo_modification_shape *shape;
+  int member, kinks;
+  double kink[MOST_KINKS]; /* u, increasing */
+  double low, high;        /* w at the ends */
+};
+
+/* Vertices of a shape, increasing: where its curvature jumps, and perhaps its slope. */
+static int collect_vertices(const struct eo_modification_shape *shape, double vertex[2])
 {
-  struct ray q = involute_ray(g, EO_GEAR, 0);
-  q = involute_ray(g, EO_GEAR, g->centre_distance * sin(common_angle(g, p, &q)) - p->distance);
-  if (!shape)
-    return q;
-  double u = g->rack_factor * (q.distance - g->tangent_length[EO_GEAR]), last_u = 0, last_miss = 0;
-  for (int i = 0; i < 30; i++) { /* secant; the distance runs with u at the rate 1/k_u but for the slope of the relief */
-    q = slice_ray(g, EO_GEAR, shape, u, 0);
-    double miss = g->centre_distance * sin(common_angle(g, p, &q)) - p->distance - q.distance;
-    double rate = i == 0 || miss == last_miss ? -1 / g->rack_factor : (miss - last_miss) / (u - last_u);
-    last_u = u;
-    last_miss = miss;
-    if (fabs(miss) < 1e-13)
-      break;
-    u -= miss / rate;
+  int count = 0;
+  for (int side = 0; side < 2; side++) {
+    double u = (side ? 1 : -1) * shape->side[side].start;
+    if (shape->side[side].length > 0 && !(count == 1 && vertex[0] == u))
+      vertex[count++] = u;
   }
-  return q;
+  return count;
+}
+
+static void walk_init(struct walk *walk, const struct eo_geometry *g, int member, const struct eo_modification_shape *shape)
+{
+  double margin = 0.3 * (g->rack_top - g->rack_bottom), vertex[2];
+  *walk = (struct walk){.geometry = g, .shape = shape, .member = member};
+  walk->low = (member == EO_PINION ? g->rack_bottom : -g->rack_top) - margin;
+  walk->high = (member == EO_PINION ? g->rack_top : -g->rack_bottom) + margin;
+  int vertices = collect_vertices(shape, vertex);
+  for (int i = 0; i < vertices; i++) {
+    double slope[2];
+    eo_modification_profile(shape, vertex[i], slope);
+    if (fabs(slope[1] - slope[0]) > 1e-12) {
+      walk->kink[walk->kinks++] = vertex[i];
+      walk->high += FAN;
+    }
+  }
+}
+
+static struct ray walk_ray(const struct walk *walk, double w)
+{
+  double last = -INFINITY, slope[2];
+  for (int i = 0; i < walk->kinks && w > walk->kink[i]; i++) {
+    last = walk->kink[i];
+    if (w < last + FAN) {
+      double delta = eo_modification_profile(walk->shape, last, slope);
+      return sloped_ray(walk->geometry, walk->member, last, delta, slope[0] + (slope[1] - slope[0]) * (w - last) / FAN);
+    }
+    w = fmax(w - FAN, last);
+  }
+  return slice_ray(walk->geometry, walk->member, walk->shape, w, w == last);
+}
+
+/* The coordinate of a place u: before (side 0) or behind (side 1) the fan of a kink there. */
+static double walk_place(const struct walk *walk, double u, int side)
+{
+  double w = u;
+  for (int i = 0; i < walk->kinks; i++)
+    if (u > walk->kink[i] || (side == 1 && u == walk->kink[i]))
+      w += FAN;
+  return w;
+}
+
+/* How far two normals are from lying in one line: their distances along it have to add up to a sin(alpha'). */
+static double miss_of(const struct eo_geometry *g, const struct ray *p, const struct ray *q)
+{
+  return g->centre_distance * sin(common_angle(g, p, q)) - p->distance - q->distance;
+}
+
+/* The ray of the walk in line with that of the other member, near the place *w: the miss falls along a convex flank; regula falsi with
+   halving (Illinois). False when there is none: beyond reliefs so steep that the flank's normals leave the mesh. */
+static bool in_line_with(const struct walk *walk, const struct ray *other, double *w, struct ray *q)
+{
+  enum { STEPS = 80 };
+  double span = 0.01 * (walk->high - walk->low), end[2], miss[2] = {-1, 1};
+  for (int widen = 0; widen < 7 && !(miss[0] >= 0 && miss[1] <= 0); widen++, span *= 2)
+    for (int i = 0; i < 2; i++) {
+      end[i] = fmin(walk->high, fmax(walk->low, *w + (i ? span : -span)));
+      *q = walk_ray(walk, end[i]);
+      miss[i] = miss_of(walk->geometry, other, q);
+    }
+  if (!(miss[0] >= 0 && miss[1] <= 0))
+    return false;
+  for (int i = 0, last = -1; i < STEPS; i++) {
+    *w = (end[0] * miss[1] - end[1] * miss[0]) / (miss[1] - miss[0]);
+    *q = walk_ray(walk, *w);
+    double here = miss_of(walk->geometry, other, q);
+    if (fabs(here) < 1e-14 || end[1] - end[0] < 1e-15)
+      return true;
+    int side = here > 0 ? 0 : 1;
+    end[side] = *w;
+    miss[side] = here;
+    if (side == last)
+      miss[1 - side] /= 2;
+    last = side;
+  }
+  return fabs(miss_of(walk->geometry, other, q)) < 1e-10;
+}
+
+/* The unmodified flank's ray in line with that of the other member: its arm is the base radius. */
+static struct ray involute_in_line_with(const struct eo_geometry *g, int member, const struct ray *other)
+{
+  struct ray q = involute_ray(g, member, 0);
+  return involute_ray(g, member, g->centre_distance * sin(common_angle(g, other, &q)) - other->distance);
 }
 
 /* Base-circle phase of a member whose ray lies in the common normal. */
@@ -107,16 +203,15 @@ static double phase_of(const struct eo_geometry *g, int member, const struct ray
   return g->base_radius[member] * (ray->angle - common - offset);
 }
 
-static void add_node(struct eo_slice_gap *table, const struct eo_geometry *g, const struct eo_modification_shape *gear, const struct ray *p)
+struct node {
+  double phase, gap, slope;
+};
+
+static struct node node_of(const struct eo_geometry *g, const struct ray *p, const struct ray *q)
 {
-  struct ray q = partner(g, gear, p);
-  double common = common_angle(g, p, &q), c = phase_of(g, EO_PINION, p, common);
-  if (table->nodes > 0 && c <= table->phase[table->nodes - 1])
-    return; /* a fold of the normals at a concave kink: the outer branch is covered by the next nodes */
-  double rate = p->arm * g->base_radius[EO_GEAR] / (q.arm * g->base_radius[EO_PINION]), normal = cos(g->base_helix_angle);
-  table->phase[table->nodes] = c;
-  table->gap[table->nodes] = (c + phase_of(g, EO_GEAR, &q, common)) * normal;
-  table->slope[table->nodes++] = (1 - rate) * normal;
+  double common = common_angle(g, p, q), c = phase_of(g, EO_PINION, p, common), normal = cos(g->base_helix_angle);
+  double rate = p->arm * g->base_radius[EO_GEAR] / (q->arm * g->base_radius[EO_PINION]);
+  return (struct node){c, (c + phase_of(g, EO_GEAR, q, common)) * normal, (1 - rate) * normal};
 }
 
 static bool profile_is_modified(const struct eo_modification_shape *shape)
@@ -124,26 +219,51 @@ static bool profile_is_modified(const struct eo_modification_shape *shape)
   return shape->crowning != 0 || shape->side[0].length > 0 || shape->side[1].length > 0;
 }
 
-/* Profile coordinates where the shape changes, on the pinion's axis (the gear's mirrored), sorted into breaks[]. */
-static int collect_breaks(const struct eo_geometry *g, const struct eo_modification_shape shape[2], double breaks[8])
+static void sort(int count, double *value)
 {
-  double margin = 0.15 * (g->rack_top - g->rack_bottom);
-  int count = 0;
-  breaks[count++] = g->rack_bottom - margin;
-  breaks[count++] = g->rack_top + margin;
-  for (int member = 0; member < 2; member++)
-    for (int side = 0; side < 2; side++)
-      if (shape[member].side[side].length > 0) {
-        double u = (side == member ? -1 : 1) * shape[member].side[side].start;
-        if (u > breaks[0] && u < g->rack_top + margin)
-          breaks[count++] = u;
-      }
   for (int i = 1; i < count; i++)
-    for (int j = i; j > 0 && breaks[j] < breaks[j - 1]; j--) {
-      double swap = breaks[j];
-      breaks[j] = breaks[j - 1];
-      breaks[j - 1] = swap;
+    for (int j = i; j > 0 && value[j] < value[j - 1]; j--) {
+      double swap = value[j];
+      value[j] = value[j - 1];
+      value[j - 1] = swap;
     }
+}
+
+/* Places on the leading member, which the table follows, where its own shape or that of the other member changes, sorted. */
+static int collect_breaks(const struct walk *lead, const struct walk *other, double breaks[MOST_BREAKS])
+{
+  const struct eo_geometry *g = lead->geometry;
+  double margin = 0.15 * (g->rack_top - g->rack_bottom), vertex[2];
+  double low = walk_place(lead, (lead->member == EO_PINION ? g->rack_bottom : -g->rack_top) - margin, 0);
+  double high = walk_place(lead, (lead->member == EO_PINION ? g->rack_top : -g->rack_bottom) + margin, 1);
+  int count = 0, kept = 0, vertices = collect_vertices(lead->shape, vertex);
+  breaks[count++] = low;
+  breaks[count++] = high;
+  for (int i = 0; i < 2 * vertices; i++)
+    breaks[count++] = walk_place(lead, vertex[i / 2], i % 2);
+  vertices = other ? collect_vertices(other->shape, vertex) : 0;
+  for (int i = 0; i < 2 * vertices; i++) {
+    struct ray q = walk_ray(other, walk_place(other, vertex[i / 2], i % 2)), p;
+    double w = walk_place(lead, -vertex[i / 2], 0);
+    if (in_line_with(lead, &q, &w, &p))
+      breaks[count++] = w;
+  }
+  sort(count, breaks);
+  for (int i = 0; i < count; i++)
+    if (breaks[i] >= low && breaks[i] <= high && (kept == 0 || breaks[i] - breaks[kept - 1] > 1e-9))
+      breaks[kept++] = breaks[i];
+  return kept;
+}
+
+/* Places between the breaks, most evenly; returns how many. */
+static int spread_places(int breaks, const double *at, double place[EO_SLICE_NODES])
+{
+  enum { PIECES = 40 }; /* per segment between two breaks: interpolation error below 1e-12 m */
+  int most = (EO_SLICE_NODES - 1) / (breaks - 1), pieces = most < PIECES ? most : PIECES, count = 0;
+  for (int k = 0; k + 1 < breaks; k++)
+    for (int i = 0; i < pieces; i++)
+      place[count++] = at[k] + (at[k + 1] - at[k]) * i / pieces;
+  place[count++] = at[breaks - 1];
   return count;
 }
 
@@ -159,22 +279,51 @@ static void fill_buckets(struct eo_slice_gap *table)
   }
 }
 
+/* Nodes of the table from the place `first` on in one direction, until the other member has no normal left to offer. Where normals
+   fold back (concave vertices) the outer branch counts. Returns how many. */
+static int follow(const struct walk *lead, const struct walk *other, int places, const double *place, int first, int direction, struct node *node)
+{
+  const struct eo_geometry *g = lead->geometry;
+  double w = -place[first];
+  int count = 0, sense = lead->member == EO_PINION ? direction : -direction;
+  for (int i = first; i >= 0 && i < places; i += direction) {
+    struct ray p = walk_ray(lead, place[i]), q;
+    if (!other)
+      q = involute_in_line_with(g, 1 - lead->member, &p);
+    else if (!in_line_with(other, &p, &w, &q))
+      break;
+    struct node here = lead->member == EO_PINION ? node_of(g, &p, &q) : node_of(g, &q, &p);
+    if (!isfinite(here.phase + here.gap + here.slope))
+      break;
+    if (count == 0 || sense * (here.phase - node[count - 1].phase) > 0)
+      node[count++] = here;
+  }
+  return count;
+}
+
 void eo_slice_gap_init(struct eo_slice_gap *table, const struct eo_geometry *g, const struct eo_modification_shape shape[2])
 {
-  enum { PIECES = 40 }; /* per segment between two breaks: interpolation error below 1e-12 m */
   bool pinion = profile_is_modified(&shape[EO_PINION]), gear = profile_is_modified(&shape[EO_GEAR]);
   table->nodes = 0;
   if (!pinion && !gear)
     return;
-  double breaks[8];
-  int count = collect_breaks(g, shape, breaks);
-  for (int k = 0; k + 1 < count; k++)
-    for (int i = 0; i <= PIECES; i++) {
-      double u = breaks[k] + (breaks[k + 1] - breaks[k]) * i / PIECES;
-      struct ray p = pinion ? slice_ray(g, EO_PINION, &shape[EO_PINION], u, i == PIECES ? 0 : 1)
-                            : involute_ray(g, EO_PINION, g->tangent_length[EO_PINION] + u / g->rack_factor);
-      add_node(table, g, gear ? &shape[EO_GEAR] : NULL, &p);
-    }
+  struct walk walk[2];
+  struct node node[2][EO_SLICE_NODES]; /* before and behind the pitch point */
+  double breaks[MOST_BREAKS], place[EO_SLICE_NODES];
+  walk_init(&walk[0], g, pinion ? EO_PINION : EO_GEAR, &shape[pinion ? EO_PINION : EO_GEAR]);
+  walk_init(&walk[1], g, EO_GEAR, &shape[EO_GEAR]);
+  const struct walk *other = pinion && gear ? &walk[1] : NULL;
+  int count = spread_places(collect_breaks(&walk[0], other, breaks), breaks, place), middle = 0;
+  while (middle < count - 1 && place[middle] < 0)
+    middle++;
+  int outwards[2] = {follow(&walk[0], other, count, place, middle, pinion ? -1 : 1, node[0]),
+                     follow(&walk[0], other, count, place, middle, pinion ? 1 : -1, node[1])};
+  for (int i = -outwards[0] + 1; i < outwards[1]; i++) {
+    const struct node *n = i <= 0 ? &node[0][-i] : &node[1][i];
+    table->phase[table->nodes] = n->phase;
+    table->gap[table->nodes] = n->gap;
+    table->slope[table->nodes++] = n->slope;
+  }
   fill_buckets(table);
 }
 

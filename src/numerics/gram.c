@@ -203,15 +203,20 @@ VERSION(avx2, __attribute__((target("avx2,fma"))))
 VERSION(avx512, __attribute__((target("avx512f,avx512dq,avx512vl,fma"))))
 #endif
 
-const struct eo_gram *eo_gram_select(void)
+const struct eo_gram *eo_gram_version(int index)
 {
 #if defined(__x86_64__)
-  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl"))
+  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl") && index-- == 0)
     return &version_avx512;
-  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))
+  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && index-- == 0)
     return &version_avx2;
 #endif
-  return &version_plain;
+  return index == 0 ? &version_plain : NULL;
+}
+
+const struct eo_gram *eo_gram_select(void)
+{
+  return eo_gram_version(0);
 }
 
 double *eo_gram_allocate(long count)

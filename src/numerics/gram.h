@@ -23,8 +23,11 @@ struct eo_gram {
   void (*solve)(int n, int stride, const double *matrix, double *x);
 };
 
-/* The version for this processor. */
+/* The fastest version for this processor. */
 const struct eo_gram *eo_gram_select(void);
+
+/* Every version this processor can run, fastest first; NULL after the last. All give the same bytes. */
+const struct eo_gram *eo_gram_version(int index);
 
 /* Memory for count doubles, aligned; free() it. NULL without memory. */
 double *eo_gram_allocate(long count);

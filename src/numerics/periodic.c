@@ -42,11 +42,17 @@ double eo_periodic_at(const struct eo_periodic *spline, double phase, double *sl
   return spline->value[i] * r + spline->value[next] * t + t * r * (a * r + b * t);
 }
 
+double eo_periodic_mean(int count, const double *value)
+{
+  double sum = 0;
+  for (int i = 0; i < count; i++)
+    sum += value[i];
+  return sum / count;
+}
+
 double eo_periodic_harmonics(int count, const double *value, int harmonics, double (*amplitude)[2])
 {
-  double mean = 0;
-  for (int i = 0; i < count; i++)
-    mean += value[i] / count;
+  double mean = eo_periodic_mean(count, value);
   for (int h = 1; h <= harmonics; h++) {
     double re = 0, im = 0;
     for (int i = 0; i < count; i++) {

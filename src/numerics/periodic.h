@@ -16,6 +16,9 @@ void eo_periodic_init(struct eo_periodic *spline, int count, const double *value
 /* Value at phase 0..1 (1 wraps to 0); *slope (may be NULL): derivative by phase. */
 double eo_periodic_at(const struct eo_periodic *spline, double phase, double *slope);
 
+/* Mean of the values. */
+double eo_periodic_mean(int count, const double *value);
+
 /* Complex amplitudes: value = mean + sum_h re_h cos(2 pi h phi) - im_h sin(2 pi h phi), h = 1..harmonics;
    amplitude[harmonics][2] as [re, im]. Returns the mean. count > 2 harmonics. */
 double eo_periodic_harmonics(int count, const double *value, int harmonics, double (*amplitude)[2]);

@@ -1,15 +1,14 @@
 #include "numerics/sparse.h"
 
+#include "numerics/threads.h"
+
 #include <cblas.h>
 #include <cholmod.h>
-#include <dlfcn.h>
 #include <lapacke.h>
 #include <math.h>
 #include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include "numerics/blas.h"
 
 struct eo_sparse_factor {
   cholmod_common common;
@@ -23,15 +22,6 @@ struct eo_sparse_factor {
 
 /* METIS keeps a global random state and swaps signal handlers while it runs. */
 static pthread_mutex_t metis_mutex = PTHREAD_MUTEX_INITIALIZER;
-
-/* CHOLMOD's OpenMP loops ask for a fixed number of threads; only the nesting limit of the calling thread stops them. */
-static void limit_threads(void)
-{
-  eo_blas_single_thread();
-  void (*set_levels)(int) = (void (*)(int))dlsym(RTLD_DEFAULT, "omp_set_max_active_levels");
-  if (set_levels)
-    set_levels(0);
-}
 
 void eo_sparse_done(struct eo_sparse *matrix)
 {
@@ -153,7 +143,7 @@ static void spread_order(const struct eo_sparse_factor *factor, int n, const int
 enum eo_code eo_sparse_analyse(const struct eo_sparse *matrix, const int *group, int groups, const int *keep, int kept,
                                struct eo_sparse_factor **factor_out, struct eo_error *error)
 {
-  limit_threads();
+  eo_threads_limit();
   int n = matrix->n;
   struct eo_sparse_factor *factor = calloc(1, sizeof *factor);
   int *order = malloc(((size_t)groups + 1) * sizeof *order), *permutation = malloc(((size_t)n + 1) * sizeof *permutation);
@@ -233,7 +223,7 @@ static int order_was_kept(const struct eo_sparse_factor *factor)
 
 enum eo_code eo_sparse_factorise(struct eo_sparse_factor *factor, struct eo_error *error)
 {
-  limit_threads();
+  eo_threads_limit();
   cholmod_common *common = &factor->common;
   cholmod_sparse view = view_of(factor->matrix);
   size_t kept = (size_t)factor->kept;
@@ -296,7 +286,7 @@ void eo_sparse_factor_free(struct eo_sparse_factor *factor)
 
 enum eo_code eo_symmetric_extremes(int n, double *matrix, double *smallest, double *largest, struct eo_error *error)
 {
-  limit_threads();
+  eo_threads_limit();
   double *value = malloc(((size_t)n + 1) * sizeof *value);
   if (!value)
     return eo_error_memory(error);

@@ -143,6 +143,9 @@ static void test_every_fault(void)
   memset(long_text, 'x', sizeof long_text - 1);
   eo_example_build("paper-case-b", &complete);
   complete.objective.robust = EO_ROBUST_MEAN;
+  complete.optimization.variables = EO_VARIABLES_LISTED; /* so that a variable is in the document */
+  complete.optimization.listed = 1;
+  complete.optimization.list[0] = (struct eo_listed_variable){EO_PINION, EO_BOTH_ENDS, 0, {1, 2}};
   complete.modification.flank[EO_GEAR][EO_LEFT].lead_slope = 1e-6; /* so that the gear is in the document */
   ok(eo_design_complete(&complete, &geometry, NULL) == EO_OK, "the base design is right");
   json_t *document = eo_design_encode(&complete);
@@ -313,6 +316,21 @@ static void high_floor(struct eo_design *d) { d->optimization.removal_threshold 
 static void even_sector(struct eo_design *d) { d->resolution.sector_teeth = 4; }
 static void many_harmonics(struct eo_design *d) { d->resolution.te_harmonics = 33; }
 static void crossed_bearings(struct eo_design *d) { d->shafts.bearing_position[EO_GEAR][EO_LEFT] = 0.2; }
+static void bearing_inside(struct eo_design *d)
+{
+  d->shafts.enabled = true;
+  d->shafts.bearing_position[EO_PINION][EO_RIGHT] = 0.079;
+}
+static void left_bearing_inside(struct eo_design *d)
+{
+  d->shafts.enabled = true;
+  d->shafts.bearing_position[EO_GEAR][EO_LEFT] = -0.0799;
+}
+static void thin_shaft(struct eo_design *d)
+{
+  d->shafts.enabled = true;
+  d->shafts.shaft_diameter[EO_GEAR] = 0.09;
+}
 static void no_weights(struct eo_design *d) { d->objective.weight[0] = d->objective.weight[1] = d->objective.weight[2] = 0; }
 static void undercut(struct eo_design *d) { d->gear_pair.teeth[EO_PINION] = 8; }
 static void pointed(struct eo_design *d)
@@ -345,6 +363,9 @@ static const struct contradiction contradictions[] = {
     {"a sector without a middle tooth", "/resolution/sector_teeth", even_sector},
     {"more harmonics than positions resolve", "/resolution/te_harmonics", many_harmonics},
     {"bearings in the wrong order", "/shafts/gear_left_bearing_mm", crossed_bearings},
+    {"right bearing inside the toothed body", "/shafts/pinion_right_bearing_mm", bearing_inside},
+    {"left bearing inside the toothed body", "/shafts/gear_left_bearing_mm", left_bearing_inside},
+    {"a shaft no thicker than its bore", "/shafts/gear_shaft_diameter_mm", thin_shaft},
     {"no weight", "/objective/weights", no_weights},
     {"undercut", "/gear_pair/pinion_profile_shift", undercut},
     {"pointed or interfering tip", NULL, pointed},

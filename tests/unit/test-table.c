@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "app/stage.h"
 #include "document/design_document.h"
 #include "document/example.h"
 #include "document/geometry_table.h"
@@ -19,28 +20,29 @@ static double uniform(void) /* 0 .. 1, 53 bits */
   return (double)(state >> 11) / 9007199254740992.;
 }
 
-static bool ends_with_suffix(const struct eo_field *field)
+/* The unit stands in the key, or in that of the object around it ("rms_m_per_s2": {"normal": ...}). */
+static bool ends_with_suffix(const char *name, const struct eo_unit *unit)
 {
-  size_t key = strlen(field->key), suffix = strlen(field->unit->suffix);
-  return key > suffix && field->key[key - suffix - 1] == '_' && strcmp(field->key + key - suffix, field->unit->suffix) == 0;
+  size_t key = strlen(name), suffix = strlen(unit->suffix);
+  return key > suffix && name[key - suffix - 1] == '_' && strcmp(name + key - suffix, unit->suffix) == 0;
 }
 
 static bool sound_number(const struct eo_field *field)
 {
-  bool sound = field->low < field->high && (isnan(field->fallback) || (field->fallback >= field->low && field->fallback <= field->high));
+  bool sound = field->low < field->high && (field->kind == EO_FIELD_NUMBERS || isnan(field->fallback) || (field->fallback >= field->low && field->fallback <= field->high));
   if (field->kind == EO_FIELD_NUMBERS && field->fallbacks)
     for (int i = 0; i < field->count; i++)
       sound = sound && field->fallbacks[i] >= field->low && field->fallbacks[i] <= field->high;
   return sound && (!(field->flags & EO_FIELD_NULLABLE) || field->derived);
 }
 
-static int unsound(const struct eo_table *table)
+static int unsound(const struct eo_table *table, const char *around)
 {
   int bad = 0;
   for (int i = 0; i < table->count; i++) {
     const struct eo_field *field = &table->field[i];
     bool number = field->kind == EO_FIELD_NUMBER || field->kind == EO_FIELD_NUMBERS || field->kind == EO_FIELD_LIMIT || field->kind == EO_FIELD_INTEGER;
-    bool sound = field->help && *field->help && field->offset < table->size && (!field->unit || ends_with_suffix(field)) && (!number || sound_number(field));
+    bool sound = field->help && *field->help && field->offset < table->size && (!field->unit || ends_with_suffix(field->key, field->unit) || ends_with_suffix(around, field->unit)) && (!number || sound_number(field));
     sound = sound && (field->kind != EO_FIELD_LIST || (field->high <= field->count && field->row_count <= field->count));
     sound = sound && (field->kind != EO_FIELD_CHOICE || field->choices);
     for (int j = 0; j < i; j++)
@@ -50,19 +52,78 @@ static int unsound(const struct eo_table *table)
       printf("# %s: %s\n", table->name, field->key);
     }
     if (field->table)
-      bad += unsound(field->table);
+      bad += unsound(field->table, field->key);
   }
   return bad;
 }
 
 static void test_tables(void)
 {
-  ok(unsound(&eo_design_table) == 0, "design tables: unique keys, units in the suffix, defaults within ranges, help");
-  ok(unsound(&eo_geometry_table) == 0, "geometry table likewise");
+  ok(unsound(&eo_design_table, "") == 0, "design tables: unique keys, units in the suffix, defaults within ranges, help");
+  ok(unsound(&eo_geometry_table, "") == 0, "geometry table likewise");
+  const struct eo_stage *stage;
+  for (int i = 0; (stage = eo_stage_at(i)); i++)
+    ok(unsound(stage->input, "") + unsound(stage->output, "") == 0, "tables of the stage %s likewise", stage->name);
+}
+
+/* An object that may be absent, with a series in it, alone and in a list. */
+struct inner {
+  double number;
+  struct eo_series series;
+};
+static const struct eo_field inner[] = {
+    EO_NUMBER_REQUIRED(struct inner, number, "number", NULL, 0, 10, "a number"),
+    EO_SERIES(struct inner, series, "series_mm", &eo_unit_mm, 10, 0, 10, 0, "numbers"),
+};
+static const struct eo_table inner_table = EO_TABLE("inner", struct inner, inner);
+
+struct outer {
+  struct inner maybe;
+  int present, rows;
+  struct inner row[4];
+};
+static const struct eo_field outer[] = {
+    EO_OPTIONAL(struct outer, maybe, present, "maybe", &inner_table, "nothing", "an object"),
+    EO_LIST(struct outer, row, rows, "rows", &inner_table, 0, 4, "objects"),
+};
+static const struct eo_table outer_table = EO_TABLE("outer", struct outer, outer);
+
+/* Reads the text, checks that it is printed as `expected`, and returns the number of faults. */
+static int read_outer(const char *input, const char *expected)
+{
+  static struct eo_faults faults;
+  struct outer read = {.present = -1};
+  struct eo_error error;
+  struct eo_text text = {0};
+  json_t *document = eo_json_parse(input, strlen(input), &error), *back;
+  faults.count = 0;
+  eo_table_decode(&outer_table, document, NULL, &read, &faults);
+  back = eo_table_encode(&outer_table, &read);
+  eo_json_write(&text, back, EO_JSON_COMPACT);
+  if (expected)
+    ok(text.data && strcmp(text.data, expected) == 0, "%s is printed as %s", input, text.data ? text.data : "nothing");
+  eo_text_done(&text);
+  json_decref(back);
+  json_decref(document);
+  eo_table_done(&outer_table, &read);
+  return faults.count;
+}
+
+static void test_optional(void)
+{
+  ok(read_outer("{}", "{\"maybe\":null,\"rows\":[]}") == 0, "an optional object may be absent");
+  ok(read_outer("{\"maybe\":null}", "{\"maybe\":null,\"rows\":[]}") == 0, "or null");
+  ok(read_outer("{\"maybe\":{\"number\":1,\"series_mm\":[2,3]}}", "{\"maybe\":{\"number\":1,\"series_mm\":[2,3]},\"rows\":[]}") == 0, "or there");
+  ok(read_outer("{\"maybe\":{}}", NULL) == 1, "when it is there, what it requires is required");
+  ok(read_outer("{\"rows\":[{\"number\":1,\"series_mm\":[2]},{\"number\":2}]}",
+                "{\"maybe\":null,\"rows\":[{\"number\":1,\"series_mm\":[2]},{\"number\":2,\"series_mm\":[]}]}") == 0, "rows with series");
+  ok(read_outer("{\"rows\":[{\"number\":1,\"series_mm\":[2,11]},{\"number\":12}]}", NULL) == 2, "rows with faults");
+  ok(read_outer("{\"maybe\":3,\"rows\":[{\"number\":0},{\"number\":0},{\"number\":0},{\"number\":0},{\"number\":0}]}", NULL) == 2, "no object; too many rows");
 }
 
 static const struct eo_unit *const units[] = {NULL, &eo_unit_mm, &eo_unit_um, &eo_unit_nm, &eo_unit_deg, &eo_unit_rpm, &eo_unit_Nm, &eo_unit_MPa,
-                                              &eo_unit_GPa, &eo_unit_N_per_um, &eo_unit_per_mm, &eo_unit_ms, &eo_unit_um_mm_per_N};
+                                              &eo_unit_GPa, &eo_unit_N_per_um, &eo_unit_per_mm, &eo_unit_ms, &eo_unit_um_mm_per_N,
+                                              &eo_unit_um_per_N, &eo_unit_per_mm2};
 
 static void test_units(void)
 {
@@ -283,6 +344,7 @@ static void test_random_designs(void)
 int main(void)
 {
   test_tables();
+  test_optional();
   test_units();
   test_examples();
   test_random_designs();

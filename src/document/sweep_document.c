@@ -1,0 +1,252 @@
+#include "document/sweep_document.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "document/json.h"
+#include "document/result_parts.h"
+#include "document/sheet.h"
+
+#include <config.h>
+
+/* One column: its place in the document (a slash opens an object), its heading in CSV, its member. */
+struct column {
+  const char *path, *heading;
+  size_t offset;
+  const struct eo_unit *unit;
+  int end; /* -1: of the pair */
+};
+
+#define AT_TORQUE(path_, heading_, member, unit_, end_) {path_, heading_, offsetof(struct eo_sweep_torque, member), unit_, end_}
+static const struct column torque_columns[] = {
+    AT_TORQUE("peak_to_peak_um", "peak_to_peak_um", peak_to_peak, &eo_unit_um, -1),
+    AT_TORQUE("mean_um", "mean_um", mean, &eo_unit_um, -1),
+    AT_TORQUE("left/stiffness_N_per_um", "left_stiffness_N_per_um", stiffness[0], &eo_unit_N_per_um, 0),
+    AT_TORQUE("left/tangent_stiffness_N_per_um", "left_tangent_stiffness_N_per_um", tangent[0], &eo_unit_N_per_um, 0),
+    AT_TORQUE("left/max_pressure_MPa", "left_max_pressure_MPa", max_pressure[0], &eo_unit_MPa, 0),
+    AT_TORQUE("left/max_line_load_N_per_mm", "left_max_line_load_N_per_mm", max_line_load[0], &eo_unit_N_per_mm, 0),
+    AT_TORQUE("left/edge_load_share", "left_edge_load_share", edge_share[0], NULL, 0),
+    AT_TORQUE("right/stiffness_N_per_um", "right_stiffness_N_per_um", stiffness[1], &eo_unit_N_per_um, 1),
+    AT_TORQUE("right/tangent_stiffness_N_per_um", "right_tangent_stiffness_N_per_um", tangent[1], &eo_unit_N_per_um, 1),
+    AT_TORQUE("right/max_pressure_MPa", "right_max_pressure_MPa", max_pressure[1], &eo_unit_MPa, 1),
+    AT_TORQUE("right/max_line_load_N_per_mm", "right_max_line_load_N_per_mm", max_line_load[1], &eo_unit_N_per_mm, 1),
+    AT_TORQUE("right/edge_load_share", "right_edge_load_share", edge_share[1], NULL, 1),
+};
+enum { TORQUE_COLUMNS = sizeof torque_columns / sizeof *torque_columns };
+
+#define AT_POINT(path_, heading_, member, unit_, end_) {path_, heading_, offsetof(struct eo_sweep_point, member), unit_, end_}
+static const struct column point_columns[] = {
+    AT_POINT("rms_m_per_s2/normal", "rms_normal_m_per_s2", rms_pair[EO_READING_NORMAL], &eo_unit_m_per_s2, -1),
+    AT_POINT("rms_m_per_s2/transverse", "rms_transverse_m_per_s2", rms_pair[EO_READING_TRANSVERSE], &eo_unit_m_per_s2, -1),
+    AT_POINT("rms_m_per_s2/rotational", "rms_rotational_m_per_s2", rms_pair[EO_READING_ROTATIONAL], &eo_unit_m_per_s2, -1),
+    AT_POINT("rms_of_mean_m_per_s2/normal", "rms_of_mean_normal_m_per_s2", rms_of_mean[EO_READING_NORMAL], &eo_unit_m_per_s2, -1),
+    AT_POINT("rms_of_mean_m_per_s2/transverse", "rms_of_mean_transverse_m_per_s2", rms_of_mean[EO_READING_TRANSVERSE], &eo_unit_m_per_s2, -1),
+    AT_POINT("rms_of_mean_m_per_s2/rotational", "rms_of_mean_rotational_m_per_s2", rms_of_mean[EO_READING_ROTATIONAL], &eo_unit_m_per_s2, -1),
+    AT_POINT("left/impact_force_N", "left_impact_force_N", impact[0], &eo_unit_N, 0),
+    AT_POINT("left/rms_m_per_s2/normal", "left_rms_normal_m_per_s2", rms[EO_READING_NORMAL][0], &eo_unit_m_per_s2, 0),
+    AT_POINT("left/rms_m_per_s2/transverse", "left_rms_transverse_m_per_s2", rms[EO_READING_TRANSVERSE][0], &eo_unit_m_per_s2, 0),
+    AT_POINT("left/rms_m_per_s2/rotational", "left_rms_rotational_m_per_s2", rms[EO_READING_ROTATIONAL][0], &eo_unit_m_per_s2, 0),
+    AT_POINT("left/dynamic_factor", "left_dynamic_factor", dynamic_factor[0], NULL, 0),
+    AT_POINT("left/contact_loss", "left_contact_loss", contact_loss[0], NULL, 0),
+    AT_POINT("right/impact_force_N", "right_impact_force_N", impact[1], &eo_unit_N, 1),
+    AT_POINT("right/rms_m_per_s2/normal", "right_rms_normal_m_per_s2", rms[EO_READING_NORMAL][1], &eo_unit_m_per_s2, 1),
+    AT_POINT("right/rms_m_per_s2/transverse", "right_rms_transverse_m_per_s2", rms[EO_READING_TRANSVERSE][1], &eo_unit_m_per_s2, 1),
+    AT_POINT("right/rms_m_per_s2/rotational", "right_rms_rotational_m_per_s2", rms[EO_READING_ROTATIONAL][1], &eo_unit_m_per_s2, 1),
+    AT_POINT("right/dynamic_factor", "right_dynamic_factor", dynamic_factor[1], NULL, 1),
+    AT_POINT("right/contact_loss", "right_contact_loss", contact_loss[1], NULL, 1),
+};
+enum { POINT_COLUMNS = sizeof point_columns / sizeof *point_columns };
+
+static const char *const variant_name[EO_SWEEP_VARIANTS] = {"modified", "unmodified"};
+
+static const char *outcome_of(const struct eo_sweep_point *point)
+{
+  static const char *const outcomes[] = {"converged", "contact_lost", "not_converged"};
+  return outcomes[point->outcome];
+}
+
+static double member_of(const void *row, const struct column *column)
+{
+  double value;
+  memcpy(&value, (const char *)row + column->offset, sizeof value);
+  return value;
+}
+
+/* ---- JSON ---- */
+
+/* Puts a value below the objects that the path names, which are made when missing. */
+static void put_at(struct eo_result_object *o, const char *path, json_t *value)
+{
+  json_t *at = o->json;
+  const char *slash;
+  for (; (slash = strchr(path, '/')); path = slash + 1) {
+    char key[40];
+    snprintf(key, sizeof key, "%.*s", (int)(slash - path), path);
+    if (!json_object_get(at, key))
+      eo_json_put(at, key, json_object(), &o->failed);
+    at = json_object_get(at, key);
+  }
+  eo_json_put(at, path, value, &o->failed);
+}
+
+static void put_columns(struct eo_result_object *o, const struct eo_sweep *s, int columns, const struct column *column, int rows, const void *row,
+                        size_t size)
+{
+  for (int i = 0; i < columns; i++)
+    if (column[i].end < s->ends)
+      put_at(o, column[i].path, eo_json_reals(rows, (const double *)(const void *)((const char *)row + column[i].offset), (int)(size / sizeof(double)),
+                                              column[i].unit, EO_DIGITS_NUMBER));
+}
+
+static json_t *encode_torques(const struct eo_sweep *s, int variant)
+{
+  struct eo_result_object o = eo_result_open();
+  json_t *failures = json_array();
+  for (int i = 0; i < s->torques; i++)
+    o.failed = o.failed || json_array_append_new(failures, json_integer(s->at_torque[variant][i].contact_failures)) != 0;
+  put_columns(&o, s, TORQUE_COLUMNS, torque_columns, s->torques, s->at_torque[variant], sizeof *s->at_torque[variant]);
+  eo_result_put(&o, "contact_failures", failures);
+  return eo_result_close(&o);
+}
+
+static json_t *encode_points(const struct eo_sweep *s, int variant, int direction)
+{
+  int points = s->torques * s->speeds;
+  const struct eo_sweep_point *point = s->point[variant][direction];
+  struct eo_result_object o = eo_result_open();
+  json_t *outcomes = json_array(), *back = json_array();
+  for (int i = 0; i < points && !o.failed; i++)
+    o.failed = json_array_append_new(outcomes, json_string(outcome_of(&point[i]))) != 0 ||
+               json_array_append_new(back, json_boolean(point[i].back_contact)) != 0;
+  eo_result_put(&o, "outcome", outcomes);
+  put_columns(&o, s, POINT_COLUMNS, point_columns, points, point, sizeof *point);
+  eo_result_put(&o, "back_contact", back);
+  return eo_result_close(&o);
+}
+
+static json_t *encode_variant(const struct eo_sweep *s, int variant)
+{
+  struct eo_result_object o = eo_result_open();
+  eo_result_put(&o, "by_torque", encode_torques(s, variant));
+  eo_result_put(&o, "points", encode_points(s, variant, EO_SWEEP_UP));
+  eo_result_put(&o, "down", s->branches[variant] ? encode_points(s, variant, EO_SWEEP_DOWN) : json_null());
+  return eo_result_close(&o);
+}
+
+static json_t *encode_modes(const struct eo_sweep *s)
+{
+  struct eo_result_object o = eo_result_open();
+  json_t *frequencies = json_array(), *ratios = json_array();
+  for (int i = 0; i < s->torques && !o.failed; i++) {
+    const struct eo_dynamics_modes *modes = &s->at_torque[EO_SWEEP_DESIGN][i].modes;
+    o.failed = json_array_append_new(frequencies, eo_json_reals(modes->n, modes->frequency, 1, &eo_unit_Hz, EO_DIGITS_NUMBER)) != 0 ||
+               json_array_append_new(ratios, eo_json_reals(modes->n, modes->damping_ratio, 1, NULL, EO_DIGITS_NUMBER)) != 0;
+  }
+  eo_result_put(&o, "frequency_Hz", frequencies);
+  eo_result_put(&o, "damping_ratio", ratios);
+  return eo_result_close(&o);
+}
+
+/* Modes count from 1, like orders. */
+static json_t *encode_crossings(const struct eo_sweep *s)
+{
+  struct eo_result_object o = eo_result_open();
+  json_t *torque = json_array(), *mode = json_array(), *order = json_array(), *frequency = json_array(), *speed = json_array();
+  for (int i = 0; i < s->crossings && !o.failed; i++) {
+    const struct eo_sweep_crossing *c = &s->crossing[i];
+    o.failed = json_array_append_new(torque, eo_result_number(s->torque[c->torque], &eo_unit_Nm)) != 0 ||
+               json_array_append_new(mode, json_integer(c->mode + 1)) != 0 || json_array_append_new(order, json_integer(c->order)) != 0 ||
+               json_array_append_new(frequency, eo_result_number(c->frequency, &eo_unit_Hz)) != 0 ||
+               json_array_append_new(speed, eo_result_number(c->speed, &eo_unit_rpm)) != 0;
+  }
+  eo_result_put(&o, "torque_Nm", torque);
+  eo_result_put(&o, "mode", mode);
+  eo_result_put(&o, "order", order);
+  eo_result_put(&o, "frequency_Hz", frequency);
+  eo_result_put(&o, "speed_rpm", speed);
+  return eo_result_close(&o);
+}
+
+static json_t *encode_warnings(const struct eo_warnings *warnings)
+{
+  json_t *list = json_array();
+  for (int i = 0; warnings && i < warnings->count && list; i++)
+    if (json_array_append_new(list, json_string(warnings->text[i])) != 0) {
+      json_decref(list);
+      list = NULL;
+    }
+  return list;
+}
+
+json_t *eo_sweep_encode(const struct eo_sweep *s, const struct eo_design *design, const struct eo_warnings *warnings)
+{
+  char hash[EO_HASH_LENGTH + 1];
+  struct eo_result_object o = eo_result_open();
+  eo_result_put(&o, "program", json_string(PACKAGE_STRING));
+  eo_result_put(&o, "design", eo_design_encode(design));
+  eo_result_put(&o, "design_hash", eo_design_hash(design, hash, NULL) ? NULL : json_string(hash));
+  eo_result_put(&o, "torque_Nm", eo_json_reals(s->torques, s->torque, 1, &eo_unit_Nm, EO_DIGITS_NUMBER));
+  eo_result_put(&o, "speed_rpm", eo_json_reals(s->speeds, s->speed, 1, &eo_unit_rpm, EO_DIGITS_NUMBER));
+  for (int v = 0; v < EO_SWEEP_VARIANTS; v++)
+    eo_result_put(&o, variant_name[v], encode_variant(s, v));
+  eo_result_put(&o, "eigenfrequencies", encode_modes(s));
+  eo_result_put(&o, "crossings", encode_crossings(s));
+  eo_result_put(&o, "warnings", encode_warnings(warnings));
+  return eo_result_close(&o);
+}
+
+/* ---- CSV ---- */
+
+static void add_headings(const struct eo_sweep *s, int columns, const struct column *column, const char *prefix, struct eo_sheet *sheet)
+{
+  char heading[80];
+  for (int i = 0; i < columns; i++)
+    if (column[i].end < s->ends) {
+      snprintf(heading, sizeof heading, "%s%s", prefix, column[i].heading);
+      eo_sheet_string(sheet, heading);
+    }
+}
+
+static void add_all_headings(const struct eo_sweep *s, struct eo_sheet *sheet)
+{
+  static const char *const prefix[EO_SWEEP_VARIANTS][EO_SWEEP_DIRECTIONS] = {{"", "down_"}, {"unmodified_", "unmodified_down_"}};
+  static const struct column outcome = {.heading = "outcome", .end = -1};
+  eo_sheet_string(sheet, "torque_Nm");
+  eo_sheet_string(sheet, "speed_rpm");
+  for (int v = 0; v < EO_SWEEP_VARIANTS; v++) {
+    add_headings(s, TORQUE_COLUMNS, torque_columns, prefix[v][0], sheet);
+    for (int d = 0; d <= s->branches[v]; d++) {
+      add_headings(s, 1, &outcome, prefix[v][d], sheet);
+      add_headings(s, POINT_COLUMNS, point_columns, prefix[v][d], sheet);
+    }
+  }
+  sheet->columns = sheet->cells;
+}
+
+static void add_row(const struct eo_sweep *s, int columns, const struct column *column, const void *row, struct eo_sheet *sheet)
+{
+  for (int i = 0; i < columns; i++)
+    if (column[i].end < s->ends)
+      eo_sheet_number(sheet, member_of(row, &column[i]), column[i].unit, EO_DIGITS_NUMBER);
+}
+
+void eo_sweep_csv(const struct eo_sweep *s, struct eo_text *text)
+{
+  struct eo_sheet sheet;
+  eo_sheet_init(&sheet, 0, NULL);
+  add_all_headings(s, &sheet);
+  for (int i = 0; i < s->torques * s->speeds; i++) {
+    eo_sheet_number(&sheet, s->torque[i / s->speeds], &eo_unit_Nm, EO_DIGITS_NUMBER);
+    eo_sheet_number(&sheet, s->speed[i % s->speeds], &eo_unit_rpm, EO_DIGITS_NUMBER);
+    for (int v = 0; v < EO_SWEEP_VARIANTS; v++) {
+      add_row(s, TORQUE_COLUMNS, torque_columns, &s->at_torque[v][i / s->speeds], &sheet);
+      for (int d = 0; d <= s->branches[v]; d++) {
+        eo_sheet_string(&sheet, outcome_of(&s->point[v][d][i]));
+        add_row(s, POINT_COLUMNS, point_columns, &s->point[v][d][i], &sheet);
+      }
+    }
+  }
+  eo_sheet_csv(&sheet, text);
+  eo_sheet_done(&sheet);
+}

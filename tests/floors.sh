@@ -1,0 +1,51 @@
+#!/bin/sh
+# Data flows down the floors: a file includes its own folder and those above it in src/README.md's list, never below. The core prints
+# nothing and reads no environment; each library has its one floor.
+: "${SOURCES:=.}"
+cd "$SOURCES/src" || exit 99
+floors="base numerics gear flexibility contact excitation dynamics objective evaluation optimizer measurement document store jobs http app"
+core="base numerics gear flexibility contact excitation dynamics objective evaluation optimizer measurement"
+count=0 failed=0
+
+result() # status, what
+{
+  count=$((count + 1))
+  if [ "$1" -eq 0 ]; then echo "ok $count - $2"; else
+    failed=1
+    echo "not ok $count - $2"
+  fi
+}
+
+allowed=
+for floor in $floors; do
+  allowed="$allowed $floor"
+  [ -d "$floor" ] || continue
+  wrong=$(grep -hoE '^ *# *include "[a-z]+/' "$floor"/*.[ch] | sed 's/.*"\(.*\)\//\1/' | sort -u | while read -r used; do
+    case " $allowed " in *" $used "*) ;; *) printf ' %s' "$used" ;; esac
+  done)
+  [ "$floor" = optimizer ] && wrong="$wrong$(grep -hoE '"(gear|flexibility|contact|excitation|dynamics|objective|evaluation)/' optimizer/*.[ch])"
+  [ -z "$wrong" ]
+  result $? "$floor includes nothing from below:$wrong"
+done
+
+only() # LIBRARY PATTERN FOLDERS
+{
+  wrong=$(grep -lE "# *include <($2)" ./*/*.[ch] | grep -vE "^\./($3)/")
+  [ -z "$wrong" ]
+  result $? "only $3 uses $1: $wrong"
+}
+only SuiteSparse 'cholmod|klu' numerics
+only SUNDIALS 'kinsol|cvode|sundials|nvector|sunlinsol|sunmatrix' numerics
+only jansson 'jansson' 'document|jobs|http|app'
+only SQLite 'sqlite3' store
+only libmicrohttpd 'microhttpd' http
+
+for floor in $core; do
+  [ -d "$floor" ] || continue
+  wrong=$(grep -lE '\b(printf|fprintf|puts|getenv|rand|srand|exit)\(' "$floor"/*.c)
+  [ -z "$wrong" ]
+  result $? "$floor neither prints nor reads the environment:$wrong"
+done
+
+echo "1..$count"
+exit $failed
