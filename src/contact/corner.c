@@ -181,10 +181,13 @@ void eo_corner_gap_init(struct eo_corner_gap table[2], const struct eo_geometry 
 void eo_corner_gap_modified(struct eo_corner_gap table[2], const struct eo_geometry *g, const struct eo_modification_shape shape[2],
                             const struct eo_slice_gap *slice)
 {
+  static const struct eo_modification_shape none[2];
   for (int side = 0; side < 2; side++) {
     struct corner corner;
     table[side].reach = 0.25 * g->transverse_base_pitch;
     corner_init(&corner, g, shape, side, table[side].reach);
+    if (corner.outline.nodes < 8) /* relief so steep that the flank has no outline where the corner strikes: take it without */
+      corner_init(&corner, g, none, side, table[side].reach);
     table[side].start = find_start(&corner, 0.9 * table[side].reach);
     fill(&table[side], &corner);
     /* The slice gap turns the gear back, the corner's turns the flank: off the line of action they differ by some hundredths. */

@@ -10,7 +10,7 @@
 struct eo_contact_grid_settings eo_contact_grid_default(const struct eo_resolution *resolution)
 {
   return (struct eo_contact_grid_settings){.positions = resolution->positions, .cells = resolution->cells_per_line,
-    .tip_edges = resolution->tip_edge_contact, .edge_cells = 12, .edge_reach = NAN};
+    .partial_cells = true, .tip_edges = resolution->tip_edge_contact, .edge_cells = 12, .edge_reach = NAN};
 }
 
 double eo_contact_local_constant(const struct eo_geometry *g, const struct eo_material *material, double s)
@@ -220,6 +220,7 @@ enum eo_code eo_contact_grid_new(struct eo_contact_grid **result, const struct e
   grid->material = *material;
   eo_corner_gap_init(grid->corner, geometry);
   grid->compliance_scale = 2 * (1 - nu * nu) / (M_PI * material->youngs_modulus);
+  grid->partial_cells = settings->partial_cells;
   grid->positions = settings->positions;
   grid->position = calloc((size_t)settings->positions, sizeof *grid->position);
   enum eo_code code = grid->position ? fill_grid(grid, material, settings, phase, kernel, progress, error) : eo_error_memory(error);

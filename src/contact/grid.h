@@ -40,6 +40,7 @@ struct eo_contact_grid {
   struct eo_geometry geometry;
   struct eo_material material;
   struct eo_corner_gap corner[2];
+  bool partial_cells;
   double compliance_scale;      /* K = 2 (1 - nu^2) / (pi E), 1/Pa */
   int positions;
   struct eo_contact_position *position; /* [positions] */
@@ -50,6 +51,7 @@ struct eo_contact_grid {
 struct eo_contact_grid_settings {
   int positions;               /* over one transverse base pitch */
   int cells;                   /* equal cells on every contact line, load at their middles */
+  bool partial_cells;          /* a cell in which the contact ends carries as much as lies inside it; else its middle decides for all of it */
   bool tip_edges;              /* points of the tip corners beyond both ends of the path of contact */
   int edge_cells;              /* on every such stretch */
   double edge_reach;           /* its length along s, m; NaN: 4/15 of the normal module */

@@ -30,8 +30,10 @@ struct eo_loaded_workspace {
   double (*law)[2];                /* [LAW_NODES]: x and step * dx/dt at t = LAW_LOW + i step */
   double law_step;
   const struct eo_gram *gram;
+  bool partial;                    /* cells may touch in part */
   double *load, *rate, *gap;       /* [most_points]: p, dp/dg, scaled gaps */
   double *bend, *correction;       /* [most_points]: deflection by the modes, and by what they leave of the compliance */
+  double *local, *spread;          /* [most_points]: local approach g, and half its change over the cell */
   double *mode, *trial;            /* [most_rank + 1]: a and Z */
   double *residual, *step, *tangent; /* [most_rank + 1] */
   double *matrix, *packed;         /* scratch of the kernel */
@@ -67,18 +69,22 @@ static void evaluate(struct eo_loaded_workspace *ws, const struct problem *probl
   double approach = mode[stride], sum = 0;
   ws->gram->apply(p->points, stride, p->factor, mode, ws->bend);
   for (int i = 0; i < p->points; i++) {
-    double local = approach - problem->gap[i] - ws->bend[i] - ws->correction[i];
+    double local = ws->local[i] = approach - problem->gap[i] - ws->bend[i] - ws->correction[i], spread = ws->spread[i], share = 1;
     ws->load[i] = ws->rate[i] = 0;
-    if (local <= 0)
+    if (local <= -spread)
       continue;
+    if (local < spread) {
+      share = (local + spread) / (2 * spread);
+      local = share * share * spread;
+    }
     double scaled = local / problem->scale, t = p->law[i] - log(scaled);
     if (t > LAW_LOW) {
       double x = law_inverse(ws, t);
       ws->load[i] = p->length[i] * scaled / x;
-      ws->rate[i] = p->length[i] / (problem->scale * (x - 1));
+      ws->rate[i] = share * p->length[i] / (problem->scale * (x - 1));
     } else {
       ws->load[i] = p->length[i] * (scaled - exp(p->law[i] - LAW_STRAIGHT)) / (LAW_STRAIGHT - 1);
-      ws->rate[i] = p->length[i] / (problem->scale * (LAW_STRAIGHT - 1));
+      ws->rate[i] = share * p->length[i] / (problem->scale * (LAW_STRAIGHT - 1));
     }
     sum += ws->load[i];
   }
@@ -87,15 +93,48 @@ static void evaluate(struct eo_loaded_workspace *ws, const struct problem *probl
   ws->residual[stride] = sum - problem->force;
 }
 
+static inline double larger(double a, double b)
+{
+  return a > b ? a : b;
+}
+
+/* Half the change of the local approach over each cell, from its neighbours on the line; returns its largest change. */
+static double spread_cells(struct eo_loaded_workspace *ws, const struct eo_contact_position *p)
+{
+  double change = 0;
+  for (int l = 0; l < p->lines; l++) {
+    int first = p->line[l].first, last = first + p->line[l].cells - 1;
+    for (int i = first; i <= last; i++) {
+      int a = i > first ? i - 1 : i, b = i < last ? i + 1 : i;
+      double spread = b > a ? fabs(ws->local[b] - ws->local[a]) / (2 * (b - a)) : 0, moved = fabs(spread - ws->spread[i]);
+      if (fabs(ws->local[i]) < larger(spread, ws->spread[i]))
+        change = larger(change, moved);
+      ws->spread[i] = spread;
+    }
+  }
+  return change;
+}
+
+/* A first guess: as if the teeth did not bend. */
+static void spread_gaps(struct eo_loaded_workspace *ws, const struct problem *problem)
+{
+  memset(ws->spread, 0, sizeof *ws->spread * (size_t)problem->position->points);
+  memcpy(ws->local, problem->gap, sizeof *ws->local * (size_t)problem->position->points);
+  if (ws->partial)
+    spread_cells(ws, problem->position);
+}
+
 /* Deflection of the present loads by the part of the compliance that the modes leave out; returns its largest change. */
 static double correct(struct eo_loaded_workspace *ws, const struct eo_contact_position *p)
 {
   double change = 0;
   ws->gram->blend(p->points, p->remainder_stride, p->remainder, ws->load, ws->blend);
   for (int i = 0; i < p->points; i++) {
-    change = fmax(change, fabs((double)ws->blend[i] - ws->correction[i]));
+    change = larger(change, fabs((double)ws->blend[i] - ws->correction[i]));
     ws->correction[i] = (double)ws->blend[i];
   }
+  if (ws->partial)
+    change = fmax(change, 0.02 * spread_cells(ws, p));
   return change;
 }
 
@@ -122,6 +161,7 @@ static void start_cold(struct eo_loaded_workspace *ws, const struct problem *pro
     lowest = fmin(lowest, problem->gap[i]);
   memset(mode, 0, sizeof *mode * (size_t)stride);
   memset(ws->correction, 0, sizeof *ws->correction * (size_t)problem->position->points);
+  spread_gaps(ws, problem);
   for (int i = 0; i < 60; i++, rise *= 1.5) {
     mode[stride] = lowest + rise;
     evaluate(ws, problem, mode);
@@ -158,18 +198,39 @@ static void newton_step(struct eo_loaded_workspace *ws, const struct eo_contact_
   ws->gram->solve(n, p->stride, ws->matrix, ws->step);
 }
 
-/* Newton on the convex function of (a, Z) from ws->mode. Once a step is small the matrix is good enough for the steps that follow,
-   which also take in the correction of the compliance, until nothing moves by more than a thousandth of a nanometre and the loads
-   add up to P.
-   Leaves the loads, the factored matrix and (a, Z) of the solution; returns whether it converged. */
+/* The steps that end Newton, with the matrix of the last one: they also take in the correction of the compliance and the partial cells,
+   until nothing moves by more than a thousandth of a nanometre and the loads add up to P. */
+static bool polish(struct eo_loaded_workspace *ws, const struct problem *problem)
+{
+  enum { STEPS = 32, RENEW = 8 };
+  static const double DONE = 1e-12, BALANCE = 5e-10;
+  const struct eo_contact_position *p = problem->position;
+  bool settled = false;
+  for (int i = 0; i < STEPS; i++) {
+    double change = correct(ws, p);
+    evaluate(ws, problem, ws->mode);
+    if (i % RENEW == RENEW - 1 && !factorise(ws, p))
+      return false;
+    newton_step(ws, p);
+    settled = change < DONE && fabs(ws->step[p->stride]) < DONE;
+    if (settled && fabs(ws->residual[p->stride]) < BALANCE * problem->force)
+      return true;
+    for (int k = 0; k <= p->stride; k++)
+      ws->mode[k] += ws->step[k];
+  }
+  evaluate(ws, problem, ws->mode);
+  return settled;
+}
+
+/* Newton on the convex function of (a, Z) from ws->mode. Leaves the loads, the factored matrix and (a, Z) of the solution; returns whether
+   it converged. */
 static bool newton(struct eo_loaded_workspace *ws, const struct problem *problem)
 {
-  enum { STEPS = 60, POLISH = 24, RENEW = 8 };
-  static const double NEAR = 3e-9, DONE = 1e-12, BALANCE = 5e-10;
+  enum { STEPS = 60 };
+  static const double NEAR = 3e-9;
   const struct eo_contact_position *p = problem->position;
-  bool near = false;
   evaluate(ws, problem, ws->mode);
-  for (int i = 0; i < STEPS && !near; i++) {
+  for (int i = 0; i < STEPS; i++) {
     if (!factorise(ws, p)) {
       start_cold(ws, problem, ws->mode);
       if (!factorise(ws, p))
@@ -177,22 +238,12 @@ static bool newton(struct eo_loaded_workspace *ws, const struct problem *problem
     }
     newton_step(ws, p);
     advance(ws, problem);
-    near = fabs(ws->step[p->stride]) < NEAR && fabs(ws->residual[p->stride]) < 1e-3 * problem->force;
-    if (!near || i == 0)
-      correct(ws, p);
-  }
-  bool settled = false, balanced = false;
-  for (int i = 0; i < POLISH && near && !(settled && balanced); i++) {
-    double change = correct(ws, p);
+    if (fabs(ws->step[p->stride]) < NEAR && fabs(ws->residual[p->stride]) < 1e-3 * problem->force)
+      return polish(ws, problem);
+    correct(ws, p);
     evaluate(ws, problem, ws->mode);
-    if (i % RENEW == RENEW - 1 && !factorise(ws, p))
-      return false;
-    newton_step(ws, p);
-    advance(ws, problem);
-    settled = change < DONE && fabs(ws->step[p->stride]) < DONE;
-    balanced = fabs(ws->residual[p->stride]) < BALANCE * problem->force;
   }
-  return settled;
+  return false;
 }
 
 /* d(a, Z)/dP, unscaled, from the last factorisation: some nanometres of approach from the solution. */
@@ -248,9 +299,12 @@ static void start_from(struct eo_loaded_workspace *ws, const struct eo_contact_p
   }
   memset(ws->mode, 0, sizeof *ws->mode * (size_t)p->stride);
   for (int i = 0; sum > 0 && i < p->points; i++)
-    for (int k = 0; ws->load[i] > 0 && k < p->stride; k++)
-      ws->mode[k] += ws->load[i] * problem->force / sum * p->factor[(size_t)i * (size_t)p->stride + (size_t)k];
+    ws->load[i] *= problem->force / sum;
+  ws->gram->gather(p->points, p->stride, p->factor, ws->load, ws->mode);
+  for (int k = 0; k < p->stride; k++)
+    ws->mode[k] = -ws->mode[k];
   ws->mode[p->stride] = approach;
+  spread_gaps(ws, problem);
   correct(ws, p);
   if (sum <= 0)
     start_cold(ws, problem, ws->mode);
@@ -436,11 +490,13 @@ enum eo_code eo_loaded_workspace_new(struct eo_loaded_workspace **result, const 
   long points = grid->most_points + EO_GRAM_LANE, modes = 0;
   for (int j = 0; j < grid->positions; j++)
     modes = grid->position[j].stride > modes ? grid->position[j].stride : modes;
-  double **vector[] = {&ws->load, &ws->rate, &ws->gap, &ws->bend, &ws->correction};
+  double **vector[] = {&ws->load, &ws->rate, &ws->gap, &ws->bend, &ws->correction, &ws->local, &ws->spread};
   double **modal[] = {&ws->mode, &ws->trial, &ws->residual, &ws->step, &ws->tangent};
   bool complete = (ws->law = malloc(sizeof *ws->law * LAW_NODES)) != NULL;
+  for (int i = 0; i < 7; i++)
+    complete = (*vector[i] = eo_gram_allocate(points)) && complete;
   for (int i = 0; i < 5; i++)
-    complete = (*vector[i] = eo_gram_allocate(points)) && (*modal[i] = eo_gram_allocate(modes + EO_GRAM_LANE)) && complete;
+    complete = (*modal[i] = eo_gram_allocate(modes + EO_GRAM_LANE)) && complete;
   complete = (ws->matrix = eo_gram_allocate((modes + EO_GRAM_LANE) * (modes + EO_GRAM_LANE))) && complete;
   complete = (ws->packed = eo_gram_allocate(2 * points * modes)) && complete;
   complete = (ws->blend = (float *)eo_gram_allocate(points + EO_GRAM_FLOATS)) && complete;
@@ -455,6 +511,7 @@ enum eo_code eo_loaded_workspace_new(struct eo_loaded_workspace **result, const 
     ws->law[i][1] = ws->law_step * x / (x - 1);
   }
   ws->gram = eo_gram_select();
+  ws->partial = grid->partial_cells;
   *result = ws;
   return EO_OK;
 }
@@ -463,7 +520,7 @@ void eo_loaded_workspace_free(struct eo_loaded_workspace *ws)
 {
   if (!ws)
     return;
-  double *const owned[] = {ws->load, ws->rate, ws->gap, ws->bend, ws->correction, ws->mode, ws->trial, ws->residual, ws->step, ws->tangent,
+  double *const owned[] = {ws->load, ws->rate, ws->gap, ws->bend, ws->correction, ws->local, ws->spread, ws->mode, ws->trial, ws->residual, ws->step, ws->tangent,
                            ws->matrix, ws->packed};
   for (size_t i = 0; i < sizeof owned / sizeof *owned; i++)
     free(owned[i]);

@@ -45,11 +45,11 @@ void eo_result_put(struct eo_result_object *object, const char *key, json_t *val
 void eo_result_put_number(struct eo_result_object *object, const char *key, double value, const struct eo_unit *unit);
 json_t *eo_result_close(struct eo_result_object *object); /* NULL when anything failed */
 
-/* f1, f2, f3, J, fitness and violation into an object. */
-void eo_result_put_value(struct eo_result_object *object, const struct eo_objective_value *value);
-
 /* Normal force that one end carries, mean over the mesh cycle, N. */
 double eo_result_mean_load(const struct eo_result_source *source, const struct eo_case_result *load_case, int end);
+
+/* f1, f2, f3, J, fitness and violation into an object. */
+void eo_result_put_value(struct eo_result_object *object, const struct eo_objective_value *value);
 
 /* Each returns a new value, NULL without memory. */
 json_t *eo_result_raw_case(const struct eo_load_case *load_case, const struct eo_objective_case *raw);

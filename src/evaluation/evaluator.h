@@ -57,7 +57,7 @@ struct eo_evaluation {
   struct eo_case_result *load_case;      /* [cases] */
   struct eo_objective_case *objective;   /* [cases] */
   struct eo_dynamics_modes modes;        /* with the mean mesh stiffness of the heaviest share */
-  double static_ms, impact_ms, dynamics_ms, root_ms; /* where the time went */
+  double static_ms, impact_ms, dynamics_ms, root_ms; /* where the processor time of this thread went */
 };
 
 struct eo_evaluator;

@@ -5,8 +5,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Loads of the table law over P: close together where contact lines grow from nothing. */
-static const double TABLE_LOAD[EO_EVALUATOR_TABLE_LOADS] = {1e-4, 0.03, 0.08, 0.2, 0.4, 0.6, 0.8, 1, 1.25, 1.6, 2.2, 3.2};
+/* Loads of the table law over P: close together where contact lines grow from nothing and about P, where the straight pieces between them
+   have to have the slope of the curve. */
+static const double TABLE_LOAD[EO_EVALUATOR_TABLE_LOADS] = {1e-4, 0.03, 0.1, 0.25, 0.5, 0.75, 0.92, 1, 1.08, 1.3, 1.8, 3};
 
 /* The gaps at which an end is loaded: elastic bodies stay as the load case bends them. */
 static const struct eo_loaded_gaps *gaps_of(struct eo_evaluator *e, const struct eo_design *design, const struct eo_case_result *c, int end)

@@ -29,7 +29,7 @@ static struct eo_relief relief(double start, double end, double amount, double c
   r.value = crowning * start * start;
   r.slope = 2 * crowning * start;
   r.depth = amount - r.value - r.slope * r.length;
-  if (amount == 0 && crowning == 0)
+  if (amount == 0) /* no relief on this side: the crowning goes on */
     r.length = 0;
   return r;
 }

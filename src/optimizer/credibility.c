@@ -309,10 +309,11 @@ static void propose_children(struct eo_optimizer *o)
   if (parents > 0) {
     const int centre = c->index[0];
     const int slots = (int)(o->settings.local_share * o->settings.batch + 0.5);
-    chosen = c->local_count = c->polishing ? o->settings.batch : slots;
-    if (chosen > 0)
-      eo_local_propose(&c->local, &o->archive, centre, o->settings.seed, c->batch, chosen, c->chosen);
-    if (chosen < o->settings.batch) {
+    const int local = c->polishing ? o->settings.batch : slots;
+    if (local > 0)
+      chosen = c->local_count =
+          eo_local_propose(&c->local, &o->archive, centre, o->settings.seed, c->batch, local, c->chosen);
+    if (!c->polishing) {
       fit_model(o, row_x(o, centre));
       for (int round = 0; round < 3; round++) {
         breed(o, parents, round);
@@ -320,7 +321,7 @@ static void propose_children(struct eo_optimizer *o)
         if (round < 2)
           parents = select_parents(o);
       }
-      chosen = choose(o, chosen, o->settings.batch);
+      chosen = choose(o, chosen, chosen + o->settings.batch - local);
     }
   }
   request_chosen(o, chosen);

@@ -9,10 +9,10 @@
 
 static const double reaches[] = {1, 2.5}; /* boxes tried side by side, in radii */
 static const double smallest_radius = 1e-9, largest_radius = 0.5;
+static const double shrink = 0.4, grow = 1.2; /* of the radius when nothing was gained, when the first box won */
+static const double same = 1e-6;              /* squared distance, in radii, at which two points teach the same */
 static const double ridge = 1e-8;
-enum { REACHES = 2, SAMPLES = 200, MINIMISE_STEPS = 60, WANDER_STEPS = 10 };
-static const double gain_kept = 0.5;
-static const int level_samples = 1;
+enum { REACHES = 2, SAMPLES = 200, MINIMISE_STEPS = 60, WANDER_STEPS = 10, SHRINK_STEPS = 8 };
 
 enum eo_code eo_local_init(struct eo_local *local, int variables, struct eo_error *error)
 {
@@ -148,16 +148,16 @@ static double nearest_square(const double *points, int count, int n, const doubl
   return nearest;
 }
 
-/* The sample of the box farthest from all rows and proposals. */
-static void fill_gap(const struct eo_local *local, const double *low, const double *high, int rows, const double *proposed,
-                     int proposed_count, struct eo_random random, double *u)
+/* The sample of the box farthest from all rows. */
+static void fill_gap(const struct eo_local *local, const double *low, const double *high, int rows, struct eo_random random,
+                     double *u)
 {
   const int n = local->variables;
   double farthest = -1, sample[EO_MAX_VARIABLES];
   for (int i = 0; i < SAMPLES; i++) {
     for (int k = 0; k < n; k++)
       sample[k] = low[k] + (high[k] - low[k]) * eo_random_unit(random, (uint64_t)i * (uint64_t)n + (uint64_t)k);
-    const double square = fmin(nearest_square(local->u, rows, n, sample), nearest_square(proposed, proposed_count, n, sample));
+    const double square = nearest_square(local->u, rows, n, sample);
     if (square > farthest) {
       farthest = square;
       memcpy(u, sample, (size_t)n * sizeof *u);
@@ -165,82 +165,116 @@ static void fill_gap(const struct eo_local *local, const double *low, const doub
   }
 }
 
-/* A point where the surrogate still promises a gain: hit and run (Smith 1984) from the minimum through the part of the
-   box where the surrogate stays below `level`. */
-static void wander(struct eo_local *local, const double *low, const double *high, const double *from, double level,
-                   struct eo_random random, double *u)
+/* The part of a line through u that lies in the box: u + t direction for least <= t <= most. */
+static void cut_line(int n, const double *u, const double *direction, const double *low, const double *high, double *least,
+                     double *most)
+{
+  *least = -INFINITY;
+  *most = INFINITY;
+  for (int k = 0; k < n; k++) {
+    if (direction[k] == 0)
+      continue;
+    const double to_low = (low[k] - u[k]) / direction[k], to_high = (high[k] - u[k]) / direction[k];
+    *least = fmax(*least, fmin(to_low, to_high));
+    *most = fmin(*most, fmax(to_low, to_high));
+  }
+}
+
+/* One step along a random line to a point of the box where the surrogate is not above `level`; u stays when none is
+   found. Draws n + SHRINK_STEPS numbers from first_draw on. */
+static void step_along(struct eo_local *local, const double *low, const double *high, double level, struct eo_random random,
+                       uint64_t first_draw, double *u)
 {
   const int n = local->variables;
-  double direction[EO_MAX_VARIABLES], trial[EO_MAX_VARIABLES];
-  uint64_t draw = 0;
-  memcpy(u, from, (size_t)n * sizeof *u);
-  for (int step = 0; step < WANDER_STEPS; step++) {
-    double length = 0, least = -INFINITY, most = INFINITY;
-    for (int k = 0; k < n; k++) {
-      direction[k] = eo_random_normal(random, draw++);
-      length += direction[k] * direction[k];
+  double direction[EO_MAX_VARIABLES], trial[EO_MAX_VARIABLES], least, most;
+  for (int k = 0; k < n; k++)
+    direction[k] = eo_random_normal(random, first_draw + (uint64_t)k);
+  cut_line(n, u, direction, low, high, &least, &most);
+  for (int shrinking = 0; shrinking < SHRINK_STEPS; shrinking++) {
+    const double t = least + (most - least) * eo_random_unit(random, 2 * (first_draw + (uint64_t)(n + shrinking)));
+    for (int k = 0; k < n; k++)
+      trial[k] = fmin(fmax(u[k] + t * direction[k], low[k]), high[k]);
+    eo_surrogate_visit(&local->surrogate, trial);
+    if (eo_surrogate_value(&local->surrogate, 0) <= level) {
+      memcpy(u, trial, (size_t)n * sizeof *u);
+      return;
     }
-    for (int k = 0; k < n; k++) {
-      direction[k] /= sqrt(length);
-      const double to_low = (low[k] - u[k]) / direction[k], to_high = (high[k] - u[k]) / direction[k];
-      least = fmax(least, fmin(to_low, to_high));
-      most = fmin(most, fmax(to_low, to_high));
-    }
-    for (int shrink = 0; shrink < 8; shrink++) {
-      const double t = least + (most - least) * eo_random_unit(random, 1000000 + draw++);
-      for (int k = 0; k < n; k++)
-        trial[k] = fmin(fmax(u[k] + t * direction[k], low[k]), high[k]);
-      eo_surrogate_visit(&local->surrogate, trial);
-      if (eo_surrogate_value(&local->surrogate, 0) <= level) {
-        memcpy(u, trial, (size_t)n * sizeof *u);
-        break;
-      }
-      if (t < 0)
-        least = t;
-      else
-        most = t;
-    }
+    *(t < 0 ? &least : &most) = t;
   }
+}
+
+/* A point where the surrogate still promises a gain: hit and run (Smith 1984) from u, a minimum, through the part of the
+   box where the surrogate is not above `level`. It follows valleys that a sample of the box would miss. */
+static void wander(struct eo_local *local, const double *low, const double *high, double level, struct eo_random random,
+                   double *u)
+{
+  for (int step = 0; step < WANDER_STEPS; step++)
+    step_along(local, low, high, level, random, (uint64_t)(step * (local->variables + SHRINK_STEPS)), u);
+}
+
+/* Where the proposals are made: u[count][variables] so far, and what they are made from. */
+struct proposals {
+  const double *centre;
+  int rows;     /* of the surrogate */
+  double level; /* the surrogate at the centre */
+  double minimum[EO_MAX_VARIABLES]; /* of the surrogate within the first reach */
+  int attempts, count;
+  double *u;
+};
+
+static bool is_new(const struct eo_local *local, const struct proposals *p, const double *u)
+{
+  const int n = local->variables;
+  return fmin(nearest_square(local->u, p->rows, n, u), nearest_square(p->u, p->count, n, u)) > same;
+}
+
+/* The next proposal: the minimum within each reach first, then points that promise a gain. False when it would teach
+   nothing new. */
+static bool propose_next(struct eo_local *local, struct proposals *p, struct eo_random random)
+{
+  const int n = local->variables, attempt = p->attempts++;
+  double low[EO_MAX_VARIABLES], high[EO_MAX_VARIABLES], *u = p->u + (size_t)p->count * n;
+  if (attempt < REACHES) {
+    box(local, p->centre, reaches[attempt], low, high);
+    memset(u, 0, (size_t)n * sizeof *u);
+    eo_minimise(surrogate_at, &local->surrogate, low, high, n, MINIMISE_STEPS, 1e-6, u);
+    if (attempt == 0)
+      memcpy(p->minimum, u, (size_t)n * sizeof *u);
+  } else {
+    box(local, p->centre, 1, low, high);
+    memcpy(u, p->minimum, (size_t)n * sizeof *u);
+    wander(local, low, high, p->level, random, u);
+  }
+  return is_new(local, p, u);
 }
 
 int eo_local_propose(struct eo_local *local, const struct eo_archive *archive, int centre, uint64_t seed, int generation,
                      int count, double *x)
 {
   const int n = local->variables;
-  const double *c = archive->x + (size_t)centre * n;
-  double low[EO_MAX_VARIABLES], high[EO_MAX_VARIABLES];
-  const int rows = gather(local, archive, c);
+  struct proposals p = {.centre = archive->x + (size_t)centre * n, .u = x};
   local->centre_value = archive->value[centre];
-  scale_rows(local, archive, c, rows);
-  const bool fitted = fit_best(local, rows);
-  double level = 0;
-  for (int i = 0; i < count; i++) { /* x holds u until the end */
-    double *u = x + (size_t)i * n;
-    const struct eo_random random = eo_random_at(seed, EO_STREAM_LOCAL, (uint64_t)generation, (uint64_t)i);
-    box(local, c, i < REACHES ? reaches[i] : 1, low, high);
-    if (fitted && i < REACHES) {
-      memset(u, 0, (size_t)n * sizeof *u);
-      const double least = eo_minimise(surrogate_at, &local->surrogate, low, high, n, MINIMISE_STEPS, 1e-6, u);
-      if (i == 0) {
-        memset(low, 0, sizeof low);
-        eo_surrogate_visit(&local->surrogate, low);
-        level = least + gain_kept * (eo_surrogate_value(&local->surrogate, 0) - least);
-      }
-      if (fmin(nearest_square(local->u, rows, n, u), nearest_square(x, i, n, u)) > 1e-6)
-        continue;
-    }
-    box(local, c, 1, low, high);
-    if (fitted && i > 0 && level_samples)
-      wander(local, low, high, x, level, random, u);
-    else {
-      box(local, c, 0.5, low, high);
-      fill_gap(local, low, high, rows, x, i, random, u);
+  p.rows = gather(local, archive, p.centre);
+  scale_rows(local, archive, p.centre, p.rows);
+  if (fit_best(local, p.rows)) {
+    eo_surrogate_visit(&local->surrogate, p.minimum); /* the centre is the origin */
+    p.level = eo_surrogate_value(&local->surrogate, 0);
+    while (p.attempts < count) {
+      p.count += propose_next(local, &p, eo_random_at(seed, EO_STREAM_LOCAL, (uint64_t)generation, (uint64_t)p.attempts));
+      if (p.attempts == REACHES)
+        local->reaching = p.count;
     }
   }
-  for (int i = 0; i < count; i++)
+  if (p.count == 0 && count > 0) {
+    double low[EO_MAX_VARIABLES], high[EO_MAX_VARIABLES];
+    box(local, p.centre, 0.5, low, high);
+    fill_gap(local, low, high, p.rows, eo_random_at(seed, EO_STREAM_LOCAL, (uint64_t)generation, (uint64_t)count), x);
+    p.count = 1;
+  }
+  for (int i = 0; i < p.count; i++)
     for (int k = 0; k < n; k++)
-      x[(size_t)i * n + k] = eo_unit_clip(c[k] + local->radius * x[(size_t)i * n + k]);
-  return count;
+      x[(size_t)i * n + k] = eo_unit_clip(p.centre[k] + local->radius * x[(size_t)i * n + k]);
+  return p.count;
 }
 
 void eo_local_learn(struct eo_local *local, const struct eo_archive *archive, int first, int count)
@@ -253,8 +287,8 @@ void eo_local_learn(struct eo_local *local, const struct eo_archive *archive, in
       winner = i;
     }
   if (winner < 0)
-    local->radius *= 0.4;
-  else if (winner < REACHES)
-    local->radius *= reaches[winner] > 1 ? reaches[winner] : reaches[winner] < 1 ? 0.6 : 1.2;
+    local->radius *= shrink;
+  else if (winner < local->reaching)
+    local->radius *= winner == 0 ? grow : reaches[winner];
   local->radius = fmin(fmax(local->radius, smallest_radius), largest_radius);
 }

@@ -8,10 +8,6 @@
 #include "study-fixture.h"
 #include "tap.h"
 
-#ifndef STANDARD_KILLS
-#define STANDARD_KILLS 10
-#endif
-
 enum { BUDGET = 300 };
 
 static struct eo_pair *pair;
@@ -95,7 +91,7 @@ static int environment(const char *name, int standard)
 int main(void)
 {
   struct eo_text undisturbed, disturbed;
-  int computed = 0, kills = 0, wanted = environment("KILLS", STANDARD_KILLS), rounds = 0, rows = 0, lost = 0;
+  int computed = 0, kills = 0, wanted = environment("KILLS", 10), rounds = 0, rows = 0, lost = 0;
   uint64_t seed = (uint64_t)environment("SEED", (int)time(NULL));
   if (!make_folder() || !(pair = coarse_pair()))
     return 99;

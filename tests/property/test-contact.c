@@ -24,15 +24,14 @@ struct bench {
 static struct eo_closed_form closed_form;
 static double smooth_form[3] = {1.2e-9, 15e-3, 9e-3};
 
-static void bench_open(struct bench *b, const struct eo_geometry *g, struct eo_kernel kernel, bool edges, int positions, int cells)
+static void bench_open_as(struct bench *b, const struct eo_geometry *g, struct eo_kernel kernel, const struct eo_contact_grid_settings *settings)
 {
   struct eo_material steel = paper_steel();
-  struct eo_contact_grid_settings settings = {.positions = positions, .cells = cells, .tip_edges = edges, .edge_cells = 6, .edge_reach = NAN};
   struct eo_error error = {0};
   memset(b, 0, sizeof *b);
   b->geometry = *g;
   b->kernel = kernel;
-  bool made = eo_contact_grid_new(&b->grid, g, &steel, &settings, NULL, kernel, NULL, &error) == EO_OK &&
+  bool made = eo_contact_grid_new(&b->grid, g, &steel, settings, NULL, kernel, NULL, &error) == EO_OK &&
               eo_loaded_workspace_new(&b->workspace, b->grid, &error) == EO_OK;
   for (int end = 0; end < 2 && made; end++)
     made = eo_loaded_gaps_init(&b->gaps[end], b->grid, &error) == EO_OK;
@@ -42,6 +41,12 @@ static void bench_open(struct bench *b, const struct eo_geometry *g, struct eo_k
     printf("Bail out! %s\n", error.text);
     exit(1);
   }
+}
+
+static void bench_open(struct bench *b, const struct eo_geometry *g, struct eo_kernel kernel, bool edges, int positions, int cells)
+{
+  struct eo_contact_grid_settings settings = {.positions = positions, .cells = cells, .tip_edges = edges, .edge_cells = 6, .edge_reach = NAN};
+  bench_open_as(b, g, kernel, &settings);
 }
 
 static void bench_close(struct bench *b)
@@ -142,6 +147,78 @@ static void test_complementarity(void)
        "case %d: loaded points touch within %.1e m, free ones stay clear (%.1e m), loads add up within %.1e", k, worst.closed, worst.open, worst.balance);
     bench_close(&b);
   }
+}
+
+/* ---- partial cells ---- */
+
+/* Largest mismatch of the local law, m: a cell carries what the mean of the positive part of its local approach asks for, the approach
+   changing over the cell as it does between its neighbours on the line. */
+static double partial_mismatch(const struct bench *b, const struct eo_contact_position *p, const double *gap, const struct eo_loaded_end *end, int j)
+{
+  static double compliance[MOST_POINTS * MOST_POINTS], local[MOST_POINTS];
+  double worst = 0;
+  b->kernel.evaluate(b->kernel.context, p->points, p->point, compliance);
+  for (int i = 0; i < p->points; i++) {
+    local[i] = end->approach[j] - gap[p->first + i];
+    for (int k = 0; k < p->points; k++)
+      local[i] -= compliance[i * p->points + k] * end->line_load[p->first + k] * p->length[k];
+  }
+  for (int l = 0; l < p->lines; l++)
+    for (int i = 0; i < p->line[l].cells; i++) {
+      int at = p->line[l].first + i, low = i > 0 ? at - 1 : at, high = i + 1 < p->line[l].cells ? at + 1 : at, parts = 2000;
+      double change = (local[high] - local[low]) / (high - low), mean = 0, q = end->line_load[p->first + at];
+      for (int n = 0; n < parts; n++)
+        mean += fmax(0, local[at] + change * ((n + 0.5) / parts - 0.5)) / parts;
+      worst = fmax(worst, fabs(mean - (q > 0 ? local_deflection(b->grid, p->law[at], q) : 0)));
+    }
+  return worst;
+}
+
+/* Largest error of the approach with n cells a line, against the given one, constant removed. */
+static double approach_noise(const struct eo_geometry *g, bool partial, int cells, double *approach, bool compare)
+{
+  struct eo_flank_modification a = case_a(), none = {0};
+  struct eo_contact_grid_settings settings = {.positions = 24, .cells = cells, .partial_cells = partial, .tip_edges = false};
+  struct bench b;
+  double load = force_of(g, 828), mean = 0, worst = 0;
+  bench_open_as(&b, g, kernel_of(1), &settings);
+  set_gaps(&b, EO_RIGHT, &a, &none, 0, 0);
+  eo_loaded_solve(b.workspace, b.grid, &b.gaps[EO_RIGHT], 1, 1, &load, b.result);
+  for (int j = 0; j < 24; j++)
+    mean += compare ? (b.result[0].approach[j] - approach[j]) / 24 : 0;
+  for (int j = 0; j < 24; j++)
+    worst = fmax(worst, compare ? fabs(b.result[0].approach[j] - approach[j] - mean) : 0);
+  if (!compare)
+    memcpy(approach, b.result[0].approach, 24 * sizeof *approach);
+  bench_close(&b);
+  return worst;
+}
+
+static void test_partial_cells(void)
+{
+  struct eo_geometry g = paper_geometry();
+  struct eo_flank_modification a = case_a(), none = {0};
+  struct eo_contact_grid_settings settings = {.positions = POSITIONS, .cells = CELLS, .partial_cells = true, .tip_edges = true, .edge_cells = 6, .edge_reach = NAN};
+  double load[2] = {force_of(&g, 300), force_of(&g, 828)}, fine[24];
+  for (int k = 0; k < 2; k++) {
+    struct bench b;
+    double worst = 0, balance = 0;
+    bench_open_as(&b, &g, kernel_of(k), &settings);
+    set_gaps(&b, EO_RIGHT, k ? &a : &none, &none, 0.1 * degree, 0);
+    eo_loaded_solve(b.workspace, b.grid, &b.gaps[EO_RIGHT], 1, 2, load, b.result);
+    for (int l = 0; l < 2; l++)
+      for (int j = 0; j < POSITIONS; j++) {
+        worst = fmax(worst, partial_mismatch(&b, &b.grid->position[j], b.gaps[EO_RIGHT].gap, &b.result[l], j));
+        struct residuals r = {0};
+        check_position(&b, &b.grid->position[j], b.gaps[EO_RIGHT].gap, &b.result[l], j, 1, &r);
+        balance = fmax(balance, r.balance);
+      }
+    ok(worst < 2e-10 && balance < 1e-9, "kernel %d: partial cells carry the positive part of their approach within %.1e m, loads add up within %.1e", k, worst, balance);
+    bench_close(&b);
+  }
+  approach_noise(&g, true, 130, fine, false);
+  double whole = approach_noise(&g, false, 30, fine, true), partial = approach_noise(&g, true, 30, fine, true);
+  ok(partial < 0.5 * whole, "30 cells a line: %.2f nm of noise instead of %.2f", 1e9 * partial, 1e9 * whole);
 }
 
 /* ---- tangent and monotony ---- */
@@ -436,6 +513,7 @@ static void test_random(void)
 int main(void)
 {
   test_complementarity();
+  test_partial_cells();
   test_tangent();
   test_monotony();
   test_mirror();

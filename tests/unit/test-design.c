@@ -143,10 +143,10 @@ static void test_every_fault(void)
   memset(long_text, 'x', sizeof long_text - 1);
   eo_example_build("paper-case-b", &complete);
   complete.objective.robust = EO_ROBUST_MEAN;
-  complete.optimization.variables = EO_VARIABLES_LISTED; /* so that a variable is in the document */
-  complete.optimization.listed = 1;
-  complete.optimization.list[0] = (struct eo_listed_variable){EO_PINION, EO_BOTH_ENDS, 0, {1, 2}};
   complete.modification.flank[EO_GEAR][EO_LEFT].lead_slope = 1e-6; /* so that the gear is in the document */
+  complete.optimization.variables = EO_VARIABLES_LISTED;
+  complete.optimization.listed = 1;
+  complete.optimization.list[0] = (struct eo_listed_variable){.member = EO_PINION, .end = EO_BOTH_ENDS, .bounds = {0, 40}};
   ok(eo_design_complete(&complete, &geometry, NULL) == EO_OK, "the base design is right");
   json_t *document = eo_design_encode(&complete);
   provoke_table(document, "", &eo_design_table);

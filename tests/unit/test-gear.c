@@ -76,6 +76,11 @@ static void test_modification(const struct eo_geometry *g)
                    eo_modification_lead(&shape, expected[i][1] * 1e-3 / cos(g->helix_angle), &lead);
     close_to(1e6 * value, expected[i][2], 1e-6, "delta of case A, um");
   }
+  struct eo_flank_modification crowned = {.profile_crowning = 0.2};
+  double slopes[2];
+  eo_modification_init(&shape, g, EO_PINION, &crowned);
+  near(eo_modification_profile(&shape, g->rack_top, slopes), 0.2 * g->rack_top * g->rack_top, 1e-12, "profile crowning without relief goes on to the tip");
+  near(slopes[0], 0.4 * g->rack_top, 1e-12, "with its slope");
   for (int form = 0; form < 3; form++) { /* every shape reaches its depth and has the slope it says */
     flank.shape = (enum eo_relief_shape)form;
     flank.profile_crowning = 0.2;

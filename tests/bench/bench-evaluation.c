@@ -1,0 +1,214 @@
+/* Times true evaluations of the paper pair (three torques, default resolution) on finite elements: by stage, for equal and different ends,
+   when one value of the modification changes, and on one and two threads; and the memory of a worker. An argument names a cache
+   directory, a second one the number of repeats. */
+#include "document/design_document.h"
+#include "document/example.h"
+#include "evaluation/evaluator.h"
+
+#include <malloc.h>
+#include <math.h>
+#include <pthread.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+enum { MOST_REPEATS = 1001 };
+
+static int repeats = 41;
+
+struct times {
+  double total, contact, impact, dynamics, objective; /* ms */
+};
+
+static double now(clockid_t clock)
+{
+  struct timespec t;
+  clock_gettime(clock, &t);
+  return 1e3 * (double)t.tv_sec + 1e-6 * (double)t.tv_nsec;
+}
+
+static void stop(const struct eo_error *error)
+{
+  printf("%s: %s\n", error->pointer, error->text);
+  exit(1);
+}
+
+static struct eo_design design_of(const char *name, double angle_deg)
+{
+  struct eo_design design;
+  struct eo_geometry geometry;
+  struct eo_error error;
+  eo_example_build(name, &design);
+  design.alignment.shaft_angle_in_plane = angle_deg * M_PI / 180;
+  if (eo_design_complete(&design, &geometry, &error))
+    stop(&error);
+  return design;
+}
+
+static struct eo_evaluator *make_evaluator(const struct eo_pair *pair)
+{
+  struct eo_evaluator *evaluator;
+  struct eo_error error;
+  if (eo_evaluator_new(&evaluator, pair, 3, &error))
+    stop(&error);
+  return evaluator;
+}
+
+static struct times evaluate(struct eo_evaluator *evaluator, const struct eo_pair *pair, const struct eo_design *design,
+                             const struct eo_objective_case *unmodified, struct eo_objective_value *value)
+{
+  const struct eo_evaluation *r;
+  struct eo_error error;
+  double start = now(CLOCK_THREAD_CPUTIME_ID);
+  if (eo_evaluator_run(evaluator, design, NULL, 0, &r, &error))
+    stop(&error);
+  double combined = now(CLOCK_THREAD_CPUTIME_ID);
+  eo_evaluator_combine(design, &pair->geometry, r->objective, unmodified, value);
+  double end = now(CLOCK_THREAD_CPUTIME_ID);
+  return (struct times){end - start, r->static_ms, r->impact_ms, r->dynamics_ms, end - combined};
+}
+
+static int compare(const void *a, const void *b)
+{
+  double x = *(const double *)a, y = *(const double *)b;
+  return (x > y) - (x < y);
+}
+
+static double median_of(int n, const struct times *times, size_t offset)
+{
+  static double value[MOST_REPEATS];
+  for (int i = 0; i < n; i++)
+    memcpy(&value[i], (const char *)&times[i] + offset, sizeof value[i]);
+  qsort(value, (size_t)n, sizeof *value, compare);
+  return value[n / 2];
+}
+
+#define MEDIAN(member) median_of(repeats, times, offsetof(struct times, member))
+
+/* step: added to the tip relief of the left pinion flank from one evaluation to the next, m. */
+static void time_design(const char *what, const struct eo_pair *pair, struct eo_design design, double step)
+{
+  static struct times times[MOST_REPEATS];
+  struct eo_evaluator *evaluator = make_evaluator(pair);
+  struct eo_design unmodified = design;
+  struct eo_objective_case before[3];
+  struct eo_objective_value value;
+  struct eo_error error;
+  memset(&unmodified.modification, 0, sizeof unmodified.modification);
+  if (eo_evaluator_raw(evaluator, &unmodified, before, &error))
+    stop(&error);
+  evaluate(evaluator, pair, &design, before, &value);
+  double objective = value.objective;
+  for (int i = 0; i < repeats; i++) {
+    design.modification.flank[EO_PINION][EO_LEFT].tip_relief += step;
+    times[i] = evaluate(evaluator, pair, &design, before, &value);
+  }
+  printf("%-36s %7.2f %8.2f %7.3f %9.2f %10.4f   J = %.4f\n", what, MEDIAN(total), MEDIAN(contact), MEDIAN(impact), MEDIAN(dynamics),
+         MEDIAN(objective), objective);
+  fflush(stdout);
+  eo_evaluator_free(evaluator);
+}
+
+/* ---- threads ---- */
+
+struct worker {
+  const struct eo_pair *pair;
+  struct eo_design design;
+  int evaluations;
+};
+
+static void *work(void *argument)
+{
+  struct worker *w = argument;
+  struct eo_evaluator *evaluator = make_evaluator(w->pair);
+  const struct eo_evaluation *r;
+  struct eo_error error;
+  for (int i = 0; i < w->evaluations; i++)
+    if (eo_evaluator_run(evaluator, &w->design, NULL, 0, &r, &error))
+      stop(&error);
+  eo_evaluator_free(evaluator);
+  return NULL;
+}
+
+static void time_threads(const struct eo_pair *pair, const struct eo_design *design)
+{
+  double alone = 0;
+  for (int threads = 1; threads <= 2; threads++) {
+    struct worker worker[2];
+    pthread_t thread[2];
+    double start = now(CLOCK_MONOTONIC);
+    for (int i = 0; i < threads; i++) {
+      worker[i] = (struct worker){pair, *design, 2 * repeats};
+      pthread_create(&thread[i], NULL, work, &worker[i]);
+    }
+    for (int i = 0; i < threads; i++)
+      pthread_join(thread[i], NULL);
+    double rate = 1e3 * threads * 2 * repeats / (now(CLOCK_MONOTONIC) - start);
+    alone = threads == 1 ? rate : alone;
+    printf("%d thread%s %6.1f evaluations/s, %.2f times one thread\n", threads, threads == 1 ? ": " : "s:", rate, rate / alone);
+  }
+}
+
+/* ---- memory and work ---- */
+
+static double allocated(void)
+{
+  struct mallinfo2 info = mallinfo2();
+  return 1e-6 * (double)(info.uordblks + info.hblkhd);
+}
+
+static void measure_memory(const struct eo_pair *pair, const struct eo_design *design)
+{
+  double before = allocated();
+  struct eo_evaluator *evaluator = make_evaluator(pair);
+  const struct eo_evaluation *r;
+  struct eo_error error;
+  if (eo_evaluator_run(evaluator, design, NULL, EO_WANT_ROOT | EO_WANT_BAND | EO_WANT_CURVES, &r, &error))
+    stop(&error);
+  printf("a worker holds %.2f MB, what all share %.1f MB\n", allocated() - before, before);
+  eo_evaluator_free(evaluator);
+}
+
+/* Operations of the loaded contact of one end and one torque: two factorisations, five evaluations and the tangent per position. */
+static double operations(const struct eo_contact_grid *grid)
+{
+  double sum = 0;
+  for (int j = 0; j < grid->positions; j++) {
+    const struct eo_contact_position *p = &grid->position[j];
+    double points = p->points, rank = p->stride, factor = points * rank * rank + rank * rank * rank / 3;
+    sum += 2 * factor + 6 * (4 * points * rank + 2 * points * points + 25 * points);
+  }
+  return sum;
+}
+
+int main(int argc, char **argv)
+{
+  struct eo_design aligned = design_of("paper-case-a", 0), tilted = design_of("paper-case-a", 0.1), different = design_of("paper-case-b", 0.1);
+  struct eo_design plain = design_of("paper", 0.1);
+  struct eo_pair_options options = {.cache_directory = argc > 1 ? argv[1] : NULL};
+  struct eo_pair *pair;
+  struct eo_error error;
+  if (argc > 2)
+    repeats = atoi(argv[2]);
+  if (repeats < 1 || repeats > MOST_REPEATS) {
+    printf("repeats: 1 to %d\n", MOST_REPEATS);
+    return 1;
+  }
+  if (eo_pair_new(&pair, &aligned, &options, NULL, &error))
+    stop(&error);
+  printf("preparation %.2f s%s, contact grid of %d positions with up to %d points and %d modes\n", pair->seconds,
+         eo_flexibility_report(pair->flexibility)->from_cache ? " (from the cache)" : "", pair->grid->positions, pair->grid->most_points,
+         pair->grid->most_rank);
+  printf("\nms of one core, median of %d              total  contact  impact  dynamics  objective\n", repeats);
+  time_design("case A, aligned: equal ends", pair, aligned, 0);
+  time_design("case A, 0.1 deg", pair, tilted, 0);
+  time_design("case B, 0.1 deg", pair, different, 0);
+  time_design("unmodified, 0.1 deg", pair, plain, 0);
+  time_design("what if: case A, tip relief + 10 nm", pair, tilted, 1e-8);
+  printf("\ncontact: %.1f Mflop for three torques and both ends\n\n", 6e-6 * operations(pair->grid));
+  time_threads(pair, &tilted);
+  measure_memory(pair, &tilted);
+  eo_pair_free(pair);
+  return 0;
+}

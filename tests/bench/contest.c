@@ -1,0 +1,187 @@
+#include "config.h"
+
+#include "contest.h"
+
+#include "base/random.h"
+#include "optimizer/optimizer.h"
+
+#include <math.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#ifdef HAVE_NLOPT
+#include <nlopt.h>
+#endif
+
+static const int marks[CONTEST_MARKS] = {100, 200, 400, 1000};
+
+double trace_evaluate(struct trace *trace, const double *x)
+{
+  const double value = trace->value(trace->context, x);
+  if (trace->count < CONTEST_BUDGET && value < trace->best)
+    trace->best = value;
+  trace->count++;
+  for (int m = 0; m < CONTEST_MARKS; m++)
+    if (trace->count <= marks[m])
+      trace->at[m] = trace->best;
+  return value;
+}
+
+static void apply_changes(const struct contest *contest, struct eo_optimizer_settings *settings)
+{
+  int count;
+  const struct eo_parameter *parameter = eo_optimizer_parameters(&count);
+  for (int c = 0; c < contest->changes; c++)
+    for (int i = 0; i < count; i++) {
+      const size_t length = strlen(parameter[i].key);
+      if (strncmp(contest->change[c], parameter[i].key, length) == 0 && contest->change[c][length] == '=')
+        eo_optimizer_put(settings, &parameter[i], atof(contest->change[c] + length + 1));
+    }
+}
+
+static void run_own(const struct contest *contest, struct trace *trace, int algorithm, uint64_t seed)
+{
+  struct eo_optimizer_settings settings;
+  struct eo_optimizer *optimizer = NULL;
+  struct eo_error error;
+  struct eo_batch batch = {.count = 1};
+  eo_optimizer_defaults(&settings, algorithm, trace->n);
+  settings.seed = seed;
+  settings.true_evaluations = CONTEST_BUDGET;
+  settings.fitness_form = EO_FITNESS_NEGATIVE;
+  apply_changes(contest, &settings);
+  if (eo_optimizer_new(&settings, &optimizer, &error) != EO_OK) {
+    printf("%s\n", error.text);
+    return;
+  }
+  while (batch.count > 0 && eo_optimizer_ask(optimizer, &batch, &error) == EO_OK)
+    for (int i = 0; i < batch.count; i++) {
+      const struct eo_outcome outcome = {.value = trace_evaluate(trace, batch.candidates[i].x)};
+      eo_optimizer_tell(optimizer, i, &outcome, &error);
+    }
+  eo_optimizer_free(optimizer);
+}
+
+#ifdef HAVE_NLOPT
+static double evaluate_nlopt(unsigned n, const double *x, double *gradient, void *context)
+{
+  (void)n;
+  (void)gradient;
+  const double value = trace_evaluate(context, x);
+  return isfinite(value) ? value : 1e3;
+}
+
+/* From random starts, until the budget is spent. */
+static void run_nlopt(const struct contest *contest, struct trace *trace, int algorithm, uint64_t seed)
+{
+  double x[CONTEST_VARIABLES], value;
+  (void)contest;
+  nlopt_srand((unsigned long)seed + 1);
+  for (int start = 0; trace->count < CONTEST_BUDGET; start++) {
+    nlopt_opt opt = nlopt_create((nlopt_algorithm)algorithm, (unsigned)trace->n);
+    nlopt_set_min_objective(opt, evaluate_nlopt, trace);
+    nlopt_set_lower_bounds1(opt, 0);
+    nlopt_set_upper_bounds1(opt, 1);
+    nlopt_set_maxeval(opt, CONTEST_BUDGET - trace->count);
+    nlopt_set_xtol_rel(opt, 1e-9);
+    nlopt_set_initial_step1(opt, 0.2);
+    for (int k = 0; k < trace->n; k++)
+      x[k] = eo_random_unit(eo_random_at(seed, 200, (uint64_t)start, 0), (uint64_t)k);
+    const int before = trace->count;
+    nlopt_optimize(opt, x, &value);
+    nlopt_destroy(opt);
+    if (trace->count == before)
+      break;
+  }
+}
+#endif
+
+static const struct contestant {
+  const char *name;
+  void (*run)(const struct contest *, struct trace *, int, uint64_t);
+  int algorithm;
+} contestants[] = {
+    {"credibility-ga", run_own, EO_CREDIBILITY_GA},
+    {"ga", run_own, EO_GA},
+    {"fpga", run_own, EO_FPGA},
+#ifdef HAVE_NLOPT
+    {"nlopt-bobyqa", run_nlopt, NLOPT_LN_BOBYQA},
+    {"nlopt-crs2", run_nlopt, NLOPT_GN_CRS2_LM},
+    {"nlopt-isres", run_nlopt, NLOPT_GN_ISRES},
+    {"nlopt-direct-l", run_nlopt, NLOPT_GN_DIRECT_L},
+#endif
+};
+
+static int compare_doubles(const void *a, const void *b)
+{
+  const double p = *(const double *)a, q = *(const double *)b;
+  return (p > q) - (p < q);
+}
+
+static double cpu_seconds(void)
+{
+  struct timespec t;
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+static void print_line(const struct contest *contest, const struct contest_problem *problem, const struct contestant *c)
+{
+  double at[CONTEST_MARKS][CONTEST_SEEDS_MAX], spent = cpu_seconds();
+  const int seeds = contest->seeds;
+  long evaluations = 0;
+  for (int s = 0; s < seeds; s++) {
+    struct trace trace = {.n = problem->n, .best = INFINITY};
+    problem->prepare(&trace, problem, (uint64_t)s + 1);
+    c->run(contest, &trace, c->algorithm, (uint64_t)s + 1);
+    evaluations += trace.count;
+    for (int m = 0; m < CONTEST_MARKS; m++)
+      at[m][s] = trace.at[m];
+  }
+  spent = cpu_seconds() - spent;
+  printf("%-13s %2d  %-15s", problem->name, problem->n, c->name);
+  for (int m = 0; m < CONTEST_MARKS; m++) {
+    qsort(at[m], (size_t)seeds, sizeof(double), compare_doubles);
+    printf("  %9.3e (%7.1e %7.1e)", at[m][seeds / 2], at[m][seeds / 4], at[m][seeds - 1 - seeds / 4]);
+  }
+  printf("  %6.0f\n", evaluations ? 1e6 * spent / (double)evaluations : 0);
+  fflush(stdout);
+}
+
+void contest_print_head(void)
+{
+  printf("%-13s %2s  %-15s", "problem", "n", "algorithm");
+  for (int m = 0; m < CONTEST_MARKS; m++)
+    printf("  %9d (quartiles)      ", marks[m]);
+  printf("  us/evaluation\n");
+}
+
+void contest_run(const struct contest *contest, const struct contest_problem *problem)
+{
+  for (size_t c = 0; c < sizeof contestants / sizeof *contestants; c++)
+    if (!contest->algorithm || strstr(contestants[c].name, contest->algorithm))
+      print_line(contest, problem, &contestants[c]);
+}
+
+int contest_option(struct contest *contest, int argc, char **argv, int i)
+{
+  if (strcmp(argv[i], "--quick") == 0) {
+    contest->seeds = 3;
+    return 1;
+  }
+  if (i + 1 >= argc)
+    return 0;
+  if (strcmp(argv[i], "--seeds") == 0) {
+    const int seeds = atoi(argv[i + 1]);
+    contest->seeds = seeds < 1 ? 1 : seeds > CONTEST_SEEDS_MAX ? CONTEST_SEEDS_MAX : seeds;
+  } else if (strcmp(argv[i], "--algorithm") == 0) {
+    contest->algorithm = argv[i + 1];
+  } else if (strcmp(argv[i], "--set") == 0 && contest->changes < 32) {
+    contest->change[contest->changes++] = argv[i + 1];
+  } else {
+    return 0;
+  }
+  return 2;
+}
