@@ -33,6 +33,8 @@ static enum eo_code build_designs(struct reproduction *r, struct eo_error *error
       return eo_error_memory(error);
     eo_example_build(example[i], r->design[i]);
     r->design[i]->optimization.variables = i == PAPER_B || i == OWN_B ? EO_VARIABLES_PER_END : EO_VARIABLES_SHARED;
+    if (r->plan->resolution)
+      r->design[i]->resolution = *r->plan->resolution;
     code = eo_design_complete(r->design[i], &geometry, error);
   }
   return code;

@@ -14,6 +14,7 @@
 
 #include "base/progress.h"
 #include "document/bundle.h"
+#include "gear/design.h"
 #include "store/store.h"
 
 struct eo_reproduction_plan {
@@ -21,6 +22,9 @@ struct eo_reproduction_plan {
   const char *cache_directory;       /* of the flexibility; NULL: none */
   int threads;                       /* 0: eo_parallel_cores() */
   bool quick;                        /* a tenth of the generations, a coarser sweep */
+  const struct eo_resolution *resolution; /* in place of the default one; NULL: none */
+  int generations;                   /* of fpga and ga in place of 200 (20 when quick); 0: those */
+  int budget;                        /* of credibility-ga in place of 1000 (300 when quick); 0: that */
   const struct eo_progress *progress; /* may be NULL */
 };
 

@@ -25,12 +25,17 @@ static int watch(void *context, const struct eo_study_report *report)
   return eo_progress_report(run->r->plan->progress, run->what, FIRST + (LAST - FIRST) * share);
 }
 
+int eo_reproduction_generations(const struct reproduction *r)
+{
+  return r->plan->generations > 0 ? r->plan->generations : r->plan->quick ? 20 : 200;
+}
+
 static void set_up(const struct reproduction *r, struct eo_design *design, int algorithm)
 {
   struct eo_optimization *o = &design->optimization;
   snprintf(o->algorithm, sizeof o->algorithm, "%s", algorithms[algorithm]);
-  o->generations = r->plan->quick ? 20 : 200;
-  o->true_evaluations = algorithm < 2 ? 0 : r->plan->quick ? 300 : 1000;
+  o->generations = eo_reproduction_generations(r);
+  o->true_evaluations = algorithm < 2 ? 0 : r->plan->budget > 0 ? r->plan->budget : r->plan->quick ? 300 : 1000;
 }
 
 static json_t *encode_run(const struct eo_study_result *s, const char *case_name, const char *algorithm)
@@ -119,7 +124,7 @@ enum eo_code eo_reproduction_optimize(struct reproduction *r, struct eo_error *e
 {
   static const double printed[CASES] = {39.67, 33.25};
   struct run run = {.r = r};
-  double generations = r->plan->quick ? 19 : 199;
+  double generations = eo_reproduction_generations(r) - 1;
   json_t *pfc = eo_reproduction_figure("13", "Percentage of fitness computed, fpga", "generation", "PFC so far, %", true);
   json_t *convergence[CASES] = {eo_reproduction_figure("13 a", "Convergence, case A", "true evaluations", "best J", false),
                                 eo_reproduction_figure("13 b", "Convergence, case B", "true evaluations", "best J", false)};
