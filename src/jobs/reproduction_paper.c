@@ -204,8 +204,8 @@ json_t *eo_reproduction_readings(void)
       "Equations (19) to (21): the division by 3 is kept; equation (22): each objective is related to that of the unmodified pair.",
       "Equation (23): penalties lower the fitness.",
       "Shaft angle error of Table 1: 0.1 degree in the plane of the axes.",
-      "Not given: masses, bearings, damping, backlash, blanks, the parameters alpha, beta, R_0 and the radius of the FPGA, bounds of the starts and of the "
-      "crowning, the speed of the optimization (2000 rpm is used). So absolute levels cannot be matched point by point; trends and reductions are compared.",
+      "Not given: masses, bearings, damping, backlash, blanks, alpha, beta, R_0 and the radius of the FPGA, bounds of the starts and of the crowning.",
+      "The speed of the optimization is not given either: 2000 rpm. So levels cannot be matched point by point; trends and reductions are compared.",
       "A reduction counts as agreeing within 10 percentage points, a level within 10 %; a trend when it has the same direction.",
   };
   json_t *array = json_array();
