@@ -5,7 +5,11 @@
    With C = factor factor' and a = factor' p the local approach g_i = Z - w_i - factor_i a fixes every load by itself: p_i is the inverse of
    the local law at g_i where g_i > 0, else 0. So the complementarity holds by construction and what is left is the minimum of a convex
    function of (a, Z): rank + 1 smooth equations, Newton with a symmetric positive definite matrix. Its last pivot is dP/dZ, the tangent
-   stiffness. */
+   stiffness.
+
+   Partial cells (struct eo_contact_grid_settings): over a cell g changes by 2 e, taken from its neighbours on the line; where it changes
+   sign the law is applied to the mean of its positive part, (g + e)^2 / (4 e) for |g| < e. Away from the ends of the contact nothing
+   differs, and the loads become smooth functions of load and phase. */
 #ifndef EASEOFF_CONTACT_LOADED_H
 #define EASEOFF_CONTACT_LOADED_H
 

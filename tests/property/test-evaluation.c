@@ -324,12 +324,12 @@ static void test_band(void)
   struct eo_design design = design_of("paper-case-a");
   design.alignment.shaft_angle_in_plane = 1e-3;
   const struct eo_evaluation *r = run(&design, NULL, EO_WANT_BAND);
-  double band[2] = {r->load_case[1].band[0], r->load_case[1].band[1]};
+  double band[2] = {r->load_case[1].band[EO_READING_NORMAL][0], r->load_case[1].band[EO_READING_NORMAL][1]};
   for (int side = 0; side < 2; side++) {
     struct eo_scenario scenario = {NAN, NAN, side ? 1.1 : 0.9, 1};
     near(band[side], run(&design, &scenario, 0)->load_case[1].vibration.rms_pair[EO_READING_NORMAL], 2e-5, "band of the RMS: the same as a scenario, m/s2");
   }
-  ok(isnan(run(&design, NULL, 0)->load_case[1].band[0]), "no band unless asked for");
+  ok(isnan(run(&design, NULL, 0)->load_case[1].band[EO_READING_NORMAL][0]), "no band unless asked for");
 }
 
 static void test_curves(void)
