@@ -8,7 +8,8 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-enum eo_job_state { EO_JOB_QUEUED, EO_JOB_RUNNING, EO_JOB_CANCELLED, EO_JOB_DONE, EO_JOB_FAILED };
+enum eo_job_state { EO_JOB_QUEUED, EO_JOB_PREPARING, EO_JOB_RUNNING, EO_JOB_DONE, EO_JOB_FAILED, EO_JOB_CANCELLED, EO_JOB_STATES };
+enum eo_job_kind { EO_JOB_OPTIMIZE, EO_JOB_PREPARE, EO_JOB_KINDS };
 
 struct eo_stored_job {
   int64_t id, problem;
