@@ -18,7 +18,7 @@
 
 #include "document/sweep_document.h"
 #include "evaluation/analysis.h"
-#include "store/jobs.h"
+#include "store/queue.h"
 
 struct eo_service;
 
@@ -45,16 +45,7 @@ void eo_service_free(struct eo_service *service);
 
 /* ---- jobs ---- */
 
-enum eo_job_outcome {
-  EO_JOB_OUTCOME_DONE,
-  EO_JOB_OUTCOME_MISSING,   /* there is no such job */
-  EO_JOB_OUTCOME_REPEATED,  /* this idempotency key was used for the same request: *job is the job of then */
-  EO_JOB_OUTCOME_CONFLICT,  /* ... for another request */
-  EO_JOB_OUTCOME_FULL,      /* too many jobs wait; try again later */
-  EO_JOB_OUTCOME_STATE,     /* the job's state does not allow it */
-  EO_JOB_OUTCOME_CLOSED,    /* the service is stopping */
-};
-
+/* Outcomes: enum eo_job_outcome of store/queue.h. */
 struct eo_job_order {
   enum eo_job_kind kind;
   const struct eo_design *design; /* complete (eo_design_complete()) */

@@ -29,6 +29,7 @@ struct eo_study_plan {
   const struct eo_pair *pair;        /* serves the design */
   struct eo_store *store;            /* of the calling thread */
   int threads;                       /* 0: eo_parallel_cores() */
+  int64_t job;                       /* a queued job to work on; 0: the one to take up, or a new one */
   bool fresh;                        /* the algorithm is told nothing of earlier jobs; what it asks for is still looked up */
   bool restart;                      /* a new job even where one of the same study could be taken up */
   eo_study_watch *watch;             /* may be NULL */
