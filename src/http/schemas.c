@@ -15,6 +15,7 @@ static const struct { const char *name, *notation; } shapes[] = {
     {"Session", "{required flag, authorized flag}"},
     {"Token", "{token text}"},
     {"Examples", "{items [{name text, title text}]}"},
+    {"Exports", "{items [{name text, title text, type text}]}"},
     {"Form", "{design Fields, sweep Fields}"},
     {"Fields", "{name text, fields [{key text, kind 'number|integer|seed|flag|text|choice|numbers|limit|object|list|series', help text, ...}], ...}"},
     {"Check", "{design ResolvedDesign, geometry Geometry, warnings [text], prepared flag}"},
