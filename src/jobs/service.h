@@ -9,8 +9,8 @@
    again when a service starts, and an optimization goes through its history first, so nothing is evaluated twice. One service works on a
    data folder at a time (a byte of easeoff.lock says so); the terminal's commands may work beside it.
 
-   Callbacks run on the service's threads: they must be short, and may call everything here but eo_service_stop(), eo_service_free() and, from an
-   event, eo_service_subscribe() and eo_service_unsubscribe(). */
+   Callbacks run on the service's threads and must be short. One that is given an answer may call everything here but eo_service_free(); a listener
+   to events, nothing. */
 #ifndef EASEOFF_JOBS_SERVICE_H
 #define EASEOFF_JOBS_SERVICE_H
 
@@ -18,6 +18,7 @@
 
 #include "document/sweep_document.h"
 #include "evaluation/analysis.h"
+#include "jobs/events.h"
 #include "store/queue.h"
 
 struct eo_service;
@@ -89,15 +90,6 @@ enum eo_code eo_service_generations(struct eo_service *service, int64_t id, enum
 
 /* ---- events ---- */
 
-/* A job as it was at a moment. Numbers grow by one, across restarts too (by more than one then). */
-struct eo_service_event {
-  int64_t number;
-  int64_t job;
-  const char *text;   /* the job's document without design, compact JSON, one line; borrowed */
-  size_t size;
-};
-typedef void eo_service_listener(void *context, const struct eo_service_event *event);
-
 /* Calls the listener for every event from now on, of one job or of all (0), one at a time and in the order of their numbers, beginning before this
    returns with those after the number `after` (0: none; those that are there now). Where they are no longer all kept (the last 1024 are), with
    the state of every job that has not ended, under the newest number. The listener is called with a lock of the service held: never hold a lock
@@ -167,7 +159,7 @@ bool eo_service_is_prepared(struct eo_service *service, const struct eo_design *
 
 struct eo_service_status {
   int64_t jobs[EO_JOB_STATES];              /* by state */
-  bool database;                            /* can be read and written */
+  bool database;                            /* can be read */
   int analyses_waiting, sweeps_waiting, pairs, subscribers;
   int64_t analyses, overtaken, sweeps, refused; /* since the start: answered, dropped, answered, queue was full */
   double analysis_ms_total, analysis_ms_most;   /* queue, model, document */

@@ -10,11 +10,13 @@
 
 #include "document/study_result.h"
 #include "evaluation/pair.h"
+#include "optimizer/optimizer.h"
 #include "store/store.h"
 
 struct eo_study_report {
   int64_t job;
   int generation;                    /* finished ones */
+  const struct eo_generation *history; /* [generation] */
   int true_evaluations, predicted, repeated, reused, individuals;
   double fraction;                   /* 0..1 of the work */
   double seconds, seconds_left;      /* NaN: not known yet */

@@ -269,6 +269,12 @@ enum eo_code eo_queue_remove(struct eo_store *store, int64_t id, enum eo_job_out
   return code ? code : close(store, remove_job(store, id, outcome, error), error);
 }
 
+enum eo_code eo_queue_tidy(struct eo_store *store, int keep, struct eo_error *error)
+{
+  return EO_STATEMENT_RUN(store, error, "DELETE FROM job WHERE kind = 'prepare' AND state = 'done' AND idempotency IS NULL AND id NOT IN"
+                                        " (SELECT id FROM job WHERE kind = 'prepare' AND state = 'done' ORDER BY id DESC LIMIT ?)", "n", keep);
+}
+
 /* ---- reading ---- */
 
 enum eo_code eo_queue_find(struct eo_store *store, int64_t id, eo_store_visit_job *visit, void *context, enum eo_job_outcome *outcome,

@@ -59,6 +59,9 @@ enum eo_code eo_queue_remove(struct eo_store *store, int64_t id, enum eo_job_out
 /* After the server's process ended: what it had begun waits again, what was to be stopped is cancelled. Only for who holds the server's lock. */
 enum eo_code eo_queue_recover(struct eo_store *store, int64_t *queued, struct eo_error *error);
 
+/* Removes finished preparations but the newest ones: nobody asks for them. */
+enum eo_code eo_queue_tidy(struct eo_store *store, int keep, struct eo_error *error);
+
 /* One job with everything; the texts are borrowed until visit returns. Outcomes: DONE, MISSING. */
 enum eo_code eo_queue_find(struct eo_store *store, int64_t id, eo_store_visit_job *visit, void *context, enum eo_job_outcome *outcome,
                            struct eo_error *error);
