@@ -1,0 +1,10 @@
+/* What several groups of endpoints say about jobs. */
+#ifndef EASEOFF_HTTP_JOB_H
+#define EASEOFF_HTTP_JOB_H
+
+#include "http/request.h"
+
+/* Location: the job. */
+void eo_reply_job_location(struct eo_request *request, int64_t id);
+
+#endif
