@@ -1,25 +1,77 @@
 #include "evaluation/evaluator-internal.h"
 
 #include "base/clock.h"
+#include "base/parallel.h"
 #include "numerics/periodic.h"
 
 #include <math.h>
 #include <string.h>
 
-static enum eo_code find_root_stress(struct eo_evaluator *e, struct eo_error *error)
+enum { ROOT_STEP = 2 };
+
+/* Histories to compute: of one load case, end and member each. */
+struct histories {
+  struct eo_evaluator *evaluator;
+  int count;
+  struct { int load_case, end, member; } item[EO_MAX_LOAD_CASES * 4];
+};
+
+static enum eo_code find_history(void *context, int thread, int item, struct eo_error *error)
 {
-  enum { STEP = 2 };
-  struct eo_evaluation *r = &e->result;
-  const struct eo_pair *pair = e->pair;
-  const struct eo_root_modes *const modes[2] = {pair->root[0], pair->root[1]};
-  enum eo_code code = e->root ? EO_OK : eo_root_workspace_new(&e->root, pair->grid, modes, error);
-  for (int k = 0; k < r->cases && !code; k++)
-    for (int end = 0; end < r->ends; end++)
-      for (int member = 0; member < 2; member++) {
-        struct eo_root root = eo_flexibility_root(pair->flexibility, member);
-        eo_root_history_compute(&r->load_case[k].end[end].root[member], e->root, &root, modes[member], pair->grid,
-                                &r->load_case[k].end[end].loaded, STEP);
+  const struct histories *h = context;
+  struct eo_evaluator *e = h->evaluator;
+  struct eo_end_result *end = &e->result.load_case[h->item[item].load_case].end[h->item[item].end];
+  int member = h->item[item].member;
+  struct eo_root root = eo_flexibility_root(e->pair->flexibility, member);
+  (void)error;
+  eo_root_history_compute(&end->root[member], e->root[thread], &root, e->pair->root[member], e->pair->grid, &end->loaded, ROOT_STEP);
+  e->root_phases = end->root[member].phases;
+  return EO_OK;
+}
+
+static void copy_history(const struct eo_root_history *from, struct eo_root_history *to)
+{
+  memcpy(to->phase, from->phase, sizeof *to->phase * (size_t)from->phases);
+  memcpy(to->stress, from->stress, sizeof *to->stress * (size_t)from->phases);
+  to->phases = from->phases;
+  to->maximum = from->maximum;
+  to->arc = from->arc;
+  to->eta = from->eta;
+}
+
+static void list_histories(struct histories *h, const struct eo_design *design)
+{
+  const struct eo_evaluator *e = h->evaluator;
+  for (int k = 0; k < e->result.cases; k++)
+    for (int end = 0; end < e->result.ends; end++)
+      for (int member = 0; member < 2 && !e->rooted[end] && !(end == EO_RIGHT && eo_evaluator_copies_end(e, design)); member++) {
+        h->item[h->count].load_case = k;
+        h->item[h->count].end = end;
+        h->item[h->count++].member = member;
       }
+}
+
+static enum eo_code find_root_stress(struct eo_evaluator *e, const struct eo_design *design, struct eo_error *error)
+{
+  struct histories h = {.evaluator = e};
+  struct eo_evaluation *r = &e->result;
+  const struct eo_parallel parallel = {.threads = e->threads, .work = find_history, .context = &h};
+  const struct eo_root_modes *const modes[2] = {e->pair->root[0], e->pair->root[1]};
+  enum eo_code code = EO_OK;
+  for (int thread = 0; thread < e->threads && !code; thread++)
+    code = e->root[thread] ? EO_OK : eo_root_workspace_new(&e->root[thread], e->pair->grid, modes, error);
+  list_histories(&h, design);
+  if (!code)
+    code = eo_parallel_run(&parallel, h.count, error);
+  for (int k = 0; k < r->cases && !code; k++)
+    for (int member = 0; member < 2; member++)
+      for (int end = 0; end < r->ends; end++)
+        if (end == EO_RIGHT && eo_evaluator_copies_end(e, design))
+          copy_history(&r->load_case[k].end[EO_LEFT].root[member], &r->load_case[k].end[end].root[member]);
+        else
+          r->load_case[k].end[end].root[member].phases = e->root_phases;
+  for (int end = 0; end < r->ends && !code; end++)
+    e->rooted[end] = !(end == EO_RIGHT && r->equal_ends);
   return code;
 }
 
@@ -104,8 +156,10 @@ static enum eo_code solve_static(struct eo_evaluator *e, const struct eo_design 
     return code;
   double start = eo_clock_milliseconds();
   set_cases(e, design);
-  eo_evaluator_set_fields(e, design, scenario);
-  eo_evaluator_solve_contact(e, design, scenario->compliance);
+  eo_evaluator_set_keys(e, design, scenario);
+  code = eo_evaluator_solve_contact(e, design, scenario->compliance, error);
+  if (code)
+    return code;
   for (int k = 0; k < r->cases; k++) {
     for (int end = 0; end < r->ends; end++)
       eo_evaluator_summarise_end(e, &r->load_case[k], end);
@@ -142,7 +196,7 @@ enum eo_code eo_evaluator_run(struct eo_evaluator *e, const struct eo_design *de
     return code;
   double impact = eo_clock_milliseconds();
   if (root)
-    code = find_root_stress(e, error);
+    code = find_root_stress(e, design, error);
   double rooted = eo_clock_milliseconds();
   if (!code)
     code = eo_evaluator_solve_dynamics(e, design, s->speed, s->compliance, want, error);
