@@ -17,7 +17,6 @@ struct eo_evaluator {
   } known[2];                              /* [end]: of what is kept; cases 0: nothing is */
   bool fresh[2];                           /* [end]: to be solved in this run; the other end is as the last run left it */
   bool rooted[2];                          /* [end]: its root stress belongs to what is kept */
-  int root_phases;                         /* of every history */
   int threads;                             /* 1 or 2 */
   struct eo_loaded_workspace *contact, *second_contact; /* second_...: of the second thread; NULL until asked for */
   struct eo_elastic *bodies;               /* NULL: rigid */
@@ -27,6 +26,7 @@ struct eo_evaluator {
   struct eo_loaded_end *table;             /* [EO_EVALUATOR_TABLE_LOADS] of the table law, one end at a time; NULL until asked for */
   double *table_rows;                      /* [EO_EVALUATOR_TABLE_LOADS][positions] */
   struct eo_root_workspace *root[2];       /* [thread]; NULL until asked for */
+  struct eo_root_peak *peaks;              /* [member][teeth][most_cases * 2]; NULL until asked for */
   struct eo_vibration_solver *vibration;
   int vibration_harmonics;
   struct eo_law (*law)[2];                 /* [most_cases][end] */

@@ -5,27 +5,34 @@
 #include "numerics/periodic.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
-enum { ROOT_STEP = 2 };
+enum { ROOT_STEP = 2, ROOT_BATCH = 8 }; /* BATCH: ends at a time, so that the stresses of a tooth stay in the cache */
 
-/* Histories to compute: of one load case, end and member each. */
-struct histories {
+/* Root stress of several ends: an item is a tooth of a member under a batch of them. */
+struct roots {
   struct eo_evaluator *evaluator;
-  int count;
-  struct { int load_case, end, member; } item[EO_MAX_LOAD_CASES * 4];
+  int ends, teeth, first;                               /* ends: to compute; first: tooth */
+  struct eo_end_result *end[EO_MAX_LOAD_CASES * 2];
+  struct eo_root_peak *peak;                            /* [member][teeth][ends] */
 };
 
-static enum eo_code find_history(void *context, int thread, int item, struct eo_error *error)
+static enum eo_code find_tooth(void *context, int thread, int item, struct eo_error *error)
 {
-  const struct histories *h = context;
-  struct eo_evaluator *e = h->evaluator;
-  struct eo_end_result *end = &e->result.load_case[h->item[item].load_case].end[h->item[item].end];
-  int member = h->item[item].member;
-  struct eo_root root = eo_flexibility_root(e->pair->flexibility, member);
+  const struct roots *roots = context;
+  struct eo_evaluator *e = roots->evaluator;
+  int tooth = item % roots->teeth, member = item / roots->teeth % 2, first = item / roots->teeth / 2 * ROOT_BATCH;
+  int count = roots->ends - first < ROOT_BATCH ? roots->ends - first : ROOT_BATCH;
+  const struct eo_loaded_end *loaded[ROOT_BATCH];
+  struct eo_root_history *history[ROOT_BATCH];
   (void)error;
-  eo_root_history_compute(&end->root[member], e->root[thread], &root, e->pair->root[member], e->pair->grid, &end->loaded, ROOT_STEP);
-  e->root_phases = end->root[member].phases;
+  for (int i = 0; i < count; i++) {
+    loaded[i] = &roots->end[first + i]->loaded;
+    history[i] = &roots->end[first + i]->root[member];
+  }
+  eo_root_tooth_compute(e->root[thread], e->pair->root[member], e->pair->grid, roots->first + tooth, ROOT_STEP, count, loaded, history,
+                        roots->peak + (member * roots->teeth + tooth) * roots->ends + first);
   return EO_OK;
 }
 
@@ -33,43 +40,67 @@ static void copy_history(const struct eo_root_history *from, struct eo_root_hist
 {
   memcpy(to->phase, from->phase, sizeof *to->phase * (size_t)from->phases);
   memcpy(to->stress, from->stress, sizeof *to->stress * (size_t)from->phases);
-  to->phases = from->phases;
   to->maximum = from->maximum;
   to->arc = from->arc;
   to->eta = from->eta;
 }
 
-static void list_histories(struct histories *h, const struct eo_design *design)
+/* Ends that are neither as they were nor the same as the left one. */
+static void list_ends(struct roots *roots, const struct eo_design *design)
 {
-  const struct eo_evaluator *e = h->evaluator;
+  struct eo_evaluator *e = roots->evaluator;
   for (int k = 0; k < e->result.cases; k++)
     for (int end = 0; end < e->result.ends; end++)
-      for (int member = 0; member < 2 && !e->rooted[end] && !(end == EO_RIGHT && eo_evaluator_copies_end(e, design)); member++) {
-        h->item[h->count].load_case = k;
-        h->item[h->count].end = end;
-        h->item[h->count++].member = member;
-      }
+      if (!e->rooted[end] && !(end == EO_RIGHT && eo_evaluator_copies_end(e, design)))
+        roots->end[roots->ends++] = &e->result.load_case[k].end[end];
+}
+
+static enum eo_code compute_roots(struct roots *roots, struct eo_error *error)
+{
+  struct eo_evaluator *e = roots->evaluator;
+  const struct eo_parallel parallel = {.threads = e->threads, .work = find_tooth, .context = roots};
+  int batches = (roots->ends + ROOT_BATCH - 1) / ROOT_BATCH;
+  enum eo_code code = eo_parallel_run(&parallel, batches * 2 * roots->teeth, error);
+  for (int member = 0; member < 2 && !code; member++) {
+    struct eo_root root = eo_flexibility_root(e->pair->flexibility, member);
+    for (int i = 0; i < roots->ends; i++)
+      eo_root_history_finish(&roots->end[i]->root[member], &root, e->pair->grid, ROOT_STEP, roots->peak + member * roots->teeth * roots->ends + i,
+                             roots->ends);
+  }
+  return code;
+}
+
+static enum eo_code make_root_workspaces(struct eo_evaluator *e, struct eo_error *error)
+{
+  const struct eo_root_modes *const modes[2] = {e->pair->root[0], e->pair->root[1]};
+  int ends = 2 * e->most_cases < ROOT_BATCH ? 2 * e->most_cases : ROOT_BATCH, range[2];
+  enum eo_code code = EO_OK;
+  eo_contact_grid_pairs(e->pair->grid, range);
+  for (int thread = 0; thread < e->threads && !code; thread++)
+    code = e->root[thread] ? EO_OK : eo_root_workspace_new(&e->root[thread], e->pair->grid, modes, ROOT_STEP, ends, error);
+  if (!code && !e->peaks && !(e->peaks = malloc(sizeof *e->peaks * (size_t)(range[1] - range[0] + 1) * 4 * (size_t)e->most_cases)))
+    code = eo_error_memory(error);
+  return code;
 }
 
 static enum eo_code find_root_stress(struct eo_evaluator *e, const struct eo_design *design, struct eo_error *error)
 {
-  struct histories h = {.evaluator = e};
   struct eo_evaluation *r = &e->result;
-  const struct eo_parallel parallel = {.threads = e->threads, .work = find_history, .context = &h};
-  const struct eo_root_modes *const modes[2] = {e->pair->root[0], e->pair->root[1]};
-  enum eo_code code = EO_OK;
-  for (int thread = 0; thread < e->threads && !code; thread++)
-    code = e->root[thread] ? EO_OK : eo_root_workspace_new(&e->root[thread], e->pair->grid, modes, error);
-  list_histories(&h, design);
+  int range[2];
+  eo_contact_grid_pairs(e->pair->grid, range);
+  enum eo_code code = make_root_workspaces(e, error);
+  struct roots roots = {.evaluator = e, .teeth = range[1] - range[0] + 1, .first = range[0], .peak = e->peaks};
+  list_ends(&roots, design);
   if (!code)
-    code = eo_parallel_run(&parallel, h.count, error);
+    code = compute_roots(&roots, error);
   for (int k = 0; k < r->cases && !code; k++)
     for (int member = 0; member < 2; member++)
-      for (int end = 0; end < r->ends; end++)
+      for (int end = 0; end < r->ends; end++) {
+        struct eo_root_history *history = &r->load_case[k].end[end].root[member];
         if (end == EO_RIGHT && eo_evaluator_copies_end(e, design))
-          copy_history(&r->load_case[k].end[EO_LEFT].root[member], &r->load_case[k].end[end].root[member]);
-        else
-          r->load_case[k].end[end].root[member].phases = e->root_phases;
+          copy_history(&r->load_case[k].end[EO_LEFT].root[member], history);
+        history->phases = roots.teeth * ((r->positions + ROOT_STEP - 1) / ROOT_STEP); /* of those that are as they were, too */
+      }
   for (int end = 0; end < r->ends && !code; end++)
     e->rooted[end] = !(end == EO_RIGHT && r->equal_ends);
   return code;

@@ -115,6 +115,7 @@ void eo_evaluator_free(struct eo_evaluator *e)
   eo_loaded_workspace_free(e->second_contact);
   for (int thread = 0; thread < 2; thread++)
     eo_root_workspace_free(e->root[thread]);
+  free(e->peaks);
   eo_elastic_free(e->bodies);
   eo_loaded_gaps_done(&e->bent);
   eo_vibration_free(e->vibration);
