@@ -1,5 +1,6 @@
 #include "document/schema.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 #include "document/result_parts.h"
@@ -43,11 +44,11 @@ static bool is_numeric(const struct eo_field *field)
   return is_whole(field) || field->kind == EO_FIELD_NUMBER || field->kind == EO_FIELD_NUMBERS || field->kind == EO_FIELD_LIMIT;
 }
 
-/* Ranges without an end are left out. */
-static void put_bound(struct eo_result_object *o, const char *key, double bound, bool whole)
+/* Ranges without an end are left out; a whole number reads 17, not 17.0. */
+static void put_bound(struct eo_result_object *o, const char *key, double bound)
 {
   if (isfinite(bound))
-    eo_result_put(o, key, whole ? json_integer((json_int_t)bound) : json_real(bound));
+    eo_result_put(o, key, fabs(bound) < 1e15 && bound == floor(bound) ? json_integer((json_int_t)bound) : json_real(bound));
 }
 
 static json_t *list_choices(const struct eo_field *field)
@@ -70,12 +71,12 @@ static void put_range(struct eo_result_object *o, const struct eo_field *field)
 {
   bool rows = field->kind == EO_FIELD_LIST || field->kind == EO_FIELD_SERIES;
   if (is_numeric(field) || rows) {
-    put_bound(o, "low", field->low, rows || is_whole(field));
-    put_bound(o, "high", field->high, rows || is_whole(field));
+    put_bound(o, "low", field->low);
+    put_bound(o, "high", field->high);
   }
   if (field->kind == EO_FIELD_SERIES) {
-    put_bound(o, "number_low", field->series_low, false);
-    put_bound(o, "number_high", field->series_high, false);
+    put_bound(o, "number_low", field->series_low);
+    put_bound(o, "number_high", field->series_high);
   }
   if (field->kind == EO_FIELD_NUMBERS || field->kind == EO_FIELD_LIST)
     eo_result_put(o, "count", json_integer(field->count));
@@ -141,8 +142,8 @@ static void put_number(struct eo_result_object *o, const struct eo_field *field,
   put_type(o, is_whole(field) ? "integer" : "number", nullable);
   if (!input)
     return;
-  put_bound(o, "minimum", low, is_whole(field));
-  put_bound(o, "maximum", high, is_whole(field));
+  put_bound(o, "minimum", low);
+  put_bound(o, "maximum", high);
 }
 
 /* Numbers of an array that is written may be missing one by one. */
@@ -166,8 +167,8 @@ static void put_array(struct eo_result_object *o, const struct eo_field *field, 
 {
   put_type(o, "array", field->flags & EO_FIELD_NULLABLE);
   eo_result_put(o, "items", items);
-  put_bound(o, "minItems", low, true);
-  put_bound(o, "maxItems", high, true);
+  put_bound(o, "minItems", low);
+  put_bound(o, "maxItems", high);
 }
 
 static void put_object(struct eo_result_object *o, const struct eo_table *table, bool nullable, bool input);
