@@ -65,7 +65,7 @@ static void get_one(struct eo_request *request)
   int64_t id;
   if (!eo_request_key(request, 0, &id))
     return;
-  if (eo_store_find_design(request->http->store, id, visit, &found, &outcome, &error))
+  if (eo_store_find_design(request->store, id, visit, &found, &outcome, &error))
     eo_reply_error(request, "", &error);
   else if (outcome == EO_DESIGN_MISSING)
     reply_missing(request);
@@ -97,7 +97,7 @@ static void list(struct eo_request *request)
   struct eo_error error;
   struct page page = {.items = json_array(), .limit = (int)eo_request_number(request, "limit")};
   int64_t before = (int64_t)eo_request_number(request, "cursor");
-  if (eo_store_list_designs(request->http->store, before, page.limit + 1, visit_listed, &page, &error)) {
+  if (eo_store_list_designs(request->store, before, page.limit + 1, visit_listed, &page, &error)) {
     json_decref(page.items);
     eo_reply_error(request, "", &error);
     return;
@@ -156,7 +156,7 @@ static void add(struct eo_request *request)
   enum eo_design_outcome outcome;
   if (!read_given(request, &given))
     return;
-  if (eo_store_add_design(request->http->store, given.name, given.text, MOST_DESIGNS, visit, &found, &outcome, &error))
+  if (eo_store_add_design(request->store, given.name, given.text, MOST_DESIGNS, visit, &found, &outcome, &error))
     eo_reply_error(request, "", &error);
   else if (outcome == EO_DESIGN_FULL)
     eo_reply_problem(request, 507, "full", "%d designs are stored already.", MOST_DESIGNS);
@@ -180,7 +180,7 @@ static bool read_expected(struct eo_request *request, int64_t id, bool required,
     eo_reply_problem(request, 428, NULL, "Say with If-Match which version is to be replaced (the ETag of the design, or *).");
   if (!header)
     return !required;
-  if (eo_store_find_design(request->http->store, id, visit, &found, &outcome, &error)) {
+  if (eo_store_find_design(request->store, id, visit, &found, &outcome, &error)) {
     eo_reply_error(request, "", &error);
     return false;
   }
@@ -204,7 +204,7 @@ static void replace(struct eo_request *request)
   int64_t id, expected;
   if (!eo_request_key(request, 0, &id) || !read_expected(request, id, true, &expected) || !read_given(request, &given))
     return;
-  if (eo_store_change_design(request->http->store, id, expected, given.name, given.text, visit, &found, &outcome, &error))
+  if (eo_store_change_design(request->store, id, expected, given.name, given.text, visit, &found, &outcome, &error))
     eo_reply_error(request, "", &error);
   else if (outcome == EO_DESIGN_MISSING)
     reply_missing(request);
@@ -223,7 +223,7 @@ static void take_out(struct eo_request *request)
   int64_t id, expected;
   if (!eo_request_key(request, 0, &id) || !read_expected(request, id, false, &expected))
     return;
-  if (eo_store_remove_design(request->http->store, id, expected, &outcome, &error))
+  if (eo_store_remove_design(request->store, id, expected, &outcome, &error))
     eo_reply_error(request, "", &error);
   else if (outcome == EO_DESIGN_MISSING)
     reply_missing(request);

@@ -4,6 +4,9 @@
 
 #include "http/request.h"
 
+/* What stands in the way of a job; nothing with DONE and REPEATED. */
+void eo_reply_job_outcome(struct eo_request *request, enum eo_job_outcome outcome);
+
 /* Location: the job. */
 void eo_reply_job_location(struct eo_request *request, int64_t id);
 

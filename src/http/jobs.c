@@ -11,7 +11,7 @@ void eo_reply_job_location(struct eo_request *request, int64_t id)
   snprintf(request->reply.location, sizeof request->reply.location, EO_API "/jobs/%lld", (long long)id);
 }
 
-static void reply_outcome(struct eo_request *request, enum eo_job_outcome outcome)
+void eo_reply_job_outcome(struct eo_request *request, enum eo_job_outcome outcome)
 {
   switch (outcome) {
   case EO_JOB_OUTCOME_MISSING:
@@ -44,7 +44,7 @@ static void reply_job(struct eo_request *request, unsigned status, enum eo_code 
   if (code)
     eo_reply_error(request, "", error);
   else if (outcome != EO_JOB_OUTCOME_DONE && outcome != EO_JOB_OUTCOME_REPEATED)
-    reply_outcome(request, outcome);
+    eo_reply_job_outcome(request, outcome);
   else {
     int64_t id = json_integer_value(json_object_get(job, "id"));
     eo_reply_json(request, status, job);
@@ -216,7 +216,7 @@ static void get_result(struct eo_request *request)
   if (eo_service_result(request->http->service, id, &outcome, &text, &error))
     eo_reply_error(request, "", &error);
   else if (outcome != EO_JOB_OUTCOME_DONE)
-    reply_outcome(request, outcome);
+    eo_reply_job_outcome(request, outcome);
   else
     eo_reply_text(request, 200, "application/json", &text);
   eo_text_done(&text);
@@ -270,7 +270,7 @@ static void take_out(struct eo_request *request)
   if (eo_service_remove(request->http->service, id, &outcome, &error))
     eo_reply_error(request, "", &error);
   else if (outcome != EO_JOB_OUTCOME_DONE)
-    reply_outcome(request, outcome);
+    eo_reply_job_outcome(request, outcome);
   else
     eo_reply_empty(request, 204);
 }
@@ -286,9 +286,9 @@ const struct eo_route eo_routes_jobs[] = {
     {.method = EO_GET, .pattern = "/jobs/{id}", .handle = get_one, .name = "getJob", .summary = "A job with its design.", .gives = "200 Job"},
     {.method = EO_DELETE, .pattern = "/jobs/{id}", .handle = take_out, .name = "removeJob", .summary = "Removes a job that has ended.", .gives = "204 -"},
     {.method = EO_GET, .pattern = "/jobs/{id}/result", .handle = get_result, .name = "getJobResult",
-     .summary = "What an optimization found: the document of `easeoff optimize --json`. 409 while it is not finished.", .gives = "200 OptimizationResult"},
+     .summary = "What an optimization found: the document of `easeoff optimize --json`. 409 while it is not finished.", .gives = "200 OptimizationResult", .aside = true},
     {.method = EO_GET, .pattern = "/jobs/{id}/generations", .handle = get_generations, .name = "getJobGenerations",
-     .summary = "The convergence of an optimization as columns, also while it runs.", .gives = "200 Generations"},
+     .summary = "The convergence of an optimization as columns, also while it runs.", .gives = "200 Generations", .aside = true},
     {.method = EO_POST, .pattern = "/jobs/{id}/cancel", .handle = cancel, .name = "cancelJob",
      .summary = "Stops a job; one that runs ends within an evaluation and keeps what it found.", .gives = "202 Job", .rate = EO_RATE_START},
     {.method = EO_POST, .pattern = "/jobs/{id}/retry", .handle = retry, .name = "retryJob", .summary = "Queues a failed or cancelled job again.",

@@ -27,6 +27,7 @@ struct eo_request *eo_request_new(struct eo_http *http, struct MHD_Connection *c
   if (!request)
     return NULL;
   request->http = http;
+  request->store = http->store;
   request->connection = connection;
   request->place = info ? info->socket_context : NULL;
   request->started = eo_clock_milliseconds();

@@ -38,6 +38,7 @@ struct eo_reply {
 
 struct eo_request {
   struct eo_http *http;
+  struct eo_store *store;             /* of the thread the handler runs on */
   struct MHD_Connection *connection;
   struct eo_connection *place;        /* of the connection, with its deadline */
   char id[EO_REQUEST_ID + 1];

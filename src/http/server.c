@@ -11,6 +11,7 @@
 #include "base/clock.h"
 #include "document/json.h"
 #include "http/address.h"
+#include "http/aside.h"
 #include "http/documents.h"
 #include "http/pages.h"
 #include "http/route.h"
@@ -88,8 +89,12 @@ static void dispatch(struct eo_request *request)
     return;
   if (!request->route)
     eo_pages_reply(request->http->pages, request);
-  else if (eo_guard_spends(request, request->route->rate))
-    request->route->handle(request);
+  else if (eo_guard_spends(request, request->route->rate)) {
+    if (request->route->aside)
+      eo_aside_take(request->http->aside, request);
+    else
+      request->route->handle(request);
+  }
 }
 
 static enum MHD_Result handle(void *context, struct MHD_Connection *connection, const char *path, const char *method, const char *version,
@@ -191,6 +196,7 @@ static void init(struct eo_http *http, const struct eo_http_settings *settings)
 
 static void done(struct eo_http *http)
 {
+  eo_aside_free(http->aside);
   eo_pages_free(http->pages);
   eo_documents_free(http->documents);
   eo_store_close(http->store);
@@ -207,6 +213,8 @@ static enum eo_code start(struct eo_http *http, struct eo_error *error)
   enum eo_code code = check_access(&http->settings, error);
   if (!code)
     code = eo_store_open(&http->store, http->settings.data, EO_STORE_WRITE, error);
+  if (!code)
+    code = eo_aside_new(&http->aside, http->settings.data, error);
   if (!code)
     code = eo_pages_new(&http->pages, http->settings.pages, error);
   if (!code)

@@ -41,6 +41,7 @@ struct eo_http {
   struct eo_service *service;
   struct eo_store *store;            /* of the HTTP thread */
   struct eo_guard guard;             /* of the HTTP thread but for its constants */
+  struct eo_aside *aside;
   struct eo_pages *pages;
   struct eo_documents *documents;    /* made once: OpenAPI, field tables, examples */
   uint64_t requests;                 /* HTTP thread */

@@ -4,6 +4,7 @@
 #include "store/job_row.h"
 #include "store/lock.h"
 
+#include <limits.h>
 #include <string.h>
 
 static const char *const state_names[] = {"queued", "preparing", "running", "done", "failed", "cancelled"};
@@ -182,10 +183,11 @@ static void read_point(const struct eo_statement *s, int column, struct point *p
     memcpy(point->x, x, bytes);
 }
 
-enum eo_code eo_store_each_candidate(struct eo_store *store, int64_t job, eo_store_visit_candidate *visit, void *context, struct eo_error *error)
+enum eo_code eo_store_page_candidates(struct eo_store *store, int64_t job, int after, int limit, eo_store_visit_candidate *visit, void *context,
+                                      struct eo_error *error)
 {
-  struct eo_statement s = eo_statement_begin(store, "SELECT evaluation, ordinal, generation, individual, reused, x FROM candidate WHERE job = ? ORDER BY ordinal",
-                                             "i", job);
+  struct eo_statement s = eo_statement_begin(store, "SELECT evaluation, ordinal, generation, individual, reused, x FROM candidate"
+                                                    " WHERE job = ? AND ordinal > ? ORDER BY ordinal LIMIT ?", "inn", job, after, limit);
   enum eo_code code = EO_OK;
   struct point point;
   while (!code && eo_statement_step(&s)) {
@@ -197,6 +199,11 @@ enum eo_code eo_store_each_candidate(struct eo_store *store, int64_t job, eo_sto
   }
   enum eo_code end = eo_statement_end(&s, code ? NULL : error);
   return code ? code : end;
+}
+
+enum eo_code eo_store_each_candidate(struct eo_store *store, int64_t job, eo_store_visit_candidate *visit, void *context, struct eo_error *error)
+{
+  return eo_store_page_candidates(store, job, -1, INT_MAX, visit, context, error);
 }
 
 enum eo_code eo_store_each_prediction(struct eo_store *store, int64_t job, eo_store_visit_prediction *visit, void *context, struct eo_error *error)

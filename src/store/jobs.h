@@ -87,6 +87,9 @@ typedef enum eo_code eo_store_visit_candidate(void *context, const struct eo_sto
 typedef enum eo_code eo_store_visit_prediction(void *context, const struct eo_stored_prediction *prediction, struct eo_error *error);
 enum eo_code eo_store_each_job(struct eo_store *store, int64_t problem, eo_store_visit_job *visit, void *context, struct eo_error *error);
 enum eo_code eo_store_each_candidate(struct eo_store *store, int64_t job, eo_store_visit_candidate *visit, void *context, struct eo_error *error);
+/* At most limit candidates whose ordinal is above after (-1: from the first). */
+enum eo_code eo_store_page_candidates(struct eo_store *store, int64_t job, int after, int limit, eo_store_visit_candidate *visit, void *context,
+                                      struct eo_error *error);
 enum eo_code eo_store_each_prediction(struct eo_store *store, int64_t job, eo_store_visit_prediction *visit, void *context, struct eo_error *error);
 
 /* Removes the predictions of jobs that have ended; *removed: how many. */
