@@ -40,7 +40,7 @@ static int report(struct study *s, int extra)
     return 0;
   struct eo_counters counters = eo_optimizer_counters(s->optimizer);
   double now = wall();
-  eo_optimizer_generations(s->optimizer, &report.generation);
+  report.history = eo_optimizer_generations(s->optimizer, &report.generation);
   report.true_evaluations = counters.true_evaluations + extra;
   report.predicted = counters.predicted;
   report.repeated = counters.reused;
