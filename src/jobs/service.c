@@ -88,6 +88,7 @@ enum eo_code eo_service_new(struct eo_service **result, const struct eo_service_
   if (!s)
     return eo_error_memory(error);
   make_mutexes(s);
+  s->cores = eo_parallel_cores();
   enum eo_code code = resolve(&s->settings, settings) ? open_store(s, error) : eo_error_memory(error);
   if (!code)
     code = eo_pairs_new(&s->pairs, s->settings.cache, s->settings.most_pairs, error);

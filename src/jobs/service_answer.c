@@ -226,6 +226,7 @@ static void analyze(struct eo_service *s, struct asked *asked, struct eo_held_pa
     fail(answer, code);
     return;
   }
+  analysis->threads = s->cores > 1 ? 2 : 1;
   code = eo_analysis_run(analysis, &asked->design, asked->want, &answer->error);
   double computed = eo_clock_milliseconds();
   if (!code)
