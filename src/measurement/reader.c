@@ -148,10 +148,24 @@ static enum eo_code read_text(const char *path, const struct eo_reader_options *
   return code;
 }
 
+static enum eo_code read_series(eo_series_reader *reader, const char *path, const struct eo_reader_options *options,
+                                struct eo_recording **recording, struct eo_notes *notes, struct eo_error *error)
+{
+  struct eo_series_recorder recorder = { .spool_directory = options->spool_directory, .progress = options->progress };
+  struct eo_series_sink sink = eo_series_recorder_sink(&recorder);
+  enum eo_code code = reader(path, options->max_bytes ? options->max_bytes : EO_READER_BYTES, &sink, notes, error);
+  if (code)
+    eo_recording_free(recorder.recording);
+  else
+    *recording = recorder.recording;
+  return code;
+}
+
 enum eo_code eo_reader_read(const char *path, const struct eo_reader_options *options, struct eo_recording **recording, struct eo_notes *notes,
                             struct eo_error *error)
 {
   static const struct eo_reader_options none;
+  static eo_series_reader *const readers[EO_READER_KINDS] = { [EO_READER_TDMS] = eo_tdms_read };
   enum eo_reader_kind kind;
   int gzip;
   enum eo_code code = eo_reader_identify(path, &kind, &gzip, error);
@@ -159,5 +173,7 @@ enum eo_code eo_reader_read(const char *path, const struct eo_reader_options *op
     return code;
   if (!options)
     options = &none;
-  return read_text(path, options, recording, notes, error);
+  if (kind == EO_READER_TEXT)
+    return read_text(path, options, recording, notes, error);
+  return read_series(readers[kind], path, options, recording, notes, error);
 }
