@@ -140,7 +140,7 @@ static enum eo_code read_text(const char *path, const struct eo_reader_options *
                               struct eo_error *error)
 {
   struct eo_source *source;
-  enum eo_code code = eo_source_open(&source, path, options->max_bytes ? options->max_bytes : EO_READER_BYTES, error);
+  enum eo_code code = eo_source_open(&source, path, options->max_bytes, error);
   if (code)
     return code;
   code = eo_text_read(source, options, recording, notes, error);
@@ -153,7 +153,7 @@ static enum eo_code read_series(eo_series_reader *reader, const char *path, cons
 {
   struct eo_series_recorder recorder = { .spool_directory = options->spool_directory, .progress = options->progress };
   struct eo_series_sink sink = eo_series_recorder_sink(&recorder);
-  enum eo_code code = reader(path, options->max_bytes ? options->max_bytes : EO_READER_BYTES, &sink, notes, error);
+  enum eo_code code = reader(path, options, &sink, notes, error);
   if (code)
     eo_recording_free(recorder.recording);
   else
@@ -164,16 +164,18 @@ static enum eo_code read_series(eo_series_reader *reader, const char *path, cons
 enum eo_code eo_reader_read(const char *path, const struct eo_reader_options *options, struct eo_recording **recording, struct eo_notes *notes,
                             struct eo_error *error)
 {
-  static const struct eo_reader_options none;
-  static eo_series_reader *const readers[EO_READER_KINDS] = { [EO_READER_TDMS] = eo_tdms_read };
+  struct eo_reader_options own = {0};
+  static eo_series_reader *const readers[EO_READER_KINDS] = { [EO_READER_TDMS] = eo_tdms_read, [EO_READER_UFF] = eo_uff_read };
   enum eo_reader_kind kind;
   int gzip;
   enum eo_code code = eo_reader_identify(path, &kind, &gzip, error);
   if (code)
     return code;
-  if (!options)
-    options = &none;
+  if (options)
+    own = *options;
+  if (!own.max_bytes)
+    own.max_bytes = EO_READER_BYTES;
   if (kind == EO_READER_TEXT)
-    return read_text(path, options, recording, notes, error);
-  return read_series(readers[kind], path, options, recording, notes, error);
+    return read_text(path, &own, recording, notes, error);
+  return read_series(readers[kind], path, &own, recording, notes, error);
 }

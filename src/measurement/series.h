@@ -33,9 +33,9 @@ struct eo_series_file {
   void *context;
 };
 
-/* A reader of one kind of file. */
-typedef enum eo_code eo_series_reader(const char *path, int64_t limit, const struct eo_series_sink *sink, struct eo_notes *notes,
-                                      struct eo_error *error);
+/* A reader of one kind of file; max_bytes of the options is set. */
+typedef enum eo_code eo_series_reader(const char *path, const struct eo_reader_options *options, const struct eo_series_sink *sink,
+                                      struct eo_notes *notes, struct eo_error *error);
 
 /* Chooses the channels that were sampled together - the most that share interval and length - or, where lengths differ, all long ones, and
    hands them to the sink row by row; what is left out is noted. Errors: EO_ERROR_INPUT: no channel with data, a table that is far larger than

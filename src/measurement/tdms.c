@@ -137,7 +137,8 @@ static void settle_channels(struct eo_tdms *tdms, struct eo_notes *notes)
     eo_notes_add(notes, "The TDMS file is not complete; its last, unfinished chunk was left out.");
 }
 
-enum eo_code eo_tdms_read(const char *path, int64_t limit, const struct eo_series_sink *sink, struct eo_notes *notes, struct eo_error *error)
+enum eo_code eo_tdms_read(const char *path, const struct eo_reader_options *options, const struct eo_series_sink *sink, struct eo_notes *notes,
+                          struct eo_error *error)
 {
   struct eo_tdms *tdms = calloc(1, sizeof *tdms);
   if (!tdms)
@@ -150,7 +151,7 @@ enum eo_code eo_tdms_read(const char *path, int64_t limit, const struct eo_serie
   code = eo_tdms_scan(tdms, error);
   if (!code) {
     settle_channels(tdms, notes);
-    struct eo_series_file file = { tdms->series, tdms->channels, tdms->size, limit, read_values, tdms };
+    struct eo_series_file file = { tdms->series, tdms->channels, tdms->size, options->max_bytes, read_values, tdms };
     code = eo_series_copy(&file, sink, notes, error);
   }
   close(tdms->file);

@@ -269,7 +269,7 @@ static void test_damage(void)
   put_file(0);
   memset(w.bytes + lead_in + 20, 0x7f, 8);
   write_bytes(w.bytes, w.size);
-  refused("cut off in its metadata", "data behind the segment's end");
+  refused("data behind its end", "data behind the segment's end");
   put_typed(DOUBLE, 0, (uint64_t)1 << 40);
   put_double(&w, 1);
   end_segment();
