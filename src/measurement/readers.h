@@ -12,5 +12,6 @@ enum eo_code eo_text_read(struct eo_source *source, const struct eo_reader_optio
                           struct eo_notes *notes, struct eo_error *error);
 
 eo_series_reader eo_tdms_read, eo_uff_read;
+eo_series_reader eo_matlab_read, eo_hdf5_read; /* only by eo_isolate_read */
 
 #endif
