@@ -155,7 +155,7 @@ static const struct eo_field resolution[] = {
     EO_CHOICE(struct eo_resolution, solver, "solver", solvers, EO_SOLVER_HARMONIC_BALANCE, "of the equations of motion"),
     EO_CHOICE(struct eo_resolution, impact_in_dynamics, "impact_in_dynamics", impacts, EO_IMPACT_NONE, "impact pulses in the equations of motion"),
     EO_INTEGER(struct eo_resolution, harmonics, "harmonics", 1, 256, 24, "mesh harmonics of the response"),
-    EO_INTEGER(struct eo_resolution, te_harmonics, "te_harmonics", 1, 128, 10, "mesh harmonics kept of transmission error and stiffness"),
+    EO_INTEGER(struct eo_resolution, te_harmonics, "te_harmonics", 1, 128, 16, "mesh harmonics kept of transmission error and stiffness"),
 };
 
 const struct eo_table eo_load_case_table = EO_TABLE("a load case", struct eo_load_case, load_case);

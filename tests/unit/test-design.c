@@ -205,7 +205,7 @@ static void test_defaults(void)
          design.optimization.trust_threshold == 0.6 && design.optimization.redundancy_threshold == 1e-7,
      "Table 2");
   ok(design.resolution.positions == 64 && design.resolution.cells_per_line == 30 && design.resolution.sector_teeth == 5 && design.resolution.tip_edge_contact &&
-         design.resolution.neighbour_coupling && design.resolution.mesh_law == EO_LAW_TANGENT && design.resolution.harmonics == 24 && design.resolution.te_harmonics == 10,
+         design.resolution.neighbour_coupling && design.resolution.mesh_law == EO_LAW_TANGENT && design.resolution.harmonics == 24 && design.resolution.te_harmonics == 16,
      "resolution");
   close_to(design.optimization.tip_relief.high, 40e-6, 0, "reliefs up to 40 um");
   close_to(design.optimization.lead_crowning.high, 36e-6, 0, "crowning up to 36 um");
