@@ -21,7 +21,8 @@ struct eo_recording; /* opaque */
 enum eo_code eo_recording_new(struct eo_recording **recording, int columns, const char *spool_directory, struct eo_error *error);
 void eo_recording_free(struct eo_recording *recording); /* NULL is fine */
 
-/* Names and units as the file has them, cut to the sizes above at a UTF-8 boundary; "" when the file says nothing. */
+/* Names and units as the file has them, cut to the sizes above and always valid UTF-8 (other bytes are taken for Latin 1); "" when the file
+   says nothing. */
 void eo_recording_set_column(struct eo_recording *recording, int column, const char *name, const char *unit);
 const char *eo_recording_name(const struct eo_recording *recording, int column);
 const char *eo_recording_unit(const struct eo_recording *recording, int column);

@@ -58,6 +58,8 @@ static void test_small(void)
   eo_recording_set_column(r, 1, "Winkel \xc3\xa4\xc3\xa4\xc3\xa4\xc3\xa4\xc3\xa4\xc3\xa4\xc3\xa4\xc3\xa4\xc3\xa4\xc3\xa4\xc3\xa4\xc3\xa4\xc3\xa4\xc3\xa4\xc3\xa4\xc3\xa4\xc3\xa4\xc3\xa4\xc3\xa4\xc3\xa4\xc3\xa4\xc3\xa4\xc3\xa4\xc3\xa4\xc3\xa4\xc3\xa4\xc3\xa4\xc3\xa4\xc3\xa4\xc3\xa4", "deg");
   ok(!strcmp(eo_recording_name(r, 0), "t") && !strcmp(eo_recording_unit(r, 0), "s") && !*eo_recording_name(r, 2), "names and units");
   ok(strlen(eo_recording_name(r, 1)) == 63 && (unsigned char)eo_recording_name(r, 1)[62] == 0xa4, "a long name keeps its last character whole");
+  eo_recording_set_column(r, 2, "a\xff\tb\xed\xa0\x80", "\xb5m");
+  ok(!strcmp(eo_recording_name(r, 2), "a\xc3\xbf b\xc3\xad\xc2\xa0 ") && !strcmp(eo_recording_unit(r, 2), "\xc2\xb5m"), "other bytes become UTF-8");
   ok(fill(r, 5000, &error) == EO_OK && eo_recording_rows(r) == 5000 && eo_recording_columns(r) == COLUMNS, "5000 rows");
   ok(wrong_values(r) == 0, "values");
   double row[COLUMNS];

@@ -1,0 +1,13 @@
+/* The readers behind eo_reader_read, one per kind. Internal to the floor. Each makes a new recording or fails; what eo_reader_read says of
+   errors and notes holds for them; options and its progress are never NULL. */
+#ifndef EASEOFF_MEASUREMENT_READERS_H
+#define EASEOFF_MEASUREMENT_READERS_H
+
+#include "measurement/reader.h"
+#include "measurement/source.h"
+
+/* Delimited text from a source at its beginning; it stays the caller's. */
+enum eo_code eo_text_read(struct eo_source *source, const struct eo_reader_options *options, struct eo_recording **recording,
+                          struct eo_notes *notes, struct eo_error *error);
+
+#endif
