@@ -354,7 +354,9 @@ static enum eo_code convert(struct maker *m, struct eo_angles *a, struct eo_erro
   int count = 1, written = 0;
   enum eo_code code = out ? EO_OK : eo_error_memory(error);
   for (int c = 0; c < 2; c++) {
-    m->quantum[c] = a->raw[c] ? 0 : m->scan->column[c][0].quantum * fabs(m->sampler.scale[c]);
+    const struct eo_scan_column *column = &m->scan->column[c][0];
+    bool coarse = !a->raw[c] && column->typical < 0.5 * column->quantum; /* most rows repeat the one before */
+    m->quantum[c] = coarse ? column->quantum * fabs(m->sampler.scale[c]) : 0;
     m->sampler.step[c] = 0;
   }
   while (!code && count) {
