@@ -44,10 +44,10 @@ static void refuse_teeth(const struct eo_angles *a, const int teeth[2], struct e
                     teeth[0], teeth[1], (double)teeth[0] / teeth[1]);
 }
 
-/* One channel in degrees, one in radians: the one that starts again every turn, or the stated speed, tells which is right. */
-static bool settle_units(struct eo_angles *a, double excess, double stated, struct eo_findings *findings)
+/* One channel in degrees, one in radians: the one that starts again every turn, or the stated speed, tells which is right. excess: gear over
+   pinion beyond the ratio of the teeth, 57.3 or its inverse. */
+static void settle_units(struct eo_angles *a, double excess, double stated, struct eo_findings *findings)
 {
-  /* excess: gear over pinion beyond the ratio of the teeth, 57.3 or 1 / 57.3 */
   int wrong = -1;
   double speed = fabs(a->rate[a->from[0]]);
   if (a->wrapped[0] != a->wrapped[1])
@@ -55,15 +55,13 @@ static bool settle_units(struct eo_angles *a, double excess, double stated, stru
   else if (!isnan(stated))
     wrong = fabs(log(speed / stated)) < 1 ? 1 : 0;
   if (wrong < 0) {
-    eo_findings_add(findings, EO_FINDING_UNITS, EO_SEVERITY_REFUSED, -1, excess,
-                    "One channel is in degrees and the other in radians (their ratio is off by %.5g); say which is which, or state the speed.", excess);
-    return false;
+    wrong = 1; /* for the time being: the lines of the spectrum decide about both */
+    a->units_in_doubt = true;
   }
   double factor = wrong == 1 ? 1 / excess : excess;
   a->factor[wrong] *= factor;
-  eo_findings_add(findings, EO_FINDING_UNITS, EO_SEVERITY_REPAIRED, wrong, excess, "The %s angle is in %s, not in the stated unit; read so.", wrong ? "gear" : "pinion",
-                  factor > 1 ? "radians" : "degrees");
-  return true;
+  eo_findings_add(findings, EO_FINDING_UNITS, EO_SEVERITY_REPAIRED, wrong, excess, "One channel is in degrees and the other in radians: their ratio is off by %.5g. The %s was brought to the unit of the %s.", excess,
+                  wrong ? "gear" : "pinion", wrong ? "pinion" : "gear");
 }
 
 static bool settle_ratio(struct eo_angles *a, const int teeth[2], double stated, struct eo_findings *findings)
@@ -80,7 +78,9 @@ static bool settle_ratio(struct eo_angles *a, const int teeth[2], double stated,
         eo_findings_add(findings, EO_FINDING_SWAPPED, EO_SEVERITY_REPAIRED, -1, ratio,
                         "Pinion and gear are swapped: the second channel turns %.6f times as far as the first, which is %d/%d; exchanged.", ratio, teeth[1],
                         teeth[0]);
-      return u == 0 || settle_units(a, unit[u], stated, findings);
+      if (u > 0)
+        settle_units(a, unit[u], stated, findings);
+      return true;
     }
   refuse_teeth(a, teeth, findings);
   return false;

@@ -13,18 +13,31 @@ static bool known_order(const struct eo_terms *t, double order, double distance)
   return false;
 }
 
+static void add_order(struct eo_terms *t, double order)
+{
+  int at = t->orders++;
+  t->order[at] = order;
+  t->part[at][0] = -1;
+  for (int i = 0; i < at; i++)
+    for (int j = 0; j <= i; j++)
+      if (fabs(t->order[i] + t->order[j] - order) < 1e-9) {
+        t->part[at][0] = i;
+        t->part[at][1] = j;
+      }
+}
+
 void eo_terms_init(struct eo_terms *t, const int teeth[2], int harmonics, double turns, double from, double to)
 {
   *t = (struct eo_terms){.drift = EO_DRIFT_TERMS, .middle = (from + to) / 2, .half = (to - from) / 2};
   for (int h = 1; h <= harmonics; h++)
-    t->order[t->orders++] = (double)h * teeth[EO_PINION];
+    add_order(t, (double)h * teeth[EO_PINION]);
   for (int member = 0; member < 2; member++)
     for (int k = 0; k < EO_SHAFT_ORDERS; k++) {
       double order = (k + 1) * (member == EO_PINION ? 1.0 : (double)teeth[EO_PINION] / teeth[EO_GEAR]);
       bool there = known_order(t, order, 0.7 / turns);
       t->shaft_at[member][k] = there ? -1 : t->orders;
       if (!there)
-        t->order[t->orders++] = order;
+        add_order(t, order);
     }
   t->count = t->drift + 2 * t->orders;
 }
@@ -38,8 +51,7 @@ void eo_terms_at(const struct eo_terms *t, double time, double theta, double *va
   value[2] = (3 * x * x - 1) / 2;
   value[3] = (5 * x * x - 3) * x / 2;
   for (int i = 0; i < t->orders; i++) {
-    bool multiple = i > 0 && t->order[i] > 1.5 * t->order[0] && i < EO_MESH_ORDERS && fabs(t->order[i] - (i + 1) * t->order[0]) < 1e-9;
-    turn[i] = multiple ? turn[i - 1] * turn[0] : cexp(I * t->order[i] * theta);
+    turn[i] = t->part[i][0] >= 0 ? turn[t->part[i][0]] * turn[t->part[i][1]] : cexp(I * t->order[i] * theta);
     value[t->drift + 2 * i] = creal(turn[i]);
     value[t->drift + 2 * i + 1] = cimag(turn[i]);
   }

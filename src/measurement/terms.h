@@ -9,9 +9,9 @@ enum { EO_DRIFT_TERMS = 4, EO_MOST_TERMS = EO_DRIFT_TERMS + 2 * (2 * EO_SHAFT_OR
 struct eo_terms {
   int drift, count;           /* terms of the drift; all terms: then a cosine and a sine per order */
   int orders;
-  double order[2 * EO_SHAFT_ORDERS + EO_MESH_ORDERS];
+  double order[2 * EO_SHAFT_ORDERS + EO_MESH_ORDERS]; /* mesh orders first */
+  int part[2 * EO_SHAFT_ORDERS + EO_MESH_ORDERS][2]; /* two earlier orders whose sum it is; -1: none */
   int shaft_at[2][EO_SHAFT_ORDERS]; /* index into order; -1: coincides with another one */
-  int mesh_at;                /* of the first mesh order */
   double middle, half;        /* of the time, s */
 };
 
