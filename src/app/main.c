@@ -7,7 +7,7 @@
 #include "numerics/threads.h"
 
 static const struct eo_command *const commands[] = {&eo_command_analyze, &eo_command_example, &eo_command_history, &eo_command_optimize,
-                                                    &eo_command_stage,   &eo_command_sweep,   &eo_command_verify};
+                                                    &eo_command_rig,     &eo_command_stage,   &eo_command_sweep,   &eo_command_verify};
 enum { COMMANDS = sizeof commands / sizeof commands[0] };
 
 static int print_overview(void)
