@@ -266,6 +266,23 @@ await chapter('a narrow screen', async () => {
   await phone.close();
 });
 
+await chapter('a server with a token', async () => {
+  const closed = await Server.start({ EASEOFF_TOKEN: 'only-for-the-three-of-us' });
+  const visitor = await browser.newContext();
+  const door = await visitor.newPage();
+  await door.goto(closed.address);
+  const token = door.getByLabel('Token of this server');
+  await token.fill('a-guess');
+  await token.press('Enter');
+  await door.locator('.fault:not(:empty)').waitFor();
+  await token.fill('only-for-the-three-of-us');
+  await token.press('Enter');
+  await door.locator('.form-pane input').first().waitFor();
+  ok(true, 'asks for it, refuses a wrong one, takes the right one');
+  await visitor.close();
+  await closed.remove();
+});
+
 await chapter('the server goes away and comes back', async () => {
   await page.getByRole('navigation').getByRole('button', { name: 'Design' }).click();
   await settled();
