@@ -165,7 +165,7 @@ static enum eo_code read_text(const char *path, const struct eo_reader_options *
   enum eo_code code = eo_source_open(&source, path, options->max_bytes, error);
   if (code)
     return code;
-  code = eo_text_read(source, options, recording, notes, error);
+  code = eo_delimited_read(source, options, recording, notes, error);
   eo_source_close(source);
   return code;
 }

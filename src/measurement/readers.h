@@ -8,7 +8,7 @@
 #include "measurement/source.h"
 
 /* Delimited text from a source at its beginning; it stays the caller's. */
-enum eo_code eo_text_read(struct eo_source *source, const struct eo_reader_options *options, struct eo_recording **recording,
+enum eo_code eo_delimited_read(struct eo_source *source, const struct eo_reader_options *options, struct eo_recording **recording,
                           struct eo_notes *notes, struct eo_error *error);
 
 eo_series_reader eo_tdms_read, eo_uff_read;

@@ -305,7 +305,7 @@ static enum eo_code read_text(struct text *t, const struct eo_reader_options *op
   return code;
 }
 
-enum eo_code eo_text_read(struct eo_source *source, const struct eo_reader_options *options, struct eo_recording **recording,
+enum eo_code eo_delimited_read(struct eo_source *source, const struct eo_reader_options *options, struct eo_recording **recording,
                           struct eo_notes *notes, struct eo_error *error)
 {
   struct text *t = malloc(sizeof *t);
