@@ -30,6 +30,7 @@ __attribute__((unused)) static int fixture_close(void)
 
 __attribute__((unused)) static void write_bytes(const void *bytes, size_t size)
 {
+  unlink(fixture_path); /* some file systems write a file that is cut and filled again to the disk at once */
   FILE *file = fopen(fixture_path, "wb");
   if (!file || fwrite(bytes, 1, size, file) != size || fclose(file))
     exit(99);

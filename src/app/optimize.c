@@ -34,15 +34,16 @@ static void format_time(char *text, size_t size, double seconds)
 static int show_progress(void *context, const struct eo_study_report *r)
 {
   struct eo_watch *watch = context;
-  char line[200], left[32], best[80] = "none yet";
-  if (eo_watch_due(watch)) {
+  char line[240], left[32], best[20] = "-", sums[80] = "";
+  if (eo_watch_due(watch)) { /* what matters most first: narrow terminals cut the line */
     format_time(left, sizeof left, r->seconds_left);
     if (r->best->there) {
       const double *f = r->best->value.sums.f;
-      snprintf(best, sizeof best, "%.4g (%.3g um, %.4g N, %.3g m/s2)", r->best->value.objective, 1e6 * f[0], f[1], f[2]);
+      snprintf(best, sizeof best, "%.4g", r->best->value.objective);
+      snprintf(sums, sizeof sums, ", %.3g um, %.4g N, %.3g m/s2", 1e6 * f[0], f[1], f[2]);
     }
-    snprintf(line, sizeof line, "%3.0f %% gen %d, true %d (%d known), predicted %d, PFC %.0f %%, best J %s, %s left", 100 * r->fraction, r->generation,
-             r->true_evaluations, r->reused, r->predicted, r->individuals ? 100. * r->true_evaluations / r->individuals : 100, best, left);
+    snprintf(line, sizeof line, "%3.0f %%, %s left, J %s, gen %d, true %d, predicted %d, known %d, PFC %.0f %%%s", 100 * r->fraction, left, best, r->generation,
+             r->true_evaluations, r->predicted, r->reused, r->individuals ? 100. * r->true_evaluations / r->individuals : 100, sums);
     eo_watch_show(watch, line);
   }
   return watch->stopped;

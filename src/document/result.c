@@ -36,8 +36,10 @@ json_t *eo_result_end_column(const struct eo_result_source *source, int end, con
   return eo_result_column(n, source->scratch, scale, unit, EO_DIGITS_CURVE);
 }
 
-json_t *eo_result_map(int rows, int columns, const double *value, const struct eo_unit *unit)
+json_t *eo_result_map(const struct eo_result_source *source, int rows, int columns, const double *value, const struct eo_unit *unit)
 {
+  if (source->left_out & EO_RESULT_NO_MAPS)
+    return json_null();
   json_t *map = json_array();
   for (int i = 0; i < rows && map; i++)
     if (json_array_append_new(map, eo_json_reals(columns, value + i * columns, 1, unit, EO_DIGITS_MAP)) != 0) {
@@ -217,10 +219,15 @@ static json_t *encode_all(struct eo_result_source *source, const struct eo_warni
 
 json_t *eo_result_encode(const struct eo_analysis *analysis, const struct eo_design *design, const struct eo_warnings *warnings)
 {
+  return eo_result_encode_part(analysis, design, warnings, 0);
+}
+
+json_t *eo_result_encode_part(const struct eo_analysis *analysis, const struct eo_design *design, const struct eo_warnings *warnings, unsigned left_out)
+{
   const struct eo_evaluation *r = analysis->evaluation;
   struct eo_result_source source = {.analysis = analysis, .evaluation = r, .pair = analysis->pair, .design = design, .ends = r->ends,
                                     .positions = r->positions, .lag = eo_evaluator_stagger(design, r->positions),
-                                    .normal = cos(analysis->pair->geometry.base_helix_angle)};
+                                    .normal = cos(analysis->pair->geometry.base_helix_angle), .left_out = left_out};
   source.pattern = malloc(sizeof *source.pattern);
   source.scratch = calloc((size_t)r->positions, sizeof *source.scratch);
   json_t *result = source.pattern && source.scratch ? encode_all(&source, warnings) : NULL;

@@ -10,7 +10,7 @@
 #include "objective/objective.h"
 
 /* Raised with every change after which the same design gives other numbers: what a history keeps belongs to one version. */
-enum { EO_EVALUATOR_VERSION = 1 };
+enum { EO_EVALUATOR_VERSION = 2 };
 
 /* What to compute beyond the objectives. */
 enum {

@@ -89,6 +89,26 @@ static double patch_bulk(const struct eo_geometry *g, struct eo_kernel kernel, d
   return sum / (POINTS * POINTS);
 }
 
+/* How far the place of a touch may be off along the path, m: what the search for the smallest gap leaves open. */
+static const double place_error = 5e-7;
+
+/* Slope of the gap over the roll where the line touches. The gap has a kink at A, where the tip corner takes over, and the touch stays on it
+   for a whole range of designs: there the line closes at the rate of its smallest gap, -dg/deta / tan(beta_b) along the kink, between the
+   slopes of both sides. Away from kinks the three are the same. */
+static double closing_slope(const struct search *search, double s, double eta)
+{
+  const struct eo_gap_field *field = search->field;
+  const double half = search->grid->geometry.face_width / 2, step = 1e-5;
+  double slope, before, after;
+  eo_gap_field_at(field, s, eta, &slope, NULL);
+  if (search->stations > 1 || field->lean < 1e-9 || fabs(eta) > half - step)
+    return slope;
+  eo_gap_field_at(field, s - place_error, eta, &before, NULL);
+  eo_gap_field_at(field, s + place_error, eta, &after, NULL);
+  double along = (eo_gap_field_at(field, s, eta + step, NULL, NULL) - eo_gap_field_at(field, s, eta - step, NULL, NULL)) / (2 * step);
+  return fmin(fmax(-along / field->lean, fmin(before, after)), fmax(before, after));
+}
+
 void eo_impact_strike(struct eo_impact *impact, const struct eo_contact_grid *grid, const struct eo_impact_settings *settings, double speed,
                       double compliance_factor)
 {
@@ -126,8 +146,9 @@ void eo_impact_find(struct eo_impact *impact, const struct eo_contact_grid *grid
   if (!impact->touched)
     return;
   impact->path = impact->phase + impact->eta * tan(g->base_helix_angle);
-  impact->off_line = impact->path < g->path_start;
-  eo_gap_field_at(field, impact->path, impact->eta, &impact->slope, place);
+  impact->off_line = impact->path < g->path_start - place_error;
+  impact->slope = closing_slope(&search, impact->path, impact->eta);
+  eo_gap_field_at(field, impact->path, impact->eta, NULL, place);
   impact->pinion_radius = eo_geometry_radius_at(g, EO_PINION, place[EO_PINION]);
   impact->start = impact->phase / g->transverse_base_pitch - floor(impact->phase / g->transverse_base_pitch);
   impact->bulk = patch_bulk(g, kernel, settings->patch, fmax(impact->path, g->path_start), impact->eta);

@@ -1,9 +1,12 @@
 #include "measurement/reader.h"
+#include "measurement/isolate.h"
 #include "measurement/readers.h"
 
+#include <limits.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #define HEAD 4096 /* bytes from which a kind is told */
 
@@ -119,7 +122,14 @@ static enum eo_code tell_kind(const unsigned char *head, size_t size, enum eo_re
   return EO_OK;
 }
 
-enum eo_code eo_reader_identify(const char *path, enum eo_reader_kind *kind, int *gzip, struct eo_error *error)
+/* What the first bytes say. */
+struct sign {
+  enum eo_reader_kind kind;
+  bool gzip;
+  bool hdf5; /* also of MATLAB's 7.3 */
+};
+
+static enum eo_code read_sign(const char *path, struct sign *sign, struct eo_error *error)
 {
   struct eo_source *source;
   unsigned char head[HEAD];
@@ -129,18 +139,30 @@ enum eo_code eo_reader_identify(const char *path, enum eo_reader_kind *kind, int
     return code;
   code = eo_source_read(source, head, sizeof head, &size, error);
   if (!code)
-    code = tell_kind(head, size, kind, error);
-  if (!code && gzip)
-    *gzip = eo_source_is_gzip(source);
+    code = tell_kind(head, size, &sign->kind, error);
+  sign->gzip = eo_source_is_gzip(source);
+  sign->hdf5 = !code && is_hdf5(head, size);
   eo_source_close(source);
   return code;
+}
+
+enum eo_code eo_reader_identify(const char *path, enum eo_reader_kind *kind, int *gzip, struct eo_error *error)
+{
+  struct sign sign;
+  enum eo_code code = read_sign(path, &sign, error);
+  if (code)
+    return code;
+  *kind = sign.kind;
+  if (gzip)
+    *gzip = sign.gzip;
+  return EO_OK;
 }
 
 static enum eo_code read_text(const char *path, const struct eo_reader_options *options, struct eo_recording **recording, struct eo_notes *notes,
                               struct eo_error *error)
 {
   struct eo_source *source;
-  enum eo_code code = eo_source_open(&source, path, options->max_bytes ? options->max_bytes : EO_READER_BYTES, error);
+  enum eo_code code = eo_source_open(&source, path, options->max_bytes, error);
   if (code)
     return code;
   code = eo_delimited_read(source, options, recording, notes, error);
@@ -148,16 +170,64 @@ static enum eo_code read_text(const char *path, const struct eo_reader_options *
   return code;
 }
 
+static enum eo_code read_isolated_matlab(const char *path, const struct eo_reader_options *options, const struct eo_series_sink *sink,
+                                         struct eo_notes *notes, struct eo_error *error)
+{
+  return eo_isolate_read(eo_matlab_read, path, options, sink, notes, error);
+}
+
+static enum eo_code read_isolated_hdf5(const char *path, const struct eo_reader_options *options, const struct eo_series_sink *sink,
+                                       struct eo_notes *notes, struct eo_error *error)
+{
+  return eo_isolate_read(eo_hdf5_read, path, options, sink, notes, error);
+}
+
+static enum eo_code read_series(eo_series_reader *reader, const char *path, const struct eo_reader_options *options,
+                                struct eo_recording **recording, struct eo_notes *notes, struct eo_error *error)
+{
+  struct eo_series_recorder recorder = { .spool_directory = options->spool_directory, .progress = options->progress };
+  struct eo_series_sink sink = eo_series_recorder_sink(&recorder);
+  enum eo_code code = reader(path, options, &sink, notes, error);
+  if (code)
+    eo_recording_free(recorder.recording);
+  else
+    *recording = recorder.recording;
+  return code;
+}
+
+/* Binary kinds are read at many places: what gzip hides is put into a file first, which goes when it has been read. */
+static enum eo_code read_inflated(eo_series_reader *reader, const char *path, const struct eo_reader_options *options,
+                                  struct eo_recording **recording, struct eo_notes *notes, struct eo_error *error)
+{
+  char inflated[PATH_MAX];
+  enum eo_code code = eo_source_inflate(path, options->max_bytes, options->spool_directory, inflated, sizeof inflated, error);
+  if (code)
+    return code;
+  code = read_series(reader, inflated, options, recording, notes, error);
+  unlink(inflated);
+  return code;
+}
+
 enum eo_code eo_reader_read(const char *path, const struct eo_reader_options *options, struct eo_recording **recording, struct eo_notes *notes,
                             struct eo_error *error)
 {
-  static const struct eo_reader_options none;
-  enum eo_reader_kind kind;
-  int gzip;
-  enum eo_code code = eo_reader_identify(path, &kind, &gzip, error);
+  static eo_series_reader *const readers[EO_READER_KINDS] = {
+    [EO_READER_TDMS] = eo_tdms_read,
+    [EO_READER_UFF] = eo_uff_read,
+    [EO_READER_MATLAB] = read_isolated_matlab,
+    [EO_READER_HDF5] = read_isolated_hdf5,
+  };
+  struct eo_reader_options own = {0};
+  struct sign sign;
+  enum eo_code code = read_sign(path, &sign, error);
   if (code)
     return code;
-  if (!options)
-    options = &none;
-  return read_text(path, options, recording, notes, error);
+  if (options)
+    own = *options;
+  if (!own.max_bytes)
+    own.max_bytes = EO_READER_BYTES;
+  if (sign.kind == EO_READER_TEXT)
+    return read_text(path, &own, recording, notes, error);
+  eo_series_reader *reader = readers[sign.hdf5 ? EO_READER_HDF5 : sign.kind];
+  return (sign.gzip ? read_inflated : read_series)(reader, path, &own, recording, notes, error);
 }

@@ -60,6 +60,12 @@ enum eo_code eo_recording_new(struct eo_recording **recording, int columns, cons
   return EO_OK;
 }
 
+void eo_recording_set_memory(struct eo_recording *recording, size_t bytes)
+{
+  int64_t rows = (int64_t)(bytes / sizeof(double)) / recording->columns;
+  recording->limit = rows ? rows : 1;
+}
+
 void eo_recording_free(struct eo_recording *recording)
 {
   if (!recording)
@@ -169,7 +175,8 @@ double eo_recording_start(const struct eo_recording *recording)
 static enum eo_code open_spool(struct eo_recording *r, struct eo_error *error)
 {
   if (!r->directory)
-    return eo_error_set(error, EO_ERROR_INPUT, "", "The recording is larger than the %zu MB that may be held in memory.", EO_RECORDING_MEMORY >> 20);
+    return eo_error_set(error, EO_ERROR_INPUT, "", "The recording is larger than the %lld MB that may be held in memory.",
+                        (long long)(r->limit * r->columns * (int64_t)sizeof(double) >> 20));
   size_t size = strlen(r->directory) + sizeof "/recording-XXXXXX";
   char *path = malloc(size);
   if (!path)

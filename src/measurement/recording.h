@@ -21,6 +21,9 @@ struct eo_recording; /* opaque */
 enum eo_code eo_recording_new(struct eo_recording **recording, int columns, const char *spool_directory, struct eo_error *error);
 void eo_recording_free(struct eo_recording *recording); /* NULL is fine */
 
+/* Bytes of rows that stay in memory instead of EO_RECORDING_MEMORY; before the first row. */
+void eo_recording_set_memory(struct eo_recording *recording, size_t bytes);
+
 /* Names and units as the file has them, cut to the sizes above and always valid UTF-8 (other bytes are taken for Latin 1); "" when the file
    says nothing. */
 void eo_recording_set_column(struct eo_recording *recording, int column, const char *name, const char *unit);

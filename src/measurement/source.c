@@ -1,8 +1,10 @@
+#define _GNU_SOURCE /* mkostemp */
 #include "measurement/source.h"
 
 #include <errno.h>
 #include <fcntl.h>
 #include <stdbool.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -175,4 +177,48 @@ int eo_source_is_gzip(const struct eo_source *source)
 double eo_source_fraction(const struct eo_source *source)
 {
   return source->size > 0 && source->taken < source->size ? (double)source->taken / (double)source->size : 1;
+}
+
+static enum eo_code copy_to(struct eo_source *source, int file, struct eo_error *error)
+{
+  char *bytes = malloc(CHUNK);
+  if (!bytes)
+    return eo_error_memory(error);
+  enum eo_code code;
+  size_t got;
+  do {
+    code = eo_source_read(source, bytes, CHUNK, &got, error);
+    for (size_t done = 0; !code && done < got;) {
+      ssize_t n = write(file, bytes + done, got - done);
+      if (n < 0 && errno == EINTR)
+        continue;
+      if (n <= 0)
+        code = eo_error_set(error, EO_ERROR_FILE, "", "A temporary file could not be written: %s.", strerror(n < 0 ? errno : ENOSPC));
+      else
+        done += (size_t)n;
+    }
+  } while (!code && got == CHUNK);
+  free(bytes);
+  return code;
+}
+
+enum eo_code eo_source_inflate(const char *path, int64_t limit, const char *directory, char *inflated, size_t size, struct eo_error *error)
+{
+  struct eo_source *source;
+  if (!directory || (size_t)snprintf(inflated, size, "%s/inflated-XXXXXX", directory) >= size)
+    return eo_error_set(error, EO_ERROR_INPUT, "", "This kind of file must be uploaded without gzip: there is no folder to inflate it to.");
+  enum eo_code code = eo_source_open(&source, path, limit, error);
+  if (code)
+    return code;
+  int file = mkostemp(inflated, O_CLOEXEC);
+  if (file < 0)
+    code = eo_error_set(error, EO_ERROR_FILE, "", "No temporary file could be made in %s: %s.", directory, strerror(errno));
+  else {
+    code = copy_to(source, file, error);
+    close(file);
+    if (code)
+      unlink(inflated);
+  }
+  eo_source_close(source);
+  return code;
 }

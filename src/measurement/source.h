@@ -22,4 +22,8 @@ enum eo_code eo_source_read(struct eo_source *source, void *bytes, size_t size, 
 int eo_source_is_gzip(const struct eo_source *source);
 double eo_source_fraction(const struct eo_source *source); /* 0..1 of the file that has been read */
 
+/* Writes what comes out of a file into a new one in directory, whose path is copied to inflated[size]; the caller unlinks it. Errors as those
+   of eo_source_read; EO_ERROR_INPUT when directory is NULL. */
+enum eo_code eo_source_inflate(const char *path, int64_t limit, const char *directory, char *inflated, size_t size, struct eo_error *error);
+
 #endif

@@ -101,72 +101,149 @@ INLINE void blend_body(int rows, int stride, const float *f, const double *load,
   }
 }
 
-/* Column by column: the entries below a pivot are independent dot products with the pivot's row, four at a time. That row is copied with
-   zeros behind the pivot, so that whole lanes can be used; what lies right of the diagonal ends as zero. */
+enum { LANE = EO_GRAM_LANE };
+
+/* Factors the lower triangle of a diagonal block of n <= LANE rows, row-major with leading dimension ld, and writes inverse[p]: row p of the
+   transposed inverse of its factor, zero where there is none. What lies right of the diagonal ends as zero. */
+INLINE bool factor_diagonal(int n, int ld, double *block, lane inverse[LANE])
+{
+  double l[LANE][LANE] __attribute__((aligned(EO_GRAM_ALIGN))) = {{0}}, scale[LANE] = {0};
+  for (int i = 0; i < n; i++)
+    for (int k = 0; k <= i; k++)
+      l[i][k] = block[(long)i * ld + k];
+#pragma GCC unroll 8
+  for (int j = 0; j < n; j++) {
+    if (!(l[j][j] > 0))
+      return false;
+    l[j][j] = sqrt(l[j][j]);
+    scale[j] = 1 / l[j][j];
+#pragma GCC unroll 8
+    for (int i = j + 1; i < n; i++)
+      l[i][j] *= scale[j];
+#pragma GCC unroll 8
+    for (int k = j + 1; k < n; k++)
+#pragma GCC unroll 8
+      for (int i = k; i < n; i++)
+        l[i][k] -= l[i][j] * l[k][j];
+  }
+  for (int i = 0; i < n; i++)
+    *(lane *)(block + (long)i * ld) = *(const lane *)l[i];
+  /* L^-1 by rows: e_i less what the rows above take, over the diagonal; then transposed. */
+  lane rows[LANE] = {{0}};
+#pragma GCC unroll 8
+  for (int i = 0; i < n; i++) {
+    lane sum = {0};
+    sum[i] = 1;
+#pragma GCC unroll 8
+    for (int k = 0; k < i; k++)
+      sum -= l[i][k] * rows[k];
+    rows[i] = sum * scale[i];
+  }
+  for (int p = 0; p < LANE; p++)
+    for (int i = 0; i < LANE; i++)
+      inverse[p][i] = rows[i][p];
+  return true;
+}
+
+/* Block column by block column, each as wide as a lane: the diagonal block, the rows below it through its inverse, and what they take from the
+   columns to their right. across: the rows below as columns, [n][LANE]. */
 INLINE bool factor_body(int n, int stride, double *matrix)
 {
-  enum { MOST_LANES = 256 };
-  int ld = stride + EO_GRAM_LANE;
-  lane pivot[MOST_LANES];
-  for (int j = 0; j < n; j++) {
-    double *row = matrix + (long)j * ld;
-    int lanes = (j + EO_GRAM_LANE - 1) / EO_GRAM_LANE;
-    for (int k = j + 1; k < (j / EO_GRAM_LANE + 1) * EO_GRAM_LANE; k++)
-      row[k] = 0;
-    memcpy(pivot, row, sizeof(double) * (size_t)j);
-    memset((double *)pivot + j, 0, sizeof(double) * (size_t)(lanes * EO_GRAM_LANE - j));
-    lane square = {0};
-    for (int k = 0; k < lanes; k++)
-      square += pivot[k] * pivot[k];
-    double rest = row[j] - sum_lane(&square);
-    if (!(rest > 0))
+  enum { MOST_ROWS = 2048 };
+  int ld = stride + LANE;
+  double across[MOST_ROWS][LANE] __attribute__((aligned(EO_GRAM_ALIGN)));
+  for (int first = 0; first < n; first += LANE) {
+    lane inverse[LANE];
+    int below = first + LANE;
+    double *diagonal = matrix + (long)first * (ld + 1);
+    if (!(below <= n ? factor_diagonal(LANE, ld, diagonal, inverse) : factor_diagonal(n - first, ld, diagonal, inverse)))
       return false;
-    row[j] = sqrt(rest);
-    double scale = 1 / row[j];
-    int i = j + 1;
-    for (; i + 4 <= n; i += 4) {
-      lane sum[4] = {{0}, {0}, {0}, {0}};
-      const lane *at = (const lane *)(matrix + (long)i * ld);
-      int step = ld / EO_GRAM_LANE;
-      for (int k = 0; k < lanes; k++)
-        for (int m = 0; m < 4; m++)
-          sum[m] += at[m * step + k] * pivot[k];
-      for (int m = 0; m < 4; m++)
-        matrix[(long)(i + m) * ld + j] = (matrix[(long)(i + m) * ld + j] - sum_lane(&sum[m])) * scale;
-    }
-    for (; i < n; i++) {
+    for (int i = below; i < n; i++) {
+      double *row = matrix + (long)i * ld + first;
       lane sum = {0};
-      const lane *at = (const lane *)(matrix + (long)i * ld);
-      for (int k = 0; k < lanes; k++)
-        sum += at[k] * pivot[k];
-      matrix[(long)i * ld + j] = (matrix[(long)i * ld + j] - sum_lane(&sum)) * scale;
+      for (int p = 0; p < LANE; p++)
+        sum += row[p] * inverse[p];
+      *(lane *)row = sum;
+      for (int p = 0; p < LANE; p++)
+        across[i / LANE * LANE + p][i % LANE] = sum[p];
+    }
+    for (int i = below; i < n; i++) {
+      const double *row = matrix + (long)i * ld + first;
+      for (int column = below; column <= i; column += LANE) {
+        lane *target = (lane *)(matrix + (long)i * ld + column), sum = *target;
+        for (int p = 0; p < LANE; p++)
+          sum -= row[p] * *(const lane *)across[column + p];
+        *target = sum;
+      }
     }
   }
   return true;
 }
 
-/* x is padded with zeros to whole lanes, the rows of the factor are zero right of the diagonal. */
+/* Rows of one diagonal block of the factor against part: L y = part. */
+INLINE void solve_forward(int rows, int ld, const double *diagonal, double *part)
+{
+  double scale[LANE] = {0};
+  for (int i = 0; i < rows; i++)
+    scale[i] = 1 / diagonal[(long)i * (ld + 1)];
+#pragma GCC unroll 8
+  for (int i = 0; i < rows; i++) {
+    part[i] *= scale[i];
+#pragma GCC unroll 8
+    for (int k = i + 1; k < rows; k++)
+      part[k] -= diagonal[(long)k * ld + i] * part[i];
+  }
+}
+
+/* The same with the transpose: L' y = part. */
+INLINE void solve_backward(int rows, int ld, const double *diagonal, double *part)
+{
+  double scale[LANE] = {0};
+  for (int i = 0; i < rows; i++)
+    scale[i] = 1 / diagonal[(long)i * (ld + 1)];
+#pragma GCC unroll 8
+  for (int i = rows - 1; i >= 0; i--) {
+    part[i] *= scale[i];
+#pragma GCC unroll 8
+    for (int k = 0; k < i; k++)
+      part[k] -= diagonal[(long)i * ld + k] * part[i];
+  }
+}
+
+/* x is padded with zeros to whole lanes, the rows of the factor are zero right of the diagonal. A block of rows as wide as a lane takes in the
+   blocks before it at once; only the small triangle on the diagonal goes row by row. */
 INLINE void solve_body(int n, int stride, const double *matrix, double *x)
 {
-  int ld = stride + EO_GRAM_LANE;
+  int ld = stride + LANE, whole = n / LANE, left = n % LANE;
   lane *vector = (lane *)x;
   for (int i = n; i < ld; i++)
     x[i] = 0;
-  for (int i = 0; i < n; i++) {
-    const double *row = matrix + (long)i * ld;
-    lane sum = {0};
-    double mine = x[i];
-    x[i] = 0;
-    for (int k = 0; k <= i / EO_GRAM_LANE; k++)
-      sum += ((const lane *)row)[k] * vector[k];
-    x[i] = (mine - sum_lane(&sum)) / row[i];
+  for (int b = 0; b <= whole; b++) {
+    const double *diagonal = matrix + (long)b * LANE * (ld + 1);
+    double part[LANE];
+    for (int i = 0; i < (b < whole ? LANE : left); i++) {
+      const lane *row = (const lane *)(matrix + (long)(b * LANE + i) * ld);
+      lane sum = {0};
+      for (int k = 0; k < b; k++)
+        sum += row[k] * vector[k];
+      part[i] = x[b * LANE + i] - sum_lane(&sum);
+    }
+    if (b < whole)
+      solve_forward(LANE, ld, diagonal, part);
+    else
+      solve_forward(left, ld, diagonal, part);
+    memcpy(x + b * LANE, part, sizeof *part * (size_t)(b < whole ? LANE : left));
   }
-  for (int i = n - 1; i >= 0; i--) {
-    const double *row = matrix + (long)i * ld;
-    double mine = x[i] / row[i];
-    for (int k = 0; k <= i / EO_GRAM_LANE; k++)
-      vector[k] -= mine * ((const lane *)row)[k];
-    x[i] = mine;
+  for (int b = whole; b >= 0; b--) {
+    const double *diagonal = matrix + (long)b * LANE * (ld + 1);
+    double *part = x + b * LANE;
+    if (b < whole)
+      solve_backward(LANE, ld, diagonal, part);
+    else
+      solve_backward(left, ld, diagonal, part);
+    for (int i = 0; i < (b < whole ? LANE : left); i++)
+      for (int k = 0; k < b; k++)
+        vector[k] -= part[i] * ((const lane *)(matrix + (long)(b * LANE + i) * ld))[k];
   }
 }
 

@@ -1,4 +1,13 @@
-/* `credibility-ga` */
+/* `credibility-ga`: a genetic algorithm whose true evaluations go where a surrogate promises most, doubted as far as it
+   has not earned its credibility by leave-one-out (surrogate.h). Every member of its population is a true row.
+
+     epoch: a latin hypercube, then batches until `stall_batches` of them gain nothing: the best joins the taboo list
+     batch: half trust region (local.h) round the best of the epoch; half children of its best rows, bred three times
+            among themselves by score = surrogate + kappa s (1 - R), then the best scores that keep growing distances
+            from all rows and from each other
+     the last share of the budget polishes the best row of all: trust region only, no taboo, no new epoch
+
+   The surrogate sees values cut off at their median: what is bad need not be known exactly. s: median less minimum. */
 #include "optimizer/internal.h"
 #include "optimizer/local.h"
 #include "optimizer/operators.h"
@@ -8,8 +17,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double search_spread[] = {0, 0, 0.003, 0.003, 0.01, 0.03, 0.1, 0.2};
-static const double polish_spread[] = {0, 0, 0.001, 0.003};
+static const double spread[] = {0, 0, 0.003, 0.003, 0.01, 0.03, 0.1, 0.2}; /* distances to keep, over sqrt n */
+enum { SPREADS = 8, ROUNDS = 3 };
+static const double ridge = 1e-9;
+static const double polish_radius = 0.25; /* of the trust region when polishing starts, in local_radius */
 
 struct credibility {
   int epoch, epoch_first; /* first archive row of the epoch */
@@ -27,7 +38,14 @@ struct credibility {
   int *rows;                       /* [model_rows] of the surrogate */
   double *x, *y, *sorted;          /* [model_rows][n], [model_rows], likewise */
   double *chosen;                  /* [batch][n] */
-  int *index;                      /* scratch [max(children, population)] */
+  double *pool_gap;                /* [children] distance to the nearest row */
+  int *index;                      /* scratch [children + population] */
+  struct ranked {
+    double key;
+    int row;
+  } *ranked;                       /* scratch [ranked_capacity], as is the next */
+  bool *used;
+  int ranked_capacity;
   double spread_of_values;         /* s */
   bool modelled;
   struct eo_surrogate surrogate;
@@ -49,7 +67,10 @@ static void stop(struct eo_optimizer *o)
   free(c->y);
   free(c->sorted);
   free(c->chosen);
+  free(c->pool_gap);
   free(c->index);
+  free(c->ranked);
+  free(c->used);
   eo_surrogate_done(&c->surrogate);
   eo_local_done(&c->local);
   free(c);
@@ -77,9 +98,10 @@ static enum eo_code start(struct eo_optimizer *o, struct eo_error *error)
   c->y = malloc(rows * sizeof(double));
   c->sorted = malloc((rows + initial) * sizeof(double));
   c->chosen = malloc(batch * n * sizeof(double));
+  c->pool_gap = malloc(children * sizeof(double));
   c->index = malloc((children + parents) * sizeof(int));
   if (!c->parents || !c->parent_score || !c->pool || !c->pool_score || !c->rows || !c->x || !c->y || !c->sorted ||
-      !c->chosen || !c->index)
+      !c->chosen || !c->pool_gap || !c->index)
     return eo_error_memory(error);
   enum eo_code code = eo_surrogate_init(&c->surrogate, s->variables, s->model_rows, 1, EO_TAIL_LINEAR, error);
   if (code == EO_OK)
@@ -141,48 +163,64 @@ static int compare_doubles(const void *a, const void *b)
   return (p > q) - (p < q);
 }
 
-struct ranked {
-  double key;
-  int row;
-};
-
 static int compare_ranked(const void *a, const void *b)
 {
   const struct ranked *p = a, *q = b;
   return p->key != q->key ? (p->key > q->key) - (p->key < q->key) : p->row - q->row;
 }
 
-/* At most model_rows rows: a third the best, a third the newest, the rest nearest to the best of the epoch. */
-static int gather_model_rows(struct eo_optimizer *o, const double *centre)
+/* Room to rank every row of the archive. */
+static enum eo_code reserve_ranked(struct eo_optimizer *o, struct eo_error *error)
+{
+  struct credibility *c = o->state;
+  if (o->archive.count <= c->ranked_capacity)
+    return EO_OK;
+  const size_t capacity = 2 * (size_t)o->archive.count;
+  struct ranked *ranked = realloc(c->ranked, capacity * sizeof *ranked);
+  if (ranked)
+    c->ranked = ranked;
+  bool *used = realloc(c->used, capacity * sizeof *used);
+  if (used)
+    c->used = used;
+  if (!ranked || !used)
+    return eo_error_memory(error);
+  c->ranked_capacity = (int)capacity;
+  return EO_OK;
+}
+
+enum ranking { RANK_BY_VALUE, RANK_BY_AGE, RANK_BY_DISTANCE };
+
+/* Appends the best `share` unused rows by the given ranking to c->rows. */
+static int take_rows(struct eo_optimizer *o, enum ranking ranking, const double *centre, int taken, int share)
 {
   struct credibility *c = o->state;
   const struct eo_archive *a = &o->archive;
-  const int limit = o->settings.model_rows, n = o->settings.variables;
   int count = 0;
-  if (a->count <= limit) {
-    for (int row = 0; row < a->count; row++)
-      if (!eo_archive_failed(a, row))
-        c->rows[count++] = row;
-    return count;
+  for (int row = 0; row < a->count; row++) {
+    if (eo_archive_failed(a, row) || c->used[row])
+      continue;
+    const double key = ranking == RANK_BY_VALUE ? a->value[row]
+                       : ranking == RANK_BY_AGE ? -row
+                                                : distance(row_x(o, row), centre, o->settings.variables);
+    c->ranked[count++] = (struct ranked){key, row};
   }
-  struct ranked *ranked = malloc((size_t)a->count * sizeof *ranked);
-  bool *used = calloc((size_t)a->count, sizeof *used);
-  for (int pass = 0; pass < 3 && ranked && used; pass++) {
-    int candidates = 0;
-    for (int row = 0; row < a->count; row++)
-      if (!eo_archive_failed(a, row) && !used[row])
-        ranked[candidates++] =
-            (struct ranked){pass == 0 ? a->value[row] : pass == 1 ? -row : distance(row_x(o, row), centre, n), row};
-    qsort(ranked, (size_t)candidates, sizeof *ranked, compare_ranked);
-    const int share = pass == 2 ? limit - count : limit / 3;
-    for (int i = 0; i < share && i < candidates; i++) {
-      used[ranked[i].row] = true;
-      c->rows[count++] = ranked[i].row;
-    }
+  qsort(c->ranked, (size_t)count, sizeof *c->ranked, compare_ranked);
+  for (int i = 0; i < share && i < count; i++) {
+    c->used[c->ranked[i].row] = true;
+    c->rows[taken++] = c->ranked[i].row;
   }
-  free(ranked);
-  free(used);
-  return count;
+  return taken;
+}
+
+/* At most model_rows rows: a third the best, a third the newest, the rest nearest to the centre. */
+static int gather_model_rows(struct eo_optimizer *o, const double *centre)
+{
+  struct credibility *c = o->state;
+  const int limit = o->settings.model_rows;
+  memset(c->used, 0, (size_t)o->archive.count * sizeof *c->used);
+  int taken = take_rows(o, RANK_BY_VALUE, centre, 0, limit / 3);
+  taken = take_rows(o, RANK_BY_AGE, centre, taken, limit / 3);
+  return take_rows(o, RANK_BY_DISTANCE, centre, taken, limit - taken);
 }
 
 static void fit_model(struct eo_optimizer *o, const double *centre)
@@ -203,7 +241,7 @@ static void fit_model(struct eo_optimizer *o, const double *centre)
     c->y[j] = fmin(c->y[j], median);
   if (!(c->spread_of_values > 0))
     return;
-  c->modelled = eo_surrogate_fit(&c->surrogate, EO_TAIL_LINEAR, 1e-9, c->x, c->y, count, 1);
+  c->modelled = eo_surrogate_fit(&c->surrogate, EO_TAIL_LINEAR, ridge, c->x, c->y, count, 1);
   if (c->modelled)
     eo_surrogate_set_scale(&c->surrogate, c->spread_of_values);
 }
@@ -223,11 +261,12 @@ static double score(struct eo_optimizer *o, const double *x)
 static void breed(struct eo_optimizer *o, int parents, int round)
 {
   struct credibility *c = o->state;
-  eo_breed(&o->settings, c->parents, c->parent_score, parents, 3 * c->batch + round, 0, c->pool, c->children);
+  eo_breed(&o->settings, c->parents, c->parent_score, parents, ROUNDS * c->batch + round, 0, c->pool, c->children);
   for (int i = 0; i < c->children; i++)
     c->pool_score[i] = score(o, c->pool + (size_t)i * o->settings.variables);
 }
 
+/* The pool by falling score into c->index. */
 static void rank_pool(struct credibility *c)
 {
   for (int i = 0; i < c->children; i++) {
@@ -249,31 +288,45 @@ static int select_parents(struct eo_optimizer *o)
   return count;
 }
 
-static bool is_apart(const struct eo_optimizer *o, const double *x, int chosen, double apart)
+static void fill_pool(struct eo_optimizer *o, int parents)
 {
-  const struct credibility *c = o->state;
-  const int n = o->settings.variables;
-  for (int j = 0; j < chosen; j++)
-    if (distance(c->chosen + (size_t)j * n, x, n) <= apart)
-      return false;
-  for (int j = 0; j < o->archive.count; j++)
-    if (distance(row_x(o, j), x, n) <= apart)
-      return false;
-  return true;
+  struct credibility *c = o->state;
+  for (int round = 0; round < ROUNDS; round++) {
+    breed(o, parents, round);
+    rank_pool(c);
+    if (round + 1 < ROUNDS)
+      parents = select_parents(o);
+  }
 }
 
-/* Fills c->chosen from `first` on with the best of the pool that keep their distance. */
+static double nearest(const double *points, int count, const double *x, int n)
+{
+  double least = INFINITY;
+  for (int j = 0; j < count; j++) {
+    double sum = 0;
+    for (int k = 0; k < n; k++)
+      sum += (points[(size_t)j * n + k] - x[k]) * (points[(size_t)j * n + k] - x[k]);
+    least = sum < least ? sum : least;
+  }
+  return sqrt(least);
+}
+
+/* Fills c->chosen from `first` to `count` with the best of the pool that keep their distance; a distance that nobody keeps
+   leaves its place free. Returns how many there are. */
 static int choose(struct eo_optimizer *o, int first, int count)
 {
   struct credibility *c = o->state;
-  const int n = o->settings.variables;
+  const int n = o->settings.variables, places = count - first;
   int chosen = first;
-  rank_pool(c);
-  for (int slot = 0; slot < count - first; slot++) {
-    const double apart = sqrt(n) * (c->polishing ? polish_spread[slot * 4 / (count - first)] : search_spread[slot * 8 / (count - first)]);
+  for (int i = 0; i < c->children; i++) {
+    const double *x = c->pool + (size_t)i * n;
+    c->pool_gap[i] = is_taboo(o, x) ? -1 : nearest(o->archive.x, o->archive.count, x, n);
+  }
+  for (int place = 0; place < places; place++) {
+    const double apart = sqrt(n) * spread[place * SPREADS / places];
     for (int i = 0; i < c->children; i++) {
       const double *x = c->pool + (size_t)c->index[i] * n;
-      if (is_taboo(o, x) || !is_apart(o, x, chosen, apart))
+      if (c->pool_gap[c->index[i]] <= apart || nearest(c->chosen, chosen, x, n) <= apart)
         continue;
       memcpy(c->chosen + (size_t)chosen++ * n, x, (size_t)n * sizeof(double));
       break;
@@ -282,13 +335,17 @@ static int choose(struct eo_optimizer *o, int first, int count)
   return chosen;
 }
 
-static void request_chosen(struct eo_optimizer *o, int count)
+/* Asks for c->chosen, the first `local` of which come from the trust region. */
+static void request_chosen(struct eo_optimizer *o, int count, int local)
 {
   struct credibility *c = o->state;
-  bool known;
-  for (int i = 0; i < count; i++)
+  bool known = false;
+  c->local_count = 0;
+  for (int i = 0; i < count; i++) {
     if (eo_optimizer_request(o, c->chosen + (size_t)i * o->settings.variables, c->batch, i, false, &known) < 0)
-      break;
+      return;
+    c->local_count += i < local && !known;
+  }
 }
 
 static void propose_epoch(struct eo_optimizer *o)
@@ -296,58 +353,49 @@ static void propose_epoch(struct eo_optimizer *o)
   struct credibility *c = o->state;
   const int n = o->settings.variables, count = o->settings.initial_factor * n;
   eo_latin_hypercube(c->chosen, count, n, o->settings.seed, c->epoch, c->sorted);
-  request_chosen(o, count);
+  request_chosen(o, count, 0);
   c->fresh = false;
 }
 
 static void propose_children(struct eo_optimizer *o)
 {
   struct credibility *c = o->state;
-  int parents = gather_parents(o);
-  int chosen = 0;
-  c->local_count = 0;
-  if (parents > 0) {
-    const int centre = c->index[0];
-    const int slots = (int)(o->settings.local_share * o->settings.batch + 0.5);
-    const int local = c->polishing ? o->settings.batch : slots;
-    if (local > 0)
-      chosen = c->local_count =
-          eo_local_propose(&c->local, &o->archive, centre, o->settings.seed, c->batch, local, c->chosen);
-    if (!c->polishing) {
-      fit_model(o, row_x(o, centre));
-      for (int round = 0; round < 3; round++) {
-        breed(o, parents, round);
-        rank_pool(c);
-        if (round < 2)
-          parents = select_parents(o);
-      }
-      chosen = choose(o, chosen, chosen + o->settings.batch - local);
-    }
+  const int parents = gather_parents(o), batch = o->settings.batch;
+  if (parents == 0)
+    return;
+  const int centre = c->index[0], share = c->polishing ? batch : (int)(o->settings.local_share * batch + 0.5);
+  const int local =
+      share > 0 ? eo_local_propose(&c->local, &o->archive, centre, o->settings.seed, c->batch, share, c->chosen) : 0;
+  int chosen = local;
+  if (share < batch) {
+    fit_model(o, row_x(o, centre));
+    fill_pool(o, parents);
+    chosen = choose(o, local, local + batch - share);
   }
-  request_chosen(o, chosen);
-  if (o->batch_count == 0)
-    c->fresh = true;
+  request_chosen(o, chosen, local);
 }
 
+/* Where the latin hypercube is known (an earlier run's rows were imported) children follow at once; nothing new to try
+   ends an epoch, too. */
 static enum eo_code propose(struct eo_optimizer *o, struct eo_error *error)
 {
   struct credibility *c = o->state;
-  (void)error;
   if (eo_optimizer_left(o) <= 0) {
     o->finished = true;
     return EO_OK;
   }
-  if (!c->fresh)
-    propose_children(o);
-  while (c->fresh) {
-    c->fresh = false;
-    propose_epoch(o);
+  const enum eo_code code = reserve_ranked(o, error);
+  while (code == EO_OK && o->batch_count == 0) {
+    if (c->fresh)
+      propose_epoch(o);
+    if (o->batch_count == 0)
+      propose_children(o);
     if (o->batch_count == 0) {
       c->epoch++;
       c->fresh = true;
     }
   }
-  return EO_OK;
+  return code;
 }
 
 static double best_of_epoch(const struct eo_optimizer *o, int *best)
@@ -385,6 +433,19 @@ static enum eo_code begin_epoch(struct eo_optimizer *o, int best, struct eo_erro
   return EO_OK;
 }
 
+/* Counts the batches without gain; returns the best row of the epoch. */
+static int watch_progress(struct eo_optimizer *o)
+{
+  struct credibility *c = o->state;
+  int best;
+  const double value = best_of_epoch(o, &best);
+  const bool gained = c->epoch_best == INFINITY || value < c->epoch_best - o->settings.stall_gain * fabs(c->epoch_best);
+  c->stalled = gained ? 0 : c->stalled + 1;
+  if (gained)
+    c->epoch_best = value;
+  return best;
+}
+
 static enum eo_code absorb(struct eo_optimizer *o, struct eo_error *error)
 {
   struct credibility *c = o->state;
@@ -393,20 +454,15 @@ static enum eo_code absorb(struct eo_optimizer *o, struct eo_error *error)
   if (code != EO_OK)
     return code;
   if (c->local_count > 0)
-    eo_local_learn(&c->local, &o->archive, o->archive.count - o->batch_count,
-                   c->local_count < o->batch_count ? c->local_count : o->batch_count);
-  c->local_count = 0;
+    eo_local_learn(&c->local, &o->archive, o->archive.count - o->batch_count, c->local_count);
   c->batch++;
-  int best;
-  const double value = best_of_epoch(o, &best);
-  const bool gained = value < c->epoch_best - o->settings.stall_gain * fabs(c->epoch_best) || c->epoch_best > 1e300;
-  c->stalled = gained ? 0 : c->stalled + 1;
-  if (gained)
-    c->epoch_best = value;
-  if (!c->polishing && eo_optimizer_left(o) + o->batch_count <= o->settings.polish_share * o->budget) {
+  const int best = watch_progress(o);
+  if (c->polishing)
+    return EO_OK;
+  if (eo_optimizer_left(o) <= o->settings.polish_share * o->budget) {
     c->polishing = true;
-    eo_local_restart(&c->local, o->settings.local_radius / 4);
-  } else if (!c->polishing && c->stalled >= o->settings.stall_batches) {
+    eo_local_restart(&c->local, polish_radius * o->settings.local_radius);
+  } else if (c->stalled >= o->settings.stall_batches) {
     return begin_epoch(o, best, error);
   }
   return EO_OK;

@@ -137,7 +137,8 @@ enum eo_code eo_optimizer_tell(struct eo_optimizer *optimizer, int candidate, co
 
 int eo_optimizer_left(const struct eo_optimizer *optimizer)
 {
-  return optimizer->budget - optimizer->true_evaluations - optimizer->batch_count;
+  const int pending = optimizer->told_count < optimizer->batch_count ? optimizer->batch_count : 0;
+  return optimizer->budget - optimizer->true_evaluations - pending;
 }
 
 static int find_pending(const struct eo_optimizer *o, const double *x)

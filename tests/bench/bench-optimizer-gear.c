@@ -1,9 +1,9 @@
 /* Optimizers on the real objective of the paper's pair, Case A (5 variables, both ends alike) and Case B (10): J after 100,
-   200, 400 and 1000 true evaluations, beside NLopt's when it is there.
+   200, 400 and 1000 true evaluations, beside NLopt's and pagmo's when they are there.
 
-     bench-optimizer-gear [--quick] [--seeds N] [--case a|b] [--plain] [--algorithm NAME] [--set KEY=NUMBER]... [--cache DIR]
+     bench-optimizer-gear [--quick] [--front] [--seeds N] [--case a|b] [--plain] [--algorithm NAME] [--set KEY=NUMBER]... [--cache DIR]
 
-   --plain: without tip edge contact, three teeth in the sector, no coupling between neighbours. */
+   --front: Pareto fronts of the three objectives in those of the unmodified pair. --plain: without tip edge contact, three teeth in the sector, no coupling between neighbours. */
 #include "contest.h"
 #include "document/design_document.h"
 #include "document/example.h"
@@ -36,9 +36,8 @@ static void set_flank(struct eo_flank_modification *flank, const double *x)
   flank->lead_crowning = lerp(0, 36e-6, x[4]);
 }
 
-static double value(void *context, const double *x)
+static void evaluate(struct gear *gear, const double *x)
 {
-  struct gear *gear = context;
   struct eo_error error;
   for (int end = 0; end < 2; end++)
     set_flank(&gear->design.modification.flank[EO_PINION][end], x + (gear->ends == 2 ? 5 * end : 0));
@@ -46,8 +45,23 @@ static double value(void *context, const double *x)
     fprintf(stderr, "%s\n", error.text);
     exit(1);
   }
+}
+
+static double value(void *context, const double *x)
+{
+  struct gear *gear = context;
+  evaluate(gear, x);
   const double objective = gear->analysis->value.objective;
   return isfinite(objective) && !gear->analysis->value.sums.failed ? objective : INFINITY;
+}
+
+/* The three in those of the unmodified pair. */
+static void objectives(void *context, const double *x, double *f)
+{
+  struct gear *gear = context;
+  evaluate(gear, x);
+  for (int i = 0; i < CONTEST_OBJECTIVES; i++)
+    f[i] = gear->analysis->value.sums.failed ? INFINITY : gear->analysis->value.sums.f[i] / gear->analysis->unmodified_value.sums.f[i];
 }
 
 static void prepare(struct trace *trace, const struct contest_problem *problem, uint64_t seed)
@@ -56,6 +70,7 @@ static void prepare(struct trace *trace, const struct contest_problem *problem, 
   (void)seed;
   gear->ends = problem->n / 5;
   trace->value = value;
+  trace->objectives = objectives;
   trace->context = gear;
 }
 

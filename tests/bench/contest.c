@@ -4,6 +4,7 @@
 
 #include "base/random.h"
 #include "optimizer/optimizer.h"
+#include "optimizer/pareto.h"
 
 #include <math.h>
 #include <stdbool.h>
@@ -29,6 +30,25 @@ double trace_evaluate(struct trace *trace, const double *x)
   return value;
 }
 
+void trace_evaluate_front(struct trace *trace, const double *x, double *f)
+{
+  trace->objectives(trace->context, x, f);
+  if (trace->count < CONTEST_BUDGET)
+    memcpy(trace->front[trace->count], f, sizeof *trace->front);
+  trace->count++;
+}
+
+static void measure_front(struct trace *trace)
+{
+  static const double reference[CONTEST_OBJECTIVES] = {1, 1, 1};
+  static double point[CONTEST_BUDGET][CONTEST_OBJECTIVES];
+  for (int m = 0; m < CONTEST_MARKS; m++) {
+    const int count = trace->count < marks[m] ? trace->count : marks[m];
+    memcpy(point, trace->front, sizeof *point * (size_t)count);
+    trace->at[m] = 1 - eo_pareto_hypervolume(*point, count, CONTEST_OBJECTIVES, reference);
+  }
+}
+
 static void apply_changes(const struct contest *contest, struct eo_optimizer_settings *settings)
 {
   int count;
@@ -47,10 +67,12 @@ static void run_own(const struct contest *contest, struct trace *trace, int algo
   struct eo_optimizer *optimizer = NULL;
   struct eo_error error;
   struct eo_batch batch = {.count = 1};
+  double f[CONTEST_OBJECTIVES];
   eo_optimizer_defaults(&settings, algorithm, trace->n);
   settings.seed = seed;
   settings.true_evaluations = CONTEST_BUDGET;
   settings.fitness_form = EO_FITNESS_NEGATIVE;
+  settings.objectives = trace->front ? CONTEST_OBJECTIVES : 1;
   apply_changes(contest, &settings);
   if (eo_optimizer_new(&settings, &optimizer, &error) != EO_OK) {
     printf("%s\n", error.text);
@@ -58,7 +80,13 @@ static void run_own(const struct contest *contest, struct trace *trace, int algo
   }
   while (batch.count > 0 && eo_optimizer_ask(optimizer, &batch, &error) == EO_OK)
     for (int i = 0; i < batch.count; i++) {
-      const struct eo_outcome outcome = {.value = trace_evaluate(trace, batch.candidates[i].x)};
+      struct eo_outcome outcome = {.objectives = f};
+      if (trace->front) {
+        trace_evaluate_front(trace, batch.candidates[i].x, f);
+        outcome.value = f[0] + f[1] + f[2];
+      } else {
+        outcome.value = trace_evaluate(trace, batch.candidates[i].x);
+      }
       eo_optimizer_tell(optimizer, i, &outcome, &error);
     }
   eo_optimizer_free(optimizer);
@@ -98,19 +126,37 @@ static void run_nlopt(const struct contest *contest, struct trace *trace, int al
 }
 #endif
 
+#ifdef HAVE_PAGMO
+static void run_pagmo(const struct contest *contest, struct trace *trace, int algorithm, uint64_t seed)
+{
+  static const unsigned population[] = {[PAGMO_CMAES] = 10, [PAGMO_SADE] = 20, [PAGMO_DE] = 20, [PAGMO_SGA] = 50, [PAGMO_NSGA2] = 48};
+  (void)contest;
+  pagmo_run(trace, algorithm, population[algorithm], (unsigned)seed);
+}
+#endif
+
 static const struct contestant {
   const char *name;
   void (*run)(const struct contest *, struct trace *, int, uint64_t);
   int algorithm;
+  bool front;
 } contestants[] = {
-    {"credibility-ga", run_own, EO_CREDIBILITY_GA},
-    {"ga", run_own, EO_GA},
-    {"fpga", run_own, EO_FPGA},
+    {"credibility-ga", run_own, EO_CREDIBILITY_GA, false},
+    {"ga", run_own, EO_GA, false},
+    {"fpga", run_own, EO_FPGA, false},
+    {"nsga2", run_own, EO_NSGA2, true},
 #ifdef HAVE_NLOPT
-    {"nlopt-bobyqa", run_nlopt, NLOPT_LN_BOBYQA},
-    {"nlopt-crs2", run_nlopt, NLOPT_GN_CRS2_LM},
-    {"nlopt-isres", run_nlopt, NLOPT_GN_ISRES},
-    {"nlopt-direct-l", run_nlopt, NLOPT_GN_DIRECT_L},
+    {"nlopt-bobyqa", run_nlopt, NLOPT_LN_BOBYQA, false},
+    {"nlopt-crs2", run_nlopt, NLOPT_GN_CRS2_LM, false},
+    {"nlopt-isres", run_nlopt, NLOPT_GN_ISRES, false},
+    {"nlopt-direct-l", run_nlopt, NLOPT_GN_DIRECT_L, false},
+#endif
+#ifdef HAVE_PAGMO
+    {"pagmo-cmaes", run_pagmo, PAGMO_CMAES, false},
+    {"pagmo-sade", run_pagmo, PAGMO_SADE, false},
+    {"pagmo-de", run_pagmo, PAGMO_DE, false},
+    {"pagmo-sga", run_pagmo, PAGMO_SGA, false},
+    {"pagmo-nsga2", run_pagmo, PAGMO_NSGA2, true},
 #endif
 };
 
@@ -129,14 +175,17 @@ static double cpu_seconds(void)
 
 static void print_line(const struct contest *contest, const struct contest_problem *problem, const struct contestant *c)
 {
+  static double front[CONTEST_BUDGET][CONTEST_OBJECTIVES];
   double at[CONTEST_MARKS][CONTEST_SEEDS_MAX], spent = cpu_seconds();
   const int seeds = contest->seeds;
   long evaluations = 0;
   for (int s = 0; s < seeds; s++) {
-    struct trace trace = {.n = problem->n, .best = INFINITY};
+    struct trace trace = {.n = problem->n, .best = INFINITY, .front = c->front ? front : NULL};
     problem->prepare(&trace, problem, (uint64_t)s + 1);
     c->run(contest, &trace, c->algorithm, (uint64_t)s + 1);
     evaluations += trace.count;
+    if (c->front)
+      measure_front(&trace);
     for (int m = 0; m < CONTEST_MARKS; m++)
       at[m][s] = trace.at[m];
   }
@@ -161,7 +210,7 @@ void contest_print_head(void)
 void contest_run(const struct contest *contest, const struct contest_problem *problem)
 {
   for (size_t c = 0; c < sizeof contestants / sizeof *contestants; c++)
-    if (!contest->algorithm || strstr(contestants[c].name, contest->algorithm))
+    if (contestants[c].front == contest->front && (!contest->algorithm || strstr(contestants[c].name, contest->algorithm)))
       print_line(contest, problem, &contestants[c]);
 }
 
@@ -169,6 +218,10 @@ int contest_option(struct contest *contest, int argc, char **argv, int i)
 {
   if (strcmp(argv[i], "--quick") == 0) {
     contest->seeds = 3;
+    return 1;
+  }
+  if (strcmp(argv[i], "--front") == 0) {
+    contest->front = true;
     return 1;
   }
   if (i + 1 >= argc)

@@ -2,34 +2,44 @@
 #ifndef EASEOFF_BENCH_CONTEST_H
 #define EASEOFF_BENCH_CONTEST_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
-enum { CONTEST_BUDGET = 1000, CONTEST_MARKS = 4, CONTEST_SEEDS_MAX = 101, CONTEST_VARIABLES = 20 };
+enum { CONTEST_BUDGET = 1000, CONTEST_MARKS = 4, CONTEST_SEEDS_MAX = 101, CONTEST_VARIABLES = 20, CONTEST_OBJECTIVES = 3 };
 
-/* Everything an optimizer asks for goes through here. */
+/* Everything an optimizer asks for goes through here. What counts is least: the best value, or, of a front, the share of the
+   unit box of objectives that nothing dominates (1 less the hypervolume). */
 struct trace {
   int n;
   double (*value)(void *context, const double *x); /* infinite when the evaluation fails */
+  void (*objectives)(void *context, const double *x, double *f); /* [CONTEST_OBJECTIVES], likewise */
   void *context;
   int count;
   double best, at[CONTEST_MARKS];
+  double (*front)[CONTEST_OBJECTIVES]; /* [CONTEST_BUDGET] of all that was evaluated; NULL: one objective */
 };
 
 double trace_evaluate(struct trace *trace, const double *x);
+void trace_evaluate_front(struct trace *trace, const double *x, double *f);
+
+/* With pagmo only. */
+enum { PAGMO_CMAES, PAGMO_SADE, PAGMO_DE, PAGMO_SGA, PAGMO_NSGA2 };
+void pagmo_run(struct trace *trace, int algorithm, unsigned population, unsigned seed);
 
 struct contest {
   int seeds;
   const char *algorithm;   /* part of the name; NULL: all */
   const char *change[32];  /* KEY=NUMBER: parameters of our own other than the defaults */
   int changes;
+  bool front;              /* Pareto fronts instead of one value */
 };
 
-/* Understands --seeds N, --algorithm NAME, --set KEY=NUMBER and --quick at argv[i]; returns how many words it took, 0: none. */
+/* Understands --seeds N, --algorithm NAME, --set KEY=NUMBER, --front and --quick at argv[i]; returns how many words it took, 0: none. */
 int contest_option(struct contest *contest, int argc, char **argv, int i);
 
 void contest_print_head(void);
 
-/* One line per optimizer. prepare sets trace->value and context for the instance of a seed. */
+/* One line per optimizer. prepare sets trace->value or objectives, and context, for the instance of a seed. */
 struct contest_problem {
   const char *name;
   int n;

@@ -110,7 +110,7 @@ static void print_row(const char *what, int value, const struct numbers *n, cons
   fflush(stdout);
 }
 
-static const struct resolution usual = {64, 30, 12, 24, 10, 0};
+static const struct resolution usual = {64, 30, 12, 24, 16, 0};
 
 /* values: the finest last. */
 static void vary(int which, const char *name, size_t offset, int values, const int *value)
