@@ -16,7 +16,7 @@ static int print_overview(void)
   struct eo_text text = {0};
   eo_text_print(&text, "%s: quiet herringbone gears by tooth micro-geometry\n\n", eo_program);
   for (int i = 0; i < COMMANDS; i++)
-    eo_text_print(&text, "  easeoff %-8s %-32s %s\n", commands[i]->name, commands[i]->usage, commands[i]->summary);
+    eo_text_print(&text, "  easeoff %-9s  %s\n", commands[i]->name, commands[i]->summary);
   eo_text_add(&text, "\neaseoff COMMAND --help says more; easeoff --version prints the version. A file named - is standard input.\n"
                      "Exit status: 0 done, 1 the input is wrong, 2 it failed.\n");
   return eo_app_print(&text);
