@@ -78,7 +78,7 @@ static int choose(const struct eo_series_file *file, int *chosen, struct eo_note
 static enum eo_code check_size(const struct eo_series_file *file, const int *chosen, int count, int64_t rows, struct eo_error *error)
 {
   if (!count)
-    return eo_error_set(error, EO_ERROR_INPUT, "", "The file has no channel with numbers (%d channels without data).", file->count);
+    return eo_error_set(error, EO_ERROR_INPUT, "", "The file has no channel with numbers over time.");
   if (rows > INT64_MAX / 8 / count / 2 || rows * count * 8 > file->limit)
     return eo_error_set(error, EO_ERROR_INPUT, "", "The %d channels of %lld values are more than the %lld MB that are read at most.", count,
                         (long long)rows, (long long)(file->limit >> 20));
