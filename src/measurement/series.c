@@ -4,7 +4,7 @@
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
-#include <string.h>
+#include <strings.h>
 
 #define BLOCK 4096 /* rows that are copied at once */
 #define SHORT 20   /* a channel this many times shorter than the longest belongs to something else */
@@ -133,6 +133,21 @@ enum eo_code eo_series_copy(const struct eo_series_file *file, const struct eo_s
       rows = file->series[chosen[c]].length;
   enum eo_code code = check_size(file, chosen, count, rows, error);
   return code ? code : copy_all(file, chosen, count, rows, sink, error);
+}
+
+double eo_series_stated_interval(const char *name, double value)
+{
+  static const char *const rates[] = { "fs", "sample_rate", "samplerate", "sampling_rate", "sampling_frequency" };
+  static const char *const intervals[] = { "dt", "ts", "wf_increment", "increment", "sample_interval", "delta_t" };
+  if (!(value > 0) || !isfinite(value))
+    return 0;
+  for (size_t i = 0; i < sizeof rates / sizeof *rates; i++)
+    if (!strcasecmp(name, rates[i]))
+      return 1 / value;
+  for (size_t i = 0; i < sizeof intervals / sizeof *intervals; i++)
+    if (!strcasecmp(name, intervals[i]))
+      return value;
+  return 0;
 }
 
 static enum eo_code begin_recording(void *context, const struct eo_series *column, int columns, struct eo_error *error)
