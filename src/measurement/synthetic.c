@@ -246,10 +246,12 @@ enum eo_code eo_synthetic_record(const struct eo_synthetic *s, struct eo_recordi
   return code;
 }
 
+double eo_synthetic_speed(const struct eo_synthetic *s) { return (smooth(s, duration(s)) - smooth(s, 0)) / duration(s); }
+
 double eo_synthetic_rms(const struct eo_synthetic *s, int harmonics)
 {
-  double sum = 0;
+  double sum = 0, speed = eo_synthetic_speed(s);
   for (int h = 1; h <= harmonics && h <= s->orders; h++)
-    sum += pow(cabs(s->order[h - 1]) * pow(h * s->teeth[EO_PINION] * s->speed, 2), 2) / 2;
+    sum += pow(cabs(s->order[h - 1]) * pow(h * s->teeth[EO_PINION] * speed, 2), 2) / 2;
   return sqrt(sum);
 }

@@ -7,7 +7,7 @@
 #include "measurement/synchronous.h"
 #include "measurement/terms.h"
 
-enum { BLOCK = 4096, BINS = 16, SKIPPED = 2 };
+enum { BLOCK = 4096, BINS = 16, SKIPPED = 2, FAR_ORDERS = 6, NEAREST_FAR = 3 };
 static const double TREND_TURNS = 5; /* of the pinion, at least, and two of the gear, between knots */
 
 struct worker {
@@ -26,6 +26,8 @@ struct worker {
   /* residual transformed beside every mesh order, at -(BINS + 1) .. -SKIPPED, SKIPPED .. BINS + 1 over the turns */
   double complex beside[EO_MESH_ORDERS][2][BINS];
   double complex sideband[EO_MESH_ORDERS][2][EO_SIDEBANDS];
+  /* ... and at whole turns of either shaft beyond the sidebands: NEAREST_FAR .. NEAREST_FAR + FAR_ORDERS - 1, below and above */
+  double complex far[EO_MESH_ORDERS][2][2][FAR_ORDERS];
 };
 
 static const int sideband_turns[EO_SIDEBANDS] = {-2, -1, 1, 2};
@@ -183,7 +185,7 @@ static enum eo_code fit_terms(struct worker *w, struct eo_error *error)
 
 static void transform_beside(struct worker *w, double theta, double residual)
 {
-  double complex unit = cexp(-I * w->settings->teeth[EO_PINION] * theta), around[BINS], shaft[2][EO_SIDEBANDS], mesh = residual;
+  double complex unit = cexp(-I * w->settings->teeth[EO_PINION] * theta), around[BINS], shaft[2][EO_SIDEBANDS], far[2][FAR_ORDERS], mesh = residual;
   double complex slow = cexp(-I * theta / w->turns), power = slow;
   double gear = (double)w->settings->teeth[EO_PINION] / w->settings->teeth[EO_GEAR];
   for (int j = 0; j < BINS; j++)
@@ -194,6 +196,8 @@ static void transform_beside(struct worker *w, double theta, double residual)
     shaft[member][3] = turn * turn;
     shaft[member][1] = conj(turn);
     shaft[member][0] = conj(turn * turn);
+    for (int k = 0; k < FAR_ORDERS; k++)
+      far[member][k] = k ? far[member][k - 1] * turn : shaft[member][3] * turn;
   }
   for (int h = 0; h < w->result->harmonics; h++) {
     mesh *= unit;
@@ -203,6 +207,11 @@ static void transform_beside(struct worker *w, double theta, double residual)
     }
     for (int k = 0; k < 2 * EO_SIDEBANDS; k++)
       w->sideband[h][k / EO_SIDEBANDS][k % EO_SIDEBANDS] += mesh * shaft[k / EO_SIDEBANDS][k % EO_SIDEBANDS];
+    for (int k = 0; k < 2 * FAR_ORDERS; k++) {
+      int member = k / FAR_ORDERS, at = k % FAR_ORDERS;
+      w->far[h][member][0][at] += mesh * conj(far[member][at]);
+      w->far[h][member][1][at] += mesh * far[member][at];
+    }
   }
 }
 
@@ -243,8 +252,23 @@ static int ascending(const void *a, const void *b)
   return (x > y) - (x < y);
 }
 
-/* Standard deviation of the cosine and sine amplitudes from the median power beside the order (the power of noise is exponentially
-   distributed: its median is ln 2 of its mean); bins at sidebands are left out. */
+/* The mean power of noise from the median: power is exponentially distributed, its median is ln 2 of its mean. */
+static double mean_power(double *power, int n)
+{
+  qsort(power, (size_t)n, sizeof *power, ascending);
+  return (power[(n - 1) / 2] + power[n / 2]) / (2 * M_LN2);
+}
+
+/* What repeats with every turn of a shaft, like steps of an encoder that is sampled in step with it, does not show between the orders. */
+static double repeating_power(const struct worker *w, int h, int member)
+{
+  double power[2 * FAR_ORDERS];
+  for (int k = 0; k < 2 * FAR_ORDERS; k++)
+    power[k] = pow(cabs(w->far[h][member][k / FAR_ORDERS][k % FAR_ORDERS]), 2);
+  return mean_power(power, 2 * FAR_ORDERS);
+}
+
+/* Standard deviation of the cosine and sine amplitudes from the power beside the order; bins at sidebands are left out. */
 static double noise_beside(const struct worker *w, int h)
 {
   double power[2 * BINS], gear = (double)w->settings->teeth[EO_PINION] / w->settings->teeth[EO_GEAR], rows = (double)w->result->rows;
@@ -260,9 +284,8 @@ static double noise_beside(const struct worker *w, int h)
     }
   if (n < 6)
     return sqrt(2) * w->result->residual / sqrt(rows);
-  qsort(power, (size_t)n, sizeof *power, ascending);
-  double median = (power[(n - 1) / 2] + power[n / 2]) / 2;
-  return sqrt(2 * median / M_LN2) / rows;
+  double most = fmax(mean_power(power, n), fmax(repeating_power(w, h, EO_PINION), repeating_power(w, h, EO_GEAR)));
+  return sqrt(2 * most) / rows;
 }
 
 static void read_lines(struct worker *w)
