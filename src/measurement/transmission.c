@@ -4,10 +4,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "measurement/beside.h"
 #include "measurement/synchronous.h"
 #include "measurement/terms.h"
 
-enum { BLOCK = 4096, BINS = 16, SKIPPED = 2, FAR_ORDERS = 6, NEAREST_FAR = 3 };
+enum { BLOCK = 4096 };
 static const double TREND_TURNS = 5; /* of the pinion, at least, and two of the gear, between knots */
 
 struct worker {
@@ -23,11 +24,7 @@ struct worker {
   double turns;              /* between them */
   double rows[BLOCK][3];
   struct eo_synchronous *synchronous;
-  /* residual transformed beside every mesh order, at -(BINS + 1) .. -SKIPPED, SKIPPED .. BINS + 1 over the turns */
-  double complex beside[EO_MESH_ORDERS][2][BINS];
-  double complex sideband[EO_MESH_ORDERS][2][EO_SIDEBANDS];
-  /* ... and at whole turns of either shaft beyond the sidebands: NEAREST_FAR .. NEAREST_FAR + FAR_ORDERS - 1, below and above */
-  double complex far[EO_MESH_ORDERS][2][2][FAR_ORDERS];
+  struct eo_beside beside;
 };
 
 static const int sideband_turns[EO_SIDEBANDS] = {-2, -1, 1, 2};
@@ -132,7 +129,7 @@ static void measure_speed(struct worker *w)
 static void judge_axis(struct worker *w)
 {
   struct eo_transmission *r = w->result;
-  double per_turn = (double)w->angles->rows * 2 * M_PI / (w->turns * 2 * M_PI) * (w->turns / ((w->trend.step * w->trend.intervals) * r->speed / (2 * M_PI)));
+  double per_turn = (double)w->angles->rows * 2 * M_PI / (w->trend.step * w->trend.intervals * r->speed);
   double turns = r->revolutions[EO_PINION], gear = r->revolutions[EO_GEAR], swing = (r->speed_high - r->speed_low) / r->speed;
   int possible = (int)(0.45 * per_turn / w->settings->teeth[EO_PINION]);
   r->asked = w->settings->harmonics ? w->settings->harmonics : 8;
@@ -183,38 +180,6 @@ static enum eo_code fit_terms(struct worker *w, struct eo_error *error)
 
 /* ---- the residual ---- */
 
-static void transform_beside(struct worker *w, double theta, double residual)
-{
-  double complex unit = cexp(-I * w->settings->teeth[EO_PINION] * theta), around[BINS], shaft[2][EO_SIDEBANDS], far[2][FAR_ORDERS], mesh = residual;
-  double complex slow = cexp(-I * theta / w->turns), power = slow;
-  double gear = (double)w->settings->teeth[EO_PINION] / w->settings->teeth[EO_GEAR];
-  for (int j = 0; j < BINS; j++)
-    around[j] = power *= slow;
-  for (int member = 0; member < 2; member++) {
-    double complex turn = cexp(-I * theta * (member == EO_GEAR ? gear : 1));
-    shaft[member][2] = turn;
-    shaft[member][3] = turn * turn;
-    shaft[member][1] = conj(turn);
-    shaft[member][0] = conj(turn * turn);
-    for (int k = 0; k < FAR_ORDERS; k++)
-      far[member][k] = k ? far[member][k - 1] * turn : shaft[member][3] * turn;
-  }
-  for (int h = 0; h < w->result->harmonics; h++) {
-    mesh *= unit;
-    for (int j = 0; j < BINS; j++) {
-      w->beside[h][0][j] += mesh * conj(around[j]);
-      w->beside[h][1][j] += mesh * around[j];
-    }
-    for (int k = 0; k < 2 * EO_SIDEBANDS; k++)
-      w->sideband[h][k / EO_SIDEBANDS][k % EO_SIDEBANDS] += mesh * shaft[k / EO_SIDEBANDS][k % EO_SIDEBANDS];
-    for (int k = 0; k < 2 * FAR_ORDERS; k++) {
-      int member = k / FAR_ORDERS, at = k % FAR_ORDERS;
-      w->far[h][member][0][at] += mesh * conj(far[member][at]);
-      w->far[h][member][1][at] += mesh * far[member][at];
-    }
-  }
-}
-
 static enum eo_code add_residual(struct worker *w, const double row[3], int64_t index, struct eo_error *error)
 {
   double value[EO_MOST_TERMS], theta = eo_trend_at(&w->trend, row[0], NULL), smooth = 0, mesh = 0, shaft = 0;
@@ -231,7 +196,7 @@ static enum eo_code add_residual(struct worker *w, const double row[3], int64_t 
     shaft += value[i] * w->coefficient[i];
   double residual = error_of(w, row) - smooth - mesh - shaft;
   w->result->residual += residual * residual;
-  transform_beside(w, theta, residual);
+  eo_beside_add(&w->beside, theta, residual);
   eo_synchronous_add(w->synchronous, index, theta, mesh, shaft, residual);
   return EO_OK;
 }
@@ -246,61 +211,19 @@ static struct eo_order_line line_of(const struct worker *w, int at)
   return (struct eo_order_line){.order = order, .amplitude = amplitude, .acceleration = order * order * speed * speed * cabs(amplitude)};
 }
 
-static int ascending(const void *a, const void *b)
-{
-  double x = *(const double *)a, y = *(const double *)b;
-  return (x > y) - (x < y);
-}
-
-/* The mean power of noise from the median: power is exponentially distributed, its median is ln 2 of its mean. */
-static double mean_power(double *power, int n)
-{
-  qsort(power, (size_t)n, sizeof *power, ascending);
-  return (power[(n - 1) / 2] + power[n / 2]) / (2 * M_LN2);
-}
-
-/* What repeats with every turn of a shaft, like steps of an encoder that is sampled in step with it, does not show between the orders. */
-static double repeating_power(const struct worker *w, int h, int member)
-{
-  double power[2 * FAR_ORDERS];
-  for (int k = 0; k < 2 * FAR_ORDERS; k++)
-    power[k] = pow(cabs(w->far[h][member][k / FAR_ORDERS][k % FAR_ORDERS]), 2);
-  return mean_power(power, 2 * FAR_ORDERS);
-}
-
-/* Standard deviation of the cosine and sine amplitudes from the power beside the order; bins at sidebands are left out. */
-static double noise_beside(const struct worker *w, int h)
-{
-  double power[2 * BINS], gear = (double)w->settings->teeth[EO_PINION] / w->settings->teeth[EO_GEAR], rows = (double)w->result->rows;
-  int n = 0;
-  for (int side = 0; side < 2; side++)
-    for (int j = 0; j < BINS; j++) {
-      double distance = (j + SKIPPED) / w->turns;
-      bool near = false;
-      for (int k = 1; k <= 2; k++)
-        near = near || fabs(distance - k) < 1.5 / w->turns || fabs(distance - k * gear) < 1.5 / w->turns;
-      if (!near)
-        power[n++] = pow(cabs(w->beside[h][side][j]), 2);
-    }
-  if (n < 6)
-    return sqrt(2) * w->result->residual / sqrt(rows);
-  double most = fmax(mean_power(power, n), fmax(repeating_power(w, h, EO_PINION), repeating_power(w, h, EO_GEAR)));
-  return sqrt(2 * most) / rows;
-}
-
 static void read_lines(struct worker *w)
 {
   struct eo_transmission *r = w->result;
   double rows = (double)r->rows;
   for (int h = 0; h < r->harmonics; h++) {
     r->mesh[h] = line_of(w, h);
-    r->mesh[h].sigma = noise_beside(w, h);
+    r->mesh[h].sigma = eo_beside_sigma(&w->beside, h, r->residual);
     r->rms_upto[h] = eo_transmission_rms(r->mesh, h + 1, r->speed, &r->rms_sigma);
     for (int k = 0; k < 2 * EO_SIDEBANDS; k++) {
       int member = k / EO_SIDEBANDS, at = k % EO_SIDEBANDS;
       double shaft = member == EO_GEAR ? (double)w->settings->teeth[EO_PINION] / w->settings->teeth[EO_GEAR] : 1;
       double order = r->mesh[h].order + shaft * sideband_turns[at];
-      double complex amplitude = 2 * w->sideband[h][member][at] / rows;
+      double complex amplitude = eo_beside_sideband(&w->beside, h, member, sideband_turns[at]);
       r->sideband[h][member][at] =
           (struct eo_order_line){order, amplitude, r->mesh[h].sigma, order * order * r->speed * r->speed * cabs(amplitude)};
     }
@@ -376,6 +299,7 @@ static enum eo_code measure(struct worker *w, struct eo_error *error)
   if (refused(w))
     return EO_OK;
   eo_terms_init(&w->terms, w->settings->teeth, w->result->harmonics, w->turns, w->trend.start, w->trend.start + w->result->seconds);
+  eo_beside_init(&w->beside, w->settings->teeth, w->result->harmonics, w->turns);
   code = fit_terms(w, error);
   if (!code)
     code = eo_synchronous_new(&w->synchronous, w->result, w->settings->teeth, w->from, w->turns, error);
