@@ -10,7 +10,7 @@ static const struct eo_unit unit_urad = {"urad", "urad", 1e6, true}, unit_us = {
                             unit_V = {"V", "V", 1, false};
 
 static const char *const ends[] = {"left", "right", NULL}, *const outputs[] = {"angles", "counts", "sine-cosine", "pulses", NULL};
-static const char *const faults[] = {"none", "swapped", "reversed", "teeth", "radians", "radians-gear", "dropped", "dropped-silent", "slip", "constant",
+static const char *const faults[] = {"none", "swapped", "reversed", "teeth", "radians", "radians-gear", "dropped", "dropped-silent", "slip", "lost-count", "constant",
                                      "stuck", "saturated", "time", "nan", "spike", NULL};
 static const char *const separators[] = {"comma", "semicolon", "tab", "blank", NULL}, *const headings[] = {"names", "units-row", "block", "none", NULL};
 
@@ -170,7 +170,7 @@ static json_t *encode_truth(const struct eo_synthetic *s, int orders)
 
 static const char *expected_finding(enum eo_synthetic_fault fault)
 {
-  static const char *const expected[EO_FAULTS] = {NULL, "swapped", "reversed", "teeth", "radians", "radians", "dropped rows", "dropped rows", "slip", "constant",
+  static const char *const expected[EO_FAULTS] = {NULL, "swapped", "reversed", "teeth", "radians", "radians", "dropped rows", "dropped rows", "slip", "lost-count", "constant",
                                                   "constant", "saturated", "time", "nan", "spike"};
   return expected[fault];
 }

@@ -72,6 +72,8 @@ static double channel_angle(const struct eo_synthetic *s, int64_t row, int chann
   double angle = shown_angle(s, channel, time) + s->noise * draw(s, STREAM_NOISE, at, channel);
   if (channel == EO_GEAR && s->fault == EO_FAULT_SPIKE && row == s->row)
     angle += 0.1;
+  if (channel == EO_GEAR && s->fault == EO_FAULT_LOST_COUNT && row >= s->row)
+    angle -= 2 * M_PI * (double)s->size / s->lines[EO_GEAR];
   return channel == EO_GEAR && s->fault == EO_FAULT_REVERSED ? -angle : angle;
 }
 

@@ -25,6 +25,7 @@ enum eo_synthetic_fault {
   EO_FAULT_DROPPED,        /* `size` rows missing from both, time with them */
   EO_FAULT_DROPPED_SILENT, /* time written on as if nothing was missing */
   EO_FAULT_SLIP,           /* `size` rows missing from the gear */
+  EO_FAULT_LOST_COUNT,     /* `size` lines lost by the gear's encoder */
   EO_FAULT_CONSTANT,       /* the gear stands still */
   EO_FAULT_STUCK,          /* from the row on */
   EO_FAULT_SATURATED,      /* raw tracks cut off at 80 % */
