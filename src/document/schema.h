@@ -8,7 +8,8 @@
 
 /* { "name", "fields": [ { "key", "kind": "number|integer|flag|text|choice|numbers|limit|object|list|series|seed", "unit", "symbol", "low", "high", "default",
    "choices", "count", "help", "required", "nullable", "derived", "fields" } ] }. unit: suffix of the key; low, high: of a number, of each number, or
-   of the number of rows; what does not apply is left out. default: as the document would say it, null: see derived. NULL without memory. */
+   of the number of rows (series: number_low, number_high of each number); what does not apply is left out. default: as the document would say it,
+   null: see derived. NULL without memory. */
 json_t *eo_table_fields(const struct eo_table *table);
 
 /* JSON Schema 2020-12 of the same object. input: absent keys take their default, unknown ones are faults; else an encoded object, all keys there and

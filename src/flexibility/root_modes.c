@@ -128,19 +128,30 @@ int eo_root_modes_slots(const struct eo_root_modes *modes)
   return modes->slots;
 }
 
-void eo_root_modes_add(const struct eo_root_modes *modes, int pair, int n, const struct eo_flank_point *point, const double *force,
-                       double *load)
+static bool is_loaded(int n, int sets, const double *force)
+{
+  for (int set = 0; set < sets; set++)
+    if (force[set * n] != 0)
+      return true;
+  return false;
+}
+
+void eo_root_modes_add(const struct eo_root_modes *modes, int pair, int n, const struct eo_flank_point *point, int sets, const double *force,
+                       double *load, size_t stride)
 {
   for (int j = 0; j < n; j++) {
     int ahead = point[j].pair - pair;
-    if (force[j] == 0 || ahead < -1 || ahead > 1 || (ahead != 0 && !modes->coupled))
+    if (ahead < -1 || ahead > 1 || (ahead != 0 && !modes->coupled) || !is_loaded(n, sets, force + j))
       continue;
     const struct eo_grid *grid = grid_of(modes, ahead);
     struct eo_grid_weights at;
     eo_grid_weights(grid, point[j].s[modes->member], point[j].eta, &at);
-    for (int r = 0; r < EO_SPLINE_WIDTH; r++)
-      for (int l = 0; l < EO_SPLINE_WIDTH; l++)
-        load[modes->slot[ahead + 1] + at.first + r * grid->eta.count + l] += force[j] * at.weight[EO_SPLINE_WIDTH * r + l];
+    for (int set = 0; set < sets; set++) {
+      double f = force[set * n + j], *to = load + (size_t)set * stride + modes->slot[ahead + 1] + at.first;
+      for (int r = 0; f != 0 && r < EO_SPLINE_WIDTH; r++)
+        for (int l = 0; l < EO_SPLINE_WIDTH; l++)
+          to[r * grid->eta.count + l] += f * at.weight[EO_SPLINE_WIDTH * r + l];
+    }
   }
 }
 

@@ -16,9 +16,9 @@ int eo_root_modes_rank(const struct eo_root_modes *modes);
 int eo_root_modes_slots(const struct eo_root_modes *modes);  /* numbers that describe a load distribution */
 int eo_root_modes_nodes(const struct eo_root_modes *modes);  /* of the root: [point][layer] from root.first on */
 
-/* Adds the loads force[n], N, at the points to load[slots] of the root of tooth pair `pair`. */
-void eo_root_modes_add(const struct eo_root_modes *modes, int pair, int n, const struct eo_flank_point *point, const double *force,
-                       double *load);
+/* Adds the loads force[sets][n], N, at the points to load[sets][slots] of the root of tooth pair `pair`; sets of load stand stride apart. */
+void eo_root_modes_add(const struct eo_root_modes *modes, int pair, int n, const struct eo_flank_point *point, int sets, const double *force,
+                       double *load, size_t stride);
 
 /* stress[count][nodes][EO_STRESSES], Pa, under load[count][slots]. scratch: [count][rank]. */
 void eo_root_modes_stress(const struct eo_root_modes *modes, int count, const double *load, double *scratch, double *stress);

@@ -124,7 +124,8 @@ static void put_analysis(struct eo_request *request, const struct eo_design *des
   int64_t job = 0;
   bool histories = eo_request_number(request, "histories") != 0;
   struct eo_analysis_question question = {.common = ask(request, design, warnings),
-                                          .want = EO_WANT_BAND | EO_WANT_CURVES | (eo_request_number(request, "root_stress") != 0 ? EO_WANT_ROOT : 0),
+                                          .want = EO_WANT_CURVES | (eo_request_number(request, "root_stress") != 0 ? EO_WANT_ROOT : 0) |
+                                                  (eo_request_number(request, "band") != 0 ? EO_WANT_BAND : 0),
                                           .maps = eo_request_number(request, "maps") != 0,
                                           .histories = histories};
   if (!read_lane(request, &question.common))
@@ -239,6 +240,7 @@ const struct eo_route eo_routes_analysis[] = {
      .headers = LANE, .rate = EO_RATE_QUESTION, .csv = true,
      .summary = "One true evaluation of a design, everything it computed. 202 while the gear pair is being prepared.",
      .query = {{"root_stress", 0, 1, 1, NULL, "1: root stress too"},
+               {"band", 0, 1, 0, NULL, "1: RMS at 0.9 and 1.1 times the compliance too, which takes several times as long"},
                {"maps", 0, 1, 1, NULL, "1: pressure and clearance over the flanks"},
                {"histories", 0, 1, 0, NULL, "1: vibration and root stress over time"}}},
     {.method = EO_POST, .pattern = "/sweep", .handle = sweep, .name = "sweep", .takes = "SweepRequest", .gives = "200 Sweep, 202 Preparing",

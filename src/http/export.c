@@ -36,5 +36,5 @@ static void list(struct eo_request *request)
 const struct eo_route eo_routes_export[] = {
     {.method = EO_GET, .pattern = "/export", .handle = list, .name = "listExports", .summary = "The formats of exported files.", .gives = "200 Exports"},
     {.method = EO_POST, .pattern = "/export/{format}", .handle = export, .name = "exportDesign", .takes = "Design", .rate = EO_RATE_START, .aside = true,
-     .gives = "200 text/csv", .summary = "A file for another program, as `easeoff export` writes it: points of the flanks, charts, the design."},
+     .gives = "200 text/csv, 200 ResolvedDesign", .summary = "A file for another program, as `easeoff export` writes it: points of the flanks, charts, the design."},
     {0}};

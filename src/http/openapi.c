@@ -106,10 +106,16 @@ static json_t *encode_answers(const struct eo_route *route)
   const char *list = route->gives, *name;
   size_t length;
   while (next_name(&list, &name, &length)) {
-    json_t *answer = json_pack("{s:s}", "description", *name == '2' ? "done" : "not now");
-    if (name[4] != '-')
-      json_object_set_new(answer, "content", encode_content(name + 4, length - 4, route->csv && strncmp(name, "200", 3) == 0));
-    json_object_setn_new(answers, name, 3, answer);
+    json_t *answer = json_object_getn(answers, name, 3), *content;
+    if (!answer) {
+      answer = json_pack("{s:s}", "description", *name == '2' ? "done" : "not now");
+      json_object_setn_new(answers, name, 3, answer);
+    }
+    if (name[4] == '-')
+      continue;
+    content = encode_content(name + 4, length - 4, route->csv && strncmp(name, "200", 3) == 0);
+    json_object_update(content, json_object_get(answer, "content"));
+    json_object_set_new(answer, "content", content);
   }
   if (route->headers && strstr(route->headers, "If-None-Match"))
     json_object_set_new(answers, "304", json_pack("{s:s}", "description", "the known version still holds"));

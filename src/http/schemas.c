@@ -39,7 +39,7 @@ static const struct { const char *name, *notation; } shapes[] = {
                            " pfc_percent number?, generations any, stopped text, ...}"},
     {"Generations", "{generation [integer], best [number?], mean [number?], true_evaluations [integer], predicted [integer], pfc_percent [number?]}"},
     {"JobHistory", "{items [{ordinal integer, generation integer, individual integer, outcome text, reason text?, modification Any, f1_um number?,"
-                   " f2_N number?, f3_m_per_s2 number?, J number?, fitness number?, reused flag}], next text?}"},
+                   " f2_N number?, f3_m_per_s2 number?, J number?, fitness number?, violation number?, reused flag}], next text?}"},
     {"History", "{problems [Any], jobs [Any]}"},
 };
 

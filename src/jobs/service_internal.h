@@ -27,6 +27,7 @@ struct eo_service_worker {
 
 struct eo_service {
   struct eo_service_settings settings; /* resolved; strings owned */
+  int cores;                           /* an analysis uses a second one where there is one */
   struct eo_pairs *pairs;
   struct eo_events *events;
   struct eo_lane *analyses, *sweeps;
