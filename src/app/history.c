@@ -65,7 +65,8 @@ static void print_jobs(const json_t *list, struct eo_text *text)
     eo_sheet_number(&sheet, eo_json_find_number(row, "id"), NULL, 0);
     eo_sheet_number(&sheet, eo_json_find_number(row, "problem"), NULL, 0);
     eo_sheet_string(&sheet, name);
-    eo_sheet_string(&sheet, json_string_value(json_object_get(row, "algorithm")));
+    const char *algorithm = json_string_value(json_object_get(row, "algorithm"));
+    eo_sheet_string(&sheet, *algorithm ? algorithm : json_string_value(json_object_get(row, "kind")));
     eo_sheet_string(&sheet, json_string_value(json_object_get(row, "state")));
     eo_sheet_number(&sheet, eo_json_find_number(row, "true_evaluations"), NULL, 0);
     eo_sheet_number(&sheet, eo_json_find_number(row, "individuals"), NULL, 0);

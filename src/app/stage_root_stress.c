@@ -173,7 +173,7 @@ static enum eo_code read_history(struct member_output *out, const struct eo_stag
   struct eo_root root = eo_flexibility_root(pair->flexibility, member);
   struct eo_root_workspace *workspace = NULL;
   struct eo_root_history history = {0};
-  enum eo_code code = eo_root_workspace_new(&workspace, pair->grid, modes, error);
+  enum eo_code code = eo_root_workspace_new(&workspace, pair->grid, modes, 1, 1, error);
   if (!code)
     code = eo_root_history_init(&history, pair->grid, error);
   if (code) {

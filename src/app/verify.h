@@ -60,6 +60,9 @@ const struct eo_verify_kind *eo_verify_kind_at(int index);
 /* The lumped model: modes, periodic responses, the single degree of freedom. */
 enum eo_code eo_verify_dynamics(const json_t *cases, struct eo_verification *verification, struct eo_error *error);
 
+/* Recordings of two encoders with known truth. */
+enum eo_code eo_verify_encoder(const json_t *cases, struct eo_verification *verification, struct eo_error *error);
+
 /* The optimizer's random numbers, prediction, history, operators and whole runs. */
 enum eo_code eo_verify_optimizer(const json_t *cases, struct eo_verification *verification, struct eo_error *error);
 

@@ -37,18 +37,21 @@ void eo_root_find_largest(const struct eo_flexibility *flexibility, int member, 
     }
 }
 
+enum { MOST_TEETH = 64 };
+
 struct eo_root_workspace {
-  double *force;        /* [most points] */
-  double *load;         /* [positions][slots] */
-  double *scratch;      /* [positions][rank] */
-  double *stress;       /* [positions][nodes][EO_STRESSES] */
+  double *force;        /* [ends][most points] */
+  double *load;         /* [positions][ends][slots] */
+  double *scratch;      /* [positions][ends][rank] */
+  double *stress;       /* [positions][ends][nodes][EO_STRESSES] */
+  unsigned *touched;    /* [positions]: see eo_root_modes_add() */
 };
 
 enum eo_code eo_root_workspace_new(struct eo_root_workspace **result, const struct eo_contact_grid *grid,
-                                   const struct eo_root_modes *const modes[2], struct eo_error *error)
+                                   const struct eo_root_modes *const modes[2], int step, int ends, struct eo_error *error)
 {
   struct eo_root_workspace *ws = calloc(1, sizeof *ws);
-  size_t n = (size_t)grid->positions, rank = 1, nodes = 1, slots = 1;
+  size_t rows = (size_t)((grid->positions + step - 1) / step) * (size_t)ends, rank = 1, nodes = 1, slots = 1;
   if (!ws)
     return eo_error_memory(error);
   for (int member = 0; member < 2; member++) {
@@ -58,11 +61,12 @@ enum eo_code eo_root_workspace_new(struct eo_root_workspace **result, const stru
     m = (size_t)eo_root_modes_slots(modes[member]);
     slots = m > slots ? m : slots;
   }
-  ws->force = malloc(sizeof(double) * (size_t)grid->most_points);
-  ws->load = malloc(sizeof(double) * n * slots);
-  ws->scratch = malloc(sizeof(double) * n * rank);
-  ws->stress = malloc(sizeof(double) * n * nodes * EO_STRESSES);
-  if (!ws->force || !ws->load || !ws->scratch || !ws->stress) {
+  ws->force = malloc(sizeof(double) * (size_t)grid->most_points * (size_t)ends);
+  ws->load = malloc(sizeof(double) * rows * slots);
+  ws->scratch = malloc(sizeof(double) * rows * rank);
+  ws->stress = malloc(sizeof(double) * rows * nodes * EO_STRESSES);
+  ws->touched = malloc(sizeof *ws->touched * (size_t)grid->positions);
+  if (!ws->force || !ws->load || !ws->scratch || !ws->stress || !ws->touched) {
     eo_root_workspace_free(ws);
     return eo_error_memory(error);
   }
@@ -78,6 +82,7 @@ void eo_root_workspace_free(struct eo_root_workspace *ws)
   free(ws->load);
   free(ws->scratch);
   free(ws->stress);
+  free(ws->touched);
   free(ws);
 }
 
@@ -96,40 +101,71 @@ static double largest_principal(int nodes, const double *stress, int *where)
   return largest;
 }
 
-/* Loads of every step-th position on the teeth around one tooth. */
-static void collect(struct eo_root_workspace *ws, const struct eo_root_modes *modes, const struct eo_contact_grid *grid,
-                    const struct eo_loaded_end *end, int tooth, int step)
+static int count_positions(const struct eo_contact_grid *grid, int step)
 {
-  int slots = eo_root_modes_slots(modes);
-  double *load = ws->load;
-  for (int j = 0; j < grid->positions; j += step, load += slots) {
-    const struct eo_contact_position *p = &grid->position[j];
-    for (int i = 0; i < p->points; i++)
-      ws->force[i] = end->line_load[p->first + i] * p->length[i];
-    memset(load, 0, sizeof *load * (size_t)slots);
-    eo_root_modes_add(modes, tooth, p->points, p->point, ws->force, load);
+  return (grid->positions + step - 1) / step;
+}
+
+/* Loads of every step-th position on the teeth around one tooth: load[positions][ends][slots]. */
+static void collect(struct eo_root_workspace *ws, const struct eo_root_modes *modes, const struct eo_contact_grid *grid, int tooth, int step, int ends,
+                    const struct eo_loaded_end *const *end)
+{
+  int slots = eo_root_modes_slots(modes), count = count_positions(grid, step);
+  memset(ws->load, 0, sizeof *ws->load * (size_t)ends * (size_t)count * (size_t)slots);
+  for (int j = 0; j < count; j++) {
+    const struct eo_contact_position *p = &grid->position[j * step];
+    for (int e = 0; e < ends; e++)
+      for (int i = 0; i < p->points; i++)
+        ws->force[e * p->points + i] = end[e]->line_load[p->first + i] * p->length[i];
+    ws->touched[j] = eo_root_modes_add(modes, tooth, p->points, p->point, ends, ws->force, ws->load + (size_t)(j * ends) * (size_t)slots);
+  }
+}
+
+void eo_root_tooth_compute(struct eo_root_workspace *ws, const struct eo_root_modes *modes, const struct eo_contact_grid *grid, int tooth, int step,
+                           int ends, const struct eo_loaded_end *const *end, struct eo_root_history *const *history, struct eo_root_peak *peak)
+{
+  int range[2], nodes = eo_root_modes_nodes(modes), count = count_positions(grid, step);
+  eo_contact_grid_pairs(grid, range);
+  int first = (tooth - range[0]) * count;
+  collect(ws, modes, grid, tooth, step, ends, end);
+  eo_root_modes_stress(modes, count, ends, ws->load, ws->touched, ws->scratch, ws->stress);
+  for (int e = 0; e < ends; e++) {
+    peak[e] = (struct eo_root_peak){0};
+    for (int j = 0; j < count; j++) {
+      int node = 0;
+      double s = largest_principal(nodes, ws->stress + (size_t)(j * ends + e) * (size_t)(nodes * EO_STRESSES), &node);
+      history[e]->phase[first + j] = grid->position[j * step].phase / grid->geometry.transverse_base_pitch + tooth;
+      history[e]->stress[first + j] = s;
+      if (s > peak[e].stress)
+        peak[e] = (struct eo_root_peak){s, node};
+    }
+  }
+}
+
+void eo_root_history_finish(struct eo_root_history *history, const struct eo_root *root, const struct eo_contact_grid *grid, int step,
+                            const struct eo_root_peak *peak, int stride)
+{
+  int range[2];
+  eo_contact_grid_pairs(grid, range);
+  history->phases = (range[1] - range[0] + 1) * count_positions(grid, step);
+  history->maximum = history->arc = history->eta = 0;
+  for (int tooth = 0; tooth <= range[1] - range[0]; tooth++) {
+    const struct eo_root_peak *p = &peak[tooth * stride];
+    if (p->stress <= history->maximum)
+      continue;
+    history->maximum = p->stress;
+    history->arc = root->arc[root->first + p->node / (root->layers + 1)];
+    history->eta = root->width * ((double)(p->node % (root->layers + 1)) / root->layers - 0.5);
   }
 }
 
 void eo_root_history_compute(struct eo_root_history *history, struct eo_root_workspace *ws, const struct eo_root *root,
                              const struct eo_root_modes *modes, const struct eo_contact_grid *grid, const struct eo_loaded_end *end, int step)
 {
-  int range[2], nodes = eo_root_modes_nodes(modes), count = (grid->positions + step - 1) / step, at = 0;
+  struct eo_root_peak peak[MOST_TEETH];
+  int range[2];
   eo_contact_grid_pairs(grid, range);
-  history->phases = 0;
-  history->maximum = 0;
-  for (int tooth = range[0]; tooth <= range[1]; tooth++) {
-    collect(ws, modes, grid, end, tooth, step);
-    eo_root_modes_stress(modes, count, ws->load, ws->scratch, ws->stress);
-    for (int j = 0; j < count; j++) {
-      double s = largest_principal(nodes, ws->stress + (size_t)(j * nodes * EO_STRESSES), &at);
-      history->phase[history->phases] = grid->position[j * step].phase / grid->geometry.transverse_base_pitch + tooth;
-      history->stress[history->phases++] = s;
-      if (s > history->maximum) {
-        history->maximum = s;
-        history->arc = root->arc[root->first + at / (root->layers + 1)];
-        history->eta = root->width * ((double)(at % (root->layers + 1)) / root->layers - 0.5);
-      }
-    }
-  }
+  for (int tooth = range[0]; tooth <= range[1]; tooth++)
+    eo_root_tooth_compute(ws, modes, grid, tooth, step, 1, &end, &history, &peak[tooth - range[0]]);
+  eo_root_history_finish(history, root, grid, step, peak, 1);
 }

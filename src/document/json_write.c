@@ -1,4 +1,5 @@
 #include <math.h>
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -6,8 +7,69 @@
 
 enum { LINE = 110 }; /* columns up to which a value stays on one line */
 
+/* ---- numbers ---- */
+
+enum { EXACT_POWER = 22 }; /* the largest power of ten that is a double */
+static const double power[EXACT_POWER + 1] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8,  1e9,  1e10, 1e11,
+                                              1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
+
+/* floor(log10(value)) for 1 <= value < 1e22: from the binary exponent, log10(2) = 1233/4096. */
+static int find_exponent(double value)
+{
+  int exponent = ilogb(value) * 1233 >> 12;
+  return exponent + (value >= power[exponent + 1]);
+}
+
+/* Decimals that show so many digits of a positive value, one less for some just below a power of ten; -1: none of what follows can be done exactly. */
+static int find_decimals(double value, int digits)
+{
+  if (!(value >= 1e-13 && value < 1e15))
+    return -1;
+  int decimals = digits - 1 - (value >= 1 ? find_exponent(value) : find_exponent(value * 1e13) - 13);
+  return decimals >= 0 && decimals <= EXACT_POWER ? decimals : -1;
+}
+
+/* number / 10^decimals without trailing zeros; at least one decimal is there before they go. */
+static void write_decimal(char *text, bool negative, uint64_t number, int decimals)
+{
+  char reversed[24];
+  int length = 0;
+  for (; decimals > 0 && number % 10 == 0; decimals--)
+    number /= 10;
+  for (; number > 0 || length <= decimals; number /= 10)
+    reversed[length++] = (char)('0' + number % 10);
+  if (negative)
+    *text++ = '-';
+  while (length > 0) {
+    if (length == decimals)
+      *text++ = '.';
+    *text++ = reversed[--length];
+  }
+  *text = '\0';
+}
+
+/* What the loop below finds, without printing and reading: a decimal number of up to 15 digits is the nearest double of its digits over a power of
+   ten, as long as both are exact. False: not so short, or to be written with an exponent. */
+static bool write_short(char *text, double value)
+{
+  double size = fabs(value);
+  if (!(size >= 1e-4 && size < 1e15))
+    return false;
+  for (int digits = 9; digits <= 15; digits += 3) {
+    int decimals = find_decimals(size, digits);
+    double number = decimals < 0 ? 0 : nearbyint(size * power[decimals]);
+    if (decimals < 0 || number >= 1e15 || number / power[decimals] != size)
+      continue;
+    write_decimal(text, value < 0, (uint64_t)number, decimals);
+    return true;
+  }
+  return false;
+}
+
 void eo_json_number(char *text, int size, double value)
 {
+  if (write_short(text, value))
+    return;
   for (int digits = 15; digits <= 17; digits++) {
     snprintf(text, (size_t)size, "%.*g", digits, value);
     if (strtod(text, NULL) == value)
@@ -202,9 +264,15 @@ json_t *eo_json_real(double value, const struct eo_unit *unit)
   return isfinite(outside) ? json_real(outside) : json_null();
 }
 
+/* Through integers where that is exact and no tie is near, else through text: the same number. */
 static double round_digits(double value, int digits)
 {
   char text[40];
+  double size = fabs(value);
+  int decimals = find_decimals(size, digits);
+  double scaled = decimals < 0 ? 0 : size * power[decimals], number = nearbyint(scaled), past = fabs(scaled - floor(scaled) - 0.5);
+  if (decimals >= 0 && scaled >= power[digits - 1] * (1 + 1e-12) && number < power[digits] && past > 1e-15 * scaled)
+    return copysign(number / power[decimals], value);
   snprintf(text, sizeof text, "%.*g", digits, value);
   return strtod(text, NULL);
 }

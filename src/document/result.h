@@ -22,8 +22,22 @@
    first. NULL without memory. */
 json_t *eo_result_encode(const struct eo_analysis *analysis, const struct eo_design *design, const struct eo_warnings *warnings);
 
+/* The same without what is long: null stands in its place. */
+enum {
+  EO_RESULT_NO_MAPS = 1,      /* pressure and clearance over the flank */
+  EO_RESULT_NO_HISTORIES = 2, /* of the vibration and of the root stress */
+};
+json_t *eo_result_encode_part(const struct eo_analysis *analysis, const struct eo_design *design, const struct eo_warnings *warnings, unsigned left_out);
+
+/* The same as compact JSON, appended to the text, on as many threads as the analysis may use. The same bytes as eo_json_write() gives. */
+enum eo_code eo_result_write(const struct eo_analysis *analysis, const struct eo_design *design, const struct eo_warnings *warnings, unsigned left_out,
+                             struct eo_text *text, struct eo_error *error);
+
 /* For people: each load case unmodified and as designed, the objectives, warnings, where the time went. */
 void eo_result_summary(const json_t *result, struct eo_text *text);
+
+/* One line per load case, CSV: what stands in "objectives", as designed and unmodified. */
+void eo_result_summary_csv(const json_t *result, struct eo_text *text);
 
 /* The curves as files of comma-separated values with the same names and units: summary, modification, unloaded contact, and for every load
    case curves, root stress, vibration, orders and one contact pattern per end. */

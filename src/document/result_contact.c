@@ -108,7 +108,7 @@ static json_t *encode_unloaded_end(struct eo_result_source *source, int end)
   eo_result_put(&o, "te_um", eo_result_end_column(source, end, r->unloaded, 1 / source->normal, &eo_unit_um));
   eo_result_put_number(&o, "peak_to_peak_um", swing(source->positions, r->unloaded) / source->normal, &eo_unit_um);
   eo_result_put_number(&o, "smallest_gap_um", r->datum, &eo_unit_um);
-  eo_result_put(&o, "clearance_um", eo_result_map(EO_PATTERN_ROWS, EO_PATTERN_COLUMNS, pattern->clearance, &eo_unit_um));
+  eo_result_put(&o, "clearance_um", eo_result_map(source, EO_PATTERN_ROWS, EO_PATTERN_COLUMNS, pattern->clearance, &eo_unit_um));
   eo_result_put_number(&o, "marked_share", (double)marked / points, NULL);
   return eo_result_close(&o);
 }
@@ -176,10 +176,11 @@ static json_t *encode_shares(struct eo_result_source *source, const struct eo_ca
   return eo_result_close(&o);
 }
 
-static json_t *encode_pattern_end(const struct eo_contact_pattern *pattern)
+static json_t *encode_pattern_end(const struct eo_result_source *source)
 {
+  const struct eo_contact_pattern *pattern = source->pattern;
   struct eo_result_object o = eo_result_open();
-  eo_result_put(&o, "pressure_MPa", eo_result_map(EO_PATTERN_ROWS, EO_PATTERN_COLUMNS, pattern->pressure, &eo_unit_MPa));
+  eo_result_put(&o, "pressure_MPa", eo_result_map(source, EO_PATTERN_ROWS, EO_PATTERN_COLUMNS, pattern->pressure, &eo_unit_MPa));
   eo_result_put(&o, "gear_tip_edge_MPa", eo_json_reals(EO_PATTERN_COLUMNS, pattern->edge[0], 1, &eo_unit_MPa, EO_DIGITS_MAP));
   eo_result_put(&o, "pinion_tip_edge_MPa", eo_json_reals(EO_PATTERN_COLUMNS, pattern->edge[1], 1, &eo_unit_MPa, EO_DIGITS_MAP));
   return eo_result_close(&o);
@@ -196,7 +197,7 @@ static json_t *encode_pattern(struct eo_result_source *source, int k)
     for (int edge = 0; edge < 2; edge++)
       for (int j = 0; j < EO_PATTERN_COLUMNS; j++)
         source->edge_pressure[k][end] = fmax(source->edge_pressure[k][end], source->pattern->edge[edge][j]);
-    eo_result_put(&o, eo_result_end[end], encode_pattern_end(source->pattern));
+    eo_result_put(&o, eo_result_end[end], encode_pattern_end(source));
   }
   return eo_result_close(&o);
 }
@@ -274,14 +275,20 @@ json_t *eo_result_impact(struct eo_result_source *source, const struct eo_case_r
 
 /* ---- root stress ---- */
 
-static json_t *encode_root_end(const struct eo_root_history *history, double factor)
+static json_t *encode_root_history(const struct eo_result_source *source, const struct eo_root_history *history)
+{
+  return source->left_out & EO_RESULT_NO_HISTORIES ? json_null()
+                                                   : eo_json_reals(history->phases, history->stress, 1, &eo_unit_MPa, EO_DIGITS_CURVE);
+}
+
+static json_t *encode_root_end(const struct eo_result_source *source, const struct eo_root_history *history, double factor)
 {
   struct eo_result_object o = eo_result_open();
   eo_result_put_number(&o, "max_MPa", history->maximum, &eo_unit_MPa);
   eo_result_put_number(&o, "max_dynamic_MPa", history->maximum * factor, &eo_unit_MPa);
   eo_result_put_number(&o, "arc_mm", history->arc, &eo_unit_mm);
   eo_result_put_number(&o, "eta_mm", history->eta, &eo_unit_mm);
-  eo_result_put(&o, "history_MPa", eo_json_reals(history->phases, history->stress, 1, &eo_unit_MPa, EO_DIGITS_CURVE));
+  eo_result_put(&o, "history_MPa", encode_root_history(source, history));
   return eo_result_close(&o);
 }
 
@@ -301,9 +308,9 @@ static json_t *encode_root_member(const struct eo_result_source *source, const s
   eo_result_put_number(&o, "max_MPa", history[worst]->maximum, &eo_unit_MPa);
   eo_result_put_number(&o, "max_dynamic_MPa", dynamic, &eo_unit_MPa);
   eo_result_put(&o, "position", eo_json_reals(history[0]->phases, history[0]->phase, 1, NULL, EO_DIGITS_CURVE));
-  eo_result_put(&o, "history_MPa", eo_json_reals(history[worst]->phases, history[worst]->stress, 1, &eo_unit_MPa, EO_DIGITS_CURVE));
+  eo_result_put(&o, "history_MPa", encode_root_history(source, history[worst]));
   for (int end = 0; end < source->ends; end++)
-    eo_result_put(&o, eo_result_end[end], encode_root_end(history[end], force_factor(c, end)));
+    eo_result_put(&o, eo_result_end[end], encode_root_end(source, history[end], force_factor(c, end)));
   return eo_result_close(&o);
 }
 

@@ -214,6 +214,11 @@ static void save_summary(const json_t *result, struct eo_text *text)
   eo_sheet_done(&sheet);
 }
 
+void eo_result_summary_csv(const json_t *result, struct eo_text *text)
+{
+  save_summary(result, text);
+}
+
 void eo_result_files(const json_t *result, struct eo_bundle *bundle)
 {
   const json_t *cases = json_object_get(result, "load_cases");

@@ -15,9 +15,10 @@ struct eo_result_source {
   const struct eo_design *design;
   int ends, positions, lag;            /* lag: positions by which the right end's columns are shifted */
   double normal;                       /* cos(beta_b): normal = transverse times it */
+  unsigned left_out;                   /* EO_RESULT_NO_... */
   struct eo_contact_pattern *pattern;  /* scratch */
   double *scratch;                     /* [positions] */
-  double edge_pressure[EO_MAX_LOAD_CASES][2]; /* Pa; filled with the load cases, for the warnings */
+  double (*edge_pressure)[2];          /* [cases], Pa; filled with the load cases, for the warnings; of all threads */
 };
 
 /* "left", "right". */
@@ -32,8 +33,8 @@ json_t *eo_result_column(int count, const double *value, double scale, const str
 /* A column over the mesh positions of one end, shifted so that both ends stand at the same instant. */
 json_t *eo_result_end_column(const struct eo_result_source *source, int end, const double *value, double scale, const struct eo_unit *unit);
 
-/* [rows][columns] as an array of rows. */
-json_t *eo_result_map(int rows, int columns, const double *value, const struct eo_unit *unit);
+/* [rows][columns] as an array of rows; null when maps are left out. */
+json_t *eo_result_map(const struct eo_result_source *source, int rows, int columns, const double *value, const struct eo_unit *unit);
 
 /* object[key] = value; what is missing marks the object itself as failed. */
 struct eo_result_object {

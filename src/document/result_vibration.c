@@ -86,7 +86,8 @@ static json_t *encode_end(const struct eo_result_source *source, const struct eo
     eo_result_put_number(&o, member ? "mean_gear_bearing_N" : "mean_pinion_bearing_N", known * v->bearing_force_mean[member][end], &eo_unit_N);
     eo_result_put_number(&o, member ? "max_gear_bearing_N" : "max_pinion_bearing_N", known * v->bearing_force_max[member][end], &eo_unit_N);
   }
-  eo_result_put(&o, "history", has_curves(source, c) ? encode_curves(source, &c->end[end], false) : json_null());
+  bool histories = !(source->left_out & EO_RESULT_NO_HISTORIES);
+  eo_result_put(&o, "history", histories && has_curves(source, c) ? encode_curves(source, &c->end[end], false) : json_null());
   eo_result_put(&o, "orders", has_curves(source, c) ? encode_curves(source, &c->end[end], true) : json_null());
   return eo_result_close(&o);
 }

@@ -14,6 +14,7 @@ enum eo_code eo_analysis_new(struct eo_analysis **result, const struct eo_pair *
     return eo_error_memory(error);
   }
   a->pair = pair;
+  a->threads = 1;
   *result = a;
   return EO_OK;
 }
@@ -144,6 +145,8 @@ enum eo_code eo_analysis_run(struct eo_analysis *a, const struct eo_design *desi
   a->want = want;
   a->root = a->pair->flexibility && (want & EO_WANT_ROOT || design->objective.root_stress.enabled);
   enum eo_code code = fit(a, a->cases, a->scenarios, error);
+  if (!code)
+    code = eo_evaluator_use_threads(a->evaluator, a->threads, error);
   if (!code)
     code = run_both(a, design, bare, want, error);
   free(bare);

@@ -19,6 +19,7 @@ struct eo_analysis {
   struct eo_design *known;                 /* owned: the design without modification that the unmodified values belong to */
   int most_cases, most_scenarios;
   bool known_root;
+  int threads;                             /* that one run may use: 1 or 2; may be set between runs, the numbers do not depend on it */
 };
 
 enum eo_code eo_analysis_new(struct eo_analysis **analysis, const struct eo_pair *pair, struct eo_error *error);

@@ -16,14 +16,17 @@ struct eo_evaluator {
     double force[EO_MAX_LOAD_CASES];
   } known[2];                              /* [end]: of what is kept; cases 0: nothing is */
   bool fresh[2];                           /* [end]: to be solved in this run; the other end is as the last run left it */
-  struct eo_loaded_workspace *contact;
+  bool rooted[2];                          /* [end]: its root stress belongs to what is kept */
+  int threads;                             /* 1 or 2 */
+  struct eo_loaded_workspace *contact, *second_contact; /* second_...: of the second thread; NULL until asked for */
   struct eo_elastic *bodies;               /* NULL: rigid */
   struct eo_shafts shafts;                 /* those of the bodies */
   struct eo_loaded_gaps bent;              /* of one end on bodies that stay as they are */
   struct eo_loaded_end spare[2];           /* [end]: for the compliance band */
   struct eo_loaded_end *table;             /* [EO_EVALUATOR_TABLE_LOADS] of the table law, one end at a time; NULL until asked for */
   double *table_rows;                      /* [EO_EVALUATOR_TABLE_LOADS][positions] */
-  struct eo_root_workspace *root;          /* NULL until asked for */
+  struct eo_root_workspace *root[2];       /* [thread]; NULL until asked for */
+  struct eo_root_peak *peaks;              /* [member][teeth][most_cases * 2]; NULL until asked for */
   struct eo_vibration_solver *vibration;
   int vibration_harmonics;
   struct eo_law (*law)[2];                 /* [most_cases][end] */
@@ -43,10 +46,13 @@ bool eo_evaluator_same_flanks(const struct eo_modification *modification);
 /* Where the gaps and fields of an end are kept: equal ends share the left one's. */
 int eo_evaluator_kept_at(const struct eo_evaluator *e, int end);
 
+/* Whether the right end's loads are the left one's. */
+bool eo_evaluator_copies_end(const struct eo_evaluator *e, const struct eo_design *design);
+
 /* The contact half, in the order in which eo_evaluator_run() calls it. factor: of the compliance. */
 enum eo_code eo_evaluator_fit_bodies(struct eo_evaluator *e, const struct eo_shafts *shafts, struct eo_error *error);
-void eo_evaluator_set_fields(struct eo_evaluator *e, const struct eo_design *design, const struct eo_scenario *scenario);
-void eo_evaluator_solve_contact(struct eo_evaluator *e, const struct eo_design *design, double factor);
+void eo_evaluator_set_keys(struct eo_evaluator *e, const struct eo_design *design, const struct eo_scenario *scenario);
+enum eo_code eo_evaluator_solve_contact(struct eo_evaluator *e, const struct eo_design *design, double factor, struct eo_error *error);
 void eo_evaluator_summarise_end(struct eo_evaluator *e, struct eo_case_result *c, int end);
 void eo_evaluator_summarise_pair(struct eo_evaluator *e, const struct eo_design *design, struct eo_case_result *c);
 void eo_evaluator_find_impacts(struct eo_evaluator *e, const struct eo_design *design, double speed_factor, double factor);

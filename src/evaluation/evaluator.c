@@ -1,25 +1,108 @@
 #include "evaluation/evaluator-internal.h"
 
 #include "base/clock.h"
+#include "base/parallel.h"
 #include "numerics/periodic.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
-static enum eo_code find_root_stress(struct eo_evaluator *e, struct eo_error *error)
+enum { ROOT_STEP = 2, ROOT_BATCH = 8 }; /* BATCH: ends at a time, so that the stresses of a tooth stay in the cache */
+
+/* Root stress of several ends: an item is a tooth of a member under a batch of them. */
+struct roots {
+  struct eo_evaluator *evaluator;
+  int ends, teeth, first;                               /* ends: to compute; first: tooth */
+  struct eo_end_result *end[EO_MAX_LOAD_CASES * 2];
+  struct eo_root_peak *peak;                            /* [member][teeth][ends] */
+};
+
+static enum eo_code find_tooth(void *context, int thread, int item, struct eo_error *error)
 {
-  enum { STEP = 2 };
+  const struct roots *roots = context;
+  struct eo_evaluator *e = roots->evaluator;
+  int tooth = item % roots->teeth, member = item / roots->teeth % 2, first = item / roots->teeth / 2 * ROOT_BATCH;
+  int count = roots->ends - first < ROOT_BATCH ? roots->ends - first : ROOT_BATCH;
+  const struct eo_loaded_end *loaded[ROOT_BATCH];
+  struct eo_root_history *history[ROOT_BATCH];
+  (void)error;
+  for (int i = 0; i < count; i++) {
+    loaded[i] = &roots->end[first + i]->loaded;
+    history[i] = &roots->end[first + i]->root[member];
+  }
+  eo_root_tooth_compute(e->root[thread], e->pair->root[member], e->pair->grid, roots->first + tooth, ROOT_STEP, count, loaded, history,
+                        roots->peak + (member * roots->teeth + tooth) * roots->ends + first);
+  return EO_OK;
+}
+
+static void copy_history(const struct eo_root_history *from, struct eo_root_history *to)
+{
+  memcpy(to->phase, from->phase, sizeof *to->phase * (size_t)from->phases);
+  memcpy(to->stress, from->stress, sizeof *to->stress * (size_t)from->phases);
+  to->maximum = from->maximum;
+  to->arc = from->arc;
+  to->eta = from->eta;
+}
+
+/* Ends that are neither as they were nor the same as the left one. */
+static void list_ends(struct roots *roots, const struct eo_design *design)
+{
+  struct eo_evaluator *e = roots->evaluator;
+  for (int k = 0; k < e->result.cases; k++)
+    for (int end = 0; end < e->result.ends; end++)
+      if (!e->rooted[end] && !(end == EO_RIGHT && eo_evaluator_copies_end(e, design)))
+        roots->end[roots->ends++] = &e->result.load_case[k].end[end];
+}
+
+static enum eo_code compute_roots(struct roots *roots, struct eo_error *error)
+{
+  struct eo_evaluator *e = roots->evaluator;
+  const struct eo_parallel parallel = {.threads = e->threads, .work = find_tooth, .context = roots};
+  int batches = (roots->ends + ROOT_BATCH - 1) / ROOT_BATCH;
+  enum eo_code code = eo_parallel_run(&parallel, batches * 2 * roots->teeth, error);
+  for (int member = 0; member < 2 && !code; member++) {
+    struct eo_root root = eo_flexibility_root(e->pair->flexibility, member);
+    for (int i = 0; i < roots->ends; i++)
+      eo_root_history_finish(&roots->end[i]->root[member], &root, e->pair->grid, ROOT_STEP, roots->peak + member * roots->teeth * roots->ends + i,
+                             roots->ends);
+  }
+  return code;
+}
+
+static enum eo_code make_root_workspaces(struct eo_evaluator *e, struct eo_error *error)
+{
+  const struct eo_root_modes *const modes[2] = {e->pair->root[0], e->pair->root[1]};
+  int ends = 2 * e->most_cases < ROOT_BATCH ? 2 * e->most_cases : ROOT_BATCH, range[2];
+  enum eo_code code = EO_OK;
+  eo_contact_grid_pairs(e->pair->grid, range);
+  for (int thread = 0; thread < e->threads && !code; thread++)
+    code = e->root[thread] ? EO_OK : eo_root_workspace_new(&e->root[thread], e->pair->grid, modes, ROOT_STEP, ends, error);
+  if (!code && !e->peaks && !(e->peaks = malloc(sizeof *e->peaks * (size_t)(range[1] - range[0] + 1) * 4 * (size_t)e->most_cases)))
+    code = eo_error_memory(error);
+  return code;
+}
+
+static enum eo_code find_root_stress(struct eo_evaluator *e, const struct eo_design *design, struct eo_error *error)
+{
   struct eo_evaluation *r = &e->result;
-  const struct eo_pair *pair = e->pair;
-  const struct eo_root_modes *const modes[2] = {pair->root[0], pair->root[1]};
-  enum eo_code code = e->root ? EO_OK : eo_root_workspace_new(&e->root, pair->grid, modes, error);
+  int range[2];
+  eo_contact_grid_pairs(e->pair->grid, range);
+  enum eo_code code = make_root_workspaces(e, error);
+  struct roots roots = {.evaluator = e, .teeth = range[1] - range[0] + 1, .first = range[0], .peak = e->peaks};
+  list_ends(&roots, design);
+  if (!code)
+    code = compute_roots(&roots, error);
   for (int k = 0; k < r->cases && !code; k++)
-    for (int end = 0; end < r->ends; end++)
-      for (int member = 0; member < 2; member++) {
-        struct eo_root root = eo_flexibility_root(pair->flexibility, member);
-        eo_root_history_compute(&r->load_case[k].end[end].root[member], e->root, &root, modes[member], pair->grid,
-                                &r->load_case[k].end[end].loaded, STEP);
+    for (int member = 0; member < 2; member++)
+      for (int end = 0; end < r->ends; end++) {
+        struct eo_root_history *history = &r->load_case[k].end[end].root[member];
+        if (end == EO_RIGHT && eo_evaluator_copies_end(e, design))
+          copy_history(&r->load_case[k].end[EO_LEFT].root[member], history);
+        history->phases = roots.teeth * ((r->positions + ROOT_STEP - 1) / ROOT_STEP); /* of those that are as they were, too */
       }
+  for (int end = 0; end < r->ends && !code; end++)
+    e->rooted[end] = !(end == EO_RIGHT && r->equal_ends);
   return code;
 }
 
@@ -104,8 +187,10 @@ static enum eo_code solve_static(struct eo_evaluator *e, const struct eo_design 
     return code;
   double start = eo_clock_milliseconds();
   set_cases(e, design);
-  eo_evaluator_set_fields(e, design, scenario);
-  eo_evaluator_solve_contact(e, design, scenario->compliance);
+  eo_evaluator_set_keys(e, design, scenario);
+  code = eo_evaluator_solve_contact(e, design, scenario->compliance, error);
+  if (code)
+    return code;
   for (int k = 0; k < r->cases; k++) {
     for (int end = 0; end < r->ends; end++)
       eo_evaluator_summarise_end(e, &r->load_case[k], end);
@@ -142,7 +227,7 @@ enum eo_code eo_evaluator_run(struct eo_evaluator *e, const struct eo_design *de
     return code;
   double impact = eo_clock_milliseconds();
   if (root)
-    code = find_root_stress(e, error);
+    code = find_root_stress(e, design, error);
   double rooted = eo_clock_milliseconds();
   if (!code)
     code = eo_evaluator_solve_dynamics(e, design, s->speed, s->compliance, want, error);

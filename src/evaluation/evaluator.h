@@ -66,6 +66,9 @@ struct eo_evaluator;
 enum eo_code eo_evaluator_new(struct eo_evaluator **evaluator, const struct eo_pair *pair, int most_cases, struct eo_error *error);
 void eo_evaluator_free(struct eo_evaluator *evaluator);
 
+/* Threads that one evaluation may use, 1 (as made) or 2: both ends at once. The results do not depend on it. */
+enum eo_code eo_evaluator_use_threads(struct eo_evaluator *evaluator, int threads, struct eo_error *error);
+
 /* Evaluates alignment, supports, load cases, modification and dynamics of a resolved design. scenario: NULL for the nominal one.
    *evaluation stays valid until the next run. Errors: EO_ERROR_INPUT (supports), memory; what does not converge is an outcome. */
 enum eo_code eo_evaluator_run(struct eo_evaluator *evaluator, const struct eo_design *design, const struct eo_scenario *scenario, int want,

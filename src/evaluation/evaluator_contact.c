@@ -3,6 +3,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/parallel.h"
+
 bool eo_evaluator_same_flanks(const struct eo_modification *m)
 {
   return eo_modification_equal(&m->flank[EO_PINION][EO_LEFT], &m->flank[EO_PINION][EO_RIGHT]) &&
@@ -19,9 +21,13 @@ static void copy_end(const struct eo_contact_grid *grid, struct eo_loaded_end *t
   to->failures = from->failures;
 }
 
-/* Loaded contact of every load case at one end. */
-static void load_end(struct eo_evaluator *e, const struct eo_design *design, int end, double factor)
+/* Gaps, then the loaded contact of every load case at one end. */
+static void load_end(struct eo_evaluator *e, struct eo_loaded_workspace *workspace, int end)
 {
+  const struct eo_end_key *key = &e->known[end];
+  eo_gap_field_init(&e->field[end], &e->pair->geometry, &key->flank[EO_PINION], &key->flank[EO_GEAR], end, key->in_plane, key->out_of_plane,
+                    e->pair->pivot[end], e->pair->grid->corner);
+  eo_loaded_gaps_set(&e->gaps[end], e->pair->grid, &e->field[end]);
   struct eo_evaluation *r = &e->result;
   double force[EO_MAX_LOAD_CASES];
   struct eo_loaded_end loaded[EO_MAX_LOAD_CASES];
@@ -29,7 +35,7 @@ static void load_end(struct eo_evaluator *e, const struct eo_design *design, int
     force[k] = r->load_case[k].force;
     loaded[k] = r->load_case[k].end[end].loaded;
   }
-  eo_loaded_solve(e->contact, e->pair->grid, &e->gaps[end], factor, design->load_cases, force, loaded);
+  eo_loaded_solve(workspace, e->pair->grid, &e->gaps[end], key->factor, r->cases, force, loaded);
   for (int k = 0; k < r->cases; k++)
     r->load_case[k].end[end].loaded.failures = loaded[k].failures;
 }
@@ -64,20 +70,17 @@ static bool is_news(struct eo_evaluator *e, const struct eo_modification *m, int
   return news;
 }
 
-void eo_evaluator_set_fields(struct eo_evaluator *e, const struct eo_design *design, const struct eo_scenario *scenario)
+/* Which ends have to be solved anew. */
+void eo_evaluator_set_keys(struct eo_evaluator *e, const struct eo_design *design, const struct eo_scenario *scenario)
 {
   const struct eo_modification *m = &design->modification;
   double in_plane = isnan(scenario->in_plane) ? design->alignment.shaft_angle_in_plane : scenario->in_plane;
   double out_of_plane = isnan(scenario->out_of_plane) ? design->alignment.shaft_angle_out_of_plane : scenario->out_of_plane;
   e->result.equal_ends = e->result.ends == 2 && eo_evaluator_same_flanks(m) && in_plane == 0 && out_of_plane == 0 && !e->bodies;
   for (int end = 0; end < e->result.ends; end++) {
-    e->fresh[end] = false;
-    if ((end == EO_RIGHT && e->result.equal_ends) || !is_news(e, m, end, in_plane, out_of_plane, scenario->compliance))
-      continue;
-    e->fresh[end] = true;
-    eo_gap_field_init(&e->field[end], &e->pair->geometry, &m->flank[EO_PINION][end], &m->flank[EO_GEAR][end], end, in_plane, out_of_plane,
-                      e->pair->pivot[end], e->pair->grid->corner);
-    eo_loaded_gaps_set(&e->gaps[end], e->pair->grid, &e->field[end]);
+    bool copied = end == EO_RIGHT && e->result.equal_ends;
+    e->fresh[end] = !copied && is_news(e, m, end, in_plane, out_of_plane, scenario->compliance);
+    e->rooted[end] = e->rooted[end] && !copied && !e->fresh[end];
   }
 }
 
@@ -141,17 +144,48 @@ static bool shares_unevenly(const struct eo_evaluator *e, const struct eo_design
          !(r->equal_ends && eo_evaluator_stagger(design, e->pair->grid->positions) == 0);
 }
 
-void eo_evaluator_solve_contact(struct eo_evaluator *e, const struct eo_design *design, double factor)
+bool eo_evaluator_copies_end(const struct eo_evaluator *e, const struct eo_design *design)
+{
+  return e->result.equal_ends && !shares_unevenly(e, design);
+}
+
+struct ends {
+  struct eo_evaluator *evaluator;
+  int end[2];
+};
+
+static enum eo_code load_item(void *context, int thread, int item, struct eo_error *error)
+{
+  const struct ends *ends = context;
+  struct eo_evaluator *e = ends->evaluator;
+  (void)error;
+  load_end(e, thread ? e->second_contact : e->contact, ends->end[item]);
+  return EO_OK;
+}
+
+static enum eo_code load_ends(struct eo_evaluator *e, struct eo_error *error)
+{
+  struct ends ends = {.evaluator = e};
+  const struct eo_parallel parallel = {.threads = e->threads, .work = load_item, .context = &ends};
+  struct eo_evaluation *r = &e->result;
+  int count = 0;
+  for (int end = 0; end < r->ends; end++)
+    if (e->fresh[end])
+      ends.end[count++] = end;
+  enum eo_code code = eo_parallel_run(&parallel, count, error);
+  for (int k = 0; k < r->cases && r->equal_ends; k++)
+    copy_end(e->pair->grid, &r->load_case[k].end[EO_RIGHT].loaded, &r->load_case[k].end[EO_LEFT].loaded);
+  return code;
+}
+
+enum eo_code eo_evaluator_solve_contact(struct eo_evaluator *e, const struct eo_design *design, double factor, struct eo_error *error)
 {
   struct eo_evaluation *r = &e->result;
   const struct eo_contact_grid *grid = e->pair->grid;
   double stiffness = axial_stiffness(&design->alignment);
-  for (int end = 0; end < r->ends; end++)
-    if (end == EO_RIGHT && r->equal_ends)
-      for (int k = 0; k < r->cases; k++)
-        copy_end(grid, &r->load_case[k].end[end].loaded, &r->load_case[k].end[EO_LEFT].loaded);
-    else if (e->fresh[end])
-      load_end(e, design, end, factor);
+  enum eo_code code = load_ends(e, error);
+  if (code)
+    return code;
   if (r->equal_ends)
     e->known[EO_RIGHT].cases = 0; /* its fields stayed behind */
   int stagger = eo_evaluator_stagger(design, grid->positions);
@@ -167,6 +201,7 @@ void eo_evaluator_solve_contact(struct eo_evaluator *e, const struct eo_design *
       for (int end = 0; end < 2; end++)
         r->load_case[k].end[end].loaded.failures = both[end].failures;
     }
+  return EO_OK;
 }
 
 /* Peaks over the mesh cycle and the secant stiffness of one end. */
@@ -225,7 +260,7 @@ void eo_evaluator_find_impacts(struct eo_evaluator *e, const struct eo_design *d
   for (int k = 0; k < r->cases; k++)
     for (int end = 0; end < r->ends; end++) {
       struct eo_case_result *c = &r->load_case[k];
-      if (end == EO_RIGHT && r->equal_ends && !shares_unevenly(e, design))
+      if (end == EO_RIGHT && eo_evaluator_copies_end(e, design))
         c->end[end].impact = c->end[EO_LEFT].impact;
       else
         eo_impact_find(&c->end[end].impact, e->pair->grid, eo_evaluator_field_of(e, c, end), e->pair->kernel, &e->pair->impact,

@@ -72,11 +72,22 @@ enum eo_code eo_evaluator_new(struct eo_evaluator **evaluator, const struct eo_p
     return eo_error_memory(error);
   e->pair = pair;
   e->most_cases = most_cases;
+  e->threads = 1;
   enum eo_code code = init_storage(e, error);
   if (code)
     eo_evaluator_free(e);
   else
     *evaluator = e;
+  return code;
+}
+
+enum eo_code eo_evaluator_use_threads(struct eo_evaluator *e, int threads, struct eo_error *error)
+{
+  enum eo_code code = EO_OK;
+  if (threads > 1 && !e->second_contact)
+    code = eo_loaded_workspace_new(&e->second_contact, e->pair->grid, error);
+  if (!code)
+    e->threads = threads > 1 ? 2 : 1;
   return code;
 }
 
@@ -101,7 +112,10 @@ void eo_evaluator_free(struct eo_evaluator *e)
   free(e->table);
   free(e->table_rows);
   eo_loaded_workspace_free(e->contact);
-  eo_root_workspace_free(e->root);
+  eo_loaded_workspace_free(e->second_contact);
+  for (int thread = 0; thread < 2; thread++)
+    eo_root_workspace_free(e->root[thread]);
+  free(e->peaks);
   eo_elastic_free(e->bodies);
   eo_loaded_gaps_done(&e->bent);
   eo_vibration_free(e->vibration);

@@ -43,7 +43,8 @@ static enum eo_code add_job(void *context, const struct eo_stored_job *j, struct
   bool taken = j->state != EO_JOB_RUNNING || eo_store_job_is_taken(list->store, j->id);
   struct eo_result_object o = eo_result_open();
   eo_result_put(&o, "id", json_integer(j->id));
-  eo_result_put(&o, "problem", json_integer(j->problem));
+  eo_result_put(&o, "kind", json_string(eo_store_job_kind_name(j->kind)));
+  eo_result_put(&o, "problem", j->problem ? json_integer(j->problem) : json_null());
   eo_result_put(&o, "name", json_string(j->name));
   eo_result_put(&o, "algorithm", json_string(j->algorithm));
   eo_result_put(&o, "state", json_string(taken ? eo_store_job_state_name(j->state) : "interrupted"));

@@ -8,7 +8,7 @@
 #include "store/store.h"
 
 /* { "problems": [ { "id", "hash", "name", "evaluator", "evaluations", "failed", "cost_s", "created" } ],
-     "jobs": [ { "id", "problem", "name", "algorithm", "state", "stopped", "true_evaluations", "individuals", "pfc_percent", "best_value",
+     "jobs": [ { "id", "kind", "problem", "name", "algorithm", "state", "stopped", "true_evaluations", "individuals", "pfc_percent", "best_value",
                  "has_result", "created", "updated" } ] }
    A job that was running when its process ended is "interrupted". */
 enum eo_code eo_records_list(struct eo_store *store, json_t **document, struct eo_error *error);

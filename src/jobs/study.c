@@ -40,7 +40,7 @@ static int report(struct study *s, int extra)
     return 0;
   struct eo_counters counters = eo_optimizer_counters(s->optimizer);
   double now = wall();
-  eo_optimizer_generations(s->optimizer, &report.generation);
+  report.history = eo_optimizer_generations(s->optimizer, &report.generation);
   report.true_evaluations = counters.true_evaluations + extra;
   report.predicted = counters.predicted;
   report.repeated = counters.reused;
@@ -123,7 +123,7 @@ static enum eo_code log_predictions(struct study *s, struct eo_error *error)
 {
   enum eo_code code = EO_OK;
   for (int i = 0; i < s->batch.predictions_count && !code; i++) {
-    const struct eo_prediction *p = &s->batch.predictions[i];
+    const struct eo_predicted *p = &s->batch.predictions[i];
     const struct eo_stored_prediction prediction = {.job = s->job.id, .generation = p->generation, .individual = p->individual, .fitness = p->fitness,
                                                     .credibility = p->credibility, .x = p->x, .size = s->result->space.count};
     code = eo_store_log_prediction(s->plan->store, &prediction, error);

@@ -10,11 +10,13 @@
 
 #include "document/study_result.h"
 #include "evaluation/pair.h"
+#include "optimizer/optimizer.h"
 #include "store/store.h"
 
 struct eo_study_report {
   int64_t job;
   int generation;                    /* finished ones */
+  const struct eo_generation *history; /* [generation] */
   int true_evaluations, predicted, repeated, reused, individuals;
   double fraction;                   /* 0..1 of the work */
   double seconds, seconds_left;      /* NaN: not known yet */
@@ -29,6 +31,7 @@ struct eo_study_plan {
   const struct eo_pair *pair;        /* serves the design */
   struct eo_store *store;            /* of the calling thread */
   int threads;                       /* 0: eo_parallel_cores() */
+  int64_t job;                       /* a queued job to work on; 0: the one to take up, or a new one */
   bool fresh;                        /* the algorithm is told nothing of earlier jobs; what it asks for is still looked up */
   bool restart;                      /* a new job even where one of the same study could be taken up */
   eo_study_watch *watch;             /* may be NULL */

@@ -37,7 +37,6 @@ static enum eo_code describe(struct study *s, struct eo_error *error)
 static enum eo_code new_job(struct study *s, struct eo_error *error)
 {
   bool taken = false;
-  s->job.space = s->space_hash;
   s->job.design = s->design.data;
   s->job.name = s->plan->design->name;
   s->job.algorithm = s->plan->design->optimization.algorithm;
@@ -56,10 +55,15 @@ static enum eo_code find_job(struct study *s, struct eo_error *error)
   if (!code)
     code = eo_store_find_problem(store, &problem, &s->job.problem, error);
   s->job.study = s->study_hash;
+  s->job.space = s->space_hash;
   s->job.fresh = s->plan->fresh;
-  if (!code && !s->plan->restart)
+  s->job.id = s->plan->job;
+  if (!code && s->plan->job)
+    code = eo_store_begin_job(store, &s->job, &s->result->resumed, error);
+  else if (!code && !s->plan->restart) {
     code = eo_store_resume_job(store, s->study_hash, s->plan->fresh, &s->job, error);
-  s->result->resumed = s->job.id != 0;
+    s->result->resumed = s->job.id != 0;
+  }
   if (!code && !s->job.id)
     code = new_job(s, error);
   if (!code)

@@ -40,6 +40,12 @@ void eo_dense_multiply_transposed(int rows, int columns, const double *a, const 
   cblas_dgemv(CblasRowMajor, CblasTrans, rows, columns, 1, a, columns, x, 1, 0, y, 1);
 }
 
+void eo_dense_add_gram(int rows, int columns, const double *a, double *gram)
+{
+  if (rows > 0)
+    cblas_dsyrk(CblasRowMajor, CblasUpper, CblasTrans, columns, rows, 1, a, columns, 1, gram, columns);
+}
+
 int eo_dense_symmetric_eigen(int n, double *a, double *values)
 {
   return LAPACKE_dsyev(LAPACK_COL_MAJOR, 'V', 'U', n, a, n, values);

@@ -19,6 +19,9 @@ int eo_dense_complex_solve(int n, double complex *a, int *pivot, int columns, do
 void eo_dense_multiply(int rows, int columns, const double *a, const double *x, double *y);
 void eo_dense_multiply_transposed(int rows, int columns, const double *a, const double *x, double *y);
 
+/* gram[columns][columns] += a' a in its upper triangle, a[rows][columns]. */
+void eo_dense_add_gram(int rows, int columns, const double *a, double *gram);
+
 /* Eigenvalues (ascending) and orthonormal eigenvectors of the symmetric a[n][n]: row i of a becomes the i-th vector.
    Allocates. Returns 0, or non-zero when memory runs out or the iteration fails. */
 int eo_dense_symmetric_eigen(int n, double *a, double *values);

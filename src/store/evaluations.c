@@ -158,6 +158,34 @@ enum eo_code eo_store_find_evaluation(struct eo_store *store, int64_t problem, c
   return EO_OK;
 }
 
+enum eo_code eo_store_get_evaluation(struct eo_store *store, int64_t id, struct eo_stored_evaluation *row, struct eo_text *modification,
+                                     struct eo_error *error)
+{
+  char digest[EO_HASH_LENGTH + 1] = "";
+  size_t start = modification->size;
+  struct eo_stored_evaluation found = *row;
+  struct eo_statement s = eo_statement_begin(store, "SELECT id, outcome, reason, cost_s, digest, modification FROM evaluation WHERE id = ?", "i", id);
+  found.id = 0;
+  if (eo_statement_step(&s)) {
+    read_head(&s, &found);
+    snprintf(digest, sizeof digest, "%s", eo_column_text(&s, 4));
+    eo_text_add(modification, eo_column_text(&s, 5));
+  }
+  enum eo_code code = eo_statement_end(&s, error);
+  if (!code && modification->failed)
+    code = eo_error_memory(error);
+  if (!code && !found.id)
+    code = damaged(store, id, error);
+  if (!code)
+    code = read_all_raw(store, &found, error);
+  found.modification = modification->data ? modification->data + start : "";
+  if (!code)
+    code = verify(store, &found, digest, error);
+  if (!code)
+    *row = found;
+  return code;
+}
+
 static enum eo_code add_values(struct eo_store *store, const struct eo_stored_evaluation *row, struct eo_error *error)
 {
   enum eo_code code = EO_OK;

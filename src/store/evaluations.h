@@ -3,6 +3,7 @@
 #ifndef EASEOFF_STORE_EVALUATIONS_H
 #define EASEOFF_STORE_EVALUATIONS_H
 
+#include "document/text.h"
 #include "objective/objective.h"
 #include "store/store.h"
 
@@ -47,6 +48,10 @@ enum eo_code eo_store_find_problem(struct eo_store *store, const struct eo_store
    row->id = 0 when it is not there. row->modification is not touched. */
 enum eo_code eo_store_find_evaluation(struct eo_store *store, int64_t problem, const char *modification, struct eo_stored_evaluation *row,
                                       struct eo_error *error);
+
+/* The row with a number; row->scenarios, ->cases and ->raw as above; the modification is appended to text. EO_ERROR_FILE when it is not there. */
+enum eo_code eo_store_get_evaluation(struct eo_store *store, int64_t id, struct eo_stored_evaluation *row, struct eo_text *modification,
+                                     struct eo_error *error);
 
 /* Adds a row unless the modification is there already: then *row becomes what is there (somebody else was faster). Sets row->id. */
 enum eo_code eo_store_add_evaluation(struct eo_store *store, int64_t problem, struct eo_stored_evaluation *row, struct eo_error *error);

@@ -1,32 +1,62 @@
 #include "store/jobs.h"
 
 #include "store/evaluations.h"
+#include "store/job_row.h"
 #include "store/lock.h"
-#include "store/statement.h"
 
+#include <limits.h>
 #include <string.h>
 
-static const char *const state_names[] = {"queued", "running", "cancelled", "done", "failed"};
+static const char *const state_names[] = {"queued", "preparing", "running", "done", "failed", "cancelled"};
+static const char *const kind_names[] = {"optimize", "prepare"};
 
 const char *eo_store_job_state_name(enum eo_job_state state)
 {
   return state_names[state];
 }
 
-static enum eo_job_state find_state(const char *name)
+const char *eo_store_job_kind_name(enum eo_job_kind kind)
 {
-  int i = 0;
-  while (i < EO_JOB_FAILED && strcmp(state_names[i], name) != 0)
-    i++;
-  return (enum eo_job_state)i;
+  return kind_names[kind];
+}
+
+static int find_name(const char *const *names, int count, const char *name)
+{
+  int i = count - 1;
+  while (i >= 0 && strcmp(names[i], name) != 0)
+    i--;
+  return i;
+}
+
+int eo_store_job_state_find(const char *name)
+{
+  return find_name(state_names, EO_JOB_STATES, name);
+}
+
+int eo_store_job_kind_find(const char *name)
+{
+  return find_name(kind_names, EO_JOB_KINDS, name);
+}
+
+struct eo_stored_job eo_job_row_read(const struct eo_statement *s)
+{
+  return (struct eo_stored_job){
+      .id = eo_column_integer(s, 0), .problem = eo_column_integer(s, 1), .study = eo_column_text(s, 2), .space = eo_column_text(s, 3),
+      .design = eo_column_text(s, 4), .name = eo_column_text(s, 5), .algorithm = eo_column_text(s, 6), .fresh = eo_column_integer(s, 7) != 0,
+      .import_upto = eo_column_integer(s, 8), .state = (enum eo_job_state)eo_store_job_state_find(eo_column_text(s, 9)), .stopped = eo_column_text(s, 10),
+      .true_evaluations = (int)eo_column_integer(s, 11), .individuals = (int)eo_column_integer(s, 12), .best = eo_column_integer(s, 13),
+      .best_value = eo_column_number(s, 14), .result = eo_column_text(s, 15), .created = eo_column_text(s, 16), .updated = eo_column_text(s, 17),
+      .kind = (enum eo_job_kind)eo_store_job_kind_find(eo_column_text(s, 18)), .pair = eo_column_text(s, 19), .served = eo_column_integer(s, 20) != 0,
+      .priority = (int)eo_column_integer(s, 21), .stop = eo_column_integer(s, 22) != 0, .attempts = (int)eo_column_integer(s, 23),
+      .error = eo_column_text(s, 24), .progress = eo_column_text(s, 25), .started = eo_column_text(s, 26), .finished = eo_column_text(s, 27)};
 }
 
 enum eo_code eo_store_add_job(struct eo_store *store, struct eo_stored_job *job, struct eo_error *error)
 {
   enum eo_code code = eo_store_last_evaluation(store, &job->import_upto, error);
   if (!code)
-    code = EO_STATEMENT_RUN(store, error, "INSERT INTO job (problem, study, space, design, name, algorithm, fresh, import_upto, state)"
-                                          " VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)", "itttttnit",
+    code = EO_STATEMENT_RUN(store, error, "INSERT INTO job (problem, study, space, design, name, algorithm, fresh, import_upto, state,"
+                                          " attempts, started) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, 1, " EO_NOW ")", "itttttnit",
                             job->problem, job->study, job->space, job->design, job->name, job->algorithm, (int)job->fresh, job->import_upto,
                             state_names[job->state]);
   job->id = sqlite3_last_insert_rowid(store->handle);
@@ -48,13 +78,52 @@ enum eo_code eo_store_resume_job(struct eo_store *store, const char *study, bool
   enum eo_code end = eo_statement_end(&s, code ? NULL : error);
   if (!taken)
     job->id = 0;
-  return code ? code : end;
+  code = code ? code : end;
+  /* whoever takes it up has it from now on: no server queues it again */
+  return code || !taken ? code : EO_STATEMENT_RUN(store, error, "UPDATE job SET served = 0 WHERE id = ? AND served = 1", "i", job->id);
+}
+
+/* A job of an older model took another path. */
+static enum eo_code forget_path(struct eo_store *store, int64_t job, struct eo_error *error)
+{
+  enum eo_code code = EO_STATEMENT_RUN(store, error, "DELETE FROM candidate WHERE job = ?", "i", job);
+  if (!code)
+    code = EO_STATEMENT_RUN(store, error, "DELETE FROM prediction WHERE job = ?", "i", job);
+  return code ? code : EO_STATEMENT_RUN(store, error, "UPDATE job SET import_upto = NULL, best = NULL, best_value = NULL WHERE id = ?", "i", job);
+}
+
+enum eo_code eo_store_begin_job(struct eo_store *store, struct eo_stored_job *job, bool *resumed, struct eo_error *error)
+{
+  bool there = false, same = false, taken = false;
+  struct eo_statement s = eo_statement_begin(store, "SELECT study IS ?2, import_upto IS NOT NULL FROM job WHERE id = ?1", "it", job->id, job->study);
+  if ((there = eo_statement_step(&s))) {
+    same = eo_column_integer(&s, 0) != 0;
+    *resumed = same && eo_column_integer(&s, 1);
+  }
+  enum eo_code code = eo_statement_end(&s, error);
+  if (!code && !there)
+    code = eo_error_set(error, EO_ERROR_INPUT, "", "There is no job %lld.", (long long)job->id);
+  if (!code)
+    code = eo_store_claim_job(store, job->id, &taken, error);
+  if (!code && !taken)
+    code = eo_error_set(error, EO_ERROR_INPUT, "", "Another process works on job %lld.", (long long)job->id);
+  if (!code && !same)
+    code = forget_path(store, job->id, error);
+  if (code)
+    return code;
+  s = eo_statement_begin(store, "UPDATE job SET state = 'running', problem = ?, study = ?, space = ?, updated = " EO_NOW ","
+                                " import_upto = coalesce(import_upto, (SELECT coalesce(max(id), 0) FROM evaluation)) WHERE id = ? RETURNING import_upto",
+                         "itti", job->problem, job->study, job->space, job->id);
+  while (eo_statement_step(&s))
+    job->import_upto = eo_column_integer(&s, 0);
+  return eo_statement_end(&s, error);
 }
 
 enum eo_code eo_store_update_job(struct eo_store *store, const struct eo_stored_job *job, struct eo_error *error)
 {
-  return EO_STATEMENT_RUN(store, error, "UPDATE job SET state = ?, stopped = ?, true_evaluations = ?, individuals = ?, best = nullif(?, 0), best_value = ?,"
-                                        " updated = strftime('%Y-%m-%dT%H:%M:%fZ', 'now') WHERE id = ?",
+  return EO_STATEMENT_RUN(store, error, "UPDATE job SET state = ?1, stopped = ?2, true_evaluations = ?3, individuals = ?4, best = nullif(?5, 0),"
+                                        " best_value = ?6, updated = " EO_NOW ", finished = CASE WHEN ?1 IN ('done', 'failed', 'cancelled') THEN " EO_NOW " END"
+                                        " WHERE id = ?7",
                           "ttnniri", state_names[job->state], job->stopped ? job->stopped : "", job->true_evaluations, job->individuals, job->best,
                           job->best_value, job->id);
 }
@@ -87,17 +156,10 @@ enum eo_code eo_store_log_prediction(struct eo_store *store, const struct eo_sto
 
 enum eo_code eo_store_each_job(struct eo_store *store, int64_t problem, eo_store_visit_job *visit, void *context, struct eo_error *error)
 {
-  struct eo_statement s = eo_statement_begin(store, "SELECT id, problem, study, space, design, name, algorithm, fresh, import_upto, state, stopped,"
-                                                    " true_evaluations, individuals, best, best_value, result, created, updated"
-                                                    " FROM job WHERE ?1 = 0 OR problem = ?1 ORDER BY id", "i", problem);
+  struct eo_statement s = eo_statement_begin(store, "SELECT " EO_JOB_COLUMNS("design", "result") " FROM job WHERE ?1 = 0 OR problem = ?1 ORDER BY id", "i", problem);
   enum eo_code code = EO_OK;
   while (!code && eo_statement_step(&s)) {
-    const struct eo_stored_job job = {
-        .id = eo_column_integer(&s, 0), .problem = eo_column_integer(&s, 1), .study = eo_column_text(&s, 2), .space = eo_column_text(&s, 3),
-        .design = eo_column_text(&s, 4), .name = eo_column_text(&s, 5), .algorithm = eo_column_text(&s, 6), .fresh = eo_column_integer(&s, 7) != 0,
-        .import_upto = eo_column_integer(&s, 8), .state = find_state(eo_column_text(&s, 9)), .stopped = eo_column_text(&s, 10),
-        .true_evaluations = (int)eo_column_integer(&s, 11), .individuals = (int)eo_column_integer(&s, 12), .best = eo_column_integer(&s, 13),
-        .best_value = eo_column_number(&s, 14), .result = eo_column_text(&s, 15), .created = eo_column_text(&s, 16), .updated = eo_column_text(&s, 17)};
+    const struct eo_stored_job job = eo_job_row_read(&s);
     code = visit(context, &job, error);
   }
   enum eo_code end = eo_statement_end(&s, code ? NULL : error);
@@ -121,10 +183,11 @@ static void read_point(const struct eo_statement *s, int column, struct point *p
     memcpy(point->x, x, bytes);
 }
 
-enum eo_code eo_store_each_candidate(struct eo_store *store, int64_t job, eo_store_visit_candidate *visit, void *context, struct eo_error *error)
+enum eo_code eo_store_page_candidates(struct eo_store *store, int64_t job, int after, int limit, eo_store_visit_candidate *visit, void *context,
+                                      struct eo_error *error)
 {
-  struct eo_statement s = eo_statement_begin(store, "SELECT evaluation, ordinal, generation, individual, reused, x FROM candidate WHERE job = ? ORDER BY ordinal",
-                                             "i", job);
+  struct eo_statement s = eo_statement_begin(store, "SELECT evaluation, ordinal, generation, individual, reused, x FROM candidate"
+                                                    " WHERE job = ? AND ordinal > ? ORDER BY ordinal LIMIT ?", "inn", job, after, limit);
   enum eo_code code = EO_OK;
   struct point point;
   while (!code && eo_statement_step(&s)) {
@@ -136,6 +199,11 @@ enum eo_code eo_store_each_candidate(struct eo_store *store, int64_t job, eo_sto
   }
   enum eo_code end = eo_statement_end(&s, code ? NULL : error);
   return code ? code : end;
+}
+
+enum eo_code eo_store_each_candidate(struct eo_store *store, int64_t job, eo_store_visit_candidate *visit, void *context, struct eo_error *error)
+{
+  return eo_store_page_candidates(store, job, -1, INT_MAX, visit, context, error);
 }
 
 enum eo_code eo_store_each_prediction(struct eo_store *store, int64_t job, eo_store_visit_prediction *visit, void *context, struct eo_error *error)

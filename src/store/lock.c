@@ -56,3 +56,8 @@ bool eo_store_job_is_taken(struct eo_store *store, int64_t job)
   struct flock lock = byte_of(job, F_WRLCK);
   return !open_locks(store, NULL) && fcntl(store->lock, F_OFD_GETLK, &lock) == 0 && lock.l_type != F_UNLCK;
 }
+
+enum eo_code eo_store_claim_server(struct eo_store *store, bool *taken, struct eo_error *error)
+{
+  return eo_store_claim_job(store, 0, taken, error); /* jobs are numbered from 1 */
+}

@@ -14,4 +14,7 @@ void eo_store_release_job(struct eo_store *store, int64_t job);
 /* Whether any other store, in this process or another, works on the job. Without a lock file nobody does. */
 bool eo_store_job_is_taken(struct eo_store *store, int64_t job);
 
+/* Takes the whole folder for one server, in the same way (byte 0), until this store is closed. */
+enum eo_code eo_store_claim_server(struct eo_store *store, bool *taken, struct eo_error *error);
+
 #endif

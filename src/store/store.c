@@ -58,20 +58,40 @@ static enum eo_code apply_steps(struct eo_store *store, struct eo_error *error)
   return code ? code : execute(store, mark, error);
 }
 
+static enum eo_code check_references(struct eo_store *store, struct eo_error *error)
+{
+  struct eo_statement s = eo_statement_begin(store, "PRAGMA foreign_key_check", "");
+  bool broken = eo_statement_step(&s);
+  enum eo_code code = eo_statement_end(&s, error);
+  return code || !broken ? code : eo_error_set(error, EO_ERROR_FILE, "", "%.150s is damaged: a row refers to one that is not there.", store->path);
+}
+
+static enum eo_code migrate_at_once(struct eo_store *store, struct eo_error *error)
+{
+  enum eo_code code = eo_store_begin(store, error);
+  if (!code)
+    code = apply_steps(store, error);
+  if (!code)
+    code = check_references(store, error);
+  if (!code)
+    code = eo_store_commit(store, error);
+  if (code)
+    eo_store_rollback(store);
+  return code;
+}
+
+/* A step that replaces a table drops the old one: with references watched that would delete what refers to it. */
 static enum eo_code migrate(struct eo_store *store, struct eo_error *error)
 {
   int schema = 0;
   enum eo_code code = identify(store, &schema, error);
   if (code || schema == eo_store_schema)
     return code;
-  code = eo_store_begin(store, error);
+  code = execute(store, "PRAGMA foreign_keys = OFF", error);
   if (!code)
-    code = apply_steps(store, error);
-  if (!code)
-    code = eo_store_commit(store, error);
-  if (code)
-    eo_store_rollback(store);
-  return code;
+    code = migrate_at_once(store, error);
+  enum eo_code end = execute(store, "PRAGMA foreign_keys = ON", code ? NULL : error);
+  return code ? code : end;
 }
 
 /* Readers of a folder that cannot be written can bring nothing up to date. */

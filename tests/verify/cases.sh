@@ -59,6 +59,21 @@ prints "All [0-9]* checks are within tolerance"
 [ "$(grep -c 'note:' "$folder/out")" -eq 0 ]
 result $? "every key is read"
 
+verify 0 "encoder" --json "$CASES/encoder.json"
+checks 28
+verify 0 "encoder, for people" "$CASES/encoder.json"
+prints "enc1_clean_unwrapped_deg.csv .* pass"
+[ "$(grep -c 'note:' "$folder/out")" -eq 0 ]
+result $? "every key is read"
+cp "$CASES/enc1_clean_unwrapped_deg.csv" "$folder"
+changed encoder.json 's/"rms_mesh_lines_H8": 24.64585/"rms_mesh_lines_H8": 24.71/'
+verify 1 "a wrong RMS of a recording" "$folder/encoder.json"
+changed encoder.json 's/"expected_findings": \[\]/"expected_findings": ["swapped"]/'
+verify 1 "a finding that is not there" "$folder/encoder.json"
+prints "finding swapped .*FAIL (1)"
+awk -F, -v OFS=, '{ print $1, $3, $2 }' "$CASES/enc1_clean_unwrapped_deg.csv" >"$folder/enc1_clean_unwrapped_deg.csv"
+verify 0 "channels swapped, said and set right" "$folder/encoder.json"
+
 # An RMS that is off by 3e-4 is noticed, in both kinds of output.
 changed dynamics.json 's/"rms_meanLR": 18.703694/"rms_meanLR": 18.71/'
 verify 1 "a wrong RMS" "$folder/dynamics.json"

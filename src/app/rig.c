@@ -1,0 +1,226 @@
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "app/app.h"
+#include "app/data.h"
+#include "app/watch.h"
+#include "document/json.h"
+#include "document/rig_document.h"
+
+struct request {
+  const char *design_file, *output, *truth, *settings, *torque, *speed, *data;
+  bool no_cache;
+  struct eo_design design;
+  struct eo_geometry geometry;
+  struct eo_rig_request rig;
+};
+
+enum { OWN_OPTIONS = 8, MOST_OPTIONS = 64, NAME_SIZE = 40 };
+
+/* Every key of the table is an option, "--sample-rate-Hz 50000". */
+struct options {
+  struct eo_option option[MOST_OPTIONS];
+  char name[MOST_OPTIONS][NAME_SIZE];
+  const char *value[MOST_OPTIONS];
+};
+
+static void make_options(struct request *r, struct options *o)
+{
+  const struct eo_option own[OWN_OPTIONS] = {{.name = "--design", .value = &r->design_file}, {.name = "-o", .value = &r->output},
+                                             {.name = "--truth", .value = &r->truth},        {.name = "--settings", .value = &r->settings},
+                                             {.name = "--torque", .value = &r->torque},      {.name = "--speed", .value = &r->speed},
+                                             {.name = "--data", .value = &r->data},          {.name = "--no-cache", .flag = &r->no_cache}};
+  memcpy(o->option, own, sizeof own);
+  for (int i = 0; i < eo_rig_table.count; i++) {
+    snprintf(o->name[i], NAME_SIZE, "--%s", eo_rig_table.field[i].key);
+    for (char *c = o->name[i]; *c; c++)
+      *c = *c == '_' ? '-' : *c;
+    o->option[OWN_OPTIONS + i] = (struct eo_option){.name = o->name[i], .value = &o->value[i]};
+  }
+  o->option[OWN_OPTIONS + eo_rig_table.count] = (struct eo_option){.name = NULL};
+}
+
+/* An option as the JSON value its key would have; what is no number stays text, for the table to refuse. */
+static json_t *value_of(const struct eo_field *field, const char *text)
+{
+  char *end;
+  if (field->kind == EO_FIELD_FLAG && (strcmp(text, "yes") == 0 || strcmp(text, "no") == 0))
+    return json_boolean(text[0] == 'y');
+  if (field->kind == EO_FIELD_CHOICE)
+    return json_string(text);
+  double number = strtod(text, &end);
+  bool whole = field->kind == EO_FIELD_INTEGER || field->kind == EO_FIELD_SEED;
+  if (*end || end == text || !isfinite(number))
+    return json_string(text);
+  return whole && number == floor(number) && fabs(number) < 9e15 ? json_integer((json_int_t)number) : json_real(number);
+}
+
+static json_t *settings_document(struct request *r, const struct options *o, struct eo_error *error)
+{
+  json_t *document = r->settings ? eo_json_load(r->settings, EO_JSON_DESIGN_BYTES, error) : json_object();
+  bool failed = false;
+  for (int i = 0; i < eo_rig_table.count && document; i++) {
+    const struct eo_field *field = &eo_rig_table.field[i];
+    const char *text = o->value[i];
+    if (!text && strcmp(field->key, "torque_Nm") == 0)
+      text = r->torque;
+    if (!text && strcmp(field->key, "speed_rpm") == 0)
+      text = r->speed;
+    if (text)
+      eo_json_put(document, field->key, value_of(field, text), &failed);
+  }
+  if (failed)
+    eo_error_memory(error);
+  return failed ? (json_decref(document), NULL) : document;
+}
+
+static bool read_settings(struct request *r, const struct options *o, int *status)
+{
+  struct eo_error error = {0};
+  struct eo_faults *faults = calloc(1, sizeof *faults);
+  json_t *document = faults ? settings_document(r, o, &error) : NULL;
+  *status = EO_EXIT_DONE;
+  if (!document)
+    *status = eo_app_fail(r->settings, error.code ? &error : (eo_error_memory(&error), &error));
+  else
+    eo_table_decode(&eo_rig_table, document, NULL, &r->rig, faults);
+  if (document && faults->count)
+    *status = eo_app_fail_all(r->settings, faults);
+  else if (document && r->rig.decimal_comma && r->rig.separator == EO_RIG_COMMA)
+    *status = eo_app_fail(NULL, &(struct eo_error){EO_ERROR_INPUT, "/decimal_comma", "A decimal comma needs another separator than the comma."});
+  json_decref(document);
+  free(faults);
+  return *status == EO_EXIT_DONE;
+}
+
+static void take_load_case(struct request *r)
+{
+  const struct eo_load_case *largest = &r->design.load_case[0];
+  for (int i = 1; i < r->design.load_cases; i++)
+    if (r->design.load_case[i].share > largest->share)
+      largest = &r->design.load_case[i];
+  if (isnan(r->rig.torque))
+    r->rig.torque = largest->torque;
+  if (isnan(r->rig.speed))
+    r->rig.speed = largest->speed;
+}
+
+static enum eo_code respond(struct request *r, const struct eo_progress *progress, struct eo_prediction *prediction, struct eo_error *error)
+{
+  struct eo_text directory = {0};
+  bool keep = !r->no_cache && eo_app_cache_directory(r->data, &directory);
+  struct eo_pair_options options = {.cache_directory = keep ? directory.data : NULL};
+  struct eo_pair *pair = NULL;
+  struct eo_evaluator *evaluator = NULL;
+  enum eo_code code = eo_pair_new(&pair, &r->design, &options, progress, error);
+  if (!code)
+    code = eo_evaluator_new(&evaluator, pair, 1, error);
+  if (!code)
+    code = eo_prediction_run(prediction, evaluator, &r->design, r->rig.unmodified, r->rig.torque, r->rig.speed, r->rig.end, r->rig.harmonics, error);
+  if (!code && !prediction->valid)
+    code = eo_error_set(error, EO_ERROR_INPUT, "", "The design has no periodic vibration at %g N m and %g rpm.", r->rig.torque, r->rig.speed * 30 / M_PI);
+  eo_evaluator_free(evaluator);
+  eo_pair_free(pair);
+  eo_text_done(&directory);
+  return code;
+}
+
+/* Beside the file and then in its place, so that nobody finds half of it. */
+static enum eo_code write_file(const struct request *r, const struct eo_progress *progress, struct eo_error *error)
+{
+  if (strcmp(r->output, "-") == 0)
+    return eo_rig_write(&r->rig, progress, stdout, error);
+  struct eo_text part = {0};
+  eo_text_print(&part, "%s.part", r->output);
+  FILE *stream = part.failed ? NULL : fopen(part.data, "w");
+  enum eo_code code = stream ? eo_rig_write(&r->rig, progress, stream, error)
+                             : eo_error_set(error, EO_ERROR_FILE, "", "%.200s cannot be written: %s.", r->output, strerror(errno));
+  if (stream && fclose(stream) && !code)
+    code = eo_error_set(error, EO_ERROR_FILE, "", "%.200s cannot be written: %s.", r->output, strerror(errno));
+  if (!code && rename(part.data, r->output))
+    code = eo_error_set(error, EO_ERROR_FILE, "", "%.200s cannot be written: %s.", r->output, strerror(errno));
+  if (code && stream)
+    remove(part.data);
+  eo_text_done(&part);
+  return code;
+}
+
+static enum eo_code write_truth(const struct request *r, struct eo_error *error)
+{
+  const char *slash = strrchr(r->output, '/');
+  struct eo_text text = {0};
+  json_t *document = eo_rig_truth(&r->rig, slash ? slash + 1 : r->output);
+  enum eo_code code = document ? EO_OK : eo_error_memory(error);
+  if (!code) {
+    eo_json_write(&text, document, EO_JSON_PRETTY);
+    code = eo_text_save(&text, r->truth, error);
+  }
+  json_decref(document);
+  eo_text_done(&text);
+  return code;
+}
+
+static int run_request(struct request *r)
+{
+  struct eo_watch watch;
+  struct eo_error error;
+  struct eo_prediction prediction;
+  take_load_case(r);
+  eo_watch_start(&watch);
+  enum eo_code code = respond(r, &watch.progress, &prediction, &error);
+  if (!code) {
+    eo_rig_set_pair(&r->rig, &r->geometry, &r->design.supports, &prediction);
+    code = eo_synthetic_check(&r->rig.synthetic, &error);
+  }
+  if (!code)
+    code = write_file(r, &watch.progress, &error);
+  if (!code && r->truth)
+    code = write_truth(r, &error);
+  eo_watch_clear(&watch);
+  if (watch.stopped)
+    code = eo_error_set(&error, EO_ERROR_CANCELLED, "", "Stopped.");
+  eo_watch_end(&watch);
+  return code ? eo_app_fail(code == EO_ERROR_INPUT ? r->design_file : NULL, &error) : EO_EXIT_DONE;
+}
+
+static int run(const struct eo_command *command, int argc, char **argv)
+{
+  struct request *r = calloc(1, sizeof *r);
+  struct options *o = calloc(1, sizeof *o);
+  struct eo_error error;
+  const char *operand;
+  int operands, status;
+  if (!r || !o) {
+    eo_error_memory(&error);
+    status = eo_app_fail(NULL, &error);
+    goto out;
+  }
+  make_options(r, o);
+  if (!eo_app_arguments(command, argc, argv, o->option, 0, 0, &operand, &operands, &status))
+    goto out;
+  if (!r->design_file || !r->output) {
+    eo_error_set(&error, EO_ERROR_INPUT, "", "A rig needs --design FILE and -o FILE.");
+    status = eo_app_fail(NULL, &error);
+  } else if (read_settings(r, o, &status) && eo_app_load_design(r->design_file, &r->design, &r->geometry, NULL, &status)) {
+    status = run_request(r);
+  }
+out:
+  free(o);
+  free(r);
+  return status;
+}
+
+const struct eo_command eo_command_rig = {
+    "rig", "--design FILE --torque T --speed S -o FILE [--truth FILE] [--KEY VALUE]...", "a recording of a rig that does not exist, with known truth",
+    "Simulates the design at a torque (N m, on the pinion) and speed (rpm) and writes what two encoders would record. --truth writes a case file\n"
+    "for easeoff verify beside it. Every key of the settings is an option, for instance --sample-rate-Hz 50000 --output sine-cosine\n"
+    "--pinion-lines 200 --fault slip --fault-row 5000 --separator semicolon --decimal-comma yes; --settings FILE.json holds them as JSON:\n"
+    "turns, sample_rate_Hz, noise_urad, jitter_us, skew_us, speed_drift, speed_swing, pinion_eccentricity_um, gear_eccentricity_um, pinion_lines,\n"
+    "gear_lines, interpolation, output (angles, counts, sine-cosine, pulses), wrapped, radians, track_amplitude_V, track_offset, track_gain,\n"
+    "track_phase_deg, track_noise_mV, track_step_mV, fault, fault_row, fault_size, seed, separator, heading, decimal_comma, byte_order_mark,\n"
+    "carriage_return, end, unmodified, harmonics. The same settings give the same bytes.\n\n"
+    EO_APP_DATA_HELP
+    "--no-cache neither reads nor keeps it.\n", run};

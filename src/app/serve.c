@@ -1,0 +1,155 @@
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "app/app.h"
+#include "app/data.h"
+#include "http/http.h"
+
+#include <config.h>
+
+struct request {
+  const char *listen, *data, *token_file, *threads, *pages, *host;
+  bool allow_anyone, quiet;
+  struct eo_text token, directory, cache;
+};
+
+/* ---- settings ---- */
+
+static enum eo_code read_token(struct request *request, struct eo_error *error)
+{
+  enum { LIMIT = 4096 };
+  const char *variable = getenv("EASEOFF_TOKEN");
+  if (!request->token_file) {
+    eo_text_add(&request->token, variable ? variable : "");
+    return request->token.failed ? eo_error_memory(error) : EO_OK;
+  }
+  enum eo_code code = eo_text_read(&request->token, request->token_file, LIMIT, error);
+  if (!code && request->token.data)
+    request->token.data[strcspn(request->token.data, "\r\n")] = '\0';
+  if (!code && (!request->token.data || !*request->token.data))
+    code = eo_error_set(error, EO_ERROR_INPUT, "", "The token file is empty.");
+  return code;
+}
+
+static bool is_folder(const char *path)
+{
+  struct stat status;
+  return path && *path && stat(path, &status) == 0 && S_ISDIR(status.st_mode);
+}
+
+/* --web, $EASEOFF_WEB, or where the page is installed; NULL: the API alone. */
+static const char *find_pages(const struct request *request)
+{
+  const char *variable = getenv("EASEOFF_WEB");
+  if (request->pages)
+    return request->pages;
+  if (variable && *variable)
+    return variable;
+  return is_folder(PKGDATADIR "/web") ? PKGDATADIR "/web" : NULL;
+}
+
+static enum eo_code read_threads(const struct request *request, int *threads, struct eo_error *error)
+{
+  char *end = NULL;
+  long count = request->threads ? strtol(request->threads, &end, 10) : 0;
+  if (request->threads && (*end || end == request->threads || count < 1 || count > 256))
+    return eo_error_set(error, EO_ERROR_INPUT, "", "--threads %.20s is outside 1 .. 256.", request->threads);
+  *threads = (int)count;
+  return EO_OK;
+}
+
+/* ---- life ---- */
+
+/* The two signals are blocked in every thread from here on and taken by sigwait() alone. */
+static void block_signals(sigset_t *signals)
+{
+  sigemptyset(signals);
+  sigaddset(signals, SIGINT);
+  sigaddset(signals, SIGTERM);
+  pthread_sigmask(SIG_BLOCK, signals, NULL);
+  signal(SIGPIPE, SIG_IGN);
+}
+
+static void serve_until_told(struct eo_http *http, struct eo_service *service, const sigset_t *signals)
+{
+  int signal;
+  printf("%s: %s\n", PACKAGE_NAME, eo_http_url(http));
+  fflush(stdout);
+  sigwait(signals, &signal);
+  eo_http_quiesce(http);
+  eo_service_stop(service);
+  eo_http_stop(http);
+}
+
+static enum eo_code serve(struct request *request, struct eo_error *error)
+{
+  sigset_t signals;
+  struct eo_service *service = NULL;
+  struct eo_http *http = NULL;
+  struct eo_service_settings settings = {.data = request->directory.data, .cache = request->cache.data};
+  enum eo_code code = read_threads(request, &settings.threads, error);
+  if (code)
+    return code;
+  block_signals(&signals);
+  code = eo_service_new(&service, &settings, error);
+  struct eo_http_settings web = {.listen = request->listen ? request->listen : "127.0.0.1:8080",
+                                 .token = request->token.data,
+                                 .allow_anyone = request->allow_anyone,
+                                 .host = {request->host},
+                                 .pages = find_pages(request),
+                                 .data = request->directory.data,
+                                 .quiet = request->quiet,
+                                 .service = service};
+  if (!code)
+    code = eo_http_start(&http, &web, error);
+  if (!code)
+    serve_until_told(http, service, &signals);
+  eo_service_free(service);
+  return code;
+}
+
+static int run_request(struct request *request)
+{
+  struct eo_error error;
+  enum eo_code code = read_token(request, &error);
+  if (!code)
+    code = eo_app_data_directory(request->data, &request->directory, &error);
+  if (!code) {
+    eo_app_cache_directory(request->data, &request->cache);
+    code = serve(request, &error);
+  }
+  eo_text_done(&request->token);
+  eo_text_done(&request->directory);
+  eo_text_done(&request->cache);
+  return code ? eo_app_fail(NULL, &error) : EO_EXIT_DONE;
+}
+
+static int run(const struct eo_command *command, int argc, char **argv)
+{
+  struct request request = {0};
+  const char *none;
+  int operands, status;
+  const struct eo_option options[] = {{.name = "--listen", .value = &request.listen},   {.name = "--data", .value = &request.data},
+                                      {.name = "--token-file", .value = &request.token_file}, {.name = "--allow-anyone", .flag = &request.allow_anyone},
+                                      {.name = "--host", .value = &request.host},       {.name = "--web", .value = &request.pages},
+                                      {.name = "--threads", .value = &request.threads}, {.name = "--quiet", .flag = &request.quiet},
+                                      {.name = NULL}};
+  if (!eo_app_arguments(command, argc, argv, options, 0, 0, &none, &operands, &status))
+    return status;
+  return run_request(&request);
+}
+
+const struct eo_command eo_command_serve = {
+    "serve", "[--listen ADDRESS:PORT] [--data DIR] [--token-file FILE | --allow-anyone] [--host NAME] [--web DIR] [--threads N] [--quiet]",
+    "the page and the API, until SIGTERM or Ctrl-C",
+    "Listens at 127.0.0.1:8080 unless told otherwise; port 0 takes a free one. The address is printed on standard output, one JSON line per\n"
+    "request goes to standard error (not with --quiet).\n\n"
+    "An address that others can reach needs a token, which every client then has to give: the first line of --token-file, or\n"
+    "$EASEOFF_TOKEN. --allow-anyone does without. --host names the server as clients call it, when that is neither localhost nor a\n"
+    "plain address and there is no token.\n\n"
+    "The page's files are read from --web DIR, else $EASEOFF_WEB, else where they were installed.\n\n" EO_APP_HISTORY_HELP EO_APP_DATA_HELP
+    "On SIGTERM and Ctrl-C running jobs are parked; they go on when the server starts again.\n", run};

@@ -1,0 +1,194 @@
+/* Measured beside predicted: JSON, tables for people, CSV. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "document/json.h"
+#include "document/measurement_document.h"
+#include "document/result_parts.h"
+#include "document/sheet.h"
+
+enum { CURVE = 128 };
+
+static const struct eo_unit percent = {"percent", "%", 100, true};
+
+/* One number of every measurement. */
+typedef double column_function(const struct eo_measured *m, const struct eo_compared *p);
+
+static double torque(const struct eo_measured *m, const struct eo_compared *p) { return (void)p, m->torque; }
+static double speed(const struct eo_measured *m, const struct eo_compared *p) { return (void)p, m->speed; }
+static double measured_rms(const struct eo_measured *m, const struct eo_compared *p) { return (void)p, m->rms; }
+static double measured_sigma(const struct eo_measured *m, const struct eo_compared *p) { return (void)p, m->rms_sigma; }
+static double predicted_rms(const struct eo_measured *m, const struct eo_compared *p) { return (void)m, p->prediction.rms; }
+static double ratio(const struct eo_measured *m, const struct eo_compared *p) { return (void)m, p->ratio; }
+static double likeness(const struct eo_measured *m, const struct eo_compared *p) { return (void)m, p->likeness; }
+static double predicted_peak(const struct eo_measured *m, const struct eo_compared *p) { return (void)m, p->prediction.peak_to_peak; }
+
+static const struct column {
+  const char *key;
+  column_function *value;
+  const struct eo_unit *unit;
+} columns[] = {{"torque_Nm", torque, &eo_unit_Nm},
+               {"speed_rpm", speed, &eo_unit_rpm},
+               {"measured_rms_m_per_s2", measured_rms, &eo_unit_m_per_s2},
+               {"measured_sigma_m_per_s2", measured_sigma, &eo_unit_m_per_s2},
+               {"predicted_rms_m_per_s2", predicted_rms, &eo_unit_m_per_s2},
+               {"ratio", ratio, NULL},
+               {"likeness", likeness, NULL},
+               {"predicted_te_peak_to_peak_um", predicted_peak, &eo_unit_um}};
+enum { COLUMNS = sizeof columns / sizeof *columns };
+
+static json_t *encode_columns(const struct eo_comparison *c, const struct eo_measured *m)
+{
+  struct eo_result_object o = eo_result_open();
+  json_t *file = json_array(), *label = json_array(), *end = json_array(), *outlier = json_array(), *reason = json_array();
+  double *value = malloc(sizeof *value * ((size_t)c->count + 1));
+  o.failed = o.failed || !value;
+  for (int i = 0; i < c->count && !o.failed; i++)
+    o.failed = json_array_append_new(file, json_string(m[i].name)) || json_array_append_new(label, json_string(m[i].unmodified ? "unmodified" : "modified")) ||
+               json_array_append_new(end, json_string(eo_result_end[m[i].end])) || json_array_append_new(outlier, json_boolean(c->point[i].outlier)) ||
+               json_array_append_new(reason, *c->point[i].reason ? json_string(c->point[i].reason) : json_null());
+  eo_result_put(&o, "file", file);
+  eo_result_put(&o, "label", label);
+  eo_result_put(&o, "end", end);
+  for (int k = 0; k < COLUMNS && !o.failed; k++) {
+    for (int i = 0; i < c->count; i++)
+      value[i] = columns[k].value(&m[i], &c->point[i]);
+    eo_result_put(&o, columns[k].key, eo_json_reals(c->count, value, 1, columns[k].unit, EO_DIGITS_NUMBER));
+  }
+  eo_result_put(&o, "outlier", outlier);
+  eo_result_put(&o, "reason", reason);
+  free(value);
+  return eo_result_close(&o);
+}
+
+/* Orders side by side and the curves in phase, one object per measurement. */
+static json_t *encode_detail(const struct eo_measured *m, const struct eo_compared *p)
+{
+  double measured[EO_MESH_ORDERS], amplitude[2][EO_MESH_ORDERS], curve[2][CURVE], position[CURVE];
+  struct eo_result_object o = eo_result_open(), orders = eo_result_open(), curves = eo_result_open();
+  for (int h = 0; h < m->harmonics; h++) {
+    measured[h] = m->order[h].acceleration;
+    amplitude[0][h] = cabs(m->order[h].amplitude);
+    amplitude[1][h] = cabs(p->prediction.order[h]);
+  }
+  for (int i = 0; i < CURVE; i++)
+    position[i] = (double)i / CURVE;
+  eo_comparison_curves(m, p, CURVE, curve[0], curve[1]);
+  eo_result_put(&orders, "measured_m_per_s2", eo_json_reals(m->harmonics, measured, 1, &eo_unit_m_per_s2, EO_DIGITS_CURVE));
+  eo_result_put(&orders, "predicted_m_per_s2", eo_json_reals(m->harmonics, p->prediction.acceleration, 1, &eo_unit_m_per_s2, EO_DIGITS_CURVE));
+  eo_result_put(&orders, "measured_um", eo_json_reals(m->harmonics, amplitude[0], 1, &eo_unit_um, EO_DIGITS_CURVE));
+  eo_result_put(&orders, "predicted_um", eo_json_reals(m->harmonics, amplitude[1], 1, &eo_unit_um, EO_DIGITS_CURVE));
+  eo_result_put(&curves, "position", eo_json_reals(CURVE, position, 1, NULL, EO_DIGITS_CURVE));
+  eo_result_put(&curves, "measured_um", eo_json_reals(CURVE, curve[0], 1, &eo_unit_um, EO_DIGITS_CURVE));
+  eo_result_put(&curves, "predicted_um", eo_json_reals(CURVE, curve[1], 1, &eo_unit_um, EO_DIGITS_CURVE));
+  eo_result_put_number(&curves, "shift", p->shift, NULL);
+  eo_result_put(&o, "orders", eo_result_close(&orders));
+  eo_result_put(&o, "te", eo_result_close(&curves));
+  return eo_result_close(&o);
+}
+
+static json_t *encode_reductions(const struct eo_comparison *c, const struct eo_measured *m)
+{
+  json_t *list = json_array();
+  bool failed = !list;
+  for (int i = 0; i < c->reductions && !failed; i++) {
+    const struct eo_reduction *r = &c->reduction[i];
+    struct eo_result_object o = eo_result_open();
+    eo_result_put(&o, "file", json_string(m[r->modified].name));
+    eo_result_put_number(&o, "torque_Nm", r->torque, &eo_unit_Nm);
+    eo_result_put_number(&o, "speed_rpm", r->speed, &eo_unit_rpm);
+    eo_result_put(&o, "unmodified_measurements", json_integer(r->unmodified));
+    eo_result_put_number(&o, "measured_percent", r->measured, &percent);
+    eo_result_put_number(&o, "sigma_percent", r->measured_sigma, &percent);
+    eo_result_put_number(&o, "predicted_percent", r->predicted, &percent);
+    failed = json_array_append_new(list, eo_result_close(&o)) != 0;
+  }
+  return failed ? (json_decref(list), NULL) : list;
+}
+
+json_t *eo_comparison_encode(const struct eo_comparison *c, const struct eo_measured *m)
+{
+  struct eo_result_object o = eo_result_open();
+  json_t *details = json_array();
+  for (int i = 0; i < c->count && !o.failed; i++)
+    o.failed = json_array_append_new(details, encode_detail(&m[i], &c->point[i])) != 0;
+  eo_result_put(&o, "measurements", encode_columns(c, m));
+  eo_result_put(&o, "details", details);
+  eo_result_put(&o, "reductions", encode_reductions(c, m));
+  eo_result_put_number(&o, "ratio", c->ratio, NULL);
+  eo_result_put_number(&o, "spread", c->spread, NULL);
+  return eo_result_close(&o);
+}
+
+/* ---- for people ---- */
+
+void eo_measurement_summary(const struct eo_measurement *m, const struct eo_measurement_label *label, struct eo_text *text)
+{
+  const struct eo_transmission *t = &m->transmission;
+  eo_text_print(text, "%s: %s, %.6g N m, %s end, %lld rows\n", label->file ? label->file : "recording", label->unmodified ? "unmodified" : "modified", label->torque,
+                eo_result_end[label->end], (long long)m->rows);
+  for (int i = 0; label->notes && i < label->notes->count && i < EO_NOTES; i++)
+    eo_text_print(text, "  note: %s\n", label->notes->text[i]);
+  for (int i = 0; i < m->findings.count && i < EO_MAX_FINDINGS; i++)
+    eo_text_print(text, "  %s: %s\n", eo_severity_name(m->findings.finding[i].severity), m->findings.finding[i].text);
+  if (m->refused) {
+    eo_text_add(text, "  No result.\n");
+    return;
+  }
+  eo_text_print(text, "  %.7g rpm, %.4g turns; RMS %.4f +- %.4f m/s2 of %d mesh orders (spectrum %.4f, with sidebands %.4f)\n", t->speed * 30 / M_PI,
+                t->revolutions[EO_PINION], t->rms, t->rms_sigma, t->harmonics, t->rms_spectrum, t->rms_band);
+  eo_text_print(text, "  TE of the mesh %.4g um peak to peak; first shaft orders %.4g um pinion, %.4g um gear; residual %.3g um\n", 1e6 * t->mesh_peak_to_peak,
+                1e6 * cabs(t->shaft[EO_PINION][0].amplitude), 1e6 * cabs(t->shaft[EO_GEAR][0].amplitude), 1e6 * t->residual);
+}
+
+static void fill_sheet(const struct eo_comparison *c, const struct eo_measured *m, struct eo_sheet *sheet, int digits)
+{
+  for (int i = 0; i < c->count; i++) {
+    eo_sheet_string(sheet, m[i].name);
+    eo_sheet_string(sheet, m[i].unmodified ? "unmodified" : "modified");
+    for (int k = 0; k < COLUMNS; k++)
+      eo_sheet_number(sheet, columns[k].value(&m[i], &c->point[i]), columns[k].unit, digits);
+    eo_sheet_string(sheet, c->point[i].reason);
+  }
+}
+
+static void print_orders(const struct eo_comparison *c, const struct eo_measured *m, struct eo_text *text)
+{
+  for (int i = 0; i < c->count; i++) {
+    eo_text_print(text, "  %s, orders, measured | predicted m/s2:", m[i].name);
+    for (int h = 0; h < m[i].harmonics; h++)
+      eo_text_print(text, "  %.3g|%.3g", m[i].order[h].acceleration, c->point[i].prediction.acceleration[h]);
+    eo_text_add(text, "\n");
+  }
+}
+
+void eo_comparison_summary(const struct eo_comparison *c, const struct eo_measured *m, struct eo_text *text)
+{
+  static const char *const headings[] = {"file", "label", "torque N m", "speed rpm", "measured m/s2", "+-", "predicted m/s2", "ratio", "likeness", "TE um", "remark"};
+  struct eo_sheet sheet;
+  eo_text_add(text, "\nMeasured and predicted (rotational acceleration at the encoders' end, at the measured speed):\n");
+  eo_sheet_init(&sheet, COLUMNS + 3, headings);
+  fill_sheet(c, m, &sheet, 4);
+  eo_sheet_print(&sheet, 2, text);
+  eo_sheet_done(&sheet);
+  print_orders(c, m, text);
+  for (int i = 0; i < c->reductions; i++) {
+    const struct eo_reduction *r = &c->reduction[i];
+    eo_text_print(text, "  %.5g N m, %.5g rpm: the modification takes %.1f +- %.1f %% off the measured RMS, %.1f %% off the predicted one.\n", r->torque,
+                  r->speed * 30 / M_PI, 100 * r->measured, 100 * r->measured_sigma, 100 * r->predicted);
+  }
+}
+
+void eo_comparison_csv(const struct eo_comparison *c, const struct eo_measured *m, struct eo_text *text)
+{
+  const char *headings[COLUMNS + 3] = {"file", "label"};
+  struct eo_sheet sheet;
+  for (int k = 0; k < COLUMNS; k++)
+    headings[2 + k] = columns[k].key;
+  headings[COLUMNS + 2] = "reason";
+  eo_sheet_init(&sheet, COLUMNS + 3, headings);
+  fill_sheet(c, m, &sheet, EO_DIGITS_NUMBER);
+  eo_sheet_csv(&sheet, text);
+  eo_sheet_done(&sheet);
+}

@@ -1,0 +1,260 @@
+#include "document/export.h"
+
+#include <ctype.h>
+#include <math.h>
+#include <string.h>
+
+#include "document/design_document.h"
+#include "document/json.h"
+#include "gear/surface.h"
+
+enum { PROFILE_POINTS = 21, FACE_POINTS = 31, CHART_POINTS = 61 };
+
+static const char *const member_name[2] = {"pinion", "gear"}, *const end_name[2] = {"left", "right"};
+
+/* ---- cells ---- */
+
+static void put(struct eo_text *text, double value, const struct eo_unit *unit)
+{
+  double outside = !unit ? value : unit->divide ? value * unit->factor : value / unit->factor;
+  eo_text_print(text, ",%.10g", outside + 0.0);
+}
+
+static void put_place(struct eo_text *text, int member, int end)
+{
+  eo_text_print(text, "%s,%s", member_name[member], end_name[end]);
+}
+
+static void end_row(struct eo_text *text)
+{
+  eo_text_add(text, "\r\n");
+}
+
+/* ---- flanks ---- */
+
+struct flank {
+  const struct eo_geometry *geometry;
+  int member, end;
+  struct eo_modification_shape shape;
+  double offset; /* mid face of the end from the middle of the groove, m */
+  double turn;   /* to the frame below, from +x towards +y, rad */
+};
+
+typedef void flank_function(const struct flank *flank, struct eo_text *text);
+
+/* Angle from +y towards +x at which an end's unmodified flank stands at the pitch radius in mid face. */
+static double pitch_angle(const struct eo_geometry *geometry, int member)
+{
+  const struct eo_flank_modification none = {0};
+  struct eo_modification_shape shape;
+  struct eo_surface_point point;
+  double u, v;
+  eo_modification_init(&shape, geometry, member, &none);
+  eo_surface_coordinates(geometry, member, 0, 0, &u, &v);
+  eo_surface_evaluate(geometry, member, &shape, u, v, &point);
+  return atan2(point.position[0], point.position[1]);
+}
+
+static void each_flank(const struct eo_design *design, const struct eo_geometry *geometry, flank_function *function, struct eo_text *text)
+{
+  for (int member = 0; member < 2; member++)
+    for (int end = 0; end < design->gear_pair.ends; end++) {
+      struct flank flank = {.geometry = geometry, .member = member, .end = end};
+      eo_modification_init(&flank.shape, geometry, member, &design->modification.flank[member][end]);
+      if (design->gear_pair.ends == 2)
+        flank.offset = (design->gear_pair.groove_width + design->gear_pair.face_width) / 2;
+      double behind = end == EO_RIGHT ? design->alignment.stagger * 2 * M_PI / geometry->teeth[member] : 0;
+      flank.turn = pitch_angle(geometry, member) + (member == EO_PINION ? behind : -behind);
+      function(&flank, text);
+    }
+}
+
+/* From the member's own root to its tip. */
+static double path_at(const struct flank *flank, double fraction)
+{
+  const struct eo_geometry *g = flank->geometry;
+  double length = g->path_end - g->path_start;
+  return flank->member == EO_PINION ? g->path_start + fraction * length : g->path_end - fraction * length;
+}
+
+static double rack_at(const struct flank *flank, double s)
+{
+  return flank->geometry->rack_factor * eo_geometry_own_path(flank->member, s);
+}
+
+static double roll_at(const struct flank *flank, double s)
+{
+  const struct eo_geometry *g = flank->geometry;
+  double tangent = g->tangent_length[flank->member] + eo_geometry_own_path(flank->member, s);
+  return tangent / g->base_radius[flank->member];
+}
+
+static double profile_part(const struct flank *flank, double s)
+{
+  double slope[2];
+  return eo_modification_profile(&flank->shape, rack_at(flank, s), slope);
+}
+
+static double lead_part(const struct flank *flank, double eta)
+{
+  double slope;
+  return eo_modification_lead(&flank->shape, eta / cos(flank->geometry->helix_angle), &slope);
+}
+
+/* ---- points ----
+   Frame of a member: z its axis, from the middle of the groove to the right; the working flank of a tooth faces +x and would, unmodified, pass
+   through the plane x = 0 at the working pitch radius in mid face. eo_surface_evaluate() gives one end with z along eta (pinion) or against it (gear). The left
+   end mirrors the right one. A stagger turns the right end back: against the motion, which goes to +x on the pinion, to -x on the gear. */
+static void place_vector(const struct flank *flank, const double local[3], double shift, double global[3])
+{
+  double outwards = shift + (flank->member == EO_PINION ? local[2] : -local[2]);
+  double c = cos(flank->turn), s = sin(flank->turn);
+  global[0] = c * local[0] - s * local[1];
+  global[1] = s * local[0] + c * local[1];
+  global[2] = flank->end == EO_LEFT && flank->offset > 0 ? -outwards : outwards;
+}
+
+static void write_point(const struct flank *flank, double s, double eta, struct eo_text *text)
+{
+  struct eo_surface_point point;
+  double u, v, position[3], normal[3];
+  eo_surface_coordinates(flank->geometry, flank->member, s, eta, &u, &v);
+  eo_surface_evaluate(flank->geometry, flank->member, &flank->shape, u, v, &point);
+  place_vector(flank, point.position, flank->offset, position);
+  place_vector(flank, point.normal, 0, normal);
+  for (int i = 0; i < 3; i++)
+    put(text, position[i], &eo_unit_mm);
+  for (int i = 0; i < 3; i++)
+    put(text, normal[i], NULL);
+  put(text, profile_part(flank, s) + lead_part(flank, eta), &eo_unit_um);
+}
+
+static void write_flank_points(const struct flank *flank, struct eo_text *text)
+{
+  for (int i = 0; i < PROFILE_POINTS; i++)
+    for (int j = 0; j < FACE_POINTS; j++) {
+      double s = path_at(flank, (double)i / (PROFILE_POINTS - 1));
+      double eta = flank->geometry->face_width * ((double)j / (FACE_POINTS - 1) - 0.5);
+      put_place(text, flank->member, flank->end);
+      eo_text_print(text, ",%d,%d", i, j);
+      write_point(flank, s, eta, text);
+      end_row(text);
+    }
+}
+
+static void write_points(const struct eo_design *design, const struct eo_geometry *geometry, struct eo_text *text)
+{
+  eo_text_add(text, "member,end,profile,face,x_mm,y_mm,z_mm,normal_x,normal_y,normal_z,modification_um\r\n");
+  each_flank(design, geometry, write_flank_points, text);
+}
+
+/* ---- charts ---- */
+
+static void write_profile_chart(const struct flank *flank, struct eo_text *text)
+{
+  for (int i = 0; i < CHART_POINTS; i++) {
+    double s = path_at(flank, (double)i / (CHART_POINTS - 1));
+    put_place(text, flank->member, flank->end);
+    eo_text_add(text, ",profile");
+    put(text, rack_at(flank, s), &eo_unit_mm);
+    put(text, eo_geometry_radius_at(flank->geometry, flank->member, s), &eo_unit_mm);
+    put(text, roll_at(flank, s), &eo_unit_deg);
+    put(text, profile_part(flank, s), &eo_unit_um);
+    end_row(text);
+  }
+}
+
+static void write_lead_chart(const struct flank *flank, struct eo_text *text)
+{
+  for (int i = 0; i < CHART_POINTS; i++) {
+    double eta = flank->geometry->face_width * ((double)i / (CHART_POINTS - 1) - 0.5);
+    put_place(text, flank->member, flank->end);
+    eo_text_add(text, ",lead");
+    put(text, eta, &eo_unit_mm);
+    eo_text_add(text, ",,");
+    put(text, lead_part(flank, eta), &eo_unit_um);
+    end_row(text);
+  }
+}
+
+static void write_charts_of(const struct flank *flank, struct eo_text *text)
+{
+  write_profile_chart(flank, text);
+  write_lead_chart(flank, text);
+}
+
+static void write_charts(const struct eo_design *design, const struct eo_geometry *geometry, struct eo_text *text)
+{
+  eo_text_add(text, "member,end,chart,coordinate_mm,radius_mm,roll_angle_deg,modification_um\r\n");
+  each_flank(design, geometry, write_charts_of, text);
+}
+
+/* ---- topography ---- */
+
+static void write_topography_of(const struct flank *flank, struct eo_text *text)
+{
+  for (int i = 0; i < PROFILE_POINTS; i++)
+    for (int j = 0; j < FACE_POINTS; j++) {
+      double s = path_at(flank, (double)i / (PROFILE_POINTS - 1));
+      double eta = flank->geometry->face_width * ((double)j / (FACE_POINTS - 1) - 0.5);
+      put_place(text, flank->member, flank->end);
+      put(text, eo_geometry_radius_at(flank->geometry, flank->member, s), &eo_unit_mm);
+      put(text, roll_at(flank, s), &eo_unit_deg);
+      put(text, eta, &eo_unit_mm);
+      put(text, profile_part(flank, s) + lead_part(flank, eta), &eo_unit_um);
+      end_row(text);
+    }
+}
+
+static void write_topography(const struct eo_design *design, const struct eo_geometry *geometry, struct eo_text *text)
+{
+  eo_text_add(text, "member,end,radius_mm,roll_angle_deg,face_mm,modification_um\r\n");
+  each_flank(design, geometry, write_topography_of, text);
+}
+
+static void write_design(const struct eo_design *design, const struct eo_geometry *geometry, struct eo_text *text)
+{
+  (void)geometry;
+  json_t *document = eo_design_encode(design);
+  if (document)
+    eo_json_write(text, document, EO_JSON_PRETTY);
+  else
+    text->failed = true;
+  json_decref(document);
+}
+
+/* ---- formats ---- */
+
+static const struct eo_export formats[] = {
+    {"flank-points", "points and normals of the working flanks, exactly as generated, with what is taken off", "text/csv; charset=utf-8", "csv", write_points},
+    {"modification-chart", "profile and lead modification as curves", "text/csv; charset=utf-8", "csv", write_charts},
+    {"topography", "what is taken off, over profile and face", "text/csv; charset=utf-8", "csv", write_topography},
+    {"design", "the design with every default resolved", "application/json", "json", write_design},
+};
+enum { FORMATS = sizeof formats / sizeof formats[0] };
+
+const struct eo_export *eo_export_at(int index)
+{
+  return index >= 0 && index < FORMATS ? &formats[index] : NULL;
+}
+
+const struct eo_export *eo_export_find(const char *name)
+{
+  for (int i = 0; i < FORMATS; i++)
+    if (strcmp(formats[i].name, name) == 0)
+      return &formats[i];
+  return NULL;
+}
+
+void eo_export_file_name(const struct eo_export *format, const struct eo_design *design, char *name, size_t size)
+{
+  size_t most = size - strlen(format->name) - strlen(format->ending) - 3, length = 0;
+  for (const char *c = design->name; *c && length < most; c++)
+    if (isalnum((unsigned char)*c) && (unsigned char)*c < 128)
+      name[length++] = (char)tolower((unsigned char)*c);
+    else if (length && name[length - 1] != '-')
+      name[length++] = '-';
+  while (length && name[length - 1] == '-')
+    length--;
+  snprintf(name + length, size - length, "%s%s.%s", length ? "-" : "", format->name, format->ending);
+}

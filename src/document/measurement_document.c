@@ -1,0 +1,266 @@
+#include "document/measurement_document.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "document/json.h"
+#include "document/result_parts.h"
+
+enum { CURVE = 128, SPECTRUM_POINTS = 2000 };
+
+static const char *const channel_name[2] = {"pinion", "gear"};
+
+static json_t *column(int count, const double *value, const struct eo_unit *unit) { return eo_json_reals(count, value, 1, unit, EO_DIGITS_CURVE); }
+
+static const char *label_name(bool unmodified) { return unmodified ? "unmodified" : "modified"; }
+
+/* ---- findings and signal ---- */
+
+static json_t *encode_findings(const struct eo_findings *findings)
+{
+  json_t *list = json_array();
+  bool failed = !list;
+  for (int i = 0; i < findings->count && i < EO_MAX_FINDINGS; i++) {
+    const struct eo_finding *f = &findings->finding[i];
+    struct eo_result_object o = eo_result_open();
+    eo_result_put(&o, "kind", json_string(eo_finding_name(f->kind)));
+    eo_result_put(&o, "severity", json_string(eo_severity_name(f->severity)));
+    eo_result_put(&o, "channel", f->channel < 0 ? json_null() : json_string(channel_name[f->channel]));
+    eo_result_put(&o, "row", f->row < 0 ? json_null() : json_integer(f->row + 1));
+    eo_result_put(&o, "line", f->line > 0 ? json_integer(f->line) : json_null());
+    eo_result_put_number(&o, "value", f->value, NULL);
+    eo_result_put(&o, "text", json_string(f->text));
+    failed = failed || json_array_append_new(list, eo_result_close(&o)) != 0;
+  }
+  return failed ? (json_decref(list), NULL) : list;
+}
+
+static json_t *encode_ellipse(const struct eo_ellipse *e)
+{
+  struct eo_result_object o = eo_result_open();
+  eo_result_put(&o, "amplitude", column(2, e->amplitude, NULL));
+  eo_result_put(&o, "offset", column(2, e->offset, NULL));
+  eo_result_put_number(&o, "ratio", e->amplitude[0] / e->amplitude[1], NULL);
+  eo_result_put_number(&o, "phase_deg", M_PI / 2 + e->skew, &eo_unit_deg);
+  return eo_result_close(&o);
+}
+
+static json_t *encode_signal(const struct eo_measurement *m)
+{
+  struct eo_result_object o = eo_result_open(), tracks = eo_result_open();
+  eo_result_put(&o, "rows", json_integer(m->rows));
+  eo_result_put_number(&o, "interval_ms", m->interval, &eo_unit_ms);
+  eo_result_put_number(&o, "ratio", m->ratio, NULL);
+  for (int channel = 0; channel < 2; channel++)
+    eo_result_put(&tracks, channel_name[channel], m->raw[channel] && m->ellipse[channel].amplitude[0] > 0 ? encode_ellipse(&m->ellipse[channel]) : json_null());
+  eo_result_put(&o, "tracks", eo_result_close(&tracks));
+  return eo_result_close(&o);
+}
+
+static json_t *encode_notes(const struct eo_notes *notes)
+{
+  json_t *list = json_array();
+  bool failed = !list;
+  for (int i = 0; notes && i < notes->count && i < EO_NOTES && !failed; i++)
+    failed = json_array_append_new(list, json_string(notes->text[i])) != 0;
+  return failed ? (json_decref(list), NULL) : list;
+}
+
+/* ---- orders ---- */
+
+static json_t *encode_lines(int count, const struct eo_order_line *line)
+{
+  double order[EO_MESH_ORDERS], amplitude[EO_MESH_ORDERS], phase[EO_MESH_ORDERS], sigma[EO_MESH_ORDERS], acceleration[EO_MESH_ORDERS];
+  struct eo_result_object o = eo_result_open();
+  for (int i = 0; i < count; i++) {
+    order[i] = line[i].order;
+    amplitude[i] = cabs(line[i].amplitude);
+    phase[i] = carg(line[i].amplitude);
+    sigma[i] = line[i].sigma;
+    acceleration[i] = line[i].acceleration;
+  }
+  eo_result_put(&o, "order", column(count, order, NULL));
+  eo_result_put(&o, "amplitude_um", eo_json_reals(count, amplitude, 1, &eo_unit_um, EO_DIGITS_NUMBER));
+  eo_result_put(&o, "phase_rad", eo_json_reals(count, phase, 1, NULL, EO_DIGITS_NUMBER));
+  eo_result_put(&o, "sigma_um", column(count, sigma, &eo_unit_um));
+  eo_result_put(&o, "acceleration_m_per_s2", eo_json_reals(count, acceleration, 1, &eo_unit_m_per_s2, EO_DIGITS_NUMBER));
+  return eo_result_close(&o);
+}
+
+/* Of all sidebands those that stand out of the noise, by mesh order. */
+static json_t *encode_sidebands(const struct eo_transmission *t)
+{
+  static const int turns[EO_SIDEBANDS] = {-2, -1, 1, 2};
+  json_t *list = json_array();
+  bool failed = !list;
+  for (int h = 0; h < t->harmonics; h++)
+    for (int k = 0; k < 2 * EO_SIDEBANDS; k++) {
+      const struct eo_order_line *line = &t->sideband[h][k / EO_SIDEBANDS][k % EO_SIDEBANDS];
+      if (cabs(line->amplitude) < 4 * line->sigma)
+        continue;
+      struct eo_result_object o = eo_result_open();
+      eo_result_put(&o, "mesh_order", json_integer(h + 1));
+      eo_result_put(&o, "shaft", json_string(channel_name[k / EO_SIDEBANDS]));
+      eo_result_put(&o, "turns", json_integer(turns[k % EO_SIDEBANDS]));
+      eo_result_put_number(&o, "order", line->order, NULL);
+      eo_result_put_number(&o, "amplitude_um", cabs(line->amplitude), &eo_unit_um);
+      eo_result_put_number(&o, "acceleration_m_per_s2", line->acceleration, &eo_unit_m_per_s2);
+      failed = failed || json_array_append_new(list, eo_result_close(&o)) != 0;
+    }
+  return failed ? (json_decref(list), NULL) : list;
+}
+
+static json_t *encode_shafts(const struct eo_transmission *t)
+{
+  struct eo_result_object o = eo_result_open();
+  for (int member = 0; member < 2; member++)
+    eo_result_put(&o, channel_name[member], encode_lines(EO_SHAFT_ORDERS, t->shaft[member]));
+  return eo_result_close(&o);
+}
+
+/* The largest acceleration in each of at most SPECTRUM_POINTS stretches of the spectrum. */
+static json_t *encode_spectrum(const struct eo_transmission *t)
+{
+  double order[SPECTRUM_POINTS], acceleration[SPECTRUM_POINTS];
+  int stretch = t->spectrum_lines / SPECTRUM_POINTS + 1, count = 0;
+  struct eo_result_object o = eo_result_open();
+  for (int first = 1; first < t->spectrum_lines && count < SPECTRUM_POINTS; first += stretch, count++) {
+    acceleration[count] = -1;
+    for (int k = first; k < first + stretch && k < t->spectrum_lines; k++) {
+      double at = (double)k / t->spectrum_turns, value = pow(at * t->speed, 2) * t->spectrum[k];
+      if (value > acceleration[count]) {
+        acceleration[count] = value;
+        order[count] = at;
+      }
+    }
+  }
+  eo_result_put(&o, "turns", json_integer(t->spectrum_turns));
+  eo_result_put(&o, "order", column(count, order, NULL));
+  eo_result_put(&o, "acceleration_m_per_s2", eo_json_reals(count, acceleration, 1, &eo_unit_m_per_s2, EO_DIGITS_MAP));
+  return eo_result_close(&o);
+}
+
+/* ---- result ---- */
+
+static json_t *encode_rms(const struct eo_transmission *t)
+{
+  struct eo_result_object o = eo_result_open();
+  eo_result_put_number(&o, "value", t->rms, &eo_unit_m_per_s2);
+  eo_result_put_number(&o, "sigma", t->rms_sigma, &eo_unit_m_per_s2);
+  eo_result_put(&o, "upto", eo_json_reals(t->harmonics, t->rms_upto, 1, &eo_unit_m_per_s2, EO_DIGITS_NUMBER));
+  eo_result_put_number(&o, "spectrum", t->rms_spectrum, &eo_unit_m_per_s2);
+  eo_result_put_number(&o, "band", t->rms_band, &eo_unit_m_per_s2);
+  return eo_result_close(&o);
+}
+
+static json_t *encode_te(const struct eo_transmission *t)
+{
+  double position[CURVE], mesh[CURVE];
+  struct eo_result_object o = eo_result_open();
+  for (int i = 0; i < CURVE; i++) {
+    position[i] = (i + 0.5) / CURVE;
+    mesh[i] = eo_transmission_mesh(t, position[i]);
+  }
+  eo_result_put_number(&o, "peak_to_peak_um", t->mesh_peak_to_peak, &eo_unit_um);
+  eo_result_put(&o, "position", column(CURVE, position, NULL));
+  eo_result_put(&o, "mesh_um", column(CURVE, mesh, &eo_unit_um));
+  eo_result_put(&o, "average_um", column(EO_CYCLE_BINS, t->cycle, &eo_unit_um));
+  for (int member = 0; member < 2; member++) {
+    char key[40];
+    snprintf(key, sizeof key, "%s_turn_um", channel_name[member]);
+    eo_result_put(&o, key, eo_json_reals(EO_TURN_BINS, t->turn[member], 1, &eo_unit_um, EO_DIGITS_MAP));
+  }
+  return eo_result_close(&o);
+}
+
+static json_t *encode_result(const struct eo_transmission *t)
+{
+  struct eo_result_object o = eo_result_open(), speed = eo_result_open(), turns = eo_result_open();
+  eo_result_put(&o, "rows", json_integer(t->rows));
+  eo_result_put_number(&o, "seconds", t->seconds, NULL);
+  eo_result_put_number(&turns, "pinion", t->revolutions[EO_PINION], NULL);
+  eo_result_put_number(&turns, "gear", t->revolutions[EO_GEAR], NULL);
+  eo_result_put(&o, "turns", eo_result_close(&turns));
+  eo_result_put_number(&speed, "mean", t->speed, &eo_unit_rpm);
+  eo_result_put_number(&speed, "lowest", t->speed_low, &eo_unit_rpm);
+  eo_result_put_number(&speed, "highest", t->speed_high, &eo_unit_rpm);
+  eo_result_put(&o, "speed_rpm", eo_result_close(&speed));
+  eo_result_put(&o, "harmonics", json_integer(t->harmonics));
+  eo_result_put(&o, "rms_m_per_s2", encode_rms(t));
+  eo_result_put(&o, "mesh", encode_lines(t->harmonics, t->mesh));
+  eo_result_put(&o, "sidebands", encode_sidebands(t));
+  eo_result_put(&o, "shafts", encode_shafts(t));
+  eo_result_put(&o, "te", encode_te(t));
+  eo_result_put_number(&o, "residual_um", t->residual, &eo_unit_um);
+  eo_result_put(&o, "drift_um", column(3, t->drift + 1, &eo_unit_um));
+  eo_result_put(&o, "hunting_turns", json_integer(t->hunting));
+  eo_result_put(&o, "spectrum", encode_spectrum(t));
+  return eo_result_close(&o);
+}
+
+json_t *eo_measurement_encode(const struct eo_measurement *m, const struct eo_measurement_label *label)
+{
+  struct eo_result_object o = eo_result_open();
+  eo_result_put(&o, "file", label->file ? json_string(label->file) : json_null());
+  eo_result_put(&o, "label", json_string(label_name(label->unmodified)));
+  eo_result_put_number(&o, "torque_Nm", label->torque, &eo_unit_Nm);
+  eo_result_put(&o, "end", json_string(eo_result_end[label->end]));
+  eo_result_put(&o, "notes", encode_notes(label->notes));
+  eo_result_put(&o, "layout", label->layout ? json_deep_copy(label->layout) : json_null());
+  eo_result_put(&o, "findings", encode_findings(&m->findings));
+  eo_result_put(&o, "refused", json_boolean(m->refused));
+  eo_result_put(&o, "signal", encode_signal(m));
+  eo_result_put(&o, "result", m->refused ? json_null() : encode_result(&m->transmission));
+  return eo_result_close(&o);
+}
+
+/* ---- back ---- */
+
+static double number_at(const json_t *document, const char *path, int index)
+{
+  const json_t *value = eo_json_find(document, path);
+  value = index < 0 ? value : json_array_get(value, (size_t)index);
+  return json_is_number(value) ? json_number_value(value) : NAN;
+}
+
+static int count_warnings(const json_t *document)
+{
+  int warnings = 0;
+  size_t index;
+  json_t *finding;
+  json_array_foreach(json_object_get(document, "findings"), index, finding) {
+    const char *severity = json_string_value(json_object_get(finding, "severity"));
+    warnings += severity && (strcmp(severity, "warning") == 0 || strcmp(severity, "refused") == 0);
+  }
+  return warnings;
+}
+
+enum eo_code eo_measured_decode(const json_t *document, struct eo_measured *m, struct eo_error *error)
+{
+  const char *file = json_string_value(json_object_get(document, "file")), *label = json_string_value(json_object_get(document, "label"));
+  const char *end = json_string_value(json_object_get(document, "end"));
+  memset(m, 0, sizeof *m);
+  if (!json_is_object(json_object_get(document, "result")))
+    return eo_error_set(error, EO_ERROR_INPUT, "/result", "The measurement has no result: its recording was refused.");
+  snprintf(m->name, sizeof m->name, "%s", file ? file : "");
+  m->unmodified = label && strcmp(label, label_name(true)) == 0;
+  m->end = end && strcmp(end, eo_result_end[EO_LEFT]) == 0 ? EO_LEFT : EO_RIGHT;
+  m->torque = eo_unit_in(&eo_unit_Nm, number_at(document, "torque_Nm", -1));
+  m->speed = eo_unit_in(&eo_unit_rpm, number_at(document, "result/speed_rpm/mean", -1));
+  m->rms = number_at(document, "result/rms_m_per_s2/value", -1);
+  m->rms_sigma = number_at(document, "result/rms_m_per_s2/sigma", -1);
+  m->harmonics = (int)json_array_size(eo_json_find(document, "result/mesh/amplitude_um"));
+  m->harmonics = m->harmonics < EO_MESH_ORDERS ? m->harmonics : EO_MESH_ORDERS;
+  for (int h = 0; h < m->harmonics; h++) {
+    double amplitude = eo_unit_in(&eo_unit_um, number_at(document, "result/mesh/amplitude_um", h));
+    m->order[h] = (struct eo_order_line){.order = number_at(document, "result/mesh/order", h),
+                                         .amplitude = amplitude * cexp(I * number_at(document, "result/mesh/phase_rad", h)),
+                                         .sigma = eo_unit_in(&eo_unit_um, number_at(document, "result/mesh/sigma_um", h)),
+                                         .acceleration = number_at(document, "result/mesh/acceleration_m_per_s2", h)};
+  }
+  m->warnings = count_warnings(document);
+  if (!(m->torque > 0) || !(m->speed > 0) || !(m->rms >= 0) || m->harmonics < 1)
+    return eo_error_set(error, EO_ERROR_INPUT, "/result", "The document is no measurement: torque, speed, RMS or mesh orders are missing.");
+  return EO_OK;
+}

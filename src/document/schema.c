@@ -1,0 +1,260 @@
+#include "document/schema.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "document/result_parts.h"
+
+static const char *const kind_names[] = {[EO_FIELD_NUMBER] = "number",   [EO_FIELD_INTEGER] = "integer", [EO_FIELD_SEED] = "seed",
+                                         [EO_FIELD_FLAG] = "flag",       [EO_FIELD_TEXT] = "text",       [EO_FIELD_CHOICE] = "choice",
+                                         [EO_FIELD_NUMBERS] = "numbers", [EO_FIELD_LIMIT] = "limit",     [EO_FIELD_OBJECT] = "object",
+                                         [EO_FIELD_LIST] = "list",       [EO_FIELD_SERIES] = "series"};
+
+/* What the document says where every key is absent: the defaults, as the tables themselves write them. */
+static json_t *encode_defaults(const struct eo_table *table)
+{
+  void *defaults = calloc(1, table->size);
+  if (!defaults)
+    return NULL;
+  eo_table_defaults(table, defaults);
+  json_t *document = eo_table_encode(table, defaults);
+  eo_table_done(table, defaults);
+  free(defaults);
+  return document;
+}
+
+static json_t *default_of(const struct eo_field *field, const json_t *defaults)
+{
+  json_t *value = json_object_get(defaults, field->key);
+  return value ? json_incref(value) : json_null();
+}
+
+static bool has_default(const struct eo_field *field)
+{
+  return !(field->flags & EO_FIELD_REQUIRED) && field->kind != EO_FIELD_SERIES && (field->kind != EO_FIELD_OBJECT || field->flags & EO_FIELD_NULLABLE);
+}
+
+static bool is_whole(const struct eo_field *field)
+{
+  return field->kind == EO_FIELD_INTEGER || field->kind == EO_FIELD_SEED;
+}
+
+static bool is_numeric(const struct eo_field *field)
+{
+  return is_whole(field) || field->kind == EO_FIELD_NUMBER || field->kind == EO_FIELD_NUMBERS || field->kind == EO_FIELD_LIMIT;
+}
+
+/* Ranges without an end are left out; a whole number reads 17, not 17.0. */
+static void put_bound(struct eo_result_object *o, const char *key, double bound)
+{
+  if (isfinite(bound))
+    eo_result_put(o, key, fabs(bound) < 1e15 && bound == floor(bound) ? json_integer((json_int_t)bound) : json_real(bound));
+}
+
+static json_t *list_choices(const struct eo_field *field)
+{
+  json_t *list = json_array();
+  bool failed = !list;
+  for (int i = 0; field->choices[i]; i++)
+    failed = json_array_append_new(list, json_string(field->choices[i])) != 0 || failed;
+  if (!failed)
+    return list;
+  json_decref(list);
+  return NULL;
+}
+
+/* ---- for the form ---- */
+
+static json_t *list_fields(const struct eo_table *table);
+
+static void put_range(struct eo_result_object *o, const struct eo_field *field)
+{
+  bool rows = field->kind == EO_FIELD_LIST || field->kind == EO_FIELD_SERIES;
+  if (is_numeric(field) || rows) {
+    put_bound(o, "low", field->low);
+    put_bound(o, "high", field->high);
+  }
+  if (field->kind == EO_FIELD_SERIES) {
+    put_bound(o, "number_low", field->series_low);
+    put_bound(o, "number_high", field->series_high);
+  }
+  if (field->kind == EO_FIELD_NUMBERS || field->kind == EO_FIELD_LIST)
+    eo_result_put(o, "count", json_integer(field->count));
+  if (field->kind == EO_FIELD_TEXT)
+    eo_result_put(o, "count", json_integer(field->count - 1));
+}
+
+static json_t *encode_field(const struct eo_field *field, const json_t *defaults)
+{
+  struct eo_result_object o = eo_result_open();
+  eo_result_put(&o, "key", json_string(field->key));
+  eo_result_put(&o, "kind", json_string(kind_names[field->kind]));
+  if (field->unit) {
+    eo_result_put(&o, "unit", json_string(field->unit->suffix));
+    eo_result_put(&o, "symbol", json_string(field->unit->symbol));
+  }
+  put_range(&o, field);
+  if (has_default(field))
+    eo_result_put(&o, "default", default_of(field, defaults));
+  if (field->choices)
+    eo_result_put(&o, "choices", list_choices(field));
+  if (field->help)
+    eo_result_put(&o, "help", json_string(field->help));
+  eo_result_put(&o, "required", json_boolean(field->flags & EO_FIELD_REQUIRED));
+  eo_result_put(&o, "nullable", json_boolean(field->flags & EO_FIELD_NULLABLE));
+  if (field->derived)
+    eo_result_put(&o, "derived", json_string(field->derived));
+  if (field->table)
+    eo_result_put(&o, "fields", list_fields(field->table));
+  return eo_result_close(&o);
+}
+
+static json_t *list_fields(const struct eo_table *table)
+{
+  json_t *fields = json_array(), *defaults = encode_defaults(table);
+  bool failed = !fields || !defaults;
+  for (int i = 0; i < table->count && !failed; i++)
+    failed = json_array_append_new(fields, encode_field(&table->field[i], defaults)) != 0;
+  json_decref(defaults);
+  if (!failed)
+    return fields;
+  json_decref(fields);
+  return NULL;
+}
+
+json_t *eo_table_fields(const struct eo_table *table)
+{
+  struct eo_result_object o = eo_result_open();
+  eo_result_put(&o, "name", json_string(table->name));
+  eo_result_put(&o, "fields", list_fields(table));
+  return eo_result_close(&o);
+}
+
+/* ---- JSON Schema ---- */
+
+static void put_type(struct eo_result_object *o, const char *type, bool nullable)
+{
+  eo_result_put(o, "type", nullable ? json_pack("[s,s]", type, "null") : json_string(type));
+}
+
+static void put_number(struct eo_result_object *o, const struct eo_field *field, double low, double high, bool nullable, bool input)
+{
+  put_type(o, is_whole(field) ? "integer" : "number", nullable);
+  if (!input)
+    return;
+  put_bound(o, "minimum", low);
+  put_bound(o, "maximum", high);
+}
+
+/* Numbers of an array that is written may be missing one by one. */
+static json_t *number_items(const struct eo_field *field, double low, double high, bool input)
+{
+  struct eo_result_object o = eo_result_open();
+  put_number(&o, field, low, high, !input, input);
+  return eo_result_close(&o);
+}
+
+static void put_text(struct eo_result_object *o, const struct eo_field *field)
+{
+  put_type(o, "string", false);
+  if (field->choices)
+    eo_result_put(o, "enum", list_choices(field));
+  else
+    eo_result_put(o, "maxLength", json_integer(field->count - 1));
+}
+
+static void put_array(struct eo_result_object *o, const struct eo_field *field, json_t *items, double low, double high)
+{
+  put_type(o, "array", field->flags & EO_FIELD_NULLABLE);
+  eo_result_put(o, "items", items);
+  put_bound(o, "minItems", low);
+  put_bound(o, "maxItems", high);
+}
+
+static void put_object(struct eo_result_object *o, const struct eo_table *table, bool nullable, bool input);
+
+static json_t *row_schema(const struct eo_table *table, bool input)
+{
+  struct eo_result_object o = eo_result_open();
+  put_object(&o, table, false, input);
+  return eo_result_close(&o);
+}
+
+static void put_constraints(struct eo_result_object *o, const struct eo_field *field, bool input)
+{
+  bool nullable = field->flags & EO_FIELD_NULLABLE || (!input && field->kind == EO_FIELD_NUMBER);
+  switch (field->kind) {
+  case EO_FIELD_NUMBER:
+  case EO_FIELD_INTEGER:
+  case EO_FIELD_SEED:
+  case EO_FIELD_LIMIT:
+    put_number(o, field, field->low, field->high, nullable, input);
+    break;
+  case EO_FIELD_FLAG:
+    put_type(o, "boolean", false);
+    break;
+  case EO_FIELD_TEXT:
+  case EO_FIELD_CHOICE:
+    put_text(o, field);
+    break;
+  case EO_FIELD_NUMBERS:
+    put_array(o, field, number_items(field, field->low, field->high, input), field->count, field->count);
+    break;
+  case EO_FIELD_SERIES:
+    put_array(o, field, number_items(field, field->series_low, field->series_high, input), input ? field->low : NAN, input ? field->high : NAN);
+    break;
+  case EO_FIELD_LIST:
+    put_array(o, field, row_schema(field->table, input), field->low, field->high);
+    break;
+  case EO_FIELD_OBJECT:
+    put_object(o, field->table, nullable, input);
+    break;
+  }
+}
+
+static json_t *property(const struct eo_field *field, const json_t *defaults, bool input)
+{
+  struct eo_result_object o = eo_result_open();
+  put_constraints(&o, field, input);
+  if (field->help && field->derived)
+    eo_result_put(&o, "description", json_sprintf("%s; null: %s", field->help, field->derived));
+  else if (field->help)
+    eo_result_put(&o, "description", json_string(field->help));
+  if (input && has_default(field))
+    eo_result_put(&o, "default", default_of(field, defaults));
+  return eo_result_close(&o);
+}
+
+/* An object that is absent is read as an empty one, in which a required key is missing. */
+static bool must_be_there(const struct eo_field *field)
+{
+  bool required = field->flags & EO_FIELD_REQUIRED;
+  for (int i = 0; field->kind == EO_FIELD_OBJECT && !(field->flags & EO_FIELD_NULLABLE) && i < field->table->count && !required; i++)
+    required = must_be_there(&field->table->field[i]);
+  return required;
+}
+
+static void put_object(struct eo_result_object *o, const struct eo_table *table, bool nullable, bool input)
+{
+  json_t *required = json_array(), *defaults = encode_defaults(table);
+  struct eo_result_object properties = eo_result_open();
+  o->failed = o->failed || !required || !defaults;
+  put_type(o, "object", nullable);
+  for (int i = 0; i < table->count && !o->failed; i++) {
+    const struct eo_field *field = &table->field[i];
+    eo_result_put(&properties, field->key, property(field, defaults, input));
+    if (input ? must_be_there(field) : !(field->flags & (EO_FIELD_OMIT | EO_FIELD_SOMETIMES)))
+      o->failed = json_array_append_new(required, json_string(field->key)) != 0;
+  }
+  eo_result_put(o, "properties", eo_result_close(&properties));
+  if (json_array_size(required))
+    eo_result_put(o, "required", json_incref(required));
+  eo_result_put(o, "additionalProperties", json_false());
+  json_decref(required);
+  json_decref(defaults);
+}
+
+json_t *eo_table_json_schema(const struct eo_table *table, bool input)
+{
+  return row_schema(table, input);
+}

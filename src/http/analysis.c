@@ -1,0 +1,249 @@
+/* Questions about a design that are answered at once: checking it, analysing it, sweeping it. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "document/geometry_table.h"
+#include "evaluation/evaluator.h"
+#include "http/job.h"
+#include "http/route.h"
+#include "http/server.h"
+
+static json_t *encode_warnings(const struct eo_warnings *warnings)
+{
+  json_t *list = json_array();
+  for (int i = 0; i < warnings->count; i++)
+    json_array_append_new(list, json_string(warnings->text[i]));
+  return list;
+}
+
+static void check(struct eo_request *request)
+{
+  struct eo_design design;
+  struct eo_geometry geometry;
+  struct eo_warnings warnings = {0};
+  json_t *body = eo_request_json(request);
+  if (body && eo_request_design(request, body, "", &design, &geometry, &warnings))
+    eo_reply_json(request, 200,
+                  json_pack("{s:o, s:o, s:o, s:b}", "design", eo_design_encode(&design), "geometry", eo_table_encode(&eo_geometry_table, &geometry),
+                            "warnings", encode_warnings(&warnings), "prepared", eo_service_is_prepared(request->http->service, &design)));
+  json_decref(body);
+}
+
+/* ---- what the service answers ---- */
+
+static void reply_busy(struct eo_request *request, bool closing)
+{
+  eo_reply_problem(request, 503, closing ? "stopping" : "busy", closing ? "The server is stopping." : "Too many questions are waiting already.");
+  request->reply.retry_after = closing ? 5 : 1;
+}
+
+/* The pair is being prepared: whose job it is, and where to ask. */
+static void reply_preparing(struct eo_request *request, int64_t id)
+{
+  enum eo_job_outcome outcome;
+  struct eo_error error;
+  json_t *job = NULL;
+  if (eo_service_job(request->http->service, id, false, &outcome, &job, &error)) {
+    eo_reply_error(request, "", &error);
+    return;
+  }
+  eo_reply_json(request, 202, json_pack("{s:o}", "job", job ? job : json_null()));
+  eo_reply_job_location(request, id);
+  request->reply.retry_after = 1;
+}
+
+static void take_answer(struct eo_request *request, struct eo_answer *answer)
+{
+  switch (answer->kind) {
+  case EO_ANSWER_DONE:
+    eo_reply_text(request, 200, request->csv ? "text/csv; charset=utf-8" : "application/json", &answer->text);
+    break;
+  case EO_ANSWER_OVERTAKEN:
+    eo_reply_problem(request, 409, "overtaken", "A newer question of the same lane took this one's place.");
+    break;
+  case EO_ANSWER_FAILED:
+    eo_reply_error(request, strcmp(request->route->pattern, "/sweep") == 0 ? "/design" : "", &answer->error);
+    break;
+  case EO_ANSWER_PREPARING:
+    reply_preparing(request, answer->job);
+    break;
+  case EO_ANSWER_STOPPED:
+    reply_busy(request, true);
+    break;
+  }
+}
+
+/* Runs on a thread of the service. */
+static void receive(void *context, struct eo_answer *answer)
+{
+  struct eo_request *request = context;
+  take_answer(request, answer);
+  eo_request_finish(request);
+}
+
+/* What was not accepted is answered here; nobody else will. */
+static void conclude(struct eo_request *request, enum eo_code code, enum eo_admission admission, int64_t job, const struct eo_error *error)
+{
+  if (!code && admission == EO_ADMISSION_ACCEPTED)
+    return;
+  if (code)
+    eo_reply_error(request, "", error);
+  else if (admission == EO_ADMISSION_PREPARING)
+    reply_preparing(request, job);
+  else
+    reply_busy(request, admission == EO_ADMISSION_CLOSED);
+  eo_request_finish(request);
+}
+
+/* False: the reply says what is wrong with the header. */
+static bool read_lane(struct eo_request *request, struct eo_question *question)
+{
+  const char *token = eo_request_header(request, "Easeoff-Lane");
+  question->token = token;
+  if (!token || eo_field_is_visible(token, EO_TOKEN_LENGTH + 1))
+    return true;
+  eo_reply_problem(request, 400, NULL, "Easeoff-Lane takes 1 to %d visible characters.", EO_TOKEN_LENGTH);
+  return false;
+}
+
+static struct eo_question ask(struct eo_request *request, const struct eo_design *design, const struct eo_warnings *warnings)
+{
+  return (struct eo_question){.design = design,
+                              .warnings = warnings,
+                              .format = request->csv ? EO_ANSWER_CSV : EO_ANSWER_JSON,
+                              .wait = eo_field_wait(eo_request_header(request, "Prefer")),
+                              .answer = receive,
+                              .context = request};
+}
+
+static void put_analysis(struct eo_request *request, const struct eo_design *design, const struct eo_warnings *warnings)
+{
+  enum eo_admission admission;
+  struct eo_error error;
+  int64_t job = 0;
+  bool histories = eo_request_number(request, "histories") != 0;
+  struct eo_analysis_question question = {.common = ask(request, design, warnings),
+                                          .want = EO_WANT_CURVES | (eo_request_number(request, "root_stress") != 0 ? EO_WANT_ROOT : 0) |
+                                                  (eo_request_number(request, "band") != 0 ? EO_WANT_BAND : 0),
+                                          .maps = eo_request_number(request, "maps") != 0,
+                                          .histories = histories};
+  if (!read_lane(request, &question.common))
+    return;
+  eo_request_defer(request);
+  enum eo_code code = eo_service_analyze(request->http->service, &question, &admission, &job, &error);
+  conclude(request, code, admission, job, &error);
+}
+
+static void analyze(struct eo_request *request)
+{
+  struct eo_design design;
+  struct eo_geometry geometry;
+  struct eo_warnings warnings = {0};
+  json_t *body = eo_request_json(request);
+  if (body && eo_request_design(request, body, "", &design, &geometry, &warnings))
+    put_analysis(request, &design, &warnings);
+  json_decref(body);
+}
+
+/* ---- sweeps ---- */
+
+/* "torque" and "speed" are shorter names of the request's own keys. */
+static json_t *collect_ranges(const json_t *body, struct eo_faults *faults)
+{
+  static const char *const known[] = {"design", "torque", "torque_Nm", "speed", "speed_rpm"};
+  json_t *ranges = json_object();
+  const char *key;
+  json_t *value;
+  json_object_foreach((json_t *)body, key, value) {
+    bool found = false;
+    for (size_t i = 0; i < sizeof known / sizeof known[0]; i++)
+      found = found || strcmp(known[i], key) == 0;
+    if (!found) {
+      struct eo_path path = {.key = key};
+      eo_faults_at(faults, &path, "There is no such key; design, torque_Nm and speed_rpm are known.");
+    }
+    const char *full = strcmp(key, "torque") == 0 ? "torque_Nm" : strcmp(key, "speed") == 0 ? "speed_rpm" : key;
+    if (found && strcmp(key, "design") != 0 && !json_is_null(value))
+      json_object_set(ranges, full, value);
+  }
+  return ranges;
+}
+
+static bool read_axes(struct eo_request *request, const json_t *body, struct eo_sweep_axes *axes)
+{
+  struct eo_sweep_request asked;
+  struct eo_error error;
+  struct eo_faults *faults = calloc(1, sizeof *faults);
+  bool good = false;
+  if (!faults) {
+    eo_reply_error(request, "", (eo_error_memory(&error), &error));
+    return false;
+  }
+  json_t *ranges = collect_ranges(body, faults);
+  eo_table_decode(&eo_sweep_request_table, ranges, NULL, &asked, faults);
+  if (faults->count)
+    eo_reply_faults(request, "", faults);
+  else if (eo_sweep_axes_init(axes, &asked, &error))
+    eo_reply_error(request, "", &error);
+  else
+    good = true;
+  json_decref(ranges);
+  free(faults);
+  return good;
+}
+
+enum { MOST_SWEEP_POINTS = 20000 };
+
+static bool is_small(struct eo_request *request, const struct eo_sweep_axes *axes)
+{
+  long points = (long)(axes->torques ? axes->torques : 1) * (axes->speeds ? axes->speeds : 1);
+  if (points <= MOST_SWEEP_POINTS)
+    return true;
+  eo_reply_problem(request, 422, "too-large", "A sweep may have %d points here, not %ld.", MOST_SWEEP_POINTS, points);
+  return false;
+}
+
+static void put_sweep(struct eo_request *request, const struct eo_design *design, const struct eo_warnings *warnings, const struct eo_sweep_axes *axes)
+{
+  enum eo_admission admission;
+  struct eo_error error;
+  int64_t job = 0;
+  struct eo_question question = ask(request, design, warnings);
+  if (!is_small(request, axes) || !read_lane(request, &question))
+    return;
+  eo_request_defer(request);
+  enum eo_code code = eo_service_sweep(request->http->service, &question, axes, &admission, &job, &error);
+  conclude(request, code, admission, job, &error);
+}
+
+static void sweep(struct eo_request *request)
+{
+  struct eo_design design;
+  struct eo_geometry geometry;
+  struct eo_warnings warnings = {0};
+  struct eo_sweep_axes axes = {0};
+  json_t *body = eo_request_json(request), *document = json_object_get(body, "design");
+  if (body && !json_is_object(document))
+    eo_reply_problem(request, 422, "invalid", "The body has no design.");
+  else if (body && read_axes(request, body, &axes) && eo_request_design(request, document, "/design", &design, &geometry, &warnings))
+    put_sweep(request, &design, &warnings, &axes);
+  eo_sweep_axes_done(&axes);
+  json_decref(body);
+}
+
+#define LANE "Easeoff-Lane, Prefer"
+const struct eo_route eo_routes_analysis[] = {
+    {.method = EO_POST, .pattern = "/check", .handle = check, .name = "checkDesign", .takes = "Design", .gives = "200 Check", .rate = EO_RATE_QUESTION,
+     .summary = "Reads a design, fills in every default and works out the geometry; 422 names everything that is wrong."},
+    {.method = EO_POST, .pattern = "/analyze", .handle = analyze, .name = "analyze", .takes = "Design", .gives = "200 Result, 202 Preparing",
+     .headers = LANE, .rate = EO_RATE_QUESTION, .csv = true,
+     .summary = "One true evaluation of a design, everything it computed. 202 while the gear pair is being prepared.",
+     .query = {{"root_stress", 0, 1, 1, NULL, "1: root stress too"},
+               {"band", 0, 1, 0, NULL, "1: RMS at 0.9 and 1.1 times the compliance too, which takes several times as long"},
+               {"maps", 0, 1, 1, NULL, "1: pressure and clearance over the flanks"},
+               {"histories", 0, 1, 0, NULL, "1: vibration and root stress over time"}}},
+    {.method = EO_POST, .pattern = "/sweep", .handle = sweep, .name = "sweep", .takes = "SweepRequest", .gives = "200 Sweep, 202 Preparing",
+     .headers = LANE, .rate = EO_RATE_START, .csv = true,
+     .summary = "A design over torque, speed or both, beside the unmodified pair. 202 while the gear pair is being prepared."},
+    {0}};

@@ -1,0 +1,247 @@
+/* Stored designs. The revision is the entity tag, so that nobody overwrites what he has not seen. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "http/route.h"
+#include "http/server.h"
+#include "store/designs.h"
+
+enum { MOST_DESIGNS = 100000, MOST_LISTED = 200 };
+
+/* Without the design: a row of a list. */
+static json_t *encode(const struct eo_stored_design *row)
+{
+  return json_pack("{s:I, s:I, s:s, s:s, s:s}", "id", (json_int_t)row->id, "revision", (json_int_t)row->revision, "name", row->name, "created",
+                   row->created, "updated", row->updated);
+}
+
+static void write_tag(const struct eo_stored_design *row, char tag[EO_TAG])
+{
+  snprintf(tag, EO_TAG, "%lld.%lld", (long long)row->id, (long long)row->revision);
+}
+
+/* A row on its way into a reply. */
+struct found {
+  json_t *document;
+  int64_t id;
+  char tag[EO_TAG];
+};
+
+static enum eo_code visit(void *context, const struct eo_stored_design *row, struct eo_error *error)
+{
+  struct found *found = context;
+  found->id = row->id;
+  write_tag(row, found->tag);
+  found->document = encode(row);
+  json_t *design = json_loads(row->document, 0, NULL);
+  return json_object_set_new(found->document, "design", design ? design : json_null()) ? eo_error_memory(error) : EO_OK;
+}
+
+static void reply_missing(struct eo_request *request)
+{
+  eo_reply_problem(request, 404, NULL, "There is no design with this number.");
+}
+
+static void reply_found(struct eo_request *request, unsigned status, struct found *found, const struct eo_warnings *warnings)
+{
+  json_t *list = json_array();
+  for (int i = 0; warnings && i < warnings->count; i++)
+    json_array_append_new(list, json_string(warnings->text[i]));
+  json_object_set_new(found->document, "warnings", list);
+  eo_reply_json(request, status, found->document);
+  found->document = NULL;
+  snprintf(request->reply.tag, sizeof request->reply.tag, "%s", found->tag);
+  request->reply.revalidate = true;
+}
+
+/* ---- reading ---- */
+
+static void get_one(struct eo_request *request)
+{
+  struct found found = {0};
+  struct eo_error error;
+  enum eo_design_outcome outcome;
+  int64_t id;
+  if (!eo_request_key(request, 0, &id))
+    return;
+  if (eo_store_find_design(request->store, id, visit, &found, &outcome, &error))
+    eo_reply_error(request, "", &error);
+  else if (outcome == EO_DESIGN_MISSING)
+    reply_missing(request);
+  else if (!eo_reply_unchanged(request, found.tag))
+    reply_found(request, 200, &found, NULL);
+  json_decref(found.document);
+}
+
+struct page {
+  json_t *items;
+  int limit;
+  int64_t last;
+  bool more;
+};
+
+static enum eo_code visit_listed(void *context, const struct eo_stored_design *row, struct eo_error *error)
+{
+  struct page *page = context;
+  if ((int)json_array_size(page->items) == page->limit) {
+    page->more = true;
+    return EO_OK;
+  }
+  page->last = row->id;
+  return json_array_append_new(page->items, encode(row)) ? eo_error_memory(error) : EO_OK;
+}
+
+static void list(struct eo_request *request)
+{
+  struct eo_error error;
+  struct page page = {.items = json_array(), .limit = (int)eo_request_number(request, "limit")};
+  int64_t before = (int64_t)eo_request_number(request, "cursor");
+  if (eo_store_list_designs(request->store, before, page.limit + 1, visit_listed, &page, &error)) {
+    json_decref(page.items);
+    eo_reply_error(request, "", &error);
+    return;
+  }
+  char cursor[24];
+  snprintf(cursor, sizeof cursor, "%lld", (long long)page.last);
+  eo_reply_json(request, 200, json_pack("{s:o, s:o}", "items", page.items, "next", page.more ? json_string(cursor) : json_null()));
+}
+
+/* ---- writing ---- */
+
+/* A body is a design, or { "name", "design" }. */
+struct given {
+  char name[EO_NAME_LENGTH];
+  char *text; /* JSON as it came, owned: defaults that change later are not frozen into it */
+  struct eo_warnings warnings;
+};
+
+static bool read_name(struct eo_request *request, const json_t *name, struct given *given)
+{
+  if (!name)
+    return true;
+  const char *text = json_string_value(name);
+  if (text && *text && strlen(text) < sizeof given->name) {
+    snprintf(given->name, sizeof given->name, "%s", text);
+    return true;
+  }
+  eo_reply_problem(request, 422, "invalid", "The name must be a text of 1 to %zu bytes.", sizeof given->name - 1);
+  return false;
+}
+
+static bool read_given(struct eo_request *request, struct given *given)
+{
+  struct eo_design design;
+  struct eo_geometry geometry;
+  json_t *body = eo_request_json(request), *inner = json_object_get(body, "design");
+  const json_t *document = inner ? inner : body;
+  bool good = body && eo_request_design(request, document, inner ? "/design" : "", &design, &geometry, &given->warnings);
+  if (good)
+    snprintf(given->name, sizeof given->name, "%s", *design.name ? design.name : "unnamed");
+  good = good && (!inner || read_name(request, json_object_get(body, "name"), given));
+  if (good && !(given->text = json_dumps(document, JSON_COMPACT))) {
+    struct eo_error error;
+    eo_reply_error(request, "", (eo_error_memory(&error), &error));
+    good = false;
+  }
+  json_decref(body);
+  return good;
+}
+
+static void add(struct eo_request *request)
+{
+  struct given given = {0};
+  struct found found = {0};
+  struct eo_error error;
+  enum eo_design_outcome outcome;
+  if (!read_given(request, &given))
+    return;
+  if (eo_store_add_design(request->store, given.name, given.text, MOST_DESIGNS, visit, &found, &outcome, &error))
+    eo_reply_error(request, "", &error);
+  else if (outcome == EO_DESIGN_FULL)
+    eo_reply_problem(request, 507, "full", "%d designs are stored already.", MOST_DESIGNS);
+  else {
+    reply_found(request, 201, &found, &given.warnings);
+    snprintf(request->reply.location, sizeof request->reply.location, EO_API "/designs/%lld", (long long)found.id);
+  }
+  json_decref(found.document);
+  free(given.text);
+}
+
+/* The revision that If-Match names: 0 for "*", -1 for one that this design never has; false: the reply asks for the header. */
+static bool read_expected(struct eo_request *request, int64_t id, bool required, int64_t *expected)
+{
+  const char *header = eo_request_header(request, "If-Match");
+  struct found found = {0};
+  struct eo_error error;
+  enum eo_design_outcome outcome;
+  *expected = 0;
+  if (!header && required)
+    eo_reply_problem(request, 428, NULL, "Say with If-Match which version is to be replaced (the ETag of the design, or *).");
+  if (!header)
+    return !required;
+  if (eo_store_find_design(request->store, id, visit, &found, &outcome, &error)) {
+    eo_reply_error(request, "", &error);
+    return false;
+  }
+  if (strcmp(header, "*") != 0 && outcome == EO_DESIGN_DONE)
+    *expected = eo_field_lists_tag(header, found.tag, false) ? json_integer_value(json_object_get(found.document, "revision")) : -1;
+  json_decref(found.document);
+  return true;
+}
+
+static void reply_stale(struct eo_request *request)
+{
+  eo_reply_problem(request, 412, "stale", "The design has changed since that version.");
+}
+
+static void replace(struct eo_request *request)
+{
+  struct given given = {0};
+  struct found found = {0};
+  struct eo_error error;
+  enum eo_design_outcome outcome;
+  int64_t id, expected;
+  if (!eo_request_key(request, 0, &id) || !read_expected(request, id, true, &expected) || !read_given(request, &given))
+    return;
+  if (eo_store_change_design(request->store, id, expected, given.name, given.text, visit, &found, &outcome, &error))
+    eo_reply_error(request, "", &error);
+  else if (outcome == EO_DESIGN_MISSING)
+    reply_missing(request);
+  else if (outcome == EO_DESIGN_STALE)
+    reply_stale(request);
+  else
+    reply_found(request, 200, &found, &given.warnings);
+  json_decref(found.document);
+  free(given.text);
+}
+
+static void take_out(struct eo_request *request)
+{
+  struct eo_error error;
+  enum eo_design_outcome outcome;
+  int64_t id, expected;
+  if (!eo_request_key(request, 0, &id) || !read_expected(request, id, false, &expected))
+    return;
+  if (eo_store_remove_design(request->store, id, expected, &outcome, &error))
+    eo_reply_error(request, "", &error);
+  else if (outcome == EO_DESIGN_MISSING)
+    reply_missing(request);
+  else if (outcome == EO_DESIGN_STALE)
+    reply_stale(request);
+  else
+    eo_reply_empty(request, 204);
+}
+
+const struct eo_route eo_routes_designs[] = {
+    {.method = EO_GET, .pattern = "/designs", .handle = list, .name = "listDesigns", .summary = "Stored designs, newest first.", .gives = "200 Designs",
+     .query = {{"limit", 1, MOST_LISTED, 50, NULL, "most items"}, {"cursor", 1, 9e15, 0, NULL, "`next` of the page before"}}},
+    {.method = EO_POST, .pattern = "/designs", .handle = add, .name = "addDesign", .summary = "Stores a design, alone or with a name.", .takes = "DesignOrNamed",
+     .gives = "201 StoredDesign", .rate = EO_RATE_QUESTION},
+    {.method = EO_GET, .pattern = "/designs/{id}", .handle = get_one, .name = "getDesign", .summary = "A stored design as it came.",
+     .gives = "200 StoredDesign", .headers = "If-None-Match"},
+    {.method = EO_PUT, .pattern = "/designs/{id}", .handle = replace, .name = "replaceDesign", .summary = "Replaces a stored design.",
+     .takes = "DesignOrNamed", .gives = "200 StoredDesign", .headers = "If-Match", .rate = EO_RATE_QUESTION},
+    {.method = EO_DELETE, .pattern = "/designs/{id}", .handle = take_out, .name = "removeDesign", .summary = "Removes a stored design.", .gives = "204 -",
+     .headers = "If-Match"},
+    {0}};

@@ -1,0 +1,76 @@
+#include "http/documents.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "document/example.h"
+#include "document/json.h"
+#include "document/schema.h"
+#include "document/sweep_document.h"
+#include "http/openapi.h"
+
+/* Takes the document over. */
+static enum eo_code put(struct eo_resource *resource, json_t *document, struct eo_error *error)
+{
+  struct eo_text text = {.failed = !document};
+  if (document)
+    eo_json_write(&text, document, EO_JSON_COMPACT);
+  eo_text_add(&text, "\n");
+  json_decref(document);
+  enum eo_code code = eo_resource_init(resource, "application/json", &text, error);
+  eo_text_done(&text);
+  return code;
+}
+
+static enum eo_code put_examples(struct eo_documents *documents, struct eo_error *error)
+{
+  const struct eo_example *example;
+  json_t *items = json_array();
+  enum eo_code code = EO_OK;
+  struct eo_design design;
+  for (int i = 0; !code && i < EO_MOST_EXAMPLES && (example = eo_example_at(i)); i++) {
+    json_array_append_new(items, json_pack("{s:s, s:s}", "name", example->name, "title", example->summary));
+    eo_example_build(example->name, &design);
+    documents->example[i].name = example->name;
+    code = put(&documents->example[i].resource, eo_design_encode(&design), error);
+    documents->examples = i + 1;
+  }
+  json_t *list = json_pack("{s:o}", "items", items);
+  if (code)
+    json_decref(list);
+  return code ? code : put(&documents->list, list, error);
+}
+
+static enum eo_code put_all(struct eo_documents *documents, struct eo_error *error)
+{
+  json_t *schema = json_pack("{s:o, s:o}", "design", eo_table_fields(&eo_design_table), "sweep", eo_table_fields(&eo_sweep_request_table));
+  enum eo_code code = put(&documents->schema, schema, error);
+  if (!code)
+    code = put(&documents->openapi, eo_openapi(), error);
+  return code ? code : put_examples(documents, error);
+}
+
+enum eo_code eo_documents_new(struct eo_documents **documents, struct eo_error *error)
+{
+  struct eo_documents *made = calloc(1, sizeof *made);
+  if (!made)
+    return eo_error_memory(error);
+  enum eo_code code = put_all(made, error);
+  if (code)
+    eo_documents_free(made);
+  else
+    *documents = made;
+  return code;
+}
+
+void eo_documents_free(struct eo_documents *documents)
+{
+  if (!documents)
+    return;
+  eo_resource_done(&documents->openapi);
+  eo_resource_done(&documents->schema);
+  eo_resource_done(&documents->list);
+  for (int i = 0; i < documents->examples; i++)
+    eo_resource_done(&documents->example[i].resource);
+  free(documents);
+}

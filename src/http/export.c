@@ -1,0 +1,40 @@
+/* Files for other programs. */
+#include <stdio.h>
+
+#include "document/export.h"
+#include "http/route.h"
+#include "http/server.h"
+
+static void export(struct eo_request *request)
+{
+  const struct eo_export *format = eo_export_find(request->argument[0]);
+  struct eo_design design;
+  struct eo_geometry geometry;
+  if (!format) {
+    eo_reply_problem(request, 404, NULL, "There is no format of this name; " EO_API "/export lists them.");
+    return;
+  }
+  json_t *body = eo_request_json(request);
+  if (body && eo_request_design(request, body, "", &design, &geometry, NULL)) {
+    struct eo_text text = {0};
+    format->write(&design, &geometry, &text);
+    eo_reply_text(request, 200, format->type, &text);
+    eo_export_file_name(format, &design, request->reply.file_name, sizeof request->reply.file_name);
+  }
+  json_decref(body);
+}
+
+static void list(struct eo_request *request)
+{
+  json_t *items = json_array();
+  const struct eo_export *format;
+  for (int i = 0; (format = eo_export_at(i)); i++)
+    json_array_append_new(items, json_pack("{s:s, s:s, s:s}", "name", format->name, "title", format->summary, "type", format->type));
+  eo_reply_json(request, 200, json_pack("{s:o}", "items", items));
+}
+
+const struct eo_route eo_routes_export[] = {
+    {.method = EO_GET, .pattern = "/export", .handle = list, .name = "listExports", .summary = "The formats of exported files.", .gives = "200 Exports"},
+    {.method = EO_POST, .pattern = "/export/{format}", .handle = export, .name = "exportDesign", .takes = "Design", .rate = EO_RATE_START, .aside = true,
+     .gives = "200 text/csv, 200 ResolvedDesign", .summary = "A file for another program, as `easeoff export` writes it: points of the flanks, charts, the design."},
+    {0}};

@@ -1,0 +1,13 @@
+/* What several groups of endpoints say about jobs. */
+#ifndef EASEOFF_HTTP_JOB_H
+#define EASEOFF_HTTP_JOB_H
+
+#include "http/request.h"
+
+/* What stands in the way of a job; nothing with DONE and REPEATED. */
+void eo_reply_job_outcome(struct eo_request *request, enum eo_job_outcome outcome);
+
+/* Location: the job. */
+void eo_reply_job_location(struct eo_request *request, int64_t id);
+
+#endif

@@ -1,0 +1,174 @@
+#include "http/openapi.h"
+
+#include <ctype.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "http/route.h"
+
+#include <config.h>
+
+static json_t *reference(const char *name, size_t length)
+{
+  json_t *text = json_sprintf("#/components/schemas/%.*s", (int)length, name);
+  return text ? json_pack("{s:o}", "$ref", text) : NULL;
+}
+
+/* ---- parameters ---- */
+
+static json_t *encode_parameter(const char *name, size_t length, const char *place, json_t *schema, const char *help)
+{
+  return json_pack("{s:s%, s:s, s:b, s:s, s:o}", "name", name, length, "in", place, "required", strcmp(place, "path") == 0, "description", help, "schema",
+                   schema);
+}
+
+static void add_path_parameters(json_t *list, const char *pattern)
+{
+  for (const char *open = strchr(pattern, '{'); open; open = strchr(open + 1, '{')) {
+    size_t length = strcspn(open + 1, "}");
+    bool number = length == 2 && strncmp(open + 1, "id", 2) == 0;
+    json_array_append_new(list, encode_parameter(open + 1, length, "path", json_pack("{s:s}", "type", number ? "integer" : "string"),
+                                                 number ? "number" : "name"));
+  }
+}
+
+static json_t *encode_words(const char *words)
+{
+  json_t *list = json_array();
+  while (*words) {
+    size_t length = strcspn(words, "|");
+    json_array_append_new(list, json_stringn(words, length));
+    words += length + (words[length] == '|');
+  }
+  return json_pack("{s:s, s:o}", "type", "string", "enum", list);
+}
+
+static json_t *encode_range(const struct eo_query *query)
+{
+  json_t *schema = json_pack("{s:s, s:I, s:I}", "type", "integer", "minimum", (json_int_t)query->low, "maximum", (json_int_t)query->high);
+  if (query->fallback >= query->low)
+    json_object_set_new(schema, "default", json_integer((json_int_t)query->fallback));
+  return schema;
+}
+
+static void add_queries(json_t *list, const struct eo_route *route)
+{
+  for (const struct eo_query *query = route->query; query < route->query + EO_MOST_QUERIES && query->name; query++)
+    json_array_append_new(list, encode_parameter(query->name, strlen(query->name), "query",
+                                                 query->words ? encode_words(query->words) : encode_range(query), query->help));
+}
+
+/* ---- names in lists: "If-Match, Prefer"; "200 Result, 202 Preparing" ---- */
+
+static bool next_name(const char **list, const char **name, size_t *length)
+{
+  *list += strspn(*list, ", ");
+  *name = *list;
+  *length = strcspn(*list, ",");
+  *list += *length;
+  return *length > 0;
+}
+
+static void add_headers(json_t *list, const char *headers)
+{
+  static const struct { const char *name, *help; } known[] = {
+      {"If-Match", "the ETag of the version that is meant, or *"},
+      {"If-None-Match", "an ETag that is known already: 304 when it still holds"},
+      {"Prefer", "wait=SECONDS (at most 60): wait for the preparation of the gear pair"},
+      {"Easeoff-Lane", "a token of the client's own: a newer question with the same token takes the place of one that still waits"},
+      {"Idempotency-Key", "a token of the client's own: the same order with the same token is one job"},
+      {"Last-Event-ID", "the number of the last event that was seen"}};
+  const char *name;
+  size_t length;
+  while (headers && next_name(&headers, &name, &length))
+    for (size_t i = 0; i < sizeof known / sizeof known[0]; i++)
+      if (strlen(known[i].name) == length && strncmp(known[i].name, name, length) == 0)
+        json_array_append_new(list, encode_parameter(name, length, "header", json_pack("{s:s}", "type", "string"), known[i].help));
+}
+
+/* ---- answers ---- */
+
+static json_t *encode_content(const char *what, size_t length, bool csv)
+{
+  json_t *content = json_object();
+  if (memchr(what, '/', length))
+    json_object_setn_new(content, what, length, json_pack("{s:{s:s}}", "schema", "type", "string"));
+  else
+    json_object_set_new(content, "application/json", json_pack("{s:o}", "schema", reference(what, length)));
+  if (csv)
+    json_object_set_new(content, "text/csv", json_pack("{s:{s:s}}", "schema", "type", "string"));
+  return content;
+}
+
+static json_t *encode_answers(const struct eo_route *route)
+{
+  json_t *answers = json_object();
+  const char *list = route->gives, *name;
+  size_t length;
+  while (next_name(&list, &name, &length)) {
+    json_t *answer = json_object_getn(answers, name, 3), *content;
+    if (!answer) {
+      answer = json_pack("{s:s}", "description", *name == '2' ? "done" : "not now");
+      json_object_setn_new(answers, name, 3, answer);
+    }
+    if (name[4] == '-')
+      continue;
+    content = encode_content(name + 4, length - 4, route->csv && strncmp(name, "200", 3) == 0);
+    json_object_update(content, json_object_get(answer, "content"));
+    json_object_set_new(answer, "content", content);
+  }
+  if (route->headers && strstr(route->headers, "If-None-Match"))
+    json_object_set_new(answers, "304", json_pack("{s:s}", "description", "the known version still holds"));
+  json_object_set_new(answers, "default", json_pack("{s:s, s:{s:{s:o}}}", "description", "a problem (RFC 9457)", "content", "application/problem+json",
+                                                    "schema", reference("Problem", 7)));
+  return answers;
+}
+
+/* ---- operations ---- */
+
+static json_t *encode_operation(const struct eo_route *route)
+{
+  json_t *parameters = json_array();
+  add_path_parameters(parameters, route->pattern);
+  add_queries(parameters, route);
+  add_headers(parameters, route->headers);
+  json_t *operation = json_pack("{s:s, s:s, s:o, s:o}", "operationId", route->name, "summary", route->summary, "parameters", parameters, "responses",
+                                encode_answers(route));
+  if (route->takes)
+    json_object_set_new(operation, "requestBody",
+                        json_pack("{s:b, s:{s:{s:o}}}", "required", 1, "content", "application/json", "schema",
+                                  reference(route->takes, strlen(route->takes))));
+  if (route->csv)
+    json_object_set_new(operation, "description", json_sprintf("As text/csv by the Accept header, or at %s%s.csv.", EO_API, route->pattern));
+  if (route->open)
+    json_object_set_new(operation, "security", json_array());
+  return operation;
+}
+
+static json_t *encode_paths(void)
+{
+  json_t *paths = json_object();
+  for (int i = 0; eo_routes[i]; i++)
+    for (const struct eo_route *route = eo_routes[i]; route->pattern; route++) {
+      char method[8] = "";
+      const char *name = eo_method_name(route->method);
+      json_t *path = json_object_get(paths, route->pattern);
+      if (!path) {
+        path = json_object();
+        json_object_set_new(paths, route->pattern, path);
+      }
+      for (size_t k = 0; name[k] && k < sizeof method - 1; k++)
+        method[k] = (char)tolower((unsigned char)name[k]);
+      json_object_set_new(path, method, encode_operation(route));
+    }
+  return paths;
+}
+
+json_t *eo_openapi(void)
+{
+  return json_pack("{s:s, s:{s:s, s:s, s:s}, s:[{s:s}], s:[{s:[]}, {s:[]}], s:o, s:{s:o, s:{s:{s:s, s:s}, s:{s:s, s:s, s:s}}}}", "openapi", "3.1.0",
+                   "info", "title", "Easeoff", "version", PACKAGE_VERSION, "description", "Quiet herringbone gears by tooth micro-geometry.", "servers",
+                   "url", EO_API, "security", "token", "session", "paths", encode_paths(), "components", "schemas", eo_openapi_schemas(),
+                   "securitySchemes", "token", "type", "http", "scheme", "bearer", "session", "type", "apiKey", "in", "cookie", "name",
+                   eo_guard_cookie);
+}

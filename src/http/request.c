@@ -1,0 +1,117 @@
+#include "http/request.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/clock.h"
+#include "document/json.h"
+#include "http/route.h"
+#include "http/server.h"
+
+/* HEAD is GET without the bytes; the library leaves them out. */
+static unsigned method_of(const char *name, bool *head)
+{
+  static const unsigned known[] = {EO_GET, EO_POST, EO_PUT, EO_DELETE, EO_OPTIONS};
+  *head = strcmp(name, "HEAD") == 0;
+  for (size_t i = 0; i < sizeof known / sizeof known[0]; i++)
+    if (strcmp(eo_method_name(known[i]), *head ? "GET" : name) == 0)
+      return known[i];
+  return 0;
+}
+
+struct eo_request *eo_request_new(struct eo_http *http, struct MHD_Connection *connection, const char *path, const char *method)
+{
+  struct eo_request *request = calloc(1, sizeof *request);
+  const union MHD_ConnectionInfo *info = MHD_get_connection_info(connection, MHD_CONNECTION_INFO_SOCKET_CONTEXT);
+  if (!request)
+    return NULL;
+  request->http = http;
+  request->store = http->store;
+  request->connection = connection;
+  request->place = info ? info->socket_context : NULL;
+  request->started = eo_clock_milliseconds();
+  request->path = strdup(path);
+  request->method_name = strdup(method);
+  if (!request->place || !request->path || !request->method_name) {
+    eo_request_free(request);
+    return NULL;
+  }
+  request->method = method_of(method, &request->head);
+  snprintf(request->id, sizeof request->id, "%08x%08x", (unsigned)(http->run & 0xffffffff), (unsigned)(++http->requests & 0xffffffff));
+  return request;
+}
+
+void eo_request_free(struct eo_request *request)
+{
+  if (!request)
+    return;
+  eo_text_done(&request->body);
+  eo_text_done(&request->reply.body);
+  if (request->reply.stream)
+    MHD_destroy_response(request->reply.stream);
+  free(request->path);
+  free(request->method_name);
+  free(request);
+}
+
+const char *eo_request_header(const struct eo_request *request, const char *name)
+{
+  return MHD_lookup_connection_value(request->connection, MHD_HEADER_KIND, name);
+}
+
+const char *eo_request_query(const struct eo_request *request, const char *name)
+{
+  return MHD_lookup_connection_value(request->connection, MHD_GET_ARGUMENT_KIND, name);
+}
+
+double eo_request_number(const struct eo_request *request, const char *name)
+{
+  const char *text = eo_request_query(request, name);
+  int64_t value;
+  if (text && eo_field_integer(text, &value))
+    return (double)value;
+  for (const struct eo_query *query = request->route->query; query < request->route->query + EO_MOST_QUERIES && query->name; query++)
+    if (strcmp(query->name, name) == 0)
+      return query->fallback;
+  return 0;
+}
+
+json_t *eo_request_json(struct eo_request *request)
+{
+  struct eo_error error;
+  json_t *document = eo_json_parse(request->body.data ? request->body.data : "", request->body.size, &error);
+  if (!document && error.code == EO_ERROR_INPUT)
+    eo_reply_problem(request, 400, "not-json", "%s", error.text);
+  else if (!document)
+    eo_reply_error(request, "", &error);
+  return document;
+}
+
+bool eo_request_design(struct eo_request *request, const json_t *document, const char *path, struct eo_design *design,
+                       struct eo_geometry *geometry, struct eo_warnings *warnings)
+{
+  struct eo_faults *faults = calloc(1, sizeof *faults);
+  struct eo_error error;
+  bool good = false;
+  if (!faults)
+    eo_reply_error(request, path, (eo_error_memory(&error), &error));
+  else if (!eo_design_decode(document, design, warnings, faults))
+    eo_reply_faults(request, path, faults);
+  else if (eo_design_complete(design, geometry, &error))
+    eo_reply_error(request, path, &error);
+  else
+    good = true;
+  if (good && warnings)
+    eo_design_note_assumptions(document, design, warnings);
+  free(faults);
+  return good;
+}
+
+bool eo_request_key(struct eo_request *request, int n, int64_t *key)
+{
+  if (eo_field_integer(request->argument[n], key) && *key > 0)
+    return true;
+  eo_reply_problem(request, 404, NULL, "There is nothing with this number.");
+  return false;
+}

@@ -1,0 +1,127 @@
+#include "http/route.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#include "http/server.h"
+
+const struct eo_route *const eo_routes[] = {eo_routes_service,  eo_routes_session,     eo_routes_examples, eo_routes_designs, eo_routes_analysis, eo_routes_jobs,
+                                              eo_routes_events,   eo_routes_history,  eo_routes_export, NULL};
+
+static const struct { unsigned method; const char *name; } methods[] = {
+    {EO_GET, "GET"}, {EO_POST, "POST"}, {EO_PUT, "PUT"}, {EO_DELETE, "DELETE"}, {EO_OPTIONS, "OPTIONS"}};
+
+const char *eo_method_name(unsigned method)
+{
+  for (size_t i = 0; i < sizeof methods / sizeof methods[0]; i++)
+    if (methods[i].method == method)
+      return methods[i].name;
+  return "";
+}
+
+static bool ends_with(const char *text, const char *end)
+{
+  size_t length = strlen(text), tail = strlen(end);
+  return length > tail && strcmp(text + length - tail, end) == 0;
+}
+
+static bool matches(const struct eo_route *route, const char *path, struct eo_request *request)
+{
+  return eo_field_match(route->pattern, path, sizeof request->argument[0], request->argument, EO_ARGUMENTS);
+}
+
+/* All methods of a path, and the route of the request's own. */
+static unsigned find(struct eo_request *request, const char *path, bool csv)
+{
+  unsigned allowed = 0;
+  for (int i = 0; eo_routes[i]; i++)
+    for (const struct eo_route *route = eo_routes[i]; route->pattern; route++) {
+      if ((csv && !route->csv) || !matches(route, path, request))
+        continue;
+      allowed |= route->method;
+      if (route->method == request->method)
+        request->route = route;
+    }
+  if (request->route)
+    matches(request->route, path, request);
+  return allowed;
+}
+
+static unsigned find_with_suffix(struct eo_request *request, const char *path)
+{
+  char without[256];
+  size_t length = strlen(path);
+  unsigned allowed = find(request, path, false);
+  if (allowed || !ends_with(path, ".csv") || length >= sizeof without)
+    return allowed;
+  snprintf(without, sizeof without, "%.*s", (int)length - 4, path);
+  request->csv = true;
+  return find(request, without, true);
+}
+
+bool eo_route_find(struct eo_request *request)
+{
+  unsigned allowed = find_with_suffix(request, request->path + strlen(EO_API));
+  if (!allowed)
+    eo_reply_problem(request, 404, NULL, "There is nothing at this address; " EO_API "/openapi.json lists what there is.");
+  else if (request->method == EO_OPTIONS) {
+    eo_reply_empty(request, 204);
+    request->reply.allow = allowed | EO_OPTIONS;
+  } else if (!request->route) {
+    eo_reply_problem(request, 405, NULL, "This address does not answer that method.");
+    request->reply.allow = allowed | EO_OPTIONS;
+  } else {
+    request->csv = request->csv || (request->route->csv && eo_field_prefers_type(eo_request_header(request, "Accept"), "text/csv"));
+    return true;
+  }
+  return false;
+}
+
+/* ---- query ---- */
+
+static bool is_word_of(const char *words, const char *word)
+{
+  size_t length = strlen(word);
+  while (*words) {
+    size_t next = strcspn(words, "|");
+    if (length == next && strncmp(words, word, length) == 0)
+      return true;
+    words += next + (words[next] == '|');
+  }
+  return false;
+}
+
+static bool is_allowed(const struct eo_query *query, const char *value)
+{
+  int64_t number;
+  if (query->words)
+    return is_word_of(query->words, value);
+  return eo_field_integer(value, &number) && (double)number >= query->low && (double)number <= query->high;
+}
+
+static enum MHD_Result check_one(void *context, enum MHD_ValueKind kind, const char *name, const char *value)
+{
+  struct eo_request *request = context;
+  char shown[40];
+  (void)kind;
+  eo_text_clean(shown, sizeof shown, name);
+  for (const struct eo_query *query = request->route->query; query < request->route->query + EO_MOST_QUERIES && query->name; query++) {
+    if (strcmp(query->name, name) != 0)
+      continue;
+    if (value && is_allowed(query, value))
+      return MHD_YES;
+    if (query->words)
+      eo_reply_problem(request, 400, "query", "The query parameter %s takes one of %s.", query->name, query->words);
+    else
+      eo_reply_problem(request, 400, "query", "The query parameter %s takes a whole number from %.0f to %.0f.", query->name, query->low, query->high);
+    return MHD_NO;
+  }
+  eo_reply_problem(request, 400, "query", "There is no query parameter \"%s\" here.", shown);
+  return MHD_NO;
+}
+
+bool eo_route_check_query(struct eo_request *request)
+{
+  MHD_get_connection_values(request->connection, MHD_GET_ARGUMENT_KIND, check_one, request);
+  return !request->reply.status;
+}

@@ -1,0 +1,279 @@
+#include "http/server.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/random.h>
+#include <sys/resource.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "base/clock.h"
+#include "document/json.h"
+#include "http/address.h"
+#include "http/aside.h"
+#include "http/documents.h"
+#include "http/pages.h"
+#include "http/route.h"
+#include "http/stream.h"
+
+/* ---- one request ---- */
+
+static bool is_for_api(const char *path)
+{
+  size_t length = strlen(EO_API);
+  return strncmp(path, EO_API, length) == 0 && (path[length] == '/' || !path[length]);
+}
+
+/* What can be said before the body is read; a reply is made when the answer is no. */
+static void look_at(struct eo_request *request)
+{
+  if (!eo_field_path_is_plain(request->path))
+    eo_reply_problem(request, 400, NULL, "The address is malformed.");
+  else if (!is_for_api(request->path) && !(request->method & (EO_GET | EO_OPTIONS))) {
+    eo_reply_problem(request, 405, NULL, "Pages can only be read.");
+    request->reply.allow = EO_GET | EO_OPTIONS;
+  } else if ((!is_for_api(request->path) || eo_route_find(request)) && eo_guard_admits(request) && request->route)
+    eo_route_check_query(request);
+}
+
+static void look_at_body(struct eo_request *request)
+{
+  const char *length = eo_request_header(request, "Content-Length"), *type = eo_request_header(request, "Content-Type");
+  const struct eo_route *route = request->route;
+  int64_t size = 0;
+  if (length && !eo_field_integer(length, &size))
+    size = INT64_MAX;
+  bool has_body = size > 0 || eo_request_header(request, "Transfer-Encoding");
+  request->body_limit = !route ? 0 : route->body ? route->body : EO_JSON_DESIGN_BYTES;
+  if (has_body)
+    eo_connection_allow(request->http, request->place, EO_BODY_SECONDS);
+  if (!request->reply.status && has_body && route && route->takes && type && strncmp(type, "application/json", 16) != 0)
+    eo_reply_problem(request, 415, NULL, "The body must be application/json.");
+  if (!request->reply.status && (uint64_t)size > request->body_limit)
+    eo_reply_problem(request, 413, NULL, "The body may have %zu bytes here.", request->body_limit);
+  /* A reply before the body costs the connection; a small body is read and thrown away instead. */
+  request->reply.close = request->reply.status && size > EO_DRAINED;
+}
+
+static enum MHD_Result begin(struct eo_http *http, struct MHD_Connection *connection, const char *path, const char *method, void **context)
+{
+  struct eo_request *request = eo_request_new(http, connection, path, method);
+  if (!request)
+    return MHD_NO;
+  *context = request;
+  eo_connection_allow(http, request->place, EO_IDLE_SECONDS);
+  look_at(request);
+  look_at_body(request);
+  return request->reply.close ? eo_reply_send(request) : MHD_YES;
+}
+
+/* A body without a stated length is only known to be too long when it is; the library takes a reply then at its end and not before. */
+static enum MHD_Result take(struct eo_request *request, const char *data, size_t size)
+{
+  request->received += size;
+  if (request->received > request->body_limit + EO_DRAINED)
+    return MHD_NO;
+  if (!request->reply.status && request->received > request->body_limit)
+    eo_reply_problem(request, 413, NULL, "The body may have %zu bytes here.", request->body_limit);
+  if (!request->reply.status)
+    eo_text_add_bytes(&request->body, data, size);
+  return MHD_YES;
+}
+
+static void dispatch(struct eo_request *request)
+{
+  request->dispatched = true;
+  eo_connection_allow(request->http, request->place, 0);
+  if (request->reply.status)
+    return;
+  if (!request->route)
+    eo_pages_reply(request->http->pages, request);
+  else if (eo_guard_spends(request, request->route->rate)) {
+    if (request->route->aside)
+      eo_aside_take(request->http->aside, request);
+    else
+      request->route->handle(request);
+  }
+}
+
+static enum MHD_Result handle(void *context, struct MHD_Connection *connection, const char *path, const char *method, const char *version,
+                              const char *data, size_t *size, void **place)
+{
+  struct eo_request *request = *place;
+  (void)version;
+  if (!request)
+    return begin(context, connection, path, method, place);
+  if (*size) {
+    enum MHD_Result result = take(request, data, *size);
+    *size = 0;
+    return result;
+  }
+  if (!request->dispatched)
+    dispatch(request);
+  return eo_request_sleep(request) ? MHD_YES : eo_reply_send(request);
+}
+
+static void complete(void *context, struct MHD_Connection *connection, void **place, enum MHD_RequestTerminationCode code)
+{
+  struct eo_http *http = context;
+  struct eo_request *request = *place;
+  (void)connection;
+  (void)code;
+  if (!request)
+    return;
+  eo_connection_allow(http, request->place, EO_IDLE_SECONDS);
+  if (!http->settings.quiet)
+    eo_log_request(request);
+  eo_request_free(request);
+  *place = NULL;
+}
+
+/* ---- life ---- */
+
+static enum eo_code check_access(const struct eo_http_settings *settings, struct eo_error *error)
+{
+  bool loopback;
+  enum eo_code code = eo_listen_is_loopback(settings->listen, &loopback, error);
+  bool token = settings->token && *settings->token;
+  if (!code && token && !eo_field_is_visible(settings->token, 200))
+    code = eo_error_set(error, EO_ERROR_INPUT, "", "The token must be 1 to 199 printable characters without blanks.");
+  if (!code && !loopback && !token && !settings->allow_anyone)
+    code = eo_error_set(error, EO_ERROR_INPUT, "",
+                        "Others can reach %.60s: give a token (--token-file FILE or EASEOFF_TOKEN), or say --allow-anyone.", settings->listen);
+  return code;
+}
+
+/* As many connections as there are descriptors for, with some left for files. */
+static unsigned allow_descriptors(void)
+{
+  enum { FOR_FILES = 128 };
+  struct rlimit limit;
+  if (getrlimit(RLIMIT_NOFILE, &limit) != 0)
+    return 256;
+  rlim_t wanted = EO_MOST_CONNECTIONS + FOR_FILES;
+  if (limit.rlim_cur < wanted) {
+    limit.rlim_cur = limit.rlim_max < wanted ? limit.rlim_max : wanted;
+    setrlimit(RLIMIT_NOFILE, &limit);
+  }
+  return limit.rlim_cur > 2 * FOR_FILES ? (unsigned)(limit.rlim_cur < wanted ? limit.rlim_cur - FOR_FILES : EO_MOST_CONNECTIONS) : FOR_FILES;
+}
+
+static void ignore_messages(void *context, const char *format, va_list arguments)
+{
+  (void)context; /* the library complains about every client that breaks off */
+  (void)format;
+  (void)arguments;
+}
+
+static enum eo_code start_daemon(struct eo_http *http, bool version6, struct eo_error *error)
+{
+  unsigned most = allow_descriptors();
+  http->daemon = MHD_start_daemon(
+      MHD_USE_EPOLL_INTERNAL_THREAD | MHD_ALLOW_SUSPEND_RESUME | MHD_USE_ERROR_LOG | (version6 ? MHD_USE_IPv6 : 0u), 0, NULL, NULL, handle, http,
+      MHD_OPTION_EXTERNAL_LOGGER, ignore_messages, NULL, MHD_OPTION_LISTEN_SOCKET, http->socket, MHD_OPTION_NOTIFY_COMPLETED, complete, http,
+      MHD_OPTION_NOTIFY_CONNECTION, eo_connection_notify, http, MHD_OPTION_CONNECTION_LIMIT, most, MHD_OPTION_PER_IP_CONNECTION_LIMIT,
+      most < EO_MOST_CONNECTIONS_OF_ONE ? most : EO_MOST_CONNECTIONS_OF_ONE, MHD_OPTION_CONNECTION_TIMEOUT, (unsigned)EO_IDLE_SECONDS,
+      MHD_OPTION_STRICT_FOR_CLIENT, 1, MHD_OPTION_END);
+  if (!http->daemon)
+    return eo_error_set(error, EO_ERROR_MEMORY, "", "The HTTP server cannot be started.");
+  return EO_OK;
+}
+
+static void init(struct eo_http *http, const struct eo_http_settings *settings)
+{
+  pthread_condattr_t attributes;
+  *http = (struct eo_http){.settings = *settings, .socket = -1, .service = settings->service, .started = eo_clock_milliseconds()};
+  pthread_condattr_init(&attributes);
+  pthread_condattr_setclock(&attributes, CLOCK_MONOTONIC);
+  pthread_mutex_init(&http->lock, NULL);
+  pthread_cond_init(&http->changed, &attributes);
+  pthread_condattr_destroy(&attributes);
+  eo_guard_init(&http->guard, &http->settings);
+  if (getrandom(&http->run, sizeof http->run, 0) != sizeof http->run)
+    http->run = (uint64_t)time(NULL);
+}
+
+static void done(struct eo_http *http)
+{
+  eo_aside_free(http->aside);
+  eo_pages_free(http->pages);
+  eo_documents_free(http->documents);
+  eo_store_close(http->store);
+  if (http->socket >= 0)
+    close(http->socket);
+  pthread_cond_destroy(&http->changed);
+  pthread_mutex_destroy(&http->lock);
+  free(http);
+}
+
+static enum eo_code start(struct eo_http *http, struct eo_error *error)
+{
+  struct eo_listening listening;
+  enum eo_code code = check_access(&http->settings, error);
+  if (!code)
+    code = eo_store_open(&http->store, http->settings.data, EO_STORE_WRITE, error);
+  if (!code)
+    code = eo_aside_new(&http->aside, http->settings.data, error);
+  if (!code)
+    code = eo_pages_new(&http->pages, http->settings.pages, error);
+  if (!code)
+    code = eo_documents_new(&http->documents, error);
+  if (!code)
+    code = eo_listen(&listening, http->settings.listen, error);
+  if (code)
+    return code;
+  http->socket = listening.socket;
+  snprintf(http->url, sizeof http->url, "%s", listening.url);
+  code = eo_ticker_start(http, error);
+  if (!code && (code = start_daemon(http, listening.version6, error)) != EO_OK) {
+    eo_http_quiesce(http);
+    eo_ticker_stop(http);
+  }
+  return code;
+}
+
+enum eo_code eo_http_start(struct eo_http **http, const struct eo_http_settings *settings, struct eo_error *error)
+{
+  struct eo_http *made = malloc(sizeof *made);
+  if (!made)
+    return eo_error_memory(error);
+  init(made, settings);
+  enum eo_code code = start(made, error);
+  if (code)
+    done(made);
+  else
+    *http = made;
+  return code;
+}
+
+const char *eo_http_url(const struct eo_http *http)
+{
+  return http->url;
+}
+
+void eo_http_quiesce(struct eo_http *http)
+{
+  if (http->daemon)
+    MHD_quiesce_daemon(http->daemon);
+  pthread_mutex_lock(&http->lock);
+  http->closing = true;
+  eo_streams_end(http);
+  pthread_cond_broadcast(&http->changed);
+  pthread_mutex_unlock(&http->lock);
+}
+
+/* The library aborts the process when it stops while a connection sleeps: every request has to be finished and every stream ended first. */
+void eo_http_stop(struct eo_http *http)
+{
+  if (!http)
+    return;
+  pthread_mutex_lock(&http->lock);
+  while (http->deferred > 0)
+    pthread_cond_wait(&http->changed, &http->lock);
+  eo_streams_end(http);
+  pthread_mutex_unlock(&http->lock);
+  eo_ticker_stop(http);
+  MHD_stop_daemon(http->daemon);
+  done(http);
+}

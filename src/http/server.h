@@ -1,0 +1,79 @@
+/* What the files of src/http/ share of the running server. */
+#ifndef EASEOFF_HTTP_SERVER_H
+#define EASEOFF_HTTP_SERVER_H
+
+#include <pthread.h>
+#include <stdint.h>
+
+#include <microhttpd.h>
+
+#include "http/guard.h"
+#include "http/request.h"
+#include "http/resource.h"
+#include "store/store.h"
+
+enum {
+  EO_MOST_CONNECTIONS = 4000,
+  EO_MOST_CONNECTIONS_OF_ONE = 1500, /* per address; a reverse proxy is one address */
+  EO_IDLE_SECONDS = 30,              /* between requests, for all header fields of one, for a pause in a body */
+  EO_BODY_SECONDS = 120,             /* for a whole body, and for the client to take a reply */
+  EO_HEARTBEAT_SECONDS = 10,
+  EO_DRAINED = 64 << 10,             /* bytes of a refused body that are read so that the connection can go on */
+};
+
+/* A client's connection. */
+struct eo_connection {
+  int socket;
+  double deadline;                   /* ms of the monotonic clock; 0: none */
+  struct eo_connection *before, *after;
+  struct sockaddr_storage address;
+};
+
+struct eo_stream;
+
+struct eo_http {
+  struct eo_http_settings settings;  /* strings borrowed for as long as the server lives */
+  struct MHD_Daemon *daemon;
+  int socket;
+  char url[120];
+  double started;                    /* ms */
+  uint64_t run;                      /* first half of request ids */
+  struct eo_service *service;
+  struct eo_store *store;            /* of the HTTP thread */
+  struct eo_guard guard;             /* of the HTTP thread but for its constants */
+  struct eo_aside *aside;
+  struct eo_pages *pages;
+  struct eo_documents *documents;    /* made once: OpenAPI, field tables, examples */
+  uint64_t requests;                 /* HTTP thread */
+  uint64_t replies[6];               /* by hundreds of the status; HTTP thread */
+
+  pthread_mutex_t lock;              /* of everything below; never held while the service is called */
+  pthread_cond_t changed;
+  struct eo_connection *connections;
+  struct eo_stream *streams;
+  int connection_count, stream_count;
+  int deferred;                      /* requests that somebody still has to finish */
+  bool closing;
+  pthread_t ticker;
+};
+
+/* connection.c: who is connected, and for how long a client may keep a connection busy */
+void eo_connection_notify(void *context, struct MHD_Connection *connection, void **place, enum MHD_ConnectionNotificationCode code);
+void eo_connection_allow(struct eo_http *http, struct eo_connection *place, int seconds); /* 0: no deadline */
+enum eo_code eo_ticker_start(struct eo_http *http, struct eo_error *error);
+void eo_ticker_stop(struct eo_http *http);
+
+/* request.c */
+struct eo_request *eo_request_new(struct eo_http *http, struct MHD_Connection *connection, const char *path, const char *method);
+void eo_request_free(struct eo_request *request);
+
+/* deferred.c: true when the request has no reply yet and now sleeps */
+bool eo_request_sleep(struct eo_request *request);
+
+/* reply.c: hands the reply to the connection */
+enum MHD_Result eo_reply_send(struct eo_request *request);
+
+/* log.c: one JSON line on standard error */
+void eo_log_request(const struct eo_request *request);
+
+#endif

@@ -1,0 +1,195 @@
+#include "measurement/comparison.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const double SAME_TORQUE = 0.01, SAME_SPEED = 0.02;
+static const double FAR = 3.5;          /* robust standard deviations (Iglewicz and Hoaglin 1993) */
+static const double LEAST_FAR = 0.25;   /* of log(ratio): nearer is no outlier whatever the spread */
+
+void eo_measured_take(struct eo_measured *m, const struct eo_transmission *t, const struct eo_findings *findings)
+{
+  m->speed = t->speed;
+  m->harmonics = t->harmonics;
+  memcpy(m->order, t->mesh, sizeof m->order);
+  m->rms = t->rms;
+  m->rms_sigma = t->rms_sigma;
+  m->warnings = 0;
+  for (int i = 0; i < findings->count && i < EO_MAX_FINDINGS; i++)
+    m->warnings += findings->finding[i].severity >= EO_SEVERITY_WARNING;
+}
+
+/* ---- phase ---- */
+
+static double likeness_at(const struct eo_measured *m, const struct eo_prediction *p, double shift)
+{
+  double sum = 0, size[2] = {0, 0};
+  int harmonics = m->harmonics < p->harmonics ? m->harmonics : p->harmonics;
+  for (int h = 1; h <= harmonics; h++) {
+    sum += creal(conj(m->order[h - 1].amplitude) * p->order[h - 1] * cexp(2 * M_PI * I * h * shift));
+    size[0] += pow(cabs(m->order[h - 1].amplitude), 2);
+    size[1] += pow(cabs(p->order[h - 1]), 2);
+  }
+  return size[0] > 0 && size[1] > 0 ? sum / sqrt(size[0] * size[1]) : 0;
+}
+
+static void align(const struct eo_measured *m, struct eo_compared *c)
+{
+  enum { STEPS = 512 };
+  double width = 1.0 / STEPS;
+  c->likeness = -2;
+  for (int i = 0; i < STEPS; i++) {
+    double likeness = likeness_at(m, &c->prediction, i * width);
+    if (likeness > c->likeness) {
+      c->likeness = likeness;
+      c->shift = i * width;
+    }
+  }
+  for (; width > 1e-7; width /= 2)
+    for (int side = -1; side <= 1; side += 2) {
+      double likeness = likeness_at(m, &c->prediction, c->shift + side * width);
+      if (likeness > c->likeness) {
+        c->likeness = likeness;
+        c->shift += side * width;
+      }
+    }
+  c->shift -= floor(c->shift);
+}
+
+void eo_comparison_curves(const struct eo_measured *m, const struct eo_compared *c, int count, double *measured_curve, double *predicted_curve)
+{
+  for (int i = 0; i < count; i++) {
+    double phase = (double)i / count;
+    measured_curve[i] = predicted_curve[i] = 0;
+    for (int h = 1; h <= m->harmonics; h++)
+      measured_curve[i] += creal(m->order[h - 1].amplitude * cexp(2 * M_PI * I * h * phase));
+    for (int h = 1; h <= c->prediction.harmonics; h++)
+      predicted_curve[i] += creal(c->prediction.order[h - 1] * cexp(2 * M_PI * I * h * (phase + c->shift)));
+  }
+}
+
+/* ---- outliers ---- */
+
+static int ascending(const void *a, const void *b)
+{
+  double x = *(const double *)a, y = *(const double *)b;
+  return (x > y) - (x < y);
+}
+
+static double median(double *value, int count)
+{
+  qsort(value, (size_t)count, sizeof *value, ascending);
+  return count ? (value[(count - 1) / 2] + value[count / 2]) / 2 : NAN;
+}
+
+static bool same_point(const struct eo_measured *a, const struct eo_measured *b)
+{
+  return a->end == b->end && fabs(a->torque / b->torque - 1) < SAME_TORQUE && fabs(a->speed / b->speed - 1) < SAME_SPEED;
+}
+
+static enum eo_code find_ratios(struct eo_comparison *c, struct eo_error *error)
+{
+  double *value = malloc(sizeof *value * (size_t)(c->count + 1));
+  int n = 0;
+  c->ratio = c->spread = NAN;
+  if (!value)
+    return eo_error_memory(error);
+  for (int i = 0; i < c->count; i++)
+    if (c->point[i].ratio > 0)
+      value[n++] = log(c->point[i].ratio);
+  double middle = median(value, n);
+  for (int i = 0; i < n; i++)
+    value[i] = fabs(value[i] - middle);
+  c->ratio = exp(middle);
+  c->spread = n > 2 ? 1.4826 * median(value, n) : NAN;
+  free(value);
+  return EO_OK;
+}
+
+/* Repeats of the same point that disagree by more than their uncertainty allows. */
+static double nearest_repeat(const struct eo_measured *m, int count, int at)
+{
+  double nearest = INFINITY;
+  for (int i = 0; i < count; i++)
+    if (i != at && m[i].unmodified == m[at].unmodified && same_point(&m[i], &m[at]))
+      nearest = fmin(nearest, fabs(m[i].rms - m[at].rms) / fmax(hypot(m[i].rms_sigma, m[at].rms_sigma), 0.05 * m[at].rms));
+  return nearest;
+}
+
+static void judge_point(struct eo_comparison *c, const struct eo_measured *m, int at)
+{
+  struct eo_compared *p = &c->point[at];
+  double off = fabs(log(p->ratio / c->ratio)), repeat = nearest_repeat(m, c->count, at);
+  if (c->count >= 4 && isfinite(off) && off > LEAST_FAR && off > FAR * c->spread)
+    snprintf(p->reason, sizeof p->reason, "Its RMS is %.3g times the prediction, that of the others about %.3g times.", p->ratio, c->ratio);
+  else if (isfinite(repeat) && repeat > 4)
+    snprintf(p->reason, sizeof p->reason, "No other recording at this torque and speed comes near its RMS of %.4g m/s2.", m[at].rms);
+  p->outlier = *p->reason != 0;
+  if (p->outlier && m[at].warnings)
+    snprintf(p->reason + strlen(p->reason), sizeof p->reason - strlen(p->reason), " The recording itself carries %d warnings.", m[at].warnings);
+}
+
+/* ---- reductions ---- */
+
+static bool reduce(const struct eo_comparison *c, const struct eo_measured *m, int at, struct eo_reduction *r)
+{
+  double rms = 0, variance = 0, predicted = 0;
+  *r = (struct eo_reduction){.modified = at, .torque = m[at].torque, .speed = m[at].speed};
+  for (int i = 0; i < c->count; i++)
+    if (m[i].unmodified && same_point(&m[i], &m[at])) {
+      r->unmodified++;
+      rms += m[i].rms;
+      variance += m[i].rms_sigma * m[i].rms_sigma;
+      predicted += c->point[i].prediction.rms;
+    }
+  if (!r->unmodified || m[at].unmodified)
+    return false;
+  rms /= r->unmodified;
+  r->measured = 1 - m[at].rms / rms;
+  r->measured_sigma = hypot(m[at].rms_sigma / rms, m[at].rms / (rms * rms) * sqrt(variance) / r->unmodified);
+  r->predicted = 1 - c->point[at].prediction.rms / (predicted / r->unmodified);
+  return true;
+}
+
+enum eo_code eo_comparison_run(struct eo_comparison *c, struct eo_evaluator *evaluator, const struct eo_design *design, int count,
+                               const struct eo_measured *measured, const struct eo_progress *progress, struct eo_error *error)
+{
+  enum eo_code code = EO_OK;
+  *c = (struct eo_comparison){.count = count};
+  if (count < 0 || count > EO_MOST_MEASURED)
+    return eo_error_set(error, EO_ERROR_INPUT, "", "%d measurements are more than the %d that are compared at once.", count, EO_MOST_MEASURED);
+  c->point = calloc((size_t)count + 1, sizeof *c->point);
+  c->reduction = calloc((size_t)count + 1, sizeof *c->reduction);
+  if (!c->point || !c->reduction)
+    return eo_error_memory(error);
+  for (int i = 0; i < count && !code; i++) {
+    const struct eo_measured *m = &measured[i];
+    struct eo_compared *p = &c->point[i];
+    if (eo_progress_report(progress, "predictions", (double)i / count))
+      return eo_error_set(error, EO_ERROR_CANCELLED, "", "Stopped.");
+    code = eo_prediction_run(&p->prediction, evaluator, design, m->unmodified, m->torque, m->speed, m->end, m->harmonics, error);
+    p->ratio = p->likeness = p->shift = NAN;
+    if (!code && p->prediction.valid) {
+      p->ratio = m->rms / p->prediction.rms;
+      align(m, p);
+    }
+  }
+  if (!code)
+    code = find_ratios(c, error);
+  if (code)
+    return code;
+  for (int i = 0; i < count; i++) {
+    judge_point(c, measured, i);
+    c->reductions += reduce(c, measured, i, &c->reduction[c->reductions]);
+  }
+  return EO_OK;
+}
+
+void eo_comparison_done(struct eo_comparison *c)
+{
+  free(c->point);
+  free(c->reduction);
+  *c = (struct eo_comparison){0};
+}

@@ -1,0 +1,50 @@
+#include "measurement/finding.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+static const char *const kind_name[EO_FINDING_KINDS] = {"swapped",   "reversed",  "teeth",    "units",       "wrapped", "dropped", "slip",
+                                                        "constant",  "saturated", "too-short", "unsteady",   "sample-rate", "time", "nan",
+                                                        "spike",     "track",     "speed",    "resolution",  "layout"};
+
+struct eo_finding *eo_findings_add(struct eo_findings *findings, enum eo_finding_kind kind, enum eo_severity severity, int channel, double value,
+                                   const char *format, ...)
+{
+  va_list arguments;
+  int at = findings->count < EO_MAX_FINDINGS ? findings->count : EO_MAX_FINDINGS - 1;
+  struct eo_finding *f = &findings->finding[at];
+  findings->count++;
+  *f = (struct eo_finding){.kind = kind, .severity = severity, .channel = channel, .row = -1, .value = value};
+  va_start(arguments, format);
+  vsnprintf(f->text, sizeof f->text, format, arguments);
+  va_end(arguments);
+  return f;
+}
+
+const char *eo_finding_name(enum eo_finding_kind kind) { return kind_name[kind]; }
+
+const char *eo_severity_name(enum eo_severity severity)
+{
+  static const char *const name[] = {"note", "repaired", "warning", "refused"};
+  return name[severity];
+}
+
+static int kept(const struct eo_findings *findings) { return findings->count < EO_MAX_FINDINGS ? findings->count : EO_MAX_FINDINGS; }
+
+const struct eo_finding *eo_findings_find(const struct eo_findings *findings, enum eo_finding_kind kind)
+{
+  for (int i = 0; i < kept(findings); i++)
+    if (findings->finding[i].kind == kind)
+      return &findings->finding[i];
+  return NULL;
+}
+
+enum eo_severity eo_findings_worst(const struct eo_findings *findings)
+{
+  enum eo_severity worst = EO_SEVERITY_NOTE;
+  for (int i = 0; i < kept(findings); i++)
+    if (findings->finding[i].severity > worst)
+      worst = findings->finding[i].severity;
+  return worst;
+}

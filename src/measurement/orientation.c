@@ -1,0 +1,131 @@
+#include "measurement/orientation.h"
+
+#include <math.h>
+
+static const double DEGREES = 180 / M_PI;
+
+bool eo_orientation_nearest(double ratio, double tolerance, const int teeth[2], int nearest[2])
+{
+  double other = round(teeth[0] / ratio), own = round(teeth[1] * ratio);
+  if (other > 0 && other <= 400 && fabs(teeth[0] / other / ratio - 1) < tolerance) {
+    nearest[0] = teeth[0];
+    nearest[1] = (int)other;
+    return true;
+  }
+  if (own > 0 && own <= 400 && fabs(own / teeth[1] / ratio - 1) < tolerance) {
+    nearest[0] = (int)own;
+    nearest[1] = teeth[1];
+    return true;
+  }
+  for (int sum = 2; sum <= 800; sum++) {
+    double p = round(sum * ratio / (1 + ratio)), q = sum - p;
+    if (p > 0 && q > 0 && p <= 400 && q <= 400 && fabs(p / q / ratio - 1) < tolerance) {
+      nearest[0] = (int)p;
+      nearest[1] = (int)q;
+      return true;
+    }
+  }
+  return false;
+}
+
+static bool matches(const struct eo_angles *a, double ratio, double expected) { return fabs(ratio / expected - 1) < a->ratio_tolerance; }
+
+static void refuse_teeth(const struct eo_angles *a, const int teeth[2], struct eo_findings *findings)
+{
+  int nearest[2];
+  double ratio = fabs(a->ratio);
+  if (eo_orientation_nearest(ratio, a->ratio_tolerance, teeth, nearest))
+    eo_findings_add(findings, EO_FINDING_TEETH, EO_SEVERITY_REFUSED, -1, ratio,
+                    "The gear turns %.6f times as far as the pinion, which is %d/%d, not the %d/%d = %.6f of the design.", ratio, nearest[0], nearest[1],
+                    teeth[0], teeth[1], (double)teeth[0] / teeth[1]);
+  else
+    eo_findings_add(findings, EO_FINDING_TEETH, EO_SEVERITY_REFUSED, -1, ratio,
+                    "The gear turns %.6f times as far as the pinion, no ratio of tooth numbers (%d/%d would be %.6f): check lines per turn and couplings.", ratio,
+                    teeth[0], teeth[1], (double)teeth[0] / teeth[1]);
+}
+
+/* One channel in degrees, one in radians: the one that starts again every turn, or the stated speed, tells which is right. excess: gear over
+   pinion beyond the ratio of the teeth, 57.3 or its inverse. */
+static void settle_units(struct eo_angles *a, double excess, double stated, struct eo_findings *findings)
+{
+  int wrong = -1;
+  double speed = fabs(a->rate[a->from[0]]);
+  if (a->wrapped[0] != a->wrapped[1])
+    wrong = a->wrapped[a->from[0]] ? 1 : 0;
+  else if (!isnan(stated))
+    wrong = fabs(log(speed / stated)) < 1 ? 1 : 0;
+  if (wrong < 0) {
+    wrong = 1; /* for the time being: the lines of the spectrum decide about both */
+    a->units_in_doubt = true;
+  }
+  double factor = wrong == 1 ? 1 / excess : excess;
+  a->factor[wrong] *= factor;
+  eo_findings_add(findings, EO_FINDING_UNITS, EO_SEVERITY_REPAIRED, wrong, excess, "One channel is in degrees and the other in radians: their ratio is off by %.5g. The %s was brought to the unit of the %s.", excess,
+                  wrong ? "gear" : "pinion", wrong ? "pinion" : "gear");
+}
+
+static bool settle_ratio(struct eo_angles *a, const int teeth[2], double stated, struct eo_findings *findings)
+{
+  static const double unit[3] = {1, 180 / M_PI, M_PI / 180};
+  double expected = (double)teeth[0] / teeth[1], ratio = fabs(a->ratio);
+  for (int u = 0; u < 3; u++)
+    for (int swap = 0; swap < 2; swap++) {
+      if (!matches(a, swap ? 1 / ratio : ratio, expected * unit[u]))
+        continue;
+      a->from[0] = swap;
+      a->from[1] = !swap;
+      if (swap)
+        eo_findings_add(findings, EO_FINDING_SWAPPED, EO_SEVERITY_REPAIRED, -1, ratio,
+                        "Pinion and gear are swapped: the second channel turns %.6f times as far as the first, which is %d/%d; exchanged.", ratio, teeth[1],
+                        teeth[0]);
+      if (u > 0)
+        settle_units(a, unit[u], stated, findings);
+      return true;
+    }
+  refuse_teeth(a, teeth, findings);
+  return false;
+}
+
+static void settle_directions(struct eo_angles *a, struct eo_findings *findings)
+{
+  int sign[2] = {a->rate[a->from[0]] < 0 ? -1 : 1, a->rate[a->from[1]] < 0 ? -1 : 1};
+  a->factor[0] *= sign[0];
+  a->factor[1] *= sign[1];
+  if (sign[0] != sign[1]) {
+    int wrong = sign[0] < 0 ? 0 : 1;
+    eo_findings_add(findings, EO_FINDING_REVERSED, EO_SEVERITY_REPAIRED, wrong, a->ratio,
+                    "The %s encoder counts backwards while the other counts forwards (ratio %.6f); its sign was changed.", wrong ? "gear" : "pinion", a->ratio);
+  } else if (sign[0] < 0) {
+    eo_findings_add(findings, EO_FINDING_REVERSED, EO_SEVERITY_NOTE, -1, a->ratio, "Both angles fall: the pair runs backwards; both signs were changed.");
+  }
+}
+
+static void settle_speed(struct eo_angles *a, double stated, struct eo_findings *findings)
+{
+  double speed = fabs(a->rate[a->from[0]] * a->factor[0]), off = speed / stated;
+  if (isnan(stated) || fabs(off - 1) < 0.05)
+    return;
+  double factor = fabs(off * DEGREES - 1) < 0.05 ? DEGREES : fabs(off / DEGREES - 1) < 0.05 ? 1 / DEGREES : 1;
+  if (factor != 1) {
+    a->factor[0] *= factor;
+    a->factor[1] *= factor;
+    eo_findings_add(findings, EO_FINDING_UNITS, EO_SEVERITY_REPAIRED, -1, off,
+                    "Both angles are in %s, not in the stated unit: the speed would be %.5g rpm instead of %.5g rpm; read so.", factor > 1 ? "radians" : "degrees",
+                    30 / M_PI * speed, 30 / M_PI * stated);
+  } else {
+    eo_findings_add(findings, EO_FINDING_SPEED, EO_SEVERITY_WARNING, -1, 30 / M_PI * speed, "The pinion runs at %.6g rpm, not at the stated %.6g rpm.",
+                    30 / M_PI * speed, 30 / M_PI * stated);
+  }
+}
+
+void eo_orientation_judge(struct eo_angles *a, const int teeth[2], double stated, struct eo_findings *findings)
+{
+  if (!(fabs(a->ratio) > 0) || !isfinite(a->ratio)) {
+    eo_findings_add(findings, EO_FINDING_CONSTANT, EO_SEVERITY_REFUSED, -1, a->ratio, "One of the shafts does not turn.");
+    return;
+  }
+  if (!settle_ratio(a, teeth, stated, findings))
+    return;
+  settle_directions(a, findings);
+  settle_speed(a, stated, findings);
+}

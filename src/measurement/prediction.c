@@ -1,0 +1,59 @@
+#include "measurement/prediction.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+double eo_prediction_pinion_share(const struct eo_supports *supports, const struct eo_geometry *geometry)
+{
+  double mass[2];
+  for (int i = 0; i < 2; i++)
+    mass[i] = supports->inertia[i] / pow(geometry->base_radius[i], 2);
+  return mass[EO_GEAR] / (mass[EO_PINION] + mass[EO_GEAR]);
+}
+
+static void read_orders(struct eo_prediction *p, const struct eo_evaluation *r, const struct eo_case_result *c, int end, int teeth)
+{
+  double mesh = teeth * p->speed, square = 0, low = INFINITY, high = -INFINITY;
+  for (int h = 1; h <= p->harmonics; h++) {
+    double complex acceleration = h <= r->harmonics ? c->end[end].order[EO_CHANNEL_ROTATIONAL][h] : 0;
+    p->order[h - 1] = acceleration / pow(h * mesh, 2); /* r_g phi_g - r_p phi_p is minus the reading */
+    p->acceleration[h - 1] = cabs(acceleration);
+    square += pow(cabs(acceleration), 2) / 2;
+  }
+  p->rms = sqrt(square);
+  for (int i = 0; i < 512; i++) {
+    double value = 0;
+    for (int h = 1; h <= p->harmonics; h++)
+      value += creal(p->order[h - 1] * cexp(2 * M_PI * I * h * i / 512));
+    low = fmin(low, value);
+    high = fmax(high, value);
+  }
+  p->peak_to_peak = high - low;
+}
+
+enum eo_code eo_prediction_run(struct eo_prediction *p, struct eo_evaluator *evaluator, const struct eo_design *design, bool unmodified, double torque,
+                               double speed, int end, int harmonics, struct eo_error *error)
+{
+  const struct eo_evaluation *r;
+  struct eo_design *one = malloc(sizeof *one);
+  if (!one)
+    return eo_error_memory(error);
+  *one = *design;
+  one->load_cases = 1;
+  one->load_case[0] = (struct eo_load_case){torque, speed, 1};
+  if (unmodified)
+    memset(&one->modification, 0, sizeof one->modification);
+  enum eo_code code = eo_evaluator_run(evaluator, one, NULL, EO_WANT_CURVES, &r, error);
+  if (!code) {
+    const struct eo_case_result *c = &r->load_case[0];
+    *p = (struct eo_prediction){.torque = torque, .speed = speed, .harmonics = harmonics, .rms = NAN, .peak_to_peak = NAN,
+                                .valid = c->vibration.outcome != EO_VIBRATION_NOT_CONVERGED};
+    for (int h = 0; h < harmonics; h++)
+      p->order[h] = p->acceleration[h] = NAN;
+    if (p->valid)
+      read_orders(p, r, c, r->ends == 2 ? end : EO_LEFT, one->gear_pair.teeth[EO_PINION]);
+  }
+  free(one);
+  return code;
+}

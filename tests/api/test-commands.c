@@ -1,0 +1,462 @@
+/* The API as a table of commands against a real server; every reply is held against the OpenAPI document that the server gives, which is held
+   against what the server does. */
+#include "client.h"
+#include "schema.h"
+#include "tap.h"
+
+#include <math.h>
+
+static json_t *description; /* OpenAPI */
+static char *coarse, *order, *named, *sweep;
+
+/* ---- the description ---- */
+
+/* Whether "/jobs/{id}" is the template of "/jobs/7". */
+static bool is_template(const char *template, const char *path)
+{
+  while (*template && *path) {
+    if (*template == '{') {
+      template += strcspn(template, "}") + 1;
+      path += strcspn(path, "/");
+    } else if (*template++ != *path++)
+      return false;
+  }
+  return !*template && !*path;
+}
+
+static const json_t *find_operation(const char *method, const char *path)
+{
+  char plain[200], lower[10] = "";
+  const char *key;
+  json_t *item;
+  snprintf(plain, sizeof plain, "%.*s", (int)strcspn(path, "?"), path + strlen(API));
+  plain[strcspn(plain, "?")] = '\0';
+  for (int i = 0; method[i] && i < 9; i++)
+    lower[i] = (char)(method[i] | 32);
+  for (int exact = 1; exact >= 0; exact--)
+    json_object_foreach(json_object_get(description, "paths"), key, item)
+      if (exact ? strcmp(key, plain) == 0 : is_template(key, plain))
+        return json_object_get(item, strcmp(lower, "head") == 0 ? "get" : lower);
+  return NULL;
+}
+
+/* The schema of a reply: of its status, or of a problem. */
+static const json_t *find_schema(const json_t *operation, const struct reply *reply)
+{
+  char status[8], type[100];
+  snprintf(status, sizeof status, "%d", reply->status);
+  const char *header = header_of(reply, "Content-Type");
+  snprintf(type, sizeof type, "%.*s", header ? (int)strcspn(header, ";") : 0, header ? header : "");
+  const json_t *answers = json_object_get(operation, "responses"), *answer = json_object_get(answers, status);
+  const json_t *content = json_object_get(json_object_get(answer ? answer : json_object_get(answers, "default"), "content"), type);
+  if (!content)
+    content = json_object_get(json_object_get(json_object_get(answers, "default"), "content"), type);
+  return json_object_get(content, "schema");
+}
+
+static void check_against_description(const char *what, const char *method, const char *path, const struct reply *reply)
+{
+  struct schema_fault fault = {""};
+  const json_t *operation = strncmp(path, API, strlen(API)) == 0 ? find_operation(method, path) : NULL;
+  const char *type = header_of(reply, "Content-Type");
+  bool json = type && strstr(type, "json");
+  if (!operation || !json || !reply->size || header_of(reply, "Content-Encoding"))
+    return;
+  const json_t *schema = find_schema(operation, reply);
+  json_t *body = json_loadb(reply->body, reply->size, 0, NULL);
+  ok(schema && body && fits(description, schema, body, "", &fault), "%s: the reply is as described %s", what, fault.text);
+  json_decref(body);
+}
+
+/* ---- commands ---- */
+
+struct command {
+  const char *what, *method, *path, *headers;
+  char **body;                 /* NULL: none */
+  const char *text;            /* a body of its own */
+  int status;
+  const char *header, *holds;  /* a header field of the reply and what it holds; holds "": it is there; NULL: it is not */
+  const char *pointer, *value; /* into the JSON of the reply, "a/0/b", and what stands there; value NULL: anything */
+};
+
+static const json_t *find(const json_t *value, const char *pointer)
+{
+  while (value && *pointer) {
+    char key[100];
+    size_t length = strcspn(pointer, "/");
+    snprintf(key, sizeof key, "%.*s", (int)length, pointer);
+    value = json_is_array(value) ? json_array_get(value, strtoul(key, NULL, 10)) : json_object_get(value, key);
+    pointer += length + (pointer[length] == '/');
+  }
+  return value;
+}
+
+static bool stands_there(const struct reply *reply, const char *pointer, const char *expected)
+{
+  json_t *body = json_loadb(reply->body ? reply->body : "", reply->size, 0, NULL);
+  const json_t *value = find(body, pointer);
+  char *text = json_is_string(value) ? strdup(json_string_value(value)) : value ? json_dumps(value, JSON_ENCODE_ANY | JSON_COMPACT) : NULL;
+  bool right = value && (!expected || (text && strcmp(text, expected) == 0));
+  if (!right)
+    printf("# %s is %s, body %.200s\n", pointer, text ? text : "not there", reply->body ? reply->body : "");
+  free(text);
+  json_decref(body);
+  return right;
+}
+
+static bool header_is_right(const struct reply *reply, const struct command *c)
+{
+  const char *value = header_of(reply, c->header);
+  if (!c->holds)
+    return !value;
+  bool right = value && strstr(value, c->holds);
+  if (!right)
+    printf("# %s is %s\n", c->header, value ? value : "not there");
+  return right;
+}
+
+static void run_command(const struct command *c)
+{
+  struct reply reply = call(c->method, c->path, c->headers, c->body ? *c->body : c->text);
+  if (!ok(reply.status == c->status, "%s: %d", c->what, reply.status))
+    printf("# %s %s: %.300s\n", c->method, c->path, reply.body ? reply.body : "");
+  if (c->header)
+    ok(header_is_right(&reply, c), "%s: %s", c->what, c->header);
+  if (c->pointer)
+    ok(stands_there(&reply, c->pointer, c->value), "%s: %s", c->what, c->pointer);
+  check_against_description(c->what, c->method, c->path, &reply);
+  free_reply(&reply);
+}
+
+static const struct command first[] = {
+    {"health", "GET", API "/health", .status = 200, .header = "X-Request-Id", .holds = "", .pointer = "status", .value = "ok"},
+    {"health by HEAD", "HEAD", API "/health", .status = 200, .header = "Content-Length", .holds = ""},
+    {"metrics", "GET", API "/metrics", .status = 200, .header = "Content-Type", .holds = "text/plain"},
+    {"safety headers", "GET", API "/health", .status = 200, .header = "Content-Security-Policy", .holds = "default-src 'none'"},
+    {"no sniffing", "GET", API "/health", .status = 200, .header = "X-Content-Type-Options", .holds = "nosniff"},
+    {"nobody else's page", "GET", API "/health", "Origin: http://elsewhere.example\r\n", .status = 200, .header = "Access-Control-Allow-Origin"},
+    {"no session needed", "GET", API "/session", .status = 200, .pointer = "required", .value = "false"},
+    {"a token that nobody asked for", "POST", API "/session", .text = "{\"token\":\"x\"}", .status = 204},
+    {"the end of a session", "DELETE", API "/session", .status = 204, .header = "Set-Cookie", .holds = "Max-Age=0"},
+    {"examples", "GET", API "/examples", .status = 200, .pointer = "items/0/name", .value = "paper"},
+    {"an example", "GET", API "/examples/paper", .status = 200, .header = "ETag", .holds = "\"", .pointer = "gear_pair/pinion_teeth", .value = "17"},
+    {"no example", "GET", API "/examples/nothing", .status = 404, .pointer = "status", .value = "404"},
+    {"field tables", "GET", API "/schema", .status = 200, .pointer = "design/fields/0/key", .value = "name"},
+    {"description", "GET", API "/openapi.json", .status = 200, .pointer = "openapi", .value = "3.1.0"},
+    {"compressed", "GET", API "/openapi.json", "Accept-Encoding: br, gzip\r\n", .status = 200, .header = "Content-Encoding", .holds = "gzip"},
+    {"not compressed when refused", "GET", API "/openapi.json", "Accept-Encoding: gzip;q=0\r\n", .status = 200, .header = "Content-Encoding"},
+    {"small replies are not compressed", "GET", API "/health", "Accept-Encoding: gzip\r\n", .status = 200, .header = "Content-Encoding"},
+    {"nothing there", "GET", API "/nothing", .status = 404, .header = "Content-Type", .holds = "application/problem+json"},
+    {"no page", "GET", "/", .status = 404},
+    {"a page is only read", "POST", "/", .text = "{}", .status = 405, .header = "Allow", .holds = "GET, HEAD"},
+    {"wrong method", "DELETE", API "/health", .status = 405, .header = "Allow", .holds = "GET, HEAD, OPTIONS"},
+    {"unknown method", "BREW", API "/health", .status = 405, .header = "Allow", .holds = "GET, HEAD, OPTIONS"},
+    {"options", "OPTIONS", API "/designs", .status = 204, .header = "Allow", .holds = "GET, HEAD, POST, OPTIONS"},
+    {"unknown query", "GET", API "/designs?limits=3", .status = 400},
+    {"query out of range", "GET", API "/designs?limit=201", .status = 400},
+    {"query that is no number", "GET", API "/designs?limit=1x", .status = 400},
+    {"query that is no word", "GET", API "/jobs?state=lost", .status = 400},
+    {"up and out", "GET", "/../../etc/passwd", .status = 400},
+    {"up and out, encoded", "GET", "/%2e%2e/%2e%2e/etc/passwd", .status = 400},
+    {"a number that is none", "GET", API "/designs/x", .status = 404},
+    {"a number too large", "GET", API "/designs/99999999999999999999", .status = 404},
+    {"check", "POST", API "/check", .body = &coarse, .status = 200, .pointer = "prepared", .value = "false"},
+    {"check: everything at once", "POST", API "/check", .text = "{\"gear_pair\":{\"pinion_teeth\":3,\"gear_teeth\":44},\"nonsense\":1}", .status = 422,
+     .pointer = "errors/4/pointer"},
+    {"check: the pointer", "POST", API "/check", .text = "{\"gear_pair\":{\"pinion_teeth\":3,\"gear_teeth\":44}}", .status = 422,
+     .pointer = "errors/0/pointer", .value = "/gear_pair/pinion_teeth"},
+    {"no JSON", "POST", API "/check", .text = "{\"a\":", .status = 400, .pointer = "type", .value = "/problems/not-json"},
+    {"an array", "POST", API "/check", .text = "[1]", .status = 400},
+    {"a key twice", "POST", API "/check", .text = "{\"name\":\"a\",\"name\":\"b\"}", .status = 400},
+    {"an empty body", "POST", API "/check", .text = "", .status = 400},
+    {"another type", "POST", API "/check", "Content-Type: text/xml\r\n", .text = "<a/>", .status = 415},
+    {"from another site", "POST", API "/check", "Origin: http://elsewhere.example\r\n", .body = &coarse, .status = 403,
+     .pointer = "type", .value = "/problems/cross-site"},
+    {"from another site, as browsers say it", "POST", API "/check", "Sec-Fetch-Site: cross-site\r\n", .body = &coarse, .status = 403},
+    {"from nowhere", "POST", API "/check", "Origin: null\r\n", .body = &coarse, .status = 403},
+    {"another name", "GET", API "/health", "Host: rebound.example:80\r\n", .status = 421, .pointer = "type", .value = "/problems/wrong-host"},
+    {"its own name", "GET", API "/health", "Host: localhost:1\r\n", .status = 200},
+    {"version 6 by number", "GET", API "/health", "Host: [::1]\r\n", .status = 200},
+    {"a name that looks like it", "GET", API "/health", "Host: 127.0.0.1.elsewhere.example\r\n", .status = 421},
+};
+
+static const struct command designs[] = {
+    {"no designs", "GET", API "/designs", .status = 200, .pointer = "items", .value = "[]"},
+    {"add a design", "POST", API "/designs", .body = &coarse, .status = 201, .header = "Location", .holds = API "/designs/1", .pointer = "name",
+     .value = "paper pair"},
+    {"add one with a name", "POST", API "/designs", .body = &named, .status = 201, .header = "ETag", .holds = "\"2.1\"", .pointer = "name", .value = "mine"},
+    {"a third", "POST", API "/designs", .body = &coarse, .status = 201, .pointer = "id", .value = "3"},
+    {"a wrong one", "POST", API "/designs", .text = "{\"name\":\"x\",\"design\":{}}", .status = 422, .pointer = "errors/0/pointer", .value = "/design/gear_pair/pinion_teeth"},
+    {"a name too long for its place", "POST", API "/designs", .text = "{\"name\":7,\"design\":{\"gear_pair\":{\"pinion_teeth\":20,\"gear_teeth\":40,"
+     "\"normal_module_mm\":3,\"helix_angle_deg\":20,\"face_width_mm\":30}}}", .status = 422},
+    {"newest first", "GET", API "/designs?limit=2", .status = 200, .pointer = "items/0/id", .value = "3"},
+    {"more to come", "GET", API "/designs?limit=2", .status = 200, .pointer = "next", .value = "2"},
+    {"the next page", "GET", API "/designs?limit=2&cursor=2", .status = 200, .pointer = "items/0/id", .value = "1"},
+    {"the last page", "GET", API "/designs?limit=2&cursor=2", .status = 200, .pointer = "next", .value = "null"},
+    {"get it", "GET", API "/designs/1", .status = 200, .header = "ETag", .holds = "\"1.1\""},
+    {"known already", "GET", API "/designs/1", "If-None-Match: \"0.0\", W/\"1.1\"\r\n", .status = 304, .header = "ETag", .holds = "\"1.1\""},
+    {"known otherwise", "GET", API "/designs/1", "If-None-Match: \"1.0\"\r\n", .status = 200},
+    {"replace blindly", "PUT", API "/designs/1", .body = &coarse, .status = 428},
+    {"replace", "PUT", API "/designs/1", "If-Match: \"1.1\"\r\n", .body = &named, .status = 200, .header = "ETag", .holds = "\"1.2\"", .pointer = "name",
+     .value = "mine"},
+    {"replace what has changed", "PUT", API "/designs/1", "If-Match: \"1.1\"\r\n", .body = &coarse, .status = 412},
+    {"a weak tag does not match", "PUT", API "/designs/1", "If-Match: W/\"1.2\"\r\n", .body = &coarse, .status = 412},
+    {"replace whatever it is", "PUT", API "/designs/1", "If-Match: *\r\n", .body = &coarse, .status = 200, .header = "ETag", .holds = "\"1.3\""},
+    {"replace nothing", "PUT", API "/designs/9", "If-Match: *\r\n", .body = &coarse, .status = 404},
+    {"remove an old version", "DELETE", API "/designs/1", "If-Match: \"1.1\"\r\n", .status = 412},
+    {"remove", "DELETE", API "/designs/1", .status = 204},
+    {"gone", "GET", API "/designs/1", .status = 404},
+    {"gone for good", "DELETE", API "/designs/1", .status = 404},
+};
+
+static const struct command analyses[] = {
+    {"not prepared", "POST", API "/analyze", .body = &coarse, .status = 202, .header = "Retry-After", .holds = "1", .pointer = "job/kind", .value = "prepare"},
+    {"wait for it", "POST", API "/analyze", "Prefer: wait=60\r\n", .body = &coarse, .status = 200, .pointer = "load_cases/0/outcome", .value = "converged"},
+    {"prepared now", "POST", API "/check", .body = &coarse, .status = 200, .pointer = "prepared", .value = "true"},
+    {"analyze", "POST", API "/analyze?maps=0", .body = &coarse, .status = 200, .pointer = "load_cases/2/torque_Nm", .value = "1035"},
+    {"analyze without stress", "POST", API "/analyze?root_stress=0&maps=0", .body = &coarse, .status = 200, .pointer = "load_cases/0/root_stress"},
+    {"analyze as CSV", "POST", API "/analyze", "Accept: text/csv\r\n", .body = &coarse, .status = 200, .header = "Content-Type", .holds = "text/csv"},
+    {"analyze as CSV by suffix", "POST", API "/analyze.csv", .body = &coarse, .status = 200, .header = "Content-Type", .holds = "text/csv"},
+    {"JSON is liked better", "POST", API "/analyze?maps=0", "Accept: text/csv;q=0.5, application/json\r\n", .body = &coarse, .status = 200,
+     .header = "Content-Type", .holds = "application/json"},
+    {"no other suffix", "POST", API "/analyze.xml", .body = &coarse, .status = 404},
+    {"no CSV of a check", "POST", API "/check.csv", .body = &coarse, .status = 404},
+    {"a wrong lane", "POST", API "/analyze", "Easeoff-Lane: a b\r\n", .body = &coarse, .status = 400},
+    {"a lane", "POST", API "/analyze?maps=0", "Easeoff-Lane: tab-1\r\n", .body = &coarse, .status = 200},
+    {"sweep", "POST", API "/sweep", .body = &sweep, .status = 200, .pointer = "speed_rpm", .value = "[1000,1500,2000]"},
+    {"sweep as CSV", "POST", API "/sweep.csv", .body = &sweep, .status = 200, .header = "Content-Type", .holds = "text/csv"},
+    {"sweep without a design", "POST", API "/sweep", .text = "{\"speed\":{\"from\":1,\"to\":2}}", .status = 422},
+    {"sweep with a wrong key", "POST", API "/sweep", .text = "{\"design\":{},\"spede\":1,\"speed\":{\"from\":-1,\"to\":2}}", .status = 422,
+     .pointer = "errors/1/pointer", .value = "/speed_rpm/from"},
+    {"formats", "GET", API "/export", .status = 200, .pointer = "items/0/name", .value = "flank-points"},
+    {"flank points", "POST", API "/export/flank-points", .body = &coarse, .status = 200, .header = "Content-Disposition",
+     .holds = "filename=\"paper-pair-flank-points.csv\""},
+    {"chart", "POST", API "/export/modification-chart", .body = &coarse, .status = 200, .header = "Content-Type", .holds = "text/csv"},
+    {"topography", "POST", API "/export/topography", .body = &coarse, .status = 200},
+    {"the design as a file", "POST", API "/export/design", .body = &coarse, .status = 200, .header = "Content-Type", .holds = "application/json"},
+    {"no such format", "POST", API "/export/picture", .body = &coarse, .status = 404},
+};
+
+static const struct command orders[] = {
+    {"an order without a design", "POST", API "/jobs", .text = "{}", .status = 422, .pointer = "errors/0/pointer", .value = "/design"},
+    {"an order with nonsense", "POST", API "/jobs", .text = "{\"kind\":\"cook\",\"priority\":11,\"fresh\":1,\"wish\":2,\"design\":{}}", .status = 422,
+     .pointer = "errors/3/pointer", .value = "/wish"},
+    {"a wrong key", "POST", API "/jobs", "Idempotency-Key: a b\r\n", .body = &order, .status = 400},
+    {"an order", "POST", API "/jobs", "Idempotency-Key: one\r\n", .body = &order, .status = 202, .header = "Location", .holds = API "/jobs/2", .pointer = "kind",
+     .value = "optimize"},
+    {"the same again", "POST", API "/jobs", "Idempotency-Key: one\r\n", .body = &order, .status = 202, .pointer = "id", .value = "2"},
+    {"another under its key", "POST", API "/jobs", "Idempotency-Key: one\r\n",
+     .text = "{\"kind\":\"prepare\",\"design\":{\"gear_pair\":{\"pinion_teeth\":20,\"gear_teeth\":40,\"normal_module_mm\":3,\"helix_angle_deg\":20,"
+             "\"face_width_mm\":30}}}", .status = 422, .pointer = "type", .value = "/problems/key-used"},
+    {"the job", "GET", API "/jobs/2", .status = 200, .pointer = "design/gear_pair/pinion_teeth", .value = "17"},
+    {"no job", "GET", API "/jobs/99", .status = 404},
+    {"no job to stop", "POST", API "/jobs/99/cancel", .status = 404},
+    {"no stream of no job", "GET", API "/jobs/99/events", .status = 404},
+    {"no history of no job", "GET", API "/jobs/99/history", .status = 404},
+    {"no result of a preparation", "GET", API "/jobs/1/result", .status = 409},
+};
+
+static const struct command after[] = {
+    {"the result", "GET", API "/jobs/2/result", .status = 200, .pointer = "true_evaluations", .value = "60"},
+    {"its rows", "GET", API "/jobs/2/history?limit=7", .status = 200, .pointer = "items/6/ordinal", .value = "6"},
+    {"the next rows", "GET", API "/jobs/2/history?limit=7&cursor=6", .status = 200, .pointer = "items/0/ordinal", .value = "7"},
+    {"the last rows", "GET", API "/jobs/2/history?limit=7&cursor=55", .status = 200, .pointer = "next", .value = "null"},
+    {"its rows as CSV", "GET", API "/jobs/2/history.csv", .status = 200, .header = "Content-Type", .holds = "text/csv"},
+    {"convergence", "GET", API "/jobs/2/generations", .status = 200, .pointer = "generation/0", .value = "0"},
+    {"all problems", "GET", API "/history", .status = 200, .pointer = "problems/0/name", .value = "paper pair"},
+    {"done jobs", "GET", API "/jobs?state=done&kind=optimize", .status = 200, .pointer = "items/0/id", .value = "2"},
+    {"one at a time", "GET", API "/jobs?limit=1", .status = 200, .pointer = "next", .value = "2"},
+    {"too late to stop", "POST", API "/jobs/2/cancel", .status = 409, .pointer = "type", .value = "/problems/state"},
+    {"nothing to repeat", "POST", API "/jobs/2/retry", .status = 409},
+    {"once more", "POST", API "/jobs/2/clone", .text = "{\"priority\":-3}", .status = 202, .pointer = "priority", .value = "-3"},
+    {"once more, as it is", "POST", API "/jobs/2/clone", .status = 202},
+    {"once more, wrongly", "POST", API "/jobs/2/clone", .text = "{\"priority\":\"high\"}", .status = 422},
+    {"remove it", "DELETE", API "/jobs/2", .status = 204},
+    {"it is gone", "GET", API "/jobs/2", .status = 404},
+};
+
+#define RUN(table) for (size_t i = 0; i < sizeof table / sizeof table[0]; i++) run_command(&table[i])
+
+/* ---- both ways ---- */
+
+/* What OPTIONS allows at a path is what the description lists there. */
+static void check_path(const char *path, const json_t *item)
+{
+  static const char *const methods[][2] = {{"get", "GET"}, {"post", "POST"}, {"put", "PUT"}, {"delete", "DELETE"}};
+  char real[200], expected[100] = "";
+  size_t length = 0;
+  length += (size_t)sprintf(real, API);
+  for (const char *c = path; *c && length < sizeof real - 1; c++) {
+    real[length++] = *c == '{' ? '1' : *c;
+    if (*c == '{')
+      c += strcspn(c, "}");
+  }
+  real[length] = '\0';
+  for (int i = 0; i < 4; i++)
+    if (json_object_get(item, methods[i][0]))
+      sprintf(expected + strlen(expected), "%s%s, ", methods[i][1], i ? "" : ", HEAD");
+  strcat(expected, "OPTIONS");
+  struct reply reply = call("OPTIONS", real, NULL, NULL);
+  const char *allow = header_of(&reply, "Allow");
+  ok(reply.status == 204 && allow && strcmp(allow, expected) == 0, "%s is as described: %s", path, allow ? allow : "");
+  free_reply(&reply);
+}
+
+static int count_operations(void)
+{
+  const char *key, *method;
+  json_t *item, *operation;
+  int count = 0;
+  json_object_foreach(json_object_get(description, "paths"), key, item)
+    json_object_foreach(item, method, operation)
+      count++;
+  return count;
+}
+
+/* The table in the program, by itself. */
+#include "http/route.h"
+static void check_routes(void)
+{
+  int count = 0;
+  for (int i = 0; eo_routes[i]; i++)
+    for (const struct eo_route *route = eo_routes[i]; route->pattern; route++, count++) {
+      char path[200];
+      snprintf(path, sizeof path, API "%s", route->pattern);
+      if (!find_operation(eo_method_name(route->method), path))
+        ok(0, "%s %s is described", eo_method_name(route->method), route->pattern);
+    }
+  ok(count == count_operations(), "%d routes, %d described", count, count_operations());
+}
+
+/* Every reference leads somewhere, every operation has a name of its own. */
+static int check_references(const json_t *value)
+{
+  const char *key;
+  json_t *inner;
+  size_t i;
+  int wrong = 0;
+  if (json_is_array(value)) {
+    json_array_foreach(value, i, inner)
+      wrong += check_references(inner);
+    return wrong;
+  }
+  json_object_foreach((json_t *)value, key, inner) {
+    wrong += strcmp(key, "$ref") == 0 && !follow(description, json_string_value(inner));
+    wrong += check_references(inner);
+  }
+  return wrong;
+}
+
+static void check_description(void)
+{
+  const char *key;
+  json_t *item;
+  json_object_foreach(json_object_get(description, "paths"), key, item)
+    check_path(key, item);
+  check_routes();
+  ok(check_references(description) == 0, "every schema that is named is there");
+}
+
+/* ---- the terminal and the API say the same ---- */
+
+static char *read_command(const char *command)
+{
+  char *text = NULL;
+  size_t size = 0, got;
+  char block[4096];
+  FILE *in = popen(command, "r"), *out = open_memstream(&text, &size);
+  while ((got = fread(block, 1, sizeof block, in)) > 0)
+    fwrite(block, 1, got, out);
+  fclose(out);
+  pclose(in);
+  return text;
+}
+
+static void check_export(void)
+{
+  char file[300], command[800];
+  snprintf(file, sizeof file, "%s/coarse.json", server.folder);
+  FILE *stream = fopen(file, "w");
+  fputs(coarse, stream);
+  fclose(stream);
+  snprintf(command, sizeof command, "%s export %s --format flank-points", getenv("EASEOFF") ? getenv("EASEOFF") : "./easeoff", file);
+  char *told = read_command(command);
+  struct reply reply = call("POST", API "/export/flank-points", NULL, coarse);
+  ok(told && reply.size > 10000 && strcmp(told, reply.body) == 0, "the terminal exports the same bytes: %zu", reply.size);
+  free(told);
+  free_reply(&reply);
+}
+
+static void check_token(void)
+{
+  static const struct command guarded[] = {
+      {"health is open", "GET", API "/health", .status = 200},
+      {"the rest is not", "GET", API "/designs", .status = 401, .header = "WWW-Authenticate", .holds = "Bearer"},
+      {"a wrong token", "GET", API "/designs", "Authorization: Bearer sesame-seeds\r\n", .status = 401},
+      {"half a token", "GET", API "/designs", "Authorization: Bearer sesame\r\n", .status = 401},
+      {"the token", "GET", API "/designs", "Authorization: Bearer sesame-seed\r\n", .status = 200},
+      {"any name with a token", "GET", API "/designs", "Host: gears.example\r\nAuthorization: Bearer sesame-seed\r\n", .status = 200},
+      {"a session is wanted", "GET", API "/session", .status = 200, .pointer = "required", .value = "true"},
+      {"a wrong session", "POST", API "/session", .text = "{\"token\":\"x\"}", .status = 403},
+      {"a session", "POST", API "/session", .text = "{\"token\":\"sesame-seed\"}", .status = 204, .header = "Set-Cookie", .holds = "HttpOnly; SameSite=Strict"},
+      {"a made-up cookie", "GET", API "/designs", "Cookie: easeoff_session=sesame-seed\r\n", .status = 401},
+  };
+  RUN(guarded);
+  struct reply reply = call("POST", API "/session", NULL, "{\"token\":\"sesame-seed\"}");
+  char cookie[300];
+  const char *set = header_of(&reply, "Set-Cookie");
+  snprintf(cookie, sizeof cookie, "Cookie: a=b; %.*s\r\n", set ? (int)strcspn(set, ";") : 0, set ? set : "");
+  free_reply(&reply);
+  reply = call("GET", API "/designs", cookie, NULL);
+  ok(reply.status == 200, "the cookie opens: %d", reply.status);
+  free_reply(&reply);
+}
+
+static void check_refusals(void)
+{
+  ok(!start_server("--listen", "0.0.0.0:0"), "an address for others needs a token");
+  waitpid(server.pid, NULL, 0);
+  ok(!start_server("--listen", "elsewhere"), "an address that is none");
+  waitpid(server.pid, NULL, 0);
+}
+
+int main(void)
+{
+  int status;
+  json_t *document = coarse_document("ga", 60);
+  coarse = coarse_text();
+  order = order_text("optimize", "ga", 60, 1);
+  json_t *both = json_pack("{s:s, s:O}", "name", "mine", "design", document);
+  named = json_dumps(both, JSON_COMPACT);
+  json_t *range = json_pack("{s:O, s:n, s:{s:i, s:i, s:i}}", "design", document, "torque", "speed", "from", 1000, "to", 2000, "points", 3);
+  sweep = json_dumps(range, JSON_COMPACT);
+  json_decref(range);
+  json_decref(both);
+  json_decref(document);
+  if (!make_data_folder() || !ok(start_server("--threads", "2"), "the server starts"))
+    return 1;
+  description = call_json("GET", API "/openapi.json", NULL, NULL, &status);
+  ok(status == 200 && description, "it describes itself");
+  check_description();
+  RUN(first);
+  RUN(designs);
+  RUN(analyses);
+  RUN(orders);
+  ok(wait_for_job(2, "done", 60), "the job ends");
+  RUN(after);
+  check_export();
+  ok(stop_server(SIGTERM) == 0, "it stops when told");
+  setenv("EASEOFF_TOKEN", "sesame-seed", 1);
+  ok(start_server("--quiet"), "a server with a token");
+  check_token();
+  ok(stop_server(SIGINT) == 0, "it stops on Ctrl-C");
+  unsetenv("EASEOFF_TOKEN");
+  check_refusals();
+  remove_data_folder();
+  json_decref(description);
+  free(coarse);
+  free(order);
+  free(named);
+  free(sweep);
+  return tap_done();
+}

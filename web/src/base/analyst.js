@@ -1,0 +1,121 @@
+// Keeps results in step with the design: its own, the unmodified pair's and the pinned design's.
+import { Refusal, connection } from './api.js';
+import { Lane } from './lane.js';
+import { pairKey, unmodified } from './store.js';
+
+const ANALYZE = 'analyze?histories=1';
+
+/** What the results of a reference depend on. @param {any} design */
+function loadKey(design) {
+  const { name, modification, optimization, ...rest } = design;
+  return JSON.stringify(rest);
+}
+
+export class Analyst extends EventTarget {
+  /** @type {any} */ result = null;
+  /** @type {any} */ plain = null;
+  /** @type {any} */ pinned = null;
+  /** "", "busy", "preparing", "refused" */ state = '';
+  /** @type {any} */ job = null;
+  /** @type {import('./api.js').Fault[]} */ faults = [];
+  message = '';
+  ms = 0;
+  #plainKey = '';
+  #pinKey = '';
+
+  /** @param {import('./store.js').DesignStore} store */
+  constructor(store) {
+    super();
+    this.store = store;
+    this.own = new Lane({
+      result: (_task, data, ms) => {
+        this.result = data;
+        this.ms = ms;
+        this.faults = [];
+        this.message = '';
+        this.#state('');
+        this.#tell('result');
+      },
+      preparing: (_task, job) => {
+        this.job = job;
+        this.#state('preparing');
+      },
+      refused: (_task, error) => {
+        this.faults = error instanceof Refusal ? error.faults : [];
+        this.message = error.message;
+        this.#state('refused');
+      },
+    });
+    this.reference = new Lane({
+      result: (task, data) => {
+        this[task.note === 'pin' ? 'pinned' : 'plain'] = data;
+        this.#tell('result');
+        if (task.note === 'plain') this.#askPin();
+      },
+      refused: (task) => {
+        this[task.note === 'pin' ? 'pinned' : 'plain'] = null;
+      },
+    });
+    store.addEventListener('change', (event) => {
+      const what = /** @type {CustomEvent} */ (event).detail;
+      if (what === 'view') this.#tell('result');
+      else this.update();
+    });
+    connection.addEventListener('change', () => this.#tell('state'));
+  }
+
+  update() {
+    const { store } = this;
+    if (store.faults.size) {
+      this.faults = [];
+      this.#state('refused');
+      return;
+    }
+    const { design } = store;
+    if (this.state !== 'preparing') this.#state('busy');
+    this.own.submit({ path: ANALYZE, body: design, pair: pairKey(design) });
+    const key = loadKey(design);
+    if (key !== this.#plainKey) {
+      this.#plainKey = key;
+      this.reference.submit({ path: ANALYZE, body: unmodified(design), pair: pairKey(design), note: 'plain' });
+    } else this.#askPin();
+  }
+
+  #askPin() {
+    const { pin, design } = this.store;
+    if (!pin) {
+      if (this.pinned) {
+        this.pinned = null;
+        this.#pinKey = '';
+        this.#tell('result');
+      }
+      return;
+    }
+    const body = { ...pin.design, load_cases: design.load_cases };
+    const key = JSON.stringify(body);
+    if (key === this.#pinKey) return;
+    this.#pinKey = key;
+    this.reference.submit({ path: ANALYZE, body, pair: pairKey(body), note: 'pin' });
+  }
+
+  /** @param {string} state */
+  #state(state) {
+    this.state = state;
+    this.#tell('state');
+  }
+
+  /** @param {string} what */
+  #tell(what) {
+    this.dispatchEvent(new Event(what));
+  }
+
+  /** @returns {import('../figures/context.js').Reference[]} the one to compare with first */
+  references() {
+    const { pin } = this.store;
+    /** @type {import('../figures/context.js').Reference[]} */
+    const references = [];
+    if (pin && this.pinned) references.push({ label: pin.label, result: this.pinned, line: 'dashed' });
+    if (this.plain) references.push({ label: 'unmodified', result: this.plain, line: pin ? 'dotted' : 'dashed' });
+    return references;
+  }
+}

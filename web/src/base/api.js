@@ -1,0 +1,125 @@
+// The public API, and whether it answers.
+
+/** @typedef {{ pointer: string, detail: string }} Fault */
+
+/** What the service refused, with its reasons. */
+export class Refusal extends Error {
+  /** @param {number} status @param {any} problem */
+  constructor(status, problem) {
+    super(problem?.detail || problem?.title || `The service answered ${status}.`);
+    this.status = status;
+    this.type = String(problem?.type ?? '');
+    /** @type {Fault[]} */
+    this.faults = Array.isArray(problem?.errors) ? problem.errors : [];
+  }
+}
+
+/** The service does not answer at all. */
+export class Away extends Error {
+  constructor() {
+    super('The service does not answer.');
+  }
+}
+
+/** @typedef {{ status: number, data: any, headers: Headers }} Answer */
+
+const BASE = new URL('api/v1/', document.baseURI);
+const FIRST_RETRY = 1000;
+const LONGEST_RETRY = 5000;
+
+class Connection extends EventTarget {
+  away = false;
+
+  /** Starts asking until the service is back; listeners of "change" hear both turns. */
+  lost() {
+    if (this.away) return;
+    this.away = true;
+    this.dispatchEvent(new Event('change'));
+    this.#retry(FIRST_RETRY);
+  }
+
+  /** @param {number} wait */
+  #retry(wait) {
+    setTimeout(async () => {
+      try {
+        const response = await fetch(new URL('health', BASE), { cache: 'no-store' });
+        if (!response.ok) throw new Error();
+        this.away = false;
+        this.dispatchEvent(new Event('change'));
+      } catch {
+        this.#retry(Math.min(LONGEST_RETRY, wait * 1.5));
+      }
+    }, wait);
+  }
+}
+
+export const connection = new Connection();
+
+/** @param {Response} response */
+async function readBody(response) {
+  const type = response.headers.get('content-type') ?? '';
+  if (/json/.test(type)) return response.json();
+  const text = await response.text();
+  return text === '' ? null : text;
+}
+
+/**
+ * @param {string} method @param {string} path below /api/v1/
+ * @param {{ body?: unknown, headers?: Record<string, string>, signal?: AbortSignal }} [options]
+ * @returns {Promise<Answer>} of a status below 400
+ */
+export async function ask(method, path, { body, headers = {}, signal } = {}) {
+  /** @type {Response} */
+  let response;
+  let data;
+  try {
+    response = await fetch(new URL(path, BASE), {
+      method,
+      signal,
+      headers: body === undefined ? headers : { 'content-type': 'application/json', ...headers },
+      body: body === undefined ? undefined : JSON.stringify(body),
+    });
+    data = await readBody(response);
+  } catch (error) {
+    if (signal?.aborted) throw error;
+    if (error instanceof SyntaxError) throw new Refusal(500, { title: 'The answer of the service cannot be read.' });
+    connection.lost();
+    throw new Away();
+  }
+  if (response.status >= 400) throw new Refusal(response.status, data);
+  return { status: response.status, data, headers: response.headers };
+}
+
+/** @param {string} path */
+export async function get(path) {
+  return (await ask('GET', path)).data;
+}
+
+/** @param {string} path @param {unknown} [body] @param {Record<string, string>} [headers] */
+export async function post(path, body, headers) {
+  return (await ask('POST', path, { body: body ?? {}, headers })).data;
+}
+
+/** Everything of a paged list. @param {string} path @param {number} [most] */
+export async function list(path, most = 2000) {
+  /** @type {any[]} */
+  const items = [];
+  let cursor = null;
+  do {
+    const mark = path.includes('?') ? '&' : '?';
+    const page = await get(`${path}${mark}limit=200${cursor ? `&cursor=${encodeURIComponent(cursor)}` : ''}`);
+    items.push(...page.items);
+    cursor = page.next;
+  } while (cursor && items.length < most);
+  return items;
+}
+
+/** The address of something to download or to stream. @param {string} path */
+export function address(path) {
+  return new URL(path, BASE).href;
+}
+
+/** A random token, for lanes and idempotency keys. */
+export function token() {
+  return Array.from(crypto.getRandomValues(new Uint8Array(12)), (byte) => byte.toString(16).padStart(2, '0')).join('');
+}

@@ -1,0 +1,92 @@
+// The jobs of the service, live from one stream of events for all pages of this browser.
+import { address, connection, list } from './api.js';
+
+const CHANNEL = 'easeoff-events';
+
+export const ACTIVE = ['queued', 'preparing', 'running'];
+
+export class Jobs extends EventTarget {
+  /** @type {Map<string, any>} */ all = new Map();
+  /** @type {EventSource | null} */ #source = null;
+  #channel = 'BroadcastChannel' in window ? new BroadcastChannel(CHANNEL) : null;
+
+  start() {
+    this.reload();
+    this.#channel?.addEventListener('message', (event) => this.#take(event.data));
+    connection.addEventListener('change', () => {
+      if (!connection.away) this.reload();
+    });
+    if (navigator.locks && this.#channel) this.#lead();
+    else this.#alone();
+  }
+
+  /** One page of this browser holds the stream and tells the others: a browser opens six connections to a host, no more. */
+  #lead() {
+    navigator.locks.request(CHANNEL, () => new Promise(() => this.#open())).catch(() => this.#alone());
+  }
+
+  /** Without locks every page has its own stream, as long as it is seen. */
+  #alone() {
+    const turn = () => {
+      if (document.hidden) {
+        this.#source?.close();
+        this.#source = null;
+      } else if (!this.#source) {
+        this.#open();
+        this.reload();
+      }
+    };
+    document.addEventListener('visibilitychange', turn);
+    turn();
+  }
+
+  #open() {
+    const source = new EventSource(address('events'));
+    this.#source = source;
+    source.addEventListener('open', () => this.reload()); // what happened before it is in the list
+    source.addEventListener('job', (event) => {
+      const job = JSON.parse(event.data);
+      this.#channel?.postMessage(job);
+      this.#take(job);
+    });
+    source.addEventListener('error', () => {
+      if (source.readyState !== EventSource.CLOSED) return;
+      connection.lost();
+      const again = () => {
+        if (connection.away) return;
+        connection.removeEventListener('change', again);
+        this.#open();
+      };
+      connection.addEventListener('change', again);
+    });
+  }
+
+  async reload() {
+    try {
+      const items = await list('jobs', 400);
+      this.all = new Map(items.map((job) => [job.id, job]));
+      this.dispatchEvent(new CustomEvent('change', { detail: null }));
+    } catch {
+      // comes again with the connection
+    }
+  }
+
+  /** @param {any} job */
+  #take(job) {
+    if (!job?.id) return;
+    if (job.deleted) this.all.delete(job.id);
+    else this.all.set(job.id, { ...this.all.get(job.id), ...job });
+    this.dispatchEvent(new CustomEvent('change', { detail: job.id }));
+  }
+
+  /** @param {any} job what an answer said */
+  put(job) {
+    this.#channel?.postMessage(job);
+    this.#take(job);
+  }
+
+  /** Optimizations, newest first. */
+  searches() {
+    return [...this.all.values()].filter((job) => job.kind === 'optimize').sort((a, b) => String(b.created).localeCompare(String(a.created)) || Number(b.id) - Number(a.id));
+  }
+}

@@ -1,0 +1,70 @@
+// The field tables that the service describes its documents with.
+
+/**
+ * @typedef {object} Field
+ * @property {string} key
+ * @property {string} kind number, integer, seed, flag, text, choice, numbers, limit, object, list, series
+ * @property {string} [unit] @property {number | null} [low] @property {number | null} [high] @property {any} [default]
+ * @property {string[]} [choices] @property {string} [help] @property {boolean} [required] @property {boolean} [nullable]
+ * @property {string} [derived] @property {number} [count] @property {Field[]} [fields]
+ */
+
+/** @param {any} description of GET /schema @returns {Field[]} */
+export function designFields(description) {
+  const design = description.design ?? description;
+  return design.fields ?? design;
+}
+
+/** @param {Field[]} fields @param {string} pointer @returns {Field | undefined} */
+export function fieldAt(fields, pointer) {
+  /** @type {Field | undefined} */
+  let field;
+  /** @type {Field[] | undefined} */
+  let level = fields;
+  for (const key of pointer.split('/').slice(1)) {
+    if (field?.kind === 'list' && /^\d+$/.test(key)) continue;
+    field = level?.find((candidate) => candidate.key === key);
+    if (!field) return undefined;
+    level = field.fields;
+  }
+  return field;
+}
+
+/** @param {Field} field */
+export function isNumeric(field) {
+  return ['number', 'integer', 'seed', 'limit'].includes(field.kind);
+}
+
+/** @param {Field} field */
+export function fallbackOf(field) {
+  if (field.kind === 'text' && !field.choices && typeof field.default !== 'string') return '';
+  return field.default === undefined ? null : field.default;
+}
+
+/**
+ * The document with every key that has a default; what the service would assume is written out.
+ * @param {Field[]} fields @param {any} document
+ */
+export function complete(fields, document) {
+  const whole = { ...document };
+  for (const field of fields) {
+    if (field.kind === 'object' && field.fields) {
+      if (whole[field.key] === undefined && field.key === 'gear') continue; // absent: unmodified
+      whole[field.key] = complete(field.fields, whole[field.key] ?? {});
+    } else if (field.kind === 'list') {
+      if (Array.isArray(whole[field.key])) whole[field.key] = whole[field.key].map((/** @type {any} */ row) => complete(field.fields ?? [], row));
+    } else if (whole[field.key] === undefined && !field.required) {
+      whole[field.key] = fallbackOf(field);
+    }
+  }
+  return whole;
+}
+
+/** Why a number cannot be taken, or nothing. @param {Field} field @param {number} value */
+export function numberFault(field, value) {
+  if ((field.kind === 'integer' || field.kind === 'seed') && !Number.isInteger(value)) return 'A whole number is needed.';
+  const low = field.low ?? -Infinity;
+  const high = field.high ?? Infinity;
+  if (value < low || value > high) return `${value} is outside ${low} … ${high}.`;
+  return '';
+}

@@ -1,0 +1,56 @@
+// Light or dark: the reader's choice, else the system's.
+
+const KEY = 'easeoff-theme';
+const dark = matchMedia('(prefers-color-scheme: dark)');
+
+/** @type {Map<string, string>} */
+const colours = new Map();
+
+class Theme extends EventTarget {
+  constructor() {
+    super();
+    dark.addEventListener('change', () => this.#apply());
+    this.#apply();
+  }
+
+  get choice() {
+    return localStorage.getItem(KEY) ?? 'system';
+  }
+
+  /** "system", "light", "dark" @param {string} choice */
+  set choice(choice) {
+    if (choice === 'system') localStorage.removeItem(KEY);
+    else localStorage.setItem(KEY, choice);
+    this.#apply();
+  }
+
+  get dark() {
+    return document.documentElement.dataset.theme === 'dark';
+  }
+
+  /** Light for as long as a page is printed. @param {boolean} paper */
+  print(paper) {
+    this.paper = paper;
+    this.#apply();
+  }
+
+  #apply() {
+    const now = this.paper ? 'light' : this.choice === 'system' ? (dark.matches ? 'dark' : 'light') : this.choice;
+    if (document.documentElement.dataset.theme === now) return;
+    document.documentElement.dataset.theme = now;
+    colours.clear();
+    this.dispatchEvent(new Event('change'));
+  }
+}
+
+export const theme = new Theme();
+
+/** A colour of the style sheet for canvases: colour("c1"). @param {string} name */
+export function colour(name) {
+  let value = colours.get(name);
+  if (value === undefined) {
+    value = getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
+    colours.set(name, value);
+  }
+  return value;
+}

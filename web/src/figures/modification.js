@@ -1,0 +1,197 @@
+// What is taken off the flanks, as on an inspection sheet: profile traces upright from root to tip, lead traces along the face.
+import { sig } from '../base/format.js';
+import { colour } from '../base/theme.js';
+import { Painting, SMALL } from './canvas.js';
+import { endsOf } from './context.js';
+import { switcher } from './frame.js';
+
+const END_COLOUR = { left: 'c1', right: 'c2' };
+const LINES = { dashed: [5, 4], dotted: [1.5, 3] };
+
+/** @typedef {{ at: number[], value: number[] }} Trace */
+
+export class ModificationCharts {
+  #member = /** @type {'pinion' | 'gear'} */ ('pinion');
+  /** @type {import('./context.js').Context | null} */ #context = null;
+
+  constructor() {
+    /** @param {string} value */
+    const choose = (value) => {
+      this.#member = /** @type {'pinion' | 'gear'} */ (value);
+      this.#repaint();
+    };
+    const controls = () => [switcher('Member', [['pinion', 'pinion'], ['gear', 'gear']], this.#member, choose)];
+    this.profile = new Painting({ title: 'Profile modification', unit: 'µm', help: 'Material taken off, to the right; K-chart form, root below, tip above', controls: controls() },
+      (pen, width, height) => this.#paintProfile(pen, width, height), { table: () => this.#table('profile_um', 'u_mm') });
+    this.lead = new Painting({ title: 'Lead modification', unit: 'µm', help: 'Material taken off, downwards, over the face of each end' },
+      (pen, width, height) => this.#paintLead(pen, width, height), { table: () => this.#table('lead_um', 'eta_mm') });
+    this.elements = [this.profile.element, this.lead.element];
+  }
+
+  /** @param {import('./context.js').Context} context */
+  set(context) {
+    this.#context = context;
+    this.#repaint();
+  }
+
+  #repaint() {
+    this.profile.repaint();
+    this.lead.repaint();
+  }
+
+  /** @param {any} result @param {string} end @param {'profile_um' | 'lead_um'} what @returns {Trace | null} */
+  #trace(result, end, what) {
+    const modification = result?.modification;
+    const member = modification?.[this.#member];
+    if (!member?.[end]) return null;
+    return { at: what === 'profile_um' ? member.u_mm : modification.eta_mm, value: member[end][what] };
+  }
+
+  /** Largest value of all that is drawn, at least 10 µm, in steps. @param {'profile_um' | 'lead_um'} what */
+  #range(what) {
+    const context = /** @type {import('./context.js').Context} */ (this.#context);
+    let low = 0;
+    let high = 10;
+    for (const result of [context.result, ...context.references.map((reference) => reference.result)]) {
+      for (const end of endsOf(context.result)) {
+        for (const value of this.#trace(result, end, what)?.value ?? []) {
+          low = Math.min(low, value);
+          high = Math.max(high, value);
+        }
+      }
+    }
+    const step = high - low > 100 ? 50 : 10;
+    return { low: Math.floor(low / step) * step, high: Math.ceil(high / step) * step };
+  }
+
+  /** @param {CanvasRenderingContext2D} pen @param {number} width @param {number} height */
+  #paintProfile(pen, width, height) {
+    if (!this.#context?.result.modification) return;
+    const ends = endsOf(this.#context.result);
+    const range = this.#range('profile_um');
+    const box = { left: 34, top: 10, height: height - 40 };
+    const gap = 22;
+    const panelWidth = (width - box.left - 12 - gap * (ends.length - 1)) / ends.length;
+    ends.forEach((end, i) => {
+      const left = box.left + i * (panelWidth + gap);
+      /** @param {number} value */
+      const across = (value) => left + (panelWidth * (value - range.low)) / (range.high - range.low);
+      this.#grid(pen, range, (value) => [[across(value), box.top], [across(value), box.top + box.height]], (value) => [across(value), height - 19, 'center']);
+      this.#traces(pen, end, 'profile_um', (at, value, trace) => [across(value), box.top + box.height * (1 - (at - trace.at[0]) / (trace.at[trace.at.length - 1] - trace.at[0]))]);
+      this.#starts(pen, end, left, panelWidth, box);
+      pen.fillStyle = colour('muted');
+      pen.textAlign = 'center';
+      pen.fillText(ends.length === 2 ? `${end} end` : 'taken off', left + panelWidth / 2, height - 5);
+    });
+    pen.textAlign = 'right';
+    pen.fillText('tip', box.left - 6, box.top + 8);
+    pen.fillText('root', box.left - 6, box.top + box.height);
+  }
+
+  /** Where the reliefs start. @param {CanvasRenderingContext2D} pen @param {'left' | 'right'} end @param {number} left @param {number} width @param {{ top: number, height: number }} box */
+  #starts(pen, end, left, width, box) {
+    const { result } = /** @type {import('./context.js').Context} */ (this.#context);
+    const trace = this.#trace(result, end, 'profile_um');
+    const flank = result.design.modification?.[this.#member]?.[end];
+    if (!trace || !flank) return;
+    const [bottom, top] = [trace.at[0], trace.at[trace.at.length - 1]];
+    pen.strokeStyle = colour('line');
+    pen.setLineDash([2, 3]);
+    for (const [amount, u] of [[flank.tip_relief_um, flank.tip_relief_start_mm], [flank.root_relief_um, -flank.root_relief_start_mm]]) {
+      if (!(amount > 0)) continue;
+      const y = box.top + box.height * (1 - (u - bottom) / (top - bottom));
+      pen.beginPath();
+      pen.moveTo(left, y);
+      pen.lineTo(left + width, y);
+      pen.stroke();
+      pen.fillStyle = colour('muted');
+      pen.textAlign = 'right';
+      pen.fillText(`${sig(Math.abs(u), 3)} mm`, left + width, u > 0 ? y - 3 : y + 10);
+    }
+    pen.setLineDash([]);
+  }
+
+  /** @param {CanvasRenderingContext2D} pen @param {number} width @param {number} height */
+  #paintLead(pen, width, height) {
+    if (!this.#context?.result.modification) return;
+    const ends = endsOf(this.#context.result);
+    const range = this.#range('lead_um');
+    const box = { left: 34, top: 10, height: height - 34 };
+    const gap = 22;
+    const panelWidth = (width - box.left - 12 - gap * (ends.length - 1)) / ends.length;
+    /** @param {number} value */
+    const down = (value) => box.top + (box.height * (value - range.low)) / (range.high - range.low);
+    ends.forEach((end, i) => {
+      const left = box.left + i * (panelWidth + gap);
+      this.#grid(pen, range, (value) => [[left, down(value)], [left + panelWidth, down(value)]], i === 0 ? (value) => [box.left - 5, down(value) + 3, 'right'] : undefined);
+      const mirrored = end === 'left' && ends.length === 2;
+      this.#traces(pen, end, 'lead_um', (at, value, trace) => {
+        const part = (at - trace.at[0]) / (trace.at[trace.at.length - 1] - trace.at[0]);
+        return [left + panelWidth * (mirrored ? 1 - part : part), down(value)];
+      });
+      pen.fillStyle = colour('muted');
+      pen.textAlign = 'center';
+      pen.fillText(ends.length === 2 ? `${end} end` : 'face', left + panelWidth / 2, height - 5);
+    });
+  }
+
+  /** @param {CanvasRenderingContext2D} pen @param {{ low: number, high: number }} range @param {(value: number) => number[][]} line @param {((value: number) => [number, number, string]) | undefined} label */
+  #grid(pen, range, line, label) {
+    const step = niceStep(range.high - range.low);
+    pen.font = SMALL;
+    pen.lineWidth = 1;
+    for (let value = range.low; value <= range.high + 1e-9; value += step) {
+      const [from, to] = line(value);
+      pen.strokeStyle = colour(value === 0 ? 'mark' : 'grid');
+      pen.beginPath();
+      pen.moveTo(from[0], from[1]);
+      pen.lineTo(to[0], to[1]);
+      pen.stroke();
+      if (!label) continue;
+      const [x, y, align] = label(value);
+      pen.fillStyle = colour('muted');
+      pen.textAlign = /** @type {CanvasTextAlign} */ (align);
+      pen.fillText(String(value), x, y);
+    }
+  }
+
+  /** @param {CanvasRenderingContext2D} pen @param {'left' | 'right'} end @param {'profile_um' | 'lead_um'} what @param {(at: number, value: number, trace: Trace) => [number, number]} place */
+  #traces(pen, end, what, place) {
+    const context = /** @type {import('./context.js').Context} */ (this.#context);
+    /** @param {any} result @param {number[]} dash @param {number} width */
+    const draw = (result, dash, width) => {
+      const trace = this.#trace(result, end, what);
+      if (!trace) return;
+      pen.setLineDash(dash);
+      pen.lineWidth = width;
+      pen.strokeStyle = colour(END_COLOUR[end]);
+      pen.beginPath();
+      trace.at.forEach((at, i) => {
+        const [x, y] = place(at, trace.value[i], trace);
+        if (i === 0) pen.moveTo(x, y);
+        else pen.lineTo(x, y);
+      });
+      pen.stroke();
+      pen.setLineDash([]);
+    };
+    for (const reference of context.references) draw(reference.result, LINES[reference.line], 1.25);
+    draw(context.result, [], 2);
+  }
+
+  /** @param {'profile_um' | 'lead_um'} what @param {string} place @returns {(string | number | null)[][]} */
+  #table(what, place) {
+    const context = this.#context;
+    if (!context) return [];
+    const ends = endsOf(context.result);
+    const traces = ends.map((end) => this.#trace(context.result, end, what));
+    const first = traces[0];
+    if (!first) return [];
+    return [[place, ...ends.map((end) => `${this.#member} ${end} (um)`)], ...first.at.map((at, i) => [at, ...traces.map((trace) => trace?.value[i] ?? null)])];
+  }
+}
+
+/** @param {number} span */
+function niceStep(span) {
+  for (const step of [5, 10, 20, 50, 100, 200, 500]) if (span / step <= 5) return step;
+  return 1000;
+}

@@ -1,0 +1,56 @@
+// Vibration acceleration over the mesh cycle and its orders.
+import { Chart } from './chart.js';
+import { caseColour, caseText, counting, endsOf, sameCase } from './context.js';
+import { switcher } from './frame.js';
+
+const READINGS = /** @type {[string, string][]} */ ([['normal', 'normal'], ['transverse', 'transv.'], ['rotational', 'rotat.']]);
+const ORDERS = 12;
+const END_COLOUR = { left: 'c1', right: 'c2' };
+
+export class Vibration {
+  #reading = 'normal';
+
+  /** @param {() => void} again */
+  constructor(again) {
+    this.cycle = new Chart({
+      title: 'Vibration', unit: 'm/s²', help: 'Relative acceleration of the teeth of each end along the line of action: normal, transverse, or by rotation alone',
+      xLabel: 'mesh cycle', cycle: true,
+      controls: [switcher('Acceleration', READINGS, this.#reading, (value) => {
+        this.#reading = value;
+        again();
+      })],
+    });
+    this.orders = new Chart({ title: 'Orders of the vibration', unit: 'm/s²', help: 'Amplitudes of the mesh orders, mean of the ends', xLabel: 'mesh order', bars: true });
+    this.elements = [this.cycle.element, this.orders.element];
+  }
+
+  /** @param {import('./context.js').Context} context */
+  set({ result, references, loadCase: k }) {
+    const loadCase = result.load_cases[k];
+    const reading = `${this.#reading}_m_per_s2`;
+    /** @type {import('./chart.js').Curve[]} */
+    const curves = [];
+    /** @type {import('./chart.js').Curve[]} */
+    const bars = [];
+    for (const reference of references) {
+      const other = sameCase(reference.result, loadCase, k)?.vibration;
+      for (const end of endsOf(result)) {
+        const y = other?.[end]?.history?.[reading];
+        if (y) curves.push({ label: `${end}, ${reference.label}`, x: other.position, y, colour: END_COLOUR[end], line: reference.line });
+      }
+      result.load_cases.forEach((/** @type {any} */ c, /** @type {number} */ i) => {
+        const orders = sameCase(reference.result, c, i)?.vibration?.[`orders_${reading}`];
+        if (orders) bars.push({ label: `${caseText(c)}, ${reference.label}`, y: orders.slice(1, ORDERS + 1), colour: caseColour(i), line: reference.line });
+      });
+    }
+    const own = loadCase.vibration;
+    for (const end of endsOf(result)) if (own?.[end]?.history) curves.push({ label: end, y: own[end].history[reading], colour: END_COLOUR[end] });
+    result.load_cases.forEach((/** @type {any} */ c, /** @type {number} */ i) => {
+      const orders = c.vibration?.[`orders_${reading}`];
+      if (orders) bars.push({ label: caseText(c), y: orders.slice(1, ORDERS + 1), colour: caseColour(i) });
+    });
+    this.cycle.frame.say(curves.length ? '' : 'No periodic vibration was found.');
+    if (own?.position && curves.length) this.cycle.set({ x: own.position, curves });
+    this.orders.set({ x: counting(ORDERS, 1), curves: bars });
+  }
+}

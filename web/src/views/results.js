@@ -1,0 +1,62 @@
+// Every figure of a result, kept in step.
+import { fill, h } from '../base/dom.js';
+import { Contact } from '../figures/contact.js';
+import { GearDrawing } from '../figures/gear.js';
+import { Impact } from '../figures/impact.js';
+import { RootStress, Sharing, Stiffness } from '../figures/mesh.js';
+import { ModificationCharts } from '../figures/modification.js';
+import { SpeedSweep, TorqueSweep } from '../figures/sweeps.js';
+import { Topography } from '../figures/topography.js';
+import { Transmission } from '../figures/transmission.js';
+import { Vibration } from '../figures/vibration.js';
+
+export class Results {
+  /** @type {import('../figures/context.js').Context | null} */ #context = null;
+  #asked = false;
+
+  constructor() {
+    const again = () => this.#later();
+    const transmission = new Transmission(again);
+    const contact = new Contact();
+    const stiffness = new Stiffness(again);
+    const sharing = new Sharing(again);
+    const impact = new Impact();
+    const vibration = new Vibration(again);
+    const root = new RootStress(again);
+    const charts = new ModificationCharts();
+    const topography = new Topography();
+    const drawing = new GearDrawing();
+    this.speed = new SpeedSweep();
+    this.torque = new TorqueSweep();
+    this.figures = [transmission, contact, stiffness, sharing, impact, vibration, root, charts, topography, drawing];
+    this.notes = h('section.notes', { 'aria-label': 'Warnings' });
+    const ordered = [transmission.elements[0], contact.elements[0], transmission.elements[1], stiffness.elements[0], sharing.elements[0], impact.elements[0], ...vibration.elements, ...root.elements,
+      ...this.speed.elements, ...this.torque.elements, ...charts.elements, ...drawing.elements, ...topography.elements];
+    this.element = h('.figures', null, ordered, this.notes);
+  }
+
+  /** @param {import('../figures/context.js').Context} context */
+  set(context) {
+    this.#context = context;
+    this.#later();
+  }
+
+  /** The newest context at the next frame; what came between is never drawn. */
+  #later() {
+    if (this.#asked) return;
+    this.#asked = true;
+    requestAnimationFrame(() => {
+      this.#asked = false;
+      this.draw();
+    });
+  }
+
+  draw() {
+    const context = this.#context;
+    if (!context) return;
+    for (const figure of this.figures) figure.set(context);
+    this.speed.show(context);
+    const warnings = context.result.warnings ?? [];
+    fill(this.notes, warnings.length ? [h('h3', null, 'What to know about this result'), h('ul', null, warnings.map((/** @type {string} */ text) => h('li', null, text)))] : null);
+  }
+}
