@@ -145,6 +145,7 @@ await chapter('figures', async () => {
   await page.evaluate(() => document.querySelector('.figure-pane').scrollTo(0, 99999));
   await page.waitForFunction(() => document.querySelector('.figure.tall canvas') || document.querySelector('.figure.tall .figure-note:not([hidden])'));
   ok(await page.locator('.figure.tall canvas').count() === 1, 'the topography is drawn in space');
+  await page.locator('.figure.wide').first().scrollIntoViewIfNeeded();
   await page.locator('.figure.wide .uplot').first().waitFor();
   ok(true, 'the speed sweep is drawn');
   await page.evaluate(() => document.querySelector('.figure-pane').scrollTo(0, 0));
