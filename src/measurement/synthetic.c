@@ -72,6 +72,8 @@ static double channel_angle(const struct eo_synthetic *s, int64_t row, int chann
   double angle = shown_angle(s, channel, time) + s->noise * draw(s, STREAM_NOISE, at, channel);
   if (channel == EO_GEAR && s->fault == EO_FAULT_SPIKE && row == s->row)
     angle += 0.1;
+  if (channel == EO_GEAR && s->fault == EO_FAULT_LOST_COUNT && row >= s->row)
+    angle -= 2 * M_PI * (double)s->size / s->lines[EO_GEAR];
   return channel == EO_GEAR && s->fault == EO_FAULT_REVERSED ? -angle : angle;
 }
 
@@ -222,6 +224,8 @@ enum eo_code eo_synthetic_check(const struct eo_synthetic *s, struct eo_error *e
     return eo_error_set(error, EO_ERROR_INPUT, "", "Speed, turns and sample rate of a rig are positive.");
   if (!lines && (s->lines[0] < 1 || s->lines[1] < 1 || (s->output == EO_SYNTHETIC_COUNTS && s->interpolation < 1)))
     return eo_error_set(error, EO_ERROR_INPUT, "", "Counts, pulses and raw tracks need lines per turn, counts and steps an interpolation.");
+  if (s->output == EO_SYNTHETIC_COUNTS && ((double)s->lines[0] * s->interpolation > 1e9 || (double)s->lines[1] * s->interpolation > 1e9))
+    return eo_error_set(error, EO_ERROR_INPUT, "", "More than 1e9 counts per turn are no counts any more.");
   if (duration(s) * s->sample_rate > 1e9)
     return eo_error_set(error, EO_ERROR_INPUT, "", "The recording would have %.3g rows, more than 1e9.", duration(s) * s->sample_rate);
   return EO_OK;
@@ -244,10 +248,12 @@ enum eo_code eo_synthetic_record(const struct eo_synthetic *s, struct eo_recordi
   return code;
 }
 
+double eo_synthetic_speed(const struct eo_synthetic *s) { return (smooth(s, duration(s)) - smooth(s, 0)) / duration(s); }
+
 double eo_synthetic_rms(const struct eo_synthetic *s, int harmonics)
 {
-  double sum = 0;
+  double sum = 0, speed = eo_synthetic_speed(s);
   for (int h = 1; h <= harmonics && h <= s->orders; h++)
-    sum += pow(cabs(s->order[h - 1]) * pow(h * s->teeth[EO_PINION] * s->speed, 2), 2) / 2;
+    sum += pow(cabs(s->order[h - 1]) * pow(h * s->teeth[EO_PINION] * speed, 2), 2) / 2;
   return sqrt(sum);
 }

@@ -120,6 +120,25 @@ static void check_memory(void)
   end(fresh);
 }
 
+/* The document by parts, on two threads, is the document. */
+static void check_writing(void)
+{
+  struct subject *s = start("paper-case-b");
+  struct eo_error error;
+  s->analysis->threads = 2;
+  eo_analysis_run(s->analysis, &s->design, ALL, &error);
+  for (unsigned left_out = 0; left_out < 4; left_out++) {
+    struct eo_text whole = {0}, parts = {0};
+    json_t *document = eo_result_encode_part(s->analysis, &s->design, NULL, left_out);
+    eo_json_write(&whole, document, EO_JSON_COMPACT);
+    enum eo_code code = eo_result_write(s->analysis, &s->design, NULL, left_out, &parts, &error);
+    size_t size = whole.size;
+    ok(!code && same(&whole, &parts), "written by parts: the same %zu bytes", size);
+    json_decref(document);
+  }
+  end(s);
+}
+
 /* Two threads, ends that change one at a time, ends that become equal: the same bytes as a new analysis gives on one thread. */
 static void check_threads(void)
 {
@@ -287,6 +306,7 @@ int main(void)
   check_names("paper-case-b", 2);
   check_names("single", 1);
   check_memory();
+  check_writing();
   check_threads();
   check_unmodified();
   check_objectives();
