@@ -50,6 +50,7 @@ struct eo_request {
   bool csv;                           /* asked for by Accept or by the suffix */
   struct eo_text body;
   size_t received, body_limit;
+  size_t held;                        /* bytes of the body in memory */
   double started;                     /* ms of the monotonic clock */
   struct eo_reply reply;
   bool dispatched;

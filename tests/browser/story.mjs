@@ -5,7 +5,7 @@ import { Server, chapter, finish, load, note, ok, openBrowser } from './harness.
 // a coarse mesh, so that preparing the pair takes a second
 const COARSE = { positions: 32, cells_per_line: 16, sector_teeth: 3, neighbour_coupling: false, layers: 14, flank_rows: 6, fillet_elements: 8 };
 const START = `#design?from=paper-case-a&${Object.entries(COARSE).map(([key, value]) => `resolution.${key}=${value}`).join('&')}`;
-const WAIT = 20000;
+const WAIT = 60000;
 const MOST_BYTES = 1e6; // of the first view
 
 const server = await Server.start();
@@ -145,6 +145,7 @@ await chapter('figures', async () => {
   await page.evaluate(() => document.querySelector('.figure-pane').scrollTo(0, 99999));
   await page.waitForFunction(() => document.querySelector('.figure.tall canvas') || document.querySelector('.figure.tall .figure-note:not([hidden])'));
   ok(await page.locator('.figure.tall canvas').count() === 1, 'the topography is drawn in space');
+  await page.locator('.figure.wide').first().scrollIntoViewIfNeeded();
   await page.locator('.figure.wide .uplot').first().waitFor();
   ok(true, 'the speed sweep is drawn');
   await page.evaluate(() => document.querySelector('.figure-pane').scrollTo(0, 0));
@@ -182,7 +183,7 @@ await chapter('search', async () => {
   await page.reload();
   await page.locator('.job-list tbody tr').first().waitFor();
   ok(/running|preparing|queued|done/.test(await page.locator('.job-list tbody tr').first().innerText()), 'after a reload it is still there');
-  await page.waitForFunction(() => document.querySelector('.job-list tbody .job-state')?.textContent === 'done', null, { timeout: 6 * WAIT });
+  await page.waitForFunction(() => document.querySelector('.job-list tbody .job-state')?.textContent === 'done', null, { timeout: 4 * WAIT });
   ok(true, 'it ends');
   await page.locator('.job-detail .figure', { hasText: 'Convergence' }).locator('.uplot').waitFor();
   await page.locator('.job-detail .figure', { hasText: 'History' }).waitFor();
@@ -207,6 +208,21 @@ await chapter('compare and print', async () => {
   ok(paper.subarray(0, 4).toString() === '%PDF' && paper.length > 40000, 'a report on paper');
   ok((paper.toString('latin1').match(/\/Type\s*\/Page\b/g) ?? []).length >= 3, 'of some pages');
   ok(await page.evaluate(() => !document.body.classList.contains('paper')), 'and the screen is a screen again');
+});
+
+await chapter('two pages share one stream', async () => {
+  const other = await context.newPage();
+  await other.goto(`${server.address}#optimize?from=paper-case-a`);
+  await other.locator('.job-list tbody tr').first().waitFor();
+  const rows = await other.locator('.job-list tbody tr').count();
+  await page.getByRole('navigation').getByRole('button', { name: 'Optimize' }).click();
+  await page.getByRole('button', { name: 'Again' }).click();
+  await other.waitForFunction((before) => document.querySelectorAll('.job-list tbody tr').length === before + 1, rows);
+  await other.waitForFunction(() => document.querySelector('.job-list tbody .job-state')?.textContent === 'done', null, { timeout: 4 * WAIT });
+  ok(true, 'the other page sees a search that this one starts');
+  await other.close();
+  await page.getByRole('navigation').getByRole('button', { name: 'Compare' }).click();
+  await page.getByRole('navigation').getByRole('button', { name: 'Design' }).click();
 });
 
 await chapter('back', async () => {
