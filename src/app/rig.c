@@ -108,7 +108,7 @@ static void take_load_case(struct request *r)
     r->rig.speed = largest->speed;
 }
 
-static enum eo_code respond(struct request *r, const struct eo_progress *progress, struct eo_prediction *prediction, struct eo_error *error)
+static enum eo_code respond(struct request *r, const struct eo_progress *progress, struct eo_rig_prediction *prediction, struct eo_error *error)
 {
   struct eo_text directory = {0};
   bool keep = !r->no_cache && eo_app_cache_directory(r->data, &directory);
@@ -167,7 +167,7 @@ static int run_request(struct request *r)
 {
   struct eo_watch watch;
   struct eo_error error;
-  struct eo_prediction prediction;
+  struct eo_rig_prediction prediction;
   take_load_case(r);
   eo_watch_start(&watch);
   enum eo_code code = respond(r, &watch.progress, &prediction, &error);

@@ -57,7 +57,7 @@ static const struct eo_field fields[] = {
 const struct eo_table eo_rig_table = EO_TABLE("a synthetic rig", struct eo_rig_request, fields);
 
 void eo_rig_set_pair(struct eo_rig_request *request, const struct eo_geometry *geometry, const struct eo_supports *supports,
-                     const struct eo_prediction *prediction)
+                     const struct eo_rig_prediction *prediction)
 {
   struct eo_synthetic *s = &request->synthetic;
   for (int i = 0; i < 2; i++) {

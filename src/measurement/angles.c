@@ -244,7 +244,7 @@ static void learn(struct maker *m, const struct eo_sample *s, int count, struct 
 static bool odd_step(const struct usual *u, const double limit[2], const struct eo_sample *from, const struct eo_sample *to, double excess[2])
 {
   bool odd = false;
-  double time = to->time - from->time, slack = fmax(0, time - 1.5 * u->interval);
+  double time = to->time - from->time, slack = fmax(0, time - (0.5 + (double)(to->row - from->row)) * u->interval); /* of a gap in time */
   for (int c = 0; c < 2; c++) {
     excess[c] = step_of(from, to, c) - u->rate[c] * time;
     odd = odd || fabs(excess[c]) > limit[c] + 0.02 * fabs(u->rate[c]) * slack;

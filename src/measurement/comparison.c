@@ -23,7 +23,7 @@ void eo_measured_take(struct eo_measured *m, const struct eo_transmission *t, co
 
 /* ---- phase ---- */
 
-static double likeness_at(const struct eo_measured *m, const struct eo_prediction *p, double shift)
+static double likeness_at(const struct eo_measured *m, const struct eo_rig_prediction *p, double shift)
 {
   double sum = 0, size[2] = {0, 0};
   int harmonics = m->harmonics < p->harmonics ? m->harmonics : p->harmonics;

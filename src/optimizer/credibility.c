@@ -8,14 +8,12 @@
      from the second epoch on, what is the best of all when an epoch ends is refined once by an evolution strategy
             (evolution.h), of whose samples the surrogate chooses, until `evolution_stall` batches gain nothing: objectives
             made of maxima over load cases, ends and mesh positions lead along kinks, where a smooth surrogate stops
-     the last share of the budget polishes the best row of all: trust region only, then the evolution strategy
-
-   The surrogate sees values cut off at their median: what is bad need not be known exactly. s: median less minimum. */
+     the last share of the budget polishes the best row of all: trust region only, then the evolution strategy */
+#include "optimizer/credibility_model.h"
 #include "optimizer/evolution.h"
 #include "optimizer/internal.h"
 #include "optimizer/local.h"
 #include "optimizer/operators.h"
-#include "optimizer/surrogate.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -23,7 +21,6 @@
 
 static const double spread[] = {0, 0, 0.003, 0.003, 0.01, 0.03, 0.1, 0.2}; /* distances to keep, over sqrt n */
 enum { SPREADS = 8, ROUNDS = 3 };
-static const double ridge = 1e-9;
 static const double polish_radius = 0.25; /* of the trust region when polishing starts, in local_radius */
 
 struct credibility {
@@ -43,20 +40,11 @@ struct credibility {
   int parents_max, children;
   double *parents, *parent_score;  /* [parents_max][n], [parents_max] */
   double *pool, *pool_score;       /* [children][n], [children] */
-  int *rows;                       /* [model_rows] of the surrogate */
-  double *x, *y, *sorted;          /* [model_rows][n], [model_rows], likewise */
+  double *latin;                   /* scratch [initial_factor n] */
   double *chosen;                  /* [batch][n] */
   double *pool_gap;                /* [children] distance to the nearest row */
   int *index;                      /* scratch [children + population] */
-  struct ranked {
-    double key;
-    int row;
-  } *ranked;                       /* scratch [ranked_capacity], as is the next */
-  bool *used;
-  int ranked_capacity;
-  double spread_of_values;         /* s */
-  bool modelled;
-  struct eo_surrogate surrogate;
+  struct eo_credibility_model model;
   struct eo_local local;
   struct eo_evolution evolution;
 };
@@ -73,16 +61,11 @@ static void stop(struct eo_optimizer *o)
   free(c->parent_score);
   free(c->pool);
   free(c->pool_score);
-  free(c->rows);
-  free(c->x);
-  free(c->y);
-  free(c->sorted);
+  free(c->latin);
   free(c->chosen);
   free(c->pool_gap);
   free(c->index);
-  free(c->ranked);
-  free(c->used);
-  eo_surrogate_done(&c->surrogate);
+  eo_credibility_model_done(&c->model);
   eo_local_done(&c->local);
   eo_evolution_done(&c->evolution);
   free(c);
@@ -91,7 +74,7 @@ static void stop(struct eo_optimizer *o)
 static enum eo_code start(struct eo_optimizer *o, struct eo_error *error)
 {
   const struct eo_optimizer_settings *s = &o->settings;
-  const size_t n = (size_t)s->variables, rows = (size_t)s->model_rows;
+  const size_t n = (size_t)s->variables;
   struct credibility *c = o->state = calloc(1, sizeof *c);
   if (!c)
     return eo_error_memory(error);
@@ -106,19 +89,15 @@ static enum eo_code start(struct eo_optimizer *o, struct eo_error *error)
   c->parent_score = malloc(parents * sizeof(double));
   c->pool = malloc(children * n * sizeof(double));
   c->pool_score = malloc(children * sizeof(double));
-  c->rows = malloc(rows * sizeof(int));
-  c->x = malloc(rows * n * sizeof(double));
-  c->y = malloc(rows * sizeof(double));
-  c->sorted = malloc((rows + initial) * sizeof(double));
+  c->latin = malloc(initial * sizeof(double));
   c->chosen = malloc(batch * n * sizeof(double));
   c->generation = malloc(batch * sizeof(int));
   c->generation_x = malloc(batch * sizeof *c->generation_x);
   c->pool_gap = malloc(children * sizeof(double));
   c->index = malloc((children + parents) * sizeof(int));
-  if (!c->parents || !c->parent_score || !c->pool || !c->pool_score || !c->rows || !c->x || !c->y || !c->sorted ||
-      !c->chosen || !c->pool_gap || !c->index || !c->generation || !c->generation_x)
+  if (!c->parents || !c->parent_score || !c->pool || !c->pool_score || !c->latin || !c->chosen || !c->pool_gap || !c->index || !c->generation || !c->generation_x)
     return eo_error_memory(error);
-  enum eo_code code = eo_surrogate_init(&c->surrogate, s->variables, s->model_rows, 1, EO_TAIL_LINEAR, error);
+  enum eo_code code = eo_credibility_model_init(&c->model, s, error);
   if (code == EO_OK)
     code = eo_local_init(&c->local, s->variables, error);
   if (code == EO_OK)
@@ -130,14 +109,6 @@ static enum eo_code start(struct eo_optimizer *o, struct eo_error *error)
 static const double *row_x(const struct eo_optimizer *o, int row)
 {
   return o->archive.x + (size_t)row * o->settings.variables;
-}
-
-static double distance(const double *a, const double *b, int n)
-{
-  double sum = 0;
-  for (int k = 0; k < n; k++)
-    sum += (a[k] - b[k]) * (a[k] - b[k]);
-  return sqrt(sum);
 }
 
 /* Polishing and the evolution strategy go for the best row of all; else an epoch sees its own rows only. */
@@ -152,7 +123,7 @@ static bool is_taboo(const struct eo_optimizer *o, const double *x)
   const int n = o->settings.variables;
   const double radius = o->settings.taboo_radius * sqrt(n);
   for (int i = 0; i < c->taboo_count && !sees_all(c); i++)
-    if (distance(row_x(o, c->taboo[i]), x, n) < radius)
+    if (eo_unit_distance(row_x(o, c->taboo[i]), x, n) < radius)
       return true;
   return false;
 }
@@ -180,123 +151,12 @@ static int gather_parents(struct eo_optimizer *o)
   return count;
 }
 
-static int compare_doubles(const void *a, const void *b)
-{
-  const double p = *(const double *)a, q = *(const double *)b;
-  return (p > q) - (p < q);
-}
-
-static int compare_ranked(const void *a, const void *b)
-{
-  const struct ranked *p = a, *q = b;
-  return p->key != q->key ? (p->key > q->key) - (p->key < q->key) : p->row - q->row;
-}
-
-/* Room to rank every row of the archive. */
-static enum eo_code reserve_ranked(struct eo_optimizer *o, struct eo_error *error)
-{
-  struct credibility *c = o->state;
-  if (o->archive.count <= c->ranked_capacity)
-    return EO_OK;
-  const size_t capacity = 2 * (size_t)o->archive.count;
-  struct ranked *ranked = realloc(c->ranked, capacity * sizeof *ranked);
-  if (ranked)
-    c->ranked = ranked;
-  bool *used = realloc(c->used, capacity * sizeof *used);
-  if (used)
-    c->used = used;
-  if (!ranked || !used)
-    return eo_error_memory(error);
-  c->ranked_capacity = (int)capacity;
-  return EO_OK;
-}
-
-enum ranking { RANK_BY_VALUE, RANK_BY_AGE, RANK_BY_DISTANCE };
-
-/* Appends the best `share` unused rows by the given ranking to c->rows. */
-static int take_rows(struct eo_optimizer *o, enum ranking ranking, const double *centre, int taken, int share)
-{
-  struct credibility *c = o->state;
-  const struct eo_archive *a = &o->archive;
-  int count = 0;
-  for (int row = 0; row < a->count; row++) {
-    if (eo_archive_failed(a, row) || c->used[row])
-      continue;
-    const double key = ranking == RANK_BY_VALUE ? a->value[row]
-                       : ranking == RANK_BY_AGE ? -row
-                                                : distance(row_x(o, row), centre, o->settings.variables);
-    c->ranked[count++] = (struct ranked){key, row};
-  }
-  qsort(c->ranked, (size_t)count, sizeof *c->ranked, compare_ranked);
-  for (int i = 0; i < share && i < count; i++) {
-    c->used[c->ranked[i].row] = true;
-    c->rows[taken++] = c->ranked[i].row;
-  }
-  return taken;
-}
-
-/* At most model_rows rows: a third the best, a third the newest, the rest nearest to the centre. */
-static int gather_model_rows(struct eo_optimizer *o, const double *centre)
-{
-  struct credibility *c = o->state;
-  const int limit = o->settings.model_rows;
-  memset(c->used, 0, (size_t)o->archive.count * sizeof *c->used);
-  int taken = take_rows(o, RANK_BY_VALUE, centre, 0, limit / 3);
-  taken = take_rows(o, RANK_BY_AGE, centre, taken, limit / 3);
-  return take_rows(o, RANK_BY_DISTANCE, centre, taken, limit - taken);
-}
-
-static void fit_model(struct eo_optimizer *o, const double *centre)
-{
-  struct credibility *c = o->state;
-  const int n = o->settings.variables, count = gather_model_rows(o, centre);
-  c->modelled = false;
-  if (count < n + 3)
-    return;
-  for (int j = 0; j < count; j++) {
-    memcpy(c->x + (size_t)j * n, row_x(o, c->rows[j]), (size_t)n * sizeof(double));
-    c->sorted[j] = c->y[j] = o->archive.value[c->rows[j]];
-  }
-  qsort(c->sorted, (size_t)count, sizeof(double), compare_doubles);
-  const double median = c->sorted[count / 2];
-  c->spread_of_values = median - c->sorted[0];
-  for (int j = 0; j < count; j++)
-    c->y[j] = fmin(c->y[j], median);
-  if (!(c->spread_of_values > 0))
-    return;
-  c->modelled = eo_surrogate_fit(&c->surrogate, EO_TAIL_LINEAR, ridge, c->x, c->y, count, 1);
-  if (c->modelled)
-    eo_surrogate_set_scale(&c->surrogate, c->spread_of_values);
-}
-
-/* Negative: to maximise. Without a surrogate every point is as good as any other. */
-static double predict(struct eo_optimizer *o, const double *x)
-{
-  struct credibility *c = o->state;
-  if (!c->modelled)
-    return 0;
-  eo_surrogate_visit(&c->surrogate, x);
-  return -eo_surrogate_value(&c->surrogate, 0);
-}
-
-/* The same, less what is doubtful. */
-static double score(struct eo_optimizer *o, const double *x)
-{
-  struct credibility *c = o->state;
-  const double value = predict(o, x);
-  if (!c->modelled)
-    return 0;
-  const double length = o->settings.credibility_length * sqrt(o->settings.variables);
-  const double doubt = 1 - eo_surrogate_credibility(&c->surrogate, length);
-  return value - o->settings.exploration * c->spread_of_values * doubt;
-}
-
 static void breed(struct eo_optimizer *o, int parents, int round)
 {
   struct credibility *c = o->state;
   eo_breed(&o->settings, c->parents, c->parent_score, parents, ROUNDS * c->batch + round, 0, c->pool, c->children);
   for (int i = 0; i < c->children; i++)
-    c->pool_score[i] = score(o, c->pool + (size_t)i * o->settings.variables);
+    c->pool_score[i] = eo_credibility_score(&c->model, c->pool + (size_t)i * o->settings.variables);
 }
 
 /* The first of the pool by falling score into c->index. */
@@ -390,7 +250,7 @@ static void propose_epoch(struct eo_optimizer *o)
 {
   struct credibility *c = o->state;
   const int n = o->settings.variables, count = o->settings.initial_factor * n;
-  eo_latin_hypercube(c->chosen, count, n, o->settings.seed, c->epoch, c->sorted);
+  eo_latin_hypercube(c->chosen, count, n, o->settings.seed, c->epoch, c->latin);
   request_chosen(o, count, 0);
   c->fresh = false;
 }
@@ -402,11 +262,11 @@ static int choose_samples(struct eo_optimizer *o, int count)
   const int n = o->settings.variables, wanted = o->settings.evolution_samples * count;
   const int samples = wanted < c->children ? wanted : c->children;
   count = count < samples ? count : samples;
-  fit_model(o, c->evolution.mean);
+  eo_credibility_model_fit(&c->model, &o->archive, c->evolution.mean);
   for (int i = 0; i < samples; i++) {
     double *x = c->pool + (size_t)i * n;
     eo_evolution_sample(&c->evolution, eo_random_at(o->settings.seed, EO_STREAM_EVOLUTION, (uint64_t)c->batch, (uint64_t)i), x);
-    c->pool_score[i] = predict(o, x);
+    c->pool_score[i] = eo_credibility_predict(&c->model, x);
   }
   rank_some(c, samples);
   for (int i = 0; i < count; i++)
@@ -428,7 +288,7 @@ static void propose_children(struct eo_optimizer *o)
   if (c->evolving) {
     chosen = choose_samples(o, batch);
   } else if (share < batch) {
-    fit_model(o, row_x(o, centre));
+    eo_credibility_model_fit(&c->model, &o->archive, row_x(o, centre));
     fill_pool(o, parents);
     chosen = choose(o, local, local + batch - share);
   }
@@ -444,7 +304,7 @@ static enum eo_code propose(struct eo_optimizer *o, struct eo_error *error)
     o->finished = true;
     return EO_OK;
   }
-  const enum eo_code code = reserve_ranked(o, error);
+  const enum eo_code code = eo_credibility_model_reserve(&c->model, o->archive.count, error);
   while (code == EO_OK && o->batch_count == 0) {
     if (c->fresh)
       propose_epoch(o);

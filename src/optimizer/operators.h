@@ -6,6 +6,8 @@
 #include "base/random.h"
 #include "optimizer/settings.h"
 
+#include <math.h>
+
 /* Streams of the counter; a number is never used twice for different things. */
 enum eo_stream {
   EO_STREAM_START = 1,     /* first population: individual i, draw = variable */
@@ -21,6 +23,14 @@ enum eo_stream {
 static inline double eo_unit_clip(double x)
 {
   return x > 0 ? (x < 1 ? x : 1) : 0;
+}
+
+static inline double eo_unit_distance(const double *a, const double *b, int n)
+{
+  double sum = 0;
+  for (int k = 0; k < n; k++)
+    sum += (a[k] - b[k]) * (a[k] - b[k]);
+  return sqrt(sum);
 }
 
 /* count uniformly random points x[count][n]. */

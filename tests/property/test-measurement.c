@@ -62,8 +62,8 @@ static struct eo_synthetic drawn(int seed)
     s.order[h] = 1e-6 * pow(10, between(r, 10 + (uint64_t)h, -1, 0.5)) / pow(h + 1, 1.5) * cexp(2 * M_PI * I * between(r, 20 + (uint64_t)h, 0, 1));
   s.pinion_share = between(r, 0, 0, 1);
   s.speed = pow(10, between(r, 1, 2.5, 3.5)) * M_PI / 30;
-  s.sample_rate = s.speed / (2 * M_PI) * between(r, 2, 340, 600);
-  s.turns = between(r, 3, 14, 30);
+  s.sample_rate = s.speed / (2 * M_PI) * between(r, 2, 340, 480);
+  s.turns = between(r, 3, 14, 24);
   s.eccentricity[0] = 1e-6 * between(r, 4, 0, 60);
   s.eccentricity[1] = 1e-6 * between(r, 5, 0, 60);
   s.noise = pow(10, between(r, 6, -8, -6));
@@ -252,7 +252,7 @@ int main(void)
   check_faults();
   check_limits();
   check_printed_radii();
-  check_truth(210);
+  check_truth(205);
   eo_measurement_done(&measurement);
   return tap_done();
 }
