@@ -41,9 +41,9 @@ enum { MOST_TEETH = 64 };
 
 struct eo_root_workspace {
   double *force;        /* [ends][most points] */
-  double *load;         /* [positions][ends][slots] */
-  double *scratch;      /* [positions][ends][rank] */
-  double *stress;       /* [positions][ends][nodes][EO_STRESSES] */
+  float *load;          /* [positions][ends][slots] */
+  float *scratch;       /* [positions][ends][rank] */
+  float *stress;        /* [positions][ends][nodes][EO_STRESSES] */
   unsigned *touched;    /* [positions]: see eo_root_modes_add() */
 };
 
@@ -62,9 +62,9 @@ enum eo_code eo_root_workspace_new(struct eo_root_workspace **result, const stru
     slots = m > slots ? m : slots;
   }
   ws->force = malloc(sizeof(double) * (size_t)grid->most_points * (size_t)ends);
-  ws->load = malloc(sizeof(double) * rows * slots);
-  ws->scratch = malloc(sizeof(double) * rows * rank);
-  ws->stress = malloc(sizeof(double) * rows * nodes * EO_STRESSES);
+  ws->load = malloc(sizeof *ws->load * rows * slots);
+  ws->scratch = malloc(sizeof *ws->scratch * rows * rank);
+  ws->stress = malloc(sizeof *ws->stress * rows * nodes * EO_STRESSES);
   ws->touched = malloc(sizeof *ws->touched * (size_t)grid->positions);
   if (!ws->force || !ws->load || !ws->scratch || !ws->stress || !ws->touched) {
     eo_root_workspace_free(ws);
@@ -87,15 +87,15 @@ void eo_root_workspace_free(struct eo_root_workspace *ws)
 }
 
 /* The larger principal stress is (s1 + s2 + sqrt((s1 - s2)^2 + 4 t^2))/2; the root is taken only where it raises the largest so far. */
-static double largest_principal(int nodes, const double *stress, int *where)
+static double largest_principal(int nodes, const float *stress, int *where)
 {
-  double largest = 0;
+  float largest = 0;
   for (int i = 0; i < nodes; i++) {
-    const double *s = stress + i * EO_STRESSES;
-    double sum = s[0] + s[1], room = 2 * largest - sum, difference = s[0] - s[1], square = difference * difference + 4 * s[2] * s[2];
+    const float *s = stress + i * EO_STRESSES;
+    float sum = s[0] + s[1], room = 2 * largest - sum, difference = s[0] - s[1], square = difference * difference + 4 * s[2] * s[2];
     if (room >= 0 && square <= room * room)
       continue;
-    largest = (sum + sqrt(square)) / 2;
+    largest = (sum + sqrtf(square)) / 2;
     *where = i;
   }
   return largest;

@@ -12,8 +12,8 @@ struct eo_root_modes {
   bool coupled;
   int member, rank, length;     /* length = nodes x EO_STRESSES */
   int slots, slot[3];           /* grid points of loads on pair k - 1, k, k + 1, and where each begins */
-  double *coefficient;          /* [slots][rank] */
-  double *shape;                /* [rank][length] */
+  float *coefficient;           /* [slots][rank] */
+  float *shape;                 /* [rank][length] */
 };
 
 static const struct eo_grid *grid_of(const struct eo_root_modes *modes, int ahead_by)
@@ -48,17 +48,19 @@ static double *stack_rows(const struct eo_root_modes *modes, size_t skip)
 static enum eo_code fit_shapes(struct eo_root_modes *modes, int rows, int stride, const double *factor, const double *stack, struct eo_error *error)
 {
   int rank = modes->rank;
-  double *normal = malloc(sizeof *normal * (size_t)rank * (size_t)rank);
-  modes->shape = malloc(sizeof *modes->shape * (size_t)rank * (size_t)modes->length);
-  if (!normal || !modes->shape) {
-    free(normal);
-    return eo_error_memory(error);
+  size_t size = (size_t)rank * (size_t)modes->length;
+  double *normal = malloc(sizeof *normal * (size_t)rank * (size_t)rank), *shape = malloc(sizeof *shape * size);
+  modes->shape = malloc(sizeof *modes->shape * size);
+  enum eo_code code = normal && shape && modes->shape ? EO_OK : eo_error_memory(error);
+  if (!code) {
+    cblas_dgemm(CblasRowMajor, CblasTrans, CblasNoTrans, rank, modes->length, rows, 1, factor, stride, stack, modes->length, 0, shape, modes->length);
+    cblas_dgemm(CblasRowMajor, CblasTrans, CblasNoTrans, rank, rank, rows, 1, factor, stride, factor, stride, 0, normal, rank);
+    code = eo_lowrank_solve(rank, normal, modes->length, shape, error);
   }
-  cblas_dgemm(CblasRowMajor, CblasTrans, CblasNoTrans, rank, modes->length, rows, 1, factor, stride, stack, modes->length, 0, modes->shape,
-              modes->length);
-  cblas_dgemm(CblasRowMajor, CblasTrans, CblasNoTrans, rank, rank, rows, 1, factor, stride, factor, stride, 0, normal, rank);
-  enum eo_code code = eo_lowrank_solve(rank, normal, modes->length, modes->shape, error);
+  for (size_t i = 0; !code && i < size; i++)
+    modes->shape[i] = (float)shape[i];
   free(normal);
+  free(shape);
   return code;
 }
 
@@ -66,7 +68,8 @@ static enum eo_code keep_coefficients(struct eo_root_modes *modes, int stride, c
 {
   modes->coefficient = malloc(sizeof *modes->coefficient * (size_t)modes->slots * (size_t)modes->rank);
   for (int i = 0; modes->coefficient && i < modes->slots; i++)
-    memcpy(modes->coefficient + (size_t)i * (size_t)modes->rank, factor + (size_t)i * (size_t)stride, sizeof(double) * (size_t)modes->rank);
+    for (int r = 0; r < modes->rank; r++)
+      modes->coefficient[i * modes->rank + r] = (float)factor[i * stride + r];
   return modes->coefficient ? EO_OK : eo_error_memory(error);
 }
 
@@ -137,7 +140,7 @@ static bool is_loaded(int n, int sets, const double *force)
 }
 
 unsigned eo_root_modes_add(const struct eo_root_modes *modes, int pair, int n, const struct eo_flank_point *point, int sets, const double *force,
-                           double *load)
+                           float *load)
 {
   unsigned touched = 0;
   for (int j = 0; j < n; j++) {
@@ -149,17 +152,18 @@ unsigned eo_root_modes_add(const struct eo_root_modes *modes, int pair, int n, c
     eo_grid_weights(grid, point[j].s[modes->member], point[j].eta, &at);
     touched |= 1u << (ahead + 1);
     for (int set = 0; set < sets; set++) {
-      double f = force[set * n + j], *to = load + set * modes->slots + modes->slot[ahead + 1] + at.first;
+      double f = force[set * n + j];
+      float *to = load + set * modes->slots + modes->slot[ahead + 1] + at.first;
       for (int r = 0; f != 0 && r < EO_SPLINE_WIDTH; r++)
         for (int l = 0; l < EO_SPLINE_WIDTH; l++)
-          to[r * grid->eta.count + l] += f * at.weight[EO_SPLINE_WIDTH * r + l];
+          to[r * grid->eta.count + l] += (float)(f * at.weight[EO_SPLINE_WIDTH * r + l]);
     }
   }
   return touched;
 }
 
 /* Adds what one part of the loads gives, run by run of positions at which it is touched: a tooth is loaded during a part of the cycle. */
-static void add_part(const struct eo_root_modes *modes, int part, int count, int sets, const double *load, const unsigned *touched, double *scratch)
+static void add_part(const struct eo_root_modes *modes, int part, int count, int sets, const float *load, const unsigned *touched, float *scratch)
 {
   int slots = (part == 2 ? modes->slots : modes->slot[part + 1]) - modes->slot[part], rank = modes->rank;
   for (int first = 0, last; first < count; first = last + 1) {
@@ -167,17 +171,17 @@ static void add_part(const struct eo_root_modes *modes, int part, int count, int
       ;
     if (last == first)
       continue;
-    cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, (last - first) * sets, rank, slots, 1, load + first * sets * modes->slots + modes->slot[part],
+    cblas_sgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, (last - first) * sets, rank, slots, 1, load + first * sets * modes->slots + modes->slot[part],
                 modes->slots, modes->coefficient + modes->slot[part] * rank, rank, 1, scratch + first * sets * rank, rank);
   }
 }
 
-void eo_root_modes_stress(const struct eo_root_modes *modes, int count, int sets, const double *load, const unsigned *touched, double *scratch,
-                          double *stress)
+void eo_root_modes_stress(const struct eo_root_modes *modes, int count, int sets, const float *load, const unsigned *touched, float *scratch,
+                          float *stress)
 {
   memset(scratch, 0, sizeof *scratch * (size_t)(count * sets) * (size_t)modes->rank);
   for (int part = 0; part < 3; part++)
     add_part(modes, part, count, sets, load, touched, scratch);
-  cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, count * sets, modes->length, modes->rank, 1, scratch, modes->rank, modes->shape,
+  cblas_sgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, count * sets, modes->length, modes->rank, 1, scratch, modes->rank, modes->shape,
               modes->length, 0, stress, modes->length);
 }
