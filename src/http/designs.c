@@ -229,6 +229,8 @@ static void take_out(struct eo_request *request)
     reply_missing(request);
   else if (outcome == EO_DESIGN_STALE)
     reply_stale(request);
+  else if (outcome == EO_DESIGN_USED)
+    eo_reply_problem(request, 409, "in-use", "Measurements belong to this design; remove them first.");
   else
     eo_reply_empty(request, 204);
 }
