@@ -21,7 +21,7 @@ struct eo_command {
   int (*run)(const struct eo_command *command, int argc, char **argv); /* argv[0]: the sub-command; returns the exit status */
 };
 
-extern const struct eo_command eo_command_analyze, eo_command_example, eo_command_export, eo_command_history, eo_command_optimize,
+extern const struct eo_command eo_command_analyze, eo_command_example, eo_command_export, eo_command_history, eo_command_measure, eo_command_optimize,
     eo_command_reproduce, eo_command_rig, eo_command_serve, eo_command_stage, eo_command_sweep, eo_command_verify;
 
 /* "easeoff 0.1.0" */

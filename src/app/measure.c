@@ -1,0 +1,370 @@
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "app/app.h"
+#include "app/data.h"
+#include "app/watch.h"
+#include "base/hash.h"
+#include "document/json.h"
+#include "document/measure_file.h"
+#include "document/update_document.h"
+
+/* One recording with what is known of it. */
+struct entry {
+  const char *path, *gear_path; /* borrowed from the command line or the list */
+  char *joined;                 /* owned: path as the list means it */
+  bool unmodified;
+  double torque, speed;         /* N m, rad/s; NaN: not stated */
+  int end;
+  json_t *layout;               /* owned */
+};
+
+struct request {
+  const char *design_file, *label, *torque, *speed, *end, *harmonics, *layout, *gear, *list, *csv, *update, *apply, *data;
+  bool json, no_cache, alone;
+  struct eo_design design, updated;
+  struct eo_geometry geometry;
+  struct eo_warnings warnings;
+  int entries, harmonic_count;
+  struct entry *entry;         /* owned */
+  json_t *list_document, *update_document; /* owned */
+  json_t *documents;           /* owned array */
+  struct eo_text text;
+  int measured_count;
+  struct eo_measured *measured;/* owned, [entries]: those that were not refused */
+  struct eo_comparison comparison;
+  struct eo_update_settings update_settings;
+  struct eo_update fit;
+};
+
+/* ---- what was asked for ---- */
+
+static enum eo_code read_positive(const char *option, const char *text, double *value, struct eo_error *error)
+{
+  char *end = NULL;
+  *value = text ? strtod(text, &end) : NAN;
+  if (text && (end == text || *end || !(*value > 0) || !isfinite(*value)))
+    return eo_error_set(error, EO_ERROR_INPUT, "", "%s %.40s is no positive number.", option, text);
+  return EO_OK;
+}
+
+static enum eo_code read_word(const char *what, const char *text, const char *const words[2], int fallback, int *value, struct eo_error *error)
+{
+  *value = fallback;
+  for (int i = 0; text && i < 2; i++)
+    if (strcmp(text, words[i]) == 0) {
+      *value = i;
+      return EO_OK;
+    }
+  return text ? eo_error_set(error, EO_ERROR_INPUT, "", "%s is \"%s\" or \"%s\", not \"%.40s\".", what, words[0], words[1], text) : EO_OK;
+}
+
+/* JSON given in place, or in a file. */
+static json_t *load_json(const char *text, struct eo_error *error)
+{
+  return *text == '{' ? eo_json_parse(text, strlen(text), error) : eo_json_load(text, EO_JSON_DESIGN_BYTES, error);
+}
+
+static const char *const label_words[2] = {"modified", "unmodified"}, *const end_words[2] = {"left", "right"};
+
+/* The options hold for every file; an entry of the list may say otherwise. */
+static enum eo_code set_usual(const struct request *r, struct entry *e, struct eo_error *error)
+{
+  int unmodified;
+  enum eo_code code = read_positive("--torque", r->torque, &e->torque, error);
+  if (!code)
+    code = read_positive("--speed", r->speed, &e->speed, error);
+  if (!code)
+    code = read_word("--label", r->label, label_words, 0, &unmodified, error);
+  if (!code)
+    code = read_word("--end", r->end, end_words, EO_RIGHT, &e->end, error);
+  if (!code && r->layout && !(e->layout = load_json(r->layout, error)))
+    code = error->code;
+  if (code)
+    return code;
+  e->unmodified = unmodified == 1;
+  e->speed *= M_PI / 30;
+  return EO_OK;
+}
+
+static double stated(const json_t *item, const char *key, double fallback, double scale)
+{
+  const json_t *value = json_object_get(item, key);
+  return json_is_number(value) ? scale * json_number_value(value) : fallback;
+}
+
+/* A row of the list: file relative to it, label, torque_Nm, speed_rpm, end, gear_file, layout. */
+static enum eo_code read_item(const struct request *r, const json_t *item, struct entry *e, struct eo_error *error)
+{
+  const char *file = json_string_value(json_object_get(item, "file")), *slash = strrchr(r->list, '/');
+  int unmodified;
+  if (!file)
+    return eo_error_set(error, EO_ERROR_INPUT, "/measurements", "Each entry of the list names its file.");
+  struct eo_text path = {0};
+  eo_text_print(&path, "%.*s%s", *file == '/' || !slash ? 0 : (int)(slash - r->list + 1), r->list, file);
+  if (path.failed)
+    return eo_error_memory(error);
+  e->path = e->joined = path.data;
+  e->torque = stated(item, "torque_Nm", e->torque, 1);
+  e->speed = stated(item, "speed_rpm", e->speed, M_PI / 30);
+  enum eo_code code = read_word("A label", json_string_value(json_object_get(item, "label")), label_words, e->unmodified, &unmodified, error);
+  if (!code)
+    code = read_word("An end", json_string_value(json_object_get(item, "end")), end_words, e->end, &e->end, error);
+  e->unmodified = unmodified == 1;
+  if (json_object_get(item, "layout")) {
+    json_decref(e->layout);
+    e->layout = json_incref(json_object_get(item, "layout"));
+  }
+  return code;
+}
+
+static enum eo_code read_entries(struct request *r, int files, const char *const *file, struct eo_error *error)
+{
+  const json_t *list = NULL;
+  if (r->list && !(r->list_document = load_json(r->list, error)))
+    return error->code;
+  if (r->list && !json_is_array(list = json_object_get(r->list_document, "measurements")))
+    return eo_error_set(error, EO_ERROR_INPUT, "/measurements", "The list holds an array \"measurements\".");
+  int listed = (int)json_array_size(list);
+  if (files + listed < 1 || files + listed > EO_MOST_MEASURED)
+    return eo_error_set(error, EO_ERROR_INPUT, "", "Between 1 and %d recordings are measured at once.", EO_MOST_MEASURED);
+  if (r->gear && files + listed != 1)
+    return eo_error_set(error, EO_ERROR_INPUT, "", "--gear goes with one recording.");
+  r->entry = calloc((size_t)(files + listed), sizeof *r->entry);
+  r->measured = calloc((size_t)(files + listed), sizeof *r->measured);
+  if (!r->entry || !r->measured)
+    return eo_error_memory(error);
+  r->entries = files + listed;
+  enum eo_code code = EO_OK;
+  for (int i = 0; i < r->entries && !code; i++) {
+    code = set_usual(r, &r->entry[i], error);
+    r->entry[i].gear_path = r->gear;
+    if (!code && i < files)
+      r->entry[i].path = file[i];
+    else if (!code)
+      code = read_item(r, json_array_get(list, (size_t)(i - files)), &r->entry[i], error);
+  }
+  return code;
+}
+
+static enum eo_code read_update(struct request *r, struct eo_error *error)
+{
+  double harmonics;
+  enum eo_code code = read_positive("--harmonics", r->harmonics, &harmonics, error);
+  if (code)
+    return code;
+  if (r->harmonics && (harmonics > EO_MESH_ORDERS || harmonics != floor(harmonics)))
+    return eo_error_set(error, EO_ERROR_INPUT, "", "--harmonics is a whole number up to %d.", EO_MESH_ORDERS);
+  r->harmonic_count = r->harmonics ? (int)harmonics : 0;
+  if (!r->update)
+    return r->apply ? eo_error_set(error, EO_ERROR_INPUT, "", "--apply goes with --update.") : EO_OK;
+  struct eo_faults *faults = calloc(1, sizeof *faults);
+  if (!faults)
+    return eo_error_memory(error);
+  r->update_document = load_json(r->update, error);
+  if (r->update_document)
+    eo_update_decode(r->update_document, &r->update_settings, faults);
+  code = r->update_document ? eo_faults_first(faults, error) : error->code;
+  free(faults);
+  return code;
+}
+
+/* ---- work ---- */
+
+/* The torque of the load case whose speed is nearest to the stated one, else of the one with the largest share. */
+static double usual_torque(const struct request *r, double speed)
+{
+  const struct eo_load_case *best = &r->design.load_case[0];
+  for (int i = 1; i < r->design.load_cases; i++) {
+    const struct eo_load_case *c = &r->design.load_case[i];
+    double nearer = isnan(speed) ? 0 : fabs(c->speed - speed) - fabs(best->speed - speed);
+    if (nearer < 0 || (nearer == 0 && c->share > best->share))
+      best = c;
+  }
+  return best->torque;
+}
+
+static enum eo_code measure_all(struct request *r, const struct eo_progress *progress, const char **failed_at, struct eo_error *error)
+{
+  const char *folder = getenv("TMPDIR");
+  for (int i = 0; i < r->entries; i++) {
+    const struct entry *e = &r->entry[i];
+    struct eo_measure_request one = {.path = e->path, .gear_path = e->gear_path, .unmodified = e->unmodified, .torque = e->torque, .stated_speed = e->speed,
+                                     .end = e->end, .harmonics = r->harmonic_count, .layout = e->layout, .geometry = &r->geometry,
+                                     .spool_directory = folder ? folder : "/tmp"};
+    struct eo_measured *measured = &r->measured[r->measured_count];
+    json_t *document;
+    if (isnan(one.torque))
+      one.torque = usual_torque(r, e->speed);
+    *failed_at = e->path;
+    enum eo_code code = eo_measure_file(&one, progress, &document, &r->text, measured, error);
+    if (!code && json_array_append_new(r->documents, document))
+      code = eo_error_memory(error);
+    if (code)
+      return code;
+    if (isnan(e->torque))
+      eo_text_print(&r->text, "  note: no torque was stated; that of a load case of the design, %.6g N m, stands in.\n", one.torque);
+    r->measured_count += measured->harmonics > 0;
+  }
+  *failed_at = NULL;
+  return EO_OK;
+}
+
+static enum eo_code compare(struct request *r, const struct eo_progress *progress, struct eo_error *error)
+{
+  struct eo_text directory = {0};
+  bool keep = !r->no_cache && eo_app_cache_directory(r->data, &directory);
+  struct eo_pair_options options = {.cache_directory = keep ? directory.data : NULL};
+  struct eo_pair *pair = NULL;
+  struct eo_evaluator *evaluator = NULL;
+  enum eo_code code = eo_pair_new(&pair, &r->design, &options, progress, error);
+  if (!code)
+    code = eo_evaluator_new(&evaluator, pair, 1, error);
+  if (!code)
+    code = eo_comparison_run(&r->comparison, evaluator, &r->design, r->measured_count, r->measured, progress, error);
+  if (!code && r->update)
+    code = eo_update_run(&r->fit, pair, &r->design, r->measured_count, r->measured, &r->update_settings, &r->updated, progress, error);
+  eo_evaluator_free(evaluator);
+  eo_pair_free(pair);
+  eo_text_done(&directory);
+  return code;
+}
+
+static enum eo_code save_design(const struct request *r, struct eo_error *error)
+{
+  struct eo_text text = {0};
+  json_t *document = eo_design_encode(&r->updated);
+  enum eo_code code = document ? EO_OK : eo_error_memory(error);
+  if (!code) {
+    eo_json_write(&text, document, EO_JSON_PRETTY);
+    code = eo_text_save(&text, r->apply, error);
+  }
+  json_decref(document);
+  eo_text_done(&text);
+  return code;
+}
+
+static enum eo_code save_csv(const struct request *r, struct eo_error *error)
+{
+  struct eo_text text = {0};
+  eo_comparison_csv(&r->comparison, r->measured, &text);
+  enum eo_code code = eo_text_save(&text, r->csv, error);
+  eo_text_done(&text);
+  return code;
+}
+
+static json_t *encode(const struct request *r)
+{
+  char hash[EO_HASH_LENGTH + 1];
+  json_t *document = json_object();
+  bool failed = !document, compared = r->comparison.count > 0;
+  eo_json_put(document, "program", json_string(eo_program), &failed);
+  eo_json_put(document, "design_hash", eo_design_hash(&r->design, hash, NULL) ? NULL : json_string(hash), &failed);
+  eo_json_put(document, "measurements", json_incref(r->documents), &failed);
+  eo_json_put(document, "comparison", compared ? eo_comparison_encode(&r->comparison, r->measured) : json_null(), &failed);
+  eo_json_put(document, "update", r->update && compared ? eo_update_encode(&r->fit) : json_null(), &failed);
+  return failed ? (json_decref(document), NULL) : document;
+}
+
+static int show(struct request *r)
+{
+  if (r->json)
+    return eo_app_print_json(encode(r), false);
+  if (r->comparison.count)
+    eo_comparison_summary(&r->comparison, r->measured, &r->text);
+  if (r->comparison.count && r->update)
+    eo_update_summary(&r->fit, &r->text);
+  return eo_app_print(&r->text);
+}
+
+static int run_request(struct request *r)
+{
+  struct eo_watch watch;
+  struct eo_error error;
+  const char *failed_at = NULL;
+  eo_watch_start(&watch);
+  enum eo_code code = measure_all(r, &watch.progress, &failed_at, &error);
+  if (!code && r->measured_count && !r->alone)
+    code = compare(r, &watch.progress, &error);
+  eo_watch_clear(&watch);
+  if (watch.stopped)
+    code = eo_error_set(&error, EO_ERROR_CANCELLED, "", "Stopped.");
+  if (!code && r->apply && r->comparison.count)
+    code = save_design(r, &error);
+  if (!code && r->csv)
+    code = save_csv(r, &error);
+  int status = code ? eo_app_fail(failed_at, &error) : show(r);
+  eo_watch_end(&watch);
+  return status ? status : r->measured_count ? EO_EXIT_DONE : EO_EXIT_INPUT;
+}
+
+static void done(struct request *r)
+{
+  for (int i = 0; i < r->entries; i++) {
+    free(r->entry[i].joined);
+    json_decref(r->entry[i].layout);
+  }
+  free(r->entry);
+  free(r->measured);
+  json_decref(r->list_document);
+  json_decref(r->update_document);
+  json_decref(r->documents);
+  eo_comparison_done(&r->comparison);
+  eo_text_done(&r->text);
+  free(r);
+}
+
+static int run(const struct eo_command *command, int argc, char **argv)
+{
+  struct request *r = calloc(1, sizeof *r);
+  const char **operand = calloc((size_t)argc, sizeof *operand);
+  struct eo_error error;
+  int operands, status;
+  if (!r || !operand || !(r->documents = json_array())) {
+    free(r);
+    free(operand);
+    eo_error_memory(&error);
+    return eo_app_fail(NULL, &error);
+  }
+  const struct eo_option options[] = {
+      {.name = "--label", .value = &r->label},   {.name = "--torque", .value = &r->torque}, {.name = "--speed", .value = &r->speed},
+      {.name = "--end", .value = &r->end},       {.name = "--harmonics", .value = &r->harmonics}, {.name = "--layout", .value = &r->layout},
+      {.name = "--gear", .value = &r->gear},     {.name = "--list", .value = &r->list},     {.name = "--csv", .value = &r->csv},
+      {.name = "--update", .value = &r->update}, {.name = "--apply", .value = &r->apply},   {.name = "--data", .value = &r->data},
+      {.name = "--json", .flag = &r->json},      {.name = "--no-cache", .flag = &r->no_cache}, {.name = "--no-prediction", .flag = &r->alone}, {.name = NULL}};
+  if (!eo_app_arguments(command, argc, argv, options, 1, argc, operand, &operands, &status))
+    goto out;
+  r->design_file = operand[0];
+  if (read_update(r, &error) || read_entries(r, operands - 1, operand + 1, &error))
+    status = eo_app_fail(NULL, &error);
+  else if (eo_app_load_design(r->design_file, &r->design, &r->geometry, &r->warnings, &status))
+    status = run_request(r);
+out:
+  free(operand);
+  done(r);
+  return status;
+}
+
+const struct eo_command eo_command_measure = {
+    "measure", "DESIGN.json FILE... [--label L] [--torque T] [--speed S] [--layout JSON] [--json]", "rig files: transmission error, vibration, beside the prediction",
+    "Reads recordings of two encoders (text, gzip, MATLAB, TDMS, UFF 58, HDF5), says what is wrong with them, and sets the vibration of the mesh orders\n"
+    "beside the prediction at their torque and measured speed. The options hold for all files:\n"
+    "  --label modified|unmodified   which of the two the recording shows (modified)\n"
+    "  --torque N m, --speed rpm     of the pinion; the speed is only checked\n"
+    "  --end left|right              where the encoders sit (right)\n"
+    "  --harmonics N                 mesh orders (8)\n"
+    "  --layout JSON                 what the columns mean, in place or a file: {\"kind\": \"angles|sine-cosine|pulses\", \"unit\": \"deg|rad|turn|count\",\n"
+    "                                \"time\": COLUMN, \"columns\": {\"pinion\": COLUMN or [SINE, COSINE], \"gear\": ...}, \"sample_rate_Hz\", \"lines\"}; guessed else\n"
+    "  --gear FILE                   the gear's encoder, when each has a file of its own\n"
+    "  --list LIST.json              {\"measurements\": [{\"file\", \"label\", \"torque_Nm\", \"speed_rpm\", \"end\", \"layout\"}, ...]}, files relative to it\n"
+    "  --no-prediction               the recordings alone\n"
+    "  --csv FILE                    measured and predicted, one line per recording\n"
+    "  --update JSON                 fits inputs within ranges: {\"unknowns\": {\"pinion_bearing_stiffness_N_per_um\": [200, 3000], ...}}; known are\n"
+    "                                pinion_ and gear_bearing_stiffness_N_per_um, mesh_damping_ratio, gear_ and pinion_axial_stiffness_N_per_um,\n"
+    "                                shaft_angle_error_in_plane_deg, shaft_angle_error_out_of_plane_deg, impact_patch_mm\n"
+    "  --apply FILE                  writes the design with the inputs found\n"
+    "Exit status 1 also when every recording was refused.\n\n"
+    EO_APP_DATA_HELP
+    "--no-cache neither reads nor keeps it.\n", run};

@@ -1,0 +1,156 @@
+#include "document/layout_document.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "document/json.h"
+#include "document/result_parts.h"
+
+static const char *const kinds[] = {"guess", "angles", "sine-cosine", "pulses", NULL};
+static const char *const units[] = {"guess", "deg", "rad", "turn", "count", NULL};
+static const char *const times[] = {"s", "ms", "us", "ns", NULL};
+static const char *const member_key[2] = {"pinion", "gear"};
+
+static int choice_of(const json_t *value, const char *const *choices, const char *pointer, struct eo_faults *faults)
+{
+  const char *text = json_string_value(value);
+  if (!value)
+    return 0;
+  for (int i = 0; text && choices[i]; i++)
+    if (strcmp(text, choices[i]) == 0)
+      return i;
+  eo_faults_add(faults, pointer, "\"%.40s\" is not known here; \"%s\", \"%s\", ... are.", text ? text : "(no text)", choices[0], choices[1]);
+  return 0;
+}
+
+/* A name or a number as text in `room`; NULL when there is none. */
+static const char *column_of(const json_t *value, char *room, const char *pointer, struct eo_faults *faults)
+{
+  if (!value || json_is_null(value))
+    return NULL;
+  if (json_is_integer(value) && json_integer_value(value) >= 1 && json_integer_value(value) <= EO_RECORDING_COLUMNS)
+    snprintf(room, EO_RECORDING_NAME, "%d", (int)json_integer_value(value));
+  else if (json_is_string(value) && json_string_length(value) > 0 && json_string_length(value) < EO_RECORDING_NAME)
+    snprintf(room, EO_RECORDING_NAME, "%s", json_string_value(value));
+  else {
+    eo_faults_add(faults, pointer, "A column is given by its name or by its number from 1.");
+    return NULL;
+  }
+  return room;
+}
+
+static void read_columns(const json_t *columns, struct eo_layout_request *r, struct eo_faults *faults)
+{
+  const char *key;
+  json_t *value;
+  if (columns && !json_is_object(columns))
+    eo_faults_add(faults, "/columns", "The columns are an object with \"pinion\" and \"gear\".");
+  json_object_foreach((json_t *)columns, key, value) {
+    char pointer[120];
+    int member = strcmp(key, member_key[0]) == 0 ? 0 : strcmp(key, member_key[1]) == 0 ? 1 : -1;
+    snprintf(pointer, sizeof pointer, "/columns/%.80s", key);
+    if (member < 0) {
+      eo_faults_add(faults, pointer, "Unknown key in the columns.");
+    } else if (json_is_array(value)) {
+      if (json_array_size(value) != 2)
+        eo_faults_add(faults, pointer, "Raw tracks are two columns, sine and cosine.");
+      for (size_t k = 0; k < 2; k++)
+        r->choice.column[member][k] = column_of(json_array_get(value, k), r->name[1 + 2 * member + (int)k], pointer, faults);
+    } else {
+      r->choice.column[member][0] = column_of(value, r->name[1 + 2 * member], pointer, faults);
+    }
+  }
+}
+
+static double positive(const json_t *value, const char *pointer, struct eo_faults *faults)
+{
+  if (!value || json_is_null(value))
+    return 0;
+  if (json_is_number(value) && json_number_value(value) > 0 && json_number_value(value) < 1e12)
+    return json_number_value(value);
+  eo_faults_add(faults, pointer, "A positive number is wanted.");
+  return 0;
+}
+
+static void read_lines(const json_t *lines, double target[2], struct eo_faults *faults)
+{
+  bool pair = json_is_array(lines) && json_array_size(lines) == 2;
+  if (json_is_array(lines) && !pair)
+    eo_faults_add(faults, "/lines", "Lines are one number or two, pinion and gear.");
+  else
+    for (size_t i = 0; i < 2; i++)
+      target[i] = positive(pair ? json_array_get(lines, i) : lines, "/lines", faults);
+}
+
+void eo_layout_decode(const json_t *document, struct eo_layout_request *r, struct eo_faults *faults)
+{
+  static const double time_scale[] = {1, 1e-3, 1e-6, 1e-9};
+  static const char *const known[] = {"kind", "unit", "time", "time_unit", "columns", "sample_rate_Hz", "lines", NULL};
+  const char *key;
+  json_t *value;
+  memset(r, 0, sizeof *r);
+  if (!document || json_is_null(document))
+    return;
+  if (!json_is_object(document)) {
+    eo_faults_add(faults, "", "A layout is a JSON object.");
+    return;
+  }
+  json_object_foreach((json_t *)document, key, value) {
+    bool found = false;
+    for (int i = 0; known[i]; i++)
+      found = found || strcmp(key, known[i]) == 0;
+    char pointer[120];
+    snprintf(pointer, sizeof pointer, "/%.80s", key);
+    if (!found)
+      eo_faults_add(faults, pointer, "Unknown key in a layout.");
+  }
+  r->choice.kind = (enum eo_layout_kind)choice_of(json_object_get(document, "kind"), kinds, "/kind", faults);
+  r->choice.unit = (enum eo_layout_unit)choice_of(json_object_get(document, "unit"), units, "/unit", faults);
+  r->choice.time = column_of(json_object_get(document, "time"), r->name[0], "/time", faults);
+  if (json_object_get(document, "time_unit"))
+    r->choice.time_scale = time_scale[choice_of(json_object_get(document, "time_unit"), times, "/time_unit", faults)];
+  r->choice.sample_rate = positive(json_object_get(document, "sample_rate_Hz"), "/sample_rate_Hz", faults);
+  read_lines(json_object_get(document, "lines"), r->choice.lines, faults);
+  read_columns(json_object_get(document, "columns"), r, faults);
+}
+
+/* ---- back ---- */
+
+static const char *unit_of(const struct eo_track_channel *c)
+{
+  return fabs(c->scale - 1) < 1e-12 ? "rad" : fabs(c->scale * 180 / M_PI - 1) < 1e-12 ? "deg" : fabs(c->scale / (2 * M_PI) - 1) < 1e-12 ? "turn" : "count";
+}
+
+static json_t *encode_column(const struct eo_track_channel *c)
+{
+  if (c->track != EO_TRACK_SINE_COSINE)
+    return json_integer(c->column[0] + 1);
+  return json_pack("[i, i]", c->column[0] + 1, c->column[1] + 1);
+}
+
+json_t *eo_layout_encode(const struct eo_tracks *t)
+{
+  const struct eo_track_channel *c = t->channel;
+  struct eo_result_object o = eo_result_open(), columns = eo_result_open();
+  bool angles = c[0].track == EO_TRACK_ANGLE, counts = angles && strcmp(unit_of(&c[0]), "count") == 0;
+  double lines[2] = {angles ? 2 * M_PI / c[0].scale : c[0].lines, angles ? 2 * M_PI / c[1].scale : c[1].lines};
+  static const char *const time_name[] = {"s", "ms", "us", "ns"};
+  static const double time_scale[] = {1, 1e-3, 1e-6, 1e-9};
+  eo_result_put(&o, "kind", json_string(kinds[1 + (int)c[0].track]));
+  if (angles)
+    eo_result_put(&o, "unit", json_string(unit_of(&c[0])));
+  if (c[0].track != EO_TRACK_PULSES)
+    eo_result_put(&o, "time", t->time_column < 0 ? json_string("none") : json_integer(t->time_column + 1));
+  for (int i = 0; i < 4; i++)
+    if (fabs(t->time_scale / time_scale[i] - 1) < 1e-9)
+      eo_result_put(&o, "time_unit", json_string(time_name[i]));
+  if (t->time_column < 0 && t->interval > 0)
+    eo_result_put(&o, "sample_rate_Hz", eo_json_real(1 / t->interval, NULL));
+  for (int i = 0; i < 2; i++)
+    eo_result_put(&columns, member_key[i], encode_column(&c[i]));
+  eo_result_put(&o, "columns", eo_result_close(&columns));
+  if (!angles || counts)
+    eo_result_put(&o, "lines", eo_json_reals(2, lines, 1, NULL, EO_DIGITS_NUMBER));
+  return eo_result_close(&o);
+}

@@ -1,0 +1,24 @@
+/* The layout of a recording as people state it, in JSON; every key may be left out and is then guessed:
+     { "kind": "angles" | "sine-cosine" | "pulses", "unit": "deg" | "rad" | "turn" | "count", "time": COLUMN | "none", "time_unit": "s" | "ms" | "us" | "ns",
+       "columns": { "pinion": COLUMN | [SINE, COSINE], "gear": the same }, "sample_rate_Hz": 20000, "lines": 18000 | [pinion, gear] }
+   A COLUMN is a name or a number from 1. */
+#ifndef EASEOFF_DOCUMENT_LAYOUT_DOCUMENT_H
+#define EASEOFF_DOCUMENT_LAYOUT_DOCUMENT_H
+
+#include <jansson.h>
+
+#include "document/faults.h"
+#include "measurement/layout.h"
+
+struct eo_layout_request {
+  struct eo_layout_choice choice;
+  char name[5][EO_RECORDING_NAME]; /* what the names of choice point to: time, then member by member */
+};
+
+/* Fills *request, which must stay where it is while choice is used; NULL or null: everything is guessed. Unknown keys are faults. */
+void eo_layout_decode(const json_t *document, struct eo_layout_request *request, struct eo_faults *faults);
+
+/* What was found, with column numbers; a layout that gives the same tracks again. New; NULL without memory. */
+json_t *eo_layout_encode(const struct eo_tracks *tracks);
+
+#endif

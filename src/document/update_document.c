@@ -1,0 +1,156 @@
+#include "document/update_document.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "document/json.h"
+#include "document/result_parts.h"
+#include "document/sheet.h"
+
+static const double LARGE_CONDITION = 1e6;
+
+static const struct eo_unit *unit_of(enum eo_unknown unknown)
+{
+  static const struct eo_unit *const unit[EO_UNKNOWNS] = {&eo_unit_N_per_um, &eo_unit_N_per_um, NULL, &eo_unit_N_per_um, &eo_unit_N_per_um, &eo_unit_deg,
+                                                          &eo_unit_deg, &eo_unit_mm};
+  return unit[unknown];
+}
+
+/* ---- request ---- */
+
+static void add_unknown(const char *key, const json_t *range, struct eo_update_settings *s, struct eo_faults *faults)
+{
+  char pointer[140];
+  snprintf(pointer, sizeof pointer, "/unknowns/%.100s", key);
+  double low = json_number_value(json_array_get(range, 0)), high = json_number_value(json_array_get(range, 1));
+  for (int i = 0; i < EO_UNKNOWNS; i++)
+    if (strcmp(key, eo_unknown_name((enum eo_unknown)i)) == 0) {
+      bool good = json_array_size(range) == 2 && json_is_number(json_array_get(range, 0)) && json_is_number(json_array_get(range, 1)) && low < high;
+      if (!good)
+        eo_faults_add(faults, pointer, "A range is two numbers, the lower one first.");
+      s->range[s->unknowns++] = (struct eo_update_range){(enum eo_unknown)i, eo_unit_in(unit_of((enum eo_unknown)i), low), eo_unit_in(unit_of((enum eo_unknown)i), high)};
+      return;
+    }
+  eo_faults_add(faults, pointer, "This is no input that can be fitted.");
+}
+
+void eo_update_decode(const json_t *document, struct eo_update_settings *s, struct eo_faults *faults)
+{
+  const char *key;
+  json_t *value;
+  const json_t *unknowns = json_object_get(document, "unknowns"), *model_error = json_object_get(document, "model_error"), *seed = json_object_get(document, "seed");
+  *s = (struct eo_update_settings){.seed = 1};
+  if (!json_is_object(unknowns) || json_object_size(unknowns) == 0)
+    eo_faults_add(faults, "/unknowns", "An update names at least one input with its range.");
+  json_object_foreach((json_t *)unknowns, key, value)
+    add_unknown(key, value, s, faults);
+  json_object_foreach((json_t *)document, key, value)
+    if (strcmp(key, "unknowns") != 0 && strcmp(key, "model_error") != 0 && strcmp(key, "seed") != 0) {
+      char pointer[120];
+      snprintf(pointer, sizeof pointer, "/%.80s", key);
+      eo_faults_add(faults, pointer, "Unknown key in an update.");
+    }
+  if (model_error && !(json_number_value(model_error) >= 1e-4 && json_number_value(model_error) <= 1))
+    eo_faults_add(faults, "/model_error", "The error of the model is 0.0001 to 1 of the RMS.");
+  else if (model_error)
+    s->model_error = json_number_value(model_error);
+  if (seed && !(json_is_integer(seed) && json_integer_value(seed) >= 0))
+    eo_faults_add(faults, "/seed", "A seed is a whole number, not negative.");
+  else if (seed)
+    s->seed = (uint64_t)json_integer_value(seed);
+}
+
+/* ---- answer ---- */
+
+typedef void warning_function(void *context, const char *text);
+
+static void each_warning(const struct eo_update *u, warning_function *take, void *context)
+{
+  char text[320];
+  for (int i = 0; i < u->unknowns; i++) {
+    const struct eo_updated *p = &u->unknown[i];
+    const char *name = eo_unknown_name(p->unknown);
+    if (p->undetermined)
+      snprintf(text, sizeof text, "The measurements do not determine %s: its 95 %% interval covers most of its range.", name);
+    else if (p->at_bound)
+      snprintf(text, sizeof text, "%s stands at an end of its range; the measurements want it beyond.", name);
+    else if (p->twin >= 0)
+      snprintf(text, sizeof text, "%s and %s cannot be told apart (correlation %.3f): only their combination is determined.", name,
+               eo_unknown_name(u->unknown[p->twin].unknown), p->correlation);
+    else
+      continue;
+    take(context, text);
+  }
+  if (u->condition > LARGE_CONDITION) {
+    snprintf(text, sizeof text, "The condition number of the fit is %.2g: not all inputs are determined together.", u->condition);
+    take(context, text);
+  }
+  if (!u->converged)
+    take(context, "The fit stopped before it had converged.");
+}
+
+static void append_warning(void *context, const char *text)
+{
+  struct eo_result_object *o = context;
+  o->failed = json_array_append_new(o->json, json_string(text)) != 0 || o->failed;
+}
+
+static json_t *encode_unknown(const struct eo_update *u, const struct eo_updated *p)
+{
+  const struct eo_unit *unit = unit_of(p->unknown);
+  struct eo_result_object o = eo_result_open();
+  eo_result_put(&o, "key", json_string(eo_unknown_name(p->unknown)));
+  eo_result_put_number(&o, "before", p->before, unit);
+  eo_result_put_number(&o, "value", p->value, unit);
+  eo_result_put(&o, "range", eo_json_reals(2, (double[]){p->low, p->high}, 1, unit, EO_DIGITS_NUMBER));
+  eo_result_put(&o, "confidence_95", eo_json_reals(2, p->confidence, 1, unit, EO_DIGITS_CURVE));
+  eo_result_put(&o, "at_bound", json_boolean(p->at_bound));
+  eo_result_put(&o, "undetermined", json_boolean(p->undetermined));
+  eo_result_put(&o, "same_as", p->twin < 0 ? json_null() : json_string(eo_unknown_name(u->unknown[p->twin].unknown)));
+  eo_result_put_number(&o, "correlation", p->correlation, NULL);
+  return eo_result_close(&o);
+}
+
+json_t *eo_update_encode(const struct eo_update *u)
+{
+  struct eo_result_object o = eo_result_open(), misfit = eo_result_open(), warnings = {json_array(), false};
+  json_t *unknowns = json_array(), *correlation = json_array();
+  for (int i = 0; i < u->unknowns; i++)
+    o.failed = json_array_append_new(unknowns, encode_unknown(u, &u->unknown[i])) != 0 ||
+               json_array_append_new(correlation, eo_json_reals(u->unknowns, u->correlation[i], 1, NULL, EO_DIGITS_MAP)) != 0 || o.failed;
+  each_warning(u, append_warning, &warnings);
+  eo_result_put_number(&misfit, "before", u->before, NULL);
+  eo_result_put_number(&misfit, "after", u->after, NULL);
+  eo_result_put(&o, "unknowns", unknowns);
+  eo_result_put(&o, "correlation", correlation);
+  eo_result_put_number(&o, "condition", u->condition, NULL);
+  eo_result_put(&o, "misfit", eo_result_close(&misfit));
+  eo_result_put(&o, "measurements", json_integer(u->used));
+  eo_result_put(&o, "orders", json_integer(u->residuals));
+  eo_result_put(&o, "evaluations", json_integer(u->evaluations));
+  eo_result_put(&o, "converged", json_boolean(u->converged));
+  eo_result_put(&o, "warnings", eo_result_close(&warnings));
+  return eo_result_close(&o);
+}
+
+static void print_warning(void *context, const char *text) { eo_text_print(context, "  warning: %s\n", text); }
+
+void eo_update_summary(const struct eo_update *u, struct eo_text *text)
+{
+  static const char *const headings[] = {"input", "before", "found", "95 % from", "to"};
+  struct eo_sheet sheet;
+  eo_text_print(text, "\nInputs fitted to %d orders of %d measurements (misfit %.3g before, %.3g after, in standard deviations):\n", u->residuals, u->used, u->before,
+                u->after);
+  eo_sheet_init(&sheet, 5, headings);
+  for (int i = 0; i < u->unknowns; i++) {
+    const struct eo_updated *p = &u->unknown[i];
+    eo_sheet_string(&sheet, eo_unknown_name(p->unknown));
+    const double value[] = {p->before, p->value, p->confidence[0], p->confidence[1]};
+    for (int k = 0; k < 4; k++)
+      eo_sheet_number(&sheet, value[k], unit_of(p->unknown), 4);
+  }
+  eo_sheet_print(&sheet, 2, text);
+  eo_sheet_done(&sheet);
+  each_warning(u, print_warning, text);
+}

@@ -1,0 +1,21 @@
+/* The fit of unknown inputs as JSON and for people.
+     request {"unknowns": {"pinion_bearing_stiffness_N_per_um": [200, 3000], ...}, "model_error": 0.05, "seed": 1}
+     answer  {"unknowns": [{key, before, value, range, confidence_95, at_bound, undetermined, same_as, correlation}], "correlation": [[..]], "condition",
+              "misfit": {before, after}, "measurements", "orders", "evaluations", "converged", "warnings"} */
+#ifndef EASEOFF_DOCUMENT_UPDATE_DOCUMENT_H
+#define EASEOFF_DOCUMENT_UPDATE_DOCUMENT_H
+
+#include <jansson.h>
+
+#include "document/faults.h"
+#include "document/text.h"
+#include "measurement/updating.h"
+
+void eo_update_decode(const json_t *document, struct eo_update_settings *settings, struct eo_faults *faults);
+
+/* New; NULL without memory. */
+json_t *eo_update_encode(const struct eo_update *update);
+
+void eo_update_summary(const struct eo_update *update, struct eo_text *text);
+
+#endif
