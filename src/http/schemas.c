@@ -10,7 +10,7 @@
 
 static const struct { const char *name, *notation; } shapes[] = {
     {"Any", "{...}"},
-    {"Problem", "{type text, title text, status integer, detail text, errors [{pointer text, detail text}], request_id text}"},
+    {"Problem", "{type text, title text, status integer, detail text, errors [{pointer text, detail text}], request_id text, ...}"},
     {"Health", "{status 'ok|failing', program text, uptime_s number, jobs {queued integer, running integer}, database 'ok|failing'}"},
     {"Session", "{required flag, authorized flag}"},
     {"Token", "{token text}"},
@@ -40,6 +40,15 @@ static const struct { const char *name, *notation; } shapes[] = {
     {"Generations", "{generation [integer], best [number?], mean [number?], true_evaluations [integer], predicted [integer], pfc_percent [number?]}"},
     {"JobHistory", "{items [{ordinal integer, generation integer, individual integer, outcome text, reason text?, modification Any, f1_um number?,"
                    " f2_N number?, f3_m_per_s2 number?, J number?, fitness number?, violation number?, reused flag}], next text?}"},
+    {"MeasurementForm", "{design text, label 'modified|unmodified', torque_Nm text, speed_rpm? text, end? 'left|right', harmonics? text, layout? text,"
+                        " file any}"},
+    {"Finding", "{kind text, severity 'note|repaired|warning|refused', channel? text?, row? integer?, line? integer?, value? number?, text text}"},
+    {"MeasurementFiles", "[{name text, size integer, sha256 text}]"},
+    {"Measurement", "{id integer, design integer, created text, stated_speed_rpm number?, asked_layout any, files MeasurementFiles, file text,"
+                    " label 'unmodified|modified', torque_Nm number, end 'left|right', notes [text], layout any, findings [Finding], refused flag, signal Any,"
+                    " result Any, ...}"},
+    {"Measurements", "{items [{id integer, design integer, created text, stated_speed_rpm number?, asked_layout any, files MeasurementFiles, file text,"
+                     " label 'unmodified|modified', torque_Nm number, end 'left|right', findings [Finding], refused flag, result Any, ...}], next text?}"},
     {"History", "{problems [Any], jobs [Any]}"},
 };
 

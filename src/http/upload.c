@@ -24,6 +24,10 @@ static void clean_name(char *target, size_t size, const char *name)
   const char *slash = strrchr(name, '/'), *back = strrchr(name, '\\');
   const char *last = slash > back ? slash : back;
   eo_text_clean(target, size, last ? last + 1 : name);
+  json_t *text = json_string(target);
+  for (char *c = target; !text && *c; c++) /* not UTF-8 */
+    *c = *c & 0x80 ? '?' : *c;
+  json_decref(text);
   if (!*target || strcmp(target, ".") == 0 || strcmp(target, "..") == 0)
     snprintf(target, size, "recording");
 }
@@ -55,12 +59,12 @@ static void end_file(struct eo_upload *upload)
 static enum MHD_Result begin_file(struct eo_request *request, const char *name)
 {
   struct eo_upload *upload = request->upload;
-  char path[sizeof upload->folder + 8];
+  char path[EO_UPLOAD_PATH];
   end_file(upload);
   if (upload->files == EO_MEASUREMENT_FILES)
     return refuse(request, 422, "A measurement has one file, or one of the pinion and one of the gear.");
   struct eo_measurement_file *file = &upload->file[upload->files];
-  snprintf(path, sizeof path, "%s/%d", upload->folder, upload->files);
+  eo_upload_path(upload, upload->files, path);
   clean_name(file->name, sizeof file->name, name ? name : "");
   file->size = 0;
   upload->output = open(path, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
@@ -206,6 +210,11 @@ int eo_upload_patience(const struct eo_request *request)
 {
   double left = EO_BODY_SECONDS + (double)request->received / SLOWEST - 1e-3 * (eo_clock_milliseconds() - request->started);
   return left < 1 ? 1 : (int)left;
+}
+
+void eo_upload_path(const struct eo_upload *upload, int file, char *path)
+{
+  snprintf(path, EO_UPLOAD_PATH, "%s/%d", upload->folder, file);
 }
 
 const char *eo_upload_field(const struct eo_upload *upload, const char *name)

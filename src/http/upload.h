@@ -8,6 +8,7 @@
 
 enum {
   EO_UPLOAD_FIELDS = 12,
+  EO_UPLOAD_PATH = 4096,
   EO_UPLOAD_FIELD_BYTES = 64 << 10,
   EO_MOST_UPLOADS = 16,              /* on their way at once */
   EO_UPLOAD_DRAINED = 256 << 20,     /* bytes of a refused upload that are read so that its sender hears why */
@@ -18,7 +19,7 @@ enum {
 
 struct eo_upload {
   struct MHD_PostProcessor *processor;
-  char folder[4096];                 /* "": none */
+  char folder[EO_UPLOAD_PATH - 16];  /* "": none */
   int files;                         /* complete but for the last one */
   struct eo_measurement_file file[EO_MEASUREMENT_FILES]; /* names and sizes */
   int output;                        /* descriptor of the last file, -1: none */
@@ -37,6 +38,9 @@ void eo_upload_take(struct eo_request *request, const char *data, size_t size);
 
 /* After the body; false: it was cut off or held no file, and the reply says so. */
 bool eo_upload_end(struct eo_request *request);
+
+/* Where a file of the upload lies; path[EO_UPLOAD_PATH]. */
+void eo_upload_path(const struct eo_upload *upload, int file, char *path);
 
 /* Seconds that the rest of a body may take, so that who drips does not stay for ever. */
 int eo_upload_patience(const struct eo_request *request);

@@ -1,6 +1,7 @@
 #include "store/measurements.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "store/measurement_files.h"
@@ -101,7 +102,7 @@ static enum eo_code insert(struct eo_store *store, const struct eo_stored_measur
                                        m->torque, m->speed, *m->layout ? m->layout : NULL, m->pair, m->summary, m->result);
   *id = sqlite3_last_insert_rowid(store->handle);
   for (int i = 0; i < m->files && !code; i++)
-    code = EO_STATEMENT_RUN(store, error, "INSERT INTO measurement_file (measurement, ordinal, name, size, sha256) VALUES (?, ?, ?, ?, ?)", "initt", *id, i,
+    code = EO_STATEMENT_RUN(store, error, "INSERT INTO measurement_file (measurement, ordinal, name, size, sha256) VALUES (?, ?, ?, ?, ?)", "intit", *id, i,
                             m->file[i].name, m->file[i].size, m->file[i].sha256);
   return code;
 }
