@@ -61,4 +61,4 @@ const struct eo_command eo_command_export = {
     "export", "DESIGN.json --format NAME [-o FILE]", "a file for another program: flank points, charts, topography",
     "Without a design, the list of formats. Without -o the file goes to standard output.\n\n"
     "Points stand in the frame of each member: z along the axis, from the middle of the groove to the right; the working flank of a\n"
-    "tooth faces +x and passes through x = 0 at the pitch radius in mid face. Normals point out of the tooth.\n", run};
+    "tooth faces +x and would, unmodified, pass through x = 0 at the working pitch radius in mid face. Normals point out of the tooth.\n", run};

@@ -7,8 +7,8 @@
 #include "numerics/threads.h"
 
 static const struct eo_command *const commands[] = {
-    &eo_command_serve, &eo_command_example,   &eo_command_analyze, &eo_command_sweep, &eo_command_optimize, &eo_command_history,
-    &eo_command_measure, &eo_command_rig,   &eo_command_export, &eo_command_reproduce, &eo_command_verify,  &eo_command_stage};
+    &eo_command_serve,   &eo_command_example, &eo_command_analyze, &eo_command_sweep,     &eo_command_optimize, &eo_command_history,
+    &eo_command_measure, &eo_command_rig,     &eo_command_export,  &eo_command_reproduce, &eo_command_verify,   &eo_command_stage};
 enum { COMMANDS = sizeof commands / sizeof commands[0] };
 
 static int print_overview(void)
@@ -16,7 +16,7 @@ static int print_overview(void)
   struct eo_text text = {0};
   eo_text_print(&text, "%s: quiet herringbone gears by tooth micro-geometry\n\n", eo_program);
   for (int i = 0; i < COMMANDS; i++)
-    eo_text_print(&text, "  easeoff %-8s %-32s %s\n", commands[i]->name, commands[i]->usage, commands[i]->summary);
+    eo_text_print(&text, "  easeoff %-9s  %s\n", commands[i]->name, commands[i]->summary);
   eo_text_add(&text, "\neaseoff COMMAND --help says more; easeoff --version prints the version. A file named - is standard input.\n"
                      "Exit status: 0 done, 1 the input is wrong, 2 it failed.\n");
   return eo_app_print(&text);

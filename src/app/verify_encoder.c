@@ -7,10 +7,10 @@
 #include "app/case_pair.h"
 #include "app/verify.h"
 #include "document/example.h"
-#include "document/design_document.h"
+#include "document/layout_document.h"
+#include "gear/geometry.h"
 #include "measurement/measurement.h"
 #include "measurement/reader.h"
-#include "measurement/unit.h"
 
 /* Words in which a case may name a finding. */
 static const struct {
@@ -130,14 +130,12 @@ static void check_findings(struct eo_verification *v, const char *label, const j
   eo_verify_add(v, label, "findings not expected", surprises, 0, 0);
 }
 
-static double element_of(const json_t *truth, const char *key, int h) { return eo_verify_element(truth, key, h); }
-
 /* An order may deviate by four standard deviations of the noise beside it. */
 static void check_orders(struct eo_verification *v, const char *label, const json_t *truth, double relative, const struct eo_transmission *t)
 {
   for (int h = 0; h < t->harmonics; h++) {
     char quantity[60];
-    double amplitude = element_of(truth, "line_amp_um", h), acceleration = element_of(truth, "line_acc", h), rms = element_of(truth, "rms_by_H", h);
+    double amplitude = eo_verify_element(truth, "line_amp_um", h), acceleration = eo_verify_element(truth, "line_acc", h), rms = eo_verify_element(truth, "rms_by_H", h);
     double noise = 4 * t->mesh[h].sigma, weight = pow(t->mesh[h].order * t->speed, 2);
     snprintf(quantity, sizeof quantity, "amplitude of mesh order %d", h + 1);
     if (!isnan(amplitude))
@@ -196,37 +194,22 @@ static void check_numbers(struct eo_verification *v, const char *label, const js
 
 /* ---- one recording ---- */
 
-/* Columns by their names and units: time, then two angles or four tracks in the order pinion sine, cosine, gear sine, cosine. */
-static enum eo_code read_tracks(const json_t *item, const struct eo_recording *recording, struct eo_tracks *t, struct eo_error *error)
+/* The layout of the entry; lines per turn also as a key of their own or in the words of the note. */
+static enum eo_code find_tracks(const json_t *item, const struct eo_recording *recording, struct eo_notes *notes, struct eo_tracks *tracks, struct eo_error *error)
 {
+  struct eo_faults *faults = calloc(1, sizeof *faults);
+  struct eo_layout_request layout;
   const char *note = json_string_value(json_object_get(item, "note"));
+  if (!faults)
+    return eo_error_memory(error);
+  eo_layout_decode(json_object_get(item, "layout"), &layout, faults);
   double stated = eo_case_count(note ? note : "", " lines", 0);
-  double lines = either(item, "lines_per_rev", "lines", either(item, "lines_per_turn", "lines_per_turn", stated)), factor;
-  int columns = eo_recording_columns(recording), value = 0;
-  *t = (struct eo_tracks){.time_column = -1, .time_scale = 1, .interval = eo_recording_interval(recording)};
-  for (int c = 0; c < columns; c++) {
-    enum eo_quantity quantity = eo_unit_find(eo_recording_unit(recording, c), &factor);
-    if (quantity == EO_QUANTITY_TIME && t->time_column < 0) {
-      t->time_column = c;
-      t->time_scale = factor;
-      continue;
-    }
-    if (columns >= 4 && value < 4) {
-      struct eo_track_channel *channel = &t->channel[value / 2];
-      channel->track = EO_TRACK_SINE_COSINE;
-      channel->column[value % 2] = c;
-      channel->factor = factor;
-      channel->unit = quantity == EO_QUANTITY_VOLTAGE ? EO_TRACK_VOLT : EO_TRACK_UNKNOWN;
-      channel->lines = lines;
-    } else if (value < 2) {
-      t->channel[value].column[0] = c;
-      t->channel[value].scale = quantity == EO_QUANTITY_ANGLE ? factor : quantity == EO_QUANTITY_COUNT && lines > 0 ? 2 * M_PI / lines : M_PI / 180;
-    }
-    value++;
-  }
-  if (value < 2 || (columns >= 4 && !(lines > 0)))
-    return eo_error_set(error, EO_ERROR_INPUT, "", "The columns are no two angles, nor four tracks with their lines per turn.");
-  return EO_OK;
+  double lines = either(item, "lines_per_rev", "lines", either(item, "lines_per_turn", "lines_per_turn", stated));
+  for (int i = 0; i < 2; i++)
+    layout.choice.lines[i] = layout.choice.lines[i] > 0 ? layout.choice.lines[i] : lines;
+  enum eo_code code = eo_faults_first(faults, error);
+  free(faults);
+  return code ? code : eo_layout_find(recording, &layout.choice, tracks, notes, error);
 }
 
 static bool refusal_expected(const json_t *item)
@@ -257,7 +240,7 @@ static enum eo_code run_file(struct run *r, const json_t *item, const char *labe
   enum eo_code code = m && notes && path ? eo_reader_read(path, NULL, &recording, notes, error) : eo_error_memory(error);
   read_settings(item, &settings);
   if (!code)
-    code = read_tracks(item, recording, &tracks, error);
+    code = find_tracks(item, recording, notes, &tracks, error);
   if (!code)
     code = eo_measurement_run(m, recording, &tracks, &settings, NULL, error);
   if (!code) {

@@ -37,10 +37,23 @@ struct flank {
   int member, end;
   struct eo_modification_shape shape;
   double offset; /* mid face of the end from the middle of the groove, m */
-  double turn;   /* of the right end behind the left, rad */
+  double turn;   /* to the frame below, from +x towards +y, rad */
 };
 
 typedef void flank_function(const struct flank *flank, struct eo_text *text);
+
+/* Angle from +y towards +x at which an end's unmodified flank stands at the pitch radius in mid face. */
+static double pitch_angle(const struct eo_geometry *geometry, int member)
+{
+  const struct eo_flank_modification none = {0};
+  struct eo_modification_shape shape;
+  struct eo_surface_point point;
+  double u, v;
+  eo_modification_init(&shape, geometry, member, &none);
+  eo_surface_coordinates(geometry, member, 0, 0, &u, &v);
+  eo_surface_evaluate(geometry, member, &shape, u, v, &point);
+  return atan2(point.position[0], point.position[1]);
+}
 
 static void each_flank(const struct eo_design *design, const struct eo_geometry *geometry, flank_function *function, struct eo_text *text)
 {
@@ -50,8 +63,8 @@ static void each_flank(const struct eo_design *design, const struct eo_geometry 
       eo_modification_init(&flank.shape, geometry, member, &design->modification.flank[member][end]);
       if (design->gear_pair.ends == 2)
         flank.offset = (design->gear_pair.groove_width + design->gear_pair.face_width) / 2;
-      if (end == EO_RIGHT)
-        flank.turn = design->alignment.stagger * 2 * M_PI / geometry->teeth[member];
+      double behind = end == EO_RIGHT ? design->alignment.stagger * 2 * M_PI / geometry->teeth[member] : 0;
+      flank.turn = pitch_angle(geometry, member) + (member == EO_PINION ? behind : -behind);
       function(&flank, text);
     }
 }
@@ -89,13 +102,13 @@ static double lead_part(const struct flank *flank, double eta)
 }
 
 /* ---- points ----
-   Frame of a member: z its axis, from the middle of the groove to the right; the working flank of a tooth faces +x and passes through the
-   plane x = 0 at the pitch radius in mid face. eo_surface_evaluate() gives one end with z along eta (pinion) or against it (gear). The left
+   Frame of a member: z its axis, from the middle of the groove to the right; the working flank of a tooth faces +x and would, unmodified, pass
+   through the plane x = 0 at the working pitch radius in mid face. eo_surface_evaluate() gives one end with z along eta (pinion) or against it (gear). The left
    end mirrors the right one. A stagger turns the right end back: against the motion, which goes to +x on the pinion, to -x on the gear. */
 static void place_vector(const struct flank *flank, const double local[3], double shift, double global[3])
 {
   double outwards = shift + (flank->member == EO_PINION ? local[2] : -local[2]);
-  double angle = flank->member == EO_PINION ? flank->turn : -flank->turn, c = cos(angle), s = sin(angle);
+  double c = cos(flank->turn), s = sin(flank->turn);
   global[0] = c * local[0] - s * local[1];
   global[1] = s * local[0] + c * local[1];
   global[2] = flank->end == EO_LEFT && flank->offset > 0 ? -outwards : outwards;

@@ -146,7 +146,8 @@ struct member_flanks {
 };
 static const struct eo_field member_flanks[] = {
     EO_OBJECT(struct member_flanks, flank[EO_LEFT], "left", &eo_flank_modification_table, "left end; absent: unmodified"),
-    EO_OBJECT(struct member_flanks, flank[EO_RIGHT], "right", &eo_flank_modification_table, "right end; absent: unmodified"),
+    {.key = "right", .kind = EO_FIELD_OBJECT, .flags = EO_FIELD_SOMETIMES, .offset = offsetof(struct member_flanks, flank[EO_RIGHT]),
+     .table = &eo_flank_modification_table, .help = "right end; absent: unmodified"},
 };
 const struct eo_table eo_member_modification_table = EO_TABLE("a member's modification", struct member_flanks, member_flanks);
 

@@ -13,12 +13,19 @@ enum { EXACT_POWER = 22 }; /* the largest power of ten that is a double */
 static const double power[EXACT_POWER + 1] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8,  1e9,  1e10, 1e11,
                                               1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
 
-/* Decimals that show so many digits of a positive value; -1: none of what follows can be done exactly. */
+/* floor(log10(value)) for 1 <= value < 1e22: from the binary exponent, log10(2) = 1233/4096. */
+static int find_exponent(double value)
+{
+  int exponent = ilogb(value) * 1233 >> 12;
+  return exponent + (value >= power[exponent + 1]);
+}
+
+/* Decimals that show so many digits of a positive value, one less for some just below a power of ten; -1: none of what follows can be done exactly. */
 static int find_decimals(double value, int digits)
 {
   if (!(value >= 1e-13 && value < 1e15))
     return -1;
-  int decimals = digits - 1 - (int)floor(log10(value));
+  int decimals = digits - 1 - (value >= 1 ? find_exponent(value) : find_exponent(value * 1e13) - 13);
   return decimals >= 0 && decimals <= EXACT_POWER ? decimals : -1;
 }
 

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "base/parallel.h"
 #include "document/geometry_table.h"
 #include "document/result_parts.h"
 
@@ -199,22 +200,59 @@ static void put_identity(struct eo_result_object *o, const struct eo_design *des
   eo_result_put(o, "resolution", eo_table_encode(&eo_resolution_table, &design->resolution));
 }
 
-static json_t *encode_all(struct eo_result_source *source, const struct eo_warnings *warnings)
+/* What stands before the load cases, and what stands behind them. */
+static json_t *encode_head(struct eo_result_source *source)
 {
-  const struct eo_dynamics_modes *modes = &source->evaluation->modes;
-  bool have_modes = source->analysis->want & EO_WANT_CURVES;
   struct eo_result_object o = eo_result_open();
   put_identity(&o, source->design);
   eo_result_put(&o, "geometry", eo_table_encode(&eo_geometry_table, &source->pair->geometry));
   eo_result_put(&o, "modification", eo_result_modification(source));
   eo_result_put(&o, "unloaded_contact", eo_result_unloaded(source));
-  eo_result_put(&o, "load_cases", encode_cases(source));
+  return eo_result_close(&o);
+}
+
+static json_t *encode_tail(const struct eo_result_source *source, const struct eo_warnings *warnings)
+{
+  const struct eo_dynamics_modes *modes = &source->evaluation->modes;
+  bool have_modes = source->analysis->want & EO_WANT_CURVES;
+  struct eo_result_object o = eo_result_open();
   eo_result_put(&o, "objectives", encode_objectives(source));
   eo_result_put(&o, "eigenfrequencies_Hz", have_modes ? eo_json_reals(modes->n, modes->frequency, 1, &eo_unit_Hz, EO_DIGITS_CURVE) : json_null());
   eo_result_put(&o, "damping_ratios", have_modes ? eo_json_reals(modes->n, modes->damping_ratio, 1, NULL, EO_DIGITS_CURVE) : json_null());
   eo_result_put(&o, "warnings", eo_result_warnings(source, warnings));
   eo_result_put(&o, "timing_ms", encode_timing(source));
   return eo_result_close(&o);
+}
+
+static json_t *encode_all(struct eo_result_source *source, const struct eo_warnings *warnings)
+{
+  struct eo_result_object o = {.json = encode_head(source)};
+  o.failed = !o.json;
+  eo_result_put(&o, "load_cases", encode_cases(source));
+  json_t *tail = encode_tail(source, warnings);
+  o.failed = !tail || json_object_update(o.json, tail) != 0 || o.failed;
+  json_decref(tail);
+  return eo_result_close(&o);
+}
+
+/* What one thread needs. */
+static bool init_source(struct eo_result_source *source, const struct eo_analysis *analysis, const struct eo_design *design, unsigned left_out)
+{
+  const struct eo_evaluation *r = analysis->evaluation;
+  *source = (struct eo_result_source){.analysis = analysis, .evaluation = r, .pair = analysis->pair, .design = design, .ends = r->ends,
+                                      .positions = r->positions, .lag = eo_evaluator_stagger(design, r->positions),
+                                      .normal = cos(analysis->pair->geometry.base_helix_angle), .left_out = left_out};
+  source->pattern = malloc(sizeof *source->pattern);
+  source->scratch = calloc((size_t)r->positions, sizeof *source->scratch);
+  if (source->pattern)
+    eo_contact_pattern_init(source->pattern, &source->pair->geometry);
+  return source->pattern && source->scratch;
+}
+
+static void done_source(struct eo_result_source *source)
+{
+  free(source->pattern);
+  free(source->scratch);
 }
 
 json_t *eo_result_encode(const struct eo_analysis *analysis, const struct eo_design *design, const struct eo_warnings *warnings)
@@ -224,14 +262,84 @@ json_t *eo_result_encode(const struct eo_analysis *analysis, const struct eo_des
 
 json_t *eo_result_encode_part(const struct eo_analysis *analysis, const struct eo_design *design, const struct eo_warnings *warnings, unsigned left_out)
 {
-  const struct eo_evaluation *r = analysis->evaluation;
-  struct eo_result_source source = {.analysis = analysis, .evaluation = r, .pair = analysis->pair, .design = design, .ends = r->ends,
-                                    .positions = r->positions, .lag = eo_evaluator_stagger(design, r->positions),
-                                    .normal = cos(analysis->pair->geometry.base_helix_angle), .left_out = left_out};
-  source.pattern = malloc(sizeof *source.pattern);
-  source.scratch = calloc((size_t)r->positions, sizeof *source.scratch);
-  json_t *result = source.pattern && source.scratch ? encode_all(&source, warnings) : NULL;
-  free(source.pattern);
-  free(source.scratch);
+  struct eo_result_source source;
+  double edge_pressure[EO_MAX_LOAD_CASES][2];
+  bool good = init_source(&source, analysis, design, left_out);
+  source.edge_pressure = edge_pressure;
+  json_t *result = good ? encode_all(&source, warnings) : NULL;
+  done_source(&source);
   return result;
+}
+
+/* ---- as text, by parts: the head, then each load case ---- */
+
+enum { WRITERS = 2 };
+
+struct writing {
+  struct eo_result_source source[WRITERS]; /* [thread] */
+  struct eo_text part[1 + EO_MAX_LOAD_CASES];
+};
+
+static enum eo_code write_part(void *context, int thread, int item, struct eo_error *error)
+{
+  struct writing *w = context;
+  struct eo_result_source *source = &w->source[thread];
+  json_t *part = item ? encode_case(source, item - 1) : encode_head(source);
+  if (part)
+    eo_json_write(&w->part[item], part, EO_JSON_COMPACT);
+  bool good = part && !w->part[item].failed;
+  json_decref(part);
+  return good ? EO_OK : eo_error_memory(error);
+}
+
+/* The parts of one object: without the brace at the end of the first and that at the beginning of the last. */
+static void join(const struct writing *w, int cases, const struct eo_text *tail, struct eo_text *text)
+{
+  eo_text_add_bytes(text, w->part[0].data, w->part[0].size - 1);
+  eo_text_add(text, ",\"load_cases\":[");
+  for (int k = 0; k < cases; k++) {
+    if (k)
+      eo_text_add(text, ",");
+    eo_text_add_bytes(text, w->part[1 + k].data, w->part[1 + k].size);
+  }
+  eo_text_add(text, "],");
+  eo_text_add_bytes(text, tail->data + 1, tail->size - 1);
+}
+
+static enum eo_code write_all(struct writing *w, const struct eo_warnings *warnings, struct eo_text *text, struct eo_error *error)
+{
+  const struct eo_analysis *analysis = w->source[0].analysis;
+  const struct eo_parallel parallel = {.threads = analysis->threads < WRITERS ? analysis->threads : WRITERS, .work = write_part, .context = w};
+  struct eo_text tail = {0};
+  enum eo_code code = eo_parallel_run(&parallel, 1 + analysis->cases, error);
+  if (code)
+    return code;
+  json_t *last = encode_tail(&w->source[0], warnings);
+  if (last)
+    eo_json_write(&tail, last, EO_JSON_COMPACT);
+  if (last && !tail.failed)
+    join(w, analysis->cases, &tail, text);
+  bool good = last && !tail.failed && !text->failed;
+  json_decref(last);
+  eo_text_done(&tail);
+  return good ? EO_OK : eo_error_memory(error);
+}
+
+enum eo_code eo_result_write(const struct eo_analysis *analysis, const struct eo_design *design, const struct eo_warnings *warnings, unsigned left_out,
+                             struct eo_text *text, struct eo_error *error)
+{
+  struct writing *w = calloc(1, sizeof *w);
+  double edge_pressure[EO_MAX_LOAD_CASES][2];
+  bool good = w != NULL;
+  for (int i = 0; i < WRITERS && good; i++) {
+    good = init_source(&w->source[i], analysis, design, left_out);
+    w->source[i].edge_pressure = edge_pressure;
+  }
+  enum eo_code code = good ? write_all(w, warnings, text, error) : eo_error_memory(error);
+  for (int i = 0; i < WRITERS && w; i++)
+    done_source(&w->source[i]);
+  for (int i = 0; i <= EO_MAX_LOAD_CASES && w; i++)
+    eo_text_done(&w->part[i]);
+  free(w);
+  return code;
 }

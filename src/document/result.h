@@ -29,6 +29,10 @@ enum {
 };
 json_t *eo_result_encode_part(const struct eo_analysis *analysis, const struct eo_design *design, const struct eo_warnings *warnings, unsigned left_out);
 
+/* The same as compact JSON, appended to the text, on as many threads as the analysis may use. The same bytes as eo_json_write() gives. */
+enum eo_code eo_result_write(const struct eo_analysis *analysis, const struct eo_design *design, const struct eo_warnings *warnings, unsigned left_out,
+                             struct eo_text *text, struct eo_error *error);
+
 /* For people: each load case unmodified and as designed, the objectives, warnings, where the time went. */
 void eo_result_summary(const json_t *result, struct eo_text *text);
 

@@ -18,7 +18,7 @@ struct eo_result_source {
   unsigned left_out;                   /* EO_RESULT_NO_... */
   struct eo_contact_pattern *pattern;  /* scratch */
   double *scratch;                     /* [positions] */
-  double edge_pressure[EO_MAX_LOAD_CASES][2]; /* Pa; filled with the load cases, for the warnings */
+  double (*edge_pressure)[2];          /* [cases], Pa; filled with the load cases, for the warnings; of all threads */
 };
 
 /* "left", "right". */

@@ -191,8 +191,10 @@ json_t *eo_rig_truth(const struct eo_rig_request *r, const char *file)
   eo_result_put(&entry, "truth", encode_truth(s, orders));
   eo_result_put_number(&entry, "tolerance_rms_rel", 0.01, NULL);
   eo_result_put(&entry, "expected_findings", findings);
-  if (s->output == EO_SYNTHETIC_SINE_COSINE)
-    eo_result_put(&entry, "lines_per_turn", json_integer(s->lines[EO_PINION]));
+  if (s->output != EO_SYNTHETIC_ANGLES) {
+    int per_line = s->output == EO_SYNTHETIC_COUNTS ? s->interpolation : 1;
+    eo_result_put(&entry, "layout", json_pack("{s:[i,i]}", "lines", s->lines[EO_PINION] * per_line, s->lines[EO_GEAR] * per_line));
+  }
   top.failed = json_array_append_new(files, eo_result_close(&entry)) != 0 || top.failed;
   eo_result_put(&top, "kind", json_string("encoder"));
   eo_result_put(&top, "teeth", teeth);

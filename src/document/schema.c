@@ -243,7 +243,7 @@ static void put_object(struct eo_result_object *o, const struct eo_table *table,
   for (int i = 0; i < table->count && !o->failed; i++) {
     const struct eo_field *field = &table->field[i];
     eo_result_put(&properties, field->key, property(field, defaults, input));
-    if (input ? must_be_there(field) : !(field->flags & EO_FIELD_OMIT))
+    if (input ? must_be_there(field) : !(field->flags & (EO_FIELD_OMIT | EO_FIELD_SOMETIMES)))
       o->failed = json_array_append_new(required, json_string(field->key)) != 0;
   }
   eo_result_put(o, "properties", eo_result_close(&properties));

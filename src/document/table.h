@@ -33,6 +33,7 @@ enum {
   EO_FIELD_NULLABLE = 2,   /* null is allowed: NaN inside (OBJECT: see count_offset), `derived` says what stands in its place */
   EO_FIELD_ASCENDING = 4,  /* NUMBERS: strictly increasing */
   EO_FIELD_OMIT = 8,       /* OBJECT: left out of the encoded document while everything in it has its default */
+  EO_FIELD_SOMETIMES = 16, /* OBJECT: whoever encodes the document may take it out; said in the schema alone */
 };
 
 /* A list of numbers of any length. */

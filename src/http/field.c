@@ -118,12 +118,11 @@ bool eo_field_lists_tag(const char *header, const char *tag, bool weak)
     if (*start != '"')
       return *header == '*' && !*skip_blanks(header + 1);
     size_t size = strcspn(start + 1, "\"");
+    if (start[1 + size] != '"')
+      return false;
     if ((weak || !is_weak) && size == length && strncmp(start + 1, tag, size) == 0)
       return true;
-    header = start + 1 + size;
-    if (*header != '"')
-      return false;
-    header++;
+    header = start + 2 + size;
   }
   return false;
 }

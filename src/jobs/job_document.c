@@ -66,6 +66,22 @@ void eo_job_live_follow(struct eo_job_live *live, const struct eo_study_report *
   follow_generations(live, report);
 }
 
+void eo_job_live_conclude(struct eo_job_live *live, const struct eo_study_result *result)
+{
+  live->generation = result->generations;
+  live->true_evaluations = result->true_evaluations;
+  live->predicted = result->predicted;
+  live->reused = result->reused;
+  live->individuals = result->individuals;
+  live->seconds = result->seconds;
+  live->seconds_left = result->stopped == EO_STOP_CANCELLED ? NAN : 0;
+  if (result->best.there && live->best_evaluation != result->best.evaluation) {
+    json_decref(live->best);
+    live->best = encode_point(&result->best);
+    live->best_evaluation = result->best.evaluation;
+  }
+}
+
 /* ---- documents ---- */
 
 static double pfc_percent(int true_evaluations, int individuals)

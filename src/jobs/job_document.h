@@ -27,6 +27,9 @@ void eo_job_live_done(struct eo_job_live *live);
 /* Takes over what a study reports. */
 void eo_job_live_follow(struct eo_job_live *live, const struct eo_study_report *report);
 
+/* ... and what it gave in the end. */
+void eo_job_live_conclude(struct eo_job_live *live, const struct eo_study_result *result);
+
 /* { "progress", "best", "unmodified" }: what is kept with the job. NULL without memory. */
 json_t *eo_job_live_encode(const struct eo_job_live *live);
 

@@ -380,7 +380,15 @@ static enum eo_code show(struct eo_service *s, int64_t id, json_t **job, struct 
   return find_job(s, id, true, &outcome, job, error);
 }
 
-static enum eo_code hash_request(const struct eo_job_order *order, const struct eo_text *design, char hash[EO_HASH_LENGTH + 1])
+/* In this order, so that a job is seen waiting before it is seen running. */
+static enum eo_code show_and_call(struct eo_service *s, int64_t id, json_t **job, struct eo_error *error)
+{
+  enum eo_code code = show(s, id, job, error);
+  eo_service_call(s);
+  return code;
+}
+
+static void hash_request(const struct eo_job_order *order, const struct eo_text *design, char hash[EO_HASH_LENGTH + 1])
 {
   struct eo_hash h;
   eo_hash_init(&h);
@@ -389,7 +397,6 @@ static enum eo_code hash_request(const struct eo_job_order *order, const struct 
   eo_hash_add_number(&h, "fresh", order->fresh);
   eo_hash_add_text(&h, "design", design->data);
   eo_hash_finish(&h, hash);
-  return EO_OK;
 }
 
 static enum eo_code add_job(struct eo_service *s, const struct eo_job_order *order, const struct eo_text *design, int64_t *id,
@@ -409,8 +416,8 @@ static enum eo_code add_job(struct eo_service *s, const struct eo_job_order *ord
   return code;
 }
 
-/* Queues without telling who asked. */
-static enum eo_code submit(struct eo_service *s, const struct eo_job_order *order, int64_t *id, enum eo_job_outcome *outcome, struct eo_error *error)
+/* Queues; nobody is told yet, nor begins. */
+static enum eo_code queue(struct eo_service *s, const struct eo_job_order *order, int64_t *id, enum eo_job_outcome *outcome, struct eo_error *error)
 {
   struct eo_text design = {0};
   json_t *document = eo_design_encode(order->design);
@@ -419,8 +426,6 @@ static enum eo_code submit(struct eo_service *s, const struct eo_job_order *orde
   enum eo_code code = document && !design.failed ? add_job(s, order, &design, id, outcome, error) : eo_error_memory(error);
   json_decref(document);
   eo_text_done(&design);
-  if (!code && *outcome == EO_JOB_OUTCOME_DONE)
-    eo_service_call(s);
   if (!code && *outcome == EO_JOB_OUTCOME_FULL)
     atomic_fetch_add(&s->refused, 1);
   return code;
@@ -432,10 +437,10 @@ enum eo_code eo_service_submit(struct eo_service *s, const struct eo_job_order *
   *job = NULL;
   if (is_closed(s, outcome))
     return EO_OK;
-  enum eo_code code = submit(s, order, &id, outcome, error);
+  enum eo_code code = queue(s, order, &id, outcome, error);
   if (code || (*outcome != EO_JOB_OUTCOME_DONE && *outcome != EO_JOB_OUTCOME_REPEATED))
     return code;
-  return show(s, id, job, error);
+  return show_and_call(s, id, job, error);
 }
 
 enum eo_code eo_service_cancel(struct eo_service *s, int64_t id, enum eo_job_outcome *outcome, json_t **job, struct eo_error *error)
@@ -462,10 +467,7 @@ enum eo_code eo_service_retry(struct eo_service *s, int64_t id, enum eo_job_outc
   pthread_mutex_lock(&s->store_mutex);
   enum eo_code code = eo_queue_retry(s->store, id, s->settings.most_queued, outcome, error);
   pthread_mutex_unlock(&s->store_mutex);
-  if (code || *outcome)
-    return code;
-  eo_service_call(s);
-  return show(s, id, job, error);
+  return code || *outcome ? code : show_and_call(s, id, job, error);
 }
 
 enum eo_code eo_service_clone(struct eo_service *s, int64_t id, const int *priority, enum eo_job_outcome *outcome, json_t **job, struct eo_error *error)
@@ -477,10 +479,7 @@ enum eo_code eo_service_clone(struct eo_service *s, int64_t id, const int *prior
   pthread_mutex_lock(&s->store_mutex);
   enum eo_code code = eo_queue_clone(s->store, id, priority, s->settings.most_queued, &clone, outcome, error);
   pthread_mutex_unlock(&s->store_mutex);
-  if (code || *outcome)
-    return code;
-  eo_service_call(s);
-  return show(s, clone, job, error);
+  return code || *outcome ? code : show_and_call(s, clone, job, error);
 }
 
 enum eo_code eo_service_remove(struct eo_service *s, int64_t id, enum eo_job_outcome *outcome, struct eo_error *error)

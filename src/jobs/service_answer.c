@@ -205,13 +205,12 @@ static void fail(struct eo_answer *answer, enum eo_code code)
 
 static enum eo_code write_analysis(const struct asked *asked, const struct eo_analysis *analysis, struct eo_answer *answer)
 {
+  if (asked->format == EO_ANSWER_JSON)
+    return eo_result_write(analysis, &asked->design, &asked->warnings, asked->left_out, &answer->text, &answer->error);
   json_t *document = eo_result_encode_part(analysis, &asked->design, &asked->warnings, asked->left_out);
   if (!document)
     return eo_error_memory(&answer->error);
-  if (asked->format == EO_ANSWER_CSV)
-    eo_result_summary_csv(document, &answer->text);
-  else
-    eo_json_write(&answer->text, document, EO_JSON_COMPACT);
+  eo_result_summary_csv(document, &answer->text);
   json_decref(document);
   return answer->text.failed ? eo_error_memory(&answer->error) : EO_OK;
 }

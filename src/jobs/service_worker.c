@@ -135,6 +135,10 @@ static enum eo_code optimize(struct eo_service_worker *w, struct task *task, boo
   json_t *document = NULL;
   enum eo_code code = eo_study_run(&plan, &result, error);
   *stopped = !code && result.stopped == EO_STOP_CANCELLED;
+  pthread_mutex_lock(&w->service->live_mutex);
+  if (!code)
+    eo_job_live_conclude(&w->live, &result);
+  pthread_mutex_unlock(&w->service->live_mutex);
   bool parked = *stopped && !atomic_load(&w->cancelled);
   if (!code && !parked)
     code = eo_study_document(&plan, &result, &task->warnings, &document, error);

@@ -405,7 +405,7 @@ static void conclude(struct maker *m, struct eo_angles *a)
   }
   if (!even)
     advance = fabs(a->rate[0]) * a->interval * EO_SAMPLER_BLOCK;
-  a->ratio_tolerance = 0.02 / fmax(advance, 0.1);
+  a->ratio_tolerance = fmax(1e-6, 0.02 / fmax(advance, 0.1));
   judge_jumps(m, a);
 }
 

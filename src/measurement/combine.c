@@ -9,7 +9,7 @@
 
 #define BLOCK 4096
 #define POINTS 16     /* rows of a polynomial */
-#define SAME 1e-3     /* of a row's interval: times that differ less are equal */
+#define SAME 1e-6     /* of a row's interval: times that differ less are equal */
 
 /* A recording read forwards through a window of rows. */
 struct window {

@@ -27,7 +27,7 @@ enum eo_code eo_layout_find(const struct eo_recording *recording, const struct e
 
 /* One recording from two files of one run, one per encoder, pinion first: the columns of the second are put beside those of the first. Rows
    with equal times stay as they are; else the second is interpolated to the times of the first where both have data, by polynomials through
-   16 rows (error below 0.03 % of a component with 4.4 rows per period), turns counted on. Pulse times (one column each) keep their lengths.
+   16 rows (error below 0.05 % of a component with 4.4 rows per period), turns counted on. Pulse times (one column each) keep their lengths.
    The recordings must share a clock. choice may name the time column; NULL: guess. The caller frees *combined.
    Errors: EO_ERROR_INPUT: no time, no overlap; EO_ERROR_FILE; EO_ERROR_MEMORY. */
 enum eo_code eo_layout_combine(const struct eo_recording *pinion, const struct eo_recording *gear, const struct eo_layout_choice *choice,

@@ -24,6 +24,23 @@ struct eo_pulses {
   double *rows;
 };
 
+/* Empty cells at the end of the shorter column are no pulses. */
+static enum eo_code find_length(struct eo_pulses *p, struct train *train, struct eo_error *error)
+{
+  int columns = eo_recording_columns(p->recording);
+  train->length = eo_recording_length(p->recording, train->column);
+  while (train->length > 0) {
+    int64_t first = train->length > SIDE ? train->length - SIDE : 0;
+    enum eo_code code = eo_recording_read(p->recording, first, train->length - first, p->rows, error);
+    if (code)
+      return code;
+    for (; train->length > first; train->length--)
+      if (isfinite(p->rows[(size_t)(train->length - 1 - first) * (size_t)columns + (size_t)train->column]))
+        return EO_OK;
+  }
+  return EO_OK;
+}
+
 enum eo_code eo_pulses_new(struct eo_pulses **pulses, const struct eo_recording *recording, const struct eo_tracks *tracks, struct eo_error *error)
 {
   struct eo_pulses *p = calloc(1, sizeof *p);
@@ -35,12 +52,16 @@ enum eo_code eo_pulses_new(struct eo_pulses **pulses, const struct eo_recording 
   }
   p->recording = recording;
   p->tracks = tracks;
-  for (int i = 0; i < 2; i++) {
+  enum eo_code code = EO_OK;
+  for (int i = 0; i < 2 && !code; i++) {
     p->train[i].column = tracks->channel[i].column[0];
-    p->train[i].length = eo_recording_length(recording, p->train[i].column);
+    code = find_length(p, &p->train[i], error);
   }
-  *pulses = p;
-  return EO_OK;
+  if (code)
+    eo_pulses_free(p);
+  else
+    *pulses = p;
+  return code;
 }
 
 void eo_pulses_free(struct eo_pulses *p)
@@ -126,6 +147,8 @@ enum eo_code eo_pulses_next(struct eo_pulses *p, struct eo_sample *sample, int *
       continue; /* before the first pulse of the gear, or no number */
     if (code)
       return code;
+    if (!isfinite(pulse))
+      continue;
     sample[(*count)++] = (struct eo_sample){time, {2 * M_PI * (double)p->next / channel[0].lines, 2 * M_PI * pulse / channel[1].lines}, p->next};
   }
   return EO_OK;

@@ -222,6 +222,8 @@ enum eo_code eo_synthetic_check(const struct eo_synthetic *s, struct eo_error *e
     return eo_error_set(error, EO_ERROR_INPUT, "", "Speed, turns and sample rate of a rig are positive.");
   if (!lines && (s->lines[0] < 1 || s->lines[1] < 1 || (s->output == EO_SYNTHETIC_COUNTS && s->interpolation < 1)))
     return eo_error_set(error, EO_ERROR_INPUT, "", "Counts, pulses and raw tracks need lines per turn, counts and steps an interpolation.");
+  if (s->output == EO_SYNTHETIC_COUNTS && ((double)s->lines[0] * s->interpolation > 1e9 || (double)s->lines[1] * s->interpolation > 1e9))
+    return eo_error_set(error, EO_ERROR_INPUT, "", "More than 1e9 counts per turn are no counts any more.");
   if (duration(s) * s->sample_rate > 1e9)
     return eo_error_set(error, EO_ERROR_INPUT, "", "The recording would have %.3g rows, more than 1e9.", duration(s) * s->sample_rate);
   return EO_OK;

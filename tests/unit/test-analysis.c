@@ -120,6 +120,53 @@ static void check_memory(void)
   end(fresh);
 }
 
+/* The document by parts, on two threads, is the document. */
+static void check_writing(void)
+{
+  struct subject *s = start("paper-case-b");
+  struct eo_error error;
+  s->analysis->threads = 2;
+  eo_analysis_run(s->analysis, &s->design, ALL, &error);
+  for (unsigned left_out = 0; left_out < 4; left_out++) {
+    struct eo_text whole = {0}, parts = {0};
+    json_t *document = eo_result_encode_part(s->analysis, &s->design, NULL, left_out);
+    eo_json_write(&whole, document, EO_JSON_COMPACT);
+    enum eo_code code = eo_result_write(s->analysis, &s->design, NULL, left_out, &parts, &error);
+    size_t size = whole.size;
+    ok(!code && same(&whole, &parts), "written by parts: the same %zu bytes", size);
+    json_decref(document);
+  }
+  end(s);
+}
+
+/* Two threads, ends that change one at a time, ends that become equal: the same bytes as a new analysis gives on one thread. */
+static void check_threads(void)
+{
+  struct subject *s = start("paper-case-b");
+  int different = 0;
+  s->analysis->threads = 2;
+  for (int i = 0; i < 6; i++) {
+    struct eo_modification *m = &s->design.modification;
+    if (i == 1 || i == 3)
+      m->flank[EO_PINION][EO_RIGHT].tip_relief += 1e-6;
+    if (i == 2)
+      m->flank[EO_PINION][EO_LEFT].root_relief += 1e-6;
+    if (i == 4)
+      s->design.alignment.shaft_angle_in_plane = 0;
+    if (i >= 4)
+      m->flank[EO_PINION][EO_RIGHT] = m->flank[EO_PINION][EO_LEFT];
+    if (i == 5)
+      m->flank[EO_PINION][EO_RIGHT].lead_crowning += 1e-6;
+    struct subject *fresh = start("paper-case-b");
+    fresh->design = s->design;
+    struct eo_text here = run(s), there = run(fresh);
+    different += !same(&here, &there);
+    end(fresh);
+  }
+  ok(different == 0, "on two threads, end by end, the same bytes as anew on one");
+  end(s);
+}
+
 static void check_unmodified(void)
 {
   struct subject *s = start("paper");
@@ -259,6 +306,8 @@ int main(void)
   check_names("paper-case-b", 2);
   check_names("single", 1);
   check_memory();
+  check_writing();
+  check_threads();
   check_unmodified();
   check_objectives();
   check_columns();

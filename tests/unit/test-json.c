@@ -1,4 +1,5 @@
 /* JSON in and out, texts, sheets: hostile bytes, exact numbers, files that are never half-written. */
+#include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
@@ -133,6 +134,40 @@ static bool writes(const char *text, enum eo_json_style style, const char *expec
   return good;
 }
 
+/* The text that printf gives with the fewest digits that read back equal, exponents as JSON has them. */
+static void write_by_printf(char *text, size_t size, double value)
+{
+  for (int digits = 15; digits <= 17; digits++) {
+    snprintf(text, size, "%.*g", digits, value);
+    if (strtod(text, NULL) == value)
+      break;
+  }
+}
+
+/* Numbers of few digits of every size, and ties: there is a short way for them, to the same text. */
+static void check_short_numbers(void)
+{
+  static const int kept[] = {6, 9, 12};
+  int written = 0, rounded = 0;
+  uint64_t bits = 7;
+  for (int i = 0; i < 60000; i++) {
+    bits = bits * 6364136223846793005u + 1442695040888963407u;
+    int digits = kept[i % 3], exponent = (int)(bits >> 40) % 22 - 10;
+    double value = (double)(bits >> 11) / 9007199254740992. * pow(10, exponent) * (i & 8 ? -1 : 1), half = floor(1e6 * value) / 1e6 + 0.5e-6, back;
+    char text[40], expected[40];
+    json_t *array = eo_json_reals(1, i & 16 ? &value : &half, 1, NULL, digits);
+    back = json_real_value(json_array_get(array, 0));
+    json_decref(array);
+    snprintf(expected, sizeof expected, "%.*g", digits, i & 16 ? value : half);
+    rounded += back != strtod(expected, NULL);
+    eo_json_number(text, sizeof text, back);
+    write_by_printf(expected, sizeof expected, back);
+    written += !strchr(expected, 'e') && strcmp(text, expected) != 0;
+  }
+  ok(rounded == 0, "60000 numbers of every size, ties among them, are rounded as printf rounds them");
+  ok(written == 0, "and written as it writes them");
+}
+
 static void test_writer(void)
 {
   ok(writes("{\"b\": [1, 2.5, null], \"a\": {\"z\": true, \"y\": \"\\u00e4\\n\\\"\\\\\"}}", EO_JSON_CANONICAL,
@@ -164,6 +199,7 @@ static void test_writer(void)
     lost += memcmp(&back, &value, sizeof back) != 0;
   }
   ok(lost == 0, "100000 random doubles read back equal");
+  check_short_numbers();
   const double column[] = {1, NAN, 2.0000000000001, INFINITY};
   json_t *array = eo_json_reals(4, column, 1, &eo_unit_mm, 9);
   char *dumped = json_dumps(array, JSON_COMPACT | JSON_REAL_PRECISION(9));

@@ -213,8 +213,8 @@ static void test_two_files(void)
   offset = cell_of(both, 1000, 2) - gear(cell_of(both, 1000, 0)) * 180 / M_PI;
   for (int i = 0; i < eo_recording_rows(both); i++)
     most = fmax(most, fabs(cell_of(both, i, 2) - gear(cell_of(both, i, 0)) * 180 / M_PI - offset));
-  double limit = 3e-4 * 1e-6 * 180 / M_PI; /* of the eighth mesh order, 4.4 rows per period */
-  ok(most < 2 * limit + 3e-9, "interpolated to %.2g deg, orders below 0.03 %%", most);
+  double order = 1e-6 * 180 / M_PI; /* the eighth mesh order, 4.4 rows per period */
+  ok(most < 5e-4 * order, "interpolated to %.2g deg, %.2g of the highest order", most, most / order);
   eo_recording_free(both);
   both = NULL;
   eo_recording_free(b);

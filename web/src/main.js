@@ -6,15 +6,19 @@ import { h } from './base/dom.js';
 import { Jobs } from './base/jobs.js';
 import { complete, designFields } from './base/schema.js';
 import { DesignStore } from './base/store.js';
-import { theme } from './base/theme.js';
+import { paper } from './base/paper.js';
 import { App } from './app.js';
 import { Form } from './form.js';
 import { Shell } from './shell.js';
+import { compareView } from './views/compare.js';
 import { designView } from './views/design.js';
+import { optimizeView } from './views/optimize.js';
 
 /** The tabs, in their order; one module each. @type {import('./app.js').Entry[]} */
 const VIEWS = [
   { id: 'design', title: 'Design', make: designView },
+  { id: 'optimize', title: 'Optimize', make: optimizeView },
+  { id: 'compare', title: 'Compare', make: compareView },
 ];
 
 const store = new DesignStore();
@@ -81,15 +85,10 @@ async function start(page) {
   });
   app.note();
   jobs.start();
-  window.addEventListener('beforeprint', () => {
-    document.body.classList.add('paper');
-    theme.print(true);
-    app.print();
+  paper.addEventListener('change', () => {
+    if (paper.on) app.print();
   });
-  window.addEventListener('afterprint', () => {
-    document.body.classList.remove('paper');
-    theme.print(false);
-  });
+  paper.start();
 }
 
 /** @param {HTMLElement} page */

@@ -4,6 +4,7 @@ import { copyText, download, fileName, fill, h } from './base/dom.js';
 import { dateText, sig } from './base/format.js';
 import { complete } from './base/schema.js';
 import { theme } from './base/theme.js';
+import { JobBar } from './jobbar.js';
 
 const THEMES = /** @type {Record<string, [string, string]>} */ ({ system: ['◐', 'as the system'], light: ['○', 'light'], dark: ['●', 'dark'] });
 const EXPORTS = [['flank-points', 'Flank points (CSV)'], ['modification-chart', 'Modification chart (CSV)'], ['topography', 'Topography (CSV)']];
@@ -27,7 +28,7 @@ export class Shell {
     this.notice = h('p.notice', { role: 'status', hidden: true });
     const bar = h('header.bar', null, h('a.brand', { href: '#design', 'aria-label': 'Easeoff' }, brand(), h('span', null, 'Easeoff')), this.menu, this.undo, this.redo,
       h('label.pin', null, h('span', null, 'against'), this.pin), this.tabs, this.state, this.theme);
-    this.elements = [h('a.skip', { href: '#stage', onclick: (/** @type {Event} */ event) => { event.preventDefault(); app.stage.querySelector('input')?.focus(); } }, 'To the parameters'), bar, this.away, this.notice, app.stage];
+    this.elements = [h('a.skip', { href: '#stage', onclick: (/** @type {Event} */ event) => { event.preventDefault(); app.stage.querySelector('input')?.focus(); } }, 'To the parameters'), bar, this.away, this.notice, app.stage, new JobBar(app).element];
     app.store.addEventListener('change', () => this.#refresh());
     app.addEventListener('view', () => this.#refresh());
     app.analyst.addEventListener('state', () => this.#drawState());
@@ -132,7 +133,7 @@ export class Shell {
         store.from.id ? item('Store', () => this.#save(false)) : null, item('Store as new', () => this.#save(true)),
         item('Import JSON…', () => upload.click()), upload, item('Export JSON', () => this.#export()),
         EXPORTS.map(([format, text]) => item(`Export ${text.charAt(0).toLowerCase()}${text.slice(1)}`, () => this.#exportAs(format))),
-        item('Copy a link to it', () => this.#copyLink())),
+        item('Copy a link to it', () => this.#copyLink()), item('Print a report…', () => window.print())),
       h('.menu-column', null, h('h2', null, 'Examples'), this.app.examples.map((example) => item(example.name, () => this.#openExample(example.name), example.title))),
       designs.length ? h('.menu-column', null, h('h2', null, 'Stored'), designs.map((design) => h('.menu-row', null, item(design.name || 'unnamed', () => this.#openStored(design.id), dateText(design.updated ?? design.created)),
         h('button.icon', { type: 'button', 'aria-label': `Delete ${design.name}`, title: 'Delete', onclick: () => { this.#closeMenu(); this.#try(() => this.#delete(design)); } }, '✕')))) : null);

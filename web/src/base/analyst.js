@@ -3,6 +3,8 @@ import { Refusal, connection } from './api.js';
 import { Lane } from './lane.js';
 import { pairKey, unmodified } from './store.js';
 
+const ANALYZE = 'analyze?histories=1';
+
 /** What the results of a reference depend on. @param {any} design */
 function loadKey(design) {
   const { name, modification, optimization, ...rest } = design;
@@ -70,11 +72,11 @@ export class Analyst extends EventTarget {
     }
     const { design } = store;
     if (this.state !== 'preparing') this.#state('busy');
-    this.own.submit({ path: 'analyze', body: design, pair: pairKey(design) });
+    this.own.submit({ path: ANALYZE, body: design, pair: pairKey(design) });
     const key = loadKey(design);
     if (key !== this.#plainKey) {
       this.#plainKey = key;
-      this.reference.submit({ path: 'analyze', body: unmodified(design), pair: pairKey(design), note: 'plain' });
+      this.reference.submit({ path: ANALYZE, body: unmodified(design), pair: pairKey(design), note: 'plain' });
     } else this.#askPin();
   }
 
@@ -92,7 +94,7 @@ export class Analyst extends EventTarget {
     const key = JSON.stringify(body);
     if (key === this.#pinKey) return;
     this.#pinKey = key;
-    this.reference.submit({ path: 'analyze', body, pair: pairKey(body), note: 'pin' });
+    this.reference.submit({ path: ANALYZE, body, pair: pairKey(body), note: 'pin' });
   }
 
   /** @param {string} state */

@@ -1,7 +1,7 @@
 // Numbers and words for people.
 
 const SYMBOLS = /** @type {Record<string, string>} */ ({
-  um: 'µm', deg: '°', Nm: 'N m', 'N/um': 'N/µm', 'm/s^2': 'm/s²', 'kg m^2': 'kg m²', 'kg/m^3': 'kg/m³', 'Nm/rad': 'N m/rad', '1/um': '1/µm',
+  um: 'µm', deg: '°', Nm: 'N m', N_per_um: 'N/µm', m_per_s2: 'm/s²', kg_m2: 'kg m²', kg_per_m3: 'kg/m³', Nm_per_rad: 'N m/rad', per_mm: '1/mm', per_um: '1/µm',
 });
 
 /** The unit as it is printed. @param {string | null | undefined} unit */

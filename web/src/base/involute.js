@@ -44,12 +44,12 @@ function fillet(g, pair, member) {
 /**
  * The right half of a tooth whose middle is the y axis: from the root through fillet and involute to the tip.
  * @param {any} g geometry of a result @param {any} pair gear_pair of its resolved design @param {0 | 1} member
- * @param {(sigma: number) => number} [taken] what is taken off at a path coordinate, + towards the member's tip, mm
+ * @param {(sigma: number) => number} [taken] what is taken off at a path coordinate, + towards the member's tip, mm: the active involute alone, that much lower
  * @returns {Point[]}
  */
 export function halfTooth(g, pair, member, taken) {
-  const points = fillet(g, pair, member);
-  const [from, to] = [g.form_radius_mm[member], g.tip_radius_mm[member]];
+  const points = taken ? [] : fillet(g, pair, member);
+  const [from, to] = [taken ? g.active_start_radius_mm[member] : g.form_radius_mm[member], g.tip_radius_mm[member]];
   const base = g.base_radius_mm[member];
   for (let i = 0; i <= INVOLUTE; i++) {
     const radius = from + ((to - from) * i) / INVOLUTE;

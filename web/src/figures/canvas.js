@@ -1,5 +1,6 @@
 // A figure painted on a canvas: sharp on any screen, repainted when its size, the theme or its data change.
 import { h } from '../base/dom.js';
+import { paper } from '../base/paper.js';
 import { theme } from '../base/theme.js';
 import { Frame, whenSeen } from './frame.js';
 
@@ -25,6 +26,7 @@ export class Painting {
     });
     new ResizeObserver(() => this.repaint()).observe(this.frame.body);
     theme.addEventListener('change', () => this.now());
+    paper.addEventListener('change', () => this.now());
   }
 
   /** Once before the next frame, if it can be seen. */

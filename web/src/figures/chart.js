@@ -2,6 +2,7 @@
 import uPlot from 'uplot';
 import { fill, h } from '../base/dom.js';
 import { sig } from '../base/format.js';
+import { paper } from '../base/paper.js';
 import { phase } from '../base/phase.js';
 import { colour, theme } from '../base/theme.js';
 import { Frame, whenSeen } from './frame.js';
@@ -72,20 +73,22 @@ export class Chart {
       this.#shape = '';
       this.#draw();
     });
+    paper.addEventListener('change', () => this.force());
     if (options.cycle) phase.addEventListener('change', () => this.#followPhase());
   }
 
   /** @param {ChartData} data */
   set(data) {
     this.#data = data;
-    if (this.#seen || document.body.classList.contains('paper')) this.#draw();
+    if (this.#seen || paper.on) this.#draw();
     else this.#stale = true;
   }
 
-  /** Draws even out of sight, for paper. */
+  /** Draws even out of sight, in the size of now. */
   force() {
-    this.#seen = true;
+    this.#shape = '';
     this.#draw();
+    this.element.classList.toggle('blank', !this.#data?.x.length);
   }
 
   #draw() {
@@ -93,7 +96,8 @@ export class Chart {
     const data = this.#data;
     const { clientWidth: width, clientHeight: height } = this.frame.body;
     if (!data || !data.x.length || width === 0) {
-      this.#stale = Boolean(data);
+      this.#stale = Boolean(data?.x.length);
+      if (data && !data.x.length) this.#clear();
       return;
     }
     const columns = /** @type {uPlot.AlignedData} */ (/** @type {unknown} */ ([data.x, ...data.curves.map((curve) => onAbscissa(curve, data.x))]));
@@ -110,6 +114,13 @@ export class Chart {
     this.frame.body.append(this.tip);
     this.#listen(this.#plot);
     this.#drawLegend(data);
+  }
+
+  #clear() {
+    this.#plot?.destroy();
+    this.#plot = null;
+    this.#shape = '';
+    this.frame.legend.replaceChildren();
   }
 
   /** The zoomed range, or nothing. */
@@ -302,7 +313,7 @@ function drawMarks(plot, marks) {
   ctx.restore();
 }
 
-/** Solid curves as bars side by side; the others as a tick across the bar of the same colour. @param {uPlot} plot @param {Curve[]} curves */
+/** Solid curves as bars side by side; those of a reference pale behind the bar of the same colour. @param {uPlot} plot @param {Curve[]} curves */
 function drawBars(plot, curves) {
   const { ctx, bbox } = plot;
   const ratio = devicePixelRatio;
@@ -313,22 +324,24 @@ function drawBars(plot, curves) {
   const floor = plot.valToPos(0, 'y', true);
   ctx.save();
   curves.forEach((curve, k) => {
-    const tick = Boolean(curve.line) && curve.line !== 'solid';
-    const slot = tick ? solid.findIndex((other) => other.colour === curve.colour) : solid.indexOf(curve);
+    const pale = Boolean(curve.line) && curve.line !== 'solid';
+    const slot = pale ? solid.findIndex((other) => other.colour === curve.colour) : solid.indexOf(curve);
+    ctx.fillStyle = ctx.strokeStyle = colour(curve.colour);
+    ctx.lineWidth = ratio;
+    ctx.setLineDash(pale ? [3 * ratio, 2 * ratio] : []);
     for (let i = 0; i < x.length; i++) {
       const value = plot.data[k + 1][i];
       if (value === null || value === undefined) continue;
       const left = plot.valToPos(x[i], 'x', true) + (Math.max(0, slot) - solid.length / 2) * width;
       const top = plot.valToPos(value, 'y', true);
-      if (tick) {
-        ctx.strokeStyle = colour(curve.colour);
-        ctx.lineWidth = 1.5 * ratio;
-        ctx.setLineDash(curve.line === 'dotted' ? [1.5 * ratio, 2 * ratio] : [3 * ratio, 2 * ratio]);
-        ctx.strokeRect(left + 0.5, top, width - 1, floor - top);
-      } else {
-        ctx.fillStyle = colour(curve.colour);
-        ctx.fillRect(left + 0.5, top, Math.max(1, width - 1), floor - top);
-      }
+      ctx.globalAlpha = pale ? 0.22 : 1;
+      ctx.fillRect(left + 0.5, top, Math.max(1, width - 1), floor - top);
+      if (!pale) continue;
+      ctx.globalAlpha = 1;
+      ctx.beginPath();
+      ctx.moveTo(left + 0.5, top);
+      ctx.lineTo(left + width - 0.5, top);
+      ctx.stroke();
     }
   });
   ctx.restore();

@@ -5,13 +5,14 @@ import { colour } from '../base/theme.js';
 import { Painting, SMALL } from './canvas.js';
 
 const AROUND = 3; // teeth drawn on either side
-const SCALES = [500, 200, 100, 50, 20];
+const SCALES = [200, 100, 50, 20];
 
 /** @typedef {[number, number]} Point */
+/** @typedef {{ plain: Point[][], active: Point[][], modified: Point[][] }} Teeth half profiles of both members */
 
 export class GearDrawing {
   /** @type {any} */ #result = null;
-  /** @type {{ plain: Point[][], modified: Point[][] } | null} */ #teeth = null;
+  /** @type {Teeth | null} */ #teeth = null;
   #scale = 100;
 
   constructor() {
@@ -33,11 +34,12 @@ export class GearDrawing {
     if (this.#teeth) return this.#teeth;
     const { geometry: g, design, modification } = this.#result;
     const largest = Math.max(1, ...[modification?.pinion, modification?.gear].flatMap((member) => (member?.left ? member.left.profile_um : [])));
-    this.#scale = SCALES.find((scale) => (scale * largest) / 1000 < 0.35 * g.normal_module_mm) ?? 10;
+    this.#scale = SCALES.find((scale) => (scale * largest) / 1000 < 0.2 * g.normal_module_mm) ?? 10;
     /** @param {0 | 1} member @param {any} trace */
     const modified = (member, trace) => halfTooth(g, design.gear_pair, member, (sigma) => (this.#scale / 1000) * valueAtPlace(trace?.u_mm, trace?.left?.profile_um, g.rack_factor * sigma));
     this.#teeth = {
       plain: [halfTooth(g, design.gear_pair, 0), halfTooth(g, design.gear_pair, 1)],
+      active: [halfTooth(g, design.gear_pair, 0, () => 0), halfTooth(g, design.gear_pair, 1, () => 0)],
       modified: [modified(0, modification?.pinion), modified(1, modification?.gear)],
     };
     return this.#teeth;
@@ -59,14 +61,14 @@ export class GearDrawing {
     pen.fillStyle = colour('muted');
     pen.font = SMALL;
     pen.textAlign = 'left';
-    pen.fillText(`modification × ${this.#scale}`, 8, height - 7);
+    pen.fillText(`taken off × ${this.#scale}`, 8, height - 7);
     pen.fillText('pinion', 8, 14);
     pen.textAlign = 'right';
     pen.fillText('gear', width - 8, height - 7);
   }
 
   /**
-   * @param {CanvasRenderingContext2D} pen @param {0 | 1} member @param {{ plain: Point[][], modified: Point[][] }} teeth @param {number} centre height above the pitch point
+   * @param {CanvasRenderingContext2D} pen @param {0 | 1} member @param {Teeth} teeth @param {number} centre height above the pitch point
    * @param {number} pressure @param {number} c @param {(point: Point) => Point} place
    */
   #paintMember(pen, member, teeth, centre, pressure, c, place) {
@@ -85,7 +87,7 @@ export class GearDrawing {
     pen.beginPath();
     const inner = g.root_radius_mm[member] - 3 * g.normal_module_mm;
     for (let k = -AROUND; k <= AROUND; k++) {
-      const outline = [...turned(teeth.plain[member], -1, k), ...turned(teeth.modified[member], 1, k).reverse()];
+      const outline = [...turned(teeth.plain[member], -1, k), ...turned(teeth.plain[member], 1, k).reverse()];
       for (const [i, point] of outline.entries()) {
         if (k === -AROUND && i === 0) pen.moveTo(...place(point));
         else pen.lineTo(...place(point));
@@ -101,16 +103,16 @@ export class GearDrawing {
     pen.strokeStyle = colour('text');
     pen.lineWidth = 1;
     pen.stroke();
-    pen.setLineDash([3, 3]);
-    pen.strokeStyle = colour('muted');
+    // what the modification takes off the loaded flank
+    pen.fillStyle = colour('c2');
     for (let k = -AROUND; k <= AROUND; k++) {
       pen.beginPath();
-      for (const [i, point] of turned(teeth.plain[member], 1, k).entries()) {
-        if (i === 0) pen.moveTo(...place(point));
-        else pen.lineTo(...place(point));
-      }
-      pen.stroke();
+      for (const point of [...turned(teeth.active[member], 1, k), ...turned(teeth.modified[member], 1, k).reverse()]) pen.lineTo(...place(point));
+      pen.closePath();
+      pen.fill();
     }
+    pen.setLineDash([3, 3]);
+    pen.strokeStyle = colour('muted');
     pen.beginPath();
     const [x, y] = place([0, centre]);
     pen.arc(x, y, Math.abs(place([0, g.working_radius_mm[member]])[1] - place([0, 0])[1]), 0, 2 * Math.PI);

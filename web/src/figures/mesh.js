@@ -105,7 +105,7 @@ export class RootStress {
   set({ result, references, loadCase: k }) {
     const loadCase = result.load_cases[k];
     const own = loadCase.root_stress?.[this.#member];
-    if (!own) return;
+    if (!own?.position) return;
     const curves = [];
     for (const reference of references) {
       const other = sameCase(reference.result, loadCase, k)?.root_stress?.[this.#member];

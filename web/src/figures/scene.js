@@ -6,7 +6,7 @@ import { gridValue, scaleColour } from './colours.js';
 import { endsOf } from './context.js';
 import { valueAtPlace } from './gear.js';
 
-const ROWS = 31; // root to tip
+const ROWS = 61; // root to tip
 const COLUMNS = 61; // over the face
 const LENGTH = 1.5; // of a face on the screen, DEPTH root to tip
 const DEPTH = 1.5;
@@ -31,8 +31,8 @@ export class Scene {
     body.append(this.renderer.domElement);
     this.world = new World();
     this.camera = new PerspectiveCamera(32, 1, 0.1, 50);
-    this.world.add(new AmbientLight(0xffffff, 1.6));
-    const sun = new DirectionalLight(0xffffff, 2.2);
+    this.world.add(new AmbientLight(0xffffff, 1.5));
+    const sun = new DirectionalLight(0xffffff, 1.1);
     sun.position.set(-2, 4, 3);
     this.world.add(sun);
     this.controls = new OrbitControls(this.camera, this.renderer.domElement);
@@ -43,8 +43,8 @@ export class Scene {
   }
 
   home() {
-    this.camera.position.set(0, 2.6, 4.3);
-    this.controls.target.set(0, 0.05, 0);
+    this.camera.position.set(0, 1.9, 2.75);
+    this.controls.target.set(0, -0.12, 0.1);
     this.controls.update();
   }
 
@@ -69,7 +69,7 @@ export class Scene {
       for (let j = 0; j < COLUMNS; j++) {
         const at = i * COLUMNS + j;
         if (i < ROWS - 1 && j < COLUMNS - 1) index.push(at, at + 1, at + COLUMNS, at + 1, at + COLUMNS + 1, at + COLUMNS);
-        if (j < COLUMNS - 1 && i % 5 === 0) lines.push(at, at + 1);
+        if (j < COLUMNS - 1 && i % 10 === 0) lines.push(at, at + 1);
         if (i < ROWS - 1 && j % 6 === 0) lines.push(at, at + COLUMNS);
       }
     }
@@ -128,7 +128,7 @@ export class Scene {
     for (let at = 0; at < surface.height.length; at++) {
       let distance = surface.cycle[at] - this.#phase;
       distance -= Math.round(distance);
-      const near = Math.exp(-((distance / 0.035) ** 2));
+      const near = Math.exp(-((distance / 0.045) ** 2));
       const part = surface.pressure[at] / this.#most;
       const [r, g, b] = scaleColour(part);
       mixed.setRGB(r / 255, g / 255, b / 255, 'srgb');

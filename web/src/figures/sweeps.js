@@ -123,7 +123,7 @@ export class SpeedSweep extends Sweep {
   /** @param {any} design */
   request(design) {
     const torque = design.load_cases[this.#case]?.torque_Nm ?? design.load_cases[0].torque_Nm;
-    return { design, torque: { from: torque, to: torque, count: 1 }, speed: { from: this.range[0], to: this.range[1], count: SPEEDS } };
+    return { design, torque: { from: torque, to: torque, points: 1 }, speed: { from: this.range[0], to: this.range[1], points: SPEEDS } };
   }
 
   draw() {
@@ -151,7 +151,7 @@ export class TorqueSweep extends Sweep {
   /** @param {any} design */
   request(design) {
     const most = Math.max(...design.load_cases.map((/** @type {any} */ row) => row.torque_Nm));
-    return { design, torque: { from: most / 20, to: 1.6 * most, count: TORQUES }, speed: null };
+    return { design, torque: { from: most / 20, to: 1.6 * most, points: TORQUES } };
   }
 
   draw() {

@@ -17,10 +17,11 @@ export class Topography {
   constructor() {
     this.play = h('button.small', { type: 'button', 'aria-pressed': 'false', onclick: () => this.#toggle() }, '▶ mesh cycle');
     this.frame = new Frame({
-      title: 'Ease-off topography', unit: 'µm', help: 'Material taken off pinion and gear together, seen on the pinion flank; bright: load on the contact lines. Drag turns it',
+      title: 'Ease-off', unit: 'of both flanks together', wide: true, help: 'Material taken off pinion and gear together, seen on the pinion flank; bright: load on the contact lines. Drag turns it',
       controls: [this.play], drawing: { picture: () => this.#picture(), reset: () => this.#scene?.home(), table: () => this.#scene?.table() ?? [] },
     });
     this.elements = [this.frame.element];
+    this.frame.element.classList.replace('wide', 'tall');
     this.frame.legend.textContent = 'drag to turn, wheel to come closer';
     whenSeen(this.frame.element, (visible) => {
       this.#seen = visible;

@@ -49,8 +49,8 @@ export class Vibration {
       const orders = c.vibration?.[`orders_${reading}`];
       if (orders) bars.push({ label: caseText(c), y: orders.slice(1, ORDERS + 1), colour: caseColour(i) });
     });
-    this.cycle.frame.say(own?.position ? '' : 'No periodic vibration was found.');
-    if (own?.position) this.cycle.set({ x: own.position, curves });
+    this.cycle.frame.say(curves.length ? '' : 'No periodic vibration was found.');
+    if (own?.position && curves.length) this.cycle.set({ x: own.position, curves });
     this.orders.set({ x: counting(ORDERS, 1), curves: bars });
   }
 }

@@ -1,7 +1,8 @@
 // The Design view: parameters left, numbers above, figures right; on a narrow screen one below the other.
-import { h } from '../base/dom.js';
+import { fill, h } from '../base/dom.js';
 import { mainCase } from '../figures/context.js';
 import { Headline } from '../headline.js';
+import { reportData, reportHead } from '../report.js';
 import { Parameters } from './parameters.js';
 import { Results } from './results.js';
 
@@ -12,9 +13,12 @@ export function designView(app) {
   const headline = new Headline(store);
   const results = new Results();
   const trouble = h('p.trouble', { role: 'alert', hidden: true });
-  const element = h('.design-view', null,
-    h('aside.form-pane', { 'aria-label': 'Parameters' }, h('.form-scroll', null, parameters.element), form.help, h('.form-foot', null, h('button.primary', { type: 'button', onclick: () => app.go('optimize') }, 'Optimize…'))),
-    h('.head-pane', null, headline.element, trouble), h('.figure-pane', null, results.element));
+  const top = h('.report');
+  const end = h('.report');
+  const foot = h('div');
+  const element = h('.design-view', null, top,
+    h('aside.form-pane', { 'aria-label': 'Parameters' }, h('.form-scroll', null, parameters.element), foot, h('.form-foot', null, h('button.primary', { type: 'button', onclick: () => app.go('optimize') }, 'Optimize…'))),
+    h('.head-pane', null, headline.element, trouble), h('.figure-pane', null, results.element, end));
 
   const drawResult = () => {
     const { result } = analyst;
@@ -50,10 +54,16 @@ export function designView(app) {
   return {
     element,
     show() {
+      foot.append(form.help);
+      form.refresh();
       drawResult();
       drawState();
     },
     print() {
+      const { result } = analyst;
+      if (!result) return;
+      fill(top, reportHead(store.design.name || 'Gear pair', result));
+      fill(end, reportData(app.fields, result));
       results.draw();
     },
   };

@@ -31,7 +31,7 @@ export class Results {
     this.figures = [transmission, contact, stiffness, sharing, impact, vibration, root, charts, topography, drawing];
     this.notes = h('section.notes', { 'aria-label': 'Warnings' });
     const ordered = [transmission.elements[0], contact.elements[0], transmission.elements[1], stiffness.elements[0], sharing.elements[0], impact.elements[0], ...vibration.elements, ...root.elements,
-      ...this.speed.elements, ...this.torque.elements, ...charts.elements, ...topography.elements, ...drawing.elements];
+      ...this.speed.elements, ...this.torque.elements, ...charts.elements, ...drawing.elements, ...topography.elements];
     this.element = h('.figures', null, ordered, this.notes);
   }
 
