@@ -92,6 +92,7 @@ static void put_problem_with(struct eo_request *request, unsigned status, const 
     snprintf(type, sizeof type, "/problems/%s", name);
   json_t *problem = json_pack("{s:s, s:s, s:i, s:s, s:o, s:s}", "type", type, "title", title_of(status), "status", (int)status, "detail", detail,
                               "errors", errors ? errors : json_array(), "request_id", request->id);
+  *request->reply.file_name = '\0';
   if (problem && more)
     json_object_update(problem, more);
   json_decref(more);

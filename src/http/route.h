@@ -50,6 +50,6 @@ bool eo_route_check_query(struct eo_request *request);
 const char *eo_method_name(unsigned method);
 
 extern const struct eo_route eo_routes_service[], eo_routes_session[], eo_routes_examples[], eo_routes_designs[], eo_routes_analysis[],
-    eo_routes_jobs[], eo_routes_events[], eo_routes_history[], eo_routes_export[], eo_routes_measurements[];
+    eo_routes_jobs[], eo_routes_events[], eo_routes_history[], eo_routes_export[], eo_routes_measurements[], eo_routes_comparison[];
 
 #endif
