@@ -134,6 +134,8 @@ static void test_kill(void)
   ok(wait_for_job(id, "done", 120), "the job goes on by itself");
   json_t *job = get_of_job(id, ""), *result = get_of_job(id, "/result");
   ok(count_true(id) == 400, "to its whole budget: %d", count_true(id));
+  ok(json_integer_value(json_object_get(result, "true_evaluations")) == 400, "and its result says so: %d, %s",
+     (int)json_integer_value(json_object_get(result, "true_evaluations")), json_string_value(json_object_get(result, "stopped")));
   ok(json_integer_value(json_object_get(job, "attempts")) == 2, "at the second attempt");
   json_t *history = call_json("GET", API "/history", NULL, NULL, NULL);
   ok(json_is_object(result) && json_is_object(history), "with a result");

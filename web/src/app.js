@@ -13,6 +13,7 @@ import { readPlace, writePlace } from './base/address.js';
 
 export class App extends EventTarget {
   /** @type {Map<string, View>} */ #views = new Map();
+  #following = false;
   current = '';
 
   /**
@@ -48,7 +49,7 @@ export class App extends EventTarget {
 
   /** Writes the design into the address without a step. */
   note() {
-    if (!this.current) return;
+    if (!this.current || this.#following) return;
     const parameters = this.addressOf();
     for (const [key, value] of readPlace(location.hash).parameters) if (['job', 'items', 'tab'].includes(key)) parameters.set(key, value);
     history.replaceState(null, '', writePlace(this.current, parameters));
@@ -57,8 +58,14 @@ export class App extends EventTarget {
   /** Follows the address, after back, forward or a link. */
   async follow() {
     const { view, parameters } = readPlace(location.hash);
-    await this.openPlace(parameters);
+    this.#following = true; // the address is right already
+    try {
+      await this.openPlace(parameters);
+    } finally {
+      this.#following = false;
+    }
     this.show(view, parameters);
+    this.note();
   }
 
   /** @param {string} id @param {URLSearchParams} parameters */

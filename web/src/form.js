@@ -34,7 +34,10 @@ export class Form {
       if (!element.isConnected) continue;
       const text = texts.get(pointer) ?? '';
       texts.delete(pointer);
-      if (element.textContent !== text) element.textContent = text;
+      if (element.textContent !== text) {
+        element.textContent = text;
+        if (text) unfold(element);
+      }
       input.setAttribute('aria-invalid', String(text !== ''));
     }
     return [...texts].map(([pointer, detail]) => ({ pointer, detail }));
@@ -208,6 +211,11 @@ export class Form {
       return this.field(`${pointer}/${field.key}`);
     });
   }
+}
+
+/** Opens the groups round an element. @param {HTMLElement} element */
+function unfold(element) {
+  for (let group = element.closest('details'); group; group = group.parentElement?.closest('details') ?? null) group.open = true;
 }
 
 /** A step that changes the second digit. @param {number} value */

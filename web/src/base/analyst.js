@@ -67,6 +67,7 @@ export class Analyst extends EventTarget {
   update() {
     const { store } = this;
     if (store.faults.size) {
+      this.faults = [];
       this.#state('refused');
       return;
     }

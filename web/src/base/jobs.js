@@ -43,6 +43,7 @@ export class Jobs extends EventTarget {
   #open() {
     const source = new EventSource(address('events'));
     this.#source = source;
+    source.addEventListener('open', () => this.reload()); // what happened before it is in the list
     source.addEventListener('job', (event) => {
       const job = JSON.parse(event.data);
       this.#channel?.postMessage(job);

@@ -20,7 +20,7 @@ export class DesignStore extends EventTarget {
   /** @type {any[]} */ #future = [];
   #stroke = '';
 
-  /** @param {string} what "design", "live" (more to come), "view" */
+  /** @param {string} what "design", "live" (more to come), "view", "fault" */
   #tell(what) {
     this.dispatchEvent(new CustomEvent('change', { detail: what }));
   }
@@ -147,8 +147,8 @@ export class DesignStore extends EventTarget {
   /** @param {string} pointer @param {string} fault "" when there is none */
   setFault(pointer, fault) {
     if (fault) this.faults.set(pointer, fault);
-    else this.faults.delete(pointer);
-    this.#tell('view');
+    else if (!this.faults.delete(pointer)) return;
+    this.#tell('fault');
   }
 }
 

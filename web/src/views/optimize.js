@@ -327,7 +327,7 @@ export function optimizeView(app) {
   };
   /** @param {any} job */
   const row = (job) => h(String(job.id) === chosen ? 'tr.chosen' : 'tr', { 'data-job': job.id, onclick: () => app.go('optimize', { job: String(job.id) }) },
-    h('th', { scope: 'row' }, h('button.link', { type: 'button' }, job.name || `search ${job.id}`)), h('td', null, choiceText(job.algorithm ?? '')), h('td', null, job.stopping ? 'stopping' : job.state), h('td', null, progressBar(job)),
+    h('th', { scope: 'row' }, h('button.link', { type: 'button' }, job.name || `search ${job.id}`)), h('td', null, choiceText(job.algorithm ?? '')), h('td.job-state', null, job.stopping ? 'stopping' : job.state), h('td', null, progressBar(job)),
     h('td.number', null, ACTIVE.includes(job.state) && typeof job.progress?.seconds_left === 'number' ? duration(job.progress.seconds_left) : ''), h('td.number', null, job.best ? sig(job.best.J, 3) : ''), h('td', null, dateText(job.started ?? job.created)));
   let asked = false;
   jobs.addEventListener('change', () => {

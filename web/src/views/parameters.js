@@ -33,7 +33,7 @@ export class Parameters {
       group('pair', 'Gear pair', true, [h('.pairs', null, PAIR.map((key) => form.field(`/gear_pair/${key}`, { label: SHORT[key], compact: true }))),
         more('More of the pair', [form.field('/name'), ...form.fieldsOf('/gear_pair', { only: FLAGS }), ...form.fieldsOf('/gear_pair', { skip: [...PAIR, ...FLAGS] })]), more('Material', form.fieldsOf('/material'))], this.pairText),
       group('cases', 'Load cases', true, [this.table, h('button.small', { type: 'button', onclick: () => this.#addCase() }, '+ load case')]),
-      group('modification', 'Modification', true, [this.flank], this.tieLabel),
+      group('modification', 'Modification', true, [this.flank]),
       group('alignment', 'Alignment', false, form.fieldsOf('/alignment')),
       group('supports', 'Supports', false, form.fieldsOf('/supports')),
       group('shafts', 'Shafts', false, form.fieldsOf('/shafts')),
@@ -64,7 +64,7 @@ export class Parameters {
     const again = () => this.refresh();
     const switches = h('.switches', null,
       switcher('Member', [['pinion', 'pinion'], ['gear', 'gear']], this.#member, (value) => { this.#member = /** @type {any} */ (value); again(); }),
-      split ? switcher('End', [['left', 'left'], ['right', 'right']], end, (value) => { this.#end = /** @type {any} */ (value); again(); }) : null);
+      split ? switcher('End', [['left', 'left'], ['right', 'right']], end, (value) => { this.#end = /** @type {any} */ (value); again(); }) : null, this.tieLabel);
     const all = (fieldAt(this.form.fields, base)?.fields ?? []).map((field) => field.key);
     fill(this.flank, switches, MAIN.map((key) => this.#slider(`${base}/${key}`)),
       more('More of the flank', all.filter((key) => !MAIN.includes(key)).map((key) => (key === 'relief_shape' ? this.form.field(`${base}/${key}`) : this.#slider(`${base}/${key}`)))));

@@ -1,0 +1,82 @@
+// A server with its own data folder, a browser, and TAP.
+import { spawn } from 'node:child_process';
+import { mkdtemp, rm } from 'node:fs/promises';
+import { createRequire } from 'node:module';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+
+const { EASEOFF = './easeoff', PAGE, MODULES, CHROMIUM } = process.env;
+export const load = createRequire(join(MODULES ?? '.', 'package.json'));
+
+let count = 0;
+let failed = 0;
+
+export function ok(condition, what) {
+  count += 1;
+  if (!condition) failed += 1;
+  console.log(`${condition ? 'ok' : 'not ok'} ${count} - ${what}`);
+  return Boolean(condition);
+}
+
+export function note(text) {
+  console.log(`# ${text}`);
+}
+
+/** A chapter of the story; what goes wrong in it is a failure of its own and does not end the others. */
+export async function chapter(name, act) {
+  const start = performance.now();
+  try {
+    await act();
+  } catch (error) {
+    ok(false, `${name}: ${String(error.message).split('\n')[0]}`);
+    for (const line of String(error.stack).split('\n').slice(1, 4)) note(line.trim());
+  }
+  note(`${name}: ${((performance.now() - start) / 1000).toFixed(1)} s`);
+}
+
+export function finish() {
+  console.log(`1..${count}`);
+  process.exitCode = failed ? 1 : 0;
+}
+
+export class Server {
+  static async start() {
+    const server = new Server();
+    server.folder = await mkdtemp(join(tmpdir(), 'easeoff-page-'));
+    server.port = 0;
+    await server.open();
+    return server;
+  }
+
+  /** Starts it, the second time at the same address. */
+  async open() {
+    this.process = spawn(EASEOFF, ['serve', '--listen', `127.0.0.1:${this.port}`, '--data', this.folder, '--web', PAGE, '--quiet', '--threads', '2'], { stdio: ['ignore', 'pipe', 'inherit'] });
+    this.address = await new Promise((resolve, reject) => {
+      let text = '';
+      this.process.stdout.on('data', (data) => {
+        text += data;
+        const address = /http:\/\/\S+/.exec(text);
+        if (address) resolve(address[0]);
+      });
+      this.process.on('exit', (code) => reject(new Error(`the server ended with ${code}`)));
+    });
+    this.port = new URL(this.address).port;
+  }
+
+  /** Ends it and waits for that. */
+  async close() {
+    const ended = new Promise((resolve) => this.process.on('exit', resolve));
+    this.process.kill('SIGTERM');
+    await ended;
+  }
+
+  async remove() {
+    await this.close();
+    await rm(this.folder, { recursive: true, force: true });
+  }
+}
+
+export function openBrowser() {
+  const { chromium } = load('playwright-core');
+  return chromium.launch({ executablePath: CHROMIUM, args: ['--no-sandbox', '--enable-unsafe-swiftshader'] });
+}

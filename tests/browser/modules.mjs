@@ -1,0 +1,123 @@
+// Modules of the page that need no browser: numbers as people write them, documents, addresses, the tooth's section.
+import { readPlace, writePlace, putDifference, takeDifference } from '../../web/src/base/address.js';
+import { change, changeText, duration, labelOf, parseNumber, plain, sig } from '../../web/src/base/format.js';
+import { halfAngle, halfTooth } from '../../web/src/base/involute.js';
+import { leaves, same, valueAt, withValue } from '../../web/src/base/pointer.js';
+import { complete, fieldAt, numberFault } from '../../web/src/base/schema.js';
+
+globalThis.CustomEvent ??= class extends Event {
+  constructor(name, { detail } = {}) {
+    super(name);
+    this.detail = detail;
+  }
+};
+const { DesignStore } = await import('../../web/src/base/store.js');
+
+let count = 0;
+let failed = 0;
+const ok = (condition, what) => {
+  count += 1;
+  if (!condition) failed += 1;
+  console.log(`${condition ? 'ok' : 'not ok'} ${count} - ${what}`);
+};
+const is = (value, expected, what) => ok(same(value, expected), `${what}${same(value, expected) ? '' : `: ${JSON.stringify(value)}, expected ${JSON.stringify(expected)}`}`);
+const near = (value, expected, tolerance, what) => ok(Math.abs(value - expected) <= tolerance, `${what}: ${value} against ${expected}`);
+
+// ---- numbers ----
+is(parseNumber('1,5'), 1.5, 'comma');
+is(parseNumber(' 1 234.5 '), 1234.5, 'spaces');
+is(parseNumber('−2e-3'), -0.002, 'a printed minus');
+is(parseNumber('1.2.3'), undefined, 'two points');
+is(parseNumber(''), undefined, 'nothing');
+is(parseNumber('12px'), undefined, 'a unit');
+is(parseNumber('1e999'), undefined, 'too large');
+is(sig(0.60714, 3), '0.607', 'three digits');
+is(sig(1888.4, 3), '1888', 'never less than the whole part');
+is(sig(-0.05, 2), '−0.050', 'minus sign');
+is(sig(null), '–', 'what is not known');
+is(plain(12.233164931618317), '12.233165', 'a field');
+is(changeText(change(0.607, 1.31)), '−54 %', 'change');
+is(changeText(change(1, 1)), '±0 %', 'no change');
+is(change(1, 0), undefined, 'no change against nothing');
+is([duration(7), duration(3671), duration(null)], ['00:07', '1:01:11', '–'], 'time left');
+is(labelOf('tip_relief_start_mm'), 'Tip relief start', 'label of a key');
+
+// ---- documents ----
+const document = { a: { b: [1, 2, { c: 3 }] }, d: 4 };
+const changed = withValue(document, '/a/b/2/c', 5);
+is([valueAt(changed, '/a/b/2/c'), valueAt(document, '/a/b/2/c')], [5, 3], 'a changed copy');
+ok(changed.a !== document.a && Array.isArray(changed.a.b), 'lists stay lists');
+is(valueAt(document, '/x/y'), undefined, 'a value that is not there');
+is([...leaves({ a: { b: 1 }, c: [1, 2] })], [['a.b', 1], ['c', [1, 2]]], 'leaves');
+
+// ---- field tables ----
+const fields = [
+  { key: 'name', kind: 'text', default: '', help: '' },
+  { key: 'pair', kind: 'object', fields: [{ key: 'teeth', kind: 'integer', low: 4, high: 2000, required: true }, { key: 'width_mm', kind: 'number', low: 0.5, high: 5000, default: null, nullable: true }] },
+  { key: 'rows', kind: 'list', fields: [{ key: 'share', kind: 'number', default: null, nullable: true }] },
+];
+is(complete(fields, { pair: { teeth: 17 }, rows: [{}] }), { pair: { teeth: 17, width_mm: null }, rows: [{ share: null }], name: '' }, 'defaults are written out');
+is(fieldAt(fields, '/rows/3/share')?.key, 'share', 'field of a row');
+is(fieldAt(fields, '/pair/none'), undefined, 'no such field');
+ok(numberFault(fields[1].fields[0], 3) !== '' && numberFault(fields[1].fields[0], 4.5) !== '' && numberFault(fields[1].fields[0], 4) === '', 'range and whole number');
+
+// ---- addresses ----
+const base = { name: 'x', gear_pair: { teeth: 17, module: 6 }, load_cases: [{ torque: 1 }] };
+const design = { name: 'y & z', gear_pair: { teeth: 18, module: 6 }, load_cases: [{ torque: 2 }, { torque: 3 }] };
+const parameters = new URLSearchParams();
+putDifference(base, design, parameters);
+const place = readPlace(writePlace('design', parameters));
+is(place.view, 'design', 'view of an address');
+is(takeDifference(base, place.parameters), design, 'a design by way of its address');
+is(readPlace(''), { view: 'design', parameters: {} }, 'no address at all');
+
+// ---- the store ----
+const store = new DesignStore();
+const flank = { tip: 0, start: 0 };
+store.open({ gear_pair: { ends: 2 }, modification: { pinion: { left: flank, right: flank } }, load_cases: [] }, { example: 'paper' }, { fresh: true });
+ok(store.tied && !store.canUndo, 'equal ends are tied');
+for (const tip of [1, 2, 3]) store.set('/modification/pinion/left/tip', tip, { live: true });
+store.settle();
+is([store.get('/modification/pinion/left/tip'), store.get('/modification/pinion/right/tip')], [3, 3], 'left = right');
+store.set('/modification/pinion/left/start', 1);
+store.undo();
+is(store.get('/modification/pinion/right/start'), 0, 'undo takes both ends back');
+store.undo();
+is([store.get('/modification/pinion/left/tip'), store.canUndo], [0, false], 'a whole stroke of the slider is one step');
+store.redo();
+is(store.get('/modification/pinion/right/tip'), 3, 'redo');
+store.tie(false);
+store.set('/modification/pinion/right/tip', 9);
+is([store.get('/modification/pinion/left/tip'), store.get('/modification/pinion/right/tip')], [3, 9], 'each end for itself');
+store.tie(true);
+is(store.get('/modification/pinion/right/tip'), 3, 'tied again: the right takes what the left has');
+
+// ---- the tooth's section: closed forms of a 17-tooth gear of module 6, 20 degrees, 24 degrees helix, no profile shift ----
+const radians = Math.PI / 180;
+const transverse = 6 / Math.cos(24 * radians);
+const pressure = Math.atan(Math.tan(20 * radians) / Math.cos(24 * radians));
+const reference = (17 * transverse) / 2;
+const baseRadius = reference * Math.cos(pressure);
+// the rack's straight flank ends where its rounding begins, that much below the pitch line (ISO 53)
+const below = 1.25 * 6 - 0.38 * 6 * (1 - Math.sin(20 * radians));
+const form = Math.hypot(baseRadius, baseRadius * Math.tan(pressure) - below / Math.sin(pressure));
+const geometry = {
+  pinion_teeth: 17, gear_teeth: 44, normal_module_mm: 6, normal_pressure_angle_deg: 20, transverse_pressure_angle_deg: pressure / radians, helix_angle_deg: 24,
+  profile_shift: [0, 0], reference_radius_mm: [reference, 0], base_radius_mm: [baseRadius, 0], tip_radius_mm: [reference + 6, 0], form_radius_mm: [form, 0],
+  active_start_radius_mm: [form + 0.2, 0], tangent_length_mm: [baseRadius * Math.tan(pressure), 0],
+};
+const pair = { fillet_radius_coefficient: 0.38, dedendum_coefficient: 1.25 };
+near(2 * reference * halfAngle(geometry, 0, reference), (Math.PI * transverse) / 2, 1e-9, 'tooth thickness at the reference circle');
+const tooth = halfTooth(geometry, pair, 0);
+const radii = tooth.map(([x, y]) => Math.hypot(x, y));
+near(radii[0], reference - 1.25 * 6, 1e-9, 'the fillet starts on the root circle');
+ok(radii.every((radius, i) => i === 0 || radius >= radii[i - 1] - 1e-9), 'the radius grows from root to tip');
+const jump = Math.max(...tooth.slice(1).map(([x, y], i) => Math.hypot(x - tooth[i][0], y - tooth[i][1])));
+ok(jump < 1.5, `fillet and involute meet without a step (longest piece ${jump.toFixed(2)} mm)`);
+const last = tooth[tooth.length - 1];
+near(Math.hypot(...last), reference + 6, 1e-9, 'the tip');
+const [plainFlank, lower] = [halfTooth(geometry, pair, 0, () => 0), halfTooth(geometry, pair, 0, () => 0.1)];
+ok(plainFlank.every(([x, y], i) => Math.abs(Math.hypot(x - lower[i][0], y - lower[i][1]) - 0.1) < 1e-9 && lower[i][0] < x), 'what is taken off is taken off the flank, square to it');
+
+console.log(`1..${count}`);
+process.exit(failed ? 1 : 0);
