@@ -68,6 +68,8 @@ static struct reply post_bytes(const struct form *form, size_t size, size_t leng
   send_text(connection, head);
   send_bytes(connection, form->text, size);
   bool whole = size == length || size == 0; /* else the client goes away in the middle */
+  for (int i = 0; !whole && i < 10; i++)
+    wait_a_little();
   if (!whole || !read_reply(connection, &reply, false))
     reply.status = 0;
   close(connection);
@@ -110,10 +112,10 @@ static int count_folders(void)
   return count;
 }
 
-/* Folders of refused uploads go once the reply is out. */
+/* Folders of refused uploads go once the reply is out; those of a client that went away at the latest with the time a pause may last. */
 static bool folders_become(int count)
 {
-  for (double end = seconds_now() + 5; seconds_now() < end; wait_a_little())
+  for (double end = seconds_now() + 40; seconds_now() < end; wait_a_little())
     if (count_folders() == count)
       return true;
   printf("# %d folders, not %d\n", count_folders(), count);
