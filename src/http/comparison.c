@@ -74,19 +74,37 @@ static void compare(struct eo_request *request, const struct eo_design *design, 
     ask(request, design, &work);
 }
 
-static void compare_design(struct eo_request *request)
+static void compare_all(struct eo_request *request, int64_t id, const struct eo_design *design)
 {
   struct collected c = {0};
-  struct eo_design design;
   struct eo_error error;
-  int64_t id;
-  if (!eo_request_key(request, 0, &id) || !find_design(request, id, &design, NULL))
-    return;
   if (eo_store_list_measurements(request->store, id, 0, EO_MOST_MEASURED + 1, collect, &c, &error))
     eo_reply_error(request, "", &error);
   else
-    compare(request, &design, &c.points);
+    compare(request, design, &c.points);
   eo_rig_points_done(&c.points);
+}
+
+static void compare_design(struct eo_request *request)
+{
+  struct eo_design design;
+  int64_t id;
+  if (eo_request_key(request, 0, &id) && find_design(request, id, &design, NULL))
+    compare_all(request, id, &design);
+}
+
+/* The design of the body in place of the stored one. */
+static void compare_what_if(struct eo_request *request)
+{
+  struct eo_design stored, design;
+  struct eo_geometry geometry;
+  int64_t id;
+  json_t *body;
+  if (!eo_request_key(request, 0, &id) || !find_design(request, id, &stored, NULL) || !(body = eo_request_json(request)))
+    return;
+  if (eo_request_design(request, body, "", &design, &geometry, NULL))
+    compare_all(request, id, &design);
+  json_decref(body);
 }
 
 static void compare_one(struct eo_request *request)
@@ -109,8 +127,15 @@ static void compare_one(struct eo_request *request)
 
 /* ---- fit ---- */
 
-/* Takes "measurements" out of the body: the rest is what eo_update_decode() knows. */
-static bool read_fit(struct eo_request *request, json_t *body, json_t **wanted, struct eo_update_settings *settings)
+/* What a fit works on besides its unknowns. */
+struct basis {
+  json_t *wanted;          /* owned; NULL: all measurements */
+  json_t *given;           /* owned; NULL: the stored design */
+  struct eo_design design;
+};
+
+/* Takes "measurements" and "design" out of the body: the rest is what eo_update_decode() knows. */
+static bool read_fit(struct eo_request *request, json_t *body, struct basis *basis, struct eo_update_settings *settings)
 {
   struct eo_faults *faults = calloc(1, sizeof *faults);
   struct eo_error error;
@@ -118,10 +143,12 @@ static bool read_fit(struct eo_request *request, json_t *body, json_t **wanted, 
     eo_reply_error(request, "", (eo_error_memory(&error), &error));
     return false;
   }
-  *wanted = json_incref(json_object_get(body, "measurements"));
+  basis->wanted = json_incref(json_object_get(body, "measurements"));
+  basis->given = json_incref(json_object_get(body, "design"));
   json_object_del(body, "measurements");
+  json_object_del(body, "design");
   eo_update_decode(body, settings, faults);
-  if (*wanted && !json_is_array(*wanted))
+  if (basis->wanted && !json_is_array(basis->wanted))
     eo_faults_add(faults, "/measurements", "This must be a list of the numbers of measurements.");
   bool good = faults->count == 0;
   if (!good)
@@ -130,36 +157,46 @@ static bool read_fit(struct eo_request *request, json_t *body, json_t **wanted, 
   return good;
 }
 
-static void put_fit(struct eo_request *request, int64_t id, const json_t *wanted, const struct eo_update_settings *settings)
+/* The design of the body, else the stored one; false: the reply is there. */
+static bool find_basis(struct eo_request *request, int64_t id, struct basis *basis)
 {
-  struct collected c = {.wanted = wanted};
-  struct eo_design design;
+  struct eo_geometry geometry;
+  json_t *stored = NULL;
+  if (!find_design(request, id, &basis->design, &stored))
+    return false;
+  if (!basis->given)
+    basis->given = json_incref(stored);
+  json_decref(stored);
+  return eo_request_design(request, basis->given, "/design", &basis->design, &geometry, NULL);
+}
+
+static void put_fit(struct eo_request *request, int64_t id, const struct basis *basis, const struct eo_update_settings *settings)
+{
+  struct collected c = {.wanted = basis->wanted};
   struct eo_error error;
   struct eo_work work;
-  json_t *stored = NULL;
-  if (!find_design(request, id, &design, &stored))
-    return;
   enum eo_code code = eo_store_list_measurements(request->store, id, 0, EO_MOST_MEASURED + 1, collect, &c, &error);
   if (!code)
-    code = eo_rig_fit(&work, &c.points, settings, stored, &error);
+    code = eo_rig_fit(&work, &c.points, settings, basis->given, &error);
   if (code)
     eo_reply_error(request, "", &error);
   else
-    ask(request, &design, &work);
+    ask(request, &basis->design, &work);
   eo_rig_points_done(&c.points);
-  json_decref(stored);
 }
 
 static void fit(struct eo_request *request)
 {
   struct eo_update_settings settings;
-  json_t *wanted = NULL, *body;
+  struct basis basis = {0};
+  json_t *body;
   int64_t id;
   if (!eo_request_key(request, 0, &id) || !(body = eo_request_json(request)))
     return;
-  if (read_fit(request, body, &wanted, &settings))
-    put_fit(request, id, wanted, &settings);
-  json_decref(wanted);
+  if (read_fit(request, body, &basis, &settings) && find_basis(request, id, &basis))
+    put_fit(request, id, &basis, &settings);
+  json_decref(basis.wanted);
+  json_decref(basis.given);
   json_decref(body);
 }
 
@@ -222,9 +259,12 @@ const struct eo_route eo_routes_comparison[] = {
     {.method = EO_GET, .pattern = "/designs/{id}/comparison", .handle = compare_design, .name = "compareDesign", .gives = "200 Comparison, 202 Preparing",
      .headers = LANE, .rate = EO_RATE_START, .csv = true,
      .summary = "All measurements of a design beside the prediction, reductions by the modification, outliers with their reasons."},
+    {.method = EO_POST, .pattern = "/designs/{id}/comparison", .handle = compare_what_if, .name = "compareWhatIf", .takes = "Design",
+     .gives = "200 Comparison, 202 Preparing", .headers = LANE, .rate = EO_RATE_QUESTION, .csv = true,
+     .summary = "The same with another design in the place of the stored one: what its measurements would say about it."},
     {.method = EO_POST, .pattern = "/designs/{id}/fit", .handle = fit, .name = "fitDesign", .takes = "FitOrder", .gives = "200 Fit, 202 Preparing",
      .headers = LANE, .rate = EO_RATE_START,
-     .summary = "Inputs that nobody knows, fitted to the measurements of a design within ranges; `design` in the answer holds them, to be put in its place."},
+     .summary = "Inputs that nobody knows, fitted to the measurements of a design (or of `design` in its place) within ranges; `design` in the answer holds them, to be put in its place."},
     {.method = EO_POST, .pattern = "/rig", .handle = record, .name = "recordRig", .takes = "RigOrder", .design_at = "/design", .headers = LANE,
      .gives = "200 text/csv, 202 Preparing", .rate = EO_RATE_START,
      .summary = "What two encoders would record of a design: a text file with known truth, for teaching and tests, as `easeoff rig` writes it."},

@@ -53,7 +53,7 @@ static const struct { const char *name, *notation; } shapes[] = {
     {"LeftOut", "[{id integer, reason text}]"},
     {"Comparison", "{program text, design_hash text, id [integer], left_out LeftOut, measurements Any, details [Any], reductions [Any], ratio number?,"
                    " spread number?, ...}"},
-    {"FitOrder", "{unknowns {...}, model_error? number, seed? integer, measurements? [integer]}"},
+    {"FitOrder", "{unknowns {...}, model_error? number, seed? integer, measurements? [integer], design? Design}"},
     {"Fit", "{unknowns [Any], correlation any, condition number?, misfit Any, measurements integer, orders integer, evaluations integer, converged flag,"
             " warnings [text], id [integer], left_out LeftOut, design Any, ...}"},
     {"History", "{problems [Any], jobs [Any]}"},
