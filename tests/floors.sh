@@ -37,6 +37,8 @@ only() # LIBRARY PATTERN FOLDERS
 only SuiteSparse 'cholmod|klu' numerics
 only SUNDIALS 'kinsol|cvode|sundials|nvector|sunlinsol|sunmatrix' numerics
 only jansson 'jansson' 'document|jobs|http|app'
+only libmatio 'matio' measurement
+only HDF5 'hdf5' measurement
 only SQLite 'sqlite3' store
 only libmicrohttpd 'microhttpd' http
 

@@ -2,6 +2,7 @@
 #include "base/random.h"
 #include "numerics/factor.h"
 #include "numerics/minimise.h"
+#include "optimizer/evolution.h"
 #include "optimizer/history.h"
 #include "optimizer/operators.h"
 #include "optimizer/pareto.h"
@@ -263,6 +264,76 @@ static void test_pareto(void)
   close_to(eo_pareto_hypervolume(three, 3, 3, corner), 7, 1e-12, "volume of three boxes of 3 x 1 x 1 that share a cube");
 }
 
+/* ---- evolution strategy ---- */
+
+enum { AXES = 4, OFFSPRING = 8 };
+
+/* Curvatures 1, 100, 10^4, 10^6, least at 0.3 in each variable; the first is cut off by the cube when low is above that. */
+static double ellipsoid(const double *x)
+{
+  double sum = 0, curvature = 1;
+  for (int k = 0; k < AXES; k++, curvature *= 100)
+    sum += curvature * (x[k] - 0.3) * (x[k] - 0.3);
+  return sum;
+}
+
+/* A valley along x0 = x1 = ... whose floor is a kink, falling towards 0, where the cube ends. */
+static double kink(const double *x)
+{
+  double sum = x[0], wall = 0;
+  for (int k = 1; k < AXES; k++) {
+    wall = fmax(wall, fabs(x[k] - x[k - 1]));
+    sum += x[k];
+  }
+  return sum + 100 * wall;
+}
+
+static double evolve(struct eo_evolution *e, double (*value)(const double *), int generations)
+{
+  double x[OFFSPRING][AXES], f[OFFSPRING], best = INFINITY;
+  for (int g = 0; g < generations; g++) {
+    const double *order[OFFSPRING];
+    for (int i = 0; i < OFFSPRING; i++) {
+      eo_evolution_sample(e, eo_random_at(1, EO_STREAM_EVOLUTION, (uint64_t)g, (uint64_t)i), x[i]);
+      f[i] = value(x[i]);
+      int j = i;
+      for (; j > 0 && value(order[j - 1]) > f[i]; j--)
+        order[j] = order[j - 1];
+      order[j] = x[i];
+      best = fmin(best, f[i]);
+    }
+    if (!eo_evolution_learn(e, order, OFFSPRING))
+      break;
+  }
+  return best;
+}
+
+static void test_evolution(void)
+{
+  static const double start[AXES] = {0.8, 0.7, 0.6, 0.5};
+  struct eo_evolution e;
+  struct eo_error error;
+  ok(eo_evolution_init(&e, AXES, &error) == EO_OK, "an evolution strategy");
+  eo_evolution_restart(&e, start, 0.1);
+  const double best = evolve(&e, ellipsoid, 400);
+  bool learnt = true;
+  for (int k = 1; k < AXES; k++) { /* the covariance becomes the inverse of the curvature (Hansen 2016) */
+    const double ratio = e.covariance[(k - 1) * (AXES + 1)] / e.covariance[k * (AXES + 1)];
+    learnt = learnt && ratio > 100 / 5. && ratio < 100 * 5.;
+  }
+  ok(best < 1e-8, "3200 points on an ellipsoid of condition 10^6: %.1e", best);
+  ok(learnt, "the covariance has learnt its curvatures");
+  eo_evolution_restart(&e, start, 0.1);
+  const double end = evolve(&e, kink, 150), before = kink(start);
+  ok(end < 1e-3 * before, "down a valley with a kinked floor into a corner of the cube: %.1e from %.1e", end, before);
+  const double far[2][AXES] = {{1, 1, 1, 1}, {0, 0, 0, 0}}, *given[2] = {far[0], far[1]};
+  eo_evolution_restart(&e, start, 1e-3);
+  ok(eo_evolution_learn(&e, given, 2) && e.step < 3e-3 && fabs(e.mean[0] - start[0]) < 0.01, "a point from far away moves it by no more than a sample may");
+  eo_evolution_restart(&e, start, 1e-300);
+  ok(!eo_evolution_learn(&e, (const double *[]){start, start}, 2), "a step that has vanished is told");
+  eo_evolution_done(&e);
+}
+
 int main(void)
 {
   test_random();
@@ -272,5 +343,6 @@ int main(void)
   test_history();
   test_latin();
   test_pareto();
+  test_evolution();
   return tap_done();
 }

@@ -231,7 +231,7 @@ near "J" /objectives/J "$folder/expected" /J 1e-12 relative
 near "fitness" /objectives/fitness "$folder/expected" /fitness 1e-12 relative
 
 damping='"supports":{"mesh_damping_stiffness_N_per_um":1100,"torsional_coupling":"off"}'
-stage evaluation "{$pair,$aligned,$closed,$damping,\"load_cases\":[{\"torque_Nm\":828}],\"resolution\":{\"tip_edge_contact\":false}}"
+stage evaluation "{$pair,$aligned,$closed,$damping,\"load_cases\":[{\"torque_Nm\":828}],\"resolution\":{\"tip_edge_contact\":false,\"te_harmonics\":10}}"
 near "PPLTE, um" /load_cases/0/values/peak_to_peak_um "$evaluations" /cases/2/out/PPLTE_um 1e-3 relative
 near "mean, um" /load_cases/0/mean_um "$evaluations" /cases/2/out/LTE_mean_um 1e-3 relative
 near "impact, N" /load_cases/0/values/impact_N "$evaluations" /cases/2/out/F_gen_N 1e-3 relative

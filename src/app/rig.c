@@ -94,7 +94,7 @@ static bool read_settings(struct request *r, const struct options *o, int *statu
   return *status == EO_EXIT_DONE;
 }
 
-static enum eo_code respond(struct request *r, const struct eo_progress *progress, struct eo_prediction *prediction, struct eo_error *error)
+static enum eo_code respond(struct request *r, const struct eo_progress *progress, struct eo_rig_prediction *prediction, struct eo_error *error)
 {
   struct eo_text directory = {0};
   bool keep = !r->no_cache && eo_app_cache_directory(r->data, &directory);
@@ -153,7 +153,7 @@ static int run_request(struct request *r)
 {
   struct eo_watch watch;
   struct eo_error error;
-  struct eo_prediction prediction;
+  struct eo_rig_prediction prediction;
   enum eo_code code = eo_rig_complete(&r->rig, &r->design, &error);
   if (code)
     return eo_app_fail(r->settings, &error);

@@ -25,6 +25,7 @@ static const struct {
     {"satur", EO_FINDING_SATURATED},     {"clip", EO_FINDING_SATURATED},      {"short", EO_FINDING_TOO_SHORT},     {"few", EO_FINDING_TOO_SHORT},
     {"revolution", EO_FINDING_TOO_SHORT},{"steady", EO_FINDING_UNSTEADY},     {"rate", EO_FINDING_SAMPLE_RATE},    {"monoton", EO_FINDING_TIME},
     {"time", EO_FINDING_TIME},           {"nan", EO_FINDING_NAN},             {"number", EO_FINDING_NAN},          {"spike", EO_FINDING_SPIKE},
+    {"ellip", EO_FINDING_TRACK},         {"gain", EO_FINDING_TRACK},          {"offset", EO_FINDING_TRACK},        {"raw", EO_FINDING_TRACK},
     {"outlier", EO_FINDING_SPIKE},       {"phase", EO_FINDING_TRACK},         {"amplitude", EO_FINDING_TRACK},     {"track", EO_FINDING_TRACK},
     {"speed", EO_FINDING_SPEED},         {"noise", EO_FINDING_RESOLUTION},    {"resolution", EO_FINDING_RESOLUTION}};
 
@@ -47,10 +48,33 @@ static bool finding_kind(const char *text, enum eo_finding_kind *kind)
   return false;
 }
 
+/* A finding is named by a text, or by the first text in an object. */
+static const char *finding_text(const json_t *value)
+{
+  const char *key;
+  json_t *member;
+  if (json_is_object(value) && !json_object_get(value, "kind"))
+    json_object_foreach((json_t *)value, key, member)
+      if (json_is_string(member))
+        return json_string_value(member);
+  return json_string_value(json_is_object(value) ? json_object_get(value, "kind") : value);
+}
+
 static double either(const json_t *object, const char *key, const char *other, double missing)
 {
   double value = eo_verify_number(object, key);
   return isnan(value) ? eo_verify_number_or(object, other, missing) : value;
+}
+
+/* "teeth": [17, 44], under this key or one that has "teeth" in it or is "z...". */
+static double teeth_of(const json_t *object, int member)
+{
+  const char *key;
+  json_t *value;
+  json_object_foreach((json_t *)object, key, value)
+    if ((strstr(key, "teeth") || key[0] == 'z') && json_array_size(value) == 2 && json_is_integer(json_array_get(value, 0)))
+      return eo_verify_at(value, (size_t)member);
+  return NAN;
 }
 
 /* Tooth numbers, radii, orders and speed as an object states them; what it leaves out stays. */
@@ -60,8 +84,8 @@ static void read_settings(const json_t *object, struct eo_measurement_settings *
   struct eo_transmission_settings *t = &s->transmission;
   for (int i = 0; i < 2; i++) {
     double count = either(object, teeth[i], teeth[i], NAN);
-    for (int k = 0; k < 3 && isnan(count); k++)
-      count = eo_verify_element(object, (const char *const[]){"teeth", "z", "teeth_given"}[k], i);
+    if (isnan(count))
+      count = teeth_of(object, i);
     if (count > 0)
       t->teeth[i] = (int)count;
     double length = eo_verify_number(object, radius[i]);
@@ -111,7 +135,7 @@ static void check_findings(struct eo_verification *v, const char *label, const j
   if (!json_is_array(json_object_get(item, "expected_findings")))
     return;
   json_array_foreach(json_object_get(item, "expected_findings"), index, value) {
-    const char *text = json_string_value(json_is_object(value) ? json_object_get(value, "kind") : value);
+    const char *text = finding_text(value);
     enum eo_finding_kind kind;
     char quantity[120];
     if (!text || !finding_kind(text, &kind)) {
@@ -219,7 +243,7 @@ static bool refusal_expected(const json_t *item)
   if (json_is_true(json_object_get(item, "refused")))
     return true;
   json_array_foreach(json_object_get(item, "expected_findings"), index, value) {
-    const char *text = json_string_value(json_is_object(value) ? json_object_get(value, "kind") : value);
+    const char *text = finding_text(value);
     enum eo_finding_kind kind;
     if (text && finding_kind(text, &kind) &&
         (kind == EO_FINDING_SLIP || kind == EO_FINDING_TEETH || kind == EO_FINDING_CONSTANT || kind == EO_FINDING_TOO_SHORT || kind == EO_FINDING_TIME ||

@@ -41,9 +41,10 @@ enum { MOST_TEETH = 64 };
 
 struct eo_root_workspace {
   double *force;        /* [ends][most points] */
-  double *load;         /* [ends][positions][slots] */
-  double *scratch;      /* [ends][positions][rank] */
-  double *stress;       /* [ends][positions][nodes][EO_STRESSES] */
+  double *load;         /* [positions][ends][slots] */
+  double *scratch;      /* [positions][ends][rank] */
+  double *stress;       /* [positions][ends][nodes][EO_STRESSES] */
+  unsigned *touched;    /* [positions]: see eo_root_modes_add() */
 };
 
 enum eo_code eo_root_workspace_new(struct eo_root_workspace **result, const struct eo_contact_grid *grid,
@@ -64,7 +65,8 @@ enum eo_code eo_root_workspace_new(struct eo_root_workspace **result, const stru
   ws->load = malloc(sizeof(double) * rows * slots);
   ws->scratch = malloc(sizeof(double) * rows * rank);
   ws->stress = malloc(sizeof(double) * rows * nodes * EO_STRESSES);
-  if (!ws->force || !ws->load || !ws->scratch || !ws->stress) {
+  ws->touched = malloc(sizeof *ws->touched * (size_t)grid->positions);
+  if (!ws->force || !ws->load || !ws->scratch || !ws->stress || !ws->touched) {
     eo_root_workspace_free(ws);
     return eo_error_memory(error);
   }
@@ -80,6 +82,7 @@ void eo_root_workspace_free(struct eo_root_workspace *ws)
   free(ws->load);
   free(ws->scratch);
   free(ws->stress);
+  free(ws->touched);
   free(ws);
 }
 
@@ -103,7 +106,7 @@ static int count_positions(const struct eo_contact_grid *grid, int step)
   return (grid->positions + step - 1) / step;
 }
 
-/* Loads of every step-th position on the teeth around one tooth: load[ends][positions][slots]. */
+/* Loads of every step-th position on the teeth around one tooth: load[positions][ends][slots]. */
 static void collect(struct eo_root_workspace *ws, const struct eo_root_modes *modes, const struct eo_contact_grid *grid, int tooth, int step, int ends,
                     const struct eo_loaded_end *const *end)
 {
@@ -114,7 +117,7 @@ static void collect(struct eo_root_workspace *ws, const struct eo_root_modes *mo
     for (int e = 0; e < ends; e++)
       for (int i = 0; i < p->points; i++)
         ws->force[e * p->points + i] = end[e]->line_load[p->first + i] * p->length[i];
-    eo_root_modes_add(modes, tooth, p->points, p->point, ends, ws->force, ws->load + (size_t)j * (size_t)slots, (size_t)count * (size_t)slots);
+    ws->touched[j] = eo_root_modes_add(modes, tooth, p->points, p->point, ends, ws->force, ws->load + (size_t)(j * ends) * (size_t)slots);
   }
 }
 
@@ -125,12 +128,12 @@ void eo_root_tooth_compute(struct eo_root_workspace *ws, const struct eo_root_mo
   eo_contact_grid_pairs(grid, range);
   int first = (tooth - range[0]) * count;
   collect(ws, modes, grid, tooth, step, ends, end);
-  eo_root_modes_stress(modes, ends * count, ws->load, ws->scratch, ws->stress);
+  eo_root_modes_stress(modes, count, ends, ws->load, ws->touched, ws->scratch, ws->stress);
   for (int e = 0; e < ends; e++) {
     peak[e] = (struct eo_root_peak){0};
     for (int j = 0; j < count; j++) {
       int node = 0;
-      double s = largest_principal(nodes, ws->stress + (size_t)(e * count + j) * (size_t)(nodes * EO_STRESSES), &node);
+      double s = largest_principal(nodes, ws->stress + (size_t)(j * ends + e) * (size_t)(nodes * EO_STRESSES), &node);
       history[e]->phase[first + j] = grid->position[j * step].phase / grid->geometry.transverse_base_pitch + tooth;
       history[e]->stress[first + j] = s;
       if (s > peak[e].stress)

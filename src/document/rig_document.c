@@ -10,7 +10,7 @@ static const struct eo_unit unit_urad = {"urad", "urad", 1e6, true}, unit_us = {
                             unit_V = {"V", "V", 1, false};
 
 static const char *const ends[] = {"left", "right", NULL}, *const outputs[] = {"angles", "counts", "sine-cosine", "pulses", NULL};
-static const char *const faults[] = {"none", "swapped", "reversed", "teeth", "radians", "radians-gear", "dropped", "dropped-silent", "slip", "constant",
+static const char *const faults[] = {"none", "swapped", "reversed", "teeth", "radians", "radians-gear", "dropped", "dropped-silent", "slip", "lost-count", "constant",
                                      "stuck", "saturated", "time", "nan", "spike", NULL};
 static const char *const separators[] = {"comma", "semicolon", "tab", "blank", NULL}, *const headings[] = {"names", "units-row", "block", "none", NULL};
 
@@ -72,7 +72,7 @@ enum eo_code eo_rig_complete(struct eo_rig_request *request, const struct eo_des
 }
 
 void eo_rig_set_pair(struct eo_rig_request *request, const struct eo_geometry *geometry, const struct eo_supports *supports,
-                     const struct eo_prediction *prediction)
+                     const struct eo_rig_prediction *prediction)
 {
   struct eo_synthetic *s = &request->synthetic;
   for (int i = 0; i < 2; i++) {
@@ -167,14 +167,15 @@ static json_t *encode_truth(const struct eo_synthetic *s, int orders)
 {
   double amplitude[EO_SYNTHETIC_ORDERS], acceleration[EO_SYNTHETIC_ORDERS], rms[EO_SYNTHETIC_ORDERS];
   struct eo_result_object o = eo_result_open();
+  double speed = eo_synthetic_speed(s);
   char key[40];
   for (int h = 1; h <= orders; h++) {
     amplitude[h - 1] = 1e6 * cabs(s->order[h - 1]);
-    acceleration[h - 1] = cabs(s->order[h - 1]) * pow(h * s->teeth[EO_PINION] * s->speed, 2);
+    acceleration[h - 1] = cabs(s->order[h - 1]) * pow(h * s->teeth[EO_PINION] * speed, 2);
     rms[h - 1] = eo_synthetic_rms(s, h);
   }
   snprintf(key, sizeof key, "rms_mesh_lines_H%d", orders);
-  eo_result_put_number(&o, "mean_rpm", s->speed, &eo_unit_rpm);
+  eo_result_put_number(&o, "mean_rpm", speed, &eo_unit_rpm);
   eo_result_put_number(&o, key, rms[orders - 1], NULL);
   eo_result_put(&o, "line_amp_um", column(orders, amplitude));
   eo_result_put(&o, "line_acc", column(orders, acceleration));
@@ -184,7 +185,7 @@ static json_t *encode_truth(const struct eo_synthetic *s, int orders)
 
 static const char *expected_finding(enum eo_synthetic_fault fault)
 {
-  static const char *const expected[EO_FAULTS] = {NULL, "swapped", "reversed", "teeth", "radians", "radians", "dropped rows", "dropped rows", "slip", "constant",
+  static const char *const expected[EO_FAULTS] = {NULL, "swapped", "reversed", "teeth", "radians", "radians", "dropped rows", "dropped rows", "slip", "lost-count", "constant",
                                                   "constant", "saturated", "time", "nan", "spike"};
   return expected[fault];
 }

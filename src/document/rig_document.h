@@ -32,7 +32,7 @@ enum eo_code eo_rig_complete(struct eo_rig_request *request, const struct eo_des
 
 /* The pair and the response into request->synthetic. */
 void eo_rig_set_pair(struct eo_rig_request *request, const struct eo_geometry *geometry, const struct eo_supports *supports,
-                     const struct eo_prediction *prediction);
+                     const struct eo_rig_prediction *prediction);
 
 /* Writes the recording; fine for recordings larger than memory. Errors: EO_ERROR_FILE. */
 enum eo_code eo_rig_write(const struct eo_rig_request *request, const struct eo_progress *progress, FILE *stream, struct eo_error *error);

@@ -136,9 +136,10 @@ static bool is_loaded(int n, int sets, const double *force)
   return false;
 }
 
-void eo_root_modes_add(const struct eo_root_modes *modes, int pair, int n, const struct eo_flank_point *point, int sets, const double *force,
-                       double *load, size_t stride)
+unsigned eo_root_modes_add(const struct eo_root_modes *modes, int pair, int n, const struct eo_flank_point *point, int sets, const double *force,
+                           double *load)
 {
+  unsigned touched = 0;
   for (int j = 0; j < n; j++) {
     int ahead = point[j].pair - pair;
     if (ahead < -1 || ahead > 1 || (ahead != 0 && !modes->coupled) || !is_loaded(n, sets, force + j))
@@ -146,19 +147,37 @@ void eo_root_modes_add(const struct eo_root_modes *modes, int pair, int n, const
     const struct eo_grid *grid = grid_of(modes, ahead);
     struct eo_grid_weights at;
     eo_grid_weights(grid, point[j].s[modes->member], point[j].eta, &at);
+    touched |= 1u << (ahead + 1);
     for (int set = 0; set < sets; set++) {
-      double f = force[set * n + j], *to = load + (size_t)set * stride + modes->slot[ahead + 1] + at.first;
+      double f = force[set * n + j], *to = load + set * modes->slots + modes->slot[ahead + 1] + at.first;
       for (int r = 0; f != 0 && r < EO_SPLINE_WIDTH; r++)
         for (int l = 0; l < EO_SPLINE_WIDTH; l++)
           to[r * grid->eta.count + l] += f * at.weight[EO_SPLINE_WIDTH * r + l];
     }
   }
+  return touched;
 }
 
-void eo_root_modes_stress(const struct eo_root_modes *modes, int count, const double *load, double *scratch, double *stress)
+/* Adds what one part of the loads gives, run by run of positions at which it is touched: a tooth is loaded during a part of the cycle. */
+static void add_part(const struct eo_root_modes *modes, int part, int count, int sets, const double *load, const unsigned *touched, double *scratch)
 {
-  cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, count, modes->rank, modes->slots, 1, load, modes->slots, modes->coefficient,
-              modes->rank, 0, scratch, modes->rank);
-  cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, count, modes->length, modes->rank, 1, scratch, modes->rank, modes->shape,
+  int slots = (part == 2 ? modes->slots : modes->slot[part + 1]) - modes->slot[part], rank = modes->rank;
+  for (int first = 0, last; first < count; first = last + 1) {
+    for (last = first; last < count && touched[last] & 1u << part; last++)
+      ;
+    if (last == first)
+      continue;
+    cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, (last - first) * sets, rank, slots, 1, load + first * sets * modes->slots + modes->slot[part],
+                modes->slots, modes->coefficient + modes->slot[part] * rank, rank, 1, scratch + first * sets * rank, rank);
+  }
+}
+
+void eo_root_modes_stress(const struct eo_root_modes *modes, int count, int sets, const double *load, const unsigned *touched, double *scratch,
+                          double *stress)
+{
+  memset(scratch, 0, sizeof *scratch * (size_t)(count * sets) * (size_t)modes->rank);
+  for (int part = 0; part < 3; part++)
+    add_part(modes, part, count, sets, load, touched, scratch);
+  cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, count * sets, modes->length, modes->rank, 1, scratch, modes->rank, modes->shape,
               modes->length, 0, stress, modes->length);
 }

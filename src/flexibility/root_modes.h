@@ -16,11 +16,13 @@ int eo_root_modes_rank(const struct eo_root_modes *modes);
 int eo_root_modes_slots(const struct eo_root_modes *modes);  /* numbers that describe a load distribution */
 int eo_root_modes_nodes(const struct eo_root_modes *modes);  /* of the root: [point][layer] from root.first on */
 
-/* Adds the loads force[sets][n], N, at the points to load[sets][slots] of the root of tooth pair `pair`; sets of load stand stride apart. */
-void eo_root_modes_add(const struct eo_root_modes *modes, int pair, int n, const struct eo_flank_point *point, int sets, const double *force,
-                       double *load, size_t stride);
+/* Adds the loads force[sets][n], N, at the points to load[sets][slots] of the root of tooth pair `pair`. Returns which parts of load they touch. */
+unsigned eo_root_modes_add(const struct eo_root_modes *modes, int pair, int n, const struct eo_flank_point *point, int sets, const double *force,
+                           double *load);
 
-/* stress[count][nodes][EO_STRESSES], Pa, under load[count][slots]. scratch: [count][rank]. */
-void eo_root_modes_stress(const struct eo_root_modes *modes, int count, const double *load, double *scratch, double *stress);
+/* stress[count][sets][nodes][EO_STRESSES], Pa, under load[count][sets][slots], of which touched[count] says which parts are not zero (see above).
+   scratch: [count][sets][rank]. */
+void eo_root_modes_stress(const struct eo_root_modes *modes, int count, int sets, const double *load, const unsigned *touched, double *scratch,
+                          double *stress);
 
 #endif

@@ -3,6 +3,23 @@
 
 #include "http/server.h"
 
+bool eo_http_enter(struct eo_http *http)
+{
+  pthread_mutex_lock(&http->lock);
+  bool open = !http->closing;
+  http->deferred += open;
+  pthread_mutex_unlock(&http->lock);
+  return open;
+}
+
+void eo_http_leave(struct eo_http *http)
+{
+  pthread_mutex_lock(&http->lock);
+  http->deferred--;
+  pthread_cond_broadcast(&http->changed);
+  pthread_mutex_unlock(&http->lock);
+}
+
 void eo_request_defer(struct eo_request *request)
 {
   struct eo_http *http = request->http;

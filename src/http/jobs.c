@@ -294,5 +294,5 @@ const struct eo_route eo_routes_jobs[] = {
     {.method = EO_POST, .pattern = "/jobs/{id}/retry", .handle = retry, .name = "retryJob", .summary = "Queues a failed or cancelled job again.",
      .gives = "202 Job", .rate = EO_RATE_START},
     {.method = EO_POST, .pattern = "/jobs/{id}/clone", .handle = repeat, .name = "cloneJob", .summary = "Orders the same once more.",
-     .takes = "JobChange", .gives = "202 Job", .rate = EO_RATE_START},
+     .takes = "JobChange", .takes_nothing = true, .gives = "202 Job", .rate = EO_RATE_START},
     {0}};

@@ -52,6 +52,7 @@ struct eo_request {
   struct eo_text body;
   struct eo_upload *upload;           /* in place of the body, of a route that takes a form; owned */
   size_t received, body_limit, refused; /* refused: bytes that came after the reply was known */
+  size_t held;                        /* bytes of the body in memory */
   double started;                     /* ms of the monotonic clock */
   struct eo_reply reply;
   bool dispatched;

@@ -24,6 +24,7 @@ struct eo_route {
   const char *summary;        /* one line */
   const char *takes;          /* name of the body's schema; NULL: no body */
   const char *design_at;      /* where the body holds the design; NULL: it is the body */
+  bool takes_nothing;         /* the body may be left out */
   const char *gives;          /* "200 Result, 202 Ticket": status and schema; "-": no body; problems are added */
   const char *headers;        /* request headers that matter here, "If-Match, Prefer"; may be NULL */
   struct eo_query query[EO_MOST_QUERIES];

@@ -87,21 +87,27 @@ static enum MHD_Result take(struct eo_request *request, const char *data, size_t
   }
   if (!request->reply.status && request->received > request->body_limit)
     eo_reply_problem(request, 413, NULL, "The body may have %zu bytes here.", request->body_limit);
+  if (!request->reply.status && !request->upload && request->http->bodies + size > EO_MOST_BODIES)
+    eo_reply_problem(request, 503, "busy", "Too much is being sent at once.");
   if (request->reply.status)
     return MHD_YES;
   if (request->upload)
     eo_upload_take(request, data, size);
-  else
+  else {
     eo_text_add_bytes(&request->body, data, size);
+    request->http->bodies += size;
+    request->held += size;
+  }
   return MHD_YES;
 }
 
-static void dispatch(struct eo_request *request)
+static void run_handler(struct eo_request *request)
 {
-  request->dispatched = true;
-  eo_connection_allow(request->http, request->place, 0);
-  if (request->reply.status || (request->upload && !eo_upload_end(request)))
+  if (!eo_http_enter(request->http)) {
+    eo_reply_problem(request, 503, "stopping", "The server is stopping.");
+    request->reply.retry_after = 5;
     return;
+  }
   if (!request->route)
     eo_pages_reply(request->http->pages, request);
   else if (eo_guard_spends(request, request->route->rate)) {
@@ -110,6 +116,15 @@ static void dispatch(struct eo_request *request)
     else
       request->route->handle(request);
   }
+  eo_http_leave(request->http);
+}
+
+static void dispatch(struct eo_request *request)
+{
+  request->dispatched = true;
+  eo_connection_allow(request->http, request->place, 0);
+  if (!request->reply.status && (!request->upload || eo_upload_end(request)))
+    run_handler(request);
 }
 
 static enum MHD_Result handle(void *context, struct MHD_Connection *connection, const char *path, const char *method, const char *version,
@@ -140,6 +155,7 @@ static void complete(void *context, struct MHD_Connection *connection, void **pl
   eo_connection_allow(http, request->place, EO_IDLE_SECONDS);
   if (!http->settings.quiet)
     eo_log_request(request);
+  http->bodies -= request->held;
   eo_request_free(request);
   *place = NULL;
 }

@@ -19,6 +19,7 @@ enum {
   EO_BODY_SECONDS = 120,             /* for a whole body, and for the client to take a reply */
   EO_SLOWEST_READER = 64 << 10,      /* bytes per second: a long reply has more time */
   EO_HEARTBEAT_SECONDS = 10,
+  EO_MOST_BODIES = 128 << 20,        /* bytes of all bodies at once */
   EO_DRAINED = 64 << 10,             /* bytes of a refused body that are read so that the connection can go on */
 };
 
@@ -47,6 +48,7 @@ struct eo_http {
   int uploads;                       /* on their way; HTTP thread */
   struct eo_pages *pages;
   struct eo_documents *documents;    /* made once: OpenAPI, field tables, examples */
+  size_t bodies;                     /* bytes of bodies in memory; HTTP thread */
   uint64_t requests;                 /* HTTP thread */
   uint64_t replies[6];               /* by hundreds of the status; HTTP thread */
 
@@ -55,7 +57,8 @@ struct eo_http {
   struct eo_connection *connections;
   struct eo_stream *streams;
   int connection_count, stream_count;
-  int deferred;                      /* requests that somebody still has to finish */
+  size_t backlog;                    /* bytes that streams keep for their clients */
+  int deferred;                      /* requests that somebody still has to finish, and one while a handler runs */
   bool closing;
   pthread_t ticker;
 };
@@ -69,6 +72,10 @@ void eo_ticker_stop(struct eo_http *http);
 /* request.c */
 struct eo_request *eo_request_new(struct eo_http *http, struct MHD_Connection *connection, const char *path, const char *method);
 void eo_request_free(struct eo_request *request);
+
+/* deferred.c: brackets a handler, so that a stop waits for it; false: the server is stopping */
+bool eo_http_enter(struct eo_http *http);
+void eo_http_leave(struct eo_http *http);
 
 /* deferred.c: true when the request has no reply yet and now sleeps */
 bool eo_request_sleep(struct eo_request *request);

@@ -12,6 +12,7 @@ struct eo_stream {
   struct eo_stream *before, *after;
   struct eo_text waiting;        /* what the client has not taken, from `taken` on */
   size_t taken;
+  bool opened;                   /* what was missed is there, from here on the backlog counts */
   bool suspended, ended;
 };
 
@@ -30,8 +31,13 @@ static void append(struct eo_stream *stream, const char *text, size_t size)
 {
   if (stream->ended)
     return;
-  eo_text_add_bytes(&stream->waiting, text, size);
-  if (stream->waiting.failed || stream->waiting.size - stream->taken > EO_STREAM_BACKLOG) {
+  size_t left = stream->waiting.size - stream->taken;
+  bool fits = stream->http->backlog + size <= EO_MOST_BACKLOG && (!stream->opened || left + size <= EO_STREAM_BACKLOG || left == 0);
+  if (fits) {
+    eo_text_add_bytes(&stream->waiting, text, size);
+    stream->http->backlog += size;
+  }
+  if (!fits || stream->waiting.failed) {
     stream->ended = true;
     stream->place->deadline = 1;
   }
@@ -54,6 +60,19 @@ void eo_streams_end(struct eo_http *http)
   }
 }
 
+/* What was taken leaves the buffer, once it is worth moving the rest. */
+static void forget_taken(struct eo_stream *stream)
+{
+  enum { WORTH_MOVING = 64 << 10 };
+  size_t left = stream->waiting.size - stream->taken;
+  if (left && stream->taken < WORTH_MOVING)
+    return;
+  if (left)
+    memmove(stream->waiting.data, stream->waiting.data + stream->taken, left);
+  stream->waiting.size = left;
+  stream->taken = 0;
+}
+
 /* ---- what the library and the service call ---- */
 
 static ssize_t read_stream(void *context, uint64_t position, char *buffer, size_t most)
@@ -67,8 +86,8 @@ static ssize_t read_stream(void *context, uint64_t position, char *buffer, size_
     given = (ssize_t)(left < most ? left : most);
     memcpy(buffer, stream->waiting.data + stream->taken, (size_t)given);
     stream->taken += (size_t)given;
-    if (stream->taken == stream->waiting.size)
-      stream->taken = stream->waiting.size = 0;
+    stream->http->backlog -= (size_t)given;
+    forget_taken(stream);
   } else if (stream->ended)
     given = MHD_CONTENT_READER_END_OF_STREAM;
   else {
@@ -93,6 +112,7 @@ static void free_stream(void *context)
   if (stream->after)
     stream->after->before = stream->before;
   http->stream_count--;
+  http->backlog -= stream->waiting.size - stream->taken;
   pthread_cond_broadcast(&http->changed);
   pthread_mutex_unlock(&http->lock);
   eo_text_done(&stream->waiting);
@@ -115,6 +135,16 @@ static void take_event(void *context, const struct eo_service_event *event)
 
 /* ---- opening ---- */
 
+static const char hello[] = "retry: 2000\n\n"; /* ms until a client comes back */
+
+/* From here on who does not read is cut off. */
+static void open_stream(struct eo_stream *stream)
+{
+  pthread_mutex_lock(&stream->http->lock);
+  stream->opened = true;
+  pthread_mutex_unlock(&stream->http->lock);
+}
+
 static bool enlist(struct eo_http *http, struct eo_stream *stream)
 {
   pthread_mutex_lock(&http->lock);
@@ -125,6 +155,7 @@ static bool enlist(struct eo_http *http, struct eo_stream *stream)
       stream->after->before = stream;
     http->streams = stream;
     http->stream_count++;
+    append(stream, hello, sizeof hello - 1);
   }
   pthread_mutex_unlock(&http->lock);
   return room;
@@ -132,7 +163,6 @@ static bool enlist(struct eo_http *http, struct eo_stream *stream)
 
 void eo_stream_open(struct eo_request *request, int64_t job, int64_t after)
 {
-  static const char hello[] = "retry: 2000\n\n";
   struct eo_error error;
   struct eo_stream *stream = calloc(1, sizeof *stream);
   if (!stream) {
@@ -140,9 +170,7 @@ void eo_stream_open(struct eo_request *request, int64_t job, int64_t after)
     return;
   }
   *stream = (struct eo_stream){.http = request->http, .connection = request->connection, .place = request->place};
-  eo_text_add_bytes(&stream->waiting, hello, sizeof hello - 1);
   if (!enlist(request->http, stream)) {
-    eo_text_done(&stream->waiting);
     free(stream);
     eo_reply_problem(request, 503, NULL, "There are too many event streams.");
     request->reply.retry_after = EO_HEARTBEAT_SECONDS;
@@ -159,6 +187,7 @@ void eo_stream_open(struct eo_request *request, int64_t job, int64_t after)
     eo_reply_error(request, "", &error);
     return;
   }
+  open_stream(stream);
   MHD_set_connection_option(request->connection, MHD_CONNECTION_OPTION_TIMEOUT, 0u);
   request->reply.status = 200;
   request->reply.type = "text/event-stream";

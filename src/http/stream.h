@@ -4,7 +4,8 @@
 
 #include "http/server.h"
 
-enum { EO_STREAM_BACKLOG = 2 << 20, EO_MOST_STREAMS = 1000 };
+/* Bytes that one client, once its stream is open, and all of them may leave unread. */
+enum { EO_STREAM_BACKLOG = 1 << 20, EO_MOST_BACKLOG = 128 << 20, EO_MOST_STREAMS = 1000 };
 
 /* Makes the reply a stream of the events of one job, or of all (0), after the number `after`. */
 void eo_stream_open(struct eo_request *request, int64_t job, int64_t after);

@@ -29,7 +29,8 @@ struct eo_lane {
 
 void eo_lane_stand_back(int nice)
 {
-  setpriority(PRIO_PROCESS, (id_t)gettid(), nice);
+  id_t self = (id_t)gettid();
+  setpriority(PRIO_PROCESS, self, getpriority(PRIO_PROCESS, self) + nice);
 }
 
 /* ---- lists, with the mutex held ---- */

@@ -326,10 +326,10 @@ enum eo_code eo_rig_fit(struct eo_work *work, struct eo_rig_points *points, cons
 static enum eo_code respond(struct eo_rig_request *rig, const struct eo_pair *pair, const struct eo_design *design, struct eo_error *error)
 {
   struct eo_evaluator *evaluator = NULL;
-  struct eo_prediction prediction;
+  struct eo_rig_prediction prediction;
   enum eo_code code = eo_evaluator_new(&evaluator, pair, 1, error);
   if (!code)
-    code = eo_prediction_run(&prediction, evaluator, design, rig->unmodified, rig->torque, rig->speed, rig->end, rig->harmonics, error);
+    code = eo_rig_prediction_run(&prediction, evaluator, design, rig->unmodified, rig->torque, rig->speed, rig->end, rig->harmonics, error);
   if (!code && !prediction.valid)
     code = eo_error_set(error, EO_ERROR_INPUT, "", "The design has no periodic vibration at %g N m and %g rpm.", rig->torque, rig->speed * 30 / M_PI);
   eo_evaluator_free(evaluator);

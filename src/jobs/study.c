@@ -123,7 +123,7 @@ static enum eo_code log_predictions(struct study *s, struct eo_error *error)
 {
   enum eo_code code = EO_OK;
   for (int i = 0; i < s->batch.predictions_count && !code; i++) {
-    const struct eo_prediction *p = &s->batch.predictions[i];
+    const struct eo_predicted *p = &s->batch.predictions[i];
     const struct eo_stored_prediction prediction = {.job = s->job.id, .generation = p->generation, .individual = p->individual, .fitness = p->fitness,
                                                     .credibility = p->credibility, .x = p->x, .size = s->result->space.count};
     code = eo_store_log_prediction(s->plan->store, &prediction, error);

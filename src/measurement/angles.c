@@ -7,13 +7,14 @@
 #include "measurement/sampler.h"
 
 static const double DEGREES = 180 / M_PI;
-enum { AHEAD = 4, ROOM = EO_SAMPLER_BLOCK + AHEAD };
+enum { MOST_LOSSES = 3, AHEAD = 4, ROOM = EO_SAMPLER_BLOCK + AHEAD };
 
 static const char *const member_name[2] = {"pinion", "gear"};
 
 /* Usual speeds of the samples that are held, and the size of step that is out of the ordinary. */
 struct usual {
-  double rate[2], limit[2], interval;
+  double rate[2], interval;
+  double limit[2], fine[2]; /* of what a row lost, of what a few counts lost stand out of */
 };
 
 struct maker {
@@ -34,6 +35,8 @@ struct maker {
   double *rate[2], *proportion; /* [blocks] owned: of each block */
   int blocks, block_room;
   double scratch[ROOM];
+  int losses;
+  struct loss { int channel; int64_t row; double jump; } loss[MOST_LOSSES];
   int64_t gaps, gap_row, spikes, spike_row;
   double first[2], end[2];    /* rad */
   bool wrapped[2];
@@ -115,6 +118,8 @@ static void judge_turns(struct maker *m, int channel)
   const struct eo_scan_column *c = &m->scan->column[channel][0];
   double scale = m->tracks->channel[channel].scale, period = eo_scan_period(c), turn = period * scale;
   m->sampler.scale[channel] = scale;
+  if (fabs(scale - 1) < 1e-9)
+    eo_findings_add(m->findings, EO_FINDING_UNITS, EO_SEVERITY_NOTE, channel, scale, "The %s angle is read as radians.", member_name[channel]);
   if (isnan(period))
     return;
   double degrees = turn / (2 * M_PI) * (1 / DEGREES), radians = turn / (2 * M_PI) * DEGREES;
@@ -169,6 +174,9 @@ static void judge_ellipse(struct maker *m, const struct eo_ellipse *e, int chann
 {
   const struct eo_track_channel *c = &m->tracks->channel[channel];
   double ratio = e->amplitude[0] / e->amplitude[1], phase = DEGREES * e->skew;
+  eo_findings_add(m->findings, EO_FINDING_TRACK, EO_SEVERITY_NOTE, channel, ratio,
+                  "Offsets (%.2g, %.2g), ratio %.4g and phase %.2f degrees of the %s tracks were corrected.", e->offset[0], e->offset[1], ratio, 90 + phase,
+                  member_name[channel]);
   for (int k = 0; k < 2 && c->unit != EO_TRACK_UNKNOWN; k++) {
     bool volt = c->unit == EO_TRACK_VOLT;
     double size = 2 * e->amplitude[k] * c->factor, low = volt ? 0.6 : 7, high = volt ? 1.2 : 16;
@@ -225,19 +233,21 @@ static void learn(struct maker *m, const struct eo_sample *s, int count, struct 
     n = 0;
     for (int i = 1; i < count; i++)
       m->scratch[n++] = fabs(step_of(&s[i - 1], &s[i], c) - u->rate[c] * (s[i].time - s[i - 1].time));
-    double spread = eo_scan_quantile(m->scratch, n, 0.9);
-    u->limit[c] = fmax(fmax(4 * spread, 0.4 * fabs(u->rate[c]) * u->interval), 1.6 * m->quantum[c]);
+    double spread = eo_scan_quantile(m->scratch, n, 0.9), most = m->scratch[(int)(0.995 * (n - 1))];
+    double row = fabs(u->rate[c]) * u->interval;
+    u->limit[c] = fmax(fmax(4 * spread, 0.4 * row), 1.6 * m->quantum[c]);
+    u->fine[c] = fmax(fmax(8 * spread, 3 * most), 1.6 * m->quantum[c]);
   }
 }
 
 /* How far the step between two samples is from the usual one. */
-static bool odd_step(const struct usual *u, const struct eo_sample *from, const struct eo_sample *to, double excess[2])
+static bool odd_step(const struct usual *u, const double limit[2], const struct eo_sample *from, const struct eo_sample *to, double excess[2])
 {
   bool odd = false;
-  double time = to->time - from->time, slack = fmax(0, time - 1.5 * u->interval);
+  double time = to->time - from->time, slack = fmax(0, time - (0.5 + (double)(to->row - from->row)) * u->interval); /* of a gap in time */
   for (int c = 0; c < 2; c++) {
     excess[c] = step_of(from, to, c) - u->rate[c] * time;
-    odd = odd || fabs(excess[c]) > u->limit[c] + 0.02 * fabs(u->rate[c]) * slack;
+    odd = odd || fabs(excess[c]) > limit[c] + 0.02 * fabs(u->rate[c]) * slack;
   }
   return odd;
 }
@@ -302,13 +312,26 @@ static bool note_block(struct maker *m, const struct usual *u)
 }
 
 /* A value far off that is followed by good ones; how many samples to leave out, 0 when it is no such thing. */
-static int spike_length(const struct usual *u, const struct eo_sample *last, const struct eo_sample *s, int left)
+static int spike_length(const struct usual *u, const double limit[2], const struct eo_sample *last, const struct eo_sample *s, int left)
 {
   double excess[2];
   for (int i = 1; i < AHEAD && i < left; i++)
-    if (!odd_step(u, last, &s[i], excess))
+    if (!odd_step(u, limit, last, &s[i], excess))
       return i;
   return 0;
+}
+
+/* One channel moves on by less than a row and stays there. Where that happens often it is how the encoder counts. */
+static void note_lost_counts(struct maker *m, const struct usual *u, const double excess[2], const struct eo_sample *s, int left)
+{
+  double ratio = u->rate[1] / u->rate[0];
+  bool both = fabs(excess[1] - ratio * excess[0]) < fmax(u->fine[1], fabs(ratio) * u->fine[0]);
+  if (both || spike_length(u, u->fine, &m->last, s, left))
+    return;
+  int channel = fabs(excess[0]) / u->fine[0] > fabs(excess[1]) / u->fine[1] ? 0 : 1;
+  if (m->losses < MOST_LOSSES)
+    m->loss[m->losses] = (struct loss){channel, s->row, excess[channel]};
+  m->losses++;
 }
 
 static enum eo_code pass_on(struct maker *m, struct eo_angles *a, bool final, double (*out)[3], int *written, struct eo_error *error)
@@ -325,8 +348,8 @@ static enum eo_code pass_on(struct maker *m, struct eo_angles *a, bool final, do
   }
   for (; i < until && !code; i++) {
     struct eo_sample *s = &m->sample[i];
-    if (m->known && m->begun && odd_step(u, &m->last, s, excess)) {
-      int skip = spike_length(u, &m->last, s, m->held - i);
+    if (m->known && m->begun && odd_step(u, u->limit, &m->last, s, excess)) {
+      int skip = spike_length(u, u->limit, &m->last, s, m->held - i);
       if (skip) {
         if (!m->spikes)
           m->spike_row = s->row;
@@ -335,6 +358,8 @@ static enum eo_code pass_on(struct maker *m, struct eo_angles *a, bool final, do
         continue;
       }
       judge_jump(m, a, u, excess, s);
+    } else if (m->known && m->begun && odd_step(u, u->fine, &m->last, s, excess)) {
+      note_lost_counts(m, u, excess, s, m->held - i);
     } else if (m->known && m->begun && s->time - m->last.time > 1.5 * u->interval && s->row - m->last.row == 1) {
       a->dropped += llround((s->time - m->last.time) / u->interval) - 1;
       if (!m->gaps++)
@@ -377,6 +402,10 @@ static enum eo_code convert(struct maker *m, struct eo_angles *a, struct eo_erro
 
 static void judge_jumps(struct maker *m, const struct eo_angles *a)
 {
+  for (int i = 0; i < m->losses && m->losses <= MOST_LOSSES; i++)
+    at_row(m, eo_findings_add(m->findings, EO_FINDING_SLIP, EO_SEVERITY_REFUSED, m->loss[i].channel, DEGREES * m->loss[i].jump,
+                              "The %s channel jumps by %.5g degrees at row %lld and stays there while the other does not: counts were lost in one channel.",
+                              member_name[m->loss[i].channel], DEGREES * m->loss[i].jump, (long long)m->loss[i].row + 1), m->loss[i].row);
   if (m->gaps)
     at_row(m, eo_findings_add(m->findings, EO_FINDING_DROPPED, EO_SEVERITY_REPAIRED, -1, (double)a->dropped,
                               "About %lld rows are missing from both channels in %lld places, the first before row %lld; the angles say for how long, and time was "

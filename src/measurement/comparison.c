@@ -23,7 +23,7 @@ void eo_measured_take(struct eo_measured *m, const struct eo_transmission *t, co
 
 /* ---- phase ---- */
 
-static double likeness_at(const struct eo_measured *m, const struct eo_prediction *p, double shift)
+static double likeness_at(const struct eo_measured *m, const struct eo_rig_prediction *p, double shift)
 {
   double sum = 0, size[2] = {0, 0};
   int harmonics = m->harmonics < p->harmonics ? m->harmonics : p->harmonics;
@@ -89,13 +89,13 @@ static bool same_point(const struct eo_measured *a, const struct eo_measured *b)
   return a->end == b->end && fabs(a->torque / b->torque - 1) < SAME_TORQUE && fabs(a->speed / b->speed - 1) < SAME_SPEED;
 }
 
-static void find_ratios(struct eo_comparison *c)
+static enum eo_code find_ratios(struct eo_comparison *c, struct eo_error *error)
 {
   double *value = malloc(sizeof *value * (size_t)(c->count + 1));
   int n = 0;
   c->ratio = c->spread = NAN;
   if (!value)
-    return;
+    return eo_error_memory(error);
   for (int i = 0; i < c->count; i++)
     if (c->point[i].ratio > 0)
       value[n++] = log(c->point[i].ratio);
@@ -105,6 +105,7 @@ static void find_ratios(struct eo_comparison *c)
   c->ratio = exp(middle);
   c->spread = n > 2 ? 1.4826 * median(value, n) : NAN;
   free(value);
+  return EO_OK;
 }
 
 /* Repeats of the same point that disagree by more than their uncertainty allows. */
@@ -175,9 +176,10 @@ enum eo_code eo_comparison_run(struct eo_comparison *c, struct eo_evaluator *eva
       align(m, p);
     }
   }
+  if (!code)
+    code = find_ratios(c, error);
   if (code)
     return code;
-  find_ratios(c);
   for (int i = 0; i < count; i++) {
     judge_point(c, measured, i);
     c->reductions += reduce(c, measured, i, &c->reduction[c->reductions]);

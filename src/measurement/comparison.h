@@ -18,7 +18,7 @@ struct eo_measured {
 };
 
 struct eo_compared {
-  struct eo_prediction prediction;
+  struct eo_rig_prediction prediction;
   double ratio;            /* measured over predicted RMS; NaN without prediction */
   double shift;            /* mesh phase, 0..1, by which the predicted curve lies nearest to the measured one: the encoders' zero is arbitrary */
   double likeness;         /* correlation of both curves then, -1..1 */

@@ -3,12 +3,10 @@
 #include "measurement/readers.h"
 
 #include <hdf5.h>
-#include <math.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 #include <sys/stat.h>
 
 #define CHANNELS EO_RECORDING_COLUMNS
@@ -50,35 +48,37 @@ static bool read_text_attribute(hid_t object, const char *name, char *text, size
   return *text;
 }
 
-static double read_number_attribute(hid_t object, const char *name)
+static double read_number(hid_t attribute)
 {
   double value = 0;
-  if (H5Aexists(object, name) <= 0)
-    return 0;
-  hid_t attribute = H5Aopen(object, name, H5P_DEFAULT), type = H5Aget_type(attribute), space = H5Aget_space(attribute);
+  hid_t type = H5Aget_type(attribute), space = H5Aget_space(attribute);
   H5T_class_t class = H5Tget_class(type);
   if ((class == H5T_INTEGER || class == H5T_FLOAT) && H5Sget_simple_extent_npoints(space) == 1 &&
       H5Aread(attribute, H5T_NATIVE_DOUBLE, &value) < 0)
     value = 0;
   H5Sclose(space);
   H5Tclose(type);
-  H5Aclose(attribute);
-  return isfinite(value) && value > 0 ? value : 0;
+  return value;
 }
 
-static const char *const rates[] = { "fs", "sample_rate", "samplerate", "sampling_rate", "sampling_frequency" };
-static const char *const intervals[] = { "dt", "wf_increment", "increment", "sample_interval", "delta_t" };
+static herr_t visit_attribute(hid_t object, const char *name, const H5A_info_t *info, void *context)
+{
+  double *interval = context;
+  (void)info;
+  hid_t attribute = H5Aopen(object, name, H5P_DEFAULT);
+  if (attribute >= 0 && !(*interval > 0))
+    *interval = eo_series_stated_interval(name, read_number(attribute));
+  if (attribute >= 0)
+    H5Aclose(attribute);
+  return 0;
+}
 
+/* From an attribute such as "sample_rate"; 0: none. */
 static double interval_of(hid_t object)
 {
-  double value = 0;
-  for (size_t i = 0; !(value > 0) && i < sizeof rates / sizeof *rates; i++) {
-    value = read_number_attribute(object, rates[i]);
-    value = value > 0 ? 1 / value : 0;
-  }
-  for (size_t i = 0; !(value > 0) && i < sizeof intervals / sizeof *intervals; i++)
-    value = read_number_attribute(object, intervals[i]);
-  return value;
+  double interval = 0;
+  H5Aiterate2(object, H5_INDEX_NAME, H5_ITER_NATIVE, NULL, visit_attribute, &interval);
+  return interval;
 }
 
 /* Data of other files are not ours to read, whatever the file says. */
@@ -112,14 +112,11 @@ static int numeric_rank(hid_t set, hsize_t *length)
 static void use_scalar(struct hdf5 *h, hid_t set, const char *name)
 {
   double value = 0;
-  if (H5Dread(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, &value) < 0 || !(value > 0) || !isfinite(value))
+  if (H5Dread(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, &value) < 0)
     return;
-  for (size_t i = 0; i < sizeof rates / sizeof *rates; i++)
-    if (!strcasecmp(name, rates[i]))
-      h->interval = 1 / value;
-  for (size_t i = 0; i < sizeof intervals / sizeof *intervals; i++)
-    if (!strcasecmp(name, intervals[i]))
-      h->interval = value;
+  double interval = eo_series_stated_interval(name, value);
+  if (interval > 0)
+    h->interval = interval;
 }
 
 /* One channel per column, columns lying across the longer dimension. */

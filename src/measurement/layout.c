@@ -10,8 +10,10 @@
 #define PINION_WORDS "1|pinion|ritzel|input|driver|drive|driving|eingang|antrieb|motor|p"
 #define GEAR_WORDS "2|gear|wheel|rad|grossrad|output|driven|ausgang|abtrieb|g"
 #define TIME_WORDS "t|time|zeit|timestamp|elapsed|x"
-#define SINE_WORDS "sin|sine|sinus|a"
-#define COSINE_WORDS "cos|cosine|kosinus|cosinus|b"
+#define SINE_WORDS "sin|sine|sinus"
+#define COSINE_WORDS "cos|cosine|kosinus|cosinus"
+#define SINE_LETTER "a" /* only of names without such a word: in a_sin and a_cos it names the encoder */
+#define COSINE_LETTER "b"
 #define OTHER_WORDS "torque|moment|drehmoment|speed|rpm|drehzahl|temperature|temp|temperatur|acc|acceleration|accel|force|kraft|trigger|index|sample|count_no|status"
 
 static const char *const member_names[2] = { "pinion", "gear" };
@@ -155,13 +157,20 @@ static enum eo_layout_kind guess_kind(const struct guess *g)
   return tracks >= 4 ? EO_LAYOUT_SINE_COSINE : EO_LAYOUT_ANGLES;
 }
 
+/* 1: the name says sine, -1: cosine, 0: neither. */
+static int sine_or_cosine(const char *name)
+{
+  int word = eo_column_named(name, SINE_WORDS) - eo_column_named(name, COSINE_WORDS);
+  return word ? word : eo_column_named(name, SINE_LETTER) - eo_column_named(name, COSINE_LETTER);
+}
+
 /* How well a column's name fits a member and a track (0: sine or the only one, 1: cosine). */
 static int fit_of(const struct guess *g, int column, int member, int track)
 {
   const char *name = eo_recording_name(g->recording, column);
   int fit = eo_column_named(name, member ? GEAR_WORDS : PINION_WORDS) - eo_column_named(name, member ? PINION_WORDS : GEAR_WORDS);
   if (g->kind == EO_LAYOUT_SINE_COSINE)
-    fit += 2 * (eo_column_named(name, track ? COSINE_WORDS : SINE_WORDS) - eo_column_named(name, track ? SINE_WORDS : COSINE_WORDS));
+    fit += 2 * (track ? -1 : 1) * sine_or_cosine(name);
   if (g->kind == EO_LAYOUT_ANGLES && (g->look[column].quantity == EO_QUANTITY_ANGLE || g->look[column].quantity == EO_QUANTITY_COUNT))
     fit += 4;
   return fit;

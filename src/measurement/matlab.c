@@ -4,13 +4,11 @@
 #include "measurement/readers.h"
 #include "measurement/source.h"
 
-#include <math.h>
 #include <matio.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 #include <unistd.h>
 
 #define CHANNELS EO_RECORDING_COLUMNS
@@ -148,21 +146,13 @@ static enum eo_code copy_values(struct matlab *m, matvar_t *v, const struct tabl
 /* A single number whose name says that it is the sampling rate or interval. */
 static void use_scalar(struct matlab *m, matvar_t *v)
 {
-  static const char *const rates[] = { "fs", "sample_rate", "samplerate", "sampling_rate", "sampling_frequency" };
-  static const char *const intervals[] = { "dt", "ts", "sample_interval", "delta_t" };
   char data[8] = "";
   struct eo_error error;
   if (read_values(m, v, 0, 1, data, &error))
     return;
-  double value = value_at(data, v->class_type, 0);
-  if (!(value > 0) || !isfinite(value))
-    return;
-  for (size_t i = 0; i < sizeof rates / sizeof *rates; i++)
-    if (!strcasecmp(v->name, rates[i]))
-      m->interval = 1 / value;
-  for (size_t i = 0; i < sizeof intervals / sizeof *intervals; i++)
-    if (!strcasecmp(v->name, intervals[i]))
-      m->interval = value;
+  double interval = eo_series_stated_interval(v->name, value_at(data, v->class_type, 0));
+  if (interval > 0)
+    m->interval = interval;
 }
 
 static enum eo_code add_variable(struct matlab *m, matvar_t *v, struct eo_error *error)

@@ -5,7 +5,7 @@
 #include "evaluation/evaluator.h"
 #include "measurement/transmission.h"
 
-struct eo_prediction {
+struct eo_rig_prediction {
   bool valid;                /* false: the loaded contact or the vibration did not converge; the numbers are then NaN */
   double torque, speed;      /* N m, rad/s */
   int harmonics;
@@ -18,7 +18,7 @@ struct eo_prediction {
 /* design: resolved, served by the evaluator's pair; its load cases are replaced by one. unmodified: without its modification. end: EO_LEFT,
    EO_RIGHT (the left one with one end). harmonics: 1..EO_MESH_ORDERS, more than the resolution has are 0.
    Errors: those of eo_evaluator_run(). */
-enum eo_code eo_prediction_run(struct eo_prediction *prediction, struct eo_evaluator *evaluator, const struct eo_design *design, bool unmodified,
+enum eo_code eo_prediction_run(struct eo_rig_prediction *prediction, struct eo_evaluator *evaluator, const struct eo_design *design, bool unmodified,
                                double torque, double speed, int end, int harmonics, struct eo_error *error);
 
 /* The pinion's share of a free torsional vibration, (I_g / r_g^2) / (I_p / r_p^2 + I_g / r_g^2). */

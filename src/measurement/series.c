@@ -4,7 +4,7 @@
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
-#include <string.h>
+#include <strings.h>
 
 #define BLOCK 4096 /* rows that are copied at once */
 #define SHORT 20   /* a channel this many times shorter than the longest belongs to something else */
@@ -78,7 +78,7 @@ static int choose(const struct eo_series_file *file, int *chosen, struct eo_note
 static enum eo_code check_size(const struct eo_series_file *file, const int *chosen, int count, int64_t rows, struct eo_error *error)
 {
   if (!count)
-    return eo_error_set(error, EO_ERROR_INPUT, "", "The file has no channel with numbers (%d channels without data).", file->count);
+    return eo_error_set(error, EO_ERROR_INPUT, "", "The file has no channel with numbers over time.");
   if (rows > INT64_MAX / 8 / count / 2 || rows * count * 8 > file->limit)
     return eo_error_set(error, EO_ERROR_INPUT, "", "The %d channels of %lld values are more than the %lld MB that are read at most.", count,
                         (long long)rows, (long long)(file->limit >> 20));
@@ -133,6 +133,21 @@ enum eo_code eo_series_copy(const struct eo_series_file *file, const struct eo_s
       rows = file->series[chosen[c]].length;
   enum eo_code code = check_size(file, chosen, count, rows, error);
   return code ? code : copy_all(file, chosen, count, rows, sink, error);
+}
+
+double eo_series_stated_interval(const char *name, double value)
+{
+  static const char *const rates[] = { "fs", "sample_rate", "samplerate", "sampling_rate", "sampling_frequency" };
+  static const char *const intervals[] = { "dt", "ts", "wf_increment", "increment", "sample_interval", "delta_t" };
+  if (!(value > 0) || !isfinite(value))
+    return 0;
+  for (size_t i = 0; i < sizeof rates / sizeof *rates; i++)
+    if (!strcasecmp(name, rates[i]))
+      return 1 / value;
+  for (size_t i = 0; i < sizeof intervals / sizeof *intervals; i++)
+    if (!strcasecmp(name, intervals[i]))
+      return value;
+  return 0;
 }
 
 static enum eo_code begin_recording(void *context, const struct eo_series *column, int columns, struct eo_error *error)

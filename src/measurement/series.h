@@ -42,6 +42,9 @@ typedef enum eo_code eo_series_reader(const char *path, const struct eo_reader_o
    its file, and those of read and sink. */
 enum eo_code eo_series_copy(const struct eo_series_file *file, const struct eo_series_sink *sink, struct eo_notes *notes, struct eo_error *error);
 
+/* The interval in s that a number of this name states: the number itself of "dt" and the like, its inverse of "fs" or "sample_rate"; 0: none. */
+double eo_series_stated_interval(const char *name, double value);
+
 /* A sink that fills a new recording. It is NULL until begin; the caller frees it. */
 struct eo_series_recorder {
   struct eo_recording *recording;

@@ -72,6 +72,8 @@ static double channel_angle(const struct eo_synthetic *s, int64_t row, int chann
   double angle = shown_angle(s, channel, time) + s->noise * draw(s, STREAM_NOISE, at, channel);
   if (channel == EO_GEAR && s->fault == EO_FAULT_SPIKE && row == s->row)
     angle += 0.1;
+  if (channel == EO_GEAR && s->fault == EO_FAULT_LOST_COUNT && row >= s->row)
+    angle -= 2 * M_PI * (double)s->size / s->lines[EO_GEAR];
   return channel == EO_GEAR && s->fault == EO_FAULT_REVERSED ? -angle : angle;
 }
 
@@ -246,10 +248,12 @@ enum eo_code eo_synthetic_record(const struct eo_synthetic *s, struct eo_recordi
   return code;
 }
 
+double eo_synthetic_speed(const struct eo_synthetic *s) { return (smooth(s, duration(s)) - smooth(s, 0)) / duration(s); }
+
 double eo_synthetic_rms(const struct eo_synthetic *s, int harmonics)
 {
-  double sum = 0;
+  double sum = 0, speed = eo_synthetic_speed(s);
   for (int h = 1; h <= harmonics && h <= s->orders; h++)
-    sum += pow(cabs(s->order[h - 1]) * pow(h * s->teeth[EO_PINION] * s->speed, 2), 2) / 2;
+    sum += pow(cabs(s->order[h - 1]) * pow(h * s->teeth[EO_PINION] * speed, 2), 2) / 2;
   return sqrt(sum);
 }

@@ -25,6 +25,7 @@ enum eo_synthetic_fault {
   EO_FAULT_DROPPED,        /* `size` rows missing from both, time with them */
   EO_FAULT_DROPPED_SILENT, /* time written on as if nothing was missing */
   EO_FAULT_SLIP,           /* `size` rows missing from the gear */
+  EO_FAULT_LOST_COUNT,     /* `size` lines lost by the gear's encoder */
   EO_FAULT_CONSTANT,       /* the gear stands still */
   EO_FAULT_STUCK,          /* from the row on */
   EO_FAULT_SATURATED,      /* raw tracks cut off at 80 % */
@@ -79,6 +80,9 @@ void eo_synthetic_tracks(const struct eo_synthetic *synthetic, struct eo_tracks 
 
 /* The whole as a recording that the caller frees. */
 enum eo_code eo_synthetic_record(const struct eo_synthetic *synthetic, struct eo_recording **recording, struct eo_error *error);
+
+/* Mean speed of the pinion over the whole recording, slow swings included, rad/s. */
+double eo_synthetic_speed(const struct eo_synthetic *synthetic);
 
 /* RMS of the acceleration of mesh orders 1..harmonics at the mean speed, m/s2. */
 double eo_synthetic_rms(const struct eo_synthetic *synthetic, int harmonics);

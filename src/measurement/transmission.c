@@ -4,10 +4,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "measurement/beside.h"
 #include "measurement/synchronous.h"
 #include "measurement/terms.h"
 
-enum { BLOCK = 4096, BINS = 16, SKIPPED = 2 };
+enum { BLOCK = 4096 };
 static const double TREND_TURNS = 5; /* of the pinion, at least, and two of the gear, between knots */
 
 struct worker {
@@ -23,9 +24,7 @@ struct worker {
   double turns;              /* between them */
   double rows[BLOCK][3];
   struct eo_synchronous *synchronous;
-  /* residual transformed beside every mesh order, at -(BINS + 1) .. -SKIPPED, SKIPPED .. BINS + 1 over the turns */
-  double complex beside[EO_MESH_ORDERS][2][BINS];
-  double complex sideband[EO_MESH_ORDERS][2][EO_SIDEBANDS];
+  struct eo_beside beside;
 };
 
 static const int sideband_turns[EO_SIDEBANDS] = {-2, -1, 1, 2};
@@ -130,7 +129,7 @@ static void measure_speed(struct worker *w)
 static void judge_axis(struct worker *w)
 {
   struct eo_transmission *r = w->result;
-  double per_turn = (double)w->angles->rows * 2 * M_PI / (w->turns * 2 * M_PI) * (w->turns / ((w->trend.step * w->trend.intervals) * r->speed / (2 * M_PI)));
+  double per_turn = (double)w->angles->rows * 2 * M_PI / (w->trend.step * w->trend.intervals * r->speed);
   double turns = r->revolutions[EO_PINION], gear = r->revolutions[EO_GEAR], swing = (r->speed_high - r->speed_low) / r->speed;
   int possible = (int)(0.45 * per_turn / w->settings->teeth[EO_PINION]);
   r->asked = w->settings->harmonics ? w->settings->harmonics : 8;
@@ -181,31 +180,6 @@ static enum eo_code fit_terms(struct worker *w, struct eo_error *error)
 
 /* ---- the residual ---- */
 
-static void transform_beside(struct worker *w, double theta, double residual)
-{
-  double complex unit = cexp(-I * w->settings->teeth[EO_PINION] * theta), around[BINS], shaft[2][EO_SIDEBANDS], mesh = residual;
-  double complex slow = cexp(-I * theta / w->turns), power = slow;
-  double gear = (double)w->settings->teeth[EO_PINION] / w->settings->teeth[EO_GEAR];
-  for (int j = 0; j < BINS; j++)
-    around[j] = power *= slow;
-  for (int member = 0; member < 2; member++) {
-    double complex turn = cexp(-I * theta * (member == EO_GEAR ? gear : 1));
-    shaft[member][2] = turn;
-    shaft[member][3] = turn * turn;
-    shaft[member][1] = conj(turn);
-    shaft[member][0] = conj(turn * turn);
-  }
-  for (int h = 0; h < w->result->harmonics; h++) {
-    mesh *= unit;
-    for (int j = 0; j < BINS; j++) {
-      w->beside[h][0][j] += mesh * conj(around[j]);
-      w->beside[h][1][j] += mesh * around[j];
-    }
-    for (int k = 0; k < 2 * EO_SIDEBANDS; k++)
-      w->sideband[h][k / EO_SIDEBANDS][k % EO_SIDEBANDS] += mesh * shaft[k / EO_SIDEBANDS][k % EO_SIDEBANDS];
-  }
-}
-
 static enum eo_code add_residual(struct worker *w, const double row[3], int64_t index, struct eo_error *error)
 {
   double value[EO_MOST_TERMS], theta = eo_trend_at(&w->trend, row[0], NULL), smooth = 0, mesh = 0, shaft = 0;
@@ -222,7 +196,7 @@ static enum eo_code add_residual(struct worker *w, const double row[3], int64_t 
     shaft += value[i] * w->coefficient[i];
   double residual = error_of(w, row) - smooth - mesh - shaft;
   w->result->residual += residual * residual;
-  transform_beside(w, theta, residual);
+  eo_beside_add(&w->beside, theta, residual);
   eo_synchronous_add(w->synchronous, index, theta, mesh, shaft, residual);
   return EO_OK;
 }
@@ -237,47 +211,19 @@ static struct eo_order_line line_of(const struct worker *w, int at)
   return (struct eo_order_line){.order = order, .amplitude = amplitude, .acceleration = order * order * speed * speed * cabs(amplitude)};
 }
 
-static int ascending(const void *a, const void *b)
-{
-  double x = *(const double *)a, y = *(const double *)b;
-  return (x > y) - (x < y);
-}
-
-/* Standard deviation of the cosine and sine amplitudes from the median power beside the order (the power of noise is exponentially
-   distributed: its median is ln 2 of its mean); bins at sidebands are left out. */
-static double noise_beside(const struct worker *w, int h)
-{
-  double power[2 * BINS], gear = (double)w->settings->teeth[EO_PINION] / w->settings->teeth[EO_GEAR], rows = (double)w->result->rows;
-  int n = 0;
-  for (int side = 0; side < 2; side++)
-    for (int j = 0; j < BINS; j++) {
-      double distance = (j + SKIPPED) / w->turns;
-      bool near = false;
-      for (int k = 1; k <= 2; k++)
-        near = near || fabs(distance - k) < 1.5 / w->turns || fabs(distance - k * gear) < 1.5 / w->turns;
-      if (!near)
-        power[n++] = pow(cabs(w->beside[h][side][j]), 2);
-    }
-  if (n < 6)
-    return sqrt(2) * w->result->residual / sqrt(rows);
-  qsort(power, (size_t)n, sizeof *power, ascending);
-  double median = (power[(n - 1) / 2] + power[n / 2]) / 2;
-  return sqrt(2 * median / M_LN2) / rows;
-}
-
 static void read_lines(struct worker *w)
 {
   struct eo_transmission *r = w->result;
   double rows = (double)r->rows;
   for (int h = 0; h < r->harmonics; h++) {
     r->mesh[h] = line_of(w, h);
-    r->mesh[h].sigma = noise_beside(w, h);
+    r->mesh[h].sigma = eo_beside_sigma(&w->beside, h, r->residual);
     r->rms_upto[h] = eo_transmission_rms(r->mesh, h + 1, r->speed, &r->rms_sigma);
     for (int k = 0; k < 2 * EO_SIDEBANDS; k++) {
       int member = k / EO_SIDEBANDS, at = k % EO_SIDEBANDS;
       double shaft = member == EO_GEAR ? (double)w->settings->teeth[EO_PINION] / w->settings->teeth[EO_GEAR] : 1;
       double order = r->mesh[h].order + shaft * sideband_turns[at];
-      double complex amplitude = 2 * w->sideband[h][member][at] / rows;
+      double complex amplitude = eo_beside_sideband(&w->beside, h, member, sideband_turns[at]);
       r->sideband[h][member][at] =
           (struct eo_order_line){order, amplitude, r->mesh[h].sigma, order * order * r->speed * r->speed * cabs(amplitude)};
     }
@@ -353,6 +299,7 @@ static enum eo_code measure(struct worker *w, struct eo_error *error)
   if (refused(w))
     return EO_OK;
   eo_terms_init(&w->terms, w->settings->teeth, w->result->harmonics, w->turns, w->trend.start, w->trend.start + w->result->seconds);
+  eo_beside_init(&w->beside, w->settings->teeth, w->result->harmonics, w->turns);
   code = fit_terms(w, error);
   if (!code)
     code = eo_synchronous_new(&w->synchronous, w->result, w->settings->teeth, w->from, w->turns, error);

@@ -93,7 +93,7 @@ static void set_trial(struct fit *f, const double *x)
 }
 
 /* (measured - predicted) / standard deviation of each order's acceleration; a state that is not found counts as none at all. */
-static void add_residuals(const struct fit *f, const struct eo_measured *m, const struct eo_prediction *p, double *residual)
+static void add_residuals(const struct fit *f, const struct eo_measured *m, const struct eo_rig_prediction *p, double *residual)
 {
   for (int h = 0; h < m->harmonics; h++) {
     double noise = m->order[h].sigma * pow(m->order[h].order * m->speed, 2);
@@ -105,7 +105,7 @@ static void add_residuals(const struct fit *f, const struct eo_measured *m, cons
 static enum eo_code residuals_at(void *context, const double *x, double *residual, struct eo_error *error)
 {
   struct fit *f = context;
-  struct eo_prediction prediction;
+  struct eo_rig_prediction prediction;
   set_trial(f, x);
   f->evaluations++;
   if (eo_progress_report(f->progress, "fit of the inputs", fmin(0.99, (double)f->evaluations / f->expected)))

@@ -8,6 +8,13 @@ typedef double lane __attribute__((vector_size(64), aligned(64), may_alias));
 
 typedef float float_lane __attribute__((vector_size(64), aligned(64), may_alias));
 
+/* clang unrolls by its own lights and warns where a request cannot be met. */
+#ifdef __clang__
+#define UNROLL
+#else
+#define UNROLL _Pragma("GCC unroll 8")
+#endif
+
 #define INLINE static inline __attribute__((always_inline))
 
 INLINE double sum_lane(const lane *vector)
@@ -111,18 +118,18 @@ INLINE bool factor_diagonal(int n, int ld, double *block, lane inverse[LANE])
   for (int i = 0; i < n; i++)
     for (int k = 0; k <= i; k++)
       l[i][k] = block[(long)i * ld + k];
-#pragma GCC unroll 8
+  UNROLL
   for (int j = 0; j < n; j++) {
     if (!(l[j][j] > 0))
       return false;
     l[j][j] = sqrt(l[j][j]);
     scale[j] = 1 / l[j][j];
-#pragma GCC unroll 8
+    UNROLL
     for (int i = j + 1; i < n; i++)
       l[i][j] *= scale[j];
-#pragma GCC unroll 8
+    UNROLL
     for (int k = j + 1; k < n; k++)
-#pragma GCC unroll 8
+      UNROLL
       for (int i = k; i < n; i++)
         l[i][k] -= l[i][j] * l[k][j];
   }
@@ -130,11 +137,11 @@ INLINE bool factor_diagonal(int n, int ld, double *block, lane inverse[LANE])
     *(lane *)(block + (long)i * ld) = *(const lane *)l[i];
   /* L^-1 by rows: e_i less what the rows above take, over the diagonal; then transposed. */
   lane rows[LANE] = {{0}};
-#pragma GCC unroll 8
+  UNROLL
   for (int i = 0; i < n; i++) {
     lane sum = {0};
     sum[i] = 1;
-#pragma GCC unroll 8
+    UNROLL
     for (int k = 0; k < i; k++)
       sum -= l[i][k] * rows[k];
     rows[i] = sum * scale[i];
@@ -186,10 +193,10 @@ INLINE void solve_forward(int rows, int ld, const double *diagonal, double *part
   double scale[LANE] = {0};
   for (int i = 0; i < rows; i++)
     scale[i] = 1 / diagonal[(long)i * (ld + 1)];
-#pragma GCC unroll 8
+  UNROLL
   for (int i = 0; i < rows; i++) {
     part[i] *= scale[i];
-#pragma GCC unroll 8
+    UNROLL
     for (int k = i + 1; k < rows; k++)
       part[k] -= diagonal[(long)k * ld + i] * part[i];
   }
@@ -201,10 +208,10 @@ INLINE void solve_backward(int rows, int ld, const double *diagonal, double *par
   double scale[LANE] = {0};
   for (int i = 0; i < rows; i++)
     scale[i] = 1 / diagonal[(long)i * (ld + 1)];
-#pragma GCC unroll 8
+  UNROLL
   for (int i = rows - 1; i >= 0; i--) {
     part[i] *= scale[i];
-#pragma GCC unroll 8
+    UNROLL
     for (int k = 0; k < i; k++)
       part[k] -= diagonal[(long)i * ld + k] * part[i];
   }

@@ -5,13 +5,15 @@
      batch: half trust region (local.h) round the best of the epoch; half children of its best rows, bred three times
             among themselves by score = surrogate + kappa s (1 - R), then the best scores that keep growing distances
             from all rows and from each other
-     the last share of the budget polishes the best row of all: trust region only, no taboo, no new epoch
-
-   The surrogate sees values cut off at their median: what is bad need not be known exactly. s: median less minimum. */
+     from the second epoch on, what is the best of all when an epoch ends is refined once by an evolution strategy
+            (evolution.h), of whose samples the surrogate chooses, until `evolution_stall` batches gain nothing: objectives
+            made of maxima over load cases, ends and mesh positions lead along kinks, where a smooth surrogate stops
+     the last share of the budget polishes the best row of all: trust region only, then the evolution strategy */
+#include "optimizer/credibility_model.h"
+#include "optimizer/evolution.h"
 #include "optimizer/internal.h"
 #include "optimizer/local.h"
 #include "optimizer/operators.h"
-#include "optimizer/surrogate.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -19,7 +21,6 @@
 
 static const double spread[] = {0, 0, 0.003, 0.003, 0.01, 0.03, 0.1, 0.2}; /* distances to keep, over sqrt n */
 enum { SPREADS = 8, ROUNDS = 3 };
-static const double ridge = 1e-9;
 static const double polish_radius = 0.25; /* of the trust region when polishing starts, in local_radius */
 
 struct credibility {
@@ -28,28 +29,24 @@ struct credibility {
   int stalled;
   double epoch_best;      /* when the epoch last gained */
   bool fresh;             /* the epoch's latin hypercube is still to come */
-  bool polishing;
+  bool evolving;          /* the evolution strategy makes the batches */
+  bool polishing;         /* the last share of the budget */
   int local_count;        /* proposals of the trust region at the head of the pending batch */
-  int *taboo;             /* archive rows; owned, as all below */
+  int refined;            /* archive row that the evolution strategy ended with, -1 before */
+  int *generation;        /* [batch] archive rows, best first; owned, as all below */
+  const double **generation_x; /* [batch] */
+  int *taboo;             /* archive rows */
   int taboo_count, taboo_capacity;
   int parents_max, children;
   double *parents, *parent_score;  /* [parents_max][n], [parents_max] */
   double *pool, *pool_score;       /* [children][n], [children] */
-  int *rows;                       /* [model_rows] of the surrogate */
-  double *x, *y, *sorted;          /* [model_rows][n], [model_rows], likewise */
+  double *latin;                   /* scratch [initial_factor n] */
   double *chosen;                  /* [batch][n] */
   double *pool_gap;                /* [children] distance to the nearest row */
   int *index;                      /* scratch [children + population] */
-  struct ranked {
-    double key;
-    int row;
-  } *ranked;                       /* scratch [ranked_capacity], as is the next */
-  bool *used;
-  int ranked_capacity;
-  double spread_of_values;         /* s */
-  bool modelled;
-  struct eo_surrogate surrogate;
+  struct eo_credibility_model model;
   struct eo_local local;
+  struct eo_evolution evolution;
 };
 
 static void stop(struct eo_optimizer *o)
@@ -57,33 +54,32 @@ static void stop(struct eo_optimizer *o)
   struct credibility *c = o->state;
   if (!c)
     return;
+  free(c->generation);
+  free(c->generation_x);
   free(c->taboo);
   free(c->parents);
   free(c->parent_score);
   free(c->pool);
   free(c->pool_score);
-  free(c->rows);
-  free(c->x);
-  free(c->y);
-  free(c->sorted);
+  free(c->latin);
   free(c->chosen);
   free(c->pool_gap);
   free(c->index);
-  free(c->ranked);
-  free(c->used);
-  eo_surrogate_done(&c->surrogate);
+  eo_credibility_model_done(&c->model);
   eo_local_done(&c->local);
+  eo_evolution_done(&c->evolution);
   free(c);
 }
 
 static enum eo_code start(struct eo_optimizer *o, struct eo_error *error)
 {
   const struct eo_optimizer_settings *s = &o->settings;
-  const size_t n = (size_t)s->variables, rows = (size_t)s->model_rows;
+  const size_t n = (size_t)s->variables;
   struct credibility *c = o->state = calloc(1, sizeof *c);
   if (!c)
     return eo_error_memory(error);
   c->fresh = true;
+  c->refined = -1;
   c->epoch_best = INFINITY;
   c->parents_max = s->population;
   c->children = s->children;
@@ -93,19 +89,19 @@ static enum eo_code start(struct eo_optimizer *o, struct eo_error *error)
   c->parent_score = malloc(parents * sizeof(double));
   c->pool = malloc(children * n * sizeof(double));
   c->pool_score = malloc(children * sizeof(double));
-  c->rows = malloc(rows * sizeof(int));
-  c->x = malloc(rows * n * sizeof(double));
-  c->y = malloc(rows * sizeof(double));
-  c->sorted = malloc((rows + initial) * sizeof(double));
+  c->latin = malloc(initial * sizeof(double));
   c->chosen = malloc(batch * n * sizeof(double));
+  c->generation = malloc(batch * sizeof(int));
+  c->generation_x = malloc(batch * sizeof *c->generation_x);
   c->pool_gap = malloc(children * sizeof(double));
   c->index = malloc((children + parents) * sizeof(int));
-  if (!c->parents || !c->parent_score || !c->pool || !c->pool_score || !c->rows || !c->x || !c->y || !c->sorted ||
-      !c->chosen || !c->pool_gap || !c->index)
+  if (!c->parents || !c->parent_score || !c->pool || !c->pool_score || !c->latin || !c->chosen || !c->pool_gap || !c->index || !c->generation || !c->generation_x)
     return eo_error_memory(error);
-  enum eo_code code = eo_surrogate_init(&c->surrogate, s->variables, s->model_rows, 1, EO_TAIL_LINEAR, error);
+  enum eo_code code = eo_credibility_model_init(&c->model, s, error);
   if (code == EO_OK)
     code = eo_local_init(&c->local, s->variables, error);
+  if (code == EO_OK)
+    code = eo_evolution_init(&c->evolution, s->variables, error);
   eo_local_restart(&c->local, o->settings.local_radius);
   return code == EO_OK ? eo_optimizer_reserve_batch(o, (int)batch, error) : code;
 }
@@ -115,12 +111,10 @@ static const double *row_x(const struct eo_optimizer *o, int row)
   return o->archive.x + (size_t)row * o->settings.variables;
 }
 
-static double distance(const double *a, const double *b, int n)
+/* Polishing and the evolution strategy go for the best row of all; else an epoch sees its own rows only. */
+static bool sees_all(const struct credibility *c)
 {
-  double sum = 0;
-  for (int k = 0; k < n; k++)
-    sum += (a[k] - b[k]) * (a[k] - b[k]);
-  return sqrt(sum);
+  return c->polishing || c->evolving;
 }
 
 static bool is_taboo(const struct eo_optimizer *o, const double *x)
@@ -128,8 +122,8 @@ static bool is_taboo(const struct eo_optimizer *o, const double *x)
   const struct credibility *c = o->state;
   const int n = o->settings.variables;
   const double radius = o->settings.taboo_radius * sqrt(n);
-  for (int i = 0; i < c->taboo_count && !c->polishing; i++)
-    if (distance(row_x(o, c->taboo[i]), x, n) < radius)
+  for (int i = 0; i < c->taboo_count && !sees_all(c); i++)
+    if (eo_unit_distance(row_x(o, c->taboo[i]), x, n) < radius)
       return true;
   return false;
 }
@@ -140,7 +134,7 @@ static int gather_parents(struct eo_optimizer *o)
   struct credibility *c = o->state;
   const int n = o->settings.variables;
   int count = 0, *index = c->index;
-  for (int row = c->polishing ? 0 : c->epoch_first; row < o->archive.count; row++) {
+  for (int row = sees_all(c) ? 0 : c->epoch_first; row < o->archive.count; row++) {
     const double value = o->archive.value[row];
     if (eo_archive_failed(&o->archive, row) || is_taboo(o, row_x(o, row)) ||
         (count == c->parents_max && value >= o->archive.value[index[count - 1]]))
@@ -157,124 +151,28 @@ static int gather_parents(struct eo_optimizer *o)
   return count;
 }
 
-static int compare_doubles(const void *a, const void *b)
-{
-  const double p = *(const double *)a, q = *(const double *)b;
-  return (p > q) - (p < q);
-}
-
-static int compare_ranked(const void *a, const void *b)
-{
-  const struct ranked *p = a, *q = b;
-  return p->key != q->key ? (p->key > q->key) - (p->key < q->key) : p->row - q->row;
-}
-
-/* Room to rank every row of the archive. */
-static enum eo_code reserve_ranked(struct eo_optimizer *o, struct eo_error *error)
-{
-  struct credibility *c = o->state;
-  if (o->archive.count <= c->ranked_capacity)
-    return EO_OK;
-  const size_t capacity = 2 * (size_t)o->archive.count;
-  struct ranked *ranked = realloc(c->ranked, capacity * sizeof *ranked);
-  if (ranked)
-    c->ranked = ranked;
-  bool *used = realloc(c->used, capacity * sizeof *used);
-  if (used)
-    c->used = used;
-  if (!ranked || !used)
-    return eo_error_memory(error);
-  c->ranked_capacity = (int)capacity;
-  return EO_OK;
-}
-
-enum ranking { RANK_BY_VALUE, RANK_BY_AGE, RANK_BY_DISTANCE };
-
-/* Appends the best `share` unused rows by the given ranking to c->rows. */
-static int take_rows(struct eo_optimizer *o, enum ranking ranking, const double *centre, int taken, int share)
-{
-  struct credibility *c = o->state;
-  const struct eo_archive *a = &o->archive;
-  int count = 0;
-  for (int row = 0; row < a->count; row++) {
-    if (eo_archive_failed(a, row) || c->used[row])
-      continue;
-    const double key = ranking == RANK_BY_VALUE ? a->value[row]
-                       : ranking == RANK_BY_AGE ? -row
-                                                : distance(row_x(o, row), centre, o->settings.variables);
-    c->ranked[count++] = (struct ranked){key, row};
-  }
-  qsort(c->ranked, (size_t)count, sizeof *c->ranked, compare_ranked);
-  for (int i = 0; i < share && i < count; i++) {
-    c->used[c->ranked[i].row] = true;
-    c->rows[taken++] = c->ranked[i].row;
-  }
-  return taken;
-}
-
-/* At most model_rows rows: a third the best, a third the newest, the rest nearest to the centre. */
-static int gather_model_rows(struct eo_optimizer *o, const double *centre)
-{
-  struct credibility *c = o->state;
-  const int limit = o->settings.model_rows;
-  memset(c->used, 0, (size_t)o->archive.count * sizeof *c->used);
-  int taken = take_rows(o, RANK_BY_VALUE, centre, 0, limit / 3);
-  taken = take_rows(o, RANK_BY_AGE, centre, taken, limit / 3);
-  return take_rows(o, RANK_BY_DISTANCE, centre, taken, limit - taken);
-}
-
-static void fit_model(struct eo_optimizer *o, const double *centre)
-{
-  struct credibility *c = o->state;
-  const int n = o->settings.variables, count = gather_model_rows(o, centre);
-  c->modelled = false;
-  if (count < n + 3)
-    return;
-  for (int j = 0; j < count; j++) {
-    memcpy(c->x + (size_t)j * n, row_x(o, c->rows[j]), (size_t)n * sizeof(double));
-    c->sorted[j] = c->y[j] = o->archive.value[c->rows[j]];
-  }
-  qsort(c->sorted, (size_t)count, sizeof(double), compare_doubles);
-  const double median = c->sorted[count / 2];
-  c->spread_of_values = median - c->sorted[0];
-  for (int j = 0; j < count; j++)
-    c->y[j] = fmin(c->y[j], median);
-  if (!(c->spread_of_values > 0))
-    return;
-  c->modelled = eo_surrogate_fit(&c->surrogate, EO_TAIL_LINEAR, ridge, c->x, c->y, count, 1);
-  if (c->modelled)
-    eo_surrogate_set_scale(&c->surrogate, c->spread_of_values);
-}
-
-/* Negative: to maximise. Without a surrogate every child is as good as any other. */
-static double score(struct eo_optimizer *o, const double *x)
-{
-  struct credibility *c = o->state;
-  if (!c->modelled)
-    return 0;
-  eo_surrogate_visit(&c->surrogate, x);
-  const double length = o->settings.credibility_length * sqrt(o->settings.variables);
-  const double doubt = 1 - eo_surrogate_credibility(&c->surrogate, length);
-  return -(eo_surrogate_value(&c->surrogate, 0) + o->settings.exploration * c->spread_of_values * doubt);
-}
-
 static void breed(struct eo_optimizer *o, int parents, int round)
 {
   struct credibility *c = o->state;
   eo_breed(&o->settings, c->parents, c->parent_score, parents, ROUNDS * c->batch + round, 0, c->pool, c->children);
   for (int i = 0; i < c->children; i++)
-    c->pool_score[i] = score(o, c->pool + (size_t)i * o->settings.variables);
+    c->pool_score[i] = eo_credibility_score(&c->model, c->pool + (size_t)i * o->settings.variables);
 }
 
-/* The pool by falling score into c->index. */
-static void rank_pool(struct credibility *c)
+/* The first of the pool by falling score into c->index. */
+static void rank_some(struct credibility *c, int count)
 {
-  for (int i = 0; i < c->children; i++) {
+  for (int i = 0; i < count; i++) {
     int j = i;
     for (; j > 0 && c->pool_score[c->index[j - 1]] < c->pool_score[i]; j--)
       c->index[j] = c->index[j - 1];
     c->index[j] = i;
   }
+}
+
+static void rank_pool(struct credibility *c)
+{
+  rank_some(c, c->children);
 }
 
 static int select_parents(struct eo_optimizer *o)
@@ -352,9 +250,28 @@ static void propose_epoch(struct eo_optimizer *o)
 {
   struct credibility *c = o->state;
   const int n = o->settings.variables, count = o->settings.initial_factor * n;
-  eo_latin_hypercube(c->chosen, count, n, o->settings.seed, c->epoch, c->sorted);
+  eo_latin_hypercube(c->chosen, count, n, o->settings.seed, c->epoch, c->latin);
   request_chosen(o, count, 0);
   c->fresh = false;
+}
+
+/* Fills c->chosen with samples of the evolution strategy: those that the surrogate promises most for. Returns how many there are. */
+static int choose_samples(struct eo_optimizer *o, int count)
+{
+  struct credibility *c = o->state;
+  const int n = o->settings.variables, wanted = o->settings.evolution_samples * count;
+  const int samples = wanted < c->children ? wanted : c->children;
+  count = count < samples ? count : samples;
+  eo_credibility_model_fit(&c->model, &o->archive, c->evolution.mean);
+  for (int i = 0; i < samples; i++) {
+    double *x = c->pool + (size_t)i * n;
+    eo_evolution_sample(&c->evolution, eo_random_at(o->settings.seed, EO_STREAM_EVOLUTION, (uint64_t)c->batch, (uint64_t)i), x);
+    c->pool_score[i] = eo_credibility_predict(&c->model, x);
+  }
+  rank_some(c, samples);
+  for (int i = 0; i < count; i++)
+    memcpy(c->chosen + (size_t)i * n, c->pool + (size_t)c->index[i] * n, (size_t)n * sizeof(double));
+  return count;
 }
 
 static void propose_children(struct eo_optimizer *o)
@@ -363,12 +280,15 @@ static void propose_children(struct eo_optimizer *o)
   const int parents = gather_parents(o), batch = o->settings.batch;
   if (parents == 0)
     return;
-  const int centre = c->index[0], share = c->polishing ? batch : (int)(o->settings.local_share * batch + 0.5);
+  const int centre = c->index[0], half = (int)(o->settings.local_share * batch + 0.5);
+  const int share = c->evolving ? 0 : c->polishing ? batch : half;
   const int local =
       share > 0 ? eo_local_propose(&c->local, &o->archive, centre, o->settings.seed, c->batch, share, c->chosen) : 0;
   int chosen = local;
-  if (share < batch) {
-    fit_model(o, row_x(o, centre));
+  if (c->evolving) {
+    chosen = choose_samples(o, batch);
+  } else if (share < batch) {
+    eo_credibility_model_fit(&c->model, &o->archive, row_x(o, centre));
     fill_pool(o, parents);
     chosen = choose(o, local, local + batch - share);
   }
@@ -384,7 +304,7 @@ static enum eo_code propose(struct eo_optimizer *o, struct eo_error *error)
     o->finished = true;
     return EO_OK;
   }
-  const enum eo_code code = reserve_ranked(o, error);
+  const enum eo_code code = eo_credibility_model_reserve(&c->model, o->archive.count, error);
   while (code == EO_OK && o->batch_count == 0) {
     if (c->fresh)
       propose_epoch(o);
@@ -398,12 +318,12 @@ static enum eo_code propose(struct eo_optimizer *o, struct eo_error *error)
   return code;
 }
 
-static double best_of_epoch(const struct eo_optimizer *o, int *best)
+static double best_row(const struct eo_optimizer *o, int *best)
 {
   const struct credibility *c = o->state;
   double value = INFINITY;
   *best = -1;
-  for (int row = c->polishing ? 0 : c->epoch_first; row < o->archive.count; row++)
+  for (int row = sees_all(c) ? 0 : c->epoch_first; row < o->archive.count; row++)
     if (o->archive.value[row] < value && !is_taboo(o, row_x(o, row))) {
       value = o->archive.value[row];
       *best = row;
@@ -411,9 +331,8 @@ static double best_of_epoch(const struct eo_optimizer *o, int *best)
   return value;
 }
 
-static enum eo_code begin_epoch(struct eo_optimizer *o, int best, struct eo_error *error)
+static enum eo_code avoid(struct credibility *c, int row, struct eo_error *error)
 {
-  struct credibility *c = o->state;
   if (c->taboo_count == c->taboo_capacity) {
     const size_t capacity = 2 * (size_t)c->taboo_capacity + 16;
     int *larger = realloc(c->taboo, capacity * sizeof *larger);
@@ -422,15 +341,20 @@ static enum eo_code begin_epoch(struct eo_optimizer *o, int best, struct eo_erro
     c->taboo = larger;
     c->taboo_capacity = (int)capacity;
   }
-  if (best >= 0)
-    c->taboo[c->taboo_count++] = best;
+  c->taboo[c->taboo_count++] = row;
+  return EO_OK;
+}
+
+static void begin_epoch(struct eo_optimizer *o)
+{
+  struct credibility *c = o->state;
   c->epoch++;
+  c->evolving = false;
   c->epoch_first = o->archive.count;
   c->epoch_best = INFINITY;
   c->stalled = 0;
   c->fresh = true;
   eo_local_restart(&c->local, o->settings.local_radius);
-  return EO_OK;
 }
 
 /* Counts the batches without gain; returns the best row of the epoch. */
@@ -438,12 +362,68 @@ static int watch_progress(struct eo_optimizer *o)
 {
   struct credibility *c = o->state;
   int best;
-  const double value = best_of_epoch(o, &best);
+  const double value = best_row(o, &best);
   const bool gained = c->epoch_best == INFINITY || value < c->epoch_best - o->settings.stall_gain * fabs(c->epoch_best);
   c->stalled = gained ? 0 : c->stalled + 1;
   if (gained)
     c->epoch_best = value;
   return best;
+}
+
+static void begin_evolution(struct eo_optimizer *o)
+{
+  struct credibility *c = o->state;
+  const int best = eo_optimizer_best(o);
+  c->evolving = best >= 0;
+  c->stalled = 0;
+  if (best < 0)
+    return;
+  c->epoch_best = o->archive.value[best];
+  eo_evolution_restart(&c->evolution, row_x(o, best), o->settings.evolution_step);
+}
+
+/* False when the strategy has come to its end. */
+static bool learn_generation(struct eo_optimizer *o)
+{
+  struct credibility *c = o->state;
+  const int first = o->archive.count - o->batch_count, count = o->batch_count;
+  for (int i = 0; i < count; i++) {
+    const double value = o->archive.value[first + i];
+    int j = i;
+    for (; j > 0 && o->archive.value[c->generation[j - 1]] > value; j--)
+      c->generation[j] = c->generation[j - 1];
+    c->generation[j] = first + i;
+  }
+  for (int i = 0; i < count; i++)
+    c->generation_x[i] = row_x(o, c->generation[i]);
+  return count < 2 || eo_evolution_learn(&c->evolution, c->generation_x, count);
+}
+
+static void begin_polishing(struct eo_optimizer *o)
+{
+  struct credibility *c = o->state;
+  c->polishing = true;
+  if (c->evolving)
+    return;
+  c->stalled = 0;
+  c->epoch_best = INFINITY;
+  eo_local_restart(&c->local, polish_radius * o->settings.local_radius);
+}
+
+/* What follows a batch that gained nothing for long enough: from the second epoch on the best row of all is refined once by the
+   evolution strategy; then a new epoch. */
+static enum eo_code go_on(struct eo_optimizer *o, int best, struct eo_error *error)
+{
+  struct credibility *c = o->state;
+  const enum eo_code code = best >= 0 ? avoid(c, best, error) : EO_OK;
+  const int best_of_all = eo_optimizer_best(o);
+  if (c->evolving)
+    c->refined = best_of_all;
+  if (!c->evolving && c->epoch > 0 && best_of_all != c->refined)
+    begin_evolution(o);
+  else
+    begin_epoch(o);
+  return code;
 }
 
 static enum eo_code absorb(struct eo_optimizer *o, struct eo_error *error)
@@ -457,13 +437,14 @@ static enum eo_code absorb(struct eo_optimizer *o, struct eo_error *error)
     eo_local_learn(&c->local, &o->archive, o->archive.count - o->batch_count, c->local_count);
   c->batch++;
   const int best = watch_progress(o);
-  if (c->polishing)
-    return EO_OK;
-  if (eo_optimizer_left(o) <= o->settings.polish_share * o->budget) {
-    c->polishing = true;
-    eo_local_restart(&c->local, polish_radius * o->settings.local_radius);
-  } else if (c->stalled >= o->settings.stall_batches) {
-    return begin_epoch(o, best, error);
+  const bool through = c->evolving && !learn_generation(o);
+  if (c->polishing) {
+    if (through || (!c->evolving && c->stalled >= o->settings.stall_batches))
+      begin_evolution(o);
+  } else if (eo_optimizer_left(o) <= o->settings.polish_share * o->budget) {
+    begin_polishing(o);
+  } else if (through || c->stalled >= (c->evolving ? o->settings.evolution_stall : o->settings.stall_batches)) {
+    return go_on(o, best, error);
   }
   return EO_OK;
 }

@@ -135,7 +135,7 @@ static enum eo_code decide(struct eo_optimizer *o, int i, struct eo_error *error
   g->row[i] = -1;
   g->fitness[i] = estimate.fitness;
   g->credibility[i] = estimate.credibility;
-  const struct eo_prediction prediction = {x, g->generation, i, estimate.fitness, estimate.credibility};
+  const struct eo_predicted prediction = {x, g->generation, i, estimate.fitness, estimate.credibility};
   return eo_optimizer_note_prediction(o, &prediction, error);
 }
 

@@ -1,5 +1,7 @@
 #include "optimizer/history.h"
 
+#include "optimizer/operators.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -74,20 +76,12 @@ enum eo_code eo_history_add(struct eo_history *history, const double *x, double 
   return EO_OK;
 }
 
-static double distance(const double *a, const double *b, int n)
-{
-  double sum = 0;
-  for (int k = 0; k < n; k++)
-    sum += (a[k] - b[k]) * (a[k] - b[k]);
-  return sqrt(sum);
-}
-
 static void measure_distances(struct eo_history *history, bool rms, const double *x)
 {
   const int n = history->variables;
   const double scale = rms ? 1 / sqrt(n) : 1;
   for (int j = 0; j < history->count; j++)
-    history->distance[j] = scale * distance(history->x + (size_t)j * n, x, n);
+    history->distance[j] = scale * eo_unit_distance(history->x + (size_t)j * n, x, n);
 }
 
 /* (15) into history->weight, 0 outside the region; returns how many rows are inside. */
@@ -165,7 +159,7 @@ static bool has_twin(const struct eo_history *history, int row, double threshold
   const int n = history->variables;
   for (int j = 0; j < history->count; j++)
     if (j != row && !history->removed[j] && (history->predicted[row] || !history->predicted[j]) &&
-        distance(history->x + (size_t)j * n, history->x + (size_t)row * n, n) < threshold)
+        eo_unit_distance(history->x + (size_t)j * n, history->x + (size_t)row * n, n) < threshold)
       return true;
   return false;
 }

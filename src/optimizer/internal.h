@@ -35,7 +35,7 @@ struct eo_optimizer {
 
   int prediction_count, prediction_capacity;
   double *prediction_x;             /* [prediction_capacity][variables] */
-  struct eo_prediction *prediction; /* [prediction_capacity] */
+  struct eo_predicted *prediction; /* [prediction_capacity] */
 
   int true_evaluations, predicted, reused;
   int generation_count, generation_capacity;
@@ -51,7 +51,7 @@ int eo_optimizer_request(struct eo_optimizer *optimizer, const double *x, int ge
 int eo_optimizer_left(const struct eo_optimizer *optimizer);
 
 /* Notes a prediction for the next ask. */
-enum eo_code eo_optimizer_note_prediction(struct eo_optimizer *optimizer, const struct eo_prediction *prediction,
+enum eo_code eo_optimizer_note_prediction(struct eo_optimizer *optimizer, const struct eo_predicted *prediction,
                                           struct eo_error *error);
 
 /* Closes a generation: adds its statistics and sums up the counters. */

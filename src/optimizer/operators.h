@@ -6,6 +6,8 @@
 #include "base/random.h"
 #include "optimizer/settings.h"
 
+#include <math.h>
+
 /* Streams of the counter; a number is never used twice for different things. */
 enum eo_stream {
   EO_STREAM_START = 1,     /* first population: individual i, draw = variable */
@@ -15,11 +17,20 @@ enum eo_stream {
   EO_STREAM_LATIN_ORDER = 30,  /* generation = epoch, individual = point, draw = variable */
   EO_STREAM_LATIN_JITTER = 31, /* generation = epoch, individual = cell, draw = variable */
   EO_STREAM_LOCAL = 40,        /* trust region samples */
+  EO_STREAM_EVOLUTION = 41,    /* evolution strategy: generation = batch, individual = sample, draw = axis */
 };
 
 static inline double eo_unit_clip(double x)
 {
   return x > 0 ? (x < 1 ? x : 1) : 0;
+}
+
+static inline double eo_unit_distance(const double *a, const double *b, int n)
+{
+  double sum = 0;
+  for (int k = 0; k < n; k++)
+    sum += (a[k] - b[k]) * (a[k] - b[k]);
+  return sqrt(sum);
 }
 
 /* count uniformly random points x[count][n]. */

@@ -189,7 +189,7 @@ static enum eo_code reserve_prediction(struct eo_optimizer *o, struct eo_error *
   double *x = realloc(o->prediction_x, capacity * n * sizeof *x);
   if (x)
     o->prediction_x = x;
-  struct eo_prediction *prediction = realloc(o->prediction, capacity * sizeof *prediction);
+  struct eo_predicted *prediction = realloc(o->prediction, capacity * sizeof *prediction);
   if (prediction)
     o->prediction = prediction;
   if (!x || !prediction)
@@ -200,7 +200,7 @@ static enum eo_code reserve_prediction(struct eo_optimizer *o, struct eo_error *
   return EO_OK;
 }
 
-enum eo_code eo_optimizer_note_prediction(struct eo_optimizer *optimizer, const struct eo_prediction *prediction,
+enum eo_code eo_optimizer_note_prediction(struct eo_optimizer *optimizer, const struct eo_predicted *prediction,
                                           struct eo_error *error)
 {
   const enum eo_code code = reserve_prediction(optimizer, error);

@@ -34,7 +34,7 @@ struct eo_candidate {
 };
 
 /* An individual whose value was predicted, not asked for (fpga). */
-struct eo_prediction {
+struct eo_predicted {
   const double *x; /* [n]; borrowed until the next ask */
   int generation, individual;
   double fitness, credibility;
@@ -44,7 +44,7 @@ struct eo_batch {
   int count; /* 0: the optimizer is done */
   const struct eo_candidate *candidates;
   int predictions_count; /* decided since the ask before */
-  const struct eo_prediction *predictions;
+  const struct eo_predicted *predictions;
 };
 
 /* What an evaluation gave. A failed one, or one with a value that is no finite number, ranks last, is kept, is never

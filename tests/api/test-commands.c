@@ -412,6 +412,60 @@ static void check_token(void)
   free_reply(&reply);
 }
 
+/* ---- pages ---- */
+
+static void put_file(const char *folder, const char *name, const char *text)
+{
+  char path[400];
+  snprintf(path, sizeof path, "%s/%s", folder, name);
+  FILE *stream = fopen(path, "w");
+  fputs(text, stream);
+  fclose(stream);
+}
+
+static void make_pages(char folder[300])
+{
+  char path[400];
+  snprintf(folder, 300, "%s/web", server.folder);
+  mkdir(folder, 0777);
+  snprintf(path, sizeof path, "%s/figures", folder);
+  mkdir(path, 0777);
+  put_file(folder, "index.html", "<!doctype html><title>page</title>");
+  put_file(folder, "chunk-44KD4V7L.js", "export const x = 1;");
+  put_file(folder, "figures/chart.css", "p { color: red }");
+  put_file(folder, ".secret", "secret");
+  snprintf(path, sizeof path, "%s/passwd.txt", folder);
+  if (symlink("/etc/passwd", path) != 0)
+    printf("# no link\n");
+}
+
+static void check_pages(void)
+{
+  static const struct command pages[] = {
+      {"the page", "GET", "/", .status = 200, .header = "Content-Type", .holds = "text/html"},
+      {"its name", "HEAD", "/index.html", .status = 200, .header = "Content-Length", .holds = "34"},
+      {"it runs only its own scripts", "GET", "/", .status = 200, .header = "Content-Security-Policy", .holds = "script-src 'self'; style-src 'self'"},
+      {"it is asked for again", "GET", "/", .status = 200, .header = "Cache-Control", .holds = "no-cache"},
+      {"in no frame", "GET", "/", .status = 200, .header = "Content-Security-Policy", .holds = "frame-ancestors 'none'"},
+      {"a file that never changes", "GET", "/chunk-44KD4V7L.js", .status = 200, .header = "Cache-Control", .holds = "immutable"},
+      {"a file in a folder", "GET", "/figures/chart.css", .status = 200, .header = "Content-Type", .holds = "text/css"},
+      {"no folder", "GET", "/figures", .status = 404},
+      {"nothing hidden", "GET", "/.secret", .status = 404},
+      {"no link out", "GET", "/passwd.txt", .status = 404},
+      {"no way out", "GET", "/figures/..%2f..%2f..%2fetc/passwd", .status = 400},
+      {"what a page allows", "OPTIONS", "/", .status = 204, .header = "Allow", .holds = "GET, HEAD, OPTIONS"},
+      {"nothing there", "GET", "/nothing.html", .status = 404, .header = "Content-Type", .holds = "application/problem+json"},
+  };
+  RUN(pages);
+  struct reply reply = call("GET", "/", NULL, NULL);
+  char known[200];
+  snprintf(known, sizeof known, "If-None-Match: %s\r\n", header_of(&reply, "ETag"));
+  free_reply(&reply);
+  reply = call("GET", "/", known, NULL);
+  ok(reply.status == 304, "a page that is known: %d", reply.status);
+  free_reply(&reply);
+}
+
 static void check_refusals(void)
 {
   ok(!start_server("--listen", "0.0.0.0:0"), "an address for others needs a token");
@@ -451,6 +505,11 @@ int main(void)
   check_token();
   ok(stop_server(SIGINT) == 0, "it stops on Ctrl-C");
   unsetenv("EASEOFF_TOKEN");
+  char folder[300];
+  make_pages(folder);
+  ok(start_server("--quiet", "--web", folder), "a server with a page");
+  check_pages();
+  ok(stop_server(SIGTERM) == 0, "it stops");
   check_refusals();
   remove_data_folder();
   json_decref(description);

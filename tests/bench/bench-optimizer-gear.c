@@ -1,9 +1,10 @@
 /* Optimizers on the real objective of the paper's pair, Case A (5 variables, both ends alike) and Case B (10): J after 100,
    200, 400 and 1000 true evaluations, beside NLopt's and pagmo's when they are there.
 
-     bench-optimizer-gear [--quick] [--front] [--seeds N] [--case a|b] [--plain] [--algorithm NAME] [--set KEY=NUMBER]... [--cache DIR]
+     bench-optimizer-gear [--quick] [--front] [--seeds N] [--case a|b] [--plain] [--coarse] [--algorithm NAME] [--set KEY=NUMBER]... [--cache DIR]
 
-   --front: Pareto fronts of the three objectives in those of the unmodified pair. --plain: without tip edge contact, three teeth in the sector, no coupling between neighbours. */
+   --front: Pareto fronts of the three objectives in those of the unmodified pair. --plain: without tip edge contact, three teeth in the sector, no coupling between neighbours.
+   --coarse: a third of the positions, cells and harmonics: an objective of the same kind in a fraction of the time. */
 #include "contest.h"
 #include "document/design_document.h"
 #include "document/example.h"
@@ -74,7 +75,7 @@ static void prepare(struct trace *trace, const struct contest_problem *problem, 
   trace->context = gear;
 }
 
-static enum eo_code prepare_gear(struct gear *gear, bool plain, const char *cache, struct eo_error *error)
+static enum eo_code prepare_gear(struct gear *gear, bool plain, bool coarse, const char *cache, struct eo_error *error)
 {
   struct eo_geometry geometry;
   const struct eo_pair_options options = {.cache_directory = cache};
@@ -84,6 +85,11 @@ static enum eo_code prepare_gear(struct gear *gear, bool plain, const char *cach
     gear->design.resolution.tip_edge_contact = false;
     gear->design.resolution.sector_teeth = 3;
     gear->design.resolution.neighbour_coupling = false;
+  }
+  if (coarse) {
+    gear->design.resolution.positions = 24;
+    gear->design.resolution.cells_per_line = 8;
+    gear->design.resolution.harmonics = gear->design.resolution.te_harmonics = 12;
   }
   enum eo_code code = eo_design_complete(&gear->design, &geometry, error);
   if (code == EO_OK)
@@ -98,18 +104,20 @@ int main(int argc, char **argv)
   struct eo_error error;
   const char *cache = NULL;
   char only = '\0';
-  bool plain = false;
+  bool plain = false, coarse = false;
   for (int i = 1; i < argc; i++) {
     const int taken = contest_option(&contest, argc, argv, i);
     if (strcmp(argv[i], "--plain") == 0)
       plain = true;
+    else if (strcmp(argv[i], "--coarse") == 0)
+      coarse = true;
     else if (!taken && i + 1 < argc && strcmp(argv[i], "--case") == 0)
       only = argv[++i][0];
     else if (!taken && i + 1 < argc && strcmp(argv[i], "--cache") == 0)
       cache = argv[++i];
     i += taken > 1;
   }
-  if (prepare_gear(&gear, plain, cache, &error) != EO_OK) {
+  if (prepare_gear(&gear, plain, coarse, cache, &error) != EO_OK) {
     fprintf(stderr, "%s\n", error.text);
     return 2;
   }

@@ -40,8 +40,10 @@ export function finish() {
 }
 
 export class Server {
-  static async start() {
+  /** @param {Record<string, string>} [environment] */
+  static async start(environment = {}) {
     const server = new Server();
+    server.environment = environment;
     server.folder = await mkdtemp(join(tmpdir(), 'easeoff-page-'));
     server.port = 0;
     await server.open();
@@ -50,7 +52,7 @@ export class Server {
 
   /** Starts it, the second time at the same address. */
   async open() {
-    this.process = spawn(EASEOFF, ['serve', '--listen', `127.0.0.1:${this.port}`, '--data', this.folder, '--web', PAGE, '--quiet', '--threads', '2'], { stdio: ['ignore', 'pipe', 'inherit'] });
+    this.process = spawn(EASEOFF, ['serve', '--listen', `127.0.0.1:${this.port}`, '--data', this.folder, '--web', PAGE, '--quiet', '--threads', '2'], { stdio: ['ignore', 'pipe', 'inherit'], env: { ...process.env, ...this.environment } });
     this.address = await new Promise((resolve, reject) => {
       let text = '';
       this.process.stdout.on('data', (data) => {

@@ -5,7 +5,7 @@ import { Server, chapter, finish, load, note, ok, openBrowser } from './harness.
 // a coarse mesh, so that preparing the pair takes a second
 const COARSE = { positions: 32, cells_per_line: 16, sector_teeth: 3, neighbour_coupling: false, layers: 14, flank_rows: 6, fillet_elements: 8 };
 const START = `#design?from=paper-case-a&${Object.entries(COARSE).map(([key, value]) => `resolution.${key}=${value}`).join('&')}`;
-const WAIT = 20000;
+const WAIT = 60000;
 const MOST_BYTES = 1e6; // of the first view
 
 const server = await Server.start();
@@ -183,7 +183,7 @@ await chapter('search', async () => {
   await page.reload();
   await page.locator('.job-list tbody tr').first().waitFor();
   ok(/running|preparing|queued|done/.test(await page.locator('.job-list tbody tr').first().innerText()), 'after a reload it is still there');
-  await page.waitForFunction(() => document.querySelector('.job-list tbody .job-state')?.textContent === 'done', null, { timeout: 6 * WAIT });
+  await page.waitForFunction(() => document.querySelector('.job-list tbody .job-state')?.textContent === 'done', null, { timeout: 4 * WAIT });
   ok(true, 'it ends');
   await page.locator('.job-detail .figure', { hasText: 'Convergence' }).locator('.uplot').waitFor();
   await page.locator('.job-detail .figure', { hasText: 'History' }).waitFor();
@@ -208,6 +208,23 @@ await chapter('compare and print', async () => {
   ok(paper.subarray(0, 4).toString() === '%PDF' && paper.length > 40000, 'a report on paper');
   ok((paper.toString('latin1').match(/\/Type\s*\/Page\b/g) ?? []).length >= 3, 'of some pages');
   ok(await page.evaluate(() => !document.body.classList.contains('paper')), 'and the screen is a screen again');
+});
+
+await chapter('two pages share one stream', async () => {
+  const other = await context.newPage();
+  await other.goto(`${server.address}#optimize?from=paper-case-a`);
+  await other.locator('.job-list tbody tr').first().waitFor();
+  const rows = await other.locator('.job-list tbody tr').count();
+  await page.getByRole('navigation').getByRole('button', { name: 'Optimize' }).click();
+  await page.getByRole('button', { name: 'Again' }).click();
+  await other.waitForFunction((before) => document.querySelectorAll('.job-list tbody tr').length === before + 1, rows);
+  ok(true, 'the other page sees a search that this one starts');
+  await other.locator('.job-bar').getByRole('button', { name: 'stop' }).click();
+  await page.waitForFunction(() => /cancelled|done/.test(document.querySelector('.job-list tbody .job-state')?.textContent ?? ''));
+  ok(true, 'and this one that the other has stopped it');
+  await other.close();
+  await page.getByRole('navigation').getByRole('button', { name: 'Compare' }).click();
+  await page.getByRole('navigation').getByRole('button', { name: 'Design' }).click();
 });
 
 await chapter('back', async () => {
@@ -247,6 +264,23 @@ await chapter('a narrow screen', async () => {
     ok(content <= screen, `${view}: one column (${content} of ${screen})`);
   }
   await phone.close();
+});
+
+await chapter('a server with a token', async () => {
+  const closed = await Server.start({ EASEOFF_TOKEN: 'only-for-the-three-of-us' });
+  const visitor = await browser.newContext();
+  const door = await visitor.newPage();
+  await door.goto(closed.address);
+  const token = door.getByLabel('Token of this server');
+  await token.fill('a-guess');
+  await token.press('Enter');
+  await door.locator('.fault:not(:empty)').waitFor();
+  await token.fill('only-for-the-three-of-us');
+  await token.press('Enter');
+  await door.locator('.form-pane input').first().waitFor();
+  ok(true, 'asks for it, refuses a wrong one, takes the right one');
+  await visitor.close();
+  await closed.remove();
 });
 
 await chapter('the server goes away and comes back', async () => {

@@ -18,7 +18,7 @@ static struct eo_evaluator *evaluator;
 /* A recording of the response of `rig`, through the whole chain; scale: of its amplitudes. */
 static bool record(const struct eo_design *rig, bool unmodified, double torque, double rpm, double scale, uint64_t seed, struct eo_measured *measured)
 {
-  struct eo_prediction truth;
+  struct eo_rig_prediction truth;
   struct eo_recording *recording = NULL;
   struct eo_tracks tracks;
   struct eo_measurement *m = calloc(1, sizeof *m);

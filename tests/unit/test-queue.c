@@ -254,15 +254,15 @@ static int64_t add_problem(struct eo_store *store)
   return id;
 }
 
-static int log_one(struct eo_store *store, int64_t problem, int64_t job)
+static enum eo_code log_one(struct eo_store *store, int64_t problem, int64_t job)
 {
   struct eo_objective_case raw = {1, 1, 1, 1, 1, 0, 0, false};
   struct eo_stored_evaluation row = {.modification = "{}", .scenarios = 1, .cases = 1, .raw = &raw};
   const double x = 0.5;
   struct eo_stored_candidate candidate = {.job = job, .x = &x, .size = 1};
-  int code = eo_store_add_evaluation(store, problem, &row, &error);
+  enum eo_code code = eo_store_add_evaluation(store, problem, &row, &error);
   candidate.evaluation = row.id;
-  return code || eo_store_log_candidate(store, &candidate, &error);
+  return code ? code : eo_store_log_candidate(store, &candidate, &error);
 }
 
 static enum eo_code count_step(void *context, const struct eo_stored_candidate *candidate, struct eo_error *fault)

@@ -148,7 +148,7 @@ static void test_refusals(void)
   refused("empty", "an empty file");
   write_text("Dear colleague,\nplease find attached the measurement.\n");
   refused("No table of numbers", "a letter");
-  write_bytes("\xff\xfet\0,\0a\0\n\0", 12);
+  write_bytes("\xff\xfet\0,\0a\0\n\0", 10);
   refused("UTF-16", "UTF-16 with its mark");
   write_bytes("1\0,\0" "2\0\n\0" "3\0,\0" "4\0\n\0", 16);
   refused("UTF-16", "UTF-16 without its mark");

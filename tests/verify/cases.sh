@@ -71,7 +71,7 @@ verify 1 "a wrong RMS of a recording" "$folder/encoder.json"
 changed encoder.json 's/"expected_findings": \[\]/"expected_findings": ["swapped"]/'
 verify 1 "a finding that is not there" "$folder/encoder.json"
 prints "finding swapped .*FAIL (1)"
-awk -F, -v OFS=, '{ print $1, $3, $2 }' "$CASES/enc1_clean_unwrapped_deg.csv" >"$folder/enc1_clean_unwrapped_deg.csv"
+awk -F, -v OFS=, 'NR > 1 { t = $2; $2 = $3; $3 = t } { print }' "$CASES/enc1_clean_unwrapped_deg.csv" >"$folder/enc1_clean_unwrapped_deg.csv"
 verify 0 "channels swapped, said and set right" "$folder/encoder.json"
 
 # An RMS that is off by 3e-4 is noticed, in both kinds of output.

@@ -105,7 +105,7 @@ export class Form {
       const value = this.store.get(pointer);
       const derived = valueAt(this.resolved, pointer);
       input.placeholder = field.nullable ? (typeof derived === 'number' ? plain(Number(derived.toPrecision(6))) : field.derived === 'off' ? 'off' : 'auto') : '';
-      if (document.activeElement === input && parseNumber(input.value) === value) return;
+      if (document.activeElement === input && parseNumber(input.value) === value) return; // what is typed stays as it is typed
       if (this.store.faults.has(pointer)) return;
       const text = value === undefined ? plain(fallbackOf(field)) : plain(value);
       if (input.value !== text) input.value = text;

@@ -1,7 +1,7 @@
 // Starts the page: field tables, the design of the address, the views.
 import { Analyst } from './base/analyst.js';
 import { putDifference, readPlace, takeDifference } from './base/address.js';
-import { Away, connection, get } from './base/api.js';
+import { Away, Refusal, connection, get, post } from './base/api.js';
 import { h } from './base/dom.js';
 import { Jobs } from './base/jobs.js';
 import { complete, designFields } from './base/schema.js';
@@ -93,11 +93,32 @@ async function start(page) {
   paper.start();
 }
 
+/** Asks for the token of a server that has one; a cookie keeps it. @param {HTMLElement} page */
+function askToken(page) {
+  const token = h('input.text', { type: 'password', id: 'token', autocomplete: 'current-password', required: true });
+  const fault = h('p.fault', { role: 'alert' });
+  const give = async (/** @type {Event} */ event) => {
+    event.preventDefault();
+    try {
+      await post('session', { token: token.value });
+      startWhenThere(page);
+    } catch (error) {
+      fault.textContent = /** @type {Error} */ (error).message;
+    }
+  };
+  page.replaceChildren(h('main.first-word', null, h('form.token-form', { onsubmit: give }, h('h1', null, 'Easeoff'), h('label', { for: 'token' }, 'Token of this server'), token, h('button.primary', { type: 'submit' }, 'Open'), fault)));
+  token.focus();
+}
+
 /** @param {HTMLElement} page */
 async function startWhenThere(page) {
   try {
     await start(page);
   } catch (error) {
+    if (error instanceof Refusal && error.status === 401) {
+      askToken(page);
+      return;
+    }
     if (!(error instanceof Away)) {
       page.replaceChildren(h('p.first-word', { role: 'alert' }, `The page could not start: ${/** @type {Error} */ (error).message}`));
       throw error;

@@ -34,10 +34,10 @@ export function sig(value, digits = 3) {
   return value.toFixed(Math.min(decimals, 8)).replace('-', '−');
 }
 
-/** What a number field shows: every digit that counts, none that does not. @param {unknown} value */
+/** What a number field shows: six digits; what is not touched keeps the others. @param {unknown} value */
 export function plain(value) {
   if (typeof value !== 'number' || !Number.isFinite(value)) return '';
-  return String(Number(value.toPrecision(8)));
+  return Number.isInteger(value) ? String(value) : String(Number(value.toPrecision(6)));
 }
 
 /** "1,5" and "1.5" are the same; undefined when it is not a number. @param {string} text @returns {number | undefined} */

@@ -97,6 +97,7 @@ export class Lane {
       state = (await ask('GET', `jobs/${job.id}`)).data;
     }
     if (state.state === 'failed') throw new Refusal(422, state.error ?? { title: 'The pair could not be prepared.' });
-    if (!this.#waiting && state.state === 'done') this.#waiting = task;
+    if (state.state === 'cancelled' && !this.#waiting) throw new Refusal(409, { title: 'The preparation of the teeth was stopped.' });
+    if (!this.#waiting) this.#waiting = task;
   }
 }

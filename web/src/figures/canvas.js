@@ -19,6 +19,7 @@ export class Painting {
     this.canvas = h('canvas', { role: 'img', 'aria-label': label ?? options.title });
     this.frame = new Frame({ ...options, drawing: { picture: () => this.#picture(), table } });
     this.element = this.frame.element;
+    this.element.classList.add('keyless');
     this.frame.body.append(this.canvas);
     whenSeen(this.element, (visible) => {
       this.#seen = visible;

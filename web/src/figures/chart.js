@@ -5,7 +5,7 @@ import { sig } from '../base/format.js';
 import { paper } from '../base/paper.js';
 import { phase } from '../base/phase.js';
 import { colour, theme } from '../base/theme.js';
-import { Frame, whenSeen } from './frame.js';
+import { Frame, placeTip, whenSeen } from './frame.js';
 
 /**
  * @typedef {object} Curve
@@ -189,16 +189,15 @@ export class Chart {
       return;
     }
     const x = this.#data.x[at];
-    const rows = this.#data.curves.map((curve, k) => {
+    const order = this.#data.curves.map((curve, k) => ({ curve, k })).sort((a, b) => Number(Boolean(a.curve.line)) - Number(Boolean(b.curve.line)));
+    const rows = order.map(({ curve, k }) => {
       const value = /** @type {number | null | undefined} */ (plot.data[k + 1][at]);
       return h('.tip-row', null, swatch(curve), h('span', null, curve.label), h('b', null, sig(value, 4)));
     });
     fill(this.tip, h('.tip-x', null, `${this.options.xLabel} ${sig(x, 4)}${this.options.xUnit ? ` ${this.options.xUnit}` : ''}`), rows);
     this.tip.hidden = false;
     const left = (plot.cursor.left ?? 0) + plot.over.offsetLeft;
-    const right = left > this.frame.body.clientWidth / 2;
-    this.tip.style.left = right ? '' : `${left + 12}px`;
-    this.tip.style.right = right ? `${this.frame.body.clientWidth - left + 12}px` : '';
+    placeTip(this.tip, left, this.frame.body.clientWidth);
     if (this.options.cycle && this.#hover) phase.set(x);
   }
 

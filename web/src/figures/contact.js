@@ -6,6 +6,7 @@ import { colour } from '../base/theme.js';
 import { Painting, SMALL } from './canvas.js';
 import { gridValue, scaleColour } from './colours.js';
 import { endsOf, sameCase } from './context.js';
+import { placeTip } from './frame.js';
 
 const PIXELS = [132, 76]; // of one end's picture
 const EDGE = 5; // height of the strip of a tip edge
@@ -182,8 +183,7 @@ export class Contact {
       fill(this.tip, h('.tip-x', null, `${end} end`), h('.tip-row', null, h('span', null, 'pressure, MPa'), h('b', null, sig(gridValue(pattern[end].pressure_MPa, v * rows, across * columns), 4))),
         h('.tip-row', null, h('span', null, 'pinion radius, mm'), h('b', null, radius.toFixed(2))), h('.tip-row', null, h('span', null, 'from mid face, mm'), h('b', null, eta.toFixed(1))));
       this.tip.hidden = false;
-      this.tip.style.left = event.offsetX > panel.left + 120 ? '' : `${event.offsetX + 14}px`;
-      this.tip.style.right = event.offsetX > panel.left + 120 ? `${this.painting.frame.body.clientWidth - event.offsetX + 14}px` : '';
+      placeTip(this.tip, event.offsetX, this.painting.frame.body.clientWidth);
       const cycle = (s - eta * Math.tan((geometry.base_helix_angle_deg * Math.PI) / 180)) / geometry.transverse_base_pitch_mm;
       phase.set(cycle - Math.floor(cycle));
       return;

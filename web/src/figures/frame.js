@@ -122,6 +122,13 @@ export function switcher(label, choices, value, take) {
   return group;
 }
 
+/** Puts a reading beside the pointer, inside its figure. @param {HTMLElement} tip @param {number} x of the pointer @param {number} width of the figure */
+export function placeTip(tip, x, width) {
+  const own = tip.offsetWidth;
+  const left = x + 12 + own <= width ? x + 12 : x - 12 - own;
+  tip.style.left = `${Math.min(Math.max(left, -6), Math.max(-6, width - own + 6))}px`;
+}
+
 /** Calls back once the element is in sight, and whenever it comes back. @param {Element} element @param {(visible: boolean) => void} tell */
 export function whenSeen(element, tell) {
   const observer = new IntersectionObserver((entries) => tell(entries[entries.length - 1].isIntersecting), { rootMargin: '80px' });

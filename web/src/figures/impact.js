@@ -13,7 +13,7 @@ export class Impact {
   constructor() {
     this.frame = new Frame({ title: 'Entering impact', help: 'Where the incoming tooth touches first: force, approach speed, duration, and how far before the path of contact', drawing: { table: () => this.#rows } });
     this.elements = [this.frame.element];
-    this.frame.element.classList.add('with-table');
+    this.frame.element.classList.add('with-table', 'keyless');
   }
 
   /** @param {import('./context.js').Context} context */

@@ -4,6 +4,7 @@ import { sig } from '../base/format.js';
 import { colour } from '../base/theme.js';
 import { Painting, SMALL } from './canvas.js';
 import { scaleColour } from './colours.js';
+import { placeTip } from './frame.js';
 
 /** @typedef {{ values: (number | null)[], kind: 'true' | 'predicted' | 'front', mark?: string, pick?: () => void }} Dot */
 /** @typedef {{ columns: string[], dots: Dot[] }} Cloud */
@@ -11,8 +12,8 @@ import { scaleColour } from './colours.js';
 const NEAR = 12; // px
 const BOX = { left: 46, top: 10, right: 12, bottom: 32 };
 
-/** @param {(number | null)[]} values @returns {[number, number]} */
-function extent(values) {
+/** @param {(number | null)[]} values @param {number} [margin] part of the range @returns {[number, number]} */
+function extent(values, margin = 0.04) {
   let [low, high] = [Infinity, -Infinity];
   for (const value of values) {
     if (value === null || !Number.isFinite(value)) continue;
@@ -20,7 +21,7 @@ function extent(values) {
     high = Math.max(high, value);
   }
   if (low > high) return [0, 1];
-  const pad = (high - low) * 0.04 || Math.abs(high) * 0.05 || 1;
+  const pad = high > low ? (high - low) * margin : Math.abs(high) * 0.05 || 1;
   return [low - pad, high + pad];
 }
 
@@ -36,7 +37,9 @@ export class Scatter {
     this.#y = y;
     this.across = h('select.small-select', { 'aria-label': 'Across', onchange: () => { this.#x = this.across.value; this.painting.repaint(); } });
     this.up = h('select.small-select', { 'aria-label': 'Upwards', onchange: () => { this.#y = this.up.value; this.painting.repaint(); } });
-    this.painting = new Painting({ title, help, wide, controls: [h('span.range-fields', null, this.up, ' over ', this.across)] }, (pen, width, height) => this.#paint(pen, width, height), { table: () => this.#table() });
+    this.painting = new Painting({ title, help, wide }, (pen, width, height) => this.#paint(pen, width, height), { table: () => this.#table() });
+    this.painting.element.classList.remove('keyless');
+    this.painting.frame.legend.append(h('span.range-fields', null, this.up, ' over ', this.across));
     this.tip = h('.tip', { hidden: true });
     this.painting.frame.body.append(this.tip);
     this.painting.canvas.addEventListener('pointermove', (event) => this.#point(event));
@@ -119,9 +122,7 @@ export class Scatter {
     if (!place) return;
     fill(this.tip, h('.tip-x', null, place.dot.kind === 'predicted' ? 'predicted' : place.dot.kind === 'true' ? 'evaluated' : 'front', place.dot.pick ? ' – click to open' : ''),
       this.#cloud.columns.map((name, k) => h('.tip-row', null, h('span', null, name), h('b', null, sig(place.dot.values[k], 4)))));
-    const right = place.x > this.painting.frame.body.clientWidth / 2;
-    this.tip.style.left = right ? '' : `${place.x + 12}px`;
-    this.tip.style.right = right ? `${this.painting.frame.body.clientWidth - place.x + 12}px` : '';
+    placeTip(this.tip, place.x, this.painting.frame.body.clientWidth);
   }
 
   #table() {
@@ -185,7 +186,7 @@ export class Parallel {
   #paint(pen, width, height) {
     const { columns, dots } = this.#cloud;
     if (columns.length < 2 || dots.length === 0) return;
-    const ranges = columns.map((_, k) => extent(dots.map((dot) => dot.values[k])));
+    const ranges = columns.map((_, k) => extent(dots.map((dot) => dot.values[k]), 0));
     const last = columns.length - 1;
     const [left, right, top, bottom] = [34, width - 34, 16, height - 22];
     /** @param {number} k */

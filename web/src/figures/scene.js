@@ -38,6 +38,7 @@ export class Scene {
     this.controls = new OrbitControls(this.camera, this.renderer.domElement);
     this.controls.enableDamping = false;
     this.controls.enablePan = false;
+    this.renderer.domElement.style.touchAction = 'pan-y'; // a finger still scrolls the page
     this.controls.addEventListener('change', changed);
     this.home();
   }
@@ -143,6 +144,7 @@ export class Scene {
     const { clientWidth: width, clientHeight: height } = this.body;
     if (!this.#context || width === 0 || height === 0) return;
     this.#phase = phase;
+    this.controls.enableZoom = this.body.closest('dialog') !== null; // elsewhere the wheel scrolls
     for (const surface of this.#surfaces.values()) {
       this.#paint(surface);
       /** @type {LineBasicMaterial} */ (surface.grid.material).color.set(colour('muted'));

@@ -22,7 +22,7 @@ export class Topography {
     });
     this.elements = [this.frame.element];
     this.frame.element.classList.replace('wide', 'tall');
-    this.frame.legend.textContent = 'drag to turn, wheel to come closer';
+    this.frame.legend.textContent = 'drag to turn; opened large, the wheel comes closer';
     whenSeen(this.frame.element, (visible) => {
       this.#seen = visible;
       if (visible) this.#load();

@@ -1,7 +1,7 @@
 // The Compare view: designs, stored designs and optima side by side: one table, curves over one another.
 import { get, list } from '../base/api.js';
 import { fill, h } from '../base/dom.js';
-import { change, changeText, labelOf, plain, sig, unitText } from '../base/format.js';
+import { change, changeText, choiceText, labelOf, plain, sig, unitText } from '../base/format.js';
 import { Lane } from '../base/lane.js';
 import { valueAt } from '../base/pointer.js';
 import { complete } from '../base/schema.js';
@@ -11,7 +11,7 @@ import { caseText, counting, mainCase, sameCase } from '../figures/context.js';
 import { NUMBERS, numbersOf } from '../headline.js';
 import { reportData, reportHead } from '../report.js';
 
-/** @typedef {{ key: string, label: string, group: string, load: () => Promise<any> }} Candidate */
+/** @typedef {{ key: string, label: string, title?: string, group: string, load: () => Promise<any> }} Candidate */
 
 const DATA = ['/gear_pair/pinion_teeth', '/gear_pair/gear_teeth', '/gear_pair/normal_module_mm', '/gear_pair/helix_angle_deg', '/gear_pair/face_width_mm', '/gear_pair/centre_distance_mm', '/alignment/shaft_angle_error_in_plane_deg'];
 const FLANK = ['tip_relief_um', 'tip_relief_start_mm', 'root_relief_um', 'root_relief_start_mm', 'lead_crowning_um', 'lead_slope_um', 'profile_crowning_per_mm'];
@@ -86,7 +86,7 @@ export function compareView(app) {
       ...(store.pin ? [{ key: 'pin', label: store.pin.label, group: 'On the table', load: async () => store.pin?.design }] : []),
     ];
     const optima = jobs.searches().filter((job) => job.best).map((job) => ({
-      key: `job:${job.id}`, label: `${job.name || 'search'} – best of ${job.id}`, group: 'Searches',
+      key: `job:${job.id}`, label: `best of search ${job.id}`, title: `${job.name || 'unnamed'}, ${choiceText(job.algorithm ?? '')}`, group: 'Searches',
       load: async () => ({ ...(await get(`jobs/${job.id}`)).design, modification: jobs.all.get(job.id)?.best?.modification ?? job.best.modification }),
     }));
     const kept = (await list('designs').catch(() => [])).map((design) => ({ key: `design:${design.id}`, label: design.name || 'unnamed', group: 'Stored', load: () => stored(`designs/${design.id}`) }));
@@ -100,7 +100,7 @@ export function compareView(app) {
     const groups = [...new Set(candidates.map((candidate) => candidate.group))];
     fill(choice, groups.map((name) => h('fieldset.choice-group', null, h('legend', null, name), candidates.filter((candidate) => candidate.group === name).map((candidate) => {
       const input = h('input', { type: 'checkbox', checked: items.includes(candidate.key), onchange: () => toggle(candidate.key, input.checked) });
-      return h('label.choice', null, input, h('span', null, candidate.label));
+      return h('label.choice', { title: candidate.title ?? null }, input, h('span', null, candidate.label));
     }))));
   };
   /** @param {string} key @param {boolean} on */
