@@ -329,7 +329,7 @@ static enum eo_code respond(struct eo_rig_request *rig, const struct eo_pair *pa
   struct eo_rig_prediction prediction;
   enum eo_code code = eo_evaluator_new(&evaluator, pair, 1, error);
   if (!code)
-    code = eo_rig_prediction_run(&prediction, evaluator, design, rig->unmodified, rig->torque, rig->speed, rig->end, rig->harmonics, error);
+    code = eo_prediction_run(&prediction, evaluator, design, rig->unmodified, rig->torque, rig->speed, rig->end, rig->harmonics, error);
   if (!code && !prediction.valid)
     code = eo_error_set(error, EO_ERROR_INPUT, "", "The design has no periodic vibration at %g N m and %g rpm.", rig->torque, rig->speed * 30 / M_PI);
   eo_evaluator_free(evaluator);
