@@ -398,6 +398,14 @@ static void test_comparison(void)
   ok((int)json_array_size(json_object_get(document, "id")) == count_kept(), "all measurements of the design are in its comparison");
   ok(json_array_size(json_object_get(document, "reductions")) > 0, "modified ones beside the unmodified one");
   json_decref(document);
+  json_t *softer = json_deep_copy(design);
+  json_object_set_new(json_object_get(softer, "supports"), "mesh_damping_ratio", json_real(0.2));
+  char *text = json_dumps(softer, JSON_COMPACT);
+  document = call_json("POST", API "/designs/1/comparison", "Prefer: wait=60\r\n", text, NULL);
+  ok(fabs(json_number_value(json_object_get(document, "ratio")) - 1) > 0.02, "beside a design with more damping they lie elsewhere");
+  json_decref(document);
+  json_decref(softer);
+  free(text);
   reply = call("GET", API "/designs/1/comparison.csv", NULL, NULL);
   ok(reply.status == 200 && strncmp(reply.body, "file,label,torque_Nm", 20) == 0, "as a table too");
   free_reply(&reply);
