@@ -357,6 +357,13 @@ static void test_bodies(void)
   expect("a part that is too long", post_bytes(&twice, twice.size, twice.size), 413);
   free(long_text);
   free(twice.text);
+  static const struct { const char *what, *text; int status; } odd[] = {
+      {"a part without a name", "--" EDGE "\r\nContent-Disposition: form-data\r\n\r\n1\r\n--" EDGE "--\r\n", 400},
+      {"a part that is no part", "--" EDGE "\r\nnothing\r\n\r\n1\r\n--" EDGE "--\r\n", 400},
+      {"a part in base64", "--" EDGE "\r\nContent-Disposition: form-data; name=\"file\"; filename=\"a\"\r\nContent-Transfer-Encoding: base64\r\n\r\nMQ==\r\n--" EDGE "--\r\n", 415},
+      {"other bytes", "\x1f\x8b\x08 nonsense", 422}};
+  for (size_t i = 0; i < sizeof odd / sizeof *odd; i++)
+    expect(odd[i].what, post_bytes(&(struct form){(char *)odd[i].text, strlen(odd[i].text)}, strlen(odd[i].text), strlen(odd[i].text)), odd[i].status);
   ok(count_kept() == before && folders_become(before), "nothing is kept of any of them");
   expect("from another site", call("POST", API "/measurements", "Origin: http://elsewhere.example\r\nContent-Type: multipart/form-data; boundary=x\r\n", "x"), 403);
   free(form.text);

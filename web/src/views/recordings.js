@@ -9,6 +9,8 @@ import { group } from '../form.js';
 /** @typedef {{ file: File, gear: File | null, label: string, torque: string, speed: string, state: 'waiting' | 'sending' | 'reading' | 'refused' | 'failed', part: number, error: Error | null, bar: HTMLElement | null }} Recording */
 
 const AT_ONCE = 2;
+const TRIES = 5;
+const PAUSE = 2000; // ms before a busy service is asked again
 const SEVERITY = /** @type {Record<string, string>} */ ({ refused: 'no result', warning: 'doubtful', repaired: 'repaired', note: 'note' });
 
 /** Findings in plain words, the gravest first. @param {any[]} findings */
@@ -74,6 +76,18 @@ class LayoutForm {
 
   open() {
     this.element.open = true;
+  }
+}
+
+/** Again while the service is busy. @template T @param {() => Promise<T>} act @returns {Promise<T>} */
+async function patiently(act) {
+  for (let left = TRIES; ; left--) {
+    try {
+      return await act();
+    } catch (error) {
+      if (left === 0 || !(error instanceof Refusal) || (error.status !== 429 && error.status !== 503)) throw error;
+      await new Promise((resolve) => setTimeout(resolve, PAUSE));
+    }
   }
 }
 
@@ -179,7 +193,7 @@ export class Recordings {
       if (layout) form.set('layout', JSON.stringify(layout));
       form.append('file', item.file, item.file.name);
       if (item.gear) form.append('file', item.gear, item.gear.name);
-      const { status, data } = await upload('measurements', form, (part) => this.#progress(item, part));
+      const { status, data } = await patiently(() => upload('measurements', form, (part) => this.#progress(item, part)));
       this.#queue = this.#queue.filter((other) => other !== item);
       this.layout.show(data.layout);
       this.host.kept(data, status === 200);

@@ -8,6 +8,7 @@ import { Chart } from '../figures/chart.js';
 import { mainCase } from '../figures/context.js';
 import { MeasuredOrders, MeasuredPoints } from '../figures/measured.js';
 import { group } from '../form.js';
+import { reportData, reportHead } from '../report.js';
 import { FitPanel } from './fit.js';
 import { Recordings, findingList } from './recordings.js';
 
@@ -169,8 +170,10 @@ export function rigView(app) {
   const empty = h('.empty', null, h('h2', null, 'Beside what the rig says'), h('p', null, 'Drop recordings of two encoders here, on the pinion and the gear shaft: one file for each torque and speed, of the unmodified and of the modified pair. They are kept with the design and shown beside its prediction at their torque and measured speed.'),
     h('p', null, 'Without a rig at hand, “A rig that does not exist” records one.'));
   const figures = h('.figures', null, table, speed.element, torque.element, reductions, orders.element, te.element, about, spectrum.element, turn.element, fit.result);
-  const pane = h('.figure-pane', { ondragover: (/** @type {DragEvent} */ event) => event.preventDefault(), ondrop: (/** @type {DragEvent} */ event) => { event.preventDefault(); recordings.add([...(event.dataTransfer?.files ?? [])]); } }, note, empty, figures);
-  const element = h('.design-view.rig-view', null, h('aside.form-pane', { 'aria-label': 'Recordings' }, h('.form-scroll', null, recordings.element, fit.element, teaching(app, recordings))), pane);
+  const top = h('.report');
+  const end = h('.report');
+  const pane = h('.figure-pane', { ondragover: (/** @type {DragEvent} */ event) => event.preventDefault(), ondrop: (/** @type {DragEvent} */ event) => { event.preventDefault(); recordings.add([...(event.dataTransfer?.files ?? [])]); } }, note, empty, figures, end);
+  const element = h('.design-view.rig-view', null, top, h('aside.form-pane', { 'aria-label': 'Recordings' }, h('.form-scroll', null, recordings.element, fit.element, teaching(app, recordings))), pane);
 
   /** @param {number} id */
   const choose = async (id) => {
@@ -335,6 +338,11 @@ export function rigView(app) {
         note.hidden = false;
         note.textContent = error.message;
       });
+    },
+    print() {
+      const { result } = app.analyst;
+      fill(top, reportHead(`Rig measurements of ${store.design.name || 'this design'}`, result));
+      if (result) fill(end, reportData(app.fields, result));
     },
   };
 }
