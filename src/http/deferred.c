@@ -16,7 +16,8 @@ void eo_http_leave(struct eo_http *http)
 {
   pthread_mutex_lock(&http->lock);
   http->deferred--;
-  pthread_cond_broadcast(&http->changed);
+  if (http->closing)
+    pthread_cond_broadcast(&http->changed);
   pthread_mutex_unlock(&http->lock);
 }
 
@@ -39,7 +40,8 @@ void eo_request_finish(struct eo_request *request)
     MHD_resume_connection(request->connection);
   }
   http->deferred--;
-  pthread_cond_broadcast(&http->changed);
+  if (http->closing)
+    pthread_cond_broadcast(&http->changed);
   pthread_mutex_unlock(&http->lock);
 }
 

@@ -62,12 +62,22 @@ static void look_at_body(struct eo_request *request)
   request->reply.close = request->reply.status && size > EO_DRAINED;
 }
 
+static void count_active(struct eo_http *http, int change)
+{
+  pthread_mutex_lock(&http->lock);
+  http->active += change;
+  if (http->closing)
+    pthread_cond_broadcast(&http->changed);
+  pthread_mutex_unlock(&http->lock);
+}
+
 static enum MHD_Result begin(struct eo_http *http, struct MHD_Connection *connection, const char *path, const char *method, void **context)
 {
   struct eo_request *request = eo_request_new(http, connection, path, method);
   if (!request)
     return MHD_NO;
   *context = request;
+  count_active(http, 1);
   eo_connection_allow(http, request->place, EO_IDLE_SECONDS);
   look_at(request);
   look_at_body(request);
@@ -156,6 +166,7 @@ static void complete(void *context, struct MHD_Connection *connection, void **pl
   if (!http->settings.quiet)
     eo_log_request(request);
   http->bodies -= request->held;
+  count_active(http, -1);
   eo_request_free(request);
   *place = NULL;
 }
@@ -299,6 +310,16 @@ void eo_http_quiesce(struct eo_http *http)
   pthread_mutex_unlock(&http->lock);
 }
 
+/* Everything that was asked has its reply; now it has to get there. */
+static void let_replies_go(struct eo_http *http)
+{
+  struct timespec limit;
+  clock_gettime(CLOCK_MONOTONIC, &limit);
+  limit.tv_sec += EO_PARTING_SECONDS;
+  while (http->active > 0 && pthread_cond_timedwait(&http->changed, &http->lock, &limit) == 0)
+    ;
+}
+
 /* The library aborts the process when it stops while a connection sleeps: every request has to be finished and every stream ended first. */
 void eo_http_stop(struct eo_http *http)
 {
@@ -307,7 +328,7 @@ void eo_http_stop(struct eo_http *http)
   pthread_mutex_lock(&http->lock);
   while (http->deferred > 0)
     pthread_cond_wait(&http->changed, &http->lock);
-  eo_streams_end(http);
+  let_replies_go(http);
   pthread_mutex_unlock(&http->lock);
   eo_ticker_stop(http);
   MHD_stop_daemon(http->daemon);

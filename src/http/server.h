@@ -18,6 +18,7 @@ enum {
   EO_IDLE_SECONDS = 30,              /* between requests, for all header fields of one, for a pause in a body */
   EO_BODY_SECONDS = 120,             /* for a whole body, and for the client to take a reply */
   EO_SLOWEST_READER = 64 << 10,      /* bytes per second: a long reply has more time */
+  EO_PARTING_SECONDS = 3,            /* at a stop, for clients to take what they are owed */
   EO_HEARTBEAT_SECONDS = 10,
   EO_MOST_BODIES = 128 << 20,        /* bytes of all bodies at once */
   EO_DRAINED = 64 << 10,             /* bytes of a refused body that are read so that the connection can go on */
@@ -59,6 +60,7 @@ struct eo_http {
   int connection_count, stream_count;
   size_t backlog;                    /* bytes that streams keep for their clients */
   int deferred;                      /* requests that somebody still has to finish, and one while a handler runs */
+  int active;                        /* requests from their first byte to the last of their reply */
   bool closing;
   pthread_t ticker;
 };

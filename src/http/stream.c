@@ -113,7 +113,8 @@ static void free_stream(void *context)
     stream->after->before = stream->before;
   http->stream_count--;
   http->backlog -= stream->waiting.size - stream->taken;
-  pthread_cond_broadcast(&http->changed);
+  if (http->closing)
+    pthread_cond_broadcast(&http->changed);
   pthread_mutex_unlock(&http->lock);
   eo_text_done(&stream->waiting);
   free(stream);
