@@ -38,10 +38,6 @@ export class Lane {
     if (!this.#busy) this.#work();
   }
 
-  get idle() {
-    return !this.#busy;
-  }
-
   async #work() {
     this.#busy = true;
     while (this.#waiting) {

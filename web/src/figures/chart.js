@@ -25,7 +25,7 @@ import { Frame, placeTip, whenSeen } from './frame.js';
  * @property {boolean} [bars] groups of bars at whole x; dashed curves become ticks across them
  * @property {boolean} [cycle] x is the phase of the mesh cycle
  * @property {boolean} [zero] y starts at zero
- * @property {boolean} [wide] @property {HTMLElement[]} [controls] @property {boolean} [points] @property {boolean} [log]
+ * @property {boolean} [wide] @property {HTMLElement[]} [controls]
  */
 
 const DASHES = { solid: undefined, dashed: [5, 4], dotted: [1.5, 3] };
@@ -135,7 +135,7 @@ export class Chart {
 
   /** @param {ChartData} data @param {number} width @param {number} height @returns {uPlot.Options} */
   #settings(data, width, height) {
-    const { bars, zero, xLabel, xUnit, points } = this.options;
+    const { bars, zero, xLabel, xUnit } = this.options;
     const axis = { stroke: colour('muted'), grid: { stroke: colour('grid'), width: 1 }, ticks: { show: false }, font: FONT, gap: 4 };
     return {
       width, height, pxAlign: 0,
@@ -144,7 +144,7 @@ export class Chart {
       cursor: { sync: undefined, drag: { x: !bars, y: false, dist: 6 }, points: { size: 5 }, y: false },
       scales: {
         x: { time: false, range: (_plot, low, high) => (bars ? [low - 0.6, high + 0.6] : [low, high]) },
-        y: { distr: this.options.log ? 3 : 1, range: this.options.log ? undefined : (_plot, low, high) => yRange(low, high, Boolean(zero || bars)) },
+        y: { range: (_plot, low, high) => yRange(low, high, Boolean(zero || bars)) },
       },
       axes: [
         { ...axis, size: 18, label: xUnit ? `${xLabel}, ${xUnit}` : xLabel, labelFont: FONT, labelSize: 15, labelGap: 0, space: 44,
@@ -154,7 +154,7 @@ export class Chart {
       ],
       series: [{}, ...data.curves.map((curve) => ({
         label: curve.label, stroke: colour(curve.colour), width: curve.width ?? (curve.line ? 1.25 : 1.75), dash: DASHES[curve.line ?? 'solid'],
-        points: { show: Boolean(points && !curve.line), size: 4 }, spanGaps: false, paths: bars ? () => null : undefined,
+        points: { show: false }, spanGaps: false, paths: bars ? () => null : undefined,
       }))],
       hooks: {
         drawClear: [(plot) => drawMarks(plot, this.#data?.marks ?? [])],

@@ -1,4 +1,4 @@
-// Points of a search: any column against any other, or all of them as parallel axes; true evaluations, predictions and the best told apart.
+// Points of a search: any column against any other, or all of them as parallel axes; new evaluations, known ones and the best told apart.
 import { fill, h } from '../base/dom.js';
 import { sig } from '../base/format.js';
 import { colour } from '../base/theme.js';
@@ -6,7 +6,7 @@ import { Painting, SMALL } from './canvas.js';
 import { scaleColour } from './colours.js';
 import { placeTip } from './frame.js';
 
-/** @typedef {{ values: (number | null)[], kind: 'true' | 'predicted' | 'front', mark?: string, pick?: () => void }} Dot */
+/** @typedef {{ values: (number | null)[], kind: 'new' | 'known' | 'front', mark?: string, pick?: () => void }} Dot */
 /** @typedef {{ columns: string[], dots: Dot[] }} Cloud */
 
 const NEAR = 12; // px
@@ -87,7 +87,7 @@ export class Scatter {
       pen.beginPath();
       pen.arc(place.x, place.y, dot.mark ? 5.5 : dot.kind === 'front' ? 4 : 2.5, 0, 2 * Math.PI);
       pen.globalAlpha = dot.mark || dot.kind === 'front' ? 1 : 0.7;
-      if (dot.kind === 'predicted' && !dot.mark) {
+      if (dot.kind === 'known' && !dot.mark) {
         pen.strokeStyle = colour('c2');
         pen.lineWidth = 1;
         pen.stroke();
@@ -120,7 +120,7 @@ export class Scatter {
     this.tip.hidden = !place;
     this.painting.canvas.style.cursor = place?.dot.pick ? 'pointer' : '';
     if (!place) return;
-    fill(this.tip, h('.tip-x', null, place.dot.kind === 'predicted' ? 'predicted' : place.dot.kind === 'true' ? 'evaluated' : 'front', place.dot.pick ? ' – click to open' : ''),
+    fill(this.tip, h('.tip-x', null, place.dot.kind === 'known' ? 'known from before' : place.dot.kind === 'new' ? 'evaluated' : 'front', place.dot.pick ? ' – click to open' : ''),
       this.#cloud.columns.map((name, k) => h('.tip-row', null, h('span', null, name), h('b', null, sig(place.dot.values[k], 4)))));
     placeTip(this.tip, place.x, this.painting.frame.body.clientWidth);
   }
@@ -178,7 +178,7 @@ export class Parallel {
 
   /** The last column is the one that is judged. @param {Cloud} cloud */
   set(cloud) {
-    this.#cloud = { columns: cloud.columns, dots: cloud.dots.filter((dot) => dot.kind === 'true') };
+    this.#cloud = { columns: cloud.columns, dots: cloud.dots };
     this.painting.repaint();
   }
 

@@ -51,10 +51,6 @@ class Sweep {
     return this.#pin?.label ?? '';
   }
 
-  get design() {
-    return this.#design;
-  }
-
   later() {
     this.#stale = true;
     clearTimeout(this.#timer);

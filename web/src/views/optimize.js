@@ -74,7 +74,7 @@ export class JobDetail {
     this.convergence = new Chart({ title: 'Convergence', unit: 'J', help: 'Best and mean value of each generation', xLabel: 'generation' });
     this.pfc = new Chart({ title: 'Fitness computed', unit: '%', help: 'PFC: true evaluations of all fitness values needed so far', xLabel: 'generation', zero: true });
     this.best = h('section.figure.with-table', { 'aria-label': 'Best so far' });
-    this.history = new Scatter({ title: 'History', help: 'Every individual of the search: filled evaluated, open predicted', x: 'evaluation', y: 'J' });
+    this.history = new Scatter({ title: 'History', help: 'Every true evaluation of the search, open what an earlier one knew; click opens one', x: 'evaluation', y: 'J' });
     this.parallel = new Parallel('All variables');
     this.front = new Scatter({ title: 'Pareto front', help: 'Designs that none is better than in every objective; click opens one', x: 'f1 (µm)', y: 'f3 (m/s²)' });
     this.element = h('.job-detail', { hidden: true }, this.head, h('.figures', null, this.convergence.element, this.pfc.element, this.best, this.front.element, this.history.element, this.parallel.element));
@@ -139,12 +139,12 @@ export class JobDetail {
     this.#rows = rows.length;
     const names = [...new Set(rows.flatMap((row) => Object.keys(variablesOf(row))))];
     const columns = ['evaluation', ...names.map(shortName), 'f1 (µm)', 'f2 (kN)', 'f3 (m/s²)', 'J'];
-    const best = rows.reduce((least, row) => (isTrue(row) && typeof row.J === 'number' && (least === null || row.J < least.J) ? row : least), null);
+    const best = rows.reduce((least, row) => (typeof row.J === 'number' && (least === null || row.J < least.J) ? row : least), null);
     const dots = rows.map((row, i) => {
       const values = variablesOf(row);
-      return { kind: /** @type {'true' | 'predicted'} */ (isTrue(row) ? 'true' : 'predicted'), mark: row === best ? 'best' : undefined,
+      return { kind: /** @type {'new' | 'known'} */ (row.reused ? 'known' : 'new'), mark: row === best ? 'best' : undefined,
         values: [row.ordinal ?? i + 1, ...names.map((name) => values[name] ?? null), row.f1_um ?? null, typeof row.f2_N === 'number' ? row.f2_N / 1000 : null, row.f3_m_per_s2 ?? null, row.J ?? null],
-        pick: row.modification ? () => this.#openModification(row.modification, names, values) : undefined };
+        pick: () => this.#openValues(values) };
     });
     this.history.element.hidden = this.parallel.element.hidden = rows.length === 0;
     this.history.set({ columns, dots });
@@ -159,7 +159,7 @@ export class JobDetail {
     const names = this.#result.variables.map((/** @type {any} */ variable) => variable.name);
     this.front.set({ columns: ['f1 (µm)', 'f2 (kN)', 'f3 (m/s²)', 'J', ...names.map(shortName)],
       dots: front.map((/** @type {any} */ point) => ({ kind: 'front', mark: point.weighted ? 'best J' : point.knee ? 'knee' : undefined, values: [point.f1_um, point.f2_N / 1000, point.f3_m_per_s2, point.J, ...point.values],
-        pick: () => this.#openModification(null, names, Object.fromEntries(names.map((/** @type {string} */ name, /** @type {number} */ i) => [name, point.values[i]]))) })) });
+        pick: () => this.#openValues(Object.fromEntries(names.map((/** @type {string} */ name, /** @type {number} */ i) => [name, point.values[i]]))) })) });
   }
 
   #drawHead() {
@@ -208,17 +208,16 @@ export class JobDetail {
     if (design) this.#open({ ...design, modification: this.#job.best.modification });
   }
 
-  /** @param {any} modification the whole of it, or null @param {string[]} names of variables @param {Record<string, number | null>} values */
-  async #openModification(modification, names, values) {
+  /** @param {Record<string, number>} values of variables: "pinion/both/tip_relief_um" */
+  async #openValues(values) {
     const design = await this.#design;
     if (!design) return;
-    if (modification?.pinion?.left) return this.#open({ ...design, modification });
     const next = structuredClone(design);
-    for (const name of names) {
+    for (const [name, value] of Object.entries(values)) {
       const [member, end, key] = name.split('/');
       for (const each of end === 'both' ? ['left', 'right'] : [end]) {
         next.modification[member] ??= {};
-        next.modification[member][each] = { ...next.modification[member][each], [key]: values[name] };
+        next.modification[member][each] = { ...next.modification[member][each], [key]: value };
       }
     }
     this.#open(next);
@@ -245,15 +244,9 @@ export class JobDetail {
   }
 }
 
-/** @param {any} row of a history */
-function isTrue(row) {
-  return row.reused === false || row.reused === undefined ? !/predict/.test(String(row.outcome ?? row.kind ?? '')) : !/predict/.test(String(row.outcome ?? ''));
-}
-
-/** Variables of a history row by name. @param {any} row @returns {Record<string, number | null>} */
+/** Variables of a history row by name; it lists nothing else. @param {any} row @returns {Record<string, number>} */
 function variablesOf(row) {
-  if (row.variables && !Array.isArray(row.variables)) return row.variables;
-  /** @type {Record<string, number | null>} */
+  /** @type {Record<string, number>} */
   const values = {};
   for (const { member, key, left, right } of flankValues(row.modification)) {
     if (left === right) values[`${member}/both/${key}`] = left;
@@ -265,7 +258,7 @@ function variablesOf(row) {
   return values;
 }
 
-/** Numbers of a modification that are not zero. @param {any} modification */
+/** Numbers of a modification, both ends beside each other. @param {any} modification */
 function flankValues(modification) {
   /** @type {{ member: string, key: string, left: number, right: number }[]} */
   const rows = [];
@@ -274,15 +267,15 @@ function flankValues(modification) {
     for (const key of Object.keys(ends.left ?? {})) {
       const left = ends.left[key];
       const right = ends.right?.[key] ?? left;
-      if (typeof left === 'number' && (left !== 0 || right !== 0)) rows.push({ member, key, left, right });
+      if (typeof left === 'number') rows.push({ member, key, left, right });
     }
   }
   return rows;
 }
 
-/** The same for people. @param {any} modification */
+/** What is not zero, for people. @param {any} modification */
 function changedValues(modification) {
-  return flankValues(modification).map(({ member, key, left, right }) => ({
+  return flankValues(modification).filter(({ left, right }) => left !== 0 || right !== 0).map(({ member, key, left, right }) => ({
     label: `${labelOf(key)}${member === 'gear' ? ', gear' : ''}`, unit: unitText(/_(um|mm|per_mm)$/.exec(key)?.[1]), values: left === right ? [left] : [left, right],
   }));
 }
