@@ -72,6 +72,7 @@ export class MeasuredPoints {
     canvas.addEventListener('pointerleave', () => { this.tip.hidden = true; });
     canvas.addEventListener('click', (event) => this.#nearest(event)?.point.pick?.());
     this.element = this.painting.element;
+    this.element.classList.remove('keyless');
   }
 
   /** @param {Series[]} series */
@@ -195,6 +196,7 @@ export class MeasuredOrders {
     predicted.style.setProperty('--swatch', 'var(--c2)');
     fill(this.painting.frame.legend, h('span.key', null, measured, 'measured, ±σ'), h('span.key', null, predicted, 'predicted'));
     this.element = this.painting.element;
+    this.element.classList.remove('keyless');
   }
 
   /** @param {number[]} measured @param {number[]} sigma @param {(number | null)[]} predicted */
