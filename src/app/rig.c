@@ -89,23 +89,9 @@ static bool read_settings(struct request *r, const struct options *o, int *statu
     eo_table_decode(&eo_rig_table, document, NULL, &r->rig, faults);
   if (document && faults->count)
     *status = eo_app_fail_all(r->settings, faults);
-  else if (document && r->rig.decimal_comma && r->rig.separator == EO_RIG_COMMA)
-    *status = eo_app_fail(NULL, &(struct eo_error){EO_ERROR_INPUT, "/decimal_comma", "A decimal comma needs another separator than the comma."});
   json_decref(document);
   free(faults);
   return *status == EO_EXIT_DONE;
-}
-
-static void take_load_case(struct request *r)
-{
-  const struct eo_load_case *largest = &r->design.load_case[0];
-  for (int i = 1; i < r->design.load_cases; i++)
-    if (r->design.load_case[i].share > largest->share)
-      largest = &r->design.load_case[i];
-  if (isnan(r->rig.torque))
-    r->rig.torque = largest->torque;
-  if (isnan(r->rig.speed))
-    r->rig.speed = largest->speed;
 }
 
 static enum eo_code respond(struct request *r, const struct eo_progress *progress, struct eo_rig_prediction *prediction, struct eo_error *error)
@@ -168,9 +154,11 @@ static int run_request(struct request *r)
   struct eo_watch watch;
   struct eo_error error;
   struct eo_rig_prediction prediction;
-  take_load_case(r);
+  enum eo_code code = eo_rig_complete(&r->rig, &r->design, &error);
+  if (code)
+    return eo_app_fail(r->settings, &error);
   eo_watch_start(&watch);
-  enum eo_code code = respond(r, &watch.progress, &prediction, &error);
+  code = respond(r, &watch.progress, &prediction, &error);
   if (!code) {
     eo_rig_set_pair(&r->rig, &r->geometry, &r->design.supports, &prediction);
     code = eo_synthetic_check(&r->rig.synthetic, &error);

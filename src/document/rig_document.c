@@ -56,6 +56,21 @@ static const struct eo_field fields[] = {
 };
 const struct eo_table eo_rig_table = EO_TABLE("a synthetic rig", struct eo_rig_request, fields);
 
+enum eo_code eo_rig_complete(struct eo_rig_request *request, const struct eo_design *design, struct eo_error *error)
+{
+  const struct eo_load_case *largest = &design->load_case[0];
+  for (int i = 1; i < design->load_cases; i++)
+    if (design->load_case[i].share > largest->share)
+      largest = &design->load_case[i];
+  if (isnan(request->torque))
+    request->torque = largest->torque;
+  if (isnan(request->speed))
+    request->speed = largest->speed;
+  if (request->decimal_comma && request->separator == EO_RIG_COMMA)
+    return eo_error_set(error, EO_ERROR_INPUT, "/decimal_comma", "A decimal comma needs another separator than the comma.");
+  return EO_OK;
+}
+
 void eo_rig_set_pair(struct eo_rig_request *request, const struct eo_geometry *geometry, const struct eo_supports *supports,
                      const struct eo_rig_prediction *prediction)
 {

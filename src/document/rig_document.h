@@ -27,6 +27,9 @@ struct eo_rig_request {
 };
 extern const struct eo_table eo_rig_table;
 
+/* Torque and speed that were not said, of the load case with the largest share. Errors: EO_ERROR_INPUT (settings that contradict each other). */
+enum eo_code eo_rig_complete(struct eo_rig_request *request, const struct eo_design *design, struct eo_error *error);
+
 /* The pair and the response into request->synthetic. */
 void eo_rig_set_pair(struct eo_rig_request *request, const struct eo_geometry *geometry, const struct eo_supports *supports,
                      const struct eo_rig_prediction *prediction);

@@ -5,7 +5,7 @@
 
 #include "document/geometry_table.h"
 #include "evaluation/evaluator.h"
-#include "http/job.h"
+#include "http/answer.h"
 #include "http/route.h"
 #include "http/server.h"
 
@@ -30,92 +30,7 @@ static void check(struct eo_request *request)
   json_decref(body);
 }
 
-/* ---- what the service answers ---- */
-
-static void reply_busy(struct eo_request *request, bool closing)
-{
-  eo_reply_problem(request, 503, closing ? "stopping" : "busy", closing ? "The server is stopping." : "Too many questions are waiting already.");
-  request->reply.retry_after = closing ? 5 : 1;
-}
-
-/* The pair is being prepared: whose job it is, and where to ask. */
-static void reply_preparing(struct eo_request *request, int64_t id)
-{
-  enum eo_job_outcome outcome;
-  struct eo_error error;
-  json_t *job = NULL;
-  if (eo_service_job(request->http->service, id, false, &outcome, &job, &error)) {
-    eo_reply_error(request, "", &error);
-    return;
-  }
-  eo_reply_json(request, 202, json_pack("{s:o}", "job", job ? job : json_null()));
-  eo_reply_job_location(request, id);
-  request->reply.retry_after = 1;
-}
-
-static void take_answer(struct eo_request *request, struct eo_answer *answer)
-{
-  switch (answer->kind) {
-  case EO_ANSWER_DONE:
-    eo_reply_text(request, 200, request->csv ? "text/csv; charset=utf-8" : "application/json", &answer->text);
-    break;
-  case EO_ANSWER_OVERTAKEN:
-    eo_reply_problem(request, 409, "overtaken", "A newer question of the same lane took this one's place.");
-    break;
-  case EO_ANSWER_FAILED:
-    eo_reply_error(request, strcmp(request->route->pattern, "/sweep") == 0 ? "/design" : "", &answer->error);
-    break;
-  case EO_ANSWER_PREPARING:
-    reply_preparing(request, answer->job);
-    break;
-  case EO_ANSWER_STOPPED:
-    reply_busy(request, true);
-    break;
-  }
-}
-
-/* Runs on a thread of the service. */
-static void receive(void *context, struct eo_answer *answer)
-{
-  struct eo_request *request = context;
-  take_answer(request, answer);
-  eo_request_finish(request);
-}
-
-/* What was not accepted is answered here; nobody else will. */
-static void conclude(struct eo_request *request, enum eo_code code, enum eo_admission admission, int64_t job, const struct eo_error *error)
-{
-  if (!code && admission == EO_ADMISSION_ACCEPTED)
-    return;
-  if (code)
-    eo_reply_error(request, "", error);
-  else if (admission == EO_ADMISSION_PREPARING)
-    reply_preparing(request, job);
-  else
-    reply_busy(request, admission == EO_ADMISSION_CLOSED);
-  eo_request_finish(request);
-}
-
-/* False: the reply says what is wrong with the header. */
-static bool read_lane(struct eo_request *request, struct eo_question *question)
-{
-  const char *token = eo_request_header(request, "Easeoff-Lane");
-  question->token = token;
-  if (!token || eo_field_is_visible(token, EO_TOKEN_LENGTH + 1))
-    return true;
-  eo_reply_problem(request, 400, NULL, "Easeoff-Lane takes 1 to %d visible characters.", EO_TOKEN_LENGTH);
-  return false;
-}
-
-static struct eo_question ask(struct eo_request *request, const struct eo_design *design, const struct eo_warnings *warnings)
-{
-  return (struct eo_question){.design = design,
-                              .warnings = warnings,
-                              .format = request->csv ? EO_ANSWER_CSV : EO_ANSWER_JSON,
-                              .wait = eo_field_wait(eo_request_header(request, "Prefer")),
-                              .answer = receive,
-                              .context = request};
-}
+/* ---- analyses ---- */
 
 static void put_analysis(struct eo_request *request, const struct eo_design *design, const struct eo_warnings *warnings)
 {
@@ -123,16 +38,16 @@ static void put_analysis(struct eo_request *request, const struct eo_design *des
   struct eo_error error;
   int64_t job = 0;
   bool histories = eo_request_number(request, "histories") != 0;
-  struct eo_analysis_question question = {.common = ask(request, design, warnings),
+  struct eo_analysis_question question = {.common = eo_request_question(request, design, warnings),
                                           .want = EO_WANT_CURVES | (eo_request_number(request, "root_stress") != 0 ? EO_WANT_ROOT : 0) |
                                                   (eo_request_number(request, "band") != 0 ? EO_WANT_BAND : 0),
                                           .maps = eo_request_number(request, "maps") != 0,
                                           .histories = histories};
-  if (!read_lane(request, &question.common))
+  if (!eo_request_lane(request, &question.common))
     return;
   eo_request_defer(request);
   enum eo_code code = eo_service_analyze(request->http->service, &question, &admission, &job, &error);
-  conclude(request, code, admission, job, &error);
+  eo_answer_conclude(request, code, admission, job, &error);
 }
 
 static void analyze(struct eo_request *request)
@@ -209,12 +124,12 @@ static void put_sweep(struct eo_request *request, const struct eo_design *design
   enum eo_admission admission;
   struct eo_error error;
   int64_t job = 0;
-  struct eo_question question = ask(request, design, warnings);
-  if (!is_small(request, axes) || !read_lane(request, &question))
+  struct eo_question question = eo_request_question(request, design, warnings);
+  if (!is_small(request, axes) || !eo_request_lane(request, &question))
     return;
   eo_request_defer(request);
   enum eo_code code = eo_service_sweep(request->http->service, &question, axes, &admission, &job, &error);
-  conclude(request, code, admission, job, &error);
+  eo_answer_conclude(request, code, admission, job, &error);
 }
 
 static void sweep(struct eo_request *request)
@@ -243,7 +158,7 @@ const struct eo_route eo_routes_analysis[] = {
                {"band", 0, 1, 0, NULL, "1: RMS at 0.9 and 1.1 times the compliance too, which takes several times as long"},
                {"maps", 0, 1, 1, NULL, "1: pressure and clearance over the flanks"},
                {"histories", 0, 1, 0, NULL, "1: vibration and root stress over time"}}},
-    {.method = EO_POST, .pattern = "/sweep", .handle = sweep, .name = "sweep", .takes = "SweepRequest", .gives = "200 Sweep, 202 Preparing",
+    {.method = EO_POST, .pattern = "/sweep", .handle = sweep, .name = "sweep", .takes = "SweepRequest", .design_at = "/design", .gives = "200 Sweep, 202 Preparing",
      .headers = LANE, .rate = EO_RATE_START, .csv = true,
      .summary = "A design over torque, speed or both, beside the unmodified pair. 202 while the gear pair is being prepared."},
     {0}};

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "http/measurement.h"
 #include "http/route.h"
 #include "http/server.h"
 #include "store/designs.h"
@@ -229,8 +230,32 @@ static void take_out(struct eo_request *request)
     reply_missing(request);
   else if (outcome == EO_DESIGN_STALE)
     reply_stale(request);
+  else if (outcome == EO_DESIGN_USED)
+    eo_reply_problem(request, 409, "in-use", "Measurements belong to this design; remove them first.");
   else
     eo_reply_empty(request, 204);
+}
+
+/* ---- for others ---- */
+
+bool eo_request_stored_design(struct eo_request *request, int64_t id, struct eo_design *design, struct eo_geometry *geometry, json_t **document,
+                              bool *missing)
+{
+  struct found found = {0};
+  struct eo_error error;
+  enum eo_design_outcome outcome;
+  bool good = false;
+  *missing = false;
+  if (eo_store_find_design(request->store, id, visit, &found, &outcome, &error))
+    eo_reply_error(request, "", &error);
+  else if (outcome == EO_DESIGN_MISSING)
+    *missing = true;
+  else
+    good = eo_request_design(request, json_object_get(found.document, "design"), "", design, geometry, NULL);
+  if (good && document)
+    *document = json_incref(json_object_get(found.document, "design"));
+  json_decref(found.document);
+  return good;
 }
 
 const struct eo_route eo_routes_designs[] = {

@@ -136,7 +136,7 @@ static json_t *encode_operation(const struct eo_route *route)
                                 encode_answers(route));
   if (route->takes)
     json_object_set_new(operation, "requestBody",
-                        json_pack("{s:b, s:{s:{s:o}}}", "required", !route->takes_nothing, "content", "application/json", "schema",
+                        json_pack("{s:b, s:{s:{s:o}}}", "required", !route->takes_nothing, "content", route->form ? "multipart/form-data" : "application/json", "schema",
                                   reference(route->takes, strlen(route->takes))));
   if (route->csv)
     json_object_set_new(operation, "description", json_sprintf("As text/csv by the Accept header, or at %s%s.csv.", EO_API, route->pattern));

@@ -85,18 +85,32 @@ static json_t *encode_fault(const char *path, const struct eo_error *fault)
   return json_pack("{s:s, s:s}", "pointer", pointer, "detail", fault->text);
 }
 
-static void put_problem(struct eo_request *request, unsigned status, const char *name, const char *detail, json_t *errors)
+static void put_problem_with(struct eo_request *request, unsigned status, const char *name, const char *detail, json_t *errors, json_t *more)
 {
   char type[80] = "about:blank";
   if (name)
     snprintf(type, sizeof type, "/problems/%s", name);
   json_t *problem = json_pack("{s:s, s:s, s:i, s:s, s:o, s:s}", "type", type, "title", title_of(status), "status", (int)status, "detail", detail,
                               "errors", errors ? errors : json_array(), "request_id", request->id);
+  *request->reply.file_name = '\0';
+  if (problem && more)
+    json_object_update(problem, more);
+  json_decref(more);
   if (problem) {
     reply_document(request, status, "application/problem+json", problem);
     return;
   }
   eo_reply_empty(request, 500);
+}
+
+static void put_problem(struct eo_request *request, unsigned status, const char *name, const char *detail, json_t *errors)
+{
+  put_problem_with(request, status, name, detail, errors, NULL);
+}
+
+void eo_reply_problem_with(struct eo_request *request, unsigned status, const char *name, json_t *more, const char *detail)
+{
+  put_problem_with(request, status, name, detail, NULL, more);
 }
 
 void eo_reply_problem(struct eo_request *request, unsigned status, const char *name, const char *format, ...)
@@ -255,7 +269,7 @@ enum MHD_Result eo_reply_send(struct eo_request *request)
     return MHD_NO;
   add_headers(response, request);
   request->http->replies[request->reply.status / 100 % 6]++;
-  eo_connection_allow(request->http, request->place, stream ? 0 : EO_BODY_SECONDS);
+  eo_connection_allow(request->http, request->place, stream ? 0 : EO_BODY_SECONDS + (int)(request->sent / EO_SLOWEST_READER));
   enum MHD_Result result = MHD_queue_response(request->connection, request->reply.status, response);
   MHD_destroy_response(response);
   return result;

@@ -8,6 +8,7 @@
 #include "document/json.h"
 #include "http/route.h"
 #include "http/server.h"
+#include "http/upload.h"
 
 /* HEAD is GET without the bytes; the library leaves them out. */
 static unsigned method_of(const char *name, bool *head)
@@ -46,6 +47,7 @@ void eo_request_free(struct eo_request *request)
 {
   if (!request)
     return;
+  eo_upload_free(request);
   eo_text_done(&request->body);
   eo_text_done(&request->reply.body);
   if (request->reply.stream)

@@ -18,6 +18,7 @@ struct MHD_Connection;
 struct MHD_Response;
 struct eo_route;
 struct eo_resource;
+struct eo_upload;
 
 enum eo_method { EO_GET = 1, EO_POST = 2, EO_PUT = 4, EO_DELETE = 8, EO_OPTIONS = 16 };
 enum { EO_REQUEST_ID = 16, EO_ARGUMENTS = 2, EO_TAG = 70 };
@@ -49,7 +50,8 @@ struct eo_request {
   char argument[EO_ARGUMENTS][64];    /* what stood in the places of the pattern */
   bool csv;                           /* asked for by Accept or by the suffix */
   struct eo_text body;
-  size_t received, body_limit;
+  struct eo_upload *upload;           /* in place of the body, of a route that takes a form; owned */
+  size_t received, body_limit, refused; /* refused: bytes that came after the reply was known */
   size_t held;                        /* bytes of the body in memory */
   double started;                     /* ms of the monotonic clock */
   struct eo_reply reply;
@@ -90,6 +92,9 @@ void eo_reply_empty(struct eo_request *request, unsigned status);
 /* A problem document (RFC 9457). name: the last part of "/problems/NAME", or NULL for a status that says enough by itself. */
 void eo_reply_problem(struct eo_request *request, unsigned status, const char *name, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
+
+/* The same with further members, taken over: what a program can read about the problem. */
+void eo_reply_problem_with(struct eo_request *request, unsigned status, const char *name, json_t *more, const char *detail);
 
 /* 422 with every fault and its pointer below path. */
 void eo_reply_faults(struct eo_request *request, const char *path, const struct eo_faults *faults);

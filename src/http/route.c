@@ -6,7 +6,7 @@
 #include "http/server.h"
 
 const struct eo_route *const eo_routes[] = {eo_routes_service,  eo_routes_session,     eo_routes_examples, eo_routes_designs, eo_routes_analysis, eo_routes_jobs,
-                                              eo_routes_events,   eo_routes_history,  eo_routes_export, NULL};
+                                              eo_routes_events,   eo_routes_history,  eo_routes_export, eo_routes_measurements, eo_routes_comparison, NULL};
 
 static const struct { unsigned method; const char *name; } methods[] = {
     {EO_GET, "GET"}, {EO_POST, "POST"}, {EO_PUT, "PUT"}, {EO_DELETE, "DELETE"}, {EO_OPTIONS, "OPTIONS"}};

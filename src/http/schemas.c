@@ -3,6 +3,7 @@
 
 #include "document/design_document.h"
 #include "document/geometry_table.h"
+#include "document/rig_document.h"
 #include "document/schema.h"
 #include "document/sweep_document.h"
 #include "http/openapi.h"
@@ -10,7 +11,7 @@
 
 static const struct { const char *name, *notation; } shapes[] = {
     {"Any", "{...}"},
-    {"Problem", "{type text, title text, status integer, detail text, errors [{pointer text, detail text}], request_id text}"},
+    {"Problem", "{type text, title text, status integer, detail text, errors [{pointer text, detail text}], request_id text, ...}"},
     {"Health", "{status 'ok|failing', program text, uptime_s number, jobs {queued integer, running integer}, database 'ok|failing'}"},
     {"Session", "{required flag, authorized flag}"},
     {"Token", "{token text}"},
@@ -40,6 +41,21 @@ static const struct { const char *name, *notation; } shapes[] = {
     {"Generations", "{generation [integer], best [number?], mean [number?], true_evaluations [integer], predicted [integer], pfc_percent [number?]}"},
     {"JobHistory", "{items [{ordinal integer, generation integer, individual integer, outcome text, reason text?, modification Any, f1_um number?,"
                    " f2_N number?, f3_m_per_s2 number?, J number?, fitness number?, violation number?, reused flag}], next text?}"},
+    {"MeasurementForm", "{design text, label 'modified|unmodified', torque_Nm text, speed_rpm? text, end? 'left|right', harmonics? text, layout? text,"
+                        " file any}"},
+    {"Finding", "{kind text, severity 'note|repaired|warning|refused', channel? text?, row? integer?, line? integer?, value? number?, text text}"},
+    {"MeasurementFiles", "[{name text, size integer, sha256 text}]"},
+    {"Measurement", "{id integer, design integer, created text, stated_speed_rpm number?, asked_layout any, files MeasurementFiles, file text,"
+                    " label 'unmodified|modified', torque_Nm number, end 'left|right', notes [text], layout any, findings [Finding], refused flag, signal Any,"
+                    " result Any, ...}"},
+    {"Measurements", "{items [{id integer, design integer, created text, stated_speed_rpm number?, asked_layout any, files MeasurementFiles, file text,"
+                     " label 'unmodified|modified', torque_Nm number, end 'left|right', findings [Finding], refused flag, result Any, ...}], next text?}"},
+    {"LeftOut", "[{id integer, reason text}]"},
+    {"Comparison", "{program text, design_hash text, id [integer], left_out LeftOut, measurements Any, details [Any], reductions [Any], ratio number?,"
+                   " spread number?, ...}"},
+    {"FitOrder", "{unknowns {...}, model_error? number, seed? integer, measurements? [integer], design? Design}"},
+    {"Fit", "{unknowns [Any], correlation any, condition number?, misfit Any, measurements integer, orders integer, evaluations integer, converged flag,"
+            " warnings [text], id [integer], left_out LeftOut, design Any, ...}"},
     {"History", "{problems [Any], jobs [Any]}"},
 };
 
@@ -60,6 +76,13 @@ static json_t *sweep_request(void)
   return NULL;
 }
 
+/* A design, and the keys of eo_rig_table. */
+static json_t *rig_order(void)
+{
+  return json_pack("{s:s, s:{s:{s:s}, s:o}, s:[s], s:b}", "type", "object", "properties", "design", "$ref", "#/components/schemas/Design", "rig",
+                   eo_table_json_schema(&eo_rig_table, true), "required", "design", "additionalProperties", 0);
+}
+
 json_t *eo_openapi_schemas(void)
 {
   json_t *schemas = json_object();
@@ -67,6 +90,7 @@ json_t *eo_openapi_schemas(void)
   failed = json_object_set_new(schemas, "ResolvedDesign", eo_table_json_schema(&eo_design_table, false)) != 0 || failed;
   failed = json_object_set_new(schemas, "Geometry", eo_table_json_schema(&eo_geometry_table, false)) != 0 || failed;
   failed = json_object_set_new(schemas, "SweepRequest", sweep_request()) != 0 || failed;
+  failed = json_object_set_new(schemas, "RigOrder", rig_order()) != 0 || failed;
   for (size_t i = 0; i < sizeof shapes / sizeof shapes[0]; i++)
     failed = json_object_set_new(schemas, shapes[i].name, eo_shape_schema(shapes[i].notation)) != 0 || failed;
   if (!failed)

@@ -3,6 +3,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 #include <sys/random.h>
 #include <sys/resource.h>
 #include <time.h>
@@ -16,6 +17,8 @@
 #include "http/pages.h"
 #include "http/route.h"
 #include "http/stream.h"
+#include "http/upload.h"
+#include "store/measurements.h"
 
 /* ---- one request ---- */
 
@@ -48,10 +51,13 @@ static void look_at_body(struct eo_request *request)
   request->body_limit = !route ? 0 : route->body ? route->body : EO_JSON_DESIGN_BYTES;
   if (has_body)
     eo_connection_allow(request->http, request->place, EO_BODY_SECONDS);
-  if (!request->reply.status && has_body && route && route->takes && type && strncmp(type, "application/json", 16) != 0)
-    eo_reply_problem(request, 415, NULL, "The body must be application/json.");
+  const char *expected = route && route->form ? "multipart/form-data" : "application/json";
+  if (!request->reply.status && has_body && route && route->takes && type && strncasecmp(type, expected, strlen(expected)) != 0)
+    eo_reply_problem(request, 415, NULL, "The body must be %s.", expected);
   if (!request->reply.status && (uint64_t)size > request->body_limit)
     eo_reply_problem(request, 413, NULL, "The body may have %zu bytes here.", request->body_limit);
+  if (!request->reply.status && route && route->form)
+    eo_upload_begin(request, size);
   /* A reply before the body costs the connection; a small body is read and thrown away instead. */
   request->reply.close = request->reply.status && size > EO_DRAINED;
 }
@@ -84,11 +90,20 @@ static enum MHD_Result take(struct eo_request *request, const char *data, size_t
   request->received += size;
   if (request->received > request->body_limit + EO_DRAINED)
     return MHD_NO;
+  if (request->upload) {
+    eo_connection_allow(request->http, request->place, eo_upload_patience(request));
+    if (request->reply.status && (request->refused += size) > EO_UPLOAD_DRAINED)
+      return MHD_NO;
+  }
   if (!request->reply.status && request->received > request->body_limit)
     eo_reply_problem(request, 413, NULL, "The body may have %zu bytes here.", request->body_limit);
-  if (!request->reply.status && request->http->bodies + size > EO_MOST_BODIES)
+  if (!request->reply.status && !request->upload && request->http->bodies + size > EO_MOST_BODIES)
     eo_reply_problem(request, 503, "busy", "Too much is being sent at once.");
-  if (!request->reply.status) {
+  if (request->reply.status)
+    return MHD_YES;
+  if (request->upload)
+    eo_upload_take(request, data, size);
+  else {
     eo_text_add_bytes(&request->body, data, size);
     request->http->bodies += size;
     request->held += size;
@@ -106,8 +121,8 @@ static void run_handler(struct eo_request *request)
   if (!request->route)
     eo_pages_reply(request->http->pages, request);
   else if (eo_guard_spends(request, request->route->rate)) {
-    if (request->route->aside)
-      eo_aside_take(request->http->aside, request);
+    if (request->route->aside || request->route->form)
+      eo_aside_take(request->route->form ? request->http->readings : request->http->aside, request);
     else
       request->route->handle(request);
   }
@@ -118,7 +133,7 @@ static void dispatch(struct eo_request *request)
 {
   request->dispatched = true;
   eo_connection_allow(request->http, request->place, 0);
-  if (!request->reply.status)
+  if (!request->reply.status && (!request->upload || eo_upload_end(request)))
     run_handler(request);
 }
 
@@ -224,6 +239,7 @@ static void init(struct eo_http *http, const struct eo_http_settings *settings)
 static void done(struct eo_http *http)
 {
   eo_aside_free(http->aside);
+  eo_aside_free(http->readings);
   eo_pages_free(http->pages);
   eo_documents_free(http->documents);
   eo_store_close(http->store);
@@ -241,7 +257,11 @@ static enum eo_code start(struct eo_http *http, struct eo_error *error)
   if (!code)
     code = eo_store_open(&http->store, http->settings.data, EO_STORE_WRITE, error);
   if (!code)
+    code = eo_measurement_folder_tidy(http->store, error);
+  if (!code)
     code = eo_aside_new(&http->aside, http->settings.data, error);
+  if (!code)
+    code = eo_aside_new(&http->readings, http->settings.data, error);
   if (!code)
     code = eo_pages_new(&http->pages, http->settings.pages, error);
   if (!code)

@@ -17,6 +17,7 @@ enum {
   EO_MOST_CONNECTIONS_OF_ONE = 1500, /* per address; a reverse proxy is one address */
   EO_IDLE_SECONDS = 30,              /* between requests, for all header fields of one, for a pause in a body */
   EO_BODY_SECONDS = 120,             /* for a whole body, and for the client to take a reply */
+  EO_SLOWEST_READER = 64 << 10,      /* bytes per second: a long reply has more time */
   EO_PARTING_SECONDS = 3,            /* at a stop, for clients to take what they are owed */
   EO_HEARTBEAT_SECONDS = 10,
   EO_MOST_BODIES = 128 << 20,        /* bytes of all bodies at once */
@@ -44,6 +45,8 @@ struct eo_http {
   struct eo_store *store;            /* of the HTTP thread */
   struct eo_guard guard;             /* of the HTTP thread but for its constants */
   struct eo_aside *aside;
+  struct eo_aside *readings;         /* reads the rig files that were uploaded */
+  int uploads;                       /* on their way; HTTP thread */
   struct eo_pages *pages;
   struct eo_documents *documents;    /* made once: OpenAPI, field tables, examples */
   size_t bodies;                     /* bytes of bodies in memory; HTTP thread */

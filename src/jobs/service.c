@@ -51,7 +51,10 @@ static enum eo_code make_lanes(struct eo_service *s, struct eo_error *error)
   settings.overtakes_running = true;
   settings.nice = SWEEP_NICE;
   settings.function = eo_service_answer_sweep;
-  return code ? code : eo_lane_new(&s->sweeps, &settings, error);
+  if (!code)
+    code = eo_lane_new(&s->sweeps, &settings, error);
+  settings.function = eo_service_answer_work;
+  return code ? code : eo_lane_new(&s->works, &settings, error);
 }
 
 static enum eo_code make_workers(struct eo_service *s, struct eo_error *error)
@@ -115,6 +118,8 @@ void eo_service_stop(struct eo_service *s)
     eo_lane_stop(s->analyses);
   if (s->sweeps)
     eo_lane_stop(s->sweeps);
+  if (s->works)
+    eo_lane_stop(s->works);
 }
 
 void eo_service_free(struct eo_service *s)
@@ -130,6 +135,7 @@ void eo_service_free(struct eo_service *s)
   }
   eo_lane_free(s->analyses);
   eo_lane_free(s->sweeps);
+  eo_lane_free(s->works);
   eo_pairs_free(s->pairs);
   eo_events_free(s->events);
   eo_store_close(s->store);

@@ -1,7 +1,7 @@
 /* What stands behind the server: the queue of jobs and the threads that work it off, prepared gear pairs, what-if analyses, events.
 
    Threads. One optimizes: jobs run one after the other, each on all cores at a low priority. One prepares gear pairs, so that a new pair need
-   not wait for an optimization. A small lane of its own answers analyses and another one sweeps; they come before jobs wherever they meet.
+   not wait for an optimization. Small lanes of their own answer analyses, sweeps, and work on measurements; they come before jobs wherever they meet.
    Every function below may be called from any thread at any time between new and free, and none of them computes: they look something up,
    write a row, answer.
 
@@ -151,6 +151,17 @@ enum eo_code eo_service_analyze(struct eo_service *service, const struct eo_anal
 /* axes: copied. */
 enum eo_code eo_service_sweep(struct eo_service *service, const struct eo_question *question, const struct eo_sweep_axes *axes,
                               enum eo_admission *admission, int64_t *job, struct eo_error *error);
+
+/* Other work on a prepared pair (see rig_work.h), one at a time at a lower priority. run: adds the answer to text; release: of data, called once in any
+   case. A newer question with the same token ends one that runs. */
+struct eo_work {
+  enum eo_code (*run)(void *data, const struct eo_pair *pair, const struct eo_design *design, const struct eo_progress *progress, struct eo_text *text,
+                      struct eo_error *error);
+  void (*release)(void *data);
+  void *data;
+};
+enum eo_code eo_service_compute(struct eo_service *service, const struct eo_question *question, const struct eo_work *work,
+                                enum eo_admission *admission, int64_t *job, struct eo_error *error);
 
 /* Whether the design's pair is in memory (an analysis would be answered at once). */
 bool eo_service_is_prepared(struct eo_service *service, const struct eo_design *design);

@@ -21,6 +21,7 @@ struct asked {
   int want;
   unsigned left_out;
   struct eo_sweep_axes axes;     /* of a sweep; owned */
+  struct eo_work work;           /* of other work; its data owned */
   struct eo_service *service;
 };
 
@@ -30,6 +31,8 @@ void eo_service_release_task(struct eo_lane_task *task)
   if (!asked)
     return;
   eo_sweep_axes_done(&asked->axes);
+  if (asked->work.release)
+    asked->work.release(asked->work.data);
   free(asked);
 }
 
@@ -144,6 +147,18 @@ enum eo_code eo_service_sweep(struct eo_service *s, const struct eo_question *q,
     return admit(s, s->sweeps, asked, q->wait, admission, job, error);
   eo_service_release_task(&asked->task);
   return code;
+}
+
+enum eo_code eo_service_compute(struct eo_service *s, const struct eo_question *q, const struct eo_work *work, enum eo_admission *admission,
+                                int64_t *job, struct eo_error *error)
+{
+  struct asked *asked = copy_question(s, q, error);
+  if (!asked) {
+    work->release(work->data);
+    return EO_ERROR_MEMORY;
+  }
+  asked->work = *work;
+  return admit(s, s->works, asked, q->wait, admission, job, error);
 }
 
 bool eo_service_is_prepared(struct eo_service *s, const struct eo_design *design)
@@ -264,7 +279,7 @@ void eo_service_answer_analysis(void *context, struct eo_lane_task *task, enum e
   eo_text_done(&answer.text);
 }
 
-static int watch_sweep(void *context, const char *what, double fraction)
+static int watch_task(void *context, const char *what, double fraction)
 {
   const struct asked *asked = context;
   (void)what;
@@ -287,7 +302,7 @@ static enum eo_code write_sweep(const struct asked *asked, const struct eo_sweep
 
 static void sweep(struct eo_service *s, struct asked *asked, struct eo_held_pair *held, struct eo_answer *answer)
 {
-  const struct eo_progress progress = {watch_sweep, asked};
+  const struct eo_progress progress = {watch_task, asked};
   const struct eo_sweep_plan plan = {asked->axes.torques, asked->axes.speeds, asked->axes.torque, asked->axes.speed, s->settings.threads};
   struct eo_sweep result = {0};
   double start = eo_clock_milliseconds();
@@ -315,6 +330,33 @@ void eo_service_answer_sweep(void *context, struct eo_lane_task *task, enum eo_l
   eo_pairs_release(s->pairs, held);
   if (answer.kind == EO_ANSWER_DONE)
     atomic_fetch_add(&s->sweeps_done, 1);
+  asked->answer(asked->context, &answer);
+  eo_text_done(&answer.text);
+}
+
+static void work(struct eo_service *s, struct asked *asked, struct eo_held_pair *held, struct eo_answer *answer)
+{
+  const struct eo_progress progress = {watch_task, asked};
+  double start = eo_clock_milliseconds();
+  enum eo_code code = asked->work.run(asked->work.data, eo_held_pair(held), &asked->design, &progress, &answer->text, &answer->error);
+  if (!code && answer->text.failed)
+    code = eo_error_memory(&answer->error);
+  answer->computed_ms = eo_clock_milliseconds() - start;
+  if (code)
+    fail(answer, code);
+  if (code == EO_ERROR_CANCELLED)
+    answer->kind = atomic_load(&s->stopping) ? EO_ANSWER_STOPPED : EO_ANSWER_OVERTAKEN;
+}
+
+void eo_service_answer_work(void *context, struct eo_lane_task *task, enum eo_lane_fate fate)
+{
+  struct eo_service *s = context;
+  struct asked *asked = (struct asked *)task;
+  struct eo_answer answer = {.kind = EO_ANSWER_DONE, .waited_ms = eo_clock_milliseconds() - task->queued};
+  struct eo_held_pair *held = NULL;
+  if (!answer_at_once(s, asked, fate, &answer) && (held = hold_pair(s, asked, &answer)))
+    work(s, asked, held, &answer);
+  eo_pairs_release(s->pairs, held);
   asked->answer(asked->context, &answer);
   eo_text_done(&answer.text);
 }

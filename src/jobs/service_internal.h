@@ -30,7 +30,7 @@ struct eo_service {
   int cores;                           /* an analysis uses a second one where there is one */
   struct eo_pairs *pairs;
   struct eo_events *events;
-  struct eo_lane *analyses, *sweeps;
+  struct eo_lane *analyses, *sweeps, *works;
   struct eo_service_worker worker[EO_JOB_KINDS];
   atomic_bool stopping;
 
@@ -61,6 +61,7 @@ void eo_service_publish(struct eo_service *service, int64_t id);
 /* What the lanes call, and how they release a task. */
 void eo_service_answer_analysis(void *service, struct eo_lane_task *task, enum eo_lane_fate fate);
 void eo_service_answer_sweep(void *service, struct eo_lane_task *task, enum eo_lane_fate fate);
+void eo_service_answer_work(void *service, struct eo_lane_task *task, enum eo_lane_fate fate);
 void eo_service_release_task(struct eo_lane_task *task);
 
 #endif

@@ -209,6 +209,7 @@ static void wake(struct eo_service *s, int64_t id, enum eo_job_state state, cons
     eo_error_set(&why, EO_ERROR_CANCELLED, "", "The preparation of the gear pair was cancelled.");
   eo_lane_wake(s->analyses, id, &why);
   eo_lane_wake(s->sweeps, id, &why);
+  eo_lane_wake(s->works, id, &why);
 }
 
 static void work_off(struct eo_service_worker *w, int64_t id)

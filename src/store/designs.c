@@ -88,9 +88,20 @@ enum eo_code eo_store_change_design(struct eo_store *store, int64_t id, int64_t 
   return code ? code : close(store, change(store, id, expected, name, document, visit, context, outcome, error), error);
 }
 
+/* Recordings are not thrown away with the design they belong to. */
+static enum eo_code check_measurements(struct eo_store *store, int64_t id, enum eo_design_outcome *outcome, struct eo_error *error)
+{
+  struct eo_statement s = eo_statement_begin(store, "SELECT 1 FROM measurement WHERE design = ? LIMIT 1", "i", id);
+  if (eo_statement_step(&s))
+    *outcome = EO_DESIGN_USED;
+  return eo_statement_end(&s, error);
+}
+
 static enum eo_code remove_design(struct eo_store *store, int64_t id, int64_t expected, enum eo_design_outcome *outcome, struct eo_error *error)
 {
   enum eo_code code = check(store, id, expected, outcome, error);
+  if (!code && *outcome == EO_DESIGN_DONE)
+    code = check_measurements(store, id, outcome, error);
   return code || *outcome ? code : EO_STATEMENT_RUN(store, error, "DELETE FROM design WHERE id = ?", "i", id);
 }
 

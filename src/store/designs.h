@@ -18,6 +18,7 @@ enum eo_design_outcome {
   EO_DESIGN_MISSING, /* there is none with this number */
   EO_DESIGN_STALE,   /* it has another revision than expected */
   EO_DESIGN_FULL,    /* as many designs as may be are there already */
+  EO_DESIGN_USED,    /* measurements belong to it */
 };
 
 typedef enum eo_code eo_store_visit_design(void *context, const struct eo_stored_design *design, struct eo_error *error);
@@ -31,7 +32,7 @@ enum eo_code eo_store_add_design(struct eo_store *store, const char *name, const
 enum eo_code eo_store_change_design(struct eo_store *store, int64_t id, int64_t expected, const char *name, const char *document,
                                     eo_store_visit_design *visit, void *context, enum eo_design_outcome *outcome, struct eo_error *error);
 
-/* Outcomes: DONE, MISSING, STALE. expected: as above. */
+/* Outcomes: DONE, MISSING, STALE, USED. expected: as above. */
 enum eo_code eo_store_remove_design(struct eo_store *store, int64_t id, int64_t expected, enum eo_design_outcome *outcome, struct eo_error *error);
 
 /* One row; *outcome is DONE (visit was called) or MISSING. */

@@ -3,6 +3,7 @@ import { readPlace, writePlace, putDifference, takeDifference } from '../../web/
 import { change, changeText, duration, labelOf, parseNumber, plain, sig } from '../../web/src/base/format.js';
 import { halfAngle, halfTooth } from '../../web/src/base/involute.js';
 import { leaves, same, valueAt, withValue } from '../../web/src/base/pointer.js';
+import { guess } from '../../web/src/base/recording.js';
 import { complete, fieldAt, numberFault } from '../../web/src/base/schema.js';
 
 globalThis.CustomEvent ??= class extends Event {
@@ -22,6 +23,12 @@ const ok = (condition, what) => {
 };
 const is = (value, expected, what) => ok(same(value, expected), `${what}${same(value, expected) ? '' : `: ${JSON.stringify(value)}, expected ${JSON.stringify(expected)}`}`);
 const near = (value, expected, tolerance, what) => ok(Math.abs(value - expected) <= tolerance, `${what}: ${value} against ${expected}`);
+
+// ---- names of rig files ----
+is(guess('mod_828Nm_2000rpm.csv'), { label: 'modified', torque: '828', speed: '2000' }, 'units in the name');
+is(guess('Unmodified 1035,5 N m 600 rpm.tdms'), { label: 'unmodified', torque: '1035.5', speed: '600' }, 'blanks and a comma');
+is(guess('u-621-1000.csv.gz'), { label: 'unmodified', torque: '621', speed: '1000' }, 'bare numbers: torque, then speed');
+is(guess('run7.csv'), { label: '', torque: '', speed: '' }, 'a name that says nothing');
 
 // ---- numbers ----
 is(parseNumber('1,5'), 1.5, 'comma');

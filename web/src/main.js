@@ -13,12 +13,14 @@ import { Shell } from './shell.js';
 import { compareView } from './views/compare.js';
 import { designView } from './views/design.js';
 import { optimizeView } from './views/optimize.js';
+import { rigView } from './views/rig.js';
 
 /** The tabs, in their order; one module each. @type {import('./app.js').Entry[]} */
 const VIEWS = [
   { id: 'design', title: 'Design', make: designView },
   { id: 'optimize', title: 'Optimize', make: optimizeView },
   { id: 'compare', title: 'Compare', make: compareView },
+  { id: 'rig', title: 'Rig', make: rigView },
 ];
 
 const store = new DesignStore();

@@ -1,0 +1,88 @@
+#include "http/answer.h"
+
+#include "http/job.h"
+#include "http/route.h"
+#include "http/server.h"
+
+static void reply_busy(struct eo_request *request, bool closing)
+{
+  eo_reply_problem(request, 503, closing ? "stopping" : "busy", closing ? "The server is stopping." : "Too many questions are waiting already.");
+  request->reply.retry_after = closing ? 5 : 1;
+}
+
+/* The pair is being prepared: whose job it is, and where to ask. */
+static void reply_preparing(struct eo_request *request, int64_t id)
+{
+  enum eo_job_outcome outcome;
+  struct eo_error error;
+  json_t *job = NULL;
+  if (eo_service_job(request->http->service, id, false, &outcome, &job, &error)) {
+    eo_reply_error(request, "", &error);
+    return;
+  }
+  eo_reply_json(request, 202, json_pack("{s:o}", "job", job ? job : json_null()));
+  eo_reply_job_location(request, id);
+  request->reply.retry_after = 1;
+}
+
+static void take_answer(struct eo_request *request, struct eo_answer *answer)
+{
+  switch (answer->kind) {
+  case EO_ANSWER_DONE:
+    eo_reply_text(request, 200, request->csv ? "text/csv; charset=utf-8" : "application/json", &answer->text);
+    break;
+  case EO_ANSWER_OVERTAKEN:
+    eo_reply_problem(request, 409, "overtaken", "A newer question of the same lane took this one's place.");
+    break;
+  case EO_ANSWER_FAILED:
+    eo_reply_error(request, request->route->design_at ? request->route->design_at : "", &answer->error);
+    break;
+  case EO_ANSWER_PREPARING:
+    reply_preparing(request, answer->job);
+    break;
+  case EO_ANSWER_STOPPED:
+    reply_busy(request, true);
+    break;
+  }
+}
+
+/* Runs on a thread of the service. */
+static void receive(void *context, struct eo_answer *answer)
+{
+  struct eo_request *request = context;
+  take_answer(request, answer);
+  eo_request_finish(request);
+}
+
+void eo_answer_conclude(struct eo_request *request, enum eo_code code, enum eo_admission admission, int64_t job, const struct eo_error *error)
+{
+  if (!code && admission == EO_ADMISSION_ACCEPTED)
+    return;
+  if (code)
+    eo_reply_error(request, "", error);
+  else if (admission == EO_ADMISSION_PREPARING)
+    reply_preparing(request, job);
+  else
+    reply_busy(request, admission == EO_ADMISSION_CLOSED);
+  eo_request_finish(request);
+}
+
+bool eo_request_lane(struct eo_request *request, struct eo_question *question)
+{
+  const char *token = eo_request_header(request, "Easeoff-Lane");
+  question->token = token;
+  if (!token || eo_field_is_visible(token, EO_TOKEN_LENGTH + 1))
+    return true;
+  eo_reply_problem(request, 400, NULL, "Easeoff-Lane takes 1 to %d visible characters.", EO_TOKEN_LENGTH);
+  return false;
+}
+
+struct eo_question eo_request_question(struct eo_request *request, const struct eo_design *design, const struct eo_warnings *warnings)
+{
+  return (struct eo_question){.design = design,
+                              .warnings = warnings,
+                              .format = request->csv ? EO_ANSWER_CSV : EO_ANSWER_JSON,
+                              .wait = eo_field_wait(eo_request_header(request, "Prefer")),
+                              .answer = receive,
+                              .context = request};
+}

@@ -1,0 +1,271 @@
+/* Measurements beside the prediction, the fit of inputs that nobody knows, and recordings of a rig that does not exist. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "http/answer.h"
+#include "http/measurement.h"
+#include "http/route.h"
+#include "http/server.h"
+#include "jobs/rig_work.h"
+#include "store/measurements.h"
+
+/* Hands the work to the service, which owns it then. */
+static void ask(struct eo_request *request, const struct eo_design *design, struct eo_work *work)
+{
+  enum eo_admission admission;
+  struct eo_error error;
+  int64_t job = 0;
+  struct eo_question question = eo_request_question(request, design, NULL);
+  if (!eo_request_lane(request, &question)) {
+    work->release(work->data);
+    return;
+  }
+  eo_request_defer(request);
+  enum eo_code code = eo_service_compute(request->http->service, &question, work, &admission, &job, &error);
+  eo_answer_conclude(request, code, admission, job, &error);
+}
+
+/* ---- measurements of a design ---- */
+
+struct collected {
+  struct eo_rig_points points;
+  const json_t *wanted; /* NULL: all; else an array of numbers */
+  int64_t design;
+};
+
+static bool is_wanted(const json_t *wanted, int64_t id)
+{
+  json_t *value;
+  size_t i;
+  json_array_foreach(wanted, i, value)
+    if (json_integer_value(value) == id)
+      return true;
+  return !wanted;
+}
+
+static enum eo_code collect(void *context, const struct eo_stored_measurement *row, struct eo_error *error)
+{
+  struct collected *c = context;
+  c->design = row->design;
+  return is_wanted(c->wanted, row->id) ? eo_rig_points_add(&c->points, row->id, row->summary, row->pair, error) : EO_OK;
+}
+
+/* The stored design; false: the reply is there. */
+static bool find_design(struct eo_request *request, int64_t id, struct eo_design *design, json_t **document)
+{
+  struct eo_geometry geometry;
+  bool missing;
+  if (eo_request_stored_design(request, id, design, &geometry, document, &missing))
+    return true;
+  if (missing)
+    eo_reply_problem(request, 404, NULL, "There is no design with this number.");
+  return false;
+}
+
+static void compare(struct eo_request *request, const struct eo_design *design, struct eo_rig_points *points)
+{
+  struct eo_work work;
+  struct eo_error error;
+  if (eo_rig_comparison(&work, points, request->csv, &error))
+    eo_reply_error(request, "", &error);
+  else
+    ask(request, design, &work);
+}
+
+static void compare_all(struct eo_request *request, int64_t id, const struct eo_design *design)
+{
+  struct collected c = {0};
+  struct eo_error error;
+  if (eo_store_list_measurements(request->store, id, 0, EO_MOST_MEASURED + 1, collect, &c, &error))
+    eo_reply_error(request, "", &error);
+  else
+    compare(request, design, &c.points);
+  eo_rig_points_done(&c.points);
+}
+
+static void compare_design(struct eo_request *request)
+{
+  struct eo_design design;
+  int64_t id;
+  if (eo_request_key(request, 0, &id) && find_design(request, id, &design, NULL))
+    compare_all(request, id, &design);
+}
+
+/* The design of the body in place of the stored one. */
+static void compare_what_if(struct eo_request *request)
+{
+  struct eo_design stored, design;
+  struct eo_geometry geometry;
+  int64_t id;
+  json_t *body;
+  if (!eo_request_key(request, 0, &id) || !find_design(request, id, &stored, NULL) || !(body = eo_request_json(request)))
+    return;
+  if (eo_request_design(request, body, "", &design, &geometry, NULL))
+    compare_all(request, id, &design);
+  json_decref(body);
+}
+
+static void compare_one(struct eo_request *request)
+{
+  struct collected c = {0};
+  struct eo_design design;
+  struct eo_error error;
+  enum eo_measurement_outcome outcome;
+  int64_t id;
+  if (!eo_request_key(request, 0, &id))
+    return;
+  if (eo_store_find_measurement(request->store, id, collect, &c, &outcome, &error))
+    eo_reply_error(request, "", &error);
+  else if (outcome == EO_MEASUREMENT_MISSING)
+    eo_reply_no_measurement(request);
+  else if (find_design(request, c.design, &design, NULL))
+    compare(request, &design, &c.points);
+  eo_rig_points_done(&c.points);
+}
+
+/* ---- fit ---- */
+
+/* What a fit works on besides its unknowns. */
+struct basis {
+  json_t *wanted;          /* owned; NULL: all measurements */
+  json_t *given;           /* owned; NULL: the stored design */
+  struct eo_design design;
+};
+
+/* Takes "measurements" and "design" out of the body: the rest is what eo_update_decode() knows. */
+static bool read_fit(struct eo_request *request, json_t *body, struct basis *basis, struct eo_update_settings *settings)
+{
+  struct eo_faults *faults = calloc(1, sizeof *faults);
+  struct eo_error error;
+  if (!faults) {
+    eo_reply_error(request, "", (eo_error_memory(&error), &error));
+    return false;
+  }
+  basis->wanted = json_incref(json_object_get(body, "measurements"));
+  basis->given = json_incref(json_object_get(body, "design"));
+  json_object_del(body, "measurements");
+  json_object_del(body, "design");
+  eo_update_decode(body, settings, faults);
+  if (basis->wanted && !json_is_array(basis->wanted))
+    eo_faults_add(faults, "/measurements", "This must be a list of the numbers of measurements.");
+  bool good = faults->count == 0;
+  if (!good)
+    eo_reply_faults(request, "", faults);
+  free(faults);
+  return good;
+}
+
+/* The design of the body, else the stored one; false: the reply is there. */
+static bool find_basis(struct eo_request *request, int64_t id, struct basis *basis)
+{
+  struct eo_geometry geometry;
+  json_t *stored = NULL;
+  if (!find_design(request, id, &basis->design, &stored))
+    return false;
+  if (!basis->given)
+    basis->given = json_incref(stored);
+  json_decref(stored);
+  return eo_request_design(request, basis->given, "/design", &basis->design, &geometry, NULL);
+}
+
+static void put_fit(struct eo_request *request, int64_t id, const struct basis *basis, const struct eo_update_settings *settings)
+{
+  struct collected c = {.wanted = basis->wanted};
+  struct eo_error error;
+  struct eo_work work;
+  enum eo_code code = eo_store_list_measurements(request->store, id, 0, EO_MOST_MEASURED + 1, collect, &c, &error);
+  if (!code)
+    code = eo_rig_fit(&work, &c.points, settings, basis->given, &error);
+  if (code)
+    eo_reply_error(request, "", &error);
+  else
+    ask(request, &basis->design, &work);
+  eo_rig_points_done(&c.points);
+}
+
+static void fit(struct eo_request *request)
+{
+  struct eo_update_settings settings;
+  struct basis basis = {0};
+  json_t *body;
+  int64_t id;
+  if (!eo_request_key(request, 0, &id) || !(body = eo_request_json(request)))
+    return;
+  if (read_fit(request, body, &basis, &settings) && find_basis(request, id, &basis))
+    put_fit(request, id, &basis, &settings);
+  json_decref(basis.wanted);
+  json_decref(basis.given);
+  json_decref(body);
+}
+
+/* ---- synthetic recordings ---- */
+
+static bool read_rig(struct eo_request *request, const json_t *body, const struct eo_design *design, struct eo_rig_request *rig)
+{
+  struct eo_faults *faults = calloc(1, sizeof *faults);
+  json_t *empty = json_object();
+  const json_t *settings = json_object_get(body, "rig");
+  struct eo_error error = {0};
+  bool good = false;
+  if (!faults || !empty)
+    eo_reply_error(request, "", (eo_error_memory(&error), &error));
+  else {
+    eo_table_decode(&eo_rig_table, settings ? settings : empty, NULL, rig, faults);
+    good = faults->count == 0;
+    if (!good)
+      eo_reply_faults(request, "/rig", faults);
+  }
+  if (good && eo_rig_complete(rig, design, &error)) {
+    eo_reply_error(request, "/rig", &error);
+    good = false;
+  }
+  json_decref(empty);
+  free(faults);
+  return good;
+}
+
+static void put_rig(struct eo_request *request, const struct eo_design *design, const struct eo_rig_request *rig)
+{
+  struct eo_work work;
+  struct eo_error error;
+  request->csv = true;
+  snprintf(request->reply.file_name, sizeof request->reply.file_name, "rig-%.6gNm-%.6grpm.csv", rig->torque, rig->speed * 30 / M_PI);
+  if (eo_rig_recording(&work, rig, &error))
+    eo_reply_error(request, "", &error);
+  else
+    ask(request, design, &work);
+}
+
+static void record(struct eo_request *request)
+{
+  struct eo_design design;
+  struct eo_geometry geometry;
+  struct eo_rig_request rig;
+  json_t *body = eo_request_json(request), *document = json_object_get(body, "design");
+  if (body && !json_is_object(document))
+    eo_reply_problem(request, 422, "invalid", "The body has no design.");
+  else if (body && eo_request_design(request, document, "/design", &design, &geometry, NULL) && read_rig(request, body, &design, &rig))
+    put_rig(request, &design, &rig);
+  json_decref(body);
+}
+
+#define LANE "Easeoff-Lane, Prefer"
+const struct eo_route eo_routes_comparison[] = {
+    {.method = EO_GET, .pattern = "/measurements/{id}/comparison", .handle = compare_one, .name = "compareMeasurement", .gives = "200 Comparison, 202 Preparing",
+     .headers = LANE, .rate = EO_RATE_QUESTION, .csv = true,
+     .summary = "A measurement beside the prediction at its torque and measured speed: rotational acceleration at the encoders' end, orders, TE in phase."},
+    {.method = EO_GET, .pattern = "/designs/{id}/comparison", .handle = compare_design, .name = "compareDesign", .gives = "200 Comparison, 202 Preparing",
+     .headers = LANE, .rate = EO_RATE_START, .csv = true,
+     .summary = "All measurements of a design beside the prediction, reductions by the modification, outliers with their reasons."},
+    {.method = EO_POST, .pattern = "/designs/{id}/comparison", .handle = compare_what_if, .name = "compareWhatIf", .takes = "Design",
+     .gives = "200 Comparison, 202 Preparing", .headers = LANE, .rate = EO_RATE_QUESTION, .csv = true,
+     .summary = "The same with another design in the place of the stored one: what its measurements would say about it."},
+    {.method = EO_POST, .pattern = "/designs/{id}/fit", .handle = fit, .name = "fitDesign", .takes = "FitOrder", .gives = "200 Fit, 202 Preparing",
+     .headers = LANE, .rate = EO_RATE_START,
+     .summary = "Inputs that nobody knows, fitted to the measurements of a design (or of `design` in its place) within ranges; `design` in the answer holds them, to be put in its place."},
+    {.method = EO_POST, .pattern = "/rig", .handle = record, .name = "recordRig", .takes = "RigOrder", .design_at = "/design", .headers = LANE,
+     .gives = "200 text/csv, 202 Preparing", .rate = EO_RATE_START,
+     .summary = "What two encoders would record of a design: a text file with known truth, for teaching and tests, as `easeoff rig` writes it."},
+    {0}};

@@ -1,0 +1,279 @@
+/* What is uploaded is read and measured on a thread of its own, and kept only when that gave a result. */
+#include <errno.h>
+#include <fcntl.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "document/json.h"
+#include "http/measurement.h"
+#include "http/route.h"
+#include "http/server.h"
+#include "http/upload.h"
+#include "jobs/rig_work.h"
+
+/* What the form said. */
+struct asked {
+  int64_t design;
+  bool unmodified;
+  int end, harmonics;
+  double torque, speed; /* speed: rad/s, NaN: not stated */
+  json_t *layout;       /* owned */
+  struct eo_design parsed;
+  struct eo_geometry geometry;
+  struct eo_faults faults;
+};
+
+static double read_positive(struct asked *asked, const char *text, const char *pointer)
+{
+  double value = NAN;
+  if (text && *text && (!eo_field_real(text, &value) || !(value > 0) || value > 1e9))
+    eo_faults_add(&asked->faults, pointer, "This must be a positive number.");
+  return value;
+}
+
+/* 0 or 1 of two words; the first one is what holds without any. */
+static int read_word(struct asked *asked, const char *text, const char *pointer, const char *usual, const char *other)
+{
+  if (text && *text && strcmp(text, usual) != 0 && strcmp(text, other) != 0)
+    eo_faults_add(&asked->faults, pointer, "This must be \"%s\" or \"%s\".", usual, other);
+  return text && strcmp(text, other) == 0;
+}
+
+static void read_layout(struct asked *asked, const char *text)
+{
+  struct eo_error error;
+  if (!text || !*text || strcmp(text, "null") == 0)
+    return;
+  asked->layout = eo_json_parse(text, strlen(text), &error);
+  if (!asked->layout)
+    eo_faults_add(&asked->faults, "/layout", "%s", error.text);
+}
+
+static bool read_form(struct eo_request *request, struct asked *asked)
+{
+  const struct eo_upload *form = request->upload;
+  const char *design = eo_upload_field(form, "design"), *label = eo_upload_field(form, "label"), *harmonics = eo_upload_field(form, "harmonics");
+  int64_t orders = 0;
+  if (!design || !eo_field_integer(design, &asked->design) || asked->design < 1)
+    eo_faults_add(&asked->faults, "/design", "The number of the stored design that was measured is missing.");
+  if (!label || !*label)
+    eo_faults_add(&asked->faults, "/label", "Say whether the pair was \"unmodified\" or \"modified\".");
+  asked->unmodified = read_word(asked, label, "/label", "modified", "unmodified") == 1;
+  asked->end = read_word(asked, eo_upload_field(form, "end"), "/end", "right", "left") ? EO_LEFT : EO_RIGHT;
+  asked->torque = read_positive(asked, eo_upload_field(form, "torque_Nm"), "/torque_Nm");
+  if (isnan(asked->torque) && !asked->faults.count)
+    eo_faults_add(&asked->faults, "/torque_Nm", "The torque on the pinion is missing.");
+  asked->speed = eo_unit_in(&eo_unit_rpm, read_positive(asked, eo_upload_field(form, "speed_rpm"), "/speed_rpm"));
+  if (harmonics && *harmonics && (!eo_field_integer(harmonics, &orders) || orders < 1 || orders > EO_MESH_ORDERS))
+    eo_faults_add(&asked->faults, "/harmonics", "This must be a whole number from 1 to %d.", EO_MESH_ORDERS);
+  asked->harmonics = (int)orders;
+  read_layout(asked, eo_upload_field(form, "layout"));
+  if (asked->faults.count)
+    eo_reply_faults(request, "", &asked->faults);
+  return !asked->faults.count;
+}
+
+static bool find_design(struct eo_request *request, struct asked *asked)
+{
+  bool missing = false;
+  if (eo_request_stored_design(request, asked->design, &asked->parsed, &asked->geometry, NULL, &missing))
+    return true;
+  if (missing) {
+    eo_faults_add(&asked->faults, "/design", "There is no design with this number.");
+    eo_reply_faults(request, "", &asked->faults);
+  }
+  return false;
+}
+
+/* ---- check sums ---- */
+
+static enum eo_code hash_file(const char *path, char sha256[EO_HASH_LENGTH + 1], struct eo_error *error)
+{
+  enum { BLOCK = 64 << 10 };
+  unsigned char *block = malloc(BLOCK);
+  struct eo_hash hash;
+  int file = open(path, O_RDONLY | O_CLOEXEC);
+  ssize_t got = -1;
+  eo_hash_init(&hash);
+  while (block && file >= 0 && (got = read(file, block, BLOCK)) > 0)
+    eo_hash_add(&hash, block, (size_t)got);
+  eo_hash_finish(&hash, sha256);
+  if (file >= 0)
+    close(file);
+  free(block);
+  return got < 0 ? eo_error_set(error, EO_ERROR_FILE, "", "%.250s: %s.", path, strerror(errno)) : EO_OK;
+}
+
+static enum eo_code hash_files(struct eo_upload *upload, struct eo_error *error)
+{
+  char path[EO_UPLOAD_PATH];
+  enum eo_code code = EO_OK;
+  for (int i = 0; i < upload->files && !code; i++) {
+    eo_upload_path(upload, i, path);
+    code = hash_file(path, upload->file[i].sha256, error);
+  }
+  return code;
+}
+
+/* Everything that decides what comes out. */
+static void write_request_digest(const struct asked *asked, const struct eo_upload *upload, const char *pair, char digest[EO_HASH_LENGTH + 1])
+{
+  struct eo_hash hash;
+  struct eo_text layout = {0};
+  if (asked->layout)
+    eo_json_write(&layout, asked->layout, EO_JSON_CANONICAL);
+  eo_hash_init(&hash);
+  eo_hash_add_number(&hash, "design", (double)asked->design);
+  eo_hash_add_number(&hash, "unmodified", asked->unmodified);
+  eo_hash_add_number(&hash, "end", asked->end);
+  eo_hash_add_number(&hash, "harmonics", asked->harmonics);
+  eo_hash_add_number(&hash, "torque", asked->torque);
+  eo_hash_add_number(&hash, "speed", asked->speed);
+  eo_hash_add_text(&hash, "layout", layout.data ? layout.data : "");
+  eo_hash_add_text(&hash, "pair", pair);
+  for (int i = 0; i < upload->files; i++)
+    eo_hash_add_text(&hash, "file", upload->file[i].sha256);
+  eo_hash_finish(&hash, digest);
+  eo_text_done(&layout);
+}
+
+/* ---- reading and keeping ---- */
+
+static int watch(void *context, const char *what, double fraction)
+{
+  struct eo_http *http = context;
+  (void)what;
+  (void)fraction;
+  pthread_mutex_lock(&http->lock);
+  bool closing = http->closing;
+  pthread_mutex_unlock(&http->lock);
+  return closing;
+}
+
+static enum eo_code measure(struct eo_request *request, const struct asked *asked, json_t **document, struct eo_error *error)
+{
+  const struct eo_upload *upload = request->upload;
+  char path[EO_MEASUREMENT_FILES][EO_UPLOAD_PATH];
+  const struct eo_progress progress = {watch, request->http};
+  for (int i = 0; i < upload->files; i++)
+    eo_upload_path(upload, i, path[i]);
+  const struct eo_measure_request work = {.path = path[0], .gear_path = upload->files > 1 ? path[1] : NULL, .name = upload->file[0].name,
+                                          .unmodified = asked->unmodified, .torque = asked->torque, .stated_speed = asked->speed, .end = asked->end,
+                                          .harmonics = asked->harmonics, .layout = asked->layout, .geometry = &asked->geometry,
+                                          .spool_directory = upload->folder};
+  return eo_measure_file(&work, &progress, document, NULL, NULL, error);
+}
+
+static void reply_refused(struct eo_request *request, const json_t *document)
+{
+  static const char *const kept[] = {"findings", "notes", "layout", "signal"};
+  json_t *more = json_object();
+  const char *detail = "The recording has no result; its findings say why.";
+  json_t *finding;
+  size_t i;
+  for (i = 0; i < sizeof kept / sizeof kept[0]; i++)
+    json_object_set(more, kept[i], json_object_get(document, kept[i]));
+  json_array_foreach(json_object_get(document, "findings"), i, finding)
+    if (strcmp(json_string_value(json_object_get(finding, "severity")), "refused") == 0) {
+      detail = json_string_value(json_object_get(finding, "text"));
+      break;
+    }
+  eo_reply_problem_with(request, 422, "refused", more, detail);
+}
+
+static void reply_stored(struct eo_request *request, unsigned status, struct eo_found_measurement *found)
+{
+  eo_reply_text(request, status, "application/json", &found->text);
+  snprintf(request->reply.tag, sizeof request->reply.tag, "%s", found->tag);
+  snprintf(request->reply.location, sizeof request->reply.location, EO_API "/measurements/%lld", (long long)found->id);
+}
+
+static char *dump(const json_t *document)
+{
+  struct eo_text text = {0};
+  eo_json_write(&text, document, EO_JSON_COMPACT);
+  return text.failed ? (eo_text_done(&text), NULL) : text.data;
+}
+
+static enum eo_code keep(struct eo_request *request, const struct asked *asked, const char *pair, const char *digest, const json_t *document,
+                         struct eo_found_measurement *found, enum eo_measurement_outcome *outcome, struct eo_error *error)
+{
+  const struct eo_upload *upload = request->upload;
+  json_t *summary = eo_rig_summary(document);
+  char *texts[3] = {dump(document), summary ? dump(summary) : NULL, asked->layout ? dump(asked->layout) : strdup("")};
+  struct eo_stored_measurement row = {.design = asked->design, .digest = digest, .unmodified = asked->unmodified, .torque = asked->torque,
+                                      .speed = asked->speed, .layout = texts[2], .pair = pair, .summary = texts[1], .result = texts[0],
+                                      .files = upload->files};
+  memcpy(row.file, upload->file, sizeof row.file);
+  enum eo_code code = texts[0] && texts[1] && texts[2]
+                          ? eo_store_add_measurement(request->store, &row, upload->folder, eo_measurement_take, found, outcome, error)
+                          : eo_error_memory(error);
+  for (int i = 0; i < 3; i++)
+    free(texts[i]);
+  json_decref(summary);
+  return code;
+}
+
+static void measure_and_keep(struct eo_request *request, const struct asked *asked, const char *pair, const char *digest)
+{
+  struct eo_found_measurement found = {0};
+  struct eo_error error;
+  enum eo_measurement_outcome outcome;
+  json_t *document = NULL;
+  enum eo_code code = measure(request, asked, &document, &error);
+  if (code == EO_ERROR_CANCELLED) {
+    eo_reply_problem(request, 503, "stopping", "The server is stopping.");
+    request->reply.retry_after = 5;
+  } else if (code)
+    eo_reply_error(request, "", &error);
+  else if (json_is_true(json_object_get(document, "refused")))
+    reply_refused(request, document);
+  else if (keep(request, asked, pair, digest, document, &found, &outcome, &error))
+    eo_reply_error(request, "", &error);
+  else if (outcome == EO_MEASUREMENT_NO_DESIGN)
+    eo_reply_problem(request, 409, NULL, "The design was removed meanwhile.");
+  else
+    reply_stored(request, outcome == EO_MEASUREMENT_KNOWN ? 200 : 201, &found);
+  eo_text_done(&found.text);
+  json_decref(document);
+}
+
+/* The same files with the same words are the same measurement: a client that heard no answer sends them again. */
+static void answer_upload(struct eo_request *request, struct asked *asked)
+{
+  struct eo_found_measurement found = {0};
+  struct eo_error error;
+  enum eo_measurement_outcome outcome = EO_MEASUREMENT_MISSING;
+  char pair[EO_HASH_LENGTH + 1], digest[EO_HASH_LENGTH + 1];
+  if (!read_form(request, asked) || !find_design(request, asked))
+    return;
+  eo_rig_pair_hash(&asked->geometry, pair);
+  enum eo_code code = hash_files(request->upload, &error);
+  if (!code) {
+    write_request_digest(asked, request->upload, pair, digest);
+    code = eo_store_find_measurement_digest(request->store, digest, eo_measurement_take, &found, &outcome, &error);
+  }
+  if (code)
+    eo_reply_error(request, "", &error);
+  else if (outcome == EO_MEASUREMENT_DONE)
+    reply_stored(request, 200, &found);
+  else
+    measure_and_keep(request, asked, pair, digest);
+  eo_text_done(&found.text);
+}
+
+void eo_measurement_add(struct eo_request *request)
+{
+  struct asked *asked = calloc(1, sizeof *asked);
+  struct eo_error error;
+  if (!asked) {
+    eo_reply_error(request, "", (eo_error_memory(&error), &error));
+    return;
+  }
+  answer_upload(request, asked);
+  json_decref(asked->layout);
+  free(asked);
+}

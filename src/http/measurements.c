@@ -1,0 +1,230 @@
+/* Stored measurements of a rig: lists, results, the files as they came. */
+#include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "document/json.h"
+#include "http/measurement.h"
+#include "http/route.h"
+#include "http/server.h"
+#include "http/upload.h"
+
+enum { MOST_LISTED = 200 };
+
+/* ---- documents: written as text, since the results are kept as text ---- */
+
+static void add_json(struct eo_text *text, json_t *value)
+{
+  if (value)
+    eo_json_write(text, value, EO_JSON_COMPACT);
+  text->failed = text->failed || !value;
+  json_decref(value);
+}
+
+static void add_files(struct eo_text *text, const struct eo_stored_measurement *row)
+{
+  json_t *files = json_array();
+  for (int i = 0; i < row->files; i++)
+    json_array_append_new(files, json_pack("{s:s, s:I, s:s}", "name", row->file[i].name, "size", (json_int_t)row->file[i].size, "sha256", row->file[i].sha256));
+  eo_text_add(text, ",\"files\":");
+  add_json(text, files);
+}
+
+/* document: of the result or its summary, a JSON object. */
+static void add_row(struct eo_text *text, const struct eo_stored_measurement *row, const char *document)
+{
+  eo_text_print(text, "{\"id\":%lld,\"design\":%lld,\"created\":\"%s\",\"stated_speed_rpm\":", (long long)row->id, (long long)row->design, row->created);
+  json_t *speed = eo_json_real(row->speed, &eo_unit_rpm);
+  add_json(text, speed);
+  eo_text_print(text, ",\"asked_layout\":%s", *row->layout ? row->layout : "null");
+  add_files(text, row);
+  eo_text_add(text, ",");
+  eo_text_add(text, document + 1);
+}
+
+/* ---- reading ---- */
+
+enum eo_code eo_measurement_take(void *context, const struct eo_stored_measurement *row, struct eo_error *error)
+{
+  struct eo_found_measurement *found = context;
+  found->id = row->id;
+  snprintf(found->tag, sizeof found->tag, "%s", row->digest);
+  add_row(&found->text, row, row->result);
+  return found->text.failed ? eo_error_memory(error) : EO_OK;
+}
+
+void eo_reply_no_measurement(struct eo_request *request)
+{
+  eo_reply_problem(request, 404, NULL, "There is no measurement with this number.");
+}
+
+static void get_one(struct eo_request *request)
+{
+  struct eo_found_measurement found = {0};
+  struct eo_error error;
+  enum eo_measurement_outcome outcome;
+  int64_t id;
+  if (!eo_request_key(request, 0, &id))
+    return;
+  if (eo_store_find_measurement(request->store, id, eo_measurement_take, &found, &outcome, &error))
+    eo_reply_error(request, "", &error);
+  else if (outcome == EO_MEASUREMENT_MISSING)
+    eo_reply_no_measurement(request);
+  else if (!eo_reply_unchanged(request, found.tag))
+    eo_reply_text(request, 200, "application/json", &found.text);
+  eo_text_done(&found.text);
+}
+
+struct page {
+  struct eo_text text;
+  int count, limit;
+  int64_t last;
+  bool more;
+};
+
+static enum eo_code visit_listed(void *context, const struct eo_stored_measurement *row, struct eo_error *error)
+{
+  struct page *page = context;
+  page->more = page->count == page->limit;
+  if (page->more)
+    return EO_OK;
+  page->last = row->id;
+  eo_text_add(&page->text, page->count++ ? "," : "{\"items\":[");
+  add_row(&page->text, row, row->summary);
+  return page->text.failed ? eo_error_memory(error) : EO_OK;
+}
+
+static void list(struct eo_request *request)
+{
+  struct page page = {.limit = (int)eo_request_number(request, "limit")};
+  struct eo_error error;
+  enum eo_code code = eo_store_list_measurements(request->store, (int64_t)eo_request_number(request, "design"), (int64_t)eo_request_number(request, "cursor"),
+                                                 page.limit + 1, visit_listed, &page, &error);
+  if (!page.count)
+    eo_text_add(&page.text, "{\"items\":[");
+  if (page.more)
+    eo_text_print(&page.text, "],\"next\":\"%lld\"}\n", (long long)page.last);
+  else
+    eo_text_add(&page.text, "],\"next\":null}\n");
+  if (code)
+    eo_reply_error(request, "", &error);
+  else
+    eo_reply_text(request, 200, "application/json", &page.text);
+  eo_text_done(&page.text);
+}
+
+static void take_out(struct eo_request *request)
+{
+  struct eo_error error;
+  enum eo_measurement_outcome outcome;
+  int64_t id;
+  if (!eo_request_key(request, 0, &id))
+    return;
+  if (eo_store_remove_measurement(request->store, id, &outcome, &error))
+    eo_reply_error(request, "", &error);
+  else if (outcome == EO_MEASUREMENT_MISSING)
+    eo_reply_no_measurement(request);
+  else
+    eo_reply_empty(request, 204);
+}
+
+/* ---- the file as it came ---- */
+
+static enum eo_code visit_files(void *context, const struct eo_stored_measurement *row, struct eo_error *error)
+{
+  (void)error;
+  *(struct eo_stored_measurement *)context = *row;
+  return EO_OK;
+}
+
+/* SHA-256 as RFC 9530 writes it: base64 of the bytes. */
+static void write_digest(const char *hex, char *text, size_t size)
+{
+  static const char letter[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  unsigned char byte[EO_HASH_LENGTH / 2 + 1] = {0};
+  char code[64];
+  int count = 0;
+  for (int i = 0; i < EO_HASH_LENGTH / 2; i++) {
+    unsigned value = 0;
+    sscanf(hex + (size_t)2 * (size_t)i, "%2x", &value);
+    byte[i] = (unsigned char)value;
+  }
+  for (int i = 0; i < EO_HASH_LENGTH / 2; i += 3) {
+    unsigned bits = (unsigned)byte[i] << 16 | (unsigned)byte[i + 1] << 8 | (i + 2 < EO_HASH_LENGTH / 2 ? byte[i + 2] : 0u);
+    for (int k = 18; k >= 0; k -= 6)
+      code[count++] = letter[bits >> k & 63];
+  }
+  snprintf(text, size, "sha-256=:%.43s=:", code); /* 32 bytes: 43 letters and one in place of the last */
+}
+
+/* A header field takes fewer characters than a name may have. */
+static void name_download(char *target, size_t size, const char *name)
+{
+  snprintf(target, size, "%.*s", (int)size - 1, name);
+  for (char *c = target; *c; c++)
+    if ((unsigned char)*c >= 127 || *c == '"' || *c == '\\' || *c == '/' || *c < ' ')
+      *c = '_';
+}
+
+static void send_file(struct eo_request *request, const struct eo_stored_measurement *row, int number)
+{
+  char path[4200], digest[80];
+  struct eo_error error;
+  const struct eo_measurement_file *file = &row->file[number];
+  int descriptor = eo_measurement_file_path(request->store, row->id, number, path, sizeof path) ? open(path, O_RDONLY | O_CLOEXEC) : -1;
+  struct MHD_Response *response = descriptor < 0 ? NULL : MHD_create_response_from_fd64((uint64_t)file->size, descriptor);
+  if (!response) {
+    if (descriptor >= 0)
+      close(descriptor);
+    eo_error_set(&error, EO_ERROR_FILE, "", "%.250s: %s.", path, strerror(errno));
+    eo_reply_error(request, "", &error);
+    return;
+  }
+  write_digest(file->sha256, digest, sizeof digest);
+  MHD_add_response_header(response, "Repr-Digest", digest);
+  eo_reply_empty(request, 200);
+  request->reply.type = "application/octet-stream";
+  request->reply.stream = response;
+  request->sent = (size_t)file->size;
+  name_download(request->reply.file_name, sizeof request->reply.file_name, file->name);
+}
+
+static void get_file(struct eo_request *request)
+{
+  struct eo_stored_measurement row = {0};
+  struct eo_error error;
+  enum eo_measurement_outcome outcome;
+  int64_t id;
+  int number = (int)eo_request_number(request, "part") - 1;
+  if (!eo_request_key(request, 0, &id))
+    return;
+  if (eo_store_find_measurement(request->store, id, visit_files, &row, &outcome, &error))
+    eo_reply_error(request, "", &error);
+  else if (outcome == EO_MEASUREMENT_MISSING)
+    eo_reply_no_measurement(request);
+  else if (number >= row.files)
+    eo_reply_problem(request, 404, NULL, "This measurement has one file.");
+  else if (!eo_reply_unchanged(request, row.file[number].sha256))
+    send_file(request, &row, number);
+}
+
+const struct eo_route eo_routes_measurements[] = {
+    {.method = EO_GET, .pattern = "/measurements", .handle = list, .name = "listMeasurements", .gives = "200 Measurements",
+     .summary = "Rig measurements, newest first, without their curves.",
+     .query = {{"limit", 1, MOST_LISTED, 50, NULL, "most items"}, {"cursor", 1, 9e15, 0, NULL, "`next` of the page before"},
+               {"design", 1, 9e15, 0, NULL, "of this design alone"}}},
+    {.method = EO_POST, .pattern = "/measurements", .handle = eo_measurement_add, .name = "addMeasurement", .takes = "MeasurementForm", .form = true,
+     .gives = "201 Measurement, 200 Measurement", .rate = EO_RATE_QUESTION, .body = EO_UPLOAD_BYTES,
+     .summary = "A recording of two encoders: one file, or the pinion's and then the gear's. 200 when it is known already; 422 with the findings when "
+                "it gives no result, and nothing is kept then."},
+    {.method = EO_GET, .pattern = "/measurements/{id}", .handle = get_one, .name = "getMeasurement", .gives = "200 Measurement", .headers = "If-None-Match",
+     .summary = "A measurement: what was found in the recording, transmission error, orders, RMS."},
+    {.method = EO_DELETE, .pattern = "/measurements/{id}", .handle = take_out, .name = "removeMeasurement", .gives = "204 -",
+     .summary = "Removes a measurement with its files."},
+    {.method = EO_GET, .pattern = "/measurements/{id}/file", .handle = get_file, .name = "getMeasurementFile", .gives = "200 application/octet-stream",
+     .headers = "If-None-Match", .summary = "The recording as it came; its SHA-256 is the ETag.",
+     .query = {{"part", 1, EO_MEASUREMENT_FILES, 1, NULL, "2: the gear's file, where each encoder had one"}}},
+    {0}};

@@ -1,0 +1,243 @@
+#include "http/upload.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+#include <sys/statvfs.h>
+#include <unistd.h>
+
+#include "base/clock.h"
+#include "http/server.h"
+
+enum { BUFFER = 64 << 10, SLOWEST = 64 << 10 }; /* bytes; bytes per second */
+
+static const char *const known_fields[] = {"design", "label", "torque_Nm", "speed_rpm", "end", "harmonics", "layout"};
+
+/* ---- names ---- */
+
+/* A file's name without folders of any system, in one line, within its place. */
+static void clean_name(char *target, size_t size, const char *name)
+{
+  const char *slash = strrchr(name, '/'), *back = strrchr(name, '\\');
+  const char *last = slash > back ? slash : back;
+  eo_text_clean(target, size, last ? last + 1 : name);
+  json_t *text = json_string(target);
+  for (char *c = target; !text && *c; c++) /* not UTF-8 */
+    *c = *c & 0x80 ? '?' : *c;
+  json_decref(text);
+  if (!*target || strcmp(target, ".") == 0 || strcmp(target, "..") == 0)
+    snprintf(target, size, "recording");
+}
+
+/* ---- parts ---- */
+
+static enum MHD_Result refuse(struct eo_request *request, unsigned status, const char *what)
+{
+  if (!request->reply.status)
+    eo_reply_problem(request, status, status == 507 ? "full" : "form", "%s", what);
+  return MHD_NO;
+}
+
+static bool is_known(const char *name)
+{
+  for (size_t i = 0; i < sizeof known_fields / sizeof known_fields[0]; i++)
+    if (strcmp(known_fields[i], name) == 0)
+      return true;
+  return false;
+}
+
+static void end_file(struct eo_upload *upload)
+{
+  if (upload->output >= 0)
+    close(upload->output);
+  upload->output = -1;
+}
+
+static enum MHD_Result begin_file(struct eo_request *request, const char *name)
+{
+  struct eo_upload *upload = request->upload;
+  char path[EO_UPLOAD_PATH];
+  end_file(upload);
+  if (upload->files == EO_MEASUREMENT_FILES)
+    return refuse(request, 422, "A measurement has one file, or one of the pinion and one of the gear.");
+  struct eo_measurement_file *file = &upload->file[upload->files];
+  eo_upload_path(upload, upload->files, path);
+  clean_name(file->name, sizeof file->name, name ? name : "");
+  file->size = 0;
+  upload->output = open(path, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  if (upload->output < 0)
+    return refuse(request, 507, "The server has no room for the file.");
+  upload->files++;
+  return MHD_YES;
+}
+
+static enum MHD_Result begin_field(struct eo_request *request, const char *name)
+{
+  struct eo_upload *upload = request->upload;
+  char shown[40], text[120];
+  eo_text_clean(shown, sizeof shown, name);
+  snprintf(text, sizeof text, "The form has a part \"%s\" that is not known, or has it twice.", shown);
+  if (!is_known(name) || eo_upload_field(upload, name) || upload->fields == EO_UPLOAD_FIELDS)
+    return refuse(request, 422, text);
+  snprintf(upload->field[upload->fields++].name, sizeof upload->field[0].name, "%s", name);
+  return MHD_YES;
+}
+
+static enum MHD_Result begin_part(struct eo_request *request, const char *name, const char *file_name, const char *coding)
+{
+  struct eo_upload *upload = request->upload;
+  if (coding && strcasecmp(coding, "binary") != 0 && strcasecmp(coding, "8bit") != 0 && strcasecmp(coding, "7bit") != 0)
+    return refuse(request, 415, "Parts must come as they are, without a transfer encoding.");
+  snprintf(upload->part, sizeof upload->part, "%s", name);
+  upload->part_size = 0;
+  upload->in_file = strcmp(name, "file") == 0;
+  return upload->in_file ? begin_file(request, file_name) : begin_field(request, name);
+}
+
+static enum MHD_Result add_to_file(struct eo_request *request, const char *data, size_t size)
+{
+  struct eo_upload *upload = request->upload;
+  while (size) {
+    ssize_t written = write(upload->output, data, size);
+    if (written < 0 && errno == EINTR)
+      continue;
+    if (written <= 0)
+      return refuse(request, 507, "The server has no room for the file.");
+    data += written;
+    size -= (size_t)written;
+    upload->file[upload->files - 1].size += written;
+  }
+  return MHD_YES;
+}
+
+static enum MHD_Result add_to_field(struct eo_request *request, const char *data, size_t size)
+{
+  struct eo_upload *upload = request->upload;
+  struct eo_text *value = &upload->field[upload->fields - 1].value;
+  if (value->size + size > EO_UPLOAD_FIELD_BYTES)
+    return refuse(request, 413, "A part of the form that is no file is too long.");
+  eo_text_add_bytes(value, data, size);
+  return MHD_YES;
+}
+
+/* The library tells a part's beginning by its offset alone, and may do so twice while nothing of the part came. */
+static enum MHD_Result take_part(void *context, enum MHD_ValueKind kind, const char *name, const char *file_name, const char *type, const char *coding,
+                                 const char *data, uint64_t offset, size_t size)
+{
+  struct eo_request *request = context;
+  struct eo_upload *upload = request->upload;
+  (void)kind, (void)type;
+  if (!name || request->reply.status)
+    return MHD_NO;
+  bool same = upload->part_size == 0 && strncmp(upload->part, name, sizeof upload->part - 1) == 0;
+  if (offset == 0 && !same && begin_part(request, name, file_name, coding) == MHD_NO)
+    return MHD_NO;
+  upload->part_size += size;
+  if (!size)
+    return MHD_YES;
+  return upload->in_file ? add_to_file(request, data, size) : add_to_field(request, data, size);
+}
+
+/* ---- the whole ---- */
+
+static bool has_room(struct eo_request *request, const struct eo_upload *upload, int64_t size)
+{
+  struct statvfs disk;
+  struct eo_error error;
+  int64_t kept;
+  if (eo_store_measured_bytes(request->store, &kept, &error)) {
+    eo_reply_error(request, "", &error);
+    return false;
+  }
+  bool free = statvfs(upload->folder, &disk) != 0 || (int64_t)disk.f_bavail * (int64_t)disk.f_frsize > size + EO_UPLOAD_SPARE_BYTES;
+  if (free && kept + size <= EO_UPLOADS_TOTAL_BYTES)
+    return true;
+  refuse(request, 507, "The server has no room for more measurements.");
+  return false;
+}
+
+void eo_upload_begin(struct eo_request *request, int64_t size)
+{
+  struct eo_error error;
+  if (request->http->uploads >= EO_MOST_UPLOADS) {
+    eo_reply_problem(request, 503, "busy", "%d uploads are on their way already.", EO_MOST_UPLOADS);
+    request->reply.retry_after = 5;
+    return;
+  }
+  struct eo_upload *upload = calloc(1, sizeof *upload);
+  if (!upload) {
+    eo_reply_error(request, "", (eo_error_memory(&error), &error));
+    return;
+  }
+  upload->output = -1;
+  request->upload = upload;
+  request->http->uploads++;
+  if (eo_measurement_folder_new(request->store, upload->folder, sizeof upload->folder, &error)) {
+    *upload->folder = '\0';
+    eo_reply_error(request, "", &error);
+  } else if (has_room(request, upload, size)) {
+    upload->processor = MHD_create_post_processor(request->connection, BUFFER, take_part, request);
+    if (!upload->processor)
+      eo_reply_problem(request, 415, NULL, "The body must be multipart/form-data with a boundary.");
+  }
+}
+
+void eo_upload_take(struct eo_request *request, const char *data, size_t size)
+{
+  if (MHD_post_process(request->upload->processor, data, size) == MHD_NO)
+    refuse(request, 400, "The body is no multipart/form-data.");
+}
+
+bool eo_upload_end(struct eo_request *request)
+{
+  struct eo_upload *upload = request->upload;
+  bool whole = upload->processor && MHD_destroy_post_processor(upload->processor) == MHD_YES;
+  upload->processor = NULL;
+  end_file(upload);
+  for (int i = 0; i < upload->fields; i++)
+    whole = whole && !upload->field[i].value.failed;
+  if (!whole)
+    refuse(request, 400, "The body was cut off.");
+  else if (!upload->files || !upload->file[0].size || !upload->file[upload->files - 1].size)
+    refuse(request, 422, upload->files ? "The file is empty." : "The form has no part \"file\".");
+  return !request->reply.status;
+}
+
+int eo_upload_patience(const struct eo_request *request)
+{
+  double left = EO_BODY_SECONDS + (double)request->received / SLOWEST - 1e-3 * (eo_clock_milliseconds() - request->started);
+  return left < 1 ? 1 : (int)left;
+}
+
+void eo_upload_path(const struct eo_upload *upload, int file, char *path)
+{
+  snprintf(path, EO_UPLOAD_PATH, "%s/%d", upload->folder, file);
+}
+
+const char *eo_upload_field(const struct eo_upload *upload, const char *name)
+{
+  for (int i = 0; i < upload->fields; i++)
+    if (strcmp(upload->field[i].name, name) == 0)
+      return upload->field[i].value.data ? upload->field[i].value.data : "";
+  return NULL;
+}
+
+void eo_upload_free(struct eo_request *request)
+{
+  struct eo_upload *upload = request->upload;
+  if (!upload)
+    return;
+  if (upload->processor)
+    MHD_destroy_post_processor(upload->processor);
+  end_file(upload);
+  if (*upload->folder)
+    eo_measurement_folder_remove(upload->folder);
+  for (int i = 0; i < upload->fields; i++)
+    eo_text_done(&upload->field[i].value);
+  free(upload);
+  request->upload = NULL;
+  request->http->uploads--;
+}
