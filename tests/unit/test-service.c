@@ -242,6 +242,7 @@ static void test_job(void)
   ok(wait_for_evaluations(service, id, 20), "it runs");
   struct eo_text none = {0};
   ok(!eo_service_result(service, id, &outcome, &none, &error) && outcome == EO_JOB_OUTCOME_STATE, "its result is not there yet");
+  eo_text_done(&none);
   ok(wait_for(service, id, "done"), "it ends");
   undisturbed = result_of(service, id);
   ok(undisturbed != NULL, "with a result");

@@ -97,7 +97,7 @@ export class MeasuredPoints {
     if (!points.length) return;
     const xs = points.map((point) => point.x);
     const [first, last] = [Math.min(...xs), Math.max(...xs)];
-    const pad = (last - first) * 0.08 || first * 0.1 || 1;
+    const pad = Math.max((last - first) * 0.08, Math.abs(first) * 0.02) || 1; // speeds that differ by their noise stand together
     const top = 1.08 * Math.max(...points.map((point) => Math.max(point.measured + point.sigma, point.predicted ?? 0)));
     const [w, t] = [width - BOX.left - BOX.right, height - BOX.top - BOX.bottom];
     /** @param {number} value */
