@@ -195,6 +195,20 @@ struct heard {
   int states; /* that differ from the one before */
 };
 
+/* An event shows the job as it is when it is told: a state that is left at once may not be heard of. */
+static bool follows_its_life(const struct heard *heard)
+{
+  static const char *const life[] = {"queued", "preparing", "running", "done"};
+  int at = 0;
+  for (int i = 0; i < heard->states; i++, at++) {
+    while (at < 4 && strcmp(heard->state[i], life[at]) != 0)
+      at++;
+    if (at == 4)
+      return false;
+  }
+  return heard->states >= 2 && strcmp(heard->state[heard->states - 2], "running") == 0 && at == 4;
+}
+
 static void hear(void *context, const struct eo_service_event *event)
 {
   struct heard *heard = context;
@@ -256,8 +270,7 @@ static void test_job(void)
      json_array_size(json_object_get(columns, "mean")) == json_array_size(json_object_get(columns, "pfc_percent")), "and how it converged");
   json_decref(columns);
   eo_service_unsubscribe(service, subscription);
-  ok(heard.ordered && heard.count > 3 && heard.states == 4 && strcmp(heard.state[0], "queued") == 0 && strcmp(heard.state[1], "preparing") == 0 &&
-     strcmp(heard.state[2], "running") == 0 && strcmp(heard.state[3], "done") == 0, "%d events in order: queued, preparing, running, done", heard.count);
+  ok(heard.ordered && heard.count > 3 && follows_its_life(&heard), "%d events in order: (queued, preparing,) running, done", heard.count);
   struct heard later = {0};
   eo_service_subscribe(service, id, heard.last - 2, hear, &later, &subscription, &error);
   ok(later.count == 2 && later.last == heard.last, "who comes back hears what he missed");
