@@ -8,17 +8,17 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char *const outcome_names[] = {"converged", "not_converged", "refused"};
+const char *const eo_store_outcomes[] = {"converged", "not_converged", "refused", NULL};
 
 const char *eo_store_outcome_name(enum eo_evaluation_outcome outcome)
 {
-  return outcome_names[outcome];
+  return eo_store_outcomes[outcome];
 }
 
 static enum eo_evaluation_outcome find_outcome(const char *name)
 {
   int i = 0;
-  while (i < EO_EVALUATION_REFUSED && strcmp(outcome_names[i], name) != 0)
+  while (i < EO_EVALUATION_REFUSED && strcmp(eo_store_outcomes[i], name) != 0)
     i++;
   return (enum eo_evaluation_outcome)i;
 }
@@ -42,7 +42,7 @@ static void find_digest(const struct eo_stored_evaluation *row, char digest[EO_H
   struct eo_hash hash;
   eo_hash_init(&hash);
   eo_hash_add_text(&hash, "modification", row->modification);
-  eo_hash_add_text(&hash, "outcome", outcome_names[row->outcome]);
+  eo_hash_add_text(&hash, "outcome", eo_store_outcomes[row->outcome]);
   eo_hash_add_text(&hash, "reason", row->reason);
   eo_hash_add_number(&hash, "cost", row->cost);
   for (int i = 0; i < row->scenarios * row->cases; i++)
@@ -216,7 +216,7 @@ enum eo_code eo_store_add_evaluation(struct eo_store *store, int64_t problem, st
   find_digest(row, digest);
   enum eo_code code = EO_STATEMENT_RUN(store, error, "INSERT INTO evaluation (problem, modification, outcome, reason, cost_s, digest)"
                                                      " VALUES (?, ?, ?, ?, ?, ?) ON CONFLICT (problem, modification) DO NOTHING", "itttrt",
-                                       problem, row->modification, outcome_names[row->outcome], row->reason, row->cost, digest);
+                                       problem, row->modification, eo_store_outcomes[row->outcome], row->reason, row->cost, digest);
   if (code)
     return code;
   if (sqlite3_changes(store->handle) == 0)

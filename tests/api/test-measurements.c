@@ -1,7 +1,6 @@
 /* Rig files over the API: uploads that are whole, broken, too large or cut off, a server that dies in the middle, and what the recordings
    say beside the prediction. The recordings come from the API itself, with known faults. */
-#include "client.h"
-#include "tap.h"
+#include "description.h"
 
 #include <dirent.h>
 #include <math.h>
@@ -73,6 +72,7 @@ static struct reply post_bytes(const struct form *form, size_t size, size_t leng
   if (!whole || !read_reply(connection, &reply, false))
     reply.status = 0;
   close(connection);
+  hear("POST", API "/measurements", &reply);
   return reply;
 }
 
@@ -457,6 +457,7 @@ int main(void)
   signal(SIGPIPE, SIG_IGN);
   if (!make_data_folder() || !ok(start_server("--quiet", "--threads", "2"), "the server starts"))
     return 1;
+  ok(listen_to_replies(), "it describes itself");
   design = coarse_document("ga", 10);
   char *text = json_dumps(design, JSON_COMPACT);
   expect("a design", call("POST", API "/designs", NULL, text), 201);
@@ -476,5 +477,7 @@ int main(void)
   free_reply(&unmodified);
   ok(stop_server(SIGTERM) == 0, "it stops");
   remove_data_folder();
+  expect_all_of((const char *const[]){"Measurement", "ListedMeasurement", "Comparison", "Fit", NULL});
+  tell_what_was_heard();
   return tap_done();
 }
