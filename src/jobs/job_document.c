@@ -176,6 +176,15 @@ static const struct eo_outline_row error_rows[] = {
 };
 static const struct eo_outline error_outline = EO_OUTLINE("JobError", error_rows);
 
+/* What names files of this machine is not for those who read the job. */
+json_t *eo_job_error_encode(const struct eo_error *error)
+{
+  struct eo_result_object o = eo_result_open_as(&error_outline);
+  eo_result_put(&o, "detail", json_string(error->code == EO_ERROR_FILE ? "The server's data cannot be read or written." : error->text));
+  eo_result_put(&o, "pointer", json_string(error->pointer));
+  return eo_result_close(&o);
+}
+
 static const struct eo_outline_row job_rows[] = {
     EO_KEY("id", "integer", "number of the job"),
     EO_KEY("kind", "word", "what it does", .words = eo_store_job_kinds),

@@ -121,7 +121,7 @@ int main(void)
   test_lists();
   ok(stop_server(SIGTERM) == 0, "it stops");
   remove_data_folder();
-  expect_all_of((const char *const[]){"Result", "Sweep", "OptimizationResult", "Job", "Generations", "JobHistoryRow", "History", NULL});
+  expect_all_of((const char *const[]){"Result", "Sweep", "OptimizationResult", "Job", "Generations", "JobHistoryRow", "History", NULL}, "JobError");
   tell_what_was_heard();
   return tap_done();
 }
