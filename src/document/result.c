@@ -88,7 +88,7 @@ void eo_result_put(struct eo_result_object *object, const char *key, json_t *val
 
 void eo_result_put_number(struct eo_result_object *object, const char *key, double value)
 {
-  const struct eo_outline_row *row = step(object, key);
+  const struct eo_outline_row *row = object->outline ? step(object, key) : NULL;
   eo_json_put(object->json, key, row ? eo_result_number(value, row->unit) : NULL, &object->failed);
 }
 
@@ -227,12 +227,9 @@ const struct eo_outline eo_outline_value = EO_OUTLINE("Value", value_rows);
 void eo_result_put_value(struct eo_result_object *o, const struct eo_objective_value *value)
 {
   double known = value->sums.failed ? NAN : 1;
-  eo_result_put_number(o, "f1_um", known * value->sums.f[0]);
-  eo_result_put_number(o, "f2_N", known * value->sums.f[1]);
-  eo_result_put_number(o, "f3_m_per_s2", known * value->sums.f[2]);
-  eo_result_put_number(o, "J", value->objective);
-  eo_result_put_number(o, "fitness", value->fitness);
-  eo_result_put_number(o, "violation", value->violation);
+  const double number[] = {known * value->sums.f[0], known * value->sums.f[1], known * value->sums.f[2], value->objective, value->fitness, value->violation};
+  for (int i = 0; i < eo_outline_value.count; i++)
+    eo_result_put(o, value_rows[i].key, eo_result_number(number[i], value_rows[i].unit));
 }
 
 static const struct eo_outline_row unmodified_rows[] = {

@@ -203,7 +203,7 @@ static enum eo_code add_row(void *context, const struct eo_stored_evaluation *e,
   eo_result_put(&o, "id", json_integer(e->id));
   eo_result_put(&o, "outcome", json_string(eo_store_outcome_name(e->outcome)));
   eo_result_put(&o, "reason", json_string(e->reason));
-  eo_result_put_number(&o, "cost_s", e->cost);
+  eo_result_put(&o, "cost_s", eo_result_number(e->cost, NULL));
   eo_result_put(&o, "modification", eo_json_parse(e->modification, strlen(e->modification), error));
   eo_result_put(&o, "scenarios", encode_scenarios(list, e->raw));
   return append(list->rows, eo_result_close(&o), error);
