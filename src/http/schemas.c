@@ -32,7 +32,7 @@ static const struct { const char *name, *notation; } shapes[] = {
               " number_low? number, number_high? number, count? integer, default? any, choices? [text], help? text, required flag, nullable flag,"
               " derived? text, fields? [Field]}"},
     {"Check", "{design ResolvedDesign, geometry Geometry, warnings [text], prepared flag}"},
-    {"DesignOrNamed", "{name? any, design? Design, ...}"},
+    {"NamedDesign", "{name? text, design Design}"},
     {"StoredDesign", "{id integer, revision integer, name text, created text, updated text, design Design, warnings [text]}"},
     {"Designs", "{items [{id integer, revision integer, name text, created text, updated text}], next text?}"},
     {"Preparing", "{job Job?}"},
@@ -110,6 +110,8 @@ json_t *eo_openapi_schemas(void)
     good = good && json_object_set_new(schemas, shapes[i].name, eo_shape_schema(shapes[i].notation)) == 0;
   good = good && json_object_set_new(schemas, "Measurement", stored(schemas, "MeasurementOfFile")) == 0 &&
          json_object_set_new(schemas, "ListedMeasurement", stored(schemas, "BriefMeasurement")) == 0;
+  good = good && json_object_set_new(schemas, "DesignOrNamed", json_pack("{s:[{s:s}, {s:s}]}", "anyOf", "$ref", "#/components/schemas/Design", "$ref",
+                                                                         "#/components/schemas/NamedDesign")) == 0;
   good = good && json_object_set_new(schemas, "FitOrder", fit_order(json_object_get(schemas, "FitOrder"))) == 0;
   if (good)
     return schemas;
