@@ -165,6 +165,16 @@ static json_t *encode_columns(const struct eo_stored_job *job)
   return document;
 }
 
+/* The row of a study that ended says how much it took; what was noted of it may be older when the process ended before the last note. */
+static void put_counts(json_t *progress, const struct eo_stored_job *job)
+{
+  if (!progress || job->individuals <= 0 || (job->state != EO_JOB_DONE && job->state != EO_JOB_CANCELLED))
+    return;
+  json_object_set_new(progress, "true_evaluations", json_integer(job->true_evaluations));
+  json_object_set_new(progress, "individuals", json_integer(job->individuals));
+  json_object_set_new(progress, "pfc_percent", eo_result_number(pfc_percent(job->true_evaluations, job->individuals), NULL));
+}
+
 static json_t *text_or_null(const char *text)
 {
   return *text ? json_string(text) : json_null();
@@ -215,6 +225,8 @@ json_t *eo_job_encode(const struct eo_stored_job *job, const struct eo_job_live 
   json_t *kept = live ? eo_job_live_encode(live) : parse(job->progress), *fault = parse(job->error), *design = with_design ? parse(job->design) : NULL;
   if (!kept)
     kept = encode_columns(job);
+  if (!live)
+    put_counts(json_object_get(kept, "progress"), job);
   eo_result_put(&o, "id", json_integer(job->id));
   eo_result_put(&o, "kind", json_string(eo_store_job_kind_name(job->kind)));
   eo_result_put(&o, "name", json_string(job->name));
