@@ -1,6 +1,6 @@
-/* Any bytes as an upload: the first line is the Content-Type, the rest the body. It is handed over in pieces of several sizes, so that every boundary is
-   cut at every place, and each time the same must come out of it. A real connection carries the type, as the library wants it; the body does not pass
-   through it. For libFuzzer, and replayed by replay.c. */
+/* Any bytes as an upload: the first line is what follows multipart/form-data in the Content-Type (another never comes here), the rest the body. It is
+   handed over in pieces of several sizes, so that every boundary is cut at every place, and each time the same must come out of it. A real connection
+   carries the type, as the library wants it; the body does not pass through it. For libFuzzer, and replayed by replay.c. */
 #define _GNU_SOURCE
 #include "base/hash.h"
 #include "http/server.h"
@@ -135,7 +135,7 @@ static struct MHD_Daemon *start(bool *handled)
 /* A request head with this type; anything that would end the line is left out. */
 static size_t write_head(char *head, size_t size, const uint8_t *type, size_t length)
 {
-  size_t at = (size_t)snprintf(head, size, "POST / HTTP/1.1\r\nHost: x\r\nContent-Length: 0\r\nContent-Type: ");
+  size_t at = (size_t)snprintf(head, size, "POST / HTTP/1.1\r\nHost: x\r\nContent-Length: 0\r\nContent-Type: multipart/form-data");
   for (size_t i = 0; i < length && at < size - 5; i++)
     if (type[i] >= ' ' && type[i] != 127)
       head[at++] = (char)type[i];
