@@ -298,7 +298,7 @@ enum eo_code eo_store_each_evaluation(struct eo_store *store, int64_t problem, i
   struct eo_statement s = eo_statement_begin(
       store,
       "SELECT e.id, e.outcome, e.reason, e.cost_s, e.modification, e.digest,"
-      " (SELECT c.x FROM candidate c JOIN job j ON j.id = c.job WHERE c.evaluation = e.id AND c.reused = 0 AND j.space = ?3),"
+      " (SELECT p.x FROM point p WHERE p.evaluation = e.id AND p.space = ?3),"
       " r.scenario, r.load_case, r.peak_to_peak_m, r.impact_N, r.rms_m_per_s2, r.contact_pressure_Pa, r.root_stress_Pa, r.edge_load_share,"
       " r.contact_loss, r.failed"
       " FROM evaluation e LEFT JOIN raw r ON r.evaluation = e.id WHERE e.problem = ?1 AND (?2 = 0 OR e.id <= ?2) ORDER BY e.id, r.scenario, r.load_case",

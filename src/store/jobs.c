@@ -133,14 +133,23 @@ enum eo_code eo_store_keep_result(struct eo_store *store, int64_t job, const cha
   return EO_STATEMENT_RUN(store, error, "UPDATE job SET result = ? WHERE id = ?", "ti", result, job);
 }
 
+/* The point belongs to the evaluation: it outlives the job. */
+static enum eo_code keep_point(struct eo_store *store, const struct eo_stored_candidate *c, struct eo_error *error)
+{
+  return EO_STATEMENT_RUN(store, error, "INSERT OR IGNORE INTO point (evaluation, space, x) SELECT ?, space, ? FROM job WHERE id = ? AND space IS NOT NULL", "ibi",
+                          c->evaluation, (const void *)c->x, (size_t)c->size * sizeof *c->x, c->job);
+}
+
 enum eo_code eo_store_log_candidate(struct eo_store *store, struct eo_stored_candidate *c, struct eo_error *error)
 {
   enum eo_code code = EO_STATEMENT_RUN(store, error, "INSERT INTO candidate (job, ordinal, generation, individual, evaluation, reused, x)"
                                                      " VALUES (?, ?, ?, ?, ?, ?, ?) ON CONFLICT (job, ordinal) DO NOTHING", "innninb",
                                        c->job, c->ordinal, c->generation, c->individual, c->evaluation, (int)c->reused, (const void *)c->x,
                                        (size_t)c->size * sizeof *c->x);
-  if (code || sqlite3_changes(store->handle))
+  if (code)
     return code;
+  if (sqlite3_changes(store->handle))
+    return c->reused ? EO_OK : keep_point(store, c, error);
   struct eo_statement s = eo_statement_begin(store, "SELECT reused FROM candidate WHERE job = ? AND ordinal = ?", "in", c->job, c->ordinal);
   if (eo_statement_step(&s))
     c->reused = eo_column_integer(&s, 0) != 0;
