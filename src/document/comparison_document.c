@@ -38,15 +38,34 @@ static const struct column {
                {"predicted_te_peak_to_peak_um", predicted_peak, &eo_unit_um}};
 enum { COLUMNS = sizeof columns / sizeof *columns };
 
+static const char *const labels[] = {"modified", "unmodified", NULL}, *const ends[] = {"left", "right", NULL};
+
+static const struct eo_outline_row column_rows[] = {
+    EO_KEY("file", "[text]", "as it was uploaded"),
+    EO_KEY("label", "[word]", "which pair was measured", .words = labels),
+    EO_KEY("end", "[word]", "where the encoders sat", .words = ends),
+    EO_KEY("torque_Nm", "[number]", "on the pinion shaft", .unit = &eo_unit_Nm),
+    EO_KEY("speed_rpm", "[number]", "measured mean speed of the pinion", .unit = &eo_unit_rpm),
+    EO_KEY("measured_rms_m_per_s2", "[number?]", "rotational acceleration of the mesh orders", .unit = &eo_unit_m_per_s2),
+    EO_KEY("measured_sigma_m_per_s2", "[number?]", "its standard deviation", .unit = &eo_unit_m_per_s2),
+    EO_KEY("predicted_rms_m_per_s2", "[number?]", "of the same orders; null without a periodic vibration", .unit = &eo_unit_m_per_s2),
+    EO_KEY("ratio", "[number?]", "measured over predicted"),
+    EO_KEY("likeness", "[number?]", "correlation of both curves of the transmission error when they are in phase, -1..1"),
+    EO_KEY("predicted_te_peak_to_peak_um", "[number?]", "of the predicted dynamic transmission error", .unit = &eo_unit_um),
+    EO_KEY("outlier", "[flag]", "does not fit the others"),
+    EO_KEY("reason", "[text?]", "why"),
+};
+static const struct eo_outline column_outline = EO_OUTLINE("ComparedColumns", column_rows);
+
 static json_t *encode_columns(const struct eo_comparison *c, const struct eo_measured *m)
 {
-  struct eo_result_object o = eo_result_open();
+  struct eo_result_object o = eo_result_open_as(&column_outline);
   json_t *file = json_array(), *label = json_array(), *end = json_array(), *outlier = json_array(), *reason = json_array();
   double *value = malloc(sizeof *value * ((size_t)c->count + 1));
   o.failed = o.failed || !value;
   for (int i = 0; i < c->count && !o.failed; i++)
-    o.failed = json_array_append_new(file, json_string(m[i].name)) || json_array_append_new(label, json_string(m[i].unmodified ? "unmodified" : "modified")) ||
-               json_array_append_new(end, json_string(eo_result_end[m[i].end])) || json_array_append_new(outlier, json_boolean(c->point[i].outlier)) ||
+    o.failed = json_array_append_new(file, json_string(m[i].name)) || json_array_append_new(label, json_string(labels[m[i].unmodified])) ||
+               json_array_append_new(end, json_string(ends[m[i].end])) || json_array_append_new(outlier, json_boolean(c->point[i].outlier)) ||
                json_array_append_new(reason, *c->point[i].reason ? json_string(c->point[i].reason) : json_null());
   eo_result_put(&o, "file", file);
   eo_result_put(&o, "label", label);
@@ -62,11 +81,33 @@ static json_t *encode_columns(const struct eo_comparison *c, const struct eo_mea
   return eo_result_close(&o);
 }
 
+static const struct eo_outline_row order_rows[] = {
+    EO_KEY("measured_m_per_s2", "[number?]", "acceleration of mesh orders 1, 2, ...", .unit = &eo_unit_m_per_s2),
+    EO_KEY("predicted_m_per_s2", "[number?]", "the same, predicted", .unit = &eo_unit_m_per_s2),
+    EO_KEY("measured_um", "[number?]", "amplitude of the transmission error at these orders", .unit = &eo_unit_um),
+    EO_KEY("predicted_um", "[number?]", "the same, predicted", .unit = &eo_unit_um),
+};
+static const struct eo_outline order_outline = EO_OUTLINE("ComparedOrders", order_rows);
+
+static const struct eo_outline_row curve_rows[] = {
+    EO_KEY("position", "[number]", "phase of the mesh cycle, 0..1"),
+    EO_KEY("measured_um", "[number?]", "transmission error of the mesh, over position", .unit = &eo_unit_um),
+    EO_KEY("predicted_um", "[number?]", "the same, predicted, shifted to the phase that fits best", .unit = &eo_unit_um),
+    EO_KEY("shift", "number?", "by how much, in mesh cycles"),
+};
+static const struct eo_outline curve_outline = EO_OUTLINE("ComparedCurves", curve_rows);
+
+static const struct eo_outline_row detail_rows[] = {
+    EO_KEY("orders", "object", "side by side", .outline = &order_outline),
+    EO_KEY("te", "object", "in phase", .outline = &curve_outline),
+};
+static const struct eo_outline detail_outline = EO_OUTLINE("ComparedDetail", detail_rows);
+
 /* Orders side by side and the curves in phase, one object per measurement. */
 static json_t *encode_detail(const struct eo_measured *m, const struct eo_compared *p)
 {
   double measured[EO_MESH_ORDERS], amplitude[2][EO_MESH_ORDERS], curve[2][CURVE], position[CURVE];
-  struct eo_result_object o = eo_result_open(), orders = eo_result_open(), curves = eo_result_open();
+  struct eo_result_object o = eo_result_open_as(&detail_outline), orders = eo_result_open_as(&order_outline), curves = eo_result_open_as(&curve_outline);
   for (int h = 0; h < m->harmonics; h++) {
     measured[h] = m->order[h].acceleration;
     amplitude[0][h] = cabs(m->order[h].amplitude);
@@ -82,11 +123,23 @@ static json_t *encode_detail(const struct eo_measured *m, const struct eo_compar
   eo_result_put(&curves, "position", eo_json_reals(CURVE, position, 1, NULL, EO_DIGITS_CURVE));
   eo_result_put(&curves, "measured_um", eo_json_reals(CURVE, curve[0], 1, &eo_unit_um, EO_DIGITS_CURVE));
   eo_result_put(&curves, "predicted_um", eo_json_reals(CURVE, curve[1], 1, &eo_unit_um, EO_DIGITS_CURVE));
-  eo_result_put_number(&curves, "shift", p->shift, NULL);
+  eo_result_put_number(&curves, "shift", p->shift);
   eo_result_put(&o, "orders", eo_result_close(&orders));
   eo_result_put(&o, "te", eo_result_close(&curves));
   return eo_result_close(&o);
 }
+
+static const struct eo_outline_row reduction_rows[] = {
+    EO_KEY("file", "text", "of the modified pair"),
+    EO_KEY("torque_Nm", "number", "on the pinion shaft", .unit = &eo_unit_Nm),
+    EO_KEY("speed_rpm", "number", "of the pinion", .unit = &eo_unit_rpm),
+    EO_KEY("unmodified_measurements", "integer", "that it is compared with"),
+    EO_KEY("measured_percent", "number?", "how much less the modified pair vibrates, per cent of the unmodified one", .unit = &percent),
+    EO_KEY("sigma_percent", "number?", "standard deviation of it", .unit = &percent),
+    EO_KEY("predicted_percent", "number?", "the same, predicted", .unit = &percent),
+    EO_KEY("id", "integer", "number of the measurement", .when = "of stored measurements"),
+};
+static const struct eo_outline reduction_outline = EO_OUTLINE("ComparedReduction", reduction_rows);
 
 static json_t *encode_reductions(const struct eo_comparison *c, const struct eo_measured *m)
 {
@@ -94,30 +147,40 @@ static json_t *encode_reductions(const struct eo_comparison *c, const struct eo_
   bool failed = !list;
   for (int i = 0; i < c->reductions && !failed; i++) {
     const struct eo_reduction *r = &c->reduction[i];
-    struct eo_result_object o = eo_result_open();
+    struct eo_result_object o = eo_result_open_as(&reduction_outline);
     eo_result_put(&o, "file", json_string(m[r->modified].name));
-    eo_result_put_number(&o, "torque_Nm", r->torque, &eo_unit_Nm);
-    eo_result_put_number(&o, "speed_rpm", r->speed, &eo_unit_rpm);
+    eo_result_put_number(&o, "torque_Nm", r->torque);
+    eo_result_put_number(&o, "speed_rpm", r->speed);
     eo_result_put(&o, "unmodified_measurements", json_integer(r->unmodified));
-    eo_result_put_number(&o, "measured_percent", r->measured, &percent);
-    eo_result_put_number(&o, "sigma_percent", r->measured_sigma, &percent);
-    eo_result_put_number(&o, "predicted_percent", r->predicted, &percent);
+    eo_result_put_number(&o, "measured_percent", r->measured);
+    eo_result_put_number(&o, "sigma_percent", r->measured_sigma);
+    eo_result_put_number(&o, "predicted_percent", r->predicted);
     failed = json_array_append_new(list, eo_result_close(&o)) != 0;
   }
   return failed ? (json_decref(list), NULL) : list;
 }
 
+static const struct eo_outline_row comparison_rows[] = {
+    EO_KEY("measurements", "object", "columns over the measurements", .outline = &column_outline),
+    EO_KEY("details", "[object]", "one for each measurement", .outline = &detail_outline),
+    EO_KEY("reductions", "[object]", "one for each measurement of the modified pair with one of the unmodified pair at its torque and speed",
+           .outline = &reduction_outline),
+    EO_KEY("ratio", "number?", "median of measured over predicted RMS"),
+    EO_KEY("spread", "number?", "robust relative standard deviation about it"),
+};
+const struct eo_outline eo_comparison_outline = EO_OUTLINE("ComparisonOfFiles", comparison_rows);
+
 json_t *eo_comparison_encode(const struct eo_comparison *c, const struct eo_measured *m)
 {
-  struct eo_result_object o = eo_result_open();
+  struct eo_result_object o = eo_result_open_as(&eo_comparison_outline);
   json_t *details = json_array();
   for (int i = 0; i < c->count && !o.failed; i++)
     o.failed = json_array_append_new(details, encode_detail(&m[i], &c->point[i])) != 0;
   eo_result_put(&o, "measurements", encode_columns(c, m));
   eo_result_put(&o, "details", details);
   eo_result_put(&o, "reductions", encode_reductions(c, m));
-  eo_result_put_number(&o, "ratio", c->ratio, NULL);
-  eo_result_put_number(&o, "spread", c->spread, NULL);
+  eo_result_put_number(&o, "ratio", c->ratio);
+  eo_result_put_number(&o, "spread", c->spread);
   return eo_result_close(&o);
 }
 

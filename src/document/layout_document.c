@@ -129,10 +129,29 @@ static json_t *encode_column(const struct eo_track_channel *c)
   return json_pack("[i, i]", c->column[0] + 1, c->column[1] + 1);
 }
 
+static const char *const no_time[] = {"none", NULL};
+
+static const struct eo_outline_row column_rows[] = {
+    EO_KEY("pinion", "integer|[integer]", "of the pinion's encoder: a number from 1, or sine and cosine"),
+    EO_KEY("gear", "integer|[integer]", "of the gear's encoder, likewise"),
+};
+static const struct eo_outline column_outline = EO_OUTLINE("LayoutColumns", column_rows);
+
+static const struct eo_outline_row layout_rows[] = {
+    EO_KEY("kind", "word", "what the columns hold", .words = kinds + 1),
+    EO_KEY("unit", "word", "of the angles", .when = "of angles and counts", .words = units + 1),
+    EO_KEY("time", "integer|word", "column of the time, from 1, or none", .when = "but of pulses", .words = no_time),
+    EO_KEY("time_unit", "word", "of the time", .when = "where it is one of these", .words = times),
+    EO_KEY("sample_rate_Hz", "number", "rows per second", .unit = &eo_unit_Hz, .when = "without a column of the time"),
+    EO_KEY("columns", "object", "where each encoder is", .outline = &column_outline),
+    EO_KEY("lines", "[number]", "per turn of the pinion's and the gear's encoder", .when = "but of angles"),
+};
+const struct eo_outline eo_layout_outline = EO_OUTLINE("Layout", layout_rows);
+
 json_t *eo_layout_encode(const struct eo_tracks *t)
 {
   const struct eo_track_channel *c = t->channel;
-  struct eo_result_object o = eo_result_open(), columns = eo_result_open();
+  struct eo_result_object o = eo_result_open_as(&eo_layout_outline), columns = eo_result_open_as(&column_outline);
   bool angles = c[0].track == EO_TRACK_ANGLE, counts = angles && strcmp(unit_of(&c[0]), "count") == 0;
   double lines[2] = {angles ? 2 * M_PI / c[0].scale : c[0].lines, angles ? 2 * M_PI / c[1].scale : c[1].lines};
   static const char *const time_name[] = {"s", "ms", "us", "ns"};
@@ -141,7 +160,7 @@ json_t *eo_layout_encode(const struct eo_tracks *t)
   if (angles)
     eo_result_put(&o, "unit", json_string(unit_of(&c[0])));
   if (c[0].track != EO_TRACK_PULSES)
-    eo_result_put(&o, "time", t->time_column < 0 ? json_string("none") : json_integer(t->time_column + 1));
+    eo_result_put(&o, "time", t->time_column < 0 ? json_string(no_time[0]) : json_integer(t->time_column + 1));
   for (int i = 0; i < 4; i++)
     if (fabs(t->time_scale / time_scale[i] - 1) < 1e-9)
       eo_result_put(&o, "time_unit", json_string(time_name[i]));

@@ -8,6 +8,7 @@
 #include <jansson.h>
 
 #include "document/faults.h"
+#include "document/outline.h"
 #include "measurement/layout.h"
 
 struct eo_layout_request {
@@ -17,6 +18,8 @@ struct eo_layout_request {
 
 /* Fills *request, which must stay where it is while choice is used; NULL or null: everything is guessed. Unknown keys are faults. */
 void eo_layout_decode(const json_t *document, struct eo_layout_request *request, struct eo_faults *faults);
+
+extern const struct eo_outline eo_layout_outline;
 
 /* What was found, with column numbers; a layout that gives the same tracks again. New; NULL without memory. */
 json_t *eo_layout_encode(const struct eo_tracks *tracks);

@@ -5,17 +5,29 @@
 #include <string.h>
 
 #include "document/json.h"
+#include "document/layout_document.h"
 #include "document/result_parts.h"
 
 enum { CURVE = 128, SPECTRUM_POINTS = 2000 };
 
-static const char *const channel_name[2] = {"pinion", "gear"};
+static const char *const channel_name[] = {"pinion", "gear", NULL}, *const labels[] = {"modified", "unmodified", NULL}, *const ends[] = {"left", "right", NULL};
 
 static json_t *column(int count, const double *value, const struct eo_unit *unit) { return eo_json_reals(count, value, 1, unit, EO_DIGITS_CURVE); }
 
-static const char *label_name(bool unmodified) { return unmodified ? "unmodified" : "modified"; }
+static const char *label_name(bool unmodified) { return labels[unmodified]; }
 
 /* ---- findings and signal ---- */
+
+static const struct eo_outline_row finding_rows[] = {
+    EO_KEY("kind", "word", "what it is about", .words = eo_finding_names),
+    EO_KEY("severity", "word", "repaired: taken care of; refused: there is no result", .words = eo_severity_names),
+    EO_KEY("channel", "word?", "null: both", .words = channel_name),
+    EO_KEY("row", "integer?", "of the recording, from 1"),
+    EO_KEY("line", "integer?", "of the file, from 1"),
+    EO_KEY("value", "number?", "what was found, in the unit that text says"),
+    EO_KEY("text", "text", "a sentence for people"),
+};
+static const struct eo_outline finding_outline = EO_OUTLINE("Finding", finding_rows);
 
 static json_t *encode_findings(const struct eo_findings *findings)
 {
@@ -23,35 +35,57 @@ static json_t *encode_findings(const struct eo_findings *findings)
   bool failed = !list;
   for (int i = 0; i < findings->count && i < EO_MAX_FINDINGS; i++) {
     const struct eo_finding *f = &findings->finding[i];
-    struct eo_result_object o = eo_result_open();
+    struct eo_result_object o = eo_result_open_as(&finding_outline);
     eo_result_put(&o, "kind", json_string(eo_finding_name(f->kind)));
     eo_result_put(&o, "severity", json_string(eo_severity_name(f->severity)));
     eo_result_put(&o, "channel", f->channel < 0 ? json_null() : json_string(channel_name[f->channel]));
     eo_result_put(&o, "row", f->row < 0 ? json_null() : json_integer(f->row + 1));
     eo_result_put(&o, "line", f->line > 0 ? json_integer(f->line) : json_null());
-    eo_result_put_number(&o, "value", f->value, NULL);
+    eo_result_put_number(&o, "value", f->value);
     eo_result_put(&o, "text", json_string(f->text));
     failed = failed || json_array_append_new(list, eo_result_close(&o)) != 0;
   }
   return failed ? (json_decref(list), NULL) : list;
 }
 
+static const struct eo_outline_row ellipse_rows[] = {
+    EO_KEY("amplitude", "[number?]", "sine, cosine, in the recording's unit"),
+    EO_KEY("offset", "[number?]", "sine, cosine, in the recording's unit"),
+    EO_KEY("ratio", "number?", "amplitude of the sine over that of the cosine"),
+    EO_KEY("phase_deg", "number?", "between them", .unit = &eo_unit_deg),
+};
+static const struct eo_outline ellipse_outline = EO_OUTLINE("RawTracks", ellipse_rows);
+
 static json_t *encode_ellipse(const struct eo_ellipse *e)
 {
-  struct eo_result_object o = eo_result_open();
+  struct eo_result_object o = eo_result_open_as(&ellipse_outline);
   eo_result_put(&o, "amplitude", column(2, e->amplitude, NULL));
   eo_result_put(&o, "offset", column(2, e->offset, NULL));
-  eo_result_put_number(&o, "ratio", e->amplitude[0] / e->amplitude[1], NULL);
-  eo_result_put_number(&o, "phase_deg", M_PI / 2 + e->skew, &eo_unit_deg);
+  eo_result_put_number(&o, "ratio", e->amplitude[0] / e->amplitude[1]);
+  eo_result_put_number(&o, "phase_deg", M_PI / 2 + e->skew);
   return eo_result_close(&o);
 }
 
+static const struct eo_outline_row track_rows[] = {
+    EO_KEY("pinion", "object?", "of the pinion's encoder", .outline = &ellipse_outline),
+    EO_KEY("gear", "object?", "of the gear's encoder", .outline = &ellipse_outline),
+};
+static const struct eo_outline track_outline = EO_OUTLINE("SignalTracks", track_rows);
+
+static const struct eo_outline_row signal_rows[] = {
+    EO_KEY("rows", "integer", "of the recording"),
+    EO_KEY("interval_ms", "number?", "between two rows", .unit = &eo_unit_ms),
+    EO_KEY("ratio", "number?", "of the turns of both channels"),
+    EO_KEY("tracks", "object", "what raw tracks look like; null for angles and counts", .outline = &track_outline),
+};
+static const struct eo_outline signal_outline = EO_OUTLINE("Signal", signal_rows);
+
 static json_t *encode_signal(const struct eo_measurement *m)
 {
-  struct eo_result_object o = eo_result_open(), tracks = eo_result_open();
+  struct eo_result_object o = eo_result_open_as(&signal_outline), tracks = eo_result_open_as(&track_outline);
   eo_result_put(&o, "rows", json_integer(m->rows));
-  eo_result_put_number(&o, "interval_ms", m->interval, &eo_unit_ms);
-  eo_result_put_number(&o, "ratio", m->ratio, NULL);
+  eo_result_put_number(&o, "interval_ms", m->interval);
+  eo_result_put_number(&o, "ratio", m->ratio);
   for (int channel = 0; channel < 2; channel++)
     eo_result_put(&tracks, channel_name[channel], m->raw[channel] && m->ellipse[channel].amplitude[0] > 0 ? encode_ellipse(&m->ellipse[channel]) : json_null());
   eo_result_put(&o, "tracks", eo_result_close(&tracks));
@@ -69,10 +103,19 @@ static json_t *encode_notes(const struct eo_notes *notes)
 
 /* ---- orders ---- */
 
+static const struct eo_outline_row line_rows[] = {
+    EO_KEY("order", "[number]", "per turn of the pinion; columns of all lines"),
+    EO_KEY("amplitude_um", "[number?]", "of the transmission error", .unit = &eo_unit_um),
+    EO_KEY("phase_rad", "[number?]", "against the first mesh position, rad"),
+    EO_KEY("sigma_um", "[number?]", "standard deviation of the amplitude", .unit = &eo_unit_um),
+    EO_KEY("acceleration_m_per_s2", "[number?]", "RMS of the line", .unit = &eo_unit_m_per_s2),
+};
+static const struct eo_outline line_outline = EO_OUTLINE("OrderLines", line_rows);
+
 static json_t *encode_lines(int count, const struct eo_order_line *line)
 {
   double order[EO_MESH_ORDERS], amplitude[EO_MESH_ORDERS], phase[EO_MESH_ORDERS], sigma[EO_MESH_ORDERS], acceleration[EO_MESH_ORDERS];
-  struct eo_result_object o = eo_result_open();
+  struct eo_result_object o = eo_result_open_as(&line_outline);
   for (int i = 0; i < count; i++) {
     order[i] = line[i].order;
     amplitude[i] = cabs(line[i].amplitude);
@@ -88,6 +131,16 @@ static json_t *encode_lines(int count, const struct eo_order_line *line)
   return eo_result_close(&o);
 }
 
+static const struct eo_outline_row sideband_rows[] = {
+    EO_KEY("mesh_order", "integer", "beside which it stands"),
+    EO_KEY("shaft", "word", "whose turns", .words = channel_name),
+    EO_KEY("turns", "integer", "away from the mesh order, in orders of that shaft"),
+    EO_KEY("order", "number", "per turn of the pinion"),
+    EO_KEY("amplitude_um", "number?", "of the transmission error", .unit = &eo_unit_um),
+    EO_KEY("acceleration_m_per_s2", "number?", "RMS of the line", .unit = &eo_unit_m_per_s2),
+};
+static const struct eo_outline sideband_outline = EO_OUTLINE("Sideband", sideband_rows);
+
 /* Of all sidebands those that stand out of the noise, by mesh order. */
 static json_t *encode_sidebands(const struct eo_transmission *t)
 {
@@ -99,32 +152,45 @@ static json_t *encode_sidebands(const struct eo_transmission *t)
       const struct eo_order_line *line = &t->sideband[h][k / EO_SIDEBANDS][k % EO_SIDEBANDS];
       if (cabs(line->amplitude) < 4 * line->sigma)
         continue;
-      struct eo_result_object o = eo_result_open();
+      struct eo_result_object o = eo_result_open_as(&sideband_outline);
       eo_result_put(&o, "mesh_order", json_integer(h + 1));
       eo_result_put(&o, "shaft", json_string(channel_name[k / EO_SIDEBANDS]));
       eo_result_put(&o, "turns", json_integer(turns[k % EO_SIDEBANDS]));
-      eo_result_put_number(&o, "order", line->order, NULL);
-      eo_result_put_number(&o, "amplitude_um", cabs(line->amplitude), &eo_unit_um);
-      eo_result_put_number(&o, "acceleration_m_per_s2", line->acceleration, &eo_unit_m_per_s2);
+      eo_result_put_number(&o, "order", line->order);
+      eo_result_put_number(&o, "amplitude_um", cabs(line->amplitude));
+      eo_result_put_number(&o, "acceleration_m_per_s2", line->acceleration);
       failed = failed || json_array_append_new(list, eo_result_close(&o)) != 0;
     }
   return failed ? (json_decref(list), NULL) : list;
 }
 
+static const struct eo_outline_row shaft_rows[] = {
+    EO_KEY("pinion", "object", "orders 1, 2, ... of the pinion shaft", .outline = &line_outline),
+    EO_KEY("gear", "object", "of the gear shaft", .outline = &line_outline),
+};
+static const struct eo_outline shaft_outline = EO_OUTLINE("ShaftOrders", shaft_rows);
+
 static json_t *encode_shafts(const struct eo_transmission *t)
 {
-  struct eo_result_object o = eo_result_open();
+  struct eo_result_object o = eo_result_open_as(&shaft_outline);
   for (int member = 0; member < 2; member++)
     eo_result_put(&o, channel_name[member], encode_lines(EO_SHAFT_ORDERS, t->shaft[member]));
   return eo_result_close(&o);
 }
+
+static const struct eo_outline_row spectrum_rows[] = {
+    EO_KEY("turns", "integer", "of the pinion that it was made from"),
+    EO_KEY("order", "[number]", "per turn of the pinion"),
+    EO_KEY("acceleration_m_per_s2", "[number?]", "largest of the stretch about that order", .unit = &eo_unit_m_per_s2),
+};
+static const struct eo_outline spectrum_outline = EO_OUTLINE("OrderSpectrum", spectrum_rows);
 
 /* The largest acceleration in each of at most SPECTRUM_POINTS stretches of the spectrum. */
 static json_t *encode_spectrum(const struct eo_transmission *t)
 {
   double order[SPECTRUM_POINTS], acceleration[SPECTRUM_POINTS];
   int stretch = t->spectrum_lines / SPECTRUM_POINTS + 1, count = 0;
-  struct eo_result_object o = eo_result_open();
+  struct eo_result_object o = eo_result_open_as(&spectrum_outline);
   for (int first = 1; first < t->spectrum_lines && count < SPECTRUM_POINTS; first += stretch, count++) {
     acceleration[count] = -1;
     for (int k = first; k < first + stretch && k < t->spectrum_lines; k++) {
@@ -143,26 +209,45 @@ static json_t *encode_spectrum(const struct eo_transmission *t)
 
 /* ---- result ---- */
 
+static const struct eo_outline_row rms_rows[] = {
+    EO_KEY("value", "number?", "rotational acceleration of the mesh orders, RMS", .unit = &eo_unit_m_per_s2),
+    EO_KEY("sigma", "number?", "its standard deviation", .unit = &eo_unit_m_per_s2),
+    EO_KEY("upto", "[number?]", "of the mesh orders up to 1, 2, ...", .unit = &eo_unit_m_per_s2),
+    EO_KEY("spectrum", "number?", "the same from the spectrum", .unit = &eo_unit_m_per_s2),
+    EO_KEY("band", "number?", "with what stands beside the mesh orders", .unit = &eo_unit_m_per_s2),
+};
+static const struct eo_outline rms_outline = EO_OUTLINE("MeasuredRms", rms_rows);
+
 static json_t *encode_rms(const struct eo_transmission *t)
 {
-  struct eo_result_object o = eo_result_open();
-  eo_result_put_number(&o, "value", t->rms, &eo_unit_m_per_s2);
-  eo_result_put_number(&o, "sigma", t->rms_sigma, &eo_unit_m_per_s2);
+  struct eo_result_object o = eo_result_open_as(&rms_outline);
+  eo_result_put_number(&o, "value", t->rms);
+  eo_result_put_number(&o, "sigma", t->rms_sigma);
   eo_result_put(&o, "upto", eo_json_reals(t->harmonics, t->rms_upto, 1, &eo_unit_m_per_s2, EO_DIGITS_NUMBER));
-  eo_result_put_number(&o, "spectrum", t->rms_spectrum, &eo_unit_m_per_s2);
-  eo_result_put_number(&o, "band", t->rms_band, &eo_unit_m_per_s2);
+  eo_result_put_number(&o, "spectrum", t->rms_spectrum);
+  eo_result_put_number(&o, "band", t->rms_band);
   return eo_result_close(&o);
 }
+
+static const struct eo_outline_row te_rows[] = {
+    EO_KEY("peak_to_peak_um", "number?", "of the mesh orders together", .unit = &eo_unit_um),
+    EO_KEY("position", "[number]", "phase of the mesh cycle, 0..1"),
+    EO_KEY("mesh_um", "[number?]", "mesh orders together, over position", .unit = &eo_unit_um),
+    EO_KEY("average_um", "[number?]", "average of all mesh cycles, over equal parts of the cycle", .unit = &eo_unit_um),
+    EO_KEY("pinion_turn_um", "[number?]", "average over equal parts of the pinion's turn", .unit = &eo_unit_um),
+    EO_KEY("gear_turn_um", "[number?]", "average over equal parts of the gear's turn", .unit = &eo_unit_um),
+};
+static const struct eo_outline te_outline = EO_OUTLINE("MeasuredTransmissionError", te_rows);
 
 static json_t *encode_te(const struct eo_transmission *t)
 {
   double position[CURVE], mesh[CURVE];
-  struct eo_result_object o = eo_result_open();
+  struct eo_result_object o = eo_result_open_as(&te_outline);
   for (int i = 0; i < CURVE; i++) {
     position[i] = (i + 0.5) / CURVE;
     mesh[i] = eo_transmission_mesh(t, position[i]);
   }
-  eo_result_put_number(&o, "peak_to_peak_um", t->mesh_peak_to_peak, &eo_unit_um);
+  eo_result_put_number(&o, "peak_to_peak_um", t->mesh_peak_to_peak);
   eo_result_put(&o, "position", column(CURVE, position, NULL));
   eo_result_put(&o, "mesh_um", column(CURVE, mesh, &eo_unit_um));
   eo_result_put(&o, "average_um", column(EO_CYCLE_BINS, t->cycle, &eo_unit_um));
@@ -174,17 +259,45 @@ static json_t *encode_te(const struct eo_transmission *t)
   return eo_result_close(&o);
 }
 
+static const struct eo_outline_row turn_rows[] = {EO_KEY("pinion", "number", "turns"), EO_KEY("gear", "number", "turns")};
+static const struct eo_outline turn_outline = EO_OUTLINE("Turns", turn_rows);
+
+static const struct eo_outline_row speed_rows[] = {
+    EO_KEY("mean", "number", "of the pinion", .unit = &eo_unit_rpm),
+    EO_KEY("lowest", "number", "of the pinion", .unit = &eo_unit_rpm),
+    EO_KEY("highest", "number", "of the pinion", .unit = &eo_unit_rpm),
+};
+static const struct eo_outline speed_outline = EO_OUTLINE("MeasuredSpeed", speed_rows);
+
+static const struct eo_outline_row result_rows[] = {
+    EO_KEY("rows", "integer", "of the recording that were used"),
+    EO_KEY("seconds", "number", "that they last, s"),
+    EO_KEY("turns", "object", "in that time", .outline = &turn_outline),
+    EO_KEY("speed_rpm", "object", "of the pinion", .outline = &speed_outline),
+    EO_KEY("harmonics", "integer", "mesh orders that were fitted"),
+    EO_KEY("rms_m_per_s2", "object", "vibration", .outline = &rms_outline),
+    EO_KEY("mesh", "object", "mesh orders", .outline = &line_outline),
+    EO_KEY("sidebands", "[object]", "those that stand out of the noise, by mesh order", .outline = &sideband_outline),
+    EO_KEY("shafts", "object", "shaft orders", .outline = &shaft_outline),
+    EO_KEY("te", "object", "transmission error", .outline = &te_outline),
+    EO_KEY("residual_um", "number?", "what no order explains, RMS", .unit = &eo_unit_um),
+    EO_KEY("drift_um", "[number?]", "Legendre coefficients 1, 2, 3 over the time", .unit = &eo_unit_um),
+    EO_KEY("hunting_turns", "integer", "turns of the pinion after which the same teeth meet"),
+    EO_KEY("spectrum", "object", "of the acceleration over order", .outline = &spectrum_outline),
+};
+static const struct eo_outline result_outline = EO_OUTLINE("MeasuredResult", result_rows);
+
 static json_t *encode_result(const struct eo_transmission *t)
 {
-  struct eo_result_object o = eo_result_open(), speed = eo_result_open(), turns = eo_result_open();
+  struct eo_result_object o = eo_result_open_as(&result_outline), speed = eo_result_open_as(&speed_outline), turns = eo_result_open_as(&turn_outline);
   eo_result_put(&o, "rows", json_integer(t->rows));
-  eo_result_put_number(&o, "seconds", t->seconds, NULL);
-  eo_result_put_number(&turns, "pinion", t->revolutions[EO_PINION], NULL);
-  eo_result_put_number(&turns, "gear", t->revolutions[EO_GEAR], NULL);
+  eo_result_put_number(&o, "seconds", t->seconds);
+  eo_result_put_number(&turns, "pinion", t->revolutions[EO_PINION]);
+  eo_result_put_number(&turns, "gear", t->revolutions[EO_GEAR]);
   eo_result_put(&o, "turns", eo_result_close(&turns));
-  eo_result_put_number(&speed, "mean", t->speed, &eo_unit_rpm);
-  eo_result_put_number(&speed, "lowest", t->speed_low, &eo_unit_rpm);
-  eo_result_put_number(&speed, "highest", t->speed_high, &eo_unit_rpm);
+  eo_result_put_number(&speed, "mean", t->speed);
+  eo_result_put_number(&speed, "lowest", t->speed_low);
+  eo_result_put_number(&speed, "highest", t->speed_high);
   eo_result_put(&o, "speed_rpm", eo_result_close(&speed));
   eo_result_put(&o, "harmonics", json_integer(t->harmonics));
   eo_result_put(&o, "rms_m_per_s2", encode_rms(t));
@@ -192,19 +305,33 @@ static json_t *encode_result(const struct eo_transmission *t)
   eo_result_put(&o, "sidebands", encode_sidebands(t));
   eo_result_put(&o, "shafts", encode_shafts(t));
   eo_result_put(&o, "te", encode_te(t));
-  eo_result_put_number(&o, "residual_um", t->residual, &eo_unit_um);
+  eo_result_put_number(&o, "residual_um", t->residual);
   eo_result_put(&o, "drift_um", column(3, t->drift + 1, &eo_unit_um));
   eo_result_put(&o, "hunting_turns", json_integer(t->hunting));
   eo_result_put(&o, "spectrum", encode_spectrum(t));
   return eo_result_close(&o);
 }
 
+static const struct eo_outline_row measurement_rows[] = {
+    EO_KEY("file", "text?", "name as it came"),
+    EO_KEY("label", "word", "which pair was measured", .words = labels),
+    EO_KEY("torque_Nm", "number", "on the pinion shaft", .unit = &eo_unit_Nm),
+    EO_KEY("end", "word", "where the encoders sat", .words = ends),
+    EO_KEY("notes", "[text]", "what the reader of the file has to say"),
+    EO_KEY("layout", "object?", "what the columns hold, as it was found", .outline = &eo_layout_outline),
+    EO_KEY("findings", "[object]", "what is remarkable", .outline = &finding_outline),
+    EO_KEY("refused", "flag", "there is no result"),
+    EO_KEY("signal", "object", "the recording itself", .outline = &signal_outline),
+    EO_KEY("result", "object?", "null when refused", .outline = &result_outline),
+};
+const struct eo_outline eo_measurement_outline = EO_OUTLINE("MeasurementOfFile", measurement_rows);
+
 json_t *eo_measurement_encode(const struct eo_measurement *m, const struct eo_measurement_label *label)
 {
-  struct eo_result_object o = eo_result_open();
+  struct eo_result_object o = eo_result_open_as(&eo_measurement_outline);
   eo_result_put(&o, "file", label->file ? json_string(label->file) : json_null());
   eo_result_put(&o, "label", json_string(label_name(label->unmodified)));
-  eo_result_put_number(&o, "torque_Nm", label->torque, &eo_unit_Nm);
+  eo_result_put_number(&o, "torque_Nm", label->torque);
   eo_result_put(&o, "end", json_string(eo_result_end[label->end]));
   eo_result_put(&o, "notes", encode_notes(label->notes));
   eo_result_put(&o, "layout", label->layout ? json_deep_copy(label->layout) : json_null());
@@ -214,6 +341,42 @@ json_t *eo_measurement_encode(const struct eo_measurement *m, const struct eo_me
   eo_result_put(&o, "result", m->refused ? json_null() : encode_result(&m->transmission));
   return eo_result_close(&o);
 }
+
+/* ---- in brief ---- */
+
+static const struct eo_outline_row brief_finding_rows[] = {
+    EO_KEY("kind", "word", "what it is about", .words = eo_finding_names),
+    EO_KEY("severity", "word", "repaired: taken care of; refused: there is no result", .words = eo_severity_names),
+    EO_KEY("text", "text", "a sentence for people"),
+};
+static const struct eo_outline brief_finding = EO_OUTLINE("BriefFinding", brief_finding_rows);
+
+static const struct eo_outline_row brief_te_rows[] = {EO_KEY("peak_to_peak_um", "number?", "of the mesh orders together", .unit = &eo_unit_um)};
+static const struct eo_outline brief_te = EO_OUTLINE("BriefTransmissionError", brief_te_rows);
+
+static const struct eo_outline_row brief_result_rows[] = {
+    EO_KEY("rows", "integer", "of the recording that were used"),
+    EO_KEY("seconds", "number", "that they last, s"),
+    EO_KEY("turns", "object", "in that time", .outline = &turn_outline),
+    EO_KEY("speed_rpm", "object", "of the pinion", .outline = &speed_outline),
+    EO_KEY("harmonics", "integer", "mesh orders that were fitted"),
+    EO_KEY("rms_m_per_s2", "object", "vibration", .outline = &rms_outline),
+    EO_KEY("mesh", "object", "mesh orders", .outline = &line_outline),
+    EO_KEY("residual_um", "number?", "what no order explains, RMS", .unit = &eo_unit_um),
+    EO_KEY("te", "object", "transmission error", .outline = &brief_te),
+};
+static const struct eo_outline brief_result = EO_OUTLINE("BriefResult", brief_result_rows);
+
+static const struct eo_outline_row brief_rows[] = {
+    EO_KEY("file", "text?", "name as it came"),
+    EO_KEY("label", "word", "which pair was measured", .words = labels),
+    EO_KEY("torque_Nm", "number", "on the pinion shaft", .unit = &eo_unit_Nm),
+    EO_KEY("end", "word", "where the encoders sat", .words = ends),
+    EO_KEY("refused", "flag", "there is no result"),
+    EO_KEY("findings", "[object]", "what is remarkable", .outline = &brief_finding),
+    EO_KEY("result", "object", "without its curves", .outline = &brief_result),
+};
+const struct eo_outline eo_measurement_brief = EO_OUTLINE("BriefMeasurement", brief_rows);
 
 /* ---- back ---- */
 

@@ -15,6 +15,7 @@
 
 #include <jansson.h>
 
+#include "document/outline.h"
 #include "document/text.h"
 #include "measurement/comparison.h"
 #include "measurement/measurement.h"
@@ -29,6 +30,10 @@ struct eo_measurement_label {
   const struct eo_notes *notes; /* borrowed; may be NULL */
   const json_t *layout;        /* borrowed; may be NULL */
 };
+
+extern const struct eo_outline eo_measurement_outline, eo_comparison_outline;
+/* What lists and comparisons need of a measurement: eo_outline_take() gives it, eo_measured_decode() reads that too. */
+extern const struct eo_outline eo_measurement_brief;
 
 /* New document; NULL without memory. */
 json_t *eo_measurement_encode(const struct eo_measurement *measurement, const struct eo_measurement_label *label);

@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/parallel.h"
 #include "document/geometry_table.h"
@@ -57,17 +58,41 @@ struct eo_result_object eo_result_open(void)
   return object;
 }
 
+struct eo_result_object eo_result_open_as(const struct eo_outline *outline)
+{
+  struct eo_result_object object = eo_result_open();
+  object.outline = outline;
+  return object;
+}
+
+/* Steps to the row of a key, NULL: to the end; NULL when a row that is always there would be passed over. */
+static const struct eo_outline_row *step(struct eo_result_object *object, const char *key)
+{
+  const struct eo_outline_row *row;
+  while ((row = eo_outline_at(object->outline, object->next))) {
+    object->next++;
+    if (key && strcmp(row->key, key) == 0)
+      return row;
+    object->failed = object->failed || !row->when;
+  }
+  object->failed = object->failed || key;
+  return NULL;
+}
+
 void eo_result_put(struct eo_result_object *object, const char *key, json_t *value)
 {
+  if (object->outline)
+    step(object, key);
   eo_json_put(object->json, key, value, &object->failed);
 }
 
-void eo_result_put_number(struct eo_result_object *object, const char *key, double value, const struct eo_unit *unit)
+void eo_result_put_number(struct eo_result_object *object, const char *key, double value)
 {
-  eo_result_put(object, key, eo_result_number(value, unit));
+  const struct eo_outline_row *row = object->outline ? step(object, key) : NULL;
+  eo_json_put(object->json, key, row ? eo_result_number(value, row->unit) : NULL, &object->failed);
 }
 
-json_t *eo_result_close(struct eo_result_object *object)
+json_t *eo_result_close_part(struct eo_result_object *object)
 {
   if (!object->failed)
     return object->json;
@@ -75,13 +100,20 @@ json_t *eo_result_close(struct eo_result_object *object)
   return NULL;
 }
 
+json_t *eo_result_close(struct eo_result_object *object)
+{
+  if (object->outline)
+    step(object, NULL);
+  return eo_result_close_part(object);
+}
+
 /* ---- load cases ---- */
+
+static const char *const outcomes[] = {"converged", "contact_lost", "not_converged", NULL};
 
 static const char *outcome_of(const struct eo_case_result *c)
 {
-  if (c->contact_failures > 0 || c->vibration.outcome == EO_VIBRATION_NOT_CONVERGED)
-    return "not_converged";
-  return c->vibration.outcome == EO_VIBRATION_CONTACT_LOST ? "contact_lost" : "converged";
+  return outcomes[c->contact_failures > 0 ? EO_VIBRATION_NOT_CONVERGED : c->vibration.outcome];
 }
 
 json_t *eo_result_position(const struct eo_result_source *source)
@@ -91,14 +123,31 @@ json_t *eo_result_position(const struct eo_result_source *source)
   return eo_result_column(source->positions, source->scratch, 1 / source->pair->geometry.transverse_base_pitch, NULL, EO_DIGITS_CURVE);
 }
 
+static const struct eo_outline_row case_rows[] = {
+    EO_KEY("torque_Nm", "number", "on the pinion shaft, both ends together", .unit = &eo_unit_Nm),
+    EO_KEY("speed_rpm", "number", "of the pinion", .unit = &eo_unit_rpm),
+    EO_KEY("share", "number", "of the operating time"),
+    EO_KEY("normal_force_N", "number", "of one end, normal to the teeth", .unit = &eo_unit_N),
+    EO_KEY("outcome", "word", "not_converged: of the contact or of the vibration; contact_lost: teeth separate", .words = outcomes),
+    EO_KEY("position", "[number]", "phase of the mesh cycle of the left end, 0..1, over which the static curves run"),
+    EO_KEY("lte", "object", "loaded transmission error, transverse", .outline = &eo_outline_lte),
+    EO_KEY("mesh_stiffness", "object", "mesh stiffness, normal", .outline = &eo_outline_stiffness),
+    EO_KEY("contact", "object", "loads, pressure, contact pattern", .outline = &eo_outline_contact),
+    EO_KEY("body_deflection", "object", "what shafts and bodies do to the gap", .when = "with elastic shafts", .outline = &eo_outline_bodies),
+    EO_KEY("impact", "object", "entering impact", .outline = &eo_outline_impact),
+    EO_KEY("root_stress", "object?", "null when it was not asked for", .outline = &eo_outline_root_stress),
+    EO_KEY("vibration", "object", "vibration", .outline = &eo_outline_vibration),
+};
+static const struct eo_outline case_outline = EO_OUTLINE("LoadCaseResult", case_rows);
+
 static json_t *encode_case(struct eo_result_source *source, int k)
 {
   const struct eo_case_result *c = &source->evaluation->load_case[k];
-  struct eo_result_object o = eo_result_open();
-  eo_result_put_number(&o, "torque_Nm", c->load_case.torque, &eo_unit_Nm);
-  eo_result_put_number(&o, "speed_rpm", c->load_case.speed, &eo_unit_rpm);
-  eo_result_put_number(&o, "share", c->load_case.share, NULL);
-  eo_result_put_number(&o, "normal_force_N", c->force, &eo_unit_N);
+  struct eo_result_object o = eo_result_open_as(&case_outline);
+  eo_result_put_number(&o, "torque_Nm", c->load_case.torque);
+  eo_result_put_number(&o, "speed_rpm", c->load_case.speed);
+  eo_result_put_number(&o, "share", c->load_case.share);
+  eo_result_put_number(&o, "normal_force_N", c->force);
   eo_result_put(&o, "outcome", json_string(outcome_of(c)));
   eo_result_put(&o, "position", eo_result_position(source));
   eo_result_put(&o, "lte", eo_result_lte(source, c));
@@ -125,19 +174,32 @@ static json_t *encode_cases(struct eo_result_source *source)
 
 /* ---- objectives ---- */
 
+static const struct eo_outline_row raw_case_rows[] = {
+    EO_KEY("torque_Nm", "number", "on the pinion shaft", .unit = &eo_unit_Nm),
+    EO_KEY("speed_rpm", "number", "of the pinion", .unit = &eo_unit_rpm),
+    EO_KEY("peak_to_peak_um", "number?", "loaded transmission error; null, as all below, when the evaluation failed", .unit = &eo_unit_um),
+    EO_KEY("impact_N", "number?", "general entering impact, worse end", .unit = &eo_unit_N),
+    EO_KEY("rms_m_per_s2", "number?", "normal acceleration, RMS", .unit = &eo_unit_m_per_s2),
+    EO_KEY("contact_pressure_MPa", "number?", "largest", .unit = &eo_unit_MPa),
+    EO_KEY("root_stress_MPa", "number?", "largest; null when it was not computed", .unit = &eo_unit_MPa),
+    EO_KEY("edge_load_share", "number?", "share of the load on tip edges"),
+    EO_KEY("contact_loss", "number?", "share of the mesh cycle without contact"),
+};
+const struct eo_outline eo_outline_raw_case = EO_OUTLINE("RawCase", raw_case_rows);
+
 json_t *eo_result_raw_case(const struct eo_load_case *load_case, const struct eo_objective_case *raw)
 {
-  struct eo_result_object o = eo_result_open();
+  struct eo_result_object o = eo_result_open_as(&eo_outline_raw_case);
   double known = raw->failed ? NAN : 1;
-  eo_result_put_number(&o, "torque_Nm", load_case->torque, &eo_unit_Nm);
-  eo_result_put_number(&o, "speed_rpm", load_case->speed, &eo_unit_rpm);
-  eo_result_put_number(&o, "peak_to_peak_um", known * raw->peak_to_peak, &eo_unit_um);
-  eo_result_put_number(&o, "impact_N", known * raw->impact, &eo_unit_N);
-  eo_result_put_number(&o, "rms_m_per_s2", known * raw->rms, &eo_unit_m_per_s2);
-  eo_result_put_number(&o, "contact_pressure_MPa", known * raw->contact_pressure, &eo_unit_MPa);
-  eo_result_put_number(&o, "root_stress_MPa", known * raw->root_stress, &eo_unit_MPa);
-  eo_result_put_number(&o, "edge_load_share", known * raw->edge_load_share, NULL);
-  eo_result_put_number(&o, "contact_loss", known * raw->contact_loss, NULL);
+  eo_result_put_number(&o, "torque_Nm", load_case->torque);
+  eo_result_put_number(&o, "speed_rpm", load_case->speed);
+  eo_result_put_number(&o, "peak_to_peak_um", known * raw->peak_to_peak);
+  eo_result_put_number(&o, "impact_N", known * raw->impact);
+  eo_result_put_number(&o, "rms_m_per_s2", known * raw->rms);
+  eo_result_put_number(&o, "contact_pressure_MPa", known * raw->contact_pressure);
+  eo_result_put_number(&o, "root_stress_MPa", known * raw->root_stress);
+  eo_result_put_number(&o, "edge_load_share", known * raw->edge_load_share);
+  eo_result_put_number(&o, "contact_loss", known * raw->contact_loss);
   return eo_result_close(&o);
 }
 
@@ -152,21 +214,42 @@ static json_t *encode_raw(const struct eo_result_source *source, const struct eo
   return cases;
 }
 
+static const struct eo_outline_row value_rows[] = {
+    EO_KEY("f1_um", "number?", "first objective: loaded transmission error over the duty cycle; null, as all, when it is not known", .unit = &eo_unit_um),
+    EO_KEY("f2_N", "number?", "second: entering impact", .unit = &eo_unit_N),
+    EO_KEY("f3_m_per_s2", "number?", "third: vibration", .unit = &eo_unit_m_per_s2),
+    EO_KEY("J", "number?", "their weighted sum: what is minimised"),
+    EO_KEY("fitness", "number?", "1/J less penalties"),
+    EO_KEY("violation", "number?", "sum of the violated constraints, relative; 0: feasible"),
+};
+const struct eo_outline eo_outline_value = EO_OUTLINE("Value", value_rows);
+
 void eo_result_put_value(struct eo_result_object *o, const struct eo_objective_value *value)
 {
   double known = value->sums.failed ? NAN : 1;
-  eo_result_put_number(o, "f1_um", known * value->sums.f[0], &eo_unit_um);
-  eo_result_put_number(o, "f2_N", known * value->sums.f[1], &eo_unit_N);
-  eo_result_put_number(o, "f3_m_per_s2", known * value->sums.f[2], &eo_unit_m_per_s2);
-  eo_result_put_number(o, "J", value->objective, NULL);
-  eo_result_put_number(o, "fitness", value->fitness, NULL);
-  eo_result_put_number(o, "violation", value->violation, NULL);
+  const double number[] = {known * value->sums.f[0], known * value->sums.f[1], known * value->sums.f[2], value->objective, value->fitness, value->violation};
+  for (int i = 0; i < eo_outline_value.count; i++)
+    eo_result_put(o, value_rows[i].key, eo_result_number(number[i], value_rows[i].unit));
 }
+
+static const struct eo_outline_row unmodified_rows[] = {
+    {.outline = &eo_outline_value},
+    EO_KEY("load_cases", "[object]", "one for each load case", .outline = &eo_outline_raw_case),
+};
+static const struct eo_outline unmodified_outline = EO_OUTLINE("UnmodifiedObjectives", unmodified_rows);
+
+static const struct eo_outline_row objective_rows[] = {
+    {.outline = &eo_outline_value},
+    EO_KEY("load_cases", "[object]", "one for each load case", .outline = &eo_outline_raw_case),
+    EO_KEY("unmodified", "object", "of the pair without its modification", .outline = &unmodified_outline),
+    EO_KEY("scenarios", "integer", "of a robust objective that were evaluated; 1: the nominal one"),
+};
+static const struct eo_outline objectives_outline = EO_OUTLINE("ResultObjectives", objective_rows);
 
 static json_t *encode_objectives(const struct eo_result_source *source)
 {
   const struct eo_analysis *a = source->analysis;
-  struct eo_result_object o = eo_result_open(), unmodified = eo_result_open();
+  struct eo_result_object o = eo_result_open_as(&objectives_outline), unmodified = eo_result_open_as(&unmodified_outline);
   eo_result_put_value(&o, &a->value);
   eo_result_put_value(&unmodified, &a->unmodified_value);
   eo_result_put(&o, "load_cases", encode_raw(source, source->evaluation->objective));
@@ -178,10 +261,21 @@ static json_t *encode_objectives(const struct eo_result_source *source)
 
 /* ---- the whole ---- */
 
+static const struct eo_outline_row timing_rows[] = {
+    EO_KEY("preparation", "number", "of the gear pair, once", .unit = &eo_unit_ms),
+    EO_KEY("unmodified", "number", "of the unmodified pair, once", .unit = &eo_unit_ms),
+    EO_KEY("static", "number", "loaded contact", .unit = &eo_unit_ms),
+    EO_KEY("impact", "number", "entering impact", .unit = &eo_unit_ms),
+    EO_KEY("root", "number", "root stress", .unit = &eo_unit_ms),
+    EO_KEY("dynamics", "number", "vibration", .unit = &eo_unit_ms),
+    EO_KEY("evaluation", "number", "of the design altogether", .unit = &eo_unit_ms),
+};
+static const struct eo_outline timing = EO_OUTLINE("Timing", timing_rows);
+
 static json_t *encode_timing(const struct eo_result_source *source)
 {
   const struct eo_evaluation *r = source->evaluation;
-  struct eo_result_object o = eo_result_open();
+  struct eo_result_object o = eo_result_open_as(&timing);
   const struct { const char *key; double milliseconds; } row[] = {
       {"preparation", 1e3 * source->pair->seconds}, {"unmodified", source->analysis->unmodified_ms}, {"static", r->static_ms},
       {"impact", r->impact_ms}, {"root", r->root_ms}, {"dynamics", r->dynamics_ms}, {"evaluation", source->analysis->design_ms}};
@@ -189,6 +283,25 @@ static json_t *encode_timing(const struct eo_result_source *source)
     eo_result_put(&o, row[i].key, json_real(round(1e3 * row[i].milliseconds) / 1e3));
   return eo_result_close(&o);
 }
+
+static const struct eo_outline_row result_rows[] = {
+    EO_KEY("program", "text", "name and version"),
+    EO_KEY("design", "object", "with every default resolved", .table = &eo_design_table, .name = "ResolvedDesign"),
+    EO_KEY("design_hash", "text", "SHA-256 of the canonical design"),
+    EO_KEY("evaluation_hash", "text", "the same without name, objective and optimization"),
+    EO_KEY("resolution", "object", "of the design, once more", .table = &eo_resolution_table, .name = "Resolution"),
+    EO_KEY("geometry", "object", "macro-geometry", .table = &eo_geometry_table, .name = "Geometry"),
+    EO_KEY("modification", "object", "as curves", .outline = &eo_outline_modification),
+    EO_KEY("unloaded_contact", "object", "the same for every load case", .outline = &eo_outline_unloaded),
+    EO_KEY("load_cases", "[object]", "in the order of the design", .outline = &case_outline),
+    EO_KEY("objectives", "object", "of the duty cycle", .outline = &objectives_outline),
+    EO_KEY("eigenfrequencies_Hz", "[number?]?", "with the mean mesh stiffness of the load case with the heaviest share", .unit = &eo_unit_Hz),
+    EO_KEY("damping_ratios", "[number?]?", "of these modes"),
+    EO_KEY("warnings", "[text]", "in plain words"),
+    EO_KEY("timing_ms", "object", "the only part that differs between two runs", .outline = &timing),
+};
+const struct eo_outline eo_result_outline = EO_OUTLINE("Result", result_rows);
+enum { CASES_ROW = 8 }; /* load_cases: the head ends, the tail begins behind it */
 
 static void put_identity(struct eo_result_object *o, const struct eo_design *design)
 {
@@ -203,19 +316,20 @@ static void put_identity(struct eo_result_object *o, const struct eo_design *des
 /* What stands before the load cases, and what stands behind them. */
 static json_t *encode_head(struct eo_result_source *source)
 {
-  struct eo_result_object o = eo_result_open();
+  struct eo_result_object o = eo_result_open_as(&eo_result_outline);
   put_identity(&o, source->design);
   eo_result_put(&o, "geometry", eo_table_encode(&eo_geometry_table, &source->pair->geometry));
   eo_result_put(&o, "modification", eo_result_modification(source));
   eo_result_put(&o, "unloaded_contact", eo_result_unloaded(source));
-  return eo_result_close(&o);
+  return eo_result_close_part(&o);
 }
 
 static json_t *encode_tail(const struct eo_result_source *source, const struct eo_warnings *warnings)
 {
   const struct eo_dynamics_modes *modes = &source->evaluation->modes;
   bool have_modes = source->analysis->want & EO_WANT_CURVES;
-  struct eo_result_object o = eo_result_open();
+  struct eo_result_object o = eo_result_open_as(&eo_result_outline);
+  o.next = CASES_ROW + 1;
   eo_result_put(&o, "objectives", encode_objectives(source));
   eo_result_put(&o, "eigenfrequencies_Hz", have_modes ? eo_json_reals(modes->n, modes->frequency, 1, &eo_unit_Hz, EO_DIGITS_CURVE) : json_null());
   eo_result_put(&o, "damping_ratios", have_modes ? eo_json_reals(modes->n, modes->damping_ratio, 1, NULL, EO_DIGITS_CURVE) : json_null());
@@ -226,13 +340,13 @@ static json_t *encode_tail(const struct eo_result_source *source, const struct e
 
 static json_t *encode_all(struct eo_result_source *source, const struct eo_warnings *warnings)
 {
-  struct eo_result_object o = {.json = encode_head(source)};
+  struct eo_result_object o = {.json = encode_head(source), .outline = &eo_result_outline, .next = CASES_ROW};
   o.failed = !o.json;
   eo_result_put(&o, "load_cases", encode_cases(source));
   json_t *tail = encode_tail(source, warnings);
   o.failed = !tail || json_object_update(o.json, tail) != 0 || o.failed;
   json_decref(tail);
-  return eo_result_close(&o);
+  return eo_result_close_part(&o);
 }
 
 /* What one thread needs. */

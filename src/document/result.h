@@ -15,8 +15,11 @@
 
 #include "document/bundle.h"
 #include "document/design_document.h"
+#include "document/outline.h"
 #include "document/text.h"
 #include "evaluation/analysis.h"
+
+extern const struct eo_outline eo_result_outline;
 
 /* New document of the analysis' last run; design is the one that was analysed. warnings (may be NULL): of reading the design, they come
    first. NULL without memory. */

@@ -63,32 +63,63 @@ static json_t *encode_float(const struct eo_result_source *source, const double 
   return eo_result_column(n, source->scratch, scale, &eo_unit_um, EO_DIGITS_CURVE);
 }
 
+static const struct eo_outline_row lte_rows[] = {
+    EO_KEY("pair_um", "[number?]", "mean of the ends, over the positions", .unit = &eo_unit_um),
+    EO_KEY("left_um", "[number?]", "left end, over the positions", .unit = &eo_unit_um),
+    EO_KEY("right_um", "[number?]", "right end, over the positions", .unit = &eo_unit_um, .when = EO_TWO_ENDS),
+    EO_KEY("peak_to_peak_um", "number?", "of the pair", .unit = &eo_unit_um),
+    EO_KEY("left_peak_to_peak_um", "number?", "of the left end", .unit = &eo_unit_um),
+    EO_KEY("right_peak_to_peak_um", "number?", "of the right end", .unit = &eo_unit_um, .when = EO_TWO_ENDS),
+    EO_KEY("mean_um", "number?", "of the pair over the mesh cycle", .unit = &eo_unit_um),
+    EO_KEY("orders_um", "[number?]", "the mean, then the amplitudes of the mesh harmonics 1, 2, ... of the pair", .unit = &eo_unit_um),
+    EO_KEY("axial_float_um", "[number?]", "where the pinion settles along its axis, over the positions",
+           .unit = &eo_unit_um, .when = "with two ends and a floating pinion"),
+};
+const struct eo_outline eo_outline_lte = EO_OUTLINE("TransmissionError", lte_rows);
+
 json_t *eo_result_lte(struct eo_result_source *source, const struct eo_case_result *c)
 {
   const double *const approach[2] = {c->end[0].loaded.approach, c->end[1].loaded.approach};
-  struct eo_result_object o = eo_result_open();
+  struct eo_result_object o = eo_result_open_as(&eo_outline_lte);
   eo_result_put(&o, "pair_um", eo_result_column(source->positions, c->transmission, 1, &eo_unit_um, EO_DIGITS_CURVE));
   put_end_columns(&o, source, "%s_um", approach, 1 / source->normal, &eo_unit_um);
-  eo_result_put_number(&o, "peak_to_peak_um", c->peak_to_peak, &eo_unit_um);
+  eo_result_put_number(&o, "peak_to_peak_um", c->peak_to_peak);
   for (int end = 0; end < source->ends; end++)
-    eo_result_put_number(&o, end ? "right_peak_to_peak_um" : "left_peak_to_peak_um", c->end[end].transmission_peak, &eo_unit_um);
-  eo_result_put_number(&o, "mean_um", c->mean, &eo_unit_um);
+    eo_result_put_number(&o, end ? "right_peak_to_peak_um" : "left_peak_to_peak_um", c->end[end].transmission_peak);
+  eo_result_put_number(&o, "mean_um", c->mean);
   eo_result_put(&o, "orders_um", encode_orders(source->positions, c->transmission, &eo_unit_um));
   if (source->ends == 2 && source->design->alignment.pinion_axial == EO_AXIAL_FLOATING)
     eo_result_put(&o, "axial_float_um", encode_float(source, approach));
   return eo_result_close(&o);
 }
 
+static const struct eo_outline_row stiffness_mean_rows[] = {
+    EO_KEY("left_N_per_um", "number?", "left end", .unit = &eo_unit_N_per_um),
+    EO_KEY("tangent_left_N_per_um", "number?", "left end, tangent", .unit = &eo_unit_N_per_um),
+    EO_KEY("right_N_per_um", "number?", "right end", .unit = &eo_unit_N_per_um, .when = EO_TWO_ENDS),
+    EO_KEY("tangent_right_N_per_um", "number?", "right end, tangent", .unit = &eo_unit_N_per_um, .when = EO_TWO_ENDS),
+};
+static const struct eo_outline stiffness_mean = EO_OUTLINE("MeanMeshStiffness", stiffness_mean_rows);
+
+static const struct eo_outline_row stiffness_rows[] = {
+    EO_KEY("left_N_per_um", "[number?]", "load over approach from first contact, normal, left end, over the positions", .unit = &eo_unit_N_per_um),
+    EO_KEY("right_N_per_um", "[number?]", "the same, right end", .unit = &eo_unit_N_per_um, .when = EO_TWO_ENDS),
+    EO_KEY("tangent_left_N_per_um", "[number?]", "change of load over change of approach, normal, left end, over the positions", .unit = &eo_unit_N_per_um),
+    EO_KEY("tangent_right_N_per_um", "[number?]", "the same, right end", .unit = &eo_unit_N_per_um, .when = EO_TWO_ENDS),
+    EO_KEY("mean", "object", "means over the mesh cycle", .outline = &stiffness_mean),
+};
+const struct eo_outline eo_outline_stiffness = EO_OUTLINE("MeshStiffness", stiffness_rows);
+
 json_t *eo_result_stiffness(struct eo_result_source *source, const struct eo_case_result *c)
 {
   const double *const secant[2] = {c->end[0].stiffness, c->end[1].stiffness};
   const double *const tangent[2] = {c->end[0].loaded.tangent, c->end[1].loaded.tangent};
-  struct eo_result_object o = eo_result_open(), means = eo_result_open();
+  struct eo_result_object o = eo_result_open_as(&eo_outline_stiffness), means = eo_result_open_as(&stiffness_mean);
   put_end_columns(&o, source, "%s_N_per_um", secant, 1, &eo_unit_N_per_um);
   put_end_columns(&o, source, "tangent_%s_N_per_um", tangent, 1, &eo_unit_N_per_um);
   for (int end = 0; end < source->ends; end++) {
-    eo_result_put_number(&means, end ? "right_N_per_um" : "left_N_per_um", mean(source->positions, secant[end]), &eo_unit_N_per_um);
-    eo_result_put_number(&means, end ? "tangent_right_N_per_um" : "tangent_left_N_per_um", mean(source->positions, tangent[end]), &eo_unit_N_per_um);
+    eo_result_put_number(&means, end ? "right_N_per_um" : "left_N_per_um", mean(source->positions, secant[end]));
+    eo_result_put_number(&means, end ? "tangent_right_N_per_um" : "tangent_left_N_per_um", mean(source->positions, tangent[end]));
   }
   eo_result_put(&o, "mean", eo_result_close(&means));
   return eo_result_close(&o);
@@ -96,22 +127,38 @@ json_t *eo_result_stiffness(struct eo_result_source *source, const struct eo_cas
 
 /* ---- unloaded contact: the same for every load case ---- */
 
+static const struct eo_outline_row unloaded_end_rows[] = {
+    EO_KEY("te_um", "[number?]", "unloaded transmission error, over the positions", .unit = &eo_unit_um),
+    EO_KEY("peak_to_peak_um", "number?", "of the end", .unit = &eo_unit_um),
+    EO_KEY("smallest_gap_um", "number?", "smallest gap anywhere on the flank", .unit = &eo_unit_um),
+    EO_KEY("clearance_um", "[[number?]]?", "gap that the mesh cycle leaves, a row for every s_mm, a number for every eta_mm; null without maps",
+           .unit = &eo_unit_um),
+    EO_KEY("marked_share", "number?", "share of the flank closer than the marking thickness"),
+};
+static const struct eo_outline unloaded_end = EO_OUTLINE("UnloadedContactEnd", unloaded_end_rows);
+
 static json_t *encode_unloaded_end(struct eo_result_source *source, int end)
 {
   const struct eo_end_result *r = &source->evaluation->load_case[0].end[end];
   struct eo_contact_pattern *pattern = source->pattern;
-  struct eo_result_object o = eo_result_open();
+  struct eo_result_object o = eo_result_open_as(&unloaded_end);
   int marked = 0, points = EO_PATTERN_ROWS * EO_PATTERN_COLUMNS;
   eo_contact_pattern_unload(pattern, source->pair->grid, eo_evaluator_field(source->analysis->evaluator, end), r->unloaded);
   for (int i = 0; i < points; i++)
     marked += pattern->clearance[i] < source->design->resolution.marking_thickness;
   eo_result_put(&o, "te_um", eo_result_end_column(source, end, r->unloaded, 1 / source->normal, &eo_unit_um));
-  eo_result_put_number(&o, "peak_to_peak_um", swing(source->positions, r->unloaded) / source->normal, &eo_unit_um);
-  eo_result_put_number(&o, "smallest_gap_um", r->datum, &eo_unit_um);
+  eo_result_put_number(&o, "peak_to_peak_um", swing(source->positions, r->unloaded) / source->normal);
+  eo_result_put_number(&o, "smallest_gap_um", r->datum);
   eo_result_put(&o, "clearance_um", eo_result_map(source, EO_PATTERN_ROWS, EO_PATTERN_COLUMNS, pattern->clearance, &eo_unit_um));
-  eo_result_put_number(&o, "marked_share", (double)marked / points, NULL);
+  eo_result_put_number(&o, "marked_share", (double)marked / points);
   return eo_result_close(&o);
 }
+
+static const struct eo_outline_row place_rows[] = {
+    EO_KEY("s_mm", "[number]", "roll along the line of action from the pitch point, + towards the pinion's tip: rows of the maps", .unit = &eo_unit_mm),
+    EO_KEY("eta_mm", "[number]", "place along the face from its middle, + on the side that meets first: columns of the maps", .unit = &eo_unit_mm),
+};
+static const struct eo_outline places = EO_OUTLINE("Places", place_rows);
 
 static void put_places(struct eo_result_object *o, const struct eo_result_source *source)
 {
@@ -129,15 +176,26 @@ static json_t *encode_unloaded_pair(struct eo_result_source *source, double *pea
   return eo_result_column(n, source->scratch, 1 / source->normal, &eo_unit_um, EO_DIGITS_CURVE);
 }
 
+static const struct eo_outline_row unloaded_rows[] = {
+    EO_KEY("position", "[number]", "phase of the mesh cycle, 0..1"),
+    EO_KEY("pair_te_um", "[number?]", "unloaded transmission error of the pair, over the positions", .unit = &eo_unit_um),
+    EO_KEY("peak_to_peak_um", "number?", "of the pair", .unit = &eo_unit_um),
+    EO_KEY("marking_thickness_um", "number", "of the marking compound, as the design states it", .unit = &eo_unit_um),
+    {.outline = &places},
+    EO_KEY("left", "object", "left end", .outline = &unloaded_end),
+    EO_KEY("right", "object", "right end", .when = EO_TWO_ENDS, .outline = &unloaded_end),
+};
+const struct eo_outline eo_outline_unloaded = EO_OUTLINE("UnloadedContact", unloaded_rows);
+
 json_t *eo_result_unloaded(struct eo_result_source *source)
 {
-  struct eo_result_object o = eo_result_open();
+  struct eo_result_object o = eo_result_open_as(&eo_outline_unloaded);
   double peak;
   eo_contact_pattern_init(source->pattern, &source->pair->geometry);
   eo_result_put(&o, "position", eo_result_position(source));
   eo_result_put(&o, "pair_te_um", encode_unloaded_pair(source, &peak));
-  eo_result_put_number(&o, "peak_to_peak_um", peak, &eo_unit_um);
-  eo_result_put_number(&o, "marking_thickness_um", source->design->resolution.marking_thickness, &eo_unit_um);
+  eo_result_put_number(&o, "peak_to_peak_um", peak);
+  eo_result_put_number(&o, "marking_thickness_um", source->design->resolution.marking_thickness);
   put_places(&o, source);
   for (int end = 0; end < source->ends; end++)
     eo_result_put(&o, eo_result_end[end], encode_unloaded_end(source, end));
@@ -162,9 +220,16 @@ static json_t *encode_share(struct eo_result_source *source, int end, const stru
   return NULL;
 }
 
+static const struct eo_outline_row share_rows[] = {
+    EO_KEY("tooth_pair", "[integer]", "numbers of the tooth pairs that can touch: rows of the shares"),
+    EO_KEY("left", "[[number?]]", "share of the end's load, a row for every tooth pair, over the positions"),
+    EO_KEY("right", "[[number?]]", "the same, right end", .when = EO_TWO_ENDS),
+};
+static const struct eo_outline shares = EO_OUTLINE("LoadShare", share_rows);
+
 static json_t *encode_shares(struct eo_result_source *source, const struct eo_case_result *c)
 {
-  struct eo_result_object o = eo_result_open();
+  struct eo_result_object o = eo_result_open_as(&shares);
   int range[2];
   json_t *pairs = json_array();
   eo_contact_grid_pairs(source->pair->grid, range);
@@ -176,20 +241,35 @@ static json_t *encode_shares(struct eo_result_source *source, const struct eo_ca
   return eo_result_close(&o);
 }
 
+static const struct eo_outline_row pattern_end_rows[] = {
+    EO_KEY("pressure_MPa", "[[number?]]?", "largest contact pressure of the mesh cycle, a row for every s_mm, a number for every eta_mm; null without maps",
+           .unit = &eo_unit_MPa),
+    EO_KEY("gear_tip_edge_MPa", "[number?]", "the same at the gear's tip edge, over eta_mm (nominal)", .unit = &eo_unit_MPa),
+    EO_KEY("pinion_tip_edge_MPa", "[number?]", "the same at the pinion's tip edge, over eta_mm (nominal)", .unit = &eo_unit_MPa),
+};
+static const struct eo_outline pattern_end = EO_OUTLINE("ContactPatternEnd", pattern_end_rows);
+
 static json_t *encode_pattern_end(const struct eo_result_source *source)
 {
   const struct eo_contact_pattern *pattern = source->pattern;
-  struct eo_result_object o = eo_result_open();
+  struct eo_result_object o = eo_result_open_as(&pattern_end);
   eo_result_put(&o, "pressure_MPa", eo_result_map(source, EO_PATTERN_ROWS, EO_PATTERN_COLUMNS, pattern->pressure, &eo_unit_MPa));
   eo_result_put(&o, "gear_tip_edge_MPa", eo_json_reals(EO_PATTERN_COLUMNS, pattern->edge[0], 1, &eo_unit_MPa, EO_DIGITS_MAP));
   eo_result_put(&o, "pinion_tip_edge_MPa", eo_json_reals(EO_PATTERN_COLUMNS, pattern->edge[1], 1, &eo_unit_MPa, EO_DIGITS_MAP));
   return eo_result_close(&o);
 }
 
+static const struct eo_outline_row pattern_rows[] = {
+    {.outline = &places},
+    EO_KEY("left", "object", "left end", .outline = &pattern_end),
+    EO_KEY("right", "object", "right end", .when = EO_TWO_ENDS, .outline = &pattern_end),
+};
+static const struct eo_outline contact_pattern = EO_OUTLINE("ContactPattern", pattern_rows);
+
 static json_t *encode_pattern(struct eo_result_source *source, int k)
 {
   const struct eo_case_result *c = &source->evaluation->load_case[k];
-  struct eo_result_object o = eo_result_open();
+  struct eo_result_object o = eo_result_open_as(&contact_pattern);
   put_places(&o, source);
   for (int end = 0; end < source->ends; end++) {
     eo_contact_pattern_load(source->pattern, source->pair->grid, &c->end[end].loaded);
@@ -207,19 +287,41 @@ double eo_result_mean_load(const struct eo_result_source *source, const struct e
   return mean(source->positions, c->end[end].loaded.load);
 }
 
+/* One number per end. */
+#define EACH_END(variable, name, unit_)                                                                                              \
+  static const struct eo_outline_row variable##_rows[] = {EO_KEY("left", "number?", "left end", .unit = unit_),                      \
+                                                          EO_KEY("right", "number?", "right end", .unit = unit_, .when = EO_TWO_ENDS)}; \
+  static const struct eo_outline variable = EO_OUTLINE(name, variable##_rows)
+EACH_END(force_ends, "ForceOfEnds", &eo_unit_N);
+EACH_END(pressure_ends, "PressureOfEnds", &eo_unit_MPa);
+EACH_END(line_load_ends, "LineLoadOfEnds", &eo_unit_N_per_mm);
+EACH_END(share_ends, "ShareOfEnds", NULL);
+
+static const struct eo_outline_row contact_rows[] = {
+    EO_KEY("mean_load_N", "object", "normal force that an end carries, mean over the mesh cycle", .outline = &force_ends),
+    EO_KEY("max_pressure_MPa", "object", "largest contact pressure of the mesh cycle, tip edges included", .outline = &pressure_ends),
+    EO_KEY("max_line_load_N_per_mm", "object", "largest load per length of contact line", .outline = &line_load_ends),
+    EO_KEY("edge_load_share", "object", "largest share of the load on tip edges", .outline = &share_ends),
+    EO_KEY("edge_pressure_MPa", "object", "largest pressure of the tip edges (nominal)", .outline = &pressure_ends),
+    EO_KEY("load_share", "object", "shares of the tooth pairs", .outline = &shares),
+    EO_KEY("pattern", "object", "contact pattern", .outline = &contact_pattern),
+};
+const struct eo_outline eo_outline_contact = EO_OUTLINE("LoadedContact", contact_rows);
+
 json_t *eo_result_contact(struct eo_result_source *source, int k)
 {
   const struct eo_case_result *c = &source->evaluation->load_case[k];
-  struct eo_result_object o = eo_result_open(), pressure = eo_result_open(), line_load = eo_result_open(), edge = eo_result_open(),
-                          edge_pressure = eo_result_open(), load = eo_result_open();
+  struct eo_result_object o = eo_result_open_as(&eo_outline_contact), load = eo_result_open_as(&force_ends), pressure = eo_result_open_as(&pressure_ends),
+                          line_load = eo_result_open_as(&line_load_ends), edge = eo_result_open_as(&share_ends),
+                          edge_pressure = eo_result_open_as(&pressure_ends);
   json_t *pattern = encode_pattern(source, k);
   for (int end = 0; end < source->ends; end++) {
     const struct eo_end_result *r = &c->end[end];
-    eo_result_put_number(&load, eo_result_end[end], eo_result_mean_load(source, c, end), &eo_unit_N);
-    eo_result_put_number(&pressure, eo_result_end[end], r->max_pressure, &eo_unit_MPa);
-    eo_result_put_number(&line_load, eo_result_end[end], r->max_line_load, &eo_unit_N_per_mm);
-    eo_result_put_number(&edge, eo_result_end[end], r->edge_share, NULL);
-    eo_result_put_number(&edge_pressure, eo_result_end[end], source->edge_pressure[k][end], &eo_unit_MPa);
+    eo_result_put_number(&load, eo_result_end[end], eo_result_mean_load(source, c, end));
+    eo_result_put_number(&pressure, eo_result_end[end], r->max_pressure);
+    eo_result_put_number(&line_load, eo_result_end[end], r->max_line_load);
+    eo_result_put_number(&edge, eo_result_end[end], r->edge_share);
+    eo_result_put_number(&edge_pressure, eo_result_end[end], source->edge_pressure[k][end]);
   }
   eo_result_put(&o, "mean_load_N", eo_result_close(&load));
   eo_result_put(&o, "max_pressure_MPa", eo_result_close(&pressure));
@@ -233,10 +335,18 @@ json_t *eo_result_contact(struct eo_result_source *source, int k)
 
 /* ---- elastic bodies ---- */
 
+static const struct eo_outline_row body_rows[] = {
+    EO_KEY("eta_mm", "[number]", "place along the face from its middle, + on the side that meets first", .unit = &eo_unit_mm),
+    EO_KEY("left_um", "[number?]", "normal gap that the bodies open, mean over the mesh cycle, over eta_mm, left end", .unit = &eo_unit_um),
+    EO_KEY("right_um", "[number?]", "the same, right end", .unit = &eo_unit_um, .when = EO_TWO_ENDS),
+    EO_KEY("most_iterations", "integer", "between contact and bodies, at the worst position"),
+};
+const struct eo_outline eo_outline_bodies = EO_OUTLINE("BodyDeflection", body_rows);
+
 json_t *eo_result_bodies(struct eo_result_source *source, const struct eo_case_result *c)
 {
   double eta[EO_DEFLECTION_NODES];
-  struct eo_result_object o = eo_result_open();
+  struct eo_result_object o = eo_result_open_as(&eo_outline_bodies);
   for (int i = 0; i < EO_DEFLECTION_NODES; i++)
     eta[i] = source->pair->geometry.face_width * ((double)i / (EO_DEFLECTION_NODES - 1) - 0.5);
   eo_result_put(&o, "eta_mm", eo_json_reals(EO_DEFLECTION_NODES, eta, 1, &eo_unit_mm, EO_DIGITS_CURVE));
@@ -248,26 +358,46 @@ json_t *eo_result_bodies(struct eo_result_source *source, const struct eo_case_r
 
 /* ---- impact ---- */
 
+static const struct eo_outline_row impact_end_rows[] = {
+    EO_KEY("force_N", "number?", "of the classical impact: 0 when first touch happens on the line of action", .unit = &eo_unit_N),
+    EO_KEY("general_force_N", "number?", "of the general impact, wherever first touch happens", .unit = &eo_unit_N),
+    EO_KEY("speed_mm_per_s", "number?", "of approach along the normal", .unit = &eo_unit_mm_per_s),
+    EO_KEY("duration_ms", "number?", "of the half sine; null without a force", .unit = &eo_unit_ms),
+    EO_KEY("off_line", "flag", "first touch happens before the line of action"),
+    EO_KEY("position", "number?", "phase of first touch (EMIP); null, as all below, when nothing touches"),
+    EO_KEY("eta_mm", "number?", "its place along the face", .unit = &eo_unit_mm),
+    EO_KEY("s_mm", "number?", "its roll from the pitch point", .unit = &eo_unit_mm),
+    EO_KEY("lead_before_A_mm", "number?", "how far before the path of contact", .unit = &eo_unit_mm),
+    EO_KEY("pinion_radius_mm", "number?", "where the gear's tip meets the pinion's flank", .unit = &eo_unit_mm),
+};
+static const struct eo_outline impact_end = EO_OUTLINE("ImpactEnd", impact_end_rows);
+
 static json_t *encode_impact_end(const struct eo_result_source *source, const struct eo_impact *impact)
 {
-  struct eo_result_object o = eo_result_open();
+  struct eo_result_object o = eo_result_open_as(&impact_end);
   double known = impact->touched ? 1 : NAN, struck = impact->touched && impact->force > 0 ? 1 : NAN;
-  eo_result_put_number(&o, "force_N", impact->classical, &eo_unit_N);
-  eo_result_put_number(&o, "general_force_N", impact->force, &eo_unit_N);
-  eo_result_put_number(&o, "speed_mm_per_s", impact->speed, &eo_unit_mm_per_s);
-  eo_result_put_number(&o, "duration_ms", struck * impact->duration, &eo_unit_ms);
+  eo_result_put_number(&o, "force_N", impact->classical);
+  eo_result_put_number(&o, "general_force_N", impact->force);
+  eo_result_put_number(&o, "speed_mm_per_s", impact->speed);
+  eo_result_put_number(&o, "duration_ms", struck * impact->duration);
   eo_result_put(&o, "off_line", json_boolean(impact->touched && impact->off_line));
-  eo_result_put_number(&o, "position", known * impact->start, NULL);
-  eo_result_put_number(&o, "eta_mm", known * impact->eta, &eo_unit_mm);
-  eo_result_put_number(&o, "s_mm", known * impact->path, &eo_unit_mm);
-  eo_result_put_number(&o, "lead_before_A_mm", known * fmax(0, source->pair->geometry.path_start - impact->path), &eo_unit_mm);
-  eo_result_put_number(&o, "pinion_radius_mm", known * impact->pinion_radius, &eo_unit_mm);
+  eo_result_put_number(&o, "position", known * impact->start);
+  eo_result_put_number(&o, "eta_mm", known * impact->eta);
+  eo_result_put_number(&o, "s_mm", known * impact->path);
+  eo_result_put_number(&o, "lead_before_A_mm", known * fmax(0, source->pair->geometry.path_start - impact->path));
+  eo_result_put_number(&o, "pinion_radius_mm", known * impact->pinion_radius);
   return eo_result_close(&o);
 }
 
+static const struct eo_outline_row impact_rows[] = {
+    EO_KEY("left", "object", "left end", .outline = &impact_end),
+    EO_KEY("right", "object", "right end", .when = EO_TWO_ENDS, .outline = &impact_end),
+};
+const struct eo_outline eo_outline_impact = EO_OUTLINE("Impact", impact_rows);
+
 json_t *eo_result_impact(struct eo_result_source *source, const struct eo_case_result *c)
 {
-  struct eo_result_object o = eo_result_open();
+  struct eo_result_object o = eo_result_open_as(&eo_outline_impact);
   for (int end = 0; end < source->ends; end++)
     eo_result_put(&o, eo_result_end[end], encode_impact_end(source, &c->end[end].impact));
   return eo_result_close(&o);
@@ -281,13 +411,22 @@ static json_t *encode_root_history(const struct eo_result_source *source, const 
                                                    : eo_json_reals(history->phases, history->stress, 1, &eo_unit_MPa, EO_DIGITS_CURVE);
 }
 
+static const struct eo_outline_row root_end_rows[] = {
+    EO_KEY("max_MPa", "number?", "largest static root stress of the end", .unit = &eo_unit_MPa),
+    EO_KEY("max_dynamic_MPa", "number?", "times the dynamic factor; null without a periodic vibration", .unit = &eo_unit_MPa),
+    EO_KEY("arc_mm", "number?", "its place along the fillet", .unit = &eo_unit_mm),
+    EO_KEY("eta_mm", "number?", "its place along the face", .unit = &eo_unit_mm),
+    EO_KEY("history_MPa", "[number?]?", "largest stress of one tooth over `position` of the member; null without histories", .unit = &eo_unit_MPa),
+};
+static const struct eo_outline root_end = EO_OUTLINE("RootStressEnd", root_end_rows);
+
 static json_t *encode_root_end(const struct eo_result_source *source, const struct eo_root_history *history, double factor)
 {
-  struct eo_result_object o = eo_result_open();
-  eo_result_put_number(&o, "max_MPa", history->maximum, &eo_unit_MPa);
-  eo_result_put_number(&o, "max_dynamic_MPa", history->maximum * factor, &eo_unit_MPa);
-  eo_result_put_number(&o, "arc_mm", history->arc, &eo_unit_mm);
-  eo_result_put_number(&o, "eta_mm", history->eta, &eo_unit_mm);
+  struct eo_result_object o = eo_result_open_as(&root_end);
+  eo_result_put_number(&o, "max_MPa", history->maximum);
+  eo_result_put_number(&o, "max_dynamic_MPa", history->maximum * factor);
+  eo_result_put_number(&o, "arc_mm", history->arc);
+  eo_result_put_number(&o, "eta_mm", history->eta);
   eo_result_put(&o, "history_MPa", encode_root_history(source, history));
   return eo_result_close(&o);
 }
@@ -297,16 +436,26 @@ static double force_factor(const struct eo_case_result *c, int end)
   return c->vibration.outcome == EO_VIBRATION_NOT_CONVERGED ? NAN : fmax(1, c->vibration.dynamic_factor[end]);
 }
 
+static const struct eo_outline_row root_member_rows[] = {
+    EO_KEY("max_MPa", "number?", "largest static root stress, worse end", .unit = &eo_unit_MPa),
+    EO_KEY("max_dynamic_MPa", "number?", "times the dynamic factor of its end; null without a periodic vibration", .unit = &eo_unit_MPa),
+    EO_KEY("position", "[number]", "phase of the tooth's way through the mesh, in mesh cycles"),
+    EO_KEY("history_MPa", "[number?]?", "of the worse end; null without histories", .unit = &eo_unit_MPa),
+    EO_KEY("left", "object", "left end", .outline = &root_end),
+    EO_KEY("right", "object", "right end", .when = EO_TWO_ENDS, .outline = &root_end),
+};
+static const struct eo_outline root_member = EO_OUTLINE("RootStressMember", root_member_rows);
+
 static json_t *encode_root_member(const struct eo_result_source *source, const struct eo_case_result *c, int member)
 {
   const struct eo_root_history *history[2] = {&c->end[0].root[member], &c->end[1].root[member]};
   int worst = source->ends == 2 && history[1]->maximum > history[0]->maximum ? EO_RIGHT : EO_LEFT;
   double dynamic = 0;
-  struct eo_result_object o = eo_result_open();
+  struct eo_result_object o = eo_result_open_as(&root_member);
   for (int end = 0; end < source->ends; end++)
     dynamic = isnan(force_factor(c, end)) ? NAN : fmax(dynamic, history[end]->maximum * force_factor(c, end));
-  eo_result_put_number(&o, "max_MPa", history[worst]->maximum, &eo_unit_MPa);
-  eo_result_put_number(&o, "max_dynamic_MPa", dynamic, &eo_unit_MPa);
+  eo_result_put_number(&o, "max_MPa", history[worst]->maximum);
+  eo_result_put_number(&o, "max_dynamic_MPa", dynamic);
   eo_result_put(&o, "position", eo_json_reals(history[0]->phases, history[0]->phase, 1, NULL, EO_DIGITS_CURVE));
   eo_result_put(&o, "history_MPa", encode_root_history(source, history[worst]));
   for (int end = 0; end < source->ends; end++)
@@ -314,11 +463,17 @@ static json_t *encode_root_member(const struct eo_result_source *source, const s
   return eo_result_close(&o);
 }
 
+static const struct eo_outline_row root_rows[] = {
+    EO_KEY("pinion", "object", "pinion", .outline = &root_member),
+    EO_KEY("gear", "object", "gear", .outline = &root_member),
+};
+const struct eo_outline eo_outline_root_stress = EO_OUTLINE("RootStress", root_rows);
+
 json_t *eo_result_root_stress(struct eo_result_source *source, const struct eo_case_result *c)
 {
   if (!source->analysis->root)
     return json_null();
-  struct eo_result_object o = eo_result_open();
+  struct eo_result_object o = eo_result_open_as(&eo_outline_root_stress);
   for (int member = 0; member < 2; member++)
     eo_result_put(&o, eo_result_member[member], encode_root_member(source, c, member));
   return eo_result_close(&o);

@@ -4,6 +4,7 @@
 
 #include "contact/pattern.h"
 #include "document/json.h"
+#include "document/outline.h"
 #include "document/result.h"
 
 enum { EO_DIGITS_CURVE = 9, EO_DIGITS_MAP = 6, EO_DIGITS_NUMBER = 12 };
@@ -36,15 +37,29 @@ json_t *eo_result_end_column(const struct eo_result_source *source, int end, con
 /* [rows][columns] as an array of rows; null when maps are left out. */
 json_t *eo_result_map(const struct eo_result_source *source, int rows, int columns, const double *value, const struct eo_unit *unit);
 
-/* object[key] = value; what is missing marks the object itself as failed. */
+/* object[key] = value; what is missing marks the object itself as failed. With an outline, so does a key that it does not have next (rows that
+   are not always there may be passed over): a defect of the writer, which the first test that comes by finds. */
 struct eo_result_object {
   json_t *json;
   bool failed;
+  const struct eo_outline *outline; /* NULL: free */
+  int next;                         /* row */
 };
 struct eo_result_object eo_result_open(void);
+struct eo_result_object eo_result_open_as(const struct eo_outline *outline);
 void eo_result_put(struct eo_result_object *object, const char *key, json_t *value);
-void eo_result_put_number(struct eo_result_object *object, const char *key, double value, const struct eo_unit *unit);
-json_t *eo_result_close(struct eo_result_object *object); /* NULL when anything failed */
+void eo_result_put_number(struct eo_result_object *object, const char *key, double value); /* SI; the outline's row has the unit */
+json_t *eo_result_close(struct eo_result_object *object); /* NULL when anything failed, or is missing of the outline */
+json_t *eo_result_close_part(struct eo_result_object *object); /* the same where others write the rows behind */
+
+/* What is there when the pair has two ends. */
+#define EO_TWO_ENDS "with two ends"
+
+/* The parts; each stands beside its writer. */
+extern const struct eo_outline eo_outline_lte, eo_outline_stiffness, eo_outline_unloaded, eo_outline_contact, eo_outline_bodies, eo_outline_impact,
+    eo_outline_root_stress, eo_outline_vibration, eo_outline_modification;
+extern const struct eo_outline eo_outline_value;    /* eo_result_put_value() */
+extern const struct eo_outline eo_outline_raw_case; /* eo_result_raw_case() */
 
 /* Normal force that one end carries, mean over the mesh cycle, N. */
 double eo_result_mean_load(const struct eo_result_source *source, const struct eo_case_result *load_case, int end);

@@ -27,18 +27,32 @@ static bool has_curves(const struct eo_result_source *source, const struct eo_ca
   return source->analysis->want & EO_WANT_CURVES && c->vibration.outcome != EO_VIBRATION_NOT_CONVERGED;
 }
 
+static const struct eo_outline_row reading_rows[] = {
+    EO_KEY("normal", "number?", "relative acceleration along the line of action, normal to the teeth", .unit = &eo_unit_m_per_s2),
+    EO_KEY("transverse", "number?", "in the transverse plane", .unit = &eo_unit_m_per_s2),
+    EO_KEY("rotational", "number?", "of the rotations alone: what encoders see", .unit = &eo_unit_m_per_s2),
+};
+static const struct eo_outline readings = EO_OUTLINE("Readings", reading_rows);
+
 static json_t *encode_readings(const double *value, int stride, double known)
 {
-  struct eo_result_object o = eo_result_open();
+  struct eo_result_object o = eo_result_open_as(&readings);
   for (int i = 0; i < EO_READINGS; i++)
-    eo_result_put_number(&o, reading_name[i], known * value[i * stride], &eo_unit_m_per_s2);
+    eo_result_put_number(&o, reading_name[i], known * value[i * stride]);
   return eo_result_close(&o);
 }
+
+static const struct eo_outline_row band_rows[] = {
+    EO_KEY("normal", "[number?]", "lowest, highest", .unit = &eo_unit_m_per_s2),
+    EO_KEY("transverse", "[number?]", "lowest, highest", .unit = &eo_unit_m_per_s2),
+    EO_KEY("rotational", "[number?]", "lowest, highest", .unit = &eo_unit_m_per_s2),
+};
+static const struct eo_outline bands = EO_OUTLINE("ReadingsBand", band_rows);
 
 /* Lowest and highest RMS at 0.9, 1 and 1.1 times the compliance. */
 static json_t *encode_band(const struct eo_case_result *c, double known)
 {
-  struct eo_result_object o = eo_result_open();
+  struct eo_result_object o = eo_result_open_as(&bands);
   for (int i = 0; i < EO_READINGS; i++) {
     double nominal = known * c->vibration.rms_pair[i], low = c->band[i][0], high = c->band[i][1], missing = low + high + nominal;
     double band[2] = {fmin(nominal, fmin(low, high)), fmax(nominal, fmax(low, high))};
@@ -60,9 +74,22 @@ static json_t *encode_amplitudes(int harmonics, double complex *const order[2], 
   return column;
 }
 
+/* By channel; deflection and forces are normal. */
+static const struct eo_outline_row channel_rows[] = {
+    EO_KEY("deflection_um", "[number?]", "of the mesh, normal", .unit = &eo_unit_um),
+    EO_KEY("mesh_force_N", "[number?]", "normal", .unit = &eo_unit_N),
+    EO_KEY("normal_m_per_s2", "[number?]", "relative acceleration normal to the teeth", .unit = &eo_unit_m_per_s2),
+    EO_KEY("transverse_m_per_s2", "[number?]", "in the transverse plane", .unit = &eo_unit_m_per_s2),
+    EO_KEY("rotational_m_per_s2", "[number?]", "of the rotations alone", .unit = &eo_unit_m_per_s2),
+    EO_KEY("pinion_bearing_N", "[number?]", "force of the pinion's bearing", .unit = &eo_unit_N),
+    EO_KEY("gear_bearing_N", "[number?]", "force of the gear's bearing", .unit = &eo_unit_N),
+    EO_KEY("gear_thrust_N", "[number?]", "axial force of the gear's bearing", .unit = &eo_unit_N),
+};
+static const struct eo_outline channel_curves = EO_OUTLINE("VibrationChannels", channel_rows);
+
 static json_t *encode_curves(const struct eo_result_source *source, const struct eo_end_result *r, bool orders)
 {
-  struct eo_result_object o = eo_result_open();
+  struct eo_result_object o = eo_result_open_as(&channel_curves);
   for (int i = 0; i < EO_CHANNELS; i++)
     eo_result_put(&o, channels[i].key,
                   orders ? encode_amplitudes(source->evaluation->harmonics, &r->order[i], 1, channels[i].unit)
@@ -70,21 +97,39 @@ static json_t *encode_curves(const struct eo_result_source *source, const struct
   return eo_result_close(&o);
 }
 
+static const struct eo_outline_row end_rows[] = {
+    EO_KEY("rms_m_per_s2", "object", "RMS of the accelerations", .outline = &readings),
+    EO_KEY("dynamic_factor", "number?", "largest over static mesh force"),
+    EO_KEY("contact_loss", "number?", "share of the mesh cycle without contact"),
+    EO_KEY("mean_deflection_um", "number?", "of the mesh", .unit = &eo_unit_um),
+    EO_KEY("peak_to_peak_deflection_um", "number?", "of the mesh", .unit = &eo_unit_um),
+    EO_KEY("mean_mesh_force_N", "number?", "normal", .unit = &eo_unit_N),
+    EO_KEY("min_mesh_force_N", "number?", "normal", .unit = &eo_unit_N),
+    EO_KEY("max_mesh_force_N", "number?", "normal", .unit = &eo_unit_N),
+    EO_KEY("mean_pinion_bearing_N", "number?", "force of the pinion's bearing", .unit = &eo_unit_N),
+    EO_KEY("max_pinion_bearing_N", "number?", "force of the pinion's bearing", .unit = &eo_unit_N),
+    EO_KEY("mean_gear_bearing_N", "number?", "force of the gear's bearing", .unit = &eo_unit_N),
+    EO_KEY("max_gear_bearing_N", "number?", "force of the gear's bearing", .unit = &eo_unit_N),
+    EO_KEY("history", "object?", "over `position` of the vibration; null without histories or a periodic state", .outline = &channel_curves),
+    EO_KEY("orders", "object?", "the mean, then the amplitudes of the mesh harmonics 1, 2, ...; null without a periodic state", .outline = &channel_curves),
+};
+static const struct eo_outline vibration_end = EO_OUTLINE("VibrationEnd", end_rows);
+
 static json_t *encode_end(const struct eo_result_source *source, const struct eo_case_result *c, int end, double known)
 {
   const struct eo_vibration *v = &c->vibration;
-  struct eo_result_object o = eo_result_open();
+  struct eo_result_object o = eo_result_open_as(&vibration_end);
   eo_result_put(&o, "rms_m_per_s2", encode_readings(&v->rms[0][end], 2, known));
-  eo_result_put_number(&o, "dynamic_factor", known * v->dynamic_factor[end], NULL);
-  eo_result_put_number(&o, "contact_loss", known * v->contact_loss[end], NULL);
-  eo_result_put_number(&o, "mean_deflection_um", known * v->deflection_mean[end], &eo_unit_um);
-  eo_result_put_number(&o, "peak_to_peak_deflection_um", known * v->deflection_swing[end], &eo_unit_um);
-  eo_result_put_number(&o, "mean_mesh_force_N", known * v->force_mean[end], &eo_unit_N);
-  eo_result_put_number(&o, "min_mesh_force_N", known * v->force_min[end], &eo_unit_N);
-  eo_result_put_number(&o, "max_mesh_force_N", known * v->force_max[end], &eo_unit_N);
+  eo_result_put_number(&o, "dynamic_factor", known * v->dynamic_factor[end]);
+  eo_result_put_number(&o, "contact_loss", known * v->contact_loss[end]);
+  eo_result_put_number(&o, "mean_deflection_um", known * v->deflection_mean[end]);
+  eo_result_put_number(&o, "peak_to_peak_deflection_um", known * v->deflection_swing[end]);
+  eo_result_put_number(&o, "mean_mesh_force_N", known * v->force_mean[end]);
+  eo_result_put_number(&o, "min_mesh_force_N", known * v->force_min[end]);
+  eo_result_put_number(&o, "max_mesh_force_N", known * v->force_max[end]);
   for (int member = 0; member < 2; member++) {
-    eo_result_put_number(&o, member ? "mean_gear_bearing_N" : "mean_pinion_bearing_N", known * v->bearing_force_mean[member][end], &eo_unit_N);
-    eo_result_put_number(&o, member ? "max_gear_bearing_N" : "max_pinion_bearing_N", known * v->bearing_force_max[member][end], &eo_unit_N);
+    eo_result_put_number(&o, member ? "mean_gear_bearing_N" : "mean_pinion_bearing_N", known * v->bearing_force_mean[member][end]);
+    eo_result_put_number(&o, member ? "max_gear_bearing_N" : "max_pinion_bearing_N", known * v->bearing_force_max[member][end]);
   }
   bool histories = !(source->left_out & EO_RESULT_NO_HISTORIES);
   eo_result_put(&o, "history", histories && has_curves(source, c) ? encode_curves(source, &c->end[end], false) : json_null());
@@ -114,19 +159,39 @@ static json_t *encode_samples(const struct eo_result_source *source)
   return column;
 }
 
+static const char *const outcomes[] = {"converged", "contact_lost", "not_converged", NULL};
+
+static const struct eo_outline_row vibration_rows[] = {
+    EO_KEY("outcome", "word", "contact_lost: teeth separate; not_converged: no periodic state was found, and what hangs on it is null", .words = outcomes),
+    EO_KEY("mesh_frequency_Hz", "number", "teeth per second", .unit = &eo_unit_Hz),
+    EO_KEY("rms_m_per_s2", "object", "RMS of the pair: mean of the ends' RMS", .outline = &readings),
+    EO_KEY("rms_band_m_per_s2", "object", "at 0.9 to 1.1 times the compliance; numbers null when the band was not asked for", .outline = &bands),
+    EO_KEY("rms_of_mean_m_per_s2", "object", "RMS of the mean of the ends", .outline = &readings),
+    EO_KEY("contact_loss", "number?", "share of the mesh cycle without contact, worse end"),
+    EO_KEY("dynamic_factor", "number?", "largest over static mesh force, worse end"),
+    EO_KEY("back_contact", "flag", "the back flanks touch"),
+    EO_KEY("position", "[number]", "phase of the mesh cycle, 0..1, of the histories"),
+    EO_KEY("orders_normal_m_per_s2", "[number?]?", "mean of the ends' amplitudes: the mean, then mesh harmonics 1, 2, ...; null without a periodic state",
+           .unit = &eo_unit_m_per_s2),
+    EO_KEY("orders_transverse_m_per_s2", "[number?]?", "the same of the transverse acceleration", .unit = &eo_unit_m_per_s2),
+    EO_KEY("orders_rotational_m_per_s2", "[number?]?", "the same of the rotational acceleration", .unit = &eo_unit_m_per_s2),
+    EO_KEY("left", "object", "left end", .outline = &vibration_end),
+    EO_KEY("right", "object", "right end", .when = EO_TWO_ENDS, .outline = &vibration_end),
+};
+const struct eo_outline eo_outline_vibration = EO_OUTLINE("Vibration", vibration_rows);
+
 json_t *eo_result_vibration(struct eo_result_source *source, const struct eo_case_result *c)
 {
-  static const char *const outcomes[] = {"converged", "contact_lost", "not_converged"};
   const struct eo_vibration *v = &c->vibration;
-  struct eo_result_object o = eo_result_open();
+  struct eo_result_object o = eo_result_open_as(&eo_outline_vibration);
   double known = v->outcome == EO_VIBRATION_NOT_CONVERGED ? NAN : 1;
   eo_result_put(&o, "outcome", json_string(outcomes[v->outcome]));
-  eo_result_put_number(&o, "mesh_frequency_Hz", c->load_case.speed * source->pair->geometry.teeth[EO_PINION] / (2 * M_PI), &eo_unit_Hz);
+  eo_result_put_number(&o, "mesh_frequency_Hz", c->load_case.speed * source->pair->geometry.teeth[EO_PINION] / (2 * M_PI));
   eo_result_put(&o, "rms_m_per_s2", encode_readings(v->rms_pair, 1, known));
   eo_result_put(&o, "rms_band_m_per_s2", encode_band(c, known));
   eo_result_put(&o, "rms_of_mean_m_per_s2", encode_readings(v->rms_of_mean, 1, known));
-  eo_result_put_number(&o, "contact_loss", known * fmax(v->contact_loss[0], source->ends == 2 ? v->contact_loss[1] : 0), NULL);
-  eo_result_put_number(&o, "dynamic_factor", known * fmax(v->dynamic_factor[0], source->ends == 2 ? v->dynamic_factor[1] : 0), NULL);
+  eo_result_put_number(&o, "contact_loss", known * fmax(v->contact_loss[0], source->ends == 2 ? v->contact_loss[1] : 0));
+  eo_result_put_number(&o, "dynamic_factor", known * fmax(v->dynamic_factor[0], source->ends == 2 ? v->dynamic_factor[1] : 0));
   eo_result_put(&o, "back_contact", json_boolean(v->back_contact));
   eo_result_put(&o, "position", encode_samples(source));
   put_pair_orders(&o, source, c);

@@ -175,8 +175,8 @@ static json_t *encode_truth(const struct eo_synthetic *s, int orders)
     rms[h - 1] = eo_synthetic_rms(s, h);
   }
   snprintf(key, sizeof key, "rms_mesh_lines_H%d", orders);
-  eo_result_put_number(&o, "mean_rpm", speed, &eo_unit_rpm);
-  eo_result_put_number(&o, key, rms[orders - 1], NULL);
+  eo_result_put(&o, "mean_rpm", eo_result_number(speed, &eo_unit_rpm));
+  eo_result_put(&o, key, eo_result_number(rms[orders - 1], NULL));
   eo_result_put(&o, "line_amp_um", column(orders, amplitude));
   eo_result_put(&o, "line_acc", column(orders, acceleration));
   eo_result_put(&o, "rms_by_H", column(orders, rms));
@@ -205,7 +205,7 @@ json_t *eo_rig_truth(const struct eo_rig_request *r, const char *file)
     top.failed = json_array_append_new(radii, eo_json_real(s->base_radius[i], &eo_unit_mm)) || json_array_append_new(teeth, json_integer(s->teeth[i])) || top.failed;
   eo_result_put(&entry, "file", json_string(file));
   eo_result_put(&entry, "truth", encode_truth(s, orders));
-  eo_result_put_number(&entry, "tolerance_rms_rel", 0.01, NULL);
+  eo_result_put(&entry, "tolerance_rms_rel", eo_result_number(0.01, NULL));
   eo_result_put(&entry, "expected_findings", findings);
   if (s->output != EO_SYNTHETIC_ANGLES) {
     int per_line = s->output == EO_SYNTHETIC_COUNTS ? s->interpolation : 1;

@@ -220,6 +220,8 @@ static json_t *property(const struct eo_field *field, const json_t *defaults, bo
     eo_result_put(&o, "description", json_sprintf("%s; null: %s", field->help, field->derived));
   else if (field->help)
     eo_result_put(&o, "description", json_string(field->help));
+  if (field->unit)
+    eo_result_put(&o, "x-unit", json_string(field->unit->symbol));
   if (input && has_default(field))
     eo_result_put(&o, "default", default_of(field, defaults));
   return eo_result_close(&o);

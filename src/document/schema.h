@@ -13,7 +13,7 @@
 json_t *eo_table_fields(const struct eo_table *table);
 
 /* JSON Schema 2020-12 of the same object. input: absent keys take their default, unknown ones are faults; else an encoded object, all keys there and
-   required. Nested tables are written out in place. NULL without memory. */
+   required. Nested tables are written out in place; a unit stands in "x-unit". NULL without memory. */
 json_t *eo_table_json_schema(const struct eo_table *table, bool input);
 
 #endif

@@ -10,11 +10,11 @@
 
 #include <config.h>
 
-static const char *const stop_names[] = {"budget", "converged", "cancelled"};
+const char *const eo_study_stops[] = {"budget", "converged", "cancelled", NULL};
 
 const char *eo_study_stop_name(enum eo_study_stop stop)
 {
-  return stop_names[stop];
+  return eo_study_stops[stop];
 }
 
 void eo_study_result_done(struct eo_study_result *result)
@@ -28,14 +28,25 @@ void eo_study_result_done(struct eo_study_result *result)
 
 /* ---- JSON ---- */
 
+static const char *const members[] = {"pinion", "gear", NULL}, *const ends[] = {"left", "right", "both", NULL};
+
+static const struct eo_outline_row variable_rows[] = {
+    EO_KEY("name", "text", "MEMBER/END/PARAMETER"),
+    EO_KEY("member", "word", "whose flank", .words = members),
+    EO_KEY("end", "word", "both: the same on both ends", .words = ends),
+    EO_KEY("parameter", "word", "key of the flank's modification, with its unit", .words = eo_variable_parameters),
+    EO_KEY("bounds", "[number]", "lowest, highest"),
+    EO_KEY("best", "number?", "of the best design; null while there is none"),
+};
+static const struct eo_outline variable_outline = EO_OUTLINE("StudyVariable", variable_rows);
+
 static json_t *encode_variable(const struct eo_study_result *result, const struct eo_study_variable *v)
 {
-  static const char *const ends[] = {"left", "right", "both"};
-  struct eo_result_object o = eo_result_open();
+  struct eo_result_object o = eo_result_open_as(&variable_outline);
   char name[80];
   eo_study_variable_name(v, name, sizeof name);
   eo_result_put(&o, "name", json_string(name));
-  eo_result_put(&o, "member", json_string(eo_result_member[v->member]));
+  eo_result_put(&o, "member", json_string(members[v->member]));
   eo_result_put(&o, "end", json_string(ends[v->end]));
   eo_result_put(&o, "parameter", json_string(v->field->key));
   eo_result_put(&o, "bounds", json_pack("[o,o]", json_real(v->low), json_real(v->high)));
@@ -60,9 +71,15 @@ static json_t *encode_variables(const struct eo_study_result *result)
   return array;
 }
 
+static const struct eo_outline_row point_rows[] = {
+    {.outline = &eo_outline_value},
+    EO_KEY("load_cases", "[object]", "of the nominal scenario, one for each load case", .outline = &eo_outline_raw_case),
+};
+static const struct eo_outline point_outline = EO_OUTLINE("StudyPoint", point_rows);
+
 static json_t *encode_point(const struct eo_study_point *point, const struct eo_design *design)
 {
-  struct eo_result_object o = eo_result_open();
+  struct eo_result_object o = eo_result_open_as(&point_outline);
   json_t *cases = json_array();
   eo_result_put_value(&o, &point->value);
   for (int k = 0; k < design->load_cases && cases; k++)
@@ -70,6 +87,17 @@ static json_t *encode_point(const struct eo_study_point *point, const struct eo_
   eo_result_put(&o, "load_cases", cases);
   return eo_result_close(&o);
 }
+
+static const struct eo_outline_row reduction_rows[] = {
+    EO_KEY("torque_Nm", "number", "of the load case", .unit = &eo_unit_Nm),
+    EO_KEY("speed_rpm", "number", "of the load case", .unit = &eo_unit_rpm),
+    EO_KEY("peak_to_peak", "number?", "of the loaded transmission error, in per cent of the unmodified pair, positive when better"),
+    EO_KEY("impact", "number?", "of the entering impact, likewise"),
+    EO_KEY("rms", "number?", "of the vibration, likewise"),
+    EO_KEY("contact_pressure", "number?", "of the largest contact pressure, likewise"),
+    EO_KEY("root_stress", "number?", "of the largest root stress, likewise"),
+};
+static const struct eo_outline reduction_outline = EO_OUTLINE("StudyReduction", reduction_rows);
 
 /* In per cent of the unmodified pair, positive when better, for every load case of the analysis. */
 static json_t *encode_reductions(const json_t *analysis)
@@ -80,12 +108,12 @@ static json_t *encode_reductions(const json_t *analysis)
   const json_t *after = eo_json_find(analysis, "objectives/load_cases"), *before = eo_json_find(analysis, "objectives/unmodified/load_cases");
   json_t *array = json_array();
   for (size_t k = 0; k < json_array_size(after) && array; k++) {
-    struct eo_result_object o = eo_result_open();
+    struct eo_result_object o = eo_result_open_as(&reduction_outline);
     const json_t *a = json_array_get(after, k), *b = json_array_get(before, k);
     eo_result_put(&o, "torque_Nm", json_incref(json_object_get(a, "torque_Nm")));
     eo_result_put(&o, "speed_rpm", json_incref(json_object_get(a, "speed_rpm")));
     for (size_t i = 0; i < sizeof row / sizeof *row; i++)
-      eo_result_put_number(&o, row[i].key, 100 * (1 - eo_json_find_number(a, row[i].value) / eo_json_find_number(b, row[i].value)), NULL);
+      eo_result_put_number(&o, row[i].key, 100 * (1 - eo_json_find_number(a, row[i].value) / eo_json_find_number(b, row[i].value)));
     array = append(array, eo_result_close(&o));
   }
   return array;
@@ -104,9 +132,17 @@ static json_t *encode_modification(const struct eo_design *design, const struct 
   return part;
 }
 
+static const struct eo_outline_row best_rows[] = {
+    EO_KEY("modification", "object", "as a design takes it", .table = &eo_modification_table, .name = "Modification"),
+    EO_KEY("objectives", "object", "of the duty cycle", .outline = &point_outline),
+    EO_KEY("reductions_percent", "[object]", "one for each load case", .outline = &reduction_outline),
+    EO_KEY("result", "object?", "the best design analysed; null when it was not", .outline = &eo_result_outline),
+};
+static const struct eo_outline best_outline = EO_OUTLINE("StudyBest", best_rows);
+
 static json_t *encode_best(const struct eo_study_result *result, const struct eo_design *design, const json_t *analysis)
 {
-  struct eo_result_object o = eo_result_open();
+  struct eo_result_object o = eo_result_open_as(&best_outline);
   eo_result_put(&o, "modification", encode_modification(design, &result->best.modification));
   eo_result_put(&o, "objectives", encode_point(&result->best, design));
   eo_result_put(&o, "reductions_percent", encode_reductions(analysis));
@@ -114,11 +150,22 @@ static json_t *encode_best(const struct eo_study_result *result, const struct eo
   return eo_result_close(&o);
 }
 
+static const struct eo_outline_row generation_rows[] = {
+    EO_KEY("best", "number?", "J and penalties of the best so far"),
+    EO_KEY("mean", "number?", "of this generation's true evaluations that converged"),
+    EO_KEY("true", "integer", "evaluations by the model, or known from the history"),
+    EO_KEY("predicted", "integer", "individuals whose fitness was predicted"),
+    EO_KEY("repeated", "integer", "individuals equal to an earlier one"),
+    EO_KEY("history_rows", "integer", "fpga: rows of its history after the generation"),
+    EO_KEY("epoch", "integer", "credibility-ga: how often it started anew"),
+};
+static const struct eo_outline generation_outline = EO_OUTLINE("StudyGeneration", generation_rows);
+
 static json_t *encode_generation(const struct eo_study_generation *g)
 {
-  struct eo_result_object o = eo_result_open();
-  eo_result_put_number(&o, "best", g->best, NULL);
-  eo_result_put_number(&o, "mean", g->mean, NULL);
+  struct eo_result_object o = eo_result_open_as(&generation_outline);
+  eo_result_put_number(&o, "best", g->best);
+  eo_result_put_number(&o, "mean", g->mean);
   eo_result_put(&o, "true", json_integer(g->true_count));
   eo_result_put(&o, "predicted", json_integer(g->predicted_count));
   eo_result_put(&o, "repeated", json_integer(g->repeated_count));
@@ -135,12 +182,20 @@ static json_t *encode_generations(const struct eo_study_result *result)
   return array;
 }
 
+static const struct eo_outline_row front_rows[] = {
+    EO_KEY("values", "[number]", "of the variables, in their order and units"),
+    {.outline = &eo_outline_value},
+    EO_KEY("knee", "flag", "the point at the knee of the front"),
+    EO_KEY("weighted", "flag", "the point that the weights choose"),
+};
+static const struct eo_outline front_outline = EO_OUTLINE("FrontPoint", front_rows);
+
 static json_t *encode_front(const struct eo_study_result *result)
 {
   json_t *array = json_array();
   for (int i = 0; i < result->front_count && array; i++) {
     const struct eo_study_point *point = &result->front[i];
-    struct eo_result_object o = eo_result_open();
+    struct eo_result_object o = eo_result_open_as(&front_outline);
     json_t *values = json_array();
     for (int j = 0; j < result->space.count && values; j++)
       values = append(values, json_real(eo_study_variable_value(&result->space.variable[j], &point->modification)));
@@ -161,9 +216,21 @@ static json_t *encode_warnings(const struct eo_warnings *warnings)
   return array;
 }
 
+static const struct eo_outline_row run_rows[] = {
+    EO_KEY("job", "integer", "number of the job"),
+    EO_KEY("taken_up", "flag", "an earlier run was continued"),
+    EO_KEY("computed_evaluations", "integer", "by this run"),
+    EO_KEY("threads", "integer", "that evaluated"),
+    EO_KEY("wall_s", "number", "of this run, s"),
+    EO_KEY("model_s", "number", "of it, while the model computed, s"),
+    EO_KEY("optimizer_s", "number", "of it, in the algorithm, s"),
+    EO_KEY("history_s", "number", "of it, in the database, s"),
+};
+static const struct eo_outline run_outline = EO_OUTLINE("StudyRun", run_rows);
+
 static json_t *encode_run(const struct eo_study_result *r)
 {
-  struct eo_result_object o = eo_result_open();
+  struct eo_result_object o = eo_result_open_as(&run_outline);
   eo_result_put(&o, "job", json_integer(r->job));
   eo_result_put(&o, "taken_up", json_boolean(r->resumed));
   eo_result_put(&o, "computed_evaluations", json_integer(r->computed));
@@ -183,13 +250,38 @@ static void put_counts(struct eo_result_object *o, const struct eo_study_result 
       {"imported_rows", r->imported}};
   for (size_t i = 0; i < sizeof row / sizeof *row; i++)
     eo_result_put(o, row[i].key, json_integer(row[i].value));
-  eo_result_put_number(o, "pfc_percent", r->individuals ? 100. * r->true_evaluations / r->individuals : NAN, NULL);
+  eo_result_put_number(o, "pfc_percent", r->individuals ? 100. * r->true_evaluations / r->individuals : NAN);
 }
+
+static const struct eo_outline_row study_rows[] = {
+    EO_KEY("program", "text", "name and version"),
+    EO_KEY("design", "object", "with every default resolved", .table = &eo_design_table, .name = "ResolvedDesign"),
+    EO_KEY("design_hash", "text", "SHA-256 of the canonical design"),
+    EO_KEY("algorithm", "text", "as in the design's optimization"),
+    EO_KEY("seed", "integer", "of everything random"),
+    EO_KEY("variables", "[object]", "what was varied", .outline = &variable_outline),
+    EO_KEY("best", "object?", "null when no evaluation gave a value", .outline = &best_outline),
+    EO_KEY("unmodified", "object", "of the pair without its modification", .outline = &point_outline),
+    EO_KEY("individuals", "integer", "fitness values needed"),
+    EO_KEY("true_evaluations", "integer", "of them by the model, or known from the history"),
+    EO_KEY("reused_evaluations", "integer", "true evaluations that the history knew before the study asked"),
+    EO_KEY("failed_evaluations", "integer", "true evaluations without a value"),
+    EO_KEY("predicted_individuals", "integer", "fitness values that were predicted"),
+    EO_KEY("repeated_individuals", "integer", "equal to an earlier individual"),
+    EO_KEY("imported_rows", "integer", "true rows of other studies that the algorithm knew at its start"),
+    EO_KEY("pfc_percent", "number?", "true evaluations of the individuals, per cent"),
+    EO_KEY("generations", "[object]", "generations (ga, fpga), batches (credibility-ga) or cycles (nsga2), in their order", .outline = &generation_outline),
+    EO_KEY("front", "[object]", "non-dominated points", .when = "of nsga2", .outline = &front_outline),
+    EO_KEY("stopped", "word", "why it ended", .words = eo_study_stops),
+    EO_KEY("warnings", "[text]", "in plain words"),
+    EO_KEY("run", "object", "with best/result/timing_ms the only part that differs between two runs", .outline = &run_outline),
+};
+const struct eo_outline eo_study_outline = EO_OUTLINE("OptimizationResult", study_rows);
 
 json_t *eo_study_result_encode(const struct eo_study_result *result, const struct eo_design *design, const json_t *analysis,
                                const struct eo_warnings *warnings)
 {
-  struct eo_result_object o = eo_result_open();
+  struct eo_result_object o = eo_result_open_as(&eo_study_outline);
   char hash[EO_HASH_LENGTH + 1];
   eo_result_put(&o, "program", json_string(PACKAGE_STRING));
   eo_result_put(&o, "design", eo_design_encode(design));
@@ -203,7 +295,7 @@ json_t *eo_study_result_encode(const struct eo_study_result *result, const struc
   eo_result_put(&o, "generations", encode_generations(result));
   if (strcmp(design->optimization.algorithm, "nsga2") == 0)
     eo_result_put(&o, "front", encode_front(result));
-  eo_result_put(&o, "stopped", json_string(stop_names[result->stopped]));
+  eo_result_put(&o, "stopped", json_string(eo_study_stops[result->stopped]));
   eo_result_put(&o, "warnings", encode_warnings(warnings));
   eo_result_put(&o, "run", encode_run(result));
   return eo_result_close(&o);

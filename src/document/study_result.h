@@ -12,6 +12,7 @@
 #include <jansson.h>
 
 #include "document/design_document.h"
+#include "document/outline.h"
 #include "document/study.h"
 #include "objective/objective.h"
 
@@ -58,6 +59,9 @@ void eo_study_result_done(struct eo_study_result *result);
 
 /* "budget", "converged", "cancelled" */
 const char *eo_study_stop_name(enum eo_study_stop stop);
+extern const char *const eo_study_stops[]; /* by number; ends with NULL */
+
+extern const struct eo_outline eo_study_outline;
 
 /* New document. analysis: result document of the best design (borrowed; NULL: none); warnings may be NULL. NULL without memory. */
 json_t *eo_study_result_encode(const struct eo_study_result *result, const struct eo_design *design, const json_t *analysis,

@@ -60,10 +60,11 @@ enum { POINT_COLUMNS = sizeof point_columns / sizeof *point_columns };
 
 static const char *const variant_name[EO_SWEEP_VARIANTS] = {"modified", "unmodified"};
 
+static const char *const outcome_names[] = {"converged", "contact_lost", "not_converged", NULL};
+
 static const char *outcome_of(const struct eo_sweep_point *point)
 {
-  static const char *const outcomes[] = {"converged", "contact_lost", "not_converged"};
-  return outcomes[point->outcome];
+  return outcome_names[point->outcome];
 }
 
 static double member_of(const void *row, const struct column *column)
@@ -72,6 +73,87 @@ static double member_of(const void *row, const struct column *column)
   memcpy(&value, (const char *)row + column->offset, sizeof value);
   return value;
 }
+
+/* ---- outline: `columns` below fill these, by their paths ---- */
+
+static const struct eo_outline_row torque_end_rows[] = {
+    EO_KEY("stiffness_N_per_um", "[number?]", "mean mesh stiffness, load over approach, normal", .unit = &eo_unit_N_per_um),
+    EO_KEY("tangent_stiffness_N_per_um", "[number?]", "the same, tangent", .unit = &eo_unit_N_per_um),
+    EO_KEY("max_pressure_MPa", "[number?]", "largest contact pressure", .unit = &eo_unit_MPa),
+    EO_KEY("max_line_load_N_per_mm", "[number?]", "largest load per length of contact line", .unit = &eo_unit_N_per_mm),
+    EO_KEY("edge_load_share", "[number?]", "largest share of the load on tip edges"),
+};
+static const struct eo_outline torque_end = EO_OUTLINE("SweepTorqueEnd", torque_end_rows);
+
+static const struct eo_outline_row by_torque_rows[] = {
+    EO_KEY("peak_to_peak_um", "[number?]", "of the loaded transmission error", .unit = &eo_unit_um),
+    EO_KEY("mean_um", "[number?]", "of the loaded transmission error", .unit = &eo_unit_um),
+    EO_KEY("left", "object", "left end", .outline = &torque_end),
+    EO_KEY("right", "object", "right end", .when = EO_TWO_ENDS, .outline = &torque_end),
+    EO_KEY("contact_failures", "[integer]", "mesh positions at which the loaded contact did not converge"),
+};
+static const struct eo_outline by_torque = EO_OUTLINE("SweepByTorque", by_torque_rows);
+
+static const struct eo_outline_row reading_rows[] = {
+    EO_KEY("normal", "[number?]", "relative acceleration normal to the teeth", .unit = &eo_unit_m_per_s2),
+    EO_KEY("transverse", "[number?]", "in the transverse plane", .unit = &eo_unit_m_per_s2),
+    EO_KEY("rotational", "[number?]", "of the rotations alone", .unit = &eo_unit_m_per_s2),
+};
+static const struct eo_outline reading_columns = EO_OUTLINE("SweepReadings", reading_rows);
+
+static const struct eo_outline_row point_end_rows[] = {
+    EO_KEY("impact_force_N", "[number?]", "general entering impact", .unit = &eo_unit_N),
+    EO_KEY("rms_m_per_s2", "object", "RMS of the end", .outline = &reading_columns),
+    EO_KEY("dynamic_factor", "[number?]", "largest over static mesh force"),
+    EO_KEY("contact_loss", "[number?]", "share of the mesh cycle without contact"),
+};
+static const struct eo_outline point_end = EO_OUTLINE("SweepPointEnd", point_end_rows);
+
+static const struct eo_outline_row point_rows[] = {
+    EO_KEY("outcome", "[word]", "not_converged: no periodic state was found, its numbers are null", .words = outcome_names),
+    EO_KEY("rms_m_per_s2", "object", "mean of the ends' RMS", .outline = &reading_columns),
+    EO_KEY("rms_of_mean_m_per_s2", "object", "RMS of the mean of the ends", .outline = &reading_columns),
+    EO_KEY("left", "object", "left end", .outline = &point_end),
+    EO_KEY("right", "object", "right end", .when = EO_TWO_ENDS, .outline = &point_end),
+    EO_KEY("back_contact", "[flag]", "the back flanks touch"),
+};
+static const struct eo_outline point_outline = EO_OUTLINE("SweepPoints", point_rows);
+
+static const struct eo_outline_row variant_rows[] = {
+    EO_KEY("by_torque", "object", "columns over torque_Nm", .outline = &by_torque),
+    EO_KEY("points", "object", "columns over all points, torque by torque: entry i * (number of speeds) + j; upward in speed", .outline = &point_outline),
+    EO_KEY("down", "object?", "the same downward in speed; null when both are the same everywhere", .outline = &point_outline),
+};
+static const struct eo_outline variant_outline = EO_OUTLINE("SweepVariant", variant_rows);
+
+static const struct eo_outline_row mode_rows[] = {
+    EO_KEY("frequency_Hz", "[[number?]]", "a row for every torque", .unit = &eo_unit_Hz),
+    EO_KEY("damping_ratio", "[[number?]]", "a row for every torque"),
+};
+static const struct eo_outline mode_outline = EO_OUTLINE("SweepModes", mode_rows);
+
+static const struct eo_outline_row crossing_rows[] = {
+    EO_KEY("torque_Nm", "[number]", "on the pinion shaft", .unit = &eo_unit_Nm),
+    EO_KEY("mode", "[integer]", "number of the mode, from 1"),
+    EO_KEY("order", "[integer]", "mesh order, from 1"),
+    EO_KEY("frequency_Hz", "[number]", "of the mode", .unit = &eo_unit_Hz),
+    EO_KEY("speed_rpm", "[number]", "at which they meet", .unit = &eo_unit_rpm),
+};
+static const struct eo_outline crossing_outline = EO_OUTLINE("SweepCrossings", crossing_rows);
+
+static const struct eo_outline_row sweep_rows[] = {
+    EO_KEY("program", "text", "name and version"),
+    EO_KEY("design", "object", "with every default resolved", .table = &eo_design_table, .name = "ResolvedDesign"),
+    EO_KEY("design_hash", "text", "SHA-256 of the canonical design"),
+    EO_KEY("torque_Nm", "[number]", "axis of torques", .unit = &eo_unit_Nm),
+    EO_KEY("speed_rpm", "[number]", "axis of speeds", .unit = &eo_unit_rpm),
+    EO_KEY("modified", "object", "the design", .outline = &variant_outline),
+    EO_KEY("unmodified", "object", "without its modification", .outline = &variant_outline),
+    EO_KEY("eigenfrequencies", "object", "damped modes of the design", .outline = &mode_outline),
+    EO_KEY("crossings", "object", "where mesh orders meet eigenfrequencies, as columns", .outline = &crossing_outline),
+    EO_KEY("warnings", "[text]", "in plain words"),
+};
+const struct eo_outline eo_sweep_outline = EO_OUTLINE("Sweep", sweep_rows);
 
 /* ---- JSON ---- */
 
@@ -127,7 +209,7 @@ static json_t *encode_points(const struct eo_sweep *s, int variant, int directio
 
 static json_t *encode_variant(const struct eo_sweep *s, int variant)
 {
-  struct eo_result_object o = eo_result_open();
+  struct eo_result_object o = eo_result_open_as(&variant_outline);
   eo_result_put(&o, "by_torque", encode_torques(s, variant));
   eo_result_put(&o, "points", encode_points(s, variant, EO_SWEEP_UP));
   eo_result_put(&o, "down", s->branches[variant] ? encode_points(s, variant, EO_SWEEP_DOWN) : json_null());
@@ -136,7 +218,7 @@ static json_t *encode_variant(const struct eo_sweep *s, int variant)
 
 static json_t *encode_modes(const struct eo_sweep *s)
 {
-  struct eo_result_object o = eo_result_open();
+  struct eo_result_object o = eo_result_open_as(&mode_outline);
   json_t *frequencies = json_array(), *ratios = json_array();
   for (int i = 0; i < s->torques && !o.failed; i++) {
     const struct eo_dynamics_modes *modes = &s->at_torque[EO_SWEEP_DESIGN][i].modes;
@@ -151,7 +233,7 @@ static json_t *encode_modes(const struct eo_sweep *s)
 /* Modes count from 1, like orders. */
 static json_t *encode_crossings(const struct eo_sweep *s)
 {
-  struct eo_result_object o = eo_result_open();
+  struct eo_result_object o = eo_result_open_as(&crossing_outline);
   json_t *torque = json_array(), *mode = json_array(), *order = json_array(), *frequency = json_array(), *speed = json_array();
   for (int i = 0; i < s->crossings && !o.failed; i++) {
     const struct eo_sweep_crossing *c = &s->crossing[i];
@@ -182,7 +264,7 @@ static json_t *encode_warnings(const struct eo_warnings *warnings)
 json_t *eo_sweep_encode(const struct eo_sweep *s, const struct eo_design *design, const struct eo_warnings *warnings)
 {
   char hash[EO_HASH_LENGTH + 1];
-  struct eo_result_object o = eo_result_open();
+  struct eo_result_object o = eo_result_open_as(&eo_sweep_outline);
   eo_result_put(&o, "program", json_string(PACKAGE_STRING));
   eo_result_put(&o, "design", eo_design_encode(design));
   eo_result_put(&o, "design_hash", eo_design_hash(design, hash, NULL) ? NULL : json_string(hash));

@@ -13,6 +13,7 @@
 #include <jansson.h>
 
 #include "document/design_document.h"
+#include "document/outline.h"
 #include "document/text.h"
 #include "evaluation/sweep.h"
 
@@ -39,6 +40,8 @@ struct eo_sweep_axes {
    one, too many, no axis at all), EO_ERROR_MEMORY. */
 enum eo_code eo_sweep_axes_init(struct eo_sweep_axes *axes, const struct eo_sweep_request *request, struct eo_error *error);
 void eo_sweep_axes_done(struct eo_sweep_axes *axes);
+
+extern const struct eo_outline eo_sweep_outline;
 
 /* New document; warnings may be NULL. NULL without memory. */
 json_t *eo_sweep_encode(const struct eo_sweep *sweep, const struct eo_design *design, const struct eo_warnings *warnings);

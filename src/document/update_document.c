@@ -96,35 +96,67 @@ static void append_warning(void *context, const char *text)
   o->failed = json_array_append_new(o->json, json_string(text)) != 0 || o->failed;
 }
 
+static const struct eo_outline_row unknown_rows[] = {
+    EO_KEY("key", "word", "the input, with the unit of all its numbers", .words = eo_unknown_names),
+    EO_KEY("before", "number?", "as the design had it"),
+    EO_KEY("value", "number?", "found"),
+    EO_KEY("range", "[number]", "lowest, highest, as asked for"),
+    EO_KEY("confidence_95", "[number?]", "lowest, highest: the interval of 95 %"),
+    EO_KEY("at_bound", "flag", "stands at an end of its range"),
+    EO_KEY("undetermined", "flag", "the measurements do not determine it"),
+    EO_KEY("same_as", "word?", "an input that it cannot be told apart from", .words = eo_unknown_names),
+    EO_KEY("correlation", "number?", "with that input, or the one nearest to that"),
+};
+static const struct eo_outline unknown_outline = EO_OUTLINE("FittedInput", unknown_rows);
+
 static json_t *encode_unknown(const struct eo_update *u, const struct eo_updated *p)
 {
   const struct eo_unit *unit = unit_of(p->unknown);
-  struct eo_result_object o = eo_result_open();
+  struct eo_result_object o = eo_result_open_as(&unknown_outline);
   eo_result_put(&o, "key", json_string(eo_unknown_name(p->unknown)));
-  eo_result_put_number(&o, "before", p->before, unit);
-  eo_result_put_number(&o, "value", p->value, unit);
+  eo_result_put(&o, "before", eo_result_number(p->before, unit));
+  eo_result_put(&o, "value", eo_result_number(p->value, unit));
   eo_result_put(&o, "range", eo_json_reals(2, (double[]){p->low, p->high}, 1, unit, EO_DIGITS_NUMBER));
   eo_result_put(&o, "confidence_95", eo_json_reals(2, p->confidence, 1, unit, EO_DIGITS_CURVE));
   eo_result_put(&o, "at_bound", json_boolean(p->at_bound));
   eo_result_put(&o, "undetermined", json_boolean(p->undetermined));
   eo_result_put(&o, "same_as", p->twin < 0 ? json_null() : json_string(eo_unknown_name(u->unknown[p->twin].unknown)));
-  eo_result_put_number(&o, "correlation", p->correlation, NULL);
+  eo_result_put_number(&o, "correlation", p->correlation);
   return eo_result_close(&o);
 }
 
+static const struct eo_outline_row misfit_rows[] = {
+    EO_KEY("before", "number?", "root mean square of measured less predicted acceleration over its standard deviation"),
+    EO_KEY("after", "number?", "the same with the values found"),
+};
+static const struct eo_outline misfit_outline = EO_OUTLINE("Misfit", misfit_rows);
+
+static const struct eo_outline_row update_rows[] = {
+    EO_KEY("unknowns", "[object]", "one for each input that was fitted", .outline = &unknown_outline),
+    EO_KEY("correlation", "[[number?]]", "of the inputs with each other"),
+    EO_KEY("condition", "number?", "of the fit: how much worse its worst direction is determined than its best"),
+    EO_KEY("misfit", "object", "before and after", .outline = &misfit_outline),
+    EO_KEY("measurements", "integer", "used"),
+    EO_KEY("orders", "integer", "compared"),
+    EO_KEY("evaluations", "integer", "of all measurements"),
+    EO_KEY("converged", "flag", "the fit ended by itself"),
+    EO_KEY("warnings", "[text]", "in plain words"),
+};
+const struct eo_outline eo_update_outline = EO_OUTLINE("FitOfFiles", update_rows);
+
 json_t *eo_update_encode(const struct eo_update *u)
 {
-  struct eo_result_object o = eo_result_open(), misfit = eo_result_open(), warnings = {json_array(), false};
+  struct eo_result_object o = eo_result_open_as(&eo_update_outline), misfit = eo_result_open_as(&misfit_outline), warnings = {.json = json_array()};
   json_t *unknowns = json_array(), *correlation = json_array();
   for (int i = 0; i < u->unknowns; i++)
     o.failed = json_array_append_new(unknowns, encode_unknown(u, &u->unknown[i])) != 0 ||
                json_array_append_new(correlation, eo_json_reals(u->unknowns, u->correlation[i], 1, NULL, EO_DIGITS_MAP)) != 0 || o.failed;
   each_warning(u, append_warning, &warnings);
-  eo_result_put_number(&misfit, "before", u->before, NULL);
-  eo_result_put_number(&misfit, "after", u->after, NULL);
+  eo_result_put_number(&misfit, "before", u->before);
+  eo_result_put_number(&misfit, "after", u->after);
   eo_result_put(&o, "unknowns", unknowns);
   eo_result_put(&o, "correlation", correlation);
-  eo_result_put_number(&o, "condition", u->condition, NULL);
+  eo_result_put_number(&o, "condition", u->condition);
   eo_result_put(&o, "misfit", eo_result_close(&misfit));
   eo_result_put(&o, "measurements", json_integer(u->used));
   eo_result_put(&o, "orders", json_integer(u->residuals));

@@ -8,10 +8,13 @@
 #include <jansson.h>
 
 #include "document/faults.h"
+#include "document/outline.h"
 #include "document/text.h"
 #include "measurement/updating.h"
 
 void eo_update_decode(const json_t *document, struct eo_update_settings *settings, struct eo_faults *faults);
+
+extern const struct eo_outline eo_update_outline;
 
 /* New; NULL without memory. */
 json_t *eo_update_encode(const struct eo_update *update);

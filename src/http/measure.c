@@ -202,7 +202,7 @@ static enum eo_code keep(struct eo_request *request, const struct asked *asked, 
                          struct eo_found_measurement *found, enum eo_measurement_outcome *outcome, struct eo_error *error)
 {
   const struct eo_upload *upload = request->upload;
-  json_t *summary = eo_rig_summary(document);
+  json_t *summary = eo_outline_take(&eo_measurement_brief, document);
   char *texts[3] = {dump(document), summary ? dump(summary) : NULL, asked->layout ? dump(asked->layout) : strdup("")};
   struct eo_stored_measurement row = {.design = asked->design, .digest = digest, .unmodified = asked->unmodified, .torque = asked->torque,
                                       .speed = asked->speed, .layout = texts[2], .pair = pair, .summary = texts[1], .result = texts[0],

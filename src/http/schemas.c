@@ -1,63 +1,79 @@
-/* The documents of the API in the short notation of shape.h; designs and geometry come from their field tables. */
+/* The documents of the API: what document/ and jobs/ write comes from their outlines and field tables, the rest stands here in the short notation of
+   shape.h. */
 #include <string.h>
 
 #include "document/design_document.h"
 #include "document/geometry_table.h"
+#include "document/measurement_document.h"
+#include "document/result.h"
 #include "document/rig_document.h"
 #include "document/schema.h"
 #include "document/sweep_document.h"
+#include "document/study_result.h"
 #include "http/openapi.h"
 #include "http/shape.h"
+#include "jobs/job_document.h"
+#include "jobs/job_history.h"
+#include "jobs/records.h"
+#include "jobs/rig_work.h"
 
 static const struct { const char *name, *notation; } shapes[] = {
-    {"Any", "{...}"},
-    {"Problem", "{type text, title text, status integer, detail text, errors [{pointer text, detail text}], request_id text, ...}"},
+    {"Description", "{openapi text, info any, servers any, security any, paths any, components any}"},
+    {"Problem", "{type text, title text, status integer, detail text, errors [{pointer text, detail text}], request_id text,"
+                " findings? [Finding], notes? [text], layout? Layout?, signal? Signal, ...}"},
     {"Health", "{status 'ok|failing', program text, uptime_s number, jobs {queued integer, running integer}, database 'ok|failing'}"},
     {"Session", "{required flag, authorized flag}"},
     {"Token", "{token text}"},
     {"Examples", "{items [{name text, title text}]}"},
     {"Exports", "{items [{name text, title text, type text}]}"},
     {"Form", "{design Fields, sweep Fields}"},
-    {"Fields", "{name text, fields [{key text, kind 'number|integer|seed|flag|text|choice|numbers|limit|object|list|series', help text, ...}], ...}"},
+    {"Fields", "{name text, fields [Field]}"},
+    {"Field", "{key text, kind 'number|integer|seed|flag|text|choice|numbers|limit|object|list|series', unit? text, symbol? text, low? number, high? number,"
+              " number_low? number, number_high? number, count? integer, default? any, choices? [text], help? text, required flag, nullable flag,"
+              " derived? text, fields? [Field]}"},
     {"Check", "{design ResolvedDesign, geometry Geometry, warnings [text], prepared flag}"},
-    {"DesignOrNamed", "{name? any, design? Design, ...}"},
+    {"NamedDesign", "{name? text, design Design}"},
     {"StoredDesign", "{id integer, revision integer, name text, created text, updated text, design Design, warnings [text]}"},
     {"Designs", "{items [{id integer, revision integer, name text, created text, updated text}], next text?}"},
-    {"Result", "{program text, design ResolvedDesign, design_hash text, evaluation_hash text, resolution Any, geometry Geometry, load_cases [Any],"
-               " objectives Any, eigenfrequencies_Hz [number], warnings [text], timing_ms Any, ...}"},
     {"Preparing", "{job Job?}"},
-    {"Sweep", "{program text, design ResolvedDesign, design_hash text, torque_Nm [number], speed_rpm [number], modified Any, unmodified Any, ...}"},
-    {"Objectives", "{J number?, f1_um number?, f2_N number?, f3_m_per_s2 number?, fitness number?, ...}"},
-    {"Job", "{id integer, kind 'optimize|prepare', name text, algorithm text?, state 'queued|preparing|running|done|failed|cancelled', priority integer,"
-            " created text, started text?, finished text?,"
-            " progress {fraction number?, what text?, generation integer?, true_evaluations integer?, predicted integer?, reused integer?, individuals integer?,"
-            " pfc_percent number?, seconds number?, seconds_left number?, ...},"
-            " best Objectives?, unmodified Objectives?, error {detail text, ...}?, design? Any, ...}"},
     {"Jobs", "{items [Job], next text?}"},
     {"JobOrder", "{kind? 'optimize|prepare', design Design, priority? integer, fresh? flag}"},
     {"JobChange", "{priority? integer}"},
-    {"OptimizationResult", "{program text, design ResolvedDesign, algorithm text, best Any?, unmodified Any, individuals integer, true_evaluations integer,"
-                           " pfc_percent number?, generations any, stopped text, ...}"},
-    {"Generations", "{generation [integer], best [number?], mean [number?], true_evaluations [integer], predicted [integer], pfc_percent [number?]}"},
-    {"JobHistory", "{items [{ordinal integer, generation integer, individual integer, outcome text, reason text?, modification Any, f1_um number?,"
-                   " f2_N number?, f3_m_per_s2 number?, J number?, fitness number?, violation number?, reused flag}], next text?}"},
+    {"JobHistory", "{items [JobHistoryRow], next text?}"},
     {"MeasurementForm", "{design text, label 'modified|unmodified', torque_Nm text, speed_rpm? text, end? 'left|right', harmonics? text, layout? text,"
                         " file any}"},
-    {"Finding", "{kind text, severity 'note|repaired|warning|refused', channel? text?, row? integer?, line? integer?, value? number?, text text}"},
-    {"MeasurementFiles", "[{name text, size integer, sha256 text}]"},
-    {"Measurement", "{id integer, design integer, created text, stated_speed_rpm number?, asked_layout any, files MeasurementFiles, file text,"
-                    " label 'unmodified|modified', torque_Nm number, end 'left|right', notes [text], layout any, findings [Finding], refused flag, signal Any,"
-                    " result Any, ...}"},
-    {"Measurements", "{items [{id integer, design integer, created text, stated_speed_rpm number?, asked_layout any, files MeasurementFiles, file text,"
-                     " label 'unmodified|modified', torque_Nm number, end 'left|right', findings [Finding], refused flag, result Any, ...}], next text?}"},
-    {"LeftOut", "[{id integer, reason text}]"},
-    {"Comparison", "{program text, design_hash text, id [integer], left_out LeftOut, measurements Any, details [Any], reductions [Any], ratio number?,"
-                   " spread number?, ...}"},
-    {"FitOrder", "{unknowns {...}, model_error? number, seed? integer, measurements? [integer], design? Design}"},
-    {"Fit", "{unknowns [Any], correlation any, condition number?, misfit Any, measurements integer, orders integer, evaluations integer, converged flag,"
-            " warnings [text], id [integer], left_out LeftOut, design Any, ...}"},
-    {"History", "{problems [Any], jobs [Any]}"},
+    {"AskedLayout", "{kind? text, unit? text, time? any, time_unit? text, columns? {pinion? any, gear? any}, sample_rate_Hz? number?, lines? any}"},
+    {"Stored", "{id integer, design integer, created text, stated_speed_rpm number?, asked_layout AskedLayout?,"
+               " files [{name text, size integer, sha256 text}]}"},
+    {"Measurements", "{items [ListedMeasurement], next text?}"},
+    {"FitOrder", "{unknowns {}, model_error? number, seed? integer, measurements? [integer], design? Design}"},
 };
+
+static const struct eo_outline *const outlines[] = {&eo_result_outline, &eo_sweep_outline, &eo_study_outline, &eo_job_outline, &eo_job_generations_outline,
+                                                    &eo_job_history_outline, &eo_records_outline, &eo_rig_comparison_outline, &eo_rig_fit_outline,
+                                                    &eo_measurement_outline, &eo_measurement_brief};
+
+/* A stored measurement is what was measured, behind what is known of its storage. */
+static json_t *stored(const json_t *schemas, const char *measured)
+{
+  const json_t *inner = json_object_get(schemas, measured);
+  json_t *schema = json_deep_copy(json_object_get(schemas, "Stored"));
+  bool good = json_object_update(json_object_get(schema, "properties"), json_object_get(inner, "properties")) == 0 &&
+              json_array_extend(json_object_get(schema, "required"), json_object_get(inner, "required")) == 0 &&
+              json_object_del(schema, "additionalProperties") == 0;
+  return good ? schema : (json_decref(schema), NULL);
+}
+
+/* Any of the inputs that can be fitted, each with its range. */
+static json_t *fit_order(const json_t *plain)
+{
+  json_t *schema = json_deep_copy(plain), *unknowns = json_object_get(json_object_get(schema, "properties"), "unknowns");
+  for (int i = 0; eo_unknown_names[i]; i++)
+    json_object_set_new(json_object_get(unknowns, "properties"), eo_unknown_names[i],
+                        json_pack("{s:s, s:{s:s}, s:i, s:i, s:s}", "type", "array", "items", "type", "number", "minItems", 2, "maxItems", 2, "description",
+                                  "lowest, highest"));
+  return schema;
+}
 
 /* A design, and the axes to sweep; torque and speed are taken as shorter keys too. */
 static json_t *sweep_request(void)
@@ -86,14 +102,18 @@ static json_t *rig_order(void)
 json_t *eo_openapi_schemas(void)
 {
   json_t *schemas = json_object();
-  bool failed = json_object_set_new(schemas, "Design", eo_table_json_schema(&eo_design_table, true)) != 0;
-  failed = json_object_set_new(schemas, "ResolvedDesign", eo_table_json_schema(&eo_design_table, false)) != 0 || failed;
-  failed = json_object_set_new(schemas, "Geometry", eo_table_json_schema(&eo_geometry_table, false)) != 0 || failed;
-  failed = json_object_set_new(schemas, "SweepRequest", sweep_request()) != 0 || failed;
-  failed = json_object_set_new(schemas, "RigOrder", rig_order()) != 0 || failed;
+  bool good = json_object_set_new(schemas, "Design", eo_table_json_schema(&eo_design_table, true)) == 0 &&
+              json_object_set_new(schemas, "SweepRequest", sweep_request()) == 0 && json_object_set_new(schemas, "RigOrder", rig_order()) == 0;
+  for (size_t i = 0; i < sizeof outlines / sizeof outlines[0]; i++)
+    good = good && eo_outline_add_schemas(outlines[i], schemas);
   for (size_t i = 0; i < sizeof shapes / sizeof shapes[0]; i++)
-    failed = json_object_set_new(schemas, shapes[i].name, eo_shape_schema(shapes[i].notation)) != 0 || failed;
-  if (!failed)
+    good = good && json_object_set_new(schemas, shapes[i].name, eo_shape_schema(shapes[i].notation)) == 0;
+  good = good && json_object_set_new(schemas, "Measurement", stored(schemas, "MeasurementOfFile")) == 0 &&
+         json_object_set_new(schemas, "ListedMeasurement", stored(schemas, "BriefMeasurement")) == 0;
+  good = good && json_object_set_new(schemas, "DesignOrNamed", json_pack("{s:[{s:s}, {s:s}]}", "anyOf", "$ref", "#/components/schemas/Design", "$ref",
+                                                                         "#/components/schemas/NamedDesign")) == 0;
+  good = good && json_object_set_new(schemas, "FitOrder", fit_order(json_object_get(schemas, "FitOrder"))) == 0;
+  if (good)
     return schemas;
   json_decref(schemas);
   return NULL;

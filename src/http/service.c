@@ -106,7 +106,7 @@ const struct eo_route eo_routes_service[] = {
     {.method = EO_GET, .pattern = "/metrics", .handle = get_metrics, .name = "getMetrics", .summary = "Counters in the text format of Prometheus.",
      .gives = "200 text/plain"},
     {.method = EO_GET, .pattern = "/openapi.json", .handle = get_openapi, .name = "getOpenapi", .open = true, .summary = "This description.",
-     .gives = "200 Any", .headers = "If-None-Match"},
+     .gives = "200 Description", .headers = "If-None-Match"},
     {.method = EO_GET, .pattern = "/schema", .handle = get_schema, .name = "getSchema", .gives = "200 Form", .headers = "If-None-Match",
      .summary = "The fields of a design with units, ranges, defaults and help: what a form is built from."},
     {0}};

@@ -92,6 +92,7 @@ static enum MHD_Result begin_part(struct eo_request *request, const char *name, 
   if (coding && strcasecmp(coding, "binary") != 0 && strcasecmp(coding, "8bit") != 0 && strcasecmp(coding, "7bit") != 0)
     return refuse(request, 415, "Parts must come as they are, without a transfer encoding.");
   snprintf(upload->part, sizeof upload->part, "%s", name);
+  upload->in_part = true;
   upload->part_size = 0;
   upload->in_file = strcmp(name, "file") == 0;
   return upload->in_file ? begin_file(request, file_name) : begin_field(request, name);
@@ -132,8 +133,8 @@ static enum MHD_Result take_part(void *context, enum MHD_ValueKind kind, const c
   (void)kind, (void)type;
   if (!name || request->reply.status)
     return MHD_NO;
-  bool same = upload->part_size == 0 && strncmp(upload->part, name, sizeof upload->part - 1) == 0;
-  if (offset == 0 && !same && begin_part(request, name, file_name, coding) == MHD_NO)
+  bool same = upload->in_part && upload->part_size == 0 && strncmp(upload->part, name, sizeof upload->part - 1) == 0;
+  if ((offset == 0 || !upload->in_part) && !same && begin_part(request, name, file_name, coding) == MHD_NO)
     return MHD_NO;
   upload->part_size += size;
   if (!size)

@@ -25,7 +25,7 @@ struct eo_upload {
   int output;                        /* descriptor of the last file, -1: none */
   int fields;
   struct eo_upload_field { char name[24]; struct eo_text value; } field[EO_UPLOAD_FIELDS];
-  bool in_file;
+  bool in_part, in_file;             /* in_part: one has begun */
   char part[24];                     /* name of the part that comes */
   size_t part_size;
 };

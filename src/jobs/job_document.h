@@ -4,6 +4,7 @@
 
 #include <jansson.h>
 
+#include "document/outline.h"
 #include "jobs/study.h"
 #include "store/jobs.h"
 
@@ -32,6 +33,11 @@ void eo_job_live_conclude(struct eo_job_live *live, const struct eo_study_result
 
 /* { "progress", "best", "unmodified" }: what is kept with the job. NULL without memory. */
 json_t *eo_job_live_encode(const struct eo_job_live *live);
+
+extern const struct eo_outline eo_job_outline, eo_job_generations_outline;
+
+/* { "detail", "pointer" }: what is kept with a job that failed. NULL without memory. */
+json_t *eo_job_error_encode(const struct eo_error *error);
 
 /* The whole document, see eo_service_job(). live: of this job, or NULL. NULL without memory. */
 json_t *eo_job_encode(const struct eo_stored_job *job, const struct eo_job_live *live, bool with_design);

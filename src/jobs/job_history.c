@@ -88,10 +88,22 @@ static enum eo_code weigh(struct history *h, const char *modification, struct eo
   return code;
 }
 
+static const struct eo_outline_row history_rows[] = {
+    EO_KEY("ordinal", "integer", "from 0, in the order in which the job asked"),
+    EO_KEY("generation", "integer", "from 0"),
+    EO_KEY("individual", "integer", "of its generation, from 0"),
+    EO_KEY("outcome", "word", "refused: the modification is impossible", .words = eo_store_outcomes),
+    EO_KEY("reason", "text", "why it has no value; else empty"),
+    EO_KEY("modification", "object", "what is not at its default", .table = &eo_modification_table, .name = "SparseModification", .sparse = true),
+    {.outline = &eo_outline_value},
+    EO_KEY("reused", "flag", "the history knew it before the job asked"),
+};
+const struct eo_outline eo_job_history_outline = EO_OUTLINE("JobHistoryRow", history_rows);
+
 static json_t *encode(const struct eo_stored_candidate *c, const struct eo_stored_evaluation *row, const struct eo_objective_value *value,
                       struct eo_error *error)
 {
-  struct eo_result_object o = eo_result_open();
+  struct eo_result_object o = eo_result_open_as(&eo_job_history_outline);
   eo_result_put(&o, "ordinal", json_integer(c->ordinal));
   eo_result_put(&o, "generation", json_integer(c->generation));
   eo_result_put(&o, "individual", json_integer(c->individual));

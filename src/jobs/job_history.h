@@ -4,8 +4,11 @@
 
 #include <jansson.h>
 
+#include "document/outline.h"
 #include "document/text.h"
 #include "store/queue.h"
+
+extern const struct eo_outline eo_job_history_outline; /* of an item */
 
 /* A page of true rows: { "items": [ { "ordinal", "generation", "individual", "outcome", "reason", "modification", "f1_um", "f2_N",
    "f3_m_per_s2", "J", "fitness", "reused" } ], "next": "cursor" | null }. after: ordinal of the last row that is known already, -1: none.

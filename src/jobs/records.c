@@ -18,19 +18,55 @@ static enum eo_code append(json_t *array, json_t *value, struct eo_error *error)
 
 /* ---- list ---- */
 
+static const struct eo_outline_row problem_rows[] = {
+    EO_KEY("id", "integer", "number of the problem"),
+    EO_KEY("hash", "text", "SHA-256 of everything that an evaluation depends on but the modification"),
+    EO_KEY("name", "text", "of the first design"),
+    EO_KEY("evaluator", "integer", "version of the model"),
+    EO_KEY("evaluations", "integer", "true rows"),
+    EO_KEY("failed", "integer", "of them without a value"),
+    EO_KEY("cost_s", "number?", "computing time of all, s"),
+    EO_KEY("created", "text", "date and time, UTC"),
+};
+static const struct eo_outline problem_outline = EO_OUTLINE("HistoryProblem", problem_rows);
+
 static enum eo_code add_problem(void *context, const struct eo_stored_problem *p, struct eo_error *error)
 {
-  struct eo_result_object o = eo_result_open();
+  struct eo_result_object o = eo_result_open_as(&problem_outline);
   eo_result_put(&o, "id", json_integer(p->id));
   eo_result_put(&o, "hash", json_string(p->hash));
   eo_result_put(&o, "name", json_string(p->name));
   eo_result_put(&o, "evaluator", json_integer(p->evaluator));
   eo_result_put(&o, "evaluations", json_integer(p->evaluations));
   eo_result_put(&o, "failed", json_integer(p->failed));
-  eo_result_put_number(&o, "cost_s", p->cost, NULL);
+  eo_result_put_number(&o, "cost_s", p->cost);
   eo_result_put(&o, "created", json_string(p->created));
   return append(context, eo_result_close(&o), error);
 }
+
+static const struct eo_outline_row job_rows[] = {
+    EO_KEY("id", "integer", "number of the job"),
+    EO_KEY("kind", "word", "what it does", .words = eo_store_job_kinds),
+    EO_KEY("problem", "integer?", "null before it begins, and of a preparation"),
+    EO_KEY("name", "text", "of the design"),
+    EO_KEY("algorithm", "text", "of an optimization; else empty"),
+    EO_KEY("state", "text", "as of a job, or interrupted: it was running when its process ended"),
+    EO_KEY("stopped", "text", "why it ended: budget, converged, cancelled; else empty"),
+    EO_KEY("true_evaluations", "integer", "by the model, or known from the history"),
+    EO_KEY("individuals", "integer", "fitness values needed"),
+    EO_KEY("pfc_percent", "number?", "true evaluations of the individuals, per cent"),
+    EO_KEY("best_value", "number?", "J and penalties of the best"),
+    EO_KEY("has_result", "flag", "there is a result to get"),
+    EO_KEY("created", "text", "date and time, UTC"),
+    EO_KEY("updated", "text", "date and time, UTC"),
+};
+static const struct eo_outline job_outline = EO_OUTLINE("HistoryJob", job_rows);
+
+static const struct eo_outline_row list_rows[] = {
+    EO_KEY("problems", "[object]", "what was worked on", .outline = &problem_outline),
+    EO_KEY("jobs", "[object]", "of the service and of the terminal", .outline = &job_outline),
+};
+const struct eo_outline eo_records_outline = EO_OUTLINE("History", list_rows);
 
 struct job_list {
   struct eo_store *store;
@@ -41,7 +77,7 @@ static enum eo_code add_job(void *context, const struct eo_stored_job *j, struct
 {
   struct job_list *list = context;
   bool taken = j->state != EO_JOB_RUNNING || eo_store_job_is_taken(list->store, j->id);
-  struct eo_result_object o = eo_result_open();
+  struct eo_result_object o = eo_result_open_as(&job_outline);
   eo_result_put(&o, "id", json_integer(j->id));
   eo_result_put(&o, "kind", json_string(eo_store_job_kind_name(j->kind)));
   eo_result_put(&o, "problem", j->problem ? json_integer(j->problem) : json_null());
@@ -51,8 +87,8 @@ static enum eo_code add_job(void *context, const struct eo_stored_job *j, struct
   eo_result_put(&o, "stopped", json_string(j->stopped));
   eo_result_put(&o, "true_evaluations", json_integer(j->true_evaluations));
   eo_result_put(&o, "individuals", json_integer(j->individuals));
-  eo_result_put_number(&o, "pfc_percent", j->individuals ? 100. * j->true_evaluations / j->individuals : NAN, NULL);
-  eo_result_put_number(&o, "best_value", j->best_value, NULL);
+  eo_result_put_number(&o, "pfc_percent", j->individuals ? 100. * j->true_evaluations / j->individuals : NAN);
+  eo_result_put_number(&o, "best_value", j->best_value);
   eo_result_put(&o, "has_result", json_boolean(*j->result));
   eo_result_put(&o, "created", json_string(j->created));
   eo_result_put(&o, "updated", json_string(j->updated));
@@ -66,7 +102,7 @@ enum eo_code eo_records_list(struct eo_store *store, json_t **document, struct e
   enum eo_code code = problems && jobs ? eo_store_each_problem(store, add_problem, problems, error) : eo_error_memory(error);
   if (!code)
     code = eo_store_each_job(store, 0, add_job, &list, error);
-  struct eo_result_object o = eo_result_open();
+  struct eo_result_object o = eo_result_open_as(&eo_records_outline);
   eo_result_put(&o, "problems", problems);
   eo_result_put(&o, "jobs", jobs);
   json_t *all = eo_result_close(&o);
@@ -167,7 +203,7 @@ static enum eo_code add_row(void *context, const struct eo_stored_evaluation *e,
   eo_result_put(&o, "id", json_integer(e->id));
   eo_result_put(&o, "outcome", json_string(eo_store_outcome_name(e->outcome)));
   eo_result_put(&o, "reason", json_string(e->reason));
-  eo_result_put_number(&o, "cost_s", e->cost, NULL);
+  eo_result_put(&o, "cost_s", eo_result_number(e->cost, NULL));
   eo_result_put(&o, "modification", eo_json_parse(e->modification, strlen(e->modification), error));
   eo_result_put(&o, "scenarios", encode_scenarios(list, e->raw));
   return append(list->rows, eo_result_close(&o), error);

@@ -4,6 +4,7 @@
 
 #include <jansson.h>
 
+#include "document/outline.h"
 #include "document/text.h"
 #include "store/store.h"
 
@@ -11,6 +12,7 @@
      "jobs": [ { "id", "kind", "problem", "name", "algorithm", "state", "stopped", "true_evaluations", "individuals", "pfc_percent", "best_value",
                  "has_result", "created", "updated" } ] }
    A job that was running when its process ended is "interrupted". */
+extern const struct eo_outline eo_records_outline;
 enum eo_code eo_records_list(struct eo_store *store, json_t **document, struct eo_error *error);
 
 /* The result document of a job; EO_ERROR_INPUT when there is no such job or it has none yet. */

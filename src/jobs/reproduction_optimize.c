@@ -55,7 +55,7 @@ static json_t *encode_run(const struct eo_study_result *s, const char *case_name
   eo_result_put_value(&o, &s->best.value);
   eo_result_put(&o, "true_evaluations", json_integer(s->true_evaluations));
   eo_result_put(&o, "individuals", json_integer(s->individuals));
-  eo_result_put_number(&o, "pfc_percent", 100. * s->true_evaluations / s->individuals, NULL);
+  eo_result_put(&o, "pfc_percent", eo_result_number(100. * s->true_evaluations / s->individuals, NULL));
   eo_result_put(&o, "variables", values);
   eo_result_put(&o, "best_by_generation", best);
   return eo_result_close(&o);

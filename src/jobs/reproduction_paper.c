@@ -77,9 +77,9 @@ static void compare(json_t *array, const char *figure, const char *quantity, con
   eo_result_put(&o, "figure", json_string(figure));
   eo_result_put(&o, "quantity", json_string(quantity));
   eo_result_put(&o, "unit", json_string(unit));
-  eo_result_put_number(&o, "paper", paper, NULL);
-  eo_result_put_number(&o, "ours", ours, NULL);
-  eo_result_put_number(&o, "ours_secant_law", secant, NULL);
+  eo_result_put(&o, "paper", eo_result_number(paper, NULL));
+  eo_result_put(&o, "ours", eo_result_number(ours, NULL));
+  eo_result_put(&o, "ours_secant_law", eo_result_number(secant, NULL));
   eo_result_put(&o, "trend_agrees", verdict(trend));
   eo_result_put(&o, "value_agrees", verdict(agrees(paper, ours, level)));
   eo_result_put(&o, "value_agrees_secant_law", verdict(agrees(paper, secant, level)));

@@ -107,7 +107,7 @@ static json_t *encode_row(const struct alternative *a, const struct eo_design *d
   eo_result_put(&o, "rms_reduction_percent", reduction);
   eo_result_put(&o, "lte_reduction_percent", transmission);
   eo_result_put(&o, "impact_reduction_percent", impact);
-  eo_result_put_number(&o, "J_case_a", value.objective, NULL);
+  eo_result_put(&o, "J_case_a", eo_result_number(value.objective, NULL));
   return eo_result_close(&o);
 }
 

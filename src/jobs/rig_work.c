@@ -9,47 +9,6 @@
 
 #include <config.h>
 
-/* ---- summaries ---- */
-
-/* Copies the keys that are there; borrowed values. */
-static void copy(json_t *to, const json_t *from, const char *const *keys)
-{
-  for (; *keys; keys++)
-    if (json_object_get(from, *keys))
-      json_object_set(to, *keys, json_object_get(from, *keys));
-}
-
-static json_t *brief_findings(const json_t *findings)
-{
-  static const char *const keys[] = {"kind", "severity", "text", NULL};
-  json_t *list = json_array();
-  json_t *finding;
-  size_t i;
-  json_array_foreach(findings, i, finding) {
-    json_t *brief = json_object();
-    copy(brief, finding, keys);
-    json_array_append_new(list, brief);
-  }
-  return list;
-}
-
-json_t *eo_rig_summary(const json_t *document)
-{
-  static const char *const outer[] = {"file", "label", "torque_Nm", "end", "refused", NULL};
-  static const char *const inner[] = {"rows", "seconds", "turns", "speed_rpm", "harmonics", "rms_m_per_s2", "mesh", "residual_um", NULL};
-  static const char *const te[] = {"peak_to_peak_um", NULL};
-  const json_t *from = json_object_get(document, "result");
-  json_t *summary = json_object(), *result = json_object(), *curve = json_object();
-  bool failed = false;
-  copy(summary, document, outer);
-  copy(result, from, inner);
-  copy(curve, json_object_get(from, "te"), te);
-  eo_json_put(result, "te", curve, &failed);
-  eo_json_put(summary, "findings", brief_findings(json_object_get(document, "findings")), &failed);
-  eo_json_put(summary, "result", result, &failed);
-  return failed ? (json_decref(summary), NULL) : summary;
-}
-
 void eo_rig_pair_hash(const struct eo_geometry *geometry, char key[EO_HASH_LENGTH + 1])
 {
   struct eo_hash hash;
@@ -189,6 +148,21 @@ static enum eo_code write(json_t *document, bool failed, struct eo_text *text, s
   return document && !failed ? EO_OK : eo_error_memory(error);
 }
 
+static const struct eo_outline_row left_out_rows[] = {
+    EO_KEY("id", "integer", "number of the measurement"),
+    EO_KEY("reason", "text", "why it was left out, for people"),
+};
+static const struct eo_outline left_out_outline = EO_OUTLINE("LeftOut", left_out_rows);
+
+static const struct eo_outline_row comparison_rows[] = {
+    EO_KEY("program", "text", "name and version"),
+    EO_KEY("design_hash", "text", "SHA-256 of the canonical design that predicts"),
+    EO_KEY("id", "[integer]", "numbers of the measurements, in the order of the columns"),
+    EO_KEY("left_out", "[object]", "measurements that cannot be compared", .outline = &left_out_outline),
+    {.outline = &eo_comparison_outline},
+};
+const struct eo_outline eo_rig_comparison_outline = EO_OUTLINE("Comparison", comparison_rows);
+
 /* The numbers of the measurements beside the rows that stand for them. */
 static json_t *encode_comparison(const struct work *w, const struct eo_design *design)
 {
@@ -283,6 +257,14 @@ static void drop_outliers(struct work *w)
   json_decref(w->ids);
   w->ids = ids;
 }
+
+static const struct eo_outline_row fit_rows[] = {
+    {.outline = &eo_update_outline},
+    EO_KEY("id", "[integer]", "numbers of the measurements used"),
+    EO_KEY("left_out", "[object]", "measurements that were not, outliers too", .outline = &left_out_outline),
+    EO_KEY("design", "object", "the design with the values found, as it was given but for them", .table = &eo_design_table, .name = "Design", .sparse = true),
+};
+const struct eo_outline eo_rig_fit_outline = EO_OUTLINE("Fit", fit_rows);
 
 static enum eo_code run_fit(void *data, const struct eo_pair *pair, const struct eo_design *design, const struct eo_progress *progress,
                             struct eo_text *text, struct eo_error *error)

@@ -9,9 +9,6 @@
 #include "document/update_document.h"
 #include "jobs/service.h"
 
-/* What lists and comparisons need of a measurement's document, itself readable by eo_measured_decode(). New; NULL without memory. */
-json_t *eo_rig_summary(const json_t *document);
-
 /* What of a pair a recording is measured with: measurements of another one are left out of comparisons. */
 void eo_rig_pair_hash(const struct eo_geometry *geometry, char hash[EO_HASH_LENGTH + 1]);
 
@@ -28,10 +25,12 @@ void eo_rig_points_done(struct eo_rig_points *points);
 
    Comparison: the document of eo_comparison_encode() with "program", "design_hash", the numbers of the measurements as "id", and "left_out"
    [{id, reason}]; CSV: its table. */
+extern const struct eo_outline eo_rig_comparison_outline;
 enum eo_code eo_rig_comparison(struct eo_work *work, struct eo_rig_points *points, bool csv, struct eo_error *error);
 
 /* Fit: the document of eo_update_encode() with "id" of the measurements used, "left_out" [{id, reason}] (outliers too), and "design": the document that is
    stored with the values found. stored: borrowed, copied. */
+extern const struct eo_outline eo_rig_fit_outline;
 enum eo_code eo_rig_fit(struct eo_work *work, struct eo_rig_points *points, const struct eo_update_settings *settings, const json_t *stored,
                         struct eo_error *error);
 

@@ -164,16 +164,27 @@ struct encoding {
   json_t *job;
 };
 
+/* From before a job's row is read until it is encoded: a job that ends in between would show its end with what was noted of it a while before. */
+static void lock_jobs(struct eo_service *s)
+{
+  pthread_mutex_lock(&s->store_mutex);
+  pthread_mutex_lock(&s->live_mutex);
+}
+
+static void unlock_jobs(struct eo_service *s)
+{
+  pthread_mutex_unlock(&s->live_mutex);
+  pthread_mutex_unlock(&s->store_mutex);
+}
+
 static enum eo_code encode(void *context, const struct eo_stored_job *job, struct eo_error *error)
 {
   struct encoding *e = context;
   const struct eo_job_live *live = NULL;
-  pthread_mutex_lock(&e->service->live_mutex);
   for (int kind = 0; kind < EO_JOB_KINDS; kind++)
     if (e->service->worker[kind].live.id == job->id)
       live = &e->service->worker[kind].live;
   e->job = eo_job_encode(job, live, e->with_design);
-  pthread_mutex_unlock(&e->service->live_mutex);
   return e->job ? EO_OK : eo_error_memory(error);
 }
 
@@ -188,9 +199,9 @@ static json_t *find_brief(struct eo_service *s, int64_t id)
 {
   struct encoding e = {.service = s};
   const struct eo_queue_filter filter = {.state = -1, .kind = -1, .before = id + 1, .limit = 1};
-  pthread_mutex_lock(&s->store_mutex);
+  lock_jobs(s);
   enum eo_code code = eo_queue_list(s->store, &filter, encode_only, &e, NULL);
-  pthread_mutex_unlock(&s->store_mutex);
+  unlock_jobs(s);
   if (!code && e.job && json_integer_value(json_object_get(e.job, "id")) == id)
     return e.job;
   json_decref(e.job);
@@ -248,9 +259,9 @@ enum eo_code eo_service_subscribe(struct eo_service *s, int64_t job, int64_t aft
   int64_t newest = eo_events_newest(s->events); /* before the snapshot: what happens from now on comes after it */
   enum eo_code code = EO_OK;
   if (after > 0 && !eo_events_reach(s->events, after)) {
-    pthread_mutex_lock(&s->store_mutex);
+    lock_jobs(s);
     code = eo_queue_list(s->store, &filter, add_to_snapshot, &snapshot, error);
-    pthread_mutex_unlock(&s->store_mutex);
+    unlock_jobs(s);
     after = newest;
   } else if (after <= 0)
     after = newest;
@@ -272,9 +283,9 @@ void eo_service_unsubscribe(struct eo_service *s, int64_t subscription)
 static enum eo_code find_job(struct eo_service *s, int64_t id, bool with_design, enum eo_job_outcome *outcome, json_t **job, struct eo_error *error)
 {
   struct encoding e = {.service = s, .with_design = with_design};
-  pthread_mutex_lock(&s->store_mutex);
+  lock_jobs(s);
   enum eo_code code = eo_queue_find(s->store, id, encode, &e, outcome, error);
-  pthread_mutex_unlock(&s->store_mutex);
+  unlock_jobs(s);
   *job = code ? NULL : e.job;
   return code;
 }
@@ -309,9 +320,9 @@ enum eo_code eo_service_jobs(struct eo_service *s, int state, int kind, int64_t 
   struct page page = {.encoding = {.service = s}, .items = json_array(), .limit = limit};
   const struct eo_queue_filter filter = {.state = state, .kind = kind, .before = before, .limit = limit + 1};
   char cursor[32];
-  pthread_mutex_lock(&s->store_mutex);
+  lock_jobs(s);
   enum eo_code code = page.items ? eo_queue_list(s->store, &filter, add_to_page, &page, error) : eo_error_memory(error);
-  pthread_mutex_unlock(&s->store_mutex);
+  unlock_jobs(s);
   snprintf(cursor, sizeof cursor, "%lld", (long long)page.last);
   json_t *document = code ? NULL : json_pack("{s:O,s:o}", "items", page.items, "next", page.more ? json_string(cursor) : json_null());
   if (!code && !document)

@@ -163,11 +163,9 @@ static enum eo_code run_job(struct eo_service_worker *w, struct task *task, bool
   return code;
 }
 
-/* What names files of this machine is not for those who read the job. */
 static void write_error(const struct eo_error *error, struct eo_text *text)
 {
-  const char *detail = error->code == EO_ERROR_FILE ? "The server's data cannot be read or written." : error->text;
-  json_t *document = json_pack("{s:s,s:s}", "detail", detail, "pointer", error->pointer);
+  json_t *document = eo_job_error_encode(error);
   if (document)
     eo_json_write(text, document, EO_JSON_COMPACT);
   json_decref(document);

@@ -59,6 +59,7 @@ struct eo_finding *eo_findings_add(struct eo_findings *findings, enum eo_finding
 /* "swapped", "reversed", ...; "note", "repaired", ... */
 const char *eo_finding_name(enum eo_finding_kind kind);
 const char *eo_severity_name(enum eo_severity severity);
+extern const char *const eo_finding_names[], *const eo_severity_names[]; /* by number; end with NULL */
 
 /* The first of a kind; NULL when there is none. */
 const struct eo_finding *eo_findings_find(const struct eo_findings *findings, enum eo_finding_kind kind);

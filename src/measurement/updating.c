@@ -26,12 +26,13 @@ struct fit {
 
 /* ---- the unknowns ---- */
 
+const char *const eo_unknown_names[EO_UNKNOWNS + 1] = {"pinion_bearing_stiffness_N_per_um", "gear_bearing_stiffness_N_per_um", "mesh_damping_ratio",
+                                                       "gear_axial_stiffness_N_per_um", "pinion_axial_stiffness_N_per_um", "shaft_angle_error_in_plane_deg",
+                                                       "shaft_angle_error_out_of_plane_deg", "impact_patch_mm", NULL};
+
 const char *eo_unknown_name(enum eo_unknown unknown)
 {
-  static const char *const name[EO_UNKNOWNS] = {"pinion_bearing_stiffness_N_per_um", "gear_bearing_stiffness_N_per_um", "mesh_damping_ratio",
-                                                "gear_axial_stiffness_N_per_um", "pinion_axial_stiffness_N_per_um", "shaft_angle_error_in_plane_deg",
-                                                "shaft_angle_error_out_of_plane_deg", "impact_patch_mm"};
-  return name[unknown];
+  return eo_unknown_names[unknown];
 }
 
 static double *member_of(struct eo_design *d, enum eo_unknown unknown)

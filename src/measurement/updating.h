@@ -53,6 +53,7 @@ struct eo_update {
 
 /* "pinion_bearing_stiffness", ... : keys for people and documents. */
 const char *eo_unknown_name(enum eo_unknown unknown);
+extern const char *const eo_unknown_names[]; /* by number; ends with NULL */
 double eo_unknown_get(const struct eo_design *design, enum eo_unknown unknown);
 void eo_unknown_set(struct eo_design *design, enum eo_unknown unknown, double value);
 

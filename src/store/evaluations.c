@@ -8,17 +8,17 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char *const outcome_names[] = {"converged", "not_converged", "refused"};
+const char *const eo_store_outcomes[] = {"converged", "not_converged", "refused", NULL};
 
 const char *eo_store_outcome_name(enum eo_evaluation_outcome outcome)
 {
-  return outcome_names[outcome];
+  return eo_store_outcomes[outcome];
 }
 
 static enum eo_evaluation_outcome find_outcome(const char *name)
 {
   int i = 0;
-  while (i < EO_EVALUATION_REFUSED && strcmp(outcome_names[i], name) != 0)
+  while (i < EO_EVALUATION_REFUSED && strcmp(eo_store_outcomes[i], name) != 0)
     i++;
   return (enum eo_evaluation_outcome)i;
 }
@@ -42,7 +42,7 @@ static void find_digest(const struct eo_stored_evaluation *row, char digest[EO_H
   struct eo_hash hash;
   eo_hash_init(&hash);
   eo_hash_add_text(&hash, "modification", row->modification);
-  eo_hash_add_text(&hash, "outcome", outcome_names[row->outcome]);
+  eo_hash_add_text(&hash, "outcome", eo_store_outcomes[row->outcome]);
   eo_hash_add_text(&hash, "reason", row->reason);
   eo_hash_add_number(&hash, "cost", row->cost);
   for (int i = 0; i < row->scenarios * row->cases; i++)
@@ -216,7 +216,7 @@ enum eo_code eo_store_add_evaluation(struct eo_store *store, int64_t problem, st
   find_digest(row, digest);
   enum eo_code code = EO_STATEMENT_RUN(store, error, "INSERT INTO evaluation (problem, modification, outcome, reason, cost_s, digest)"
                                                      " VALUES (?, ?, ?, ?, ?, ?) ON CONFLICT (problem, modification) DO NOTHING", "itttrt",
-                                       problem, row->modification, outcome_names[row->outcome], row->reason, row->cost, digest);
+                                       problem, row->modification, eo_store_outcomes[row->outcome], row->reason, row->cost, digest);
   if (code)
     return code;
   if (sqlite3_changes(store->handle) == 0)
@@ -298,7 +298,7 @@ enum eo_code eo_store_each_evaluation(struct eo_store *store, int64_t problem, i
   struct eo_statement s = eo_statement_begin(
       store,
       "SELECT e.id, e.outcome, e.reason, e.cost_s, e.modification, e.digest,"
-      " (SELECT c.x FROM candidate c JOIN job j ON j.id = c.job WHERE c.evaluation = e.id AND c.reused = 0 AND j.space = ?3),"
+      " (SELECT p.x FROM point p WHERE p.evaluation = e.id AND p.space = ?3),"
       " r.scenario, r.load_case, r.peak_to_peak_m, r.impact_N, r.rms_m_per_s2, r.contact_pressure_Pa, r.root_stress_Pa, r.edge_load_share,"
       " r.contact_loss, r.failed"
       " FROM evaluation e LEFT JOIN raw r ON r.evaluation = e.id WHERE e.problem = ?1 AND (?2 = 0 OR e.id <= ?2) ORDER BY e.id, r.scenario, r.load_case",

@@ -40,6 +40,7 @@ struct eo_stored_problem {
 
 /* "converged", "not_converged", "refused" */
 const char *eo_store_outcome_name(enum eo_evaluation_outcome outcome);
+extern const char *const eo_store_outcomes[]; /* by number; ends with NULL */
 
 /* The number of the problem with this hash, added when it is new: hash, spec, name, evaluator, scenarios and cases count. */
 enum eo_code eo_store_find_problem(struct eo_store *store, const struct eo_stored_problem *problem, int64_t *id, struct eo_error *error);

@@ -7,17 +7,17 @@
 #include <limits.h>
 #include <string.h>
 
-static const char *const state_names[] = {"queued", "preparing", "running", "done", "failed", "cancelled"};
-static const char *const kind_names[] = {"optimize", "prepare"};
+const char *const eo_store_job_states[] = {"queued", "preparing", "running", "done", "failed", "cancelled", NULL};
+const char *const eo_store_job_kinds[] = {"optimize", "prepare", NULL};
 
 const char *eo_store_job_state_name(enum eo_job_state state)
 {
-  return state_names[state];
+  return eo_store_job_states[state];
 }
 
 const char *eo_store_job_kind_name(enum eo_job_kind kind)
 {
-  return kind_names[kind];
+  return eo_store_job_kinds[kind];
 }
 
 static int find_name(const char *const *names, int count, const char *name)
@@ -30,12 +30,12 @@ static int find_name(const char *const *names, int count, const char *name)
 
 int eo_store_job_state_find(const char *name)
 {
-  return find_name(state_names, EO_JOB_STATES, name);
+  return find_name(eo_store_job_states, EO_JOB_STATES, name);
 }
 
 int eo_store_job_kind_find(const char *name)
 {
-  return find_name(kind_names, EO_JOB_KINDS, name);
+  return find_name(eo_store_job_kinds, EO_JOB_KINDS, name);
 }
 
 struct eo_stored_job eo_job_row_read(const struct eo_statement *s)
@@ -58,7 +58,7 @@ enum eo_code eo_store_add_job(struct eo_store *store, struct eo_stored_job *job,
     code = EO_STATEMENT_RUN(store, error, "INSERT INTO job (problem, study, space, design, name, algorithm, fresh, import_upto, state,"
                                           " attempts, started) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, 1, " EO_NOW ")", "itttttnit",
                             job->problem, job->study, job->space, job->design, job->name, job->algorithm, (int)job->fresh, job->import_upto,
-                            state_names[job->state]);
+                            eo_store_job_states[job->state]);
   job->id = sqlite3_last_insert_rowid(store->handle);
   return code;
 }
@@ -124,7 +124,7 @@ enum eo_code eo_store_update_job(struct eo_store *store, const struct eo_stored_
   return EO_STATEMENT_RUN(store, error, "UPDATE job SET state = ?1, stopped = ?2, true_evaluations = ?3, individuals = ?4, best = nullif(?5, 0),"
                                         " best_value = ?6, updated = " EO_NOW ", finished = CASE WHEN ?1 IN ('done', 'failed', 'cancelled') THEN " EO_NOW " END"
                                         " WHERE id = ?7",
-                          "ttnniri", state_names[job->state], job->stopped ? job->stopped : "", job->true_evaluations, job->individuals, job->best,
+                          "ttnniri", eo_store_job_states[job->state], job->stopped ? job->stopped : "", job->true_evaluations, job->individuals, job->best,
                           job->best_value, job->id);
 }
 
@@ -133,14 +133,23 @@ enum eo_code eo_store_keep_result(struct eo_store *store, int64_t job, const cha
   return EO_STATEMENT_RUN(store, error, "UPDATE job SET result = ? WHERE id = ?", "ti", result, job);
 }
 
+/* The point belongs to the evaluation: it outlives the job. */
+static enum eo_code keep_point(struct eo_store *store, const struct eo_stored_candidate *c, struct eo_error *error)
+{
+  return EO_STATEMENT_RUN(store, error, "INSERT OR IGNORE INTO point (evaluation, space, x) SELECT ?, space, ? FROM job WHERE id = ? AND space IS NOT NULL", "ibi",
+                          c->evaluation, (const void *)c->x, (size_t)c->size * sizeof *c->x, c->job);
+}
+
 enum eo_code eo_store_log_candidate(struct eo_store *store, struct eo_stored_candidate *c, struct eo_error *error)
 {
   enum eo_code code = EO_STATEMENT_RUN(store, error, "INSERT INTO candidate (job, ordinal, generation, individual, evaluation, reused, x)"
                                                      " VALUES (?, ?, ?, ?, ?, ?, ?) ON CONFLICT (job, ordinal) DO NOTHING", "innninb",
                                        c->job, c->ordinal, c->generation, c->individual, c->evaluation, (int)c->reused, (const void *)c->x,
                                        (size_t)c->size * sizeof *c->x);
-  if (code || sqlite3_changes(store->handle))
+  if (code)
     return code;
+  if (sqlite3_changes(store->handle))
+    return c->reused ? EO_OK : keep_point(store, c, error);
   struct eo_statement s = eo_statement_begin(store, "SELECT reused FROM candidate WHERE job = ? AND ordinal = ?", "in", c->job, c->ordinal);
   if (eo_statement_step(&s))
     c->reused = eo_column_integer(&s, 0) != 0;

@@ -42,6 +42,7 @@ struct eo_stored_job {
 /* "queued", "preparing", "running", "done", "failed", "cancelled"; "optimize", "prepare". find: -1 when it is none. */
 const char *eo_store_job_state_name(enum eo_job_state state);
 const char *eo_store_job_kind_name(enum eo_job_kind kind);
+extern const char *const eo_store_job_states[], *const eo_store_job_kinds[]; /* by number; end with NULL */
 int eo_store_job_state_find(const char *name);
 int eo_store_job_kind_find(const char *name);
 

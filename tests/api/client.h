@@ -275,6 +275,15 @@ __attribute__((unused)) static bool send_request(int connection, const char *met
   return sent;
 }
 
+/* Is told every reply to call(); NULL: nobody. */
+static void (*listener)(const char *method, const char *path, const struct reply *reply);
+
+__attribute__((unused)) static void hear(const char *method, const char *path, const struct reply *reply)
+{
+  if (listener)
+    listener(method, path, reply);
+}
+
 /* On a connection of its own. */
 __attribute__((unused)) static struct reply call(const char *method, const char *path, const char *headers, const char *body)
 {
@@ -284,6 +293,7 @@ __attribute__((unused)) static struct reply call(const char *method, const char 
   if (!read_reply(connection, &reply, strcmp(method, "HEAD") == 0))
     reply.status = 0;
   close(connection);
+  hear(method, path, &reply);
   return reply;
 }
 

@@ -1,6 +1,5 @@
 /* Jobs from outside: their events, stopping and resuming them, a server that is killed, questions that overtake each other. */
-#include "client.h"
-#include "tap.h"
+#include "description.h"
 
 static int add_job(const char *kind, const char *algorithm, int budget, int seed)
 {
@@ -193,6 +192,7 @@ int main(void)
   signal(SIGPIPE, SIG_IGN);
   if (!make_data_folder() || !ok(start_server("--quiet", "--threads", "2"), "the server starts"))
     return 1;
+  ok(listen_to_replies(), "it describes itself");
   test_events();
   test_cancel_and_retry();
   test_kill();
@@ -200,5 +200,6 @@ int main(void)
   test_overtaking();
   ok(stop_server(SIGTERM) == 0, "it stops");
   remove_data_folder();
+  tell_what_was_heard();
   return tap_done();
 }

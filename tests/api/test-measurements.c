@@ -1,7 +1,6 @@
 /* Rig files over the API: uploads that are whole, broken, too large or cut off, a server that dies in the middle, and what the recordings
    say beside the prediction. The recordings come from the API itself, with known faults. */
-#include "client.h"
-#include "tap.h"
+#include "description.h"
 
 #include <dirent.h>
 #include <math.h>
@@ -73,6 +72,7 @@ static struct reply post_bytes(const struct form *form, size_t size, size_t leng
   if (!whole || !read_reply(connection, &reply, false))
     reply.status = 0;
   close(connection);
+  hear("POST", API "/measurements", &reply);
   return reply;
 }
 
@@ -240,13 +240,54 @@ static void test_two_files(void)
      reply.status == 201 ? "" : reply.body);
   ok(fabs(number_of(document, "rms_m_per_s2", "value") / number_of(first, "rms_m_per_s2", "value") - 1) < 1e-6, "gives the same RMS");
   free_reply(&reply);
-  reply = call("DELETE", API "/measurements/2", NULL, NULL);
+  reply = call("DELETE", API "/measurements/5", NULL, NULL);
   ok(reply.status == 204 && count_kept() == 1 && folders_become(1), "and is deleted with its files");
   free_reply(&reply);
   json_decref(first);
   json_decref(document);
   free_reply(&pinion);
   free_reply(&gear);
+}
+
+/* The recording with a line beside the first mesh order, one turn of the pinion away. */
+static void add_sideband(const struct reply *whole, struct reply *changed)
+{
+  FILE *stream = open_memstream(&changed->body, &changed->size);
+  double t, a, b;
+  const char *line = strchr(whole->body, '\n') + 1;
+  fprintf(stream, "%.*s", (int)(line - whole->body), whole->body);
+  for (; sscanf(line, "%lf,%lf,%lf", &t, &a, &b) == 3; line = strchr(line, '\n') + 1)
+    fprintf(stream, "%.9f,%.9f,%.9f\n", t, a, b + 2e-3 * sin(18 * a * M_PI / 180));
+  fclose(stream);
+}
+
+/* Raw tracks, a recording without its time, sidebands: each has keys of its own in the answer. */
+static void test_kinds(void)
+{
+  static const char untimed[] = "{\"time\":\"none\",\"sample_rate_Hz\":20000,\"columns\":{\"pinion\":2,\"gear\":3},\"kind\":\"angles\",\"unit\":\"deg\"}";
+  struct reply beside = {0}, tracks = record("{" POINT ",\"output\":\"sine-cosine\",\"pinion_lines\":100,\"gear_lines\":100}"), reply;
+  add_sideband(&modified, &beside);
+  reply = post(&(struct upload){"1", "modified", "828", "2000", "{\"lines\":100}", "tracks.csv", &tracks, NULL});
+  ok(reply.status == 201 && strstr(reply.body, "\"amplitude\""), "raw tracks: %d %.200s", reply.status, reply.status == 201 ? "" : reply.body);
+  free_reply(&reply);
+  reply = post(&(struct upload){"1", "modified", "828", "2000", untimed, "untimed.csv", &modified, NULL});
+  ok(reply.status == 201 && strstr(reply.body, "\"sample_rate_Hz\""), "rows without a time: %d %.200s", reply.status, reply.status == 201 ? "" : reply.body);
+  free_reply(&reply);
+  reply = post(&(struct upload){"1", "modified", "828", "2000", NULL, "beside.csv", &beside, NULL});
+  json_t *document = body_of(&reply);
+  const json_t *first = json_array_get(json_object_get(json_object_get(document, "result"), "sidebands"), 0);
+  ok(json_integer_value(json_object_get(first, "mesh_order")) == 1 && json_integer_value(json_object_get(first, "turns")) == 1, "a sideband");
+  json_decref(document);
+  free_reply(&reply);
+  free_reply(&beside);
+  free_reply(&tracks);
+  for (int id = 2; id <= 4; id++) {
+    char path[60];
+    snprintf(path, sizeof path, API "/measurements/%d", id);
+    reply = call("DELETE", path, NULL, NULL);
+    free_reply(&reply);
+  }
+  ok(count_kept() == 1, "they go again");
 }
 
 /* ---- what is refused ---- */
@@ -348,6 +389,13 @@ static void test_bodies(void)
   add_text(&twice, "colour", "red");
   end_form(&twice);
   expect("a part that nobody knows", post_bytes(&twice, twice.size, twice.size), 422);
+  free(twice.text);
+  twice = (struct form){0};
+  add_text(&twice, "", "1");
+  twice.text = realloc(twice.text, twice.size + form.size);
+  memcpy(twice.text + twice.size, form.text, form.size);
+  twice.size += form.size;
+  expect("a part with an empty name before all that is known", post_bytes(&twice, twice.size, twice.size), 422);
   free(twice.text);
   twice = (struct form){0};
   char *long_text = calloc(1, 100001);
@@ -457,11 +505,13 @@ int main(void)
   signal(SIGPIPE, SIG_IGN);
   if (!make_data_folder() || !ok(start_server("--quiet", "--threads", "2"), "the server starts"))
     return 1;
+  ok(listen_to_replies(), "it describes itself");
   design = coarse_document("ga", 10);
   char *text = json_dumps(design, JSON_COMPACT);
   expect("a design", call("POST", API "/designs", NULL, text), 201);
   test_rig();
   test_upload();
+  test_kinds();
   test_two_files();
   test_faults();
   test_words();
@@ -476,5 +526,7 @@ int main(void)
   free_reply(&unmodified);
   ok(stop_server(SIGTERM) == 0, "it stops");
   remove_data_folder();
+  expect_all_of((const char *const[]){"Measurement", "ListedMeasurement", "Comparison", "Fit", NULL}, NULL);
+  tell_what_was_heard();
   return tap_done();
 }

@@ -7,7 +7,10 @@
 #include "document/design_document.h"
 #include "document/example.h"
 #include "document/json.h"
+#include "document/measurement_document.h"
+#include "document/result_parts.h"
 #include "document/schema.h"
+#include "document/study_result.h"
 #include "document/sweep_document.h"
 #include "tap.h"
 
@@ -148,8 +151,117 @@ static void check_form(void)
   json_decref(defaults);
 }
 
+/* ---- outlines ---- */
+
+static const struct eo_unit *const units[] = {&eo_unit_mm_per_s, &eo_unit_m_per_s2, &eo_unit_N_per_um, &eo_unit_N_per_mm, &eo_unit_per_um, &eo_unit_mm, &eo_unit_um,
+                                              &eo_unit_deg,      &eo_unit_rpm,      &eo_unit_Nm,       &eo_unit_N,        &eo_unit_MPa,    &eo_unit_ms, &eo_unit_Hz};
+
+/* The unit that a key ends with; the longer ones come first. */
+static const struct eo_unit *unit_of(const char *key)
+{
+  for (size_t i = 0; i < sizeof units / sizeof units[0]; i++) {
+    size_t whole = strlen(key), length = strlen(units[i]->suffix);
+    if (whole > length && key[whole - length - 1] == '_' && strcmp(key + whole - length, units[i]->suffix) == 0)
+      return units[i];
+  }
+  return NULL;
+}
+
+/* above: the unit that the key of the object names. */
+static int count_odd_units(const struct eo_outline *outline, const struct eo_unit *above)
+{
+  const struct eo_outline_row *row;
+  int odd = 0;
+  for (int i = 0; (row = eo_outline_at(outline, i)); i++) {
+    const struct eo_unit *named = unit_of(row->key) ? unit_of(row->key) : above;
+    if (row->outline)
+      odd += count_odd_units(row->outline, unit_of(row->key));
+    else if (!row->table && row->unit != named && strchr("[n", *row->shape)) {
+      printf("# %s/%s\n", outline->name, row->key);
+      odd++;
+    }
+  }
+  return odd;
+}
+
+static void check_units(void)
+{
+  static const struct eo_outline *const outlines[] = {&eo_result_outline, &eo_study_outline, &eo_sweep_outline, &eo_measurement_outline, &eo_measurement_brief};
+  int odd = 0;
+  for (size_t i = 0; i < sizeof outlines / sizeof outlines[0]; i++)
+    odd += count_odd_units(outlines[i], NULL);
+  ok(odd == 0, "every number has the unit that its key, or the one above, names");
+}
+
+static const struct eo_outline_row inner_rows[] = {EO_KEY("b", "number?", "included", .unit = &eo_unit_mm), EO_KEY("c", "flag", "not always", .when = "now and then")};
+static const struct eo_outline inner = EO_OUTLINE("Inner", inner_rows);
+static const struct eo_outline_row outer_rows[] = {EO_KEY("a", "[text?]|integer", "first"), {.outline = &inner}, EO_KEY("d", "object?", "last", .outline = &inner)};
+static const struct eo_outline outer = EO_OUTLINE("Outer", outer_rows);
+
+/* Writes these keys in their order; NULL: the outline does not allow it. */
+static json_t *write_keys(const char *keys)
+{
+  struct eo_result_object o = eo_result_open_as(&outer);
+  for (; *keys; keys++) {
+    if (*keys == 'b')
+      eo_result_put_number(&o, "b", 2e-3);
+    else
+      eo_result_put(&o, (const char[]){*keys, 0}, json_integer(1));
+  }
+  return eo_result_close(&o);
+}
+
+static void check_writing(void)
+{
+  static const char *const good[] = {"abcd", "abd"}, *const bad[] = {"", "ab", "bacd", "abdc", "abcde", "acd", "abbcd"};
+  for (size_t i = 0; i < sizeof good / sizeof good[0]; i++) {
+    json_t *object = write_keys(good[i]);
+    ok(object && json_number_value(json_object_get(object, "b")) == 2, "\"%s\" is an object of the outline", good[i]);
+    json_decref(object);
+  }
+  for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+    json_t *object = write_keys(bad[i]);
+    ok(!object, "\"%s\" is none", bad[i]);
+    json_decref(object);
+  }
+}
+
+static void check_outline_schema(void)
+{
+  json_t *schemas = json_object(), *expected = json_loads(
+      "{\"Outer\":{\"type\":\"object\",\"properties\":{"
+      "\"a\":{\"anyOf\":[{\"type\":\"array\",\"items\":{\"anyOf\":[{\"type\":\"string\"},{\"type\":\"null\"}]}},{\"type\":\"integer\"}],\"description\":\"first\"},"
+      "\"b\":{\"anyOf\":[{\"type\":\"number\"},{\"type\":\"null\"}],\"description\":\"included\",\"x-unit\":\"mm\"},"
+      "\"c\":{\"type\":\"boolean\",\"description\":\"not always; now and then\"},"
+      "\"d\":{\"anyOf\":[{\"$ref\":\"#/components/schemas/Inner\"},{\"type\":\"null\"}],\"description\":\"last\"}},\"required\":[\"a\",\"b\",\"d\"]},"
+      "\"Inner\":{\"type\":\"object\",\"properties\":{\"b\":{\"anyOf\":[{\"type\":\"number\"},{\"type\":\"null\"}],\"description\":\"included\",\"x-unit\":\"mm\"},"
+      "\"c\":{\"type\":\"boolean\",\"description\":\"not always; now and then\"}},\"required\":[\"b\"]}}", 0, NULL);
+  ok(eo_outline_add_schemas(&outer, schemas) && expected && json_equal(schemas, expected), "an outline as JSON Schema");
+  json_decref(schemas);
+  json_decref(expected);
+  static const struct eo_outline_row wrong_rows[] = {EO_KEY("a", "[text", "no end")};
+  static const struct eo_outline wrong = EO_OUTLINE("Wrong", wrong_rows);
+  schemas = json_object();
+  ok(!eo_outline_add_schemas(&wrong, schemas), "a shape that is none");
+  json_decref(schemas);
+}
+
+static void check_taking(void)
+{
+  json_t *whole = json_loads("{\"x\":1,\"a\":2,\"b\":3,\"d\":{\"b\":4,\"y\":5}}", 0, NULL), *wanted = json_loads("{\"a\":2,\"b\":3,\"d\":{\"b\":4}}", 0, NULL);
+  json_t *part = eo_outline_take(&outer, whole);
+  ok(json_equal(part, wanted), "what an outline names of a longer document");
+  json_decref(part);
+  json_decref(wanted);
+  json_decref(whole);
+}
+
 int main(void)
 {
+  check_units();
+  check_writing();
+  check_outline_schema();
+  check_taking();
   json_t *input = eo_table_json_schema(&eo_design_table, true), *output = eo_table_json_schema(&eo_design_table, false);
   check_examples(input, output);
   check_refusals(input);

@@ -1,6 +1,9 @@
 /* The service on a coarse pair: what-if answers are those of an analysis made by hand, newest wins, pairs are prepared once and forgotten in order, jobs
    run, stop, go on and are told about, and a graceful stop loses nothing. */
+#include <stdatomic.h>
+
 #include "document/result.h"
+#include "jobs/job_document.h"
 #include "service-fixture.h"
 #include "store/queue.h"
 #include "tap.h"
@@ -352,6 +355,62 @@ static void test_failure(void)
   eo_service_free(service);
 }
 
+/* Looks at the newest job as fast as it can until told to stop; counts what is said of an end that was not yet noted. */
+struct watching {
+  struct eo_service *service;
+  atomic_bool stop;
+  int ends, torn;
+};
+
+static void *watch_ends(void *argument)
+{
+  struct watching *w = argument;
+  while (!atomic_load(&w->stop)) {
+    json_t *page = NULL;
+    eo_service_jobs(w->service, -1, EO_JOB_OPTIMIZE, 0, 1, &page, NULL);
+    const json_t *job = json_array_get(json_object_get(page, "items"), 0);
+    const char *state = json_string_value(json_object_get(job, "state"));
+    bool done = state && strcmp(state, "done") == 0;
+    w->ends += done;
+    w->torn += done && eo_json_find_number(job, "progress/fraction") != 1;
+    json_decref(page);
+  }
+  return NULL;
+}
+
+/* A job that is done says so with its last numbers, whenever it is looked at. */
+static void test_ends(void)
+{
+  struct eo_service *service = start();
+  struct watching watching = {.service = service};
+  struct eo_design small = design;
+  enum eo_job_outcome outcome;
+  pthread_t thread;
+  small.optimization.true_evaluations = 12;
+  small.optimization.population = 12;
+  pthread_create(&thread, NULL, watch_ends, &watching);
+  for (int i = 0; i < 12; i++) {
+    small.optimization.seed = (uint64_t)(1 + i);
+    wait_for(service, submit(service, EO_JOB_OPTIMIZE, &small, NULL, &outcome), "done");
+  }
+  atomic_store(&watching.stop, true);
+  pthread_join(thread, NULL);
+  ok(watching.ends > 12 && !watching.torn, "seen done %d times, %d times before it was", watching.ends, watching.torn);
+  eo_service_free(service);
+}
+
+/* The process ended after the study and before the last note: the row knows better. */
+static void test_stale_note(void)
+{
+  const struct eo_stored_job job = {.id = 1, .design = "{}", .name = "", .algorithm = "ga", .state = EO_JOB_CANCELLED, .stopped = "cancelled", .true_evaluations = 400,
+                                    .individuals = 500, .best_value = 0.5, .result = "", .created = "", .updated = "", .error = "", .started = "", .finished = "",
+                                    .progress = "{\"progress\":{\"fraction\":0.99,\"true_evaluations\":399,\"individuals\":499,\"pfc_percent\":80}}"};
+  json_t *document = eo_job_encode(&job, NULL, false);
+  ok(eo_json_find_number(document, "progress/true_evaluations") == 400 && eo_json_find_number(document, "progress/individuals") == 500 &&
+         eo_json_find_number(document, "progress/pfc_percent") == 80, "what was noted of a job does not hide what its row knows");
+  json_decref(document);
+}
+
 /* ---- end and begin ---- */
 
 static void test_park(void)
@@ -394,7 +453,7 @@ static void test_park(void)
 
 int main(void)
 {
-  void (*const test[])(void) = {test_analysis, test_left_out, test_overtaking, test_sweep, test_pairs, test_job, test_cancel, test_full, test_failure, test_park};
+  void (*const test[])(void) = {test_analysis, test_left_out, test_overtaking, test_sweep, test_pairs, test_job, test_cancel, test_full, test_failure, test_ends, test_stale_note, test_park};
   if (!make_folder())
     return 99;
   make_design(&design, BUDGET);

@@ -5,6 +5,7 @@
 #include "document/study.h"
 #include "evaluation/analysis.h"
 #include "jobs/records.h"
+#include "store/queue.h"
 #include "study-fixture.h"
 #include "tap.h"
 
@@ -94,6 +95,41 @@ static void test_cancel(void)
   eo_study_result_done(&result);
   free(text);
   free(whole);
+}
+
+/* A study that knew the rows of another job, cut short: that job may be removed before it goes on. */
+static void test_removed_job(const char *algorithm)
+{
+  struct eo_study_plan plan = plan_of(&other, NULL), cut;
+  char *text[2] = {NULL, NULL};
+  int64_t first = 0;
+  coarse_design(&design, algorithm, 40);
+  coarse_design(&other, algorithm, 90);
+  complete(&design);
+  complete(&other);
+  for (int removed = 0; removed < 2; removed++) {
+    struct eo_study_plan before = plan_of(&design, NULL);
+    enum eo_job_outcome outcome = EO_JOB_OUTCOME_DONE;
+    struct eo_store *store = NULL;
+    empty_folder();
+    free(run(&before, &result));
+    first = result.job;
+    eo_study_result_done(&result);
+    cut = plan;
+    cut.watch = stop_after;
+    cut.context = &(int){50};
+    free(run(&cut, &result));
+    eo_study_result_done(&result);
+    if (removed && (eo_store_open(&store, folder, EO_STORE_WRITE, &error) || eo_queue_remove(store, first, &outcome, &error) || outcome))
+      printf("# it is not removed: %s\n", error.text);
+    eo_store_close(store);
+    text[removed] = run(&plan, &result);
+    ok(result.resumed && result.imported == 40 && result.true_evaluations == 90, "%s: taken up with %d rows of another job", algorithm, result.imported);
+    eo_study_result_done(&result);
+  }
+  ok(text[0] && text[1] && strcmp(text[0], text[1]) == 0, "%s: whether that job is still there or not, the same result", algorithm);
+  free(text[0]);
+  free(text[1]);
 }
 
 /* ---- the history ---- */
@@ -376,6 +412,8 @@ int main(void)
   for (int i = 0; i < EO_ALGORITHMS; i++)
     test_threads(eo_optimizer_algorithm_name(i));
   test_cancel();
+  test_removed_job("ga");
+  test_removed_job("credibility-ga");
   test_reuse();
   test_truth();
   test_front();
