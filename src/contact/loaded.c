@@ -61,13 +61,12 @@ struct problem {
   double force;      /* P */
 };
 
-/* Loads and their rates at (a, Z); residual of the rank + 1 equations. */
-static void evaluate(struct eo_loaded_workspace *ws, const struct problem *problem, const double *mode)
+/* Loads and their rates at (a, Z), with the deflection that a makes in ws->bend; residual of the rank + 1 equations. */
+static void load_points(struct eo_loaded_workspace *ws, const struct problem *problem, const double *mode)
 {
   const struct eo_contact_position *p = problem->position;
   int stride = p->stride;
   double approach = mode[stride], sum = 0;
-  ws->gram->apply(p->points, stride, p->factor, mode, ws->bend);
   for (int i = 0; i < p->points; i++) {
     double local = ws->local[i] = approach - problem->gap[i] - ws->bend[i] - ws->correction[i], spread = ws->spread[i], share = 1;
     ws->load[i] = ws->rate[i] = 0;
@@ -93,6 +92,17 @@ static void evaluate(struct eo_loaded_workspace *ws, const struct problem *probl
   ws->residual[stride] = sum - problem->force;
 }
 
+static void bend(struct eo_loaded_workspace *ws, const struct eo_contact_position *p, const double *mode)
+{
+  ws->gram->apply(p->points, p->stride, p->factor, mode, ws->bend);
+}
+
+static void evaluate(struct eo_loaded_workspace *ws, const struct problem *problem, const double *mode)
+{
+  bend(ws, problem->position, mode);
+  load_points(ws, problem, mode);
+}
+
 static inline double larger(double a, double b)
 {
   return a > b ? a : b;
@@ -106,7 +116,7 @@ static double spread_cells(struct eo_loaded_workspace *ws, const struct eo_conta
     int first = p->line[l].first, last = first + p->line[l].cells - 1;
     for (int i = first; i <= last; i++) {
       int a = i > first ? i - 1 : i, b = i < last ? i + 1 : i;
-      double spread = b > a ? fabs(ws->local[b] - ws->local[a]) / (2 * (b - a)) : 0, moved = fabs(spread - ws->spread[i]);
+      double half = b - a == 2 ? 0.25 : 0.5, spread = fabs(ws->local[b] - ws->local[a]) * half, moved = fabs(spread - ws->spread[i]);
       if (fabs(ws->local[i]) < larger(spread, ws->spread[i]))
         change = larger(change, moved);
       ws->spread[i] = spread;
@@ -199,7 +209,7 @@ static void newton_step(struct eo_loaded_workspace *ws, const struct eo_contact_
 }
 
 /* The steps that end Newton, with the matrix of the last one: they also take in the correction of the compliance and the partial cells,
-   until nothing moves by more than a thousandth of a nanometre and the loads add up to P. */
+   until nothing moves by more than a thousandth of a nanometre and the loads add up to P. The deflection by the modes is there already. */
 static bool polish(struct eo_loaded_workspace *ws, const struct problem *problem)
 {
   enum { STEPS = 32, RENEW = 8 };
@@ -208,7 +218,7 @@ static bool polish(struct eo_loaded_workspace *ws, const struct problem *problem
   bool settled = false;
   for (int i = 0; i < STEPS; i++) {
     double change = correct(ws, p);
-    evaluate(ws, problem, ws->mode);
+    load_points(ws, problem, ws->mode);
     if (i % RENEW == RENEW - 1 && !factorise(ws, p))
       return false;
     newton_step(ws, p);
@@ -217,8 +227,9 @@ static bool polish(struct eo_loaded_workspace *ws, const struct problem *problem
       return true;
     for (int k = 0; k <= p->stride; k++)
       ws->mode[k] += ws->step[k];
+    bend(ws, p, ws->mode);
   }
-  evaluate(ws, problem, ws->mode);
+  load_points(ws, problem, ws->mode);
   return settled;
 }
 
@@ -241,7 +252,7 @@ static bool newton(struct eo_loaded_workspace *ws, const struct problem *problem
     if (fabs(ws->step[p->stride]) < NEAR && fabs(ws->residual[p->stride]) < 1e-3 * problem->force)
       return polish(ws, problem);
     correct(ws, p);
-    evaluate(ws, problem, ws->mode);
+    load_points(ws, problem, ws->mode);
   }
   return false;
 }
@@ -261,7 +272,7 @@ static double tangent_compliance(struct eo_loaded_workspace *ws, const struct eo
 {
   double sum = 0, square = 0, *change = ws->load, *mode = ws->trial;
   follow_load(ws, p);
-  ws->gram->apply(p->points, p->stride, p->factor, ws->tangent, ws->bend);
+  bend(ws, p, ws->tangent);
   for (int i = 0; i < p->points; i++) {
     double local = ws->tangent[p->stride] - ws->bend[i];
     change[i] = ws->rate[i] * local;
@@ -407,7 +418,7 @@ double eo_loaded_response(struct eo_loaded_workspace *ws, const struct eo_contac
     ws->gram->gather(p->points, stride, p->factor, ws->load, mode);
     ws->gram->solve(stride + 1, stride, ws->matrix, mode);
   }
-  ws->gram->apply(p->points, stride, p->factor, mode, ws->bend);
+  bend(ws, p, mode);
   for (int i = 0; i < p->points; i++)
     load_change[i] = ws->rate[i] * (mode[stride] - ws->bend[i] - (change ? change[i] / factor : 0));
   return mode[stride] * factor;

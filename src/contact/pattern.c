@@ -115,8 +115,8 @@ void eo_contact_pair_share(const struct eo_contact_grid *grid, const struct eo_l
   for (int j = 0; j < grid->positions; j++) {
     const struct eo_contact_position *p = &grid->position[j];
     double sum = 0;
-    for (int i = 0; i < p->points; i++)
-      if (p->point[i].pair == pair)
+    for (int l = 0; l < p->lines; l++)
+      for (int i = p->line[l].first; p->line[l].pair == pair && i < p->line[l].first + p->line[l].cells; i++)
         sum += end->line_load[p->first + i] * p->length[i];
     share[j] = sum / end->load[j];
   }

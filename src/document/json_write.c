@@ -123,15 +123,22 @@ static void write_string(struct eo_text *text, const char *string)
   eo_text_add_bytes(text, "\"", 1);
 }
 
+static void write_real(struct eo_text *text, double value)
+{
+  enum { ROOM = 40 };
+  char *to = eo_text_room(text, ROOM);
+  if (to)
+    text->size += (size_t)eo_json_number(to, ROOM, value);
+}
+
 static void write_scalar(struct eo_text *text, const json_t *value)
 {
-  char number[40];
   switch (json_typeof(value)) {
   case JSON_STRING:
     write_string(text, json_string_value(value));
     break;
   case JSON_REAL:
-    eo_text_add_bytes(text, number, (size_t)eo_json_number(number, sizeof number, json_real_value(value)));
+    write_real(text, json_real_value(value));
     break;
   case JSON_INTEGER:
     eo_text_print(text, "%" JSON_INTEGER_FORMAT, json_integer_value(value));
@@ -171,7 +178,7 @@ static void write_value(struct eo_text *text, const json_t *value, enum eo_json_
 static void begin_member(struct eo_text *text, size_t i, enum eo_json_style style, int indent)
 {
   if (i)
-    eo_text_add(text, ",");
+    eo_text_add_bytes(text, ",", 1);
   if (indent >= 0)
     eo_text_print(text, "\n%*s", indent + 2, "");
   else if (style == EO_JSON_PRETTY)
