@@ -178,7 +178,6 @@ static enum eo_code fit_vibration(struct eo_evaluator *e, int harmonics, struct 
 static enum eo_code solve_static(struct eo_evaluator *e, const struct eo_design *design, const struct eo_scenario *scenario,
                                  struct eo_error *error)
 {
-  struct eo_evaluation *r = &e->result;
   enum eo_code code = eo_evaluator_fit_bodies(e, &design->shafts, error);
   if (code)
     return code;
@@ -186,15 +185,8 @@ static enum eo_code solve_static(struct eo_evaluator *e, const struct eo_design 
   set_cases(e, design);
   eo_evaluator_set_keys(e, design, scenario);
   code = eo_evaluator_solve_contact(e, design, scenario->compliance, error);
-  if (code)
-    return code;
-  for (int k = 0; k < r->cases; k++) {
-    for (int end = 0; end < r->ends; end++)
-      eo_evaluator_summarise_end(e, &r->load_case[k], end);
-    eo_evaluator_summarise_pair(e, design, &r->load_case[k]);
-  }
-  r->static_ms = eo_clock_milliseconds() - start;
-  return EO_OK;
+  e->result.static_ms = eo_clock_milliseconds() - start;
+  return code;
 }
 
 static void find_impacts(struct eo_evaluator *e, const struct eo_design *design, const struct eo_scenario *scenario)
