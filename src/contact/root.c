@@ -119,15 +119,20 @@ static inline bool passes(float s, float t, float u, float largest)
   return !(room >= 0 && square <= room * room);
 }
 
-enum { BLOCK = 16 };
+enum { LANE = 4, BLOCK = 4 * LANE };
+typedef float lane __attribute__((vector_size(4 * LANE), aligned(4), may_alias));
+typedef int lane_mask __attribute__((vector_size(4 * LANE)));
 
-/* Whether any of a block of nodes does: without branches, several at a time. */
+/* Whether any of a block of nodes does. */
 static inline bool any_passes(const float *s, const float *t, const float *u, float largest)
 {
-  int any = 0;
-  for (int i = 0; i < BLOCK; i++)
-    any |= passes(s[i], t[i], u[i], largest);
-  return any;
+  lane_mask none = ~(lane_mask){0};
+  for (int i = 0; i < BLOCK; i += LANE) {
+    lane a = *(const lane *)(s + i), b = *(const lane *)(t + i), shear = *(const lane *)(u + i);
+    lane sum = a + b, room = 2 * largest - sum, difference = a - b, square = difference * difference + 4 * shear * shear;
+    none &= (room >= 0) & (square <= room * room);
+  }
+  return !(none[0] & none[1] & none[2] & none[3]);
 }
 
 /* stress[EO_STRESSES][nodes]; the root is taken only where it raises the largest so far. */
