@@ -1,42 +1,7 @@
 #!/bin/sh
 # The stages dynamics and sdof from outside: the reference cases put together by hand, parameters derived from a gear pair, wrong input.
-: "${EASEOFF:=./easeoff}" "${CASES:=tests/cases}"
-numbers=$(dirname "$EASEOFF")/tests/json-numbers
+. "$(dirname "$0")/stages-shared.sh"
 reference=$CASES/dynamics.json
-folder=$(mktemp -d) || exit 99
-trap 'rm -rf "$folder"' EXIT
-count=0 failed=0
-
-result() # condition-status, what
-{
-  count=$((count + 1))
-  if [ "$1" -eq 0 ]; then echo "ok $count - $2"; else
-    failed=1
-    echo "not ok $count - $2"
-    sed 's/^/# /' "$folder/err" | head -3
-  fi
-}
-
-stage() # NAME INPUT: output in $folder/out
-{
-  printf '%s' "$2" | "$EASEOFF" stage "$1" - >"$folder/out" 2>"$folder/err"
-  result $? "stage $1"
-}
-
-# near WHAT PLACE FILE PLACE TOLERANCE [KIND [FACTOR]]: see json-numbers.c.
-near()
-{
-  what=$1
-  shift
-  verdict=$("$numbers" "$folder/out" "$@" 2>&1)
-  result $? "$what: $verdict"
-}
-
-prints() # TEXT
-{
-  grep -q -e "$1" "$folder/out"
-  result $? "prints $1"
-}
 
 refuses() # NAME INPUT TEXT: on one line of standard error
 {

@@ -180,7 +180,7 @@ static enum eo_code read_history(struct member_output *out, const struct eo_stag
     eo_root_workspace_free(workspace);
     return code;
   }
-  eo_root_history_compute(&history, workspace, &root, modes[member], pair->grid, &mesh->end[end], 1);
+  eo_root_history_compute(&history, workspace, &root, member, &mesh->end[end]);
   eo_root_workspace_free(workspace);
   out->maximum = history.maximum;
   out->arc = history.arc;

@@ -1,55 +1,7 @@
-#include "contact/loaded.h"
-
-#include "numerics/gram.h"
+#include "contact/loaded-internal.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
-
-/* ---- the local law and its inverse ----
-   delta = K q (L - ln q). With x = L - ln q and t = L - ln(delta/K): x - ln x = t, x > 1 (q below the law's turning point), q = delta/(K x),
-   dq/ddelta = 1/(K (x - 1)). x(t) is one universal function, tabulated with its slope x/(x - 1). From x = 2 on, where the contact is as
-   wide as the tooth is thick and the law has lost its meaning, q goes on in a straight line, so that every load has its solution. */
-
-enum { LAW_NODES = 4096 };
-static const double LAW_STRAIGHT = 2, LAW_LOW = 1.3068528194400546 /* 2 - ln 2 */, LAW_HIGH = 84.0;
-
-static double law_root(double t)
-{
-  double x = t + log(t) + 0.5;
-  for (int i = 0; i < 60; i++) {
-    double step = (x - log(x) - t) / (1 - 1 / x);
-    x = fmax(x - step, 1 + (x - 1) / 8);
-    if (fabs(step) < 1e-15 * x)
-      break;
-  }
-  return x;
-}
-
-struct eo_loaded_workspace {
-  double (*law)[2];                /* [LAW_NODES]: x and step * dx/dt at t = LAW_LOW + i step */
-  double law_step;
-  const struct eo_gram *gram;
-  bool partial;                    /* cells may touch in part */
-  double *load, *rate, *gap;       /* [most_points]: p, dp/dg, scaled gaps */
-  double *bend, *correction;       /* [most_points]: deflection by the modes, and by what they leave of the compliance */
-  double *local, *spread;          /* [most_points]: local approach g, and half its change over the cell */
-  double *mode, *trial;            /* [most_rank + 1]: a and Z */
-  double *residual, *step, *tangent; /* [most_rank + 1] */
-  double *matrix, *packed;         /* scratch of the kernel */
-  float *blend;
-};
-
-static double law_inverse(const struct eo_loaded_workspace *ws, double t)
-{
-  double u = (t - LAW_LOW) / ws->law_step;
-  if (!(u < LAW_NODES - 1))
-    return law_root(t);
-  int i = (int)u;
-  double r = u - i, l = 1 - r, difference = ws->law[i + 1][0] - ws->law[i][0];
-  double a = ws->law[i][1] - difference, b = difference - ws->law[i + 1][1];
-  return ws->law[i][0] * l + ws->law[i + 1][0] * r + r * l * (a * l + b * r);
-}
 
 /* ---- one position ---- */
 
@@ -61,13 +13,12 @@ struct problem {
   double force;      /* P */
 };
 
-/* Loads and their rates at (a, Z); residual of the rank + 1 equations. */
-static void evaluate(struct eo_loaded_workspace *ws, const struct problem *problem, const double *mode)
+/* Loads and their rates at (a, Z), with the deflection that a makes in ws->bend; residual of the rank + 1 equations. */
+static void load_points(struct eo_loaded_workspace *ws, const struct problem *problem, const double *mode)
 {
   const struct eo_contact_position *p = problem->position;
   int stride = p->stride;
   double approach = mode[stride], sum = 0;
-  ws->gram->apply(p->points, stride, p->factor, mode, ws->bend);
   for (int i = 0; i < p->points; i++) {
     double local = ws->local[i] = approach - problem->gap[i] - ws->bend[i] - ws->correction[i], spread = ws->spread[i], share = 1;
     ws->load[i] = ws->rate[i] = 0;
@@ -78,19 +29,30 @@ static void evaluate(struct eo_loaded_workspace *ws, const struct problem *probl
       local = share * share * spread;
     }
     double scaled = local / problem->scale, t = p->law[i] - log(scaled);
-    if (t > LAW_LOW) {
-      double x = law_inverse(ws, t);
+    if (t > EO_LOCAL_INVERSE_LOW) {
+      double x = eo_local_inverse_at(&ws->inverse, t);
       ws->load[i] = p->length[i] * scaled / x;
       ws->rate[i] = share * p->length[i] / (problem->scale * (x - 1));
     } else {
-      ws->load[i] = p->length[i] * (scaled - exp(p->law[i] - LAW_STRAIGHT)) / (LAW_STRAIGHT - 1);
-      ws->rate[i] = share * p->length[i] / (problem->scale * (LAW_STRAIGHT - 1));
+      ws->load[i] = p->length[i] * (scaled - exp(p->law[i] - EO_LOCAL_INVERSE_STRAIGHT)) / (EO_LOCAL_INVERSE_STRAIGHT - 1);
+      ws->rate[i] = share * p->length[i] / (problem->scale * (EO_LOCAL_INVERSE_STRAIGHT - 1));
     }
     sum += ws->load[i];
   }
   memcpy(ws->residual, mode, sizeof *mode * (size_t)stride);
   ws->gram->gather(p->points, stride, p->factor, ws->load, ws->residual);
   ws->residual[stride] = sum - problem->force;
+}
+
+static void bend(struct eo_loaded_workspace *ws, const struct eo_contact_position *p, const double *mode)
+{
+  ws->gram->apply(p->points, p->stride, p->factor, mode, ws->bend);
+}
+
+static void evaluate(struct eo_loaded_workspace *ws, const struct problem *problem, const double *mode)
+{
+  bend(ws, problem->position, mode);
+  load_points(ws, problem, mode);
 }
 
 static inline double larger(double a, double b)
@@ -106,7 +68,7 @@ static double spread_cells(struct eo_loaded_workspace *ws, const struct eo_conta
     int first = p->line[l].first, last = first + p->line[l].cells - 1;
     for (int i = first; i <= last; i++) {
       int a = i > first ? i - 1 : i, b = i < last ? i + 1 : i;
-      double spread = b > a ? fabs(ws->local[b] - ws->local[a]) / (2 * (b - a)) : 0, moved = fabs(spread - ws->spread[i]);
+      double half = b - a == 2 ? 0.25 : 0.5, spread = fabs(ws->local[b] - ws->local[a]) * half, moved = fabs(spread - ws->spread[i]);
       if (fabs(ws->local[i]) < larger(spread, ws->spread[i]))
         change = larger(change, moved);
       ws->spread[i] = spread;
@@ -199,7 +161,7 @@ static void newton_step(struct eo_loaded_workspace *ws, const struct eo_contact_
 }
 
 /* The steps that end Newton, with the matrix of the last one: they also take in the correction of the compliance and the partial cells,
-   until nothing moves by more than a thousandth of a nanometre and the loads add up to P. */
+   until nothing moves by more than a thousandth of a nanometre and the loads add up to P. The deflection by the modes is there already. */
 static bool polish(struct eo_loaded_workspace *ws, const struct problem *problem)
 {
   enum { STEPS = 32, RENEW = 8 };
@@ -208,7 +170,7 @@ static bool polish(struct eo_loaded_workspace *ws, const struct problem *problem
   bool settled = false;
   for (int i = 0; i < STEPS; i++) {
     double change = correct(ws, p);
-    evaluate(ws, problem, ws->mode);
+    load_points(ws, problem, ws->mode);
     if (i % RENEW == RENEW - 1 && !factorise(ws, p))
       return false;
     newton_step(ws, p);
@@ -217,8 +179,9 @@ static bool polish(struct eo_loaded_workspace *ws, const struct problem *problem
       return true;
     for (int k = 0; k <= p->stride; k++)
       ws->mode[k] += ws->step[k];
+    bend(ws, p, ws->mode);
   }
-  evaluate(ws, problem, ws->mode);
+  load_points(ws, problem, ws->mode);
   return settled;
 }
 
@@ -241,7 +204,7 @@ static bool newton(struct eo_loaded_workspace *ws, const struct problem *problem
     if (fabs(ws->step[p->stride]) < NEAR && fabs(ws->residual[p->stride]) < 1e-3 * problem->force)
       return polish(ws, problem);
     correct(ws, p);
-    evaluate(ws, problem, ws->mode);
+    load_points(ws, problem, ws->mode);
   }
   return false;
 }
@@ -261,7 +224,7 @@ static double tangent_compliance(struct eo_loaded_workspace *ws, const struct eo
 {
   double sum = 0, square = 0, *change = ws->load, *mode = ws->trial;
   follow_load(ws, p);
-  ws->gram->apply(p->points, p->stride, p->factor, ws->tangent, ws->bend);
+  bend(ws, p, ws->tangent);
   for (int i = 0; i < p->points; i++) {
     double local = ws->tangent[p->stride] - ws->bend[i];
     change[i] = ws->rate[i] * local;
@@ -407,7 +370,7 @@ double eo_loaded_response(struct eo_loaded_workspace *ws, const struct eo_contac
     ws->gram->gather(p->points, stride, p->factor, ws->load, mode);
     ws->gram->solve(stride + 1, stride, ws->matrix, mode);
   }
-  ws->gram->apply(p->points, stride, p->factor, mode, ws->bend);
+  bend(ws, p, mode);
   for (int i = 0; i < p->points; i++)
     load_change[i] = ws->rate[i] * (mode[stride] - ws->bend[i] - (change ? change[i] / factor : 0));
   return mode[stride] * factor;
@@ -480,71 +443,7 @@ void eo_loaded_balance(struct eo_loaded_workspace *workspace, const struct eo_co
   }
 }
 
-/* ---- storage ---- */
-
-enum eo_code eo_loaded_workspace_new(struct eo_loaded_workspace **result, const struct eo_contact_grid *grid, struct eo_error *error)
-{
-  struct eo_loaded_workspace *ws = calloc(1, sizeof *ws);
-  if (!ws)
-    return eo_error_memory(error);
-  long points = grid->most_points + EO_GRAM_LANE, modes = 0;
-  for (int j = 0; j < grid->positions; j++)
-    modes = grid->position[j].stride > modes ? grid->position[j].stride : modes;
-  double **vector[] = {&ws->load, &ws->rate, &ws->gap, &ws->bend, &ws->correction, &ws->local, &ws->spread};
-  double **modal[] = {&ws->mode, &ws->trial, &ws->residual, &ws->step, &ws->tangent};
-  bool complete = (ws->law = malloc(sizeof *ws->law * LAW_NODES)) != NULL;
-  for (int i = 0; i < 7; i++)
-    complete = (*vector[i] = eo_gram_allocate(points)) && complete;
-  for (int i = 0; i < 5; i++)
-    complete = (*modal[i] = eo_gram_allocate(modes + EO_GRAM_LANE)) && complete;
-  complete = (ws->matrix = eo_gram_allocate((modes + EO_GRAM_LANE) * (modes + EO_GRAM_LANE))) && complete;
-  complete = (ws->packed = eo_gram_allocate(2 * points * modes)) && complete;
-  complete = (ws->blend = (float *)eo_gram_allocate(points + EO_GRAM_FLOATS)) && complete;
-  if (!complete) {
-    eo_loaded_workspace_free(ws);
-    return eo_error_memory(error);
-  }
-  ws->law_step = (LAW_HIGH - LAW_LOW) / (LAW_NODES - 1);
-  for (int i = 0; i < LAW_NODES; i++) {
-    double x = law_root(LAW_LOW + i * ws->law_step);
-    ws->law[i][0] = x;
-    ws->law[i][1] = ws->law_step * x / (x - 1);
-  }
-  ws->gram = eo_gram_select();
-  ws->partial = grid->partial_cells;
-  *result = ws;
-  return EO_OK;
-}
-
-void eo_loaded_workspace_free(struct eo_loaded_workspace *ws)
-{
-  if (!ws)
-    return;
-  double *const owned[] = {ws->load, ws->rate, ws->gap, ws->bend, ws->correction, ws->local, ws->spread, ws->mode, ws->trial, ws->residual, ws->step, ws->tangent,
-                           ws->matrix, ws->packed};
-  for (size_t i = 0; i < sizeof owned / sizeof *owned; i++)
-    free(owned[i]);
-  free(ws->blend);
-  free(ws->law);
-  free(ws);
-}
-
-enum eo_code eo_loaded_gaps_init(struct eo_loaded_gaps *gaps, const struct eo_contact_grid *grid, struct eo_error *error)
-{
-  gaps->gap = calloc((size_t)grid->points, sizeof(double));
-  gaps->unloaded = calloc((size_t)grid->positions, sizeof(double));
-  if (gaps->gap && gaps->unloaded)
-    return EO_OK;
-  eo_loaded_gaps_done(gaps);
-  return eo_error_memory(error);
-}
-
-void eo_loaded_gaps_done(struct eo_loaded_gaps *gaps)
-{
-  free(gaps->gap);
-  free(gaps->unloaded);
-  gaps->gap = gaps->unloaded = NULL;
-}
+/* ---- gaps and pressure ---- */
 
 void eo_loaded_first_contact(const struct eo_contact_grid *grid, const struct eo_gap_field *field, double *unloaded)
 {
@@ -573,26 +472,6 @@ void eo_loaded_gaps_set(struct eo_loaded_gaps *gaps, const struct eo_contact_gri
       gaps->gap[p->first + i] = eo_gap_field_at(field, p->path[i], p->point[i].eta, NULL, NULL);
   }
   eo_loaded_first_contact(grid, field, gaps->unloaded);
-}
-
-enum eo_code eo_loaded_end_init(struct eo_loaded_end *end, const struct eo_contact_grid *grid, struct eo_error *error)
-{
-  size_t n = (size_t)grid->positions;
-  *end = (struct eo_loaded_end){.load = calloc(n, sizeof(double)), .approach = calloc(n, sizeof(double)),
-    .tangent = calloc(n, sizeof(double)), .line_load = calloc((size_t)grid->points, sizeof(double))};
-  if (end->load && end->approach && end->tangent && end->line_load)
-    return EO_OK;
-  eo_loaded_end_done(end);
-  return eo_error_memory(error);
-}
-
-void eo_loaded_end_done(struct eo_loaded_end *end)
-{
-  free(end->load);
-  free(end->approach);
-  free(end->tangent);
-  free(end->line_load);
-  *end = (struct eo_loaded_end){0};
 }
 
 double eo_loaded_pressure(const struct eo_contact_grid *grid, double line_load, double radius)

@@ -3,67 +3,84 @@
 #include <math.h>
 #include <stddef.h>
 
-void eo_contact_pattern_init(struct eo_contact_pattern *pattern, const struct eo_geometry *g)
+/* The contact line of a pair at a position; -1: it does not reach the flank. */
+static int find_line(const struct eo_contact_position *p, int pair)
 {
+  for (int i = 0; i < p->lines; i++)
+    if (p->line[i].pair == pair && p->line[i].kind == EO_POINT_LINE)
+      return i;
+  return -1;
+}
+
+/* The last position at or before a phase; the first one when there is none. */
+static int find_position(const struct eo_contact_grid *grid, double phase)
+{
+  int low = 0, high = grid->positions;
+  while (high - low > 1) {
+    int middle = (low + high) / 2;
+    if (grid->position[middle].phase <= phase)
+      low = middle;
+    else
+      high = middle;
+  }
+  return low;
+}
+
+/* The two mesh positions next to a phase c of the mesh, and the pair that is there. */
+static struct eo_pattern_place place_at(const struct eo_contact_grid *grid, double c)
+{
+  double pitch = grid->geometry.transverse_base_pitch;
+  int last = grid->positions - 1, pair = (int)floor((c - grid->position[0].phase) / pitch);
+  double within = c - pair * pitch;
+  int below = find_position(grid, within), above = below == last ? 0 : below + 1;
+  double low = grid->position[below].phase, high = grid->position[above].phase + (below == last ? pitch : 0);
+  double weight = fmin(1, (within - low) / (high - low));
+  return (struct eo_pattern_place){.position = {below, above}, .weight = {1 - weight, weight},
+                                   .line = {find_line(&grid->position[below], pair),
+                                            find_line(&grid->position[above], below == last ? pair + 1 : pair)}};
+}
+
+void eo_contact_pattern_init(struct eo_contact_pattern *pattern, const struct eo_contact_grid *grid)
+{
+  const struct eo_geometry *g = &grid->geometry;
+  double lean = tan(g->base_helix_angle);
   *pattern = (struct eo_contact_pattern){0};
   for (int i = 0; i < EO_PATTERN_ROWS; i++)
     pattern->path[i] = g->path_start + (g->path_end - g->path_start) * i / (EO_PATTERN_ROWS - 1);
   for (int j = 0; j < EO_PATTERN_COLUMNS; j++)
     pattern->eta[j] = g->face_width * ((double)j / (EO_PATTERN_COLUMNS - 1) - 0.5);
+  for (int i = 0; i < EO_PATTERN_ROWS; i++)
+    for (int j = 0; j < EO_PATTERN_COLUMNS; j++) {
+      struct eo_pattern_place *place = &pattern->place[i * EO_PATTERN_COLUMNS + j];
+      *place = place_at(grid, pattern->path[i] - pattern->eta[j] * lean);
+      place->radius = eo_geometry_relative_radius(g, pattern->path[i]);
+    }
 }
 
-/* The two mesh positions next to a phase c of the mesh, and the pair that is there. */
-struct neighbours {
-  int position[2], pair[2];
-  double weight[2];
-};
-
-static struct neighbours neighbours_of(const struct eo_contact_grid *grid, double c)
+/* Line load at eta of a contact line, between the middles of its cells. */
+static double line_load_at(const struct eo_contact_position *p, const struct eo_loaded_end *end, int number, double eta)
 {
-  double pitch = grid->geometry.transverse_base_pitch;
-  int last = grid->positions - 1, pair = (int)floor((c - grid->position[0].phase) / pitch), below = 0;
-  double within = c - pair * pitch;
-  while (below < last && grid->position[below + 1].phase <= within)
-    below++;
-  struct neighbours n = {{below, below == last ? 0 : below + 1}, {pair, below == last ? pair + 1 : pair}, {0, 0}};
-  double low = grid->position[below].phase, high = grid->position[n.position[1]].phase + (below == last ? pitch : 0);
-  n.weight[1] = fmin(1, (within - low) / (high - low));
-  n.weight[0] = 1 - n.weight[1];
-  return n;
+  const struct eo_contact_line *line = &p->line[number];
+  const double *load = end->line_load + p->first + line->first;
+  const struct eo_flank_point *point = p->point + line->first;
+  int last = line->cells - 1;
+  double step = last ? (point[last].eta - point[0].eta) / last : 1;
+  double t = fmin(fmax((eta - point[0].eta) / step, 0), last);
+  int cell = t >= last ? (last ? last - 1 : 0) : (int)t;
+  return last ? load[cell] + (t - cell) * (load[cell + 1] - load[cell]) : load[0];
 }
 
-/* Line load of one pair at one position, between the middles of its cells; false when its contact line does not reach the flank. */
-static bool line_load_at(const struct eo_contact_grid *grid, const struct eo_loaded_end *end, int position, int pair, double eta, double *q)
+static double pressure_at(const struct eo_contact_grid *grid, const struct eo_loaded_end *end, const struct eo_pattern_place *place, double eta)
 {
-  const struct eo_contact_position *p = &grid->position[position];
-  for (int i = 0; i < p->lines; i++) {
-    const struct eo_contact_line *line = &p->line[i];
-    if (line->pair != pair || line->kind != EO_POINT_LINE)
-      continue;
-    const double *load = end->line_load + p->first + line->first;
-    const struct eo_flank_point *point = p->point + line->first;
-    int last = line->cells - 1;
-    double step = last ? (point[last].eta - point[0].eta) / last : 1;
-    double t = fmin(fmax((eta - point[0].eta) / step, 0), last);
-    int cell = t >= last ? (last ? last - 1 : 0) : (int)t;
-    *q = last ? load[cell] + (t - cell) * (load[cell + 1] - load[cell]) : load[0];
-    return true;
-  }
-  return false;
-}
-
-static double pressure_at(const struct eo_contact_grid *grid, const struct eo_loaded_end *end, double s, double eta)
-{
-  struct neighbours n = neighbours_of(grid, s - eta * tan(grid->geometry.base_helix_angle));
-  double q[2] = {0, 0}, sum = 0, weight = 0;
+  double sum = 0, weight = 0;
   for (int i = 0; i < 2; i++)
-    if (line_load_at(grid, end, n.position[i], n.pair[i], eta, &q[i])) {
-      sum += n.weight[i] * q[i];
-      weight += n.weight[i];
+    if (place->line[i] >= 0) {
+      sum += place->weight[i] * line_load_at(&grid->position[place->position[i]], end, place->line[i], eta);
+      weight += place->weight[i];
     }
   if (!(weight > 0) || !(sum > 0))
     return 0;
-  return eo_loaded_pressure(grid, sum / weight, eo_geometry_relative_radius(&grid->geometry, s));
+  return eo_loaded_pressure(grid, sum / weight, place->radius);
 }
 
 /* Which column of the pattern a place on the face belongs to. */
@@ -92,22 +109,19 @@ static void load_edges(struct eo_contact_pattern *pattern, const struct eo_conta
 
 void eo_contact_pattern_load(struct eo_contact_pattern *pattern, const struct eo_contact_grid *grid, const struct eo_loaded_end *end)
 {
-  for (int i = 0; i < EO_PATTERN_ROWS; i++)
-    for (int j = 0; j < EO_PATTERN_COLUMNS; j++)
-      pattern->pressure[i * EO_PATTERN_COLUMNS + j] = pressure_at(grid, end, pattern->path[i], pattern->eta[j]);
+  for (int i = 0; i < EO_PATTERN_ROWS * EO_PATTERN_COLUMNS; i++)
+    pattern->pressure[i] = pressure_at(grid, end, &pattern->place[i], pattern->eta[i % EO_PATTERN_COLUMNS]);
   load_edges(pattern, grid, end);
 }
 
-void eo_contact_pattern_unload(struct eo_contact_pattern *pattern, const struct eo_contact_grid *grid, const struct eo_gap_field *field,
-                               const double *unloaded)
+void eo_contact_pattern_unload(struct eo_contact_pattern *pattern, const struct eo_gap_field *field, const double *unloaded)
 {
-  for (int i = 0; i < EO_PATTERN_ROWS; i++)
-    for (int j = 0; j < EO_PATTERN_COLUMNS; j++) {
-      double s = pattern->path[i], eta = pattern->eta[j];
-      struct neighbours n = neighbours_of(grid, s - eta * tan(grid->geometry.base_helix_angle));
-      double approach = n.weight[0] * unloaded[n.position[0]] + n.weight[1] * unloaded[n.position[1]];
-      pattern->clearance[i * EO_PATTERN_COLUMNS + j] = fmax(0, eo_gap_field_at(field, s, eta, NULL, NULL) - approach);
-    }
+  for (int i = 0; i < EO_PATTERN_ROWS * EO_PATTERN_COLUMNS; i++) {
+    const struct eo_pattern_place *place = &pattern->place[i];
+    double approach = place->weight[0] * unloaded[place->position[0]] + place->weight[1] * unloaded[place->position[1]];
+    double gap = eo_gap_field_at(field, pattern->path[i / EO_PATTERN_COLUMNS], pattern->eta[i % EO_PATTERN_COLUMNS], NULL, NULL);
+    pattern->clearance[i] = fmax(0, gap - approach);
+  }
 }
 
 void eo_contact_pair_share(const struct eo_contact_grid *grid, const struct eo_loaded_end *end, int pair, double *share)
@@ -115,8 +129,8 @@ void eo_contact_pair_share(const struct eo_contact_grid *grid, const struct eo_l
   for (int j = 0; j < grid->positions; j++) {
     const struct eo_contact_position *p = &grid->position[j];
     double sum = 0;
-    for (int i = 0; i < p->points; i++)
-      if (p->point[i].pair == pair)
+    for (int l = 0; l < p->lines; l++)
+      for (int i = p->line[l].first; p->line[l].pair == pair && i < p->line[l].first + p->line[l].cells; i++)
         sum += end->line_load[p->first + i] * p->length[i];
     share[j] = sum / end->load[j];
   }

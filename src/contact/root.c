@@ -40,33 +40,55 @@ void eo_root_find_largest(const struct eo_flexibility *flexibility, int member, 
 enum { MOST_TEETH = 64 };
 
 struct eo_root_workspace {
+  const struct eo_contact_grid *grid;
+  const struct eo_root_modes *modes[2]; /* [member] */
+  int step, count;      /* positions that count */
+  struct eo_root_weights *weights[2]; /* [member]: [grid->points], of the positions that count */
   double *force;        /* [ends][most points] */
   float *load;          /* [positions][ends][slots] */
   float *scratch;       /* [positions][ends][rank] */
-  float *stress;        /* [positions][ends][nodes][EO_STRESSES] */
+  float *stress;        /* [positions][ends][EO_STRESSES][nodes] */
   unsigned *touched;    /* [positions]: see eo_root_modes_add() */
 };
+
+/* NULL without memory. */
+static struct eo_root_weights *weigh_points(const struct eo_contact_grid *grid, const struct eo_root_modes *modes, int step)
+{
+  struct eo_root_weights *weights = malloc(sizeof *weights * (size_t)grid->points);
+  for (int j = 0; weights && j < grid->positions; j += step) {
+    const struct eo_contact_position *p = &grid->position[j];
+    for (int i = 0; i < p->points; i++)
+      eo_root_modes_weigh(modes, &p->point[i], &weights[p->first + i]);
+  }
+  return weights;
+}
 
 enum eo_code eo_root_workspace_new(struct eo_root_workspace **result, const struct eo_contact_grid *grid,
                                    const struct eo_root_modes *const modes[2], int step, int ends, struct eo_error *error)
 {
   struct eo_root_workspace *ws = calloc(1, sizeof *ws);
-  size_t rows = (size_t)((grid->positions + step - 1) / step) * (size_t)ends, rank = 1, nodes = 1, slots = 1;
+  size_t rank = 1, nodes = 1, slots = 1;
   if (!ws)
     return eo_error_memory(error);
+  ws->grid = grid;
+  ws->step = step;
+  ws->count = (grid->positions + step - 1) / step;
   for (int member = 0; member < 2; member++) {
     size_t r = (size_t)eo_root_modes_rank(modes[member]), m = (size_t)eo_root_modes_nodes(modes[member]);
     rank = r > rank ? r : rank;
     nodes = m > nodes ? m : nodes;
     m = (size_t)eo_root_modes_slots(modes[member]);
     slots = m > slots ? m : slots;
+    ws->modes[member] = modes[member];
+    ws->weights[member] = weigh_points(grid, modes[member], step);
   }
+  size_t rows = (size_t)ws->count * (size_t)ends;
   ws->force = malloc(sizeof(double) * (size_t)grid->most_points * (size_t)ends);
   ws->load = malloc(sizeof *ws->load * rows * slots);
   ws->scratch = malloc(sizeof *ws->scratch * rows * rank);
   ws->stress = malloc(sizeof *ws->stress * rows * nodes * EO_STRESSES);
-  ws->touched = malloc(sizeof *ws->touched * (size_t)grid->positions);
-  if (!ws->force || !ws->load || !ws->scratch || !ws->stress || !ws->touched) {
+  ws->touched = malloc(sizeof *ws->touched * (size_t)ws->count);
+  if (!ws->weights[0] || !ws->weights[1] || !ws->force || !ws->load || !ws->scratch || !ws->stress || !ws->touched) {
     eo_root_workspace_free(ws);
     return eo_error_memory(error);
   }
@@ -78,6 +100,8 @@ void eo_root_workspace_free(struct eo_root_workspace *ws)
 {
   if (!ws)
     return;
+  free(ws->weights[0]);
+  free(ws->weights[1]);
   free(ws->force);
   free(ws->load);
   free(ws->scratch);
@@ -86,55 +110,83 @@ void eo_root_workspace_free(struct eo_root_workspace *ws)
   free(ws);
 }
 
-/* The larger principal stress is (s1 + s2 + sqrt((s1 - s2)^2 + 4 t^2))/2; the root is taken only where it raises the largest so far. */
+/* ---- the largest stress of a root: s and t normal along and across, u shear ---- */
+
+/* Whether the larger principal stress (s + t + sqrt((s - t)^2 + 4 u^2))/2 passes the largest so far. */
+static inline bool passes(float s, float t, float u, float largest)
+{
+  float sum = s + t, room = 2 * largest - sum, difference = s - t, square = difference * difference + 4 * u * u;
+  return !(room >= 0 && square <= room * room);
+}
+
+enum { LANE = 4, BLOCK = 4 * LANE };
+typedef float lane __attribute__((vector_size(4 * LANE), aligned(4), may_alias));
+typedef int lane_mask __attribute__((vector_size(4 * LANE)));
+
+/* Whether any of a block of nodes does. */
+static inline bool any_passes(const float *s, const float *t, const float *u, float largest)
+{
+  lane_mask none = ~(lane_mask){0};
+  for (int i = 0; i < BLOCK; i += LANE) {
+    lane a = *(const lane *)(s + i), b = *(const lane *)(t + i), shear = *(const lane *)(u + i);
+    lane sum = a + b, room = 2 * largest - sum, difference = a - b, square = difference * difference + 4 * shear * shear;
+    none &= (room >= 0) & (square <= room * room);
+  }
+  return !(none[0] & none[1] & none[2] & none[3]);
+}
+
+/* stress[EO_STRESSES][nodes]; the root is taken only where it raises the largest so far. */
 static double largest_principal(int nodes, const float *stress, int *where)
 {
+  const float *s = stress, *t = stress + nodes, *u = stress + 2 * nodes;
   float largest = 0;
-  for (int i = 0; i < nodes; i++) {
-    const float *s = stress + i * EO_STRESSES;
-    float sum = s[0] + s[1], room = 2 * largest - sum, difference = s[0] - s[1], square = difference * difference + 4 * s[2] * s[2];
-    if (room >= 0 && square <= room * room)
+  for (int first = 0; first < nodes; first += BLOCK) {
+    int last = first + BLOCK < nodes ? first + BLOCK : nodes;
+    if (last - first == BLOCK && !any_passes(s + first, t + first, u + first, largest))
       continue;
-    largest = (sum + sqrtf(square)) / 2;
-    *where = i;
+    for (int i = first; i < last; i++) {
+      if (!passes(s[i], t[i], u[i], largest))
+        continue;
+      float difference = s[i] - t[i];
+      largest = (s[i] + t[i] + sqrtf(difference * difference + 4 * u[i] * u[i])) / 2;
+      *where = i;
+    }
   }
   return largest;
 }
 
-static int count_positions(const struct eo_contact_grid *grid, int step)
+/* Loads of every step-th position on the teeth around one tooth: load[count][ends][slots]. */
+static void collect(struct eo_root_workspace *ws, int member, int tooth, int ends, const struct eo_loaded_end *const *end)
 {
-  return (grid->positions + step - 1) / step;
-}
-
-/* Loads of every step-th position on the teeth around one tooth: load[positions][ends][slots]. */
-static void collect(struct eo_root_workspace *ws, const struct eo_root_modes *modes, const struct eo_contact_grid *grid, int tooth, int step, int ends,
-                    const struct eo_loaded_end *const *end)
-{
-  int slots = eo_root_modes_slots(modes), count = count_positions(grid, step);
-  memset(ws->load, 0, sizeof *ws->load * (size_t)ends * (size_t)count * (size_t)slots);
-  for (int j = 0; j < count; j++) {
-    const struct eo_contact_position *p = &grid->position[j * step];
+  const struct eo_root_modes *modes = ws->modes[member];
+  int slots = eo_root_modes_slots(modes);
+  memset(ws->load, 0, sizeof *ws->load * (size_t)ends * (size_t)ws->count * (size_t)slots);
+  for (int j = 0; j < ws->count; j++) {
+    const struct eo_contact_position *p = &ws->grid->position[j * ws->step];
     for (int e = 0; e < ends; e++)
       for (int i = 0; i < p->points; i++)
         ws->force[e * p->points + i] = end[e]->line_load[p->first + i] * p->length[i];
-    ws->touched[j] = eo_root_modes_add(modes, tooth, p->points, p->point, ends, ws->force, ws->load + (size_t)(j * ends) * (size_t)slots);
+    ws->touched[j] = eo_root_modes_add(modes, tooth, p->points, p->point, ws->weights[member] + p->first, ends, ws->force,
+                                       ws->load + (size_t)(j * ends) * (size_t)slots);
   }
 }
 
-void eo_root_tooth_compute(struct eo_root_workspace *ws, const struct eo_root_modes *modes, const struct eo_contact_grid *grid, int tooth, int step,
-                           int ends, const struct eo_loaded_end *const *end, struct eo_root_history *const *history, struct eo_root_peak *peak)
+void eo_root_tooth_compute(struct eo_root_workspace *ws, int member, int tooth, int ends, const struct eo_loaded_end *const *end,
+                           struct eo_root_history *const *history, struct eo_root_peak *peak)
 {
-  int range[2], nodes = eo_root_modes_nodes(modes), count = count_positions(grid, step);
+  const struct eo_contact_grid *grid = ws->grid;
+  const struct eo_root_modes *modes = ws->modes[member];
+  int range[2], nodes = eo_root_modes_nodes(modes);
   eo_contact_grid_pairs(grid, range);
-  int first = (tooth - range[0]) * count;
-  collect(ws, modes, grid, tooth, step, ends, end);
-  eo_root_modes_stress(modes, count, ends, ws->load, ws->touched, ws->scratch, ws->stress);
+  int first = (tooth - range[0]) * ws->count;
+  collect(ws, member, tooth, ends, end);
+  eo_root_modes_stress(modes, ws->count, ends, ws->load, ws->touched, ws->scratch, ws->stress);
   for (int e = 0; e < ends; e++) {
     peak[e] = (struct eo_root_peak){0};
-    for (int j = 0; j < count; j++) {
+    for (int j = 0; j < ws->count; j++) {
       int node = 0;
       double s = largest_principal(nodes, ws->stress + (size_t)(j * ends + e) * (size_t)(nodes * EO_STRESSES), &node);
-      history[e]->phase[first + j] = grid->position[j * step].phase / grid->geometry.transverse_base_pitch + tooth;
+      history[e]->phase[first + j] = grid->position[j * ws->step].phase / grid->geometry.transverse_base_pitch + tooth;
       history[e]->stress[first + j] = s;
       if (s > peak[e].stress)
         peak[e] = (struct eo_root_peak){s, node};
@@ -147,7 +199,7 @@ void eo_root_history_finish(struct eo_root_history *history, const struct eo_roo
 {
   int range[2];
   eo_contact_grid_pairs(grid, range);
-  history->phases = (range[1] - range[0] + 1) * count_positions(grid, step);
+  history->phases = (range[1] - range[0] + 1) * ((grid->positions + step - 1) / step);
   history->maximum = history->arc = history->eta = 0;
   for (int tooth = 0; tooth <= range[1] - range[0]; tooth++) {
     const struct eo_root_peak *p = &peak[tooth * stride];
@@ -159,13 +211,13 @@ void eo_root_history_finish(struct eo_root_history *history, const struct eo_roo
   }
 }
 
-void eo_root_history_compute(struct eo_root_history *history, struct eo_root_workspace *ws, const struct eo_root *root,
-                             const struct eo_root_modes *modes, const struct eo_contact_grid *grid, const struct eo_loaded_end *end, int step)
+void eo_root_history_compute(struct eo_root_history *history, struct eo_root_workspace *ws, const struct eo_root *root, int member,
+                             const struct eo_loaded_end *end)
 {
   struct eo_root_peak peak[MOST_TEETH];
   int range[2];
-  eo_contact_grid_pairs(grid, range);
+  eo_contact_grid_pairs(ws->grid, range);
   for (int tooth = range[0]; tooth <= range[1]; tooth++)
-    eo_root_tooth_compute(ws, modes, grid, tooth, step, 1, &end, &history, &peak[tooth - range[0]]);
-  eo_root_history_finish(history, root, grid, step, peak, 1);
+    eo_root_tooth_compute(ws, member, tooth, 1, &end, &history, &peak[tooth - range[0]]);
+  eo_root_history_finish(history, root, ws->grid, ws->step, peak, 1);
 }

@@ -26,8 +26,8 @@ enum eo_json_style {
 };
 void eo_json_write(struct eo_text *text, const json_t *value, enum eo_json_style style);
 
-/* A number as text: the shortest of 15, 16 or 17 digits that reads back equal. size >= 32. */
-void eo_json_number(char *text, int size, double value);
+/* A number as text: the shortest of 15, 16 or 17 digits that reads back equal. size >= 32. Returns its length. */
+int eo_json_number(char *text, int size, double value);
 
 /* New values in the document's unit (NULL: dimensionless); what is not finite becomes null. */
 json_t *eo_json_real(double value, const struct eo_unit *unit);

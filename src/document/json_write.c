@@ -13,10 +13,17 @@ enum { EXACT_POWER = 22 }; /* the largest power of ten that is a double */
 static const double power[EXACT_POWER + 1] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8,  1e9,  1e10, 1e11,
                                               1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
 
+static uint64_t bits_of(double value)
+{
+  uint64_t bits;
+  memcpy(&bits, &value, sizeof bits);
+  return bits;
+}
+
 /* floor(log10(value)) for 1 <= value < 1e22: from the binary exponent, log10(2) = 1233/4096. */
 static int find_exponent(double value)
 {
-  int exponent = ilogb(value) * 1233 >> 12;
+  int exponent = ((int)(bits_of(value) >> 52) - 1023) * 1233 >> 12;
   return exponent + (value >= power[exponent + 1]);
 }
 
@@ -29,87 +36,109 @@ static int find_decimals(double value, int digits)
   return decimals >= 0 && decimals <= EXACT_POWER ? decimals : -1;
 }
 
-/* number / 10^decimals without trailing zeros; at least one decimal is there before they go. */
-static void write_decimal(char *text, bool negative, uint64_t number, int decimals)
+/* number / 10^decimals without trailing zeros, as C's %g writes it but for the zeros of an exponent. Returns its length. */
+static int write_decimal(char *text, bool negative, uint64_t number, int decimals)
 {
-  char reversed[24];
+  char reversed[24], *to = text;
   int length = 0;
   for (; decimals > 0 && number % 10 == 0; decimals--)
     number /= 10;
-  for (; number > 0 || length <= decimals; number /= 10)
+  for (; number > 0; number /= 10)
     reversed[length++] = (char)('0' + number % 10);
+  int exponent = length - 1 - decimals, point = exponent < -4 ? length - 1 : decimals;
+  while (length <= point)
+    reversed[length++] = '0';
   if (negative)
-    *text++ = '-';
+    *to++ = '-';
   while (length > 0) {
-    if (length == decimals)
-      *text++ = '.';
-    *text++ = reversed[--length];
+    if (length == point)
+      *to++ = '.';
+    *to++ = reversed[--length];
   }
-  *text = '\0';
+  if (exponent < -4) {
+    *to++ = 'e';
+    *to++ = '-';
+    if (exponent <= -10)
+      *to++ = '1';
+    *to++ = (char)('0' + -exponent % 10);
+  }
+  *to = '\0';
+  return (int)(to - text);
 }
 
 /* What the loop below finds, without printing and reading: a decimal number of up to 15 digits is the nearest double of its digits over a power of
-   ten, as long as both are exact. False: not so short, or to be written with an exponent. */
-static bool write_short(char *text, double value)
+   ten, as long as both are exact. Returns its length; 0: not so short, or too large or small. */
+static int write_short(char *text, double value)
 {
   double size = fabs(value);
-  if (!(size >= 1e-4 && size < 1e15))
-    return false;
   for (int digits = 9; digits <= 15; digits += 3) {
     int decimals = find_decimals(size, digits);
     double number = decimals < 0 ? 0 : nearbyint(size * power[decimals]);
     if (decimals < 0 || number >= 1e15 || number / power[decimals] != size)
       continue;
-    write_decimal(text, value < 0, (uint64_t)number, decimals);
-    return true;
+    return write_decimal(text, value < 0, (uint64_t)number, decimals);
   }
-  return false;
+  return 0;
 }
 
-void eo_json_number(char *text, int size, double value)
+static int write_long(char *text, int size, double value)
 {
-  if (write_short(text, value))
-    return;
   for (int digits = 15; digits <= 17; digits++) {
     snprintf(text, (size_t)size, "%.*g", digits, value);
     if (strtod(text, NULL) == value)
       break;
   }
   char *exponent = strchr(text, 'e'); /* 1e-07 -> 1e-7, 1e+20 -> 1e20 */
-  if (!exponent)
-    return;
-  char *to = exponent + 1, *from = to;
-  if (*from == '-')
-    to = ++from;
-  while (*from == '+' || (*from == '0' && from[1]))
-    from++;
-  memmove(to, from, strlen(from) + 1);
+  if (exponent) {
+    char *to = exponent + 1, *from = to;
+    if (*from == '-')
+      to = ++from;
+    while (*from == '+' || (*from == '0' && from[1]))
+      from++;
+    memmove(to, from, strlen(from) + 1);
+  }
+  return (int)strlen(text);
+}
+
+int eo_json_number(char *text, int size, double value)
+{
+  uint64_t bits = bits_of(value); /* for the sign of a zero: where it compares values, the compiler may take all zeros for one */
+  int length = bits << 1 ? write_short(text, value) : write_decimal(text, bits >> 63, 0, 0);
+  return length ? length : write_long(text, size, value);
 }
 
 static void write_string(struct eo_text *text, const char *string)
 {
-  eo_text_add(text, "\"");
-  for (const char *c = string; *c; c++) {
-    if (*c == '"' || *c == '\\')
-      eo_text_print(text, "\\%c", *c);
-    else if ((unsigned char)*c < 32)
-      eo_text_print(text, "\\u%04x", (unsigned)*c);
-    else
-      eo_text_add_bytes(text, c, 1);
+  eo_text_add_bytes(text, "\"", 1);
+  for (const char *rest = string; *rest;) {
+    const char *plain = rest;
+    while ((unsigned char)*rest >= 32 && *rest != '"' && *rest != '\\')
+      rest++;
+    eo_text_add_bytes(text, plain, (size_t)(rest - plain));
+    if (*rest == '"' || *rest == '\\')
+      eo_text_print(text, "\\%c", *rest++);
+    else if (*rest)
+      eo_text_print(text, "\\u%04x", (unsigned)*rest++);
   }
-  eo_text_add(text, "\"");
+  eo_text_add_bytes(text, "\"", 1);
+}
+
+static void write_real(struct eo_text *text, double value)
+{
+  enum { ROOM = 40 };
+  char *to = eo_text_room(text, ROOM);
+  if (to)
+    text->size += (size_t)eo_json_number(to, ROOM, value);
 }
 
 static void write_scalar(struct eo_text *text, const json_t *value)
 {
-  char number[40];
   switch (json_typeof(value)) {
   case JSON_STRING:
     write_string(text, json_string_value(value));
     break;
   case JSON_REAL:
-    eo_json_number(number, sizeof number, json_real_value(value));
-    eo_text_add(text, number);
+    write_real(text, json_real_value(value));
     break;
   case JSON_INTEGER:
     eo_text_print(text, "%" JSON_INTEGER_FORMAT, json_integer_value(value));
@@ -149,7 +178,7 @@ static void write_value(struct eo_text *text, const json_t *value, enum eo_json_
 static void begin_member(struct eo_text *text, size_t i, enum eo_json_style style, int indent)
 {
   if (i)
-    eo_text_add(text, ",");
+    eo_text_add_bytes(text, ",", 1);
   if (indent >= 0)
     eo_text_print(text, "\n%*s", indent + 2, "");
   else if (style == EO_JSON_PRETTY)
@@ -269,6 +298,8 @@ static double round_digits(double value, int digits)
 {
   char text[40];
   double size = fabs(value);
+  if (size == 0)
+    return value;
   int decimals = find_decimals(size, digits);
   double scaled = decimals < 0 ? 0 : size * power[decimals], number = nearbyint(scaled), past = fabs(scaled - floor(scaled) - 0.5);
   if (decimals >= 0 && scaled >= power[digits - 1] * (1 + 1e-12) && number < power[digits] && past > 1e-15 * scaled)

@@ -123,7 +123,10 @@ json_t *eo_result_position(const struct eo_result_source *source)
   return eo_result_column(source->positions, source->scratch, 1 / source->pair->geometry.transverse_base_pitch, NULL, EO_DIGITS_CURVE);
 }
 
-static const struct eo_outline_row case_rows[] = {
+/* The two halves of a load case, about as long to write. */
+enum { HALVES = 2 };
+
+static const struct eo_outline_row contact_rows[] = {
     EO_KEY("torque_Nm", "number", "on the pinion shaft, both ends together", .unit = &eo_unit_Nm),
     EO_KEY("speed_rpm", "number", "of the pinion", .unit = &eo_unit_rpm),
     EO_KEY("share", "number", "of the operating time"),
@@ -133,17 +136,24 @@ static const struct eo_outline_row case_rows[] = {
     EO_KEY("lte", "object", "loaded transmission error, transverse", .outline = &eo_outline_lte),
     EO_KEY("mesh_stiffness", "object", "mesh stiffness, normal", .outline = &eo_outline_stiffness),
     EO_KEY("contact", "object", "loads, pressure, contact pattern", .outline = &eo_outline_contact),
+};
+static const struct eo_outline contact_half = EO_OUTLINE(NULL, contact_rows);
+
+static const struct eo_outline_row consequence_rows[] = {
     EO_KEY("body_deflection", "object", "what shafts and bodies do to the gap", .when = "with elastic shafts", .outline = &eo_outline_bodies),
     EO_KEY("impact", "object", "entering impact", .outline = &eo_outline_impact),
     EO_KEY("root_stress", "object?", "null when it was not asked for", .outline = &eo_outline_root_stress),
     EO_KEY("vibration", "object", "vibration", .outline = &eo_outline_vibration),
 };
+static const struct eo_outline consequence_half = EO_OUTLINE(NULL, consequence_rows);
+
+static const struct eo_outline_row case_rows[] = {{.outline = &contact_half}, {.outline = &consequence_half}};
 static const struct eo_outline case_outline = EO_OUTLINE("LoadCaseResult", case_rows);
 
-static json_t *encode_case(struct eo_result_source *source, int k)
+static json_t *encode_contact(struct eo_result_source *source, int k)
 {
   const struct eo_case_result *c = &source->evaluation->load_case[k];
-  struct eo_result_object o = eo_result_open_as(&case_outline);
+  struct eo_result_object o = eo_result_open_as(&contact_half);
   eo_result_put_number(&o, "torque_Nm", c->load_case.torque);
   eo_result_put_number(&o, "speed_rpm", c->load_case.speed);
   eo_result_put_number(&o, "share", c->load_case.share);
@@ -153,12 +163,35 @@ static json_t *encode_case(struct eo_result_source *source, int k)
   eo_result_put(&o, "lte", eo_result_lte(source, c));
   eo_result_put(&o, "mesh_stiffness", eo_result_stiffness(source, c));
   eo_result_put(&o, "contact", eo_result_contact(source, k));
+  return eo_result_close(&o);
+}
+
+static json_t *encode_consequences(struct eo_result_source *source, int k)
+{
+  const struct eo_case_result *c = &source->evaluation->load_case[k];
+  struct eo_result_object o = eo_result_open_as(&consequence_half);
   if (source->design->shafts.enabled)
     eo_result_put(&o, "body_deflection", eo_result_bodies(source, c));
   eo_result_put(&o, "impact", eo_result_impact(source, c));
   eo_result_put(&o, "root_stress", eo_result_root_stress(source, c));
   eo_result_put(&o, "vibration", eo_result_vibration(source, c));
   return eo_result_close(&o);
+}
+
+/* Takes both; NULL when one is. */
+static json_t *unite(json_t *first, json_t *second)
+{
+  bool failed = !first || !second || json_object_update(first, second) != 0;
+  json_decref(second);
+  if (!failed)
+    return first;
+  json_decref(first);
+  return NULL;
+}
+
+static json_t *encode_case(struct eo_result_source *source, int k)
+{
+  return unite(encode_contact(source, k), encode_consequences(source, k));
 }
 
 static json_t *encode_cases(struct eo_result_source *source)
@@ -343,10 +376,7 @@ static json_t *encode_all(struct eo_result_source *source, const struct eo_warni
   struct eo_result_object o = {.json = encode_head(source), .outline = &eo_result_outline, .next = CASES_ROW};
   o.failed = !o.json;
   eo_result_put(&o, "load_cases", encode_cases(source));
-  json_t *tail = encode_tail(source, warnings);
-  o.failed = !tail || json_object_update(o.json, tail) != 0 || o.failed;
-  json_decref(tail);
-  return eo_result_close_part(&o);
+  return unite(eo_result_close_part(&o), encode_tail(source, warnings));
 }
 
 /* What one thread needs. */
@@ -359,7 +389,7 @@ static bool init_source(struct eo_result_source *source, const struct eo_analysi
   source->pattern = malloc(sizeof *source->pattern);
   source->scratch = calloc((size_t)r->positions, sizeof *source->scratch);
   if (source->pattern)
-    eo_contact_pattern_init(source->pattern, &source->pair->geometry);
+    eo_contact_pattern_init(source->pattern, source->pair->grid);
   return source->pattern && source->scratch;
 }
 
@@ -385,20 +415,27 @@ json_t *eo_result_encode_part(const struct eo_analysis *analysis, const struct e
   return result;
 }
 
-/* ---- as text, by parts: the head, then each load case ---- */
+/* ---- as text, by parts: the head, then the halves of each load case ---- */
 
-enum { WRITERS = 2 };
+enum { WRITERS = 2, MOST_PARTS = 1 + HALVES * EO_MAX_LOAD_CASES };
 
 struct writing {
   struct eo_result_source source[WRITERS]; /* [thread] */
-  struct eo_text part[1 + EO_MAX_LOAD_CASES];
+  struct eo_text part[MOST_PARTS];
 };
+
+static json_t *encode_part(struct eo_result_source *source, int part)
+{
+  int k = (part - 1) / HALVES;
+  if (part == 0)
+    return encode_head(source);
+  return part % HALVES ? encode_contact(source, k) : encode_consequences(source, k);
+}
 
 static enum eo_code write_part(void *context, int thread, int item, struct eo_error *error)
 {
   struct writing *w = context;
-  struct eo_result_source *source = &w->source[thread];
-  json_t *part = item ? encode_case(source, item - 1) : encode_head(source);
+  json_t *part = encode_part(&w->source[thread], item);
   if (part)
     eo_json_write(&w->part[item], part, EO_JSON_COMPACT);
   bool good = part && !w->part[item].failed;
@@ -406,18 +443,28 @@ static enum eo_code write_part(void *context, int thread, int item, struct eo_er
   return good ? EO_OK : eo_error_memory(error);
 }
 
-/* The parts of one object: without the brace at the end of the first and that at the beginning of the last. */
+/* What stands in the braces of a part. */
+static void add_members(struct eo_text *text, const struct eo_text *part)
+{
+  eo_text_add_bytes(text, part->data + 1, part->size - 2);
+}
+
+/* The parts as one object. */
 static void join(const struct writing *w, int cases, const struct eo_text *tail, struct eo_text *text)
 {
-  eo_text_add_bytes(text, w->part[0].data, w->part[0].size - 1);
+  eo_text_add(text, "{");
+  add_members(text, &w->part[0]);
   eo_text_add(text, ",\"load_cases\":[");
   for (int k = 0; k < cases; k++) {
-    if (k)
-      eo_text_add(text, ",");
-    eo_text_add_bytes(text, w->part[1 + k].data, w->part[1 + k].size);
+    eo_text_add(text, k ? ",{" : "{");
+    add_members(text, &w->part[1 + HALVES * k]);
+    eo_text_add(text, ",");
+    add_members(text, &w->part[2 + HALVES * k]);
+    eo_text_add(text, "}");
   }
   eo_text_add(text, "],");
-  eo_text_add_bytes(text, tail->data + 1, tail->size - 1);
+  add_members(text, tail);
+  eo_text_add(text, "}");
 }
 
 static enum eo_code write_all(struct writing *w, const struct eo_warnings *warnings, struct eo_text *text, struct eo_error *error)
@@ -425,7 +472,7 @@ static enum eo_code write_all(struct writing *w, const struct eo_warnings *warni
   const struct eo_analysis *analysis = w->source[0].analysis;
   const struct eo_parallel parallel = {.threads = analysis->threads < WRITERS ? analysis->threads : WRITERS, .work = write_part, .context = w};
   struct eo_text tail = {0};
-  enum eo_code code = eo_parallel_run(&parallel, 1 + analysis->cases, error);
+  enum eo_code code = eo_parallel_run(&parallel, 1 + HALVES * analysis->cases, error);
   if (code)
     return code;
   json_t *last = encode_tail(&w->source[0], warnings);
@@ -452,7 +499,7 @@ enum eo_code eo_result_write(const struct eo_analysis *analysis, const struct eo
   enum eo_code code = good ? write_all(w, warnings, text, error) : eo_error_memory(error);
   for (int i = 0; i < WRITERS && w; i++)
     done_source(&w->source[i]);
-  for (int i = 0; i <= EO_MAX_LOAD_CASES && w; i++)
+  for (int i = 0; i < MOST_PARTS && w; i++)
     eo_text_done(&w->part[i]);
   free(w);
   return code;

@@ -143,7 +143,7 @@ static json_t *encode_unloaded_end(struct eo_result_source *source, int end)
   struct eo_contact_pattern *pattern = source->pattern;
   struct eo_result_object o = eo_result_open_as(&unloaded_end);
   int marked = 0, points = EO_PATTERN_ROWS * EO_PATTERN_COLUMNS;
-  eo_contact_pattern_unload(pattern, source->pair->grid, eo_evaluator_field(source->analysis->evaluator, end), r->unloaded);
+  eo_contact_pattern_unload(pattern, eo_evaluator_field(source->analysis->evaluator, end), r->unloaded);
   for (int i = 0; i < points; i++)
     marked += pattern->clearance[i] < source->design->resolution.marking_thickness;
   eo_result_put(&o, "te_um", eo_result_end_column(source, end, r->unloaded, 1 / source->normal, &eo_unit_um));
@@ -191,7 +191,6 @@ json_t *eo_result_unloaded(struct eo_result_source *source)
 {
   struct eo_result_object o = eo_result_open_as(&eo_outline_unloaded);
   double peak;
-  eo_contact_pattern_init(source->pattern, &source->pair->geometry);
   eo_result_put(&o, "position", eo_result_position(source));
   eo_result_put(&o, "pair_te_um", encode_unloaded_pair(source, &peak));
   eo_result_put_number(&o, "peak_to_peak_um", peak);

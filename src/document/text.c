@@ -30,6 +30,11 @@ static bool reserve(struct eo_text *text, size_t more)
   return true;
 }
 
+char *eo_text_room(struct eo_text *text, size_t more)
+{
+  return reserve(text, more) ? text->data + text->size : NULL;
+}
+
 void eo_text_add_bytes(struct eo_text *text, const void *data, size_t size)
 {
   if (!reserve(text, size))

@@ -19,6 +19,8 @@ struct eo_text {
 /* Start from {0}. Adding never fails visibly: check `failed` at the end (the writers do). */
 void eo_text_add(struct eo_text *text, const char *string);
 void eo_text_add_bytes(struct eo_text *text, const void *data, size_t size);
+/* Where `more` bytes and a NUL may be written, to be counted in size by who writes them; NULL: failed. */
+char *eo_text_room(struct eo_text *text, size_t more);
 void eo_text_print(struct eo_text *text, const char *format, ...) __attribute__((format(printf, 2, 3)));
 void eo_text_done(struct eo_text *text);
 

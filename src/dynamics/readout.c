@@ -75,14 +75,24 @@ void eo_vibration_orders(const struct eo_vibration_solver *s, enum eo_channel ch
   }
 }
 
-void eo_vibration_history(const struct eo_vibration_solver *s, enum eo_channel channel, int end, int samples, double *history)
+void eo_vibration_histories(const struct eo_vibration_solver *s, int samples, double *const *const *history)
 {
+  int harmonics = s->spectrum.harmonics, terms = eo_fourier_terms(harmonics), ends = s->spectrum.ends;
   double complex order[1 + EO_MAX_HARMONICS];
-  double series[MAX_TERMS];
-  eo_vibration_orders(s, channel, end, order);
-  series_of(s->spectrum.harmonics, order, series);
-  for (int i = 0; i < samples; i++)
-    history[i] = eo_fourier_value(s->spectrum.harmonics, series, (double)i / samples);
+  double series[2 * EO_CHANNELS][MAX_TERMS], basis[MAX_TERMS];
+  for (int i = 0; i < ends * EO_CHANNELS; i++) {
+    eo_vibration_orders(s, (enum eo_channel)(i % EO_CHANNELS), i / EO_CHANNELS, order);
+    series_of(harmonics, order, series[i]);
+  }
+  for (int j = 0; j < samples; j++) {
+    eo_fourier_basis(harmonics, (double)j / samples, basis);
+    for (int i = 0; i < ends * EO_CHANNELS; i++) {
+      double value = series[i][0];
+      for (int k = 1; k < terms; k += 2)
+        value += series[i][k] * basis[k] + series[i][k + 1] * basis[k + 1];
+      history[i / EO_CHANNELS][i % EO_CHANNELS][j] = value;
+    }
+  }
 }
 
 /* Displacements q_k from those of the oscillator; the zero modes have no part in them. */

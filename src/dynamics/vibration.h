@@ -115,7 +115,7 @@ enum eo_channel {
 /* Harmonics 0..spectrum.harmonics of one channel of one end. */
 void eo_vibration_orders(const struct eo_vibration_solver *solver, enum eo_channel channel, int end, double complex *order);
 
-/* history[samples] of one channel at phases i / samples. */
-void eo_vibration_history(const struct eo_vibration_solver *solver, enum eo_channel channel, int end, int samples, double *history);
+/* history[end][channel][samples] at phases i / samples. */
+void eo_vibration_histories(const struct eo_vibration_solver *solver, int samples, double *const *const *history);
 
 #endif

@@ -53,8 +53,6 @@ bool eo_evaluator_copies_end(const struct eo_evaluator *e, const struct eo_desig
 enum eo_code eo_evaluator_fit_bodies(struct eo_evaluator *e, const struct eo_shafts *shafts, struct eo_error *error);
 void eo_evaluator_set_keys(struct eo_evaluator *e, const struct eo_design *design, const struct eo_scenario *scenario);
 enum eo_code eo_evaluator_solve_contact(struct eo_evaluator *e, const struct eo_design *design, double factor, struct eo_error *error);
-void eo_evaluator_summarise_end(struct eo_evaluator *e, struct eo_case_result *c, int end);
-void eo_evaluator_summarise_pair(struct eo_evaluator *e, const struct eo_design *design, struct eo_case_result *c);
 void eo_evaluator_find_impacts(struct eo_evaluator *e, const struct eo_design *design, double speed_factor, double factor);
 
 /* Both ends of one load case on elastic bodies, from their solution on rigid ones. */

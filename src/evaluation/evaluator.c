@@ -18,22 +18,19 @@ struct roots {
   struct eo_root_peak *peak;                            /* [member][teeth][ends] */
 };
 
-static enum eo_code find_tooth(void *context, int thread, int item, struct eo_error *error)
+static void find_tooth(const struct roots *roots, int thread, int item)
 {
-  const struct roots *roots = context;
   struct eo_evaluator *e = roots->evaluator;
   int tooth = item % roots->teeth, member = item / roots->teeth % 2, first = item / roots->teeth / 2 * ROOT_BATCH;
   int count = roots->ends - first < ROOT_BATCH ? roots->ends - first : ROOT_BATCH;
   const struct eo_loaded_end *loaded[ROOT_BATCH];
   struct eo_root_history *history[ROOT_BATCH];
-  (void)error;
   for (int i = 0; i < count; i++) {
     loaded[i] = &roots->end[first + i]->loaded;
     history[i] = &roots->end[first + i]->root[member];
   }
-  eo_root_tooth_compute(e->root[thread], e->pair->root[member], e->pair->grid, roots->first + tooth, ROOT_STEP, count, loaded, history,
+  eo_root_tooth_compute(e->root[thread], member, roots->first + tooth, count, loaded, history,
                         roots->peak + (member * roots->teeth + tooth) * roots->ends + first);
-  return EO_OK;
 }
 
 static void copy_history(const struct eo_root_history *from, struct eo_root_history *to)
@@ -55,21 +52,6 @@ static void list_ends(struct roots *roots, const struct eo_design *design)
         roots->end[roots->ends++] = &e->result.load_case[k].end[end];
 }
 
-static enum eo_code compute_roots(struct roots *roots, struct eo_error *error)
-{
-  struct eo_evaluator *e = roots->evaluator;
-  const struct eo_parallel parallel = {.threads = e->threads, .work = find_tooth, .context = roots};
-  int batches = (roots->ends + ROOT_BATCH - 1) / ROOT_BATCH;
-  enum eo_code code = eo_parallel_run(&parallel, batches * 2 * roots->teeth, error);
-  for (int member = 0; member < 2 && !code; member++) {
-    struct eo_root root = eo_flexibility_root(e->pair->flexibility, member);
-    for (int i = 0; i < roots->ends; i++)
-      eo_root_history_finish(&roots->end[i]->root[member], &root, e->pair->grid, ROOT_STEP, roots->peak + member * roots->teeth * roots->ends + i,
-                             roots->ends);
-  }
-  return code;
-}
-
 static enum eo_code make_root_workspaces(struct eo_evaluator *e, struct eo_error *error)
 {
   const struct eo_root_modes *const modes[2] = {e->pair->root[0], e->pair->root[1]};
@@ -83,27 +65,42 @@ static enum eo_code make_root_workspaces(struct eo_evaluator *e, struct eo_error
   return code;
 }
 
-static enum eo_code find_root_stress(struct eo_evaluator *e, const struct eo_design *design, struct eo_error *error)
+static enum eo_code prepare_roots(struct roots *roots, struct eo_evaluator *e, const struct eo_design *design, struct eo_error *error)
 {
-  struct eo_evaluation *r = &e->result;
   int range[2];
   eo_contact_grid_pairs(e->pair->grid, range);
   enum eo_code code = make_root_workspaces(e, error);
-  struct roots roots = {.evaluator = e, .teeth = range[1] - range[0] + 1, .first = range[0], .peak = e->peaks};
-  list_ends(&roots, design);
-  if (!code)
-    code = compute_roots(&roots, error);
-  for (int k = 0; k < r->cases && !code; k++)
+  *roots = (struct roots){.evaluator = e, .teeth = range[1] - range[0] + 1, .first = range[0], .peak = e->peaks};
+  list_ends(roots, design);
+  return code;
+}
+
+static int count_teeth(const struct roots *roots)
+{
+  return (roots->ends + ROOT_BATCH - 1) / ROOT_BATCH * 2 * roots->teeth;
+}
+
+/* Histories from the teeth, and of the ends that had none to compute. */
+static void finish_roots(const struct roots *roots, const struct eo_design *design)
+{
+  struct eo_evaluator *e = roots->evaluator;
+  struct eo_evaluation *r = &e->result;
+  for (int member = 0; member < 2; member++) {
+    struct eo_root root = eo_flexibility_root(e->pair->flexibility, member);
+    for (int i = 0; i < roots->ends; i++)
+      eo_root_history_finish(&roots->end[i]->root[member], &root, e->pair->grid, ROOT_STEP, roots->peak + member * roots->teeth * roots->ends + i,
+                             roots->ends);
+  }
+  for (int k = 0; k < r->cases; k++)
     for (int member = 0; member < 2; member++)
       for (int end = 0; end < r->ends; end++) {
         struct eo_root_history *history = &r->load_case[k].end[end].root[member];
         if (end == EO_RIGHT && eo_evaluator_copies_end(e, design))
           copy_history(&r->load_case[k].end[EO_LEFT].root[member], history);
-        history->phases = roots.teeth * ((r->positions + ROOT_STEP - 1) / ROOT_STEP); /* of those that are as they were, too */
+        history->phases = roots->teeth * ((r->positions + ROOT_STEP - 1) / ROOT_STEP); /* of those that are as they were, too */
       }
-  for (int end = 0; end < r->ends && !code; end++)
+  for (int end = 0; end < r->ends; end++)
     e->rooted[end] = !(end == EO_RIGHT && r->equal_ends);
-  return code;
 }
 
 static void collect_objectives(struct eo_evaluation *r, bool root)
@@ -181,7 +178,6 @@ static enum eo_code fit_vibration(struct eo_evaluator *e, int harmonics, struct 
 static enum eo_code solve_static(struct eo_evaluator *e, const struct eo_design *design, const struct eo_scenario *scenario,
                                  struct eo_error *error)
 {
-  struct eo_evaluation *r = &e->result;
   enum eo_code code = eo_evaluator_fit_bodies(e, &design->shafts, error);
   if (code)
     return code;
@@ -189,18 +185,15 @@ static enum eo_code solve_static(struct eo_evaluator *e, const struct eo_design 
   set_cases(e, design);
   eo_evaluator_set_keys(e, design, scenario);
   code = eo_evaluator_solve_contact(e, design, scenario->compliance, error);
-  if (code)
-    return code;
-  for (int k = 0; k < r->cases; k++) {
-    for (int end = 0; end < r->ends; end++)
-      eo_evaluator_summarise_end(e, &r->load_case[k], end);
-    eo_evaluator_summarise_pair(e, design, &r->load_case[k]);
-  }
-  double contact = eo_clock_milliseconds();
+  e->result.static_ms = eo_clock_milliseconds() - start;
+  return code;
+}
+
+static void find_impacts(struct eo_evaluator *e, const struct eo_design *design, const struct eo_scenario *scenario)
+{
+  double start = eo_clock_milliseconds();
   eo_evaluator_find_impacts(e, design, scenario->speed, scenario->compliance);
-  r->static_ms = contact - start;
-  r->impact_ms = eo_clock_milliseconds() - contact;
-  return EO_OK;
+  e->result.impact_ms = eo_clock_milliseconds() - start;
 }
 
 static const struct eo_scenario nominal_scenario = {NAN, NAN, 1, 1};
@@ -209,8 +202,56 @@ enum eo_code eo_evaluator_contact(struct eo_evaluator *e, const struct eo_design
                                   struct eo_error *error)
 {
   enum eo_code code = solve_static(e, design, &nominal_scenario, error);
+  if (code)
+    return code;
+  find_impacts(e, design, &nominal_scenario);
+  *evaluation = &e->result;
+  return EO_OK;
+}
+
+/* What the loads lead to: the way to the vibration is one item, each tooth of the root stress another, so that two threads are busy alike. */
+struct consequences {
+  struct eo_evaluator *evaluator;
+  const struct eo_design *design;
+  const struct eo_scenario *scenario;
+  int want;
+  struct roots roots;
+  double root_ms[2]; /* [thread] */
+};
+
+static enum eo_code find_vibration(const struct consequences *c, struct eo_error *error)
+{
+  struct eo_evaluator *e = c->evaluator;
+  find_impacts(e, c->design, c->scenario);
+  double start = eo_clock_milliseconds();
+  enum eo_code code = eo_evaluator_solve_dynamics(e, c->design, c->scenario->speed, c->scenario->compliance, c->want, error);
+  if (!code && c->want & EO_WANT_CURVES)
+    code = find_modes(e, error);
+  e->result.dynamics_ms = eo_clock_milliseconds() - start;
+  return code;
+}
+
+static enum eo_code find_consequence(void *context, int thread, int item, struct eo_error *error)
+{
+  struct consequences *c = context;
+  if (item == 0)
+    return find_vibration(c, error);
+  double start = eo_clock_milliseconds();
+  find_tooth(&c->roots, thread, item - 1);
+  c->root_ms[thread] += eo_clock_milliseconds() - start;
+  return EO_OK;
+}
+
+static enum eo_code find_consequences(struct consequences *c, bool root, struct eo_error *error)
+{
+  struct eo_evaluator *e = c->evaluator;
+  const struct eo_parallel parallel = {.threads = e->threads, .work = find_consequence, .context = c};
+  enum eo_code code = root ? prepare_roots(&c->roots, e, c->design, error) : EO_OK;
   if (!code)
-    *evaluation = &e->result;
+    code = eo_parallel_run(&parallel, 1 + (root ? count_teeth(&c->roots) : 0), error);
+  if (!code && root)
+    finish_roots(&c->roots, c->design);
+  e->result.root_ms = c->root_ms[0] + c->root_ms[1];
   return code;
 }
 
@@ -223,18 +264,9 @@ enum eo_code eo_evaluator_run(struct eo_evaluator *e, const struct eo_design *de
   enum eo_code code = fit_vibration(e, design->resolution.harmonics, error);
   if (!code)
     code = solve_static(e, design, s, error);
-  if (code)
-    return code;
-  double impact = eo_clock_milliseconds();
-  if (root)
-    code = find_root_stress(e, design, error);
-  double rooted = eo_clock_milliseconds();
+  struct consequences consequences = {.evaluator = e, .design = design, .scenario = s, .want = want};
   if (!code)
-    code = eo_evaluator_solve_dynamics(e, design, s->speed, s->compliance, want, error);
-  if (!code && want & EO_WANT_CURVES)
-    code = find_modes(e, error);
-  r->dynamics_ms = eo_clock_milliseconds() - rooted;
-  r->root_ms = rooted - impact;
+    code = find_consequences(&consequences, root, error);
   if (!code && want & EO_WANT_BAND)
     code = eo_evaluator_find_band(e, design, s->speed, s->compliance, error);
   if (code)

@@ -57,7 +57,7 @@ struct eo_evaluation {
   struct eo_case_result *load_case;      /* [cases] */
   struct eo_objective_case *objective;   /* [cases] */
   struct eo_dynamics_modes modes;        /* with the mean mesh stiffness of the heaviest share */
-  double static_ms, impact_ms, dynamics_ms, root_ms; /* where the processor time of this thread went */
+  double static_ms, impact_ms, dynamics_ms, root_ms; /* where the time went; root: of both threads, beside impact and dynamics */
 };
 
 struct eo_evaluator;
@@ -66,7 +66,8 @@ struct eo_evaluator;
 enum eo_code eo_evaluator_new(struct eo_evaluator **evaluator, const struct eo_pair *pair, int most_cases, struct eo_error *error);
 void eo_evaluator_free(struct eo_evaluator *evaluator);
 
-/* Threads that one evaluation may use, 1 (as made) or 2: both ends at once. The results do not depend on it. */
+/* Threads that one evaluation may use, 1 (as made) or 2: both ends at once, then root stress beside the vibration. The results do not
+   depend on it. */
 enum eo_code eo_evaluator_use_threads(struct eo_evaluator *evaluator, int threads, struct eo_error *error);
 
 /* Evaluates alignment, supports, load cases, modification and dynamics of a resolved design. scenario: NULL for the nominal one.

@@ -149,63 +149,8 @@ bool eo_evaluator_copies_end(const struct eo_evaluator *e, const struct eo_desig
   return e->result.equal_ends && !shares_unevenly(e, design);
 }
 
-struct ends {
-  struct eo_evaluator *evaluator;
-  int end[2];
-};
-
-static enum eo_code load_item(void *context, int thread, int item, struct eo_error *error)
-{
-  const struct ends *ends = context;
-  struct eo_evaluator *e = ends->evaluator;
-  (void)error;
-  load_end(e, thread ? e->second_contact : e->contact, ends->end[item]);
-  return EO_OK;
-}
-
-static enum eo_code load_ends(struct eo_evaluator *e, struct eo_error *error)
-{
-  struct ends ends = {.evaluator = e};
-  const struct eo_parallel parallel = {.threads = e->threads, .work = load_item, .context = &ends};
-  struct eo_evaluation *r = &e->result;
-  int count = 0;
-  for (int end = 0; end < r->ends; end++)
-    if (e->fresh[end])
-      ends.end[count++] = end;
-  enum eo_code code = eo_parallel_run(&parallel, count, error);
-  for (int k = 0; k < r->cases && r->equal_ends; k++)
-    copy_end(e->pair->grid, &r->load_case[k].end[EO_RIGHT].loaded, &r->load_case[k].end[EO_LEFT].loaded);
-  return code;
-}
-
-enum eo_code eo_evaluator_solve_contact(struct eo_evaluator *e, const struct eo_design *design, double factor, struct eo_error *error)
-{
-  struct eo_evaluation *r = &e->result;
-  const struct eo_contact_grid *grid = e->pair->grid;
-  double stiffness = axial_stiffness(&design->alignment);
-  enum eo_code code = load_ends(e, error);
-  if (code)
-    return code;
-  if (r->equal_ends)
-    e->known[EO_RIGHT].cases = 0; /* its fields stayed behind */
-  int stagger = eo_evaluator_stagger(design, grid->positions);
-  if (e->bodies || stiffness > 0)
-    e->known[EO_LEFT].cases = e->known[EO_RIGHT].cases = 0; /* the loads below are no longer those of the ends alone */
-  if (e->bodies)
-    bend_cases(e, design, factor);
-  else if (shares_unevenly(e, design))
-    for (int k = 0; k < r->cases; k++) {
-      struct eo_loaded_gaps gaps[2] = {e->gaps[EO_LEFT], e->gaps[eo_evaluator_kept_at(e, EO_RIGHT)]};
-      struct eo_loaded_end both[2] = {r->load_case[k].end[EO_LEFT].loaded, r->load_case[k].end[EO_RIGHT].loaded};
-      eo_loaded_balance(e->contact, grid, gaps, factor, stiffness, stagger, r->load_case[k].force, both);
-      for (int end = 0; end < 2; end++)
-        r->load_case[k].end[end].loaded.failures = both[end].failures;
-    }
-  return EO_OK;
-}
-
 /* Peaks over the mesh cycle and the secant stiffness of one end. */
-void eo_evaluator_summarise_end(struct eo_evaluator *e, struct eo_case_result *c, int end)
+static void summarise_end(struct eo_evaluator *e, struct eo_case_result *c, int end)
 {
   const struct eo_contact_grid *grid = e->pair->grid;
   struct eo_end_result *r = &c->end[end];
@@ -235,8 +180,14 @@ void eo_evaluator_summarise_end(struct eo_evaluator *e, struct eo_case_result *c
   r->transmission_peak = (high - low) / cos(grid->geometry.base_helix_angle);
 }
 
+static void summarise_cases(struct eo_evaluator *e, int end)
+{
+  for (int k = 0; k < e->result.cases; k++)
+    summarise_end(e, &e->result.load_case[k], end);
+}
+
 /* LTE of the pair: the mean of the ends, the right one behind by the stagger. */
-void eo_evaluator_summarise_pair(struct eo_evaluator *e, const struct eo_design *design, struct eo_case_result *c)
+static void summarise_pair(struct eo_evaluator *e, const struct eo_design *design, struct eo_case_result *c)
 {
   int n = e->pair->grid->positions, stagger = eo_evaluator_stagger(design, n), last = e->result.ends - 1;
   double low = INFINITY, high = -INFINITY, normal = cos(e->pair->geometry.base_helix_angle);
@@ -252,6 +203,70 @@ void eo_evaluator_summarise_pair(struct eo_evaluator *e, const struct eo_design 
   c->contact_failures = 0;
   for (int end = 0; end <= last; end++)
     c->contact_failures += c->end[end].loaded.failures;
+}
+
+struct ends {
+  struct eo_evaluator *evaluator;
+  int end[2];
+  bool final; /* the loads of the ends alone are those of the pair */
+};
+
+static enum eo_code load_item(void *context, int thread, int item, struct eo_error *error)
+{
+  const struct ends *ends = context;
+  struct eo_evaluator *e = ends->evaluator;
+  (void)error;
+  load_end(e, thread ? e->second_contact : e->contact, ends->end[item]);
+  if (ends->final)
+    summarise_cases(e, ends->end[item]);
+  return EO_OK;
+}
+
+static enum eo_code load_ends(struct eo_evaluator *e, bool final, struct eo_error *error)
+{
+  struct ends ends = {.evaluator = e, .final = final};
+  const struct eo_parallel parallel = {.threads = e->threads, .work = load_item, .context = &ends};
+  struct eo_evaluation *r = &e->result;
+  int count = 0;
+  for (int end = 0; end < r->ends; end++)
+    if (e->fresh[end])
+      ends.end[count++] = end;
+  enum eo_code code = eo_parallel_run(&parallel, count, error);
+  for (int k = 0; k < r->cases && r->equal_ends; k++)
+    copy_end(e->pair->grid, &r->load_case[k].end[EO_RIGHT].loaded, &r->load_case[k].end[EO_LEFT].loaded);
+  return code;
+}
+
+enum eo_code eo_evaluator_solve_contact(struct eo_evaluator *e, const struct eo_design *design, double factor, struct eo_error *error)
+{
+  struct eo_evaluation *r = &e->result;
+  const struct eo_contact_grid *grid = e->pair->grid;
+  double stiffness = axial_stiffness(&design->alignment);
+  bool final = !e->bodies && !shares_unevenly(e, design);
+  enum eo_code code = load_ends(e, final, error);
+  if (code)
+    return code;
+  if (r->equal_ends)
+    e->known[EO_RIGHT].cases = 0; /* its fields stayed behind */
+  int stagger = eo_evaluator_stagger(design, grid->positions);
+  if (e->bodies || stiffness > 0)
+    e->known[EO_LEFT].cases = e->known[EO_RIGHT].cases = 0; /* the loads below are no longer those of the ends alone */
+  if (e->bodies)
+    bend_cases(e, design, factor);
+  else if (shares_unevenly(e, design))
+    for (int k = 0; k < r->cases; k++) {
+      struct eo_loaded_gaps gaps[2] = {e->gaps[EO_LEFT], e->gaps[eo_evaluator_kept_at(e, EO_RIGHT)]};
+      struct eo_loaded_end both[2] = {r->load_case[k].end[EO_LEFT].loaded, r->load_case[k].end[EO_RIGHT].loaded};
+      eo_loaded_balance(e->contact, grid, gaps, factor, stiffness, stagger, r->load_case[k].force, both);
+      for (int end = 0; end < 2; end++)
+        r->load_case[k].end[end].loaded.failures = both[end].failures;
+    }
+  for (int end = 0; end < r->ends; end++)
+    if (!final || !e->fresh[end])
+      summarise_cases(e, end);
+  for (int k = 0; k < r->cases; k++)
+    summarise_pair(e, design, &r->load_case[k]);
+  return EO_OK;
 }
 
 void eo_evaluator_find_impacts(struct eo_evaluator *e, const struct eo_design *design, double speed_factor, double factor)

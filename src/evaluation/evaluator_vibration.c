@@ -119,11 +119,10 @@ static enum eo_code vibrate(struct eo_evaluator *e, const struct eo_design *desi
 
 static void read_curves(struct eo_evaluator *e, struct eo_case_result *c)
 {
+  eo_vibration_histories(e->vibration, EO_EVALUATOR_SAMPLES, (double *const *const[]){c->end[EO_LEFT].curve, c->end[EO_RIGHT].curve});
   for (int end = 0; end < e->result.ends; end++)
-    for (int channel = 0; channel < EO_CURVE_CHANNELS; channel++) {
-      eo_vibration_history(e->vibration, (enum eo_channel)channel, end, EO_EVALUATOR_SAMPLES, c->end[end].curve[channel]);
+    for (int channel = 0; channel < EO_CURVE_CHANNELS; channel++)
       eo_vibration_orders(e->vibration, (enum eo_channel)channel, end, c->end[end].order[channel]);
-    }
 }
 
 enum eo_code eo_evaluator_solve_dynamics(struct eo_evaluator *e, const struct eo_design *design, double speed_factor, double factor, int want,

@@ -13,7 +13,7 @@ struct eo_root_modes {
   int member, rank, length;     /* length = nodes x EO_STRESSES */
   int slots, slot[3];           /* grid points of loads on pair k - 1, k, k + 1, and where each begins */
   float *coefficient;           /* [slots][rank] */
-  float *shape;                 /* [rank][length] */
+  float *shape;                 /* [rank][EO_STRESSES][nodes] */
 };
 
 static const struct eo_grid *grid_of(const struct eo_root_modes *modes, int ahead_by)
@@ -48,7 +48,7 @@ static double *stack_rows(const struct eo_root_modes *modes, size_t skip)
 static enum eo_code fit_shapes(struct eo_root_modes *modes, int rows, int stride, const double *factor, const double *stack, struct eo_error *error)
 {
   int rank = modes->rank;
-  size_t size = (size_t)rank * (size_t)modes->length;
+  size_t length = (size_t)modes->length, size = (size_t)rank * length;
   double *normal = malloc(sizeof *normal * (size_t)rank * (size_t)rank), *shape = malloc(sizeof *shape * size);
   modes->shape = malloc(sizeof *modes->shape * size);
   enum eo_code code = normal && shape && modes->shape ? EO_OK : eo_error_memory(error);
@@ -57,8 +57,10 @@ static enum eo_code fit_shapes(struct eo_root_modes *modes, int rows, int stride
     cblas_dgemm(CblasRowMajor, CblasTrans, CblasNoTrans, rank, rank, rows, 1, factor, stride, factor, stride, 0, normal, rank);
     code = eo_lowrank_solve(rank, normal, modes->length, shape, error);
   }
-  for (size_t i = 0; !code && i < size; i++)
-    modes->shape[i] = (float)shape[i];
+  for (size_t i = 0; !code && i < size; i++) {
+    size_t row = i / length, node = i % length / EO_STRESSES, part = i % EO_STRESSES;
+    modes->shape[row * length + part * (length / EO_STRESSES) + node] = (float)shape[i];
+  }
   free(normal);
   free(shape);
   return code;
@@ -139,24 +141,34 @@ static bool is_loaded(int n, int sets, const double *force)
   return false;
 }
 
-unsigned eo_root_modes_add(const struct eo_root_modes *modes, int pair, int n, const struct eo_flank_point *point, int sets, const double *force,
-                           float *load)
+void eo_root_modes_weigh(const struct eo_root_modes *modes, const struct eo_flank_point *point, struct eo_root_weights *weights)
+{
+  for (int ahead = 0; ahead <= (modes->coupled ? 1 : 0); ahead++) {
+    const struct eo_grid *grid = grid_of(modes, ahead);
+    int row, layer;
+    eo_spline_weights(&grid->s, point->s[modes->member], &row, weights->across[ahead]);
+    eo_spline_weights(&grid->eta, point->eta, &layer, weights->along[ahead]);
+    weights->first[ahead] = row * grid->eta.count + layer;
+  }
+}
+
+unsigned eo_root_modes_add(const struct eo_root_modes *modes, int pair, int n, const struct eo_flank_point *point, const struct eo_root_weights *weights,
+                           int sets, const double *force, float *load)
 {
   unsigned touched = 0;
   for (int j = 0; j < n; j++) {
     int ahead = point[j].pair - pair;
     if (ahead < -1 || ahead > 1 || (ahead != 0 && !modes->coupled) || !is_loaded(n, sets, force + j))
       continue;
-    const struct eo_grid *grid = grid_of(modes, ahead);
-    struct eo_grid_weights at;
-    eo_grid_weights(grid, point[j].s[modes->member], point[j].eta, &at);
+    int columns = grid_of(modes, ahead)->eta.count;
+    const double *across = weights[j].across[ahead != 0], *along = weights[j].along[ahead != 0];
     touched |= 1u << (ahead + 1);
     for (int set = 0; set < sets; set++) {
       double f = force[set * n + j];
-      float *to = load + set * modes->slots + modes->slot[ahead + 1] + at.first;
+      float *to = load + set * modes->slots + modes->slot[ahead + 1] + weights[j].first[ahead != 0];
       for (int r = 0; f != 0 && r < EO_SPLINE_WIDTH; r++)
         for (int l = 0; l < EO_SPLINE_WIDTH; l++)
-          to[r * grid->eta.count + l] += (float)(f * at.weight[EO_SPLINE_WIDTH * r + l]);
+          to[r * columns + l] += (float)(f * (across[r] * along[l]));
     }
   }
   return touched;

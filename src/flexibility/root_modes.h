@@ -6,6 +6,7 @@
 #define EASEOFF_FLEXIBILITY_ROOT_MODES_H
 
 #include "flexibility/flexibility.h"
+#include "flexibility/spline.h"
 
 struct eo_root_modes; /* constant once made; borrows the flexibility */
 
@@ -17,11 +18,19 @@ int eo_root_modes_rank(const struct eo_root_modes *modes);
 int eo_root_modes_slots(const struct eo_root_modes *modes);  /* numbers that describe a load distribution */
 int eo_root_modes_nodes(const struct eo_root_modes *modes);  /* of the root: [point][layer] from root.first on */
 
-/* Adds the loads force[sets][n], N, at the points to load[sets][slots] of the root of tooth pair `pair`. Returns which parts of load they touch. */
-unsigned eo_root_modes_add(const struct eo_root_modes *modes, int pair, int n, const struct eo_flank_point *point, int sets, const double *force,
-                           float *load);
+/* How a load at a flank point is told to the splines of its own tooth [0] and of a neighbour [1]. The same for every tooth, load and time. */
+struct eo_root_weights {
+  int first[2];
+  double across[2][EO_SPLINE_WIDTH], along[2][EO_SPLINE_WIDTH];
+};
+void eo_root_modes_weigh(const struct eo_root_modes *modes, const struct eo_flank_point *point, struct eo_root_weights *weights);
 
-/* stress[count][sets][nodes][EO_STRESSES], Pa, under load[count][sets][slots], of which touched[count] says which parts are not zero (see above).
+/* Adds the loads force[sets][n], N, at the points, weights[n] of them, to load[sets][slots] of the root of tooth pair `pair`. Returns which parts of
+   load they touch. */
+unsigned eo_root_modes_add(const struct eo_root_modes *modes, int pair, int n, const struct eo_flank_point *point, const struct eo_root_weights *weights,
+                           int sets, const double *force, float *load);
+
+/* stress[count][sets][EO_STRESSES][nodes], Pa, under load[count][sets][slots], of which touched[count] says which parts are not zero (see above).
    scratch: [count][sets][rank]. */
 void eo_root_modes_stress(const struct eo_root_modes *modes, int count, int sets, const float *load, const unsigned *touched, float *scratch,
                           float *stress);

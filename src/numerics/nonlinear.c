@@ -1,22 +1,17 @@
 #include "numerics/nonlinear.h"
 
+#include "numerics/dense_newton.h"
+
 #include <kinsol/kinsol.h>
 #include <math.h>
-#include <nvector/nvector_serial.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sundials/sundials_context.h>
-#include <sunlinsol/sunlinsol_dense.h>
-#include <sunmatrix/sunmatrix_dense.h>
 
 struct eo_nonlinear {
   int n;
-  SUNContext context;
+  struct eo_dense_newton newton;
   void *kinsol;
-  N_Vector x, x_scale, residual_scale, residual;
-  SUNMatrix matrix;
-  SUNLinearSolver solver;
-  double *jacobian; /* [n][n], row-major, as the caller fills it */
+  N_Vector x_scale, residual_scale, residual;
   const struct eo_nonlinear_problem *problem; /* during a solve */
   int evaluations;
 };
@@ -39,43 +34,27 @@ static int call_jacobian(N_Vector x, N_Vector residual, SUNMatrix matrix, void *
 {
   (void)residual, (void)scratch1, (void)scratch2;
   struct eo_nonlinear *w = user;
-  int n = w->n;
-  memset(w->jacobian, 0, sizeof *w->jacobian * n * n);
-  int code = w->problem->jacobian(w->problem->context, N_VGetArrayPointer(x), w->jacobian);
-  for (int j = 0; j < n && !code; j++) {
-    double *column = SUNDenseMatrix_Column(matrix, j);
-    for (int i = 0; i < n; i++)
-      column[i] = w->jacobian[(size_t)i * n + j];
-  }
+  int code = w->problem->jacobian(w->problem->context, N_VGetArrayPointer(x), eo_dense_newton_clear(&w->newton));
+  if (!code)
+    eo_dense_newton_put(&w->newton, matrix);
   return code;
-}
-
-/* KINSOL would print its complaints; the report says the same. */
-static void keep_quiet(int code, const char *module, const char *function, char *message, void *user)
-{
-  (void)code, (void)module, (void)function, (void)message, (void)user;
 }
 
 static int make_parts(struct eo_nonlinear *w)
 {
-  int n = w->n;
-  if (SUNContext_Create(NULL, &w->context))
+  struct eo_dense_newton *newton = &w->newton;
+  if (eo_dense_newton_init(newton, w->n))
     return -1;
-  w->x = N_VNew_Serial(n, w->context);
-  w->x_scale = N_VNew_Serial(n, w->context);
-  w->residual_scale = N_VNew_Serial(n, w->context);
-  w->residual = N_VNew_Serial(n, w->context);
-  w->matrix = SUNDenseMatrix(n, n, w->context);
-  w->jacobian = malloc(sizeof *w->jacobian * n * n);
-  w->kinsol = KINCreate(w->context);
-  if (!w->x || !w->x_scale || !w->residual_scale || !w->residual || !w->matrix || !w->jacobian || !w->kinsol)
+  w->x_scale = N_VNew_Serial(w->n, newton->context);
+  w->residual_scale = N_VNew_Serial(w->n, newton->context);
+  w->residual = N_VNew_Serial(w->n, newton->context);
+  w->kinsol = KINCreate(newton->context);
+  if (!w->x_scale || !w->residual_scale || !w->residual || !w->kinsol)
     return -1;
-  w->solver = SUNLinSol_Dense(w->x, w->matrix, w->context);
-  if (!w->solver || KINSetErrHandlerFn(w->kinsol, keep_quiet, NULL) || KINInit(w->kinsol, call_residual, w->x) ||
-      KINSetUserData(w->kinsol, w) || KINSetLinearSolver(w->kinsol, w->solver, w->matrix) ||
-      KINSetMaxSetupCalls(w->kinsol, 1))
-    return -1;
-  return 0;
+  return KINSetErrHandlerFn(w->kinsol, eo_dense_newton_quiet, NULL) || KINInit(w->kinsol, call_residual, newton->x) ||
+                 KINSetUserData(w->kinsol, w) || KINSetLinearSolver(w->kinsol, newton->solver, newton->matrix) || KINSetMaxSetupCalls(w->kinsol, 1)
+             ? -1
+             : 0;
 }
 
 enum eo_code eo_nonlinear_new(struct eo_nonlinear **workspace, int n, struct eo_error *error)
@@ -100,17 +79,11 @@ void eo_nonlinear_free(struct eo_nonlinear *w)
     return;
   if (w->kinsol)
     KINFree(&w->kinsol);
-  if (w->solver)
-    SUNLinSolFree(w->solver);
-  if (w->matrix)
-    SUNMatDestroy(w->matrix);
-  N_Vector vector[] = {w->x, w->x_scale, w->residual_scale, w->residual};
+  N_Vector vector[] = {w->x_scale, w->residual_scale, w->residual};
   for (size_t i = 0; i < sizeof vector / sizeof *vector; i++)
     if (vector[i])
       N_VDestroy(vector[i]);
-  if (w->context)
-    SUNContext_Free(&w->context);
-  free(w->jacobian);
+  eo_dense_newton_done(&w->newton);
   free(w);
 }
 
@@ -140,7 +113,7 @@ static enum eo_code apply_options(struct eo_nonlinear *w, const struct eo_nonlin
 
 static double scaled_residual(struct eo_nonlinear *w)
 {
-  if (call_residual(w->x, w->residual, w))
+  if (call_residual(w->newton.x, w->residual, w))
     return INFINITY;
   const double *r = N_VGetArrayPointer(w->residual), *scale = N_VGetArrayPointer(w->residual_scale);
   double largest = 0;
@@ -175,19 +148,19 @@ enum eo_code eo_nonlinear_solve(struct eo_nonlinear *w, const struct eo_nonlinea
   enum eo_code code = apply_options(w, options, error);
   if (code)
     return code;
-  memcpy(N_VGetArrayPointer(w->x), x, sizeof *x * w->n);
+  memcpy(N_VGetArrayPointer(w->newton.x), x, sizeof *x * w->n);
   *report = (struct eo_nonlinear_report){0};
   report->residual = scaled_residual(w);
   int flag = KIN_INITIAL_GUESS_OK;
   if (!(report->residual <= options->residual_tolerance)) {
     long iterations = 0;
-    flag = KINSol(w->kinsol, w->x, KIN_LINESEARCH, w->x_scale, w->residual_scale);
+    flag = KINSol(w->kinsol, w->newton.x, KIN_LINESEARCH, w->x_scale, w->residual_scale);
     KINGetNumNonlinSolvIters(w->kinsol, &iterations);
     report->iterations = (int)iterations;
     report->residual = scaled_residual(w);
   }
   report->outcome = outcome_of(flag, report->residual, options->residual_tolerance);
   report->evaluations = w->evaluations;
-  memcpy(x, N_VGetArrayPointer(w->x), sizeof *x * w->n);
+  memcpy(x, N_VGetArrayPointer(w->newton.x), sizeof *x * w->n);
   return EO_OK;
 }

@@ -1,24 +1,19 @@
 #include "numerics/ode.h"
 
+#include "numerics/dense_newton.h"
+
 #include <cvode/cvode.h>
 #include <math.h>
-#include <nvector/nvector_serial.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sundials/sundials_context.h>
-#include <sunlinsol/sunlinsol_dense.h>
-#include <sunmatrix/sunmatrix_dense.h>
 
 enum { MAX_STEPS = 10000000 };
 
 struct eo_ode {
   int n, begun; /* begun: CVodeInit has been called */
-  SUNContext context;
+  struct eo_dense_newton newton; /* its unknowns: the state */
   void *cvode;
-  N_Vector y, tolerance;
-  SUNMatrix matrix;
-  SUNLinearSolver solver;
-  double *jacobian; /* [n][n], row-major */
+  N_Vector tolerance;
   struct eo_ode_problem problem;
 };
 
@@ -33,36 +28,19 @@ static int call_jacobian(double t, N_Vector y, N_Vector slope, SUNMatrix matrix,
 {
   (void)slope, (void)scratch1, (void)scratch2, (void)scratch3;
   struct eo_ode *w = user;
-  int n = w->n;
-  memset(w->jacobian, 0, sizeof *w->jacobian * n * n);
-  int code = w->problem.jacobian(w->problem.context, t, N_VGetArrayPointer(y), w->jacobian);
-  for (int j = 0; j < n && !code; j++) {
-    double *column = SUNDenseMatrix_Column(matrix, j);
-    for (int i = 0; i < n; i++)
-      column[i] = w->jacobian[(size_t)i * n + j];
-  }
+  int code = w->problem.jacobian(w->problem.context, t, N_VGetArrayPointer(y), eo_dense_newton_clear(&w->newton));
+  if (!code)
+    eo_dense_newton_put(&w->newton, matrix);
   return code;
-}
-
-static void keep_quiet(int code, const char *module, const char *function, char *message, void *user)
-{
-  (void)code, (void)module, (void)function, (void)message, (void)user;
 }
 
 static int make_parts(struct eo_ode *w)
 {
-  int n = w->n;
-  if (SUNContext_Create(NULL, &w->context))
+  if (eo_dense_newton_init(&w->newton, w->n))
     return -1;
-  w->y = N_VNew_Serial(n, w->context);
-  w->tolerance = N_VNew_Serial(n, w->context);
-  w->matrix = SUNDenseMatrix(n, n, w->context);
-  w->jacobian = malloc(sizeof *w->jacobian * n * n);
-  w->cvode = CVodeCreate(CV_ADAMS, w->context);
-  if (!w->y || !w->tolerance || !w->matrix || !w->jacobian || !w->cvode)
-    return -1;
-  w->solver = SUNLinSol_Dense(w->y, w->matrix, w->context);
-  return !w->solver || CVodeSetErrHandlerFn(w->cvode, keep_quiet, NULL) ? -1 : 0;
+  w->tolerance = N_VNew_Serial(w->n, w->newton.context);
+  w->cvode = CVodeCreate(CV_ADAMS, w->newton.context);
+  return !w->tolerance || !w->cvode || CVodeSetErrHandlerFn(w->cvode, eo_dense_newton_quiet, NULL) ? -1 : 0;
 }
 
 enum eo_code eo_ode_new(struct eo_ode **workspace, int n, struct eo_error *error)
@@ -87,17 +65,9 @@ void eo_ode_free(struct eo_ode *w)
     return;
   if (w->cvode)
     CVodeFree(&w->cvode);
-  if (w->solver)
-    SUNLinSolFree(w->solver);
-  if (w->matrix)
-    SUNMatDestroy(w->matrix);
-  if (w->y)
-    N_VDestroy(w->y);
   if (w->tolerance)
     N_VDestroy(w->tolerance);
-  if (w->context)
-    SUNContext_Free(&w->context);
-  free(w->jacobian);
+  eo_dense_newton_done(&w->newton);
   free(w);
 }
 
@@ -105,10 +75,10 @@ void eo_ode_free(struct eo_ode *w)
 static int begin(struct eo_ode *w, double t)
 {
   if (w->begun)
-    return CVodeReInit(w->cvode, t, w->y);
+    return CVodeReInit(w->cvode, t, w->newton.x);
   w->begun = 1;
-  return CVodeInit(w->cvode, call_function, t, w->y) || CVodeSetUserData(w->cvode, w) ||
-         CVodeSetLinearSolver(w->cvode, w->solver, w->matrix) || CVodeSetMaxNumSteps(w->cvode, MAX_STEPS);
+  return CVodeInit(w->cvode, call_function, t, w->newton.x) || CVodeSetUserData(w->cvode, w) ||
+         CVodeSetLinearSolver(w->cvode, w->newton.solver, w->newton.matrix) || CVodeSetMaxNumSteps(w->cvode, MAX_STEPS);
 }
 
 enum eo_code eo_ode_start(struct eo_ode *w, const struct eo_ode_problem *problem, double t, const double *y,
@@ -118,7 +88,7 @@ enum eo_code eo_ode_start(struct eo_ode *w, const struct eo_ode_problem *problem
   for (int i = 0; i < w->n; i++)
     if (!(problem->absolute_tolerance[i] > 0) || !isfinite(y[i]))
       return eo_error_set(error, EO_ERROR_NUMERIC, "", "Tolerances must be positive and start values finite.");
-  memcpy(N_VGetArrayPointer(w->y), y, sizeof *y * w->n);
+  memcpy(N_VGetArrayPointer(w->newton.x), y, sizeof *y * w->n);
   memcpy(N_VGetArrayPointer(w->tolerance), problem->absolute_tolerance, sizeof *y * w->n);
   if (!(problem->relative_tolerance > 0) || begin(w, t) ||
       CVodeSVtolerances(w->cvode, problem->relative_tolerance, w->tolerance) ||
@@ -130,14 +100,14 @@ enum eo_code eo_ode_start(struct eo_ode *w, const struct eo_ode_problem *problem
 enum eo_code eo_ode_advance(struct eo_ode *w, double t, double *y, struct eo_error *error)
 {
   double reached;
-  int flag = CVode(w->cvode, t, w->y, &reached, CV_NORMAL);
+  int flag = CVode(w->cvode, t, w->newton.x, &reached, CV_NORMAL);
   if (flag < 0) {
     char *name = CVodeGetReturnFlagName(flag);
     eo_error_set(error, EO_ERROR_NUMERIC, "", "The time integration stopped at %g of %g: %s.", reached, t, name ? name : "?");
     free(name);
     return EO_ERROR_NUMERIC;
   }
-  memcpy(y, N_VGetArrayPointer(w->y), sizeof *y * w->n);
+  memcpy(y, N_VGetArrayPointer(w->newton.x), sizeof *y * w->n);
   return EO_OK;
 }
 

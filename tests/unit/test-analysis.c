@@ -139,13 +139,14 @@ static void check_writing(void)
   end(s);
 }
 
-/* Two threads, ends that change one at a time, ends that become equal: the same bytes as a new analysis gives on one thread. */
+/* Two threads, ends that change one at a time, ends that become equal, ends that share their load, bodies that bend, impacts in the motion: the
+   same bytes as a new analysis gives on one thread. */
 static void check_threads(void)
 {
   struct subject *s = start("paper-case-b");
   int different = 0;
   s->analysis->threads = 2;
-  for (int i = 0; i < 6; i++) {
+  for (int i = 0; i < 9; i++) {
     struct eo_modification *m = &s->design.modification;
     if (i == 1 || i == 3)
       m->flank[EO_PINION][EO_RIGHT].tip_relief += 1e-6;
@@ -155,8 +156,11 @@ static void check_threads(void)
       s->design.alignment.shaft_angle_in_plane = 0;
     if (i >= 4)
       m->flank[EO_PINION][EO_RIGHT] = m->flank[EO_PINION][EO_LEFT];
-    if (i == 5)
+    if (i >= 5)
       m->flank[EO_PINION][EO_RIGHT].lead_crowning += 1e-6;
+    s->design.alignment.pinion_axial = i == 6 ? EO_AXIAL_FIXED : EO_AXIAL_FLOATING;
+    s->design.shafts.enabled = i == 7;
+    s->design.resolution.impact_in_dynamics = i == 8 ? EO_IMPACT_CONSISTENT : EO_IMPACT_NONE;
     struct subject *fresh = start("paper-case-b");
     fresh->design = s->design;
     struct eo_text here = run(s), there = run(fresh);

@@ -49,9 +49,9 @@ static void check(const char *example, double shaft_angle, double tolerance)
   const struct eo_case_result *c = &analysis->evaluation->load_case[0];
   struct eo_contact_pattern *pattern = malloc(sizeof *pattern);
   double highest = 0, widest = INFINITY, deepest = 0, sum = 0, *share = calloc((size_t)pair->grid->positions, sizeof *share);
-  eo_contact_pattern_init(pattern, &pair->geometry);
+  eo_contact_pattern_init(pattern, pair->grid);
   eo_contact_pattern_load(pattern, pair->grid, &c->end[0].loaded);
-  eo_contact_pattern_unload(pattern, pair->grid, eo_evaluator_field(analysis->evaluator, 0), c->end[0].unloaded);
+  eo_contact_pattern_unload(pattern, eo_evaluator_field(analysis->evaluator, 0), c->end[0].unloaded);
   for (int i = 0; i < EO_PATTERN_ROWS * EO_PATTERN_COLUMNS; i++) {
     highest = fmax(highest, pattern->pressure[i]);
     widest = fmin(widest, pattern->clearance[i]);
