@@ -156,8 +156,8 @@ struct eo_optimization {
   int batch, initial_factor, model_rows, children;
   double exploration, credibility_length, taboo_radius;
   int stall_batches;
-  double stall_gain, polish_share, local_share, local_radius, evolution_step;
-  int evolution_samples, evolution_stall;
+  double stall_gain, polish_share, local_share, local_radius, sampling_step, evolution_step;
+  int sampling_stall, evolution_samples, evolution_stall;
   int front_population, front_verified, front_rounds;
   uint64_t seed;
 };

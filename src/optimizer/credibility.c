@@ -1,14 +1,14 @@
 /* `credibility-ga`: a genetic algorithm whose true evaluations go where a surrogate promises most, doubted as far as it
    has not earned its credibility by leave-one-out (surrogate.h). Every member of its population is a true row.
 
-     epoch: a latin hypercube, then batches until `stall_batches` of them gain nothing: the best joins the taboo list
-     batch: half trust region (local.h) round the best of the epoch; half children of its best rows, bred three times
-            among themselves by score = surrogate + kappa s (1 - R), then the best scores that keep growing distances
-            from all rows and from each other
-     from the second epoch on, what is the best of all when an epoch ends is refined once by an evolution strategy
-            (evolution.h), of whose samples the surrogate chooses, until `evolution_stall` batches gain nothing: objectives
-            made of maxima over load cases, ends and mesh positions lead along kinks, where a smooth surrogate stops
-     the last share of the budget polishes the best row of all: trust region only, then the evolution strategy */
+     epoch: a latin hypercube, then batches until too many of them gain nothing: the best joins the taboo list
+     even epochs sample: an evolution strategy (evolution.h) from the best of the hypercube, of whose many samples the surrogate
+            chooses; the trust region (local.h) round the best has a place in each batch, and twice as many after each gain of its own
+     odd epochs breed: half of a batch trust region; half children of the epoch's best rows, bred three times among themselves by
+            score = surrogate + kappa s (1 - R), then the best scores that keep growing distances from all rows and from each other
+     what is the best of all when an epoch ends is refined once by an evolution strategy of small steps: objectives made of maxima
+            over load cases, ends and mesh positions lead along kinks, where a smooth surrogate stops
+     the last share of the budget polishes the best row of all: trust region only, then refinement */
 #include "optimizer/credibility_model.h"
 #include "optimizer/evolution.h"
 #include "optimizer/internal.h"
@@ -21,6 +21,7 @@
 
 static const double spread[] = {0, 0, 0.003, 0.003, 0.01, 0.03, 0.1, 0.2}; /* distances to keep, over sqrt n */
 enum { SPREADS = 8, ROUNDS = 3 };
+enum search { BREED, SAMPLE, REFINE };
 static const double polish_radius = 0.25; /* of the trust region when polishing starts, in local_radius */
 
 struct credibility {
@@ -29,21 +30,23 @@ struct credibility {
   int stalled;
   double epoch_best;      /* when the epoch last gained */
   bool fresh;             /* the epoch's latin hypercube is still to come */
-  bool evolving;          /* the evolution strategy makes the batches */
+  enum search search;     /* what makes the batches */
+  bool evolving;          /* the evolution strategy stands; SAMPLE: once the hypercube is told */
   bool polishing;         /* the last share of the budget */
+  int local_places;       /* SAMPLE: of the trust region in the next batch */
   int local_count;        /* proposals of the trust region at the head of the pending batch */
   int refined;            /* archive row that the evolution strategy ended with, -1 before */
   int *generation;        /* [batch] archive rows, best first; owned, as all below */
   const double **generation_x; /* [batch] */
   int *taboo;             /* archive rows */
   int taboo_count, taboo_capacity;
-  int parents_max, children;
+  int parents_max, children, samples; /* samples: of the evolution strategy for each batch */
   double *parents, *parent_score;  /* [parents_max][n], [parents_max] */
-  double *pool, *pool_score;       /* [children][n], [children] */
+  double *pool, *pool_score;       /* [pool][n], [pool], pool: the larger of children and samples */
   double *latin;                   /* scratch [initial_factor n] */
   double *chosen;                  /* [batch][n] */
   double *pool_gap;                /* [children] distance to the nearest row */
-  int *index;                      /* scratch [children + population] */
+  int *index;                      /* scratch [pool + population] */
   struct eo_credibility_model model;
   struct eo_local local;
   struct eo_evolution evolution;
@@ -71,6 +74,18 @@ static void stop(struct eo_optimizer *o)
   free(c);
 }
 
+static void plan_epoch(struct eo_optimizer *o)
+{
+  struct credibility *c = o->state;
+  c->fresh = true;
+  c->search = c->epoch % 2 == 0 ? SAMPLE : BREED;
+  c->evolving = false;
+  c->epoch_first = c->epoch ? o->archive.count : 0; /* rows known from elsewhere belong to the first */
+  c->epoch_best = INFINITY;
+  c->stalled = 0;
+  eo_local_restart(&c->local, o->settings.local_radius);
+}
+
 static enum eo_code start(struct eo_optimizer *o, struct eo_error *error)
 {
   const struct eo_optimizer_settings *s = &o->settings;
@@ -78,23 +93,23 @@ static enum eo_code start(struct eo_optimizer *o, struct eo_error *error)
   struct credibility *c = o->state = calloc(1, sizeof *c);
   if (!c)
     return eo_error_memory(error);
-  c->fresh = true;
   c->refined = -1;
-  c->epoch_best = INFINITY;
   c->parents_max = s->population;
   c->children = s->children;
+  c->samples = s->evolution_samples * s->batch;
   const size_t parents = (size_t)c->parents_max, children = (size_t)c->children;
+  const size_t pool = (size_t)(c->children > c->samples ? c->children : c->samples);
   const size_t initial = (size_t)s->initial_factor * n, batch = (size_t)s->batch > initial ? (size_t)s->batch : initial;
   c->parents = malloc(parents * n * sizeof(double));
   c->parent_score = malloc(parents * sizeof(double));
-  c->pool = malloc(children * n * sizeof(double));
-  c->pool_score = malloc(children * sizeof(double));
+  c->pool = malloc(pool * n * sizeof(double));
+  c->pool_score = malloc(pool * sizeof(double));
   c->latin = malloc(initial * sizeof(double));
   c->chosen = malloc(batch * n * sizeof(double));
   c->generation = malloc(batch * sizeof(int));
   c->generation_x = malloc(batch * sizeof *c->generation_x);
   c->pool_gap = malloc(children * sizeof(double));
-  c->index = malloc((children + parents) * sizeof(int));
+  c->index = malloc((pool + parents) * sizeof(int));
   if (!c->parents || !c->parent_score || !c->pool || !c->pool_score || !c->latin || !c->chosen || !c->pool_gap || !c->index || !c->generation || !c->generation_x)
     return eo_error_memory(error);
   enum eo_code code = eo_credibility_model_init(&c->model, s, error);
@@ -102,7 +117,8 @@ static enum eo_code start(struct eo_optimizer *o, struct eo_error *error)
     code = eo_local_init(&c->local, s->variables, error);
   if (code == EO_OK)
     code = eo_evolution_init(&c->evolution, s->variables, error);
-  eo_local_restart(&c->local, o->settings.local_radius);
+  if (code == EO_OK)
+    plan_epoch(o);
   return code == EO_OK ? eo_optimizer_reserve_batch(o, (int)batch, error) : code;
 }
 
@@ -111,10 +127,10 @@ static const double *row_x(const struct eo_optimizer *o, int row)
   return o->archive.x + (size_t)row * o->settings.variables;
 }
 
-/* Polishing and the evolution strategy go for the best row of all; else an epoch sees its own rows only. */
+/* Polishing and refining go for the best row of all; else an epoch sees its own rows only. */
 static bool sees_all(const struct credibility *c)
 {
-  return c->polishing || c->evolving;
+  return c->polishing || c->search == REFINE;
 }
 
 static bool is_taboo(const struct eo_optimizer *o, const double *x)
@@ -255,13 +271,24 @@ static void propose_epoch(struct eo_optimizer *o)
   c->fresh = false;
 }
 
-/* Fills c->chosen with samples of the evolution strategy: those that the surrogate promises most for. Returns how many there are. */
-static int choose_samples(struct eo_optimizer *o, int count)
+static int least_places(const struct eo_optimizer *o)
+{
+  return o->settings.batch > 1 ? 1 : 0;
+}
+
+static void begin_sampling(struct eo_optimizer *o, int from)
 {
   struct credibility *c = o->state;
-  const int n = o->settings.variables, wanted = o->settings.evolution_samples * count;
-  const int samples = wanted < c->children ? wanted : c->children;
-  count = count < samples ? count : samples;
+  c->evolving = true;
+  c->local_places = least_places(o);
+  eo_evolution_restart(&c->evolution, row_x(o, from), o->settings.sampling_step);
+}
+
+/* Fills c->chosen from `first` to `count` with those samples of the evolution strategy that the surrogate promises most for. */
+static void choose_samples(struct eo_optimizer *o, int first, int count)
+{
+  struct credibility *c = o->state;
+  const int n = o->settings.variables, samples = o->settings.evolution_samples * (count - first);
   eo_credibility_model_fit(&c->model, &o->archive, c->evolution.mean);
   for (int i = 0; i < samples; i++) {
     double *x = c->pool + (size_t)i * n;
@@ -269,9 +296,20 @@ static int choose_samples(struct eo_optimizer *o, int count)
     c->pool_score[i] = eo_credibility_predict(&c->model, x);
   }
   rank_some(c, samples);
-  for (int i = 0; i < count; i++)
-    memcpy(c->chosen + (size_t)i * n, c->pool + (size_t)c->index[i] * n, (size_t)n * sizeof(double));
-  return count;
+  for (int i = first; i < count; i++)
+    memcpy(c->chosen + (size_t)i * n, c->pool + (size_t)c->index[i - first] * n, (size_t)n * sizeof(double));
+}
+
+/* Places of the trust region in the next batch. */
+static int local_share(const struct eo_optimizer *o)
+{
+  const struct credibility *c = o->state;
+  const int batch = o->settings.batch;
+  switch (c->search) {
+  case SAMPLE: return c->local_places;
+  case REFINE: return 0;
+  default: return c->polishing ? batch : (int)(o->settings.local_share * batch + 0.5);
+  }
 }
 
 static void propose_children(struct eo_optimizer *o)
@@ -280,19 +318,29 @@ static void propose_children(struct eo_optimizer *o)
   const int parents = gather_parents(o), batch = o->settings.batch;
   if (parents == 0)
     return;
-  const int centre = c->index[0], half = (int)(o->settings.local_share * batch + 0.5);
-  const int share = c->evolving ? 0 : c->polishing ? batch : half;
+  const int centre = c->index[0];
+  if (c->search == SAMPLE && !c->evolving)
+    begin_sampling(o, centre);
+  const int share = local_share(o);
   const int local =
       share > 0 ? eo_local_propose(&c->local, &o->archive, centre, o->settings.seed, c->batch, share, c->chosen) : 0;
   int chosen = local;
   if (c->evolving) {
-    chosen = choose_samples(o, batch);
+    chosen = local + batch - share;
+    choose_samples(o, local, chosen);
   } else if (share < batch) {
     eo_credibility_model_fit(&c->model, &o->archive, row_x(o, centre));
     fill_pool(o, parents);
     chosen = choose(o, local, local + batch - share);
   }
   request_chosen(o, chosen, local);
+}
+
+static void begin_epoch(struct eo_optimizer *o)
+{
+  struct credibility *c = o->state;
+  c->epoch++;
+  plan_epoch(o);
 }
 
 /* Where the latin hypercube is known (an earlier run's rows were imported) children follow at once; nothing new to try
@@ -310,10 +358,8 @@ static enum eo_code propose(struct eo_optimizer *o, struct eo_error *error)
       propose_epoch(o);
     if (o->batch_count == 0)
       propose_children(o);
-    if (o->batch_count == 0) {
-      c->epoch++;
-      c->fresh = true;
-    }
+    if (o->batch_count == 0)
+      begin_epoch(o);
   }
   return code;
 }
@@ -345,18 +391,6 @@ static enum eo_code avoid(struct credibility *c, int row, struct eo_error *error
   return EO_OK;
 }
 
-static void begin_epoch(struct eo_optimizer *o)
-{
-  struct credibility *c = o->state;
-  c->epoch++;
-  c->evolving = false;
-  c->epoch_first = o->archive.count;
-  c->epoch_best = INFINITY;
-  c->stalled = 0;
-  c->fresh = true;
-  eo_local_restart(&c->local, o->settings.local_radius);
-}
-
 /* Counts the batches without gain; returns the best row of the epoch. */
 static int watch_progress(struct eo_optimizer *o)
 {
@@ -370,14 +404,15 @@ static int watch_progress(struct eo_optimizer *o)
   return best;
 }
 
-static void begin_evolution(struct eo_optimizer *o)
+static void begin_refinement(struct eo_optimizer *o)
 {
   struct credibility *c = o->state;
   const int best = eo_optimizer_best(o);
-  c->evolving = best >= 0;
   c->stalled = 0;
   if (best < 0)
     return;
+  c->search = REFINE;
+  c->evolving = true;
   c->epoch_best = o->archive.value[best];
   eo_evolution_restart(&c->evolution, row_x(o, best), o->settings.evolution_step);
 }
@@ -399,31 +434,50 @@ static bool learn_generation(struct eo_optimizer *o)
   return count < 2 || eo_evolution_learn(&c->evolution, c->generation_x, count);
 }
 
+/* An evolution strategy that has the best row of all is left to it. */
 static void begin_polishing(struct eo_optimizer *o)
 {
   struct credibility *c = o->state;
   c->polishing = true;
-  if (c->evolving)
+  if (c->evolving && eo_optimizer_best(o) >= c->epoch_first)
     return;
+  c->search = BREED;
+  c->evolving = false;
   c->stalled = 0;
   c->epoch_best = INFINITY;
   eo_local_restart(&c->local, polish_radius * o->settings.local_radius);
 }
 
-/* What follows a batch that gained nothing for long enough: from the second epoch on the best row of all is refined once by the
-   evolution strategy; then a new epoch. */
+/* Batches without gain that end what makes them. */
+static int patience(const struct eo_optimizer *o)
+{
+  const struct credibility *c = o->state;
+  return c->search == SAMPLE ? o->settings.sampling_stall : c->search == REFINE ? o->settings.evolution_stall : o->settings.stall_batches;
+}
+
+/* What follows a batch that gained nothing for long enough: the best row of all is refined once; then a new epoch. */
 static enum eo_code go_on(struct eo_optimizer *o, int best, struct eo_error *error)
 {
   struct credibility *c = o->state;
   const enum eo_code code = best >= 0 ? avoid(c, best, error) : EO_OK;
   const int best_of_all = eo_optimizer_best(o);
-  if (c->evolving)
+  if (c->search == REFINE)
     c->refined = best_of_all;
-  if (!c->evolving && c->epoch > 0 && best_of_all != c->refined)
-    begin_evolution(o);
+  if (c->search != REFINE && best_of_all >= 0 && best_of_all != c->refined)
+    begin_refinement(o);
   else
     begin_epoch(o);
   return code;
+}
+
+/* More places for the trust region when its point is the gain, fewer when not. */
+static void share_places(struct eo_optimizer *o, int best, bool gained)
+{
+  struct credibility *c = o->state;
+  const int first = o->archive.count - o->batch_count, half = o->settings.batch / 2;
+  const bool local = gained && best >= first && best < first + c->local_count;
+  const int places = local ? 2 * c->local_places : c->local_places / 2;
+  c->local_places = places > half ? half : places < least_places(o) ? least_places(o) : places;
 }
 
 static enum eo_code absorb(struct eo_optimizer *o, struct eo_error *error)
@@ -436,14 +490,16 @@ static enum eo_code absorb(struct eo_optimizer *o, struct eo_error *error)
   if (c->local_count > 0)
     eo_local_learn(&c->local, &o->archive, o->archive.count - o->batch_count, c->local_count);
   c->batch++;
+  const double before = c->epoch_best;
   const int best = watch_progress(o);
-  const bool through = c->evolving && !learn_generation(o);
+  share_places(o, best, best >= 0 && o->archive.value[best] < before);
+  const bool through = c->evolving && !learn_generation(o), stalled = c->stalled >= patience(o);
   if (c->polishing) {
-    if (through || (!c->evolving && c->stalled >= o->settings.stall_batches))
-      begin_evolution(o);
+    if (through || (stalled && c->search != REFINE))
+      begin_refinement(o);
   } else if (eo_optimizer_left(o) <= o->settings.polish_share * o->budget) {
     begin_polishing(o);
-  } else if (through || c->stalled >= (c->evolving ? o->settings.evolution_stall : o->settings.stall_batches)) {
+  } else if (through || stalled) {
     return go_on(o, best, error);
   }
   return EO_OK;

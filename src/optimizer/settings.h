@@ -62,6 +62,8 @@ struct eo_optimizer_settings {
   double polish_share;       /* of the budget, at the end */
   double local_share;        /* of each batch, to the trust region round the best */
   double local_radius;       /* of the trust region at the start of an epoch */
+  double sampling_step;      /* first step of the evolution strategy that makes every second epoch */
+  int sampling_stall;        /* batches without gain that end such an epoch */
   double evolution_step;     /* first step of the evolution strategy that refines the best row */
   int evolution_samples;     /* from which the surrogate chooses each of its points */
   int evolution_stall;       /* batches without gain that end it */
