@@ -21,6 +21,7 @@ engine=${IMAGE_ENGINE-$(command -v docker || command -v podman)}
 compose=${IMAGE_COMPOSE-$engine compose}
 name=easeoff-check-$$
 scratch=$(mktemp -d "${TMPDIR-/tmp}/image.XXXXXX")
+export BUILDAH_FORMAT=docker # for podman, whose own format has no health check
 confined="--read-only --cap-drop ALL --security-opt no-new-privileges"
 
 say() { printf 'image: %s\n' "$*"; }
@@ -167,7 +168,7 @@ check_jobs_stay() {
   { printf '{"kind":"optimize","design":' && sed 's/"true_evaluations":null/"true_evaluations":400/' "$scratch/paper.json" && printf '}'; } >"$scratch/order"
   expect 202 /api/v1/jobs -H 'Content-Type: application/json' --data-binary "@$scratch/order"
   id=$(sed 's/^{"id":\([0-9]*\).*/\1/' "$scratch/answer")
-  job "$id" '"true_evaluations":[1-9]'
+  job "$id" '"progress":{[^}]*"true_evaluations":[1-9]'
   grep -q '"state":"running"' "$scratch/job" || fail "stopped in the middle of a job"
   check_stop "in the middle of a job, it"
   began=$(date +%s%N)
