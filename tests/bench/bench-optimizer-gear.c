@@ -1,7 +1,7 @@
 /* Optimizers on the real objective of the paper's pair, Case A (5 variables, both ends alike) and Case B (10): J after 100,
-   200, 400 and 1000 true evaluations, beside NLopt's and pagmo's when they are there.
+   200, 400 and all of 1000 true evaluations (--budget), beside NLopt's and pagmo's when they are there.
 
-     bench-optimizer-gear [--quick] [--front] [--seeds N] [--case a|b] [--plain] [--coarse] [--algorithm NAME] [--set KEY=NUMBER]... [--cache DIR]
+     bench-optimizer-gear [--quick] [--front] [--seeds N] [--case a|b] [--plain] [--coarse] [--budget N] [--target VALUE] [--algorithm NAME] [--set KEY=NUMBER]... [--cache DIR]
 
    --front: Pareto fronts of the three objectives in those of the unmodified pair. --plain: without tip edge contact, three teeth in the sector, no coupling between neighbours.
    --coarse: a third of the positions, cells and harmonics: an objective of the same kind in a fraction of the time. */
@@ -100,7 +100,7 @@ static enum eo_code prepare_gear(struct gear *gear, bool plain, bool coarse, con
 int main(int argc, char **argv)
 {
   static struct gear gear;
-  struct contest contest = {.seeds = 11};
+  struct contest contest = contest_default();
   struct eo_error error;
   const char *cache = NULL;
   char only = '\0';
@@ -122,7 +122,7 @@ int main(int argc, char **argv)
     return 2;
   }
   const struct contest_problem a = {"gear-a", 5, prepare, &gear}, b = {"gear-b", 10, prepare, &gear};
-  contest_print_head();
+  contest_print_head(&contest);
   if (only != 'b')
     contest_run(&contest, &a);
   if (only != 'a')

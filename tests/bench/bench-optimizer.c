@@ -1,8 +1,8 @@
 /* Optimizers on test problems, beside NLopt's and pagmo's when they are there: medians (quartiles) of the best value found after 100,
-   200, 400 and 1000 true evaluations, and the time per evaluation, the problem's own included. Prints a table; asserts
+   200, 400 and all of 1000 true evaluations (--budget), and the time per evaluation, the problem's own included. Prints a table; asserts
    nothing.
 
-     bench-optimizer [--quick] [--front] [--seeds N] [--variables N] [--problem NAME] [--algorithm NAME] [--set KEY=NUMBER]...
+     bench-optimizer [--quick] [--front] [--seeds N] [--variables N] [--problem NAME] [--budget N] [--target VALUE] [--algorithm NAME] [--set KEY=NUMBER]...
 
    --front: Pareto fronts of DTLZ2 with three objectives. */
 #include "contest.h"
@@ -63,7 +63,7 @@ static void print_table(const struct contest *contest, const char *name, int n)
 
 int main(int argc, char **argv)
 {
-  struct contest contest = {.seeds = 11};
+  struct contest contest = contest_default();
   const char *name = NULL;
   int variables = 0;
   for (int i = 1; i < argc; i++) {
@@ -76,7 +76,7 @@ int main(int argc, char **argv)
       name = argv[++i];
     i += taken > 1;
   }
-  contest_print_head();
+  contest_print_head(&contest);
   if (variables > 0)
     print_table(&contest, name, variables < PROBLEM_VARIABLES ? variables : PROBLEM_VARIABLES);
   for (int n = 5; n <= 10 && variables <= 0; n += 5)

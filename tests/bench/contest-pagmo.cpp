@@ -61,6 +61,6 @@ extern "C" void pagmo_run(struct trace *trace, int algorithm, unsigned populatio
   function.trace = trace;
   pagmo::population individuals{pagmo::problem{function}, population, seed};
   pagmo::algorithm evolution = make(algorithm, seed);
-  while (trace->count < CONTEST_BUDGET)
+  while (trace->count < trace->budget)
     individuals = evolution.evolve(individuals);
 }

@@ -16,16 +16,23 @@
 #include <nlopt.h>
 #endif
 
-static const int marks[CONTEST_MARKS] = {100, 200, 400, 1000};
+static const int early[CONTEST_MARKS - 1] = {100, 200, 400};
+
+static int mark(int budget, int m)
+{
+  return m < CONTEST_MARKS - 1 && early[m] < budget ? early[m] : budget;
+}
 
 double trace_evaluate(struct trace *trace, const double *x)
 {
   const double value = trace->value(trace->context, x);
-  if (trace->count < CONTEST_BUDGET && value < trace->best)
+  if (trace->count < trace->budget && value < trace->best)
     trace->best = value;
   trace->count++;
+  if (!trace->reached && trace->best <= trace->target)
+    trace->reached = trace->count;
   for (int m = 0; m < CONTEST_MARKS; m++)
-    if (trace->count <= marks[m])
+    if (trace->count <= mark(trace->budget, m))
       trace->at[m] = trace->best;
   return value;
 }
@@ -33,7 +40,7 @@ double trace_evaluate(struct trace *trace, const double *x)
 void trace_evaluate_front(struct trace *trace, const double *x, double *f)
 {
   trace->objectives(trace->context, x, f);
-  if (trace->count < CONTEST_BUDGET)
+  if (trace->count < trace->budget)
     memcpy(trace->front[trace->count], f, sizeof *trace->front);
   trace->count++;
 }
@@ -41,9 +48,9 @@ void trace_evaluate_front(struct trace *trace, const double *x, double *f)
 static void measure_front(struct trace *trace)
 {
   static const double reference[CONTEST_OBJECTIVES] = {1, 1, 1};
-  static double point[CONTEST_BUDGET][CONTEST_OBJECTIVES];
+  static double point[CONTEST_BUDGET_MAX][CONTEST_OBJECTIVES];
   for (int m = 0; m < CONTEST_MARKS; m++) {
-    const int count = trace->count < marks[m] ? trace->count : marks[m];
+    const int last = mark(trace->budget, m), count = trace->count < last ? trace->count : last;
     memcpy(point, trace->front, sizeof *point * (size_t)count);
     trace->at[m] = 1 - eo_pareto_hypervolume(*point, count, CONTEST_OBJECTIVES, reference);
   }
@@ -70,7 +77,7 @@ static void run_own(const struct contest *contest, struct trace *trace, int algo
   double f[CONTEST_OBJECTIVES];
   eo_optimizer_defaults(&settings, algorithm, trace->n);
   settings.seed = seed;
-  settings.true_evaluations = CONTEST_BUDGET;
+  settings.true_evaluations = trace->budget;
   settings.fitness_form = EO_FITNESS_NEGATIVE;
   settings.objectives = trace->front ? CONTEST_OBJECTIVES : 1;
   apply_changes(contest, &settings);
@@ -107,12 +114,12 @@ static void run_nlopt(const struct contest *contest, struct trace *trace, int al
   double x[CONTEST_VARIABLES], value;
   (void)contest;
   nlopt_srand((unsigned long)seed + 1);
-  for (int start = 0; trace->count < CONTEST_BUDGET; start++) {
+  for (int start = 0; trace->count < trace->budget; start++) {
     nlopt_opt opt = nlopt_create((nlopt_algorithm)algorithm, (unsigned)trace->n);
     nlopt_set_min_objective(opt, evaluate_nlopt, trace);
     nlopt_set_lower_bounds1(opt, 0);
     nlopt_set_upper_bounds1(opt, 1);
-    nlopt_set_maxeval(opt, CONTEST_BUDGET - trace->count);
+    nlopt_set_maxeval(opt, trace->budget - trace->count);
     nlopt_set_xtol_rel(opt, 1e-9);
     nlopt_set_initial_step1(opt, 0.2);
     for (int k = 0; k < trace->n; k++)
@@ -175,12 +182,12 @@ static double cpu_seconds(void)
 
 static void print_line(const struct contest *contest, const struct contest_problem *problem, const struct contestant *c)
 {
-  static double front[CONTEST_BUDGET][CONTEST_OBJECTIVES];
-  double at[CONTEST_MARKS][CONTEST_SEEDS_MAX], spent = cpu_seconds();
+  static double front[CONTEST_BUDGET_MAX][CONTEST_OBJECTIVES];
+  double at[CONTEST_MARKS][CONTEST_SEEDS_MAX], reached[CONTEST_SEEDS_MAX], spent = cpu_seconds();
   const int seeds = contest->seeds;
   long evaluations = 0;
   for (int s = 0; s < seeds; s++) {
-    struct trace trace = {.n = problem->n, .best = INFINITY, .front = c->front ? front : NULL};
+    struct trace trace = {.n = problem->n, .budget = contest->budget, .best = INFINITY, .target = contest->target, .front = c->front ? front : NULL};
     problem->prepare(&trace, problem, (uint64_t)s + 1);
     c->run(contest, &trace, c->algorithm, (uint64_t)s + 1);
     evaluations += trace.count;
@@ -188,6 +195,7 @@ static void print_line(const struct contest *contest, const struct contest_probl
       measure_front(&trace);
     for (int m = 0; m < CONTEST_MARKS; m++)
       at[m][s] = trace.at[m];
+    reached[s] = trace.reached ? (double)trace.reached : (double)INFINITY;
   }
   spent = cpu_seconds() - spent;
   printf("%-13s %2d  %-15s", problem->name, problem->n, c->name);
@@ -195,23 +203,33 @@ static void print_line(const struct contest *contest, const struct contest_probl
     qsort(at[m], (size_t)seeds, sizeof(double), compare_doubles);
     printf("  %9.3e (%7.1e %7.1e)", at[m][seeds / 2], at[m][seeds / 4], at[m][seeds - 1 - seeds / 4]);
   }
+  qsort(reached, (size_t)seeds, sizeof(double), compare_doubles);
+  if (isfinite(contest->target))
+    printf("  %5.0f (%5.0f %5.0f)", reached[seeds / 2], reached[seeds / 4], reached[seeds - 1 - seeds / 4]);
   printf("  %6.0f\n", evaluations ? 1e6 * spent / (double)evaluations : 0);
   fflush(stdout);
 }
 
-void contest_print_head(void)
+void contest_print_head(const struct contest *contest)
 {
   printf("%-13s %2s  %-15s", "problem", "n", "algorithm");
   for (int m = 0; m < CONTEST_MARKS; m++)
-    printf("  %9d (quartiles)      ", marks[m]);
+    printf("  %9d (quartiles)      ", mark(contest->budget, m));
+  if (isfinite(contest->target))
+    printf("  to %-15.6g", contest->target);
   printf("  us/evaluation\n");
 }
 
 void contest_run(const struct contest *contest, const struct contest_problem *problem)
 {
   for (size_t c = 0; c < sizeof contestants / sizeof *contestants; c++)
-    if (contestants[c].front == contest->front && (!contest->algorithm || strstr(contestants[c].name, contest->algorithm)))
+    if (contestants[c].front == contest->front && (!contest->algorithm || strncmp(contestants[c].name, contest->algorithm, strlen(contest->algorithm)) == 0))
       print_line(contest, problem, &contestants[c]);
+}
+
+struct contest contest_default(void)
+{
+  return (struct contest){.seeds = 11, .budget = CONTEST_BUDGET, .target = -INFINITY};
 }
 
 int contest_option(struct contest *contest, int argc, char **argv, int i)
@@ -229,6 +247,11 @@ int contest_option(struct contest *contest, int argc, char **argv, int i)
   if (strcmp(argv[i], "--seeds") == 0) {
     const int seeds = atoi(argv[i + 1]);
     contest->seeds = seeds < 1 ? 1 : seeds > CONTEST_SEEDS_MAX ? CONTEST_SEEDS_MAX : seeds;
+  } else if (strcmp(argv[i], "--budget") == 0) {
+    const int budget = atoi(argv[i + 1]);
+    contest->budget = budget < 1 ? 1 : budget > CONTEST_BUDGET_MAX ? CONTEST_BUDGET_MAX : budget;
+  } else if (strcmp(argv[i], "--target") == 0) {
+    contest->target = atof(argv[i + 1]);
   } else if (strcmp(argv[i], "--algorithm") == 0) {
     contest->algorithm = argv[i + 1];
   } else if (strcmp(argv[i], "--set") == 0 && contest->changes < 32) {

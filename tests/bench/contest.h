@@ -5,7 +5,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-enum { CONTEST_BUDGET = 1000, CONTEST_MARKS = 4, CONTEST_SEEDS_MAX = 101, CONTEST_VARIABLES = 20, CONTEST_OBJECTIVES = 3 };
+enum { CONTEST_BUDGET = 1000, CONTEST_BUDGET_MAX = 10000, CONTEST_MARKS = 4, CONTEST_SEEDS_MAX = 101, CONTEST_VARIABLES = 20, CONTEST_OBJECTIVES = 3 };
 
 /* Everything an optimizer asks for goes through here. What counts is least: the best value, or, of a front, the share of the
    unit box of objectives that nothing dominates (1 less the hypervolume). */
@@ -14,9 +14,11 @@ struct trace {
   double (*value)(void *context, const double *x); /* infinite when the evaluation fails */
   void (*objectives)(void *context, const double *x, double *f); /* [CONTEST_OBJECTIVES], likewise */
   void *context;
-  int count;
-  double best, at[CONTEST_MARKS];
-  double (*front)[CONTEST_OBJECTIVES]; /* [CONTEST_BUDGET] of all that was evaluated; NULL: one objective */
+  int budget, count;
+  double best, at[CONTEST_MARKS]; /* at[]: after 100, 200, 400 evaluations and all of the budget */
+  double target;
+  int reached;                    /* evaluations until the best value was at most the target; 0: never */
+  double (*front)[CONTEST_OBJECTIVES]; /* [CONTEST_BUDGET_MAX] of all that was evaluated; NULL: one objective */
 };
 
 double trace_evaluate(struct trace *trace, const double *x);
@@ -28,16 +30,22 @@ void pagmo_run(struct trace *trace, int algorithm, unsigned population, unsigned
 
 struct contest {
   int seeds;
-  const char *algorithm;   /* part of the name; NULL: all */
+  int budget;              /* true evaluations of each run */
+  double target;           /* value whose first reaching is counted; -INFINITY: none */
+  const char *algorithm;   /* how the names begin; NULL: all */
   const char *change[32];  /* KEY=NUMBER: parameters of our own other than the defaults */
   int changes;
   bool front;              /* Pareto fronts instead of one value */
 };
 
-/* Understands --seeds N, --algorithm NAME, --set KEY=NUMBER, --front and --quick at argv[i]; returns how many words it took, 0: none. */
+/* 11 seeds, 1000 evaluations, every algorithm. */
+struct contest contest_default(void);
+
+/* Understands --seeds N, --budget N, --target VALUE, --algorithm NAME, --set KEY=NUMBER, --front and --quick at argv[i]; returns how many
+   words it took, 0: none. */
 int contest_option(struct contest *contest, int argc, char **argv, int i);
 
-void contest_print_head(void);
+void contest_print_head(const struct contest *contest);
 
 /* One line per optimizer. prepare sets trace->value or objectives, and context, for the instance of a seed. */
 struct contest_problem {
