@@ -177,4 +177,5 @@ const struct eo_command eo_command_serve = {
     "$EASEOFF_TOKEN. --allow-anyone does without. --host names the server as clients call it, when that is neither localhost nor a\n"
     "plain address and there is no token.\n\n"
     "The page's files are read from --web DIR, else $EASEOFF_WEB, else where they were installed.\n\n" EO_APP_HISTORY_HELP EO_APP_DATA_HELP
-    "On SIGTERM and Ctrl-C running jobs are parked; they go on when the server starts again.\n", run};
+    "A service manager that gives $NOTIFY_SOCKET hears when requests are answered. On SIGTERM and Ctrl-C running jobs are parked; they go on\n"
+    "when the server starts again.\n", run};
