@@ -1,6 +1,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/prctl.h>
 #include <unistd.h>
 
 #include "app/app.h"
@@ -48,6 +49,7 @@ static void start_without_library_threads(char **argv)
 int main(int argc, char **argv)
 {
   start_without_library_threads(argv);
+  prctl(PR_SET_NAME, "easeoff"); /* the kernel has it from the path it started: "exe" */
   eo_threads_limit();
   const char *name = argc > 1 ? argv[1] : "";
   for (int i = 0; i < COMMANDS; i++)

@@ -1,8 +1,11 @@
 #include <signal.h>
+#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/socket.h>
 #include <sys/stat.h>
+#include <sys/un.h>
 #include <unistd.h>
 
 #include "app/app.h"
@@ -74,11 +77,33 @@ static void block_signals(sigset_t *signals)
   signal(SIGPIPE, SIG_IGN);
 }
 
+/* Tells a service manager that waits for it that requests are answered (sd_notify(3): a datagram to $NOTIFY_SOCKET); without one, or when
+   it does not listen, nothing is lost. */
+static void tell_manager(void)
+{
+  static const char ready[] = "READY=1";
+  const char *path = getenv("NOTIFY_SOCKET");
+  struct sockaddr_un address = {.sun_family = AF_UNIX};
+  size_t length = path ? strlen(path) : 0;
+  if (length < 2 || length >= sizeof address.sun_path || (path[0] != '/' && path[0] != '@'))
+    return;
+  memcpy(address.sun_path, path, length);
+  if (path[0] == '@')
+    address.sun_path[0] = '\0'; /* no file: a name of the kernel's */
+  int manager = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  if (manager < 0)
+    return;
+  sendto(manager, ready, sizeof ready - 1, MSG_NOSIGNAL, (struct sockaddr *)&address,
+         (socklen_t)(offsetof(struct sockaddr_un, sun_path) + length));
+  close(manager);
+}
+
 static void serve_until_told(struct eo_http *http, struct eo_service *service, const sigset_t *signals)
 {
   int signal;
   printf("%s: %s\n", PACKAGE_NAME, eo_http_url(http));
   fflush(stdout);
+  tell_manager();
   sigwait(signals, &signal);
   eo_http_quiesce(http);
   eo_service_stop(service);
@@ -152,4 +177,5 @@ const struct eo_command eo_command_serve = {
     "$EASEOFF_TOKEN. --allow-anyone does without. --host names the server as clients call it, when that is neither localhost nor a\n"
     "plain address and there is no token.\n\n"
     "The page's files are read from --web DIR, else $EASEOFF_WEB, else where they were installed.\n\n" EO_APP_HISTORY_HELP EO_APP_DATA_HELP
-    "On SIGTERM and Ctrl-C running jobs are parked; they go on when the server starts again.\n", run};
+    "A service manager that gives $NOTIFY_SOCKET hears when requests are answered. On SIGTERM and Ctrl-C running jobs are parked; they go on\n"
+    "when the server starts again.\n", run};

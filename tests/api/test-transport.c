@@ -3,6 +3,8 @@
 #include "tap.h"
 
 #include <pthread.h>
+#include <stddef.h>
+#include <sys/un.h>
 
 static char *coarse;
 
@@ -295,6 +297,37 @@ static void test_stop_while_waiting(void)
   json_decref(document);
 }
 
+/* What systemd does for a unit of Type=notify, with a socket that is a file and with one that is a name alone. */
+static void test_manager(const char *path)
+{
+  struct sockaddr_un address = {.sun_family = AF_UNIX};
+  struct timeval limit = {.tv_sec = 20};
+  char message[100] = "";
+  size_t length = strlen(path);
+  memcpy(address.sun_path, path, length);
+  if (path[0] == '@')
+    address.sun_path[0] = '\0';
+  int manager = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  setsockopt(manager, SOL_SOCKET, SO_RCVTIMEO, &limit, sizeof limit);
+  bool bound = bind(manager, (struct sockaddr *)&address, (socklen_t)(offsetof(struct sockaddr_un, sun_path) + length)) == 0;
+  setenv("NOTIFY_SOCKET", path, 1);
+  bool started = start_server("--quiet");
+  unsetenv("NOTIFY_SOCKET");
+  ssize_t size = recv(manager, message, sizeof message - 1, 0);
+  ok(bound && started && size > 0 && strcmp(message, "READY=1") == 0 && is_alive(), "a service manager hears that the server is ready: %s", message);
+  ok(stop_server(SIGTERM) == 0, "and stops it");
+  close(manager);
+}
+
+static void test_managers(void)
+{
+  char path[100]; /* the kernel takes no longer one */
+  if (snprintf(path, sizeof path, "%s/manager", server.folder) < (int)sizeof path)
+    test_manager(path);
+  snprintf(path, sizeof path, "@easeoff-test-%d", (int)getpid());
+  test_manager(path);
+}
+
 int main(void)
 {
   signal(SIGPIPE, SIG_IGN);
@@ -317,6 +350,7 @@ int main(void)
   test_streams_and_stop();
   ok(start_server("--quiet", "--threads", "2"), "again, with somebody who waits");
   test_stop_while_waiting();
+  test_managers();
   remove_data_folder();
   free(coarse);
   return tap_done();
