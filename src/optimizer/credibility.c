@@ -9,8 +9,7 @@
      what is the best of all when an epoch ends is refined once by an evolution strategy of small steps: objectives made of maxima
             over load cases, ends and mesh positions lead along kinks, where a smooth surrogate stops
      the last share of the budget polishes the best row of all: trust region only, then refinement */
-#include "optimizer/credibility_model.h"
-#include "optimizer/evolution.h"
+#include "optimizer/credibility_pool.h"
 #include "optimizer/internal.h"
 #include "optimizer/local.h"
 #include "optimizer/operators.h"
@@ -19,8 +18,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double spread[] = {0, 0, 0.003, 0.003, 0.01, 0.03, 0.1, 0.2}; /* distances to keep, over sqrt n */
-enum { SPREADS = 8, ROUNDS = 3 };
 enum search { BREED, SAMPLE, REFINE };
 static const double polish_radius = 0.25; /* of the trust region when polishing starts, in local_radius */
 
@@ -40,14 +37,11 @@ struct credibility {
   const double **generation_x; /* [batch] */
   int *taboo;             /* archive rows */
   int taboo_count, taboo_capacity;
-  int parents_max, children, samples; /* samples: of the evolution strategy for each batch */
-  double *parents, *parent_score;  /* [parents_max][n], [parents_max] */
-  double *pool, *pool_score;       /* [pool][n], [pool], pool: the larger of children and samples */
-  double *latin;                   /* scratch [initial_factor n] */
-  double *chosen;                  /* [batch][n] */
-  double *pool_gap;                /* [children] distance to the nearest row */
-  int *index;                      /* scratch [pool + population] */
+  int *parent;            /* [population] archive rows, best first */
+  double *latin;          /* scratch [initial_factor n] */
+  double *chosen;         /* [batch][n] */
   struct eo_credibility_model model;
+  struct eo_credibility_pool pool;
   struct eo_local local;
   struct eo_evolution evolution;
 };
@@ -60,15 +54,11 @@ static void stop(struct eo_optimizer *o)
   free(c->generation);
   free(c->generation_x);
   free(c->taboo);
-  free(c->parents);
-  free(c->parent_score);
-  free(c->pool);
-  free(c->pool_score);
+  free(c->parent);
   free(c->latin);
   free(c->chosen);
-  free(c->pool_gap);
-  free(c->index);
   eo_credibility_model_done(&c->model);
+  eo_credibility_pool_done(&c->pool);
   eo_local_done(&c->local);
   eo_evolution_done(&c->evolution);
   free(c);
@@ -94,25 +84,17 @@ static enum eo_code start(struct eo_optimizer *o, struct eo_error *error)
   if (!c)
     return eo_error_memory(error);
   c->refined = -1;
-  c->parents_max = s->population;
-  c->children = s->children;
-  c->samples = s->evolution_samples * s->batch;
-  const size_t parents = (size_t)c->parents_max, children = (size_t)c->children;
-  const size_t pool = (size_t)(c->children > c->samples ? c->children : c->samples);
   const size_t initial = (size_t)s->initial_factor * n, batch = (size_t)s->batch > initial ? (size_t)s->batch : initial;
-  c->parents = malloc(parents * n * sizeof(double));
-  c->parent_score = malloc(parents * sizeof(double));
-  c->pool = malloc(pool * n * sizeof(double));
-  c->pool_score = malloc(pool * sizeof(double));
   c->latin = malloc(initial * sizeof(double));
   c->chosen = malloc(batch * n * sizeof(double));
   c->generation = malloc(batch * sizeof(int));
   c->generation_x = malloc(batch * sizeof *c->generation_x);
-  c->pool_gap = malloc(children * sizeof(double));
-  c->index = malloc((pool + parents) * sizeof(int));
-  if (!c->parents || !c->parent_score || !c->pool || !c->pool_score || !c->latin || !c->chosen || !c->pool_gap || !c->index || !c->generation || !c->generation_x)
+  c->parent = malloc((size_t)s->population * sizeof(int));
+  if (!c->latin || !c->chosen || !c->generation || !c->generation_x || !c->parent)
     return eo_error_memory(error);
   enum eo_code code = eo_credibility_model_init(&c->model, s, error);
+  if (code == EO_OK)
+    code = eo_credibility_pool_init(&c->pool, s, error);
   if (code == EO_OK)
     code = eo_local_init(&c->local, s->variables, error);
   if (code == EO_OK)
@@ -144,109 +126,23 @@ static bool is_taboo(const struct eo_optimizer *o, const double *x)
   return false;
 }
 
-/* The best rows that may be parents, best first. */
+/* The best rows that may be parents, best first, into c->parent. */
 static int gather_parents(struct eo_optimizer *o)
 {
   struct credibility *c = o->state;
-  const int n = o->settings.variables;
-  int count = 0, *index = c->index;
+  const int most = o->settings.population;
+  int count = 0, *parent = c->parent;
   for (int row = sees_all(c) ? 0 : c->epoch_first; row < o->archive.count; row++) {
     const double value = o->archive.value[row];
     if (eo_archive_failed(&o->archive, row) || is_taboo(o, row_x(o, row)) ||
-        (count == c->parents_max && value >= o->archive.value[index[count - 1]]))
+        (count == most && value >= o->archive.value[parent[count - 1]]))
       continue;
-    int j = count < c->parents_max ? count++ : count - 1;
-    for (; j > 0 && o->archive.value[index[j - 1]] > value; j--)
-      index[j] = index[j - 1];
-    index[j] = row;
-  }
-  for (int i = 0; i < count; i++) {
-    memcpy(c->parents + (size_t)i * n, row_x(o, index[i]), (size_t)n * sizeof(double));
-    c->parent_score[i] = -o->archive.value[index[i]];
+    int j = count < most ? count++ : count - 1;
+    for (; j > 0 && o->archive.value[parent[j - 1]] > value; j--)
+      parent[j] = parent[j - 1];
+    parent[j] = row;
   }
   return count;
-}
-
-static void breed(struct eo_optimizer *o, int parents, int round)
-{
-  struct credibility *c = o->state;
-  eo_breed(&o->settings, c->parents, c->parent_score, parents, ROUNDS * c->batch + round, 0, c->pool, c->children);
-  for (int i = 0; i < c->children; i++)
-    c->pool_score[i] = eo_credibility_score(&c->model, c->pool + (size_t)i * o->settings.variables);
-}
-
-/* The first of the pool by falling score into c->index. */
-static void rank_some(struct credibility *c, int count)
-{
-  for (int i = 0; i < count; i++) {
-    int j = i;
-    for (; j > 0 && c->pool_score[c->index[j - 1]] < c->pool_score[i]; j--)
-      c->index[j] = c->index[j - 1];
-    c->index[j] = i;
-  }
-}
-
-static void rank_pool(struct credibility *c)
-{
-  rank_some(c, c->children);
-}
-
-static int select_parents(struct eo_optimizer *o)
-{
-  struct credibility *c = o->state;
-  const int n = o->settings.variables, count = c->children < c->parents_max ? c->children : c->parents_max;
-  for (int i = 0; i < count; i++) {
-    memcpy(c->parents + (size_t)i * n, c->pool + (size_t)c->index[i] * n, (size_t)n * sizeof(double));
-    c->parent_score[i] = c->pool_score[c->index[i]];
-  }
-  return count;
-}
-
-static void fill_pool(struct eo_optimizer *o, int parents)
-{
-  struct credibility *c = o->state;
-  for (int round = 0; round < ROUNDS; round++) {
-    breed(o, parents, round);
-    rank_pool(c);
-    if (round + 1 < ROUNDS)
-      parents = select_parents(o);
-  }
-}
-
-static double nearest(const double *points, int count, const double *x, int n)
-{
-  double least = INFINITY;
-  for (int j = 0; j < count; j++) {
-    double sum = 0;
-    for (int k = 0; k < n; k++)
-      sum += (points[(size_t)j * n + k] - x[k]) * (points[(size_t)j * n + k] - x[k]);
-    least = sum < least ? sum : least;
-  }
-  return sqrt(least);
-}
-
-/* Fills c->chosen from `first` to `count` with the best of the pool that keep their distance; a distance that nobody keeps
-   leaves its place free. Returns how many there are. */
-static int choose(struct eo_optimizer *o, int first, int count)
-{
-  struct credibility *c = o->state;
-  const int n = o->settings.variables, places = count - first;
-  int chosen = first;
-  for (int i = 0; i < c->children; i++) {
-    const double *x = c->pool + (size_t)i * n;
-    c->pool_gap[i] = is_taboo(o, x) ? -1 : nearest(o->archive.x, o->archive.count, x, n);
-  }
-  for (int place = 0; place < places; place++) {
-    const double apart = sqrt(n) * spread[place * SPREADS / places];
-    for (int i = 0; i < c->children; i++) {
-      const double *x = c->pool + (size_t)c->index[i] * n;
-      if (c->pool_gap[c->index[i]] <= apart || nearest(c->chosen, chosen, x, n) <= apart)
-        continue;
-      memcpy(c->chosen + (size_t)chosen++ * n, x, (size_t)n * sizeof(double));
-      break;
-    }
-  }
-  return chosen;
 }
 
 /* Asks for c->chosen, the first `local` of which come from the trust region. */
@@ -284,20 +180,25 @@ static void begin_sampling(struct eo_optimizer *o, int from)
   eo_evolution_restart(&c->evolution, row_x(o, from), o->settings.sampling_step);
 }
 
-/* Fills c->chosen from `first` to `count` with those samples of the evolution strategy that the surrogate promises most for. */
+/* Both fill c->chosen from `first` to `count`; the second may leave places free. */
 static void choose_samples(struct eo_optimizer *o, int first, int count)
 {
   struct credibility *c = o->state;
-  const int n = o->settings.variables, samples = o->settings.evolution_samples * (count - first);
+  const size_t n = (size_t)o->settings.variables;
   eo_credibility_model_fit(&c->model, &o->archive, c->evolution.mean);
-  for (int i = 0; i < samples; i++) {
-    double *x = c->pool + (size_t)i * n;
-    eo_evolution_sample(&c->evolution, eo_random_at(o->settings.seed, EO_STREAM_EVOLUTION, (uint64_t)c->batch, (uint64_t)i), x);
-    c->pool_score[i] = eo_credibility_predict(&c->model, x);
-  }
-  rank_some(c, samples);
+  eo_credibility_pool_sample(&c->pool, &c->model, &c->evolution, o->settings.evolution_samples * (count - first), c->batch);
   for (int i = first; i < count; i++)
-    memcpy(c->chosen + (size_t)i * n, c->pool + (size_t)c->index[i - first] * n, (size_t)n * sizeof(double));
+    memcpy(c->chosen + (size_t)i * n, eo_credibility_pool_at(&c->pool, i - first), n * sizeof(double));
+}
+
+static int choose_children(struct eo_optimizer *o, int parents, int first, int count)
+{
+  struct credibility *c = o->state;
+  eo_credibility_model_fit(&c->model, &o->archive, row_x(o, c->parent[0]));
+  eo_credibility_pool_breed(&c->pool, &c->model, &o->archive, c->parent, parents, c->batch);
+  for (int i = 0; i < c->pool.count; i++)
+    c->pool.barred[i] = is_taboo(o, c->pool.x + (size_t)i * o->settings.variables);
+  return eo_credibility_pool_spread(&c->pool, &o->archive, c->chosen, first, count);
 }
 
 /* Places of the trust region in the next batch. */
@@ -312,27 +213,22 @@ static int local_share(const struct eo_optimizer *o)
   }
 }
 
-static void propose_children(struct eo_optimizer *o)
+static void propose_batch(struct eo_optimizer *o)
 {
   struct credibility *c = o->state;
   const int parents = gather_parents(o), batch = o->settings.batch;
   if (parents == 0)
     return;
-  const int centre = c->index[0];
   if (c->search == SAMPLE && !c->evolving)
-    begin_sampling(o, centre);
+    begin_sampling(o, c->parent[0]);
   const int share = local_share(o);
   const int local =
-      share > 0 ? eo_local_propose(&c->local, &o->archive, centre, o->settings.seed, c->batch, share, c->chosen) : 0;
-  int chosen = local;
-  if (c->evolving) {
-    chosen = local + batch - share;
+      share > 0 ? eo_local_propose(&c->local, &o->archive, c->parent[0], o->settings.seed, c->batch, share, c->chosen) : 0;
+  int chosen = local + batch - share;
+  if (c->evolving)
     choose_samples(o, local, chosen);
-  } else if (share < batch) {
-    eo_credibility_model_fit(&c->model, &o->archive, row_x(o, centre));
-    fill_pool(o, parents);
-    chosen = choose(o, local, local + batch - share);
-  }
+  else if (share < batch)
+    chosen = choose_children(o, parents, local, chosen);
   request_chosen(o, chosen, local);
 }
 
@@ -357,7 +253,7 @@ static enum eo_code propose(struct eo_optimizer *o, struct eo_error *error)
     if (c->fresh)
       propose_epoch(o);
     if (o->batch_count == 0)
-      propose_children(o);
+      propose_batch(o);
     if (o->batch_count == 0)
       begin_epoch(o);
   }
@@ -417,11 +313,12 @@ static void begin_refinement(struct eo_optimizer *o)
   eo_evolution_restart(&c->evolution, row_x(o, best), o->settings.evolution_step);
 }
 
-/* False when the strategy has come to its end. */
+/* From its own samples: the best point of the trust region, led elsewhere by other means, would draw it in too soon. False when the strategy
+   has come to its end. */
 static bool learn_generation(struct eo_optimizer *o)
 {
   struct credibility *c = o->state;
-  const int first = o->archive.count - o->batch_count, count = o->batch_count;
+  const int count = o->batch_count - c->local_count, first = o->archive.count - count;
   for (int i = 0; i < count; i++) {
     const double value = o->archive.value[first + i];
     int j = i;
