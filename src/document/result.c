@@ -4,7 +4,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/parallel.h"
 #include "document/geometry_table.h"
 #include "document/result_parts.h"
 
@@ -123,9 +122,6 @@ json_t *eo_result_position(const struct eo_result_source *source)
   return eo_result_column(source->positions, source->scratch, 1 / source->pair->geometry.transverse_base_pitch, NULL, EO_DIGITS_CURVE);
 }
 
-/* The two halves of a load case, about as long to write. */
-enum { HALVES = 2 };
-
 static const struct eo_outline_row contact_rows[] = {
     EO_KEY("torque_Nm", "number", "on the pinion shaft, both ends together", .unit = &eo_unit_Nm),
     EO_KEY("speed_rpm", "number", "of the pinion", .unit = &eo_unit_rpm),
@@ -150,7 +146,7 @@ static const struct eo_outline consequence_half = EO_OUTLINE(NULL, consequence_r
 static const struct eo_outline_row case_rows[] = {{.outline = &contact_half}, {.outline = &consequence_half}};
 static const struct eo_outline case_outline = EO_OUTLINE("LoadCaseResult", case_rows);
 
-static json_t *encode_contact(struct eo_result_source *source, int k)
+json_t *eo_result_case_contact(struct eo_result_source *source, int k)
 {
   const struct eo_case_result *c = &source->evaluation->load_case[k];
   struct eo_result_object o = eo_result_open_as(&contact_half);
@@ -166,7 +162,7 @@ static json_t *encode_contact(struct eo_result_source *source, int k)
   return eo_result_close(&o);
 }
 
-static json_t *encode_consequences(struct eo_result_source *source, int k)
+json_t *eo_result_case_consequences(struct eo_result_source *source, int k)
 {
   const struct eo_case_result *c = &source->evaluation->load_case[k];
   struct eo_result_object o = eo_result_open_as(&consequence_half);
@@ -191,7 +187,7 @@ static json_t *unite(json_t *first, json_t *second)
 
 static json_t *encode_case(struct eo_result_source *source, int k)
 {
-  return unite(encode_contact(source, k), encode_consequences(source, k));
+  return unite(eo_result_case_contact(source, k), eo_result_case_consequences(source, k));
 }
 
 static json_t *encode_cases(struct eo_result_source *source)
@@ -346,8 +342,7 @@ static void put_identity(struct eo_result_object *o, const struct eo_design *des
   eo_result_put(o, "resolution", eo_table_encode(&eo_resolution_table, &design->resolution));
 }
 
-/* What stands before the load cases, and what stands behind them. */
-static json_t *encode_head(struct eo_result_source *source)
+json_t *eo_result_head(struct eo_result_source *source)
 {
   struct eo_result_object o = eo_result_open_as(&eo_result_outline);
   put_identity(&o, source->design);
@@ -357,7 +352,7 @@ static json_t *encode_head(struct eo_result_source *source)
   return eo_result_close_part(&o);
 }
 
-static json_t *encode_tail(const struct eo_result_source *source, const struct eo_warnings *warnings)
+json_t *eo_result_tail(const struct eo_result_source *source, const struct eo_warnings *warnings)
 {
   const struct eo_dynamics_modes *modes = &source->evaluation->modes;
   bool have_modes = source->analysis->want & EO_WANT_CURVES;
@@ -373,14 +368,13 @@ static json_t *encode_tail(const struct eo_result_source *source, const struct e
 
 static json_t *encode_all(struct eo_result_source *source, const struct eo_warnings *warnings)
 {
-  struct eo_result_object o = {.json = encode_head(source), .outline = &eo_result_outline, .next = CASES_ROW};
+  struct eo_result_object o = {.json = eo_result_head(source), .outline = &eo_result_outline, .next = CASES_ROW};
   o.failed = !o.json;
   eo_result_put(&o, "load_cases", encode_cases(source));
-  return unite(eo_result_close_part(&o), encode_tail(source, warnings));
+  return unite(eo_result_close_part(&o), eo_result_tail(source, warnings));
 }
 
-/* What one thread needs. */
-static bool init_source(struct eo_result_source *source, const struct eo_analysis *analysis, const struct eo_design *design, unsigned left_out)
+bool eo_result_source_init(struct eo_result_source *source, const struct eo_analysis *analysis, const struct eo_design *design, unsigned left_out)
 {
   const struct eo_evaluation *r = analysis->evaluation;
   *source = (struct eo_result_source){.analysis = analysis, .evaluation = r, .pair = analysis->pair, .design = design, .ends = r->ends,
@@ -393,7 +387,7 @@ static bool init_source(struct eo_result_source *source, const struct eo_analysi
   return source->pattern && source->scratch;
 }
 
-static void done_source(struct eo_result_source *source)
+void eo_result_source_done(struct eo_result_source *source)
 {
   free(source->pattern);
   free(source->scratch);
@@ -408,99 +402,9 @@ json_t *eo_result_encode_part(const struct eo_analysis *analysis, const struct e
 {
   struct eo_result_source source;
   double edge_pressure[EO_MAX_LOAD_CASES][2];
-  bool good = init_source(&source, analysis, design, left_out);
+  bool good = eo_result_source_init(&source, analysis, design, left_out);
   source.edge_pressure = edge_pressure;
   json_t *result = good ? encode_all(&source, warnings) : NULL;
-  done_source(&source);
+  eo_result_source_done(&source);
   return result;
-}
-
-/* ---- as text, by parts: the head, then the halves of each load case ---- */
-
-enum { WRITERS = 2, MOST_PARTS = 1 + HALVES * EO_MAX_LOAD_CASES };
-
-struct writing {
-  struct eo_result_source source[WRITERS]; /* [thread] */
-  struct eo_text part[MOST_PARTS];
-};
-
-static json_t *encode_part(struct eo_result_source *source, int part)
-{
-  int k = (part - 1) / HALVES;
-  if (part == 0)
-    return encode_head(source);
-  return part % HALVES ? encode_contact(source, k) : encode_consequences(source, k);
-}
-
-static enum eo_code write_part(void *context, int thread, int item, struct eo_error *error)
-{
-  struct writing *w = context;
-  json_t *part = encode_part(&w->source[thread], item);
-  if (part)
-    eo_json_write(&w->part[item], part, EO_JSON_COMPACT);
-  bool good = part && !w->part[item].failed;
-  json_decref(part);
-  return good ? EO_OK : eo_error_memory(error);
-}
-
-/* What stands in the braces of a part. */
-static void add_members(struct eo_text *text, const struct eo_text *part)
-{
-  eo_text_add_bytes(text, part->data + 1, part->size - 2);
-}
-
-/* The parts as one object. */
-static void join(const struct writing *w, int cases, const struct eo_text *tail, struct eo_text *text)
-{
-  eo_text_add(text, "{");
-  add_members(text, &w->part[0]);
-  eo_text_add(text, ",\"load_cases\":[");
-  for (int k = 0; k < cases; k++) {
-    eo_text_add(text, k ? ",{" : "{");
-    add_members(text, &w->part[1 + HALVES * k]);
-    eo_text_add(text, ",");
-    add_members(text, &w->part[2 + HALVES * k]);
-    eo_text_add(text, "}");
-  }
-  eo_text_add(text, "],");
-  add_members(text, tail);
-  eo_text_add(text, "}");
-}
-
-static enum eo_code write_all(struct writing *w, const struct eo_warnings *warnings, struct eo_text *text, struct eo_error *error)
-{
-  const struct eo_analysis *analysis = w->source[0].analysis;
-  const struct eo_parallel parallel = {.threads = analysis->threads < WRITERS ? analysis->threads : WRITERS, .work = write_part, .context = w};
-  struct eo_text tail = {0};
-  enum eo_code code = eo_parallel_run(&parallel, 1 + HALVES * analysis->cases, error);
-  if (code)
-    return code;
-  json_t *last = encode_tail(&w->source[0], warnings);
-  if (last)
-    eo_json_write(&tail, last, EO_JSON_COMPACT);
-  if (last && !tail.failed)
-    join(w, analysis->cases, &tail, text);
-  bool good = last && !tail.failed && !text->failed;
-  json_decref(last);
-  eo_text_done(&tail);
-  return good ? EO_OK : eo_error_memory(error);
-}
-
-enum eo_code eo_result_write(const struct eo_analysis *analysis, const struct eo_design *design, const struct eo_warnings *warnings, unsigned left_out,
-                             struct eo_text *text, struct eo_error *error)
-{
-  struct writing *w = calloc(1, sizeof *w);
-  double edge_pressure[EO_MAX_LOAD_CASES][2];
-  bool good = w != NULL;
-  for (int i = 0; i < WRITERS && good; i++) {
-    good = init_source(&w->source[i], analysis, design, left_out);
-    w->source[i].edge_pressure = edge_pressure;
-  }
-  enum eo_code code = good ? write_all(w, warnings, text, error) : eo_error_memory(error);
-  for (int i = 0; i < WRITERS && w; i++)
-    done_source(&w->source[i]);
-  for (int i = 0; i < MOST_PARTS && w; i++)
-    eo_text_done(&w->part[i]);
-  free(w);
-  return code;
 }

@@ -82,4 +82,15 @@ json_t *eo_result_vibration(struct eo_result_source *source, const struct eo_cas
 json_t *eo_result_modification(struct eo_result_source *source);
 json_t *eo_result_warnings(const struct eo_result_source *source, const struct eo_warnings *before);
 
+/* What one thread needs to write; false without memory. done() after either. */
+bool eo_result_source_init(struct eo_result_source *source, const struct eo_analysis *analysis, const struct eo_design *design, unsigned left_out);
+void eo_result_source_done(struct eo_result_source *source);
+
+/* The result in the order of writing: what stands before the load cases, the two halves of each, about as long to write, and what stands
+   behind them. New; NULL without memory. */
+json_t *eo_result_head(struct eo_result_source *source);
+json_t *eo_result_case_contact(struct eo_result_source *source, int load_case);
+json_t *eo_result_case_consequences(struct eo_result_source *source, int load_case);
+json_t *eo_result_tail(const struct eo_result_source *source, const struct eo_warnings *warnings);
+
 #endif

@@ -1,0 +1,95 @@
+/* A result as text without the whole of it as JSON before: the head, the halves of each load case and the tail, written side by side. */
+#include "document/result.h"
+
+#include <stdlib.h>
+
+#include "base/parallel.h"
+#include "document/result_parts.h"
+
+enum { WRITERS = 2, HALVES = 2, MOST_PARTS = 1 + HALVES * EO_MAX_LOAD_CASES };
+
+struct writing {
+  struct eo_result_source source[WRITERS]; /* [thread] */
+  struct eo_text part[MOST_PARTS];
+};
+
+static json_t *encode_part(struct eo_result_source *source, int part)
+{
+  int k = (part - 1) / HALVES;
+  if (part == 0)
+    return eo_result_head(source);
+  return part % HALVES ? eo_result_case_contact(source, k) : eo_result_case_consequences(source, k);
+}
+
+static enum eo_code write_part(void *context, int thread, int item, struct eo_error *error)
+{
+  struct writing *w = context;
+  json_t *part = encode_part(&w->source[thread], item);
+  if (part)
+    eo_json_write(&w->part[item], part, EO_JSON_COMPACT);
+  bool good = part && !w->part[item].failed;
+  json_decref(part);
+  return good ? EO_OK : eo_error_memory(error);
+}
+
+/* What stands in the braces of a part. */
+static void add_members(struct eo_text *text, const struct eo_text *part)
+{
+  eo_text_add_bytes(text, part->data + 1, part->size - 2);
+}
+
+/* The parts as one object. */
+static void join(const struct writing *w, int cases, const struct eo_text *tail, struct eo_text *text)
+{
+  eo_text_add(text, "{");
+  add_members(text, &w->part[0]);
+  eo_text_add(text, ",\"load_cases\":[");
+  for (int k = 0; k < cases; k++) {
+    eo_text_add(text, k ? ",{" : "{");
+    add_members(text, &w->part[1 + HALVES * k]);
+    eo_text_add(text, ",");
+    add_members(text, &w->part[2 + HALVES * k]);
+    eo_text_add(text, "}");
+  }
+  eo_text_add(text, "],");
+  add_members(text, tail);
+  eo_text_add(text, "}");
+}
+
+static enum eo_code write_all(struct writing *w, const struct eo_warnings *warnings, struct eo_text *text, struct eo_error *error)
+{
+  const struct eo_analysis *analysis = w->source[0].analysis;
+  const struct eo_parallel parallel = {.threads = analysis->threads < WRITERS ? analysis->threads : WRITERS, .work = write_part, .context = w};
+  struct eo_text tail = {0};
+  enum eo_code code = eo_parallel_run(&parallel, 1 + HALVES * analysis->cases, error);
+  if (code)
+    return code;
+  json_t *last = eo_result_tail(&w->source[0], warnings);
+  if (last)
+    eo_json_write(&tail, last, EO_JSON_COMPACT);
+  if (last && !tail.failed)
+    join(w, analysis->cases, &tail, text);
+  bool good = last && !tail.failed && !text->failed;
+  json_decref(last);
+  eo_text_done(&tail);
+  return good ? EO_OK : eo_error_memory(error);
+}
+
+enum eo_code eo_result_write(const struct eo_analysis *analysis, const struct eo_design *design, const struct eo_warnings *warnings, unsigned left_out,
+                             struct eo_text *text, struct eo_error *error)
+{
+  struct writing *w = calloc(1, sizeof *w);
+  double edge_pressure[EO_MAX_LOAD_CASES][2];
+  bool good = w != NULL;
+  for (int i = 0; i < WRITERS && good; i++) {
+    good = eo_result_source_init(&w->source[i], analysis, design, left_out);
+    w->source[i].edge_pressure = edge_pressure;
+  }
+  enum eo_code code = good ? write_all(w, warnings, text, error) : eo_error_memory(error);
+  for (int i = 0; i < WRITERS && w; i++)
+    eo_result_source_done(&w->source[i]);
+  for (int i = 0; i < MOST_PARTS && w; i++)
+    eo_text_done(&w->part[i]);
+  free(w);
+  return code;
+}
