@@ -183,7 +183,7 @@ static double cpu_seconds(void)
 static void print_line(const struct contest *contest, const struct contest_problem *problem, const struct contestant *c)
 {
   static double front[CONTEST_BUDGET_MAX][CONTEST_OBJECTIVES];
-  double at[CONTEST_MARKS][CONTEST_SEEDS_MAX], reached[CONTEST_SEEDS_MAX], spent = cpu_seconds();
+  double at[CONTEST_MARKS][CONTEST_SEEDS_MAX], reached[CONTEST_SEEDS_MAX], evaluated[CONTEST_SEEDS_MAX], spent = cpu_seconds();
   const int seeds = contest->seeds;
   long evaluations = 0;
   for (int s = 0; s < seeds; s++) {
@@ -191,6 +191,7 @@ static void print_line(const struct contest *contest, const struct contest_probl
     problem->prepare(&trace, problem, (uint64_t)s + 1);
     c->run(contest, &trace, c->algorithm, (uint64_t)s + 1);
     evaluations += trace.count;
+    evaluated[s] = trace.count;
     if (c->front)
       measure_front(&trace);
     for (int m = 0; m < CONTEST_MARKS; m++)
@@ -206,7 +207,8 @@ static void print_line(const struct contest *contest, const struct contest_probl
   qsort(reached, (size_t)seeds, sizeof(double), compare_doubles);
   if (isfinite(contest->target))
     printf("  %5.0f (%5.0f %5.0f)", reached[seeds / 2], reached[seeds / 4], reached[seeds - 1 - seeds / 4]);
-  printf("  %6.0f\n", evaluations ? 1e6 * spent / (double)evaluations : 0);
+  qsort(evaluated, (size_t)seeds, sizeof(double), compare_doubles);
+  printf("  %5.0f  %6.0f\n", evaluated[seeds / 2], evaluations ? 1e6 * spent / (double)evaluations : 0);
   fflush(stdout);
 }
 
@@ -217,7 +219,7 @@ void contest_print_head(const struct contest *contest)
     printf("  %9d (quartiles)      ", mark(contest->budget, m));
   if (isfinite(contest->target))
     printf("  to %-15.6g", contest->target);
-  printf("  us/evaluation\n");
+  printf("   true  us/evaluation\n");
 }
 
 void contest_run(const struct contest *contest, const struct contest_problem *problem)
