@@ -60,6 +60,7 @@ await chapter('open', async () => {
   ok(/−\d+ %/.test(await page.locator('.number-cell').first().innerText()), 'the change against the unmodified pair stands beside the number');
   ok(await page.locator('.figure .uplot').count() >= 5, 'curves are drawn');
   ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), 'nothing is wider than the screen');
+  ok(await page.evaluate(() => document.documentElement.scrollHeight <= innerHeight), 'the window scrolls in its panes only');
 });
 
 await chapter('drag a slider', async () => {
