@@ -1,23 +1,11 @@
 #!/bin/sh
 # easeoff analyze from outside: every example, the result document's names, files, the same bytes again, exit status, bad input.
-: "${EASEOFF:=./easeoff}" "${CHECK_RESULT:=tests/check-result}"
-folder=$(mktemp -d) || exit 99
-trap 'rm -rf "$folder"' EXIT
-count=0 failed=0
+. "$(dirname "$0")/tap.sh"
+: "${CHECK_RESULT:=tests/check-result}"
 unset EASEOFF_DATA XDG_CACHE_HOME
 HOME=$folder/home
 export HOME
 mkdir "$HOME"
-
-result() # condition-status, what
-{
-  count=$((count + 1))
-  if [ "$1" -eq 0 ]; then echo "ok $count - $2"; else
-    failed=1
-    echo "not ok $count - $2"
-    head -3 "$folder/err" | sed 's/^/# /'
-  fi
-}
 
 expect() # STATUS WHAT COMMAND...
 {

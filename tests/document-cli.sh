@@ -1,19 +1,6 @@
 #!/bin/sh
 # The program from outside: exit status, one-line errors, output that is whole or missing.
-: "${EASEOFF:=./easeoff}" "${CASES:=tests/cases}"
-folder=$(mktemp -d) || exit 99
-trap 'rm -rf "$folder"' EXIT
-count=0 failed=0
-
-result() # condition-status, what
-{
-  count=$((count + 1))
-  if [ "$1" -eq 0 ]; then echo "ok $count - $2"; else
-    failed=1
-    echo "not ok $count - $2"
-    sed 's/^/# /' "$folder/err" | head -3
-  fi
-}
+. "$(dirname "$0")/tap.sh"
 
 # expect STATUS WHAT COMMAND...: the exit status, and what the two outputs must look like for it.
 expect()

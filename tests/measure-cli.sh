@@ -1,20 +1,6 @@
 #!/bin/sh
 # easeoff rig, verify and measure from outside: recordings of a simulated pair, whole and faulty, and what is made of them.
-: "${EASEOFF:=./easeoff}" "${CASES:=tests/cases}"
-numbers=$(dirname "$EASEOFF")/tests/json-numbers
-folder=$(mktemp -d) || exit 99
-trap 'rm -rf "$folder"' EXIT
-count=0 failed=0
-
-result() # condition-status, what
-{
-  count=$((count + 1))
-  if [ "$1" -eq 0 ]; then echo "ok $count - $2"; else
-    failed=1
-    echo "not ok $count - $2"
-    sed 's/^/# /' "$folder/err" "$folder/out" | head -6
-  fi
-}
+. "$(dirname "$0")/tap.sh"
 
 design=$folder/design.json
 coarse='"resolution": {"positions": 16, "cells_per_line": 8, "sector_teeth": 3, "neighbour_coupling": false, "layers": 8, "flank_rows": 4, "fillet_elements": 6, "harmonics": 12, "te_harmonics": 8}'

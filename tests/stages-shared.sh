@@ -1,19 +1,5 @@
-# What the tests of the stages share, read by them: result, stage, near, prints. EASEOFF: the program, CASES: the reference cases.
-: "${EASEOFF:=./easeoff}" "${CASES:=tests/cases}"
-numbers=$(dirname "$EASEOFF")/tests/json-numbers
-folder=$(mktemp -d) || exit 99
-trap 'rm -rf "$folder"' EXIT
-count=0 failed=0
-
-result() # condition-status, what
-{
-  count=$((count + 1))
-  if [ "$1" -eq 0 ]; then echo "ok $count - $2"; else
-    failed=1
-    echo "not ok $count - $2"
-    sed 's/^/# /' "$folder/err" | head -3
-  fi
-}
+# What the tests of the stages share, read by them: stage, near, prints, and tap.sh.
+. "$(dirname "$0")/tap.sh"
 
 stage() # NAME INPUT: output in $folder/out
 {

@@ -1,20 +1,6 @@
 #!/bin/sh
 # easeoff sweep from outside, on the paper pair, case A, at a coarse resolution.
-: "${EASEOFF:=./easeoff}" "${CASES:=tests/cases}"
-numbers=$(dirname "$EASEOFF")/tests/json-numbers
-folder=$(mktemp -d) || exit 99
-trap 'rm -rf "$folder"' EXIT
-count=0 failed=0
-
-result() # condition-status, what
-{
-  count=$((count + 1))
-  if [ "$1" -eq 0 ]; then echo "ok $count - $2"; else
-    failed=1
-    echo "not ok $count - $2"
-    sed 's/^/# /' "$folder/err" | head -3
-  fi
-}
+. "$(dirname "$0")/tap.sh"
 
 design=$folder/design.json
 sweep() # ARGUMENTS...: output in $folder/out

@@ -135,7 +135,7 @@ static const struct eo_field optimization[] = {
     COUNT(sampling_stall, 1, 10000, 10, "batches without gain that end such an epoch (credibility-ga)"),
     PARAMETER(evolution_step, 1e-6, 0.5, 0.03, "first step of the evolution strategy that refines the best (credibility-ga)"),
     COUNT(evolution_samples, 1, 100, 12, "samples of an evolution strategy from which the surrogate chooses each point (credibility-ga)"),
-    COUNT(evolution_stall, 1, 10000, 6, "batches without gain that end it (credibility-ga)"),
+    COUNT(evolution_stall, 1, 10000, 6, "batches without gain that end that refinement (credibility-ga)"),
     COUNT(front_population, 4, 1000, 48, "individuals of a generation (nsga2)"),
     COUNT(front_verified, 1, 1000, 12, "true evaluations per cycle (nsga2)"),
     COUNT(front_rounds, 1, 1000, 20, "generations on the surrogates per cycle (nsga2)"),

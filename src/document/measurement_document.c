@@ -269,7 +269,8 @@ static const struct eo_outline_row speed_rows[] = {
 };
 static const struct eo_outline speed_outline = EO_OUTLINE("MeasuredSpeed", speed_rows);
 
-static const struct eo_outline_row result_rows[] = {
+/* What the whole result and the brief one begin with. */
+static const struct eo_outline_row measured_rows[] = {
     EO_KEY("rows", "integer", "of the recording that were used"),
     EO_KEY("seconds", "number", "that they last, s"),
     EO_KEY("turns", "object", "in that time", .outline = &turn_outline),
@@ -277,6 +278,11 @@ static const struct eo_outline_row result_rows[] = {
     EO_KEY("harmonics", "integer", "mesh orders that were fitted"),
     EO_KEY("rms_m_per_s2", "object", "vibration", .outline = &rms_outline),
     EO_KEY("mesh", "object", "mesh orders", .outline = &line_outline),
+};
+static const struct eo_outline measured = EO_OUTLINE(NULL, measured_rows);
+
+static const struct eo_outline_row result_rows[] = {
+    {.outline = &measured},
     EO_KEY("sidebands", "[object]", "those that stand out of the noise, by mesh order", .outline = &sideband_outline),
     EO_KEY("shafts", "object", "shaft orders", .outline = &shaft_outline),
     EO_KEY("te", "object", "transmission error", .outline = &te_outline),
@@ -355,13 +361,7 @@ static const struct eo_outline_row brief_te_rows[] = {EO_KEY("peak_to_peak_um", 
 static const struct eo_outline brief_te = EO_OUTLINE("BriefTransmissionError", brief_te_rows);
 
 static const struct eo_outline_row brief_result_rows[] = {
-    EO_KEY("rows", "integer", "of the recording that were used"),
-    EO_KEY("seconds", "number", "that they last, s"),
-    EO_KEY("turns", "object", "in that time", .outline = &turn_outline),
-    EO_KEY("speed_rpm", "object", "of the pinion", .outline = &speed_outline),
-    EO_KEY("harmonics", "integer", "mesh orders that were fitted"),
-    EO_KEY("rms_m_per_s2", "object", "vibration", .outline = &rms_outline),
-    EO_KEY("mesh", "object", "mesh orders", .outline = &line_outline),
+    {.outline = &measured},
     EO_KEY("residual_um", "number?", "what no order explains, RMS", .unit = &eo_unit_um),
     EO_KEY("te", "object", "transmission error", .outline = &brief_te),
 };

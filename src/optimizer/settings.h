@@ -66,7 +66,7 @@ struct eo_optimizer_settings {
   int sampling_stall;        /* batches without gain that end such an epoch */
   double evolution_step;     /* first step of the evolution strategy that refines the best row */
   int evolution_samples;     /* from which the surrogate chooses each of its points */
-  int evolution_stall;       /* batches without gain that end it */
+  int evolution_stall;       /* batches without gain that end the refinement */
 
   /* nsga2 */
   int front_population;

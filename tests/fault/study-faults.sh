@@ -1,20 +1,8 @@
 #!/bin/sh
 # optimize and history from outside: exit status, one-line errors, folders that cannot be written, full disks, files that are wrong.
-: "${EASEOFF:=./easeoff}"
-folder=$(mktemp -d) || exit 99
+. "$(dirname "$0")/../tap.sh"
 mounted=
 trap '[ -z "$mounted" ] || umount "$mounted"; chmod -R u+w "$folder"; rm -rf "$folder"' EXIT
-count=0 failed=0
-
-result() # condition-status, what
-{
-  count=$((count + 1))
-  if [ "$1" -eq 0 ]; then echo "ok $count - $2"; else
-    failed=1
-    echo "not ok $count - $2"
-    sed 's/^/# /' "$folder/err" | head -3
-  fi
-}
 
 expect() # STATUS WHAT COMMAND...
 {

@@ -1,20 +1,7 @@
 #!/bin/sh
 # The reference cases of the dynamics and of the optimizer through `easeoff verify`: every number within tolerance, wrong ones
 # noticed, other files of the same kinds read.
-: "${EASEOFF:=./easeoff}" "${CASES:=tests/cases}"
-folder=$(mktemp -d) || exit 99
-trap 'rm -rf "$folder"' EXIT
-count=0 failed=0
-
-result() # condition-status, what
-{
-  count=$((count + 1))
-  if [ "$1" -eq 0 ]; then echo "ok $count - $2"; else
-    failed=1
-    echo "not ok $count - $2"
-    sed 's/^/# /' "$folder/out" "$folder/err" | head -20
-  fi
-}
+. "$(dirname "$0")/../tap.sh"
 
 verify() # STATUS WHAT FILE...
 {
