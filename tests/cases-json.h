@@ -25,9 +25,8 @@ __attribute__((unused)) static json_t *find_case(const json_t *array, const char
 {
   size_t i;
   json_t *item;
-  json_array_foreach(array, i, item)
-    if (json_string_value(json_object_get(item, "id")) && !strcmp(json_string_value(json_object_get(item, "id")), id))
-      return item;
+  json_array_foreach(array, i, item) if (json_string_value(json_object_get(item, "id")) &&
+                                         !strcmp(json_string_value(json_object_get(item, "id")), id)) return item;
   return NULL;
 }
 

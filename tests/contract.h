@@ -1,5 +1,5 @@
-/* The names of the result document that others rely on (product description, "The result document"): present, of the right kind and
-   length, finite. */
+/* The names of the result document that others rely on (product description, "The result document"): present, of the
+   right kind and length, finite. */
 #ifndef EASEOFF_TESTS_CONTRACT_H
 #define EASEOFF_TESTS_CONTRACT_H
 
@@ -67,14 +67,26 @@ static void contract_end(const json_t *value, const char *format, int ends, size
 static void contract_case(const json_t *load_case, int ends, bool root)
 {
   size_t n = json_array_size(eo_json_find(load_case, "position"));
-  static const char *const numbers[] = {"torque_Nm", "speed_rpm", "share", "lte/peak_to_peak_um", "lte/mean_um", "vibration/rms_m_per_s2/normal",
-    "vibration/rms_m_per_s2/transverse", "vibration/rms_m_per_s2/rotational", "vibration/contact_loss", "vibration/dynamic_factor"};
-  static const char *const end_numbers[] = {"contact/max_pressure_MPa/%s", "contact/max_line_load_N_per_mm/%s", "contact/edge_load_share/%s",
-    "impact/%s/force_N", "impact/%s/general_force_N", "impact/%s/speed_mm_per_s", "impact/%s/duration_ms", "vibration/%s/rms_m_per_s2/normal",
-    "vibration/%s/dynamic_factor", "vibration/%s/contact_loss", "mesh_stiffness/mean/%s_N_per_um"};
-  static const char *const columns[] = {"lte/%s_um", "mesh_stiffness/%s_N_per_um", "mesh_stiffness/tangent_%s_N_per_um"};
-  static const char *const histories[] = {"deflection_um", "mesh_force_N", "normal_m_per_s2", "transverse_m_per_s2", "rotational_m_per_s2",
-    "pinion_bearing_N", "gear_bearing_N"};
+  static const char *const numbers[] = {"torque_Nm",
+                                        "speed_rpm",
+                                        "share",
+                                        "lte/peak_to_peak_um",
+                                        "lte/mean_um",
+                                        "vibration/rms_m_per_s2/normal",
+                                        "vibration/rms_m_per_s2/transverse",
+                                        "vibration/rms_m_per_s2/rotational",
+                                        "vibration/contact_loss",
+                                        "vibration/dynamic_factor"};
+  static const char *const end_numbers[] = {
+      "contact/max_pressure_MPa/%s", "contact/max_line_load_N_per_mm/%s", "contact/edge_load_share/%s",
+      "impact/%s/force_N",           "impact/%s/general_force_N",         "impact/%s/speed_mm_per_s",
+      "impact/%s/duration_ms",       "vibration/%s/rms_m_per_s2/normal",  "vibration/%s/dynamic_factor",
+      "vibration/%s/contact_loss",   "mesh_stiffness/mean/%s_N_per_um"};
+  static const char *const columns[] = {"lte/%s_um", "mesh_stiffness/%s_N_per_um",
+                                        "mesh_stiffness/tangent_%s_N_per_um"};
+  static const char *const histories[] = {"deflection_um",       "mesh_force_N",        "normal_m_per_s2",
+                                          "transverse_m_per_s2", "rotational_m_per_s2", "pinion_bearing_N",
+                                          "gear_bearing_N"};
   contract_text(load_case, "outcome");
   for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)
     contract_number(load_case, numbers[i]);
@@ -93,9 +105,11 @@ static void contract_case(const json_t *load_case, int ends, bool root)
     snprintf(path, sizeof path, "vibration/%%s/orders/%s", histories[i]);
     contract_end(load_case, path, ends, 0, true);
   }
-  if (json_array_size(eo_json_find(load_case, "contact/pattern/left/pressure_MPa")) != json_array_size(eo_json_find(load_case, "contact/pattern/s_mm")))
+  if (json_array_size(eo_json_find(load_case, "contact/pattern/left/pressure_MPa")) !=
+      json_array_size(eo_json_find(load_case, "contact/pattern/s_mm")))
     contract_fault("contact/pattern", "has not one row per s_mm");
-  if (json_array_size(eo_json_find(load_case, "contact/load_share/left")) != json_array_size(eo_json_find(load_case, "contact/load_share/tooth_pair")))
+  if (json_array_size(eo_json_find(load_case, "contact/load_share/left")) !=
+      json_array_size(eo_json_find(load_case, "contact/load_share/tooth_pair")))
     contract_fault("contact/load_share", "has not one row per tooth pair");
   for (int member = 0; member < 2 && root; member++) {
     contract_number(load_case, member ? "root_stress/gear/max_MPa" : "root_stress/pinion/max_MPa");
@@ -105,12 +119,25 @@ static void contract_case(const json_t *load_case, int ends, bool root)
   }
 }
 
-/* Returns the number of faults, each printed as a comment. root: with finite elements, so that root stresses are there. */
+/* Returns the number of faults, each printed as a comment. root: with finite elements, so that root stresses are there.
+ */
 static int contract_check(const json_t *result, int ends, bool root)
 {
-  static const char *const numbers[] = {"geometry/transverse_contact_ratio", "geometry/overlap_ratio", "objectives/f1_um", "objectives/f2_N",
-    "objectives/f3_m_per_s2", "objectives/J", "objectives/fitness", "objectives/violation", "objectives/unmodified/f1_um", "objectives/unmodified/f2_N",
-    "objectives/unmodified/f3_m_per_s2", "resolution/positions", "timing_ms/preparation", "timing_ms/static", "timing_ms/dynamics"};
+  static const char *const numbers[] = {"geometry/transverse_contact_ratio",
+                                        "geometry/overlap_ratio",
+                                        "objectives/f1_um",
+                                        "objectives/f2_N",
+                                        "objectives/f3_m_per_s2",
+                                        "objectives/J",
+                                        "objectives/fitness",
+                                        "objectives/violation",
+                                        "objectives/unmodified/f1_um",
+                                        "objectives/unmodified/f2_N",
+                                        "objectives/unmodified/f3_m_per_s2",
+                                        "resolution/positions",
+                                        "timing_ms/preparation",
+                                        "timing_ms/static",
+                                        "timing_ms/dynamics"};
   const json_t *cases = eo_json_find(result, "load_cases");
   contract_faults = 0;
   contract_text(result, "program");
@@ -124,7 +151,8 @@ static int contract_check(const json_t *result, int ends, bool root)
   contract_end(result, "modification/pinion/%s/lead_crowning_per_um", ends, 0, false);
   if (!json_is_array(eo_json_find(result, "warnings")))
     contract_fault("warnings", "not an array");
-  if (!json_array_size(cases) || json_array_size(cases) != json_array_size(eo_json_find(result, "objectives/unmodified/load_cases")))
+  if (!json_array_size(cases) ||
+      json_array_size(cases) != json_array_size(eo_json_find(result, "objectives/unmodified/load_cases")))
     contract_fault("load_cases", "not one for each of the duty cycle");
   for (size_t k = 0; k < json_array_size(cases); k++)
     contract_case(json_array_get(cases, k), ends, root);

@@ -1,8 +1,8 @@
 /* Numbers in JSON files, for the shell's tests.
      json-numbers FILE PLACE                                        prints them as an array
      json-numbers FILE PLACE FILE PLACE TOLERANCE [KIND [FACTOR]]   compares: the second times FACTOR is expected
-   PLACE: a JSON pointer in which * stands for every entry. KIND: absolute; relative; level: absolute, less the mean difference.
-   Exit status 0: as expected; 1: not. */
+   PLACE: a JSON pointer in which * stands for every entry. KIND: absolute; relative; level: absolute, less the mean
+   difference. Exit status 0: as expected; 1: not. */
 #include <jansson.h>
 #include <math.h>
 #include <stdio.h>
@@ -29,7 +29,8 @@ static void gather_key(const json_t *node, const char *key, size_t length, const
   else if (strcmp(text, "*") == 0)
     json_object_foreach((json_t *)node, name, child) gather(child, rest, out);
   else
-    gather(json_is_array(node) ? json_array_get(node, strtoul(text, NULL, 10)) : json_object_get(node, text), rest, out);
+    gather(json_is_array(node) ? json_array_get(node, strtoul(text, NULL, 10)) : json_object_get(node, text), rest,
+           out);
 }
 
 static void gather(const json_t *node, const char *place, struct numbers *out)
@@ -57,7 +58,8 @@ static struct numbers *read_numbers(const char *file, const char *place)
   return out;
 }
 
-static int compare(const struct numbers *is, const struct numbers *expected, double tolerance, const char *kind, double factor)
+static int compare(const struct numbers *is, const struct numbers *expected, double tolerance, const char *kind,
+                   double factor)
 {
   double mean = 0, largest = 0;
   if (is->count != expected->count || !is->count) {

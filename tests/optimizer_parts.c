@@ -1,4 +1,5 @@
-/* The parts of the optimizers against closed forms: random numbers, saddle points, minimisation, surrogates, history, Pareto. */
+/* The parts of the optimizers against closed forms: random numbers, saddle points, minimisation, surrogates, history,
+   Pareto. */
 #include "base/random.h"
 #include "numerics/factor.h"
 #include "numerics/minimise.h"
@@ -52,7 +53,8 @@ static void test_saddle(void)
     for (int k = 0; k < Q; k++)
       p[k * M + i] = pow(i / (double)M, k);
   }
-  ok(eo_saddle_init(&saddle, M, Q, &error) == EO_OK && eo_saddle_factor(&saddle, M, Q, a, p), "a saddle point is factorised");
+  ok(eo_saddle_init(&saddle, M, Q, &error) == EO_OK && eo_saddle_factor(&saddle, M, Q, a, p),
+     "a saddle point is factorised");
   eo_saddle_solve(&saddle, y, c, b);
   for (int i = 0; i < M; i++) {
     double row = -y[i];
@@ -181,7 +183,10 @@ static void test_history(void)
 {
   struct eo_history h;
   struct eo_error error;
-  struct eo_history_law law = {.share_radius = 0.2, .weight_decay = 20, .credibility_loss = 0.8, .removal_threshold = 0.1,
+  struct eo_history_law law = {.share_radius = 0.2,
+                               .weight_decay = 20,
+                               .credibility_loss = 0.8,
+                               .removal_threshold = 0.1,
                                .redundancy_threshold = 1e-7};
   double worst = 0;
   bool inside = true, credible = true;
@@ -208,7 +213,8 @@ static void test_history(void)
   ok(credible, "and its credibility within theirs");
   eo_history_done(&h);
 
-  /* A cross: the middle is unique in space though both coordinates have neighbours; then a predicted twin of a true row. */
+  /* A cross: the middle is unique in space though both coordinates have neighbours; then a predicted twin of a true
+     row. */
   const double cross[][2] = {{0.5, 0.1}, {0.1, 0.5}, {0.5, 0.5}, {0.5, 0.9}, {0.9, 0.5}};
   eo_history_init(&h, 2, 8, &error);
   for (int j = 0; j < 5; j++)
@@ -247,28 +253,31 @@ static void test_pareto(void)
   int rank[7], scratch[14], order[7];
   double crowding[7];
   eo_pareto_rank(f, violation, 7, 2, rank, scratch);
-  ok(memcmp(rank, expected, sizeof rank) == 0, "fronts: %d %d %d %d %d %d %d", rank[0], rank[1], rank[2], rank[3], rank[4],
-     rank[5], rank[6]);
+  ok(memcmp(rank, expected, sizeof rank) == 0, "fronts: %d %d %d %d %d %d %d", rank[0], rank[1], rank[2], rank[3],
+     rank[4], rank[5], rank[6]);
   eo_pareto_crowding(f, rank, 7, 2, crowding, scratch);
   ok(isinf(crowding[0]) && isinf(crowding[2]), "the ends of a front stand out");
   close_to(crowding[1], 2.0 / 3, 1e-12, "crowding of two equal points: the first"); /* (2 - 1)/3 + (2 - 1)/3 */
   close_to(crowding[5], 4.0 / 3, 1e-12, "and the second");                          /* (4 - 2)/3 + (4 - 2)/3 */
   eo_pareto_order(rank, crowding, 7, order);
-  ok(order[0] == 0 && order[1] == 2 && order[6] == 6, "best fronts first, then the least crowded, an infeasible row last");
+  ok(order[0] == 0 && order[1] == 2 && order[6] == 6,
+     "best fronts first, then the least crowded, an infeasible row last");
 
   double two[] = {1, 3, 2, 2, 3, 1, 9, 9};
   const double reference[] = {4, 4, 4};
   close_to(eo_pareto_hypervolume(two, 4, 2, reference), 6, 1e-12, "area of a staircase");
   double three[] = {0, 2, 2, 2, 0, 2, 2, 2, 0};
   const double corner[] = {3, 3, 3};
-  close_to(eo_pareto_hypervolume(three, 3, 3, corner), 7, 1e-12, "volume of three boxes of 3 x 1 x 1 that share a cube");
+  close_to(eo_pareto_hypervolume(three, 3, 3, corner), 7, 1e-12,
+           "volume of three boxes of 3 x 1 x 1 that share a cube");
 }
 
 /* ---- evolution strategy ---- */
 
 enum { AXES = 4, OFFSPRING = 8 };
 
-/* Curvatures 1, 100, 10^4, 10^6, least at 0.3 in each variable; the first is cut off by the cube when low is above that. */
+/* Curvatures 1, 100, 10^4, 10^6, least at 0.3 in each variable; the first is cut off by the cube when low is above
+   that. */
 static double ellipsoid(const double *x)
 {
   double sum = 0, curvature = 1;
@@ -328,7 +337,8 @@ static void test_evolution(void)
   ok(end < 1e-3 * before, "down a valley with a kinked floor into a corner of the cube: %.1e from %.1e", end, before);
   const double far[2][AXES] = {{1, 1, 1, 1}, {0, 0, 0, 0}}, *given[2] = {far[0], far[1]};
   eo_evolution_restart(&e, start, 1e-3);
-  ok(eo_evolution_learn(&e, given, 2) && e.step < 3e-3 && fabs(e.mean[0] - start[0]) < 0.01, "a point from far away moves it by no more than a sample may");
+  ok(eo_evolution_learn(&e, given, 2) && e.step < 3e-3 && fabs(e.mean[0] - start[0]) < 0.01,
+     "a point from far away moves it by no more than a sample may");
   eo_evolution_restart(&e, start, 1e-300);
   ok(!eo_evolution_learn(&e, (const double *[]){start, start}, 2), "a step that has vanished is told");
   eo_evolution_done(&e);

@@ -22,8 +22,8 @@ struct run {
 };
 
 struct how {
-  int threads;      /* evaluate with this many */
-  bool backwards;   /* tell in reverse order */
+  int threads;           /* evaluate with this many */
+  bool backwards;        /* tell in reverse order */
   const struct run *log; /* answer from these rows where possible */
   int log_rows;
   double fail_below; /* x[0] below this fails */
@@ -215,7 +215,8 @@ static void test_accounts(int algorithm)
   ok(c.true_evaluations == first.rows && first.calls == first.rows, "%s: every true evaluation is a row", name);
   ok(c.true_evaluations <= s.true_evaluations, "%s: the budget is kept: %d", name, c.true_evaluations);
   ok(algorithm == EO_GA || algorithm == EO_FPGA || c.true_evaluations == s.true_evaluations, "%s: and used", name);
-  ok(c.true_evaluations + c.predicted + c.reused == c.individuals, "%s: true, predicted and reused are the individuals", name);
+  ok(c.true_evaluations + c.predicted + c.reused == c.individuals, "%s: true, predicted and reused are the individuals",
+     name);
   ok(first.individuals_of_generations == c.individuals, "%s: so are those of the generations", name);
   close_to(c.fitness_computed, (double)c.true_evaluations / c.individuals, 1e-15, "PFC");
   ok(algorithm == EO_FPGA ? c.predicted > 0 && first.predictions >= c.predicted : c.predicted == 0,
@@ -241,8 +242,8 @@ static void test_resume(int algorithm)
   how.log = &cut;
   how.log_rows = cut.rows;
   const bool ended = run_with(&s, &how, &second);
-  ok(cut.rows >= 150 && cut.rows < first.rows && ended && same(&first, &second), "%s: a replay from the log of %d rows goes the same way", name,
-     cut.rows);
+  ok(cut.rows >= 150 && cut.rows < first.rows && ended && same(&first, &second),
+     "%s: a replay from the log of %d rows goes the same way", name, cut.rows);
   ok(second.calls == first.rows - cut.rows, "%s: with %d new evaluations", name, second.calls);
 }
 
@@ -262,13 +263,15 @@ static void test_import(int algorithm)
     eo_optimizer_import(o, first.x[i], &outcome, &error);
   }
   const int imported = (first.rows + 1) / 2;
-  ok(eo_optimizer_rows(o) == imported && eo_optimizer_row(o, 0).imported, "%s: %d rows are imported, none twice", name, imported);
+  ok(eo_optimizer_rows(o) == imported && eo_optimizer_row(o, 0).imported, "%s: %d rows are imported, none twice", name,
+     imported);
   finish(o, &plainly, INT32_MAX, &second);
   ok(count_twins(&second) == 0 && second.counters.true_evaluations == second.rows - imported,
      "%s: none of them is asked for again", name);
   const double inside[N] = {0.5, 0.5, 0.5, 0.25}, outside[N] = {0.5, 1.5, 0.5, 0.5};
   const struct eo_outcome outcome = {.value = 1};
-  ok(eo_optimizer_import(o, inside, &outcome, &error) == EO_ERROR_INPUT, "%s: too late to import: %s", name, error.text);
+  ok(eo_optimizer_import(o, inside, &outcome, &error) == EO_ERROR_INPUT, "%s: too late to import: %s", name,
+     error.text);
   eo_optimizer_free(o);
   eo_optimizer_new(&s, &o, &error);
   ok(eo_optimizer_import(o, outside, &outcome, &error) == EO_ERROR_INPUT, "%s: outside: %s", name, error.text);
@@ -288,14 +291,14 @@ static void test_failures(int algorithm)
   int failed = 0;
   for (int i = 0; i < first.rows; i++)
     failed += first.failed[i];
-  ok(failed > 0 && !first.failed[first.best] && first.x[first.best][0] >= 0.4, "%s: %d of %d rows failed, the best did not",
-     name, failed, first.rows);
+  ok(failed > 0 && !first.failed[first.best] && first.x[first.best][0] >= 0.4,
+     "%s: %d of %d rows failed, the best did not", name, failed, first.rows);
   how.failed_value = -1e9;
   ok(run_with(&s, &how, &second) && same(&first, &second), "%s: what a failed evaluation returns plays no part", name);
   how.fail_below = 2;
   const bool ended = run_with(&s, &how, &second);
-  ok(ended && second.best == -1 && second.counters.predicted == 0, "%s: when all fail there is no best and no prediction (%d rows)", name,
-     second.rows);
+  ok(ended && second.best == -1 && second.counters.predicted == 0,
+     "%s: when all fail there is no best and no prediction (%d rows)", name, second.rows);
 }
 
 /* ga is fpga that never predicts. */
@@ -311,8 +314,8 @@ static void test_family(void)
   ok(first.counters.individuals == s.population * s.generations, "individuals: %d", first.counters.individuals);
   s.share_radius = 0.1;
   run_with(&s, &plainly, &second);
-  ok(second.counters.fitness_computed < 0.8 * first.counters.fitness_computed, "fpga computes less: PFC %.3f against %.3f",
-     second.counters.fitness_computed, first.counters.fitness_computed);
+  ok(second.counters.fitness_computed < 0.8 * first.counters.fitness_computed,
+     "fpga computes less: PFC %.3f against %.3f", second.counters.fitness_computed, first.counters.fitness_computed);
   s.decision_order = EO_ORDER_SEQUENTIAL;
   static struct run sequential;
   const bool ended = run_with(&s, &plainly, &sequential);
@@ -395,8 +398,10 @@ static void test_bad_settings(void)
   refused(s, "/optimization/algorithm");
   s = good, s.algorithm = EO_NSGA2, s.objectives = 99;
   refused(s, "/optimization/objectives");
-  ok(eo_optimizer_algorithm_find("credibility-ga") == EO_CREDIBILITY_GA && eo_optimizer_algorithm_find("x") == -1, "names");
-  close_to((s = good, s.share_radius = 0, s.variables = 5, eo_optimizer_share_radius(&s)), 0.03, 1e-12, "r_share, n = 5");
+  ok(eo_optimizer_algorithm_find("credibility-ga") == EO_CREDIBILITY_GA && eo_optimizer_algorithm_find("x") == -1,
+     "names");
+  close_to((s = good, s.share_radius = 0, s.variables = 5, eo_optimizer_share_radius(&s)), 0.03, 1e-12,
+           "r_share, n = 5");
   close_to((s.variables = 10, eo_optimizer_share_radius(&s)), 0.11, 0.003, "r_share, n = 10");
 }
 
@@ -408,8 +413,9 @@ static void test_table(void)
   eo_optimizer_defaults(&s, EO_NSGA2, 5);
   bool consistent = true;
   for (int i = 0; i < count; i++)
-    consistent = consistent && p[i].low <= p[i].standard && p[i].standard <= p[i].high && p[i].help[0] && p[i].algorithms &&
-                 eo_optimizer_get(&s, &p[i]) == p[i].standard && (p[i].kind != EO_PARAMETER_CHOICE || p[i].choices);
+    consistent = consistent && p[i].low <= p[i].standard && p[i].standard <= p[i].high && p[i].help[0] &&
+                 p[i].algorithms && eo_optimizer_get(&s, &p[i]) == p[i].standard &&
+                 (p[i].kind != EO_PARAMETER_CHOICE || p[i].choices);
   ok(consistent && count > 30, "all %d parameters have a range, a default within it and a help", count);
 }
 

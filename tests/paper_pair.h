@@ -32,8 +32,13 @@ __attribute__((unused)) static struct eo_material paper_steel(void)
 
 __attribute__((unused)) static struct eo_flexibility_settings default_settings(void)
 {
-  return (struct eo_flexibility_settings){.sector_teeth = 5, .neighbour_coupling = true, .layers = 28, .flank_rows = 10,
-                                          .fillet_elements = 20, .columns = 8, .rim_elements = 8};
+  return (struct eo_flexibility_settings){.sector_teeth = 5,
+                                          .neighbour_coupling = true,
+                                          .layers = 28,
+                                          .flank_rows = 10,
+                                          .fillet_elements = 20,
+                                          .columns = 8,
+                                          .rim_elements = 8};
 }
 
 #endif

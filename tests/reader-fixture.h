@@ -42,8 +42,8 @@ __attribute__((unused)) static void write_text(const char *text)
 }
 
 /* Reads the file; NULL on failure, with *error filled. */
-__attribute__((unused)) static struct eo_recording *read_fixture(const struct eo_reader_options *options, struct eo_notes *notes,
-                                                                 struct eo_error *error)
+__attribute__((unused)) static struct eo_recording *read_fixture(const struct eo_reader_options *options,
+                                                                 struct eo_notes *notes, struct eo_error *error)
 {
   struct eo_recording *recording = NULL;
   memset(error, 0, sizeof *error);

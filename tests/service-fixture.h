@@ -11,7 +11,8 @@
 
 __attribute__((unused)) static struct eo_service *start_with(int most_queued, int most_pairs)
 {
-  const struct eo_service_settings settings = {.data = folder, .threads = 2, .most_queued = most_queued, .most_pairs = most_pairs};
+  const struct eo_service_settings settings = {
+      .data = folder, .threads = 2, .most_queued = most_queued, .most_pairs = most_pairs};
   struct eo_service *service = NULL;
   if (eo_service_new(&service, &settings, &error)) {
     printf("Bail out! %s\n", error.text);
@@ -39,7 +40,8 @@ __attribute__((unused)) static void make_design(struct eo_design *design, int bu
     printf("Bail out! %s\n", error.text);
 }
 
-__attribute__((unused)) static int64_t submit(struct eo_service *service, enum eo_job_kind kind, const struct eo_design *design, const char *key,
+__attribute__((unused)) static int64_t submit(struct eo_service *service, enum eo_job_kind kind,
+                                              const struct eo_design *design, const char *key,
                                               enum eo_job_outcome *outcome)
 {
   const struct eo_job_order order = {.kind = kind, .design = design, .key = key};

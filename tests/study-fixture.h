@@ -69,8 +69,10 @@ __attribute__((unused)) static void empty_folder(void)
   }
 }
 
-/* The part of a study's document that must not depend on threads, interruptions and the clock; owned. NULL after a failure. */
-__attribute__((unused)) static char *lasting_part(const struct eo_study_plan *plan, const struct eo_study_result *result)
+/* The part of a study's document that must not depend on threads, interruptions and the clock; owned. NULL after a
+   failure. */
+__attribute__((unused)) static char *lasting_part(const struct eo_study_plan *plan,
+                                                  const struct eo_study_result *result)
 {
   json_t *document = NULL;
   if (eo_study_document(plan, result, NULL, &document, &error))

@@ -21,19 +21,22 @@ static enum eo_code cancelled(struct eo_error *error)
   return eo_error_set(error, EO_ERROR_CANCELLED, "", "Stopped.");
 }
 
-static enum eo_code prepare(struct request *request, const struct eo_progress *progress, struct eo_pair **pair, struct eo_error *error)
+static enum eo_code prepare(struct request *request, const struct eo_progress *progress, struct eo_pair **pair,
+                            struct eo_error *error)
 {
   struct eo_text directory = {0};
   bool keep = !request->no_cache && eo_app_cache_directory(request->data, &directory);
   struct eo_pair_options options = {.cache_directory = keep ? directory.data : NULL};
   if (!keep && !request->no_cache)
-    eo_warnings_add(&request->warnings, "There is no place to keep the flexibility of this gear pair; --data names one.");
+    eo_warnings_add(&request->warnings,
+                    "There is no place to keep the flexibility of this gear pair; --data names one.");
   enum eo_code code = eo_pair_new(pair, &request->design, &options, progress, error);
   eo_text_done(&directory);
   return code;
 }
 
-static enum eo_code analyze(const struct request *request, const struct eo_pair *pair, json_t **result, struct eo_error *error)
+static enum eo_code analyze(const struct request *request, const struct eo_pair *pair, json_t **result,
+                            struct eo_error *error)
 {
   struct eo_analysis *analysis = NULL;
   enum eo_code code = eo_analysis_new(&analysis, pair, error);
@@ -96,8 +99,11 @@ static int run(const struct eo_command *command, int argc, char **argv)
     eo_error_memory(&error);
     return eo_app_fail(NULL, &error);
   }
-  const struct eo_option options[] = {{.name = "--json", .flag = &request->json}, {.name = "--csv", .value = &request->csv},
-                                      {.name = "--data", .value = &request->data}, {.name = "--no-cache", .flag = &request->no_cache}, {.name = NULL}};
+  const struct eo_option options[] = {{.name = "--json", .flag = &request->json},
+                                      {.name = "--csv", .value = &request->csv},
+                                      {.name = "--data", .value = &request->data},
+                                      {.name = "--no-cache", .flag = &request->no_cache},
+                                      {.name = NULL}};
   if (eo_app_arguments(command, argc, argv, options, 1, 1, &request->file, &operands, &status) &&
       eo_app_load_design(request->file, &request->design, &request->geometry, &request->warnings, &status))
     status = run_request(request);
@@ -105,9 +111,11 @@ static int run(const struct eo_command *command, int argc, char **argv)
   return status;
 }
 
-const struct eo_command eo_command_analyze = {
-    "analyze", "DESIGN.json [--json] [--csv DIR] [--data DIR] [--no-cache]", "one true evaluation of a design, everything it computed",
-    "Without --json or --csv, a summary for people: every load case unmodified and as designed, the objectives, notes, where the\n"
-    "time went. --json prints the result document; --csv writes its curves as files into DIR, which is made when missing.\n\n"
-    EO_APP_DATA_HELP
-    "--no-cache neither reads nor keeps it.\n", run};
+const struct eo_command eo_command_analyze = {"analyze", "DESIGN.json [--json] [--csv DIR] [--data DIR] [--no-cache]",
+                                              "one true evaluation of a design, everything it computed",
+                                              "Without --json or --csv, a summary for people: every load case "
+                                              "unmodified and as designed, the objectives, notes, where the\n"
+                                              "time went. --json prints the result document; --csv writes its curves "
+                                              "as files into DIR, which is made when missing.\n\n" EO_APP_DATA_HELP
+                                              "--no-cache neither reads nor keeps it.\n",
+                                              run};

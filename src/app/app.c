@@ -14,7 +14,8 @@ static int wrong_usage(const struct eo_command *command, const char *what, const
 {
   char shown[80];
   eo_text_clean(shown, sizeof shown, argument);
-  fprintf(stderr, "easeoff %s: %s%s; usage: easeoff %s %s\n", command->name, what, shown, command->name, command->usage);
+  fprintf(stderr, "easeoff %s: %s%s; usage: easeoff %s %s\n", command->name, what, shown, command->name,
+          command->usage);
   return EO_EXIT_INPUT;
 }
 
@@ -46,8 +47,8 @@ static const struct eo_option *take_option(const struct eo_option *options, int 
   return NULL;
 }
 
-bool eo_app_arguments(const struct eo_command *command, int argc, char **argv, const struct eo_option *options, int least, int most,
-                      const char **operand, int *operands, int *status)
+bool eo_app_arguments(const struct eo_command *command, int argc, char **argv, const struct eo_option *options,
+                      int least, int most, const char **operand, int *operands, int *status)
 {
   bool only_operands = false;
   *operands = 0;
@@ -78,7 +79,8 @@ int eo_app_fail(const char *file, const struct eo_error *error)
   char shown[120] = "";
   if (file)
     eo_text_clean(shown, sizeof shown, strcmp(file, "-") == 0 ? "standard input" : file);
-  fprintf(stderr, "easeoff: %s%s%s%s%s\n", shown, file ? ": " : "", error->pointer, *error->pointer ? ": " : "", error->text);
+  fprintf(stderr, "easeoff: %s%s%s%s%s\n", shown, file ? ": " : "", error->pointer, *error->pointer ? ": " : "",
+          error->text);
   return error->code == EO_ERROR_INPUT ? EO_EXIT_INPUT : EO_EXIT_FAILED;
 }
 
@@ -117,7 +119,8 @@ int eo_app_print_json(json_t *document, bool compact)
   return eo_app_print(&text);
 }
 
-bool eo_app_load_design(const char *path, struct eo_design *design, struct eo_geometry *geometry, struct eo_warnings *warnings, int *status)
+bool eo_app_load_design(const char *path, struct eo_design *design, struct eo_geometry *geometry,
+                        struct eo_warnings *warnings, int *status)
 {
   struct eo_error error;
   struct eo_faults *faults = calloc(1, sizeof *faults);

@@ -1,4 +1,5 @@
-/* The program: sub-commands, their options, and how they end. Exit status 0: done; 1: the input is wrong; 2: it failed. */
+/* The program: sub-commands, their options, and how they end. Exit status 0: done; 1: the input is wrong; 2: it failed.
+ */
 #ifndef EASEOFF_APP_APP_H
 #define EASEOFF_APP_APP_H
 
@@ -18,11 +19,13 @@ struct eo_command {
   const char *usage;   /* operands and options, one line */
   const char *summary; /* one line */
   const char *help;    /* more for --help, ends with a newline; may be NULL */
-  int (*run)(const struct eo_command *command, int argc, char **argv); /* argv[0]: the sub-command; returns the exit status */
+  int (*run)(const struct eo_command *command, int argc,
+             char **argv); /* argv[0]: the sub-command; returns the exit status */
 };
 
-extern const struct eo_command eo_command_analyze, eo_command_example, eo_command_export, eo_command_history, eo_command_measure, eo_command_optimize,
-    eo_command_reproduce, eo_command_rig, eo_command_serve, eo_command_stage, eo_command_sweep, eo_command_verify;
+extern const struct eo_command eo_command_analyze, eo_command_example, eo_command_export, eo_command_history,
+    eo_command_measure, eo_command_optimize, eo_command_reproduce, eo_command_rig, eo_command_serve, eo_command_stage,
+    eo_command_sweep, eo_command_verify;
 
 /* "easeoff 0.1.0" */
 extern const char eo_program[];
@@ -34,12 +37,13 @@ struct eo_option {
   const char **value; /* set to the argument */
 };
 
-/* Sorts options from operands; operand[most] is filled and *operands counted. Returns true to go on; false when the command
-   is over (help printed, or wrong usage told on standard error) with *status set. */
-bool eo_app_arguments(const struct eo_command *command, int argc, char **argv, const struct eo_option *options, int least, int most,
-                      const char **operand, int *operands, int *status);
+/* Sorts options from operands; operand[most] is filled and *operands counted. Returns true to go on; false when the
+   command is over (help printed, or wrong usage told on standard error) with *status set. */
+bool eo_app_arguments(const struct eo_command *command, int argc, char **argv, const struct eo_option *options,
+                      int least, int most, const char **operand, int *operands, int *status);
 
-/* One line on standard error; returns the exit status that belongs to the error. file: NULL when no file is concerned. */
+/* One line on standard error; returns the exit status that belongs to the error. file: NULL when no file is concerned.
+ */
 int eo_app_fail(const char *file, const struct eo_error *error);
 
 /* One line per fault. */
@@ -52,6 +56,7 @@ int eo_app_print(struct eo_text *text);
 int eo_app_print_json(json_t *document, bool compact);
 
 /* Reads, decodes and completes a design ("-": standard input), warnings collected. False with *status set and told. */
-bool eo_app_load_design(const char *path, struct eo_design *design, struct eo_geometry *geometry, struct eo_warnings *warnings, int *status);
+bool eo_app_load_design(const char *path, struct eo_design *design, struct eo_geometry *geometry,
+                        struct eo_warnings *warnings, int *status);
 
 #endif

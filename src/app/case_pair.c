@@ -60,7 +60,8 @@ enum eo_code eo_case_design(const json_t *input, struct eo_design *design, struc
   design->material.density = 1e12 * either(input, "rho_t_mm3", "rho", 7.85e-9);
   design->load_cases = 1;
   design->load_case[0] = (struct eo_load_case){.torque = 1, .speed = 1, .share = 1};
-  if (pair->teeth[0] > 0 && pair->teeth[1] > 0 && pair->normal_module > 0 && pair->face_width > 0 && isfinite(pair->helix_angle))
+  if (pair->teeth[0] > 0 && pair->teeth[1] > 0 && pair->normal_module > 0 && pair->face_width > 0 &&
+      isfinite(pair->helix_angle))
     return EO_OK;
   return eo_error_set(error, EO_ERROR_INPUT, "", "A gear pair needs z, mn, beta and b.");
 }
@@ -71,7 +72,8 @@ void eo_case_modification(const json_t *block, const struct eo_gear_pair *pair, 
   if (!block)
     return;
   double half = pair->face_width / 2 / cos(pair->helix_angle), mm = 1e-3, um = 1e-6;
-  double tip = eo_verify_number(block, "d_tr"), root = eo_verify_number(block, "d_br"), lead = eo_verify_number(block, "a_l");
+  double tip = eo_verify_number(block, "d_tr"), root = eo_verify_number(block, "d_br"),
+         lead = eo_verify_number(block, "a_l");
   flank->tip_relief = isnan(tip) ? um * either(block, "d_tr_um", "d_tr_um", 0) : mm * tip;
   flank->root_relief = isnan(root) ? um * either(block, "d_br_um", "d_br_um", 0) : mm * root;
   flank->tip_relief_start = mm * either(block, "u_ts", "u_ts_mm", 0);

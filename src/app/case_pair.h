@@ -1,5 +1,5 @@
-/* What the contact, CalculiX and evaluation cases share: gear pairs, modifications and closed-form compliances in the case files' words
-   (mm, N, rad; "z", "mn", "alpha_n_deg" ...). */
+/* What the contact, CalculiX and evaluation cases share: gear pairs, modifications and closed-form compliances in the
+   case files' words (mm, N, rad; "z", "mn", "alpha_n_deg" ...). */
 #ifndef EASEOFF_APP_CASE_PAIR_H
 #define EASEOFF_APP_CASE_PAIR_H
 
@@ -19,8 +19,8 @@ void eo_case_modification(const json_t *block, const struct eo_gear_pair *pair, 
 /* A block's "crossing" and "inplane", rad, or words like "0.1 deg in-plane". */
 void eo_case_misalignment(const json_t *value, struct eo_alignment *alignment);
 
-/* The kernel written out as text: "C(i,j) = 1.5e-6*exp(-|eta_i-eta_j|/12)*f(s_i)f(s_j) mm/N ...; f = 1+0.02|s+0.8|+0.004(s+0.8)^2".
-   False when it is not of that form. */
+/* The kernel written out as text: "C(i,j) = 1.5e-6*exp(-|eta_i-eta_j|/12)*f(s_i)f(s_j) mm/N ...; f =
+   1+0.02|s+0.8|+0.004(s+0.8)^2". False when it is not of that form. */
 bool eo_case_closed_form(const char *text, struct eo_closed_form *form);
 
 /* The number before a phrase ("60 equal cells per line"), or the fallback. */

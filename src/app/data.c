@@ -25,8 +25,8 @@ static void make_parents(char *path)
 enum eo_code eo_app_data_directory(const char *option, struct eo_text *path, struct eo_error *error)
 {
   *path = (struct eo_text){0};
-  if (!use(path, option, "") && !use(path, getenv("EASEOFF_DATA"), "") && !use(path, getenv("XDG_DATA_HOME"), "/easeoff") &&
-      !use(path, getenv("HOME"), "/.local/share/easeoff"))
+  if (!use(path, option, "") && !use(path, getenv("EASEOFF_DATA"), "") &&
+      !use(path, getenv("XDG_DATA_HOME"), "/easeoff") && !use(path, getenv("HOME"), "/.local/share/easeoff"))
     return eo_error_set(error, EO_ERROR_INPUT, "", "There is no place for the history; --data names one.");
   if (path->failed)
     return eo_error_memory(error);
@@ -38,7 +38,8 @@ bool eo_app_cache_directory(const char *option, struct eo_text *path)
 {
   *path = (struct eo_text){0};
   bool found = use(path, option, "/flexibility") || use(path, getenv("EASEOFF_DATA"), "/flexibility") ||
-               use(path, getenv("XDG_CACHE_HOME"), "/easeoff/flexibility") || use(path, getenv("HOME"), "/.cache/easeoff/flexibility");
+               use(path, getenv("XDG_CACHE_HOME"), "/easeoff/flexibility") ||
+               use(path, getenv("HOME"), "/.cache/easeoff/flexibility");
   if (found && !path->failed)
     make_parents(path->data);
   return found && !path->failed;

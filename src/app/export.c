@@ -19,13 +19,16 @@ static const struct eo_export *find_format(const char *name, int *status)
   const struct eo_export *format = name ? eo_export_find(name) : NULL;
   if (format)
     return format;
-  eo_error_set(&error, EO_ERROR_INPUT, "", name ? "There is no format \"%.40s\"; easeoff export lists them." : "--format NAME is missing%s; easeoff export lists them.",
+  eo_error_set(&error, EO_ERROR_INPUT, "",
+               name ? "There is no format \"%.40s\"; easeoff export lists them."
+                    : "--format NAME is missing%s; easeoff export lists them.",
                name ? name : "");
   *status = eo_app_fail(NULL, &error);
   return NULL;
 }
 
-static int save(const struct eo_export *format, const struct eo_design *design, const struct eo_geometry *geometry, const char *path)
+static int save(const struct eo_export *format, const struct eo_design *design, const struct eo_geometry *geometry,
+                const char *path)
 {
   struct eo_text text = {0};
   struct eo_error error;
@@ -46,7 +49,8 @@ static int run(const struct eo_command *command, int argc, char **argv)
   struct eo_design design;
   struct eo_geometry geometry;
   struct eo_warnings warnings = {0};
-  const struct eo_option options[] = {{.name = "--format", .value = &name}, {.name = "-o", .value = &path}, {.name = NULL}};
+  const struct eo_option options[] = {
+      {.name = "--format", .value = &name}, {.name = "-o", .value = &path}, {.name = NULL}};
   if (!eo_app_arguments(command, argc, argv, options, 0, 1, &file, &operands, &status))
     return status;
   if (!operands)
@@ -60,5 +64,8 @@ static int run(const struct eo_command *command, int argc, char **argv)
 const struct eo_command eo_command_export = {
     "export", "DESIGN.json --format NAME [-o FILE]", "a file for another program: flank points, charts, topography",
     "Without a design, the list of formats. Without -o the file goes to standard output.\n\n"
-    "Points stand in the frame of each member: z along the axis, from the middle of the groove to the right; the working flank of a\n"
-    "tooth faces +x and would, unmodified, pass through x = 0 at the working pitch radius in mid face. Normals point out of the tooth.\n", run};
+    "Points stand in the frame of each member: z along the axis, from the middle of the groove to the right; the "
+    "working flank of a\n"
+    "tooth faces +x and would, unmodified, pass through x = 0 at the working pitch radius in mid face. Normals point "
+    "out of the tooth.\n",
+    run};

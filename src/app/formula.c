@@ -51,11 +51,16 @@ static bool take(struct reader *r, char c)
 static double apply_operator(char op, double a, double b)
 {
   switch (op) {
-  case '+': return a + b;
-  case '-': return a - b;
-  case '*': return a * b;
-  case '/': return a / b;
-  default: return b == 2 ? a * a : pow(a, b);
+  case '+':
+    return a + b;
+  case '-':
+    return a - b;
+  case '*':
+    return a * b;
+  case '/':
+    return a / b;
+  default:
+    return b == 2 ? a * a : pow(a, b);
   }
 }
 
@@ -79,8 +84,11 @@ static double reduce(const char *name, const struct value *v, bool *known)
     low = fmin(low, v->element[i]);
     high = fmax(high, v->element[i]);
   }
-  const struct { const char *name; double value; } all[] = {
-      {"sum", sum}, {"mean", sum / v->size}, {"prod", product}, {"min", low}, {"max", high}, {"norm", sqrt(squares)}};
+  const struct {
+    const char *name;
+    double value;
+  } all[] = {{"sum", sum}, {"mean", sum / v->size}, {"prod", product},
+             {"min", low}, {"max", high},           {"norm", sqrt(squares)}};
   for (size_t i = 0; i < sizeof all / sizeof *all; i++)
     if (strcmp(name, all[i].name) == 0)
       return all[i].value;
@@ -90,8 +98,10 @@ static double reduce(const char *name, const struct value *v, bool *known)
 
 static struct value apply_function(struct reader *r, const char *name, const struct value *argument)
 {
-  static const struct { const char *name; double (*function)(double); } all[] = {
-      {"exp", exp}, {"log", log}, {"sqrt", sqrt}, {"abs", fabs}, {"sin", sin}, {"cos", cos}, {"tanh", tanh}};
+  static const struct {
+    const char *name;
+    double (*function)(double);
+  } all[] = {{"exp", exp}, {"log", log}, {"sqrt", sqrt}, {"abs", fabs}, {"sin", sin}, {"cos", cos}, {"tanh", tanh}};
   for (size_t f = 0; f < sizeof all / sizeof *all; f++) {
     if (strcmp(name, all[f].name) != 0)
       continue;
@@ -226,7 +236,8 @@ static struct value read_sum(struct reader *r)
 enum eo_code eo_formula_evaluate(const char *text, const double *x, int n, double *value, struct eo_error *error)
 {
   if (n < 1 || n > EO_FORMULA_VARIABLES)
-    return eo_error_set(error, EO_ERROR_INPUT, "", "A formula takes 1 to %d variables, not %d.", EO_FORMULA_VARIABLES, n);
+    return eo_error_set(error, EO_ERROR_INPUT, "", "A formula takes 1 to %d variables, not %d.", EO_FORMULA_VARIABLES,
+                        n);
   struct reader r = {.at = text, .start = text, .x = x, .n = n};
   const struct value result = read_sum(&r);
   if (!r.fault && result.size != 1)

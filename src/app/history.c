@@ -36,7 +36,8 @@ static void print_problems(const json_t *list, struct eo_text *text)
   size_t i;
   struct eo_sheet sheet;
   eo_sheet_init(&sheet, 7, headings);
-  json_array_foreach(json_object_get(list, "problems"), i, row) {
+  json_array_foreach(json_object_get(list, "problems"), i, row)
+  {
     char name[60], hash[16];
     eo_text_clean(name, sizeof name, json_string_value(json_object_get(row, "name")));
     snprintf(hash, sizeof hash, "%.12s", json_string_value(json_object_get(row, "hash")));
@@ -54,12 +55,14 @@ static void print_problems(const json_t *list, struct eo_text *text)
 
 static void print_jobs(const json_t *list, struct eo_text *text)
 {
-  static const char *const headings[] = {"job", "problem", "name", "algorithm", "state", "true", "individuals", "best J", "last"};
+  static const char *const headings[] = {"job",  "problem",     "name",   "algorithm", "state",
+                                         "true", "individuals", "best J", "last"};
   const json_t *row;
   size_t i;
   struct eo_sheet sheet;
   eo_sheet_init(&sheet, 9, headings);
-  json_array_foreach(json_object_get(list, "jobs"), i, row) {
+  json_array_foreach(json_object_get(list, "jobs"), i, row)
+  {
     char name[60];
     eo_text_clean(name, sizeof name, json_string_value(json_object_get(row, "name")));
     eo_sheet_number(&sheet, eo_json_find_number(row, "id"), NULL, 0);
@@ -230,8 +233,8 @@ static const struct action *find_action(const struct request *q, int operands, s
       bool by_job = actions[i].run == run_export && q->job;
       if (operands == actions[i].operands - by_job)
         return &actions[i];
-      eo_error_set(error, EO_ERROR_INPUT, "", "history %s takes %s number; see easeoff history --help.", actions[i].name,
-                   actions[i].operands == 2 && !by_job ? "one" : "no");
+      eo_error_set(error, EO_ERROR_INPUT, "", "history %s takes %s number; see easeoff history --help.",
+                   actions[i].name, actions[i].operands == 2 && !by_job ? "one" : "no");
       return NULL;
     }
   eo_error_set(error, EO_ERROR_INPUT, "", "\"%.40s\" is no action: list, show, export or prune.", q->operand[0]);
@@ -256,20 +259,27 @@ static int run(const struct eo_command *command, int argc, char **argv)
 {
   struct request q = {0};
   int operands, status;
-  const struct eo_option options[] = {{.name = "--data", .value = &q.data}, {.name = "--json", .flag = &q.json}, {.name = "--job", .value = &q.job},
-                                      {.name = "--problem", .value = &q.problem}, {.name = "--predictions", .flag = &q.predictions},
-                                      {.name = "--outdated", .flag = &q.outdated}, {.name = "--damaged", .flag = &q.damaged}, {.name = NULL}};
+  const struct eo_option options[] = {{.name = "--data", .value = &q.data},
+                                      {.name = "--json", .flag = &q.json},
+                                      {.name = "--job", .value = &q.job},
+                                      {.name = "--problem", .value = &q.problem},
+                                      {.name = "--predictions", .flag = &q.predictions},
+                                      {.name = "--outdated", .flag = &q.outdated},
+                                      {.name = "--damaged", .flag = &q.damaged},
+                                      {.name = NULL}};
   if (eo_app_arguments(command, argc, argv, options, 1, 2, q.operand, &operands, &status))
     status = run_action(&q, operands);
   return status;
 }
 
 const struct eo_command eo_command_history = {
-    "history", "list | show JOB | export PROBLEM | export --job JOB | prune  [--data DIR] [--json]", "what was evaluated and searched before",
+    "history", "list | show JOB | export PROBLEM | export --job JOB | prune  [--data DIR] [--json]",
+    "what was evaluated and searched before",
     "  list            problems (what an evaluation depends on but the modification) and jobs\n"
     "  show JOB        the result of a search, as optimize printed it\n"
     "  export PROBLEM  every true row as comma-separated values: modification, values per load case\n"
     "  export --job JOB  the path of a search: each individual, whether computed, known or predicted\n"
     "  prune           removes predictions of searches that have ended; or instead\n"
-    "    --predictions, --outdated (rows of an older model), --problem N (with its jobs), --damaged (wrong check sum)\n\n"
-    EO_APP_HISTORY_HELP, run};
+    "    --predictions, --outdated (rows of an older model), --problem N (with its jobs), --damaged (wrong check "
+    "sum)\n\n" EO_APP_HISTORY_HELP,
+    run};

@@ -7,9 +7,10 @@
 #include "app/app.h"
 #include "numerics/threads.h"
 
-static const struct eo_command *const commands[] = {
-    &eo_command_serve,   &eo_command_example, &eo_command_analyze, &eo_command_sweep,     &eo_command_optimize, &eo_command_history,
-    &eo_command_measure, &eo_command_rig,     &eo_command_export,  &eo_command_reproduce, &eo_command_verify,   &eo_command_stage};
+static const struct eo_command *const commands[] = {&eo_command_serve,     &eo_command_example,  &eo_command_analyze,
+                                                    &eo_command_sweep,     &eo_command_optimize, &eo_command_history,
+                                                    &eo_command_measure,   &eo_command_rig,      &eo_command_export,
+                                                    &eo_command_reproduce, &eo_command_verify,   &eo_command_stage};
 enum { COMMANDS = sizeof commands / sizeof commands[0] };
 
 static int print_overview(void)
@@ -18,8 +19,10 @@ static int print_overview(void)
   eo_text_print(&text, "%s: quiet herringbone gears by tooth micro-geometry\n\n", eo_program);
   for (int i = 0; i < COMMANDS; i++)
     eo_text_print(&text, "  easeoff %-9s  %s\n", commands[i]->name, commands[i]->summary);
-  eo_text_add(&text, "\neaseoff COMMAND --help says more; easeoff --version prints the version. A file named - is standard input.\n"
-                     "Exit status: 0 done, 1 the input is wrong, 2 it failed.\n");
+  eo_text_add(
+      &text,
+      "\neaseoff COMMAND --help says more; easeoff --version prints the version. A file named - is standard input.\n"
+      "Exit status: 0 done, 1 the input is wrong, 2 it failed.\n");
   return eo_app_print(&text);
 }
 
@@ -30,9 +33,9 @@ static int print_version(void)
   return eo_app_print(&text);
 }
 
-/* OpenBLAS starts its threads while the program is loaded, before anybody can block a signal for them: a SIGTERM that one of them takes
-   runs METIS's handler in the wrong thread. Only the environment keeps them away, so the program starts itself a second time. Where
-   that cannot be done it goes on as it is. */
+/* OpenBLAS starts its threads while the program is loaded, before anybody can block a signal for them: a SIGTERM that
+   one of them takes runs METIS's handler in the wrong thread. Only the environment keeps them away, so the program
+   starts itself a second time. Where that cannot be done it goes on as it is. */
 static void start_without_library_threads(char **argv)
 {
   static const char *const variable[] = {"OPENBLAS_NUM_THREADS", "OMP_THREAD_LIMIT"};

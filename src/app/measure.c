@@ -16,24 +16,25 @@ struct entry {
   const char *path, *gear_path; /* borrowed from the command line or the list */
   char *joined;                 /* owned: path as the list means it */
   bool unmodified;
-  double torque, speed;         /* N m, rad/s; NaN: not stated */
+  double torque, speed; /* N m, rad/s; NaN: not stated */
   int end;
-  json_t *layout;               /* owned */
+  json_t *layout; /* owned */
 };
 
 struct request {
-  const char *design_file, *label, *torque, *speed, *end, *harmonics, *layout, *gear, *list, *csv, *update, *apply, *data;
+  const char *design_file, *label, *torque, *speed, *end, *harmonics, *layout, *gear, *list, *csv, *update, *apply,
+      *data;
   bool json, no_cache, alone;
   struct eo_design design, updated;
   struct eo_geometry geometry;
   struct eo_warnings warnings;
   int entries, harmonic_count;
-  struct entry *entry;         /* owned */
+  struct entry *entry;                     /* owned */
   json_t *list_document, *update_document; /* owned */
-  json_t *documents;           /* owned array */
+  json_t *documents;                       /* owned array */
   struct eo_text text;
   int measured_count;
-  struct eo_measured *measured;/* owned, [entries]: those that were not refused */
+  struct eo_measured *measured; /* owned, [entries]: those that were not refused */
   struct eo_comparison comparison;
   struct eo_update_settings update_settings;
   struct eo_update fit;
@@ -50,7 +51,8 @@ static enum eo_code read_positive(const char *option, const char *text, double *
   return EO_OK;
 }
 
-static enum eo_code read_word(const char *what, const char *text, const char *const words[2], int fallback, int *value, struct eo_error *error)
+static enum eo_code read_word(const char *what, const char *text, const char *const words[2], int fallback, int *value,
+                              struct eo_error *error)
 {
   *value = fallback;
   for (int i = 0; text && i < 2; i++)
@@ -58,7 +60,9 @@ static enum eo_code read_word(const char *what, const char *text, const char *co
       *value = i;
       return EO_OK;
     }
-  return text ? eo_error_set(error, EO_ERROR_INPUT, "", "%s is \"%s\" or \"%s\", not \"%.40s\".", what, words[0], words[1], text) : EO_OK;
+  return text ? eo_error_set(error, EO_ERROR_INPUT, "", "%s is \"%s\" or \"%s\", not \"%.40s\".", what, words[0],
+                             words[1], text)
+              : EO_OK;
 }
 
 /* JSON given in place, or in a file. */
@@ -109,7 +113,8 @@ static enum eo_code read_item(const struct request *r, const json_t *item, struc
   e->path = e->joined = path.data;
   e->torque = stated(item, "torque_Nm", e->torque, 1);
   e->speed = stated(item, "speed_rpm", e->speed, M_PI / 30);
-  enum eo_code code = read_word("A label", json_string_value(json_object_get(item, "label")), label_words, e->unmodified, &unmodified, error);
+  enum eo_code code = read_word("A label", json_string_value(json_object_get(item, "label")), label_words,
+                                e->unmodified, &unmodified, error);
   if (!code)
     code = read_word("An end", json_string_value(json_object_get(item, "end")), end_words, e->end, &e->end, error);
   e->unmodified = unmodified == 1;
@@ -129,7 +134,8 @@ static enum eo_code read_entries(struct request *r, int files, const char *const
     return eo_error_set(error, EO_ERROR_INPUT, "/measurements", "The list holds an array \"measurements\".");
   int listed = (int)json_array_size(list);
   if (files + listed < 1 || files + listed > EO_MOST_MEASURED)
-    return eo_error_set(error, EO_ERROR_INPUT, "", "Between 1 and %d recordings are measured at once.", EO_MOST_MEASURED);
+    return eo_error_set(error, EO_ERROR_INPUT, "", "Between 1 and %d recordings are measured at once.",
+                        EO_MOST_MEASURED);
   if (r->gear && files + listed != 1)
     return eo_error_set(error, EO_ERROR_INPUT, "", "--gear goes with one recording.");
   r->entry = calloc((size_t)(files + listed), sizeof *r->entry);
@@ -186,13 +192,21 @@ static double usual_torque(const struct request *r, double speed)
   return best->torque;
 }
 
-static enum eo_code measure_all(struct request *r, const struct eo_progress *progress, const char **failed_at, struct eo_error *error)
+static enum eo_code measure_all(struct request *r, const struct eo_progress *progress, const char **failed_at,
+                                struct eo_error *error)
 {
   const char *folder = getenv("TMPDIR");
   for (int i = 0; i < r->entries; i++) {
     const struct entry *e = &r->entry[i];
-    struct eo_measure_request one = {.path = e->path, .gear_path = e->gear_path, .unmodified = e->unmodified, .torque = e->torque, .stated_speed = e->speed,
-                                     .end = e->end, .harmonics = r->harmonic_count, .layout = e->layout, .geometry = &r->geometry,
+    struct eo_measure_request one = {.path = e->path,
+                                     .gear_path = e->gear_path,
+                                     .unmodified = e->unmodified,
+                                     .torque = e->torque,
+                                     .stated_speed = e->speed,
+                                     .end = e->end,
+                                     .harmonics = r->harmonic_count,
+                                     .layout = e->layout,
+                                     .geometry = &r->geometry,
                                      .spool_directory = folder ? folder : "/tmp"};
     struct eo_measured *measured = &r->measured[r->measured_count];
     json_t *document;
@@ -205,7 +219,8 @@ static enum eo_code measure_all(struct request *r, const struct eo_progress *pro
     if (code)
       return code;
     if (isnan(e->torque))
-      eo_text_print(&r->text, "  note: no torque was stated; that of a load case of the design, %.6g N m, stands in.\n", one.torque);
+      eo_text_print(&r->text, "  note: no torque was stated; that of a load case of the design, %.6g N m, stands in.\n",
+                    one.torque);
     r->measured_count += measured->harmonics > 0;
   }
   *failed_at = NULL;
@@ -225,7 +240,8 @@ static enum eo_code compare(struct request *r, const struct eo_progress *progres
   if (!code)
     code = eo_comparison_run(&r->comparison, evaluator, &r->design, r->measured_count, r->measured, progress, error);
   if (!code && r->update)
-    code = eo_update_run(&r->fit, pair, &r->design, r->measured_count, r->measured, &r->update_settings, &r->updated, progress, error);
+    code = eo_update_run(&r->fit, pair, &r->design, r->measured_count, r->measured, &r->update_settings, &r->updated,
+                         progress, error);
   eo_evaluator_free(evaluator);
   eo_pair_free(pair);
   eo_text_done(&directory);
@@ -263,7 +279,8 @@ static json_t *encode(const struct request *r)
   eo_json_put(document, "program", json_string(eo_program), &failed);
   eo_json_put(document, "design_hash", eo_design_hash(&r->design, hash, NULL) ? NULL : json_string(hash), &failed);
   eo_json_put(document, "measurements", json_incref(r->documents), &failed);
-  eo_json_put(document, "comparison", compared ? eo_comparison_encode(&r->comparison, r->measured) : json_null(), &failed);
+  eo_json_put(document, "comparison", compared ? eo_comparison_encode(&r->comparison, r->measured) : json_null(),
+              &failed);
   eo_json_put(document, "update", r->update && compared ? eo_update_encode(&r->fit) : json_null(), &failed);
   return failed ? (json_decref(document), NULL) : document;
 }
@@ -328,12 +345,22 @@ static int run(const struct eo_command *command, int argc, char **argv)
     eo_error_memory(&error);
     return eo_app_fail(NULL, &error);
   }
-  const struct eo_option options[] = {
-      {.name = "--label", .value = &r->label},   {.name = "--torque", .value = &r->torque}, {.name = "--speed", .value = &r->speed},
-      {.name = "--end", .value = &r->end},       {.name = "--harmonics", .value = &r->harmonics}, {.name = "--layout", .value = &r->layout},
-      {.name = "--gear", .value = &r->gear},     {.name = "--list", .value = &r->list},     {.name = "--csv", .value = &r->csv},
-      {.name = "--update", .value = &r->update}, {.name = "--apply", .value = &r->apply},   {.name = "--data", .value = &r->data},
-      {.name = "--json", .flag = &r->json},      {.name = "--no-cache", .flag = &r->no_cache}, {.name = "--no-prediction", .flag = &r->alone}, {.name = NULL}};
+  const struct eo_option options[] = {{.name = "--label", .value = &r->label},
+                                      {.name = "--torque", .value = &r->torque},
+                                      {.name = "--speed", .value = &r->speed},
+                                      {.name = "--end", .value = &r->end},
+                                      {.name = "--harmonics", .value = &r->harmonics},
+                                      {.name = "--layout", .value = &r->layout},
+                                      {.name = "--gear", .value = &r->gear},
+                                      {.name = "--list", .value = &r->list},
+                                      {.name = "--csv", .value = &r->csv},
+                                      {.name = "--update", .value = &r->update},
+                                      {.name = "--apply", .value = &r->apply},
+                                      {.name = "--data", .value = &r->data},
+                                      {.name = "--json", .flag = &r->json},
+                                      {.name = "--no-cache", .flag = &r->no_cache},
+                                      {.name = "--no-prediction", .flag = &r->alone},
+                                      {.name = NULL}};
   if (!eo_app_arguments(command, argc, argv, options, 1, argc, operand, &operands, &status))
     goto out;
   r->design_file = operand[0];
@@ -348,23 +375,31 @@ out:
 }
 
 const struct eo_command eo_command_measure = {
-    "measure", "DESIGN.json FILE... [--label L] [--torque T] [--speed S] [--layout JSON] [--json]", "rig files: transmission error, vibration, beside the prediction",
-    "Reads recordings of two encoders (text, gzip, MATLAB, TDMS, UFF 58, HDF5), says what is wrong with them, and sets the vibration of the mesh orders\n"
+    "measure", "DESIGN.json FILE... [--label L] [--torque T] [--speed S] [--layout JSON] [--json]",
+    "rig files: transmission error, vibration, beside the prediction",
+    "Reads recordings of two encoders (text, gzip, MATLAB, TDMS, UFF 58, HDF5), says what is wrong with them, and sets "
+    "the vibration of the mesh orders\n"
     "beside the prediction at their torque and measured speed. The options hold for all files:\n"
     "  --label modified|unmodified   which of the two the recording shows (modified)\n"
     "  --torque N m, --speed rpm     of the pinion; the speed is only checked\n"
     "  --end left|right              where the encoders sit (right)\n"
     "  --harmonics N                 mesh orders (8)\n"
-    "  --layout JSON                 what the columns mean, in place or a file: {\"kind\": \"angles|sine-cosine|pulses\", \"unit\": \"deg|rad|turn|count\",\n"
-    "                                \"time\": COLUMN, \"columns\": {\"pinion\": COLUMN or [SINE, COSINE], \"gear\": ...}, \"sample_rate_Hz\", \"lines\"}; guessed else\n"
+    "  --layout JSON                 what the columns mean, in place or a file: {\"kind\": "
+    "\"angles|sine-cosine|pulses\", \"unit\": \"deg|rad|turn|count\",\n"
+    "                                \"time\": COLUMN, \"columns\": {\"pinion\": COLUMN or [SINE, COSINE], \"gear\": "
+    "...}, \"sample_rate_Hz\", \"lines\"}; guessed else\n"
     "  --gear FILE                   the gear's encoder, when each has a file of its own\n"
-    "  --list LIST.json              {\"measurements\": [{\"file\", \"label\", \"torque_Nm\", \"speed_rpm\", \"end\", \"layout\"}, ...]}, files relative to it\n"
+    "  --list LIST.json              {\"measurements\": [{\"file\", \"label\", \"torque_Nm\", \"speed_rpm\", \"end\", "
+    "\"layout\"}, ...]}, files relative to it\n"
     "  --no-prediction               the recordings alone\n"
     "  --csv FILE                    measured and predicted, one line per recording\n"
-    "  --update JSON                 fits inputs within ranges: {\"unknowns\": {\"pinion_bearing_stiffness_N_per_um\": [200, 3000], ...}}; known are\n"
-    "                                pinion_ and gear_bearing_stiffness_N_per_um, mesh_damping_ratio, gear_ and pinion_axial_stiffness_N_per_um,\n"
-    "                                shaft_angle_error_in_plane_deg, shaft_angle_error_out_of_plane_deg, impact_patch_mm\n"
+    "  --update JSON                 fits inputs within ranges: {\"unknowns\": {\"pinion_bearing_stiffness_N_per_um\": "
+    "[200, 3000], ...}}; known are\n"
+    "                                pinion_ and gear_bearing_stiffness_N_per_um, mesh_damping_ratio, gear_ and "
+    "pinion_axial_stiffness_N_per_um,\n"
+    "                                shaft_angle_error_in_plane_deg, shaft_angle_error_out_of_plane_deg, "
+    "impact_patch_mm\n"
     "  --apply FILE                  writes the design with the inputs found\n"
-    "Exit status 1 also when every recording was refused.\n\n"
-    EO_APP_DATA_HELP
-    "--no-cache neither reads nor keeps it.\n", run};
+    "Exit status 1 also when every recording was refused.\n\n" EO_APP_DATA_HELP
+    "--no-cache neither reads nor keeps it.\n",
+    run};

@@ -12,6 +12,7 @@ bool eo_app_read_whole(const char *text, const char *option, int low, int high, 
     *value = (int)number;
     return true;
   }
-  eo_error_set(error, EO_ERROR_INPUT, "", "%s takes a whole number of %d .. %d, not \"%.40s\".", option, low, high, text);
+  eo_error_set(error, EO_ERROR_INPUT, "", "%s takes a whole number of %d .. %d, not \"%.40s\".", option, low, high,
+               text);
   return false;
 }

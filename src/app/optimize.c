@@ -42,8 +42,9 @@ static int show_progress(void *context, const struct eo_study_report *r)
       snprintf(best, sizeof best, "%.4g", r->best->value.objective);
       snprintf(sums, sizeof sums, ", %.3g um, %.4g N, %.3g m/s2", 1e6 * f[0], f[1], f[2]);
     }
-    snprintf(line, sizeof line, "%3.0f %%, %s left, J %s, gen %d, true %d, predicted %d, known %d, PFC %.0f %%%s", 100 * r->fraction, left, best, r->generation,
-             r->true_evaluations, r->predicted, r->reused, r->individuals ? 100. * r->true_evaluations / r->individuals : 100, sums);
+    snprintf(line, sizeof line, "%3.0f %%, %s left, J %s, gen %d, true %d, predicted %d, known %d, PFC %.0f %%%s",
+             100 * r->fraction, left, best, r->generation, r->true_evaluations, r->predicted, r->reused,
+             r->individuals ? 100. * r->true_evaluations / r->individuals : 100, sums);
     eo_watch_show(watch, line);
   }
   return watch->stopped;
@@ -56,7 +57,8 @@ static bool apply_options(struct request *q, struct eo_error *error)
   int budget = o->true_evaluations;
   q->thread_count = 0;
   if (q->algorithm && eo_optimizer_algorithm_find(q->algorithm) < 0) {
-    eo_error_set(error, EO_ERROR_INPUT, "", "\"%.40s\" is no algorithm: credibility-ga, fpga, ga or nsga2.", q->algorithm);
+    eo_error_set(error, EO_ERROR_INPUT, "", "\"%.40s\" is no algorithm: credibility-ga, fpga, ga or nsga2.",
+                 q->algorithm);
     return false;
   }
   if (q->algorithm)
@@ -67,7 +69,8 @@ static bool apply_options(struct request *q, struct eo_error *error)
   return !q->threads || eo_app_read_whole(q->threads, "--threads", 1, EO_MAX_THREADS, &q->thread_count, error);
 }
 
-static enum eo_code prepare(struct request *q, const struct eo_progress *progress, struct eo_pair **pair, struct eo_error *error)
+static enum eo_code prepare(struct request *q, const struct eo_progress *progress, struct eo_pair **pair,
+                            struct eo_error *error)
 {
   struct eo_text directory = {0};
   bool keep = eo_app_cache_directory(q->data, &directory);
@@ -89,8 +92,14 @@ static int show(const struct request *q, json_t *document)
 
 static int run_study(struct request *q, const struct eo_pair *pair, struct eo_store *store, struct eo_watch *watch)
 {
-  const struct eo_study_plan plan = {.design = &q->design, .pair = pair, .store = store, .threads = q->thread_count, .fresh = q->fresh,
-                                     .restart = q->restart, .watch = show_progress, .context = watch};
+  const struct eo_study_plan plan = {.design = &q->design,
+                                     .pair = pair,
+                                     .store = store,
+                                     .threads = q->thread_count,
+                                     .fresh = q->fresh,
+                                     .restart = q->restart,
+                                     .watch = show_progress,
+                                     .context = watch};
   struct eo_study_result result;
   struct eo_error error;
   json_t *document = NULL;
@@ -139,10 +148,14 @@ static int run(const struct eo_command *command, int argc, char **argv)
     eo_error_memory(&error);
     return eo_app_fail(NULL, &error);
   }
-  const struct eo_option options[] = {{.name = "--algorithm", .value = &q->algorithm}, {.name = "--budget", .value = &q->budget},
-                                      {.name = "--threads", .value = &q->threads}, {.name = "--data", .value = &q->data},
-                                      {.name = "--json", .flag = &q->json}, {.name = "--fresh", .flag = &q->fresh},
-                                      {.name = "--restart", .flag = &q->restart}, {.name = NULL}};
+  const struct eo_option options[] = {{.name = "--algorithm", .value = &q->algorithm},
+                                      {.name = "--budget", .value = &q->budget},
+                                      {.name = "--threads", .value = &q->threads},
+                                      {.name = "--data", .value = &q->data},
+                                      {.name = "--json", .flag = &q->json},
+                                      {.name = "--fresh", .flag = &q->fresh},
+                                      {.name = "--restart", .flag = &q->restart},
+                                      {.name = NULL}};
   if (eo_app_arguments(command, argc, argv, options, 1, 1, &q->file, &operands, &status) &&
       eo_app_load_design(q->file, &q->design, &q->geometry, &q->warnings, &status))
     status = run_request(q);
@@ -153,13 +166,15 @@ static int run(const struct eo_command *command, int argc, char **argv)
 const struct eo_command eo_command_optimize = {
     "optimize", "DESIGN.json [--algorithm NAME] [--budget N] [--threads N] [--data DIR] [--fresh] [--restart] [--json]",
     "searches the modification that runs quietest over the duty cycle",
-    "Every evaluation is kept in the history (see easeoff history) and used again by later searches of the same pair, whatever their\n"
-    "weights, bounds and algorithm. Ctrl-C prints the best so far. The same search once more takes up an interrupted one where it stopped\n"
+    "Every evaluation is kept in the history (see easeoff history) and used again by later searches of the same pair, "
+    "whatever their\n"
+    "weights, bounds and algorithm. Ctrl-C prints the best so far. The same search once more takes up an interrupted "
+    "one where it stopped\n"
     "and gives the result of a finished one again; --restart searches on.\n\n"
     "  --algorithm NAME  credibility-ga, fpga, ga or nsga2, in place of the design's\n"
     "  --budget N        most true evaluations, in place of the design's true_evaluations\n"
     "  --threads N       evaluations at a time (default: all cores); the result does not depend on it\n"
     "  --fresh           the algorithm is told nothing of earlier searches; what it asks for is still looked up\n"
     "  --restart         a new search of the same kind, which knows what the earlier ones found\n"
-    "  --json            the result document, as the server returns it\n\n"
-    EO_APP_HISTORY_HELP EO_APP_DATA_HELP, run};
+    "  --json            the result document, as the server returns it\n\n" EO_APP_HISTORY_HELP EO_APP_DATA_HELP,
+    run};

@@ -55,7 +55,10 @@ static int run_request(struct request *q)
     code = eo_store_open(&store, data.data, EO_STORE_WRITE, &error);
   bool keep = eo_app_cache_directory(q->data, &cache);
   eo_watch_start(&watch);
-  const struct eo_reproduction_plan plan = {.store = store, .cache_directory = keep ? cache.data : NULL, .threads = q->thread_count, .quick = q->quick,
+  const struct eo_reproduction_plan plan = {.store = store,
+                                            .cache_directory = keep ? cache.data : NULL,
+                                            .threads = q->thread_count,
+                                            .quick = q->quick,
                                             .progress = &watch.progress};
   if (!code)
     code = eo_reproduction_run(&plan, &document, &error);
@@ -74,17 +77,25 @@ static int run(const struct eo_command *command, int argc, char **argv)
 {
   struct request q = {0};
   int operands, status;
-  const struct eo_option options[] = {{.name = "--json", .flag = &q.json}, {.name = "--csv", .value = &q.csv}, {.name = "--html", .value = &q.html},
-                                      {.name = "--data", .value = &q.data}, {.name = "--threads", .value = &q.threads},
-                                      {.name = "--quick", .flag = &q.quick}, {.name = NULL}};
+  const struct eo_option options[] = {{.name = "--json", .flag = &q.json},
+                                      {.name = "--csv", .value = &q.csv},
+                                      {.name = "--html", .value = &q.html},
+                                      {.name = "--data", .value = &q.data},
+                                      {.name = "--threads", .value = &q.threads},
+                                      {.name = "--quick", .flag = &q.quick},
+                                      {.name = NULL}};
   if (eo_app_arguments(command, argc, argv, options, 0, 0, NULL, &operands, &status))
     status = run_request(&q);
   return status;
 }
 
 const struct eo_command eo_command_reproduce = {
-    "reproduce", "[--quick] [--json] [--csv DIR] [--html FILE] [--data DIR] [--threads N]", "the paper's tables and figures beside ours",
-    "Runs the paper's pair unmodified, with Table 3 as given, and optimizes its two cases with the paper's algorithm, the plain genetic\n"
-    "algorithm and ours; then prints every number of the paper beside ours and whether trend and value agree. Some minutes the first\n"
-    "time; the history answers from then on. --quick takes a tenth of the generations. --html writes one page with all figures.\n\n"
-    EO_APP_HISTORY_HELP EO_APP_DATA_HELP, run};
+    "reproduce", "[--quick] [--json] [--csv DIR] [--html FILE] [--data DIR] [--threads N]",
+    "the paper's tables and figures beside ours",
+    "Runs the paper's pair unmodified, with Table 3 as given, and optimizes its two cases with the paper's algorithm, "
+    "the plain genetic\n"
+    "algorithm and ours; then prints every number of the paper beside ours and whether trend and value agree. Some "
+    "minutes the first\n"
+    "time; the history answers from then on. --quick takes a tenth of the generations. --html writes one page with all "
+    "figures.\n\n" EO_APP_HISTORY_HELP EO_APP_DATA_HELP,
+    run};

@@ -29,10 +29,11 @@ struct options {
 
 static void make_options(struct request *r, struct options *o)
 {
-  const struct eo_option own[OWN_OPTIONS] = {{.name = "--design", .value = &r->design_file}, {.name = "-o", .value = &r->output},
-                                             {.name = "--truth", .value = &r->truth},        {.name = "--settings", .value = &r->settings},
-                                             {.name = "--torque", .value = &r->torque},      {.name = "--speed", .value = &r->speed},
-                                             {.name = "--data", .value = &r->data},          {.name = "--no-cache", .flag = &r->no_cache}};
+  const struct eo_option own[OWN_OPTIONS] = {
+      {.name = "--design", .value = &r->design_file}, {.name = "-o", .value = &r->output},
+      {.name = "--truth", .value = &r->truth},        {.name = "--settings", .value = &r->settings},
+      {.name = "--torque", .value = &r->torque},      {.name = "--speed", .value = &r->speed},
+      {.name = "--data", .value = &r->data},          {.name = "--no-cache", .flag = &r->no_cache}};
   memcpy(o->option, own, sizeof own);
   for (int i = 0; i < eo_rig_table.count; i++) {
     snprintf(o->name[i], NAME_SIZE, "--%s", eo_rig_table.field[i].key);
@@ -94,7 +95,8 @@ static bool read_settings(struct request *r, const struct options *o, int *statu
   return *status == EO_EXIT_DONE;
 }
 
-static enum eo_code respond(struct request *r, const struct eo_progress *progress, struct eo_rig_prediction *prediction, struct eo_error *error)
+static enum eo_code respond(struct request *r, const struct eo_progress *progress, struct eo_rig_prediction *prediction,
+                            struct eo_error *error)
 {
   struct eo_text directory = {0};
   bool keep = !r->no_cache && eo_app_cache_directory(r->data, &directory);
@@ -105,9 +107,11 @@ static enum eo_code respond(struct request *r, const struct eo_progress *progres
   if (!code)
     code = eo_evaluator_new(&evaluator, pair, 1, error);
   if (!code)
-    code = eo_prediction_run(prediction, evaluator, &r->design, r->rig.unmodified, r->rig.torque, r->rig.speed, r->rig.end, r->rig.harmonics, error);
+    code = eo_prediction_run(prediction, evaluator, &r->design, r->rig.unmodified, r->rig.torque, r->rig.speed,
+                             r->rig.end, r->rig.harmonics, error);
   if (!code && !prediction->valid)
-    code = eo_error_set(error, EO_ERROR_INPUT, "", "The design has no periodic vibration at %g N m and %g rpm.", r->rig.torque, r->rig.speed * 30 / M_PI);
+    code = eo_error_set(error, EO_ERROR_INPUT, "", "The design has no periodic vibration at %g N m and %g rpm.",
+                        r->rig.torque, r->rig.speed * 30 / M_PI);
   eo_evaluator_free(evaluator);
   eo_pair_free(pair);
   eo_text_done(&directory);
@@ -123,7 +127,8 @@ static enum eo_code write_file(const struct request *r, const struct eo_progress
   eo_text_print(&part, "%s.part", r->output);
   FILE *stream = part.failed ? NULL : fopen(part.data, "w");
   enum eo_code code = stream ? eo_rig_write(&r->rig, progress, stream, error)
-                             : eo_error_set(error, EO_ERROR_FILE, "", "%.200s cannot be written: %s.", r->output, strerror(errno));
+                             : eo_error_set(error, EO_ERROR_FILE, "", "%.200s cannot be written: %s.", r->output,
+                                            strerror(errno));
   if (stream && fclose(stream) && !code)
     code = eo_error_set(error, EO_ERROR_FILE, "", "%.200s cannot be written: %s.", r->output, strerror(errno));
   if (!code && rename(part.data, r->output))
@@ -192,7 +197,8 @@ static int run(const struct eo_command *command, int argc, char **argv)
   if (!r->design_file || !r->output) {
     eo_error_set(&error, EO_ERROR_INPUT, "", "A rig needs --design FILE and -o FILE.");
     status = eo_app_fail(NULL, &error);
-  } else if (read_settings(r, o, &status) && eo_app_load_design(r->design_file, &r->design, &r->geometry, NULL, &status)) {
+  } else if (read_settings(r, o, &status) &&
+             eo_app_load_design(r->design_file, &r->design, &r->geometry, NULL, &status)) {
     status = run_request(r);
   }
 out:
@@ -202,13 +208,20 @@ out:
 }
 
 const struct eo_command eo_command_rig = {
-    "rig", "--design FILE --torque T --speed S -o FILE [--truth FILE] [--KEY VALUE]...", "a recording of a rig that does not exist, with known truth",
-    "Simulates the design at a torque (N m, on the pinion) and speed (rpm) and writes what two encoders would record. --truth writes a case file\n"
-    "for easeoff verify beside it. Every key of the settings is an option, for instance --sample-rate-Hz 50000 --output sine-cosine\n"
-    "--pinion-lines 200 --fault slip --fault-row 5000 --separator semicolon --decimal-comma yes; --settings FILE.json holds them as JSON:\n"
-    "turns, sample_rate_Hz, noise_urad, jitter_us, skew_us, speed_drift, speed_swing, pinion_eccentricity_um, gear_eccentricity_um, pinion_lines,\n"
-    "gear_lines, interpolation, output (angles, counts, sine-cosine, pulses), wrapped, radians, track_amplitude_V, track_offset, track_gain,\n"
-    "track_phase_deg, track_noise_mV, track_step_mV, fault, fault_row, fault_size, seed, separator, heading, decimal_comma, byte_order_mark,\n"
-    "carriage_return, end, unmodified, harmonics. The same settings give the same bytes.\n\n"
-    EO_APP_DATA_HELP
-    "--no-cache neither reads nor keeps it.\n", run};
+    "rig", "--design FILE --torque T --speed S -o FILE [--truth FILE] [--KEY VALUE]...",
+    "a recording of a rig that does not exist, with known truth",
+    "Simulates the design at a torque (N m, on the pinion) and speed (rpm) and writes what two encoders would record. "
+    "--truth writes a case file\n"
+    "for easeoff verify beside it. Every key of the settings is an option, for instance --sample-rate-Hz 50000 "
+    "--output sine-cosine\n"
+    "--pinion-lines 200 --fault slip --fault-row 5000 --separator semicolon --decimal-comma yes; --settings FILE.json "
+    "holds them as JSON:\n"
+    "turns, sample_rate_Hz, noise_urad, jitter_us, skew_us, speed_drift, speed_swing, pinion_eccentricity_um, "
+    "gear_eccentricity_um, pinion_lines,\n"
+    "gear_lines, interpolation, output (angles, counts, sine-cosine, pulses), wrapped, radians, track_amplitude_V, "
+    "track_offset, track_gain,\n"
+    "track_phase_deg, track_noise_mV, track_step_mV, fault, fault_row, fault_size, seed, separator, heading, "
+    "decimal_comma, byte_order_mark,\n"
+    "carriage_return, end, unmodified, harmonics. The same settings give the same bytes.\n\n" EO_APP_DATA_HELP
+    "--no-cache neither reads nor keeps it.\n",
+    run};

@@ -77,8 +77,8 @@ static void block_signals(sigset_t *signals)
   signal(SIGPIPE, SIG_IGN);
 }
 
-/* Tells a service manager that waits for it that requests are answered (sd_notify(3): a datagram to $NOTIFY_SOCKET); without one, or when
-   it does not listen, nothing is lost. */
+/* Tells a service manager that waits for it that requests are answered (sd_notify(3): a datagram to $NOTIFY_SOCKET);
+   without one, or when it does not listen, nothing is lost. */
 static void tell_manager(void)
 {
   static const char ready[] = "READY=1";
@@ -158,24 +158,35 @@ static int run(const struct eo_command *command, int argc, char **argv)
   struct request request = {0};
   const char *none;
   int operands, status;
-  const struct eo_option options[] = {{.name = "--listen", .value = &request.listen},   {.name = "--data", .value = &request.data},
-                                      {.name = "--token-file", .value = &request.token_file}, {.name = "--allow-anyone", .flag = &request.allow_anyone},
-                                      {.name = "--host", .value = &request.host},       {.name = "--web", .value = &request.pages},
-                                      {.name = "--threads", .value = &request.threads}, {.name = "--quiet", .flag = &request.quiet},
+  const struct eo_option options[] = {{.name = "--listen", .value = &request.listen},
+                                      {.name = "--data", .value = &request.data},
+                                      {.name = "--token-file", .value = &request.token_file},
+                                      {.name = "--allow-anyone", .flag = &request.allow_anyone},
+                                      {.name = "--host", .value = &request.host},
+                                      {.name = "--web", .value = &request.pages},
+                                      {.name = "--threads", .value = &request.threads},
+                                      {.name = "--quiet", .flag = &request.quiet},
                                       {.name = NULL}};
   if (!eo_app_arguments(command, argc, argv, options, 0, 0, &none, &operands, &status))
     return status;
   return run_request(&request);
 }
 
-const struct eo_command eo_command_serve = {
-    "serve", "[--listen ADDRESS:PORT] [--data DIR] [--token-file FILE | --allow-anyone] [--host NAME] [--web DIR] [--threads N] [--quiet]",
-    "the page and the API, until SIGTERM or Ctrl-C",
-    "Listens at 127.0.0.1:8080 unless told otherwise; port 0 takes a free one. The address is printed on standard output, one JSON line per\n"
-    "request goes to standard error (not with --quiet).\n\n"
-    "An address that others can reach needs a token, which every client then has to give: the first line of --token-file, or\n"
-    "$EASEOFF_TOKEN. --allow-anyone does without. --host names the server as clients call it, when that is neither localhost nor a\n"
-    "plain address and there is no token.\n\n"
-    "The page's files are read from --web DIR, else $EASEOFF_WEB, else where they were installed.\n\n" EO_APP_HISTORY_HELP EO_APP_DATA_HELP
-    "A service manager that gives $NOTIFY_SOCKET hears when requests are answered. On SIGTERM and Ctrl-C running jobs are parked; they go on\n"
-    "when the server starts again.\n", run};
+const struct eo_command eo_command_serve = {"serve",
+                                            "[--listen ADDRESS:PORT] [--data DIR] [--token-file FILE | --allow-anyone] "
+                                            "[--host NAME] [--web DIR] [--threads N] [--quiet]",
+                                            "the page and the API, until SIGTERM or Ctrl-C",
+                                            "Listens at 127.0.0.1:8080 unless told otherwise; port 0 takes a free one. "
+                                            "The address is printed on standard output, one JSON line per\n"
+                                            "request goes to standard error (not with --quiet).\n\n"
+                                            "An address that others can reach needs a token, which every client then "
+                                            "has to give: the first line of --token-file, or\n"
+                                            "$EASEOFF_TOKEN. --allow-anyone does without. --host names the server as "
+                                            "clients call it, when that is neither localhost nor a\n"
+                                            "plain address and there is no token.\n\n"
+                                            "The page's files are read from --web DIR, else $EASEOFF_WEB, else where "
+                                            "they were installed.\n\n" EO_APP_HISTORY_HELP EO_APP_DATA_HELP
+                                            "A service manager that gives $NOTIFY_SOCKET hears when requests are "
+                                            "answered. On SIGTERM and Ctrl-C running jobs are parked; they go on\n"
+                                            "when the server starts again.\n",
+                                            run};

@@ -7,9 +7,9 @@
 #include "document/json.h"
 
 static const struct eo_stage *const stages[] = {
-    &eo_stage_geometry, &eo_stage_modification, &eo_stage_surface, &eo_stage_gap,     &eo_stage_tca,       &eo_stage_flexibility, &eo_stage_hertz,
-    &eo_stage_contact,  &eo_stage_impact,       &eo_stage_root_stress, &eo_stage_iso6336, &eo_stage_dynamics,  &eo_stage_sdof,
-    &eo_stage_objective, &eo_stage_evaluation,
+    &eo_stage_geometry,    &eo_stage_modification, &eo_stage_surface, &eo_stage_gap,       &eo_stage_tca,
+    &eo_stage_flexibility, &eo_stage_hertz,        &eo_stage_contact, &eo_stage_impact,    &eo_stage_root_stress,
+    &eo_stage_iso6336,     &eo_stage_dynamics,     &eo_stage_sdof,    &eo_stage_objective, &eo_stage_evaluation,
 };
 enum { STAGES = sizeof stages / sizeof stages[0] };
 
@@ -29,7 +29,9 @@ static int list_stages(void)
 static int describe_stage(const struct eo_stage *stage)
 {
   struct eo_text text = {0};
-  eo_text_print(&text, "usage: easeoff stage %s INPUT.json\n\n%s.\n\nInput, a JSON object (the other keys of a design document may be there and are not used):\n",
+  eo_text_print(&text,
+                "usage: easeoff stage %s INPUT.json\n\n%s.\n\nInput, a JSON object (the other keys of a design "
+                "document may be there and are not used):\n",
                 stage->name, stage->summary);
   eo_table_describe(stage->input, false, &text);
   eo_text_add(&text, "\nOutput:\n");
@@ -110,7 +112,9 @@ static int run(const struct eo_command *command, int argc, char **argv)
     return run_stage(stage, operand[1]);
   struct eo_error error;
   if (stage)
-    eo_error_set(&error, EO_ERROR_INPUT, "", "The input file of stage %s is missing; easeoff stage %s --help describes it.", stage->name, stage->name);
+    eo_error_set(&error, EO_ERROR_INPUT, "",
+                 "The input file of stage %s is missing; easeoff stage %s --help describes it.", stage->name,
+                 stage->name);
   else
     eo_error_set(&error, EO_ERROR_INPUT, "", "There is no stage \"%.40s\"; easeoff stage lists them.", operand[0]);
   return eo_app_fail(NULL, &error);
@@ -118,5 +122,7 @@ static int run(const struct eo_command *command, int argc, char **argv)
 
 const struct eo_command eo_command_stage = {
     "stage", "[NAME INPUT.json]", "runs one stage of the computation alone; without a name, the list of stages",
-    "easeoff stage NAME --help describes the stage's input and output. A complete design document is an input for stages that\n"
-    "need no more than a part of one: easeoff example paper | easeoff stage geometry -\n", run};
+    "easeoff stage NAME --help describes the stage's input and output. A complete design document is an input for "
+    "stages that\n"
+    "need no more than a part of one: easeoff example paper | easeoff stage geometry -\n",
+    run};

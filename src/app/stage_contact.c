@@ -37,11 +37,13 @@ struct points_output {
 static const struct eo_field points_output[] = {
     EO_OUT_SERIES(struct points_output, column[POSITION], "position", NULL, "index of the phase, from 0"),
     EO_OUT_SERIES(struct points_output, column[PAIR], "pair", NULL, "tooth pair"),
-    EO_OUT_SERIES(struct points_output, column[S], "s_mm", &eo_unit_mm, "on the plane of action; beyond the path of contact at a tip edge"),
+    EO_OUT_SERIES(struct points_output, column[S], "s_mm", &eo_unit_mm,
+                  "on the plane of action; beyond the path of contact at a tip edge"),
     EO_OUT_SERIES(struct points_output, column[ETA], "eta_mm", &eo_unit_mm, "axial"),
     EO_OUT_SERIES(struct points_output, column[POINT_GAP], "gap_um", &eo_unit_um, "before any load, normal"),
     EO_OUT_SERIES(struct points_output, column[LENGTH], "length_mm", &eo_unit_mm, "of its piece of the contact line"),
-    EO_OUT_SERIES(struct points_output, column[POINT_LOAD], "line_load_N_per_mm", &eo_unit_N_per_mm, "load per length of contact line"),
+    EO_OUT_SERIES(struct points_output, column[POINT_LOAD], "line_load_N_per_mm", &eo_unit_N_per_mm,
+                  "load per length of contact line"),
     EO_OUT_SERIES(struct points_output, column[POINT_PRESSURE], "pressure_MPa", &eo_unit_MPa, "largest Hertz pressure"),
 };
 static const struct eo_table points_table = EO_TABLE("points", struct points_output, points_output);
@@ -59,21 +61,26 @@ struct end_output {
 
 static const struct eo_field end_output[] = {
     EO_OUT(struct end_output, datum, "datum_um", &eo_unit_um, "smallest gap anywhere on the active flank, normal"),
-    EO_OUT(struct end_output, peak_to_peak, "peak_to_peak_um", &eo_unit_um, "of this end's transmission error alone, transverse, over the phases given"),
+    EO_OUT(struct end_output, peak_to_peak, "peak_to_peak_um", &eo_unit_um,
+           "of this end's transmission error alone, transverse, over the phases given"),
     EO_OUT(struct end_output, line_load, "max_line_load_N_per_mm", &eo_unit_N_per_mm, "over all phases"),
     EO_OUT(struct end_output, pressure, "max_pressure_MPa", &eo_unit_MPa, "over all phases, Hertz"),
     EO_OUT(struct end_output, edge_share, "max_edge_share", NULL, "largest part of the load on tip edges"),
     EO_INTEGER(struct end_output, failures, "not_converged", 0, 1e6, 0, "phases without a solution"),
-    EO_OUT_SERIES(struct end_output, column[UNLOADED], "unloaded_um", &eo_unit_um, "Z_0: approach at first contact, normal"),
-    EO_OUT_SERIES(struct end_output, column[APPROACH], "approach_um", &eo_unit_um, "Z, normal; the transmission error is Z / cos(beta_b)"),
-    EO_OUT_SERIES(struct end_output, column[STIFFNESS], "stiffness_N_per_um", &eo_unit_N_per_um, "k = P / (Z - Z_0), normal"),
+    EO_OUT_SERIES(struct end_output, column[UNLOADED], "unloaded_um", &eo_unit_um,
+                  "Z_0: approach at first contact, normal"),
+    EO_OUT_SERIES(struct end_output, column[APPROACH], "approach_um", &eo_unit_um,
+                  "Z, normal; the transmission error is Z / cos(beta_b)"),
+    EO_OUT_SERIES(struct end_output, column[STIFFNESS], "stiffness_N_per_um", &eo_unit_N_per_um,
+                  "k = P / (Z - Z_0), normal"),
     EO_OUT_SERIES(struct end_output, column[TANGENT], "tangent_N_per_um", &eo_unit_N_per_um, "k_tan = dP/dZ, normal"),
     EO_OUT_SERIES(struct end_output, column[LOAD], "load_N", &eo_unit_N, "P of the end, normal"),
     EO_OUT_SERIES(struct end_output, column[LINE_LOAD], "line_load_N_per_mm", &eo_unit_N_per_mm, "largest on any line"),
     EO_OUT_SERIES(struct end_output, column[PRESSURE], "pressure_MPa", &eo_unit_MPa, "largest Hertz pressure"),
     EO_OUT_SERIES(struct end_output, column[EDGE], "edge_share", NULL, "part of the load on tip edges"),
     EO_LIST(struct end_output, pair, pairs, "pairs", &pair_table, 0, MOST_PAIRS, "how the pairs share the load"),
-    EO_OPTIONAL(struct end_output, points, has_points, "points", &points_table, "not asked for", "every point, line by line"),
+    EO_OPTIONAL(struct end_output, points, has_points, "points", &points_table, "not asked for",
+                "every point, line by line"),
 };
 static const struct eo_table end_table = EO_TABLE("an end", struct end_output, end_output);
 
@@ -87,10 +94,13 @@ struct load_output {
 static const struct eo_field load_output[] = {
     EO_OUT(struct load_output, force, "force_N", &eo_unit_N, "normal, mean of the ends"),
     EO_OUT(struct load_output, torque, "torque_Nm", &eo_unit_Nm, "on the pinion shaft"),
-    EO_OUT(struct load_output, mean, "mean_um", &eo_unit_um, "of the pair's loaded transmission error, transverse, over the phases given"),
+    EO_OUT(struct load_output, mean, "mean_um", &eo_unit_um,
+           "of the pair's loaded transmission error, transverse, over the phases given"),
     EO_OUT(struct load_output, peak_to_peak, "peak_to_peak_um", &eo_unit_um, "of the same"),
-    EO_OUT(struct load_output, float_mean, "axial_float_um", &eo_unit_um, "mean axial displacement of the pinion, (Z_left - Z_right) / (2 sin beta_b)"),
-    EO_OUT_SERIES(struct load_output, transmission, "transmission_error_um", &eo_unit_um, "of the pair: mean of the ends, transverse"),
+    EO_OUT(struct load_output, float_mean, "axial_float_um", &eo_unit_um,
+           "mean axial displacement of the pinion, (Z_left - Z_right) / (2 sin beta_b)"),
+    EO_OUT_SERIES(struct load_output, transmission, "transmission_error_um", &eo_unit_um,
+                  "of the pair: mean of the ends, transverse"),
     EO_OBJECT(struct load_output, left, "left", &end_table, "left end"),
     EO_OPTIONAL(struct load_output, right, two, "right", &end_table, "the pair has one end", "right end"),
 };
@@ -121,12 +131,14 @@ static void pair_range(const struct eo_contact_grid *grid, int range[2])
     }
 }
 
-static enum eo_code read_pairs(struct end_output *out, const struct eo_contact_grid *grid, const double *line_load, struct eo_error *error)
+static enum eo_code read_pairs(struct end_output *out, const struct eo_contact_grid *grid, const double *line_load,
+                               struct eo_error *error)
 {
   int range[2];
   pair_range(grid, range);
   if (range[1] - range[0] >= MOST_PAIRS)
-    return eo_error_set(error, EO_ERROR_INPUT, "/gear_pair/face_width_mm", "More than %d pairs of teeth are in mesh.", (int)MOST_PAIRS);
+    return eo_error_set(error, EO_ERROR_INPUT, "/gear_pair/face_width_mm", "More than %d pairs of teeth are in mesh.",
+                        (int)MOST_PAIRS);
   out->pairs = range[1] - range[0] + 1;
   for (int k = 0; k < out->pairs; k++) {
     out->pair[k].pair = range[0] + k;
@@ -142,15 +154,21 @@ static enum eo_code read_pairs(struct end_output *out, const struct eo_contact_g
   return EO_OK;
 }
 
-static enum eo_code read_points(struct points_output *out, const struct eo_contact_grid *grid, const double *gap, const double *line_load,
-                                struct eo_error *error)
+static enum eo_code read_points(struct points_output *out, const struct eo_contact_grid *grid, const double *gap,
+                                const double *line_load, struct eo_error *error)
 {
   enum eo_code code = eo_stage_columns(POINT_COLUMNS, out->column, grid->points, error);
   for (int j = 0; j < grid->positions && !code; j++) {
     const struct eo_contact_position *p = &grid->position[j];
     for (int i = 0; i < p->points; i++) {
       double q = line_load[p->first + i];
-      const double row[POINT_COLUMNS] = {j, p->point[i].pair, p->path[i], p->point[i].eta, gap[p->first + i], p->length[i], q,
+      const double row[POINT_COLUMNS] = {j,
+                                         p->point[i].pair,
+                                         p->path[i],
+                                         p->point[i].eta,
+                                         gap[p->first + i],
+                                         p->length[i],
+                                         q,
                                          q > 0 ? eo_loaded_pressure(grid, q, p->radius[i]) : 0};
       for (int k = 0; k < POINT_COLUMNS; k++)
         out->column[k].value[p->first + i] = row[k];
@@ -159,7 +177,8 @@ static enum eo_code read_points(struct points_output *out, const struct eo_conta
   return code;
 }
 
-static void read_position(struct end_output *out, const struct eo_contact_grid *grid, const struct eo_loaded_end *end, int j)
+static void read_position(struct end_output *out, const struct eo_contact_grid *grid, const struct eo_loaded_end *end,
+                          int j)
 {
   const struct eo_contact_position *p = &grid->position[j];
   double line_load = 0, pressure = 0, edge = 0;
@@ -187,7 +206,8 @@ static double swing(int n, const double *value)
   return high - low;
 }
 
-static enum eo_code read_end(struct end_output *out, const struct eo_stage_mesh *mesh, int side, bool points, struct eo_error *error)
+static enum eo_code read_end(struct end_output *out, const struct eo_stage_mesh *mesh, int side, bool points,
+                             struct eo_error *error)
 {
   const struct eo_contact_grid *grid = mesh->pair->grid;
   const struct eo_loaded_end *end = &mesh->end[side];
@@ -226,7 +246,8 @@ static void read_transmission(struct load_output *out, const struct eo_stage_mes
   out->peak_to_peak = swing(n, out->transmission.value);
 }
 
-static enum eo_code solve_load(struct load_output *out, struct eo_stage_mesh *mesh, const struct input *given, int k, struct eo_error *error)
+static enum eo_code solve_load(struct load_output *out, struct eo_stage_mesh *mesh, const struct input *given, int k,
+                               struct eo_error *error)
 {
   out->force = eo_stage_mesh_force(mesh, &given->mesh, k, &out->torque);
   eo_stage_mesh_solve(mesh, out->force);
@@ -260,4 +281,5 @@ static enum eo_code run(const void *in, void *out, struct eo_error *error)
   return code;
 }
 
-const struct eo_stage eo_stage_contact = {"contact", "loaded contact of both ends over the mesh cycle", &input_table, &output_table, true, run};
+const struct eo_stage eo_stage_contact = {
+    "contact", "loaded contact of both ends over the mesh cycle", &input_table, &output_table, true, run};

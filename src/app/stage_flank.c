@@ -12,7 +12,8 @@ struct input {
 };
 
 /* The flank that was asked for. */
-static enum eo_code find_shape(const struct input *given, struct eo_geometry *geometry, struct eo_modification_shape *shape, struct eo_error *error)
+static enum eo_code find_shape(const struct input *given, struct eo_geometry *geometry,
+                               struct eo_modification_shape *shape, struct eo_error *error)
 {
   struct eo_design design = given->design;
   enum eo_code code = eo_stage_complete(&design, geometry, given->end, error);
@@ -31,17 +32,21 @@ static enum eo_code check_profile(const struct input *given, struct eo_error *er
   return EO_OK;
 }
 
-#define PLACES                                                                                                                       \
-  EO_STAGE_GEAR_PAIR(struct input), EO_STAGE_MODIFICATION(struct input), EO_STAGE_MEMBER(struct input, member), EO_STAGE_END(struct input, end), \
-      EO_SERIES(struct input, s, "s_mm", &eo_unit_mm, EO_STAGE_MOST, -1e3, 1e3, 0, "places: path coordinate from the pitch point, + to the pinion's tip"), \
-      EO_SERIES(struct input, u, "u_mm", &eo_unit_mm, EO_STAGE_MOST, -1e3, 1e3, 0, "instead of s_mm: profile coordinate, + to the member's own tip")
+#define PLACES                                                                                                  \
+  EO_STAGE_GEAR_PAIR(struct input), EO_STAGE_MODIFICATION(struct input), EO_STAGE_MEMBER(struct input, member), \
+      EO_STAGE_END(struct input, end),                                                                          \
+      EO_SERIES(struct input, s, "s_mm", &eo_unit_mm, EO_STAGE_MOST, -1e3, 1e3, 0,                              \
+                "places: path coordinate from the pitch point, + to the pinion's tip"),                         \
+      EO_SERIES(struct input, u, "u_mm", &eo_unit_mm, EO_STAGE_MOST, -1e3, 1e3, 0,                              \
+                "instead of s_mm: profile coordinate, + to the member's own tip")
 
 /* ---- modification ---- */
 
 static const struct eo_field modification_input[] = {
     PLACES,
-    EO_SERIES(struct input, eta, "eta_mm", &eo_unit_mm, EO_STAGE_MOST, -5e3, 5e3, 0,
-              "places: axial from mid face, + on the side that meets first; as many as of s_mm or u_mm; empty: mid face"),
+    EO_SERIES(
+        struct input, eta, "eta_mm", &eo_unit_mm, EO_STAGE_MOST, -5e3, 5e3, 0,
+        "places: axial from mid face, + on the side that meets first; as many as of s_mm or u_mm; empty: mid face"),
 };
 static const struct eo_table modification_input_table = EO_TABLE("the input", struct input, modification_input);
 
@@ -52,17 +57,22 @@ struct modification_output {
 };
 
 static const struct eo_field modification_output[] = {
-    EO_OUT(struct modification_output, lead_coefficient, "lead_crowning_per_um", &eo_unit_per_um, "a_l of the lead crowning"),
-    EO_OUT_SERIES(struct modification_output, column[U], "u_mm", &eo_unit_mm, "profile coordinate, + to the member's own tip"),
+    EO_OUT(struct modification_output, lead_coefficient, "lead_crowning_per_um", &eo_unit_per_um,
+           "a_l of the lead crowning"),
+    EO_OUT_SERIES(struct modification_output, column[U], "u_mm", &eo_unit_mm,
+                  "profile coordinate, + to the member's own tip"),
     EO_OUT_SERIES(struct modification_output, column[X], "x_mm", &eo_unit_mm, "lead coordinate eta / cos(beta)"),
     EO_OUT_SERIES(struct modification_output, column[DELTA], "delta_um", &eo_unit_um, "taken off, normal to the flank"),
     EO_OUT_SERIES(struct modification_output, column[PROFILE], "profile_um", &eo_unit_um, "its part d(u)"),
     EO_OUT_SERIES(struct modification_output, column[LEAD], "lead_um", &eo_unit_um, "its part l(x)"),
-    EO_OUT_SERIES(struct modification_output, column[SLOPE_BELOW], "profile_slope_below", NULL, "d delta / du just below u"),
-    EO_OUT_SERIES(struct modification_output, column[SLOPE_ABOVE], "profile_slope_above", NULL, "d delta / du just above u; differs at the kink of a linear relief"),
+    EO_OUT_SERIES(struct modification_output, column[SLOPE_BELOW], "profile_slope_below", NULL,
+                  "d delta / du just below u"),
+    EO_OUT_SERIES(struct modification_output, column[SLOPE_ABOVE], "profile_slope_above", NULL,
+                  "d delta / du just above u; differs at the kink of a linear relief"),
     EO_OUT_SERIES(struct modification_output, column[LEAD_SLOPE], "lead_slope", NULL, "d delta / dx"),
 };
-static const struct eo_table modification_output_table = EO_TABLE("the output", struct modification_output, modification_output);
+static const struct eo_table modification_output_table = EO_TABLE("the output", struct modification_output,
+                                                                  modification_output);
 
 static enum eo_code run_modification(const void *in, void *out, struct eo_error *error)
 {
@@ -74,7 +84,8 @@ static enum eo_code run_modification(const void *in, void *out, struct eo_error 
   int rows = by_path ? given->s.count : given->u.count;
   enum eo_code code = check_profile(given, error);
   if (!code && given->eta.count)
-    code = eo_stage_same_length(by_path ? &given->s : &given->u, by_path ? "/s_mm" : "/u_mm", &given->eta, "/eta_mm", error);
+    code = eo_stage_same_length(by_path ? &given->s : &given->u, by_path ? "/s_mm" : "/u_mm", &given->eta, "/eta_mm",
+                                error);
   if (!code)
     code = find_shape(given, &geometry, &shape, error);
   if (!code)
@@ -84,7 +95,8 @@ static enum eo_code run_modification(const void *in, void *out, struct eo_error 
   const struct eo_flank_modification *flank = &given->design.modification.flank[given->member][given->end];
   found->lead_coefficient = eo_modification_lead_coefficient(&geometry, flank->lead_crowning);
   for (int i = 0; i < rows; i++) {
-    double u = by_path ? geometry.rack_factor * eo_geometry_own_path(given->member, given->s.value[i]) : given->u.value[i];
+    double u = by_path ? geometry.rack_factor * eo_geometry_own_path(given->member, given->s.value[i])
+                       : given->u.value[i];
     double x = given->eta.count ? given->eta.value[i] / cos(geometry.helix_angle) : 0, slope[2], lead_slope;
     double profile = eo_modification_profile(&shape, u, slope), lead = eo_modification_lead(&shape, x, &lead_slope);
     const double row[MODIFICATION_COLUMNS] = {u, x, profile + lead, profile, lead, slope[0], slope[1], lead_slope};
@@ -94,8 +106,12 @@ static enum eo_code run_modification(const void *in, void *out, struct eo_error 
   return EO_OK;
 }
 
-const struct eo_stage eo_stage_modification = {
-    "modification", "what is taken off a flank at given places", &modification_input_table, &modification_output_table, true, run_modification};
+const struct eo_stage eo_stage_modification = {"modification",
+                                               "what is taken off a flank at given places",
+                                               &modification_input_table,
+                                               &modification_output_table,
+                                               true,
+                                               run_modification};
 
 /* ---- surface ---- */
 
@@ -103,7 +119,8 @@ static const struct eo_field surface_input[] = {
     PLACES,
     EO_SERIES(struct input, eta, "eta_mm", &eo_unit_mm, EO_STAGE_MOST, -5e3, 5e3, 0,
               "with s_mm: axial from mid face, + on the side that meets first; as many as of s_mm; empty: mid face"),
-    EO_SERIES(struct input, v, "v_mm", &eo_unit_mm, EO_STAGE_MOST, -1e4, 1e4, 0, "with u_mm: along the trace of the generating rack; as many as of u_mm"),
+    EO_SERIES(struct input, v, "v_mm", &eo_unit_mm, EO_STAGE_MOST, -1e4, 1e4, 0,
+              "with u_mm: along the trace of the generating rack; as many as of u_mm"),
 };
 static const struct eo_table surface_input_table = EO_TABLE("the input", struct input, surface_input);
 
@@ -113,12 +130,16 @@ struct surface_output {
 };
 
 static const struct eo_field surface_output[] = {
-    EO_OUT_SERIES(struct surface_output, column[SURFACE_U], "u_mm", &eo_unit_mm, "profile coordinate, + to the member's own tip"),
+    EO_OUT_SERIES(struct surface_output, column[SURFACE_U], "u_mm", &eo_unit_mm,
+                  "profile coordinate, + to the member's own tip"),
     EO_OUT_SERIES(struct surface_output, column[SURFACE_V], "v_mm", &eo_unit_mm, "along the rack's trace"),
     EO_OUT_SERIES(struct surface_output, column[POSITION], "position_x_mm", &eo_unit_mm,
-                  "tangential, in the pinion's direction of motion, against the gear's; right hand of the pair, the left end is its mirror image"),
-    EO_OUT_SERIES(struct surface_output, column[POSITION + 1], "position_y_mm", &eo_unit_mm, "radial, through the pitch point at roll 0"),
-    EO_OUT_SERIES(struct surface_output, column[POSITION + 2], "position_z_mm", &eo_unit_mm, "along the axis from mid face: with eta on the pinion, against it on the gear"),
+                  "tangential, in the pinion's direction of motion, against the gear's; right hand of the pair, the "
+                  "left end is its mirror image"),
+    EO_OUT_SERIES(struct surface_output, column[POSITION + 1], "position_y_mm", &eo_unit_mm,
+                  "radial, through the pitch point at roll 0"),
+    EO_OUT_SERIES(struct surface_output, column[POSITION + 2], "position_z_mm", &eo_unit_mm,
+                  "along the axis from mid face: with eta on the pinion, against it on the gear"),
     EO_OUT_SERIES(struct surface_output, column[NORMAL], "normal_x", NULL, "unit normal, out of the tooth"),
     EO_OUT_SERIES(struct surface_output, column[NORMAL + 1], "normal_y", NULL, "likewise"),
     EO_OUT_SERIES(struct surface_output, column[NORMAL + 2], "normal_z", NULL, "likewise"),
@@ -152,7 +173,8 @@ static enum eo_code run_surface(const void *in, void *out, struct eo_error *erro
     struct eo_surface_point p;
     double u, v;
     if (given->s.count)
-      eo_surface_coordinates(&geometry, given->member, given->s.value[i], given->eta.count ? given->eta.value[i] : 0, &u, &v);
+      eo_surface_coordinates(&geometry, given->member, given->s.value[i], given->eta.count ? given->eta.value[i] : 0,
+                             &u, &v);
     else {
       u = given->u.value[i];
       v = given->v.value[i];

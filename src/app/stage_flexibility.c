@@ -18,11 +18,17 @@ struct mesh_input {
 static const char *const elements[] = {"C3D8I", "C3D20R", NULL};
 
 static const struct eo_field mesh_input[] = {
-    {.key = "file", .kind = EO_FIELD_TEXT, .flags = EO_FIELD_REQUIRED, .offset = offsetof(struct mesh_input, file), .count = sizeof ((struct mesh_input *)0)->file,
+    {.key = "file",
+     .kind = EO_FIELD_TEXT,
+     .flags = EO_FIELD_REQUIRED,
+     .offset = offsetof(struct mesh_input, file),
+     .count = sizeof((struct mesh_input *)0)->file,
      .help = "name of the file to write"},
     EO_STAGE_MEMBER(struct mesh_input, member),
-    EO_CHOICE(struct mesh_input, element, "element", elements, EO_MESH_C3D8I, "this program's bricks, or quadratic ones on the same mesh"),
-    EO_INTEGER(struct mesh_input, row, "row", 0, 60, 0, "row of flank nodes, counted from the smallest s, that carries 1 N per mm of face width"),
+    EO_CHOICE(struct mesh_input, element, "element", elements, EO_MESH_C3D8I,
+              "this program's bricks, or quadratic ones on the same mesh"),
+    EO_INTEGER(struct mesh_input, row, "row", 0, 60, 0,
+               "row of flank nodes, counted from the smallest s, that carries 1 N per mm of face width"),
 };
 static const struct eo_table mesh_table = EO_TABLE("mesh", struct mesh_input, mesh_input);
 
@@ -32,10 +38,13 @@ struct point_input {
 };
 
 static const struct eo_field point_input[] = {
-    EO_INTEGER(struct point_input, pair, "pair", -1000, 1000, 0, "tooth pair; pair k + 1 meets one base pitch ahead of pair k"),
+    EO_INTEGER(struct point_input, pair, "pair", -1000, 1000, 0,
+               "tooth pair; pair k + 1 meets one base pitch ahead of pair k"),
     EO_NUMBER_REQUIRED(struct point_input, s, "s_mm", &eo_unit_mm, -1e3, 1e3, "on the flank, path coordinate"),
-    EO_NUMBER_REQUIRED(struct point_input, eta, "eta_mm", &eo_unit_mm, -5e3, 5e3, "axial from mid face, + on the side that meets first"),
-    EO_NUMBER(struct point_input, force, "force_N", &eo_unit_N, -1e9, 1e9, 0, "normal to the flank; 0: only the deflection is asked for"),
+    EO_NUMBER_REQUIRED(struct point_input, eta, "eta_mm", &eo_unit_mm, -5e3, 5e3,
+                       "axial from mid face, + on the side that meets first"),
+    EO_NUMBER(struct point_input, force, "force_N", &eo_unit_N, -1e9, 1e9, 0,
+              "normal to the flank; 0: only the deflection is asked for"),
 };
 static const struct eo_table point_table = EO_TABLE("a point", struct point_input, point_input);
 
@@ -53,18 +62,24 @@ static const struct eo_field input[] = {
     EO_STAGE_GEAR_PAIR(struct input),
     EO_STAGE_MATERIAL(struct input),
     EO_STAGE_RESOLUTION(struct input),
-    EO_TEXT(struct input, kernel.cache_directory, "cache_directory", "where finite elements are kept for the next run; empty: nowhere"),
-    EO_SERIES(struct input, s, "s_mm", &eo_unit_mm, MOST_ROWS, -1e3, 1e3, 0, "rows of constant s that carry a uniform load of 1 N per mm of face width"),
-    EO_SERIES(struct input, eta, "eta_mm", &eo_unit_mm, MOST_PLACES, -5e3, 5e3, 0, "where on these rows the deflection is asked for; empty: both face ends and mid face"),
-    EO_LIST(struct input, point, points, "points", &point_table, 0, MOST_POINTS, "point loads and where their deflection is asked for"),
-    EO_OPTIONAL(struct input, mesh, export, "mesh", &mesh_table, "no mesh is written", "the mesh of one member as an input file of CalculiX, in m and N"),
+    EO_TEXT(struct input, kernel.cache_directory, "cache_directory",
+            "where finite elements are kept for the next run; empty: nowhere"),
+    EO_SERIES(struct input, s, "s_mm", &eo_unit_mm, MOST_ROWS, -1e3, 1e3, 0,
+              "rows of constant s that carry a uniform load of 1 N per mm of face width"),
+    EO_SERIES(struct input, eta, "eta_mm", &eo_unit_mm, MOST_PLACES, -5e3, 5e3, 0,
+              "where on these rows the deflection is asked for; empty: both face ends and mid face"),
+    EO_LIST(struct input, point, points, "points", &point_table, 0, MOST_POINTS,
+            "point loads and where their deflection is asked for"),
+    EO_OPTIONAL(struct input, mesh, export, "mesh", &mesh_table, "no mesh is written",
+                "the mesh of one member as an input file of CalculiX, in m and N"),
 };
 static const struct eo_table input_table = EO_TABLE("the input", struct input, input);
 
 /* ---- output ---- */
 
 static const struct eo_field times[] = {
-    EO_OUT(struct eo_member_times, unknowns, "unknowns", NULL, "of the sector's matrix; these are 0 when it came from the cache"),
+    EO_OUT(struct eo_member_times, unknowns, "unknowns", NULL,
+           "of the sector's matrix; these are 0 when it came from the cache"),
     EO_OUT(struct eo_member_times, entries, "factor_entries", NULL, "of its factor"),
     EO_OUT(struct eo_member_times, memory, "memory_bytes", NULL, "the sparse solver's peak"),
 };
@@ -88,7 +103,8 @@ struct row_output {
 
 static const struct eo_field row_output[] = {
     EO_OUT(struct row_output, s, "s_mm", &eo_unit_mm, "of the row"),
-    EO_OUT_SERIES(struct row_output, member[EO_PINION], "pinion_um", &eo_unit_um, "normal deflection of the pinion's tooth at each eta, local part removed"),
+    EO_OUT_SERIES(struct row_output, member[EO_PINION], "pinion_um", &eo_unit_um,
+                  "normal deflection of the pinion's tooth at each eta, local part removed"),
     EO_OUT_SERIES(struct row_output, member[EO_GEAR], "gear_um", &eo_unit_um, "likewise of the gear's"),
 };
 static const struct eo_table row_table = EO_TABLE("a row", struct row_output, row_output);
@@ -103,10 +119,12 @@ struct output {
 
 static const struct eo_field output[] = {
     EO_OBJECT(struct output, report, "report", &report_table, "of the preparation"),
-    EO_OUT_PAIR(struct output, bore_radius, "fixed_radius_mm", &eo_unit_mm, "[pinion, gear] where the sector ends inwards and is held"),
+    EO_OUT_PAIR(struct output, bore_radius, "fixed_radius_mm", &eo_unit_mm,
+                "[pinion, gear] where the sector ends inwards and is held"),
     EO_OUT_SERIES(struct output, eta, "eta_mm", &eo_unit_mm, "of the columns of rows"),
     EO_LIST(struct output, row, rows, "rows", &row_table, 0, MOST_ROWS, "under a uniform load on that row alone"),
-    EO_OUT_SERIES(struct output, deflection[EO_PINION], "pinion_point_um", &eo_unit_um, "normal deflection of the pinion's teeth at each of points under all of them"),
+    EO_OUT_SERIES(struct output, deflection[EO_PINION], "pinion_point_um", &eo_unit_um,
+                  "normal deflection of the pinion's teeth at each of points under all of them"),
     EO_OUT_SERIES(struct output, deflection[EO_GEAR], "gear_point_um", &eo_unit_um, "likewise of the gear's"),
 };
 static const struct eo_table output_table = EO_TABLE("the output", struct output, output);
@@ -114,22 +132,25 @@ static const struct eo_table output_table = EO_TABLE("the output", struct output
 /* ---- deflections ---- */
 
 /* Trapezoidal rule with the nodes of the layers; compliance: scratch [n][n]. */
-static void deflect_row(struct row_output *out, const struct eo_flexibility *flexibility, const struct eo_series *eta, int layers, double width,
-                        struct eo_flank_point *point, double *compliance)
+static void deflect_row(struct row_output *out, const struct eo_flexibility *flexibility, const struct eo_series *eta,
+                        int layers, double width, struct eo_flank_point *point, double *compliance)
 {
   int n = layers + 1 + eta->count;
   for (int i = 0; i < n; i++)
-    point[i] = (struct eo_flank_point){0, {out->s, out->s}, i <= layers ? width * ((double)i / layers - 0.5) : eta->value[i - layers - 1]};
+    point[i] = (struct eo_flank_point){
+        0, {out->s, out->s}, i <= layers ? width * ((double)i / layers - 0.5) : eta->value[i - layers - 1]};
   for (int member = 0; member < 2; member++) {
     memset(compliance, 0, sizeof *compliance * (size_t)(n * n));
     eo_flexibility_add_compliance(flexibility, member, n, point, compliance);
     for (int i = 0; i < eta->count; i++)
       for (int j = 0; j <= layers; j++)
-        out->member[member].value[i] += compliance[(layers + 1 + i) * n + j] * 1e3 * width / layers * (j == 0 || j == layers ? 0.5 : 1);
+        out->member[member].value[i] += compliance[(layers + 1 + i) * n + j] * 1e3 * width / layers *
+                                        (j == 0 || j == layers ? 0.5 : 1);
   }
 }
 
-static enum eo_code deflect_rows(struct output *found, const struct input *given, const struct eo_flexibility *flexibility, int layers, double width,
+static enum eo_code deflect_rows(struct output *found, const struct input *given,
+                                 const struct eo_flexibility *flexibility, int layers, double width,
                                  struct eo_error *error)
 {
   int n = layers + 1 + found->eta.count;
@@ -148,14 +169,16 @@ static enum eo_code deflect_rows(struct output *found, const struct input *given
   return code;
 }
 
-static enum eo_code deflect_points(struct output *found, const struct input *given, const struct eo_flexibility *flexibility, struct eo_error *error)
+static enum eo_code deflect_points(struct output *found, const struct input *given,
+                                   const struct eo_flexibility *flexibility, struct eo_error *error)
 {
   int n = given->points;
   struct eo_flank_point *point = calloc((size_t)(n + 1), sizeof *point);
   double *compliance = calloc((size_t)(n * n + 1), sizeof *compliance);
   enum eo_code code = point && compliance ? eo_stage_columns(2, found->deflection, n, error) : eo_error_memory(error);
   for (int i = 0; i < n && !code; i++)
-    point[i] = (struct eo_flank_point){given->point[i].pair, {given->point[i].s, given->point[i].s}, given->point[i].eta};
+    point[i] =
+        (struct eo_flank_point){given->point[i].pair, {given->point[i].s, given->point[i].s}, given->point[i].eta};
   for (int member = 0; member < 2 && !code; member++) {
     memset(compliance, 0, sizeof *compliance * (size_t)(n * n));
     eo_flexibility_add_compliance(flexibility, member, n, point, compliance);
@@ -177,8 +200,9 @@ static int write_text(void *context, const char *text, size_t length)
   return all->failed;
 }
 
-static enum eo_code export_mesh(const struct input *given, const struct eo_design *design, const struct eo_geometry *geometry,
-                                const struct eo_flexibility_settings *settings, double bore_radius, struct eo_error *error)
+static enum eo_code export_mesh(const struct input *given, const struct eo_design *design,
+                                const struct eo_geometry *geometry, const struct eo_flexibility_settings *settings,
+                                double bore_radius, struct eo_error *error)
 {
   const struct mesh_input *mesh = &given->mesh;
   if (mesh->row > settings->flank_rows)
@@ -189,9 +213,11 @@ static enum eo_code export_mesh(const struct input *given, const struct eo_desig
   if (!load)
     return eo_error_memory(error);
   for (int l = 0; l <= settings->layers; l++)
-    load[l] = (struct eo_mesh_load){mesh->row, l, 1e3 * geometry->face_width / settings->layers * (l == 0 || l == settings->layers ? 0.5 : 1)};
+    load[l] = (struct eo_mesh_load){
+        mesh->row, l, 1e3 * geometry->face_width / settings->layers * (l == 0 || l == settings->layers ? 0.5 : 1)};
   struct eo_mesh_case row = {settings->layers + 1, load};
-  enum eo_code code = eo_mesh_export(geometry, mesh->member, &design->material, &member, mesh->element, 1, &row, write_text, &text, error);
+  enum eo_code code = eo_mesh_export(geometry, mesh->member, &design->material, &member, mesh->element, 1, &row,
+                                     write_text, &text, error);
   if (!code)
     code = eo_text_save(&text, mesh->file, error);
   eo_text_done(&text);
@@ -201,7 +227,8 @@ static enum eo_code export_mesh(const struct input *given, const struct eo_desig
 
 /* ---- the stage ---- */
 
-static enum eo_code choose_places(struct eo_series *eta, const struct eo_series *given, double width, struct eo_error *error)
+static enum eo_code choose_places(struct eo_series *eta, const struct eo_series *given, double width,
+                                  struct eo_error *error)
 {
   const double usual[3] = {-width / 2, 0, width / 2};
   return given->count ? eo_stage_copy(eta, given->count, given->value, error) : eo_stage_copy(eta, 3, usual, error);
@@ -237,4 +264,6 @@ static enum eo_code run(const void *in, void *out, struct eo_error *error)
 }
 
 const struct eo_stage eo_stage_flexibility = {
-    "flexibility", "finite-element compliance of the teeth, without the local part", &input_table, &output_table, true, run};
+    "flexibility", "finite-element compliance of the teeth, without the local part",
+    &input_table,  &output_table,
+    true,          run};

@@ -16,4 +16,5 @@ static enum eo_code run(const void *in, void *out, struct eo_error *error)
   return eo_geometry_init(out, &((const struct input *)in)->gear_pair, error);
 }
 
-const struct eo_stage eo_stage_geometry = {"geometry", "macro-geometry of a gear pair: every derived quantity", &input_table, &eo_geometry_table, false, run};
+const struct eo_stage eo_stage_geometry = {
+    "geometry", "macro-geometry of a gear pair: every derived quantity", &input_table, &eo_geometry_table, false, run};

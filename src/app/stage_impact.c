@@ -17,9 +17,12 @@ static const struct eo_field input[] = {
     EO_SERIES(struct input, approach, "approach_um", &eo_unit_um, 1024, -1e4, 1e4, 0,
               "instead of loads: Z of every end, normal, one value or one per phase"),
     EO_NUMBER(struct input, speed, "speed_rpm", &eo_unit_rpm, 0.1, 1e6, 2000, "of the pinion"),
-    EO_NUMBER_DERIVED(struct input, inertia[EO_PINION], "pinion_inertia_kg_m2", &eo_unit_kg_m2, 1e-12, 1e8, "solid disc of the pitch cylinder", "of one end"),
-    EO_NUMBER_DERIVED(struct input, inertia[EO_GEAR], "gear_inertia_kg_m2", &eo_unit_kg_m2, 1e-12, 1e8, "solid disc of the pitch cylinder", "of one end"),
-    EO_INTEGER(struct input, stations, "stations", 0, 10000, 0, "the touch is looked for at so many places over the face; 0 or 1: anywhere"),
+    EO_NUMBER_DERIVED(struct input, inertia[EO_PINION], "pinion_inertia_kg_m2", &eo_unit_kg_m2, 1e-12, 1e8,
+                      "solid disc of the pitch cylinder", "of one end"),
+    EO_NUMBER_DERIVED(struct input, inertia[EO_GEAR], "gear_inertia_kg_m2", &eo_unit_kg_m2, 1e-12, 1e8,
+                      "solid disc of the pitch cylinder", "of one end"),
+    EO_INTEGER(struct input, stations, "stations", 0, 10000, 0,
+               "the touch is looked for at so many places over the face; 0 or 1: anywhere"),
 };
 static const struct eo_table input_table = EO_TABLE("the input", struct input, input);
 
@@ -30,14 +33,16 @@ struct end_output {
 
 static const struct eo_field end_output[] = {
     EO_FLAG(struct end_output, impact.touched, "touched", 0, "false: the incoming pair never touches"),
-    EO_FLAG(struct end_output, impact.off_line, "off_line", 0, "first touch before the path of contact, with the tip corner"),
+    EO_FLAG(struct end_output, impact.off_line, "off_line", 0,
+            "first touch before the path of contact, with the tip corner"),
     EO_OUT(struct end_output, impact.phase, "phase_mm", &eo_unit_mm, "c of the incoming pair at first touch"),
     EO_OUT(struct end_output, impact.eta, "eta_mm", &eo_unit_mm, "of the touch"),
     EO_OUT(struct end_output, impact.path, "s_mm", &eo_unit_mm, "of the touch"),
     EO_OUT(struct end_output, lead, "lead_mm", &eo_unit_mm, "of the touch before the start of the path of contact"),
     EO_OUT(struct end_output, impact.pinion_radius, "pinion_radius_mm", &eo_unit_mm, "of the touch"),
     EO_OUT(struct end_output, impact.speed, "speed_mm_per_s", &eo_unit_mm_per_s, "closing, normal"),
-    EO_OUT(struct end_output, impact.compliance, "compliance_um_per_N", &eo_unit_um_per_N, "q_s of the patch, bulk and Hertz"),
+    EO_OUT(struct end_output, impact.compliance, "compliance_um_per_N", &eo_unit_um_per_N,
+           "q_s of the patch, bulk and Hertz"),
     EO_OUT(struct end_output, impact.force, "general_force_N", &eo_unit_N, "F_s = v sqrt(m_e / q_s)"),
     EO_OUT(struct end_output, impact.classical, "force_N", &eo_unit_N, "the same when off_line, else 0"),
     EO_OUT(struct end_output, impact.duration, "duration_ms", &eo_unit_ms, "of the half sine"),
@@ -76,7 +81,8 @@ static enum eo_code set_approach(struct eo_stage_mesh *mesh, const struct eo_ser
 {
   int positions = mesh->pair->grid->positions;
   if (approach->count != 1 && approach->count != positions)
-    return eo_error_set(error, EO_ERROR_INPUT, "/approach_um", "%d entries: one is needed, or one for each of %d phases.", approach->count, positions);
+    return eo_error_set(error, EO_ERROR_INPUT, "/approach_um",
+                        "%d entries: one is needed, or one for each of %d phases.", approach->count, positions);
   for (int end = 0; end < mesh->design.gear_pair.ends; end++)
     for (int j = 0; j < positions; j++)
       mesh->end[end].approach[j] = approach->value[approach->count == 1 ? 0 : j];
@@ -87,7 +93,8 @@ static struct end_output find_end(const struct eo_stage_mesh *mesh, int end, dou
 {
   const struct eo_pair *pair = mesh->pair;
   struct end_output found = {.lead = NAN};
-  eo_impact_find(&found.impact, pair->grid, &mesh->field[end], pair->kernel, &pair->impact, mesh->end[end].approach, speed, mesh->factor);
+  eo_impact_find(&found.impact, pair->grid, &mesh->field[end], pair->kernel, &pair->impact, mesh->end[end].approach,
+                 speed, mesh->factor);
   if (found.impact.touched)
     found.lead = pair->geometry.path_start - found.impact.path;
   return found;
@@ -101,10 +108,12 @@ static void find_load(struct load_output *out, const struct eo_stage_mesh *mesh,
     out->right = find_end(mesh, EO_RIGHT, speed);
 }
 
-static enum eo_code open_mesh(struct eo_stage_mesh *mesh, const struct input *given, struct output *found, struct eo_error *error)
+static enum eo_code open_mesh(struct eo_stage_mesh *mesh, const struct input *given, struct output *found,
+                              struct eo_error *error)
 {
   if (given->mesh.phase.count)
-    return eo_error_set(error, EO_ERROR_INPUT, "/phase_mm", "The impact needs equal steps over the whole cycle: leave this key out.");
+    return eo_error_set(error, EO_ERROR_INPUT, "/phase_mm",
+                        "The impact needs equal steps over the whole cycle: leave this key out.");
   enum eo_code code = eo_stage_mesh_init(mesh, &given->mesh, error);
   if (code)
     return code;
@@ -142,4 +151,5 @@ static enum eo_code run(const void *in, void *out, struct eo_error *error)
   return code;
 }
 
-const struct eo_stage eo_stage_impact = {"impact", "entering impact of the incoming pair of teeth", &input_table, &output_table, true, run};
+const struct eo_stage eo_stage_impact = {
+    "impact", "entering impact of the incoming pair of teeth", &input_table, &output_table, true, run};

@@ -7,19 +7,27 @@
 #include "objective/objective.h"
 
 /* Rows of an input table whose struct starts with `struct eo_design design`. */
-#define EO_STAGE_GEAR_PAIR(type) EO_OBJECT(type, design.gear_pair, "gear_pair", &eo_gear_pair_table, "as in a design document")
-#define EO_STAGE_MATERIAL(type) EO_OBJECT(type, design.material, "material", &eo_material_table, "as in a design document")
-#define EO_STAGE_ALIGNMENT(type) EO_OBJECT(type, design.alignment, "alignment", &eo_alignment_table, "as in a design document")
-#define EO_STAGE_MODIFICATION(type) EO_OBJECT(type, design.modification, "modification", &eo_modification_table, "as in a design document")
-#define EO_STAGE_RESOLUTION(type) EO_OBJECT(type, design.resolution, "resolution", &eo_resolution_table, "as in a design document")
+#define EO_STAGE_GEAR_PAIR(type) \
+  EO_OBJECT(type, design.gear_pair, "gear_pair", &eo_gear_pair_table, "as in a design document")
+#define EO_STAGE_MATERIAL(type) \
+  EO_OBJECT(type, design.material, "material", &eo_material_table, "as in a design document")
+#define EO_STAGE_ALIGNMENT(type) \
+  EO_OBJECT(type, design.alignment, "alignment", &eo_alignment_table, "as in a design document")
+#define EO_STAGE_MODIFICATION(type) \
+  EO_OBJECT(type, design.modification, "modification", &eo_modification_table, "as in a design document")
+#define EO_STAGE_RESOLUTION(type) \
+  EO_OBJECT(type, design.resolution, "resolution", &eo_resolution_table, "as in a design document")
 
 extern const char *const eo_stage_members[], *const eo_stage_ends[], *const eo_stage_pivots[];
 #define EO_STAGE_MEMBER(type, member) EO_CHOICE(type, member, "member", eo_stage_members, EO_PINION, "whose flank")
-#define EO_STAGE_END(type, member) EO_CHOICE(type, member, "end", eo_stage_ends, EO_LEFT, "of the two helical halves; a pair with one end has the left one")
+#define EO_STAGE_END(type, member)                       \
+  EO_CHOICE(type, member, "end", eo_stage_ends, EO_LEFT, \
+            "of the two helical halves; a pair with one end has the left one")
 
 enum eo_stage_pivot { EO_PIVOT_GROOVE, EO_PIVOT_MID_FACE };
-#define EO_STAGE_PIVOT(type, member)                                                                                                 \
-  EO_CHOICE(type, member, "pivot", eo_stage_pivots, EO_PIVOT_GROOVE, "of the shaft angle errors: middle of the groove, or each end's own mid face")
+#define EO_STAGE_PIVOT(type, member)                                 \
+  EO_CHOICE(type, member, "pivot", eo_stage_pivots, EO_PIVOT_GROOVE, \
+            "of the shaft angle errors: middle of the groove, or each end's own mid face")
 
 /* Raw values of one load case (struct eo_objective_case): what stage evaluation prints and stage objective reads. */
 extern const struct eo_table eo_stage_raw_table;
@@ -37,10 +45,12 @@ struct eo_stage_field {
   struct eo_gap_field gap;
   double pivot; /* distance of the end's mid face from the pivot of the shaft angle errors, m */
 };
-enum eo_code eo_stage_field_init(struct eo_stage_field *field, struct eo_design *design, int end, enum eo_stage_pivot pivot, struct eo_error *error);
+enum eo_code eo_stage_field_init(struct eo_stage_field *field, struct eo_design *design, int end,
+                                 enum eo_stage_pivot pivot, struct eo_error *error);
 
 /* EO_ERROR_INPUT naming `key` unless both columns have the same length. */
-enum eo_code eo_stage_same_length(const struct eo_series *first, const char *first_key, const struct eo_series *second, const char *key, struct eo_error *error);
+enum eo_code eo_stage_same_length(const struct eo_series *first, const char *first_key, const struct eo_series *second,
+                                  const char *key, struct eo_error *error);
 
 /* Allocates columns of `rows` zeros for the output. */
 enum eo_code eo_stage_columns(int columns, struct eo_series *series, int rows, struct eo_error *error);

@@ -31,15 +31,19 @@ static const struct eo_field stiffness[] = {
     EO_OUT(struct eo_iso_stiffness, flexibility, "flexibility_um_mm_per_N", &eo_unit_um_mm_per_N, "q'"),
     EO_OUT(struct eo_iso_stiffness, theoretical, "theoretical_N_per_mm_um", &eo_unit_N_per_mm_um, "c'_th"),
     EO_OUT(struct eo_iso_stiffness, rack_factor, "rack_factor", NULL, "C_B"),
-    EO_OUT(struct eo_iso_stiffness, single, "single_N_per_mm_um", &eo_unit_N_per_mm_um, "c': one pair of teeth, transverse, per face width"),
-    EO_OUT(struct eo_iso_stiffness, mesh_alpha, "mesh_alpha_N_per_mm_um", &eo_unit_N_per_mm_um, "c_gamma_alpha: mean of the mesh"),
-    EO_OUT(struct eo_iso_stiffness, mesh_beta, "mesh_beta_N_per_mm_um", &eo_unit_N_per_mm_um, "c_gamma_beta, for load distribution over the face"),
+    EO_OUT(struct eo_iso_stiffness, single, "single_N_per_mm_um", &eo_unit_N_per_mm_um,
+           "c': one pair of teeth, transverse, per face width"),
+    EO_OUT(struct eo_iso_stiffness, mesh_alpha, "mesh_alpha_N_per_mm_um", &eo_unit_N_per_mm_um,
+           "c_gamma_alpha: mean of the mesh"),
+    EO_OUT(struct eo_iso_stiffness, mesh_beta, "mesh_beta_N_per_mm_um", &eo_unit_N_per_mm_um,
+           "c_gamma_beta, for load distribution over the face"),
 };
 static const struct eo_table stiffness_table = EO_TABLE("stiffness", struct eo_iso_stiffness, stiffness);
 
 static const struct eo_field root[] = {
     EO_OUT(struct eo_iso_root, virtual_teeth, "virtual_teeth", NULL, "z_n"),
-    EO_OUT(struct eo_iso_root, tangential_force, "tangential_force_N", &eo_unit_N, "F_t at the reference cylinder of one end"),
+    EO_OUT(struct eo_iso_root, tangential_force, "tangential_force_N", &eo_unit_N,
+           "F_t at the reference cylinder of one end"),
     EO_OUT(struct eo_iso_root, chord, "chord_mm", &eo_unit_mm, "s_Fn"),
     EO_OUT(struct eo_iso_root, arm, "arm_mm", &eo_unit_mm, "h_Fe"),
     EO_OUT(struct eo_iso_root, fillet_radius, "fillet_radius_mm", &eo_unit_mm, "rho_F"),
@@ -53,7 +57,8 @@ static const struct eo_table root_table = EO_TABLE("root", struct eo_iso_root, r
 
 static const struct eo_field output[] = {
     EO_OBJECT(struct output, corrected, "stiffness", &stiffness_table, "ISO 6336-1 method B, with C_M = 0.8"),
-    EO_OBJECT(struct output, uncorrected, "stiffness_without_correction", &stiffness_table, "the same with C_M = 1: what a computation should give"),
+    EO_OBJECT(struct output, uncorrected, "stiffness_without_correction", &stiffness_table,
+              "the same with C_M = 1: what a computation should give"),
     EO_OBJECT(struct output, root[EO_PINION], "pinion_root", &root_table, "ISO 6336-3 method B"),
     EO_OBJECT(struct output, root[EO_GEAR], "gear_root", &root_table, "ISO 6336-3 method B"),
 };
@@ -84,8 +89,11 @@ static enum eo_code run(const void *in, void *out, struct eo_error *error)
   rack.theory_factor = 1;
   eo_iso_stiffness(&found->uncorrected, &rack);
   for (int i = 0; i < 2; i++)
-    eo_iso_root(&found->root[i], &geometry, i, design.gear_pair.bore[i], given->torque / pair->ends * pair->teeth[i] / pair->teeth[0]);
+    eo_iso_root(&found->root[i], &geometry, i, design.gear_pair.bore[i],
+                given->torque / pair->ends * pair->teeth[i] / pair->teeth[0]);
   return EO_OK;
 }
 
-const struct eo_stage eo_stage_iso6336 = {"iso6336", "the standard's estimates: mesh stiffness and nominal root stress", &input_table, &output_table, false, run};
+const struct eo_stage eo_stage_iso6336 = {
+    "iso6336", "the standard's estimates: mesh stiffness and nominal root stress", &input_table, &output_table, false,
+    run};

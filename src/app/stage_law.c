@@ -12,7 +12,8 @@ enum { MOST_POSITIONS = 4096 };
 
 static const struct eo_field row[] = {
     EO_NUMBER_REQUIRED(struct eo_stage_law_row, load, "load_N", &eo_unit_N, 0, 1e12, "normal load of one end"),
-    EO_SERIES(struct eo_stage_law_row, approach, "Z_um", &eo_unit_um, MOST_POSITIONS, -1e6, 1e6, EO_FIELD_REQUIRED, "approach at equal steps of the mesh cycle"),
+    EO_SERIES(struct eo_stage_law_row, approach, "Z_um", &eo_unit_um, MOST_POSITIONS, -1e6, 1e6, EO_FIELD_REQUIRED,
+              "approach at equal steps of the mesh cycle"),
 };
 static const struct eo_table row_table = EO_TABLE("a load of the table law", struct eo_stage_law_row, row);
 
@@ -20,16 +21,26 @@ static const char *const kinds[] = {"tangent", "secant", "table", "fourier", NUL
 
 static const struct eo_field law[] = {
     EO_CHOICE(struct eo_stage_law, kind, "kind", kinds, EO_STAGE_LAW_TANGENT,
-              "P + k_tan (X - Z); P/(Z - datum) (X - datum); linear between the loads of a table; k(phi) f(X) with f of equation (8)"),
-    EO_SERIES(struct eo_stage_law, approach, "Z_um", &eo_unit_um, MOST_POSITIONS, -1e6, 1e6, 0, "tangent, secant: approach at equal steps of the mesh cycle"),
-    EO_SERIES(struct eo_stage_law, tangent, "kt_N_per_um", &eo_unit_N_per_um, MOST_POSITIONS, 1e-9, 1e9, 0, "tangent: stiffness dP/dZ at the same places"),
-    EO_NUMBER_DERIVED(struct eo_stage_law, load, "load_N", &eo_unit_N, 1e-6, 1e12, "of the torque", "tangent, secant: load P of one end at which Z was found"),
-    EO_NUMBER(struct eo_stage_law, datum, "datum_um", &eo_unit_um, -1e6, 1e6, 0, "secant: approach of the first contact anywhere on the flank"),
-    EO_INTEGER(struct eo_stage_law, order, "te_harmonics", 0, EO_MAX_HARMONICS, 10, "tangent, secant, table: mesh harmonics kept, at most half the positions"),
-    EO_LIST(struct eo_stage_law, row, rows, "rows", &row_table, 0, EO_STAGE_LAW_ROWS, "table: at least two, loads ascending"),
-    EO_NUMBER_DERIVED(struct eo_stage_law, mean, "mean_N_per_um", &eo_unit_N_per_um, 1e-9, 1e9, "needed with fourier", "fourier: mean of k(phi)"),
-    EO_SERIES(struct eo_stage_law, cosine, "cosine_N_per_um", &eo_unit_N_per_um, EO_MAX_HARMONICS, -1e9, 1e9, 0, "fourier: coefficients of cos(2 pi n phi), n = 1.."),
-    EO_SERIES(struct eo_stage_law, sine, "sine_N_per_um", &eo_unit_N_per_um, EO_MAX_HARMONICS, -1e9, 1e9, 0, "fourier: coefficients of sin(2 pi n phi)"),
+              "P + k_tan (X - Z); P/(Z - datum) (X - datum); linear between the loads of a table; k(phi) f(X) with f "
+              "of equation (8)"),
+    EO_SERIES(struct eo_stage_law, approach, "Z_um", &eo_unit_um, MOST_POSITIONS, -1e6, 1e6, 0,
+              "tangent, secant: approach at equal steps of the mesh cycle"),
+    EO_SERIES(struct eo_stage_law, tangent, "kt_N_per_um", &eo_unit_N_per_um, MOST_POSITIONS, 1e-9, 1e9, 0,
+              "tangent: stiffness dP/dZ at the same places"),
+    EO_NUMBER_DERIVED(struct eo_stage_law, load, "load_N", &eo_unit_N, 1e-6, 1e12, "of the torque",
+                      "tangent, secant: load P of one end at which Z was found"),
+    EO_NUMBER(struct eo_stage_law, datum, "datum_um", &eo_unit_um, -1e6, 1e6, 0,
+              "secant: approach of the first contact anywhere on the flank"),
+    EO_INTEGER(struct eo_stage_law, order, "te_harmonics", 0, EO_MAX_HARMONICS, 10,
+               "tangent, secant, table: mesh harmonics kept, at most half the positions"),
+    EO_LIST(struct eo_stage_law, row, rows, "rows", &row_table, 0, EO_STAGE_LAW_ROWS,
+            "table: at least two, loads ascending"),
+    EO_NUMBER_DERIVED(struct eo_stage_law, mean, "mean_N_per_um", &eo_unit_N_per_um, 1e-9, 1e9, "needed with fourier",
+                      "fourier: mean of k(phi)"),
+    EO_SERIES(struct eo_stage_law, cosine, "cosine_N_per_um", &eo_unit_N_per_um, EO_MAX_HARMONICS, -1e9, 1e9, 0,
+              "fourier: coefficients of cos(2 pi n phi), n = 1.."),
+    EO_SERIES(struct eo_stage_law, sine, "sine_N_per_um", &eo_unit_N_per_um, EO_MAX_HARMONICS, -1e9, 1e9, 0,
+              "fourier: coefficients of sin(2 pi n phi)"),
 };
 const struct eo_table eo_stage_law_table = EO_TABLE("a mesh law", struct eo_stage_law, law);
 
@@ -40,7 +51,8 @@ static enum eo_code refuse(const char *pointer, const char *key, const char *wha
   return eo_error_set(error, EO_ERROR_INPUT, place, "%s", what);
 }
 
-static enum eo_code make_table(struct eo_law *out, const struct eo_stage_law *given, int order, const char *pointer, struct eo_error *error)
+static enum eo_code make_table(struct eo_law *out, const struct eo_stage_law *given, int order, const char *pointer,
+                               struct eo_error *error)
 {
   int positions = given->rows ? given->row[0].approach.count : 0;
   double load[EO_STAGE_LAW_ROWS];
@@ -53,17 +65,20 @@ static enum eo_code make_table(struct eo_law *out, const struct eo_stage_law *gi
   for (int i = 0; i < given->rows && !code; i++) {
     load[i] = given->row[i].load;
     if (given->row[i].approach.count == positions)
-      memcpy(approach + (size_t)i * (size_t)positions, given->row[i].approach.value, sizeof *approach * (size_t)positions);
+      memcpy(approach + (size_t)i * (size_t)positions, given->row[i].approach.value,
+             sizeof *approach * (size_t)positions);
     else
       code = refuse(pointer, "rows", "All loads of a table law need the same number of positions.", error);
   }
   if (!code)
-    code = eo_law_set_table(out, given->rows, positions, load, approach, order < positions / 2 ? order : positions / 2, 0, error);
+    code = eo_law_set_table(out, given->rows, positions, load, approach, order < positions / 2 ? order : positions / 2,
+                            0, error);
   free(approach);
   return code;
 }
 
-static enum eo_code make_fourier(struct eo_law *out, const struct eo_stage_law *given, double backlash, const char *pointer, struct eo_error *error)
+static enum eo_code make_fourier(struct eo_law *out, const struct eo_stage_law *given, double backlash,
+                                 const char *pointer, struct eo_error *error)
 {
   double series[1 + 2 * EO_MAX_HARMONICS] = {given->mean};
   if (isnan(given->mean))
@@ -72,12 +87,12 @@ static enum eo_code make_fourier(struct eo_law *out, const struct eo_stage_law *
     series[2 * n + 1] = given->cosine.value[n];
   for (int n = 0; n < given->sine.count; n++)
     series[2 * n + 2] = given->sine.value[n];
-  return eo_law_set_stiffness(out, given->cosine.count > given->sine.count ? given->cosine.count : given->sine.count, series, backlash / 2, -backlash / 2,
-                              error);
+  return eo_law_set_stiffness(out, given->cosine.count > given->sine.count ? given->cosine.count : given->sine.count,
+                              series, backlash / 2, -backlash / 2, error);
 }
 
-enum eo_code eo_stage_law_make(struct eo_law *out, const struct eo_stage_law *given, double load, double backlash, const char *pointer,
-                               struct eo_error *error)
+enum eo_code eo_stage_law_make(struct eo_law *out, const struct eo_stage_law *given, double load, double backlash,
+                               const char *pointer, struct eo_error *error)
 {
   int n = given->approach.count, order = n > 1 && given->order >= n / 2 ? (n - 1) / 2 : given->order;
   double nominal = isnan(given->load) ? load : given->load;

@@ -15,16 +15,19 @@ struct eo_stage_law {
   double datum;                       /* m */
   int order;
   int rows;
-  struct eo_stage_law_row { double load; struct eo_series approach; } row[EO_STAGE_LAW_ROWS];
-  double mean;                        /* N/m */
-  struct eo_series cosine, sine;      /* [order] */
+  struct eo_stage_law_row {
+    double load;
+    struct eo_series approach;
+  } row[EO_STAGE_LAW_ROWS];
+  double mean;                   /* N/m */
+  struct eo_series cosine, sine; /* [order] */
 };
 
 extern const struct eo_table eo_stage_law_table;
 
 /* load: of one end under the torque, N. backlash: 2 tau, m. pointer: of the law in the document. */
-enum eo_code eo_stage_law_make(struct eo_law *law, const struct eo_stage_law *given, double load, double backlash, const char *pointer,
-                               struct eo_error *error);
+enum eo_code eo_stage_law_make(struct eo_law *law, const struct eo_stage_law *given, double load, double backlash,
+                               const char *pointer, struct eo_error *error);
 
 /* Mean over the mesh cycle of dF/dX under the static load, N/m. */
 double eo_stage_law_stiffness(const struct eo_law *law, double load);

@@ -13,9 +13,11 @@ struct point_input {
 };
 
 static const struct eo_field point_input[] = {
-    EO_INTEGER(struct point_input, pair, "pair", -1000, 1000, 0, "tooth pair; those next to the tooth asked for count with neighbour_coupling"),
+    EO_INTEGER(struct point_input, pair, "pair", -1000, 1000, 0,
+               "tooth pair; those next to the tooth asked for count with neighbour_coupling"),
     EO_NUMBER_REQUIRED(struct point_input, s, "s_mm", &eo_unit_mm, -1e3, 1e3, "on the flank, path coordinate"),
-    EO_NUMBER_REQUIRED(struct point_input, eta, "eta_mm", &eo_unit_mm, -5e3, 5e3, "axial from mid face, + on the side that meets first"),
+    EO_NUMBER_REQUIRED(struct point_input, eta, "eta_mm", &eo_unit_mm, -5e3, 5e3,
+                       "axial from mid face, + on the side that meets first"),
     EO_NUMBER_REQUIRED(struct point_input, force, "force_N", &eo_unit_N, 0, 1e9, "normal to the flank"),
 };
 static const struct eo_table point_table = EO_TABLE("a point load", struct point_input, point_input);
@@ -28,7 +30,8 @@ struct input {
 
 static const struct eo_field input[] = {
     EO_STAGE_MESH(struct input),
-    EO_LIST(struct input, point, points, "points", &point_table, 0, MOST_POINTS, "instead of torque_Nm or force_N: loads on the flanks"),
+    EO_LIST(struct input, point, points, "points", &point_table, 0, MOST_POINTS,
+            "instead of torque_Nm or force_N: loads on the flanks"),
     EO_INTEGER(struct input, tooth, "tooth", -1000, 1000, 0, "of the loads in points: tooth whose root is asked for"),
 };
 static const struct eo_table input_table = EO_TABLE("the input", struct input, input);
@@ -41,24 +44,32 @@ struct member_output {
   struct eo_series column[COLUMNS];
 };
 
-#define PLACE_FIELDS                                                                                                                 \
-  EO_OUT(struct member_output, maximum, "max_MPa", &eo_unit_MPa, "largest principal stress on the root of the loaded side"),         \
-      EO_OUT(struct member_output, arc, "arc_mm", &eo_unit_mm, "where: along the root from the start of the active profile"),        \
+#define PLACE_FIELDS                                                        \
+  EO_OUT(struct member_output, maximum, "max_MPa", &eo_unit_MPa,            \
+         "largest principal stress on the root of the loaded side"),        \
+      EO_OUT(struct member_output, arc, "arc_mm", &eo_unit_mm,              \
+             "where: along the root from the start of the active profile"), \
       EO_OUT(struct member_output, eta, "eta_mm", &eo_unit_mm, "where: axial from mid face")
 
 static const struct eo_field history_output[] = {
     PLACE_FIELDS,
     EO_OUT_SERIES(struct member_output, column[PHASE], "phase", NULL, "c of the tooth's pair in base pitches"),
-    EO_OUT_SERIES(struct member_output, column[STRESS], "history_MPa", &eo_unit_MPa, "largest on the root at that phase"),
+    EO_OUT_SERIES(struct member_output, column[STRESS], "history_MPa", &eo_unit_MPa,
+                  "largest on the root at that phase"),
 };
-static const struct eo_table history_table = EO_TABLE("a member's root through its mesh", struct member_output, history_output);
+static const struct eo_table history_table = EO_TABLE("a member's root through its mesh", struct member_output,
+                                                      history_output);
 
 static const struct eo_field field_output[] = {
     PLACE_FIELDS,
-    EO_OUT_SERIES(struct member_output, column[ARC], "profile_arc_mm", &eo_unit_mm, "along the root at that face position"),
-    EO_OUT_SERIES(struct member_output, column[ALONG], "profile_stress_MPa", &eo_unit_MPa, "larger principal stress there"),
-    EO_OUT_SERIES(struct member_output, column[ETA], "face_eta_mm", &eo_unit_mm, "over the face at that place of the root"),
-    EO_OUT_SERIES(struct member_output, column[ACROSS], "face_stress_MPa", &eo_unit_MPa, "larger principal stress there"),
+    EO_OUT_SERIES(struct member_output, column[ARC], "profile_arc_mm", &eo_unit_mm,
+                  "along the root at that face position"),
+    EO_OUT_SERIES(struct member_output, column[ALONG], "profile_stress_MPa", &eo_unit_MPa,
+                  "larger principal stress there"),
+    EO_OUT_SERIES(struct member_output, column[ETA], "face_eta_mm", &eo_unit_mm,
+                  "over the face at that place of the root"),
+    EO_OUT_SERIES(struct member_output, column[ACROSS], "face_stress_MPa", &eo_unit_MPa,
+                  "larger principal stress there"),
 };
 static const struct eo_table field_table = EO_TABLE("a member's root", struct member_output, field_output);
 
@@ -99,16 +110,22 @@ static const struct eo_field points_output[] = {
 static const struct eo_table points_output_table = EO_TABLE("under points", struct output, points_output);
 
 static const struct eo_field output[] = {
-    {.key = "points", .kind = EO_FIELD_OBJECT, .flags = EO_FIELD_NULLABLE, .count_offset = offsetof(struct output, by_points), .table = &points_output_table,
-     .derived = "none were given", .help = "stress under the loads in points"},
-    EO_LIST(struct output, load, loads, "loads", &load_table, 0, EO_STAGE_LOADS, "one row per load: the root of one tooth through its whole mesh"),
+    {.key = "points",
+     .kind = EO_FIELD_OBJECT,
+     .flags = EO_FIELD_NULLABLE,
+     .count_offset = offsetof(struct output, by_points),
+     .table = &points_output_table,
+     .derived = "none were given",
+     .help = "stress under the loads in points"},
+    EO_LIST(struct output, load, loads, "loads", &load_table, 0, EO_STAGE_LOADS,
+            "one row per load: the root of one tooth through its whole mesh"),
 };
 static const struct eo_table output_table = EO_TABLE("the output", struct output, output);
 
 /* ---- under given loads ---- */
 
-static enum eo_code read_field(struct member_output *out, const struct eo_root *root, const struct eo_root_place *place, const double *stress,
-                               struct eo_error *error)
+static enum eo_code read_field(struct member_output *out, const struct eo_root *root, const struct eo_root_place *place,
+                               const double *stress, struct eo_error *error)
 {
   int across = root->layers + 1;
   enum eo_code code = eo_stage_columns(2, &out->column[ARC], root->points, error);
@@ -130,8 +147,9 @@ static enum eo_code read_field(struct member_output *out, const struct eo_root *
   return EO_OK;
 }
 
-static enum eo_code stress_member(struct member_output *out, const struct eo_flexibility *flexibility, int member, const struct input *given,
-                                  const struct eo_flank_point *point, const double *force, struct eo_error *error)
+static enum eo_code stress_member(struct member_output *out, const struct eo_flexibility *flexibility, int member,
+                                  const struct input *given, const struct eo_flank_point *point, const double *force,
+                                  struct eo_error *error)
 {
   struct eo_root root = eo_flexibility_root(flexibility, member);
   struct eo_root_place place;
@@ -149,7 +167,8 @@ static enum eo_code run_points(const struct input *given, struct output *found, 
   struct eo_flexibility *flexibility = NULL;
   struct eo_flank_point *point = calloc(MOST_POINTS, sizeof *point);
   double *force = calloc(MOST_POINTS, sizeof *force);
-  enum eo_code code = point && force ? eo_stage_prepare(&given->mesh.design, &given->mesh.kernel, &flexibility, error) : eo_error_memory(error);
+  enum eo_code code = point && force ? eo_stage_prepare(&given->mesh.design, &given->mesh.kernel, &flexibility, error)
+                                     : eo_error_memory(error);
   for (int i = 0; i < given->points && !code; i++) {
     const struct point_input *row = &given->point[i];
     point[i] = (struct eo_flank_point){row->pair, {row->s, row->s}, row->eta};
@@ -166,7 +185,8 @@ static enum eo_code run_points(const struct input *given, struct output *found, 
 
 /* ---- through the mesh ---- */
 
-static enum eo_code read_history(struct member_output *out, const struct eo_stage_mesh *mesh, int member, int end, struct eo_error *error)
+static enum eo_code read_history(struct member_output *out, const struct eo_stage_mesh *mesh, int member, int end,
+                                 struct eo_error *error)
 {
   const struct eo_pair *pair = mesh->pair;
   const struct eo_root_modes *const modes[2] = {pair->root[0], pair->root[1]};
@@ -192,7 +212,8 @@ static enum eo_code read_history(struct member_output *out, const struct eo_stag
   return code;
 }
 
-static enum eo_code run_load(struct load_output *out, struct eo_stage_mesh *mesh, const struct input *given, int k, struct eo_error *error)
+static enum eo_code run_load(struct load_output *out, struct eo_stage_mesh *mesh, const struct input *given, int k,
+                             struct eo_error *error)
 {
   enum eo_code code = EO_OK;
   out->force = eo_stage_mesh_force(mesh, &given->mesh, k, &out->torque);
@@ -221,12 +242,15 @@ static enum eo_code run(const void *in, void *out, struct eo_error *error)
 {
   const struct input *given = in;
   if (given->mesh.kernel.closed)
-    return eo_error_set(error, EO_ERROR_INPUT, "/kernel/closed_form", "A closed form knows no roots: finite elements are needed.");
+    return eo_error_set(error, EO_ERROR_INPUT, "/kernel/closed_form",
+                        "A closed form knows no roots: finite elements are needed.");
   if (!given->points)
     return run_loads(given, out, error);
   if (given->mesh.torque.count || given->mesh.force.count)
-    return eo_error_set(error, EO_ERROR_INPUT, "/points", "Loads are given by points or by torque_Nm and force_N, not by both.");
+    return eo_error_set(error, EO_ERROR_INPUT, "/points",
+                        "Loads are given by points or by torque_Nm and force_N, not by both.");
   return run_points(given, out, error);
 }
 
-const struct eo_stage eo_stage_root_stress = {"root-stress", "root bending stress under given loads or through the mesh", &input_table, &output_table, true, run};
+const struct eo_stage eo_stage_root_stress = {
+    "root-stress", "root bending stress under given loads or through the mesh", &input_table, &output_table, true, run};

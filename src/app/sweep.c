@@ -37,7 +37,8 @@ static json_t *read_range(const char *text)
   json_t *range = json_object();
   for (int i = 0; i < 3; i++) {
     double value;
-    if (!read_number(&text, &value) || json_object_set_new(range, key[i], json_real(value)) || (*text && *text != ':') || (*text && i == 2)) {
+    if (!read_number(&text, &value) || json_object_set_new(range, key[i], json_real(value)) ||
+        (*text && *text != ':') || (*text && i == 2)) {
       json_decref(range);
       return NULL;
     }
@@ -47,7 +48,8 @@ static json_t *read_range(const char *text)
   return range;
 }
 
-static enum eo_code add_range(json_t *document, const char *option, const char *key, const char *text, struct eo_error *error)
+static enum eo_code add_range(json_t *document, const char *option, const char *key, const char *text,
+                              struct eo_error *error)
 {
   if (!text)
     return EO_OK;
@@ -109,7 +111,8 @@ static bool read_threads(struct request *request, int *status)
 
 /* ---- work ---- */
 
-static enum eo_code prepare(struct request *request, const struct eo_progress *progress, struct eo_pair **pair, struct eo_error *error)
+static enum eo_code prepare(struct request *request, const struct eo_progress *progress, struct eo_pair **pair,
+                            struct eo_error *error)
 {
   struct eo_text directory = {0};
   bool keep = !request->no_cache && eo_app_cache_directory(request->data, &directory);
@@ -145,7 +148,8 @@ static int run_request(struct request *request)
   struct eo_error error;
   struct eo_pair *pair = NULL;
   struct eo_sweep sweep = {0};
-  const struct eo_sweep_plan plan = {request->axes.torques, request->axes.speeds, request->axes.torque, request->axes.speed, request->thread_count};
+  const struct eo_sweep_plan plan = {request->axes.torques, request->axes.speeds, request->axes.torque,
+                                     request->axes.speed, request->thread_count};
   eo_watch_start(&watch);
   enum eo_code code = prepare(request, &watch.progress, &pair, &error);
   if (!code)
@@ -171,12 +175,14 @@ static int run(const struct eo_command *command, int argc, char **argv)
     eo_error_memory(&error);
     return eo_app_fail(NULL, &error);
   }
-  const struct eo_option options[] = {{.name = "--torque", .value = &request->torque}, {.name = "--speed", .value = &request->speed},
-                                      {.name = "--json", .flag = &request->json},      {.name = "--csv", .value = &request->csv},
-                                      {.name = "--data", .value = &request->data},     {.name = "--no-cache", .flag = &request->no_cache},
-                                      {.name = "--threads", .value = &request->threads}, {.name = NULL}};
-  if (eo_app_arguments(command, argc, argv, options, 1, 1, &request->file, &operands, &status) && read_threads(request, &status) &&
-      read_axes(request, &status) && eo_app_load_design(request->file, &request->design, &request->geometry, &request->warnings, &status))
+  const struct eo_option options[] = {
+      {.name = "--torque", .value = &request->torque},   {.name = "--speed", .value = &request->speed},
+      {.name = "--json", .flag = &request->json},        {.name = "--csv", .value = &request->csv},
+      {.name = "--data", .value = &request->data},       {.name = "--no-cache", .flag = &request->no_cache},
+      {.name = "--threads", .value = &request->threads}, {.name = NULL}};
+  if (eo_app_arguments(command, argc, argv, options, 1, 1, &request->file, &operands, &status) &&
+      read_threads(request, &status) && read_axes(request, &status) &&
+      eo_app_load_design(request->file, &request->design, &request->geometry, &request->warnings, &status))
     status = run_request(request);
   eo_sweep_axes_done(&request->axes);
   free(request);
@@ -186,9 +192,12 @@ static int run(const struct eo_command *command, int argc, char **argv)
 const struct eo_command eo_command_sweep = {
     "sweep", "DESIGN.json --torque A:B:N | --speed A:B:N [--json] [--csv FILE] [--threads N] [--data DIR] [--no-cache]",
     "a design over torque, speed or both, beside the unmodified pair",
-    "N torques from A to B (N m, on the pinion), N speeds from A to B (rpm, of the pinion), or both: a map. The axis that is not given\n"
-    "stands at the load case with the largest share. A alone is one value. Loaded contact is solved once per torque; every speed is\n"
-    "solved upwards and downwards, and both are shown where they differ (contact loss). --json prints everything as columns, --csv\n"
-    "writes a line per point. All cores work unless --threads says otherwise; the numbers do not depend on it.\n\n"
-    EO_APP_DATA_HELP
-    "--no-cache neither reads nor keeps it.\n", run};
+    "N torques from A to B (N m, on the pinion), N speeds from A to B (rpm, of the pinion), or both: a map. The axis "
+    "that is not given\n"
+    "stands at the load case with the largest share. A alone is one value. Loaded contact is solved once per torque; "
+    "every speed is\n"
+    "solved upwards and downwards, and both are shown where they differ (contact loss). --json prints everything as "
+    "columns, --csv\n"
+    "writes a line per point. All cores work unless --threads says otherwise; the numbers do not depend on "
+    "it.\n\n" EO_APP_DATA_HELP "--no-cache neither reads nor keeps it.\n",
+    run};

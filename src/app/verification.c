@@ -19,7 +19,8 @@ static struct eo_check *next_check(struct eo_verification *v)
   return &v->check[v->count];
 }
 
-void eo_verify_add(struct eo_verification *v, const char *label, const char *quantity, double value, double expected, double tolerance)
+void eo_verify_add(struct eo_verification *v, const char *label, const char *quantity, double value, double expected,
+                   double tolerance)
 {
   bool pass = value == expected || fabs(value - expected) <= tolerance;
   struct eo_check *check = v->failed ? NULL : next_check(v);
@@ -37,7 +38,8 @@ void eo_verify_add(struct eo_verification *v, const char *label, const char *qua
 void eo_verify_broken(struct eo_verification *v, const char *label, const struct eo_error *error)
 {
   eo_verify_add(v, label, "computed at all", NAN, 1, 0);
-  eo_verify_ignore(v, "%s could not be computed: %s%s%s", label, error->pointer, *error->pointer ? ": " : "", error->text);
+  eo_verify_ignore(v, "%s could not be computed: %s%s%s", label, error->pointer, *error->pointer ? ": " : "",
+                   error->text);
 }
 
 void eo_verify_ignore(struct eo_verification *v, const char *format, ...)
@@ -56,7 +58,8 @@ void eo_verify_unknown(struct eo_verification *v, const char *where, const json_
 {
   const char *key;
   json_t *value;
-  json_object_foreach((json_t *)object, key, value) {
+  json_object_foreach((json_t *)object, key, value)
+  {
     bool found = false;
     for (int i = 0; known[i] && !found; i++)
       found = strcmp(known[i], key) == 0;

@@ -33,7 +33,8 @@ static enum eo_code run_kind(const json_t *cases, struct eo_verification *v, str
     }
     eo_text_print(&known, "%s%s", i ? ", " : "", candidate->name);
   }
-  eo_error_set(error, code, "/kind", "\"%.40s\" is not a kind of case file; known: %s.", kind ? kind : "(none)", known.data ? known.data : "");
+  eo_error_set(error, code, "/kind", "\"%.40s\" is not a kind of case file; known: %s.", kind ? kind : "(none)",
+               known.data ? known.data : "");
   eo_text_done(&known);
   return code;
 }
@@ -93,7 +94,8 @@ static void add_row(struct eo_sheet *sheet, const struct eo_verification *v, int
 /* One line per case: its largest deviation, measured in tolerances. */
 static void print_table(const struct eo_verification *v, struct eo_text *text)
 {
-  static const char *const headings[] = {"case", "checks", "largest deviation in", "value", "expected", "deviation", "tolerance", "verdict"};
+  static const char *const headings[] = {
+      "case", "checks", "largest deviation in", "value", "expected", "deviation", "tolerance", "verdict"};
   struct eo_sheet sheet;
   eo_sheet_init(&sheet, 8, headings);
   for (int first = 0, count; first < v->count; first += count) {
@@ -208,7 +210,9 @@ out:
   return status;
 }
 
-const struct eo_command eo_command_verify = {
-    "verify", "CASES.json... [--json]", "computes reference cases and compares them with what is expected",
-    "Each file says its kind. One line per case shows its largest deviation, in tolerances; --json prints every number.\n"
-    "Exit status 1 when a number is out of tolerance.\n", run};
+const struct eo_command eo_command_verify = {"verify", "CASES.json... [--json]",
+                                             "computes reference cases and compares them with what is expected",
+                                             "Each file says its kind. One line per case shows its largest deviation, "
+                                             "in tolerances; --json prints every number.\n"
+                                             "Exit status 1 when a number is out of tolerance.\n",
+                                             run};

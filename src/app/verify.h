@@ -1,5 +1,5 @@
-/* Reference cases: files whose "kind" says which function reads them; each number computed by the code that analyses designs,
-   beside the number expected. */
+/* Reference cases: files whose "kind" says which function reads them; each number computed by the code that analyses
+   designs, beside the number expected. */
 #ifndef EASEOFF_APP_VERIFY_H
 #define EASEOFF_APP_VERIFY_H
 
@@ -11,8 +11,8 @@
 #include "document/text.h"
 
 struct eo_check {
-  char *label;     /* owned: the case */
-  char *quantity;  /* owned */
+  char *label;                       /* owned: the case */
+  char *quantity;                    /* owned */
   double value, expected, tolerance; /* in the case file's unit; passes when equal or |value - expected| <= tolerance */
   bool pass;
 };
@@ -21,20 +21,23 @@ struct eo_verification {
   const char *folder;     /* where the case file is, without the last slash: file names in it are relative to it */
   struct eo_check *check; /* owned */
   int count, capacity;
-  json_t *ignored;        /* owned array of strings: keys that nobody read, and why */
-  bool failed;            /* an allocation failed */
+  json_t *ignored; /* owned array of strings: keys that nobody read, and why */
+  bool failed;     /* an allocation failed */
 };
 
 /* One computed number. */
-void eo_verify_add(struct eo_verification *verification, const char *label, const char *quantity, double value, double expected, double tolerance);
+void eo_verify_add(struct eo_verification *verification, const char *label, const char *quantity, double value,
+                   double expected, double tolerance);
 
 /* The computation itself failed where a number was expected: a check that does not pass, and the reason. */
 void eo_verify_broken(struct eo_verification *verification, const char *label, const struct eo_error *error);
 
-void eo_verify_ignore(struct eo_verification *verification, const char *format, ...) __attribute__((format(printf, 2, 3)));
+void eo_verify_ignore(struct eo_verification *verification, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
 
 /* Notes every key of the object that is not in the list (ends with NULL). where: for people. */
-void eo_verify_unknown(struct eo_verification *verification, const char *where, const json_t *object, const char *const *known);
+void eo_verify_unknown(struct eo_verification *verification, const char *where, const json_t *object,
+                       const char *const *known);
 
 /* Numbers of a case object: NaN when the key is absent or no number; element index of an array key. */
 double eo_verify_number(const json_t *object, const char *key);

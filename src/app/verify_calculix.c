@@ -20,8 +20,9 @@ static enum eo_code read_design(const json_t *file, struct eo_design *design, st
   const char *teeth = what ? strstr(what, "z ") : NULL, *slash = teeth ? strchr(teeth, '/') : NULL;
   json_t *input = json_object_get(file, "input");
   json_t *made = input ? json_incref(input)
-                       : json_pack("{s:[i,i], s:f, s:f, s:f}", "z", teeth ? atoi(teeth + 2) : 17, slash ? atoi(slash + 1) : 44, "mn",
-                                   number_in(what, "mn ", 6), "beta_deg", number_in(what, "beta ", 24), "b", number_in(what, "b ", 55));
+                       : json_pack("{s:[i,i], s:f, s:f, s:f}", "z", teeth ? atoi(teeth + 2) : 17,
+                                   slash ? atoi(slash + 1) : 44, "mn", number_in(what, "mn ", 6), "beta_deg",
+                                   number_in(what, "beta ", 24), "b", number_in(what, "b ", 55));
   if (!made)
     return eo_error_memory(error);
   enum eo_code code = eo_case_design(made, design, error);
@@ -44,7 +45,8 @@ static void check_phase(struct eo_verification *v, const char *label, const json
   double lte = 1e6 * r->load_case[0].transmission[j];
   snprintf(quantity, sizeof quantity, "LTE um less the mean difference, c %.6g", 1e3 * p->phase);
   eo_verify_add(v, label, quantity, lte - shift, eo_verify_element(block, "LTE_um", j), 0.1);
-  json_object_foreach(json_array_get(json_object_get(block, "share"), (size_t)j), key, share) {
+  json_object_foreach(json_array_get(json_object_get(block, "share"), (size_t)j), key, share)
+  {
     double load = 0, pitch = pair->geometry.transverse_base_pitch;
     for (int i = 0; i < p->points; i++)
       if (fabs(p->phase + p->point[i].pair * pitch - 1e-3 * atof(key)) < 1e-2 * pitch)
@@ -54,7 +56,8 @@ static void check_phase(struct eo_verification *v, const char *label, const json
   }
 }
 
-static enum eo_code check_block(struct eo_verification *v, const char *label, const json_t *file, const json_t *block, struct eo_error *error)
+static enum eo_code check_block(struct eo_verification *v, const char *label, const json_t *file, const json_t *block,
+                                struct eo_error *error)
 {
   const json_t *phases = json_object_get(block, "phases_mm");
   int n = (int)json_array_size(phases);
@@ -76,7 +79,8 @@ static enum eo_code check_block(struct eo_verification *v, const char *label, co
       eo_design_resolve(design, &geometry);
       double force = number_in(json_string_value(json_object_get(file, "what")), "normal force ", NAN);
       design->load_case[0].torque = 2 * force * geometry.base_radius[0] * cos(geometry.base_helix_angle);
-      eo_case_modification(json_object_get(block, "mod"), &design->gear_pair, &design->modification.flank[EO_PINION][EO_LEFT]);
+      eo_case_modification(json_object_get(block, "mod"), &design->gear_pair,
+                           &design->modification.flank[EO_PINION][EO_LEFT]);
       design->modification.flank[EO_PINION][EO_RIGHT] = design->modification.flank[EO_PINION][EO_LEFT];
       code = eo_pair_new(&pair, design, &options, NULL, error);
     }
@@ -106,11 +110,11 @@ enum eo_code eo_verify_calculix(const json_t *file, struct eo_verification *v, s
 {
   const char *name;
   json_t *block;
-  json_object_foreach((json_t *)file, name, block)
-    if (json_is_object(block) && json_object_get(block, "phases_mm")) {
-      enum eo_code code = check_block(v, name, file, block, error);
-      if (code)
-        return code;
-    }
+  json_object_foreach((json_t *)file, name, block) if (json_is_object(block) && json_object_get(block, "phases_mm"))
+  {
+    enum eo_code code = check_block(v, name, file, block, error);
+    if (code)
+      return code;
+  }
   return EO_OK;
 }

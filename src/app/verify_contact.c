@@ -18,7 +18,8 @@ void eo_contact_case_modification(struct eo_contact_case *c, const char *name, s
   eo_case_modification(block, &c->design.gear_pair, flank);
 }
 
-static void check_relative(struct eo_verification *v, const char *label, const json_t *block, const char *key, double value, double relative)
+static void check_relative(struct eo_verification *v, const char *label, const json_t *block, const char *key,
+                           double value, double relative)
 {
   double expected = eo_verify_number(block, key);
   if (!isnan(expected))
@@ -30,28 +31,47 @@ static void check_macro(struct eo_contact_case *c)
   const json_t *macro = json_object_get(c->file, "macro"), *o = json_object_get(macro, "output"), *list;
   const struct eo_geometry *g = &c->geometry;
   double tolerance = eo_verify_number_or(macro, "tol_rel", 1e-9);
-  const struct { const char *key; double value; } row[] = {
-    {"mt", 1e3 * g->transverse_module}, {"at", g->transverse_pressure_angle}, {"bb", g->base_helix_angle}, {"r1", 1e3 * g->reference_radius[0]},
-    {"r2", 1e3 * g->reference_radius[1]}, {"rb1", 1e3 * g->base_radius[0]}, {"rb2", 1e3 * g->base_radius[1]}, {"ra1", 1e3 * g->tip_radius[0]},
-    {"ra2", 1e3 * g->tip_radius[1]}, {"rf1", 1e3 * g->root_radius[0]}, {"rf2", 1e3 * g->root_radius[1]}, {"a", 1e3 * g->centre_distance},
-    {"pbt", 1e3 * g->transverse_base_pitch}, {"pbn", 1e3 * g->normal_base_pitch}, {"sA", 1e3 * g->path_start}, {"sE", 1e3 * g->path_end},
-    {"eps_a", g->transverse_contact_ratio}, {"eps_b", g->overlap_ratio}, {"ku", g->rack_factor}, {"u_bot", 1e3 * g->rack_bottom},
-    {"u_tip", 1e3 * g->rack_top}, {"T1C", 1e3 * g->tangent_length[0]}, {"T2C", 1e3 * g->tangent_length[1]},
-    {"awt", g->working_pressure_angle}};
+  const struct {
+    const char *key;
+    double value;
+  } row[] = {{"mt", 1e3 * g->transverse_module},
+             {"at", g->transverse_pressure_angle},
+             {"bb", g->base_helix_angle},
+             {"r1", 1e3 * g->reference_radius[0]},
+             {"r2", 1e3 * g->reference_radius[1]},
+             {"rb1", 1e3 * g->base_radius[0]},
+             {"rb2", 1e3 * g->base_radius[1]},
+             {"ra1", 1e3 * g->tip_radius[0]},
+             {"ra2", 1e3 * g->tip_radius[1]},
+             {"rf1", 1e3 * g->root_radius[0]},
+             {"rf2", 1e3 * g->root_radius[1]},
+             {"a", 1e3 * g->centre_distance},
+             {"pbt", 1e3 * g->transverse_base_pitch},
+             {"pbn", 1e3 * g->normal_base_pitch},
+             {"sA", 1e3 * g->path_start},
+             {"sE", 1e3 * g->path_end},
+             {"eps_a", g->transverse_contact_ratio},
+             {"eps_b", g->overlap_ratio},
+             {"ku", g->rack_factor},
+             {"u_bot", 1e3 * g->rack_bottom},
+             {"u_tip", 1e3 * g->rack_top},
+             {"T1C", 1e3 * g->tangent_length[0]},
+             {"T2C", 1e3 * g->tangent_length[1]},
+             {"awt", g->working_pressure_angle}};
   for (size_t i = 0; i < sizeof row / sizeof row[0]; i++)
     check_relative(c->v, "macro", o, row[i].key, row[i].value, tolerance);
   list = json_object_get(macro, "fillet_form_radius");
   for (size_t i = 0; i < json_array_size(list) && i < 2; i++)
-    eo_verify_add(c->v, "macro", i ? "fillet_form_radius gear" : "fillet_form_radius pinion", 1e3 * g->form_radius[i], eo_verify_at(list, i), tolerance * eo_verify_at(list, i));
+    eo_verify_add(c->v, "macro", i ? "fillet_form_radius gear" : "fillet_form_radius pinion", 1e3 * g->form_radius[i],
+                  eo_verify_at(list, i), tolerance * eo_verify_at(list, i));
   const char *key;
   json_t *value;
   json_object_foreach(json_object_get(macro, "rho_n"), key, value)
-    eo_verify_add(c->v, "macro rho_n", key, 1e3 * eo_geometry_relative_radius(g, 1e-3 * atof(key)), json_number_value(value),
-                  tolerance * json_number_value(value));
-  json_object_foreach(json_object_get(macro, "h_depth"), key, value)
-    for (int member = 0; member < 2; member++)
-      eo_verify_add(c->v, "macro h_depth", key, 1e3 * eo_geometry_depth(g, member, 1e-3 * atof(key)), eo_verify_at(value, (size_t)member),
-                    tolerance * eo_verify_at(value, (size_t)member));
+      eo_verify_add(c->v, "macro rho_n", key, 1e3 * eo_geometry_relative_radius(g, 1e-3 * atof(key)),
+                    json_number_value(value), tolerance * json_number_value(value));
+  json_object_foreach(json_object_get(macro, "h_depth"), key, value) for (int member = 0; member < 2; member++)
+      eo_verify_add(c->v, "macro h_depth", key, 1e3 * eo_geometry_depth(g, member, 1e-3 * atof(key)),
+                    eo_verify_at(value, (size_t)member), tolerance * eo_verify_at(value, (size_t)member));
 }
 
 static void check_modification(struct eo_contact_case *c)
@@ -60,7 +80,8 @@ static void check_modification(struct eo_contact_case *c)
   double tolerance = eo_verify_number_or(block, "tol_um", 1e-6);
   const char *name;
   json_t *expected;
-  json_object_foreach(json_object_get(block, "delta_um"), name, expected) {
+  json_object_foreach(json_object_get(block, "delta_um"), name, expected)
+  {
     struct eo_flank_modification flank;
     struct eo_modification_shape shape;
     char label[80], quantity[60];
@@ -68,7 +89,8 @@ static void check_modification(struct eo_contact_case *c)
     eo_modification_init(&shape, &c->geometry, EO_PINION, &flank);
     snprintf(label, sizeof label, "modification %.40s", name);
     for (size_t i = 0; i < json_array_size(points); i++) {
-      double s = 1e-3 * eo_verify_at(json_array_get(points, i), 0), eta = 1e-3 * eo_verify_at(json_array_get(points, i), 1), slope[2], lead;
+      double s = 1e-3 * eo_verify_at(json_array_get(points, i), 0),
+             eta = 1e-3 * eo_verify_at(json_array_get(points, i), 1), slope[2], lead;
       double value = eo_modification_profile(&shape, c->geometry.rack_factor * s, slope) +
                      eo_modification_lead(&shape, eta / cos(c->geometry.helix_angle), &lead);
       snprintf(quantity, sizeof quantity, "delta_um at s %g, eta %g", 1e3 * s, 1e3 * eta);
@@ -88,7 +110,8 @@ static void check_surface(struct eo_contact_case *c, const char *name, const jso
   eo_contact_case_modification(c, name, &flank);
   eo_modification_init(&shape, &c->geometry, EO_PINION, &flank);
   snprintf(label, sizeof label, "exact surface %.40s", name);
-  json_array_foreach(json_object_get(block, "points"), index, row) {
+  json_array_foreach(json_object_get(block, "points"), index, row)
+  {
     struct eo_surface_point p;
     double u = eo_verify_number(row, "u"), v = eo_verify_number(row, "v");
     eo_surface_evaluate(&c->geometry, EO_PINION, &shape, 1e-3 * u, 1e-3 * v, &p);
@@ -116,14 +139,15 @@ static void check_slice_gap(struct eo_contact_case *c, const char *name, const j
     eo_slice_gap_init(table, &c->geometry, shape);
   for (size_t i = 0; table && i < json_array_size(phase); i++) {
     snprintf(quantity, sizeof quantity, "gap_um at c %g", eo_verify_at(phase, i));
-    eo_verify_add(c->v, label, quantity, 1e6 * eo_slice_gap_at(table, 1e-3 * eo_verify_at(phase, i), NULL), eo_verify_at(exact, i), tolerance);
+    eo_verify_add(c->v, label, quantity, 1e6 * eo_slice_gap_at(table, 1e-3 * eo_verify_at(phase, i), NULL),
+                  eo_verify_at(exact, i), tolerance);
   }
   free(table);
 }
 
 /* Transmission errors after the mean difference is taken out (the axial float does that). */
-static void compare_errors(struct eo_contact_case *c, const char *label, const char *what, const json_t *expected, const struct eo_unloaded *got,
-                           double tolerance)
+static void compare_errors(struct eo_contact_case *c, const char *label, const char *what, const json_t *expected,
+                           const struct eo_unloaded *got, double tolerance)
 {
   size_t n = json_array_size(expected);
   double shift = 0;
@@ -146,7 +170,8 @@ static enum eo_code check_unloaded(struct eo_contact_case *c, const json_t *item
   struct eo_unloaded exact[MOST], least[MOST];
   double phase[MOST], tolerance = eo_verify_number_or(item, "tol_um", 0.04);
   const json_t *list = json_object_get(item, "phase");
-  const char *label = json_string_value(json_object_get(item, "name")), *end = json_string_value(json_object_get(item, "end"));
+  const char *label = json_string_value(json_object_get(item, "name")),
+             *end = json_string_value(json_object_get(item, "end"));
   int n = (int)json_array_size(list);
   label = label ? label : "unloaded contact";
   if (!field)
@@ -158,7 +183,8 @@ static enum eo_code check_unloaded(struct eo_contact_case *c, const json_t *item
   int side = (end && strcmp(end, "left") == 0) || eo_verify_number_or(item, "end", 1) < 0 ? EO_LEFT : EO_RIGHT;
   double sign = side == EO_LEFT ? -1 : 1;
   eo_corner_gap_init(corner, &c->geometry);
-  eo_gap_field_init(field, &c->geometry, &flank, &none, side, alignment.shaft_angle_in_plane, alignment.shaft_angle_out_of_plane, 0, corner);
+  eo_gap_field_init(field, &c->geometry, &flank, &none, side, alignment.shaft_angle_in_plane,
+                    alignment.shaft_angle_out_of_plane, 0, corner);
   struct eo_shaft_errors errors = {sign * alignment.shaft_angle_in_plane, sign * alignment.shaft_angle_out_of_plane, 0};
   enum eo_code code = n > MOST ? eo_error_set(error, EO_ERROR_INPUT, "/unloaded_tca", "More than %d phases.", MOST)
                                : eo_unloaded_exact(field, &errors, n, phase, exact, error);
@@ -168,7 +194,8 @@ static enum eo_code check_unloaded(struct eo_contact_case *c, const json_t *item
     compare_errors(c, label, "TE_mingap_um", json_object_get(item, "TE_mingap_um"), least, tolerance);
     for (int i = 0; i < n; i++) {
       char quantity[60];
-      double s = eo_verify_at(json_object_get(item, "s"), (size_t)i), eta = eo_verify_at(json_object_get(item, "eta"), (size_t)i);
+      double s = eo_verify_at(json_object_get(item, "s"), (size_t)i),
+             eta = eo_verify_at(json_object_get(item, "eta"), (size_t)i);
       snprintf(quantity, sizeof quantity, "s mm [%d]", i);
       if (!isnan(s) && exact[i].touch == EO_TOUCH_POINT)
         eo_verify_add(c->v, label, quantity, 1e3 * exact[i].path, s, 0.05);
@@ -183,17 +210,21 @@ static enum eo_code check_unloaded(struct eo_contact_case *c, const json_t *item
 
 static void check_hertz(struct eo_contact_case *c, const json_t *block)
 {
-  const json_t *q = json_object_get(block, "q"), *s = json_object_get(block, "s"), *expected = json_object_get(block, "delta_um");
+  const json_t *q = json_object_get(block, "q"), *s = json_object_get(block, "s"),
+               *expected = json_object_get(block, "delta_um");
   double relative = eo_verify_number_or(block, "tol_rel", 1e-6);
   for (size_t i = 0; i < json_array_size(q); i++)
     for (size_t j = 0; j < json_array_size(s); j++) {
       struct eo_local_law law;
-      double place = 1e-3 * eo_verify_at(s, j), depth[2] = {eo_geometry_depth(&c->geometry, 0, place), eo_geometry_depth(&c->geometry, 1, place)};
+      double place = 1e-3 * eo_verify_at(s, j),
+             depth[2] = {eo_geometry_depth(&c->geometry, 0, place), eo_geometry_depth(&c->geometry, 1, place)};
       double wanted = eo_verify_at(json_array_get(expected, i), j);
       char quantity[60];
-      eo_local_law_init(&law, c->design.material.youngs_modulus, c->design.material.poissons_ratio, eo_geometry_relative_radius(&c->geometry, place), depth);
+      eo_local_law_init(&law, c->design.material.youngs_modulus, c->design.material.poissons_ratio,
+                        eo_geometry_relative_radius(&c->geometry, place), depth);
       snprintf(quantity, sizeof quantity, "delta_um at q %g, s %g", eo_verify_at(q, i), eo_verify_at(s, j));
-      eo_verify_add(c->v, "hertz", quantity, 1e6 * eo_local_law_approach(&law, 1e3 * eo_verify_at(q, i)), wanted, relative * fabs(wanted));
+      eo_verify_add(c->v, "hertz", quantity, 1e6 * eo_local_law_approach(&law, 1e3 * eo_verify_at(q, i)), wanted,
+                    relative * fabs(wanted));
     }
 }
 
@@ -201,10 +232,16 @@ static void check_iso_stiffness(struct eo_contact_case *c, const json_t *block)
 {
   const struct eo_geometry *g = &c->geometry;
   struct eo_iso_stiffness plain, corrected;
-  struct eo_iso_stiffness_input input = {.teeth = {g->teeth[0], g->teeth[1]}, .virtual_teeth = EO_ISO_VIRTUAL_CUBED,
-    .normal_pressure_angle = g->normal_pressure_angle, .helix_angle = g->helix_angle, .profile_shift = {g->profile_shift[0], g->profile_shift[1]},
-    .dedendum_coefficient = c->design.gear_pair.dedendum_coefficient, .transverse_contact_ratio = g->transverse_contact_ratio,
-    .blank_factor = 1, .theory_factor = 1, .youngs_modulus = c->design.material.youngs_modulus};
+  struct eo_iso_stiffness_input input = {.teeth = {g->teeth[0], g->teeth[1]},
+                                         .virtual_teeth = EO_ISO_VIRTUAL_CUBED,
+                                         .normal_pressure_angle = g->normal_pressure_angle,
+                                         .helix_angle = g->helix_angle,
+                                         .profile_shift = {g->profile_shift[0], g->profile_shift[1]},
+                                         .dedendum_coefficient = c->design.gear_pair.dedendum_coefficient,
+                                         .transverse_contact_ratio = g->transverse_contact_ratio,
+                                         .blank_factor = 1,
+                                         .theory_factor = 1,
+                                         .youngs_modulus = c->design.material.youngs_modulus};
   double relative = 1e-3;
   eo_iso_stiffness(&plain, &input);
   input.theory_factor = 0.8;
@@ -246,7 +283,8 @@ static enum eo_code check_blocks(struct eo_contact_case *c, struct eo_error *err
   enum eo_code code = EO_OK;
   check_macro(c);
   check_modification(c);
-  json_object_foreach((json_t *)c->file, key, block) {
+  json_object_foreach((json_t *)c->file, key, block)
+  {
     if (strncmp(key, "exact_surface_", 14) == 0)
       check_surface(c, key + 14, block);
     else if (strncmp(key, "slice_gap_", 10) == 0)
@@ -258,8 +296,7 @@ static enum eo_code check_blocks(struct eo_contact_case *c, struct eo_error *err
     else if (strncmp(key, "iso6336_3_", 10) == 0)
       check_iso_root(c, key, block);
   }
-  json_array_foreach(json_object_get(c->file, "unloaded_tca"), index, item)
-    if (!code)
+  json_array_foreach(json_object_get(c->file, "unloaded_tca"), index, item) if (!code)
       code = check_unloaded(c, item, error);
   return code ? code : eo_verify_contact_loaded(c, error);
 }

@@ -1,5 +1,6 @@
-/* `easeoff verify` for files of kind `contact` (geometry, modification, surfaces, gaps, unloaded and loaded contact, impact, flexibility of
-   one gear pair, an independent computation) and `calculix` (three-dimensional contact finite elements). */
+/* `easeoff verify` for files of kind `contact` (geometry, modification, surfaces, gaps, unloaded and loaded contact,
+   impact, flexibility of one gear pair, an independent computation) and `calculix` (three-dimensional contact finite
+   elements). */
 #ifndef EASEOFF_APP_VERIFY_CONTACT_H
 #define EASEOFF_APP_VERIFY_CONTACT_H
 
@@ -13,7 +14,7 @@ enum eo_code eo_verify_calculix(const json_t *cases, struct eo_verification *ver
 struct eo_contact_case {
   const json_t *file;
   struct eo_verification *v;
-  struct eo_design design;         /* of macro.input */
+  struct eo_design design; /* of macro.input */
   struct eo_geometry geometry;
 };
 

@@ -1,11 +1,9 @@
-/* Kind "dynamics": the lumped model through the functions that analyse designs. Blocks, each optional and of any length:
-     geometry.z1                  pinion teeth (17 when missing)
-     defaults, torsional_coupling parameters for the cases that carry none
-     law_NAME, table_NAME         laws and tables that cases name
-     eigen[]                      eigenfrequencies, damping ratios, number of zero modes
-     negative_control_literal_signs  the pole of the printed signs
-     dynamics[]                   periodic responses; a case's law is a name, an object, or a pair [left, right] of them
-     sdof.cases[], sdof.folds     the single degree of freedom */
+/* Kind "dynamics": the lumped model through the functions that analyse designs. Blocks, each optional and of any
+   length: geometry.z1                  pinion teeth (17 when missing) defaults, torsional_coupling parameters for the
+   cases that carry none law_NAME, table_NAME         laws and tables that cases name eigen[] eigenfrequencies, damping
+   ratios, number of zero modes negative_control_literal_signs  the pole of the printed signs dynamics[] periodic
+   responses; a case's law is a name, an object, or a pair [left, right] of them sdof.cases[], sdof.folds     the single
+   degree of freedom */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -36,21 +34,25 @@ static enum eo_code wrong(struct eo_error *error, const char *pointer, const cha
   return eo_error_set(error, EO_ERROR_INPUT, pointer, "%s: %s.", pointer, what);
 }
 
-static struct eo_dynamics_parameters parameters_of(struct eo_verification *v, const json_t *cases, const json_t *item, const char *name)
+static struct eo_dynamics_parameters parameters_of(struct eo_verification *v, const json_t *cases, const json_t *item,
+                                                   const char *name)
 {
   const json_t *given = json_object_get(item, "params");
-  struct eo_dynamics_parameters p = eo_verify_read_parameters(v, name, given ? given : json_object_get(cases, "defaults"));
+  struct eo_dynamics_parameters p = eo_verify_read_parameters(v, name,
+                                                              given ? given : json_object_get(cases, "defaults"));
   eo_verify_couple(cases, json_string_value(json_object_get(item, "coupling")), &p);
   return p;
 }
 
 /* ---- eigenvalues ---- */
 
-static enum eo_code verify_modes(const json_t *cases, const json_t *item, const char *name, struct eo_verification *v, struct eo_error *error)
+static enum eo_code verify_modes(const json_t *cases, const json_t *item, const char *name, struct eo_verification *v,
+                                 struct eo_error *error)
 {
   struct eo_dynamics_model model;
   struct eo_dynamics_modes modes;
-  static const char *const known[] = {"id", "about", "note", "params", "coupling", "km", "zero_modes", "freq_hz", "damping_ratio", NULL};
+  static const char *const known[] = {"id", "about",      "note",    "params",        "coupling",
+                                      "km", "zero_modes", "freq_hz", "damping_ratio", NULL};
   struct eo_dynamics_parameters p = parameters_of(v, cases, item, name);
   double km[2] = {entry(item, "km", 0), entry(item, "km", 1)};
   eo_verify_unknown(v, name, item, known);
@@ -65,7 +67,8 @@ static enum eo_code verify_modes(const json_t *cases, const json_t *item, const 
   eo_verify_add(v, name, "number of frequencies", modes.n, (double)json_array_size(frequency), 0);
   for (int i = 0; i < modes.n; i++) {
     char quantity[NAME_LENGTH];
-    double expected = json_number_value(json_array_get(frequency, i)), damping = json_number_value(json_array_get(ratio, i));
+    double expected = json_number_value(json_array_get(frequency, i)),
+           damping = json_number_value(json_array_get(ratio, i));
     snprintf(quantity, sizeof quantity, "freq_hz[%d]", i);
     eo_verify_add(v, name, quantity, modes.frequency[i], expected, 1e-6 * expected);
     snprintf(quantity, sizeof quantity, "damping_ratio[%d]", i);
@@ -75,15 +78,18 @@ static enum eo_code verify_modes(const json_t *cases, const json_t *item, const 
   return EO_OK;
 }
 
-static enum eo_code verify_printed_signs(const json_t *cases, const json_t *item, struct eo_verification *v, struct eo_error *error)
+static enum eo_code verify_printed_signs(const json_t *cases, const json_t *item, struct eo_verification *v,
+                                         struct eo_error *error)
 {
   const char *name = "negative_control_literal_signs";
   struct eo_dynamics_model model;
-  static const char *const known[] = {"id", "about", "note", "params", "coupling", "km", "max_real_pole_per_s", "imag_hz", NULL};
+  static const char *const known[] = {"id",      "about", "note", "params", "coupling", "km", "max_real_pole_per_s",
+                                      "imag_hz", NULL};
   struct eo_dynamics_parameters p = parameters_of(v, cases, item, name);
   double complex pole;
   eo_verify_unknown(v, name, item, known);
-  double km = eo_verify_number_or(item, "km", eo_verify_number_or(json_array_get(json_object_get(cases, "eigen"), 0), "km", 1.1e9));
+  double km = eo_verify_number_or(item, "km",
+                                  eo_verify_number_or(json_array_get(json_object_get(cases, "eigen"), 0), "km", 1.1e9));
   enum eo_code code = eo_dynamics_model_init(&model, &p, error);
   if (!code)
     code = eo_dynamics_model_printed_pole(&model, (double[]){km, km}, &pole, error);
@@ -91,7 +97,8 @@ static enum eo_code verify_printed_signs(const json_t *cases, const json_t *item
     return code;
   double real = eo_verify_number(item, "max_real_pole_per_s"), imaginary = eo_verify_number(item, "imag_hz");
   eo_verify_add(v, name, "max_real_pole_per_s", creal(pole), real, 1e-6 * fabs(real));
-  if (isfinite(imaginary)) /* given as angular frequency or in Hz: the reference's figure is the imaginary part over 2 pi */
+  if (isfinite(
+          imaginary)) /* given as angular frequency or in Hz: the reference's figure is the imaginary part over 2 pi */
     eo_verify_add(v, name, "imag_hz", fabs(cimag(pole)) / (2 * M_PI), imaginary, 1e-6 * fabs(imaginary));
   return EO_OK;
 }
@@ -106,7 +113,8 @@ struct verified {
 };
 
 /* A number or a pair [left, right] under one key. */
-static void compare(const struct verified *v, const char *key, const double *value, int ends, double relative, double floor)
+static void compare(const struct verified *v, const char *key, const double *value, int ends, double relative,
+                    double floor)
 {
   const json_t *expected = json_object_get(v->expected, key);
   if (!expected || json_is_null(expected))
@@ -128,9 +136,10 @@ static void compare_harmonics(const struct verified *v, const char *key, const d
   double largest = 0;
   size_t k;
   json_t *pair;
+  json_array_foreach(expected, k, pair) largest =
+      fmax(largest, hypot(json_number_value(json_array_get(pair, 0)), json_number_value(json_array_get(pair, 1))));
   json_array_foreach(expected, k, pair)
-    largest = fmax(largest, hypot(json_number_value(json_array_get(pair, 0)), json_number_value(json_array_get(pair, 1))));
-  json_array_foreach(expected, k, pair) {
+  {
     if (k + 1 > HARMONICS)
       break;
     for (int part = 0; part < 2; part++) {
@@ -148,9 +157,9 @@ static void compare_freedoms(const struct verified *v, const struct eo_vibration
   size_t i;
   json_t *value;
   double largest[3] = {0};
+  json_array_foreach(expected, i, value) largest[i % 3] = fmax(largest[i % 3], json_number_value(value));
   json_array_foreach(expected, i, value)
-    largest[i % 3] = fmax(largest[i % 3], json_number_value(value));
-  json_array_foreach(expected, i, value) {
+  {
     char quantity[NAME_LENGTH];
     snprintf(quantity, sizeof quantity, "dof_acc_rms[%zu]", i);
     if (i < EO_MAX_FREEDOMS)
@@ -159,7 +168,8 @@ static void compare_freedoms(const struct verified *v, const struct eo_vibration
   }
 }
 
-static void compare_response(const struct verified *v, const struct eo_vibration_solver *solver, const struct eo_vibration *r)
+static void compare_response(const struct verified *v, const struct eo_vibration_solver *solver,
+                             const struct eo_vibration *r)
 {
   const struct eo_spectrum *s = eo_vibration_spectrum(solver);
   int ends = r->ends;
@@ -175,7 +185,8 @@ static void compare_response(const struct verified *v, const struct eo_vibration
   compare(v, "F_max", r->force_max, ends, 0, fmax(rms, 3e-4) * load);
   if (ends == 2) {
     const double *q = r->freedom_mean;
-    double apart = q[eo_dynamics_freedom(2, EO_PINION, 0, EO_MOTION_Z)] - q[eo_dynamics_freedom(2, EO_PINION, 1, EO_MOTION_Z)];
+    double apart = q[eo_dynamics_freedom(2, EO_PINION, 0, EO_MOTION_Z)] -
+                   q[eo_dynamics_freedom(2, EO_PINION, 1, EO_MOTION_Z)];
     compare(v, "y_static_p1", &q[eo_dynamics_freedom(2, EO_PINION, 0, EO_MOTION_Y)], 1, 1e-5, 0);
     compare(v, "y_static_g1", &q[eo_dynamics_freedom(2, EO_GEAR, 0, EO_MOTION_Y)], 1, 1e-5, 0);
     compare(v, "z_p1_minus_z_p2", &apart, 1, 1e-5, 0);
@@ -187,7 +198,8 @@ static void compare_response(const struct verified *v, const struct eo_vibration
   compare_freedoms(v, r);
 }
 
-static enum eo_code read_impact(const json_t *impact, const struct verified *at, struct eo_vibration_case *load, struct eo_error *error)
+static enum eo_code read_impact(const json_t *impact, const struct verified *at, struct eo_vibration_case *load,
+                                struct eo_error *error)
 {
   static const char *const known[] = {"mode", "A", "start", "d", "about", "note", NULL};
   if (!json_is_object(impact))
@@ -198,15 +210,17 @@ static enum eo_code read_impact(const json_t *impact, const struct verified *at,
   eo_verify_unknown(at->to, at->name, impact, known);
   load->impact = !strcmp(mode, "paper") ? EO_IMPACT_PAPER : EO_IMPACT_CONSISTENT;
   for (int end = 0; end < 2; end++)
-    load->pulse[end] = (struct eo_pulse){.shape = EO_PULSE_HALF_SINE, .amplitude = entry(impact, "A", end),
-                                         .start = entry_or(impact, "start", end, 0), .duration = entry(impact, "d", end)};
+    load->pulse[end] = (struct eo_pulse){.shape = EO_PULSE_HALF_SINE,
+                                         .amplitude = entry(impact, "A", end),
+                                         .start = entry_or(impact, "start", end, 0),
+                                         .duration = entry(impact, "d", end)};
   return EO_OK;
 }
 
-/* The response by harmonic balance. Where teeth separate several states may exist: an unstable one is replaced by the one that
-   time integration settles to. */
-static enum eo_code solve_stable(struct eo_vibration_solver *solver, const struct eo_vibration_case *load, struct eo_vibration *r,
-                                 double *floquet, struct eo_error *error)
+/* The response by harmonic balance. Where teeth separate several states may exist: an unstable one is replaced by the
+   one that time integration settles to. */
+static enum eo_code solve_stable(struct eo_vibration_solver *solver, const struct eo_vibration_case *load,
+                                 struct eo_vibration *r, double *floquet, struct eo_error *error)
 {
   double complex multiplier[2 * EO_MAX_COORDINATES];
   *floquet = NAN;
@@ -225,13 +239,17 @@ static enum eo_code solve_stable(struct eo_vibration_solver *solver, const struc
 static struct eo_vibration_case read_case(const json_t *cases, const json_t *item, const struct eo_law law[2])
 {
   double teeth = eo_verify_number_or(item, "z1", eo_verify_number_or(json_object_get(cases, "geometry"), "z1", 17));
-  return (struct eo_vibration_case){.torque = eo_verify_number(item, "T"), .speed = eo_verify_number(item, "rpm") * M_PI / 30,
-                                    .pinion_teeth = teeth >= 1 && teeth < 1e6 ? (int)teeth : 0, .law = {&law[0], &law[1]},
-                                    .phase_right = eo_verify_number_or(item, "shift_right", 0), .gated = json_is_true(json_object_get(item, "gate"))};
+  return (struct eo_vibration_case){.torque = eo_verify_number(item, "T"),
+                                    .speed = eo_verify_number(item, "rpm") * M_PI / 30,
+                                    .pinion_teeth = teeth >= 1 && teeth < 1e6 ? (int)teeth : 0,
+                                    .law = {&law[0], &law[1]},
+                                    .phase_right = eo_verify_number_or(item, "shift_right", 0),
+                                    .gated = json_is_true(json_object_get(item, "gate"))};
 }
 
-static enum eo_code solve_case(const struct verified *at, const json_t *cases, const json_t *item, struct eo_vibration_solver *solver,
-                               struct eo_law law[2], struct eo_vibration *r, double *floquet, struct eo_error *error)
+static enum eo_code solve_case(const struct verified *at, const json_t *cases, const json_t *item,
+                               struct eo_vibration_solver *solver, struct eo_law law[2], struct eo_vibration *r,
+                               double *floquet, struct eo_error *error)
 {
   const json_t *given = json_object_get(item, "params"), *laws = json_object_get(item, "law");
   double tau = eo_verify_number_or(given ? given : json_object_get(cases, "defaults"), "tau", 0);
@@ -239,19 +257,24 @@ static enum eo_code solve_case(const struct verified *at, const json_t *cases, c
   struct eo_vibration_case load = read_case(cases, item, law);
   enum eo_code code = eo_vibration_set_model(solver, &p, error);
   for (int end = 0; end < 2 && !code; end++)
-    code = eo_verify_read_law(at->to, cases, json_is_array(laws) ? json_array_get(laws, (size_t)end) : laws, tau, &law[end], error);
+    code = eo_verify_read_law(at->to, cases, json_is_array(laws) ? json_array_get(laws, (size_t)end) : laws, tau,
+                              &law[end], error);
   if (!code)
     code = read_impact(json_object_get(item, "impact"), at, &load, error);
   return code ? code : solve_stable(solver, &load, r, floquet, error);
 }
 
-static enum eo_code verify_response(const json_t *cases, const json_t *item, const char *name, struct eo_vibration_solver *solver,
-                                    struct eo_verification *v, struct eo_error *error)
+static enum eo_code verify_response(const json_t *cases, const json_t *item, const char *name,
+                                    struct eo_vibration_solver *solver, struct eo_verification *v,
+                                    struct eo_error *error)
 {
-  static const char *const known[] = {"id", "about", "note", "params", "coupling", "law", "T", "rpm", "z1", "gate", "shift_right", "impact", "expected", NULL};
-  static const char *const answers[] = {"converged", "X_mean", "X_harm_left", "X_harm_right", "rms_n", "rms_t", "rms_rot", "rms_meanLR", "dof_acc_rms",
-                                        "F_mean", "F_min", "F_max", "y_static_p1", "y_static_g1", "z_p1_minus_z_p2", "z_static_g1", "rel_unc",
-                                        "time_domain_rms_n", "max_floquet", NULL};
+  static const char *const known[] = {"id",  "about", "note", "params",      "coupling", "law",      "T",
+                                      "rpm", "z1",    "gate", "shift_right", "impact",   "expected", NULL};
+  static const char *const answers[] = {
+      "converged",   "X_mean",  "X_harm_left",       "X_harm_right", "rms_n",
+      "rms_t",       "rms_rot", "rms_meanLR",        "dof_acc_rms",  "F_mean",
+      "F_min",       "F_max",   "y_static_p1",       "y_static_g1",  "z_p1_minus_z_p2",
+      "z_static_g1", "rel_unc", "time_domain_rms_n", "max_floquet",  NULL};
   struct eo_law law[2] = {{0}, {0}};
   struct eo_vibration r;
   double floquet;
@@ -277,15 +300,19 @@ static enum eo_code verify_response(const json_t *cases, const json_t *item, con
 
 static struct eo_sdof read_sdof(const json_t *item)
 {
-  return (struct eo_sdof){.damping = eo_verify_number(item, "z"), .mean_force = eo_verify_number(item, "Fm"),
-                          .alternating_force = eo_verify_number(item, "Fh"), .stiffness_share = eo_verify_number_or(item, "e", 0),
+  return (struct eo_sdof){.damping = eo_verify_number(item, "z"),
+                          .mean_force = eo_verify_number(item, "Fm"),
+                          .alternating_force = eo_verify_number(item, "Fh"),
+                          .stiffness_share = eo_verify_number_or(item, "e", 0),
                           .frequency = eo_verify_number(item, "W")};
 }
 
 static enum eo_code verify_sdof(const json_t *item, const char *name, struct eo_verification *v, struct eo_error *error)
 {
-  static const char *const known[] = {"id", "about", "note", "z", "Fm", "Fh", "e", "W", "branch", "x0", "expected", NULL};
-  static const char *const answers[] = {"mean", "rms", "pp", "h1", "h2", "contact_loss_fraction", "back_contact", "max_floquet", "rel_unc", NULL};
+  static const char *const known[] = {"id", "about", "note",   "z",  "Fm",       "Fh",
+                                      "e",  "W",     "branch", "x0", "expected", NULL};
+  static const char *const answers[] = {"mean",         "rms",         "pp",      "h1", "h2", "contact_loss_fraction",
+                                        "back_contact", "max_floquet", "rel_unc", NULL};
   struct eo_sdof_response r;
   const struct eo_sdof sdof = read_sdof(item);
   const json_t *state = json_object_get(item, "x0"), *expected = json_object_get(item, "expected");
@@ -318,7 +345,8 @@ static const json_t *case_of_family(const json_t *sdof, const char *family)
   size_t i;
   json_t *item;
   snprintf(prefix, sizeof prefix, "SDOF-%s-", family);
-  json_array_foreach(json_object_get(sdof, "cases"), i, item) {
+  json_array_foreach(json_object_get(sdof, "cases"), i, item)
+  {
     const char *id = json_string_value(json_object_get(item, "id"));
     if (id && !strncmp(id, prefix, strlen(prefix)))
       return item;
@@ -326,10 +354,10 @@ static const json_t *case_of_family(const json_t *sdof, const char *family)
   return NULL;
 }
 
-/* Folds of a family of cases; "up" is where an upward sweep leaves the state without contact loss, "down" where a downward sweep
-   falls back to it. */
-static enum eo_code verify_folds(const json_t *sdof, const char *family, const json_t *expected, const char *name, struct eo_verification *v,
-                                 struct eo_error *error)
+/* Folds of a family of cases; "up" is where an upward sweep leaves the state without contact loss, "down" where a
+   downward sweep falls back to it. */
+static enum eo_code verify_folds(const json_t *sdof, const char *family, const json_t *expected, const char *name,
+                                 struct eo_verification *v, struct eo_error *error)
 {
   static const char *const known[] = {"up", "down", "about", "note", NULL};
   const json_t *item = case_of_family(sdof, family);
@@ -347,7 +375,8 @@ static enum eo_code verify_folds(const json_t *sdof, const char *family, const j
   while (down < folds.count && folds.going_up[down])
     down++;
   if (json_object_get(expected, "down"))
-    eo_verify_add(v, name, "down", down < folds.count ? folds.frequency[down] : NAN, eo_verify_number(expected, "down"), 2e-3);
+    eo_verify_add(v, name, "down", down < folds.count ? folds.frequency[down] : NAN, eo_verify_number(expected, "down"),
+                  2e-3);
   return EO_OK;
 }
 
@@ -378,7 +407,8 @@ static enum eo_code verify_responses(const json_t *cases, struct eo_verification
   enum eo_code code = eo_vibration_new(&solver, HARMONICS, SAMPLES, error);
   size_t i;
   json_t *item;
-  json_array_foreach(json_object_get(cases, "dynamics"), i, item) {
+  json_array_foreach(json_object_get(cases, "dynamics"), i, item)
+  {
     const char *name = name_of(item, "dynamics", i, buffer);
     if (!code)
       code = settle(v, name, verify_response(cases, item, name, solver, v, error), error);
@@ -395,12 +425,14 @@ static enum eo_code verify_single(const json_t *sdof, struct eo_verification *v,
   size_t i;
   json_t *item;
   const char *family;
-  json_array_foreach(json_object_get(sdof, "cases"), i, item) {
+  json_array_foreach(json_object_get(sdof, "cases"), i, item)
+  {
     const char *name = name_of(item, "sdof", i, buffer);
     if (!code)
       code = settle(v, name, verify_sdof(item, name, v, error), error);
   }
-  json_object_foreach(json_object_get(sdof, "folds"), family, item) {
+  json_object_foreach(json_object_get(sdof, "folds"), family, item)
+  {
     snprintf(buffer, sizeof buffer, "folds.%s", family);
     if (!code)
       code = settle(v, buffer, verify_folds(sdof, family, item, buffer, v, error), error);
@@ -412,11 +444,24 @@ static enum eo_code verify_single(const json_t *sdof, struct eo_verification *v,
 /* Keys of the file that nobody reads; law_NAME and table_NAME are read by the cases that name them. */
 static void note_unknown(const json_t *cases, struct eo_verification *v)
 {
-  static const char *const known[] = {"kind", "about", "conventions", "geometry", "defaults", "inertia_assumption", "torsional_coupling",
-                                      "negative_control_literal_signs", "eigen", "dynamics", "sdof", "note", "source", NULL};
+  static const char *const known[] = {"kind",
+                                      "about",
+                                      "conventions",
+                                      "geometry",
+                                      "defaults",
+                                      "inertia_assumption",
+                                      "torsional_coupling",
+                                      "negative_control_literal_signs",
+                                      "eigen",
+                                      "dynamics",
+                                      "sdof",
+                                      "note",
+                                      "source",
+                                      NULL};
   const char *key;
   json_t *value;
-  json_object_foreach((json_t *)cases, key, value) {
+  json_object_foreach((json_t *)cases, key, value)
+  {
     bool found = !strncmp(key, "law_", 4) || !strncmp(key, "table_", 6);
     for (int i = 0; known[i] && !found; i++)
       found = !strcmp(known[i], key);
@@ -432,7 +477,8 @@ enum eo_code eo_verify_dynamics(const json_t *cases, struct eo_verification *v, 
   size_t i;
   json_t *item;
   const json_t *control = json_object_get(cases, "negative_control_literal_signs");
-  json_array_foreach(json_object_get(cases, "eigen"), i, item) {
+  json_array_foreach(json_object_get(cases, "eigen"), i, item)
+  {
     const char *name = name_of(item, "eigen", i, buffer);
     if (!code)
       code = settle(v, name, verify_modes(cases, item, name, v, error), error);

@@ -16,18 +16,49 @@
 static const struct {
   const char *part;
   enum eo_finding_kind kind;
-} words[] = {
-    {"swap", EO_FINDING_SWAPPED},        {"exchang", EO_FINDING_SWAPPED},     {"revers", EO_FINDING_REVERSED},     {"sign", EO_FINDING_REVERSED},
-    {"direction", EO_FINDING_REVERSED},  {"teeth", EO_FINDING_TEETH},         {"tooth", EO_FINDING_TEETH},         {"ratio", EO_FINDING_TEETH},
-    {"radian", EO_FINDING_UNITS},        {"degree", EO_FINDING_UNITS},        {"unit", EO_FINDING_UNITS},          {"wrap", EO_FINDING_WRAPPED},
-    {"slip", EO_FINDING_SLIP},           {"jump", EO_FINDING_SLIP},           {"step", EO_FINDING_SLIP},           {"drop", EO_FINDING_DROPPED},
-    {"gap", EO_FINDING_DROPPED},         {"missing", EO_FINDING_DROPPED},     {"constant", EO_FINDING_CONSTANT},   {"stuck", EO_FINDING_CONSTANT},
-    {"satur", EO_FINDING_SATURATED},     {"clip", EO_FINDING_SATURATED},      {"short", EO_FINDING_TOO_SHORT},     {"few", EO_FINDING_TOO_SHORT},
-    {"revolution", EO_FINDING_TOO_SHORT},{"steady", EO_FINDING_UNSTEADY},     {"rate", EO_FINDING_SAMPLE_RATE},    {"monoton", EO_FINDING_TIME},
-    {"time", EO_FINDING_TIME},           {"nan", EO_FINDING_NAN},             {"number", EO_FINDING_NAN},          {"spike", EO_FINDING_SPIKE},
-    {"ellip", EO_FINDING_TRACK},         {"gain", EO_FINDING_TRACK},          {"offset", EO_FINDING_TRACK},        {"raw", EO_FINDING_TRACK},
-    {"outlier", EO_FINDING_SPIKE},       {"phase", EO_FINDING_TRACK},         {"amplitude", EO_FINDING_TRACK},     {"track", EO_FINDING_TRACK},
-    {"speed", EO_FINDING_SPEED},         {"noise", EO_FINDING_RESOLUTION},    {"resolution", EO_FINDING_RESOLUTION}};
+} words[] = {{"swap", EO_FINDING_SWAPPED},
+             {"exchang", EO_FINDING_SWAPPED},
+             {"revers", EO_FINDING_REVERSED},
+             {"sign", EO_FINDING_REVERSED},
+             {"direction", EO_FINDING_REVERSED},
+             {"teeth", EO_FINDING_TEETH},
+             {"tooth", EO_FINDING_TEETH},
+             {"ratio", EO_FINDING_TEETH},
+             {"radian", EO_FINDING_UNITS},
+             {"degree", EO_FINDING_UNITS},
+             {"unit", EO_FINDING_UNITS},
+             {"wrap", EO_FINDING_WRAPPED},
+             {"slip", EO_FINDING_SLIP},
+             {"jump", EO_FINDING_SLIP},
+             {"step", EO_FINDING_SLIP},
+             {"drop", EO_FINDING_DROPPED},
+             {"gap", EO_FINDING_DROPPED},
+             {"missing", EO_FINDING_DROPPED},
+             {"constant", EO_FINDING_CONSTANT},
+             {"stuck", EO_FINDING_CONSTANT},
+             {"satur", EO_FINDING_SATURATED},
+             {"clip", EO_FINDING_SATURATED},
+             {"short", EO_FINDING_TOO_SHORT},
+             {"few", EO_FINDING_TOO_SHORT},
+             {"revolution", EO_FINDING_TOO_SHORT},
+             {"steady", EO_FINDING_UNSTEADY},
+             {"rate", EO_FINDING_SAMPLE_RATE},
+             {"monoton", EO_FINDING_TIME},
+             {"time", EO_FINDING_TIME},
+             {"nan", EO_FINDING_NAN},
+             {"number", EO_FINDING_NAN},
+             {"spike", EO_FINDING_SPIKE},
+             {"ellip", EO_FINDING_TRACK},
+             {"gain", EO_FINDING_TRACK},
+             {"offset", EO_FINDING_TRACK},
+             {"raw", EO_FINDING_TRACK},
+             {"outlier", EO_FINDING_SPIKE},
+             {"phase", EO_FINDING_TRACK},
+             {"amplitude", EO_FINDING_TRACK},
+             {"track", EO_FINDING_TRACK},
+             {"speed", EO_FINDING_SPEED},
+             {"noise", EO_FINDING_RESOLUTION},
+             {"resolution", EO_FINDING_RESOLUTION}};
 
 struct run {
   const json_t *file;
@@ -54,9 +85,7 @@ static const char *finding_text(const json_t *value)
   const char *key;
   json_t *member;
   if (json_is_object(value) && !json_object_get(value, "kind"))
-    json_object_foreach((json_t *)value, key, member)
-      if (json_is_string(member))
-        return json_string_value(member);
+    json_object_foreach((json_t *)value, key, member) if (json_is_string(member)) return json_string_value(member);
   return json_string_value(json_is_object(value) ? json_object_get(value, "kind") : value);
 }
 
@@ -71,16 +100,17 @@ static double teeth_of(const json_t *object, int member)
 {
   const char *key;
   json_t *value;
-  json_object_foreach((json_t *)object, key, value)
-    if ((strstr(key, "teeth") || key[0] == 'z') && json_array_size(value) == 2 && json_is_integer(json_array_get(value, 0)))
-      return eo_verify_at(value, (size_t)member);
+  json_object_foreach((json_t *)object, key,
+                      value) if ((strstr(key, "teeth") || key[0] == 'z') && json_array_size(value) == 2 &&
+                                 json_is_integer(json_array_get(value, 0))) return eo_verify_at(value, (size_t)member);
   return NAN;
 }
 
 /* Tooth numbers, radii, orders and speed as an object states them; what it leaves out stays. */
 static void read_settings(const json_t *object, struct eo_measurement_settings *s)
 {
-  static const char *const teeth[2] = {"z1", "z2"}, *const radius[2] = {"rb1_mm", "rb2_mm"}, *const metre[2] = {"rb1_m", "rb2_m"};
+  static const char *const teeth[2] = {"z1", "z2"}, *const radius[2] = {"rb1_mm", "rb2_mm"},
+                           *const metre[2] = {"rb1_m", "rb2_m"};
   struct eo_transmission_settings *t = &s->transmission;
   for (int i = 0; i < 2; i++) {
     double count = either(object, teeth[i], teeth[i], NAN);
@@ -124,9 +154,13 @@ static enum eo_code set_pair(struct run *r, struct eo_error *error)
 
 /* ---- what is expected ---- */
 
-static bool among(const struct eo_findings *findings, enum eo_finding_kind kind) { return eo_findings_find(findings, kind) != NULL; }
+static bool among(const struct eo_findings *findings, enum eo_finding_kind kind)
+{
+  return eo_findings_find(findings, kind) != NULL;
+}
 
-static void check_findings(struct eo_verification *v, const char *label, const json_t *item, const struct eo_findings *found)
+static void check_findings(struct eo_verification *v, const char *label, const json_t *item,
+                           const struct eo_findings *found)
 {
   bool expected[EO_FINDING_KINDS] = {false};
   size_t index;
@@ -134,7 +168,8 @@ static void check_findings(struct eo_verification *v, const char *label, const j
   int surprises = 0;
   if (!json_is_array(json_object_get(item, "expected_findings")))
     return;
-  json_array_foreach(json_object_get(item, "expected_findings"), index, value) {
+  json_array_foreach(json_object_get(item, "expected_findings"), index, value)
+  {
     const char *text = finding_text(value);
     enum eo_finding_kind kind;
     char quantity[120];
@@ -155,18 +190,22 @@ static void check_findings(struct eo_verification *v, const char *label, const j
 }
 
 /* An order may deviate by four standard deviations of the noise beside it. */
-static void check_orders(struct eo_verification *v, const char *label, const json_t *truth, double relative, const struct eo_transmission *t)
+static void check_orders(struct eo_verification *v, const char *label, const json_t *truth, double relative,
+                         const struct eo_transmission *t)
 {
   for (int h = 0; h < t->harmonics; h++) {
     char quantity[60];
-    double amplitude = eo_verify_element(truth, "line_amp_um", h), acceleration = eo_verify_element(truth, "line_acc", h), rms = eo_verify_element(truth, "rms_by_H", h);
+    double amplitude = eo_verify_element(truth, "line_amp_um", h),
+           acceleration = eo_verify_element(truth, "line_acc", h), rms = eo_verify_element(truth, "rms_by_H", h);
     double noise = 4 * t->mesh[h].sigma, weight = pow(t->mesh[h].order * t->speed, 2);
     snprintf(quantity, sizeof quantity, "amplitude of mesh order %d", h + 1);
     if (!isnan(amplitude))
-      eo_verify_add(v, label, quantity, 1e6 * cabs(t->mesh[h].amplitude), amplitude, relative * amplitude + 1e6 * noise);
+      eo_verify_add(v, label, quantity, 1e6 * cabs(t->mesh[h].amplitude), amplitude,
+                    relative * amplitude + 1e6 * noise);
     snprintf(quantity, sizeof quantity, "acceleration of mesh order %d", h + 1);
     if (!isnan(acceleration))
-      eo_verify_add(v, label, quantity, t->mesh[h].acceleration, acceleration, relative * acceleration + weight * noise);
+      eo_verify_add(v, label, quantity, t->mesh[h].acceleration, acceleration,
+                    relative * acceleration + weight * noise);
     snprintf(quantity, sizeof quantity, "RMS of %d orders", h + 1);
     if (!isnan(rms))
       eo_verify_add(v, label, quantity, t->rms_upto[h], rms, relative * rms);
@@ -177,17 +216,18 @@ static double stated_rms(const json_t *truth, int *orders)
 {
   const char *key;
   json_t *value;
-  json_object_foreach((json_t *)truth, key, value)
-    if (strncmp(key, "rms_mesh_lines", 14) == 0 && json_is_number(value)) {
-      const char *count = strstr(key, "_H");
-      *orders = count ? atoi(count + 2) : 0;
-      return json_number_value(value);
-    }
+  json_object_foreach((json_t *)truth, key, value) if (strncmp(key, "rms_mesh_lines", 14) == 0 && json_is_number(value))
+  {
+    const char *count = strstr(key, "_H");
+    *orders = count ? atoi(count + 2) : 0;
+    return json_number_value(value);
+  }
   *orders = 0;
   return eo_verify_number(truth, "rms");
 }
 
-static void check_numbers(struct eo_verification *v, const char *label, const json_t *item, const struct eo_measurement *m)
+static void check_numbers(struct eo_verification *v, const char *label, const json_t *item,
+                          const struct eo_measurement *m)
 {
   static const char *const known[] = {"mean_rpm", "line_amp_um", "line_acc", "rms_by_H", "rms", NULL};
   const json_t *truth = json_object_get(item, "truth"), *reference = json_object_get(item, "reference_pipeline");
@@ -197,7 +237,8 @@ static void check_numbers(struct eo_verification *v, const char *label, const js
   double rms = stated_rms(truth, &orders), other = eo_verify_number(reference, "rms_lines_ls");
   const char *key;
   json_t *value;
-  json_object_foreach((json_t *)truth, key, value) {
+  json_object_foreach((json_t *)truth, key, value)
+  {
     bool read = strncmp(key, "rms_mesh_lines", 14) == 0;
     for (int i = 0; known[i]; i++)
       read = read || strcmp(key, known[i]) == 0;
@@ -219,7 +260,8 @@ static void check_numbers(struct eo_verification *v, const char *label, const js
 /* ---- one recording ---- */
 
 /* The layout of the entry; lines per turn also as a key of their own or in the words of the note. */
-static enum eo_code find_tracks(const json_t *item, const struct eo_recording *recording, struct eo_notes *notes, struct eo_tracks *tracks, struct eo_error *error)
+static enum eo_code find_tracks(const json_t *item, const struct eo_recording *recording, struct eo_notes *notes,
+                                struct eo_tracks *tracks, struct eo_error *error)
 {
   struct eo_faults *faults = calloc(1, sizeof *faults);
   struct eo_layout_request layout;
@@ -242,12 +284,14 @@ static bool refusal_expected(const json_t *item)
   json_t *value;
   if (json_is_true(json_object_get(item, "refused")))
     return true;
-  json_array_foreach(json_object_get(item, "expected_findings"), index, value) {
+  json_array_foreach(json_object_get(item, "expected_findings"), index, value)
+  {
     const char *text = finding_text(value);
     enum eo_finding_kind kind;
     if (text && finding_kind(text, &kind) &&
-        (kind == EO_FINDING_SLIP || kind == EO_FINDING_TEETH || kind == EO_FINDING_CONSTANT || kind == EO_FINDING_TOO_SHORT || kind == EO_FINDING_TIME ||
-         kind == EO_FINDING_SAMPLE_RATE || kind == EO_FINDING_SATURATED || kind == EO_FINDING_UNITS))
+        (kind == EO_FINDING_SLIP || kind == EO_FINDING_TEETH || kind == EO_FINDING_CONSTANT ||
+         kind == EO_FINDING_TOO_SHORT || kind == EO_FINDING_TIME || kind == EO_FINDING_SAMPLE_RATE ||
+         kind == EO_FINDING_SATURATED || kind == EO_FINDING_UNITS))
       return true;
   }
   return false;
@@ -261,7 +305,8 @@ static enum eo_code run_file(struct run *r, const json_t *item, const char *labe
   struct eo_notes *notes = calloc(1, sizeof *notes);
   struct eo_tracks tracks;
   char *path = eo_verify_path(r->v, label);
-  enum eo_code code = m && notes && path ? eo_reader_read(path, NULL, &recording, notes, error) : eo_error_memory(error);
+  enum eo_code code = m && notes && path ? eo_reader_read(path, NULL, &recording, notes, error)
+                                         : eo_error_memory(error);
   read_settings(item, &settings);
   if (!code)
     code = find_tracks(item, recording, notes, &tracks, error);
@@ -283,8 +328,27 @@ static enum eo_code run_file(struct run *r, const json_t *item, const char *labe
 
 enum eo_code eo_verify_encoder(const json_t *file, struct eo_verification *v, struct eo_error *error)
 {
-  static const char *const known[] = {"file", "note", "truth", "tolerance_rms_rel", "expected_findings", "reference_pipeline", "layout", "lines", "lines_per_turn",
-                                      "lines_per_rev", "teeth", "z", "z1", "z2", "speed_rpm", "stated_rpm", "harmonics", "H", "refused", "columns", NULL};
+  static const char *const known[] = {"file",
+                                      "note",
+                                      "truth",
+                                      "tolerance_rms_rel",
+                                      "expected_findings",
+                                      "reference_pipeline",
+                                      "layout",
+                                      "lines",
+                                      "lines_per_turn",
+                                      "lines_per_rev",
+                                      "teeth",
+                                      "z",
+                                      "z1",
+                                      "z2",
+                                      "speed_rpm",
+                                      "stated_rpm",
+                                      "harmonics",
+                                      "H",
+                                      "refused",
+                                      "columns",
+                                      NULL};
   struct run r = {.file = file, .v = v};
   enum eo_code code = set_pair(&r, error);
   size_t index;
@@ -293,9 +357,11 @@ enum eo_code eo_verify_encoder(const json_t *file, struct eo_verification *v, st
     return code;
   if (!json_is_array(json_object_get(file, "files")))
     return eo_error_set(error, EO_ERROR_INPUT, "/files", "An encoder case file needs a list of files.");
-  json_array_foreach(json_object_get(file, "files"), index, item) {
+  json_array_foreach(json_object_get(file, "files"), index, item)
+  {
     const char *label = json_string_value(json_object_get(item, "file"));
-    code = label ? run_file(&r, item, label, error) : eo_error_set(error, EO_ERROR_INPUT, "", "The entry names no file.");
+    code = label ? run_file(&r, item, label, error)
+                 : eo_error_set(error, EO_ERROR_INPUT, "", "The entry names no file.");
     if (code && code != EO_ERROR_INPUT && code != EO_ERROR_NUMERIC && code != EO_ERROR_FILE)
       return code;
     if (code) /* this file alone */

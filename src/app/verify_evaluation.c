@@ -26,12 +26,14 @@ static const char *text_of(const json_t *object, const char *key)
   return text ? text : "";
 }
 
-/* The file's dynamics parameters for a pair, or what the design derives where the file is silent. A mesh damping that differs from the
-   usual one scales the damping ratio. */
+/* The file's dynamics parameters for a pair, or what the design derives where the file is silent. A mesh damping that
+   differs from the usual one scales the damping ratio. */
 static void set_supports(struct eo_supports *s, const json_t *p, const json_t *usually)
 {
-  static const char *const bearing[2] = {"kpy", "kgy"}, *const axial[2] = {"kg1z", "kg2z"}, *const groove[2] = {"kpz", "kgz"};
-  static const char *const torsion[2] = {"kt_p", "kt_g"}, *const mass[2] = {"mp", "mg"}, *const inertia[2] = {"Ip", "Ig"};
+  static const char *const bearing[2] = {"kpy", "kgy"}, *const axial[2] = {"kg1z", "kg2z"},
+                           *const groove[2] = {"kpz", "kgz"};
+  static const char *const torsion[2] = {"kt_p", "kt_g"}, *const mass[2] = {"mp", "mg"},
+                           *const inertia[2] = {"Ip", "Ig"};
   for (int i = 0; i < 2; i++) {
     s->bearing_stiffness[i] = eo_verify_number_or(p, bearing[i], s->bearing_stiffness[i]);
     s->gear_axial_stiffness[i] = eo_verify_number_or(p, axial[i], s->gear_axial_stiffness[i]);
@@ -95,14 +97,18 @@ static enum eo_code prepare(struct bench *b, const json_t *item, struct eo_error
   if (code)
     return code;
   struct eo_contact_grid_settings grid = eo_contact_grid_default(&b->design.resolution);
-  struct eo_pair_options options = {.grid = &grid, .impact_stations = 221, .own_pivots = true,
-    .corner_at_radius = strstr(text_of(json_object_get(b->file, "defaults"), "gap"), "at the pinion radius of the corner") != NULL};
+  struct eo_pair_options options = {.grid = &grid,
+                                    .impact_stations = 221,
+                                    .own_pivots = true,
+                                    .corner_at_radius = strstr(text_of(json_object_get(b->file, "defaults"), "gap"),
+                                                               "at the pinion radius of the corner") != NULL};
   grid.partial_cells = false; /* the references load a cell by its middle */
   grid.edge_cells = 12;
   grid.edge_reach = 1.6e-3;
   if (strcmp(flexibility, "synthetic") == 0) {
     if (!eo_case_closed_form(text_of(json_object_get(b->file, "defaults"), "synthetic_flexibility"), &b->form))
-      return eo_error_set(error, EO_ERROR_INPUT, "/defaults/synthetic_flexibility", "The closed-form compliance could not be read.");
+      return eo_error_set(error, EO_ERROR_INPUT, "/defaults/synthetic_flexibility",
+                          "The closed-form compliance could not be read.");
     options.kernel = (struct eo_kernel){eo_closed_form_kernel, &b->form};
   }
   code = eo_pair_new(&b->pair, &b->design, &options, NULL, error);
@@ -124,7 +130,8 @@ static void check(const struct expected *e, const char *key, double value)
     eo_verify_add(e->v, e->label, key, value, wanted, (isnan(relative) ? 0.005 : relative) * fabs(wanted));
 }
 
-static void check_ends(const struct expected *e, const json_t *ends, const char *key, const char *like, const double value[2], double scale)
+static void check_ends(const struct expected *e, const json_t *ends, const char *key, const char *like,
+                       const double value[2], double scale)
 {
   double relative = eo_verify_number(e->tolerance, like);
   for (int i = 0; i < 2; i++) {
@@ -132,7 +139,8 @@ static void check_ends(const struct expected *e, const json_t *ends, const char 
     char quantity[60];
     snprintf(quantity, sizeof quantity, "ends %s %s", key, i ? "right" : "left");
     if (!isnan(wanted))
-      eo_verify_add(e->v, e->label, quantity, value[i] * scale, wanted, fmax((isnan(relative) ? 0.005 : relative) * fabs(wanted), 1e-6));
+      eo_verify_add(e->v, e->label, quantity, value[i] * scale, wanted,
+                    fmax((isnan(relative) ? 0.005 : relative) * fabs(wanted), 1e-6));
   }
 }
 
@@ -158,7 +166,8 @@ static void check_nominal(const struct expected *e, const json_t *item, const st
   check(e, "rms_t", w->rms_pair[EO_READING_TRANSVERSE]);
   check(e, "rms_rot", w->rms_pair[EO_READING_ROTATIONAL]);
   check_ends(e, ends, "kt", "kt_mean_N_um", tangent, 1e-6);
-  check_ends(e, ends, "PPLTE_um", "PPLTE_um", (double[]){c->end[0].transmission_peak, c->end[1].transmission_peak}, 1e6);
+  check_ends(e, ends, "PPLTE_um", "PPLTE_um", (double[]){c->end[0].transmission_peak, c->end[1].transmission_peak},
+             1e6);
   check_ends(e, ends, "F_gen_N", "F_gen_N", (double[]){c->end[0].impact.force, c->end[1].impact.force}, 1);
   check_ends(e, ends, "F_off_N", "F_gen_N", (double[]){c->end[0].impact.classical, c->end[1].impact.classical}, 1);
   check_ends(e, ends, "v_mm_s", "F_gen_N", (double[]){c->end[0].impact.speed, c->end[1].impact.speed}, 1e3);
@@ -168,7 +177,8 @@ static void check_nominal(const struct expected *e, const json_t *item, const st
 }
 
 /* The stage arrays alone: Z and k_tan of the file through the dynamics. */
-static enum eo_code check_stage(struct bench *b, const json_t *item, const struct eo_design *design, struct eo_error *error)
+static enum eo_code check_stage(struct bench *b, const json_t *item, const struct eo_design *design,
+                                struct eo_error *error)
 {
   const json_t *stage = json_object_get(item, "stage"), *ends = json_object_get(item, "ends");
   struct eo_law law[2] = {{0}, {0}};
@@ -176,14 +186,21 @@ static enum eo_code check_stage(struct bench *b, const json_t *item, const struc
   struct eo_vibration_solver *solver = NULL;
   struct eo_vibration result[2]; /* tangent, secant */
   const struct eo_geometry *g = &b->pair->geometry;
-  double force = design->load_case[0].torque / (2 * g->base_radius[0] * cos(g->base_helix_angle)), back = -design->gear_pair.backlash;
-  struct eo_vibration_case load = {.torque = design->load_case[0].torque, .speed = design->load_case[0].speed, .pinion_teeth = g->teeth[0],
-    .law = {&law[0], &law[1]}, .phase_right = -design->alignment.stagger, .gated = true};
-  int n = (int)json_array_size(json_array_get(json_object_get(stage, "Z_um"), 0)), order = design->resolution.te_harmonics;
+  double force = design->load_case[0].torque / (2 * g->base_radius[0] * cos(g->base_helix_angle)),
+         back = -design->gear_pair.backlash;
+  struct eo_vibration_case load = {.torque = design->load_case[0].torque,
+                                   .speed = design->load_case[0].speed,
+                                   .pinion_teeth = g->teeth[0],
+                                   .law = {&law[0], &law[1]},
+                                   .phase_right = -design->alignment.stagger,
+                                   .gated = true};
+  int n = (int)json_array_size(json_array_get(json_object_get(stage, "Z_um"), 0)),
+      order = design->resolution.te_harmonics;
   double *z = calloc((size_t)(2 * (n > 0 ? n : 1)), sizeof *z), *k = z + n;
   enum eo_code code = z ? EO_OK : eo_error_memory(error);
   if (!code)
-    code = eo_dynamics_parameters_init(&parameters, g, &design->gear_pair, &design->material, &design->supports, false, 1, error);
+    code = eo_dynamics_parameters_init(&parameters, g, &design->gear_pair, &design->material, &design->supports, false,
+                                       1, error);
   if (!code)
     code = eo_vibration_new(&solver, design->resolution.harmonics, 0, error);
   if (!code)
@@ -191,8 +208,10 @@ static enum eo_code check_stage(struct bench *b, const json_t *item, const struc
   for (int secant = 0; secant < 2 && !code; secant++) {
     for (int end = 0; end < 2 && !code; end++) {
       for (int j = 0; j < n; j++) {
-        z[j] = 1e-6 * json_number_value(json_array_get(json_array_get(json_object_get(stage, "Z_um"), (size_t)end), (size_t)j));
-        k[j] = 1e6 * json_number_value(json_array_get(json_array_get(json_object_get(stage, "kt_N_um"), (size_t)end), (size_t)j));
+        z[j] = 1e-6 * json_number_value(
+                          json_array_get(json_array_get(json_object_get(stage, "Z_um"), (size_t)end), (size_t)j));
+        k[j] = 1e6 * json_number_value(
+                         json_array_get(json_array_get(json_object_get(stage, "kt_N_um"), (size_t)end), (size_t)j));
       }
       double datum = 1e-6 * eo_verify_element(ends, "datum_Z_um", end);
       code = secant ? eo_law_set_secant(&law[end], n, z, force, isnan(datum) ? 0 : datum, order, back, error)
@@ -204,7 +223,8 @@ static enum eo_code check_stage(struct bench *b, const json_t *item, const struc
   if (!code) {
     char label[80];
     snprintf(label, sizeof label, "%s stage arrays", text_of(item, "id"));
-    json_t *tolerance = json_pack("{s:f, s:f, s:f, s:f}", "rms_n", 1e-3, "rms_t", 1e-3, "rms_rot", 1e-3, "rms_n_secant", 1e-3);
+    json_t *tolerance = json_pack("{s:f, s:f, s:f, s:f}", "rms_n", 1e-3, "rms_t", 1e-3, "rms_rot", 1e-3, "rms_n_secant",
+                                  1e-3);
     struct expected e = {b->v, label, json_object_get(item, "out"), tolerance};
     check(&e, "rms_n", result[0].rms_pair[EO_READING_NORMAL]);
     check(&e, "rms_t", result[0].rms_pair[EO_READING_TRANSVERSE]);
@@ -232,7 +252,8 @@ static enum eo_code run_case(struct bench *b, const json_t *item, struct eo_erro
   for (int end = 0; end < 2; end++)
     eo_case_modification(json_object_get(mods, text_of(item, end_name[end])), &design.gear_pair,
                          &design.modification.flank[EO_PINION][end]);
-  design.load_case[0] = (struct eo_load_case){eo_verify_number_or(item, "T_Nm", NAN), eo_verify_number_or(item, "rpm", 2000) * M_PI / 30, 1};
+  design.load_case[0] = (struct eo_load_case){eo_verify_number_or(item, "T_Nm", NAN),
+                                              eo_verify_number_or(item, "rpm", 2000) * M_PI / 30, 1};
   design.alignment.stagger = fmod(2 - eo_verify_number_or(item, "shift_right", 0), 1);
   const json_t *usual = json_object_get(parameters, b->pair_name);
   set_supports(&design.supports, usual, usual);
@@ -267,7 +288,8 @@ enum eo_code eo_verify_evaluation(const json_t *file, struct eo_verification *v,
   b->file = file;
   b->v = v;
   enum eo_code code = EO_OK;
-  json_array_foreach(json_object_get(file, "cases"), index, item) {
+  json_array_foreach(json_object_get(file, "cases"), index, item)
+  {
     code = run_case(b, item, error);
     if (code && code != EO_ERROR_INPUT && code != EO_ERROR_NUMERIC)
       break;

@@ -1,6 +1,6 @@
-/* `easeoff verify` for files of kind `evaluation`: modification -> loaded contact -> impact -> vibration of whole gear pairs, with the
-   finite-element or the closed-form compliance the file states, against an independent computation; and its stage arrays through the
-   dynamics alone. */
+/* `easeoff verify` for files of kind `evaluation`: modification -> loaded contact -> impact -> vibration of whole gear
+   pairs, with the finite-element or the closed-form compliance the file states, against an independent computation; and
+   its stage arrays through the dynamics alone. */
 #ifndef EASEOFF_APP_VERIFY_EVALUATION_H
 #define EASEOFF_APP_VERIFY_EVALUATION_H
 

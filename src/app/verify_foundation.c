@@ -1,6 +1,6 @@
-/* Teeth on an uncoupled elastic foundation, where the loaded contact has closed-form answers. The solver is the one that
-   analyses designs; only the compliance is prescribed, and the local approach made a million times stiffer than steel's so that
-   it does not count. */
+/* Teeth on an uncoupled elastic foundation, where the loaded contact has closed-form answers. The solver is the one
+   that analyses designs; only the compliance is prescribed, and the local approach made a million times stiffer than
+   steel's so that it does not count. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -35,8 +35,8 @@ static void done(struct rig *rig)
 }
 
 /* phase: [positions]. */
-static enum eo_code init(struct rig *rig, const struct eo_geometry *geometry, int positions, int cells, const double *phase, const double *stiffness,
-                         struct eo_error *error)
+static enum eo_code init(struct rig *rig, const struct eo_geometry *geometry, int positions, int cells,
+                         const double *phase, const double *stiffness, struct eo_error *error)
 {
   const struct eo_material rigid = {.youngs_modulus = 206e15, .poissons_ratio = 0.3};
   const struct eo_contact_grid_settings settings = {.positions = positions, .cells = cells, .edge_reach = NAN};
@@ -54,9 +54,9 @@ static enum eo_code init(struct rig *rig, const struct eo_geometry *geometry, in
 
 enum { MOST_LOADS = 41 };
 
-/* decades > 0: comes down from a load 10^decades times as high, at which every cell is in contact from the start: on springs this stiff
-   the solver's own start, with undeflected teeth, would see the first cells alone. All loads share one result; the last, the
-   wanted one, stays. */
+/* decades > 0: comes down from a load 10^decades times as high, at which every cell is in contact from the start: on
+   springs this stiff the solver's own start, with undeflected teeth, would see the first cells alone. All loads share
+   one result; the last, the wanted one, stays. */
 static enum eo_code solve(struct rig *rig, double load, int decades, struct eo_error *error)
 {
   double descent[MOST_LOADS];
@@ -68,7 +68,9 @@ static enum eo_code solve(struct rig *rig, double load, int decades, struct eo_e
   }
   eo_loaded_solve(rig->workspace, rig->grid, &rig->gaps, 1, loads, descent, end);
   int failures = end[loads - 1].failures;
-  return failures ? eo_error_set(error, EO_ERROR_NUMERIC, "", "The loaded contact did not converge at %d positions.", failures) : EO_OK;
+  return failures ? eo_error_set(error, EO_ERROR_NUMERIC, "", "The loaded contact did not converge at %d positions.",
+                                 failures)
+                  : EO_OK;
 }
 
 /* A spur pair with one pair of teeth in contact at the pitch point. */
@@ -88,14 +90,16 @@ static enum eo_code spur_geometry(struct eo_geometry *geometry, double face_widt
   return eo_geometry_init(geometry, &pair, error);
 }
 
-/* Load per face width at the face end that comes first into contact: the cells hold their mean, the distribution is linear. */
+/* Load per face width at the face end that comes first into contact: the cells hold their mean, the distribution is
+   linear. */
 static double edge_load(const struct rig *rig)
 {
   const double *q = rig->end.line_load;
   return q[0] + (q[0] - q[1]) / 2;
 }
 
-enum eo_code eo_verify_load_distribution(double stiffness, double line_load, double misalignment, double *factor, struct eo_error *error)
+enum eo_code eo_verify_load_distribution(double stiffness, double line_load, double misalignment, double *factor,
+                                         struct eo_error *error)
 {
   enum { CELLS = 160 };
   const double face_width = 40e-3, phase = 0;
@@ -116,8 +120,9 @@ enum eo_code eo_verify_load_distribution(double stiffness, double line_load, dou
   return code;
 }
 
-/* Mesh positions as far as can be from those at which a contact line enters or leaves: springs of a vanishing line's cells would be soft
-   beyond measure. In base pitches, lines enter at s_A less the lean of the line, and leave eps_alpha later (eps_beta is whole). */
+/* Mesh positions as far as can be from those at which a contact line enters or leaves: springs of a vanishing line's
+   cells would be soft beyond measure. In base pitches, lines enter at s_A less the lean of the line, and leave
+   eps_alpha later (eps_beta is whole). */
 static void spread_positions(const struct eo_geometry *geometry, int positions, double *phase)
 {
   double step = 1. / positions, leave = fmod(geometry->transverse_contact_ratio, step);
@@ -129,7 +134,8 @@ static void spread_positions(const struct eo_geometry *geometry, int positions, 
   }
 }
 
-enum eo_code eo_verify_overlap(const struct eo_geometry *geometry, double *peak_to_peak, double *length_variation, struct eo_error *error)
+enum eo_code eo_verify_overlap(const struct eo_geometry *geometry, double *peak_to_peak, double *length_variation,
+                               struct eo_error *error)
 {
   enum { POSITIONS = 16, CELLS = 20 };
   const double stiffness = 15e9, load = 300e3 * geometry->face_width;

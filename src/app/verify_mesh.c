@@ -30,7 +30,8 @@ static int read_series(const json_t *object, const char *mean, const char *a, co
   return (int)order;
 }
 
-static enum eo_code read_stiffness(const json_t *object, const char *pointer, double tau, struct eo_law *law, struct eo_error *error)
+static enum eo_code read_stiffness(const json_t *object, const char *pointer, double tau, struct eo_law *law,
+                                   struct eo_error *error)
 {
   double series[1 + 2 * MAX_ORDER];
   int order = read_series(object, "k0", "a", "b", series);
@@ -39,14 +40,17 @@ static enum eo_code read_stiffness(const json_t *object, const char *pointer, do
   return eo_law_set_stiffness(law, order, series, tau, -tau, error);
 }
 
-static enum eo_code read_power(const json_t *object, const char *pointer, double tau, struct eo_law *law, struct eo_error *error)
+static enum eo_code read_power(const json_t *object, const char *pointer, double tau, struct eo_law *law,
+                               struct eo_error *error)
 {
   double coefficient[1 + 2 * MAX_ORDER], offset[1 + 2 * MAX_ORDER];
   const json_t *k = json_object_get(object, "K"), *e = json_object_get(object, "e");
-  int order = json_is_object(k) ? read_series(k, "k0", "a", "b", coefficient) : read_series(object, "k0", "a", "b", coefficient);
+  int order = json_is_object(k) ? read_series(k, "k0", "a", "b", coefficient)
+                                : read_series(object, "k0", "a", "b", coefficient);
   if (order < 0 && !json_is_object(k))
     order = read_series(object, "K0", "Ka", "Kb", coefficient);
-  int offset_order = json_is_object(e) ? read_series(e, "k0", "a", "b", offset) : read_series(object, "e0", "ea", "eb", offset);
+  int offset_order = json_is_object(e) ? read_series(e, "k0", "a", "b", offset)
+                                       : read_series(object, "e0", "ea", "eb", offset);
   if (offset_order < 0 && json_is_object(e))
     offset_order = read_series(e, "e0", "a", "b", offset);
   if (offset_order < 0 && !json_is_object(e) && !json_object_get(object, "e0")) {
@@ -67,7 +71,8 @@ static int read_array(const json_t *array, double unit, int most, double *value)
   return n <= most ? n : -1;
 }
 
-static enum eo_code read_table(const json_t *object, const char *pointer, double tau, struct eo_law *law, struct eo_error *error)
+static enum eo_code read_table(const json_t *object, const char *pointer, double tau, struct eo_law *law,
+                               struct eo_error *error)
 {
   const json_t *z = json_object_get(object, "Z"), *p = json_object_get(object, "P");
   int rows = (int)json_array_size(p), positions = (int)json_array_size(json_array_get(z, 0));
@@ -88,10 +93,12 @@ static enum eo_code read_table(const json_t *object, const char *pointer, double
   return code;
 }
 
-static enum eo_code read_curve(const json_t *object, const char *pointer, double tau, struct eo_law *law, struct eo_error *error)
+static enum eo_code read_curve(const json_t *object, const char *pointer, double tau, struct eo_law *law,
+                               struct eo_error *error)
 {
   double z[2 * MAX_ORDER], k[2 * MAX_ORDER], load = eo_verify_number_or(object, "P", NAN);
-  int positions = read_array(json_object_get(object, "Z"), 1, 2 * MAX_ORDER, z), order = (int)eo_verify_number_or(object, "order", 10);
+  int positions = read_array(json_object_get(object, "Z"), 1, 2 * MAX_ORDER, z),
+      order = (int)eo_verify_number_or(object, "order", 10);
   if (positions < 2)
     return wrong(error, pointer, "a tangent or secant law has P and Z[positions]");
   if (!json_object_get(object, "kt"))
@@ -101,11 +108,11 @@ static enum eo_code read_curve(const json_t *object, const char *pointer, double
   return eo_law_set_tangent(law, positions, z, k, load, order, -2 * tau, error);
 }
 
-enum eo_code eo_verify_read_law(struct eo_verification *v, const json_t *cases, const json_t *law, double tau, struct eo_law *out,
-                                struct eo_error *error)
+enum eo_code eo_verify_read_law(struct eo_verification *v, const json_t *cases, const json_t *law, double tau,
+                                struct eo_law *out, struct eo_error *error)
 {
-  static const char *const known[] = {"k0", "a", "b", "p", "exponent", "K", "K0", "Ka", "Kb", "e", "e0", "ea", "eb",
-                                      "P", "Z", "kt", "Zd", "order", "about", "note", NULL};
+  static const char *const known[] = {"k0", "a",  "b", "p", "exponent", "K",  "K0",    "Ka",    "Kb",   "e", "e0",
+                                      "ea", "eb", "P", "Z", "kt",       "Zd", "order", "about", "note", NULL};
   char pointer[NAME_LENGTH] = "/law";
   const json_t *object = law;
   if (json_is_string(law)) {
@@ -128,19 +135,27 @@ enum eo_code eo_verify_read_law(struct eo_verification *v, const json_t *cases, 
   return read_stiffness(object, pointer, tau, out, error);
 }
 
-struct eo_dynamics_parameters eo_verify_read_parameters(struct eo_verification *v, const char *name, const json_t *params)
+struct eo_dynamics_parameters eo_verify_read_parameters(struct eo_verification *v, const char *name,
+                                                        const json_t *params)
 {
-  struct eo_dynamics_parameters out = {.ends = eo_verify_number_or(params, "ends", 2) == 1 ? 1 : 2, .base_helix_angle = eo_verify_number(params, "beta"),
+  struct eo_dynamics_parameters out = {.ends = eo_verify_number_or(params, "ends", 2) == 1 ? 1 : 2,
+                                       .base_helix_angle = eo_verify_number(params, "beta"),
                                        .mesh_damping = eo_verify_number(params, "cm")};
-  static const char *const pair[][2] = {{"Rp", "Rg"},     {"mp", "mg"},     {"Ip", "Ig"},   {"kpy", "kgy"},   {"cpy", "cgy"},  {"kg1z", "kg2z"},
-                                        {"cg1z", "cg2z"}, {"kpz", "kgz"},   {"cpz", "cgz"}, {"kt_p", "kt_g"}, {"ct_p", "ct_g"}};
+  static const char *const pair[][2] = {{"Rp", "Rg"},   {"mp", "mg"},     {"Ip", "Ig"},     {"kpy", "kgy"},
+                                        {"cpy", "cgy"}, {"kg1z", "kg2z"}, {"cg1z", "cg2z"}, {"kpz", "kgz"},
+                                        {"cpz", "cgz"}, {"kt_p", "kt_g"}, {"ct_p", "ct_g"}};
   static const char *const single[] = {"ends", "beta", "cm", "tau", "eps_z", NULL};
   enum { PAIRS = sizeof pair / sizeof *pair, COUPLINGS = 2 };
-  double *const member[PAIRS] = {out.base_radius,          out.mass,
-                                 out.inertia,              out.bearing_stiffness,
-                                 out.bearing_damping,      out.gear_axial_stiffness,
-                                 out.gear_axial_damping,   out.groove_axial_stiffness,
-                                 out.groove_axial_damping, out.groove_torsional_stiffness,
+  double *const member[PAIRS] = {out.base_radius,
+                                 out.mass,
+                                 out.inertia,
+                                 out.bearing_stiffness,
+                                 out.bearing_damping,
+                                 out.gear_axial_stiffness,
+                                 out.gear_axial_damping,
+                                 out.groove_axial_stiffness,
+                                 out.groove_axial_damping,
+                                 out.groove_torsional_stiffness,
                                  out.groove_torsional_damping};
   const char *known[2 * PAIRS + sizeof single / sizeof *single];
   for (int i = 0; i < PAIRS; i++)

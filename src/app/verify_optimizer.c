@@ -1,5 +1,5 @@
-/* Kind "optimizer": the counter, prediction, redundancy, decay, clean-up, operators, whole runs, and the successor's latin
-   hypercube, surrogate and credibility. */
+/* Kind "optimizer": the counter, prediction, redundancy, decay, clean-up, operators, whole runs, and the successor's
+   latin hypercube, surrogate and credibility. */
 #include "app/formula.h"
 #include "app/verify.h"
 #include "base/random.h"
@@ -22,7 +22,7 @@ struct verifier {
   enum eo_code code; /* of the first fault; later steps do nothing */
   const char *block; /* the case under work */
   int index;
-  double relative;   /* tolerance in force */
+  double relative; /* tolerance in force */
 };
 
 static void fault(struct verifier *v, const char *text)
@@ -83,7 +83,10 @@ static uint64_t seed_of(struct verifier *v, const json_t *object, const char *ke
 static double element(const json_t *array, size_t i)
 {
   const json_t *value = json_array_get(array, i);
-  return json_is_number(value) ? json_number_value(value) : json_is_true(value) ? 1 : json_is_null(value) ? INFINITY : 0;
+  return json_is_number(value) ? json_number_value(value)
+         : json_is_true(value) ? 1
+         : json_is_null(value) ? INFINITY
+                               : 0;
 }
 
 /* An array of numbers, or of rows of numbers of equal length; freed by the caller. *columns is 1 for a flat one. */
@@ -109,7 +112,8 @@ static double *numbers(struct verifier *v, const json_t *array, int *rows, int *
   return result;
 }
 
-static void compare_all(struct verifier *v, const double *value, int count, const json_t *expected, const char *quantity)
+static void compare_all(struct verifier *v, const double *value, int count, const json_t *expected,
+                        const char *quantity)
 {
   compare(v, count, (double)json_array_size(expected), "length of %s", quantity);
   for (int i = 0; i < count && i < (int)json_array_size(expected); i++)
@@ -133,7 +137,8 @@ static void verify_random(struct verifier *v, const json_t *item)
 {
   const struct eo_random random = eo_random_at(seed_of(v, item, "seed"), (uint64_t)number(v, item, "stream"),
                                                (uint64_t)number(v, item, "gen"), (uint64_t)number(v, item, "idx"));
-  const uint64_t draw = (uint64_t)number(v, item, "draw"), bits = eo_random_bits(random, draw), expected = seed_of(v, item, "u64");
+  const uint64_t draw = (uint64_t)number(v, item, "draw"), bits = eo_random_bits(random, draw),
+                 expected = seed_of(v, item, "u64");
   v->relative = 0; /* bit for bit; a number has 53 bits, so the 64 are compared in halves */
   compare(v, (double)(bits >> 32), (double)(expected >> 32), "u64, upper half");
   compare(v, (double)(bits & UINT32_MAX), (double)(expected & UINT32_MAX), "u64, lower half");
@@ -164,8 +169,10 @@ static bool is_choice(const json_t *object, const char *key, const char *choice)
 
 static void verify_estimate(struct verifier *v, const json_t *item, struct eo_history *history)
 {
-  const struct eo_history_law law = {.share_radius = number(v, item, "r_share"), .weight_decay = number(v, item, "alpha"),
-                                     .rms = is_choice(item, "norm", "rms"), .weights_over_all = is_choice(item, "wnorm", "all")};
+  const struct eo_history_law law = {.share_radius = number(v, item, "r_share"),
+                                     .weight_decay = number(v, item, "alpha"),
+                                     .rms = is_choice(item, "norm", "rms"),
+                                     .weights_over_all = is_choice(item, "wnorm", "all")};
   int n, columns, region = 0;
   double *x = numbers(v, need(v, item, "x"), &n, &columns);
   if (x && n == history->variables && v->code == EO_OK) {
@@ -207,7 +214,8 @@ static void verify_redundancy(struct verifier *v, const json_t *item)
   struct eo_history history = {0};
   load_history(v, &history, item);
   if (v->code == EO_OK) {
-    const struct eo_history_law law = {.redundancy_threshold = number(v, item, "threshold"), .literal_redundancy = true};
+    const struct eo_history_law law = {.redundancy_threshold = number(v, item, "threshold"),
+                                       .literal_redundancy = true};
     eo_history_mark_redundant(&history, &law);
     compare_all(v, history.redundancy, history.count, need(v, item, "I_r"), "I_r");
     compare_marks(v, history.removed, history.count, need(v, item, "removed"), "removed");
@@ -218,7 +226,8 @@ static void verify_redundancy(struct verifier *v, const json_t *item)
 static void verify_decay(struct verifier *v, const json_t *item)
 {
   struct eo_history history = {0};
-  const struct eo_history_law law = {.credibility_loss = number(v, item, "beta"), .removal_threshold = number(v, item, "R0")};
+  const struct eo_history_law law = {.credibility_loss = number(v, item, "beta"),
+                                     .removal_threshold = number(v, item, "R0")};
   const double origin = 0, trust = number_or(item, "Rstar", 0.6);
   const json_t *expected = need(v, item, "R_after_each_generation");
   v->code = v->code == EO_OK ? eo_history_init(&history, 1, 1, v->error) : v->code;
@@ -244,10 +253,12 @@ static void verify_clean_up(struct verifier *v, const json_t *item)
   const json_t *before = need(v, item, "before"), *after = need(v, item, "after");
   load_history(v, &history, before);
   if (v->code == EO_OK) {
-    const struct eo_history_law law = {.redundancy_threshold = number(v, item, "Ir"), .literal_redundancy = true,
-                                       .credibility_loss = number(v, item, "beta"), .removal_threshold = number(v, item, "R0")};
+    const struct eo_history_law law = {.redundancy_threshold = number(v, item, "Ir"),
+                                       .literal_redundancy = true,
+                                       .credibility_loss = number(v, item, "beta"),
+                                       .removal_threshold = number(v, item, "R0")};
     const json_t *ids = need(v, before, "id"), *redundant = need(v, item, "removed_redundant"),
-           *decayed = need(v, item, "removed_decayed"), *kept_ids = need(v, after, "id");
+                 *decayed = need(v, item, "removed_decayed"), *kept_ids = need(v, after, "id");
     eo_history_mark_redundant(&history, &law);
     size_t seen[3] = {0};
     for (int j = 0; j < history.count; j++)
@@ -389,7 +400,8 @@ static double ridge_of(const json_t *item)
   return ridge ? strtod(ridge + strlen("ridge"), NULL) : 0;
 }
 
-static void compare_surrogate(struct verifier *v, const json_t *item, struct eo_surrogate *s, const double *query, int queries)
+static void compare_surrogate(struct verifier *v, const json_t *item, struct eo_surrogate *s, const double *query,
+                              int queries)
 {
   const json_t *credibility = need(v, item, "credibility");
   const double length = number(v, credibility, "ell");
@@ -399,7 +411,8 @@ static void compare_surrogate(struct verifier *v, const json_t *item, struct eo_
   for (int i = 0; i < queries; i++) {
     eo_surrogate_visit(s, query + (size_t)i * s->variables);
     compare(v, eo_surrogate_value(s, 0), element(need(v, item, "prediction"), (size_t)i), "prediction[%d]", i);
-    compare(v, eo_surrogate_credibility(s, length), element(need(v, credibility, "R"), (size_t)i), "credibility R[%d]", i);
+    compare(v, eo_surrogate_credibility(s, length), element(need(v, credibility, "R"), (size_t)i), "credibility R[%d]",
+            i);
   }
 }
 
@@ -435,7 +448,8 @@ static void verify_successor(struct verifier *v, const json_t *item)
     eo_latin_hypercube(x, m, n, seed_of(v, latin, "seed"), 0, scratch);
     for (int i = 0; i < m; i++)
       for (int k = 0; k < n; k++)
-        compare(v, x[i * n + k], element(json_array_get(need(v, latin, "x"), (size_t)i), (size_t)k), "lhs[%d][%d]", i, k);
+        compare(v, x[i * n + k], element(json_array_get(need(v, latin, "x"), (size_t)i), (size_t)k), "lhs[%d][%d]", i,
+                k);
     if (json_object_get(item, "y"))
       verify_surrogate(v, item, x, m, n);
   } else {
@@ -446,24 +460,53 @@ static void verify_successor(struct verifier *v, const json_t *item)
 }
 
 static const char *const random_keys[] = {"seed", "stream", "gen", "idx", "draw", "u64", "u01", NULL};
-static const char *const predict_keys[] = {"history", "x", "r_share", "alpha", "norm", "wnorm", "Rstar", "region", "e", "w", "R", "decision_at_Rstar_0_6",
-                                           "fitness", "weighted_fitness", NULL};
+static const char *const predict_keys[] = {"history", "x",
+                                           "r_share", "alpha",
+                                           "norm",    "wnorm",
+                                           "Rstar",   "region",
+                                           "e",       "w",
+                                           "R",       "decision_at_Rstar_0_6",
+                                           "fitness", "weighted_fitness",
+                                           NULL};
 static const char *const redundancy_keys[] = {"x", "fit", "R", "pred", "threshold", "I_r", "removed", NULL};
-static const char *const decay_keys[] = {"R", "beta", "R0", "Rstar", "R_after_each_generation", "removed_after_generation",
-                                         "last_generation_with_R_at_least_Rstar", NULL};
-static const char *const clean_up_keys[] = {"before", "after", "beta", "R0", "Ir", "removed_redundant", "removed_decayed", NULL};
+static const char *const decay_keys[] = {"R",
+                                         "beta",
+                                         "R0",
+                                         "Rstar",
+                                         "R_after_each_generation",
+                                         "removed_after_generation",
+                                         "last_generation_with_R_at_least_Rstar",
+                                         NULL};
+static const char *const clean_up_keys[] = {"before",          "after", "beta", "R0", "Ir", "removed_redundant",
+                                            "removed_decayed", NULL};
 static const char *const operator_keys[] = {"seed", "gen", "parents", "fitness", "params", "children", NULL};
-static const char *const run_keys[] = {"fitness", "n", "seed", "params", "true_evaluations_after_generation", "rows_after_generation", "removed_redundant",
-                                       "removed_decayed", "best_true_fitness", "pfc", "best_x", NULL};
-static const char *const successor_keys[] = {"lhs", "y", "rbf", "query", "prediction", "loo_abs", "loo_by_refit", "credibility", NULL};
+static const char *const run_keys[] = {"fitness",
+                                       "n",
+                                       "seed",
+                                       "params",
+                                       "true_evaluations_after_generation",
+                                       "rows_after_generation",
+                                       "removed_redundant",
+                                       "removed_decayed",
+                                       "best_true_fitness",
+                                       "pfc",
+                                       "best_x",
+                                       NULL};
+static const char *const successor_keys[] = {"lhs",          "y",           "rbf", "query", "prediction", "loo_abs",
+                                             "loo_by_refit", "credibility", NULL};
 
 static const struct block {
   const char *key;
   void (*verify)(struct verifier *, const json_t *);
   const char *const *keys;
-} blocks[] = {{"rng", verify_random, random_keys},         {"predict", verify_predict, predict_keys}, {"redundancy", verify_redundancy, redundancy_keys},
-              {"decay", verify_decay, decay_keys},         {"S6", verify_clean_up, clean_up_keys},    {"operators", verify_operators, operator_keys},
-              {"runs", verify_run, run_keys},              {"successor", verify_successor, successor_keys}};
+} blocks[] = {{"rng", verify_random, random_keys},
+              {"predict", verify_predict, predict_keys},
+              {"redundancy", verify_redundancy, redundancy_keys},
+              {"decay", verify_decay, decay_keys},
+              {"S6", verify_clean_up, clean_up_keys},
+              {"operators", verify_operators, operator_keys},
+              {"runs", verify_run, run_keys},
+              {"successor", verify_successor, successor_keys}};
 enum { BLOCKS = sizeof blocks / sizeof *blocks };
 
 /* Keys of a case that its block does not read; every case may carry words for people and its own tolerance. */
@@ -472,7 +515,8 @@ static void note_unknown(struct verifier *v, const json_t *object, const char *c
   static const char *const always[] = {"name", "id", "about", "note", "rel_tol", NULL};
   const char *key;
   json_t *value;
-  json_object_foreach((json_t *)object, key, value) {
+  json_object_foreach((json_t *)object, key, value)
+  {
     bool found = false;
     for (int i = 0; keys[i] && !found; i++)
       found = strcmp(keys[i], key) == 0;

@@ -1,6 +1,6 @@
-/* Long work at a terminal: a progress line on standard error, only when that is a terminal, and a clean stop on Ctrl-C or SIGTERM. The
-   two signals are blocked in every thread and taken by one that waits for them: METIS puts handlers of its own in their place while it
-   orders a matrix, which must never run. */
+/* Long work at a terminal: a progress line on standard error, only when that is a terminal, and a clean stop on Ctrl-C
+   or SIGTERM. The two signals are blocked in every thread and taken by one that waits for them: METIS puts handlers of
+   its own in their place while it orders a matrix, which must never run. */
 #ifndef EASEOFF_APP_WATCH_H
 #define EASEOFF_APP_WATCH_H
 
@@ -17,13 +17,13 @@ struct eo_watch {
   atomic_bool ended;           /* the thread that waits for signals has nothing more to wait for */
   int listens;                 /* one of the signals that ask for a stop; 0: none does */
   bool terminal, shown, waiting;
-  double last;                 /* when the line was written, s */
+  double last; /* when the line was written, s */
   sigset_t signals, before;
   pthread_t thread;
 };
 
-/* From here on SIGINT and SIGTERM ask for a stop; a second one ends the program at once. Call before any thread starts; *watch stays
-   where it is until eo_watch_end(). */
+/* From here on SIGINT and SIGTERM ask for a stop; a second one ends the program at once. Call before any thread starts;
+ *watch stays where it is until eo_watch_end(). */
 void eo_watch_start(struct eo_watch *watch);
 
 /* True when the line may be written anew: at a terminal, and not more often than eyes follow. */

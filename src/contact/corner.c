@@ -3,21 +3,23 @@
 #include <math.h>
 #include <stddef.h>
 
-/* The flank in polar coordinates about its own centre, at pinion phase 0, root first: angle as a function of the radius. */
+/* The flank in polar coordinates about its own centre, at pinion phase 0, root first: angle as a function of the
+   radius. */
 enum { OUTLINE_NODES = 128 };
 struct outline {
   int nodes;
   double radius[OUTLINE_NODES], angle[OUTLINE_NODES], slope[OUTLINE_NODES];
 };
 
-/* Mesh frame: pinion centre at the origin, gear centre at (0, a); both members turn so that the pinion's phase c is the arc of its base
-   circle and unmodified flanks meet at s = c. */
+/* Mesh frame: pinion centre at the origin, gear centre at (0, a); both members turn so that the pinion's phase c is the
+   arc of its base circle and unmodified flanks meet at s = c. */
 struct corner {
   const struct eo_geometry *geometry;
   const struct eo_modification_shape *shape; /* [2] */
   int tip, flank;                            /* members */
-  double point[3][2];                        /* of the tip member about its centre at phase 0: corner, a point a little inside, corner without relief */
-  struct outline outline;                    /* of the flank member */
+  double point[3][2]; /* of the tip member about its centre at phase 0: corner, a point a little inside, corner without
+                         relief */
+  struct outline outline; /* of the flank member */
 };
 
 struct touch {
@@ -32,12 +34,13 @@ static void turn(const double from[2], double angle, double to[2])
 }
 
 /* A member's profile point and normal about its own centre at pinion phase 0. */
-static void place_profile(const struct eo_geometry *g, int member, const struct eo_modification_shape *shape, double u, double point[2],
-                          double normal[2])
+static void place_profile(const struct eo_geometry *g, int member, const struct eo_modification_shape *shape, double u,
+                          double point[2], double normal[2])
 {
   struct eo_slice_point p;
   eo_slice_point_at(g, member, shape, u, &p);
-  double angle = eo_geometry_involute_function(g->transverse_pressure_angle) - eo_geometry_involute_function(g->working_pressure_angle);
+  double angle = eo_geometry_involute_function(g->transverse_pressure_angle) -
+                 eo_geometry_involute_function(g->working_pressure_angle);
   angle += member == EO_PINION ? 0 : M_PI;
   turn(p.position, angle, point);
   turn(p.normal, angle, normal);
@@ -68,8 +71,10 @@ static void trace_flank(struct corner *corner, double reach)
   double far[2], near[2], lowest = INFINITY, span = g->rack_top - g->rack_bottom;
   place_tip(corner, 0, phase_at(corner, reach), far);
   place_tip(corner, 0, phase_at(corner, 0), near);
-  double path = eo_geometry_path_at(g, corner->flank, hypot(far[0], far[1])), high = g->rack_factor * eo_geometry_own_path(corner->flank, path);
-  double bottom = corner->flank == EO_PINION ? g->rack_bottom : -g->rack_top, step = (high - bottom + 0.25 * span) / (OUTLINE_NODES - 4);
+  double path = eo_geometry_path_at(g, corner->flank, hypot(far[0], far[1])),
+         high = g->rack_factor * eo_geometry_own_path(corner->flank, path);
+  double bottom = corner->flank == EO_PINION ? g->rack_bottom : -g->rack_top,
+         step = (high - bottom + 0.25 * span) / (OUTLINE_NODES - 4);
   struct outline *o = &corner->outline;
   int first = OUTLINE_NODES;
   for (int i = OUTLINE_NODES - 1; i >= 0 && lowest > hypot(near[0], near[1]) - 1e-6; i--) {
@@ -102,13 +107,14 @@ static double flank_angle(const struct outline *o, double radius, double *slope)
       high = middle;
   }
   double h = o->radius[high] - o->radius[low], t = fmin(1, fmax(0, (radius - o->radius[low]) / h)), r = 1 - t;
-  double difference = remainder(o->angle[high] - o->angle[low], 2 * M_PI), a = o->slope[low] * h - difference, b = difference - o->slope[high] * h;
+  double difference = remainder(o->angle[high] - o->angle[low], 2 * M_PI), a = o->slope[low] * h - difference,
+         b = difference - o->slope[high] * h;
   *slope = (difference + (r - t) * (a * r + b * t) + t * r * (b - a)) / h;
   return o->angle[low] + difference * t + t * r * (a * r + b * t) + *slope * (radius - o->radius[low] - t * h);
 }
 
-/* The angle by which the flank has to turn (the pinion forwards, the gear back: clockwise both) until it meets the point, as an arc of its
-   base circle, normal. */
+/* The angle by which the flank has to turn (the pinion forwards, the gear back: clockwise both) until it meets the
+   point, as an arc of its base circle, normal. */
 static struct touch touch_at(const struct corner *corner, int which, double c)
 {
   const struct eo_geometry *g = corner->geometry;
@@ -121,7 +127,8 @@ static struct touch touch_at(const struct corner *corner, int which, double c)
   return (struct touch){arm * remainder(angle, 2 * M_PI), arm * turned};
 }
 
-/* Distance up to which a point inside the tip is nearer than the corner. The gap is tangent there, so that this place needs no great care. */
+/* Distance up to which a point inside the tip is nearer than the corner. The gap is tangent there, so that this place
+   needs no great care. */
 static double find_start(const struct corner *corner, double reach)
 {
   enum { BISECTIONS = 12 };
@@ -137,13 +144,15 @@ static double find_start(const struct corner *corner, double reach)
   return high;
 }
 
-static void corner_init(struct corner *corner, const struct eo_geometry *g, const struct eo_modification_shape shape[2], int side, double reach)
+static void corner_init(struct corner *corner, const struct eo_geometry *g, const struct eo_modification_shape shape[2],
+                        int side, double reach)
 {
   corner->geometry = g;
   corner->shape = shape;
   corner->tip = side == 0 ? EO_GEAR : EO_PINION;
   corner->flank = 1 - corner->tip;
-  double top = corner->tip == EO_PINION ? g->rack_top : -g->rack_bottom, inside = 1e-4 * (g->rack_top - g->rack_bottom), unused[2];
+  double top = corner->tip == EO_PINION ? g->rack_top : -g->rack_bottom, inside = 1e-4 * (g->rack_top - g->rack_bottom),
+         unused[2];
   static const struct eo_modification_shape none = {0};
   place_profile(g, corner->tip, &shape[corner->tip], top, corner->point[0], unused);
   place_profile(g, corner->tip, &shape[corner->tip], top - inside, corner->point[1], unused);
@@ -178,26 +187,29 @@ void eo_corner_gap_init(struct eo_corner_gap table[2], const struct eo_geometry 
   }
 }
 
-void eo_corner_gap_modified(struct eo_corner_gap table[2], const struct eo_geometry *g, const struct eo_modification_shape shape[2],
-                            const struct eo_slice_gap *slice)
+void eo_corner_gap_modified(struct eo_corner_gap table[2], const struct eo_geometry *g,
+                            const struct eo_modification_shape shape[2], const struct eo_slice_gap *slice)
 {
   static const struct eo_modification_shape none[2];
   for (int side = 0; side < 2; side++) {
     struct corner corner;
     table[side].reach = 0.25 * g->transverse_base_pitch;
     corner_init(&corner, g, shape, side, table[side].reach);
-    if (corner.outline.nodes < 8) /* relief so steep that the flank has no outline where the corner strikes: take it without */
+    if (corner.outline.nodes <
+        8) /* relief so steep that the flank has no outline where the corner strikes: take it without */
       corner_init(&corner, g, none, side, table[side].reach);
     table[side].start = find_start(&corner, 0.9 * table[side].reach);
     fill(&table[side], &corner);
-    /* The slice gap turns the gear back, the corner's turns the flank: off the line of action they differ by some hundredths. */
+    /* The slice gap turns the gear back, the corner's turns the flank: off the line of action they differ by some
+       hundredths. */
     double step = eo_slice_gap_at(slice, phase_at(&corner, table[side].start), NULL) - table[side].gap[0];
     for (int i = 0; i < EO_CORNER_NODES; i++)
       table[side].gap[i] += step;
   }
 }
 
-void eo_corner_gap_at_radius(struct eo_corner_gap table[2], const struct eo_geometry *g, const struct eo_modification_shape shape[2])
+void eo_corner_gap_at_radius(struct eo_corner_gap table[2], const struct eo_geometry *g,
+                             const struct eo_modification_shape shape[2])
 {
   static const struct eo_modification_shape none;
   struct eo_slice_gap slice[2];
@@ -221,10 +233,13 @@ void eo_corner_gap_at_radius(struct eo_corner_gap table[2], const struct eo_geom
 
 double eo_corner_gap_at(const struct eo_corner_gap *table, double d, double *slope, double *place, double *travel)
 {
-  int last = EO_CORNER_NODES - 1, i = (int)fmin(last - 1, sqrt((d - table->start) / (table->reach - table->start)) * last);
-  double unit = (table->reach - table->start) / (last * last), low = unit * (double)(i * i), high = unit * (double)((i + 1) * (i + 1));
+  int last = EO_CORNER_NODES - 1,
+      i = (int)fmin(last - 1, sqrt((d - table->start) / (table->reach - table->start)) * last);
+  double unit = (table->reach - table->start) / (last * last), low = unit * (double)(i * i),
+         high = unit * (double)((i + 1) * (i + 1));
   double h = high - low, t = (d - table->start - low) / h, r = 1 - t;
-  double difference = table->gap[i + 1] - table->gap[i], a = table->slope[i] * h - difference, b = difference - table->slope[i + 1] * h;
+  double difference = table->gap[i + 1] - table->gap[i], a = table->slope[i] * h - difference,
+         b = difference - table->slope[i + 1] * h;
   *slope = (difference + (r - t) * (a * r + b * t) + t * r * (b - a)) / h;
   *place = table->path[i] * r + table->path[i + 1] * t;
   *travel = (table->path[i + 1] - table->path[i]) / h;

@@ -20,10 +20,10 @@ struct place {
 struct eo_elastic {
   const struct eo_contact_grid *grid;
   struct eo_shaft_influence influence;
-  struct place *place[2];                  /* [end][most_points] of the present position */
-  double *gap[2];                          /* [end][grid->points] of the bent bodies */
-  double *change, *answer;                 /* [most_points] */
-  struct eo_deflection deflection[2];      /* [end] at the present position, and what its loads ask for */
+  struct place *place[2];             /* [end][most_points] of the present position */
+  double *gap[2];                     /* [end][grid->points] of the bent bodies */
+  double *change, *answer;            /* [most_points] */
+  struct eo_deflection deflection[2]; /* [end] at the present position, and what its loads ask for */
   struct eo_deflection asked[2], load[2];
   struct eo_deflection response[MODES][2]; /* H V: load given up per unit of a mode */
   struct eo_deflection shifted[2];         /* load taken on per N of shift */
@@ -60,7 +60,8 @@ static void spread(int points, const struct place *place, const struct eo_deflec
 {
   for (int i = 0; i < points; i++) {
     const double *level = deflection->part[0] + place[i].node, *tilt = deflection->part[1] + place[i].node;
-    change[i] = level[0] + place[i].weight * (level[1] - level[0]) + place[i].path * (tilt[0] + place[i].weight * (tilt[1] - tilt[0]));
+    change[i] = level[0] + place[i].weight * (level[1] - level[0]) +
+                place[i].path * (tilt[0] + place[i].weight * (tilt[1] - tilt[0]));
   }
 }
 
@@ -94,8 +95,8 @@ static double largest(const struct eo_elastic *el, const struct eo_deflection *a
 /* ---- one mesh position ---- */
 
 /* Contact of one end at the present deflection, warm: its approach moves with its gaps. */
-static void resolve(struct eo_elastic *el, struct eo_loaded_workspace *ws, const struct eo_loaded_gaps *gaps, double factor, int end, int j,
-                    double load, bool first, struct eo_loaded_end *result)
+static void resolve(struct eo_elastic *el, struct eo_loaded_workspace *ws, const struct eo_loaded_gaps *gaps,
+                    double factor, int end, int j, double load, bool first, struct eo_loaded_end *result)
 {
   const struct eo_contact_position *p = &el->grid->position[j];
   double rise = 0, total = 0, *gap = el->gap[end] + p->first;
@@ -130,8 +131,8 @@ static void respond(struct eo_elastic *el, struct eo_loaded_workspace *ws, doubl
   gather(p->points, el->place[end], el->answer, &el->shifted[end]);
 }
 
-/* Newton's correction of the deflection and, when the pinion is held, of the shift: [M, -V'g; g'V, rate] [c; d shift] = -[(HV)'r; miss + g'r]
-   with g the load taken on per N of shift (which is also how Z_L - Z_R follows the gaps). */
+/* Newton's correction of the deflection and, when the pinion is held, of the shift: [M, -V'g; g'V, rate] [c; d shift] =
+   -[(HV)'r; miss + g'r] with g the load taken on per N of shift (which is also how Z_L - Z_R follows the gaps). */
 static void correct(struct eo_elastic *el, bool held, double soft, double miss)
 {
   int ends = el->influence.ends, n = el->influence.size, rows = MODES + held, pivot[MODES + 1];
@@ -179,7 +180,8 @@ static double departure(const struct eo_elastic *el)
   return most;
 }
 
-/* Z_L - Z_R against the support; 0 when the pinion floats, or when an end is already as good as unloaded and would let go. */
+/* Z_L - Z_R against the support; 0 when the pinion floats, or when an end is already as good as unloaded and would let
+   go. */
 static double axial_miss(const struct eo_elastic *el, const struct eo_elastic_case *c, double soft, const int at[2],
                          const struct eo_loaded_end *result, bool *held)
 {
@@ -191,10 +193,11 @@ static double axial_miss(const struct eo_elastic *el, const struct eo_elastic_ca
   return *held ? miss : 0;
 }
 
-/* Iterates at position j of the left end and `other` of the right one, from the present deflection; returns the number of iterations, 0 when
-   they did not converge. The contact's answer is asked for once, and again when the iteration slows down. */
-static int solve_position(struct eo_elastic *el, struct eo_loaded_workspace *ws, const struct eo_loaded_gaps *gaps, const struct eo_elastic_case *c,
-                          double soft, const int at[2], struct eo_loaded_end *result)
+/* Iterates at position j of the left end and `other` of the right one, from the present deflection; returns the number
+   of iterations, 0 when they did not converge. The contact's answer is asked for once, and again when the iteration
+   slows down. */
+static int solve_position(struct eo_elastic *el, struct eo_loaded_workspace *ws, const struct eo_loaded_gaps *gaps,
+                          const struct eo_elastic_case *c, double soft, const int at[2], struct eo_loaded_end *result)
 {
   enum { ITERATIONS = 40 };
   static const double DONE = 1e-11, SLOW = 0.1;
@@ -258,8 +261,8 @@ static void extrapolate(struct eo_elastic *el, int j, int stagger)
   }
 }
 
-void eo_elastic_solve(struct eo_elastic *el, struct eo_loaded_workspace *ws, const struct eo_loaded_gaps *gaps, const struct eo_elastic_case *c,
-                      struct eo_loaded_end *result, struct eo_elastic_report *report)
+void eo_elastic_solve(struct eo_elastic *el, struct eo_loaded_workspace *ws, const struct eo_loaded_gaps *gaps,
+                      const struct eo_elastic_case *c, struct eo_loaded_end *result, struct eo_elastic_report *report)
 {
   double lean = sin(el->grid->geometry.base_helix_angle);
   double soft = c->axial_stiffness > 0 && isfinite(c->axial_stiffness) ? 4 * lean * lean / c->axial_stiffness : 0;
@@ -278,8 +281,8 @@ void eo_elastic_solve(struct eo_elastic *el, struct eo_loaded_workspace *ws, con
   summarise(el, report);
 }
 
-void eo_elastic_gaps(struct eo_elastic *el, const struct eo_loaded_gaps *gaps, int stagger, const struct eo_loaded_end *result, int end,
-                     double *bent)
+void eo_elastic_gaps(struct eo_elastic *el, const struct eo_loaded_gaps *gaps, int stagger,
+                     const struct eo_loaded_end *result, int end, double *bent)
 {
   for (int j = 0; j < el->grid->positions; j++) {
     int at[2] = {j, other_position(el, j, stagger)};
@@ -299,16 +302,18 @@ void eo_elastic_gaps(struct eo_elastic *el, const struct eo_loaded_gaps *gaps, i
 
 static enum eo_code allocate(struct eo_elastic *el, struct eo_error *error)
 {
-  size_t points = (size_t)el->grid->points, most = (size_t)el->grid->most_points, positions = (size_t)el->grid->positions;
+  size_t points = (size_t)el->grid->points, most = (size_t)el->grid->most_points,
+         positions = (size_t)el->grid->positions;
   bool complete = (el->change = calloc(most, sizeof(double))) && (el->answer = calloc(most, sizeof(double)));
   for (int end = 0; end < 2; end++)
-    complete = complete && (el->gap[end] = calloc(points, sizeof(double))) && (el->place[end] = calloc(most, sizeof(struct place))) &&
+    complete = complete && (el->gap[end] = calloc(points, sizeof(double))) &&
+               (el->place[end] = calloc(most, sizeof(struct place))) &&
                (el->history[end] = calloc(positions, sizeof(struct eo_deflection)));
   return complete ? EO_OK : eo_error_memory(error);
 }
 
-enum eo_code eo_elastic_new(struct eo_elastic **result, const struct eo_contact_grid *grid, const struct eo_gear_pair *pair,
-                            const struct eo_shafts *shafts, struct eo_error *error)
+enum eo_code eo_elastic_new(struct eo_elastic **result, const struct eo_contact_grid *grid,
+                            const struct eo_gear_pair *pair, const struct eo_shafts *shafts, struct eo_error *error)
 {
   struct eo_elastic *el = calloc(1, sizeof *el);
   if (!el)

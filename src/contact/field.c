@@ -4,12 +4,14 @@
 #include <stddef.h>
 #include <string.h>
 
-/* Beyond the path of contact: the slices as long as they meet inside the tip, then the tip's corner. *place: s on the flank, joined without
-   a step; *slope: by s, with tilt, that of misalignment and bodies, at the place. */
-static double beyond_path(const struct eo_gap_field *field, int tip, double s, double tilt, double *slope, double *place)
+/* Beyond the path of contact: the slices as long as they meet inside the tip, then the tip's corner. *place: s on the
+   flank, joined without a step; *slope: by s, with tilt, that of misalignment and bodies, at the place. */
+static double beyond_path(const struct eo_gap_field *field, int tip, double s, double tilt, double *slope,
+                          double *place)
 {
   const struct eo_corner_gap *corner = &field->corner[tip == EO_GEAR ? 0 : 1];
-  double end = tip == EO_GEAR ? field->geometry->path_start : field->geometry->path_end, d = fabs(s - end), rate, travel, gap;
+  double end = tip == EO_GEAR ? field->geometry->path_start : field->geometry->path_end, d = fabs(s - end), rate,
+         travel, gap;
   int sign = tip == EO_GEAR ? -1 : 1;
   if (d < corner->start) {
     gap = eo_slice_gap_at(&field->slice, s, &rate);
@@ -39,9 +41,9 @@ double eo_deflection_at(const struct eo_deflection *deflection, double face_widt
   return part[0] + s * part[1];
 }
 
-void eo_gap_field_init(struct eo_gap_field *field, const struct eo_geometry *g, const struct eo_flank_modification *pinion,
-                       const struct eo_flank_modification *gear, int end, double in_plane, double out_of_plane, double pivot,
-                       const struct eo_corner_gap corner[2])
+void eo_gap_field_init(struct eo_gap_field *field, const struct eo_geometry *g,
+                       const struct eo_flank_modification *pinion, const struct eo_flank_modification *gear, int end,
+                       double in_plane, double out_of_plane, double pivot, const struct eo_corner_gap corner[2])
 {
   double sign = end == EO_LEFT ? -1 : 1;
   field->geometry = g;
@@ -81,7 +83,8 @@ double eo_gap_field_at(const struct eo_gap_field *field, double s, double eta, d
     path[EO_PINION] = tip == EO_PINION ? g->path_end : place;
     path[EO_GEAR] = tip == EO_GEAR ? g->path_start : place;
   }
-  gap += eo_modification_lead(&field->shape[EO_PINION], x, &unused) + eo_modification_lead(&field->shape[EO_GEAR], x, &unused);
+  gap += eo_modification_lead(&field->shape[EO_PINION], x, &unused) +
+         eo_modification_lead(&field->shape[EO_GEAR], x, &unused);
   gap += field->misalignment * eta + field->misalignment_offset + body[0] + place * tilt;
   if (slope)
     *slope = rate;
@@ -118,7 +121,8 @@ double eo_gap_field_line_minimum(const struct eo_gap_field *field, double c, boo
   }
   double low = fmax(range[0], best_eta - step), high = fmin(range[1], best_eta + step), ratio = 0.6180339887498949;
   double a = high - ratio * (high - low), b = low + ratio * (high - low);
-  double fa = eo_gap_field_at(field, c + a * tangent, a, NULL, NULL), fb = eo_gap_field_at(field, c + b * tangent, b, NULL, NULL);
+  double fa = eo_gap_field_at(field, c + a * tangent, a, NULL, NULL),
+         fb = eo_gap_field_at(field, c + b * tangent, b, NULL, NULL);
   for (int i = 0; i < GOLDEN_STEPS; i++) {
     if (fmin(fa, fb) < best) {
       best = fmin(fa, fb);
@@ -143,7 +147,8 @@ double eo_gap_field_line_minimum(const struct eo_gap_field *field, double c, boo
   return best;
 }
 
-/* The smallest gap over the path of contact in the transverse slice at eta, lead modification and what else is constant there apart. */
+/* The smallest gap over the path of contact in the transverse slice at eta, lead modification and what else is constant
+   there apart. */
 static double lowest_profile(int samples, const double *path, const double *profile, double tilt)
 {
   double lowest = INFINITY;
@@ -164,10 +169,12 @@ double eo_gap_field_datum(const struct eo_gap_field *field)
   double common = lowest_profile(SAMPLES, path, profile, 0);
   for (int i = 0; i < SAMPLES; i++) {
     double eta = g->face_width * ((double)i / (SAMPLES - 1) - 0.5), x = eta * field->stretch, body[2] = {0, 0};
-    double lead = eo_modification_lead(&field->shape[0], x, &unused) + eo_modification_lead(&field->shape[1], x, &unused) + field->misalignment * eta;
+    double lead = eo_modification_lead(&field->shape[0], x, &unused) +
+                  eo_modification_lead(&field->shape[1], x, &unused) + field->misalignment * eta;
     if (field->deflection)
       deflection_parts(field->deflection, g->face_width, eta, body);
-    lowest = fmin(lowest, lead + body[0] + (field->deflection ? lowest_profile(SAMPLES, path, profile, body[1]) : common));
+    lowest = fmin(lowest,
+                  lead + body[0] + (field->deflection ? lowest_profile(SAMPLES, path, profile, body[1]) : common));
   }
   return lowest + field->misalignment_offset;
 }

@@ -9,8 +9,12 @@
 
 struct eo_contact_grid_settings eo_contact_grid_default(const struct eo_resolution *resolution)
 {
-  return (struct eo_contact_grid_settings){.positions = resolution->positions, .cells = resolution->cells_per_line,
-    .partial_cells = true, .tip_edges = resolution->tip_edge_contact, .edge_cells = 12, .edge_reach = NAN};
+  return (struct eo_contact_grid_settings){.positions = resolution->positions,
+                                           .cells = resolution->cells_per_line,
+                                           .partial_cells = true,
+                                           .tip_edges = resolution->tip_edge_contact,
+                                           .edge_cells = 12,
+                                           .edge_reach = NAN};
 }
 
 double eo_contact_local_constant(const struct eo_geometry *g, const struct eo_material *material, double s)
@@ -27,7 +31,8 @@ struct stretch {
   enum eo_point_kind kind;
 };
 
-static int list_stretches(const struct eo_geometry *g, const struct eo_contact_grid_settings *settings, struct stretch stretch[3])
+static int list_stretches(const struct eo_geometry *g, const struct eo_contact_grid_settings *settings,
+                          struct stretch stretch[3])
 {
   double reach = isnan(settings->edge_reach) ? g->normal_module * 4 / 15 : settings->edge_reach;
   stretch[0] = (struct stretch){g->path_start, g->path_end, settings->cells, EO_POINT_LINE};
@@ -44,7 +49,8 @@ static void pair_range(const struct eo_geometry *g, double phase, const struct s
   range[1] = (int)ceil((stretch->high + lean - phase) / g->transverse_base_pitch);
 }
 
-static int count_points(const struct eo_geometry *g, double phase, const struct stretch *stretch, int stretches, int *lines)
+static int count_points(const struct eo_geometry *g, double phase, const struct stretch *stretch, int stretches,
+                        int *lines)
 {
   int count = 0;
   *lines = 0;
@@ -74,8 +80,8 @@ static enum eo_code allocate_position(struct eo_contact_position *p, struct eo_e
   return p->line && p->point && p->path && p->kind && p->length && p->law && p->radius ? EO_OK : eo_error_memory(error);
 }
 
-static void fill_line(struct eo_contact_position *p, int first, const struct eo_gap_field *field, const struct eo_material *material,
-                      const struct stretch *stretch, int pair, const double eta[2])
+static void fill_line(struct eo_contact_position *p, int first, const struct eo_gap_field *field,
+                      const struct eo_material *material, const struct stretch *stretch, int pair, const double eta[2])
 {
   const struct eo_geometry *g = field->geometry;
   double tangent = tan(g->base_helix_angle), width = (eta[1] - eta[0]) / stretch->cells;
@@ -83,7 +89,8 @@ static void fill_line(struct eo_contact_position *p, int first, const struct eo_
     struct eo_flank_point *point = &p->point[first + i];
     point->pair = pair;
     point->eta = eta[0] + (i + 0.5) * width;
-    double s = p->phase + pair * g->transverse_base_pitch + point->eta * tangent, clamped = fmin(fmax(s, g->path_start), g->path_end);
+    double s = p->phase + pair * g->transverse_base_pitch + point->eta * tangent,
+           clamped = fmin(fmax(s, g->path_start), g->path_end);
     eo_gap_field_at(field, s, point->eta, NULL, point->s);
     p->path[first + i] = s;
     p->kind[first + i] = stretch->kind;
@@ -93,8 +100,9 @@ static void fill_line(struct eo_contact_position *p, int first, const struct eo_
   }
 }
 
-static enum eo_code fill_position(struct eo_contact_position *p, const struct eo_gap_field *field, const struct eo_material *material,
-                                  const struct stretch *stretch, int stretches, struct eo_error *error)
+static enum eo_code fill_position(struct eo_contact_position *p, const struct eo_gap_field *field,
+                                  const struct eo_material *material, const struct stretch *stretch, int stretches,
+                                  struct eo_error *error)
 {
   const struct eo_geometry *g = field->geometry;
   p->points = count_points(g, p->phase, stretch, stretches, &p->lines);
@@ -114,8 +122,10 @@ static enum eo_code fill_position(struct eo_contact_position *p, const struct eo
   return code;
 }
 
-/* The few strongest modes carry Newton's matrix; what they leave is added back as a correction, so the compliance is exact. */
-static enum eo_code factor_position(struct eo_contact_position *p, struct eo_kernel kernel, double *compliance, struct eo_error *error)
+/* The few strongest modes carry Newton's matrix; what they leave is added back as a correction, so the compliance is
+   exact. */
+static enum eo_code factor_position(struct eo_contact_position *p, struct eo_kernel kernel, double *compliance,
+                                    struct eo_error *error)
 {
   static const double TOLERANCE = 2e-3;
   size_t n = (size_t)p->points, stride;
@@ -175,8 +185,8 @@ void eo_contact_grid_pairs(const struct eo_contact_grid *grid, int range[2])
 }
 
 static enum eo_code fill_grid(struct eo_contact_grid *grid, const struct eo_material *material,
-                              const struct eo_contact_grid_settings *settings, const double *phase, struct eo_kernel kernel,
-                              const struct eo_progress *progress, struct eo_error *error)
+                              const struct eo_contact_grid_settings *settings, const double *phase,
+                              struct eo_kernel kernel, const struct eo_progress *progress, struct eo_error *error)
 {
   struct eo_gap_field *field = malloc(sizeof *field);
   struct stretch stretch[3];
@@ -208,9 +218,10 @@ static enum eo_code fill_grid(struct eo_contact_grid *grid, const struct eo_mate
   return code;
 }
 
-enum eo_code eo_contact_grid_new(struct eo_contact_grid **result, const struct eo_geometry *geometry, const struct eo_material *material,
-                                 const struct eo_contact_grid_settings *settings, const double *phase, struct eo_kernel kernel,
-                                 const struct eo_progress *progress, struct eo_error *error)
+enum eo_code eo_contact_grid_new(struct eo_contact_grid **result, const struct eo_geometry *geometry,
+                                 const struct eo_material *material, const struct eo_contact_grid_settings *settings,
+                                 const double *phase, struct eo_kernel kernel, const struct eo_progress *progress,
+                                 struct eo_error *error)
 {
   struct eo_contact_grid *grid = calloc(1, sizeof *grid);
   if (!grid)
@@ -223,7 +234,8 @@ enum eo_code eo_contact_grid_new(struct eo_contact_grid **result, const struct e
   grid->partial_cells = settings->partial_cells;
   grid->positions = settings->positions;
   grid->position = calloc((size_t)settings->positions, sizeof *grid->position);
-  enum eo_code code = grid->position ? fill_grid(grid, material, settings, phase, kernel, progress, error) : eo_error_memory(error);
+  enum eo_code code = grid->position ? fill_grid(grid, material, settings, phase, kernel, progress, error)
+                                     : eo_error_memory(error);
   if (code)
     eo_contact_grid_free(grid);
   else

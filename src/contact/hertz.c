@@ -12,7 +12,8 @@ double eo_hertz_pressure(double line_load, double relative_radius, double youngs
   return sqrt(line_load * youngs_modulus / (2 * M_PI * relative_radius * (1 - poissons_ratio * poissons_ratio)));
 }
 
-void eo_local_law_init(struct eo_local_law *law, double youngs_modulus, double poissons_ratio, double relative_radius, const double depth[2])
+void eo_local_law_init(struct eo_local_law *law, double youngs_modulus, double poissons_ratio, double relative_radius,
+                       const double depth[2])
 {
   double plane = (1 - poissons_ratio * poissons_ratio) / (M_PI * youngs_modulus);
   law->slope = 2 * plane;
@@ -36,7 +37,8 @@ double eo_local_law_load(const struct eo_local_law *law, double approach)
     return 0;
   if (approach >= eo_local_law_approach(law, most))
     return most;
-  /* The approach is concave: Newton's steps from a load that is too small approach the root from below, each one shorter. */
+  /* The approach is concave: Newton's steps from a load that is too small approach the root from below, each one
+     shorter. */
   double load = approach / law->slope / (law->constant - log(approach / law->slope) + 1);
   while (eo_local_law_approach(law, load) > approach)
     load /= 2;

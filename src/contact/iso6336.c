@@ -11,8 +11,8 @@ static double virtual_teeth(int teeth, double normal_pressure_angle, double heli
 /* ISO 6336-1 (82): series in um mm/N; gear 1 is the one with fewer teeth. */
 static double pair_flexibility(double z1, double z2, double x1, double x2)
 {
-  double q = 0.04723 + 0.15551 / z1 + 0.25791 / z2 - 0.00635 * x1 - 0.11654 * x1 / z1 - 0.00193 * x2 - 0.24188 * x2 / z2 + 0.00529 * x1 * x1 +
-             0.00182 * x2 * x2;
+  double q = 0.04723 + 0.15551 / z1 + 0.25791 / z2 - 0.00635 * x1 - 0.11654 * x1 / z1 - 0.00193 * x2 -
+             0.24188 * x2 / z2 + 0.00529 * x1 * x1 + 0.00182 * x2 * x2;
   return q * 1e-9;
 }
 
@@ -24,10 +24,13 @@ void eo_iso_stiffness(struct eo_iso_stiffness *stiffness, const struct eo_iso_st
     c.virtual_teeth[i] = input->virtual_teeth == EO_ISO_VIRTUAL_CUBED
                              ? input->teeth[i] / pow(cos(input->helix_angle), 3)
                              : virtual_teeth(input->teeth[i], input->normal_pressure_angle, input->helix_angle);
-  c.flexibility = pair_flexibility(c.virtual_teeth[small], c.virtual_teeth[1 - small], input->profile_shift[small], input->profile_shift[1 - small]);
+  c.flexibility = pair_flexibility(c.virtual_teeth[small], c.virtual_teeth[1 - small], input->profile_shift[small],
+                                   input->profile_shift[1 - small]);
   c.theoretical = 1 / c.flexibility;
-  c.rack_factor = (1 + 0.5 * (1.2 - input->dedendum_coefficient)) * (1 - 0.02 * (20 - input->normal_pressure_angle * 180 / M_PI));
-  c.single = c.theoretical * input->theory_factor * input->blank_factor * c.rack_factor * cos(input->helix_angle) * input->youngs_modulus / 206e9;
+  c.rack_factor = (1 + 0.5 * (1.2 - input->dedendum_coefficient)) *
+                  (1 - 0.02 * (20 - input->normal_pressure_angle * 180 / M_PI));
+  c.single = c.theoretical * input->theory_factor * input->blank_factor * c.rack_factor * cos(input->helix_angle) *
+             input->youngs_modulus / 206e9;
   c.mesh_alpha = c.single * (0.75 * input->transverse_contact_ratio + 0.25);
   c.mesh_beta = 0.85 * c.mesh_alpha;
   *stiffness = c;
@@ -52,7 +55,8 @@ static double tangent_angle(double zn, double g, double h)
   return theta;
 }
 
-/* Radius, over m_n, at which the virtual spur gear is loaded at the outer point of single pair contact: d_en / 2 (ISO 6336-3 (26)). */
+/* Radius, over m_n, at which the virtual spur gear is loaded at the outer point of single pair contact: d_en / 2 (ISO
+   6336-3 (26)). */
 static double load_radius(const struct eo_geometry *geometry, int member, double zn, double base)
 {
   double module = geometry->normal_module, cos_base = cos(geometry->base_helix_angle);
@@ -72,7 +76,8 @@ static double rim_factor(const struct eo_geometry *geometry, int member, double 
 /* Chord, arm and fillet radius at the critical section, over m_n. */
 static void set_section(struct eo_iso_root *root, const struct eo_geometry *geometry, int member, double *load_angle)
 {
-  double module = geometry->normal_module, alpha = geometry->normal_pressure_angle, zn = root->virtual_teeth, x = geometry->profile_shift[member];
+  double module = geometry->normal_module, alpha = geometry->normal_pressure_angle, zn = root->virtual_teeth,
+         x = geometry->profile_shift[member];
   double dedendum = geometry->dedendum / module, fillet = geometry->fillet_radius / module;
   double e = M_PI / 4 - dedendum * tan(alpha) - (1 - sin(alpha)) * fillet / cos(alpha);
   double g = fillet - dedendum + x;
@@ -83,9 +88,11 @@ static void set_section(struct eo_iso_root *root, const struct eo_geometry *geom
 
   double base = zn / 2 * cos(alpha), radius = load_radius(geometry, member, zn, base);
   double pressure = acos(base / radius);
-  double gamma = (M_PI / 2 + 2 * tan(alpha) * x) / zn + eo_geometry_involute_function(alpha) - eo_geometry_involute_function(pressure);
+  double gamma = (M_PI / 2 + 2 * tan(alpha) * x) / zn + eo_geometry_involute_function(alpha) -
+                 eo_geometry_involute_function(pressure);
   *load_angle = pressure - gamma;
-  root->arm = 0.5 * ((cos(gamma) - sin(gamma) * tan(*load_angle)) * 2 * radius - zn * cos(M_PI / 3 - theta) - (g / cos(theta) - fillet));
+  root->arm = 0.5 * ((cos(gamma) - sin(gamma) * tan(*load_angle)) * 2 * radius - zn * cos(M_PI / 3 - theta) -
+                     (g / cos(theta) - fillet));
 }
 
 void eo_iso_root(struct eo_iso_root *root, const struct eo_geometry *geometry, int member, double bore, double torque)
@@ -100,7 +107,8 @@ void eo_iso_root(struct eo_iso_root *root, const struct eo_geometry *geometry, i
   r.helix_factor = 1 - fmin(geometry->overlap_ratio, 1) * fmin(geometry->helix_angle * 180 / M_PI, 30) / 120;
   r.rim_factor = rim_factor(geometry, member, bore);
   r.tangential_force = torque / geometry->reference_radius[member];
-  r.stress = r.tangential_force / (geometry->face_width * module) * r.form_factor * r.stress_correction * r.helix_factor * r.rim_factor;
+  r.stress = r.tangential_force / (geometry->face_width * module) * r.form_factor * r.stress_correction *
+             r.helix_factor * r.rim_factor;
   r.chord *= module;
   r.arm *= module;
   r.fillet_radius *= module;

@@ -1,12 +1,12 @@
-/* The standard's estimates beside the computed ones: mesh stiffness by ISO 6336-1:2006 method B and nominal root stress by
-   ISO 6336-3:2006 method B. External gears, one end of a pair. SI units. */
+/* The standard's estimates beside the computed ones: mesh stiffness by ISO 6336-1:2006 method B and nominal root stress
+   by ISO 6336-3:2006 method B. External gears, one end of a pair. SI units. */
 #ifndef EASEOFF_CONTACT_ISO6336_H
 #define EASEOFF_CONTACT_ISO6336_H
 
 #include "gear/geometry.h"
 
-/* Teeth of the virtual spur gear: z/cos^3 beta as ISO 6336-1 approximates it, or z/(cos^2 beta_b cos beta) as ISO 6336-3 has it.
-   At 24 degrees of helix q' differs by 0.45 %. */
+/* Teeth of the virtual spur gear: z/cos^3 beta as ISO 6336-1 approximates it, or z/(cos^2 beta_b cos beta) as ISO
+   6336-3 has it. At 24 degrees of helix q' differs by 0.45 %. */
 enum eo_iso_virtual { EO_ISO_VIRTUAL_CUBED, EO_ISO_VIRTUAL_EXACT };
 
 /* ISO 6336-1 9.3 */
@@ -34,8 +34,8 @@ struct eo_iso_stiffness {
 
 void eo_iso_stiffness(struct eo_iso_stiffness *stiffness, const struct eo_iso_stiffness_input *input);
 
-/* C_R of a web of thickness b_s in a rim of thickness s_R (9.3.2.3): ratios b_s / b, within 0.2 .. 1.2, and s_R / m_n, at least 1;
-   outside, the nearest value within is used, as the standard says. */
+/* C_R of a web of thickness b_s in a rim of thickness s_R (9.3.2.3): ratios b_s / b, within 0.2 .. 1.2, and s_R / m_n,
+   at least 1; outside, the nearest value within is used, as the standard says. */
 double eo_iso_blank_factor(double web_ratio, double rim_ratio);
 
 /* ISO 6336-3 method B, load at the outer point of single pair contact; no rounding of the tip, Y_DT = 1. */

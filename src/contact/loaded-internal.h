@@ -9,13 +9,13 @@
 struct eo_loaded_workspace {
   struct eo_local_inverse inverse;
   const struct eo_gram *gram;
-  bool partial;                    /* cells may touch in part */
-  double *load, *rate, *gap;       /* [most_points]: p, dp/dg, scaled gaps */
-  double *bend, *correction;       /* [most_points]: deflection by the modes, and by what they leave of the compliance */
-  double *local, *spread;          /* [most_points]: local approach g, and half its change over the cell */
-  double *mode, *trial;            /* [most_rank + 1]: a and Z */
+  bool partial;              /* cells may touch in part */
+  double *load, *rate, *gap; /* [most_points]: p, dp/dg, scaled gaps */
+  double *bend, *correction; /* [most_points]: deflection by the modes, and by what they leave of the compliance */
+  double *local, *spread;    /* [most_points]: local approach g, and half its change over the cell */
+  double *mode, *trial;      /* [most_rank + 1]: a and Z */
   double *residual, *step, *tangent; /* [most_rank + 1] */
-  double *matrix, *packed;         /* scratch of the kernel */
+  double *matrix, *packed;           /* scratch of the kernel */
   float *blend;
 };
 

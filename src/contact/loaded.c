@@ -5,7 +5,8 @@
 
 /* ---- one position ---- */
 
-/* The problem of one position in units of the unscaled compliance: gaps and approach are divided by the compliance factor. */
+/* The problem of one position in units of the unscaled compliance: gaps and approach are divided by the compliance
+   factor. */
 struct problem {
   const struct eo_contact_position *position;
   const double *gap; /* [points] */
@@ -20,7 +21,8 @@ static void load_points(struct eo_loaded_workspace *ws, const struct problem *pr
   int stride = p->stride;
   double approach = mode[stride], sum = 0;
   for (int i = 0; i < p->points; i++) {
-    double local = ws->local[i] = approach - problem->gap[i] - ws->bend[i] - ws->correction[i], spread = ws->spread[i], share = 1;
+    double local = ws->local[i] = approach - problem->gap[i] - ws->bend[i] - ws->correction[i], spread = ws->spread[i],
+           share = 1;
     ws->load[i] = ws->rate[i] = 0;
     if (local <= -spread)
       continue;
@@ -34,7 +36,8 @@ static void load_points(struct eo_loaded_workspace *ws, const struct problem *pr
       ws->load[i] = p->length[i] * scaled / x;
       ws->rate[i] = share * p->length[i] / (problem->scale * (x - 1));
     } else {
-      ws->load[i] = p->length[i] * (scaled - exp(p->law[i] - EO_LOCAL_INVERSE_STRAIGHT)) / (EO_LOCAL_INVERSE_STRAIGHT - 1);
+      ws->load[i] = p->length[i] * (scaled - exp(p->law[i] - EO_LOCAL_INVERSE_STRAIGHT)) /
+                    (EO_LOCAL_INVERSE_STRAIGHT - 1);
       ws->rate[i] = share * p->length[i] / (problem->scale * (EO_LOCAL_INVERSE_STRAIGHT - 1));
     }
     sum += ws->load[i];
@@ -68,7 +71,8 @@ static double spread_cells(struct eo_loaded_workspace *ws, const struct eo_conta
     int first = p->line[l].first, last = first + p->line[l].cells - 1;
     for (int i = first; i <= last; i++) {
       int a = i > first ? i - 1 : i, b = i < last ? i + 1 : i;
-      double half = b - a == 2 ? 0.25 : 0.5, spread = fabs(ws->local[b] - ws->local[a]) * half, moved = fabs(spread - ws->spread[i]);
+      double half = b - a == 2 ? 0.25 : 0.5, spread = fabs(ws->local[b] - ws->local[a]) * half,
+             moved = fabs(spread - ws->spread[i]);
       if (fabs(ws->local[i]) < larger(spread, ws->spread[i]))
         change = larger(change, moved);
       ws->spread[i] = spread;
@@ -86,7 +90,8 @@ static void spread_gaps(struct eo_loaded_workspace *ws, const struct problem *pr
     spread_cells(ws, problem->position);
 }
 
-/* Deflection of the present loads by the part of the compliance that the modes leave out; returns its largest change. */
+/* Deflection of the present loads by the part of the compliance that the modes leave out; returns its largest change.
+ */
 static double correct(struct eo_loaded_workspace *ws, const struct eo_contact_position *p)
 {
   double change = 0;
@@ -132,8 +137,8 @@ static void start_cold(struct eo_loaded_workspace *ws, const struct problem *pro
   }
 }
 
-/* One step along ws->step from ws->mode; a step that passes the minimum along its own line is cut back, but for steps so small (below a
-   nanometre) that rounding would decide. */
+/* One step along ws->step from ws->mode; a step that passes the minimum along its own line is cut back, but for steps
+   so small (below a nanometre) that rounding would decide. */
 static void advance(struct eo_loaded_workspace *ws, const struct problem *problem)
 {
   enum { CUTS = 30 };
@@ -160,8 +165,9 @@ static void newton_step(struct eo_loaded_workspace *ws, const struct eo_contact_
   ws->gram->solve(n, p->stride, ws->matrix, ws->step);
 }
 
-/* The steps that end Newton, with the matrix of the last one: they also take in the correction of the compliance and the partial cells,
-   until nothing moves by more than a thousandth of a nanometre and the loads add up to P. The deflection by the modes is there already. */
+/* The steps that end Newton, with the matrix of the last one: they also take in the correction of the compliance and
+   the partial cells, until nothing moves by more than a thousandth of a nanometre and the loads add up to P. The
+   deflection by the modes is there already. */
 static bool polish(struct eo_loaded_workspace *ws, const struct problem *problem)
 {
   enum { STEPS = 32, RENEW = 8 };
@@ -185,8 +191,8 @@ static bool polish(struct eo_loaded_workspace *ws, const struct problem *problem
   return settled;
 }
 
-/* Newton on the convex function of (a, Z) from ws->mode. Leaves the loads, the factored matrix and (a, Z) of the solution; returns whether
-   it converged. */
+/* Newton on the convex function of (a, Z) from ws->mode. Leaves the loads, the factored matrix and (a, Z) of the
+   solution; returns whether it converged. */
 static bool newton(struct eo_loaded_workspace *ws, const struct problem *problem)
 {
   enum { STEPS = 60 };
@@ -218,8 +224,8 @@ static void follow_load(struct eo_loaded_workspace *ws, const struct eo_contact_
   ws->gram->solve(n, p->stride, ws->matrix, ws->tangent);
 }
 
-/* dZ/dP = the least value of dp'(C + diag(dg/dp))dp over load changes dp that sum to 1. With dp from the last factorisation but the
-   rates of the solution it is right to the square of what dp is wrong. Overwrites the loads. */
+/* dZ/dP = the least value of dp'(C + diag(dg/dp))dp over load changes dp that sum to 1. With dp from the last
+   factorisation but the rates of the solution it is right to the square of what dp is wrong. Overwrites the loads. */
 static double tangent_compliance(struct eo_loaded_workspace *ws, const struct eo_contact_position *p)
 {
   double sum = 0, square = 0, *change = ws->load, *mode = ws->trial;
@@ -249,8 +255,8 @@ static const struct eo_contact_line *same_line(const struct eo_contact_position 
 }
 
 /* Start from the neighbouring position: the same line loads on the same lines, scaled to carry P. */
-static void start_from(struct eo_loaded_workspace *ws, const struct eo_contact_position *from, const double *line_load, double approach,
-                       const struct problem *problem)
+static void start_from(struct eo_loaded_workspace *ws, const struct eo_contact_position *from, const double *line_load,
+                       double approach, const struct problem *problem)
 {
   const struct eo_contact_position *p = problem->position;
   double sum = 0;
@@ -297,7 +303,8 @@ static bool descend(struct eo_loaded_workspace *ws, const struct problem *proble
 }
 
 /* Solves from ws->mode and writes position j of the result. */
-static void solve_position(struct eo_loaded_workspace *ws, const struct problem *problem, int j, double factor, struct eo_loaded_end *result)
+static void solve_position(struct eo_loaded_workspace *ws, const struct problem *problem, int j, double factor,
+                           struct eo_loaded_end *result)
 {
   const struct eo_contact_position *p = problem->position;
   bool converged = newton(ws, problem) || descend(ws, problem);
@@ -309,7 +316,8 @@ static void solve_position(struct eo_loaded_workspace *ws, const struct problem 
   result->tangent[j] = 1 / (tangent_compliance(ws, p) * factor);
 }
 
-static const double *scaled_gaps(struct eo_loaded_workspace *ws, const struct eo_contact_position *p, const double *gap, double factor)
+static const double *scaled_gaps(struct eo_loaded_workspace *ws, const struct eo_contact_position *p, const double *gap,
+                                 double factor)
 {
   if (factor == 1)
     return gap + p->first;
@@ -318,8 +326,9 @@ static const double *scaled_gaps(struct eo_loaded_workspace *ws, const struct eo
   return ws->gap;
 }
 
-void eo_loaded_solve(struct eo_loaded_workspace *ws, const struct eo_contact_grid *grid, const struct eo_loaded_gaps *gaps,
-                     double compliance_factor, int loads, const double *load, struct eo_loaded_end *result)
+void eo_loaded_solve(struct eo_loaded_workspace *ws, const struct eo_contact_grid *grid,
+                     const struct eo_loaded_gaps *gaps, double compliance_factor, int loads, const double *load,
+                     struct eo_loaded_end *result)
 {
   for (int l = 0; l < loads; l++)
     result[l].failures = 0;
@@ -329,8 +338,8 @@ void eo_loaded_solve(struct eo_loaded_workspace *ws, const struct eo_contact_gri
     if (j == 0)
       start_cold(ws, &problem, ws->mode);
     else
-      start_from(ws, &grid->position[j - 1], result[0].line_load + grid->position[j - 1].first, result[0].approach[j - 1] / compliance_factor,
-                 &problem);
+      start_from(ws, &grid->position[j - 1], result[0].line_load + grid->position[j - 1].first,
+                 result[0].approach[j - 1] / compliance_factor, &problem);
     bool sound = true;
     for (int l = 0; l < loads; l++) {
       int failures = result[l].failures;
@@ -347,8 +356,8 @@ void eo_loaded_solve(struct eo_loaded_workspace *ws, const struct eo_contact_gri
 
 /* ---- one position again ---- */
 
-void eo_loaded_resolve(struct eo_loaded_workspace *ws, const struct eo_contact_grid *grid, const double *gap, double factor, int j, double load,
-                       struct eo_loaded_end *result)
+void eo_loaded_resolve(struct eo_loaded_workspace *ws, const struct eo_contact_grid *grid, const double *gap,
+                       double factor, int j, double load, struct eo_loaded_end *result)
 {
   const struct eo_contact_position *p = &grid->position[j];
   struct problem problem = {p, scaled_gaps(ws, p, gap, factor), grid->compliance_scale, load};
@@ -356,8 +365,8 @@ void eo_loaded_resolve(struct eo_loaded_workspace *ws, const struct eo_contact_g
   solve_position(ws, &problem, j, factor, result);
 }
 
-double eo_loaded_response(struct eo_loaded_workspace *ws, const struct eo_contact_position *p, double factor, const double *change,
-                          double *load_change)
+double eo_loaded_response(struct eo_loaded_workspace *ws, const struct eo_contact_position *p, double factor,
+                          const double *change, double *load_change)
 {
   int stride = p->stride;
   double *mode = change ? ws->step : ws->tangent;
@@ -397,10 +406,12 @@ static double least_gap(const struct eo_contact_grid *grid, const struct eo_load
 }
 
 /* One mesh position of both ends: P_L = P + shift, P_R = P - shift. Equilibrium of the pinion along its axis,
-   Z_L - Z_R + shift 4 sin^2(beta_b)/k = 0, grows with the shift: Newton, kept between the shifts already known to be too small and too large.
-   When even the whole load does not bring the other end into contact, that end carries nothing. */
-static bool balance_position(struct eo_loaded_workspace *ws, const struct eo_contact_grid *grid, const struct eo_loaded_gaps gaps[2],
-                             double factor, double soft, const int at[2], double load, struct eo_loaded_end result[2])
+   Z_L - Z_R + shift 4 sin^2(beta_b)/k = 0, grows with the shift: Newton, kept between the shifts already known to be
+   too small and too large. When even the whole load does not bring the other end into contact, that end carries
+   nothing. */
+static bool balance_position(struct eo_loaded_workspace *ws, const struct eo_contact_grid *grid,
+                             const struct eo_loaded_gaps gaps[2], double factor, double soft, const int at[2],
+                             double load, struct eo_loaded_end result[2])
 {
   enum { STEPS = 60 };
   double shift = 0, bound[2] = {-load, load};
@@ -431,8 +442,9 @@ static bool balance_position(struct eo_loaded_workspace *ws, const struct eo_con
   return false;
 }
 
-void eo_loaded_balance(struct eo_loaded_workspace *workspace, const struct eo_contact_grid *grid, const struct eo_loaded_gaps gaps[2],
-                       double compliance_factor, double stiffness, int stagger, double load, struct eo_loaded_end result[2])
+void eo_loaded_balance(struct eo_loaded_workspace *workspace, const struct eo_contact_grid *grid,
+                       const struct eo_loaded_gaps gaps[2], double compliance_factor, double stiffness, int stagger,
+                       double load, struct eo_loaded_end result[2])
 {
   double lean = sin(grid->geometry.base_helix_angle), soft = isinf(stiffness) ? 0 : 4 * lean * lean / stiffness;
   if (stiffness <= 0 || lean == 0)
@@ -464,7 +476,8 @@ void eo_loaded_first_contact(const struct eo_contact_grid *grid, const struct eo
   }
 }
 
-void eo_loaded_gaps_set(struct eo_loaded_gaps *gaps, const struct eo_contact_grid *grid, const struct eo_gap_field *field)
+void eo_loaded_gaps_set(struct eo_loaded_gaps *gaps, const struct eo_contact_grid *grid,
+                        const struct eo_gap_field *field)
 {
   for (int j = 0; j < grid->positions; j++) {
     const struct eo_contact_position *p = &grid->position[j];

@@ -2,14 +2,14 @@
 
    Per end and mesh position, points i with loads p >= 0 and clearances d >= 0, p.d = 0, sum p = P:
        sum_j C_ij p_j + delta_H(p_i) + w_i = Z + d_i .
-   With C = factor factor' and a = factor' p the local approach g_i = Z - w_i - factor_i a fixes every load by itself: p_i is the inverse of
-   the local law at g_i where g_i > 0, else 0. So the complementarity holds by construction and what is left is the minimum of a convex
-   function of (a, Z): rank + 1 smooth equations, Newton with a symmetric positive definite matrix. Its last pivot is dP/dZ, the tangent
-   stiffness.
+   With C = factor factor' and a = factor' p the local approach g_i = Z - w_i - factor_i a fixes every load by itself:
+   p_i is the inverse of the local law at g_i where g_i > 0, else 0. So the complementarity holds by construction and
+   what is left is the minimum of a convex function of (a, Z): rank + 1 smooth equations, Newton with a symmetric
+   positive definite matrix. Its last pivot is dP/dZ, the tangent stiffness.
 
-   Partial cells (struct eo_contact_grid_settings): over a cell g changes by 2 e, taken from its neighbours on the line; where it changes
-   sign the law is applied to the mean of its positive part, (g + e)^2 / (4 e) for |g| < e. Away from the ends of the contact nothing
-   differs, and the loads become smooth functions of load and phase. */
+   Partial cells (struct eo_contact_grid_settings): over a cell g changes by 2 e, taken from its neighbours on the line;
+   where it changes sign the law is applied to the mean of its positive part, (g + e)^2 / (4 e) for |g| < e. Away from
+   the ends of the contact nothing differs, and the loads become smooth functions of load and phase. */
 #ifndef EASEOFF_CONTACT_LOADED_H
 #define EASEOFF_CONTACT_LOADED_H
 
@@ -18,13 +18,15 @@
 
 /* Gaps of one end at all points of a grid, from one gap field. */
 struct eo_loaded_gaps {
-  double *gap;       /* [grid->points], m */
-  double *unloaded;  /* [positions]: Z0, the approach at first contact, m */
+  double *gap;      /* [grid->points], m */
+  double *unloaded; /* [positions]: Z0, the approach at first contact, m */
 };
 
-enum eo_code eo_loaded_gaps_init(struct eo_loaded_gaps *gaps, const struct eo_contact_grid *grid, struct eo_error *error);
+enum eo_code eo_loaded_gaps_init(struct eo_loaded_gaps *gaps, const struct eo_contact_grid *grid,
+                                 struct eo_error *error);
 void eo_loaded_gaps_done(struct eo_loaded_gaps *gaps);
-void eo_loaded_gaps_set(struct eo_loaded_gaps *gaps, const struct eo_contact_grid *grid, const struct eo_gap_field *field);
+void eo_loaded_gaps_set(struct eo_loaded_gaps *gaps, const struct eo_contact_grid *grid,
+                        const struct eo_gap_field *field);
 
 /* One end under one load. */
 struct eo_loaded_end {
@@ -40,29 +42,34 @@ void eo_loaded_end_done(struct eo_loaded_end *end);
 
 /* Scratch of one thread. */
 struct eo_loaded_workspace;
-enum eo_code eo_loaded_workspace_new(struct eo_loaded_workspace **workspace, const struct eo_contact_grid *grid, struct eo_error *error);
+enum eo_code eo_loaded_workspace_new(struct eo_loaded_workspace **workspace, const struct eo_contact_grid *grid,
+                                     struct eo_error *error);
 void eo_loaded_workspace_free(struct eo_loaded_workspace *workspace);
 
-/* One end, every position, several loads P (normal force per end, N, > 0): result[loads]. compliance_factor scales bulk and local
-   compliance (1: as it is). The floating pinion and the single helical pair. */
-void eo_loaded_solve(struct eo_loaded_workspace *workspace, const struct eo_contact_grid *grid, const struct eo_loaded_gaps *gaps,
-                     double compliance_factor, int loads, const double *load, struct eo_loaded_end *result);
+/* One end, every position, several loads P (normal force per end, N, > 0): result[loads]. compliance_factor scales bulk
+   and local compliance (1: as it is). The floating pinion and the single helical pair. */
+void eo_loaded_solve(struct eo_loaded_workspace *workspace, const struct eo_contact_grid *grid,
+                     const struct eo_loaded_gaps *gaps, double compliance_factor, int loads, const double *load,
+                     struct eo_loaded_end *result);
 
-/* Both ends of an axially held pinion: P_L + P_R = 2 load. stiffness: of the axial support, N/m; INFINITY: fixed (one Z for both ends).
-   A displacement z towards + loads the left end less and the right end more: Z_L = Z_m + sin(beta_b) z, Z_R = Z_m - sin(beta_b) z.
-   stagger: positions by which the right end lags. Works on results of eo_loaded_solve() for the same load. An end that does not touch
-   although the other one carries 2 load has load, tangent and line loads 0, and the approach that the axial condition gives it. */
-void eo_loaded_balance(struct eo_loaded_workspace *workspace, const struct eo_contact_grid *grid, const struct eo_loaded_gaps gaps[2],
-                       double compliance_factor, double stiffness, int stagger, double load, struct eo_loaded_end result[2]);
+/* Both ends of an axially held pinion: P_L + P_R = 2 load. stiffness: of the axial support, N/m; INFINITY: fixed (one Z
+   for both ends). A displacement z towards + loads the left end less and the right end more: Z_L = Z_m + sin(beta_b) z,
+   Z_R = Z_m - sin(beta_b) z. stagger: positions by which the right end lags. Works on results of eo_loaded_solve() for
+   the same load. An end that does not touch although the other one carries 2 load has load, tangent and line loads 0,
+   and the approach that the axial condition gives it. */
+void eo_loaded_balance(struct eo_loaded_workspace *workspace, const struct eo_contact_grid *grid,
+                       const struct eo_loaded_gaps gaps[2], double compliance_factor, double stiffness, int stagger,
+                       double load, struct eo_loaded_end result[2]);
 
-/* Position j of one end again, at gaps [grid->points] and a load that may have changed a little, from the result it has there. */
-void eo_loaded_resolve(struct eo_loaded_workspace *workspace, const struct eo_contact_grid *grid, const double *gap, double compliance_factor,
-                       int j, double load, struct eo_loaded_end *result);
+/* Position j of one end again, at gaps [grid->points] and a load that may have changed a little, from the result it has
+   there. */
+void eo_loaded_resolve(struct eo_loaded_workspace *workspace, const struct eo_contact_grid *grid, const double *gap,
+                       double compliance_factor, int j, double load, struct eo_loaded_end *result);
 
-/* How the position solved last answers: the change of its loads, N, and of its approach, m, per unit of a change of its gaps
-   [points], m, at constant load P; or, with change NULL, per N of P. Within some thousandths. */
-double eo_loaded_response(struct eo_loaded_workspace *workspace, const struct eo_contact_position *position, double compliance_factor,
-                          const double *change, double *load_change);
+/* How the position solved last answers: the change of its loads, N, and of its approach, m, per unit of a change of its
+   gaps [points], m, at constant load P; or, with change NULL, per N of P. Within some thousandths. */
+double eo_loaded_response(struct eo_loaded_workspace *workspace, const struct eo_contact_position *position,
+                          double compliance_factor, const double *change, double *load_change);
 
 /* First contact of the unloaded flanks over the mesh cycle: Z0 [positions], m. */
 void eo_loaded_first_contact(const struct eo_contact_grid *grid, const struct eo_gap_field *field, double *unloaded);

@@ -3,7 +3,8 @@
 
 #include <stdlib.h>
 
-enum eo_code eo_loaded_workspace_new(struct eo_loaded_workspace **result, const struct eo_contact_grid *grid, struct eo_error *error)
+enum eo_code eo_loaded_workspace_new(struct eo_loaded_workspace **result, const struct eo_contact_grid *grid,
+                                     struct eo_error *error)
 {
   struct eo_loaded_workspace *ws = calloc(1, sizeof *ws);
   if (!ws)
@@ -35,8 +36,8 @@ void eo_loaded_workspace_free(struct eo_loaded_workspace *ws)
 {
   if (!ws)
     return;
-  double *const owned[] = {ws->load, ws->rate, ws->gap, ws->bend, ws->correction, ws->local, ws->spread, ws->mode, ws->trial, ws->residual, ws->step, ws->tangent,
-                           ws->matrix, ws->packed};
+  double *const owned[] = {ws->load, ws->rate,  ws->gap,      ws->bend, ws->correction, ws->local,  ws->spread,
+                           ws->mode, ws->trial, ws->residual, ws->step, ws->tangent,    ws->matrix, ws->packed};
   for (size_t i = 0; i < sizeof owned / sizeof *owned; i++)
     free(owned[i]);
   free(ws->blend);
@@ -44,7 +45,8 @@ void eo_loaded_workspace_free(struct eo_loaded_workspace *ws)
   free(ws);
 }
 
-enum eo_code eo_loaded_gaps_init(struct eo_loaded_gaps *gaps, const struct eo_contact_grid *grid, struct eo_error *error)
+enum eo_code eo_loaded_gaps_init(struct eo_loaded_gaps *gaps, const struct eo_contact_grid *grid,
+                                 struct eo_error *error)
 {
   gaps->gap = calloc((size_t)grid->points, sizeof(double));
   gaps->unloaded = calloc((size_t)grid->positions, sizeof(double));
@@ -64,8 +66,10 @@ void eo_loaded_gaps_done(struct eo_loaded_gaps *gaps)
 enum eo_code eo_loaded_end_init(struct eo_loaded_end *end, const struct eo_contact_grid *grid, struct eo_error *error)
 {
   size_t n = (size_t)grid->positions;
-  *end = (struct eo_loaded_end){.load = calloc(n, sizeof(double)), .approach = calloc(n, sizeof(double)),
-    .tangent = calloc(n, sizeof(double)), .line_load = calloc((size_t)grid->points, sizeof(double))};
+  *end = (struct eo_loaded_end){.load = calloc(n, sizeof(double)),
+                                .approach = calloc(n, sizeof(double)),
+                                .tangent = calloc(n, sizeof(double)),
+                                .line_load = calloc((size_t)grid->points, sizeof(double))};
   if (end->load && end->approach && end->tangent && end->line_load)
     return EO_OK;
   eo_loaded_end_done(end);

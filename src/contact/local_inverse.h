@@ -1,14 +1,15 @@
 /* The local law of line contact (Weber and Banaschek 1953) and its inverse: delta = K q (L - ln q).
-   With x = L - ln q and t = L - ln(delta/K): x - ln x = t, x > 1 (q below the law's turning point), q = delta/(K x), dq/ddelta = 1/(K (x - 1)).
-   x(t) is one universal function, tabulated with its slope x/(x - 1). From x = 2 on, where the contact is as wide as the tooth is thick and
-   the law has lost its meaning, q goes on in a straight line, so that every load has its solution. */
+   With x = L - ln q and t = L - ln(delta/K): x - ln x = t, x > 1 (q below the law's turning point), q = delta/(K x),
+   dq/ddelta = 1/(K (x - 1)). x(t) is one universal function, tabulated with its slope x/(x - 1). From x = 2 on, where
+   the contact is as wide as the tooth is thick and the law has lost its meaning, q goes on in a straight line, so that
+   every load has its solution. */
 #ifndef EASEOFF_CONTACT_LOCAL_INVERSE_H
 #define EASEOFF_CONTACT_LOCAL_INVERSE_H
 
 #include "base/error.h"
 
 enum { EO_LOCAL_INVERSE_NODES = 4096 };
-static const double EO_LOCAL_INVERSE_STRAIGHT = 2; /* x from which the law is straight */
+static const double EO_LOCAL_INVERSE_STRAIGHT = 2;             /* x from which the law is straight */
 static const double EO_LOCAL_INVERSE_LOW = 1.3068528194400546; /* t there: 2 - ln 2 */
 
 struct eo_local_inverse {

@@ -35,7 +35,8 @@ static struct eo_pattern_place place_at(const struct eo_contact_grid *grid, doub
   int below = find_position(grid, within), above = below == last ? 0 : below + 1;
   double low = grid->position[below].phase, high = grid->position[above].phase + (below == last ? pitch : 0);
   double weight = fmin(1, (within - low) / (high - low));
-  return (struct eo_pattern_place){.position = {below, above}, .weight = {1 - weight, weight},
+  return (struct eo_pattern_place){.position = {below, above},
+                                   .weight = {1 - weight, weight},
                                    .line = {find_line(&grid->position[below], pair),
                                             find_line(&grid->position[above], below == last ? pair + 1 : pair)}};
 }
@@ -70,7 +71,8 @@ static double line_load_at(const struct eo_contact_position *p, const struct eo_
   return last ? load[cell] + (t - cell) * (load[cell + 1] - load[cell]) : load[0];
 }
 
-static double pressure_at(const struct eo_contact_grid *grid, const struct eo_loaded_end *end, const struct eo_pattern_place *place, double eta)
+static double pressure_at(const struct eo_contact_grid *grid, const struct eo_loaded_end *end,
+                          const struct eo_pattern_place *place, double eta)
 {
   double sum = 0, weight = 0;
   for (int i = 0; i < 2; i++)
@@ -90,7 +92,8 @@ static int column_of(const struct eo_geometry *g, double eta)
   return column < 0 ? 0 : column >= EO_PATTERN_COLUMNS ? EO_PATTERN_COLUMNS - 1 : column;
 }
 
-static void load_edges(struct eo_contact_pattern *pattern, const struct eo_contact_grid *grid, const struct eo_loaded_end *end)
+static void load_edges(struct eo_contact_pattern *pattern, const struct eo_contact_grid *grid,
+                       const struct eo_loaded_end *end)
 {
   for (int k = 0; k < 2; k++)
     for (int j = 0; j < EO_PATTERN_COLUMNS; j++)
@@ -101,25 +104,29 @@ static void load_edges(struct eo_contact_pattern *pattern, const struct eo_conta
       double q = end->line_load[p->first + i];
       if (p->kind[i] == EO_POINT_LINE || !(q > 0))
         continue;
-      double *edge = &pattern->edge[p->kind[i] == EO_POINT_GEAR_TIP ? 0 : 1][column_of(&grid->geometry, p->point[i].eta)];
+      double *edge =
+          &pattern->edge[p->kind[i] == EO_POINT_GEAR_TIP ? 0 : 1][column_of(&grid->geometry, p->point[i].eta)];
       *edge = fmax(*edge, eo_loaded_pressure(grid, q, p->radius[i]));
     }
   }
 }
 
-void eo_contact_pattern_load(struct eo_contact_pattern *pattern, const struct eo_contact_grid *grid, const struct eo_loaded_end *end)
+void eo_contact_pattern_load(struct eo_contact_pattern *pattern, const struct eo_contact_grid *grid,
+                             const struct eo_loaded_end *end)
 {
   for (int i = 0; i < EO_PATTERN_ROWS * EO_PATTERN_COLUMNS; i++)
     pattern->pressure[i] = pressure_at(grid, end, &pattern->place[i], pattern->eta[i % EO_PATTERN_COLUMNS]);
   load_edges(pattern, grid, end);
 }
 
-void eo_contact_pattern_unload(struct eo_contact_pattern *pattern, const struct eo_gap_field *field, const double *unloaded)
+void eo_contact_pattern_unload(struct eo_contact_pattern *pattern, const struct eo_gap_field *field,
+                               const double *unloaded)
 {
   for (int i = 0; i < EO_PATTERN_ROWS * EO_PATTERN_COLUMNS; i++) {
     const struct eo_pattern_place *place = &pattern->place[i];
     double approach = place->weight[0] * unloaded[place->position[0]] + place->weight[1] * unloaded[place->position[1]];
-    double gap = eo_gap_field_at(field, pattern->path[i / EO_PATTERN_COLUMNS], pattern->eta[i % EO_PATTERN_COLUMNS], NULL, NULL);
+    double gap = eo_gap_field_at(field, pattern->path[i / EO_PATTERN_COLUMNS], pattern->eta[i % EO_PATTERN_COLUMNS],
+                                 NULL, NULL);
     pattern->clearance[i] = fmax(0, gap - approach);
   }
 }

@@ -4,7 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum eo_code eo_root_history_init(struct eo_root_history *history, const struct eo_contact_grid *grid, struct eo_error *error)
+enum eo_code eo_root_history_init(struct eo_root_history *history, const struct eo_contact_grid *grid,
+                                  struct eo_error *error)
 {
   int range[2];
   eo_contact_grid_pairs(grid, range);
@@ -23,8 +24,9 @@ void eo_root_history_done(struct eo_root_history *history)
   *history = (struct eo_root_history){0};
 }
 
-void eo_root_find_largest(const struct eo_flexibility *flexibility, int member, int tooth, int n, const struct eo_flank_point *point,
-                          const double *force, double *stress, struct eo_root_place *place)
+void eo_root_find_largest(const struct eo_flexibility *flexibility, int member, int tooth, int n,
+                          const struct eo_flank_point *point, const double *force, double *stress,
+                          struct eo_root_place *place)
 {
   struct eo_root root = eo_flexibility_root(flexibility, member);
   *place = (struct eo_root_place){0};
@@ -42,17 +44,18 @@ enum { MOST_TEETH = 64 };
 struct eo_root_workspace {
   const struct eo_contact_grid *grid;
   const struct eo_root_modes *modes[2]; /* [member] */
-  int step, count;      /* positions that count */
-  struct eo_root_weights *weights[2]; /* [member]: [grid->points], of the positions that count */
-  double *force;        /* [ends][most points] */
-  float *load;          /* [positions][ends][slots] */
-  float *scratch;       /* [positions][ends][rank] */
-  float *stress;        /* [positions][ends][EO_STRESSES][nodes] */
-  unsigned *touched;    /* [positions]: see eo_root_modes_add() */
+  int step, count;                      /* positions that count */
+  struct eo_root_weights *weights[2];   /* [member]: [grid->points], of the positions that count */
+  double *force;                        /* [ends][most points] */
+  float *load;                          /* [positions][ends][slots] */
+  float *scratch;                       /* [positions][ends][rank] */
+  float *stress;                        /* [positions][ends][EO_STRESSES][nodes] */
+  unsigned *touched;                    /* [positions]: see eo_root_modes_add() */
 };
 
 /* NULL without memory. */
-static struct eo_root_weights *weigh_points(const struct eo_contact_grid *grid, const struct eo_root_modes *modes, int step)
+static struct eo_root_weights *weigh_points(const struct eo_contact_grid *grid, const struct eo_root_modes *modes,
+                                            int step)
 {
   struct eo_root_weights *weights = malloc(sizeof *weights * (size_t)grid->points);
   for (int j = 0; weights && j < grid->positions; j += step) {
@@ -64,7 +67,8 @@ static struct eo_root_weights *weigh_points(const struct eo_contact_grid *grid, 
 }
 
 enum eo_code eo_root_workspace_new(struct eo_root_workspace **result, const struct eo_contact_grid *grid,
-                                   const struct eo_root_modes *const modes[2], int step, int ends, struct eo_error *error)
+                                   const struct eo_root_modes *const modes[2], int step, int ends,
+                                   struct eo_error *error)
 {
   struct eo_root_workspace *ws = calloc(1, sizeof *ws);
   size_t rank = 1, nodes = 1, slots = 1;
@@ -129,7 +133,8 @@ static inline bool any_passes(const float *s, const float *t, const float *u, fl
   lane_mask none = ~(lane_mask){0};
   for (int i = 0; i < BLOCK; i += LANE) {
     lane a = *(const lane *)(s + i), b = *(const lane *)(t + i), shear = *(const lane *)(u + i);
-    lane sum = a + b, room = 2 * largest - sum, difference = a - b, square = difference * difference + 4 * shear * shear;
+    lane sum = a + b, room = 2 * largest - sum, difference = a - b,
+         square = difference * difference + 4 * shear * shear;
     none &= (room >= 0) & (square <= room * room);
   }
   return !(none[0] & none[1] & none[2] & none[3]);
@@ -156,7 +161,8 @@ static double largest_principal(int nodes, const float *stress, int *where)
 }
 
 /* Loads of every step-th position on the teeth around one tooth: load[count][ends][slots]. */
-static void collect(struct eo_root_workspace *ws, int member, int tooth, int ends, const struct eo_loaded_end *const *end)
+static void collect(struct eo_root_workspace *ws, int member, int tooth, int ends,
+                    const struct eo_loaded_end *const *end)
 {
   const struct eo_root_modes *modes = ws->modes[member];
   int slots = eo_root_modes_slots(modes);
@@ -166,13 +172,14 @@ static void collect(struct eo_root_workspace *ws, int member, int tooth, int end
     for (int e = 0; e < ends; e++)
       for (int i = 0; i < p->points; i++)
         ws->force[e * p->points + i] = end[e]->line_load[p->first + i] * p->length[i];
-    ws->touched[j] = eo_root_modes_add(modes, tooth, p->points, p->point, ws->weights[member] + p->first, ends, ws->force,
-                                       ws->load + (size_t)(j * ends) * (size_t)slots);
+    ws->touched[j] = eo_root_modes_add(modes, tooth, p->points, p->point, ws->weights[member] + p->first, ends,
+                                       ws->force, ws->load + (size_t)(j * ends) * (size_t)slots);
   }
 }
 
-void eo_root_tooth_compute(struct eo_root_workspace *ws, int member, int tooth, int ends, const struct eo_loaded_end *const *end,
-                           struct eo_root_history *const *history, struct eo_root_peak *peak)
+void eo_root_tooth_compute(struct eo_root_workspace *ws, int member, int tooth, int ends,
+                           const struct eo_loaded_end *const *end, struct eo_root_history *const *history,
+                           struct eo_root_peak *peak)
 {
   const struct eo_contact_grid *grid = ws->grid;
   const struct eo_root_modes *modes = ws->modes[member];
@@ -194,8 +201,8 @@ void eo_root_tooth_compute(struct eo_root_workspace *ws, int member, int tooth, 
   }
 }
 
-void eo_root_history_finish(struct eo_root_history *history, const struct eo_root *root, const struct eo_contact_grid *grid, int step,
-                            const struct eo_root_peak *peak, int stride)
+void eo_root_history_finish(struct eo_root_history *history, const struct eo_root *root,
+                            const struct eo_contact_grid *grid, int step, const struct eo_root_peak *peak, int stride)
 {
   int range[2];
   eo_contact_grid_pairs(grid, range);
@@ -211,8 +218,8 @@ void eo_root_history_finish(struct eo_root_history *history, const struct eo_roo
   }
 }
 
-void eo_root_history_compute(struct eo_root_history *history, struct eo_root_workspace *ws, const struct eo_root *root, int member,
-                             const struct eo_loaded_end *end)
+void eo_root_history_compute(struct eo_root_history *history, struct eo_root_workspace *ws, const struct eo_root *root,
+                             int member, const struct eo_loaded_end *end)
 {
   struct eo_root_peak peak[MOST_TEETH];
   int range[2];

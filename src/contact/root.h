@@ -1,4 +1,5 @@
-/* Root bending stress of one tooth through its mesh, from the contact loads and the stress influence of the finite-element model. */
+/* Root bending stress of one tooth through its mesh, from the contact loads and the stress influence of the
+   finite-element model. */
 #ifndef EASEOFF_CONTACT_ROOT_H
 #define EASEOFF_CONTACT_ROOT_H
 
@@ -12,21 +13,24 @@ struct eo_root_place {
   int point, layer; /* of the root's nodes */
 };
 
-/* On the root of `tooth` under the normal forces force[n], N, at the points. stress[root points][layers + 1][EO_STRESSES] receives
-   the whole field (eo_flexibility_root()). */
-void eo_root_find_largest(const struct eo_flexibility *flexibility, int member, int tooth, int n, const struct eo_flank_point *point,
-                          const double *force, double *stress, struct eo_root_place *place);
+/* On the root of `tooth` under the normal forces force[n], N, at the points. stress[root points][layers +
+   1][EO_STRESSES] receives the whole field (eo_flexibility_root()). */
+void eo_root_find_largest(const struct eo_flexibility *flexibility, int member, int tooth, int n,
+                          const struct eo_flank_point *point, const double *force, double *stress,
+                          struct eo_root_place *place);
 
 struct eo_root_history {
-  int phases;          /* 0: not computed */
-  double *phase;       /* [phases]: c of the tooth's pair over base pitches, ascending */
-  double *stress;      /* [phases]: largest principal stress of the loaded root over face and fillet, from the 30 degree tangent inwards, Pa */
-  double maximum;      /* of the history, Pa */
-  double arc, eta;     /* where it is: along the root from the start of the active profile, from mid face, m */
+  int phases;      /* 0: not computed */
+  double *phase;   /* [phases]: c of the tooth's pair over base pitches, ascending */
+  double *stress;  /* [phases]: largest principal stress of the loaded root over face and fillet, from the 30 degree
+                      tangent inwards, Pa */
+  double maximum;  /* of the history, Pa */
+  double arc, eta; /* where it is: along the root from the start of the active profile, from mid face, m */
 };
 
 /* Room for the mesh of a tooth over every position of the grid. */
-enum eo_code eo_root_history_init(struct eo_root_history *history, const struct eo_contact_grid *grid, struct eo_error *error);
+enum eo_code eo_root_history_init(struct eo_root_history *history, const struct eo_contact_grid *grid,
+                                  struct eo_error *error);
 void eo_root_history_done(struct eo_root_history *history);
 
 /* The largest stress of a tooth in its mesh under one end's loads. */
@@ -35,24 +39,28 @@ struct eo_root_peak {
   int node;      /* of the root's nodes, see eo_root_modes_nodes() */
 };
 
-/* Scratch of one thread for at most `ends` ends at a time and every step-th position of the grid; borrows the grid and the modes [member]. */
+/* Scratch of one thread for at most `ends` ends at a time and every step-th position of the grid; borrows the grid and
+   the modes [member]. */
 struct eo_root_workspace;
 enum eo_code eo_root_workspace_new(struct eo_root_workspace **workspace, const struct eo_contact_grid *grid,
-                                   const struct eo_root_modes *const modes[2], int step, int ends, struct eo_error *error);
+                                   const struct eo_root_modes *const modes[2], int step, int ends,
+                                   struct eo_error *error);
 void eo_root_workspace_free(struct eo_root_workspace *workspace);
 
-/* One tooth of a member, of the range that eo_contact_grid_pairs() tells, under the loads of several ends at once: its phases and stresses in each
-   history[ends], and its peak[ends]. Every step-th position of the grid counts (the stress is a smooth function of the phase). Teeth may be
-   computed in any order, on any thread. */
-void eo_root_tooth_compute(struct eo_root_workspace *workspace, int member, int tooth, int ends, const struct eo_loaded_end *const *end,
-                           struct eo_root_history *const *history, struct eo_root_peak *peak);
+/* One tooth of a member, of the range that eo_contact_grid_pairs() tells, under the loads of several ends at once: its
+   phases and stresses in each history[ends], and its peak[ends]. Every step-th position of the grid counts (the stress
+   is a smooth function of the phase). Teeth may be computed in any order, on any thread. */
+void eo_root_tooth_compute(struct eo_root_workspace *workspace, int member, int tooth, int ends,
+                           const struct eo_loaded_end *const *end, struct eo_root_history *const *history,
+                           struct eo_root_peak *peak);
 
-/* When every tooth is there: the number of phases, the maximum and its place. root: of the member's flexibility; peak[teeth], stride apart. */
-void eo_root_history_finish(struct eo_root_history *history, const struct eo_root *root, const struct eo_contact_grid *grid, int step,
-                            const struct eo_root_peak *peak, int stride);
+/* When every tooth is there: the number of phases, the maximum and its place. root: of the member's flexibility;
+   peak[teeth], stride apart. */
+void eo_root_history_finish(struct eo_root_history *history, const struct eo_root *root,
+                            const struct eo_contact_grid *grid, int step, const struct eo_root_peak *peak, int stride);
 
 /* All of this for one end. */
-void eo_root_history_compute(struct eo_root_history *history, struct eo_root_workspace *workspace, const struct eo_root *root, int member,
-                             const struct eo_loaded_end *end);
+void eo_root_history_compute(struct eo_root_history *history, struct eo_root_workspace *workspace,
+                             const struct eo_root *root, int member, const struct eo_loaded_end *end);
 
 #endif

@@ -18,21 +18,23 @@ struct piece {
 struct body {
   const struct eo_geometry *geometry;
   int member, ends;
-  double mid[2];     /* [end] z of mid face, m */
+  double mid[2]; /* [end] z of mid face, m */
   double bearing[2];
-  double clamp;      /* z where twist is measured from */
-  double arm;        /* xi of the pitch point */
+  double clamp; /* z where twist is measured from */
+  double arm;   /* xi of the pitch point */
   int pieces;
   struct piece piece[MOST_PIECES];
 };
 
 struct eo_shaft_section eo_shaft_section_of(const struct eo_material *material, double diameter, double bore)
 {
-  double nu = material->poissons_ratio, shear_modulus = material->youngs_modulus / (2 * (1 + nu)), ratio = bore / diameter;
+  double nu = material->poissons_ratio, shear_modulus = material->youngs_modulus / (2 * (1 + nu)),
+         ratio = bore / diameter;
   double area = M_PI / 4 * (diameter * diameter - bore * bore), second = M_PI / 64 * (pow(diameter, 4) - pow(bore, 4));
   double thin = (1 + ratio * ratio) * (1 + ratio * ratio);
   double kappa = 6 * (1 + nu) * thin / ((7 + 6 * nu) * thin + (20 + 12 * nu) * ratio * ratio);
-  return (struct eo_shaft_section){material->youngs_modulus * second, kappa * shear_modulus * area, 2 * shear_modulus * second};
+  return (struct eo_shaft_section){material->youngs_modulus * second, kappa * shear_modulus * area,
+                                   2 * shear_modulus * second};
 }
 
 double eo_shaft_effective_diameter(const struct eo_geometry *geometry, int member)
@@ -64,10 +66,11 @@ static void add_end(struct body *body, int end, struct eo_shaft_section section)
       add_piece(body, node_place(body, end, i), node_place(body, end, i + 1), section);
 }
 
-static void init_body(struct body *body, const struct eo_geometry *g, const struct eo_gear_pair *pair, const struct eo_material *material,
-                      const struct eo_shafts *shafts, int member)
+static void init_body(struct body *body, const struct eo_geometry *g, const struct eo_gear_pair *pair,
+                      const struct eo_material *material, const struct eo_shafts *shafts, int member)
 {
-  double bore = pair->bore[member], offset = pair->ends == 2 ? (g->face_width + pair->groove_width) / 2 : 0, half = offset + g->face_width / 2;
+  double bore = pair->bore[member], offset = pair->ends == 2 ? (g->face_width + pair->groove_width) / 2 : 0,
+         half = offset + g->face_width / 2;
   struct eo_shaft_section shaft = eo_shaft_section_of(material, shafts->shaft_diameter[member], bore);
   struct eo_shaft_section toothed = eo_shaft_section_of(material, eo_shaft_effective_diameter(g, member), bore);
   *body = (struct body){.geometry = g, .member = member, .ends = pair->ends, .mid = {-offset, offset}};
@@ -77,7 +80,8 @@ static void init_body(struct body *body, const struct eo_geometry *g, const stru
   add_piece(body, body->bearing[EO_LEFT], -half, shaft);
   add_end(body, EO_LEFT, toothed);
   if (pair->ends == 2) {
-    add_piece(body, -pair->groove_width / 2, pair->groove_width / 2, eo_shaft_section_of(material, pair->groove_diameter[member], bore));
+    add_piece(body, -pair->groove_width / 2, pair->groove_width / 2,
+              eo_shaft_section_of(material, pair->groove_diameter[member], bore));
     add_end(body, EO_RIGHT, toothed);
   }
   add_piece(body, half, body->bearing[EO_RIGHT], shaft);
@@ -142,7 +146,8 @@ static void add_square(int size, const double *row, double weight, double *matri
 /* Two Gauss points: the products of moments are quadratic on a piece, the others constant. */
 static void add_piece_work(const struct body *body, const struct piece *piece, int size, double *matrix)
 {
-  double row[KINDS][MOST_SIZE], length = piece->to - piece->from, middle = (piece->to + piece->from) / 2, reach = length / (2 * sqrt(3));
+  double row[KINDS][MOST_SIZE], length = piece->to - piece->from, middle = (piece->to + piece->from) / 2,
+                                reach = length / (2 * sqrt(3));
   for (int point = 0; point < 2; point++) {
     internal_forces(body, middle + (point ? reach : -reach), row);
     add_square(size, row[BENDING], length / 2 / piece->section.bending, matrix);
@@ -172,14 +177,19 @@ static enum eo_code find_modes(struct eo_shaft_influence *influence, double reac
     for (int i = 0; i < n; i++)
       influence->mode[k * n + i] = sqrt(fmax(0, value[n - 1 - k])) * vector[(n - 1 - k) * n + i] / scale[i];
   free(vector);
-  return failed ? eo_error_set(error, EO_ERROR_NUMERIC, "", "The eigenvalues of the shafts' influence could not be found.") : EO_OK;
+  return failed
+             ? eo_error_set(error, EO_ERROR_NUMERIC, "", "The eigenvalues of the shafts' influence could not be found.")
+             : EO_OK;
 }
 
-enum eo_code eo_shaft_influence_init(struct eo_shaft_influence *influence, const struct eo_geometry *geometry, const struct eo_gear_pair *pair,
-                                     const struct eo_material *material, const struct eo_shafts *shafts, struct eo_error *error)
+enum eo_code eo_shaft_influence_init(struct eo_shaft_influence *influence, const struct eo_geometry *geometry,
+                                     const struct eo_gear_pair *pair, const struct eo_material *material,
+                                     const struct eo_shafts *shafts, struct eo_error *error)
 {
   int n = pair->ends * VECTOR;
-  struct eo_shaft_influence made = {.ends = pair->ends, .size = n, .matrix = calloc((size_t)(n * n), sizeof(double)),
+  struct eo_shaft_influence made = {.ends = pair->ends,
+                                    .size = n,
+                                    .matrix = calloc((size_t)(n * n), sizeof(double)),
                                     .mode = calloc((size_t)(EO_SHAFT_MODES * n), sizeof(double))};
   struct body *body = malloc(sizeof *body);
   enum eo_code code = made.matrix && made.mode && body ? EO_OK : eo_error_memory(error);
@@ -210,7 +220,8 @@ void eo_shaft_influence_done(struct eo_shaft_influence *influence)
   *influence = (struct eo_shaft_influence){0};
 }
 
-void eo_shaft_deflect(const struct eo_shaft_influence *influence, const struct eo_deflection *load, struct eo_deflection *deflection)
+void eo_shaft_deflect(const struct eo_shaft_influence *influence, const struct eo_deflection *load,
+                      struct eo_deflection *deflection)
 {
   double in[MOST_SIZE], out[MOST_SIZE];
   memcpy(in, load, sizeof *in * (size_t)influence->size);

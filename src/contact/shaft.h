@@ -1,18 +1,22 @@
-/* Torsion and bending of the pinion's and the gear's body: how far a load on the flanks opens the gap everywhere on the flanks.
+/* Torsion and bending of the pinion's and the gear's body: how far a load on the flanks opens the gap everywhere on the
+   flanks.
 
-   A body is a stepped round beam (Timoshenko) from its left to its right bearing: shaft, toothed end, groove, toothed end, shaft; with one
-   end: shaft, toothed end, shaft. The bore runs through. A toothed end counts as a cylinder of eo_shaft_effective_diameter().
-   - Bearings are simple supports. Their own give is the same at both ends of a symmetric drive, and part of the dynamics (supports).
-   - Torque enters (leaves) beyond one end. Twist is measured from the face end on that side, the datum common to both ends of a body.
-   - Normal n = cos b e_s + s_j sin b e_z (b: base helix angle, s_j = 1 left, -1 right, e_s along the line of action, e_z axial, + to the right).
-     Sections stay plane, so the point of the plane of action at s moves along n by
-         cos b (v + r_b theta) - s_j sin b (xi psi - r_b chi),      xi = T1C + s on the pinion, s - T2C on the gear,
-     v, psi: deflection along e_s and section rotation in the plane of e_s and the axis; chi: rotation in the plane at right angles to it;
-     theta: twist. A normal force does its work on the same terms: transverse force F cos b, torque r_b F cos b and the moments
-     xi F sin b and r_b F sin b of the thrust. Axial stretch (0.02 um on the paper pair) is left out.
-   - Simply supported beams are statically determinate, so the influence is the virtual work of the internal moments, shears and torques of
-     unit loads: exact for piecewise constant sections, symmetric and positive semi-definite by construction (Maxwell, Mohr).
-   Shear coefficient: hollow circle, Cowper 1966. */
+   A body is a stepped round beam (Timoshenko) from its left to its right bearing: shaft, toothed end, groove, toothed
+   end, shaft; with one end: shaft, toothed end, shaft. The bore runs through. A toothed end counts as a cylinder of
+   eo_shaft_effective_diameter().
+   - Bearings are simple supports. Their own give is the same at both ends of a symmetric drive, and part of the
+   dynamics (supports).
+   - Torque enters (leaves) beyond one end. Twist is measured from the face end on that side, the datum common to both
+   ends of a body.
+   - Normal n = cos b e_s + s_j sin b e_z (b: base helix angle, s_j = 1 left, -1 right, e_s along the line of action,
+   e_z axial, + to the right). Sections stay plane, so the point of the plane of action at s moves along n by cos b (v +
+   r_b theta) - s_j sin b (xi psi - r_b chi),      xi = T1C + s on the pinion, s - T2C on the gear, v, psi: deflection
+   along e_s and section rotation in the plane of e_s and the axis; chi: rotation in the plane at right angles to it;
+     theta: twist. A normal force does its work on the same terms: transverse force F cos b, torque r_b F cos b and the
+   moments xi F sin b and r_b F sin b of the thrust. Axial stretch (0.02 um on the paper pair) is left out.
+   - Simply supported beams are statically determinate, so the influence is the virtual work of the internal moments,
+   shears and torques of unit loads: exact for piecewise constant sections, symmetric and positive semi-definite by
+   construction (Maxwell, Mohr). Shear coefficient: hollow circle, Cowper 1966. */
 #ifndef EASEOFF_CONTACT_SHAFT_H
 #define EASEOFF_CONTACT_SHAFT_H
 
@@ -23,8 +27,8 @@
 
 enum { EO_SHAFT_MODES = 8 };
 
-/* A load on the flanks stands in a struct eo_deflection as its dual: at each node the normal force, N, and the normal force times s, N m.
-   Vectors run over [end][part][node]. */
+/* A load on the flanks stands in a struct eo_deflection as its dual: at each node the normal force, N, and the normal
+   force times s, N m. Vectors run over [end][part][node]. */
 struct eo_shaft_influence {
   int ends;
   int size;       /* ends * 2 * EO_DEFLECTION_NODES */
@@ -33,17 +37,20 @@ struct eo_shaft_influence {
 };
 
 /* pair: resolved, of the geometry. Errors: memory; EO_ERROR_NUMERIC from the eigenvalues. */
-enum eo_code eo_shaft_influence_init(struct eo_shaft_influence *influence, const struct eo_geometry *geometry, const struct eo_gear_pair *pair,
-                                     const struct eo_material *material, const struct eo_shafts *shafts, struct eo_error *error);
+enum eo_code eo_shaft_influence_init(struct eo_shaft_influence *influence, const struct eo_geometry *geometry,
+                                     const struct eo_gear_pair *pair, const struct eo_material *material,
+                                     const struct eo_shafts *shafts, struct eo_error *error);
 void eo_shaft_influence_done(struct eo_shaft_influence *influence);
 
 /* deflection[ends] under load[ends]. */
-void eo_shaft_deflect(const struct eo_shaft_influence *influence, const struct eo_deflection *load, struct eo_deflection *deflection);
+void eo_shaft_deflect(const struct eo_shaft_influence *influence, const struct eo_deflection *load,
+                      struct eo_deflection *deflection);
 
 /* Adds the normal force (N) at (s, eta) to a load. */
 void eo_shaft_load_add(struct eo_deflection *load, double face_width, double s, double eta, double force);
 
-/* Root diameter + 0.75 m_n: its torsion constant is that of the toothed section (Saint-Venant; 17 and 44 teeth of the basic rack ISO 53). */
+/* Root diameter + 0.75 m_n: its torsion constant is that of the toothed section (Saint-Venant; 17 and 44 teeth of the
+   basic rack ISO 53). */
 double eo_shaft_effective_diameter(const struct eo_geometry *geometry, int member);
 
 /* Round section, hollow when bore > 0; diameters, m. */

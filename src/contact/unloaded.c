@@ -16,8 +16,10 @@ void eo_unloaded_minimum(const struct eo_gap_field *field, int n, const double *
       continue;
     eo_gap_field_line_range(g, phase[i], g->path_start, g->path_end, range);
     bool edge = eta - range[0] < near || range[1] - eta < near;
-    result[i] = (struct eo_unloaded){.touch = edge ? EO_TOUCH_EDGE : EO_TOUCH_POINT, .transmission_error = -gap / cos(g->base_helix_angle),
-      .path = phase[i] + eta * tangent, .eta = eta};
+    result[i] = (struct eo_unloaded){.touch = edge ? EO_TOUCH_EDGE : EO_TOUCH_POINT,
+                                     .transmission_error = -gap / cos(g->base_helix_angle),
+                                     .path = phase[i] + eta * tangent,
+                                     .eta = eta};
   }
 }
 
@@ -46,7 +48,8 @@ static struct placed in_mesh(const struct eo_gap_field *field, int member, doubl
   const struct eo_geometry *g = field->geometry;
   struct eo_surface_point p;
   eo_surface_evaluate(g, member, &field->shape[member], u, v, &p);
-  double offset = eo_geometry_involute_function(g->working_pressure_angle) - eo_geometry_involute_function(g->transverse_pressure_angle);
+  double offset = eo_geometry_involute_function(g->working_pressure_angle) -
+                  eo_geometry_involute_function(g->transverse_pressure_angle);
   struct placed placed;
   for (int i = 0; i < 3; i++) {
     placed.position[i] = p.position[i];
@@ -63,13 +66,15 @@ static void tilt(double v[3], const struct eo_shaft_errors *errors)
   double kappa = errors->in_plane, gamma = errors->out_of_plane, angle = hypot(kappa, gamma);
   if (angle == 0)
     return;
-  double k[2] = {kappa / angle, gamma / angle}, c = cos(angle), s = sin(angle), along = (k[0] * v[0] + k[1] * v[1]) * (1 - c);
+  double k[2] = {kappa / angle, gamma / angle}, c = cos(angle), s = sin(angle),
+         along = (k[0] * v[0] + k[1] * v[1]) * (1 - c);
   double cross[3] = {k[1] * v[2], -k[0] * v[2], k[0] * v[1] - k[1] * v[0]};
   for (int i = 0; i < 3; i++)
     v[i] = v[i] * c + cross[i] * s + (i < 2 ? k[i] * along : 0);
 }
 
-/* The gear's point: reflected through its centre into mesh with the pinion, tilted about the pivot, pinion axis at the origin. */
+/* The gear's point: reflected through its centre into mesh with the pinion, tilted about the pivot, pinion axis at the
+   origin. */
 static struct placed gear_point(const struct contact *contact, double u, double v, double gear_phase)
 {
   const struct eo_geometry *g = contact->field->geometry;
@@ -91,7 +96,8 @@ static int residual(void *context, const double *x, double *r)
 {
   const struct contact *contact = context;
   const struct eo_geometry *g = contact->field->geometry;
-  struct placed p = in_mesh(contact->field, EO_PINION, x[0], x[1], contact->phase), q = gear_point(contact, x[2], x[3], x[4]);
+  struct placed p = in_mesh(contact->field, EO_PINION, x[0], x[1], contact->phase),
+                q = gear_point(contact, x[2], x[3], x[4]);
   for (int i = 0; i < 3; i++)
     r[i] = p.position[i] - q.position[i];
   /* Two directions across the common normal. */
@@ -101,14 +107,17 @@ static int residual(void *context, const double *x, double *r)
   return 0;
 }
 
-static enum eo_code touch_exact(struct eo_nonlinear *solver, struct contact *contact, const struct eo_unloaded *seed, struct eo_unloaded *result,
-                                struct eo_error *error)
+static enum eo_code touch_exact(struct eo_nonlinear *solver, struct contact *contact, const struct eo_unloaded *seed,
+                                struct eo_unloaded *result, struct eo_error *error)
 {
   const struct eo_geometry *g = contact->field->geometry;
   const double scale[5] = {1e-3, 1e-3, 1e-3, 1e-3, 1e-3}, weight[5] = {1e-3, 1e-3, 1e-3, 1e-1, 1e-1};
   struct eo_nonlinear_problem problem = {.residual = residual, .context = contact};
-  struct eo_nonlinear_options options = {.x_scale = scale, .residual_scale = weight, .residual_tolerance = 1e-11,
-    .step_tolerance = 1e-13, .max_iterations = 100};
+  struct eo_nonlinear_options options = {.x_scale = scale,
+                                         .residual_scale = weight,
+                                         .residual_tolerance = 1e-11,
+                                         .step_tolerance = 1e-13,
+                                         .max_iterations = 100};
   struct eo_nonlinear_report report;
   double x[5];
   eo_surface_coordinates(g, EO_PINION, seed->path, seed->eta, &x[0], &x[1]);
@@ -121,12 +130,15 @@ static enum eo_code touch_exact(struct eo_nonlinear *solver, struct contact *con
   double reach = g->face_width / 2 * (1 + 1e-9), s = x[0] / g->rack_factor;
   bool inside = fabs(p.position[2]) <= reach && s >= g->path_start - 1e-9 && s <= g->path_end + 1e-9;
   *result = (struct eo_unloaded){.touch = report.residual < 1e-8 && inside ? EO_TOUCH_POINT : EO_TOUCH_EDGE,
-    .transmission_error = x[4] - contact->phase, .path = s, .eta = p.position[2], .residual = report.residual};
+                                 .transmission_error = x[4] - contact->phase,
+                                 .path = s,
+                                 .eta = p.position[2],
+                                 .residual = report.residual};
   return EO_OK;
 }
 
-enum eo_code eo_unloaded_exact(const struct eo_gap_field *field, const struct eo_shaft_errors *errors, int n, const double *phase,
-                               struct eo_unloaded *result, struct eo_error *error)
+enum eo_code eo_unloaded_exact(const struct eo_gap_field *field, const struct eo_shaft_errors *errors, int n,
+                               const double *phase, struct eo_unloaded *result, struct eo_error *error)
 {
   struct eo_nonlinear *solver = NULL;
   enum eo_code code = eo_nonlinear_new(&solver, 5, error);

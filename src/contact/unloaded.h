@@ -1,6 +1,6 @@
 /* Unloaded contact of one pair of teeth: two independent forms that must agree.
-   (a) Litvin's: two exact surfaces touch where positions and normals coincide; five equations (Litvin and Fuentes 2004, chapter 9).
-   (b) The smallest gap of the gap field along the potential contact line. */
+   (a) Litvin's: two exact surfaces touch where positions and normals coincide; five equations (Litvin and Fuentes 2004,
+   chapter 9). (b) The smallest gap of the gap field along the potential contact line. */
 #ifndef EASEOFF_CONTACT_UNLOADED_H
 #define EASEOFF_CONTACT_UNLOADED_H
 
@@ -14,9 +14,10 @@ enum eo_touch {
 
 struct eo_unloaded {
   enum eo_touch touch;
-  double transmission_error; /* of the gear, transverse along the line of action, m: 0 conjugate, negative when it lags */
-  double path, eta;          /* s and eta of the contact, m */
-  double residual;           /* (a): largest residual of the five equations, relative to m and to 1 */
+  double
+      transmission_error; /* of the gear, transverse along the line of action, m: 0 conjugate, negative when it lags */
+  double path, eta;       /* s and eta of the contact, m */
+  double residual;        /* (a): largest residual of the five equations, relative to m and to 1 */
 };
 
 /* (b) phase[n]: c of the pair, m. */
@@ -29,7 +30,7 @@ struct eo_shaft_errors {
 };
 
 /* (a) Exact surfaces, with the errors as rigid rotations. field: of the same end, for the seeds. Errors: memory. */
-enum eo_code eo_unloaded_exact(const struct eo_gap_field *field, const struct eo_shaft_errors *errors, int n, const double *phase,
-                               struct eo_unloaded *result, struct eo_error *error);
+enum eo_code eo_unloaded_exact(const struct eo_gap_field *field, const struct eo_shaft_errors *errors, int n,
+                               const double *phase, struct eo_unloaded *result, struct eo_error *error);
 
 #endif

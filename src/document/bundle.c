@@ -73,7 +73,8 @@ static enum eo_code write_one(const struct eo_text *text, const char *temporary,
   return code;
 }
 
-static enum eo_code write_all(const struct eo_bundle *bundle, const char *directory, int *written, struct eo_error *error)
+static enum eo_code write_all(const struct eo_bundle *bundle, const char *directory, int *written,
+                              struct eo_error *error)
 {
   enum eo_code code = EO_OK;
   for (*written = 0; *written < bundle->count && !code;) {
@@ -89,7 +90,8 @@ static enum eo_code rename_all(const struct eo_bundle *bundle, const char *direc
 {
   enum eo_code code = EO_OK;
   for (int i = 0; i < bundle->count && !code; i++) {
-    char *temporary = path_of(directory, bundle->file[i].name, true), *final = path_of(directory, bundle->file[i].name, false);
+    char *temporary = path_of(directory, bundle->file[i].name, true),
+         *final = path_of(directory, bundle->file[i].name, false);
     if (!temporary || !final)
       code = eo_error_memory(error);
     else if (rename(temporary, final) != 0)
@@ -118,7 +120,8 @@ enum eo_code eo_bundle_save(const struct eo_bundle *bundle, const char *director
       return eo_error_memory(error);
   bool made = mkdir(directory, 0777) == 0;
   if (!made && errno != EEXIST)
-    return eo_error_set(error, EO_ERROR_FILE, "", "The directory %.100s cannot be made: %s.", directory, strerror(errno));
+    return eo_error_set(error, EO_ERROR_FILE, "", "The directory %.100s cannot be made: %s.", directory,
+                        strerror(errno));
   enum eo_code code = write_all(bundle, directory, &written, error);
   if (!code)
     code = rename_all(bundle, directory, error);

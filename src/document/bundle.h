@@ -1,5 +1,5 @@
-/* Several files that belong together: composed in memory, written under temporary names, then renamed, so that a folder holds all of
-   them or none of them anew. */
+/* Several files that belong together: composed in memory, written under temporary names, then renamed, so that a folder
+   holds all of them or none of them anew. */
 #ifndef EASEOFF_DOCUMENT_BUNDLE_H
 #define EASEOFF_DOCUMENT_BUNDLE_H
 
@@ -7,7 +7,10 @@
 
 struct eo_bundle {
   int count, capacity;
-  struct eo_bundle_file { char *name; struct eo_text text; } *file; /* owned */
+  struct eo_bundle_file {
+    char *name;
+    struct eo_text text;
+  } * file;    /* owned */
   bool failed; /* an allocation failed: nothing will be saved */
 };
 
@@ -15,8 +18,8 @@ struct eo_bundle {
 struct eo_text *eo_bundle_add(struct eo_bundle *bundle, const char *format, ...) __attribute__((format(printf, 2, 3)));
 void eo_bundle_done(struct eo_bundle *bundle);
 
-/* Makes the directory if it is missing (its parent must exist). Files of the same names are replaced, others stay. Errors:
-   EO_ERROR_FILE, memory; then no file is new and a directory that was made is gone again. */
+/* Makes the directory if it is missing (its parent must exist). Files of the same names are replaced, others stay.
+   Errors: EO_ERROR_FILE, memory; then no file is new and a directory that was made is gone again. */
 enum eo_code eo_bundle_save(const struct eo_bundle *bundle, const char *directory, struct eo_error *error);
 
 #endif

@@ -15,14 +15,38 @@ static const struct eo_unit percent = {"percent", "%", 100, true};
 /* One number of every measurement. */
 typedef double column_function(const struct eo_measured *m, const struct eo_compared *p);
 
-static double torque(const struct eo_measured *m, const struct eo_compared *p) { return (void)p, m->torque; }
-static double speed(const struct eo_measured *m, const struct eo_compared *p) { return (void)p, m->speed; }
-static double measured_rms(const struct eo_measured *m, const struct eo_compared *p) { return (void)p, m->rms; }
-static double measured_sigma(const struct eo_measured *m, const struct eo_compared *p) { return (void)p, m->rms_sigma; }
-static double predicted_rms(const struct eo_measured *m, const struct eo_compared *p) { return (void)m, p->prediction.rms; }
-static double ratio(const struct eo_measured *m, const struct eo_compared *p) { return (void)m, p->ratio; }
-static double likeness(const struct eo_measured *m, const struct eo_compared *p) { return (void)m, p->likeness; }
-static double predicted_peak(const struct eo_measured *m, const struct eo_compared *p) { return (void)m, p->prediction.peak_to_peak; }
+static double torque(const struct eo_measured *m, const struct eo_compared *p)
+{
+  return (void)p, m->torque;
+}
+static double speed(const struct eo_measured *m, const struct eo_compared *p)
+{
+  return (void)p, m->speed;
+}
+static double measured_rms(const struct eo_measured *m, const struct eo_compared *p)
+{
+  return (void)p, m->rms;
+}
+static double measured_sigma(const struct eo_measured *m, const struct eo_compared *p)
+{
+  return (void)p, m->rms_sigma;
+}
+static double predicted_rms(const struct eo_measured *m, const struct eo_compared *p)
+{
+  return (void)m, p->prediction.rms;
+}
+static double ratio(const struct eo_measured *m, const struct eo_compared *p)
+{
+  return (void)m, p->ratio;
+}
+static double likeness(const struct eo_measured *m, const struct eo_compared *p)
+{
+  return (void)m, p->likeness;
+}
+static double predicted_peak(const struct eo_measured *m, const struct eo_compared *p)
+{
+  return (void)m, p->prediction.peak_to_peak;
+}
 
 static const struct column {
   const char *key;
@@ -46,12 +70,16 @@ static const struct eo_outline_row column_rows[] = {
     EO_KEY("end", "[word]", "where the encoders sat", .words = ends),
     EO_KEY("torque_Nm", "[number]", "on the pinion shaft", .unit = &eo_unit_Nm),
     EO_KEY("speed_rpm", "[number]", "measured mean speed of the pinion", .unit = &eo_unit_rpm),
-    EO_KEY("measured_rms_m_per_s2", "[number?]", "rotational acceleration of the mesh orders", .unit = &eo_unit_m_per_s2),
+    EO_KEY("measured_rms_m_per_s2", "[number?]", "rotational acceleration of the mesh orders",
+           .unit = &eo_unit_m_per_s2),
     EO_KEY("measured_sigma_m_per_s2", "[number?]", "its standard deviation", .unit = &eo_unit_m_per_s2),
-    EO_KEY("predicted_rms_m_per_s2", "[number?]", "of the same orders; null without a periodic vibration", .unit = &eo_unit_m_per_s2),
+    EO_KEY("predicted_rms_m_per_s2", "[number?]", "of the same orders; null without a periodic vibration",
+           .unit = &eo_unit_m_per_s2),
     EO_KEY("ratio", "[number?]", "measured over predicted"),
-    EO_KEY("likeness", "[number?]", "correlation of both curves of the transmission error when they are in phase, -1..1"),
-    EO_KEY("predicted_te_peak_to_peak_um", "[number?]", "of the predicted dynamic transmission error", .unit = &eo_unit_um),
+    EO_KEY("likeness", "[number?]",
+           "correlation of both curves of the transmission error when they are in phase, -1..1"),
+    EO_KEY("predicted_te_peak_to_peak_um", "[number?]", "of the predicted dynamic transmission error",
+           .unit = &eo_unit_um),
     EO_KEY("outlier", "[flag]", "does not fit the others"),
     EO_KEY("reason", "[text?]", "why"),
 };
@@ -60,12 +88,15 @@ static const struct eo_outline column_outline = EO_OUTLINE("ComparedColumns", co
 static json_t *encode_columns(const struct eo_comparison *c, const struct eo_measured *m)
 {
   struct eo_result_object o = eo_result_open_as(&column_outline);
-  json_t *file = json_array(), *label = json_array(), *end = json_array(), *outlier = json_array(), *reason = json_array();
+  json_t *file = json_array(), *label = json_array(), *end = json_array(), *outlier = json_array(),
+         *reason = json_array();
   double *value = malloc(sizeof *value * ((size_t)c->count + 1));
   o.failed = o.failed || !value;
   for (int i = 0; i < c->count && !o.failed; i++)
-    o.failed = json_array_append_new(file, json_string(m[i].name)) || json_array_append_new(label, json_string(labels[m[i].unmodified])) ||
-               json_array_append_new(end, json_string(ends[m[i].end])) || json_array_append_new(outlier, json_boolean(c->point[i].outlier)) ||
+    o.failed = json_array_append_new(file, json_string(m[i].name)) ||
+               json_array_append_new(label, json_string(labels[m[i].unmodified])) ||
+               json_array_append_new(end, json_string(ends[m[i].end])) ||
+               json_array_append_new(outlier, json_boolean(c->point[i].outlier)) ||
                json_array_append_new(reason, *c->point[i].reason ? json_string(c->point[i].reason) : json_null());
   eo_result_put(&o, "file", file);
   eo_result_put(&o, "label", label);
@@ -92,7 +123,8 @@ static const struct eo_outline order_outline = EO_OUTLINE("ComparedOrders", orde
 static const struct eo_outline_row curve_rows[] = {
     EO_KEY("position", "[number]", "phase of the mesh cycle, 0..1"),
     EO_KEY("measured_um", "[number?]", "transmission error of the mesh, over position", .unit = &eo_unit_um),
-    EO_KEY("predicted_um", "[number?]", "the same, predicted, shifted to the phase that fits best", .unit = &eo_unit_um),
+    EO_KEY("predicted_um", "[number?]", "the same, predicted, shifted to the phase that fits best",
+           .unit = &eo_unit_um),
     EO_KEY("shift", "number?", "by how much, in mesh cycles"),
 };
 static const struct eo_outline curve_outline = EO_OUTLINE("ComparedCurves", curve_rows);
@@ -107,7 +139,8 @@ static const struct eo_outline detail_outline = EO_OUTLINE("ComparedDetail", det
 static json_t *encode_detail(const struct eo_measured *m, const struct eo_compared *p)
 {
   double measured[EO_MESH_ORDERS], amplitude[2][EO_MESH_ORDERS], curve[2][CURVE], position[CURVE];
-  struct eo_result_object o = eo_result_open_as(&detail_outline), orders = eo_result_open_as(&order_outline), curves = eo_result_open_as(&curve_outline);
+  struct eo_result_object o = eo_result_open_as(&detail_outline), orders = eo_result_open_as(&order_outline),
+                          curves = eo_result_open_as(&curve_outline);
   for (int h = 0; h < m->harmonics; h++) {
     measured[h] = m->order[h].acceleration;
     amplitude[0][h] = cabs(m->order[h].amplitude);
@@ -116,8 +149,10 @@ static json_t *encode_detail(const struct eo_measured *m, const struct eo_compar
   for (int i = 0; i < CURVE; i++)
     position[i] = (double)i / CURVE;
   eo_comparison_curves(m, p, CURVE, curve[0], curve[1]);
-  eo_result_put(&orders, "measured_m_per_s2", eo_json_reals(m->harmonics, measured, 1, &eo_unit_m_per_s2, EO_DIGITS_CURVE));
-  eo_result_put(&orders, "predicted_m_per_s2", eo_json_reals(m->harmonics, p->prediction.acceleration, 1, &eo_unit_m_per_s2, EO_DIGITS_CURVE));
+  eo_result_put(&orders, "measured_m_per_s2",
+                eo_json_reals(m->harmonics, measured, 1, &eo_unit_m_per_s2, EO_DIGITS_CURVE));
+  eo_result_put(&orders, "predicted_m_per_s2",
+                eo_json_reals(m->harmonics, p->prediction.acceleration, 1, &eo_unit_m_per_s2, EO_DIGITS_CURVE));
   eo_result_put(&orders, "measured_um", eo_json_reals(m->harmonics, amplitude[0], 1, &eo_unit_um, EO_DIGITS_CURVE));
   eo_result_put(&orders, "predicted_um", eo_json_reals(m->harmonics, amplitude[1], 1, &eo_unit_um, EO_DIGITS_CURVE));
   eo_result_put(&curves, "position", eo_json_reals(CURVE, position, 1, NULL, EO_DIGITS_CURVE));
@@ -134,7 +169,8 @@ static const struct eo_outline_row reduction_rows[] = {
     EO_KEY("torque_Nm", "number", "on the pinion shaft", .unit = &eo_unit_Nm),
     EO_KEY("speed_rpm", "number", "of the pinion", .unit = &eo_unit_rpm),
     EO_KEY("unmodified_measurements", "integer", "that it is compared with"),
-    EO_KEY("measured_percent", "number?", "how much less the modified pair vibrates, per cent of the unmodified one", .unit = &percent),
+    EO_KEY("measured_percent", "number?", "how much less the modified pair vibrates, per cent of the unmodified one",
+           .unit = &percent),
     EO_KEY("sigma_percent", "number?", "standard deviation of it", .unit = &percent),
     EO_KEY("predicted_percent", "number?", "the same, predicted", .unit = &percent),
     EO_KEY("id", "integer", "number of the measurement", .when = "of stored measurements"),
@@ -163,7 +199,8 @@ static json_t *encode_reductions(const struct eo_comparison *c, const struct eo_
 static const struct eo_outline_row comparison_rows[] = {
     EO_KEY("measurements", "object", "columns over the measurements", .outline = &column_outline),
     EO_KEY("details", "[object]", "one for each measurement", .outline = &detail_outline),
-    EO_KEY("reductions", "[object]", "one for each measurement of the modified pair with one of the unmodified pair at its torque and speed",
+    EO_KEY("reductions", "[object]",
+           "one for each measurement of the modified pair with one of the unmodified pair at its torque and speed",
            .outline = &reduction_outline),
     EO_KEY("ratio", "number?", "median of measured over predicted RMS"),
     EO_KEY("spread", "number?", "robust relative standard deviation about it"),
@@ -186,11 +223,13 @@ json_t *eo_comparison_encode(const struct eo_comparison *c, const struct eo_meas
 
 /* ---- for people ---- */
 
-void eo_measurement_summary(const struct eo_measurement *m, const struct eo_measurement_label *label, struct eo_text *text)
+void eo_measurement_summary(const struct eo_measurement *m, const struct eo_measurement_label *label,
+                            struct eo_text *text)
 {
   const struct eo_transmission *t = &m->transmission;
-  eo_text_print(text, "%s: %s, %.6g N m, %s end, %lld rows\n", label->file ? label->file : "recording", label->unmodified ? "unmodified" : "modified", label->torque,
-                eo_result_end[label->end], (long long)m->rows);
+  eo_text_print(text, "%s: %s, %.6g N m, %s end, %lld rows\n", label->file ? label->file : "recording",
+                label->unmodified ? "unmodified" : "modified", label->torque, eo_result_end[label->end],
+                (long long)m->rows);
   for (int i = 0; label->notes && i < label->notes->count && i < EO_NOTES; i++)
     eo_text_print(text, "  note: %s\n", label->notes->text[i]);
   for (int i = 0; i < m->findings.count && i < EO_MAX_FINDINGS; i++)
@@ -199,10 +238,15 @@ void eo_measurement_summary(const struct eo_measurement *m, const struct eo_meas
     eo_text_add(text, "  No result.\n");
     return;
   }
-  eo_text_print(text, "  %.7g rpm, %.4g turns; RMS %.4f +- %.4f m/s2 of %d mesh orders (spectrum %.4f, with sidebands %.4f)\n", t->speed * 30 / M_PI,
-                t->revolutions[EO_PINION], t->rms, t->rms_sigma, t->harmonics, t->rms_spectrum, t->rms_band);
-  eo_text_print(text, "  TE of the mesh %.4g um peak to peak; first shaft orders %.4g um pinion, %.4g um gear; residual %.3g um\n", 1e6 * t->mesh_peak_to_peak,
-                1e6 * cabs(t->shaft[EO_PINION][0].amplitude), 1e6 * cabs(t->shaft[EO_GEAR][0].amplitude), 1e6 * t->residual);
+  eo_text_print(
+      text, "  %.7g rpm, %.4g turns; RMS %.4f +- %.4f m/s2 of %d mesh orders (spectrum %.4f, with sidebands %.4f)\n",
+      t->speed * 30 / M_PI, t->revolutions[EO_PINION], t->rms, t->rms_sigma, t->harmonics, t->rms_spectrum,
+      t->rms_band);
+  eo_text_print(
+      text,
+      "  TE of the mesh %.4g um peak to peak; first shaft orders %.4g um pinion, %.4g um gear; residual %.3g um\n",
+      1e6 * t->mesh_peak_to_peak, 1e6 * cabs(t->shaft[EO_PINION][0].amplitude),
+      1e6 * cabs(t->shaft[EO_GEAR][0].amplitude), 1e6 * t->residual);
 }
 
 static void fill_sheet(const struct eo_comparison *c, const struct eo_measured *m, struct eo_sheet *sheet, int digits)
@@ -228,9 +272,11 @@ static void print_orders(const struct eo_comparison *c, const struct eo_measured
 
 void eo_comparison_summary(const struct eo_comparison *c, const struct eo_measured *m, struct eo_text *text)
 {
-  static const char *const headings[] = {"file", "label", "torque N m", "speed rpm", "measured m/s2", "+-", "predicted m/s2", "ratio", "likeness", "TE um", "remark"};
+  static const char *const headings[] = {"file",           "label", "torque N m", "speed rpm", "measured m/s2", "+-",
+                                         "predicted m/s2", "ratio", "likeness",   "TE um",     "remark"};
   struct eo_sheet sheet;
-  eo_text_add(text, "\nMeasured and predicted (rotational acceleration at the encoders' end, at the measured speed):\n");
+  eo_text_add(text,
+              "\nMeasured and predicted (rotational acceleration at the encoders' end, at the measured speed):\n");
   eo_sheet_init(&sheet, COLUMNS + 3, headings);
   fill_sheet(c, m, &sheet, 4);
   eo_sheet_print(&sheet, 2, text);
@@ -238,8 +284,10 @@ void eo_comparison_summary(const struct eo_comparison *c, const struct eo_measur
   print_orders(c, m, text);
   for (int i = 0; i < c->reductions; i++) {
     const struct eo_reduction *r = &c->reduction[i];
-    eo_text_print(text, "  %.5g N m, %.5g rpm: the modification takes %.1f +- %.1f %% off the measured RMS, %.1f %% off the predicted one.\n", r->torque,
-                  r->speed * 30 / M_PI, 100 * r->measured, 100 * r->measured_sigma, 100 * r->predicted);
+    eo_text_print(text,
+                  "  %.5g N m, %.5g rpm: the modification takes %.1f +- %.1f %% off the measured RMS, %.1f %% off the "
+                  "predicted one.\n",
+                  r->torque, r->speed * 30 / M_PI, 100 * r->measured, 100 * r->measured_sigma, 100 * r->predicted);
   }
 }
 

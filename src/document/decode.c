@@ -69,7 +69,8 @@ static void default_field(const struct eo_field *field, void *target)
     default_numbers(field, place);
     break;
   case EO_FIELD_LIMIT:
-    *(struct eo_constraint *)place = (struct eo_constraint){!isnan(field->fallback), eo_unit_in(field->unit, field->fallback)};
+    *(struct eo_constraint *)place = (struct eo_constraint){!isnan(field->fallback),
+                                                            eo_unit_in(field->unit, field->fallback)};
     break;
   case EO_FIELD_OBJECT:
     eo_table_defaults(field->table, place);
@@ -92,14 +93,15 @@ void eo_table_defaults(const struct eo_table *table, void *target)
 
 static const char *type_name(const json_t *value)
 {
-  static const char *const name[] = {[JSON_OBJECT] = "an object", [JSON_ARRAY] = "an array",  [JSON_STRING] = "a string", [JSON_INTEGER] = "a number",
-                                     [JSON_REAL] = "a number",    [JSON_TRUE] = "true",       [JSON_FALSE] = "false",     [JSON_NULL] = "null"};
+  static const char *const name[] = {
+      [JSON_OBJECT] = "an object", [JSON_ARRAY] = "an array", [JSON_STRING] = "a string", [JSON_INTEGER] = "a number",
+      [JSON_REAL] = "a number",    [JSON_TRUE] = "true",      [JSON_FALSE] = "false",     [JSON_NULL] = "null"};
   return name[json_typeof(value)];
 }
 
 /* A number within the range, in the document's unit; false and a fault otherwise. */
-static bool read_number(const json_t *value, const struct eo_field *field, double low, double high, const struct eo_path *path,
-                        struct eo_faults *faults, double *number)
+static bool read_number(const json_t *value, const struct eo_field *field, double low, double high,
+                        const struct eo_path *path, struct eo_faults *faults, double *number)
 {
   if (!json_is_number(value)) {
     eo_faults_at(faults, path, "Must be a number, not %s.", type_name(value));
@@ -114,7 +116,8 @@ static bool read_number(const json_t *value, const struct eo_field *field, doubl
   return true;
 }
 
-static bool read_whole(const json_t *value, const struct eo_field *field, const struct eo_path *path, struct eo_faults *faults, double *number)
+static bool read_whole(const json_t *value, const struct eo_field *field, const struct eo_path *path,
+                       struct eo_faults *faults, double *number)
 {
   if (!read_number(value, field, field->low, field->high, path, faults, number))
     return false;
@@ -131,7 +134,8 @@ static void list_choices(const char *const *choices, struct eo_text *text)
 }
 
 /* Index of the string among the choices; -1 and a fault otherwise. */
-static int read_choice(const json_t *value, const struct eo_field *field, const struct eo_path *path, struct eo_faults *faults)
+static int read_choice(const json_t *value, const struct eo_field *field, const struct eo_path *path,
+                       struct eo_faults *faults)
 {
   struct eo_text list = {0};
   list_choices(field->choices, &list);
@@ -142,13 +146,15 @@ static int read_choice(const json_t *value, const struct eo_field *field, const 
     for (int i = 0; field->choices[i] && found < 0; i++)
       found = strcmp(field->choices[i], json_string_value(value)) == 0 ? i : -1;
     if (found < 0)
-      eo_faults_at(faults, path, "\"%.60s\" is none of %s.", json_string_value(value), list.data ? list.data : "its values");
+      eo_faults_at(faults, path, "\"%.60s\" is none of %s.", json_string_value(value),
+                   list.data ? list.data : "its values");
   }
   eo_text_done(&list);
   return found;
 }
 
-static void decode_text(const struct eo_field *field, const json_t *value, const struct eo_path *path, char *place, struct eo_faults *faults)
+static void decode_text(const struct eo_field *field, const json_t *value, const struct eo_path *path, char *place,
+                        struct eo_faults *faults)
 {
   if (field->choices) {
     int choice = read_choice(value, field, path, faults);
@@ -157,14 +163,15 @@ static void decode_text(const struct eo_field *field, const json_t *value, const
   } else if (!json_is_string(value))
     eo_faults_at(faults, path, "Must be a string, not %s.", type_name(value));
   else if (json_string_length(value) >= (size_t)field->count)
-    eo_faults_at(faults, path, "A string of %zu bytes is longer than the %d allowed.", json_string_length(value), field->count - 1);
+    eo_faults_at(faults, path, "A string of %zu bytes is longer than the %d allowed.", json_string_length(value),
+                 field->count - 1);
   else
     set_text(place, field->count, json_string_value(value));
 }
 
 /* Numbers of an array; low and high per number. Returns false when one was wrong. */
-static bool read_numbers(const json_t *value, const struct eo_field *field, double low, double high, const struct eo_path *path, int count,
-                         double *number, struct eo_faults *faults)
+static bool read_numbers(const json_t *value, const struct eo_field *field, double low, double high,
+                         const struct eo_path *path, int count, double *number, struct eo_faults *faults)
 {
   bool good = true;
   for (int i = 0; i < count; i++) {
@@ -183,15 +190,18 @@ static bool read_numbers(const json_t *value, const struct eo_field *field, doub
   return good;
 }
 
-static void decode_numbers(const struct eo_field *field, const json_t *value, const struct eo_path *path, double *place, struct eo_faults *faults)
+static void decode_numbers(const struct eo_field *field, const json_t *value, const struct eo_path *path, double *place,
+                           struct eo_faults *faults)
 {
   if (!json_is_array(value) || json_array_size(value) != (size_t)field->count)
-    eo_faults_at(faults, path, "Must be an array of %d numbers, not %s%s.", field->count, type_name(value), json_is_array(value) ? " of another length" : "");
+    eo_faults_at(faults, path, "Must be an array of %d numbers, not %s%s.", field->count, type_name(value),
+                 json_is_array(value) ? " of another length" : "");
   else
     read_numbers(value, field, field->low, field->high, path, field->count, place, faults);
 }
 
-static bool check_length(const struct eo_field *field, const json_t *value, const struct eo_path *path, struct eo_faults *faults)
+static bool check_length(const struct eo_field *field, const json_t *value, const struct eo_path *path,
+                         struct eo_faults *faults)
 {
   if (!json_is_array(value)) {
     eo_faults_at(faults, path, "Must be an array, not %s.", type_name(value));
@@ -205,7 +215,8 @@ static bool check_length(const struct eo_field *field, const json_t *value, cons
   return true;
 }
 
-static void decode_series(const struct eo_field *field, const json_t *value, const struct eo_path *path, struct eo_series *series, struct eo_faults *faults)
+static void decode_series(const struct eo_field *field, const json_t *value, const struct eo_path *path,
+                          struct eo_series *series, struct eo_faults *faults)
 {
   if (!check_length(field, value, path, faults))
     return;
@@ -219,7 +230,8 @@ static void decode_series(const struct eo_field *field, const json_t *value, con
   *series = (struct eo_series){count, number};
 }
 
-static void decode_list(const struct eo_field *field, const json_t *value, const struct eo_path *path, void *target, struct eo_faults *faults)
+static void decode_list(const struct eo_field *field, const json_t *value, const struct eo_path *path, void *target,
+                        struct eo_faults *faults)
 {
   if (!check_length(field, value, path, faults))
     return;
@@ -227,7 +239,8 @@ static void decode_list(const struct eo_field *field, const json_t *value, const
   char *row = member(target, field);
   for (int i = 0; i < (int)count; i++) {
     struct eo_path element = {path, NULL, i};
-    eo_table_decode(field->table, json_array_get(value, (size_t)i), &element, row + (size_t)i * field->table->size, faults);
+    eo_table_decode(field->table, json_array_get(value, (size_t)i), &element, row + (size_t)i * field->table->size,
+                    faults);
   }
   *(int *)((char *)target + field->count_offset) = (int)count;
 }
@@ -248,7 +261,8 @@ static void decode_null(const struct eo_field *field, void *target)
     set_present(field, target, false);
 }
 
-static void decode_field(const struct eo_field *field, const json_t *value, const struct eo_path *path, void *target, struct eo_faults *faults)
+static void decode_field(const struct eo_field *field, const json_t *value, const struct eo_path *path, void *target,
+                         struct eo_faults *faults)
 {
   void *place = member(target, field);
   double number;
@@ -330,7 +344,8 @@ static int key_distance(const char *a, const char *b)
   return row[n];
 }
 
-static void report_unknown(const struct eo_table *table, const char *key, const struct eo_path *path, struct eo_faults *faults)
+static void report_unknown(const struct eo_table *table, const char *key, const struct eo_path *path,
+                           struct eo_faults *faults)
 {
   const char *nearest = NULL;
   int best = (int)strnlen(key, 63) / 3 + 1;
@@ -348,7 +363,8 @@ static void report_unknown(const struct eo_table *table, const char *key, const 
 }
 
 /* Objects that are absent are read as empty ones, so that each required key in them is named. */
-static void decode_absent(const struct eo_field *field, const struct eo_path *path, void *target, struct eo_faults *faults)
+static void decode_absent(const struct eo_field *field, const struct eo_path *path, void *target,
+                          struct eo_faults *faults)
 {
   if (field->kind == EO_FIELD_OBJECT && !may_be_null(field)) {
     json_t *empty = json_object();
@@ -358,7 +374,8 @@ static void decode_absent(const struct eo_field *field, const struct eo_path *pa
     eo_faults_at(faults, path, "This key is required.");
 }
 
-void eo_table_decode(const struct eo_table *table, const json_t *object, const struct eo_path *path, void *target, struct eo_faults *faults)
+void eo_table_decode(const struct eo_table *table, const json_t *object, const struct eo_path *path, void *target,
+                     struct eo_faults *faults)
 {
   eo_table_defaults(table, target);
   if (!json_is_object(object)) {
@@ -376,9 +393,9 @@ void eo_table_decode(const struct eo_table *table, const json_t *object, const s
   }
   const char *key;
   json_t *value;
-  json_object_foreach((json_t *)object, key, value)
-    if (!find_field(table, key)) {
-      struct eo_path place = {path, key, 0};
-      report_unknown(table, key, &place, faults);
-    }
+  json_object_foreach((json_t *)object, key, value) if (!find_field(table, key))
+  {
+    struct eo_path place = {path, key, 0};
+    report_unknown(table, key, &place, faults);
+  }
 }

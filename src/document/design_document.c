@@ -20,7 +20,8 @@ void eo_warnings_add(struct eo_warnings *warnings, const char *format, ...)
   va_end(arguments);
 }
 
-void eo_load_cases_settle(struct eo_load_case *load_case, int count, struct eo_warnings *warnings, struct eo_faults *faults)
+void eo_load_cases_settle(struct eo_load_case *load_case, int count, struct eo_warnings *warnings,
+                          struct eo_faults *faults)
 {
   double sum = 0;
   int stated = 0;
@@ -29,11 +30,14 @@ void eo_load_cases_settle(struct eo_load_case *load_case, int count, struct eo_w
     sum += isnan(load_case[i].share) ? 0 : load_case[i].share;
   }
   if (stated && stated < count)
-    eo_faults_add(faults, "/load_cases", "Either every load case states its share of operating time or none does; %d of %d do.", stated, count);
+    eo_faults_add(faults, "/load_cases",
+                  "Either every load case states its share of operating time or none does; %d of %d do.", stated,
+                  count);
   else if (stated && sum <= 0)
     eo_faults_add(faults, "/load_cases", "The shares of operating time sum to 0.");
   else if (stated && fabs(sum - 1) > 1e-9)
-    eo_warnings_add(warnings, "The shares of operating time of the load cases summed to %.9g; they were scaled to sum to 1.", sum);
+    eo_warnings_add(
+        warnings, "The shares of operating time of the load cases summed to %.9g; they were scaled to sum to 1.", sum);
   if (stated && fabs(sum - 1) <= 1e-9)
     return;
   for (int i = 0; i < count; i++)
@@ -48,12 +52,15 @@ static void drop_right_end(const json_t *document, struct eo_design *design, str
   for (int i = 0; i < 2 && design->gear_pair.ends == 1; i++) {
     const json_t *right = json_object_get(json_object_get(modification, member[i]), "right");
     if (right)
-      eo_warnings_add(warnings, "The modification of the %s's right end is ignored: the pair has one end, the left one.", member[i]);
+      eo_warnings_add(warnings,
+                      "The modification of the %s's right end is ignored: the pair has one end, the left one.",
+                      member[i]);
     eo_table_defaults(&eo_flank_modification_table, &design->modification.flank[i][EO_RIGHT]);
   }
 }
 
-bool eo_design_decode(const json_t *document, struct eo_design *design, struct eo_warnings *warnings, struct eo_faults *faults)
+bool eo_design_decode(const json_t *document, struct eo_design *design, struct eo_warnings *warnings,
+                      struct eo_faults *faults)
 {
   struct eo_design read;
   int before = faults->count;
@@ -79,7 +86,8 @@ void eo_design_note_assumptions(const json_t *document, const struct eo_design *
 
 json_t *eo_design_encode(const struct eo_design *design)
 {
-  json_t *document = eo_table_encode(&eo_design_table, design), *modification = json_object_get(document, "modification");
+  json_t *document = eo_table_encode(&eo_design_table, design),
+         *modification = json_object_get(document, "modification");
   if (design->gear_pair.ends == 1) {
     json_object_del(json_object_get(modification, "pinion"), "right");
     json_object_del(json_object_get(modification, "gear"), "right");
@@ -127,7 +135,8 @@ enum eo_code eo_design_hash(const struct eo_design *design, char hex[EO_HASH_LEN
   return hash_document(eo_design_encode(design), hex, error);
 }
 
-static enum eo_code hash_without(const struct eo_design *design, const char *const *without, char hex[EO_HASH_LENGTH + 1], struct eo_error *error)
+static enum eo_code hash_without(const struct eo_design *design, const char *const *without,
+                                 char hex[EO_HASH_LENGTH + 1], struct eo_error *error)
 {
   json_t *document = eo_design_encode(design);
   for (int i = 0; without[i] && document; i++)
@@ -135,7 +144,8 @@ static enum eo_code hash_without(const struct eo_design *design, const char *con
   return hash_document(document, hex, error);
 }
 
-enum eo_code eo_design_evaluation_hash(const struct eo_design *design, char hex[EO_HASH_LENGTH + 1], struct eo_error *error)
+enum eo_code eo_design_evaluation_hash(const struct eo_design *design, char hex[EO_HASH_LENGTH + 1],
+                                       struct eo_error *error)
 {
   static const char *const without[] = {"name", "objective", "optimization", NULL};
   return hash_without(design, without, hex, error);
@@ -168,8 +178,7 @@ static json_t *encode_problem(const struct eo_design *design)
   for (i = 0; i < sizeof without / sizeof without[0]; i++)
     json_object_del(document, without[i]);
   json_object_del(json_object_get(document, "resolution"), "marking_thickness_um");
-  json_array_foreach(json_object_get(document, "load_cases"), i, load_case)
-    json_object_del(load_case, "share");
+  json_array_foreach(json_object_get(document, "load_cases"), i, load_case) json_object_del(load_case, "share");
   eo_json_put(document, "wants", encode_wants(design), &failed);
   if (!failed)
     return document;
@@ -177,7 +186,8 @@ static json_t *encode_problem(const struct eo_design *design)
   return NULL;
 }
 
-enum eo_code eo_design_problem(const struct eo_design *design, struct eo_text *spec, char hex[EO_HASH_LENGTH + 1], struct eo_error *error)
+enum eo_code eo_design_problem(const struct eo_design *design, struct eo_text *spec, char hex[EO_HASH_LENGTH + 1],
+                               struct eo_error *error)
 {
   json_t *document = encode_problem(design);
   size_t before = spec->size;

@@ -10,9 +10,9 @@
 #include "gear/design.h"
 #include "gear/geometry.h"
 
-extern const struct eo_table eo_design_table, eo_gear_pair_table, eo_material_table, eo_alignment_table, eo_supports_table, eo_shafts_table,
-    eo_load_case_table, eo_flank_modification_table, eo_member_modification_table, eo_modification_table, eo_objective_table,
-    eo_scenario_table, eo_optimization_table, eo_resolution_table;
+extern const struct eo_table eo_design_table, eo_gear_pair_table, eo_material_table, eo_alignment_table,
+    eo_supports_table, eo_shafts_table, eo_load_case_table, eo_flank_modification_table, eo_member_modification_table,
+    eo_modification_table, eo_objective_table, eo_scenario_table, eo_optimization_table, eo_resolution_table;
 
 /* Keys of a flank's modification that may be optimized; ends with NULL. */
 extern const char *const eo_variable_parameters[];
@@ -24,13 +24,15 @@ struct eo_warnings {
 };
 void eo_warnings_add(struct eo_warnings *warnings, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
-/* Reads a design: every key checked, defaults for what is absent; shares are scaled to the sum 1 and the modification of an
-   end that does not exist is dropped, each with a warning. False when there is a fault; *design is then untouched.
-   warnings may be NULL. */
-bool eo_design_decode(const json_t *document, struct eo_design *design, struct eo_warnings *warnings, struct eo_faults *faults);
+/* Reads a design: every key checked, defaults for what is absent; shares are scaled to the sum 1 and the modification
+   of an end that does not exist is dropped, each with a warning. False when there is a fault; *design is then
+   untouched. warnings may be NULL. */
+bool eo_design_decode(const json_t *document, struct eo_design *design, struct eo_warnings *warnings,
+                      struct eo_faults *faults);
 
 /* The load cases as part of another document than a design: all state their share or none does; scaled to the sum 1. */
-void eo_load_cases_settle(struct eo_load_case *load_case, int count, struct eo_warnings *warnings, struct eo_faults *faults);
+void eo_load_cases_settle(struct eo_load_case *load_case, int count, struct eo_warnings *warnings,
+                          struct eo_faults *faults);
 
 /* Says which assumption stands in for a key that decides the result and that the document leaves out. */
 void eo_design_note_assumptions(const json_t *document, const struct eo_design *design, struct eo_warnings *warnings);
@@ -38,20 +40,22 @@ void eo_design_note_assumptions(const json_t *document, const struct eo_design *
 /* New document with every key; derived values that are not resolved are null. NULL without memory. */
 json_t *eo_design_encode(const struct eo_design *design);
 
-/* Resolves every derived default, moves each number to the nearest one that the document can express and checks what needs more
-   than one key. Afterwards analysing *design and analysing its document are the same thing, bit for bit. Outputs untouched
-   on failure. */
+/* Resolves every derived default, moves each number to the nearest one that the document can express and checks what
+   needs more than one key. Afterwards analysing *design and analysing its document are the same thing, bit for bit.
+   Outputs untouched on failure. */
 enum eo_code eo_design_complete(struct eo_design *design, struct eo_geometry *geometry, struct eo_error *error);
 
 /* SHA-256 of the canonical document (keys sorted, shortest decimals, no spaces). */
 enum eo_code eo_design_hash(const struct eo_design *design, char hex[EO_HASH_LENGTH + 1], struct eo_error *error);
 
 /* The same over what the raw values of one evaluation depend on: without name, objective and optimization. */
-enum eo_code eo_design_evaluation_hash(const struct eo_design *design, char hex[EO_HASH_LENGTH + 1], struct eo_error *error);
+enum eo_code eo_design_evaluation_hash(const struct eo_design *design, char hex[EO_HASH_LENGTH + 1],
+                                       struct eo_error *error);
 
-/* Everything the raw values of one evaluation depend on but the modification, as canonical JSON, and its hash: the design without name,
-   modification, objective, optimization, shares of the load cases and what only shows; the scenarios of a robust objective, whether root
-   stress is wanted, and the evaluator's version. Appends to spec. */
-enum eo_code eo_design_problem(const struct eo_design *design, struct eo_text *spec, char hex[EO_HASH_LENGTH + 1], struct eo_error *error);
+/* Everything the raw values of one evaluation depend on but the modification, as canonical JSON, and its hash: the
+   design without name, modification, objective, optimization, shares of the load cases and what only shows; the
+   scenarios of a robust objective, whether root stress is wanted, and the evaluator's version. Appends to spec. */
+enum eo_code eo_design_problem(const struct eo_design *design, struct eo_text *spec, char hex[EO_HASH_LENGTH + 1],
+                               struct eo_error *error);
 
 #endif

@@ -1,10 +1,13 @@
 /* Field tables of the duty cycle, the objective, the optimization and the resolution, and of the whole design. */
 #include "document/design_document.h"
 
+/* clang-format off */
 #define NUMBERS(...) (const double[]){__VA_ARGS__}
+/* clang-format on */
 
 static const struct eo_field load_case[] = {
-    EO_NUMBER_REQUIRED(struct eo_load_case, torque, "torque_Nm", &eo_unit_Nm, 1e-3, 1e8, "total on the pinion shaft, half of it per end"),
+    EO_NUMBER_REQUIRED(struct eo_load_case, torque, "torque_Nm", &eo_unit_Nm, 1e-3, 1e8,
+                       "total on the pinion shaft, half of it per end"),
     EO_NUMBER(struct eo_load_case, speed, "speed_rpm", &eo_unit_rpm, 0.1, 1e6, 2000, "of the pinion"),
     EO_NUMBER_DERIVED(struct eo_load_case, share, "share", NULL, 0, 1e6, "equal, when no load case states its share",
                       "of operating time; shares that do not sum to 1 are scaled, with a warning"),
@@ -14,20 +17,26 @@ static const char *const normalise[] = {"unmodified", "none", NULL};
 static const char *const robust[] = {"off", "mean", "worst", NULL};
 
 static const struct eo_field constraints[] = {
-    EO_LIMIT(struct eo_objective, contact_pressure, "contact_pressure_MPa", &eo_unit_MPa, 1, 1e5, "largest Hertz pressure"),
+    EO_LIMIT(struct eo_objective, contact_pressure, "contact_pressure_MPa", &eo_unit_MPa, 1, 1e5,
+             "largest Hertz pressure"),
     EO_LIMIT(struct eo_objective, root_stress, "root_stress_MPa", &eo_unit_MPa, 1, 1e5, "largest root bending stress"),
-    EO_LIMIT(struct eo_objective, peak_to_peak, "peak_to_peak_um", &eo_unit_um, 1e-3, 1e4, "peak-to-peak loaded transmission error of any load case"),
-    EO_LIMIT(struct eo_objective, edge_load_share, "edge_load_share", NULL, 0, 1, "static load carried by tip edges, share of the end's load"),
+    EO_LIMIT(struct eo_objective, peak_to_peak, "peak_to_peak_um", &eo_unit_um, 1e-3, 1e4,
+             "peak-to-peak loaded transmission error of any load case"),
+    EO_LIMIT(struct eo_objective, edge_load_share, "edge_load_share", NULL, 0, 1,
+             "static load carried by tip edges, share of the end's load"),
     EO_LIMIT(struct eo_objective, contact_loss, "contact_loss", NULL, 0, 1, "part of the mesh cycle out of contact"),
-    EO_FLAG(struct eo_objective, relief_inside_active_flank, "relief_inside_active_flank", 1, "reliefs must start inside the active flank"),
-    EO_FLAG(struct eo_objective, no_worse_than_unmodified, "no_worse_than_unmodified", 0, "no objective may be worse than unmodified at any load case"),
+    EO_FLAG(struct eo_objective, relief_inside_active_flank, "relief_inside_active_flank", 1,
+            "reliefs must start inside the active flank"),
+    EO_FLAG(struct eo_objective, no_worse_than_unmodified, "no_worse_than_unmodified", 0,
+            "no objective may be worse than unmodified at any load case"),
 };
 static const struct eo_table constraints_table = EO_TABLE("constraints", struct eo_objective, constraints);
 
 static const struct eo_field scenario[] = {
-    EO_NUMBER_DERIVED(struct eo_scenario, in_plane, "shaft_angle_error_in_plane_deg", &eo_unit_deg, -2, 2, "as in alignment", "shaft angle error in the plane of the axes"),
-    EO_NUMBER_DERIVED(struct eo_scenario, out_of_plane, "shaft_angle_error_out_of_plane_deg", &eo_unit_deg, -2, 2, "as in alignment",
-                      "shaft angle error out of the plane of the axes"),
+    EO_NUMBER_DERIVED(struct eo_scenario, in_plane, "shaft_angle_error_in_plane_deg", &eo_unit_deg, -2, 2,
+                      "as in alignment", "shaft angle error in the plane of the axes"),
+    EO_NUMBER_DERIVED(struct eo_scenario, out_of_plane, "shaft_angle_error_out_of_plane_deg", &eo_unit_deg, -2, 2,
+                      "as in alignment", "shaft angle error out of the plane of the axes"),
     EO_NUMBER(struct eo_scenario, compliance, "compliance_factor", NULL, 0.1, 10, 1, "on the flexibility of the teeth"),
     EO_NUMBER(struct eo_scenario, speed, "speed_factor", NULL, 0.01, 100, 1, "on the speed of every load case"),
 };
@@ -36,22 +45,42 @@ const struct eo_table eo_scenario_table = EO_TABLE("a scenario", struct eo_scena
 static const struct eo_field objective[] = {
     EO_NUMBERS(struct eo_objective, weight, "weights", 3, NULL, 0, 1e6, 0, NUMBERS(0.4, 0.15, 0.45), NULL,
                "of peak-to-peak transmission error, impact force and vibration"),
-    EO_CHOICE(struct eo_objective, normalise, "normalise", normalise, EO_NORMALISE_UNMODIFIED, "what each objective is divided by"),
+    EO_CHOICE(struct eo_objective, normalise, "normalise", normalise, EO_NORMALISE_UNMODIFIED,
+              "what each objective is divided by"),
     EO_GROUP("constraints", &constraints_table, "limits; null: off"),
-    EO_NUMBER(struct eo_objective, penalty, "penalty", NULL, 0, 1e9, 10, "factor on the relative excess over each limit"),
-    EO_CHOICE(struct eo_objective, robust, "robust", robust, EO_ROBUST_OFF, "objective over the scenarios: their mean, the worst, or the nominal one alone"),
-    {.key = "scenarios", .kind = EO_FIELD_LIST, .offset = offsetof(struct eo_objective, scenario), .low = 0, .high = EO_MAX_SCENARIOS, .count = EO_MAX_SCENARIOS,
-     .count_offset = offsetof(struct eo_objective, scenarios), .table = &eo_scenario_table,
-     .derived = "nominal; shaft error +-20 % (at least 0.01 deg); compliance +-10 %; speed +-5 %, when robust is not off",
+    EO_NUMBER(struct eo_objective, penalty, "penalty", NULL, 0, 1e9, 10,
+              "factor on the relative excess over each limit"),
+    EO_CHOICE(struct eo_objective, robust, "robust", robust, EO_ROBUST_OFF,
+              "objective over the scenarios: their mean, the worst, or the nominal one alone"),
+    {.key = "scenarios",
+     .kind = EO_FIELD_LIST,
+     .offset = offsetof(struct eo_objective, scenario),
+     .low = 0,
+     .high = EO_MAX_SCENARIOS,
+     .count = EO_MAX_SCENARIOS,
+     .count_offset = offsetof(struct eo_objective, scenarios),
+     .table = &eo_scenario_table,
+     .derived =
+         "nominal; shaft error +-20 % (at least 0.01 deg); compliance +-10 %; speed +-5 %, when robust is not off",
      .help = "alignments, compliances and speeds around the nominal ones"},
 };
 
 static const char *const variables[] = {"shared", "per_end", "listed", NULL};
 static const char *const variable_members[] = {"pinion", "gear", NULL};
 static const char *const variable_ends[] = {"left", "right", "both", NULL};
-const char *const eo_variable_parameters[] = {
-    "tip_relief_um", "root_relief_um", "tip_relief_start_mm", "root_relief_start_mm", "lead_crowning_um", "lead_slope_um", "lead_offset_um",
-    "profile_crowning_per_mm", "leading_end_relief_um", "leading_end_relief_length_mm", "trailing_end_relief_um", "trailing_end_relief_length_mm", NULL};
+const char *const eo_variable_parameters[] = {"tip_relief_um",
+                                              "root_relief_um",
+                                              "tip_relief_start_mm",
+                                              "root_relief_start_mm",
+                                              "lead_crowning_um",
+                                              "lead_slope_um",
+                                              "lead_offset_um",
+                                              "profile_crowning_per_mm",
+                                              "leading_end_relief_um",
+                                              "leading_end_relief_length_mm",
+                                              "trailing_end_relief_um",
+                                              "trailing_end_relief_length_mm",
+                                              NULL};
 static const char *const algorithms[] = {"credibility-ga", "fpga", "ga", "nsga2", NULL};
 static const char *const mutation_modes[] = {"gene", "individual", NULL};
 static const char *const fitness_forms[] = {"reciprocal", "negative", NULL};
@@ -59,43 +88,74 @@ static const char *const distance_norms[] = {"range", "rms", NULL};
 static const char *const weight_sums[] = {"region", "all", NULL};
 static const char *const decision_orders[] = {"batch", "sequential", NULL};
 
-/* The optimizer's own names, ranges and defaults: optimizer/settings.h has the same table in its terms, and a test compares them. */
-#define PARAMETER(key, low, high, fallback, help) EO_NUMBER(struct eo_optimization, key, #key, NULL, low, high, fallback, help)
+/* The optimizer's own names, ranges and defaults: optimizer/settings.h has the same table in its terms, and a test
+   compares them. */
+#define PARAMETER(key, low, high, fallback, help) \
+  EO_NUMBER(struct eo_optimization, key, #key, NULL, low, high, fallback, help)
 #define COUNT(key, low, high, fallback, help) EO_INTEGER(struct eo_optimization, key, #key, low, high, fallback, help)
 #define FLAG(key, fallback, help) EO_FLAG(struct eo_optimization, key, #key, fallback, help)
 #define CHOICE(key, choices, fallback, help) EO_CHOICE(struct eo_optimization, key, #key, choices, fallback, help)
 
 static const struct eo_field bounds[] = {
-    EO_NUMBERS(struct eo_optimization, tip_relief, "tip_relief_um", 2, &eo_unit_um, 0, 1000, EO_FIELD_ASCENDING, NUMBERS(0, 40), NULL, "d_tr"),
-    EO_NUMBERS(struct eo_optimization, root_relief, "root_relief_um", 2, &eo_unit_um, 0, 1000, EO_FIELD_ASCENDING, NUMBERS(0, 40), NULL, "d_br"),
-    EO_NUMBERS(struct eo_optimization, tip_relief_start, "tip_relief_start_mm", 2, &eo_unit_mm, 0, 200, EO_FIELD_ASCENDING | EO_FIELD_NULLABLE, NULL,
-               "0.05 m_n .. nine tenths of the active profile", "u_ts"),
-    EO_NUMBERS(struct eo_optimization, root_relief_start, "root_relief_start_mm", 2, &eo_unit_mm, 0, 200, EO_FIELD_ASCENDING | EO_FIELD_NULLABLE, NULL,
-               "0.05 m_n .. nine tenths of the active profile", "u_bs"),
-    EO_NUMBERS(struct eo_optimization, lead_crowning, "lead_crowning_um", 2, &eo_unit_um, 0, 1000, EO_FIELD_ASCENDING, NUMBERS(0, 36), NULL, "at the face ends"),
+    EO_NUMBERS(struct eo_optimization, tip_relief, "tip_relief_um", 2, &eo_unit_um, 0, 1000, EO_FIELD_ASCENDING,
+               NUMBERS(0, 40), NULL, "d_tr"),
+    EO_NUMBERS(struct eo_optimization, root_relief, "root_relief_um", 2, &eo_unit_um, 0, 1000, EO_FIELD_ASCENDING,
+               NUMBERS(0, 40), NULL, "d_br"),
+    EO_NUMBERS(struct eo_optimization, tip_relief_start, "tip_relief_start_mm", 2, &eo_unit_mm, 0, 200,
+               EO_FIELD_ASCENDING | EO_FIELD_NULLABLE, NULL, "0.05 m_n .. nine tenths of the active profile", "u_ts"),
+    EO_NUMBERS(struct eo_optimization, root_relief_start, "root_relief_start_mm", 2, &eo_unit_mm, 0, 200,
+               EO_FIELD_ASCENDING | EO_FIELD_NULLABLE, NULL, "0.05 m_n .. nine tenths of the active profile", "u_bs"),
+    EO_NUMBERS(struct eo_optimization, lead_crowning, "lead_crowning_um", 2, &eo_unit_um, 0, 1000, EO_FIELD_ASCENDING,
+               NUMBERS(0, 36), NULL, "at the face ends"),
 };
 static const struct eo_table bounds_table = EO_TABLE("bounds", struct eo_optimization, bounds);
 
 static const struct eo_field listed_variable[] = {
     EO_CHOICE(struct eo_listed_variable, member, "member", variable_members, EO_PINION, "whose flank"),
-    EO_CHOICE(struct eo_listed_variable, end, "end", variable_ends, EO_BOTH_ENDS, "which end; both: one variable for both ends"),
-    {.key = "parameter", .kind = EO_FIELD_CHOICE, .flags = EO_FIELD_REQUIRED, .offset = offsetof(struct eo_listed_variable, parameter),
-     .choices = eo_variable_parameters, .fallback = NAN, .help = "key of the flank's modification"},
-    EO_NUMBERS(struct eo_listed_variable, bounds, "bounds", 2, NULL, -5000, 5000, EO_FIELD_ASCENDING | EO_FIELD_NULLABLE, NULL,
-               "those of the same key in bounds", "lowest and highest value in the unit of the parameter's key"),
+    EO_CHOICE(struct eo_listed_variable, end, "end", variable_ends, EO_BOTH_ENDS,
+              "which end; both: one variable for both ends"),
+    {.key = "parameter",
+     .kind = EO_FIELD_CHOICE,
+     .flags = EO_FIELD_REQUIRED,
+     .offset = offsetof(struct eo_listed_variable, parameter),
+     .choices = eo_variable_parameters,
+     .fallback = NAN,
+     .help = "key of the flank's modification"},
+    EO_NUMBERS(struct eo_listed_variable, bounds, "bounds", 2, NULL, -5000, 5000,
+               EO_FIELD_ASCENDING | EO_FIELD_NULLABLE, NULL, "those of the same key in bounds",
+               "lowest and highest value in the unit of the parameter's key"),
 };
 static const struct eo_table listed_variable_table = EO_TABLE("a variable", struct eo_listed_variable, listed_variable);
 
 static const struct eo_field optimization[] = {
-    EO_CHOICE(struct eo_optimization, variables, "variables", variables, EO_VARIABLES_SHARED, "5 of the pinion shared by both ends (case A), 10, 5 per end (case B), or those in variable_list"),
-    EO_LIST(struct eo_optimization, list, listed, "variable_list", &listed_variable_table, 0, EO_MAX_LISTED, "the variables, when variables is listed"),
-    {.key = "algorithm", .kind = EO_FIELD_TEXT, .offset = offsetof(struct eo_optimization, algorithm), .count = sizeof ((struct eo_optimization *)0)->algorithm,
-     .choices = algorithms, .fallback_text = "credibility-ga", .help = "optimizer"},
+    EO_CHOICE(struct eo_optimization, variables, "variables", variables, EO_VARIABLES_SHARED,
+              "5 of the pinion shared by both ends (case A), 10, 5 per end (case B), or those in variable_list"),
+    EO_LIST(struct eo_optimization, list, listed, "variable_list", &listed_variable_table, 0, EO_MAX_LISTED,
+            "the variables, when variables is listed"),
+    {.key = "algorithm",
+     .kind = EO_FIELD_TEXT,
+     .offset = offsetof(struct eo_optimization, algorithm),
+     .count = sizeof((struct eo_optimization *)0)->algorithm,
+     .choices = algorithms,
+     .fallback_text = "credibility-ga",
+     .help = "optimizer"},
     EO_GROUP("bounds", &bounds_table, "lowest and highest value of each variable"),
-    {.key = "seed", .kind = EO_FIELD_SEED, .offset = offsetof(struct eo_optimization, seed), .low = 0, .high = 9007199254740991., .fallback = 1,
+    {.key = "seed",
+     .kind = EO_FIELD_SEED,
+     .offset = offsetof(struct eo_optimization, seed),
+     .low = 0,
+     .high = 9007199254740991.,
+     .fallback = 1,
      .help = "equal seeds give equal results"},
-    {.key = "true_evaluations", .kind = EO_FIELD_INTEGER, .flags = EO_FIELD_NULLABLE, .offset = offsetof(struct eo_optimization, true_evaluations), .low = 1,
-     .high = 1e7, .fallback = NAN, .derived = "none for ga and fpga, 500 + 100 n for the others", .help = "most evaluations by the model"},
+    {.key = "true_evaluations",
+     .kind = EO_FIELD_INTEGER,
+     .flags = EO_FIELD_NULLABLE,
+     .offset = offsetof(struct eo_optimization, true_evaluations),
+     .low = 1,
+     .high = 1e7,
+     .fallback = NAN,
+     .derived = "none for ga and fpga, 500 + 100 n for the others",
+     .help = "most evaluations by the model"},
     PARAMETER(crossover, 0, 1, 0.8, "probability p_c that a pair of parents is crossed"),
     PARAMETER(crossover_index, 0, 1000, 10, "eta of the simulated binary crossover; larger stays nearer the parents"),
     PARAMETER(mutation, 0, 1, 0.3, "probability p_m of mutation"),
@@ -106,12 +166,15 @@ static const struct eo_field optimization[] = {
     COUNT(elite, 0, 100, 1, "best individuals that cannot be lost (ga, fpga)"),
     CHOICE(fitness_form, fitness_forms, 0, "fitness from the value J to minimise: 1/J or -J (ga, fpga)"),
     PARAMETER(trust_threshold, 0, 1, 0.6, "R*: an individual at least this credible is predicted (fpga)"),
-    PARAMETER(redundancy_threshold, 0, 1, 1e-7, "I_r*: rows closer than this to their neighbours leave the history (fpga)"),
-    EO_NUMBER_DERIVED(struct eo_optimization, share_radius, "share_radius", NULL, 1e-6, 10, "0.03 (n/5)^1.9 for n variables",
+    PARAMETER(redundancy_threshold, 0, 1, 1e-7,
+              "I_r*: rows closer than this to their neighbours leave the history (fpga)"),
+    EO_NUMBER_DERIVED(struct eo_optimization, share_radius, "share_radius", NULL, 1e-6, 10,
+                      "0.03 (n/5)^1.9 for n variables",
                       "r_share, radius in the unit cube of the region that predicts (fpga)"),
     PARAMETER(weight_decay, 0, 10000, 20, "alpha of equation (15) (fpga)"),
     PARAMETER(credibility_loss, 0, 1, 0.8, "beta of equation (18): factor on predicted rows per generation (fpga)"),
-    PARAMETER(removal_threshold, 0, 1, 0.1, "R_0: predicted rows less credible leave the history; below trust_threshold (fpga)"),
+    PARAMETER(removal_threshold, 0, 1, 0.1,
+              "R_0: predicted rows less credible leave the history; below trust_threshold (fpga)"),
     COUNT(verify, 0, 1, 1, "1: the best predicted individual of each generation is evaluated; 0: as printed (fpga)"),
     CHOICE(distance_norm, distance_norms, 0, "Euclidean distance of normalised variables, or that over sqrt n (fpga)"),
     CHOICE(weight_sum, weight_sums, 0, "rows in the sum of (15) (fpga)"),
@@ -131,10 +194,13 @@ static const struct eo_field optimization[] = {
     PARAMETER(polish_share, 0, 1, 0.2, "share of the budget that only improves the best (credibility-ga)"),
     PARAMETER(local_share, 0, 1, 0.5, "share of each batch for the trust region round the best (credibility-ga)"),
     PARAMETER(local_radius, 1e-6, 0.5, 0.3, "radius of that trust region at the start of an epoch (credibility-ga)"),
-    PARAMETER(sampling_step, 1e-6, 0.5, 0.25, "first step of the evolution strategy that makes every second epoch (credibility-ga)"),
+    PARAMETER(sampling_step, 1e-6, 0.5, 0.25,
+              "first step of the evolution strategy that makes every second epoch (credibility-ga)"),
     COUNT(sampling_stall, 1, 10000, 10, "batches without gain that end such an epoch (credibility-ga)"),
-    PARAMETER(evolution_step, 1e-6, 0.5, 0.03, "first step of the evolution strategy that refines the best (credibility-ga)"),
-    COUNT(evolution_samples, 1, 100, 12, "samples of an evolution strategy from which the surrogate chooses each point (credibility-ga)"),
+    PARAMETER(evolution_step, 1e-6, 0.5, 0.03,
+              "first step of the evolution strategy that refines the best (credibility-ga)"),
+    COUNT(evolution_samples, 1, 100, 12,
+          "samples of an evolution strategy from which the surrogate chooses each point (credibility-ga)"),
     COUNT(evolution_stall, 1, 10000, 6, "batches without gain that end that refinement (credibility-ga)"),
     COUNT(front_population, 4, 1000, 48, "individuals of a generation (nsga2)"),
     COUNT(front_verified, 1, 1000, 12, "true evaluations per cycle (nsga2)"),
@@ -148,19 +214,28 @@ static const char *const impacts[] = {"none", "paper", "consistent", NULL};
 static const struct eo_field resolution[] = {
     EO_INTEGER(struct eo_resolution, positions, "positions", 8, 1024, 64, "mesh positions over one base pitch"),
     EO_INTEGER(struct eo_resolution, cells_per_line, "cells_per_line", 4, 400, 30, "equal cells of a contact line"),
-    EO_FLAG(struct eo_resolution, tip_edge_contact, "tip_edge_contact", 1, "contact of the tip edges outside the path of contact"),
-    EO_INTEGER(struct eo_resolution, sector_teeth, "sector_teeth", 3, 5, 5, "teeth of the finite-element sector, 3 or 5"),
-    EO_FLAG(struct eo_resolution, neighbour_coupling, "neighbour_coupling", 1, "compliance between neighbouring tooth pairs"),
+    EO_FLAG(struct eo_resolution, tip_edge_contact, "tip_edge_contact", 1,
+            "contact of the tip edges outside the path of contact"),
+    EO_INTEGER(struct eo_resolution, sector_teeth, "sector_teeth", 3, 5, 5,
+               "teeth of the finite-element sector, 3 or 5"),
+    EO_FLAG(struct eo_resolution, neighbour_coupling, "neighbour_coupling", 1,
+            "compliance between neighbouring tooth pairs"),
     EO_INTEGER(struct eo_resolution, layers, "layers", 4, 120, 28, "finite elements over the face width"),
     EO_INTEGER(struct eo_resolution, flank_rows, "flank_rows", 4, 60, 10, "finite elements over the active profile"),
-    EO_INTEGER(struct eo_resolution, fillet_elements, "fillet_elements", 4, 80, 18, "finite elements along the loaded fillet"),
-    EO_NUMBER(struct eo_resolution, impact_patch, "impact_patch_mm", &eo_unit_mm, 0.1, 100, 5, "length of the patch that an entering impact loads"),
-    EO_NUMBER(struct eo_resolution, marking_thickness, "marking_thickness_um", &eo_unit_um, 0.1, 100, 6.35, "marking compound of the contact pattern"),
+    EO_INTEGER(struct eo_resolution, fillet_elements, "fillet_elements", 4, 80, 18,
+               "finite elements along the loaded fillet"),
+    EO_NUMBER(struct eo_resolution, impact_patch, "impact_patch_mm", &eo_unit_mm, 0.1, 100, 5,
+              "length of the patch that an entering impact loads"),
+    EO_NUMBER(struct eo_resolution, marking_thickness, "marking_thickness_um", &eo_unit_um, 0.1, 100, 6.35,
+              "marking compound of the contact pattern"),
     EO_CHOICE(struct eo_resolution, mesh_law, "mesh_law", mesh_laws, EO_LAW_TANGENT, "mesh force in the dynamics"),
-    EO_CHOICE(struct eo_resolution, solver, "solver", solvers, EO_SOLVER_HARMONIC_BALANCE, "of the equations of motion"),
-    EO_CHOICE(struct eo_resolution, impact_in_dynamics, "impact_in_dynamics", impacts, EO_IMPACT_NONE, "impact pulses in the equations of motion"),
+    EO_CHOICE(struct eo_resolution, solver, "solver", solvers, EO_SOLVER_HARMONIC_BALANCE,
+              "of the equations of motion"),
+    EO_CHOICE(struct eo_resolution, impact_in_dynamics, "impact_in_dynamics", impacts, EO_IMPACT_NONE,
+              "impact pulses in the equations of motion"),
     EO_INTEGER(struct eo_resolution, harmonics, "harmonics", 1, 256, 24, "mesh harmonics of the response"),
-    EO_INTEGER(struct eo_resolution, te_harmonics, "te_harmonics", 1, 128, 16, "mesh harmonics kept of transmission error and stiffness"),
+    EO_INTEGER(struct eo_resolution, te_harmonics, "te_harmonics", 1, 128, 16,
+               "mesh harmonics kept of transmission error and stiffness"),
 };
 
 const struct eo_table eo_load_case_table = EO_TABLE("a load case", struct eo_load_case, load_case);
@@ -172,15 +247,29 @@ static const struct eo_load_case paper_duty_cycle[] = {
     {621, 2000 * (M_PI / 30), 0.2}, {828, 2000 * (M_PI / 30), 0.5}, {1035, 2000 * (M_PI / 30), 0.3}};
 
 static const struct eo_field design[] = {
-    {.key = "name", .kind = EO_FIELD_TEXT, .offset = offsetof(struct eo_design, name), .count = EO_NAME_LENGTH, .help = "for people"},
+    {.key = "name",
+     .kind = EO_FIELD_TEXT,
+     .offset = offsetof(struct eo_design, name),
+     .count = EO_NAME_LENGTH,
+     .help = "for people"},
     EO_OBJECT(struct eo_design, gear_pair, "gear_pair", &eo_gear_pair_table, "macro-geometry"),
     EO_OBJECT(struct eo_design, material, "material", &eo_material_table, "of both members"),
     EO_OBJECT(struct eo_design, alignment, "alignment", &eo_alignment_table, "errors and axial freedom of the shafts"),
-    EO_OBJECT(struct eo_design, supports, "supports", &eo_supports_table, "bearings, groove and masses for the dynamics"),
+    EO_OBJECT(struct eo_design, supports, "supports", &eo_supports_table,
+              "bearings, groove and masses for the dynamics"),
     EO_OBJECT(struct eo_design, shafts, "shafts", &eo_shafts_table, "elastic bodies, off by default"),
-    {.key = "load_cases", .kind = EO_FIELD_LIST, .offset = offsetof(struct eo_design, load_case), .low = 1, .high = EO_MAX_LOAD_CASES, .count = EO_MAX_LOAD_CASES,
-     .count_offset = offsetof(struct eo_design, load_cases), .table = &eo_load_case_table, .rows = paper_duty_cycle, .row_count = 3,
-     .derived = "the paper's: 621, 828 and 1035 N m at 2000 rpm for 0.2, 0.5 and 0.3 of the time", .help = "the duty cycle"},
+    {.key = "load_cases",
+     .kind = EO_FIELD_LIST,
+     .offset = offsetof(struct eo_design, load_case),
+     .low = 1,
+     .high = EO_MAX_LOAD_CASES,
+     .count = EO_MAX_LOAD_CASES,
+     .count_offset = offsetof(struct eo_design, load_cases),
+     .table = &eo_load_case_table,
+     .rows = paper_duty_cycle,
+     .row_count = 3,
+     .derived = "the paper's: 621, 828 and 1035 N m at 2000 rpm for 0.2, 0.5 and 0.3 of the time",
+     .help = "the duty cycle"},
     EO_OBJECT(struct eo_design, modification, "modification", &eo_modification_table, "material taken off the flanks"),
     EO_OBJECT(struct eo_design, objective, "objective", &eo_objective_table, "what is good"),
     EO_OBJECT(struct eo_design, optimization, "optimization", &eo_optimization_table, "how the best is searched for"),

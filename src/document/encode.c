@@ -155,7 +155,9 @@ void eo_table_done(const struct eo_table *table, void *target)
   for (int i = 0; i < table->count; i++) {
     const struct eo_field *field = &table->field[i];
     char *place = (char *)target + field->offset;
-    int rows = field->kind == EO_FIELD_OBJECT ? 1 : field->kind == EO_FIELD_LIST ? *(const int *)((const char *)target + field->count_offset) : 0;
+    int rows = field->kind == EO_FIELD_OBJECT ? 1
+               : field->kind == EO_FIELD_LIST ? *(const int *)((const char *)target + field->count_offset)
+                                              : 0;
     for (int j = 0; j < rows; j++)
       eo_table_done(field->table, place + (size_t)j * field->table->size);
     if (field->kind == EO_FIELD_SERIES) {

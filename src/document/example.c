@@ -26,7 +26,8 @@ static void name(struct eo_design *design, const char *text)
   snprintf(design->name, sizeof design->name, "%s", text);
 }
 
-static void size(struct eo_gear_pair *pair, int pinion_teeth, int gear_teeth, double module_mm, double helix_deg, double face_mm, double groove_mm)
+static void size(struct eo_gear_pair *pair, int pinion_teeth, int gear_teeth, double module_mm, double helix_deg,
+                 double face_mm, double groove_mm)
 {
   pair->teeth[EO_PINION] = pinion_teeth;
   pair->teeth[EO_GEAR] = gear_teeth;
@@ -42,7 +43,8 @@ static void load(struct eo_design *design, int i, double torque, double rpm, dou
   design->load_cases = i + 1;
 }
 
-static void relief(struct eo_flank_modification *flank, double tip_um, double tip_start_mm, double root_um, double root_start_mm)
+static void relief(struct eo_flank_modification *flank, double tip_um, double tip_start_mm, double root_um,
+                   double root_start_mm)
 {
   flank->tip_relief = um(tip_um);
   flank->tip_relief_start = mm(tip_start_mm);

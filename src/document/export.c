@@ -55,7 +55,8 @@ static double pitch_angle(const struct eo_geometry *geometry, int member)
   return atan2(point.position[0], point.position[1]);
 }
 
-static void each_flank(const struct eo_design *design, const struct eo_geometry *geometry, flank_function *function, struct eo_text *text)
+static void each_flank(const struct eo_design *design, const struct eo_geometry *geometry, flank_function *function,
+                       struct eo_text *text)
 {
   for (int member = 0; member < 2; member++)
     for (int end = 0; end < design->gear_pair.ends; end++) {
@@ -102,9 +103,10 @@ static double lead_part(const struct flank *flank, double eta)
 }
 
 /* ---- points ----
-   Frame of a member: z its axis, from the middle of the groove to the right; the working flank of a tooth faces +x and would, unmodified, pass
-   through the plane x = 0 at the working pitch radius in mid face. eo_surface_evaluate() gives one end with z along eta (pinion) or against it (gear). The left
-   end mirrors the right one. A stagger turns the right end back: against the motion, which goes to +x on the pinion, to -x on the gear. */
+   Frame of a member: z its axis, from the middle of the groove to the right; the working flank of a tooth faces +x and
+   would, unmodified, pass through the plane x = 0 at the working pitch radius in mid face. eo_surface_evaluate() gives
+   one end with z along eta (pinion) or against it (gear). The left end mirrors the right one. A stagger turns the right
+   end back: against the motion, which goes to +x on the pinion, to -x on the gear. */
 static void place_vector(const struct flank *flank, const double local[3], double shift, double global[3])
 {
   double outwards = shift + (flank->member == EO_PINION ? local[2] : -local[2]);
@@ -226,7 +228,8 @@ static void write_design(const struct eo_design *design, const struct eo_geometr
 /* ---- formats ---- */
 
 static const struct eo_export formats[] = {
-    {"flank-points", "points and normals of the working flanks, exactly as generated, with what is taken off", "text/csv; charset=utf-8", "csv", write_points},
+    {"flank-points", "points and normals of the working flanks, exactly as generated, with what is taken off",
+     "text/csv; charset=utf-8", "csv", write_points},
     {"modification-chart", "profile and lead modification as curves", "text/csv; charset=utf-8", "csv", write_charts},
     {"topography", "what is taken off, over profile and face", "text/csv; charset=utf-8", "csv", write_topography},
     {"design", "the design with every default resolved", "application/json", "json", write_design},

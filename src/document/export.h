@@ -1,5 +1,5 @@
-/* Files for other programs: points of the flanks for grinding and measuring machines, charts of the modification. One function for the
-   terminal and the server. */
+/* Files for other programs: points of the flanks for grinding and measuring machines, charts of the modification. One
+   function for the terminal and the server. */
 #ifndef EASEOFF_DOCUMENT_EXPORT_H
 #define EASEOFF_DOCUMENT_EXPORT_H
 

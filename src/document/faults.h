@@ -7,12 +7,13 @@
 enum { EO_MAX_FAULTS = 100 };
 
 struct eo_faults {
-  int count;                             /* all that were found; only the first EO_MAX_FAULTS are kept */
-  struct eo_error fault[EO_MAX_FAULTS];  /* in the order of the document */
+  int count;                            /* all that were found; only the first EO_MAX_FAULTS are kept */
+  struct eo_error fault[EO_MAX_FAULTS]; /* in the order of the document */
 };
 
 /* Start from count = 0. pointer: JSON pointer, "" for the document as a whole. The text is cleaned for one line. */
-void eo_faults_add(struct eo_faults *faults, const char *pointer, const char *format, ...) __attribute__((format(printf, 3, 4)));
+void eo_faults_add(struct eo_faults *faults, const char *pointer, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
 
 /* EO_OK without faults; else copies the first into *error and returns its code. */
 enum eo_code eo_faults_first(const struct eo_faults *faults, struct eo_error *error);
@@ -28,6 +29,7 @@ struct eo_path {
 void eo_path_pointer(const struct eo_path *path, char *pointer, int size);
 
 /* The same with the fault's place given as a path. */
-void eo_faults_at(struct eo_faults *faults, const struct eo_path *path, const char *format, ...) __attribute__((format(printf, 3, 4)));
+void eo_faults_at(struct eo_faults *faults, const struct eo_path *path, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
 
 #endif

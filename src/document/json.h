@@ -1,5 +1,6 @@
-/* JSON text in and out, on top of jansson (RFC 8259). Reading is strict: bounded size and depth, no duplicate keys, every
-   number a finite double or a 64 bit integer. Writing gives the shortest decimals that read back as the same doubles. */
+/* JSON text in and out, on top of jansson (RFC 8259). Reading is strict: bounded size and depth, no duplicate keys,
+   every number a finite double or a 64 bit integer. Writing gives the shortest decimals that read back as the same
+   doubles. */
 #ifndef EASEOFF_DOCUMENT_JSON_H
 #define EASEOFF_DOCUMENT_JSON_H
 
@@ -9,11 +10,11 @@
 #include "document/text.h"
 #include "document/unit.h"
 
-enum { EO_JSON_DEPTH = 32 };                        /* brackets within brackets */
+enum { EO_JSON_DEPTH = 32 };                                              /* brackets within brackets */
 enum { EO_JSON_DESIGN_BYTES = 1 << 20, EO_JSON_CASES_BYTES = 256 << 20 }; /* largest design, largest case file */
 
-/* Parses size bytes whose top is an object. NULL with *error filled (line and column in the text) when it is not JSON. The
-   caller owns the result. */
+/* Parses size bytes whose top is an object. NULL with *error filled (line and column in the text) when it is not JSON.
+   The caller owns the result. */
 json_t *eo_json_parse(const char *data, size_t size, struct eo_error *error);
 
 /* Reads and parses a file, "-" for standard input. */

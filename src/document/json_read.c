@@ -7,7 +7,8 @@ struct place {
   int line, column, depth;
 };
 
-/* Walks to the first bracket that is nested too deep; false when there is none. jansson recurses, so this comes first. */
+/* Walks to the first bracket that is nested too deep; false when there is none. jansson recurses, so this comes first.
+ */
 static bool too_deep(const char *data, size_t size, struct place *place)
 {
   bool in_string = false;
@@ -43,7 +44,8 @@ json_t *eo_json_parse(const char *data, size_t size, struct eo_error *error)
 {
   struct place place;
   if (too_deep(data, size, &place)) {
-    eo_error_set(error, EO_ERROR_INPUT, "", "Line %d, column %d: more than %d brackets within brackets.", place.line, place.column, EO_JSON_DEPTH);
+    eo_error_set(error, EO_ERROR_INPUT, "", "Line %d, column %d: more than %d brackets within brackets.", place.line,
+                 place.column, EO_JSON_DEPTH);
     return NULL;
   }
   json_error_t fault;

@@ -27,7 +27,8 @@ static int find_exponent(double value)
   return exponent + (value >= power[exponent + 1]);
 }
 
-/* Decimals that show so many digits of a positive value, one less for some just below a power of ten; -1: none of what follows can be done exactly. */
+/* Decimals that show so many digits of a positive value, one less for some just below a power of ten; -1: none of what
+   follows can be done exactly. */
 static int find_decimals(double value, int digits)
 {
   if (!(value >= 1e-13 && value < 1e15))
@@ -36,7 +37,8 @@ static int find_decimals(double value, int digits)
   return decimals >= 0 && decimals <= EXACT_POWER ? decimals : -1;
 }
 
-/* number / 10^decimals without trailing zeros, as C's %g writes it but for the zeros of an exponent. Returns its length. */
+/* number / 10^decimals without trailing zeros, as C's %g writes it but for the zeros of an exponent. Returns its
+   length. */
 static int write_decimal(char *text, bool negative, uint64_t number, int decimals)
 {
   char reversed[24], *to = text;
@@ -66,8 +68,9 @@ static int write_decimal(char *text, bool negative, uint64_t number, int decimal
   return (int)(to - text);
 }
 
-/* What the loop below finds, without printing and reading: a decimal number of up to 15 digits is the nearest double of its digits over a power of
-   ten, as long as both are exact. Returns its length; 0: not so short, or too large or small. */
+/* What the loop below finds, without printing and reading: a decimal number of up to 15 digits is the nearest double of
+   its digits over a power of ten, as long as both are exact. Returns its length; 0: not so short, or too large or
+   small. */
 static int write_short(char *text, double value)
 {
   double size = fabs(value);
@@ -102,7 +105,8 @@ static int write_long(char *text, int size, double value)
 
 int eo_json_number(char *text, int size, double value)
 {
-  uint64_t bits = bits_of(value); /* for the sign of a zero: where it compares values, the compiler may take all zeros for one */
+  uint64_t bits =
+      bits_of(value); /* for the sign of a zero: where it compares values, the compiler may take all zeros for one */
   int length = bits << 1 ? write_short(text, value) : write_decimal(text, bits >> 63, 0, 0);
   return length ? length : write_long(text, size, value);
 }
@@ -165,8 +169,7 @@ static const char **list_keys(const json_t *object, enum eo_json_style style)
     return NULL;
   size_t n = 0;
   json_t *value;
-  json_object_foreach((json_t *)object, key, value)
-    keys[n++] = key;
+  json_object_foreach((json_t *)object, key, value) keys[n++] = key;
   if (style == EO_JSON_CANONICAL)
     qsort(keys, n, sizeof *keys, compare_keys);
   return keys;
@@ -215,7 +218,8 @@ static void write_object(struct eo_text *text, const json_t *object, enum eo_jso
 
 static bool holds_containers(const json_t *array)
 {
-  return json_array_size(array) && !(json_is_number(json_array_get(array, 0)) || json_is_null(json_array_get(array, 0)));
+  return json_array_size(array) &&
+         !(json_is_number(json_array_get(array, 0)) || json_is_null(json_array_get(array, 0)));
 }
 
 static void write_array(struct eo_text *text, const json_t *array, enum eo_json_style style, int indent)
@@ -241,13 +245,15 @@ static int room_after(const json_t *value, int room)
   json_t *member;
   size_t i;
   if (json_is_object(value)) {
-    json_object_foreach((json_t *)value, key, member) {
+    json_object_foreach((json_t *)value, key, member)
+    {
       if (room < 0)
         break;
       room = room_after(member, room - (int)strlen(key) - 4);
     }
   } else if (json_is_array(value)) {
-    json_array_foreach(value, i, member) {
+    json_array_foreach(value, i, member)
+    {
       if (room < 0)
         break;
       room = room_after(member, room - 2);
@@ -301,7 +307,8 @@ static double round_digits(double value, int digits)
   if (size == 0)
     return value;
   int decimals = find_decimals(size, digits);
-  double scaled = decimals < 0 ? 0 : size * power[decimals], number = nearbyint(scaled), past = fabs(scaled - floor(scaled) - 0.5);
+  double scaled = decimals < 0 ? 0 : size * power[decimals], number = nearbyint(scaled),
+         past = fabs(scaled - floor(scaled) - 0.5);
   if (decimals >= 0 && scaled >= power[digits - 1] * (1 + 1e-12) && number < power[digits] && past > 1e-15 * scaled)
     return copysign(number / power[decimals], value);
   snprintf(text, sizeof text, "%.*g", digits, value);
@@ -314,7 +321,8 @@ json_t *eo_json_reals(int count, const double *value, int stride, const struct e
   bool failed = !array;
   for (int i = 0; i < count && !failed; i++) {
     double si = value[(long)i * stride];
-    double outside = digits ? round_digits(unit ? (unit->divide ? si * unit->factor : si / unit->factor) : si, digits) : eo_unit_out(unit, si);
+    double outside = digits ? round_digits(unit ? (unit->divide ? si * unit->factor : si / unit->factor) : si, digits)
+                            : eo_unit_out(unit, si);
     failed = json_array_append_new(array, isfinite(outside) ? json_real(outside) : json_null()) != 0;
   }
   if (failed) {

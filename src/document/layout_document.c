@@ -20,7 +20,8 @@ static int choice_of(const json_t *value, const char *const *choices, const char
   for (int i = 0; text && choices[i]; i++)
     if (strcmp(text, choices[i]) == 0)
       return i;
-  eo_faults_add(faults, pointer, "\"%.40s\" is not known here; \"%s\", \"%s\", ... are.", text ? text : "(no text)", choices[0], choices[1]);
+  eo_faults_add(faults, pointer, "\"%.40s\" is not known here; \"%s\", \"%s\", ... are.", text ? text : "(no text)",
+                choices[0], choices[1]);
   return 0;
 }
 
@@ -46,7 +47,8 @@ static void read_columns(const json_t *columns, struct eo_layout_request *r, str
   json_t *value;
   if (columns && !json_is_object(columns))
     eo_faults_add(faults, "/columns", "The columns are an object with \"pinion\" and \"gear\".");
-  json_object_foreach((json_t *)columns, key, value) {
+  json_object_foreach((json_t *)columns, key, value)
+  {
     char pointer[120];
     int member = strcmp(key, member_key[0]) == 0 ? 0 : strcmp(key, member_key[1]) == 0 ? 1 : -1;
     snprintf(pointer, sizeof pointer, "/columns/%.80s", key);
@@ -56,7 +58,8 @@ static void read_columns(const json_t *columns, struct eo_layout_request *r, str
       if (json_array_size(value) != 2)
         eo_faults_add(faults, pointer, "Raw tracks are two columns, sine and cosine.");
       for (size_t k = 0; k < 2; k++)
-        r->choice.column[member][k] = column_of(json_array_get(value, k), r->name[1 + 2 * member + (int)k], pointer, faults);
+        r->choice.column[member][k] = column_of(json_array_get(value, k), r->name[1 + 2 * member + (int)k], pointer,
+                                                faults);
     } else {
       r->choice.column[member][0] = column_of(value, r->name[1 + 2 * member], pointer, faults);
     }
@@ -96,7 +99,8 @@ void eo_layout_decode(const json_t *document, struct eo_layout_request *r, struc
     eo_faults_add(faults, "", "A layout is a JSON object.");
     return;
   }
-  json_object_foreach((json_t *)document, key, value) {
+  json_object_foreach((json_t *)document, key, value)
+  {
     bool found = false;
     for (int i = 0; known[i]; i++)
       found = found || strcmp(key, known[i]) == 0;
@@ -119,7 +123,10 @@ void eo_layout_decode(const json_t *document, struct eo_layout_request *r, struc
 
 static const char *unit_of(const struct eo_track_channel *c)
 {
-  return fabs(c->scale - 1) < 1e-12 ? "rad" : fabs(c->scale * 180 / M_PI - 1) < 1e-12 ? "deg" : fabs(c->scale / (2 * M_PI) - 1) < 1e-12 ? "turn" : "count";
+  return fabs(c->scale - 1) < 1e-12                ? "rad"
+         : fabs(c->scale * 180 / M_PI - 1) < 1e-12 ? "deg"
+         : fabs(c->scale / (2 * M_PI) - 1) < 1e-12 ? "turn"
+                                                   : "count";
 }
 
 static json_t *encode_column(const struct eo_track_channel *c)

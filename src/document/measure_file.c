@@ -27,7 +27,8 @@ static enum eo_code below_layout(enum eo_code code, struct eo_error *error)
   return code;
 }
 
-static enum eo_code read_recordings(struct work *w, const struct eo_measure_request *r, const struct eo_progress *progress, struct eo_error *error)
+static enum eo_code read_recordings(struct work *w, const struct eo_measure_request *r,
+                                    const struct eo_progress *progress, struct eo_error *error)
 {
   const struct eo_reader_options options = {.spool_directory = r->spool_directory, .progress = progress};
   struct eo_recording *both[2] = {NULL, NULL};
@@ -35,7 +36,9 @@ static enum eo_code read_recordings(struct work *w, const struct eo_measure_requ
   if (!code && r->gear_path) {
     code = eo_reader_read(r->gear_path, &options, &both[1], &w->notes, error);
     if (!code)
-      code = below_layout(eo_layout_combine(both[0], both[1], &w->layout.choice, r->spool_directory, &w->recording, &w->notes, error), error);
+      code = below_layout(
+          eo_layout_combine(both[0], both[1], &w->layout.choice, r->spool_directory, &w->recording, &w->notes, error),
+          error);
     eo_recording_free(both[0]);
     eo_recording_free(both[1]);
   } else {
@@ -44,9 +47,12 @@ static enum eo_code read_recordings(struct work *w, const struct eo_measure_requ
   return code;
 }
 
-static enum eo_code measure(struct work *w, const struct eo_measure_request *r, const struct eo_progress *progress, struct eo_error *error)
+static enum eo_code measure(struct work *w, const struct eo_measure_request *r, const struct eo_progress *progress,
+                            struct eo_error *error)
 {
-  struct eo_measurement_settings settings = {.stated_speed = r->stated_speed, .spool_directory = r->spool_directory, .transmission = {.harmonics = r->harmonics}};
+  struct eo_measurement_settings settings = {.stated_speed = r->stated_speed,
+                                             .spool_directory = r->spool_directory,
+                                             .transmission = {.harmonics = r->harmonics}};
   for (int i = 0; i < 2; i++) {
     settings.transmission.teeth[i] = r->geometry->teeth[i];
     settings.transmission.base_radius[i] = r->geometry->base_radius[i];
@@ -62,12 +68,17 @@ static enum eo_code measure(struct work *w, const struct eo_measure_request *r, 
   return code;
 }
 
-static enum eo_code tell(const struct work *w, const struct eo_measure_request *r, json_t **document, struct eo_text *summary, struct eo_measured *outcome,
-                         struct eo_error *error)
+static enum eo_code tell(const struct work *w, const struct eo_measure_request *r, json_t **document,
+                         struct eo_text *summary, struct eo_measured *outcome, struct eo_error *error)
 {
   const char *slash = strrchr(r->path, '/'), *name = r->name ? r->name : slash ? slash + 1 : r->path;
   json_t *layout = eo_layout_encode(&w->tracks);
-  const struct eo_measurement_label label = {.file = name, .unmodified = r->unmodified, .torque = r->torque, .end = r->end, .notes = &w->notes, .layout = layout};
+  const struct eo_measurement_label label = {.file = name,
+                                             .unmodified = r->unmodified,
+                                             .torque = r->torque,
+                                             .end = r->end,
+                                             .notes = &w->notes,
+                                             .layout = layout};
   *document = layout ? eo_measurement_encode(&w->measurement, &label) : NULL;
   if (*document && summary)
     eo_measurement_summary(&w->measurement, &label, summary);
@@ -86,8 +97,9 @@ static enum eo_code tell(const struct work *w, const struct eo_measure_request *
   return EO_OK;
 }
 
-enum eo_code eo_measure_file(const struct eo_measure_request *request, const struct eo_progress *progress, json_t **document, struct eo_text *summary,
-                             struct eo_measured *outcome, struct eo_error *error)
+enum eo_code eo_measure_file(const struct eo_measure_request *request, const struct eo_progress *progress,
+                             json_t **document, struct eo_text *summary, struct eo_measured *outcome,
+                             struct eo_error *error)
 {
   struct work *w = calloc(1, sizeof *w);
   if (!w)

@@ -6,21 +6,24 @@
 #include "gear/geometry.h"
 
 struct eo_measure_request {
-  const char *path, *gear_path; /* the recording; gear_path: the other encoder's of the same run, NULL when one file holds both */
-  const char *name;             /* for people; NULL: the path without folders */
+  const char *path,
+      *gear_path;   /* the recording; gear_path: the other encoder's of the same run, NULL when one file holds both */
+  const char *name; /* for people; NULL: the path without folders */
   bool unmodified;
-  double torque;                /* N m */
-  double stated_speed;          /* rad/s; NaN: not known */
+  double torque;       /* N m */
+  double stated_speed; /* rad/s; NaN: not known */
   int end;
-  int harmonics;                /* 0: 8 */
-  const json_t *layout;         /* borrowed; NULL: guessed */
+  int harmonics;        /* 0: 8 */
+  const json_t *layout; /* borrowed; NULL: guessed */
   const struct eo_geometry *geometry;
-  const char *spool_directory;  /* NULL: recordings beyond EO_RECORDING_MEMORY are refused */
+  const char *spool_directory; /* NULL: recordings beyond EO_RECORDING_MEMORY are refused */
 };
 
-/* *document: new. summary may be NULL: what people read is added to it. *outcome (may be NULL): what a comparison needs; its harmonics are 0 when
-   the recording was refused. Errors: EO_ERROR_INPUT of the file (line or byte) or the layout (pointer below /layout), files, memory, cancelled. */
-enum eo_code eo_measure_file(const struct eo_measure_request *request, const struct eo_progress *progress, json_t **document, struct eo_text *summary,
-                             struct eo_measured *outcome, struct eo_error *error);
+/* *document: new. summary may be NULL: what people read is added to it. *outcome (may be NULL): what a comparison
+   needs; its harmonics are 0 when the recording was refused. Errors: EO_ERROR_INPUT of the file (line or byte) or the
+   layout (pointer below /layout), files, memory, cancelled. */
+enum eo_code eo_measure_file(const struct eo_measure_request *request, const struct eo_progress *progress,
+                             json_t **document, struct eo_text *summary, struct eo_measured *outcome,
+                             struct eo_error *error);
 
 #endif

@@ -10,11 +10,18 @@
 
 enum { CURVE = 128, SPECTRUM_POINTS = 2000 };
 
-static const char *const channel_name[] = {"pinion", "gear", NULL}, *const labels[] = {"modified", "unmodified", NULL}, *const ends[] = {"left", "right", NULL};
+static const char *const channel_name[] = {"pinion", "gear", NULL}, *const labels[] = {"modified", "unmodified", NULL},
+                         *const ends[] = {"left", "right", NULL};
 
-static json_t *column(int count, const double *value, const struct eo_unit *unit) { return eo_json_reals(count, value, 1, unit, EO_DIGITS_CURVE); }
+static json_t *column(int count, const double *value, const struct eo_unit *unit)
+{
+  return eo_json_reals(count, value, 1, unit, EO_DIGITS_CURVE);
+}
 
-static const char *label_name(bool unmodified) { return labels[unmodified]; }
+static const char *label_name(bool unmodified)
+{
+  return labels[unmodified];
+}
 
 /* ---- findings and signal ---- */
 
@@ -87,7 +94,9 @@ static json_t *encode_signal(const struct eo_measurement *m)
   eo_result_put_number(&o, "interval_ms", m->interval);
   eo_result_put_number(&o, "ratio", m->ratio);
   for (int channel = 0; channel < 2; channel++)
-    eo_result_put(&tracks, channel_name[channel], m->raw[channel] && m->ellipse[channel].amplitude[0] > 0 ? encode_ellipse(&m->ellipse[channel]) : json_null());
+    eo_result_put(&tracks, channel_name[channel],
+                  m->raw[channel] && m->ellipse[channel].amplitude[0] > 0 ? encode_ellipse(&m->ellipse[channel])
+                                                                          : json_null());
   eo_result_put(&o, "tracks", eo_result_close(&tracks));
   return eo_result_close(&o);
 }
@@ -114,7 +123,8 @@ static const struct eo_outline line_outline = EO_OUTLINE("OrderLines", line_rows
 
 static json_t *encode_lines(int count, const struct eo_order_line *line)
 {
-  double order[EO_MESH_ORDERS], amplitude[EO_MESH_ORDERS], phase[EO_MESH_ORDERS], sigma[EO_MESH_ORDERS], acceleration[EO_MESH_ORDERS];
+  double order[EO_MESH_ORDERS], amplitude[EO_MESH_ORDERS], phase[EO_MESH_ORDERS], sigma[EO_MESH_ORDERS],
+      acceleration[EO_MESH_ORDERS];
   struct eo_result_object o = eo_result_open_as(&line_outline);
   for (int i = 0; i < count; i++) {
     order[i] = line[i].order;
@@ -127,7 +137,8 @@ static json_t *encode_lines(int count, const struct eo_order_line *line)
   eo_result_put(&o, "amplitude_um", eo_json_reals(count, amplitude, 1, &eo_unit_um, EO_DIGITS_NUMBER));
   eo_result_put(&o, "phase_rad", eo_json_reals(count, phase, 1, NULL, EO_DIGITS_NUMBER));
   eo_result_put(&o, "sigma_um", column(count, sigma, &eo_unit_um));
-  eo_result_put(&o, "acceleration_m_per_s2", eo_json_reals(count, acceleration, 1, &eo_unit_m_per_s2, EO_DIGITS_NUMBER));
+  eo_result_put(&o, "acceleration_m_per_s2",
+                eo_json_reals(count, acceleration, 1, &eo_unit_m_per_s2, EO_DIGITS_NUMBER));
   return eo_result_close(&o);
 }
 
@@ -259,7 +270,8 @@ static json_t *encode_te(const struct eo_transmission *t)
   return eo_result_close(&o);
 }
 
-static const struct eo_outline_row turn_rows[] = {EO_KEY("pinion", "number", "turns"), EO_KEY("gear", "number", "turns")};
+static const struct eo_outline_row turn_rows[] = {EO_KEY("pinion", "number", "turns"),
+                                                  EO_KEY("gear", "number", "turns")};
 static const struct eo_outline turn_outline = EO_OUTLINE("Turns", turn_rows);
 
 static const struct eo_outline_row speed_rows[] = {
@@ -295,7 +307,8 @@ static const struct eo_outline result_outline = EO_OUTLINE("MeasuredResult", res
 
 static json_t *encode_result(const struct eo_transmission *t)
 {
-  struct eo_result_object o = eo_result_open_as(&result_outline), speed = eo_result_open_as(&speed_outline), turns = eo_result_open_as(&turn_outline);
+  struct eo_result_object o = eo_result_open_as(&result_outline), speed = eo_result_open_as(&speed_outline),
+                          turns = eo_result_open_as(&turn_outline);
   eo_result_put(&o, "rows", json_integer(t->rows));
   eo_result_put_number(&o, "seconds", t->seconds);
   eo_result_put_number(&turns, "pinion", t->revolutions[EO_PINION]);
@@ -357,7 +370,8 @@ static const struct eo_outline_row brief_finding_rows[] = {
 };
 static const struct eo_outline brief_finding = EO_OUTLINE("BriefFinding", brief_finding_rows);
 
-static const struct eo_outline_row brief_te_rows[] = {EO_KEY("peak_to_peak_um", "number?", "of the mesh orders together", .unit = &eo_unit_um)};
+static const struct eo_outline_row brief_te_rows[] = {
+    EO_KEY("peak_to_peak_um", "number?", "of the mesh orders together", .unit = &eo_unit_um)};
 static const struct eo_outline brief_te = EO_OUTLINE("BriefTransmissionError", brief_te_rows);
 
 static const struct eo_outline_row brief_result_rows[] = {
@@ -392,7 +406,8 @@ static int count_warnings(const json_t *document)
   int warnings = 0;
   size_t index;
   json_t *finding;
-  json_array_foreach(json_object_get(document, "findings"), index, finding) {
+  json_array_foreach(json_object_get(document, "findings"), index, finding)
+  {
     const char *severity = json_string_value(json_object_get(finding, "severity"));
     warnings += severity && (strcmp(severity, "warning") == 0 || strcmp(severity, "refused") == 0);
   }
@@ -401,7 +416,8 @@ static int count_warnings(const json_t *document)
 
 enum eo_code eo_measured_decode(const json_t *document, struct eo_measured *m, struct eo_error *error)
 {
-  const char *file = json_string_value(json_object_get(document, "file")), *label = json_string_value(json_object_get(document, "label"));
+  const char *file = json_string_value(json_object_get(document, "file")),
+             *label = json_string_value(json_object_get(document, "label"));
   const char *end = json_string_value(json_object_get(document, "end"));
   memset(m, 0, sizeof *m);
   if (!json_is_object(json_object_get(document, "result")))
@@ -417,13 +433,15 @@ enum eo_code eo_measured_decode(const json_t *document, struct eo_measured *m, s
   m->harmonics = m->harmonics < EO_MESH_ORDERS ? m->harmonics : EO_MESH_ORDERS;
   for (int h = 0; h < m->harmonics; h++) {
     double amplitude = eo_unit_in(&eo_unit_um, number_at(document, "result/mesh/amplitude_um", h));
-    m->order[h] = (struct eo_order_line){.order = number_at(document, "result/mesh/order", h),
-                                         .amplitude = amplitude * cexp(I * number_at(document, "result/mesh/phase_rad", h)),
-                                         .sigma = eo_unit_in(&eo_unit_um, number_at(document, "result/mesh/sigma_um", h)),
-                                         .acceleration = number_at(document, "result/mesh/acceleration_m_per_s2", h)};
+    m->order[h] =
+        (struct eo_order_line){.order = number_at(document, "result/mesh/order", h),
+                               .amplitude = amplitude * cexp(I * number_at(document, "result/mesh/phase_rad", h)),
+                               .sigma = eo_unit_in(&eo_unit_um, number_at(document, "result/mesh/sigma_um", h)),
+                               .acceleration = number_at(document, "result/mesh/acceleration_m_per_s2", h)};
   }
   m->warnings = count_warnings(document);
   if (!(m->torque > 0) || !(m->speed > 0) || !(m->rms >= 0) || m->harmonics < 1)
-    return eo_error_set(error, EO_ERROR_INPUT, "/result", "The document is no measurement: torque, speed, RMS or mesh orders are missing.");
+    return eo_error_set(error, EO_ERROR_INPUT, "/result",
+                        "The document is no measurement: torque, speed, RMS or mesh orders are missing.");
   return EO_OK;
 }

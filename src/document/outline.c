@@ -31,7 +31,7 @@ static json_t *take_each(const struct eo_outline *outline, const json_t *array)
   json_t *member;
   size_t i;
   json_array_foreach((json_t *)array, i, member)
-    list.failed = json_array_append_new(list.json, eo_outline_take(outline, member)) != 0 || list.failed;
+      list.failed = json_array_append_new(list.json, eo_outline_take(outline, member)) != 0 || list.failed;
   return eo_result_close(&list);
 }
 
@@ -44,7 +44,8 @@ json_t *eo_outline_take(const struct eo_outline *outline, const json_t *document
     if (row->outline && json_is_array(value))
       eo_result_put(&o, row->key, take_each(row->outline, value));
     else if (value)
-      eo_result_put(&o, row->key, row->outline && json_is_object(value) ? eo_outline_take(row->outline, value) : json_incref(value));
+      eo_result_put(&o, row->key,
+                    row->outline && json_is_object(value) ? eo_outline_take(row->outline, value) : json_incref(value));
   }
   return eo_result_close(&o);
 }
@@ -53,7 +54,8 @@ json_t *eo_outline_take(const struct eo_outline *outline, const json_t *document
 
 static json_t *reference(const struct eo_outline_row *row)
 {
-  return json_pack("{s:o}", "$ref", json_sprintf("#/components/schemas/%s", row->outline ? row->outline->name : row->name));
+  return json_pack("{s:o}", "$ref",
+                   json_sprintf("#/components/schemas/%s", row->outline ? row->outline->name : row->name));
 }
 
 static json_t *list_words(const char *const *words)
@@ -75,7 +77,8 @@ static bool take(const char **at, const char *word)
 
 static json_t *read_plain(const char **at, const struct eo_outline_row *row)
 {
-  static const char *const word[] = {"number", "integer", "flag", "text"}, *const type[] = {"number", "integer", "boolean", "string"};
+  static const char *const word[] = {"number", "integer", "flag", "text"}, *const type[] = {"number", "integer",
+                                                                                            "boolean", "string"};
   for (int i = 0; i < 4; i++)
     if (take(at, word[i]))
       return json_pack("{s:s}", "type", type[i]);
@@ -132,7 +135,8 @@ static json_t *object_schema(const struct eo_outline *outline)
 bool eo_outline_add_schemas(const struct eo_outline *outline, json_t *schemas)
 {
   const struct eo_outline_row *row;
-  bool good = json_object_get(schemas, outline->name) || json_object_set_new(schemas, outline->name, object_schema(outline)) == 0;
+  bool good = json_object_get(schemas, outline->name) ||
+              json_object_set_new(schemas, outline->name, object_schema(outline)) == 0;
   for (int i = 0; good && (row = eo_outline_at(outline, i)); i++) {
     if (row->outline && !json_object_get(schemas, row->outline->name))
       good = eo_outline_add_schemas(row->outline, schemas);

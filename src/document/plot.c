@@ -6,7 +6,8 @@
 enum { WIDTH = 640, HEIGHT = 380, LEFT = 64, RIGHT = 16, TOP = 34, BOTTOM = 84 };
 
 /* Distinct for the colour-blind too (Okabe and Ito 2008). */
-static const char *const colours[EO_PLOT_SERIES] = {"#000000", "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#8a8a00"};
+static const char *const colours[EO_PLOT_SERIES] = {"#000000", "#0072b2", "#d55e00", "#009e73",
+                                                    "#cc79a7", "#e69f00", "#56b4e9", "#8a8a00"};
 static const char *const dashes[EO_PLOT_SERIES] = {"", "", "", "6 3", "6 3", "2 3", "2 3", "8 3 2 3"};
 
 struct axis {
@@ -94,13 +95,17 @@ static void draw_grid(const struct frame *f)
   struct eo_text *t = f->text;
   for (double x = f->x.step * ceil(f->x.low / f->x.step - 1e-9); x <= f->x.high + 1e-9 * f->x.step; x += f->x.step) {
     double at = place_x(f, x);
-    eo_text_print(t, "<line class=\"grid\" x1=\"%.1f\" x2=\"%.1f\" y1=\"%d\" y2=\"%d\" stroke=\"#ddd\"/>", at, at, TOP, HEIGHT - BOTTOM);
-    eo_text_print(t, "<text x=\"%.1f\" y=\"%d\" text-anchor=\"middle\">%.6g</text>\n", at, HEIGHT - BOTTOM + 16, fabs(x) < 1e-9 * f->x.step ? 0 : x);
+    eo_text_print(t, "<line class=\"grid\" x1=\"%.1f\" x2=\"%.1f\" y1=\"%d\" y2=\"%d\" stroke=\"#ddd\"/>", at, at, TOP,
+                  HEIGHT - BOTTOM);
+    eo_text_print(t, "<text x=\"%.1f\" y=\"%d\" text-anchor=\"middle\">%.6g</text>\n", at, HEIGHT - BOTTOM + 16,
+                  fabs(x) < 1e-9 * f->x.step ? 0 : x);
   }
   for (double y = f->y.low; y <= f->y.high + 1e-9 * f->y.step; y += f->y.step) {
     double at = place_y(f, y);
-    eo_text_print(t, "<line class=\"grid\" x1=\"%d\" x2=\"%d\" y1=\"%.1f\" y2=\"%.1f\" stroke=\"#ddd\"/>", LEFT, WIDTH - RIGHT, at, at);
-    eo_text_print(t, "<text x=\"%d\" y=\"%.1f\" text-anchor=\"end\">%.6g</text>\n", LEFT - 6, at + 4, fabs(y) < 1e-9 * f->y.step ? 0 : y);
+    eo_text_print(t, "<line class=\"grid\" x1=\"%d\" x2=\"%d\" y1=\"%.1f\" y2=\"%.1f\" stroke=\"#ddd\"/>", LEFT,
+                  WIDTH - RIGHT, at, at);
+    eo_text_print(t, "<text x=\"%d\" y=\"%.1f\" text-anchor=\"end\">%.6g</text>\n", LEFT - 6, at + 4,
+                  fabs(y) < 1e-9 * f->y.step ? 0 : y);
   }
 }
 
@@ -109,9 +114,11 @@ static void draw_labels(const struct frame *f)
   struct eo_text *t = f->text;
   eo_text_print(t, "<text class=\"title\" x=\"%d\" y=\"18\" font-weight=\"bold\">", LEFT);
   eo_plot_escape(t, f->plot->title);
-  eo_text_print(t, "</text>\n<text x=\"%d\" y=\"%d\" text-anchor=\"middle\">", (LEFT + WIDTH - RIGHT) / 2, HEIGHT - BOTTOM + 32);
+  eo_text_print(t, "</text>\n<text x=\"%d\" y=\"%d\" text-anchor=\"middle\">", (LEFT + WIDTH - RIGHT) / 2,
+                HEIGHT - BOTTOM + 32);
   eo_plot_escape(t, f->plot->x_label);
-  eo_text_print(t, "</text>\n<text transform=\"translate(14 %d) rotate(-90)\" text-anchor=\"middle\">", (TOP + HEIGHT - BOTTOM) / 2);
+  eo_text_print(t, "</text>\n<text transform=\"translate(14 %d) rotate(-90)\" text-anchor=\"middle\">",
+                (TOP + HEIGHT - BOTTOM) / 2);
   eo_plot_escape(t, f->plot->y_label);
   eo_text_add(t, "</text>\n");
 }
@@ -119,7 +126,10 @@ static void draw_labels(const struct frame *f)
 static void draw_line(const struct frame *f, const struct eo_plot_series *line, int i)
 {
   bool drawing = false;
-  eo_text_print(f->text, "<path class=\"series s%d\" fill=\"none\" stroke=\"%s\" stroke-width=\"1.6\" stroke-dasharray=\"%s\" d=\"", i, colours[i], dashes[i]);
+  eo_text_print(
+      f->text,
+      "<path class=\"series s%d\" fill=\"none\" stroke=\"%s\" stroke-width=\"1.6\" stroke-dasharray=\"%s\" d=\"", i,
+      colours[i], dashes[i]);
   for (int j = 0; j < line->count; j++) {
     bool good = isfinite(line->x[j]) && isfinite(line->y[j]);
     if (good)
@@ -133,8 +143,8 @@ static void draw_dots(const struct frame *f, const struct eo_plot_series *line, 
 {
   for (int j = 0; j < line->count; j++)
     if (isfinite(line->x[j]) && isfinite(line->y[j]))
-      eo_text_print(f->text, "<circle class=\"dot s%d\" cx=\"%.1f\" cy=\"%.1f\" r=\"4\" fill=\"%s\"/>\n", i, place_x(f, line->x[j]), place_y(f, line->y[j]),
-                    colours[i]);
+      eo_text_print(f->text, "<circle class=\"dot s%d\" cx=\"%.1f\" cy=\"%.1f\" r=\"4\" fill=\"%s\"/>\n", i,
+                    place_x(f, line->x[j]), place_y(f, line->y[j]), colours[i]);
 }
 
 /* Below the axis, in as many rows as the names need. */
@@ -150,10 +160,13 @@ static void draw_legend(const struct frame *f)
       y += 16;
     }
     if (f->plot->line[i].dots)
-      eo_text_print(f->text, "<circle class=\"dot s%d\" cx=\"%.1f\" cy=\"%d\" r=\"4\" fill=\"%s\"/>", i, x + 10, y - 4, colours[i]);
+      eo_text_print(f->text, "<circle class=\"dot s%d\" cx=\"%.1f\" cy=\"%d\" r=\"4\" fill=\"%s\"/>", i, x + 10, y - 4,
+                    colours[i]);
     else
-      eo_text_print(f->text, "<line class=\"series s%d\" x1=\"%.1f\" x2=\"%.1f\" y1=\"%d\" y2=\"%d\" stroke=\"%s\" stroke-width=\"1.6\" stroke-dasharray=\"%s\"/>", i, x,
-                    x + 20, y - 4, y - 4, colours[i], dashes[i]);
+      eo_text_print(f->text,
+                    "<line class=\"series s%d\" x1=\"%.1f\" x2=\"%.1f\" y1=\"%d\" y2=\"%d\" stroke=\"%s\" "
+                    "stroke-width=\"1.6\" stroke-dasharray=\"%s\"/>",
+                    i, x, x + 20, y - 4, y - 4, colours[i], dashes[i]);
     eo_text_print(f->text, "<text x=\"%.1f\" y=\"%d\">", x + 24, y);
     eo_plot_escape(f->text, name);
     eo_text_add(f->text, "</text>\n");
@@ -164,10 +177,14 @@ static void draw_legend(const struct frame *f)
 void eo_plot_svg(const struct eo_plot *plot, struct eo_text *text)
 {
   struct frame f = find_frame(plot, text);
-  eo_text_print(text, "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 %d %d\" role=\"img\" font-family=\"sans-serif\" font-size=\"12\">\n", WIDTH, HEIGHT);
+  eo_text_print(text,
+                "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 %d %d\" role=\"img\" "
+                "font-family=\"sans-serif\" font-size=\"12\">\n",
+                WIDTH, HEIGHT);
   draw_grid(&f);
-  eo_text_print(text, "<rect class=\"frame\" x=\"%d\" y=\"%d\" width=\"%d\" height=\"%d\" fill=\"none\" stroke=\"#888\"/>\n", LEFT, TOP, WIDTH - LEFT - RIGHT,
-                HEIGHT - TOP - BOTTOM);
+  eo_text_print(text,
+                "<rect class=\"frame\" x=\"%d\" y=\"%d\" width=\"%d\" height=\"%d\" fill=\"none\" stroke=\"#888\"/>\n",
+                LEFT, TOP, WIDTH - LEFT - RIGHT, HEIGHT - TOP - BOTTOM);
   draw_labels(&f);
   for (int i = 0; i < plot->series; i++)
     if (plot->line[i].dots)

@@ -1,5 +1,5 @@
-/* Line plots as SVG (1.1) that stands alone or inside an HTML page: axes with round numbers, grid, legend; colours by CSS classes with
-   attributes as a fallback, so that a page may restyle them. */
+/* Line plots as SVG (1.1) that stands alone or inside an HTML page: axes with round numbers, grid, legend; colours by
+   CSS classes with attributes as a fallback, so that a page may restyle them. */
 #ifndef EASEOFF_DOCUMENT_PLOT_H
 #define EASEOFF_DOCUMENT_PLOT_H
 
@@ -18,7 +18,7 @@ struct eo_plot {
     const double *x, *y; /* [count]; points that are not finite interrupt the line */
     bool dots;           /* points instead of a line */
   } line[EO_PLOT_SERIES];
-  bool from_zero;        /* the y axis begins at 0 */
+  bool from_zero; /* the y axis begins at 0 */
 };
 
 /* Appends one <svg> element. */

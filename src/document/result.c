@@ -14,7 +14,8 @@ const char *const eo_result_member[2] = {"pinion", "gear"};
 
 json_t *eo_result_number(double value, const struct eo_unit *unit)
 {
-  json_t *column = eo_result_column(1, &value, 1, unit, EO_DIGITS_NUMBER), *number = json_incref(json_array_get(column, 0));
+  json_t *column = eo_result_column(1, &value, 1, unit, EO_DIGITS_NUMBER),
+         *number = json_incref(json_array_get(column, 0));
   json_decref(column);
   return number;
 }
@@ -29,7 +30,8 @@ json_t *eo_result_column(int count, const double *value, double scale, const str
   return column;
 }
 
-json_t *eo_result_end_column(const struct eo_result_source *source, int end, const double *value, double scale, const struct eo_unit *unit)
+json_t *eo_result_end_column(const struct eo_result_source *source, int end, const double *value, double scale,
+                             const struct eo_unit *unit)
 {
   int n = source->positions, lag = end == EO_RIGHT ? source->lag : 0;
   for (int j = 0; j < n; j++)
@@ -37,7 +39,8 @@ json_t *eo_result_end_column(const struct eo_result_source *source, int end, con
   return eo_result_column(n, source->scratch, scale, unit, EO_DIGITS_CURVE);
 }
 
-json_t *eo_result_map(const struct eo_result_source *source, int rows, int columns, const double *value, const struct eo_unit *unit)
+json_t *eo_result_map(const struct eo_result_source *source, int rows, int columns, const double *value,
+                      const struct eo_unit *unit)
 {
   if (source->left_out & EO_RESULT_NO_MAPS)
     return json_null();
@@ -119,7 +122,8 @@ json_t *eo_result_position(const struct eo_result_source *source)
 {
   for (int j = 0; j < source->positions; j++)
     source->scratch[j] = source->pair->grid->position[j].phase;
-  return eo_result_column(source->positions, source->scratch, 1 / source->pair->geometry.transverse_base_pitch, NULL, EO_DIGITS_CURVE);
+  return eo_result_column(source->positions, source->scratch, 1 / source->pair->geometry.transverse_base_pitch, NULL,
+                          EO_DIGITS_CURVE);
 }
 
 static const struct eo_outline_row contact_rows[] = {
@@ -127,7 +131,8 @@ static const struct eo_outline_row contact_rows[] = {
     EO_KEY("speed_rpm", "number", "of the pinion", .unit = &eo_unit_rpm),
     EO_KEY("share", "number", "of the operating time"),
     EO_KEY("normal_force_N", "number", "of one end, normal to the teeth", .unit = &eo_unit_N),
-    EO_KEY("outcome", "word", "not_converged: of the contact or of the vibration; contact_lost: teeth separate", .words = outcomes),
+    EO_KEY("outcome", "word", "not_converged: of the contact or of the vibration; contact_lost: teeth separate",
+           .words = outcomes),
     EO_KEY("position", "[number]", "phase of the mesh cycle of the left end, 0..1, over which the static curves run"),
     EO_KEY("lte", "object", "loaded transmission error, transverse", .outline = &eo_outline_lte),
     EO_KEY("mesh_stiffness", "object", "mesh stiffness, normal", .outline = &eo_outline_stiffness),
@@ -136,7 +141,8 @@ static const struct eo_outline_row contact_rows[] = {
 static const struct eo_outline contact_half = EO_OUTLINE(NULL, contact_rows);
 
 static const struct eo_outline_row consequence_rows[] = {
-    EO_KEY("body_deflection", "object", "what shafts and bodies do to the gap", .when = "with elastic shafts", .outline = &eo_outline_bodies),
+    EO_KEY("body_deflection", "object", "what shafts and bodies do to the gap", .when = "with elastic shafts",
+           .outline = &eo_outline_bodies),
     EO_KEY("impact", "object", "entering impact", .outline = &eo_outline_impact),
     EO_KEY("root_stress", "object?", "null when it was not asked for", .outline = &eo_outline_root_stress),
     EO_KEY("vibration", "object", "vibration", .outline = &eo_outline_vibration),
@@ -206,7 +212,8 @@ static json_t *encode_cases(struct eo_result_source *source)
 static const struct eo_outline_row raw_case_rows[] = {
     EO_KEY("torque_Nm", "number", "on the pinion shaft", .unit = &eo_unit_Nm),
     EO_KEY("speed_rpm", "number", "of the pinion", .unit = &eo_unit_rpm),
-    EO_KEY("peak_to_peak_um", "number?", "loaded transmission error; null, as all below, when the evaluation failed", .unit = &eo_unit_um),
+    EO_KEY("peak_to_peak_um", "number?", "loaded transmission error; null, as all below, when the evaluation failed",
+           .unit = &eo_unit_um),
     EO_KEY("impact_N", "number?", "general entering impact, worse end", .unit = &eo_unit_N),
     EO_KEY("rms_m_per_s2", "number?", "normal acceleration, RMS", .unit = &eo_unit_m_per_s2),
     EO_KEY("contact_pressure_MPa", "number?", "largest", .unit = &eo_unit_MPa),
@@ -244,7 +251,9 @@ static json_t *encode_raw(const struct eo_result_source *source, const struct eo
 }
 
 static const struct eo_outline_row value_rows[] = {
-    EO_KEY("f1_um", "number?", "first objective: loaded transmission error over the duty cycle; null, as all, when it is not known", .unit = &eo_unit_um),
+    EO_KEY("f1_um", "number?",
+           "first objective: loaded transmission error over the duty cycle; null, as all, when it is not known",
+           .unit = &eo_unit_um),
     EO_KEY("f2_N", "number?", "second: entering impact", .unit = &eo_unit_N),
     EO_KEY("f3_m_per_s2", "number?", "third: vibration", .unit = &eo_unit_m_per_s2),
     EO_KEY("J", "number?", "their weighted sum: what is minimised"),
@@ -256,7 +265,8 @@ const struct eo_outline eo_outline_value = EO_OUTLINE("Value", value_rows);
 void eo_result_put_value(struct eo_result_object *o, const struct eo_objective_value *value)
 {
   double known = value->sums.failed ? NAN : 1;
-  const double number[] = {known * value->sums.f[0], known * value->sums.f[1], known * value->sums.f[2], value->objective, value->fitness, value->violation};
+  const double number[] = {known * value->sums.f[0], known * value->sums.f[1], known * value->sums.f[2],
+                           value->objective,         value->fitness,           value->violation};
   for (int i = 0; i < eo_outline_value.count; i++)
     eo_result_put(o, value_rows[i].key, eo_result_number(number[i], value_rows[i].unit));
 }
@@ -278,7 +288,8 @@ static const struct eo_outline objectives_outline = EO_OUTLINE("ResultObjectives
 static json_t *encode_objectives(const struct eo_result_source *source)
 {
   const struct eo_analysis *a = source->analysis;
-  struct eo_result_object o = eo_result_open_as(&objectives_outline), unmodified = eo_result_open_as(&unmodified_outline);
+  struct eo_result_object o = eo_result_open_as(&objectives_outline),
+                          unmodified = eo_result_open_as(&unmodified_outline);
   eo_result_put_value(&o, &a->value);
   eo_result_put_value(&unmodified, &a->unmodified_value);
   eo_result_put(&o, "load_cases", encode_raw(source, source->evaluation->objective));
@@ -305,9 +316,16 @@ static json_t *encode_timing(const struct eo_result_source *source)
 {
   const struct eo_evaluation *r = source->evaluation;
   struct eo_result_object o = eo_result_open_as(&timing);
-  const struct { const char *key; double milliseconds; } row[] = {
-      {"preparation", 1e3 * source->pair->seconds}, {"unmodified", source->analysis->unmodified_ms}, {"static", r->static_ms},
-      {"impact", r->impact_ms}, {"root", r->root_ms}, {"dynamics", r->dynamics_ms}, {"evaluation", source->analysis->design_ms}};
+  const struct {
+    const char *key;
+    double milliseconds;
+  } row[] = {{"preparation", 1e3 * source->pair->seconds},
+             {"unmodified", source->analysis->unmodified_ms},
+             {"static", r->static_ms},
+             {"impact", r->impact_ms},
+             {"root", r->root_ms},
+             {"dynamics", r->dynamics_ms},
+             {"evaluation", source->analysis->design_ms}};
   for (size_t i = 0; i < sizeof row / sizeof *row; i++)
     eo_result_put(&o, row[i].key, json_real(round(1e3 * row[i].milliseconds) / 1e3));
   return eo_result_close(&o);
@@ -324,7 +342,8 @@ static const struct eo_outline_row result_rows[] = {
     EO_KEY("unloaded_contact", "object", "the same for every load case", .outline = &eo_outline_unloaded),
     EO_KEY("load_cases", "[object]", "in the order of the design", .outline = &case_outline),
     EO_KEY("objectives", "object", "of the duty cycle", .outline = &objectives_outline),
-    EO_KEY("eigenfrequencies_Hz", "[number?]?", "with the mean mesh stiffness of the load case with the heaviest share", .unit = &eo_unit_Hz),
+    EO_KEY("eigenfrequencies_Hz", "[number?]?", "with the mean mesh stiffness of the load case with the heaviest share",
+           .unit = &eo_unit_Hz),
     EO_KEY("damping_ratios", "[number?]?", "of these modes"),
     EO_KEY("warnings", "[text]", "in plain words"),
     EO_KEY("timing_ms", "object", "the only part that differs between two runs", .outline = &timing),
@@ -359,8 +378,10 @@ json_t *eo_result_tail(const struct eo_result_source *source, const struct eo_wa
   struct eo_result_object o = eo_result_open_as(&eo_result_outline);
   o.next = CASES_ROW + 1;
   eo_result_put(&o, "objectives", encode_objectives(source));
-  eo_result_put(&o, "eigenfrequencies_Hz", have_modes ? eo_json_reals(modes->n, modes->frequency, 1, &eo_unit_Hz, EO_DIGITS_CURVE) : json_null());
-  eo_result_put(&o, "damping_ratios", have_modes ? eo_json_reals(modes->n, modes->damping_ratio, 1, NULL, EO_DIGITS_CURVE) : json_null());
+  eo_result_put(&o, "eigenfrequencies_Hz",
+                have_modes ? eo_json_reals(modes->n, modes->frequency, 1, &eo_unit_Hz, EO_DIGITS_CURVE) : json_null());
+  eo_result_put(&o, "damping_ratios",
+                have_modes ? eo_json_reals(modes->n, modes->damping_ratio, 1, NULL, EO_DIGITS_CURVE) : json_null());
   eo_result_put(&o, "warnings", eo_result_warnings(source, warnings));
   eo_result_put(&o, "timing_ms", encode_timing(source));
   return eo_result_close(&o);
@@ -374,12 +395,19 @@ static json_t *encode_all(struct eo_result_source *source, const struct eo_warni
   return unite(eo_result_close_part(&o), eo_result_tail(source, warnings));
 }
 
-bool eo_result_source_init(struct eo_result_source *source, const struct eo_analysis *analysis, const struct eo_design *design, unsigned left_out)
+bool eo_result_source_init(struct eo_result_source *source, const struct eo_analysis *analysis,
+                           const struct eo_design *design, unsigned left_out)
 {
   const struct eo_evaluation *r = analysis->evaluation;
-  *source = (struct eo_result_source){.analysis = analysis, .evaluation = r, .pair = analysis->pair, .design = design, .ends = r->ends,
-                                      .positions = r->positions, .lag = eo_evaluator_stagger(design, r->positions),
-                                      .normal = cos(analysis->pair->geometry.base_helix_angle), .left_out = left_out};
+  *source = (struct eo_result_source){.analysis = analysis,
+                                      .evaluation = r,
+                                      .pair = analysis->pair,
+                                      .design = design,
+                                      .ends = r->ends,
+                                      .positions = r->positions,
+                                      .lag = eo_evaluator_stagger(design, r->positions),
+                                      .normal = cos(analysis->pair->geometry.base_helix_angle),
+                                      .left_out = left_out};
   source->pattern = malloc(sizeof *source->pattern);
   source->scratch = calloc((size_t)r->positions, sizeof *source->scratch);
   if (source->pattern)
@@ -393,12 +421,14 @@ void eo_result_source_done(struct eo_result_source *source)
   free(source->scratch);
 }
 
-json_t *eo_result_encode(const struct eo_analysis *analysis, const struct eo_design *design, const struct eo_warnings *warnings)
+json_t *eo_result_encode(const struct eo_analysis *analysis, const struct eo_design *design,
+                         const struct eo_warnings *warnings)
 {
   return eo_result_encode_part(analysis, design, warnings, 0);
 }
 
-json_t *eo_result_encode_part(const struct eo_analysis *analysis, const struct eo_design *design, const struct eo_warnings *warnings, unsigned left_out)
+json_t *eo_result_encode_part(const struct eo_analysis *analysis, const struct eo_design *design,
+                              const struct eo_warnings *warnings, unsigned left_out)
 {
   struct eo_result_source source;
   double edge_pressure[EO_MAX_LOAD_CASES][2];

@@ -1,13 +1,15 @@
-/* The result document: one true evaluation as JSON. The terminal, the server and the files of --csv show this and nothing else.
+/* The result document: one true evaluation as JSON. The terminal, the server and the files of --csv show this and
+   nothing else.
 
-   Top level: program, design (every default resolved), design_hash (SHA-256 of the canonical design), evaluation_hash (the same without
-   name, objective and optimization), resolution, geometry, modification, unloaded_contact, load_cases, objectives, eigenfrequencies_Hz,
-   damping_ratios, warnings, timing_ms (the only part that differs between two runs).
+   Top level: program, design (every default resolved), design_hash (SHA-256 of the canonical design), evaluation_hash
+   (the same without name, objective and optimization), resolution, geometry, modification, unloaded_contact,
+   load_cases, objectives, eigenfrequencies_Hz, damping_ratios, warnings, timing_ms (the only part that differs between
+   two runs).
 
-   Curves are columns over a `position` beside them (0..1 of the mesh cycle of the left end; the right end's columns are shifted by the
-   stagger). Transmission error is transverse, along the line of action; stiffness, forces and pressure are normal to the flank. A member
-   named left or right belongs to that end; with one end there is only left. What was not computed or is not finite is null. Curves have
-   9 significant digits, maps and histories 6, single numbers 12. */
+   Curves are columns over a `position` beside them (0..1 of the mesh cycle of the left end; the right end's columns are
+   shifted by the stagger). Transmission error is transverse, along the line of action; stiffness, forces and pressure
+   are normal to the flank. A member named left or right belongs to that end; with one end there is only left. What was
+   not computed or is not finite is null. Curves have 9 significant digits, maps and histories 6, single numbers 12. */
 #ifndef EASEOFF_DOCUMENT_RESULT_H
 #define EASEOFF_DOCUMENT_RESULT_H
 
@@ -21,20 +23,24 @@
 
 extern const struct eo_outline eo_result_outline;
 
-/* New document of the analysis' last run; design is the one that was analysed. warnings (may be NULL): of reading the design, they come
-   first. NULL without memory. */
-json_t *eo_result_encode(const struct eo_analysis *analysis, const struct eo_design *design, const struct eo_warnings *warnings);
+/* New document of the analysis' last run; design is the one that was analysed. warnings (may be NULL): of reading the
+   design, they come first. NULL without memory. */
+json_t *eo_result_encode(const struct eo_analysis *analysis, const struct eo_design *design,
+                         const struct eo_warnings *warnings);
 
 /* The same without what is long: null stands in its place. */
 enum {
   EO_RESULT_NO_MAPS = 1,      /* pressure and clearance over the flank */
   EO_RESULT_NO_HISTORIES = 2, /* of the vibration and of the root stress */
 };
-json_t *eo_result_encode_part(const struct eo_analysis *analysis, const struct eo_design *design, const struct eo_warnings *warnings, unsigned left_out);
+json_t *eo_result_encode_part(const struct eo_analysis *analysis, const struct eo_design *design,
+                              const struct eo_warnings *warnings, unsigned left_out);
 
-/* The same as compact JSON, appended to the text, on as many threads as the analysis may use. The same bytes as eo_json_write() gives. */
-enum eo_code eo_result_write(const struct eo_analysis *analysis, const struct eo_design *design, const struct eo_warnings *warnings, unsigned left_out,
-                             struct eo_text *text, struct eo_error *error);
+/* The same as compact JSON, appended to the text, on as many threads as the analysis may use. The same bytes as
+   eo_json_write() gives. */
+enum eo_code eo_result_write(const struct eo_analysis *analysis, const struct eo_design *design,
+                             const struct eo_warnings *warnings, unsigned left_out, struct eo_text *text,
+                             struct eo_error *error);
 
 /* For people: each load case unmodified and as designed, the objectives, warnings, where the time went. */
 void eo_result_summary(const json_t *result, struct eo_text *text);
@@ -42,8 +48,8 @@ void eo_result_summary(const json_t *result, struct eo_text *text);
 /* One line per load case, CSV: what stands in "objectives", as designed and unmodified. */
 void eo_result_summary_csv(const json_t *result, struct eo_text *text);
 
-/* The curves as files of comma-separated values with the same names and units: summary, modification, unloaded contact, and for every load
-   case curves, root stress, vibration, orders and one contact pattern per end. */
+/* The curves as files of comma-separated values with the same names and units: summary, modification, unloaded contact,
+   and for every load case curves, root stress, vibration, orders and one contact pattern per end. */
 void eo_result_files(const json_t *result, struct eo_bundle *bundle);
 
 #endif

@@ -30,7 +30,8 @@ static double mean(int n, const double *value)
 static json_t *encode_orders(int n, const double *value, const struct eo_unit *unit)
 {
   int harmonics = (n - 1) / 2;
-  double (*amplitude)[2] = malloc(sizeof *amplitude * (size_t)(harmonics + 1)), *order = malloc(sizeof *order * (size_t)(harmonics + 1));
+  double(*amplitude)[2] = malloc(sizeof *amplitude * (size_t)(harmonics + 1)),
+  *order = malloc(sizeof *order * (size_t)(harmonics + 1));
   json_t *column = NULL;
   if (amplitude && order) {
     order[0] = eo_periodic_harmonics(n, value, harmonics, amplitude);
@@ -43,8 +44,8 @@ static json_t *encode_orders(int n, const double *value, const struct eo_unit *u
   return column;
 }
 
-static void put_end_columns(struct eo_result_object *o, const struct eo_result_source *source, const char *format, const double *const value[2],
-                            double scale, const struct eo_unit *unit)
+static void put_end_columns(struct eo_result_object *o, const struct eo_result_source *source, const char *format,
+                            const double *const value[2], double scale, const struct eo_unit *unit)
 {
   for (int end = 0; end < source->ends; end++) {
     char key[64];
@@ -71,7 +72,8 @@ static const struct eo_outline_row lte_rows[] = {
     EO_KEY("left_peak_to_peak_um", "number?", "of the left end", .unit = &eo_unit_um),
     EO_KEY("right_peak_to_peak_um", "number?", "of the right end", .unit = &eo_unit_um, .when = EO_TWO_ENDS),
     EO_KEY("mean_um", "number?", "of the pair over the mesh cycle", .unit = &eo_unit_um),
-    EO_KEY("orders_um", "[number?]", "the mean, then the amplitudes of the mesh harmonics 1, 2, ... of the pair", .unit = &eo_unit_um),
+    EO_KEY("orders_um", "[number?]", "the mean, then the amplitudes of the mesh harmonics 1, 2, ... of the pair",
+           .unit = &eo_unit_um),
     EO_KEY("axial_float_um", "[number?]", "where the pinion settles along its axis, over the positions",
            .unit = &eo_unit_um, .when = "with two ends and a floating pinion"),
 };
@@ -102,10 +104,13 @@ static const struct eo_outline_row stiffness_mean_rows[] = {
 static const struct eo_outline stiffness_mean = EO_OUTLINE("MeanMeshStiffness", stiffness_mean_rows);
 
 static const struct eo_outline_row stiffness_rows[] = {
-    EO_KEY("left_N_per_um", "[number?]", "load over approach from first contact, normal, left end, over the positions", .unit = &eo_unit_N_per_um),
+    EO_KEY("left_N_per_um", "[number?]", "load over approach from first contact, normal, left end, over the positions",
+           .unit = &eo_unit_N_per_um),
     EO_KEY("right_N_per_um", "[number?]", "the same, right end", .unit = &eo_unit_N_per_um, .when = EO_TWO_ENDS),
-    EO_KEY("tangent_left_N_per_um", "[number?]", "change of load over change of approach, normal, left end, over the positions", .unit = &eo_unit_N_per_um),
-    EO_KEY("tangent_right_N_per_um", "[number?]", "the same, right end", .unit = &eo_unit_N_per_um, .when = EO_TWO_ENDS),
+    EO_KEY("tangent_left_N_per_um", "[number?]",
+           "change of load over change of approach, normal, left end, over the positions", .unit = &eo_unit_N_per_um),
+    EO_KEY("tangent_right_N_per_um", "[number?]", "the same, right end", .unit = &eo_unit_N_per_um,
+           .when = EO_TWO_ENDS),
     EO_KEY("mean", "object", "means over the mesh cycle", .outline = &stiffness_mean),
 };
 const struct eo_outline eo_outline_stiffness = EO_OUTLINE("MeshStiffness", stiffness_rows);
@@ -119,7 +124,8 @@ json_t *eo_result_stiffness(struct eo_result_source *source, const struct eo_cas
   put_end_columns(&o, source, "tangent_%s_N_per_um", tangent, 1, &eo_unit_N_per_um);
   for (int end = 0; end < source->ends; end++) {
     eo_result_put_number(&means, end ? "right_N_per_um" : "left_N_per_um", mean(source->positions, secant[end]));
-    eo_result_put_number(&means, end ? "tangent_right_N_per_um" : "tangent_left_N_per_um", mean(source->positions, tangent[end]));
+    eo_result_put_number(&means, end ? "tangent_right_N_per_um" : "tangent_left_N_per_um",
+                         mean(source->positions, tangent[end]));
   }
   eo_result_put(&o, "mean", eo_result_close(&means));
   return eo_result_close(&o);
@@ -131,7 +137,8 @@ static const struct eo_outline_row unloaded_end_rows[] = {
     EO_KEY("te_um", "[number?]", "unloaded transmission error, over the positions", .unit = &eo_unit_um),
     EO_KEY("peak_to_peak_um", "number?", "of the end", .unit = &eo_unit_um),
     EO_KEY("smallest_gap_um", "number?", "smallest gap anywhere on the flank", .unit = &eo_unit_um),
-    EO_KEY("clearance_um", "[[number?]]?", "gap that the mesh cycle leaves, a row for every s_mm, a number for every eta_mm; null without maps",
+    EO_KEY("clearance_um", "[[number?]]?",
+           "gap that the mesh cycle leaves, a row for every s_mm, a number for every eta_mm; null without maps",
            .unit = &eo_unit_um),
     EO_KEY("marked_share", "number?", "share of the flank closer than the marking thickness"),
 };
@@ -149,14 +156,19 @@ static json_t *encode_unloaded_end(struct eo_result_source *source, int end)
   eo_result_put(&o, "te_um", eo_result_end_column(source, end, r->unloaded, 1 / source->normal, &eo_unit_um));
   eo_result_put_number(&o, "peak_to_peak_um", swing(source->positions, r->unloaded) / source->normal);
   eo_result_put_number(&o, "smallest_gap_um", r->datum);
-  eo_result_put(&o, "clearance_um", eo_result_map(source, EO_PATTERN_ROWS, EO_PATTERN_COLUMNS, pattern->clearance, &eo_unit_um));
+  eo_result_put(&o, "clearance_um",
+                eo_result_map(source, EO_PATTERN_ROWS, EO_PATTERN_COLUMNS, pattern->clearance, &eo_unit_um));
   eo_result_put_number(&o, "marked_share", (double)marked / points);
   return eo_result_close(&o);
 }
 
 static const struct eo_outline_row place_rows[] = {
-    EO_KEY("s_mm", "[number]", "roll along the line of action from the pitch point, + towards the pinion's tip: rows of the maps", .unit = &eo_unit_mm),
-    EO_KEY("eta_mm", "[number]", "place along the face from its middle, + on the side that meets first: columns of the maps", .unit = &eo_unit_mm),
+    EO_KEY("s_mm", "[number]",
+           "roll along the line of action from the pitch point, + towards the pinion's tip: rows of the maps",
+           .unit = &eo_unit_mm),
+    EO_KEY("eta_mm", "[number]",
+           "place along the face from its middle, + on the side that meets first: columns of the maps",
+           .unit = &eo_unit_mm),
 };
 static const struct eo_outline places = EO_OUTLINE("Places", place_rows);
 
@@ -178,7 +190,8 @@ static json_t *encode_unloaded_pair(struct eo_result_source *source, double *pea
 
 static const struct eo_outline_row unloaded_rows[] = {
     EO_KEY("position", "[number]", "phase of the mesh cycle, 0..1"),
-    EO_KEY("pair_te_um", "[number?]", "unloaded transmission error of the pair, over the positions", .unit = &eo_unit_um),
+    EO_KEY("pair_te_um", "[number?]", "unloaded transmission error of the pair, over the positions",
+           .unit = &eo_unit_um),
     EO_KEY("peak_to_peak_um", "number?", "of the pair", .unit = &eo_unit_um),
     EO_KEY("marking_thickness_um", "number", "of the marking compound, as the design states it", .unit = &eo_unit_um),
     {.outline = &places},
@@ -203,7 +216,8 @@ json_t *eo_result_unloaded(struct eo_result_source *source)
 
 /* ---- loaded contact ---- */
 
-static json_t *encode_share(struct eo_result_source *source, int end, const struct eo_loaded_end *loaded, int first, int pairs)
+static json_t *encode_share(struct eo_result_source *source, int end, const struct eo_loaded_end *loaded, int first,
+                            int pairs)
 {
   json_t *rows = json_array();
   double *share = malloc(sizeof *share * (size_t)source->positions);
@@ -236,15 +250,20 @@ static json_t *encode_shares(struct eo_result_source *source, const struct eo_ca
     o.failed = o.failed || json_array_append_new(pairs, json_integer(pair)) != 0;
   eo_result_put(&o, "tooth_pair", pairs);
   for (int end = 0; end < source->ends; end++)
-    eo_result_put(&o, eo_result_end[end], encode_share(source, end, &c->end[end].loaded, range[0], range[1] - range[0] + 1));
+    eo_result_put(&o, eo_result_end[end],
+                  encode_share(source, end, &c->end[end].loaded, range[0], range[1] - range[0] + 1));
   return eo_result_close(&o);
 }
 
 static const struct eo_outline_row pattern_end_rows[] = {
-    EO_KEY("pressure_MPa", "[[number?]]?", "largest contact pressure of the mesh cycle, a row for every s_mm, a number for every eta_mm; null without maps",
+    EO_KEY("pressure_MPa", "[[number?]]?",
+           "largest contact pressure of the mesh cycle, a row for every s_mm, a number for every eta_mm; null without "
+           "maps",
            .unit = &eo_unit_MPa),
-    EO_KEY("gear_tip_edge_MPa", "[number?]", "the same at the gear's tip edge, over eta_mm (nominal)", .unit = &eo_unit_MPa),
-    EO_KEY("pinion_tip_edge_MPa", "[number?]", "the same at the pinion's tip edge, over eta_mm (nominal)", .unit = &eo_unit_MPa),
+    EO_KEY("gear_tip_edge_MPa", "[number?]", "the same at the gear's tip edge, over eta_mm (nominal)",
+           .unit = &eo_unit_MPa),
+    EO_KEY("pinion_tip_edge_MPa", "[number?]", "the same at the pinion's tip edge, over eta_mm (nominal)",
+           .unit = &eo_unit_MPa),
 };
 static const struct eo_outline pattern_end = EO_OUTLINE("ContactPatternEnd", pattern_end_rows);
 
@@ -252,9 +271,12 @@ static json_t *encode_pattern_end(const struct eo_result_source *source)
 {
   const struct eo_contact_pattern *pattern = source->pattern;
   struct eo_result_object o = eo_result_open_as(&pattern_end);
-  eo_result_put(&o, "pressure_MPa", eo_result_map(source, EO_PATTERN_ROWS, EO_PATTERN_COLUMNS, pattern->pressure, &eo_unit_MPa));
-  eo_result_put(&o, "gear_tip_edge_MPa", eo_json_reals(EO_PATTERN_COLUMNS, pattern->edge[0], 1, &eo_unit_MPa, EO_DIGITS_MAP));
-  eo_result_put(&o, "pinion_tip_edge_MPa", eo_json_reals(EO_PATTERN_COLUMNS, pattern->edge[1], 1, &eo_unit_MPa, EO_DIGITS_MAP));
+  eo_result_put(&o, "pressure_MPa",
+                eo_result_map(source, EO_PATTERN_ROWS, EO_PATTERN_COLUMNS, pattern->pressure, &eo_unit_MPa));
+  eo_result_put(&o, "gear_tip_edge_MPa",
+                eo_json_reals(EO_PATTERN_COLUMNS, pattern->edge[0], 1, &eo_unit_MPa, EO_DIGITS_MAP));
+  eo_result_put(&o, "pinion_tip_edge_MPa",
+                eo_json_reals(EO_PATTERN_COLUMNS, pattern->edge[1], 1, &eo_unit_MPa, EO_DIGITS_MAP));
   return eo_result_close(&o);
 }
 
@@ -287,9 +309,10 @@ double eo_result_mean_load(const struct eo_result_source *source, const struct e
 }
 
 /* One number per end. */
-#define EACH_END(variable, name, unit_)                                                                                              \
-  static const struct eo_outline_row variable##_rows[] = {EO_KEY("left", "number?", "left end", .unit = unit_),                      \
-                                                          EO_KEY("right", "number?", "right end", .unit = unit_, .when = EO_TWO_ENDS)}; \
+#define EACH_END(variable, name, unit_)                                             \
+  static const struct eo_outline_row variable##_rows[] = {                          \
+      EO_KEY("left", "number?", "left end", .unit = unit_),                         \
+      EO_KEY("right", "number?", "right end", .unit = unit_, .when = EO_TWO_ENDS)}; \
   static const struct eo_outline variable = EO_OUTLINE(name, variable##_rows)
 EACH_END(force_ends, "ForceOfEnds", &eo_unit_N);
 EACH_END(pressure_ends, "PressureOfEnds", &eo_unit_MPa);
@@ -297,8 +320,10 @@ EACH_END(line_load_ends, "LineLoadOfEnds", &eo_unit_N_per_mm);
 EACH_END(share_ends, "ShareOfEnds", NULL);
 
 static const struct eo_outline_row contact_rows[] = {
-    EO_KEY("mean_load_N", "object", "normal force that an end carries, mean over the mesh cycle", .outline = &force_ends),
-    EO_KEY("max_pressure_MPa", "object", "largest contact pressure of the mesh cycle, tip edges included", .outline = &pressure_ends),
+    EO_KEY("mean_load_N", "object", "normal force that an end carries, mean over the mesh cycle",
+           .outline = &force_ends),
+    EO_KEY("max_pressure_MPa", "object", "largest contact pressure of the mesh cycle, tip edges included",
+           .outline = &pressure_ends),
     EO_KEY("max_line_load_N_per_mm", "object", "largest load per length of contact line", .outline = &line_load_ends),
     EO_KEY("edge_load_share", "object", "largest share of the load on tip edges", .outline = &share_ends),
     EO_KEY("edge_pressure_MPa", "object", "largest pressure of the tip edges (nominal)", .outline = &pressure_ends),
@@ -310,9 +335,9 @@ const struct eo_outline eo_outline_contact = EO_OUTLINE("LoadedContact", contact
 json_t *eo_result_contact(struct eo_result_source *source, int k)
 {
   const struct eo_case_result *c = &source->evaluation->load_case[k];
-  struct eo_result_object o = eo_result_open_as(&eo_outline_contact), load = eo_result_open_as(&force_ends), pressure = eo_result_open_as(&pressure_ends),
-                          line_load = eo_result_open_as(&line_load_ends), edge = eo_result_open_as(&share_ends),
-                          edge_pressure = eo_result_open_as(&pressure_ends);
+  struct eo_result_object o = eo_result_open_as(&eo_outline_contact), load = eo_result_open_as(&force_ends),
+                          pressure = eo_result_open_as(&pressure_ends), line_load = eo_result_open_as(&line_load_ends),
+                          edge = eo_result_open_as(&share_ends), edge_pressure = eo_result_open_as(&pressure_ends);
   json_t *pattern = encode_pattern(source, k);
   for (int end = 0; end < source->ends; end++) {
     const struct eo_end_result *r = &c->end[end];
@@ -335,8 +360,10 @@ json_t *eo_result_contact(struct eo_result_source *source, int k)
 /* ---- elastic bodies ---- */
 
 static const struct eo_outline_row body_rows[] = {
-    EO_KEY("eta_mm", "[number]", "place along the face from its middle, + on the side that meets first", .unit = &eo_unit_mm),
-    EO_KEY("left_um", "[number?]", "normal gap that the bodies open, mean over the mesh cycle, over eta_mm, left end", .unit = &eo_unit_um),
+    EO_KEY("eta_mm", "[number]", "place along the face from its middle, + on the side that meets first",
+           .unit = &eo_unit_mm),
+    EO_KEY("left_um", "[number?]", "normal gap that the bodies open, mean over the mesh cycle, over eta_mm, left end",
+           .unit = &eo_unit_um),
     EO_KEY("right_um", "[number?]", "the same, right end", .unit = &eo_unit_um, .when = EO_TWO_ENDS),
     EO_KEY("most_iterations", "integer", "between contact and bodies, at the worst position"),
 };
@@ -350,7 +377,8 @@ json_t *eo_result_bodies(struct eo_result_source *source, const struct eo_case_r
     eta[i] = source->pair->geometry.face_width * ((double)i / (EO_DEFLECTION_NODES - 1) - 0.5);
   eo_result_put(&o, "eta_mm", eo_json_reals(EO_DEFLECTION_NODES, eta, 1, &eo_unit_mm, EO_DIGITS_CURVE));
   for (int end = 0; end < source->ends; end++)
-    eo_result_put(&o, end ? "right_um" : "left_um", eo_json_reals(EO_DEFLECTION_NODES, c->end[end].deflection.part[0], 1, &eo_unit_um, EO_DIGITS_CURVE));
+    eo_result_put(&o, end ? "right_um" : "left_um",
+                  eo_json_reals(EO_DEFLECTION_NODES, c->end[end].deflection.part[0], 1, &eo_unit_um, EO_DIGITS_CURVE));
   eo_result_put(&o, "most_iterations", json_integer(c->body_iterations));
   return eo_result_close(&o);
 }
@@ -358,7 +386,8 @@ json_t *eo_result_bodies(struct eo_result_source *source, const struct eo_case_r
 /* ---- impact ---- */
 
 static const struct eo_outline_row impact_end_rows[] = {
-    EO_KEY("force_N", "number?", "of the classical impact: 0 when first touch happens on the line of action", .unit = &eo_unit_N),
+    EO_KEY("force_N", "number?", "of the classical impact: 0 when first touch happens on the line of action",
+           .unit = &eo_unit_N),
     EO_KEY("general_force_N", "number?", "of the general impact, wherever first touch happens", .unit = &eo_unit_N),
     EO_KEY("speed_mm_per_s", "number?", "of approach along the normal", .unit = &eo_unit_mm_per_s),
     EO_KEY("duration_ms", "number?", "of the half sine; null without a force", .unit = &eo_unit_ms),
@@ -406,20 +435,24 @@ json_t *eo_result_impact(struct eo_result_source *source, const struct eo_case_r
 
 static json_t *encode_root_history(const struct eo_result_source *source, const struct eo_root_history *history)
 {
-  return source->left_out & EO_RESULT_NO_HISTORIES ? json_null()
-                                                   : eo_json_reals(history->phases, history->stress, 1, &eo_unit_MPa, EO_DIGITS_CURVE);
+  return source->left_out & EO_RESULT_NO_HISTORIES
+             ? json_null()
+             : eo_json_reals(history->phases, history->stress, 1, &eo_unit_MPa, EO_DIGITS_CURVE);
 }
 
 static const struct eo_outline_row root_end_rows[] = {
     EO_KEY("max_MPa", "number?", "largest static root stress of the end", .unit = &eo_unit_MPa),
-    EO_KEY("max_dynamic_MPa", "number?", "times the dynamic factor; null without a periodic vibration", .unit = &eo_unit_MPa),
+    EO_KEY("max_dynamic_MPa", "number?", "times the dynamic factor; null without a periodic vibration",
+           .unit = &eo_unit_MPa),
     EO_KEY("arc_mm", "number?", "its place along the fillet", .unit = &eo_unit_mm),
     EO_KEY("eta_mm", "number?", "its place along the face", .unit = &eo_unit_mm),
-    EO_KEY("history_MPa", "[number?]?", "largest stress of one tooth over `position` of the member; null without histories", .unit = &eo_unit_MPa),
+    EO_KEY("history_MPa", "[number?]?",
+           "largest stress of one tooth over `position` of the member; null without histories", .unit = &eo_unit_MPa),
 };
 static const struct eo_outline root_end = EO_OUTLINE("RootStressEnd", root_end_rows);
 
-static json_t *encode_root_end(const struct eo_result_source *source, const struct eo_root_history *history, double factor)
+static json_t *encode_root_end(const struct eo_result_source *source, const struct eo_root_history *history,
+                               double factor)
 {
   struct eo_result_object o = eo_result_open_as(&root_end);
   eo_result_put_number(&o, "max_MPa", history->maximum);
@@ -437,7 +470,8 @@ static double force_factor(const struct eo_case_result *c, int end)
 
 static const struct eo_outline_row root_member_rows[] = {
     EO_KEY("max_MPa", "number?", "largest static root stress, worse end", .unit = &eo_unit_MPa),
-    EO_KEY("max_dynamic_MPa", "number?", "times the dynamic factor of its end; null without a periodic vibration", .unit = &eo_unit_MPa),
+    EO_KEY("max_dynamic_MPa", "number?", "times the dynamic factor of its end; null without a periodic vibration",
+           .unit = &eo_unit_MPa),
     EO_KEY("position", "[number]", "phase of the tooth's way through the mesh, in mesh cycles"),
     EO_KEY("history_MPa", "[number?]?", "of the worse end; null without histories", .unit = &eo_unit_MPa),
     EO_KEY("left", "object", "left end", .outline = &root_end),

@@ -78,8 +78,10 @@ static void save_curves(const json_t *load_case, struct eo_text *text)
     for (size_t i = 0; i < json_array_size(pairs); i++) {
       char heading[HEADING];
       const char *word = end ? "right" : "left";
-      snprintf(heading, sizeof heading, "load_share_%s_pair_%d", word, (int)json_integer_value(json_array_get(pairs, i)));
-      add_column(&table, json_array_get(json_object_get(eo_json_find(load_case, "contact/load_share"), word), i), heading);
+      snprintf(heading, sizeof heading, "load_share_%s_pair_%d", word,
+               (int)json_integer_value(json_array_get(pairs, i)));
+      add_column(&table, json_array_get(json_object_get(eo_json_find(load_case, "contact/load_share"), word), i),
+                 heading);
     }
   save_table(&table, text);
 }
@@ -101,7 +103,8 @@ static void add_channels(struct table *table, const json_t *load_case, const cha
   for (int end = 0; end < 2; end++) {
     char path[64];
     snprintf(path, sizeof path, "vibration/%s/%s", end ? "right" : "left", kind);
-    json_object_foreach((json_t *)eo_json_find(load_case, path), key, value) {
+    json_object_foreach((json_t *)eo_json_find(load_case, path), key, value)
+    {
       char heading[HEADING];
       snprintf(heading, sizeof heading, "%s_%s", end ? "right" : "left", key);
       add_column(table, value, heading);
@@ -121,7 +124,8 @@ static void save_orders(const json_t *load_case, struct eo_text *text)
 {
   struct table table = {0};
   json_t *order = json_array();
-  const json_t *lte = eo_json_find(load_case, "lte/orders_um"), *vibration = eo_json_find(load_case, "vibration/left/orders/normal_m_per_s2");
+  const json_t *lte = eo_json_find(load_case, "lte/orders_um"),
+               *vibration = eo_json_find(load_case, "vibration/left/orders/normal_m_per_s2");
   size_t n = json_array_size(lte) > json_array_size(vibration) ? json_array_size(lte) : json_array_size(vibration);
   for (size_t i = 0; i < n && text; i++)
     text->failed = text->failed || json_array_append_new(order, json_integer((json_int_t)i)) != 0;
@@ -135,9 +139,11 @@ static void save_orders(const json_t *load_case, struct eo_text *text)
 static void save_pattern(const json_t *result, const json_t *load_case, const char *end, struct eo_text *text)
 {
   static const char *const heading[] = {"s_mm", "eta_mm", "pressure_MPa", "unloaded_clearance_um"};
-  const json_t *pattern = eo_json_find(load_case, "contact/pattern"), *s = json_object_get(pattern, "s_mm"), *eta = json_object_get(pattern, "eta_mm");
+  const json_t *pattern = eo_json_find(load_case, "contact/pattern"), *s = json_object_get(pattern, "s_mm"),
+               *eta = json_object_get(pattern, "eta_mm");
   const json_t *pressure = json_object_get(json_object_get(pattern, end), "pressure_MPa");
-  const json_t *clearance = json_object_get(json_object_get(json_object_get(result, "unloaded_contact"), end), "clearance_um");
+  const json_t *clearance = json_object_get(json_object_get(json_object_get(result, "unloaded_contact"), end),
+                                            "clearance_um");
   struct eo_sheet sheet;
   if (!text)
     return;
@@ -186,8 +192,8 @@ static void save_unloaded(const json_t *result, struct eo_text *text)
 /* One line per load case: what stands in "objectives", before and after, and what it is in. */
 static void save_summary(const json_t *result, struct eo_text *text)
 {
-  static const char *const design[] = {"peak_to_peak_um", "impact_N", "rms_m_per_s2", "contact_pressure_MPa", "root_stress_MPa", "edge_load_share",
-                                       "contact_loss"};
+  static const char *const design[] = {"peak_to_peak_um", "impact_N",        "rms_m_per_s2", "contact_pressure_MPa",
+                                       "root_stress_MPa", "edge_load_share", "contact_loss"};
   enum { VALUES = sizeof design / sizeof *design, COLUMNS = 5 + 2 * VALUES };
   const char *heading[COLUMNS] = {"load_case", "torque_Nm", "speed_rpm", "share", "outcome"};
   char before[VALUES][HEADING];
@@ -202,7 +208,8 @@ static void save_summary(const json_t *result, struct eo_text *text)
   }
   eo_sheet_init(&sheet, COLUMNS, heading);
   for (size_t k = 0; k < json_array_size(cases); k++) {
-    const json_t *load_case = json_array_get(cases, k), *values = json_array_get(eo_json_find(result, "objectives/load_cases"), k);
+    const json_t *load_case = json_array_get(cases, k),
+                 *values = json_array_get(eo_json_find(result, "objectives/load_cases"), k);
     const json_t *unmodified = json_array_get(eo_json_find(result, "objectives/unmodified/load_cases"), k);
     eo_sheet_number(&sheet, (double)(k + 1), NULL, 0);
     for (int i = 1; i < 5; i++)
@@ -235,6 +242,7 @@ void eo_result_files(const json_t *result, struct eo_bundle *bundle)
       save_root(load_case, eo_bundle_add(bundle, "case-%d-root-stress.csv", number));
     for (int end = 0; end < 2; end++)
       if (json_object_get(eo_json_find(load_case, "contact/pattern"), end ? "right" : "left"))
-        save_pattern(result, load_case, end ? "right" : "left", eo_bundle_add(bundle, "case-%d-pattern-%s.csv", number, end ? "right" : "left"));
+        save_pattern(result, load_case, end ? "right" : "left",
+                     eo_bundle_add(bundle, "case-%d-pattern-%s.csv", number, end ? "right" : "left"));
   }
 }

@@ -19,7 +19,8 @@ static const struct eo_outline_row flank_rows[] = {
 };
 static const struct eo_outline flank_curves = EO_OUTLINE("FlankCurves", flank_rows);
 
-static json_t *encode_flank(const struct eo_result_source *source, int member, int end, const double *u, const double *eta)
+static json_t *encode_flank(const struct eo_result_source *source, int member, int end, const double *u,
+                            const double *eta)
 {
   const struct eo_flank_modification *flank = &source->design->modification.flank[member][end];
   struct eo_modification_shape shape;
@@ -31,14 +32,17 @@ static json_t *encode_flank(const struct eo_result_source *source, int member, i
     lead[i] = eo_modification_lead(&shape, eta[i] / cos(source->pair->geometry.helix_angle), slope);
   }
   eo_result_put_number(&o, "lead_crowning_um", flank->lead_crowning);
-  eo_result_put_number(&o, "lead_crowning_per_um", eo_modification_lead_coefficient(&source->pair->geometry, flank->lead_crowning));
+  eo_result_put_number(&o, "lead_crowning_per_um",
+                       eo_modification_lead_coefficient(&source->pair->geometry, flank->lead_crowning));
   eo_result_put(&o, "profile_um", encode_curve(profile));
   eo_result_put(&o, "lead_um", encode_curve(lead));
   return eo_result_close(&o);
 }
 
 static const struct eo_outline_row member_rows[] = {
-    EO_KEY("u_mm", "[number]", "profile coordinate of the generating rack, from the root end of the active profile to its tip end", .unit = &eo_unit_mm),
+    EO_KEY("u_mm", "[number]",
+           "profile coordinate of the generating rack, from the root end of the active profile to its tip end",
+           .unit = &eo_unit_mm),
     EO_KEY("left", "object", "flank of the left end", .outline = &flank_curves),
     EO_KEY("right", "object", "flank of the right end", .when = EO_TWO_ENDS, .outline = &flank_curves),
 };
@@ -48,7 +52,8 @@ static const struct eo_outline member_curves = EO_OUTLINE("MemberCurves", member
 static json_t *encode_member(const struct eo_result_source *source, int member, const double *eta)
 {
   const struct eo_geometry *g = &source->pair->geometry;
-  double bottom = member == EO_PINION ? g->rack_bottom : -g->rack_top, top = member == EO_PINION ? g->rack_top : -g->rack_bottom, u[POINTS];
+  double bottom = member == EO_PINION ? g->rack_bottom : -g->rack_top,
+         top = member == EO_PINION ? g->rack_top : -g->rack_bottom, u[POINTS];
   struct eo_result_object o = eo_result_open_as(&member_curves);
   for (int i = 0; i < POINTS; i++)
     u[i] = bottom + (top - bottom) * i / (POINTS - 1);

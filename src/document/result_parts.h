@@ -14,12 +14,12 @@ struct eo_result_source {
   const struct eo_evaluation *evaluation;
   const struct eo_pair *pair;
   const struct eo_design *design;
-  int ends, positions, lag;            /* lag: positions by which the right end's columns are shifted */
-  double normal;                       /* cos(beta_b): normal = transverse times it */
-  unsigned left_out;                   /* EO_RESULT_NO_... */
-  struct eo_contact_pattern *pattern;  /* scratch */
-  double *scratch;                     /* [positions] */
-  double (*edge_pressure)[2];          /* [cases], Pa; filled with the load cases, for the warnings; of all threads */
+  int ends, positions, lag;           /* lag: positions by which the right end's columns are shifted */
+  double normal;                      /* cos(beta_b): normal = transverse times it */
+  unsigned left_out;                  /* EO_RESULT_NO_... */
+  struct eo_contact_pattern *pattern; /* scratch */
+  double *scratch;                    /* [positions] */
+  double (*edge_pressure)[2];         /* [cases], Pa; filled with the load cases, for the warnings; of all threads */
 };
 
 /* "left", "right". */
@@ -32,13 +32,16 @@ json_t *eo_result_number(double value, const struct eo_unit *unit);
 json_t *eo_result_column(int count, const double *value, double scale, const struct eo_unit *unit, int digits);
 
 /* A column over the mesh positions of one end, shifted so that both ends stand at the same instant. */
-json_t *eo_result_end_column(const struct eo_result_source *source, int end, const double *value, double scale, const struct eo_unit *unit);
+json_t *eo_result_end_column(const struct eo_result_source *source, int end, const double *value, double scale,
+                             const struct eo_unit *unit);
 
 /* [rows][columns] as an array of rows; null when maps are left out. */
-json_t *eo_result_map(const struct eo_result_source *source, int rows, int columns, const double *value, const struct eo_unit *unit);
+json_t *eo_result_map(const struct eo_result_source *source, int rows, int columns, const double *value,
+                      const struct eo_unit *unit);
 
-/* object[key] = value; what is missing marks the object itself as failed. With an outline, so does a key that it does not have next (rows that
-   are not always there may be passed over): a defect of the writer, which the first test that comes by finds. */
+/* object[key] = value; what is missing marks the object itself as failed. With an outline, so does a key that it does
+   not have next (rows that are not always there may be passed over): a defect of the writer, which the first test that
+   comes by finds. */
 struct eo_result_object {
   json_t *json;
   bool failed;
@@ -48,7 +51,8 @@ struct eo_result_object {
 struct eo_result_object eo_result_open(void);
 struct eo_result_object eo_result_open_as(const struct eo_outline *outline);
 void eo_result_put(struct eo_result_object *object, const char *key, json_t *value);
-void eo_result_put_number(struct eo_result_object *object, const char *key, double value); /* SI; the outline's row has the unit */
+void eo_result_put_number(struct eo_result_object *object, const char *key,
+                          double value);                  /* SI; the outline's row has the unit */
 json_t *eo_result_close(struct eo_result_object *object); /* NULL when anything failed, or is missing of the outline */
 json_t *eo_result_close_part(struct eo_result_object *object); /* the same where others write the rows behind */
 
@@ -56,8 +60,8 @@ json_t *eo_result_close_part(struct eo_result_object *object); /* the same where
 #define EO_TWO_ENDS "with two ends"
 
 /* The parts; each stands beside its writer. */
-extern const struct eo_outline eo_outline_lte, eo_outline_stiffness, eo_outline_unloaded, eo_outline_contact, eo_outline_bodies, eo_outline_impact,
-    eo_outline_root_stress, eo_outline_vibration, eo_outline_modification;
+extern const struct eo_outline eo_outline_lte, eo_outline_stiffness, eo_outline_unloaded, eo_outline_contact,
+    eo_outline_bodies, eo_outline_impact, eo_outline_root_stress, eo_outline_vibration, eo_outline_modification;
 extern const struct eo_outline eo_outline_value;    /* eo_result_put_value() */
 extern const struct eo_outline eo_outline_raw_case; /* eo_result_raw_case() */
 
@@ -83,11 +87,12 @@ json_t *eo_result_modification(struct eo_result_source *source);
 json_t *eo_result_warnings(const struct eo_result_source *source, const struct eo_warnings *before);
 
 /* What one thread needs to write; false without memory. done() after either. */
-bool eo_result_source_init(struct eo_result_source *source, const struct eo_analysis *analysis, const struct eo_design *design, unsigned left_out);
+bool eo_result_source_init(struct eo_result_source *source, const struct eo_analysis *analysis,
+                           const struct eo_design *design, unsigned left_out);
 void eo_result_source_done(struct eo_result_source *source);
 
-/* The result in the order of writing: what stands before the load cases, the two halves of each, about as long to write, and what stands
-   behind them. New; NULL without memory. */
+/* The result in the order of writing: what stands before the load cases, the two halves of each, about as long to
+   write, and what stands behind them. New; NULL without memory. */
 json_t *eo_result_head(struct eo_result_source *source);
 json_t *eo_result_case_contact(struct eo_result_source *source, int load_case);
 json_t *eo_result_case_consequences(struct eo_result_source *source, int load_case);

@@ -25,15 +25,19 @@ static void print_pair(const json_t *result, struct eo_text *text)
   char name[200];
   eo_text_clean(name, sizeof name, find_text(result, "design/name"));
   eo_text_print(text, "%s%s", name, *name ? "\n" : "");
-  eo_text_print(text, "  %.0f/%.0f teeth, m_n %.6g mm, beta %.6g deg, face %s%.6g mm, a %.7g mm, eps_alpha %.4g, eps_beta %.4g\n",
-                find(pair, "pinion_teeth"), find(pair, "gear_teeth"), find(pair, "normal_module_mm"), find(pair, "helix_angle_deg"),
-                double_helical ? "2 x " : "", find(pair, "face_width_mm"), find(geometry, "centre_distance_mm"),
-                find(geometry, "transverse_contact_ratio"), find(geometry, "overlap_ratio"));
+  eo_text_print(
+      text, "  %.0f/%.0f teeth, m_n %.6g mm, beta %.6g deg, face %s%.6g mm, a %.7g mm, eps_alpha %.4g, eps_beta %.4g\n",
+      find(pair, "pinion_teeth"), find(pair, "gear_teeth"), find(pair, "normal_module_mm"),
+      find(pair, "helix_angle_deg"), double_helical ? "2 x " : "", find(pair, "face_width_mm"),
+      find(geometry, "centre_distance_mm"), find(geometry, "transverse_contact_ratio"),
+      find(geometry, "overlap_ratio"));
   eo_text_print(text, "  shaft angle error %.4g deg in plane, %.4g deg out of plane; pinion axially %s\n",
-                find(result, "design/alignment/shaft_angle_error_in_plane_deg"), find(result, "design/alignment/shaft_angle_error_out_of_plane_deg"),
+                find(result, "design/alignment/shaft_angle_error_in_plane_deg"),
+                find(result, "design/alignment/shaft_angle_error_out_of_plane_deg"),
                 find_text(result, "design/alignment/pinion_axial"));
-  eo_text_print(text, "  design %.16s, %.0f mesh positions, %.0f cells per line, mesh law %s\n\n", find_text(result, "design_hash"),
-                find(result, "resolution/positions"), find(result, "resolution/cells_per_line"), find_text(result, "resolution/mesh_law"));
+  eo_text_print(text, "  design %.16s, %.0f mesh positions, %.0f cells per line, mesh law %s\n\n",
+                find_text(result, "design_hash"), find(result, "resolution/positions"),
+                find(result, "resolution/cells_per_line"), find_text(result, "resolution/mesh_law"));
 }
 
 static void add_change(struct eo_sheet *sheet, double before, double after)
@@ -45,7 +49,8 @@ static void add_change(struct eo_sheet *sheet, double before, double after)
   eo_sheet_string(sheet, change);
 }
 
-static void add_row(struct eo_sheet *sheet, const char *quantity, const char *unit, double before, double after, double scale)
+static void add_row(struct eo_sheet *sheet, const char *quantity, const char *unit, double before, double after,
+                    double scale)
 {
   eo_sheet_string(sheet, quantity);
   eo_sheet_string(sheet, unit);
@@ -60,16 +65,19 @@ static void print_band(const json_t *load_case, struct eo_text *text)
   const json_t *band = eo_json_find(load_case, "vibration/rms_band_m_per_s2/normal");
   double low = json_number_value(json_array_get(band, 0)), high = json_number_value(json_array_get(band, 1));
   if (json_is_number(json_array_get(band, 0)))
-    eo_text_print(text, "  (vibration %.4g .. %.4g m/s2 over +-10 %% compliance; rotational %.4g, transverse %.4g m/s2)\n", low, high,
-                  find(load_case, "vibration/rms_m_per_s2/rotational"), find(load_case, "vibration/rms_m_per_s2/transverse"));
+    eo_text_print(text,
+                  "  (vibration %.4g .. %.4g m/s2 over +-10 %% compliance; rotational %.4g, transverse %.4g m/s2)\n",
+                  low, high, find(load_case, "vibration/rms_m_per_s2/rotational"),
+                  find(load_case, "vibration/rms_m_per_s2/transverse"));
 }
 
 static const struct quantity {
   const char *name, *unit, *key;
   double scale;
 } quantities[] = {
-    {"peak-to-peak loaded TE", "um", "peak_to_peak_um", 1}, {"entering impact", "N", "impact_N", 1}, {"vibration, RMS normal", "m/s2", "rms_m_per_s2", 1},
-    {"contact pressure", "MPa", "contact_pressure_MPa", 1}, {"root stress", "MPa", "root_stress_MPa", 1}, {"load on tip edges", "%", "edge_load_share", 100},
+    {"peak-to-peak loaded TE", "um", "peak_to_peak_um", 1}, {"entering impact", "N", "impact_N", 1},
+    {"vibration, RMS normal", "m/s2", "rms_m_per_s2", 1},   {"contact pressure", "MPa", "contact_pressure_MPa", 1},
+    {"root stress", "MPa", "root_stress_MPa", 1},           {"load on tip edges", "%", "edge_load_share", 100},
 };
 
 static void start_table(struct eo_sheet *sheet)
@@ -84,8 +92,8 @@ static void print_case(const json_t *result, size_t k, struct eo_text *text)
   const json_t *after = json_array_get(eo_json_find(result, "objectives/load_cases"), k);
   const json_t *before = json_array_get(eo_json_find(result, "objectives/unmodified/load_cases"), k);
   struct eo_sheet sheet;
-  eo_text_print(text, "%.6g N m, %.6g rpm, share %.4g: %s\n", find(load_case, "torque_Nm"), find(load_case, "speed_rpm"), find(load_case, "share"),
-                find_text(load_case, "outcome"));
+  eo_text_print(text, "%.6g N m, %.6g rpm, share %.4g: %s\n", find(load_case, "torque_Nm"),
+                find(load_case, "speed_rpm"), find(load_case, "share"), find_text(load_case, "outcome"));
   start_table(&sheet);
   for (size_t i = 0; i < sizeof quantities / sizeof *quantities; i++) {
     const struct quantity *q = &quantities[i];
@@ -141,8 +149,7 @@ static void print_timing(const json_t *result, struct eo_text *text)
   const char *key;
   json_t *value;
   eo_text_add(text, "Time, ms:");
-  json_object_foreach((json_t *)timing, key, value)
-    eo_text_print(text, " %s %.3g", key, json_number_value(value));
+  json_object_foreach((json_t *)timing, key, value) eo_text_print(text, " %s %.3g", key, json_number_value(value));
   eo_text_add(text, "\n");
 }
 

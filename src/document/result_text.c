@@ -1,4 +1,5 @@
-/* A result as text without the whole of it as JSON before: the head, the halves of each load case and the tail, written side by side. */
+/* A result as text without the whole of it as JSON before: the head, the halves of each load case and the tail, written
+   side by side. */
 #include "document/result.h"
 
 #include <stdlib.h>
@@ -56,10 +57,12 @@ static void join(const struct writing *w, int cases, const struct eo_text *tail,
   eo_text_add(text, "}");
 }
 
-static enum eo_code write_all(struct writing *w, const struct eo_warnings *warnings, struct eo_text *text, struct eo_error *error)
+static enum eo_code write_all(struct writing *w, const struct eo_warnings *warnings, struct eo_text *text,
+                              struct eo_error *error)
 {
   const struct eo_analysis *analysis = w->source[0].analysis;
-  const struct eo_parallel parallel = {.threads = analysis->threads < WRITERS ? analysis->threads : WRITERS, .work = write_part, .context = w};
+  const struct eo_parallel parallel = {
+      .threads = analysis->threads < WRITERS ? analysis->threads : WRITERS, .work = write_part, .context = w};
   struct eo_text tail = {0};
   enum eo_code code = eo_parallel_run(&parallel, 1 + HALVES * analysis->cases, error);
   if (code)
@@ -75,8 +78,9 @@ static enum eo_code write_all(struct writing *w, const struct eo_warnings *warni
   return good ? EO_OK : eo_error_memory(error);
 }
 
-enum eo_code eo_result_write(const struct eo_analysis *analysis, const struct eo_design *design, const struct eo_warnings *warnings, unsigned left_out,
-                             struct eo_text *text, struct eo_error *error)
+enum eo_code eo_result_write(const struct eo_analysis *analysis, const struct eo_design *design,
+                             const struct eo_warnings *warnings, unsigned left_out, struct eo_text *text,
+                             struct eo_error *error)
 {
   struct writing *w = calloc(1, sizeof *w);
   double edge_pressure[EO_MAX_LOAD_CASES][2];

@@ -28,7 +28,8 @@ static bool has_curves(const struct eo_result_source *source, const struct eo_ca
 }
 
 static const struct eo_outline_row reading_rows[] = {
-    EO_KEY("normal", "number?", "relative acceleration along the line of action, normal to the teeth", .unit = &eo_unit_m_per_s2),
+    EO_KEY("normal", "number?", "relative acceleration along the line of action, normal to the teeth",
+           .unit = &eo_unit_m_per_s2),
     EO_KEY("transverse", "number?", "in the transverse plane", .unit = &eo_unit_m_per_s2),
     EO_KEY("rotational", "number?", "of the rotations alone: what encoders see", .unit = &eo_unit_m_per_s2),
 };
@@ -54,7 +55,8 @@ static json_t *encode_band(const struct eo_case_result *c, double known)
 {
   struct eo_result_object o = eo_result_open_as(&bands);
   for (int i = 0; i < EO_READINGS; i++) {
-    double nominal = known * c->vibration.rms_pair[i], low = c->band[i][0], high = c->band[i][1], missing = low + high + nominal;
+    double nominal = known * c->vibration.rms_pair[i], low = c->band[i][0], high = c->band[i][1],
+           missing = low + high + nominal;
     double band[2] = {fmin(nominal, fmin(low, high)), fmax(nominal, fmax(low, high))};
     if (isnan(missing))
       band[0] = band[1] = NAN;
@@ -110,8 +112,11 @@ static const struct eo_outline_row end_rows[] = {
     EO_KEY("max_pinion_bearing_N", "number?", "force of the pinion's bearing", .unit = &eo_unit_N),
     EO_KEY("mean_gear_bearing_N", "number?", "force of the gear's bearing", .unit = &eo_unit_N),
     EO_KEY("max_gear_bearing_N", "number?", "force of the gear's bearing", .unit = &eo_unit_N),
-    EO_KEY("history", "object?", "over `position` of the vibration; null without histories or a periodic state", .outline = &channel_curves),
-    EO_KEY("orders", "object?", "the mean, then the amplitudes of the mesh harmonics 1, 2, ...; null without a periodic state", .outline = &channel_curves),
+    EO_KEY("history", "object?", "over `position` of the vibration; null without histories or a periodic state",
+           .outline = &channel_curves),
+    EO_KEY("orders", "object?",
+           "the mean, then the amplitudes of the mesh harmonics 1, 2, ...; null without a periodic state",
+           .outline = &channel_curves),
 };
 static const struct eo_outline vibration_end = EO_OUTLINE("VibrationEnd", end_rows);
 
@@ -128,23 +133,30 @@ static json_t *encode_end(const struct eo_result_source *source, const struct eo
   eo_result_put_number(&o, "min_mesh_force_N", known * v->force_min[end]);
   eo_result_put_number(&o, "max_mesh_force_N", known * v->force_max[end]);
   for (int member = 0; member < 2; member++) {
-    eo_result_put_number(&o, member ? "mean_gear_bearing_N" : "mean_pinion_bearing_N", known * v->bearing_force_mean[member][end]);
-    eo_result_put_number(&o, member ? "max_gear_bearing_N" : "max_pinion_bearing_N", known * v->bearing_force_max[member][end]);
+    eo_result_put_number(&o, member ? "mean_gear_bearing_N" : "mean_pinion_bearing_N",
+                         known * v->bearing_force_mean[member][end]);
+    eo_result_put_number(&o, member ? "max_gear_bearing_N" : "max_pinion_bearing_N",
+                         known * v->bearing_force_max[member][end]);
   }
   bool histories = !(source->left_out & EO_RESULT_NO_HISTORIES);
-  eo_result_put(&o, "history", histories && has_curves(source, c) ? encode_curves(source, &c->end[end], false) : json_null());
+  eo_result_put(&o, "history",
+                histories && has_curves(source, c) ? encode_curves(source, &c->end[end], false) : json_null());
   eo_result_put(&o, "orders", has_curves(source, c) ? encode_curves(source, &c->end[end], true) : json_null());
   return eo_result_close(&o);
 }
 
 /* Mean of the ends' amplitudes, as the RMS of the pair is the mean of theirs. */
-static void put_pair_orders(struct eo_result_object *o, const struct eo_result_source *source, const struct eo_case_result *c)
+static void put_pair_orders(struct eo_result_object *o, const struct eo_result_source *source,
+                            const struct eo_case_result *c)
 {
   for (int i = EO_CHANNEL_NORMAL; i <= EO_CHANNEL_ROTATIONAL; i++) {
     char key[64];
     double complex *const order[2] = {c->end[0].order[i], c->end[1].order[i]};
     snprintf(key, sizeof key, "orders_%s", channels[i].key);
-    eo_result_put(o, key, has_curves(source, c) ? encode_amplitudes(source->evaluation->harmonics, order, source->ends, channels[i].unit) : json_null());
+    eo_result_put(o, key,
+                  has_curves(source, c)
+                      ? encode_amplitudes(source->evaluation->harmonics, order, source->ends, channels[i].unit)
+                      : json_null());
   }
 }
 
@@ -162,19 +174,25 @@ static json_t *encode_samples(const struct eo_result_source *source)
 static const char *const outcomes[] = {"converged", "contact_lost", "not_converged", NULL};
 
 static const struct eo_outline_row vibration_rows[] = {
-    EO_KEY("outcome", "word", "contact_lost: teeth separate; not_converged: no periodic state was found, and what hangs on it is null", .words = outcomes),
+    EO_KEY("outcome", "word",
+           "contact_lost: teeth separate; not_converged: no periodic state was found, and what hangs on it is null",
+           .words = outcomes),
     EO_KEY("mesh_frequency_Hz", "number", "teeth per second", .unit = &eo_unit_Hz),
     EO_KEY("rms_m_per_s2", "object", "RMS of the pair: mean of the ends' RMS", .outline = &readings),
-    EO_KEY("rms_band_m_per_s2", "object", "at 0.9 to 1.1 times the compliance; numbers null when the band was not asked for", .outline = &bands),
+    EO_KEY("rms_band_m_per_s2", "object",
+           "at 0.9 to 1.1 times the compliance; numbers null when the band was not asked for", .outline = &bands),
     EO_KEY("rms_of_mean_m_per_s2", "object", "RMS of the mean of the ends", .outline = &readings),
     EO_KEY("contact_loss", "number?", "share of the mesh cycle without contact, worse end"),
     EO_KEY("dynamic_factor", "number?", "largest over static mesh force, worse end"),
     EO_KEY("back_contact", "flag", "the back flanks touch"),
     EO_KEY("position", "[number]", "phase of the mesh cycle, 0..1, of the histories"),
-    EO_KEY("orders_normal_m_per_s2", "[number?]?", "mean of the ends' amplitudes: the mean, then mesh harmonics 1, 2, ...; null without a periodic state",
+    EO_KEY("orders_normal_m_per_s2", "[number?]?",
+           "mean of the ends' amplitudes: the mean, then mesh harmonics 1, 2, ...; null without a periodic state",
            .unit = &eo_unit_m_per_s2),
-    EO_KEY("orders_transverse_m_per_s2", "[number?]?", "the same of the transverse acceleration", .unit = &eo_unit_m_per_s2),
-    EO_KEY("orders_rotational_m_per_s2", "[number?]?", "the same of the rotational acceleration", .unit = &eo_unit_m_per_s2),
+    EO_KEY("orders_transverse_m_per_s2", "[number?]?", "the same of the transverse acceleration",
+           .unit = &eo_unit_m_per_s2),
+    EO_KEY("orders_rotational_m_per_s2", "[number?]?", "the same of the rotational acceleration",
+           .unit = &eo_unit_m_per_s2),
     EO_KEY("left", "object", "left end", .outline = &vibration_end),
     EO_KEY("right", "object", "right end", .when = EO_TWO_ENDS, .outline = &vibration_end),
 };
@@ -186,12 +204,15 @@ json_t *eo_result_vibration(struct eo_result_source *source, const struct eo_cas
   struct eo_result_object o = eo_result_open_as(&eo_outline_vibration);
   double known = v->outcome == EO_VIBRATION_NOT_CONVERGED ? NAN : 1;
   eo_result_put(&o, "outcome", json_string(outcomes[v->outcome]));
-  eo_result_put_number(&o, "mesh_frequency_Hz", c->load_case.speed * source->pair->geometry.teeth[EO_PINION] / (2 * M_PI));
+  eo_result_put_number(&o, "mesh_frequency_Hz",
+                       c->load_case.speed * source->pair->geometry.teeth[EO_PINION] / (2 * M_PI));
   eo_result_put(&o, "rms_m_per_s2", encode_readings(v->rms_pair, 1, known));
   eo_result_put(&o, "rms_band_m_per_s2", encode_band(c, known));
   eo_result_put(&o, "rms_of_mean_m_per_s2", encode_readings(v->rms_of_mean, 1, known));
-  eo_result_put_number(&o, "contact_loss", known * fmax(v->contact_loss[0], source->ends == 2 ? v->contact_loss[1] : 0));
-  eo_result_put_number(&o, "dynamic_factor", known * fmax(v->dynamic_factor[0], source->ends == 2 ? v->dynamic_factor[1] : 0));
+  eo_result_put_number(&o, "contact_loss",
+                       known * fmax(v->contact_loss[0], source->ends == 2 ? v->contact_loss[1] : 0));
+  eo_result_put_number(&o, "dynamic_factor",
+                       known * fmax(v->dynamic_factor[0], source->ends == 2 ? v->dynamic_factor[1] : 0));
   eo_result_put(&o, "back_contact", json_boolean(v->back_contact));
   eo_result_put(&o, "position", encode_samples(source));
   put_pair_orders(&o, source, c);

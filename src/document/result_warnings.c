@@ -23,12 +23,15 @@ static void say(struct list *list, const char *format, ...)
 }
 
 /* "at 828 N m and 2000 rpm" */
-struct place { char text[80]; };
+struct place {
+  char text[80];
+};
 
 static struct place place_of(const struct eo_load_case *load_case)
 {
   struct place place;
-  snprintf(place.text, sizeof place.text, "at %.6g N m and %.6g rpm", load_case->torque, eo_unit_out(&eo_unit_rpm, load_case->speed));
+  snprintf(place.text, sizeof place.text, "at %.6g N m and %.6g rpm", load_case->torque,
+           eo_unit_out(&eo_unit_rpm, load_case->speed));
   return place;
 }
 
@@ -44,28 +47,33 @@ static void say_contact(struct list *list, const struct eo_result_source *source
   const struct eo_case_result *c = &source->evaluation->load_case[k];
   struct place place = place_of(&c->load_case);
   if (c->contact_failures)
-    say(list, "The loaded contact did not converge %s (%d mesh positions): the numbers of this load case mean nothing.", place.text, c->contact_failures);
+    say(list, "The loaded contact did not converge %s (%d mesh positions): the numbers of this load case mean nothing.",
+        place.text, c->contact_failures);
   for (int end = 0; end < source->ends; end++) {
     const struct eo_end_result *r = &c->end[end];
     if (r->edge_share > NOTICEABLE) {
       char peak[80] = "";
       if (source->edge_pressure[k][end] >= 0.999 * r->max_pressure)
         snprintf(peak, sizeof peak, "; the largest pressure, %.4g MPa (nominal), is there", r->max_pressure / 1e6);
-      say(list, "Edge contact %s%s: tip edges carry up to %.3g %% of the load%s.", place.text, end_of(source, end), 100 * r->edge_share, peak);
+      say(list, "Edge contact %s%s: tip edges carry up to %.3g %% of the load%s.", place.text, end_of(source, end),
+          100 * r->edge_share, peak);
     }
     if (!r->impact.touched)
-      say(list, "No incoming tooth touches %s%s: there is no entering impact to speak of.", place.text, end_of(source, end));
+      say(list, "No incoming tooth touches %s%s: there is no entering impact to speak of.", place.text,
+          end_of(source, end));
   }
 }
 
-/* The tangent law is straight: where the force swings widely (ends coupled in torsion and misaligned), the contact's stiffening counts. */
+/* The tangent law is straight: where the force swings widely (ends coupled in torsion and misaligned), the contact's
+   stiffening counts. */
 static void say_swing(struct list *list, const struct eo_result_source *source, const struct eo_case_result *c, int end)
 {
   static const double WIDE = 0.1;
   double swing = fmax(c->vibration.force_max[end] / c->force - 1, 1 - c->vibration.force_min[end] / c->force);
   if (source->design->resolution.mesh_law == EO_LAW_TANGENT && swing > WIDE)
-    say(list, "The mesh force swings by %.2g %% %s%s, more than the tangent law follows well: compare mesh_law \"table\".", 100 * swing,
-        place_of(&c->load_case).text, end_of(source, end));
+    say(list,
+        "The mesh force swings by %.2g %% %s%s, more than the tangent law follows well: compare mesh_law \"table\".",
+        100 * swing, place_of(&c->load_case).text, end_of(source, end));
 }
 
 static void say_vibration(struct list *list, const struct eo_result_source *source, const struct eo_case_result *c)
@@ -76,19 +84,21 @@ static void say_vibration(struct list *list, const struct eo_result_source *sour
     say(list, "No periodic vibration was found %s: the teeth may hammer without a period.", place.text);
   for (int end = 0; end < source->ends && v->outcome == EO_VIBRATION_CONTACT_LOST; end++)
     if (v->contact_loss[end] > 0)
-      say(list, "Contact is lost %s%s, for %.3g %% of the mesh cycle.", place.text, end_of(source, end), 100 * v->contact_loss[end]);
+      say(list, "Contact is lost %s%s, for %.3g %% of the mesh cycle.", place.text, end_of(source, end),
+          100 * v->contact_loss[end]);
   for (int end = 0; end < source->ends && v->outcome != EO_VIBRATION_NOT_CONVERGED; end++)
     say_swing(list, source, c, end);
   if (v->back_contact)
     say(list, "The back flanks touch %s: the vibration is larger than the backlash.", place.text);
 }
 
-static void say_limit(struct list *list, const struct eo_constraint *limit, double value, const char *what, const struct eo_unit *unit, const char *place)
+static void say_limit(struct list *list, const struct eo_constraint *limit, double value, const char *what,
+                      const struct eo_unit *unit, const char *place)
 {
   if (!limit->enabled || !(value > limit->limit))
     return;
-  say(list, "The limit on the %s is exceeded %s: %.4g%s%s, allowed %.4g.", what, place, eo_unit_out(unit, value), unit ? " " : "",
-      unit ? unit->symbol : "", eo_unit_out(unit, limit->limit));
+  say(list, "The limit on the %s is exceeded %s: %.4g%s%s, allowed %.4g.", what, place, eo_unit_out(unit, value),
+      unit ? " " : "", unit ? unit->symbol : "", eo_unit_out(unit, limit->limit));
 }
 
 static void say_limits(struct list *list, const struct eo_result_source *source, int k)
@@ -101,7 +111,8 @@ static void say_limits(struct list *list, const struct eo_result_source *source,
   say_limit(list, &o->peak_to_peak, v->peak_to_peak, "peak-to-peak transmission error", &eo_unit_um, place.text);
   say_limit(list, &o->edge_load_share, v->edge_load_share, "load share of the tip edges", NULL, place.text);
   say_limit(list, &o->contact_loss, v->contact_loss, "loss of contact", NULL, place.text);
-  if (o->no_worse_than_unmodified && (v->peak_to_peak > before->peak_to_peak || v->impact > before->impact || v->rms > before->rms))
+  if (o->no_worse_than_unmodified &&
+      (v->peak_to_peak > before->peak_to_peak || v->impact > before->impact || v->rms > before->rms))
     say(list, "The design is worse than the unmodified pair %s.", place.text);
 }
 
@@ -115,8 +126,8 @@ static void say_held(struct list *list, const struct eo_result_source *source)
     const struct eo_case_result *c = &source->evaluation->load_case[k];
     double left = eo_result_mean_load(source, c, EO_LEFT), right = eo_result_mean_load(source, c, EO_RIGHT);
     if (fmax(left, right) > UNEVEN * (left + right))
-      say(list, "The ends share the load unevenly %s: the %s end carries %.3g %% of it.", place_of(&c->load_case).text, left > right ? "left" : "right",
-          100 * fmax(left, right) / (left + right));
+      say(list, "The ends share the load unevenly %s: the %s end carries %.3g %% of it.", place_of(&c->load_case).text,
+          left > right ? "left" : "right", 100 * fmax(left, right) / (left + right));
   }
   say(list, "The pinion is held along its axis in the loaded contact; the vibration is that of a floating pinion.");
 }
@@ -128,7 +139,8 @@ static void say_modelling(struct list *list, const struct eo_result_source *sour
   if (*note)
     say(list, "%s", note);
   say_held(list, source);
-  if (source->design->objective.relief_inside_active_flank && eo_objective_relief_outside(&source->design->modification, g->rack_bottom, g->rack_top))
+  if (source->design->objective.relief_inside_active_flank &&
+      eo_objective_relief_outside(&source->design->modification, g->rack_bottom, g->rack_top))
     say(list, "A relief starts outside the active flank and takes nothing off where the teeth touch.");
   if (source->analysis->value.sums.failed)
     say(list, "J is not known because a load case has no result.");

@@ -6,51 +6,85 @@
 #include "document/json.h"
 #include "document/result_parts.h"
 
-static const struct eo_unit unit_urad = {"urad", "urad", 1e6, true}, unit_us = {"us", "us", 1e6, true}, unit_mV = {"mV", "mV", 1e3, true},
-                            unit_V = {"V", "V", 1, false};
+static const struct eo_unit unit_urad = {"urad", "urad", 1e6, true}, unit_us = {"us", "us", 1e6, true},
+                            unit_mV = {"mV", "mV", 1e3, true}, unit_V = {"V", "V", 1, false};
 
-static const char *const ends[] = {"left", "right", NULL}, *const outputs[] = {"angles", "counts", "sine-cosine", "pulses", NULL};
-static const char *const faults[] = {"none", "swapped", "reversed", "teeth", "radians", "radians-gear", "dropped", "dropped-silent", "slip", "lost-count", "constant",
-                                     "stuck", "saturated", "time", "nan", "spike", NULL};
-static const char *const separators[] = {"comma", "semicolon", "tab", "blank", NULL}, *const headings[] = {"names", "units-row", "block", "none", NULL};
+static const char *const ends[] = {"left", "right", NULL}, *const outputs[] = {"angles", "counts", "sine-cosine",
+                                                                               "pulses", NULL};
+static const char *const faults[] = {"none",         "swapped", "reversed",       "teeth", "radians",
+                                     "radians-gear", "dropped", "dropped-silent", "slip",  "lost-count",
+                                     "constant",     "stuck",   "saturated",      "time",  "nan",
+                                     "spike",        NULL};
+static const char *const separators[] = {"comma", "semicolon", "tab", "blank", NULL}, *const headings[] = {
+                                                                                          "names", "units-row", "block",
+                                                                                          "none", NULL};
 
 #define SYNTHETIC(member) synthetic.member
 static const struct eo_field fields[] = {
-    EO_NUMBER_DERIVED(struct eo_rig_request, torque, "torque_Nm", NULL, 1e-3, 1e8, "of the load case with the largest share", "torque on the pinion"),
-    EO_NUMBER_DERIVED(struct eo_rig_request, speed, "speed_rpm", &eo_unit_rpm, 0.1, 1e6, "of the load case with the largest share", "mean speed of the pinion"),
+    EO_NUMBER_DERIVED(struct eo_rig_request, torque, "torque_Nm", NULL, 1e-3, 1e8,
+                      "of the load case with the largest share", "torque on the pinion"),
+    EO_NUMBER_DERIVED(struct eo_rig_request, speed, "speed_rpm", &eo_unit_rpm, 0.1, 1e6,
+                      "of the load case with the largest share", "mean speed of the pinion"),
     EO_CHOICE(struct eo_rig_request, end, "end", ends, EO_RIGHT, "where the encoders sit"),
     EO_FLAG(struct eo_rig_request, unmodified, "unmodified", 0, "record the pair without its modification"),
-    EO_INTEGER(struct eo_rig_request, harmonics, "harmonics", 1, EO_SYNTHETIC_ORDERS, 12, "mesh orders of the response in the recording"),
+    EO_INTEGER(struct eo_rig_request, harmonics, "harmonics", 1, EO_SYNTHETIC_ORDERS, 12,
+               "mesh orders of the response in the recording"),
     EO_NUMBER(struct eo_rig_request, SYNTHETIC(turns), "turns", NULL, 0.1, 1e7, 45, "turns of the pinion"),
-    EO_NUMBER(struct eo_rig_request, SYNTHETIC(sample_rate), "sample_rate_Hz", &eo_unit_Hz, 1, 1e8, 20000, "samples per second"),
-    EO_NUMBER(struct eo_rig_request, SYNTHETIC(drift), "speed_drift", NULL, -0.9, 0.9, 0, "change of speed from start to end, relative"),
-    EO_NUMBER(struct eo_rig_request, SYNTHETIC(swing), "speed_swing", NULL, 0, 0.5, 0, "amplitude of a slow swing of the speed, relative"),
-    EO_NUMBER(struct eo_rig_request, SYNTHETIC(swing_turns), "speed_swing_turns", NULL, 1, 1e6, 60, "its period in turns of the pinion"),
-    EO_NUMBER(struct eo_rig_request, SYNTHETIC(eccentricity[EO_PINION]), "pinion_eccentricity_um", &eo_unit_um, 0, 1000, 20, "first order of the pinion shaft, along the line of action"),
-    EO_NUMBER(struct eo_rig_request, SYNTHETIC(eccentricity[EO_GEAR]), "gear_eccentricity_um", &eo_unit_um, 0, 1000, 30, "first order of the gear shaft"),
-    EO_NUMBER(struct eo_rig_request, SYNTHETIC(noise), "noise_urad", &unit_urad, 0, 1e4, 0.02, "noise of each angle, standard deviation"),
-    EO_NUMBER(struct eo_rig_request, SYNTHETIC(jitter), "jitter_us", &unit_us, 0, 1e4, 0, "jitter of the sampling, both channels alike"),
-    EO_NUMBER(struct eo_rig_request, SYNTHETIC(skew), "skew_us", &unit_us, 0, 1e4, 0, "jitter of the gear channel alone"),
-    EO_INTEGER(struct eo_rig_request, SYNTHETIC(lines[EO_PINION]), "pinion_lines", 1, 1000000, 18000, "lines per turn of the pinion's encoder"),
-    EO_INTEGER(struct eo_rig_request, SYNTHETIC(lines[EO_GEAR]), "gear_lines", 1, 1000000, 18000, "lines per turn of the gear's encoder"),
-    EO_INTEGER(struct eo_rig_request, SYNTHETIC(interpolation), "interpolation", 0, 1000000, 0, "steps per line that angles and counts are rounded to; 0: not rounded"),
-    EO_CHOICE(struct eo_rig_request, SYNTHETIC(output), "output", outputs, EO_SYNTHETIC_ANGLES, "what the columns hold"),
+    EO_NUMBER(struct eo_rig_request, SYNTHETIC(sample_rate), "sample_rate_Hz", &eo_unit_Hz, 1, 1e8, 20000,
+              "samples per second"),
+    EO_NUMBER(struct eo_rig_request, SYNTHETIC(drift), "speed_drift", NULL, -0.9, 0.9, 0,
+              "change of speed from start to end, relative"),
+    EO_NUMBER(struct eo_rig_request, SYNTHETIC(swing), "speed_swing", NULL, 0, 0.5, 0,
+              "amplitude of a slow swing of the speed, relative"),
+    EO_NUMBER(struct eo_rig_request, SYNTHETIC(swing_turns), "speed_swing_turns", NULL, 1, 1e6, 60,
+              "its period in turns of the pinion"),
+    EO_NUMBER(struct eo_rig_request, SYNTHETIC(eccentricity[EO_PINION]), "pinion_eccentricity_um", &eo_unit_um, 0, 1000,
+              20, "first order of the pinion shaft, along the line of action"),
+    EO_NUMBER(struct eo_rig_request, SYNTHETIC(eccentricity[EO_GEAR]), "gear_eccentricity_um", &eo_unit_um, 0, 1000, 30,
+              "first order of the gear shaft"),
+    EO_NUMBER(struct eo_rig_request, SYNTHETIC(noise), "noise_urad", &unit_urad, 0, 1e4, 0.02,
+              "noise of each angle, standard deviation"),
+    EO_NUMBER(struct eo_rig_request, SYNTHETIC(jitter), "jitter_us", &unit_us, 0, 1e4, 0,
+              "jitter of the sampling, both channels alike"),
+    EO_NUMBER(struct eo_rig_request, SYNTHETIC(skew), "skew_us", &unit_us, 0, 1e4, 0,
+              "jitter of the gear channel alone"),
+    EO_INTEGER(struct eo_rig_request, SYNTHETIC(lines[EO_PINION]), "pinion_lines", 1, 1000000, 18000,
+               "lines per turn of the pinion's encoder"),
+    EO_INTEGER(struct eo_rig_request, SYNTHETIC(lines[EO_GEAR]), "gear_lines", 1, 1000000, 18000,
+               "lines per turn of the gear's encoder"),
+    EO_INTEGER(struct eo_rig_request, SYNTHETIC(interpolation), "interpolation", 0, 1000000, 0,
+               "steps per line that angles and counts are rounded to; 0: not rounded"),
+    EO_CHOICE(struct eo_rig_request, SYNTHETIC(output), "output", outputs, EO_SYNTHETIC_ANGLES,
+              "what the columns hold"),
     EO_FLAG(struct eo_rig_request, SYNTHETIC(wrapped), "wrapped", 0, "angles start again every turn"),
     EO_FLAG(struct eo_rig_request, SYNTHETIC(radians), "radians", 0, "angles in radians, and said so"),
-    EO_NUMBER(struct eo_rig_request, SYNTHETIC(amplitude), "track_amplitude_V", &unit_V, 1e-3, 100, 0.5, "amplitude of the raw tracks"),
+    EO_NUMBER(struct eo_rig_request, SYNTHETIC(amplitude), "track_amplitude_V", &unit_V, 1e-3, 100, 0.5,
+              "amplitude of the raw tracks"),
     EO_NUMBER(struct eo_rig_request, SYNTHETIC(offset), "track_offset", NULL, -1, 1, 0.03, "their offset / amplitude"),
     EO_NUMBER(struct eo_rig_request, SYNTHETIC(gain), "track_gain", NULL, -0.9, 9, 0.05, "sine over cosine - 1"),
-    EO_NUMBER(struct eo_rig_request, SYNTHETIC(phase), "track_phase_deg", &eo_unit_deg, -60, 60, 2, "their phase beyond 90 degrees"),
-    EO_NUMBER(struct eo_rig_request, SYNTHETIC(track_noise), "track_noise_mV", &unit_mV, 0, 1e4, 0, "noise of the raw tracks"),
-    EO_NUMBER(struct eo_rig_request, SYNTHETIC(track_step), "track_step_mV", &unit_mV, 0, 1e4, 0, "step of the converter; 0: none"),
-    EO_CHOICE(struct eo_rig_request, SYNTHETIC(fault), "fault", faults, EO_FAULT_NONE, "what is wrong with the recording"),
+    EO_NUMBER(struct eo_rig_request, SYNTHETIC(phase), "track_phase_deg", &eo_unit_deg, -60, 60, 2,
+              "their phase beyond 90 degrees"),
+    EO_NUMBER(struct eo_rig_request, SYNTHETIC(track_noise), "track_noise_mV", &unit_mV, 0, 1e4, 0,
+              "noise of the raw tracks"),
+    EO_NUMBER(struct eo_rig_request, SYNTHETIC(track_step), "track_step_mV", &unit_mV, 0, 1e4, 0,
+              "step of the converter; 0: none"),
+    EO_CHOICE(struct eo_rig_request, SYNTHETIC(fault), "fault", faults, EO_FAULT_NONE,
+              "what is wrong with the recording"),
     EO_NUMBER(struct eo_rig_request, fault_row, "fault_row", NULL, 0, 1e9, 10000, "row of the fault, from 0"),
-    EO_NUMBER(struct eo_rig_request, fault_size, "fault_size", NULL, -1000, 1e6, 1, "its size: rows, or teeth of the gear too many"),
-    {.key = "seed", .kind = EO_FIELD_SEED, .offset = offsetof(struct eo_rig_request, synthetic.seed), .low = 0, .high = 9007199254740991.0, .fallback = 1,
+    EO_NUMBER(struct eo_rig_request, fault_size, "fault_size", NULL, -1000, 1e6, 1,
+              "its size: rows, or teeth of the gear too many"),
+    {.key = "seed",
+     .kind = EO_FIELD_SEED,
+     .offset = offsetof(struct eo_rig_request, synthetic.seed),
+     .low = 0,
+     .high = 9007199254740991.0,
+     .fallback = 1,
      .help = "of everything random"},
     EO_CHOICE(struct eo_rig_request, separator, "separator", separators, EO_RIG_COMMA, "between columns"),
-    EO_CHOICE(struct eo_rig_request, heading, "heading", headings, EO_RIG_NAMES, "names with units, names and a row of units, a block of remarks before them, or nothing"),
-    EO_FLAG(struct eo_rig_request, decimal_comma, "decimal_comma", 0, "decimal comma (not with commas between columns)"),
+    EO_CHOICE(struct eo_rig_request, heading, "heading", headings, EO_RIG_NAMES,
+              "names with units, names and a row of units, a block of remarks before them, or nothing"),
+    EO_FLAG(struct eo_rig_request, decimal_comma, "decimal_comma", 0,
+            "decimal comma (not with commas between columns)"),
     EO_FLAG(struct eo_rig_request, byte_order_mark, "byte_order_mark", 0, "UTF-8 byte order mark at the start"),
     EO_FLAG(struct eo_rig_request, carriage_return, "carriage_return", 0, "lines end with CR LF"),
 };
@@ -67,12 +101,13 @@ enum eo_code eo_rig_complete(struct eo_rig_request *request, const struct eo_des
   if (isnan(request->speed))
     request->speed = largest->speed;
   if (request->decimal_comma && request->separator == EO_RIG_COMMA)
-    return eo_error_set(error, EO_ERROR_INPUT, "/decimal_comma", "A decimal comma needs another separator than the comma.");
+    return eo_error_set(error, EO_ERROR_INPUT, "/decimal_comma",
+                        "A decimal comma needs another separator than the comma.");
   return EO_OK;
 }
 
-void eo_rig_set_pair(struct eo_rig_request *request, const struct eo_geometry *geometry, const struct eo_supports *supports,
-                     const struct eo_rig_prediction *prediction)
+void eo_rig_set_pair(struct eo_rig_request *request, const struct eo_geometry *geometry,
+                     const struct eo_supports *supports, const struct eo_rig_prediction *prediction)
 {
   struct eo_synthetic *s = &request->synthetic;
   for (int i = 0; i < 2; i++) {
@@ -99,8 +134,8 @@ static void write_heading(const struct eo_rig_request *r, FILE *stream)
   if (r->byte_order_mark)
     fputs("\xef\xbb\xbf", stream);
   if (r->heading == EO_RIG_BLOCK)
-    fprintf(stream, "# synthetic rig%s# torque: %g N m%s# speed: %g rpm%s# sampling rate: %g Hz%s%s", end, r->torque, end, r->speed * 30 / M_PI, end, s->sample_rate,
-            end, end);
+    fprintf(stream, "# synthetic rig%s# torque: %g N m%s# speed: %g rpm%s# sampling rate: %g Hz%s%s", end, r->torque,
+            end, r->speed * 30 / M_PI, end, s->sample_rate, end, end);
   for (int pass = 0; pass < (r->heading == EO_RIG_UNITS_ROW ? 2 : 1) && r->heading != EO_RIG_BARE; pass++)
     for (int c = 0; c < columns; c++) {
       const char *name = eo_synthetic_heading(s, c), *unit = strrchr(name, '_');
@@ -139,7 +174,8 @@ static void write_row(const struct eo_rig_request *r, const double *row, FILE *s
   fputs(r->carriage_return ? "\r\n" : "\n", stream);
 }
 
-enum eo_code eo_rig_write(const struct eo_rig_request *r, const struct eo_progress *progress, FILE *stream, struct eo_error *error)
+enum eo_code eo_rig_write(const struct eo_rig_request *r, const struct eo_progress *progress, FILE *stream,
+                          struct eo_error *error)
 {
   enum { BLOCK = 1024 };
   double rows[BLOCK * EO_SYNTHETIC_COLUMNS];
@@ -161,7 +197,10 @@ enum eo_code eo_rig_write(const struct eo_rig_request *r, const struct eo_progre
 
 /* ---- truth ---- */
 
-static json_t *column(int count, const double *value) { return eo_json_reals(count, value, 1, NULL, EO_DIGITS_NUMBER); }
+static json_t *column(int count, const double *value)
+{
+  return eo_json_reals(count, value, 1, NULL, EO_DIGITS_NUMBER);
+}
 
 static json_t *encode_truth(const struct eo_synthetic *s, int orders)
 {
@@ -185,8 +224,9 @@ static json_t *encode_truth(const struct eo_synthetic *s, int orders)
 
 static const char *expected_finding(enum eo_synthetic_fault fault)
 {
-  static const char *const expected[EO_FAULTS] = {NULL, "swapped", "reversed", "teeth", "radians", "radians", "dropped rows", "dropped rows", "slip", "lost-count", "constant",
-                                                  "constant", "saturated", "time", "nan", "spike"};
+  static const char *const expected[EO_FAULTS] = {
+      NULL,   "swapped",    "reversed", "teeth",    "radians",   "radians", "dropped rows", "dropped rows",
+      "slip", "lost-count", "constant", "constant", "saturated", "time",    "nan",          "spike"};
   return expected[fault];
 }
 
@@ -202,14 +242,16 @@ json_t *eo_rig_truth(const struct eo_rig_request *r, const char *file)
   else if (s->wrapped)
     entry.failed = json_array_append_new(findings, json_string("wrapped")) != 0;
   for (int i = 0; i < 2; i++)
-    top.failed = json_array_append_new(radii, eo_json_real(s->base_radius[i], &eo_unit_mm)) || json_array_append_new(teeth, json_integer(s->teeth[i])) || top.failed;
+    top.failed = json_array_append_new(radii, eo_json_real(s->base_radius[i], &eo_unit_mm)) ||
+                 json_array_append_new(teeth, json_integer(s->teeth[i])) || top.failed;
   eo_result_put(&entry, "file", json_string(file));
   eo_result_put(&entry, "truth", encode_truth(s, orders));
   eo_result_put(&entry, "tolerance_rms_rel", eo_result_number(0.01, NULL));
   eo_result_put(&entry, "expected_findings", findings);
   if (s->output != EO_SYNTHETIC_ANGLES) {
     int per_line = s->output == EO_SYNTHETIC_COUNTS ? s->interpolation : 1;
-    eo_result_put(&entry, "layout", json_pack("{s:[i,i]}", "lines", s->lines[EO_PINION] * per_line, s->lines[EO_GEAR] * per_line));
+    eo_result_put(&entry, "layout",
+                  json_pack("{s:[i,i]}", "lines", s->lines[EO_PINION] * per_line, s->lines[EO_GEAR] * per_line));
   }
   top.failed = json_array_append_new(files, eo_result_close(&entry)) != 0 || top.failed;
   eo_result_put(&top, "kind", json_string("encoder"));

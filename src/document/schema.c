@@ -5,10 +5,11 @@
 
 #include "document/result_parts.h"
 
-static const char *const kind_names[] = {[EO_FIELD_NUMBER] = "number",   [EO_FIELD_INTEGER] = "integer", [EO_FIELD_SEED] = "seed",
-                                         [EO_FIELD_FLAG] = "flag",       [EO_FIELD_TEXT] = "text",       [EO_FIELD_CHOICE] = "choice",
-                                         [EO_FIELD_NUMBERS] = "numbers", [EO_FIELD_LIMIT] = "limit",     [EO_FIELD_OBJECT] = "object",
-                                         [EO_FIELD_LIST] = "list",       [EO_FIELD_SERIES] = "series"};
+static const char *const kind_names[] = {
+    [EO_FIELD_NUMBER] = "number",   [EO_FIELD_INTEGER] = "integer", [EO_FIELD_SEED] = "seed",
+    [EO_FIELD_FLAG] = "flag",       [EO_FIELD_TEXT] = "text",       [EO_FIELD_CHOICE] = "choice",
+    [EO_FIELD_NUMBERS] = "numbers", [EO_FIELD_LIMIT] = "limit",     [EO_FIELD_OBJECT] = "object",
+    [EO_FIELD_LIST] = "list",       [EO_FIELD_SERIES] = "series"};
 
 /* What the document says where every key is absent: the defaults, as the tables themselves write them. */
 static json_t *encode_defaults(const struct eo_table *table)
@@ -31,7 +32,8 @@ static json_t *default_of(const struct eo_field *field, const json_t *defaults)
 
 static bool has_default(const struct eo_field *field)
 {
-  return !(field->flags & EO_FIELD_REQUIRED) && field->kind != EO_FIELD_SERIES && (field->kind != EO_FIELD_OBJECT || field->flags & EO_FIELD_NULLABLE);
+  return !(field->flags & EO_FIELD_REQUIRED) && field->kind != EO_FIELD_SERIES &&
+         (field->kind != EO_FIELD_OBJECT || field->flags & EO_FIELD_NULLABLE);
 }
 
 static bool is_whole(const struct eo_field *field)
@@ -41,14 +43,16 @@ static bool is_whole(const struct eo_field *field)
 
 static bool is_numeric(const struct eo_field *field)
 {
-  return is_whole(field) || field->kind == EO_FIELD_NUMBER || field->kind == EO_FIELD_NUMBERS || field->kind == EO_FIELD_LIMIT;
+  return is_whole(field) || field->kind == EO_FIELD_NUMBER || field->kind == EO_FIELD_NUMBERS ||
+         field->kind == EO_FIELD_LIMIT;
 }
 
 /* Ranges without an end are left out; a whole number reads 17, not 17.0. */
 static void put_bound(struct eo_result_object *o, const char *key, double bound)
 {
   if (isfinite(bound))
-    eo_result_put(o, key, fabs(bound) < 1e15 && bound == floor(bound) ? json_integer((json_int_t)bound) : json_real(bound));
+    eo_result_put(o, key,
+                  fabs(bound) < 1e15 && bound == floor(bound) ? json_integer((json_int_t)bound) : json_real(bound));
 }
 
 static json_t *list_choices(const struct eo_field *field)
@@ -137,7 +141,8 @@ static void put_type(struct eo_result_object *o, const char *type, bool nullable
   eo_result_put(o, "type", nullable ? json_pack("[s,s]", type, "null") : json_string(type));
 }
 
-static void put_number(struct eo_result_object *o, const struct eo_field *field, double low, double high, bool nullable, bool input)
+static void put_number(struct eo_result_object *o, const struct eo_field *field, double low, double high, bool nullable,
+                       bool input)
 {
   put_type(o, is_whole(field) ? "integer" : "number", nullable);
   if (!input)
@@ -201,7 +206,8 @@ static void put_constraints(struct eo_result_object *o, const struct eo_field *f
     put_array(o, field, number_items(field, field->low, field->high, input), field->count, field->count);
     break;
   case EO_FIELD_SERIES:
-    put_array(o, field, number_items(field, field->series_low, field->series_high, input), input ? field->low : NAN, input ? field->high : NAN);
+    put_array(o, field, number_items(field, field->series_low, field->series_high, input), input ? field->low : NAN,
+              input ? field->high : NAN);
     break;
   case EO_FIELD_LIST:
     put_array(o, field, row_schema(field->table, input), field->low, field->high);
@@ -231,7 +237,9 @@ static json_t *property(const struct eo_field *field, const json_t *defaults, bo
 static bool must_be_there(const struct eo_field *field)
 {
   bool required = field->flags & EO_FIELD_REQUIRED;
-  for (int i = 0; field->kind == EO_FIELD_OBJECT && !(field->flags & EO_FIELD_NULLABLE) && i < field->table->count && !required; i++)
+  for (int i = 0;
+       field->kind == EO_FIELD_OBJECT && !(field->flags & EO_FIELD_NULLABLE) && i < field->table->count && !required;
+       i++)
     required = must_be_there(&field->table->field[i]);
   return required;
 }

@@ -60,7 +60,8 @@ void eo_sheet_number(struct eo_sheet *sheet, double value, const struct eo_unit 
   add_cell(sheet, text, true);
 }
 
-void eo_sheet_fill(struct eo_sheet *sheet, int rows, const double *const *column, const struct eo_unit *const *units, int digits)
+void eo_sheet_fill(struct eo_sheet *sheet, int rows, const double *const *column, const struct eo_unit *const *units,
+                   int digits)
 {
   for (int i = 0; i < rows; i++)
     for (int j = 0; j < sheet->columns; j++)

@@ -9,10 +9,13 @@
 
 struct eo_sheet {
   int columns;
-  int cells;       /* filled so far, headings included */
+  int cells; /* filled so far, headings included */
   int capacity;
-  struct eo_cell { char *text; bool number; } *cell; /* owned, row-major */
-  bool failed;     /* an allocation failed; the writers then mark their text as failed */
+  struct eo_cell {
+    char *text;
+    bool number;
+  } * cell;    /* owned, row-major */
+  bool failed; /* an allocation failed; the writers then mark their text as failed */
 };
 
 /* headings: [columns], copied. */
@@ -25,7 +28,8 @@ void eo_sheet_string(struct eo_sheet *sheet, const char *string);
 void eo_sheet_number(struct eo_sheet *sheet, double value, const struct eo_unit *unit, int digits);
 
 /* A curve sheet at once: column j holds column[j][0 .. rows). units: [columns], entries may be NULL. */
-void eo_sheet_fill(struct eo_sheet *sheet, int rows, const double *const *column, const struct eo_unit *const *units, int digits);
+void eo_sheet_fill(struct eo_sheet *sheet, int rows, const double *const *column, const struct eo_unit *const *units,
+                   int digits);
 
 /* Numbers to the right, the rest to the left, two blanks between columns, each line indented. */
 void eo_sheet_print(const struct eo_sheet *sheet, int indent, struct eo_text *text);

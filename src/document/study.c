@@ -66,22 +66,26 @@ enum { PRESET = 5 };
 
 static struct eo_range preset_bounds(const struct eo_optimization *o, int parameter)
 {
-  const struct eo_range range[PRESET] = {o->tip_relief, o->root_relief, o->tip_relief_start, o->root_relief_start, o->lead_crowning};
+  const struct eo_range range[PRESET] = {o->tip_relief, o->root_relief, o->tip_relief_start, o->root_relief_start,
+                                         o->lead_crowning};
   const struct eo_field *field = flank_field(eo_variable_parameters[parameter]);
   if (parameter >= PRESET)
     return (struct eo_range){NAN, NAN};
-  return (struct eo_range){eo_unit_out(field->unit, range[parameter].low), eo_unit_out(field->unit, range[parameter].high)};
+  return (struct eo_range){eo_unit_out(field->unit, range[parameter].low),
+                           eo_unit_out(field->unit, range[parameter].high)};
 }
 
 static void add_preset(struct eo_study_space *space, const struct eo_optimization *o, int end)
 {
   for (int i = 0; i < PRESET; i++) {
     struct eo_range bounds = preset_bounds(o, i);
-    space->variable[space->count++] = (struct eo_study_variable){EO_PINION, end, flank_field(eo_variable_parameters[i]), bounds.low, bounds.high};
+    space->variable[space->count++] = (struct eo_study_variable){EO_PINION, end, flank_field(eo_variable_parameters[i]),
+                                                                 bounds.low, bounds.high};
   }
 }
 
-static enum eo_code fault(const char *pointer_format, int i, struct eo_error *error, const char *text, double a, double b)
+static enum eo_code fault(const char *pointer_format, int i, struct eo_error *error, const char *text, double a,
+                          double b)
 {
   char pointer[80];
   snprintf(pointer, sizeof pointer, pointer_format, i);
@@ -89,7 +93,8 @@ static enum eo_code fault(const char *pointer_format, int i, struct eo_error *er
 }
 
 /* One list row, made a variable; the field's own range holds as everywhere. */
-static enum eo_code add_listed(struct eo_study_space *space, const struct eo_design *design, int i, struct eo_error *error)
+static enum eo_code add_listed(struct eo_study_space *space, const struct eo_design *design, int i,
+                               struct eo_error *error)
 {
   const struct eo_listed_variable *row = &design->optimization.list[i];
   const struct eo_field *field = flank_field(eo_variable_parameters[row->parameter]);
@@ -98,12 +103,15 @@ static enum eo_code add_listed(struct eo_study_space *space, const struct eo_des
   if (end == EO_RIGHT && design->gear_pair.ends == 1)
     return fault("/optimization/variable_list/%d/end", i, error, "The pair has one end, the left one.", 0, 0);
   if (isnan(bounds.low))
-    return fault("/optimization/variable_list/%d/bounds", i, error, "This parameter has no bounds of its own: state them.", 0, 0);
+    return fault("/optimization/variable_list/%d/bounds", i, error,
+                 "This parameter has no bounds of its own: state them.", 0, 0);
   if (!(bounds.low < bounds.high) || bounds.low < field->low || bounds.high > field->high)
-    return fault("/optimization/variable_list/%d/bounds", i, error, "The bounds must increase and stay inside %.6g .. %.6g.", field->low, field->high);
+    return fault("/optimization/variable_list/%d/bounds", i, error,
+                 "The bounds must increase and stay inside %.6g .. %.6g.", field->low, field->high);
   for (int j = 0; j < space->count; j++) {
     const struct eo_study_variable *other = &space->variable[j];
-    if (other->field == field && other->member == row->member && (other->end == end || other->end == EO_BOTH_ENDS || end == EO_BOTH_ENDS))
+    if (other->field == field && other->member == row->member &&
+        (other->end == end || other->end == EO_BOTH_ENDS || end == EO_BOTH_ENDS))
       return fault("/optimization/variable_list/%d", i, error, "This parameter is a variable already.", 0, 0);
   }
   space->variable[space->count++] = (struct eo_study_variable){row->member, end, field, bounds.low, bounds.high};
@@ -124,12 +132,13 @@ static double value_at(const struct eo_study_variable *v, const struct eo_modifi
 
 static bool is_length(const struct eo_study_variable *v)
 {
-  return v->field == flank_field("leading_end_relief_length_mm") || v->field == flank_field("trailing_end_relief_length_mm");
+  return v->field == flank_field("leading_end_relief_length_mm") ||
+         v->field == flank_field("trailing_end_relief_length_mm");
 }
 
 /* Both extremes must be flanks: everything at its upper bound, and the same with the shortest end reliefs. */
-static enum eo_code check_extremes(const struct eo_study_space *space, const struct eo_design *design, const struct eo_geometry *geometry,
-                                   struct eo_error *error)
+static enum eo_code check_extremes(const struct eo_study_space *space, const struct eo_design *design,
+                                   const struct eo_geometry *geometry, struct eo_error *error)
 {
   struct eo_design extreme = *design;
   enum eo_code code = EO_OK;
@@ -140,19 +149,21 @@ static enum eo_code check_extremes(const struct eo_study_space *space, const str
       set_value(v, &extreme.modification, eo_unit_in(v->field->unit, shortest && is_length(v) ? v->low : v->high));
     }
     if (eo_modification_check(&extreme, geometry, &found))
-      code = eo_error_set(error, EO_ERROR_INPUT, "/optimization/variable_list", "The bounds allow impossible flanks, %.100s: %.200s", found.pointer, found.text);
+      code = eo_error_set(error, EO_ERROR_INPUT, "/optimization/variable_list",
+                          "The bounds allow impossible flanks, %.100s: %.200s", found.pointer, found.text);
   }
   return code;
 }
 
-enum eo_code eo_study_space_init(struct eo_study_space *result, const struct eo_design *design, const struct eo_geometry *geometry,
-                                 struct eo_error *error)
+enum eo_code eo_study_space_init(struct eo_study_space *result, const struct eo_design *design,
+                                 const struct eo_geometry *geometry, struct eo_error *error)
 {
   const struct eo_optimization *o = &design->optimization;
   struct eo_study_space space = {0};
   enum eo_code code = EO_OK;
   if (o->variables != EO_VARIABLES_LISTED && o->listed)
-    return eo_error_set(error, EO_ERROR_INPUT, "/optimization/variable_list", "Variables are listed, but variables is not \"listed\".");
+    return eo_error_set(error, EO_ERROR_INPUT, "/optimization/variable_list",
+                        "Variables are listed, but variables is not \"listed\".");
   if (o->variables == EO_VARIABLES_LISTED && !o->listed)
     return eo_error_set(error, EO_ERROR_INPUT, "/optimization/variable_list", "At least one variable must be listed.");
   if (o->variables == EO_VARIABLES_SHARED)
@@ -168,7 +179,8 @@ enum eo_code eo_study_space_init(struct eo_study_space *result, const struct eo_
   return code;
 }
 
-void eo_study_space_apply(const struct eo_study_space *space, const struct eo_modification *base, const double *x, struct eo_modification *modification)
+void eo_study_space_apply(const struct eo_study_space *space, const struct eo_modification *base, const double *x,
+                          struct eo_modification *modification)
 {
   *modification = *base;
   for (int i = 0; i < space->count; i++) {
@@ -182,19 +194,22 @@ static bool same_flank(const struct eo_flank_modification *a, const struct eo_fl
 {
   for (int i = 0; i < eo_flank_modification_table.count; i++) {
     const struct eo_field *field = &eo_flank_modification_table.field[i];
-    if (field->kind == EO_FIELD_NUMBER && *(const double *)((const char *)a + field->offset) != *(const double *)((const char *)b + field->offset))
+    if (field->kind == EO_FIELD_NUMBER &&
+        *(const double *)((const char *)a + field->offset) != *(const double *)((const char *)b + field->offset))
       return false;
   }
   return a->shape == b->shape;
 }
 
-bool eo_study_space_locate(const struct eo_study_space *space, const struct eo_modification *base, const struct eo_modification *modification, double *x)
+bool eo_study_space_locate(const struct eo_study_space *space, const struct eo_modification *base,
+                           const struct eo_modification *modification, double *x)
 {
   struct eo_modification rest = *modification;
   for (int i = 0; i < space->count; i++) {
     const struct eo_study_variable *v = &space->variable[i];
     x[i] = (eo_study_variable_value(v, modification) - v->low) / (v->high - v->low);
-    if (!(x[i] > -1e-12 && x[i] < 1 + 1e-12) || (v->end == EO_BOTH_ENDS && value_at(v, modification, 0) != value_at(v, modification, 1)))
+    if (!(x[i] > -1e-12 && x[i] < 1 + 1e-12) ||
+        (v->end == EO_BOTH_ENDS && value_at(v, modification, 0) != value_at(v, modification, 1)))
       return false;
     x[i] = fmin(fmax(x[i], 0), 1);
     for (int end = 0; end < 2; end++)
@@ -240,12 +255,12 @@ static json_t *encode_flank(const struct eo_flank_modification *flank)
 {
   struct eo_flank_modification standard;
   eo_table_defaults(&eo_flank_modification_table, &standard);
-  json_t *object = eo_table_encode(&eo_flank_modification_table, flank), *other = eo_table_encode(&eo_flank_modification_table, &standard), *value;
+  json_t *object = eo_table_encode(&eo_flank_modification_table, flank),
+         *other = eo_table_encode(&eo_flank_modification_table, &standard), *value;
   const char *key;
   void *next;
   if (object && other)
-    json_object_foreach_safe(object, next, key, value)
-      if (json_equal(value, json_object_get(other, key)))
+    json_object_foreach_safe(object, next, key, value) if (json_equal(value, json_object_get(other, key)))
         json_object_del(object, key);
   if (!other) {
     json_decref(object);
@@ -263,7 +278,8 @@ static void put_unless_empty(json_t *object, const char *key, json_t *value, boo
     eo_json_put(object, key, value, failed);
 }
 
-enum eo_code eo_modification_write(const struct eo_modification *modification, int ends, struct eo_text *text, struct eo_error *error)
+enum eo_code eo_modification_write(const struct eo_modification *modification, int ends, struct eo_text *text,
+                                   struct eo_error *error)
 {
   static const char *const member_name[2] = {"pinion", "gear"}, *const end_name[2] = {"left", "right"};
   json_t *document = json_object();

@@ -23,17 +23,21 @@ struct eo_study_space {
 /* Everything but the bounds: algorithm, number of variables, three objectives, and each parameter by its key. */
 void eo_design_study(const struct eo_design *design, struct eo_optimizer_settings *settings);
 
-/* The variables of a resolved design. Shared and per end: the five parameters of the paper on the pinion, of both ends or of the left
-   and then the right one. EO_ERROR_INPUT, with the key: two variables for one parameter, bounds that a flank cannot have, an end that
-   is not there. */
-enum eo_code eo_study_space_init(struct eo_study_space *space, const struct eo_design *design, const struct eo_geometry *geometry,
-                                 struct eo_error *error);
+/* The variables of a resolved design. Shared and per end: the five parameters of the paper on the pinion, of both ends
+   or of the left and then the right one. EO_ERROR_INPUT, with the key: two variables for one parameter, bounds that a
+   flank cannot have, an end that is not there. */
+enum eo_code eo_study_space_init(struct eo_study_space *space, const struct eo_design *design,
+                                 const struct eo_geometry *geometry, struct eo_error *error);
 
-/* *modification = base with the variables at x[count] in the unit cube; every number is one the document can express. */
-void eo_study_space_apply(const struct eo_study_space *space, const struct eo_modification *base, const double *x, struct eo_modification *modification);
+/* *modification = base with the variables at x[count] in the unit cube; every number is one the document can express.
+ */
+void eo_study_space_apply(const struct eo_study_space *space, const struct eo_modification *base, const double *x,
+                          struct eo_modification *modification);
 
-/* The way back. False when the modification is not in this space: out of bounds, ends differ that are tied, or another base. */
-bool eo_study_space_locate(const struct eo_study_space *space, const struct eo_modification *base, const struct eo_modification *modification, double *x);
+/* The way back. False when the modification is not in this space: out of bounds, ends differ that are tied, or another
+   base. */
+bool eo_study_space_locate(const struct eo_study_space *space, const struct eo_modification *base,
+                           const struct eo_modification *modification, double *x);
 
 /* Value of a variable in a modification, in the unit of its key; its name, "pinion/both/tip_relief_um". */
 double eo_study_variable_value(const struct eo_study_variable *variable, const struct eo_modification *modification);
@@ -43,7 +47,8 @@ void eo_study_variable_name(const struct eo_study_variable *variable, char *name
 void eo_study_space_hash(const struct eo_study_space *space, char hex[EO_HASH_LENGTH + 1]);
 
 /* A modification as canonical JSON without defaults, "{}" for none, and back. ends: of the pair. */
-enum eo_code eo_modification_write(const struct eo_modification *modification, int ends, struct eo_text *text, struct eo_error *error);
+enum eo_code eo_modification_write(const struct eo_modification *modification, int ends, struct eo_text *text,
+                                   struct eo_error *error);
 enum eo_code eo_modification_read(const char *text, struct eo_modification *modification, struct eo_error *error);
 
 #endif

@@ -50,7 +50,8 @@ static json_t *encode_variable(const struct eo_study_result *result, const struc
   eo_result_put(&o, "end", json_string(ends[v->end]));
   eo_result_put(&o, "parameter", json_string(v->field->key));
   eo_result_put(&o, "bounds", json_pack("[o,o]", json_real(v->low), json_real(v->high)));
-  eo_result_put(&o, "best", result->best.there ? json_real(eo_study_variable_value(v, &result->best.modification)) : json_null());
+  eo_result_put(&o, "best",
+                result->best.there ? json_real(eo_study_variable_value(v, &result->best.modification)) : json_null());
   return eo_result_close(&o);
 }
 
@@ -73,7 +74,8 @@ static json_t *encode_variables(const struct eo_study_result *result)
 
 static const struct eo_outline_row point_rows[] = {
     {.outline = &eo_outline_value},
-    EO_KEY("load_cases", "[object]", "of the nominal scenario, one for each load case", .outline = &eo_outline_raw_case),
+    EO_KEY("load_cases", "[object]", "of the nominal scenario, one for each load case",
+           .outline = &eo_outline_raw_case),
 };
 static const struct eo_outline point_outline = EO_OUTLINE("StudyPoint", point_rows);
 
@@ -91,7 +93,8 @@ static json_t *encode_point(const struct eo_study_point *point, const struct eo_
 static const struct eo_outline_row reduction_rows[] = {
     EO_KEY("torque_Nm", "number", "of the load case", .unit = &eo_unit_Nm),
     EO_KEY("speed_rpm", "number", "of the load case", .unit = &eo_unit_rpm),
-    EO_KEY("peak_to_peak", "number?", "of the loaded transmission error, in per cent of the unmodified pair, positive when better"),
+    EO_KEY("peak_to_peak", "number?",
+           "of the loaded transmission error, in per cent of the unmodified pair, positive when better"),
     EO_KEY("impact", "number?", "of the entering impact, likewise"),
     EO_KEY("rms", "number?", "of the vibration, likewise"),
     EO_KEY("contact_pressure", "number?", "of the largest contact pressure, likewise"),
@@ -102,10 +105,15 @@ static const struct eo_outline reduction_outline = EO_OUTLINE("StudyReduction", 
 /* In per cent of the unmodified pair, positive when better, for every load case of the analysis. */
 static json_t *encode_reductions(const json_t *analysis)
 {
-  static const struct { const char *key, *value; } row[] = {
-      {"peak_to_peak", "peak_to_peak_um"}, {"impact", "impact_N"}, {"rms", "rms_m_per_s2"}, {"contact_pressure", "contact_pressure_MPa"},
-      {"root_stress", "root_stress_MPa"}};
-  const json_t *after = eo_json_find(analysis, "objectives/load_cases"), *before = eo_json_find(analysis, "objectives/unmodified/load_cases");
+  static const struct {
+    const char *key, *value;
+  } row[] = {{"peak_to_peak", "peak_to_peak_um"},
+             {"impact", "impact_N"},
+             {"rms", "rms_m_per_s2"},
+             {"contact_pressure", "contact_pressure_MPa"},
+             {"root_stress", "root_stress_MPa"}};
+  const json_t *after = eo_json_find(analysis, "objectives/load_cases"),
+               *before = eo_json_find(analysis, "objectives/unmodified/load_cases");
   json_t *array = json_array();
   for (size_t k = 0; k < json_array_size(after) && array; k++) {
     struct eo_result_object o = eo_result_open_as(&reduction_outline);
@@ -113,7 +121,8 @@ static json_t *encode_reductions(const json_t *analysis)
     eo_result_put(&o, "torque_Nm", json_incref(json_object_get(a, "torque_Nm")));
     eo_result_put(&o, "speed_rpm", json_incref(json_object_get(a, "speed_rpm")));
     for (size_t i = 0; i < sizeof row / sizeof *row; i++)
-      eo_result_put_number(&o, row[i].key, 100 * (1 - eo_json_find_number(a, row[i].value) / eo_json_find_number(b, row[i].value)));
+      eo_result_put_number(&o, row[i].key,
+                           100 * (1 - eo_json_find_number(a, row[i].value) / eo_json_find_number(b, row[i].value)));
     array = append(array, eo_result_close(&o));
   }
   return array;
@@ -244,10 +253,13 @@ static json_t *encode_run(const struct eo_study_result *r)
 
 static void put_counts(struct eo_result_object *o, const struct eo_study_result *r)
 {
-  const struct { const char *key; int value; } row[] = {
-      {"individuals", r->individuals}, {"true_evaluations", r->true_evaluations}, {"reused_evaluations", r->reused},
-      {"failed_evaluations", r->failed}, {"predicted_individuals", r->predicted}, {"repeated_individuals", r->repeated},
-      {"imported_rows", r->imported}};
+  const struct {
+    const char *key;
+    int value;
+  } row[] = {{"individuals", r->individuals},         {"true_evaluations", r->true_evaluations},
+             {"reused_evaluations", r->reused},       {"failed_evaluations", r->failed},
+             {"predicted_individuals", r->predicted}, {"repeated_individuals", r->repeated},
+             {"imported_rows", r->imported}};
   for (size_t i = 0; i < sizeof row / sizeof *row; i++)
     eo_result_put(o, row[i].key, json_integer(row[i].value));
   eo_result_put_number(o, "pfc_percent", r->individuals ? 100. * r->true_evaluations / r->individuals : NAN);
@@ -270,16 +282,19 @@ static const struct eo_outline_row study_rows[] = {
     EO_KEY("repeated_individuals", "integer", "equal to an earlier individual"),
     EO_KEY("imported_rows", "integer", "true rows of other studies that the algorithm knew at its start"),
     EO_KEY("pfc_percent", "number?", "true evaluations of the individuals, per cent"),
-    EO_KEY("generations", "[object]", "generations (ga, fpga), batches (credibility-ga) or cycles (nsga2), in their order", .outline = &generation_outline),
+    EO_KEY("generations", "[object]",
+           "generations (ga, fpga), batches (credibility-ga) or cycles (nsga2), in their order",
+           .outline = &generation_outline),
     EO_KEY("front", "[object]", "non-dominated points", .when = "of nsga2", .outline = &front_outline),
     EO_KEY("stopped", "word", "why it ended", .words = eo_study_stops),
     EO_KEY("warnings", "[text]", "in plain words"),
-    EO_KEY("run", "object", "with best/result/timing_ms the only part that differs between two runs", .outline = &run_outline),
+    EO_KEY("run", "object", "with best/result/timing_ms the only part that differs between two runs",
+           .outline = &run_outline),
 };
 const struct eo_outline eo_study_outline = EO_OUTLINE("OptimizationResult", study_rows);
 
-json_t *eo_study_result_encode(const struct eo_study_result *result, const struct eo_design *design, const json_t *analysis,
-                               const struct eo_warnings *warnings)
+json_t *eo_study_result_encode(const struct eo_study_result *result, const struct eo_design *design,
+                               const json_t *analysis, const struct eo_warnings *warnings)
 {
   struct eo_result_object o = eo_result_open_as(&eo_study_outline);
   char hash[EO_HASH_LENGTH + 1];
@@ -316,7 +331,8 @@ static void print_variables(const json_t *document, struct eo_text *text)
   size_t i;
   struct eo_sheet sheet;
   eo_sheet_init(&sheet, 4, headings);
-  json_array_foreach(json_object_get(document, "variables"), i, row) {
+  json_array_foreach(json_object_get(document, "variables"), i, row)
+  {
     eo_sheet_string(&sheet, find_text(row, "name"));
     for (size_t j = 0; j < 2; j++)
       eo_sheet_number(&sheet, json_number_value(json_array_get(json_object_get(row, "bounds"), j)), NULL, 5);
@@ -339,11 +355,14 @@ static void add_reduction(struct eo_sheet *sheet, double before, double after)
 static const struct quantity {
   const char *key, *name, *unit;
 } sums[] = {{"f1_um", "f1", "um"}, {"f2_N", "f2", "N"}, {"f3_m_per_s2", "f3", "m/s2"}, {"J", "J", ""}},
-  per_case[] = {{"peak_to_peak_um", "peak-to-peak loaded TE", "um"}, {"impact_N", "entering impact", "N"},
-                {"rms_m_per_s2", "vibration, RMS normal", "m/s2"}, {"contact_pressure_MPa", "contact pressure", "MPa"},
+  per_case[] = {{"peak_to_peak_um", "peak-to-peak loaded TE", "um"},
+                {"impact_N", "entering impact", "N"},
+                {"rms_m_per_s2", "vibration, RMS normal", "m/s2"},
+                {"contact_pressure_MPa", "contact pressure", "MPa"},
                 {"root_stress_MPa", "root stress", "MPa"}};
 
-static void add_rows(struct eo_sheet *sheet, const struct quantity *quantity, size_t count, const json_t *before, const json_t *after)
+static void add_rows(struct eo_sheet *sheet, const struct quantity *quantity, size_t count, const json_t *before,
+                     const json_t *after)
 {
   for (size_t i = 0; i < count; i++) {
     double a = eo_json_find_number(before, quantity[i].key), b = eo_json_find_number(after, quantity[i].key);
@@ -355,7 +374,8 @@ static void add_rows(struct eo_sheet *sheet, const struct quantity *quantity, si
   }
 }
 
-static void print_comparison(const struct quantity *quantity, size_t count, const json_t *before, const json_t *after, struct eo_text *text)
+static void print_comparison(const struct quantity *quantity, size_t count, const json_t *before, const json_t *after,
+                             struct eo_text *text)
 {
   static const char *const headings[] = {"", "", "unmodified", "optimum", "reduction"};
   struct eo_sheet sheet;
@@ -371,31 +391,39 @@ static void print_cases(const json_t *document, struct eo_text *text)
   const json_t *after = eo_json_find(document, "best/result/objectives/load_cases"), *row;
   const json_t *before = eo_json_find(document, "best/result/objectives/unmodified/load_cases");
   size_t k;
-  json_array_foreach((json_t *)after, k, row) {
-    eo_text_print(text, "%.6g N m, %.6g rpm\n", eo_json_find_number(row, "torque_Nm"), eo_json_find_number(row, "speed_rpm"));
+  json_array_foreach((json_t *)after, k, row)
+  {
+    eo_text_print(text, "%.6g N m, %.6g rpm\n", eo_json_find_number(row, "torque_Nm"),
+                  eo_json_find_number(row, "speed_rpm"));
     print_comparison(per_case, sizeof per_case / sizeof *per_case, json_array_get(before, k), row, text);
   }
 }
 
 static void print_effort(const json_t *document, struct eo_text *text)
 {
-  eo_text_print(text, "%s: %.0f true evaluations of %.0f individuals (PFC %.1f %%), %.0f of them known from the history, %.0f failed; %.0f earlier rows imported\n",
-                find_text(document, "algorithm"), eo_json_find_number(document, "true_evaluations"), eo_json_find_number(document, "individuals"),
-                eo_json_find_number(document, "pfc_percent"), eo_json_find_number(document, "reused_evaluations"),
+  eo_text_print(text,
+                "%s: %.0f true evaluations of %.0f individuals (PFC %.1f %%), %.0f of them known from the history, "
+                "%.0f failed; %.0f earlier rows imported\n",
+                find_text(document, "algorithm"), eo_json_find_number(document, "true_evaluations"),
+                eo_json_find_number(document, "individuals"), eo_json_find_number(document, "pfc_percent"),
+                eo_json_find_number(document, "reused_evaluations"),
                 eo_json_find_number(document, "failed_evaluations"), eo_json_find_number(document, "imported_rows"));
-  eo_text_print(text, "Job %.0f%s, %.0f evaluations computed now in %.1f s on %.0f threads (model %.1f s, optimizer %.1f s, history %.1f s); stopped: %s\n",
-                eo_json_find_number(document, "run/job"), json_is_true(eo_json_find(document, "run/taken_up")) ? ", taken up" : "",
+  eo_text_print(text,
+                "Job %.0f%s, %.0f evaluations computed now in %.1f s on %.0f threads (model %.1f s, optimizer %.1f s, "
+                "history %.1f s); stopped: %s\n",
+                eo_json_find_number(document, "run/job"),
+                json_is_true(eo_json_find(document, "run/taken_up")) ? ", taken up" : "",
                 eo_json_find_number(document, "run/computed_evaluations"), eo_json_find_number(document, "run/wall_s"),
                 eo_json_find_number(document, "run/threads"), eo_json_find_number(document, "run/model_s"),
-                eo_json_find_number(document, "run/optimizer_s"), eo_json_find_number(document, "run/history_s"), find_text(document, "stopped"));
+                eo_json_find_number(document, "run/optimizer_s"), eo_json_find_number(document, "run/history_s"),
+                find_text(document, "stopped"));
 }
 
 static void print_notes(const json_t *warnings, struct eo_text *text)
 {
   const json_t *row;
   size_t i;
-  json_array_foreach((json_t *)warnings, i, row)
-    eo_text_print(text, "Note: %s\n", json_string_value(row));
+  json_array_foreach((json_t *)warnings, i, row) eo_text_print(text, "Note: %s\n", json_string_value(row));
 }
 
 void eo_study_result_summary(const json_t *document, struct eo_text *text)
@@ -408,11 +436,13 @@ void eo_study_result_summary(const json_t *document, struct eo_text *text)
   if (json_is_null(best))
     eo_text_add(text, "No evaluation has given a value yet.\n\n");
   else {
-    print_comparison(sums, sizeof sums / sizeof *sums, json_object_get(document, "unmodified"), json_object_get(best, "objectives"), text);
+    print_comparison(sums, sizeof sums / sizeof *sums, json_object_get(document, "unmodified"),
+                     json_object_get(best, "objectives"), text);
     print_cases(document, text);
   }
   if (eo_json_find_number(best, "objectives/violation") > 0)
-    eo_text_print(text, "Constraints are violated by %.4g in sum.\n", eo_json_find_number(best, "objectives/violation"));
+    eo_text_print(text, "Constraints are violated by %.4g in sum.\n",
+                  eo_json_find_number(best, "objectives/violation"));
   if (front)
     eo_text_print(text, "Pareto front: %zu points (--json lists them)\n", json_array_size(front));
   print_effort(document, text);

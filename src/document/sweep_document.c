@@ -18,7 +18,10 @@ struct column {
   int end; /* -1: of the pair */
 };
 
-#define AT_TORQUE(path_, heading_, member, unit_, end_) {path_, heading_, offsetof(struct eo_sweep_torque, member), unit_, end_}
+#define AT_TORQUE(path_, heading_, member, unit_, end_)                    \
+  {                                                                        \
+    path_, heading_, offsetof(struct eo_sweep_torque, member), unit_, end_ \
+  }
 static const struct column torque_columns[] = {
     AT_TORQUE("peak_to_peak_um", "peak_to_peak_um", peak_to_peak, &eo_unit_um, -1),
     AT_TORQUE("mean_um", "mean_um", mean, &eo_unit_um, -1),
@@ -35,24 +38,36 @@ static const struct column torque_columns[] = {
 };
 enum { TORQUE_COLUMNS = sizeof torque_columns / sizeof *torque_columns };
 
-#define AT_POINT(path_, heading_, member, unit_, end_) {path_, heading_, offsetof(struct eo_sweep_point, member), unit_, end_}
+#define AT_POINT(path_, heading_, member, unit_, end_)                    \
+  {                                                                       \
+    path_, heading_, offsetof(struct eo_sweep_point, member), unit_, end_ \
+  }
 static const struct column point_columns[] = {
     AT_POINT("rms_m_per_s2/normal", "rms_normal_m_per_s2", rms_pair[EO_READING_NORMAL], &eo_unit_m_per_s2, -1),
-    AT_POINT("rms_m_per_s2/transverse", "rms_transverse_m_per_s2", rms_pair[EO_READING_TRANSVERSE], &eo_unit_m_per_s2, -1),
-    AT_POINT("rms_m_per_s2/rotational", "rms_rotational_m_per_s2", rms_pair[EO_READING_ROTATIONAL], &eo_unit_m_per_s2, -1),
-    AT_POINT("rms_of_mean_m_per_s2/normal", "rms_of_mean_normal_m_per_s2", rms_of_mean[EO_READING_NORMAL], &eo_unit_m_per_s2, -1),
-    AT_POINT("rms_of_mean_m_per_s2/transverse", "rms_of_mean_transverse_m_per_s2", rms_of_mean[EO_READING_TRANSVERSE], &eo_unit_m_per_s2, -1),
-    AT_POINT("rms_of_mean_m_per_s2/rotational", "rms_of_mean_rotational_m_per_s2", rms_of_mean[EO_READING_ROTATIONAL], &eo_unit_m_per_s2, -1),
+    AT_POINT("rms_m_per_s2/transverse", "rms_transverse_m_per_s2", rms_pair[EO_READING_TRANSVERSE], &eo_unit_m_per_s2,
+             -1),
+    AT_POINT("rms_m_per_s2/rotational", "rms_rotational_m_per_s2", rms_pair[EO_READING_ROTATIONAL], &eo_unit_m_per_s2,
+             -1),
+    AT_POINT("rms_of_mean_m_per_s2/normal", "rms_of_mean_normal_m_per_s2", rms_of_mean[EO_READING_NORMAL],
+             &eo_unit_m_per_s2, -1),
+    AT_POINT("rms_of_mean_m_per_s2/transverse", "rms_of_mean_transverse_m_per_s2", rms_of_mean[EO_READING_TRANSVERSE],
+             &eo_unit_m_per_s2, -1),
+    AT_POINT("rms_of_mean_m_per_s2/rotational", "rms_of_mean_rotational_m_per_s2", rms_of_mean[EO_READING_ROTATIONAL],
+             &eo_unit_m_per_s2, -1),
     AT_POINT("left/impact_force_N", "left_impact_force_N", impact[0], &eo_unit_N, 0),
     AT_POINT("left/rms_m_per_s2/normal", "left_rms_normal_m_per_s2", rms[EO_READING_NORMAL][0], &eo_unit_m_per_s2, 0),
-    AT_POINT("left/rms_m_per_s2/transverse", "left_rms_transverse_m_per_s2", rms[EO_READING_TRANSVERSE][0], &eo_unit_m_per_s2, 0),
-    AT_POINT("left/rms_m_per_s2/rotational", "left_rms_rotational_m_per_s2", rms[EO_READING_ROTATIONAL][0], &eo_unit_m_per_s2, 0),
+    AT_POINT("left/rms_m_per_s2/transverse", "left_rms_transverse_m_per_s2", rms[EO_READING_TRANSVERSE][0],
+             &eo_unit_m_per_s2, 0),
+    AT_POINT("left/rms_m_per_s2/rotational", "left_rms_rotational_m_per_s2", rms[EO_READING_ROTATIONAL][0],
+             &eo_unit_m_per_s2, 0),
     AT_POINT("left/dynamic_factor", "left_dynamic_factor", dynamic_factor[0], NULL, 0),
     AT_POINT("left/contact_loss", "left_contact_loss", contact_loss[0], NULL, 0),
     AT_POINT("right/impact_force_N", "right_impact_force_N", impact[1], &eo_unit_N, 1),
     AT_POINT("right/rms_m_per_s2/normal", "right_rms_normal_m_per_s2", rms[EO_READING_NORMAL][1], &eo_unit_m_per_s2, 1),
-    AT_POINT("right/rms_m_per_s2/transverse", "right_rms_transverse_m_per_s2", rms[EO_READING_TRANSVERSE][1], &eo_unit_m_per_s2, 1),
-    AT_POINT("right/rms_m_per_s2/rotational", "right_rms_rotational_m_per_s2", rms[EO_READING_ROTATIONAL][1], &eo_unit_m_per_s2, 1),
+    AT_POINT("right/rms_m_per_s2/transverse", "right_rms_transverse_m_per_s2", rms[EO_READING_TRANSVERSE][1],
+             &eo_unit_m_per_s2, 1),
+    AT_POINT("right/rms_m_per_s2/rotational", "right_rms_rotational_m_per_s2", rms[EO_READING_ROTATIONAL][1],
+             &eo_unit_m_per_s2, 1),
     AT_POINT("right/dynamic_factor", "right_dynamic_factor", dynamic_factor[1], NULL, 1),
     AT_POINT("right/contact_loss", "right_contact_loss", contact_loss[1], NULL, 1),
 };
@@ -77,7 +92,8 @@ static double member_of(const void *row, const struct column *column)
 /* ---- outline: `columns` below fill these, by their paths ---- */
 
 static const struct eo_outline_row torque_end_rows[] = {
-    EO_KEY("stiffness_N_per_um", "[number?]", "mean mesh stiffness, load over approach, normal", .unit = &eo_unit_N_per_um),
+    EO_KEY("stiffness_N_per_um", "[number?]", "mean mesh stiffness, load over approach, normal",
+           .unit = &eo_unit_N_per_um),
     EO_KEY("tangent_stiffness_N_per_um", "[number?]", "the same, tangent", .unit = &eo_unit_N_per_um),
     EO_KEY("max_pressure_MPa", "[number?]", "largest contact pressure", .unit = &eo_unit_MPa),
     EO_KEY("max_line_load_N_per_mm", "[number?]", "largest load per length of contact line", .unit = &eo_unit_N_per_mm),
@@ -110,7 +126,8 @@ static const struct eo_outline_row point_end_rows[] = {
 static const struct eo_outline point_end = EO_OUTLINE("SweepPointEnd", point_end_rows);
 
 static const struct eo_outline_row point_rows[] = {
-    EO_KEY("outcome", "[word]", "not_converged: no periodic state was found, its numbers are null", .words = outcome_names),
+    EO_KEY("outcome", "[word]", "not_converged: no periodic state was found, its numbers are null",
+           .words = outcome_names),
     EO_KEY("rms_m_per_s2", "object", "mean of the ends' RMS", .outline = &reading_columns),
     EO_KEY("rms_of_mean_m_per_s2", "object", "RMS of the mean of the ends", .outline = &reading_columns),
     EO_KEY("left", "object", "left end", .outline = &point_end),
@@ -121,8 +138,11 @@ static const struct eo_outline point_outline = EO_OUTLINE("SweepPoints", point_r
 
 static const struct eo_outline_row variant_rows[] = {
     EO_KEY("by_torque", "object", "columns over torque_Nm", .outline = &by_torque),
-    EO_KEY("points", "object", "columns over all points, torque by torque: entry i * (number of speeds) + j; upward in speed", .outline = &point_outline),
-    EO_KEY("down", "object?", "the same downward in speed; null when both are the same everywhere", .outline = &point_outline),
+    EO_KEY("points", "object",
+           "columns over all points, torque by torque: entry i * (number of speeds) + j; upward in speed",
+           .outline = &point_outline),
+    EO_KEY("down", "object?", "the same downward in speed; null when both are the same everywhere",
+           .outline = &point_outline),
 };
 static const struct eo_outline variant_outline = EO_OUTLINE("SweepVariant", variant_rows);
 
@@ -172,13 +192,14 @@ static void put_at(struct eo_result_object *o, const char *path, json_t *value)
   eo_json_put(at, path, value, &o->failed);
 }
 
-static void put_columns(struct eo_result_object *o, const struct eo_sweep *s, int columns, const struct column *column, int rows, const void *row,
-                        size_t size)
+static void put_columns(struct eo_result_object *o, const struct eo_sweep *s, int columns, const struct column *column,
+                        int rows, const void *row, size_t size)
 {
   for (int i = 0; i < columns; i++)
     if (column[i].end < s->ends)
-      put_at(o, column[i].path, eo_json_reals(rows, (const double *)(const void *)((const char *)row + column[i].offset), (int)(size / sizeof(double)),
-                                              column[i].unit, EO_DIGITS_NUMBER));
+      put_at(o, column[i].path,
+             eo_json_reals(rows, (const double *)(const void *)((const char *)row + column[i].offset),
+                           (int)(size / sizeof(double)), column[i].unit, EO_DIGITS_NUMBER));
 }
 
 static json_t *encode_torques(const struct eo_sweep *s, int variant)
@@ -186,7 +207,8 @@ static json_t *encode_torques(const struct eo_sweep *s, int variant)
   struct eo_result_object o = eo_result_open();
   json_t *failures = json_array();
   for (int i = 0; i < s->torques; i++)
-    o.failed = o.failed || json_array_append_new(failures, json_integer(s->at_torque[variant][i].contact_failures)) != 0;
+    o.failed = o.failed ||
+               json_array_append_new(failures, json_integer(s->at_torque[variant][i].contact_failures)) != 0;
   put_columns(&o, s, TORQUE_COLUMNS, torque_columns, s->torques, s->at_torque[variant], sizeof *s->at_torque[variant]);
   eo_result_put(&o, "contact_failures", failures);
   return eo_result_close(&o);
@@ -222,8 +244,10 @@ static json_t *encode_modes(const struct eo_sweep *s)
   json_t *frequencies = json_array(), *ratios = json_array();
   for (int i = 0; i < s->torques && !o.failed; i++) {
     const struct eo_dynamics_modes *modes = &s->at_torque[EO_SWEEP_DESIGN][i].modes;
-    o.failed = json_array_append_new(frequencies, eo_json_reals(modes->n, modes->frequency, 1, &eo_unit_Hz, EO_DIGITS_NUMBER)) != 0 ||
-               json_array_append_new(ratios, eo_json_reals(modes->n, modes->damping_ratio, 1, NULL, EO_DIGITS_NUMBER)) != 0;
+    o.failed =
+        json_array_append_new(frequencies,
+                              eo_json_reals(modes->n, modes->frequency, 1, &eo_unit_Hz, EO_DIGITS_NUMBER)) != 0 ||
+        json_array_append_new(ratios, eo_json_reals(modes->n, modes->damping_ratio, 1, NULL, EO_DIGITS_NUMBER)) != 0;
   }
   eo_result_put(&o, "frequency_Hz", frequencies);
   eo_result_put(&o, "damping_ratio", ratios);
@@ -234,11 +258,13 @@ static json_t *encode_modes(const struct eo_sweep *s)
 static json_t *encode_crossings(const struct eo_sweep *s)
 {
   struct eo_result_object o = eo_result_open_as(&crossing_outline);
-  json_t *torque = json_array(), *mode = json_array(), *order = json_array(), *frequency = json_array(), *speed = json_array();
+  json_t *torque = json_array(), *mode = json_array(), *order = json_array(), *frequency = json_array(),
+         *speed = json_array();
   for (int i = 0; i < s->crossings && !o.failed; i++) {
     const struct eo_sweep_crossing *c = &s->crossing[i];
     o.failed = json_array_append_new(torque, eo_result_number(s->torque[c->torque], &eo_unit_Nm)) != 0 ||
-               json_array_append_new(mode, json_integer(c->mode + 1)) != 0 || json_array_append_new(order, json_integer(c->order)) != 0 ||
+               json_array_append_new(mode, json_integer(c->mode + 1)) != 0 ||
+               json_array_append_new(order, json_integer(c->order)) != 0 ||
                json_array_append_new(frequency, eo_result_number(c->frequency, &eo_unit_Hz)) != 0 ||
                json_array_append_new(speed, eo_result_number(c->speed, &eo_unit_rpm)) != 0;
   }
@@ -280,7 +306,8 @@ json_t *eo_sweep_encode(const struct eo_sweep *s, const struct eo_design *design
 
 /* ---- CSV ---- */
 
-static void add_headings(const struct eo_sweep *s, int columns, const struct column *column, const char *prefix, struct eo_sheet *sheet)
+static void add_headings(const struct eo_sweep *s, int columns, const struct column *column, const char *prefix,
+                         struct eo_sheet *sheet)
 {
   char heading[80];
   for (int i = 0; i < columns; i++)
@@ -292,7 +319,8 @@ static void add_headings(const struct eo_sweep *s, int columns, const struct col
 
 static void add_all_headings(const struct eo_sweep *s, struct eo_sheet *sheet)
 {
-  static const char *const prefix[EO_SWEEP_VARIANTS][EO_SWEEP_DIRECTIONS] = {{"", "down_"}, {"unmodified_", "unmodified_down_"}};
+  static const char *const prefix[EO_SWEEP_VARIANTS][EO_SWEEP_DIRECTIONS] = {{"", "down_"},
+                                                                             {"unmodified_", "unmodified_down_"}};
   static const struct column outcome = {.heading = "outcome", .end = -1};
   eo_sheet_string(sheet, "torque_Nm");
   eo_sheet_string(sheet, "speed_rpm");
@@ -306,7 +334,8 @@ static void add_all_headings(const struct eo_sweep *s, struct eo_sheet *sheet)
   sheet->columns = sheet->cells;
 }
 
-static void add_row(const struct eo_sweep *s, int columns, const struct column *column, const void *row, struct eo_sheet *sheet)
+static void add_row(const struct eo_sweep *s, int columns, const struct column *column, const void *row,
+                    struct eo_sheet *sheet)
 {
   for (int i = 0; i < columns; i++)
     if (column[i].end < s->ends)

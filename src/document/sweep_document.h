@@ -1,12 +1,11 @@
 /* A sweep as a request and as a document. The terminal and the server use this and nothing else.
 
-   Document: program, design, design_hash, torque_Nm and speed_rpm (the axes), modified and unmodified, eigenfrequencies (damped modes of the
-   design over torque), crossings (speeds at which mesh orders meet them), warnings. modified and unmodified hold
-     by_torque  static columns over torque_Nm
-     points     columns over all points, torque by torque: entry i * (number of speeds) + j belongs to torque i and speed j; the branch
-                that an upward sweep meets
-     down       the same columns as a downward sweep meets them; null when both are the same everywhere
-   Numbers of the vibration are null where no periodic state was found; with one end there is no `right`. */
+   Document: program, design, design_hash, torque_Nm and speed_rpm (the axes), modified and unmodified, eigenfrequencies
+   (damped modes of the design over torque), crossings (speeds at which mesh orders meet them), warnings. modified and
+   unmodified hold by_torque  static columns over torque_Nm points     columns over all points, torque by torque: entry
+   i * (number of speeds) + j belongs to torque i and speed j; the branch that an upward sweep meets down       the same
+   columns as a downward sweep meets them; null when both are the same everywhere Numbers of the vibration are null
+   where no periodic state was found; with one end there is no `right`. */
 #ifndef EASEOFF_DOCUMENT_SWEEP_DOCUMENT_H
 #define EASEOFF_DOCUMENT_SWEEP_DOCUMENT_H
 
@@ -19,7 +18,8 @@
 
 enum { EO_SWEEP_MOST_STEPS = 2000 };
 
-/* One axis of a request, in the document's unit: {"from": A, "to": B, "points": N}. from NaN: the axis was not asked for. */
+/* One axis of a request, in the document's unit: {"from": A, "to": B, "points": N}. from NaN: the axis was not asked
+   for. */
 struct eo_sweep_range {
   double from, to; /* to NaN: from */
   int points;      /* 0: 2 when to differs from from, else 1 */
@@ -36,18 +36,21 @@ struct eo_sweep_axes {
   double *torque, *speed;
 };
 
-/* Equidistant in the document's unit. Errors: EO_ERROR_INPUT with the pointer of the axis (descending, one point for two ends, several for
-   one, too many, no axis at all), EO_ERROR_MEMORY. */
-enum eo_code eo_sweep_axes_init(struct eo_sweep_axes *axes, const struct eo_sweep_request *request, struct eo_error *error);
+/* Equidistant in the document's unit. Errors: EO_ERROR_INPUT with the pointer of the axis (descending, one point for
+   two ends, several for one, too many, no axis at all), EO_ERROR_MEMORY. */
+enum eo_code eo_sweep_axes_init(struct eo_sweep_axes *axes, const struct eo_sweep_request *request,
+                                struct eo_error *error);
 void eo_sweep_axes_done(struct eo_sweep_axes *axes);
 
 extern const struct eo_outline eo_sweep_outline;
 
 /* New document; warnings may be NULL. NULL without memory. */
-json_t *eo_sweep_encode(const struct eo_sweep *sweep, const struct eo_design *design, const struct eo_warnings *warnings);
+json_t *eo_sweep_encode(const struct eo_sweep *sweep, const struct eo_design *design,
+                        const struct eo_warnings *warnings);
 
 /* For people: a line per point, eigenfrequencies and where mesh orders meet them. */
-void eo_sweep_summary(const struct eo_sweep *sweep, const struct eo_design *design, const struct eo_warnings *warnings, struct eo_text *text);
+void eo_sweep_summary(const struct eo_sweep *sweep, const struct eo_design *design, const struct eo_warnings *warnings,
+                      struct eo_text *text);
 
 /* One line per point with every column of the document, CSV. */
 void eo_sweep_csv(const struct eo_sweep *sweep, struct eo_text *text);

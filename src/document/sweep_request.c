@@ -4,27 +4,34 @@
 #include <math.h>
 #include <stdlib.h>
 
-#define POINTS                                                                                                                       \
-  {.key = "points", .kind = EO_FIELD_INTEGER, .flags = EO_FIELD_NULLABLE, .offset = offsetof(struct eo_sweep_range, points), .low = 1, \
-   .high = EO_SWEEP_MOST_STEPS, .fallback = NAN, .derived = "both ends of the range", .help = "how many, equally spaced, ends included"}
+#define POINTS                                                                                                 \
+  {                                                                                                            \
+    .key = "points", .kind = EO_FIELD_INTEGER, .flags = EO_FIELD_NULLABLE,                                     \
+    .offset = offsetof(struct eo_sweep_range, points), .low = 1, .high = EO_SWEEP_MOST_STEPS, .fallback = NAN, \
+    .derived = "both ends of the range", .help = "how many, equally spaced, ends included"                     \
+  }
 
 static const struct eo_field torque[] = {
-    EO_NUMBER_DERIVED(struct eo_sweep_range, from, "from", NULL, 1e-3, 1e8, "of the load case with the largest share", "first torque, N m, on the pinion"),
+    EO_NUMBER_DERIVED(struct eo_sweep_range, from, "from", NULL, 1e-3, 1e8, "of the load case with the largest share",
+                      "first torque, N m, on the pinion"),
     EO_NUMBER_DERIVED(struct eo_sweep_range, to, "to", NULL, 1e-3, 1e8, "from", "last torque, N m"),
     POINTS,
 };
 static const struct eo_table torque_table = EO_TABLE("a range of torques", struct eo_sweep_range, torque);
 
 static const struct eo_field speed[] = {
-    EO_NUMBER_DERIVED(struct eo_sweep_range, from, "from", NULL, 0.1, 1e6, "of the load case with the largest share", "first speed of the pinion, rpm"),
+    EO_NUMBER_DERIVED(struct eo_sweep_range, from, "from", NULL, 0.1, 1e6, "of the load case with the largest share",
+                      "first speed of the pinion, rpm"),
     EO_NUMBER_DERIVED(struct eo_sweep_range, to, "to", NULL, 0.1, 1e6, "from", "last speed, rpm"),
     POINTS,
 };
 static const struct eo_table speed_table = EO_TABLE("a range of speeds", struct eo_sweep_range, speed);
 
 static const struct eo_field request[] = {
-    EO_OBJECT(struct eo_sweep_request, torque, "torque_Nm", &torque_table, "torques; without them that of the load case with the largest share"),
-    EO_OBJECT(struct eo_sweep_request, speed, "speed_rpm", &speed_table, "speeds; without them that of the load case with the largest share"),
+    EO_OBJECT(struct eo_sweep_request, torque, "torque_Nm", &torque_table,
+              "torques; without them that of the load case with the largest share"),
+    EO_OBJECT(struct eo_sweep_request, speed, "speed_rpm", &speed_table,
+              "speeds; without them that of the load case with the largest share"),
 };
 const struct eo_table eo_sweep_request_table = EO_TABLE("a sweep", struct eo_sweep_request, request);
 
@@ -32,16 +39,18 @@ static enum eo_code check_range(const struct eo_sweep_range *range, const char *
 {
   double to = isnan(range->to) ? range->from : range->to;
   if (to < range->from)
-    return eo_error_set(error, EO_ERROR_INPUT, pointer, "The range ends at %.9g, below its start %.9g.", to, range->from);
+    return eo_error_set(error, EO_ERROR_INPUT, pointer, "The range ends at %.9g, below its start %.9g.", to,
+                        range->from);
   if (to > range->from && range->points == 1)
     return eo_error_set(error, EO_ERROR_INPUT, pointer, "One point cannot reach from %.9g to %.9g.", range->from, to);
   if (to == range->from && range->points > 1)
-    return eo_error_set(error, EO_ERROR_INPUT, pointer, "%d points need a range, not the one value %.9g.", range->points, to);
+    return eo_error_set(error, EO_ERROR_INPUT, pointer, "%d points need a range, not the one value %.9g.",
+                        range->points, to);
   return EO_OK;
 }
 
-static enum eo_code make_axis(const struct eo_sweep_range *range, const struct eo_unit *unit, const char *pointer, int *count, double **value,
-                              struct eo_error *error)
+static enum eo_code make_axis(const struct eo_sweep_range *range, const struct eo_unit *unit, const char *pointer,
+                              int *count, double **value, struct eo_error *error)
 {
   *count = 0;
   if (isnan(range->from) && (!isnan(range->to) || range->points))
@@ -62,7 +71,8 @@ static enum eo_code make_axis(const struct eo_sweep_range *range, const struct e
   return EO_OK;
 }
 
-enum eo_code eo_sweep_axes_init(struct eo_sweep_axes *axes, const struct eo_sweep_request *asked, struct eo_error *error)
+enum eo_code eo_sweep_axes_init(struct eo_sweep_axes *axes, const struct eo_sweep_request *asked,
+                                struct eo_error *error)
 {
   *axes = (struct eo_sweep_axes){0};
   enum eo_code code = make_axis(&asked->torque, &eo_unit_Nm, "/torque_Nm", &axes->torques, &axes->torque, error);
@@ -71,8 +81,9 @@ enum eo_code eo_sweep_axes_init(struct eo_sweep_axes *axes, const struct eo_swee
   if (!code && !axes->torques && !axes->speeds)
     code = eo_error_set(error, EO_ERROR_INPUT, "", "A sweep needs a range of torques, of speeds, or both.");
   if (!code && axes->torques > 0 && axes->speeds > EO_SWEEP_MOST_POINTS / axes->torques)
-    code = eo_error_set(error, EO_ERROR_INPUT, "", "%d torques at %d speeds are more than the %d points that a sweep may have.", axes->torques, axes->speeds,
-                        EO_SWEEP_MOST_POINTS);
+    code = eo_error_set(error, EO_ERROR_INPUT, "",
+                        "%d torques at %d speeds are more than the %d points that a sweep may have.", axes->torques,
+                        axes->speeds, EO_SWEEP_MOST_POINTS);
   if (code)
     eo_sweep_axes_done(axes);
   return code;

@@ -13,7 +13,8 @@ static double worse(const struct eo_sweep *s, const double value[2])
 
 static void add_headings(const struct eo_sweep *s, struct eo_sheet *sheet)
 {
-  static const char *const first[] = {"N m", "rpm", "TE um", "unmod.", "impact N", "unmod.", "RMS m/s2", "unmod.", "transv.", "rotat.", "factor", "loss %"};
+  static const char *const first[] = {"N m",      "rpm",    "TE um",   "unmod.", "impact N", "unmod.",
+                                      "RMS m/s2", "unmod.", "transv.", "rotat.", "factor",   "loss %"};
   eo_sheet_init(sheet, 0, NULL);
   for (size_t i = 0; i < sizeof first / sizeof *first; i++)
     eo_sheet_string(sheet, first[i]);
@@ -53,7 +54,8 @@ static void print_modes(const struct eo_sweep *s, struct eo_text *text)
 {
   int middle = s->torques / 2;
   const struct eo_dynamics_modes *modes = &s->at_torque[EO_SWEEP_DESIGN][middle].modes;
-  eo_text_print(text, "\nEigenfrequencies at %.6g N m and the speeds at which mesh orders meet them\n", eo_unit_out(&eo_unit_Nm, s->torque[middle]));
+  eo_text_print(text, "\nEigenfrequencies at %.6g N m and the speeds at which mesh orders meet them\n",
+                eo_unit_out(&eo_unit_Nm, s->torque[middle]));
   for (int mode = 0; mode < modes->n; mode++) {
     eo_text_print(text, "  %8.1f Hz", modes->frequency[mode]);
     for (int i = 0; i < s->crossings; i++)
@@ -63,13 +65,16 @@ static void print_modes(const struct eo_sweep *s, struct eo_text *text)
   }
 }
 
-void eo_sweep_summary(const struct eo_sweep *s, const struct eo_design *design, const struct eo_warnings *warnings, struct eo_text *text)
+void eo_sweep_summary(const struct eo_sweep *s, const struct eo_design *design, const struct eo_warnings *warnings,
+                      struct eo_text *text)
 {
   struct eo_sheet sheet;
   if (*design->name)
     eo_text_print(text, "%s\n", design->name);
-  eo_text_add(text, "Peak-to-peak transmission error, entering impact (worse end) and RMS of the normal acceleration, each beside the unmodified pair;\n"
-                    "RMS of the transverse and rotational acceleration, dynamic factor and contact loss of the design\n\n");
+  eo_text_add(text,
+              "Peak-to-peak transmission error, entering impact (worse end) and RMS of the normal acceleration, each "
+              "beside the unmodified pair;\n"
+              "RMS of the transverse and rotational acceleration, dynamic factor and contact loss of the design\n\n");
   add_headings(s, &sheet);
   for (int i = 0; i < s->torques * s->speeds; i++)
     add_point(s, i, &sheet);

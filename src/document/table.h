@@ -1,6 +1,6 @@
-/* Field tables: one table per struct says how its members stand in a JSON object. The same table decodes, encodes, checks ranges,
-   fills in defaults and describes itself (the page's form, the API's description, --help). Units are converted here and
-   nowhere else. */
+/* Field tables: one table per struct says how its members stand in a JSON object. The same table decodes, encodes,
+   checks ranges, fills in defaults and describes itself (the page's form, the API's description, --help). Units are
+   converted here and nowhere else. */
 #ifndef EASEOFF_DOCUMENT_TABLE_H
 #define EASEOFF_DOCUMENT_TABLE_H
 
@@ -30,7 +30,7 @@ enum eo_field_kind {
 
 enum {
   EO_FIELD_REQUIRED = 1,   /* no default */
-  EO_FIELD_NULLABLE = 2,   /* null is allowed: NaN inside (OBJECT: see count_offset), `derived` says what stands in its place */
+  EO_FIELD_NULLABLE = 2,   /* null is allowed: NaN inside (OBJECT: see count_offset); `derived` says what it means */
   EO_FIELD_ASCENDING = 4,  /* NUMBERS: strictly increasing */
   EO_FIELD_OMIT = 8,       /* OBJECT: left out of the encoded document while everything in it has its default */
   EO_FIELD_SOMETIMES = 16, /* OBJECT: whoever encodes the document may take it out; said in the schema alone */
@@ -50,9 +50,9 @@ struct eo_field {
   unsigned flags;
   size_t offset;
   const struct eo_unit *unit; /* NULL: dimensionless */
-  double low, high;           /* inclusive, in the document's unit; of a LIST or SERIES: number of rows; see `series_*` */
-  double fallback;            /* default in the document's unit; NaN: null. CHOICE: the index, FLAG: 0 or 1 */
-  const double *fallbacks;    /* NUMBERS: [count]; NULL: null */
+  double low, high;        /* inclusive, in the document's unit; of a LIST or SERIES: number of rows; see `series_*` */
+  double fallback;         /* default in the document's unit; NaN: null. CHOICE: the index, FLAG: 0 or 1 */
+  const double *fallbacks; /* NUMBERS: [count]; NULL: null */
   const char *fallback_text;  /* TEXT */
   const char *const *choices; /* CHOICE, TEXT: ends with NULL */
   int count;                  /* NUMBERS: how many; TEXT: bytes; LIST: capacity */
@@ -66,18 +66,20 @@ struct eo_field {
 };
 
 struct eo_table {
-  const char *name;   /* for people */
-  size_t size;        /* of the struct */
-  int count;          /* iterate: for (int i = 0; i < table->count; i++) table->field[i] */
+  const char *name; /* for people */
+  size_t size;      /* of the struct */
+  int count;        /* iterate: for (int i = 0; i < table->count; i++) table->field[i] */
   const struct eo_field *field;
 };
 
 /* Sets every member that has a default; required numbers become NaN or 0. */
 void eo_table_defaults(const struct eo_table *table, void *target);
 
-/* Fills *target from a JSON object: absent keys take their default, everything that is wrong is added to faults with its
-   place below `path` (NULL: the top). On any fault *target is valid but meaningless. SERIES members are allocated. */
-void eo_table_decode(const struct eo_table *table, const json_t *object, const struct eo_path *path, void *target, struct eo_faults *faults);
+/* Fills *target from a JSON object: absent keys take their default, everything that is wrong is added to faults with
+   its place below `path` (NULL: the top). On any fault *target is valid but meaningless. SERIES members are allocated.
+ */
+void eo_table_decode(const struct eo_table *table, const json_t *object, const struct eo_path *path, void *target,
+                     struct eo_faults *faults);
 
 /* New JSON object with every key in the order of the table; NULL without memory. */
 json_t *eo_table_encode(const struct eo_table *table, const void *source);
@@ -88,47 +90,95 @@ void eo_table_settle(const struct eo_table *table, void *target);
 /* Frees SERIES members, in the rows of lists too. */
 void eo_table_done(const struct eo_table *table, void *target);
 
-/* Adds one line per key to the text: path, type, unit, range, default, help; nested tables follow indented, each once. With output
-   set, defaults are left out. */
+/* Adds one line per key to the text: path, type, unit, range, default, help; nested tables follow indented, each once.
+   With output set, defaults are left out. */
 void eo_table_describe(const struct eo_table *table, bool output, struct eo_text *text);
 
 /* The ways to write a row of a table. low and high are inclusive and in the document's unit. */
-#define EO_NUMBER(type, member, key_, unit_, low_, high_, fallback_, help_)                                                          \
-  {.key = key_, .kind = EO_FIELD_NUMBER, .offset = offsetof(type, member), .unit = unit_, .low = low_, .high = high_, .fallback = fallback_, .help = help_}
-#define EO_NUMBER_REQUIRED(type, member, key_, unit_, low_, high_, help_)                                                            \
-  {.key = key_, .kind = EO_FIELD_NUMBER, .flags = EO_FIELD_REQUIRED, .offset = offsetof(type, member), .unit = unit_, .low = low_, .high = high_, .fallback = NAN, .help = help_}
-#define EO_NUMBER_DERIVED(type, member, key_, unit_, low_, high_, derived_, help_)                                                   \
-  {.key = key_, .kind = EO_FIELD_NUMBER, .flags = EO_FIELD_NULLABLE, .offset = offsetof(type, member), .unit = unit_, .low = low_, .high = high_, .fallback = NAN, .derived = derived_, .help = help_}
-#define EO_INTEGER(type, member, key_, low_, high_, fallback_, help_)                                                                \
-  {.key = key_, .kind = EO_FIELD_INTEGER, .offset = offsetof(type, member), .low = low_, .high = high_, .fallback = fallback_, .help = help_}
-#define EO_INTEGER_REQUIRED(type, member, key_, low_, high_, help_)                                                                  \
-  {.key = key_, .kind = EO_FIELD_INTEGER, .flags = EO_FIELD_REQUIRED, .offset = offsetof(type, member), .low = low_, .high = high_, .fallback = NAN, .help = help_}
-#define EO_FLAG(type, member, key_, fallback_, help_)                                                                                \
-  {.key = key_, .kind = EO_FIELD_FLAG, .offset = offsetof(type, member), .fallback = fallback_, .help = help_}
-#define EO_CHOICE(type, member, key_, choices_, fallback_, help_)                                                                    \
-  {.key = key_, .kind = EO_FIELD_CHOICE, .offset = offsetof(type, member), .choices = choices_, .fallback = fallback_, .help = help_}
-#define EO_NUMBERS(type, member, key_, count_, unit_, low_, high_, flags_, fallbacks_, derived_, help_)                              \
-  {.key = key_, .kind = EO_FIELD_NUMBERS, .flags = flags_, .offset = offsetof(type, member), .unit = unit_, .low = low_, .high = high_, .count = count_, .fallbacks = fallbacks_, .derived = derived_, .help = help_}
-#define EO_LIMIT(type, member, key_, unit_, low_, high_, help_)                                                                      \
-  {.key = key_, .kind = EO_FIELD_LIMIT, .flags = EO_FIELD_NULLABLE, .offset = offsetof(type, member), .unit = unit_, .low = low_, .high = high_, .fallback = NAN, .derived = "off", .help = help_}
-#define EO_OBJECT(type, member, key_, table_, help_)                                                                                 \
-  {.key = key_, .kind = EO_FIELD_OBJECT, .offset = offsetof(type, member), .table = table_, .help = help_}
+#define EO_NUMBER(type, member, key_, unit_, low_, high_, fallback_, help_)                                            \
+  {                                                                                                                    \
+    .key = key_, .kind = EO_FIELD_NUMBER, .offset = offsetof(type, member), .unit = unit_, .low = low_, .high = high_, \
+    .fallback = fallback_, .help = help_                                                                               \
+  }
+#define EO_NUMBER_REQUIRED(type, member, key_, unit_, low_, high_, help_)                                              \
+  {                                                                                                                    \
+    .key = key_, .kind = EO_FIELD_NUMBER, .flags = EO_FIELD_REQUIRED, .offset = offsetof(type, member), .unit = unit_, \
+    .low = low_, .high = high_, .fallback = NAN, .help = help_                                                         \
+  }
+#define EO_NUMBER_DERIVED(type, member, key_, unit_, low_, high_, derived_, help_)                                     \
+  {                                                                                                                    \
+    .key = key_, .kind = EO_FIELD_NUMBER, .flags = EO_FIELD_NULLABLE, .offset = offsetof(type, member), .unit = unit_, \
+    .low = low_, .high = high_, .fallback = NAN, .derived = derived_, .help = help_                                    \
+  }
+#define EO_INTEGER(type, member, key_, low_, high_, fallback_, help_)                                    \
+  {                                                                                                      \
+    .key = key_, .kind = EO_FIELD_INTEGER, .offset = offsetof(type, member), .low = low_, .high = high_, \
+    .fallback = fallback_, .help = help_                                                                 \
+  }
+#define EO_INTEGER_REQUIRED(type, member, key_, low_, high_, help_)                                                   \
+  {                                                                                                                   \
+    .key = key_, .kind = EO_FIELD_INTEGER, .flags = EO_FIELD_REQUIRED, .offset = offsetof(type, member), .low = low_, \
+    .high = high_, .fallback = NAN, .help = help_                                                                     \
+  }
+#define EO_FLAG(type, member, key_, fallback_, help_)                                                          \
+  {                                                                                                            \
+    .key = key_, .kind = EO_FIELD_FLAG, .offset = offsetof(type, member), .fallback = fallback_, .help = help_ \
+  }
+#define EO_CHOICE(type, member, key_, choices_, fallback_, help_)                                \
+  {                                                                                              \
+    .key = key_, .kind = EO_FIELD_CHOICE, .offset = offsetof(type, member), .choices = choices_, \
+    .fallback = fallback_, .help = help_                                                         \
+  }
+#define EO_NUMBERS(type, member, key_, count_, unit_, low_, high_, flags_, fallbacks_, derived_, help_)      \
+  {                                                                                                          \
+    .key = key_, .kind = EO_FIELD_NUMBERS, .flags = flags_, .offset = offsetof(type, member), .unit = unit_, \
+    .low = low_, .high = high_, .count = count_, .fallbacks = fallbacks_, .derived = derived_, .help = help_ \
+  }
+#define EO_LIMIT(type, member, key_, unit_, low_, high_, help_)                                                       \
+  {                                                                                                                   \
+    .key = key_, .kind = EO_FIELD_LIMIT, .flags = EO_FIELD_NULLABLE, .offset = offsetof(type, member), .unit = unit_, \
+    .low = low_, .high = high_, .fallback = NAN, .derived = "off", .help = help_                                      \
+  }
+#define EO_OBJECT(type, member, key_, table_, help_)                                                       \
+  {                                                                                                        \
+    .key = key_, .kind = EO_FIELD_OBJECT, .offset = offsetof(type, member), .table = table_, .help = help_ \
+  }
 /* An object that may be left out or null: the int `present` tells. */
-#define EO_OPTIONAL(type, member, present, key_, table_, derived_, help_)                                                            \
-  {.key = key_, .kind = EO_FIELD_OBJECT, .flags = EO_FIELD_NULLABLE, .offset = offsetof(type, member), .count_offset = offsetof(type, present), .table = table_, .derived = derived_, .help = help_}
+#define EO_OPTIONAL(type, member, present, key_, table_, derived_, help_)                               \
+  {                                                                                                     \
+    .key = key_, .kind = EO_FIELD_OBJECT, .flags = EO_FIELD_NULLABLE, .offset = offsetof(type, member), \
+    .count_offset = offsetof(type, present), .table = table_, .derived = derived_, .help = help_        \
+  }
 /* A group of keys whose members stand in the surrounding struct itself. */
-#define EO_GROUP(key_, table_, help_) {.key = key_, .kind = EO_FIELD_OBJECT, .table = table_, .help = help_}
-#define EO_LIST(type, member, rows, key_, table_, low_, capacity_, help_)                                                            \
-  {.key = key_, .kind = EO_FIELD_LIST, .flags = (low_) > 0 ? EO_FIELD_REQUIRED : 0, .offset = offsetof(type, member), .low = low_, .high = capacity_, .count = capacity_, .count_offset = offsetof(type, rows), .table = table_, .help = help_}
-#define EO_TEXT(type, member, key_, help_)                                                                                           \
-  {.key = key_, .kind = EO_FIELD_TEXT, .offset = offsetof(type, member), .count = sizeof ((type *)0)->member, .help = help_}
-#define EO_SERIES(type, member, key_, unit_, most_, low_, high_, flags_, help_)                                                      \
-  {.key = key_, .kind = EO_FIELD_SERIES, .flags = flags_, .offset = offsetof(type, member), .unit = unit_, .low = 0, .high = most_, .series_low = low_, .series_high = high_, .help = help_}
+#define EO_GROUP(key_, table_, help_)                                    \
+  {                                                                      \
+    .key = key_, .kind = EO_FIELD_OBJECT, .table = table_, .help = help_ \
+  }
+#define EO_LIST(type, member, rows, key_, table_, low_, capacity_, help_)                                              \
+  {                                                                                                                    \
+    .key = key_, .kind = EO_FIELD_LIST, .flags = (low_) > 0 ? EO_FIELD_REQUIRED : 0, .offset = offsetof(type, member), \
+    .low = low_, .high = capacity_, .count = capacity_, .count_offset = offsetof(type, rows), .table = table_,         \
+    .help = help_                                                                                                      \
+  }
+#define EO_TEXT(type, member, key_, help_)                                                                    \
+  {                                                                                                           \
+    .key = key_, .kind = EO_FIELD_TEXT, .offset = offsetof(type, member), .count = sizeof((type *)0)->member, \
+    .help = help_                                                                                             \
+  }
+#define EO_SERIES(type, member, key_, unit_, most_, low_, high_, flags_, help_)                                       \
+  {                                                                                                                   \
+    .key = key_, .kind = EO_FIELD_SERIES, .flags = flags_, .offset = offsetof(type, member), .unit = unit_, .low = 0, \
+    .high = most_, .series_low = low_, .series_high = high_, .help = help_                                            \
+  }
 /* Rows of output tables: no range. */
 #define EO_OUT(type, member, key_, unit_, help_) EO_NUMBER(type, member, key_, unit_, -INFINITY, INFINITY, NAN, help_)
-#define EO_OUT_PAIR(type, member, key_, unit_, help_)                                                                                \
+#define EO_OUT_PAIR(type, member, key_, unit_, help_) \
   EO_NUMBERS(type, member, key_, 2, unit_, -INFINITY, INFINITY, 0, NULL, NULL, help_)
-#define EO_OUT_SERIES(type, member, key_, unit_, help_) EO_SERIES(type, member, key_, unit_, 1e9, -INFINITY, INFINITY, 0, help_)
-#define EO_TABLE(name_, type, fields) {.name = name_, .size = sizeof(type), .count = (int)(sizeof(fields) / sizeof(fields)[0]), .field = fields}
+#define EO_OUT_SERIES(type, member, key_, unit_, help_) \
+  EO_SERIES(type, member, key_, unit_, 1e9, -INFINITY, INFINITY, 0, help_)
+#define EO_TABLE(name_, type, fields)                                                                        \
+  {                                                                                                          \
+    .name = name_, .size = sizeof(type), .count = (int)(sizeof(fields) / sizeof(fields)[0]), .field = fields \
+  }
 
 #endif

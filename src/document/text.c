@@ -112,11 +112,13 @@ enum eo_code eo_text_write(const struct eo_text *text, FILE *stream, const char 
   errno = 0;
   bool written = fwrite(text->data ? text->data : "", 1, text->size, stream) == text->size;
   if (fflush(stream) != 0 || !written)
-    return eo_error_set(error, EO_ERROR_FILE, "", "%.100s cannot be written: %s.", name, errno ? strerror(errno) : "output was lost");
+    return eo_error_set(error, EO_ERROR_FILE, "", "%.100s cannot be written: %s.", name,
+                        errno ? strerror(errno) : "output was lost");
   return EO_OK;
 }
 
-static enum eo_code save_under(const struct eo_text *text, const char *temporary, const char *path, struct eo_error *error)
+static enum eo_code save_under(const struct eo_text *text, const char *temporary, const char *path,
+                               struct eo_error *error)
 {
   FILE *stream = fopen(temporary, "wbx");
   if (!stream)

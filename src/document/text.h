@@ -24,14 +24,15 @@ char *eo_text_room(struct eo_text *text, size_t more);
 void eo_text_print(struct eo_text *text, const char *format, ...) __attribute__((format(printf, 2, 3)));
 void eo_text_done(struct eo_text *text);
 
-/* Reads a whole file ("-": standard input) of at most limit bytes. EO_ERROR_INPUT when it cannot be read or is larger. */
+/* Reads a whole file ("-": standard input) of at most limit bytes. EO_ERROR_INPUT when it cannot be read or is larger.
+ */
 enum eo_code eo_text_read(struct eo_text *text, const char *path, size_t limit, struct eo_error *error);
 
 /* Writes everything and flushes; EO_ERROR_FILE when the stream took less (full disk, closed pipe). */
 enum eo_code eo_text_write(const struct eo_text *text, FILE *stream, const char *name, struct eo_error *error);
 
-/* Replaces the file at path: written beside it under a temporary name, flushed to the disk, renamed; the old file stays when
-   anything fails. */
+/* Replaces the file at path: written beside it under a temporary name, flushed to the disk, renamed; the old file stays
+   when anything fails. */
 enum eo_code eo_text_save(const struct eo_text *text, const char *path, struct eo_error *error);
 
 /* Copies at most size - 1 bytes of a string for people: control characters become '?', no character is cut in two, and

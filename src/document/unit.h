@@ -11,16 +11,17 @@ struct eo_unit {
   bool divide;        /* powers of ten below one: dividing by an exact 10^n rounds once, multiplying by 10^-n twice */
 };
 
-extern const struct eo_unit eo_unit_mm, eo_unit_um, eo_unit_nm, eo_unit_deg, eo_unit_rpm, eo_unit_Nm, eo_unit_N, eo_unit_MPa, eo_unit_GPa,
-    eo_unit_N_per_um, eo_unit_N_per_mm, eo_unit_N_per_mm_um, eo_unit_um_mm_per_N, eo_unit_Nm_per_rad, eo_unit_kg, eo_unit_kg_m2, eo_unit_kg_per_m3,
-    eo_unit_um_per_N, eo_unit_per_mm, eo_unit_per_mm2, eo_unit_per_um, eo_unit_mm_per_s, eo_unit_m_per_s2, eo_unit_ms, eo_unit_Hz;
+extern const struct eo_unit eo_unit_mm, eo_unit_um, eo_unit_nm, eo_unit_deg, eo_unit_rpm, eo_unit_Nm, eo_unit_N,
+    eo_unit_MPa, eo_unit_GPa, eo_unit_N_per_um, eo_unit_N_per_mm, eo_unit_N_per_mm_um, eo_unit_um_mm_per_N,
+    eo_unit_Nm_per_rad, eo_unit_kg, eo_unit_kg_m2, eo_unit_kg_per_m3, eo_unit_um_per_N, eo_unit_per_mm, eo_unit_per_mm2,
+    eo_unit_per_um, eo_unit_mm_per_s, eo_unit_m_per_s2, eo_unit_ms, eo_unit_Hz;
 
 /* Document -> SI. unit NULL: dimensionless, the value itself. */
 double eo_unit_in(const struct eo_unit *unit, double value);
 
-/* SI -> document: the shortest decimal whose eo_unit_in() is the same double. Not every double is the image of one; those that
-   are not give the value whose image is nearest, so that in(out(x)) differs from x by one rounding at most and
-   in(out(in(out(x)))) == in(out(x)) always. */
+/* SI -> document: the shortest decimal whose eo_unit_in() is the same double. Not every double is the image of one;
+   those that are not give the value whose image is nearest, so that in(out(x)) differs from x by one rounding at most
+   and in(out(in(out(x)))) == in(out(x)) always. */
 double eo_unit_out(const struct eo_unit *unit, double value);
 
 #endif

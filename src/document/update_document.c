@@ -12,8 +12,9 @@ static const double LARGE_CONDITION = 1e6;
 
 static const struct eo_unit *unit_of(enum eo_unknown unknown)
 {
-  static const struct eo_unit *const unit[EO_UNKNOWNS] = {&eo_unit_N_per_um, &eo_unit_N_per_um, NULL, &eo_unit_N_per_um, &eo_unit_N_per_um, &eo_unit_deg,
-                                                          &eo_unit_deg, &eo_unit_mm};
+  static const struct eo_unit *const unit[EO_UNKNOWNS] = {&eo_unit_N_per_um, &eo_unit_N_per_um, NULL,
+                                                          &eo_unit_N_per_um, &eo_unit_N_per_um, &eo_unit_deg,
+                                                          &eo_unit_deg,      &eo_unit_mm};
   return unit[unknown];
 }
 
@@ -26,10 +27,13 @@ static void add_unknown(const char *key, const json_t *range, struct eo_update_s
   double low = json_number_value(json_array_get(range, 0)), high = json_number_value(json_array_get(range, 1));
   for (int i = 0; i < EO_UNKNOWNS; i++)
     if (strcmp(key, eo_unknown_name((enum eo_unknown)i)) == 0) {
-      bool good = json_array_size(range) == 2 && json_is_number(json_array_get(range, 0)) && json_is_number(json_array_get(range, 1)) && low < high;
+      bool good = json_array_size(range) == 2 && json_is_number(json_array_get(range, 0)) &&
+                  json_is_number(json_array_get(range, 1)) && low < high;
       if (!good)
         eo_faults_add(faults, pointer, "A range is two numbers, the lower one first.");
-      s->range[s->unknowns++] = (struct eo_update_range){(enum eo_unknown)i, eo_unit_in(unit_of((enum eo_unknown)i), low), eo_unit_in(unit_of((enum eo_unknown)i), high)};
+      s->range[s->unknowns++] = (struct eo_update_range){(enum eo_unknown)i,
+                                                         eo_unit_in(unit_of((enum eo_unknown)i), low),
+                                                         eo_unit_in(unit_of((enum eo_unknown)i), high)};
       return;
     }
   eo_faults_add(faults, pointer, "This is no input that can be fitted.");
@@ -39,18 +43,19 @@ void eo_update_decode(const json_t *document, struct eo_update_settings *s, stru
 {
   const char *key;
   json_t *value;
-  const json_t *unknowns = json_object_get(document, "unknowns"), *model_error = json_object_get(document, "model_error"), *seed = json_object_get(document, "seed");
+  const json_t *unknowns = json_object_get(document, "unknowns"),
+               *model_error = json_object_get(document, "model_error"), *seed = json_object_get(document, "seed");
   *s = (struct eo_update_settings){.seed = 1};
   if (!json_is_object(unknowns) || json_object_size(unknowns) == 0)
     eo_faults_add(faults, "/unknowns", "An update names at least one input with its range.");
-  json_object_foreach((json_t *)unknowns, key, value)
-    add_unknown(key, value, s, faults);
-  json_object_foreach((json_t *)document, key, value)
-    if (strcmp(key, "unknowns") != 0 && strcmp(key, "model_error") != 0 && strcmp(key, "seed") != 0) {
-      char pointer[120];
-      snprintf(pointer, sizeof pointer, "/%.80s", key);
-      eo_faults_add(faults, pointer, "Unknown key in an update.");
-    }
+  json_object_foreach((json_t *)unknowns, key, value) add_unknown(key, value, s, faults);
+  json_object_foreach((json_t *)document, key, value) if (strcmp(key, "unknowns") != 0 &&
+                                                          strcmp(key, "model_error") != 0 && strcmp(key, "seed") != 0)
+  {
+    char pointer[120];
+    snprintf(pointer, sizeof pointer, "/%.80s", key);
+    eo_faults_add(faults, pointer, "Unknown key in an update.");
+  }
   if (model_error && !(json_number_value(model_error) >= 1e-4 && json_number_value(model_error) <= 1))
     eo_faults_add(faults, "/model_error", "The error of the model is 0.0001 to 1 of the RMS.");
   else if (model_error)
@@ -72,18 +77,21 @@ static void each_warning(const struct eo_update *u, warning_function *take, void
     const struct eo_updated *p = &u->unknown[i];
     const char *name = eo_unknown_name(p->unknown);
     if (p->undetermined)
-      snprintf(text, sizeof text, "The measurements do not determine %s: its 95 %% interval covers most of its range.", name);
+      snprintf(text, sizeof text, "The measurements do not determine %s: its 95 %% interval covers most of its range.",
+               name);
     else if (p->at_bound)
       snprintf(text, sizeof text, "%s stands at an end of its range; the measurements want it beyond.", name);
     else if (p->twin >= 0)
-      snprintf(text, sizeof text, "%s and %s cannot be told apart (correlation %.3f): only their combination is determined.", name,
+      snprintf(text, sizeof text,
+               "%s and %s cannot be told apart (correlation %.3f): only their combination is determined.", name,
                eo_unknown_name(u->unknown[p->twin].unknown), p->correlation);
     else
       continue;
     take(context, text);
   }
   if (u->condition > LARGE_CONDITION) {
-    snprintf(text, sizeof text, "The condition number of the fit is %.2g: not all inputs are determined together.", u->condition);
+    snprintf(text, sizeof text, "The condition number of the fit is %.2g: not all inputs are determined together.",
+             u->condition);
     take(context, text);
   }
   if (!u->converged)
@@ -146,11 +154,14 @@ const struct eo_outline eo_update_outline = EO_OUTLINE("FitOfFiles", update_rows
 
 json_t *eo_update_encode(const struct eo_update *u)
 {
-  struct eo_result_object o = eo_result_open_as(&eo_update_outline), misfit = eo_result_open_as(&misfit_outline), warnings = {.json = json_array()};
+  struct eo_result_object o = eo_result_open_as(&eo_update_outline), misfit = eo_result_open_as(&misfit_outline),
+                          warnings = {.json = json_array()};
   json_t *unknowns = json_array(), *correlation = json_array();
   for (int i = 0; i < u->unknowns; i++)
     o.failed = json_array_append_new(unknowns, encode_unknown(u, &u->unknown[i])) != 0 ||
-               json_array_append_new(correlation, eo_json_reals(u->unknowns, u->correlation[i], 1, NULL, EO_DIGITS_MAP)) != 0 || o.failed;
+               json_array_append_new(correlation,
+                                     eo_json_reals(u->unknowns, u->correlation[i], 1, NULL, EO_DIGITS_MAP)) != 0 ||
+               o.failed;
   each_warning(u, append_warning, &warnings);
   eo_result_put_number(&misfit, "before", u->before);
   eo_result_put_number(&misfit, "after", u->after);
@@ -166,14 +177,19 @@ json_t *eo_update_encode(const struct eo_update *u)
   return eo_result_close(&o);
 }
 
-static void print_warning(void *context, const char *text) { eo_text_print(context, "  warning: %s\n", text); }
+static void print_warning(void *context, const char *text)
+{
+  eo_text_print(context, "  warning: %s\n", text);
+}
 
 void eo_update_summary(const struct eo_update *u, struct eo_text *text)
 {
   static const char *const headings[] = {"input", "before", "found", "95 % from", "to"};
   struct eo_sheet sheet;
-  eo_text_print(text, "\nInputs fitted to %d orders of %d measurements (misfit %.3g before, %.3g after, in standard deviations):\n", u->residuals, u->used, u->before,
-                u->after);
+  eo_text_print(
+      text,
+      "\nInputs fitted to %d orders of %d measurements (misfit %.3g before, %.3g after, in standard deviations):\n",
+      u->residuals, u->used, u->before, u->after);
   eo_sheet_init(&sheet, 5, headings);
   for (int i = 0; i < u->unknowns; i++) {
     const struct eo_updated *p = &u->unknown[i];

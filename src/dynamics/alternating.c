@@ -14,9 +14,9 @@ static int make_end(struct eo_time_end *end, int samples)
   double *all = calloc((size_t)END_ARRAYS * samples, sizeof *all);
   if (!all)
     return -1;
-  double **array[END_ARRAYS] = {&end->x,      &end->v,            &end->force, &end->elastic, &end->slope,
-                                &end->margin, &end->margin_slope, &end->cell,  &end->gate, &end->work,
-                                &end->weight};
+  double **array[END_ARRAYS] = {&end->x,     &end->v,      &end->force,        &end->elastic,
+                                &end->slope, &end->margin, &end->margin_slope, &end->cell,
+                                &end->gate,  &end->work,   &end->weight};
   for (int i = 0; i < END_ARRAYS; i++)
     *array[i] = all + (size_t)i * samples;
   return 0;
@@ -38,8 +38,9 @@ static void fill_basis(struct eo_alternating *g)
 enum eo_code eo_alternating_new(struct eo_alternating **grid, int harmonics, int samples, struct eo_error *error)
 {
   if (harmonics < 1 || harmonics > EO_MAX_HARMONICS || samples <= 2 * harmonics)
-    return eo_error_set(error, EO_ERROR_INPUT, "/resolution/harmonics", "%d harmonics on %d samples cannot be balanced; 1 to %d harmonics are.",
-                        harmonics, samples, EO_MAX_HARMONICS);
+    return eo_error_set(error, EO_ERROR_INPUT, "/resolution/harmonics",
+                        "%d harmonics on %d samples cannot be balanced; 1 to %d harmonics are.", harmonics, samples,
+                        EO_MAX_HARMONICS);
   struct eo_alternating *g = calloc(1, sizeof *g);
   if (!g)
     return eo_error_memory(error);
@@ -132,8 +133,8 @@ static void rate_of(int harmonics, double frequency, const double *x, double *ra
   }
 }
 
-void eo_alternating_force(struct eo_alternating *g, int end, const struct eo_cycle *cycle, const double *x, bool attached,
-                          double *force)
+void eo_alternating_force(struct eo_alternating *g, int end, const struct eo_cycle *cycle, const double *x,
+                          bool attached, double *force)
 {
   struct eo_time_end *e = &g->end[end];
   int n = g->samples;
@@ -180,7 +181,8 @@ static void add_multiplication(int harmonics, const double *a, const double *b, 
 }
 
 /* The same for x -> series of f dx/dt. */
-static void add_rate_multiplication(int harmonics, double frequency, const double *a, const double *b, int stride, double *matrix)
+static void add_rate_multiplication(int harmonics, double frequency, const double *a, const double *b, int stride,
+                                    double *matrix)
 {
   for (int l = 1; l <= harmonics; l++) {
     matrix[2 * l - 1] -= frequency * l * b[l];
@@ -190,7 +192,8 @@ static void add_rate_multiplication(int harmonics, double frequency, const doubl
     double *cosine = matrix + (size_t)(2 * k - 1) * stride, *sine = cosine + stride;
     for (int l = 1; l <= harmonics; l++) {
       int apart = abs(k - l);
-      double together_a = a[k + l], together_b = b[k + l], apart_b = k >= l ? b[apart] : -b[apart], rate = frequency * l;
+      double together_a = a[k + l], together_b = b[k + l], apart_b = k >= l ? b[apart] : -b[apart],
+             rate = frequency * l;
       cosine[2 * l - 1] -= rate * (together_b - apart_b);
       cosine[2 * l] += rate * (a[apart] + together_a);
       sine[2 * l - 1] -= rate * (a[apart] - together_a);
@@ -216,7 +219,8 @@ static void moments(struct eo_alternating *g, const double *f, double **a, doubl
 }
 
 /* The share of a cell in which contact begins or ends depends on both its margins: one rank-one term per such cell. */
-static void add_crossings(struct eo_alternating *g, const struct eo_time_end *e, double damping, int stride, double *matrix)
+static void add_crossings(struct eo_alternating *g, const struct eo_time_end *e, double damping, int stride,
+                          double *matrix)
 {
   /* row: the forces whose weights change; column: how the share changes with the deflections */
   int n = g->samples, terms = eo_fourier_terms(g->harmonics);

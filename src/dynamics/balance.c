@@ -21,19 +21,19 @@ struct eo_balance {
   struct eo_alternating *grid;
   const struct eo_cycle *cycle;
   double complex (*stiffness)[2][2]; /* [1 + harmonics] */
-  double *load;       /* [2][terms] right-hand side */
-  double *force;      /* [2][terms] scratch */
-  double *jacobian;   /* [2 terms][2 terms] */
-  double *scale;      /* [2][2 terms] of the unknowns and of the equations */
-  double *residual;   /* [2 terms] */
+  double *load;                      /* [2][terms] right-hand side */
+  double *force;                     /* [2][terms] scratch */
+  double *jacobian;                  /* [2 terms][2 terms] */
+  double *scale;                     /* [2][2 terms] of the unknowns and of the equations */
+  double *residual;                  /* [2 terms] */
   int *pivot;
 };
 
 enum eo_code eo_balance_new(struct eo_balance **workspace, int harmonics, int samples, struct eo_error *error)
 {
   if (harmonics < 1 || harmonics > EO_MAX_HARMONICS)
-    return eo_error_set(error, EO_ERROR_INPUT, "/resolution/harmonics", "The harmonic balance takes 1 to %d harmonics, not %d.",
-                        EO_MAX_HARMONICS, harmonics);
+    return eo_error_set(error, EO_ERROR_INPUT, "/resolution/harmonics",
+                        "The harmonic balance takes 1 to %d harmonics, not %d.", EO_MAX_HARMONICS, harmonics);
   int fine = samples ? samples : SAMPLES_PER_HARMONIC * harmonics, coarse = MIN_SAMPLES;
   if (fine < MIN_SAMPLES && !samples)
     fine = MIN_SAMPLES;
@@ -84,9 +84,18 @@ void eo_balance_free(struct eo_balance *w)
   free(w);
 }
 
-int eo_balance_harmonics(const struct eo_balance *workspace) { return workspace->harmonics; }
-int eo_balance_samples(const struct eo_balance *workspace) { return workspace->fine->samples; }
-const struct eo_alternating *eo_balance_grid(const struct eo_balance *workspace) { return workspace->fine; }
+int eo_balance_harmonics(const struct eo_balance *workspace)
+{
+  return workspace->harmonics;
+}
+int eo_balance_samples(const struct eo_balance *workspace)
+{
+  return workspace->fine->samples;
+}
+const struct eo_alternating *eo_balance_grid(const struct eo_balance *workspace)
+{
+  return workspace->fine;
+}
 
 double complex eo_motion_harmonic(const struct eo_cycle *cycle, int end, int k)
 {
@@ -99,7 +108,8 @@ double eo_motion_acceleration(const struct eo_cycle *cycle, int end, double phas
 {
   double acceleration = 0;
   for (int k = 1; cycle->motion[end] && k <= cycle->motion_order; k++)
-    acceleration -= pow(k * cycle->frequency, 2) * creal(eo_motion_harmonic(cycle, end, k) * cexp(2 * M_PI * I * k * phase));
+    acceleration -= pow(k * cycle->frequency, 2) *
+                    creal(eo_motion_harmonic(cycle, end, k) * cexp(2 * M_PI * I * k * phase));
   return acceleration;
 }
 
@@ -114,8 +124,8 @@ static void put_harmonic(double *series, int k, double complex value)
 }
 
 /* Right-hand side at harmonic k of one end. */
-static double complex load_harmonic(const struct eo_oscillator *o, const struct eo_harmonic *h, const struct eo_cycle *cycle,
-                                    int end, int k)
+static double complex load_harmonic(const struct eo_oscillator *o, const struct eo_harmonic *h,
+                                    const struct eo_cycle *cycle, int end, int k)
 {
   double complex load = h->load[end];
   for (int j = 0; j < o->ends; j++)
@@ -280,8 +290,9 @@ static double step(struct eo_balance *w, double *x)
   return size > 0 ? change / size : 0;
 }
 
-/* Two Newton steps from zero with the teeth held together: the first solves an affine law, the second refines it and tells
-   whether the matrix is so nearly singular (an undamped resonance) that the solution means nothing. Returns whether it is sound. */
+/* Two Newton steps from zero with the teeth held together: the first solves an affine law, the second refines it and
+   tells whether the matrix is so nearly singular (an undamped resonance) that the solution means nothing. Returns
+   whether it is sound. */
 static bool solve_linear(struct eo_balance *w, double *x)
 {
   int all = w->ends * w->terms;
@@ -295,7 +306,8 @@ static bool solve_linear(struct eo_balance *w, double *x)
   return step(w, x) < sound;
 }
 
-static enum eo_code solve_nonlinear(struct eo_balance *w, double *x, struct eo_balance_report *report, struct eo_error *error)
+static enum eo_code solve_nonlinear(struct eo_balance *w, double *x, struct eo_balance_report *report,
+                                    struct eo_error *error)
 {
   enum eo_code code = EO_OK;
   int all = w->ends * w->terms;
@@ -311,8 +323,10 @@ static enum eo_code solve_nonlinear(struct eo_balance *w, double *x, struct eo_b
     w->scale[all + i] = load;
   }
   const struct eo_nonlinear_problem problem = {balance_residual, balance_jacobian, w};
-  const struct eo_nonlinear_options options = {.x_scale = w->scale, .residual_scale = w->scale + all,
-                                               .residual_tolerance = tolerance, .step_tolerance = step_tolerance,
+  const struct eo_nonlinear_options options = {.x_scale = w->scale,
+                                               .residual_scale = w->scale + all,
+                                               .residual_tolerance = tolerance,
+                                               .step_tolerance = step_tolerance,
                                                .max_iterations = MAX_ITERATIONS};
   struct eo_nonlinear_report found;
   code = eo_nonlinear_solve(w->newton[w->ends - 1], &problem, &options, x, &found, error);
@@ -333,7 +347,8 @@ enum eo_code eo_balance_solve(struct eo_balance *w, const struct eo_oscillator *
                               struct eo_balance_report *report, struct eo_error *error)
 {
   assemble(w, oscillator, harmonic, cycle, mirror_ends(oscillator, cycle));
-  bool guessed = warm, affine = eo_law_is_affine(cycle->law[0]) && (oscillator->ends == 1 || eo_law_is_affine(cycle->law[1]));
+  bool guessed = warm,
+       affine = eo_law_is_affine(cycle->law[0]) && (oscillator->ends == 1 || eo_law_is_affine(cycle->law[1]));
   *report = (struct eo_balance_report){.ends = w->ends};
   enum eo_code code = EO_OK;
   if (!warm && affine) {

@@ -1,6 +1,6 @@
 /* Harmonic balance condensed on the deflections of the meshes: find X with S X + F(X) = P - T W + S motion, harmonic by
-   harmonic. Teeth that stay in contact under an affine law need one linear solve; everything else goes to Newton with the
-   analytic Jacobian (KINSOL) on a finer time grid. Mirror ends with equal laws are solved as one. */
+   harmonic. Teeth that stay in contact under an affine law need one linear solve; everything else goes to Newton with
+   the analytic Jacobian (KINSOL) on a finer time grid. Mirror ends with equal laws are solved as one. */
 #ifndef EASEOFF_DYNAMICS_BALANCE_H
 #define EASEOFF_DYNAMICS_BALANCE_H
 
@@ -12,11 +12,12 @@ struct eo_balance; /* workspace; one thread at a time */
 
 struct eo_balance_report {
   bool converged;
-  bool linear;         /* the teeth stay in contact under an affine law: the solution is exact up to truncation */
-  int iterations;      /* of Newton's method, 0 for a linear solve */
-  double residual;     /* largest harmonic of the force balance left over / mean load */
-  const struct eo_alternating *grid; /* the time grid on which the solution was found: forces, contact; until the next solve */
-  int ends;            /* ends on that grid: 1 when mirror ends were solved as one */
+  bool linear;     /* the teeth stay in contact under an affine law: the solution is exact up to truncation */
+  int iterations;  /* of Newton's method, 0 for a linear solve */
+  double residual; /* largest harmonic of the force balance left over / mean load */
+  const struct eo_alternating
+      *grid; /* the time grid on which the solution was found: forces, contact; until the next solve */
+  int ends;  /* ends on that grid: 1 when mirror ends were solved as one */
 };
 
 /* harmonics 1..EO_MAX_HARMONICS; samples of the fine grid, > 2 harmonics (0: 16 per harmonic, at least 256).
@@ -34,7 +35,8 @@ enum eo_code eo_balance_solve(struct eo_balance *workspace, const struct eo_osci
                               struct eo_balance_report *report, struct eo_error *error);
 
 /* Residual of the balance, its Jacobian and its slope with frequency at x, for continuation; both ends are always kept.
-   `harmonic` must carry slopes. residual[n], jacobian[n][n], slope[n] with n = ends (1 + 2 harmonics); scaled by the mean load. */
+   `harmonic` must carry slopes. residual[n], jacobian[n][n], slope[n] with n = ends (1 + 2 harmonics); scaled by the
+   mean load. */
 enum eo_code eo_balance_linearise(struct eo_balance *workspace, const struct eo_oscillator *oscillator,
                                   const struct eo_harmonic *harmonic, const struct eo_cycle *cycle, const double *x,
                                   double *residual, double *jacobian, double *slope, struct eo_error *error);

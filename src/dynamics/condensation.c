@@ -66,7 +66,8 @@ static double complex slope_product(const struct eo_oscillator *o, double w, int
 }
 
 /* H' = -u' D' u, W' = -u' D' v; S' = -S~ H' S~ and T' = S~ (W' - H' T) with S~ = H^-1. */
-static void add_slopes(const struct eo_oscillator *o, double w, int k, double complex inverse[2][2], struct eo_harmonic *h)
+static void add_slopes(const struct eo_oscillator *o, double w, int k, double complex inverse[2][2],
+                       struct eo_harmonic *h)
 {
   int ends = o->ends;
   double complex mesh[2][2] = {0}, pulse[2][2] = {0}, scratch[2][2] = {0};
@@ -107,7 +108,8 @@ static void condense_one(const struct eo_oscillator *o, double frequency, int k,
   int n = o->n, ends = o->ends;
   double complex b[5 * N], compliance[2][2] = {0}, impact[2][2] = {0}, inverse[2][2], mean[2] = {0};
   double shift = o->shift, w = k * frequency;
-  /* An undamped resonance just here: another shift moves it if the meshes feel it, a hair's breadth in frequency avoids it if not. */
+  /* An undamped resonance just here: another shift moves it if the meshes feel it, a hair's breadth in frequency avoids
+     it if not. */
   for (int attempt = 0; attempt < ATTEMPTS && solve_responses(o, w, shift, b); attempt++) {
     shift *= 1.37;
     w *= 1 + 1e-10;
@@ -146,13 +148,14 @@ void eo_condense(const struct eo_oscillator *oscillator, double frequency, int h
 }
 
 void eo_condensed_response(const struct eo_oscillator *o, const struct eo_harmonic *harmonic, int k,
-                           const double complex force[2], const double complex deflection[2], const double complex impact[2],
-                           double complex *response)
+                           const double complex force[2], const double complex deflection[2],
+                           const double complex impact[2], double complex *response)
 {
   const struct eo_harmonic *h = harmonic + k;
   for (int i = 0; i < o->n; i++) {
     response[i] = h->load_response[i];
     for (int end = 0; end < o->ends; end++)
-      response[i] -= h->mesh_response[end][i] * (force[end] - h->shift * deflection[end]) + h->pulse_response[end][i] * impact[end];
+      response[i] -= h->mesh_response[end][i] * (force[end] - h->shift * deflection[end]) +
+                     h->pulse_response[end][i] * impact[end];
   }
 }

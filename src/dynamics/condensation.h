@@ -9,11 +9,11 @@
 #include "dynamics/oscillator.h"
 
 struct eo_harmonic {
-  double complex stiffness[2][2];       /* S, N/m */
-  double complex transfer[2][2];        /* T: impact at end j felt by mesh i */
-  double complex load[2];               /* P, harmonic 0 only, N */
-  double complex stiffness_slope[2][2]; /* dS/dw */
-  double complex transfer_slope[2][2];  /* dT/dw */
+  double complex stiffness[2][2];                       /* S, N/m */
+  double complex transfer[2][2];                        /* T: impact at end j felt by mesh i */
+  double complex load[2];                               /* P, harmonic 0 only, N */
+  double complex stiffness_slope[2][2];                 /* dS/dw */
+  double complex transfer_slope[2][2];                  /* dT/dw */
   double complex mesh_response[2][EO_MAX_COORDINATES];  /* columns of (D + shift)^-1 mesh */
   double complex pulse_response[2][EO_MAX_COORDINATES]; /* columns of (D + shift)^-1 pulse */
   double load_response[EO_MAX_COORDINATES];             /* (D + shift)^-1 load, harmonic 0 only */
@@ -26,7 +26,7 @@ void eo_condense(const struct eo_oscillator *oscillator, double frequency, int h
 
 /* Response r_k of the coordinates to mesh forces F_k at deflections X_k (without prescribed motion) and impacts W_k. */
 void eo_condensed_response(const struct eo_oscillator *oscillator, const struct eo_harmonic *harmonic, int k,
-                           const double complex force[2], const double complex deflection[2], const double complex impact[2],
-                           double complex *response);
+                           const double complex force[2], const double complex deflection[2],
+                           const double complex impact[2], double complex *response);
 
 #endif

@@ -21,10 +21,10 @@ struct branch {
   struct eo_harmonic *harmonic;
   int n;
   double size, start;
-  double *x;        /* [n] deflections, m */
+  double *x;                           /* [n] deflections, m */
   double *residual, *slope, *jacobian; /* [n], [n], [n][n] */
-  double *matrix;   /* [n + 1][n + 1] */
-  double *step;     /* [n + 1] */
+  double *matrix;                      /* [n + 1][n + 1] */
+  double *step;                        /* [n + 1] */
   int *pivot;
 };
 
@@ -59,8 +59,8 @@ static enum eo_code linearise(struct branch *b, const double *u, const double *d
     b->x[i] = u[i] * b->size;
   b->cycle.frequency = u[n] * b->start;
   eo_condense(b->oscillator, b->cycle.frequency, eo_balance_harmonics(b->balance), true, b->harmonic);
-  enum eo_code code = eo_balance_linearise(b->balance, b->oscillator, b->harmonic, &b->cycle, b->x, b->residual, b->jacobian,
-                                           b->slope, error);
+  enum eo_code code = eo_balance_linearise(b->balance, b->oscillator, b->harmonic, &b->cycle, b->x, b->residual,
+                                           b->jacobian, b->slope, error);
   for (int i = 0; i < n && !code; i++) {
     double *row = b->matrix + (size_t)i * (n + 1);
     for (int j = 0; j < n; j++)
@@ -71,7 +71,8 @@ static enum eo_code linearise(struct branch *b, const double *u, const double *d
   return code;
 }
 
-/* The unit tangent at the point last linearised, on the side of the direction in the last row. Returns 0, or non-zero when singular. */
+/* The unit tangent at the point last linearised, on the side of the direction in the last row. Returns 0, or non-zero
+   when singular. */
 static int tangent_of(struct branch *b, double *tangent)
 {
   int n = b->n;
@@ -88,7 +89,8 @@ static int tangent_of(struct branch *b, double *tangent)
   return !isfinite(length);
 }
 
-/* Newton from base + step tangent in the plane across the tangent. *corrections counts; negative when it does not converge. */
+/* Newton from base + step tangent in the plane across the tangent. *corrections counts; negative when it does not
+   converge. */
 static enum eo_code correct(struct branch *b, const double *base, const double *tangent, double step, double *u,
                             int *corrections, struct eo_error *error)
 {
@@ -118,10 +120,14 @@ static enum eo_code correct(struct branch *b, const double *base, const double *
   return EO_OK;
 }
 
-static int visit_point(const struct branch *b, const double *u, double along, bool fold, eo_branch_visit *visit, void *context)
+static int visit_point(const struct branch *b, const double *u, double along, bool fold, eo_branch_visit *visit,
+                       void *context)
 {
-  const struct eo_branch_point point = {.frequency = u[b->n] * b->start, .x = b->x, .direction = along >= 0 ? 1 : -1,
-                                        .fold = fold, .grid = eo_balance_grid(b->balance)};
+  const struct eo_branch_point point = {.frequency = u[b->n] * b->start,
+                                        .x = b->x,
+                                        .direction = along >= 0 ? 1 : -1,
+                                        .fold = fold,
+                                        .grid = eo_balance_grid(b->balance)};
   return visit(context, &point);
 }
 
@@ -131,9 +137,10 @@ struct walk {
   double step;
 };
 
-/* One accepted point: trial and next are set, the step for the one after it chosen. *found is false when the branch is lost. */
-static enum eo_code take_step(struct branch *b, const struct eo_branch_options *o, struct walk *w, bool *fold, bool *found,
-                              struct eo_error *error)
+/* One accepted point: trial and next are set, the step for the one after it chosen. *found is false when the branch is
+   lost. */
+static enum eo_code take_step(struct branch *b, const struct eo_branch_options *o, struct walk *w, bool *fold,
+                              bool *found, struct eo_error *error)
 {
   int n = b->n, corrections;
   for (*found = false; w->step >= smallest_step;) {
@@ -157,7 +164,8 @@ static enum eo_code take_step(struct branch *b, const struct eo_branch_options *
   return EO_OK;
 }
 
-static enum eo_code start_walk(struct branch *b, const double *x, int direction, struct walk *w, bool *found, struct eo_error *error)
+static enum eo_code start_walk(struct branch *b, const double *x, int direction, struct walk *w, bool *found,
+                               struct eo_error *error)
 {
   int n = b->n, corrections;
   for (int i = 0; i < n; i++)
@@ -205,14 +213,21 @@ static enum eo_code walk_branch(struct branch *b, const struct eo_branch_options
   return code;
 }
 
-enum eo_code eo_branch_follow(struct eo_balance *balance, const struct eo_oscillator *oscillator, const struct eo_cycle *cycle,
-                              const double *x, int direction, const struct eo_branch_options *options, eo_branch_visit *visit,
-                              void *context, enum eo_branch_end *end, struct eo_error *error)
+enum eo_code eo_branch_follow(struct eo_balance *balance, const struct eo_oscillator *oscillator,
+                              const struct eo_cycle *cycle, const double *x, int direction,
+                              const struct eo_branch_options *options, eo_branch_visit *visit, void *context,
+                              enum eo_branch_end *end, struct eo_error *error)
 {
-  if (!(options->low > 0 && options->high > options->low && options->size > 0 && options->first_step > 0 && options->max_points > 0))
-    return eo_error_set(error, EO_ERROR_INPUT, "", "A branch between %g and %g rad/s cannot be followed.", options->low, options->high);
+  if (!(options->low > 0 && options->high > options->low && options->size > 0 && options->first_step > 0 &&
+        options->max_points > 0))
+    return eo_error_set(error, EO_ERROR_INPUT, "", "A branch between %g and %g rad/s cannot be followed.", options->low,
+                        options->high);
   int harmonics = eo_balance_harmonics(balance);
-  struct branch b = {.balance = balance, .oscillator = oscillator, .cycle = *cycle, .size = options->size, .start = cycle->frequency,
+  struct branch b = {.balance = balance,
+                     .oscillator = oscillator,
+                     .cycle = *cycle,
+                     .size = options->size,
+                     .start = cycle->frequency,
                      .n = oscillator->ends * eo_fourier_terms(harmonics)};
   double *all = malloc(sizeof *all * 4 * (b.n + 1));
   enum eo_code code = EO_OK;

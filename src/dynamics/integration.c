@@ -155,8 +155,8 @@ static void record(const struct run *run, int sample, double phase, const double
 }
 
 /* One period from integer phase `period`; y is the state, *swing the largest departure met. With `r` it is recorded. */
-static enum eo_code one_period(struct eo_ode *ode, const struct run *run, int period, int samples, double *y, double *swing,
-                               struct eo_integration *r, struct eo_error *error)
+static enum eo_code one_period(struct eo_ode *ode, const struct run *run, int period, int samples, double *y,
+                               double *swing, struct eo_integration *r, struct eo_error *error)
 {
   int n = run->oscillator->n;
   for (int i = 0; i < samples; i++) {
@@ -172,7 +172,8 @@ static enum eo_code one_period(struct eo_ode *ode, const struct run *run, int pe
 }
 
 static enum eo_code run_periods(struct eo_ode *ode, const struct run *run, const struct eo_integration_options *options,
-                                double *y, struct eo_integration *result, const struct eo_progress *progress, struct eo_error *error)
+                                double *y, struct eo_integration *result, const struct eo_progress *progress,
+                                struct eo_error *error)
 {
   int n = run->oscillator->n, period = 0, idle = 0;
   double before[2 * EO_MAX_COORDINATES], best = INFINITY;
@@ -204,8 +205,8 @@ static enum eo_code run_periods(struct eo_ode *ode, const struct run *run, const
 }
 
 enum eo_code eo_integrate(const struct eo_oscillator *oscillator, const struct eo_cycle *cycle,
-                          const struct eo_integration_options *options, const double *start, struct eo_integration *result,
-                          const struct eo_progress *progress, struct eo_error *error)
+                          const struct eo_integration_options *options, const double *start,
+                          struct eo_integration *result, const struct eo_progress *progress, struct eo_error *error)
 {
   int n = oscillator->n;
   struct run run = {oscillator, cycle, 2 * M_PI / cycle->frequency, start};
@@ -216,8 +217,11 @@ enum eo_code eo_integrate(const struct eo_oscillator *oscillator, const struct e
     y[n + i] = start[n + i] * run.period;
   }
   set_tolerances(&run, options->relative_tolerance, tolerance);
-  const struct eo_ode_problem problem = {.function = slope_of, .jacobian = jacobian_of, .context = &run,
-                                         .relative_tolerance = options->relative_tolerance, .absolute_tolerance = tolerance,
+  const struct eo_ode_problem problem = {.function = slope_of,
+                                         .jacobian = jacobian_of,
+                                         .context = &run,
+                                         .relative_tolerance = options->relative_tolerance,
+                                         .absolute_tolerance = tolerance,
                                          .max_step = longest_step(cycle, oscillator->ends)};
   enum eo_code code = eo_ode_new(&ode, 2 * n, error);
   if (!code)

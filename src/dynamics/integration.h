@@ -1,5 +1,5 @@
-/* The same oscillator by time integration (CVODE), from a given or the static start to the periodic state: the independent
-   check of the harmonic balance, and a way to a start value where Newton finds none. */
+/* The same oscillator by time integration (CVODE), from a given or the static start to the periodic state: the
+   independent check of the harmonic balance, and a way to a start value where Newton finds none. */
 #ifndef EASEOFF_DYNAMICS_INTEGRATION_H
 #define EASEOFF_DYNAMICS_INTEGRATION_H
 
@@ -9,10 +9,10 @@
 
 struct eo_integration_options {
   double relative_tolerance; /* of CVODE, > 0 */
-  double settled;            /* periodic when the state changes over one period by less than this share of its swing, > 0;
-                                or by less than 1e-5 of it without settling further, which is the integration's own noise */
-  int max_periods;           /* >= 1 */
-  int samples;               /* of the period that is recorded, >= 2 */
+  double settled;  /* periodic when the state changes over one period by less than this share of its swing, > 0;
+                      or by less than 1e-5 of it without settling further, which is the integration's own noise */
+  int max_periods; /* >= 1 */
+  int samples;     /* of the period that is recorded, >= 2 */
 };
 
 /* rtol 1e-8, settled 1e-7, 1000 periods, 1024 samples. */
@@ -27,19 +27,19 @@ struct eo_mesh_state {
 
 /* The last period at equidistant phases; the arrays belong to the caller. */
 struct eo_integration {
-  double *acceleration;         /* [samples][n] r", from the equation of motion */
-  struct eo_mesh_state *mesh;   /* [samples][2] */
+  double *acceleration;                 /* [samples][n] r", from the equation of motion */
+  struct eo_mesh_state *mesh;           /* [samples][2] */
   double state[2 * EO_MAX_COORDINATES]; /* r, r' at the end of the period */
-  bool periodic;                /* settled; else the last of max_periods is recorded */
-  double change;                /* of the state over the last but one period / swing */
+  bool periodic;                        /* settled; else the last of max_periods is recorded */
+  double change;                        /* of the state over the last but one period / swing */
   int periods;
-  long steps;                   /* CVODE's, of the whole run */
+  long steps; /* CVODE's, of the whole run */
 };
 
 /* start[2 n]: r, r' at phase 0. Errors: EO_ERROR_NUMERIC (CVODE gave up), EO_ERROR_MEMORY, EO_ERROR_CANCELLED. */
 enum eo_code eo_integrate(const struct eo_oscillator *oscillator, const struct eo_cycle *cycle,
-                          const struct eo_integration_options *options, const double *start, struct eo_integration *result,
-                          const struct eo_progress *progress, struct eo_error *error);
+                          const struct eo_integration_options *options, const double *start,
+                          struct eo_integration *result, const struct eo_progress *progress, struct eo_error *error);
 
 /* Acceleration r" at one state, and its meshes (NULL: not wanted). */
 void eo_oscillator_acceleration(const struct eo_oscillator *oscillator, const struct eo_cycle *cycle, double phase,

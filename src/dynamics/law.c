@@ -52,7 +52,8 @@ enum eo_code eo_law_copy(struct eo_law *law, const struct eo_law *source, struct
   copy.series = law->series;
   copy.load = law->load;
   copy.capacity = law->capacity;
-  memcpy(copy.series, source->series, (size_t)source->rows * (size_t)eo_fourier_terms(source->order) * sizeof *copy.series);
+  memcpy(copy.series, source->series,
+         (size_t)source->rows * (size_t)eo_fourier_terms(source->order) * sizeof *copy.series);
   if (source->kind == EO_MESH_TABLE)
     memcpy(copy.load, source->load, (size_t)source->rows * sizeof *copy.load);
   *law = copy;
@@ -78,8 +79,8 @@ static enum eo_code check_positive(int order, const double *series, const char *
   for (int i = 0; i < CHECKED_PHASES; i++) {
     double value = eo_fourier_value(order, series, (double)i / CHECKED_PHASES);
     if (!(value > 0))
-      return eo_error_set(error, EO_ERROR_INPUT, "", "The mesh law's %s must be positive; at phase %.3f it is %g.", what,
-                          (double)i / CHECKED_PHASES, value);
+      return eo_error_set(error, EO_ERROR_INPUT, "", "The mesh law's %s must be positive; at phase %.3f it is %g.",
+                          what, (double)i / CHECKED_PHASES, value);
   }
   return EO_OK;
 }
@@ -96,7 +97,7 @@ static void adopt(struct eo_law *law, const struct eo_law *values)
 }
 
 enum eo_code eo_law_set_stiffness(struct eo_law *law, int order, const double *k, double front, double back,
-                                       struct eo_error *error)
+                                  struct eo_error *error)
 {
   enum eo_code code;
   if (order < 0 || !all_finite(eo_fourier_terms(order), k) || !isfinite(front) || !(back <= front))
@@ -109,14 +110,15 @@ enum eo_code eo_law_set_stiffness(struct eo_law *law, int order, const double *k
 }
 
 enum eo_code eo_law_set_power(struct eo_law *law, int order, const double *coefficient, const double *offset,
-                                   double exponent, double front, struct eo_error *error)
+                              double exponent, double front, struct eo_error *error)
 {
   enum eo_code code;
   if (order < 0 || !all_finite(eo_fourier_terms(order), coefficient) || !all_finite(eo_fourier_terms(order), offset) ||
       !isfinite(front))
     return refuse_values("coefficients", error);
   if (!(exponent >= 1 && exponent <= 10))
-    return eo_error_set(error, EO_ERROR_INPUT, "", "The exponent of a power law must lie between 1 and 10, not %g.", exponent);
+    return eo_error_set(error, EO_ERROR_INPUT, "", "The exponent of a power law must lie between 1 and 10, not %g.",
+                        exponent);
   if ((code = check_positive(order, coefficient, "coefficient", error)) || (code = reserve(law, 2, order, error)))
     return code;
   adopt(law, &(struct eo_law){.kind = EO_MESH_POWER, .rows = 2, .order = order, .front = front, .exponent = exponent});
@@ -132,8 +134,8 @@ static enum eo_code check_samples(int positions, int order, struct eo_error *err
   return EO_OK;
 }
 
-enum eo_code eo_law_set_table(struct eo_law *law, int rows, int positions, const double *load,
-                                   const double *deflection, int order, double front, struct eo_error *error)
+enum eo_code eo_law_set_table(struct eo_law *law, int rows, int positions, const double *load, const double *deflection,
+                              int order, double front, struct eo_error *error)
 {
   enum eo_code code = check_samples(positions, order, error);
   if (code)
@@ -142,24 +144,28 @@ enum eo_code eo_law_set_table(struct eo_law *law, int rows, int positions, const
     return refuse_values("table (at least two loads)", error);
   for (int i = 0; i < rows; i++)
     for (int j = 0; j < positions; j++)
-      if (load[i] < 0 || (i > 0 && !(load[i] > load[i - 1] && deflection[i * positions + j] > deflection[(i - 1) * positions + j])))
-        return eo_error_set(error, EO_ERROR_INPUT, "", "Loads and deflections of a mesh table must ascend; row %d does not.", i);
+      if (load[i] < 0 ||
+          (i > 0 && !(load[i] > load[i - 1] && deflection[i * positions + j] > deflection[(i - 1) * positions + j])))
+        return eo_error_set(error, EO_ERROR_INPUT, "",
+                            "Loads and deflections of a mesh table must ascend; row %d does not.", i);
   if ((code = reserve(law, rows, order, error)))
     return code;
   adopt(law, &(struct eo_law){.kind = EO_MESH_TABLE, .rows = rows, .order = order, .front = front});
   memcpy(law->load, load, sizeof *load * rows);
   for (int i = 0; i < rows; i++)
-    eo_fourier_series(positions, deflection + (size_t)i * positions, order, law->series + (size_t)i * eo_fourier_terms(order));
+    eo_fourier_series(positions, deflection + (size_t)i * positions, order,
+                      law->series + (size_t)i * eo_fourier_terms(order));
   return EO_OK;
 }
 
-enum eo_code eo_law_set_tangent(struct eo_law *law, int positions, const double *deflection,
-                                     const double *tangent, double nominal, int order, double back, struct eo_error *error)
+enum eo_code eo_law_set_tangent(struct eo_law *law, int positions, const double *deflection, const double *tangent,
+                                double nominal, int order, double back, struct eo_error *error)
 {
   enum eo_code code = check_samples(positions, order, error);
   if (code)
     return code;
-  if (!all_finite(positions, deflection) || !all_finite(positions, tangent) || !(nominal > 0 && isfinite(nominal)) || isnan(back))
+  if (!all_finite(positions, deflection) || !all_finite(positions, tangent) || !(nominal > 0 && isfinite(nominal)) ||
+      isnan(back))
     return refuse_values("deflections, stiffnesses and (positive) load", error);
   if ((code = reserve(law, 2, order, error)))
     return code;
@@ -169,22 +175,27 @@ enum eo_code eo_law_set_tangent(struct eo_law *law, int positions, const double 
   law->rows = 0; /* not usable until the check below has passed */
   if ((code = check_positive(order, k, "tangent stiffness", error)))
     return code;
-  adopt(law, &(struct eo_law){.kind = EO_MESH_TANGENT, .rows = 2, .order = order, .nominal = nominal, .back = back,
-                                   .back_stiffness = k[0]});
+  adopt(law, &(struct eo_law){.kind = EO_MESH_TANGENT,
+                              .rows = 2,
+                              .order = order,
+                              .nominal = nominal,
+                              .back = back,
+                              .back_stiffness = k[0]});
   return EO_OK;
 }
 
 enum eo_code eo_law_set_back(struct eo_law *law, double back, double stiffness, struct eo_error *error)
 {
   if (!isfinite(back) || !(back < law->front) || !(stiffness > 0 && isfinite(stiffness)))
-    return eo_error_set(error, EO_ERROR_INPUT, "", "Back flanks at %g m with a stiffness of %g N/m make no backlash.", back, stiffness);
+    return eo_error_set(error, EO_ERROR_INPUT, "", "Back flanks at %g m with a stiffness of %g N/m make no backlash.",
+                        back, stiffness);
   law->back = back;
   law->back_stiffness = stiffness;
   return EO_OK;
 }
 
 enum eo_code eo_law_set_secant(struct eo_law *law, int positions, const double *deflection, double nominal,
-                                    double datum, int order, double back, struct eo_error *error)
+                               double datum, int order, double back, struct eo_error *error)
 {
   enum eo_code code = check_samples(positions, order, error);
   if (code)
@@ -198,7 +209,8 @@ enum eo_code eo_law_set_secant(struct eo_law *law, int positions, const double *
   for (int i = 0; i < positions && !code; i++) {
     stiffness[i] = nominal / (deflection[i] - datum);
     if (!(deflection[i] > datum))
-      code = eo_error_set(error, EO_ERROR_INPUT, "", "The loaded deflection %g m lies before first contact at %g m.", deflection[i], datum);
+      code = eo_error_set(error, EO_ERROR_INPUT, "", "The loaded deflection %g m lies before first contact at %g m.",
+                          deflection[i], datum);
   }
   if (!code) {
     law->rows = 0;
@@ -315,8 +327,9 @@ int eo_law_equal(const struct eo_law *a, const struct eo_law *b)
 {
   if (a == b)
     return 1;
-  return a->kind == b->kind && a->rows == b->rows && a->order == b->order && a->front == b->front && a->back == b->back &&
-         a->back_stiffness == b->back_stiffness && a->exponent == b->exponent && a->nominal == b->nominal &&
+  return a->kind == b->kind && a->rows == b->rows && a->order == b->order && a->front == b->front &&
+         a->back == b->back && a->back_stiffness == b->back_stiffness && a->exponent == b->exponent &&
+         a->nominal == b->nominal &&
          !memcmp(a->series, b->series, sizeof *a->series * a->rows * eo_fourier_terms(a->order)) &&
          (a->kind != EO_MESH_TABLE || !memcmp(a->load, b->load, sizeof *a->load * a->rows));
 }

@@ -39,18 +39,22 @@ static void add_supports(struct eo_dynamics_model *m, struct elements *all)
   int ends = p->ends;
   for (int member = 0; member < 2; member++)
     for (int end = 0; end < ends; end++)
-      join(m, all, eo_dynamics_freedom(ends, member, end, EO_MOTION_Y), -1, p->bearing_stiffness[member], p->bearing_damping[member]);
+      join(m, all, eo_dynamics_freedom(ends, member, end, EO_MOTION_Y), -1, p->bearing_stiffness[member],
+           p->bearing_damping[member]);
   for (int end = 0; end < ends; end++)
-    join(m, all, eo_dynamics_freedom(ends, EO_GEAR, end, EO_MOTION_Z), -1, p->gear_axial_stiffness[end], p->gear_axial_damping[end]);
+    join(m, all, eo_dynamics_freedom(ends, EO_GEAR, end, EO_MOTION_Z), -1, p->gear_axial_stiffness[end],
+         p->gear_axial_damping[end]);
   if (ends == 1) {
-    join(m, all, eo_dynamics_freedom(1, EO_PINION, 0, EO_MOTION_Z), -1, p->groove_axial_stiffness[0], p->groove_axial_damping[0]);
+    join(m, all, eo_dynamics_freedom(1, EO_PINION, 0, EO_MOTION_Z), -1, p->groove_axial_stiffness[0],
+         p->groove_axial_damping[0]);
     return;
   }
   for (int member = 0; member < 2; member++) {
     join(m, all, eo_dynamics_freedom(2, member, 0, EO_MOTION_Z), eo_dynamics_freedom(2, member, 1, EO_MOTION_Z),
          p->groove_axial_stiffness[member], p->groove_axial_damping[member]);
-    join(m, all, eo_dynamics_freedom(2, member, 0, EO_MOTION_ROTATION), eo_dynamics_freedom(2, member, 1, EO_MOTION_ROTATION),
-         p->groove_torsional_stiffness[member], p->groove_torsional_damping[member]);
+    join(m, all, eo_dynamics_freedom(2, member, 0, EO_MOTION_ROTATION),
+         eo_dynamics_freedom(2, member, 1, EO_MOTION_ROTATION), p->groove_torsional_stiffness[member],
+         p->groove_torsional_damping[member]);
   }
 }
 
@@ -85,7 +89,8 @@ static double dot(int n, const double *a, const double *b)
   return sum;
 }
 
-/* Takes the components along `count` orthonormal vectors out of v, twice for the sake of roundoff; returns what is left of it. */
+/* Takes the components along `count` orthonormal vectors out of v, twice for the sake of roundoff; returns what is left
+   of it. */
 static double orthogonalise(int n, double *v, int count, double (*vector)[EO_MAX_FREEDOMS])
 {
   for (int pass = 0; pass < 2; pass++)
@@ -97,9 +102,11 @@ static double orthogonalise(int n, double *v, int count, double (*vector)[EO_MAX
   return sqrt(dot(n, v, v));
 }
 
-/* Extends `count` orthonormal vectors by those of the candidates that are independent of them, the clearest first (Gram-Schmidt
-   with pivoting). The candidates are unit vectors, so the threshold is a matter of geometry and not of stiffness. */
-static int extend(int n, int count, double (*vector)[EO_MAX_FREEDOMS], int candidates, double (*candidate)[EO_MAX_FREEDOMS])
+/* Extends `count` orthonormal vectors by those of the candidates that are independent of them, the clearest first
+   (Gram-Schmidt with pivoting). The candidates are unit vectors, so the threshold is a matter of geometry and not of
+   stiffness. */
+static int extend(int n, int count, double (*vector)[EO_MAX_FREEDOMS], int candidates,
+                  double (*candidate)[EO_MAX_FREEDOMS])
 {
   const double independent = 1e-9;
   for (;;) {
@@ -203,8 +210,9 @@ enum eo_code eo_dynamics_model_init(struct eo_dynamics_model *model, const struc
   for (int member = 0; member < 2; member++)
     for (int end = 0; end < parameters->ends; end++)
       for (int motion = EO_MOTION_Y; motion <= EO_MOTION_ROTATION; motion++)
-        model->mass[eo_dynamics_freedom(parameters->ends, member, end, motion)] =
-            motion == EO_MOTION_ROTATION ? parameters->inertia[member] : parameters->mass[member];
+        model->mass[eo_dynamics_freedom(parameters->ends, member, end, motion)] = motion == EO_MOTION_ROTATION
+                                                                                      ? parameters->inertia[member]
+                                                                                      : parameters->mass[member];
   struct elements all = {0};
   add_supports(model, &all);
   set_readings(model);
@@ -222,7 +230,8 @@ void eo_dynamics_model_load(struct eo_dynamics_model *model, double torque, enum
   double load[EO_MAX_FREEDOMS] = {0};
   for (int end = 0; end < ends; end++) {
     load[eo_dynamics_freedom(ends, EO_PINION, end, EO_MOTION_ROTATION)] = torque / ends;
-    load[eo_dynamics_freedom(ends, EO_GEAR, end, EO_MOTION_ROTATION)] = -torque / ends * p->base_radius[EO_GEAR] / p->base_radius[EO_PINION];
+    load[eo_dynamics_freedom(ends, EO_GEAR, end, EO_MOTION_ROTATION)] = -torque / ends * p->base_radius[EO_GEAR] /
+                                                                        p->base_radius[EO_PINION];
     struct eo_oscillator *o = &model->oscillator;
     if (impact == EO_IMPACT_PAPER)
       project(model, model->theta_impact[end], o->pulse[end]);

@@ -16,19 +16,19 @@ enum eo_reading { EO_READING_NORMAL, EO_READING_TRANSVERSE, EO_READING_ROTATIONA
 
 struct eo_dynamics_model {
   struct eo_dynamics_parameters parameters;
-  int freedoms;   /* 6 per end */
-  int zero_modes; /* 3, 2 or 1 with two ends */
-  double mass[EO_MAX_FREEDOMS];                         /* diagonal */
-  double stiffness[EO_MAX_FREEDOMS * EO_MAX_FREEDOMS];  /* [freedoms][freedoms], without the mesh */
+  int freedoms;                                        /* 6 per end */
+  int zero_modes;                                      /* 3, 2 or 1 with two ends */
+  double mass[EO_MAX_FREEDOMS];                        /* diagonal */
+  double stiffness[EO_MAX_FREEDOMS * EO_MAX_FREEDOMS]; /* [freedoms][freedoms], without the mesh */
   double damping[EO_MAX_FREEDOMS * EO_MAX_FREEDOMS];
-  double reading[EO_READINGS][2][EO_MAX_FREEDOMS];      /* [reading][end]: rows; the normal ones are g_j = dX_j/dq */
-  double theta_impact[2][EO_MAX_FREEDOMS];              /* h_j of the paper's form: theta only */
+  double reading[EO_READINGS][2][EO_MAX_FREEDOMS]; /* [reading][end]: rows; the normal ones are g_j = dX_j/dq */
+  double theta_impact[2][EO_MAX_FREEDOMS];         /* h_j of the paper's form: theta only */
   /* q = basis r + zero z: mass-orthonormal, zero spans the motions in which no spring, damper or mesh takes part. The
      number of zero modes follows from the directions alone, whatever the stiffnesses. */
-  double basis[EO_MAX_FREEDOMS * EO_MAX_COORDINATES];   /* [freedoms][freedoms - zero_modes] */
-  double zero[EO_MAX_FREEDOMS * 3];                     /* [freedoms][zero_modes] */
-  struct eo_oscillator oscillator;                      /* in r, for `torque` and `impact` as last set */
-  double zero_mode_load;   /* largest |load . zero| / (|load| |zero|) of the torques: zero but for roundoff */
+  double basis[EO_MAX_FREEDOMS * EO_MAX_COORDINATES]; /* [freedoms][freedoms - zero_modes] */
+  double zero[EO_MAX_FREEDOMS * 3];                   /* [freedoms][zero_modes] */
+  struct eo_oscillator oscillator;                    /* in r, for `torque` and `impact` as last set */
+  double zero_mode_load; /* largest |load . zero| / (|load| |zero|) of the torques: zero but for roundoff */
 };
 
 static inline int eo_dynamics_freedom(int ends, int member, int end, enum eo_motion motion)
@@ -44,14 +44,15 @@ enum eo_code eo_dynamics_model_init(struct eo_dynamics_model *model, const struc
 void eo_dynamics_model_load(struct eo_dynamics_model *model, double torque, enum eo_impact_in_dynamics impact);
 
 /* Work of the mean impacts on the zero modes: with the paper's theta-only form the mean of W_1 - W_2 does work on the
-   pinion's screw motion. Returns the generalised force on all of them together, N/sqrt(kg); it has no periodic response and is left out. */
+   pinion's screw motion. Returns the generalised force on all of them together, N/sqrt(kg); it has no periodic response
+   and is left out. */
 double eo_dynamics_model_impact_drift(const struct eo_dynamics_model *model, const double mean[2]);
 
 struct eo_dynamics_modes {
-  int n;                                       /* freedoms - zero modes */
+  int n; /* freedoms - zero modes */
   int zero_modes;
-  double frequency[EO_MAX_COORDINATES];        /* undamped, Hz, ascending */
-  double damping_ratio[EO_MAX_COORDINATES];    /* -Re(pole) / |pole| of the damped system; 1 and above: overdamped */
+  double frequency[EO_MAX_COORDINATES];     /* undamped, Hz, ascending */
+  double damping_ratio[EO_MAX_COORDINATES]; /* -Re(pole) / |pole| of the damped system; 1 and above: overdamped */
   double shape[EO_MAX_COORDINATES][EO_MAX_FREEDOMS]; /* [mode][freedom], unit modal mass */
   double complex pole[2 * EO_MAX_COORDINATES]; /* of the damped system, 1/s, by |pole|, conjugate pairs together */
 };
@@ -61,9 +62,9 @@ struct eo_dynamics_modes {
 enum eo_code eo_dynamics_model_modes(const struct eo_dynamics_model *model, const double mesh_stiffness[2],
                                      struct eo_dynamics_modes *modes, struct eo_error *error);
 
-/* Negative control: the pole with the largest real part when the groove springs and dampers carry the signs printed in (6)
-   and (7), k_pz (z_p2 + z_p1), c_pz (z_p2' + z_p1') and - c_gz (z_g2' - z_g1'). Such a model flutters. Two ends only.
-   Errors: EO_ERROR_INPUT, EO_ERROR_NUMERIC. */
+/* Negative control: the pole with the largest real part when the groove springs and dampers carry the signs printed in
+   (6) and (7), k_pz (z_p2 + z_p1), c_pz (z_p2' + z_p1') and - c_gz (z_g2' - z_g1'). Such a model flutters. Two ends
+   only. Errors: EO_ERROR_INPUT, EO_ERROR_NUMERIC. */
 enum eo_code eo_dynamics_model_printed_pole(const struct eo_dynamics_model *model, const double mesh_stiffness[2],
                                             double complex *pole, struct eo_error *error);
 

@@ -45,12 +45,14 @@ enum eo_code eo_dynamics_model_modes(const struct eo_dynamics_model *model, cons
 {
   const struct eo_oscillator *o = &model->oscillator;
   int n = o->n;
-  double k[EO_MAX_COORDINATES * EO_MAX_COORDINATES], c[EO_MAX_COORDINATES * EO_MAX_COORDINATES], square[EO_MAX_COORDINATES];
+  double k[EO_MAX_COORDINATES * EO_MAX_COORDINATES], c[EO_MAX_COORDINATES * EO_MAX_COORDINATES],
+      square[EO_MAX_COORDINATES];
   memcpy(k, o->stiffness, sizeof k);
   memcpy(c, o->damping, sizeof c);
   for (int end = 0; end < o->ends; end++) {
     if (!(mesh_stiffness[end] > 0 && isfinite(mesh_stiffness[end])))
-      return eo_error_set(error, EO_ERROR_INPUT, "", "Eigenfrequencies need a positive mesh stiffness, not %g N/m.", mesh_stiffness[end]);
+      return eo_error_set(error, EO_ERROR_INPUT, "", "Eigenfrequencies need a positive mesh stiffness, not %g N/m.",
+                          mesh_stiffness[end]);
     for (int i = 0; i < n; i++)
       for (int j = 0; j < n; j++) {
         k[i * n + j] += mesh_stiffness[end] * o->mesh[end][i] * o->mesh[end][j];
@@ -93,8 +95,9 @@ enum eo_code eo_dynamics_model_printed_pole(const struct eo_dynamics_model *mode
   double k[EO_MAX_FREEDOMS * EO_MAX_FREEDOMS], c[EO_MAX_FREEDOMS * EO_MAX_FREEDOMS];
   double complex all[2 * EO_MAX_FREEDOMS];
   const double damping[2] = {p->mesh_damping, p->mesh_damping};
-  int n = model->freedoms, zp1 = eo_dynamics_freedom(2, EO_PINION, 0, EO_MOTION_Z), zp2 = eo_dynamics_freedom(2, EO_PINION, 1, EO_MOTION_Z),
-      zg1 = eo_dynamics_freedom(2, EO_GEAR, 0, EO_MOTION_Z), zg2 = eo_dynamics_freedom(2, EO_GEAR, 1, EO_MOTION_Z);
+  int n = model->freedoms, zp1 = eo_dynamics_freedom(2, EO_PINION, 0, EO_MOTION_Z),
+      zp2 = eo_dynamics_freedom(2, EO_PINION, 1, EO_MOTION_Z), zg1 = eo_dynamics_freedom(2, EO_GEAR, 0, EO_MOTION_Z),
+      zg2 = eo_dynamics_freedom(2, EO_GEAR, 1, EO_MOTION_Z);
   full_matrix(model, model->stiffness, mesh_stiffness, k);
   full_matrix(model, model->damping, damping, c);
   k[zp2 * n + zp1] += 2 * p->groove_axial_stiffness[EO_PINION] / p->mass[EO_PINION];

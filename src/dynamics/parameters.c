@@ -26,7 +26,7 @@ static enum eo_code check_rules(int n, const struct rule *rule, struct eo_error 
 static enum eo_code check_dampers(const struct eo_dynamics_parameters *p, struct eo_error *error)
 {
   static const char *const torsional[2] = {"/supports/pinion_groove_torsional_stiffness_Nm_per_rad",
-                                             "/supports/gear_groove_torsional_stiffness_Nm_per_rad"};
+                                           "/supports/gear_groove_torsional_stiffness_Nm_per_rad"};
   for (int m = 0; m < 2; m++)
     if (p->groove_torsional_stiffness[m] == 0 && p->groove_torsional_damping[m] > 0)
       return eo_error_set(error, EO_ERROR_INPUT, torsional[m], "A torsional damper between the ends needs its spring.");
@@ -39,7 +39,8 @@ enum eo_code eo_dynamics_parameters_check(const struct eo_dynamics_parameters *p
     return eo_error_set(error, EO_ERROR_INPUT, "/gear_pair/ends", "A gear has one or two ends, not %d.", p->ends);
   if (!(p->base_radius[0] > 0 && p->base_radius[1] > 0 && isfinite(p->base_radius[0] + p->base_radius[1])) ||
       !(fabs(p->base_helix_angle) < 1.5))
-    return eo_error_set(error, EO_ERROR_INPUT, "/gear_pair", "Base radii %g and %g m with a base helix angle of %g rad make no gear pair.",
+    return eo_error_set(error, EO_ERROR_INPUT, "/gear_pair",
+                        "Base radii %g and %g m with a base helix angle of %g rad make no gear pair.",
                         p->base_radius[0], p->base_radius[1], p->base_helix_angle);
   const struct rule rule[] = {
       {"pinion_mass_kg", "mass of the pinion", p->mass[0], true},
@@ -58,10 +59,13 @@ enum eo_code eo_dynamics_parameters_check(const struct eo_dynamics_parameters *p
       /* from here on with two ends only */
       {"gear_axial_stiffness_right_N_per_um", "gear's axial stiffness on the right", p->gear_axial_stiffness[1], true},
       {"bearing_damping_ratio", "gear's axial damping on the right", p->gear_axial_damping[1], false},
-      {"gear_groove_axial_stiffness_N_per_um", "axial stiffness of the gear's groove", p->groove_axial_stiffness[1], true},
+      {"gear_groove_axial_stiffness_N_per_um", "axial stiffness of the gear's groove", p->groove_axial_stiffness[1],
+       true},
       {"groove_damping_ratio", "axial damping of the gear's groove", p->groove_axial_damping[1], false},
-      {"pinion_groove_torsional_stiffness_Nm_per_rad", "torsional stiffness of the pinion's groove", p->groove_torsional_stiffness[0], false},
-      {"gear_groove_torsional_stiffness_Nm_per_rad", "torsional stiffness of the gear's groove", p->groove_torsional_stiffness[1], false},
+      {"pinion_groove_torsional_stiffness_Nm_per_rad", "torsional stiffness of the pinion's groove",
+       p->groove_torsional_stiffness[0], false},
+      {"gear_groove_torsional_stiffness_Nm_per_rad", "torsional stiffness of the gear's groove",
+       p->groove_torsional_stiffness[1], false},
       {"groove_damping_ratio", "torsional damping of the pinion's groove", p->groove_torsional_damping[0], false},
       {"groove_damping_ratio", "torsional damping of the gear's groove", p->groove_torsional_damping[1], false},
   };
@@ -141,14 +145,15 @@ static void set_bearings(struct eo_dynamics_parameters *p, const struct eo_suppo
 
 static void set_single_axial(struct eo_dynamics_parameters *p, const struct eo_supports *supports)
 {
-  p->groove_axial_stiffness[EO_PINION] = or_default(supports->groove_axial_stiffness[EO_PINION], p->gear_axial_stiffness[0]);
-  p->groove_axial_damping[EO_PINION] =
-      2 * supports->bearing_damping_ratio * sqrt(p->groove_axial_stiffness[EO_PINION] * p->mass[EO_PINION]);
+  p->groove_axial_stiffness[EO_PINION] = or_default(supports->groove_axial_stiffness[EO_PINION],
+                                                    p->gear_axial_stiffness[0]);
+  p->groove_axial_damping[EO_PINION] = 2 * supports->bearing_damping_ratio *
+                                       sqrt(p->groove_axial_stiffness[EO_PINION] * p->mass[EO_PINION]);
 }
 
-static enum eo_code set_groove(struct eo_dynamics_parameters *p, const struct eo_geometry *g, const struct eo_gear_pair *pair,
-                               const struct eo_material *material, const struct eo_supports *supports, bool coupled,
-                               struct eo_error *error)
+static enum eo_code set_groove(struct eo_dynamics_parameters *p, const struct eo_geometry *g,
+                               const struct eo_gear_pair *pair, const struct eo_material *material,
+                               const struct eo_supports *supports, bool coupled, struct eo_error *error)
 {
   double shear = material->youngs_modulus / (2 * (1 + material->poissons_ratio)), zeta = supports->groove_damping_ratio;
   for (int m = 0; m < 2; m++) {
@@ -156,8 +161,9 @@ static enum eo_code set_groove(struct eo_dynamics_parameters *p, const struct eo
     double r2 = body.radius * body.radius, b2 = body.bore * body.bore;
     double axial = supports->groove_axial_stiffness[m], torsional = supports->groove_torsional_stiffness[m];
     if ((isnan(axial) || (coupled && isnan(torsional))) && !(body.length > 0 && r2 > b2))
-      return eo_error_set(error, EO_ERROR_INPUT, "/gear_pair/groove_width_mm",
-                          "Without a groove of positive width and section its stiffnesses must be given in the supports.");
+      return eo_error_set(
+          error, EO_ERROR_INPUT, "/gear_pair/groove_width_mm",
+          "Without a groove of positive width and section its stiffnesses must be given in the supports.");
     p->groove_axial_stiffness[m] = or_default(axial, material->youngs_modulus * M_PI * (r2 - b2) / body.length);
     p->groove_axial_damping[m] = 2 * zeta * sqrt(p->groove_axial_stiffness[m] * p->mass[m] / 2);
     if (!coupled)
@@ -174,15 +180,16 @@ static enum eo_code check_supports(const struct eo_supports *s, double mean_mesh
       {"bearing_damping_ratio", "damping ratio of the bearings", s->bearing_damping_ratio, false},
       {"groove_damping_ratio", "damping ratio of the groove", s->groove_damping_ratio, false},
       {"mesh_damping_ratio", "damping ratio of the mesh", s->mesh_damping_ratio, false},
-      {"mesh_damping_stiffness_N_per_um", "mesh stiffness that sets the mesh damping", or_default(s->mesh_damping_stiffness, mean_mesh_stiffness), true},
+      {"mesh_damping_stiffness_N_per_um", "mesh stiffness that sets the mesh damping",
+       or_default(s->mesh_damping_stiffness, mean_mesh_stiffness), true},
   };
   return check_rules(sizeof rule / sizeof *rule, rule, error);
 }
 
 enum eo_code eo_dynamics_parameters_init(struct eo_dynamics_parameters *parameters, const struct eo_geometry *geometry,
                                          const struct eo_gear_pair *pair, const struct eo_material *material,
-                                         const struct eo_supports *supports, bool ends_differ, double mean_mesh_stiffness,
-                                         struct eo_error *error)
+                                         const struct eo_supports *supports, bool ends_differ,
+                                         double mean_mesh_stiffness, struct eo_error *error)
 {
   enum eo_code code = check_supports(supports, mean_mesh_stiffness, error);
   if (code)

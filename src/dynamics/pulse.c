@@ -33,7 +33,8 @@ double complex eo_pulse_harmonic(const struct eo_pulse *pulse, double frequency,
   case EO_PULSE_NONE:
     return 0;
   case EO_PULSE_HALF_SINE:
-    return (k ? 2 : 1) * pulse->amplitude * cexp(2 * M_PI * I * k * (shift - pulse->start)) * half_sine_integral(pulse->duration, k);
+    return (k ? 2 : 1) * pulse->amplitude * cexp(2 * M_PI * I * k * (shift - pulse->start)) *
+           half_sine_integral(pulse->duration, k);
   case EO_PULSE_COSINE:
     return k == 1 ? pulse->amplitude * frequency * frequency * cexp(2 * M_PI * I * shift) : 0;
   }

@@ -32,8 +32,8 @@ static double complex freedom(const struct eo_spectrum *spectrum, int member, in
 }
 
 /* Spring and damper to ground at harmonic k. */
-static double complex support(const struct eo_spectrum *spectrum, int member, int end, enum eo_motion motion, double stiffness,
-                              double damping, int k)
+static double complex support(const struct eo_spectrum *spectrum, int member, int end, enum eo_motion motion,
+                              double stiffness, double damping, int k)
 {
   return (stiffness + I * k * spectrum->frequency * damping) * freedom(spectrum, member, end, motion, k);
 }
@@ -63,11 +63,13 @@ void eo_vibration_orders(const struct eo_vibration_solver *s, enum eo_channel ch
     case EO_CHANNEL_PINION_BEARING:
     case EO_CHANNEL_GEAR_BEARING: {
       int member = channel == EO_CHANNEL_PINION_BEARING ? EO_PINION : EO_GEAR;
-      order[k] = support(spectrum, member, end, EO_MOTION_Y, p->bearing_stiffness[member], p->bearing_damping[member], k);
+      order[k] = support(spectrum, member, end, EO_MOTION_Y, p->bearing_stiffness[member], p->bearing_damping[member],
+                         k);
       break;
     }
     case EO_CHANNEL_GEAR_THRUST:
-      order[k] = support(spectrum, EO_GEAR, end, EO_MOTION_Z, p->gear_axial_stiffness[end], p->gear_axial_damping[end], k);
+      order[k] = support(spectrum, EO_GEAR, end, EO_MOTION_Z, p->gear_axial_stiffness[end], p->gear_axial_damping[end],
+                         k);
       break;
     case EO_CHANNELS:
       order[k] = 0;
@@ -157,8 +159,8 @@ static struct range range_of(int n, const double *sample)
 }
 
 /* Mean and largest size of a force given by its harmonics, on the grid of the solution. */
-static void read_force(const struct eo_vibration_solver *s, const struct eo_alternating *grid, const double complex *order,
-                       double *mean, double *largest)
+static void read_force(const struct eo_vibration_solver *s, const struct eo_alternating *grid,
+                       const double complex *order, double *mean, double *largest)
 {
   double series[MAX_TERMS];
   series_of(s->spectrum.harmonics, order, series);
@@ -168,7 +170,8 @@ static void read_force(const struct eo_vibration_solver *s, const struct eo_alte
   *largest = fmax(fabs(r.least), fabs(r.most));
 }
 
-static void read_bearings(const struct eo_vibration_solver *s, const struct eo_alternating *grid, struct eo_vibration *result)
+static void read_bearings(const struct eo_vibration_solver *s, const struct eo_alternating *grid,
+                          struct eo_vibration *result)
 {
   const struct eo_dynamics_parameters *p = &s->model.parameters;
   double complex order[1 + EO_MAX_HARMONICS];
@@ -183,7 +186,8 @@ static void read_bearings(const struct eo_vibration_solver *s, const struct eo_a
   if (s->spectrum.ends == 2)
     return;
   for (int k = 0; k <= s->spectrum.harmonics; k++)
-    order[k] = support(&s->spectrum, EO_PINION, 0, EO_MOTION_Z, p->groove_axial_stiffness[0], p->groove_axial_damping[0], k);
+    order[k] = support(&s->spectrum, EO_PINION, 0, EO_MOTION_Z, p->groove_axial_stiffness[0],
+                       p->groove_axial_damping[0], k);
   read_force(s, grid, order, &result->axial_force_mean[1], &result->axial_force_max[1]);
 }
 
@@ -198,7 +202,8 @@ static double dissipation(const struct eo_oscillator *o, double w, const double 
 }
 
 /* Mean of W times the velocity at which it acts, harmonic k. */
-static double impact_power(const struct eo_oscillator *o, double w, const double complex *response, const double complex impact[2])
+static double impact_power(const struct eo_oscillator *o, double w, const double complex *response,
+                           const double complex impact[2])
 {
   double sum = 0;
   for (int end = 0; end < o->ends; end++) {
@@ -211,8 +216,8 @@ static double impact_power(const struct eo_oscillator *o, double w, const double
 }
 
 /* Fills the spectrum from the deflections in s->x and the forces on the grid, and the power outside the meshes. */
-static void fill_spectrum(struct eo_vibration_solver *s, const struct eo_cycle *cycle, const struct eo_balance_report *report,
-                          struct eo_vibration *result)
+static void fill_spectrum(struct eo_vibration_solver *s, const struct eo_cycle *cycle,
+                          const struct eo_balance_report *report, struct eo_vibration *result)
 {
   const struct eo_oscillator *o = &s->model.oscillator;
   int terms = eo_fourier_terms(s->harmonics);
@@ -236,8 +241,8 @@ static void fill_spectrum(struct eo_vibration_solver *s, const struct eo_cycle *
   }
 }
 
-static void read_mesh(const struct eo_vibration_solver *s, const struct eo_alternating *grid, int from, const struct eo_cycle *cycle, int end, double load,
-                      struct eo_vibration *result)
+static void read_mesh(const struct eo_vibration_solver *s, const struct eo_alternating *grid, int from,
+                      const struct eo_cycle *cycle, int end, double load, struct eo_vibration *result)
 {
   const struct eo_time_end *e = &grid->end[from];
   for (int i = 0; i < grid->samples; i++)
@@ -266,8 +271,8 @@ static void set_outcome(const struct eo_vibration_solver *s, bool found, struct 
   result->outcome = !found ? EO_VIBRATION_NOT_CONVERGED : lost ? EO_VIBRATION_CONTACT_LOST : EO_VIBRATION_CONVERGED;
 }
 
-static void begin_result(struct eo_vibration_solver *s, const struct eo_vibration_case *load, const struct eo_cycle *cycle,
-                         struct eo_vibration *result)
+static void begin_result(struct eo_vibration_solver *s, const struct eo_vibration_case *load,
+                         const struct eo_cycle *cycle, struct eo_vibration *result)
 {
   s->spectrum.harmonics = s->harmonics;
   s->spectrum.ends = s->model.parameters.ends;
@@ -283,7 +288,8 @@ static void begin_result(struct eo_vibration_solver *s, const struct eo_vibratio
 }
 
 void eo_vibration_read_balance(struct eo_vibration_solver *s, const struct eo_vibration_case *load,
-                               const struct eo_cycle *cycle, const struct eo_balance_report *report, struct eo_vibration *result)
+                               const struct eo_cycle *cycle, const struct eo_balance_report *report,
+                               struct eo_vibration *result)
 {
   begin_result(s, load, cycle, result);
   result->iterations = report->iterations;
@@ -295,7 +301,8 @@ void eo_vibration_read_balance(struct eo_vibration_solver *s, const struct eo_vi
   }
   fill_spectrum(s, cycle, report, result);
   for (int end = 0; end < s->spectrum.ends; end++)
-    read_mesh(s, report->grid, end % report->ends, cycle, end, eo_dynamics_mesh_load(&s->model.parameters, load->torque), result);
+    read_mesh(s, report->grid, end % report->ends, cycle, end,
+              eo_dynamics_mesh_load(&s->model.parameters, load->torque), result);
   read_accelerations(s, result);
   read_bearings(s, report->grid, result);
   set_outcome(s, true, result);

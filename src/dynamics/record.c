@@ -7,7 +7,8 @@
 #include "numerics/dense.h"
 #include "numerics/fourier.h"
 
-enum eo_code eo_vibration_make_run(struct eo_integration *run, const struct eo_oscillator *o, int samples, struct eo_error *error)
+enum eo_code eo_vibration_make_run(struct eo_integration *run, const struct eo_oscillator *o, int samples,
+                                   struct eo_error *error)
 {
   *run = (struct eo_integration){0};
   run->acceleration = calloc((size_t)samples * o->n, sizeof *run->acceleration);
@@ -25,7 +26,8 @@ void eo_vibration_free_run(struct eo_integration *run)
 }
 
 /* The recorded meshes on a time grid like the harmonic balance's, and their deflections as series. */
-static void fill_grid(const struct eo_cycle *cycle, const struct eo_integration *run, int ends, struct eo_alternating *grid, double *x)
+static void fill_grid(const struct eo_cycle *cycle, const struct eo_integration *run, int ends,
+                      struct eo_alternating *grid, double *x)
 {
   for (int end = 0; end < ends; end++) {
     struct eo_time_end *e = &grid->end[end];
@@ -39,13 +41,14 @@ static void fill_grid(const struct eo_cycle *cycle, const struct eo_integration 
       e->margin_slope[i] = m->margin_slope;
     }
     eo_alternating_gate(grid, end, cycle->gated);
-    eo_alternating_transform(grid, eo_fourier_terms(grid->harmonics), e->x, x + end * eo_fourier_terms(grid->harmonics));
+    eo_alternating_transform(grid, eo_fourier_terms(grid->harmonics), e->x,
+                             x + end * eo_fourier_terms(grid->harmonics));
   }
 }
 
 /* RMS straight from the time history of the accelerations, no harmonic left out. */
-static void read_rms(const struct eo_vibration_solver *s, const struct eo_cycle *cycle, const struct eo_integration *run,
-                     int samples, struct eo_vibration *result)
+static void read_rms(const struct eo_vibration_solver *s, const struct eo_cycle *cycle,
+                     const struct eo_integration *run, int samples, struct eo_vibration *result)
 {
   const struct eo_dynamics_model *m = &s->model;
   int ends = m->oscillator.ends;
@@ -87,8 +90,8 @@ enum eo_code eo_vibration_read_run(struct eo_vibration_solver *s, const struct e
   if (code)
     return code;
   fill_grid(cycle, run, s->model.parameters.ends, grid, s->x);
-  const struct eo_balance_report report = {.converged = run->periodic, .residual = run->change, .grid = grid,
-                                           .ends = s->model.parameters.ends};
+  const struct eo_balance_report report = {
+      .converged = run->periodic, .residual = run->change, .grid = grid, .ends = s->model.parameters.ends};
   eo_vibration_read_balance(s, load, cycle, &report, result);
   result->periods = run->periods;
   if (run->periodic)

@@ -10,7 +10,14 @@
 #include "dynamics/stability.h"
 #include "numerics/fourier.h"
 
-enum { HARMONICS = 40, TERMS = 1 + 2 * HARMONICS, SAMPLES = 2048, BRANCH_HARMONICS = 20, BRANCH_SAMPLES = 1024, LEAD_PERIODS = 3 };
+enum {
+  HARMONICS = 40,
+  TERMS = 1 + 2 * HARMONICS,
+  SAMPLES = 2048,
+  BRANCH_HARMONICS = 20,
+  BRANCH_SAMPLES = 1024,
+  LEAD_PERIODS = 3
+};
 
 /* The oscillator, its law and the workspace. */
 struct setup {
@@ -29,13 +36,15 @@ static enum eo_code check_sdof(const struct eo_sdof *s, struct eo_error *error)
   if (!isfinite(s->alternating_force))
     return eo_error_set(error, EO_ERROR_INPUT, "/Fh", "The alternating force must be finite.");
   if (!(fabs(s->stiffness_share) < 1))
-    return eo_error_set(error, EO_ERROR_INPUT, "/e", "The stiffness must stay positive: |e| < 1, not %g.", s->stiffness_share);
+    return eo_error_set(error, EO_ERROR_INPUT, "/e", "The stiffness must stay positive: |e| < 1, not %g.",
+                        s->stiffness_share);
   if (!(s->frequency > 0 && isfinite(s->frequency)))
     return eo_error_set(error, EO_ERROR_INPUT, "/W", "The frequency must be positive, not %g.", s->frequency);
   return EO_OK;
 }
 
-static enum eo_code make_setup(struct setup *setup, const struct eo_sdof *s, int harmonics, int samples, struct eo_error *error)
+static enum eo_code make_setup(struct setup *setup, const struct eo_sdof *s, int harmonics, int samples,
+                               struct eo_error *error)
 {
   const double stiffness[3] = {1, s->stiffness_share, 0};
   enum eo_code code = check_sdof(s, error);
@@ -44,9 +53,15 @@ static enum eo_code make_setup(struct setup *setup, const struct eo_sdof *s, int
     code = eo_law_set_stiffness(&setup->law, 1, stiffness, 1, -1, error);
   if (!code)
     code = eo_balance_new(&setup->balance, harmonics, samples, error);
-  setup->oscillator = (struct eo_oscillator){.n = 1, .ends = 1, .damping = {2 * s->damping}, .mesh = {{1}}, .pulse = {{1}},
-                                             .load = {s->mean_force}, .shift = 1};
-  setup->cycle = (struct eo_cycle){.frequency = s->frequency, .law = {&setup->law, &setup->law},
+  setup->oscillator = (struct eo_oscillator){.n = 1,
+                                             .ends = 1,
+                                             .damping = {2 * s->damping},
+                                             .mesh = {{1}},
+                                             .pulse = {{1}},
+                                             .load = {s->mean_force},
+                                             .shift = 1};
+  setup->cycle = (struct eo_cycle){.frequency = s->frequency,
+                                   .law = {&setup->law, &setup->law},
                                    .pulse = {{.shape = EO_PULSE_COSINE, .amplitude = -s->alternating_force}}};
   return code;
 }
@@ -57,7 +72,8 @@ static void free_setup(struct setup *setup)
   eo_law_done(&setup->law);
 }
 
-static enum eo_code balance_at(struct setup *setup, bool warm, double *x, struct eo_balance_report *report, struct eo_error *error)
+static enum eo_code balance_at(struct setup *setup, bool warm, double *x, struct eo_balance_report *report,
+                               struct eo_error *error)
 {
   struct eo_harmonic harmonic[1 + HARMONICS];
   eo_condense(&setup->oscillator, setup->cycle.frequency, eo_balance_harmonics(setup->balance), false, harmonic);
@@ -103,7 +119,8 @@ static void read_response(const double *x, const struct eo_alternating *grid, st
 }
 
 /* Newton from x, then the reading and the stability of what it found. */
-static enum eo_code finish(struct setup *setup, bool warm, double *x, struct eo_sdof_response *r, struct eo_error *error)
+static enum eo_code finish(struct setup *setup, bool warm, double *x, struct eo_sdof_response *r,
+                           struct eo_error *error)
 {
   struct eo_balance_report report;
   double complex multiplier[2];
@@ -131,7 +148,8 @@ static int note_passage(void *context, const struct eo_branch_point *point)
 {
   struct passages *p = context;
   double now = point->frequency;
-  if (p->before > 0 && (p->before - p->frequency) * (now - p->frequency) <= 0 && now != p->before && p->count < EO_SDOF_MAX_FOLDS) {
+  if (p->before > 0 && (p->before - p->frequency) * (now - p->frequency) <= 0 && now != p->before &&
+      p->count < EO_SDOF_MAX_FOLDS) {
     double share = (p->frequency - p->before) / (now - p->before);
     for (int i = 0; i < p->terms; i++)
       p->x[p->count][i] = p->x_before[i] + share * (point->x[i] - p->x_before[i]);
@@ -143,7 +161,8 @@ static int note_passage(void *context, const struct eo_branch_point *point)
 }
 
 /* The branch starts where the response is small: at low frequency the alternating force vanishes. */
-static enum eo_code follow(const struct eo_sdof *sdof, double low, double high, eo_branch_visit *visit, void *context, struct eo_error *error)
+static enum eo_code follow(const struct eo_sdof *sdof, double low, double high, eo_branch_visit *visit, void *context,
+                           struct eo_error *error)
 {
   struct setup setup;
   struct eo_sdof at = *sdof;
@@ -154,7 +173,8 @@ static enum eo_code follow(const struct eo_sdof *sdof, double low, double high, 
   if (!code)
     code = balance_at(&setup, false, x, &report, error);
   if (!code && !report.converged)
-    code = eo_error_set(error, EO_ERROR_NUMERIC, "", "No periodic response was found at the frequency %g where the branch starts.", low);
+    code = eo_error_set(error, EO_ERROR_NUMERIC, "",
+                        "No periodic response was found at the frequency %g where the branch starts.", low);
   if (!code) {
     struct eo_branch_options options = eo_branch_defaults;
     enum eo_branch_end end;
@@ -162,7 +182,8 @@ static enum eo_code follow(const struct eo_sdof *sdof, double low, double high, 
     options.high = high;
     options.size = sdof->mean_force;
     options.longest_step = 0.04;
-    code = eo_branch_follow(setup.balance, &setup.oscillator, &setup.cycle, x, 1, &options, visit, context, &end, error);
+    code = eo_branch_follow(setup.balance, &setup.oscillator, &setup.cycle, x, 1, &options, visit, context, &end,
+                            error);
   }
   free_setup(&setup);
   return code;
@@ -176,7 +197,8 @@ static enum eo_code solve_by_branch(const struct eo_sdof *sdof, enum eo_sdof_sta
     return eo_error_memory(error);
   p->frequency = sdof->frequency;
   p->terms = 1 + 2 * BRANCH_HARMONICS;
-  enum eo_code code = follow(sdof, fmin(0.2, 0.5 * sdof->frequency), fmax(3, 2 * sdof->frequency), note_passage, p, error);
+  enum eo_code code = follow(sdof, fmin(0.2, 0.5 * sdof->frequency), fmax(3, 2 * sdof->frequency), note_passage, p,
+                             error);
   *response = (struct eo_sdof_response){0};
   for (int i = 0; i < p->count && !code; i++) {
     struct eo_sdof_response r;
@@ -199,7 +221,8 @@ enum eo_code eo_sdof_solve(const struct eo_sdof *sdof, enum eo_sdof_start start,
   if (!code && start == EO_SDOF_STATE)
     code = guess_from_state(&setup, state, x, error);
   if (!code)
-    code = start == EO_SDOF_STATE ? finish(&setup, true, x, &found, error) : solve_by_branch(sdof, start, &setup, &found, error);
+    code = start == EO_SDOF_STATE ? finish(&setup, true, x, &found, error)
+                                  : solve_by_branch(sdof, start, &setup, &found, error);
   free_setup(&setup);
   if (!code)
     *response = found;
@@ -232,7 +255,8 @@ static int note_fold(void *context, const struct eo_branch_point *point)
   return 0;
 }
 
-enum eo_code eo_sdof_folds(const struct eo_sdof *sdof, double low, double high, struct eo_sdof_folds *folds, struct eo_error *error)
+enum eo_code eo_sdof_folds(const struct eo_sdof *sdof, double low, double high, struct eo_sdof_folds *folds,
+                           struct eo_error *error)
 {
   struct fold_search search = {.found = {.contact_lost = NAN}};
   enum eo_code code = follow(sdof, low, high, note_fold, &search, error);

@@ -93,7 +93,8 @@ static void advance(const struct orbit *orbit, struct work *w, double h, const s
 }
 
 /* The damping force c X' is switched where the margin passes zero; a disturbed orbit passes earlier by -dX/X'. */
-static void salt(const struct orbit *orbit, struct work *w, double h, const struct mesh_slope *a, const struct mesh_slope *b)
+static void salt(const struct orbit *orbit, struct work *w, double h, const struct mesh_slope *a,
+                 const struct mesh_slope *b)
 {
   const struct eo_oscillator *o = orbit->oscillator;
   int n = o->n, columns = 2 * n;
@@ -134,13 +135,14 @@ static int by_size(const void *a, const void *b)
   return (x < y) - (x > y);
 }
 
-enum eo_code eo_floquet(const struct eo_oscillator *oscillator, const struct eo_cycle *cycle, int harmonics, const double *x,
-                        double complex *multiplier, struct eo_error *error)
+enum eo_code eo_floquet(const struct eo_oscillator *oscillator, const struct eo_cycle *cycle, int harmonics,
+                        const double *x, double complex *multiplier, struct eo_error *error)
 {
   struct orbit orbit = {oscillator, cycle, harmonics, x, 2 * M_PI / cycle->frequency};
   int size = 2 * oscillator->n, steps = choose_steps(&orbit);
   if (steps < 0)
-    return eo_error_set(error, EO_ERROR_NUMERIC, "", "The stability at %g rad/s would need too many steps.", cycle->frequency);
+    return eo_error_set(error, EO_ERROR_NUMERIC, "", "The stability at %g rad/s would need too many steps.",
+                        cycle->frequency);
   struct work *w = calloc(1, sizeof *w);
   if (!w)
     return eo_error_memory(error);

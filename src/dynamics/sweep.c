@@ -12,13 +12,15 @@ static enum eo_code check_speeds(int count, const struct eo_vibration_case *load
     return eo_error_set(error, EO_ERROR_INPUT, "", "A sweep needs at least one speed.");
   for (int i = 1; i < count; i++)
     if (!(load[i].speed > load[i - 1].speed))
-      return eo_error_set(error, EO_ERROR_INPUT, "", "The speeds of a sweep must ascend; number %d is %g rad/s after %g.", i, load[i].speed,
+      return eo_error_set(error, EO_ERROR_INPUT, "",
+                          "The speeds of a sweep must ascend; number %d is %g rad/s after %g.", i, load[i].speed,
                           load[i - 1].speed);
   return EO_OK;
 }
 
 enum eo_code eo_vibration_follow(struct eo_vibration_solver *s, int count, const struct eo_vibration_case *load,
-                                 const struct eo_vibration *alone, int direction, struct eo_vibration *result, struct eo_error *error)
+                                 const struct eo_vibration *alone, int direction, struct eo_vibration *result,
+                                 struct eo_error *error)
 {
   enum eo_code code = check_speeds(count, load, error);
   bool separated = false, holds = false; /* at the neighbour; the solver holds its solution */
@@ -38,8 +40,8 @@ enum eo_code eo_vibration_follow(struct eo_vibration_solver *s, int count, const
   return code;
 }
 
-static enum eo_code solve_alone(struct eo_vibration_solver *s, int count, const struct eo_vibration_case *load, struct eo_vibration *alone,
-                                const struct eo_progress *progress, struct eo_error *error)
+static enum eo_code solve_alone(struct eo_vibration_solver *s, int count, const struct eo_vibration_case *load,
+                                struct eo_vibration *alone, const struct eo_progress *progress, struct eo_error *error)
 {
   enum eo_code code = EO_OK;
   for (int i = 0; i < count && !code; i++) {
@@ -96,15 +98,16 @@ static int note_point(void *context, const struct eo_branch_point *p)
   return t->count >= t->capacity;
 }
 
-enum eo_code eo_vibration_trace(struct eo_vibration_solver *s, const struct eo_vibration_case *load, double low, double high,
-                                int direction, int capacity, struct eo_trace_point *point, int *count,
+enum eo_code eo_vibration_trace(struct eo_vibration_solver *s, const struct eo_vibration_case *load, double low,
+                                double high, int direction, int capacity, struct eo_trace_point *point, int *count,
                                 enum eo_branch_end *end, struct eo_error *error)
 {
   struct eo_vibration start;
   struct eo_cycle cycle;
   if (!(low > 0 && low < high && load->speed >= low && load->speed <= high) || capacity < 1)
-    return eo_error_set(error, EO_ERROR_INPUT, "", "A branch is traced within 0 < low <= speed <= high, not %g, %g, %g rad/s.", low,
-                        load->speed, high);
+    return eo_error_set(error, EO_ERROR_INPUT, "",
+                        "A branch is traced within 0 < low <= speed <= high, not %g, %g, %g rad/s.", low, load->speed,
+                        high);
   *count = 0;
   enum eo_code code = eo_vibration_solve(s, load, EO_START_COLD, &start, error);
   if (!code)
@@ -117,7 +120,8 @@ enum eo_code eo_vibration_trace(struct eo_vibration_solver *s, const struct eo_v
   options.high = high * load->pinion_teeth * (1 + 1e-12);
   options.max_points = capacity;
   options.size = fmax(start.deflection_swing[0], start.force_mean[0] / s->model.oscillator.shift);
-  code = eo_branch_follow(s->balance, &s->model.oscillator, &cycle, s->x, direction, &options, note_point, &trace, end, error);
+  code = eo_branch_follow(s->balance, &s->model.oscillator, &cycle, s->x, direction, &options, note_point, &trace, end,
+                          error);
   s->solved = false;
   *count = trace.count;
   return code;

@@ -14,10 +14,10 @@ struct eo_vibration_solver {
   struct eo_harmonic *harmonic; /* [1 + harmonics], condensed at: */
   double condensed_frequency, condensed_torque;
   enum eo_impact_in_dynamics condensed_impact;
-  double *x;                    /* [2][1 + 2 harmonics] last solution, valid when solved */
+  double *x; /* [2][1 + 2 harmonics] last solution, valid when solved */
   bool solved;
-  double *motion[2];            /* [1 + 2 EO_MAX_HARMONICS] prescribed motion of each end */
-  struct eo_spectrum spectrum;  /* owns deflection[0], of which the other arrays are parts */
+  double *motion[2];           /* [1 + 2 EO_MAX_HARMONICS] prescribed motion of each end */
+  struct eo_spectrum spectrum; /* owns deflection[0], of which the other arrays are parts */
 };
 
 /* Checks the case, loads the model and fills the cycle. */
@@ -31,7 +31,8 @@ void eo_vibration_free_run(struct eo_integration *run);
 
 /* Spectrum and result from the harmonic balance, and from a recorded period. */
 void eo_vibration_read_balance(struct eo_vibration_solver *solver, const struct eo_vibration_case *load,
-                               const struct eo_cycle *cycle, const struct eo_balance_report *report, struct eo_vibration *result);
+                               const struct eo_cycle *cycle, const struct eo_balance_report *report,
+                               struct eo_vibration *result);
 enum eo_code eo_vibration_read_run(struct eo_vibration_solver *solver, const struct eo_vibration_case *load,
                                    const struct eo_cycle *cycle, const struct eo_integration *run, int samples,
                                    struct eo_vibration *result, struct eo_error *error);

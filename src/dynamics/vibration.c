@@ -84,28 +84,42 @@ enum eo_code eo_vibration_set_model(struct eo_vibration_solver *s, const struct 
   return EO_OK;
 }
 
-const struct eo_dynamics_model *eo_vibration_model(const struct eo_vibration_solver *s) { return &s->model; }
-const struct eo_spectrum *eo_vibration_spectrum(const struct eo_vibration_solver *s) { return &s->spectrum; }
+const struct eo_dynamics_model *eo_vibration_model(const struct eo_vibration_solver *s)
+{
+  return &s->model;
+}
+const struct eo_spectrum *eo_vibration_spectrum(const struct eo_vibration_solver *s)
+{
+  return &s->spectrum;
+}
 
 static enum eo_code check_pulse(const struct eo_pulse *p, struct eo_error *error)
 {
-  if (!isfinite(p->amplitude) || !isfinite(p->start) || (p->shape == EO_PULSE_HALF_SINE && !(p->duration > 0 && p->duration <= 1)))
-    return eo_error_set(error, EO_ERROR_INPUT, "", "An impact needs a finite force and a duration of up to one mesh period, not %g of it.", p->duration);
+  if (!isfinite(p->amplitude) || !isfinite(p->start) ||
+      (p->shape == EO_PULSE_HALF_SINE && !(p->duration > 0 && p->duration <= 1)))
+    return eo_error_set(error, EO_ERROR_INPUT, "",
+                        "An impact needs a finite force and a duration of up to one mesh period, not %g of it.",
+                        p->duration);
   return EO_OK;
 }
 
-static enum eo_code check_case(const struct eo_vibration_solver *s, const struct eo_vibration_case *load, struct eo_error *error)
+static enum eo_code check_case(const struct eo_vibration_solver *s, const struct eo_vibration_case *load,
+                               struct eo_error *error)
 {
   if (!s->model.freedoms)
     return eo_error_set(error, EO_ERROR_NUMERIC, "", "The vibration solver has no model yet.");
   if (!(load->torque > 0 && isfinite(load->torque)))
-    return eo_error_set(error, EO_ERROR_INPUT, "/load_cases/torque_Nm", "The torque must be positive, not %g N m.", load->torque);
+    return eo_error_set(error, EO_ERROR_INPUT, "/load_cases/torque_Nm", "The torque must be positive, not %g N m.",
+                        load->torque);
   if (!(load->speed > 0 && isfinite(load->speed)))
-    return eo_error_set(error, EO_ERROR_INPUT, "/load_cases/speed_rpm", "The speed must be positive, not %g rad/s.", load->speed);
+    return eo_error_set(error, EO_ERROR_INPUT, "/load_cases/speed_rpm", "The speed must be positive, not %g rad/s.",
+                        load->speed);
   if (load->pinion_teeth < 1)
-    return eo_error_set(error, EO_ERROR_INPUT, "/gear_pair/pinion_teeth", "A pinion cannot have %d teeth.", load->pinion_teeth);
+    return eo_error_set(error, EO_ERROR_INPUT, "/gear_pair/pinion_teeth", "A pinion cannot have %d teeth.",
+                        load->pinion_teeth);
   if (!isfinite(load->phase_right) || load->axial_order < 0 || load->axial_order > EO_MAX_HARMONICS)
-    return eo_error_set(error, EO_ERROR_INPUT, "", "Phases must be finite and the axial motion at most %d harmonics.", EO_MAX_HARMONICS);
+    return eo_error_set(error, EO_ERROR_INPUT, "", "Phases must be finite and the axial motion at most %d harmonics.",
+                        EO_MAX_HARMONICS);
   enum eo_code code = EO_OK;
   for (int end = 0; end < s->model.parameters.ends && !code; end++)
     if (!load->law[end] || load->law[end]->rows < 1)
@@ -115,8 +129,8 @@ static enum eo_code check_case(const struct eo_vibration_solver *s, const struct
   return code;
 }
 
-enum eo_code eo_vibration_prepare(struct eo_vibration_solver *s, const struct eo_vibration_case *load, struct eo_cycle *cycle,
-                                  struct eo_error *error)
+enum eo_code eo_vibration_prepare(struct eo_vibration_solver *s, const struct eo_vibration_case *load,
+                                  struct eo_cycle *cycle, struct eo_error *error)
 {
   enum eo_code code = check_case(s, load, error);
   if (code)
@@ -180,8 +194,8 @@ static void static_state(const struct eo_vibration_solver *s, const struct eo_cy
 }
 
 /* A few dozen periods of time integration lead Newton to a stable periodic state if there is one. */
-static enum eo_code rescue(struct eo_vibration_solver *s, const struct eo_cycle *cycle, struct eo_balance_report *report,
-                           struct eo_error *error)
+static enum eo_code rescue(struct eo_vibration_solver *s, const struct eo_cycle *cycle,
+                           struct eo_balance_report *report, struct eo_error *error)
 {
   struct eo_integration run;
   double state[2 * EO_MAX_COORDINATES];
@@ -194,7 +208,8 @@ static enum eo_code rescue(struct eo_vibration_solver *s, const struct eo_cycle 
   static_state(s, cycle, state);
   /* an integration that cannot go on leaves the case not converged: an outcome */
   if (eo_integrate(o, cycle, &options, state, &run, NULL, &reason) == EO_OK) {
-    int order = s->harmonics < RESCUE_SAMPLES / 2 ? s->harmonics : RESCUE_SAMPLES / 2 - 1, terms = eo_fourier_terms(s->harmonics);
+    int order = s->harmonics < RESCUE_SAMPLES / 2 ? s->harmonics : RESCUE_SAMPLES / 2 - 1,
+        terms = eo_fourier_terms(s->harmonics);
     double sample[RESCUE_SAMPLES];
     memset(s->x, 0, sizeof *s->x * 2 * terms);
     for (int end = 0; end < o->ends; end++) {
@@ -241,8 +256,8 @@ enum eo_code eo_vibration_integrate(struct eo_vibration_solver *s, const struct 
   if (!options)
     options = &eo_integration_defaults;
   if (options->samples <= 2 * s->harmonics)
-    return eo_error_set(error, EO_ERROR_INPUT, "/resolution/harmonics", "%d samples of a period cannot carry %d harmonics.",
-                        options->samples, s->harmonics);
+    return eo_error_set(error, EO_ERROR_INPUT, "/resolution/harmonics",
+                        "%d samples of a period cannot carry %d harmonics.", options->samples, s->harmonics);
   if ((code = eo_vibration_make_run(&run, &s->model.oscillator, options->samples, error)))
     return code;
   condense(s, load, cycle.frequency);

@@ -1,6 +1,6 @@
 /* The periodic vibration of one load case: the lumped model under its mesh laws, solved by harmonic balance or by time
-   integration, and everything that is read off it. One workspace per thread; results do not depend on what it solved before,
-   except for a start from the last solution, which the caller asks for. */
+   integration, and everything that is read off it. One workspace per thread; results do not depend on what it solved
+   before, except for a start from the last solution, which the caller asks for. */
 #ifndef EASEOFF_DYNAMICS_VIBRATION_H
 #define EASEOFF_DYNAMICS_VIBRATION_H
 
@@ -11,16 +11,17 @@
 
 /* phi = speed teeth t / (2 pi): the mesh phase of the left end; the right end is at phi + phase_right. */
 struct eo_vibration_case {
-  double torque;                /* total on the pinion, N m, > 0 */
-  double speed;                 /* of the pinion, rad/s, > 0 */
+  double torque; /* total on the pinion, N m, > 0 */
+  double speed;  /* of the pinion, rad/s, > 0 */
   int pinion_teeth;
-  const struct eo_law *law[2];  /* [end], borrowed */
+  const struct eo_law *law[2]; /* [end], borrowed */
   double phase_right;
-  bool gated;                   /* mesh damping only in contact */
+  bool gated; /* mesh damping only in contact */
   enum eo_impact_in_dynamics impact;
-  struct eo_pulse pulse[2];     /* [end], N along the transverse line of action */
-  int axial_order;              /* of the prescribed axial float of the pinion, paper's eps_z(phi); 0: none */
-  const double *axial_motion;   /* [1 + 2 order] series, m; only its rate and curvature act: the mean is absorbed by the float */
+  struct eo_pulse pulse[2]; /* [end], N along the transverse line of action */
+  int axial_order;          /* of the prescribed axial float of the pinion, paper's eps_z(phi); 0: none */
+  const double
+      *axial_motion; /* [1 + 2 order] series, m; only its rate and curvature act: the mean is absorbed by the float */
 };
 
 enum eo_vibration_start {
@@ -34,33 +35,33 @@ enum eo_vibration_outcome {
   EO_VIBRATION_NOT_CONVERGED, /* none was found; the numbers below are all zero */
 };
 
-/* The zero modes are no part of any number here: neither torques nor meshes nor consistent impacts excite them. The paper's
-   impacts do when they differ between the ends, because they leave out the axial component of the force; their mean would
-   let the pinion drift away and their alternating part rattle it along its screw, so both are dropped with the modes.
-   Accelerations in m/s2, [reading] as enum eo_reading; RMS over a mesh period without the mean. */
+/* The zero modes are no part of any number here: neither torques nor meshes nor consistent impacts excite them. The
+   paper's impacts do when they differ between the ends, because they leave out the axial component of the force; their
+   mean would let the pinion drift away and their alternating part rattle it along its screw, so both are dropped with
+   the modes. Accelerations in m/s2, [reading] as enum eo_reading; RMS over a mesh period without the mean. */
 struct eo_vibration {
   enum eo_vibration_outcome outcome;
   int ends, harmonics;
-  double frequency;                     /* angular mesh frequency, rad/s */
-  int iterations;                       /* Newton's */
-  int periods;                          /* of the time integration, if it ran */
-  double residual;                      /* of the force balance / mean load; change over the last period for time integration */
-  double rms[EO_READINGS][2];           /* left, right */
-  double rms_pair[EO_READINGS];         /* mean of the ends' RMS */
-  double rms_of_mean[EO_READINGS];      /* RMS of the ends' mean */
-  double freedom_rms[EO_MAX_FREEDOMS];  /* accelerations of the coordinates */
-  double freedom_mean[EO_MAX_FREEDOMS]; /* mean displacement, zero modes at zero, m or rad */
-  double deflection_mean[2], deflection_swing[2]; /* X, mean and peak to peak, m */
+  double frequency;             /* angular mesh frequency, rad/s */
+  int iterations;               /* Newton's */
+  int periods;                  /* of the time integration, if it ran */
+  double residual;              /* of the force balance / mean load; change over the last period for time integration */
+  double rms[EO_READINGS][2];   /* left, right */
+  double rms_pair[EO_READINGS]; /* mean of the ends' RMS */
+  double rms_of_mean[EO_READINGS];                  /* RMS of the ends' mean */
+  double freedom_rms[EO_MAX_FREEDOMS];              /* accelerations of the coordinates */
+  double freedom_mean[EO_MAX_FREEDOMS];             /* mean displacement, zero modes at zero, m or rad */
+  double deflection_mean[2], deflection_swing[2];   /* X, mean and peak to peak, m */
   double force_mean[2], force_min[2], force_max[2]; /* dynamic mesh force, damping included, N */
-  double dynamic_factor[2];             /* force_max / mean mesh load of the torque */
-  double contact_loss[2];               /* share of the cycle out of contact */
-  bool back_contact;                    /* back flanks touch */
-  double bearing_force_mean[2][2];      /* radial [member][end], signed along y, N */
-  double bearing_force_max[2][2];       /* largest size over the period */
-  double axial_force_mean[2], axial_force_max[2]; /* gear thrust bearings [end]; with one end: gear, pinion */
-  double power_supplied;                /* by the varying mesh (law and impacts) to the vibration, W */
-  double power_dissipated;              /* in mesh, bearings and groove, W; equal in the periodic state */
-  double impact_drift;                  /* mean impact load on the zero modes, left out like all motion in them, N/sqrt(kg) */
+  double dynamic_factor[2];                         /* force_max / mean mesh load of the torque */
+  double contact_loss[2];                           /* share of the cycle out of contact */
+  bool back_contact;                                /* back flanks touch */
+  double bearing_force_mean[2][2];                  /* radial [member][end], signed along y, N */
+  double bearing_force_max[2][2];                   /* largest size over the period */
+  double axial_force_mean[2], axial_force_max[2];   /* gear thrust bearings [end]; with one end: gear, pinion */
+  double power_supplied;                            /* by the varying mesh (law and impacts) to the vibration, W */
+  double power_dissipated;                          /* in mesh, bearings and groove, W; equal in the periodic state */
+  double impact_drift; /* mean impact load on the zero modes, left out like all motion in them, N/sqrt(kg) */
 };
 
 /* Complex amplitudes over the mesh harmonics: value = a_0 + Re sum a_k exp(2 pi i k phi). */
@@ -101,19 +102,20 @@ enum eo_code eo_vibration_stability(struct eo_vibration_solver *solver, const st
 const struct eo_spectrum *eo_vibration_spectrum(const struct eo_vibration_solver *solver);
 
 enum eo_channel {
-  EO_CHANNEL_DEFLECTION,        /* X, m */
-  EO_CHANNEL_FORCE,             /* dynamic mesh force, N */
-  EO_CHANNEL_NORMAL,            /* accelerations, m/s2 */
+  EO_CHANNEL_DEFLECTION, /* X, m */
+  EO_CHANNEL_FORCE,      /* dynamic mesh force, N */
+  EO_CHANNEL_NORMAL,     /* accelerations, m/s2 */
   EO_CHANNEL_TRANSVERSE,
   EO_CHANNEL_ROTATIONAL,
-  EO_CHANNEL_PINION_BEARING,    /* radial bearing forces, N */
+  EO_CHANNEL_PINION_BEARING, /* radial bearing forces, N */
   EO_CHANNEL_GEAR_BEARING,
-  EO_CHANNEL_GEAR_THRUST,       /* axial bearing force of the gear, N */
+  EO_CHANNEL_GEAR_THRUST, /* axial bearing force of the gear, N */
   EO_CHANNELS
 };
 
 /* Harmonics 0..spectrum.harmonics of one channel of one end. */
-void eo_vibration_orders(const struct eo_vibration_solver *solver, enum eo_channel channel, int end, double complex *order);
+void eo_vibration_orders(const struct eo_vibration_solver *solver, enum eo_channel channel, int end,
+                         double complex *order);
 
 /* history[end][channel][samples] at phases i / samples. */
 void eo_vibration_histories(const struct eo_vibration_solver *solver, int samples, double *const *const *history);

@@ -77,7 +77,8 @@ static bool is_robust(const struct eo_design *design)
   return design->objective.robust != EO_ROBUST_OFF && design->objective.scenarios > 0;
 }
 
-static enum eo_code find_unmodified(struct eo_analysis *a, const struct eo_design *bare, int want, struct eo_error *error)
+static enum eo_code find_unmodified(struct eo_analysis *a, const struct eo_design *bare, int want,
+                                    struct eo_error *error)
 {
   const struct eo_evaluation *r;
   size_t bytes = sizeof *a->raw * (size_t)a->cases;
@@ -109,9 +110,11 @@ static void copy_reference(struct eo_analysis *a)
   memcpy(a->raw_unmodified, a->raw, bytes * (size_t)a->scenarios);
 }
 
-static enum eo_code run_both(struct eo_analysis *a, const struct eo_design *design, const struct eo_design *bare, int want, struct eo_error *error)
+static enum eo_code run_both(struct eo_analysis *a, const struct eo_design *design, const struct eo_design *bare,
+                             int want, struct eo_error *error)
 {
-  bool own_reference = is_unmodified(design), known = a->known_root >= a->root && memcmp(a->known, bare, sizeof *bare) == 0;
+  bool own_reference = is_unmodified(design),
+       known = a->known_root >= a->root && memcmp(a->known, bare, sizeof *bare) == 0;
   double start = eo_clock_milliseconds();
   enum eo_code code = known || own_reference ? EO_OK : find_unmodified(a, bare, want, error);
   a->unmodified_ms = known || own_reference ? 0 : eo_clock_milliseconds() - start;

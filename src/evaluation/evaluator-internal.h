@@ -1,4 +1,5 @@
-/* The inside of an evaluator, shared by the files that make up one evaluation: contact, vibration, the order, storage. */
+/* The inside of an evaluator, shared by the files that make up one evaluation: contact, vibration, the order, storage.
+ */
 #ifndef EASEOFF_EVALUATION_EVALUATOR_INTERNAL_H
 #define EASEOFF_EVALUATION_EVALUATOR_INTERNAL_H
 
@@ -14,27 +15,28 @@ struct eo_evaluator {
     double in_plane, out_of_plane, factor;
     int cases;
     double force[EO_MAX_LOAD_CASES];
-  } known[2];                              /* [end]: of what is kept; cases 0: nothing is */
-  bool fresh[2];                           /* [end]: to be solved in this run; the other end is as the last run left it */
-  bool rooted[2];                          /* [end]: its root stress belongs to what is kept */
-  int threads;                             /* 1 or 2 */
+  } known[2];     /* [end]: of what is kept; cases 0: nothing is */
+  bool fresh[2];  /* [end]: to be solved in this run; the other end is as the last run left it */
+  bool rooted[2]; /* [end]: its root stress belongs to what is kept */
+  int threads;    /* 1 or 2 */
   struct eo_loaded_workspace *contact, *second_contact; /* second_...: of the second thread; NULL until asked for */
-  struct eo_elastic *bodies;               /* NULL: rigid */
-  struct eo_shafts shafts;                 /* those of the bodies */
-  struct eo_loaded_gaps bent;              /* of one end on bodies that stay as they are */
-  struct eo_loaded_end spare[2];           /* [end]: for the compliance band */
-  struct eo_loaded_end *table;             /* [EO_EVALUATOR_TABLE_LOADS] of the table law, one end at a time; NULL until asked for */
-  double *table_rows;                      /* [EO_EVALUATOR_TABLE_LOADS][positions] */
-  struct eo_root_workspace *root[2];       /* [thread]; NULL until asked for */
-  struct eo_root_peak *peaks;              /* [member][teeth][most_cases * 2]; NULL until asked for */
+  struct eo_elastic *bodies;                            /* NULL: rigid */
+  struct eo_shafts shafts;                              /* those of the bodies */
+  struct eo_loaded_gaps bent;                           /* of one end on bodies that stay as they are */
+  struct eo_loaded_end spare[2];                        /* [end]: for the compliance band */
+  struct eo_loaded_end
+      *table;         /* [EO_EVALUATOR_TABLE_LOADS] of the table law, one end at a time; NULL until asked for */
+  double *table_rows; /* [EO_EVALUATOR_TABLE_LOADS][positions] */
+  struct eo_root_workspace *root[2]; /* [thread]; NULL until asked for */
+  struct eo_root_peak *peaks;        /* [member][teeth][most_cases * 2]; NULL until asked for */
   struct eo_vibration_solver *vibration;
   int vibration_harmonics;
-  struct eo_law (*law)[2];                 /* [most_cases][end] */
+  struct eo_law (*law)[2]; /* [most_cases][end] */
   struct vibration_problem {
     struct eo_dynamics_parameters parameters;
     struct eo_vibration_case load;
-    bool solvable;                         /* false: no mesh law, or no converged contact to make one from */
-  } *problem;                              /* [most_cases], as last solved */
+    bool solvable; /* false: no mesh law, or no converged contact to make one from */
+  } * problem;     /* [most_cases], as last solved */
   struct eo_evaluation result;
 };
 
@@ -52,8 +54,10 @@ bool eo_evaluator_copies_end(const struct eo_evaluator *e, const struct eo_desig
 /* The contact half, in the order in which eo_evaluator_run() calls it. factor: of the compliance. */
 enum eo_code eo_evaluator_fit_bodies(struct eo_evaluator *e, const struct eo_shafts *shafts, struct eo_error *error);
 void eo_evaluator_set_keys(struct eo_evaluator *e, const struct eo_design *design, const struct eo_scenario *scenario);
-enum eo_code eo_evaluator_solve_contact(struct eo_evaluator *e, const struct eo_design *design, double factor, struct eo_error *error);
-void eo_evaluator_find_impacts(struct eo_evaluator *e, const struct eo_design *design, double speed_factor, double factor);
+enum eo_code eo_evaluator_solve_contact(struct eo_evaluator *e, const struct eo_design *design, double factor,
+                                        struct eo_error *error);
+void eo_evaluator_find_impacts(struct eo_evaluator *e, const struct eo_design *design, double speed_factor,
+                               double factor);
 
 /* Both ends of one load case on elastic bodies, from their solution on rigid ones. */
 void eo_evaluator_bend_bodies(struct eo_evaluator *e, const struct eo_design *design, double force, double factor,
@@ -63,9 +67,9 @@ void eo_evaluator_bend_bodies(struct eo_evaluator *e, const struct eo_design *de
 const struct eo_gap_field *eo_evaluator_field_of(struct eo_evaluator *e, const struct eo_case_result *c, int end);
 
 /* The vibration half: every load case, then again at other compliances. */
-enum eo_code eo_evaluator_solve_dynamics(struct eo_evaluator *e, const struct eo_design *design, double speed_factor, double factor, int want,
-                                         struct eo_error *error);
-enum eo_code eo_evaluator_find_band(struct eo_evaluator *e, const struct eo_design *design, double speed_factor, double factor,
-                                    struct eo_error *error);
+enum eo_code eo_evaluator_solve_dynamics(struct eo_evaluator *e, const struct eo_design *design, double speed_factor,
+                                         double factor, int want, struct eo_error *error);
+enum eo_code eo_evaluator_find_band(struct eo_evaluator *e, const struct eo_design *design, double speed_factor,
+                                    double factor, struct eo_error *error);
 
 #endif

@@ -13,9 +13,9 @@ enum { ROOT_STEP = 2, ROOT_BATCH = 8 }; /* BATCH: ends at a time, so that the st
 /* Root stress of several ends: an item is a tooth of a member under a batch of them. */
 struct roots {
   struct eo_evaluator *evaluator;
-  int ends, teeth, first;                               /* ends: to compute; first: tooth */
+  int ends, teeth, first; /* ends: to compute; first: tooth */
   struct eo_end_result *end[EO_MAX_LOAD_CASES * 2];
-  struct eo_root_peak *peak;                            /* [member][teeth][ends] */
+  struct eo_root_peak *peak; /* [member][teeth][ends] */
 };
 
 static void find_tooth(const struct roots *roots, int thread, int item)
@@ -59,13 +59,16 @@ static enum eo_code make_root_workspaces(struct eo_evaluator *e, struct eo_error
   enum eo_code code = EO_OK;
   eo_contact_grid_pairs(e->pair->grid, range);
   for (int thread = 0; thread < e->threads && !code; thread++)
-    code = e->root[thread] ? EO_OK : eo_root_workspace_new(&e->root[thread], e->pair->grid, modes, ROOT_STEP, ends, error);
-  if (!code && !e->peaks && !(e->peaks = malloc(sizeof *e->peaks * (size_t)(range[1] - range[0] + 1) * 4 * (size_t)e->most_cases)))
+    code = e->root[thread] ? EO_OK
+                           : eo_root_workspace_new(&e->root[thread], e->pair->grid, modes, ROOT_STEP, ends, error);
+  if (!code && !e->peaks &&
+      !(e->peaks = malloc(sizeof *e->peaks * (size_t)(range[1] - range[0] + 1) * 4 * (size_t)e->most_cases)))
     code = eo_error_memory(error);
   return code;
 }
 
-static enum eo_code prepare_roots(struct roots *roots, struct eo_evaluator *e, const struct eo_design *design, struct eo_error *error)
+static enum eo_code prepare_roots(struct roots *roots, struct eo_evaluator *e, const struct eo_design *design,
+                                  struct eo_error *error)
 {
   int range[2];
   eo_contact_grid_pairs(e->pair->grid, range);
@@ -88,8 +91,8 @@ static void finish_roots(const struct roots *roots, const struct eo_design *desi
   for (int member = 0; member < 2; member++) {
     struct eo_root root = eo_flexibility_root(e->pair->flexibility, member);
     for (int i = 0; i < roots->ends; i++)
-      eo_root_history_finish(&roots->end[i]->root[member], &root, e->pair->grid, ROOT_STEP, roots->peak + member * roots->teeth * roots->ends + i,
-                             roots->ends);
+      eo_root_history_finish(&roots->end[i]->root[member], &root, e->pair->grid, ROOT_STEP,
+                             roots->peak + member * roots->teeth * roots->ends + i, roots->ends);
   }
   for (int k = 0; k < r->cases; k++)
     for (int member = 0; member < 2; member++)
@@ -97,7 +100,8 @@ static void finish_roots(const struct roots *roots, const struct eo_design *desi
         struct eo_root_history *history = &r->load_case[k].end[end].root[member];
         if (end == EO_RIGHT && eo_evaluator_copies_end(e, design))
           copy_history(&r->load_case[k].end[EO_LEFT].root[member], history);
-        history->phases = roots->teeth * ((r->positions + ROOT_STEP - 1) / ROOT_STEP); /* of those that are as they were, too */
+        history->phases = roots->teeth *
+                          ((r->positions + ROOT_STEP - 1) / ROOT_STEP); /* of those that are as they were, too */
       }
   for (int end = 0; end < r->ends; end++)
     e->rooted[end] = !(end == EO_RIGHT && r->equal_ends);
@@ -108,8 +112,11 @@ static void collect_objectives(struct eo_evaluation *r, bool root)
   for (int k = 0; k < r->cases; k++) {
     const struct eo_case_result *c = &r->load_case[k];
     struct eo_objective_case *o = &r->objective[k];
-    *o = (struct eo_objective_case){.peak_to_peak = c->peak_to_peak, .rms = c->vibration.rms_pair[EO_READING_NORMAL], .root_stress = root ? 0 : NAN,
-      .failed = c->contact_failures > 0 || c->vibration.outcome == EO_VIBRATION_NOT_CONVERGED};
+    *o = (struct eo_objective_case){.peak_to_peak = c->peak_to_peak,
+                                    .rms = c->vibration.rms_pair[EO_READING_NORMAL],
+                                    .root_stress = root ? 0 : NAN,
+                                    .failed = c->contact_failures > 0 ||
+                                              c->vibration.outcome == EO_VIBRATION_NOT_CONVERGED};
     for (int end = 0; end < r->ends; end++) {
       o->impact = fmax(o->impact, c->end[end].impact.force);
       o->contact_pressure = fmax(o->contact_pressure, c->end[end].max_pressure);
@@ -148,8 +155,8 @@ static void set_cases(struct eo_evaluator *e, const struct eo_design *design)
   r->cases = design->load_cases;
   for (int k = 0; k < r->cases; k++) {
     r->load_case[k].load_case = design->load_case[k];
-    r->load_case[k].force = design->load_case[k].torque /
-                            (r->ends * e->pair->geometry.base_radius[EO_PINION] * cos(e->pair->geometry.base_helix_angle));
+    r->load_case[k].force = design->load_case[k].torque / (r->ends * e->pair->geometry.base_radius[EO_PINION] *
+                                                           cos(e->pair->geometry.base_helix_angle));
     for (int reading = 0; reading < EO_READINGS; reading++)
       r->load_case[k].band[reading][0] = r->load_case[k].band[reading][1] = NAN;
     r->load_case[k].body_iterations = 0;
@@ -175,8 +182,8 @@ static enum eo_code fit_vibration(struct eo_evaluator *e, int harmonics, struct 
   return EO_OK;
 }
 
-static enum eo_code solve_static(struct eo_evaluator *e, const struct eo_design *design, const struct eo_scenario *scenario,
-                                 struct eo_error *error)
+static enum eo_code solve_static(struct eo_evaluator *e, const struct eo_design *design,
+                                 const struct eo_scenario *scenario, struct eo_error *error)
 {
   enum eo_code code = eo_evaluator_fit_bodies(e, &design->shafts, error);
   if (code)
@@ -198,8 +205,8 @@ static void find_impacts(struct eo_evaluator *e, const struct eo_design *design,
 
 static const struct eo_scenario nominal_scenario = {NAN, NAN, 1, 1};
 
-enum eo_code eo_evaluator_contact(struct eo_evaluator *e, const struct eo_design *design, const struct eo_evaluation **evaluation,
-                                  struct eo_error *error)
+enum eo_code eo_evaluator_contact(struct eo_evaluator *e, const struct eo_design *design,
+                                  const struct eo_evaluation **evaluation, struct eo_error *error)
 {
   enum eo_code code = solve_static(e, design, &nominal_scenario, error);
   if (code)
@@ -209,7 +216,8 @@ enum eo_code eo_evaluator_contact(struct eo_evaluator *e, const struct eo_design
   return EO_OK;
 }
 
-/* What the loads lead to: the way to the vibration is one item, each tooth of the root stress another, so that two threads are busy alike. */
+/* What the loads lead to: the way to the vibration is one item, each tooth of the root stress another, so that two
+   threads are busy alike. */
 struct consequences {
   struct eo_evaluator *evaluator;
   const struct eo_design *design;
@@ -224,7 +232,8 @@ static enum eo_code find_vibration(const struct consequences *c, struct eo_error
   struct eo_evaluator *e = c->evaluator;
   find_impacts(e, c->design, c->scenario);
   double start = eo_clock_milliseconds();
-  enum eo_code code = eo_evaluator_solve_dynamics(e, c->design, c->scenario->speed, c->scenario->compliance, c->want, error);
+  enum eo_code code = eo_evaluator_solve_dynamics(e, c->design, c->scenario->speed, c->scenario->compliance, c->want,
+                                                  error);
   if (!code && c->want & EO_WANT_CURVES)
     code = find_modes(e, error);
   e->result.dynamics_ms = eo_clock_milliseconds() - start;
@@ -255,8 +264,9 @@ static enum eo_code find_consequences(struct consequences *c, bool root, struct 
   return code;
 }
 
-enum eo_code eo_evaluator_run(struct eo_evaluator *e, const struct eo_design *design, const struct eo_scenario *scenario, int want,
-                              const struct eo_evaluation **evaluation, struct eo_error *error)
+enum eo_code eo_evaluator_run(struct eo_evaluator *e, const struct eo_design *design,
+                              const struct eo_scenario *scenario, int want, const struct eo_evaluation **evaluation,
+                              struct eo_error *error)
 {
   const struct eo_scenario *s = scenario ? scenario : &nominal_scenario;
   struct eo_evaluation *r = &e->result;
@@ -293,10 +303,12 @@ const struct eo_gap_field *eo_evaluator_field(const struct eo_evaluator *e, int 
 
 int eo_evaluator_scenarios(const struct eo_design *design)
 {
-  return design->objective.robust == EO_ROBUST_OFF || design->objective.scenarios == 0 ? 1 : design->objective.scenarios;
+  return design->objective.robust == EO_ROBUST_OFF || design->objective.scenarios == 0 ? 1
+                                                                                       : design->objective.scenarios;
 }
 
-enum eo_code eo_evaluator_raw(struct eo_evaluator *e, const struct eo_design *design, struct eo_objective_case *raw, struct eo_error *error)
+enum eo_code eo_evaluator_raw(struct eo_evaluator *e, const struct eo_design *design, struct eo_objective_case *raw,
+                              struct eo_error *error)
 {
   int scenarios = eo_evaluator_scenarios(design);
   bool nominal = design->objective.robust == EO_ROBUST_OFF || design->objective.scenarios == 0;
@@ -310,14 +322,16 @@ enum eo_code eo_evaluator_raw(struct eo_evaluator *e, const struct eo_design *de
   return EO_OK;
 }
 
-void eo_evaluator_combine(const struct eo_design *design, const struct eo_geometry *geometry, const struct eo_objective_case *raw,
-                          const struct eo_objective_case *unmodified, struct eo_objective_value *value)
+void eo_evaluator_combine(const struct eo_design *design, const struct eo_geometry *geometry,
+                          const struct eo_objective_case *raw, const struct eo_objective_case *unmodified,
+                          struct eo_objective_value *value)
 {
   int scenarios = eo_evaluator_scenarios(design), cases = design->load_cases;
   bool outside = eo_objective_relief_outside(&design->modification, geometry->rack_bottom, geometry->rack_top);
   struct eo_objective_value sum = {0}, one;
   for (int s = 0; s < scenarios; s++) {
-    eo_objective_value(&design->objective, cases, design->load_case, raw + s * cases, unmodified + s * cases, outside, &one);
+    eo_objective_value(&design->objective, cases, design->load_case, raw + s * cases, unmodified + s * cases, outside,
+                       &one);
     bool worst = design->objective.robust == EO_ROBUST_WORST;
     if (s == 0 || (worst && one.fitness < sum.fitness)) {
       sum = one;
@@ -336,5 +350,6 @@ void eo_evaluator_combine(const struct eo_design *design, const struct eo_geomet
     value->sums.f[i] /= scenarios;
   value->objective /= scenarios;
   value->violation /= scenarios;
-  value->fitness = value->sums.failed ? EO_FITNESS_WORST : 1 / value->objective - design->objective.penalty * value->violation;
+  value->fitness = value->sums.failed ? EO_FITNESS_WORST
+                                      : 1 / value->objective - design->objective.penalty * value->violation;
 }

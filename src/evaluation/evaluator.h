@@ -9,38 +9,39 @@
 #include "evaluation/pair.h"
 #include "objective/objective.h"
 
-/* Raised with every change after which the same design gives other numbers: what a history keeps belongs to one version. */
+/* Raised with every change after which the same design gives other numbers: what a history keeps belongs to one
+   version. */
 enum { EO_EVALUATOR_VERSION = 2 };
 
 /* What to compute beyond the objectives. */
 enum {
-  EO_WANT_ROOT = 1,    /* root stress (computed anyway when it is constrained) */
-  EO_WANT_BAND = 2,    /* RMS at 0.9 and 1.1 times the compliance */
-  EO_WANT_CURVES = 4,  /* histories and orders of the vibration */
+  EO_WANT_ROOT = 1,   /* root stress (computed anyway when it is constrained) */
+  EO_WANT_BAND = 2,   /* RMS at 0.9 and 1.1 times the compliance */
+  EO_WANT_CURVES = 4, /* histories and orders of the vibration */
 };
 
 enum { EO_CURVE_CHANNELS = EO_CHANNELS };
 
 struct eo_end_result {
   struct eo_loaded_end loaded;
-  double *unloaded;            /* [positions] Z0, m, normal */
-  double *stiffness;           /* [positions] P / (Z - Z0), N/m, normal; Z0 with the bodies as the load holds them */
-  double datum;                /* smallest gap anywhere on the flank, m */
-  double loaded_datum;         /* the same with the bodies as the load holds them */
+  double *unloaded;    /* [positions] Z0, m, normal */
+  double *stiffness;   /* [positions] P / (Z - Z0), N/m, normal; Z0 with the bodies as the load holds them */
+  double datum;        /* smallest gap anywhere on the flank, m */
+  double loaded_datum; /* the same with the bodies as the load holds them */
   struct eo_deflection deflection; /* of elastic bodies, mean over the mesh cycle; 0: rigid */
   struct eo_impact impact;
-  double max_pressure;         /* Pa */
-  double max_line_load;        /* N/m */
-  double edge_share;           /* largest share of P on tip-edge points over the cycle */
-  double transmission_peak;    /* peak-to-peak LTE of this end alone, transverse, m */
-  struct eo_root_history root[2]; /* [member]; empty unless computed */
-  double *curve[EO_CURVE_CHANNELS];            /* [samples] each; with EO_WANT_CURVES */
-  double complex *order[EO_CURVE_CHANNELS];    /* [harmonics + 1] each; with EO_WANT_CURVES */
+  double max_pressure;                      /* Pa */
+  double max_line_load;                     /* N/m */
+  double edge_share;                        /* largest share of P on tip-edge points over the cycle */
+  double transmission_peak;                 /* peak-to-peak LTE of this end alone, transverse, m */
+  struct eo_root_history root[2];           /* [member]; empty unless computed */
+  double *curve[EO_CURVE_CHANNELS];         /* [samples] each; with EO_WANT_CURVES */
+  double complex *order[EO_CURVE_CHANNELS]; /* [harmonics + 1] each; with EO_WANT_CURVES */
 };
 
 struct eo_case_result {
   struct eo_load_case load_case;
-  double force;                /* P per end, normal, N */
+  double force; /* P per end, normal, N */
   struct eo_end_result end[2];
   double *transmission;        /* [positions] LTE of the pair, transverse, m */
   double peak_to_peak, mean;   /* of it, m */
@@ -54,46 +55,57 @@ struct eo_case_result {
 struct eo_evaluation {
   int ends, cases, positions, samples, harmonics;
   bool equal_ends;
-  struct eo_case_result *load_case;      /* [cases] */
-  struct eo_objective_case *objective;   /* [cases] */
-  struct eo_dynamics_modes modes;        /* with the mean mesh stiffness of the heaviest share */
-  double static_ms, impact_ms, dynamics_ms, root_ms; /* where the time went; root: of both threads, beside impact and dynamics */
+  struct eo_case_result *load_case;    /* [cases] */
+  struct eo_objective_case *objective; /* [cases] */
+  struct eo_dynamics_modes modes;      /* with the mean mesh stiffness of the heaviest share */
+  double static_ms, impact_ms, dynamics_ms,
+      root_ms; /* where the time went; root: of both threads, beside impact and dynamics */
 };
 
 struct eo_evaluator;
 
 /* The pair is borrowed. most_cases: load cases it has room for. */
-enum eo_code eo_evaluator_new(struct eo_evaluator **evaluator, const struct eo_pair *pair, int most_cases, struct eo_error *error);
+enum eo_code eo_evaluator_new(struct eo_evaluator **evaluator, const struct eo_pair *pair, int most_cases,
+                              struct eo_error *error);
 void eo_evaluator_free(struct eo_evaluator *evaluator);
 
-/* Threads that one evaluation may use, 1 (as made) or 2: both ends at once, then root stress beside the vibration. The results do not
-   depend on it. */
+/* Threads that one evaluation may use, 1 (as made) or 2: both ends at once, then root stress beside the vibration. The
+   results do not depend on it. */
 enum eo_code eo_evaluator_use_threads(struct eo_evaluator *evaluator, int threads, struct eo_error *error);
 
-/* Evaluates alignment, supports, load cases, modification and dynamics of a resolved design. scenario: NULL for the nominal one.
-   *evaluation stays valid until the next run. Errors: EO_ERROR_INPUT (supports), memory; what does not converge is an outcome. */
-enum eo_code eo_evaluator_run(struct eo_evaluator *evaluator, const struct eo_design *design, const struct eo_scenario *scenario, int want,
-                              const struct eo_evaluation **evaluation, struct eo_error *error);
+/* Evaluates alignment, supports, load cases, modification and dynamics of a resolved design. scenario: NULL for the
+ *nominal one. evaluation stays valid until the next run. Errors: EO_ERROR_INPUT (supports), memory; what does not
+ *converge is an outcome. */
+enum eo_code eo_evaluator_run(struct eo_evaluator *evaluator, const struct eo_design *design,
+                              const struct eo_scenario *scenario, int want, const struct eo_evaluation **evaluation,
+                              struct eo_error *error);
 
 /* The static half alone: loaded contact and entering impact, no vibration. */
-enum eo_code eo_evaluator_contact(struct eo_evaluator *evaluator, const struct eo_design *design, const struct eo_evaluation **evaluation,
-                                  struct eo_error *error);
+enum eo_code eo_evaluator_contact(struct eo_evaluator *evaluator, const struct eo_design *design,
+                                  const struct eo_evaluation **evaluation, struct eo_error *error);
 
-/* Raw values over the scenarios that count (the nominal one, or those of a robust objective): raw[eo_evaluator_scenarios()][cases]. */
+/* Raw values over the scenarios that count (the nominal one, or those of a robust objective):
+   raw[eo_evaluator_scenarios()][cases]. */
 int eo_evaluator_scenarios(const struct eo_design *design);
-enum eo_code eo_evaluator_raw(struct eo_evaluator *evaluator, const struct eo_design *design, struct eo_objective_case *raw, struct eo_error *error);
+enum eo_code eo_evaluator_raw(struct eo_evaluator *evaluator, const struct eo_design *design,
+                              struct eo_objective_case *raw, struct eo_error *error);
 
-/* J and fitness from raw values of the design and of the same design without modification: nominal, mean or worst over the scenarios. */
-void eo_evaluator_combine(const struct eo_design *design, const struct eo_geometry *geometry, const struct eo_objective_case *raw,
-                          const struct eo_objective_case *unmodified, struct eo_objective_value *value);
+/* J and fitness from raw values of the design and of the same design without modification: nominal, mean or worst over
+   the scenarios. */
+void eo_evaluator_combine(const struct eo_design *design, const struct eo_geometry *geometry,
+                          const struct eo_objective_case *raw, const struct eo_objective_case *unmodified,
+                          struct eo_objective_value *value);
 
-/* The vibration problem of a load case as the last evaluation (without a compliance band) solved it, for sweeps over speed. The
-   laws in load are borrowed, valid until the next run. False: the loaded contact gave no mesh law; that case has no periodic state. */
-bool eo_evaluator_vibration(const struct eo_evaluator *evaluator, int load_case, struct eo_dynamics_parameters *parameters,
-                            struct eo_vibration_case *load);
+/* The vibration problem of a load case as the last evaluation (without a compliance band) solved it, for sweeps over
+   speed. The laws in load are borrowed, valid until the next run. False: the loaded contact gave no mesh law; that case
+   has no periodic state. */
+bool eo_evaluator_vibration(const struct eo_evaluator *evaluator, int load_case,
+                            struct eo_dynamics_parameters *parameters, struct eo_vibration_case *load);
 
-/* Impacts of one load case as pulses of the equations of motion. impact[2], pulse[2]: [end]; speed: of the pinion, rad/s. */
-void eo_evaluator_pulses(const struct eo_pair *pair, const struct eo_impact *impact, double speed, struct eo_pulse *pulse);
+/* Impacts of one load case as pulses of the equations of motion. impact[2], pulse[2]: [end]; speed: of the pinion,
+   rad/s. */
+void eo_evaluator_pulses(const struct eo_pair *pair, const struct eo_impact *impact, double speed,
+                         struct eo_pulse *pulse);
 
 /* The gap field of an end on rigid bodies in the last evaluation: borrowed, valid until the next run. */
 const struct eo_gap_field *eo_evaluator_field(const struct eo_evaluator *evaluator, int end);

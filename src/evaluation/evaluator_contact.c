@@ -25,8 +25,8 @@ static void copy_end(const struct eo_contact_grid *grid, struct eo_loaded_end *t
 static void load_end(struct eo_evaluator *e, struct eo_loaded_workspace *workspace, int end)
 {
   const struct eo_end_key *key = &e->known[end];
-  eo_gap_field_init(&e->field[end], &e->pair->geometry, &key->flank[EO_PINION], &key->flank[EO_GEAR], end, key->in_plane, key->out_of_plane,
-                    e->pair->pivot[end], e->pair->grid->corner);
+  eo_gap_field_init(&e->field[end], &e->pair->geometry, &key->flank[EO_PINION], &key->flank[EO_GEAR], end,
+                    key->in_plane, key->out_of_plane, e->pair->pivot[end], e->pair->grid->corner);
   eo_loaded_gaps_set(&e->gaps[end], e->pair->grid, &e->field[end]);
   struct eo_evaluation *r = &e->result;
   double force[EO_MAX_LOAD_CASES];
@@ -47,22 +47,28 @@ int eo_evaluator_stagger(const struct eo_design *design, int positions)
 
 static double axial_stiffness(const struct eo_alignment *alignment)
 {
-  return alignment->pinion_axial == EO_AXIAL_FIXED ? INFINITY
-         : alignment->pinion_axial == EO_AXIAL_SPRING ? alignment->pinion_axial_stiffness : 0;
+  return alignment->pinion_axial == EO_AXIAL_FIXED    ? INFINITY
+         : alignment->pinion_axial == EO_AXIAL_SPRING ? alignment->pinion_axial_stiffness
+                                                      : 0;
 }
 
 static bool same_key(const struct eo_end_key *a, const struct eo_end_key *b)
 {
-  return a->cases == b->cases && a->in_plane == b->in_plane && a->out_of_plane == b->out_of_plane && a->factor == b->factor &&
-         eo_modification_equal(&a->flank[0], &b->flank[0]) && eo_modification_equal(&a->flank[1], &b->flank[1]) &&
+  return a->cases == b->cases && a->in_plane == b->in_plane && a->out_of_plane == b->out_of_plane &&
+         a->factor == b->factor && eo_modification_equal(&a->flank[0], &b->flank[0]) &&
+         eo_modification_equal(&a->flank[1], &b->flank[1]) &&
          memcmp(a->force, b->force, sizeof *a->force * (size_t)a->cases) == 0;
 }
 
 /* Notes what an end is about to be solved for; false when that is what is kept. */
-static bool is_news(struct eo_evaluator *e, const struct eo_modification *m, int end, double in_plane, double out_of_plane, double factor)
+static bool is_news(struct eo_evaluator *e, const struct eo_modification *m, int end, double in_plane,
+                    double out_of_plane, double factor)
 {
-  struct eo_end_key key = {.flank = {m->flank[EO_PINION][end], m->flank[EO_GEAR][end]}, .in_plane = in_plane, .out_of_plane = out_of_plane,
-                           .factor = factor, .cases = e->result.cases};
+  struct eo_end_key key = {.flank = {m->flank[EO_PINION][end], m->flank[EO_GEAR][end]},
+                           .in_plane = in_plane,
+                           .out_of_plane = out_of_plane,
+                           .factor = factor,
+                           .cases = e->result.cases};
   for (int k = 0; k < key.cases; k++)
     key.force[k] = e->result.load_case[k].force;
   bool news = !same_key(&key, &e->known[end]);
@@ -75,8 +81,10 @@ void eo_evaluator_set_keys(struct eo_evaluator *e, const struct eo_design *desig
 {
   const struct eo_modification *m = &design->modification;
   double in_plane = isnan(scenario->in_plane) ? design->alignment.shaft_angle_in_plane : scenario->in_plane;
-  double out_of_plane = isnan(scenario->out_of_plane) ? design->alignment.shaft_angle_out_of_plane : scenario->out_of_plane;
-  e->result.equal_ends = e->result.ends == 2 && eo_evaluator_same_flanks(m) && in_plane == 0 && out_of_plane == 0 && !e->bodies;
+  double out_of_plane = isnan(scenario->out_of_plane) ? design->alignment.shaft_angle_out_of_plane
+                                                      : scenario->out_of_plane;
+  e->result.equal_ends = e->result.ends == 2 && eo_evaluator_same_flanks(m) && in_plane == 0 && out_of_plane == 0 &&
+                         !e->bodies;
   for (int end = 0; end < e->result.ends; end++) {
     bool copied = end == EO_RIGHT && e->result.equal_ends;
     e->fresh[end] = !copied && is_news(e, m, end, in_plane, out_of_plane, scenario->compliance);
@@ -105,10 +113,11 @@ enum eo_code eo_evaluator_fit_bodies(struct eo_evaluator *e, const struct eo_sha
 }
 
 /* From the solution on rigid bodies to that on elastic ones. */
-void eo_evaluator_bend_bodies(struct eo_evaluator *e, const struct eo_design *design, double force, double factor, struct eo_loaded_end both[2],
-                        struct eo_elastic_report *report)
+void eo_evaluator_bend_bodies(struct eo_evaluator *e, const struct eo_design *design, double force, double factor,
+                              struct eo_loaded_end both[2], struct eo_elastic_report *report)
 {
-  struct eo_elastic_case load = {force, factor, axial_stiffness(&design->alignment), eo_evaluator_stagger(design, e->pair->grid->positions)};
+  struct eo_elastic_case load = {force, factor, axial_stiffness(&design->alignment),
+                                 eo_evaluator_stagger(design, e->pair->grid->positions)};
   eo_elastic_solve(e->bodies, e->contact, e->gaps, &load, both, report);
   both[EO_LEFT].failures += report->failures;
 }
@@ -237,7 +246,8 @@ static enum eo_code load_ends(struct eo_evaluator *e, bool final, struct eo_erro
   return code;
 }
 
-enum eo_code eo_evaluator_solve_contact(struct eo_evaluator *e, const struct eo_design *design, double factor, struct eo_error *error)
+enum eo_code eo_evaluator_solve_contact(struct eo_evaluator *e, const struct eo_design *design, double factor,
+                                        struct eo_error *error)
 {
   struct eo_evaluation *r = &e->result;
   const struct eo_contact_grid *grid = e->pair->grid;
@@ -269,7 +279,8 @@ enum eo_code eo_evaluator_solve_contact(struct eo_evaluator *e, const struct eo_
   return EO_OK;
 }
 
-void eo_evaluator_find_impacts(struct eo_evaluator *e, const struct eo_design *design, double speed_factor, double factor)
+void eo_evaluator_find_impacts(struct eo_evaluator *e, const struct eo_design *design, double speed_factor,
+                               double factor)
 {
   struct eo_evaluation *r = &e->result;
   for (int k = 0; k < r->cases; k++)
@@ -278,8 +289,8 @@ void eo_evaluator_find_impacts(struct eo_evaluator *e, const struct eo_design *d
       if (end == EO_RIGHT && eo_evaluator_copies_end(e, design))
         c->end[end].impact = c->end[EO_LEFT].impact;
       else
-        eo_impact_find(&c->end[end].impact, e->pair->grid, eo_evaluator_field_of(e, c, end), e->pair->kernel, &e->pair->impact,
-                       c->end[end].loaded.approach, c->load_case.speed * speed_factor, factor);
+        eo_impact_find(&c->end[end].impact, e->pair->grid, eo_evaluator_field_of(e, c, end), e->pair->kernel,
+                       &e->pair->impact, c->end[end].loaded.approach, c->load_case.speed * speed_factor, factor);
     }
   for (int end = 0; end < r->ends; end++)
     eo_evaluator_field_of(e, NULL, end);

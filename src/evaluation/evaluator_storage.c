@@ -65,7 +65,8 @@ static enum eo_code init_storage(struct eo_evaluator *e, struct eo_error *error)
   return code ? code : eo_loaded_workspace_new(&e->contact, grid, error);
 }
 
-enum eo_code eo_evaluator_new(struct eo_evaluator **evaluator, const struct eo_pair *pair, int most_cases, struct eo_error *error)
+enum eo_code eo_evaluator_new(struct eo_evaluator **evaluator, const struct eo_pair *pair, int most_cases,
+                              struct eo_error *error)
 {
   struct eo_evaluator *e = calloc(1, sizeof *e);
   if (!e)

@@ -5,12 +5,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Loads of the table law over P: close together where contact lines grow from nothing and about P, where the straight pieces between them
-   have to have the slope of the curve. */
-static const double TABLE_LOAD[EO_EVALUATOR_TABLE_LOADS] = {1e-4, 0.03, 0.1, 0.25, 0.5, 0.75, 0.92, 1, 1.08, 1.3, 1.8, 3};
+/* Loads of the table law over P: close together where contact lines grow from nothing and about P, where the straight
+   pieces between them have to have the slope of the curve. */
+static const double TABLE_LOAD[EO_EVALUATOR_TABLE_LOADS] = {1e-4, 0.03, 0.1,  0.25, 0.5, 0.75,
+                                                            0.92, 1,    1.08, 1.3,  1.8, 3};
 
 /* The gaps at which an end is loaded: elastic bodies stay as the load case bends them. */
-static const struct eo_loaded_gaps *gaps_of(struct eo_evaluator *e, const struct eo_design *design, const struct eo_case_result *c, int end)
+static const struct eo_loaded_gaps *gaps_of(struct eo_evaluator *e, const struct eo_design *design,
+                                            const struct eo_case_result *c, int end)
 {
   if (!e->bodies)
     return &e->gaps[eo_evaluator_kept_at(e, end)];
@@ -20,8 +22,9 @@ static const struct eo_loaded_gaps *gaps_of(struct eo_evaluator *e, const struct
 }
 
 /* F(X, phi) from loaded contact at many loads. */
-static enum eo_code set_table_law(struct eo_evaluator *e, const struct eo_design *design, struct eo_law *law, const struct eo_case_result *c,
-                                  int end, double factor, int order, struct eo_error *error)
+static enum eo_code set_table_law(struct eo_evaluator *e, const struct eo_design *design, struct eo_law *law,
+                                  const struct eo_case_result *c, int end, double factor, int order,
+                                  struct eo_error *error)
 {
   int n = e->pair->grid->positions;
   double load[EO_EVALUATOR_TABLE_LOADS];
@@ -38,14 +41,16 @@ static enum eo_code set_table_law(struct eo_evaluator *e, const struct eo_design
         return code;
     }
   }
-  eo_loaded_solve(e->contact, e->pair->grid, gaps_of(e, design, c, end), factor, EO_EVALUATOR_TABLE_LOADS, load, e->table);
+  eo_loaded_solve(e->contact, e->pair->grid, gaps_of(e, design, c, end), factor, EO_EVALUATOR_TABLE_LOADS, load,
+                  e->table);
   for (int i = 0; i < EO_EVALUATOR_TABLE_LOADS; i++)
     memcpy(e->table_rows + i * n, e->table[i].approach, sizeof(double) * (size_t)n);
   return eo_law_set_table(law, EO_EVALUATOR_TABLE_LOADS, n, load, e->table_rows, order, 0, error);
 }
 
-static enum eo_code set_law(struct eo_evaluator *e, const struct eo_design *design, struct eo_law *law, const struct eo_case_result *c, int end,
-                            const struct eo_loaded_end *loaded, double factor, struct eo_error *error)
+static enum eo_code set_law(struct eo_evaluator *e, const struct eo_design *design, struct eo_law *law,
+                            const struct eo_case_result *c, int end, const struct eo_loaded_end *loaded, double factor,
+                            struct eo_error *error)
 {
   const struct eo_resolution *resolution = &design->resolution;
   int n = e->pair->grid->positions, order = resolution->te_harmonics < n / 2 ? resolution->te_harmonics : n / 2 - 1;
@@ -61,14 +66,17 @@ static enum eo_code set_law(struct eo_evaluator *e, const struct eo_design *desi
   return eo_law_set_tangent(law, n, loaded->approach, loaded->tangent, c->force, order, back, error);
 }
 
-void eo_evaluator_pulses(const struct eo_pair *pair, const struct eo_impact *impact, double speed, struct eo_pulse *pulse)
+void eo_evaluator_pulses(const struct eo_pair *pair, const struct eo_impact *impact, double speed,
+                         struct eo_pulse *pulse)
 {
   double period = 2 * M_PI / (speed * pair->geometry.teeth[EO_PINION]);
   for (int end = 0; end < pair->gear_pair.ends; end++) {
     pulse[end] = (struct eo_pulse){.shape = EO_PULSE_NONE};
     if (impact[end].touched && impact[end].force > 0)
-      pulse[end] = (struct eo_pulse){.shape = EO_PULSE_HALF_SINE, .amplitude = impact[end].force, .start = impact[end].start,
-        .duration = fmin(1, impact[end].duration / period)};
+      pulse[end] = (struct eo_pulse){.shape = EO_PULSE_HALF_SINE,
+                                     .amplitude = impact[end].force,
+                                     .start = impact[end].start,
+                                     .duration = fmin(1, impact[end].duration / period)};
   }
 }
 
@@ -81,8 +89,9 @@ static bool carries_throughout(const struct eo_loaded_end *end, int positions)
   return carries;
 }
 
-static enum eo_code vibrate(struct eo_evaluator *e, const struct eo_design *design, int k, double speed_factor, double factor,
-                            const struct eo_loaded_end *loaded[2], struct eo_vibration *vibration, struct eo_error *error)
+static enum eo_code vibrate(struct eo_evaluator *e, const struct eo_design *design, int k, double speed_factor,
+                            double factor, const struct eo_loaded_end *loaded[2], struct eo_vibration *vibration,
+                            struct eo_error *error)
 {
   struct eo_case_result *c = &e->result.load_case[k];
   struct eo_dynamics_parameters parameters;
@@ -90,11 +99,15 @@ static enum eo_code vibrate(struct eo_evaluator *e, const struct eo_design *desi
   double stiffness = eo_periodic_mean(n, loaded[0]->tangent);
   if (ends == 2)
     stiffness = (stiffness + eo_periodic_mean(n, loaded[1]->tangent)) / 2;
-  struct eo_vibration_case load = {.torque = c->load_case.torque, .speed = c->load_case.speed * speed_factor,
-    .pinion_teeth = e->pair->geometry.teeth[EO_PINION], .phase_right = -design->alignment.stagger, .gated = true,
-    .impact = design->resolution.impact_in_dynamics};
-  enum eo_code code = eo_dynamics_parameters_init(&parameters, &e->pair->geometry, &design->gear_pair, &design->material, &design->supports,
-                                                  ends == 2 && !eo_evaluator_same_flanks(&design->modification), stiffness, error);
+  struct eo_vibration_case load = {.torque = c->load_case.torque,
+                                   .speed = c->load_case.speed * speed_factor,
+                                   .pinion_teeth = e->pair->geometry.teeth[EO_PINION],
+                                   .phase_right = -design->alignment.stagger,
+                                   .gated = true,
+                                   .impact = design->resolution.impact_in_dynamics};
+  enum eo_code code = eo_dynamics_parameters_init(
+      &parameters, &e->pair->geometry, &design->gear_pair, &design->material, &design->supports,
+      ends == 2 && !eo_evaluator_same_flanks(&design->modification), stiffness, error);
   if (!code)
     code = eo_vibration_set_model(e->vibration, &parameters, error);
   bool lawful = carries_throughout(loaded[0], n) && carries_throughout(loaded[ends - 1], n);
@@ -119,14 +132,15 @@ static enum eo_code vibrate(struct eo_evaluator *e, const struct eo_design *desi
 
 static void read_curves(struct eo_evaluator *e, struct eo_case_result *c)
 {
-  eo_vibration_histories(e->vibration, EO_EVALUATOR_SAMPLES, (double *const *const[]){c->end[EO_LEFT].curve, c->end[EO_RIGHT].curve});
+  eo_vibration_histories(e->vibration, EO_EVALUATOR_SAMPLES,
+                         (double *const *const[]){c->end[EO_LEFT].curve, c->end[EO_RIGHT].curve});
   for (int end = 0; end < e->result.ends; end++)
     for (int channel = 0; channel < EO_CURVE_CHANNELS; channel++)
       eo_vibration_orders(e->vibration, (enum eo_channel)channel, end, c->end[end].order[channel]);
 }
 
-enum eo_code eo_evaluator_solve_dynamics(struct eo_evaluator *e, const struct eo_design *design, double speed_factor, double factor, int want,
-                                   struct eo_error *error)
+enum eo_code eo_evaluator_solve_dynamics(struct eo_evaluator *e, const struct eo_design *design, double speed_factor,
+                                         double factor, int want, struct eo_error *error)
 {
   enum eo_code code = EO_OK;
   for (int k = 0; k < e->result.cases && !code; k++) {
@@ -148,7 +162,8 @@ enum eo_code eo_evaluator_solve_dynamics(struct eo_evaluator *e, const struct eo
 }
 
 /* RMS at other compliances: contact and dynamics again, one load case at a time. */
-enum eo_code eo_evaluator_find_band(struct eo_evaluator *e, const struct eo_design *design, double speed_factor, double factor, struct eo_error *error)
+enum eo_code eo_evaluator_find_band(struct eo_evaluator *e, const struct eo_design *design, double speed_factor,
+                                    double factor, struct eo_error *error)
 {
   struct eo_evaluation *r = &e->result;
   enum eo_code code = EO_OK;
@@ -167,7 +182,8 @@ enum eo_code eo_evaluator_find_band(struct eo_evaluator *e, const struct eo_desi
         eo_evaluator_bend_bodies(e, design, c->force, scaled, e->spare, &(struct eo_elastic_report){0});
       code = vibrate(e, design, k, speed_factor, scaled, loaded, &vibration, error);
       for (int reading = 0; reading < EO_READINGS; reading++)
-        c->band[reading][side] = code || vibration.outcome == EO_VIBRATION_NOT_CONVERGED ? NAN : vibration.rms_pair[reading];
+        c->band[reading][side] = code || vibration.outcome == EO_VIBRATION_NOT_CONVERGED ? NAN
+                                                                                         : vibration.rms_pair[reading];
     }
   return code;
 }

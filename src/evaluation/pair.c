@@ -7,16 +7,16 @@
 #include <stdlib.h>
 #include <string.h>
 
-static enum eo_code prepare(struct eo_pair *pair, const struct eo_pair_options *options, const struct eo_progress *progress,
-                            struct eo_error *error)
+static enum eo_code prepare(struct eo_pair *pair, const struct eo_pair_options *options,
+                            const struct eo_progress *progress, struct eo_error *error)
 {
   struct eo_flexibility_settings settings = eo_flexibility_settings_of(&pair->resolution);
   struct eo_contact_grid_settings grid = options->grid ? *options->grid : eo_contact_grid_default(&pair->resolution);
   enum eo_code code = EO_OK;
   pair->kernel = options->kernel;
   if (!pair->kernel.evaluate) {
-    code = eo_flexibility_prepare(&pair->geometry, &pair->gear_pair, &pair->material, &settings, options->cache_directory, progress,
-                                  &pair->flexibility, error);
+    code = eo_flexibility_prepare(&pair->geometry, &pair->gear_pair, &pair->material, &settings,
+                                  options->cache_directory, progress, &pair->flexibility, error);
     if (code)
       return code;
     pair->kernel = eo_flexibility_kernel(pair->flexibility);
@@ -24,7 +24,8 @@ static enum eo_code prepare(struct eo_pair *pair, const struct eo_pair_options *
       code = eo_root_modes_new(&pair->root[member], pair->flexibility, member, error);
   }
   if (!code)
-    code = eo_contact_grid_new(&pair->grid, &pair->geometry, &pair->material, &grid, options->phase, pair->kernel, progress, error);
+    code = eo_contact_grid_new(&pair->grid, &pair->geometry, &pair->material, &grid, options->phase, pair->kernel,
+                               progress, error);
   for (int side = 0; side < 2 && !code; side++)
     pair->grid->corner[side].at_radius = options->corner_at_radius;
   return code;
@@ -48,10 +49,13 @@ enum eo_code eo_pair_new(struct eo_pair **result, const struct eo_design *design
     eo_pair_free(pair);
     return code;
   }
-  pair->impact = (struct eo_impact_settings){.patch = design->resolution.impact_patch, .stations = options->impact_stations};
+  pair->impact = (struct eo_impact_settings){.patch = design->resolution.impact_patch,
+                                             .stations = options->impact_stations};
   eo_impact_inertia(&pair->geometry, &pair->material, pair->impact.inertia);
   for (int end = 0; end < 2; end++)
-    pair->pivot[end] = options->own_pivots || pair->gear_pair.ends == 1 ? 0 : (pair->geometry.face_width + pair->gear_pair.groove_width) / 2;
+    pair->pivot[end] = options->own_pivots || pair->gear_pair.ends == 1
+                           ? 0
+                           : (pair->geometry.face_width + pair->gear_pair.groove_width) / 2;
   pair->seconds = (1e-3 * eo_clock_milliseconds()) - start;
   *result = pair;
   return EO_OK;
@@ -73,7 +77,8 @@ bool eo_pair_serves(const struct eo_pair *pair, const struct eo_design *design)
   const struct eo_resolution *a = &pair->resolution, *b = &design->resolution;
   return memcmp(&pair->gear_pair, &design->gear_pair, sizeof pair->gear_pair) == 0 &&
          memcmp(&pair->material, &design->material, sizeof pair->material) == 0 && a->positions == b->positions &&
-         a->cells_per_line == b->cells_per_line && a->tip_edge_contact == b->tip_edge_contact && a->sector_teeth == b->sector_teeth &&
-         a->neighbour_coupling == b->neighbour_coupling && a->layers == b->layers && a->flank_rows == b->flank_rows &&
-         a->fillet_elements == b->fillet_elements && a->impact_patch == b->impact_patch;
+         a->cells_per_line == b->cells_per_line && a->tip_edge_contact == b->tip_edge_contact &&
+         a->sector_teeth == b->sector_teeth && a->neighbour_coupling == b->neighbour_coupling &&
+         a->layers == b->layers && a->flank_rows == b->flank_rows && a->fillet_elements == b->fillet_elements &&
+         a->impact_patch == b->impact_patch;
 }

@@ -1,5 +1,5 @@
-/* A gear pair made ready for evaluation: everything that micro-geometry, load and speed do not change. Constant once made; shared by
-   every thread. */
+/* A gear pair made ready for evaluation: everything that micro-geometry, load and speed do not change. Constant once
+   made; shared by every thread. */
 #ifndef EASEOFF_EVALUATION_PAIR_H
 #define EASEOFF_EVALUATION_PAIR_H
 
@@ -13,33 +13,35 @@ struct eo_pair {
   struct eo_gear_pair gear_pair;
   struct eo_material material;
   struct eo_resolution resolution;
-  struct eo_flexibility *flexibility;   /* NULL with a foreign kernel */
+  struct eo_flexibility *flexibility; /* NULL with a foreign kernel */
   struct eo_kernel kernel;
   struct eo_contact_grid *grid;
-  struct eo_root_modes *root[2];        /* [member]; NULL with a foreign kernel */
+  struct eo_root_modes *root[2]; /* [member]; NULL with a foreign kernel */
 
   struct eo_impact_settings impact;
-  double pivot[2];                      /* [end]: mid face from the pivot of the shaft angle errors, m */
-  double seconds;                       /* wall time of the preparation */
+  double pivot[2]; /* [end]: mid face from the pivot of the shaft angle errors, m */
+  double seconds;  /* wall time of the preparation */
 };
 
 /* How to prepare otherwise than a design says: reference cases bring their own compliance and discretisation. */
 struct eo_pair_options {
-  const char *cache_directory;                   /* NULL: keep nothing on disk */
-  struct eo_kernel kernel;                       /* .evaluate NULL: finite elements */
-  const struct eo_contact_grid_settings *grid;   /* NULL: of the resolution */
-  const double *phase;                           /* [grid->positions] c, m; NULL: equal steps */
-  int impact_stations;                           /* see struct eo_impact_settings */
-  bool corner_at_radius;                         /* see eo_corner_gap_at_radius() */
-  bool own_pivots;                               /* shaft angle errors about each end's mid face */
+  const char *cache_directory;                 /* NULL: keep nothing on disk */
+  struct eo_kernel kernel;                     /* .evaluate NULL: finite elements */
+  const struct eo_contact_grid_settings *grid; /* NULL: of the resolution */
+  const double *phase;                         /* [grid->positions] c, m; NULL: equal steps */
+  int impact_stations;                         /* see struct eo_impact_settings */
+  bool corner_at_radius;                       /* see eo_corner_gap_at_radius() */
+  bool own_pivots;                             /* shaft angle errors about each end's mid face */
 };
 
-/* Uses gear_pair, material and resolution of a resolved design. Errors: of the geometry (EO_ERROR_INPUT), flexibility, memory, cancelled. */
+/* Uses gear_pair, material and resolution of a resolved design. Errors: of the geometry (EO_ERROR_INPUT), flexibility,
+   memory, cancelled. */
 enum eo_code eo_pair_new(struct eo_pair **pair, const struct eo_design *design, const struct eo_pair_options *options,
                          const struct eo_progress *progress, struct eo_error *error);
 void eo_pair_free(struct eo_pair *pair);
 
-/* True when the pair serves this design as it is (same gear pair, material and the parts of the resolution that preparation uses). */
+/* True when the pair serves this design as it is (same gear pair, material and the parts of the resolution that
+   preparation uses). */
 bool eo_pair_serves(const struct eo_pair *pair, const struct eo_design *design);
 
 #endif

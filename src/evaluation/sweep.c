@@ -14,15 +14,15 @@ struct problem {
   struct eo_vibration_case load; /* laws are those below */
   struct eo_law law[2];
   struct eo_impact impact[2];
-  bool solvable;                 /* false: there is no mesh law */
+  bool solvable; /* false: there is no mesh law */
 };
 
 /* One thread's own. */
 struct worker {
-  struct eo_design *design;      /* with one load case */
+  struct eo_design *design; /* with one load case */
   struct eo_evaluator *evaluator;
   struct eo_vibration_solver *solver;
-  int model;                     /* problem whose model the solver holds; -1: none */
+  int model; /* problem whose model the solver holds; -1: none */
 };
 
 struct job {
@@ -30,9 +30,9 @@ struct job {
   const struct eo_pair *pair;
   const struct eo_design *design;
   int threads;
-  struct worker *worker;         /* [threads] */
-  struct problem *problem;       /* [variant][torque] */
-  struct eo_vibration *alone;    /* [variant][torque][speed]: every point on its own */
+  struct worker *worker;      /* [threads] */
+  struct problem *problem;    /* [variant][torque] */
+  struct eo_vibration *alone; /* [variant][torque][speed]: every point on its own */
 };
 
 /* ---- plan ---- */
@@ -41,9 +41,11 @@ static enum eo_code check_axis(int count, const double *value, const char *what,
 {
   for (int i = 0; i < count; i++)
     if (!(value[i] > 0 && isfinite(value[i])))
-      return eo_error_set(error, EO_ERROR_INPUT, "", "A %s must be positive; number %d of the sweep is %g.", what, i + 1, value[i]);
+      return eo_error_set(error, EO_ERROR_INPUT, "", "A %s must be positive; number %d of the sweep is %g.", what,
+                          i + 1, value[i]);
     else if (i && !(value[i] > value[i - 1]))
-      return eo_error_set(error, EO_ERROR_INPUT, "", "Each %s of a sweep must be larger than the one before; number %d is not.", what, i + 1);
+      return eo_error_set(error, EO_ERROR_INPUT, "",
+                          "Each %s of a sweep must be larger than the one before; number %d is not.", what, i + 1);
   return EO_OK;
 }
 
@@ -54,7 +56,8 @@ static enum eo_code check_plan(const struct eo_sweep_plan *plan, struct eo_error
     code = check_axis(plan->speeds, plan->speed, "speed", error);
   double points = fmax(plan->torques, 1) * fmax(plan->speeds, 1);
   if (!code && points > EO_SWEEP_MOST_POINTS)
-    code = eo_error_set(error, EO_ERROR_INPUT, "", "%.0f points are more than a sweep may have (%d).", points, EO_SWEEP_MOST_POINTS);
+    code = eo_error_set(error, EO_ERROR_INPUT, "", "%.0f points are more than a sweep may have (%d).", points,
+                        EO_SWEEP_MOST_POINTS);
   return code;
 }
 
@@ -75,10 +78,13 @@ static double *copy_axis(int count, const double *value, const double *otherwise
   return copy;
 }
 
-static enum eo_code make_sweep(struct eo_sweep *s, const struct eo_design *design, const struct eo_sweep_plan *plan, struct eo_error *error)
+static enum eo_code make_sweep(struct eo_sweep *s, const struct eo_design *design, const struct eo_sweep_plan *plan,
+                               struct eo_error *error)
 {
   const struct eo_load_case *standard = heaviest(design);
-  *s = (struct eo_sweep){.ends = design->gear_pair.ends, .torques = plan->torques ? plan->torques : 1, .speeds = plan->speeds ? plan->speeds : 1};
+  *s = (struct eo_sweep){.ends = design->gear_pair.ends,
+                         .torques = plan->torques ? plan->torques : 1,
+                         .speeds = plan->speeds ? plan->speeds : 1};
   size_t torques = (size_t)s->torques, points = torques * (size_t)s->speeds;
   s->torque = copy_axis(plan->torques, plan->torque, &standard->torque);
   s->speed = copy_axis(plan->speeds, plan->speed, &standard->speed);
@@ -131,8 +137,8 @@ static void read_point(struct eo_sweep_point *p, const struct eo_vibration *r, b
   }
 }
 
-static enum eo_code read_torque(struct eo_sweep_torque *t, const struct eo_evaluation *r, const struct eo_dynamics_parameters *parameters,
-                                struct eo_error *error)
+static enum eo_code read_torque(struct eo_sweep_torque *t, const struct eo_evaluation *r,
+                                const struct eo_dynamics_parameters *parameters, struct eo_error *error)
 {
   const struct eo_case_result *c = &r->load_case[0];
   struct eo_dynamics_model model;
@@ -154,7 +160,8 @@ static enum eo_code read_torque(struct eo_sweep_torque *t, const struct eo_evalu
   return code ? code : eo_dynamics_model_modes(&model, t->tangent, &t->modes, error);
 }
 
-static enum eo_code keep_problem(struct problem *p, const struct eo_evaluator *evaluator, const struct eo_evaluation *r, struct eo_error *error)
+static enum eo_code keep_problem(struct problem *p, const struct eo_evaluator *evaluator, const struct eo_evaluation *r,
+                                 struct eo_error *error)
 {
   enum eo_code code = EO_OK;
   p->solvable = eo_evaluator_vibration(evaluator, 0, &p->parameters, &p->load);
@@ -250,8 +257,9 @@ static enum eo_code solve_speed(void *context, int thread, int item, struct eo_e
   if (code)
     return code;
   struct eo_vibration_case load = case_at(job, &job->problem[problem], job->sweep->speed[j], NULL);
-  return job->design->resolution.solver == EO_SOLVER_TIME_INTEGRATION ? eo_vibration_integrate(w->solver, &load, NULL, result, NULL, error)
-                                                                      : eo_vibration_solve(w->solver, &load, EO_START_COLD, result, error);
+  return job->design->resolution.solver == EO_SOLVER_TIME_INTEGRATION
+             ? eo_vibration_integrate(w->solver, &load, NULL, result, NULL, error)
+             : eo_vibration_solve(w->solver, &load, EO_START_COLD, result, error);
 }
 
 /* ---- the branches of one torque ---- */
@@ -322,9 +330,15 @@ static enum eo_code run_job(struct job *job, const struct eo_progress *progress,
   enum { TORQUE_COST = 20, BRANCH_SHARE = 4 }; /* in vibrations of one speed */
   const struct eo_sweep *s = job->sweep;
   int problems = EO_SWEEP_VARIANTS * s->torques;
-  double torques = TORQUE_COST * problems, speeds = (double)problems * s->speeds, all = torques + speeds + speeds / BRANCH_SHARE;
-  struct eo_parallel p = {.threads = job->threads, .work = solve_torque, .context = job, .progress = progress, .what = "loaded contact",
-                          .first = 0, .last = torques / all};
+  double torques = TORQUE_COST * problems, speeds = (double)problems * s->speeds,
+         all = torques + speeds + speeds / BRANCH_SHARE;
+  struct eo_parallel p = {.threads = job->threads,
+                          .work = solve_torque,
+                          .context = job,
+                          .progress = progress,
+                          .what = "loaded contact",
+                          .first = 0,
+                          .last = torques / all};
   enum eo_code code = eo_parallel_run(&p, problems, error);
   p.first = p.last;
   p.last = (torques + speeds) / all;
@@ -361,7 +375,8 @@ static void compare_branches(struct eo_sweep *s)
     }
 }
 
-static bool crosses(const struct eo_sweep *s, int torque, int mode, int order, int teeth, struct eo_sweep_crossing *crossing)
+static bool crosses(const struct eo_sweep *s, int torque, int mode, int order, int teeth,
+                    struct eo_sweep_crossing *crossing)
 {
   double frequency = s->at_torque[EO_SWEEP_DESIGN][torque].modes.frequency[mode];
   *crossing = (struct eo_sweep_crossing){torque, mode, order, frequency, 2 * M_PI * frequency / (order * teeth)};
@@ -380,15 +395,17 @@ static enum eo_code find_crossings(struct eo_sweep *s, int teeth, int orders, st
   return EO_OK;
 }
 
-enum eo_code eo_sweep_run(struct eo_sweep *sweep, const struct eo_pair *pair, const struct eo_design *design, const struct eo_sweep_plan *plan,
-                          const struct eo_progress *progress, struct eo_error *error)
+enum eo_code eo_sweep_run(struct eo_sweep *sweep, const struct eo_pair *pair, const struct eo_design *design,
+                          const struct eo_sweep_plan *plan, const struct eo_progress *progress, struct eo_error *error)
 {
   struct job job = {.sweep = sweep, .pair = pair, .design = design};
   *sweep = (struct eo_sweep){0};
   enum eo_code code = check_plan(plan, error);
   if (code)
     return code;
-  job.threads = plan->threads < 1 ? eo_parallel_cores() : plan->threads > EO_MAX_THREADS ? EO_MAX_THREADS : plan->threads;
+  job.threads = plan->threads < 1                ? eo_parallel_cores()
+                : plan->threads > EO_MAX_THREADS ? EO_MAX_THREADS
+                                                 : plan->threads;
   code = make_sweep(sweep, design, plan, error);
   if (!code)
     code = make_job(&job, error);

@@ -32,7 +32,8 @@ static double sampled_minimum(const struct search *search, double c, double *eta
   double best = INFINITY, reach = search->field->corner[0].reach / 2;
   for (int i = 0; i < search->stations; i++) {
     double at = g->face_width * ((double)i / (search->stations - 1) - 0.5), s = c + at * tan(g->base_helix_angle);
-    double gap = s < g->path_start - reach || s > g->path_end ? INFINITY : eo_gap_field_at(search->field, s, at, NULL, NULL);
+    double gap = s < g->path_start - reach || s > g->path_end ? INFINITY
+                                                              : eo_gap_field_at(search->field, s, at, NULL, NULL);
     if (gap < best) {
       best = gap;
       *eta = at;
@@ -45,17 +46,20 @@ static double sampled_minimum(const struct search *search, double c, double *eta
 static double clearance(const struct search *search, double c, double *eta)
 {
   double phase = c / search->grid->geometry.transverse_base_pitch;
-  double gap = search->stations > 1 ? sampled_minimum(search, c, eta) : eo_gap_field_line_minimum(search->field, c, true, eta);
+  double gap = search->stations > 1 ? sampled_minimum(search, c, eta)
+                                    : eo_gap_field_line_minimum(search->field, c, true, eta);
   return gap - eo_periodic_at(search->approach, phase - floor(phase), NULL);
 }
 
-/* Marches the incoming line towards mesh until it touches, then bisects; false when it passes the whole path untouched. */
+/* Marches the incoming line towards mesh until it touches, then bisects; false when it passes the whole path untouched.
+ */
 static bool first_touch(const struct search *search, double *c, double *eta)
 {
   enum { STEPS_PER_PITCH = 48, BISECTIONS = 60 };
   const struct eo_geometry *g = &search->grid->geometry;
   double lean = g->face_width / 2 * tan(g->base_helix_angle), reach = search->field->corner[0].reach / 2;
-  double low = g->path_start - lean - reach, end = g->path_end + lean, step = g->transverse_base_pitch / STEPS_PER_PITCH, high = low + step;
+  double low = g->path_start - lean - reach, end = g->path_end + lean,
+         step = g->transverse_base_pitch / STEPS_PER_PITCH, high = low + step;
   while (high < end && clearance(search, high, eta) > 0) {
     low = high;
     high += step;
@@ -74,7 +78,8 @@ static bool first_touch(const struct search *search, double *c, double *eta)
   return true;
 }
 
-/* Bulk compliance of the patch: the mean deflection of its points under an even load (10 points at the place of the touch). */
+/* Bulk compliance of the patch: the mean deflection of its points under an even load (10 points at the place of the
+   touch). */
 static double patch_bulk(const struct eo_geometry *g, struct eo_kernel kernel, double patch, double s, double eta)
 {
   enum { POINTS = 10 };
@@ -92,9 +97,9 @@ static double patch_bulk(const struct eo_geometry *g, struct eo_kernel kernel, d
 /* How far the place of a touch may be off along the path, m: what the search for the smallest gap leaves open. */
 static const double place_error = 5e-7;
 
-/* Slope of the gap over the roll where the line touches. The gap has a kink at A, where the tip corner takes over, and the touch stays on it
-   for a whole range of designs: there the line closes at the rate of its smallest gap, -dg/deta / tan(beta_b) along the kink, between the
-   slopes of both sides. Away from kinks the three are the same. */
+/* Slope of the gap over the roll where the line touches. The gap has a kink at A, where the tip corner takes over, and
+   the touch stays on it for a whole range of designs: there the line closes at the rate of its smallest gap, -dg/deta /
+   tan(beta_b) along the kink, between the slopes of both sides. Away from kinks the three are the same. */
 static double closing_slope(const struct search *search, double s, double eta)
 {
   const struct eo_gap_field *field = search->field;
@@ -105,15 +110,18 @@ static double closing_slope(const struct search *search, double s, double eta)
     return slope;
   eo_gap_field_at(field, s - place_error, eta, &before, NULL);
   eo_gap_field_at(field, s + place_error, eta, &after, NULL);
-  double along = (eo_gap_field_at(field, s, eta + step, NULL, NULL) - eo_gap_field_at(field, s, eta - step, NULL, NULL)) / (2 * step);
+  double along =
+      (eo_gap_field_at(field, s, eta + step, NULL, NULL) - eo_gap_field_at(field, s, eta - step, NULL, NULL)) /
+      (2 * step);
   return fmin(fmax(-along / field->lean, fmin(before, after)), fmax(before, after));
 }
 
-void eo_impact_strike(struct eo_impact *impact, const struct eo_contact_grid *grid, const struct eo_impact_settings *settings, double speed,
-                      double compliance_factor)
+void eo_impact_strike(struct eo_impact *impact, const struct eo_contact_grid *grid,
+                      const struct eo_impact_settings *settings, double speed, double compliance_factor)
 {
   const struct eo_geometry *g = &grid->geometry;
-  double s = fmax(impact->path, g->path_start), length = fmin(settings->patch, g->face_width) / cos(g->base_helix_angle);
+  double s = fmax(impact->path, g->path_start),
+         length = fmin(settings->patch, g->face_width) / cos(g->base_helix_angle);
   double law = eo_contact_local_constant(g, &grid->material, s), mass = eo_impact_mass(g, settings->inertia);
   if (!impact->touched)
     return;
@@ -121,7 +129,8 @@ void eo_impact_strike(struct eo_impact *impact, const struct eo_contact_grid *gr
   /* The Hertz part depends on the force it helps to make: fixed point on the secant of the local law. */
   double force = impact->speed * sqrt(mass / (compliance_factor * 2 * impact->bulk));
   for (int i = 0; i < 200; i++) {
-    impact->compliance = compliance_factor * (impact->bulk + grid->compliance_scale / length * (law - log(force / length)));
+    impact->compliance = compliance_factor *
+                         (impact->bulk + grid->compliance_scale / length * (law - log(force / length)));
     double next = impact->speed * sqrt(mass / impact->compliance);
     bool settled = fabs(next - force) <= 1e-12 * next;
     force = next;
@@ -133,8 +142,9 @@ void eo_impact_strike(struct eo_impact *impact, const struct eo_contact_grid *gr
   impact->duration = M_PI * sqrt(mass * impact->compliance);
 }
 
-void eo_impact_find(struct eo_impact *impact, const struct eo_contact_grid *grid, const struct eo_gap_field *field, struct eo_kernel kernel,
-                    const struct eo_impact_settings *settings, const double *approach, double speed, double compliance_factor)
+void eo_impact_find(struct eo_impact *impact, const struct eo_contact_grid *grid, const struct eo_gap_field *field,
+                    struct eo_kernel kernel, const struct eo_impact_settings *settings, const double *approach,
+                    double speed, double compliance_factor)
 {
   const struct eo_geometry *g = &grid->geometry;
   struct eo_periodic spline;

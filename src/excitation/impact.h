@@ -1,14 +1,15 @@
-/* Entering impact: where the incoming gear tip first touches the deflected pinion, how fast, and how hard (Seireg and Houser 1970;
-   physics: half sine of an effective mass on the compliance of a short patch). */
+/* Entering impact: where the incoming gear tip first touches the deflected pinion, how fast, and how hard (Seireg and
+   Houser 1970; physics: half sine of an effective mass on the compliance of a short patch). */
 #ifndef EASEOFF_EXCITATION_IMPACT_H
 #define EASEOFF_EXCITATION_IMPACT_H
 
 #include "contact/loaded.h"
 
 struct eo_impact_settings {
-  double patch;       /* length of the impact patch along the face, m */
-  double inertia[2];  /* of one end about its axis, kg m2; see eo_impact_inertia() */
-  int stations;       /* 0: the touch is found anywhere on the face; n > 1: at n stations over the face, as a sampled reference does */
+  double patch;      /* length of the impact patch along the face, m */
+  double inertia[2]; /* of one end about its axis, kg m2; see eo_impact_inertia() */
+  int stations;      /* 0: the touch is found anywhere on the face; n > 1: at n stations over the face, as a sampled
+                        reference does */
 };
 
 /* Solid disc of the pitch cylinder over the face width of one end, kg m2. */
@@ -34,12 +35,15 @@ struct eo_impact {
   double start;         /* of the pulse, phase of the mesh cycle 0..1 */
 };
 
-/* approach: Z over the mesh cycle, [grid->positions], m. speed: of the pinion, rad/s. compliance_factor as in eo_loaded_solve(). */
-void eo_impact_find(struct eo_impact *impact, const struct eo_contact_grid *grid, const struct eo_gap_field *field, struct eo_kernel kernel,
-                    const struct eo_impact_settings *settings, const double *approach, double speed, double compliance_factor);
+/* approach: Z over the mesh cycle, [grid->positions], m. speed: of the pinion, rad/s. compliance_factor as in
+   eo_loaded_solve(). */
+void eo_impact_find(struct eo_impact *impact, const struct eo_contact_grid *grid, const struct eo_gap_field *field,
+                    struct eo_kernel kernel, const struct eo_impact_settings *settings, const double *approach,
+                    double speed, double compliance_factor);
 
-/* Closing speed, force and duration of a touch already found, at another speed of the pinion: where it is does not depend on speed. */
-void eo_impact_strike(struct eo_impact *impact, const struct eo_contact_grid *grid, const struct eo_impact_settings *settings, double speed,
-                      double compliance_factor);
+/* Closing speed, force and duration of a touch already found, at another speed of the pinion: where it is does not
+   depend on speed. */
+void eo_impact_strike(struct eo_impact *impact, const struct eo_contact_grid *grid,
+                      const struct eo_impact_settings *settings, double speed, double compliance_factor);
 
 #endif

@@ -42,7 +42,8 @@ static char *join(const char *directory, const char *key, const char *ending)
   return path;
 }
 
-/* Takes the lock of the file that stands at the path now: whoever held it before may have removed the file we opened. */
+/* Takes the lock of the file that stands at the path now: whoever held it before may have removed the file we opened.
+ */
 static int lock_file(const char *path)
 {
   for (;;) {
@@ -56,7 +57,8 @@ static int lock_file(const char *path)
       errno = reason;
       return -1;
     }
-    if (!fstat(file, &opened) && !stat(path, &standing) && opened.st_ino == standing.st_ino && opened.st_dev == standing.st_dev)
+    if (!fstat(file, &opened) && !stat(path, &standing) && opened.st_ino == standing.st_ino &&
+        opened.st_dev == standing.st_dev)
       return file;
     close(file);
   }
@@ -74,8 +76,8 @@ static enum eo_code wait_for_lock(struct eo_cache *cache, const struct eo_progre
   return EO_OK;
 }
 
-enum eo_code eo_cache_open(struct eo_cache *cache, const char *directory, const char *key, const struct eo_progress *progress,
-                           struct eo_error *error)
+enum eo_code eo_cache_open(struct eo_cache *cache, const char *directory, const char *key,
+                           const struct eo_progress *progress, struct eo_error *error)
 {
   *cache = (struct eo_cache){.lock = -1};
   snprintf(cache->key, sizeof cache->key, "%s", key);

@@ -15,7 +15,9 @@ void eo_closed_form_kernel(const void *context, int n, const struct eo_flank_poi
   for (int i = 0; i < n; i++)
     for (int j = 0; j < n; j++) {
       double distance = fabs(point[i].eta - point[j].eta) / form->length;
-      compliance[(size_t)i * (size_t)n + (size_t)j] = point[i].pair != point[j].pair ? 0
-        : form->compliance * exp(-distance) * profile(form, &point[i]) * profile(form, &point[j]);
+      compliance[(size_t)i * (size_t)n + (size_t)j] = point[i].pair != point[j].pair
+                                                          ? 0
+                                                          : form->compliance * exp(-distance) *
+                                                                profile(form, &point[i]) * profile(form, &point[j]);
     }
 }

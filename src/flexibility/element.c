@@ -42,7 +42,8 @@ static double invert_jacobian(const double node[EO_BRICK_NODES][3], const double
   return determinant;
 }
 
-/* Column of the strain-displacement matrix: strains xx yy zz xy yz zx of displacement `direction` with this gradient. */
+/* Column of the strain-displacement matrix: strains xx yy zz xy yz zx of displacement `direction` with this gradient.
+ */
 static void strain_column(const double gradient[3], int direction, double strain[6])
 {
   static const int shear[3][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}}; /* place of strain (i, j) */

@@ -9,9 +9,9 @@ struct output {
   eo_writer_function *writer;
   void *context;
   int stopped;
-  int edges;  /* of the section */
-  int *edge;  /* [quads][4]: number of the edge from corner k to corner k + 1 */
-  int *ends;  /* [edges][2] */
+  int edges; /* of the section */
+  int *edge; /* [quads][4]: number of the edge from corner k to corner k + 1 */
+  int *ends; /* [edges][2] */
 };
 
 __attribute__((format(printf, 2, 3))) static void put(struct output *out, const char *format, ...)
@@ -121,7 +121,8 @@ static void put_step(struct output *out, const struct eo_mesh_case *load_case)
     double normal[3];
     eo_sector_direction(out->sector, flank->node[load->row], load->layer, 0, normal);
     for (int c = 0; c < 3; c++)
-      put(out, "%d, %d, %.12e\n", corner_number(out, load->layer, flank->node[load->row]), c + 1, load->force * normal[c]);
+      put(out, "%d, %d, %.12e\n", corner_number(out, load->layer, flank->node[load->row]), c + 1,
+          load->force * normal[c]);
   }
   put(out, "*NODE PRINT, NSET=FLANK\nU\n*END STEP\n");
 }
@@ -155,7 +156,8 @@ static enum eo_code find_edges(struct output *out, const struct eo_section *s)
   for (int a = 0; a < s->nodes && !code; a++)
     first[a] = -1;
   for (int i = 0; i < 4 * s->quads && !code; i++) {
-    int a = s->quad[i], b = s->quad[i % 4 == 3 ? i - 3 : i + 1], low = a < b ? a : b, high = a < b ? b : a, e = first[low];
+    int a = s->quad[i], b = s->quad[i % 4 == 3 ? i - 3 : i + 1], low = a < b ? a : b, high = a < b ? b : a,
+        e = first[low];
     while (e >= 0 && out->ends[2 * e + 1] != high)
       e = next[e];
     if (e < 0) {
@@ -182,8 +184,8 @@ enum eo_code eo_mesh_export(const struct eo_geometry *geometry, int member, cons
   struct output out = {.sector = &sector, .writer = writer, .context = context};
   enum eo_code code = eo_section_init(&section, geometry, member, settings->bore_radius, &settings->section, error);
   if (!code)
-    code = eo_sector_init(&sector, &section, settings->layers, geometry->face_width, eo_sector_twist(geometry, member), material,
-                          EO_WHOLE_SECTOR, error);
+    code = eo_sector_init(&sector, &section, settings->layers, geometry->face_width, eo_sector_twist(geometry, member),
+                          material, EO_WHOLE_SECTOR, error);
   if (!code && find_edges(&out, &section))
     code = eo_error_memory(error);
   if (!code) {

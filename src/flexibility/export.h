@@ -1,7 +1,7 @@
-/* The finite-element model of one member as an input file of Abaqus and CalculiX, to check our solver on its own mesh. Lengths in m,
-   forces in N. Nodes are numbered from 1, layer * section nodes + section node; node set FLANK lists the loaded flank, rows in
-   ascending s, layers in ascending eta within a row; FIXED is the bore and both cut faces. One step per load case; the
-   displacements of FLANK are printed. */
+/* The finite-element model of one member as an input file of Abaqus and CalculiX, to check our solver on its own mesh.
+   Lengths in m, forces in N. Nodes are numbered from 1, layer * section nodes + section node; node set FLANK lists the
+   loaded flank, rows in ascending s, layers in ascending eta within a row; FIXED is the bore and both cut faces. One
+   step per load case; the displacements of FLANK are printed. */
 #ifndef EASEOFF_FLEXIBILITY_EXPORT_H
 #define EASEOFF_FLEXIBILITY_EXPORT_H
 

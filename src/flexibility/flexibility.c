@@ -33,8 +33,8 @@ static double contract(const struct eo_grid *grid, const struct eo_grid_weights 
 }
 
 /* Adds one member's compliance between loads j and points from..to-1, whose weights are given. */
-static void add_block(const struct eo_flexibility *flexibility, int member, int n, const struct eo_flank_point *point, int from,
-                      int to, const struct eo_grid_weights *weights, double *compliance)
+static void add_block(const struct eo_flexibility *flexibility, int member, int n, const struct eo_flank_point *point,
+                      int from, int to, const struct eo_grid_weights *weights, double *compliance)
 {
   const struct eo_flank_table *table = &flexibility->table[member];
   const struct eo_grid *grid = &table->flank;
@@ -98,15 +98,21 @@ static bool is_critical(const double *position, int i)
 struct eo_root eo_flexibility_root(const struct eo_flexibility *flexibility, int member)
 {
   const struct eo_flank_table *table = &flexibility->table[member];
-  struct eo_root root = {.points = table->root_points, .layers = table->layers, .arc = table->arc, .position = table->root,
-                         .width = flexibility->width, .twist = flexibility->twist[member], .first = 2};
+  struct eo_root root = {.points = table->root_points,
+                         .layers = table->layers,
+                         .arc = table->arc,
+                         .position = table->root,
+                         .width = flexibility->width,
+                         .twist = flexibility->twist[member],
+                         .first = 2};
   while (root.first < root.points - 2 && !is_critical(root.position, root.first))
     root.first++;
   return root;
 }
 
 /* The table of stresses for loads on a pair, relative to the pair whose root is asked; NULL when they do not count. */
-static const double *stress_table(const struct eo_flexibility *flexibility, int member, int ahead_by, const struct eo_grid **grid)
+static const double *stress_table(const struct eo_flexibility *flexibility, int member, int ahead_by,
+                                  const struct eo_grid **grid)
 {
   const struct eo_flank_table *table = &flexibility->table[member];
   *grid = ahead_by == 0 ? &table->flank : &table->next;
@@ -136,7 +142,8 @@ void eo_flexibility_root_influence(const struct eo_flexibility *flexibility, int
 }
 
 void eo_flexibility_root_stress(const struct eo_flexibility *flexibility, int member, int pair, int n,
-                                const struct eo_flank_point *point, const double *force, int from, int to, double *stress)
+                                const struct eo_flank_point *point, const double *force, int from, int to,
+                                double *stress)
 {
   const struct eo_flank_table *table = &flexibility->table[member];
   size_t line = ((size_t)table->layers + 1) * EO_STRESSES, length = (size_t)(to - from) * line;

@@ -1,10 +1,11 @@
-/* Flexibility of a gear pair: 3-D finite elements of a sector of both members, once per pair, kept on disk; then the compliance
-   between any points of the flanks and the stress in the roots, from cubic tensor splines (physics: Chang, Liu, Wu 2015).
-   C_bulk = C_full - C_half: the dent under a point load, which depends on the mesh, goes; the contact adds its own local law. C_half is the
-   material between tooth centre and loaded flank outside the root cylinder, both surfaces held (see flexibility/sector.h): of all ways to
-   cut the half tooth it is the one that reproduces independently computed levels (tests/cases/contact.json, fe_bulk) within 2 %.
-   Both members are computed at the same time by two threads; the result is the same to the last bit for any number of threads.
-   A prepared flexibility is constant: any number of threads may evaluate it at once. */
+/* Flexibility of a gear pair: 3-D finite elements of a sector of both members, once per pair, kept on disk; then the
+   compliance between any points of the flanks and the stress in the roots, from cubic tensor splines (physics: Chang,
+   Liu, Wu 2015). C_bulk = C_full - C_half: the dent under a point load, which depends on the mesh, goes; the contact
+   adds its own local law. C_half is the material between tooth centre and loaded flank outside the root cylinder, both
+   surfaces held (see flexibility/sector.h): of all ways to cut the half tooth it is the one that reproduces
+   independently computed levels (tests/cases/contact.json, fe_bulk) within 2 %. Both members are computed at the same
+   time by two threads; the result is the same to the last bit for any number of threads. A prepared flexibility is
+   constant: any number of threads may evaluate it at once. */
 #ifndef EASEOFF_FLEXIBILITY_FLEXIBILITY_H
 #define EASEOFF_FLEXIBILITY_FLEXIBILITY_H
 
@@ -32,20 +33,22 @@ struct eo_flexibility_settings eo_flexibility_settings_of(const struct eo_resolu
 
 /* What the preparation did. */
 struct eo_flexibility_report {
-  char key[EO_HASH_LENGTH + 1];    /* of everything the result depends on */
+  char key[EO_HASH_LENGTH + 1]; /* of everything the result depends on */
   bool from_cache;
   char note[200];                  /* why the cache could not be used or kept, "" when all went well */
   double seconds;                  /* wall time of the whole */
   struct eo_member_times times[2]; /* [member], 0 when read from the cache */
-  double smallest_eigenvalue[2];   /* [member]: of the compliance of one flank and its neighbours, over the largest; 0 from the cache */
+  double smallest_eigenvalue[2];   /* [member]: of the compliance of one flank and its neighbours, over the largest; 0
+                                      from the cache */
 };
 
 struct eo_flexibility;
 
-/* Prepares or reads from the cache. pair: bores and rim. cache_directory: NULL for none; it is made when missing (its parent must exist). Two
-   processes that prepare the same pair at once are safe: the second waits and reads. A cache file that does not fit or is damaged is
-   thrown away; a directory that cannot be written only leaves a note. progress may be NULL; it is called by one thread at a time.
-   Errors: EO_ERROR_INPUT (settings, sector that does not fit), memory, EO_ERROR_NUMERIC, EO_ERROR_CANCELLED. */
+/* Prepares or reads from the cache. pair: bores and rim. cache_directory: NULL for none; it is made when missing (its
+   parent must exist). Two processes that prepare the same pair at once are safe: the second waits and reads. A cache
+   file that does not fit or is damaged is thrown away; a directory that cannot be written only leaves a note. progress
+   may be NULL; it is called by one thread at a time. Errors: EO_ERROR_INPUT (settings, sector that does not fit),
+   memory, EO_ERROR_NUMERIC, EO_ERROR_CANCELLED. */
 enum eo_code eo_flexibility_prepare(const struct eo_geometry *geometry, const struct eo_gear_pair *pair,
                                     const struct eo_material *material, const struct eo_flexibility_settings *settings,
                                     const char *cache_directory, const struct eo_progress *progress,
@@ -53,25 +56,29 @@ enum eo_code eo_flexibility_prepare(const struct eo_geometry *geometry, const st
 void eo_flexibility_free(struct eo_flexibility *flexibility);
 const struct eo_flexibility_report *eo_flexibility_report(const struct eo_flexibility *flexibility);
 
-/* Where the sector ends inwards: r_f - rim coefficient * m_n, or at the bore if that is larger, but never below r_f / 5. */
+/* Where the sector ends inwards: r_f - rim coefficient * m_n, or at the bore if that is larger, but never below r_f
+   / 5. */
 double eo_flexibility_bore_radius(const struct eo_geometry *geometry, const struct eo_gear_pair *pair, int member);
 
 /* The settings of one member's model. */
-struct eo_member_settings eo_flexibility_member_settings(const struct eo_flexibility_settings *settings, double bore_radius);
+struct eo_member_settings eo_flexibility_member_settings(const struct eo_flexibility_settings *settings,
+                                                         double bore_radius);
 
-/* Compliance for the contact. Without neighbour coupling, and between pairs that are not neighbours, 0. Points beyond the active flank
-   by up to one row or half a layer are extrapolated straight, beyond that they count as if there. */
+/* Compliance for the contact. Without neighbour coupling, and between pairs that are not neighbours, 0. Points beyond
+   the active flank by up to one row or half a layer are extrapolated straight, beyond that they count as if there. */
 struct eo_kernel eo_flexibility_kernel(const struct eo_flexibility *flexibility);
 
 /* Adds one member's share of it to compliance[n][n]. */
 void eo_flexibility_add_compliance(const struct eo_flexibility *flexibility, int member, int n,
                                    const struct eo_flank_point *point, double *compliance);
 
-/* Nodes of the root surface, [points][layers + 1]: from the start of the active profile (point 0) to the middle of the tooth space. */
+/* Nodes of the root surface, [points][layers + 1]: from the start of the active profile (point 0) to the middle of the
+   tooth space. */
 struct eo_root {
   int points, layers;
-  int first;              /* first point at or below the 30 degree tangent, ISO 6336-3's critical section: above it the surface feels the
-                             dent of a contact close by, which the mesh of the root does not resolve, more than the bending of the tooth */
+  int first; /* first point at or below the 30 degree tangent, ISO 6336-3's critical section: above it the surface feels
+                the dent of a contact close by, which the mesh of the root does not resolve, more than the bending of
+                the tooth */
   const double *arc;      /* [points], along the profile from the start of the active profile, m */
   const double *position; /* [points][2], transverse, tooth centre along +y and loaded flank at x > 0, m */
   double width;           /* of the face, m; layer l lies at eta = width (l / layers - 1/2) */
@@ -79,10 +86,12 @@ struct eo_root {
 };
 struct eo_root eo_flexibility_root(const struct eo_flexibility *flexibility, int member);
 
-/* stress[to - from][layers + 1][EO_STRESSES], Pa: along the profile, across it in the surface, shear; of the root points from..to-1 of the
-   tooth of `pair` under the normal forces force[n], N, at the points. Loads on the two neighbours count when coupling is on. */
+/* stress[to - from][layers + 1][EO_STRESSES], Pa: along the profile, across it in the surface, shear; of the root
+   points from..to-1 of the tooth of `pair` under the normal forces force[n], N, at the points. Loads on the two
+   neighbours count when coupling is on. */
 void eo_flexibility_root_stress(const struct eo_flexibility *flexibility, int member, int pair, int n,
-                                const struct eo_flank_point *point, const double *force, int from, int to, double *stress);
+                                const struct eo_flank_point *point, const double *force, int from, int to,
+                                double *stress);
 
 /* influence[n][to - from][layers + 1][EO_STRESSES], Pa/N: the same per point and unit force. */
 void eo_flexibility_root_influence(const struct eo_flexibility *flexibility, int member, int pair, int n,

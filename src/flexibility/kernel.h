@@ -1,4 +1,5 @@
-/* The one form in which a compliance reaches the contact solver: a matrix between points on the flanks of neighbouring tooth pairs. */
+/* The one form in which a compliance reaches the contact solver: a matrix between points on the flanks of neighbouring
+   tooth pairs. */
 #ifndef EASEOFF_FLEXIBILITY_KERNEL_H
 #define EASEOFF_FLEXIBILITY_KERNEL_H
 

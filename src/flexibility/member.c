@@ -8,11 +8,11 @@
 
 /* Unknowns of the sector that are wanted, in the order in which the solver keeps them. */
 struct wanted {
-  int *unknown;  /* [count] */
+  int *unknown; /* [count] */
   int count;
-  int root;      /* first of the root's displacements: [root_nodes][layers + 1][3], the flank's own normal left out */
-  int next[2];   /* first of the normal displacements of pair k - 1, k + 1 */
-  int flank;     /* first of the normal displacements of the loaded flank, the last of all */
+  int root;    /* first of the root's displacements: [root_nodes][layers + 1][3], the flank's own normal left out */
+  int next[2]; /* first of the normal displacements of pair k - 1, k + 1 */
+  int flank;   /* first of the normal displacements of the loaded flank, the last of all */
 };
 
 struct job {
@@ -51,7 +51,8 @@ static void add_normals(const struct eo_sector *sector, const struct eo_flank_no
 static enum eo_code list_wanted(const struct eo_sector *sector, struct wanted *wanted)
 {
   const struct eo_section *s = sector->section;
-  int across = sector->layers + 1, nodes = 3 * s->root_nodes + s->flank.count + s->next_flank[0].count + s->next_flank[1].count;
+  int across = sector->layers + 1,
+      nodes = 3 * s->root_nodes + s->flank.count + s->next_flank[0].count + s->next_flank[1].count;
   *wanted = (struct wanted){.unknown = malloc((size_t)(nodes * across) * sizeof *wanted->unknown)};
   if (!wanted->unknown)
     return EO_ERROR_MEMORY;
@@ -69,7 +70,8 @@ static enum eo_code list_wanted(const struct eo_sector *sector, struct wanted *w
 }
 
 /* Displacements of the root, [root_nodes][layers + 1][3] in the frames of the layers, from one row of kept values. */
-static void root_displacement(const struct eo_sector *sector, const struct wanted *wanted, const double *kept, double *displacement)
+static void root_displacement(const struct eo_sector *sector, const struct wanted *wanted, const double *kept,
+                              double *displacement)
 {
   const struct eo_section *s = sector->section;
   int across = sector->layers + 1, corner_row = 0;
@@ -77,7 +79,8 @@ static void root_displacement(const struct eo_sector *sector, const struct wante
     corner_row++;
   const double(*frame)[3] = (const double(*)[3])sector->frame[s->root[0]];
   for (int l = 0; l < across; l++) {
-    double local[3] = {kept[wanted->flank + corner_row * across + l], kept[wanted->root + 2 * l], kept[wanted->root + 2 * l + 1]};
+    double local[3] = {kept[wanted->flank + corner_row * across + l], kept[wanted->root + 2 * l],
+                       kept[wanted->root + 2 * l + 1]};
     for (int c = 0; c < 3; c++)
       displacement[3 * l + c] = frame[0][c] * local[0] + frame[1][c] * local[1] + frame[2][c] * local[2];
   }
@@ -94,13 +97,14 @@ static enum eo_code split_inverse(struct job *job, const struct wanted *wanted, 
   size_t stresses = (size_t)(r->root_points * across * EO_STRESSES);
   struct eo_stress_operator operator= {0};
   double *displacement = malloc((size_t)(s->root_nodes * across * 3) * sizeof *displacement);
-  enum eo_code code = eo_stress_operator_init(&operator, &job->sector, job->material, job->error);
+  enum eo_code code = eo_stress_operator_init(&operator, & job->sector, job->material, job->error);
   if (!displacement)
     code = EO_ERROR_MEMORY;
   for (int load = 0; load < wanted->count - wanted->next[0] && !code; load++) {
     const double *kept = inverse + (size_t)load * (size_t)wanted->count;
     int own = load - (wanted->flank - wanted->next[0]), side = load >= next;
-    double *stress = own >= 0 ? r->stress + (size_t)own * stresses : r->next_stress[side] + (size_t)(load - side * next) * stresses;
+    double *stress = own >= 0 ? r->stress + (size_t)own * stresses
+                              : r->next_stress[side] + (size_t)(load - side * next) * stresses;
     root_displacement(&job->sector, wanted, kept, displacement);
     eo_stress_operator_apply(&operator, displacement, stress);
     if (own < 0)
@@ -120,7 +124,8 @@ static enum eo_code solve_whole(struct job *job)
   struct eo_sparse_factor *factor = NULL;
   double *inverse = NULL, start = (1e-3 * eo_clock_milliseconds());
   enum eo_code code = eo_sector_init(&job->sector, &job->section, job->settings->layers, job->geometry->face_width,
-                                     eo_sector_twist(job->geometry, job->member), job->material, EO_WHOLE_SECTOR, job->error);
+                                     eo_sector_twist(job->geometry, job->member), job->material, EO_WHOLE_SECTOR,
+                                     job->error);
   if (!code)
     code = list_wanted(&job->sector, &wanted);
   job->times->mesh += (1e-3 * eo_clock_milliseconds()) - start;
@@ -129,8 +134,8 @@ static enum eo_code solve_whole(struct job *job)
   if (code)
     goto out;
   start = (1e-3 * eo_clock_milliseconds());
-  code = eo_sparse_analyse(&job->sector.matrix, job->sector.group, job->sector.matrix.n / 3, wanted.unknown, wanted.count,
-                           &factor, job->error);
+  code = eo_sparse_analyse(&job->sector.matrix, job->sector.group, job->sector.matrix.n / 3, wanted.unknown,
+                           wanted.count, &factor, job->error);
   job->times->ordering = (1e-3 * eo_clock_milliseconds()) - start;
   if (!code)
     code = report(job, "factorisation", 0.15);
@@ -212,7 +217,9 @@ static enum eo_code allocate(struct job *job)
   struct eo_member_result *r = job->result;
   const struct eo_section *s = &job->section;
   size_t across = (size_t)job->settings->layers + 1;
-  *r = (struct eo_member_result){.rows = s->flank.count, .next_rows = s->next_flank[0].count, .layers = job->settings->layers,
+  *r = (struct eo_member_result){.rows = s->flank.count,
+                                 .next_rows = s->next_flank[0].count,
+                                 .layers = job->settings->layers,
                                  .root_points = s->root_nodes - 2};
   size_t flank = (size_t)r->rows * across, next = (size_t)r->next_rows * across;
   size_t stresses = (size_t)r->root_points * across * EO_STRESSES;
@@ -244,10 +251,17 @@ static enum eo_code allocate(struct job *job)
 
 enum eo_code eo_member_compute(struct eo_member_result *result, const struct eo_geometry *geometry, int member,
                                const struct eo_material *material, const struct eo_member_settings *settings,
-                               const struct eo_progress *progress, struct eo_member_times *times, struct eo_error *error)
+                               const struct eo_progress *progress, struct eo_member_times *times,
+                               struct eo_error *error)
 {
-  struct job job = {.result = result, .geometry = geometry, .material = material, .settings = settings, .progress = progress,
-                    .times = times, .error = error, .member = member};
+  struct job job = {.result = result,
+                    .geometry = geometry,
+                    .material = material,
+                    .settings = settings,
+                    .progress = progress,
+                    .times = times,
+                    .error = error,
+                    .member = member};
   *result = (struct eo_member_result){0};
   *times = (struct eo_member_times){0};
   double start = (1e-3 * eo_clock_milliseconds());

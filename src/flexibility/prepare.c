@@ -36,9 +36,12 @@ struct worker {
 struct eo_flexibility_settings eo_flexibility_settings_of(const struct eo_resolution *resolution)
 {
   return (struct eo_flexibility_settings){.sector_teeth = resolution->sector_teeth,
-                                          .neighbour_coupling = resolution->neighbour_coupling, .layers = resolution->layers,
+                                          .neighbour_coupling = resolution->neighbour_coupling,
+                                          .layers = resolution->layers,
                                           .flank_rows = resolution->flank_rows,
-                                          .fillet_elements = resolution->fillet_elements, .columns = 8, .rim_elements = 8};
+                                          .fillet_elements = resolution->fillet_elements,
+                                          .columns = 8,
+                                          .rim_elements = 8};
 }
 
 double eo_flexibility_bore_radius(const struct eo_geometry *geometry, const struct eo_gear_pair *pair, int member)
@@ -47,7 +50,8 @@ double eo_flexibility_bore_radius(const struct eo_geometry *geometry, const stru
   return fmax(fmax(rim, 0.5 * pair->bore[member]), 0.2 * root);
 }
 
-struct eo_member_settings eo_flexibility_member_settings(const struct eo_flexibility_settings *settings, double bore_radius)
+struct eo_member_settings eo_flexibility_member_settings(const struct eo_flexibility_settings *settings,
+                                                         double bore_radius)
 {
   int half_rows = settings->flank_rows / 2 > 3 ? settings->flank_rows / 2 : 3;
   int columns = settings->columns, free_side = settings->fillet_elements / 2 < 8 ? settings->fillet_elements / 2 : 8;
@@ -82,13 +86,14 @@ static enum eo_code check(const struct eo_flexibility_settings *settings, struct
   if (settings->sector_teeth == 4)
     return eo_error_set(error, EO_ERROR_INPUT, "/resolution/sector_teeth", "sector_teeth is 4, but must be 3 or 5.");
   if (settings->columns % 2)
-    return eo_error_set(error, EO_ERROR_INPUT, "/resolution/columns", "columns is %d, but must be even.", settings->columns);
+    return eo_error_set(error, EO_ERROR_INPUT, "/resolution/columns", "columns is %d, but must be even.",
+                        settings->columns);
   return EO_OK;
 }
 
 /* Everything the numbers depend on. */
-static void make_key(const struct eo_geometry *g, const struct eo_material *material, const struct eo_flexibility_settings *s,
-                     const double bore[2], char key[EO_HASH_LENGTH + 1])
+static void make_key(const struct eo_geometry *g, const struct eo_material *material,
+                     const struct eo_flexibility_settings *s, const double bore[2], char key[EO_HASH_LENGTH + 1])
 {
   struct eo_hash hash;
   eo_hash_init(&hash);
@@ -97,14 +102,25 @@ static void make_key(const struct eo_geometry *g, const struct eo_material *mate
   const struct {
     const char *name;
     double value;
-  } number[] = {{"sector_teeth", s->sector_teeth}, {"layers", s->layers}, {"flank_rows", s->flank_rows},
-                {"fillet_elements", s->fillet_elements}, {"columns", s->columns}, {"rim_elements", s->rim_elements},
-                {"youngs_modulus", material->youngs_modulus}, {"poissons_ratio", material->poissons_ratio},
-                {"normal_module", g->normal_module}, {"normal_pressure_angle", g->normal_pressure_angle},
+  } number[] = {{"sector_teeth", s->sector_teeth},
+                {"layers", s->layers},
+                {"flank_rows", s->flank_rows},
+                {"fillet_elements", s->fillet_elements},
+                {"columns", s->columns},
+                {"rim_elements", s->rim_elements},
+                {"youngs_modulus", material->youngs_modulus},
+                {"poissons_ratio", material->poissons_ratio},
+                {"normal_module", g->normal_module},
+                {"normal_pressure_angle", g->normal_pressure_angle},
                 {"transverse_pressure_angle", g->transverse_pressure_angle},
-                {"working_pressure_angle", g->working_pressure_angle}, {"helix_angle", g->helix_angle},
-                {"face_width", g->face_width}, {"centre_distance", g->centre_distance}, {"path_start", g->path_start},
-                {"path_end", g->path_end}, {"dedendum", g->dedendum}, {"fillet_radius", g->fillet_radius}};
+                {"working_pressure_angle", g->working_pressure_angle},
+                {"helix_angle", g->helix_angle},
+                {"face_width", g->face_width},
+                {"centre_distance", g->centre_distance},
+                {"path_start", g->path_start},
+                {"path_end", g->path_end},
+                {"dedendum", g->dedendum},
+                {"fillet_radius", g->fillet_radius}};
   for (size_t i = 0; i < sizeof number / sizeof *number; i++)
     eo_hash_add_number(&hash, number[i].name, number[i].value);
   for (int m = 0; m < 2; m++) {
@@ -142,11 +158,11 @@ static void *compute_member(void *context)
   struct eo_member_result result = {0};
   struct eo_flexibility_report *report = &w->flexibility->report;
   struct eo_progress progress = {.report = forward_progress, .context = w};
-  w->code = eo_member_compute(&result, w->geometry, w->member, w->material, &w->settings, &progress, &report->times[w->member],
-                              &w->error);
+  w->code = eo_member_compute(&result, w->geometry, w->member, w->material, &w->settings, &progress,
+                              &report->times[w->member], &w->error);
   if (!w->code)
     w->code = eo_flank_table_fill(&w->flexibility->table[w->member], &result, w->flexibility->width,
-                            &report->smallest_eigenvalue[w->member], &w->error);
+                                  &report->smallest_eigenvalue[w->member], &w->error);
   eo_member_result_done(&result);
   if (w->code) {
     pthread_mutex_lock(&w->shared->mutex);
@@ -214,7 +230,11 @@ enum eo_code eo_flexibility_prepare(const struct eo_geometry *geometry, const st
   for (int m = 0; m < 2; m++) {
     f->twist[m] = eo_sector_twist(geometry, m);
     bore[m] = eo_flexibility_bore_radius(geometry, pair, m);
-    worker[m] = (struct worker){.shared = &shared, .flexibility = f, .geometry = geometry, .material = material, .member = m,
+    worker[m] = (struct worker){.shared = &shared,
+                                .flexibility = f,
+                                .geometry = geometry,
+                                .material = material,
+                                .member = m,
                                 .settings = eo_flexibility_member_settings(settings, bore[m])};
     if (!code)
       code = eo_flank_table_init(&f->table[m], &worker[m].settings, error);

@@ -9,8 +9,8 @@ struct eo_flexibility {
   struct eo_flexibility_settings settings;
   struct eo_flexibility_report report;
   struct eo_flank_table table[2]; /* [member] */
-  double width;             /* of the face, m */
-  double twist[2];          /* [member], rad/m */
+  double width;                   /* of the face, m */
+  double twist[2];                /* [member], rad/m */
 };
 
 #endif

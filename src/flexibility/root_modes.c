@@ -10,10 +10,10 @@
 struct eo_root_modes {
   const struct eo_flank_table *table;
   bool coupled;
-  int member, rank, length;     /* length = nodes x EO_STRESSES */
-  int slots, slot[3];           /* grid points of loads on pair k - 1, k, k + 1, and where each begins */
-  float *coefficient;           /* [slots][rank] */
-  float *shape;                 /* [rank][EO_STRESSES][nodes] */
+  int member, rank, length; /* length = nodes x EO_STRESSES */
+  int slots, slot[3];       /* grid points of loads on pair k - 1, k, k + 1, and where each begins */
+  float *coefficient;       /* [slots][rank] */
+  float *shape;             /* [rank][EO_STRESSES][nodes] */
 };
 
 static const struct eo_grid *grid_of(const struct eo_root_modes *modes, int ahead_by)
@@ -45,7 +45,8 @@ static double *stack_rows(const struct eo_root_modes *modes, size_t skip)
 }
 
 /* stack = factor x shape in the least-squares sense: (factor' factor) shape = factor' stack. */
-static enum eo_code fit_shapes(struct eo_root_modes *modes, int rows, int stride, const double *factor, const double *stack, struct eo_error *error)
+static enum eo_code fit_shapes(struct eo_root_modes *modes, int rows, int stride, const double *factor,
+                               const double *stack, struct eo_error *error)
 {
   int rank = modes->rank;
   size_t length = (size_t)modes->length, size = (size_t)rank * length;
@@ -53,8 +54,10 @@ static enum eo_code fit_shapes(struct eo_root_modes *modes, int rows, int stride
   modes->shape = malloc(sizeof *modes->shape * size);
   enum eo_code code = normal && shape && modes->shape ? EO_OK : eo_error_memory(error);
   if (!code) {
-    cblas_dgemm(CblasRowMajor, CblasTrans, CblasNoTrans, rank, modes->length, rows, 1, factor, stride, stack, modes->length, 0, shape, modes->length);
-    cblas_dgemm(CblasRowMajor, CblasTrans, CblasNoTrans, rank, rank, rows, 1, factor, stride, factor, stride, 0, normal, rank);
+    cblas_dgemm(CblasRowMajor, CblasTrans, CblasNoTrans, rank, modes->length, rows, 1, factor, stride, stack,
+                modes->length, 0, shape, modes->length);
+    cblas_dgemm(CblasRowMajor, CblasTrans, CblasNoTrans, rank, rank, rows, 1, factor, stride, factor, stride, 0, normal,
+                rank);
     code = eo_lowrank_solve(rank, normal, modes->length, shape, error);
   }
   for (size_t i = 0; !code && i < size; i++) {
@@ -66,7 +69,8 @@ static enum eo_code fit_shapes(struct eo_root_modes *modes, int rows, int stride
   return code;
 }
 
-static enum eo_code keep_coefficients(struct eo_root_modes *modes, int stride, const double *factor, struct eo_error *error)
+static enum eo_code keep_coefficients(struct eo_root_modes *modes, int stride, const double *factor,
+                                      struct eo_error *error)
 {
   modes->coefficient = malloc(sizeof *modes->coefficient * (size_t)modes->slots * (size_t)modes->rank);
   for (int i = 0; modes->coefficient && i < modes->slots; i++)
@@ -75,7 +79,8 @@ static enum eo_code keep_coefficients(struct eo_root_modes *modes, int stride, c
   return modes->coefficient ? EO_OK : eo_error_memory(error);
 }
 
-enum eo_code eo_root_modes_new(struct eo_root_modes **result, const struct eo_flexibility *flexibility, int member, struct eo_error *error)
+enum eo_code eo_root_modes_new(struct eo_root_modes **result, const struct eo_flexibility *flexibility, int member,
+                               struct eo_error *error)
 {
   static const double TOLERANCE = 3e-6; /* of squares */
   struct eo_root root = eo_flexibility_root(flexibility, member);
@@ -92,7 +97,8 @@ enum eo_code eo_root_modes_new(struct eo_root_modes **result, const struct eo_fl
   double *gram = malloc(sizeof *gram * (size_t)rows * (size_t)rows);
   enum eo_code code = stack && gram ? EO_OK : eo_error_memory(error);
   if (!code) {
-    cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasTrans, rows, rows, modes->length, 1, stack, modes->length, stack, modes->length, 0, gram, rows);
+    cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasTrans, rows, rows, modes->length, 1, stack, modes->length, stack,
+                modes->length, 0, gram, rows);
     code = eo_lowrank_factor(rows, gram, TOLERANCE, &modes->rank, &stride, &factor, error);
   }
   if (!code)
@@ -141,7 +147,8 @@ static bool is_loaded(int n, int sets, const double *force)
   return false;
 }
 
-void eo_root_modes_weigh(const struct eo_root_modes *modes, const struct eo_flank_point *point, struct eo_root_weights *weights)
+void eo_root_modes_weigh(const struct eo_root_modes *modes, const struct eo_flank_point *point,
+                         struct eo_root_weights *weights)
 {
   for (int ahead = 0; ahead <= (modes->coupled ? 1 : 0); ahead++) {
     const struct eo_grid *grid = grid_of(modes, ahead);
@@ -152,8 +159,8 @@ void eo_root_modes_weigh(const struct eo_root_modes *modes, const struct eo_flan
   }
 }
 
-unsigned eo_root_modes_add(const struct eo_root_modes *modes, int pair, int n, const struct eo_flank_point *point, const struct eo_root_weights *weights,
-                           int sets, const double *force, float *load)
+unsigned eo_root_modes_add(const struct eo_root_modes *modes, int pair, int n, const struct eo_flank_point *point,
+                           const struct eo_root_weights *weights, int sets, const double *force, float *load)
 {
   unsigned touched = 0;
   for (int j = 0; j < n; j++) {
@@ -174,8 +181,10 @@ unsigned eo_root_modes_add(const struct eo_root_modes *modes, int pair, int n, c
   return touched;
 }
 
-/* Adds what one part of the loads gives, run by run of positions at which it is touched: a tooth is loaded during a part of the cycle. */
-static void add_part(const struct eo_root_modes *modes, int part, int count, int sets, const float *load, const unsigned *touched, float *scratch)
+/* Adds what one part of the loads gives, run by run of positions at which it is touched: a tooth is loaded during a
+   part of the cycle. */
+static void add_part(const struct eo_root_modes *modes, int part, int count, int sets, const float *load,
+                     const unsigned *touched, float *scratch)
 {
   int slots = (part == 2 ? modes->slots : modes->slot[part + 1]) - modes->slot[part], rank = modes->rank;
   for (int first = 0, last; first < count; first = last + 1) {
@@ -183,17 +192,18 @@ static void add_part(const struct eo_root_modes *modes, int part, int count, int
       ;
     if (last == first)
       continue;
-    cblas_sgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, (last - first) * sets, rank, slots, 1, load + first * sets * modes->slots + modes->slot[part],
-                modes->slots, modes->coefficient + modes->slot[part] * rank, rank, 1, scratch + first * sets * rank, rank);
+    cblas_sgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, (last - first) * sets, rank, slots, 1,
+                load + first * sets * modes->slots + modes->slot[part], modes->slots,
+                modes->coefficient + modes->slot[part] * rank, rank, 1, scratch + first * sets * rank, rank);
   }
 }
 
-void eo_root_modes_stress(const struct eo_root_modes *modes, int count, int sets, const float *load, const unsigned *touched, float *scratch,
-                          float *stress)
+void eo_root_modes_stress(const struct eo_root_modes *modes, int count, int sets, const float *load,
+                          const unsigned *touched, float *scratch, float *stress)
 {
   memset(scratch, 0, sizeof *scratch * (size_t)(count * sets) * (size_t)modes->rank);
   for (int part = 0; part < 3; part++)
     add_part(modes, part, count, sets, load, touched, scratch);
-  cblas_sgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, count * sets, modes->length, modes->rank, 1, scratch, modes->rank, modes->shape,
-              modes->length, 0, stress, modes->length);
+  cblas_sgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, count * sets, modes->length, modes->rank, 1, scratch,
+              modes->rank, modes->shape, modes->length, 0, stress, modes->length);
 }

@@ -89,7 +89,8 @@ static double fillet_length(const struct builder *b)
   return length;
 }
 
-/* Point and outward normal at share q of the way from the start of the active profile to the middle of the tooth space. */
+/* Point and outward normal at share q of the way from the start of the active profile to the middle of the tooth space.
+ */
 static void root_point(const struct builder *b, double q, double point[2], double normal[2])
 {
   const struct eo_geometry *g = b->geometry;
@@ -102,8 +103,8 @@ static void root_point(const struct builder *b, double q, double point[2], doubl
   }
 }
 
-/* Share u of a cubic line from share q of the root down to the bore. It leaves the root halfway between the inward normal and
-   the radius and arrives radially. */
+/* Share u of a cubic line from share q of the root down to the bore. It leaves the root halfway between the inward
+   normal and the radius and arrives radially. */
 static void line_point(const struct builder *b, double q, double u, double *radius, double *angle)
 {
   double top[2], normal[2], p[2], bottom = b->inner_angle + q * (b->pitch_angle / 2 - b->inner_angle);
@@ -209,7 +210,8 @@ static enum eo_code list_flank(const struct builder *b, const struct tooth *toot
     double point[2], normal[2], turn = -tooth->place * b->pitch_angle;
     flank->node[k] = tooth->core[j * (columns + 1) + columns];
     flank->s[k] = row_path(b, rows, j);
-    eo_geometry_involute(b->geometry, b->member, eo_geometry_radius_at(b->geometry, b->member, flank->s[k]), point, normal);
+    eo_geometry_involute(b->geometry, b->member, eo_geometry_radius_at(b->geometry, b->member, flank->s[k]), point,
+                         normal);
     flank->normal[2 * k] = normal[0] * cos(turn) + normal[1] * sin(turn);
     flank->normal[2 * k + 1] = -normal[0] * sin(turn) + normal[1] * cos(turn);
   }
@@ -241,7 +243,9 @@ static enum eo_code allocate(struct builder *b)
   for (int t = 0; t < b->settings->teeth; t++) {
     struct tooth *tooth = &b->tooth[t];
     tooth->place = t - b->settings->teeth / 2;
-    tooth->division = !tooth->place ? &b->settings->loaded : abs(tooth->place) == 1 ? &b->settings->next : &b->settings->outer;
+    tooth->division = !tooth->place            ? &b->settings->loaded
+                      : abs(tooth->place) == 1 ? &b->settings->next
+                                               : &b->settings->outer;
     const struct eo_tooth_division *d = tooth->division;
     size_t core = (size_t)(d->rows + rim + 1) * (size_t)(d->columns + 1);
     tooth->core = malloc(core * sizeof *tooth->core);
@@ -301,8 +305,8 @@ static void build(struct builder *b)
   mark_nodes(b);
 }
 
-enum eo_code eo_section_init(struct eo_section *section, const struct eo_geometry *geometry, int member, double bore_radius,
-                             const struct eo_section_settings *settings, struct eo_error *error)
+enum eo_code eo_section_init(struct eo_section *section, const struct eo_geometry *geometry, int member,
+                             double bore_radius, const struct eo_section_settings *settings, struct eo_error *error)
 {
   struct builder b = {.section = section, .geometry = geometry, .settings = settings, .member = member};
   *section = (struct eo_section){.bore_radius = bore_radius};

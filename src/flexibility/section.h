@@ -1,7 +1,8 @@
-/* The finite-element mesh of a transverse section: a sector of a few teeth, quadrilaterals. Per tooth a core block (columns
-   across the tooth, rows from the tip down to the start of the active profile and on down to the bore) and two side blocks
-   whose upper edge is the root from there to the middle of the tooth space (after the division of a tooth in Litvin and
-   Fuentes 2004). Neighbours share only the radial cut between them, so that teeth may be divided differently. */
+/* The finite-element mesh of a transverse section: a sector of a few teeth, quadrilaterals. Per tooth a core block
+   (columns across the tooth, rows from the tip down to the start of the active profile and on down to the bore) and two
+   side blocks whose upper edge is the root from there to the middle of the tooth space (after the division of a tooth
+   in Litvin and Fuentes 2004). Neighbours share only the radial cut between them, so that teeth may be divided
+   differently. */
 #ifndef EASEOFF_FLEXIBILITY_SECTION_H
 #define EASEOFF_FLEXIBILITY_SECTION_H
 
@@ -32,22 +33,24 @@ struct eo_flank_nodes {
 /* Frame: the loaded tooth's centre line along +y, its loaded flank at x > 0; lengths in m. */
 struct eo_section {
   int nodes, quads;
-  double *point;         /* [nodes][2] */
-  int *quad;             /* [quads][4], counterclockwise */
-  unsigned char *half;   /* [quads]: 1 in the loaded half of the loaded tooth: loaded side of its centre line, outside the root circle */
+  double *point;       /* [nodes][2] */
+  int *quad;           /* [quads][4], counterclockwise */
+  unsigned char *half; /* [quads]: 1 in the loaded half of the loaded tooth: loaded side of its centre line, outside the
+                          root circle */
   unsigned char *fixed;  /* [nodes]: 1 on the bore and on both radial cut faces */
   unsigned char *centre; /* [nodes]: 1 on the centre line of the loaded tooth, tip to bore */
   double bore_radius;
-  struct eo_flank_nodes flank;         /* loaded flank of the loaded tooth */
-  struct eo_flank_nodes next_flank[2]; /* same side of the neighbours; [0]: pair k - 1, [1]: pair k + 1; empty with 1 tooth */
-  int root_nodes;        /* on the loaded side, from the start of the active profile to the middle of the tooth space */
-  int *root;             /* [root_nodes]; root[0] is also a flank node */
+  struct eo_flank_nodes flank; /* loaded flank of the loaded tooth */
+  struct eo_flank_nodes
+      next_flank[2]; /* same side of the neighbours; [0]: pair k - 1, [1]: pair k + 1; empty with 1 tooth */
+  int root_nodes;    /* on the loaded side, from the start of the active profile to the middle of the tooth space */
+  int *root;         /* [root_nodes]; root[0] is also a flank node */
 };
 
-/* bore_radius: where the sector ends inwards. Errors: memory; EO_ERROR_INPUT when that many teeth do not fit round the gear
-   or the bore leaves no rim. */
-enum eo_code eo_section_init(struct eo_section *section, const struct eo_geometry *geometry, int member, double bore_radius,
-                             const struct eo_section_settings *settings, struct eo_error *error);
+/* bore_radius: where the sector ends inwards. Errors: memory; EO_ERROR_INPUT when that many teeth do not fit round the
+   gear or the bore leaves no rim. */
+enum eo_code eo_section_init(struct eo_section *section, const struct eo_geometry *geometry, int member,
+                             double bore_radius, const struct eo_section_settings *settings, struct eo_error *error);
 void eo_section_done(struct eo_section *section);
 
 #endif

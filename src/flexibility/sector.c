@@ -7,11 +7,16 @@
 #include <string.h>
 
 /* 3 x 3 blocks between neighbouring section nodes. */
-enum { LOWER, UPPER, ACROSS, KINDS }; /* within the lower face, within the upper face, from lower (column) to upper (row) */
+enum {
+  LOWER,
+  UPPER,
+  ACROSS,
+  KINDS
+}; /* within the lower face, within the upper face, from lower (column) to upper (row) */
 struct blocks {
-  int *start;               /* [free nodes + 1] */
-  int *row;                 /* [start[free nodes]]: ascending, every neighbour and the node itself */
-  double (*value)[KINDS][9];/* [start[free nodes]], row-major: [row direction][column direction] */
+  int *start;                /* [free nodes + 1] */
+  int *row;                  /* [start[free nodes]]: ascending, every neighbour and the node itself */
+  double (*value)[KINDS][9]; /* [start[free nodes]], row-major: [row direction][column direction] */
 };
 
 double eo_sector_twist(const struct eo_geometry *geometry, int member)
@@ -207,7 +212,8 @@ static void add_brick(const struct eo_sector *sector, const int *quad, double k[
 }
 
 /* One column of the lower triangle: the rest of its own layer, then the next layer. */
-static int put_column(const struct eo_sector *sector, const struct blocks *blocks, int layer, int node, int direction, int filled)
+static int put_column(const struct eo_sector *sector, const struct blocks *blocks, int layer, int node, int direction,
+                      int filled)
 {
   const struct eo_sparse *m = &sector->matrix;
   int base = 3 * layer * sector->free_nodes, from = blocks->start[node], end = blocks->start[node + 1];
@@ -215,7 +221,8 @@ static int put_column(const struct eo_sector *sector, const struct blocks *block
   for (int p = from; p < end; p++)
     for (int i = blocks->row[p] == node ? direction : 0; i < 3 && blocks->row[p] >= node; i++) {
       m->row[filled] = base + 3 * blocks->row[p] + i;
-      m->value[filled++] = above * blocks->value[p][LOWER][3 * i + direction] + below * blocks->value[p][UPPER][3 * i + direction];
+      m->value[filled++] = above * blocks->value[p][LOWER][3 * i + direction] +
+                           below * blocks->value[p][UPPER][3 * i + direction];
     }
   for (int p = from; p < end && layer < sector->layers; p++)
     for (int i = 0; i < 3; i++) {
@@ -254,8 +261,9 @@ static void free_blocks(struct blocks *blocks)
   free(blocks->value);
 }
 
-enum eo_code eo_sector_init(struct eo_sector *sector, const struct eo_section *section, int layers, double width, double twist,
-                            const struct eo_material *material, enum eo_sector_extent extent, struct eo_error *error)
+enum eo_code eo_sector_init(struct eo_sector *sector, const struct eo_section *section, int layers, double width,
+                            double twist, const struct eo_material *material, enum eo_sector_extent extent,
+                            struct eo_error *error)
 {
   struct blocks blocks = {0};
   enum eo_code code = EO_ERROR_MEMORY;
@@ -272,7 +280,8 @@ enum eo_code eo_sector_init(struct eo_sector *sector, const struct eo_section *s
     if (!belongs(section, extent, q))
       continue;
     if (brick_stiffness(sector, section->quad + 4 * q, material, k))
-      code = eo_error_set(error, EO_ERROR_NUMERIC, "", "The finite-element mesh folds: the tooth root is too unusual for it.");
+      code = eo_error_set(error, EO_ERROR_NUMERIC, "",
+                          "The finite-element mesh folds: the tooth root is too unusual for it.");
     else
       add_brick(sector, section->quad + 4 * q, k, &blocks);
   }

@@ -1,36 +1,38 @@
-/* A section swept along the helix: bricks between layers, each layer the section turned by eta tan(beta)/r. Every layer uses
-   its own turned frame; in it all layers are alike, so one layer of elements is computed and put in everywhere. */
+/* A section swept along the helix: bricks between layers, each layer the section turned by eta tan(beta)/r. Every layer
+   uses its own turned frame; in it all layers are alike, so one layer of elements is computed and put in everywhere. */
 #ifndef EASEOFF_FLEXIBILITY_SECTOR_H
 #define EASEOFF_FLEXIBILITY_SECTOR_H
 
 #include "flexibility/section.h"
 #include "numerics/sparse.h"
 
-/* What is modelled. The half tooth is the material between the centre surface and the loaded flank of the loaded tooth, outside the
-   root cylinder; the centre surface and the root cylinder are fixed (Chang, Liu, Wu 2015). Because whatever is cut is held, its
-   compliance is never above that of the whole sector, in the sense of quadratic forms. */
+/* What is modelled. The half tooth is the material between the centre surface and the loaded flank of the loaded tooth,
+   outside the root cylinder; the centre surface and the root cylinder are fixed (Chang, Liu, Wu 2015). Because whatever
+   is cut is held, its compliance is never above that of the whole sector, in the sense of quadratic forms. */
 enum eo_sector_extent { EO_WHOLE_SECTOR, EO_HALF_TOOTH };
 
 struct eo_sector {
   const struct eo_section *section; /* borrowed */
   int layers;
-  double width;                     /* of the face, m */
-  double twist;                     /* turn of the section per length, counterclockwise towards + eta, rad/m */
-  double (*frame)[3][3];            /* [section node][direction][component]: (1, 0, 0).. or, on flanks, into the tooth along
-                                       the normal, along the profile, across both; in the frame of the layer */
+  double width;          /* of the face, m */
+  double twist;          /* turn of the section per length, counterclockwise towards + eta, rad/m */
+  double (*frame)[3][3]; /* [section node][direction][component]: (1, 0, 0).. or, on flanks, into the tooth along
+                            the normal, along the profile, across both; in the frame of the layer */
   int free_nodes;
-  int *free;                        /* [section node]: number among the free nodes, -1: fixed or absent */
+  int *free; /* [section node]: number among the free nodes, -1: fixed or absent */
   struct eo_sparse matrix;
-  int *group;                       /* [matrix.n]: node of each unknown */
+  int *group; /* [matrix.n]: node of each unknown */
 };
 
-/* eta > 0 is the side that meets first: it leads on the pinion (turned clockwise, towards its loaded flank) and on the gear. */
+/* eta > 0 is the side that meets first: it leads on the pinion (turned clockwise, towards its loaded flank) and on the
+   gear. */
 double eo_sector_twist(const struct eo_geometry *geometry, int member);
 
 /* Assembles the stiffness. section is borrowed for the life of the sector.
    Errors: memory; EO_ERROR_NUMERIC when the mesh folds. */
-enum eo_code eo_sector_init(struct eo_sector *sector, const struct eo_section *section, int layers, double width, double twist,
-                            const struct eo_material *material, enum eo_sector_extent extent, struct eo_error *error);
+enum eo_code eo_sector_init(struct eo_sector *sector, const struct eo_section *section, int layers, double width,
+                            double twist, const struct eo_material *material, enum eo_sector_extent extent,
+                            struct eo_error *error);
 void eo_sector_done(struct eo_sector *sector);
 
 /* Number of the unknown, -1 when the node is fixed or absent. */

@@ -72,7 +72,8 @@ void eo_spline_value_weights(const struct eo_spline *spline, double x, double *r
       row[j] += weight[b] * spline->to_coefficients[(size_t)(first + b) * (size_t)n + (size_t)j];
 }
 
-/* Inverts the collocation matrix a[n][n] into inverse; it is totally positive, so no pivoting is needed (de Boor, Pinkus 1977). */
+/* Inverts the collocation matrix a[n][n] into inverse; it is totally positive, so no pivoting is needed (de Boor,
+   Pinkus 1977). */
 static void invert_collocation(int n, double *a, double *inverse)
 {
   size_t row = (size_t)n;

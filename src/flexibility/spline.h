@@ -8,14 +8,15 @@
 enum { EO_SPLINE_MAX = 129, EO_SPLINE_WIDTH = 4 };
 
 struct eo_spline {
-  int count;                         /* values = B-splines, 4..EO_SPLINE_MAX */
-  double first, last;                /* ends of the range */
-  double margin;                     /* outside, straight on for this length, then constant */
+  int count;          /* values = B-splines, 4..EO_SPLINE_MAX */
+  double first, last; /* ends of the range */
+  double margin;      /* outside, straight on for this length, then constant */
   double knot[EO_SPLINE_MAX + EO_SPLINE_WIDTH];
-  double *to_coefficients;           /* [count][count]: B-spline coefficients from values */
+  double *to_coefficients; /* [count][count]: B-spline coefficients from values */
 };
 
-/* place[count] ascends strictly. Beyond the ends the spline goes on straight for the first and last interval's length. */
+/* place[count] ascends strictly. Beyond the ends the spline goes on straight for the first and last interval's length.
+ */
 enum eo_code eo_spline_init(struct eo_spline *spline, int count, const double *place, struct eo_error *error);
 void eo_spline_done(struct eo_spline *spline);
 

@@ -48,7 +48,8 @@ static void tangents(const struct eo_sector *sector, int i, int kind, double alo
   }
 }
 
-/* Stress from the three covariant strains (along-along, sweep-sweep, along-sweep), in the frame e1 = along, e2 across. */
+/* Stress from the three covariant strains (along-along, sweep-sweep, along-sweep), in the frame e1 = along, e2 across.
+ */
 static void stress_of_strains(const double along[3], const double sweep[3], const struct eo_material *material,
                               double matrix[EO_STRESSES][3])
 {
@@ -77,32 +78,33 @@ static void add_node(struct eo_stress_stencil *stencil, const struct eo_sector *
     double unit[3] = {c == 0, c == 1, c == 2}, moved[3];
     turned(sector, layer_step, unit, moved);
     double on_along = dot(tangent[0], moved), on_sweep = dot(tangent[1], moved);
-    double strain[3] = {weight[0] * on_along, weight[1] * on_sweep, 0.5 * (weight[1] * on_along + weight[0] * on_sweep)};
+    double strain[3] = {weight[0] * on_along, weight[1] * on_sweep,
+                        0.5 * (weight[1] * on_along + weight[0] * on_sweep)};
     for (int r = 0; r < EO_STRESSES; r++)
       stencil->matrix[n][r][c] = dot(law[r], strain);
   }
 }
 
-static void fill_stencil(struct eo_stress_stencil *stencil, const struct eo_sector *sector, const struct eo_material *material,
-                         int i, int kind)
+static void fill_stencil(struct eo_stress_stencil *stencil, const struct eo_sector *sector,
+                         const struct eo_material *material, int i, int kind)
 {
   double tangent[2][3], law[EO_STRESSES][3];
   tangents(sector, i, kind, tangent[0], tangent[1]);
   stress_of_strains(tangent[0], tangent[1], material, law);
   stencil->count = 0;
   for (int k = 0; k < 3; k++) {
-    add_node(stencil, sector, difference[1].step[k], 0, (double[]){difference[1].weight[k], 0}, (const double(*)[3])tangent,
-             (const double(*)[3])law);
+    add_node(stencil, sector, difference[1].step[k], 0, (double[]){difference[1].weight[k], 0},
+             (const double(*)[3])tangent, (const double(*)[3])law);
     add_node(stencil, sector, 0, difference[kind].step[k], (double[]){0, difference[kind].weight[k]},
              (const double(*)[3])tangent, (const double(*)[3])law);
   }
 }
 
-enum eo_code eo_stress_operator_init(struct eo_stress_operator *operator, const struct eo_sector *sector,
+enum eo_code eo_stress_operator_init(struct eo_stress_operator *operator, const struct eo_sector * sector,
                                      const struct eo_material *material, struct eo_error *error)
 {
-  *operator = (struct eo_stress_operator){.points = sector->section->root_nodes - 2, .layers = sector->layers};
-  operator->stencil = malloc((size_t)operator->points * sizeof *operator->stencil);
+  *operator=(struct eo_stress_operator){.points = sector->section->root_nodes - 2, .layers = sector->layers};
+  operator->stencil = malloc((size_t) operator->points * sizeof * operator->stencil);
   if (!operator->stencil)
     return eo_error_memory(error);
   for (int i = 0; i < operator->points; i++)
@@ -119,7 +121,7 @@ void eo_stress_operator_done(struct eo_stress_operator *operator)
   operator->stencil = NULL;
 }
 
-void eo_stress_operator_apply(const struct eo_stress_operator *operator, const double *displacement, double *stress)
+void eo_stress_operator_apply(const struct eo_stress_operator *operator, const double * displacement, double *stress)
 {
   int across = operator->layers + 1;
   for (int i = 0; i < operator->points; i++)

@@ -4,18 +4,28 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum eo_code eo_flank_table_init(struct eo_flank_table *table, const struct eo_member_settings *settings, struct eo_error *error)
+enum eo_code eo_flank_table_init(struct eo_flank_table *table, const struct eo_member_settings *settings,
+                                 struct eo_error *error)
 {
   const struct eo_section_settings *section = &settings->section;
-  *table = (struct eo_flank_table){.rows = section->loaded.rows + 1, .next_rows = section->next.rows + 1, .layers = settings->layers,
-                             .root_points = section->loaded.fillet[1] - 1};
+  *table = (struct eo_flank_table){.rows = section->loaded.rows + 1,
+                                   .next_rows = section->next.rows + 1,
+                                   .layers = settings->layers,
+                                   .root_points = section->loaded.fillet[1] - 1};
   size_t across = (size_t)table->layers + 1, rows = (size_t)table->rows, next_rows = (size_t)table->next_rows;
   size_t flank = rows * across, next = next_rows * across, points = (size_t)table->root_points;
   table->stresses = points * across * EO_STRESSES;
-  size_t length[] = {rows, next_rows, 2 * points, points, flank * flank, flank * flank, flank * table->stresses,
-                     next * table->stresses, next * table->stresses};
-  double **place[] = {&table->s, &table->next_s, &table->root, &table->arc, &table->bulk, &table->ahead, &table->stress,
-                      &table->next_stress[0], &table->next_stress[1]};
+  size_t length[] = {rows,
+                     next_rows,
+                     2 * points,
+                     points,
+                     flank * flank,
+                     flank * flank,
+                     flank * table->stresses,
+                     next * table->stresses,
+                     next * table->stresses};
+  double **place[] = {&table->s,     &table->next_s, &table->root,           &table->arc,           &table->bulk,
+                      &table->ahead, &table->stress, &table->next_stress[0], &table->next_stress[1]};
   for (size_t i = 0; i < sizeof length / sizeof *length; i++)
     table->size += length[i];
   double *data = table->data = malloc(table->size * sizeof *data);
@@ -44,7 +54,8 @@ void eo_flank_table_done(struct eo_flank_table *table)
   *table = (struct eo_flank_table){0};
 }
 
-static enum eo_code grid_init(struct eo_grid *grid, int rows, const double *s, int layers, double width, struct eo_error *error)
+static enum eo_code grid_init(struct eo_grid *grid, int rows, const double *s, int layers, double width,
+                              struct eo_error *error)
 {
   double eta[EO_SPLINE_MAX];
   for (int l = 0; l <= layers && l < EO_SPLINE_MAX; l++)
@@ -131,8 +142,8 @@ static enum eo_code refine(const struct eo_flank_table *table, const double *coa
   return EO_OK;
 }
 
-/* C(k + 1, k) from the sector's own columns. The sector is not the same seen from tooth k + 1 as from k, so the mean of the response ahead
-   and of the transposed response behind is taken: then C(k + 1, k) = C(k, k + 1)' exactly. */
+/* C(k + 1, k) from the sector's own columns. The sector is not the same seen from tooth k + 1 as from k, so the mean of
+   the response ahead and of the transposed response behind is taken: then C(k + 1, k) = C(k, k + 1)' exactly. */
 static enum eo_code fill_ahead(struct eo_flank_table *table, const struct eo_member_result *result)
 {
   size_t n = (size_t)table->flank.points;
@@ -166,8 +177,8 @@ static enum eo_code measure(const struct eo_flank_table *table, double *smallest
   return code;
 }
 
-enum eo_code eo_flank_table_fill(struct eo_flank_table *table, const struct eo_member_result *result, double width, double *smallest,
-                           struct eo_error *error)
+enum eo_code eo_flank_table_fill(struct eo_flank_table *table, const struct eo_member_result *result, double width,
+                                 double *smallest, struct eo_error *error)
 {
   size_t n = (size_t)(result->rows * (result->layers + 1)), next = (size_t)(result->next_rows * (result->layers + 1));
   memcpy(table->s, result->s, (size_t)table->rows * sizeof *table->s);

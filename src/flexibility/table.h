@@ -8,39 +8,40 @@
 /* Tensor spline: coefficient number row * (layers + 1) + layer. */
 struct eo_grid {
   struct eo_spline s, eta;
-  int points;              /* rows * (layers + 1) */
+  int points; /* rows * (layers + 1) */
 };
 
 /* The sixteen coefficients that count at a point. */
 struct eo_grid_weights {
-  int first;               /* number of the first; rows follow at distance eta.count */
-  double weight[16];       /* [row][layer] */
+  int first;         /* number of the first; rows follow at distance eta.count */
+  double weight[16]; /* [row][layer] */
 };
 
 struct eo_flank_table {
   int rows, next_rows, layers, root_points;
   struct eo_grid flank, next;
-  size_t stresses;         /* root_points * (layers + 1) * EO_STRESSES */
-  double *data;            /* the arrays below, one block of `size` doubles */
+  size_t stresses; /* root_points * (layers + 1) * EO_STRESSES */
+  double *data;    /* the arrays below, one block of `size` doubles */
   size_t size;
-  double *s;               /* [rows] */
-  double *next_s;          /* [next_rows] */
-  double *root;            /* [root_points][2] */
-  double *arc;             /* [root_points] */
-  double *bulk;            /* [flank][flank], symmetric */
-  double *ahead;           /* [flank on pair k][flank on pair k + 1] */
-  double *stress;          /* [flank][stresses] */
-  double *next_stress[2];  /* [next][stresses]: loads on pair k - 1, k + 1 */
+  double *s;              /* [rows] */
+  double *next_s;         /* [next_rows] */
+  double *root;           /* [root_points][2] */
+  double *arc;            /* [root_points] */
+  double *bulk;           /* [flank][flank], symmetric */
+  double *ahead;          /* [flank on pair k][flank on pair k + 1] */
+  double *stress;         /* [flank][stresses] */
+  double *next_stress[2]; /* [next][stresses]: loads on pair k - 1, k + 1 */
 };
 
 /* Allocates for the settings; the numbers are still to be filled. */
-enum eo_code eo_flank_table_init(struct eo_flank_table *table, const struct eo_member_settings *settings, struct eo_error *error);
+enum eo_code eo_flank_table_init(struct eo_flank_table *table, const struct eo_member_settings *settings,
+                                 struct eo_error *error);
 void eo_flank_table_done(struct eo_flank_table *table);
 
-/* Fills the data from finite-element results. smallest: smallest eigenvalue of the compliance of a flank with its neighbours
-   moving alike or against each other, over the largest. */
-enum eo_code eo_flank_table_fill(struct eo_flank_table *table, const struct eo_member_result *result, double width, double *smallest,
-                           struct eo_error *error);
+/* Fills the data from finite-element results. smallest: smallest eigenvalue of the compliance of a flank with its
+   neighbours moving alike or against each other, over the largest. */
+enum eo_code eo_flank_table_fill(struct eo_flank_table *table, const struct eo_member_result *result, double width,
+                                 double *smallest, struct eo_error *error);
 
 /* Makes the splines from the data; width: of the face. */
 enum eo_code eo_flank_table_connect(struct eo_flank_table *table, double width, struct eo_error *error);

@@ -6,57 +6,68 @@
 static const char *const member_name[2] = {"pinion", "gear"};
 static const char *const end_name[2] = {"left", "right"};
 
-static enum eo_code check_body(const struct eo_gear_pair *pair, const struct eo_geometry *geometry, int i, struct eo_error *error)
+static enum eo_code check_body(const struct eo_gear_pair *pair, const struct eo_geometry *geometry, int i,
+                               struct eo_error *error)
 {
   double root = 2 * geometry->root_radius[i];
   char key[64];
   snprintf(key, sizeof key, "/gear_pair/%s_bore_mm", member_name[i]);
   if (pair->bore[i] > root - 2 * pair->normal_module)
-    return eo_error_set(error, EO_ERROR_INPUT, key, "The bore of %.6g mm leaves less than one module of rim below the root diameter of %.6g mm.",
+    return eo_error_set(error, EO_ERROR_INPUT, key,
+                        "The bore of %.6g mm leaves less than one module of rim below the root diameter of %.6g mm.",
                         1e3 * pair->bore[i], 1e3 * root);
   snprintf(key, sizeof key, "/gear_pair/%s_groove_diameter_mm", member_name[i]);
   if (pair->ends == 2 && (pair->groove_diameter[i] <= pair->bore[i] || pair->groove_diameter[i] > root))
-    return eo_error_set(error, EO_ERROR_INPUT, key, "The body between the ends, %.6g mm, must be thicker than the bore, %.6g mm, and not above the root, %.6g mm.",
-                        1e3 * pair->groove_diameter[i], 1e3 * pair->bore[i], 1e3 * root);
+    return eo_error_set(
+        error, EO_ERROR_INPUT, key,
+        "The body between the ends, %.6g mm, must be thicker than the bore, %.6g mm, and not above the root, %.6g mm.",
+        1e3 * pair->groove_diameter[i], 1e3 * pair->bore[i], 1e3 * root);
   return EO_OK;
 }
 
 static enum eo_code check_groove(const struct eo_gear_pair *pair, struct eo_error *error)
 {
   if (pair->ends == 2 && pair->groove_width < 1e-4)
-    return eo_error_set(error, EO_ERROR_INPUT, "/gear_pair/groove_width_mm", "Two ends need a groove of at least 0.1 mm between them, not %.6g mm.",
+    return eo_error_set(error, EO_ERROR_INPUT, "/gear_pair/groove_width_mm",
+                        "Two ends need a groove of at least 0.1 mm between them, not %.6g mm.",
                         1e3 * pair->groove_width);
   return EO_OK;
 }
 
 /* Relief on one side of the pitch point must start before the active profile ends. */
-static enum eo_code check_relief(double relief, double start, double active, int member, int end, const char *side, struct eo_error *error)
+static enum eo_code check_relief(double relief, double start, double active, int member, int end, const char *side,
+                                 struct eo_error *error)
 {
   if (relief == 0 || start < active)
     return EO_OK;
   char key[96];
   snprintf(key, sizeof key, "/modification/%s/%s/%s_relief_start_mm", member_name[member], end_name[end], side);
-  return eo_error_set(error, EO_ERROR_INPUT, key, "%.6g mm is not inside the active profile, which ends %.6g mm from the pitch point on this side.",
+  return eo_error_set(error, EO_ERROR_INPUT, key,
+                      "%.6g mm is not inside the active profile, which ends %.6g mm from the pitch point on this side.",
                       1e3 * start, 1e3 * active);
 }
 
-static enum eo_code check_end_reliefs(const struct eo_flank_modification *flank, double face_width, int member, int end, struct eo_error *error)
+static enum eo_code check_end_reliefs(const struct eo_flank_modification *flank, double face_width, int member, int end,
+                                      struct eo_error *error)
 {
   static const char *const which[2] = {"trailing", "leading"};
   char key[96];
   double length = 0;
   for (int k = 0; k < 2; k++) {
-    snprintf(key, sizeof key, "/modification/%s/%s/%s_end_relief_length_mm", member_name[member], end_name[end], which[k]);
+    snprintf(key, sizeof key, "/modification/%s/%s/%s_end_relief_length_mm", member_name[member], end_name[end],
+             which[k]);
     if (flank->end_relief[k] > 0 && flank->end_relief_length[k] <= 0)
       return eo_error_set(error, EO_ERROR_INPUT, key, "An end relief needs a length above 0.");
     length += flank->end_relief_length[k];
   }
   if (length > face_width)
-    return eo_error_set(error, EO_ERROR_INPUT, key, "The end reliefs are %.6g mm long together, the face only %.6g mm.", 1e3 * length, 1e3 * face_width);
+    return eo_error_set(error, EO_ERROR_INPUT, key, "The end reliefs are %.6g mm long together, the face only %.6g mm.",
+                        1e3 * length, 1e3 * face_width);
   return EO_OK;
 }
 
-enum eo_code eo_modification_check(const struct eo_design *design, const struct eo_geometry *geometry, struct eo_error *error)
+enum eo_code eo_modification_check(const struct eo_design *design, const struct eo_geometry *geometry,
+                                   struct eo_error *error)
 {
   const double tip[2] = {geometry->rack_top, -geometry->rack_bottom}; /* the pinion's tip meets the gear's root */
   enum eo_code code = EO_OK;
@@ -72,49 +83,62 @@ enum eo_code eo_modification_check(const struct eo_design *design, const struct 
   return code;
 }
 
-static enum eo_code check_start_bounds(const struct eo_range *range, double active, const char *key, struct eo_error *error)
+static enum eo_code check_start_bounds(const struct eo_range *range, double active, const char *key,
+                                       struct eo_error *error)
 {
   if (range->low < range->high && range->high < active)
     return EO_OK;
-  return eo_error_set(error, EO_ERROR_INPUT, key, "The bounds %.6g .. %.6g mm must increase and stay inside the active profile, which ends at %.6g mm.",
-                      1e3 * range->low, 1e3 * range->high, 1e3 * active);
+  return eo_error_set(
+      error, EO_ERROR_INPUT, key,
+      "The bounds %.6g .. %.6g mm must increase and stay inside the active profile, which ends at %.6g mm.",
+      1e3 * range->low, 1e3 * range->high, 1e3 * active);
 }
 
-static enum eo_code check_optimization(const struct eo_optimization *optimization, const struct eo_geometry *geometry, struct eo_error *error)
+static enum eo_code check_optimization(const struct eo_optimization *optimization, const struct eo_geometry *geometry,
+                                       struct eo_error *error)
 {
   if (optimization->removal_threshold >= optimization->trust_threshold)
     return eo_error_set(error, EO_ERROR_INPUT, "/optimization/removal_threshold",
-                        "%.6g is not below the trust threshold %.6g: no prediction would survive a generation.", optimization->removal_threshold,
-                        optimization->trust_threshold);
-  enum eo_code code = check_start_bounds(&optimization->tip_relief_start, geometry->rack_top, "/optimization/bounds/tip_relief_start_mm", error);
+                        "%.6g is not below the trust threshold %.6g: no prediction would survive a generation.",
+                        optimization->removal_threshold, optimization->trust_threshold);
+  enum eo_code code = check_start_bounds(&optimization->tip_relief_start, geometry->rack_top,
+                                         "/optimization/bounds/tip_relief_start_mm", error);
   if (!code)
-    code = check_start_bounds(&optimization->root_relief_start, -geometry->rack_bottom, "/optimization/bounds/root_relief_start_mm", error);
+    code = check_start_bounds(&optimization->root_relief_start, -geometry->rack_bottom,
+                              "/optimization/bounds/root_relief_start_mm", error);
   return code;
 }
 
 /* Contact points at one mesh position, roughly: every contact line across the face, and the pieces of tip edges. */
 static double contact_points(const struct eo_resolution *resolution, const struct eo_geometry *geometry)
 {
-  return (geometry->transverse_contact_ratio + geometry->overlap_ratio + 1) * (resolution->cells_per_line + (resolution->tip_edge_contact ? 24 : 0));
+  return (geometry->transverse_contact_ratio + geometry->overlap_ratio + 1) *
+         (resolution->cells_per_line + (resolution->tip_edge_contact ? 24 : 0));
 }
 
-static enum eo_code check_resolution(const struct eo_resolution *resolution, const struct eo_geometry *geometry, struct eo_error *error)
+static enum eo_code check_resolution(const struct eo_resolution *resolution, const struct eo_geometry *geometry,
+                                     struct eo_error *error)
 {
   static const double MOST_POINTS = 2000, MOST_BYTES = 1 << 30;
   double points = contact_points(resolution, geometry), bytes = sizeof(float) * points * points * resolution->positions;
   if (resolution->sector_teeth == 4)
-    return eo_error_set(error, EO_ERROR_INPUT, "/resolution/sector_teeth", "The sector has its loaded tooth in the middle: 3 or 5 teeth, not 4.");
+    return eo_error_set(error, EO_ERROR_INPUT, "/resolution/sector_teeth",
+                        "The sector has its loaded tooth in the middle: 3 or 5 teeth, not 4.");
   if (2 * resolution->te_harmonics > resolution->positions)
-    return eo_error_set(error, EO_ERROR_INPUT, "/resolution/te_harmonics", "%d harmonics cannot be told apart on %d mesh positions: at most %d.",
-                        resolution->te_harmonics, resolution->positions, resolution->positions / 2);
+    return eo_error_set(error, EO_ERROR_INPUT, "/resolution/te_harmonics",
+                        "%d harmonics cannot be told apart on %d mesh positions: at most %d.", resolution->te_harmonics,
+                        resolution->positions, resolution->positions / 2);
   if (points > MOST_POINTS || bytes > MOST_BYTES)
     return eo_error_set(error, EO_ERROR_INPUT, "/resolution/cells_per_line",
-                        "%d cells on each of up to %.0f contact lines, at %d mesh positions, are too many: at most %.0f points at a position and 1 GiB in all.",
-                        resolution->cells_per_line, ceil(geometry->transverse_contact_ratio + geometry->overlap_ratio), resolution->positions, MOST_POINTS);
+                        "%d cells on each of up to %.0f contact lines, at %d mesh positions, are too many: at most "
+                        "%.0f points at a position and 1 GiB in all.",
+                        resolution->cells_per_line, ceil(geometry->transverse_contact_ratio + geometry->overlap_ratio),
+                        resolution->positions, MOST_POINTS);
   return EO_OK;
 }
 
-static enum eo_code check_shaft(const struct eo_shafts *shafts, const struct eo_gear_pair *pair, int i, struct eo_error *error)
+static enum eo_code check_shaft(const struct eo_shafts *shafts, const struct eo_gear_pair *pair, int i,
+                                struct eo_error *error)
 {
   const double *bearing = shafts->bearing_position[i];
   double half = pair->ends == 2 ? pair->groove_width / 2 + pair->face_width : pair->face_width / 2;
@@ -122,24 +146,27 @@ static enum eo_code check_shaft(const struct eo_shafts *shafts, const struct eo_
   for (int k = 0; k < 2; k++) {
     snprintf(key, sizeof key, "/shafts/%s_%s_bearing_mm", member_name[i], end_name[k]);
     if (k == EO_LEFT ? bearing[k] > -half : bearing[k] < half)
-      return eo_error_set(error, EO_ERROR_INPUT, key, "The %s bearing at %.6g mm is not outside the toothed body, which ends at %.6g mm.", end_name[k],
-                          1e3 * bearing[k], 1e3 * (k == EO_LEFT ? -half : half));
+      return eo_error_set(error, EO_ERROR_INPUT, key,
+                          "The %s bearing at %.6g mm is not outside the toothed body, which ends at %.6g mm.",
+                          end_name[k], 1e3 * bearing[k], 1e3 * (k == EO_LEFT ? -half : half));
   }
   snprintf(key, sizeof key, "/shafts/%s_shaft_diameter_mm", member_name[i]);
   if (shafts->shaft_diameter[i] <= pair->bore[i])
-    return eo_error_set(error, EO_ERROR_INPUT, key, "The shaft, %.6g mm, must be thicker than the bore that runs through it, %.6g mm.",
+    return eo_error_set(error, EO_ERROR_INPUT, key,
+                        "The shaft, %.6g mm, must be thicker than the bore that runs through it, %.6g mm.",
                         1e3 * shafts->shaft_diameter[i], 1e3 * pair->bore[i]);
   return EO_OK;
 }
 
-static enum eo_code check_shafts(const struct eo_shafts *shafts, const struct eo_gear_pair *pair, struct eo_error *error)
+static enum eo_code check_shafts(const struct eo_shafts *shafts, const struct eo_gear_pair *pair,
+                                 struct eo_error *error)
 {
   enum eo_code code = EO_OK;
   for (int i = 0; i < 2 && !code; i++)
     if (!(shafts->bearing_position[i][EO_LEFT] < shafts->bearing_position[i][EO_RIGHT]))
       return eo_error_set(error, EO_ERROR_INPUT, i ? "/shafts/gear_left_bearing_mm" : "/shafts/pinion_left_bearing_mm",
-                          "The left bearing at %.6g mm is not left of the right one at %.6g mm.", 1e3 * shafts->bearing_position[i][EO_LEFT],
-                          1e3 * shafts->bearing_position[i][EO_RIGHT]);
+                          "The left bearing at %.6g mm is not left of the right one at %.6g mm.",
+                          1e3 * shafts->bearing_position[i][EO_LEFT], 1e3 * shafts->bearing_position[i][EO_RIGHT]);
     else if (shafts->enabled)
       code = check_shaft(shafts, pair, i, error);
   return code;

@@ -23,21 +23,28 @@ static void resolve_gear_pair(struct eo_gear_pair *pair, const struct eo_geometr
 }
 
 /* Solid pitch cylinder of one end and half the groove body, less the bore. */
-static void resolve_inertia(struct eo_supports *supports, const struct eo_gear_pair *pair, double density, int i, double pitch_radius)
+static void resolve_inertia(struct eo_supports *supports, const struct eo_gear_pair *pair, double density, int i,
+                            double pitch_radius)
 {
-  double groove = pair->ends == 2 ? pair->groove_width / 2 : 0, body = pair->groove_diameter[i] / 2, bore = pair->bore[i] / 2;
-  double area = pitch_radius * pitch_radius * pair->face_width + body * body * groove - bore * bore * (pair->face_width + groove);
-  double polar = pow(pitch_radius, 4) * pair->face_width + pow(body, 4) * groove - pow(bore, 4) * (pair->face_width + groove);
+  double groove = pair->ends == 2 ? pair->groove_width / 2 : 0, body = pair->groove_diameter[i] / 2,
+         bore = pair->bore[i] / 2;
+  double area = pitch_radius * pitch_radius * pair->face_width + body * body * groove -
+                bore * bore * (pair->face_width + groove);
+  double polar = pow(pitch_radius, 4) * pair->face_width + pow(body, 4) * groove -
+                 pow(bore, 4) * (pair->face_width + groove);
   fill(&supports->mass[i], density * M_PI * area);
   fill(&supports->inertia[i], density * M_PI / 2 * polar);
 }
 
-static void resolve_groove(struct eo_supports *supports, const struct eo_gear_pair *pair, const struct eo_material *material, int i)
+static void resolve_groove(struct eo_supports *supports, const struct eo_gear_pair *pair,
+                           const struct eo_material *material, int i)
 {
   double body = pair->groove_diameter[i] / 2, bore = pair->bore[i] / 2;
   double shear_modulus = material->youngs_modulus / (2 * (1 + material->poissons_ratio));
-  fill(&supports->groove_axial_stiffness[i], material->youngs_modulus * M_PI * (body * body - bore * bore) / pair->groove_width);
-  fill(&supports->groove_torsional_stiffness[i], shear_modulus * M_PI / 2 * (pow(body, 4) - pow(bore, 4)) / pair->groove_width);
+  fill(&supports->groove_axial_stiffness[i],
+       material->youngs_modulus * M_PI * (body * body - bore * bore) / pair->groove_width);
+  fill(&supports->groove_torsional_stiffness[i],
+       shear_modulus * M_PI / 2 * (pow(body, 4) - pow(bore, 4)) / pair->groove_width);
 }
 
 static void resolve_shafts(struct eo_shafts *shafts, const struct eo_gear_pair *pair)
@@ -46,11 +53,13 @@ static void resolve_shafts(struct eo_shafts *shafts, const struct eo_gear_pair *
   for (int i = 0; i < 2; i++) {
     fill(&shafts->bearing_position[i][EO_LEFT], -outside);
     fill(&shafts->bearing_position[i][EO_RIGHT], outside);
-    fill(&shafts->shaft_diameter[i], fmax(0.8 * pair->groove_diameter[i], (pair->groove_diameter[i] + pair->bore[i]) / 2));
+    fill(&shafts->shaft_diameter[i],
+         fmax(0.8 * pair->groove_diameter[i], (pair->groove_diameter[i] + pair->bore[i]) / 2));
   }
 }
 
-static void add_scenario(struct eo_objective *objective, double in_plane, double out_of_plane, double compliance, double speed)
+static void add_scenario(struct eo_objective *objective, double in_plane, double out_of_plane, double compliance,
+                         double speed)
 {
   objective->scenario[objective->scenarios++] = (struct eo_scenario){in_plane, out_of_plane, compliance, speed};
 }
@@ -80,10 +89,12 @@ static void resolve_start_range(struct eo_range *range, double active, double mo
   fill(&range->low, fmin(0.05 * module, 0.5 * range->high));
 }
 
-static void resolve_optimization(struct eo_optimization *optimization, const struct eo_gear_pair *pair, const struct eo_geometry *geometry)
+static void resolve_optimization(struct eo_optimization *optimization, const struct eo_gear_pair *pair,
+                                 const struct eo_geometry *geometry)
 {
-  int variables = optimization->variables == EO_VARIABLES_LISTED ? optimization->listed
-                  : optimization->variables == EO_VARIABLES_PER_END && pair->ends == 2 ? 10 : 5;
+  int variables = optimization->variables == EO_VARIABLES_LISTED                       ? optimization->listed
+                  : optimization->variables == EO_VARIABLES_PER_END && pair->ends == 2 ? 10
+                                                                                       : 5;
   fill(&optimization->share_radius, 0.03 * pow(variables / 5., 1.9));
   resolve_start_range(&optimization->tip_relief_start, geometry->rack_top, pair->normal_module);
   resolve_start_range(&optimization->root_relief_start, -geometry->rack_bottom, pair->normal_module);

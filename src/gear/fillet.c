@@ -21,7 +21,8 @@ static struct tip rack_tip(const struct eo_geometry *g, int member)
 }
 
 /* Trochoid point generated at angle psi of the rounding (alpha_n at the flank, pi/2 at its lowest point). */
-static void trochoid(const struct eo_geometry *g, int member, const struct tip *tip, double psi, double point[2], double normal[2])
+static void trochoid(const struct eo_geometry *g, int member, const struct tip *tip, double psi, double point[2],
+                     double normal[2])
 {
   double r = g->reference_radius[member], stretch = 1 / cos(g->helix_angle);
   double x = (tip->centre[0] - g->fillet_radius * cos(psi)) * stretch, y = tip->centre[1] - g->fillet_radius * sin(psi);

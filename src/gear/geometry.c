@@ -57,7 +57,8 @@ static void set_basics(struct eo_geometry *g, const struct eo_gear_pair *pair)
     g->base_radius[i] = g->reference_radius[i] * cos(g->transverse_pressure_angle);
     g->root_radius[i] = g->reference_radius[i] - g->dedendum + g->profile_shift[i] * g->normal_module;
     g->tip_radius[i] = isnan(pair->tip_diameter[i])
-                           ? g->reference_radius[i] + (pair->addendum_coefficient + g->profile_shift[i]) * g->normal_module
+                           ? g->reference_radius[i] +
+                                 (pair->addendum_coefficient + g->profile_shift[i]) * g->normal_module
                            : pair->tip_diameter[i] / 2;
   }
   g->transverse_base_pitch = M_PI * g->transverse_module * cos(g->transverse_pressure_angle);
@@ -70,11 +71,14 @@ static enum eo_code set_working(struct eo_geometry *g, const struct eo_gear_pair
 {
   double sum = g->reference_radius[0] + g->reference_radius[1], base = g->base_radius[0] + g->base_radius[1];
   double value = eo_geometry_involute_function(g->transverse_pressure_angle) +
-                 2 * (pair->profile_shift[0] + pair->profile_shift[1]) * tan(g->normal_pressure_angle) / (g->teeth[0] + g->teeth[1]);
+                 2 * (pair->profile_shift[0] + pair->profile_shift[1]) * tan(g->normal_pressure_angle) /
+                     (g->teeth[0] + g->teeth[1]);
   if (value <= 0)
-    return refuse(error, "/gear_pair/pinion_profile_shift", "The sum of the profile shifts is so negative that the pair has no working pressure angle.");
+    return refuse(error, "/gear_pair/pinion_profile_shift",
+                  "The sum of the profile shifts is so negative that the pair has no working pressure angle.");
   /* Exactly the reference values when nothing shifts them. */
-  double tight = pair->profile_shift[0] + pair->profile_shift[1] == 0 ? g->transverse_pressure_angle : inverse_involute(value);
+  double tight = pair->profile_shift[0] + pair->profile_shift[1] == 0 ? g->transverse_pressure_angle
+                                                                      : inverse_involute(value);
   g->working_pressure_angle = tight;
   g->centre_distance = pair->profile_shift[0] + pair->profile_shift[1] == 0 ? sum : base / cos(tight);
   g->normal_backlash = pair->backlash;
@@ -86,16 +90,19 @@ static enum eo_code set_working(struct eo_geometry *g, const struct eo_gear_pair
     g->centre_distance = pair->centre_distance;
     g->working_pressure_angle = acos(base / pair->centre_distance);
     /* j_wt = 2 a_w (inv alpha_wt - inv alpha_tight) at the working circles, normal: times cos alpha_wt cos beta_b */
-    g->normal_backlash += 2 * base * cos(g->base_helix_angle) *
-                          (eo_geometry_involute_function(g->working_pressure_angle) - eo_geometry_involute_function(tight));
+    g->normal_backlash +=
+        2 * base * cos(g->base_helix_angle) *
+        (eo_geometry_involute_function(g->working_pressure_angle) - eo_geometry_involute_function(tight));
   }
   if (g->normal_backlash <= 0)
-    return eo_error_set(error, EO_ERROR_INPUT, isnan(pair->centre_distance) ? "/gear_pair/backlash_um" : "/gear_pair/centre_distance_mm",
+    return eo_error_set(error, EO_ERROR_INPUT,
+                        isnan(pair->centre_distance) ? "/gear_pair/backlash_um" : "/gear_pair/centre_distance_mm",
                         "The normal backlash %.6g um is not positive: the teeth would jam.", 1e6 * g->normal_backlash);
   for (int i = 0; i < 2; i++) {
     g->working_radius[i] = g->centre_distance * g->teeth[i] / (g->teeth[0] + g->teeth[1]);
     g->tangent_length[i] = g->base_radius[i] * tan(g->working_pressure_angle);
-    g->rack_offset[i] = g->rack_factor * g->base_radius[i] * (tan(g->working_pressure_angle) - tan(g->transverse_pressure_angle));
+    g->rack_offset[i] = g->rack_factor * g->base_radius[i] *
+                        (tan(g->working_pressure_angle) - tan(g->transverse_pressure_angle));
   }
   return EO_OK;
 }
@@ -106,9 +113,10 @@ static enum eo_code set_path(struct eo_geometry *g, struct eo_error *error)
   for (int i = 0; i < 2; i++) {
     if (g->tip_radius[i] <= g->working_radius[i])
       return eo_error_set(error, EO_ERROR_INPUT, tip_key[i],
-                          "The tip radius of the %s, %.6g mm, is not above its working pitch radius, %.6g mm.",
-                          name[i], 1e3 * g->tip_radius[i], 1e3 * g->working_radius[i]);
-    length[i] = sqrt(g->tip_radius[i] * g->tip_radius[i] - g->base_radius[i] * g->base_radius[i]) - g->tangent_length[i];
+                          "The tip radius of the %s, %.6g mm, is not above its working pitch radius, %.6g mm.", name[i],
+                          1e3 * g->tip_radius[i], 1e3 * g->working_radius[i]);
+    length[i] = sqrt(g->tip_radius[i] * g->tip_radius[i] - g->base_radius[i] * g->base_radius[i]) -
+                g->tangent_length[i];
   }
   g->path_start = -length[EO_GEAR];
   g->path_end = length[EO_PINION];
@@ -119,8 +127,8 @@ static enum eo_code set_path(struct eo_geometry *g, struct eo_error *error)
   for (int i = 0; i < 2; i++) {
     double roll = g->tangent_length[i] - length[1 - i];
     if (roll <= 0)
-      return eo_error_set(error, EO_ERROR_INPUT, tip_key[1 - i], "The tip of the %s reaches below the base circle of the %s.",
-                          name[1 - i], name[i]);
+      return eo_error_set(error, EO_ERROR_INPUT, tip_key[1 - i],
+                          "The tip of the %s reaches below the base circle of the %s.", name[1 - i], name[i]);
     g->start_radius[i] = hypot(g->base_radius[i], roll);
   }
   if (g->transverse_contact_ratio + g->overlap_ratio < 1)
@@ -143,17 +151,20 @@ static double half_thickness_angle(const struct eo_geometry *g, int member, doub
 static enum eo_code set_root(struct eo_geometry *g, int i, struct eo_error *error)
 {
   /* The straight flank of the rack ends where its rounded tip begins; that point generates the form radius. */
-  double flank_end = g->dedendum - g->fillet_radius * (1 - sin(g->normal_pressure_angle)) - g->profile_shift[i] * g->normal_module;
+  double flank_end = g->dedendum - g->fillet_radius * (1 - sin(g->normal_pressure_angle)) -
+                     g->profile_shift[i] * g->normal_module;
   double roll = g->base_radius[i] * tan(g->transverse_pressure_angle) - flank_end / sin(g->transverse_pressure_angle);
   if (roll <= 0)
-    return eo_error_set(error, EO_ERROR_INPUT, shift_key[i], "The %s is undercut: it needs a profile shift of at least %.4g.", name[i],
+    return eo_error_set(error, EO_ERROR_INPUT, shift_key[i],
+                        "The %s is undercut: it needs a profile shift of at least %.4g.", name[i],
                         g->profile_shift[i] - roll * sin(g->transverse_pressure_angle) / g->normal_module);
   g->form_radius[i] = hypot(g->base_radius[i], roll);
   if (g->root_radius[i] <= 0)
     return refuse(error, "/gear_pair/dedendum_coefficient", "The root radius is not positive.");
   double tip_half = M_PI * g->normal_module / 4 - (g->dedendum - g->fillet_radius) * tan(g->normal_pressure_angle);
   if (tip_half - g->fillet_radius / cos(g->normal_pressure_angle) < -1e-9 * g->normal_module)
-    return refuse(error, "/gear_pair/fillet_radius_coefficient", "The fillet radius does not fit into the tip of the basic rack.");
+    return refuse(error, "/gear_pair/fillet_radius_coefficient",
+                  "The fillet radius does not fit into the tip of the basic rack.");
   return EO_OK;
 }
 
@@ -162,16 +173,20 @@ static enum eo_code check_tip(struct eo_geometry *g, int i, const struct eo_gear
   int other = 1 - i;
   g->tip_thickness[i] = 2 * g->tip_radius[i] * half_thickness_angle(g, i, g->tip_radius[i]);
   if (g->tip_thickness[i] <= 0)
-    return eo_error_set(error, EO_ERROR_INPUT, shift_key[i], "The teeth of the %s are pointed below the tip radius %.6g mm.", name[i],
+    return eo_error_set(error, EO_ERROR_INPUT, shift_key[i],
+                        "The teeth of the %s are pointed below the tip radius %.6g mm.", name[i],
                         1e3 * g->tip_radius[i]);
   if (g->start_radius[i] < g->form_radius[i])
-    return eo_error_set(error, EO_ERROR_INPUT, isnan(pair->tip_diameter[other]) ? "/gear_pair/addendum_coefficient" : tip_key[other],
-                        "The tip of the %s interferes with the fillet of the %s: the active profile would start at radius %.6g mm, the involute at %.6g mm.",
+    return eo_error_set(error, EO_ERROR_INPUT,
+                        isnan(pair->tip_diameter[other]) ? "/gear_pair/addendum_coefficient" : tip_key[other],
+                        "The tip of the %s interferes with the fillet of the %s: the active profile would start at "
+                        "radius %.6g mm, the involute at %.6g mm.",
                         name[other], name[i], 1e3 * g->start_radius[i], 1e3 * g->form_radius[i]);
   g->tip_clearance[i] = g->centre_distance - g->tip_radius[i] - g->root_radius[other];
   if (g->tip_clearance[i] <= 0)
-    return eo_error_set(error, EO_ERROR_INPUT, "/gear_pair/dedendum_coefficient", "The tip of the %s touches the root of the %s (clearance %.4g mm).",
-                        name[i], name[other], 1e3 * g->tip_clearance[i]);
+    return eo_error_set(error, EO_ERROR_INPUT, "/gear_pair/dedendum_coefficient",
+                        "The tip of the %s touches the root of the %s (clearance %.4g mm).", name[i], name[other],
+                        1e3 * g->tip_clearance[i]);
   return EO_OK;
 }
 

@@ -1,4 +1,5 @@
-/* Macro-geometry of a cylindrical involute pair (ISO 21771:2007; basic rack ISO 53:1998). One end; both ends share it but for the hand. */
+/* Macro-geometry of a cylindrical involute pair (ISO 21771:2007; basic rack ISO 53:1998). One end; both ends share it
+   but for the hand. */
 #ifndef EASEOFF_GEAR_GEOMETRY_H
 #define EASEOFF_GEAR_GEOMETRY_H
 
@@ -13,29 +14,30 @@ struct eo_geometry {
   double working_pressure_angle;                           /* alpha_wt, transverse */
   double helix_angle, base_helix_angle;                    /* beta, beta_b */
   double face_width;
-  double reference_radius[2];  /* r */
-  double working_radius[2];    /* r_w */
-  double base_radius[2];       /* r_b */
-  double tip_radius[2];        /* r_a */
-  double root_radius[2];       /* r_f */
-  double form_radius[2];       /* r_Ff, where the generated fillet meets the involute */
-  double start_radius[2];      /* r_SAP, where the active profile starts (contact with the other member's tip) */
-  double profile_shift[2];     /* x */
-  double centre_distance;      /* a_w */
-  double transverse_base_pitch;/* p_bt */
-  double normal_base_pitch;    /* p_bn */
-  double tangent_length[2];    /* T1C, T2C: from the base circles to the pitch point, along the transverse line of action */
-  double path_start;           /* s_A < 0: contact starts at the gear's tip */
-  double path_end;             /* s_E > 0: contact ends at the pinion's tip */
+  double reference_radius[2];   /* r */
+  double working_radius[2];     /* r_w */
+  double base_radius[2];        /* r_b */
+  double tip_radius[2];         /* r_a */
+  double root_radius[2];        /* r_f */
+  double form_radius[2];        /* r_Ff, where the generated fillet meets the involute */
+  double start_radius[2];       /* r_SAP, where the active profile starts (contact with the other member's tip) */
+  double profile_shift[2];      /* x */
+  double centre_distance;       /* a_w */
+  double transverse_base_pitch; /* p_bt */
+  double normal_base_pitch;     /* p_bn */
+  double
+      tangent_length[2]; /* T1C, T2C: from the base circles to the pitch point, along the transverse line of action */
+  double path_start;     /* s_A < 0: contact starts at the gear's tip */
+  double path_end;       /* s_E > 0: contact ends at the pinion's tip */
   double transverse_contact_ratio, overlap_ratio; /* eps_alpha, eps_beta */
-  double rack_factor;          /* k_u = sin(alpha_t)/cos(alpha_n): u = k_u s, the profile coordinate of modifications */
-  double rack_offset[2];       /* generating rack coordinate of the pitch point: 0 without profile shift */
-  double rack_bottom, rack_top;/* u_A, u_E of the pinion; of the gear -u_E, -u_A */
-  double dedendum;             /* h_fP, m, of the basic rack */
-  double fillet_radius;        /* rho_fP, m */
-  double tip_thickness[2];     /* transverse arc at the tip, m */
-  double tip_clearance[2];     /* between the member's tip and the other's root, m */
-  double normal_backlash;      /* the stated backlash and what the centre distance adds, m */
+  double rack_factor;    /* k_u = sin(alpha_t)/cos(alpha_n): u = k_u s, the profile coordinate of modifications */
+  double rack_offset[2]; /* generating rack coordinate of the pitch point: 0 without profile shift */
+  double rack_bottom, rack_top; /* u_A, u_E of the pinion; of the gear -u_E, -u_A */
+  double dedendum;              /* h_fP, m, of the basic rack */
+  double fillet_radius;         /* rho_fP, m */
+  double tip_thickness[2];      /* transverse arc at the tip, m */
+  double tip_clearance[2];      /* between the member's tip and the other's root, m */
+  double normal_backlash;       /* the stated backlash and what the centre distance adds, m */
 };
 
 /* Computes everything above. Errors (EO_ERROR_INPUT with the key): undercut, pointed tip, interference with a fillet,
@@ -59,10 +61,12 @@ static inline double eo_geometry_own_path(int member, double s)
    tooth without thickness allowance. normal: unit, out of the tooth. */
 
 /* Point of the involute at the given radius (base_radius <= radius <= tip_radius). */
-void eo_geometry_involute(const struct eo_geometry *geometry, int member, double radius, double point[2], double normal[2]);
+void eo_geometry_involute(const struct eo_geometry *geometry, int member, double radius, double point[2],
+                          double normal[2]);
 
-/* Point of the root: t = 0 in the middle of the tooth space, t = 1 at the form radius, t in proportion to the arc length;
-   root circle first, then the trochoid that the rack's rounded tip generates (both meshed exactly in the normal section). */
+/* Point of the root: t = 0 in the middle of the tooth space, t = 1 at the form radius, t in proportion to the arc
+   length; root circle first, then the trochoid that the rack's rounded tip generates (both meshed exactly in the normal
+   section). */
 void eo_geometry_fillet(const struct eo_geometry *geometry, int member, double t, double point[2], double normal[2]);
 
 /* Radius on the member's flank that contacts at transverse path coordinate s, and back. */

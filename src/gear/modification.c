@@ -13,8 +13,8 @@ bool eo_modification_equal(const struct eo_flank_modification *a, const struct e
 
 bool eo_modification_is_none(const struct eo_flank_modification *m)
 {
-  return m->tip_relief == 0 && m->root_relief == 0 && m->profile_crowning == 0 && m->lead_crowning == 0 && m->lead_slope == 0 &&
-         m->lead_offset == 0 && m->end_relief[0] == 0 && m->end_relief[1] == 0;
+  return m->tip_relief == 0 && m->root_relief == 0 && m->profile_crowning == 0 && m->lead_crowning == 0 &&
+         m->lead_slope == 0 && m->lead_offset == 0 && m->end_relief[0] == 0 && m->end_relief[1] == 0;
 }
 
 double eo_modification_lead_coefficient(const struct eo_geometry *g, double crowning)
@@ -40,7 +40,8 @@ void eo_modification_init(struct eo_modification_shape *shape, const struct eo_g
   double top = member == EO_PINION ? g->rack_top : -g->rack_bottom;
   double bottom = member == EO_PINION ? -g->rack_bottom : g->rack_top;
   double half = g->face_width / 2 / cos(g->helix_angle);
-  *shape = (struct eo_modification_shape){.relief = flank->shape, .crowning = flank->profile_crowning, .half_width = half};
+  *shape =
+      (struct eo_modification_shape){.relief = flank->shape, .crowning = flank->profile_crowning, .half_width = half};
   shape->side[0] = relief(flank->root_relief_start, bottom, flank->root_relief, flank->profile_crowning);
   shape->side[1] = relief(flank->tip_relief_start, top, flank->tip_relief, flank->profile_crowning);
   shape->lead[0] = flank->lead_offset;
@@ -64,7 +65,8 @@ static double relief_value(const struct eo_relief *r, enum eo_relief_shape form,
     double depth = fabs(r->depth), sign = r->depth < 0 ? -1 : 1;
     if (depth == 0)
       break;
-    double radius = (r->length * r->length + depth * depth) / (2 * depth), root = sqrt(fmax(radius * radius - t * t, 1e-6 * radius * radius));
+    double radius = (r->length * r->length + depth * depth) / (2 * depth),
+           root = sqrt(fmax(radius * radius - t * t, 1e-6 * radius * radius));
     *slope = r->slope + sign * t / root;
     return tangent + sign * t * t / (radius + root);
   }

@@ -1,5 +1,6 @@
-/* Micro-geometry: what is taken off a flank, as one function delta(u, x) (paper (1), (2); physics: three parabolas and a lead parabola).
-   u: profile coordinate k_u sigma, m from the pitch point, + towards the member's own tip; x = eta / cos(beta), m from mid face. */
+/* Micro-geometry: what is taken off a flank, as one function delta(u, x) (paper (1), (2); physics: three parabolas and
+   a lead parabola). u: profile coordinate k_u sigma, m from the pitch point, + towards the member's own tip; x = eta /
+   cos(beta), m from mid face. */
 #ifndef EASEOFF_GEAR_MODIFICATION_H
 #define EASEOFF_GEAR_MODIFICATION_H
 
@@ -8,23 +9,24 @@
 /* One flank's modification with its coefficients worked out. Plain values; copy freely. */
 struct eo_modification_shape {
   enum eo_relief_shape relief;
-  double crowning;          /* a_m, 1/m */
+  double crowning; /* a_m, 1/m */
   struct eo_relief {
-    double start;           /* |u| of the vertex, m */
-    double length;          /* from the vertex to the end of the active profile, m; 0: no relief on this side */
-    double value, slope;    /* of the middle parabola at the vertex, towards the end */
-    double depth;           /* what is missing at the end of the active profile after value and slope, m */
-  } side[2];                /* [root, tip] */
-  double lead[3];           /* c_l (m), b_l, a_l (1/m) */
+    double start;        /* |u| of the vertex, m */
+    double length;       /* from the vertex to the end of the active profile, m; 0: no relief on this side */
+    double value, slope; /* of the middle parabola at the vertex, towards the end */
+    double depth;        /* what is missing at the end of the active profile after value and slope, m */
+  } side[2];             /* [root, tip] */
+  double lead[3];        /* c_l (m), b_l, a_l (1/m) */
   double end_relief[2], end_start[2]; /* [eta < 0, eta > 0]: amount (m) and |x| where it starts */
-  double half_width;        /* |x| at the face ends, m */
+  double half_width;                  /* |x| at the face ends, m */
 };
 
 /* member: whose flank it is (its active profile ends where the other member's tip leaves it). */
 void eo_modification_init(struct eo_modification_shape *shape, const struct eo_geometry *geometry, int member,
                           const struct eo_flank_modification *flank);
 
-/* Profile part d(u), m; slope[0], slope[1]: derivative just below and just above u (they differ at the kink of a linear relief). */
+/* Profile part d(u), m; slope[0], slope[1]: derivative just below and just above u (they differ at the kink of a linear
+   relief). */
 double eo_modification_profile(const struct eo_modification_shape *shape, double u, double slope[2]);
 
 /* Lead part l(x), m, and its derivative. */

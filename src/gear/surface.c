@@ -3,14 +3,16 @@
 #include <math.h>
 #include <stddef.h>
 
-void eo_surface_evaluate(const struct eo_geometry *g, int member, const struct eo_modification_shape *shape, double u, double v,
-                         struct eo_surface_point *point)
+void eo_surface_evaluate(const struct eo_geometry *g, int member, const struct eo_modification_shape *shape, double u,
+                         double v, struct eo_surface_point *point)
 {
-  double sa = sin(g->normal_pressure_angle), ca = cos(g->normal_pressure_angle), sb = sin(g->helix_angle), cb = cos(g->helix_angle);
+  double sa = sin(g->normal_pressure_angle), ca = cos(g->normal_pressure_angle), sb = sin(g->helix_angle),
+         cb = cos(g->helix_angle);
   const double e[3] = {cb, 0, -sb}, t[3] = {sb, 0, cb}, across[3] = {0, 1, 0};
   double rack = u + g->rack_offset[member], r = g->reference_radius[member];
   double skew = sa * sb / cb, side = member == EO_PINION ? 1 : -1, profile_slope[2], lead_slope;
-  double delta = eo_modification_profile(shape, u, profile_slope) + eo_modification_lead(shape, side * (v + rack * skew), &lead_slope);
+  double delta = eo_modification_profile(shape, u, profile_slope) +
+                 eo_modification_lead(shape, side * (v + rack * skew), &lead_slope);
   lead_slope *= side;
   double du = (profile_slope[0] + profile_slope[1]) / 2 + lead_slope * skew, dv = lead_slope, x[3], n[3];
   for (int i = 0; i < 3; i++) {
@@ -18,7 +20,8 @@ void eo_surface_evaluate(const struct eo_geometry *g, int member, const struct e
     x[i] = rack * f + v * t[i] - delta * m;
     n[i] = m + du * f + dv * t[i];
   }
-  double roll = (x[1] * n[0] / n[1] - x[0]) / r, c = cos(roll), s = sin(roll), length = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+  double roll = (x[1] * n[0] / n[1] - x[0]) / r, c = cos(roll), s = sin(roll),
+         length = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
   double y0 = x[0] + r * roll, y1 = x[1] + r;
   point->roll = roll;
   point->position[0] = c * y0 - s * y1;
@@ -33,22 +36,26 @@ void eo_surface_coordinates(const struct eo_geometry *g, int member, double s, d
 {
   *u = g->rack_factor * eo_geometry_own_path(member, s);
   double rack = *u + g->rack_offset[member];
-  *v = ((member == EO_PINION ? eta : -eta) - rack * sin(g->normal_pressure_angle) * sin(g->helix_angle)) / cos(g->helix_angle);
+  *v = ((member == EO_PINION ? eta : -eta) - rack * sin(g->normal_pressure_angle) * sin(g->helix_angle)) /
+       cos(g->helix_angle);
 }
 
-/* What a slice's flank shows to its partner: the arm of its normal about its own axis, the distance along the normal from the foot
-   of that arm, and the direction angle it has when the tooth stands at roll 0. */
+/* What a slice's flank shows to its partner: the arm of its normal about its own axis, the distance along the normal
+   from the foot of that arm, and the direction angle it has when the tooth stands at roll 0. */
 struct ray {
   double arm, distance, angle;
 };
 
-/* delta, d: relief at u and its slope (at a kink any slope between those of its two sides: the normal there turns about the vertex). */
+/* delta, d: relief at u and its slope (at a kink any slope between those of its two sides: the normal there turns about
+   the vertex). */
 static struct ray sloped_ray(const struct eo_geometry *g, int member, double u, double delta, double d)
 {
-  double sa = sin(g->normal_pressure_angle), ca = cos(g->normal_pressure_angle), sb = sin(g->helix_angle), cb = cos(g->helix_angle);
+  double sa = sin(g->normal_pressure_angle), ca = cos(g->normal_pressure_angle), sb = sin(g->helix_angle),
+         cb = cos(g->helix_angle);
   double rack = u + g->rack_offset[member], r = g->reference_radius[member];
   /* Moved along the rack's trace back into the slice: the gap would come out sin^2(beta_b) too small without. */
-  double z = (rack * sa + delta * ca) * sb, x = -(rack * sa + delta * ca) * cb - z * sb / cb, y = rack * ca - delta * sa;
+  double z = (rack * sa + delta * ca) * sb, x = -(rack * sa + delta * ca) * cb - z * sb / cb,
+         y = rack * ca - delta * sa;
   double nx = (ca - d * sa) * cb, ny = sa + d * ca, length = hypot(nx, ny);
   nx /= length;
   ny /= length;
@@ -57,7 +64,8 @@ static struct ray sloped_ray(const struct eo_geometry *g, int member, double u, 
 }
 
 /* side: 0 takes the slope just below u, 1 just above. */
-static struct ray slice_ray(const struct eo_geometry *g, int member, const struct eo_modification_shape *shape, double u, int side)
+static struct ray slice_ray(const struct eo_geometry *g, int member, const struct eo_modification_shape *shape,
+                            double u, int side)
 {
   double slope[2], delta = eo_modification_profile(shape, u, slope);
   return sloped_ray(g, member, u, delta, slope[side]);
@@ -77,7 +85,8 @@ void eo_slice_point_at(const struct eo_geometry *g, int member, const struct eo_
 static struct ray involute_ray(const struct eo_geometry *g, int member, double distance)
 {
   double base = g->base_radius[member], start = base * tan(g->transverse_pressure_angle);
-  return (struct ray){.arm = base, .distance = distance, .angle = (distance - start) / base + g->transverse_pressure_angle};
+  return (struct ray){
+      .arm = base, .distance = distance, .angle = (distance - start) / base + g->transverse_pressure_angle};
 }
 
 /* Angle of the common normal for two arms. */
@@ -86,8 +95,9 @@ static double common_angle(const struct eo_geometry *g, const struct ray *p, con
   return acos((p->arm + q->arm) / g->centre_distance);
 }
 
-/* ---- walks: every normal of a flank in order, so that the one in line with a given normal of the partner can be found ----
-   The coordinate w is u, stretched at each kink by the width of a fan in which the normal turns about the vertex. */
+/* ---- walks: every normal of a flank in order, so that the one in line with a given normal of the partner can be found
+   ---- The coordinate w is u, stretched at each kink by the width of a fan in which the normal turns about the vertex.
+ */
 
 enum { MOST_KINKS = 3, MOST_BREAKS = 12 };
 static const double FAN = 1e-3;
@@ -112,7 +122,8 @@ static int collect_vertices(const struct eo_modification_shape *shape, double ve
   return count;
 }
 
-static void walk_init(struct walk *walk, const struct eo_geometry *g, int member, const struct eo_modification_shape *shape)
+static void walk_init(struct walk *walk, const struct eo_geometry *g, int member,
+                      const struct eo_modification_shape *shape)
 {
   double margin = 0.3 * (g->rack_top - g->rack_bottom), vertex[2];
   *walk = (struct walk){.geometry = g, .shape = shape, .member = member};
@@ -159,8 +170,9 @@ static double miss_of(const struct eo_geometry *g, const struct ray *p, const st
   return g->centre_distance * sin(common_angle(g, p, q)) - p->distance - q->distance;
 }
 
-/* The ray of the walk in line with that of the other member, near the place *w: the miss falls along a convex flank; regula falsi with
-   halving (Illinois). False when there is none: beyond reliefs so steep that the flank's normals leave the mesh. */
+/* The ray of the walk in line with that of the other member, near the place *w: the miss falls along a convex flank;
+   regula falsi with halving (Illinois). False when there is none: beyond reliefs so steep that the flank's normals
+   leave the mesh. */
 static bool in_line_with(const struct walk *walk, const struct ray *other, double *w, struct ray *q)
 {
   enum { STEPS = 80 };
@@ -199,7 +211,8 @@ static struct ray involute_in_line_with(const struct eo_geometry *g, int member,
 /* Base-circle phase of a member whose ray lies in the common normal. */
 static double phase_of(const struct eo_geometry *g, int member, const struct ray *ray, double common)
 {
-  double offset = eo_geometry_involute_function(g->working_pressure_angle) - eo_geometry_involute_function(g->transverse_pressure_angle);
+  double offset = eo_geometry_involute_function(g->working_pressure_angle) -
+                  eo_geometry_involute_function(g->transverse_pressure_angle);
   return g->base_radius[member] * (ray->angle - common - offset);
 }
 
@@ -229,7 +242,8 @@ static void sort(int count, double *value)
     }
 }
 
-/* Places on the leading member, which the table follows, where its own shape or that of the other member changes, sorted. */
+/* Places on the leading member, which the table follows, where its own shape or that of the other member changes,
+   sorted. */
 static int collect_breaks(const struct walk *lead, const struct walk *other, double breaks[MOST_BREAKS])
 {
   const struct eo_geometry *g = lead->geometry;
@@ -279,9 +293,10 @@ static void fill_buckets(struct eo_slice_gap *table)
   }
 }
 
-/* Nodes of the table from the place `first` on in one direction, until the other member has no normal left to offer. Where normals
-   fold back (concave vertices) the outer branch counts. Returns how many. */
-static int follow(const struct walk *lead, const struct walk *other, int places, const double *place, int first, int direction, struct node *node)
+/* Nodes of the table from the place `first` on in one direction, until the other member has no normal left to offer.
+   Where normals fold back (concave vertices) the outer branch counts. Returns how many. */
+static int follow(const struct walk *lead, const struct walk *other, int places, const double *place, int first,
+                  int direction, struct node *node)
 {
   const struct eo_geometry *g = lead->geometry;
   double w = -place[first];
@@ -301,7 +316,8 @@ static int follow(const struct walk *lead, const struct walk *other, int places,
   return count;
 }
 
-void eo_slice_gap_init(struct eo_slice_gap *table, const struct eo_geometry *g, const struct eo_modification_shape shape[2])
+void eo_slice_gap_init(struct eo_slice_gap *table, const struct eo_geometry *g,
+                       const struct eo_modification_shape shape[2])
 {
   bool pinion = profile_is_modified(&shape[EO_PINION]), gear = profile_is_modified(&shape[EO_GEAR]);
   table->nodes = 0;
@@ -344,7 +360,8 @@ double eo_slice_gap_at(const struct eo_slice_gap *table, double c, double *slope
   while (i < last - 1 && table->phase[i + 1] < c)
     i++;
   double h = table->phase[i + 1] - table->phase[i], t = (c - table->phase[i]) / h, r = 1 - t;
-  double difference = table->gap[i + 1] - table->gap[i], a = table->slope[i] * h - difference, b = difference - table->slope[i + 1] * h;
+  double difference = table->gap[i + 1] - table->gap[i], a = table->slope[i] * h - difference,
+         b = difference - table->slope[i + 1] * h;
   *slope = (difference + (r - t) * (a * r + b * t) + t * r * (b - a)) / h;
   return table->gap[i] * r + table->gap[i + 1] * t + t * r * (a * r + b * t);
 }

@@ -4,22 +4,23 @@
 
 #include "gear/modification.h"
 
-/* Point of a member's flank. Frame: z = axis (from the middle of the face), y through the position of the pitch point of the
-   generating rack at roll 0, x tangential, out of the flank: the pinion's direction of motion, against the gear's. z runs with eta on
-   the pinion and against it on the gear; reflected through the origin the gear's flank has the hand that meshes with the pinion's.
-   u: profile coordinate of the modification (0 at the pitch point s = 0), m; v: along the rack's trace, m.
-   The rack's point is moved by delta(u, x), x = v + u_rack sin(alpha_n) tan(beta), along its normal; the roll angle follows from the
-   equation of meshing. normal: unit, out of the tooth. */
+/* Point of a member's flank. Frame: z = axis (from the middle of the face), y through the position of the pitch point
+   of the generating rack at roll 0, x tangential, out of the flank: the pinion's direction of motion, against the
+   gear's. z runs with eta on the pinion and against it on the gear; reflected through the origin the gear's flank has
+   the hand that meshes with the pinion's. u: profile coordinate of the modification (0 at the pitch point s = 0), m; v:
+   along the rack's trace, m. The rack's point is moved by delta(u, x), x = v + u_rack sin(alpha_n) tan(beta), along its
+   normal; the roll angle follows from the equation of meshing. normal: unit, out of the tooth. */
 struct eo_surface_point {
   double position[3];
   double normal[3];
   double roll; /* generating roll angle phi, rad */
 };
 
-void eo_surface_evaluate(const struct eo_geometry *geometry, int member, const struct eo_modification_shape *shape, double u, double v,
-                         struct eo_surface_point *point);
+void eo_surface_evaluate(const struct eo_geometry *geometry, int member, const struct eo_modification_shape *shape,
+                         double u, double v, struct eo_surface_point *point);
 
-/* u and v of the place (s, eta) on the unmodified flank; a relief moves the point off that place by some of its own size. */
+/* u and v of the place (s, eta) on the unmodified flank; a relief moves the point off that place by some of its own
+   size. */
 void eo_surface_coordinates(const struct eo_geometry *geometry, int member, double s, double eta, double *u, double *v);
 
 /* The flank in the transverse slice z = 0, lead modification apart; same frame. */
@@ -28,28 +29,31 @@ struct eo_slice_point {
   double normal[2]; /* unit, transverse, out of the tooth */
 };
 
-void eo_slice_point_at(const struct eo_geometry *geometry, int member, const struct eo_modification_shape *shape, double u,
-                       struct eo_slice_point *point);
+void eo_slice_point_at(const struct eo_geometry *geometry, int member, const struct eo_modification_shape *shape,
+                       double u, struct eo_slice_point *point);
 
 /* ---- slice gap ----
-   Two transverse slices in mesh at the working centre distance, profile modification on either member. At pinion phase c (base-circle
-   arc, c = s of the unmodified contact) the gear has to come back by gap(c) / cos(beta_b) for the slices to touch. Contact needs the
-   flank normals in line: the common normal has arms h_p, h_g about the axes, cos(alpha') = (h_p + h_g)/a, and the distances along it
-   add up to a sin(alpha'). Slope: d gap_t/dc = 1 - h_p r_bg / (h_g r_bp), exactly. Table with cubic Hermite pieces. */
+   Two transverse slices in mesh at the working centre distance, profile modification on either member. At pinion phase
+   c (base-circle arc, c = s of the unmodified contact) the gear has to come back by gap(c) / cos(beta_b) for the slices
+   to touch. Contact needs the flank normals in line: the common normal has arms h_p, h_g about the axes, cos(alpha') =
+   (h_p + h_g)/a, and the distances along it add up to a sin(alpha'). Slope: d gap_t/dc = 1 - h_p r_bg / (h_g r_bp),
+   exactly. Table with cubic Hermite pieces. */
 
 enum { EO_SLICE_NODES = 256, EO_SLICE_BUCKETS = 256 };
 
 struct eo_slice_gap {
-  int nodes;                         /* 0: no profile modification, the gap is zero */
-  double phase[EO_SLICE_NODES];      /* c, m, increasing */
-  double gap[EO_SLICE_NODES];        /* normal to the flank, m */
-  double slope[EO_SLICE_NODES];      /* d gap / dc */
-  double bucket_rate;                /* buckets per m */
+  int nodes;                              /* 0: no profile modification, the gap is zero */
+  double phase[EO_SLICE_NODES];           /* c, m, increasing */
+  double gap[EO_SLICE_NODES];             /* normal to the flank, m */
+  double slope[EO_SLICE_NODES];           /* d gap / dc */
+  double bucket_rate;                     /* buckets per m */
   unsigned char bucket[EO_SLICE_BUCKETS]; /* the piece in which each of equal stretches of c starts */
 };
 
-/* shape: [member] of one end. The table covers [s_A, s_E] and a margin beyond (the relief parabolas go on); outside it the last piece goes on in a line. */
-void eo_slice_gap_init(struct eo_slice_gap *table, const struct eo_geometry *geometry, const struct eo_modification_shape shape[2]);
+/* shape: [member] of one end. The table covers [s_A, s_E] and a margin beyond (the relief parabolas go on); outside it
+   the last piece goes on in a line. */
+void eo_slice_gap_init(struct eo_slice_gap *table, const struct eo_geometry *geometry,
+                       const struct eo_modification_shape shape[2]);
 
 /* Gap at c, m, normal; *slope (may be NULL) its derivative. */
 double eo_slice_gap_at(const struct eo_slice_gap *table, double c, double *slope);

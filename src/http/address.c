@@ -43,10 +43,11 @@ static enum eo_code read_address(const char *text, struct place *place, struct e
   char host[64];
   const char *colon = strrchr(text, ':');
   int64_t port;
-  if (colon && eo_field_host(text, host, sizeof host) && eo_field_integer(colon + 1, &port) && port >= 0 && port <= 65535 &&
-      read_host(host, (int)port, place))
+  if (colon && eo_field_host(text, host, sizeof host) && eo_field_integer(colon + 1, &port) && port >= 0 &&
+      port <= 65535 && read_host(host, (int)port, place))
     return EO_OK;
-  return eo_error_set(error, EO_ERROR_INPUT, "", "--listen %.60s is not an address with a port, for instance 127.0.0.1:8080 or [::1]:8080.", text);
+  return eo_error_set(error, EO_ERROR_INPUT, "",
+                      "--listen %.60s is not an address with a port, for instance 127.0.0.1:8080 or [::1]:8080.", text);
 }
 
 enum eo_code eo_listen_is_loopback(const char *address, bool *loopback, struct eo_error *error)
@@ -65,7 +66,8 @@ static void write_url(const struct place *place, int taken, struct eo_listening 
   getsockname(taken, (struct sockaddr *)&address, &size);
   const struct sockaddr_in *four = (const struct sockaddr_in *)&address;
   const struct sockaddr_in6 *six = (const struct sockaddr_in6 *)&address;
-  inet_ntop(address.ss_family, place->version6 ? (const void *)&six->sin6_addr : (const void *)&four->sin_addr, host, sizeof host);
+  inet_ntop(address.ss_family, place->version6 ? (const void *)&six->sin6_addr : (const void *)&four->sin_addr, host,
+            sizeof host);
   snprintf(listening->url, sizeof listening->url, place->version6 ? "http://[%s]:%d/" : "http://%s:%d/", host,
            ntohs(place->version6 ? six->sin6_port : four->sin_port));
 }

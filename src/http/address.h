@@ -7,10 +7,10 @@
 #include "base/error.h"
 
 struct eo_listening {
-  int socket;       /* owned by the caller */
-  bool loopback;    /* nobody but this machine reaches it */
+  int socket;    /* owned by the caller */
+  bool loopback; /* nobody but this machine reaches it */
   bool version6;
-  char url[80];     /* with the port that was taken */
+  char url[80]; /* with the port that was taken */
 };
 
 /* Errors: EO_ERROR_INPUT (not an address), EO_ERROR_FILE (taken, not allowed). */

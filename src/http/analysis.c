@@ -25,8 +25,9 @@ static void check(struct eo_request *request)
   json_t *body = eo_request_json(request);
   if (body && eo_request_design(request, body, "", &design, &geometry, &warnings))
     eo_reply_json(request, 200,
-                  json_pack("{s:o, s:o, s:o, s:b}", "design", eo_design_encode(&design), "geometry", eo_table_encode(&eo_geometry_table, &geometry),
-                            "warnings", encode_warnings(&warnings), "prepared", eo_service_is_prepared(request->http->service, &design)));
+                  json_pack("{s:o, s:o, s:o, s:b}", "design", eo_design_encode(&design), "geometry",
+                            eo_table_encode(&eo_geometry_table, &geometry), "warnings", encode_warnings(&warnings),
+                            "prepared", eo_service_is_prepared(request->http->service, &design)));
   json_decref(body);
 }
 
@@ -39,7 +40,8 @@ static void put_analysis(struct eo_request *request, const struct eo_design *des
   int64_t job = 0;
   bool histories = eo_request_number(request, "histories") != 0;
   struct eo_analysis_question question = {.common = eo_request_question(request, design, warnings),
-                                          .want = EO_WANT_CURVES | (eo_request_number(request, "root_stress") != 0 ? EO_WANT_ROOT : 0) |
+                                          .want = EO_WANT_CURVES |
+                                                  (eo_request_number(request, "root_stress") != 0 ? EO_WANT_ROOT : 0) |
                                                   (eo_request_number(request, "band") != 0 ? EO_WANT_BAND : 0),
                                           .maps = eo_request_number(request, "maps") != 0,
                                           .histories = histories};
@@ -70,7 +72,8 @@ static json_t *collect_ranges(const json_t *body, struct eo_faults *faults)
   json_t *ranges = json_object();
   const char *key;
   json_t *value;
-  json_object_foreach((json_t *)body, key, value) {
+  json_object_foreach((json_t *)body, key, value)
+  {
     bool found = false;
     for (size_t i = 0; i < sizeof known / sizeof known[0]; i++)
       found = found || strcmp(known[i], key) == 0;
@@ -119,7 +122,8 @@ static bool is_small(struct eo_request *request, const struct eo_sweep_axes *axe
   return false;
 }
 
-static void put_sweep(struct eo_request *request, const struct eo_design *design, const struct eo_warnings *warnings, const struct eo_sweep_axes *axes)
+static void put_sweep(struct eo_request *request, const struct eo_design *design, const struct eo_warnings *warnings,
+                      const struct eo_sweep_axes *axes)
 {
   enum eo_admission admission;
   struct eo_error error;
@@ -141,7 +145,8 @@ static void sweep(struct eo_request *request)
   json_t *body = eo_request_json(request), *document = json_object_get(body, "design");
   if (body && !json_is_object(document))
     eo_reply_problem(request, 422, "invalid", "The body has no design.");
-  else if (body && read_axes(request, body, &axes) && eo_request_design(request, document, "/design", &design, &geometry, &warnings))
+  else if (body && read_axes(request, body, &axes) &&
+           eo_request_design(request, document, "/design", &design, &geometry, &warnings))
     put_sweep(request, &design, &warnings, &axes);
   eo_sweep_axes_done(&axes);
   json_decref(body);
@@ -149,16 +154,40 @@ static void sweep(struct eo_request *request)
 
 #define LANE "Easeoff-Lane, Prefer"
 const struct eo_route eo_routes_analysis[] = {
-    {.method = EO_POST, .pattern = "/check", .handle = check, .name = "checkDesign", .takes = "Design", .gives = "200 Check", .rate = EO_RATE_QUESTION,
-     .summary = "Reads a design, fills in every default and works out the geometry; 422 names everything that is wrong."},
-    {.method = EO_POST, .pattern = "/analyze", .handle = analyze, .name = "analyze", .takes = "Design", .gives = "200 Result, 202 Preparing",
-     .headers = LANE, .rate = EO_RATE_QUESTION, .csv = true,
+    {.method = EO_POST,
+     .pattern = "/check",
+     .handle = check,
+     .name = "checkDesign",
+     .takes = "Design",
+     .gives = "200 Check",
+     .rate = EO_RATE_QUESTION,
+     .summary =
+         "Reads a design, fills in every default and works out the geometry; 422 names everything that is wrong."},
+    {.method = EO_POST,
+     .pattern = "/analyze",
+     .handle = analyze,
+     .name = "analyze",
+     .takes = "Design",
+     .gives = "200 Result, 202 Preparing",
+     .headers = LANE,
+     .rate = EO_RATE_QUESTION,
+     .csv = true,
      .summary = "One true evaluation of a design, everything it computed. 202 while the gear pair is being prepared.",
      .query = {{"root_stress", 0, 1, 1, NULL, "1: root stress too"},
-               {"band", 0, 1, 0, NULL, "1: RMS at 0.9 and 1.1 times the compliance too, which takes several times as long"},
+               {"band", 0, 1, 0, NULL,
+                "1: RMS at 0.9 and 1.1 times the compliance too, which takes several times as long"},
                {"maps", 0, 1, 1, NULL, "1: pressure and clearance over the flanks"},
                {"histories", 0, 1, 0, NULL, "1: vibration and root stress over time"}}},
-    {.method = EO_POST, .pattern = "/sweep", .handle = sweep, .name = "sweep", .takes = "SweepRequest", .design_at = "/design", .gives = "200 Sweep, 202 Preparing",
-     .headers = LANE, .rate = EO_RATE_START, .csv = true,
-     .summary = "A design over torque, speed or both, beside the unmodified pair. 202 while the gear pair is being prepared."},
+    {.method = EO_POST,
+     .pattern = "/sweep",
+     .handle = sweep,
+     .name = "sweep",
+     .takes = "SweepRequest",
+     .design_at = "/design",
+     .gives = "200 Sweep, 202 Preparing",
+     .headers = LANE,
+     .rate = EO_RATE_START,
+     .csv = true,
+     .summary =
+         "A design over torque, speed or both, beside the unmodified pair. 202 while the gear pair is being prepared."},
     {0}};

@@ -6,7 +6,8 @@
 
 static void reply_busy(struct eo_request *request, bool closing)
 {
-  eo_reply_problem(request, 503, closing ? "stopping" : "busy", closing ? "The server is stopping." : "Too many questions are waiting already.");
+  eo_reply_problem(request, 503, closing ? "stopping" : "busy",
+                   closing ? "The server is stopping." : "Too many questions are waiting already.");
   request->reply.retry_after = closing ? 5 : 1;
 }
 
@@ -54,7 +55,8 @@ static void receive(void *context, struct eo_answer *answer)
   eo_request_finish(request);
 }
 
-void eo_answer_conclude(struct eo_request *request, enum eo_code code, enum eo_admission admission, int64_t job, const struct eo_error *error)
+void eo_answer_conclude(struct eo_request *request, enum eo_code code, enum eo_admission admission, int64_t job,
+                        const struct eo_error *error)
 {
   if (!code && admission == EO_ADMISSION_ACCEPTED)
     return;
@@ -77,7 +79,8 @@ bool eo_request_lane(struct eo_request *request, struct eo_question *question)
   return false;
 }
 
-struct eo_question eo_request_question(struct eo_request *request, const struct eo_design *design, const struct eo_warnings *warnings)
+struct eo_question eo_request_question(struct eo_request *request, const struct eo_design *design,
+                                       const struct eo_warnings *warnings)
 {
   return (struct eo_question){.design = design,
                               .warnings = warnings,

@@ -1,5 +1,5 @@
-/* Requests that take longer than a moment but need no gear pair (histories, exported files): one thread with a connection to the
-   database of its own works them off, so that the HTTP thread need not. */
+/* Requests that take longer than a moment but need no gear pair (histories, exported files): one thread with a
+   connection to the database of its own works them off, so that the HTTP thread need not. */
 #ifndef EASEOFF_HTTP_ASIDE_H
 #define EASEOFF_HTTP_ASIDE_H
 

@@ -1,4 +1,5 @@
-/* Measurements beside the prediction, the fit of inputs that nobody knows, and recordings of a rig that does not exist. */
+/* Measurements beside the prediction, the fit of inputs that nobody knows, and recordings of a rig that does not exist.
+ */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -39,9 +40,7 @@ static bool is_wanted(const json_t *wanted, int64_t id)
 {
   json_t *value;
   size_t i;
-  json_array_foreach(wanted, i, value)
-    if (json_integer_value(value) == id)
-      return true;
+  json_array_foreach(wanted, i, value) if (json_integer_value(value) == id) return true;
   return !wanted;
 }
 
@@ -100,7 +99,8 @@ static void compare_what_if(struct eo_request *request)
   struct eo_geometry geometry;
   int64_t id;
   json_t *body;
-  if (!eo_request_key(request, 0, &id) || !find_design(request, id, &stored, NULL) || !(body = eo_request_json(request)))
+  if (!eo_request_key(request, 0, &id) || !find_design(request, id, &stored, NULL) ||
+      !(body = eo_request_json(request)))
     return;
   if (eo_request_design(request, body, "", &design, &geometry, NULL))
     compare_all(request, id, &design);
@@ -129,8 +129,8 @@ static void compare_one(struct eo_request *request)
 
 /* What a fit works on besides its unknowns. */
 struct basis {
-  json_t *wanted;          /* owned; NULL: all measurements */
-  json_t *given;           /* owned; NULL: the stored design */
+  json_t *wanted; /* owned; NULL: all measurements */
+  json_t *given;  /* owned; NULL: the stored design */
   struct eo_design design;
 };
 
@@ -170,7 +170,8 @@ static bool find_basis(struct eo_request *request, int64_t id, struct basis *bas
   return eo_request_design(request, basis->given, "/design", &basis->design, &geometry, NULL);
 }
 
-static void put_fit(struct eo_request *request, int64_t id, const struct basis *basis, const struct eo_update_settings *settings)
+static void put_fit(struct eo_request *request, int64_t id, const struct basis *basis,
+                    const struct eo_update_settings *settings)
 {
   struct collected c = {.wanted = basis->wanted};
   struct eo_error error;
@@ -202,7 +203,8 @@ static void fit(struct eo_request *request)
 
 /* ---- synthetic recordings ---- */
 
-static bool read_rig(struct eo_request *request, const json_t *body, const struct eo_design *design, struct eo_rig_request *rig)
+static bool read_rig(struct eo_request *request, const json_t *body, const struct eo_design *design,
+                     struct eo_rig_request *rig)
 {
   struct eo_faults *faults = calloc(1, sizeof *faults);
   json_t *empty = json_object();
@@ -231,7 +233,8 @@ static void put_rig(struct eo_request *request, const struct eo_design *design, 
   struct eo_work work;
   struct eo_error error;
   request->csv = true;
-  snprintf(request->reply.file_name, sizeof request->reply.file_name, "rig-%.6gNm-%.6grpm.csv", rig->torque, rig->speed * 30 / M_PI);
+  snprintf(request->reply.file_name, sizeof request->reply.file_name, "rig-%.6gNm-%.6grpm.csv", rig->torque,
+           rig->speed * 30 / M_PI);
   if (eo_rig_recording(&work, rig, &error))
     eo_reply_error(request, "", &error);
   else
@@ -246,26 +249,64 @@ static void record(struct eo_request *request)
   json_t *body = eo_request_json(request), *document = json_object_get(body, "design");
   if (body && !json_is_object(document))
     eo_reply_problem(request, 422, "invalid", "The body has no design.");
-  else if (body && eo_request_design(request, document, "/design", &design, &geometry, NULL) && read_rig(request, body, &design, &rig))
+  else if (body && eo_request_design(request, document, "/design", &design, &geometry, NULL) &&
+           read_rig(request, body, &design, &rig))
     put_rig(request, &design, &rig);
   json_decref(body);
 }
 
 #define LANE "Easeoff-Lane, Prefer"
 const struct eo_route eo_routes_comparison[] = {
-    {.method = EO_GET, .pattern = "/measurements/{id}/comparison", .handle = compare_one, .name = "compareMeasurement", .gives = "200 Comparison, 202 Preparing",
-     .headers = LANE, .rate = EO_RATE_QUESTION, .csv = true,
-     .summary = "A measurement beside the prediction at its torque and measured speed: rotational acceleration at the encoders' end, orders, TE in phase."},
-    {.method = EO_GET, .pattern = "/designs/{id}/comparison", .handle = compare_design, .name = "compareDesign", .gives = "200 Comparison, 202 Preparing",
-     .headers = LANE, .rate = EO_RATE_START, .csv = true,
-     .summary = "All measurements of a design beside the prediction, reductions by the modification, outliers with their reasons."},
-    {.method = EO_POST, .pattern = "/designs/{id}/comparison", .handle = compare_what_if, .name = "compareWhatIf", .takes = "Design",
-     .gives = "200 Comparison, 202 Preparing", .headers = LANE, .rate = EO_RATE_QUESTION, .csv = true,
-     .summary = "The same with another design in the place of the stored one: what its measurements would say about it."},
-    {.method = EO_POST, .pattern = "/designs/{id}/fit", .handle = fit, .name = "fitDesign", .takes = "FitOrder", .gives = "200 Fit, 202 Preparing",
-     .headers = LANE, .rate = EO_RATE_START,
-     .summary = "Inputs that nobody knows, fitted to the measurements of a design (or of `design` in its place) within ranges; `design` in the answer holds them, to be put in its place."},
-    {.method = EO_POST, .pattern = "/rig", .handle = record, .name = "recordRig", .takes = "RigOrder", .design_at = "/design", .headers = LANE,
-     .gives = "200 text/csv, 202 Preparing", .rate = EO_RATE_START,
-     .summary = "What two encoders would record of a design: a text file with known truth, for teaching and tests, as `easeoff rig` writes it."},
+    {.method = EO_GET,
+     .pattern = "/measurements/{id}/comparison",
+     .handle = compare_one,
+     .name = "compareMeasurement",
+     .gives = "200 Comparison, 202 Preparing",
+     .headers = LANE,
+     .rate = EO_RATE_QUESTION,
+     .csv = true,
+     .summary = "A measurement beside the prediction at its torque and measured speed: rotational acceleration at the "
+                "encoders' end, orders, TE in phase."},
+    {.method = EO_GET,
+     .pattern = "/designs/{id}/comparison",
+     .handle = compare_design,
+     .name = "compareDesign",
+     .gives = "200 Comparison, 202 Preparing",
+     .headers = LANE,
+     .rate = EO_RATE_START,
+     .csv = true,
+     .summary = "All measurements of a design beside the prediction, reductions by the modification, outliers with "
+                "their reasons."},
+    {.method = EO_POST,
+     .pattern = "/designs/{id}/comparison",
+     .handle = compare_what_if,
+     .name = "compareWhatIf",
+     .takes = "Design",
+     .gives = "200 Comparison, 202 Preparing",
+     .headers = LANE,
+     .rate = EO_RATE_QUESTION,
+     .csv = true,
+     .summary =
+         "The same with another design in the place of the stored one: what its measurements would say about it."},
+    {.method = EO_POST,
+     .pattern = "/designs/{id}/fit",
+     .handle = fit,
+     .name = "fitDesign",
+     .takes = "FitOrder",
+     .gives = "200 Fit, 202 Preparing",
+     .headers = LANE,
+     .rate = EO_RATE_START,
+     .summary = "Inputs that nobody knows, fitted to the measurements of a design (or of `design` in its place) within "
+                "ranges; `design` in the answer holds them, to be put in its place."},
+    {.method = EO_POST,
+     .pattern = "/rig",
+     .handle = record,
+     .name = "recordRig",
+     .takes = "RigOrder",
+     .design_at = "/design",
+     .headers = LANE,
+     .gives = "200 text/csv, 202 Preparing",
+     .rate = EO_RATE_START,
+     .summary = "What two encoders would record of a design: a text file with known truth, for teaching and tests, as "
+                "`easeoff rig` writes it."},
     {0}};

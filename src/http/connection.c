@@ -1,6 +1,6 @@
-/* Connections and the time they have: between requests, for header fields, for a body, for taking a reply. The library's own timeout starts
-   again with every byte, so that a client which drips would stay for ever; here a thread looks once a second who is overdue. It
-   is also what keeps event streams alive. */
+/* Connections and the time they have: between requests, for header fields, for a body, for taking a reply. The
+   library's own timeout starts again with every byte, so that a client which drips would stay for ever; here a thread
+   looks once a second who is overdue. It is also what keeps event streams alive. */
 #include <stdlib.h>
 #include <string.h>
 #include <sys/socket.h>
@@ -44,7 +44,8 @@ static void drop(struct eo_http *http, struct eo_connection *place)
   free(place);
 }
 
-void eo_connection_notify(void *context, struct MHD_Connection *connection, void **place, enum MHD_ConnectionNotificationCode code)
+void eo_connection_notify(void *context, struct MHD_Connection *connection, void **place,
+                          enum MHD_ConnectionNotificationCode code)
 {
   if (code == MHD_CONNECTION_NOTIFY_STARTED)
     add(context, connection, place);

@@ -13,8 +13,8 @@ enum { MOST_DESIGNS = 100000, MOST_LISTED = 200 };
 /* Without the design: a row of a list. */
 static json_t *encode(const struct eo_stored_design *row)
 {
-  return json_pack("{s:I, s:I, s:s, s:s, s:s}", "id", (json_int_t)row->id, "revision", (json_int_t)row->revision, "name", row->name, "created",
-                   row->created, "updated", row->updated);
+  return json_pack("{s:I, s:I, s:s, s:s, s:s}", "id", (json_int_t)row->id, "revision", (json_int_t)row->revision,
+                   "name", row->name, "created", row->created, "updated", row->updated);
 }
 
 static void write_tag(const struct eo_stored_design *row, char tag[EO_TAG])
@@ -44,7 +44,8 @@ static void reply_missing(struct eo_request *request)
   eo_reply_problem(request, 404, NULL, "There is no design with this number.");
 }
 
-static void reply_found(struct eo_request *request, unsigned status, struct found *found, const struct eo_warnings *warnings)
+static void reply_found(struct eo_request *request, unsigned status, struct found *found,
+                        const struct eo_warnings *warnings)
 {
   json_t *list = json_array();
   for (int i = 0; warnings && i < warnings->count; i++)
@@ -105,7 +106,8 @@ static void list(struct eo_request *request)
   }
   char cursor[24];
   snprintf(cursor, sizeof cursor, "%lld", (long long)page.last);
-  eo_reply_json(request, 200, json_pack("{s:o, s:o}", "items", page.items, "next", page.more ? json_string(cursor) : json_null()));
+  eo_reply_json(request, 200,
+                json_pack("{s:o, s:o}", "items", page.items, "next", page.more ? json_string(cursor) : json_null()));
 }
 
 /* ---- writing ---- */
@@ -136,7 +138,8 @@ static bool read_given(struct eo_request *request, struct given *given)
   struct eo_geometry geometry;
   json_t *body = eo_request_json(request), *inner = json_object_get(body, "design");
   const json_t *document = inner ? inner : body;
-  bool good = body && eo_request_design(request, document, inner ? "/design" : "", &design, &geometry, &given->warnings);
+  bool good = body &&
+              eo_request_design(request, document, inner ? "/design" : "", &design, &geometry, &given->warnings);
   if (good)
     snprintf(given->name, sizeof given->name, "%s", *design.name ? design.name : "unnamed");
   good = good && (!inner || read_name(request, json_object_get(body, "name"), given));
@@ -169,7 +172,8 @@ static void add(struct eo_request *request)
   free(given.text);
 }
 
-/* The revision that If-Match names: 0 for "*", -1 for one that this design never has; false: the reply asks for the header. */
+/* The revision that If-Match names: 0 for "*", -1 for one that this design never has; false: the reply asks for the
+   header. */
 static bool read_expected(struct eo_request *request, int64_t id, bool required, int64_t *expected)
 {
   const char *header = eo_request_header(request, "If-Match");
@@ -178,7 +182,8 @@ static bool read_expected(struct eo_request *request, int64_t id, bool required,
   enum eo_design_outcome outcome;
   *expected = 0;
   if (!header && required)
-    eo_reply_problem(request, 428, NULL, "Say with If-Match which version is to be replaced (the ETag of the design, or *).");
+    eo_reply_problem(request, 428, NULL,
+                     "Say with If-Match which version is to be replaced (the ETag of the design, or *).");
   if (!header)
     return !required;
   if (eo_store_find_design(request->store, id, visit, &found, &outcome, &error)) {
@@ -186,7 +191,9 @@ static bool read_expected(struct eo_request *request, int64_t id, bool required,
     return false;
   }
   if (strcmp(header, "*") != 0 && outcome == EO_DESIGN_DONE)
-    *expected = eo_field_lists_tag(header, found.tag, false) ? json_integer_value(json_object_get(found.document, "revision")) : -1;
+    *expected = eo_field_lists_tag(header, found.tag, false)
+                    ? json_integer_value(json_object_get(found.document, "revision"))
+                    : -1;
   json_decref(found.document);
   return true;
 }
@@ -238,8 +245,8 @@ static void take_out(struct eo_request *request)
 
 /* ---- for others ---- */
 
-bool eo_request_stored_design(struct eo_request *request, int64_t id, struct eo_design *design, struct eo_geometry *geometry, json_t **document,
-                              bool *missing)
+bool eo_request_stored_design(struct eo_request *request, int64_t id, struct eo_design *design,
+                              struct eo_geometry *geometry, json_t **document, bool *missing)
 {
   struct found found = {0};
   struct eo_error error;
@@ -258,15 +265,43 @@ bool eo_request_stored_design(struct eo_request *request, int64_t id, struct eo_
   return good;
 }
 
-const struct eo_route eo_routes_designs[] = {
-    {.method = EO_GET, .pattern = "/designs", .handle = list, .name = "listDesigns", .summary = "Stored designs, newest first.", .gives = "200 Designs",
-     .query = {{"limit", 1, MOST_LISTED, 50, NULL, "most items"}, {"cursor", 1, 9e15, 0, NULL, "`next` of the page before"}}},
-    {.method = EO_POST, .pattern = "/designs", .handle = add, .name = "addDesign", .summary = "Stores a design, alone or with a name.", .takes = "DesignOrNamed",
-     .gives = "201 StoredDesign", .rate = EO_RATE_QUESTION},
-    {.method = EO_GET, .pattern = "/designs/{id}", .handle = get_one, .name = "getDesign", .summary = "A stored design as it came.",
-     .gives = "200 StoredDesign", .headers = "If-None-Match"},
-    {.method = EO_PUT, .pattern = "/designs/{id}", .handle = replace, .name = "replaceDesign", .summary = "Replaces a stored design.",
-     .takes = "DesignOrNamed", .gives = "200 StoredDesign", .headers = "If-Match", .rate = EO_RATE_QUESTION},
-    {.method = EO_DELETE, .pattern = "/designs/{id}", .handle = take_out, .name = "removeDesign", .summary = "Removes a stored design.", .gives = "204 -",
-     .headers = "If-Match"},
-    {0}};
+const struct eo_route eo_routes_designs[] = {{.method = EO_GET,
+                                              .pattern = "/designs",
+                                              .handle = list,
+                                              .name = "listDesigns",
+                                              .summary = "Stored designs, newest first.",
+                                              .gives = "200 Designs",
+                                              .query = {{"limit", 1, MOST_LISTED, 50, NULL, "most items"},
+                                                        {"cursor", 1, 9e15, 0, NULL, "`next` of the page before"}}},
+                                             {.method = EO_POST,
+                                              .pattern = "/designs",
+                                              .handle = add,
+                                              .name = "addDesign",
+                                              .summary = "Stores a design, alone or with a name.",
+                                              .takes = "DesignOrNamed",
+                                              .gives = "201 StoredDesign",
+                                              .rate = EO_RATE_QUESTION},
+                                             {.method = EO_GET,
+                                              .pattern = "/designs/{id}",
+                                              .handle = get_one,
+                                              .name = "getDesign",
+                                              .summary = "A stored design as it came.",
+                                              .gives = "200 StoredDesign",
+                                              .headers = "If-None-Match"},
+                                             {.method = EO_PUT,
+                                              .pattern = "/designs/{id}",
+                                              .handle = replace,
+                                              .name = "replaceDesign",
+                                              .summary = "Replaces a stored design.",
+                                              .takes = "DesignOrNamed",
+                                              .gives = "200 StoredDesign",
+                                              .headers = "If-Match",
+                                              .rate = EO_RATE_QUESTION},
+                                             {.method = EO_DELETE,
+                                              .pattern = "/designs/{id}",
+                                              .handle = take_out,
+                                              .name = "removeDesign",
+                                              .summary = "Removes a stored design.",
+                                              .gives = "204 -",
+                                              .headers = "If-Match"},
+                                             {0}};

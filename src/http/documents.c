@@ -43,7 +43,8 @@ static enum eo_code put_examples(struct eo_documents *documents, struct eo_error
 
 static enum eo_code put_all(struct eo_documents *documents, struct eo_error *error)
 {
-  json_t *schema = json_pack("{s:o, s:o}", "design", eo_table_fields(&eo_design_table), "sweep", eo_table_fields(&eo_sweep_request_table));
+  json_t *schema = json_pack("{s:o, s:o}", "design", eo_table_fields(&eo_design_table), "sweep",
+                             eo_table_fields(&eo_sweep_request_table));
   enum eo_code code = put(&documents->schema, schema, error);
   if (!code)
     code = put(&documents->openapi, eo_openapi(), error);

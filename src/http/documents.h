@@ -9,7 +9,10 @@ enum { EO_MOST_EXAMPLES = 16 };
 struct eo_documents {
   struct eo_resource openapi, schema, list;
   int examples;
-  struct eo_document_example { const char *name; struct eo_resource resource; } example[EO_MOST_EXAMPLES];
+  struct eo_document_example {
+    const char *name;
+    struct eo_resource resource;
+  } example[EO_MOST_EXAMPLES];
 };
 
 enum eo_code eo_documents_new(struct eo_documents **documents, struct eo_error *error);

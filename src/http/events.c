@@ -33,10 +33,20 @@ static void get_of_job(struct eo_request *request)
   json_decref(job);
 }
 
-#define STREAM "`event: job` with the job (without its design) as data whenever one changes, a comment every ten seconds."
-const struct eo_route eo_routes_events[] = {
-    {.method = EO_GET, .pattern = "/events", .handle = get_all, .name = "getEvents", .summary = "All jobs: " STREAM, .gives = "200 text/event-stream",
-     .headers = "Last-Event-ID"},
-    {.method = EO_GET, .pattern = "/jobs/{id}/events", .handle = get_of_job, .name = "getJobEvents", .summary = "One job: " STREAM,
-     .gives = "200 text/event-stream", .headers = "Last-Event-ID"},
-    {0}};
+#define STREAM \
+  "`event: job` with the job (without its design) as data whenever one changes, a comment every ten seconds."
+const struct eo_route eo_routes_events[] = {{.method = EO_GET,
+                                             .pattern = "/events",
+                                             .handle = get_all,
+                                             .name = "getEvents",
+                                             .summary = "All jobs: " STREAM,
+                                             .gives = "200 text/event-stream",
+                                             .headers = "Last-Event-ID"},
+                                            {.method = EO_GET,
+                                             .pattern = "/jobs/{id}/events",
+                                             .handle = get_of_job,
+                                             .name = "getJobEvents",
+                                             .summary = "One job: " STREAM,
+                                             .gives = "200 text/event-stream",
+                                             .headers = "Last-Event-ID"},
+                                            {0}};

@@ -22,9 +22,18 @@ static void get_example(struct eo_request *request)
 }
 
 const struct eo_route eo_routes_examples[] = {
-    {.method = EO_GET, .pattern = "/examples", .handle = list_examples, .name = "listExamples", .summary = "The designs to start from.",
-     .gives = "200 Examples", .headers = "If-None-Match"},
-    {.method = EO_GET, .pattern = "/examples/{name}", .handle = get_example, .name = "getExample",
-     .summary = "A design to start from, with every key; null where the value is derived from the others.", .gives = "200 Design",
+    {.method = EO_GET,
+     .pattern = "/examples",
+     .handle = list_examples,
+     .name = "listExamples",
+     .summary = "The designs to start from.",
+     .gives = "200 Examples",
+     .headers = "If-None-Match"},
+    {.method = EO_GET,
+     .pattern = "/examples/{name}",
+     .handle = get_example,
+     .name = "getExample",
+     .summary = "A design to start from, with every key; null where the value is derived from the others.",
+     .gives = "200 Design",
      .headers = "If-None-Match"},
     {0}};

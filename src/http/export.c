@@ -29,12 +29,25 @@ static void list(struct eo_request *request)
   json_t *items = json_array();
   const struct eo_export *format;
   for (int i = 0; (format = eo_export_at(i)); i++)
-    json_array_append_new(items, json_pack("{s:s, s:s, s:s}", "name", format->name, "title", format->summary, "type", format->type));
+    json_array_append_new(
+        items, json_pack("{s:s, s:s, s:s}", "name", format->name, "title", format->summary, "type", format->type));
   eo_reply_json(request, 200, json_pack("{s:o}", "items", items));
 }
 
 const struct eo_route eo_routes_export[] = {
-    {.method = EO_GET, .pattern = "/export", .handle = list, .name = "listExports", .summary = "The formats of exported files.", .gives = "200 Exports"},
-    {.method = EO_POST, .pattern = "/export/{format}", .handle = export, .name = "exportDesign", .takes = "Design", .rate = EO_RATE_START, .aside = true,
-     .gives = "200 text/csv, 200 ResolvedDesign", .summary = "A file for another program, as `easeoff export` writes it: points of the flanks, charts, the design."},
+    {.method = EO_GET,
+     .pattern = "/export",
+     .handle = list,
+     .name = "listExports",
+     .summary = "The formats of exported files.",
+     .gives = "200 Exports"},
+    {.method = EO_POST,
+     .pattern = "/export/{format}",
+     .handle = export,
+     .name = "exportDesign",
+     .takes = "Design",
+     .rate = EO_RATE_START,
+     .aside = true,
+     .gives = "200 text/csv, 200 ResolvedDesign",
+     .summary = "A file for another program, as `easeoff export` writes it: points of the flanks, charts, the design."},
     {0}};

@@ -45,8 +45,8 @@ bool eo_field_is_visible(const char *text, size_t size)
 /* ---- lists ---- */
 
 struct item {
-  const char *text;  /* borrowed */
-  size_t length;     /* of the name, before parameters */
+  const char *text; /* borrowed */
+  size_t length;    /* of the name, before parameters */
   double quality;
 };
 

@@ -18,7 +18,8 @@ bool eo_field_is_visible(const char *text, size_t size);
 /* Whether an Accept-Encoding allows a coding (RFC 9110 12.5.3); NULL: no header. */
 bool eo_field_accepts_coding(const char *header, const char *coding);
 
-/* Whether an Accept prefers a media type over "application/json" (RFC 9110 12.5.1): it is named with a quality at least as high. */
+/* Whether an Accept prefers a media type over "application/json" (RFC 9110 12.5.1): it is named with a quality at least
+   as high. */
 bool eo_field_prefers_type(const char *header, const char *type);
 
 /* Whether an If-Match or If-None-Match list holds "*" or the tag (without quotes). weak: a weak entry counts. */
@@ -27,7 +28,8 @@ bool eo_field_lists_tag(const char *header, const char *tag, bool weak);
 /* Seconds of "wait=N" in a Prefer header (RFC 7240); 0: none. */
 int eo_field_wait(const char *header);
 
-/* Copies the host of "name", "name:port", "[v6]:port", lower case, without port and brackets; false: it is malformed. */
+/* Copies the host of "name", "name:port", "[v6]:port", lower case, without port and brackets; false: it is malformed.
+ */
 bool eo_field_host(const char *header, char *host, size_t size);
 
 /* True when the host is a number, IPv4 or IPv6: no name that somebody's name server could bend to another address. */
@@ -42,8 +44,8 @@ bool eo_field_equal_secret(const char *given, const char *expected);
 /* True for a decoded path without "//", "/./", "/../", control characters and backslashes. */
 bool eo_field_path_is_plain(const char *path);
 
-/* Matches a path against "/jobs/{id}/events": each {word} takes one non-empty segment, copied to argument[] in their order; false also when
-   one is longer than size - 1. count: places in argument. */
+/* Matches a path against "/jobs/{id}/events": each {word} takes one non-empty segment, copied to argument[] in their
+   order; false also when one is longer than size - 1. count: places in argument. */
 bool eo_field_match(const char *pattern, const char *path, size_t size, char argument[][64], int count);
 
 #endif

@@ -13,7 +13,8 @@ const char eo_guard_cookie[] = "easeoff_session";
 
 void eo_guard_init(struct eo_guard *guard, const struct eo_http_settings *settings)
 {
-  *guard = (struct eo_guard){.token = settings->token && *settings->token ? settings->token : NULL, .host = settings->host};
+  *guard = (struct eo_guard){.token = settings->token && *settings->token ? settings->token : NULL,
+                             .host = settings->host};
   struct eo_hash hash;
   eo_hash_init(&hash);
   eo_hash_add_text(&hash, "easeoff session", guard->token ? guard->token : "");
@@ -31,7 +32,8 @@ static bool bears_token(const struct eo_request *request, const char *token)
 static bool has_session(const struct eo_request *request, const char *session)
 {
   char given[EO_HASH_LENGTH + 8];
-  return eo_field_cookie(eo_request_header(request, "Cookie"), eo_guard_cookie, given, sizeof given) && eo_field_equal_secret(given, session);
+  return eo_field_cookie(eo_request_header(request, "Cookie"), eo_guard_cookie, given, sizeof given) &&
+         eo_field_equal_secret(given, session);
 }
 
 bool eo_guard_knows(const struct eo_request *request)
@@ -90,7 +92,9 @@ bool eo_guard_admits(struct eo_request *request)
 /* ---- rates ---- */
 
 /* What may come at once, and how many more every second. */
-static const struct { double burst, per_second; } rates[EO_RATE_KINDS] = {{0, 0}, {400, 100}, {100, 2}};
+static const struct {
+  double burst, per_second;
+} rates[EO_RATE_KINDS] = {{0, 0}, {400, 100}, {100, 2}};
 
 static void address_of(const struct sockaddr_storage *address, unsigned char key[16])
 {

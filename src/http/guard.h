@@ -1,5 +1,6 @@
-/* Who may ask for what. Without a token: only what comes for this machine by its own name (a page of another site cannot get through by
-   bending its name to this address), and nothing that changes something from another site's page. With one: whoever has it. */
+/* Who may ask for what. Without a token: only what comes for this machine by its own name (a page of another site
+   cannot get through by bending its name to this address), and nothing that changes something from another site's page.
+   With one: whoever has it. */
 #ifndef EASEOFF_HTTP_GUARD_H
 #define EASEOFF_HTTP_GUARD_H
 
@@ -15,10 +16,13 @@ enum { EO_RATES = 256 };
 enum eo_rate { EO_RATE_FREE, EO_RATE_QUESTION, EO_RATE_START, EO_RATE_KINDS };
 
 struct eo_guard {
-  const char *token;                       /* NULL: none */
-  char session[EO_HASH_LENGTH + 1];        /* the cookie of a page that gave the token */
-  const char *const *host;                 /* further names; NULL ends them */
-  struct eo_allowance { unsigned char address[16]; double left[EO_RATE_KINDS], at; } allowance[EO_RATES]; /* at: s of the monotonic clock, 0: free */
+  const char *token;                /* NULL: none */
+  char session[EO_HASH_LENGTH + 1]; /* the cookie of a page that gave the token */
+  const char *const *host;          /* further names; NULL ends them */
+  struct eo_allowance {
+    unsigned char address[16];
+    double left[EO_RATE_KINDS], at;
+  } allowance[EO_RATES]; /* at: s of the monotonic clock, 0: free */
 };
 
 extern const char eo_guard_cookie[];

@@ -55,9 +55,21 @@ static void get_all(struct eo_request *request)
 }
 
 const struct eo_route eo_routes_history[] = {
-    {.method = EO_GET, .pattern = "/jobs/{id}/history", .handle = get_of_job, .name = "getJobHistory", .gives = "200 JobHistory", .csv = true, .aside = true,
+    {.method = EO_GET,
+     .pattern = "/jobs/{id}/history",
+     .handle = get_of_job,
+     .name = "getJobHistory",
+     .gives = "200 JobHistory",
+     .csv = true,
+     .aside = true,
      .summary = "The true evaluations of an optimization in its order; as CSV all of them.",
      .query = {{"limit", 1, 200, 50, NULL, "most rows"}, {"cursor", 0, 2e9, -1, NULL, "`next` of the page before"}}},
-    {.method = EO_GET, .pattern = "/history", .handle = get_all, .name = "getHistory", .gives = "200 History", .aside = true,
-     .summary = "The problems that were worked on with the number of their evaluations, and all jobs: `easeoff history list --json`."},
+    {.method = EO_GET,
+     .pattern = "/history",
+     .handle = get_all,
+     .name = "getHistory",
+     .gives = "200 History",
+     .aside = true,
+     .summary = "The problems that were worked on with the number of their evaluations, and all jobs: `easeoff history "
+                "list --json`."},
     {0}};

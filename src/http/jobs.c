@@ -38,8 +38,8 @@ void eo_reply_job_outcome(struct eo_request *request, enum eo_job_outcome outcom
 }
 
 /* The job as the reply, or why there is none. Takes the job over. */
-static void reply_job(struct eo_request *request, unsigned status, enum eo_code code, enum eo_job_outcome outcome, json_t *job,
-                      const struct eo_error *error)
+static void reply_job(struct eo_request *request, unsigned status, enum eo_code code, enum eo_job_outcome outcome,
+                      json_t *job, const struct eo_error *error)
 {
   if (code)
     eo_reply_error(request, "", error);
@@ -75,7 +75,8 @@ static bool read_kind(const json_t *value, struct order *order)
   return false;
 }
 
-static void read_member(const char *key, const json_t *value, bool design, struct order *order, struct eo_faults *faults)
+static void read_member(const char *key, const json_t *value, bool design, struct order *order,
+                        struct eo_faults *faults)
 {
   struct eo_path path = {.key = key};
   if (design && strcmp(key, "kind") == 0) {
@@ -103,8 +104,7 @@ static bool read_order(struct eo_request *request, const json_t *body, bool desi
   json_t *value;
   faults.count = 0;
   *order = (struct order){.kind = EO_JOB_OPTIMIZE};
-  json_object_foreach((json_t *)body, key, value)
-    read_member(key, value, design, order, &faults);
+  json_object_foreach((json_t *)body, key, value) read_member(key, value, design, order, &faults);
   if (design && !json_is_object(json_object_get(body, "design")))
     eo_faults_add(&faults, "/design", "A design is needed.");
   if (faults.count)
@@ -123,7 +123,8 @@ static bool read_key(struct eo_request *request, const char **key)
 
 static void submit(struct eo_request *request, const struct order *order, const struct eo_design *design)
 {
-  struct eo_job_order wanted = {.kind = order->kind, .design = design, .priority = order->priority, .fresh = order->fresh};
+  struct eo_job_order wanted = {
+      .kind = order->kind, .design = design, .priority = order->priority, .fresh = order->fresh};
   enum eo_job_outcome outcome = EO_JOB_OUTCOME_DONE;
   struct eo_error error;
   json_t *job = NULL;
@@ -157,7 +158,8 @@ static void repeat(struct eo_request *request)
   if (request->body.size && !(body = eo_request_json(request)))
     return;
   if (!body || read_order(request, body, false, &order)) {
-    enum eo_code code = eo_service_clone(request->http->service, id, order.has_priority ? &order.priority : NULL, &outcome, &job, &error);
+    enum eo_code code = eo_service_clone(request->http->service, id, order.has_priority ? &order.priority : NULL,
+                                         &outcome, &job, &error);
     reply_job(request, 202, code, outcome, job, &error);
   }
   json_decref(body);
@@ -186,8 +188,9 @@ static void list(struct eo_request *request)
 {
   struct eo_error error;
   json_t *page = NULL;
-  if (eo_service_jobs(request->http->service, state_of(eo_request_query(request, "state")), kind_of(eo_request_query(request, "kind")),
-                      (int64_t)eo_request_number(request, "cursor"), (int)eo_request_number(request, "limit"), &page, &error))
+  if (eo_service_jobs(request->http->service, state_of(eo_request_query(request, "state")),
+                      kind_of(eo_request_query(request, "kind")), (int64_t)eo_request_number(request, "cursor"),
+                      (int)eo_request_number(request, "limit"), &page, &error))
     eo_reply_error(request, "", &error);
   else
     eo_reply_json(request, 200, page);
@@ -276,23 +279,72 @@ static void take_out(struct eo_request *request)
 }
 
 const struct eo_route eo_routes_jobs[] = {
-    {.method = EO_POST, .pattern = "/jobs", .handle = add, .name = "addJob", .summary = "Orders an optimization, or the preparation of a gear pair.",
-     .takes = "JobOrder", .gives = "202 Job", .headers = "Idempotency-Key", .rate = EO_RATE_START},
-    {.method = EO_GET, .pattern = "/jobs", .handle = list, .name = "listJobs", .summary = "Jobs, newest first.", .gives = "200 Jobs",
+    {.method = EO_POST,
+     .pattern = "/jobs",
+     .handle = add,
+     .name = "addJob",
+     .summary = "Orders an optimization, or the preparation of a gear pair.",
+     .takes = "JobOrder",
+     .gives = "202 Job",
+     .headers = "Idempotency-Key",
+     .rate = EO_RATE_START},
+    {.method = EO_GET,
+     .pattern = "/jobs",
+     .handle = list,
+     .name = "listJobs",
+     .summary = "Jobs, newest first.",
+     .gives = "200 Jobs",
      .query = {{"limit", 1, 200, 50, NULL, "most items"},
                {"cursor", 1, 9e15, 0, NULL, "`next` of the page before"},
                {"state", 0, 0, 0, "queued|preparing|running|done|failed|cancelled", "only these"},
                {"kind", 0, 0, 0, "optimize|prepare", "only these"}}},
-    {.method = EO_GET, .pattern = "/jobs/{id}", .handle = get_one, .name = "getJob", .summary = "A job with its design.", .gives = "200 Job"},
-    {.method = EO_DELETE, .pattern = "/jobs/{id}", .handle = take_out, .name = "removeJob", .summary = "Removes a job that has ended.", .gives = "204 -"},
-    {.method = EO_GET, .pattern = "/jobs/{id}/result", .handle = get_result, .name = "getJobResult",
-     .summary = "What an optimization found: the document of `easeoff optimize --json`. 409 while it is not finished.", .gives = "200 OptimizationResult", .aside = true},
-    {.method = EO_GET, .pattern = "/jobs/{id}/generations", .handle = get_generations, .name = "getJobGenerations",
-     .summary = "The convergence of an optimization as columns, also while it runs.", .gives = "200 Generations", .aside = true},
-    {.method = EO_POST, .pattern = "/jobs/{id}/cancel", .handle = cancel, .name = "cancelJob",
-     .summary = "Stops a job; one that runs ends within an evaluation and keeps what it found.", .gives = "202 Job", .rate = EO_RATE_START},
-    {.method = EO_POST, .pattern = "/jobs/{id}/retry", .handle = retry, .name = "retryJob", .summary = "Queues a failed or cancelled job again.",
-     .gives = "202 Job", .rate = EO_RATE_START},
-    {.method = EO_POST, .pattern = "/jobs/{id}/clone", .handle = repeat, .name = "cloneJob", .summary = "Orders the same once more.",
-     .takes = "JobChange", .takes_nothing = true, .gives = "202 Job", .rate = EO_RATE_START},
+    {.method = EO_GET,
+     .pattern = "/jobs/{id}",
+     .handle = get_one,
+     .name = "getJob",
+     .summary = "A job with its design.",
+     .gives = "200 Job"},
+    {.method = EO_DELETE,
+     .pattern = "/jobs/{id}",
+     .handle = take_out,
+     .name = "removeJob",
+     .summary = "Removes a job that has ended.",
+     .gives = "204 -"},
+    {.method = EO_GET,
+     .pattern = "/jobs/{id}/result",
+     .handle = get_result,
+     .name = "getJobResult",
+     .summary = "What an optimization found: the document of `easeoff optimize --json`. 409 while it is not finished.",
+     .gives = "200 OptimizationResult",
+     .aside = true},
+    {.method = EO_GET,
+     .pattern = "/jobs/{id}/generations",
+     .handle = get_generations,
+     .name = "getJobGenerations",
+     .summary = "The convergence of an optimization as columns, also while it runs.",
+     .gives = "200 Generations",
+     .aside = true},
+    {.method = EO_POST,
+     .pattern = "/jobs/{id}/cancel",
+     .handle = cancel,
+     .name = "cancelJob",
+     .summary = "Stops a job; one that runs ends within an evaluation and keeps what it found.",
+     .gives = "202 Job",
+     .rate = EO_RATE_START},
+    {.method = EO_POST,
+     .pattern = "/jobs/{id}/retry",
+     .handle = retry,
+     .name = "retryJob",
+     .summary = "Queues a failed or cancelled job again.",
+     .gives = "202 Job",
+     .rate = EO_RATE_START},
+    {.method = EO_POST,
+     .pattern = "/jobs/{id}/clone",
+     .handle = repeat,
+     .name = "cloneJob",
+     .summary = "Orders the same once more.",
+     .takes = "JobChange",
+     .takes_nothing = true,
+     .gives = "202 Job",
+     .rate = EO_RATE_START},
     {0}};

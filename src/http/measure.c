@@ -55,7 +55,8 @@ static void read_layout(struct asked *asked, const char *text)
 static bool read_form(struct eo_request *request, struct asked *asked)
 {
   const struct eo_upload *form = request->upload;
-  const char *design = eo_upload_field(form, "design"), *label = eo_upload_field(form, "label"), *harmonics = eo_upload_field(form, "harmonics");
+  const char *design = eo_upload_field(form, "design"), *label = eo_upload_field(form, "label"),
+             *harmonics = eo_upload_field(form, "harmonics");
   int64_t orders = 0;
   if (!design || !eo_field_integer(design, &asked->design) || asked->design < 1)
     eo_faults_add(&asked->faults, "/design", "The number of the stored design that was measured is missing.");
@@ -119,7 +120,8 @@ static enum eo_code hash_files(struct eo_upload *upload, struct eo_error *error)
 }
 
 /* Everything that decides what comes out. */
-static void write_request_digest(const struct asked *asked, const struct eo_upload *upload, const char *pair, char digest[EO_HASH_LENGTH + 1])
+static void write_request_digest(const struct asked *asked, const struct eo_upload *upload, const char *pair,
+                                 char digest[EO_HASH_LENGTH + 1])
 {
   struct eo_hash hash;
   struct eo_text layout = {0};
@@ -153,16 +155,24 @@ static int watch(void *context, const char *what, double fraction)
   return closing;
 }
 
-static enum eo_code measure(struct eo_request *request, const struct asked *asked, json_t **document, struct eo_error *error)
+static enum eo_code measure(struct eo_request *request, const struct asked *asked, json_t **document,
+                            struct eo_error *error)
 {
   const struct eo_upload *upload = request->upload;
   char path[EO_MEASUREMENT_FILES][EO_UPLOAD_PATH];
   const struct eo_progress progress = {watch, request->http};
   for (int i = 0; i < upload->files; i++)
     eo_upload_path(upload, i, path[i]);
-  const struct eo_measure_request work = {.path = path[0], .gear_path = upload->files > 1 ? path[1] : NULL, .name = upload->file[0].name,
-                                          .unmodified = asked->unmodified, .torque = asked->torque, .stated_speed = asked->speed, .end = asked->end,
-                                          .harmonics = asked->harmonics, .layout = asked->layout, .geometry = &asked->geometry,
+  const struct eo_measure_request work = {.path = path[0],
+                                          .gear_path = upload->files > 1 ? path[1] : NULL,
+                                          .name = upload->file[0].name,
+                                          .unmodified = asked->unmodified,
+                                          .torque = asked->torque,
+                                          .stated_speed = asked->speed,
+                                          .end = asked->end,
+                                          .harmonics = asked->harmonics,
+                                          .layout = asked->layout,
+                                          .geometry = &asked->geometry,
                                           .spool_directory = upload->folder};
   return eo_measure_file(&work, &progress, document, NULL, NULL, error);
 }
@@ -176,11 +186,12 @@ static void reply_refused(struct eo_request *request, const json_t *document)
   size_t i;
   for (i = 0; i < sizeof kept / sizeof kept[0]; i++)
     json_object_set(more, kept[i], json_object_get(document, kept[i]));
-  json_array_foreach(json_object_get(document, "findings"), i, finding)
-    if (strcmp(json_string_value(json_object_get(finding, "severity")), "refused") == 0) {
-      detail = json_string_value(json_object_get(finding, "text"));
-      break;
-    }
+  json_array_foreach(json_object_get(document, "findings"), i,
+                     finding) if (strcmp(json_string_value(json_object_get(finding, "severity")), "refused") == 0)
+  {
+    detail = json_string_value(json_object_get(finding, "text"));
+    break;
+  }
   eo_reply_problem_with(request, 422, "refused", more, detail);
 }
 
@@ -198,18 +209,27 @@ static char *dump(const json_t *document)
   return text.failed ? (eo_text_done(&text), NULL) : text.data;
 }
 
-static enum eo_code keep(struct eo_request *request, const struct asked *asked, const char *pair, const char *digest, const json_t *document,
-                         struct eo_found_measurement *found, enum eo_measurement_outcome *outcome, struct eo_error *error)
+static enum eo_code keep(struct eo_request *request, const struct asked *asked, const char *pair, const char *digest,
+                         const json_t *document, struct eo_found_measurement *found,
+                         enum eo_measurement_outcome *outcome, struct eo_error *error)
 {
   const struct eo_upload *upload = request->upload;
   json_t *summary = eo_outline_take(&eo_measurement_brief, document);
   char *texts[3] = {dump(document), summary ? dump(summary) : NULL, asked->layout ? dump(asked->layout) : strdup("")};
-  struct eo_stored_measurement row = {.design = asked->design, .digest = digest, .unmodified = asked->unmodified, .torque = asked->torque,
-                                      .speed = asked->speed, .layout = texts[2], .pair = pair, .summary = texts[1], .result = texts[0],
+  struct eo_stored_measurement row = {.design = asked->design,
+                                      .digest = digest,
+                                      .unmodified = asked->unmodified,
+                                      .torque = asked->torque,
+                                      .speed = asked->speed,
+                                      .layout = texts[2],
+                                      .pair = pair,
+                                      .summary = texts[1],
+                                      .result = texts[0],
                                       .files = upload->files};
   memcpy(row.file, upload->file, sizeof row.file);
   enum eo_code code = texts[0] && texts[1] && texts[2]
-                          ? eo_store_add_measurement(request->store, &row, upload->folder, eo_measurement_take, found, outcome, error)
+                          ? eo_store_add_measurement(request->store, &row, upload->folder, eo_measurement_take, found,
+                                                     outcome, error)
                           : eo_error_memory(error);
   for (int i = 0; i < 3; i++)
     free(texts[i]);
@@ -217,7 +237,8 @@ static enum eo_code keep(struct eo_request *request, const struct asked *asked, 
   return code;
 }
 
-static void measure_and_keep(struct eo_request *request, const struct asked *asked, const char *pair, const char *digest)
+static void measure_and_keep(struct eo_request *request, const struct asked *asked, const char *pair,
+                             const char *digest)
 {
   struct eo_found_measurement found = {0};
   struct eo_error error;

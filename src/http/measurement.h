@@ -5,10 +5,10 @@
 #include "http/request.h"
 #include "store/measurements.h"
 
-/* A stored design, read and completed; false: the reply says what is wrong, unless *missing. document (may be NULL): as it is stored, the
-   caller's. */
-bool eo_request_stored_design(struct eo_request *request, int64_t id, struct eo_design *design, struct eo_geometry *geometry, json_t **document,
-                              bool *missing);
+/* A stored design, read and completed; false: the reply says what is wrong, unless *missing. document (may be NULL): as
+   it is stored, the caller's. */
+bool eo_request_stored_design(struct eo_request *request, int64_t id, struct eo_design *design,
+                              struct eo_geometry *geometry, json_t **document, bool *missing);
 
 /* A measurement as a document. */
 struct eo_found_measurement {

@@ -28,7 +28,8 @@ static void add_files(struct eo_text *text, const struct eo_stored_measurement *
 {
   json_t *files = json_array();
   for (int i = 0; i < row->files; i++)
-    json_array_append_new(files, json_pack("{s:s, s:I, s:s}", "name", row->file[i].name, "size", (json_int_t)row->file[i].size, "sha256", row->file[i].sha256));
+    json_array_append_new(files, json_pack("{s:s, s:I, s:s}", "name", row->file[i].name, "size",
+                                           (json_int_t)row->file[i].size, "sha256", row->file[i].sha256));
   eo_text_add(text, ",\"files\":");
   add_json(text, files);
 }
@@ -36,7 +37,8 @@ static void add_files(struct eo_text *text, const struct eo_stored_measurement *
 /* document: of the result or its summary, a JSON object. */
 static void add_row(struct eo_text *text, const struct eo_stored_measurement *row, const char *document)
 {
-  eo_text_print(text, "{\"id\":%lld,\"design\":%lld,\"created\":\"%s\",\"stated_speed_rpm\":", (long long)row->id, (long long)row->design, row->created);
+  eo_text_print(text, "{\"id\":%lld,\"design\":%lld,\"created\":\"%s\",\"stated_speed_rpm\":", (long long)row->id,
+                (long long)row->design, row->created);
   json_t *speed = eo_json_real(row->speed, &eo_unit_rpm);
   add_json(text, speed);
   eo_text_print(text, ",\"asked_layout\":%s", *row->layout ? row->layout : "null");
@@ -101,8 +103,9 @@ static void list(struct eo_request *request)
 {
   struct page page = {.limit = (int)eo_request_number(request, "limit")};
   struct eo_error error;
-  enum eo_code code = eo_store_list_measurements(request->store, (int64_t)eo_request_number(request, "design"), (int64_t)eo_request_number(request, "cursor"),
-                                                 page.limit + 1, visit_listed, &page, &error);
+  enum eo_code code = eo_store_list_measurements(request->store, (int64_t)eo_request_number(request, "design"),
+                                                 (int64_t)eo_request_number(request, "cursor"), page.limit + 1,
+                                                 visit_listed, &page, &error);
   if (!page.count)
     eo_text_add(&page.text, "{\"items\":[");
   if (page.more)
@@ -153,7 +156,8 @@ static void write_digest(const char *hex, char *text, size_t size)
     byte[i] = (unsigned char)value;
   }
   for (int i = 0; i < EO_HASH_LENGTH / 2; i += 3) {
-    unsigned bits = (unsigned)byte[i] << 16 | (unsigned)byte[i + 1] << 8 | (i + 2 < EO_HASH_LENGTH / 2 ? byte[i + 2] : 0u);
+    unsigned bits = (unsigned)byte[i] << 16 | (unsigned)byte[i + 1] << 8 |
+                    (i + 2 < EO_HASH_LENGTH / 2 ? byte[i + 2] : 0u);
     for (int k = 18; k >= 0; k -= 6)
       code[count++] = letter[bits >> k & 63];
   }
@@ -174,8 +178,11 @@ static void send_file(struct eo_request *request, const struct eo_stored_measure
   char path[4200], digest[80];
   struct eo_error error;
   const struct eo_measurement_file *file = &row->file[number];
-  int descriptor = eo_measurement_file_path(request->store, row->id, number, path, sizeof path) ? open(path, O_RDONLY | O_CLOEXEC) : -1;
-  struct MHD_Response *response = descriptor < 0 ? NULL : MHD_create_response_from_fd64((uint64_t)file->size, descriptor);
+  int descriptor = eo_measurement_file_path(request->store, row->id, number, path, sizeof path)
+                       ? open(path, O_RDONLY | O_CLOEXEC)
+                       : -1;
+  struct MHD_Response *response = descriptor < 0 ? NULL
+                                                 : MHD_create_response_from_fd64((uint64_t)file->size, descriptor);
   if (!response) {
     if (descriptor >= 0)
       close(descriptor);
@@ -212,19 +219,46 @@ static void get_file(struct eo_request *request)
 }
 
 const struct eo_route eo_routes_measurements[] = {
-    {.method = EO_GET, .pattern = "/measurements", .handle = list, .name = "listMeasurements", .gives = "200 Measurements",
+    {.method = EO_GET,
+     .pattern = "/measurements",
+     .handle = list,
+     .name = "listMeasurements",
+     .gives = "200 Measurements",
      .summary = "Rig measurements, newest first, without their curves.",
-     .query = {{"limit", 1, MOST_LISTED, 50, NULL, "most items"}, {"cursor", 1, 9e15, 0, NULL, "`next` of the page before"},
+     .query = {{"limit", 1, MOST_LISTED, 50, NULL, "most items"},
+               {"cursor", 1, 9e15, 0, NULL, "`next` of the page before"},
                {"design", 1, 9e15, 0, NULL, "of this design alone"}}},
-    {.method = EO_POST, .pattern = "/measurements", .handle = eo_measurement_add, .name = "addMeasurement", .takes = "MeasurementForm", .form = true,
-     .gives = "201 Measurement, 200 Measurement", .rate = EO_RATE_QUESTION, .body = EO_UPLOAD_BYTES,
-     .summary = "A recording of two encoders: one file, or the pinion's and then the gear's. 200 when it is known already; 422 with the findings when "
+    {.method = EO_POST,
+     .pattern = "/measurements",
+     .handle = eo_measurement_add,
+     .name = "addMeasurement",
+     .takes = "MeasurementForm",
+     .form = true,
+     .gives = "201 Measurement, 200 Measurement",
+     .rate = EO_RATE_QUESTION,
+     .body = EO_UPLOAD_BYTES,
+     .summary = "A recording of two encoders: one file, or the pinion's and then the gear's. 200 when it is known "
+                "already; 422 with the findings when "
                 "it gives no result, and nothing is kept then."},
-    {.method = EO_GET, .pattern = "/measurements/{id}", .handle = get_one, .name = "getMeasurement", .gives = "200 Measurement", .headers = "If-None-Match",
+    {.method = EO_GET,
+     .pattern = "/measurements/{id}",
+     .handle = get_one,
+     .name = "getMeasurement",
+     .gives = "200 Measurement",
+     .headers = "If-None-Match",
      .summary = "A measurement: what was found in the recording, transmission error, orders, RMS."},
-    {.method = EO_DELETE, .pattern = "/measurements/{id}", .handle = take_out, .name = "removeMeasurement", .gives = "204 -",
+    {.method = EO_DELETE,
+     .pattern = "/measurements/{id}",
+     .handle = take_out,
+     .name = "removeMeasurement",
+     .gives = "204 -",
      .summary = "Removes a measurement with its files."},
-    {.method = EO_GET, .pattern = "/measurements/{id}/file", .handle = get_file, .name = "getMeasurementFile", .gives = "200 application/octet-stream",
-     .headers = "If-None-Match", .summary = "The recording as it came; its SHA-256 is the ETag.",
+    {.method = EO_GET,
+     .pattern = "/measurements/{id}/file",
+     .handle = get_file,
+     .name = "getMeasurementFile",
+     .gives = "200 application/octet-stream",
+     .headers = "If-None-Match",
+     .summary = "The recording as it came; its SHA-256 is the ETag.",
      .query = {{"part", 1, EO_MEASUREMENT_FILES, 1, NULL, "2: the gear's file, where each encoder had one"}}},
     {0}};

@@ -18,8 +18,8 @@ static json_t *reference(const char *name, size_t length)
 
 static json_t *encode_parameter(const char *name, size_t length, const char *place, json_t *schema, const char *help)
 {
-  return json_pack("{s:s%, s:s, s:b, s:s, s:o}", "name", name, length, "in", place, "required", strcmp(place, "path") == 0, "description", help, "schema",
-                   schema);
+  return json_pack("{s:s%, s:s, s:b, s:s, s:o}", "name", name, length, "in", place, "required",
+                   strcmp(place, "path") == 0, "description", help, "schema", schema);
 }
 
 static void add_path_parameters(json_t *list, const char *pattern)
@@ -27,7 +27,8 @@ static void add_path_parameters(json_t *list, const char *pattern)
   for (const char *open = strchr(pattern, '{'); open; open = strchr(open + 1, '{')) {
     size_t length = strcspn(open + 1, "}");
     bool number = length == 2 && strncmp(open + 1, "id", 2) == 0;
-    json_array_append_new(list, encode_parameter(open + 1, length, "path", json_pack("{s:s}", "type", number ? "integer" : "string"),
+    json_array_append_new(list, encode_parameter(open + 1, length, "path",
+                                                 json_pack("{s:s}", "type", number ? "integer" : "string"),
                                                  number ? "number" : "name"));
   }
 }
@@ -45,7 +46,8 @@ static json_t *encode_words(const char *words)
 
 static json_t *encode_range(const struct eo_query *query)
 {
-  json_t *schema = json_pack("{s:s, s:I, s:I}", "type", "integer", "minimum", (json_int_t)query->low, "maximum", (json_int_t)query->high);
+  json_t *schema = json_pack("{s:s, s:I, s:I}", "type", "integer", "minimum", (json_int_t)query->low, "maximum",
+                             (json_int_t)query->high);
   if (query->fallback >= query->low)
     json_object_set_new(schema, "default", json_integer((json_int_t)query->fallback));
   return schema;
@@ -55,7 +57,8 @@ static void add_queries(json_t *list, const struct eo_route *route)
 {
   for (const struct eo_query *query = route->query; query < route->query + EO_MOST_QUERIES && query->name; query++)
     json_array_append_new(list, encode_parameter(query->name, strlen(query->name), "query",
-                                                 query->words ? encode_words(query->words) : encode_range(query), query->help));
+                                                 query->words ? encode_words(query->words) : encode_range(query),
+                                                 query->help));
 }
 
 /* ---- names in lists: "If-Match, Prefer"; "200 Result, 202 Preparing" ---- */
@@ -71,11 +74,14 @@ static bool next_name(const char **list, const char **name, size_t *length)
 
 static void add_headers(json_t *list, const char *headers)
 {
-  static const struct { const char *name, *help; } known[] = {
+  static const struct {
+    const char *name, *help;
+  } known[] = {
       {"If-Match", "the ETag of the version that is meant, or *"},
       {"If-None-Match", "an ETag that is known already: 304 when it still holds"},
       {"Prefer", "wait=SECONDS (at most 60): wait for the preparation of the gear pair"},
-      {"Easeoff-Lane", "a token of the client's own: a newer question with the same token takes the place of one that still waits"},
+      {"Easeoff-Lane",
+       "a token of the client's own: a newer question with the same token takes the place of one that still waits"},
       {"Idempotency-Key", "a token of the client's own: the same order with the same token is one job"},
       {"Last-Event-ID", "the number of the last event that was seen"}};
   const char *name;
@@ -83,7 +89,8 @@ static void add_headers(json_t *list, const char *headers)
   while (headers && next_name(&headers, &name, &length))
     for (size_t i = 0; i < sizeof known / sizeof known[0]; i++)
       if (strlen(known[i].name) == length && strncmp(known[i].name, name, length) == 0)
-        json_array_append_new(list, encode_parameter(name, length, "header", json_pack("{s:s}", "type", "string"), known[i].help));
+        json_array_append_new(
+            list, encode_parameter(name, length, "header", json_pack("{s:s}", "type", "string"), known[i].help));
 }
 
 /* ---- answers ---- */
@@ -119,8 +126,9 @@ static json_t *encode_answers(const struct eo_route *route)
   }
   if (route->headers && strstr(route->headers, "If-None-Match"))
     json_object_set_new(answers, "304", json_pack("{s:s}", "description", "the known version still holds"));
-  json_object_set_new(answers, "default", json_pack("{s:s, s:{s:{s:o}}}", "description", "a problem (RFC 9457)", "content", "application/problem+json",
-                                                    "schema", reference("Problem", 7)));
+  json_object_set_new(answers, "default",
+                      json_pack("{s:s, s:{s:{s:o}}}", "description", "a problem (RFC 9457)", "content",
+                                "application/problem+json", "schema", reference("Problem", 7)));
   return answers;
 }
 
@@ -132,14 +140,16 @@ static json_t *encode_operation(const struct eo_route *route)
   add_path_parameters(parameters, route->pattern);
   add_queries(parameters, route);
   add_headers(parameters, route->headers);
-  json_t *operation = json_pack("{s:s, s:s, s:o, s:o}", "operationId", route->name, "summary", route->summary, "parameters", parameters, "responses",
-                                encode_answers(route));
+  json_t *operation = json_pack("{s:s, s:s, s:o, s:o}", "operationId", route->name, "summary", route->summary,
+                                "parameters", parameters, "responses", encode_answers(route));
   if (route->takes)
     json_object_set_new(operation, "requestBody",
-                        json_pack("{s:b, s:{s:{s:o}}}", "required", !route->takes_nothing, "content", route->form ? "multipart/form-data" : "application/json", "schema",
+                        json_pack("{s:b, s:{s:{s:o}}}", "required", !route->takes_nothing, "content",
+                                  route->form ? "multipart/form-data" : "application/json", "schema",
                                   reference(route->takes, strlen(route->takes))));
   if (route->csv)
-    json_object_set_new(operation, "description", json_sprintf("As text/csv by the Accept header, or at %s%s.csv.", EO_API, route->pattern));
+    json_object_set_new(operation, "description",
+                        json_sprintf("As text/csv by the Accept header, or at %s%s.csv.", EO_API, route->pattern));
   if (route->open)
     json_object_set_new(operation, "security", json_array());
   return operation;
@@ -166,9 +176,10 @@ static json_t *encode_paths(void)
 
 json_t *eo_openapi(void)
 {
-  return json_pack("{s:s, s:{s:s, s:s, s:s}, s:[{s:s}], s:[{s:[]}, {s:[]}], s:o, s:{s:o, s:{s:{s:s, s:s}, s:{s:s, s:s, s:s}}}}", "openapi", "3.1.0",
-                   "info", "title", "Easeoff", "version", PACKAGE_VERSION, "description", "Quiet herringbone gears by tooth micro-geometry.", "servers",
-                   "url", EO_API, "security", "token", "session", "paths", encode_paths(), "components", "schemas", eo_openapi_schemas(),
-                   "securitySchemes", "token", "type", "http", "scheme", "bearer", "session", "type", "apiKey", "in", "cookie", "name",
-                   eo_guard_cookie);
+  return json_pack(
+      "{s:s, s:{s:s, s:s, s:s}, s:[{s:s}], s:[{s:[]}, {s:[]}], s:o, s:{s:o, s:{s:{s:s, s:s}, s:{s:s, s:s, s:s}}}}",
+      "openapi", "3.1.0", "info", "title", "Easeoff", "version", PACKAGE_VERSION, "description",
+      "Quiet herringbone gears by tooth micro-geometry.", "servers", "url", EO_API, "security", "token", "session",
+      "paths", encode_paths(), "components", "schemas", eo_openapi_schemas(), "securitySchemes", "token", "type",
+      "http", "scheme", "bearer", "session", "type", "apiKey", "in", "cookie", "name", eo_guard_cookie);
 }

@@ -23,11 +23,20 @@ struct eo_pages {
 
 static const char *type_of(const char *path)
 {
-  static const struct { const char *ending, *type; } types[] = {
-      {".html", "text/html; charset=utf-8"}, {".js", "text/javascript; charset=utf-8"}, {".mjs", "text/javascript; charset=utf-8"},
-      {".css", "text/css; charset=utf-8"},   {".json", "application/json"},             {".svg", "image/svg+xml"},
-      {".png", "image/png"},                 {".ico", "image/x-icon"},                  {".woff2", "font/woff2"},
-      {".txt", "text/plain; charset=utf-8"}, {".map", "application/json"},              {".webmanifest", "application/manifest+json"}};
+  static const struct {
+    const char *ending, *type;
+  } types[] = {{".html", "text/html; charset=utf-8"},
+               {".js", "text/javascript; charset=utf-8"},
+               {".mjs", "text/javascript; charset=utf-8"},
+               {".css", "text/css; charset=utf-8"},
+               {".json", "application/json"},
+               {".svg", "image/svg+xml"},
+               {".png", "image/png"},
+               {".ico", "image/x-icon"},
+               {".woff2", "font/woff2"},
+               {".txt", "text/plain; charset=utf-8"},
+               {".map", "application/json"},
+               {".webmanifest", "application/manifest+json"}};
   const char *dot = strrchr(path, '.');
   for (size_t i = 0; dot && i < sizeof types / sizeof types[0]; i++)
     if (strcmp(dot, types[i].ending) == 0)
@@ -97,10 +106,12 @@ static enum eo_code collect(struct eo_pages *pages, const char *folder, struct e
   while (!code && (entry = fts_read(tree)))
     if (entry->fts_info == FTS_F && entry->fts_name[0] != '.')
       code = add(pages, entry->fts_accpath, entry->fts_path + strlen(folder), error);
-    else if (entry->fts_info == FTS_D && entry->fts_level > 0 && (entry->fts_name[0] == '.' || strcmp(entry->fts_name, "node_modules") == 0))
+    else if (entry->fts_info == FTS_D && entry->fts_level > 0 &&
+             (entry->fts_name[0] == '.' || strcmp(entry->fts_name, "node_modules") == 0))
       fts_set(tree, entry, FTS_SKIP);
     else if ((entry->fts_info == FTS_NS || entry->fts_info == FTS_DNR) && entry->fts_level == 0)
-      code = eo_error_set(error, EO_ERROR_FILE, "", "The page's folder cannot be read: %s.", strerror(entry->fts_errno));
+      code = eo_error_set(error, EO_ERROR_FILE, "", "The page's folder cannot be read: %s.",
+                          strerror(entry->fts_errno));
   fts_close(tree);
   if (pages->count)
     qsort(pages->page, (size_t)pages->count, sizeof *pages->page, compare);
@@ -134,14 +145,16 @@ void eo_pages_free(struct eo_pages *pages)
 void eo_pages_reply(const struct eo_pages *pages, struct eo_request *request)
 {
   const struct page wanted = {.path = strcmp(request->path, "/") == 0 ? (char *)"/index.html" : request->path};
-  const struct page *page = pages->count ? bsearch(&wanted, pages->page, (size_t)pages->count, sizeof wanted, compare) : NULL;
+  const struct page *page = pages->count ? bsearch(&wanted, pages->page, (size_t)pages->count, sizeof wanted, compare)
+                                         : NULL;
   if (request->method == EO_OPTIONS) {
     eo_reply_empty(request, 204);
     request->reply.allow = EO_GET | EO_OPTIONS;
   } else if (page)
     eo_reply_resource(request, &page->resource);
   else if (!pages->count && strcmp(request->path, "/") == 0)
-    eo_reply_problem(request, 404, NULL, "This server was started without its page; the API is at /api/v1/openapi.json.");
+    eo_reply_problem(request, 404, NULL,
+                     "This server was started without its page; the API is at /api/v1/openapi.json.");
   else
     eo_reply_problem(request, 404, NULL, "There is no page at this address.");
 }

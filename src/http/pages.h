@@ -6,7 +6,8 @@
 
 struct eo_pages;
 
-/* Every regular file below the folder (links are not followed). folder NULL: an empty list. Errors: EO_ERROR_FILE, memory. */
+/* Every regular file below the folder (links are not followed). folder NULL: an empty list. Errors: EO_ERROR_FILE,
+   memory. */
 enum eo_code eo_pages_new(struct eo_pages **pages, const char *folder, struct eo_error *error);
 void eo_pages_free(struct eo_pages *pages);
 

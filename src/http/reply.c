@@ -85,13 +85,15 @@ static json_t *encode_fault(const char *path, const struct eo_error *fault)
   return json_pack("{s:s, s:s}", "pointer", pointer, "detail", fault->text);
 }
 
-static void put_problem_with(struct eo_request *request, unsigned status, const char *name, const char *detail, json_t *errors, json_t *more)
+static void put_problem_with(struct eo_request *request, unsigned status, const char *name, const char *detail,
+                             json_t *errors, json_t *more)
 {
   char type[80] = "about:blank";
   if (name)
     snprintf(type, sizeof type, "/problems/%s", name);
-  json_t *problem = json_pack("{s:s, s:s, s:i, s:s, s:o, s:s}", "type", type, "title", title_of(status), "status", (int)status, "detail", detail,
-                              "errors", errors ? errors : json_array(), "request_id", request->id);
+  json_t *problem = json_pack("{s:s, s:s, s:i, s:s, s:o, s:s}", "type", type, "title", title_of(status), "status",
+                              (int)status, "detail", detail, "errors", errors ? errors : json_array(), "request_id",
+                              request->id);
   *request->reply.file_name = '\0';
   if (problem && more)
     json_object_update(problem, more);
@@ -103,12 +105,14 @@ static void put_problem_with(struct eo_request *request, unsigned status, const 
   eo_reply_empty(request, 500);
 }
 
-static void put_problem(struct eo_request *request, unsigned status, const char *name, const char *detail, json_t *errors)
+static void put_problem(struct eo_request *request, unsigned status, const char *name, const char *detail,
+                        json_t *errors)
 {
   put_problem_with(request, status, name, detail, errors, NULL);
 }
 
-void eo_reply_problem_with(struct eo_request *request, unsigned status, const char *name, json_t *more, const char *detail)
+void eo_reply_problem_with(struct eo_request *request, unsigned status, const char *name, json_t *more,
+                           const char *detail)
 {
   put_problem_with(request, status, name, detail, NULL, more);
 }
@@ -144,8 +148,10 @@ void eo_reply_error(struct eo_request *request, const char *path, const struct e
     put_problem(request, 503, NULL, "There is not enough memory at the moment.", NULL);
     request->reply.retry_after = 5;
   } else if (error->code == EO_ERROR_FILE) {
-    fprintf(stderr, "easeoff: %s: %s\n", request->id, error->text); /* it names files of this machine: not for the client */
-    put_problem(request, 500, "storage", "The server's data cannot be read or written; its log says more under the request's id.", NULL);
+    fprintf(stderr, "easeoff: %s: %s\n", request->id,
+            error->text); /* it names files of this machine: not for the client */
+    put_problem(request, 500, "storage",
+                "The server's data cannot be read or written; its log says more under the request's id.", NULL);
   } else
     put_problem(request, 500, "failed", error->text, NULL);
 }
@@ -174,9 +180,11 @@ static void add_allow(struct MHD_Response *response, unsigned allow)
 static void add_safety(struct MHD_Response *response, const struct eo_request *request)
 {
   add(response, "Content-Security-Policy",
-      request->route ? "default-src 'none'; frame-ancestors 'none'"
-                     : "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data: blob:; font-src 'self'; connect-src 'self'; "
-                       "worker-src 'self'; manifest-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'");
+      request->route
+          ? "default-src 'none'; frame-ancestors 'none'"
+          : "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data: blob:; font-src 'self'; "
+            "connect-src 'self'; "
+            "worker-src 'self'; manifest-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'");
   add(response, "X-Content-Type-Options", "nosniff");
   add(response, "Referrer-Policy", "no-referrer");
   add(response, "Cross-Origin-Resource-Policy", "same-origin");
@@ -191,9 +199,10 @@ static void add_headers(struct MHD_Response *response, const struct eo_request *
   add(response, "Content-Type", reply->type);
   add(response, "Location", reply->location);
   add(response, "Set-Cookie", reply->cookie);
-  add(response, "Cache-Control", reply->resource && reply->resource->lasting ? "public, max-age=31536000, immutable"
-                                 : reply->revalidate                         ? "no-cache"
-                                                                             : "no-store");
+  add(response, "Cache-Control",
+      reply->resource && reply->resource->lasting ? "public, max-age=31536000, immutable"
+      : reply->revalidate                         ? "no-cache"
+                                                  : "no-store");
   if (*reply->tag) {
     snprintf(text, sizeof text, "\"%s\"", reply->tag);
     add(response, "ETag", text);
@@ -269,7 +278,8 @@ enum MHD_Result eo_reply_send(struct eo_request *request)
     return MHD_NO;
   add_headers(response, request);
   request->http->replies[request->reply.status / 100 % 6]++;
-  eo_connection_allow(request->http, request->place, stream ? 0 : EO_BODY_SECONDS + (int)(request->sent / EO_SLOWEST_READER));
+  eo_connection_allow(request->http, request->place,
+                      stream ? 0 : EO_BODY_SECONDS + (int)(request->sent / EO_SLOWEST_READER));
   enum MHD_Result result = MHD_queue_response(request->connection, request->reply.status, response);
   MHD_destroy_response(response);
   return result;

@@ -21,7 +21,8 @@ static unsigned method_of(const char *name, bool *head)
   return 0;
 }
 
-struct eo_request *eo_request_new(struct eo_http *http, struct MHD_Connection *connection, const char *path, const char *method)
+struct eo_request *eo_request_new(struct eo_http *http, struct MHD_Connection *connection, const char *path,
+                                  const char *method)
 {
   struct eo_request *request = calloc(1, sizeof *request);
   const union MHD_ConnectionInfo *info = MHD_get_connection_info(connection, MHD_CONNECTION_INFO_SOCKET_CONTEXT);
@@ -39,7 +40,8 @@ struct eo_request *eo_request_new(struct eo_http *http, struct MHD_Connection *c
     return NULL;
   }
   request->method = method_of(method, &request->head);
-  snprintf(request->id, sizeof request->id, "%08x%08x", (unsigned)(http->run & 0xffffffff), (unsigned)(++http->requests & 0xffffffff));
+  snprintf(request->id, sizeof request->id, "%08x%08x", (unsigned)(http->run & 0xffffffff),
+           (unsigned)(++http->requests & 0xffffffff));
   return request;
 }
 
@@ -73,7 +75,8 @@ double eo_request_number(const struct eo_request *request, const char *name)
   int64_t value;
   if (text && eo_field_integer(text, &value))
     return (double)value;
-  for (const struct eo_query *query = request->route->query; query < request->route->query + EO_MOST_QUERIES && query->name; query++)
+  for (const struct eo_query *query = request->route->query;
+       query < request->route->query + EO_MOST_QUERIES && query->name; query++)
     if (strcmp(query->name, name) == 0)
       return query->fallback;
   return 0;

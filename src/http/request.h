@@ -1,6 +1,7 @@
-/* One request on its way: what came, and the reply that is being made. A handler reads the one, fills the other and returns; it runs on the
-   HTTP thread and never waits. What takes longer is deferred: the handler calls eo_request_defer() and hands the request to somebody who
-   calls eo_request_finish() once, from any thread. This header is for src/http/ alone. */
+/* One request on its way: what came, and the reply that is being made. A handler reads the one, fills the other and
+   returns; it runs on the HTTP thread and never waits. What takes longer is deferred: the handler calls
+   eo_request_defer() and hands the request to somebody who calls eo_request_finish() once, from any thread. This header
+   is for src/http/ alone. */
 #ifndef EASEOFF_HTTP_REQUEST_H
 #define EASEOFF_HTTP_REQUEST_H
 
@@ -25,35 +26,35 @@ enum { EO_REQUEST_ID = 16, EO_ARGUMENTS = 2, EO_TAG = 70 };
 
 struct eo_reply {
   unsigned status;
-  const char *type;                   /* literal */
-  struct eo_text body;                /* owned */
-  const struct eo_resource *resource; /* in place of the body: borrowed from the server */
-  struct MHD_Response *stream;        /* in place of the body: owned until it is queued */
-  char tag[EO_TAG];                   /* ETag without quotes; "": none */
+  const char *type;                               /* literal */
+  struct eo_text body;                            /* owned */
+  const struct eo_resource *resource;             /* in place of the body: borrowed from the server */
+  struct MHD_Response *stream;                    /* in place of the body: owned until it is queued */
+  char tag[EO_TAG];                               /* ETag without quotes; "": none */
   char location[128], file_name[80], cookie[160]; /* "": none */
-  int retry_after;                    /* s; 0: none */
-  unsigned allow;                     /* methods; 0: no Allow */
-  bool authenticate, revalidate;      /* WWW-Authenticate; the client may keep a copy and ask whether it still holds */
-  bool close;                         /* the connection ends with this reply */
+  int retry_after;                                /* s; 0: none */
+  unsigned allow;                                 /* methods; 0: no Allow */
+  bool authenticate, revalidate; /* WWW-Authenticate; the client may keep a copy and ask whether it still holds */
+  bool close;                    /* the connection ends with this reply */
 };
 
 struct eo_request {
   struct eo_http *http;
-  struct eo_store *store;             /* of the thread the handler runs on */
+  struct eo_store *store; /* of the thread the handler runs on */
   struct MHD_Connection *connection;
-  struct eo_connection *place;        /* of the connection, with its deadline */
+  struct eo_connection *place; /* of the connection, with its deadline */
   char id[EO_REQUEST_ID + 1];
-  char *method_name, *path;           /* owned */
-  unsigned method;                    /* one of enum eo_method; 0: none that is known */
+  char *method_name, *path; /* owned */
+  unsigned method;          /* one of enum eo_method; 0: none that is known */
   bool head;
-  const struct eo_route *route;       /* NULL: a page, or nothing */
-  char argument[EO_ARGUMENTS][64];    /* what stood in the places of the pattern */
-  bool csv;                           /* asked for by Accept or by the suffix */
+  const struct eo_route *route;    /* NULL: a page, or nothing */
+  char argument[EO_ARGUMENTS][64]; /* what stood in the places of the pattern */
+  bool csv;                        /* asked for by Accept or by the suffix */
   struct eo_text body;
-  struct eo_upload *upload;           /* in place of the body, of a route that takes a form; owned */
+  struct eo_upload *upload;             /* in place of the body, of a route that takes a form; owned */
   size_t received, body_limit, refused; /* refused: bytes that came after the reply was known */
-  size_t held;                        /* bytes of the body in memory */
-  double started;                     /* ms of the monotonic clock */
+  size_t held;                          /* bytes of the body in memory */
+  double started;                       /* ms of the monotonic clock */
   struct eo_reply reply;
   bool dispatched;
   bool deferred, finished, suspended; /* under the server's lock */
@@ -71,8 +72,8 @@ double eo_request_number(const struct eo_request *request, const char *name);
 /* The body as JSON; NULL: the reply says what is wrong with it. */
 json_t *eo_request_json(struct eo_request *request);
 
-/* A design out of a JSON value, read, completed and checked; path: where it stands in the body ("" for all of it). False: the reply
-   says everything that is wrong. warnings may be NULL. */
+/* A design out of a JSON value, read, completed and checked; path: where it stands in the body ("" for all of it).
+   False: the reply says everything that is wrong. warnings may be NULL. */
 bool eo_request_design(struct eo_request *request, const json_t *document, const char *path, struct eo_design *design,
                        struct eo_geometry *geometry, struct eo_warnings *warnings);
 
@@ -89,12 +90,14 @@ void eo_reply_text(struct eo_request *request, unsigned status, const char *type
 void eo_reply_resource(struct eo_request *request, const struct eo_resource *resource);
 void eo_reply_empty(struct eo_request *request, unsigned status);
 
-/* A problem document (RFC 9457). name: the last part of "/problems/NAME", or NULL for a status that says enough by itself. */
+/* A problem document (RFC 9457). name: the last part of "/problems/NAME", or NULL for a status that says enough by
+   itself. */
 void eo_reply_problem(struct eo_request *request, unsigned status, const char *name, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
 
 /* The same with further members, taken over: what a program can read about the problem. */
-void eo_reply_problem_with(struct eo_request *request, unsigned status, const char *name, json_t *more, const char *detail);
+void eo_reply_problem_with(struct eo_request *request, unsigned status, const char *name, json_t *more,
+                           const char *detail);
 
 /* 422 with every fault and its pointer below path. */
 void eo_reply_faults(struct eo_request *request, const char *path, const struct eo_faults *faults);

@@ -29,7 +29,8 @@ bool eo_pack(const char *data, size_t size, int level, struct eo_text *packed)
   return packs;
 }
 
-enum eo_code eo_resource_init(struct eo_resource *resource, const char *type, struct eo_text *text, struct eo_error *error)
+enum eo_code eo_resource_init(struct eo_resource *resource, const char *type, struct eo_text *text,
+                              struct eo_error *error)
 {
   char key[EO_HASH_LENGTH + 1];
   if (text->failed)

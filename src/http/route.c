@@ -5,11 +5,15 @@
 
 #include "http/server.h"
 
-const struct eo_route *const eo_routes[] = {eo_routes_service,  eo_routes_session,     eo_routes_examples, eo_routes_designs, eo_routes_analysis, eo_routes_jobs,
-                                              eo_routes_events,   eo_routes_history,  eo_routes_export, eo_routes_measurements, eo_routes_comparison, NULL};
+const struct eo_route *const eo_routes[] = {eo_routes_service,      eo_routes_session,    eo_routes_examples,
+                                            eo_routes_designs,      eo_routes_analysis,   eo_routes_jobs,
+                                            eo_routes_events,       eo_routes_history,    eo_routes_export,
+                                            eo_routes_measurements, eo_routes_comparison, NULL};
 
-static const struct { unsigned method; const char *name; } methods[] = {
-    {EO_GET, "GET"}, {EO_POST, "POST"}, {EO_PUT, "PUT"}, {EO_DELETE, "DELETE"}, {EO_OPTIONS, "OPTIONS"}};
+static const struct {
+  unsigned method;
+  const char *name;
+} methods[] = {{EO_GET, "GET"}, {EO_POST, "POST"}, {EO_PUT, "PUT"}, {EO_DELETE, "DELETE"}, {EO_OPTIONS, "OPTIONS"}};
 
 const char *eo_method_name(unsigned method)
 {
@@ -63,7 +67,8 @@ bool eo_route_find(struct eo_request *request)
 {
   unsigned allowed = find_with_suffix(request, request->path + strlen(EO_API));
   if (!allowed)
-    eo_reply_problem(request, 404, NULL, "There is nothing at this address; " EO_API "/openapi.json lists what there is.");
+    eo_reply_problem(request, 404, NULL,
+                     "There is nothing at this address; " EO_API "/openapi.json lists what there is.");
   else if (request->method == EO_OPTIONS) {
     eo_reply_empty(request, 204);
     request->reply.allow = allowed | EO_OPTIONS;
@@ -71,7 +76,8 @@ bool eo_route_find(struct eo_request *request)
     eo_reply_problem(request, 405, NULL, "This address does not answer that method.");
     request->reply.allow = allowed | EO_OPTIONS;
   } else {
-    request->csv = request->csv || (request->route->csv && eo_field_prefers_type(eo_request_header(request, "Accept"), "text/csv"));
+    request->csv = request->csv ||
+                   (request->route->csv && eo_field_prefers_type(eo_request_header(request, "Accept"), "text/csv"));
     return true;
   }
   return false;
@@ -105,7 +111,8 @@ static enum MHD_Result check_one(void *context, enum MHD_ValueKind kind, const c
   char shown[40];
   (void)kind;
   eo_text_clean(shown, sizeof shown, name);
-  for (const struct eo_query *query = request->route->query; query < request->route->query + EO_MOST_QUERIES && query->name; query++) {
+  for (const struct eo_query *query = request->route->query;
+       query < request->route->query + EO_MOST_QUERIES && query->name; query++) {
     if (strcmp(query->name, name) != 0)
       continue;
     if (value && is_allowed(query, value))
@@ -113,7 +120,8 @@ static enum MHD_Result check_one(void *context, enum MHD_ValueKind kind, const c
     if (query->words)
       eo_reply_problem(request, 400, "query", "The query parameter %s takes one of %s.", query->name, query->words);
     else
-      eo_reply_problem(request, 400, "query", "The query parameter %s takes a whole number from %.0f to %.0f.", query->name, query->low, query->high);
+      eo_reply_problem(request, 400, "query", "The query parameter %s takes a whole number from %.0f to %.0f.",
+                       query->name, query->low, query->high);
     return MHD_NO;
   }
   eo_reply_problem(request, 400, "query", "There is no query parameter \"%s\" here.", shown);

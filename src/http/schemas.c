@@ -1,5 +1,5 @@
-/* The documents of the API: what document/ and jobs/ write comes from their outlines and field tables, the rest stands here in the short notation of
-   shape.h. */
+/* The documents of the API: what document/ and jobs/ write comes from their outlines and field tables, the rest stands
+   here in the short notation of shape.h. */
 #include <string.h>
 
 #include "document/design_document.h"
@@ -17,41 +17,51 @@
 #include "jobs/records.h"
 #include "jobs/rig_work.h"
 
-static const struct { const char *name, *notation; } shapes[] = {
+static const struct {
+  const char *name, *notation;
+} shapes[] = {
     {"Description", "{openapi text, info any, servers any, security any, paths any, components any}"},
-    {"Problem", "{type text, title text, status integer, detail text, errors [{pointer text, detail text}], request_id text,"
-                " findings? [Finding], notes? [text], layout? Layout?, signal? Signal, ...}"},
-    {"Health", "{status 'ok|failing', program text, uptime_s number, jobs {queued integer, running integer}, database 'ok|failing'}"},
+    {"Problem",
+     "{type text, title text, status integer, detail text, errors [{pointer text, detail text}], request_id text,"
+     " findings? [Finding], notes? [text], layout? Layout?, signal? Signal, ...}"},
+    {"Health", "{status 'ok|failing', program text, uptime_s number, jobs {queued integer, running integer}, database "
+               "'ok|failing'}"},
     {"Session", "{required flag, authorized flag}"},
     {"Token", "{token text}"},
     {"Examples", "{items [{name text, title text}]}"},
     {"Exports", "{items [{name text, title text, type text}]}"},
     {"Form", "{design Fields, sweep Fields}"},
     {"Fields", "{name text, fields [Field]}"},
-    {"Field", "{key text, kind 'number|integer|seed|flag|text|choice|numbers|limit|object|list|series', unit? text, symbol? text, low? number, high? number,"
-              " number_low? number, number_high? number, count? integer, default? any, choices? [text], help? text, required flag, nullable flag,"
+    {"Field", "{key text, kind 'number|integer|seed|flag|text|choice|numbers|limit|object|list|series', unit? text, "
+              "symbol? text, low? number, high? number,"
+              " number_low? number, number_high? number, count? integer, default? any, choices? [text], help? text, "
+              "required flag, nullable flag,"
               " derived? text, fields? [Field]}"},
     {"Check", "{design ResolvedDesign, geometry Geometry, warnings [text], prepared flag}"},
     {"NamedDesign", "{name? text, design Design}"},
-    {"StoredDesign", "{id integer, revision integer, name text, created text, updated text, design Design, warnings [text]}"},
+    {"StoredDesign",
+     "{id integer, revision integer, name text, created text, updated text, design Design, warnings [text]}"},
     {"Designs", "{items [{id integer, revision integer, name text, created text, updated text}], next text?}"},
     {"Preparing", "{job Job?}"},
     {"Jobs", "{items [Job], next text?}"},
     {"JobOrder", "{kind? 'optimize|prepare', design Design, priority? integer, fresh? flag}"},
     {"JobChange", "{priority? integer}"},
     {"JobHistory", "{items [JobHistoryRow], next text?}"},
-    {"MeasurementForm", "{design text, label 'modified|unmodified', torque_Nm text, speed_rpm? text, end? 'left|right', harmonics? text, layout? text,"
+    {"MeasurementForm", "{design text, label 'modified|unmodified', torque_Nm text, speed_rpm? text, end? "
+                        "'left|right', harmonics? text, layout? text,"
                         " file any}"},
-    {"AskedLayout", "{kind? text, unit? text, time? any, time_unit? text, columns? {pinion? any, gear? any}, sample_rate_Hz? number?, lines? any}"},
+    {"AskedLayout", "{kind? text, unit? text, time? any, time_unit? text, columns? {pinion? any, gear? any}, "
+                    "sample_rate_Hz? number?, lines? any}"},
     {"Stored", "{id integer, design integer, created text, stated_speed_rpm number?, asked_layout AskedLayout?,"
                " files [{name text, size integer, sha256 text}]}"},
     {"Measurements", "{items [ListedMeasurement], next text?}"},
     {"FitOrder", "{unknowns {}, model_error? number, seed? integer, measurements? [integer], design? Design}"},
 };
 
-static const struct eo_outline *const outlines[] = {&eo_result_outline, &eo_sweep_outline, &eo_study_outline, &eo_job_outline, &eo_job_generations_outline,
-                                                    &eo_job_history_outline, &eo_records_outline, &eo_rig_comparison_outline, &eo_rig_fit_outline,
-                                                    &eo_measurement_outline, &eo_measurement_brief};
+static const struct eo_outline *const outlines[] = {
+    &eo_result_outline,          &eo_sweep_outline,       &eo_study_outline,    &eo_job_outline,
+    &eo_job_generations_outline, &eo_job_history_outline, &eo_records_outline,  &eo_rig_comparison_outline,
+    &eo_rig_fit_outline,         &eo_measurement_outline, &eo_measurement_brief};
 
 /* A stored measurement is what was measured, behind what is known of its storage. */
 static json_t *stored(const json_t *schemas, const char *measured)
@@ -67,18 +77,20 @@ static json_t *stored(const json_t *schemas, const char *measured)
 /* Any of the inputs that can be fitted, each with its range. */
 static json_t *fit_order(const json_t *plain)
 {
-  json_t *schema = json_deep_copy(plain), *unknowns = json_object_get(json_object_get(schema, "properties"), "unknowns");
+  json_t *schema = json_deep_copy(plain),
+         *unknowns = json_object_get(json_object_get(schema, "properties"), "unknowns");
   for (int i = 0; eo_unknown_names[i]; i++)
     json_object_set_new(json_object_get(unknowns, "properties"), eo_unknown_names[i],
-                        json_pack("{s:s, s:{s:s}, s:i, s:i, s:s}", "type", "array", "items", "type", "number", "minItems", 2, "maxItems", 2, "description",
-                                  "lowest, highest"));
+                        json_pack("{s:s, s:{s:s}, s:i, s:i, s:s}", "type", "array", "items", "type", "number",
+                                  "minItems", 2, "maxItems", 2, "description", "lowest, highest"));
   return schema;
 }
 
 /* A design, and the axes to sweep; torque and speed are taken as shorter keys too. */
 static json_t *sweep_request(void)
 {
-  json_t *schema = eo_table_json_schema(&eo_sweep_request_table, true), *properties = json_object_get(schema, "properties");
+  json_t *schema = eo_table_json_schema(&eo_sweep_request_table, true),
+         *properties = json_object_get(schema, "properties");
   json_t *design = json_pack("{s:s}", "$ref", "#/components/schemas/Design");
   static const char *const full[] = {"torque_Nm", "speed_rpm"}, *const brief[] = {"torque", "speed"};
   for (int i = 0; i < 2; i++) {
@@ -86,7 +98,8 @@ static json_t *sweep_request(void)
     json_object_set(properties, brief[i], axis);
     json_object_set_new(properties, full[i], axis);
   }
-  if (json_object_set_new(properties, "design", design) == 0 && json_object_set_new(schema, "required", json_pack("[s]", "design")) == 0)
+  if (json_object_set_new(properties, "design", design) == 0 &&
+      json_object_set_new(schema, "required", json_pack("[s]", "design")) == 0)
     return schema;
   json_decref(schema);
   return NULL;
@@ -95,23 +108,26 @@ static json_t *sweep_request(void)
 /* A design, and the keys of eo_rig_table. */
 static json_t *rig_order(void)
 {
-  return json_pack("{s:s, s:{s:{s:s}, s:o}, s:[s], s:b}", "type", "object", "properties", "design", "$ref", "#/components/schemas/Design", "rig",
-                   eo_table_json_schema(&eo_rig_table, true), "required", "design", "additionalProperties", 0);
+  return json_pack("{s:s, s:{s:{s:s}, s:o}, s:[s], s:b}", "type", "object", "properties", "design", "$ref",
+                   "#/components/schemas/Design", "rig", eo_table_json_schema(&eo_rig_table, true), "required",
+                   "design", "additionalProperties", 0);
 }
 
 json_t *eo_openapi_schemas(void)
 {
   json_t *schemas = json_object();
   bool good = json_object_set_new(schemas, "Design", eo_table_json_schema(&eo_design_table, true)) == 0 &&
-              json_object_set_new(schemas, "SweepRequest", sweep_request()) == 0 && json_object_set_new(schemas, "RigOrder", rig_order()) == 0;
+              json_object_set_new(schemas, "SweepRequest", sweep_request()) == 0 &&
+              json_object_set_new(schemas, "RigOrder", rig_order()) == 0;
   for (size_t i = 0; i < sizeof outlines / sizeof outlines[0]; i++)
     good = good && eo_outline_add_schemas(outlines[i], schemas);
   for (size_t i = 0; i < sizeof shapes / sizeof shapes[0]; i++)
     good = good && json_object_set_new(schemas, shapes[i].name, eo_shape_schema(shapes[i].notation)) == 0;
   good = good && json_object_set_new(schemas, "Measurement", stored(schemas, "MeasurementOfFile")) == 0 &&
          json_object_set_new(schemas, "ListedMeasurement", stored(schemas, "BriefMeasurement")) == 0;
-  good = good && json_object_set_new(schemas, "DesignOrNamed", json_pack("{s:[{s:s}, {s:s}]}", "anyOf", "$ref", "#/components/schemas/Design", "$ref",
-                                                                         "#/components/schemas/NamedDesign")) == 0;
+  good = good && json_object_set_new(schemas, "DesignOrNamed",
+                                     json_pack("{s:[{s:s}, {s:s}]}", "anyOf", "$ref", "#/components/schemas/Design",
+                                               "$ref", "#/components/schemas/NamedDesign")) == 0;
   good = good && json_object_set_new(schemas, "FitOrder", fit_order(json_object_get(schemas, "FitOrder"))) == 0;
   if (good)
     return schemas;

@@ -52,7 +52,8 @@ static void look_at_body(struct eo_request *request)
   if (has_body)
     eo_connection_allow(request->http, request->place, EO_BODY_SECONDS);
   const char *expected = route && route->form ? "multipart/form-data" : "application/json";
-  if (!request->reply.status && has_body && route && route->takes && type && strncasecmp(type, expected, strlen(expected)) != 0)
+  if (!request->reply.status && has_body && route && route->takes && type &&
+      strncasecmp(type, expected, strlen(expected)) != 0)
     eo_reply_problem(request, 415, NULL, "The body must be %s.", expected);
   if (!request->reply.status && (uint64_t)size > request->body_limit)
     eo_reply_problem(request, 413, NULL, "The body may have %zu bytes here.", request->body_limit);
@@ -71,7 +72,8 @@ static void count_active(struct eo_http *http, int change)
   pthread_mutex_unlock(&http->lock);
 }
 
-static enum MHD_Result begin(struct eo_http *http, struct MHD_Connection *connection, const char *path, const char *method, void **context)
+static enum MHD_Result begin(struct eo_http *http, struct MHD_Connection *connection, const char *path,
+                             const char *method, void **context)
 {
   struct eo_request *request = eo_request_new(http, connection, path, method);
   if (!request)
@@ -84,7 +86,8 @@ static enum MHD_Result begin(struct eo_http *http, struct MHD_Connection *connec
   return request->reply.close ? eo_reply_send(request) : MHD_YES;
 }
 
-/* A body without a stated length is only known to be too long when it is; the library takes a reply then at its end and not before. */
+/* A body without a stated length is only known to be too long when it is; the library takes a reply then at its end and
+   not before. */
 static enum MHD_Result take(struct eo_request *request, const char *data, size_t size)
 {
   request->received += size;
@@ -137,8 +140,8 @@ static void dispatch(struct eo_request *request)
     run_handler(request);
 }
 
-static enum MHD_Result handle(void *context, struct MHD_Connection *connection, const char *path, const char *method, const char *version,
-                              const char *data, size_t *size, void **place)
+static enum MHD_Result handle(void *context, struct MHD_Connection *connection, const char *path, const char *method,
+                              const char *version, const char *data, size_t *size, void **place)
 {
   struct eo_request *request = *place;
   (void)version;
@@ -154,7 +157,8 @@ static enum MHD_Result handle(void *context, struct MHD_Connection *connection, 
   return eo_request_sleep(request) ? MHD_YES : eo_reply_send(request);
 }
 
-static void complete(void *context, struct MHD_Connection *connection, void **place, enum MHD_RequestTerminationCode code)
+static void complete(void *context, struct MHD_Connection *connection, void **place,
+                     enum MHD_RequestTerminationCode code)
 {
   struct eo_http *http = context;
   struct eo_request *request = *place;
@@ -181,8 +185,10 @@ static enum eo_code check_access(const struct eo_http_settings *settings, struct
   if (!code && token && !eo_field_is_visible(settings->token, 200))
     code = eo_error_set(error, EO_ERROR_INPUT, "", "The token must be 1 to 199 printable characters without blanks.");
   if (!code && !loopback && !token && !settings->allow_anyone)
-    code = eo_error_set(error, EO_ERROR_INPUT, "",
-                        "Others can reach %.60s: give a token (--token-file FILE or EASEOFF_TOKEN), or say --allow-anyone.", settings->listen);
+    code = eo_error_set(
+        error, EO_ERROR_INPUT, "",
+        "Others can reach %.60s: give a token (--token-file FILE or EASEOFF_TOKEN), or say --allow-anyone.",
+        settings->listen);
   return code;
 }
 
@@ -198,7 +204,9 @@ static unsigned allow_descriptors(void)
     limit.rlim_cur = limit.rlim_max < wanted ? limit.rlim_max : wanted;
     setrlimit(RLIMIT_NOFILE, &limit);
   }
-  return limit.rlim_cur > 2 * FOR_FILES ? (unsigned)(limit.rlim_cur < wanted ? limit.rlim_cur - FOR_FILES : EO_MOST_CONNECTIONS) : FOR_FILES;
+  return limit.rlim_cur > 2 * FOR_FILES
+             ? (unsigned)(limit.rlim_cur < wanted ? limit.rlim_cur - FOR_FILES : EO_MOST_CONNECTIONS)
+             : FOR_FILES;
 }
 
 static void ignore_messages(void *context, const char *format, va_list arguments)
@@ -212,11 +220,12 @@ static enum eo_code start_daemon(struct eo_http *http, bool version6, struct eo_
 {
   unsigned most = allow_descriptors();
   http->daemon = MHD_start_daemon(
-      MHD_USE_EPOLL_INTERNAL_THREAD | MHD_ALLOW_SUSPEND_RESUME | MHD_USE_ERROR_LOG | (version6 ? MHD_USE_IPv6 : 0u), 0, NULL, NULL, handle, http,
-      MHD_OPTION_EXTERNAL_LOGGER, ignore_messages, NULL, MHD_OPTION_LISTEN_SOCKET, http->socket, MHD_OPTION_NOTIFY_COMPLETED, complete, http,
-      MHD_OPTION_NOTIFY_CONNECTION, eo_connection_notify, http, MHD_OPTION_CONNECTION_LIMIT, most, MHD_OPTION_PER_IP_CONNECTION_LIMIT,
-      most < EO_MOST_CONNECTIONS_OF_ONE ? most : EO_MOST_CONNECTIONS_OF_ONE, MHD_OPTION_CONNECTION_TIMEOUT, (unsigned)EO_IDLE_SECONDS,
-      MHD_OPTION_STRICT_FOR_CLIENT, 1, MHD_OPTION_END);
+      MHD_USE_EPOLL_INTERNAL_THREAD | MHD_ALLOW_SUSPEND_RESUME | MHD_USE_ERROR_LOG | (version6 ? MHD_USE_IPv6 : 0u), 0,
+      NULL, NULL, handle, http, MHD_OPTION_EXTERNAL_LOGGER, ignore_messages, NULL, MHD_OPTION_LISTEN_SOCKET,
+      http->socket, MHD_OPTION_NOTIFY_COMPLETED, complete, http, MHD_OPTION_NOTIFY_CONNECTION, eo_connection_notify,
+      http, MHD_OPTION_CONNECTION_LIMIT, most, MHD_OPTION_PER_IP_CONNECTION_LIMIT,
+      most < EO_MOST_CONNECTIONS_OF_ONE ? most : EO_MOST_CONNECTIONS_OF_ONE, MHD_OPTION_CONNECTION_TIMEOUT,
+      (unsigned)EO_IDLE_SECONDS, MHD_OPTION_STRICT_FOR_CLIENT, 1, MHD_OPTION_END);
   if (!http->daemon)
     return eo_error_set(error, EO_ERROR_MEMORY, "", "The HTTP server cannot be started.");
   return EO_OK;
@@ -225,7 +234,8 @@ static enum eo_code start_daemon(struct eo_http *http, bool version6, struct eo_
 static void init(struct eo_http *http, const struct eo_http_settings *settings)
 {
   pthread_condattr_t attributes;
-  *http = (struct eo_http){.settings = *settings, .socket = -1, .service = settings->service, .started = eo_clock_milliseconds()};
+  *http = (struct eo_http){
+      .settings = *settings, .socket = -1, .service = settings->service, .started = eo_clock_milliseconds()};
   pthread_condattr_init(&attributes);
   pthread_condattr_setclock(&attributes, CLOCK_MONOTONIC);
   pthread_mutex_init(&http->lock, NULL);
@@ -320,7 +330,8 @@ static void let_replies_go(struct eo_http *http)
     ;
 }
 
-/* The library aborts the process when it stops while a connection sleeps: every request has to be finished and every stream ended first. */
+/* The library aborts the process when it stops while a connection sleeps: every request has to be finished and every
+   stream ended first. */
 void eo_http_stop(struct eo_http *http)
 {
   if (!http)

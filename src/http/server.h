@@ -20,14 +20,14 @@ enum {
   EO_SLOWEST_READER = 64 << 10,      /* bytes per second: a long reply has more time */
   EO_PARTING_SECONDS = 3,            /* at a stop, for clients to take what they are owed */
   EO_HEARTBEAT_SECONDS = 10,
-  EO_MOST_BODIES = 128 << 20,        /* bytes of all bodies at once */
-  EO_DRAINED = 64 << 10,             /* bytes of a refused body that are read so that the connection can go on */
+  EO_MOST_BODIES = 128 << 20, /* bytes of all bodies at once */
+  EO_DRAINED = 64 << 10,      /* bytes of a refused body that are read so that the connection can go on */
 };
 
 /* A client's connection. */
 struct eo_connection {
   int socket;
-  double deadline;                   /* ms of the monotonic clock; 0: none */
+  double deadline; /* ms of the monotonic clock; 0: none */
   struct eo_connection *before, *after;
   struct sockaddr_storage address;
 };
@@ -35,44 +35,46 @@ struct eo_connection {
 struct eo_stream;
 
 struct eo_http {
-  struct eo_http_settings settings;  /* strings borrowed for as long as the server lives */
+  struct eo_http_settings settings; /* strings borrowed for as long as the server lives */
   struct MHD_Daemon *daemon;
   int socket;
   char url[120];
-  double started;                    /* ms */
-  uint64_t run;                      /* first half of request ids */
+  double started; /* ms */
+  uint64_t run;   /* first half of request ids */
   struct eo_service *service;
-  struct eo_store *store;            /* of the HTTP thread */
-  struct eo_guard guard;             /* of the HTTP thread but for its constants */
+  struct eo_store *store; /* of the HTTP thread */
+  struct eo_guard guard;  /* of the HTTP thread but for its constants */
   struct eo_aside *aside;
-  struct eo_aside *readings;         /* reads the rig files that were uploaded */
-  int uploads;                       /* on their way; HTTP thread */
+  struct eo_aside *readings; /* reads the rig files that were uploaded */
+  int uploads;               /* on their way; HTTP thread */
   struct eo_pages *pages;
-  struct eo_documents *documents;    /* made once: OpenAPI, field tables, examples */
-  size_t bodies;                     /* bytes of bodies in memory; HTTP thread */
-  uint64_t requests;                 /* HTTP thread */
-  uint64_t replies[6];               /* by hundreds of the status; HTTP thread */
+  struct eo_documents *documents; /* made once: OpenAPI, field tables, examples */
+  size_t bodies;                  /* bytes of bodies in memory; HTTP thread */
+  uint64_t requests;              /* HTTP thread */
+  uint64_t replies[6];            /* by hundreds of the status; HTTP thread */
 
-  pthread_mutex_t lock;              /* of everything below; never held while the service is called */
+  pthread_mutex_t lock; /* of everything below; never held while the service is called */
   pthread_cond_t changed;
   struct eo_connection *connections;
   struct eo_stream *streams;
   int connection_count, stream_count;
-  size_t backlog;                    /* bytes that streams keep for their clients */
-  int deferred;                      /* requests that somebody still has to finish, and one while a handler runs */
-  int active;                        /* requests from their first byte to the last of their reply */
+  size_t backlog; /* bytes that streams keep for their clients */
+  int deferred;   /* requests that somebody still has to finish, and one while a handler runs */
+  int active;     /* requests from their first byte to the last of their reply */
   bool closing;
   pthread_t ticker;
 };
 
 /* connection.c: who is connected, and for how long a client may keep a connection busy */
-void eo_connection_notify(void *context, struct MHD_Connection *connection, void **place, enum MHD_ConnectionNotificationCode code);
+void eo_connection_notify(void *context, struct MHD_Connection *connection, void **place,
+                          enum MHD_ConnectionNotificationCode code);
 void eo_connection_allow(struct eo_http *http, struct eo_connection *place, int seconds); /* 0: no deadline */
 enum eo_code eo_ticker_start(struct eo_http *http, struct eo_error *error);
 void eo_ticker_stop(struct eo_http *http);
 
 /* request.c */
-struct eo_request *eo_request_new(struct eo_http *http, struct MHD_Connection *connection, const char *path, const char *method);
+struct eo_request *eo_request_new(struct eo_http *http, struct MHD_Connection *connection, const char *path,
+                                  const char *method);
 void eo_request_free(struct eo_request *request);
 
 /* deferred.c: brackets a handler, so that a stop waits for it; false: the server is stopping */

@@ -1,4 +1,5 @@
-/* The token of a page: given once, kept by the browser as a cookie that no script can read and no other site can send. */
+/* The token of a page: given once, kept by the browser as a cookie that no script can read and no other site can send.
+ */
 #include <stdio.h>
 #include <string.h>
 
@@ -7,7 +8,9 @@
 
 static void tell(struct eo_request *request)
 {
-  eo_reply_json(request, 200, json_pack("{s:b, s:b}", "required", request->http->guard.token != NULL, "authorized", eo_guard_knows(request)));
+  eo_reply_json(
+      request, 200,
+      json_pack("{s:b, s:b}", "required", request->http->guard.token != NULL, "authorized", eo_guard_knows(request)));
 }
 
 static void begin(struct eo_request *request)
@@ -22,7 +25,8 @@ static void begin(struct eo_request *request)
   else if (!given || !eo_field_equal_secret(given, guard->token))
     eo_reply_problem(request, 403, "wrong-token", "That is not this server's token.");
   else {
-    snprintf(request->reply.cookie, sizeof request->reply.cookie, "%s=%s; Path=/; HttpOnly; SameSite=Strict", eo_guard_cookie, guard->session);
+    snprintf(request->reply.cookie, sizeof request->reply.cookie, "%s=%s; Path=/; HttpOnly; SameSite=Strict",
+             eo_guard_cookie, guard->session);
     eo_reply_empty(request, 204);
   }
   json_decref(body);
@@ -30,14 +34,34 @@ static void begin(struct eo_request *request)
 
 static void end(struct eo_request *request)
 {
-  snprintf(request->reply.cookie, sizeof request->reply.cookie, "%s=; Path=/; HttpOnly; SameSite=Strict; Max-Age=0", eo_guard_cookie);
+  snprintf(request->reply.cookie, sizeof request->reply.cookie, "%s=; Path=/; HttpOnly; SameSite=Strict; Max-Age=0",
+           eo_guard_cookie);
   eo_reply_empty(request, 204);
 }
 
 const struct eo_route eo_routes_session[] = {
-    {.method = EO_GET, .pattern = "/session", .handle = tell, .name = "getSession", .open = true,
-     .summary = "Whether this server asks for a token, and whether this client has given it.", .gives = "200 Session"},
-    {.method = EO_POST, .pattern = "/session", .handle = begin, .name = "beginSession", .open = true, .rate = EO_RATE_START, .body = 4096,
-     .summary = "Gives the token and gets a cookie for it, as the page does; scripts send Authorization: Bearer TOKEN.", .takes = "Token", .gives = "204 -"},
-    {.method = EO_DELETE, .pattern = "/session", .handle = end, .name = "endSession", .open = true, .summary = "Forgets the cookie.", .gives = "204 -"},
+    {.method = EO_GET,
+     .pattern = "/session",
+     .handle = tell,
+     .name = "getSession",
+     .open = true,
+     .summary = "Whether this server asks for a token, and whether this client has given it.",
+     .gives = "200 Session"},
+    {.method = EO_POST,
+     .pattern = "/session",
+     .handle = begin,
+     .name = "beginSession",
+     .open = true,
+     .rate = EO_RATE_START,
+     .body = 4096,
+     .summary = "Gives the token and gets a cookie for it, as the page does; scripts send Authorization: Bearer TOKEN.",
+     .takes = "Token",
+     .gives = "204 -"},
+    {.method = EO_DELETE,
+     .pattern = "/session",
+     .handle = end,
+     .name = "endSession",
+     .open = true,
+     .summary = "Forgets the cookie.",
+     .gives = "204 -"},
     {0}};

@@ -65,7 +65,8 @@ static json_t *read_object(const char **at)
     good = good && (closed || (!open && take(at, ",")));
   }
   if (good)
-    return json_pack("{s:s, s:o, s:o, s:b}", "type", "object", "properties", properties, "required", required, "additionalProperties", open);
+    return json_pack("{s:s, s:o, s:o, s:b}", "type", "object", "properties", properties, "required", required,
+                     "additionalProperties", open);
   json_decref(properties);
   json_decref(required);
   return NULL;
@@ -82,7 +83,8 @@ static json_t *read_array(const char **at)
 
 static json_t *read_word(const char **at)
 {
-  static const char *const word[] = {"text", "number", "integer", "flag"}, *const type[] = {"string", "number", "integer", "boolean"};
+  static const char *const word[] = {"text", "number", "integer", "flag"}, *const type[] = {"string", "number",
+                                                                                            "integer", "boolean"};
   size_t length = word_length(*at);
   const char *name = *at;
   *at += length;
@@ -99,7 +101,10 @@ static json_t *read_word(const char **at)
 
 static json_t *read_type(const char **at)
 {
-  json_t *type = take(at, "{") ? read_object(at) : take(at, "[") ? read_array(at) : take(at, "'") ? read_choices(at) : (skip(at), read_word(at));
+  json_t *type = take(at, "{")   ? read_object(at)
+                 : take(at, "[") ? read_array(at)
+                 : take(at, "'") ? read_choices(at)
+                                 : (skip(at), read_word(at));
   if (!type || !take(at, "?"))
     return type;
   return json_pack("{s:[o, {s:s}]}", "anyOf", type, "type", "null");

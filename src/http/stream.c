@@ -10,9 +10,9 @@ struct eo_stream {
   struct eo_connection *place;
   int64_t subscription;
   struct eo_stream *before, *after;
-  struct eo_text waiting;        /* what the client has not taken, from `taken` on */
+  struct eo_text waiting; /* what the client has not taken, from `taken` on */
   size_t taken;
-  bool opened;                   /* what was missed is there, from here on the backlog counts */
+  bool opened; /* what was missed is there, from here on the backlog counts */
   bool suspended, ended;
 };
 
@@ -32,7 +32,8 @@ static void append(struct eo_stream *stream, const char *text, size_t size)
   if (stream->ended)
     return;
   size_t left = stream->waiting.size - stream->taken;
-  bool fits = stream->http->backlog + size <= EO_MOST_BACKLOG && (!stream->opened || left + size <= EO_STREAM_BACKLOG || left == 0);
+  bool fits = stream->http->backlog + size <= EO_MOST_BACKLOG &&
+              (!stream->opened || left + size <= EO_STREAM_BACKLOG || left == 0);
   if (fits) {
     eo_text_add_bytes(&stream->waiting, text, size);
     stream->http->backlog += size;
@@ -177,7 +178,8 @@ void eo_stream_open(struct eo_request *request, int64_t job, int64_t after)
     request->reply.retry_after = EO_HEARTBEAT_SECONDS;
     return;
   }
-  struct MHD_Response *response = MHD_create_response_from_callback(MHD_SIZE_UNKNOWN, 16384, read_stream, stream, free_stream);
+  struct MHD_Response *response = MHD_create_response_from_callback(MHD_SIZE_UNKNOWN, 16384, read_stream, stream,
+                                                                    free_stream);
   if (!response) {
     free_stream(stream);
     eo_reply_error(request, "", (eo_error_memory(&error), &error));

@@ -1,4 +1,5 @@
-/* Server-Sent Events (HTML Living Standard 9.2): each client's stream listens to the service by itself and keeps what it has not taken yet. */
+/* Server-Sent Events (HTML Living Standard 9.2): each client's stream listens to the service by itself and keeps what
+   it has not taken yet. */
 #ifndef EASEOFF_HTTP_STREAM_H
 #define EASEOFF_HTTP_STREAM_H
 

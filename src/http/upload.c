@@ -86,7 +86,8 @@ static enum MHD_Result begin_field(struct eo_request *request, const char *name)
   return MHD_YES;
 }
 
-static enum MHD_Result begin_part(struct eo_request *request, const char *name, const char *file_name, const char *coding)
+static enum MHD_Result begin_part(struct eo_request *request, const char *name, const char *file_name,
+                                  const char *coding)
 {
   struct eo_upload *upload = request->upload;
   if (coding && strcasecmp(coding, "binary") != 0 && strcasecmp(coding, "8bit") != 0 && strcasecmp(coding, "7bit") != 0)
@@ -125,8 +126,8 @@ static enum MHD_Result add_to_field(struct eo_request *request, const char *data
 }
 
 /* The library tells a part's beginning by its offset alone, and may do so twice while nothing of the part came. */
-static enum MHD_Result take_part(void *context, enum MHD_ValueKind kind, const char *name, const char *file_name, const char *type, const char *coding,
-                                 const char *data, uint64_t offset, size_t size)
+static enum MHD_Result take_part(void *context, enum MHD_ValueKind kind, const char *name, const char *file_name,
+                                 const char *type, const char *coding, const char *data, uint64_t offset, size_t size)
 {
   struct eo_request *request = context;
   struct eo_upload *upload = request->upload;
@@ -153,7 +154,8 @@ static bool has_room(struct eo_request *request, const struct eo_upload *upload,
     eo_reply_error(request, "", &error);
     return false;
   }
-  bool free = statvfs(upload->folder, &disk) != 0 || (int64_t)disk.f_bavail * (int64_t)disk.f_frsize > size + EO_UPLOAD_SPARE_BYTES;
+  bool free = statvfs(upload->folder, &disk) != 0 ||
+              (int64_t)disk.f_bavail * (int64_t)disk.f_frsize > size + EO_UPLOAD_SPARE_BYTES;
   if (free && kept + size <= EO_UPLOADS_TOTAL_BYTES)
     return true;
   refuse(request, 507, "The server has no room for more measurements.");
@@ -209,7 +211,8 @@ bool eo_upload_end(struct eo_request *request)
 
 int eo_upload_patience(const struct eo_request *request)
 {
-  double left = EO_BODY_SECONDS + (double)request->received / SLOWEST - 1e-3 * (eo_clock_milliseconds() - request->started);
+  double left = EO_BODY_SECONDS + (double)request->received / SLOWEST -
+                1e-3 * (eo_clock_milliseconds() - request->started);
   return left < 1 ? 1 : (int)left;
 }
 

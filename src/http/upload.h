@@ -1,5 +1,6 @@
-/* A multipart/form-data body (RFC 7578) on its way to the disk: its files go to a folder of their own as they come, its other parts are kept as
-   texts. Nothing of it counts until the store takes the folder over; it goes away with the request otherwise. */
+/* A multipart/form-data body (RFC 7578) on its way to the disk: its files go to a folder of their own as they come, its
+   other parts are kept as texts. Nothing of it counts until the store takes the folder over; it goes away with the
+   request otherwise. */
 #ifndef EASEOFF_HTTP_UPLOAD_H
 #define EASEOFF_HTTP_UPLOAD_H
 
@@ -10,23 +11,26 @@ enum {
   EO_UPLOAD_FIELDS = 12,
   EO_UPLOAD_PATH = 4096,
   EO_UPLOAD_FIELD_BYTES = 64 << 10,
-  EO_MOST_UPLOADS = 16,              /* on their way at once */
-  EO_UPLOAD_DRAINED = 256 << 20,     /* bytes of a refused upload that are read so that its sender hears why */
+  EO_MOST_UPLOADS = 16,          /* on their way at once */
+  EO_UPLOAD_DRAINED = 256 << 20, /* bytes of a refused upload that are read so that its sender hears why */
 };
-#define EO_UPLOAD_BYTES ((size_t)2 << 30)         /* of one body */
+#define EO_UPLOAD_BYTES ((size_t)2 << 30)          /* of one body */
 #define EO_UPLOADS_TOTAL_BYTES ((int64_t)64 << 30) /* of all files that are kept */
 #define EO_UPLOAD_SPARE_BYTES ((int64_t)256 << 20) /* that stay free on the disk */
 
 struct eo_upload {
   struct MHD_PostProcessor *processor;
-  char folder[EO_UPLOAD_PATH - 16];  /* "": none */
-  int files;                         /* complete but for the last one */
+  char folder[EO_UPLOAD_PATH - 16];                      /* "": none */
+  int files;                                             /* complete but for the last one */
   struct eo_measurement_file file[EO_MEASUREMENT_FILES]; /* names and sizes */
-  int output;                        /* descriptor of the last file, -1: none */
+  int output;                                            /* descriptor of the last file, -1: none */
   int fields;
-  struct eo_upload_field { char name[24]; struct eo_text value; } field[EO_UPLOAD_FIELDS];
-  bool in_part, in_file;             /* in_part: one has begun */
-  char part[24];                     /* name of the part that comes */
+  struct eo_upload_field {
+    char name[24];
+    struct eo_text value;
+  } field[EO_UPLOAD_FIELDS];
+  bool in_part, in_file; /* in_part: one has begun */
+  char part[24];         /* name of the part that comes */
   size_t part_size;
 };
 

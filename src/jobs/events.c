@@ -22,7 +22,7 @@ struct eo_events {
   int64_t first, newest;            /* numbers: before the first event of this run; of the newest one */
   struct kept kept[EO_EVENTS_KEPT]; /* event n stands at n % EO_EVENTS_KEPT */
   struct subscriber *subscriber;
-  int64_t subscriptions;            /* so far */
+  int64_t subscriptions; /* so far */
 };
 
 enum eo_code eo_events_new(struct eo_events **result, struct eo_error *error)
@@ -104,8 +104,9 @@ static void replay(const struct eo_events *events, const struct subscriber *s, i
   }
 }
 
-enum eo_code eo_events_subscribe(struct eo_events *events, int64_t job, int64_t after, struct eo_service_event *first, int count,
-                                 eo_service_listener *listener, void *context, int64_t *subscription, struct eo_error *error)
+enum eo_code eo_events_subscribe(struct eo_events *events, int64_t job, int64_t after, struct eo_service_event *first,
+                                 int count, eo_service_listener *listener, void *context, int64_t *subscription,
+                                 struct eo_error *error)
 {
   struct subscriber *s = calloc(1, sizeof *s);
   if (!s)

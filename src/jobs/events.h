@@ -15,7 +15,7 @@ enum { EO_EVENTS_KEPT = 1024 };
 struct eo_service_event {
   int64_t number;
   int64_t job;
-  const char *text;   /* the job's document without design, compact JSON, one line; borrowed */
+  const char *text; /* the job's document without design, compact JSON, one line; borrowed */
   size_t size;
 };
 typedef void eo_service_listener(void *context, const struct eo_service_event *event);
@@ -33,10 +33,11 @@ void eo_events_publish(struct eo_events *events, int64_t job, struct eo_text *te
 int64_t eo_events_newest(struct eo_events *events);
 bool eo_events_reach(struct eo_events *events, int64_t after);
 
-/* Hands over first[count] (their numbers are set to after), then what is kept after the number, then everything from now on, of one job or of all (0).
-   Errors: memory. */
-enum eo_code eo_events_subscribe(struct eo_events *events, int64_t job, int64_t after, struct eo_service_event *first, int count,
-                                 eo_service_listener *listener, void *context, int64_t *subscription, struct eo_error *error);
+/* Hands over first[count] (their numbers are set to after), then what is kept after the number, then everything from
+   now on, of one job or of all (0). Errors: memory. */
+enum eo_code eo_events_subscribe(struct eo_events *events, int64_t job, int64_t after, struct eo_service_event *first,
+                                 int count, eo_service_listener *listener, void *context, int64_t *subscription,
+                                 struct eo_error *error);
 void eo_events_unsubscribe(struct eo_events *events, int64_t subscription);
 
 int eo_events_subscribers(struct eo_events *events);

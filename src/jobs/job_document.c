@@ -45,7 +45,8 @@ static void follow_generations(struct eo_job_live *live, const struct eo_study_r
   }
   for (int i = live->generations; i < report->generation; i++) {
     const struct eo_generation *g = &report->history[i];
-    live->history[i] = (struct eo_job_generation){g->best_value, g->true_count, g->predicted_count, g->true_count + g->predicted_count + g->reused_count};
+    live->history[i] = (struct eo_job_generation){g->best_value, g->true_count, g->predicted_count,
+                                                  g->true_count + g->predicted_count + g->reused_count};
   }
   live->generations = report->generation;
 }
@@ -149,14 +150,22 @@ static json_t *parse(const char *text)
 /* Of a terminal's job, or one that was not begun: what the table's columns tell. */
 static json_t *encode_columns(const struct eo_stored_job *job)
 {
-  struct eo_job_live live = {.fraction = job->state == EO_JOB_DONE ? 1 : job->state == EO_JOB_QUEUED ? 0 : NAN, .study = job->true_evaluations > 0,
-                             .true_evaluations = job->true_evaluations, .individuals = job->individuals, .seconds = NAN, .seconds_left = NAN};
+  struct eo_job_live live = {.fraction = job->state == EO_JOB_DONE     ? 1
+                                         : job->state == EO_JOB_QUEUED ? 0
+                                                                       : NAN,
+                             .study = job->true_evaluations > 0,
+                             .true_evaluations = job->true_evaluations,
+                             .individuals = job->individuals,
+                             .seconds = NAN,
+                             .seconds_left = NAN};
   json_t *document = eo_job_live_encode(&live);
   json_t *progress = json_object_get(document, "progress");
   struct eo_result_object best = eo_result_open_as(&best_outline);
-  for (const char *const *key = (const char *const[]){"generation", "predicted", "reused", NULL}; *key && progress; key++)
+  for (const char *const *key = (const char *const[]){"generation", "predicted", "reused", NULL}; *key && progress;
+       key++)
     json_object_set_new(progress, *key, json_null());
-  eo_result_put_value(&best, &(struct eo_objective_value){.sums.failed = true, .objective = job->best_value, .fitness = NAN, .violation = NAN});
+  eo_result_put_value(&best, &(struct eo_objective_value){
+                                 .sums.failed = true, .objective = job->best_value, .fitness = NAN, .violation = NAN});
   eo_result_put(&best, "modification", json_null());
   json_t *value = eo_result_close(&best);
   if (isfinite(job->best_value) && value)
@@ -165,14 +174,16 @@ static json_t *encode_columns(const struct eo_stored_job *job)
   return document;
 }
 
-/* The row of a study that ended says how much it took; what was noted of it may be older when the process ended before the last note. */
+/* The row of a study that ended says how much it took; what was noted of it may be older when the process ended before
+   the last note. */
 static void put_counts(json_t *progress, const struct eo_stored_job *job)
 {
   if (!progress || job->individuals <= 0 || (job->state != EO_JOB_DONE && job->state != EO_JOB_CANCELLED))
     return;
   json_object_set_new(progress, "true_evaluations", json_integer(job->true_evaluations));
   json_object_set_new(progress, "individuals", json_integer(job->individuals));
-  json_object_set_new(progress, "pfc_percent", eo_result_number(pfc_percent(job->true_evaluations, job->individuals), NULL));
+  json_object_set_new(progress, "pfc_percent",
+                      eo_result_number(pfc_percent(job->true_evaluations, job->individuals), NULL));
 }
 
 static json_t *text_or_null(const char *text)
@@ -190,7 +201,9 @@ static const struct eo_outline error_outline = EO_OUTLINE("JobError", error_rows
 json_t *eo_job_error_encode(const struct eo_error *error)
 {
   struct eo_result_object o = eo_result_open_as(&error_outline);
-  eo_result_put(&o, "detail", json_string(error->code == EO_ERROR_FILE ? "The server's data cannot be read or written." : error->text));
+  eo_result_put(
+      &o, "detail",
+      json_string(error->code == EO_ERROR_FILE ? "The server's data cannot be read or written." : error->text));
   eo_result_put(&o, "pointer", json_string(error->pointer));
   return eo_result_close(&o);
 }
@@ -215,14 +228,16 @@ static const struct eo_outline_row job_rows[] = {
     EO_KEY("best", "object?", "best so far", .outline = &best_outline),
     EO_KEY("unmodified", "object?", "the pair without its modification", .outline = &best_outline),
     EO_KEY("error", "object?", "of a failed job", .outline = &error_outline),
-    EO_KEY("design", "object", "with every default resolved", .when = "when one job is asked for", .table = &eo_design_table, .name = "ResolvedDesign"),
+    EO_KEY("design", "object", "with every default resolved", .when = "when one job is asked for",
+           .table = &eo_design_table, .name = "ResolvedDesign"),
 };
 const struct eo_outline eo_job_outline = EO_OUTLINE("Job", job_rows);
 
 json_t *eo_job_encode(const struct eo_stored_job *job, const struct eo_job_live *live, bool with_design)
 {
   struct eo_result_object o = eo_result_open_as(&eo_job_outline);
-  json_t *kept = live ? eo_job_live_encode(live) : parse(job->progress), *fault = parse(job->error), *design = with_design ? parse(job->design) : NULL;
+  json_t *kept = live ? eo_job_live_encode(live) : parse(job->progress), *fault = parse(job->error),
+         *design = with_design ? parse(job->design) : NULL;
   if (!kept)
     kept = encode_columns(job);
   if (!live)
@@ -232,7 +247,8 @@ json_t *eo_job_encode(const struct eo_stored_job *job, const struct eo_job_live 
   eo_result_put(&o, "name", json_string(job->name));
   eo_result_put(&o, "algorithm", text_or_null(job->algorithm));
   eo_result_put(&o, "state", json_string(eo_store_job_state_name(live ? live->state : job->state)));
-  eo_result_put(&o, "stopping", json_boolean(job->stop && (live || job->state == EO_JOB_PREPARING || job->state == EO_JOB_RUNNING)));
+  eo_result_put(&o, "stopping",
+                json_boolean(job->stop && (live || job->state == EO_JOB_PREPARING || job->state == EO_JOB_RUNNING)));
   eo_result_put(&o, "stopped", text_or_null(job->stopped));
   eo_result_put(&o, "has_result", json_boolean(!live && *job->result));
   eo_result_put(&o, "priority", json_integer(job->priority));
@@ -320,9 +336,11 @@ json_t *eo_job_result_generations(const json_t *result)
   double evaluated = 0, individuals = 0;
   size_t i;
   json_t *g;
-  json_array_foreach(json_object_get(result, "generations"), i, g) {
+  json_array_foreach(json_object_get(result, "generations"), i, g)
+  {
     evaluated += eo_json_find_number(g, "true");
-    individuals += eo_json_find_number(g, "true") + eo_json_find_number(g, "predicted") + eo_json_find_number(g, "repeated");
+    individuals += eo_json_find_number(g, "true") + eo_json_find_number(g, "predicted") +
+                   eo_json_find_number(g, "repeated");
     add(&c, GENERATION, json_integer((json_int_t)i));
     add(&c, BEST, json_incref(json_object_get(g, "best")));
     add(&c, MEAN, json_incref(json_object_get(g, "mean")));

@@ -12,15 +12,18 @@
 struct eo_job_live {
   int64_t id;
   enum eo_job_state state;
-  double fraction;                 /* 0..1 of the preparation, then of the study */
-  char what[80];                   /* for people */
-  bool study;                      /* what follows is known */
+  double fraction; /* 0..1 of the preparation, then of the study */
+  char what[80];   /* for people */
+  bool study;      /* what follows is known */
   int generation, true_evaluations, predicted, reused, individuals;
-  double seconds, seconds_left;    /* NaN: not known */
+  double seconds, seconds_left; /* NaN: not known */
   int64_t best_evaluation;
-  json_t *best, *unmodified;       /* owned */
+  json_t *best, *unmodified; /* owned */
   int generations, capacity;
-  struct eo_job_generation { double best; int true_count, predicted, individuals; } *history; /* [generations]; owned */
+  struct eo_job_generation {
+    double best;
+    int true_count, predicted, individuals;
+  } * history; /* [generations]; owned */
 };
 
 void eo_job_live_done(struct eo_job_live *live);

@@ -16,13 +16,13 @@
 /* A job as its rows are weighed. */
 struct history {
   struct eo_store *store;
-  struct eo_design design;                 /* of the job; its modification changes from row to row */
+  struct eo_design design; /* of the job; its modification changes from row to row */
   struct eo_geometry geometry;
   int64_t problem;
   int scenarios, cases, limit, last;
   bool more;
   struct eo_objective_case *unmodified, *raw; /* [scenarios][cases]; owned */
-  json_t *items;                           /* owned */
+  json_t *items;                              /* owned */
 };
 
 static void done(struct history *h)
@@ -80,7 +80,8 @@ static enum eo_code find_unmodified(struct history *h, struct eo_error *error)
 
 /* ---- a row ---- */
 
-static enum eo_code weigh(struct history *h, const char *modification, struct eo_objective_value *value, struct eo_error *error)
+static enum eo_code weigh(struct history *h, const char *modification, struct eo_objective_value *value,
+                          struct eo_error *error)
 {
   enum eo_code code = eo_modification_read(modification, &h->design.modification, error);
   if (!code)
@@ -94,14 +95,15 @@ static const struct eo_outline_row history_rows[] = {
     EO_KEY("individual", "integer", "of its generation, from 0"),
     EO_KEY("outcome", "word", "refused: the modification is impossible", .words = eo_store_outcomes),
     EO_KEY("reason", "text", "why it has no value; else empty"),
-    EO_KEY("modification", "object", "what is not at its default", .table = &eo_modification_table, .name = "SparseModification", .sparse = true),
+    EO_KEY("modification", "object", "what is not at its default", .table = &eo_modification_table,
+           .name = "SparseModification", .sparse = true),
     {.outline = &eo_outline_value},
     EO_KEY("reused", "flag", "the history knew it before the job asked"),
 };
 const struct eo_outline eo_job_history_outline = EO_OUTLINE("JobHistoryRow", history_rows);
 
-static json_t *encode(const struct eo_stored_candidate *c, const struct eo_stored_evaluation *row, const struct eo_objective_value *value,
-                      struct eo_error *error)
+static json_t *encode(const struct eo_stored_candidate *c, const struct eo_stored_evaluation *row,
+                      const struct eo_objective_value *value, struct eo_error *error)
 {
   struct eo_result_object o = eo_result_open_as(&eo_job_history_outline);
   eo_result_put(&o, "ordinal", json_integer(c->ordinal));
@@ -115,7 +117,8 @@ static json_t *encode(const struct eo_stored_candidate *c, const struct eo_store
   return eo_result_close(&o);
 }
 
-static enum eo_code add_row(struct history *h, const struct eo_stored_candidate *c, struct eo_text *text, struct eo_error *error)
+static enum eo_code add_row(struct history *h, const struct eo_stored_candidate *c, struct eo_text *text,
+                            struct eo_error *error)
 {
   struct eo_stored_evaluation row = {.scenarios = h->scenarios, .cases = h->cases, .raw = h->raw};
   struct eo_objective_value value;
@@ -143,7 +146,8 @@ static enum eo_code take_candidate(void *context, const struct eo_stored_candida
 
 /* ---- all ---- */
 
-static enum eo_code collect(struct history *h, int64_t job, int after, int limit, enum eo_job_outcome *outcome, struct eo_error *error)
+static enum eo_code collect(struct history *h, int64_t job, int after, int limit, enum eo_job_outcome *outcome,
+                            struct eo_error *error)
 {
   enum eo_code code = eo_queue_find(h->store, job, take_job, h, outcome, error);
   if (code || *outcome != EO_JOB_OUTCOME_DONE)
@@ -154,7 +158,8 @@ static enum eo_code collect(struct history *h, int64_t job, int after, int limit
   h->limit = limit;
   code = find_unmodified(h, error);
   if (!code)
-    code = eo_store_page_candidates(h->store, job, after, limit < INT_MAX ? limit + 1 : limit, take_candidate, h, error);
+    code = eo_store_page_candidates(h->store, job, after, limit < INT_MAX ? limit + 1 : limit, take_candidate, h,
+                                    error);
   return code;
 }
 
@@ -167,8 +172,8 @@ static enum eo_code begin(struct history **history, struct eo_store *store, stru
   return EO_OK;
 }
 
-enum eo_code eo_job_history(struct eo_store *store, int64_t job, int after, int limit, enum eo_job_outcome *outcome, json_t **page,
-                            struct eo_error *error)
+enum eo_code eo_job_history(struct eo_store *store, int64_t job, int after, int limit, enum eo_job_outcome *outcome,
+                            json_t **page, struct eo_error *error)
 {
   struct history *h;
   enum eo_code code = begin(&h, store, error);
@@ -192,7 +197,8 @@ static void collect_paths(const json_t *value, const char *path, json_t *set)
 {
   const char *key;
   json_t *inner;
-  json_object_foreach((json_t *)value, key, inner) {
+  json_object_foreach((json_t *)value, key, inner)
+  {
     char longer[200];
     snprintf(longer, sizeof longer, "%.120s%s%.70s", path, *path ? "/" : "", key);
     if (json_is_object(inner))
@@ -202,7 +208,8 @@ static void collect_paths(const json_t *value, const char *path, json_t *set)
   }
 }
 
-static const char *const plain_columns[] = {"ordinal", "generation", "individual", "outcome", "reused", "f1_um", "f2_N", "f3_m_per_s2", "J", "fitness"};
+static const char *const plain_columns[] = {"ordinal", "generation", "individual",  "outcome", "reused",
+                                            "f1_um",   "f2_N",       "f3_m_per_s2", "J",       "fitness"};
 enum { PLAIN = sizeof plain_columns / sizeof plain_columns[0] };
 
 static void add_cell(struct eo_sheet *sheet, const json_t *value, double standard)
@@ -223,10 +230,10 @@ static void write_rows(const json_t *items, const json_t *paths, const char **he
   size_t i;
   int columns = PLAIN;
   memcpy(heading, plain_columns, sizeof plain_columns);
-  json_object_foreach((json_t *)paths, key, value)
-    heading[columns++] = key;
+  json_object_foreach((json_t *)paths, key, value) heading[columns++] = key;
   eo_sheet_init(&sheet, columns, heading);
-  json_array_foreach((json_t *)items, i, row) {
+  json_array_foreach((json_t *)items, i, row)
+  {
     for (int j = 0; j < PLAIN; j++)
       add_cell(&sheet, json_object_get(row, plain_columns[j]), NAN);
     for (int j = PLAIN; j < columns; j++)
@@ -240,8 +247,7 @@ static enum eo_code write_csv(const json_t *items, struct eo_text *text, struct 
 {
   json_t *paths = json_object(), *row;
   size_t i;
-  json_array_foreach((json_t *)items, i, row)
-    collect_paths(json_object_get(row, "modification"), "", paths);
+  json_array_foreach((json_t *)items, i, row) collect_paths(json_object_get(row, "modification"), "", paths);
   const char **heading = calloc(PLAIN + json_object_size(paths), sizeof *heading);
   if (paths && heading)
     write_rows(items, paths, heading, text);
@@ -252,7 +258,8 @@ static enum eo_code write_csv(const json_t *items, struct eo_text *text, struct 
   return text->failed ? eo_error_memory(error) : EO_OK;
 }
 
-enum eo_code eo_job_history_csv(struct eo_store *store, int64_t job, enum eo_job_outcome *outcome, struct eo_text *text, struct eo_error *error)
+enum eo_code eo_job_history_csv(struct eo_store *store, int64_t job, enum eo_job_outcome *outcome, struct eo_text *text,
+                                struct eo_error *error)
 {
   struct history *h;
   enum eo_code code = begin(&h, store, error);

@@ -15,7 +15,7 @@ enum { MOST_THREADS = 16 };
 
 struct eo_lane {
   struct eo_lane_settings settings;
-  pthread_mutex_t mutex;        /* guards what follows */
+  pthread_mutex_t mutex; /* guards what follows */
   pthread_cond_t changed;
   bool stopping;
   int waiting;                  /* tasks in the two lists below */
@@ -23,8 +23,12 @@ struct eo_lane {
   struct eo_lane_task *parked;  /* waiting for a job */
   struct eo_lane_task *dropped; /* overtaken, not told yet */
   struct eo_lane_task *running[MOST_THREADS];
-  struct runner { struct eo_lane *lane; int number; pthread_t thread; } runner[MOST_THREADS];
-  int threads;                  /* that were made */
+  struct runner {
+    struct eo_lane *lane;
+    int number;
+    pthread_t thread;
+  } runner[MOST_THREADS];
+  int threads; /* that were made */
 };
 
 void eo_lane_stand_back(int nice)

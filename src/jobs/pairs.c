@@ -11,16 +11,19 @@ enum { MOST_ANALYSES = 4, LOOK_MS = 50 };
 struct eo_held_pair {
   struct eo_held_pair *next;
   char key[EO_HASH_LENGTH + 1];
-  struct eo_pair *pair;      /* owned; NULL while it is prepared */
+  struct eo_pair *pair; /* owned; NULL while it is prepared */
   int users;
-  uint64_t used;             /* the count of uses when it was last asked for */
-  double fraction;           /* of the preparation */
-  struct idle { struct eo_analysis *analysis; uint64_t user, used; } idle[MOST_ANALYSES]; /* owned; analysis NULL: free */
+  uint64_t used;   /* the count of uses when it was last asked for */
+  double fraction; /* of the preparation */
+  struct idle {
+    struct eo_analysis *analysis;
+    uint64_t user, used;
+  } idle[MOST_ANALYSES]; /* owned; analysis NULL: free */
 };
 
 struct eo_pairs {
-  pthread_mutex_t mutex;     /* guards everything below and in the list */
-  pthread_cond_t prepared;   /* a preparation ended */
+  pthread_mutex_t mutex;   /* guards everything below and in the list */
+  pthread_cond_t prepared; /* a preparation ended */
   struct eo_held_pair *first;
   char *cache;
   int most;
@@ -66,10 +69,18 @@ void eo_pairs_free(struct eo_pairs *pairs)
 void eo_pairs_key(const struct eo_design *design, char key[EO_HASH_LENGTH + 1])
 {
   const struct eo_resolution *r = &design->resolution;
-  const struct { const char *name; double value; } part[] = {
-      {"positions", r->positions}, {"cells_per_line", r->cells_per_line}, {"tip_edge_contact", r->tip_edge_contact}, {"sector_teeth", r->sector_teeth},
-      {"neighbour_coupling", r->neighbour_coupling}, {"layers", r->layers}, {"flank_rows", r->flank_rows}, {"fillet_elements", r->fillet_elements},
-      {"impact_patch", r->impact_patch}};
+  const struct {
+    const char *name;
+    double value;
+  } part[] = {{"positions", r->positions},
+              {"cells_per_line", r->cells_per_line},
+              {"tip_edge_contact", r->tip_edge_contact},
+              {"sector_teeth", r->sector_teeth},
+              {"neighbour_coupling", r->neighbour_coupling},
+              {"layers", r->layers},
+              {"flank_rows", r->flank_rows},
+              {"fillet_elements", r->fillet_elements},
+              {"impact_patch", r->impact_patch}};
   struct eo_hash hash;
   eo_hash_init(&hash);
   eo_hash_add(&hash, &design->gear_pair, sizeof design->gear_pair);
@@ -164,8 +175,8 @@ static int report(void *context, const char *what, double fraction)
 }
 
 /* *held is in the list without a pair, so that nobody else prepares it. */
-static enum eo_code prepare(struct eo_pairs *pairs, const struct eo_design *design, const struct eo_progress *progress, struct eo_held_pair *held,
-                            struct eo_error *error)
+static enum eo_code prepare(struct eo_pairs *pairs, const struct eo_design *design, const struct eo_progress *progress,
+                            struct eo_held_pair *held, struct eo_error *error)
 {
   struct preparation preparation = {pairs, held, progress};
   const struct eo_progress own = {report, &preparation};
@@ -199,8 +210,8 @@ static void wait_a_moment(struct eo_pairs *pairs)
   pthread_cond_timedwait(&pairs->prepared, &pairs->mutex, &until);
 }
 
-enum eo_code eo_pairs_obtain(struct eo_pairs *pairs, const struct eo_design *design, const struct eo_progress *progress, struct eo_held_pair **result,
-                             struct eo_error *error)
+enum eo_code eo_pairs_obtain(struct eo_pairs *pairs, const struct eo_design *design, const struct eo_progress *progress,
+                             struct eo_held_pair **result, struct eo_error *error)
 {
   struct eo_held_pair *mine = calloc(1, sizeof *mine), *held;
   if (!mine)
@@ -280,7 +291,8 @@ static struct idle *choose(struct eo_held_pair *held, uint64_t user)
   return !user || count == MOST_ANALYSES ? oldest : NULL;
 }
 
-enum eo_code eo_pairs_borrow(struct eo_pairs *pairs, struct eo_held_pair *held, uint64_t user, struct eo_analysis **analysis, struct eo_error *error)
+enum eo_code eo_pairs_borrow(struct eo_pairs *pairs, struct eo_held_pair *held, uint64_t user,
+                             struct eo_analysis **analysis, struct eo_error *error)
 {
   pthread_mutex_lock(&pairs->mutex);
   struct idle *idle = choose(held, user);

@@ -99,7 +99,8 @@ enum eo_code eo_records_list(struct eo_store *store, json_t **document, struct e
 {
   json_t *problems = json_array(), *jobs = json_array();
   struct job_list list = {store, jobs};
-  enum eo_code code = problems && jobs ? eo_store_each_problem(store, add_problem, problems, error) : eo_error_memory(error);
+  enum eo_code code = problems && jobs ? eo_store_each_problem(store, add_problem, problems, error)
+                                       : eo_error_memory(error);
   if (!code)
     code = eo_store_each_job(store, 0, add_job, &list, error);
   struct eo_result_object o = eo_result_open_as(&eo_records_outline);
@@ -151,7 +152,7 @@ enum eo_code eo_records_result(struct eo_store *store, int64_t job, json_t **doc
 
 struct row_list {
   int64_t problem;
-  int scenarios, cases;    /* of the problem; 0: not found */
+  int scenarios, cases; /* of the problem; 0: not found */
   json_t *spec, *rows;
   struct eo_load_case load_case[EO_MAX_LOAD_CASES];
 };
@@ -194,7 +195,8 @@ static json_t *encode_scenarios(const struct row_list *list, const struct eo_obj
   return array;
 }
 
-static enum eo_code add_row(void *context, const struct eo_stored_evaluation *e, const double *x, int size, struct eo_error *error)
+static enum eo_code add_row(void *context, const struct eo_stored_evaluation *e, const double *x, int size,
+                            struct eo_error *error)
 {
   struct row_list *list = context;
   struct eo_result_object o = eo_result_open();
@@ -237,7 +239,8 @@ static void collect_paths(const json_t *value, const char *path, json_t *set)
 {
   const char *key;
   json_t *inner;
-  json_object_foreach((json_t *)value, key, inner) {
+  json_object_foreach((json_t *)value, key, inner)
+  {
     char longer[200];
     snprintf(longer, sizeof longer, "%.120s%s%.70s", path, *path ? "/" : "", key);
     if (json_is_object(inner))
@@ -247,7 +250,8 @@ static void collect_paths(const json_t *value, const char *path, json_t *set)
   }
 }
 
-static const char *const value_keys[] = {"peak_to_peak_um", "impact_N", "rms_m_per_s2", "contact_pressure_MPa", "root_stress_MPa", "edge_load_share", "contact_loss"};
+static const char *const value_keys[] = {"peak_to_peak_um", "impact_N",        "rms_m_per_s2", "contact_pressure_MPa",
+                                         "root_stress_MPa", "edge_load_share", "contact_loss"};
 enum { VALUES = sizeof value_keys / sizeof value_keys[0] };
 
 static const json_t *first_scenario(const json_t *row)
@@ -262,13 +266,13 @@ static void add_headings(const json_t *paths, const json_t *cases, char **headin
   int i = 0;
   for (const char *const *fixed = (const char *const[]){"id", "outcome", "cost_s", NULL}; *fixed; fixed++)
     heading[i++] = strdup(*fixed);
-  json_object_foreach((json_t *)paths, key, value)
-    heading[i++] = strdup(key);
+  json_object_foreach((json_t *)paths, key, value) heading[i++] = strdup(key);
   for (size_t k = 0; k < json_array_size(cases); k++)
     for (int v = 0; v < VALUES; v++) {
       char text[100];
       const json_t *c = json_array_get(cases, k);
-      snprintf(text, sizeof text, "%s at %.6g Nm %.6g rpm", value_keys[v], eo_json_find_number(c, "torque_Nm"), eo_json_find_number(c, "speed_rpm"));
+      snprintf(text, sizeof text, "%s at %.6g Nm %.6g rpm", value_keys[v], eo_json_find_number(c, "torque_Nm"),
+               eo_json_find_number(c, "speed_rpm"));
       heading[i++] = strdup(text);
     }
 }
@@ -289,7 +293,7 @@ static void add_cells(struct eo_sheet *sheet, const json_t *row, const json_t *p
   add_cell(sheet, json_object_get(row, "outcome"), NAN);
   add_cell(sheet, json_object_get(row, "cost_s"), NAN);
   json_object_foreach((json_t *)paths, key, value)
-    add_cell(sheet, eo_json_find(json_object_get(row, "modification"), key), 0);
+      add_cell(sheet, eo_json_find(json_object_get(row, "modification"), key), 0);
   for (size_t k = 0; k < json_array_size(first_scenario(row)); k++)
     for (int v = 0; v < VALUES; v++)
       add_cell(sheet, json_object_get(json_array_get(first_scenario(row), k), value_keys[v]), NAN);
@@ -306,8 +310,7 @@ static void write_rows(const json_t *rows, const json_t *paths, char **heading, 
   if (text->failed)
     return;
   eo_sheet_init(&sheet, columns, (const char *const *)heading);
-  json_array_foreach((json_t *)rows, i, row)
-    add_cells(&sheet, row, paths);
+  json_array_foreach((json_t *)rows, i, row) add_cells(&sheet, row, paths);
   eo_sheet_csv(&sheet, text);
   eo_sheet_done(&sheet);
 }
@@ -317,9 +320,9 @@ enum eo_code eo_records_rows_csv(const json_t *document, struct eo_text *text, s
   const json_t *rows = json_object_get(document, "rows"), *row;
   json_t *paths = json_object();
   size_t i;
-  json_array_foreach((json_t *)rows, i, row)
-    collect_paths(json_object_get(row, "modification"), "", paths);
-  int columns = 3 + (int)json_object_size(paths) + VALUES * (int)json_array_size(first_scenario(json_array_get(rows, 0)));
+  json_array_foreach((json_t *)rows, i, row) collect_paths(json_object_get(row, "modification"), "", paths);
+  int columns = 3 + (int)json_object_size(paths) +
+                VALUES * (int)json_array_size(first_scenario(json_array_get(rows, 0)));
   char **heading = calloc((size_t)columns, sizeof *heading);
   if (paths && heading)
     write_rows(rows, paths, heading, columns, text);
@@ -364,7 +367,8 @@ static enum eo_code write_candidate(void *context, const struct eo_stored_candid
 {
   struct path_list *list = context;
   write_head(list, c->size);
-  eo_text_print(list->text, "%d,%d,%s,%lld,,", c->generation, c->individual, c->reused ? "known" : "computed", (long long)c->evaluation);
+  eo_text_print(list->text, "%d,%d,%s,%lld,,", c->generation, c->individual, c->reused ? "known" : "computed",
+                (long long)c->evaluation);
   write_point(list->text, c->x, c->size);
   return list->text->failed ? eo_error_memory(error) : EO_OK;
 }

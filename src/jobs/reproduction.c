@@ -11,9 +11,11 @@
 
 #include <config.h>
 
-const char *const eo_reproduction_variant[VARIANTS] = {"unmodified", "Table 3, case A", "Table 3, case B", "our optimum, case A", "our optimum, case B"};
+const char *const eo_reproduction_variant[VARIANTS] = {"unmodified", "Table 3, case A", "Table 3, case B",
+                                                       "our optimum, case A", "our optimum, case B"};
 
-enum eo_code eo_reproduction_report(const struct reproduction *r, const char *what, double fraction, struct eo_error *error)
+enum eo_code eo_reproduction_report(const struct reproduction *r, const char *what, double fraction,
+                                    struct eo_error *error)
 {
   if (eo_progress_report(r->plan->progress, what, fraction))
     return eo_error_set(error, EO_ERROR_CANCELLED, "", "Stopped.");
@@ -55,7 +57,8 @@ static enum eo_code prepare_pair(struct reproduction *r, struct eo_error *error)
 
 /* ---- analyses ---- */
 
-static enum eo_code analyse_variant(struct reproduction *r, struct eo_analysis *analysis, int law, int variant, struct eo_error *error)
+static enum eo_code analyse_variant(struct reproduction *r, struct eo_analysis *analysis, int law, int variant,
+                                    struct eo_error *error)
 {
   struct eo_design *design = malloc(sizeof *design);
   if (!design)
@@ -63,7 +66,8 @@ static enum eo_code analyse_variant(struct reproduction *r, struct eo_analysis *
   *design = *r->design[variant];
   if (law == LAW_PAPER)
     design->resolution.mesh_law = EO_LAW_SECANT;
-  enum eo_code code = eo_analysis_run(analysis, design, law == LAW_OURS ? EO_WANT_ROOT | EO_WANT_BAND | EO_WANT_CURVES : 0, error);
+  enum eo_code code = eo_analysis_run(analysis, design,
+                                      law == LAW_OURS ? EO_WANT_ROOT | EO_WANT_BAND | EO_WANT_CURVES : 0, error);
   if (!code) {
     memcpy(r->raw[law][variant], analysis->evaluation->objective, sizeof r->raw[law][variant]);
     r->value[law][variant] = analysis->value;

@@ -1,4 +1,5 @@
-/* The paper's figures of the theory: over torque (8, 9, 17), over the mesh cycle (10 to 12), of the root (14, 15), over speed (18). */
+/* The paper's figures of the theory: over torque (8, 9, 17), over the mesh cycle (10 to 12), of the root (14, 15), over
+   speed (18). */
 #include "jobs/reproduction_internal.h"
 
 #include <math.h>
@@ -7,14 +8,17 @@
 #include "document/json.h"
 #include "evaluation/sweep.h"
 
-json_t *eo_reproduction_figure(const char *number, const char *title, const char *x_label, const char *y_label, bool from_zero)
+json_t *eo_reproduction_figure(const char *number, const char *title, const char *x_label, const char *y_label,
+                               bool from_zero)
 {
-  return json_pack("{s:s, s:s, s:s, s:s, s:b, s:[]}", "number", number, "title", title, "x_label", x_label, "y_label", y_label, "from_zero", from_zero, "series");
+  return json_pack("{s:s, s:s, s:s, s:s, s:b, s:[]}", "number", number, "title", title, "x_label", x_label, "y_label",
+                   y_label, "from_zero", from_zero, "series");
 }
 
 void eo_reproduction_series(json_t *figure, const char *name, int count, const double *x, const double *y, bool dots)
 {
-  json_t *series = json_pack("{s:s, s:b, s:o, s:o}", "name", name, "dots", dots, "x", eo_json_reals(count, x, 1, NULL, EO_DIGITS_CURVE), "y",
+  json_t *series = json_pack("{s:s, s:b, s:o, s:o}", "name", name, "dots", dots, "x",
+                             eo_json_reals(count, x, 1, NULL, EO_DIGITS_CURVE), "y",
                              eo_json_reals(count, y, 1, NULL, EO_DIGITS_CURVE));
   json_array_append_new(json_object_get(figure, "series"), series);
 }
@@ -26,7 +30,7 @@ enum { MOST = 200 };
 
 struct grid {
   int torques, speeds;
-  double torque[MOST], speed[MOST];      /* N m, rad/s */
+  double torque[MOST], speed[MOST];           /* N m, rad/s */
   double torque_axis[MOST], speed_axis[MOST]; /* N m, rpm */
 };
 
@@ -68,12 +72,15 @@ static void read_speeds(const struct eo_sweep *sweep, int variant, struct curves
 }
 
 /* The sweep of one design, and (once) of the unmodified one. along_speed at 828 N m, else at 2000 rpm. */
-static enum eo_code sweep(struct reproduction *r, const struct grid *g, int variant, bool along_speed, enum eo_mesh_law law, struct curves *own,
-                          struct curves *unmodified, struct eo_error *error)
+static enum eo_code sweep(struct reproduction *r, const struct grid *g, int variant, bool along_speed,
+                          enum eo_mesh_law law, struct curves *own, struct curves *unmodified, struct eo_error *error)
 {
   static const double one_torque = 828, one_speed = 2000 * (M_PI / 30);
-  const struct eo_sweep_plan plan = {.torques = along_speed ? 1 : g->torques, .speeds = along_speed ? g->speeds : 1,
-                                     .torque = along_speed ? &one_torque : g->torque, .speed = along_speed ? g->speed : &one_speed, .threads = r->plan->threads};
+  const struct eo_sweep_plan plan = {.torques = along_speed ? 1 : g->torques,
+                                     .speeds = along_speed ? g->speeds : 1,
+                                     .torque = along_speed ? &one_torque : g->torque,
+                                     .speed = along_speed ? g->speed : &one_speed,
+                                     .threads = r->plan->threads};
   struct eo_design *design = malloc(sizeof *design);
   struct eo_sweep s;
   if (!design)
@@ -93,11 +100,13 @@ static enum eo_code sweep(struct reproduction *r, const struct grid *g, int vari
   return code;
 }
 
-static void add_torques(struct reproduction *r, const struct grid *g, const struct curves c[VARIANTS], const struct curves paper_law[2])
+static void add_torques(struct reproduction *r, const struct grid *g, const struct curves c[VARIANTS],
+                        const struct curves paper_law[2])
 {
   json_t *eight = eo_reproduction_figure("8", "Loaded transmission error, peak to peak", "torque, N m", "um", true);
   json_t *nine = eo_reproduction_figure("9", "Entering meshing impact force", "torque, N m", "N", true);
-  json_t *seventeen = eo_reproduction_figure("17", "RMS of the vibration acceleration at 2000 rpm (theory)", "torque, N m", "m/s2", true);
+  json_t *seventeen = eo_reproduction_figure("17", "RMS of the vibration acceleration at 2000 rpm (theory)",
+                                             "torque, N m", "m/s2", true);
   for (int i = 0; i < VARIANTS; i++) {
     eo_reproduction_series(eight, eo_reproduction_variant[i], g->torques, g->torque_axis, c[i].transmission, false);
     eo_reproduction_series(nine, eo_reproduction_variant[i], g->torques, g->torque_axis, c[i].impact, false);
@@ -112,7 +121,8 @@ static void add_torques(struct reproduction *r, const struct grid *g, const stru
   json_array_append_new(r->figures, seventeen);
 }
 
-static void judge_torques(struct reproduction *r, const struct grid *g, const struct curves c[VARIANTS], const struct curves paper_law[2])
+static void judge_torques(struct reproduction *r, const struct grid *g, const struct curves c[VARIANTS],
+                          const struct curves paper_law[2])
 {
   int quieter[2] = {0, 0};
   for (int i = 0; i < g->torques; i++) {
@@ -153,8 +163,10 @@ static enum eo_code over_speed(struct reproduction *r, const struct grid *g, str
   if (!code)
     code = sweep(r, g, PAPER_A, true, EO_LAW_SECANT, &c[4], &c[3], error);
   if (!code) {
-    static const char *const name[5] = {"unmodified", "Table 3, case A", "our optimum, A", "unmodified, secant", "case A, secant"};
-    json_t *figure = eo_reproduction_figure("18", "RMS of the vibration acceleration at 828 N m (theory)", "speed, rpm", "m/s2", true);
+    static const char *const name[5] = {"unmodified", "Table 3, case A", "our optimum, A", "unmodified, secant",
+                                        "case A, secant"};
+    json_t *figure = eo_reproduction_figure("18", "RMS of the vibration acceleration at 828 N m (theory)", "speed, rpm",
+                                            "m/s2", true);
     int better = 0;
     for (int i = 0; i < 5; i++)
       eo_reproduction_series(figure, name[i], g->speeds, g->speed_axis, c[i].rms, false);
@@ -189,10 +201,12 @@ static void add_vibration(struct reproduction *r, int k, const char *number)
 {
   char title[100];
   double x[SAMPLES], left[SAMPLES], right[SAMPLES];
-  snprintf(title, sizeof title, "Relative vibration acceleration, %.0f N m, mean of both ends", r->design[UNMODIFIED]->load_case[k].torque);
+  snprintf(title, sizeof title, "Relative vibration acceleration, %.0f N m, mean of both ends",
+           r->design[UNMODIFIED]->load_case[k].torque);
   json_t *figure = eo_reproduction_figure(number, title, "mesh cycle", "m/s2", false);
   for (int i = 0; i < VARIANTS; i++) {
-    const json_t *v = json_object_get(json_array_get(json_object_get(r->result[i], "load_cases"), (size_t)k), "vibration");
+    const json_t *v = json_object_get(json_array_get(json_object_get(r->result[i], "load_cases"), (size_t)k),
+                                      "vibration");
     int count = read_column(json_object_get(v, "position"), x);
     read_column(eo_json_find(v, "left/history/normal_m_per_s2"), left);
     read_column(eo_json_find(v, "right/history/normal_m_per_s2"), right);
@@ -209,7 +223,8 @@ static void add_root(struct reproduction *r, int variant, const char *number, co
   for (int k = 0; k < TORQUES; k++) {
     char name[60];
     double x[SAMPLES], y[SAMPLES];
-    const json_t *root = eo_json_find(json_array_get(json_object_get(r->result[variant], "load_cases"), (size_t)k), "root_stress/pinion");
+    const json_t *root = eo_json_find(json_array_get(json_object_get(r->result[variant], "load_cases"), (size_t)k),
+                                      "root_stress/pinion");
     int count = read_column(json_object_get(root, "position"), x);
     read_column(json_object_get(root, "history_MPa"), y);
     snprintf(name, sizeof name, "%.0f N m", r->design[variant]->load_case[k].torque);

@@ -62,10 +62,12 @@ static json_t *encode_run(const struct eo_study_result *s, const char *case_name
 }
 
 /* PFC so far and best J over true evaluations, generation by generation. */
-static enum eo_code plot(const struct eo_study_result *s, const char *name, json_t *pfc, json_t *convergence, struct eo_error *error)
+static enum eo_code plot(const struct eo_study_result *s, const char *name, json_t *pfc, json_t *convergence,
+                         struct eo_error *error)
 {
   size_t n = (size_t)s->generations;
-  double *column = calloc(4 * n + 1, sizeof *column), *generation = column, *share = column + n, *count = column + 2 * n, *best = column + 3 * n;
+  double *column = calloc(4 * n + 1, sizeof *column), *generation = column, *share = column + n,
+         *count = column + 2 * n, *best = column + 3 * n;
   int evaluated = 0, individuals = 0;
   if (!column)
     return eo_error_memory(error);
@@ -85,7 +87,8 @@ static enum eo_code plot(const struct eo_study_result *s, const char *name, json
   return EO_OK;
 }
 
-static enum eo_code study(struct run *run, int which, int algorithm, double *best, json_t *pfc, json_t *convergence, struct eo_error *error)
+static enum eo_code study(struct run *run, int which, int algorithm, double *best, json_t *pfc, json_t *convergence,
+                          struct eo_error *error)
 {
   struct reproduction *r = run->r;
   struct eo_design *own = r->design[which == CASE_A ? OWN_A : OWN_B], *design = malloc(sizeof *design);
@@ -96,8 +99,13 @@ static enum eo_code study(struct run *run, int which, int algorithm, double *bes
   *design = *own;
   design->modification = r->design[UNMODIFIED]->modification;
   set_up(r, design, algorithm);
-  const struct eo_study_plan plan = {.design = design, .pair = r->pair, .store = r->plan->store, .threads = r->plan->threads, .fresh = true,
-                                     .watch = watch, .context = run};
+  const struct eo_study_plan plan = {.design = design,
+                                     .pair = r->pair,
+                                     .store = r->plan->store,
+                                     .threads = r->plan->threads,
+                                     .fresh = true,
+                                     .watch = watch,
+                                     .context = run};
   snprintf(run->what, sizeof run->what, "case %s, %s", case_names[which], algorithms[algorithm]);
   snprintf(name, sizeof name, "%s, %s", case_names[which], algorithms[algorithm]);
   enum eo_code code = eo_study_run(&plan, &result, error);
@@ -125,9 +133,11 @@ enum eo_code eo_reproduction_optimize(struct reproduction *r, struct eo_error *e
   static const double printed[CASES] = {39.67, 33.25};
   struct run run = {.r = r};
   double generations = eo_reproduction_generations(r) - 1;
-  json_t *pfc = eo_reproduction_figure("13", "Percentage of fitness computed, fpga", "generation", "PFC so far, %", true);
-  json_t *convergence[CASES] = {eo_reproduction_figure("13 a", "Convergence, case A", "true evaluations", "best J", false),
-                                eo_reproduction_figure("13 b", "Convergence, case B", "true evaluations", "best J", false)};
+  json_t *pfc = eo_reproduction_figure("13", "Percentage of fitness computed, fpga", "generation", "PFC so far, %",
+                                       true);
+  json_t *convergence[CASES] = {
+      eo_reproduction_figure("13 a", "Convergence, case A", "true evaluations", "best J", false),
+      eo_reproduction_figure("13 b", "Convergence, case B", "true evaluations", "best J", false)};
   enum eo_code code = EO_OK;
   for (int which = 0; which < CASES; which++) {
     double best = INFINITY;

@@ -24,11 +24,13 @@ static void add_verdict(struct eo_sheet *sheet, const json_t *row, const char *k
 
 static void fill_comparisons(const json_t *document, struct eo_sheet *sheet, int digits)
 {
-  static const char *const headings[] = {"figure", "quantity", "paper", "ours", "ours, secant law", "unit", "trend agrees", "value agrees", "secant agrees"};
+  static const char *const headings[] = {"figure", "quantity",     "paper",        "ours",         "ours, secant law",
+                                         "unit",   "trend agrees", "value agrees", "secant agrees"};
   const json_t *row;
   size_t i;
   eo_sheet_init(sheet, 9, headings);
-  json_array_foreach(json_object_get(document, "comparisons"), i, row) {
+  json_array_foreach(json_object_get(document, "comparisons"), i, row)
+  {
     eo_sheet_string(sheet, find_text(row, "figure"));
     eo_sheet_string(sheet, find_text(row, "quantity"));
     eo_sheet_number(sheet, eo_json_find_number(row, "paper"), NULL, digits);
@@ -43,12 +45,15 @@ static void fill_comparisons(const json_t *document, struct eo_sheet *sheet, int
 
 static void fill_table_3(const json_t *document, struct eo_sheet *sheet, int digits)
 {
-  static const char *const headings[] = {"parameter", "A, printed", "A, ours", "B left, printed", "B left, ours", "B right, printed", "B right, ours"};
-  static const char *const keys[] = {"printed_case_a", "ours_case_a", "printed_case_b_left", "ours_case_b_left", "printed_case_b_right", "ours_case_b_right"};
+  static const char *const headings[] = {"parameter",    "A, printed",       "A, ours",      "B left, printed",
+                                         "B left, ours", "B right, printed", "B right, ours"};
+  static const char *const keys[] = {"printed_case_a",   "ours_case_a",          "printed_case_b_left",
+                                     "ours_case_b_left", "printed_case_b_right", "ours_case_b_right"};
   const json_t *row;
   size_t i;
   eo_sheet_init(sheet, 7, headings);
-  json_array_foreach(json_object_get(document, "table_3"), i, row) {
+  json_array_foreach(json_object_get(document, "table_3"), i, row)
+  {
     eo_sheet_string(sheet, find_text(row, "parameter"));
     for (int j = 0; j < 6; j++)
       eo_sheet_number(sheet, eo_json_find_number(row, keys[j]), NULL, digits);
@@ -57,18 +62,23 @@ static void fill_table_3(const json_t *document, struct eo_sheet *sheet, int dig
 
 static void fill_results(const json_t *document, struct eo_sheet *sheet, int digits)
 {
-  static const char *const headings[] = {"design", "mesh law", "PPLTE 621", "828", "1035 N m, um", "impact 621", "828", "1035 N m, N", "RMS 621", "828",
-                                         "1035 N m, m/s2", "f1, um", "f2, N", "f3, m/s2", "J"};
-  static const char *const keys[] = {"peak_to_peak_um", "impact_N", "rms_m_per_s2"}, *const sums[] = {"f1_um", "f2_N", "f3_m_per_s2", "J"};
+  static const char *const headings[] = {"design",         "mesh law", "PPLTE 621",   "828",      "1035 N m, um",
+                                         "impact 621",     "828",      "1035 N m, N", "RMS 621",  "828",
+                                         "1035 N m, m/s2", "f1, um",   "f2, N",       "f3, m/s2", "J"};
+  static const char *const keys[] = {"peak_to_peak_um", "impact_N", "rms_m_per_s2"}, *const sums[] = {"f1_um", "f2_N",
+                                                                                                      "f3_m_per_s2",
+                                                                                                      "J"};
   const json_t *row;
   size_t i;
   eo_sheet_init(sheet, 15, headings);
-  json_array_foreach(json_object_get(document, "results"), i, row) {
+  json_array_foreach(json_object_get(document, "results"), i, row)
+  {
     eo_sheet_string(sheet, find_text(row, "design"));
     eo_sheet_string(sheet, find_text(row, "mesh_law"));
     for (int j = 0; j < 3; j++)
       for (size_t k = 0; k < 3; k++)
-        eo_sheet_number(sheet, eo_json_find_number(json_array_get(json_object_get(row, "load_cases"), k), keys[j]), NULL, digits);
+        eo_sheet_number(sheet, eo_json_find_number(json_array_get(json_object_get(row, "load_cases"), k), keys[j]),
+                        NULL, digits);
     for (int j = 0; j < 4; j++)
       eo_sheet_number(sheet, eo_json_find_number(row, sums[j]), NULL, digits);
   }
@@ -81,7 +91,8 @@ static void fill_optimizations(const json_t *document, struct eo_sheet *sheet, i
   const json_t *row;
   size_t i;
   eo_sheet_init(sheet, 6, headings);
-  json_array_foreach(json_object_get(document, "optimizations"), i, row) {
+  json_array_foreach(json_object_get(document, "optimizations"), i, row)
+  {
     eo_sheet_string(sheet, find_text(row, "case"));
     eo_sheet_string(sheet, find_text(row, "algorithm"));
     for (int j = 0; j < 4; j++)
@@ -91,13 +102,28 @@ static void fill_optimizations(const json_t *document, struct eo_sheet *sheet, i
 
 static void fill_sensitivity(const json_t *document, struct eo_sheet *sheet, int digits)
 {
-  static const char *const headings[] = {"assumption", "value", "RMS unmodified 621", "828", "1035", "RMS case A 621", "828", "1035", "less RMS 621, %", "828", "1035",
-                                         "less LTE 828, %", "impact unmodified 828, N", "impact case A 828, N", "J case A"};
-  static const char *const keys[] = {"rms_unmodified_m_per_s2", "rms_case_a_m_per_s2", "rms_reduction_percent"}, *const at_828[] = {"lte_reduction_percent", "impact_unmodified_N", "impact_case_a_N"};
+  static const char *const headings[] = {"assumption",
+                                         "value",
+                                         "RMS unmodified 621",
+                                         "828",
+                                         "1035",
+                                         "RMS case A 621",
+                                         "828",
+                                         "1035",
+                                         "less RMS 621, %",
+                                         "828",
+                                         "1035",
+                                         "less LTE 828, %",
+                                         "impact unmodified 828, N",
+                                         "impact case A 828, N",
+                                         "J case A"};
+  static const char *const keys[] = {"rms_unmodified_m_per_s2", "rms_case_a_m_per_s2", "rms_reduction_percent"},
+                           *const at_828[] = {"lte_reduction_percent", "impact_unmodified_N", "impact_case_a_N"};
   const json_t *row;
   size_t i;
   eo_sheet_init(sheet, 15, headings);
-  json_array_foreach(json_object_get(document, "sensitivity"), i, row) {
+  json_array_foreach(json_object_get(document, "sensitivity"), i, row)
+  {
     eo_sheet_string(sheet, find_text(row, "assumption"));
     eo_sheet_string(sheet, find_text(row, "value"));
     for (int j = 0; j < 3; j++)
@@ -141,13 +167,14 @@ static void write_figure(const json_t *figure, struct eo_text *text)
   size_t i;
   struct eo_sheet sheet;
   eo_sheet_init(&sheet, 3, headings);
-  json_array_foreach(json_object_get(figure, "series"), i, series)
-    for (size_t j = 0; j < json_array_size(json_object_get(series, "x")); j++) {
-      const json_t *y = json_array_get(json_object_get(series, "y"), j);
-      eo_sheet_string(&sheet, find_text(series, "name"));
-      eo_sheet_number(&sheet, json_number_value(json_array_get(json_object_get(series, "x"), j)), NULL, 0);
-      eo_sheet_number(&sheet, json_is_number(y) ? json_number_value(y) : NAN, NULL, 0);
-    }
+  json_array_foreach(json_object_get(figure, "series"), i,
+                     series) for (size_t j = 0; j < json_array_size(json_object_get(series, "x")); j++)
+  {
+    const json_t *y = json_array_get(json_object_get(series, "y"), j);
+    eo_sheet_string(&sheet, find_text(series, "name"));
+    eo_sheet_number(&sheet, json_number_value(json_array_get(json_object_get(series, "x"), j)), NULL, 0);
+    eo_sheet_number(&sheet, json_is_number(y) ? json_number_value(y) : NAN, NULL, 0);
+  }
   eo_sheet_csv(&sheet, text);
   eo_sheet_done(&sheet);
 }
@@ -165,7 +192,8 @@ void eo_reproduction_files(const json_t *document, struct eo_bundle *bundle)
     eo_sheet_csv(&sheet, text);
     eo_sheet_done(&sheet);
   }
-  json_array_foreach(json_object_get(document, "figures"), i, figure) {
+  json_array_foreach(json_object_get(document, "figures"), i, figure)
+  {
     char name[60];
     file_name(find_text(figure, "number"), name, sizeof name);
     struct eo_text *text = eo_bundle_add(bundle, "%s", name);
@@ -180,8 +208,10 @@ void eo_reproduction_files(const json_t *document, struct eo_bundle *bundle)
 static const char style[] =
     "body{font:15px/1.5 system-ui,sans-serif;max-width:1100px;margin:2em auto;padding:0 1em;color:#111;background:#fff}"
     "h1{font-size:1.6em}h2{margin-top:2em;border-bottom:1px solid #ccc}table{border-collapse:collapse;font-size:13px}"
-    "th,td{padding:2px 8px;border-bottom:1px solid #ddd;text-align:right}th{text-align:left;vertical-align:bottom}td.text{text-align:left}"
-    ".wide{overflow-x:auto}.figures{display:grid;grid-template-columns:repeat(auto-fit,minmax(420px,1fr));gap:1em}figure{margin:0}svg{width:100%;height:auto}"
+    "th,td{padding:2px 8px;border-bottom:1px solid "
+    "#ddd;text-align:right}th{text-align:left;vertical-align:bottom}td.text{text-align:left}"
+    ".wide{overflow-x:auto}.figures{display:grid;grid-template-columns:repeat(auto-fit,minmax(420px,1fr));gap:1em}"
+    "figure{margin:0}svg{width:100%;height:auto}"
     "td.no{font-weight:bold}@media print{.figures{grid-template-columns:1fr 1fr}}";
 
 static void write_table(const struct eo_sheet *sheet, struct eo_text *text)
@@ -192,7 +222,10 @@ static void write_table(const struct eo_sheet *sheet, struct eo_text *text)
     bool head = i < sheet->columns;
     if (i && i % sheet->columns == 0)
       eo_text_add(text, "</tr>\n<tr>");
-    eo_text_add(text, head ? "<th>" : cell->number ? "<td>" : strcmp(cell->text, "no") == 0 ? "<td class=\"text no\">" : "<td class=\"text\">");
+    eo_text_add(text, head                            ? "<th>"
+                      : cell->number                  ? "<td>"
+                      : strcmp(cell->text, "no") == 0 ? "<td class=\"text no\">"
+                                                      : "<td class=\"text\">");
     eo_plot_escape(text, cell->text);
     eo_text_add(text, head ? "</th>" : "</td>");
   }
@@ -212,7 +245,8 @@ static bool read_series(const json_t *series, struct eo_plot_series *line, doubl
     x[j] = json_number_value(json_array_get(json_object_get(series, "x"), j));
     y[j] = json_is_number(number) ? json_number_value(number) : NAN;
   }
-  *line = (struct eo_plot_series){find_text(series, "name"), (int)count, x, y, json_is_true(json_object_get(series, "dots"))};
+  *line = (struct eo_plot_series){find_text(series, "name"), (int)count, x, y,
+                                  json_is_true(json_object_get(series, "dots"))};
   return true;
 }
 
@@ -223,11 +257,13 @@ static void write_plot(const json_t *figure, struct eo_text *text)
   const json_t *series;
   size_t i;
   snprintf(title, sizeof title, "Fig. %.8s: %.140s", find_text(figure, "number"), find_text(figure, "title"));
-  struct eo_plot plot = {.title = title, .x_label = find_text(figure, "x_label"), .y_label = find_text(figure, "y_label"),
+  struct eo_plot plot = {.title = title,
+                         .x_label = find_text(figure, "x_label"),
+                         .y_label = find_text(figure, "y_label"),
                          .from_zero = json_is_true(json_object_get(figure, "from_zero"))};
-  json_array_foreach(json_object_get(figure, "series"), i, series)
-    if (plot.series < EO_PLOT_SERIES && read_series(series, &plot.line[plot.series], &store[plot.series]))
-      plot.series++;
+  json_array_foreach(json_object_get(figure, "series"), i,
+                     series) if (plot.series < EO_PLOT_SERIES &&
+                                 read_series(series, &plot.line[plot.series], &store[plot.series])) plot.series++;
   eo_text_add(text, "<figure>");
   eo_plot_svg(&plot, text);
   eo_text_add(text, "</figure>\n");
@@ -240,7 +276,8 @@ static void write_list(const json_t *items, struct eo_text *text)
   const json_t *item;
   size_t i;
   eo_text_add(text, "<ul>\n");
-  json_array_foreach((json_t *)items, i, item) {
+  json_array_foreach((json_t *)items, i, item)
+  {
     eo_text_add(text, "<li>");
     eo_plot_escape(text, json_string_value(item) ? json_string_value(item) : "");
     eo_text_add(text, "</li>\n");
@@ -253,7 +290,8 @@ static void count_verdicts(const json_t *document, const char *key, int *yes, in
   const json_t *row;
   size_t i;
   *yes = *all = 0;
-  json_array_foreach(json_object_get(document, "comparisons"), i, row) {
+  json_array_foreach(json_object_get(document, "comparisons"), i, row)
+  {
     *yes += json_is_true(json_object_get(row, key));
     *all += json_is_boolean(json_object_get(row, key));
   }
@@ -265,21 +303,26 @@ static void write_verdict(const json_t *document, struct eo_text *text)
   count_verdicts(document, "trend_agrees", &trends[0], &trends[1]);
   count_verdicts(document, "value_agrees", &values[0], &values[1]);
   count_verdicts(document, "value_agrees_secant_law", &secant[0], &secant[1]);
-  eo_text_print(text, "%d of %d trends and %d of %d numbers of the paper agree; with the paper's mesh law %d of %d", trends[0], trends[1], values[0], values[1],
-                secant[0], secant[1]);
+  eo_text_print(text, "%d of %d trends and %d of %d numbers of the paper agree; with the paper's mesh law %d of %d",
+                trends[0], trends[1], values[0], values[1], secant[0], secant[1]);
 }
 
 void eo_reproduction_page(const json_t *document, struct eo_text *text)
 {
   const json_t *figure;
   size_t i;
-  eo_text_print(text, "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" content=\"width=device-width\">"
-                      "<title>The paper and ours</title><link rel=\"icon\" href=\"data:,\"><style>%s</style></head><body>\n", style);
+  eo_text_print(text,
+                "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
+                "content=\"width=device-width\">"
+                "<title>The paper and ours</title><link rel=\"icon\" href=\"data:,\"><style>%s</style></head><body>\n",
+                style);
   eo_text_add(text, "<h1>Optimum microgeometry modifications of herringbone gear, reproduced</h1>\n<p>");
   eo_plot_escape(text, find_text(document, "program"));
   eo_text_add(text, "; the paper: doi.org/10.21595/jve.2016.17179. ");
   write_verdict(document, text);
-  eo_text_print(text, ".%s</p>\n", json_is_true(json_object_get(document, "quick")) ? " Quick run: a tenth of the paper's generations." : "");
+  eo_text_print(text, ".%s</p>\n",
+                json_is_true(json_object_get(document, "quick")) ? " Quick run: a tenth of the paper's generations."
+                                                                 : "");
   for (i = 0; i < TABLES; i++) {
     struct eo_sheet sheet;
     tables[i].fill(document, &sheet, 4);
@@ -288,8 +331,7 @@ void eo_reproduction_page(const json_t *document, struct eo_text *text)
     eo_sheet_done(&sheet);
   }
   eo_text_add(text, "<h2>Figures</h2>\n<div class=\"figures\">\n");
-  json_array_foreach(json_object_get(document, "figures"), i, figure)
-    write_plot(figure, text);
+  json_array_foreach(json_object_get(document, "figures"), i, figure) write_plot(figure, text);
   eo_text_add(text, "</div>\n<h2>How the paper was read</h2>\n");
   write_list(json_object_get(document, "readings"), text);
   eo_text_add(text, "</body></html>\n");
@@ -312,8 +354,8 @@ void eo_reproduction_summary(const json_t *document, struct eo_text *text)
   write_verdict(document, text);
   eo_text_print(text, ".\n\nFigures (curves in --json, --csv and --html):");
   json_array_foreach(json_object_get(document, "figures"), i, item)
-    eo_text_print(text, " %s", find_text(item, "number"));
+      eo_text_print(text, " %s", find_text(item, "number"));
   eo_text_add(text, "\n\n");
   json_array_foreach(json_object_get(document, "readings"), i, item)
-    eo_text_print(text, "Read: %s\n", json_string_value(item));
+      eo_text_print(text, "Read: %s\n", json_string_value(item));
 }

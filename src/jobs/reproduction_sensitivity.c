@@ -14,19 +14,43 @@ struct alternative {
   double compliance; /* factor; 0: 1 */
 };
 
-static void nothing(struct eo_design *d) { (void)d; }
-static void aligned(struct eo_design *d) { d->alignment.shaft_angle_in_plane = 0; }
-static void half_error(struct eo_design *d) { d->alignment.shaft_angle_in_plane = 0.05 * DEGREE; }
-static void more_error(struct eo_design *d) { d->alignment.shaft_angle_in_plane = 0.12 * DEGREE; }
-static void arc_minute(struct eo_design *d) { d->alignment.shaft_angle_in_plane = 0.1 / 60 * DEGREE; }
+static void nothing(struct eo_design *d)
+{
+  (void)d;
+}
+static void aligned(struct eo_design *d)
+{
+  d->alignment.shaft_angle_in_plane = 0;
+}
+static void half_error(struct eo_design *d)
+{
+  d->alignment.shaft_angle_in_plane = 0.05 * DEGREE;
+}
+static void more_error(struct eo_design *d)
+{
+  d->alignment.shaft_angle_in_plane = 0.12 * DEGREE;
+}
+static void arc_minute(struct eo_design *d)
+{
+  d->alignment.shaft_angle_in_plane = 0.1 / 60 * DEGREE;
+}
 static void out_of_plane(struct eo_design *d)
 {
   d->alignment.shaft_angle_in_plane = 0;
   d->alignment.shaft_angle_out_of_plane = 0.1 * DEGREE;
 }
-static void secant(struct eo_design *d) { d->resolution.mesh_law = EO_LAW_SECANT; }
-static void table(struct eo_design *d) { d->resolution.mesh_law = EO_LAW_TABLE; }
-static void pulses(struct eo_design *d) { d->resolution.impact_in_dynamics = EO_IMPACT_PAPER; }
+static void secant(struct eo_design *d)
+{
+  d->resolution.mesh_law = EO_LAW_SECANT;
+}
+static void table(struct eo_design *d)
+{
+  d->resolution.mesh_law = EO_LAW_TABLE;
+}
+static void pulses(struct eo_design *d)
+{
+  d->resolution.impact_in_dynamics = EO_IMPACT_PAPER;
+}
 static void scale_bearings(struct eo_design *d, double factor)
 {
   for (int i = 0; i < 2; i++) {
@@ -34,13 +58,34 @@ static void scale_bearings(struct eo_design *d, double factor)
     d->supports.gear_axial_stiffness[i] *= factor;
   }
 }
-static void soft_bearings(struct eo_design *d) { scale_bearings(d, 0.5); }
-static void stiff_bearings(struct eo_design *d) { scale_bearings(d, 2); }
-static void less_damping(struct eo_design *d) { d->supports.mesh_damping_ratio *= 0.5; }
-static void more_damping(struct eo_design *d) { d->supports.mesh_damping_ratio *= 1.5; }
-static void small_patch(struct eo_design *d) { d->resolution.impact_patch = 2e-3; }
-static void large_patch(struct eo_design *d) { d->resolution.impact_patch = 20e-3; }
-static void no_edges(struct eo_design *d) { d->resolution.tip_edge_contact = false; }
+static void soft_bearings(struct eo_design *d)
+{
+  scale_bearings(d, 0.5);
+}
+static void stiff_bearings(struct eo_design *d)
+{
+  scale_bearings(d, 2);
+}
+static void less_damping(struct eo_design *d)
+{
+  d->supports.mesh_damping_ratio *= 0.5;
+}
+static void more_damping(struct eo_design *d)
+{
+  d->supports.mesh_damping_ratio *= 1.5;
+}
+static void small_patch(struct eo_design *d)
+{
+  d->resolution.impact_patch = 2e-3;
+}
+static void large_patch(struct eo_design *d)
+{
+  d->resolution.impact_patch = 20e-3;
+}
+static void no_edges(struct eo_design *d)
+{
+  d->resolution.tip_edge_contact = false;
+}
 static void small_sector(struct eo_design *d)
 {
   d->resolution.sector_teeth = 3;
@@ -71,10 +116,11 @@ static const struct alternative alternatives[] = {
 enum { ALTERNATIVES = sizeof alternatives / sizeof alternatives[0] };
 
 /* Values of both designs under one alternative, at a compliance that a scenario states. */
-static enum eo_code evaluate(struct eo_evaluator *evaluator, const struct eo_design *design, double compliance, struct eo_objective_case raw[TORQUES],
-                             struct eo_error *error)
+static enum eo_code evaluate(struct eo_evaluator *evaluator, const struct eo_design *design, double compliance,
+                             struct eo_objective_case raw[TORQUES], struct eo_error *error)
 {
-  const struct eo_scenario scenario = {design->alignment.shaft_angle_in_plane, design->alignment.shaft_angle_out_of_plane, compliance, 1};
+  const struct eo_scenario scenario = {design->alignment.shaft_angle_in_plane,
+                                       design->alignment.shaft_angle_out_of_plane, compliance, 1};
   const struct eo_evaluation *e;
   enum eo_code code = eo_evaluator_run(evaluator, design, compliance > 0 ? &scenario : NULL, 0, &e, error);
   for (int k = 0; k < TORQUES && !code; k++)
@@ -82,18 +128,21 @@ static enum eo_code evaluate(struct eo_evaluator *evaluator, const struct eo_des
   return code;
 }
 
-static json_t *encode_row(const struct alternative *a, const struct eo_design *design, const struct eo_objective_case raw[2][TORQUES])
+static json_t *encode_row(const struct alternative *a, const struct eo_design *design,
+                          const struct eo_objective_case raw[2][TORQUES])
 {
   struct eo_result_object o = eo_result_open();
   struct eo_objective_value value;
-  json_t *unmodified = json_array(), *modified = json_array(), *reduction = json_array(), *transmission = json_array(), *impact = json_array();
+  json_t *unmodified = json_array(), *modified = json_array(), *reduction = json_array(), *transmission = json_array(),
+         *impact = json_array();
   json_t *force[2] = {json_array(), json_array()};
   eo_objective_value(&design->objective, TORQUES, design->load_case, raw[1], raw[0], false, &value);
   for (int k = 0; k < TORQUES; k++) {
     json_array_append_new(unmodified, eo_result_number(raw[0][k].failed ? NAN : raw[0][k].rms, NULL));
     json_array_append_new(modified, eo_result_number(raw[1][k].failed ? NAN : raw[1][k].rms, NULL));
     json_array_append_new(reduction, eo_result_number(100 * (1 - raw[1][k].rms / raw[0][k].rms), NULL));
-    json_array_append_new(transmission, eo_result_number(100 * (1 - raw[1][k].peak_to_peak / raw[0][k].peak_to_peak), NULL));
+    json_array_append_new(transmission,
+                          eo_result_number(100 * (1 - raw[1][k].peak_to_peak / raw[0][k].peak_to_peak), NULL));
     for (int i = 0; i < 2; i++)
       json_array_append_new(force[i], eo_result_number(raw[i][k].impact, NULL));
     json_array_append_new(impact, eo_result_number(100 * (1 - raw[1][k].impact / raw[0][k].impact), NULL));
@@ -112,7 +161,8 @@ static json_t *encode_row(const struct alternative *a, const struct eo_design *d
 }
 
 /* The pair at hand where it serves, else one made for this alternative. */
-static enum eo_code try_alternative(struct reproduction *r, const struct alternative *a, struct eo_design *design, json_t *rows, struct eo_error *error)
+static enum eo_code try_alternative(struct reproduction *r, const struct alternative *a, struct eo_design *design,
+                                    json_t *rows, struct eo_error *error)
 {
   struct eo_objective_case raw[2][TORQUES];
   const struct eo_pair_options options = {.cache_directory = r->plan->cache_directory};

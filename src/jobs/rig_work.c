@@ -22,7 +22,8 @@ void eo_rig_pair_hash(const struct eo_geometry *geometry, char key[EO_HASH_LENGT
 
 /* ---- measurements on their way ---- */
 
-enum eo_code eo_rig_points_add(struct eo_rig_points *points, int64_t id, const char *summary, const char *pair, struct eo_error *error)
+enum eo_code eo_rig_points_add(struct eo_rig_points *points, int64_t id, const char *summary, const char *pair,
+                               struct eo_error *error)
 {
   if (points->count == EO_MOST_MEASURED)
     return eo_error_set(error, EO_ERROR_INPUT, "", "At most %d measurements are compared at once.", EO_MOST_MEASURED);
@@ -73,7 +74,8 @@ static void release(void *data)
   free(order);
 }
 
-static enum eo_code make(struct eo_work *work, struct eo_rig_points *points, struct order **order, struct eo_error *error)
+static enum eo_code make(struct eo_work *work, struct eo_rig_points *points, struct order **order,
+                         struct eo_error *error)
 {
   *order = calloc(1, sizeof **order);
   if (!*order) {
@@ -102,7 +104,8 @@ static void read_point(struct work *w, const struct eo_rig_point *point, const c
   struct eo_error error;
   json_t *summary = json_loads(point->summary, 0, NULL);
   if (strcmp(point->pair, pair) != 0)
-    leave_out(w, point->id, "It was measured with other tooth numbers or base radii than the design has now; upload its file again.");
+    leave_out(w, point->id,
+              "It was measured with other tooth numbers or base radii than the design has now; upload its file again.");
   else if (eo_measured_decode(summary, &w->measured[w->count], &error))
     leave_out(w, point->id, error.text);
   else {
@@ -112,8 +115,8 @@ static void read_point(struct work *w, const struct eo_rig_point *point, const c
   json_decref(summary);
 }
 
-static enum eo_code compare(struct work *w, const struct order *order, const struct eo_pair *pair, const struct eo_design *design,
-                            const struct eo_progress *progress, struct eo_error *error)
+static enum eo_code compare(struct work *w, const struct order *order, const struct eo_pair *pair,
+                            const struct eo_design *design, const struct eo_progress *progress, struct eo_error *error)
 {
   char key[EO_HASH_LENGTH + 1];
   struct eo_evaluator *evaluator = NULL;
@@ -171,8 +174,8 @@ static json_t *encode_comparison(const struct work *w, const struct eo_design *d
   json_t *reduction;
   size_t i;
   bool failed = !inner;
-  json_array_foreach(json_object_get(inner, "reductions"), i, reduction)
-    eo_json_put(reduction, "id", json_incref(json_array_get(w->ids, (size_t)w->comparison.reduction[i].modified)), &failed);
+  json_array_foreach(json_object_get(inner, "reductions"), i, reduction) eo_json_put(
+      reduction, "id", json_incref(json_array_get(w->ids, (size_t)w->comparison.reduction[i].modified)), &failed);
   eo_json_put(document, "program", json_string(PACKAGE_STRING), &failed);
   eo_json_put(document, "design_hash", eo_design_hash(design, hash, NULL) ? NULL : json_string(hash), &failed);
   eo_json_put(document, "id", json_incref(w->ids), &failed);
@@ -182,8 +185,8 @@ static json_t *encode_comparison(const struct work *w, const struct eo_design *d
   return failed ? (json_decref(document), NULL) : document;
 }
 
-static enum eo_code run_comparison(void *data, const struct eo_pair *pair, const struct eo_design *design, const struct eo_progress *progress,
-                                   struct eo_text *text, struct eo_error *error)
+static enum eo_code run_comparison(void *data, const struct eo_pair *pair, const struct eo_design *design,
+                                   const struct eo_progress *progress, struct eo_text *text, struct eo_error *error)
 {
   const struct order *order = data;
   struct work w = {0};
@@ -209,13 +212,15 @@ enum eo_code eo_rig_comparison(struct eo_work *work, struct eo_rig_points *point
 
 /* ---- fit ---- */
 
-/* Sets in document what differs between two resolved designs, and nothing else: defaults that were not written stay unwritten. */
+/* Sets in document what differs between two resolved designs, and nothing else: defaults that were not written stay
+   unwritten. */
 static bool overlay(json_t *document, const json_t *before, const json_t *after)
 {
   const char *key;
   json_t *value;
   bool done = true;
-  json_object_foreach((json_t *)after, key, value) {
+  json_object_foreach((json_t *)after, key, value)
+  {
     const json_t *old = json_object_get(before, key);
     if (json_equal(old, value))
       continue;
@@ -262,12 +267,13 @@ static const struct eo_outline_row fit_rows[] = {
     {.outline = &eo_update_outline},
     EO_KEY("id", "[integer]", "numbers of the measurements used"),
     EO_KEY("left_out", "[object]", "measurements that were not, outliers too", .outline = &left_out_outline),
-    EO_KEY("design", "object", "the design with the values found, as it was given but for them", .table = &eo_design_table, .name = "Design", .sparse = true),
+    EO_KEY("design", "object", "the design with the values found, as it was given but for them",
+           .table = &eo_design_table, .name = "Design", .sparse = true),
 };
 const struct eo_outline eo_rig_fit_outline = EO_OUTLINE("Fit", fit_rows);
 
-static enum eo_code run_fit(void *data, const struct eo_pair *pair, const struct eo_design *design, const struct eo_progress *progress,
-                            struct eo_text *text, struct eo_error *error)
+static enum eo_code run_fit(void *data, const struct eo_pair *pair, const struct eo_design *design,
+                            const struct eo_progress *progress, struct eo_text *text, struct eo_error *error)
 {
   const struct order *order = data;
   struct work w = {0};
@@ -290,8 +296,8 @@ static enum eo_code run_fit(void *data, const struct eo_pair *pair, const struct
   return code;
 }
 
-enum eo_code eo_rig_fit(struct eo_work *work, struct eo_rig_points *points, const struct eo_update_settings *settings, const json_t *stored,
-                        struct eo_error *error)
+enum eo_code eo_rig_fit(struct eo_work *work, struct eo_rig_points *points, const struct eo_update_settings *settings,
+                        const json_t *stored, struct eo_error *error)
 {
   struct order *order;
   enum eo_code code = make(work, points, &order, error);
@@ -305,15 +311,18 @@ enum eo_code eo_rig_fit(struct eo_work *work, struct eo_rig_points *points, cons
 
 /* ---- synthetic recording ---- */
 
-static enum eo_code respond(struct eo_rig_request *rig, const struct eo_pair *pair, const struct eo_design *design, struct eo_error *error)
+static enum eo_code respond(struct eo_rig_request *rig, const struct eo_pair *pair, const struct eo_design *design,
+                            struct eo_error *error)
 {
   struct eo_evaluator *evaluator = NULL;
   struct eo_rig_prediction prediction;
   enum eo_code code = eo_evaluator_new(&evaluator, pair, 1, error);
   if (!code)
-    code = eo_prediction_run(&prediction, evaluator, design, rig->unmodified, rig->torque, rig->speed, rig->end, rig->harmonics, error);
+    code = eo_prediction_run(&prediction, evaluator, design, rig->unmodified, rig->torque, rig->speed, rig->end,
+                             rig->harmonics, error);
   if (!code && !prediction.valid)
-    code = eo_error_set(error, EO_ERROR_INPUT, "", "The design has no periodic vibration at %g N m and %g rpm.", rig->torque, rig->speed * 30 / M_PI);
+    code = eo_error_set(error, EO_ERROR_INPUT, "", "The design has no periodic vibration at %g N m and %g rpm.",
+                        rig->torque, rig->speed * 30 / M_PI);
   eo_evaluator_free(evaluator);
   if (code)
     return code;
@@ -325,8 +334,8 @@ static enum eo_code respond(struct eo_rig_request *rig, const struct eo_pair *pa
   return code;
 }
 
-static enum eo_code run_recording(void *data, const struct eo_pair *pair, const struct eo_design *design, const struct eo_progress *progress,
-                                  struct eo_text *text, struct eo_error *error)
+static enum eo_code run_recording(void *data, const struct eo_pair *pair, const struct eo_design *design,
+                                  const struct eo_progress *progress, struct eo_text *text, struct eo_error *error)
 {
   struct order *order = data;
   char *bytes = NULL;

@@ -15,7 +15,8 @@ static enum eo_code reserve(struct eo_rows *rows, struct eo_error *error)
   return EO_OK;
 }
 
-enum eo_code eo_rows_add(struct eo_rows *rows, const struct eo_modification *modification, int ends, struct eo_row_data **result, struct eo_error *error)
+enum eo_code eo_rows_add(struct eo_rows *rows, const struct eo_modification *modification, int ends,
+                         struct eo_row_data **result, struct eo_error *error)
 {
   enum eo_code code = reserve(rows, error);
   struct eo_row_data *row = code ? NULL : calloc(1, sizeof *row);

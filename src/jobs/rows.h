@@ -7,20 +7,21 @@
 
 struct eo_row_data {
   struct eo_study_point point;
-  struct eo_text text;             /* the modification as the history knows it */
+  struct eo_text text; /* the modification as the history knows it */
   enum eo_evaluation_outcome outcome;
   char reason[EO_REASON_LENGTH];
-  double cost;                     /* s */
-  bool computed;                   /* by this process, and not saved yet */
+  double cost;   /* s */
+  bool computed; /* by this process, and not saved yet */
 };
 
 struct eo_rows {
-  int count, capacity, values;     /* values: raw ones of a row, [scenarios][cases] */
-  struct eo_row_data **row;        /* [capacity], each owned: a row stays where it is while more are added */
+  int count, capacity, values; /* values: raw ones of a row, [scenarios][cases] */
+  struct eo_row_data **row;    /* [capacity], each owned: a row stays where it is while more are added */
 };
 
 /* Adds a row for a modification, its text written and its raw values zero. ends: of the pair. */
-enum eo_code eo_rows_add(struct eo_rows *rows, const struct eo_modification *modification, int ends, struct eo_row_data **row, struct eo_error *error);
+enum eo_code eo_rows_add(struct eo_rows *rows, const struct eo_modification *modification, int ends,
+                         struct eo_row_data **row, struct eo_error *error);
 
 /* Takes out the rows from first on. */
 void eo_rows_drop(struct eo_rows *rows, int first);

@@ -44,8 +44,11 @@ static enum eo_code open_store(struct eo_service *s, struct eo_error *error)
 
 static enum eo_code make_lanes(struct eo_service *s, struct eo_error *error)
 {
-  struct eo_lane_settings settings = {.threads = s->settings.analysis_threads, .most = s->settings.most_waiting, .function = eo_service_answer_analysis,
-                                      .release = eo_service_release_task, .context = s};
+  struct eo_lane_settings settings = {.threads = s->settings.analysis_threads,
+                                      .most = s->settings.most_waiting,
+                                      .function = eo_service_answer_analysis,
+                                      .release = eo_service_release_task,
+                                      .context = s};
   enum eo_code code = eo_lane_new(&s->analyses, &settings, error);
   settings.threads = 1;
   settings.overtakes_running = true;
@@ -76,7 +79,8 @@ static enum eo_code make_workers(struct eo_service *s, struct eo_error *error)
 static void make_mutexes(struct eo_service *s)
 {
   pthread_condattr_t attributes;
-  pthread_mutex_t *const mutex[] = {&s->preparing_mutex, &s->publish_mutex, &s->store_mutex, &s->live_mutex, &s->work_mutex, &s->timing_mutex};
+  pthread_mutex_t *const mutex[] = {&s->preparing_mutex, &s->publish_mutex, &s->store_mutex,
+                                    &s->live_mutex,      &s->work_mutex,    &s->timing_mutex};
   for (size_t i = 0; i < sizeof mutex / sizeof mutex[0]; i++)
     pthread_mutex_init(mutex[i], NULL);
   pthread_condattr_init(&attributes);
@@ -85,7 +89,8 @@ static void make_mutexes(struct eo_service *s)
   pthread_condattr_destroy(&attributes);
 }
 
-enum eo_code eo_service_new(struct eo_service **result, const struct eo_service_settings *settings, struct eo_error *error)
+enum eo_code eo_service_new(struct eo_service **result, const struct eo_service_settings *settings,
+                            struct eo_error *error)
 {
   struct eo_service *s = calloc(1, sizeof *s);
   if (!s)
@@ -139,7 +144,8 @@ void eo_service_free(struct eo_service *s)
   eo_pairs_free(s->pairs);
   eo_events_free(s->events);
   eo_store_close(s->store);
-  pthread_mutex_t *const mutex[] = {&s->preparing_mutex, &s->publish_mutex, &s->store_mutex, &s->live_mutex, &s->work_mutex, &s->timing_mutex};
+  pthread_mutex_t *const mutex[] = {&s->preparing_mutex, &s->publish_mutex, &s->store_mutex,
+                                    &s->live_mutex,      &s->work_mutex,    &s->timing_mutex};
   for (size_t i = 0; i < sizeof mutex / sizeof mutex[0]; i++)
     pthread_mutex_destroy(mutex[i]);
   pthread_cond_destroy(&s->work);
@@ -164,7 +170,8 @@ struct encoding {
   json_t *job;
 };
 
-/* From before a job's row is read until it is encoded: a job that ends in between would show its end with what was noted of it a while before. */
+/* From before a job's row is read until it is encoded: a job that ends in between would show its end with what was
+   noted of it a while before. */
 static void lock_jobs(struct eo_service *s)
 {
   pthread_mutex_lock(&s->store_mutex);
@@ -251,8 +258,8 @@ static enum eo_code add_to_snapshot(void *context, const struct eo_stored_job *j
   return EO_OK;
 }
 
-enum eo_code eo_service_subscribe(struct eo_service *s, int64_t job, int64_t after, eo_service_listener *listener, void *context, int64_t *subscription,
-                                  struct eo_error *error)
+enum eo_code eo_service_subscribe(struct eo_service *s, int64_t job, int64_t after, eo_service_listener *listener,
+                                  void *context, int64_t *subscription, struct eo_error *error)
 {
   struct snapshot snapshot = {.encoding = {.service = s}};
   const struct eo_queue_filter filter = {.state = -1, .kind = -1, .active = true, .limit = EO_EVENTS_KEPT};
@@ -266,7 +273,8 @@ enum eo_code eo_service_subscribe(struct eo_service *s, int64_t job, int64_t aft
   } else if (after <= 0)
     after = newest;
   if (!code)
-    code = eo_events_subscribe(s->events, job, after, snapshot.event, snapshot.count, listener, context, subscription, error);
+    code = eo_events_subscribe(s->events, job, after, snapshot.event, snapshot.count, listener, context, subscription,
+                               error);
   for (int i = 0; i < snapshot.count; i++)
     free((char *)snapshot.event[i].text);
   free(snapshot.event);
@@ -280,7 +288,8 @@ void eo_service_unsubscribe(struct eo_service *s, int64_t subscription)
 
 /* ---- reading jobs ---- */
 
-static enum eo_code find_job(struct eo_service *s, int64_t id, bool with_design, enum eo_job_outcome *outcome, json_t **job, struct eo_error *error)
+static enum eo_code find_job(struct eo_service *s, int64_t id, bool with_design, enum eo_job_outcome *outcome,
+                             json_t **job, struct eo_error *error)
 {
   struct encoding e = {.service = s, .with_design = with_design};
   lock_jobs(s);
@@ -290,7 +299,8 @@ static enum eo_code find_job(struct eo_service *s, int64_t id, bool with_design,
   return code;
 }
 
-enum eo_code eo_service_job(struct eo_service *s, int64_t id, bool with_design, enum eo_job_outcome *outcome, json_t **job, struct eo_error *error)
+enum eo_code eo_service_job(struct eo_service *s, int64_t id, bool with_design, enum eo_job_outcome *outcome,
+                            json_t **job, struct eo_error *error)
 {
   return find_job(s, id, with_design, outcome, job, error);
 }
@@ -315,7 +325,8 @@ static enum eo_code add_to_page(void *context, const struct eo_stored_job *job, 
   return code || !json_array_append_new(page->items, page->encoding.job) ? code : eo_error_memory(error);
 }
 
-enum eo_code eo_service_jobs(struct eo_service *s, int state, int kind, int64_t before, int limit, json_t **result, struct eo_error *error)
+enum eo_code eo_service_jobs(struct eo_service *s, int state, int kind, int64_t before, int limit, json_t **result,
+                             struct eo_error *error)
 {
   struct page page = {.encoding = {.service = s}, .items = json_array(), .limit = limit};
   const struct eo_queue_filter filter = {.state = state, .kind = kind, .before = before, .limit = limit + 1};
@@ -324,7 +335,8 @@ enum eo_code eo_service_jobs(struct eo_service *s, int state, int kind, int64_t 
   enum eo_code code = page.items ? eo_queue_list(s->store, &filter, add_to_page, &page, error) : eo_error_memory(error);
   unlock_jobs(s);
   snprintf(cursor, sizeof cursor, "%lld", (long long)page.last);
-  json_t *document = code ? NULL : json_pack("{s:O,s:o}", "items", page.items, "next", page.more ? json_string(cursor) : json_null());
+  json_t *document =
+      code ? NULL : json_pack("{s:O,s:o}", "items", page.items, "next", page.more ? json_string(cursor) : json_null());
   if (!code && !document)
     code = eo_error_memory(error);
   json_decref(page.items);
@@ -346,7 +358,8 @@ static enum eo_code read_result(void *context, const struct eo_stored_job *job, 
   return reading->text->failed ? eo_error_memory(error) : EO_OK;
 }
 
-enum eo_code eo_service_result(struct eo_service *s, int64_t id, enum eo_job_outcome *outcome, struct eo_text *text, struct eo_error *error)
+enum eo_code eo_service_result(struct eo_service *s, int64_t id, enum eo_job_outcome *outcome, struct eo_text *text,
+                               struct eo_error *error)
 {
   struct reading reading = {.text = text};
   pthread_mutex_lock(&s->store_mutex);
@@ -357,7 +370,8 @@ enum eo_code eo_service_result(struct eo_service *s, int64_t id, enum eo_job_out
   return code;
 }
 
-enum eo_code eo_service_generations(struct eo_service *s, int64_t id, enum eo_job_outcome *outcome, json_t **columns, struct eo_error *error)
+enum eo_code eo_service_generations(struct eo_service *s, int64_t id, enum eo_job_outcome *outcome, json_t **columns,
+                                    struct eo_error *error)
 {
   struct eo_text text = {0};
   const struct eo_job_live *live = &s->worker[EO_JOB_OPTIMIZE].live;
@@ -416,16 +430,21 @@ static void hash_request(const struct eo_job_order *order, const struct eo_text 
   eo_hash_finish(&h, hash);
 }
 
-static enum eo_code add_job(struct eo_service *s, const struct eo_job_order *order, const struct eo_text *design, int64_t *id,
-                            enum eo_job_outcome *outcome, struct eo_error *error)
+static enum eo_code add_job(struct eo_service *s, const struct eo_job_order *order, const struct eo_text *design,
+                            int64_t *id, enum eo_job_outcome *outcome, struct eo_error *error)
 {
   char pair[EO_HASH_LENGTH + 1], request[EO_HASH_LENGTH + 1];
   bool keyed = order->key && *order->key, optimize = order->kind == EO_JOB_OPTIMIZE;
   eo_pairs_key(order->design, pair);
   hash_request(order, design, request);
-  const struct eo_queue_entry entry = {.kind = order->kind, .design = design->data, .name = order->design->name,
-                                       .algorithm = optimize ? order->design->optimization.algorithm : "", .pair = optimize ? NULL : pair,
-                                       .key = keyed ? order->key : NULL, .request = keyed ? request : NULL, .fresh = order->fresh,
+  const struct eo_queue_entry entry = {.kind = order->kind,
+                                       .design = design->data,
+                                       .name = order->design->name,
+                                       .algorithm = optimize ? order->design->optimization.algorithm : "",
+                                       .pair = optimize ? NULL : pair,
+                                       .key = keyed ? order->key : NULL,
+                                       .request = keyed ? request : NULL,
+                                       .fresh = order->fresh,
                                        .priority = order->priority};
   pthread_mutex_lock(&s->store_mutex);
   enum eo_code code = eo_queue_add(s->store, &entry, s->settings.most_queued, id, outcome, error);
@@ -434,13 +453,15 @@ static enum eo_code add_job(struct eo_service *s, const struct eo_job_order *ord
 }
 
 /* Queues; nobody is told yet, nor begins. */
-static enum eo_code queue(struct eo_service *s, const struct eo_job_order *order, int64_t *id, enum eo_job_outcome *outcome, struct eo_error *error)
+static enum eo_code queue(struct eo_service *s, const struct eo_job_order *order, int64_t *id,
+                          enum eo_job_outcome *outcome, struct eo_error *error)
 {
   struct eo_text design = {0};
   json_t *document = eo_design_encode(order->design);
   if (document)
     eo_json_write(&design, document, EO_JSON_COMPACT);
-  enum eo_code code = document && !design.failed ? add_job(s, order, &design, id, outcome, error) : eo_error_memory(error);
+  enum eo_code code = document && !design.failed ? add_job(s, order, &design, id, outcome, error)
+                                                 : eo_error_memory(error);
   json_decref(document);
   eo_text_done(&design);
   if (!code && *outcome == EO_JOB_OUTCOME_FULL)
@@ -448,7 +469,8 @@ static enum eo_code queue(struct eo_service *s, const struct eo_job_order *order
   return code;
 }
 
-enum eo_code eo_service_submit(struct eo_service *s, const struct eo_job_order *order, enum eo_job_outcome *outcome, json_t **job, struct eo_error *error)
+enum eo_code eo_service_submit(struct eo_service *s, const struct eo_job_order *order, enum eo_job_outcome *outcome,
+                               json_t **job, struct eo_error *error)
 {
   int64_t id;
   *job = NULL;
@@ -460,7 +482,8 @@ enum eo_code eo_service_submit(struct eo_service *s, const struct eo_job_order *
   return show_and_call(s, id, job, error);
 }
 
-enum eo_code eo_service_cancel(struct eo_service *s, int64_t id, enum eo_job_outcome *outcome, json_t **job, struct eo_error *error)
+enum eo_code eo_service_cancel(struct eo_service *s, int64_t id, enum eo_job_outcome *outcome, json_t **job,
+                               struct eo_error *error)
 {
   *job = NULL;
   pthread_mutex_lock(&s->store_mutex);
@@ -476,7 +499,8 @@ enum eo_code eo_service_cancel(struct eo_service *s, int64_t id, enum eo_job_out
   return show(s, id, job, error);
 }
 
-enum eo_code eo_service_retry(struct eo_service *s, int64_t id, enum eo_job_outcome *outcome, json_t **job, struct eo_error *error)
+enum eo_code eo_service_retry(struct eo_service *s, int64_t id, enum eo_job_outcome *outcome, json_t **job,
+                              struct eo_error *error)
 {
   *job = NULL;
   if (is_closed(s, outcome))
@@ -487,7 +511,8 @@ enum eo_code eo_service_retry(struct eo_service *s, int64_t id, enum eo_job_outc
   return code || *outcome ? code : show_and_call(s, id, job, error);
 }
 
-enum eo_code eo_service_clone(struct eo_service *s, int64_t id, const int *priority, enum eo_job_outcome *outcome, json_t **job, struct eo_error *error)
+enum eo_code eo_service_clone(struct eo_service *s, int64_t id, const int *priority, enum eo_job_outcome *outcome,
+                              json_t **job, struct eo_error *error)
 {
   int64_t clone;
   *job = NULL;

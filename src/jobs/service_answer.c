@@ -20,8 +20,8 @@ struct asked {
   void *context;
   int want;
   unsigned left_out;
-  struct eo_sweep_axes axes;     /* of a sweep; owned */
-  struct eo_work work;           /* of other work; its data owned */
+  struct eo_sweep_axes axes; /* of a sweep; owned */
+  struct eo_work work;       /* of other work; its data owned */
   struct eo_service *service;
 };
 
@@ -66,14 +66,17 @@ static struct asked *copy_question(struct eo_service *s, const struct eo_questio
 }
 
 /* The job that prepares the pair: a new one, or the one that is at it. *job 0: admission says why there is none. */
-static enum eo_code ask_for_pair(struct eo_service *s, const struct eo_design *design, enum eo_admission *admission, int64_t *job, struct eo_error *error)
+static enum eo_code ask_for_pair(struct eo_service *s, const struct eo_design *design, enum eo_admission *admission,
+                                 int64_t *job, struct eo_error *error)
 {
   const struct eo_job_order order = {.kind = EO_JOB_PREPARE, .design = design, .priority = 10};
   enum eo_job_outcome outcome;
   json_t *document = NULL;
   enum eo_code code = eo_service_submit(s, &order, &outcome, &document, error);
   *job = json_integer_value(json_object_get(document, "id"));
-  *admission = outcome == EO_JOB_OUTCOME_CLOSED ? EO_ADMISSION_CLOSED : outcome == EO_JOB_OUTCOME_FULL ? EO_ADMISSION_FULL : EO_ADMISSION_PREPARING;
+  *admission = outcome == EO_JOB_OUTCOME_CLOSED ? EO_ADMISSION_CLOSED
+               : outcome == EO_JOB_OUTCOME_FULL ? EO_ADMISSION_FULL
+                                                : EO_ADMISSION_PREPARING;
   json_decref(document);
   return code;
 }
@@ -86,8 +89,8 @@ static bool is_ready(struct eo_service *s, const struct eo_design *design)
 }
 
 /* Puts it into the lane; where the pair is missing, behind its preparation if the question wants to wait. */
-static enum eo_code admit(struct eo_service *s, struct eo_lane *lane, struct asked *asked, double wait, enum eo_admission *admission, int64_t *job,
-                          struct eo_error *error)
+static enum eo_code admit(struct eo_service *s, struct eo_lane *lane, struct asked *asked, double wait,
+                          enum eo_admission *admission, int64_t *job, struct eo_error *error)
 {
   enum eo_code code = EO_OK;
   bool closed = false, taken = false;
@@ -110,8 +113,8 @@ static enum eo_code admit(struct eo_service *s, struct eo_lane *lane, struct ask
   return code;
 }
 
-enum eo_code eo_service_analyze(struct eo_service *s, const struct eo_analysis_question *q, enum eo_admission *admission, int64_t *job,
-                                struct eo_error *error)
+enum eo_code eo_service_analyze(struct eo_service *s, const struct eo_analysis_question *q,
+                                enum eo_admission *admission, int64_t *job, struct eo_error *error)
 {
   struct asked *asked = copy_question(s, &q->common, error);
   if (!asked)
@@ -132,8 +135,8 @@ static enum eo_code copy_axis(const double *from, int count, double **to, struct
   return EO_OK;
 }
 
-enum eo_code eo_service_sweep(struct eo_service *s, const struct eo_question *q, const struct eo_sweep_axes *axes, enum eo_admission *admission,
-                              int64_t *job, struct eo_error *error)
+enum eo_code eo_service_sweep(struct eo_service *s, const struct eo_question *q, const struct eo_sweep_axes *axes,
+                              enum eo_admission *admission, int64_t *job, struct eo_error *error)
 {
   struct asked *asked = copy_question(s, q, error);
   if (!asked)
@@ -149,8 +152,8 @@ enum eo_code eo_service_sweep(struct eo_service *s, const struct eo_question *q,
   return code;
 }
 
-enum eo_code eo_service_compute(struct eo_service *s, const struct eo_question *q, const struct eo_work *work, enum eo_admission *admission,
-                                int64_t *job, struct eo_error *error)
+enum eo_code eo_service_compute(struct eo_service *s, const struct eo_question *q, const struct eo_work *work,
+                                enum eo_admission *admission, int64_t *job, struct eo_error *error)
 {
   struct asked *asked = copy_question(s, q, error);
   if (!asked) {
@@ -169,7 +172,8 @@ bool eo_service_is_prepared(struct eo_service *s, const struct eo_design *design
 /* ---- answering ---- */
 
 /* What a fate other than running means; false: it runs. */
-static bool answer_at_once(struct eo_service *s, const struct asked *asked, enum eo_lane_fate fate, struct eo_answer *answer)
+static bool answer_at_once(struct eo_service *s, const struct asked *asked, enum eo_lane_fate fate,
+                           struct eo_answer *answer)
 {
   switch (fate) {
   case EO_LANE_OVERTAKEN:
@@ -218,7 +222,8 @@ static void fail(struct eo_answer *answer, enum eo_code code)
   eo_text_done(&answer->text);
 }
 
-static enum eo_code write_analysis(const struct asked *asked, const struct eo_analysis *analysis, struct eo_answer *answer)
+static enum eo_code write_analysis(const struct asked *asked, const struct eo_analysis *analysis,
+                                   struct eo_answer *answer)
 {
   if (asked->format == EO_ANSWER_JSON)
     return eo_result_write(analysis, &asked->design, &asked->warnings, asked->left_out, &answer->text, &answer->error);
@@ -303,7 +308,8 @@ static enum eo_code write_sweep(const struct asked *asked, const struct eo_sweep
 static void sweep(struct eo_service *s, struct asked *asked, struct eo_held_pair *held, struct eo_answer *answer)
 {
   const struct eo_progress progress = {watch_task, asked};
-  const struct eo_sweep_plan plan = {asked->axes.torques, asked->axes.speeds, asked->axes.torque, asked->axes.speed, s->settings.threads};
+  const struct eo_sweep_plan plan = {asked->axes.torques, asked->axes.speeds, asked->axes.torque, asked->axes.speed,
+                                     s->settings.threads};
   struct eo_sweep result = {0};
   double start = eo_clock_milliseconds();
   enum eo_code code = eo_sweep_run(&result, eo_held_pair(held), &asked->design, &plan, &progress, &answer->error);
@@ -338,7 +344,8 @@ static void work(struct eo_service *s, struct asked *asked, struct eo_held_pair 
 {
   const struct eo_progress progress = {watch_task, asked};
   double start = eo_clock_milliseconds();
-  enum eo_code code = asked->work.run(asked->work.data, eo_held_pair(held), &asked->design, &progress, &answer->text, &answer->error);
+  enum eo_code code = asked->work.run(asked->work.data, eo_held_pair(held), &asked->design, &progress, &answer->text,
+                                      &answer->error);
   if (!code && answer->text.failed)
     code = eo_error_memory(&answer->error);
   answer->computed_ms = eo_clock_milliseconds() - start;
@@ -365,12 +372,17 @@ void eo_service_answer_work(void *context, struct eo_lane_task *task, enum eo_la
 
 enum eo_code eo_service_status(struct eo_service *s, struct eo_service_status *status, struct eo_error *error)
 {
-  *status = (struct eo_service_status){.analyses_waiting = eo_lane_waiting(s->analyses), .sweeps_waiting = eo_lane_waiting(s->sweeps),
-                                       .pairs = eo_pairs_count(s->pairs), .subscribers = eo_events_subscribers(s->events),
-                                       .analyses = atomic_load(&s->analyses_done), .overtaken = atomic_load(&s->overtaken),
-                                       .sweeps = atomic_load(&s->sweeps_done), .refused = atomic_load(&s->refused),
+  *status = (struct eo_service_status){.analyses_waiting = eo_lane_waiting(s->analyses),
+                                       .sweeps_waiting = eo_lane_waiting(s->sweeps),
+                                       .pairs = eo_pairs_count(s->pairs),
+                                       .subscribers = eo_events_subscribers(s->events),
+                                       .analyses = atomic_load(&s->analyses_done),
+                                       .overtaken = atomic_load(&s->overtaken),
+                                       .sweeps = atomic_load(&s->sweeps_done),
+                                       .refused = atomic_load(&s->refused),
                                        .true_evaluations = atomic_load(&s->true_evaluations),
-                                       .reused_evaluations = atomic_load(&s->reused_evaluations), .events = eo_events_published(s->events)};
+                                       .reused_evaluations = atomic_load(&s->reused_evaluations),
+                                       .events = eo_events_published(s->events)};
   pthread_mutex_lock(&s->timing_mutex);
   status->analysis_ms_total = s->total_ms;
   status->analysis_ms_most = s->most_ms;

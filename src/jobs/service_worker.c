@@ -95,8 +95,8 @@ static int follow_study(void *context, const struct eo_study_report *report)
 struct task {
   int64_t id;
   bool fresh, stop;
-  struct eo_text text;        /* of the design */
-  struct eo_design *design;   /* owned */
+  struct eo_text text;      /* of the design */
+  struct eo_design *design; /* owned */
   struct eo_geometry geometry;
   struct eo_held_pair *held;
   struct eo_warnings warnings;
@@ -129,8 +129,14 @@ static enum eo_code read_design(struct task *task, struct eo_error *error)
 
 static enum eo_code optimize(struct eo_service_worker *w, struct task *task, bool *stopped, struct eo_error *error)
 {
-  const struct eo_study_plan plan = {.design = task->design, .pair = eo_held_pair(task->held), .store = w->store, .threads = w->service->settings.threads,
-                                     .job = task->id, .fresh = task->fresh, .watch = follow_study, .context = w};
+  const struct eo_study_plan plan = {.design = task->design,
+                                     .pair = eo_held_pair(task->held),
+                                     .store = w->store,
+                                     .threads = w->service->settings.threads,
+                                     .job = task->id,
+                                     .fresh = task->fresh,
+                                     .watch = follow_study,
+                                     .context = w};
   struct eo_study_result result;
   json_t *document = NULL;
   enum eo_code code = eo_study_run(&plan, &result, error);

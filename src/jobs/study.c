@@ -20,7 +20,9 @@ static double budget_fraction(const struct study *s, int extra)
   int generations;
   eo_optimizer_generations(s->optimizer, &generations);
   share = (eo_optimizer_counters(s->optimizer).true_evaluations + extra) / budget;
-  most = s->settings.algorithm == EO_GA || s->settings.algorithm == EO_FPGA ? (double)generations / s->settings.generations : 0;
+  most = s->settings.algorithm == EO_GA || s->settings.algorithm == EO_FPGA
+             ? (double)generations / s->settings.generations
+             : 0;
   return fmin(fmax(share, most), 1);
 }
 
@@ -95,7 +97,8 @@ static enum eo_code lay_out(struct study *s, struct eo_error *error)
 static enum eo_code compute(struct study *s, struct eo_error *error)
 {
   const struct eo_progress progress = {.report = report_within, .context = s};
-  const struct eo_parallel parallel = {.threads = s->result->threads, .work = work, .context = s, .progress = &progress, .what = "", .last = 1};
+  const struct eo_parallel parallel = {
+      .threads = s->result->threads, .work = work, .context = s, .progress = &progress, .what = "", .last = 1};
   if (!s->missing_count)
     return EO_OK;
   if (!(s->first_computed > 0)) {
@@ -111,9 +114,14 @@ static enum eo_code compute(struct study *s, struct eo_error *error)
 static enum eo_code log_candidate(struct study *s, int i, bool known, struct eo_error *error)
 {
   const struct eo_row_data *row = eo_rows_at(&s->row, s->told + i);
-  struct eo_stored_candidate candidate = {.job = s->job.id, .evaluation = row->point.evaluation, .ordinal = s->told - s->result->imported + i,
-                                          .generation = s->batch.candidates[i].generation, .individual = s->batch.candidates[i].individual,
-                                          .reused = known, .x = s->batch.candidates[i].x, .size = s->result->space.count};
+  struct eo_stored_candidate candidate = {.job = s->job.id,
+                                          .evaluation = row->point.evaluation,
+                                          .ordinal = s->told - s->result->imported + i,
+                                          .generation = s->batch.candidates[i].generation,
+                                          .individual = s->batch.candidates[i].individual,
+                                          .reused = known,
+                                          .x = s->batch.candidates[i].x,
+                                          .size = s->result->space.count};
   enum eo_code code = eo_store_log_candidate(s->plan->store, &candidate, error);
   s->result->reused += !code && candidate.reused;
   return code;
@@ -124,8 +132,13 @@ static enum eo_code log_predictions(struct study *s, struct eo_error *error)
   enum eo_code code = EO_OK;
   for (int i = 0; i < s->batch.predictions_count && !code; i++) {
     const struct eo_predicted *p = &s->batch.predictions[i];
-    const struct eo_stored_prediction prediction = {.job = s->job.id, .generation = p->generation, .individual = p->individual, .fitness = p->fitness,
-                                                    .credibility = p->credibility, .x = p->x, .size = s->result->space.count};
+    const struct eo_stored_prediction prediction = {.job = s->job.id,
+                                                    .generation = p->generation,
+                                                    .individual = p->individual,
+                                                    .fitness = p->fitness,
+                                                    .credibility = p->credibility,
+                                                    .x = p->x,
+                                                    .size = s->result->space.count};
     code = eo_store_log_prediction(s->plan->store, &prediction, error);
   }
   return code;
@@ -178,7 +191,8 @@ static enum eo_code save_batch(struct study *s, bool whole, struct eo_error *err
   return code;
 }
 
-static enum eo_code copy_point(const struct study *s, const struct eo_study_point *from, struct eo_study_point *to, struct eo_error *error)
+static enum eo_code copy_point(const struct study *s, const struct eo_study_point *from, struct eo_study_point *to,
+                               struct eo_error *error)
 {
   struct eo_objective_case *raw = to->raw ? to->raw : malloc(sizeof *raw * (size_t)s->row.values);
   if (!raw)
@@ -251,7 +265,8 @@ static enum eo_code collect_generations(struct study *s, struct eo_error *error)
     return eo_error_memory(error);
   }
   for (int i = 0; i < r->generations; i++)
-    r->generation[i] = (struct eo_study_generation){g[i].true_count, g[i].predicted_count, g[i].reused_count, g[i].history_rows, g[i].epoch, g[i].best_value, 0};
+    r->generation[i] = (struct eo_study_generation){
+        g[i].true_count, g[i].predicted_count, g[i].reused_count, g[i].history_rows, g[i].epoch, g[i].best_value, 0};
   for (int i = r->imported; i < s->told; i++) {
     const struct eo_row row = eo_optimizer_row(s->optimizer, i);
     if (row.generation < r->generations && !row.failed) {
@@ -297,7 +312,9 @@ static enum eo_code finish(struct study *s, bool cancelled, struct eo_error *err
   r->true_evaluations = counters.true_evaluations;
   r->predicted = counters.predicted;
   r->repeated = counters.reused;
-  r->stopped = cancelled ? EO_STOP_CANCELLED : counters.true_evaluations >= eo_optimizer_budget(&s->settings) ? EO_STOP_BUDGET : EO_STOP_CONVERGED;
+  r->stopped = cancelled                                                        ? EO_STOP_CANCELLED
+               : counters.true_evaluations >= eo_optimizer_budget(&s->settings) ? EO_STOP_BUDGET
+                                                                                : EO_STOP_CONVERGED;
   if (!cancelled && (s->settings.algorithm == EO_GA || s->settings.algorithm == EO_FPGA))
     r->stopped = EO_STOP_BUDGET; /* its generations are its budget */
   enum eo_code code = collect_generations(s, error);

@@ -49,8 +49,12 @@ static enum eo_code new_job(struct study *s, struct eo_error *error)
 static enum eo_code find_job(struct study *s, struct eo_error *error)
 {
   struct eo_store *store = s->plan->store;
-  const struct eo_stored_problem problem = {.hash = s->hash, .spec = s->problem.data, .name = s->plan->design->name, .evaluator = EO_EVALUATOR_VERSION,
-                                            .scenarios = s->result->scenarios, .cases = s->result->cases};
+  const struct eo_stored_problem problem = {.hash = s->hash,
+                                            .spec = s->problem.data,
+                                            .name = s->plan->design->name,
+                                            .evaluator = EO_EVALUATOR_VERSION,
+                                            .scenarios = s->result->scenarios,
+                                            .cases = s->result->cases};
   enum eo_code code = eo_store_begin(store, error);
   if (!code)
     code = eo_store_find_problem(store, &problem, &s->job.problem, error);
@@ -100,15 +104,18 @@ static enum eo_code find_unmodified(struct study *s, struct eo_error *error)
     row->point.raw = NULL;
     eo_study_weigh(s, &s->result->unmodified);
     if (!s->result->unmodified.there)
-      code = eo_error_set(error, EO_ERROR_INPUT, "/load_cases", "The unmodified pair, to which the objectives relate, has no objective: %s",
+      code = eo_error_set(error, EO_ERROR_INPUT, "/load_cases",
+                          "The unmodified pair, to which the objectives relate, has no objective: %s",
                           row->reason[0] ? row->reason : "all of its values are zero.");
   }
   eo_rows_done(&rows);
   return code;
 }
 
-/* One row of other jobs, if this study can ask for it. x: bit for bit as it was asked for in the same space, so that it is found again. */
-static enum eo_code import(void *context, const struct eo_stored_evaluation *e, const double *x, int size, struct eo_error *error)
+/* One row of other jobs, if this study can ask for it. x: bit for bit as it was asked for in the same space, so that it
+   is found again. */
+static enum eo_code import(void *context, const struct eo_stored_evaluation *e, const double *x, int size,
+                           struct eo_error *error)
 {
   struct study *s = context;
   struct eo_row_data *row;
@@ -157,7 +164,8 @@ enum eo_code eo_study_begin(struct study *s, struct eo_error *error)
   if (!code)
     code = find_unmodified(s, error);
   if (!code && !s->plan->fresh && s->job.import_upto > 0)
-    code = eo_store_each_evaluation(s->plan->store, s->job.problem, s->job.import_upto, s->space_hash, r->scenarios, r->cases, import, s, error);
+    code = eo_store_each_evaluation(s->plan->store, s->job.problem, s->job.import_upto, s->space_hash, r->scenarios,
+                                    r->cases, import, s, error);
   r->imported = s->row.count;
   return code;
 }

@@ -8,14 +8,16 @@
 #include "evaluation/analysis.h"
 #include "store/jobs.h"
 
-bool eo_study_best_design(const struct eo_study_plan *plan, const struct eo_study_result *result, struct eo_design *best)
+bool eo_study_best_design(const struct eo_study_plan *plan, const struct eo_study_result *result,
+                          struct eo_design *best)
 {
   *best = *plan->design;
   best->modification = result->best.there ? result->best.modification : result->unmodified.modification;
   return result->best.there;
 }
 
-static enum eo_code analyse(const struct eo_study_plan *plan, const struct eo_design *design, json_t **document, struct eo_error *error)
+static enum eo_code analyse(const struct eo_study_plan *plan, const struct eo_design *design, json_t **document,
+                            struct eo_error *error)
 {
   struct eo_analysis *analysis = NULL;
   enum eo_code code = eo_analysis_new(&analysis, plan->pair, error);
@@ -36,8 +38,8 @@ static enum eo_code keep(struct eo_store *store, int64_t job, const json_t *docu
   return code;
 }
 
-enum eo_code eo_study_document(const struct eo_study_plan *plan, const struct eo_study_result *result, const struct eo_warnings *warnings,
-                               json_t **document, struct eo_error *error)
+enum eo_code eo_study_document(const struct eo_study_plan *plan, const struct eo_study_result *result,
+                               const struct eo_warnings *warnings, json_t **document, struct eo_error *error)
 {
   json_t *analysis = NULL;
   struct eo_design *best = malloc(sizeof *best);

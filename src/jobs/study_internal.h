@@ -23,10 +23,10 @@ struct study {
   char hash[EO_HASH_LENGTH + 1], study_hash[EO_HASH_LENGTH + 1], space_hash[EO_HASH_LENGTH + 1];
   struct eo_optimizer_settings settings;
   struct eo_optimizer *optimizer;
-  struct eo_design *scratch;      /* owned */
-  struct eo_rows row;             /* true rows, in the optimizer's order; the pending batch behind them */
-  int told;                       /* rows the optimizer has */
-  int *missing;                   /* [missing_capacity] rows of the pending batch to compute; owned */
+  struct eo_design *scratch; /* owned */
+  struct eo_rows row;        /* true rows, in the optimizer's order; the pending batch behind them */
+  int told;                  /* rows the optimizer has */
+  int *missing;              /* [missing_capacity] rows of the pending batch to compute; owned */
   int missing_count, missing_capacity;
   struct worker worker[EO_MAX_THREADS];
   struct eo_batch batch;
@@ -37,8 +37,10 @@ struct study {
 /* J, fitness and what is minimised, from raw values: any weighting serves any row. */
 void eo_study_weigh(struct study *s, struct eo_study_point *point);
 
-/* What a modification does to the model is an outcome; only what would befall any other row too is an error. One worker per thread. */
-enum eo_code eo_study_compute_row(struct study *s, struct worker *worker, struct eo_row_data *row, struct eo_error *error);
+/* What a modification does to the model is an outcome; only what would befall any other row too is an error. One worker
+   per thread. */
+enum eo_code eo_study_compute_row(struct study *s, struct worker *worker, struct eo_row_data *row,
+                                  struct eo_error *error);
 
 /* point.evaluation stays 0 when the history does not have the row. */
 enum eo_code eo_study_look_up(struct study *s, struct eo_row_data *row, struct eo_error *error);

@@ -21,7 +21,9 @@ void eo_study_weigh(struct study *s, struct eo_study_point *point)
   eo_evaluator_combine(s->scratch, &s->plan->pair->geometry, point->raw, s->result->unmodified.raw, &point->value);
   bool normalised = design->objective.normalise == EO_NORMALISE_UNMODIFIED;
   double scale = normalised || !s->result->unmodified.there ? 1 : s->result->unmodified.value.objective;
-  point->rank = point->value.sums.failed ? NAN : point->value.objective + design->objective.penalty * point->value.violation * scale;
+  point->rank = point->value.sums.failed
+                    ? NAN
+                    : point->value.objective + design->objective.penalty * point->value.violation * scale;
   point->there = isfinite(point->rank);
 }
 
@@ -42,8 +44,9 @@ static void judge(struct eo_row_data *row, int scenarios, int cases)
     if (!c->failed && isfinite(c->peak_to_peak) && isfinite(c->impact) && isfinite(c->rms))
       continue;
     row->outcome = EO_EVALUATION_NOT_CONVERGED;
-    snprintf(row->reason, sizeof row->reason, "%s did not converge at load case %d%s.", isfinite(c->rms) ? "Contact" : "Vibration or contact",
-             i % cases + 1, scenarios > 1 ? " of a scenario" : "");
+    snprintf(row->reason, sizeof row->reason, "%s did not converge at load case %d%s.",
+             isfinite(c->rms) ? "Contact" : "Vibration or contact", i % cases + 1,
+             scenarios > 1 ? " of a scenario" : "");
   }
 }
 
@@ -81,8 +84,13 @@ enum eo_code eo_study_compute_row(struct study *s, struct worker *w, struct eo_r
 
 static struct eo_stored_evaluation stored(const struct study *s, struct eo_row_data *row)
 {
-  struct eo_stored_evaluation e = {.id = row->point.evaluation, .modification = row->text.data, .outcome = row->outcome, .cost = row->cost,
-                                   .scenarios = s->result->scenarios, .cases = s->result->cases, .raw = row->point.raw};
+  struct eo_stored_evaluation e = {.id = row->point.evaluation,
+                                   .modification = row->text.data,
+                                   .outcome = row->outcome,
+                                   .cost = row->cost,
+                                   .scenarios = s->result->scenarios,
+                                   .cases = s->result->cases,
+                                   .raw = row->point.raw};
   snprintf(e.reason, sizeof e.reason, "%s", row->reason);
   return e;
 }
@@ -118,5 +126,8 @@ struct eo_outcome eo_study_outcome(const struct study *s, const struct eo_row_da
   const struct eo_objective_sums *own = &row->point.value.sums, *before = &s->result->unmodified.value.sums;
   for (int i = 0; i < 3; i++)
     objectives[i] = before->f[i] > 0 ? own->f[i] / before->f[i] : own->f[i];
-  return (struct eo_outcome){.failed = !row->point.there, .value = row->point.rank, .violation = row->point.value.violation, .objectives = objectives};
+  return (struct eo_outcome){.failed = !row->point.there,
+                             .value = row->point.rank,
+                             .violation = row->point.value.violation,
+                             .objectives = objectives};
 }

@@ -22,27 +22,34 @@ struct maker {
   const struct eo_tracks *tracks;
   struct eo_findings *findings;
   const struct eo_progress *progress;
-  struct eo_scan *scan;       /* owned */
+  struct eo_scan *scan; /* owned */
   struct eo_sampler sampler;
   struct eo_sample sample[ROOM];
-  int held;                   /* samples not yet passed on */
-  struct eo_sample last;      /* good one before them */
+  int held;              /* samples not yet passed on */
+  struct eo_sample last; /* good one before them */
   bool begun;
-  struct usual usual;         /* of the last block that is long enough to tell */
+  struct usual usual; /* of the last block that is long enough to tell */
   bool known;
-  double delay;               /* s taken out of or put into time so far */
-  double quantum[2];          /* rad */
+  double delay;                 /* s taken out of or put into time so far */
+  double quantum[2];            /* rad */
   double *rate[2], *proportion; /* [blocks] owned: of each block */
   int blocks, block_room;
   double scratch[ROOM];
   int losses;
-  struct loss { int channel; int64_t row; double jump; } loss[MOST_LOSSES];
+  struct loss {
+    int channel;
+    int64_t row;
+    double jump;
+  } loss[MOST_LOSSES];
   int64_t gaps, gap_row, spikes, spike_row;
-  double first[2], end[2];    /* rad */
+  double first[2], end[2]; /* rad */
   bool wrapped[2];
 };
 
-static int64_t line_of(const struct maker *m, int64_t row) { return row < 0 ? 0 : eo_recording_line(m->recording, row); }
+static int64_t line_of(const struct maker *m, int64_t row)
+{
+  return row < 0 ? 0 : eo_recording_line(m->recording, row);
+}
 
 static struct eo_finding *at_row(const struct maker *m, struct eo_finding *finding, int64_t row)
 {
@@ -62,20 +69,28 @@ static void judge_time(struct maker *m)
   if (s->backward + s->standing == 0)
     return;
   if (wrong == 0) {
-    at_row(m, eo_findings_add(m->findings, EO_FINDING_TIME, EO_SEVERITY_REPAIRED, -1, (double)s->duplicate,
-                              "%lld rows repeat the row before them, the first is row %lld; they were left out.", (long long)s->duplicate,
-                              (long long)s->time_row + 1), s->time_row);
+    at_row(m,
+           eo_findings_add(m->findings, EO_FINDING_TIME, EO_SEVERITY_REPAIRED, -1, (double)s->duplicate,
+                           "%lld rows repeat the row before them, the first is row %lld; they were left out.",
+                           (long long)s->duplicate, (long long)s->time_row + 1),
+           s->time_row);
   } else if ((double)s->steady >= 0.9 * (double)wrong) {
     if (!s->backward && s->used > 1)
       m->sampler.interval = (s->time_last - s->time_first) / (double)(s->used - 1);
     m->sampler.count_rows = true;
-    at_row(m, eo_findings_add(m->findings, EO_FINDING_TIME, EO_SEVERITY_REPAIRED, -1, (double)wrong,
-                              "Time stands still or runs backwards in %lld rows (first in row %lld) while the angles go on evenly; it was counted from the rows, "
-                              "%.6g ms each.", (long long)wrong, (long long)s->time_row + 1, 1e3 * m->sampler.interval), s->time_row);
+    at_row(m,
+           eo_findings_add(m->findings, EO_FINDING_TIME, EO_SEVERITY_REPAIRED, -1, (double)wrong,
+                           "Time stands still or runs backwards in %lld rows (first in row %lld) while the angles go "
+                           "on evenly; it was counted from the rows, "
+                           "%.6g ms each.",
+                           (long long)wrong, (long long)s->time_row + 1, 1e3 * m->sampler.interval),
+           s->time_row);
   } else {
-    at_row(m, eo_findings_add(m->findings, EO_FINDING_TIME, EO_SEVERITY_REFUSED, -1, (double)wrong,
-                              "Time does not rise in %lld rows, the first is row %lld, and the angles are no help there.", (long long)wrong,
-                              (long long)s->time_row + 1), s->time_row);
+    at_row(m,
+           eo_findings_add(m->findings, EO_FINDING_TIME, EO_SEVERITY_REFUSED, -1, (double)wrong,
+                           "Time does not rise in %lld rows, the first is row %lld, and the angles are no help there.",
+                           (long long)wrong, (long long)s->time_row + 1),
+           s->time_row);
   }
 }
 
@@ -85,9 +100,12 @@ static void judge_gaps(struct maker *m)
   if (!s->unusable)
     return;
   bool most = s->unusable > s->rows / 2;
-  at_row(m, eo_findings_add(m->findings, EO_FINDING_NAN, most ? EO_SEVERITY_REFUSED : EO_SEVERITY_REPAIRED, -1, (double)s->unusable,
-                            "%lld of %lld rows hold a value that is no number, the first is row %lld; %s.", (long long)s->unusable, (long long)s->rows,
-                            (long long)s->unusable_row + 1, most ? "too many to go on" : "they were left out"), s->unusable_row);
+  at_row(m,
+         eo_findings_add(
+             m->findings, EO_FINDING_NAN, most ? EO_SEVERITY_REFUSED : EO_SEVERITY_REPAIRED, -1, (double)s->unusable,
+             "%lld of %lld rows hold a value that is no number, the first is row %lld; %s.", (long long)s->unusable,
+             (long long)s->rows, (long long)s->unusable_row + 1, most ? "too many to go on" : "they were left out"),
+         s->unusable_row);
 }
 
 /* A channel that stands still altogether or for a part of a turn while the other moves on. */
@@ -98,17 +116,19 @@ static void judge_still(struct maker *m, int channel)
     bool constant = !(c->high > c->low), raw = m->tracks->channel[channel].track == EO_TRACK_SINE_COSINE;
     double advance = (double)c->longest * c->typical * (raw ? 0 : m->sampler.scale[channel]);
     if (constant)
-      eo_findings_add(m->findings, EO_FINDING_CONSTANT, EO_SEVERITY_REFUSED, channel, c->low, "The %s channel is constant: every row holds %.9g.",
-                      member_name[channel], c->low);
+      eo_findings_add(m->findings, EO_FINDING_CONSTANT, EO_SEVERITY_REFUSED, channel, c->low,
+                      "The %s channel is constant: every row holds %.9g.", member_name[channel], c->low);
     else if (advance > 0.5 && (double)c->longest * c->typical > 20 * c->quantum && c->longest > 20)
-      at_row(m, eo_findings_add(m->findings, EO_FINDING_CONSTANT, EO_SEVERITY_REFUSED, channel, (double)c->longest,
-                                "The %s channel stands still for %lld rows from row %lld.", member_name[channel], (long long)c->longest,
-                                (long long)c->longest_row + 1), c->longest_row);
+      at_row(m,
+             eo_findings_add(m->findings, EO_FINDING_CONSTANT, EO_SEVERITY_REFUSED, channel, (double)c->longest,
+                             "The %s channel stands still for %lld rows from row %lld.", member_name[channel],
+                             (long long)c->longest, (long long)c->longest_row + 1),
+             c->longest_row);
     double clipped = raw && !constant ? eo_scan_clipped(c, m->scan->used) : 0;
     if (clipped > 0)
-      eo_findings_add(m->findings, EO_FINDING_SATURATED, clipped > 0.2 ? EO_SEVERITY_REFUSED : EO_SEVERITY_WARNING, channel, clipped,
-                      "The %s of the %s is cut off: %.1f %% of its values are exactly %.6g or %.6g.", k ? "cosine" : "sine", member_name[channel], 100 * clipped,
-                      c->low, c->high);
+      eo_findings_add(m->findings, EO_FINDING_SATURATED, clipped > 0.2 ? EO_SEVERITY_REFUSED : EO_SEVERITY_WARNING,
+                      channel, clipped, "The %s of the %s is cut off: %.1f %% of its values are exactly %.6g or %.6g.",
+                      k ? "cosine" : "sine", member_name[channel], 100 * clipped, c->low, c->high);
   }
 }
 
@@ -119,7 +139,8 @@ static void judge_turns(struct maker *m, int channel)
   double scale = m->tracks->channel[channel].scale, period = eo_scan_period(c), turn = period * scale;
   m->sampler.scale[channel] = scale;
   if (fabs(scale - 1) < 1e-9)
-    eo_findings_add(m->findings, EO_FINDING_UNITS, EO_SEVERITY_NOTE, channel, scale, "The %s angle is read as radians.", member_name[channel]);
+    eo_findings_add(m->findings, EO_FINDING_UNITS, EO_SEVERITY_NOTE, channel, scale, "The %s angle is read as radians.",
+                    member_name[channel]);
   if (isnan(period))
     return;
   double degrees = turn / (2 * M_PI) * (1 / DEGREES), radians = turn / (2 * M_PI) * DEGREES;
@@ -127,15 +148,17 @@ static void judge_turns(struct maker *m, int channel)
   if (unit) {
     m->sampler.scale[channel] *= fabs(degrees - 1) < 0.05 ? 1 / DEGREES : DEGREES;
     eo_findings_add(m->findings, EO_FINDING_UNITS, EO_SEVERITY_REPAIRED, channel, period,
-                    "The %s angle starts again after %.6g: it is in %s, not in the stated unit; read so.", member_name[channel], period, unit);
+                    "The %s angle starts again after %.6g: it is in %s, not in the stated unit; read so.",
+                    member_name[channel], period, unit);
     turn = 2 * M_PI;
   } else if (fabs(turn / (2 * M_PI) - 1) < 0.05) {
     turn = 2 * M_PI;
   }
   m->sampler.period[channel] = turn;
   m->wrapped[channel] = true;
-  eo_findings_add(m->findings, EO_FINDING_WRAPPED, EO_SEVERITY_NOTE, channel, (double)c->jumps, "The %s angle starts again every %.6g, %d times; its turns were counted.",
-                  member_name[channel], turn / m->sampler.scale[channel], c->jumps);
+  eo_findings_add(m->findings, EO_FINDING_WRAPPED, EO_SEVERITY_NOTE, channel, (double)c->jumps,
+                  "The %s angle starts again every %.6g, %d times; its turns were counted.", member_name[channel],
+                  turn / m->sampler.scale[channel], c->jumps);
 }
 
 /* ---- raw tracks ---- */
@@ -149,7 +172,8 @@ static enum eo_code fit_ellipses(struct maker *m, struct eo_angles *a, struct eo
   enum eo_code code = block ? EO_OK : eo_error_memory(error);
   for (int channel = 0; channel < 2; channel++) {
     const struct eo_scan_column *c = m->scan->column[channel];
-    eo_ellipse_start(&sums[channel], (double[]){(c[0].low + c[0].high) / 2, (c[1].low + c[1].high) / 2}, fmax(c[0].high - c[0].low, 1e-300) / 2);
+    eo_ellipse_start(&sums[channel], (double[]){(c[0].low + c[0].high) / 2, (c[1].low + c[1].high) / 2},
+                     fmax(c[0].high - c[0].low, 1e-300) / 2);
   }
   for (int64_t first = 0; first < rows && !code; first += EO_SAMPLER_BLOCK) {
     int count = rows - first < EO_SAMPLER_BLOCK ? (int)(rows - first) : EO_SAMPLER_BLOCK;
@@ -157,14 +181,17 @@ static enum eo_code fit_ellipses(struct maker *m, struct eo_angles *a, struct eo
     for (int i = 0; i < count && !code; i++)
       for (int channel = 0; channel < 2; channel++) {
         const struct eo_track_channel *c = &m->tracks->channel[channel];
-        double sine = block[(size_t)i * (size_t)columns + (size_t)c->column[0]], cosine = block[(size_t)i * (size_t)columns + (size_t)c->column[1]];
+        double sine = block[(size_t)i * (size_t)columns + (size_t)c->column[0]],
+               cosine = block[(size_t)i * (size_t)columns + (size_t)c->column[1]];
         if (c->track == EO_TRACK_SINE_COSINE && isfinite(sine) && isfinite(cosine))
           eo_ellipse_add(&sums[channel], sine, cosine);
       }
   }
   for (int channel = 0; channel < 2 && !code; channel++)
-    if (m->tracks->channel[channel].track == EO_TRACK_SINE_COSINE && !eo_ellipse_fit(&sums[channel], &a->ellipse[channel]))
-      eo_findings_add(m->findings, EO_FINDING_TRACK, EO_SEVERITY_REFUSED, channel, NAN, "The sine and cosine of the %s draw no ellipse.", member_name[channel]);
+    if (m->tracks->channel[channel].track == EO_TRACK_SINE_COSINE &&
+        !eo_ellipse_fit(&sums[channel], &a->ellipse[channel]))
+      eo_findings_add(m->findings, EO_FINDING_TRACK, EO_SEVERITY_REFUSED, channel, NAN,
+                      "The sine and cosine of the %s draw no ellipse.", member_name[channel]);
   free(block);
   return code;
 }
@@ -175,22 +202,24 @@ static void judge_ellipse(struct maker *m, const struct eo_ellipse *e, int chann
   const struct eo_track_channel *c = &m->tracks->channel[channel];
   double ratio = e->amplitude[0] / e->amplitude[1], phase = DEGREES * e->skew;
   eo_findings_add(m->findings, EO_FINDING_TRACK, EO_SEVERITY_NOTE, channel, ratio,
-                  "Offsets (%.2g, %.2g), ratio %.4g and phase %.2f degrees of the %s tracks were corrected.", e->offset[0], e->offset[1], ratio, 90 + phase,
-                  member_name[channel]);
+                  "Offsets (%.2g, %.2g), ratio %.4g and phase %.2f degrees of the %s tracks were corrected.",
+                  e->offset[0], e->offset[1], ratio, 90 + phase, member_name[channel]);
   for (int k = 0; k < 2 && c->unit != EO_TRACK_UNKNOWN; k++) {
     bool volt = c->unit == EO_TRACK_VOLT;
     double size = 2 * e->amplitude[k] * c->factor, low = volt ? 0.6 : 7, high = volt ? 1.2 : 16;
     if (size < low || size > high)
       eo_findings_add(m->findings, EO_FINDING_TRACK, EO_SEVERITY_WARNING, channel, size,
-                      "The %s of the %s has an amplitude of %.3g %s, outside the usual %.3g..%.3g.", k ? "cosine" : "sine", member_name[channel], size,
-                      volt ? "Vpp" : "uApp", low, high);
+                      "The %s of the %s has an amplitude of %.3g %s, outside the usual %.3g..%.3g.",
+                      k ? "cosine" : "sine", member_name[channel], size, volt ? "Vpp" : "uApp", low, high);
   }
   if (ratio < 0.8 || ratio > 1.25)
     eo_findings_add(m->findings, EO_FINDING_TRACK, EO_SEVERITY_WARNING, channel, ratio,
-                    "The sine of the %s is %.3g times its cosine, outside the usual 0.8..1.25; corrected.", member_name[channel], ratio);
+                    "The sine of the %s is %.3g times its cosine, outside the usual 0.8..1.25; corrected.",
+                    member_name[channel], ratio);
   if (fabs(phase) > 10)
     eo_findings_add(m->findings, EO_FINDING_TRACK, EO_SEVERITY_WARNING, channel, 90 + phase,
-                    "The tracks of the %s are %.1f degrees apart, outside the usual 80..100; corrected.", member_name[channel], 90 + phase);
+                    "The tracks of the %s are %.1f degrees apart, outside the usual 80..100; corrected.",
+                    member_name[channel], 90 + phase);
 }
 
 static enum eo_code prepare_tracks(struct maker *m, struct eo_angles *a, struct eo_error *error)
@@ -217,7 +246,10 @@ static enum eo_code prepare_tracks(struct maker *m, struct eo_angles *a, struct 
 
 /* ---- jumps ---- */
 
-static double step_of(const struct eo_sample *from, const struct eo_sample *to, int channel) { return to->angle[channel] - from->angle[channel]; }
+static double step_of(const struct eo_sample *from, const struct eo_sample *to, int channel)
+{
+  return to->angle[channel] - from->angle[channel];
+}
 
 static void learn(struct maker *m, const struct eo_sample *s, int count, struct usual *u)
 {
@@ -241,10 +273,12 @@ static void learn(struct maker *m, const struct eo_sample *s, int count, struct 
 }
 
 /* How far the step between two samples is from the usual one. */
-static bool odd_step(const struct usual *u, const double limit[2], const struct eo_sample *from, const struct eo_sample *to, double excess[2])
+static bool odd_step(const struct usual *u, const double limit[2], const struct eo_sample *from,
+                     const struct eo_sample *to, double excess[2])
 {
   bool odd = false;
-  double time = to->time - from->time, slack = fmax(0, time - (0.5 + (double)(to->row - from->row)) * u->interval); /* of a gap in time */
+  double time = to->time - from->time,
+         slack = fmax(0, time - (0.5 + (double)(to->row - from->row)) * u->interval); /* of a gap in time */
   for (int c = 0; c < 2; c++) {
     excess[c] = step_of(from, to, c) - u->rate[c] * time;
     odd = odd || fabs(excess[c]) > limit[c] + 0.02 * fabs(u->rate[c]) * slack;
@@ -252,8 +286,10 @@ static bool odd_step(const struct usual *u, const double limit[2], const struct 
   return odd;
 }
 
-/* Both channels went on by the same time: rows are missing, and time was written on as if they were not. Else one slipped. */
-static void judge_jump(struct maker *m, struct eo_angles *a, const struct usual *u, const double excess[2], struct eo_sample *s)
+/* Both channels went on by the same time: rows are missing, and time was written on as if they were not. Else one
+   slipped. */
+static void judge_jump(struct maker *m, struct eo_angles *a, const struct usual *u, const double excess[2],
+                       struct eo_sample *s)
 {
   double ratio = u->rate[1] / u->rate[0], rows = excess[0] / (u->rate[0] * u->interval);
   bool both = fabs(excess[1] - ratio * excess[0]) < fmax(u->limit[1], fabs(ratio) * u->limit[0]);
@@ -267,13 +303,17 @@ static void judge_jump(struct maker *m, struct eo_angles *a, const struct usual 
   int channel = fabs(excess[0]) / u->limit[0] > fabs(excess[1]) / u->limit[1] ? 0 : 1;
   if (a->slips++ < 4) {
     rows = excess[channel] / (u->rate[channel] * u->interval);
-    at_row(m, eo_findings_add(m->findings, EO_FINDING_SLIP, EO_SEVERITY_REFUSED, channel, DEGREES * excess[channel],
-                              "The %s channel jumps by %.5g degrees (%.3g rows) at row %lld and the other does not: rows or counts were lost in one channel.",
-                              member_name[channel], DEGREES * excess[channel], rows, (long long)s->row + 1), s->row);
+    at_row(m,
+           eo_findings_add(m->findings, EO_FINDING_SLIP, EO_SEVERITY_REFUSED, channel, DEGREES * excess[channel],
+                           "The %s channel jumps by %.5g degrees (%.3g rows) at row %lld and the other does not: rows "
+                           "or counts were lost in one channel.",
+                           member_name[channel], DEGREES * excess[channel], rows, (long long)s->row + 1),
+           s->row);
   }
 }
 
-static enum eo_code keep(struct maker *m, struct eo_angles *a, struct eo_sample *s, double (*out)[3], int *count, struct eo_error *error)
+static enum eo_code keep(struct maker *m, struct eo_angles *a, struct eo_sample *s, double (*out)[3], int *count,
+                         struct eo_error *error)
 {
   double *row = out[*count];
   if (!m->begun) {
@@ -312,7 +352,8 @@ static bool note_block(struct maker *m, const struct usual *u)
 }
 
 /* A value far off that is followed by good ones; how many samples to leave out, 0 when it is no such thing. */
-static int spike_length(const struct usual *u, const double limit[2], const struct eo_sample *last, const struct eo_sample *s, int left)
+static int spike_length(const struct usual *u, const double limit[2], const struct eo_sample *last,
+                        const struct eo_sample *s, int left)
 {
   double excess[2];
   for (int i = 1; i < AHEAD && i < left; i++)
@@ -322,7 +363,8 @@ static int spike_length(const struct usual *u, const double limit[2], const stru
 }
 
 /* One channel moves on by less than a row and stays there. Where that happens often it is how the encoder counts. */
-static void note_lost_counts(struct maker *m, const struct usual *u, const double excess[2], const struct eo_sample *s, int left)
+static void note_lost_counts(struct maker *m, const struct usual *u, const double excess[2], const struct eo_sample *s,
+                             int left)
 {
   double ratio = u->rate[1] / u->rate[0];
   bool both = fabs(excess[1] - ratio * excess[0]) < fmax(u->fine[1], fabs(ratio) * u->fine[0]);
@@ -334,7 +376,8 @@ static void note_lost_counts(struct maker *m, const struct usual *u, const doubl
   m->losses++;
 }
 
-static enum eo_code pass_on(struct maker *m, struct eo_angles *a, bool final, double (*out)[3], int *written, struct eo_error *error)
+static enum eo_code pass_on(struct maker *m, struct eo_angles *a, bool final, double (*out)[3], int *written,
+                            struct eo_error *error)
 {
   const struct usual *u = &m->usual;
   double excess[2];
@@ -375,7 +418,7 @@ static enum eo_code pass_on(struct maker *m, struct eo_angles *a, bool final, do
 
 static enum eo_code convert(struct maker *m, struct eo_angles *a, struct eo_error *error)
 {
-  double (*out)[3] = malloc(sizeof *out * EO_SAMPLER_BLOCK);
+  double(*out)[3] = malloc(sizeof *out * EO_SAMPLER_BLOCK);
   int count = 1, written = 0;
   enum eo_code code = out ? EO_OK : eo_error_memory(error);
   for (int c = 0; c < 2; c++) {
@@ -387,7 +430,8 @@ static enum eo_code convert(struct maker *m, struct eo_angles *a, struct eo_erro
   while (!code && count) {
     code = eo_sampler_next(&m->sampler, m->sample + m->held, &count, error);
     m->held += code ? 0 : count;
-    if (!code && eo_progress_report(m->progress, "angles", (double)m->sampler.next / (double)(m->scan->rows ? m->scan->rows : 1)))
+    if (!code && eo_progress_report(m->progress, "angles",
+                                    (double)m->sampler.next / (double)(m->scan->rows ? m->scan->rows : 1)))
       code = eo_error_set(error, EO_ERROR_CANCELLED, "", "Stopped.");
     if (!code)
       code = pass_on(m, a, count == 0, out, &written, error);
@@ -403,19 +447,30 @@ static enum eo_code convert(struct maker *m, struct eo_angles *a, struct eo_erro
 static void judge_jumps(struct maker *m, const struct eo_angles *a)
 {
   for (int i = 0; i < m->losses && m->losses <= MOST_LOSSES; i++)
-    at_row(m, eo_findings_add(m->findings, EO_FINDING_SLIP, EO_SEVERITY_REFUSED, m->loss[i].channel, DEGREES * m->loss[i].jump,
-                              "The %s channel jumps by %.5g degrees at row %lld and stays there while the other does not: counts were lost in one channel.",
-                              member_name[m->loss[i].channel], DEGREES * m->loss[i].jump, (long long)m->loss[i].row + 1), m->loss[i].row);
+    at_row(m,
+           eo_findings_add(m->findings, EO_FINDING_SLIP, EO_SEVERITY_REFUSED, m->loss[i].channel,
+                           DEGREES * m->loss[i].jump,
+                           "The %s channel jumps by %.5g degrees at row %lld and stays there while the other does not: "
+                           "counts were lost in one channel.",
+                           member_name[m->loss[i].channel], DEGREES * m->loss[i].jump, (long long)m->loss[i].row + 1),
+           m->loss[i].row);
   if (m->gaps)
-    at_row(m, eo_findings_add(m->findings, EO_FINDING_DROPPED, EO_SEVERITY_REPAIRED, -1, (double)a->dropped,
-                              "About %lld rows are missing from both channels in %lld places, the first before row %lld; the angles say for how long, and time was "
-                              "set by them.", (long long)a->dropped, (long long)m->gaps, (long long)m->gap_row + 1), m->gap_row);
+    at_row(m,
+           eo_findings_add(m->findings, EO_FINDING_DROPPED, EO_SEVERITY_REPAIRED, -1, (double)a->dropped,
+                           "About %lld rows are missing from both channels in %lld places, the first before row %lld; "
+                           "the angles say for how long, and time was "
+                           "set by them.",
+                           (long long)a->dropped, (long long)m->gaps, (long long)m->gap_row + 1),
+           m->gap_row);
   if (m->spikes)
-    at_row(m, eo_findings_add(m->findings, EO_FINDING_SPIKE, EO_SEVERITY_REPAIRED, -1, (double)m->spikes,
-                              "%lld single rows are far off, the first is row %lld; they were left out.", (long long)m->spikes, (long long)m->spike_row + 1),
+    at_row(m,
+           eo_findings_add(m->findings, EO_FINDING_SPIKE, EO_SEVERITY_REPAIRED, -1, (double)m->spikes,
+                           "%lld single rows are far off, the first is row %lld; they were left out.",
+                           (long long)m->spikes, (long long)m->spike_row + 1),
            m->spike_row);
   if (a->slips > 4)
-    eo_findings_add(m->findings, EO_FINDING_SLIP, EO_SEVERITY_REFUSED, -1, a->slips, "There are %d such jumps altogether.", a->slips);
+    eo_findings_add(m->findings, EO_FINDING_SLIP, EO_SEVERITY_REFUSED, -1, a->slips,
+                    "There are %d such jumps altogether.", a->slips);
 }
 
 static void conclude(struct maker *m, struct eo_angles *a)
@@ -427,7 +482,8 @@ static void conclude(struct maker *m, struct eo_angles *a)
   a->from[1] = 1;
   a->factor[0] = a->factor[1] = 1;
   bool even = a->slips == 0 && advance > 0;
-  a->ratio = even ? (m->last.angle[1] - m->first[1]) / (m->last.angle[0] - m->first[0]) : eo_scan_quantile(m->proportion, m->blocks, 0.5);
+  a->ratio = even ? (m->last.angle[1] - m->first[1]) / (m->last.angle[0] - m->first[0])
+                  : eo_scan_quantile(m->proportion, m->blocks, 0.5);
   for (int c = 0; c < 2; c++) {
     a->rate[c] = eo_scan_quantile(m->rate[c], m->blocks, 0.5);
     a->wrapped[c] = m->wrapped[c];
@@ -438,8 +494,9 @@ static void conclude(struct maker *m, struct eo_angles *a)
   judge_jumps(m, a);
 }
 
-enum eo_code eo_angles_make(struct eo_angles *a, const struct eo_recording *recording, const struct eo_tracks *tracks, const char *spool_directory,
-                            struct eo_findings *findings, const struct eo_progress *progress, struct eo_error *error)
+enum eo_code eo_angles_make(struct eo_angles *a, const struct eo_recording *recording, const struct eo_tracks *tracks,
+                            const char *spool_directory, struct eo_findings *findings,
+                            const struct eo_progress *progress, struct eo_error *error)
 {
   struct maker *m = calloc(1, sizeof *m);
   memset(a, 0, sizeof *a);
@@ -486,7 +543,8 @@ void eo_angles_done(struct eo_angles *a)
   a->series = NULL;
 }
 
-enum eo_code eo_angles_read(const struct eo_angles *a, int64_t first, int64_t count, double *rows, struct eo_error *error)
+enum eo_code eo_angles_read(const struct eo_angles *a, int64_t first, int64_t count, double *rows,
+                            struct eo_error *error)
 {
   enum eo_code code = eo_recording_read(a->series, first, count, rows, error);
   for (int64_t i = 0; i < count && !code; i++) {

@@ -1,12 +1,14 @@
-/* From columns to two angles over time: raw tracks corrected and interpolated, turns counted, rows without numbers left out, gaps and jumps
-   found. What can be repaired without a guess is repaired and said; what cannot is a refusing finding. */
+/* From columns to two angles over time: raw tracks corrected and interpolated, turns counted, rows without numbers left
+   out, gaps and jumps found. What can be repaired without a guess is repaired and said; what cannot is a refusing
+   finding. */
 #ifndef EASEOFF_MEASUREMENT_ANGLES_H
 #define EASEOFF_MEASUREMENT_ANGLES_H
 
 #include "measurement/scan.h"
 
 struct eo_angles {
-  struct eo_recording *series;  /* owned, [rows][3]: t in s, angles in rad as the channels gave them; NULL after a refusal */
+  struct eo_recording
+      *series; /* owned, [rows][3]: t in s, angles in rad as the channels gave them; NULL after a refusal */
   int64_t rows;
   int from[2];                  /* [member]: channel it is taken from */
   double factor[2];             /* [member]: of that channel's angle */
@@ -18,16 +20,18 @@ struct eo_angles {
   int64_t dropped;              /* rows missing from both channels */
   struct eo_ellipse ellipse[2]; /* [channel] of raw tracks */
   bool raw[2], wrapped[2];
-  bool units_in_doubt;          /* one channel is in degrees, the other in radians, and it is open which */
+  bool units_in_doubt; /* one channel is in degrees, the other in radians, and it is open which */
 };
 
 /* spool_directory: see eo_recording_new(). Findings are added; a refusal leaves angles->series NULL and is no error.
    Errors: memory, files, cancelled. eo_angles_done() also after an error. */
-enum eo_code eo_angles_make(struct eo_angles *angles, const struct eo_recording *recording, const struct eo_tracks *tracks,
-                            const char *spool_directory, struct eo_findings *findings, const struct eo_progress *progress, struct eo_error *error);
+enum eo_code eo_angles_make(struct eo_angles *angles, const struct eo_recording *recording,
+                            const struct eo_tracks *tracks, const char *spool_directory, struct eo_findings *findings,
+                            const struct eo_progress *progress, struct eo_error *error);
 void eo_angles_done(struct eo_angles *angles);
 
 /* rows[count][3]: t in s, pinion and gear angle in rad as from[] and factor[] say, with the zero of each encoder. */
-enum eo_code eo_angles_read(const struct eo_angles *angles, int64_t first, int64_t count, double *rows, struct eo_error *error);
+enum eo_code eo_angles_read(const struct eo_angles *angles, int64_t first, int64_t count, double *rows,
+                            struct eo_error *error);
 
 #endif

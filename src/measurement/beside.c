@@ -7,12 +7,21 @@ enum { SIDEBANDS = 2 }; /* whole turns that count as such */
 
 void eo_beside_init(struct eo_beside *b, const int teeth[2], int harmonics, double turns)
 {
-  *b = (struct eo_beside){.harmonics = harmonics, .teeth = teeth[EO_PINION], .gear = (double)teeth[EO_PINION] / teeth[EO_GEAR], .turns = turns};
+  *b = (struct eo_beside){.harmonics = harmonics,
+                          .teeth = teeth[EO_PINION],
+                          .gear = (double)teeth[EO_PINION] / teeth[EO_GEAR],
+                          .turns = turns};
 }
 
 /* Places of the phasors: below, then above, in each of the three families. */
-static int bin_at(int side, int bin) { return side * EO_BESIDE_BINS + bin; }
-static int turn_at(int member, int side, int turn) { return 2 * EO_BESIDE_BINS + (2 * member + side) * EO_BESIDE_TURNS + turn - 1; }
+static int bin_at(int side, int bin)
+{
+  return side * EO_BESIDE_BINS + bin;
+}
+static int turn_at(int member, int side, int turn)
+{
+  return 2 * EO_BESIDE_BINS + (2 * member + side) * EO_BESIDE_TURNS + turn - 1;
+}
 
 static void put_powers(double complex step, double complex start, int count, double *real, double *imaginary)
 {
@@ -29,8 +38,10 @@ static void find_phasors(const struct eo_beside *b, double theta, double *real, 
 {
   double complex bin = cexp(-I * theta / b->turns);
   put_powers(bin, bin, EO_BESIDE_BINS, real + bin_at(1, 0), imaginary + bin_at(1, 0));
-  put_powers(cexp(-I * theta), 1, EO_BESIDE_TURNS, real + turn_at(EO_PINION, 1, 1), imaginary + turn_at(EO_PINION, 1, 1));
-  put_powers(cexp(-I * theta * b->gear), 1, EO_BESIDE_TURNS, real + turn_at(EO_GEAR, 1, 1), imaginary + turn_at(EO_GEAR, 1, 1));
+  put_powers(cexp(-I * theta), 1, EO_BESIDE_TURNS, real + turn_at(EO_PINION, 1, 1),
+             imaginary + turn_at(EO_PINION, 1, 1));
+  put_powers(cexp(-I * theta * b->gear), 1, EO_BESIDE_TURNS, real + turn_at(EO_GEAR, 1, 1),
+             imaginary + turn_at(EO_GEAR, 1, 1));
   for (int i = 0; i < EO_BESIDE_BINS; i++) {
     real[bin_at(0, i)] = real[bin_at(1, i)];
     imaginary[bin_at(0, i)] = -imaginary[bin_at(1, i)];
@@ -58,7 +69,10 @@ void eo_beside_add(struct eo_beside *b, double theta, double residual)
   b->rows++;
 }
 
-static double power_at(const struct eo_beside *b, int h, int i) { return b->real[h][i] * b->real[h][i] + b->imaginary[h][i] * b->imaginary[h][i]; }
+static double power_at(const struct eo_beside *b, int h, int i)
+{
+  return b->real[h][i] * b->real[h][i] + b->imaginary[h][i] * b->imaginary[h][i];
+}
 
 static int ascending(const void *a, const void *b)
 {

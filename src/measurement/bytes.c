@@ -28,9 +28,11 @@ enum eo_code eo_bytes_read(int file, int64_t at, void *bytes, size_t size, struc
     if (n < 0 && errno == EINTR)
       continue;
     if (n < 0)
-      return eo_error_set(error, EO_ERROR_FILE, "", "The file could not be read at byte %lld: %s.", (long long)at, strerror(errno));
+      return eo_error_set(error, EO_ERROR_FILE, "", "The file could not be read at byte %lld: %s.", (long long)at,
+                          strerror(errno));
     if (n == 0)
-      return eo_error_set(error, EO_ERROR_INPUT, "", "The file ends at byte %lld, where %zu bytes more should follow.", (long long)at, size);
+      return eo_error_set(error, EO_ERROR_INPUT, "", "The file ends at byte %lld, where %zu bytes more should follow.",
+                          (long long)at, size);
     to += n;
     at += n;
     size -= (size_t)n;

@@ -12,7 +12,8 @@
 /* Opens a regular file for reading. Errors: EO_ERROR_FILE. The caller closes *file. */
 enum eo_code eo_bytes_open(const char *path, int *file, int64_t *size, struct eo_error *error);
 
-/* Reads exactly size bytes at a place. Errors: EO_ERROR_FILE; EO_ERROR_INPUT when the file ends before, with the byte. */
+/* Reads exactly size bytes at a place. Errors: EO_ERROR_FILE; EO_ERROR_INPUT when the file ends before, with the byte.
+ */
 enum eo_code eo_bytes_read(int file, int64_t at, void *bytes, size_t size, struct eo_error *error);
 
 static inline uint16_t eo_bytes_16(const unsigned char *p, bool big)

@@ -7,8 +7,8 @@
 
 #define ROWS 20000 /* that are looked at */
 
-static enum eo_code read_column(const struct eo_recording *recording, int column, int64_t rows, double *values, int64_t *count,
-                                struct eo_error *error)
+static enum eo_code read_column(const struct eo_recording *recording, int column, int64_t rows, double *values,
+                                int64_t *count, struct eo_error *error)
 {
   int columns = eo_recording_columns(recording);
   double *block = malloc(1000 * (size_t)columns * sizeof *block);
@@ -72,7 +72,8 @@ static void find_steps(struct eo_column *look, const double *values)
   look->period = look->resets ? height / look->resets + fabs(look->step) : 0;
 }
 
-enum eo_code eo_column_look(const struct eo_recording *recording, int column, struct eo_column *look, struct eo_error *error)
+enum eo_code eo_column_look(const struct eo_recording *recording, int column, struct eo_column *look,
+                            struct eo_error *error)
 {
   int64_t rows = eo_recording_length(recording, column);
   rows = rows < ROWS ? rows : ROWS;
@@ -90,7 +91,8 @@ enum eo_code eo_column_look(const struct eo_recording *recording, int column, st
   return code;
 }
 
-/* Counts run from 0 to one below the turn and pass over the last ones at speed: powers of two and whole hundreds come into question. */
+/* Counts run from 0 to one below the turn and pass over the last ones at speed: powers of two and whole hundreds come
+   into question. */
 static double find_counts(const struct eo_column *look)
 {
   double least = look->high - (look->low < 0 ? look->low : 0) + 1, most = least + 2 * fabs(look->step) + 1;
@@ -105,7 +107,7 @@ static double find_counts(const struct eo_column *look)
 
 double eo_column_turn(const struct eo_column *look)
 {
-  static const double turns[] = { 360, 6.283185307179586, 1 };
+  static const double turns[] = {360, 6.283185307179586, 1};
   if (!look->resets)
     return 0;
   if (look->whole && look->high > 400)
@@ -123,7 +125,8 @@ static const char *next_word(const char *name, const char **word)
     name++;
   *word = name;
   bool digits = isdigit((unsigned char)*name);
-  while (*name && (isalnum((unsigned char)*name) || (unsigned char)*name >= 0x80) && (isdigit((unsigned char)*name) != 0) == digits)
+  while (*name && (isalnum((unsigned char)*name) || (unsigned char)*name >= 0x80) &&
+         (isdigit((unsigned char)*name) != 0) == digits)
     name++;
   return name;
 }

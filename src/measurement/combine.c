@@ -8,20 +8,20 @@
 #include <string.h>
 
 #define BLOCK 4096
-#define POINTS 16     /* rows of a polynomial */
-#define SAME 1e-6     /* of a row's interval: times that differ less are equal */
+#define POINTS 16 /* rows of a polynomial */
+#define SAME 1e-6 /* of a row's interval: times that differ less are equal */
 
 /* A recording read forwards through a window of rows. */
 struct window {
   const struct eo_recording *recording;
-  int columns, time;    /* columns of the recording; that of time, -1: even */
-  double scale;         /* s per unit of time */
+  int columns, time;                   /* columns of the recording; that of time, -1: even */
+  double scale;                        /* s per unit of time */
   double period[EO_RECORDING_COLUMNS]; /* of columns that start again, 0: they do not */
   double shift[EO_RECORDING_COLUMNS];  /* turns counted so far, in the column's unit */
-  int64_t rows, first;  /* of the recording; row number of the window's first */
-  int64_t held;         /* rows in the window */
-  double *row;          /* [2 * BLOCK][columns]; unwrapped */
-  double *t;            /* [2 * BLOCK], s */
+  int64_t rows, first;                 /* of the recording; row number of the window's first */
+  int64_t held;                        /* rows in the window */
+  double *row;                         /* [2 * BLOCK][columns]; unwrapped */
+  double *t;                           /* [2 * BLOCK], s */
 };
 
 struct combination {
@@ -32,8 +32,8 @@ struct combination {
   int64_t filled, kept;
 };
 
-static enum eo_code open_window(struct window *w, int side, const struct eo_recording *recording, const struct eo_layout_choice *choice,
-                                struct eo_error *error)
+static enum eo_code open_window(struct window *w, int side, const struct eo_recording *recording,
+                                const struct eo_layout_choice *choice, struct eo_error *error)
 {
   struct eo_column look;
   w->recording = recording;
@@ -47,8 +47,12 @@ static enum eo_code open_window(struct window *w, int side, const struct eo_reco
     if (code)
       return code;
     bool named = choice && choice->time && !strcmp(eo_recording_name(recording, c), choice->time);
-    double score = named ? 4 : look.falls || look.resets || look.rises < 2 ? 0 : look.quantity == EO_QUANTITY_TIME ? 3
-                   : eo_column_named(eo_recording_name(recording, c), "t|time|zeit") ? 2 : c == 0 && w->columns > 1 && look.spread < 1e-3 ? 1 : 0;
+    double score = named                                                             ? 4
+                   : look.falls || look.resets || look.rises < 2                     ? 0
+                   : look.quantity == EO_QUANTITY_TIME                               ? 3
+                   : eo_column_named(eo_recording_name(recording, c), "t|time|zeit") ? 2
+                   : c == 0 && w->columns > 1 && look.spread < 1e-3                  ? 1
+                                                                                     : 0;
     if (score > best) {
       best = score;
       w->time = c;
@@ -59,7 +63,8 @@ static enum eo_code open_window(struct window *w, int side, const struct eo_reco
     if (one_way && look.resets && choice && choice->lines[side] > 0 && look.whole)
       w->period[c] = choice->lines[side];
     if (one_way && look.resets && !(w->period[c] > 0))
-      return eo_error_set(error, EO_ERROR_INPUT, "/lines", "The values of the %s start again after about %.6g; give the counts per turn.",
+      return eo_error_set(error, EO_ERROR_INPUT, "/lines",
+                          "The values of the %s start again after about %.6g; give the counts per turn.",
                           side ? "gear" : "pinion", look.period);
   }
   if (choice && choice->time_scale > 0)
@@ -107,14 +112,16 @@ static enum eo_code move_window(struct window *w, int64_t keep, struct eo_error 
   enum eo_code code = eo_recording_read(w->recording, w->first + w->held, n, w->row + w->held * w->columns, error);
   for (int64_t i = w->held; !code && i < w->held + n; i++) {
     unwrap_row(w, i);
-    w->t[i] = w->time >= 0 ? w->row[i * w->columns + w->time] * w->scale
-                           : eo_recording_start(w->recording) + (double)(w->first + i) * eo_recording_interval(w->recording);
+    w->t[i] = w->time >= 0
+                  ? w->row[i * w->columns + w->time] * w->scale
+                  : eo_recording_start(w->recording) + (double)(w->first + i) * eo_recording_interval(w->recording);
   }
   w->held += code ? 0 : n;
   return code;
 }
 
-/* Values of all columns at a time inside rows from .. from + POINTS - 1 of the window, by the polynomial through them. */
+/* Values of all columns at a time inside rows from .. from + POINTS - 1 of the window, by the polynomial through them.
+ */
 static void interpolate(const struct window *w, int64_t from, double t, double *values)
 {
   double weight[POINTS];
@@ -142,10 +149,11 @@ static enum eo_code flush(struct combination *m, struct eo_error *error)
 }
 
 /* Time, the first side's other columns, the second side's other columns. */
-static enum eo_code put_row(struct combination *m, double t, const double *first, const double *second, struct eo_error *error)
+static enum eo_code put_row(struct combination *m, double t, const double *first, const double *second,
+                            struct eo_error *error)
 {
   double *to = m->rows + m->filled * m->columns;
-  const double *from[2] = { first, second };
+  const double *from[2] = {first, second};
   *to++ = t;
   for (int side = 0; side < 2; side++)
     for (int c = 0; c < m->side[side].columns; c++)
@@ -176,9 +184,12 @@ static enum eo_code combine_rows(struct combination *m, struct eo_error *error)
     }
     if (code)
       return code;
-    double before = b->t[at - b->first], step = at + 1 < b->rows ? b->t[at + 1 - b->first] - before : before - b->t[at - 1 - b->first];
+    double before = b->t[at - b->first],
+           step = at + 1 < b->rows ? b->t[at + 1 - b->first] - before : before - b->t[at - 1 - b->first];
     const double *exact = fabs(t - before) <= SAME * step ? b->row + (at - b->first) * b->columns
-                          : at + 1 < b->rows && fabs(t - before - step) <= SAME * step ? b->row + (at + 1 - b->first) * b->columns : NULL;
+                          : at + 1 < b->rows && fabs(t - before - step) <= SAME * step
+                              ? b->row + (at + 1 - b->first) * b->columns
+                              : NULL;
     int64_t from = at - POINTS / 2 + 1;
     if (!exact && (t < before || from < 0 || from + POINTS > b->rows))
       continue; /* at the ends a polynomial swings: only its middle is used */
@@ -200,7 +211,8 @@ static void name_columns(const struct combination *m)
       char name[EO_RECORDING_NAME + 16];
       if (c == m->side[side].time)
         continue;
-      snprintf(name, sizeof name, "%.40s%s%s", eo_recording_name(r, c), *eo_recording_name(r, c) ? " " : "", side ? "gear" : "pinion");
+      snprintf(name, sizeof name, "%.40s%s%s", eo_recording_name(r, c), *eo_recording_name(r, c) ? " " : "",
+               side ? "gear" : "pinion");
       eo_recording_set_column(m->out, to++, name, eo_recording_unit(r, c));
     }
   }
@@ -209,7 +221,7 @@ static void name_columns(const struct combination *m)
 static enum eo_code combine_pulses(struct combination *m, struct eo_error *error)
 {
   double block[2][BLOCK];
-  const struct eo_recording *side[2] = { m->side[0].recording, m->side[1].recording };
+  const struct eo_recording *side[2] = {m->side[0].recording, m->side[1].recording};
   int64_t rows = m->side[0].rows > m->side[1].rows ? m->side[0].rows : m->side[1].rows;
   for (int64_t first = 0; first < rows; first += BLOCK) {
     int64_t count = rows - first < BLOCK ? rows - first : BLOCK;
@@ -227,7 +239,8 @@ static enum eo_code combine_pulses(struct combination *m, struct eo_error *error
   }
   for (int s = 0; s < 2; s++) {
     eo_recording_set_length(m->out, s, m->side[s].rows);
-    eo_recording_set_column(m->out, s, s ? "gear" : "pinion", *eo_recording_unit(side[s], 0) ? eo_recording_unit(side[s], 0) : "s");
+    eo_recording_set_column(m->out, s, s ? "gear" : "pinion",
+                            *eo_recording_unit(side[s], 0) ? eo_recording_unit(side[s], 0) : "s");
   }
   return EO_OK;
 }
@@ -237,15 +250,16 @@ static bool has_time(const struct window *w)
   return w->time >= 0 || eo_recording_interval(w->recording) > 0;
 }
 
-static enum eo_code combine(struct combination *m, const struct eo_layout_choice *choice, const char *spool_directory, struct eo_notes *notes,
-                            struct eo_error *error)
+static enum eo_code combine(struct combination *m, const struct eo_layout_choice *choice, const char *spool_directory,
+                            struct eo_notes *notes, struct eo_error *error)
 {
   bool pulses = choice && choice->kind == EO_LAYOUT_PULSES;
   for (int s = 0; s < 2; s++) {
     struct window *w = &m->side[s];
     pulses = pulses || (w->columns == 1 && !(eo_recording_interval(w->recording) > 0));
     if (!pulses && (!has_time(w) || w->rows < POINTS))
-      return eo_error_set(error, EO_ERROR_INPUT, "/time", "The file of the %s has no time and no sampling rate, or fewer than %d rows.",
+      return eo_error_set(error, EO_ERROR_INPUT, "/time",
+                          "The file of the %s has no time and no sampling rate, or fewer than %d rows.",
                           s ? "gear" : "pinion", POINTS);
   }
   m->columns = pulses ? 2 : 1;
@@ -262,13 +276,14 @@ static enum eo_code combine(struct combination *m, const struct eo_layout_choice
   if (!m->kept)
     return eo_error_set(error, EO_ERROR_INPUT, "/time", "The times of the two files do not overlap.");
   name_columns(m);
-  eo_notes_add(notes, "Two files were combined by their time: %lld of %lld rows of the pinion's have both angles.", (long long)m->kept,
-               (long long)m->side[0].rows);
+  eo_notes_add(notes, "Two files were combined by their time: %lld of %lld rows of the pinion's have both angles.",
+               (long long)m->kept, (long long)m->side[0].rows);
   return EO_OK;
 }
 
-enum eo_code eo_layout_combine(const struct eo_recording *pinion, const struct eo_recording *gear, const struct eo_layout_choice *choice,
-                               const char *spool_directory, struct eo_recording **combined, struct eo_notes *notes, struct eo_error *error)
+enum eo_code eo_layout_combine(const struct eo_recording *pinion, const struct eo_recording *gear,
+                               const struct eo_layout_choice *choice, const char *spool_directory,
+                               struct eo_recording **combined, struct eo_notes *notes, struct eo_error *error)
 {
   struct combination *m = calloc(1, sizeof *m);
   if (!m)

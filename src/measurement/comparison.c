@@ -6,8 +6,8 @@
 #include <string.h>
 
 static const double SAME_TORQUE = 0.01, SAME_SPEED = 0.02;
-static const double FAR = 3.5;          /* robust standard deviations (Iglewicz and Hoaglin 1993) */
-static const double LEAST_FAR = 0.25;   /* of log(ratio): nearer is no outlier whatever the spread */
+static const double FAR = 3.5;        /* robust standard deviations (Iglewicz and Hoaglin 1993) */
+static const double LEAST_FAR = 0.25; /* of log(ratio): nearer is no outlier whatever the spread */
 
 void eo_measured_take(struct eo_measured *m, const struct eo_transmission *t, const struct eo_findings *findings)
 {
@@ -58,7 +58,8 @@ static void align(const struct eo_measured *m, struct eo_compared *c)
   c->shift -= floor(c->shift);
 }
 
-void eo_comparison_curves(const struct eo_measured *m, const struct eo_compared *c, int count, double *measured_curve, double *predicted_curve)
+void eo_comparison_curves(const struct eo_measured *m, const struct eo_compared *c, int count, double *measured_curve,
+                          double *predicted_curve)
 {
   for (int i = 0; i < count; i++) {
     double phase = (double)i / count;
@@ -86,7 +87,8 @@ static double median(double *value, int count)
 
 static bool same_point(const struct eo_measured *a, const struct eo_measured *b)
 {
-  return a->end == b->end && fabs(a->torque / b->torque - 1) < SAME_TORQUE && fabs(a->speed / b->speed - 1) < SAME_SPEED;
+  return a->end == b->end && fabs(a->torque / b->torque - 1) < SAME_TORQUE &&
+         fabs(a->speed / b->speed - 1) < SAME_SPEED;
 }
 
 static enum eo_code find_ratios(struct eo_comparison *c, struct eo_error *error)
@@ -114,7 +116,8 @@ static double nearest_repeat(const struct eo_measured *m, int count, int at)
   double nearest = INFINITY;
   for (int i = 0; i < count; i++)
     if (i != at && m[i].unmodified == m[at].unmodified && same_point(&m[i], &m[at]))
-      nearest = fmin(nearest, fabs(m[i].rms - m[at].rms) / fmax(hypot(m[i].rms_sigma, m[at].rms_sigma), 0.05 * m[at].rms));
+      nearest = fmin(nearest,
+                     fabs(m[i].rms - m[at].rms) / fmax(hypot(m[i].rms_sigma, m[at].rms_sigma), 0.05 * m[at].rms));
   return nearest;
 }
 
@@ -123,12 +126,15 @@ static void judge_point(struct eo_comparison *c, const struct eo_measured *m, in
   struct eo_compared *p = &c->point[at];
   double off = fabs(log(p->ratio / c->ratio)), repeat = nearest_repeat(m, c->count, at);
   if (c->count >= 4 && isfinite(off) && off > LEAST_FAR && off > FAR * c->spread)
-    snprintf(p->reason, sizeof p->reason, "Its RMS is %.3g times the prediction, that of the others about %.3g times.", p->ratio, c->ratio);
+    snprintf(p->reason, sizeof p->reason, "Its RMS is %.3g times the prediction, that of the others about %.3g times.",
+             p->ratio, c->ratio);
   else if (isfinite(repeat) && repeat > 4)
-    snprintf(p->reason, sizeof p->reason, "No other recording at this torque and speed comes near its RMS of %.4g m/s2.", m[at].rms);
+    snprintf(p->reason, sizeof p->reason,
+             "No other recording at this torque and speed comes near its RMS of %.4g m/s2.", m[at].rms);
   p->outlier = *p->reason != 0;
   if (p->outlier && m[at].warnings)
-    snprintf(p->reason + strlen(p->reason), sizeof p->reason - strlen(p->reason), " The recording itself carries %d warnings.", m[at].warnings);
+    snprintf(p->reason + strlen(p->reason), sizeof p->reason - strlen(p->reason),
+             " The recording itself carries %d warnings.", m[at].warnings);
 }
 
 /* ---- reductions ---- */
@@ -153,13 +159,15 @@ static bool reduce(const struct eo_comparison *c, const struct eo_measured *m, i
   return true;
 }
 
-enum eo_code eo_comparison_run(struct eo_comparison *c, struct eo_evaluator *evaluator, const struct eo_design *design, int count,
-                               const struct eo_measured *measured, const struct eo_progress *progress, struct eo_error *error)
+enum eo_code eo_comparison_run(struct eo_comparison *c, struct eo_evaluator *evaluator, const struct eo_design *design,
+                               int count, const struct eo_measured *measured, const struct eo_progress *progress,
+                               struct eo_error *error)
 {
   enum eo_code code = EO_OK;
   *c = (struct eo_comparison){.count = count};
   if (count < 0 || count > EO_MOST_MEASURED)
-    return eo_error_set(error, EO_ERROR_INPUT, "", "%d measurements are more than the %d that are compared at once.", count, EO_MOST_MEASURED);
+    return eo_error_set(error, EO_ERROR_INPUT, "", "%d measurements are more than the %d that are compared at once.",
+                        count, EO_MOST_MEASURED);
   c->point = calloc((size_t)count + 1, sizeof *c->point);
   c->reduction = calloc((size_t)count + 1, sizeof *c->reduction);
   if (!c->point || !c->reduction)
@@ -169,7 +177,8 @@ enum eo_code eo_comparison_run(struct eo_comparison *c, struct eo_evaluator *eva
     struct eo_compared *p = &c->point[i];
     if (eo_progress_report(progress, "predictions", (double)i / count))
       return eo_error_set(error, EO_ERROR_CANCELLED, "", "Stopped.");
-    code = eo_prediction_run(&p->prediction, evaluator, design, m->unmodified, m->torque, m->speed, m->end, m->harmonics, error);
+    code = eo_prediction_run(&p->prediction, evaluator, design, m->unmodified, m->torque, m->speed, m->end,
+                             m->harmonics, error);
     p->ratio = p->likeness = p->shift = NAN;
     if (!code && p->prediction.valid) {
       p->ratio = m->rms / p->prediction.rms;

@@ -1,6 +1,7 @@
 /* Decimal numbers as rig software writes them, read to the nearest double (round half to even) and quickly.
-   Up to 19 significant digits are read exactly without the C library: a mantissa below 2^53 with at most 22 powers of ten takes one rounded
-   operation (Clinger 1990), other ones a product or quotient of 128 bits by a power of five. What is left goes to strtod. */
+   Up to 19 significant digits are read exactly without the C library: a mantissa below 2^53 with at most 22 powers of
+   ten takes one rounded operation (Clinger 1990), other ones a product or quotient of 128 bits by a power of five. What
+   is left goes to strtod. */
 #ifndef EASEOFF_MEASUREMENT_DECIMAL_H
 #define EASEOFF_MEASUREMENT_DECIMAL_H
 
@@ -18,8 +19,9 @@ extern const double eo_decimal_power[23]; /* 10^0 .. 10^22, exact */
 /* The slow ways: any mantissa of up to 19 digits with any exponent, or the text itself when it has more digits. */
 double eo_decimal_scale(const struct eo_decimal *decimal, const char *text, const char *end, char point);
 
-/* Reads a number at text, sign first, with this decimal point; 'e', 'E', 'd' or 'D' starts the exponent. Returns the place after it, NULL when
-   there is no number; *value is NaN when it is beyond all doubles. A point that is a comma must have a digit after it. The text must end with a byte that belongs to no number. */
+/* Reads a number at text, sign first, with this decimal point; 'e', 'E', 'd' or 'D' starts the exponent. Returns the
+   place after it, NULL when there is no number; *value is NaN when it is beyond all doubles. A point that is a comma
+   must have a digit after it. The text must end with a byte that belongs to no number. */
 static inline const char *eo_decimal_read(const char *text, char point, double *value)
 {
   struct eo_decimal d = {0};

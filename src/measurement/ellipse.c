@@ -57,6 +57,7 @@ bool eo_ellipse_fit(const struct eo_ellipse_sums *sums, struct eo_ellipse *ellip
 
 double eo_ellipse_angle(const struct eo_ellipse *ellipse, double sine, double cosine)
 {
-  double u = (sine - ellipse->offset[0]) / ellipse->amplitude[0], v = (cosine - ellipse->offset[1]) / ellipse->amplitude[1];
+  double u = (sine - ellipse->offset[0]) / ellipse->amplitude[0],
+         v = (cosine - ellipse->offset[1]) / ellipse->amplitude[1];
   return atan2(u, (v - u * sin(ellipse->skew)) / cos(ellipse->skew));
 }

@@ -1,13 +1,13 @@
-/* The ellipse that the sine and cosine tracks of an encoder draw, and the angle on it (Heydemann 1981): offsets, unequal gain and a phase
-   that is not 90 degrees, from a least squares conic through the samples. */
+/* The ellipse that the sine and cosine tracks of an encoder draw, and the angle on it (Heydemann 1981): offsets,
+   unequal gain and a phase that is not 90 degrees, from a least squares conic through the samples. */
 #ifndef EASEOFF_MEASUREMENT_ELLIPSE_H
 #define EASEOFF_MEASUREMENT_ELLIPSE_H
 
 #include <stdbool.h>
 #include <stdint.h>
 
-/* Sums of the products of x^2, xy, y^2, x, y and 1 over the samples, taken about a point and in a unit near their centre and size, so that
-   fourth powers stay near 1. */
+/* Sums of the products of x^2, xy, y^2, x, y and 1 over the samples, taken about a point and in a unit near their
+   centre and size, so that fourth powers stay near 1. */
 struct eo_ellipse_sums {
   double centre[2], scale;
   int64_t count;
@@ -17,8 +17,8 @@ struct eo_ellipse_sums {
 /* sine = offset[0] + amplitude[0] sin(a), cosine = offset[1] + amplitude[1] cos(a - skew). */
 struct eo_ellipse {
   double offset[2];
-  double amplitude[2];  /* zero to peak, in the unit of the samples */
-  double skew;          /* rad: the phase between the tracks is 90 degrees + skew */
+  double amplitude[2]; /* zero to peak, in the unit of the samples */
+  double skew;         /* rad: the phase between the tracks is 90 degrees + skew */
 };
 
 /* centre: any point inside, scale: any size about the amplitude. */

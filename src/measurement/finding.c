@@ -4,12 +4,12 @@
 #include <stdio.h>
 #include <string.h>
 
-const char *const eo_finding_names[EO_FINDING_KINDS + 1] = {"swapped",   "reversed",  "teeth",    "units",       "wrapped", "dropped", "slip",
-                                                        "constant",  "saturated", "too-short", "unsteady",   "sample-rate", "time", "nan",
-                                                        "spike",     "track",     "speed",    "resolution",  "layout",     NULL};
+const char *const eo_finding_names[EO_FINDING_KINDS + 1] = {
+    "swapped",  "reversed",    "teeth", "units", "wrapped", "dropped", "slip",  "constant",   "saturated", "too-short",
+    "unsteady", "sample-rate", "time",  "nan",   "spike",   "track",   "speed", "resolution", "layout",    NULL};
 
-struct eo_finding *eo_findings_add(struct eo_findings *findings, enum eo_finding_kind kind, enum eo_severity severity, int channel, double value,
-                                   const char *format, ...)
+struct eo_finding *eo_findings_add(struct eo_findings *findings, enum eo_finding_kind kind, enum eo_severity severity,
+                                   int channel, double value, const char *format, ...)
 {
   va_list arguments;
   int at = findings->count < EO_MAX_FINDINGS ? findings->count : EO_MAX_FINDINGS - 1;
@@ -22,13 +22,22 @@ struct eo_finding *eo_findings_add(struct eo_findings *findings, enum eo_finding
   return f;
 }
 
-const char *eo_finding_name(enum eo_finding_kind kind) { return eo_finding_names[kind]; }
+const char *eo_finding_name(enum eo_finding_kind kind)
+{
+  return eo_finding_names[kind];
+}
 
 const char *const eo_severity_names[] = {"note", "repaired", "warning", "refused", NULL};
 
-const char *eo_severity_name(enum eo_severity severity) { return eo_severity_names[severity]; }
+const char *eo_severity_name(enum eo_severity severity)
+{
+  return eo_severity_names[severity];
+}
 
-static int kept(const struct eo_findings *findings) { return findings->count < EO_MAX_FINDINGS ? findings->count : EO_MAX_FINDINGS; }
+static int kept(const struct eo_findings *findings)
+{
+  return findings->count < EO_MAX_FINDINGS ? findings->count : EO_MAX_FINDINGS;
+}
 
 const struct eo_finding *eo_findings_find(const struct eo_findings *findings, enum eo_finding_kind kind)
 {

@@ -1,4 +1,5 @@
-/* HDF5 files, MATLAB's 7.3 among them: data sets of one dimension, or of two with one channel per column. Runs in a process of its own. */
+/* HDF5 files, MATLAB's 7.3 among them: data sets of one dimension, or of two with one channel per column. Runs in a
+   process of its own. */
 #define H5_USE_110_API
 #include "measurement/readers.h"
 
@@ -13,9 +14,9 @@
 #define WIDE 64 /* a data set with more columns is no table of channels */
 
 struct channel {
-  hid_t set;      /* borrowed from sets */
+  hid_t set;       /* borrowed from sets */
   int rank, along; /* dimensions; the one along which values follow each other */
-  hsize_t across; /* place in the other one */
+  hsize_t across;  /* place in the other one */
 };
 
 struct hdf5 {
@@ -93,7 +94,8 @@ static bool reads_other_files(hid_t set)
 static bool is_text_or_cell(hid_t set)
 {
   char class[32];
-  return read_text_attribute(set, "MATLAB_class", class, sizeof class) && (!strcmp(class, "char") || !strcmp(class, "cell"));
+  return read_text_attribute(set, "MATLAB_class", class, sizeof class) &&
+         (!strcmp(class, "char") || !strcmp(class, "cell"));
 }
 
 /* The dimensions of a data set that can be channels; rank 0: none. */
@@ -102,7 +104,8 @@ static int numeric_rank(hid_t set, hsize_t *length)
   hid_t type = H5Dget_type(set), space = H5Dget_space(set);
   H5T_class_t class = H5Tget_class(type);
   int rank = H5Sget_simple_extent_ndims(space);
-  bool usable = (class == H5T_INTEGER || class == H5T_FLOAT) && (rank == 1 || rank == 2) && H5Sget_simple_extent_dims(space, length, NULL) == rank;
+  bool usable = (class == H5T_INTEGER || class == H5T_FLOAT) && (rank == 1 || rank == 2) &&
+                H5Sget_simple_extent_dims(space, length, NULL) == rank;
   H5Sclose(space);
   H5Tclose(type);
   return usable && !is_text_or_cell(set) && !reads_other_files(set) ? rank : 0;
@@ -126,16 +129,17 @@ static bool add_channels(struct hdf5 *h, hid_t set, const char *name, int rank, 
   hsize_t across = rank == 2 ? length[!along] : 1;
   if (across > WIDE || h->count + (int)across > CHANNELS)
     return false;
-  struct eo_series series = { .length = (int64_t)length[along], .interval = interval_of(set) };
-  static const char *const keys[] = { "unit", "units", "Unit", "Units", "unit_string" };
-  for (size_t i = 0; i < sizeof keys / sizeof *keys && !read_text_attribute(set, keys[i], series.unit, sizeof series.unit); i++)
+  struct eo_series series = {.length = (int64_t)length[along], .interval = interval_of(set)};
+  static const char *const keys[] = {"unit", "units", "Unit", "Units", "unit_string"};
+  for (size_t i = 0;
+       i < sizeof keys / sizeof *keys && !read_text_attribute(set, keys[i], series.unit, sizeof series.unit); i++)
     ;
   for (hsize_t k = 0; k < across; k++) {
     if (across > 1)
       snprintf(series.name, sizeof series.name, "%.50s %d", name, (int)k + 1);
     else
       snprintf(series.name, sizeof series.name, "%s", name);
-    h->channel[h->count] = (struct channel){ set, rank, along, k };
+    h->channel[h->count] = (struct channel){set, rank, along, k};
     h->series[h->count++] = series;
   }
   return true;
@@ -143,7 +147,7 @@ static bool add_channels(struct hdf5 *h, hid_t set, const char *name, int rank, 
 
 static void add_set(struct hdf5 *h, hid_t file, const char *path)
 {
-  hsize_t length[2] = { 0, 0 };
+  hsize_t length[2] = {0, 0};
   hid_t set = H5Dopen(file, path, H5P_DEFAULT);
   if (set < 0)
     return;
@@ -151,7 +155,8 @@ static void add_set(struct hdf5 *h, hid_t file, const char *path)
   int rank = numeric_rank(set, length);
   if (rank && length[0] * (rank == 2 ? length[1] : 1) == 1)
     use_scalar(h, set, name);
-  else if (rank && h->sets < CHANNELS && length[0] <= INT64_MAX / 2 && length[1] <= INT64_MAX / 2 && add_channels(h, set, name, rank, length)) {
+  else if (rank && h->sets < CHANNELS && length[0] <= INT64_MAX / 2 && length[1] <= INT64_MAX / 2 &&
+           add_channels(h, set, name, rank, length)) {
     h->set[h->sets++] = set;
     return;
   } else
@@ -168,11 +173,12 @@ static herr_t visit(hid_t file, const char *path, const H5O_info_t *info, void *
   return 0;
 }
 
-static enum eo_code read_values(void *context, int series, int64_t first, int64_t count, double *values, struct eo_error *error)
+static enum eo_code read_values(void *context, int series, int64_t first, int64_t count, double *values,
+                                struct eo_error *error)
 {
   const struct hdf5 *h = context;
   const struct channel *c = &h->channel[series];
-  hsize_t start[2] = { c->across, c->across }, size[2] = { 1, 1 }, length = (hsize_t)count;
+  hsize_t start[2] = {c->across, c->across}, size[2] = {1, 1}, length = (hsize_t)count;
   start[c->along] = (hsize_t)first;
   size[c->along] = length;
   hid_t space = H5Dget_space(c->set), memory = H5Screate_simple(1, &length, NULL);
@@ -182,29 +188,31 @@ static enum eo_code read_values(void *context, int series, int64_t first, int64_
   H5Sclose(memory);
   H5Sclose(space);
   if (status < 0)
-    return eo_error_set(error, EO_ERROR_INPUT, "", "HDF5: the values of \"%s\" from %lld on cannot be read; the file is damaged or uses an unknown filter.",
-                        h->series[series].name, (long long)first);
+    return eo_error_set(
+        error, EO_ERROR_INPUT, "",
+        "HDF5: the values of \"%s\" from %lld on cannot be read; the file is damaged or uses an unknown filter.",
+        h->series[series].name, (long long)first);
   return EO_OK;
 }
 
-static enum eo_code read_file(struct hdf5 *h, hid_t file, int64_t bytes, const struct eo_reader_options *options, const struct eo_series_sink *sink,
-                              struct eo_notes *notes, struct eo_error *error)
+static enum eo_code read_file(struct hdf5 *h, hid_t file, int64_t bytes, const struct eo_reader_options *options,
+                              const struct eo_series_sink *sink, struct eo_notes *notes, struct eo_error *error)
 {
   h->interval = interval_of(file);
   if (H5Ovisit2(file, H5_INDEX_NAME, H5_ITER_NATIVE, visit, h, H5O_INFO_BASIC) < 0)
     return eo_error_set(error, EO_ERROR_INPUT, "", "HDF5: the groups of the file cannot be read; it is damaged.");
   if (h->left_out)
-    eo_notes_add(notes, "%d data set%s %s no channel of numbers and %s left out.", h->left_out, h->left_out == 1 ? "" : "s",
-                 h->left_out == 1 ? "is" : "are", h->left_out == 1 ? "was" : "were");
+    eo_notes_add(notes, "%d data set%s %s no channel of numbers and %s left out.", h->left_out,
+                 h->left_out == 1 ? "" : "s", h->left_out == 1 ? "is" : "are", h->left_out == 1 ? "was" : "were");
   for (int i = 0; i < h->count; i++)
     if (!(h->series[i].interval > 0))
       h->series[i].interval = h->interval;
-  struct eo_series_file content = { h->series, h->count, bytes, options->max_bytes, read_values, h };
+  struct eo_series_file content = {h->series, h->count, bytes, options->max_bytes, read_values, h};
   return eo_series_copy(&content, sink, notes, error);
 }
 
-enum eo_code eo_hdf5_read(const char *path, const struct eo_reader_options *options, const struct eo_series_sink *sink, struct eo_notes *notes,
-                          struct eo_error *error)
+enum eo_code eo_hdf5_read(const char *path, const struct eo_reader_options *options, const struct eo_series_sink *sink,
+                          struct eo_notes *notes, struct eo_error *error)
 {
   struct stat state;
   if (stat(path, &state))
@@ -215,9 +223,11 @@ enum eo_code eo_hdf5_read(const char *path, const struct eo_reader_options *opti
   if (!h)
     return eo_error_memory(error);
   hid_t file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
-  enum eo_code code = file < 0 ? eo_error_set(error, EO_ERROR_INPUT, "", "HDF5: the file cannot be opened; it is damaged or was cut off at byte %lld.",
-                                              (long long)state.st_size)
-                               : read_file(h, file, state.st_size, options, sink, notes, error);
+  enum eo_code code = file < 0
+                          ? eo_error_set(error, EO_ERROR_INPUT, "",
+                                         "HDF5: the file cannot be opened; it is damaged or was cut off at byte %lld.",
+                                         (long long)state.st_size)
+                          : read_file(h, file, state.st_size, options, sink, notes, error);
   for (int i = 0; i < h->sets; i++)
     H5Dclose(h->set[i]);
   if (file >= 0)

@@ -25,9 +25,11 @@
 #endif
 
 /* From the process to its parent: kind and count, then what the kind says. */
-enum { MESSAGE_COLUMNS = 1, /* count: columns; struct eo_series[count] */
-       MESSAGE_ROWS,        /* count: rows; double[count][columns] */
-       MESSAGE_DONE };      /* struct eo_error, struct eo_notes; the last */
+enum {
+  MESSAGE_COLUMNS = 1, /* count: columns; struct eo_series[count] */
+  MESSAGE_ROWS,        /* count: rows; double[count][columns] */
+  MESSAGE_DONE
+}; /* struct eo_error, struct eo_notes; the last */
 
 struct message {
   int32_t kind, count;
@@ -52,9 +54,10 @@ static bool send_all(int pipe, const void *bytes, size_t size)
   return true;
 }
 
-static enum eo_code send_message(const struct child *child, int kind, int count, const void *bytes, size_t size, struct eo_error *error)
+static enum eo_code send_message(const struct child *child, int kind, int count, const void *bytes, size_t size,
+                                 struct eo_error *error)
 {
-  struct message message = { kind, count };
+  struct message message = {kind, count};
   if (send_all(child->pipe, &message, sizeof message) && send_all(child->pipe, bytes, size))
     return EO_OK;
   return eo_error_set(error, EO_ERROR_CANCELLED, "", "Nobody waits for the file any more.");
@@ -72,7 +75,8 @@ static enum eo_code send_rows(void *context, const double *rows, int64_t count, 
   const struct child *child = context;
   while (count > 0) {
     int64_t n = count < BLOCK ? count : BLOCK;
-    enum eo_code code = send_message(child, MESSAGE_ROWS, (int)n, rows, (size_t)n * (size_t)child->columns * sizeof *rows, error);
+    enum eo_code code = send_message(child, MESSAGE_ROWS, (int)n, rows,
+                                     (size_t)n * (size_t)child->columns * sizeof *rows, error);
     if (code)
       return code;
     rows += n * child->columns;
@@ -85,10 +89,11 @@ static void set_limit(int resource, rlim_t limit)
 {
   struct rlimit old;
   if (!getrlimit(resource, &old) && limit < old.rlim_cur)
-    setrlimit(resource, &(struct rlimit){ limit, old.rlim_max });
+    setrlimit(resource, &(struct rlimit){limit, old.rlim_max});
 }
 
-/* Bytes of address space this process has taken. Sanitizers take nearly all of it, so that no limit can be set beside them. */
+/* Bytes of address space this process has taken. Sanitizers take nearly all of it, so that no limit can be set beside
+   them. */
 static void limit_memory(void)
 {
 #ifndef SANITIZED
@@ -107,7 +112,7 @@ static void limit_memory(void)
 /* Gives back what the parent had open and its ways of ending, then reads. */
 static void run_child(int pipe, eo_series_reader *reader, const char *path, const struct eo_reader_options *options)
 {
-  struct child child = { 3, 0 };
+  struct child child = {3, 0};
   if (dup2(pipe, child.pipe) < 0)
     _exit(2);
   int silence = open("/dev/null", O_RDWR);
@@ -130,7 +135,7 @@ static void run_child(int pipe, eo_series_reader *reader, const char *path, cons
     struct eo_error error;
     struct eo_notes notes;
   } last = {0};
-  struct eo_series_sink sink = { send_columns, send_rows, &child };
+  struct eo_series_sink sink = {send_columns, send_rows, &child};
   enum eo_code code = reader(path, &own, &sink, &last.notes, &last.error);
   last.error.code = code;
   send_message(&child, MESSAGE_DONE, 0, &last, sizeof last, NULL);
@@ -152,7 +157,7 @@ static int receive(const struct parent *p, void *bytes, size_t size)
 {
   char *to = bytes;
   while (size > 0) {
-    struct pollfd ready = { .fd = p->pipe, .events = POLLIN };
+    struct pollfd ready = {.fd = p->pipe, .events = POLLIN};
     int events = poll(&ready, 1, WAIT_MS);
     if (events <= 0) {
       if (p->columns == 0 && eo_progress_report(p->progress, "rig file", 0))
@@ -174,7 +179,8 @@ static enum eo_code no_answer(int state, struct eo_error *error)
 {
   if (state == CANCELLED)
     return eo_error_set(error, EO_ERROR_CANCELLED, "", "Reading the file was cancelled.");
-  return eo_error_set(error, EO_ERROR_INPUT, "", "The file is damaged or takes too much memory or time: its reader gave up without an answer.");
+  return eo_error_set(error, EO_ERROR_INPUT, "",
+                      "The file is damaged or takes too much memory or time: its reader gave up without an answer.");
 }
 
 static void end_series(struct eo_series *series)
@@ -226,7 +232,8 @@ static enum eo_code receive_end(const struct parent *p, struct eo_notes *notes, 
     eo_notes_add(notes, "%.*s", EO_NOTE_LENGTH - 1, noted.text[i]);
   if (verdict.code == EO_OK)
     return p->columns ? EO_OK : no_answer(ENDED, error);
-  return eo_error_set(error, verdict.code <= EO_ERROR_CANCELLED ? verdict.code : EO_ERROR_INPUT, "", "%s", verdict.text);
+  return eo_error_set(error, verdict.code <= EO_ERROR_CANCELLED ? verdict.code : EO_ERROR_INPUT, "", "%s",
+                      verdict.text);
 }
 
 static enum eo_code receive_all(struct parent *p, struct eo_notes *notes, struct eo_error *error)
@@ -238,7 +245,8 @@ static enum eo_code receive_all(struct parent *p, struct eo_notes *notes, struct
     if (!code && message.kind == MESSAGE_DONE)
       return receive_end(p, notes, error);
     if (!code)
-      code = message.kind == MESSAGE_COLUMNS ? receive_columns(p, message.count, error) : receive_rows(p, message.count, error);
+      code = message.kind == MESSAGE_COLUMNS ? receive_columns(p, message.count, error)
+                                             : receive_rows(p, message.count, error);
     if (code)
       return code;
   }
@@ -258,7 +266,7 @@ enum eo_code eo_isolate_read(eo_series_reader *reader, const char *path, const s
     close(ends[0]);
     return eo_error_set(error, EO_ERROR_MEMORY, "", "No process for a reader could be made: %s.", strerror(errno));
   }
-  struct parent parent = { .pipe = ends[0], .progress = options->progress, .sink = sink };
+  struct parent parent = {.pipe = ends[0], .progress = options->progress, .sink = sink};
   enum eo_code code = receive_all(&parent, notes, error);
   close(ends[0]);
   kill(process, SIGKILL); /* it has ended, or is of no use any more */

@@ -14,9 +14,11 @@
 #define COSINE_WORDS "cos|cosine|kosinus|cosinus"
 #define SINE_LETTER "a" /* only of names without such a word: in a_sin and a_cos it names the encoder */
 #define COSINE_LETTER "b"
-#define OTHER_WORDS "torque|moment|drehmoment|speed|rpm|drehzahl|temperature|temp|temperatur|acc|acceleration|accel|force|kraft|trigger|index|sample|count_no|status"
+#define OTHER_WORDS                                                                                             \
+  "torque|moment|drehmoment|speed|rpm|drehzahl|temperature|temp|temperatur|acc|acceleration|accel|force|kraft|" \
+  "trigger|index|sample|count_no|status"
 
-static const char *const member_names[2] = { "pinion", "gear" };
+static const char *const member_names[2] = {"pinion", "gear"};
 
 struct guess {
   const struct eo_recording *recording;
@@ -41,7 +43,8 @@ static const char *label(const struct guess *g, int column, char *text, size_t s
 }
 
 /* A column by its name, else by its number. */
-static enum eo_code find_chosen(const struct guess *g, const char *chosen, const char *pointer, int *column, struct eo_error *error)
+static enum eo_code find_chosen(const struct guess *g, const char *chosen, const char *pointer, int *column,
+                                struct eo_error *error)
 {
   for (int c = 0; c < g->columns; c++)
     if (!strcmp(eo_recording_name(g->recording, c), chosen)) {
@@ -51,12 +54,14 @@ static enum eo_code find_chosen(const struct guess *g, const char *chosen, const
   char *end;
   long number = strtol(chosen, &end, 10);
   if (end == chosen || *end || number < 1 || number > g->columns)
-    return eo_error_set(error, EO_ERROR_INPUT, pointer, "The recording has no column \"%.60s\"; it has %d columns.", chosen, g->columns);
+    return eo_error_set(error, EO_ERROR_INPUT, pointer, "The recording has no column \"%.60s\"; it has %d columns.",
+                        chosen, g->columns);
   *column = (int)number - 1;
   return EO_OK;
 }
 
-/* Time goes up by nearly equal steps and never starts again; a unit or a name that says so counts more than the values. */
+/* Time goes up by nearly equal steps and never starts again; a unit or a name that says so counts more than the values.
+ */
 static double time_score(const struct guess *g, int column)
 {
   const struct eo_column *look = &g->look[column];
@@ -77,12 +82,15 @@ static bool looks_like_pulses(const struct guess *g)
   bool uneven = false;
   for (int c = 0; c < g->columns; c++) {
     const struct eo_column *look = &g->look[c];
-    if (look->falls || look->resets || look->rises < 2 || (look->quantity != EO_QUANTITY_TIME && look->quantity != EO_QUANTITY_NONE))
+    if (look->falls || look->resets || look->rises < 2 ||
+        (look->quantity != EO_QUANTITY_TIME && look->quantity != EO_QUANTITY_NONE))
       return false;
     times++;
-    uneven = uneven || eo_recording_length(g->recording, c) != eo_recording_length(g->recording, 0) || look->quantity == EO_QUANTITY_TIME;
+    uneven = uneven || eo_recording_length(g->recording, c) != eo_recording_length(g->recording, 0) ||
+             look->quantity == EO_QUANTITY_TIME;
   }
-  return times == 2 && uneven && g->look[1].quantity == g->look[0].quantity && !(eo_recording_interval(g->recording) > 0);
+  return times == 2 && uneven && g->look[1].quantity == g->look[0].quantity &&
+         !(eo_recording_interval(g->recording) > 0);
 }
 
 /* Without a column of time the rows are even: an interval from the file or the caller. */
@@ -91,7 +99,8 @@ static enum eo_code find_interval(struct guess *g, struct eo_error *error)
   g->tracks->time_column = -1;
   g->tracks->interval = g->choice->sample_rate > 0 ? 1 / g->choice->sample_rate : eo_recording_interval(g->recording);
   if (!(g->tracks->interval > 0))
-    return eo_error_set(error, EO_ERROR_INPUT, "/sample_rate_Hz", "No column holds the time and the file states no sampling rate; give one.");
+    return eo_error_set(error, EO_ERROR_INPUT, "/sample_rate_Hz",
+                        "No column holds the time and the file states no sampling rate; give one.");
   if (!(g->choice->sample_rate > 0))
     eo_notes_add(g->notes, "The file states a sampling rate of %.8g Hz.", 1 / g->tracks->interval);
   return EO_OK;
@@ -119,8 +128,8 @@ static enum eo_code find_time(struct guess *g, struct eo_error *error)
   g->tracks->time_column = best;
   if (g->look[best].quantity == EO_QUANTITY_TIME && !(g->choice->time_scale > 0))
     g->tracks->time_scale = g->look[best].factor;
-  eo_notes_add(g->notes, "%s is taken as time in units of %g s: steps of %.6g s.", label(g, best, text, sizeof text), g->tracks->time_scale,
-               g->look[best].step * g->tracks->time_scale);
+  eo_notes_add(g->notes, "%s is taken as time in units of %g s: steps of %.6g s.", label(g, best, text, sizeof text),
+               g->tracks->time_scale, g->look[best].step * g->tracks->time_scale);
   return EO_OK;
 }
 
@@ -129,7 +138,8 @@ static void find_candidates(struct guess *g)
 {
   for (int c = 0; c < g->columns; c++) {
     const struct eo_column *look = &g->look[c];
-    if (c == g->tracks->time_column || !look->count || look->quantity == EO_QUANTITY_OTHER || (look->quantity == EO_QUANTITY_TIME && g->kind != EO_LAYOUT_PULSES))
+    if (c == g->tracks->time_column || !look->count || look->quantity == EO_QUANTITY_OTHER ||
+        (look->quantity == EO_QUANTITY_TIME && g->kind != EO_LAYOUT_PULSES))
       continue;
     if (look->quantity != EO_QUANTITY_ANGLE && eo_column_named(eo_recording_name(g->recording, c), OTHER_WORDS))
       continue;
@@ -168,19 +178,22 @@ static int sine_or_cosine(const char *name)
 static int fit_of(const struct guess *g, int column, int member, int track)
 {
   const char *name = eo_recording_name(g->recording, column);
-  int fit = eo_column_named(name, member ? GEAR_WORDS : PINION_WORDS) - eo_column_named(name, member ? PINION_WORDS : GEAR_WORDS);
+  int fit = eo_column_named(name, member ? GEAR_WORDS : PINION_WORDS) -
+            eo_column_named(name, member ? PINION_WORDS : GEAR_WORDS);
   if (g->kind == EO_LAYOUT_SINE_COSINE)
     fit += 2 * (track ? -1 : 1) * sine_or_cosine(name);
-  if (g->kind == EO_LAYOUT_ANGLES && (g->look[column].quantity == EO_QUANTITY_ANGLE || g->look[column].quantity == EO_QUANTITY_COUNT))
+  if (g->kind == EO_LAYOUT_ANGLES &&
+      (g->look[column].quantity == EO_QUANTITY_ANGLE || g->look[column].quantity == EO_QUANTITY_COUNT))
     fit += 4;
   return fit;
 }
 
-/* Columns that the caller named come first; each other place then takes the best fitting column, the earlier one of equals. */
+/* Columns that the caller named come first; each other place then takes the best fitting column, the earlier one of
+   equals. */
 static enum eo_code assign(struct guess *g, struct eo_error *error)
 {
   int tracks = g->kind == EO_LAYOUT_SINE_COSINE ? 2 : 1;
-  bool taken[EO_RECORDING_COLUMNS] = { false };
+  bool taken[EO_RECORDING_COLUMNS] = {false};
   for (int member = 0; member < 2; member++)
     for (int track = 0; track < tracks; track++) {
       int *column = &g->tracks->channel[member].column[track];
@@ -203,7 +216,8 @@ static enum eo_code assign(struct guess *g, struct eo_error *error)
       }
     }
     if (*column < 0 && best < 0)
-      return eo_error_set(error, EO_ERROR_INPUT, "/columns", "The recording has %d column%s that may hold an encoder's values; %d are needed.",
+      return eo_error_set(error, EO_ERROR_INPUT, "/columns",
+                          "The recording has %d column%s that may hold an encoder's values; %d are needed.",
                           g->candidates, g->candidates == 1 ? "" : "s", 2 * tracks);
     if (*column < 0)
       *column = best;
@@ -233,7 +247,10 @@ static enum eo_code find_scale(struct guess *g, int member, struct eo_error *err
   const struct eo_column *look = &g->look[channel->column[0]];
   double lines = g->choice->lines[member];
   bool counts = g->choice->unit == EO_LAYOUT_COUNT || (!g->choice->unit && look->quantity == EO_QUANTITY_COUNT);
-  channel->scale = g->choice->unit == EO_LAYOUT_DEGREE ? TURN / 360 : g->choice->unit == EO_LAYOUT_RADIAN ? 1 : g->choice->unit == EO_LAYOUT_TURN ? TURN : 0;
+  channel->scale = g->choice->unit == EO_LAYOUT_DEGREE   ? TURN / 360
+                   : g->choice->unit == EO_LAYOUT_RADIAN ? 1
+                   : g->choice->unit == EO_LAYOUT_TURN   ? TURN
+                                                         : 0;
   if (!g->choice->unit && look->quantity == EO_QUANTITY_ANGLE)
     channel->scale = look->factor;
   else if (lines > 0 && (counts || (!g->choice->unit && look->whole)))
@@ -248,8 +265,8 @@ static enum eo_code find_scale(struct guess *g, int member, struct eo_error *err
     return eo_error_set(error, EO_ERROR_INPUT, "/lines", "%s counts; give the counts per turn of the %s's encoder.",
                         label(g, channel->column[0], text, sizeof text), member_names[member]);
   channel->scale = scale_by_speed(g, look);
-  eo_notes_add(g->notes, "Nothing states the unit of %s; %s are a guess from its speed.", label(g, channel->column[0], text, sizeof text),
-               scale_name(channel->scale));
+  eo_notes_add(g->notes, "Nothing states the unit of %s; %s are a guess from its speed.",
+               label(g, channel->column[0], text, sizeof text), scale_name(channel->scale));
   return EO_OK;
 }
 
@@ -259,9 +276,11 @@ static void note_angle(const struct guess *g, int member)
   const struct eo_column *look = &g->look[channel->column[0]];
   char text[80], turns[48] = "not starting again";
   if (look->resets)
-    snprintf(turns, sizeof turns, "starting again after %.6g", eo_column_turn(look) > 0 ? eo_column_turn(look) : look->period);
-  eo_notes_add(g->notes, "%s is taken as the angle of the %s in %s of %.6g rad, %s.", label(g, channel->column[0], text, sizeof text),
-               member_names[member], scale_name(channel->scale), channel->scale, turns);
+    snprintf(turns, sizeof turns, "starting again after %.6g",
+             eo_column_turn(look) > 0 ? eo_column_turn(look) : look->period);
+  eo_notes_add(g->notes, "%s is taken as the angle of the %s in %s of %.6g rad, %s.",
+               label(g, channel->column[0], text, sizeof text), member_names[member], scale_name(channel->scale),
+               channel->scale, turns);
 }
 
 static enum eo_code settle_lines(struct guess *g, int member, struct eo_error *error)
@@ -275,7 +294,8 @@ static enum eo_code settle_lines(struct guess *g, int member, struct eo_error *e
     return eo_error_set(error, EO_ERROR_INPUT, "/lines", "Give the %s per turn of the %s's encoder.",
                         g->kind == EO_LAYOUT_PULSES ? "pulses" : "lines (sine periods)", member_names[member]);
   if (g->kind == EO_LAYOUT_PULSES) {
-    eo_notes_add(g->notes, "%s is taken as the times of the pulses of the %s.", label(g, channel->column[0], text, sizeof text), member_names[member]);
+    eo_notes_add(g->notes, "%s is taken as the times of the pulses of the %s.",
+                 label(g, channel->column[0], text, sizeof text), member_names[member]);
     return EO_OK;
   }
   if (look->quantity == EO_QUANTITY_VOLTAGE) {
@@ -285,14 +305,17 @@ static enum eo_code settle_lines(struct guess *g, int member, struct eo_error *e
     channel->unit = EO_TRACK_MICROAMPERE;
     channel->factor = look->factor * 1e6;
   }
-  eo_notes_add(g->notes, "%s and %s are taken as the sine and cosine tracks of the %s.", label(g, channel->column[0], text, sizeof text),
-               label(g, channel->column[1], second, sizeof second), member_names[member]);
+  eo_notes_add(g->notes, "%s and %s are taken as the sine and cosine tracks of the %s.",
+               label(g, channel->column[0], text, sizeof text), label(g, channel->column[1], second, sizeof second),
+               member_names[member]);
   return EO_OK;
 }
 
 static enum eo_code settle(struct guess *g, struct eo_error *error)
 {
-  static const enum eo_track tracks[] = { [EO_LAYOUT_ANGLES] = EO_TRACK_ANGLE, [EO_LAYOUT_SINE_COSINE] = EO_TRACK_SINE_COSINE, [EO_LAYOUT_PULSES] = EO_TRACK_PULSES };
+  static const enum eo_track tracks[] = {[EO_LAYOUT_ANGLES] = EO_TRACK_ANGLE,
+                                         [EO_LAYOUT_SINE_COSINE] = EO_TRACK_SINE_COSINE,
+                                         [EO_LAYOUT_PULSES] = EO_TRACK_PULSES};
   for (int member = 0; member < 2; member++) {
     g->tracks->channel[member].track = tracks[g->kind];
     enum eo_code code = g->kind == EO_LAYOUT_ANGLES ? find_scale(g, member, error) : settle_lines(g, member, error);
@@ -314,7 +337,9 @@ static enum eo_code find(struct guess *g, struct eo_error *error)
   g->kind = g->choice->kind ? g->choice->kind : looks_like_pulses(g) ? EO_LAYOUT_PULSES : EO_LAYOUT_GUESS_KIND;
   g->tracks->time_column = -1;
   if (g->kind == EO_LAYOUT_PULSES)
-    g->tracks->time_scale = g->choice->time_scale > 0 ? g->choice->time_scale : g->look[0].quantity == EO_QUANTITY_TIME ? g->look[0].factor : 1;
+    g->tracks->time_scale = g->choice->time_scale > 0                 ? g->choice->time_scale
+                            : g->look[0].quantity == EO_QUANTITY_TIME ? g->look[0].factor
+                                                                      : 1;
   else
     code = find_time(g, error);
   if (code)
@@ -326,8 +351,8 @@ static enum eo_code find(struct guess *g, struct eo_error *error)
   return code ? code : settle(g, error);
 }
 
-enum eo_code eo_layout_find(const struct eo_recording *recording, const struct eo_layout_choice *choice, struct eo_tracks *tracks,
-                            struct eo_notes *notes, struct eo_error *error)
+enum eo_code eo_layout_find(const struct eo_recording *recording, const struct eo_layout_choice *choice,
+                            struct eo_tracks *tracks, struct eo_notes *notes, struct eo_error *error)
 {
   static const struct eo_layout_choice none;
   struct guess *g = calloc(1, sizeof *g);

@@ -1,5 +1,5 @@
-/* MATLAB files of versions 4, 5 and 7 by libmatio: numeric vectors, matrices with one channel per column, the same in structs. Runs in a
-   process of its own. Version 7.3 is HDF5 and read as such. */
+/* MATLAB files of versions 4, 5 and 7 by libmatio: numeric vectors, matrices with one channel per column, the same in
+   structs. Runs in a process of its own. Version 7.3 is HDF5 and read as such. */
 #include "measurement/bytes.h"
 #include "measurement/readers.h"
 #include "measurement/source.h"
@@ -87,21 +87,24 @@ static bool find_table(const matvar_t *v, struct table *t)
   int64_t rows = (int64_t)v->dims[0], columns = (int64_t)v->dims[1];
   if (rows < 1 || columns < 1 || rows > INT32_MAX || columns > INT32_MAX || rows * columns > INT32_MAX)
     return false;
-  *t = rows >= columns ? (struct table){ rows, columns, 1, rows } : (struct table){ columns, rows, rows, 1 };
+  *t = rows >= columns ? (struct table){rows, columns, 1, rows} : (struct table){columns, rows, rows, 1};
   return t->channels <= WIDE;
 }
 
 /* The values first .. first + count - 1 of the variable as they are stored, column by column. */
-static enum eo_code read_values(struct matlab *m, matvar_t *v, int64_t first, int64_t count, void *data, struct eo_error *error)
+static enum eo_code read_values(struct matlab *m, matvar_t *v, int64_t first, int64_t count, void *data,
+                                struct eo_error *error)
 {
   if (!Mat_VarReadDataLinear(m->file, v, data, (int)first, 1, (int)count))
     return EO_OK;
-  return eo_error_set(error, EO_ERROR_INPUT, "", "MATLAB: the values of \"%.60s\" cannot be read; the file is damaged or cut off.", v->name);
+  return eo_error_set(error, EO_ERROR_INPUT, "",
+                      "MATLAB: the values of \"%.60s\" cannot be read; the file is damaged or cut off.", v->name);
 }
 
-/* Gives each value of a piece to its channel. Only pieces that begin and end with whole runs of channels reach here when along > 1. */
-static enum eo_code keep_values(struct matlab *m, const struct table *t, int64_t first, int64_t count, const void *data, enum matio_classes class,
-                                double *values, struct eo_error *error)
+/* Gives each value of a piece to its channel. Only pieces that begin and end with whole runs of channels reach here
+   when along > 1. */
+static enum eo_code keep_values(struct matlab *m, const struct table *t, int64_t first, int64_t count, const void *data,
+                                enum matio_classes class, double *values, struct eo_error *error)
 {
   int base = m->count;
   for (int64_t c = 0; c < t->channels; c++) {
@@ -127,8 +130,9 @@ static enum eo_code copy_values(struct matlab *m, matvar_t *v, const struct tabl
   if (piece > total)
     piece = total;
   if (total * size > EO_SOURCE_FREE && total * size / EO_SOURCE_EXPANSION > m->bytes)
-    return eo_error_set(error, EO_ERROR_INPUT, "", "MATLAB: \"%.60s\" states %lld values; the file has only %lld bytes.", v->name, (long long)total,
-                        (long long)m->bytes);
+    return eo_error_set(error, EO_ERROR_INPUT, "",
+                        "MATLAB: \"%.60s\" states %lld values; the file has only %lld bytes.", v->name,
+                        (long long)total, (long long)m->bytes);
   void *data = calloc((size_t)piece, (size_t)size);
   double *values = malloc((size_t)piece * sizeof *values);
   enum eo_code code = data && values ? EO_OK : eo_error_memory(error);
@@ -218,7 +222,8 @@ static enum eo_code read_variables(struct matlab *m, struct eo_error *error)
   return code;
 }
 
-/* libmatio passes over what is missing at the end of a file. Each element of version 5 states its length: they must fill the file. */
+/* libmatio passes over what is missing at the end of a file. Each element of version 5 states its length: they must
+   fill the file. */
 static enum eo_code check_elements(const char *path, int64_t *bytes_of_file, struct eo_error *error)
 {
   enum { HEADER = 128, MATRIX = 14, COMPRESSED = 15 };
@@ -236,9 +241,11 @@ static enum eo_code check_elements(const char *path, int64_t *bytes_of_file, str
       break;
     uint32_t type = eo_bytes_32(bytes, big), length = eo_bytes_32(bytes + 4, big);
     if (type != MATRIX && type != COMPRESSED)
-      code = eo_error_set(error, EO_ERROR_INPUT, "", "MATLAB: at byte %lld there is no variable but an element of type %u.", (long long)at, type);
+      code = eo_error_set(error, EO_ERROR_INPUT, "",
+                          "MATLAB: at byte %lld there is no variable but an element of type %u.", (long long)at, type);
     else if (length > size - at - 8)
-      code = eo_error_set(error, EO_ERROR_INPUT, "", "MATLAB: the variable at byte %lld has %u bytes, the file only %lld more: it is cut off.",
+      code = eo_error_set(error, EO_ERROR_INPUT, "",
+                          "MATLAB: the variable at byte %lld has %u bytes, the file only %lld more: it is cut off.",
                           (long long)at, length, (long long)(size - at - 8));
     at += 8 + (int64_t)length;
   }
@@ -247,14 +254,15 @@ static enum eo_code check_elements(const char *path, int64_t *bytes_of_file, str
   return code;
 }
 
-static enum eo_code read_column(void *context, int series, int64_t first, int64_t count, double *values, struct eo_error *error)
+static enum eo_code read_column(void *context, int series, int64_t first, int64_t count, double *values,
+                                struct eo_error *error)
 {
   const struct matlab *m = context;
   return eo_recording_read(m->column[series], first, count, values, error);
 }
 
-static enum eo_code read_file(struct matlab *m, const struct eo_reader_options *options, const struct eo_series_sink *sink, struct eo_notes *notes,
-                              struct eo_error *error)
+static enum eo_code read_file(struct matlab *m, const struct eo_reader_options *options,
+                              const struct eo_series_sink *sink, struct eo_notes *notes, struct eo_error *error)
 {
   enum eo_code code = read_variables(m, error);
   if (code)
@@ -262,9 +270,9 @@ static enum eo_code read_file(struct matlab *m, const struct eo_reader_options *
   for (int i = 0; i < m->count; i++)
     m->series[i].interval = m->interval;
   if (m->left_out)
-    eo_notes_add(notes, "%d variable%s %s no channel of real numbers and %s left out.", m->left_out, m->left_out == 1 ? "" : "s",
-                 m->left_out == 1 ? "is" : "are", m->left_out == 1 ? "was" : "were");
-  struct eo_series_file content = { m->series, m->count, m->bytes, options->max_bytes, read_column, m };
+    eo_notes_add(notes, "%d variable%s %s no channel of real numbers and %s left out.", m->left_out,
+                 m->left_out == 1 ? "" : "s", m->left_out == 1 ? "is" : "are", m->left_out == 1 ? "was" : "were");
+  struct eo_series_file content = {m->series, m->count, m->bytes, options->max_bytes, read_column, m};
   return eo_series_copy(&content, sink, notes, error);
 }
 
@@ -274,8 +282,8 @@ static void ignore_message(int level, char *text)
   (void)text;
 }
 
-enum eo_code eo_matlab_read(const char *path, const struct eo_reader_options *options, const struct eo_series_sink *sink, struct eo_notes *notes,
-                            struct eo_error *error)
+enum eo_code eo_matlab_read(const char *path, const struct eo_reader_options *options,
+                            const struct eo_series_sink *sink, struct eo_notes *notes, struct eo_error *error)
 {
   int64_t size;
   enum eo_code code = check_elements(path, &size, error);

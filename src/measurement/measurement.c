@@ -9,17 +9,20 @@
 /* Turns, lines per turn and a stated speed leave no doubt about the unit. */
 static bool unit_is_open(const struct eo_angles *a, const struct eo_tracks *tracks, double stated)
 {
-  return isnan(stated) && !a->wrapped[0] && !a->wrapped[1] && tracks->channel[0].track == EO_TRACK_ANGLE && tracks->channel[1].track == EO_TRACK_ANGLE;
+  return isnan(stated) && !a->wrapped[0] && !a->wrapped[1] && tracks->channel[0].track == EO_TRACK_ANGLE &&
+         tracks->channel[1].track == EO_TRACK_ANGLE;
 }
 
-enum eo_code eo_measurement_run(struct eo_measurement *m, const struct eo_recording *recording, const struct eo_tracks *tracks,
-                                const struct eo_measurement_settings *settings, const struct eo_progress *progress, struct eo_error *error)
+enum eo_code eo_measurement_run(struct eo_measurement *m, const struct eo_recording *recording,
+                                const struct eo_tracks *tracks, const struct eo_measurement_settings *settings,
+                                const struct eo_progress *progress, struct eo_error *error)
 {
   struct eo_angles angles = {0};
   memset(m, 0, sizeof *m);
   m->rows = eo_recording_rows(recording);
   m->ratio = NAN;
-  enum eo_code code = eo_angles_make(&angles, recording, tracks, settings->spool_directory, &m->findings, progress, error);
+  enum eo_code code = eo_angles_make(&angles, recording, tracks, settings->spool_directory, &m->findings, progress,
+                                     error);
   m->interval = angles.interval;
   for (int channel = 0; channel < 2; channel++) {
     m->raw[channel] = angles.raw[channel];
@@ -29,7 +32,8 @@ enum eo_code eo_measurement_run(struct eo_measurement *m, const struct eo_record
     m->ratio = angles.ratio;
     eo_orientation_judge(&angles, settings->transmission.teeth, settings->stated_speed, &m->findings);
   }
-  if (!code && angles.series && eo_findings_worst(&m->findings) != EO_SEVERITY_REFUSED && unit_is_open(&angles, tracks, settings->stated_speed))
+  if (!code && angles.series && eo_findings_worst(&m->findings) != EO_SEVERITY_REFUSED &&
+      unit_is_open(&angles, tracks, settings->stated_speed))
     code = eo_units_judge(&angles, &settings->transmission, &m->findings, error);
   if (!code && angles.series && eo_findings_worst(&m->findings) != EO_SEVERITY_REFUSED)
     code = eo_transmission_measure(&m->transmission, &angles, &settings->transmission, &m->findings, progress, error);
@@ -38,4 +42,7 @@ enum eo_code eo_measurement_run(struct eo_measurement *m, const struct eo_record
   return code;
 }
 
-void eo_measurement_done(struct eo_measurement *m) { eo_transmission_done(&m->transmission); }
+void eo_measurement_done(struct eo_measurement *m)
+{
+  eo_transmission_done(&m->transmission);
+}

@@ -28,24 +28,29 @@ bool eo_orientation_nearest(double ratio, double tolerance, const int teeth[2], 
   return false;
 }
 
-static bool matches(const struct eo_angles *a, double ratio, double expected) { return fabs(ratio / expected - 1) < a->ratio_tolerance; }
+static bool matches(const struct eo_angles *a, double ratio, double expected)
+{
+  return fabs(ratio / expected - 1) < a->ratio_tolerance;
+}
 
 static void refuse_teeth(const struct eo_angles *a, const int teeth[2], struct eo_findings *findings)
 {
   int nearest[2];
   double ratio = fabs(a->ratio);
   if (eo_orientation_nearest(ratio, a->ratio_tolerance, teeth, nearest))
-    eo_findings_add(findings, EO_FINDING_TEETH, EO_SEVERITY_REFUSED, -1, ratio,
-                    "The gear turns %.6f times as far as the pinion, which is %d/%d, not the %d/%d = %.6f of the design.", ratio, nearest[0], nearest[1],
-                    teeth[0], teeth[1], (double)teeth[0] / teeth[1]);
+    eo_findings_add(
+        findings, EO_FINDING_TEETH, EO_SEVERITY_REFUSED, -1, ratio,
+        "The gear turns %.6f times as far as the pinion, which is %d/%d, not the %d/%d = %.6f of the design.", ratio,
+        nearest[0], nearest[1], teeth[0], teeth[1], (double)teeth[0] / teeth[1]);
   else
     eo_findings_add(findings, EO_FINDING_TEETH, EO_SEVERITY_REFUSED, -1, ratio,
-                    "The gear turns %.6f times as far as the pinion, no ratio of tooth numbers (%d/%d would be %.6f): check lines per turn and couplings.", ratio,
-                    teeth[0], teeth[1], (double)teeth[0] / teeth[1]);
+                    "The gear turns %.6f times as far as the pinion, no ratio of tooth numbers (%d/%d would be %.6f): "
+                    "check lines per turn and couplings.",
+                    ratio, teeth[0], teeth[1], (double)teeth[0] / teeth[1]);
 }
 
-/* One channel in degrees, one in radians: the one that starts again every turn, or the stated speed, tells which is right. excess: gear over
-   pinion beyond the ratio of the teeth, 57.3 or its inverse. */
+/* One channel in degrees, one in radians: the one that starts again every turn, or the stated speed, tells which is
+   right. excess: gear over pinion beyond the ratio of the teeth, 57.3 or its inverse. */
 static void settle_units(struct eo_angles *a, double excess, double stated, struct eo_findings *findings)
 {
   int wrong = -1;
@@ -60,8 +65,10 @@ static void settle_units(struct eo_angles *a, double excess, double stated, stru
   }
   double factor = wrong == 1 ? 1 / excess : excess;
   a->factor[wrong] *= factor;
-  eo_findings_add(findings, EO_FINDING_UNITS, EO_SEVERITY_REPAIRED, wrong, excess, "One channel is in degrees and the other in radians: their ratio is off by %.5g. The %s was brought to the unit of the %s.", excess,
-                  wrong ? "gear" : "pinion", wrong ? "pinion" : "gear");
+  eo_findings_add(findings, EO_FINDING_UNITS, EO_SEVERITY_REPAIRED, wrong, excess,
+                  "One channel is in degrees and the other in radians: their ratio is off by %.5g. The %s was brought "
+                  "to the unit of the %s.",
+                  excess, wrong ? "gear" : "pinion", wrong ? "pinion" : "gear");
 }
 
 static bool settle_ratio(struct eo_angles *a, const int teeth[2], double stated, struct eo_findings *findings)
@@ -76,8 +83,9 @@ static bool settle_ratio(struct eo_angles *a, const int teeth[2], double stated,
       a->from[1] = !swap;
       if (swap)
         eo_findings_add(findings, EO_FINDING_SWAPPED, EO_SEVERITY_REPAIRED, -1, ratio,
-                        "Pinion and gear are swapped: the second channel turns %.6f times as far as the first, which is %d/%d; exchanged.", ratio, teeth[1],
-                        teeth[0]);
+                        "Pinion and gear are swapped: the second channel turns %.6f times as far as the first, which "
+                        "is %d/%d; exchanged.",
+                        ratio, teeth[1], teeth[0]);
       if (u > 0)
         settle_units(a, unit[u], stated, findings);
       return true;
@@ -93,10 +101,13 @@ static void settle_directions(struct eo_angles *a, struct eo_findings *findings)
   a->factor[1] *= sign[1];
   if (sign[0] != sign[1]) {
     int wrong = sign[0] < 0 ? 0 : 1;
-    eo_findings_add(findings, EO_FINDING_REVERSED, EO_SEVERITY_REPAIRED, wrong, a->ratio,
-                    "The %s encoder counts backwards while the other counts forwards (ratio %.6f); its sign was changed.", wrong ? "gear" : "pinion", a->ratio);
+    eo_findings_add(
+        findings, EO_FINDING_REVERSED, EO_SEVERITY_REPAIRED, wrong, a->ratio,
+        "The %s encoder counts backwards while the other counts forwards (ratio %.6f); its sign was changed.",
+        wrong ? "gear" : "pinion", a->ratio);
   } else if (sign[0] < 0) {
-    eo_findings_add(findings, EO_FINDING_REVERSED, EO_SEVERITY_NOTE, -1, a->ratio, "Both angles fall: the pair runs backwards; both signs were changed.");
+    eo_findings_add(findings, EO_FINDING_REVERSED, EO_SEVERITY_NOTE, -1, a->ratio,
+                    "Both angles fall: the pair runs backwards; both signs were changed.");
   }
 }
 
@@ -109,19 +120,21 @@ static void settle_speed(struct eo_angles *a, double stated, struct eo_findings 
   if (factor != 1) {
     a->factor[0] *= factor;
     a->factor[1] *= factor;
-    eo_findings_add(findings, EO_FINDING_UNITS, EO_SEVERITY_REPAIRED, -1, off,
-                    "Both angles are in %s, not in the stated unit: the speed would be %.5g rpm instead of %.5g rpm; read so.", factor > 1 ? "radians" : "degrees",
-                    30 / M_PI * speed, 30 / M_PI * stated);
+    eo_findings_add(
+        findings, EO_FINDING_UNITS, EO_SEVERITY_REPAIRED, -1, off,
+        "Both angles are in %s, not in the stated unit: the speed would be %.5g rpm instead of %.5g rpm; read so.",
+        factor > 1 ? "radians" : "degrees", 30 / M_PI * speed, 30 / M_PI * stated);
   } else {
-    eo_findings_add(findings, EO_FINDING_SPEED, EO_SEVERITY_WARNING, -1, 30 / M_PI * speed, "The pinion runs at %.6g rpm, not at the stated %.6g rpm.",
-                    30 / M_PI * speed, 30 / M_PI * stated);
+    eo_findings_add(findings, EO_FINDING_SPEED, EO_SEVERITY_WARNING, -1, 30 / M_PI * speed,
+                    "The pinion runs at %.6g rpm, not at the stated %.6g rpm.", 30 / M_PI * speed, 30 / M_PI * stated);
   }
 }
 
 void eo_orientation_judge(struct eo_angles *a, const int teeth[2], double stated, struct eo_findings *findings)
 {
   if (!(fabs(a->ratio) > 0) || !isfinite(a->ratio)) {
-    eo_findings_add(findings, EO_FINDING_CONSTANT, EO_SEVERITY_REFUSED, -1, a->ratio, "One of the shafts does not turn.");
+    eo_findings_add(findings, EO_FINDING_CONSTANT, EO_SEVERITY_REFUSED, -1, a->ratio,
+                    "One of the shafts does not turn.");
     return;
   }
   if (!settle_ratio(a, teeth, stated, findings))

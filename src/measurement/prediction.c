@@ -12,7 +12,8 @@ double eo_prediction_pinion_share(const struct eo_supports *supports, const stru
   return mass[EO_GEAR] / (mass[EO_PINION] + mass[EO_GEAR]);
 }
 
-static void read_orders(struct eo_rig_prediction *p, const struct eo_evaluation *r, const struct eo_case_result *c, int end, int teeth)
+static void read_orders(struct eo_rig_prediction *p, const struct eo_evaluation *r, const struct eo_case_result *c,
+                        int end, int teeth)
 {
   double mesh = teeth * p->speed, square = 0, low = INFINITY, high = -INFINITY;
   for (int h = 1; h <= p->harmonics; h++) {
@@ -32,8 +33,9 @@ static void read_orders(struct eo_rig_prediction *p, const struct eo_evaluation 
   p->peak_to_peak = high - low;
 }
 
-enum eo_code eo_prediction_run(struct eo_rig_prediction *p, struct eo_evaluator *evaluator, const struct eo_design *design, bool unmodified, double torque,
-                               double speed, int end, int harmonics, struct eo_error *error)
+enum eo_code eo_prediction_run(struct eo_rig_prediction *p, struct eo_evaluator *evaluator,
+                               const struct eo_design *design, bool unmodified, double torque, double speed, int end,
+                               int harmonics, struct eo_error *error)
 {
   const struct eo_evaluation *r;
   struct eo_design *one = malloc(sizeof *one);
@@ -47,8 +49,12 @@ enum eo_code eo_prediction_run(struct eo_rig_prediction *p, struct eo_evaluator 
   enum eo_code code = eo_evaluator_run(evaluator, one, NULL, EO_WANT_CURVES, &r, error);
   if (!code) {
     const struct eo_case_result *c = &r->load_case[0];
-    *p = (struct eo_rig_prediction){.torque = torque, .speed = speed, .harmonics = harmonics, .rms = NAN, .peak_to_peak = NAN,
-                                .valid = c->vibration.outcome != EO_VIBRATION_NOT_CONVERGED};
+    *p = (struct eo_rig_prediction){.torque = torque,
+                                    .speed = speed,
+                                    .harmonics = harmonics,
+                                    .rms = NAN,
+                                    .peak_to_peak = NAN,
+                                    .valid = c->vibration.outcome != EO_VIBRATION_NOT_CONVERGED};
     for (int h = 0; h < harmonics; h++)
       p->order[h] = p->acceleration[h] = NAN;
     if (p->valid)

@@ -1,6 +1,6 @@
-/* Pulse times as angles: the k-th pulse of an encoder with N lines passes at the angle 2 pi k / N. The samples stand at the pulses of the
-   pinion; the angle of the gear there comes from Lagrange's polynomial through the six gear pulses around (about 1e-4 of a harmonic that
-   has eight pulses per period). */
+/* Pulse times as angles: the k-th pulse of an encoder with N lines passes at the angle 2 pi k / N. The samples stand at
+   the pulses of the pinion; the angle of the gear there comes from Lagrange's polynomial through the six gear pulses
+   around (about 1e-4 of a harmonic that has eight pulses per period). */
 #include "measurement/sampler.h"
 
 #include <math.h>
@@ -20,7 +20,7 @@ struct eo_pulses {
   const struct eo_recording *recording;
   const struct eo_tracks *tracks;
   struct train train[2];
-  int64_t next, near;    /* pinion pulse; gear pulse at or before it */
+  int64_t next, near; /* pinion pulse; gear pulse at or before it */
   double *rows;
 };
 
@@ -41,7 +41,8 @@ static enum eo_code find_length(struct eo_pulses *p, struct train *train, struct
   return EO_OK;
 }
 
-enum eo_code eo_pulses_new(struct eo_pulses **pulses, const struct eo_recording *recording, const struct eo_tracks *tracks, struct eo_error *error)
+enum eo_code eo_pulses_new(struct eo_pulses **pulses, const struct eo_recording *recording,
+                           const struct eo_tracks *tracks, struct eo_error *error)
 {
   struct eo_pulses *p = calloc(1, sizeof *p);
   if (p)
@@ -88,7 +89,8 @@ static enum eo_code load(struct eo_pulses *p, struct train *train, int64_t first
 }
 
 /* The time of a pulse; the block moves when the pulse is not in it. */
-static enum eo_code pulse_at(struct eo_pulses *p, struct train *train, int64_t pulse, double *time, struct eo_error *error)
+static enum eo_code pulse_at(struct eo_pulses *p, struct train *train, int64_t pulse, double *time,
+                             struct eo_error *error)
 {
   if (pulse < train->first || pulse >= train->first + train->count) {
     int64_t first = pulse > NODES ? pulse - NODES : 0;
@@ -133,8 +135,8 @@ enum eo_code eo_pulses_next(struct eo_pulses *p, struct eo_sample *sample, int *
   for (; *count < EO_SAMPLER_BLOCK && p->next < p->train[0].length; p->next++) {
     double time, after, pulse;
     enum eo_code code = pulse_at(p, &p->train[0], p->next, &time, error);
-    while (!code && isfinite(time) && p->near + 1 < p->train[1].length && !(code = pulse_at(p, &p->train[1], p->near + 1, &after, error)) &&
-           !(after > time))
+    while (!code && isfinite(time) && p->near + 1 < p->train[1].length &&
+           !(code = pulse_at(p, &p->train[1], p->near + 1, &after, error)) && !(after > time))
       p->near++;
     if (code)
       return code;
@@ -149,7 +151,8 @@ enum eo_code eo_pulses_next(struct eo_pulses *p, struct eo_sample *sample, int *
       return code;
     if (!isfinite(pulse))
       continue;
-    sample[(*count)++] = (struct eo_sample){time, {2 * M_PI * (double)p->next / channel[0].lines, 2 * M_PI * pulse / channel[1].lines}, p->next};
+    sample[(*count)++] = (struct eo_sample){
+        time, {2 * M_PI * (double)p->next / channel[0].lines, 2 * M_PI * pulse / channel[1].lines}, p->next};
   }
   return EO_OK;
 }

@@ -10,7 +10,8 @@
 
 #define HEAD 4096 /* bytes from which a kind is told */
 
-static const char *const kind_names[EO_READER_KINDS] = { "delimited text", "MATLAB .mat", "NI TDMS", "universal file (UFF 58)", "HDF5" };
+static const char *const kind_names[EO_READER_KINDS] = {"delimited text", "MATLAB .mat", "NI TDMS",
+                                                        "universal file (UFF 58)", "HDF5"};
 
 const char *eo_reader_kind_name(enum eo_reader_kind kind)
 {
@@ -30,17 +31,19 @@ static enum eo_code refuse_others(const unsigned char *head, size_t size, struct
     size_t length;
     const char *what;
   } others[] = {
-    { "PK\003\004", 4, "The file is a zip archive or an Excel workbook; upload the text or measurement file itself." },
-    { "\xd0\xcf\x11\xe0", 4, "The file is an old Office document; save the table as text." },
-    { "TDSh", 4, "The file is a TDMS index; upload the .tdms file itself." },
-    { "%PDF", 4, "The file is a PDF; upload the measurement itself." },
-    { "RIFF", 4, "The file is a sound or video file; save the channels as text, TDMS, MATLAB or HDF5." },
-    { "\xff\xfe", 2, "The text is UTF-16; save it as UTF-8 or plain ASCII." },
-    { "\xfe\xff", 2, "The text is UTF-16; save it as UTF-8 or plain ASCII." },
-    { "BZh", 3, "The file is compressed with bzip2; use gzip or none." },
-    { "\xfd" "7zXZ", 5, "The file is compressed with xz; use gzip or none." },
-    { "(\xb5/\xfd", 4, "The file is compressed with zstd; use gzip or none." },
-    { "\x1f\x8b", 2, "The file is a gzip file in a gzip file; compress it once." },
+      {"PK\003\004", 4, "The file is a zip archive or an Excel workbook; upload the text or measurement file itself."},
+      {"\xd0\xcf\x11\xe0", 4, "The file is an old Office document; save the table as text."},
+      {"TDSh", 4, "The file is a TDMS index; upload the .tdms file itself."},
+      {"%PDF", 4, "The file is a PDF; upload the measurement itself."},
+      {"RIFF", 4, "The file is a sound or video file; save the channels as text, TDMS, MATLAB or HDF5."},
+      {"\xff\xfe", 2, "The text is UTF-16; save it as UTF-8 or plain ASCII."},
+      {"\xfe\xff", 2, "The text is UTF-16; save it as UTF-8 or plain ASCII."},
+      {"BZh", 3, "The file is compressed with bzip2; use gzip or none."},
+      {"\xfd"
+       "7zXZ",
+       5, "The file is compressed with xz; use gzip or none."},
+      {"(\xb5/\xfd", 4, "The file is compressed with zstd; use gzip or none."},
+      {"\x1f\x8b", 2, "The file is a gzip file in a gzip file; compress it once."},
   };
   for (size_t i = 0; i < sizeof others / sizeof *others; i++)
     if (begins(head, size, others[i].with, others[i].length))
@@ -54,9 +57,11 @@ static enum eo_code refuse_zeros(const unsigned char *head, size_t size, struct 
   const unsigned char *zero = memchr(head, 0, size);
   if (!zero)
     return EO_OK;
-  if (size >= 4 && (head[0] == 0) != (head[1] == 0) && (head[0] == 0) == (head[2] == 0) && (head[1] == 0) == (head[3] == 0))
+  if (size >= 4 && (head[0] == 0) != (head[1] == 0) && (head[0] == 0) == (head[2] == 0) &&
+      (head[1] == 0) == (head[3] == 0))
     return eo_error_set(error, EO_ERROR_INPUT, "", "The text is UTF-16; save it as UTF-8 or plain ASCII.");
-  return eo_error_set(error, EO_ERROR_INPUT, "", "The file is of no known kind: it is no text (byte %zu is 0) and not MATLAB, TDMS, UFF or HDF5.",
+  return eo_error_set(error, EO_ERROR_INPUT, "",
+                      "The file is of no known kind: it is no text (byte %zu is 0) and not MATLAB, TDMS, UFF or HDF5.",
                       (size_t)(zero - head));
 }
 
@@ -68,7 +73,8 @@ static bool is_hdf5(const unsigned char *head, size_t size)
   return false;
 }
 
-/* A .mat file of version 4 has no signature: five small numbers, the last the length of the first name, which ends with 0. */
+/* A .mat file of version 4 has no signature: five small numbers, the last the length of the first name, which ends with
+   0. */
 static bool is_matlab4(const unsigned char *head, size_t size)
 {
   uint32_t word[5];
@@ -78,8 +84,9 @@ static bool is_matlab4(const unsigned char *head, size_t size)
   for (int i = 0; word[0] > 5000 && i < 5; i++)
     word[i] = __builtin_bswap32(word[i]);
   uint32_t digits = word[0];
-  return digits < 5000 && digits % 10 <= 2 && digits / 10 % 10 <= 5 && digits / 100 % 10 == 0 && word[1] > 0 && word[2] > 0 && word[3] <= 1 &&
-         word[4] >= 2 && word[4] <= 64 && 20 + word[4] <= size && head[20 + word[4] - 1] == 0 && head[20] > ' ' && head[20] < 127;
+  return digits < 5000 && digits % 10 <= 2 && digits / 10 % 10 <= 5 && digits / 100 % 10 == 0 && word[1] > 0 &&
+         word[2] > 0 && word[3] <= 1 && word[4] >= 2 && word[4] <= 64 && 20 + word[4] <= size &&
+         head[20 + word[4] - 1] == 0 && head[20] > ' ' && head[20] < 127;
 }
 
 /* A universal file begins with a line that holds "-1" in columns 5 and 6 and one with the number of a data set. */
@@ -105,7 +112,8 @@ static enum eo_code tell_kind(const unsigned char *head, size_t size, enum eo_re
     return eo_error_set(error, EO_ERROR_INPUT, "", "The file is empty.");
   if (begins(head, size, "TDSm", 4))
     *kind = EO_READER_TDMS;
-  else if (begins(head, size, "MATLAB 5.0 MAT", 14) || begins(head, size, "MATLAB 7.3 MAT", 14) || is_matlab4(head, size))
+  else if (begins(head, size, "MATLAB 5.0 MAT", 14) || begins(head, size, "MATLAB 7.3 MAT", 14) ||
+           is_matlab4(head, size))
     *kind = EO_READER_MATLAB;
   else if (is_hdf5(head, size))
     *kind = EO_READER_HDF5;
@@ -158,8 +166,8 @@ enum eo_code eo_reader_identify(const char *path, enum eo_reader_kind *kind, int
   return EO_OK;
 }
 
-static enum eo_code read_text(const char *path, const struct eo_reader_options *options, struct eo_recording **recording, struct eo_notes *notes,
-                              struct eo_error *error)
+static enum eo_code read_text(const char *path, const struct eo_reader_options *options,
+                              struct eo_recording **recording, struct eo_notes *notes, struct eo_error *error)
 {
   struct eo_source *source;
   enum eo_code code = eo_source_open(&source, path, options->max_bytes, error);
@@ -170,14 +178,16 @@ static enum eo_code read_text(const char *path, const struct eo_reader_options *
   return code;
 }
 
-static enum eo_code read_isolated_matlab(const char *path, const struct eo_reader_options *options, const struct eo_series_sink *sink,
-                                         struct eo_notes *notes, struct eo_error *error)
+static enum eo_code read_isolated_matlab(const char *path, const struct eo_reader_options *options,
+                                         const struct eo_series_sink *sink, struct eo_notes *notes,
+                                         struct eo_error *error)
 {
   return eo_isolate_read(eo_matlab_read, path, options, sink, notes, error);
 }
 
-static enum eo_code read_isolated_hdf5(const char *path, const struct eo_reader_options *options, const struct eo_series_sink *sink,
-                                       struct eo_notes *notes, struct eo_error *error)
+static enum eo_code read_isolated_hdf5(const char *path, const struct eo_reader_options *options,
+                                       const struct eo_series_sink *sink, struct eo_notes *notes,
+                                       struct eo_error *error)
 {
   return eo_isolate_read(eo_hdf5_read, path, options, sink, notes, error);
 }
@@ -185,7 +195,7 @@ static enum eo_code read_isolated_hdf5(const char *path, const struct eo_reader_
 static enum eo_code read_series(eo_series_reader *reader, const char *path, const struct eo_reader_options *options,
                                 struct eo_recording **recording, struct eo_notes *notes, struct eo_error *error)
 {
-  struct eo_series_recorder recorder = { .spool_directory = options->spool_directory, .progress = options->progress };
+  struct eo_series_recorder recorder = {.spool_directory = options->spool_directory, .progress = options->progress};
   struct eo_series_sink sink = eo_series_recorder_sink(&recorder);
   enum eo_code code = reader(path, options, &sink, notes, error);
   if (code)
@@ -200,7 +210,8 @@ static enum eo_code read_inflated(eo_series_reader *reader, const char *path, co
                                   struct eo_recording **recording, struct eo_notes *notes, struct eo_error *error)
 {
   char inflated[PATH_MAX];
-  enum eo_code code = eo_source_inflate(path, options->max_bytes, options->spool_directory, inflated, sizeof inflated, error);
+  enum eo_code code = eo_source_inflate(path, options->max_bytes, options->spool_directory, inflated, sizeof inflated,
+                                        error);
   if (code)
     return code;
   code = read_series(reader, inflated, options, recording, notes, error);
@@ -208,14 +219,14 @@ static enum eo_code read_inflated(eo_series_reader *reader, const char *path, co
   return code;
 }
 
-enum eo_code eo_reader_read(const char *path, const struct eo_reader_options *options, struct eo_recording **recording, struct eo_notes *notes,
-                            struct eo_error *error)
+enum eo_code eo_reader_read(const char *path, const struct eo_reader_options *options, struct eo_recording **recording,
+                            struct eo_notes *notes, struct eo_error *error)
 {
   static eo_series_reader *const readers[EO_READER_KINDS] = {
-    [EO_READER_TDMS] = eo_tdms_read,
-    [EO_READER_UFF] = eo_uff_read,
-    [EO_READER_MATLAB] = read_isolated_matlab,
-    [EO_READER_HDF5] = read_isolated_hdf5,
+      [EO_READER_TDMS] = eo_tdms_read,
+      [EO_READER_UFF] = eo_uff_read,
+      [EO_READER_MATLAB] = read_isolated_matlab,
+      [EO_READER_HDF5] = read_isolated_hdf5,
   };
   struct eo_reader_options own = {0};
   struct sign sign;

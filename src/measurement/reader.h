@@ -1,5 +1,6 @@
 /* Rig files of every kind, told apart by their content and read into a recording: the one entry to the readers.
-   Files are hostile until read: every length is checked, memory is bounded, and what is wrong is said with its line or byte. */
+   Files are hostile until read: every length is checked, memory is bounded, and what is wrong is said with its line or
+   byte. */
 #ifndef EASEOFF_MEASUREMENT_READER_H
 #define EASEOFF_MEASUREMENT_READER_H
 
@@ -41,9 +42,10 @@ const char *eo_reader_kind_name(enum eo_reader_kind kind); /* for instance "NI T
    Errors: EO_ERROR_FILE; EO_ERROR_INPUT for content that no reader reads, saying what it seems to be. */
 enum eo_code eo_reader_identify(const char *path, enum eo_reader_kind *kind, int *gzip, struct eo_error *error);
 
-/* Reads the file into a new recording that the caller frees. notes: what was found, guessed or left out (added to, may be NULL).
-   options may be NULL. Errors: EO_ERROR_INPUT (what is wrong with the file and where), EO_ERROR_FILE, EO_ERROR_MEMORY, EO_ERROR_CANCELLED. */
-enum eo_code eo_reader_read(const char *path, const struct eo_reader_options *options, struct eo_recording **recording, struct eo_notes *notes,
-                            struct eo_error *error);
+/* Reads the file into a new recording that the caller frees. notes: what was found, guessed or left out (added to, may
+   be NULL). options may be NULL. Errors: EO_ERROR_INPUT (what is wrong with the file and where), EO_ERROR_FILE,
+   EO_ERROR_MEMORY, EO_ERROR_CANCELLED. */
+enum eo_code eo_reader_read(const char *path, const struct eo_reader_options *options, struct eo_recording **recording,
+                            struct eo_notes *notes, struct eo_error *error);
 
 #endif

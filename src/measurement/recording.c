@@ -32,15 +32,17 @@ struct eo_recording {
   int64_t buffer_rows, capacity, limit;
   struct mark *mark; /* [marks], by row */
   int marks, mark_capacity;
-  int64_t next_line; /* line of the next row, 0: unknown */
+  int64_t next_line;  /* line of the next row, 0: unknown */
   int64_t known_rows; /* rows from here on have no line any more */
   double interval, start;
 };
 
-enum eo_code eo_recording_new(struct eo_recording **recording, int columns, const char *spool_directory, struct eo_error *error)
+enum eo_code eo_recording_new(struct eo_recording **recording, int columns, const char *spool_directory,
+                              struct eo_error *error)
 {
   if (columns < 1 || columns > EO_RECORDING_COLUMNS)
-    return eo_error_set(error, EO_ERROR_INPUT, "", "A recording has 1 to %d columns, not %d.", EO_RECORDING_COLUMNS, columns);
+    return eo_error_set(error, EO_ERROR_INPUT, "", "A recording has 1 to %d columns, not %d.", EO_RECORDING_COLUMNS,
+                        columns);
   struct eo_recording *r = calloc(1, sizeof *r);
   if (!r)
     return eo_error_memory(error);
@@ -95,13 +97,14 @@ static size_t character_size(const unsigned char *text)
   return overlong || outside ? 0 : size;
 }
 
-/* Copies whole characters while they fit. Bytes that are no UTF-8 are taken for Latin 1, as older rig software writes it. */
+/* Copies whole characters while they fit. Bytes that are no UTF-8 are taken for Latin 1, as older rig software writes
+   it. */
 static void copy_text(char *to, size_t size, const char *text)
 {
   const unsigned char *from = (const unsigned char *)text;
   size_t used = 0;
   while (*from) {
-    unsigned char latin[2] = { (unsigned char)(0xc0 | *from >> 6), (unsigned char)(0x80 | (*from & 0x3f)) };
+    unsigned char latin[2] = {(unsigned char)(0xc0 | *from >> 6), (unsigned char)(0x80 | (*from & 0x3f))};
     size_t n = character_size(from), wanted = n ? n : *from >= 0xa0 ? 2 : 1;
     if (used + wanted >= size)
       break;
@@ -175,7 +178,8 @@ double eo_recording_start(const struct eo_recording *recording)
 static enum eo_code open_spool(struct eo_recording *r, struct eo_error *error)
 {
   if (!r->directory)
-    return eo_error_set(error, EO_ERROR_INPUT, "", "The recording is larger than the %lld MB that may be held in memory.",
+    return eo_error_set(error, EO_ERROR_INPUT, "",
+                        "The recording is larger than the %lld MB that may be held in memory.",
                         (long long)(r->limit * r->columns * (int64_t)sizeof(double) >> 20));
   size_t size = strlen(r->directory) + sizeof "/recording-XXXXXX";
   char *path = malloc(size);
@@ -188,7 +192,8 @@ static enum eo_code open_spool(struct eo_recording *r, struct eo_error *error)
     unlink(path);
   free(path);
   if (r->file < 0)
-    return eo_error_set(error, EO_ERROR_FILE, "", "No temporary file could be made in %s: %s.", r->directory, strerror(reason));
+    return eo_error_set(error, EO_ERROR_FILE, "", "No temporary file could be made in %s: %s.", r->directory,
+                        strerror(reason));
   return EO_OK;
 }
 
@@ -200,7 +205,8 @@ static enum eo_code write_all(int file, const void *bytes, size_t size, off_t at
     if (n < 0 && errno == EINTR)
       continue;
     if (n <= 0)
-      return eo_error_set(error, EO_ERROR_FILE, "", "The temporary file of a recording could not be written: %s.", strerror(n < 0 ? errno : ENOSPC));
+      return eo_error_set(error, EO_ERROR_FILE, "", "The temporary file of a recording could not be written: %s.",
+                          strerror(n < 0 ? errno : ENOSPC));
     from += n;
     at += n;
     size -= (size_t)n;
@@ -239,7 +245,8 @@ static enum eo_code make_room(struct eo_recording *r, struct eo_error *error)
   return EO_OK;
 }
 
-enum eo_code eo_recording_append(struct eo_recording *recording, const double *rows, int64_t count, struct eo_error *error)
+enum eo_code eo_recording_append(struct eo_recording *recording, const double *rows, int64_t count,
+                                 struct eo_error *error)
 {
   while (count > 0) {
     if (recording->buffer_rows == recording->capacity) {
@@ -282,7 +289,7 @@ void eo_recording_set_line(struct eo_recording *recording, int64_t line)
     recording->known_rows = row;
     return;
   }
-  recording->mark[recording->marks++] = (struct mark){ row, line };
+  recording->mark[recording->marks++] = (struct mark){row, line};
   recording->next_line = line;
 }
 
@@ -309,7 +316,8 @@ static enum eo_code read_all(int file, void *bytes, size_t size, off_t at, struc
     if (n < 0 && errno == EINTR)
       continue;
     if (n <= 0)
-      return eo_error_set(error, EO_ERROR_FILE, "", "The temporary file of a recording could not be read: %s.", n < 0 ? strerror(errno) : "it is too short");
+      return eo_error_set(error, EO_ERROR_FILE, "", "The temporary file of a recording could not be read: %s.",
+                          n < 0 ? strerror(errno) : "it is too short");
     to += n;
     at += n;
     size -= (size_t)n;
@@ -317,23 +325,26 @@ static enum eo_code read_all(int file, void *bytes, size_t size, off_t at, struc
   return EO_OK;
 }
 
-enum eo_code eo_recording_read(const struct eo_recording *recording, int64_t first, int64_t count, double *rows, struct eo_error *error)
+enum eo_code eo_recording_read(const struct eo_recording *recording, int64_t first, int64_t count, double *rows,
+                               struct eo_error *error)
 {
   int64_t total = eo_recording_rows(recording);
   if (first < 0 || count < 0 || first > total || count > total - first)
-    return eo_error_set(error, EO_ERROR_INPUT, "", "Rows %lld to %lld of a recording of %lld rows were asked for.", (long long)first,
-                        (long long)(first + count - 1), (long long)total);
+    return eo_error_set(error, EO_ERROR_INPUT, "", "Rows %lld to %lld of a recording of %lld rows were asked for.",
+                        (long long)first, (long long)(first + count - 1), (long long)total);
   size_t row_size = (size_t)recording->columns * sizeof(double);
   int64_t in_file = first < recording->file_rows ? recording->file_rows - first : 0;
   if (in_file > count)
     in_file = count;
   if (in_file) {
-    enum eo_code code = read_all(recording->file, rows, (size_t)in_file * row_size, (off_t)first * (off_t)row_size, error);
+    enum eo_code code = read_all(recording->file, rows, (size_t)in_file * row_size, (off_t)first * (off_t)row_size,
+                                 error);
     if (code)
       return code;
   }
   if (count > in_file)
-    memcpy(rows + in_file * recording->columns, recording->buffer + (first + in_file - recording->file_rows) * recording->columns,
+    memcpy(rows + in_file * recording->columns,
+           recording->buffer + (first + in_file - recording->file_rows) * recording->columns,
            (size_t)(count - in_file) * row_size);
   return EO_OK;
 }

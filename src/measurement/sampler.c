@@ -3,7 +3,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-enum eo_code eo_sampler_init(struct eo_sampler *s, const struct eo_recording *recording, const struct eo_tracks *tracks, struct eo_error *error)
+enum eo_code eo_sampler_init(struct eo_sampler *s, const struct eo_recording *recording, const struct eo_tracks *tracks,
+                             struct eo_error *error)
 {
   *s = (struct eo_sampler){.recording = recording, .tracks = tracks};
   if (tracks->channel[0].track == EO_TRACK_PULSES)

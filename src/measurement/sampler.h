@@ -18,24 +18,26 @@ struct eo_sampler {
   const struct eo_ellipse *ellipse; /* [channel] of raw tracks */
   bool count_rows;                  /* time is the number of the row times the interval */
   double interval;                  /* s */
-  double scale[2], period[2];       /* [channel] rad per unit of an angle; rad after which it starts again, 0: it does not */
-  int64_t next;                     /* row */
-  int64_t turns[2];                 /* seen so far */
+  double scale[2], period[2]; /* [channel] rad per unit of an angle; rad after which it starts again, 0: it does not */
+  int64_t next;               /* row */
+  int64_t turns[2];           /* seen so far */
   bool started;
-  double raw[2], time;              /* of the row before, not unwrapped */
-  double step[2];                   /* usual step of each channel, rad; follows slowly */
-  double *rows;                     /* owned: one block of the recording */
-  struct eo_pulses *pulses;         /* owned; NULL unless both channels are pulse times */
+  double raw[2], time;      /* of the row before, not unwrapped */
+  double step[2];           /* usual step of each channel, rad; follows slowly */
+  double *rows;             /* owned: one block of the recording */
+  struct eo_pulses *pulses; /* owned; NULL unless both channels are pulse times */
 };
 
-enum eo_code eo_sampler_init(struct eo_sampler *sampler, const struct eo_recording *recording, const struct eo_tracks *tracks, struct eo_error *error);
+enum eo_code eo_sampler_init(struct eo_sampler *sampler, const struct eo_recording *recording,
+                             const struct eo_tracks *tracks, struct eo_error *error);
 void eo_sampler_done(struct eo_sampler *sampler);
 
 /* sample[EO_SAMPLER_BLOCK]; *count 0 at the end. Rows without numbers and repeated rows are left out. */
 enum eo_code eo_sampler_next(struct eo_sampler *sampler, struct eo_sample *sample, int *count, struct eo_error *error);
 
 /* Pulse times: the angle of the gear at the pulses of the pinion, by interpolation between its own pulses. */
-enum eo_code eo_pulses_new(struct eo_pulses **pulses, const struct eo_recording *recording, const struct eo_tracks *tracks, struct eo_error *error);
+enum eo_code eo_pulses_new(struct eo_pulses **pulses, const struct eo_recording *recording,
+                           const struct eo_tracks *tracks, struct eo_error *error);
 void eo_pulses_free(struct eo_pulses *pulses);
 enum eo_code eo_pulses_next(struct eo_pulses *pulses, struct eo_sample *sample, int *count, struct eo_error *error);
 

@@ -22,7 +22,8 @@ double eo_scan_quantile(double *value, int count, double share)
 
 /* ---- the first rows: what is usual ---- */
 
-static void learn_column(struct eo_scan_column *c, const double *rows, int count, int columns, int column, double *scratch)
+static void learn_column(struct eo_scan_column *c, const double *rows, int count, int columns, int column,
+                         double *scratch)
 {
   int steps = 0;
   double sum = 0, before = NAN;
@@ -126,12 +127,13 @@ static void add_row(struct eo_scan *s, const struct eo_tracks *t, const double *
   s->used++;
 }
 
-enum eo_code eo_scan_run(struct eo_scan *s, const struct eo_recording *recording, const struct eo_tracks *tracks, const struct eo_progress *progress,
-                         struct eo_error *error)
+enum eo_code eo_scan_run(struct eo_scan *s, const struct eo_recording *recording, const struct eo_tracks *tracks,
+                         const struct eo_progress *progress, struct eo_error *error)
 {
   int columns = eo_recording_columns(recording);
   enum eo_code code = EO_OK;
-  double *rows = malloc(sizeof *rows * BLOCK * (size_t)(columns + 1)), *scratch = rows + (size_t)BLOCK * (size_t)columns;
+  double *rows = malloc(sizeof *rows * BLOCK * (size_t)(columns + 1)),
+         *scratch = rows + (size_t)BLOCK * (size_t)columns;
   if (!rows)
     return eo_error_memory(error);
   memset(s, 0, sizeof *s);

@@ -13,23 +13,24 @@ enum { EO_SCAN_JUMPS = 4096, EO_SCAN_COLUMNS = 5 };
 /* One column of values, in its own unit. */
 struct eo_scan_column {
   double low, high;
-  double typical;        /* size of a step: mean of the smaller nine tenths over the first rows */
-  double quantum;        /* smallest step that is not zero there */
-  int64_t at_low, at_high; /* values equal to low, to high */
+  double typical;               /* size of a step: mean of the smaller nine tenths over the first rows */
+  double quantum;               /* smallest step that is not zero there */
+  int64_t at_low, at_high;      /* values equal to low, to high */
   int64_t longest, longest_row; /* run of equal values */
   int64_t run;
   double before;
-  int jumps;             /* steps of more than ten typical ones, all; the first EO_SCAN_JUMPS are kept */
+  int jumps; /* steps of more than ten typical ones, all; the first EO_SCAN_JUMPS are kept */
   double jump[EO_SCAN_JUMPS];
 };
 
 struct eo_scan {
   int64_t rows, used;             /* of the recording; with numbers in every column that matters */
   int64_t unusable, unusable_row; /* rows with NaN, the first */
-  int64_t backward, standing, duplicate, time_row; /* rows whose time lies before, at that of the row before; with the same values too */
-  int64_t steady;                 /* of the first two, those at which the first angle goes on as usual */
+  int64_t backward, standing, duplicate,
+      time_row;   /* rows whose time lies before, at that of the row before; with the same values too */
+  int64_t steady; /* of the first two, those at which the first angle goes on as usual */
   double time_first, time_last, interval; /* s; typical step of time over the first rows */
-  struct eo_scan_column column[2][2]; /* [member][track] */
+  struct eo_scan_column column[2][2];     /* [member][track] */
 };
 
 /* Scans angles and raw tracks; progress from 0 to 1. Errors: reading, memory, cancelled. */
@@ -43,7 +44,10 @@ double eo_scan_period(const struct eo_scan_column *column);
 double eo_scan_clipped(const struct eo_scan_column *column, int64_t rows);
 
 /* Columns of the tracks of one channel: 2 for raw tracks, else 1. */
-static inline int eo_track_columns(const struct eo_track_channel *channel) { return channel->track == EO_TRACK_SINE_COSINE ? 2 : 1; }
+static inline int eo_track_columns(const struct eo_track_channel *channel)
+{
+  return channel->track == EO_TRACK_SINE_COSINE ? 2 : 1;
+}
 
 /* The quantile (0.5: median) of value[count], which is reordered; NaN of none. */
 double eo_scan_quantile(double *value, int count, double share);

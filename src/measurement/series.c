@@ -70,26 +70,29 @@ static int choose(const struct eo_series_file *file, int *chosen, struct eo_note
     }
   }
   if (left_out)
-    eo_notes_add(notes, "%d channel%s with other lengths or sampling rates %s left out, for instance \"%s\" with %lld values.", left_out,
-                 left_out == 1 ? "" : "s", left_out == 1 ? "was" : "were", other->name, (long long)other->length);
+    eo_notes_add(
+        notes, "%d channel%s with other lengths or sampling rates %s left out, for instance \"%s\" with %lld values.",
+        left_out, left_out == 1 ? "" : "s", left_out == 1 ? "was" : "were", other->name, (long long)other->length);
   return count;
 }
 
-static enum eo_code check_size(const struct eo_series_file *file, const int *chosen, int count, int64_t rows, struct eo_error *error)
+static enum eo_code check_size(const struct eo_series_file *file, const int *chosen, int count, int64_t rows,
+                               struct eo_error *error)
 {
   if (!count)
     return eo_error_set(error, EO_ERROR_INPUT, "", "The file has no channel with numbers over time.");
   if (rows > INT64_MAX / 8 / count / 2 || rows * count * 8 > file->limit)
-    return eo_error_set(error, EO_ERROR_INPUT, "", "The %d channels of %lld values are more than the %lld MB that are read at most.", count,
+    return eo_error_set(error, EO_ERROR_INPUT, "",
+                        "The %d channels of %lld values are more than the %lld MB that are read at most.", count,
                         (long long)rows, (long long)(file->limit >> 20));
   if (rows * count * 8 > EO_SOURCE_FREE && rows * count * 8 / EO_SOURCE_EXPANSION > file->bytes)
-    return eo_error_set(error, EO_ERROR_INPUT, "", "The file states %lld values of \"%s\" but has only %lld bytes.", (long long)rows,
-                        file->series[chosen[0]].name, (long long)file->bytes);
+    return eo_error_set(error, EO_ERROR_INPUT, "", "The file states %lld values of \"%s\" but has only %lld bytes.",
+                        (long long)rows, file->series[chosen[0]].name, (long long)file->bytes);
   return EO_OK;
 }
 
-static enum eo_code copy_block(const struct eo_series_file *file, const int *chosen, int count, int64_t first, int64_t rows, double *values,
-                               double *table, struct eo_error *error)
+static enum eo_code copy_block(const struct eo_series_file *file, const int *chosen, int count, int64_t first,
+                               int64_t rows, double *values, double *table, struct eo_error *error)
 {
   for (int c = 0; c < count; c++) {
     int64_t left = file->series[chosen[c]].length - first, n = left < 0 ? 0 : left < rows ? left : rows;
@@ -102,8 +105,8 @@ static enum eo_code copy_block(const struct eo_series_file *file, const int *cho
   return EO_OK;
 }
 
-static enum eo_code copy_all(const struct eo_series_file *file, const int *chosen, int count, int64_t rows, const struct eo_series_sink *sink,
-                             struct eo_error *error)
+static enum eo_code copy_all(const struct eo_series_file *file, const int *chosen, int count, int64_t rows,
+                             const struct eo_series_sink *sink, struct eo_error *error)
 {
   struct eo_series *column = malloc((size_t)count * sizeof *column);
   double *values = malloc(BLOCK * sizeof *values * (size_t)(count + 1));
@@ -123,7 +126,8 @@ static enum eo_code copy_all(const struct eo_series_file *file, const int *chose
   return code;
 }
 
-enum eo_code eo_series_copy(const struct eo_series_file *file, const struct eo_series_sink *sink, struct eo_notes *notes, struct eo_error *error)
+enum eo_code eo_series_copy(const struct eo_series_file *file, const struct eo_series_sink *sink,
+                            struct eo_notes *notes, struct eo_error *error)
 {
   int chosen[EO_RECORDING_COLUMNS];
   int count = choose(file, chosen, notes);
@@ -137,8 +141,8 @@ enum eo_code eo_series_copy(const struct eo_series_file *file, const struct eo_s
 
 double eo_series_stated_interval(const char *name, double value)
 {
-  static const char *const rates[] = { "fs", "sample_rate", "samplerate", "sampling_rate", "sampling_frequency" };
-  static const char *const intervals[] = { "dt", "ts", "wf_increment", "increment", "sample_interval", "delta_t" };
+  static const char *const rates[] = {"fs", "sample_rate", "samplerate", "sampling_rate", "sampling_frequency"};
+  static const char *const intervals[] = {"dt", "ts", "wf_increment", "increment", "sample_interval", "delta_t"};
   if (!(value > 0) || !isfinite(value))
     return 0;
   for (size_t i = 0; i < sizeof rates / sizeof *rates; i++)
@@ -178,5 +182,5 @@ static enum eo_code record_rows(void *context, const double *rows, int64_t count
 
 struct eo_series_sink eo_series_recorder_sink(struct eo_series_recorder *recorder)
 {
-  return (struct eo_series_sink){ begin_recording, record_rows, recorder };
+  return (struct eo_series_sink){begin_recording, record_rows, recorder};
 }

@@ -1,5 +1,5 @@
-/* Files that hold each channel in one piece (TDMS, UFF, MATLAB, HDF5): which channels make a table, and copying them into rows.
-   Internal to the readers. */
+/* Files that hold each channel in one piece (TDMS, UFF, MATLAB, HDF5): which channels make a table, and copying them
+   into rows. Internal to the readers. */
 #ifndef EASEOFF_MEASUREMENT_SERIES_H
 #define EASEOFF_MEASUREMENT_SERIES_H
 
@@ -23,7 +23,8 @@ struct eo_series_sink {
   void *context;
 };
 
-/* The channels of a file that is open. read copies values first .. first + count - 1 of a channel; calls for one channel go forwards. */
+/* The channels of a file that is open. read copies values first .. first + count - 1 of a channel; calls for one
+   channel go forwards. */
 struct eo_series_file {
   const struct eo_series *series; /* [count] */
   int count;
@@ -34,15 +35,18 @@ struct eo_series_file {
 };
 
 /* A reader of one kind of file; max_bytes of the options is set. */
-typedef enum eo_code eo_series_reader(const char *path, const struct eo_reader_options *options, const struct eo_series_sink *sink,
-                                      struct eo_notes *notes, struct eo_error *error);
+typedef enum eo_code eo_series_reader(const char *path, const struct eo_reader_options *options,
+                                      const struct eo_series_sink *sink, struct eo_notes *notes,
+                                      struct eo_error *error);
 
-/* Chooses the channels that were sampled together - the most that share interval and length - or, where lengths differ, all long ones, and
-   hands them to the sink row by row; what is left out is noted. Errors: EO_ERROR_INPUT: no channel with data, a table that is far larger than
-   its file, and those of read and sink. */
-enum eo_code eo_series_copy(const struct eo_series_file *file, const struct eo_series_sink *sink, struct eo_notes *notes, struct eo_error *error);
+/* Chooses the channels that were sampled together - the most that share interval and length - or, where lengths differ,
+   all long ones, and hands them to the sink row by row; what is left out is noted. Errors: EO_ERROR_INPUT: no channel
+   with data, a table that is far larger than its file, and those of read and sink. */
+enum eo_code eo_series_copy(const struct eo_series_file *file, const struct eo_series_sink *sink,
+                            struct eo_notes *notes, struct eo_error *error);
 
-/* The interval in s that a number of this name states: the number itself of "dt" and the like, its inverse of "fs" or "sample_rate"; 0: none. */
+/* The interval in s that a number of this name states: the number itself of "dt" and the like, its inverse of "fs" or
+   "sample_rate"; 0: none. */
 double eo_series_stated_interval(const char *name, double value);
 
 /* A sink that fills a new recording. It is NULL until begin; the caller frees it. */

@@ -89,7 +89,8 @@ void eo_source_close(struct eo_source *source)
   free(source);
 }
 
-static enum eo_code read_plain(struct eo_source *s, unsigned char *bytes, size_t size, size_t *got, struct eo_error *error)
+static enum eo_code read_plain(struct eo_source *s, unsigned char *bytes, size_t size, size_t *got,
+                               struct eo_error *error)
 {
   size_t kept = s->waiting < size ? s->waiting : size;
   memcpy(bytes, s->at, kept);
@@ -102,7 +103,8 @@ static enum eo_code read_plain(struct eo_source *s, unsigned char *bytes, size_t
 }
 
 /* One call of inflate with what is waiting; *ended at the end of the last member. */
-static enum eo_code inflate_some(struct eo_source *s, unsigned char *bytes, size_t room, size_t *got, struct eo_error *error)
+static enum eo_code inflate_some(struct eo_source *s, unsigned char *bytes, size_t room, size_t *got,
+                                 struct eo_error *error)
 {
   *got = 0;
   if (!s->waiting) {
@@ -110,7 +112,9 @@ static enum eo_code inflate_some(struct eo_source *s, unsigned char *bytes, size
     if (code)
       return code;
     if (!s->waiting && !s->between)
-      return eo_error_set(error, EO_ERROR_INPUT, "", "The gzip file is cut off: it ends at byte %lld in the middle of its data.", (long long)s->taken);
+      return eo_error_set(error, EO_ERROR_INPUT, "",
+                          "The gzip file is cut off: it ends at byte %lld in the middle of its data.",
+                          (long long)s->taken);
     s->ended = !s->waiting;
     if (s->ended)
       return EO_OK;
@@ -135,21 +139,25 @@ static enum eo_code inflate_some(struct eo_source *s, unsigned char *bytes, size
   if (status == Z_MEM_ERROR)
     return eo_error_memory(error);
   if (status != Z_OK && status != Z_BUF_ERROR)
-    return eo_error_set(error, EO_ERROR_INPUT, "", "The gzip file is damaged near byte %lld.", (long long)(s->taken - (int64_t)s->waiting));
+    return eo_error_set(error, EO_ERROR_INPUT, "", "The gzip file is damaged near byte %lld.",
+                        (long long)(s->taken - (int64_t)s->waiting));
   return EO_OK;
 }
 
 static enum eo_code check_growth(const struct eo_source *s, struct eo_error *error)
 {
   if (s->gzip && s->given > EO_SOURCE_FREE && s->given / EO_SOURCE_EXPANSION > s->taken)
-    return eo_error_set(error, EO_ERROR_INPUT, "", "The gzip file grows more than %d times by byte %lld; that is no measurement.", EO_SOURCE_EXPANSION,
-                        (long long)s->taken);
+    return eo_error_set(error, EO_ERROR_INPUT, "",
+                        "The gzip file grows more than %d times by byte %lld; that is no measurement.",
+                        EO_SOURCE_EXPANSION, (long long)s->taken);
   if (s->given > s->limit)
-    return eo_error_set(error, EO_ERROR_INPUT, "", "The file holds more than the %lld MB that are read at most.", (long long)(s->limit >> 20));
+    return eo_error_set(error, EO_ERROR_INPUT, "", "The file holds more than the %lld MB that are read at most.",
+                        (long long)(s->limit >> 20));
   return EO_OK;
 }
 
-static enum eo_code read_gzip(struct eo_source *s, unsigned char *bytes, size_t size, size_t *got, struct eo_error *error)
+static enum eo_code read_gzip(struct eo_source *s, unsigned char *bytes, size_t size, size_t *got,
+                              struct eo_error *error)
 {
   while (*got < size && !s->ended) {
     size_t n, room = size - *got < CHUNK * 8 ? size - *got : CHUNK * 8;
@@ -164,7 +172,8 @@ static enum eo_code read_gzip(struct eo_source *s, unsigned char *bytes, size_t 
 enum eo_code eo_source_read(struct eo_source *source, void *bytes, size_t size, size_t *got, struct eo_error *error)
 {
   *got = 0;
-  enum eo_code code = source->gzip ? read_gzip(source, bytes, size, got, error) : read_plain(source, bytes, size, got, error);
+  enum eo_code code = source->gzip ? read_gzip(source, bytes, size, got, error)
+                                   : read_plain(source, bytes, size, got, error);
   source->given += (int64_t)*got;
   return code ? code : check_growth(source, error);
 }
@@ -193,7 +202,8 @@ static enum eo_code copy_to(struct eo_source *source, int file, struct eo_error 
       if (n < 0 && errno == EINTR)
         continue;
       if (n <= 0)
-        code = eo_error_set(error, EO_ERROR_FILE, "", "A temporary file could not be written: %s.", strerror(n < 0 ? errno : ENOSPC));
+        code = eo_error_set(error, EO_ERROR_FILE, "", "A temporary file could not be written: %s.",
+                            strerror(n < 0 ? errno : ENOSPC));
       else
         done += (size_t)n;
     }
@@ -202,17 +212,20 @@ static enum eo_code copy_to(struct eo_source *source, int file, struct eo_error 
   return code;
 }
 
-enum eo_code eo_source_inflate(const char *path, int64_t limit, const char *directory, char *inflated, size_t size, struct eo_error *error)
+enum eo_code eo_source_inflate(const char *path, int64_t limit, const char *directory, char *inflated, size_t size,
+                               struct eo_error *error)
 {
   struct eo_source *source;
   if (!directory || (size_t)snprintf(inflated, size, "%s/inflated-XXXXXX", directory) >= size)
-    return eo_error_set(error, EO_ERROR_INPUT, "", "This kind of file must be uploaded without gzip: there is no folder to inflate it to.");
+    return eo_error_set(error, EO_ERROR_INPUT, "",
+                        "This kind of file must be uploaded without gzip: there is no folder to inflate it to.");
   enum eo_code code = eo_source_open(&source, path, limit, error);
   if (code)
     return code;
   int file = mkostemp(inflated, O_CLOEXEC);
   if (file < 0)
-    code = eo_error_set(error, EO_ERROR_FILE, "", "No temporary file could be made in %s: %s.", directory, strerror(errno));
+    code = eo_error_set(error, EO_ERROR_FILE, "", "No temporary file could be made in %s: %s.", directory,
+                        strerror(errno));
   else {
     code = copy_to(source, file, error);
     close(file);

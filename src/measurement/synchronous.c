@@ -12,10 +12,10 @@ static const double STEP_LIMIT = 12; /* times the robust spread of the differenc
 struct eo_synchronous {
   int teeth[2];
   double from;
-  int turns, samples;            /* of the spectrum */
-  double complex *grid;          /* [samples] residual at equal angles */
+  int turns, samples;   /* of the spectrum */
+  double complex *grid; /* [samples] residual at equal angles */
   int filled;
-  double theta, residual;        /* of the row before */
+  double theta, residual; /* of the row before */
   bool begun;
   double cycle[EO_CYCLE_BINS], turn[2][EO_TURN_BINS];
   int64_t in_cycle[EO_CYCLE_BINS], in_turn[2][EO_TURN_BINS];
@@ -33,15 +33,16 @@ static int power_of_two(double least)
   return n;
 }
 
-enum eo_code eo_synchronous_new(struct eo_synchronous **synchronous, const struct eo_transmission *r, const int teeth[2], double from, double turns,
-                                struct eo_error *error)
+enum eo_code eo_synchronous_new(struct eo_synchronous **synchronous, const struct eo_transmission *r,
+                                const int teeth[2], double from, double turns, struct eo_error *error)
 {
   struct eo_synchronous *s = calloc(1, sizeof *s);
   if (!s)
     return eo_error_memory(error);
   double per_turn = (double)r->rows / turns;
   int whole = turns >= r->hunting ? r->hunting : (int)(turns + 1e-9);
-  while (whole > 0 && turns >= r->hunting && whole + r->hunting <= turns + 1e-9 && (whole + r->hunting) * per_turn < MOST_SAMPLES / 2)
+  while (whole > 0 && turns >= r->hunting && whole + r->hunting <= turns + 1e-9 &&
+         (whole + r->hunting) * per_turn < MOST_SAMPLES / 2)
     whole += r->hunting;
   s->teeth[0] = teeth[0];
   s->teeth[1] = teeth[1];
@@ -71,7 +72,10 @@ static int bin_of(double turns, int bins)
   return bin < bins ? bin : bins - 1;
 }
 
-static double grid_angle(const struct eo_synchronous *s, int i) { return s->from + 2 * M_PI * s->turns * (double)i / s->samples; }
+static double grid_angle(const struct eo_synchronous *s, int i)
+{
+  return s->from + 2 * M_PI * s->turns * (double)i / s->samples;
+}
 
 static void interpolate(struct eo_synchronous *s, double theta, double residual)
 {

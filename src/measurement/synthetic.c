@@ -9,12 +9,16 @@ enum { STREAM_PLACES, STREAM_NOISE, STREAM_JITTER, STREAM_SKEW, STREAM_TRACKS };
 
 static const double DEGREES = 180 / M_PI;
 
-static double duration(const struct eo_synthetic *s) { return 2 * M_PI * s->turns / s->speed; }
+static double duration(const struct eo_synthetic *s)
+{
+  return 2 * M_PI * s->turns / s->speed;
+}
 
 /* The pinion's angle without vibration. */
 static double smooth(const struct eo_synthetic *s, double time)
 {
-  double total = duration(s), x = time / total, start = 2 * M_PI * eo_random_unit(eo_random_at(s->seed, STREAM_PLACES, 0, 0), 0);
+  double total = duration(s), x = time / total,
+         start = 2 * M_PI * eo_random_unit(eo_random_at(s->seed, STREAM_PLACES, 0, 0), 0);
   double rate = s->swing_turns > 0 ? s->speed / s->swing_turns : 0;
   double slow = rate > 0 ? s->swing / rate * (1 - cos(rate * time)) : 0;
   return start + s->speed * (time + s->drift * total * (x * x - x) / 2 + slow);
@@ -32,12 +36,14 @@ static double vibration(const struct eo_synthetic *s, double theta)
 /* What the shaft's encoder would show at a time if it were without noise and steps. */
 static double shown_angle(const struct eo_synthetic *s, int member, double time)
 {
-  double theta = smooth(s, time), sign = member == EO_GEAR ? 1 : -1, share = member == EO_GEAR ? 1 - s->pinion_share : s->pinion_share;
+  double theta = smooth(s, time), sign = member == EO_GEAR ? 1 : -1,
+         share = member == EO_GEAR ? 1 - s->pinion_share : s->pinion_share;
   int gear_teeth = s->teeth[EO_GEAR] + (s->fault == EO_FAULT_TEETH ? (int)s->size : 0);
   double turn = member == EO_GEAR ? theta * s->teeth[EO_PINION] / gear_teeth : theta;
   double place = 2 * M_PI * eo_random_unit(eo_random_at(s->seed, STREAM_PLACES, 0, 1), (uint64_t)member);
   double start = member == EO_GEAR ? 2 * M_PI * eo_random_unit(eo_random_at(s->seed, STREAM_PLACES, 0, 2), 0) : 0;
-  return start + turn + sign * (share * vibration(s, theta) + s->eccentricity[member] * cos(turn + place)) / s->base_radius[member];
+  return start + turn +
+         sign * (share * vibration(s, theta) + s->eccentricity[member] * cos(turn + place)) / s->base_radius[member];
 }
 
 static double draw(const struct eo_synthetic *s, uint64_t stream, int64_t row, int channel)
@@ -88,7 +94,8 @@ static double written_angle(const struct eo_synthetic *s, double angle, int chan
     return floor(angle / step + 0.5);
   if (s->wrapped)
     angle -= 2 * M_PI * floor(angle / (2 * M_PI));
-  bool in_radians = s->radians || s->fault == EO_FAULT_RADIANS || (s->fault == EO_FAULT_RADIANS_GEAR && channel == EO_GEAR);
+  bool in_radians = s->radians || s->fault == EO_FAULT_RADIANS ||
+                    (s->fault == EO_FAULT_RADIANS_GEAR && channel == EO_GEAR);
   return in_radians ? angle : DEGREES * angle;
 }
 
@@ -114,7 +121,8 @@ static double written_time(const struct eo_synthetic *s, int64_t row)
 static double pulse_time(const struct eo_synthetic *s, int channel, int64_t pulse)
 {
   double step = 2 * M_PI / s->lines[channel], first = ceil(shown_angle(s, channel, 0) / step);
-  double wanted = step * (first + (double)pulse), rate = channel == EO_GEAR ? s->speed * s->teeth[EO_PINION] / s->teeth[EO_GEAR] : s->speed;
+  double wanted = step * (first + (double)pulse),
+         rate = channel == EO_GEAR ? s->speed * s->teeth[EO_PINION] / s->teeth[EO_GEAR] : s->speed;
   double time = (wanted - shown_angle(s, channel, 0)) / rate;
   for (int i = 0; i < 30; i++) {
     double off = wanted - shown_angle(s, channel, time);
@@ -176,8 +184,10 @@ int eo_synthetic_columns(const struct eo_synthetic *s)
 
 const char *eo_synthetic_heading(const struct eo_synthetic *s, int column)
 {
-  static const char *const pulses[] = {"pinion_pulse_s", "gear_pulse_s"}, *const degrees[] = {"t_s", "angle1_deg", "angle2_deg"};
-  static const char *const radians[] = {"t_s", "angle1_rad", "angle2_rad"}, *const counts[] = {"t_s", "count1", "count2"};
+  static const char *const pulses[] = {"pinion_pulse_s", "gear_pulse_s"}, *const degrees[] = {"t_s", "angle1_deg",
+                                                                                              "angle2_deg"};
+  static const char *const radians[] = {"t_s", "angle1_rad", "angle2_rad"}, *const counts[] = {"t_s", "count1",
+                                                                                               "count2"};
   static const char *const tracks[] = {"t_s", "pinion_sin_V", "pinion_cos_V", "gear_sin_V", "gear_cos_V"};
   switch (s->output) {
   case EO_SYNTHETIC_PULSES:
@@ -210,7 +220,9 @@ void eo_synthetic_tracks(const struct eo_synthetic *s, struct eo_tracks *tracks)
     c->track = pulses ? EO_TRACK_PULSES : raw ? EO_TRACK_SINE_COSINE : EO_TRACK_ANGLE;
     c->column[0] = pulses ? i : raw ? 1 + 2 * i : 1 + i;
     c->column[1] = c->column[0] + 1;
-    c->scale = s->output == EO_SYNTHETIC_COUNTS ? 2 * M_PI / ((double)s->lines[i] * s->interpolation) : s->radians ? 1 : M_PI / 180;
+    c->scale = s->output == EO_SYNTHETIC_COUNTS ? 2 * M_PI / ((double)s->lines[i] * s->interpolation)
+               : s->radians                     ? 1
+                                                : M_PI / 180;
     c->lines = s->lines[i];
     c->unit = EO_TRACK_VOLT;
     c->factor = 1;
@@ -223,11 +235,14 @@ enum eo_code eo_synthetic_check(const struct eo_synthetic *s, struct eo_error *e
   if (!(s->speed > 0) || !(s->turns > 0) || !(s->sample_rate > 0) || s->orders < 0 || s->orders > EO_SYNTHETIC_ORDERS)
     return eo_error_set(error, EO_ERROR_INPUT, "", "Speed, turns and sample rate of a rig are positive.");
   if (!lines && (s->lines[0] < 1 || s->lines[1] < 1 || (s->output == EO_SYNTHETIC_COUNTS && s->interpolation < 1)))
-    return eo_error_set(error, EO_ERROR_INPUT, "", "Counts, pulses and raw tracks need lines per turn, counts and steps an interpolation.");
-  if (s->output == EO_SYNTHETIC_COUNTS && ((double)s->lines[0] * s->interpolation > 1e9 || (double)s->lines[1] * s->interpolation > 1e9))
+    return eo_error_set(error, EO_ERROR_INPUT, "",
+                        "Counts, pulses and raw tracks need lines per turn, counts and steps an interpolation.");
+  if (s->output == EO_SYNTHETIC_COUNTS &&
+      ((double)s->lines[0] * s->interpolation > 1e9 || (double)s->lines[1] * s->interpolation > 1e9))
     return eo_error_set(error, EO_ERROR_INPUT, "", "More than 1e9 counts per turn are no counts any more.");
   if (duration(s) * s->sample_rate > 1e9)
-    return eo_error_set(error, EO_ERROR_INPUT, "", "The recording would have %.3g rows, more than 1e9.", duration(s) * s->sample_rate);
+    return eo_error_set(error, EO_ERROR_INPUT, "", "The recording would have %.3g rows, more than 1e9.",
+                        duration(s) * s->sample_rate);
   return EO_OK;
 }
 
@@ -248,7 +263,10 @@ enum eo_code eo_synthetic_record(const struct eo_synthetic *s, struct eo_recordi
   return code;
 }
 
-double eo_synthetic_speed(const struct eo_synthetic *s) { return (smooth(s, duration(s)) - smooth(s, 0)) / duration(s); }
+double eo_synthetic_speed(const struct eo_synthetic *s)
+{
+  return (smooth(s, duration(s)) - smooth(s, 0)) / duration(s);
+}
 
 double eo_synthetic_rms(const struct eo_synthetic *s, int harmonics)
 {

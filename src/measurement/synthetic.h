@@ -1,5 +1,5 @@
-/* A rig that does not exist: what two encoders record of a pair whose transmission error is known. For teaching and for tests: every
-   number is a pure function of the settings and the row, the same for any order of the rows. */
+/* A rig that does not exist: what two encoders record of a pair whose transmission error is known. For teaching and for
+   tests: every number is a pure function of the settings and the row, the same for any order of the rows. */
 #ifndef EASEOFF_MEASUREMENT_SYNTHETIC_H
 #define EASEOFF_MEASUREMENT_SYNTHETIC_H
 
@@ -37,28 +37,28 @@ enum eo_synthetic_fault {
 
 struct eo_synthetic {
   int teeth[2];
-  double base_radius[2];   /* m */
+  double base_radius[2]; /* m */
   int orders;
   double complex order[EO_SYNTHETIC_ORDERS]; /* [orders] TE = Re sum order[h - 1] exp(i h teeth theta), m */
-  double pinion_share;     /* of the vibration, 0..1 */
-  double speed;            /* of the pinion, rad/s, mean */
-  double drift;            /* of the speed from start to end, relative */
+  double pinion_share;                       /* of the vibration, 0..1 */
+  double speed;                              /* of the pinion, rad/s, mean */
+  double drift;                              /* of the speed from start to end, relative */
   double swing, swing_turns; /* relative amplitude of a slow change of speed, its period in turns of the pinion */
-  double turns;            /* of the pinion */
-  double sample_rate;      /* Hz */
-  double eccentricity[2];  /* amplitude of the first shaft order, m along the line of action */
-  double noise;            /* of each angle, standard deviation, rad */
-  double jitter, skew;     /* of the sampling: of both channels, of the gear alone, s */
-  int lines[2];            /* per turn */
-  int interpolation;       /* steps per line that angles and counts are rounded to; 0: not rounded */
+  double turns;              /* of the pinion */
+  double sample_rate;        /* Hz */
+  double eccentricity[2];    /* amplitude of the first shaft order, m along the line of action */
+  double noise;              /* of each angle, standard deviation, rad */
+  double jitter, skew;       /* of the sampling: of both channels, of the gear alone, s */
+  int lines[2];              /* per turn */
+  int interpolation;         /* steps per line that angles and counts are rounded to; 0: not rounded */
   enum eo_synthetic_output output;
-  bool wrapped, radians;   /* angles */
-  double amplitude;        /* of raw tracks, zero to peak, V */
+  bool wrapped, radians;      /* angles */
+  double amplitude;           /* of raw tracks, zero to peak, V */
   double offset, gain, phase; /* their errors: relative to the amplitude, relative, rad */
-  double track_noise;      /* V */
-  double track_step;       /* of the converter, V; 0: none */
+  double track_noise;         /* V */
+  double track_step;          /* of the converter, V; 0: none */
   enum eo_synthetic_fault fault;
-  int64_t row, size;       /* of the fault */
+  int64_t row, size; /* of the fault */
   uint64_t seed;
 };
 
@@ -79,7 +79,8 @@ void eo_synthetic_fill(const struct eo_synthetic *synthetic, int64_t first, int6
 void eo_synthetic_tracks(const struct eo_synthetic *synthetic, struct eo_tracks *tracks);
 
 /* The whole as a recording that the caller frees. */
-enum eo_code eo_synthetic_record(const struct eo_synthetic *synthetic, struct eo_recording **recording, struct eo_error *error);
+enum eo_code eo_synthetic_record(const struct eo_synthetic *synthetic, struct eo_recording **recording,
+                                 struct eo_error *error);
 
 /* Mean speed of the pinion over the whole recording, slow swings included, rad/s. */
 double eo_synthetic_speed(const struct eo_synthetic *synthetic);

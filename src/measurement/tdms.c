@@ -75,10 +75,12 @@ static struct place find_place(const struct eo_tdms_segment *segment, int channe
 }
 
 /* Reads up to count values of a chunk from the n-th of the segment on, as many as one piece and the chunk hold. */
-static enum eo_code read_piece(const struct eo_tdms *tdms, struct eo_tdms_channel *channel, const struct eo_tdms_segment *segment,
-                               const struct place *place, int64_t n, int64_t *count, double *values, unsigned char *bytes, struct eo_error *error)
+static enum eo_code read_piece(const struct eo_tdms *tdms, struct eo_tdms_channel *channel,
+                               const struct eo_tdms_segment *segment, const struct place *place, int64_t n,
+                               int64_t *count, double *values, unsigned char *bytes, struct eo_error *error)
 {
-  int64_t size = eo_tdms_type_size(place->part->type), chunk = n / place->part->count, in_chunk = n % place->part->count;
+  int64_t size = eo_tdms_type_size(place->part->type), chunk = n / place->part->count,
+          in_chunk = n % place->part->count;
   int64_t room = ((int64_t)PIECE - size) / place->stride + 1;
   if (*count > place->part->count - in_chunk)
     *count = place->part->count - in_chunk;
@@ -87,12 +89,14 @@ static enum eo_code read_piece(const struct eo_tdms *tdms, struct eo_tdms_channe
   int64_t at = segment->at + chunk * segment->layout->chunk + place->offset + in_chunk * place->stride;
   enum eo_code code = eo_bytes_read(tdms->file, at, bytes, (size_t)((*count - 1) * place->stride + size), error);
   for (int64_t i = 0; !code && i < *count; i++)
-    values[i] = value_at(channel, place->part->type, bytes + i * place->stride, segment->big) * channel->slope + channel->intercept;
+    values[i] = value_at(channel, place->part->type, bytes + i * place->stride, segment->big) * channel->slope +
+                channel->intercept;
   return code;
 }
 
 /* Reading goes forwards: the segment where the last call ended is remembered. */
-static enum eo_code read_values(void *context, int number, int64_t first, int64_t count, double *values, struct eo_error *error)
+static enum eo_code read_values(void *context, int number, int64_t first, int64_t count, double *values,
+                                struct eo_error *error)
 {
   struct eo_tdms *tdms = context;
   struct eo_tdms_channel *channel = &tdms->channel[number];
@@ -131,14 +135,16 @@ static void settle_channels(struct eo_tdms *tdms, struct eo_notes *notes)
       channel->intercept = 0;
     }
     if (raw && (channel->scales > 1 || channel->unknown_scale))
-      eo_notes_add(notes, "The channel \"%s\" holds raw values with a scale that is not linear; they were left as they are.", tdms->series[c].name);
+      eo_notes_add(notes,
+                   "The channel \"%s\" holds raw values with a scale that is not linear; they were left as they are.",
+                   tdms->series[c].name);
   }
   if (tdms->cut)
     eo_notes_add(notes, "The TDMS file is not complete; its last, unfinished chunk was left out.");
 }
 
-enum eo_code eo_tdms_read(const char *path, const struct eo_reader_options *options, const struct eo_series_sink *sink, struct eo_notes *notes,
-                          struct eo_error *error)
+enum eo_code eo_tdms_read(const char *path, const struct eo_reader_options *options, const struct eo_series_sink *sink,
+                          struct eo_notes *notes, struct eo_error *error)
 {
   struct eo_tdms *tdms = calloc(1, sizeof *tdms);
   if (!tdms)
@@ -151,7 +157,7 @@ enum eo_code eo_tdms_read(const char *path, const struct eo_reader_options *opti
   code = eo_tdms_scan(tdms, error);
   if (!code) {
     settle_channels(tdms, notes);
-    struct eo_series_file file = { tdms->series, tdms->channels, tdms->size, options->max_bytes, read_values, tdms };
+    struct eo_series_file file = {tdms->series, tdms->channels, tdms->size, options->max_bytes, read_values, tdms};
     code = eo_series_copy(&file, sink, notes, error);
   }
   close(tdms->file);

@@ -1,5 +1,6 @@
 /* The structure of an NI TDMS file: segments, the channels in them and where their values are.
-   Source: NI, "TDMS File Format Internal Structure" (public description of versions 4712 and 4713). Internal to the reader. */
+   Source: NI, "TDMS File Format Internal Structure" (public description of versions 4712 and 4713). Internal to the
+   reader. */
 #ifndef EASEOFF_MEASUREMENT_TDMS_H
 #define EASEOFF_MEASUREMENT_TDMS_H
 
@@ -47,16 +48,16 @@ struct eo_tdms_segment {
 };
 
 struct eo_tdms_channel {
-  char *path; /* owned, as in the file */
+  char *path;    /* owned, as in the file */
   int listed_at; /* place in the list of objects when it is there */
   bool index_known;
-  struct eo_tdms_part index;      /* as last stated */
-  double slope, intercept;        /* of the one linear scale of unscaled data */
-  int64_t scales;                 /* stated in NI_Number_Of_Scales */
+  struct eo_tdms_part index; /* as last stated */
+  double slope, intercept;   /* of the one linear scale of unscaled data */
+  int64_t scales;            /* stated in NI_Number_Of_Scales */
   bool scaled, unknown_scale;
-  int64_t base;                   /* s, whole seconds of the first timestamp */
+  int64_t base; /* s, whole seconds of the first timestamp */
   bool base_known;
-  int64_t segment, passed;        /* where reading has come to: segment, values before it */
+  int64_t segment, passed; /* where reading has come to: segment, values before it */
 };
 
 struct eo_tdms {
@@ -80,12 +81,14 @@ struct eo_tdms {
 
 int64_t eo_tdms_type_size(uint32_t type); /* bytes of a value, 0 when it has no fixed size or is not read */
 
-/* Reads all metadata of an open file. tdms is zeroed but for file and size. Errors: EO_ERROR_INPUT with the byte, EO_ERROR_FILE, EO_ERROR_MEMORY. */
+/* Reads all metadata of an open file. tdms is zeroed but for file and size. Errors: EO_ERROR_INPUT with the byte,
+   EO_ERROR_FILE, EO_ERROR_MEMORY. */
 enum eo_code eo_tdms_scan(struct eo_tdms *tdms, struct eo_error *error);
 void eo_tdms_done(struct eo_tdms *tdms); /* what eo_tdms_scan allocated */
 
-/* Reads the objects and properties of one segment's metadata. at: byte of the file where it begins. fresh: forget the list of objects. */
-enum eo_code eo_tdms_read_objects(struct eo_tdms *tdms, const unsigned char *bytes, size_t size, int64_t at, bool big, bool fresh,
-                                  struct eo_error *error);
+/* Reads the objects and properties of one segment's metadata. at: byte of the file where it begins. fresh: forget the
+   list of objects. */
+enum eo_code eo_tdms_read_objects(struct eo_tdms *tdms, const unsigned char *bytes, size_t size, int64_t at, bool big,
+                                  bool fresh, struct eo_error *error);
 
 #endif

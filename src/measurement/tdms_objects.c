@@ -46,7 +46,8 @@ int64_t eo_tdms_type_size(uint32_t type)
 static const unsigned char *take(struct reader *r, size_t size)
 {
   if (size > r->left) {
-    eo_error_set(r->error, EO_ERROR_INPUT, "", "TDMS: the metadata at byte %lld end where %zu bytes more should follow.", (long long)r->at, size);
+    eo_error_set(r->error, EO_ERROR_INPUT, "",
+                 "TDMS: the metadata at byte %lld end where %zu bytes more should follow.", (long long)r->at, size);
     return NULL;
   }
   const unsigned char *bytes = r->bytes;
@@ -84,7 +85,8 @@ static bool take_value(struct reader *r, double *number, const char **text, uint
     return take_string(r, text, length);
   int64_t size = eo_tdms_type_size(type);
   if (!size) {
-    eo_error_set(r->error, EO_ERROR_INPUT, "", "TDMS: the property before byte %lld is of the unknown type %u.", (long long)r->at, type);
+    eo_error_set(r->error, EO_ERROR_INPUT, "", "TDMS: the property before byte %lld is of the unknown type %u.",
+                 (long long)r->at, type);
     return false;
   }
   const unsigned char *p = take(r, (size_t)size);
@@ -113,8 +115,8 @@ static bool ends_with(const char *text, uint32_t length, const char *tail)
 }
 
 /* What a channel's properties mean to us: its sampling and unit, and the scale of data that were stored raw. */
-static void use_property(struct eo_tdms_channel *channel, struct eo_series *series, const char *name, uint32_t length, double number,
-                         const char *text, uint32_t text_length)
+static void use_property(struct eo_tdms_channel *channel, struct eo_series *series, const char *name, uint32_t length,
+                         double number, const char *text, uint32_t text_length)
 {
   if (is_named(name, length, "wf_increment") && number > 0 && isfinite(number))
     series->interval = number;
@@ -162,12 +164,15 @@ static bool take_index(struct reader *r, struct eo_tdms_channel *channel, int nu
   if (!*data || (length == 0 && channel && channel->index_known))
     return true;
   if (length == 0x1269 || length == 0x126a || length == 0x1369) {
-    eo_error_set(r->error, EO_ERROR_INPUT, "", "TDMS: the channel before byte %lld holds raw DAQmx data; save it converted (as double).", (long long)at);
+    eo_error_set(r->error, EO_ERROR_INPUT, "",
+                 "TDMS: the channel before byte %lld holds raw DAQmx data; save it converted (as double).",
+                 (long long)at);
     return false;
   }
   const unsigned char *p;
   if (length != 20 && length != 28) {
-    eo_error_set(r->error, EO_ERROR_INPUT, "", "TDMS: the index of raw data at byte %lld has a length of %u bytes.", (long long)at, length);
+    eo_error_set(r->error, EO_ERROR_INPUT, "", "TDMS: the index of raw data at byte %lld has a length of %u bytes.",
+                 (long long)at, length);
     return false;
   }
   if (!take_32(r, &type) || !take_32(r, &dimension) || !(p = take(r, 8)))
@@ -178,9 +183,10 @@ static bool take_index(struct reader *r, struct eo_tdms_channel *channel, int nu
     size = eo_bytes_64(p, r->big);
   if (!p)
     return false;
-  if (count > INT64_MAX / 32 || size > INT64_MAX / 32 || dimension != 1 || (type != EO_TDMS_STRING && !eo_tdms_type_size(type)) ||
-      (type == EO_TDMS_STRING) != (length == 28)) {
-    eo_error_set(r->error, EO_ERROR_INPUT, "", "TDMS: the channel at byte %lld has %llu values of type 0x%x in %u dimensions; that is not read.",
+  if (count > INT64_MAX / 32 || size > INT64_MAX / 32 || dimension != 1 ||
+      (type != EO_TDMS_STRING && !eo_tdms_type_size(type)) || (type == EO_TDMS_STRING) != (length == 28)) {
+    eo_error_set(r->error, EO_ERROR_INPUT, "",
+                 "TDMS: the channel at byte %lld has %llu values of type 0x%x in %u dimensions; that is not read.",
                  (long long)at, (unsigned long long)count, type, dimension);
     return false;
   }
@@ -189,10 +195,11 @@ static bool take_index(struct reader *r, struct eo_tdms_channel *channel, int nu
     return false;
   }
   if (channel->index_known && channel->index.type != type) {
-    eo_error_set(r->error, EO_ERROR_INPUT, "", "TDMS: the channel at byte %lld changes the type of its values.", (long long)at);
+    eo_error_set(r->error, EO_ERROR_INPUT, "", "TDMS: the channel at byte %lld changes the type of its values.",
+                 (long long)at);
     return false;
   }
-  channel->index = (struct eo_tdms_part){ number, (enum eo_tdms_type)type, (int64_t)count, (int64_t)size };
+  channel->index = (struct eo_tdms_part){number, (enum eo_tdms_type)type, (int64_t)count, (int64_t)size};
   channel->index_known = true;
   return true;
 }
@@ -212,7 +219,8 @@ static const char *take_name(const char *path, char *name, size_t size)
   return *path ? path + 1 : path;
 }
 
-/* "/'group'/'channel'" becomes "channel". Whether two groups have channels of one name is no matter: columns may share a name. */
+/* "/'group'/'channel'" becomes "channel". Whether two groups have channels of one name is no matter: columns may share
+   a name. */
 static void name_channel(const char *path, char *name, size_t size)
 {
   char group[EO_RECORDING_NAME];
@@ -263,7 +271,7 @@ static void list_channel(struct eo_tdms *tdms, int channel, bool data)
   int *at = &tdms->channel[channel].listed_at;
   if (*at >= tdms->listed || tdms->list[*at].channel != channel)
     *at = tdms->listed++;
-  tdms->list[*at] = (struct eo_tdms_list){ channel, data };
+  tdms->list[*at] = (struct eo_tdms_list){channel, data};
 }
 
 static bool take_object(struct eo_tdms *tdms, struct reader *r, int hint)
@@ -282,11 +290,11 @@ static bool take_object(struct eo_tdms *tdms, struct reader *r, int hint)
   return take_properties(r, &tdms->channel[c], &tdms->series[c]);
 }
 
-enum eo_code eo_tdms_read_objects(struct eo_tdms *tdms, const unsigned char *bytes, size_t size, int64_t at, bool big, bool fresh,
-                                  struct eo_error *error)
+enum eo_code eo_tdms_read_objects(struct eo_tdms *tdms, const unsigned char *bytes, size_t size, int64_t at, bool big,
+                                  bool fresh, struct eo_error *error)
 {
   struct eo_error own;
-  struct reader r = { bytes, size, at, big, error ? error : &own };
+  struct reader r = {bytes, size, at, big, error ? error : &own};
   uint32_t count;
   if (fresh)
     tdms->listed = 0;

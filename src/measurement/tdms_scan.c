@@ -5,9 +5,9 @@
 #include <stdlib.h>
 
 #define LEAD_IN 28
-#define METADATA ((int64_t)64 << 20)     /* bytes of one segment's metadata at most */
-#define SEGMENTS ((int64_t)1 << 22)      /* with data, at most */
-#define LAYOUT_PARTS ((int64_t)1 << 22)  /* in all layouts, at most */
+#define METADATA ((int64_t)64 << 20)    /* bytes of one segment's metadata at most */
+#define SEGMENTS ((int64_t)1 << 22)     /* with data, at most */
+#define LAYOUT_PARTS ((int64_t)1 << 22) /* in all layouts, at most */
 
 enum { TOC_METADATA = 2, TOC_NEW_LIST = 4, TOC_DATA = 8, TOC_INTERLEAVED = 32, TOC_BIG = 64, TOC_DAQMX = 128 };
 
@@ -61,7 +61,8 @@ static enum eo_code read_metadata(struct eo_tdms *tdms, int64_t at, const struct
     return eo_error_memory(error);
   enum eo_code code = eo_bytes_read(tdms->file, at + LEAD_IN, bytes, (size_t)size, error);
   if (!code)
-    code = eo_tdms_read_objects(tdms, bytes, (size_t)size, at + LEAD_IN, lead->toc & TOC_BIG, lead->toc & TOC_NEW_LIST, error);
+    code = eo_tdms_read_objects(tdms, bytes, (size_t)size, at + LEAD_IN, lead->toc & TOC_BIG, lead->toc & TOC_NEW_LIST,
+                                error);
   free(bytes);
   return code;
 }
@@ -109,7 +110,8 @@ static const struct eo_tdms_layout *current_layout(struct eo_tdms *tdms, int64_t
   for (int i = 0; i < tdms->listed; i++)
     if (tdms->list[i].data) {
       layout->part[layout->parts] = tdms->channel[tdms->list[i].channel].index;
-      layout->chunk += layout->part[layout->parts++].size; /* sizes are below 2^58: no sum of them overflows after the check below */
+      layout->chunk +=
+          layout->part[layout->parts++].size; /* sizes are below 2^58: no sum of them overflows after the check below */
       if (layout->chunk > tdms->size) {
         free(layout);
         damaged(at, "states more data than the file holds", error);
@@ -143,7 +145,8 @@ static enum eo_code add_segment(struct eo_tdms *tdms, int64_t at, const struct l
     tdms->segment = segment;
     tdms->segment_room = room;
   }
-  struct eo_tdms_segment s = { .layout = layout, .at = lead->data, .interleaved = lead->toc & TOC_INTERLEAVED, .big = lead->toc & TOC_BIG };
+  struct eo_tdms_segment s = {
+      .layout = layout, .at = lead->data, .interleaved = lead->toc & TOC_INTERLEAVED, .big = lead->toc & TOC_BIG};
   if (s.interleaved && !may_interleave(layout))
     return damaged(at, "interleaves channels of different lengths", error);
   int64_t bytes = lead->next - lead->data, rest;

@@ -72,7 +72,10 @@ void eo_normal_done(struct eo_normal *n)
   *n = (struct eo_normal){0};
 }
 
-double *eo_normal_row(struct eo_normal *n) { return n->block + (size_t)n->held * (size_t)n->columns; }
+double *eo_normal_row(struct eo_normal *n)
+{
+  return n->block + (size_t)n->held * (size_t)n->columns;
+}
 
 static void flush(struct eo_normal *n)
 {
@@ -91,7 +94,8 @@ enum eo_code eo_normal_solve(struct eo_normal *n, double *coefficient, double *c
 {
   int terms = n->columns - 1;
   flush(n);
-  double *matrix = malloc(sizeof *matrix * (size_t)(terms * terms + 3 * terms)), *values = matrix + terms * terms, *scale = values + terms;
+  double *matrix = malloc(sizeof *matrix * (size_t)(terms * terms + 3 * terms)), *values = matrix + terms * terms,
+         *scale = values + terms;
   if (!matrix)
     return eo_error_memory(error);
   for (int i = 0; i < terms; i++)

@@ -7,12 +7,12 @@
 enum { EO_DRIFT_TERMS = 4, EO_MOST_TERMS = EO_DRIFT_TERMS + 2 * (2 * EO_SHAFT_ORDERS + EO_MESH_ORDERS) };
 
 struct eo_terms {
-  int drift, count;           /* terms of the drift; all terms: then a cosine and a sine per order */
+  int drift, count; /* terms of the drift; all terms: then a cosine and a sine per order */
   int orders;
   double order[2 * EO_SHAFT_ORDERS + EO_MESH_ORDERS]; /* mesh orders first */
-  int part[2 * EO_SHAFT_ORDERS + EO_MESH_ORDERS][2]; /* two earlier orders whose sum it is; -1: none */
-  int shaft_at[2][EO_SHAFT_ORDERS]; /* index into order; -1: coincides with another one */
-  double middle, half;        /* of the time, s */
+  int part[2 * EO_SHAFT_ORDERS + EO_MESH_ORDERS][2];  /* two earlier orders whose sum it is; -1: none */
+  int shaft_at[2][EO_SHAFT_ORDERS];                   /* index into order; -1: coincides with another one */
+  double middle, half;                                /* of the time, s */
 };
 
 /* Orders nearer to each other than 0.7 / turns cannot be told apart: the later one is left out. */
@@ -23,10 +23,10 @@ void eo_terms_at(const struct eo_terms *terms, double time, double theta, double
 
 /* Accumulates [A b]' [A b] over blocks of rows and solves for the coefficients. */
 struct eo_normal {
-  int columns;                /* terms + 1 */
+  int columns; /* terms + 1 */
   int64_t rows;
-  double *gram;               /* owned, [columns][columns], upper triangle */
-  double *block;              /* owned, [EO_NORMAL_BLOCK][columns] */
+  double *gram;  /* owned, [columns][columns], upper triangle */
+  double *block; /* owned, [EO_NORMAL_BLOCK][columns] */
   int held;
 };
 enum { EO_NORMAL_BLOCK = 256 };

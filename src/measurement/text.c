@@ -1,6 +1,6 @@
 #define _GNU_SOURCE /* memrchr */
-/* The rows of a text file, block by block: cells go straight from the text to doubles; only lines that are not plain numbers are looked at
-   twice. */
+/* The rows of a text file, block by block: cells go straight from the text to doubles; only lines that are not plain
+   numbers are looked at twice. */
 #include "measurement/decimal.h"
 #include "measurement/readers.h"
 #include "measurement/text_cell.h"
@@ -29,12 +29,12 @@ struct text {
   int64_t faults; /* rows with cells that are no numbers, or of another length */
   int64_t missing, missing_line;
   int missing_cell;
-  int64_t expected;                     /* line of the next row when no line is skipped */
-  int batched, batch_rows;              /* rows in batch, rows that fit */
-  double batch[BATCH];                  /* [batched][columns] and the row that is being read */
-  size_t filled;                        /* bytes in block */
-  bool ended;                           /* the block holds the end of the file */
-  char block[BLOCK + 2];                /* one byte for a line end that the file lacks, one for a final 0 */
+  int64_t expected;        /* line of the next row when no line is skipped */
+  int batched, batch_rows; /* rows in batch, rows that fit */
+  double batch[BATCH];     /* [batched][columns] and the row that is being read */
+  size_t filled;           /* bytes in block */
+  bool ended;              /* the block holds the end of the file */
+  char block[BLOCK + 2];   /* one byte for a line end that the file lacks, one for a final 0 */
 };
 
 static double *next_row(struct text *t)
@@ -70,10 +70,11 @@ static enum eo_code add_fault(struct text *t, int cell, const char *what, struct
   int64_t rows = eo_recording_rows(t->recording) + t->batched;
   t->faults++;
   if (t->faults > FAULTS_FREE + rows / FAULT_SHARE)
-    return eo_error_set(error, EO_ERROR_INPUT, "", "Line %lld, column %d: %s; that makes %lld such rows of %lld.", (long long)t->line, cell + 1, what,
-                        (long long)t->faults, (long long)rows + 1);
+    return eo_error_set(error, EO_ERROR_INPUT, "", "Line %lld, column %d: %s; that makes %lld such rows of %lld.",
+                        (long long)t->line, cell + 1, what, (long long)t->faults, (long long)rows + 1);
   if (t->faults <= FAULTS_NAMED)
-    eo_notes_add(t->notes, "Line %lld, column %d: %s; what is missing was left empty.", (long long)t->line, cell + 1, what);
+    eo_notes_add(t->notes, "Line %lld, column %d: %s; what is missing was left empty.", (long long)t->line, cell + 1,
+                 what);
   return EO_OK;
 }
 
@@ -118,7 +119,8 @@ static bool only_empty_cells(const char *at, const char *end, char separator)
   return true;
 }
 
-/* Reads a line cell by cell, with quotes, empty cells and everything that is not a plain number. last: the file ends without a line end. */
+/* Reads a line cell by cell, with quotes, empty cells and everything that is not a plain number. last: the file ends
+   without a line end. */
 static enum eo_code read_slowly(struct text *t, const char *line, const char *end, bool last, struct eo_error *error)
 {
   const struct eo_text_format *f = &t->format;
@@ -161,10 +163,10 @@ static inline const char *skip_blanks(const char *p)
   return p;
 }
 
-/* Reads a line of nothing but numbers and returns its end; NULL when there is anything else. point and separator are constants where it is
-   inlined. */
-static inline __attribute__((always_inline)) const char *read_numbers(const struct eo_text_format *f, const char *p, char separator, char point,
-                                                                      double *row)
+/* Reads a line of nothing but numbers and returns its end; NULL when there is anything else. point and separator are
+   constants where it is inlined. */
+static inline __attribute__((always_inline)) const char *read_numbers(const struct eo_text_format *f, const char *p,
+                                                                      char separator, char point, double *row)
 {
   for (int c = 0; c < f->columns; c++) {
     while (*p == ' ' || (separator != '\t' && *p == '\t'))
@@ -207,7 +209,8 @@ static enum eo_code read_lines(struct text *t, size_t from, struct eo_error *err
   const char *at = t->block + from, *end = memrchr(at, line_end, t->filled - from);
   end = end ? end + 1 : at;
   if (end == at && t->filled - from >= BLOCK)
-    return eo_error_set(error, EO_ERROR_INPUT, "", "Line %lld is longer than the %zu kB that are read at most.", (long long)t->line, BLOCK >> 10);
+    return eo_error_set(error, EO_ERROR_INPUT, "", "Line %lld is longer than the %zu kB that are read at most.",
+                        (long long)t->line, BLOCK >> 10);
   while (at < end) {
     const char *last = read_quickly(&t->format, at, next_row(t));
     bool quick = last;
@@ -273,14 +276,16 @@ static void note_format(const struct text *t)
 {
   const struct eo_text_format *f = &t->format;
   int64_t rows = eo_recording_rows(t->recording);
-  eo_notes_add(t->notes, "Text with %d column%s%s%s and a decimal %s; the first of %lld rows is line %lld.", f->cells, f->cells == 1 ? "" : "s",
-               f->cells == 1 ? "" : " separated by ", f->cells == 1 ? "" : separator_name(f->separator), f->point == ',' ? "comma" : "point",
-               (long long)rows, (long long)f->first_line);
+  eo_notes_add(t->notes, "Text with %d column%s%s%s and a decimal %s; the first of %lld rows is line %lld.", f->cells,
+               f->cells == 1 ? "" : "s", f->cells == 1 ? "" : " separated by ",
+               f->cells == 1 ? "" : separator_name(f->separator), f->point == ',' ? "comma" : "point", (long long)rows,
+               (long long)f->first_line);
   if (t->missing)
     eo_notes_add(t->notes, "%lld cell%s without a number, the first in line %lld, column %d.", (long long)t->missing,
                  t->missing == 1 ? " is" : "s are", (long long)t->missing_line, t->missing_cell + 1);
   if (t->faults > FAULTS_NAMED)
-    eo_notes_add(t->notes, "%lld rows are odd in all; the first %d are named above.", (long long)t->faults, FAULTS_NAMED);
+    eo_notes_add(t->notes, "%lld rows are odd in all; the first %d are named above.", (long long)t->faults,
+                 FAULTS_NAMED);
 }
 
 static enum eo_code read_text(struct text *t, const struct eo_reader_options *options, struct eo_error *error)
@@ -305,8 +310,8 @@ static enum eo_code read_text(struct text *t, const struct eo_reader_options *op
   return code;
 }
 
-enum eo_code eo_delimited_read(struct eo_source *source, const struct eo_reader_options *options, struct eo_recording **recording,
-                          struct eo_notes *notes, struct eo_error *error)
+enum eo_code eo_delimited_read(struct eo_source *source, const struct eo_reader_options *options,
+                               struct eo_recording **recording, struct eo_notes *notes, struct eo_error *error)
 {
   struct text *t = malloc(sizeof *t);
   if (!t)

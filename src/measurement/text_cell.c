@@ -57,7 +57,9 @@ bool eo_text_next_cell(const char **at, const char *end, char separator, struct 
 
 static bool means_nothing(const char *text, size_t length)
 {
-  static const char *const words[] = { "nan", "-nan", "+nan", "n/a", "na", "#n/a", "null", "none", "-", "--", "---", "*", "inf", "+inf", "-inf", "infinity", "-infinity", "nan(ind)", "-nan(ind)" };
+  static const char *const words[] = {"nan",  "-nan",     "+nan",      "n/a",      "na",       "#n/a", "null",
+                                      "none", "-",        "--",        "---",      "*",        "inf",  "+inf",
+                                      "-inf", "infinity", "-infinity", "nan(ind)", "-nan(ind)"};
   if (!length)
     return true;
   for (size_t i = 0; i < sizeof words / sizeof *words; i++)

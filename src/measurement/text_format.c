@@ -21,7 +21,7 @@ struct lines {
 /* What one way of reading makes of a line. */
 struct shape {
   int cells, numbers, texts;
-  bool open; /* ends with a separator, which counts as no cell */
+  bool open;        /* ends with a separator, which counts as no cell */
   uint64_t pattern; /* which of the first 64 cells are text */
 };
 
@@ -45,7 +45,7 @@ static void split_lines(struct lines *lines, const char *head, size_t size, char
     const char *end = memchr(at, line_end, (size_t)(last - at));
     if (!end && !whole && lines->count)
       return;
-    lines->line[lines->count++] = (struct line){ at, end ? end : last };
+    lines->line[lines->count++] = (struct line){at, end ? end : last};
     at = end ? end + 1 : last;
   }
 }
@@ -53,7 +53,8 @@ static void split_lines(struct lines *lines, const char *head, size_t size, char
 /* "05" is no whole number anybody writes: it is what follows a decimal comma. */
 static bool follows_comma(const struct eo_cell *cell)
 {
-  return cell->length > 1 && cell->text[0] == '0' && cell->text[1] >= '0' && cell->text[1] <= '9' && !memchr(cell->text, '.', cell->length);
+  return cell->length > 1 && cell->text[0] == '0' && cell->text[1] >= '0' && cell->text[1] <= '9' &&
+         !memchr(cell->text, '.', cell->length);
 }
 
 static struct shape shape_of(const struct line *line, char separator, char point)
@@ -61,7 +62,8 @@ static struct shape shape_of(const struct line *line, char separator, char point
   struct shape s = {0};
   struct eo_cell cell;
   double value;
-  for (const char *at = line->start; s.cells < EO_TEXT_CELLS && eo_text_next_cell(&at, line->end, separator, &cell); s.cells++) {
+  for (const char *at = line->start; s.cells < EO_TEXT_CELLS && eo_text_next_cell(&at, line->end, separator, &cell);
+       s.cells++) {
     enum eo_cell_kind kind = eo_text_cell_value(&cell, point, &value);
     if (kind == EO_CELL_NUMBER && separator == ',' && point == '.' && s.cells > 0 && follows_comma(&cell))
       kind = EO_CELL_TEXT;
@@ -92,7 +94,8 @@ static bool holds_cells(const struct line *line, char separator)
   return !eo_text_empty(line->start, line->end) && !eo_text_comment(line->start, line->end, separator);
 }
 
-/* The best run of rows; long ones with many numbers and little text win. A few odd lines do not end a run that is under way. */
+/* The best run of rows; long ones with many numbers and little text win. A few odd lines do not end a run that is under
+   way. */
 static struct run find_run(const struct lines *lines, char separator, char point)
 {
   struct run best = {0}, run = {0};
@@ -115,7 +118,7 @@ static struct run find_run(const struct lines *lines, char separator, char point
       continue;
     odd = 0;
     if (!run.lines)
-      run = (struct run){ .first = i, .shape = shape };
+      run = (struct run){.first = i, .shape = shape};
     if (shape.cells > run.shape.cells)
       run.shape.cells = shape.cells;
     run.lines++;
@@ -134,7 +137,8 @@ static enum eo_code no_table(const struct lines *lines, const char *head, struct
   for (const char *p = line ? line->start : head; line && p < line->end && length < sizeof start - 1; p++)
     start[length++] = *p >= ' ' && *p < 127 ? *p : '?';
   start[length] = '\0';
-  return eo_error_set(error, EO_ERROR_INPUT, "", "No table of numbers was found in the first %d lines of the text, which begins with \"%s\".",
+  return eo_error_set(error, EO_ERROR_INPUT, "",
+                      "No table of numbers was found in the first %d lines of the text, which begins with \"%s\".",
                       lines->count, start);
 }
 
@@ -145,7 +149,8 @@ static void mark_numbers(struct eo_text_format *f, const struct line *row)
   double value;
   const char *at = row->start;
   for (int c = 0; c < f->cells; c++)
-    f->number[c] = !eo_text_next_cell(&at, row->end, f->separator, &cell) || eo_text_cell_value(&cell, f->point, &value) != EO_CELL_TEXT;
+    f->number[c] = !eo_text_next_cell(&at, row->end, f->separator, &cell) ||
+                   eo_text_cell_value(&cell, f->point, &value) != EO_CELL_TEXT;
   for (int c = 0; c < f->cells; c++)
     f->columns += f->number[c];
 }
@@ -153,7 +158,8 @@ static void mark_numbers(struct eo_text_format *f, const struct line *row)
 /* Tries every way of reading that the choice leaves; the earlier one wins when two are as good. */
 static struct run best_run(struct eo_text_format *f, const struct lines *lines, const struct eo_text_choice *choice)
 {
-  static const char ways[][2] = { { '\t', '.' }, { ';', '.' }, { ',', '.' }, { ' ', '.' }, { '\t', ',' }, { ';', ',' }, { ' ', ',' }, { ',', ',' } };
+  static const char ways[][2] = {{'\t', '.'}, {';', '.'}, {',', '.'}, {' ', '.'},
+                                 {'\t', ','}, {';', ','}, {' ', ','}, {',', ','}};
   struct run best = {0};
   for (size_t i = 0; i < sizeof ways / sizeof *ways; i++) {
     if ((choice->separator && choice->separator != ways[i][0]) || (choice->point && choice->point != ways[i][1]))
@@ -168,12 +174,13 @@ static struct run best_run(struct eo_text_format *f, const struct lines *lines, 
   return best;
 }
 
-static enum eo_code guess_from(struct eo_text_format *f, struct lines *lines, const char *head, const struct eo_text_choice *choice,
-                               struct eo_error *error)
+static enum eo_code guess_from(struct eo_text_format *f, struct lines *lines, const char *head,
+                               const struct eo_text_choice *choice, struct eo_error *error)
 {
   int skipped = 0;
   if (choice->first_line > lines->count)
-    return eo_error_set(error, EO_ERROR_INPUT, "", "The first row is said to stand in line %lld; the first %zu kB of the file have %d lines.",
+    return eo_error_set(error, EO_ERROR_INPUT, "",
+                        "The first row is said to stand in line %lld; the first %zu kB of the file have %d lines.",
                         (long long)choice->first_line, EO_TEXT_HEAD >> 10, lines->count);
   if (choice->first_line > 1) {
     skipped = (int)choice->first_line - 1;
@@ -186,15 +193,16 @@ static enum eo_code guess_from(struct eo_text_format *f, struct lines *lines, co
   f->cells = run.shape.cells;
   mark_numbers(f, &lines->line[run.first]);
   if (f->columns < 1 || f->columns > EO_RECORDING_COLUMNS || f->cells >= EO_TEXT_CELLS)
-    return eo_error_set(error, EO_ERROR_INPUT, "", "The rows of the text have %d cells from line %d on; at most %d columns are read.", f->cells,
+    return eo_error_set(error, EO_ERROR_INPUT, "",
+                        "The rows of the text have %d cells from line %d on; at most %d columns are read.", f->cells,
                         run.first + skipped + 1, EO_RECORDING_COLUMNS);
   f->first_line = run.first + skipped + 1;
   f->first_byte = (size_t)(lines->line[run.first].start - head);
   return EO_OK;
 }
 
-enum eo_code eo_text_guess(struct eo_text_format *format, const char *head, size_t size, bool whole, const struct eo_text_choice *choice,
-                           struct eo_error *error)
+enum eo_code eo_text_guess(struct eo_text_format *format, const char *head, size_t size, bool whole,
+                           const struct eo_text_choice *choice, struct eo_error *error)
 {
   struct lines *lines = malloc(sizeof *lines);
   if (!lines)

@@ -26,7 +26,7 @@ static int last_lines(const struct eo_text_format *f, const char *head, struct h
     while (start > first && start[-1] != f->line_end)
       start--;
     const char *comment = eo_text_comment(start, end, f->separator);
-    line[count] = (struct header_line){ comment ? comment : start, end };
+    line[count] = (struct header_line){comment ? comment : start, end};
     if (!eo_text_empty(line[count].start, end))
       count++;
     end = start;
@@ -51,10 +51,11 @@ static int count_cells(const struct header_line *line, char separator)
   return filled;
 }
 
-/* The separator that cuts the line into as many cells as a row has; headers do not always use that of the rows. 0: none does. */
+/* The separator that cuts the line into as many cells as a row has; headers do not always use that of the rows. 0: none
+   does. */
 static char header_separator(const struct eo_text_format *f, const struct header_line *line)
 {
-  const char separators[] = { f->separator, '\t', ';', ',', ' ' };
+  const char separators[] = {f->separator, '\t', ';', ',', ' '};
   for (size_t i = 0; i < sizeof separators; i++)
     if (count_cells(line, separators[i]) == f->cells)
       return separators[i];
@@ -137,9 +138,11 @@ static double value_behind(const char *line, const char *end, const char *key, c
 
 static void find_interval(struct eo_text_format *f, const char *head)
 {
-  static const char *const rates[] = { "sample rate", "sampling rate", "samplerate", "sample_rate", "sampling_rate", "sampling frequency",
-                                       "sample frequency", "abtastrate", "abtastfrequenz", "fs" };
-  static const char *const intervals[] = { "delta_x", "delta t", "sample interval", "sampling interval", "abtastintervall", "dt" };
+  static const char *const rates[] = {
+      "sample rate",        "sampling rate",    "samplerate", "sample_rate",    "sampling_rate",
+      "sampling frequency", "sample frequency", "abtastrate", "abtastfrequenz", "fs"};
+  static const char *const intervals[] = {"delta_x",           "delta t",         "sample interval",
+                                          "sampling interval", "abtastintervall", "dt"};
   const char *last = head + f->first_byte, *after;
   for (const char *line = head + f->header_byte; line < last && f->interval <= 0;) {
     const char *end = memchr(line, f->line_end, (size_t)(last - line));

@@ -22,9 +22,9 @@ struct eo_track_channel {
 };
 
 struct eo_tracks {
-  int time_column;        /* -1: none; then the recording states the interval between rows */
-  double time_scale;      /* s per unit of the time column, and of pulse times */
-  double interval;        /* s between rows without a time column */
+  int time_column;                    /* -1: none; then the recording states the interval between rows */
+  double time_scale;                  /* s per unit of the time column, and of pulse times */
+  double interval;                    /* s between rows without a time column */
   struct eo_track_channel channel[2]; /* [member] */
 };
 

@@ -20,8 +20,8 @@ struct worker {
   struct eo_trend trend;
   struct eo_terms terms;
   double coefficient[EO_MOST_TERMS];
-  double from, to;           /* smooth pinion angle of the rows that count, rad */
-  double turns;              /* between them */
+  double from, to; /* smooth pinion angle of the rows that count, rad */
+  double turns;    /* between them */
   double rows[BLOCK][3];
   struct eo_synchronous *synchronous;
   struct eo_beside beside;
@@ -72,7 +72,8 @@ static enum eo_code fit_trend(struct worker *w, struct eo_error *error)
     return code;
   double turns = (last[1] - first[1]) / (2 * M_PI), spacing = fmax(TREND_TURNS, 2 * ratio);
   int intervals = turns < 2 * spacing ? 1 : turns > 1e6 * spacing ? 1000000 : (int)(turns / spacing);
-  code = eo_trend_start(&w->trend, first[0], last[0], intervals, first[1], (last[1] - first[1]) / (last[0] - first[0]), error);
+  code = eo_trend_start(&w->trend, first[0], last[0], intervals, first[1], (last[1] - first[1]) / (last[0] - first[0]),
+                        error);
   if (!code)
     code = each_row(w, add_to_trend, "trend of the angle", error);
   if (!code)
@@ -84,7 +85,10 @@ static enum eo_code fit_trend(struct worker *w, struct eo_error *error)
   return EO_OK;
 }
 
-static int greatest_divisor(int a, int b) { return b ? greatest_divisor(b, a % b) : a; }
+static int greatest_divisor(int a, int b)
+{
+  return b ? greatest_divisor(b, a % b) : a;
+}
 
 /* Whole hunting periods, or whole turns of the gear, keep shaft orders and sidebands out of the mesh orders. */
 static void choose_turns(struct worker *w)
@@ -130,25 +134,32 @@ static void judge_axis(struct worker *w)
 {
   struct eo_transmission *r = w->result;
   double per_turn = (double)w->angles->rows * 2 * M_PI / (w->trend.step * w->trend.intervals * r->speed);
-  double turns = r->revolutions[EO_PINION], gear = r->revolutions[EO_GEAR], swing = (r->speed_high - r->speed_low) / r->speed;
+  double turns = r->revolutions[EO_PINION], gear = r->revolutions[EO_GEAR],
+         swing = (r->speed_high - r->speed_low) / r->speed;
   int possible = (int)(0.45 * per_turn / w->settings->teeth[EO_PINION]);
   r->asked = w->settings->harmonics ? w->settings->harmonics : 8;
   r->asked = r->asked < 1 ? 1 : r->asked > EO_MESH_ORDERS ? EO_MESH_ORDERS : r->asked;
   r->harmonics = r->asked < possible ? r->asked : possible;
   if (turns < 3 || gear < 1.5)
-    eo_findings_add(w->findings, EO_FINDING_TOO_SHORT, EO_SEVERITY_REFUSED, -1, turns,
-                    "The recording covers %.3g turns of the pinion and %.3g of the gear; shaft orders need at least 3 and 1.5.", turns, gear);
+    eo_findings_add(
+        w->findings, EO_FINDING_TOO_SHORT, EO_SEVERITY_REFUSED, -1, turns,
+        "The recording covers %.3g turns of the pinion and %.3g of the gear; shaft orders need at least 3 and 1.5.",
+        turns, gear);
   else if (gear < 5)
-    eo_findings_add(w->findings, EO_FINDING_TOO_SHORT, EO_SEVERITY_WARNING, -1, turns,
-                    "The recording covers only %.3g turns of the pinion and %.3g of the gear; a hunting period is %d turns.", turns, gear, r->hunting);
+    eo_findings_add(
+        w->findings, EO_FINDING_TOO_SHORT, EO_SEVERITY_WARNING, -1, turns,
+        "The recording covers only %.3g turns of the pinion and %.3g of the gear; a hunting period is %d turns.", turns,
+        gear, r->hunting);
   if (swing > 0.02)
-    eo_findings_add(w->findings, EO_FINDING_UNSTEADY, swing > 0.5 ? EO_SEVERITY_REFUSED : EO_SEVERITY_WARNING, -1, swing,
-                    "The speed is not steady: %.5g to %.5g rpm, %.2g %% of its mean; accelerations are stated at %.6g rpm.", 30 / M_PI * r->speed_low,
-                    30 / M_PI * r->speed_high, 100 * swing, 30 / M_PI * r->speed);
+    eo_findings_add(
+        w->findings, EO_FINDING_UNSTEADY, swing > 0.5 ? EO_SEVERITY_REFUSED : EO_SEVERITY_WARNING, -1, swing,
+        "The speed is not steady: %.5g to %.5g rpm, %.2g %% of its mean; accelerations are stated at %.6g rpm.",
+        30 / M_PI * r->speed_low, 30 / M_PI * r->speed_high, 100 * swing, 30 / M_PI * r->speed);
   if (r->harmonics < r->asked)
-    eo_findings_add(w->findings, EO_FINDING_SAMPLE_RATE, r->harmonics ? EO_SEVERITY_WARNING : EO_SEVERITY_REFUSED, -1, per_turn,
-                    "%.4g samples per turn of the pinion carry %d mesh orders of %d teeth, not the %d wanted.", per_turn, r->harmonics,
-                    w->settings->teeth[EO_PINION], r->asked);
+    eo_findings_add(w->findings, EO_FINDING_SAMPLE_RATE, r->harmonics ? EO_SEVERITY_WARNING : EO_SEVERITY_REFUSED, -1,
+                    per_turn,
+                    "%.4g samples per turn of the pinion carry %d mesh orders of %d teeth, not the %d wanted.",
+                    per_turn, r->harmonics, w->settings->teeth[EO_PINION], r->asked);
 }
 
 /* ---- the fit ---- */
@@ -208,7 +219,8 @@ static struct eo_order_line line_of(const struct worker *w, int at)
   double order = w->terms.order[at], speed = w->result->speed;
   const double *c = w->coefficient + w->terms.drift + 2 * at;
   double complex amplitude = c[0] - I * c[1];
-  return (struct eo_order_line){.order = order, .amplitude = amplitude, .acceleration = order * order * speed * speed * cabs(amplitude)};
+  return (struct eo_order_line){
+      .order = order, .amplitude = amplitude, .acceleration = order * order * speed * speed * cabs(amplitude)};
 }
 
 static void read_lines(struct worker *w)
@@ -224,16 +236,18 @@ static void read_lines(struct worker *w)
       double shaft = member == EO_GEAR ? (double)w->settings->teeth[EO_PINION] / w->settings->teeth[EO_GEAR] : 1;
       double order = r->mesh[h].order + shaft * sideband_turns[at];
       double complex amplitude = eo_beside_sideband(&w->beside, h, member, sideband_turns[at]);
-      r->sideband[h][member][at] =
-          (struct eo_order_line){order, amplitude, r->mesh[h].sigma, order * order * r->speed * r->speed * cabs(amplitude)};
+      r->sideband[h][member][at] = (struct eo_order_line){order, amplitude, r->mesh[h].sigma,
+                                                          order * order * r->speed * r->speed * cabs(amplitude)};
     }
   }
   r->rms = r->harmonics ? r->rms_upto[r->harmonics - 1] : 0;
   for (int member = 0; member < 2; member++)
     for (int k = 0; k < EO_SHAFT_ORDERS; k++) {
       r->separate[member][k] = w->terms.shaft_at[member][k] >= 0;
-      double order = (k + 1) * (member == EO_GEAR ? (double)w->settings->teeth[EO_PINION] / w->settings->teeth[EO_GEAR] : 1);
-      r->shaft[member][k] = r->separate[member][k] ? line_of(w, w->terms.shaft_at[member][k]) : (struct eo_order_line){.order = order};
+      double order = (k + 1) *
+                     (member == EO_GEAR ? (double)w->settings->teeth[EO_PINION] / w->settings->teeth[EO_GEAR] : 1);
+      r->shaft[member][k] = r->separate[member][k] ? line_of(w, w->terms.shaft_at[member][k])
+                                                   : (struct eo_order_line){.order = order};
       r->shaft[member][k].sigma = sqrt(2) * r->residual / sqrt(rows);
     }
   memcpy(r->drift, w->coefficient, sizeof r->drift);
@@ -251,11 +265,14 @@ static void judge_result(struct worker *w)
   r->mesh_peak_to_peak = r->harmonics ? high - low : 0;
   if (r->rms_sigma > 0.25 * r->rms)
     eo_findings_add(w->findings, EO_FINDING_RESOLUTION, EO_SEVERITY_WARNING, -1, r->rms_sigma,
-                    "The mesh orders drown in noise or quantisation: RMS %.3g m/s2 with a standard deviation of %.3g.", r->rms, r->rms_sigma);
+                    "The mesh orders drown in noise or quantisation: RMS %.3g m/s2 with a standard deviation of %.3g.",
+                    r->rms, r->rms_sigma);
   if (r->step != 0)
     eo_findings_add(w->findings, EO_FINDING_SLIP, EO_SEVERITY_WARNING, -1, 1e6 * r->step,
-                    "The transmission error changes its level by %.3g um about row %lld: lost counts, or a shaft coupling that moved.", 1e6 * r->step,
-                    (long long)r->step_row + 1)->row = r->step_row;
+                    "The transmission error changes its level by %.3g um about row %lld: lost counts, or a shaft "
+                    "coupling that moved.",
+                    1e6 * r->step, (long long)r->step_row + 1)
+        ->row = r->step_row;
 }
 
 double eo_transmission_mesh(const struct eo_transmission *r, double phase)
@@ -282,7 +299,10 @@ double eo_transmission_rms(const struct eo_order_line *line, int count, double o
   return rms;
 }
 
-static bool refused(const struct worker *w) { return eo_findings_worst(w->findings) == EO_SEVERITY_REFUSED; }
+static bool refused(const struct worker *w)
+{
+  return eo_findings_worst(w->findings) == EO_SEVERITY_REFUSED;
+}
 
 static enum eo_code measure(struct worker *w, struct eo_error *error)
 {
@@ -298,7 +318,8 @@ static enum eo_code measure(struct worker *w, struct eo_error *error)
   judge_axis(w);
   if (refused(w))
     return EO_OK;
-  eo_terms_init(&w->terms, w->settings->teeth, w->result->harmonics, w->turns, w->trend.start, w->trend.start + w->result->seconds);
+  eo_terms_init(&w->terms, w->settings->teeth, w->result->harmonics, w->turns, w->trend.start,
+                w->trend.start + w->result->seconds);
   eo_beside_init(&w->beside, w->settings->teeth, w->result->harmonics, w->turns);
   code = fit_terms(w, error);
   if (!code)
@@ -315,8 +336,9 @@ static enum eo_code measure(struct worker *w, struct eo_error *error)
   return code;
 }
 
-enum eo_code eo_transmission_measure(struct eo_transmission *result, const struct eo_angles *angles, const struct eo_transmission_settings *settings,
-                                     struct eo_findings *findings, const struct eo_progress *progress, struct eo_error *error)
+enum eo_code eo_transmission_measure(struct eo_transmission *result, const struct eo_angles *angles,
+                                     const struct eo_transmission_settings *settings, struct eo_findings *findings,
+                                     const struct eo_progress *progress, struct eo_error *error)
 {
   struct worker *w = calloc(1, sizeof *w);
   memset(result, 0, sizeof *result);
@@ -329,8 +351,8 @@ enum eo_code eo_transmission_measure(struct eo_transmission *result, const struc
   w->result = result;
   enum eo_code code = EO_OK;
   if (angles->rows < 64)
-    eo_findings_add(findings, EO_FINDING_TOO_SHORT, EO_SEVERITY_REFUSED, -1, (double)angles->rows, "The recording has only %lld rows that can be used.",
-                    (long long)angles->rows);
+    eo_findings_add(findings, EO_FINDING_TOO_SHORT, EO_SEVERITY_REFUSED, -1, (double)angles->rows,
+                    "The recording has only %lld rows that can be used.", (long long)angles->rows);
   else
     code = measure(w, error);
   eo_trend_done(&w->trend);

@@ -1,6 +1,7 @@
-/* Transmission error of two measured angles, TE = r_b,gear phi_gear - r_b,pinion phi_pinion (transverse, along the line of action; the paper's
-   (24) as printed exchanges the radii: a plausible signal, for 17:44 two to three times too large), and what least squares on its samples
-   tell: drift, shaft orders and mesh orders together. Accelerations are (h z omega)^2 times the amplitudes: nothing is differentiated. */
+/* Transmission error of two measured angles, TE = r_b,gear phi_gear - r_b,pinion phi_pinion (transverse, along the line
+   of action; the paper's (24) as printed exchanges the radii: a plausible signal, for 17:44 two to three times too
+   large), and what least squares on its samples tell: drift, shaft orders and mesh orders together. Accelerations are
+   (h z omega)^2 times the amplitudes: nothing is differentiated. */
 #ifndef EASEOFF_MEASUREMENT_TRANSMISSION_H
 #define EASEOFF_MEASUREMENT_TRANSMISSION_H
 
@@ -19,48 +20,52 @@ struct eo_transmission_settings {
 
 /* One order: value = Re amplitude exp(i order theta), theta the pinion's smooth angle with its encoder's zero. */
 struct eo_order_line {
-  double order;              /* per turn of the pinion */
-  double complex amplitude;  /* m */
-  double sigma;              /* m, of its real and of its imaginary part, from the noise beside it */
-  double acceleration;       /* (order omega)^2 |amplitude|, m/s2 */
+  double order;             /* per turn of the pinion */
+  double complex amplitude; /* m */
+  double sigma;             /* m, of its real and of its imaginary part, from the noise beside it */
+  double acceleration;      /* (order omega)^2 |amplitude|, m/s2 */
 };
 
 struct eo_transmission {
   int64_t rows;
-  double seconds, revolutions[2];      /* of pinion and gear */
-  double speed, speed_low, speed_high; /* of the pinion, rad/s: mean and extremes of the trend */
-  int asked, harmonics;                /* mesh orders wanted and possible */
-  struct eo_order_line mesh[EO_MESH_ORDERS];               /* [harmonics] */
-  struct eo_order_line shaft[2][EO_SHAFT_ORDERS];          /* [member]; amplitude 0 where it coincides with another order */
+  double seconds, revolutions[2];                 /* of pinion and gear */
+  double speed, speed_low, speed_high;            /* of the pinion, rad/s: mean and extremes of the trend */
+  int asked, harmonics;                           /* mesh orders wanted and possible */
+  struct eo_order_line mesh[EO_MESH_ORDERS];      /* [harmonics] */
+  struct eo_order_line shaft[2][EO_SHAFT_ORDERS]; /* [member]; amplitude 0 where it coincides with another order */
   bool separate[2][EO_SHAFT_ORDERS];
   struct eo_order_line sideband[EO_MESH_ORDERS][2][EO_SIDEBANDS]; /* [h][member] at -2, -1, 1, 2 turns of that shaft */
-  double rms, rms_sigma;               /* m/s2 of the mesh orders together, its standard deviation */
-  double rms_upto[EO_MESH_ORDERS];     /* [harmonics] of the orders up to h */
-  double mesh_peak_to_peak;            /* m, of the mesh orders over a cycle */
-  double residual;                     /* m, RMS of what no term explains */
-  double drift[4];                     /* m, Legendre coefficients over the time of the recording */
-  double condition;                    /* of the scaled normal equations */
-  double step;                         /* m: the largest sudden change of level, if it stands out of the noise; else 0 */
-  int64_t step_row;                    /* row of the series near it */
-  /* Secondary: the samples interpolated to equal steps of the pinion's angle, over whole hunting periods where there are any. */
-  int hunting;                         /* turns of the pinion until the same teeth meet again */
-  int spectrum_turns, spectrum_lines;  /* turns analysed; lines[k] is at order k / spectrum_turns */
-  float *spectrum;                     /* owned, [spectrum_lines] m */
-  double rms_spectrum, rms_band;       /* m/s2: of the lines at the mesh orders; with everything within 2.2 turns of them */
-  double cycle[EO_CYCLE_BINS];         /* m: time-synchronous average over a mesh cycle */
-  double turn[2][EO_TURN_BINS];        /* [member] over a turn, without drift */
+  double rms, rms_sigma;           /* m/s2 of the mesh orders together, its standard deviation */
+  double rms_upto[EO_MESH_ORDERS]; /* [harmonics] of the orders up to h */
+  double mesh_peak_to_peak;        /* m, of the mesh orders over a cycle */
+  double residual;                 /* m, RMS of what no term explains */
+  double drift[4];                 /* m, Legendre coefficients over the time of the recording */
+  double condition;                /* of the scaled normal equations */
+  double step;                     /* m: the largest sudden change of level, if it stands out of the noise; else 0 */
+  int64_t step_row;                /* row of the series near it */
+  /* Secondary: the samples interpolated to equal steps of the pinion's angle, over whole hunting periods where there
+     are any. */
+  int hunting;                        /* turns of the pinion until the same teeth meet again */
+  int spectrum_turns, spectrum_lines; /* turns analysed; lines[k] is at order k / spectrum_turns */
+  float *spectrum;                    /* owned, [spectrum_lines] m */
+  double rms_spectrum, rms_band; /* m/s2: of the lines at the mesh orders; with everything within 2.2 turns of them */
+  double cycle[EO_CYCLE_BINS];   /* m: time-synchronous average over a mesh cycle */
+  double turn[2][EO_TURN_BINS];  /* [member] over a turn, without drift */
 };
 
-static const double EO_RMS_SYSTEMATIC = 0.005; /* relative standard deviation that stands for radii, speed and drift of amplitudes */
+static const double EO_RMS_SYSTEMATIC =
+    0.005; /* relative standard deviation that stands for radii, speed and drift of amplitudes */
 
-/* Fits the trend and everything above. Findings are added: too short, unsteady, sample rate, resolution, level steps; after a refusal the result
-   is empty. Errors: memory, files, cancelled. eo_transmission_done() also after an error. */
-enum eo_code eo_transmission_measure(struct eo_transmission *result, const struct eo_angles *angles, const struct eo_transmission_settings *settings,
-                                     struct eo_findings *findings, const struct eo_progress *progress, struct eo_error *error);
+/* Fits the trend and everything above. Findings are added: too short, unsteady, sample rate, resolution, level steps;
+   after a refusal the result is empty. Errors: memory, files, cancelled. eo_transmission_done() also after an error. */
+enum eo_code eo_transmission_measure(struct eo_transmission *result, const struct eo_angles *angles,
+                                     const struct eo_transmission_settings *settings, struct eo_findings *findings,
+                                     const struct eo_progress *progress, struct eo_error *error);
 void eo_transmission_done(struct eo_transmission *result);
 
-/* Root of the summed squares of the accelerations of lines[count], the expected part of the noise taken off, and its standard deviation
-   (EO_RMS_SYSTEMATIC included): |RMS - truth| stays below twice that in 95 % of cases, for small RMS too. omega: rad/s. */
+/* Root of the summed squares of the accelerations of lines[count], the expected part of the noise taken off, and its
+   standard deviation (EO_RMS_SYSTEMATIC included): |RMS - truth| stays below twice that in 95 % of cases, for small RMS
+   too. omega: rad/s. */
 double eo_transmission_rms(const struct eo_order_line *line, int count, double omega, double *sigma);
 
 /* TE of the mesh orders at mesh phase 0..1. */

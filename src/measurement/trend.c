@@ -3,10 +3,12 @@
 #include <math.h>
 #include <stdlib.h>
 
-enum eo_code eo_trend_start(struct eo_trend *t, double from, double to, int intervals, double origin, double rate, struct eo_error *error)
+enum eo_code eo_trend_start(struct eo_trend *t, double from, double to, int intervals, double origin, double rate,
+                            struct eo_error *error)
 {
   int n = intervals + 3;
-  *t = (struct eo_trend){.intervals = intervals, .start = from, .step = (to - from) / intervals, .origin = origin, .rate = rate};
+  *t = (struct eo_trend){
+      .intervals = intervals, .start = from, .step = (to - from) / intervals, .origin = origin, .rate = rate};
   t->coefficient = calloc((size_t)n, sizeof *t->coefficient);
   t->band = calloc((size_t)n * 4, sizeof *t->band);
   return t->coefficient && t->band ? EO_OK : eo_error_memory(error);
@@ -36,7 +38,10 @@ static int basis(const struct eo_trend *t, double time, double value[4], double 
   return piece;
 }
 
-static double line_at(const struct eo_trend *t, double time) { return t->origin + t->rate * (time - t->start); }
+static double line_at(const struct eo_trend *t, double time)
+{
+  return t->origin + t->rate * (time - t->start);
+}
 
 void eo_trend_add(struct eo_trend *t, double time, double angle)
 {

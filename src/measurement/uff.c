@@ -1,4 +1,5 @@
-/* The data sets of a universal file as channels. Text is read once, into one column each; binary data are read where they are. */
+/* The data sets of a universal file as channels. Text is read once, into one column each; binary data are read where
+   they are. */
 #include "measurement/uff.h"
 #include "measurement/decimal.h"
 #include "measurement/readers.h"
@@ -8,7 +9,7 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-#define BATCH 4096             /* values */
+#define BATCH 4096               /* values */
 #define MEMORY ((size_t)1 << 19) /* bytes of a column of text in memory */
 #define CHANNELS EO_RECORDING_COLUMNS
 #define PIECE ((size_t)64 << 10)
@@ -56,23 +57,26 @@ static enum eo_code next_number(struct stream *s, int64_t taken, double *value, 
     if (s->at && *s->at)
       break;
     if (!eo_uff_next(s->lines, error, &code) || eo_uff_is_end(s->lines))
-      return code ? code : eo_error_set(error, EO_ERROR_INPUT, "", "UFF: the data set in line %lld ends in line %lld after %lld of %lld values.",
-                                        (long long)s->header->line, (long long)s->lines->number, (long long)taken, (long long)s->header->count);
+      return code ? code
+                  : eo_error_set(error, EO_ERROR_INPUT, "",
+                                 "UFF: the data set in line %lld ends in line %lld after %lld of %lld values.",
+                                 (long long)s->header->line, (long long)s->lines->number, (long long)taken,
+                                 (long long)s->header->count);
     s->at = s->lines->line;
   }
   const char *end = eo_decimal_read(s->at, '.', value);
   if (!end)
-    return eo_error_set(error, EO_ERROR_INPUT, "", "UFF: line %lld, column %d: there is no number.", (long long)s->lines->number,
-                        (int)(s->at - s->lines->line) + 1);
+    return eo_error_set(error, EO_ERROR_INPUT, "", "UFF: line %lld, column %d: there is no number.",
+                        (long long)s->lines->number, (int)(s->at - s->lines->line) + 1);
   s->at = end;
   return EO_OK;
 }
 
 /* Reads the numbers of text into column and, for an uneven abscissa, time. */
-static enum eo_code read_text(struct uff *u, const struct eo_uff_header *h, struct eo_recording *time, struct eo_recording *column,
-                              struct eo_error *error)
+static enum eo_code read_text(struct uff *u, const struct eo_uff_header *h, struct eo_recording *time,
+                              struct eo_recording *column, struct eo_error *error)
 {
-  struct stream stream = { &u->lines, NULL, h };
+  struct stream stream = {&u->lines, NULL, h};
   double *times = u->batch, *ordinates = u->batch + BATCH;
   for (int64_t first = 0; first < h->count; first += BATCH) {
     int64_t n = h->count - first < BATCH ? h->count - first : BATCH;
@@ -93,7 +97,8 @@ static enum eo_code read_text(struct uff *u, const struct eo_uff_header *h, stru
   return EO_OK;
 }
 
-static enum eo_code add_text(struct uff *u, const struct eo_uff_header *h, int time, int ordinate, struct eo_error *error)
+static enum eo_code add_text(struct uff *u, const struct eo_uff_header *h, int time, int ordinate,
+                             struct eo_error *error)
 {
   enum eo_code code = new_column(u, &u->values[ordinate].column, error);
   if (!code && time >= 0)
@@ -102,17 +107,19 @@ static enum eo_code add_text(struct uff *u, const struct eo_uff_header *h, int t
 }
 
 /* An uneven abscissa is single or, as some write it, as wide as the values; the number of bytes tells which. */
-static enum eo_code add_binary(struct uff *u, const struct eo_uff_header *h, int time, int ordinate, struct eo_error *error)
+static enum eo_code add_binary(struct uff *u, const struct eo_uff_header *h, int time, int ordinate,
+                               struct eo_error *error)
 {
   int size = h->type == 4 ? 8 : 4;
   int abscissa = h->even ? 0 : h->bytes == h->count * (4 + size) ? 4 : size;
   struct values *v = &u->values[ordinate];
-  *v = (struct values){ .at = u->lines.at + abscissa, .stride = abscissa + size, .size = size, .big = h->big };
+  *v = (struct values){.at = u->lines.at + abscissa, .stride = abscissa + size, .size = size, .big = h->big};
   if (h->bytes < h->count * v->stride)
-    return eo_error_set(error, EO_ERROR_INPUT, "", "UFF: the binary data set in line %lld has %lld bytes for %lld values.", (long long)h->line,
+    return eo_error_set(error, EO_ERROR_INPUT, "",
+                        "UFF: the binary data set in line %lld has %lld bytes for %lld values.", (long long)h->line,
                         (long long)h->bytes, (long long)h->count);
   if (time >= 0)
-    u->values[time] = (struct values){ .at = u->lines.at, .stride = v->stride, .size = abscissa, .big = h->big };
+    u->values[time] = (struct values){.at = u->lines.at, .stride = v->stride, .size = abscissa, .big = h->big};
   eo_uff_seek(&u->lines, u->lines.at + h->bytes);
   return EO_OK;
 }
@@ -122,7 +129,8 @@ static void name_series(struct eo_series *series, const struct eo_uff_header *h)
   const char *name = *h->title ? h->title : h->label;
   int used = snprintf(series->name, sizeof series->name, "%.50s", name);
   if (h->node)
-    snprintf(series->name + used, sizeof series->name - (size_t)used, "%s%d:%d", used ? " " : "", h->node, h->direction);
+    snprintf(series->name + used, sizeof series->name - (size_t)used, "%s%d:%d", used ? " " : "", h->node,
+             h->direction);
   snprintf(series->unit, sizeof series->unit, "%s", h->unit);
   series->length = h->count;
   series->interval = h->even ? h->increment : 0;
@@ -132,7 +140,8 @@ static void name_series(struct eo_series *series, const struct eo_uff_header *h)
 /* Over time and real: an encoder's record. Spectra and the like are passed over. */
 static bool is_record(const struct eo_uff_header *h)
 {
-  return h->function <= 1 && (h->type == 2 || h->type == 4) && h->abscissa != 18 && h->count > 0 && (!h->even || h->increment > 0);
+  return h->function <= 1 && (h->type == 2 || h->type == 4) && h->abscissa != 18 && h->count > 0 &&
+         (!h->even || h->increment > 0);
 }
 
 static enum eo_code add_set(struct uff *u, const struct eo_uff_header *h, struct eo_error *error)
@@ -143,7 +152,7 @@ static enum eo_code add_set(struct uff *u, const struct eo_uff_header *h, struct
   if (!h->even && !u->uneven) {
     time = u->count++;
     u->uneven = true;
-    u->series[time] = (struct eo_series){ .name = "time", .unit = "s", .length = h->count };
+    u->series[time] = (struct eo_series){.name = "time", .unit = "s", .length = h->count};
   }
   int ordinate = u->count++;
   name_series(&u->series[ordinate], h);
@@ -165,7 +174,9 @@ static enum eo_code read_set(struct uff *u, struct eo_error *error)
     else if (!code) {
       u->skipped++;
       if (header.binary)
-        eo_uff_seek(&u->lines, u->lines.at + (header.bytes < u->lines.size - u->lines.at ? header.bytes : u->lines.size - u->lines.at));
+        eo_uff_seek(&u->lines,
+                    u->lines.at +
+                        (header.bytes < u->lines.size - u->lines.at ? header.bytes : u->lines.size - u->lines.at));
     }
   }
   while (!code && eo_uff_next(&u->lines, error, &code) && !eo_uff_is_end(&u->lines))
@@ -183,18 +194,20 @@ static enum eo_code read_sets(struct uff *u, struct eo_error *error)
       code = read_set(u, error);
   }
   if (!code && u->skipped)
-    eo_notes_add(u->notes, "%d data set%s that %s no real record over time %s left out.", u->skipped, u->skipped == 1 ? "" : "s",
-                 u->skipped == 1 ? "is" : "are", u->skipped == 1 ? "was" : "were");
+    eo_notes_add(u->notes, "%d data set%s that %s no real record over time %s left out.", u->skipped,
+                 u->skipped == 1 ? "" : "s", u->skipped == 1 ? "is" : "are", u->skipped == 1 ? "was" : "were");
   return code;
 }
 
-static enum eo_code read_binary(const struct uff *u, const struct values *v, int64_t first, int64_t count, double *values, struct eo_error *error)
+static enum eo_code read_binary(const struct uff *u, const struct values *v, int64_t first, int64_t count,
+                                double *values, struct eo_error *error)
 {
   unsigned char bytes[PIECE];
   int64_t most = ((int64_t)PIECE - v->size) / v->stride + 1;
   while (count > 0) {
     int64_t n = count < most ? count : most;
-    enum eo_code code = eo_bytes_read(u->lines.file, v->at + first * v->stride, bytes, (size_t)((n - 1) * v->stride + v->size), error);
+    enum eo_code code = eo_bytes_read(u->lines.file, v->at + first * v->stride, bytes,
+                                      (size_t)((n - 1) * v->stride + v->size), error);
     if (code)
       return code;
     for (int64_t i = 0; i < n; i++) {
@@ -207,15 +220,17 @@ static enum eo_code read_binary(const struct uff *u, const struct values *v, int
   return EO_OK;
 }
 
-static enum eo_code read_values(void *context, int series, int64_t first, int64_t count, double *values, struct eo_error *error)
+static enum eo_code read_values(void *context, int series, int64_t first, int64_t count, double *values,
+                                struct eo_error *error)
 {
   const struct uff *u = context;
   const struct values *v = &u->values[series];
-  return v->column ? eo_recording_read(v->column, first, count, values, error) : read_binary(u, v, first, count, values, error);
+  return v->column ? eo_recording_read(v->column, first, count, values, error)
+                   : read_binary(u, v, first, count, values, error);
 }
 
-enum eo_code eo_uff_read(const char *path, const struct eo_reader_options *options, const struct eo_series_sink *sink, struct eo_notes *notes,
-                         struct eo_error *error)
+enum eo_code eo_uff_read(const char *path, const struct eo_reader_options *options, const struct eo_series_sink *sink,
+                         struct eo_notes *notes, struct eo_error *error)
 {
   struct uff *u = calloc(1, sizeof *u);
   if (!u)
@@ -229,7 +244,7 @@ enum eo_code eo_uff_read(const char *path, const struct eo_reader_options *optio
   }
   code = read_sets(u, error);
   if (!code) {
-    struct eo_series_file file = { u->series, u->count, u->lines.size, options->max_bytes, read_values, u };
+    struct eo_series_file file = {u->series, u->count, u->lines.size, options->max_bytes, read_values, u};
     code = eo_series_copy(&file, sink, notes, error);
   }
   close(u->lines.file);

@@ -28,7 +28,8 @@ bool eo_uff_next(struct eo_uff_lines *lines, struct eo_error *error, enum eo_cod
     const char *from = lines->buffer + lines->used, *end = memchr(from, '\n', lines->filled - lines->used);
     size_t n = (end ? (size_t)(end - from) : lines->filled - lines->used);
     if (n > EO_UFF_LINE - lines->length) {
-      *code = eo_error_set(error, EO_ERROR_INPUT, "", "UFF: line %lld is longer than %d characters.", (long long)lines->number, EO_UFF_LINE);
+      *code = eo_error_set(error, EO_ERROR_INPUT, "", "UFF: line %lld is longer than %d characters.",
+                           (long long)lines->number, EO_UFF_LINE);
       return false;
     }
     memcpy(lines->line + lines->length, from, n);
@@ -105,10 +106,13 @@ static enum eo_code read_binary(const struct eo_uff_lines *l, struct eo_uff_head
   h->big = order == 2;
   h->bytes = integer_field(l, 31, 12);
   if (order < 1 || order > 2 || floating != 2)
-    return eo_error_set(error, EO_ERROR_INPUT, "", "UFF: the binary data set in line %lld has byte order %lld and number format %lld; only IEEE is read.",
-                        (long long)l->number, (long long)order, (long long)floating);
+    return eo_error_set(
+        error, EO_ERROR_INPUT, "",
+        "UFF: the binary data set in line %lld has byte order %lld and number format %lld; only IEEE is read.",
+        (long long)l->number, (long long)order, (long long)floating);
   if (h->bytes < 0 || h->bytes > l->size - l->at)
-    return eo_error_set(error, EO_ERROR_INPUT, "", "UFF: the binary data set in line %lld states %lld bytes of data; the file has %lld.",
+    return eo_error_set(error, EO_ERROR_INPUT, "",
+                        "UFF: the binary data set in line %lld states %lld bytes of data; the file has %lld.",
                         (long long)l->number, (long long)h->bytes, (long long)(l->size - l->at));
   return EO_OK;
 }
@@ -153,10 +157,13 @@ enum eo_code eo_uff_read_header(struct eo_uff_lines *lines, struct eo_uff_header
     if (eo_uff_next(lines, error, &code))
       read_record(lines, record, header);
     else if (!code)
-      code = eo_error_set(error, EO_ERROR_INPUT, "", "UFF: the file ends in line %lld, in the header of a data set.", (long long)lines->number);
+      code = eo_error_set(error, EO_ERROR_INPUT, "", "UFF: the file ends in line %lld, in the header of a data set.",
+                          (long long)lines->number);
   }
-  if (!code && (header->count < 0 || header->count > lines->size || !isfinite(header->increment) || !isfinite(header->start)))
-    code = eo_error_set(error, EO_ERROR_INPUT, "", "UFF: the data set in line %lld states %lld values; the file has %lld bytes.",
+  if (!code &&
+      (header->count < 0 || header->count > lines->size || !isfinite(header->increment) || !isfinite(header->start)))
+    code = eo_error_set(error, EO_ERROR_INPUT, "",
+                        "UFF: the data set in line %lld states %lld values; the file has %lld bytes.",
                         (long long)header->line, (long long)header->count, (long long)lines->size);
   return code;
 }

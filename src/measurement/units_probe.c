@@ -52,7 +52,8 @@ static double power_at(const struct probe *p, double order)
   return creal(sum) * creal(sum) + cimag(sum) * cimag(sum);
 }
 
-/* How much the lines stand out when both angles are multiplied by the factor, in decades; 0 when they cannot be seen. */
+/* How much the lines stand out when both angles are multiplied by the factor, in decades; 0 when they cannot be seen.
+ */
 static double lines_seen(const struct probe *p, const int teeth[2], double factor)
 {
   const double order[LINES] = {(double)teeth[0] / teeth[1], 1, teeth[0], 2.0 * teeth[0], 3.0 * teeth[0]};
@@ -70,7 +71,8 @@ static double lines_seen(const struct probe *p, const int teeth[2], double facto
   return seen;
 }
 
-enum eo_code eo_units_probe(const struct eo_angles *angles, const struct eo_transmission_settings *s, double *factor, struct eo_error *error)
+enum eo_code eo_units_probe(const struct eo_angles *angles, const struct eo_transmission_settings *s, double *factor,
+                            struct eo_error *error)
 {
   static const double unit[3] = {1, 180 / M_PI, M_PI / 180};
   struct probe p = {.rows = angles->rows < MOST_ROWS ? (int)angles->rows : MOST_ROWS};
@@ -92,19 +94,22 @@ enum eo_code eo_units_probe(const struct eo_angles *angles, const struct eo_tran
   return code;
 }
 
-enum eo_code eo_units_judge(struct eo_angles *a, const struct eo_transmission_settings *settings, struct eo_findings *findings, struct eo_error *error)
+enum eo_code eo_units_judge(struct eo_angles *a, const struct eo_transmission_settings *settings,
+                            struct eo_findings *findings, struct eo_error *error)
 {
   double factor, speed = fabs(a->rate[a->from[0]] * a->factor[0]) * 30 / M_PI;
   enum eo_code code = eo_units_probe(a, settings, &factor, error);
   if (code)
     return code;
   if (isnan(factor) && a->units_in_doubt)
-    eo_findings_add(findings, EO_FINDING_UNITS, EO_SEVERITY_REFUSED, -1, NAN, "Which channel is in degrees and which in radians cannot be told; state the speed.");
+    eo_findings_add(findings, EO_FINDING_UNITS, EO_SEVERITY_REFUSED, -1, NAN,
+                    "Which channel is in degrees and which in radians cannot be told; state the speed.");
   else if (!isnan(factor) && factor != 1) {
     a->factor[0] *= factor;
     a->factor[1] *= factor;
     eo_findings_add(findings, EO_FINDING_UNITS, EO_SEVERITY_REPAIRED, -1, factor,
-                    "Both angles are in %s, not in the stated unit: shaft and mesh orders only show at %.6g rpm, not at %.6g rpm; read so.",
+                    "Both angles are in %s, not in the stated unit: shaft and mesh orders only show at %.6g rpm, not "
+                    "at %.6g rpm; read so.",
                     factor > 1 ? "radians" : "degrees", speed * factor, speed);
   }
   return EO_OK;

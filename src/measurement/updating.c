@@ -19,16 +19,23 @@ struct fit {
   struct eo_pair pair;            /* with an impact patch of its own */
   struct eo_evaluator *evaluator; /* on it */
   struct eo_design trial;
-  int order[EO_MOST_MEASURED];    /* measurements with the same loaded contact after each other: the evaluator solves it once */
+  int order[EO_MOST_MEASURED]; /* measurements with the same loaded contact after each other: the evaluator solves it
+                                  once */
   int count, residuals, evaluations, expected;
   double model_error;
 };
 
 /* ---- the unknowns ---- */
 
-const char *const eo_unknown_names[EO_UNKNOWNS + 1] = {"pinion_bearing_stiffness_N_per_um", "gear_bearing_stiffness_N_per_um", "mesh_damping_ratio",
-                                                       "gear_axial_stiffness_N_per_um", "pinion_axial_stiffness_N_per_um", "shaft_angle_error_in_plane_deg",
-                                                       "shaft_angle_error_out_of_plane_deg", "impact_patch_mm", NULL};
+const char *const eo_unknown_names[EO_UNKNOWNS + 1] = {"pinion_bearing_stiffness_N_per_um",
+                                                       "gear_bearing_stiffness_N_per_um",
+                                                       "mesh_damping_ratio",
+                                                       "gear_axial_stiffness_N_per_um",
+                                                       "pinion_axial_stiffness_N_per_um",
+                                                       "shaft_angle_error_in_plane_deg",
+                                                       "shaft_angle_error_out_of_plane_deg",
+                                                       "impact_patch_mm",
+                                                       NULL};
 
 const char *eo_unknown_name(enum eo_unknown unknown)
 {
@@ -59,7 +66,10 @@ static double *member_of(struct eo_design *d, enum eo_unknown unknown)
   return &d->resolution.impact_patch;
 }
 
-double eo_unknown_get(const struct eo_design *design, enum eo_unknown unknown) { return *member_of((struct eo_design *)design, unknown); }
+double eo_unknown_get(const struct eo_design *design, enum eo_unknown unknown)
+{
+  return *member_of((struct eo_design *)design, unknown);
+}
 
 void eo_unknown_set(struct eo_design *design, enum eo_unknown unknown, double value)
 {
@@ -70,7 +80,10 @@ void eo_unknown_set(struct eo_design *design, enum eo_unknown unknown, double va
     design->alignment.pinion_axial = EO_AXIAL_SPRING;
 }
 
-static bool logarithmic(enum eo_unknown unknown) { return unknown != EO_UNKNOWN_IN_PLANE && unknown != EO_UNKNOWN_OUT_OF_PLANE; }
+static bool logarithmic(enum eo_unknown unknown)
+{
+  return unknown != EO_UNKNOWN_IN_PLANE && unknown != EO_UNKNOWN_OUT_OF_PLANE;
+}
 
 static double from_unit(const struct eo_update_range *r, double x)
 {
@@ -79,7 +92,8 @@ static double from_unit(const struct eo_update_range *r, double x)
 
 static double to_unit(const struct eo_update_range *r, double value)
 {
-  double x = logarithmic(r->unknown) ? log(value / r->low) / log(r->high / r->low) : (value - r->low) / (r->high - r->low);
+  double x = logarithmic(r->unknown) ? log(value / r->low) / log(r->high / r->low)
+                                     : (value - r->low) / (r->high - r->low);
   return fmin(1, fmax(0, x));
 }
 
@@ -93,12 +107,15 @@ static void set_trial(struct fit *f, const double *x)
   f->pair.impact.patch = f->pair.resolution.impact_patch = f->trial.resolution.impact_patch;
 }
 
-/* (measured - predicted) / standard deviation of each order's acceleration; a state that is not found counts as none at all. */
-static void add_residuals(const struct fit *f, const struct eo_measured *m, const struct eo_rig_prediction *p, double *residual)
+/* (measured - predicted) / standard deviation of each order's acceleration; a state that is not found counts as none at
+   all. */
+static void add_residuals(const struct fit *f, const struct eo_measured *m, const struct eo_rig_prediction *p,
+                          double *residual)
 {
   for (int h = 0; h < m->harmonics; h++) {
     double noise = m->order[h].sigma * pow(m->order[h].order * m->speed, 2);
-    double sigma = sqrt(noise * noise + pow(EO_RMS_SYSTEMATIC * m->order[h].acceleration, 2) + pow(f->model_error * m->rms, 2));
+    double sigma =
+        sqrt(noise * noise + pow(EO_RMS_SYSTEMATIC * m->order[h].acceleration, 2) + pow(f->model_error * m->rms, 2));
     residual[h] = (m->order[h].acceleration - (p->valid ? p->acceleration[h] : 0)) / sigma;
   }
 }
@@ -113,7 +130,8 @@ static enum eo_code residuals_at(void *context, const double *x, double *residua
     return eo_error_set(error, EO_ERROR_CANCELLED, "", "Stopped.");
   for (int i = 0; i < f->count; i++) {
     const struct eo_measured *m = &f->measured[f->order[i]];
-    enum eo_code code = eo_prediction_run(&prediction, f->evaluator, &f->trial, m->unmodified, m->torque, m->speed, m->end, m->harmonics, error);
+    enum eo_code code = eo_prediction_run(&prediction, f->evaluator, &f->trial, m->unmodified, m->torque, m->speed,
+                                          m->end, m->harmonics, error);
     if (code)
       return code;
     add_residuals(f, m, &prediction, residual);
@@ -147,7 +165,10 @@ static void sort_measurements(struct fit *f)
 
 /* ---- the search ---- */
 
-static int greatest_divisor(int a, int b) { return b ? greatest_divisor(b, a % b) : a; }
+static int greatest_divisor(int a, int b)
+{
+  return b ? greatest_divisor(b, a % b) : a;
+}
 
 /* The at-th number from 1 that shares no divisor with `of`: multiplying by it permutes 0 .. of - 1. */
 static int permuting_factor(int at, int of)
@@ -158,8 +179,10 @@ static int permuting_factor(int at, int of)
   return factor;
 }
 
-/* Points spread over the ranges, one in each slice of every unknown (McKay, Beckman, Conover 1979), and what the design says now. */
-static enum eo_code look_around(struct fit *f, int starts, double *best, double *residual, double *before, struct eo_error *error)
+/* Points spread over the ranges, one in each slice of every unknown (McKay, Beckman, Conover 1979), and what the design
+   says now. */
+static enum eo_code look_around(struct fit *f, int starts, double *best, double *residual, double *before,
+                                struct eo_error *error)
 {
   int n = f->settings->unknowns;
   double lowest, x[EO_UNKNOWNS];
@@ -192,7 +215,12 @@ static void read_intervals(const struct fit *f, struct eo_update *u, const doubl
     struct eo_updated *p = &u->unknown[i];
     const struct eo_update_range *r = &f->settings->range[i];
     double sigma = sqrt(fmax(covariance[i * n + i], 0)), reach = STUDENT * sigma;
-    *p = (struct eo_updated){.unknown = r->unknown, .before = eo_unknown_get(f->design, r->unknown), .value = from_unit(r, x[i]), .low = r->low, .high = r->high, .twin = -1};
+    *p = (struct eo_updated){.unknown = r->unknown,
+                             .before = eo_unknown_get(f->design, r->unknown),
+                             .value = from_unit(r, x[i]),
+                             .low = r->low,
+                             .high = r->high,
+                             .twin = -1};
     p->confidence[0] = from_unit(r, fmax(0, x[i] - reach));
     p->confidence[1] = from_unit(r, fmin(1, x[i] + reach));
     p->at_bound = x[i] < 1e-6 || x[i] > 1 - 1e-6;
@@ -209,7 +237,8 @@ static void read_intervals(const struct fit *f, struct eo_update *u, const doubl
 }
 
 /* Covariance (J'J)^-1, widened where the residuals are larger than their standard deviations say. */
-static enum eo_code judge(const struct fit *f, struct eo_update *u, const double *x, const double *jacobian, double square, struct eo_error *error)
+static enum eo_code judge(const struct fit *f, struct eo_update *u, const double *x, const double *jacobian,
+                          double square, struct eo_error *error)
 {
   int n = u->unknowns;
   double matrix[EO_UNKNOWNS * EO_UNKNOWNS] = {0}, values[EO_UNKNOWNS], covariance[EO_UNKNOWNS * EO_UNKNOWNS] = {0};
@@ -237,12 +266,15 @@ static enum eo_code check(const struct eo_update_settings *s, int count, int res
     const struct eo_update_range *r = &s->range[i];
     for (int j = 0; j < i; j++)
       if (s->range[j].unknown == r->unknown)
-        return eo_error_set(error, EO_ERROR_INPUT, "/unknowns", "%s stands in the list twice.", eo_unknown_name(r->unknown));
+        return eo_error_set(error, EO_ERROR_INPUT, "/unknowns", "%s stands in the list twice.",
+                            eo_unknown_name(r->unknown));
     if (!(r->high > r->low) || (logarithmic(r->unknown) && !(r->low > 0)))
-      return eo_error_set(error, EO_ERROR_INPUT, "/unknowns", "The range of %s is empty or not positive.", eo_unknown_name(r->unknown));
+      return eo_error_set(error, EO_ERROR_INPUT, "/unknowns", "The range of %s is empty or not positive.",
+                          eo_unknown_name(r->unknown));
   }
   if (count < 1 || residuals <= s->unknowns)
-    return eo_error_set(error, EO_ERROR_INPUT, "", "%d measured orders cannot determine %d unknowns.", residuals, s->unknowns);
+    return eo_error_set(error, EO_ERROR_INPUT, "", "%d measured orders cannot determine %d unknowns.", residuals,
+                        s->unknowns);
   return EO_OK;
 }
 
@@ -251,7 +283,8 @@ static enum eo_code search(struct fit *f, struct eo_update *u, struct eo_design 
   int n = u->unknowns, starts = f->settings->starts > 0 ? f->settings->starts : STARTS_PER_UNKNOWN * n;
   const struct eo_least_squares_options options = {.iterations = ITERATIONS, .step = 1e-3, .tolerance = 1e-5};
   struct eo_least_squares_report report;
-  double x[EO_UNKNOWNS], *residual = malloc(sizeof *residual * (size_t)(f->residuals * (n + 1))), *jacobian = residual + f->residuals;
+  double x[EO_UNKNOWNS], *residual = malloc(sizeof *residual * (size_t)(f->residuals * (n + 1))),
+                         *jacobian = residual + f->residuals;
   if (!residual)
     return eo_error_memory(error);
   f->expected = starts + 6 * (n + 2);
@@ -273,8 +306,9 @@ static enum eo_code search(struct fit *f, struct eo_update *u, struct eo_design 
   return code;
 }
 
-enum eo_code eo_update_run(struct eo_update *update, const struct eo_pair *pair, const struct eo_design *design, int count, const struct eo_measured *measured,
-                           const struct eo_update_settings *settings, struct eo_design *updated, const struct eo_progress *progress, struct eo_error *error)
+enum eo_code eo_update_run(struct eo_update *update, const struct eo_pair *pair, const struct eo_design *design,
+                           int count, const struct eo_measured *measured, const struct eo_update_settings *settings,
+                           struct eo_design *updated, const struct eo_progress *progress, struct eo_error *error)
 {
   struct fit *f = calloc(1, sizeof *f);
   *update = (struct eo_update){.unknowns = settings->unknowns, .used = count};
@@ -290,7 +324,9 @@ enum eo_code eo_update_run(struct eo_update *update, const struct eo_pair *pair,
   for (int i = 0; i < count; i++)
     f->residuals += measured[i].harmonics;
   update->residuals = f->residuals;
-  enum eo_code code = count > EO_MOST_MEASURED ? eo_error_set(error, EO_ERROR_INPUT, "", "%d measurements are too many.", count) : EO_OK;
+  enum eo_code code = count > EO_MOST_MEASURED
+                          ? eo_error_set(error, EO_ERROR_INPUT, "", "%d measurements are too many.", count)
+                          : EO_OK;
   if (!code)
     sort_measurements(f);
   code = code ? code : check(settings, count, f->residuals, error);

@@ -1,5 +1,6 @@
 /* Small dense matrices by LAPACK and BLAS: linear systems, products, eigenvalues. Row-major everywhere. No allocation
-   but where stated. The functions are pure; a caller that wants the same bytes on every machine load keeps BLAS on one thread. */
+   but where stated. The functions are pure; a caller that wants the same bytes on every machine load keeps BLAS on one
+   thread. */
 #ifndef EASEOFF_NUMERICS_DENSE_H
 #define EASEOFF_NUMERICS_DENSE_H
 

@@ -1,4 +1,5 @@
-/* What the users of SUNDIALS share: a context, the unknowns, and the dense matrix of Newton's method with its solver. For one thread. */
+/* What the users of SUNDIALS share: a context, the unknowns, and the dense matrix of Newton's method with its solver.
+   For one thread. */
 #ifndef EASEOFF_NUMERICS_DENSE_NEWTON_H
 #define EASEOFF_NUMERICS_DENSE_NEWTON_H
 
@@ -20,7 +21,8 @@ struct eo_dense_newton {
 int eo_dense_newton_init(struct eo_dense_newton *newton, int n);
 void eo_dense_newton_done(struct eo_dense_newton *newton);
 
-/* The row-major matrix, cleared for the caller's function; and from there to the matrix of SUNDIALS, which goes by columns. */
+/* The row-major matrix, cleared for the caller's function; and from there to the matrix of SUNDIALS, which goes by
+   columns. */
 double *eo_dense_newton_clear(struct eo_dense_newton *newton);
 void eo_dense_newton_put(const struct eo_dense_newton *newton, SUNMatrix matrix);
 

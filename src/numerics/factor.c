@@ -61,7 +61,8 @@ bool eo_saddle_factor(struct eo_saddle *saddle, int rows, int columns, const dou
   saddle->columns = columns;
   memcpy(saddle->basis, p, q * m * sizeof *p);
   if (LAPACKE_dgeqrf_work(LAPACK_COL_MAJOR, rows, columns, saddle->basis, rows, saddle->tau, saddle->work,
-                          saddle->work_size) != 0 || !basis_has_full_rank(saddle))
+                          saddle->work_size) != 0 ||
+      !basis_has_full_rank(saddle))
     return false;
   memcpy(saddle->projected, a, m * m * sizeof *a);
   apply_basis(saddle, 'L', 'T', saddle->projected, rows);

@@ -7,7 +7,8 @@
 enum { TABLE = 1024 };
 
 /* One pair of coefficients; cosine and sine are tables of n entries, or NULL when n is too large for them. */
-static void coefficients(int n, const double *sample, int k, const double *cosine, const double *sine, double *c, double *s)
+static void coefficients(int n, const double *sample, int k, const double *cosine, const double *sine, double *c,
+                         double *s)
 {
   *c = *s = 0;
   for (int i = 0, at = 0; i < n; i++) {

@@ -3,7 +3,10 @@
 #ifndef EASEOFF_NUMERICS_FOURIER_H
 #define EASEOFF_NUMERICS_FOURIER_H
 
-static inline int eo_fourier_terms(int order) { return 1 + 2 * order; }
+static inline int eo_fourier_terms(int order)
+{
+  return 1 + 2 * order;
+}
 
 /* The series through n equidistant samples (sample i at phase i / n), cut off at order <= n / 2; the Nyquist term, if
    asked for, is a cosine. Exact for a band-limited function (Henrici 1986, section 13.2). */

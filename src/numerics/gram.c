@@ -50,7 +50,8 @@ INLINE void gather_body(int rows, int stride, const double *f, const double *loa
 }
 
 /* Four rows of the product at once over one lane of columns; the sums stay in registers over all points. */
-INLINE void tile(int points, int stride, const double *plain, const double *weighted, int row, int column, double *matrix, int ld)
+INLINE void tile(int points, int stride, const double *plain, const double *weighted, int row, int column,
+                 double *matrix, int ld)
 {
   lane sum[4] = {{0}, {0}, {0}, {0}};
   for (int i = 0; i < points; i++) {
@@ -110,8 +111,9 @@ INLINE void blend_body(int rows, int stride, const float *f, const double *load,
 
 enum { LANE = EO_GRAM_LANE };
 
-/* Factors the lower triangle of a diagonal block of n <= LANE rows, row-major with leading dimension ld, and writes inverse[p]: row p of the
-   transposed inverse of its factor, zero where there is none. What lies right of the diagonal ends as zero. */
+/* Factors the lower triangle of a diagonal block of n <= LANE rows, row-major with leading dimension ld, and writes
+   inverse[p]: row p of the transposed inverse of its factor, zero where there is none. What lies right of the diagonal
+   ends as zero. */
 INLINE bool factor_diagonal(int n, int ld, double *block, lane inverse[LANE])
 {
   double l[LANE][LANE] __attribute__((aligned(EO_GRAM_ALIGN))) = {{0}}, scale[LANE] = {0};
@@ -130,8 +132,8 @@ INLINE bool factor_diagonal(int n, int ld, double *block, lane inverse[LANE])
     UNROLL
     for (int k = j + 1; k < n; k++)
       UNROLL
-      for (int i = k; i < n; i++)
-        l[i][k] -= l[i][j] * l[k][j];
+    for (int i = k; i < n; i++)
+      l[i][k] -= l[i][j] * l[k][j];
   }
   for (int i = 0; i < n; i++)
     *(lane *)(block + (long)i * ld) = *(const lane *)l[i];
@@ -152,8 +154,8 @@ INLINE bool factor_diagonal(int n, int ld, double *block, lane inverse[LANE])
   return true;
 }
 
-/* Block column by block column, each as wide as a lane: the diagonal block, the rows below it through its inverse, and what they take from the
-   columns to their right. across: the rows below as columns, [n][LANE]. */
+/* Block column by block column, each as wide as a lane: the diagonal block, the rows below it through its inverse, and
+   what they take from the columns to their right. across: the rows below as columns, [n][LANE]. */
 INLINE bool factor_body(int n, int stride, double *matrix)
 {
   enum { MOST_ROWS = 2048 };
@@ -163,7 +165,8 @@ INLINE bool factor_body(int n, int stride, double *matrix)
     lane inverse[LANE];
     int below = first + LANE;
     double *diagonal = matrix + (long)first * (ld + 1);
-    if (!(below <= n ? factor_diagonal(LANE, ld, diagonal, inverse) : factor_diagonal(n - first, ld, diagonal, inverse)))
+    if (!(below <= n ? factor_diagonal(LANE, ld, diagonal, inverse)
+                     : factor_diagonal(n - first, ld, diagonal, inverse)))
       return false;
     for (int i = below; i < n; i++) {
       double *row = matrix + (long)i * ld + first;
@@ -217,8 +220,8 @@ INLINE void solve_backward(int rows, int ld, const double *diagonal, double *par
   }
 }
 
-/* x is padded with zeros to whole lanes, the rows of the factor are zero right of the diagonal. A block of rows as wide as a lane takes in the
-   blocks before it at once; only the small triangle on the diagonal goes row by row. */
+/* x is padded with zeros to whole lanes, the rows of the factor are zero right of the diagonal. A block of rows as wide
+   as a lane takes in the blocks before it at once; only the small triangle on the diagonal goes row by row. */
 INLINE void solve_body(int n, int stride, const double *matrix, double *x)
 {
   int ld = stride + LANE, whole = n / LANE, left = n % LANE;
@@ -254,32 +257,34 @@ INLINE void solve_body(int n, int stride, const double *matrix, double *x)
   }
 }
 
-#define VERSION(name, target_)                                                                                                        \
-  target_ static void apply_##name(int rows, int stride, const double *f, const double *x, double *product)                           \
-  {                                                                                                                                   \
-    apply_body(rows, stride, f, x, product);                                                                                          \
-  }                                                                                                                                   \
-  target_ static void gather_##name(int rows, int stride, const double *f, const double *load, double *x)                             \
-  {                                                                                                                                   \
-    gather_body(rows, stride, f, load, x);                                                                                            \
-  }                                                                                                                                   \
-  target_ static void assemble_##name(int rows, int stride, const double *f, const double *weight, double *packed, double *matrix)    \
-  {                                                                                                                                   \
-    assemble_body(rows, stride, f, weight, packed, matrix);                                                                           \
-  }                                                                                                                                   \
-  target_ static void blend_##name(int rows, int stride, const float *f, const double *load, float *sum)                             \
-  {                                                                                                                                   \
-    blend_body(rows, stride, f, load, sum);                                                                                           \
-  }                                                                                                                                   \
-  target_ static bool factor_##name(int n, int stride, double *matrix)                                                                \
-  {                                                                                                                                   \
-    return factor_body(n, stride, matrix);                                                                                            \
-  }                                                                                                                                   \
-  target_ static void solve_##name(int n, int stride, const double *matrix, double *x)                                                \
-  {                                                                                                                                   \
-    solve_body(n, stride, matrix, x);                                                                                                 \
-  }                                                                                                                                   \
-  static const struct eo_gram version_##name = {apply_##name, gather_##name, assemble_##name, blend_##name, factor_##name, solve_##name};
+#define VERSION(name, target_)                                                                                     \
+  target_ static void apply_##name(int rows, int stride, const double *f, const double *x, double *product)        \
+  {                                                                                                                \
+    apply_body(rows, stride, f, x, product);                                                                       \
+  }                                                                                                                \
+  target_ static void gather_##name(int rows, int stride, const double *f, const double *load, double *x)          \
+  {                                                                                                                \
+    gather_body(rows, stride, f, load, x);                                                                         \
+  }                                                                                                                \
+  target_ static void assemble_##name(int rows, int stride, const double *f, const double *weight, double *packed, \
+                                      double *matrix)                                                              \
+  {                                                                                                                \
+    assemble_body(rows, stride, f, weight, packed, matrix);                                                        \
+  }                                                                                                                \
+  target_ static void blend_##name(int rows, int stride, const float *f, const double *load, float *sum)           \
+  {                                                                                                                \
+    blend_body(rows, stride, f, load, sum);                                                                        \
+  }                                                                                                                \
+  target_ static bool factor_##name(int n, int stride, double *matrix)                                             \
+  {                                                                                                                \
+    return factor_body(n, stride, matrix);                                                                         \
+  }                                                                                                                \
+  target_ static void solve_##name(int n, int stride, const double *matrix, double *x)                             \
+  {                                                                                                                \
+    solve_body(n, stride, matrix, x);                                                                              \
+  }                                                                                                                \
+  static const struct eo_gram version_##name = {apply_##name, gather_##name, assemble_##name,                      \
+                                                blend_##name, factor_##name, solve_##name};
 
 VERSION(plain, )
 #if defined(__x86_64__)
@@ -290,7 +295,8 @@ VERSION(avx512, __attribute__((target("avx512f,avx512dq,avx512vl,fma"))))
 const struct eo_gram *eo_gram_version(int index)
 {
 #if defined(__x86_64__)
-  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl") && index-- == 0)
+  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl") &&
+      index-- == 0)
     return &version_avx512;
   if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && index-- == 0)
     return &version_avx2;

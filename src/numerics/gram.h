@@ -1,21 +1,29 @@
-/* The small dense kernel of loaded contact: H = D + F' W F bordered by one row, its Cholesky factor and solves, for matrices of a few dozen
-   rows where a general library spends its time on being general. Vector code, compiled for the instruction sets a processor may have. */
+/* The small dense kernel of loaded contact: H = D + F' W F bordered by one row, its Cholesky factor and solves, for
+   matrices of a few dozen rows where a general library spends its time on being general. Vector code, compiled for the
+   instruction sets a processor may have. */
 #ifndef EASEOFF_NUMERICS_GRAM_H
 #define EASEOFF_NUMERICS_GRAM_H
 
 #include <stdbool.h>
 
-enum { EO_GRAM_LANE = 8, EO_GRAM_FLOATS = 64, EO_GRAM_ALIGN = 64 }; /* strides are multiples of the lane (doubles), arrays aligned to 64 bytes */
+enum {
+  EO_GRAM_LANE = 8,
+  EO_GRAM_FLOATS = 64,
+  EO_GRAM_ALIGN = 64
+}; /* strides are multiples of the lane (doubles), arrays aligned to 64 bytes */
 
-/* All arrays aligned to EO_GRAM_ALIGN; stride a multiple of EO_GRAM_LANE; a matrix has stride + EO_GRAM_LANE rows and as many columns, row-major. */
+/* All arrays aligned to EO_GRAM_ALIGN; stride a multiple of EO_GRAM_LANE; a matrix has stride + EO_GRAM_LANE rows and
+   as many columns, row-major. */
 struct eo_gram {
   /* product[rows] = F x: f[rows][stride], x[stride]. */
   void (*apply)(int rows, int stride, const double *f, const double *x, double *product);
   /* x[stride] -= F' load, rows with load 0 skipped. */
   void (*gather)(int rows, int stride, const double *f, const double *load, double *x);
-  /* Lower triangle of [I + F'WF, .; -1'WF, 1'W1] of size stride + 1 from the rows with weight > 0. packed: scratch [2][rows][stride]. */
+  /* Lower triangle of [I + F'WF, .; -1'WF, 1'W1] of size stride + 1 from the rows with weight > 0. packed: scratch
+     [2][rows][stride]. */
   void (*assemble)(int rows, int stride, const double *f, const double *weight, double *packed, double *matrix);
-  /* sum[stride] = sum_i load[i] rows[i][stride] in single precision; stride a multiple of EO_GRAM_FLOATS; rows with load 0 skipped. */
+  /* sum[stride] = sum_i load[i] rows[i][stride] in single precision; stride a multiple of EO_GRAM_FLOATS; rows with
+     load 0 skipped. */
   void (*blend)(int rows, int stride, const float *f, const double *load, float *sum);
   /* In place, lower triangle, size n <= stride + 1 <= 2048; false when not positive definite. */
   bool (*factor)(int n, int stride, double *matrix);

@@ -110,8 +110,9 @@ static enum eo_code improve(struct search *s, double *x, double *damping, double
   return EO_OK;
 }
 
-enum eo_code eo_least_squares(eo_residual_function *function, void *context, int n, int m, const struct eo_least_squares_options *options, double *x,
-                              double *jacobian, struct eo_least_squares_report *report, struct eo_error *error)
+enum eo_code eo_least_squares(eo_residual_function *function, void *context, int n, int m,
+                              const struct eo_least_squares_options *options, double *x, double *jacobian,
+                              struct eo_least_squares_report *report, struct eo_error *error)
 {
   *report = (struct eo_least_squares_report){0};
   if (n < 1 || n > MOST || m < 1)

@@ -18,7 +18,8 @@ static double largest_diagonal(int n, const double *matrix)
   return largest;
 }
 
-enum eo_code eo_lowrank_factor(int n, double *matrix, double tolerance, int *rank, int *stride, double **factor, struct eo_error *error)
+enum eo_code eo_lowrank_factor(int n, double *matrix, double tolerance, int *rank, int *stride, double **factor,
+                               struct eo_error *error)
 {
   lapack_int *pivot = malloc(sizeof *pivot * (size_t)n), r = 0;
   double largest = largest_diagonal(n, matrix);
@@ -27,7 +28,8 @@ enum eo_code eo_lowrank_factor(int n, double *matrix, double tolerance, int *ran
     return eo_error_memory(error);
   if (isnan(largest)) {
     free(pivot);
-    return eo_error_set(error, EO_ERROR_NUMERIC, "", "The compliance between contact points is not positive semi-definite.");
+    return eo_error_set(error, EO_ERROR_NUMERIC, "",
+                        "The compliance between contact points is not positive semi-definite.");
   }
   if (largest > 0)
     LAPACKE_dpstrf(LAPACK_COL_MAJOR, 'L', n, matrix, n, pivot, &r, tolerance * largest);

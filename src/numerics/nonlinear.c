@@ -30,7 +30,8 @@ static int call_residual(N_Vector x, N_Vector residual, void *user)
   return 0;
 }
 
-static int call_jacobian(N_Vector x, N_Vector residual, SUNMatrix matrix, void *user, N_Vector scratch1, N_Vector scratch2)
+static int call_jacobian(N_Vector x, N_Vector residual, SUNMatrix matrix, void *user, N_Vector scratch1,
+                         N_Vector scratch2)
 {
   (void)residual, (void)scratch1, (void)scratch2;
   struct eo_nonlinear *w = user;
@@ -52,7 +53,8 @@ static int make_parts(struct eo_nonlinear *w)
   if (!w->x_scale || !w->residual_scale || !w->residual || !w->kinsol)
     return -1;
   return KINSetErrHandlerFn(w->kinsol, eo_dense_newton_quiet, NULL) || KINInit(w->kinsol, call_residual, newton->x) ||
-                 KINSetUserData(w->kinsol, w) || KINSetLinearSolver(w->kinsol, newton->solver, newton->matrix) || KINSetMaxSetupCalls(w->kinsol, 1)
+                 KINSetUserData(w->kinsol, w) || KINSetLinearSolver(w->kinsol, newton->solver, newton->matrix) ||
+                 KINSetMaxSetupCalls(w->kinsol, 1)
              ? -1
              : 0;
 }
@@ -101,7 +103,8 @@ static int set_scale(N_Vector vector, const double *typical, int n)
 static enum eo_code apply_options(struct eo_nonlinear *w, const struct eo_nonlinear_options *o, struct eo_error *error)
 {
   if (!(o->residual_tolerance > 0) || !(o->step_tolerance > 0) || o->max_iterations < 1 || !(o->max_step >= 0))
-    return eo_error_set(error, EO_ERROR_NUMERIC, "", "The tolerances and the iteration limit of a nonlinear solve must be positive.");
+    return eo_error_set(error, EO_ERROR_NUMERIC, "",
+                        "The tolerances and the iteration limit of a nonlinear solve must be positive.");
   if (set_scale(w->x_scale, o->x_scale, w->n) || set_scale(w->residual_scale, o->residual_scale, w->n))
     return eo_error_set(error, EO_ERROR_NUMERIC, "", "The scales of a nonlinear solve must be positive and finite.");
   if (KINSetJacFn(w->kinsol, w->problem->jacobian ? call_jacobian : NULL) ||
@@ -140,8 +143,8 @@ static enum eo_nonlinear_outcome outcome_of(int flag, double residual, double to
 }
 
 enum eo_code eo_nonlinear_solve(struct eo_nonlinear *w, const struct eo_nonlinear_problem *problem,
-                                const struct eo_nonlinear_options *options, double *x, struct eo_nonlinear_report *report,
-                                struct eo_error *error)
+                                const struct eo_nonlinear_options *options, double *x,
+                                struct eo_nonlinear_report *report, struct eo_error *error)
 {
   w->problem = problem;
   w->evaluations = 0;

@@ -5,7 +5,8 @@
 
 #include "base/error.h"
 
-/* Fills residual[n] at x[n]. Returns 0; > 0 when x is outside the domain (the step is then given up); < 0 to stop at once. */
+/* Fills residual[n] at x[n]. Returns 0; > 0 when x is outside the domain (the step is then given up); < 0 to stop at
+   once. */
 typedef int eo_nonlinear_residual(void *context, const double *x, double *residual);
 
 /* Fills jacobian[n][n], row-major, jacobian[i][j] = d residual[i] / d x[j] (zero on entry). Returns as above. */
@@ -48,7 +49,7 @@ void eo_nonlinear_free(struct eo_nonlinear *workspace); /* NULL is fine */
 /* Solves from the guess in x[n], which it replaces. A guess that already solves the system comes back unchanged.
    Not converging is an outcome in *report; an error (EO_ERROR_NUMERIC) means that the options make no sense. */
 enum eo_code eo_nonlinear_solve(struct eo_nonlinear *workspace, const struct eo_nonlinear_problem *problem,
-                                const struct eo_nonlinear_options *options, double *x, struct eo_nonlinear_report *report,
-                                struct eo_error *error);
+                                const struct eo_nonlinear_options *options, double *x,
+                                struct eo_nonlinear_report *report, struct eo_error *error);
 
 #endif

@@ -10,7 +10,7 @@
 enum { MAX_STEPS = 10000000 };
 
 struct eo_ode {
-  int n, begun; /* begun: CVodeInit has been called */
+  int n, begun;                  /* begun: CVodeInit has been called */
   struct eo_dense_newton newton; /* its unknowns: the state */
   void *cvode;
   N_Vector tolerance;
@@ -103,7 +103,8 @@ enum eo_code eo_ode_advance(struct eo_ode *w, double t, double *y, struct eo_err
   int flag = CVode(w->cvode, t, w->newton.x, &reached, CV_NORMAL);
   if (flag < 0) {
     char *name = CVodeGetReturnFlagName(flag);
-    eo_error_set(error, EO_ERROR_NUMERIC, "", "The time integration stopped at %g of %g: %s.", reached, t, name ? name : "?");
+    eo_error_set(error, EO_ERROR_NUMERIC, "", "The time integration stopped at %g of %g: %s.", reached, t,
+                 name ? name : "?");
     free(name);
     return EO_ERROR_NUMERIC;
   }

@@ -13,11 +13,11 @@ typedef int eo_ode_jacobian(void *context, double t, const double *y, double *ja
 
 struct eo_ode_problem {
   eo_ode_function *function;
-  eo_ode_jacobian *jacobian; /* NULL: one-sided differences */
-  void *context;             /* borrowed until the last advance */
-  double relative_tolerance; /* > 0 */
+  eo_ode_jacobian *jacobian;        /* NULL: one-sided differences */
+  void *context;                    /* borrowed until the last advance */
+  double relative_tolerance;        /* > 0 */
   const double *absolute_tolerance; /* [n], > 0 */
-  double max_step;           /* 0: no limit. A limit keeps short forces from being stepped over. */
+  double max_step;                  /* 0: no limit. A limit keeps short forces from being stepped over. */
 };
 
 struct eo_ode; /* workspace for one n; one thread at a time */
@@ -30,7 +30,8 @@ void eo_ode_free(struct eo_ode *workspace); /* NULL is fine */
 enum eo_code eo_ode_start(struct eo_ode *workspace, const struct eo_ode_problem *problem, double t, const double *y,
                           struct eo_error *error);
 
-/* Goes on to t (beyond where it stands) and copies the solution there to y[n]. Errors: EO_ERROR_NUMERIC with CVODE's reason. */
+/* Goes on to t (beyond where it stands) and copies the solution there to y[n]. Errors: EO_ERROR_NUMERIC with CVODE's
+   reason. */
 enum eo_code eo_ode_advance(struct eo_ode *workspace, double t, double *y, struct eo_error *error);
 
 /* Steps taken since the start. */

@@ -2,8 +2,9 @@
 
 #include <math.h>
 
-/* Slopes of the periodic spline: (m[i-1] + 4 m[i] + m[i+1]) = 3 n (y[i+1] - y[i-1]). The circulant matrix inverts by a geometric
-   series with the ratio sqrt(3) - 2, run once forwards and once backwards from a start that the period closes. */
+/* Slopes of the periodic spline: (m[i-1] + 4 m[i] + m[i+1]) = 3 n (y[i+1] - y[i-1]). The circulant matrix inverts by a
+   geometric series with the ratio sqrt(3) - 2, run once forwards and once backwards from a start that the period
+   closes. */
 void eo_periodic_init(struct eo_periodic *spline, int n, const double *value)
 {
   const double ratio = sqrt(3) - 2;

@@ -6,8 +6,8 @@ enum { EO_PERIODIC_MOST = 1024 };
 
 struct eo_periodic {
   int count;
-  double value[EO_PERIODIC_MOST];  /* at phase i / count */
-  double slope[EO_PERIODIC_MOST];  /* d value / d phase there */
+  double value[EO_PERIODIC_MOST]; /* at phase i / count */
+  double slope[EO_PERIODIC_MOST]; /* d value / d phase there */
 };
 
 /* count: 3 .. EO_PERIODIC_MOST. */

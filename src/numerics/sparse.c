@@ -44,9 +44,18 @@ static enum eo_code solver_error(const cholmod_common *common, struct eo_error *
 
 static cholmod_sparse view_of(const struct eo_sparse *matrix)
 {
-  return (cholmod_sparse){.nrow = (size_t)matrix->n, .ncol = (size_t)matrix->n, .nzmax = (size_t)matrix->start[matrix->n],
-                          .p = matrix->start, .i = matrix->row, .x = matrix->value, .stype = -1, .itype = CHOLMOD_INT,
-                          .xtype = CHOLMOD_REAL, .dtype = CHOLMOD_DOUBLE, .sorted = 1, .packed = 1};
+  return (cholmod_sparse){.nrow = (size_t)matrix->n,
+                          .ncol = (size_t)matrix->n,
+                          .nzmax = (size_t)matrix->start[matrix->n],
+                          .p = matrix->start,
+                          .i = matrix->row,
+                          .x = matrix->value,
+                          .stype = -1,
+                          .itype = CHOLMOD_INT,
+                          .xtype = CHOLMOD_REAL,
+                          .dtype = CHOLMOD_DOUBLE,
+                          .sorted = 1,
+                          .packed = 1};
 }
 
 /* Pattern of the groups: [groups + 1] starts and the rows of the strict lower triangle. */
@@ -102,9 +111,17 @@ static enum eo_code order_groups(cholmod_common *common, const struct eo_sparse 
   int *start = NULL, *row = NULL;
   if (build_group_pattern(matrix, group, groups, &start, &row) != EO_OK)
     return eo_error_memory(error);
-  cholmod_sparse pattern = {.nrow = (size_t)groups, .ncol = (size_t)groups, .nzmax = (size_t)start[groups], .p = start,
-                            .i = row, .stype = -1, .itype = CHOLMOD_INT, .xtype = CHOLMOD_PATTERN, .dtype = CHOLMOD_DOUBLE,
-                            .sorted = 0, .packed = 1};
+  cholmod_sparse pattern = {.nrow = (size_t)groups,
+                            .ncol = (size_t)groups,
+                            .nzmax = (size_t)start[groups],
+                            .p = start,
+                            .i = row,
+                            .stype = -1,
+                            .itype = CHOLMOD_INT,
+                            .xtype = CHOLMOD_PATTERN,
+                            .dtype = CHOLMOD_DOUBLE,
+                            .sorted = 0,
+                            .packed = 1};
   pthread_mutex_lock(&metis_mutex);
   int done = cholmod_metis(&pattern, NULL, 0, 1, order, common);
   pthread_mutex_unlock(&metis_mutex);
@@ -146,7 +163,8 @@ enum eo_code eo_sparse_analyse(const struct eo_sparse *matrix, const int *group,
   eo_threads_limit();
   int n = matrix->n;
   struct eo_sparse_factor *factor = calloc(1, sizeof *factor);
-  int *order = malloc(((size_t)groups + 1) * sizeof *order), *permutation = malloc(((size_t)n + 1) * sizeof *permutation);
+  int *order = malloc(((size_t)groups + 1) * sizeof *order),
+      *permutation = malloc(((size_t)n + 1) * sizeof *permutation);
   int *work = malloc(((size_t)n + (size_t)groups + 1) * sizeof *work);
   enum eo_code code = EO_ERROR_MEMORY;
   if (!factor)
@@ -245,7 +263,8 @@ enum eo_code eo_sparse_factorise(struct eo_sparse_factor *factor, struct eo_erro
   return EO_OK;
 }
 
-enum eo_code eo_sparse_inverse(const struct eo_sparse_factor *factor, int loaded, double *inverse, struct eo_error *error)
+enum eo_code eo_sparse_inverse(const struct eo_sparse_factor *factor, int loaded, double *inverse,
+                               struct eo_error *error)
 {
   int kept = factor->kept, first = kept - loaded;
   size_t height = (size_t)kept;

@@ -1,6 +1,6 @@
 /* A sparse symmetric positive definite system and the part of its inverse that belongs to a few unknowns (CHOLMOD,
-   supernodal L L'; Chen, Davis, Hager, Rajamanickam 2008). The few unknowns are ordered last: the last columns of L are then
-   the Cholesky factor of their Schur complement, whose inverse is that part of the inverse of the whole matrix. */
+   supernodal L L'; Chen, Davis, Hager, Rajamanickam 2008). The few unknowns are ordered last: the last columns of L are
+   then the Cholesky factor of their Schur complement, whose inverse is that part of the inverse of the whole matrix. */
 #ifndef EASEOFF_NUMERICS_SPARSE_H
 #define EASEOFF_NUMERICS_SPARSE_H
 
@@ -21,19 +21,20 @@ void eo_sparse_done(struct eo_sparse *matrix);
 /* A factorisation in progress. One thread at a time; different factors may be used by different threads at once. */
 struct eo_sparse_factor;
 
-/* Orders the unknowns (METIS nested dissection of groups, for instance the nodes of a mesh; one call at a time in the whole
-   process, because METIS keeps global state) and finds the pattern of L.
-   group[n]: 0..groups-1, the group of each unknown; kept: unknowns wanted in the inverse, at most n; keep[kept]: which.
-   The matrix is borrowed until eo_sparse_factorise() returns.
-   Errors: memory; EO_ERROR_NUMERIC when the problem is too large for 32-bit indices. */
+/* Orders the unknowns (METIS nested dissection of groups, for instance the nodes of a mesh; one call at a time in the
+   whole process, because METIS keeps global state) and finds the pattern of L. group[n]: 0..groups-1, the group of each
+   unknown; kept: unknowns wanted in the inverse, at most n; keep[kept]: which. The matrix is borrowed until
+   eo_sparse_factorise() returns. Errors: memory; EO_ERROR_NUMERIC when the problem is too large for 32-bit indices. */
 enum eo_code eo_sparse_analyse(const struct eo_sparse *matrix, const int *group, int groups, const int *keep, int kept,
                                struct eo_sparse_factor **factor, struct eo_error *error);
 
-/* Factorises and keeps only the trailing block. Errors: memory; EO_ERROR_NUMERIC when the matrix is not positive definite. */
+/* Factorises and keeps only the trailing block. Errors: memory; EO_ERROR_NUMERIC when the matrix is not positive
+   definite. */
 enum eo_code eo_sparse_factorise(struct eo_sparse_factor *factor, struct eo_error *error);
 
 /* inverse[loaded][kept]: row j holds the values of keep[0..kept-1] under a unit load on keep[kept - loaded + j]. */
-enum eo_code eo_sparse_inverse(const struct eo_sparse_factor *factor, int loaded, double *inverse, struct eo_error *error);
+enum eo_code eo_sparse_inverse(const struct eo_sparse_factor *factor, int loaded, double *inverse,
+                               struct eo_error *error);
 
 /* Entries of L and the bytes CHOLMOD held at most; known after eo_sparse_factorise(). */
 double eo_sparse_entries(const struct eo_sparse_factor *factor);

@@ -12,7 +12,8 @@ static void set_blas_threads(void)
   openblas_set_num_threads(1);
 }
 
-/* The nesting limit is the one OpenMP setting that wins over a fixed number of threads in a loop; it belongs to the calling thread. */
+/* The nesting limit is the one OpenMP setting that wins over a fixed number of threads in a loop; it belongs to the
+   calling thread. */
 void eo_threads_limit(void)
 {
   pthread_once(&blas_once, set_blas_threads);

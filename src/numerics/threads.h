@@ -1,10 +1,11 @@
-/* Threads of the libraries below: none. Parallel work is ours alone (both members of a pair, candidates of a generation), so that a
-   result does not depend on the machine and a busy one is not made busier. */
+/* Threads of the libraries below: none. Parallel work is ours alone (both members of a pair, candidates of a
+   generation), so that a result does not depend on the machine and a busy one is not made busier. */
 #ifndef EASEOFF_NUMERICS_THREADS_H
 #define EASEOFF_NUMERICS_THREADS_H
 
-/* BLAS works with one thread from here on, in the whole process; OpenMP loops (CHOLMOD's ask for four, whatever OMP_NUM_THREADS
-   says) run on the calling thread when that thread calls them. Cheap; called by main() and by every thread that uses numerics/sparse. */
+/* BLAS works with one thread from here on, in the whole process; OpenMP loops (CHOLMOD's ask for four, whatever
+   OMP_NUM_THREADS says) run on the calling thread when that thread calls them. Cheap; called by main() and by every
+   thread that uses numerics/sparse. */
 void eo_threads_limit(void);
 
 #endif

@@ -2,7 +2,8 @@
 
 #include <math.h>
 
-void eo_objective_sum(int cases, const struct eo_load_case *load_case, const struct eo_objective_case *value, struct eo_objective_sums *sums)
+void eo_objective_sum(int cases, const struct eo_load_case *load_case, const struct eo_objective_case *value,
+                      struct eo_objective_sums *sums)
 {
   *sums = (struct eo_objective_sums){0};
   for (int k = 0; k < cases; k++) {
@@ -27,7 +28,8 @@ static double worse(double value, double before)
   return before > 0 && value > before ? value / before - 1 : 0;
 }
 
-static double violation(const struct eo_objective *o, const struct eo_objective_case *v, const struct eo_objective_case *before)
+static double violation(const struct eo_objective *o, const struct eo_objective_case *v,
+                        const struct eo_objective_case *before)
 {
   double sum = excess(&o->contact_pressure, v->contact_pressure) + excess(&o->root_stress, v->root_stress) +
                excess(&o->peak_to_peak, v->peak_to_peak) + excess(&o->edge_load_share, v->edge_load_share) +
@@ -38,8 +40,8 @@ static double violation(const struct eo_objective *o, const struct eo_objective_
 }
 
 void eo_objective_value(const struct eo_objective *objective, int cases, const struct eo_load_case *load_case,
-                        const struct eo_objective_case *value, const struct eo_objective_case *unmodified, bool relief_outside,
-                        struct eo_objective_value *result)
+                        const struct eo_objective_case *value, const struct eo_objective_case *unmodified,
+                        bool relief_outside, struct eo_objective_value *result)
 {
   struct eo_objective_sums before;
   *result = (struct eo_objective_value){0};
@@ -49,7 +51,8 @@ void eo_objective_value(const struct eo_objective *objective, int cases, const s
     double scale = objective->normalise == EO_NORMALISE_NONE ? 1 : before.f[i];
     if (objective->weight[i] == 0)
       continue;
-    /* An objective that the unmodified pair already has at zero cannot be normalised; it counts only once it is there. */
+    /* An objective that the unmodified pair already has at zero cannot be normalised; it counts only once it is there.
+     */
     result->objective += objective->weight[i] * (scale > 0 ? result->sums.f[i] / scale : result->sums.f[i] > 0);
   }
   for (int k = 0; k < cases; k++)
@@ -70,7 +73,8 @@ bool eo_objective_relief_outside(const struct eo_modification *modification, dou
     for (int end = 0; end < 2; end++) {
       const struct eo_flank_modification *m = &modification->flank[member][end];
       double own_top = member == EO_PINION ? top : -bottom, own_bottom = member == EO_PINION ? -bottom : top;
-      if ((m->tip_relief > 0 && m->tip_relief_start >= own_top) || (m->root_relief > 0 && m->root_relief_start >= own_bottom))
+      if ((m->tip_relief > 0 && m->tip_relief_start >= own_top) ||
+          (m->root_relief > 0 && m->root_relief_start >= own_bottom))
         return true;
     }
   return false;

@@ -1,4 +1,5 @@
-/* The three objectives, the constraints and the fitness (paper (19)-(23) with the gaps settled; see the notes at each). */
+/* The three objectives, the constraints and the fitness (paper (19)-(23) with the gaps settled; see the notes at each).
+ */
 #ifndef EASEOFF_OBJECTIVE_OBJECTIVE_H
 #define EASEOFF_OBJECTIVE_OBJECTIVE_H
 
@@ -24,22 +25,25 @@ struct eo_objective_sums {
 
 struct eo_objective_value {
   struct eo_objective_sums sums;
-  double objective;  /* J, dimensionless when normalised; NaN when failed */
-  double violation;  /* sum of relative excesses over the constraints */
-  double fitness;    /* 1/J - penalty * violation; EO_FITNESS_WORST when failed (the paper prints the penalty with +) */
+  double objective; /* J, dimensionless when normalised; NaN when failed */
+  double violation; /* sum of relative excesses over the constraints */
+  double fitness;   /* 1/J - penalty * violation; EO_FITNESS_WORST when failed (the paper prints the penalty with +) */
 };
 
 static const double EO_FITNESS_WORST = -1e9;
 
-void eo_objective_sum(int cases, const struct eo_load_case *load_case, const struct eo_objective_case *value, struct eo_objective_sums *sums);
+void eo_objective_sum(int cases, const struct eo_load_case *load_case, const struct eo_objective_case *value,
+                      struct eo_objective_sums *sums);
 
-/* J = sum w_i f_i / f_i(unmodified) (normalise: unmodified) or sum w_i f_i in SI units (none). unmodified: [cases], the same design
-   without modification; needed to normalise and for no_worse_than_unmodified. relief_outside: 1 when a relief starts outside the active flank. */
+/* J = sum w_i f_i / f_i(unmodified) (normalise: unmodified) or sum w_i f_i in SI units (none). unmodified: [cases], the
+   same design without modification; needed to normalise and for no_worse_than_unmodified. relief_outside: 1 when a
+   relief starts outside the active flank. */
 void eo_objective_value(const struct eo_objective *objective, int cases, const struct eo_load_case *load_case,
-                        const struct eo_objective_case *value, const struct eo_objective_case *unmodified, bool relief_outside,
-                        struct eo_objective_value *result);
+                        const struct eo_objective_case *value, const struct eo_objective_case *unmodified,
+                        bool relief_outside, struct eo_objective_value *result);
 
-/* True when a relief of the modification starts at or beyond the end of the active profile; bottom, top: u_A < 0 < u_E of the pinion, m. */
+/* True when a relief of the modification starts at or beyond the end of the active profile; bottom, top: u_A < 0 < u_E
+   of the pinion, m. */
 bool eo_objective_relief_outside(const struct eo_modification *modification, double bottom, double top);
 
 #endif

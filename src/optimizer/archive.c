@@ -78,8 +78,8 @@ enum eo_code eo_archive_reserve(struct eo_archive *archive, int rows, struct eo_
   return EO_OK;
 }
 
-int eo_archive_add(struct eo_archive *archive, const double *x, double value, double violation, const double *objectives,
-                   int generation, int individual)
+int eo_archive_add(struct eo_archive *archive, const double *x, double value, double violation,
+                   const double *objectives, int generation, int individual)
 {
   const int row = archive->count++, n = archive->variables, m = archive->objectives;
   memcpy(archive->x + (size_t)row * n, x, (size_t)n * sizeof *x);

@@ -10,16 +10,16 @@
 struct eo_archive {
   int variables, objectives;
   int count, capacity;
-  double *x;          /* [count][variables]; owned, as all below */
-  double *value;      /* [count], infinite when failed */
-  double *violation;  /* [count] */
-  double *objective;  /* [count][objectives] */
-  int *generation;    /* [count], -1: imported */
-  int *individual;    /* [count] */
-  int *next;          /* [count] chain of rows with the same hash */
-  int *bucket;        /* [bucket_count] first row of a chain or -1 */
+  double *x;         /* [count][variables]; owned, as all below */
+  double *value;     /* [count], infinite when failed */
+  double *violation; /* [count] */
+  double *objective; /* [count][objectives] */
+  int *generation;   /* [count], -1: imported */
+  int *individual;   /* [count] */
+  int *next;         /* [count] chain of rows with the same hash */
+  int *bucket;       /* [bucket_count] first row of a chain or -1 */
   int bucket_count;
-  int best;           /* row with the least value, -1 when none is finite */
+  int best; /* row with the least value, -1 when none is finite */
 };
 
 enum eo_code eo_archive_init(struct eo_archive *archive, int variables, int objectives, struct eo_error *error);
@@ -29,8 +29,8 @@ void eo_archive_done(struct eo_archive *archive);
 enum eo_code eo_archive_reserve(struct eo_archive *archive, int rows, struct eo_error *error);
 
 /* Adds a row and returns its index. objectives may be NULL. A value that is not finite is stored as infinite. */
-int eo_archive_add(struct eo_archive *archive, const double *x, double value, double violation, const double *objectives,
-                   int generation, int individual);
+int eo_archive_add(struct eo_archive *archive, const double *x, double value, double violation,
+                   const double *objectives, int generation, int individual);
 
 /* The row bit-equal to x, or -1. */
 int eo_archive_find(const struct eo_archive *archive, const double *x);

@@ -2,13 +2,13 @@
    has not earned its credibility by leave-one-out (surrogate.h). Every member of its population is a true row.
 
      epoch: a latin hypercube, then batches until too many of them gain nothing: the best joins the taboo list
-     even epochs sample: an evolution strategy (evolution.h) from the best of the hypercube, of whose many samples the surrogate
-            chooses; the trust region (local.h) round the best has a place in each batch, and twice as many after each gain of its own
-     odd epochs breed: half of a batch trust region; half children of the epoch's best rows, bred three times among themselves by
-            score = surrogate + kappa s (1 - R), then the best scores that keep growing distances from all rows and from each other
-     what is the best of all when an epoch ends is refined once by an evolution strategy of small steps: objectives made of maxima
-            over load cases, ends and mesh positions lead along kinks, where a smooth surrogate stops
-     the last share of the budget polishes the best row of all: trust region only, then refinement */
+     even epochs sample: an evolution strategy (evolution.h) from the best of the hypercube, of whose many samples the
+   surrogate chooses; the trust region (local.h) round the best has a place in each batch, and twice as many after each
+   gain of its own odd epochs breed: half of a batch trust region; half children of the epoch's best rows, bred three
+   times among themselves by score = surrogate + kappa s (1 - R), then the best scores that keep growing distances from
+   all rows and from each other what is the best of all when an epoch ends is refined once by an evolution strategy of
+   small steps: objectives made of maxima over load cases, ends and mesh positions lead along kinks, where a smooth
+   surrogate stops the last share of the budget polishes the best row of all: trust region only, then refinement */
 #include "optimizer/credibility_pool.h"
 #include "optimizer/internal.h"
 #include "optimizer/local.h"
@@ -25,21 +25,21 @@ struct credibility {
   int epoch, epoch_first; /* first archive row of the epoch */
   int batch;              /* batches so far, counts the random numbers */
   int stalled;
-  double epoch_best;      /* when the epoch last gained */
-  bool fresh;             /* the epoch's latin hypercube is still to come */
-  enum search search;     /* what makes the batches */
-  bool evolving;          /* the evolution strategy stands; SAMPLE: once the hypercube is told */
-  bool polishing;         /* the last share of the budget */
-  int local_places;       /* SAMPLE: of the trust region in the next batch */
-  int local_count;        /* proposals of the trust region at the head of the pending batch */
-  int refined;            /* archive row that the evolution strategy ended with, -1 before */
-  int *generation;        /* [batch] archive rows, best first; owned, as all below */
+  double epoch_best;           /* when the epoch last gained */
+  bool fresh;                  /* the epoch's latin hypercube is still to come */
+  enum search search;          /* what makes the batches */
+  bool evolving;               /* the evolution strategy stands; SAMPLE: once the hypercube is told */
+  bool polishing;              /* the last share of the budget */
+  int local_places;            /* SAMPLE: of the trust region in the next batch */
+  int local_count;             /* proposals of the trust region at the head of the pending batch */
+  int refined;                 /* archive row that the evolution strategy ended with, -1 before */
+  int *generation;             /* [batch] archive rows, best first; owned, as all below */
   const double **generation_x; /* [batch] */
-  int *taboo;             /* archive rows */
+  int *taboo;                  /* archive rows */
   int taboo_count, taboo_capacity;
-  int *parent;            /* [population] archive rows, best first */
-  double *latin;          /* scratch [initial_factor n] */
-  double *chosen;         /* [batch][n] */
+  int *parent;    /* [population] archive rows, best first */
+  double *latin;  /* scratch [initial_factor n] */
+  double *chosen; /* [batch][n] */
   struct eo_credibility_model model;
   struct eo_credibility_pool pool;
   struct eo_local local;
@@ -186,7 +186,8 @@ static void choose_samples(struct eo_optimizer *o, int first, int count)
   struct credibility *c = o->state;
   const size_t n = (size_t)o->settings.variables;
   eo_credibility_model_fit(&c->model, &o->archive, c->evolution.mean);
-  eo_credibility_pool_sample(&c->pool, &c->model, &c->evolution, o->settings.evolution_samples * (count - first), c->batch);
+  eo_credibility_pool_sample(&c->pool, &c->model, &c->evolution, o->settings.evolution_samples * (count - first),
+                             c->batch);
   for (int i = first; i < count; i++)
     memcpy(c->chosen + (size_t)i * n, eo_credibility_pool_at(&c->pool, i - first), n * sizeof(double));
 }
@@ -207,9 +208,12 @@ static int local_share(const struct eo_optimizer *o)
   const struct credibility *c = o->state;
   const int batch = o->settings.batch;
   switch (c->search) {
-  case SAMPLE: return c->local_places;
-  case REFINE: return 0;
-  default: return c->polishing ? batch : (int)(o->settings.local_share * batch + 0.5);
+  case SAMPLE:
+    return c->local_places;
+  case REFINE:
+    return 0;
+  default:
+    return c->polishing ? batch : (int)(o->settings.local_share * batch + 0.5);
   }
 }
 
@@ -222,8 +226,9 @@ static void propose_batch(struct eo_optimizer *o)
   if (c->search == SAMPLE && !c->evolving)
     begin_sampling(o, c->parent[0]);
   const int share = local_share(o);
-  const int local =
-      share > 0 ? eo_local_propose(&c->local, &o->archive, c->parent[0], o->settings.seed, c->batch, share, c->chosen) : 0;
+  const int local = share > 0 ? eo_local_propose(&c->local, &o->archive, c->parent[0], o->settings.seed, c->batch,
+                                                 share, c->chosen)
+                              : 0;
   int chosen = local + batch - share;
   if (c->evolving)
     choose_samples(o, local, chosen);
@@ -313,8 +318,8 @@ static void begin_refinement(struct eo_optimizer *o)
   eo_evolution_restart(&c->evolution, row_x(o, best), o->settings.evolution_step);
 }
 
-/* From its own samples: the best point of the trust region, led elsewhere by other means, would draw it in too soon. False when the strategy
-   has come to its end. */
+/* From its own samples: the best point of the trust region, led elsewhere by other means, would draw it in too soon.
+   False when the strategy has come to its end. */
 static bool learn_generation(struct eo_optimizer *o)
 {
   struct credibility *c = o->state;
@@ -349,7 +354,9 @@ static void begin_polishing(struct eo_optimizer *o)
 static int patience(const struct eo_optimizer *o)
 {
   const struct credibility *c = o->state;
-  return c->search == SAMPLE ? o->settings.sampling_stall : c->search == REFINE ? o->settings.evolution_stall : o->settings.stall_batches;
+  return c->search == SAMPLE   ? o->settings.sampling_stall
+         : c->search == REFINE ? o->settings.evolution_stall
+                               : o->settings.stall_batches;
 }
 
 /* What follows a batch that gained nothing for long enough: the best row of all is refined once; then a new epoch. */

@@ -8,7 +8,8 @@
 
 static const double ridge = 1e-9;
 
-enum eo_code eo_credibility_model_init(struct eo_credibility_model *model, const struct eo_optimizer_settings *settings, struct eo_error *error)
+enum eo_code eo_credibility_model_init(struct eo_credibility_model *model, const struct eo_optimizer_settings *settings,
+                                       struct eo_error *error)
 {
   const size_t n = (size_t)settings->variables, rows = (size_t)settings->model_rows;
   *model = (struct eo_credibility_model){.settings = settings};
@@ -69,14 +70,17 @@ static const double *row_x(const struct eo_archive *archive, int row, int n)
 enum ranking { RANK_BY_VALUE, RANK_BY_AGE, RANK_BY_DISTANCE };
 
 /* Appends the best `share` unused rows by the given ranking. */
-static int take_rows(struct eo_credibility_model *model, const struct eo_archive *a, enum ranking ranking, const double *centre, int taken, int share)
+static int take_rows(struct eo_credibility_model *model, const struct eo_archive *a, enum ranking ranking,
+                     const double *centre, int taken, int share)
 {
   const int n = model->settings->variables;
   int count = 0;
   for (int row = 0; row < a->count; row++) {
     if (eo_archive_failed(a, row) || model->used[row])
       continue;
-    const double key = ranking == RANK_BY_VALUE ? a->value[row] : ranking == RANK_BY_AGE ? -row : eo_unit_distance(row_x(a, row, n), centre, n);
+    const double key = ranking == RANK_BY_VALUE ? a->value[row]
+                       : ranking == RANK_BY_AGE ? -row
+                                                : eo_unit_distance(row_x(a, row, n), centre, n);
     model->ranked[count++] = (struct eo_ranked_row){key, row};
   }
   qsort(model->ranked, (size_t)count, sizeof *model->ranked, compare_ranked);
@@ -96,7 +100,8 @@ static int gather_rows(struct eo_credibility_model *model, const struct eo_archi
   return take_rows(model, archive, RANK_BY_DISTANCE, centre, taken, limit - taken);
 }
 
-void eo_credibility_model_fit(struct eo_credibility_model *model, const struct eo_archive *archive, const double *centre)
+void eo_credibility_model_fit(struct eo_credibility_model *model, const struct eo_archive *archive,
+                              const double *centre)
 {
   const int n = model->settings->variables, count = gather_rows(model, archive, centre);
   model->fitted = false;

@@ -9,7 +9,8 @@
 static const double spread[] = {0, 0, 0.003, 0.003, 0.01, 0.03, 0.1, 0.2}; /* distances to keep, over sqrt n */
 enum { SPREADS = 8, ROUNDS = 3 };
 
-enum eo_code eo_credibility_pool_init(struct eo_credibility_pool *pool, const struct eo_optimizer_settings *settings, struct eo_error *error)
+enum eo_code eo_credibility_pool_init(struct eo_credibility_pool *pool, const struct eo_optimizer_settings *settings,
+                                      struct eo_error *error)
 {
   const int samples = settings->evolution_samples * settings->batch;
   const size_t n = (size_t)settings->variables, parents = (size_t)settings->population;
@@ -22,8 +23,9 @@ enum eo_code eo_credibility_pool_init(struct eo_credibility_pool *pool, const st
   pool->gap = malloc(capacity * sizeof(double));
   pool->parents = malloc(parents * n * sizeof(double));
   pool->parent_score = malloc(parents * sizeof(double));
-  return pool->x && pool->score && pool->order && pool->barred && pool->gap && pool->parents && pool->parent_score ? EO_OK
-                                                                                                                   : eo_error_memory(error);
+  return pool->x && pool->score && pool->order && pool->barred && pool->gap && pool->parents && pool->parent_score
+             ? EO_OK
+             : eo_error_memory(error);
 }
 
 void eo_credibility_pool_done(struct eo_credibility_pool *pool)
@@ -80,27 +82,30 @@ static void take_best(struct eo_credibility_pool *pool)
   }
 }
 
-void eo_credibility_pool_breed(struct eo_credibility_pool *pool, struct eo_credibility_model *model, const struct eo_archive *archive,
-                               const int *row, int count, int batch)
+void eo_credibility_pool_breed(struct eo_credibility_pool *pool, struct eo_credibility_model *model,
+                               const struct eo_archive *archive, const int *row, int count, int batch)
 {
   pool->count = pool->settings->children;
   take_rows(pool, archive, row, count);
   for (int round = 0; round < ROUNDS; round++) {
     if (round > 0)
       take_best(pool);
-    eo_breed(pool->settings, pool->parents, pool->parent_score, pool->parents_count, ROUNDS * batch + round, 0, pool->x, pool->count);
+    eo_breed(pool->settings, pool->parents, pool->parent_score, pool->parents_count, ROUNDS * batch + round, 0, pool->x,
+             pool->count);
     for (int i = 0; i < pool->count; i++)
       pool->score[i] = eo_credibility_score(model, point(pool, i));
     rank(pool);
   }
 }
 
-void eo_credibility_pool_sample(struct eo_credibility_pool *pool, struct eo_credibility_model *model, const struct eo_evolution *evolution,
-                                int count, int batch)
+void eo_credibility_pool_sample(struct eo_credibility_pool *pool, struct eo_credibility_model *model,
+                                const struct eo_evolution *evolution, int count, int batch)
 {
   pool->count = count;
   for (int i = 0; i < count; i++) {
-    eo_evolution_sample(evolution, eo_random_at(pool->settings->seed, EO_STREAM_EVOLUTION, (uint64_t)batch, (uint64_t)i), point(pool, i));
+    eo_evolution_sample(evolution,
+                        eo_random_at(pool->settings->seed, EO_STREAM_EVOLUTION, (uint64_t)batch, (uint64_t)i),
+                        point(pool, i));
     pool->score[i] = eo_credibility_predict(model, point(pool, i));
   }
   rank(pool);
@@ -118,7 +123,8 @@ static double nearest(const double *points, int count, const double *x, int n)
   return sqrt(least);
 }
 
-int eo_credibility_pool_spread(struct eo_credibility_pool *pool, const struct eo_archive *archive, double *chosen, int first, int count)
+int eo_credibility_pool_spread(struct eo_credibility_pool *pool, const struct eo_archive *archive, double *chosen,
+                               int first, int count)
 {
   const int n = pool->settings->variables, places = count - first;
   for (int i = 0; i < pool->count; i++)

@@ -15,7 +15,7 @@ enum { PARENTS_MAX = 32 };
 struct rates {
   int parents;
   double weight[PARENTS_MAX]; /* [parents], falling, sum 1 */
-  double mass;                          /* mu_eff */
+  double mass;                /* mu_eff */
   double path, step_path, rank_one, rank_many, damping, normal;
 };
 
@@ -31,7 +31,9 @@ enum eo_code eo_evolution_init(struct eo_evolution *e, int variables, struct eo_
   e->step_path = calloc(n, sizeof(double));
   e->steps = calloc(PARENTS_MAX * n, sizeof(double));
   e->move = calloc(2 * n, sizeof(double));
-  return e->steps && e->mean && e->covariance && e->axes && e->length && e->path && e->step_path && e->move ? EO_OK : eo_error_memory(error);
+  return e->steps && e->mean && e->covariance && e->axes && e->length && e->path && e->step_path && e->move
+             ? EO_OK
+             : eo_error_memory(error);
 }
 
 void eo_evolution_done(struct eo_evolution *e)
@@ -95,8 +97,8 @@ static void set_rates(struct rates *r, int n, int count)
   r->normal = sqrt(n) * (1 - 1 / (4. * n) + 1 / (21. * n * n)); /* expected length of a normal vector */
 }
 
-/* steps[parents][n]: from the mean, in units of the step. Those of points that were not sampled here are cut to a length that a sample
-   may well have (Hansen 2011, injecting external solutions). */
+/* steps[parents][n]: from the mean, in units of the step. Those of points that were not sampled here are cut to a
+   length that a sample may well have (Hansen 2011, injecting external solutions). */
 static void find_steps(struct eo_evolution *e, const struct rates *r, const double *const *x)
 {
   const int n = e->variables;
@@ -174,7 +176,8 @@ bool eo_evolution_learn(struct eo_evolution *e, const double *const *x, int coun
   find_move(e, &r, move, whitened);
   e->generations++;
   for (int k = 0; k < n; k++) {
-    e->step_path[k] = (1 - r.step_path) * e->step_path[k] + sqrt(r.step_path * (2 - r.step_path) * r.mass) * whitened[k];
+    e->step_path[k] = (1 - r.step_path) * e->step_path[k] +
+                      sqrt(r.step_path * (2 - r.step_path) * r.mass) * whitened[k];
     square += e->step_path[k] * e->step_path[k];
   }
   const double length = sqrt(square), settled = sqrt(1 - pow(1 - r.step_path, 2 * e->generations));

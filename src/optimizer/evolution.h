@@ -1,6 +1,6 @@
-/* Evolution strategy with covariance matrix adaptation (CMA-ES; Hansen and Ostermeier 2001, parameters of Hansen 2016), one
-   generation at a time: it goes along valleys whose floor has a kink, where a smooth surrogate sees no way down. Points are
-   clipped to the unit cube, and it learns from what they became. */
+/* Evolution strategy with covariance matrix adaptation (CMA-ES; Hansen and Ostermeier 2001, parameters of Hansen 2016),
+   one generation at a time: it goes along valleys whose floor has a kink, where a smooth surrogate sees no way down.
+   Points are clipped to the unit cube, and it learns from what they became. */
 #ifndef EASEOFF_OPTIMIZER_EVOLUTION_H
 #define EASEOFF_OPTIMIZER_EVOLUTION_H
 
@@ -29,8 +29,8 @@ void eo_evolution_restart(struct eo_evolution *evolution, const double *mean, do
 /* A sample x[variables]; the random numbers are those of one individual. */
 void eo_evolution_sample(const struct eo_evolution *evolution, struct eo_random random, double *x);
 
-/* Learns from a generation, best first: x[count] points of [variables] each, at least two, sampled or found otherwise. Returns false when the matrix is no
-   longer sound or the step has vanished: start anew. */
+/* Learns from a generation, best first: x[count] points of [variables] each, at least two, sampled or found otherwise.
+   Returns false when the matrix is no longer sound or the step has vanished: start anew. */
 bool eo_evolution_learn(struct eo_evolution *evolution, const double *const *x, int count);
 
 #endif

@@ -1,5 +1,5 @@
-/* `ga` and `fpga`, the paper's fitness-predicted genetic algorithm (section 4); ga is fpga that never predicts: the same
-   operators on the same random numbers. What was settled where the paper is silent:
+/* `ga` and `fpga`, the paper's fitness-predicted genetic algorithm (section 4); ga is fpga that never predicts: the
+   same operators on the same random numbers. What was settled where the paper is silent:
    - decisions in batch order see the history as it was before the generation; sequential order is S2-S5 as printed;
    - an individual bit-equal to a true row takes its value and counts neither as true nor as predicted (reuse);
    - the best predicted individual of a generation is evaluated too (verify): nothing else would ever correct it;
@@ -16,9 +16,9 @@ enum kind { KIND_TRUE, KIND_PREDICTED, KIND_REUSED };
 
 struct genetic {
   bool predicts;
-  int generation, cursor; /* cursor: individuals decided in this generation */
-  bool cut;               /* the budget ended within the generation */
-  bool verifying;         /* sequential order: the verification stands in the batch */
+  int generation, cursor;           /* cursor: individuals decided in this generation */
+  bool cut;                         /* the budget ended within the generation */
+  bool verifying;                   /* sequential order: the verification stands in the batch */
   double *x, *parents;              /* [population][n] */
   double *fitness, *parent_fitness; /* [population], to maximise, -infinite when failed */
   double *credibility;              /* [population] */
@@ -147,7 +147,8 @@ static enum eo_code remember(struct eo_optimizer *o, int i, struct eo_error *err
     return remember_true(o, g->row[i], error);
   if (g->kind[i] == KIND_REUSED || !o->settings.store_predicted)
     return EO_OK;
-  return eo_history_add(&g->history, g->x + (size_t)i * o->settings.variables, g->fitness[i], g->credibility[i], true, error);
+  return eo_history_add(&g->history, g->x + (size_t)i * o->settings.variables, g->fitness[i], g->credibility[i], true,
+                        error);
 }
 
 static void verify_best_prediction(struct eo_optimizer *o)
@@ -250,7 +251,8 @@ static void breed_next(struct eo_optimizer *o)
   g->fitness = fitness;
   g->generation++;
   g->cursor = 0;
-  eo_breed(&o->settings, g->parents, g->parent_fitness, o->settings.population, g->generation, 0, g->x, o->settings.population);
+  eo_breed(&o->settings, g->parents, g->parent_fitness, o->settings.population, g->generation, 0, g->x,
+           o->settings.population);
 }
 
 static enum eo_code close_generation(struct eo_optimizer *o, struct eo_error *error)

@@ -59,8 +59,8 @@ static enum eo_code enlarge(struct eo_history *history, int capacity, struct eo_
   return EO_OK;
 }
 
-enum eo_code eo_history_add(struct eo_history *history, const double *x, double fitness, double credibility, bool predicted,
-                            struct eo_error *error)
+enum eo_code eo_history_add(struct eo_history *history, const double *x, double fitness, double credibility,
+                            bool predicted, struct eo_error *error)
 {
   if (history->count == history->capacity) {
     const enum eo_code code = enlarge(history, 2 * history->capacity + 1, error);
@@ -104,7 +104,8 @@ static int measure_weights(struct eo_history *history, const struct eo_history_l
   return region;
 }
 
-struct eo_history_estimate eo_history_predict(struct eo_history *history, const struct eo_history_law *law, const double *x)
+struct eo_history_estimate eo_history_predict(struct eo_history *history, const struct eo_history_law *law,
+                                              const double *x)
 {
   struct eo_history_estimate estimate = {.fitness = NAN};
   measure_distances(history, law->rms, x);
@@ -148,8 +149,8 @@ void eo_history_measure_redundancy(struct eo_history *history)
       order[j] = (struct projection){history->x[(size_t)j * n + k], j};
     qsort(order, (size_t)count, sizeof *order, compare_projections);
     for (int j = 0; j < count; j++)
-      history->redundancy[order[j].row] +=
-          j == 0 || j == count - 1 ? INFINITY : order[j + 1].value - order[j - 1].value;
+      history->redundancy[order[j].row] += j == 0 || j == count - 1 ? INFINITY
+                                                                    : order[j + 1].value - order[j - 1].value;
   }
 }
 

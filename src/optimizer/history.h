@@ -13,9 +13,9 @@
 #include <stdbool.h>
 
 struct eo_history_law {
-  double share_radius, weight_decay;                      /* r_share, alpha */
-  double credibility_loss, removal_threshold;             /* beta, R_0 */
-  double redundancy_threshold;                            /* I_r* */
+  double share_radius, weight_decay;          /* r_share, alpha */
+  double credibility_loss, removal_threshold; /* beta, R_0 */
+  double redundancy_threshold;                /* I_r* */
   bool rms, weights_over_all, literal_redundancy;
 };
 
@@ -42,11 +42,12 @@ enum eo_code eo_history_init(struct eo_history *history, int variables, int capa
 void eo_history_done(struct eo_history *history);
 
 /* Adds a row; the history grows as needed. */
-enum eo_code eo_history_add(struct eo_history *history, const double *x, double fitness, double credibility, bool predicted,
-                            struct eo_error *error);
+enum eo_code eo_history_add(struct eo_history *history, const double *x, double fitness, double credibility,
+                            bool predicted, struct eo_error *error);
 
 /* (14)-(16) at x; history->distance and history->weight hold e and w afterwards. */
-struct eo_history_estimate eo_history_predict(struct eo_history *history, const struct eo_history_law *law, const double *x);
+struct eo_history_estimate eo_history_predict(struct eo_history *history, const struct eo_history_law *law,
+                                              const double *x);
 
 /* S3: whether an individual is predicted, R(i) >= R*. */
 bool eo_history_trusts(const struct eo_history_estimate *estimate, double trust_threshold);

@@ -34,7 +34,7 @@ struct eo_optimizer {
   bool *told;                     /* [batch_capacity] */
 
   int prediction_count, prediction_capacity;
-  double *prediction_x;             /* [prediction_capacity][variables] */
+  double *prediction_x;            /* [prediction_capacity][variables] */
   struct eo_predicted *prediction; /* [prediction_capacity] */
 
   int true_evaluations, predicted, reused;

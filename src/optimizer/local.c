@@ -26,7 +26,8 @@ enum eo_code eo_local_init(struct eo_local *local, int variables, struct eo_erro
   local->y = malloc(m * sizeof(double));
   if (!local->row || !local->distance || !local->u || !local->y)
     return eo_error_memory(error);
-  const enum eo_tail tail = eo_surrogate_terms(EO_TAIL_QUADRATIC, variables) < rows_max ? EO_TAIL_QUADRATIC : EO_TAIL_SEPARABLE;
+  const enum eo_tail tail = eo_surrogate_terms(EO_TAIL_QUADRATIC, variables) < rows_max ? EO_TAIL_QUADRATIC
+                                                                                        : EO_TAIL_SEPARABLE;
   return eo_surrogate_init(&local->surrogate, variables, rows_max, 1, tail, error);
 }
 
@@ -149,8 +150,8 @@ static double nearest_square(const double *points, int count, int n, const doubl
 }
 
 /* The sample of the box farthest from all rows. */
-static void fill_gap(const struct eo_local *local, const double *low, const double *high, int rows, struct eo_random random,
-                     double *u)
+static void fill_gap(const struct eo_local *local, const double *low, const double *high, int rows,
+                     struct eo_random random, double *u)
 {
   const int n = local->variables;
   double farthest = -1, sample[EO_MAX_VARIABLES];
@@ -166,8 +167,8 @@ static void fill_gap(const struct eo_local *local, const double *low, const doub
 }
 
 /* The part of a line through u that lies in the box: u + t direction for least <= t <= most. */
-static void cut_line(int n, const double *u, const double *direction, const double *low, const double *high, double *least,
-                     double *most)
+static void cut_line(int n, const double *u, const double *direction, const double *low, const double *high,
+                     double *least, double *most)
 {
   *least = -INFINITY;
   *most = INFINITY;
@@ -182,8 +183,8 @@ static void cut_line(int n, const double *u, const double *direction, const doub
 
 /* One step along a random line to a point of the box where the surrogate is not above `level`; u stays when none is
    found. Draws n + SHRINK_STEPS numbers from first_draw on. */
-static void step_along(struct eo_local *local, const double *low, const double *high, double level, struct eo_random random,
-                       uint64_t first_draw, double *u)
+static void step_along(struct eo_local *local, const double *low, const double *high, double level,
+                       struct eo_random random, uint64_t first_draw, double *u)
 {
   const int n = local->variables;
   double direction[EO_MAX_VARIABLES], trial[EO_MAX_VARIABLES], least, most;
@@ -203,8 +204,8 @@ static void step_along(struct eo_local *local, const double *low, const double *
   }
 }
 
-/* A point where the surrogate still promises a gain: hit and run (Smith 1984) from u, a minimum, through the part of the
-   box where the surrogate is not above `level`. It follows valleys that a sample of the box would miss. */
+/* A point where the surrogate still promises a gain: hit and run (Smith 1984) from u, a minimum, through the part of
+   the box where the surrogate is not above `level`. It follows valleys that a sample of the box would miss. */
 static void wander(struct eo_local *local, const double *low, const double *high, double level, struct eo_random random,
                    double *u)
 {
@@ -215,8 +216,8 @@ static void wander(struct eo_local *local, const double *low, const double *high
 /* Where the proposals are made: u[count][variables] so far, and what they are made from. */
 struct proposals {
   const double *centre;
-  int rows;     /* of the surrogate */
-  double level; /* the surrogate at the centre */
+  int rows;                         /* of the surrogate */
+  double level;                     /* the surrogate at the centre */
   double minimum[EO_MAX_VARIABLES]; /* of the surrogate within the first reach */
   int attempts, count;
   double *u;
@@ -248,8 +249,8 @@ static bool propose_next(struct eo_local *local, struct proposals *p, struct eo_
   return is_new(local, p, u);
 }
 
-int eo_local_propose(struct eo_local *local, const struct eo_archive *archive, int centre, uint64_t seed, int generation,
-                     int count, double *x)
+int eo_local_propose(struct eo_local *local, const struct eo_archive *archive, int centre, uint64_t seed,
+                     int generation, int count, double *x)
 {
   const int n = local->variables;
   struct proposals p = {.centre = archive->x + (size_t)centre * n, .u = x};
@@ -260,7 +261,8 @@ int eo_local_propose(struct eo_local *local, const struct eo_archive *archive, i
     eo_surrogate_visit(&local->surrogate, p.minimum); /* the centre is the origin */
     p.level = eo_surrogate_value(&local->surrogate, 0);
     while (p.attempts < count) {
-      p.count += propose_next(local, &p, eo_random_at(seed, EO_STREAM_LOCAL, (uint64_t)generation, (uint64_t)p.attempts));
+      p.count += propose_next(local, &p,
+                              eo_random_at(seed, EO_STREAM_LOCAL, (uint64_t)generation, (uint64_t)p.attempts));
       if (p.attempts == REACHES)
         local->reaching = p.count;
     }

@@ -1,7 +1,7 @@
 /* Trust region round the best row: a local surrogate in coordinates scaled by the radius, its minimum in the box
-   |x - centre| <= radius, and the radius that follows how well this went (Powell 2009, Regis and Shoemaker 2013). What a
-   batch has room for beyond the minimum are points on the way to it, where the surrogate promises a gain too: they teach
-   the next surrogate where it matters. Which polynomial tail it has is decided by leave-one-out each time. */
+   |x - centre| <= radius, and the radius that follows how well this went (Powell 2009, Regis and Shoemaker 2013). What
+   a batch has room for beyond the minimum are points on the way to it, where the surrogate promises a gain too: they
+   teach the next surrogate where it matters. Which polynomial tail it has is decided by leave-one-out each time. */
 #ifndef EASEOFF_OPTIMIZER_LOCAL_H
 #define EASEOFF_OPTIMIZER_LOCAL_H
 
@@ -10,14 +10,14 @@
 
 struct eo_local {
   int variables, rows_max;
-  double radius;          /* of the box, in the unit cube */
-  double centre_value;    /* when the last proposals were made */
-  int reaching;           /* how many of them are minima, the first ones */
+  double radius;       /* of the box, in the unit cube */
+  double centre_value; /* when the last proposals were made */
+  int reaching;        /* how many of them are minima, the first ones */
   struct eo_surrogate surrogate;
-  int *row;               /* [rows_max] rows of the local surrogate; owned, as all below */
-  double *distance;       /* [rows_max] */
-  double *u;              /* [rows_max][variables] (x - centre) / radius */
-  double *y;              /* [rows_max] */
+  int *row;         /* [rows_max] rows of the local surrogate; owned, as all below */
+  double *distance; /* [rows_max] */
+  double *u;        /* [rows_max][variables] (x - centre) / radius */
+  double *y;        /* [rows_max] */
 };
 
 enum eo_code eo_local_init(struct eo_local *local, int variables, struct eo_error *error);
@@ -26,10 +26,10 @@ void eo_local_done(struct eo_local *local);
 /* Starts anew with the given radius. */
 void eo_local_restart(struct eo_local *local, double radius);
 
-/* Up to count points x[][variables] to evaluate round row `centre`, at least one; those that would teach nothing new are
-   left out. Returns how many. generation counts the calls, for the random numbers. */
-int eo_local_propose(struct eo_local *local, const struct eo_archive *archive, int centre, uint64_t seed, int generation,
-                     int count, double *x);
+/* Up to count points x[][variables] to evaluate round row `centre`, at least one; those that would teach nothing new
+   are left out. Returns how many. generation counts the calls, for the random numbers. */
+int eo_local_propose(struct eo_local *local, const struct eo_archive *archive, int centre, uint64_t seed,
+                     int generation, int count, double *x);
 
 /* Learns from the archive's rows first .. first + count - 1, which the last proposals became: grows, keeps or shrinks
    the radius. */

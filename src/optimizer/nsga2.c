@@ -1,6 +1,7 @@
 /* `nsga2`: the Pareto front of the raw objectives, after Deb, Pratap, Agarwal, Meyarivan 2002, with surrogates between
-   the generations: each cycle evolves a population on one surrogate per objective (and one of the constraint violation),
-   starting from the best true rows, then verifies those of its best that add most to the true front. Only true rows count. */
+   the generations: each cycle evolves a population on one surrogate per objective (and one of the constraint
+   violation), starting from the best true rows, then verifies those of its best that add most to the true front. Only
+   true rows count. */
 #include "optimizer/internal.h"
 #include "optimizer/operators.h"
 #include "optimizer/pareto.h"
@@ -10,7 +11,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double clip_quantile = 0.9; /* values above are cut off before the fit: far from the front only order matters */
+static const double clip_quantile =
+    0.9; /* values above are cut off before the fit: far from the front only order matters */
 static const double ridge = 1e-9;
 static const double apart = 1e-4; /* / sqrt n: candidates nearer to a true row teach nothing */
 
@@ -18,18 +20,18 @@ struct nsga2 {
   int cycle, size, outputs; /* population; objectives + violation */
   bool modelled;
   struct eo_surrogate surrogate;
-  int count;              /* individuals: parents, then children */
-  double *x;              /* [2 size][n]; owned, as all below */
-  double *objective;      /* [2 size][objectives] */
-  double *violation;      /* [2 size] */
-  double *crowding;       /* [capacity] */
-  double *fitness;        /* [size] minus the place in the crowded order */
-  double *kept;           /* scratch for select_best: [size][n + objectives + 1] */
-  int *rank, *order, *scratch; /* [capacity], [capacity], [2 capacity] */
-  int capacity;           /* the larger of 2 size and the rows of the archive */
+  int count;                      /* individuals: parents, then children */
+  double *x;                      /* [2 size][n]; owned, as all below */
+  double *objective;              /* [2 size][objectives] */
+  double *violation;              /* [2 size] */
+  double *crowding;               /* [capacity] */
+  double *fitness;                /* [size] minus the place in the crowded order */
+  double *kept;                   /* scratch for select_best: [size][n + objectives + 1] */
+  int *rank, *order, *scratch;    /* [capacity], [capacity], [2 capacity] */
+  int capacity;                   /* the larger of 2 size and the rows of the archive */
   double *row_x, *row_y, *sorted; /* [model_rows][n], [outputs][model_rows], [model_rows] */
-  double *chosen;         /* [batch][n] */
-  double *reach;          /* [2 size] distance to the true front and to what is chosen */
+  double *chosen;                 /* [batch][n] */
+  double *reach;                  /* [2 size] distance to the true front and to what is chosen */
 };
 
 static void stop(struct eo_optimizer *o)
@@ -88,7 +90,8 @@ static enum eo_code start(struct eo_optimizer *o, struct eo_error *error)
     return eo_error_memory(error);
   g->size = s->front_population;
   g->outputs = s->objectives + 1;
-  const size_t n = (size_t)s->variables, m = (size_t)s->objectives, size = (size_t)g->size, rows = (size_t)s->model_rows;
+  const size_t n = (size_t)s->variables, m = (size_t)s->objectives, size = (size_t)g->size,
+               rows = (size_t)s->model_rows;
   const size_t initial = (size_t)initial_count(s);
   const size_t batch = (size_t)s->front_verified > initial ? (size_t)s->front_verified : initial;
   g->x = malloc(2 * size * n * sizeof(double));
@@ -293,8 +296,8 @@ static int choose(struct eo_optimizer *o, const int *front, int front_count, int
   while (chosen < limit) {
     int best = -1;
     for (int i = 0; i < g->count; i++)
-      if (g->reach[i] >= 0 && (best < 0 || g->rank[i] < g->rank[best] ||
-                               (g->rank[i] == g->rank[best] && g->reach[i] > g->reach[best])))
+      if (g->reach[i] >= 0 &&
+          (best < 0 || g->rank[i] < g->rank[best] || (g->rank[i] == g->rank[best] && g->reach[i] > g->reach[best])))
         best = i;
     if (best < 0)
       break;

@@ -97,7 +97,8 @@ void eo_latin_hypercube(double *x, int count, int n, uint64_t seed, int epoch, d
       scratch[i] = eo_random_unit(eo_random_at(seed, EO_STREAM_LATIN_ORDER, e, (uint64_t)i), draw);
     for (int i = 0; i < count; i++) {
       const int cell = rank_of(scratch, count, i);
-      x[i * n + k] = (cell + eo_random_unit(eo_random_at(seed, EO_STREAM_LATIN_JITTER, e, (uint64_t)cell), draw)) / count;
+      x[i * n + k] = (cell + eo_random_unit(eo_random_at(seed, EO_STREAM_LATIN_JITTER, e, (uint64_t)cell), draw)) /
+                     count;
     }
   }
 }

@@ -10,10 +10,11 @@
 
 /* Streams of the counter; a number is never used twice for different things. */
 enum eo_stream {
-  EO_STREAM_START = 1,     /* first population: individual i, draw = variable */
-  EO_STREAM_TOURNAMENT = 2,/* individual = pair; draws 0, 1 first parent, 2, 3 second */
-  EO_STREAM_CROSSOVER = 3, /* individual = pair; draw 0 whether, 1 + 2 k whether gene k, 2 + 2 k its spread */
-  EO_STREAM_MUTATION = 4,  /* individual = child; draw 0 whether (mode individual), 1 + 2 k whether gene k, 2 + 2 k how much */
+  EO_STREAM_START = 1,      /* first population: individual i, draw = variable */
+  EO_STREAM_TOURNAMENT = 2, /* individual = pair; draws 0, 1 first parent, 2, 3 second */
+  EO_STREAM_CROSSOVER = 3,  /* individual = pair; draw 0 whether, 1 + 2 k whether gene k, 2 + 2 k its spread */
+  /* individual = child; draw 0 whether (mode individual), 1 + 2 k whether gene k, 2 + 2 k how much */
+  EO_STREAM_MUTATION = 4,
   EO_STREAM_LATIN_ORDER = 30,  /* generation = epoch, individual = point, draw = variable */
   EO_STREAM_LATIN_JITTER = 31, /* generation = epoch, individual = cell, draw = variable */
   EO_STREAM_LOCAL = 40,        /* trust region samples */

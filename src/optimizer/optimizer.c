@@ -26,7 +26,8 @@ enum eo_code eo_optimizer_new(const struct eo_optimizer_settings *settings, stru
   o->settings = *settings;
   o->algorithm = algorithms[settings->algorithm];
   o->budget = eo_optimizer_budget(settings);
-  code = eo_archive_init(&o->archive, settings->variables, settings->algorithm == EO_NSGA2 ? settings->objectives : 0, error);
+  code = eo_archive_init(&o->archive, settings->variables, settings->algorithm == EO_NSGA2 ? settings->objectives : 0,
+                         error);
   if (code != EO_OK) {
     eo_optimizer_free(o);
     return code;
@@ -60,7 +61,8 @@ static bool has_failed(const struct eo_optimizer *o, const struct eo_outcome *ou
   return failed;
 }
 
-static void store(struct eo_optimizer *o, const double *x, const struct eo_outcome *outcome, int generation, int individual)
+static void store(struct eo_optimizer *o, const double *x, const struct eo_outcome *outcome, int generation,
+                  int individual)
 {
   const bool failed = has_failed(o, outcome);
   eo_archive_add(&o->archive, x, failed ? INFINITY : outcome->value, failed ? INFINITY : outcome->violation,
@@ -74,7 +76,8 @@ enum eo_code eo_optimizer_import(struct eo_optimizer *optimizer, const double *x
     return eo_error_set(error, EO_ERROR_INPUT, "", "Rows can be imported before the first ask only.");
   for (int k = 0; k < optimizer->settings.variables; k++)
     if (!(x[k] >= 0 && x[k] <= 1))
-      return eo_error_set(error, EO_ERROR_INPUT, "", "Variable %d of an imported row is %g, outside 0..1.", k + 1, x[k]);
+      return eo_error_set(error, EO_ERROR_INPUT, "", "Variable %d of an imported row is %g, outside 0..1.", k + 1,
+                          x[k]);
   if (eo_archive_find(&optimizer->archive, x) >= 0)
     return EO_OK;
   const enum eo_code code = eo_archive_reserve(&optimizer->archive, 1, error);
@@ -103,7 +106,8 @@ enum eo_code eo_optimizer_ask(struct eo_optimizer *optimizer, struct eo_batch *b
     optimizer->batch_count = 0;
     return code;
   }
-  *batch = (struct eo_batch){optimizer->batch_count, optimizer->candidate, optimizer->prediction_count, optimizer->prediction};
+  *batch = (struct eo_batch){optimizer->batch_count, optimizer->candidate, optimizer->prediction_count,
+                             optimizer->prediction};
   return EO_OK;
 }
 

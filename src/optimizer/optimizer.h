@@ -67,10 +67,10 @@ struct eo_row {
 
 /* One generation (ga, fpga), batch (credibility-ga) or cycle (nsga2). */
 struct eo_generation {
-  int true_count, predicted_count, reused_count; /* of this generation; their sum is its individuals */
+  int true_count, predicted_count, reused_count;        /* of this generation; their sum is its individuals */
   int history_rows, removed_redundant, removed_decayed; /* fpga: after the generation, and by its clean-up */
-  int epoch;                                     /* credibility-ga: how often it started anew */
-  double best_value;                             /* best true value so far; infinite when every evaluation failed */
+  int epoch;                                            /* credibility-ga: how often it started anew */
+  double best_value; /* best true value so far; infinite when every evaluation failed */
 };
 
 struct eo_counters {
@@ -108,7 +108,8 @@ const struct eo_generation *eo_optimizer_generations(const struct eo_optimizer *
 
 /* Rows of the Pareto front over the true rows, with room for eo_optimizer_rows() indices in front; ordered by the first
    objective. knee: the row with the least sum of objectives, each normalised to its range on the front (with two
-   objectives: farthest below the line through the ends); weighted: the one with the least value. Both -1 for an empty front. Returns how many. */
+   objectives: farthest below the line through the ends); weighted: the one with the least value. Both -1 for an empty
+   front. Returns how many. */
 struct eo_front {
   int count, knee, weighted;
 };

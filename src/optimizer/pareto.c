@@ -27,7 +27,8 @@ static int count_dominators(const double *objective, const double *violation, in
   return dominators;
 }
 
-void eo_pareto_rank(const double *objective, const double *violation, int count, int objectives, int *rank, int *scratch)
+void eo_pareto_rank(const double *objective, const double *violation, int count, int objectives, int *rank,
+                    int *scratch)
 {
   int *dominators = scratch, *front = scratch + count;
   for (int i = 0; i < count; i++)
@@ -43,8 +44,9 @@ void eo_pareto_rank(const double *objective, const double *violation, int count,
       rank[front[f]] = level;
     for (int f = 0; f < size; f++)
       for (int j = 0; j < count; j++)
-        dominators[j] -= rank[j] < 0 && eo_pareto_dominates(objective + (size_t)front[f] * objectives, violation[front[f]],
-                                                            objective + (size_t)j * objectives, violation[j], objectives);
+        dominators[j] -= rank[j] < 0 &&
+                         eo_pareto_dominates(objective + (size_t)front[f] * objectives, violation[front[f]],
+                                             objective + (size_t)j * objectives, violation[j], objectives);
     ranked += size;
   }
 }
@@ -67,14 +69,17 @@ static void sort_indices(int *index, int count, const double *key, int stride)
 
 static void add_crowding(const double *objective, int objectives, int k, const int *front, int size, double *crowding)
 {
-  const double low = objective[(size_t)front[0] * objectives + k], high = objective[(size_t)front[size - 1] * objectives + k];
+  const double low = objective[(size_t)front[0] * objectives + k],
+               high = objective[(size_t)front[size - 1] * objectives + k];
   crowding[front[0]] = crowding[front[size - 1]] = INFINITY;
   for (int f = 1; f < size - 1 && high > low; f++)
     crowding[front[f]] +=
-        (objective[(size_t)front[f + 1] * objectives + k] - objective[(size_t)front[f - 1] * objectives + k]) / (high - low);
+        (objective[(size_t)front[f + 1] * objectives + k] - objective[(size_t)front[f - 1] * objectives + k]) /
+        (high - low);
 }
 
-void eo_pareto_crowding(const double *objective, const int *rank, int count, int objectives, double *crowding, int *scratch)
+void eo_pareto_crowding(const double *objective, const int *rank, int count, int objectives, double *crowding,
+                        int *scratch)
 {
   memset(crowding, 0, (size_t)count * sizeof *crowding);
   for (int level = 0, seen = 0; seen < count; level++) {
@@ -94,8 +99,8 @@ void eo_pareto_order(const int *rank, const double *crowding, int count, int *or
 {
   for (int i = 0; i < count; i++) {
     int j = i;
-    while (j > 0 && (rank[order[j - 1]] > rank[i] ||
-                     (rank[order[j - 1]] == rank[i] && crowding[order[j - 1]] < crowding[i]))) {
+    while (j > 0 &&
+           (rank[order[j - 1]] > rank[i] || (rank[order[j - 1]] == rank[i] && crowding[order[j - 1]] < crowding[i]))) {
       order[j] = order[j - 1];
       j--;
     }
@@ -177,7 +182,8 @@ static double sum_slabs(const double *point, int count, int objectives, const do
   double volume = 0;
   for (int i = 0; i < count; i++) {
     memcpy(projected + (size_t)i * last, point + (size_t)i * objectives, (size_t)last * sizeof *point);
-    const double top = i + 1 < count ? fmin(point[(size_t)(i + 1) * objectives + last], reference[last]) : reference[last];
+    const double top = i + 1 < count ? fmin(point[(size_t)(i + 1) * objectives + last], reference[last])
+                                     : reference[last];
     const double height = top - point[(size_t)i * objectives + last];
     if (height > 0)
       volume += height * slice(projected, i + 1, last, reference);
@@ -211,7 +217,8 @@ double eo_pareto_hypervolume(double *point, int count, int objectives, const dou
     for (int k = 0; k < objectives; k++)
       in = in && point[(size_t)i * objectives + k] < reference[k];
     if (in)
-      memmove(point + (size_t)inside++ * objectives, point + (size_t)i * objectives, (size_t)objectives * sizeof *point);
+      memmove(point + (size_t)inside++ * objectives, point + (size_t)i * objectives,
+              (size_t)objectives * sizeof *point);
   }
   return inside == 0 ? 0 : slice(point, inside, objectives, reference);
 }

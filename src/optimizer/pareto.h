@@ -9,10 +9,12 @@
 bool eo_pareto_dominates(const double *a, double violation_a, const double *b, double violation_b, int objectives);
 
 /* Front number of every point, 0 the best; objective: [count][objectives]. scratch: [2 count]. */
-void eo_pareto_rank(const double *objective, const double *violation, int count, int objectives, int *rank, int *scratch);
+void eo_pareto_rank(const double *objective, const double *violation, int count, int objectives, int *rank,
+                    int *scratch);
 
 /* Crowding distance of every point within its front; infinite at the ends. scratch: [count]. */
-void eo_pareto_crowding(const double *objective, const int *rank, int count, int objectives, double *crowding, int *scratch);
+void eo_pareto_crowding(const double *objective, const int *rank, int count, int objectives, double *crowding,
+                        int *scratch);
 
 /* Indices of all points by rank, then falling crowding, then index. */
 void eo_pareto_order(const int *rank, const double *crowding, int count, int *order);

@@ -21,14 +21,22 @@ enum {
   ALL = GA | FPGA | CREDIBILITY | NSGA2
 };
 
-#define NUMBER(key, low, high, standard, who, help) \
-  {#key, EO_PARAMETER_NUMBER, offsetof(struct eo_optimizer_settings, key), low, high, standard, who, NULL, help}
-#define INTEGER(key, low, high, standard, who, help) \
-  {#key, EO_PARAMETER_INTEGER, offsetof(struct eo_optimizer_settings, key), low, high, standard, who, NULL, help}
-#define FLAG(key, standard, who, help) \
-  {#key, EO_PARAMETER_FLAG, offsetof(struct eo_optimizer_settings, key), 0, 1, standard, who, NULL, help}
-#define CHOICE(key, high, standard, choices, who, help) \
-  {#key, EO_PARAMETER_CHOICE, offsetof(struct eo_optimizer_settings, key), 0, high, standard, who, choices, help}
+#define NUMBER(key, low, high, standard, who, help)                                                              \
+  {                                                                                                              \
+#key, EO_PARAMETER_NUMBER, offsetof(struct eo_optimizer_settings, key), low, high, standard, who, NULL, help \
+  }
+#define INTEGER(key, low, high, standard, who, help)                                                              \
+  {                                                                                                               \
+#key, EO_PARAMETER_INTEGER, offsetof(struct eo_optimizer_settings, key), low, high, standard, who, NULL, help \
+  }
+#define FLAG(key, standard, who, help)                                                                    \
+  {                                                                                                       \
+#key, EO_PARAMETER_FLAG, offsetof(struct eo_optimizer_settings, key), 0, 1, standard, who, NULL, help \
+  }
+#define CHOICE(key, high, standard, choices, who, help)                                                           \
+  {                                                                                                               \
+#key, EO_PARAMETER_CHOICE, offsetof(struct eo_optimizer_settings, key), 0, high, standard, who, choices, help \
+  }
 
 static const struct eo_parameter parameters[] = {
     {"seed", EO_PARAMETER_SEED, offsetof(struct eo_optimizer_settings, seed), 0, 9007199254740991.0, 1, ALL, NULL,
@@ -36,7 +44,8 @@ static const struct eo_parameter parameters[] = {
     INTEGER(true_evaluations, 0, 10000000, 0, ALL,
             "Budget of true evaluations; 0: none for ga and fpga, 500 + 100 n for the others."),
     NUMBER(crossover, 0, 1, 0.8, ALL, "Probability p_c that a pair of parents is crossed."),
-    NUMBER(crossover_index, 0, 1000, 10, ALL, "Distribution index of simulated binary crossover; larger stays nearer the parents."),
+    NUMBER(crossover_index, 0, 1000, 10, ALL,
+           "Distribution index of simulated binary crossover; larger stays nearer the parents."),
     NUMBER(mutation, 0, 1, 0.3, ALL, "Probability p_m of mutation."),
     NUMBER(mutation_index, 0, 1000, 20, ALL, "Distribution index of polynomial mutation; larger changes less."),
     CHOICE(mutation_mode, 1, EO_MUTATE_GENE, mutation_modes, ALL,
@@ -47,14 +56,17 @@ static const struct eo_parameter parameters[] = {
     CHOICE(fitness_form, 1, EO_FITNESS_RECIPROCAL, fitness_forms, GENETIC,
            "Fitness from the value J to minimise: 1/J (values <= 0 count as failed) or -J."),
     NUMBER(trust_threshold, 0, 1, 0.6, FPGA, "R*: an individual at least this credible is predicted."),
-    NUMBER(redundancy_threshold, 0, 1, 1e-7, FPGA, "I_r*: rows closer than this to their neighbours leave the history."),
+    NUMBER(redundancy_threshold, 0, 1, 1e-7, FPGA,
+           "I_r*: rows closer than this to their neighbours leave the history."),
     NUMBER(share_radius, 0, 10, 0, FPGA, "r_share, radius of the region that predicts; 0: 0.03 (n/5)^1.9."),
     NUMBER(weight_decay, 0, 10000, 20, FPGA, "alpha: how fast the weight of a row falls with its distance."),
     NUMBER(credibility_loss, 0, 1, 0.8, FPGA, "beta: factor on the credibility of predicted rows per generation."),
     NUMBER(removal_threshold, 0, 1, 0.1, FPGA, "R_0: predicted rows less credible than this leave the history."),
     FLAG(verify, 1, FPGA, "Evaluate the best predicted individual of each generation."),
-    CHOICE(distance_norm, 1, EO_NORM_RANGE, distance_norms, FPGA, "Euclidean distance of normalised variables, or that over sqrt n."),
-    CHOICE(weight_sum, 1, EO_WEIGHTS_REGION, weight_sums, FPGA, "Rows in the sum of (15): those of the region, or all."),
+    CHOICE(distance_norm, 1, EO_NORM_RANGE, distance_norms, FPGA,
+           "Euclidean distance of normalised variables, or that over sqrt n."),
+    CHOICE(weight_sum, 1, EO_WEIGHTS_REGION, weight_sums, FPGA,
+           "Rows in the sum of (15): those of the region, or all."),
     CHOICE(decision_order, 1, EO_ORDER_BATCH, decision_orders, FPGA,
            "Decide a whole generation on the history before it, or one individual after another."),
     FLAG(store_predicted, 1, FPGA, "Predicted individuals enter the history too."),
@@ -72,11 +84,14 @@ static const struct eo_parameter parameters[] = {
     NUMBER(polish_share, 0, 1, 0.2, CREDIBILITY, "Share of the budget that only improves the best."),
     NUMBER(local_share, 0, 1, 0.5, CREDIBILITY, "Share of each batch for the trust region round the best."),
     NUMBER(local_radius, 1e-6, 0.5, 0.3, CREDIBILITY, "Radius of the trust region at the start of an epoch."),
-    NUMBER(sampling_step, 1e-6, 0.5, 0.25, CREDIBILITY, "First step of the evolution strategy that makes every second epoch."),
+    NUMBER(sampling_step, 1e-6, 0.5, 0.25, CREDIBILITY,
+           "First step of the evolution strategy that makes every second epoch."),
     INTEGER(sampling_stall, 1, 10000, 10, CREDIBILITY, "Batches without gain that end such an epoch."),
-    NUMBER(evolution_step, 1e-6, 0.5, 0.03, CREDIBILITY, "First step of the evolution strategy that refines the best row."),
+    NUMBER(evolution_step, 1e-6, 0.5, 0.03, CREDIBILITY,
+           "First step of the evolution strategy that refines the best row."),
     INTEGER(evolution_stall, 1, 10000, 6, CREDIBILITY, "Batches without gain that end the refinement."),
-    INTEGER(evolution_samples, 1, 100, 12, CREDIBILITY, "Samples of an evolution strategy from which the surrogate chooses each point."),
+    INTEGER(evolution_samples, 1, 100, 12, CREDIBILITY,
+            "Samples of an evolution strategy from which the surrogate chooses each point."),
     INTEGER(front_population, 4, 1000, 48, NSGA2, "Individuals of a generation."),
     INTEGER(front_verified, 1, 1000, 12, NSGA2, "True evaluations per cycle."),
     INTEGER(front_rounds, 1, 1000, 20, NSGA2, "Generations on the surrogates per cycle."),
@@ -153,7 +168,8 @@ static enum eo_code check_range(const struct eo_optimizer_settings *settings, co
   if (value >= p->low && value <= p->high)
     return EO_OK;
   char sentence[200];
-  snprintf(sentence, sizeof sentence, "%s is %.9g, but must lie between %.9g and %.9g.", p->key, value, p->low, p->high);
+  snprintf(sentence, sizeof sentence, "%s is %.9g, but must lie between %.9g and %.9g.", p->key, value, p->low,
+           p->high);
   return fault(error, p->key, sentence);
 }
 
@@ -162,11 +178,11 @@ static enum eo_code check_problem(const struct eo_optimizer_settings *s, struct 
   if (s->algorithm < 0 || s->algorithm >= EO_ALGORITHMS)
     return fault(error, "algorithm", "There is no such algorithm.");
   if (s->variables < 1 || s->variables > EO_MAX_VARIABLES)
-    return eo_error_set(error, EO_ERROR_INPUT, "/optimization/variables", "There are %d variables, but must be 1 to %d.",
-                        s->variables, EO_MAX_VARIABLES);
+    return eo_error_set(error, EO_ERROR_INPUT, "/optimization/variables",
+                        "There are %d variables, but must be 1 to %d.", s->variables, EO_MAX_VARIABLES);
   if (s->objectives < 1 || s->objectives > EO_MAX_OBJECTIVES)
-    return eo_error_set(error, EO_ERROR_INPUT, "/optimization/objectives", "There are %d objectives, but must be 1 to %d.",
-                        s->objectives, EO_MAX_OBJECTIVES);
+    return eo_error_set(error, EO_ERROR_INPUT, "/optimization/objectives",
+                        "There are %d objectives, but must be 1 to %d.", s->objectives, EO_MAX_OBJECTIVES);
   return EO_OK;
 }
 
@@ -178,9 +194,10 @@ enum eo_code eo_optimizer_settings_check(const struct eo_optimizer_settings *set
   if (code != EO_OK)
     return code;
   if (settings->algorithm == EO_FPGA && settings->removal_threshold >= settings->trust_threshold)
-    return fault(error, "removal_threshold",
-                 "removal_threshold (R_0) must be below trust_threshold (R*), or predictions would be made from nothing but "
-                 "rows about to be removed.");
+    return fault(
+        error, "removal_threshold",
+        "removal_threshold (R_0) must be below trust_threshold (R*), or predictions would be made from nothing but "
+        "rows about to be removed.");
   if ((settings->algorithm == EO_GA || settings->algorithm == EO_FPGA) && settings->elite >= settings->population)
     return fault(error, "elite", "elite must be smaller than population.");
   return EO_OK;

@@ -45,9 +45,9 @@ struct eo_optimizer_settings {
   double removal_threshold;    /* R_0 */
   int verify;                  /* evaluate each generation's best predicted individual */
   int distance_norm, weight_sum, decision_order;
-  int store_predicted;         /* predicted individuals enter the history (S4) */
-  int literal_redundancy;      /* (17) as printed, which deletes unique rows too */
-  int reuse;                   /* an individual bit-equal to a true row takes its value */
+  int store_predicted;    /* predicted individuals enter the history (S4) */
+  int literal_redundancy; /* (17) as printed, which deletes unique rows too */
+  int reuse;              /* an individual bit-equal to a true row takes its value */
 
   /* credibility-ga */
   int batch;                 /* true evaluations at a time */
@@ -74,16 +74,22 @@ struct eo_optimizer_settings {
   int front_rounds;   /* generations on the surrogates per cycle */
 };
 
-enum eo_parameter_kind { EO_PARAMETER_NUMBER, EO_PARAMETER_INTEGER, EO_PARAMETER_SEED, EO_PARAMETER_FLAG, EO_PARAMETER_CHOICE };
+enum eo_parameter_kind {
+  EO_PARAMETER_NUMBER,
+  EO_PARAMETER_INTEGER,
+  EO_PARAMETER_SEED,
+  EO_PARAMETER_FLAG,
+  EO_PARAMETER_CHOICE
+};
 
 struct eo_parameter {
   const char *key;
   enum eo_parameter_kind kind; /* member type: NUMBER double, SEED uint64_t, else int (FLAG 0 or 1, CHOICE an index) */
   size_t offset;               /* in struct eo_optimizer_settings */
   double low, high, standard;
-  unsigned algorithms;         /* bit 1 << enum eo_algorithm: who reads it */
-  const char *const *choices;  /* names of a CHOICE, NULL terminated */
-  const char *help;            /* one sentence */
+  unsigned algorithms;        /* bit 1 << enum eo_algorithm: who reads it */
+  const char *const *choices; /* names of a CHOICE, NULL terminated */
+  const char *help;           /* one sentence */
 };
 
 /* All parameters, in the order of a form. */

@@ -9,8 +9,8 @@ int eo_surrogate_terms(enum eo_tail tail, int n)
   return tail == EO_TAIL_LINEAR ? n + 1 : tail == EO_TAIL_SEPARABLE ? 2 * n + 1 : (n + 1) * (n + 2) / 2;
 }
 
-enum eo_code eo_surrogate_init(struct eo_surrogate *surrogate, int variables, int rows_max, int outputs_max, enum eo_tail tail,
-                               struct eo_error *error)
+enum eo_code eo_surrogate_init(struct eo_surrogate *surrogate, int variables, int rows_max, int outputs_max,
+                               enum eo_tail tail, struct eo_error *error)
 {
   *surrogate = (struct eo_surrogate){.variables = variables, .rows_max = rows_max, .outputs_max = outputs_max};
   const int terms_max = eo_surrogate_terms(tail, variables);

@@ -1,5 +1,5 @@
-/* Cubic radial basis functions with a polynomial tail, and how far they can be believed: leave-one-out residuals and the
-   credibility made of them. The tail is centred on the mean of the rows.
+/* Cubic radial basis functions with a polynomial tail, and how far they can be believed: leave-one-out residuals and
+   the credibility made of them. The tail is centred on the mean of the rows.
 
      s(x) = sum_j c_j |x - x_j|^3 + b' p(x - mean),   (A + ridge I, P; P', 0) (c; b) = (y; 0)
      leave-one-out residual of row j: |c_j / ((A + ridge I, P; P', 0)^-1)_jj|     (Rippa 1999)
@@ -20,15 +20,15 @@ struct eo_surrogate {
   int variables, rows_max, outputs_max;
   enum eo_tail tail; /* of the fit, with the rows and terms it has */
   int rows, terms, outputs;
-  double *mean;        /* [variables]; owned, as all below */
-  double *x;           /* [variables][rows_max] */
-  double *coefficient; /* [outputs_max][rows_max] c */
-  double *polynomial;  /* [outputs_max][terms] b */
-  double *residual;    /* [outputs_max][rows_max] leave-one-out, absolute */
-  double *belief;      /* [rows_max] exp(-3 e_j / s) */
-  double *distance;    /* [rows_max] of the point last visited */
-  double *term;        /* [terms] likewise */
-  double *point;       /* [variables] likewise, less the mean */
+  double *mean;                        /* [variables]; owned, as all below */
+  double *x;                           /* [variables][rows_max] */
+  double *coefficient;                 /* [outputs_max][rows_max] c */
+  double *polynomial;                  /* [outputs_max][terms] b */
+  double *residual;                    /* [outputs_max][rows_max] leave-one-out, absolute */
+  double *belief;                      /* [rows_max] exp(-3 e_j / s) */
+  double *distance;                    /* [rows_max] of the point last visited */
+  double *term;                        /* [terms] likewise */
+  double *point;                       /* [variables] likewise, less the mean */
   double *matrix, *columns, *diagonal; /* scratch of the fit: [rows][rows], [terms][rows], [rows] */
   struct eo_saddle saddle;
 };
@@ -37,11 +37,12 @@ struct eo_surrogate {
 int eo_surrogate_terms(enum eo_tail tail, int n);
 
 /* Room for rows_max rows, outputs_max right-hand sides and any tail up to the given one. */
-enum eo_code eo_surrogate_init(struct eo_surrogate *surrogate, int variables, int rows_max, int outputs_max, enum eo_tail tail,
-                               struct eo_error *error);
+enum eo_code eo_surrogate_init(struct eo_surrogate *surrogate, int variables, int rows_max, int outputs_max,
+                               enum eo_tail tail, struct eo_error *error);
 void eo_surrogate_done(struct eo_surrogate *surrogate);
 
-/* Fits x[rows][variables], y[outputs][rows]. False when the rows do not determine the tail: then there is no surrogate. */
+/* Fits x[rows][variables], y[outputs][rows]. False when the rows do not determine the tail: then there is no surrogate.
+ */
 bool eo_surrogate_fit(struct eo_surrogate *surrogate, enum eo_tail tail, double ridge, const double *x, const double *y,
                       int rows, int outputs);
 

@@ -52,17 +52,22 @@ static void find_digest(const struct eo_stored_evaluation *row, char digest[EO_H
 
 static enum eo_code damaged(const struct eo_store *store, int64_t id, struct eo_error *error)
 {
-  return eo_error_set(error, EO_ERROR_FILE, "", "%.150s: row %lld of the history is damaged; \"easeoff history prune --damaged\" removes such rows.",
-                      store->path, (long long)id);
+  return eo_error_set(
+      error, EO_ERROR_FILE, "",
+      "%.150s: row %lld of the history is damaged; \"easeoff history prune --damaged\" removes such rows.", store->path,
+      (long long)id);
 }
 
 /* ---- problems ---- */
 
-enum eo_code eo_store_find_problem(struct eo_store *store, const struct eo_stored_problem *problem, int64_t *id, struct eo_error *error)
+enum eo_code eo_store_find_problem(struct eo_store *store, const struct eo_stored_problem *problem, int64_t *id,
+                                   struct eo_error *error)
 {
-  enum eo_code code = EO_STATEMENT_RUN(store, error, "INSERT INTO problem (hash, spec, name, evaluator, scenarios, cases) VALUES (?, ?, ?, ?, ?, ?)"
-                                                     " ON CONFLICT (hash) DO NOTHING",
-                                       "tttnnn", problem->hash, problem->spec, problem->name, problem->evaluator, problem->scenarios, problem->cases);
+  enum eo_code code = EO_STATEMENT_RUN(
+      store, error,
+      "INSERT INTO problem (hash, spec, name, evaluator, scenarios, cases) VALUES (?, ?, ?, ?, ?, ?)"
+      " ON CONFLICT (hash) DO NOTHING",
+      "tttnnn", problem->hash, problem->spec, problem->name, problem->evaluator, problem->scenarios, problem->cases);
   if (code)
     return code;
   struct eo_statement s = eo_statement_begin(store, "SELECT id FROM problem WHERE hash = ?", "t", problem->hash);
@@ -70,18 +75,28 @@ enum eo_code eo_store_find_problem(struct eo_store *store, const struct eo_store
   return eo_statement_end(&s, error);
 }
 
-enum eo_code eo_store_each_problem(struct eo_store *store, eo_store_visit_problem *visit, void *context, struct eo_error *error)
+enum eo_code eo_store_each_problem(struct eo_store *store, eo_store_visit_problem *visit, void *context,
+                                   struct eo_error *error)
 {
-  struct eo_statement s = eo_statement_begin(store, "SELECT p.id, p.hash, p.spec, p.name, p.created, p.evaluator, p.scenarios, p.cases, count(e.id),"
-                                                    " coalesce(sum(e.outcome <> 'converged'), 0), coalesce(sum(e.cost_s), 0)"
-                                                    " FROM problem p LEFT JOIN evaluation e ON e.problem = p.id GROUP BY p.id ORDER BY p.id", "");
+  struct eo_statement s = eo_statement_begin(
+      store,
+      "SELECT p.id, p.hash, p.spec, p.name, p.created, p.evaluator, p.scenarios, p.cases, count(e.id),"
+      " coalesce(sum(e.outcome <> 'converged'), 0), coalesce(sum(e.cost_s), 0)"
+      " FROM problem p LEFT JOIN evaluation e ON e.problem = p.id GROUP BY p.id ORDER BY p.id",
+      "");
   enum eo_code code = EO_OK;
   while (!code && eo_statement_step(&s)) {
-    const struct eo_stored_problem problem = {
-        .id = eo_column_integer(&s, 0), .hash = eo_column_text(&s, 1), .spec = eo_column_text(&s, 2), .name = eo_column_text(&s, 3),
-        .created = eo_column_text(&s, 4), .evaluator = (int)eo_column_integer(&s, 5), .scenarios = (int)eo_column_integer(&s, 6),
-        .cases = (int)eo_column_integer(&s, 7), .evaluations = eo_column_integer(&s, 8), .failed = eo_column_integer(&s, 9),
-        .cost = eo_column_number(&s, 10)};
+    const struct eo_stored_problem problem = {.id = eo_column_integer(&s, 0),
+                                              .hash = eo_column_text(&s, 1),
+                                              .spec = eo_column_text(&s, 2),
+                                              .name = eo_column_text(&s, 3),
+                                              .created = eo_column_text(&s, 4),
+                                              .evaluator = (int)eo_column_integer(&s, 5),
+                                              .scenarios = (int)eo_column_integer(&s, 6),
+                                              .cases = (int)eo_column_integer(&s, 7),
+                                              .evaluations = eo_column_integer(&s, 8),
+                                              .failed = eo_column_integer(&s, 9),
+                                              .cost = eo_column_number(&s, 10)};
     code = visit(context, &problem, error);
   }
   enum eo_code end = eo_statement_end(&s, code ? NULL : error);
@@ -95,19 +110,25 @@ static bool read_raw(const struct eo_statement *s, int first, int expected, cons
 {
   if (eo_column_integer(s, first) != expected / row->cases || eo_column_integer(s, first + 1) != expected % row->cases)
     return false;
-  row->raw[expected] = (struct eo_objective_case){
-      .peak_to_peak = eo_column_number(s, first + 2), .impact = eo_column_number(s, first + 3), .rms = eo_column_number(s, first + 4),
-      .contact_pressure = eo_column_number(s, first + 5), .root_stress = eo_column_number(s, first + 6),
-      .edge_load_share = eo_column_number(s, first + 7), .contact_loss = eo_column_number(s, first + 8), .failed = eo_column_integer(s, first + 9) != 0};
+  row->raw[expected] = (struct eo_objective_case){.peak_to_peak = eo_column_number(s, first + 2),
+                                                  .impact = eo_column_number(s, first + 3),
+                                                  .rms = eo_column_number(s, first + 4),
+                                                  .contact_pressure = eo_column_number(s, first + 5),
+                                                  .root_stress = eo_column_number(s, first + 6),
+                                                  .edge_load_share = eo_column_number(s, first + 7),
+                                                  .contact_loss = eo_column_number(s, first + 8),
+                                                  .failed = eo_column_integer(s, first + 9) != 0};
   return true;
 }
 
 static enum eo_code read_all_raw(struct eo_store *store, struct eo_stored_evaluation *row, struct eo_error *error)
 {
   int count = 0, size = row->scenarios * row->cases;
-  struct eo_statement s = eo_statement_begin(store, "SELECT scenario, load_case, peak_to_peak_m, impact_N, rms_m_per_s2, contact_pressure_Pa, root_stress_Pa,"
-                                                    " edge_load_share, contact_loss, failed FROM raw WHERE evaluation = ? ORDER BY scenario, load_case",
-                                             "i", row->id);
+  struct eo_statement s = eo_statement_begin(
+      store,
+      "SELECT scenario, load_case, peak_to_peak_m, impact_N, rms_m_per_s2, contact_pressure_Pa, root_stress_Pa,"
+      " edge_load_share, contact_loss, failed FROM raw WHERE evaluation = ? ORDER BY scenario, load_case",
+      "i", row->id);
   bool good = true;
   while (good && eo_statement_step(&s)) {
     good = count < size && read_raw(&s, 0, count, row);
@@ -126,20 +147,22 @@ static void read_head(const struct eo_statement *s, struct eo_stored_evaluation 
   row->cost = eo_column_number(s, 3);
 }
 
-static enum eo_code verify(struct eo_store *store, const struct eo_stored_evaluation *row, const char *expected, struct eo_error *error)
+static enum eo_code verify(struct eo_store *store, const struct eo_stored_evaluation *row, const char *expected,
+                           struct eo_error *error)
 {
   char digest[EO_HASH_LENGTH + 1];
   find_digest(row, digest);
   return strcmp(digest, expected) == 0 ? EO_OK : damaged(store, row->id, error);
 }
 
-enum eo_code eo_store_find_evaluation(struct eo_store *store, int64_t problem, const char *modification, struct eo_stored_evaluation *row,
-                                      struct eo_error *error)
+enum eo_code eo_store_find_evaluation(struct eo_store *store, int64_t problem, const char *modification,
+                                      struct eo_stored_evaluation *row, struct eo_error *error)
 {
   char digest[EO_HASH_LENGTH + 1] = "";
   struct eo_stored_evaluation found = *row;
-  struct eo_statement s = eo_statement_begin(store, "SELECT id, outcome, reason, cost_s, digest FROM evaluation WHERE problem = ? AND modification = ?", "it",
-                                             problem, modification);
+  struct eo_statement s = eo_statement_begin(
+      store, "SELECT id, outcome, reason, cost_s, digest FROM evaluation WHERE problem = ? AND modification = ?", "it",
+      problem, modification);
   found.id = 0;
   found.modification = modification;
   if (eo_statement_step(&s)) {
@@ -158,13 +181,14 @@ enum eo_code eo_store_find_evaluation(struct eo_store *store, int64_t problem, c
   return EO_OK;
 }
 
-enum eo_code eo_store_get_evaluation(struct eo_store *store, int64_t id, struct eo_stored_evaluation *row, struct eo_text *modification,
-                                     struct eo_error *error)
+enum eo_code eo_store_get_evaluation(struct eo_store *store, int64_t id, struct eo_stored_evaluation *row,
+                                     struct eo_text *modification, struct eo_error *error)
 {
   char digest[EO_HASH_LENGTH + 1] = "";
   size_t start = modification->size;
   struct eo_stored_evaluation found = *row;
-  struct eo_statement s = eo_statement_begin(store, "SELECT id, outcome, reason, cost_s, digest, modification FROM evaluation WHERE id = ?", "i", id);
+  struct eo_statement s = eo_statement_begin(
+      store, "SELECT id, outcome, reason, cost_s, digest, modification FROM evaluation WHERE id = ?", "i", id);
   found.id = 0;
   if (eo_statement_step(&s)) {
     read_head(&s, &found);
@@ -191,8 +215,9 @@ static enum eo_code add_values(struct eo_store *store, const struct eo_stored_ev
   enum eo_code code = EO_OK;
   for (int i = 0; i < row->scenarios * row->cases && !code; i++) {
     const struct eo_objective_case *c = &row->raw[i];
-    code = EO_STATEMENT_RUN(store, error, "INSERT INTO raw VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)", "innrrrrrrrn", row->id, i / row->cases, i % row->cases,
-                            c->peak_to_peak, c->impact, c->rms, c->contact_pressure, c->root_stress, c->edge_load_share, c->contact_loss, (int)c->failed);
+    code = EO_STATEMENT_RUN(store, error, "INSERT INTO raw VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)", "innrrrrrrrn",
+                            row->id, i / row->cases, i % row->cases, c->peak_to_peak, c->impact, c->rms,
+                            c->contact_pressure, c->root_stress, c->edge_load_share, c->contact_loss, (int)c->failed);
   }
   return code;
 }
@@ -201,22 +226,26 @@ static enum eo_code add_values(struct eo_store *store, const struct eo_stored_ev
 static void blank(struct eo_stored_evaluation *row)
 {
   for (int i = 0; i < row->scenarios * row->cases; i++) {
-    double *value[] = {&row->raw[i].peak_to_peak, &row->raw[i].impact, &row->raw[i].rms, &row->raw[i].contact_pressure,
-                       &row->raw[i].root_stress, &row->raw[i].edge_load_share, &row->raw[i].contact_loss};
+    double *value[] = {&row->raw[i].peak_to_peak,     &row->raw[i].impact,      &row->raw[i].rms,
+                       &row->raw[i].contact_pressure, &row->raw[i].root_stress, &row->raw[i].edge_load_share,
+                       &row->raw[i].contact_loss};
     for (size_t k = 0; k < sizeof value / sizeof value[0]; k++)
       if (!isfinite(*value[k]))
         *value[k] = NAN;
   }
 }
 
-enum eo_code eo_store_add_evaluation(struct eo_store *store, int64_t problem, struct eo_stored_evaluation *row, struct eo_error *error)
+enum eo_code eo_store_add_evaluation(struct eo_store *store, int64_t problem, struct eo_stored_evaluation *row,
+                                     struct eo_error *error)
 {
   char digest[EO_HASH_LENGTH + 1];
   blank(row);
   find_digest(row, digest);
-  enum eo_code code = EO_STATEMENT_RUN(store, error, "INSERT INTO evaluation (problem, modification, outcome, reason, cost_s, digest)"
-                                                     " VALUES (?, ?, ?, ?, ?, ?) ON CONFLICT (problem, modification) DO NOTHING", "itttrt",
-                                       problem, row->modification, eo_store_outcomes[row->outcome], row->reason, row->cost, digest);
+  enum eo_code code = EO_STATEMENT_RUN(store, error,
+                                       "INSERT INTO evaluation (problem, modification, outcome, reason, cost_s, digest)"
+                                       " VALUES (?, ?, ?, ?, ?, ?) ON CONFLICT (problem, modification) DO NOTHING",
+                                       "itttrt", problem, row->modification, eo_store_outcomes[row->outcome],
+                                       row->reason, row->cost, digest);
   if (code)
     return code;
   if (sqlite3_changes(store->handle) == 0)
@@ -237,9 +266,9 @@ enum eo_code eo_store_last_evaluation(struct eo_store *store, int64_t *last, str
 struct walk {
   struct eo_store *store;
   struct eo_stored_evaluation row;
-  char *modification;    /* owned copy */
-  double *x;             /* [size]; owned copy, NULL without a point */
-  int size, count;       /* count: raw rows so far */
+  char *modification; /* owned copy */
+  double *x;          /* [size]; owned copy, NULL without a point */
+  int size, count;    /* count: raw rows so far */
   char digest[EO_HASH_LENGTH + 1];
   eo_store_visit *visit;
   void *context;
@@ -250,7 +279,8 @@ static enum eo_code hand_over(struct walk *w, struct eo_error *error)
 {
   if (!w->row.id)
     return EO_OK;
-  enum eo_code code = w->count == w->row.scenarios * w->row.cases ? verify(w->store, &w->row, w->digest, error) : damaged(w->store, w->row.id, error);
+  enum eo_code code = w->count == w->row.scenarios * w->row.cases ? verify(w->store, &w->row, w->digest, error)
+                                                                  : damaged(w->store, w->row.id, error);
   return code ? code : w->visit(w->context, &w->row, w->x, w->size, error);
 }
 
@@ -288,21 +318,24 @@ static enum eo_code take_row(struct walk *w, const struct eo_statement *s, struc
   return EO_OK;
 }
 
-enum eo_code eo_store_each_evaluation(struct eo_store *store, int64_t problem, int64_t upto, const char *space, int scenarios, int cases,
-                                      eo_store_visit *visit, void *context, struct eo_error *error)
+enum eo_code eo_store_each_evaluation(struct eo_store *store, int64_t problem, int64_t upto, const char *space,
+                                      int scenarios, int cases, eo_store_visit *visit, void *context,
+                                      struct eo_error *error)
 {
   struct walk w = {.store = store, .row = {.scenarios = scenarios, .cases = cases}, .visit = visit, .context = context};
   w.row.raw = calloc((size_t)scenarios * (size_t)cases, sizeof *w.row.raw);
   if (!w.row.raw)
     return eo_error_memory(error);
-  struct eo_statement s = eo_statement_begin(
-      store,
-      "SELECT e.id, e.outcome, e.reason, e.cost_s, e.modification, e.digest,"
-      " (SELECT p.x FROM point p WHERE p.evaluation = e.id AND p.space = ?3),"
-      " r.scenario, r.load_case, r.peak_to_peak_m, r.impact_N, r.rms_m_per_s2, r.contact_pressure_Pa, r.root_stress_Pa, r.edge_load_share,"
-      " r.contact_loss, r.failed"
-      " FROM evaluation e LEFT JOIN raw r ON r.evaluation = e.id WHERE e.problem = ?1 AND (?2 = 0 OR e.id <= ?2) ORDER BY e.id, r.scenario, r.load_case",
-      "iit", problem, upto, space);
+  struct eo_statement s =
+      eo_statement_begin(store,
+                         "SELECT e.id, e.outcome, e.reason, e.cost_s, e.modification, e.digest,"
+                         " (SELECT p.x FROM point p WHERE p.evaluation = e.id AND p.space = ?3),"
+                         " r.scenario, r.load_case, r.peak_to_peak_m, r.impact_N, r.rms_m_per_s2, "
+                         "r.contact_pressure_Pa, r.root_stress_Pa, r.edge_load_share,"
+                         " r.contact_loss, r.failed"
+                         " FROM evaluation e LEFT JOIN raw r ON r.evaluation = e.id WHERE e.problem = ?1 AND (?2 = 0 "
+                         "OR e.id <= ?2) ORDER BY e.id, r.scenario, r.load_case",
+                         "iit", problem, upto, space);
   enum eo_code code = EO_OK;
   while (!code && eo_statement_step(&s))
     code = take_row(&w, &s, error);
@@ -328,14 +361,16 @@ enum eo_code eo_store_remove_problem(struct eo_store *store, int64_t problem, in
 }
 
 /* Columns id, problem, scenarios, cases, modification. */
-static enum eo_code is_damaged(struct eo_store *store, const struct eo_statement *s, bool *answer, struct eo_error *error)
+static enum eo_code is_damaged(struct eo_store *store, const struct eo_statement *s, bool *answer,
+                               struct eo_error *error)
 {
   struct eo_stored_evaluation row = {.scenarios = (int)eo_column_integer(s, 2), .cases = (int)eo_column_integer(s, 3)};
   struct eo_error found;
   row.raw = calloc((size_t)row.scenarios * (size_t)row.cases, sizeof *row.raw);
   if (!row.raw)
     return eo_error_memory(error);
-  *answer = eo_store_find_evaluation(store, eo_column_integer(s, 1), eo_column_text(s, 4), &row, &found) || row.id != eo_column_integer(s, 0);
+  *answer = eo_store_find_evaluation(store, eo_column_integer(s, 1), eo_column_text(s, 4), &row, &found) ||
+            row.id != eo_column_integer(s, 0);
   free(row.raw);
   return EO_OK;
 }
@@ -346,8 +381,11 @@ enum eo_code eo_store_remove_damaged(struct eo_store *store, int64_t *removed, s
   int64_t last = 0;
   *removed = 0;
   for (;;) {
-    struct eo_statement s = eo_statement_begin(store, "SELECT e.id, p.id, p.scenarios, p.cases, e.modification FROM evaluation e JOIN problem p ON p.id = e.problem"
-                                                      " WHERE e.id > ? ORDER BY e.id LIMIT 1", "i", last);
+    struct eo_statement s = eo_statement_begin(
+        store,
+        "SELECT e.id, p.id, p.scenarios, p.cases, e.modification FROM evaluation e JOIN problem p ON p.id = e.problem"
+        " WHERE e.id > ? ORDER BY e.id LIMIT 1",
+        "i", last);
     bool more = eo_statement_step(&s), wrong = false;
     if (more) {
       last = eo_column_integer(&s, 0);

@@ -6,9 +6,11 @@
 #include "store/statement.h"
 
 /* The columns in the order eo_job_row_read() expects; design and result as SQL expressions. */
-#define EO_JOB_COLUMNS(design, result)                                                                                              \
-  "id, problem, study, space, " design ", name, algorithm, fresh, import_upto, state, stopped, true_evaluations, individuals, best, " \
-  "best_value, " result ", created, updated, kind, pair, served, priority, stop, attempts, error, progress, started, finished"
+#define EO_JOB_COLUMNS(design, result)                                                           \
+  "id, problem, study, space, " design                                                           \
+  ", name, algorithm, fresh, import_upto, state, stopped, true_evaluations, individuals, best, " \
+  "best_value, " result                                                                          \
+  ", created, updated, kind, pair, served, priority, stop, attempts, error, progress, started, finished"
 
 #define EO_NOW "strftime('%Y-%m-%dT%H:%M:%fZ', 'now')"
 

@@ -40,33 +40,58 @@ int eo_store_job_kind_find(const char *name)
 
 struct eo_stored_job eo_job_row_read(const struct eo_statement *s)
 {
-  return (struct eo_stored_job){
-      .id = eo_column_integer(s, 0), .problem = eo_column_integer(s, 1), .study = eo_column_text(s, 2), .space = eo_column_text(s, 3),
-      .design = eo_column_text(s, 4), .name = eo_column_text(s, 5), .algorithm = eo_column_text(s, 6), .fresh = eo_column_integer(s, 7) != 0,
-      .import_upto = eo_column_integer(s, 8), .state = (enum eo_job_state)eo_store_job_state_find(eo_column_text(s, 9)), .stopped = eo_column_text(s, 10),
-      .true_evaluations = (int)eo_column_integer(s, 11), .individuals = (int)eo_column_integer(s, 12), .best = eo_column_integer(s, 13),
-      .best_value = eo_column_number(s, 14), .result = eo_column_text(s, 15), .created = eo_column_text(s, 16), .updated = eo_column_text(s, 17),
-      .kind = (enum eo_job_kind)eo_store_job_kind_find(eo_column_text(s, 18)), .pair = eo_column_text(s, 19), .served = eo_column_integer(s, 20) != 0,
-      .priority = (int)eo_column_integer(s, 21), .stop = eo_column_integer(s, 22) != 0, .attempts = (int)eo_column_integer(s, 23),
-      .error = eo_column_text(s, 24), .progress = eo_column_text(s, 25), .started = eo_column_text(s, 26), .finished = eo_column_text(s, 27)};
+  return (struct eo_stored_job){.id = eo_column_integer(s, 0),
+                                .problem = eo_column_integer(s, 1),
+                                .study = eo_column_text(s, 2),
+                                .space = eo_column_text(s, 3),
+                                .design = eo_column_text(s, 4),
+                                .name = eo_column_text(s, 5),
+                                .algorithm = eo_column_text(s, 6),
+                                .fresh = eo_column_integer(s, 7) != 0,
+                                .import_upto = eo_column_integer(s, 8),
+                                .state = (enum eo_job_state)eo_store_job_state_find(eo_column_text(s, 9)),
+                                .stopped = eo_column_text(s, 10),
+                                .true_evaluations = (int)eo_column_integer(s, 11),
+                                .individuals = (int)eo_column_integer(s, 12),
+                                .best = eo_column_integer(s, 13),
+                                .best_value = eo_column_number(s, 14),
+                                .result = eo_column_text(s, 15),
+                                .created = eo_column_text(s, 16),
+                                .updated = eo_column_text(s, 17),
+                                .kind = (enum eo_job_kind)eo_store_job_kind_find(eo_column_text(s, 18)),
+                                .pair = eo_column_text(s, 19),
+                                .served = eo_column_integer(s, 20) != 0,
+                                .priority = (int)eo_column_integer(s, 21),
+                                .stop = eo_column_integer(s, 22) != 0,
+                                .attempts = (int)eo_column_integer(s, 23),
+                                .error = eo_column_text(s, 24),
+                                .progress = eo_column_text(s, 25),
+                                .started = eo_column_text(s, 26),
+                                .finished = eo_column_text(s, 27)};
 }
 
 enum eo_code eo_store_add_job(struct eo_store *store, struct eo_stored_job *job, struct eo_error *error)
 {
   enum eo_code code = eo_store_last_evaluation(store, &job->import_upto, error);
   if (!code)
-    code = EO_STATEMENT_RUN(store, error, "INSERT INTO job (problem, study, space, design, name, algorithm, fresh, import_upto, state,"
-                                          " attempts, started) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, 1, " EO_NOW ")", "itttttnit",
-                            job->problem, job->study, job->space, job->design, job->name, job->algorithm, (int)job->fresh, job->import_upto,
-                            eo_store_job_states[job->state]);
+    code =
+        EO_STATEMENT_RUN(store, error,
+                         "INSERT INTO job (problem, study, space, design, name, algorithm, fresh, import_upto, state,"
+                         " attempts, started) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, 1, " EO_NOW ")",
+                         "itttttnit", job->problem, job->study, job->space, job->design, job->name, job->algorithm,
+                         (int)job->fresh, job->import_upto, eo_store_job_states[job->state]);
   job->id = sqlite3_last_insert_rowid(store->handle);
   return code;
 }
 
-enum eo_code eo_store_resume_job(struct eo_store *store, const char *study, bool fresh, struct eo_stored_job *job, struct eo_error *error)
+enum eo_code eo_store_resume_job(struct eo_store *store, const char *study, bool fresh, struct eo_stored_job *job,
+                                 struct eo_error *error)
 {
-  struct eo_statement s = eo_statement_begin(store, "SELECT id, import_upto FROM job WHERE study = ? AND fresh = ? AND state IN ('running', 'cancelled', 'done')"
-                                                    " ORDER BY id DESC", "tn", study, (int)fresh);
+  struct eo_statement s = eo_statement_begin(
+      store,
+      "SELECT id, import_upto FROM job WHERE study = ? AND fresh = ? AND state IN ('running', 'cancelled', 'done')"
+      " ORDER BY id DESC",
+      "tn", study, (int)fresh);
   enum eo_code code = EO_OK;
   bool taken = false;
   job->id = 0;
@@ -80,7 +105,9 @@ enum eo_code eo_store_resume_job(struct eo_store *store, const char *study, bool
     job->id = 0;
   code = code ? code : end;
   /* whoever takes it up has it from now on: no server queues it again */
-  return code || !taken ? code : EO_STATEMENT_RUN(store, error, "UPDATE job SET served = 0 WHERE id = ? AND served = 1", "i", job->id);
+  return code || !taken
+             ? code
+             : EO_STATEMENT_RUN(store, error, "UPDATE job SET served = 0 WHERE id = ? AND served = 1", "i", job->id);
 }
 
 /* A job of an older model took another path. */
@@ -89,13 +116,18 @@ static enum eo_code forget_path(struct eo_store *store, int64_t job, struct eo_e
   enum eo_code code = EO_STATEMENT_RUN(store, error, "DELETE FROM candidate WHERE job = ?", "i", job);
   if (!code)
     code = EO_STATEMENT_RUN(store, error, "DELETE FROM prediction WHERE job = ?", "i", job);
-  return code ? code : EO_STATEMENT_RUN(store, error, "UPDATE job SET import_upto = NULL, best = NULL, best_value = NULL WHERE id = ?", "i", job);
+  return code ? code
+              : EO_STATEMENT_RUN(store, error,
+                                 "UPDATE job SET import_upto = NULL, best = NULL, best_value = NULL WHERE id = ?", "i",
+                                 job);
 }
 
-enum eo_code eo_store_begin_job(struct eo_store *store, struct eo_stored_job *job, bool *resumed, struct eo_error *error)
+enum eo_code eo_store_begin_job(struct eo_store *store, struct eo_stored_job *job, bool *resumed,
+                                struct eo_error *error)
 {
   bool there = false, same = false, taken = false;
-  struct eo_statement s = eo_statement_begin(store, "SELECT study IS ?2, import_upto IS NOT NULL FROM job WHERE id = ?1", "it", job->id, job->study);
+  struct eo_statement s = eo_statement_begin(
+      store, "SELECT study IS ?2, import_upto IS NOT NULL FROM job WHERE id = ?1", "it", job->id, job->study);
   if ((there = eo_statement_step(&s))) {
     same = eo_column_integer(&s, 0) != 0;
     *resumed = same && eo_column_integer(&s, 1);
@@ -111,8 +143,10 @@ enum eo_code eo_store_begin_job(struct eo_store *store, struct eo_stored_job *jo
     code = forget_path(store, job->id, error);
   if (code)
     return code;
-  s = eo_statement_begin(store, "UPDATE job SET state = 'running', problem = ?, study = ?, space = ?, updated = " EO_NOW ","
-                                " import_upto = coalesce(import_upto, (SELECT coalesce(max(id), 0) FROM evaluation)) WHERE id = ? RETURNING import_upto",
+  s = eo_statement_begin(store,
+                         "UPDATE job SET state = 'running', problem = ?, study = ?, space = ?, updated = " EO_NOW ","
+                         " import_upto = coalesce(import_upto, (SELECT coalesce(max(id), 0) FROM evaluation)) WHERE id "
+                         "= ? RETURNING import_upto",
                          "itti", job->problem, job->study, job->space, job->id);
   while (eo_statement_step(&s))
     job->import_upto = eo_column_integer(&s, 0);
@@ -121,11 +155,14 @@ enum eo_code eo_store_begin_job(struct eo_store *store, struct eo_stored_job *jo
 
 enum eo_code eo_store_update_job(struct eo_store *store, const struct eo_stored_job *job, struct eo_error *error)
 {
-  return EO_STATEMENT_RUN(store, error, "UPDATE job SET state = ?1, stopped = ?2, true_evaluations = ?3, individuals = ?4, best = nullif(?5, 0),"
-                                        " best_value = ?6, updated = " EO_NOW ", finished = CASE WHEN ?1 IN ('done', 'failed', 'cancelled') THEN " EO_NOW " END"
-                                        " WHERE id = ?7",
-                          "ttnniri", eo_store_job_states[job->state], job->stopped ? job->stopped : "", job->true_evaluations, job->individuals, job->best,
-                          job->best_value, job->id);
+  return EO_STATEMENT_RUN(
+      store, error,
+      "UPDATE job SET state = ?1, stopped = ?2, true_evaluations = ?3, individuals = ?4, best = nullif(?5, 0),"
+      " best_value = ?6, updated = " EO_NOW ", finished = CASE WHEN ?1 IN ('done', 'failed', 'cancelled') THEN " EO_NOW
+      " END"
+      " WHERE id = ?7",
+      "ttnniri", eo_store_job_states[job->state], job->stopped ? job->stopped : "", job->true_evaluations,
+      job->individuals, job->best, job->best_value, job->id);
 }
 
 enum eo_code eo_store_keep_result(struct eo_store *store, int64_t job, const char *result, struct eo_error *error)
@@ -136,36 +173,48 @@ enum eo_code eo_store_keep_result(struct eo_store *store, int64_t job, const cha
 /* The point belongs to the evaluation: it outlives the job. */
 static enum eo_code keep_point(struct eo_store *store, const struct eo_stored_candidate *c, struct eo_error *error)
 {
-  return EO_STATEMENT_RUN(store, error, "INSERT OR IGNORE INTO point (evaluation, space, x) SELECT ?, space, ? FROM job WHERE id = ? AND space IS NOT NULL", "ibi",
-                          c->evaluation, (const void *)c->x, (size_t)c->size * sizeof *c->x, c->job);
+  return EO_STATEMENT_RUN(store, error,
+                          "INSERT OR IGNORE INTO point (evaluation, space, x) SELECT ?, space, ? FROM job WHERE id = ? "
+                          "AND space IS NOT NULL",
+                          "ibi", c->evaluation, (const void *)c->x, (size_t)c->size * sizeof *c->x, c->job);
 }
 
 enum eo_code eo_store_log_candidate(struct eo_store *store, struct eo_stored_candidate *c, struct eo_error *error)
 {
-  enum eo_code code = EO_STATEMENT_RUN(store, error, "INSERT INTO candidate (job, ordinal, generation, individual, evaluation, reused, x)"
-                                                     " VALUES (?, ?, ?, ?, ?, ?, ?) ON CONFLICT (job, ordinal) DO NOTHING", "innninb",
-                                       c->job, c->ordinal, c->generation, c->individual, c->evaluation, (int)c->reused, (const void *)c->x,
-                                       (size_t)c->size * sizeof *c->x);
+  enum eo_code code =
+      EO_STATEMENT_RUN(store, error,
+                       "INSERT INTO candidate (job, ordinal, generation, individual, evaluation, reused, x)"
+                       " VALUES (?, ?, ?, ?, ?, ?, ?) ON CONFLICT (job, ordinal) DO NOTHING",
+                       "innninb", c->job, c->ordinal, c->generation, c->individual, c->evaluation, (int)c->reused,
+                       (const void *)c->x, (size_t)c->size * sizeof *c->x);
   if (code)
     return code;
   if (sqlite3_changes(store->handle))
     return c->reused ? EO_OK : keep_point(store, c, error);
-  struct eo_statement s = eo_statement_begin(store, "SELECT reused FROM candidate WHERE job = ? AND ordinal = ?", "in", c->job, c->ordinal);
+  struct eo_statement s = eo_statement_begin(store, "SELECT reused FROM candidate WHERE job = ? AND ordinal = ?", "in",
+                                             c->job, c->ordinal);
   if (eo_statement_step(&s))
     c->reused = eo_column_integer(&s, 0) != 0;
   return eo_statement_end(&s, error);
 }
 
-enum eo_code eo_store_log_prediction(struct eo_store *store, const struct eo_stored_prediction *p, struct eo_error *error)
+enum eo_code eo_store_log_prediction(struct eo_store *store, const struct eo_stored_prediction *p,
+                                     struct eo_error *error)
 {
-  return EO_STATEMENT_RUN(store, error, "INSERT INTO prediction (job, generation, individual, fitness, credibility, x) VALUES (?, ?, ?, ?, ?, ?)"
-                                        " ON CONFLICT (job, generation, individual) DO NOTHING",
-                          "innrrb", p->job, p->generation, p->individual, p->fitness, p->credibility, (const void *)p->x, (size_t)p->size * sizeof *p->x);
+  return EO_STATEMENT_RUN(
+      store, error,
+      "INSERT INTO prediction (job, generation, individual, fitness, credibility, x) VALUES (?, ?, ?, ?, ?, ?)"
+      " ON CONFLICT (job, generation, individual) DO NOTHING",
+      "innrrb", p->job, p->generation, p->individual, p->fitness, p->credibility, (const void *)p->x,
+      (size_t)p->size * sizeof *p->x);
 }
 
-enum eo_code eo_store_each_job(struct eo_store *store, int64_t problem, eo_store_visit_job *visit, void *context, struct eo_error *error)
+enum eo_code eo_store_each_job(struct eo_store *store, int64_t problem, eo_store_visit_job *visit, void *context,
+                               struct eo_error *error)
 {
-  struct eo_statement s = eo_statement_begin(store, "SELECT " EO_JOB_COLUMNS("design", "result") " FROM job WHERE ?1 = 0 OR problem = ?1 ORDER BY id", "i", problem);
+  struct eo_statement s = eo_statement_begin(
+      store, "SELECT " EO_JOB_COLUMNS("design", "result") " FROM job WHERE ?1 = 0 OR problem = ?1 ORDER BY id", "i",
+      problem);
   enum eo_code code = EO_OK;
   while (!code && eo_statement_step(&s)) {
     const struct eo_stored_job job = eo_job_row_read(&s);
@@ -192,39 +241,56 @@ static void read_point(const struct eo_statement *s, int column, struct point *p
     memcpy(point->x, x, bytes);
 }
 
-enum eo_code eo_store_page_candidates(struct eo_store *store, int64_t job, int after, int limit, eo_store_visit_candidate *visit, void *context,
-                                      struct eo_error *error)
+enum eo_code eo_store_page_candidates(struct eo_store *store, int64_t job, int after, int limit,
+                                      eo_store_visit_candidate *visit, void *context, struct eo_error *error)
 {
-  struct eo_statement s = eo_statement_begin(store, "SELECT evaluation, ordinal, generation, individual, reused, x FROM candidate"
-                                                    " WHERE job = ? AND ordinal > ? ORDER BY ordinal LIMIT ?", "inn", job, after, limit);
+  struct eo_statement s =
+      eo_statement_begin(store,
+                         "SELECT evaluation, ordinal, generation, individual, reused, x FROM candidate"
+                         " WHERE job = ? AND ordinal > ? ORDER BY ordinal LIMIT ?",
+                         "inn", job, after, limit);
   enum eo_code code = EO_OK;
   struct point point;
   while (!code && eo_statement_step(&s)) {
     read_point(&s, 5, &point);
-    const struct eo_stored_candidate candidate = {
-        .job = job, .evaluation = eo_column_integer(&s, 0), .ordinal = (int)eo_column_integer(&s, 1), .generation = (int)eo_column_integer(&s, 2),
-        .individual = (int)eo_column_integer(&s, 3), .reused = eo_column_integer(&s, 4) != 0, .x = point.x, .size = point.size};
+    const struct eo_stored_candidate candidate = {.job = job,
+                                                  .evaluation = eo_column_integer(&s, 0),
+                                                  .ordinal = (int)eo_column_integer(&s, 1),
+                                                  .generation = (int)eo_column_integer(&s, 2),
+                                                  .individual = (int)eo_column_integer(&s, 3),
+                                                  .reused = eo_column_integer(&s, 4) != 0,
+                                                  .x = point.x,
+                                                  .size = point.size};
     code = visit(context, &candidate, error);
   }
   enum eo_code end = eo_statement_end(&s, code ? NULL : error);
   return code ? code : end;
 }
 
-enum eo_code eo_store_each_candidate(struct eo_store *store, int64_t job, eo_store_visit_candidate *visit, void *context, struct eo_error *error)
+enum eo_code eo_store_each_candidate(struct eo_store *store, int64_t job, eo_store_visit_candidate *visit,
+                                     void *context, struct eo_error *error)
 {
   return eo_store_page_candidates(store, job, -1, INT_MAX, visit, context, error);
 }
 
-enum eo_code eo_store_each_prediction(struct eo_store *store, int64_t job, eo_store_visit_prediction *visit, void *context, struct eo_error *error)
+enum eo_code eo_store_each_prediction(struct eo_store *store, int64_t job, eo_store_visit_prediction *visit,
+                                      void *context, struct eo_error *error)
 {
-  struct eo_statement s = eo_statement_begin(store, "SELECT generation, individual, fitness, credibility, x FROM prediction WHERE job = ?"
-                                                    " ORDER BY generation, individual", "i", job);
+  struct eo_statement s =
+      eo_statement_begin(store,
+                         "SELECT generation, individual, fitness, credibility, x FROM prediction WHERE job = ?"
+                         " ORDER BY generation, individual",
+                         "i", job);
   enum eo_code code = EO_OK;
   struct point point;
   while (!code && eo_statement_step(&s)) {
     read_point(&s, 4, &point);
-    const struct eo_stored_prediction prediction = {.job = job, .generation = (int)eo_column_integer(&s, 0), .individual = (int)eo_column_integer(&s, 1),
-                                                    .fitness = eo_column_number(&s, 2), .credibility = eo_column_number(&s, 3), .x = point.x,
+    const struct eo_stored_prediction prediction = {.job = job,
+                                                    .generation = (int)eo_column_integer(&s, 0),
+                                                    .individual = (int)eo_column_integer(&s, 1),
+                                                    .fitness = eo_column_number(&s, 2),
+                                                    .credibility = eo_column_number(&s, 3),
+                                                    .x = point.x,
                                                     .size = point.size};
     code = visit(context, &prediction, error);
   }
@@ -234,7 +300,8 @@ enum eo_code eo_store_each_prediction(struct eo_store *store, int64_t job, eo_st
 
 enum eo_code eo_store_remove_predictions(struct eo_store *store, int64_t *removed, struct eo_error *error)
 {
-  enum eo_code code = EO_STATEMENT_RUN(store, error, "DELETE FROM prediction WHERE job IN (SELECT id FROM job WHERE state IN ('done', 'failed'))", "");
+  enum eo_code code = EO_STATEMENT_RUN(
+      store, error, "DELETE FROM prediction WHERE job IN (SELECT id FROM job WHERE state IN ('done', 'failed'))", "");
   *removed = code ? 0 : sqlite3_changes64(store->handle);
   return code;
 }

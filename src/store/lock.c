@@ -40,7 +40,8 @@ enum eo_code eo_store_claim_job(struct eo_store *store, int64_t job, bool *taken
   struct flock lock = byte_of(job, F_WRLCK);
   *taken = fcntl(store->lock, F_OFD_SETLK, &lock) == 0;
   if (!*taken && errno != EAGAIN && errno != EACCES)
-    return eo_error_set(error, EO_ERROR_FILE, "", "%.150s/easeoff.lock: the file system cannot lock: %s.", store->directory, strerror(errno));
+    return eo_error_set(error, EO_ERROR_FILE, "", "%.150s/easeoff.lock: the file system cannot lock: %s.",
+                        store->directory, strerror(errno));
   return EO_OK;
 }
 

@@ -64,7 +64,8 @@ static void remove_all(const char *path, int depth)
   const struct dirent *entry;
   char inner[EO_STORE_PATH];
   while (folder && (entry = readdir(folder)))
-    if (strcmp(entry->d_name, ".") != 0 && strcmp(entry->d_name, "..") != 0 && fits(snprintf(inner, sizeof inner, "%s/%s", path, entry->d_name), sizeof inner)) {
+    if (strcmp(entry->d_name, ".") != 0 && strcmp(entry->d_name, "..") != 0 &&
+        fits(snprintf(inner, sizeof inner, "%s/%s", path, entry->d_name), sizeof inner)) {
       if (unlink(inner) && (errno == EISDIR || errno == EPERM))
         remove_all(inner, depth - 1);
     }
@@ -133,7 +134,8 @@ enum eo_code eo_measurement_folder_flush(const char *folder, int files, struct e
   return code ? code : flush(folder, O_DIRECTORY, error);
 }
 
-enum eo_code eo_measurement_folder_keep(const struct eo_store *store, const char *folder, int64_t id, struct eo_error *error)
+enum eo_code eo_measurement_folder_keep(const struct eo_store *store, const char *folder, int64_t id,
+                                        struct eo_error *error)
 {
   char root[EO_STORE_PATH], path[EO_STORE_PATH + 24];
   if (!name_root(store, root, sizeof root))

@@ -10,7 +10,8 @@ enum { EO_STORE_PATH = 4096 };
 enum eo_code eo_measurement_folder_flush(const char *folder, int files, struct eo_error *error);
 
 /* The folder becomes that of a measurement. */
-enum eo_code eo_measurement_folder_keep(const struct eo_store *store, const char *folder, int64_t id, struct eo_error *error);
+enum eo_code eo_measurement_folder_keep(const struct eo_store *store, const char *folder, int64_t id,
+                                        struct eo_error *error);
 
 /* The folder of a measurement goes away. */
 void eo_measurement_folder_drop(const struct eo_store *store, int64_t id);

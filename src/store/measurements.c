@@ -22,7 +22,8 @@ static enum eo_code close(struct eo_store *store, enum eo_code code, struct eo_e
 
 static enum eo_code read_files(struct eo_store *store, struct eo_stored_measurement *m, struct eo_error *error)
 {
-  struct eo_statement s = eo_statement_begin(store, "SELECT name, size, sha256 FROM measurement_file WHERE measurement = ? ORDER BY ordinal", "i", m->id);
+  struct eo_statement s = eo_statement_begin(
+      store, "SELECT name, size, sha256 FROM measurement_file WHERE measurement = ? ORDER BY ordinal", "i", m->id);
   for (m->files = 0; m->files < EO_MEASUREMENT_FILES && eo_statement_step(&s); m->files++) {
     struct eo_measurement_file *file = &m->file[m->files];
     snprintf(file->name, sizeof file->name, "%s", eo_column_text(&s, 0));
@@ -33,15 +34,23 @@ static enum eo_code read_files(struct eo_store *store, struct eo_stored_measurem
 }
 
 /* Hands every row over; *rows: how many there were. */
-static enum eo_code visit_all(struct eo_statement s, eo_store_visit_measurement *visit, void *context, int *rows, struct eo_error *error)
+static enum eo_code visit_all(struct eo_statement s, eo_store_visit_measurement *visit, void *context, int *rows,
+                              struct eo_error *error)
 {
   enum eo_code code = EO_OK;
   *rows = 0;
   while (!code && eo_statement_step(&s)) {
-    struct eo_stored_measurement m = {.id = eo_column_integer(&s, 0), .design = eo_column_integer(&s, 1), .digest = eo_column_text(&s, 2),
-                                      .unmodified = strcmp(eo_column_text(&s, 3), "unmodified") == 0, .torque = eo_column_number(&s, 4),
-                                      .speed = eo_column_number(&s, 5), .layout = eo_column_text(&s, 6), .pair = eo_column_text(&s, 7),
-                                      .summary = eo_column_text(&s, 8), .created = eo_column_text(&s, 9), .result = eo_column_text(&s, 10)};
+    struct eo_stored_measurement m = {.id = eo_column_integer(&s, 0),
+                                      .design = eo_column_integer(&s, 1),
+                                      .digest = eo_column_text(&s, 2),
+                                      .unmodified = strcmp(eo_column_text(&s, 3), "unmodified") == 0,
+                                      .torque = eo_column_number(&s, 4),
+                                      .speed = eo_column_number(&s, 5),
+                                      .layout = eo_column_text(&s, 6),
+                                      .pair = eo_column_text(&s, 7),
+                                      .summary = eo_column_text(&s, 8),
+                                      .created = eo_column_text(&s, 9),
+                                      .result = eo_column_text(&s, 10)};
     ++*rows;
     code = read_files(s.store, &m, error);
     if (!code && visit)
@@ -51,31 +60,38 @@ static enum eo_code visit_all(struct eo_statement s, eo_store_visit_measurement 
   return code ? code : end;
 }
 
-enum eo_code eo_store_find_measurement(struct eo_store *store, int64_t id, eo_store_visit_measurement *visit, void *context,
-                                       enum eo_measurement_outcome *outcome, struct eo_error *error)
+enum eo_code eo_store_find_measurement(struct eo_store *store, int64_t id, eo_store_visit_measurement *visit,
+                                       void *context, enum eo_measurement_outcome *outcome, struct eo_error *error)
 {
   int rows;
-  enum eo_code code = visit_all(eo_statement_begin(store, "SELECT " COLUMNS ", result FROM measurement WHERE id = ?", "i", id), visit, context, &rows, error);
+  enum eo_code code =
+      visit_all(eo_statement_begin(store, "SELECT " COLUMNS ", result FROM measurement WHERE id = ?", "i", id), visit,
+                context, &rows, error);
   *outcome = rows ? EO_MEASUREMENT_DONE : EO_MEASUREMENT_MISSING;
   return code;
 }
 
-enum eo_code eo_store_find_measurement_digest(struct eo_store *store, const char *digest, eo_store_visit_measurement *visit, void *context,
+enum eo_code eo_store_find_measurement_digest(struct eo_store *store, const char *digest,
+                                              eo_store_visit_measurement *visit, void *context,
                                               enum eo_measurement_outcome *outcome, struct eo_error *error)
 {
   int rows;
   enum eo_code code =
-      visit_all(eo_statement_begin(store, "SELECT " COLUMNS ", result FROM measurement WHERE digest = ?", "t", digest), visit, context, &rows, error);
+      visit_all(eo_statement_begin(store, "SELECT " COLUMNS ", result FROM measurement WHERE digest = ?", "t", digest),
+                visit, context, &rows, error);
   *outcome = rows ? EO_MEASUREMENT_DONE : EO_MEASUREMENT_MISSING;
   return code;
 }
 
-enum eo_code eo_store_list_measurements(struct eo_store *store, int64_t design, int64_t before, int limit, eo_store_visit_measurement *visit,
-                                        void *context, struct eo_error *error)
+enum eo_code eo_store_list_measurements(struct eo_store *store, int64_t design, int64_t before, int limit,
+                                        eo_store_visit_measurement *visit, void *context, struct eo_error *error)
 {
   int rows;
-  return visit_all(eo_statement_begin(store, "SELECT " COLUMNS ", '' FROM measurement WHERE (?1 = 0 OR design = ?1) AND (?2 = 0 OR id < ?2) "
-                                             "ORDER BY id DESC LIMIT ?3", "iin", design, before, limit),
+  return visit_all(eo_statement_begin(store,
+                                      "SELECT " COLUMNS
+                                      ", '' FROM measurement WHERE (?1 = 0 OR design = ?1) AND (?2 = 0 OR id < ?2) "
+                                      "ORDER BY id DESC LIMIT ?3",
+                                      "iin", design, before, limit),
                    visit, context, &rows, error);
 }
 
@@ -95,20 +111,26 @@ static enum eo_code has_design(struct eo_store *store, int64_t design, bool *the
   return eo_statement_end(&s, error);
 }
 
-static enum eo_code insert(struct eo_store *store, const struct eo_stored_measurement *m, int64_t *id, struct eo_error *error)
+static enum eo_code insert(struct eo_store *store, const struct eo_stored_measurement *m, int64_t *id,
+                           struct eo_error *error)
 {
-  enum eo_code code = EO_STATEMENT_RUN(store, error, "INSERT INTO measurement (design, digest, label, torque_Nm, speed_rad_s, layout, pair, summary, result) "
-                                       "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)", "ittrrtttt", m->design, m->digest, m->unmodified ? "unmodified" : "modified",
-                                       m->torque, m->speed, *m->layout ? m->layout : NULL, m->pair, m->summary, m->result);
+  enum eo_code code = EO_STATEMENT_RUN(
+      store, error,
+      "INSERT INTO measurement (design, digest, label, torque_Nm, speed_rad_s, layout, pair, summary, result) "
+      "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)",
+      "ittrrtttt", m->design, m->digest, m->unmodified ? "unmodified" : "modified", m->torque, m->speed,
+      *m->layout ? m->layout : NULL, m->pair, m->summary, m->result);
   *id = sqlite3_last_insert_rowid(store->handle);
   for (int i = 0; i < m->files && !code; i++)
-    code = EO_STATEMENT_RUN(store, error, "INSERT INTO measurement_file (measurement, ordinal, name, size, sha256) VALUES (?, ?, ?, ?, ?)", "intit", *id, i,
-                            m->file[i].name, m->file[i].size, m->file[i].sha256);
+    code = EO_STATEMENT_RUN(
+        store, error, "INSERT INTO measurement_file (measurement, ordinal, name, size, sha256) VALUES (?, ?, ?, ?, ?)",
+        "intit", *id, i, m->file[i].name, m->file[i].size, m->file[i].sha256);
   return code;
 }
 
-static enum eo_code add(struct eo_store *store, const struct eo_stored_measurement *m, const char *folder, eo_store_visit_measurement *visit,
-                        void *context, enum eo_measurement_outcome *outcome, struct eo_error *error)
+static enum eo_code add(struct eo_store *store, const struct eo_stored_measurement *m, const char *folder,
+                        eo_store_visit_measurement *visit, void *context, enum eo_measurement_outcome *outcome,
+                        struct eo_error *error)
 {
   int64_t id;
   bool design;
@@ -128,7 +150,8 @@ static enum eo_code add(struct eo_store *store, const struct eo_stored_measureme
 }
 
 enum eo_code eo_store_add_measurement(struct eo_store *store, const struct eo_stored_measurement *m, const char *folder,
-                                      eo_store_visit_measurement *visit, void *context, enum eo_measurement_outcome *outcome, struct eo_error *error)
+                                      eo_store_visit_measurement *visit, void *context,
+                                      enum eo_measurement_outcome *outcome, struct eo_error *error)
 {
   enum eo_code code = eo_measurement_folder_flush(folder, m->files, error);
   if (!code)
@@ -136,7 +159,8 @@ enum eo_code eo_store_add_measurement(struct eo_store *store, const struct eo_st
   return code ? code : close(store, add(store, m, folder, visit, context, outcome, error), error);
 }
 
-enum eo_code eo_store_remove_measurement(struct eo_store *store, int64_t id, enum eo_measurement_outcome *outcome, struct eo_error *error)
+enum eo_code eo_store_remove_measurement(struct eo_store *store, int64_t id, enum eo_measurement_outcome *outcome,
+                                         struct eo_error *error)
 {
   enum eo_code code = EO_STATEMENT_RUN(store, error, "DELETE FROM measurement WHERE id = ?", "i", id);
   *outcome = !code && sqlite3_changes(store->handle) ? EO_MEASUREMENT_DONE : EO_MEASUREMENT_MISSING;

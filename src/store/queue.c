@@ -18,10 +18,11 @@ static enum eo_code close(struct eo_store *store, enum eo_code code, struct eo_e
 
 /* ---- adding ---- */
 
-static enum eo_code find_repeated(struct eo_store *store, const struct eo_queue_entry *entry, int64_t *id, enum eo_job_outcome *outcome,
-                                  struct eo_error *error)
+static enum eo_code find_repeated(struct eo_store *store, const struct eo_queue_entry *entry, int64_t *id,
+                                  enum eo_job_outcome *outcome, struct eo_error *error)
 {
-  struct eo_statement s = eo_statement_begin(store, "SELECT id, request = ?2 FROM job WHERE idempotency = ?1", "tt", entry->key, entry->request);
+  struct eo_statement s = eo_statement_begin(store, "SELECT id, request = ?2 FROM job WHERE idempotency = ?1", "tt",
+                                             entry->key, entry->request);
   if (eo_statement_step(&s)) {
     *id = eo_column_integer(&s, 0);
     *outcome = eo_column_integer(&s, 1) ? EO_JOB_OUTCOME_REPEATED : EO_JOB_OUTCOME_CONFLICT;
@@ -31,8 +32,11 @@ static enum eo_code find_repeated(struct eo_store *store, const struct eo_queue_
 
 static enum eo_code find_preparation(struct eo_store *store, const char *pair, int64_t *id, struct eo_error *error)
 {
-  struct eo_statement s = eo_statement_begin(store, "SELECT id FROM job WHERE pair = ? AND kind = 'prepare' AND served = 1 AND stop = 0"
-                                                    " AND state IN ('queued', 'preparing', 'running')", "t", pair);
+  struct eo_statement s =
+      eo_statement_begin(store,
+                         "SELECT id FROM job WHERE pair = ? AND kind = 'prepare' AND served = 1 AND stop = 0"
+                         " AND state IN ('queued', 'preparing', 'running')",
+                         "t", pair);
   if (eo_statement_step(&s))
     *id = eo_column_integer(&s, 0);
   return eo_statement_end(&s, error);
@@ -40,24 +44,28 @@ static enum eo_code find_preparation(struct eo_store *store, const char *pair, i
 
 static enum eo_code count_waiting(struct eo_store *store, enum eo_job_kind kind, int64_t *count, struct eo_error *error)
 {
-  struct eo_statement s = eo_statement_begin(store, "SELECT count(*) FROM job WHERE state = 'queued' AND served = 1 AND kind = ?", "t",
-                                             eo_store_job_kind_name(kind));
+  struct eo_statement s =
+      eo_statement_begin(store, "SELECT count(*) FROM job WHERE state = 'queued' AND served = 1 AND kind = ?", "t",
+                         eo_store_job_kind_name(kind));
   *count = eo_statement_step(&s) ? eo_column_integer(&s, 0) : 0;
   return eo_statement_end(&s, error);
 }
 
-static enum eo_code insert(struct eo_store *store, const struct eo_queue_entry *entry, int64_t *id, struct eo_error *error)
+static enum eo_code insert(struct eo_store *store, const struct eo_queue_entry *entry, int64_t *id,
+                           struct eo_error *error)
 {
-  enum eo_code code = EO_STATEMENT_RUN(store, error, "INSERT INTO job (kind, design, name, algorithm, pair, fresh, served, priority, state, idempotency, request)"
-                                                     " VALUES (?, ?, ?, ?, ?, ?, 1, ?, 'queued', ?, ?)", "tttttnntt",
-                                       eo_store_job_kind_name(entry->kind), entry->design, entry->name, entry->algorithm, entry->pair, (int)entry->fresh,
-                                       entry->priority, entry->key, entry->request);
+  enum eo_code code = EO_STATEMENT_RUN(
+      store, error,
+      "INSERT INTO job (kind, design, name, algorithm, pair, fresh, served, priority, state, idempotency, request)"
+      " VALUES (?, ?, ?, ?, ?, ?, 1, ?, 'queued', ?, ?)",
+      "tttttnntt", eo_store_job_kind_name(entry->kind), entry->design, entry->name, entry->algorithm, entry->pair,
+      (int)entry->fresh, entry->priority, entry->key, entry->request);
   *id = sqlite3_last_insert_rowid(store->handle);
   return code;
 }
 
-static enum eo_code add(struct eo_store *store, const struct eo_queue_entry *entry, int64_t most, int64_t *id, enum eo_job_outcome *outcome,
-                        struct eo_error *error)
+static enum eo_code add(struct eo_store *store, const struct eo_queue_entry *entry, int64_t most, int64_t *id,
+                        enum eo_job_outcome *outcome, struct eo_error *error)
 {
   int64_t waiting = 0;
   enum eo_code code = entry->key ? find_repeated(store, entry, id, outcome, error) : EO_OK;
@@ -74,8 +82,8 @@ static enum eo_code add(struct eo_store *store, const struct eo_queue_entry *ent
   return code ? code : insert(store, entry, id, error);
 }
 
-enum eo_code eo_queue_add(struct eo_store *store, const struct eo_queue_entry *entry, int64_t most, int64_t *id, enum eo_job_outcome *outcome,
-                          struct eo_error *error)
+enum eo_code eo_queue_add(struct eo_store *store, const struct eo_queue_entry *entry, int64_t most, int64_t *id,
+                          enum eo_job_outcome *outcome, struct eo_error *error)
 {
   *id = 0;
   *outcome = EO_JOB_OUTCOME_DONE;
@@ -91,10 +99,12 @@ enum eo_code eo_queue_claim(struct eo_store *store, enum eo_job_kind kind, int64
   enum eo_code code = eo_store_begin(store, error);
   if (code)
     return code;
-  struct eo_statement s = eo_statement_begin(store, "UPDATE job SET state = 'preparing', attempts = attempts + 1, started = coalesce(started, " EO_NOW "),"
-                                                    " finished = NULL, error = NULL, updated = " EO_NOW " WHERE id = (SELECT id FROM job WHERE kind = ?"
-                                                    " AND state = 'queued' AND served = 1 ORDER BY priority DESC, id LIMIT 1) RETURNING id", "t",
-                                             eo_store_job_kind_name(kind));
+  struct eo_statement s = eo_statement_begin(
+      store,
+      "UPDATE job SET state = 'preparing', attempts = attempts + 1, started = coalesce(started, " EO_NOW "),"
+      " finished = NULL, error = NULL, updated = " EO_NOW " WHERE id = (SELECT id FROM job WHERE kind = ?"
+      " AND state = 'queued' AND served = 1 ORDER BY priority DESC, id LIMIT 1) RETURNING id",
+      "t", eo_store_job_kind_name(kind));
   while (eo_statement_step(&s))
     *id = eo_column_integer(&s, 0);
   code = close(store, eo_statement_end(&s, error), error);
@@ -103,17 +113,21 @@ enum eo_code eo_queue_claim(struct eo_store *store, enum eo_job_kind kind, int64
   return code;
 }
 
-enum eo_code eo_queue_end(struct eo_store *store, int64_t id, enum eo_job_state state, const char *error_text, const char *progress, struct eo_error *error)
+enum eo_code eo_queue_end(struct eo_store *store, int64_t id, enum eo_job_state state, const char *error_text,
+                          const char *progress, struct eo_error *error)
 {
-  return EO_STATEMENT_RUN(store, error, "UPDATE job SET state = ?2, error = ?3, progress = coalesce(?4, progress), updated = " EO_NOW ","
-                                        " stop = CASE WHEN ?2 = 'queued' THEN 0 ELSE stop END,"
-                                        " finished = CASE WHEN ?2 IN ('done', 'failed', 'cancelled') THEN " EO_NOW " END WHERE id = ?1", "ittt", id,
-                          eo_store_job_state_name(state), error_text, progress);
+  return EO_STATEMENT_RUN(
+      store, error,
+      "UPDATE job SET state = ?2, error = ?3, progress = coalesce(?4, progress), updated = " EO_NOW ","
+      " stop = CASE WHEN ?2 = 'queued' THEN 0 ELSE stop END,"
+      " finished = CASE WHEN ?2 IN ('done', 'failed', 'cancelled') THEN " EO_NOW " END WHERE id = ?1",
+      "ittt", id, eo_store_job_state_name(state), error_text, progress);
 }
 
 enum eo_code eo_queue_note(struct eo_store *store, int64_t id, const char *progress, struct eo_error *error)
 {
-  return EO_STATEMENT_RUN(store, error, "UPDATE job SET progress = ?, updated = " EO_NOW " WHERE id = ?", "ti", progress, id);
+  return EO_STATEMENT_RUN(store, error, "UPDATE job SET progress = ?, updated = " EO_NOW " WHERE id = ?", "ti",
+                          progress, id);
 }
 
 /* Leaves alone what a terminal took up meanwhile. */
@@ -121,8 +135,11 @@ static enum eo_code recover_one(struct eo_store *store, int64_t id, int64_t *que
 {
   if (eo_store_job_is_taken(store, id))
     return EO_OK;
-  enum eo_code code = EO_STATEMENT_RUN(store, error, "UPDATE job SET state = CASE stop WHEN 1 THEN 'cancelled' ELSE 'queued' END, updated = " EO_NOW ","
-                                                     " finished = CASE stop WHEN 1 THEN " EO_NOW " END WHERE id = ?", "i", id);
+  enum eo_code code = EO_STATEMENT_RUN(
+      store, error,
+      "UPDATE job SET state = CASE stop WHEN 1 THEN 'cancelled' ELSE 'queued' END, updated = " EO_NOW ","
+      " finished = CASE stop WHEN 1 THEN " EO_NOW " END WHERE id = ?",
+      "i", id);
   *queued += !code;
   return code;
 }
@@ -134,11 +151,14 @@ enum eo_code eo_queue_recover(struct eo_store *store, int64_t *queued, struct eo
   enum eo_code code = eo_store_begin(store, error);
   if (code)
     return code;
-  /* cancelled without anybody wanting it: parked in the moment the process ended. Done without a result: ended before it was written. */
+  /* cancelled without anybody wanting it: parked in the moment the process ended. Done without a result: ended before
+     it was written. */
   for (bool more = true; more && !code;) {
-    struct eo_statement s = eo_statement_begin(store, "SELECT id FROM job WHERE id > ? AND served = 1 AND (state IN ('preparing', 'running') OR (stop = 0 AND"
-                                                      " state = 'cancelled') OR (state = 'done' AND kind = 'optimize' AND result IS NULL)) ORDER BY id LIMIT 1",
-                                               "i", id);
+    struct eo_statement s = eo_statement_begin(
+        store,
+        "SELECT id FROM job WHERE id > ? AND served = 1 AND (state IN ('preparing', 'running') OR (stop = 0 AND"
+        " state = 'cancelled') OR (state = 'done' AND kind = 'optimize' AND result IS NULL)) ORDER BY id LIMIT 1",
+        "i", id);
     more = eo_statement_step(&s);
     id = more ? eo_column_integer(&s, 0) : 0;
     code = eo_statement_end(&s, error);
@@ -150,8 +170,8 @@ enum eo_code eo_queue_recover(struct eo_store *store, int64_t *queued, struct eo
 
 /* ---- changing ---- */
 
-static enum eo_code find_state(struct eo_store *store, int64_t id, enum eo_job_state *state, enum eo_job_kind *kind, enum eo_job_outcome *outcome,
-                               struct eo_error *error)
+static enum eo_code find_state(struct eo_store *store, int64_t id, enum eo_job_state *state, enum eo_job_kind *kind,
+                               enum eo_job_outcome *outcome, struct eo_error *error)
 {
   struct eo_statement s = eo_statement_begin(store, "SELECT state, kind FROM job WHERE id = ?", "i", id);
   *outcome = eo_statement_step(&s) ? EO_JOB_OUTCOME_DONE : EO_JOB_OUTCOME_MISSING;
@@ -177,9 +197,13 @@ static enum eo_code cancel(struct eo_store *store, int64_t id, enum eo_job_outco
   if (has_ended(state))
     *outcome = EO_JOB_OUTCOME_STATE;
   else if (state == EO_JOB_QUEUED)
-    code = EO_STATEMENT_RUN(store, error, "UPDATE job SET state = 'cancelled', stop = 1, finished = " EO_NOW ", updated = " EO_NOW " WHERE id = ?", "i", id);
+    code = EO_STATEMENT_RUN(store, error,
+                            "UPDATE job SET state = 'cancelled', stop = 1, finished = " EO_NOW ", updated = " EO_NOW
+                            " WHERE id = ?",
+                            "i", id);
   else {
-    code = EO_STATEMENT_RUN(store, error, "UPDATE job SET stop = 1, updated = " EO_NOW " WHERE id = ? AND served = 1", "i", id);
+    code = EO_STATEMENT_RUN(store, error, "UPDATE job SET stop = 1, updated = " EO_NOW " WHERE id = ? AND served = 1",
+                            "i", id);
     if (!code && !sqlite3_changes(store->handle)) /* a terminal's */
       *outcome = EO_JOB_OUTCOME_STATE;
   }
@@ -192,7 +216,8 @@ enum eo_code eo_queue_cancel(struct eo_store *store, int64_t id, enum eo_job_out
   return code ? code : close(store, cancel(store, id, outcome, error), error);
 }
 
-static enum eo_code retry(struct eo_store *store, int64_t id, int64_t most, enum eo_job_outcome *outcome, struct eo_error *error)
+static enum eo_code retry(struct eo_store *store, int64_t id, int64_t most, enum eo_job_outcome *outcome,
+                          struct eo_error *error)
 {
   enum eo_job_state state;
   enum eo_job_kind kind;
@@ -209,18 +234,23 @@ static enum eo_code retry(struct eo_store *store, int64_t id, int64_t most, enum
     *outcome = EO_JOB_OUTCOME_FULL;
     return EO_OK;
   }
-  return code ? code : EO_STATEMENT_RUN(store, error, "UPDATE job SET state = 'queued', served = 1, stop = 0, stopped = '', error = NULL, started = NULL,"
-                                                      " finished = NULL, updated = " EO_NOW " WHERE id = ?", "i", id);
+  return code ? code
+              : EO_STATEMENT_RUN(
+                    store, error,
+                    "UPDATE job SET state = 'queued', served = 1, stop = 0, stopped = '', error = NULL, started = NULL,"
+                    " finished = NULL, updated = " EO_NOW " WHERE id = ?",
+                    "i", id);
 }
 
-enum eo_code eo_queue_retry(struct eo_store *store, int64_t id, int64_t most, enum eo_job_outcome *outcome, struct eo_error *error)
+enum eo_code eo_queue_retry(struct eo_store *store, int64_t id, int64_t most, enum eo_job_outcome *outcome,
+                            struct eo_error *error)
 {
   enum eo_code code = eo_store_begin(store, error);
   return code ? code : close(store, retry(store, id, most, outcome, error), error);
 }
 
-static enum eo_code clone(struct eo_store *store, int64_t id, const int *priority, int64_t most, int64_t *copy, enum eo_job_outcome *outcome,
-                          struct eo_error *error)
+static enum eo_code clone(struct eo_store *store, int64_t id, const int *priority, int64_t most, int64_t *copy,
+                          enum eo_job_outcome *outcome, struct eo_error *error)
 {
   enum eo_job_state state;
   enum eo_job_kind kind;
@@ -234,15 +264,18 @@ static enum eo_code clone(struct eo_store *store, int64_t id, const int *priorit
     return EO_OK;
   }
   if (!code)
-    code = EO_STATEMENT_RUN(store, error, "INSERT INTO job (kind, design, name, algorithm, pair, fresh, served, priority, state)"
-                                          " SELECT kind, design, name, algorithm, pair, fresh, 1, CASE ?2 WHEN 1 THEN ?3 ELSE priority END, 'queued'"
-                                          " FROM job WHERE id = ?1", "inn", id, priority != NULL, priority ? *priority : 0);
+    code = EO_STATEMENT_RUN(
+        store, error,
+        "INSERT INTO job (kind, design, name, algorithm, pair, fresh, served, priority, state)"
+        " SELECT kind, design, name, algorithm, pair, fresh, 1, CASE ?2 WHEN 1 THEN ?3 ELSE priority END, 'queued'"
+        " FROM job WHERE id = ?1",
+        "inn", id, priority != NULL, priority ? *priority : 0);
   *copy = sqlite3_last_insert_rowid(store->handle);
   return code;
 }
 
-enum eo_code eo_queue_clone(struct eo_store *store, int64_t id, const int *priority, int64_t most, int64_t *copy, enum eo_job_outcome *outcome,
-                            struct eo_error *error)
+enum eo_code eo_queue_clone(struct eo_store *store, int64_t id, const int *priority, int64_t most, int64_t *copy,
+                            enum eo_job_outcome *outcome, struct eo_error *error)
 {
   *copy = 0;
   enum eo_code code = eo_store_begin(store, error);
@@ -271,16 +304,20 @@ enum eo_code eo_queue_remove(struct eo_store *store, int64_t id, enum eo_job_out
 
 enum eo_code eo_queue_tidy(struct eo_store *store, int keep, struct eo_error *error)
 {
-  return EO_STATEMENT_RUN(store, error, "DELETE FROM job WHERE kind = 'prepare' AND state = 'done' AND idempotency IS NULL AND id NOT IN"
-                                        " (SELECT id FROM job WHERE kind = 'prepare' AND state = 'done' ORDER BY id DESC LIMIT ?)", "n", keep);
+  return EO_STATEMENT_RUN(
+      store, error,
+      "DELETE FROM job WHERE kind = 'prepare' AND state = 'done' AND idempotency IS NULL AND id NOT IN"
+      " (SELECT id FROM job WHERE kind = 'prepare' AND state = 'done' ORDER BY id DESC LIMIT ?)",
+      "n", keep);
 }
 
 /* ---- reading ---- */
 
-enum eo_code eo_queue_find(struct eo_store *store, int64_t id, eo_store_visit_job *visit, void *context, enum eo_job_outcome *outcome,
-                           struct eo_error *error)
+enum eo_code eo_queue_find(struct eo_store *store, int64_t id, eo_store_visit_job *visit, void *context,
+                           enum eo_job_outcome *outcome, struct eo_error *error)
 {
-  struct eo_statement s = eo_statement_begin(store, "SELECT " EO_JOB_COLUMNS("design", "result") " FROM job WHERE id = ?", "i", id);
+  struct eo_statement s =
+      eo_statement_begin(store, "SELECT " EO_JOB_COLUMNS("design", "result") " FROM job WHERE id = ?", "i", id);
   enum eo_code code = EO_OK;
   *outcome = EO_JOB_OUTCOME_MISSING;
   if (eo_statement_step(&s)) {
@@ -292,14 +329,20 @@ enum eo_code eo_queue_find(struct eo_store *store, int64_t id, eo_store_visit_jo
   return code ? code : end;
 }
 
-enum eo_code eo_queue_list(struct eo_store *store, const struct eo_queue_filter *filter, eo_store_visit_job *visit, void *context, struct eo_error *error)
+enum eo_code eo_queue_list(struct eo_store *store, const struct eo_queue_filter *filter, eo_store_visit_job *visit,
+                           void *context, struct eo_error *error)
 {
   struct eo_statement s = eo_statement_begin(
       store,
-      "SELECT " EO_JOB_COLUMNS("''", "CASE WHEN result IS NULL THEN '' ELSE '{}' END") " FROM job WHERE (?1 = 0 OR id < ?1) AND (?2 IS NULL OR state = ?2)"
-      " AND (?3 IS NULL OR kind = ?3) AND (?4 = 0 OR state IN ('queued', 'preparing', 'running')) ORDER BY id DESC LIMIT ?5", "ittnn", filter->before,
-      filter->state < 0 ? NULL : eo_store_job_state_name((enum eo_job_state)filter->state),
-      filter->kind < 0 ? NULL : eo_store_job_kind_name((enum eo_job_kind)filter->kind), (int)filter->active, filter->limit);
+      "SELECT " EO_JOB_COLUMNS(
+          "''", "CASE WHEN result IS NULL THEN '' ELSE '{}' END") " FROM job WHERE (?1 = 0 OR id < ?1) AND (?2 IS NULL "
+                                                                  "OR state = ?2)"
+                                                                  " AND (?3 IS NULL OR kind = ?3) AND (?4 = 0 OR state "
+                                                                  "IN ('queued', 'preparing', 'running')) ORDER BY id "
+                                                                  "DESC LIMIT ?5",
+      "ittnn", filter->before, filter->state < 0 ? NULL : eo_store_job_state_name((enum eo_job_state)filter->state),
+      filter->kind < 0 ? NULL : eo_store_job_kind_name((enum eo_job_kind)filter->kind), (int)filter->active,
+      filter->limit);
   enum eo_code code = EO_OK;
   while (!code && eo_statement_step(&s)) {
     const struct eo_stored_job job = eo_job_row_read(&s);

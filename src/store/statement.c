@@ -6,7 +6,10 @@
 
 enum eo_code eo_store_fault(const struct eo_store *store, int fault, struct eo_error *error)
 {
-  static const struct { int fault; const char *what; } known[] = {
+  static const struct {
+    int fault;
+    const char *what;
+  } known[] = {
       {SQLITE_BUSY, "another process has kept it locked for too long"},
       {SQLITE_LOCKED, "another process has kept it locked for too long"},
       {SQLITE_READONLY, "it or its folder cannot be written"},

@@ -13,7 +13,10 @@ struct eo_store {
   sqlite3 *handle;
   char *directory, *path; /* of the database; owned */
   int lock;               /* file descriptor of the job locks, -1: not open yet */
-  struct eo_prepared { const char *sql; sqlite3_stmt *handle; } kept[EO_STATEMENTS_KEPT];
+  struct eo_prepared {
+    const char *sql;
+    sqlite3_stmt *handle;
+  } kept[EO_STATEMENTS_KEPT];
 };
 
 struct eo_statement {
@@ -22,8 +25,8 @@ struct eo_statement {
   int fault; /* SQLite's code of the first failure, SQLITE_OK while there is none */
 };
 
-/* sql: one statement, a literal (it is kept under its address). values: one letter for each: i int64_t, n int, r double (not
-   finite: NULL), t const char * (NULL: NULL), b const void * and size_t. */
+/* sql: one statement, a literal (it is kept under its address). values: one letter for each: i int64_t, n int, r double
+   (not finite: NULL), t const char * (NULL: NULL), b const void * and size_t. */
 struct eo_statement eo_statement_begin(struct eo_store *store, const char *sql, const char *values, ...);
 
 /* True when there is a row to read; false at the end and after a failure. */

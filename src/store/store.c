@@ -41,7 +41,8 @@ static enum eo_code identify(struct eo_store *store, int *schema, struct eo_erro
   if (application != APPLICATION_ID && (application || tables || *schema))
     return eo_error_set(error, EO_ERROR_FILE, "", "%.200s is the database of another program.", store->path);
   if (*schema > eo_store_schema)
-    return eo_error_set(error, EO_ERROR_FILE, "", "%.200s has schema %d, this program knows only %d: a newer version of the program wrote it.",
+    return eo_error_set(error, EO_ERROR_FILE, "",
+                        "%.200s has schema %d, this program knows only %d: a newer version of the program wrote it.",
                         store->path, *schema, eo_store_schema);
   return EO_OK;
 }
@@ -63,7 +64,9 @@ static enum eo_code check_references(struct eo_store *store, struct eo_error *er
   struct eo_statement s = eo_statement_begin(store, "PRAGMA foreign_key_check", "");
   bool broken = eo_statement_step(&s);
   enum eo_code code = eo_statement_end(&s, error);
-  return code || !broken ? code : eo_error_set(error, EO_ERROR_FILE, "", "%.150s is damaged: a row refers to one that is not there.", store->path);
+  return code || !broken ? code
+                         : eo_error_set(error, EO_ERROR_FILE, "",
+                                        "%.150s is damaged: a row refers to one that is not there.", store->path);
 }
 
 static enum eo_code migrate_at_once(struct eo_store *store, struct eo_error *error)
@@ -100,8 +103,9 @@ static enum eo_code expect_present(struct eo_store *store, struct eo_error *erro
   int schema = 0;
   enum eo_code code = identify(store, &schema, error);
   if (!code && schema != eo_store_schema)
-    return eo_error_set(error, EO_ERROR_FILE, "", "%.200s has the older schema %d and cannot be brought to %d, because it cannot be written.", store->path,
-                        schema, eo_store_schema);
+    return eo_error_set(error, EO_ERROR_FILE, "",
+                        "%.200s has the older schema %d and cannot be brought to %d, because it cannot be written.",
+                        store->path, schema, eo_store_schema);
   return code;
 }
 
@@ -110,7 +114,8 @@ static enum eo_code make_folder(const char *directory, struct eo_error *error)
   struct stat status;
   if (mkdir(directory, 0777) == 0 || (stat(directory, &status) == 0 && S_ISDIR(status.st_mode)))
     return EO_OK;
-  return eo_error_set(error, EO_ERROR_FILE, "", "The data folder %.200s cannot be made: %s.", directory, strerror(errno == EEXIST ? ENOTDIR : errno));
+  return eo_error_set(error, EO_ERROR_FILE, "", "The data folder %.200s cannot be made: %s.", directory,
+                      strerror(errno == EEXIST ? ENOTDIR : errno));
 }
 
 static enum eo_code connect(struct eo_store *store, const char *name, int flags, struct eo_error *error)
@@ -120,7 +125,8 @@ static enum eo_code connect(struct eo_store *store, const char *name, int flags,
     return eo_store_fault(store, fault, error);
   sqlite3_extended_result_codes(store->handle, 1);
   eo_store_wait(store, WAIT_MS);
-  /* NORMAL: a commit survives the death of the process; after a power failure the last ones may be missing, whole, and are computed anew. */
+  /* NORMAL: a commit survives the death of the process; after a power failure the last ones may be missing, whole, and
+     are computed anew. */
   return execute(store, "PRAGMA foreign_keys = ON; PRAGMA synchronous = NORMAL", error);
 }
 
@@ -195,7 +201,8 @@ static enum eo_code name_files(struct eo_store *store, const char *directory, st
   return EO_OK;
 }
 
-enum eo_code eo_store_open(struct eo_store **result, const char *directory, enum eo_store_mode mode, struct eo_error *error)
+enum eo_code eo_store_open(struct eo_store **result, const char *directory, enum eo_store_mode mode,
+                           struct eo_error *error)
 {
   struct eo_store *store = calloc(1, sizeof *store);
   if (!store)

@@ -1,8 +1,10 @@
-/* The data folder's database: one file, DIR/easeoff.db, SQLite in WAL mode. This floor is its only user; JSON is text to it.
+/* The data folder's database: one file, DIR/easeoff.db, SQLite in WAL mode. This floor is its only user; JSON is text
+   to it.
 
-   A store is a connection: one per thread, as many processes on one folder as there are. Writing happens in short transactions
-   that wait for each other (eo_store_begin()); a process that dies in any phase leaves what it committed and nothing else.
-   Errors: EO_ERROR_FILE with the file and the reason in one sentence; nothing of a failed transaction stays. */
+   A store is a connection: one per thread, as many processes on one folder as there are. Writing happens in short
+   transactions that wait for each other (eo_store_begin()); a process that dies in any phase leaves what it committed
+   and nothing else. Errors: EO_ERROR_FILE with the file and the reason in one sentence; nothing of a failed transaction
+   stays. */
 #ifndef EASEOFF_STORE_STORE_H
 #define EASEOFF_STORE_STORE_H
 
@@ -17,9 +19,10 @@ enum eo_store_mode {
   EO_STORE_READ,  /* what is there; brought to the present schema when the folder can be written */
 };
 
-/* Opens the database of a folder and brings it to the present schema in one transaction. A newer schema, another program's
-   database, a damaged file and a folder that cannot be written are errors. */
-enum eo_code eo_store_open(struct eo_store **store, const char *directory, enum eo_store_mode mode, struct eo_error *error);
+/* Opens the database of a folder and brings it to the present schema in one transaction. A newer schema, another
+   program's database, a damaged file and a folder that cannot be written are errors. */
+enum eo_code eo_store_open(struct eo_store **store, const char *directory, enum eo_store_mode mode,
+                           struct eo_error *error);
 void eo_store_close(struct eo_store *store); /* NULL is fine */
 
 /* How long a writer waits for another one, 10 s unless set. */

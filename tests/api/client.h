@@ -1,4 +1,5 @@
-/* A real server on a free port with a data folder of its own, and a small HTTP client that sends what it is told, right or wrong. */
+/* A real server on a free port with a data folder of its own, and a small HTTP client that sends what it is told, right
+   or wrong. */
 #ifndef EASEOFF_TESTS_API_CLIENT_H
 #define EASEOFF_TESTS_API_CLIENT_H
 
@@ -35,7 +36,11 @@
 
 /* ---- server ---- */
 
-static struct { pid_t pid; int port; char folder[200], url[100]; } server;
+static struct {
+  pid_t pid;
+  int port;
+  char folder[200], url[100];
+} server;
 
 __attribute__((unused)) static double seconds_now(void)
 {
@@ -97,7 +102,7 @@ __attribute__((unused)) static bool start_server_with(char *const *options)
   return told;
 }
 
-#define start_server(...) start_server_with((char *const[]){__VA_ARGS__ __VA_OPT__(,) NULL})
+#define start_server(...) start_server_with((char *const[]){__VA_ARGS__ __VA_OPT__(, ) NULL})
 
 /* The exit status; -1: it had to be killed after 20 s. */
 __attribute__((unused)) static int stop_server(int signal)
@@ -120,7 +125,8 @@ __attribute__((unused)) static int stop_server(int signal)
 
 __attribute__((unused)) static int open_connection(void)
 {
-  struct sockaddr_in address = {.sin_family = AF_INET, .sin_port = htons((uint16_t)server.port), .sin_addr.s_addr = htonl(INADDR_LOOPBACK)};
+  struct sockaddr_in address = {
+      .sin_family = AF_INET, .sin_port = htons((uint16_t)server.port), .sin_addr.s_addr = htonl(INADDR_LOOPBACK)};
   int connection = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0), on = 1;
   struct timeval limit = {.tv_sec = 60};
   setsockopt(connection, SOL_SOCKET, SO_RCVTIMEO, &limit, sizeof limit);
@@ -151,9 +157,9 @@ __attribute__((unused)) static bool send_text(int connection, const char *text)
 /* ---- replies ---- */
 
 struct reply {
-  int status;      /* 0: none came */
-  char *head;      /* owned; status line and header fields */
-  char *body;      /* owned; ends with NUL */
+  int status; /* 0: none came */
+  char *head; /* owned; status line and header fields */
+  char *body; /* owned; ends with NUL */
   size_t size;
 };
 
@@ -195,7 +201,8 @@ __attribute__((unused)) static const char *header_of(const struct reply *reply, 
 {
   static char value[2000];
   size_t length = strlen(name);
-  for (const char *line = reply->head ? reply->head : ""; *line; line = strchr(line, '\n') ? strchr(line, '\n') + 1 : "")
+  for (const char *line = reply->head ? reply->head : ""; *line;
+       line = strchr(line, '\n') ? strchr(line, '\n') + 1 : "")
     if (strncasecmp(line, name, length) == 0 && line[length] == ':') {
       const char *text = line + length + 1 + strspn(line + length + 1, " ");
       snprintf(value, sizeof value, "%.*s", (int)strcspn(text, "\n"), text);
@@ -253,9 +260,10 @@ __attribute__((unused)) static bool read_reply(int connection, struct reply *rep
   return read_bytes(connection, reply->body, reply->size);
 }
 
-/* One request on a connection. headers: lines that end with \r\n, or NULL; body may be NULL. Host and Content-Length are added unless
-   the headers bring them. */
-__attribute__((unused)) static bool send_request(int connection, const char *method, const char *path, const char *headers, const char *body)
+/* One request on a connection. headers: lines that end with \r\n, or NULL; body may be NULL. Host and Content-Length
+   are added unless the headers bring them. */
+__attribute__((unused)) static bool send_request(int connection, const char *method, const char *path,
+                                                 const char *headers, const char *body)
 {
   char *text = NULL;
   size_t size = 0;
@@ -285,7 +293,8 @@ __attribute__((unused)) static void hear(const char *method, const char *path, c
 }
 
 /* On a connection of its own. */
-__attribute__((unused)) static struct reply call(const char *method, const char *path, const char *headers, const char *body)
+__attribute__((unused)) static struct reply call(const char *method, const char *path, const char *headers,
+                                                 const char *body)
 {
   struct reply reply = {0};
   int connection = open_connection();
@@ -298,7 +307,8 @@ __attribute__((unused)) static struct reply call(const char *method, const char 
 }
 
 /* The reply's body as JSON, owned by the caller. */
-__attribute__((unused)) static json_t *call_json(const char *method, const char *path, const char *headers, const char *body, int *status)
+__attribute__((unused)) static json_t *call_json(const char *method, const char *path, const char *headers,
+                                                 const char *body, int *status)
 {
   struct reply reply = call(method, path, headers, body);
   json_t *document = reply.size ? json_loadb(reply.body, reply.size, 0, NULL) : NULL;

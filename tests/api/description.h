@@ -1,4 +1,5 @@
-/* Holds every reply to call() against the OpenAPI document that the server gives. Programs that listen must end with tell_what_was_heard(). */
+/* Holds every reply to call() against the OpenAPI document that the server gives. Programs that listen must end with
+   tell_what_was_heard(). */
 #ifndef EASEOFF_TESTS_API_DESCRIPTION_H
 #define EASEOFF_TESTS_API_DESCRIPTION_H
 
@@ -16,7 +17,7 @@ static bool is_template(const char *template, const char *path)
     if (*template == '{') {
       template += strcspn(template, "}") + 1;
       path += strcspn(path, "/");
-    } else if (*template++ != *path++)
+    } else if (*template ++ != *path++)
       return false;
   }
   return !*template && !*path;
@@ -32,9 +33,11 @@ static const json_t *find_operation(const char *method, const char *path)
   for (int i = 0; method[i] && i < 9; i++)
     lower[i] = (char)(method[i] | 32);
   for (int exact = 1; exact >= 0; exact--)
-    json_object_foreach(json_object_get(description, "paths"), key, item)
-      if (exact ? strcmp(key, plain) == 0 : is_template(key, plain))
-        return json_object_get(item, strcmp(lower, "head") == 0 ? "get" : lower);
+    json_object_foreach(
+        json_object_get(description, "paths"), key,
+        item) if (exact ? strcmp(key, plain) == 0
+                        : is_template(key, plain)) return json_object_get(item,
+                                                                          strcmp(lower, "head") == 0 ? "get" : lower);
   return NULL;
 }
 
@@ -46,7 +49,8 @@ static const json_t *find_schema(const json_t *operation, const struct reply *re
   const char *header = header_of(reply, "Content-Type");
   snprintf(type, sizeof type, "%.*s", header ? (int)strcspn(header, ";") : 0, header ? header : "");
   const json_t *answers = json_object_get(operation, "responses"), *answer = json_object_get(answers, status);
-  const json_t *content = json_object_get(json_object_get(answer ? answer : json_object_get(answers, "default"), "content"), type);
+  const json_t *content =
+      json_object_get(json_object_get(answer ? answer : json_object_get(answers, "default"), "content"), type);
   if (!content)
     content = json_object_get(json_object_get(json_object_get(answers, "default"), "content"), type);
   return json_object_get(content, "schema");
@@ -90,10 +94,8 @@ static int count_unseen_below(const json_t *value, json_t *visited)
   json_t *inner;
   size_t i;
   int unseen = reference ? count_unseen(strrchr(reference, '/') + 1, visited) : 0;
-  json_array_foreach((json_t *)value, i, inner)
-    unseen += count_unseen_below(inner, visited);
-  json_object_foreach((json_t *)value, key, inner)
-    unseen += count_unseen_below(inner, visited);
+  json_array_foreach((json_t *)value, i, inner) unseen += count_unseen_below(inner, visited);
+  json_object_foreach((json_t *)value, key, inner) unseen += count_unseen_below(inner, visited);
   return unseen;
 }
 
@@ -107,11 +109,11 @@ static int count_unseen(const char *name, json_t *visited)
   if (json_object_get(visited, name) || json_is_false(json_object_get(schema, "additionalProperties")))
     return 0;
   json_object_set_new(visited, name, json_true());
-  json_object_foreach(json_object_get(schema, "properties"), key, property)
-    if (!json_object_get(property, SCHEMA_SEEN)) {
-      printf("# %s/%s never came\n", name, key);
-      unseen++;
-    }
+  json_object_foreach(json_object_get(schema, "properties"), key, property) if (!json_object_get(property, SCHEMA_SEEN))
+  {
+    printf("# %s/%s never came\n", name, key);
+    unseen++;
+  }
   return unseen + count_unseen_below(json_object_get(schema, "properties"), visited);
 }
 

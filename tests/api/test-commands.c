@@ -1,5 +1,5 @@
-/* The API as a table of commands against a real server; every reply is held against the OpenAPI document that the server gives, which is held
-   against what the server does. */
+/* The API as a table of commands against a real server; every reply is held against the OpenAPI document that the
+   server gives, which is held against what the server does. */
 #include "client.h"
 #include "description.h"
 #include "tap.h"
@@ -12,10 +12,11 @@ static char *coarse, *order, *named, *sweep;
 
 struct command {
   const char *what, *method, *path, *headers;
-  char **body;                 /* NULL: none */
-  const char *text;            /* a body of its own */
+  char **body;      /* NULL: none */
+  const char *text; /* a body of its own */
   int status;
-  const char *header, *holds;  /* a header field of the reply and what it holds; holds "": it is there; NULL: it is not */
+  const char *header,
+      *holds; /* a header field of the reply and what it holds; holds "": it is there; NULL: it is not */
   const char *pointer, *value; /* into the JSON of the reply, "a/0/b", and what stands there; value NULL: anything */
 };
 
@@ -35,7 +36,9 @@ static bool stands_there(const struct reply *reply, const char *pointer, const c
 {
   json_t *body = json_loadb(reply->body ? reply->body : "", reply->size, 0, NULL);
   const json_t *value = find(body, pointer);
-  char *text = json_is_string(value) ? strdup(json_string_value(value)) : value ? json_dumps(value, JSON_ENCODE_ANY | JSON_COMPACT) : NULL;
+  char *text = json_is_string(value) ? strdup(json_string_value(value))
+               : value               ? json_dumps(value, JSON_ENCODE_ANY | JSON_COMPACT)
+                                     : NULL;
   bool right = value && (!expected || (text && strcmp(text, expected) == 0));
   if (!right)
     printf("# %s is %s, body %.200s\n", pointer, text ? text : "not there", reply->body ? reply->body : "");
@@ -68,24 +71,32 @@ static void run_command(const struct command *c)
 }
 
 static const struct command first[] = {
-    {"health", "GET", API "/health", .status = 200, .header = "X-Request-Id", .holds = "", .pointer = "status", .value = "ok"},
+    {"health", "GET", API "/health", .status = 200, .header = "X-Request-Id", .holds = "", .pointer = "status",
+     .value = "ok"},
     {"health by HEAD", "HEAD", API "/health", .status = 200, .header = "Content-Length", .holds = ""},
     {"metrics", "GET", API "/metrics", .status = 200, .header = "Content-Type", .holds = "text/plain"},
-    {"safety headers", "GET", API "/health", .status = 200, .header = "Content-Security-Policy", .holds = "default-src 'none'"},
+    {"safety headers", "GET", API "/health", .status = 200, .header = "Content-Security-Policy",
+     .holds = "default-src 'none'"},
     {"no sniffing", "GET", API "/health", .status = 200, .header = "X-Content-Type-Options", .holds = "nosniff"},
-    {"nobody else's page", "GET", API "/health", "Origin: http://elsewhere.example\r\n", .status = 200, .header = "Access-Control-Allow-Origin"},
+    {"nobody else's page", "GET", API "/health", "Origin: http://elsewhere.example\r\n", .status = 200,
+     .header = "Access-Control-Allow-Origin"},
     {"no session needed", "GET", API "/session", .status = 200, .pointer = "required", .value = "false"},
     {"a token that nobody asked for", "POST", API "/session", .text = "{\"token\":\"x\"}", .status = 204},
     {"the end of a session", "DELETE", API "/session", .status = 204, .header = "Set-Cookie", .holds = "Max-Age=0"},
     {"examples", "GET", API "/examples", .status = 200, .pointer = "items/0/name", .value = "paper"},
-    {"an example", "GET", API "/examples/paper", .status = 200, .header = "ETag", .holds = "\"", .pointer = "gear_pair/pinion_teeth", .value = "17"},
+    {"an example", "GET", API "/examples/paper", .status = 200, .header = "ETag", .holds = "\"",
+     .pointer = "gear_pair/pinion_teeth", .value = "17"},
     {"no example", "GET", API "/examples/nothing", .status = 404, .pointer = "status", .value = "404"},
     {"field tables", "GET", API "/schema", .status = 200, .pointer = "design/fields/0/key", .value = "name"},
     {"description", "GET", API "/openapi.json", .status = 200, .pointer = "openapi", .value = "3.1.0"},
-    {"compressed", "GET", API "/openapi.json", "Accept-Encoding: br, gzip\r\n", .status = 200, .header = "Content-Encoding", .holds = "gzip"},
-    {"not compressed when refused", "GET", API "/openapi.json", "Accept-Encoding: gzip;q=0\r\n", .status = 200, .header = "Content-Encoding"},
-    {"small replies are not compressed", "GET", API "/health", "Accept-Encoding: gzip\r\n", .status = 200, .header = "Content-Encoding"},
-    {"nothing there", "GET", API "/nothing", .status = 404, .header = "Content-Type", .holds = "application/problem+json"},
+    {"compressed", "GET", API "/openapi.json", "Accept-Encoding: br, gzip\r\n", .status = 200,
+     .header = "Content-Encoding", .holds = "gzip"},
+    {"not compressed when refused", "GET", API "/openapi.json", "Accept-Encoding: gzip;q=0\r\n", .status = 200,
+     .header = "Content-Encoding"},
+    {"small replies are not compressed", "GET", API "/health", "Accept-Encoding: gzip\r\n", .status = 200,
+     .header = "Content-Encoding"},
+    {"nothing there", "GET", API "/nothing", .status = 404, .header = "Content-Type",
+     .holds = "application/problem+json"},
     {"no page", "GET", "/", .status = 404},
     {"a page is only read", "POST", "/", .text = "{}", .status = 405, .header = "Allow", .holds = "GET, HEAD"},
     {"wrong method", "DELETE", API "/health", .status = 405, .header = "Allow", .holds = "GET, HEAD, OPTIONS"},
@@ -100,20 +111,24 @@ static const struct command first[] = {
     {"a number that is none", "GET", API "/designs/x", .status = 404},
     {"a number too large", "GET", API "/designs/99999999999999999999", .status = 404},
     {"check", "POST", API "/check", .body = &coarse, .status = 200, .pointer = "prepared", .value = "false"},
-    {"check: everything at once", "POST", API "/check", .text = "{\"gear_pair\":{\"pinion_teeth\":3,\"gear_teeth\":44},\"nonsense\":1}", .status = 422,
+    {"check: everything at once", "POST", API "/check",
+     .text = "{\"gear_pair\":{\"pinion_teeth\":3,\"gear_teeth\":44},\"nonsense\":1}", .status = 422,
      .pointer = "errors/4/pointer"},
-    {"check: the pointer", "POST", API "/check", .text = "{\"gear_pair\":{\"pinion_teeth\":3,\"gear_teeth\":44}}", .status = 422,
-     .pointer = "errors/0/pointer", .value = "/gear_pair/pinion_teeth"},
-    {"no JSON", "POST", API "/check", .text = "{\"a\":", .status = 400, .pointer = "type", .value = "/problems/not-json"},
+    {"check: the pointer", "POST", API "/check", .text = "{\"gear_pair\":{\"pinion_teeth\":3,\"gear_teeth\":44}}",
+     .status = 422, .pointer = "errors/0/pointer", .value = "/gear_pair/pinion_teeth"},
+    {"no JSON", "POST", API "/check", .text = "{\"a\":", .status = 400, .pointer = "type",
+     .value = "/problems/not-json"},
     {"an array", "POST", API "/check", .text = "[1]", .status = 400},
     {"a key twice", "POST", API "/check", .text = "{\"name\":\"a\",\"name\":\"b\"}", .status = 400},
     {"an empty body", "POST", API "/check", .text = "", .status = 400},
     {"another type", "POST", API "/check", "Content-Type: text/xml\r\n", .text = "<a/>", .status = 415},
     {"from another site", "POST", API "/check", "Origin: http://elsewhere.example\r\n", .body = &coarse, .status = 403,
      .pointer = "type", .value = "/problems/cross-site"},
-    {"from another site, as browsers say it", "POST", API "/check", "Sec-Fetch-Site: cross-site\r\n", .body = &coarse, .status = 403},
+    {"from another site, as browsers say it", "POST", API "/check", "Sec-Fetch-Site: cross-site\r\n", .body = &coarse,
+     .status = 403},
     {"from nowhere", "POST", API "/check", "Origin: null\r\n", .body = &coarse, .status = 403},
-    {"another name", "GET", API "/health", "Host: rebound.example:80\r\n", .status = 421, .pointer = "type", .value = "/problems/wrong-host"},
+    {"another name", "GET", API "/health", "Host: rebound.example:80\r\n", .status = 421, .pointer = "type",
+     .value = "/problems/wrong-host"},
     {"its own name", "GET", API "/health", "Host: localhost:1\r\n", .status = 200},
     {"version 6 by number", "GET", API "/health", "Host: [::1]\r\n", .status = 200},
     {"a name that looks like it", "GET", API "/health", "Host: 127.0.0.1.elsewhere.example\r\n", .status = 421},
@@ -121,26 +136,32 @@ static const struct command first[] = {
 
 static const struct command designs[] = {
     {"no designs", "GET", API "/designs", .status = 200, .pointer = "items", .value = "[]"},
-    {"add a design", "POST", API "/designs", .body = &coarse, .status = 201, .header = "Location", .holds = API "/designs/1", .pointer = "name",
-     .value = "paper pair"},
-    {"add one with a name", "POST", API "/designs", .body = &named, .status = 201, .header = "ETag", .holds = "\"2.1\"", .pointer = "name", .value = "mine"},
+    {"add a design", "POST", API "/designs", .body = &coarse, .status = 201, .header = "Location",
+     .holds = API "/designs/1", .pointer = "name", .value = "paper pair"},
+    {"add one with a name", "POST", API "/designs", .body = &named, .status = 201, .header = "ETag", .holds = "\"2.1\"",
+     .pointer = "name", .value = "mine"},
     {"a third", "POST", API "/designs", .body = &coarse, .status = 201, .pointer = "id", .value = "3"},
-    {"a wrong one", "POST", API "/designs", .text = "{\"name\":\"x\",\"design\":{}}", .status = 422, .pointer = "errors/0/pointer", .value = "/design/gear_pair/pinion_teeth"},
-    {"a name too long for its place", "POST", API "/designs", .text = "{\"name\":7,\"design\":{\"gear_pair\":{\"pinion_teeth\":20,\"gear_teeth\":40,"
-     "\"normal_module_mm\":3,\"helix_angle_deg\":20,\"face_width_mm\":30}}}", .status = 422},
+    {"a wrong one", "POST", API "/designs", .text = "{\"name\":\"x\",\"design\":{}}", .status = 422,
+     .pointer = "errors/0/pointer", .value = "/design/gear_pair/pinion_teeth"},
+    {"a name too long for its place", "POST", API "/designs",
+     .text = "{\"name\":7,\"design\":{\"gear_pair\":{\"pinion_teeth\":20,\"gear_teeth\":40,"
+             "\"normal_module_mm\":3,\"helix_angle_deg\":20,\"face_width_mm\":30}}}",
+     .status = 422},
     {"newest first", "GET", API "/designs?limit=2", .status = 200, .pointer = "items/0/id", .value = "3"},
     {"more to come", "GET", API "/designs?limit=2", .status = 200, .pointer = "next", .value = "2"},
     {"the next page", "GET", API "/designs?limit=2&cursor=2", .status = 200, .pointer = "items/0/id", .value = "1"},
     {"the last page", "GET", API "/designs?limit=2&cursor=2", .status = 200, .pointer = "next", .value = "null"},
     {"get it", "GET", API "/designs/1", .status = 200, .header = "ETag", .holds = "\"1.1\""},
-    {"known already", "GET", API "/designs/1", "If-None-Match: \"0.0\", W/\"1.1\"\r\n", .status = 304, .header = "ETag", .holds = "\"1.1\""},
+    {"known already", "GET", API "/designs/1", "If-None-Match: \"0.0\", W/\"1.1\"\r\n", .status = 304, .header = "ETag",
+     .holds = "\"1.1\""},
     {"known otherwise", "GET", API "/designs/1", "If-None-Match: \"1.0\"\r\n", .status = 200},
     {"replace blindly", "PUT", API "/designs/1", .body = &coarse, .status = 428},
-    {"replace", "PUT", API "/designs/1", "If-Match: \"1.1\"\r\n", .body = &named, .status = 200, .header = "ETag", .holds = "\"1.2\"", .pointer = "name",
-     .value = "mine"},
+    {"replace", "PUT", API "/designs/1", "If-Match: \"1.1\"\r\n", .body = &named, .status = 200, .header = "ETag",
+     .holds = "\"1.2\"", .pointer = "name", .value = "mine"},
     {"replace what has changed", "PUT", API "/designs/1", "If-Match: \"1.1\"\r\n", .body = &coarse, .status = 412},
     {"a weak tag does not match", "PUT", API "/designs/1", "If-Match: W/\"1.2\"\r\n", .body = &coarse, .status = 412},
-    {"replace whatever it is", "PUT", API "/designs/1", "If-Match: *\r\n", .body = &coarse, .status = 200, .header = "ETag", .holds = "\"1.3\""},
+    {"replace whatever it is", "PUT", API "/designs/1", "If-Match: *\r\n", .body = &coarse, .status = 200,
+     .header = "ETag", .holds = "\"1.3\""},
     {"replace nothing", "PUT", API "/designs/9", "If-Match: *\r\n", .body = &coarse, .status = 404},
     {"remove an old version", "DELETE", API "/designs/1", "If-Match: \"1.1\"\r\n", .status = 412},
     {"remove", "DELETE", API "/designs/1", .status = 204},
@@ -149,44 +170,59 @@ static const struct command designs[] = {
 };
 
 static const struct command analyses[] = {
-    {"not prepared", "POST", API "/analyze", .body = &coarse, .status = 202, .header = "Retry-After", .holds = "1", .pointer = "job/kind", .value = "prepare"},
-    {"wait for it", "POST", API "/analyze", "Prefer: wait=60\r\n", .body = &coarse, .status = 200, .pointer = "load_cases/0/outcome", .value = "converged"},
+    {"not prepared", "POST", API "/analyze", .body = &coarse, .status = 202, .header = "Retry-After", .holds = "1",
+     .pointer = "job/kind", .value = "prepare"},
+    {"wait for it", "POST", API "/analyze", "Prefer: wait=60\r\n", .body = &coarse, .status = 200,
+     .pointer = "load_cases/0/outcome", .value = "converged"},
     {"prepared now", "POST", API "/check", .body = &coarse, .status = 200, .pointer = "prepared", .value = "true"},
-    {"analyze", "POST", API "/analyze?maps=0", .body = &coarse, .status = 200, .pointer = "load_cases/2/torque_Nm", .value = "1035"},
-    {"analyze without stress", "POST", API "/analyze?root_stress=0&maps=0", .body = &coarse, .status = 200, .pointer = "load_cases/0/root_stress"},
-    {"analyze as CSV", "POST", API "/analyze", "Accept: text/csv\r\n", .body = &coarse, .status = 200, .header = "Content-Type", .holds = "text/csv"},
-    {"analyze as CSV by suffix", "POST", API "/analyze.csv", .body = &coarse, .status = 200, .header = "Content-Type", .holds = "text/csv"},
-    {"JSON is liked better", "POST", API "/analyze?maps=0", "Accept: text/csv;q=0.5, application/json\r\n", .body = &coarse, .status = 200,
-     .header = "Content-Type", .holds = "application/json"},
+    {"analyze", "POST", API "/analyze?maps=0", .body = &coarse, .status = 200, .pointer = "load_cases/2/torque_Nm",
+     .value = "1035"},
+    {"analyze without stress", "POST", API "/analyze?root_stress=0&maps=0", .body = &coarse, .status = 200,
+     .pointer = "load_cases/0/root_stress"},
+    {"analyze as CSV", "POST", API "/analyze", "Accept: text/csv\r\n", .body = &coarse, .status = 200,
+     .header = "Content-Type", .holds = "text/csv"},
+    {"analyze as CSV by suffix", "POST", API "/analyze.csv", .body = &coarse, .status = 200, .header = "Content-Type",
+     .holds = "text/csv"},
+    {"JSON is liked better", "POST", API "/analyze?maps=0", "Accept: text/csv;q=0.5, application/json\r\n",
+     .body = &coarse, .status = 200, .header = "Content-Type", .holds = "application/json"},
     {"no other suffix", "POST", API "/analyze.xml", .body = &coarse, .status = 404},
     {"no CSV of a check", "POST", API "/check.csv", .body = &coarse, .status = 404},
     {"a wrong lane", "POST", API "/analyze", "Easeoff-Lane: a b\r\n", .body = &coarse, .status = 400},
     {"a lane", "POST", API "/analyze?maps=0", "Easeoff-Lane: tab-1\r\n", .body = &coarse, .status = 200},
     {"sweep", "POST", API "/sweep", .body = &sweep, .status = 200, .pointer = "speed_rpm", .value = "[1000,1500,2000]"},
-    {"sweep as CSV", "POST", API "/sweep.csv", .body = &sweep, .status = 200, .header = "Content-Type", .holds = "text/csv"},
+    {"sweep as CSV", "POST", API "/sweep.csv", .body = &sweep, .status = 200, .header = "Content-Type",
+     .holds = "text/csv"},
     {"sweep without a design", "POST", API "/sweep", .text = "{\"speed\":{\"from\":1,\"to\":2}}", .status = 422},
-    {"sweep with a wrong key", "POST", API "/sweep", .text = "{\"design\":{},\"spede\":1,\"speed\":{\"from\":-1,\"to\":2}}", .status = 422,
+    {"sweep with a wrong key", "POST", API "/sweep",
+     .text = "{\"design\":{},\"spede\":1,\"speed\":{\"from\":-1,\"to\":2}}", .status = 422,
      .pointer = "errors/1/pointer", .value = "/speed_rpm/from"},
     {"formats", "GET", API "/export", .status = 200, .pointer = "items/0/name", .value = "flank-points"},
-    {"flank points", "POST", API "/export/flank-points", .body = &coarse, .status = 200, .header = "Content-Disposition",
-     .holds = "filename=\"paper-pair-flank-points.csv\""},
-    {"chart", "POST", API "/export/modification-chart", .body = &coarse, .status = 200, .header = "Content-Type", .holds = "text/csv"},
+    {"flank points", "POST", API "/export/flank-points", .body = &coarse, .status = 200,
+     .header = "Content-Disposition", .holds = "filename=\"paper-pair-flank-points.csv\""},
+    {"chart", "POST", API "/export/modification-chart", .body = &coarse, .status = 200, .header = "Content-Type",
+     .holds = "text/csv"},
     {"topography", "POST", API "/export/topography", .body = &coarse, .status = 200},
-    {"the design as a file", "POST", API "/export/design", .body = &coarse, .status = 200, .header = "Content-Type", .holds = "application/json"},
+    {"the design as a file", "POST", API "/export/design", .body = &coarse, .status = 200, .header = "Content-Type",
+     .holds = "application/json"},
     {"no such format", "POST", API "/export/picture", .body = &coarse, .status = 404},
 };
 
 static const struct command orders[] = {
-    {"an order without a design", "POST", API "/jobs", .text = "{}", .status = 422, .pointer = "errors/0/pointer", .value = "/design"},
-    {"an order with nonsense", "POST", API "/jobs", .text = "{\"kind\":\"cook\",\"priority\":11,\"fresh\":1,\"wish\":2,\"design\":{}}", .status = 422,
+    {"an order without a design", "POST", API "/jobs", .text = "{}", .status = 422, .pointer = "errors/0/pointer",
+     .value = "/design"},
+    {"an order with nonsense", "POST", API "/jobs",
+     .text = "{\"kind\":\"cook\",\"priority\":11,\"fresh\":1,\"wish\":2,\"design\":{}}", .status = 422,
      .pointer = "errors/3/pointer", .value = "/wish"},
     {"a wrong key", "POST", API "/jobs", "Idempotency-Key: a b\r\n", .body = &order, .status = 400},
-    {"an order", "POST", API "/jobs", "Idempotency-Key: one\r\n", .body = &order, .status = 202, .header = "Location", .holds = API "/jobs/2", .pointer = "kind",
-     .value = "optimize"},
-    {"the same again", "POST", API "/jobs", "Idempotency-Key: one\r\n", .body = &order, .status = 202, .pointer = "id", .value = "2"},
+    {"an order", "POST", API "/jobs", "Idempotency-Key: one\r\n", .body = &order, .status = 202, .header = "Location",
+     .holds = API "/jobs/2", .pointer = "kind", .value = "optimize"},
+    {"the same again", "POST", API "/jobs", "Idempotency-Key: one\r\n", .body = &order, .status = 202, .pointer = "id",
+     .value = "2"},
     {"another under its key", "POST", API "/jobs", "Idempotency-Key: one\r\n",
-     .text = "{\"kind\":\"prepare\",\"design\":{\"gear_pair\":{\"pinion_teeth\":20,\"gear_teeth\":40,\"normal_module_mm\":3,\"helix_angle_deg\":20,"
-             "\"face_width_mm\":30}}}", .status = 422, .pointer = "type", .value = "/problems/key-used"},
+     .text = "{\"kind\":\"prepare\",\"design\":{\"gear_pair\":{\"pinion_teeth\":20,\"gear_teeth\":40,\"normal_module_"
+             "mm\":3,\"helix_angle_deg\":20,"
+             "\"face_width_mm\":30}}}",
+     .status = 422, .pointer = "type", .value = "/problems/key-used"},
     {"the job", "GET", API "/jobs/2", .status = 200, .pointer = "design/gear_pair/pinion_teeth", .value = "17"},
     {"no job", "GET", API "/jobs/99", .status = 404},
     {"no job to stop", "POST", API "/jobs/99/cancel", .status = 404},
@@ -198,8 +234,10 @@ static const struct command orders[] = {
 static const struct command after[] = {
     {"the result", "GET", API "/jobs/2/result", .status = 200, .pointer = "true_evaluations", .value = "60"},
     {"its rows", "GET", API "/jobs/2/history?limit=7", .status = 200, .pointer = "items/6/ordinal", .value = "6"},
-    {"the next rows", "GET", API "/jobs/2/history?limit=7&cursor=6", .status = 200, .pointer = "items/0/ordinal", .value = "7"},
-    {"the last rows", "GET", API "/jobs/2/history?limit=7&cursor=55", .status = 200, .pointer = "next", .value = "null"},
+    {"the next rows", "GET", API "/jobs/2/history?limit=7&cursor=6", .status = 200, .pointer = "items/0/ordinal",
+     .value = "7"},
+    {"the last rows", "GET", API "/jobs/2/history?limit=7&cursor=55", .status = 200, .pointer = "next",
+     .value = "null"},
     {"its rows as CSV", "GET", API "/jobs/2/history.csv", .status = 200, .header = "Content-Type", .holds = "text/csv"},
     {"convergence", "GET", API "/jobs/2/generations", .status = 200, .pointer = "generation/0", .value = "0"},
     {"all problems", "GET", API "/history", .status = 200, .pointer = "problems/0/name", .value = "paper pair"},
@@ -207,14 +245,17 @@ static const struct command after[] = {
     {"one at a time", "GET", API "/jobs?limit=1", .status = 200, .pointer = "next", .value = "2"},
     {"too late to stop", "POST", API "/jobs/2/cancel", .status = 409, .pointer = "type", .value = "/problems/state"},
     {"nothing to repeat", "POST", API "/jobs/2/retry", .status = 409},
-    {"once more", "POST", API "/jobs/2/clone", .text = "{\"priority\":-3}", .status = 202, .pointer = "priority", .value = "-3"},
+    {"once more", "POST", API "/jobs/2/clone", .text = "{\"priority\":-3}", .status = 202, .pointer = "priority",
+     .value = "-3"},
     {"once more, as it is", "POST", API "/jobs/2/clone", .status = 202},
     {"once more, wrongly", "POST", API "/jobs/2/clone", .text = "{\"priority\":\"high\"}", .status = 422},
     {"remove it", "DELETE", API "/jobs/2", .status = 204},
     {"it is gone", "GET", API "/jobs/2", .status = 404},
 };
 
-#define RUN(table) for (size_t i = 0; i < sizeof table / sizeof table[0]; i++) run_command(&table[i])
+#define RUN(table)                                            \
+  for (size_t i = 0; i < sizeof table / sizeof table[0]; i++) \
+  run_command(&table[i])
 
 /* ---- both ways ---- */
 
@@ -246,8 +287,7 @@ static int count_operations(void)
   const char *key, *method;
   json_t *item, *operation;
   int count = 0;
-  json_object_foreach(json_object_get(description, "paths"), key, item)
-    json_object_foreach(item, method, operation)
+  json_object_foreach(json_object_get(description, "paths"), key, item) json_object_foreach(item, method, operation)
       count++;
   return count;
 }
@@ -275,11 +315,11 @@ static int check_references(const json_t *value)
   size_t i;
   int wrong = 0;
   if (json_is_array(value)) {
-    json_array_foreach(value, i, inner)
-      wrong += check_references(inner);
+    json_array_foreach(value, i, inner) wrong += check_references(inner);
     return wrong;
   }
-  json_object_foreach((json_t *)value, key, inner) {
+  json_object_foreach((json_t *)value, key, inner)
+  {
     wrong += strcmp(key, "$ref") == 0 && !follow(description, json_string_value(inner));
     wrong += check_references(inner);
   }
@@ -290,8 +330,7 @@ static void check_description(void)
 {
   const char *key;
   json_t *item;
-  json_object_foreach(json_object_get(description, "paths"), key, item)
-    check_path(key, item);
+  json_object_foreach(json_object_get(description, "paths"), key, item) check_path(key, item);
   check_routes();
   ok(check_references(description) == 0, "every schema that is named is there");
 }
@@ -318,10 +357,12 @@ static void check_export(void)
   FILE *stream = fopen(file, "w");
   fputs(coarse, stream);
   fclose(stream);
-  snprintf(command, sizeof command, "%s export %s --format flank-points", getenv("EASEOFF") ? getenv("EASEOFF") : "./easeoff", file);
+  snprintf(command, sizeof command, "%s export %s --format flank-points",
+           getenv("EASEOFF") ? getenv("EASEOFF") : "./easeoff", file);
   char *told = read_command(command);
   struct reply reply = call("POST", API "/export/flank-points", NULL, coarse);
-  ok(told && reply.size > 10000 && strcmp(told, reply.body) == 0, "the terminal exports the same bytes: %zu", reply.size);
+  ok(told && reply.size > 10000 && strcmp(told, reply.body) == 0, "the terminal exports the same bytes: %zu",
+     reply.size);
   free(told);
   free_reply(&reply);
 }
@@ -334,10 +375,12 @@ static void check_token(void)
       {"a wrong token", "GET", API "/designs", "Authorization: Bearer sesame-seeds\r\n", .status = 401},
       {"half a token", "GET", API "/designs", "Authorization: Bearer sesame\r\n", .status = 401},
       {"the token", "GET", API "/designs", "Authorization: Bearer sesame-seed\r\n", .status = 200},
-      {"any name with a token", "GET", API "/designs", "Host: gears.example\r\nAuthorization: Bearer sesame-seed\r\n", .status = 200},
+      {"any name with a token", "GET", API "/designs", "Host: gears.example\r\nAuthorization: Bearer sesame-seed\r\n",
+       .status = 200},
       {"a session is wanted", "GET", API "/session", .status = 200, .pointer = "required", .value = "true"},
       {"a wrong session", "POST", API "/session", .text = "{\"token\":\"x\"}", .status = 403},
-      {"a session", "POST", API "/session", .text = "{\"token\":\"sesame-seed\"}", .status = 204, .header = "Set-Cookie", .holds = "HttpOnly; SameSite=Strict"},
+      {"a session", "POST", API "/session", .text = "{\"token\":\"sesame-seed\"}", .status = 204,
+       .header = "Set-Cookie", .holds = "HttpOnly; SameSite=Strict"},
       {"a made-up cookie", "GET", API "/designs", "Cookie: easeoff_session=sesame-seed\r\n", .status = 401},
   };
   RUN(guarded);
@@ -383,17 +426,21 @@ static void check_pages(void)
   static const struct command pages[] = {
       {"the page", "GET", "/", .status = 200, .header = "Content-Type", .holds = "text/html"},
       {"its name", "HEAD", "/index.html", .status = 200, .header = "Content-Length", .holds = "34"},
-      {"it runs only its own scripts", "GET", "/", .status = 200, .header = "Content-Security-Policy", .holds = "script-src 'self'; style-src 'self'"},
+      {"it runs only its own scripts", "GET", "/", .status = 200, .header = "Content-Security-Policy",
+       .holds = "script-src 'self'; style-src 'self'"},
       {"it is asked for again", "GET", "/", .status = 200, .header = "Cache-Control", .holds = "no-cache"},
-      {"in no frame", "GET", "/", .status = 200, .header = "Content-Security-Policy", .holds = "frame-ancestors 'none'"},
-      {"a file that never changes", "GET", "/chunk-44KD4V7L.js", .status = 200, .header = "Cache-Control", .holds = "immutable"},
+      {"in no frame", "GET", "/", .status = 200, .header = "Content-Security-Policy",
+       .holds = "frame-ancestors 'none'"},
+      {"a file that never changes", "GET", "/chunk-44KD4V7L.js", .status = 200, .header = "Cache-Control",
+       .holds = "immutable"},
       {"a file in a folder", "GET", "/figures/chart.css", .status = 200, .header = "Content-Type", .holds = "text/css"},
       {"no folder", "GET", "/figures", .status = 404},
       {"nothing hidden", "GET", "/.secret", .status = 404},
       {"no link out", "GET", "/passwd.txt", .status = 404},
       {"no way out", "GET", "/figures/..%2f..%2f..%2fetc/passwd", .status = 400},
       {"what a page allows", "OPTIONS", "/", .status = 204, .header = "Allow", .holds = "GET, HEAD, OPTIONS"},
-      {"nothing there", "GET", "/nothing.html", .status = 404, .header = "Content-Type", .holds = "application/problem+json"},
+      {"nothing there", "GET", "/nothing.html", .status = 404, .header = "Content-Type",
+       .holds = "application/problem+json"},
   };
   RUN(pages);
   struct reply reply = call("GET", "/", NULL, NULL);
@@ -420,7 +467,8 @@ int main(void)
   order = order_text("optimize", "ga", 60, 1);
   json_t *both = json_pack("{s:s, s:O}", "name", "mine", "design", document);
   named = json_dumps(both, JSON_COMPACT);
-  json_t *range = json_pack("{s:O, s:n, s:{s:i, s:i, s:i}}", "design", document, "torque", "speed", "from", 1000, "to", 2000, "points", 3);
+  json_t *range = json_pack("{s:O, s:n, s:{s:i, s:i, s:i}}", "design", document, "torque", "speed", "from", 1000, "to",
+                            2000, "points", 3);
   sweep = json_dumps(range, JSON_COMPACT);
   json_decref(range);
   json_decref(both);

@@ -1,4 +1,5 @@
-/* The API's description against what every kind of work really answers: nothing comes that is not described, nothing described stays away for ever. */
+/* The API's description against what every kind of work really answers: nothing comes that is not described, nothing
+   described stays away for ever. */
 #include "description.h"
 
 /* ---- designs ---- */
@@ -8,8 +9,7 @@ static json_t *design_with(const char *algorithm, int budget, const char *patch)
 {
   json_t *design = coarse_document(algorithm, budget), *change = json_loads(patch, 0, NULL), *group;
   const char *key;
-  json_object_foreach(change, key, group)
-    json_object_update(json_object_get(design, key), group);
+  json_object_foreach(change, key, group) json_object_update(json_object_get(design, key), group);
   json_decref(change);
   return design;
 }
@@ -31,20 +31,24 @@ static void expect_answer(const char *what, const char *path, json_t *body)
   json_decref(answer);
 }
 
-static const char plain[] = "{}", single[] = "{\"gear_pair\": {\"ends\": 1, \"groove_width_mm\": 0}}", held[] = "{\"alignment\": {\"pinion_axial\": \"fixed\"}}",
-                  shafts[] = "{\"shafts\": {\"enabled\": true}}",
-                  fast[] = "{\"alignment\": {\"shaft_angle_error_in_plane_deg\": 0.2}, \"supports\": {\"mesh_damping_ratio\": 0.005}}";
+static const char
+    plain[] = "{}",
+    single[] = "{\"gear_pair\": {\"ends\": 1, \"groove_width_mm\": 0}}",
+    held[] = "{\"alignment\": {\"pinion_axial\": \"fixed\"}}", shafts[] = "{\"shafts\": {\"enabled\": true}}",
+    fast[] =
+        "{\"alignment\": {\"shaft_angle_error_in_plane_deg\": 0.2}, \"supports\": {\"mesh_damping_ratio\": 0.005}}";
 
 static void test_analyses(void)
 {
-  static const struct { const char *what, *path, *patch; } row[] = {
-      {"analysis", API "/analyze", plain},
-      {"analysis with everything", API "/analyze?histories=1&band=1", plain},
-      {"analysis with the least", API "/analyze?root_stress=0&maps=0", plain},
-      {"one end", API "/analyze?histories=1&band=1", single},
-      {"a pinion that is held", API "/analyze", held},
-      {"elastic shafts", API "/analyze", shafts},
-      {"a noisy pair", API "/analyze?histories=1", fast}};
+  static const struct {
+    const char *what, *path, *patch;
+  } row[] = {{"analysis", API "/analyze", plain},
+             {"analysis with everything", API "/analyze?histories=1&band=1", plain},
+             {"analysis with the least", API "/analyze?root_stress=0&maps=0", plain},
+             {"one end", API "/analyze?histories=1&band=1", single},
+             {"a pinion that is held", API "/analyze", held},
+             {"elastic shafts", API "/analyze", shafts},
+             {"a noisy pair", API "/analyze?histories=1", fast}};
   for (size_t i = 0; i < sizeof row / sizeof row[0]; i++)
     expect_answer(row[i].what, row[i].path, design_with("ga", 10, row[i].patch));
   json_t *design = design_with("ga", 10, plain);
@@ -54,15 +58,19 @@ static void test_analyses(void)
 
 static void test_sweeps(void)
 {
-  static const struct { const char *what, *patch, *torque, *speed; } row[] = {
+  static const struct {
+    const char *what, *patch, *torque, *speed;
+  } row[] = {
       {"a sweep of speeds", plain, "null", "{\"from\": 500, \"to\": 8000, \"points\": 16}"},
       {"a sweep of torques", plain, "{\"from\": 10, \"to\": 1000, \"points\": 3}", "null"},
       {"a map", plain, "{\"from\": 400, \"to\": 1000, \"points\": 2}", "{\"from\": 1500, \"to\": 2000, \"points\": 2}"},
       {"a sweep of one end", single, "null", "{\"from\": 1500, \"to\": 2000, \"points\": 2}"},
-      {"a sweep through lost contact", fast, "{\"from\": 60, \"to\": 60}", "{\"from\": 1000, \"to\": 9000, \"points\": 33}"}};
+      {"a sweep through lost contact", fast, "{\"from\": 60, \"to\": 60}",
+       "{\"from\": 1000, \"to\": 9000, \"points\": 33}"}};
   for (size_t i = 0; i < sizeof row / sizeof row[0]; i++)
     expect_answer(row[i].what, API "/sweep",
-                  json_pack("{s:o, s:o, s:o}", "design", design_with("ga", 10, row[i].patch), "torque", json_loads(row[i].torque, JSON_DECODE_ANY, NULL), "speed",
+                  json_pack("{s:o, s:o, s:o}", "design", design_with("ga", 10, row[i].patch), "torque",
+                            json_loads(row[i].torque, JSON_DECODE_ANY, NULL), "speed",
                             json_loads(row[i].speed, JSON_DECODE_ANY, NULL)));
 }
 
@@ -83,7 +91,9 @@ static void look_at(int id)
 static void test_job(const char *algorithm, int budget, const char *patch)
 {
   int status;
-  json_t *job = post(API "/jobs", json_pack("{s:s, s:o}", "kind", "optimize", "design", design_with(algorithm, budget, patch)), &status);
+  json_t *job = post(API "/jobs",
+                     json_pack("{s:s, s:o}", "kind", "optimize", "design", design_with(algorithm, budget, patch)),
+                     &status);
   int id = (int)json_integer_value(json_object_get(job, "id"));
   ok(status == 202 && wait_for_job(id, "done", 60), "%s: job %d", algorithm, id);
   json_decref(job);
@@ -97,12 +107,14 @@ static void test_jobs(void)
   test_job("credibility-ga", 40, plain);
   test_job("nsga2", 40, plain);
   test_job("ga", 25, single);
-  test_job("ga", 25, "{\"objective\": {\"robust\": \"mean\", \"scenarios\": [{\"shaft_angle_error_in_plane_deg\": 0.05}]}}");
+  test_job("ga", 25,
+           "{\"objective\": {\"robust\": \"mean\", \"scenarios\": [{\"shaft_angle_error_in_plane_deg\": 0.05}]}}");
 }
 
 static void test_lists(void)
 {
-  static const char *const path[] = {API "/history", API "/jobs", API "/schema", API "/export", API "/examples", API "/designs", API "/health"};
+  static const char *const path[] = {API "/history",  API "/jobs",    API "/schema", API "/export",
+                                     API "/examples", API "/designs", API "/health"};
   for (size_t i = 0; i < sizeof path / sizeof path[0]; i++) {
     struct reply reply = call("GET", path[i], NULL, NULL);
     ok(reply.status == 200, "%s: %d", path[i], reply.status);
@@ -121,7 +133,9 @@ int main(void)
   test_lists();
   ok(stop_server(SIGTERM) == 0, "it stops");
   remove_data_folder();
-  expect_all_of((const char *const[]){"Result", "Sweep", "OptimizationResult", "Job", "Generations", "JobHistoryRow", "History", NULL}, "JobError");
+  expect_all_of((const char *const[]){"Result", "Sweep", "OptimizationResult", "Job", "Generations", "JobHistoryRow",
+                                      "History", NULL},
+                "JobError");
   tell_what_was_heard();
   return tap_done();
 }

@@ -1,4 +1,5 @@
-/* Jobs from outside: their events, stopping and resuming them, a server that is killed, questions that overtake each other. */
+/* Jobs from outside: their events, stopping and resuming them, a server that is killed, questions that overtake each
+   other. */
 #include "description.h"
 
 static int add_job(const char *kind, const char *algorithm, int budget, int seed)
@@ -51,7 +52,8 @@ static int open_stream(const char *path, long long last)
   return connection;
 }
 
-/* The number of the next event and, in *job, the job it tells of (owned); 0: the stream ended. Chunk sizes stand on lines of their own. */
+/* The number of the next event and, in *job, the job it tells of (owned); 0: the stream ended. Chunk sizes stand on
+   lines of their own. */
 static long long next_event(int connection, json_t **job)
 {
   static char line[100000];
@@ -79,7 +81,9 @@ static void test_events(void)
       strcat(strcat(seen, state), " ");
     rising = rising && number > last;
     last = number;
-    state = strcmp(state, "done") == 0 && strcmp(json_string_value(json_object_get(job, "kind")), "optimize") == 0 ? "done" : "";
+    state = strcmp(state, "done") == 0 && strcmp(json_string_value(json_object_get(job, "kind")), "optimize") == 0
+                ? "done"
+                : "";
     events++;
     if (events == 2)
       middle = number;
@@ -134,7 +138,8 @@ static void test_kill(void)
   json_t *job = get_of_job(id, ""), *result = get_of_job(id, "/result");
   ok(count_true(id) == 400, "to its whole budget: %d", count_true(id));
   ok(json_integer_value(json_object_get(result, "true_evaluations")) == 400, "and its result says so: %d, %s",
-     (int)json_integer_value(json_object_get(result, "true_evaluations")), json_string_value(json_object_get(result, "stopped")));
+     (int)json_integer_value(json_object_get(result, "true_evaluations")),
+     json_string_value(json_object_get(result, "stopped")));
   ok(json_integer_value(json_object_get(job, "attempts")) == 2, "at the second attempt");
   json_t *history = call_json("GET", API "/history", NULL, NULL, NULL);
   ok(json_is_object(result) && json_is_object(history), "with a result");
@@ -153,7 +158,8 @@ static void test_park(void)
   ok(start_server("--quiet", "--threads", "2"), "started again");
   json_t *job = get_of_job(id, "");
   const char *state = json_string_value(json_object_get(job, "state"));
-  ok(state && strcmp(state, "failed") != 0 && strcmp(state, "cancelled") != 0, "the parked job waits or runs: %s", state ? state : "");
+  ok(state && strcmp(state, "failed") != 0 && strcmp(state, "cancelled") != 0, "the parked job waits or runs: %s",
+     state ? state : "");
   json_decref(job);
   ok(post_to_job(id, "cancel") == 202 && wait_for_job(id, "cancelled", 30), "it can be stopped for good");
 }
@@ -165,7 +171,8 @@ static void test_overtaking(void)
   enum { QUESTIONS = 4 };
   int connection[QUESTIONS], answered = 0, overtaken = 0;
   json_t *document = coarse_document("ga", 10);
-  json_object_set_new(json_object_get(document, "material"), "youngs_modulus_GPa", json_integer(190)); /* a pair that nobody prepared */
+  json_object_set_new(json_object_get(document, "material"), "youngs_modulus_GPa",
+                      json_integer(190)); /* a pair that nobody prepared */
   char *text = json_dumps(document, JSON_COMPACT);
   for (int i = 0; i < QUESTIONS; i++) {
     connection[i] = open_connection();

@@ -1,5 +1,5 @@
-/* Rig files over the API: uploads that are whole, broken, too large or cut off, a server that dies in the middle, and what the recordings
-   say beside the prediction. The recordings come from the API itself, with known faults. */
+/* Rig files over the API: uploads that are whole, broken, too large or cut off, a server that dies in the middle, and
+   what the recordings say beside the prediction. The recordings come from the API itself, with known faults. */
 #include "description.h"
 
 #include <dirent.h>
@@ -10,13 +10,16 @@ static const char form_type[] = "Content-Type: multipart/form-data; boundary=" E
 
 /* ---- forms ---- */
 
-struct form { char *text; size_t size; };
+struct form {
+  char *text;
+  size_t size;
+};
 
 static void add_part(struct form *form, const char *name, const char *file, const void *data, size_t size)
 {
   char head[400];
-  int length = snprintf(head, sizeof head, "--" EDGE "\r\nContent-Disposition: form-data; name=\"%s\"%s%s%s\r\n\r\n", name, file ? "; filename=\"" : "",
-                        file ? file : "", file ? "\"" : "");
+  int length = snprintf(head, sizeof head, "--" EDGE "\r\nContent-Disposition: form-data; name=\"%s\"%s%s%s\r\n\r\n",
+                        name, file ? "; filename=\"" : "", file ? file : "", file ? "\"" : "");
   form->text = realloc(form->text, form->size + (size_t)length + size + 3);
   memcpy(form->text + form->size, head, (size_t)length);
   if (size)
@@ -39,7 +42,10 @@ static void end_form(struct form *form)
   form->size += sizeof last - 1;
 }
 
-struct upload { const char *design, *label, *torque, *speed, *layout, *name; const struct reply *file, *gear; };
+struct upload {
+  const char *design, *label, *torque, *speed, *layout, *name;
+  const struct reply *file, *gear;
+};
 
 static struct form make_form(const struct upload *u)
 {
@@ -63,7 +69,8 @@ static struct reply post_bytes(const struct form *form, size_t size, size_t leng
   struct reply reply = {0};
   char head[300];
   int connection = open_connection();
-  snprintf(head, sizeof head, "POST " API "/measurements HTTP/1.1\r\nHost: localhost\r\n%sContent-Length: %zu\r\n\r\n", form_type, length);
+  snprintf(head, sizeof head, "POST " API "/measurements HTTP/1.1\r\nHost: localhost\r\n%sContent-Length: %zu\r\n\r\n",
+           form_type, length);
   send_text(connection, head);
   send_bytes(connection, form->text, size);
   bool whole = size == length || size == 0; /* else the client goes away in the middle */
@@ -112,7 +119,8 @@ static int count_folders(void)
   return count;
 }
 
-/* Folders of refused uploads go once the reply is out; those of a client that went away at the latest with the time a pause may last. */
+/* Folders of refused uploads go once the reply is out; those of a client that went away at the latest with the time a
+   pause may last. */
 static bool folders_become(int count)
 {
   for (double end = seconds_now() + 40; seconds_now() < end; wait_a_little())
@@ -150,14 +158,16 @@ static void test_rig(void)
 {
   modified = record("{" POINT "}");
   unmodified = record("{" POINT ",\"unmodified\":true}");
-  ok(modified.status == 200 && strncmp(modified.body, "t_s,angle1_deg", 14) == 0, "a recording of a rig that does not exist: %d", modified.status);
+  ok(modified.status == 200 && strncmp(modified.body, "t_s,angle1_deg", 14) == 0,
+     "a recording of a rig that does not exist: %d", modified.status);
   const char *header = header_of(&modified, "Content-Disposition");
   ok(header && strstr(header, "rig-828Nm-2000rpm.csv"), "is a file");
   struct reply again = record("{" POINT "}");
   ok(again.size == modified.size && memcmp(again.body, modified.body, again.size) == 0, "the same each time");
   free_reply(&again);
   again = record("{\"turns\":1e6}");
-  ok(again.status == 422 && !header_of(&again, "Content-Disposition"), "one that is too long is refused: %d", again.status);
+  ok(again.status == 422 && !header_of(&again, "Content-Disposition"), "one that is too long is refused: %d",
+     again.status);
   free_reply(&again);
   again = record("{\"turn\":1}");
   ok(again.status == 422 && strstr(again.body, "/rig/turn"), "and one with a misspelt key");
@@ -176,18 +186,22 @@ static void test_upload(void)
   const struct upload u = {"1", "modified", "828", "2000", NULL, "../../etc/r\xff\"un.csv", &modified, NULL};
   struct reply reply = post(&u), other;
   json_t *document = body_of(&reply);
-  ok(reply.status == 201 && strcmp(header_of(&reply, "Location"), API "/measurements/1") == 0, "an upload: %d %.200s", reply.status,
-     reply.status == 201 ? "" : reply.body);
-  ok(fabs(number_of(document, "speed_rpm", "mean") - 2000) < 0.1, "its speed is %.4f rpm", number_of(document, "speed_rpm", "mean"));
-  ok(number_of(document, "rms_m_per_s2", "value") > 1 && number_of(document, "rms_m_per_s2", "sigma") > 0, "its RMS %.4g +- %.2g m/s2",
-     number_of(document, "rms_m_per_s2", "value"), number_of(document, "rms_m_per_s2", "sigma"));
+  ok(reply.status == 201 && strcmp(header_of(&reply, "Location"), API "/measurements/1") == 0, "an upload: %d %.200s",
+     reply.status, reply.status == 201 ? "" : reply.body);
+  ok(fabs(number_of(document, "speed_rpm", "mean") - 2000) < 0.1, "its speed is %.4f rpm",
+     number_of(document, "speed_rpm", "mean"));
+  ok(number_of(document, "rms_m_per_s2", "value") > 1 && number_of(document, "rms_m_per_s2", "sigma") > 0,
+     "its RMS %.4g +- %.2g m/s2", number_of(document, "rms_m_per_s2", "value"),
+     number_of(document, "rms_m_per_s2", "sigma"));
   ok(json_array_size(json_object_get(document, "notes")) > 2, "what was guessed is said");
   const char *name = json_string_value(json_object_get(document, "file"));
-  ok(name && !strchr(name, '/') && !strchr(name, '\\') && is_discreet(&reply), "a hostile name becomes \"%s\"", name ? name : "");
+  ok(name && !strchr(name, '/') && !strchr(name, '\\') && is_discreet(&reply), "a hostile name becomes \"%s\"",
+     name ? name : "");
   free_reply(&reply);
   reply = post(&u);
   json_t *same = body_of(&reply);
-  ok(reply.status == 200 && json_equal(same, document) && count_kept() == 1 && folders_become(1), "sent again it is the same measurement: %d", reply.status);
+  ok(reply.status == 200 && json_equal(same, document) && count_kept() == 1 && folders_become(1),
+     "sent again it is the same measurement: %d", reply.status);
   free_reply(&reply);
   other = call("GET", API "/measurements/1", NULL, NULL);
   json_decref(same);
@@ -200,9 +214,12 @@ static void test_upload(void)
   ok(other.status == 304, "and not sent twice");
   free_reply(&other);
   other = call("GET", API "/measurements/1/file", NULL, NULL);
-  ok(other.status == 200 && other.size == modified.size && memcmp(other.body, modified.body, other.size) == 0, "the file comes back as it went");
-  const char *file_hash = json_string_value(json_object_get(json_array_get(json_object_get(document, "files"), 0), "sha256"));
-  ok(strstr(header_of(&other, "ETag"), file_hash) && strncmp(header_of(&other, "Repr-Digest"), "sha-256=:", 9) == 0, "with its check sum");
+  ok(other.status == 200 && other.size == modified.size && memcmp(other.body, modified.body, other.size) == 0,
+     "the file comes back as it went");
+  const char *file_hash =
+      json_string_value(json_object_get(json_array_get(json_object_get(document, "files"), 0), "sha256"));
+  ok(strstr(header_of(&other, "ETag"), file_hash) && strncmp(header_of(&other, "Repr-Digest"), "sha-256=:", 9) == 0,
+     "with its check sum");
   free_reply(&other);
   other = call("HEAD", API "/measurements/1/file", NULL, NULL);
   ok(other.status == 200 && (size_t)atol(header_of(&other, "Content-Length")) == modified.size, "or only its size");
@@ -220,7 +237,8 @@ static void split(const struct reply *whole, struct reply *pinion, struct reply 
   size_t sizes[2];
   FILE *stream[2] = {open_memstream(&pinion->body, &sizes[0]), open_memstream(&gear->body, &sizes[1])};
   char t[40], a[40], b[40];
-  for (const char *line = whole->body; sscanf(line, "%39[^,],%39[^,],%39[^\n]", t, a, b) == 3; line = strchr(line, '\n') + 1) {
+  for (const char *line = whole->body; sscanf(line, "%39[^,],%39[^,],%39[^\n]", t, a, b) == 3;
+       line = strchr(line, '\n') + 1) {
     fprintf(stream[0], "%s,%s\n", t, a);
     fprintf(stream[1], "%s,%s\n", t, b);
   }
@@ -236,9 +254,10 @@ static void test_two_files(void)
   split(&modified, &pinion, &gear);
   struct reply reply = post(&(struct upload){"1", "modified", "828", NULL, NULL, "pinion.csv", &pinion, &gear});
   json_t *document = body_of(&reply), *first = call_json("GET", API "/measurements/1", NULL, NULL, NULL);
-  ok(reply.status == 201 && json_array_size(json_object_get(document, "files")) == 2, "one file of each encoder: %d %.300s", reply.status,
-     reply.status == 201 ? "" : reply.body);
-  ok(fabs(number_of(document, "rms_m_per_s2", "value") / number_of(first, "rms_m_per_s2", "value") - 1) < 1e-6, "gives the same RMS");
+  ok(reply.status == 201 && json_array_size(json_object_get(document, "files")) == 2,
+     "one file of each encoder: %d %.300s", reply.status, reply.status == 201 ? "" : reply.body);
+  ok(fabs(number_of(document, "rms_m_per_s2", "value") / number_of(first, "rms_m_per_s2", "value") - 1) < 1e-6,
+     "gives the same RMS");
   free_reply(&reply);
   reply = call("DELETE", API "/measurements/5", NULL, NULL);
   ok(reply.status == 204 && count_kept() == 1 && folders_become(1), "and is deleted with its files");
@@ -264,19 +283,25 @@ static void add_sideband(const struct reply *whole, struct reply *changed)
 /* Raw tracks, a recording without its time, sidebands: each has keys of its own in the answer. */
 static void test_kinds(void)
 {
-  static const char untimed[] = "{\"time\":\"none\",\"sample_rate_Hz\":20000,\"columns\":{\"pinion\":2,\"gear\":3},\"kind\":\"angles\",\"unit\":\"deg\"}";
-  struct reply beside = {0}, tracks = record("{" POINT ",\"output\":\"sine-cosine\",\"pinion_lines\":100,\"gear_lines\":100}"), reply;
+  static const char untimed[] = "{\"time\":\"none\",\"sample_rate_Hz\":20000,\"columns\":{\"pinion\":2,\"gear\":3},"
+                                "\"kind\":\"angles\",\"unit\":\"deg\"}";
+  struct reply beside = {0},
+               tracks = record("{" POINT ",\"output\":\"sine-cosine\",\"pinion_lines\":100,\"gear_lines\":100}"), reply;
   add_sideband(&modified, &beside);
   reply = post(&(struct upload){"1", "modified", "828", "2000", "{\"lines\":100}", "tracks.csv", &tracks, NULL});
-  ok(reply.status == 201 && strstr(reply.body, "\"amplitude\""), "raw tracks: %d %.200s", reply.status, reply.status == 201 ? "" : reply.body);
+  ok(reply.status == 201 && strstr(reply.body, "\"amplitude\""), "raw tracks: %d %.200s", reply.status,
+     reply.status == 201 ? "" : reply.body);
   free_reply(&reply);
   reply = post(&(struct upload){"1", "modified", "828", "2000", untimed, "untimed.csv", &modified, NULL});
-  ok(reply.status == 201 && strstr(reply.body, "\"sample_rate_Hz\""), "rows without a time: %d %.200s", reply.status, reply.status == 201 ? "" : reply.body);
+  ok(reply.status == 201 && strstr(reply.body, "\"sample_rate_Hz\""), "rows without a time: %d %.200s", reply.status,
+     reply.status == 201 ? "" : reply.body);
   free_reply(&reply);
   reply = post(&(struct upload){"1", "modified", "828", "2000", NULL, "beside.csv", &beside, NULL});
   json_t *document = body_of(&reply);
   const json_t *first = json_array_get(json_object_get(json_object_get(document, "result"), "sidebands"), 0);
-  ok(json_integer_value(json_object_get(first, "mesh_order")) == 1 && json_integer_value(json_object_get(first, "turns")) == 1, "a sideband");
+  ok(json_integer_value(json_object_get(first, "mesh_order")) == 1 &&
+         json_integer_value(json_object_get(first, "turns")) == 1,
+     "a sideband");
   json_decref(document);
   free_reply(&reply);
   free_reply(&beside);
@@ -292,7 +317,11 @@ static void test_kinds(void)
 
 /* ---- what is refused ---- */
 
-static const struct refusal { const char *what, *settings; int status; const char *kind; } refusals[] = {
+static const struct refusal {
+  const char *what, *settings;
+  int status;
+  const char *kind;
+} refusals[] = {
     {"slip", "{" POINT ",\"fault\":\"slip\",\"fault_row\":5000,\"fault_size\":3}", 422, "slip"},
     {"wrong teeth", "{" POINT ",\"fault\":\"teeth\",\"fault_size\":1}", 422, "teeth"},
     {"a channel that stands still", "{" POINT ",\"fault\":\"constant\"}", 422, "constant"},
@@ -300,16 +329,17 @@ static const struct refusal { const char *what, *settings; int status; const cha
     {"swapped channels", "{" POINT ",\"fault\":\"swapped\"}", 201, "swapped"},
     {"reversed sign", "{" POINT ",\"fault\":\"reversed\"}", 201, "reversed"},
     {"dropped rows", "{" POINT ",\"fault\":\"dropped\",\"fault_row\":5000,\"fault_size\":5}", 201, "dropped"},
-    {"a decimal comma", "{" POINT ",\"decimal_comma\":true,\"separator\":\"semicolon\",\"byte_order_mark\":true,\"carriage_return\":true}", 201, NULL},
+    {"a decimal comma",
+     "{" POINT ",\"decimal_comma\":true,\"separator\":\"semicolon\",\"byte_order_mark\":true,\"carriage_return\":true}",
+     201, NULL},
 };
 
 static bool has_finding(const json_t *document, const char *kind)
 {
   json_t *finding;
   size_t i;
-  json_array_foreach(json_object_get(document, "findings"), i, finding)
-    if (strcmp(json_string_value(json_object_get(finding, "kind")), kind) == 0)
-      return true;
+  json_array_foreach(json_object_get(document, "findings"), i,
+                     finding) if (strcmp(json_string_value(json_object_get(finding, "kind")), kind) == 0) return true;
   return false;
 }
 
@@ -318,11 +348,13 @@ static void test_faults(void)
   for (size_t i = 0; i < sizeof refusals / sizeof *refusals; i++) {
     const struct refusal *r = &refusals[i];
     int before = count_kept();
-    struct reply file = record(r->settings), reply = post(&(struct upload){"1", "modified", "828", NULL, NULL, NULL, &file, NULL});
+    struct reply file = record(r->settings),
+                 reply = post(&(struct upload){"1", "modified", "828", NULL, NULL, NULL, &file, NULL});
     json_t *document = body_of(&reply);
     if (!ok(reply.status == r->status && (!r->kind || has_finding(document, r->kind)), "%s: %d", r->what, reply.status))
       printf("# %.600s\n", reply.body ? reply.body : "");
-    ok(count_kept() == before + (r->status == 201) && is_discreet(&reply), "%s", r->status == 201 ? "kept" : "nothing is kept");
+    ok(count_kept() == before + (r->status == 201) && is_discreet(&reply), "%s",
+       r->status == 201 ? "kept" : "nothing is kept");
     json_decref(document);
     free_reply(&file);
     free_reply(&reply);
@@ -333,29 +365,39 @@ static void test_faults(void)
 static void refuse(const char *what, const struct upload *u, int status, const char *holds)
 {
   struct reply reply = post(u);
-  if (!ok(reply.status == status && (!holds || (reply.body && strstr(reply.body, holds))) && is_discreet(&reply), "%s: %d", what, reply.status))
+  if (!ok(reply.status == status && (!holds || (reply.body && strstr(reply.body, holds))) && is_discreet(&reply),
+          "%s: %d", what, reply.status))
     printf("# %.400s\n", reply.body ? reply.body : "");
   free_reply(&reply);
 }
 
 static void test_words(void)
 {
-  struct reply cake = {.body = (char *)"no numbers at all\nin this file\n", .size = 31}, none = {.body = (char *)"", .size = 0};
+  struct reply cake = {.body = (char *)"no numbers at all\nin this file\n", .size = 31},
+               none = {.body = (char *)"", .size = 0};
   struct reply half = {.body = modified.body, .size = 40};
   int before = count_kept();
-  refuse("no such design", &(struct upload){"77", "modified", "828", NULL, NULL, NULL, &modified, NULL}, 422, "/design");
+  refuse("no such design", &(struct upload){"77", "modified", "828", NULL, NULL, NULL, &modified, NULL}, 422,
+         "/design");
   refuse("no label", &(struct upload){"1", NULL, "828", NULL, NULL, NULL, &modified, NULL}, 422, "/label");
   refuse("another label", &(struct upload){"1", "new", "828", NULL, NULL, NULL, &modified, NULL}, 422, "/label");
   refuse("no torque", &(struct upload){"1", "modified", NULL, NULL, NULL, NULL, &modified, NULL}, 422, "/torque_Nm");
-  refuse("a torque that is none", &(struct upload){"1", "modified", "1e400", NULL, NULL, NULL, &modified, NULL}, 422, "/torque_Nm");
-  refuse("everything at once", &(struct upload){NULL, "x", "-1", "fast", "{", NULL, &modified, NULL}, 422, "\"5 values are wrong.\"");
-  refuse("a layout with an unknown key", &(struct upload){"1", "modified", "828", NULL, "{\"colums\":{}}", NULL, &modified, NULL}, 422, "/layout/colums");
-  refuse("a column that is not there", &(struct upload){"1", "modified", "828", NULL, "{\"columns\":{\"pinion\":9}}", NULL, &modified, NULL}, 422, "/layout/columns");
+  refuse("a torque that is none", &(struct upload){"1", "modified", "1e400", NULL, NULL, NULL, &modified, NULL}, 422,
+         "/torque_Nm");
+  refuse("everything at once", &(struct upload){NULL, "x", "-1", "fast", "{", NULL, &modified, NULL}, 422,
+         "\"5 values are wrong.\"");
+  refuse("a layout with an unknown key",
+         &(struct upload){"1", "modified", "828", NULL, "{\"colums\":{}}", NULL, &modified, NULL}, 422,
+         "/layout/colums");
+  refuse("a column that is not there",
+         &(struct upload){"1", "modified", "828", NULL, "{\"columns\":{\"pinion\":9}}", NULL, &modified, NULL}, 422,
+         "/layout/columns");
   refuse("no file", &(struct upload){"1", "modified", "828", NULL, NULL, NULL, NULL, NULL}, 422, "file");
   refuse("an empty file", &(struct upload){"1", "modified", "828", NULL, NULL, NULL, &none, NULL}, 422, "empty");
   refuse("no table", &(struct upload){"1", "modified", "828", NULL, NULL, NULL, &cake, NULL}, 422, NULL);
   refuse("the beginning of a file", &(struct upload){"1", "modified", "828", NULL, NULL, NULL, &half, NULL}, 422, NULL);
-  refuse("not the speed that was said", &(struct upload){"1", "modified", "828", "3000", NULL, NULL, &modified, NULL}, 201, "\"speed\"");
+  refuse("not the speed that was said", &(struct upload){"1", "modified", "828", "3000", NULL, NULL, &modified, NULL},
+         201, "\"speed\"");
   ok(count_kept() == before + 1 && folders_become(before + 1), "of these only the last one is kept");
 }
 
@@ -374,8 +416,10 @@ static void test_bodies(void)
   struct form form = make_form(&u), twice = {0};
   int before = count_kept();
   expect("JSON in place of a form", call("POST", API "/measurements", NULL, "{}"), 415);
-  expect("a form of another kind", call("POST", API "/measurements", "Content-Type: application/x-www-form-urlencoded\r\n", "design=1"), 415);
-  expect("a form without a boundary", call("POST", API "/measurements", "Content-Type: multipart/form-data\r\n", "x"), 415);
+  expect("a form of another kind",
+         call("POST", API "/measurements", "Content-Type: application/x-www-form-urlencoded\r\n", "design=1"), 415);
+  expect("a form without a boundary", call("POST", API "/measurements", "Content-Type: multipart/form-data\r\n", "x"),
+         415);
   expect("no body", call("POST", API "/measurements", form_type, ""), 422);
   expect("a body that ends before its form", post_bytes(&form, form.size / 2, form.size / 2), 400);
   expect("a connection that ends before its body", post_bytes(&form, form.size / 2, form.size), 0);
@@ -405,15 +449,27 @@ static void test_bodies(void)
   expect("a part that is too long", post_bytes(&twice, twice.size, twice.size), 413);
   free(long_text);
   free(twice.text);
-  static const struct { const char *what, *text; int status; } odd[] = {
+  static const struct {
+    const char *what, *text;
+    int status;
+  } odd[] = {
       {"a part without a name", "--" EDGE "\r\nContent-Disposition: form-data\r\n\r\n1\r\n--" EDGE "--\r\n", 400},
       {"a part that is no part", "--" EDGE "\r\nnothing\r\n\r\n1\r\n--" EDGE "--\r\n", 400},
-      {"a part in base64", "--" EDGE "\r\nContent-Disposition: form-data; name=\"file\"; filename=\"a\"\r\nContent-Transfer-Encoding: base64\r\n\r\nMQ==\r\n--" EDGE "--\r\n", 415},
+      {"a part in base64",
+       "--" EDGE "\r\nContent-Disposition: form-data; name=\"file\"; filename=\"a\"\r\nContent-Transfer-Encoding: "
+       "base64\r\n\r\nMQ==\r\n--" EDGE "--\r\n",
+       415},
       {"other bytes", "\x1f\x8b\x08 nonsense", 422}};
   for (size_t i = 0; i < sizeof odd / sizeof *odd; i++)
-    expect(odd[i].what, post_bytes(&(struct form){(char *)odd[i].text, strlen(odd[i].text)}, strlen(odd[i].text), strlen(odd[i].text)), odd[i].status);
+    expect(
+        odd[i].what,
+        post_bytes(&(struct form){(char *)odd[i].text, strlen(odd[i].text)}, strlen(odd[i].text), strlen(odd[i].text)),
+        odd[i].status);
   ok(count_kept() == before && folders_become(before), "nothing is kept of any of them");
-  expect("from another site", call("POST", API "/measurements", "Origin: http://elsewhere.example\r\nContent-Type: multipart/form-data; boundary=x\r\n", "x"), 403);
+  expect("from another site",
+         call("POST", API "/measurements",
+              "Origin: http://elsewhere.example\r\nContent-Type: multipart/form-data; boundary=x\r\n", "x"),
+         403);
   free(form.text);
 }
 
@@ -424,7 +480,8 @@ static void test_kill(void)
   struct form form = make_form(&u);
   char head[300];
   int before = count_kept(), connection = open_connection();
-  snprintf(head, sizeof head, "POST " API "/measurements HTTP/1.1\r\nHost: localhost\r\n%sContent-Length: %zu\r\n\r\n", form_type, form.size);
+  snprintf(head, sizeof head, "POST " API "/measurements HTTP/1.1\r\nHost: localhost\r\n%sContent-Length: %zu\r\n\r\n",
+           form_type, form.size);
   send_text(connection, head);
   send_bytes(connection, form.text, form.size - 1000);
   ok(folders_become(before + 1), "a file is on its way");
@@ -446,18 +503,21 @@ static void test_comparison(void)
   struct reply reply = call("GET", API "/measurements/1/comparison", "Prefer: wait=60\r\n", NULL);
   json_t *document = body_of(&reply);
   double ratio = json_number_value(json_object_get(document, "ratio"));
-  ok(reply.status == 200 && fabs(ratio - 1) < 0.02, "a recording of the model lies beside the model: %.4f times", ratio);
+  ok(reply.status == 200 && fabs(ratio - 1) < 0.02, "a recording of the model lies beside the model: %.4f times",
+     ratio);
   free_reply(&reply);
   json_decref(document);
   document = call_json("GET", API "/designs/1/comparison", "Prefer: wait=60\r\n", NULL, NULL);
-  ok((int)json_array_size(json_object_get(document, "id")) == count_kept(), "all measurements of the design are in its comparison");
+  ok((int)json_array_size(json_object_get(document, "id")) == count_kept(),
+     "all measurements of the design are in its comparison");
   ok(json_array_size(json_object_get(document, "reductions")) > 0, "modified ones beside the unmodified one");
   json_decref(document);
   json_t *softer = json_deep_copy(design);
   json_object_set_new(json_object_get(softer, "supports"), "mesh_damping_ratio", json_real(0.2));
   char *text = json_dumps(softer, JSON_COMPACT);
   document = call_json("POST", API "/designs/1/comparison", "Prefer: wait=60\r\n", text, NULL);
-  ok(fabs(json_number_value(json_object_get(document, "ratio")) - 1) > 0.02, "beside a design with more damping they lie elsewhere");
+  ok(fabs(json_number_value(json_object_get(document, "ratio")) - 1) > 0.02,
+     "beside a design with more damping they lie elsewhere");
   json_decref(document);
   json_decref(softer);
   free(text);
@@ -471,17 +531,24 @@ static void test_comparison(void)
 /* The recordings were made with the design's own damping, 0.07: the fit has to find it in its range. */
 static void test_fit(void)
 {
-  struct reply reply = call("POST", API "/designs/1/fit", NULL, "{\"unknowns\":{\"mesh_damping_ratio\":[0.02,0.3]},\"measurements\":[1]}");
+  struct reply reply = call("POST", API "/designs/1/fit", NULL,
+                            "{\"unknowns\":{\"mesh_damping_ratio\":[0.02,0.3]},\"measurements\":[1]}");
   json_t *document = body_of(&reply), *unknown = json_array_get(json_object_get(document, "unknowns"), 0);
   double value = json_number_value(json_object_get(unknown, "value"));
   ok(reply.status == 200 && fabs(value - 0.07) < 0.004, "the damping is found: %.4f", value);
-  json_t *applied = json_object_get(json_object_get(json_object_get(document, "design"), "supports"), "mesh_damping_ratio");
-  ok(fabs(json_number_value(applied) - value) < 1e-9 && json_array_size(json_object_get(document, "id")) == 1, "and stands in the design that comes with it");
+  json_t *applied = json_object_get(json_object_get(json_object_get(document, "design"), "supports"),
+                                    "mesh_damping_ratio");
+  ok(fabs(json_number_value(applied) - value) < 1e-9 && json_array_size(json_object_get(document, "id")) == 1,
+     "and stands in the design that comes with it");
   json_decref(document);
   free_reply(&reply);
   expect("a fit of nothing", call("POST", API "/designs/1/fit", NULL, "{\"unknowns\":{}}"), 422);
-  expect("a fit of what is not known", call("POST", API "/designs/1/fit", NULL, "{\"unknowns\":{\"colour\":[0,1]}}"), 422);
-  expect("a fit without measurements", call("POST", API "/designs/1/fit", NULL, "{\"unknowns\":{\"mesh_damping_ratio\":[0.02,0.3]},\"measurements\":[]}"), 422);
+  expect("a fit of what is not known", call("POST", API "/designs/1/fit", NULL, "{\"unknowns\":{\"colour\":[0,1]}}"),
+         422);
+  expect("a fit without measurements",
+         call("POST", API "/designs/1/fit", NULL,
+              "{\"unknowns\":{\"mesh_damping_ratio\":[0.02,0.3]},\"measurements\":[]}"),
+         422);
 }
 
 /* The design becomes another pair: its measurements stay, and are left out with the reason. */
@@ -492,7 +559,8 @@ static void test_other_pair(void)
   char *text = json_dumps(other, JSON_COMPACT);
   expect("another pair in the place of the design", call("PUT", API "/designs/1", "If-Match: *\r\n", text), 200);
   json_t *document = call_json("GET", API "/designs/1/comparison", "Prefer: wait=60\r\n", NULL, NULL);
-  ok(json_array_size(json_object_get(document, "id")) == 0 && (int)json_array_size(json_object_get(document, "left_out")) == count_kept(),
+  ok(json_array_size(json_object_get(document, "id")) == 0 &&
+         (int)json_array_size(json_object_get(document, "left_out")) == count_kept(),
      "leaves its measurements out of the comparison");
   expect("and cannot be deleted", call("DELETE", API "/designs/1", NULL, NULL), 409);
   json_decref(document);

@@ -37,7 +37,8 @@ static void test_keep_alive(void)
   int connection = open_connection(), good = 0;
   struct reply reply;
   for (int i = 0; i < 5; i++) {
-    send_request(connection, i == 2 ? "POST" : "GET", i == 2 ? API "/check" : API "/health", NULL, i == 2 ? "{}" : NULL);
+    send_request(connection, i == 2 ? "POST" : "GET", i == 2 ? API "/check" : API "/health", NULL,
+                 i == 2 ? "{}" : NULL);
     good += read_reply(connection, &reply, false) && reply.status == (i == 2 ? 422 : 200);
     free_reply(&reply);
   }
@@ -50,7 +51,8 @@ static void test_pipelined(void)
   int connection = open_connection(), good = 0;
   struct reply reply;
   static const int expected[] = {200, 404, 200};
-  send_text(connection, "GET " API "/health HTTP/1.1\r\n" HOST "\r\nGET " API "/nothing HTTP/1.1\r\n" HOST "\r\nGET " API "/examples HTTP/1.1\r\n" HOST "\r\n");
+  send_text(connection, "GET " API "/health HTTP/1.1\r\n" HOST "\r\nGET " API "/nothing HTTP/1.1\r\n" HOST
+                        "\r\nGET " API "/examples HTTP/1.1\r\n" HOST "\r\n");
   for (int i = 0; i < 3; i++) {
     good += read_reply(connection, &reply, false) && reply.status == expected[i];
     free_reply(&reply);
@@ -64,14 +66,17 @@ static void test_declared_too_large(void)
   struct reply reply;
   char rest;
   int connection = open_connection();
-  send_text(connection, "POST " API "/check HTTP/1.1\r\n" HOST "Content-Type: application/json\r\nContent-Length: 2000000\r\n\r\n");
+  send_text(connection,
+            "POST " API "/check HTTP/1.1\r\n" HOST "Content-Type: application/json\r\nContent-Length: 2000000\r\n\r\n");
   bool told = read_reply(connection, &reply, false);
   const char *header = header_of(&reply, "Connection");
-  ok(told && reply.status == 413 && header && strcasecmp(header, "close") == 0, "a body that will be too large is refused before it comes");
+  ok(told && reply.status == 413 && header && strcasecmp(header, "close") == 0,
+     "a body that will be too large is refused before it comes");
   ok(recv(connection, &rest, 1, 0) == 0, "and the connection ends");
   free_reply(&reply);
   close(connection);
-  ok(send_raw("POST " API "/check HTTP/1.1\r\n" HOST "Content-Length: 99999999999999999999999\r\n\r\n") >= 400, "a length beyond all numbers");
+  ok(send_raw("POST " API "/check HTTP/1.1\r\n" HOST "Content-Length: 99999999999999999999999\r\n\r\n") >= 400,
+     "a length beyond all numbers");
 }
 
 /* A body in chunks of 1000 bytes; the status, 0: the connection was dropped. */
@@ -80,7 +85,8 @@ static int send_chunked(const char *body, size_t size)
   struct reply reply;
   char head[40];
   int connection = open_connection(), status = 0;
-  send_text(connection, "POST " API "/check HTTP/1.1\r\n" HOST "Content-Type: application/json\r\nTransfer-Encoding: chunked\r\n\r\n");
+  send_text(connection, "POST " API "/check HTTP/1.1\r\n" HOST
+                        "Content-Type: application/json\r\nTransfer-Encoding: chunked\r\n\r\n");
   for (size_t at = 0; at < size; at += 1000) {
     size_t part = size - at < 1000 ? size - at : 1000;
     snprintf(head, sizeof head, "%zx\r\n", part);
@@ -112,7 +118,9 @@ static void test_truncated(void)
   for (size_t length = 1; length < 120; length += 7) {
     int connection = open_connection();
     char text[200];
-    snprintf(text, sizeof text, "POST " API "/check HTTP/1.1\r\n" HOST "Content-Type: application/json\r\nContent-Length: 500\r\n\r\n{\"name\":\"half\"");
+    snprintf(text, sizeof text,
+             "POST " API "/check HTTP/1.1\r\n" HOST
+             "Content-Type: application/json\r\nContent-Length: 500\r\n\r\n{\"name\":\"half\"");
     send_bytes(connection, text, length);
     close(connection);
   }
@@ -121,10 +129,15 @@ static void test_truncated(void)
 
 static void test_malformed(void)
 {
-  static const char *const wrong[] = {"\r\n\r\n\r\n", "GET\r\n\r\n", "GET / HTTP/9.9\r\n" HOST "\r\n", "GET / HTTP/1.1\r\nHost\r\n\r\n", "GET / HTTP/1.1\r\n\r\n",
+  static const char *const wrong[] = {"\r\n\r\n\r\n",
+                                      "GET\r\n\r\n",
+                                      "GET / HTTP/9.9\r\n" HOST "\r\n",
+                                      "GET / HTTP/1.1\r\nHost\r\n\r\n",
+                                      "GET / HTTP/1.1\r\n\r\n",
                                       "POST " API "/check HTTP/1.1\r\n" HOST "Content-Length: -5\r\n\r\n",
                                       "POST " API "/check HTTP/1.1\r\n" HOST "Content-Length: 5x\r\n\r\n{}",
-                                      "POST " API "/check HTTP/1.1\r\n" HOST "Transfer-Encoding: chunked\r\n\r\nzz\r\n"};
+                                      "POST " API "/check HTTP/1.1\r\n" HOST
+                                      "Transfer-Encoding: chunked\r\n\r\nzz\r\n"};
   int answered = 0;
   for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
     int status = send_raw(wrong[i]);
@@ -174,7 +187,8 @@ static void test_continue(void)
 {
   struct reply reply;
   int connection = open_connection();
-  send_text(connection, "POST " API "/check HTTP/1.1\r\n" HOST "Content-Type: application/json\r\nExpect: 100-continue\r\nContent-Length: 2\r\n\r\n");
+  send_text(connection, "POST " API "/check HTTP/1.1\r\n" HOST
+                        "Content-Type: application/json\r\nExpect: 100-continue\r\nContent-Length: 2\r\n\r\n");
   bool asked = read_head(connection, &reply) && reply.status == 100;
   free_reply(&reply);
   send_text(connection, "{}");
@@ -190,7 +204,8 @@ static void test_dawdlers(void)
   int connection[DAWDLERS];
   for (int i = 0; i < DAWDLERS; i++) {
     connection[i] = open_connection();
-    send_text(connection[i], i % 2 ? "GET " API "/health HTTP/1.1\r\nHo" : "POST " API "/check HTTP/1.1\r\n" HOST "Content-Length: 400\r\n\r\n{");
+    send_text(connection[i], i % 2 ? "GET " API "/health HTTP/1.1\r\nHo"
+                                   : "POST " API "/check HTTP/1.1\r\n" HOST "Content-Length: 400\r\n\r\n{");
   }
   double begun = seconds_now();
   bool alive = is_alive();
@@ -213,7 +228,8 @@ static void test_rate(void)
     free_reply(&reply);
   }
   double allowed = 100 + 2 * (seconds_now() - begun);
-  ok(refused >= REQUESTS - allowed - 1 && refused <= 100, "who asks too much is refused: %d of %d, %.0f were allowed", refused, REQUESTS, allowed);
+  ok(refused >= REQUESTS - allowed - 1 && refused <= 100, "who asks too much is refused: %d of %d, %.0f were allowed",
+     refused, REQUESTS, allowed);
   ok(says_when, "and told when to come again");
 }
 
@@ -254,7 +270,8 @@ static void test_streams_and_stop(void)
     struct reply reply;
     stream[i] = open_connection();
     send_request(stream[i], "GET", API "/events", NULL, NULL);
-    opened += read_head(stream[i], &reply) && reply.status == 200 && strstr(header_of(&reply, "Content-Type"), "text/event-stream");
+    opened += read_head(stream[i], &reply) && reply.status == 200 &&
+              strstr(header_of(&reply, "Content-Type"), "text/event-stream");
     free_reply(&reply);
   }
   ok(opened == STREAMS, "%d streams of events", opened);
@@ -309,12 +326,14 @@ static void test_manager(const char *path)
     address.sun_path[0] = '\0';
   int manager = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
   setsockopt(manager, SOL_SOCKET, SO_RCVTIMEO, &limit, sizeof limit);
-  bool bound = bind(manager, (struct sockaddr *)&address, (socklen_t)(offsetof(struct sockaddr_un, sun_path) + length)) == 0;
+  bool bound = bind(manager, (struct sockaddr *)&address,
+                    (socklen_t)(offsetof(struct sockaddr_un, sun_path) + length)) == 0;
   setenv("NOTIFY_SOCKET", path, 1);
   bool started = start_server("--quiet");
   unsetenv("NOTIFY_SOCKET");
   ssize_t size = recv(manager, message, sizeof message - 1, 0);
-  ok(bound && started && size > 0 && strcmp(message, "READY=1") == 0 && is_alive(), "a service manager hears that the server is ready: %s", message);
+  ok(bound && started && size > 0 && strcmp(message, "READY=1") == 0 && is_alive(),
+     "a service manager hears that the server is ready: %s", message);
   ok(stop_server(SIGTERM) == 0, "and stops it");
   close(manager);
 }

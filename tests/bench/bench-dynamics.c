@@ -1,4 +1,5 @@
-/* Speed of the dynamics alone: three torques under the tangent law, mirror and unequal ends, contact loss, a speed sweep. */
+/* Speed of the dynamics alone: three torques under the tangent law, mirror and unequal ends, contact loss, a speed
+   sweep. */
 #include <stdio.h>
 #include <time.h>
 

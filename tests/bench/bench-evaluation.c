@@ -1,6 +1,6 @@
-/* Times true evaluations of the paper pair (three torques, default resolution) on finite elements: by stage, for equal and different ends,
-   when one value of the modification changes, and on one and two threads; and the memory of a worker. An argument names a cache
-   directory, a second one the number of repeats. */
+/* Times true evaluations of the paper pair (three torques, default resolution) on finite elements: by stage, for equal
+   and different ends, when one value of the modification changes, and on one and two threads; and the memory of a
+   worker. An argument names a cache directory, a second one the number of repeats. */
 #include "document/design_document.h"
 #include "document/example.h"
 #include "evaluation/evaluator.h"
@@ -86,7 +86,8 @@ static double median_of(int n, const struct times *times, size_t offset)
 
 #define MEDIAN(member) median_of(repeats, times, offsetof(struct times, member))
 
-/* An end whose inputs have not changed is not computed again, so the pinion's tip relief grows from one evaluation to the next: by step[end], m. */
+/* An end whose inputs have not changed is not computed again, so the pinion's tip relief grows from one evaluation to
+   the next: by step[end], m. */
 static void change(struct eo_design *design, const double step[2])
 {
   for (int end = 0; end < 2; end++)
@@ -112,8 +113,8 @@ static void time_design(const char *what, const struct eo_pair *pair, struct eo_
     change(&design, step);
     times[i] = evaluate(evaluator, pair, &design, before, &value);
   }
-  printf("%-36s %7.2f %8.2f %7.3f %9.2f %10.4f   J = %.4f\n", what, MEDIAN(total), MEDIAN(contact), MEDIAN(impact), MEDIAN(dynamics),
-         MEDIAN(objective), objective);
+  printf("%-36s %7.2f %8.2f %7.3f %9.2f %10.4f   J = %.4f\n", what, MEDIAN(total), MEDIAN(contact), MEDIAN(impact),
+         MEDIAN(dynamics), MEDIAN(objective), objective);
   fflush(stdout);
   eo_evaluator_free(evaluator);
 }
@@ -156,7 +157,8 @@ static void time_threads(const struct eo_pair *pair, const struct eo_design *des
       pthread_join(thread[i], NULL);
     double rate = 1e3 * threads * 2 * repeats / (now(CLOCK_MONOTONIC) - start);
     alone = threads == 1 ? rate : alone;
-    printf("%d thread%s %6.1f evaluations/s, %.2f times one thread\n", threads, threads == 1 ? ": " : "s:", rate, rate / alone);
+    printf("%d thread%s %6.1f evaluations/s, %.2f times one thread\n", threads, threads == 1 ? ": " : "s:", rate,
+           rate / alone);
   }
 }
 
@@ -180,7 +182,8 @@ static void measure_memory(const struct eo_pair *pair, const struct eo_design *d
   eo_evaluator_free(evaluator);
 }
 
-/* Operations of the loaded contact of one end and one torque: two factorisations, five evaluations and the tangent per position. */
+/* Operations of the loaded contact of one end and one torque: two factorisations, five evaluations and the tangent per
+   position. */
 static double operations(const struct eo_contact_grid *grid)
 {
   double sum = 0;
@@ -194,7 +197,8 @@ static double operations(const struct eo_contact_grid *grid)
 
 int main(int argc, char **argv)
 {
-  struct eo_design aligned = design_of("paper-case-a", 0), tilted = design_of("paper-case-a", 0.1), different = design_of("paper-case-b", 0.1);
+  struct eo_design aligned = design_of("paper-case-a", 0), tilted = design_of("paper-case-a", 0.1),
+                   different = design_of("paper-case-b", 0.1);
   struct eo_design plain = design_of("paper", 0.1);
   struct eo_pair_options options = {.cache_directory = argc > 1 ? argv[1] : NULL};
   struct eo_pair *pair;
@@ -208,9 +212,11 @@ int main(int argc, char **argv)
   if (eo_pair_new(&pair, &aligned, &options, NULL, &error))
     stop(&error);
   printf("preparation %.2f s%s, contact grid of %d positions with up to %d points and %d modes\n", pair->seconds,
-         eo_flexibility_report(pair->flexibility)->from_cache ? " (from the cache)" : "", pair->grid->positions, pair->grid->most_points,
-         pair->grid->most_rank);
-  printf("\nms, medians of %d: processor time, then stages by the clock\n%36s   total  contact  impact  dynamics  objective\n", repeats, "");
+         eo_flexibility_report(pair->flexibility)->from_cache ? " (from the cache)" : "", pair->grid->positions,
+         pair->grid->most_points, pair->grid->most_rank);
+  printf("\nms, medians of %d: processor time, then stages by the clock\n%36s   total  contact  impact  dynamics  "
+         "objective\n",
+         repeats, "");
   time_design("case A, aligned: equal ends", pair, aligned, both_ends);
   time_design("case A, 0.1 deg", pair, tilted, both_ends);
   time_design("case B, 0.1 deg", pair, different, both_ends);

@@ -28,7 +28,8 @@ static void place_points(const struct eo_geometry *g, struct eo_flank_point *poi
 {
   for (int i = 0; i < POINTS; i++) {
     int pair = i / 30 - 1;
-    double eta = g->face_width * ((i % 30 + 0.5) / 30 - 0.5), s = pair * g->transverse_base_pitch + eta * tan(g->base_helix_angle);
+    double eta = g->face_width * ((i % 30 + 0.5) / 30 - 0.5),
+           s = pair * g->transverse_base_pitch + eta * tan(g->base_helix_angle);
     s = fmin(fmax(s, g->path_start), g->path_end);
     point[i] = (struct eo_flank_point){.pair = pair, .s = {s, s}, .eta = eta};
   }
@@ -65,7 +66,8 @@ static void print_report(const struct eo_flexibility_report *report)
   for (int m = 0; m < 2; m++) {
     const struct eo_member_times *t = &report->times[m];
     printf("%-6s unknowns %.0f, factor %.3g entries, %.0f MB\n", name[m], t->unknowns, t->entries, 1e-6 * t->memory);
-    printf("  mesh and assembly %.3f s, ordering %.3f s, factorisation %.3f s, compliance %.3f s, stress %.3f s, half tooth %.3f s\n",
+    printf("  mesh and assembly %.3f s, ordering %.3f s, factorisation %.3f s, compliance %.3f s, stress %.3f s, half "
+           "tooth %.3f s\n",
            t->mesh, t->ordering, t->factorisation, t->compliance, t->stress, t->half_tooth);
     printf("  smallest eigenvalue over largest %.2e\n", report->smallest_eigenvalue[m]);
   }
@@ -83,12 +85,14 @@ int main(int argc, char **argv)
   if (eo_geometry_init(&geometry, &pair, &error))
     return 1;
   for (int i = 0; i < repeats; i++) {
-    if (eo_flexibility_prepare(&geometry, &pair, &material, &settings, argc > 2 ? argv[2] : NULL, NULL, &flexibility, &error)) {
+    if (eo_flexibility_prepare(&geometry, &pair, &material, &settings, argc > 2 ? argv[2] : NULL, NULL, &flexibility,
+                               &error)) {
       printf("%s\n", error.text);
       return 1;
     }
     const struct eo_flexibility_report *report = eo_flexibility_report(flexibility);
-    printf("preparation of both members%s %.3f s\n", report->from_cache ? " (read from the cache)" : "", report->seconds);
+    printf("preparation of both members%s %.3f s\n", report->from_cache ? " (read from the cache)" : "",
+           report->seconds);
     if (i == repeats - 1) {
       print_report(report);
       time_evaluation(flexibility, &geometry);

@@ -1,9 +1,11 @@
-/* Optimizers on the real objective of the paper's pair, Case A (5 variables, both ends alike) and Case B (10): J after 100,
-   200, 400 and all of 1000 true evaluations (--budget), beside NLopt's and pagmo's when they are there.
+/* Optimizers on the real objective of the paper's pair, Case A (5 variables, both ends alike) and Case B (10): J after
+   100, 200, 400 and all of 1000 true evaluations (--budget), beside NLopt's and pagmo's when they are there.
 
-     bench-optimizer-gear [--quick] [--front] [--seeds N] [--case a|b] [--plain] [--coarse] [--budget N] [--target VALUE] [--algorithm NAME] [--set KEY=NUMBER]... [--cache DIR]
+     bench-optimizer-gear [--quick] [--front] [--seeds N] [--case a|b] [--plain] [--coarse] [--budget N] [--target
+   VALUE] [--algorithm NAME] [--set KEY=NUMBER]... [--cache DIR]
 
-   --front: Pareto fronts of the three objectives in those of the unmodified pair. --plain: without tip edge contact, three teeth in the sector, no coupling between neighbours.
+   --front: Pareto fronts of the three objectives in those of the unmodified pair. --plain: without tip edge contact,
+   three teeth in the sector, no coupling between neighbours.
    --coarse: a third of the positions, cells and harmonics: an objective of the same kind in a fraction of the time. */
 #include "contest.h"
 #include "document/design_document.h"
@@ -62,7 +64,9 @@ static void objectives(void *context, const double *x, double *f)
   struct gear *gear = context;
   evaluate(gear, x);
   for (int i = 0; i < CONTEST_OBJECTIVES; i++)
-    f[i] = gear->analysis->value.sums.failed ? INFINITY : gear->analysis->value.sums.f[i] / gear->analysis->unmodified_value.sums.f[i];
+    f[i] = gear->analysis->value.sums.failed
+               ? INFINITY
+               : gear->analysis->value.sums.f[i] / gear->analysis->unmodified_value.sums.f[i];
 }
 
 static void prepare(struct trace *trace, const struct contest_problem *problem, uint64_t seed)

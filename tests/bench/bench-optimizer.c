@@ -1,8 +1,9 @@
-/* Optimizers on test problems, beside NLopt's and pagmo's when they are there: medians (quartiles) of the best value found after 100,
-   200, 400 and all of 1000 true evaluations (--budget), and the time per evaluation, the problem's own included. Prints a table; asserts
-   nothing.
+/* Optimizers on test problems, beside NLopt's and pagmo's when they are there: medians (quartiles) of the best value
+   found after 100, 200, 400 and all of 1000 true evaluations (--budget), and the time per evaluation, the problem's own
+   included. Prints a table; asserts nothing.
 
-     bench-optimizer [--quick] [--front] [--seeds N] [--variables N] [--problem NAME] [--budget N] [--target VALUE] [--algorithm NAME] [--set KEY=NUMBER]...
+     bench-optimizer [--quick] [--front] [--seeds N] [--variables N] [--problem NAME] [--budget N] [--target VALUE]
+   [--algorithm NAME] [--set KEY=NUMBER]...
 
    --front: Pareto fronts of DTLZ2 with three objectives. */
 #include "contest.h"

@@ -1,5 +1,6 @@
-/* Wall time of searches on the paper pair, and what of it is not the model: bench-study [CACHE-DIRECTORY [GENERATIONS]].
-   Prints: case, algorithm, J, true evaluations, individuals, PFC, seconds, and the shares of optimizer and history. */
+/* Wall time of searches on the paper pair, and what of it is not the model: bench-study [CACHE-DIRECTORY
+   [GENERATIONS]]. Prints: case, algorithm, J, true evaluations, individuals, PFC, seconds, and the shares of optimizer
+   and history. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <sys/resource.h>
@@ -10,7 +11,10 @@
 #include "document/example.h"
 #include "jobs/study.h"
 
-static const struct { const char *algorithm; int budget; } searches[] = {{"fpga", 0}, {"ga", 0}, {"credibility-ga", 400}, {"credibility-ga", 1000}, {"nsga2", 400}};
+static const struct {
+  const char *algorithm;
+  int budget;
+} searches[] = {{"fpga", 0}, {"ga", 0}, {"credibility-ga", 400}, {"credibility-ga", 1000}, {"nsga2", 400}};
 enum { SEARCHES = sizeof searches / sizeof searches[0] };
 
 static struct eo_error error;
@@ -40,8 +44,10 @@ static void search(const struct eo_design *design, const struct eo_pair *pair, c
   if (eo_store_open(&plan.store, folder, EO_STORE_WRITE, &error) || eo_study_run(&plan, &r, &error))
     fail(design->optimization.algorithm);
   double overhead = r.seconds - r.model_seconds;
-  printf("%-4s %-15s %8.4f %6d %6d %6.1f %8.2f %6.1f %6.1f %6.1f\n", name, design->optimization.algorithm, r.best.value.objective, r.true_evaluations, r.individuals,
-         100. * r.true_evaluations / r.individuals, r.seconds, 100 * r.optimizer_seconds / r.seconds, 100 * r.store_seconds / r.seconds, 100 * overhead / r.seconds);
+  printf("%-4s %-15s %8.4f %6d %6d %6.1f %8.2f %6.1f %6.1f %6.1f\n", name, design->optimization.algorithm,
+         r.best.value.objective, r.true_evaluations, r.individuals, 100. * r.true_evaluations / r.individuals,
+         r.seconds, 100 * r.optimizer_seconds / r.seconds, 100 * r.store_seconds / r.seconds,
+         100 * overhead / r.seconds);
   fflush(stdout);
   eo_study_result_done(&r);
   eo_store_close(plan.store);
@@ -56,9 +62,12 @@ int main(int argc, char **argv)
   char folder[] = "/tmp/easeoff-bench-XXXXXX";
   struct rusage usage;
   eo_example_build("paper", &design);
-  if (!mkdtemp(folder) || eo_design_complete(&design, &geometry, &error) || eo_pair_new(&pair, &design, &options, NULL, &error))
+  if (!mkdtemp(folder) || eo_design_complete(&design, &geometry, &error) ||
+      eo_pair_new(&pair, &design, &options, NULL, &error))
     fail("preparation");
-  printf("%d threads\ncase algorithm              J   true indiv.  PFC %%        s  opt %%  hist %%  all but the model %%\n", eo_parallel_cores());
+  printf("%d threads\ncase algorithm              J   true indiv.  PFC %%        s  opt %%  hist %%  all but the model "
+         "%%\n",
+         eo_parallel_cores());
   for (int which = 0; which < 2; which++)
     for (int i = 0; i < SEARCHES; i++) {
       eo_example_build("paper", &design);

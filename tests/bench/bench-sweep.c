@@ -24,7 +24,8 @@ static double cpu(void)
   return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-static void time_sweep(const struct eo_pair *pair, const struct eo_design *design, const char *name, const struct eo_sweep_plan *plan)
+static void time_sweep(const struct eo_pair *pair, const struct eo_design *design, const char *name,
+                       const struct eo_sweep_plan *plan)
 {
   double best = 1e9, best_cpu = 1e9;
   int lost = 0;
@@ -44,7 +45,8 @@ static void time_sweep(const struct eo_pair *pair, const struct eo_design *desig
         lost += sweep.point[v][EO_SWEEP_UP][j].outcome != EO_VIBRATION_CONVERGED;
     eo_sweep_done(&sweep);
   }
-  printf("%-28s %d thread%s  wall %7.3f s  cpu %7.3f s  points not in full contact %d\n", name, plan->threads, plan->threads == 1 ? " " : "s", best, best_cpu, lost);
+  printf("%-28s %d thread%s  wall %7.3f s  cpu %7.3f s  points not in full contact %d\n", name, plan->threads,
+         plan->threads == 1 ? " " : "s", best, best_cpu, lost);
 }
 
 int main(int argc, char **argv)
@@ -66,8 +68,10 @@ int main(int argc, char **argv)
   for (int i = 0; i < TORQUES; i++)
     torque[i] = 100 + 1400. * i / (TORQUES - 1);
   for (int threads = 1; threads <= 2; threads++) {
-    time_sweep(pair, &design, "200 speeds, with unmodified", &(struct eo_sweep_plan){.speeds = SPEEDS, .speed = speed, .threads = threads});
-    time_sweep(pair, &design, "50 torques, with unmodified", &(struct eo_sweep_plan){.torques = TORQUES, .torque = torque, .threads = threads});
+    time_sweep(pair, &design, "200 speeds, with unmodified",
+               &(struct eo_sweep_plan){.speeds = SPEEDS, .speed = speed, .threads = threads});
+    time_sweep(pair, &design, "50 torques, with unmodified",
+               &(struct eo_sweep_plan){.torques = TORQUES, .torque = torque, .threads = threads});
   }
   eo_pair_free(pair);
   return 0;

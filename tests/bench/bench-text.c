@@ -1,4 +1,5 @@
-/* How fast and in how much memory text is read: bench-text [MB [FOLDER]]. Writes a file of that size there, reads it, removes it. */
+/* How fast and in how much memory text is read: bench-text [MB [FOLDER]]. Writes a file of that size there, reads it,
+   removes it. */
 #include "measurement/reader.h"
 
 #include <stdio.h>
@@ -24,7 +25,8 @@ static double write_rows(const char *path, const char *format, double size)
   fputs("t_s,angle1_deg,angle2_deg\n", file);
   for (long row = 0; row < 1000; row++) {
     double t = (double)row * 5e-5;
-    length += snprintf(block + length, sizeof block - (size_t)length, format, t, 360 * 33.3 * t + 17.15407647, 360 * 12.9 * t + 63.02719913);
+    length += snprintf(block + length, sizeof block - (size_t)length, format, t, 360 * 33.3 * t + 17.15407647,
+                       360 * 12.9 * t + 63.02719913);
   }
   double written = 0;
   while (written < size && fwrite(block, 1, (size_t)length, file) == (size_t)length)
@@ -35,7 +37,7 @@ static double write_rows(const char *path, const char *format, double size)
 static void measure(const char *path, const char *directory, const char *what, const char *format, double size)
 {
   double written = write_rows(path, format, size);
-  struct eo_reader_options options = { .spool_directory = directory };
+  struct eo_reader_options options = {.spool_directory = directory};
   struct eo_recording *recording = NULL;
   struct eo_error error;
   double start = now(CLOCK_MONOTONIC), start_cpu = now(CLOCK_THREAD_CPUTIME_ID);
@@ -44,8 +46,9 @@ static void measure(const char *path, const char *directory, const char *what, c
   double wall = now(CLOCK_MONOTONIC) - start, cpu = now(CLOCK_THREAD_CPUTIME_ID) - start_cpu;
   struct rusage usage;
   getrusage(RUSAGE_SELF, &usage);
-  printf("%-28s %6.0f MB, %9lld rows: %5.0f MB/s (%5.0f MB/s of the processor), at most %4ld MB of memory\n", what, written * 1e-6,
-         recording ? (long long)eo_recording_rows(recording) : 0, written * 1e-6 / wall, written * 1e-6 / cpu, usage.ru_maxrss / 1024);
+  printf("%-28s %6.0f MB, %9lld rows: %5.0f MB/s (%5.0f MB/s of the processor), at most %4ld MB of memory\n", what,
+         written * 1e-6, recording ? (long long)eo_recording_rows(recording) : 0, written * 1e-6 / wall,
+         written * 1e-6 / cpu, usage.ru_maxrss / 1024);
   fflush(stdout);
   eo_recording_free(recording);
   unlink(path);

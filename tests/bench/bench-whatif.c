@@ -1,6 +1,7 @@
-/* How long POST /analyze takes over the loopback, in a real server, on the paper's pair as it is by default with all curves: alone, beside
-   connections that ask for what they have already, beside an optimization, beside both. bench-whatif [CACHE-DIRECTORY [REQUESTS]]; $EASEOFF is
-   the program. The processor time is the server's, so the first lines can be compared where the clock cannot. */
+/* How long POST /analyze takes over the loopback, in a real server, on the paper's pair as it is by default with all
+   curves: alone, beside connections that ask for what they have already, beside an optimization, beside both.
+   bench-whatif [CACHE-DIRECTORY [REQUESTS]]; $EASEOFF is the program. The processor time is the server's, so the first
+   lines can be compared where the clock cannot. */
 #include "../api/client.h"
 
 enum { MOST_REQUESTS = 10000, CONNECTIONS = 1000, GETS_PER_SECOND = 1000 };
@@ -31,7 +32,8 @@ static char *next_design(bool right)
   static double relief = 14;
   relief += 0.01;
   for (int end = 0; end <= right; end++) {
-    json_t *flank = json_object_get(json_object_get(json_object_get(design, "modification"), "pinion"), end ? "right" : "left");
+    json_t *flank = json_object_get(json_object_get(json_object_get(design, "modification"), "pinion"),
+                                    end ? "right" : "left");
     json_object_set_new(flank, "tip_relief_um", json_real(relief));
   }
   return json_dumps(design, JSON_COMPACT | JSON_REAL_PRECISION(9));
@@ -71,7 +73,8 @@ static void measure(const char *what, const char *headers, bool right)
   for (int i = -3; i < requests; i++) {
     char *body = next_design(right);
     double before = processor_ms(), start = seconds_now();
-    if (!send_request(connection, "POST", API "/analyze?histories=1", headers, body) || !(size = read_result(connection)))
+    if (!send_request(connection, "POST", API "/analyze?histories=1", headers, body) ||
+        !(size = read_result(connection)))
       fail("A what-if was not answered.");
     double end = seconds_now();
     if (i >= 0) {
@@ -83,8 +86,8 @@ static void measure(const char *what, const char *headers, bool right)
   close(connection);
   qsort(wall, (size_t)requests, sizeof *wall, compare);
   qsort(used, (size_t)requests, sizeof *used, compare);
-  printf("%-46s %6.0f %7.1f %7.1f %7.1f %7.1f %7.1f\n", what, (double)size / 1e3, wall[requests / 2], wall[requests * 9 / 10], wall[requests * 99 / 100],
-         wall[requests - 1], used[requests / 2]);
+  printf("%-46s %6.0f %7.1f %7.1f %7.1f %7.1f %7.1f\n", what, (double)size / 1e3, wall[requests / 2],
+         wall[requests * 9 / 10], wall[requests * 99 / 100], wall[requests - 1], used[requests / 2]);
   fflush(stdout);
 }
 
@@ -104,7 +107,8 @@ static pid_t start_crowd(void)
   for (int i = 0; i < CONNECTIONS; i++)
     connection[i] = open_connection();
   for (int i = 0;; i = (i + 1) % CONNECTIONS) {
-    if (!send_request(connection[i], "GET", API "/openapi.json", headers, NULL) || recv(connection[i], buffer, sizeof buffer, 0) <= 0)
+    if (!send_request(connection[i], "GET", API "/openapi.json", headers, NULL) ||
+        recv(connection[i], buffer, sizeof buffer, 0) <= 0)
       _exit(1);
     nanosleep(&(struct timespec){.tv_nsec = 1000000000 / GETS_PER_SECOND}, NULL);
   }
@@ -123,7 +127,8 @@ static void stop_crowd(pid_t crowd)
 static int start_job(void)
 {
   json_t *order = json_pack("{s:s, s:O}", "kind", "optimize", "design", design), *job;
-  json_object_set_new(json_object_get(json_object_get(order, "design"), "optimization"), "algorithm", json_string("ga"));
+  json_object_set_new(json_object_get(json_object_get(order, "design"), "optimization"), "algorithm",
+                      json_string("ga"));
   char *text = json_dumps(order, JSON_COMPACT);
   job = call_json("POST", API "/jobs", NULL, text, NULL);
   int id = (int)json_integer_value(json_object_get(job, "id"));

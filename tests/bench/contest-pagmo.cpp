@@ -1,4 +1,5 @@
-// pagmo's optimizers in the contest; built where pagmo is installed. One generation per call, so that the budget is watched.
+// pagmo's optimizers in the contest; built where pagmo is installed. One generation per call, so that the budget is
+// watched.
 #include <pagmo/algorithm.hpp>
 #include <pagmo/algorithms/cmaes.hpp>
 #include <pagmo/algorithms/de.hpp>
@@ -15,7 +16,8 @@ extern "C" {
 #include "contest.h"
 }
 
-namespace {
+namespace
+{
 
 const double worst = 1e3; // of an evaluation that fails
 
@@ -34,7 +36,10 @@ struct contest_function {
     const double value = trace_evaluate(trace, x.data());
     return {std::isfinite(value) ? value : worst};
   }
-  pagmo::vector_double::size_type get_nobj() const { return trace && trace->front ? CONTEST_OBJECTIVES : 1; }
+  pagmo::vector_double::size_type get_nobj() const
+  {
+    return trace && trace->front ? CONTEST_OBJECTIVES : 1;
+  }
   std::pair<pagmo::vector_double, pagmo::vector_double> get_bounds() const
   {
     const std::size_t n = trace ? static_cast<std::size_t>(trace->n) : 1;
@@ -45,11 +50,16 @@ struct contest_function {
 pagmo::algorithm make(int algorithm, unsigned seed)
 {
   switch (algorithm) {
-  case PAGMO_CMAES: return pagmo::algorithm{pagmo::cmaes{1, -1, -1, -1, -1, 0.3, 0, 0, true, true, seed}};
-  case PAGMO_SADE: return pagmo::algorithm{pagmo::sade{1, 2, 1, 0, 0, true, seed}};
-  case PAGMO_DE: return pagmo::algorithm{pagmo::de{1, 0.8, 0.9, 2, 0, 0, seed}};
-  case PAGMO_NSGA2: return pagmo::algorithm{pagmo::nsga2{1, 0.95, 10, 0.1, 20, seed}};
-  default: return pagmo::algorithm{pagmo::sga{1, 0.8, 10, 0.3, 20, 2, "sbx", "polynomial", "tournament", seed}};
+  case PAGMO_CMAES:
+    return pagmo::algorithm{pagmo::cmaes{1, -1, -1, -1, -1, 0.3, 0, 0, true, true, seed}};
+  case PAGMO_SADE:
+    return pagmo::algorithm{pagmo::sade{1, 2, 1, 0, 0, true, seed}};
+  case PAGMO_DE:
+    return pagmo::algorithm{pagmo::de{1, 0.8, 0.9, 2, 0, 0, seed}};
+  case PAGMO_NSGA2:
+    return pagmo::algorithm{pagmo::nsga2{1, 0.95, 10, 0.1, 20, seed}};
+  default:
+    return pagmo::algorithm{pagmo::sga{1, 0.8, 10, 0.3, 20, 2, "sbx", "polynomial", "tournament", seed}};
   }
 }
 

@@ -136,7 +136,8 @@ static void run_nlopt(const struct contest *contest, struct trace *trace, int al
 #ifdef HAVE_PAGMO
 static void run_pagmo(const struct contest *contest, struct trace *trace, int algorithm, uint64_t seed)
 {
-  static const unsigned population[] = {[PAGMO_CMAES] = 10, [PAGMO_SADE] = 20, [PAGMO_DE] = 20, [PAGMO_SGA] = 50, [PAGMO_NSGA2] = 48};
+  static const unsigned population[] = {
+      [PAGMO_CMAES] = 10, [PAGMO_SADE] = 20, [PAGMO_DE] = 20, [PAGMO_SGA] = 50, [PAGMO_NSGA2] = 48};
   (void)contest;
   pagmo_run(trace, algorithm, population[algorithm], (unsigned)seed);
 }
@@ -183,11 +184,16 @@ static double cpu_seconds(void)
 static void print_line(const struct contest *contest, const struct contest_problem *problem, const struct contestant *c)
 {
   static double front[CONTEST_BUDGET_MAX][CONTEST_OBJECTIVES];
-  double at[CONTEST_MARKS][CONTEST_SEEDS_MAX], reached[CONTEST_SEEDS_MAX], evaluated[CONTEST_SEEDS_MAX], spent = cpu_seconds();
+  double at[CONTEST_MARKS][CONTEST_SEEDS_MAX], reached[CONTEST_SEEDS_MAX], evaluated[CONTEST_SEEDS_MAX],
+      spent = cpu_seconds();
   const int seeds = contest->seeds;
   long evaluations = 0;
   for (int s = 0; s < seeds; s++) {
-    struct trace trace = {.n = problem->n, .budget = contest->budget, .best = INFINITY, .target = contest->target, .front = c->front ? front : NULL};
+    struct trace trace = {.n = problem->n,
+                          .budget = contest->budget,
+                          .best = INFINITY,
+                          .target = contest->target,
+                          .front = c->front ? front : NULL};
     problem->prepare(&trace, problem, (uint64_t)s + 1);
     c->run(contest, &trace, c->algorithm, (uint64_t)s + 1);
     evaluations += trace.count;
@@ -225,7 +231,8 @@ void contest_print_head(const struct contest *contest)
 void contest_run(const struct contest *contest, const struct contest_problem *problem)
 {
   for (size_t c = 0; c < sizeof contestants / sizeof *contestants; c++)
-    if (contestants[c].front == contest->front && (!contest->algorithm || strncmp(contestants[c].name, contest->algorithm, strlen(contest->algorithm)) == 0))
+    if (contestants[c].front == contest->front &&
+        (!contest->algorithm || strncmp(contestants[c].name, contest->algorithm, strlen(contest->algorithm)) == 0))
       print_line(contest, problem, &contestants[c]);
 }
 

@@ -5,19 +5,26 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-enum { CONTEST_BUDGET = 1000, CONTEST_BUDGET_MAX = 10000, CONTEST_MARKS = 4, CONTEST_SEEDS_MAX = 101, CONTEST_VARIABLES = 20, CONTEST_OBJECTIVES = 3 };
+enum {
+  CONTEST_BUDGET = 1000,
+  CONTEST_BUDGET_MAX = 10000,
+  CONTEST_MARKS = 4,
+  CONTEST_SEEDS_MAX = 101,
+  CONTEST_VARIABLES = 20,
+  CONTEST_OBJECTIVES = 3
+};
 
-/* Everything an optimizer asks for goes through here. What counts is least: the best value, or, of a front, the share of the
-   unit box of objectives that nothing dominates (1 less the hypervolume). */
+/* Everything an optimizer asks for goes through here. What counts is least: the best value, or, of a front, the share
+   of the unit box of objectives that nothing dominates (1 less the hypervolume). */
 struct trace {
   int n;
-  double (*value)(void *context, const double *x); /* infinite when the evaluation fails */
+  double (*value)(void *context, const double *x);               /* infinite when the evaluation fails */
   void (*objectives)(void *context, const double *x, double *f); /* [CONTEST_OBJECTIVES], likewise */
   void *context;
   int budget, count;
   double best, at[CONTEST_MARKS]; /* at[]: after 100, 200, 400 evaluations and all of the budget */
   double target;
-  int reached;                    /* evaluations until the best value was at most the target; 0: never */
+  int reached;                         /* evaluations until the best value was at most the target; 0: never */
   double (*front)[CONTEST_OBJECTIVES]; /* [CONTEST_BUDGET_MAX] of all that was evaluated; NULL: one objective */
 };
 
@@ -30,19 +37,19 @@ void pagmo_run(struct trace *trace, int algorithm, unsigned population, unsigned
 
 struct contest {
   int seeds;
-  int budget;              /* true evaluations of each run */
-  double target;           /* value whose first reaching is counted; -INFINITY: none */
-  const char *algorithm;   /* how the names begin; NULL: all */
-  const char *change[32];  /* KEY=NUMBER: parameters of our own other than the defaults */
+  int budget;             /* true evaluations of each run */
+  double target;          /* value whose first reaching is counted; -INFINITY: none */
+  const char *algorithm;  /* how the names begin; NULL: all */
+  const char *change[32]; /* KEY=NUMBER: parameters of our own other than the defaults */
   int changes;
-  bool front;              /* Pareto fronts instead of one value */
+  bool front; /* Pareto fronts instead of one value */
 };
 
 /* 11 seeds, 1000 evaluations, every algorithm. */
 struct contest contest_default(void);
 
-/* Understands --seeds N, --budget N, --target VALUE, --algorithm NAME, --set KEY=NUMBER, --front and --quick at argv[i]; returns how many
-   words it took, 0: none. */
+/* Understands --seeds N, --budget N, --target VALUE, --algorithm NAME, --set KEY=NUMBER, --front and --quick at
+   argv[i]; returns how many words it took, 0: none. */
 int contest_option(struct contest *contest, int argc, char **argv, int i);
 
 void contest_print_head(const struct contest *contest);

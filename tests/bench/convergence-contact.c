@@ -1,6 +1,7 @@
-/* How far an evaluation depends on its discretisation, for `make convergence`: one property changed at a time, the paper pair with
-   and without modification and shaft error, on finite elements. Deviations are against the finest row of each table. Last, whether the
-   default resolution keeps the stated noise: 2 nm of transmission error, 0.5 % of RMS. An argument names a cache directory. */
+/* How far an evaluation depends on its discretisation, for `make convergence`: one property changed at a time, the
+   paper pair with and without modification and shaft error, on finite elements. Deviations are against the finest row
+   of each table. Last, whether the default resolution keeps the stated noise: 2 nm of transmission error, 0.5 % of RMS.
+   An argument names a cache directory. */
 #include "document/design_document.h"
 #include "document/example.h"
 #include "evaluation/evaluator.h"
@@ -52,7 +53,8 @@ static struct numbers evaluate(int which, const struct resolution *resolution)
 {
   struct eo_design design = design_of(which, resolution);
   struct eo_contact_grid_settings grid = eo_contact_grid_default(&design.resolution);
-  struct eo_pair_options options = {.grid = &grid, .impact_stations = resolution->stations, .kernel = eo_flexibility_kernel(flexibility)};
+  struct eo_pair_options options = {
+      .grid = &grid, .impact_stations = resolution->stations, .kernel = eo_flexibility_kernel(flexibility)};
   struct eo_pair *pair = NULL;
   struct eo_evaluator *evaluator = NULL;
   const struct eo_evaluation *r;
@@ -65,8 +67,11 @@ static struct numbers evaluate(int which, const struct resolution *resolution)
     exit(1);
   }
   const struct eo_case_result *c = &r->load_case[0];
-  numbers = (struct numbers){.mean = c->mean, .peak = c->peak_to_peak, .rms = c->vibration.rms_pair[EO_READING_NORMAL],
-    .impact = r->objective[0].impact, .positions = r->positions};
+  numbers = (struct numbers){.mean = c->mean,
+                             .peak = c->peak_to_peak,
+                             .rms = c->vibration.rms_pair[EO_READING_NORMAL],
+                             .impact = r->objective[0].impact,
+                             .positions = r->positions};
   for (int j = 0; j < r->positions; j++) {
     numbers.lte[j] = c->transmission[j];
     numbers.stiffness += (c->end[0].loaded.tangent[j] + c->end[1].loaded.tangent[j]) / 2 / r->positions;
@@ -104,9 +109,9 @@ static void print_row(const char *what, int value, const struct numbers *n, cons
     printf("%6.2f nm", 1e9 * noise_of(n, fine));
   else
     printf("%9s", "");
-  printf("  PPLTE %7.4f um %+6.2f %%  k_tan %8.2f N/um %+6.3f %%  RMS %7.3f %+6.2f %%  impact %7.1f N %+6.2f %%\n", 1e6 * n->peak,
-         per_cent(n->peak, fine->peak), 1e-6 * n->stiffness, per_cent(n->stiffness, fine->stiffness), n->rms, per_cent(n->rms, fine->rms), n->impact,
-         per_cent(n->impact, fine->impact));
+  printf("  PPLTE %7.4f um %+6.2f %%  k_tan %8.2f N/um %+6.3f %%  RMS %7.3f %+6.2f %%  impact %7.1f N %+6.2f %%\n",
+         1e6 * n->peak, per_cent(n->peak, fine->peak), 1e-6 * n->stiffness, per_cent(n->stiffness, fine->stiffness),
+         n->rms, per_cent(n->rms, fine->rms), n->impact, per_cent(n->impact, fine->impact));
   fflush(stdout);
 }
 
@@ -126,8 +131,9 @@ static void vary(int which, const char *name, size_t offset, int values, const i
   }
 }
 
-#define VARY(which, name, member, ...)                                                                                                \
-  vary(which, name, offsetof(struct resolution, member), (int)(sizeof(const int[]){__VA_ARGS__} / sizeof(int)), (const int[]){__VA_ARGS__})
+#define VARY(which, name, member, ...)                                                                          \
+  vary(which, name, offsetof(struct resolution, member), (int)(sizeof(const int[]){__VA_ARGS__} / sizeof(int)), \
+       (const int[]){__VA_ARGS__})
 
 static void judge(int which)
 {
@@ -137,8 +143,8 @@ static void judge(int which)
   finest.edge_cells = FINE_EDGE_CELLS;
   struct numbers fine = evaluate(which, &finest), n = evaluate(which, &usual);
   double noise = 1e9 * noise_of(&n, &fine), rms = per_cent(n.rms, fine.rms);
-  printf("%-22s transmission error %.2f nm (%s 2 nm), RMS %+.2f %% (%s 0.5 %%)\n", title[which], noise, noise <= 2 ? "within" : "above", rms,
-         fabs(rms) <= 0.5 ? "within" : "above");
+  printf("%-22s transmission error %.2f nm (%s 2 nm), RMS %+.2f %% (%s 0.5 %%)\n", title[which], noise,
+         noise <= 2 ? "within" : "above", rms, fabs(rms) <= 0.5 ? "within" : "above");
 }
 
 int main(int argc, char **argv)
@@ -148,12 +154,14 @@ int main(int argc, char **argv)
   struct eo_flexibility_settings settings = eo_flexibility_settings_of(&design.resolution);
   struct eo_error error;
   if (eo_geometry_init(&geometry, &design.gear_pair, &error) ||
-      eo_flexibility_prepare(&geometry, &design.gear_pair, &design.material, &settings, argc > 1 ? argv[1] : NULL, NULL, &flexibility, &error)) {
+      eo_flexibility_prepare(&geometry, &design.gear_pair, &design.material, &settings, argc > 1 ? argv[1] : NULL, NULL,
+                             &flexibility, &error)) {
     printf("%s\n", error.text);
     return 1;
   }
-  printf("Paper pair, 828 N m, 2000 rpm; %d positions, %d cells per line, %d per tip edge, %d harmonics, %d of the transmission error\n", usual.positions,
-         usual.cells, usual.edge_cells, usual.harmonics, usual.te_harmonics);
+  printf("Paper pair, 828 N m, 2000 rpm; %d positions, %d cells per line, %d per tip edge, %d harmonics, %d of the "
+         "transmission error\n",
+         usual.positions, usual.cells, usual.edge_cells, usual.harmonics, usual.te_harmonics);
   for (int which = 0; which < CASES; which++) {
     printf("\n%s\n", title[which]);
     VARY(which, "positions", positions, 32, 64, 128, 256);

@@ -1,5 +1,5 @@
-/* How far the compliance and the root stress depend on the mesh: one property changed at a time, for `make convergence`. Last, what
-   the micro-geometry changes when it is put into the mesh. */
+/* How far the compliance and the root stress depend on the mesh: one property changed at a time, for `make
+   convergence`. Last, what the micro-geometry changes when it is put into the mesh. */
 #include "flexibility/flexibility.h"
 #include "numerics/sparse.h"
 #include "tests/paper_pair.h"
@@ -10,7 +10,8 @@
 
 enum { POINTS = 57 };
 
-/* Deflection in the middle of the face, nm, and largest root stress, MPa, under a line load of 1 N and 100 N per mm of face width. */
+/* Deflection in the middle of the face, nm, and largest root stress, MPa, under a line load of 1 N and 100 N per mm of
+   face width. */
 static void press_row(const struct eo_flexibility *flexibility, const struct eo_geometry *g, int member, double s,
                       double *deflection, double *stress)
 {
@@ -60,8 +61,8 @@ static void print_row(const char *what, const struct eo_geometry *g, const struc
   eo_flexibility_free(flexibility);
 }
 
-static void vary(const struct eo_geometry *g, const struct eo_gear_pair *pair, const char *name, size_t offset, const int *value,
-                 int values)
+static void vary(const struct eo_geometry *g, const struct eo_gear_pair *pair, const char *name, size_t offset,
+                 const int *value, int values)
 {
   for (int i = 0; i < values; i++) {
     struct eo_flexibility_settings settings = default_settings();
@@ -72,12 +73,14 @@ static void vary(const struct eo_geometry *g, const struct eo_gear_pair *pair, c
   }
 }
 
-/* Compliance of the pinion's flank nodes, with tip and root relief of 20 um (parabolas over the outer quarters) cut off or not. */
+/* Compliance of the pinion's flank nodes, with tip and root relief of 20 um (parabolas over the outer quarters) cut off
+   or not. */
 static double *flank_compliance(const struct eo_geometry *g, const struct eo_gear_pair *pair, double relief, int *count)
 {
-  struct eo_flexibility_settings settings = {.sector_teeth = 3, .layers = 14, .flank_rows = 10, .fillet_elements = 16, .columns = 8,
-                                             .rim_elements = 6};
-  struct eo_member_settings member = eo_flexibility_member_settings(&settings, eo_flexibility_bore_radius(g, pair, EO_PINION));
+  struct eo_flexibility_settings settings = {
+      .sector_teeth = 3, .layers = 14, .flank_rows = 10, .fillet_elements = 16, .columns = 8, .rim_elements = 6};
+  struct eo_member_settings member = eo_flexibility_member_settings(&settings,
+                                                                    eo_flexibility_bore_radius(g, pair, EO_PINION));
   struct eo_material material = paper_steel();
   struct eo_section section = {0};
   struct eo_sector sector = {0};
@@ -92,8 +95,8 @@ static double *flank_compliance(const struct eo_geometry *g, const struct eo_gea
       section.point[2 * section.flank.node[k] + c] -= relief * part * part * section.flank.normal[2 * k + c];
   }
   int across = settings.layers + 1, n = section.flank.count * across, *keep = malloc((size_t)n * sizeof *keep);
-  if (!eo_sector_init(&sector, &section, settings.layers, g->face_width, eo_sector_twist(g, EO_PINION), &material, EO_WHOLE_SECTOR,
-                      &error)) {
+  if (!eo_sector_init(&sector, &section, settings.layers, g->face_width, eo_sector_twist(g, EO_PINION), &material,
+                      EO_WHOLE_SECTOR, &error)) {
     for (int i = 0; i < n; i++)
       keep[i] = eo_sector_unknown(&sector, section.flank.node[i / across], i % across, 0);
     inverse = malloc((size_t)(n * n) * sizeof *inverse);
@@ -114,7 +117,8 @@ static double *flank_compliance(const struct eo_geometry *g, const struct eo_gea
 static void print_modification(const struct eo_geometry *g, const struct eo_gear_pair *pair)
 {
   int n = 0;
-  double *plain = flank_compliance(g, pair, 0, &n), *modified = flank_compliance(g, pair, 20e-6, &n), worst = 0, largest = 0;
+  double *plain = flank_compliance(g, pair, 0, &n), *modified = flank_compliance(g, pair, 20e-6, &n), worst = 0,
+         largest = 0;
   for (int i = 0; i < n * n && plain && modified; i++) {
     worst = fmax(worst, fabs(modified[i] - plain[i]));
     largest = fmax(largest, fabs(plain[i]));
@@ -125,8 +129,8 @@ static void print_modification(const struct eo_geometry *g, const struct eo_gear
   free(modified);
 }
 
-#define VARY(name, member, ...)                                                                                                       \
-  vary(&geometry, &pair, name, offsetof(struct eo_flexibility_settings, member), (const int[]){__VA_ARGS__},                          \
+#define VARY(name, member, ...)                                                                              \
+  vary(&geometry, &pair, name, offsetof(struct eo_flexibility_settings, member), (const int[]){__VA_ARGS__}, \
        (int)(sizeof(const int[]){__VA_ARGS__} / sizeof(int)))
 
 int main(void)
@@ -136,7 +140,8 @@ int main(void)
   struct eo_error error;
   if (eo_geometry_init(&geometry, &pair, &error))
     return 1;
-  printf("Paper pair. Line load along a row at s_A, 0, s_E: deflection in mid face, nm per N/mm; root stress for 100 N/mm at s = 0, MPa\n");
+  printf("Paper pair. Line load along a row at s_A, 0, s_E: deflection in mid face, nm per N/mm; root stress for 100 "
+         "N/mm at s = 0, MPa\n");
   printf("%-28s %24s %8s %24s %8s\n", "", "pinion", "stress", "gear", "stress");
   struct eo_flexibility_settings settings = default_settings();
   print_row("default", &geometry, &pair, &settings);

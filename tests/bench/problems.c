@@ -169,13 +169,21 @@ double problem_value(const struct problem *problem, const double *x)
       z[k] += problem->rotation[k * n + l] * d[l];
   }
   switch (problem->kind) {
-  case SPHERE: return sum_squares(d, n, 1, 10);
-  case ROSENBROCK: return rosenbrock(d, n);
-  case RASTRIGIN: return rastrigin(d, n);
-  case ACKLEY: return ackley(d, n);
-  case ELLIPSOID: return sum_squares(z, n, 1e6, 10);
-  case SCHAFFERS: return schaffers(z, n);
-  case GALLAGHER: return gallagher(problem, x);
-  default: return ripple(problem, d);
+  case SPHERE:
+    return sum_squares(d, n, 1, 10);
+  case ROSENBROCK:
+    return rosenbrock(d, n);
+  case RASTRIGIN:
+    return rastrigin(d, n);
+  case ACKLEY:
+    return ackley(d, n);
+  case ELLIPSOID:
+    return sum_squares(z, n, 1e6, 10);
+  case SCHAFFERS:
+    return schaffers(z, n);
+  case GALLAGHER:
+    return gallagher(problem, x);
+  default:
+    return ripple(problem, d);
   }
 }

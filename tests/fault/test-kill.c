@@ -1,5 +1,5 @@
-/* A study killed many times at random moments ends with the result of an undisturbed one, and computes nothing twice that was saved.
-   KILLS=N sets how often (default 10); SEED=N the moments. */
+/* A study killed many times at random moments ends with the result of an undisturbed one, and computes nothing twice
+   that was saved. KILLS=N sets how often (default 10); SEED=N the moments. */
 #include <signal.h>
 #include <sys/wait.h>
 #include <time.h>
@@ -126,7 +126,8 @@ int main(void)
   read_result(&disturbed);
   ok(kills == wanted, "killed %d times (SEED=%llu)", kills, (unsigned long long)seed);
   ok(good && strcmp(undisturbed.data, disturbed.data) == 0, "the result of an undisturbed run, byte for byte");
-  ok(!lost && computed == BUDGET - (rows > 0 ? rows - 1 : 0) && count_rows() == BUDGET + 1, "no row lost, none computed twice: %d of %d were left for the last run", computed, BUDGET);
+  ok(!lost && computed == BUDGET - (rows > 0 ? rows - 1 : 0) && count_rows() == BUDGET + 1,
+     "no row lost, none computed twice: %d of %d were left for the last run", computed, BUDGET);
   eo_text_done(&undisturbed);
   eo_text_done(&disturbed);
   empty_folder();

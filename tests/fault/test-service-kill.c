@@ -1,5 +1,5 @@
-/* A service killed in the middle of an optimization: the next one on the same folder goes on with it, evaluates nothing twice and ends with the result of
-   an undisturbed run. KILLS=N sets how often it is killed (default 4). */
+/* A service killed in the middle of an optimization: the next one on the same folder goes on with it, evaluates nothing
+   twice and ends with the result of an undisturbed run. KILLS=N sets how often it is killed (default 4). */
 #include <signal.h>
 #include <sys/wait.h>
 
@@ -91,7 +91,8 @@ int main(void)
   ok(wait_for(service, id, "done"), "the next service goes on with the job");
   char *result = result_of(service, id, &rest);
   ok(result && undisturbed && strcmp(result, undisturbed) == 0, "to the result of an undisturbed run, byte for byte");
-  ok(rows > 20 && rows < BUDGET && rest == BUDGET + 1 - rows && count_rows() == BUDGET + 1, "nothing is evaluated twice: %d rows were there, %d were left", rows, rest);
+  ok(rows > 20 && rows < BUDGET && rest == BUDGET + 1 - rows && count_rows() == BUDGET + 1,
+     "nothing is evaluated twice: %d rows were there, %d were left", rows, rest);
   eo_service_free(service);
   free(result);
   free(undisturbed);

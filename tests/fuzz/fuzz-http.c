@@ -1,5 +1,6 @@
 /* What a client sends, piece by piece: the first byte says which reader gets the rest. With clang's fuzzer:
-     clang -fsanitize=fuzzer,address,undefined -DFUZZER ... ; without it the program replays the files it is given and prints TAP. */
+     clang -fsanitize=fuzzer,address,undefined -DFUZZER ... ; without it the program replays the files it is given and
+   prints TAP. */
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
@@ -20,7 +21,8 @@ static void read_design(const char *text, size_t size)
   struct eo_error error;
   json_t *document = eo_json_parse(text, size, &error);
   faults.count = 0;
-  if (document && eo_design_decode(document, &design, &warnings, &faults) && eo_design_complete(&design, &geometry, &error) == EO_OK) {
+  if (document && eo_design_decode(document, &design, &warnings, &faults) &&
+      eo_design_complete(&design, &geometry, &error) == EO_OK) {
     json_t *back = eo_design_encode(&design);
     if (!back)
       abort();

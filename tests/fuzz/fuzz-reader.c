@@ -1,4 +1,5 @@
-/* Any bytes as a rig file: an error with a sentence, or a recording whose columns can be looked at. For libFuzzer, and replayed by replay.c. */
+/* Any bytes as a rig file: an error with a sentence, or a recording whose columns can be looked at. For libFuzzer, and
+   replayed by replay.c. */
 #define _GNU_SOURCE
 #include "measurement/layout.h"
 #include "measurement/reader.h"
@@ -17,7 +18,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size)
     abort();
   char path[64];
   snprintf(path, sizeof path, "/proc/%ld/fd/%d", (long)getpid(), file);
-  struct eo_reader_options options = { .max_bytes = 32 << 20 };
+  struct eo_reader_options options = {.max_bytes = 32 << 20};
   struct eo_recording *recording = NULL;
   struct eo_notes notes = {0};
   struct eo_error error = {0};
@@ -26,7 +27,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size)
     if (recording || code != error.code || !*error.text || strchr(error.text, '\n'))
       abort();
   } else {
-    struct eo_layout_choice choice = { .sample_rate = 20000, .lines = { 1024, 1024 } };
+    struct eo_layout_choice choice = {.sample_rate = 20000, .lines = {1024, 1024}};
     struct eo_tracks tracks;
     eo_layout_find(recording, NULL, &tracks, &notes, &error);
     eo_layout_find(recording, &choice, &tracks, &notes, &error);

@@ -1,6 +1,7 @@
-/* Any bytes as an upload: the first line is what follows multipart/form-data in the Content-Type (another never comes here), the rest the body. It is
-   handed over in pieces of several sizes, so that every boundary is cut at every place, and each time the same must come out of it. A real connection
-   carries the type, as the library wants it; the body does not pass through it. For libFuzzer, and replayed by replay.c. */
+/* Any bytes as an upload: the first line is what follows multipart/form-data in the Content-Type (another never comes
+   here), the rest the body. It is handed over in pieces of several sizes, so that every boundary is cut at every place,
+   and each time the same must come out of it. A real connection carries the type, as the library wants it; the body
+   does not pass through it. For libFuzzer, and replayed by replay.c. */
 #define _GNU_SOURCE
 #include "base/hash.h"
 #include "http/server.h"
@@ -58,12 +59,15 @@ static void look(const struct eo_upload *upload, struct outcome *outcome)
   eo_hash_init(&hash);
   outcome->files = upload->files;
   outcome->fields = upload->fields;
-  demand(upload->files >= 1 && upload->files <= EO_MEASUREMENT_FILES && upload->fields >= 0 && upload->fields <= EO_UPLOAD_FIELDS, "more than there is room for");
+  demand(upload->files >= 1 && upload->files <= EO_MEASUREMENT_FILES && upload->fields >= 0 &&
+             upload->fields <= EO_UPLOAD_FIELDS,
+         "more than there is room for");
   for (int i = 0; i < upload->files; i++)
     hash_file(upload, i, &hash);
   for (int i = 0; i < upload->fields; i++) {
     const struct eo_upload_field *field = &upload->field[i];
-    demand(eo_upload_field(upload, field->name) != NULL && field->value.size <= EO_UPLOAD_FIELD_BYTES, "a field is not found");
+    demand(eo_upload_field(upload, field->name) != NULL && field->value.size <= EO_UPLOAD_FIELD_BYTES,
+           "a field is not found");
     eo_hash_add_text(&hash, field->name, eo_upload_field(upload, field->name));
   }
   eo_hash_finish(&hash, outcome->hash);
@@ -86,8 +90,8 @@ static struct outcome upload_in_pieces(struct MHD_Connection *connection, size_t
   return outcome;
 }
 
-static enum MHD_Result handle(void *context, struct MHD_Connection *connection, const char *url, const char *method, const char *version, const char *data,
-                              size_t *size, void **state)
+static enum MHD_Result handle(void *context, struct MHD_Connection *connection, const char *url, const char *method,
+                              const char *version, const char *data, size_t *size, void **state)
 {
   static const size_t pieces[] = {1, 2, 3, 7, 61};
   (void)url, (void)method, (void)version, (void)data, (void)size, (void)state;
@@ -127,7 +131,8 @@ static void open_store(void)
 static struct MHD_Daemon *start(bool *handled)
 {
   open_store();
-  struct MHD_Daemon *daemon = MHD_start_daemon(MHD_USE_NO_LISTEN_SOCKET, 0, NULL, NULL, handle, handled, MHD_OPTION_END);
+  struct MHD_Daemon *daemon = MHD_start_daemon(MHD_USE_NO_LISTEN_SOCKET, 0, NULL, NULL, handle, handled,
+                                               MHD_OPTION_END);
   demand(daemon != NULL, "no daemon");
   return daemon;
 }
@@ -135,7 +140,8 @@ static struct MHD_Daemon *start(bool *handled)
 /* A request head with this type; anything that would end the line is left out. */
 static size_t write_head(char *head, size_t size, const uint8_t *type, size_t length)
 {
-  size_t at = (size_t)snprintf(head, size, "POST / HTTP/1.1\r\nHost: x\r\nContent-Length: 0\r\nContent-Type: multipart/form-data");
+  size_t at = (size_t)snprintf(head, size,
+                               "POST / HTTP/1.1\r\nHost: x\r\nContent-Length: 0\r\nContent-Type: multipart/form-data");
   for (size_t i = 0; i < length && at < size - 5; i++)
     if (type[i] >= ' ' && type[i] != 127)
       head[at++] = (char)type[i];
@@ -158,7 +164,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size)
   demand(socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) == 0, "no sockets");
   size_t head_size = write_head(head, sizeof head, bytes, length);
   const struct sockaddr address = {.sa_family = AF_UNIX};
-  demand(write(ends[0], head, head_size) == (ssize_t)head_size && MHD_add_connection(daemon, ends[1], &address, sizeof address) == MHD_YES, "no connection");
+  demand(write(ends[0], head, head_size) == (ssize_t)head_size &&
+             MHD_add_connection(daemon, ends[1], &address, sizeof address) == MHD_YES,
+         "no connection");
   handled = false;
   for (int i = 0; i < 10 && !handled; i++)
     MHD_run(daemon);

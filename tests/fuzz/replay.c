@@ -1,4 +1,5 @@
-/* Runs a fuzz target over every file of a folder, and over each with its end cut off: replay FOLDER. A crash ends the test. */
+/* Runs a fuzz target over every file of a folder, and over each with its end cut off: replay FOLDER. A crash ends the
+   test. */
 #include "tests/fuzz/fuzz.h"
 #include "tests/tap.h"
 

@@ -1,5 +1,6 @@
-/* What holds for every loaded contact: complementarity and equilibrium computed anew from the full compliance, the tangent, mirrored
-   input, warm starts, axially held pinions, threads, and three hundred random gear pairs under any load. */
+/* What holds for every loaded contact: complementarity and equilibrium computed anew from the full compliance, the
+   tangent, mirrored input, warm starts, axially held pinions, threads, and three hundred random gear pairs under any
+   load. */
 #include "contact-fixture.h"
 #include "contact/loaded.h"
 
@@ -24,7 +25,8 @@ struct bench {
 static struct eo_closed_form closed_form;
 static double smooth_form[3] = {1.2e-9, 15e-3, 9e-3};
 
-static void bench_open_as(struct bench *b, const struct eo_geometry *g, struct eo_kernel kernel, const struct eo_contact_grid_settings *settings)
+static void bench_open_as(struct bench *b, const struct eo_geometry *g, struct eo_kernel kernel,
+                          const struct eo_contact_grid_settings *settings)
 {
   struct eo_material steel = paper_steel();
   struct eo_error error = {0};
@@ -43,9 +45,11 @@ static void bench_open_as(struct bench *b, const struct eo_geometry *g, struct e
   }
 }
 
-static void bench_open(struct bench *b, const struct eo_geometry *g, struct eo_kernel kernel, bool edges, int positions, int cells)
+static void bench_open(struct bench *b, const struct eo_geometry *g, struct eo_kernel kernel, bool edges, int positions,
+                       int cells)
 {
-  struct eo_contact_grid_settings settings = {.positions = positions, .cells = cells, .tip_edges = edges, .edge_cells = 6, .edge_reach = NAN};
+  struct eo_contact_grid_settings settings = {
+      .positions = positions, .cells = cells, .tip_edges = edges, .edge_cells = 6, .edge_reach = NAN};
   bench_open_as(b, g, kernel, &settings);
 }
 
@@ -59,8 +63,8 @@ static void bench_close(struct bench *b)
   eo_contact_grid_free(b->grid);
 }
 
-static void set_gaps(struct bench *b, int end, const struct eo_flank_modification *pinion, const struct eo_flank_modification *gear, double kappa,
-                     double gamma)
+static void set_gaps(struct bench *b, int end, const struct eo_flank_modification *pinion,
+                     const struct eo_flank_modification *gear, double kappa, double gamma)
 {
   eo_gap_field_init(&b->field, &b->geometry, pinion, gear, end, kappa, gamma, 52.5e-3, b->grid->corner);
   eo_loaded_gaps_set(&b->gaps[end], b->grid, &b->field);
@@ -69,7 +73,8 @@ static void set_gaps(struct bench *b, int end, const struct eo_flank_modificatio
 static struct eo_kernel kernel_of(int which)
 {
   closed_form = paper_form();
-  return which ? (struct eo_kernel){smooth_kernel, smooth_form} : (struct eo_kernel){eo_closed_form_kernel, &closed_form};
+  return which ? (struct eo_kernel){smooth_kernel, smooth_form}
+               : (struct eo_kernel){eo_closed_form_kernel, &closed_form};
 }
 
 static struct eo_geometry paper_geometry(void)
@@ -96,8 +101,8 @@ static double local_deflection(const struct eo_contact_grid *grid, double law, d
   return grid->compliance_scale * (log(q) < law - 2 ? q * (law - log(q)) : q + exp(law - 2));
 }
 
-static void check_position(const struct bench *b, const struct eo_contact_position *p, const double *gap, const struct eo_loaded_end *end, int j,
-                           double factor, struct residuals *r)
+static void check_position(const struct bench *b, const struct eo_contact_position *p, const double *gap,
+                           const struct eo_loaded_end *end, int j, double factor, struct residuals *r)
 {
   static double compliance[MOST_POINTS * MOST_POINTS];
   double sum = 0;
@@ -119,7 +124,8 @@ static void check_position(const struct bench *b, const struct eo_contact_positi
   r->sound = r->sound && isfinite(end->approach[j]) && isfinite(end->tangent[j]) && end->tangent[j] > 0;
 }
 
-static struct residuals check_end(const struct bench *b, const double *gap, const struct eo_loaded_end *end, double factor)
+static struct residuals check_end(const struct bench *b, const double *gap, const struct eo_loaded_end *end,
+                                  double factor)
 {
   struct residuals r = {.sound = end->failures == 0};
   for (int j = 0; j < b->grid->positions; j++)
@@ -141,19 +147,22 @@ static void test_complementarity(void)
     eo_loaded_solve(b.workspace, b.grid, &b.gaps[EO_RIGHT], factor, 3, load, b.result);
     for (int l = 0; l < 3; l++) {
       struct residuals r = check_end(&b, b.gaps[EO_RIGHT].gap, &b.result[l], factor);
-      worst = (struct residuals){fmax(worst.closed, r.closed), fmin(worst.open, r.open), fmax(worst.balance, r.balance), worst.sound && r.sound};
+      worst = (struct residuals){fmax(worst.closed, r.closed), fmin(worst.open, r.open), fmax(worst.balance, r.balance),
+                                 worst.sound && r.sound};
     }
     ok(worst.sound && worst.closed < 2e-12 && worst.open > -2e-12 && worst.balance < 1e-9,
-       "case %d: loaded points touch within %.1e m, free ones stay clear (%.1e m), loads add up within %.1e", k, worst.closed, worst.open, worst.balance);
+       "case %d: loaded points touch within %.1e m, free ones stay clear (%.1e m), loads add up within %.1e", k,
+       worst.closed, worst.open, worst.balance);
     bench_close(&b);
   }
 }
 
 /* ---- partial cells ---- */
 
-/* Largest mismatch of the local law, m: a cell carries what the mean of the positive part of its local approach asks for, the approach
-   changing over the cell as it does between its neighbours on the line. */
-static double partial_mismatch(const struct bench *b, const struct eo_contact_position *p, const double *gap, const struct eo_loaded_end *end, int j)
+/* Largest mismatch of the local law, m: a cell carries what the mean of the positive part of its local approach asks
+   for, the approach changing over the cell as it does between its neighbours on the line. */
+static double partial_mismatch(const struct bench *b, const struct eo_contact_position *p, const double *gap,
+                               const struct eo_loaded_end *end, int j)
 {
   static double compliance[MOST_POINTS * MOST_POINTS], local[MOST_POINTS];
   double worst = 0;
@@ -165,7 +174,8 @@ static double partial_mismatch(const struct bench *b, const struct eo_contact_po
   }
   for (int l = 0; l < p->lines; l++)
     for (int i = 0; i < p->line[l].cells; i++) {
-      int at = p->line[l].first + i, low = i > 0 ? at - 1 : at, high = i + 1 < p->line[l].cells ? at + 1 : at, parts = 2000;
+      int at = p->line[l].first + i, low = i > 0 ? at - 1 : at, high = i + 1 < p->line[l].cells ? at + 1 : at,
+          parts = 2000;
       double change = (local[high] - local[low]) / (high - low), mean = 0, q = end->line_load[p->first + at];
       for (int n = 0; n < parts; n++)
         mean += fmax(0, local[at] + change * ((n + 0.5) / parts - 0.5)) / parts;
@@ -178,7 +188,8 @@ static double partial_mismatch(const struct bench *b, const struct eo_contact_po
 static double approach_noise(const struct eo_geometry *g, bool partial, int cells, double *approach, bool compare)
 {
   struct eo_flank_modification a = case_a(), none = {0};
-  struct eo_contact_grid_settings settings = {.positions = 24, .cells = cells, .partial_cells = partial, .tip_edges = false};
+  struct eo_contact_grid_settings settings = {
+      .positions = 24, .cells = cells, .partial_cells = partial, .tip_edges = false};
   struct bench b;
   double load = force_of(g, 828), mean = 0, worst = 0;
   bench_open_as(&b, g, kernel_of(1), &settings);
@@ -198,7 +209,12 @@ static void test_partial_cells(void)
 {
   struct eo_geometry g = paper_geometry();
   struct eo_flank_modification a = case_a(), none = {0};
-  struct eo_contact_grid_settings settings = {.positions = POSITIONS, .cells = CELLS, .partial_cells = true, .tip_edges = true, .edge_cells = 6, .edge_reach = NAN};
+  struct eo_contact_grid_settings settings = {.positions = POSITIONS,
+                                              .cells = CELLS,
+                                              .partial_cells = true,
+                                              .tip_edges = true,
+                                              .edge_cells = 6,
+                                              .edge_reach = NAN};
   double load[2] = {force_of(&g, 300), force_of(&g, 828)}, fine[24];
   for (int k = 0; k < 2; k++) {
     struct bench b;
@@ -213,7 +229,9 @@ static void test_partial_cells(void)
         check_position(&b, &b.grid->position[j], b.gaps[EO_RIGHT].gap, &b.result[l], j, 1, &r);
         balance = fmax(balance, r.balance);
       }
-    ok(worst < 2e-10 && balance < 1e-9, "kernel %d: partial cells carry the positive part of their approach within %.1e m, loads add up within %.1e", k, worst, balance);
+    ok(worst < 2e-10 && balance < 1e-9,
+       "kernel %d: partial cells carry the positive part of their approach within %.1e m, loads add up within %.1e", k,
+       worst, balance);
     bench_close(&b);
   }
   approach_noise(&g, true, 130, fine, false);
@@ -223,14 +241,16 @@ static void test_partial_cells(void)
 
 /* ---- tangent and monotony ---- */
 
-/* The load at which a cell enters bends Z(P); differences that stay on one side of all bends are what the tangent has to equal. */
+/* The load at which a cell enters bends Z(P); differences that stay on one side of all bends are what the tangent has
+   to equal. */
 static void test_tangent(void)
 {
   struct eo_geometry g = paper_geometry();
   struct eo_flank_modification none = {0}, a = case_a();
   for (int k = 0; k < 4; k++) {
     struct bench b;
-    double nominal = force_of(&g, 828), step = 1e-4 * nominal, load[3] = {nominal - step, nominal, nominal + step}, worst = 0;
+    double nominal = force_of(&g, 828), step = 1e-4 * nominal, load[3] = {nominal - step, nominal, nominal + step},
+           worst = 0;
     int bends = 0;
     bench_open(&b, &g, kernel_of(k % 2), true, 32, 30);
     set_gaps(&b, EO_RIGHT, k & 2 ? &a : &none, &none, k & 2 ? 0.1 * degree : 0, 0);
@@ -244,7 +264,8 @@ static void test_tangent(void)
       else
         worst = fmax(worst, fabs(b.result[1].tangent[j] / ((above + below) / 2) - 1));
     }
-    ok(bends <= 6 && worst < 2e-4, "case %d: tangent stiffness against differences within %.1e, %d of 32 positions at a bend", k, worst, bends);
+    ok(bends <= 6 && worst < 2e-4,
+       "case %d: tangent stiffness against differences within %.1e, %d of 32 positions at a bend", k, worst, bends);
     bench_close(&b);
   }
 }
@@ -281,7 +302,8 @@ static void test_monotony(void)
 static bool same_end(const struct bench *b, const struct eo_loaded_end *x, const struct eo_loaded_end *y)
 {
   size_t n = (size_t)b->grid->positions * sizeof(double);
-  return memcmp(x->approach, y->approach, n) == 0 && memcmp(x->tangent, y->tangent, n) == 0 && memcmp(x->load, y->load, n) == 0 &&
+  return memcmp(x->approach, y->approach, n) == 0 && memcmp(x->tangent, y->tangent, n) == 0 &&
+         memcmp(x->load, y->load, n) == 0 &&
          memcmp(x->line_load, y->line_load, (size_t)b->grid->points * sizeof(double)) == 0;
 }
 
@@ -305,7 +327,8 @@ static void test_mirror(void)
   double worst = 0;
   for (int j = 0; j < b.grid->positions; j++)
     for (int end = 0; end < 2; end++)
-      worst = fmax(worst, fmax(fabs(b.result[end].approach[j] - b.result[3 - end].approach[j]) / 1e-6, fabs(b.result[end].load[j] / b.result[3 - end].load[j] - 1)));
+      worst = fmax(worst, fmax(fabs(b.result[end].approach[j] - b.result[3 - end].approach[j]) / 1e-6,
+                               fabs(b.result[end].load[j] / b.result[3 - end].load[j] - 1)));
   ok(b.result[0].load[0] != load, "the spring shifts load between the ends");
   ok(worst < 1e-9, "left and right exchanged, shaft errors reversed: the same within %.1e", worst);
   bench_close(&b);
@@ -329,7 +352,8 @@ static void test_warm_starts(void)
   set_gaps(&b, EO_LEFT, &none, &none, 0, 0);
   eo_loaded_solve(b.workspace, b.grid, &b.gaps[EO_LEFT], 0.9, 1, up, b.result + 3);
   eo_loaded_solve(b.workspace, b.grid, &b.gaps[EO_RIGHT], 1, 3, up, b.result + 3);
-  ok(same_end(&b, &b.result[1], &b.result[4]) && same_end(&b, &b.result[2], &b.result[5]), "a workspace remembers nothing: the same bytes");
+  ok(same_end(&b, &b.result[1], &b.result[4]) && same_end(&b, &b.result[2], &b.result[5]),
+     "a workspace remembers nothing: the same bytes");
   bench_close(&b);
 }
 
@@ -370,7 +394,8 @@ static void test_threads(void)
     pthread_join(thread[i], NULL);
     eo_loaded_workspace_free(worker[i].workspace);
   }
-  ok(same_end(&b, &b.result[0], &b.result[1]) && same_end(&b, &b.result[0], &b.result[2]), "two threads at once: the same bytes");
+  ok(same_end(&b, &b.result[0], &b.result[1]) && same_end(&b, &b.result[0], &b.result[2]),
+     "two threads at once: the same bytes");
   bench_close(&b);
 }
 
@@ -388,12 +413,14 @@ static void hold(struct bench *b, double angle, double stiffness, int stagger, d
 }
 
 /* Largest difference of load and approach between two pairs of ends, relative to P and 10 um. */
-static double difference(const struct bench *b, const struct eo_loaded_end *x, const struct eo_loaded_end *y, double load)
+static double difference(const struct bench *b, const struct eo_loaded_end *x, const struct eo_loaded_end *y,
+                         double load)
 {
   double worst = 0;
   for (int end = 0; end < 2; end++)
     for (int j = 0; j < b->grid->positions; j++)
-      worst = fmax(worst, fmax(fabs(x[end].load[j] - y[end].load[j]) / load, fabs(x[end].approach[j] - y[end].approach[j]) / 1e-5));
+      worst = fmax(worst, fmax(fabs(x[end].load[j] - y[end].load[j]) / load,
+                               fabs(x[end].approach[j] - y[end].approach[j]) / 1e-5));
   return worst;
 }
 
@@ -421,18 +448,21 @@ static void test_axial(void)
   copy_ends(&b, &b.result[2], &b.result[0]);
   for (int j = 0; j < b.grid->positions; j++)
     worst = fmax(worst, fabs(b.result[0].approach[j] - b.result[1].approach[j]));
-  ok(worst < 1e-12 && fabs(b.result[0].load[0] / b.result[1].load[0] - 1) > 0.05, "fixed: one approach for both ends within %.1e m, unequal loads", worst);
+  ok(worst < 1e-12 && fabs(b.result[0].load[0] / b.result[1].load[0] - 1) > 0.05,
+     "fixed: one approach for both ends within %.1e m, unequal loads", worst);
   hold(&b, angle, 1e15, 0, load);
   ok(difference(&b, &b.result[0], &b.result[2], load) < 1e-6, "a hard spring is a fixed support");
   hold(&b, angle, 1e8, stagger, load);
   worst = 0;
   for (int j = 0; j < b.grid->positions; j++) {
     int other = (j + b.grid->positions - stagger) % b.grid->positions;
-    double left = b.result[0].load[j], right = b.result[1].load[other], z = (b.result[0].approach[j] - b.result[1].approach[other]) / (2 * lean);
+    double left = b.result[0].load[j], right = b.result[1].load[other],
+           z = (b.result[0].approach[j] - b.result[1].approach[other]) / (2 * lean);
     balance = fmax(balance, fabs((left - right) * lean + 1e8 * z) / load);
     worst = fmax(worst, fabs(left + right - 2 * load) / load);
   }
-  ok(balance < 1e-6 && worst < 1e-12, "spring: axial forces in balance within %.1e P, loads add up to 2 P, the right end staggered", balance);
+  ok(balance < 1e-6 && worst < 1e-12,
+     "spring: axial forces in balance within %.1e P, loads add up to 2 P, the right end staggered", balance);
   bool sound = true;
   for (int end = 0; end < 2; end++)
     sound = sound && check_end(&b, b.gaps[end].gap, &b.result[end], 1).closed < 2e-12;
@@ -454,7 +484,8 @@ static void test_released_end(void)
   for (int j = 0; j < b.grid->positions; j++) {
     released = released && b.result[light].load[j] == 0 && b.result[light].tangent[j] == 0;
     clearance = fmin(clearance, b.gaps[light].unloaded[j] - b.result[light].approach[j]);
-    worst = fmax(worst, fabs(b.result[heavy].approach[j] - b.result[2].approach[j]) + fabs(b.result[light].approach[j] - b.result[heavy].approach[j]));
+    worst = fmax(worst, fabs(b.result[heavy].approach[j] - b.result[2].approach[j]) +
+                            fabs(b.result[light].approach[j] - b.result[heavy].approach[j]));
   }
   ok(released && clearance > 0, "an end that does not touch carries nothing and is %.1f um clear", 1e6 * clearance);
   ok(worst < 3e-12, "the other one carries all of it");
@@ -477,15 +508,20 @@ static void test_random(void)
       continue;
     }
     /* Compliances in proportion to the size; loads from next to nothing to far beyond what the teeth could bear. */
-    double size = pair.normal_module / 6e-3, nominal = 828 * size * size * g.face_width / 55e-3, load[LOADS] = {1, 0.01 * nominal, nominal, 3 * nominal, 1e5, 0.1 * nominal};
+    double size = pair.normal_module / 6e-3, nominal = 828 * size * size * g.face_width / 55e-3,
+           load[LOADS] = {1, 0.01 * nominal, nominal, 3 * nominal, 1e5, 0.1 * nominal};
     closed_form = paper_form();
-    closed_form = (struct eo_closed_form){closed_form.compliance / size, closed_form.length * size, closed_form.centre * size, closed_form.linear / size,
+    closed_form = (struct eo_closed_form){closed_form.compliance / size, closed_form.length * size,
+                                          closed_form.centre * size, closed_form.linear / size,
                                           closed_form.quadratic / (size * size)};
     double smooth[3] = {1.2e-9 / size, 15e-3 * size, 9e-3 * size};
-    struct eo_kernel kernel = index % 2 ? (struct eo_kernel){smooth_kernel, smooth} : (struct eo_kernel){eo_closed_form_kernel, &closed_form};
-    struct eo_flank_modification none = {0}, pinion = random_modification(&g, index, 0), gear = random_modification(&g, index, 20);
+    struct eo_kernel kernel = index % 2 ? (struct eo_kernel){smooth_kernel, smooth}
+                                        : (struct eo_kernel){eo_closed_form_kernel, &closed_form};
+    struct eo_flank_modification none = {0}, pinion = random_modification(&g, index, 0),
+                                 gear = random_modification(&g, index, 20);
     bench_open(&b, &g, kernel, index % 3 != 0, 6, 10);
-    set_gaps(&b, index % 2, index % 4 ? &pinion : &none, index % 4 == 3 ? &gear : &none, index % 7 ? random_between(index, 70, -2e-3, 2e-3) : 0,
+    set_gaps(&b, index % 2, index % 4 ? &pinion : &none, index % 4 == 3 ? &gear : &none,
+             index % 7 ? random_between(index, 70, -2e-3, 2e-3) : 0,
              index % 7 ? random_between(index, 71, -1e-3, 1e-3) : 0);
     for (int l = 0; l < LOADS; l++)
       load[l] = force_of(&g, load[l]);
@@ -497,8 +533,8 @@ static void test_random(void)
       /* The part of the compliance kept in single precision shows once deflections are millimetres. */
       good = r.sound && r.closed < 5e-12 + 1e-7 * deep && r.open > -5e-12 - 1e-7 * deep && r.balance < 1e-9;
       if (!good)
-        ok(false, "random pair %d, load %d: z %d/%d, m_n %.3g mm, beta %.3g deg: %.1e m, %.1e m, sum %.1e", index, l, g.teeth[0], g.teeth[1],
-           1e3 * g.normal_module, g.helix_angle / degree, r.closed, r.open, r.balance);
+        ok(false, "random pair %d, load %d: z %d/%d, m_n %.3g mm, beta %.3g deg: %.1e m, %.1e m, sum %.1e", index, l,
+           g.teeth[0], g.teeth[1], 1e3 * g.normal_module, g.helix_angle / degree, r.closed, r.open, r.balance);
     }
     sound += good;
     spur += g.helix_angle == 0;
@@ -507,7 +543,8 @@ static void test_random(void)
     bench_close(&b);
   }
   ok(sound == DESIGNS, "%d of %d random pairs solve for 1 N m to 1e5 N m", sound, DESIGNS);
-  ok(spur > 20 && wide > 5 && narrow > 20, "among them %d spur, %d with an overlap above 3, %d below 0.3", spur, wide, narrow);
+  ok(spur > 20 && wide > 5 && narrow > 20, "among them %d spur, %d with an overlap above 3, %d below 0.3", spur, wide,
+     narrow);
 }
 
 int main(void)

@@ -43,7 +43,8 @@ static void matrices(void)
   double largest;
   ok(!eo_dynamics_model_init(&m, &p, NULL), "a lopsided model is made");
   ok(symmetric(12, m.stiffness) && symmetric(12, m.damping), "K and C are symmetric");
-  ok(symmetric(m.oscillator.n, m.oscillator.stiffness) && symmetric(m.oscillator.n, m.oscillator.damping), "so are the reduced ones");
+  ok(symmetric(m.oscillator.n, m.oscillator.stiffness) && symmetric(m.oscillator.n, m.oscillator.damping),
+     "so are the reduced ones");
   double least = smallest_eigenvalue(12, m.stiffness, &largest);
   ok(least >= -1e-12 * largest, "K is positive semi-definite: %g of %g", least, largest);
   least = smallest_eigenvalue(12, m.damping, &largest);
@@ -110,12 +111,14 @@ static void impacts_on_zero_modes(void)
   struct eo_dynamics_model m;
   const struct eo_dynamics_parameters p = paper_pair();
   eo_dynamics_model_init(&m, &p, NULL);
-  double equal = eo_dynamics_model_impact_drift(&m, (double[]){300, 300}), unequal = eo_dynamics_model_impact_drift(&m, (double[]){300, 100});
+  double equal = eo_dynamics_model_impact_drift(&m, (double[]){300, 300}),
+         unequal = eo_dynamics_model_impact_drift(&m, (double[]){300, 100});
   ok(equal < 1e-12 * 300, "equal mean impacts do no work on the zero modes (%g)", equal);
   /* generalised force of the screw mode: z 1 at both pinion ends, theta such that X stays zero, unit modal mass */
   double tangent = tan(p.base_helix_angle) / p.base_radius[0];
   double mass = 2 * p.mass[0] + 2 * p.inertia[0] * tangent * tangent;
-  double roll = p.inertia[0] / (p.base_radius[0] * p.base_radius[0]) + p.inertia[1] / (p.base_radius[1] * p.base_radius[1]);
+  double roll = p.inertia[0] / (p.base_radius[0] * p.base_radius[0]) +
+                p.inertia[1] / (p.base_radius[1] * p.base_radius[1]);
   /* made orthogonal to the two rolling modes, in which pinion and gear turn by 1 / R */
   double overlap = p.inertia[0] * tangent / p.base_radius[0];
   double expected = tan(p.base_helix_angle) * 200 / sqrt(mass - 2 * overlap * overlap / roll);
@@ -158,7 +161,8 @@ static void slopes(void)
         double complex s = (above[k].stiffness[i][j] - below[k].stiffness[i][j]) / (2 * step);
         double complex t = (above[k].transfer[i][j] - below[k].transfer[i][j]) / (2 * step);
         worst = fmax(worst, cabs(s - at[k].stiffness_slope[i][j]) / cabs(at[k].stiffness_slope[i][i]));
-        worst = fmax(worst, cabs(t - at[k].transfer_slope[i][j]) / (cabs(at[k].transfer[i][i]) / w + cabs(at[k].transfer_slope[i][i])));
+        worst = fmax(worst, cabs(t - at[k].transfer_slope[i][j]) /
+                                (cabs(at[k].transfer[i][i]) / w + cabs(at[k].transfer_slope[i][i])));
       }
   ok(worst < 1e-4, "slopes with frequency agree with differences (%g)", worst);
 }
@@ -176,7 +180,8 @@ static void shift_is_free(void)
   m.oscillator.shift *= 3.7;
   eo_condense(&m.oscillator, 3000, 3, false, b);
   for (int k = 0; k < 4; k++)
-    worst = fmax(worst, cabs(a[k].stiffness[0][0] - b[k].stiffness[0][0]) / 1e8 + cabs(a[k].load[0] - b[k].load[0]) / 8638);
+    worst = fmax(worst,
+                 cabs(a[k].stiffness[0][0] - b[k].stiffness[0][0]) / 1e8 + cabs(a[k].load[0] - b[k].load[0]) / 8638);
   ok(worst < 1e-8, "the added stiffness cancels (%g)", worst);
   near(creal(a[0].load[0]), eo_dynamics_mesh_load(&p, 828), 1e-12, "the mean mesh force balances the torque");
 }
@@ -189,7 +194,8 @@ static void modes_and_signs(void)
   double complex pole;
   const struct eo_dynamics_parameters p = lopsided(1.2e7, 8.4e8);
   eo_dynamics_model_init(&m, &p, NULL);
-  ok(!eo_dynamics_model_modes(&m, (double[]){1e9, 1.2e9}, &modes, NULL) && modes.n == 11, "eleven modes with both couplings");
+  ok(!eo_dynamics_model_modes(&m, (double[]){1e9, 1.2e9}, &modes, NULL) && modes.n == 11,
+     "eleven modes with both couplings");
   int stable = 1;
   for (int i = 0; i < 2 * modes.n; i++)
     stable = stable && creal(modes.pole[i]) < 0;

@@ -1,5 +1,5 @@
-/* Properties of the motion: energy, power, both solvers with contact loss, convergence, both directions of a sweep, the same
-   bytes from every thread. */
+/* Properties of the motion: energy, power, both solvers with contact loss, convergence, both directions of a sweep, the
+   same bytes from every thread. */
 #include <pthread.h>
 #include <string.h>
 
@@ -120,7 +120,8 @@ static void contact_loss(bool gated)
   load.impact = EO_IMPACT_PAPER;
   load.pulse[0] = load.pulse[1] = (struct eo_pulse){EO_PULSE_HALF_SINE, 300, 0, 0.1};
   int failed = eo_vibration_solve(solver, &load, EO_START_COLD, &balance, NULL);
-  ok(!failed && balance.outcome == EO_VIBRATION_CONTACT_LOST, "contact is lost over %.3f of the cycle", balance.contact_loss[0]);
+  ok(!failed && balance.outcome == EO_VIBRATION_CONTACT_LOST, "contact is lost over %.3f of the cycle",
+     balance.contact_loss[0]);
   check_finite(&balance);
   near(balance.power_supplied, balance.power_dissipated, 1e-6, "power supplied by the mesh is dissipated");
   ok(balance.power_dissipated > 0, "and there is some");
@@ -128,8 +129,10 @@ static void contact_loss(bool gated)
   failed = eo_vibration_stability(solver, &load, multiplier, NULL);
   ok(!failed && cabs(multiplier[0]) < 1, "the state is stable: %.4f", cabs(multiplier[0]));
   failed = eo_vibration_integrate(solver, &load, NULL, &integration, NULL, NULL);
-  ok(!failed && integration.outcome == EO_VIBRATION_CONTACT_LOST, "time integration settles after %d periods", integration.periods);
-  near(balance.rms[EO_READING_NORMAL][0], integration.rms[EO_READING_NORMAL][0], 1e-4, "normal, balance against integration");
+  ok(!failed && integration.outcome == EO_VIBRATION_CONTACT_LOST, "time integration settles after %d periods",
+     integration.periods);
+  near(balance.rms[EO_READING_NORMAL][0], integration.rms[EO_READING_NORMAL][0], 1e-4,
+       "normal, balance against integration");
   near(balance.rms[EO_READING_TRANSVERSE][0], integration.rms[EO_READING_TRANSVERSE][0], 1e-4, "transverse");
   near(balance.rms[EO_READING_ROTATIONAL][0], integration.rms[EO_READING_ROTATIONAL][0], 1e-4, "rotational");
   close_to(balance.contact_loss[0], integration.contact_loss[0], 1e-3, "share of the cycle out of contact");
@@ -184,8 +187,10 @@ static void constant_float_drops_out(void)
   load.axial_motion = wave;
   eo_vibration_solve(solver, &load, EO_START_COLD, &moving, NULL);
   near(shifted.rms_pair[0], still.rms_pair[0], 1e-9, "a constant axial float changes nothing");
-  ok(fabs(moving.rms[0][0] / still.rms[0][0] - 1) > 1e-3, "a moving one does: %.4f against %.4f", moving.rms[0][0], still.rms[0][0]);
-  ok((moving.rms[0][0] > still.rms[0][0]) != (moving.rms[0][1] > still.rms[0][1]), "in opposite senses at the two ends");
+  ok(fabs(moving.rms[0][0] / still.rms[0][0] - 1) > 1e-3, "a moving one does: %.4f against %.4f", moving.rms[0][0],
+     still.rms[0][0]);
+  ok((moving.rms[0][0] > still.rms[0][0]) != (moving.rms[0][1] > still.rms[0][1]),
+     "in opposite senses at the two ends");
   eo_vibration_free(solver);
   eo_law_done(&law);
 }
@@ -232,7 +237,8 @@ static void stagger(void)
   for (int k = 1; k <= HARMONICS; k++)
     worst = fmax(worst, cabs(right[k] - left[k] * (k % 2 ? -1 : 1)) / r.rms[0][0]);
   ok(worst < 1e-9, "a stagger of half a pitch mirrors in time (%g)", worst);
-  ok(r.rms_of_mean[0] < 0.8 * r.rms_pair[0], "odd harmonics cancel in the mean of both ends: %.2f of %.2f", r.rms_of_mean[0], r.rms_pair[0]);
+  ok(r.rms_of_mean[0] < 0.8 * r.rms_pair[0], "odd harmonics cancel in the mean of both ends: %.2f of %.2f",
+     r.rms_of_mean[0], r.rms_pair[0]);
   eo_vibration_free(solver);
   eo_law_done(&law);
 }
@@ -253,7 +259,8 @@ static void single_end(void)
   ok(!failed && r.outcome == EO_VIBRATION_CONVERGED, "a single helical pair vibrates at %.3f m/s2", r.rms_pair[0]);
   eo_vibration_integrate(solver, &load, NULL, &t, NULL, NULL);
   near(r.rms_pair[0], t.rms_pair[0], 1e-4, "single helical, balance against integration");
-  near(r.axial_force_mean[0], 414 / p.base_radius[0] * tan(p.base_helix_angle), 1e-9, "its gear thrust is F_t tan(beta_b)");
+  near(r.axial_force_mean[0], 414 / p.base_radius[0] * tan(p.base_helix_angle), 1e-9,
+       "its gear thrust is F_t tan(beta_b)");
   near(r.bearing_force_mean[EO_PINION][0], -414 / p.base_radius[0], 1e-9, "its pinion bearing carries F_t");
   eo_vibration_free(solver);
   eo_law_done(&law);
@@ -301,7 +308,8 @@ static void sweeps(void)
     bistable += alone.down[i].rms_pair[0] > 1.5 * alone.up[i].rms_pair[0];
   }
   ok(lost > 20 && bistable > 10, "teeth separate at %d speeds, two states exist at %d of them", lost, bistable);
-  ok(!memcmp(&alone, &together[0], sizeof alone) && !memcmp(&alone, &together[1], sizeof alone), "two threads give the same bytes as one");
+  ok(!memcmp(&alone, &together[0], sizeof alone) && !memcmp(&alone, &together[1], sizeof alone),
+     "two threads give the same bytes as one");
 }
 
 static void trace(void)
@@ -324,7 +332,8 @@ static void trace(void)
     up = point[i].fold ? fmax(up, point[i].speed) : up;
     down = point[i].fold ? fmin(down, point[i].speed) : down;
   }
-  ok(folds >= 2 && folds % 2 == 0 && up > down * 1.1, "%d folds between %.0f and %.0f rpm", folds, down * 30 / M_PI, up * 30 / M_PI);
+  ok(folds >= 2 && folds % 2 == 0 && up > down * 1.1, "%d folds between %.0f and %.0f rpm", folds, down * 30 / M_PI,
+     up * 30 / M_PI);
   load.speed = up * 1.002;
   struct eo_vibration r;
   eo_vibration_solve(solver, &load, EO_START_COLD, &r, NULL);

@@ -1,4 +1,5 @@
-/* What holds for every evaluation, on a coarse finite-element pair: equal ends once or twice, no memory, scenarios, laws, bands, threads. */
+/* What holds for every evaluation, on a coarse finite-element pair: equal ends once or twice, no memory, scenarios,
+   laws, bands, threads. */
 #include "document/design_document.h"
 #include "document/example.h"
 #include "evaluation/evaluator.h"
@@ -81,8 +82,9 @@ static void put(struct record *record, int n, const double *value)
 
 static void put_end(struct record *record, const struct eo_end_result *e)
 {
-  double single[] = {e->datum, e->max_pressure, e->max_line_load, e->edge_share, e->transmission_peak, e->impact.force, e->impact.phase,
-                     e->impact.speed, e->impact.duration, e->impact.start, e->impact.eta};
+  double single[] = {e->datum,        e->max_pressure, e->max_line_load, e->edge_share,      e->transmission_peak,
+                     e->impact.force, e->impact.phase, e->impact.speed,  e->impact.duration, e->impact.start,
+                     e->impact.eta};
   put(record, POSITIONS, e->loaded.approach);
   put(record, POSITIONS, e->loaded.tangent);
   put(record, POSITIONS, e->unloaded);
@@ -95,8 +97,14 @@ static struct record record_of(const struct eo_evaluation *r)
   struct record record = {0};
   for (int k = 0; k < r->cases; k++) {
     const struct eo_case_result *c = &r->load_case[k];
-    double single[] = {c->peak_to_peak, c->mean, c->dynamic_force_factor, c->vibration.dynamic_factor[0], c->vibration.dynamic_factor[1],
-                       c->vibration.contact_loss[0], r->objective[k].impact, r->objective[k].contact_pressure};
+    double single[] = {c->peak_to_peak,
+                       c->mean,
+                       c->dynamic_force_factor,
+                       c->vibration.dynamic_factor[0],
+                       c->vibration.dynamic_factor[1],
+                       c->vibration.contact_loss[0],
+                       r->objective[k].impact,
+                       r->objective[k].contact_pressure};
     for (int end = 0; end < r->ends; end++)
       put_end(&record, &c->end[end]);
     put(&record, POSITIONS, c->transmission);
@@ -154,7 +162,8 @@ static void test_single_end(void)
   pair = make_pair(&single);
   evaluator = make_evaluator(pair);
   const struct eo_evaluation *r = run(&single, NULL, 0);
-  ok(r->ends == 1 && memcmp(r->load_case[1].end[0].loaded.approach, both.value + both.count / 3, sizeof(double) * POSITIONS) == 0,
+  ok(r->ends == 1 &&
+         memcmp(r->load_case[1].end[0].loaded.approach, both.value + both.count / 3, sizeof(double) * POSITIONS) == 0,
      "its contact is that of one end of the herringbone pair under twice the torque");
   ok(r->load_case[1].vibration.outcome != EO_VIBRATION_NOT_CONVERGED && r->objective[1].rms > 0, "and it vibrates");
   eo_evaluator_free(evaluator);
@@ -173,11 +182,13 @@ static void test_mirror(void)
   mirrored.modification.flank[EO_PINION][EO_LEFT] = design.modification.flank[EO_PINION][EO_RIGHT];
   mirrored.modification.flank[EO_PINION][EO_RIGHT] = design.modification.flank[EO_PINION][EO_LEFT];
   const struct eo_evaluation *r = run(&design, NULL, 0);
-  double rms[2] = {r->load_case[1].vibration.rms[0][0], r->load_case[1].vibration.rms[0][1]}, force[2] = {r->load_case[1].end[0].impact.force, r->load_case[1].end[1].impact.force};
+  double rms[2] = {r->load_case[1].vibration.rms[0][0], r->load_case[1].vibration.rms[0][1]},
+         force[2] = {r->load_case[1].end[0].impact.force, r->load_case[1].end[1].impact.force};
   double peak = r->load_case[1].peak_to_peak;
   r = run(&mirrored, NULL, 0);
   near(r->load_case[1].peak_to_peak, peak, 1e-12, "mirrored: transmission error of the pair");
-  ok(r->load_case[1].end[0].impact.force == force[1] && r->load_case[1].end[1].impact.force == force[0], "impacts exchanged");
+  ok(r->load_case[1].end[0].impact.force == force[1] && r->load_case[1].end[1].impact.force == force[0],
+     "impacts exchanged");
   near(r->load_case[1].vibration.rms[0][0], rms[1], 1e-6, "vibrations exchanged");
   near(r->load_case[1].vibration.rms[0][1], rms[0], 1e-6, "on both ends");
 }
@@ -252,8 +263,8 @@ static void test_scenarios(void)
   struct eo_design plain = design_of("paper");
   double mean = run(&plain, NULL, 0)->load_case[0].mean, force = run(&plain, NULL, 0)->load_case[0].end[0].impact.speed;
   const struct eo_evaluation *r = run(&plain, &(struct eo_scenario){NAN, NAN, 1.1, 1}, 0);
-  ok(r->load_case[0].mean > 1.09 * mean && r->load_case[0].mean <= 1.1 * mean * (1 + 1e-9), "a tenth more compliance: %.4f of the deflection",
-     r->load_case[0].mean / mean);
+  ok(r->load_case[0].mean > 1.09 * mean && r->load_case[0].mean <= 1.1 * mean * (1 + 1e-9),
+     "a tenth more compliance: %.4f of the deflection", r->load_case[0].mean / mean);
   r = run(&plain, &(struct eo_scenario){NAN, NAN, 1, 1.2}, 0);
   near(r->load_case[0].mean, mean, 1e-15, "the running speed leaves the statics alone");
   near(r->load_case[0].end[0].impact.speed, 1.2 * force, 1e-12, "and scales the impact");
@@ -261,7 +272,8 @@ static void test_scenarios(void)
   struct eo_design tilted = plain;
   tilted.alignment.shaft_angle_in_plane = 1e-3;
   tilted.alignment.shaft_angle_out_of_plane = 2e-4;
-  struct record direct = record_of(run(&tilted, NULL, 0)), scenario = record_of(run(&plain, &(struct eo_scenario){1e-3, 2e-4, 1, 1}, 0));
+  struct record direct = record_of(run(&tilted, NULL, 0)),
+                scenario = record_of(run(&plain, &(struct eo_scenario){1e-3, 2e-4, 1, 1}, 0));
   ok(same(&direct, &scenario), "shaft errors of a scenario replace the nominal ones");
   struct record nominal = record_of(run(&tilted, &(struct eo_scenario){NAN, NAN, 1, 1}, 0));
   ok(same(&direct, &nominal), "or leave them");
@@ -277,10 +289,13 @@ static void test_robust(void)
   design.objective.scenarios = unmodified.objective.scenarios = 3;
   design.objective.contact_pressure = unmodified.objective.contact_pressure = (struct eo_constraint){true, 900e6};
   for (int s = 0; s < 3; s++)
-    design.objective.scenario[s] = unmodified.objective.scenario[s] = (struct eo_scenario){s * 0.8e-3, NAN, 1, 1 + 0.05 * s};
+    design.objective.scenario[s] = unmodified.objective.scenario[s] = (struct eo_scenario){s * 0.8e-3, NAN, 1,
+                                                                                           1 + 0.05 * s};
   design.objective.robust = unmodified.objective.robust = EO_ROBUST_MEAN;
   ok(eo_evaluator_scenarios(&design) == 3, "three scenarios count");
-  ok(eo_evaluator_raw(evaluator, &design, raw, &error) == EO_OK && eo_evaluator_raw(evaluator, &unmodified, before, &error) == EO_OK, "raw values");
+  ok(eo_evaluator_raw(evaluator, &design, raw, &error) == EO_OK &&
+         eo_evaluator_raw(evaluator, &unmodified, before, &error) == EO_OK,
+     "raw values");
   eo_evaluator_combine(&design, &pair->geometry, raw, before, &mean);
   design.objective.robust = EO_ROBUST_WORST;
   eo_evaluator_combine(&design, &pair->geometry, raw, before, &worst);
@@ -288,15 +303,17 @@ static void test_robust(void)
   for (int s = 0; s < 3; s++)
     eo_objective_value(&design.objective, cases, design.load_case, raw + s * cases, before + s * cases, false, &one[s]);
   near(mean.objective, (one[0].objective + one[1].objective + one[2].objective) / 3, 1e-14, "mean objective");
-  near(mean.fitness, 1 / mean.objective - design.objective.penalty * (one[0].violation + one[1].violation + one[2].violation) / 3, 1e-14,
-       "fitness of the mean");
+  near(mean.fitness,
+       1 / mean.objective - design.objective.penalty * (one[0].violation + one[1].violation + one[2].violation) / 3,
+       1e-14, "fitness of the mean");
   near(worst.fitness, fmin(one[0].fitness, fmin(one[1].fitness, one[2].fitness)), 0, "worst fitness");
   ok(one[0].violation > 0 || one[2].violation > 0, "with a constraint that bites");
   raw[1].failed = true;
   eo_evaluator_combine(&design, &pair->geometry, raw, before, &worst);
   design.objective.robust = EO_ROBUST_MEAN;
   eo_evaluator_combine(&design, &pair->geometry, raw, before, &mean);
-  ok(worst.fitness == EO_FITNESS_WORST && mean.fitness == EO_FITNESS_WORST, "one scenario that failed spoils mean and worst");
+  ok(worst.fitness == EO_FITNESS_WORST && mean.fitness == EO_FITNESS_WORST,
+     "one scenario that failed spoils mean and worst");
 }
 
 /* ---- laws, bands, curves ---- */
@@ -308,15 +325,18 @@ static double rms_with(struct eo_design design, enum eo_mesh_law law, enum eo_so
   return run(&design, NULL, 0)->load_case[1].vibration.rms_pair[EO_READING_NORMAL];
 }
 
-/* The table is straight between its loads, so that it equals the tangent law to a per cent or two while teeth stay in contact; the secant law agrees only without gaps, and then roughly. */
+/* The table is straight between its loads, so that it equals the tangent law to a per cent or two while teeth stay in
+   contact; the secant law agrees only without gaps, and then roughly. */
 static void test_laws(void)
 {
   struct eo_design a = design_of("paper-case-a"), plain = design_of("paper");
-  double tangent = rms_with(a, EO_LAW_TANGENT, EO_SOLVER_HARMONIC_BALANCE), table = rms_with(a, EO_LAW_TABLE, EO_SOLVER_HARMONIC_BALANCE);
+  double tangent = rms_with(a, EO_LAW_TANGENT, EO_SOLVER_HARMONIC_BALANCE),
+         table = rms_with(a, EO_LAW_TABLE, EO_SOLVER_HARMONIC_BALANCE);
   near(table, tangent, 0.02, "table and tangent law in contact, m/s2");
-  near(rms_with(plain, EO_LAW_SECANT, EO_SOLVER_HARMONIC_BALANCE), rms_with(plain, EO_LAW_TANGENT, EO_SOLVER_HARMONIC_BALANCE), 0.2,
-       "secant and tangent law without gaps, m/s2");
-  near(rms_with(a, EO_LAW_TANGENT, EO_SOLVER_TIME_INTEGRATION), tangent, 1e-4, "time integration and harmonic balance, m/s2");
+  near(rms_with(plain, EO_LAW_SECANT, EO_SOLVER_HARMONIC_BALANCE),
+       rms_with(plain, EO_LAW_TANGENT, EO_SOLVER_HARMONIC_BALANCE), 0.2, "secant and tangent law without gaps, m/s2");
+  near(rms_with(a, EO_LAW_TANGENT, EO_SOLVER_TIME_INTEGRATION), tangent, 1e-4,
+       "time integration and harmonic balance, m/s2");
 }
 
 static void test_band(void)
@@ -327,7 +347,8 @@ static void test_band(void)
   double band[2] = {r->load_case[1].band[EO_READING_NORMAL][0], r->load_case[1].band[EO_READING_NORMAL][1]};
   for (int side = 0; side < 2; side++) {
     struct eo_scenario scenario = {NAN, NAN, side ? 1.1 : 0.9, 1};
-    near(band[side], run(&design, &scenario, 0)->load_case[1].vibration.rms_pair[EO_READING_NORMAL], 2e-5, "band of the RMS: the same as a scenario, m/s2");
+    near(band[side], run(&design, &scenario, 0)->load_case[1].vibration.rms_pair[EO_READING_NORMAL], 2e-5,
+         "band of the RMS: the same as a scenario, m/s2");
   }
   ok(isnan(run(&design, NULL, 0)->load_case[1].band[EO_READING_NORMAL][0]), "no band unless asked for");
 }
@@ -352,8 +373,11 @@ static void test_root_stress(void)
 {
   struct eo_design design = design_of("paper");
   const struct eo_evaluation *r = run(&design, NULL, EO_WANT_ROOT);
-  ok(r->objective[1].root_stress > 30e6 && r->objective[1].root_stress < 80e6, "root stress %.1f MPa", 1e-6 * r->objective[1].root_stress);
-  ok(r->objective[2].root_stress > r->objective[1].root_stress && r->objective[1].root_stress > r->objective[0].root_stress, "grows with the torque");
+  ok(r->objective[1].root_stress > 30e6 && r->objective[1].root_stress < 80e6, "root stress %.1f MPa",
+     1e-6 * r->objective[1].root_stress);
+  ok(r->objective[2].root_stress > r->objective[1].root_stress &&
+         r->objective[1].root_stress > r->objective[0].root_stress,
+     "grows with the torque");
   r = run(&design, NULL, 0);
   ok(isnan(r->objective[1].root_stress) && r->load_case[1].end[0].root[0].phases == 0, "not computed unless asked for");
   design.objective.root_stress.enabled = true;
@@ -368,12 +392,15 @@ static void test_axial(void)
   design.alignment.pinion_axial = EO_AXIAL_FIXED;
   design.alignment.shaft_angle_in_plane = 1e-4;
   const struct eo_evaluation *r = run(&design, NULL, 0);
-  ok(fabs(r->load_case[1].end[0].loaded.load[0] / r->load_case[1].force - 1) > 0.01 && !r->objective[1].failed, "a fixed pinion shares unevenly");
+  ok(fabs(r->load_case[1].end[0].loaded.load[0] / r->load_case[1].force - 1) > 0.01 && !r->objective[1].failed,
+     "a fixed pinion shares unevenly");
   design.alignment.shaft_angle_in_plane = 1.7e-3;
   r = run(&design, NULL, 0);
   struct record record = record_of(r);
-  ok(fmin(r->load_case[1].end[0].loaded.load[0], r->load_case[1].end[1].loaded.load[0]) == 0, "and bears on one end only under a large shaft error");
-  ok(r->objective[1].failed && r->load_case[1].vibration.outcome == EO_VIBRATION_NOT_CONVERGED, "which has no vibration about its load");
+  ok(fmin(r->load_case[1].end[0].loaded.load[0], r->load_case[1].end[1].loaded.load[0]) == 0,
+     "and bears on one end only under a large shaft error");
+  ok(r->objective[1].failed && r->load_case[1].vibration.outcome == EO_VIBRATION_NOT_CONVERGED,
+     "which has no vibration about its load");
   ok(finite_record(&record), "and no number that is none");
   design.alignment.shaft_angle_in_plane = 0;
   design.alignment.stagger = 0.5;
@@ -381,7 +408,8 @@ static void test_axial(void)
   struct record stagger = record_of(r);
   design.alignment.shaft_angle_in_plane = 1e-200;
   struct record twice = record_of(run(&design, NULL, 0));
-  ok(r->load_case[1].end[0].loaded.load[3] != r->load_case[1].force && same(&stagger, &twice), "equal ends half a pitch apart share unevenly too");
+  ok(r->load_case[1].end[0].loaded.load[3] != r->load_case[1].force && same(&stagger, &twice),
+     "equal ends half a pitch apart share unevenly too");
 }
 
 int main(void)

@@ -1,5 +1,5 @@
-/* What must hold for any prepared flexibility: symmetry, semi-definiteness, the same bytes each time, a cache that is believed only when
-   it is whole, and a preparation that can be stopped. A coarse mesh keeps it quick. */
+/* What must hold for any prepared flexibility: symmetry, semi-definiteness, the same bytes each time, a cache that is
+   believed only when it is whole, and a preparation that can be stopped. A coarse mesh keeps it quick. */
 #include "flexibility/flexibility.h"
 #include "numerics/sparse.h"
 #include "tests/paper_pair.h"
@@ -16,8 +16,13 @@ enum { PAIRS = 4, PER_PAIR = 15, POINTS = PAIRS * PER_PAIR };
 
 static struct eo_geometry geometry;
 static struct eo_gear_pair pair;
-static struct eo_flexibility_settings coarse = {.sector_teeth = 5, .neighbour_coupling = true, .layers = 10, .flank_rows = 6,
-                                                .fillet_elements = 10, .columns = 4, .rim_elements = 4};
+static struct eo_flexibility_settings coarse = {.sector_teeth = 5,
+                                                .neighbour_coupling = true,
+                                                .layers = 10,
+                                                .flank_rows = 6,
+                                                .fillet_elements = 10,
+                                                .columns = 4,
+                                                .rim_elements = 4};
 
 static struct eo_flexibility *prepare(const struct eo_flexibility_settings *settings, const char *directory)
 {
@@ -77,11 +82,12 @@ static void check_matrix(const struct eo_flexibility *flexibility)
   ok(far, "pairs that are not neighbours do not feel each other");
   own /= PAIRS * PER_PAIR * PER_PAIR;
   neighbour /= 2 * (PAIRS - 1) * PER_PAIR * PER_PAIR;
-  ok(neighbour > 0.01 * own && neighbour < 0.5 * own, "a neighbour moves less than the loaded tooth, but the same way: %.3g of %.3g um/kN",
-     1e9 * neighbour, 1e9 * own);
-  ok(extreme_ratio(matrix, PER_PAIR, POINTS) > -1e-9, "semi-definite on one pair: smallest eigenvalue over largest %.2e",
-     extreme_ratio(matrix, PER_PAIR, POINTS));
-  ok(extreme_ratio(matrix, POINTS, POINTS) > -1e-9, "semi-definite over four pairs: %.2e", extreme_ratio(matrix, POINTS, POINTS));
+  ok(neighbour > 0.01 * own && neighbour < 0.5 * own,
+     "a neighbour moves less than the loaded tooth, but the same way: %.3g of %.3g um/kN", 1e9 * neighbour, 1e9 * own);
+  ok(extreme_ratio(matrix, PER_PAIR, POINTS) > -1e-9,
+     "semi-definite on one pair: smallest eigenvalue over largest %.2e", extreme_ratio(matrix, PER_PAIR, POINTS));
+  ok(extreme_ratio(matrix, POINTS, POINTS) > -1e-9, "semi-definite over four pairs: %.2e",
+     extreme_ratio(matrix, POINTS, POINTS));
   const struct eo_flexibility_report *report = eo_flexibility_report(flexibility);
   ok(report->smallest_eigenvalue[0] > -1e-9 && report->smallest_eigenvalue[1] > -1e-9,
      "semi-definite on all nodes of a flank with its neighbours: %.2e, %.2e", report->smallest_eigenvalue[0],
@@ -97,8 +103,8 @@ static void check_nodes(const struct eo_flexibility *flexibility)
   struct eo_member_result result = {0};
   struct eo_member_times times;
   struct eo_error error = {0};
-  if (!ok(!eo_member_compute(&result, &geometry, EO_GEAR, &material, &settings, NULL, &times, &error), "the gear alone is computed %s",
-          error.text))
+  if (!ok(!eo_member_compute(&result, &geometry, EO_GEAR, &material, &settings, NULL, &times, &error),
+          "the gear alone is computed %s", error.text))
     return;
   int across = coarse.layers + 1, n = result.rows * across;
   double worst = 0, reciprocity = 0, largest = 0;
@@ -108,8 +114,9 @@ static void check_nodes(const struct eo_flexibility *flexibility)
       struct eo_flank_point point[2];
       for (int k = 0; k < 2; k++) {
         int node = k ? j : i;
-        point[k] = (struct eo_flank_point){.s = {result.s[node / across], result.s[node / across]},
-                                           .eta = geometry.face_width * ((double)(node % across) / coarse.layers - 0.5)};
+        point[k] =
+            (struct eo_flank_point){.s = {result.s[node / across], result.s[node / across]},
+                                    .eta = geometry.face_width * ((double)(node % across) / coarse.layers - 0.5)};
       }
       eo_flexibility_add_compliance(flexibility, EO_GEAR, 2, point, compliance);
       worst = fmax(worst, fabs(compliance[1] - expected));
@@ -162,7 +169,8 @@ static void check_root(const struct eo_flexibility *flexibility)
     largest = fmax(largest, fabs(sum));
   }
   ok(worst < 1e-12 * largest, "root stress is the sum of its influences: %.1e of the largest", worst / largest);
-  ok(root.first > 1 && root.first < root.points - 2 && root.arc[root.points - 1] > root.arc[0], "the root runs down from the active profile");
+  ok(root.first > 1 && root.first < root.points - 2 && root.arc[root.points - 1] > root.arc[0],
+     "the root runs down from the active profile");
   double plane[EO_STRESSES] = {30, -10, 15};
   close_to(eo_stress_principal(plane), 35, 1e-12, "principal stress of (30, -10, 15)");
   free(stress);
@@ -170,7 +178,8 @@ static void check_root(const struct eo_flexibility *flexibility)
 }
 
 /* Same numbers, and whether they were read. */
-static void check_same(const struct eo_flexibility *flexibility, const char *directory, int expect_read, const char *what)
+static void check_same(const struct eo_flexibility *flexibility, const char *directory, int expect_read,
+                       const char *what)
 {
   static double fresh[POINTS * POINTS], other[POINTS * POINTS];
   struct eo_flexibility *again = prepare(&coarse, directory);
@@ -270,7 +279,8 @@ static void check_stop(void)
   struct eo_error error = {0};
   int calls = 0;
   struct eo_progress progress = {.report = stop_at_half, .context = &calls};
-  enum eo_code code = eo_flexibility_prepare(&geometry, &pair, &material, &coarse, NULL, &progress, &flexibility, &error);
+  enum eo_code code = eo_flexibility_prepare(&geometry, &pair, &material, &coarse, NULL, &progress, &flexibility,
+                                             &error);
   ok(code == EO_ERROR_CANCELLED && !flexibility && calls > 0, "the preparation stops when asked: %s", error.text);
 }
 
@@ -280,7 +290,8 @@ static void refuse(struct eo_flexibility_settings settings, const struct eo_gear
   struct eo_flexibility *flexibility = NULL;
   struct eo_error error = {0};
   enum eo_code code = eo_flexibility_prepare(&geometry, asked, &material, &settings, NULL, NULL, &flexibility, &error);
-  ok(code == EO_ERROR_INPUT && !flexibility && !strcmp(error.pointer, pointer), "refused at %s: %s", error.pointer, error.text);
+  ok(code == EO_ERROR_INPUT && !flexibility && !strcmp(error.pointer, pointer), "refused at %s: %s", error.pointer,
+     error.text);
 }
 
 static void check_refusals(void)

@@ -1,5 +1,5 @@
-/* The analysis and its result document, on a compliance in closed form: what it must not depend on, what must agree with what, and
-   every name that is relied on. */
+/* The analysis and its result document, on a compliance in closed form: what it must not depend on, what must agree
+   with what, and every name that is relied on. */
 #include <stdlib.h>
 
 #include "contract.h"
@@ -10,7 +10,8 @@
 
 enum { ALL = EO_WANT_ROOT | EO_WANT_BAND | EO_WANT_CURVES };
 
-static const struct eo_closed_form form = {.compliance = 1.5e-9, .length = 12e-3, .centre = -0.8e-3, .linear = 20, .quadratic = 4000};
+static const struct eo_closed_form form = {
+    .compliance = 1.5e-9, .length = 12e-3, .centre = -0.8e-3, .linear = 20, .quadratic = 4000};
 
 struct subject {
   struct eo_design design;
@@ -139,8 +140,8 @@ static void check_writing(void)
   end(s);
 }
 
-/* Two threads, ends that change one at a time, ends that become equal, ends that share their load, bodies that bend, impacts in the motion: the
-   same bytes as a new analysis gives on one thread. */
+/* Two threads, ends that change one at a time, ends that become equal, ends that share their load, bodies that bend,
+   impacts in the motion: the same bytes as a new analysis gives on one thread. */
 static void check_threads(void)
 {
   struct subject *s = start("paper-case-b");
@@ -177,7 +178,8 @@ static void check_unmodified(void)
   json_t *result = result_of(s);
   close_to(eo_json_find_number(result, "objectives/J"), 1, 1e-12, "J of the unmodified pair");
   close_to(eo_json_find_number(result, "objectives/fitness"), 1, 1e-12, "its fitness");
-  ok(eo_json_find_number(result, "objectives/f2_N") == eo_json_find_number(result, "objectives/unmodified/f2_N"), "it is its own reference");
+  ok(eo_json_find_number(result, "objectives/f2_N") == eo_json_find_number(result, "objectives/unmodified/f2_N"),
+     "it is its own reference");
   json_decref(result);
   end(s);
 }
@@ -185,7 +187,8 @@ static void check_unmodified(void)
 /* f_i = sum share value / number of cases, J = sum w f / f(unmodified), from the document's own numbers. */
 static void check_objectives(void)
 {
-  static const char *const value[3] = {"peak_to_peak_um", "impact_N", "rms_m_per_s2"}, *const sum[3] = {"f1_um", "f2_N", "f3_m_per_s2"};
+  static const char *const value[3] = {"peak_to_peak_um", "impact_N", "rms_m_per_s2"}, *const sum[3] = {"f1_um", "f2_N",
+                                                                                                        "f3_m_per_s2"};
   static const double weight[3] = {0.4, 0.15, 0.45}, share[3] = {0.2, 0.5, 0.3};
   struct subject *s = start("paper-case-b");
   json_t *result = result_of(s);
@@ -195,7 +198,8 @@ static void check_objectives(void)
     double f = 0, reference = 0;
     for (size_t k = 0; k < 3; k++) {
       f += share[k] * eo_json_find_number(json_array_get(json_object_get(after, "load_cases"), k), value[i]) / 3;
-      reference += share[k] * eo_json_find_number(json_array_get(json_object_get(before, "load_cases"), k), value[i]) / 3;
+      reference += share[k] * eo_json_find_number(json_array_get(json_object_get(before, "load_cases"), k), value[i]) /
+                   3;
     }
     near(eo_json_find_number(after, sum[i]), f, 1e-10, sum[i]);
     objective += weight[i] * f / reference;
@@ -214,11 +218,14 @@ static void check_columns(void)
   complete(s);
   json_t *result = result_of(s);
   const json_t *c = json_array_get(json_object_get(result, "load_cases"), 1);
-  const json_t *pair = eo_json_find(c, "lte/pair_um"), *left = eo_json_find(c, "lte/left_um"), *right = eo_json_find(c, "lte/right_um");
+  const json_t *pair = eo_json_find(c, "lte/pair_um"), *left = eo_json_find(c, "lte/left_um"),
+               *right = eo_json_find(c, "lte/right_um");
   double worst = 0, low = INFINITY, high = -INFINITY, missing = 0, force = 0;
   for (size_t j = 0; j < json_array_size(pair); j++) {
     double z = json_number_value(json_array_get(pair, j)), sum = 0;
-    worst = fmax(worst, fabs(z - (json_number_value(json_array_get(left, j)) + json_number_value(json_array_get(right, j))) / 2));
+    worst =
+        fmax(worst,
+             fabs(z - (json_number_value(json_array_get(left, j)) + json_number_value(json_array_get(right, j))) / 2));
     low = fmin(low, z);
     high = fmax(high, z);
     for (size_t i = 0; i < json_array_size(eo_json_find(c, "contact/load_share/right")); i++)
@@ -231,7 +238,8 @@ static void check_columns(void)
   const json_t *history = eo_json_find(c, "vibration/left/history/normal_m_per_s2");
   for (size_t i = 0; i < json_array_size(history); i++)
     force += pow(json_number_value(json_array_get(history, i)), 2) / (double)json_array_size(history);
-  near(sqrt(force), eo_json_find_number(c, "vibration/left/rms_m_per_s2/normal"), 1e-4, "RMS of the acceleration's history");
+  near(sqrt(force), eo_json_find_number(c, "vibration/left/rms_m_per_s2/normal"), 1e-4,
+       "RMS of the acceleration's history");
   const json_t *orders = eo_json_find(c, "vibration/left/orders/normal_m_per_s2");
   force = 0;
   for (size_t i = 1; i < json_array_size(orders); i++)
@@ -240,7 +248,8 @@ static void check_columns(void)
   const json_t *band = eo_json_find(c, "vibration/rms_band_m_per_s2/normal");
   double rms = eo_json_find_number(c, "vibration/rms_m_per_s2/normal");
   ok(json_number_value(json_array_get(band, 0)) <= rms && rms <= json_number_value(json_array_get(band, 1)) &&
-       json_number_value(json_array_get(band, 0)) < json_number_value(json_array_get(band, 1)), "the band encloses the RMS");
+         json_number_value(json_array_get(band, 0)) < json_number_value(json_array_get(band, 1)),
+     "the band encloses the RMS");
   json_decref(result);
   end(s);
 }
@@ -261,19 +270,23 @@ static void check_warnings(void)
   json_t *result = result_of(s);
   ok(warns(result, "Edge contact at 828 N m and 2000 rpm, right end"), "edge contact is said, with its place");
   ok(warns(result, "limit on the peak-to-peak transmission error is exceeded"), "a violated limit is said");
-  ok(eo_json_find_number(result, "objectives/violation") > 0 && eo_json_find_number(result, "objectives/fitness") < 1, "and costs fitness");
+  ok(eo_json_find_number(result, "objectives/violation") > 0 && eo_json_find_number(result, "objectives/fitness") < 1,
+     "and costs fitness");
   json_decref(result);
   s->design.load_cases = 1;
   s->design.load_case[0] = (struct eo_load_case){.torque = 5, .speed = 560, .share = 1};
   result = result_of(s);
-  const char *outcome = json_string_value(eo_json_find(json_array_get(json_object_get(result, "load_cases"), 0), "outcome"));
-  ok(outcome && strcmp(outcome, "contact_lost") == 0 && warns(result, "Contact is lost at 5 N m") && last(result, "vibration/contact_loss") > 0,
+  const char *outcome =
+      json_string_value(eo_json_find(json_array_get(json_object_get(result, "load_cases"), 0), "outcome"));
+  ok(outcome && strcmp(outcome, "contact_lost") == 0 && warns(result, "Contact is lost at 5 N m") &&
+         last(result, "vibration/contact_loss") > 0,
      "lost contact is an outcome: %s", outcome ? outcome : "none");
   json_decref(result);
   end(s);
 }
 
-/* A pinion held axially at a large shaft angle error: one end carries nothing, and there is no mesh law about its load. */
+/* A pinion held axially at a large shaft angle error: one end carries nothing, and there is no mesh law about its load.
+ */
 static void check_failure(void)
 {
   struct subject *s = start_at("paper", 8);
@@ -281,8 +294,11 @@ static void check_failure(void)
   s->design.load_cases = 1;
   s->design.load_case[0].torque = 50;
   s->design.alignment.pinion_axial = EO_AXIAL_FIXED;
-  json_t *result = eo_analysis_run(s->analysis, &s->design, 0, &error) ? NULL : eo_result_encode(s->analysis, &s->design, NULL);
-  ok(json_is_null(eo_json_find(result, "objectives/J")) && warns(result, "No periodic vibration was found"), "what has no vibration has no J, and says so");
+  json_t *result = eo_analysis_run(s->analysis, &s->design, 0, &error)
+                       ? NULL
+                       : eo_result_encode(s->analysis, &s->design, NULL);
+  ok(json_is_null(eo_json_find(result, "objectives/J")) && warns(result, "No periodic vibration was found"),
+     "what has no vibration has no J, and says so");
   ok(json_is_null(eo_json_find(result, "eigenfrequencies_Hz")), "what was not asked for is null");
   json_decref(result);
   end(s);

@@ -1,5 +1,5 @@
-/* The design document: every way to get a key wrong, defaults against the product's description, derived defaults against the
-   model's printed figures, and keys that contradict each other. */
+/* The design document: every way to get a key wrong, defaults against the product's description, derived defaults
+   against the model's printed figures, and keys that contradict each other. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -21,7 +21,8 @@ static json_t *parse(const char *text)
   return document;
 }
 
-static const char *minimal = "{\"gear_pair\":{\"pinion_teeth\":17,\"gear_teeth\":44,\"normal_module_mm\":6,\"helix_angle_deg\":24,\"face_width_mm\":55}}";
+static const char *minimal = "{\"gear_pair\":{\"pinion_teeth\":17,\"gear_teeth\":44,\"normal_module_mm\":6,\"helix_"
+                             "angle_deg\":24,\"face_width_mm\":55}}";
 
 /* Number of faults of a document; releases it. */
 static int count_faults(json_t *document)
@@ -57,13 +58,15 @@ static void provoke(const json_t *complete, const char *pointer, json_t *value)
   expected_faults++;
   if (count < 1 || strcmp(faults.fault[0].pointer, pointer) != 0) {
     missed_faults++;
-    printf("# %s = %.60s: %d faults, %s: %s\n", pointer, shown, count, count ? faults.fault[0].pointer : "", count ? faults.fault[0].text : "");
+    printf("# %s = %.60s: %d faults, %s: %s\n", pointer, shown, count, count ? faults.fault[0].pointer : "",
+           count ? faults.fault[0].text : "");
   }
   free(shown);
   json_decref(value);
 }
 
-static void provoke_number(const json_t *complete, const char *pointer, const struct eo_field *field, double low, double high)
+static void provoke_number(const json_t *complete, const char *pointer, const struct eo_field *field, double low,
+                           double high)
 {
   bool whole = field->kind == EO_FIELD_INTEGER || field->kind == EO_FIELD_SEED;
   double step = whole ? 1 : 1e-6 * (high - low);
@@ -146,7 +149,8 @@ static void test_every_fault(void)
   complete.modification.flank[EO_GEAR][EO_LEFT].lead_slope = 1e-6; /* so that the gear is in the document */
   complete.optimization.variables = EO_VARIABLES_LISTED;
   complete.optimization.listed = 1;
-  complete.optimization.list[0] = (struct eo_listed_variable){.member = EO_PINION, .end = EO_BOTH_ENDS, .bounds = {0, 40}};
+  complete.optimization.list[0] =
+      (struct eo_listed_variable){.member = EO_PINION, .end = EO_BOTH_ENDS, .bounds = {0, 40}};
   ok(eo_design_complete(&complete, &geometry, NULL) == EO_OK, "the base design is right");
   json_t *document = eo_design_encode(&complete);
   provoke_table(document, "", &eo_design_table);
@@ -157,19 +161,32 @@ static void test_every_fault(void)
 
 static void test_all_at_once(void)
 {
-  json_t *document = parse("{\"gear_pair\":{\"pinion_teeth\":\"17\",\"gear_teeth\":44.5,\"normal_modul_mm\":6,\"helix_angle_deg\":99},"
-                           "\"load_cases\":[{\"torque_Nm\":-1},{\"speed_rpm\":0}],\"alignment\":3,\"nonsense\":{}}");
-  static const char *const expected[] = {"/gear_pair/pinion_teeth", "/gear_pair/gear_teeth", "/gear_pair/normal_module_mm", "/gear_pair/helix_angle_deg",
-                                         "/gear_pair/face_width_mm", "/gear_pair/normal_modul_mm", "/alignment", "/load_cases/0/torque_Nm",
-                                         "/load_cases/1/torque_Nm", "/load_cases/1/speed_rpm", "/nonsense"};
+  json_t *document = parse(
+      "{\"gear_pair\":{\"pinion_teeth\":\"17\",\"gear_teeth\":44.5,\"normal_modul_mm\":6,\"helix_angle_deg\":99},"
+      "\"load_cases\":[{\"torque_Nm\":-1},{\"speed_rpm\":0}],\"alignment\":3,\"nonsense\":{}}");
+  static const char *const expected[] = {"/gear_pair/pinion_teeth",
+                                         "/gear_pair/gear_teeth",
+                                         "/gear_pair/normal_module_mm",
+                                         "/gear_pair/helix_angle_deg",
+                                         "/gear_pair/face_width_mm",
+                                         "/gear_pair/normal_modul_mm",
+                                         "/alignment",
+                                         "/load_cases/0/torque_Nm",
+                                         "/load_cases/1/torque_Nm",
+                                         "/load_cases/1/speed_rpm",
+                                         "/nonsense"};
   int count = count_faults(document), good = 0, n = (int)(sizeof expected / sizeof expected[0]);
   for (int i = 0; i < count && i < n; i++)
     good += strcmp(faults.fault[i].pointer, expected[i]) == 0;
   ok(count == n && good == n, "%d faults in one document are all reported, in its order", n);
-  ok(strstr(faults.fault[5].text, "\"normal_module_mm\"") != NULL, "a misspelt key is told what it may have meant: %s", faults.fault[5].text);
-  ok(strcmp(faults.fault[3].text, "99 is outside 0 .. 60 deg.") == 0, "value and range are named: %s", faults.fault[3].text);
+  ok(strstr(faults.fault[5].text, "\"normal_module_mm\"") != NULL, "a misspelt key is told what it may have meant: %s",
+     faults.fault[5].text);
+  ok(strcmp(faults.fault[3].text, "99 is outside 0 .. 60 deg.") == 0, "value and range are named: %s",
+     faults.fault[3].text);
   ok(count_faults(parse("{}")) == 5, "an empty document misses five keys");
-  ok(count_faults(parse("{\"gear_pair\":{\"a~b/c\\n\":1,\"pinion_teeth\":17,\"gear_teeth\":44,\"normal_module_mm\":6,\"helix_angle_deg\":24,\"face_width_mm\":55}}")) == 1 &&
+  ok(count_faults(parse("{\"gear_pair\":{\"a~b/"
+                        "c\\n\":1,\"pinion_teeth\":17,\"gear_teeth\":44,\"normal_module_mm\":6,\"helix_angle_deg\":24,"
+                        "\"face_width_mm\":55}}")) == 1 &&
          strcmp(faults.fault[0].pointer, "/gear_pair/a~0b~1c?") == 0,
      "pointers are escaped and stay on one line: %s", faults.fault[0].pointer);
 }
@@ -182,7 +199,8 @@ static void test_many_faults(void)
     snprintf(key, sizeof key, "%d-%0500d", i, 0);
     json_object_set_new(document, key, json_null());
   }
-  ok(count_faults(document) == 300 && strlen(faults.fault[EO_MAX_FAULTS - 1].pointer) < sizeof faults.fault[0].pointer, "300 faults with long keys are counted, %d kept", EO_MAX_FAULTS);
+  ok(count_faults(document) == 300 && strlen(faults.fault[EO_MAX_FAULTS - 1].pointer) < sizeof faults.fault[0].pointer,
+     "300 faults with long keys are counted, %d kept", EO_MAX_FAULTS);
   design.load_cases = -7;
   count_faults(parse("{}"));
   ok(design.load_cases == -7, "a faulty document leaves the design alone");
@@ -191,21 +209,34 @@ static void test_many_faults(void)
 static void test_defaults(void)
 {
   ok(count_faults(parse(minimal)) == 0, "teeth, module, helix angle and face width are enough");
-  ok(design.gear_pair.ends == 2 && design.gear_pair.dedendum_coefficient == 1.25 && design.gear_pair.fillet_radius_coefficient == 0.38, "basic rack");
+  ok(design.gear_pair.ends == 2 && design.gear_pair.dedendum_coefficient == 1.25 &&
+         design.gear_pair.fillet_radius_coefficient == 0.38,
+     "basic rack");
   close_to(design.gear_pair.normal_pressure_angle, 0.3490658503988659, 1e-16, "pressure angle 20 deg");
   close_to(design.gear_pair.backlash, 100e-6, 0, "backlash 100 um");
-  ok(design.material.youngs_modulus == 206e9 && design.material.poissons_ratio == 0.3 && design.material.density == 7850, "steel");
+  ok(design.material.youngs_modulus == 206e9 && design.material.poissons_ratio == 0.3 &&
+         design.material.density == 7850,
+     "steel");
   close_to(design.alignment.shaft_angle_in_plane, 0.1 / 57.29577951308232, 1e-18, "0.1 deg in the plane of the axes");
-  ok(design.supports.bearing_stiffness[0] == 8e8 && design.supports.bearing_stiffness[1] == 1e9 && design.supports.gear_axial_stiffness[0] == 2e8, "bearings");
-  ok(design.supports.bearing_damping_ratio == 0.05 && design.supports.groove_damping_ratio == 0.02 && design.supports.mesh_damping_ratio == 0.07, "damping");
-  ok(design.load_cases == 3 && design.load_case[1].torque == 828 && design.load_case[1].share == 0.5, "the paper's duty cycle");
+  ok(design.supports.bearing_stiffness[0] == 8e8 && design.supports.bearing_stiffness[1] == 1e9 &&
+         design.supports.gear_axial_stiffness[0] == 2e8,
+     "bearings");
+  ok(design.supports.bearing_damping_ratio == 0.05 && design.supports.groove_damping_ratio == 0.02 &&
+         design.supports.mesh_damping_ratio == 0.07,
+     "damping");
+  ok(design.load_cases == 3 && design.load_case[1].torque == 828 && design.load_case[1].share == 0.5,
+     "the paper's duty cycle");
   close_to(design.load_case[2].speed, 2000 * 2 * 3.14159265358979323846 / 60, 1e-12, "at 2000 rpm");
-  ok(design.objective.weight[0] == 0.4 && design.objective.weight[1] == 0.15 && design.objective.weight[2] == 0.45, "weights of section 5.2");
-  ok(design.optimization.population == 50 && design.optimization.generations == 200 && design.optimization.crossover == 0.8 && design.optimization.mutation == 0.3 &&
+  ok(design.objective.weight[0] == 0.4 && design.objective.weight[1] == 0.15 && design.objective.weight[2] == 0.45,
+     "weights of section 5.2");
+  ok(design.optimization.population == 50 && design.optimization.generations == 200 &&
+         design.optimization.crossover == 0.8 && design.optimization.mutation == 0.3 &&
          design.optimization.trust_threshold == 0.6 && design.optimization.redundancy_threshold == 1e-7,
      "Table 2");
-  ok(design.resolution.positions == 64 && design.resolution.cells_per_line == 30 && design.resolution.sector_teeth == 5 && design.resolution.tip_edge_contact &&
-         design.resolution.neighbour_coupling && design.resolution.mesh_law == EO_LAW_TANGENT && design.resolution.harmonics == 24 && design.resolution.te_harmonics == 16,
+  ok(design.resolution.positions == 64 && design.resolution.cells_per_line == 30 &&
+         design.resolution.sector_teeth == 5 && design.resolution.tip_edge_contact &&
+         design.resolution.neighbour_coupling && design.resolution.mesh_law == EO_LAW_TANGENT &&
+         design.resolution.harmonics == 24 && design.resolution.te_harmonics == 16,
      "resolution");
   close_to(design.optimization.tip_relief.high, 40e-6, 0, "reliefs up to 40 um");
   close_to(design.optimization.lead_crowning.high, 36e-6, 0, "crowning up to 36 um");
@@ -223,14 +254,19 @@ static void test_shares(void)
   struct eo_warnings warnings = {0};
   faults.count = 0;
   json_t *document = with_cases("[{\"torque_Nm\":100,\"share\":3},{\"torque_Nm\":200,\"share\":1}]");
-  ok(eo_design_decode(document, &design, &warnings, &faults) && design.load_case[0].share == 0.75 && design.load_case[1].share == 0.25, "shares are scaled to the sum 1");
+  ok(eo_design_decode(document, &design, &warnings, &faults) && design.load_case[0].share == 0.75 &&
+         design.load_case[1].share == 0.25,
+     "shares are scaled to the sum 1");
   ok(warnings.count == 1 && strstr(warnings.text[0], "summed to 4"), "and it is said: %s", warnings.text[0]);
   json_decref(document);
   warnings.count = 0;
   document = with_cases("[{\"torque_Nm\":100},{\"torque_Nm\":200},{\"torque_Nm\":300}]");
-  ok(eo_design_decode(document, &design, &warnings, &faults) && design.load_case[2].share == 1. / 3 && !warnings.count, "no shares: equal ones, without a word");
+  ok(eo_design_decode(document, &design, &warnings, &faults) && design.load_case[2].share == 1. / 3 && !warnings.count,
+     "no shares: equal ones, without a word");
   json_decref(document);
-  ok(count_faults(with_cases("[{\"torque_Nm\":100,\"share\":1},{\"torque_Nm\":200}]")) == 1 && strcmp(faults.fault[0].pointer, "/load_cases") == 0, "some shares stated, some not");
+  ok(count_faults(with_cases("[{\"torque_Nm\":100,\"share\":1},{\"torque_Nm\":200}]")) == 1 &&
+         strcmp(faults.fault[0].pointer, "/load_cases") == 0,
+     "some shares stated, some not");
   ok(count_faults(with_cases("[{\"torque_Nm\":100,\"share\":0}]")) == 1, "shares that sum to 0");
   ok(count_faults(with_cases("[]")) == 1, "no load case");
 }
@@ -240,14 +276,17 @@ static void test_one_end(void)
   struct eo_warnings warnings = {0};
   json_t *document = parse(minimal);
   json_object_set_new(json_object_get(document, "gear_pair"), "ends", json_integer(1));
-  json_object_set_new(document, "modification", json_pack("{s:{s:{s:i},s:{s:i}}}", "pinion", "left", "tip_relief_um", 5, "right", "tip_relief_um", 7));
+  json_object_set_new(
+      document, "modification",
+      json_pack("{s:{s:{s:i},s:{s:i}}}", "pinion", "left", "tip_relief_um", 5, "right", "tip_relief_um", 7));
   faults.count = 0;
-  ok(eo_design_decode(document, &design, &warnings, &faults) && warnings.count == 1 && design.modification.flank[0][1].tip_relief == 0 &&
-         design.modification.flank[0][0].tip_relief == 5e-6,
+  ok(eo_design_decode(document, &design, &warnings, &faults) && warnings.count == 1 &&
+         design.modification.flank[0][1].tip_relief == 0 && design.modification.flank[0][0].tip_relief == 5e-6,
      "one end: the right end's modification is dropped with a warning");
   json_decref(document);
   document = eo_design_encode(&design);
-  ok(!json_object_get(json_object_get(json_object_get(document, "modification"), "pinion"), "right"), "and not written");
+  ok(!json_object_get(json_object_get(json_object_get(document, "modification"), "pinion"), "right"),
+     "and not written");
   json_decref(document);
 }
 
@@ -267,13 +306,15 @@ static void test_derived(void)
   near(design.supports.groove_axial_stiffness[EO_GEAR], 2.13e11, 2e-3, "EA/L of the gear's groove, N/m");
   close_to(design.gear_pair.bore[EO_GEAR], 0.09, 1e-15, "gear bore 90 mm");
   close_to(design.gear_pair.centre_distance, 0.2003184389666066, 1e-15, "centre distance");
-  close_to(design.modification.flank[EO_PINION][EO_LEFT].lead_crowning, 12.23e-6, 0.005e-6, "a_l 1.35e-8/um at the face ends");
+  close_to(design.modification.flank[EO_PINION][EO_LEFT].lead_crowning, 12.23e-6, 0.005e-6,
+           "a_l 1.35e-8/um at the face ends");
   ok(isnan(design.supports.mesh_damping_stiffness), "mesh damping waits for the mesh stiffness");
   close_to(design.optimization.share_radius, 0.03, 1e-15, "r_share for 5 variables");
   eo_example_build("paper-case-b", &design);
   eo_design_complete(&design, &geometry, &error);
   close_to(design.optimization.share_radius, 0.11, 0.005, "r_share for 10 variables");
-  close_to(design.shafts.bearing_position[EO_PINION][EO_RIGHT], 0.025 + 0.055 + 0.0275, 1e-15, "right bearing half a face width outside");
+  close_to(design.shafts.bearing_position[EO_PINION][EO_RIGHT], 0.025 + 0.055 + 0.0275, 1e-15,
+           "right bearing half a face width outside");
 }
 
 static void test_robust(void)
@@ -282,7 +323,8 @@ static void test_robust(void)
   eo_example_build("paper", &design);
   design.objective.robust = EO_ROBUST_WORST;
   eo_design_complete(&design, &geometry, NULL);
-  ok(design.objective.scenarios == 7 && design.objective.scenario[0].in_plane == design.alignment.shaft_angle_in_plane, "a robust objective has seven scenarios, the nominal one first");
+  ok(design.objective.scenarios == 7 && design.objective.scenario[0].in_plane == design.alignment.shaft_angle_in_plane,
+     "a robust objective has seven scenarios, the nominal one first");
 }
 
 /* What takes more than one key: each with the key it is reported at. */
@@ -291,18 +333,40 @@ struct contradiction {
   void (*apply)(struct eo_design *design);
 };
 
-static void thick_bore(struct eo_design *d) { d->gear_pair.bore[EO_PINION] = 0.09; }
-static void thin_groove(struct eo_design *d) { d->gear_pair.groove_diameter[EO_GEAR] = 0.08; }
-static void thick_groove(struct eo_design *d) { d->gear_pair.groove_diameter[EO_PINION] = 0.1; }
-static void no_groove(struct eo_design *d) { d->gear_pair.groove_width = 0; }
-static void late_tip(struct eo_design *d) { d->modification.flank[EO_PINION][EO_RIGHT].tip_relief_start = 5.2e-3; }
-static void late_root(struct eo_design *d) { d->modification.flank[EO_PINION][EO_LEFT].root_relief_start = 5.8e-3; }
+static void thick_bore(struct eo_design *d)
+{
+  d->gear_pair.bore[EO_PINION] = 0.09;
+}
+static void thin_groove(struct eo_design *d)
+{
+  d->gear_pair.groove_diameter[EO_GEAR] = 0.08;
+}
+static void thick_groove(struct eo_design *d)
+{
+  d->gear_pair.groove_diameter[EO_PINION] = 0.1;
+}
+static void no_groove(struct eo_design *d)
+{
+  d->gear_pair.groove_width = 0;
+}
+static void late_tip(struct eo_design *d)
+{
+  d->modification.flank[EO_PINION][EO_RIGHT].tip_relief_start = 5.2e-3;
+}
+static void late_root(struct eo_design *d)
+{
+  d->modification.flank[EO_PINION][EO_LEFT].root_relief_start = 5.8e-3;
+}
 static void late_gear_tip(struct eo_design *d)
 {
   d->modification.flank[EO_GEAR][EO_LEFT].tip_relief = 1e-5;
-  d->modification.flank[EO_GEAR][EO_LEFT].tip_relief_start = 5.74e-3; /* the gear's tip side ends where the pinion's root side does */
+  d->modification.flank[EO_GEAR][EO_LEFT].tip_relief_start =
+      5.74e-3; /* the gear's tip side ends where the pinion's root side does */
 }
-static void no_relief_length(struct eo_design *d) { d->modification.flank[EO_PINION][EO_LEFT].end_relief[1] = 1e-5; }
+static void no_relief_length(struct eo_design *d)
+{
+  d->modification.flank[EO_PINION][EO_LEFT].end_relief[1] = 1e-5;
+}
 static void long_end_reliefs(struct eo_design *d)
 {
   for (int k = 0; k < 2; k++) {
@@ -310,12 +374,30 @@ static void long_end_reliefs(struct eo_design *d)
     d->modification.flank[EO_PINION][EO_LEFT].end_relief_length[k] = 0.028;
   }
 }
-static void wide_bounds(struct eo_design *d) { d->optimization.tip_relief_start.high = 5.2e-3; }
-static void wide_root_bounds(struct eo_design *d) { d->optimization.root_relief_start.high = 5.8e-3; }
-static void high_floor(struct eo_design *d) { d->optimization.removal_threshold = 0.6; }
-static void even_sector(struct eo_design *d) { d->resolution.sector_teeth = 4; }
-static void many_harmonics(struct eo_design *d) { d->resolution.te_harmonics = 33; }
-static void crossed_bearings(struct eo_design *d) { d->shafts.bearing_position[EO_GEAR][EO_LEFT] = 0.2; }
+static void wide_bounds(struct eo_design *d)
+{
+  d->optimization.tip_relief_start.high = 5.2e-3;
+}
+static void wide_root_bounds(struct eo_design *d)
+{
+  d->optimization.root_relief_start.high = 5.8e-3;
+}
+static void high_floor(struct eo_design *d)
+{
+  d->optimization.removal_threshold = 0.6;
+}
+static void even_sector(struct eo_design *d)
+{
+  d->resolution.sector_teeth = 4;
+}
+static void many_harmonics(struct eo_design *d)
+{
+  d->resolution.te_harmonics = 33;
+}
+static void crossed_bearings(struct eo_design *d)
+{
+  d->shafts.bearing_position[EO_GEAR][EO_LEFT] = 0.2;
+}
 static void bearing_inside(struct eo_design *d)
 {
   d->shafts.enabled = true;
@@ -331,21 +413,33 @@ static void thin_shaft(struct eo_design *d)
   d->shafts.enabled = true;
   d->shafts.shaft_diameter[EO_GEAR] = 0.09;
 }
-static void no_weights(struct eo_design *d) { d->objective.weight[0] = d->objective.weight[1] = d->objective.weight[2] = 0; }
-static void undercut(struct eo_design *d) { d->gear_pair.teeth[EO_PINION] = 8; }
+static void no_weights(struct eo_design *d)
+{
+  d->objective.weight[0] = d->objective.weight[1] = d->objective.weight[2] = 0;
+}
+static void undercut(struct eo_design *d)
+{
+  d->gear_pair.teeth[EO_PINION] = 8;
+}
 static void pointed(struct eo_design *d)
 {
   d->gear_pair.tip_diameter[EO_PINION] = 0.14;
   d->gear_pair.dedendum_coefficient = 3;
   d->gear_pair.fillet_radius_coefficient = 0.02;
 }
-static void tip_in_fillet(struct eo_design *d) { d->gear_pair.addendum_coefficient = 1.2; }
+static void tip_in_fillet(struct eo_design *d)
+{
+  d->gear_pair.addendum_coefficient = 1.2;
+}
 static void narrow_face(struct eo_design *d)
 {
   d->gear_pair.face_width = 5e-3;
   d->gear_pair.addendum_coefficient = 0.5;
 }
-static void jammed(struct eo_design *d) { d->gear_pair.centre_distance = 0.2; }
+static void jammed(struct eo_design *d)
+{
+  d->gear_pair.centre_distance = 0.2;
+}
 
 static const struct contradiction contradictions[] = {
     {"bore that cuts the rim", "/gear_pair/pinion_bore_mm", thick_bore},
@@ -384,8 +478,8 @@ static void test_contradictions(void)
     static struct eo_design before;
     before = design;
     enum eo_code code = eo_design_complete(&design, &geometry, &error);
-    ok(code == EO_ERROR_INPUT && (!contradictions[i].key || strcmp(error.pointer, contradictions[i].key) == 0) && error.text[0] &&
-           memcmp(&before, &design, sizeof before) == 0,
+    ok(code == EO_ERROR_INPUT && (!contradictions[i].key || strcmp(error.pointer, contradictions[i].key) == 0) &&
+           error.text[0] && memcmp(&before, &design, sizeof before) == 0,
        "%s: %s: %s", contradictions[i].what, error.pointer, error.text);
   }
 }
@@ -401,13 +495,15 @@ static void test_hashes(void)
   design.optimization.seed = 7;
   eo_design_hash(&design, second, NULL);
   eo_design_problem(&design, &spec, problem[1], NULL);
-  ok(strcmp(first, second) != 0 && strcmp(problem[0], problem[1]) == 0, "modification and seed change the design's hash, not its problem's");
+  ok(strcmp(first, second) != 0 && strcmp(problem[0], problem[1]) == 0,
+     "modification and seed change the design's hash, not its problem's");
   design.material.density = nextafter(7850, 8000);
   eo_design_problem(&design, &spec, problem[1], NULL);
   ok(strcmp(problem[0], problem[1]) != 0, "one bit of the density changes both");
   eo_text_done(&spec);
   eo_hash_hex("abc", 3, first);
-  ok(strcmp(first, "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad") == 0, "SHA-256 of \"abc\" (FIPS 180-4)");
+  ok(strcmp(first, "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad") == 0,
+     "SHA-256 of \"abc\" (FIPS 180-4)");
 }
 
 /* The document's optimization and the optimizer's own table say the same. */
@@ -421,7 +517,8 @@ static void test_study(void)
       if (strcmp(eo_optimization_table.field[j].key, parameter[i].key) == 0)
         field = &eo_optimization_table.field[j];
     bool same = field != NULL;
-    for (int k = 0; same && field->choices && parameter[i].choices && (field->choices[k] || parameter[i].choices[k]); k++)
+    for (int k = 0; same && field->choices && parameter[i].choices && (field->choices[k] || parameter[i].choices[k]);
+         k++)
       same = field->choices[k] && parameter[i].choices[k] && strcmp(field->choices[k], parameter[i].choices[k]) == 0;
     if (same && field->kind != EO_FIELD_CHOICE && field->kind != EO_FIELD_FLAG && !(field->flags & EO_FIELD_NULLABLE))
       same = field->low == parameter[i].low && field->high == parameter[i].high;
@@ -438,15 +535,17 @@ static void test_study(void)
   eo_design_study(&design, &settings);
   eo_optimizer_defaults(&standard, EO_CREDIBILITY_GA, 10);
   standard.objectives = 3;
-  ok(memcmp(&settings, &standard, sizeof settings) == 0, "an example gives the optimizer's defaults with ten variables");
+  ok(memcmp(&settings, &standard, sizeof settings) == 0,
+     "an example gives the optimizer's defaults with ten variables");
   design.optimization.seed = 77;
   design.optimization.trust_threshold = 0.7;
   design.optimization.literal_redundancy = true;
   design.optimization.decision_order = EO_ORDER_SEQUENTIAL;
   snprintf(design.optimization.algorithm, sizeof design.optimization.algorithm, "fpga");
   eo_design_study(&design, &settings);
-  ok(settings.seed == 77 && settings.trust_threshold == 0.7 && settings.literal_redundancy == 1 && settings.decision_order == EO_ORDER_SEQUENTIAL &&
-         settings.algorithm == EO_FPGA && eo_optimizer_settings_check(&settings, &error) == EO_OK,
+  ok(settings.seed == 77 && settings.trust_threshold == 0.7 && settings.literal_redundancy == 1 &&
+         settings.decision_order == EO_ORDER_SEQUENTIAL && settings.algorithm == EO_FPGA &&
+         eo_optimizer_settings_check(&settings, &error) == EO_OK,
      "what the design says reaches the optimizer");
 }
 

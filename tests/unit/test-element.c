@@ -1,4 +1,5 @@
-/* The brick with incompatible modes: rigid motions, the patch test, bending without locking, and one element against CalculiX. */
+/* The brick with incompatible modes: rigid motions, the patch test, bending without locking, and one element against
+   CalculiX. */
 #include "flexibility/element.h"
 #include "tests/tap.h"
 
@@ -127,7 +128,8 @@ static void check_bar(void)
 {
   double e = steel.youngs_modulus, inertia = pow(0.1, 4) / 12, shear = e / 2.6, area = 0.01;
   near(tip_deflection(0, 1e3), 1e3 / (e * area), 1e-9, "bar in tension, F L / (E A)");
-  /* Timoshenko: F L^3 / (3 E I) + F L / (k G A), k = 10 (1 + nu) / (12 + 11 nu) (Cowper 1966); the bricks are 1.25 high */
+  /* Timoshenko: F L^3 / (3 E I) + F L / (k G A), k = 10 (1 + nu) / (12 + 11 nu) (Cowper 1966); the bricks are 1.25 high
+   */
   double k = 10 * 1.3 / (12 + 11 * 0.3), beam = 1e3 / (3 * e * inertia) + 1e3 / (k * shear * area);
   near(tip_deflection(1, 1e3), beam, 0.01, "cantilever of one brick's height");
   near(tip_deflection(2, 1e3), beam, 0.01, "cantilever, other direction");
@@ -136,8 +138,9 @@ static void check_bar(void)
 /* A sheared brick held at its lower face; displacements of the upper face printed by CalculiX 2.20 for C3D8I. */
 static void check_calculix(void)
 {
-  static const double expected[12] = {1.784312e-04,  6.518052e-05, 7.330906e-05,  1.656667e-04,  2.351459e-04, 9.373642e-06,
-                                      -2.571413e-05, 2.592321e-04, -1.439053e-04, -3.954953e-05, 9.665823e-05, -4.804570e-05};
+  static const double expected[12] = {1.784312e-04,  6.518052e-05,  7.330906e-05,  1.656667e-04,
+                                      2.351459e-04,  9.373642e-06,  -2.571413e-05, 2.592321e-04,
+                                      -1.439053e-04, -3.954953e-05, 9.665823e-05,  -4.804570e-05};
   struct eo_material material = {.youngs_modulus = 210e3, .poissons_ratio = 0.3};
   double node[8][3], k[24][24], a[144], u[12] = {1, 0, 0, 0, 2, 0, 0, 0, -0.5, -0.3, 0, 0.7};
   int pivot[12];
@@ -174,7 +177,10 @@ static void check_rigid(void)
       for (int j = 0; j < 24; j++) {
         int c = j % 3, axis = motion - 3;
         const double *p = node[j / 3];
-        double u = motion < 3 ? c == motion : c == (axis + 1) % 3 ? -p[(axis + 2) % 3] : c == (axis + 2) % 3 ? p[(axis + 1) % 3] : 0;
+        double u = motion < 3            ? c == motion
+                   : c == (axis + 1) % 3 ? -p[(axis + 2) % 3]
+                   : c == (axis + 2) % 3 ? p[(axis + 1) % 3]
+                                         : 0;
         force += k[i][j] * u;
         asymmetry = fmax(asymmetry, fabs(k[i][j] - k[j][i]));
       }

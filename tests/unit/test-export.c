@@ -1,4 +1,5 @@
-/* Exported flanks against what is known of involute helicoids, and against each other: turned into mesh, pinion and gear touch. */
+/* Exported flanks against what is known of involute helicoids, and against each other: turned into mesh, pinion and
+   gear touch. */
 #include "document/export.h"
 
 #include <stdlib.h>
@@ -8,7 +9,10 @@
 #include "document/example.h"
 #include "tap.h"
 
-struct point { int member, end, profile, face; double position[3], normal[3], removed; };
+struct point {
+  int member, end, profile, face;
+  double position[3], normal[3], removed;
+};
 enum { MOST_POINTS = 4 * 21 * 31 };
 
 static struct eo_design design;
@@ -23,8 +27,9 @@ static int read_points(struct point *point)
   for (char *line = strchr(text.data, '\n') + 1; *line && count < MOST_POINTS; line = strchr(line, '\n') + 1) {
     struct point *p = &point[count++];
     char member[10], end[10];
-    if (sscanf(line, "%9[^,],%9[^,],%d,%d,%lf,%lf,%lf,%lf,%lf,%lf,%lf", member, end, &p->profile, &p->face, &p->position[0], &p->position[1], &p->position[2],
-               &p->normal[0], &p->normal[1], &p->normal[2], &p->removed) != 11)
+    if (sscanf(line, "%9[^,],%9[^,],%d,%d,%lf,%lf,%lf,%lf,%lf,%lf,%lf", member, end, &p->profile, &p->face,
+               &p->position[0], &p->position[1], &p->position[2], &p->normal[0], &p->normal[1], &p->normal[2],
+               &p->removed) != 11)
       break;
     p->member = strcmp(member, "gear") == 0;
     p->end = strcmp(end, "right") == 0;
@@ -52,7 +57,8 @@ static void test_involute(int count)
     arm = fmax(arm, fabs(found * 1e-3 - geometry.base_radius[plain[i].member]));
     tilt = fmax(tilt, fabs(fabs(n[2]) - sin(geometry.base_helix_angle)));
     length = fmax(length, fabs(sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]) - 1));
-    inside = fmax(inside, fmax(radius - geometry.tip_radius[plain[i].member], geometry.start_radius[plain[i].member] - radius));
+    inside = fmax(inside,
+                  fmax(radius - geometry.tip_radius[plain[i].member], geometry.start_radius[plain[i].member] - radius));
   }
   ok(arm < 1e-10, "normals touch the base cylinder: %.2g m", arm);
   ok(tilt < 1e-9 && length < 1e-9, "their inclination is the base helix angle, their length one");
@@ -89,7 +95,8 @@ static void test_mesh(int count)
     turn(g->position, -c / geometry.base_radius[EO_GEAR], other);
     turn(p->normal, c / geometry.base_radius[EO_PINION], normal);
     turn(g->normal, -c / geometry.base_radius[EO_GEAR], against);
-    const double gear_at[3] = {-other[0], 1e3 * geometry.centre_distance - other[1], other[2]}, gear_normal[3] = {-against[0], -against[1], against[2]};
+    const double gear_at[3] = {-other[0], 1e3 * geometry.centre_distance - other[1], other[2]},
+                 gear_normal[3] = {-against[0], -against[1], against[2]};
     for (int k = 0; k < 3; k++) {
       apart = fmax(apart, fabs(at[k] - gear_at[k]));
       opposed = fmax(opposed, fabs(normal[k] + gear_normal[k]));
@@ -99,24 +106,29 @@ static void test_mesh(int count)
   ok(opposed < 1e-8, "with opposite normals: %.2g", opposed);
 }
 
-/* Angle of the unmodified flank of a herringbone pair at a radius and the place of a point on the face, from +y towards +x: involute and lead. */
+/* Angle of the unmodified flank of a herringbone pair at a radius and the place of a point on the face, from +y towards
+   +x: involute and lead. */
 static double angle_of(const struct point *p, double radius)
 {
-  double base = geometry.base_radius[p->member], eta = 1e-3 * fabs(p->position[2]) - (design.gear_pair.groove_width + geometry.face_width) / 2;
-  double involute = eo_geometry_involute_function(acos(base / radius)) - eo_geometry_involute_function(acos(base / geometry.working_radius[p->member]));
+  double base = geometry.base_radius[p->member],
+         eta = 1e-3 * fabs(p->position[2]) - (design.gear_pair.groove_width + geometry.face_width) / 2;
+  double involute = eo_geometry_involute_function(acos(base / radius)) -
+                    eo_geometry_involute_function(acos(base / geometry.working_radius[p->member]));
   double lead = eta * tan(geometry.base_helix_angle) / base;
   return (p->member == EO_PINION ? lead : -lead) - involute;
 }
 
-/* What is taken off lies between the surface and the unmodified one at the same place, normal to the flank: to the last digit where the
-   profile is plain; where it slopes, less by what the slope moves the point along the flank, which is of the second order. */
+/* What is taken off lies between the surface and the unmodified one at the same place, normal to the flank: to the last
+   digit where the profile is plain; where it slopes, less by what the slope moves the point along the flank, which is
+   of the second order. */
 static void test_modified(int count)
 {
   double plain_part = 0, most = 0, excess = 0, lack = 0;
   for (int i = 0; i < count; i++) {
     const double *p = modified[i].position;
     double radius = hypot(p[0], p[1]) * 1e-3, behind = angle_of(&modified[i], radius) - atan2(p[0], p[1]);
-    double missing = behind * geometry.base_radius[modified[i].member] * cos(geometry.base_helix_angle) * 1e6, difference = modified[i].removed - missing;
+    double missing = behind * geometry.base_radius[modified[i].member] * cos(geometry.base_helix_angle) * 1e6,
+           difference = modified[i].removed - missing;
     bool sloped = modified[i].member == EO_PINION && (modified[i].profile < 5 || modified[i].profile > 13);
     if (!sloped)
       plain_part = fmax(plain_part, fabs(difference));
@@ -160,7 +172,8 @@ int main(void)
   test_name("Paper pair, Case \"A\"/../x", "paper-pair-case-a-x-topography.csv");
   test_name("\xc3\xa4\xc3\xb6", "topography.csv");
   test_name("", "topography.csv");
-  test_name("a name that is much longer than any file's name ought to be, really", "a-name-that-is-much-longer-than-any-file-s-n-topography.csv");
+  test_name("a name that is much longer than any file's name ought to be, really",
+            "a-name-that-is-much-longer-than-any-file-s-n-topography.csv");
   ok(load("paper", true), "the paper's pair, one end behind the other");
   design.alignment.stagger = 0.5;
   test_mesh(read_points(plain));

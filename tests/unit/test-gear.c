@@ -1,5 +1,5 @@
-/* Macro-geometry, fillet, modification, exact surface and slice gap. Numbers: tests/cases/contact.json (an independent computation)
-   and closed forms. */
+/* Macro-geometry, fillet, modification, exact surface and slice gap. Numbers: tests/cases/contact.json (an independent
+   computation) and closed forms. */
 #include "gear/surface.h"
 #include "tap.h"
 
@@ -8,16 +8,31 @@
 static struct eo_gear_pair paper_pair(void)
 {
   double degree = M_PI / 180;
-  return (struct eo_gear_pair){.ends = 2, .teeth = {17, 44}, .normal_module = 6e-3, .normal_pressure_angle = 20 * degree,
-    .helix_angle = 24 * degree, .face_width = 55e-3, .groove_width = 50e-3, .addendum_coefficient = 1, .dedendum_coefficient = 1.25,
-    .fillet_radius_coefficient = 0.38, .centre_distance = NAN, .tip_diameter = {NAN, NAN}, .bore = {NAN, NAN},
-    .groove_diameter = {NAN, NAN}, .rim_thickness_coefficient = 3.5, .backlash = 100e-6};
+  return (struct eo_gear_pair){.ends = 2,
+                               .teeth = {17, 44},
+                               .normal_module = 6e-3,
+                               .normal_pressure_angle = 20 * degree,
+                               .helix_angle = 24 * degree,
+                               .face_width = 55e-3,
+                               .groove_width = 50e-3,
+                               .addendum_coefficient = 1,
+                               .dedendum_coefficient = 1.25,
+                               .fillet_radius_coefficient = 0.38,
+                               .centre_distance = NAN,
+                               .tip_diameter = {NAN, NAN},
+                               .bore = {NAN, NAN},
+                               .groove_diameter = {NAN, NAN},
+                               .rim_thickness_coefficient = 3.5,
+                               .backlash = 100e-6};
 }
 
 static struct eo_flank_modification case_a(void)
 {
-  return (struct eo_flank_modification){.tip_relief = 14e-6, .root_relief = 17e-6, .tip_relief_start = 1.6e-3, .root_relief_start = 3.5e-3,
-    .lead_crowning = 1.35e-2 * pow(55e-3 / 2 / cos(24 * M_PI / 180), 2)};
+  return (struct eo_flank_modification){.tip_relief = 14e-6,
+                                        .root_relief = 17e-6,
+                                        .tip_relief_start = 1.6e-3,
+                                        .root_relief_start = 3.5e-3,
+                                        .lead_crowning = 1.35e-2 * pow(55e-3 / 2 / cos(24 * M_PI / 180), 2)};
 }
 
 static void test_geometry(struct eo_geometry *g)
@@ -65,8 +80,9 @@ static void test_fillet(const struct eo_geometry *g)
 
 static void test_modification(const struct eo_geometry *g)
 {
-  static const double expected[][3] = {{-14.5, -27.5, 28.850266}, {-14.5, -11, 18.574407}, {-9.5, 20, 6.669158}, {0, 0, 0},
-                                       {5, -27.5, 12.387451}, {12.9, 0, 13.702532}, {12.9, 20, 20.172966}};
+  static const double expected[][3] = {
+      {-14.5, -27.5, 28.850266}, {-14.5, -11, 18.574407}, {-9.5, 20, 6.669158}, {0, 0, 0},
+      {5, -27.5, 12.387451},     {12.9, 0, 13.702532},    {12.9, 20, 20.172966}};
   struct eo_flank_modification flank = case_a();
   struct eo_modification_shape shape;
   eo_modification_init(&shape, g, EO_PINION, &flank);
@@ -79,26 +95,30 @@ static void test_modification(const struct eo_geometry *g)
   struct eo_flank_modification crowned = {.profile_crowning = 0.2};
   double slopes[2];
   eo_modification_init(&shape, g, EO_PINION, &crowned);
-  near(eo_modification_profile(&shape, g->rack_top, slopes), 0.2 * g->rack_top * g->rack_top, 1e-12, "profile crowning without relief goes on to the tip");
+  near(eo_modification_profile(&shape, g->rack_top, slopes), 0.2 * g->rack_top * g->rack_top, 1e-12,
+       "profile crowning without relief goes on to the tip");
   near(slopes[0], 0.4 * g->rack_top, 1e-12, "with its slope");
   for (int form = 0; form < 3; form++) { /* every shape reaches its depth and has the slope it says */
     flank.shape = (enum eo_relief_shape)form;
     flank.profile_crowning = 0.2;
     eo_modification_init(&shape, g, EO_PINION, &flank);
     double slope[2], unused[2], h = 1e-8, u = 3e-3;
-    near(eo_modification_profile(&shape, g->rack_top, slope), flank.tip_relief, 1e-9, "tip relief at the end of the active profile");
+    near(eo_modification_profile(&shape, g->rack_top, slope), flank.tip_relief, 1e-9,
+         "tip relief at the end of the active profile");
     near(eo_modification_profile(&shape, g->rack_bottom, slope), flank.root_relief, 1e-9, "root relief at its start");
     eo_modification_profile(&shape, u, slope);
-    near(slope[0], (eo_modification_profile(&shape, u + h, unused) - eo_modification_profile(&shape, u - h, unused)) / (2 * h), 1e-6, "slope");
+    near(slope[0],
+         (eo_modification_profile(&shape, u + h, unused) - eo_modification_profile(&shape, u - h, unused)) / (2 * h),
+         1e-6, "slope");
   }
 }
 
 static void test_surface(const struct eo_geometry *g)
 {
   static const double rows[][8] = {
-    {-5.7, -25, -8.893263736, 51.639400878, -23.621835749, 0.891739086, 0.238024874, -0.384896821},
-    {0, -25, -10.118885018, 54.898802917, -22.835411566, 0.782077258, 0.491721484, -0.382838275},
-    {5, -25, -13.962893438, 59.997146478, -22.135048013, 0.641427875, 0.665466839, -0.381738349}};
+      {-5.7, -25, -8.893263736, 51.639400878, -23.621835749, 0.891739086, 0.238024874, -0.384896821},
+      {0, -25, -10.118885018, 54.898802917, -22.835411566, 0.782077258, 0.491721484, -0.382838275},
+      {5, -25, -13.962893438, 59.997146478, -22.135048013, 0.641427875, 0.665466839, -0.381738349}};
   struct eo_flank_modification flank = case_a();
   struct eo_modification_shape shape;
   eo_modification_init(&shape, g, EO_PINION, &flank);
@@ -129,7 +149,8 @@ static void test_slice_gap(const struct eo_geometry *g)
   for (int i = 0; i < 11; i++) {
     double slope, h = 1e-7;
     close_to(1e6 * eo_slice_gap_at(&table, c[i] * 1e-3, &slope), expected[i], 1.5e-4, "slice gap of case A, um");
-    double rate = (eo_slice_gap_at(&table, c[i] * 1e-3 + h, NULL) - eo_slice_gap_at(&table, c[i] * 1e-3 - h, NULL)) / (2 * h);
+    double rate = (eo_slice_gap_at(&table, c[i] * 1e-3 + h, NULL) - eo_slice_gap_at(&table, c[i] * 1e-3 - h, NULL)) /
+                  (2 * h);
     close_to(slope, rate, 1e-6, "its slope");
   }
   /* The mirrored pair: the same relief on the gear of an equal pair gives the mirrored gap. */
@@ -144,9 +165,11 @@ static void test_slice_gap(const struct eo_geometry *g)
   eo_modification_init(&shape[0], &equal, EO_PINION, &none);
   eo_modification_init(&shape[1], &equal, EO_GEAR, &flank);
   eo_slice_gap_init(&other, &equal, shape);
-  for (double x = -13e-3; x < 13.5e-3; x += 3e-3) { /* there c is the phase of the unmodified member: less by the gap itself */
+  for (double x = -13e-3; x < 13.5e-3;
+       x += 3e-3) { /* there c is the phase of the unmodified member: less by the gap itself */
     double gap = eo_slice_gap_at(&table, x, NULL), shifted = x - gap / cos(equal.base_helix_angle);
-    close_to(1e6 * eo_slice_gap_at(&other, -shifted, NULL), 1e6 * gap, 1e-4, "relief on the gear mirrors relief on the pinion, um");
+    close_to(1e6 * eo_slice_gap_at(&other, -shifted, NULL), 1e6 * gap, 1e-4,
+             "relief on the gear mirrors relief on the pinion, um");
   }
 }
 
@@ -158,22 +181,27 @@ struct curve {
   double radius[FINE + 1], angle[FINE + 1];
 };
 
-/* A member's slice at its own phase, polar about the gear's centre; angles grow in the sense in which the gear turns back. */
-static void trace(struct curve *curve, const struct eo_geometry *g, int member, const struct eo_modification_shape *shape, double own_phase)
+/* A member's slice at its own phase, polar about the gear's centre; angles grow in the sense in which the gear turns
+   back. */
+static void trace(struct curve *curve, const struct eo_geometry *g, int member,
+                  const struct eo_modification_shape *shape, double own_phase)
 {
-  double offset = eo_geometry_involute_function(g->working_pressure_angle) - eo_geometry_involute_function(g->transverse_pressure_angle);
+  double offset = eo_geometry_involute_function(g->working_pressure_angle) -
+                  eo_geometry_involute_function(g->transverse_pressure_angle);
   double turn = -own_phase / g->base_radius[member] - offset;
   for (int i = 0; i <= FINE; i++) {
     double u = g->rack_bottom + (g->rack_top - g->rack_bottom) * i / FINE;
     struct eo_slice_point p;
     eo_slice_point_at(g, member, shape, member == EO_PINION ? u : -u, &p);
-    double x = cos(turn) * p.position[0] - sin(turn) * p.position[1], y = sin(turn) * p.position[0] + cos(turn) * p.position[1];
+    double x = cos(turn) * p.position[0] - sin(turn) * p.position[1],
+           y = sin(turn) * p.position[0] + cos(turn) * p.position[1];
     curve->radius[i] = member == EO_PINION ? hypot(x, g->centre_distance - y) : hypot(x, y);
     curve->angle[i] = member == EO_PINION ? atan2(x, g->centre_distance - y) : atan2(-x, y);
   }
 }
 
-/* Smallest angle between gear and pinion at equal radius, as an arc of the base circle, normal. Both radii fall along the curves. */
+/* Smallest angle between gear and pinion at equal radius, as an arc of the base circle, normal. Both radii fall along
+   the curves. */
 static double turn_until_touch(const struct eo_geometry *g, const struct eo_modification_shape shape[2], double c)
 {
   static struct curve pinion, gear;
@@ -184,20 +212,36 @@ static double turn_until_touch(const struct eo_geometry *g, const struct eo_modi
     for (int j = i > 400 ? i - 400 : 0; j < FINE && j < i + 400; j++) {
       double r = gear.radius[i], a = pinion.radius[j], b = pinion.radius[j + 1];
       if ((a - r) * (b - r) <= 0 && a != b)
-        smallest = fmin(smallest, gear.angle[i] - pinion.angle[j] - (pinion.angle[j + 1] - pinion.angle[j]) * (r - a) / (b - a));
+        smallest = fmin(smallest,
+                        gear.angle[i] - pinion.angle[j] - (pinion.angle[j + 1] - pinion.angle[j]) * (r - a) / (b - a));
     }
   return smallest * g->base_radius[EO_GEAR] * cos(g->base_helix_angle);
 }
 
-/* Reliefs of every form on either member, on both, overlapping and steep; away from the ends, where a tip may touch first. */
+/* Reliefs of every form on either member, on both, overlapping and steep; away from the ends, where a tip may touch
+   first. */
 static void test_slice_gap_by_turning(const struct eo_geometry *g)
 {
   static const struct eo_flank_modification flank[] = {
-    {0},
-    {.tip_relief = 14e-6, .root_relief = 17e-6, .tip_relief_start = 1.6e-3, .root_relief_start = 3.5e-3},
-    {.shape = EO_RELIEF_LINEAR, .tip_relief = 30e-6, .root_relief = 20e-6, .tip_relief_start = 2e-3, .root_relief_start = 2.5e-3},
-    {.shape = EO_RELIEF_LINEAR, .tip_relief = 40e-6, .root_relief = 25e-6, .tip_relief_start = 0.1e-3, .root_relief_start = 0.004e-3, .profile_crowning = 0.05},
-    {.shape = EO_RELIEF_CIRCULAR, .tip_relief = 15e-6, .root_relief = 25e-6, .tip_relief_start = 0, .root_relief_start = 0, .profile_crowning = 0.2},
+      {0},
+      {.tip_relief = 14e-6, .root_relief = 17e-6, .tip_relief_start = 1.6e-3, .root_relief_start = 3.5e-3},
+      {.shape = EO_RELIEF_LINEAR,
+       .tip_relief = 30e-6,
+       .root_relief = 20e-6,
+       .tip_relief_start = 2e-3,
+       .root_relief_start = 2.5e-3},
+      {.shape = EO_RELIEF_LINEAR,
+       .tip_relief = 40e-6,
+       .root_relief = 25e-6,
+       .tip_relief_start = 0.1e-3,
+       .root_relief_start = 0.004e-3,
+       .profile_crowning = 0.05},
+      {.shape = EO_RELIEF_CIRCULAR,
+       .tip_relief = 15e-6,
+       .root_relief = 25e-6,
+       .tip_relief_start = 0,
+       .root_relief_start = 0,
+       .profile_crowning = 0.2},
   };
   enum { FORMS = sizeof flank / sizeof *flank };
   for (int k = 1; k < FORMS * FORMS; k++) {
@@ -221,7 +265,8 @@ static void refused(struct eo_gear_pair pair, const char *pointer)
 {
   struct eo_geometry g;
   struct eo_error error = {0};
-  ok(eo_geometry_init(&g, &pair, &error) == EO_ERROR_INPUT && !strcmp(error.pointer, pointer), "refused: %s: %s", error.pointer, error.text);
+  ok(eo_geometry_init(&g, &pair, &error) == EO_ERROR_INPUT && !strcmp(error.pointer, pointer), "refused: %s: %s",
+     error.pointer, error.text);
 }
 
 static void test_refusals(void)

@@ -22,7 +22,8 @@ static double draw(int stream, int index)
 
 static void input_init(struct input *in, int rows, int stride)
 {
-  *in = (struct input){.rows = rows, .stride = stride, .floats = (rows + EO_GRAM_FLOATS - 1) / EO_GRAM_FLOATS * EO_GRAM_FLOATS};
+  *in = (struct input){
+      .rows = rows, .stride = stride, .floats = (rows + EO_GRAM_FLOATS - 1) / EO_GRAM_FLOATS * EO_GRAM_FLOATS};
   in->f = eo_gram_allocate((long)rows * stride);
   in->x = eo_gram_allocate(stride);
   in->load = eo_gram_allocate(rows);
@@ -117,7 +118,8 @@ static long double entry(const struct input *in, int i, int j)
 {
   long double sum = i == j && i < in->stride;
   for (int p = 0; p < in->rows; p++) {
-    long double a = i < in->stride ? (long double)in->f[p * in->stride + i] : -1, b = j < in->stride ? (long double)in->f[p * in->stride + j] : -1;
+    long double a = i < in->stride ? (long double)in->f[p * in->stride + i] : -1,
+                b = j < in->stride ? (long double)in->f[p * in->stride + j] : -1;
     sum += in->weight[p] * a * b;
   }
   return sum;
@@ -157,8 +159,8 @@ static void test_size(int rows, int stride)
     check_matrix(&in, &out, error);
     ok(check_products(&in, &out) < 1e-12, "version %d, %d x %d: products", version, rows, stride);
     ok(check_blend(&in, &out) < 2e-7, "single precision sums");
-    ok(out.factored && error[0] < 1e-12 && error[1] < 1e-11 && error[2] < 1e-11, "matrix %.1e, factor %.1e, solution %.1e", error[0], error[1],
-       error[2]);
+    ok(out.factored && error[0] < 1e-12 && error[1] < 1e-11 && error[2] < 1e-11,
+       "matrix %.1e, factor %.1e, solution %.1e", error[0], error[1], error[2]);
     if (version == 0)
       first = out;
     ok(memcmp(&first, &out, sizeof out) == 0, "the same bytes as the fastest version");
@@ -174,8 +176,11 @@ static void test_refusals(void)
     const char *what;
     double value;
     int row, column;
-  } spoilt[] = {{"a negative pivot", -1, 8, 8}, {"a zero first pivot", 0, 0, 0}, {"a NaN on the diagonal", NAN, 5, 5},
-                {"a NaN beside it", NAN, 7, 3}, {"an entry that is too large", 2, 6, 1}};
+  } spoilt[] = {{"a negative pivot", -1, 8, 8},
+                {"a zero first pivot", 0, 0, 0},
+                {"a NaN on the diagonal", NAN, 5, 5},
+                {"a NaN beside it", NAN, 7, 3},
+                {"an entry that is too large", 2, 6, 1}};
   int stride = 8, n = stride + 1, ld = stride + EO_GRAM_LANE;
   for (int version = 0; eo_gram_version(version); version++)
     for (size_t s = 0; s <= sizeof spoilt / sizeof *spoilt; s++) {
@@ -185,7 +190,8 @@ static void test_refusals(void)
       bool sound = s == sizeof spoilt / sizeof *spoilt;
       if (!sound)
         matrix[spoilt[s].row * ld + spoilt[s].column] = spoilt[s].value;
-      ok(eo_gram_version(version)->factor(n, stride, matrix) == sound, "version %d: %s", version, sound ? "the sound matrix is accepted" : spoilt[s].what);
+      ok(eo_gram_version(version)->factor(n, stride, matrix) == sound, "version %d: %s", version,
+         sound ? "the sound matrix is accepted" : spoilt[s].what);
     }
 }
 

@@ -47,7 +47,8 @@ static void test_stiffness(void)
   struct eo_iso_stiffness exchanged;
   input.virtual_teeth = EO_ISO_VIRTUAL_EXACT;
   eo_iso_stiffness(&exchanged, &input);
-  near(exchanged.flexibility * 1e9, 0.04723 + 0.15551 / 21.792289 + 0.25791 / 56.403572, 1e-7, "q' with z_n = z/(cos^2 beta_b cos beta)");
+  near(exchanged.flexibility * 1e9, 0.04723 + 0.15551 / 21.792289 + 0.25791 / 56.403572, 1e-7,
+       "q' with z_n = z/(cos^2 beta_b cos beta)");
   input.virtual_teeth = EO_ISO_VIRTUAL_CUBED;
   input.teeth[0] = 44;
   input.teeth[1] = 17;
@@ -78,19 +79,23 @@ static void test_root(void)
   struct eo_iso_root gear, thin;
   eo_iso_root(&gear, &geometry, EO_GEAR, 0.09, 414 * 44. / 17);
   near(gear.tangential_force, root.tangential_force, 1e-12, "the gear carries the same force");
-  ok(gear.form_factor < root.form_factor && gear.rim_factor == 1, "more teeth, lower form factor; a thick rim counts 1");
+  ok(gear.form_factor < root.form_factor && gear.rim_factor == 1,
+     "more teeth, lower form factor; a thick rim counts 1");
   eo_iso_root(&thin, &geometry, EO_GEAR, 2 * (geometry.root_radius[EO_GEAR] - 13.5e-3), 414);
   near(thin.rim_factor, 1.6 * log(2.242), 1e-9, "Y_B of a rim as thick as the tooth is high");
 }
 
 static void test_local_law(void)
 {
-  const json_t *block = json_object_get(cases, "hertz"), *loads = json_object_get(block, "q"), *places = json_object_get(block, "s");
+  const json_t *block = json_object_get(cases, "hertz"), *loads = json_object_get(block, "q"),
+               *places = json_object_get(block, "s");
   double worst = 0, worst_inverse = 0, worst_slope = 0;
   for (size_t i = 0; i < json_array_size(loads); i++)
     for (size_t j = 0; j < json_array_size(places); j++) {
-      double q = 1e3 * json_number_value(json_array_get(loads, i)), s = 1e-3 * json_number_value(json_array_get(places, j));
-      double expected = 1e-6 * json_number_value(json_array_get(json_array_get(json_object_get(block, "delta_um"), i), j));
+      double q = 1e3 * json_number_value(json_array_get(loads, i)),
+             s = 1e-3 * json_number_value(json_array_get(places, j));
+      double expected = 1e-6 *
+                        json_number_value(json_array_get(json_array_get(json_object_get(block, "delta_um"), i), j));
       const double depth[2] = {eo_geometry_depth(&geometry, EO_PINION, s), eo_geometry_depth(&geometry, EO_GEAR, s)};
       struct eo_local_law law;
       eo_local_law_init(&law, 206e9, 0.3, eo_geometry_relative_radius(&geometry, s), depth);
@@ -114,7 +119,8 @@ static void test_inverse(void)
     worst = fmax(worst, fabs(eo_local_law_load(&law, eo_local_law_approach(&law, q)) / q - 1));
   close_to(worst, 0, 1e-12, "the inverse is exact from nothing to absurd");
   double most = exp(law.constant - 1);
-  ok(eo_local_law_load(&law, 1) == most && eo_local_law_load(&law, 0) == 0 && eo_local_law_approach(&law, 0) == 0, "its ends");
+  ok(eo_local_law_load(&law, 1) == most && eo_local_law_load(&law, 0) == 0 && eo_local_law_approach(&law, 0) == 0,
+     "its ends");
   close_to(eo_local_law_derivative(&law, most), 0, 1e-10 * law.slope, "the maximum is where the derivative vanishes");
 }
 
@@ -123,7 +129,8 @@ static void test_hertz(void)
   double q = 5912.1 / 14e-3, radius = 8.382049e-3, modulus = 206e9, ratio = 0.3;
   near(eo_hertz_pressure(q, radius, modulus, ratio), 1347.3e6, 1e-4, "FZG C14, pitch point, Pa");
   double width = eo_hertz_half_width(q, radius, modulus, ratio);
-  near(3.14159265358979323846 / 2 * width * eo_hertz_pressure(q, radius, modulus, ratio), q, 1e-14, "the elliptic pressure carries the load");
+  near(3.14159265358979323846 / 2 * width * eo_hertz_pressure(q, radius, modulus, ratio), q, 1e-14,
+       "the elliptic pressure carries the load");
 }
 
 int main(void)
@@ -134,7 +141,8 @@ int main(void)
   snprintf(path, sizeof path, "%s/contact.json", folder ? folder : "tests/cases");
   cases = eo_json_load(path, EO_JSON_CASES_BYTES, &error);
   eo_example_build("paper", &design);
-  if (!ok(cases && eo_geometry_init(&geometry, &design.gear_pair, &error) == EO_OK, "the cases are read %s", error.text))
+  if (!ok(cases && eo_geometry_init(&geometry, &design.gear_pair, &error) == EO_OK, "the cases are read %s",
+          error.text))
     return tap_done();
   test_stiffness();
   test_root();

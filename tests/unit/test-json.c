@@ -39,9 +39,12 @@ static void test_syntax(void)
       {"1e999", "{\"a\": 1e999}", "overflow"},
       {"a whole number of 400 digits",
        "{\"a\": "
-       "1000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000"
-       "0000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000"
-       "0000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000}",
+       "100000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000"
+       "0000000000000000000000000000000000000000"
+       "000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000"
+       "0000000000000000000000000000000000000000"
+       "000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000"
+       "0000000000000000000000000000000000000000}",
        "too big integer"},
       {"text after the end", "{}x", "Line 1"},
       {"a truncated UTF-8 character", "{\"a\": \"\xe2\x82\"}", "Line 1"},
@@ -117,7 +120,8 @@ static void test_damage(void)
     json_decref(value);
     text.data[i] = kept;
   }
-  ok(said + survived == (int)text.size && said > 100, "%d of %zu single damages are reported, the rest are documents", said, text.size);
+  ok(said + survived == (int)text.size && said > 100, "%d of %zu single damages are reported, the rest are documents",
+     said, text.size);
   eo_text_done(&text);
 }
 
@@ -165,7 +169,8 @@ static void check_short_numbers(void)
   for (int i = 0; i < 60000; i++) {
     bits = bits * 6364136223846793005u + 1442695040888963407u;
     int digits = kept[i % 3], exponent = (int)(bits >> 40) % 36 - 18;
-    double value = (double)(bits >> 11) / 9007199254740992. * pow(10, exponent) * (i & 8 ? -1 : 1), half = floor(1e6 * value) / 1e6 + 0.5e-6, back;
+    double value = (double)(bits >> 11) / 9007199254740992. * pow(10, exponent) * (i & 8 ? -1 : 1),
+           half = floor(1e6 * value) / 1e6 + 0.5e-6, back;
     char text[40], expected[40];
     json_t *array = eo_json_reals(1, i & 16 ? &value : &half, 1, NULL, digits);
     back = json_real_value(json_array_get(array, 0));
@@ -185,17 +190,31 @@ static void test_writer(void)
   ok(writes("{\"b\": [1, 2.5, null], \"a\": {\"z\": true, \"y\": \"\\u00e4\\n\\\"\\\\\"}}", EO_JSON_CANONICAL,
             "{\"a\":{\"y\":\"\xc3\xa4\\u000a\\\"\\\\\",\"z\":true},\"b\":[1,2.5,null]}"),
      "canonical: sorted, no blanks");
-  ok(writes("{\"b\": 1, \"a\": []}", EO_JSON_PRETTY, "{ \"b\": 1, \"a\": [] }\n"), "pretty: in order, short values on one line");
+  ok(writes("{\"b\": 1, \"a\": []}", EO_JSON_PRETTY, "{ \"b\": 1, \"a\": [] }\n"),
+     "pretty: in order, short values on one line");
   ok(writes("{}", EO_JSON_COMPACT, "{}"), "an empty object");
   static const struct {
     double value;
     const char *text;
-  } numbers[] = {{0.1, "0.1"}, {1. / 3, "0.3333333333333333"}, {0.1 + 0.2, "0.30000000000000004"}, {1e-7, "1e-7"}, {1e22, "1e22"}, {6, "6"},
-                 {5e-324, "4.94065645841247e-324"}, {-1.7976931348623157e308, "-1.7976931348623157e308"}, {1e100, "1e100"}, {2.5e-15, "2.5e-15"}, {0, "0"}, {-1e-5, "-1e-5"}, {1.25e-10, "1.25e-10"}, {1e-13, "1e-13"}};
+  } numbers[] = {{0.1, "0.1"},
+                 {1. / 3, "0.3333333333333333"},
+                 {0.1 + 0.2, "0.30000000000000004"},
+                 {1e-7, "1e-7"},
+                 {1e22, "1e22"},
+                 {6, "6"},
+                 {5e-324, "4.94065645841247e-324"},
+                 {-1.7976931348623157e308, "-1.7976931348623157e308"},
+                 {1e100, "1e100"},
+                 {2.5e-15, "2.5e-15"},
+                 {0, "0"},
+                 {-1e-5, "-1e-5"},
+                 {1.25e-10, "1.25e-10"},
+                 {1e-13, "1e-13"}};
   for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++) {
     char text[40];
     eo_json_number(text, sizeof text, numbers[i].value);
-    ok(strcmp(text, numbers[i].text) == 0 && strtod(text, NULL) == numbers[i].value, "%s is written %s", numbers[i].text, text);
+    ok(strcmp(text, numbers[i].text) == 0 && strtod(text, NULL) == numbers[i].value, "%s is written %s",
+       numbers[i].text, text);
   }
   int lost = 0;
   uint64_t bits = 1;
@@ -245,7 +264,8 @@ static void test_sheet(void)
   eo_sheet_string(&sheet, "two\nlines");
   eo_sheet_csv(&sheet, &csv);
   eo_sheet_print(&sheet, 1, &text);
-  ok(strcmp(csv.data, "name,speed_rpm,note\r\n\"\xc3\xa4, \"\"x\"\"\",2000,\r\nb,,\"two\nlines\"\r\n") == 0, "CSV as RFC 4180 wants it");
+  ok(strcmp(csv.data, "name,speed_rpm,note\r\n\"\xc3\xa4, \"\"x\"\"\",2000,\r\nb,,\"two\nlines\"\r\n") == 0,
+     "CSV as RFC 4180 wants it");
   const char *aligned = " name    speed_rpm  note\n \xc3\xa4, \"x\"       2000  \n";
   ok(strncmp(text.data, aligned, strlen(aligned)) == 0, "columns are aligned");
   eo_sheet_done(&sheet);
@@ -263,15 +283,19 @@ static void test_files(void)
   }
   snprintf(path, sizeof path, "%s/file", folder);
   eo_text_add(&text, "first");
-  ok(eo_text_save(&text, path, &error) == EO_OK && eo_text_read(&back, path, 100, &error) == EO_OK && strcmp(back.data, "first") == 0, "saved and read");
-  ok(eo_text_read(&back, path, 4, &error) == EO_ERROR_INPUT && strstr(error.text, "larger than the limit"), "larger than the limit: %s", error.text);
+  ok(eo_text_save(&text, path, &error) == EO_OK && eo_text_read(&back, path, 100, &error) == EO_OK &&
+         strcmp(back.data, "first") == 0,
+     "saved and read");
+  ok(eo_text_read(&back, path, 4, &error) == EO_ERROR_INPUT && strstr(error.text, "larger than the limit"),
+     "larger than the limit: %s", error.text);
   ok(strcmp(back.data, "first") == 0, "a failed reading leaves the text alone");
   text.failed = true;
   ok(eo_text_save(&text, path, &error) == EO_ERROR_MEMORY, "an incomplete text is not written");
   text.failed = false;
   FILE *full = fopen("/dev/full", "w");
   if (full) {
-    ok(eo_text_write(&text, full, "Output", &error) == EO_ERROR_FILE && strstr(error.text, "Output"), "a full disk is noticed: %s", error.text);
+    ok(eo_text_write(&text, full, "Output", &error) == EO_ERROR_FILE && strstr(error.text, "Output"),
+       "a full disk is noticed: %s", error.text);
     fclose(full);
   }
   snprintf(path, sizeof path, "%s/none/file", folder);

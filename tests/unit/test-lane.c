@@ -1,4 +1,5 @@
-/* The lane of what-if requests: order, newest wins, limits, waiting for a job, stopping. The stream of events: order, filters, resuming. */
+/* The lane of what-if requests: order, newest wins, limits, waiting for a job, stopping. The stream of events: order,
+   filters, resuming. */
 #include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
@@ -22,11 +23,11 @@ struct work {
 static struct {
   pthread_mutex_t mutex;
   pthread_cond_t changed;
-  int told;              /* tasks that were answered */
-  int number[100];       /* in the order of the answers */
+  int told;        /* tasks that were answered */
+  int number[100]; /* in the order of the answers */
   enum eo_lane_fate fate[100];
   enum eo_code code[100];
-  bool open, marked;     /* marked: a task saw that it was overtaken */
+  bool open, marked; /* marked: a task saw that it was overtaken */
   int held, released;
 } book = {.mutex = PTHREAD_MUTEX_INITIALIZER, .changed = PTHREAD_COND_INITIALIZER};
 
@@ -75,7 +76,8 @@ static void set_gate(bool open)
 
 static struct eo_lane *make_lane(int most, bool overtakes_running)
 {
-  const struct eo_lane_settings settings = {.threads = 1, .most = most, .overtakes_running = overtakes_running, .function = answer, .release = release};
+  const struct eo_lane_settings settings = {
+      .threads = 1, .most = most, .overtakes_running = overtakes_running, .function = answer, .release = release};
   struct eo_lane *lane = NULL;
   eo_lane_new(&lane, &settings, &error);
   book.told = book.held = book.released = 0;
@@ -86,7 +88,9 @@ static struct eo_lane *make_lane(int most, bool overtakes_running)
 static bool push(struct eo_lane *lane, int number, const char *token, int64_t awaits, double patience, bool *closed)
 {
   struct work *work = calloc(1, sizeof *work);
-  *work = (struct work){.task = {.awaits = awaits, .patience = eo_clock_milliseconds() + patience}, .number = number, .hold = number == 0};
+  *work = (struct work){.task = {.awaits = awaits, .patience = eo_clock_milliseconds() + patience},
+                        .number = number,
+                        .hold = number == 0};
   snprintf(work->task.token, sizeof work->task.token, "%s", token);
   bool taken = eo_lane_push(lane, &work->task, closed);
   if (!taken)
@@ -105,9 +109,12 @@ static void test_overtaking(void)
   bool closed;
   push(lane, 0, "a", 0, 0, &closed);
   wait_until(&book.held, 1);
-  ok(push(lane, 1, "a", 0, 0, &closed) && push(lane, 2, "b", 0, 0, &closed) && push(lane, 3, "", 0, 0, &closed) && push(lane, 4, "", 0, 0, &closed), "four wait");
+  ok(push(lane, 1, "a", 0, 0, &closed) && push(lane, 2, "b", 0, 0, &closed) && push(lane, 3, "", 0, 0, &closed) &&
+         push(lane, 4, "", 0, 0, &closed),
+     "four wait");
   ok(!push(lane, 5, "c", 0, 0, &closed) && !closed, "the lane is full");
-  ok(push(lane, 6, "a", 0, 0, &closed) && eo_lane_waiting(lane) == 4, "a newer one of the same token takes a place, not another one");
+  ok(push(lane, 6, "a", 0, 0, &closed) && eo_lane_waiting(lane) == 4,
+     "a newer one of the same token takes a place, not another one");
   set_gate(true);
   wait_until(&book.told, 6);
   ok(told(0, 0, EO_LANE_RUN) && !book.marked, "what has begun is not overtaken");
@@ -168,7 +175,8 @@ static void test_stop(void)
   ok(!push(lane, 3, "", 0, 0, &closed) && closed, "a lane that stops takes nothing");
   set_gate(true);
   eo_lane_free(lane);
-  ok(book.told == 3 && book.marked && told(1, 1, EO_LANE_STOPPED) && told(2, 2, EO_LANE_STOPPED), "and tells everybody who waits");
+  ok(book.told == 3 && book.marked && told(1, 1, EO_LANE_STOPPED) && told(2, 2, EO_LANE_STOPPED),
+     "and tells everybody who waits");
 }
 
 /* ---- events ---- */
@@ -210,11 +218,13 @@ static void test_events(void)
   int64_t all, one, start;
   eo_events_new(&events, &error);
   start = eo_events_newest(events);
-  ok(start > 1600000000000 && eo_events_reach(events, start) && !eo_events_reach(events, start - 1) && !eo_events_reach(events, start + 1),
+  ok(start > 1600000000000 && eo_events_reach(events, start) && !eo_events_reach(events, start - 1) &&
+         !eo_events_reach(events, start + 1),
      "numbers begin above those of any run before: %lld", (long long)start);
   publish(events, 7);
   eo_events_subscribe(events, 0, start, NULL, 0, hear, NULL, &all, &error);
-  ok(heard.count == 1 && heard.number[0] == start + 1 && strcmp(heard.last, "job 7") == 0, "what came before is told first");
+  ok(heard.count == 1 && heard.number[0] == start + 1 && strcmp(heard.last, "job 7") == 0,
+     "what came before is told first");
   publish(events, 8);
   ok(heard.count == 2 && consecutive(start + 1) && heard.job[1] == 8, "then what comes");
   heard.count = 0;
@@ -229,8 +239,10 @@ static void test_events(void)
   for (int i = 0; i < 2 * EO_EVENTS_KEPT; i++)
     publish(events, i);
   int64_t newest = eo_events_newest(events);
-  ok(newest == start + 3 + 2 * EO_EVENTS_KEPT && eo_events_published(events) == 3 + 2 * EO_EVENTS_KEPT, "all are counted");
-  ok(!eo_events_reach(events, newest - EO_EVENTS_KEPT - 1) && eo_events_reach(events, newest - EO_EVENTS_KEPT), "the last %d are kept", EO_EVENTS_KEPT);
+  ok(newest == start + 3 + 2 * EO_EVENTS_KEPT && eo_events_published(events) == 3 + 2 * EO_EVENTS_KEPT,
+     "all are counted");
+  ok(!eo_events_reach(events, newest - EO_EVENTS_KEPT - 1) && eo_events_reach(events, newest - EO_EVENTS_KEPT),
+     "the last %d are kept", EO_EVENTS_KEPT);
   heard.count = 0;
   eo_events_subscribe(events, 0, newest - EO_EVENTS_KEPT, NULL, 0, hear, NULL, &all, &error);
   ok(heard.count == EO_EVENTS_KEPT && consecutive(newest - EO_EVENTS_KEPT + 1), "and told without a gap");
@@ -238,7 +250,8 @@ static void test_events(void)
   struct eo_service_event first[2] = {{.job = 1, .text = "{}", .size = 2}, {.job = 2, .text = "{}", .size = 2}};
   heard.count = 0;
   eo_events_subscribe(events, 2, newest - 1, first, 2, hear, NULL, &all, &error);
-  ok(heard.count >= 1 && heard.number[0] == newest - 1 && heard.job[0] == 2, "a snapshot comes first, under the number it stands for");
+  ok(heard.count >= 1 && heard.number[0] == newest - 1 && heard.job[0] == 2,
+     "a snapshot comes first, under the number it stands for");
   eo_events_free(events);
 }
 

@@ -30,7 +30,8 @@ static void random_rank(int rank)
                                (eo_random_unit(eo_random_at(3, 0, (uint64_t)k, (uint64_t)j), 0) - 0.5);
 }
 
-/* Largest diagonal entry of the remainder and largest entry beside it, over the largest diagonal entry of the matrix. */
+/* Largest diagonal entry of the remainder and largest entry beside it, over the largest diagonal entry of the matrix.
+ */
 static void remainder_of(const double *factor, int stride, double *diagonal, double *beside)
 {
   double largest = 0;
@@ -59,7 +60,8 @@ static int factor_rank(double tolerance)
   ok(code == EO_OK, "factored to %.0e: rank %d", tolerance, rank);
   ok(stride % EO_GRAM_LANE == 0 && stride >= rank && stride - rank < EO_GRAM_LANE + (rank == 0), "stride %d", stride);
   remainder_of(factor, stride, &diagonal, &beside);
-  ok(diagonal <= tolerance * (1 + 1e-9) + 1e-15 && beside <= diagonal + 1e-15, "what is left: %.1e on the diagonal, %.1e beside it", diagonal, beside);
+  ok(diagonal <= tolerance * (1 + 1e-9) + 1e-15 && beside <= diagonal + 1e-15,
+     "what is left: %.1e on the diagonal, %.1e beside it", diagonal, beside);
   bool padded = true;
   for (int i = 0; i < N; i++)
     for (int k = rank; k < stride; k++)
@@ -77,7 +79,8 @@ static void refused(double value, int row, const char *what)
   smooth();
   memcpy(work, original, sizeof work);
   work[row * (N + 1)] = value;
-  ok(eo_lowrank_factor(N, work, 1e-3, &rank, &stride, &factor, &error) == EO_ERROR_NUMERIC && !factor, "%s is refused", what);
+  ok(eo_lowrank_factor(N, work, 1e-3, &rank, &stride, &factor, &error) == EO_ERROR_NUMERIC && !factor, "%s is refused",
+     what);
 }
 
 int main(void)

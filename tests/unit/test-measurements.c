@@ -78,8 +78,16 @@ static enum eo_measurement_outcome add(int64_t design, char letter, struct eo_st
   char incoming[400], digest[EO_HASH_LENGTH + 1] = "";
   enum eo_measurement_outcome outcome = EO_MEASUREMENT_MISSING;
   memset(digest, letter, EO_HASH_LENGTH);
-  struct eo_stored_measurement row = {.design = design, .digest = digest, .unmodified = true, .torque = 828, .speed = NAN, .layout = "", .pair = digest,
-                                      .summary = "{\"s\":1}", .result = "{\"r\":1}", .files = 1};
+  struct eo_stored_measurement row = {.design = design,
+                                      .digest = digest,
+                                      .unmodified = true,
+                                      .torque = 828,
+                                      .speed = NAN,
+                                      .layout = "",
+                                      .pair = digest,
+                                      .summary = "{\"s\":1}",
+                                      .result = "{\"r\":1}",
+                                      .files = 1};
   snprintf(row.file[0].name, sizeof row.file[0].name, "run \"7\".csv");
   snprintf(row.file[0].sha256, sizeof row.file[0].sha256, "%s", digest);
   row.file[0].size = 5;
@@ -97,12 +105,15 @@ static void test_adding(void)
   struct eo_stored_measurement kept = {0};
   int64_t design = add_design();
   enum eo_measurement_outcome outcome = add(design, 'a', &kept);
-  ok(outcome == EO_MEASUREMENT_DONE && kept.id == 1 && kept.design == design && kept.unmodified && isnan(kept.speed) && !*kept.layout,
+  ok(outcome == EO_MEASUREMENT_DONE && kept.id == 1 && kept.design == design && kept.unmodified && isnan(kept.speed) &&
+         !*kept.layout,
      "a measurement is added");
-  ok(*kept.summary == 's' && *kept.result == 'r' && kept.files == 1 && strcmp(kept.file[0].name, "run \"7\".csv") == 0 && kept.file[0].size == 5,
+  ok(*kept.summary == 's' && *kept.result == 'r' && kept.files == 1 &&
+         strcmp(kept.file[0].name, "run \"7\".csv") == 0 && kept.file[0].size == 5,
      "and its row says what was said");
   ok(is_there("%s/measurements/1/%s", "0") && count_entries() == 1, "its file lies under its number and nowhere else");
-  ok(add(design, 'a', &kept) == EO_MEASUREMENT_KNOWN && kept.id == 1 && count_entries() == 1, "the same again is the same");
+  ok(add(design, 'a', &kept) == EO_MEASUREMENT_KNOWN && kept.id == 1 && count_entries() == 1,
+     "the same again is the same");
   ok(add(99, 'b', &kept) == EO_MEASUREMENT_NO_DESIGN && count_entries() == 1, "one of no design leaves nothing");
   ok(add(design, 'c', &kept) == EO_MEASUREMENT_DONE && kept.id == 2, "another one has the next number");
   int64_t bytes = 0;
@@ -118,7 +129,8 @@ static void test_listing(void)
   eo_store_list_measurements(store, 0, 2, 10, count, &below, &error);
   eo_store_list_measurements(store, design, 0, 10, count, &other, &error);
   eo_store_list_measurements(store, 1, 0, 1, remember, &last, &error);
-  ok(all == 2 && below == 1 && other == 0, "lists: all %d, before the second %d, of another design %d", all, below, other);
+  ok(all == 2 && below == 1 && other == 0, "lists: all %d, before the second %d, of another design %d", all, below,
+     other);
   ok(last.id == 2 && *last.summary == 's' && !*last.result, "the newest first, without its result");
 }
 
@@ -129,13 +141,18 @@ static void test_removing(void)
   struct eo_stored_measurement kept = {0};
   eo_store_remove_design(store, 1, 0, &used, &error);
   ok(used == EO_DESIGN_USED, "a design with measurements stays");
-  ok(eo_store_remove_measurement(store, 2, &outcome, &error) == EO_OK && outcome == EO_MEASUREMENT_DONE && count_entries() == 1, "one is removed with its file");
+  ok(eo_store_remove_measurement(store, 2, &outcome, &error) == EO_OK && outcome == EO_MEASUREMENT_DONE &&
+         count_entries() == 1,
+     "one is removed with its file");
   ok(eo_store_remove_measurement(store, 2, &outcome, &error) == EO_OK && outcome == EO_MEASUREMENT_MISSING, "once");
-  ok(eo_store_find_measurement(store, 2, remember, &kept, &outcome, &error) == EO_OK && outcome == EO_MEASUREMENT_MISSING, "and is not found");
+  ok(eo_store_find_measurement(store, 2, remember, &kept, &outcome, &error) == EO_OK &&
+         outcome == EO_MEASUREMENT_MISSING,
+     "and is not found");
   ok(add(1, 'd', &kept) == EO_MEASUREMENT_DONE && kept.id == 3, "its number is not used again");
 }
 
-/* What the death of a process leaves: files on their way, a folder that was renamed before its row was committed, one whose row is gone. */
+/* What the death of a process leaves: files on their way, a folder that was renamed before its row was committed, one
+   whose row is gone. */
 static void test_tidying(void)
 {
   char path[400], outside[300];
@@ -168,10 +185,18 @@ static void test_failing(void)
   char digest[EO_HASH_LENGTH + 1] = "";
   int all = 0;
   memset(digest, 'e', EO_HASH_LENGTH);
-  struct eo_stored_measurement row = {.design = 1, .digest = digest, .torque = 1, .speed = NAN, .layout = "", .pair = digest, .summary = "{}", .result = "{}",
+  struct eo_stored_measurement row = {.design = 1,
+                                      .digest = digest,
+                                      .torque = 1,
+                                      .speed = NAN,
+                                      .layout = "",
+                                      .pair = digest,
+                                      .summary = "{}",
+                                      .result = "{}",
                                       .files = 1};
   snprintf(row.file[0].sha256, sizeof row.file[0].sha256, "%s", digest);
-  ok(eo_store_add_measurement(store, &row, "/nonexistent", NULL, NULL, &outcome, &error) == EO_ERROR_FILE, "no files: %s", error.text);
+  ok(eo_store_add_measurement(store, &row, "/nonexistent", NULL, NULL, &outcome, &error) == EO_ERROR_FILE,
+     "no files: %s", error.text);
   row.result = "{";
   char incoming[400];
   eo_measurement_folder_new(store, incoming, sizeof incoming, &error);

@@ -66,7 +66,8 @@ static void table(void)
   for (int j = 0; j < 8; j++)
     near(at(&law, j / 8.0, 5e-5 + z[8 + j]).force, 1000, 1e-9, "the table is met at its nodes");
   double between = 0.1 * (cos(2 * M_PI / 16) + 0.25 * cos(2 * M_PI * 4 / 16));
-  near(at(&law, 1 / 16.0, 5e-5 + 1e-6 * (2 + between)).force, 1000, 1e-9, "and interpolated trigonometrically between them");
+  near(at(&law, 1 / 16.0, 5e-5 + 1e-6 * (2 + between)).force, 1000, 1e-9,
+       "and interpolated trigonometrically between them");
   near(at(&law, 0, 5e-5 + (z[8] + z[16]) / 2).force, 2000, 1e-9, "linear between loads");
   near(at(&law, 0, 5e-5 + 2 * z[16] - z[8]).force, 5000, 1e-9, "linear beyond the last load");
   ok(at(&law, 0, 5e-5 + 0.9 * z[0]).force == 0, "nothing below the first");
@@ -96,7 +97,8 @@ static void tangent_and_secant(void)
   ok(apart.force == 0 && apart.slope == 0 && apart.margin < 0, "teeth part where the law would pull");
   near(at(&law, 0, -1.01e-4).force, -1e9 * 1e-6, 1e-9, "back flanks at - 2 tau with the mean stiffness");
   check_slope(&law, 0.6, 1.1e-5, "slope");
-  ok(!eo_law_set_tangent(&same, 16, z, k, 8000, 3, -1e-4, NULL) && eo_law_equal(&law, &same), "equal laws are recognised");
+  ok(!eo_law_set_tangent(&same, 16, z, k, 8000, 3, -1e-4, NULL) && eo_law_equal(&law, &same),
+     "equal laws are recognised");
   z[3] *= 1.001;
   ok(!eo_law_set_tangent(&same, 16, z, k, 8000, 3, -1e-4, NULL) && !eo_law_equal(&law, &same), "unequal ones too");
   ok(!eo_law_set_secant(&same, 16, z, 8000, 1e-6, 8, -1e-4, NULL), "a secant law is set");
@@ -116,7 +118,8 @@ static void refusals(void)
   struct eo_law law = {0};
   struct eo_error error = {0};
   const double negative[3] = {1e9, 2e9, 0}, good[1] = {1e9}, bad[1] = {NAN}, zero[1] = {0};
-  const double falling[2] = {2, 1}, rising[2] = {1, 2}, z[8] = {1e-6, 1e-6, 1e-6, 1e-6, 2e-6, 2e-6, 2e-6, 2e-6}, k[4] = {0, 0, 0, 0};
+  const double falling[2] = {2, 1}, rising[2] = {1, 2}, z[8] = {1e-6, 1e-6, 1e-6, 1e-6, 2e-6, 2e-6, 2e-6, 2e-6},
+               k[4] = {0, 0, 0, 0};
   refused(eo_law_set_stiffness(&law, 1, negative, 0, 0, &error), &error, "stiffness that turns negative");
   refused(eo_law_set_stiffness(&law, 0, zero, 0, 0, &error), &error, "no stiffness");
   refused(eo_law_set_stiffness(&law, 0, bad, 0, 0, &error), &error, "not a number");

@@ -65,7 +65,8 @@ static int flat(void *context, const double *x, double *r)
   return 0;
 }
 
-static const struct eo_nonlinear_options usual = {.residual_tolerance = 1e-12, .step_tolerance = 1e-14, .max_iterations = 100};
+static const struct eo_nonlinear_options usual = {
+    .residual_tolerance = 1e-12, .step_tolerance = 1e-14, .max_iterations = 100};
 
 static struct eo_nonlinear_report solve(int n, eo_nonlinear_residual *residual, double *x)
 {
@@ -87,7 +88,8 @@ static void one_workspace_many_solves(void)
   eo_nonlinear_new(&w, 2, NULL);
   double x[2] = {-1.2, 1};
   eo_nonlinear_solve(w, &problem, &usual, x, &report, NULL);
-  ok(report.outcome == EO_NONLINEAR_CONVERGED && report.iterations > 0, "Rosenbrock converges in %d iterations", report.iterations);
+  ok(report.outcome == EO_NONLINEAR_CONVERGED && report.iterations > 0, "Rosenbrock converges in %d iterations",
+     report.iterations);
   close_to(x[0], 1, 1e-12, "x");
   close_to(x[1], 1, 1e-12, "y");
   ok(report.evaluations == calls, "%d evaluations are counted", calls);
@@ -107,12 +109,14 @@ static void outcomes(void)
 {
   double valley[2] = {0, 1};
   struct eo_nonlinear_report report = solve(2, powell, valley);
-  ok(report.outcome == EO_NONLINEAR_CONVERGED, "Powell's badly scaled system converges in %d iterations", report.iterations);
+  ok(report.outcome == EO_NONLINEAR_CONVERGED, "Powell's badly scaled system converges in %d iterations",
+     report.iterations);
   near(valley[0], 1.0981593e-5, 1e-7, "x");
   near(valley[1], 9.1061467, 1e-7, "y");
   double x = 3;
   report = solve(1, rootless, &x);
-  ok(report.outcome == EO_NONLINEAR_STALLED && report.residual >= 1, "no solution is an outcome, residual %g", report.residual);
+  ok(report.outcome == EO_NONLINEAR_STALLED && report.residual >= 1, "no solution is an outcome, residual %g",
+     report.residual);
   x = 20;
   report = solve(1, logarithm, &x);
   ok(report.outcome == EO_NONLINEAR_CONVERGED, "steps out of the domain are shortened");

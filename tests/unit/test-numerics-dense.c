@@ -60,13 +60,15 @@ static void fourier(void)
   close_to(series[15], 0.25, 1e-14, "Nyquist term");
   close_to(series[16], 0, 0, "has no sine");
   double phase = 0.3137, a = 2 * M_PI * phase;
-  close_to(eo_fourier_value(8, series, phase), 0.5 + 2 * cos(a) - 3 * sin(5 * a) + 0.25 * cos(8 * a), 1e-13, "value between samples");
+  close_to(eo_fourier_value(8, series, phase), 0.5 + 2 * cos(a) - 3 * sin(5 * a) + 0.25 * cos(8 * a), 1e-13,
+           "value between samples");
   eo_fourier_basis(8, phase, basis);
   for (int i = 0; i < 17; i++)
     sum += basis[i] * series[i];
   close_to(sum, eo_fourier_value(8, series, phase), 1e-13, "basis times series");
   eo_fourier_derivative(8, series, derivative);
-  close_to(eo_fourier_value(8, derivative, phase), 2 * M_PI * (-2 * sin(a) - 15 * cos(5 * a) - 2 * sin(8 * a)), 1e-11, "derivative");
+  close_to(eo_fourier_value(8, derivative, phase), 2 * M_PI * (-2 * sin(a) - 15 * cos(5 * a) - 2 * sin(8 * a)), 1e-11,
+           "derivative");
   static double many[3000], two[5];
   for (int i = 0; i < 3000; i++)
     many[i] = sin(2 * M_PI * 2 * i / 3000);

@@ -4,7 +4,8 @@
 
 #include <stddef.h>
 
-static const struct eo_load_case load_case[3] = {{.torque = 621, .speed = 209, .share = 0.2}, {.torque = 828, .speed = 209, .share = 0.5},
+static const struct eo_load_case load_case[3] = {{.torque = 621, .speed = 209, .share = 0.2},
+                                                 {.torque = 828, .speed = 209, .share = 0.5},
                                                  {.torque = 1035, .speed = 209, .share = 0.3}};
 static const struct eo_objective_case before[3] = {{2.05e-6, 2900, 62, 900e6, 48e6, 0.1, 0, false},
                                                    {1.78e-6, 3300, 66, 1000e6, 52e6, 0.1, 0, false},
@@ -18,7 +19,8 @@ static struct eo_objective plain(void)
   return (struct eo_objective){.weight = {0.4, 0.3, 0.3}, .normalise = EO_NORMALISE_UNMODIFIED, .penalty = 10};
 }
 
-static struct eo_objective_value value_of(const struct eo_objective *objective, const struct eo_objective_case *value, bool outside)
+static struct eo_objective_value value_of(const struct eo_objective *objective, const struct eo_objective_case *value,
+                                          bool outside)
 {
   struct eo_objective_value result;
   eo_objective_value(objective, 3, load_case, value, before, outside, &result);
@@ -29,7 +31,8 @@ static void test_sums(void)
 {
   struct eo_objective_sums sums;
   eo_objective_sum(3, load_case, after, &sums);
-  near(sums.f[0], (0.2 * 0.77e-6 + 0.5 * 0.71e-6 + 0.3 * 0.57e-6) / 3, 1e-14, "f1: peak-to-peak weighted by the shares, over three, m");
+  near(sums.f[0], (0.2 * 0.77e-6 + 0.5 * 0.71e-6 + 0.3 * 0.57e-6) / 3, 1e-14,
+       "f1: peak-to-peak weighted by the shares, over three, m");
   near(sums.f[1], (0.2 * 700 + 0.5 * 800 + 0.3 * 900) / 3, 1e-14, "f2: impacts, N");
   near(sums.f[2], (0.2 * 22.2 + 0.5 * 27.9 + 0.3 * 28.9) / 3, 1e-14, "f3: accelerations, m/s2");
   ok(!sums.failed, "nothing failed");
@@ -67,11 +70,11 @@ static void test_constraints(void)
     size_t offset;
     double limit, excess; /* the sum over the load cases of value / limit - 1 */
   } row[] = {
-    {"contact pressure", offsetof(struct eo_objective, contact_pressure), 900e6, 950.0 / 900 - 1 + 1050.0 / 900 - 1},
-    {"root stress", offsetof(struct eo_objective, root_stress), 50e6, 51.0 / 50 - 1 + 59.0 / 50 - 1},
-    {"peak to peak", offsetof(struct eo_objective, peak_to_peak), 0.75e-6, 0.77 / 0.75 - 1},
-    {"edge load", offsetof(struct eo_objective, edge_load_share), 0.04, 0.05 / 0.04 - 1},
-    {"contact loss, limit 0", offsetof(struct eo_objective, contact_loss), 0, 0.01},
+      {"contact pressure", offsetof(struct eo_objective, contact_pressure), 900e6, 950.0 / 900 - 1 + 1050.0 / 900 - 1},
+      {"root stress", offsetof(struct eo_objective, root_stress), 50e6, 51.0 / 50 - 1 + 59.0 / 50 - 1},
+      {"peak to peak", offsetof(struct eo_objective, peak_to_peak), 0.75e-6, 0.77 / 0.75 - 1},
+      {"edge load", offsetof(struct eo_objective, edge_load_share), 0.04, 0.05 / 0.04 - 1},
+      {"contact loss, limit 0", offsetof(struct eo_objective, contact_loss), 0, 0.01},
   };
   for (size_t i = 0; i < sizeof row / sizeof *row; i++) {
     struct eo_objective objective = plain();
@@ -107,9 +110,12 @@ static void test_relief(void)
   struct eo_modification m = {0};
   double bottom = -5.7e-3, top = 5.1e-3;
   ok(!eo_objective_relief_outside(&m, bottom, top), "no relief lies outside");
-  m.flank[EO_PINION][EO_LEFT] = (struct eo_flank_modification){.tip_relief = 1e-6, .tip_relief_start = 5.0e-3, .root_relief = 1e-6, .root_relief_start = 5.6e-3};
-  m.flank[EO_GEAR][EO_RIGHT] = (struct eo_flank_modification){.tip_relief = 1e-6, .tip_relief_start = 5.6e-3, .root_relief = 1e-6, .root_relief_start = 5.0e-3};
-  ok(!eo_objective_relief_outside(&m, bottom, top), "relief that starts inside: the gear's tip meets the pinion's root");
+  m.flank[EO_PINION][EO_LEFT] = (struct eo_flank_modification){
+      .tip_relief = 1e-6, .tip_relief_start = 5.0e-3, .root_relief = 1e-6, .root_relief_start = 5.6e-3};
+  m.flank[EO_GEAR][EO_RIGHT] = (struct eo_flank_modification){
+      .tip_relief = 1e-6, .tip_relief_start = 5.6e-3, .root_relief = 1e-6, .root_relief_start = 5.0e-3};
+  ok(!eo_objective_relief_outside(&m, bottom, top),
+     "relief that starts inside: the gear's tip meets the pinion's root");
   m.flank[EO_GEAR][EO_RIGHT].root_relief_start = 5.2e-3;
   ok(eo_objective_relief_outside(&m, bottom, top), "root relief of the gear beyond the pinion's tip");
   m.flank[EO_GEAR][EO_RIGHT].root_relief = 0;
@@ -118,7 +124,8 @@ static void test_relief(void)
   ok(eo_objective_relief_outside(&m, bottom, top), "a relief that starts at the very end");
   ok(value_of(&objective, after, true).violation == 0, "is allowed unless forbidden");
   objective.relief_inside_active_flank = true;
-  ok(value_of(&objective, after, true).violation == 1 && value_of(&objective, after, false).violation == 0, "then it counts as one violation");
+  ok(value_of(&objective, after, true).violation == 1 && value_of(&objective, after, false).violation == 0,
+     "then it counts as one violation");
 }
 
 static void test_failures(void)
@@ -127,7 +134,8 @@ static void test_failures(void)
   struct eo_objective_case bad[3] = {after[0], after[1], after[2]};
   bad[1].failed = true;
   struct eo_objective_value v = value_of(&objective, bad, false);
-  ok(v.sums.failed && isnan(v.objective) && v.fitness == EO_FITNESS_WORST, "one load case that failed spoils the design");
+  ok(v.sums.failed && isnan(v.objective) && v.fitness == EO_FITNESS_WORST,
+     "one load case that failed spoils the design");
   bad[1] = after[1];
   bad[1].rms = NAN;
   v = value_of(&objective, bad, false);
@@ -148,7 +156,8 @@ static void test_zero_baseline(void)
   for (int k = 0; k < 3; k++)
     perfect[k].impact = quiet[k].impact = 0;
   eo_objective_value(&objective, 3, load_case, quiet, perfect, false, &v);
-  ok(isfinite(v.objective) && v.objective < 0.7, "an objective at zero before and after drops out: J = %.3f", v.objective);
+  ok(isfinite(v.objective) && v.objective < 0.7, "an objective at zero before and after drops out: J = %.3f",
+     v.objective);
   double without = v.objective;
   eo_objective_value(&objective, 3, load_case, after, perfect, false, &v);
   near(v.objective, without + 0.3, 1e-12, "one that was zero and is not counts fully");

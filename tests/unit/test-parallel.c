@@ -9,9 +9,9 @@
 enum { ITEMS = 200 };
 
 struct work {
-  int done[ITEMS];         /* each item writes its own */
+  int done[ITEMS]; /* each item writes its own */
   int thread[ITEMS];
-  int fails_at, also_at;   /* items that fail; -1: none */
+  int fails_at, also_at; /* items that fail; -1: none */
 };
 
 static enum eo_code count_item(void *context, int thread, int item, struct eo_error *error)
@@ -51,7 +51,8 @@ static void lowest_failure(int threads)
   }
   ok(code == EO_ERROR_NUMERIC && strcmp(error.text, "Item 40 failed.") == 0 && strcmp(error.pointer, "/item") == 0,
      "%d threads: the lowest failure is told: %s", threads, error.text);
-  ok(before == 40 && last < ITEMS - 1, "%d threads: everything below it ran, and not everything after it (last %d)", threads, last);
+  ok(before == 40 && last < ITEMS - 1, "%d threads: everything below it ran, and not everything after it (last %d)",
+     threads, last);
 }
 
 struct watch {
@@ -78,11 +79,13 @@ static void progress_and_cancellation(int threads)
   enum eo_code code = eo_parallel_run(&p, ITEMS, &error);
   /* with other threads around, the calling one may come too late for any item */
   bool within = watch.last > 0.25 && watch.last <= 0.75, late = threads > 1 && watch.calls == 0;
-  ok(!code && watch.ascending && (within || late), "%d threads: progress ascends to %g within its share", threads, watch.last);
+  ok(!code && watch.ascending && (within || late), "%d threads: progress ascends to %g within its share", threads,
+     watch.last);
   w = (struct work){.fails_at = -1, .also_at = -1};
   watch = (struct watch){.most = 3, .ascending = 1};
   code = eo_parallel_run(&p, ITEMS, &error);
-  ok(threads > 1 ? code == EO_ERROR_CANCELLED || watch.calls <= 3 : code == EO_ERROR_CANCELLED && w.done[ITEMS - 1] == 0,
+  ok(threads > 1 ? code == EO_ERROR_CANCELLED || watch.calls <= 3
+                 : code == EO_ERROR_CANCELLED && w.done[ITEMS - 1] == 0,
      "%d threads: a stop is heeded (code %d after %d reports)", threads, code, watch.calls);
 }
 

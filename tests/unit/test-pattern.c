@@ -1,5 +1,5 @@
-/* The contact pattern and the sharing of load against what they are made of: balance of forces, and closed forms on a flank whose contact
-   lines stay whole. */
+/* The contact pattern and the sharing of load against what they are made of: balance of forces, and closed forms on a
+   flank whose contact lines stay whole. */
 #include <stdlib.h>
 
 #include "contact/pattern.h"
@@ -9,22 +9,26 @@
 #include "flexibility/closed_form.h"
 #include "tap.h"
 
-static const struct eo_closed_form form = {.compliance = 1.5e-9, .length = 12e-3, .centre = -0.8e-3, .linear = 20, .quadratic = 4000};
+static const struct eo_closed_form form = {
+    .compliance = 1.5e-9, .length = 12e-3, .centre = -0.8e-3, .linear = 20, .quadratic = 4000};
 
 /* Line load under a Hertz pressure: q = pi p^2 rho 2 (1 - nu^2) / E (Johnson 1985, (4.45) solved for the load). */
 static double line_load(const struct eo_pair *pair, double pressure, double s)
 {
   double nu = pair->material.poissons_ratio;
-  return 2 * M_PI * pressure * pressure * eo_geometry_relative_radius(&pair->geometry, s) * (1 - nu * nu) / pair->material.youngs_modulus;
+  return 2 * M_PI * pressure * pressure * eo_geometry_relative_radius(&pair->geometry, s) * (1 - nu * nu) /
+         pair->material.youngs_modulus;
 }
 
-/* The integral of q over s and eta: the contact lines sweep the flank once while one base pitch passes under the whole load. */
+/* The integral of q over s and eta: the contact lines sweep the flank once while one base pitch passes under the whole
+   load. */
 static double swept_load(const struct eo_pair *pair, const struct eo_contact_pattern *pattern)
 {
   double sum = 0, ds = pattern->path[1] - pattern->path[0], deta = pattern->eta[1] - pattern->eta[0];
   for (int i = 0; i < EO_PATTERN_ROWS; i++)
     for (int j = 0; j < EO_PATTERN_COLUMNS; j++) {
-      double weight = (i == 0 || i == EO_PATTERN_ROWS - 1 ? 0.5 : 1) * (j == 0 || j == EO_PATTERN_COLUMNS - 1 ? 0.5 : 1);
+      double weight = (i == 0 || i == EO_PATTERN_ROWS - 1 ? 0.5 : 1) *
+                      (j == 0 || j == EO_PATTERN_COLUMNS - 1 ? 0.5 : 1);
       sum += weight * line_load(pair, pattern->pressure[i * EO_PATTERN_COLUMNS + j], pattern->path[i]) * ds * deta;
     }
   return sum / (pair->geometry.transverse_base_pitch * cos(pair->geometry.base_helix_angle));
@@ -48,7 +52,8 @@ static void check(const char *example, double shaft_angle, double tolerance)
   }
   const struct eo_case_result *c = &analysis->evaluation->load_case[0];
   struct eo_contact_pattern *pattern = malloc(sizeof *pattern);
-  double highest = 0, widest = INFINITY, deepest = 0, sum = 0, *share = calloc((size_t)pair->grid->positions, sizeof *share);
+  double highest = 0, widest = INFINITY, deepest = 0, sum = 0,
+         *share = calloc((size_t)pair->grid->positions, sizeof *share);
   eo_contact_pattern_init(pattern, pair->grid);
   eo_contact_pattern_load(pattern, pair->grid, &c->end[0].loaded);
   eo_contact_pattern_unload(pattern, eo_evaluator_field(analysis->evaluator, 0), c->end[0].unloaded);
@@ -57,12 +62,13 @@ static void check(const char *example, double shaft_angle, double tolerance)
     widest = fmin(widest, pattern->clearance[i]);
     deepest = fmax(deepest, pattern->clearance[i]);
   }
-  /* At the face ends the pattern carries the last cell on to the edge, so it may lie a little above the cells themselves. */
+  /* At the face ends the pattern carries the last cell on to the edge, so it may lie a little above the cells
+     themselves. */
   near(swept_load(pair, pattern), c->force, tolerance, example);
-  ok(highest < 1.05 * c->end[0].max_pressure && highest > 0.9 * c->end[0].max_pressure, "%s: largest pressure %.1f of %.1f MPa", example, highest / 1e6,
-     c->end[0].max_pressure / 1e6);
-  ok(widest >= 0 && widest < 0.3e-6 && (deepest > 1e-6) == (shaft_angle != 0 || *example == 'n'), "%s: the unloaded teeth touch somewhere, gaps up to %.3g um",
-     example, 1e6 * deepest);
+  ok(highest < 1.05 * c->end[0].max_pressure && highest > 0.9 * c->end[0].max_pressure,
+     "%s: largest pressure %.1f of %.1f MPa", example, highest / 1e6, c->end[0].max_pressure / 1e6);
+  ok(widest >= 0 && widest < 0.3e-6 && (deepest > 1e-6) == (shaft_angle != 0 || *example == 'n'),
+     "%s: the unloaded teeth touch somewhere, gaps up to %.3g um", example, 1e6 * deepest);
   int range[2];
   eo_contact_grid_pairs(pair->grid, range);
   for (int k = range[0]; k <= range[1]; k++) {

@@ -43,7 +43,8 @@ static void test_continuity(void)
   double node[5] = {1, -2, 0.5, 4, 3}, bend = 0, h = 1e-4;
   eo_periodic_init(&spline, 5, node);
   for (int i = 0; i < 5; i++) {
-    double at = i / 5.0, before = i ? at : 1, slope[6]; /* on a cubic three slopes give the second derivative at their end exactly */
+    double at = i / 5.0, before = i ? at : 1,
+           slope[6]; /* on a cubic three slopes give the second derivative at their end exactly */
     close_to(eo_periodic_at(&spline, at, NULL), node[i], 1e-14, "through the node");
     for (int k = 0; k < 3; k++) {
       eo_periodic_at(&spline, before - (k + 0.5) * h, &slope[k]);

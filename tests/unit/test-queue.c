@@ -1,4 +1,5 @@
-/* The server's queue and the stored designs on a real database: order, limits, idempotency, every state, many threads, revisions, pages. */
+/* The server's queue and the stored designs on a real database: order, limits, idempotency, every state, many threads,
+   revisions, pages. */
 #include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
@@ -50,7 +51,8 @@ static enum eo_job_outcome add_entry(struct eo_store *store, const struct eo_que
 
 static int64_t add(struct eo_store *store, int priority)
 {
-  const struct eo_queue_entry entry = {.kind = EO_JOB_OPTIMIZE, .design = "{}", .name = "a job", .algorithm = "ga", .priority = priority};
+  const struct eo_queue_entry entry = {
+      .kind = EO_JOB_OPTIMIZE, .design = "{}", .name = "a job", .algorithm = "ga", .priority = priority};
   int64_t id;
   return add_entry(store, &entry, &id) == EO_JOB_OUTCOME_DONE ? id : 0;
 }
@@ -103,16 +105,23 @@ static void test_order(void)
 {
   struct eo_store *store = open_store();
   int64_t low = add(store, -1), first = add(store, 0), second = add(store, 0), high = add(store, 3);
-  ok(low && first && second && high && claim(store) == high && claim(store) == first && claim(store) == second && claim(store) == low,
+  ok(low && first && second && high && claim(store) == high && claim(store) == first && claim(store) == second &&
+         claim(store) == low,
      "the highest priority first, then the oldest");
   ok(claim(store) == 0, "then there is nothing");
   struct seen seen = look(store, high);
-  ok(seen.state == EO_JOB_PREPARING && seen.attempts == 1 && seen.started && !seen.finished, "what was claimed is preparing");
-  ok(!eo_queue_note(store, high, "{\"fraction\":0.5}", &error) && strcmp(look(store, high).progress, "{\"fraction\":0.5}") == 0, "and tells how far it is");
+  ok(seen.state == EO_JOB_PREPARING && seen.attempts == 1 && seen.started && !seen.finished,
+     "what was claimed is preparing");
+  ok(!eo_queue_note(store, high, "{\"fraction\":0.5}", &error) &&
+         strcmp(look(store, high).progress, "{\"fraction\":0.5}") == 0,
+     "and tells how far it is");
   ok(!eo_queue_end(store, high, EO_JOB_FAILED, "{\"detail\":\"no\"}", NULL, &error), "it fails");
   seen = look(store, high);
-  ok(seen.state == EO_JOB_FAILED && seen.finished && strcmp(seen.error, "{\"detail\":\"no\"}") == 0 && *seen.progress, "with its reason and what it knew");
-  ok(!eo_queue_end(store, first, EO_JOB_QUEUED, NULL, NULL, &error) && claim(store) == first && look(store, first).attempts == 2, "what is put back comes again");
+  ok(seen.state == EO_JOB_FAILED && seen.finished && strcmp(seen.error, "{\"detail\":\"no\"}") == 0 && *seen.progress,
+     "with its reason and what it knew");
+  ok(!eo_queue_end(store, first, EO_JOB_QUEUED, NULL, NULL, &error) && claim(store) == first &&
+         look(store, first).attempts == 2,
+     "what is put back comes again");
   eo_store_close(store);
 }
 
@@ -125,12 +134,15 @@ static void test_full(void)
   const struct eo_queue_entry entry = {.kind = EO_JOB_OPTIMIZE, .design = "{}", .name = "", .algorithm = "ga"};
   ok(add_entry(store, &entry, &id) == EO_JOB_OUTCOME_FULL && id == 0, "a full queue takes no more");
   enum eo_job_outcome outcome;
-  ok(!eo_queue_clone(store, job, NULL, MOST, &id, &outcome, &error) && outcome == EO_JOB_OUTCOME_FULL, "no copies either");
+  ok(!eo_queue_clone(store, job, NULL, MOST, &id, &outcome, &error) && outcome == EO_JOB_OUTCOME_FULL,
+     "no copies either");
   int64_t count[EO_JOB_STATES];
-  ok(!eo_queue_count(store, count, &error) && count[EO_JOB_QUEUED] == MOST && count[EO_JOB_FAILED] == 0, "it holds as many as it may");
+  ok(!eo_queue_count(store, count, &error) && count[EO_JOB_QUEUED] == MOST && count[EO_JOB_FAILED] == 0,
+     "it holds as many as it may");
   claim(store);
   ok(add(store, 0) != 0, "what was begun makes room");
-  const struct eo_queue_entry other = {.kind = EO_JOB_PREPARE, .design = "{}", .name = "", .algorithm = "", .pair = some_hash};
+  const struct eo_queue_entry other = {
+      .kind = EO_JOB_PREPARE, .design = "{}", .name = "", .algorithm = "", .pair = some_hash};
   ok(add_entry(store, &other, &id) == EO_JOB_OUTCOME_DONE && id, "preparations have a limit of their own");
   eo_store_close(store);
 }
@@ -138,9 +150,11 @@ static void test_full(void)
 static void test_idempotency(void)
 {
   struct eo_store *store = open_store();
-  struct eo_queue_entry entry = {.kind = EO_JOB_OPTIMIZE, .design = "{}", .name = "", .algorithm = "ga", .key = "once", .request = some_hash};
+  struct eo_queue_entry entry = {
+      .kind = EO_JOB_OPTIMIZE, .design = "{}", .name = "", .algorithm = "ga", .key = "once", .request = some_hash};
   int64_t one, two, three;
-  ok(add_entry(store, &entry, &one) == EO_JOB_OUTCOME_DONE && add_entry(store, &entry, &two) == EO_JOB_OUTCOME_REPEATED && two == one,
+  ok(add_entry(store, &entry, &one) == EO_JOB_OUTCOME_DONE &&
+         add_entry(store, &entry, &two) == EO_JOB_OUTCOME_REPEATED && two == one,
      "the same request under the same key is the same job");
   entry.request = other_hash;
   ok(add_entry(store, &entry, &three) == EO_JOB_OUTCOME_CONFLICT, "another request under this key is refused");
@@ -152,19 +166,23 @@ static void test_idempotency(void)
   entry.request = some_hash;
   ok(add_entry(store, &entry, &two) == EO_JOB_OUTCOME_REPEATED && two == one, "also after it has ended");
   enum eo_job_outcome outcome;
-  ok(!eo_queue_remove(store, one, &outcome, &error) && !outcome && add_entry(store, &entry, &two) == EO_JOB_OUTCOME_DONE && two != one, "a removed job frees its key");
+  ok(!eo_queue_remove(store, one, &outcome, &error) && !outcome &&
+         add_entry(store, &entry, &two) == EO_JOB_OUTCOME_DONE && two != one,
+     "a removed job frees its key");
   eo_store_close(store);
 }
 
 static void test_preparations(void)
 {
   struct eo_store *store = open_store();
-  struct eo_queue_entry entry = {.kind = EO_JOB_PREPARE, .design = "{}", .name = "", .algorithm = "", .pair = some_hash};
+  struct eo_queue_entry entry = {
+      .kind = EO_JOB_PREPARE, .design = "{}", .name = "", .algorithm = "", .pair = some_hash};
   int64_t one, two, id;
   enum eo_job_outcome outcome;
   add_entry(store, &entry, &one);
   ok(add_entry(store, &entry, &two) == EO_JOB_OUTCOME_DONE && two == one, "a pair that waits is not queued again");
-  ok(claim(store) == 0 && !eo_queue_claim(store, EO_JOB_PREPARE, &id, &error) && id == one, "each kind has its own line");
+  ok(claim(store) == 0 && !eo_queue_claim(store, EO_JOB_PREPARE, &id, &error) && id == one,
+     "each kind has its own line");
   ok(add_entry(store, &entry, &two) == EO_JOB_OUTCOME_DONE && two == one, "nor one that is being prepared");
   eo_queue_cancel(store, one, &outcome, &error);
   ok(add_entry(store, &entry, &two) == EO_JOB_OUTCOME_DONE && two != one, "but one that was told to stop is");
@@ -175,14 +193,16 @@ static void test_preparations(void)
   }
   int64_t before[EO_JOB_STATES], after[EO_JOB_STATES];
   eo_queue_count(store, before, &error);
-  ok(!eo_queue_tidy(store, 2, &error) && !eo_queue_count(store, after, &error) && before[EO_JOB_DONE] == 4 && after[EO_JOB_DONE] == 2,
+  ok(!eo_queue_tidy(store, 2, &error) && !eo_queue_count(store, after, &error) && before[EO_JOB_DONE] == 4 &&
+         after[EO_JOB_DONE] == 2,
      "finished ones are swept up");
   eo_store_close(store);
 }
 
 /* ---- every state ---- */
 
-static const enum eo_job_state every_state[] = {EO_JOB_QUEUED, EO_JOB_PREPARING, EO_JOB_DONE, EO_JOB_FAILED, EO_JOB_CANCELLED};
+static const enum eo_job_state every_state[] = {EO_JOB_QUEUED, EO_JOB_PREPARING, EO_JOB_DONE, EO_JOB_FAILED,
+                                                EO_JOB_CANCELLED};
 
 static int64_t make(struct eo_store *store, enum eo_job_state state)
 {
@@ -205,21 +225,31 @@ static void test_states(void)
     const char *name = eo_store_job_state_name(state);
     bool ended = state == EO_JOB_DONE || state == EO_JOB_FAILED || state == EO_JOB_CANCELLED;
     int64_t id = make(store, state), copy;
-    ok(!eo_queue_clone(store, id, &(int){7}, MOST, &copy, &outcome, &error) && !outcome && look(store, copy).priority == 7 &&
-       look(store, copy).state == EO_JOB_QUEUED, "%s: a copy waits", name);
+    ok(!eo_queue_clone(store, id, &(int){7}, MOST, &copy, &outcome, &error) && !outcome &&
+           look(store, copy).priority == 7 && look(store, copy).state == EO_JOB_QUEUED,
+       "%s: a copy waits", name);
     eo_queue_cancel(store, copy, &outcome, &error);
-    ok(!eo_queue_cancel(store, id, &outcome, &error) && outcome == (ended ? EO_JOB_OUTCOME_STATE : EO_JOB_OUTCOME_DONE), "%s: cancel", name);
+    ok(!eo_queue_cancel(store, id, &outcome, &error) && outcome == (ended ? EO_JOB_OUTCOME_STATE : EO_JOB_OUTCOME_DONE),
+       "%s: cancel", name);
     enum eo_job_state then = state == EO_JOB_QUEUED ? EO_JOB_CANCELLED : state;
-    ok(look(store, id).state == then && look(store, id).stop == !ended, "%s: then it is %s", name, eo_store_job_state_name(then));
+    ok(look(store, id).state == then && look(store, id).stop == !ended, "%s: then it is %s", name,
+       eo_store_job_state_name(then));
     bool retried = then == EO_JOB_FAILED || then == EO_JOB_CANCELLED;
-    ok(!eo_queue_retry(store, id, MOST, &outcome, &error) && outcome == (retried ? EO_JOB_OUTCOME_DONE : EO_JOB_OUTCOME_STATE), "%s: retry", name);
-    ok(!retried || (look(store, id).state == EO_JOB_QUEUED && !look(store, id).stop && !*look(store, id).error), "%s: begins anew", name);
-    ok(!eo_queue_remove(store, id, &outcome, &error) && outcome == (then == EO_JOB_DONE ? EO_JOB_OUTCOME_DONE : EO_JOB_OUTCOME_STATE), "%s: remove", name);
+    ok(!eo_queue_retry(store, id, MOST, &outcome, &error) &&
+           outcome == (retried ? EO_JOB_OUTCOME_DONE : EO_JOB_OUTCOME_STATE),
+       "%s: retry", name);
+    ok(!retried || (look(store, id).state == EO_JOB_QUEUED && !look(store, id).stop && !*look(store, id).error),
+       "%s: begins anew", name);
+    ok(!eo_queue_remove(store, id, &outcome, &error) &&
+           outcome == (then == EO_JOB_DONE ? EO_JOB_OUTCOME_DONE : EO_JOB_OUTCOME_STATE),
+       "%s: remove", name);
     while (claim(store))
       ;
   }
-  ok(!eo_queue_cancel(store, 9999, &outcome, &error) && outcome == EO_JOB_OUTCOME_MISSING && !eo_queue_retry(store, 9999, MOST, &outcome, &error) &&
-     outcome == EO_JOB_OUTCOME_MISSING && !eo_queue_remove(store, 9999, &outcome, &error) && outcome == EO_JOB_OUTCOME_MISSING, "no such job");
+  ok(!eo_queue_cancel(store, 9999, &outcome, &error) && outcome == EO_JOB_OUTCOME_MISSING &&
+         !eo_queue_retry(store, 9999, MOST, &outcome, &error) && outcome == EO_JOB_OUTCOME_MISSING &&
+         !eo_queue_remove(store, 9999, &outcome, &error) && outcome == EO_JOB_OUTCOME_MISSING,
+     "no such job");
   eo_store_close(store);
 }
 
@@ -228,18 +258,23 @@ static void test_recovery(void)
 {
   struct eo_store *store = open_store(), *terminal = open_store();
   enum eo_job_outcome outcome;
-  int64_t queued, begun = make(store, EO_JOB_PREPARING), stopping = make(store, EO_JOB_PREPARING), parked = make(store, EO_JOB_CANCELLED),
-                  unwritten = make(store, EO_JOB_DONE), written = make(store, EO_JOB_DONE), taken = make(store, EO_JOB_PREPARING), failed = make(store, EO_JOB_FAILED);
+  int64_t queued, begun = make(store, EO_JOB_PREPARING), stopping = make(store, EO_JOB_PREPARING),
+                  parked = make(store, EO_JOB_CANCELLED), unwritten = make(store, EO_JOB_DONE),
+                  written = make(store, EO_JOB_DONE), taken = make(store, EO_JOB_PREPARING),
+                  failed = make(store, EO_JOB_FAILED);
   bool there = false;
   eo_store_keep_result(store, written, "{}", &error);
   eo_queue_cancel(store, stopping, &outcome, &error);
   eo_store_claim_job(terminal, taken, &there, &error);
   ok(!eo_queue_recover(store, &queued, &error) && queued == 4, "%lld jobs are looked after", (long long)queued);
   ok(look(store, begun).state == EO_JOB_QUEUED, "one that was begun waits again");
-  ok(look(store, stopping).state == EO_JOB_CANCELLED && look(store, stopping).finished, "one that was to be stopped is cancelled");
+  ok(look(store, stopping).state == EO_JOB_CANCELLED && look(store, stopping).finished,
+     "one that was to be stopped is cancelled");
   ok(look(store, parked).state == EO_JOB_QUEUED, "one that was being parked waits again");
-  ok(look(store, unwritten).state == EO_JOB_QUEUED && look(store, written).state == EO_JOB_DONE, "one without its result waits again, one with it does not");
-  ok(look(store, taken).state == EO_JOB_PREPARING && look(store, failed).state == EO_JOB_FAILED, "what a terminal works on and what failed stay");
+  ok(look(store, unwritten).state == EO_JOB_QUEUED && look(store, written).state == EO_JOB_DONE,
+     "one without its result waits again, one with it does not");
+  ok(look(store, taken).state == EO_JOB_PREPARING && look(store, failed).state == EO_JOB_FAILED,
+     "what a terminal works on and what failed stay");
   eo_store_close(store);
   eo_store_close(terminal);
 }
@@ -248,7 +283,8 @@ static void test_recovery(void)
 
 static int64_t add_problem(struct eo_store *store)
 {
-  const struct eo_stored_problem problem = {.hash = some_hash, .spec = "{}", .name = "", .evaluator = 1, .scenarios = 1, .cases = 1};
+  const struct eo_stored_problem problem = {
+      .hash = some_hash, .spec = "{}", .name = "", .evaluator = 1, .scenarios = 1, .cases = 1};
   int64_t id = 0;
   eo_store_find_problem(store, &problem, &id, &error);
   return id;
@@ -280,15 +316,21 @@ static void test_begin(void)
   struct eo_stored_job job = {.id = 4711, .problem = problem, .study = some_hash, .space = some_hash};
   bool resumed = true;
   int steps = 0;
-  ok(eo_store_begin_job(store, &job, &resumed, &error) == EO_ERROR_INPUT && strstr(error.text, "no job"), "no such job: %s", error.text);
+  ok(eo_store_begin_job(store, &job, &resumed, &error) == EO_ERROR_INPUT && strstr(error.text, "no job"),
+     "no such job: %s", error.text);
   job.id = id;
-  ok(!eo_store_begin_job(store, &job, &resumed, &error) && !resumed && job.import_upto == 0 && look(store, id).state == EO_JOB_RUNNING, "a job runs");
-  ok(eo_store_begin_job(other, &job, &resumed, &error) == EO_ERROR_INPUT && strstr(error.text, "Another process"), "once: %s", error.text);
+  ok(!eo_store_begin_job(store, &job, &resumed, &error) && !resumed && job.import_upto == 0 &&
+         look(store, id).state == EO_JOB_RUNNING,
+     "a job runs");
+  ok(eo_store_begin_job(other, &job, &resumed, &error) == EO_ERROR_INPUT && strstr(error.text, "Another process"),
+     "once: %s", error.text);
   ok(!log_one(store, problem, id), "and logs");
-  ok(!eo_store_begin_job(store, &job, &resumed, &error) && resumed && job.import_upto == 0, "as the same study it goes on with what it knew");
+  ok(!eo_store_begin_job(store, &job, &resumed, &error) && resumed && job.import_upto == 0,
+     "as the same study it goes on with what it knew");
   job.study = other_hash;
   ok(!eo_store_begin_job(store, &job, &resumed, &error) && !resumed && job.import_upto == 1 &&
-     !eo_store_each_candidate(store, id, count_step, &steps, &error) && steps == 0, "as another one it forgets its path");
+         !eo_store_each_candidate(store, id, count_step, &steps, &error) && steps == 0,
+     "as another one it forgets its path");
   eo_store_close(other);
   eo_store_close(store);
 }
@@ -350,14 +392,17 @@ static void test_pages(void)
   int64_t newest = make(store, EO_JOB_DONE);
   struct eo_queue_filter filter = {.state = -1, .kind = -1, .limit = 2};
   eo_store_keep_result(store, newest, "{}", &error);
-  ok(!eo_queue_list(store, &filter, see, &seen, &error) && seen.count == 2 && seen.id[0] == newest && seen.id[1] == newest - 1, "the newest first");
+  ok(!eo_queue_list(store, &filter, see, &seen, &error) && seen.count == 2 && seen.id[0] == newest &&
+         seen.id[1] == newest - 1,
+     "the newest first");
   seen = (struct seen){0};
   filter.before = newest - 1;
   filter.limit = 10;
   ok(!eo_queue_list(store, &filter, see, &seen, &error) && seen.count == 3 && seen.id[0] == newest - 2, "page by page");
   filter = (struct eo_queue_filter){.state = EO_JOB_DONE, .kind = -1, .limit = 10};
   seen = (struct seen){0};
-  ok(!eo_queue_list(store, &filter, see, &seen, &error) && seen.count == 1 && seen.id[0] == newest && seen.has_result, "by state");
+  ok(!eo_queue_list(store, &filter, see, &seen, &error) && seen.count == 1 && seen.id[0] == newest && seen.has_result,
+     "by state");
   filter = (struct eo_queue_filter){.state = -1, .kind = EO_JOB_PREPARE, .limit = 10};
   seen = (struct seen){0};
   ok(!eo_queue_list(store, &filter, see, &seen, &error) && seen.count == 0, "by kind");
@@ -407,27 +452,39 @@ static void test_designs(void)
   struct eo_store *store = open_store();
   struct seen_design seen = {0};
   enum eo_design_outcome outcome;
-  ok(!eo_store_add_design(store, "one", "{\"a\":1}", 3, see_design, &seen, &outcome, &error) && outcome == EO_DESIGN_DONE && seen.revision == 1 &&
-     strcmp(seen.name, "one") == 0 && strlen(seen.created) == 24, "a design is stored: %s", seen.created);
+  ok(!eo_store_add_design(store, "one", "{\"a\":1}", 3, see_design, &seen, &outcome, &error) &&
+         outcome == EO_DESIGN_DONE && seen.revision == 1 && strcmp(seen.name, "one") == 0 && strlen(seen.created) == 24,
+     "a design is stored: %s", seen.created);
   int64_t id = seen.id[0];
-  ok(eo_store_add_design(store, "bad", "{", 3, NULL, NULL, &outcome, &error) == EO_ERROR_FILE, "what is no JSON is not");
-  ok(!eo_store_change_design(store, id, 1, "two", "{}", see_design, &seen, &outcome, &error) && outcome == EO_DESIGN_DONE && seen.revision == 2 &&
-     strcmp(seen.name, "two") == 0 && strcmp(seen.document, "{}") == 0, "and changed");
-  ok(!eo_store_change_design(store, id, 1, "three", "{}", see_design, &seen, &outcome, &error) && outcome == EO_DESIGN_STALE && seen.revision == 2 &&
-     strcmp(seen.name, "two") == 0, "not over a change that was not seen");
-  ok(!eo_store_change_design(store, id, 0, "three", "{}", NULL, NULL, &outcome, &error) && outcome == EO_DESIGN_DONE, "unless that does not matter");
-  ok(!eo_store_change_design(store, 77, 1, "x", "{}", NULL, NULL, &outcome, &error) && outcome == EO_DESIGN_MISSING, "no such design to change");
+  ok(eo_store_add_design(store, "bad", "{", 3, NULL, NULL, &outcome, &error) == EO_ERROR_FILE,
+     "what is no JSON is not");
+  ok(!eo_store_change_design(store, id, 1, "two", "{}", see_design, &seen, &outcome, &error) &&
+         outcome == EO_DESIGN_DONE && seen.revision == 2 && strcmp(seen.name, "two") == 0 &&
+         strcmp(seen.document, "{}") == 0,
+     "and changed");
+  ok(!eo_store_change_design(store, id, 1, "three", "{}", see_design, &seen, &outcome, &error) &&
+         outcome == EO_DESIGN_STALE && seen.revision == 2 && strcmp(seen.name, "two") == 0,
+     "not over a change that was not seen");
+  ok(!eo_store_change_design(store, id, 0, "three", "{}", NULL, NULL, &outcome, &error) && outcome == EO_DESIGN_DONE,
+     "unless that does not matter");
+  ok(!eo_store_change_design(store, 77, 1, "x", "{}", NULL, NULL, &outcome, &error) && outcome == EO_DESIGN_MISSING,
+     "no such design to change");
   eo_store_add_design(store, "b", "{}", 3, NULL, NULL, &outcome, &error);
   eo_store_add_design(store, "c", "{}", 3, NULL, NULL, &outcome, &error);
-  ok(!eo_store_add_design(store, "d", "{}", 3, NULL, NULL, &outcome, &error) && outcome == EO_DESIGN_FULL, "no more than may be");
+  ok(!eo_store_add_design(store, "d", "{}", 3, NULL, NULL, &outcome, &error) && outcome == EO_DESIGN_FULL,
+     "no more than may be");
   seen = (struct seen_design){0};
-  ok(!eo_store_list_designs(store, 0, 2, see_design, &seen, &error) && seen.count == 2 && seen.id[0] > seen.id[1], "listed, the newest first");
+  ok(!eo_store_list_designs(store, 0, 2, see_design, &seen, &error) && seen.count == 2 && seen.id[0] > seen.id[1],
+     "listed, the newest first");
   int64_t last = seen.id[1];
-  ok(!eo_store_list_designs(store, last, 2, see_design, &seen, &error) && seen.count == 3 && seen.id[2] == id, "page by page");
-  ok(!eo_store_remove_design(store, id, 2, &outcome, &error) && outcome == EO_DESIGN_STALE && !eo_store_remove_design(store, id, 3, &outcome, &error) &&
-     outcome == EO_DESIGN_DONE, "removed in the revision that was seen");
+  ok(!eo_store_list_designs(store, last, 2, see_design, &seen, &error) && seen.count == 3 && seen.id[2] == id,
+     "page by page");
+  ok(!eo_store_remove_design(store, id, 2, &outcome, &error) && outcome == EO_DESIGN_STALE &&
+         !eo_store_remove_design(store, id, 3, &outcome, &error) && outcome == EO_DESIGN_DONE,
+     "removed in the revision that was seen");
   ok(!eo_store_find_design(store, id, see_design, &seen, &outcome, &error) && outcome == EO_DESIGN_MISSING &&
-     !eo_store_remove_design(store, id, 0, &outcome, &error) && outcome == EO_DESIGN_MISSING, "then it is gone");
+         !eo_store_remove_design(store, id, 0, &outcome, &error) && outcome == EO_DESIGN_MISSING,
+     "then it is gone");
   seen = (struct seen_design){0};
   eo_store_add_design(store, "e", "{}", 3, see_design, &seen, &outcome, &error);
   ok(seen.id[0] > id + 2, "and its number is not used again");
@@ -436,8 +493,9 @@ static void test_designs(void)
 
 int main(void)
 {
-  void (*const test[])(void) = {test_order, test_full, test_idempotency, test_preparations, test_states, test_recovery, test_begin, test_threads, test_pages,
-                                test_server_lock, test_designs};
+  void (*const test[])(void) = {test_order,  test_full,        test_idempotency, test_preparations,
+                                test_states, test_recovery,    test_begin,       test_threads,
+                                test_pages,  test_server_lock, test_designs};
   snprintf(folder, sizeof folder, "%s/easeoff-queue-XXXXXX", getenv("TMPDIR") ? getenv("TMPDIR") : "/tmp");
   if (!mkdtemp(folder))
     return 99;

@@ -1,4 +1,5 @@
-/* HDF5 files written by the library itself: one data set per channel, tables, units, other files that must not be read. */
+/* HDF5 files written by the library itself: one data set per channel, tables, units, other files that must not be read.
+ */
 #include "tests/reader-fixture.h"
 
 #include <hdf5.h>
@@ -17,7 +18,8 @@ static hid_t open_file(void)
   return file;
 }
 
-static hid_t put(hid_t place, const char *name, int rank, const hsize_t *dims, hid_t stored, hid_t type, const void *data, hid_t list)
+static hid_t put(hid_t place, const char *name, int rank, const hsize_t *dims, hid_t stored, hid_t type,
+                 const void *data, hid_t list)
 {
   hid_t space = H5Screate_simple(rank, dims, NULL);
   hid_t set = H5Dcreate2(place, name, stored, space, H5P_DEFAULT, list, H5P_DEFAULT);
@@ -75,16 +77,18 @@ static void test_channels(void)
   for (int i = 0; !wrong && i < COUNT; i++)
     wrong += cell_of(r, i, 0) != t[i] || cell_of(r, i, 1) != pinion[i] || cell_of(r, i, 2) != gear[i];
   ok(!wrong, "three data sets of one length, one compressed, one of the other byte order%s", r ? "" : error.text);
-  ok(r && !strcmp(eo_recording_unit(r, 0), "s") && !strcmp(eo_recording_unit(r, 1), "deg") && !strcmp(eo_recording_name(r, 2), "rear gear"),
+  ok(r && !strcmp(eo_recording_unit(r, 0), "s") && !strcmp(eo_recording_unit(r, 1), "deg") &&
+         !strcmp(eo_recording_name(r, 2), "rear gear"),
      "names and units");
-  ok(r && eo_recording_interval(r) == 5e-5 && noted(&notes, "\"settings\" with 3 values"), "sampling rate, and what was left out");
+  ok(r && eo_recording_interval(r) == 5e-5 && noted(&notes, "\"settings\" with 3 values"),
+     "sampling rate, and what was left out");
   eo_recording_free(r);
 }
 
 static void test_table(void)
 {
   struct eo_error error;
-  hsize_t dims[2] = { COUNT, 2 };
+  hsize_t dims[2] = {COUNT, 2};
   int32_t *table = malloc(2 * COUNT * sizeof *table);
   for (int i = 0; i < COUNT; i++) {
     table[2 * i] = i;
@@ -94,7 +98,8 @@ static void test_table(void)
   H5Dclose(put(file, "counts", 2, dims, H5T_STD_I32LE, H5T_NATIVE_INT32, table, H5P_DEFAULT));
   H5Fclose(file);
   struct eo_recording *r = read_fixture(NULL, NULL, &error);
-  ok(r && eo_recording_columns(r) == 2 && cell_of(r, 4321, 0) == 4321 && cell_of(r, 4321, 1) == -12963 && !strcmp(eo_recording_name(r, 1), "counts 2"),
+  ok(r && eo_recording_columns(r) == 2 && cell_of(r, 4321, 0) == 4321 && cell_of(r, 4321, 1) == -12963 &&
+         !strcmp(eo_recording_name(r, 1), "counts 2"),
      "a table of integers%s", r ? "" : error.text);
   eo_recording_free(r);
   free(table);

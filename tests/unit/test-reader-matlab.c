@@ -28,17 +28,18 @@ static mat_t *open_file(enum mat_ft version)
   return file;
 }
 
-static void put(mat_t *file, const char *name, void *data, enum matio_classes class, enum matio_types type, size_t rows, size_t columns,
-                enum matio_compression compression)
+static void put(mat_t *file, const char *name, void *data, enum matio_classes class, enum matio_types type, size_t rows,
+                size_t columns, enum matio_compression compression)
 {
-  size_t dims[2] = { rows, columns };
+  size_t dims[2] = {rows, columns};
   matvar_t *v = Mat_VarCreate(name, class, type, 2, dims, data, 0);
   if (!v || Mat_VarWrite(file, v, compression))
     exit(96);
   Mat_VarFree(v);
 }
 
-static void put_doubles(mat_t *file, const char *name, double *data, size_t rows, size_t columns, enum matio_compression compression)
+static void put_doubles(mat_t *file, const char *name, double *data, size_t rows, size_t columns,
+                        enum matio_compression compression)
 {
   put(file, name, data, MAT_C_DOUBLE, MAT_T_DOUBLE, rows, columns, compression);
 }
@@ -78,13 +79,16 @@ static void test_vectors(enum mat_ft version, enum matio_compression compression
   Mat_Close(file);
   enum eo_reader_kind kind;
   ok(!eo_reader_identify(fixture_path, &kind, NULL, &error) && kind == EO_READER_MATLAB, "told as MATLAB");
-  struct eo_reader_options options = { .spool_directory = fixture_directory };
+  struct eo_reader_options options = {.spool_directory = fixture_directory};
   struct eo_recording *r = read_fixture(&options, &notes, &error);
   int c = column_of(r, "counts");
-  ok(r && eo_recording_rows(r) == COUNT && eo_recording_columns(r) == (version == MAT_FT_MAT4 ? 3 : 4), "%s%s", what, r ? "" : error.text);
-  ok(r && column_of(r, "t") >= 0 && !wrong_values(r, column_of(r, "t"), t) && !wrong_values(r, column_of(r, "phi1"), pinion) &&
-       !wrong_values(r, column_of(r, "phi2"), gear), "values");
-  ok(r && (c < 0 || cell_of(r, 65999, c) == counts[65999]) && fabs(eo_recording_interval(r) - 5e-5) < 1e-18, "integers, sampling rate");
+  ok(r && eo_recording_rows(r) == COUNT && eo_recording_columns(r) == (version == MAT_FT_MAT4 ? 3 : 4), "%s%s", what,
+     r ? "" : error.text);
+  ok(r && column_of(r, "t") >= 0 && !wrong_values(r, column_of(r, "t"), t) &&
+         !wrong_values(r, column_of(r, "phi1"), pinion) && !wrong_values(r, column_of(r, "phi2"), gear),
+     "values");
+  ok(r && (c < 0 || cell_of(r, 65999, c) == counts[65999]) && fabs(eo_recording_interval(r) - 5e-5) < 1e-18,
+     "integers, sampling rate");
   if (version != MAT_FT_MAT4)
     ok(noted(&notes, "no channel of"), "the text is left out and said so");
   eo_recording_free(r);
@@ -102,8 +106,9 @@ static void test_matrix(enum mat_ft version, enum matio_compression compression,
     put_doubles(file, "data", k ? wide : tall, k ? 3 : COUNT, k ? COUNT : 3, compression);
     Mat_Close(file);
     struct eo_recording *r = read_fixture(NULL, NULL, &error);
-    ok(r && eo_recording_columns(r) == 3 && !wrong_values(r, 0, t) && !wrong_values(r, 1, pinion) && !wrong_values(r, 2, gear) &&
-         !strcmp(eo_recording_name(r, 2), "data 3"), "%s, channels in %s%s", what, k ? "rows" : "columns", r ? "" : error.text);
+    ok(r && eo_recording_columns(r) == 3 && !wrong_values(r, 0, t) && !wrong_values(r, 1, pinion) &&
+           !wrong_values(r, 2, gear) && !strcmp(eo_recording_name(r, 2), "data 3"),
+       "%s, channels in %s%s", what, k ? "rows" : "columns", r ? "" : error.text);
     eo_recording_free(r);
   }
   free(wide);
@@ -113,20 +118,22 @@ static void test_matrix(enum mat_ft version, enum matio_compression compression,
 static void test_struct(enum mat_ft version, enum matio_compression compression, const char *what)
 {
   struct eo_error error;
-  static const char *const fields[] = { "t", "phi1", "phi2" };
-  double *const data[] = { t, pinion, gear };
-  size_t one[2] = { 1, 1 }, dims[2] = { COUNT, 1 };
+  static const char *const fields[] = {"t", "phi1", "phi2"};
+  double *const data[] = {t, pinion, gear};
+  size_t one[2] = {1, 1}, dims[2] = {COUNT, 1};
   mat_t *file = open_file(version);
   matvar_t *s = Mat_VarCreateStruct("run", 2, one, (const char **)fields, 3);
   for (int i = 0; i < 3; i++)
-    Mat_VarSetStructFieldByName(s, fields[i], 0, Mat_VarCreate(fields[i], MAT_C_DOUBLE, MAT_T_DOUBLE, 2, dims, data[i], 0));
+    Mat_VarSetStructFieldByName(s, fields[i], 0,
+                                Mat_VarCreate(fields[i], MAT_C_DOUBLE, MAT_T_DOUBLE, 2, dims, data[i], 0));
   if (Mat_VarWrite(file, s, compression))
     exit(95);
   Mat_VarFree(s);
   Mat_Close(file);
   struct eo_recording *r = read_fixture(NULL, NULL, &error);
   ok(r && eo_recording_columns(r) == 3 && column_of(r, "phi2") >= 0 && !wrong_values(r, column_of(r, "t"), t) &&
-       !wrong_values(r, column_of(r, "phi2"), gear), "%s%s", what, r ? "" : error.text);
+         !wrong_values(r, column_of(r, "phi2"), gear),
+     "%s%s", what, r ? "" : error.text);
   eo_recording_free(r);
 }
 
@@ -148,7 +155,7 @@ static void test_gzip(void)
   gzwrite(zipped, bytes, (unsigned)size);
   gzclose(zipped);
   free(bytes);
-  struct eo_reader_options options = { .spool_directory = fixture_directory };
+  struct eo_reader_options options = {.spool_directory = fixture_directory};
   struct eo_recording *r = read_fixture(&options, NULL, &error);
   ok(r && !wrong_values(r, 0, pinion), "a gzip file of it");
   eo_recording_free(r);

@@ -109,7 +109,8 @@ static void put_chunk(int first, int count, int interleaved)
     put_double(&w, gear(first + i));
 }
 
-/* Segment 1 with metadata and two chunks, segment 2 without metadata, segment 3 whose list is kept and one index is stated anew. */
+/* Segment 1 with metadata and two chunks, segment 2 without metadata, segment 3 whose list is kept and one index is
+   stated anew. */
 static void put_file(int toc)
 {
   w.size = 0;
@@ -153,8 +154,10 @@ static void test_kind(int toc, const char *what)
   ok(!eo_reader_identify(fixture_path, &kind, NULL, &error) && kind == EO_READER_TDMS, "told as TDMS");
   struct eo_recording *r = read_fixture(NULL, NULL, &error);
   ok(r && !wrong_rows(r, 350), "%s%s", what, r ? "" : error.text);
-  ok(r && !strcmp(eo_recording_name(r, 0), "Pinion's angle") && !strcmp(eo_recording_unit(r, 1), "deg"), "name and unit");
-  ok(r && eo_recording_interval(r) == 5e-5 && eo_recording_start(r) == 0.25 && eo_recording_line(r, 3) == 0, "sampling interval and start");
+  ok(r && !strcmp(eo_recording_name(r, 0), "Pinion's angle") && !strcmp(eo_recording_unit(r, 1), "deg"),
+     "name and unit");
+  ok(r && eo_recording_interval(r) == 5e-5 && eo_recording_start(r) == 0.25 && eo_recording_line(r, 3) == 0,
+     "sampling interval and start");
   eo_recording_free(r);
 }
 
@@ -295,7 +298,7 @@ static void test_damage(void)
 /* Every byte of a small file is set to other values: an error or a recording, and nothing else (sanitizers watch). */
 static void test_every_byte(void)
 {
-  static const unsigned char values[] = { 0, 1, 0x7f, 0x80, 0xff };
+  static const unsigned char values[] = {0, 1, 0x7f, 0x80, 0xff};
   put_file(INTERLEAVED);
   int read = 0, failed = 0;
   for (size_t i = 0; i < metadata_end; i += i < 500 ? 1 : 97)

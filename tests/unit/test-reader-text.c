@@ -1,9 +1,13 @@
-/* Delimited text of the kinds rigs write: every way of separating, headers, gaps, faults with their place, gzip, limits. */
+/* Delimited text of the kinds rigs write: every way of separating, headers, gaps, faults with their place, gzip,
+   limits. */
 #include "tests/reader-fixture.h"
 
 #include <zlib.h>
 
-static const double expected[4][3] = { { 0, 17.15407647, 63.02719913 }, { 5e-5, 17.7542265, 63.25901205 }, { 1e-4, 18.35439856, 63.49082088 }, { 1.5e-4, 18.95457267, -63.72262965 } };
+static const double expected[4][3] = {{0, 17.15407647, 63.02719913},
+                                      {5e-5, 17.7542265, 63.25901205},
+                                      {1e-4, 18.35439856, 63.49082088},
+                                      {1.5e-4, 18.95457267, -63.72262965}};
 
 /* Reads text that holds the table above and checks all of it. */
 static struct eo_recording *table(const char *text, const char *what)
@@ -30,37 +34,54 @@ static int named(const struct eo_recording *r, int column, const char *name, con
 
 static void test_ways(void)
 {
-  struct eo_recording *r = table("t_s,angle1_deg,angle2_deg\n0.000000,17.15407647,63.02719913\n0.000050,17.75422650,63.25901205\n"
-                                 "0.000100,18.35439856,63.49082088\n0.000150,18.95457267,-63.72262965\n", "commas");
-  ok(named(r, 0, "t", "s") && named(r, 1, "angle1", "deg") && named(r, 2, "angle2", "deg"), "names with units behind underscores");
+  struct eo_recording *r =
+      table("t_s,angle1_deg,angle2_deg\n0.000000,17.15407647,63.02719913\n0.000050,17.75422650,63.25901205\n"
+            "0.000100,18.35439856,63.49082088\n0.000150,18.95457267,-63.72262965\n",
+            "commas");
+  ok(named(r, 0, "t", "s") && named(r, 1, "angle1", "deg") && named(r, 2, "angle2", "deg"),
+     "names with units behind underscores");
   ok(r && eo_recording_line(r, 0) == 2 && eo_recording_line(r, 3) == 5, "rows know their lines");
   eo_recording_free(r);
-  r = table("Zeit;Winkel Ritzel;Winkel Rad\r\ns;\xb0;\xb0\r\n0,000000;17,15407647;63,02719913\r\n0,000050;17,75422650;63,25901205\r\n"
-            "0,000100;18,35439856;63,49082088\r\n0,000150;18,95457267;-63,72262965\r\n", "semicolons, decimal comma, CRLF");
+  r = table("Zeit;Winkel Ritzel;Winkel "
+            "Rad\r\ns;\xb0;\xb0\r\n0,000000;17,15407647;63,02719913\r\n0,000050;17,75422650;63,25901205\r\n"
+            "0,000100;18,35439856;63,49082088\r\n0,000150;18,95457267;-63,72262965\r\n",
+            "semicolons, decimal comma, CRLF");
   ok(named(r, 1, "Winkel Ritzel", "\xc2\xb0"), "a row of units, in Latin 1");
   eo_recording_free(r);
-  r = table("\xef\xbb\xbf\"Time [s]\"\t\"Pinion (deg)\"\t\"Gear (deg)\"\n0,0\t17,15407647\t63,02719913\n5e-5\t1,775422650E+01\t63,25901205\n"
-            "1E-04\t18,35439856\t63,49082088\n1,5e-004\t18,95457267\t-63,72262965", "tabs, decimal comma, exponents, byte order mark, no last line end");
+  r = table("\xef\xbb\xbf\"Time [s]\"\t\"Pinion (deg)\"\t\"Gear "
+            "(deg)\"\n0,0\t17,15407647\t63,02719913\n5e-5\t1,775422650E+01\t63,25901205\n"
+            "1E-04\t18,35439856\t63,49082088\n1,5e-004\t18,95457267\t-63,72262965",
+            "tabs, decimal comma, exponents, byte order mark, no last line end");
   ok(named(r, 0, "Time", "s") && named(r, 2, "Gear", "deg"), "quoted names with units in brackets");
   eo_recording_free(r);
-  r = table("# rig 3, run 12\n# t   phi1   phi2\n# [s] [rad] [rad]\n   0.0  17.15407647   63.02719913 \n\n  5e-5 17.75422650 63.25901205\n"
-            "% pause\n  1e-4\t18.35439856\t63.49082088\n// end\n  1.5e-4 18.95457267  -63.72262965\n", "blanks, comments, blank lines");
+  r = table("# rig 3, run 12\n# t   phi1   phi2\n# [s] [rad] [rad]\n   0.0  17.15407647   63.02719913 \n\n  5e-5 "
+            "17.75422650 63.25901205\n"
+            "% pause\n  1e-4\t18.35439856\t63.49082088\n// end\n  1.5e-4 18.95457267  -63.72262965\n",
+            "blanks, comments, blank lines");
   ok(named(r, 0, "t", "s") && named(r, 1, "phi1", "rad"), "names and units in comments");
-  ok(r && eo_recording_line(r, 0) == 4 && eo_recording_line(r, 1) == 6 && eo_recording_line(r, 2) == 8 && eo_recording_line(r, 3) == 10,
+  ok(r && eo_recording_line(r, 0) == 4 && eo_recording_line(r, 1) == 6 && eo_recording_line(r, 2) == 8 &&
+         eo_recording_line(r, 3) == 10,
      "lines with gaps");
   eo_recording_free(r);
-  r = table("t,a,b\r0,17.15407647,63.02719913\r5e-5,17.75422650,63.25901205\r1e-4,18.35439856,63.49082088\r1.5e-4,18.95457267,-63.72262965\r",
+  r = table("t,a,b\r0,17.15407647,63.02719913\r5e-5,17.75422650,63.25901205\r1e-4,18.35439856,63.49082088\r1.5e-4,18."
+            "95457267,-63.72262965\r",
             "lines that end with CR alone");
   ok(r && eo_recording_line(r, 3) == 5, "and are counted");
   eo_recording_free(r);
   eo_recording_free(table("\"0\",\"17,15407647\",\"63,02719913\"\n\"0,00005\",\"17,7542265\",\"63,25901205\"\n"
-                          "\"0,0001\",\"18,35439856\",\"63,49082088\"\n\"0,00015\",\"18,95457267\",\"-63,72262965\"\n", "quoted cells with decimal commas"));
-  eo_recording_free(table("t;a;b;\n0;17.15407647;63.02719913;\n5e-5;17.7542265;63.25901205;\n1e-4;18.35439856;63.49082088;\n"
-                          "1.5e-4;18.95457267;-63.72262965;;;\n", "separators behind the last cell"));
-  eo_recording_free(table("0, 17.15407647, 63.02719913\n5e-5, 17.7542265, 63.25901205\n1e-4, 18.35439856, 63.49082088\n1.5e-4, 18.95457267, -63.72262965\n",
+                          "\"0,0001\",\"18,35439856\",\"63,49082088\"\n\"0,00015\",\"18,95457267\",\"-63,72262965\"\n",
+                          "quoted cells with decimal commas"));
+  eo_recording_free(
+      table("t;a;b;\n0;17.15407647;63.02719913;\n5e-5;17.7542265;63.25901205;\n1e-4;18.35439856;63.49082088;\n"
+            "1.5e-4;18.95457267;-63.72262965;;;\n",
+            "separators behind the last cell"));
+  eo_recording_free(table("0, 17.15407647, 63.02719913\n5e-5, 17.7542265, 63.25901205\n1e-4, 18.35439856, "
+                          "63.49082088\n1.5e-4, 18.95457267, -63.72262965\n",
                           "no header, commas and blanks"));
-  r = table("Device;Rig 7\nChannels;3\nSample rate [Hz];20000\nDate;2024-05-06\n1;2;3\n\nt;date;a;b\n0;10:00:00.1;17.15407647;63.02719913\n"
-            "5e-5;10:00:00.2;17.7542265;63.25901205\n1e-4;10:00:00.3;18.35439856;63.49082088\n1.5e-4;10:00:00.4;18.95457267;-63.72262965\n",
+  r = table("Device;Rig 7\nChannels;3\nSample rate "
+            "[Hz];20000\nDate;2024-05-06\n1;2;3\n\nt;date;a;b\n0;10:00:00.1;17.15407647;63.02719913\n"
+            "5e-5;10:00:00.2;17.7542265;63.25901205\n1e-4;10:00:00.3;18.35439856;63.49082088\n1.5e-4;10:00:00.4;18."
+            "95457267;-63.72262965\n",
             "a block of header, a column of text");
   ok(named(r, 1, "a", "") && r && fabs(eo_recording_interval(r) - 5e-5) < 1e-18, "and its sampling rate");
   eo_recording_free(r);
@@ -74,11 +95,11 @@ static void test_one_column(void)
   ok(r && eo_recording_columns(r) == 1 && cell_of(r, 3, 0) == 0.0313, "one column with decimal commas");
   eo_recording_free(r);
   write_text("1,2\n3,4\n5,6\n");
-  struct eo_reader_options options = { .text = { .point = ',' , .separator = ';' } };
+  struct eo_reader_options options = {.text = {.point = ',', .separator = ';'}};
   r = read_fixture(&options, NULL, &error);
   ok(r && eo_recording_columns(r) == 1 && cell_of(r, 2, 0) == 5.6, "separator and point as chosen");
   eo_recording_free(r);
-  options = (struct eo_reader_options){ .text = { .first_line = 3 } };
+  options = (struct eo_reader_options){.text = {.first_line = 3}};
   r = read_fixture(&options, NULL, &error);
   ok(r && eo_recording_rows(r) == 1 && cell_of(r, 0, 1) == 6, "first row as chosen");
   eo_recording_free(r);
@@ -108,7 +129,8 @@ static void test_odd_row(const char *line, const char *words, int missing)
   int found = 0;
   for (int c = 0; r && c < 3; c++)
     found += isnan(cell_of(r, 6000, c)) != 0;
-  ok(r && eo_recording_rows(r) == 10000 && found == missing && cell_of(r, 6001, 2) == 12002.25 && eo_recording_line(r, 6001) == 6003,
+  ok(r && eo_recording_rows(r) == 10000 && found == missing && cell_of(r, 6001, 2) == 12002.25 &&
+         eo_recording_line(r, 6001) == 6003,
      "\"%s\": %d cells are missing, the rows around it are not", line, missing);
   if (words)
     ok(noted(&notes, words), "noted as \"%s\"", words);
@@ -128,7 +150,8 @@ static void test_faults(void)
   struct eo_notes notes = {0};
   write_rows(10000, 20, "20,x,40.25");
   struct eo_recording *r = read_fixture(NULL, &notes, &error);
-  ok(r && eo_recording_rows(r) == 10000 && noted(&notes, "Line 22, column 2"), "an odd row near the start does not hide the rows before it");
+  ok(r && eo_recording_rows(r) == 10000 && noted(&notes, "Line 22, column 2"),
+     "an odd row near the start does not hide the rows before it");
   eo_recording_free(r);
   write_text("t,a\n0,1\n1,2\n2,3\n3,4\n4");
   notes.count = 0;
@@ -150,7 +173,11 @@ static void test_refusals(void)
   refused("No table of numbers", "a letter");
   write_bytes("\xff\xfet\0,\0a\0\n\0", 10);
   refused("UTF-16", "UTF-16 with its mark");
-  write_bytes("1\0,\0" "2\0\n\0" "3\0,\0" "4\0\n\0", 16);
+  write_bytes("1\0,\0"
+              "2\0\n\0"
+              "3\0,\0"
+              "4\0\n\0",
+              16);
   refused("UTF-16", "UTF-16 without its mark");
   write_bytes("\x01\x02\x03\0\0\0\0\0\0\0\0\0", 12);
   refused("byte 3 is 0", "some binary file");
@@ -173,9 +200,10 @@ static void test_refusals(void)
   struct eo_recording *r = NULL;
   ok(eo_reader_read("/nonexistent/file", NULL, &r, NULL, &error) == EO_ERROR_FILE && !r, "no file: %s", error.text);
   ok(eo_reader_read(fixture_directory, NULL, &r, NULL, &error) == EO_ERROR_FILE && !r, "a folder: %s", error.text);
-  struct eo_reader_options options = { .max_bytes = 1000000 };
+  struct eo_reader_options options = {.max_bytes = 1000000};
   write_rows(200000, -1, "");
-  ok(!read_fixture(&options, NULL, &error) && strstr(error.text, "more than the 0 MB"), "a file beyond the limit: %s", error.text);
+  ok(!read_fixture(&options, NULL, &error) && strstr(error.text, "more than the 0 MB"), "a file beyond the limit: %s",
+     error.text);
 }
 
 static int stop(void *context, const char *what, double fraction)
@@ -191,10 +219,11 @@ static void test_progress(void)
 {
   struct eo_error error;
   double last = 0;
-  struct eo_progress progress = { stop, &last };
-  struct eo_reader_options options = { .progress = &progress };
+  struct eo_progress progress = {stop, &last};
+  struct eo_reader_options options = {.progress = &progress};
   write_rows(200000, -1, "");
-  ok(!read_fixture(&options, NULL, &error) && error.code == EO_ERROR_CANCELLED && last > 0.5, "cancelled: %s", error.text);
+  ok(!read_fixture(&options, NULL, &error) && error.code == EO_ERROR_CANCELLED && last > 0.5, "cancelled: %s",
+     error.text);
 }
 
 static void write_gzip(const char *text, int times)
@@ -214,7 +243,9 @@ static void test_gzip(void)
   eo_recording_free(r);
   enum eo_reader_kind kind;
   int gzip = 0;
-  ok(!eo_reader_identify(fixture_path, &kind, &gzip, &error) && gzip == 1 && !strcmp(eo_reader_kind_name(kind), "delimited text"), "told as such");
+  ok(!eo_reader_identify(fixture_path, &kind, &gzip, &error) && gzip == 1 &&
+         !strcmp(eo_reader_kind_name(kind), "delimited text"),
+     "told as such");
   FILE *file = fopen(fixture_path, "ab");
   gzFile more = gzdopen(dup(fileno(file)), "ab");
   gzputs(more, "7,8\n");
@@ -231,7 +262,8 @@ static void test_gzip(void)
   memset(bytes + 40, 0xff, 200);
   write_bytes(bytes, size);
   refused("damaged near byte", "a damaged gzip file");
-  write_gzip("0000000,0000000\n0000000,0000000\n0000000,0000000\n0000000,0000000\n0000000,0000000\n0000000,0000000\n", 1000000);
+  write_gzip("0000000,0000000\n0000000,0000000\n0000000,0000000\n0000000,0000000\n0000000,0000000\n0000000,0000000\n",
+             1000000);
   refused("grows more than 200 times", "a gzip file that grows too much");
 }
 

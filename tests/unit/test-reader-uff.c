@@ -100,8 +100,9 @@ static void check_even(const char *what)
   for (int i = 0; !wrong && i < COUNT; i++)
     wrong += cell_of(r, i, 0) != pinion(i) || cell_of(r, i, 1) != gear(i);
   ok(!wrong, "values");
-  ok(r && eo_recording_interval(r) == 5e-5 && eo_recording_start(r) == 0.5 && !strcmp(eo_recording_name(r, 0), "Pinion 12:3") &&
-       !strcmp(eo_recording_unit(r, 1), "deg"), "interval, start, name and unit");
+  ok(r && eo_recording_interval(r) == 5e-5 && eo_recording_start(r) == 0.5 &&
+         !strcmp(eo_recording_name(r, 0), "Pinion 12:3") && !strcmp(eo_recording_unit(r, 1), "deg"),
+     "interval, start, name and unit");
   eo_recording_free(r);
 }
 
@@ -110,8 +111,10 @@ static void check_uneven(const char *what)
   struct eo_recording *r = read_back(NULL, what);
   int wrong = !r || eo_recording_columns(r) != 3 || eo_recording_rows(r) != COUNT;
   for (int i = 0; !wrong && i < COUNT; i++)
-    wrong += fabs(cell_of(r, i, 0) - abscissa(i)) > 1e-5 * abscissa(i) || cell_of(r, i, 1) != pinion(i) || cell_of(r, i, 2) != gear(i);
-  ok(!wrong && !strcmp(eo_recording_name(r, 0), "time") && !strcmp(eo_recording_unit(r, 0), "s"), "a column of time, and values");
+    wrong += fabs(cell_of(r, i, 0) - abscissa(i)) > 1e-5 * abscissa(i) || cell_of(r, i, 1) != pinion(i) ||
+             cell_of(r, i, 2) != gear(i);
+  ok(!wrong && !strcmp(eo_recording_name(r, 0), "time") && !strcmp(eo_recording_unit(r, 0), "s"),
+     "a column of time, and values");
   eo_recording_free(r);
 }
 

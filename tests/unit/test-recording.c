@@ -55,11 +55,19 @@ static void test_small(void)
   struct eo_recording *r = NULL;
   ok(eo_recording_new(&r, COLUMNS, NULL, &error) == EO_OK, "a recording in memory");
   eo_recording_set_column(r, 0, "t", "s");
-  eo_recording_set_column(r, 1, "Winkel \xc3\xa4\xc3\xa4\xc3\xa4\xc3\xa4\xc3\xa4\xc3\xa4\xc3\xa4\xc3\xa4\xc3\xa4\xc3\xa4\xc3\xa4\xc3\xa4\xc3\xa4\xc3\xa4\xc3\xa4\xc3\xa4\xc3\xa4\xc3\xa4\xc3\xa4\xc3\xa4\xc3\xa4\xc3\xa4\xc3\xa4\xc3\xa4\xc3\xa4\xc3\xa4\xc3\xa4\xc3\xa4\xc3\xa4\xc3\xa4", "deg");
-  ok(!strcmp(eo_recording_name(r, 0), "t") && !strcmp(eo_recording_unit(r, 0), "s") && !*eo_recording_name(r, 2), "names and units");
-  ok(strlen(eo_recording_name(r, 1)) == 63 && (unsigned char)eo_recording_name(r, 1)[62] == 0xa4, "a long name keeps its last character whole");
+  eo_recording_set_column(r, 1,
+                          "Winkel "
+                          "\xc3\xa4\xc3\xa4\xc3\xa4\xc3\xa4\xc3\xa4\xc3\xa4\xc3\xa4\xc3\xa4\xc3\xa4\xc3\xa4\xc3\xa4\xc3"
+                          "\xa4\xc3\xa4\xc3\xa4\xc3\xa4\xc3\xa4\xc3\xa4\xc3\xa4\xc3\xa4\xc3\xa4\xc3\xa4\xc3\xa4\xc3\xa4"
+                          "\xc3\xa4\xc3\xa4\xc3\xa4\xc3\xa4\xc3\xa4\xc3\xa4\xc3\xa4",
+                          "deg");
+  ok(!strcmp(eo_recording_name(r, 0), "t") && !strcmp(eo_recording_unit(r, 0), "s") && !*eo_recording_name(r, 2),
+     "names and units");
+  ok(strlen(eo_recording_name(r, 1)) == 63 && (unsigned char)eo_recording_name(r, 1)[62] == 0xa4,
+     "a long name keeps its last character whole");
   eo_recording_set_column(r, 2, "a\xff\tb\xed\xa0\x80", "\xb5m");
-  ok(!strcmp(eo_recording_name(r, 2), "a\xc3\xbf b\xc3\xad\xc2\xa0 ") && !strcmp(eo_recording_unit(r, 2), "\xc2\xb5m"), "other bytes become UTF-8");
+  ok(!strcmp(eo_recording_name(r, 2), "a\xc3\xbf b\xc3\xad\xc2\xa0 ") && !strcmp(eo_recording_unit(r, 2), "\xc2\xb5m"),
+     "other bytes become UTF-8");
   ok(fill(r, 5000, &error) == EO_OK && eo_recording_rows(r) == 5000 && eo_recording_columns(r) == COLUMNS, "5000 rows");
   ok(wrong_values(r) == 0, "values");
   double row[COLUMNS];
@@ -71,7 +79,8 @@ static void test_small(void)
   ok(eo_recording_length(r, 2) == 4000 && eo_recording_length(r, 1) == 5000, "or shorter");
   eo_recording_free(r);
   ok(eo_recording_new(&r, 0, NULL, &error) == EO_ERROR_INPUT, "no columns: %s", error.text);
-  ok(eo_recording_new(&r, EO_RECORDING_COLUMNS + 1, NULL, &error) == EO_ERROR_INPUT, "too many columns: %s", error.text);
+  ok(eo_recording_new(&r, EO_RECORDING_COLUMNS + 1, NULL, &error) == EO_ERROR_INPUT, "too many columns: %s",
+     error.text);
   eo_recording_free(NULL);
 }
 
@@ -116,7 +125,8 @@ static void test_large(const char *directory)
   ok(!wrong[0] && !wrong[1], "two threads read the same values");
   double block[4 * COLUMNS];
   int64_t border = (int64_t)(EO_RECORDING_MEMORY / 8 / COLUMNS) * 2;
-  ok(!eo_recording_read(r, border - 2, 4, block, &error) && block[0] == value(border - 2, 0) && block[11] == value(border + 1, 2),
+  ok(!eo_recording_read(r, border - 2, 4, block, &error) && block[0] == value(border - 2, 0) &&
+         block[11] == value(border + 1, 2),
      "a block half in the file, half in memory");
   eo_recording_free(r);
   ok(rmdir(directory) == 0, "nothing stays in the folder");

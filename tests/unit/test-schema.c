@@ -1,5 +1,6 @@
-/* The descriptions of the design for programs against the design itself: every example obeys its schema as it is written and as it is read, what the tables
-   refuse the schema refuses too, and the form's fields are the keys of the document with its defaults. */
+/* The descriptions of the design for programs against the design itself: every example obeys its schema as it is
+   written and as it is read, what the tables refuse the schema refuses too, and the form's fields are the keys of the
+   document with its defaults. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -18,10 +19,13 @@
 
 static bool has_type(const json_t *value, const char *type)
 {
-  return (strcmp(type, "object") == 0 && json_is_object(value)) || (strcmp(type, "array") == 0 && json_is_array(value)) ||
-         (strcmp(type, "string") == 0 && json_is_string(value)) || (strcmp(type, "boolean") == 0 && json_is_boolean(value)) ||
+  return (strcmp(type, "object") == 0 && json_is_object(value)) ||
+         (strcmp(type, "array") == 0 && json_is_array(value)) ||
+         (strcmp(type, "string") == 0 && json_is_string(value)) ||
+         (strcmp(type, "boolean") == 0 && json_is_boolean(value)) ||
          (strcmp(type, "null") == 0 && json_is_null(value)) || (strcmp(type, "number") == 0 && json_is_number(value)) ||
-         (strcmp(type, "integer") == 0 && json_is_number(value) && floor(json_number_value(value)) == json_number_value(value));
+         (strcmp(type, "integer") == 0 && json_is_number(value) &&
+          floor(json_number_value(value)) == json_number_value(value));
 }
 
 static bool type_fits(const json_t *schema, const json_t *value)
@@ -49,7 +53,7 @@ static int wrong_in_object(const json_t *schema, const json_t *object)
   for (size_t i = 0; i < json_array_size(required); i++)
     wrong += !json_object_get(object, json_string_value(json_array_get(required, i)));
   json_object_foreach((json_t *)object, key, value)
-    wrong += json_object_get(properties, key) ? count_wrong(json_object_get(properties, key), value, key) : 1;
+      wrong += json_object_get(properties, key) ? count_wrong(json_object_get(properties, key), value, key) : 1;
   return wrong;
 }
 
@@ -98,22 +102,32 @@ static void check_examples(const json_t *input, const json_t *output)
 static void check_refusals(const json_t *input)
 {
   static const char *const wrong[] = {
-      "{}", "{\"gear_pair\":{}}", "{\"gear_pair\":{\"pinion_teeth\":17,\"gear_teeth\":44,\"normal_module_mm\":6,\"helix_angle_deg\":24}}",
-      "{\"gear_pair\":{\"pinion_teeth\":17.5,\"gear_teeth\":44,\"normal_module_mm\":6,\"helix_angle_deg\":24,\"face_width_mm\":55}}",
-      "{\"gear_pair\":{\"pinion_teeth\":3,\"gear_teeth\":44,\"normal_module_mm\":6,\"helix_angle_deg\":24,\"face_width_mm\":55}}",
-      "{\"gear_pair\":{\"pinion_teeth\":17,\"gear_teeth\":44,\"normal_module_mm\":\"6\",\"helix_angle_deg\":24,\"face_width_mm\":55}}",
-      "{\"gear_pair\":{\"pinion_teeth\":17,\"gear_teeth\":44,\"normal_module_mm\":6,\"helix_angle_deg\":24,\"face_width_mm\":55},\"extra\":1}",
-      "{\"gear_pair\":{\"pinion_teeth\":17,\"gear_teeth\":44,\"normal_module_mm\":6,\"helix_angle_deg\":24,\"face_width_mm\":55},\"load_cases\":{}}",
-      "{\"gear_pair\":{\"pinion_teeth\":17,\"gear_teeth\":44,\"normal_module_mm\":6,\"helix_angle_deg\":24,\"face_width_mm\":55},"
+      "{}",
+      "{\"gear_pair\":{}}",
+      "{\"gear_pair\":{\"pinion_teeth\":17,\"gear_teeth\":44,\"normal_module_mm\":6,\"helix_angle_deg\":24}}",
+      "{\"gear_pair\":{\"pinion_teeth\":17.5,\"gear_teeth\":44,\"normal_module_mm\":6,\"helix_angle_deg\":24,\"face_"
+      "width_mm\":55}}",
+      "{\"gear_pair\":{\"pinion_teeth\":3,\"gear_teeth\":44,\"normal_module_mm\":6,\"helix_angle_deg\":24,\"face_width_"
+      "mm\":55}}",
+      "{\"gear_pair\":{\"pinion_teeth\":17,\"gear_teeth\":44,\"normal_module_mm\":\"6\",\"helix_angle_deg\":24,\"face_"
+      "width_mm\":55}}",
+      "{\"gear_pair\":{\"pinion_teeth\":17,\"gear_teeth\":44,\"normal_module_mm\":6,\"helix_angle_deg\":24,\"face_"
+      "width_mm\":55},\"extra\":1}",
+      "{\"gear_pair\":{\"pinion_teeth\":17,\"gear_teeth\":44,\"normal_module_mm\":6,\"helix_angle_deg\":24,\"face_"
+      "width_mm\":55},\"load_cases\":{}}",
+      "{\"gear_pair\":{\"pinion_teeth\":17,\"gear_teeth\":44,\"normal_module_mm\":6,\"helix_angle_deg\":24,\"face_"
+      "width_mm\":55},"
       "\"alignment\":{\"pinion_axial\":\"glued\"}}",
-      "{\"gear_pair\":{\"pinion_teeth\":17,\"gear_teeth\":44,\"normal_module_mm\":6,\"helix_angle_deg\":24,\"face_width_mm\":55},"
+      "{\"gear_pair\":{\"pinion_teeth\":17,\"gear_teeth\":44,\"normal_module_mm\":6,\"helix_angle_deg\":24,\"face_"
+      "width_mm\":55},"
       "\"objective\":{\"weights\":[1,2]}}"};
   for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
     struct eo_design design;
     struct eo_faults faults = {0};
     json_t *document = json_loads(wrong[i], 0, NULL);
-    ok(document && !eo_design_decode(document, &design, NULL, &faults) && count_wrong(input, document, "as it should be") > 0, "both refuse design %zu: %s", i + 1,
-       faults.fault[0].text);
+    ok(document && !eo_design_decode(document, &design, NULL, &faults) &&
+           count_wrong(input, document, "as it should be") > 0,
+       "both refuse design %zu: %s", i + 1, faults.fault[0].text);
     json_decref(document);
   }
 }
@@ -124,16 +138,20 @@ static int count_strange(const json_t *fields, const struct eo_table *table, con
 {
   int strange = json_array_size(fields) != (size_t)table->count;
   for (int i = 0; i < table->count && !strange; i++) {
-    const json_t *field = json_array_get(fields, (size_t)i), *value = json_object_get(field, "default"), *below = json_object_get(field, "fields");
+    const json_t *field = json_array_get(fields, (size_t)i), *value = json_object_get(field, "default"),
+                 *below = json_object_get(field, "fields");
     const struct eo_field *row = &table->field[i];
     bool required = row->flags & EO_FIELD_REQUIRED;
-    strange += strcmp(json_string_value(json_object_get(field, "key")), row->key) != 0 || !json_is_string(json_object_get(field, "kind")) ||
-               json_is_true(json_object_get(field, "required")) != required || (required && value) || !json_is_string(json_object_get(field, "help"));
+    strange += strcmp(json_string_value(json_object_get(field, "key")), row->key) != 0 ||
+               !json_is_string(json_object_get(field, "kind")) ||
+               json_is_true(json_object_get(field, "required")) != required || (required && value) ||
+               !json_is_string(json_object_get(field, "help"));
     strange += value && defaults && !json_equal(value, json_object_get(defaults, row->key));
     strange += (row->kind == EO_FIELD_NUMBER && json_number_value(json_object_get(field, "low")) != row->low);
     strange += (row->table != NULL) != (below != NULL);
     if (below)
-      strange += count_strange(below, row->table, row->kind == EO_FIELD_OBJECT ? json_object_get(defaults, row->key) : NULL);
+      strange += count_strange(below, row->table,
+                               row->kind == EO_FIELD_OBJECT ? json_object_get(defaults, row->key) : NULL);
     if (strange)
       printf("# %s\n", row->key);
   }
@@ -146,15 +164,18 @@ static void check_form(void)
   memset(&design, 0, sizeof design);
   eo_table_defaults(&eo_design_table, &design);
   json_t *form = eo_table_fields(&eo_design_table), *defaults = eo_table_encode(&eo_design_table, &design);
-  ok(form && count_strange(json_object_get(form, "fields"), &eo_design_table, defaults) == 0, "the form has every key with its default");
+  ok(form && count_strange(json_object_get(form, "fields"), &eo_design_table, defaults) == 0,
+     "the form has every key with its default");
   json_decref(form);
   json_decref(defaults);
 }
 
 /* ---- outlines ---- */
 
-static const struct eo_unit *const units[] = {&eo_unit_mm_per_s, &eo_unit_m_per_s2, &eo_unit_N_per_um, &eo_unit_N_per_mm, &eo_unit_per_um, &eo_unit_mm, &eo_unit_um,
-                                              &eo_unit_deg,      &eo_unit_rpm,      &eo_unit_Nm,       &eo_unit_N,        &eo_unit_MPa,    &eo_unit_ms, &eo_unit_Hz};
+static const struct eo_unit *const units[] = {
+    &eo_unit_mm_per_s, &eo_unit_m_per_s2, &eo_unit_N_per_um, &eo_unit_N_per_mm, &eo_unit_per_um,
+    &eo_unit_mm,       &eo_unit_um,       &eo_unit_deg,      &eo_unit_rpm,      &eo_unit_Nm,
+    &eo_unit_N,        &eo_unit_MPa,      &eo_unit_ms,       &eo_unit_Hz};
 
 /* The unit that a key ends with; the longer ones come first. */
 static const struct eo_unit *unit_of(const char *key)
@@ -186,16 +207,19 @@ static int count_odd_units(const struct eo_outline *outline, const struct eo_uni
 
 static void check_units(void)
 {
-  static const struct eo_outline *const outlines[] = {&eo_result_outline, &eo_study_outline, &eo_sweep_outline, &eo_measurement_outline, &eo_measurement_brief};
+  static const struct eo_outline *const outlines[] = {&eo_result_outline, &eo_study_outline, &eo_sweep_outline,
+                                                      &eo_measurement_outline, &eo_measurement_brief};
   int odd = 0;
   for (size_t i = 0; i < sizeof outlines / sizeof outlines[0]; i++)
     odd += count_odd_units(outlines[i], NULL);
   ok(odd == 0, "every number has the unit that its key, or the one above, names");
 }
 
-static const struct eo_outline_row inner_rows[] = {EO_KEY("b", "number?", "included", .unit = &eo_unit_mm), EO_KEY("c", "flag", "not always", .when = "now and then")};
+static const struct eo_outline_row inner_rows[] = {EO_KEY("b", "number?", "included", .unit = &eo_unit_mm),
+                                                   EO_KEY("c", "flag", "not always", .when = "now and then")};
 static const struct eo_outline inner = EO_OUTLINE("Inner", inner_rows);
-static const struct eo_outline_row outer_rows[] = {EO_KEY("a", "[text?]|integer", "first"), {.outline = &inner}, EO_KEY("d", "object?", "last", .outline = &inner)};
+static const struct eo_outline_row outer_rows[] = {
+    EO_KEY("a", "[text?]|integer", "first"), {.outline = &inner}, EO_KEY("d", "object?", "last", .outline = &inner)};
 static const struct eo_outline outer = EO_OUTLINE("Outer", outer_rows);
 
 /* Writes these keys in their order; NULL: the outline does not allow it. */
@@ -228,14 +252,20 @@ static void check_writing(void)
 
 static void check_outline_schema(void)
 {
-  json_t *schemas = json_object(), *expected = json_loads(
-      "{\"Outer\":{\"type\":\"object\",\"properties\":{"
-      "\"a\":{\"anyOf\":[{\"type\":\"array\",\"items\":{\"anyOf\":[{\"type\":\"string\"},{\"type\":\"null\"}]}},{\"type\":\"integer\"}],\"description\":\"first\"},"
-      "\"b\":{\"anyOf\":[{\"type\":\"number\"},{\"type\":\"null\"}],\"description\":\"included\",\"x-unit\":\"mm\"},"
-      "\"c\":{\"type\":\"boolean\",\"description\":\"not always; now and then\"},"
-      "\"d\":{\"anyOf\":[{\"$ref\":\"#/components/schemas/Inner\"},{\"type\":\"null\"}],\"description\":\"last\"}},\"required\":[\"a\",\"b\",\"d\"]},"
-      "\"Inner\":{\"type\":\"object\",\"properties\":{\"b\":{\"anyOf\":[{\"type\":\"number\"},{\"type\":\"null\"}],\"description\":\"included\",\"x-unit\":\"mm\"},"
-      "\"c\":{\"type\":\"boolean\",\"description\":\"not always; now and then\"}},\"required\":[\"b\"]}}", 0, NULL);
+  json_t *
+      schemas = json_object(),
+     *expected = json_loads(
+         "{\"Outer\":{\"type\":\"object\",\"properties\":{"
+         "\"a\":{\"anyOf\":[{\"type\":\"array\",\"items\":{\"anyOf\":[{\"type\":\"string\"},{\"type\":\"null\"}]}},{"
+         "\"type\":\"integer\"}],\"description\":\"first\"},"
+         "\"b\":{\"anyOf\":[{\"type\":\"number\"},{\"type\":\"null\"}],\"description\":\"included\",\"x-unit\":\"mm\"},"
+         "\"c\":{\"type\":\"boolean\",\"description\":\"not always; now and then\"},"
+         "\"d\":{\"anyOf\":[{\"$ref\":\"#/components/schemas/"
+         "Inner\"},{\"type\":\"null\"}],\"description\":\"last\"}},\"required\":[\"a\",\"b\",\"d\"]},"
+         "\"Inner\":{\"type\":\"object\",\"properties\":{\"b\":{\"anyOf\":[{\"type\":\"number\"},{\"type\":\"null\"}],"
+         "\"description\":\"included\",\"x-unit\":\"mm\"},"
+         "\"c\":{\"type\":\"boolean\",\"description\":\"not always; now and then\"}},\"required\":[\"b\"]}}",
+         0, NULL);
   ok(eo_outline_add_schemas(&outer, schemas) && expected && json_equal(schemas, expected), "an outline as JSON Schema");
   json_decref(schemas);
   json_decref(expected);
@@ -248,7 +278,8 @@ static void check_outline_schema(void)
 
 static void check_taking(void)
 {
-  json_t *whole = json_loads("{\"x\":1,\"a\":2,\"b\":3,\"d\":{\"b\":4,\"y\":5}}", 0, NULL), *wanted = json_loads("{\"a\":2,\"b\":3,\"d\":{\"b\":4}}", 0, NULL);
+  json_t *whole = json_loads("{\"x\":1,\"a\":2,\"b\":3,\"d\":{\"b\":4,\"y\":5}}", 0, NULL),
+         *wanted = json_loads("{\"a\":2,\"b\":3,\"d\":{\"b\":4}}", 0, NULL);
   json_t *part = eo_outline_take(&outer, whole);
   ok(json_equal(part, wanted), "what an outline names of a longer document");
   json_decref(part);
@@ -266,7 +297,8 @@ int main(void)
   check_examples(input, output);
   check_refusals(input);
   check_form();
-  json_t *sweep = eo_table_json_schema(&eo_sweep_request_table, true), *request = json_loads("{\"torque_Nm\":{\"from\":1,\"to\":2,\"points\":3}}", 0, NULL);
+  json_t *sweep = eo_table_json_schema(&eo_sweep_request_table, true),
+         *request = json_loads("{\"torque_Nm\":{\"from\":1,\"to\":2,\"points\":3}}", 0, NULL);
   ok(sweep && count_wrong(sweep, request, "sweep") == 0, "a sweep's request has a schema too");
   json_decref(sweep);
   json_decref(request);

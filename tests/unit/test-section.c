@@ -1,5 +1,5 @@
-/* The mesh of a section and of a sector: where its nodes lie, on which side the neighbours are, and that no brick folds on gears of
-   very different shape. */
+/* The mesh of a section and of a sector: where its nodes lie, on which side the neighbours are, and that no brick folds
+   on gears of very different shape. */
 #include "flexibility/sector.h"
 #include "tests/paper_pair.h"
 #include "tests/tap.h"
@@ -25,7 +25,8 @@ static double expected_area(const struct eo_geometry *g, int member, double bore
   enum { STEPS = 4000 };
   double point[2], normal[2], last[2], area = 0;
   double tip = g->tip_radius[member], form = g->form_radius[member];
-  /* Twice the triangle between the centre and each piece of the half profile, from the tooth's centre at the tip to mid space. */
+  /* Twice the triangle between the centre and each piece of the half profile, from the tooth's centre at the tip to mid
+     space. */
   last[0] = 0;
   last[1] = tip;
   for (int i = 0; i <= 3 * STEPS; i++) {
@@ -68,7 +69,8 @@ static void check_paper(const struct eo_geometry *g, int member)
     /* The normal of an involute touches the base circle. */
     slant = fmax(slant, fabs(fabs(n[0] * p[1] - n[1] * p[0]) - g->base_radius[member]));
   }
-  ok(off < 1e-12 && slant < 1e-12, "%s: flank nodes and normals are those of the involute: %.1e, %.1e m", name, off, slant);
+  ok(off < 1e-12 && slant < 1e-12, "%s: flank nodes and normals are those of the involute: %.1e, %.1e m", name, off,
+     slant);
   near(s.flank.s[0], g->path_start, 1e-12, "first row at the start of contact");
   near(s.flank.s[s.flank.count - 1], g->path_end, 1e-12, "last row at the end of contact");
   /* The loaded flank leads the pinion's motion and trails the gear's; pair k + 1 is ahead in the motion. */
@@ -98,7 +100,8 @@ static void check_shape(const char *what, struct eo_gear_pair pair)
     double bore = eo_flexibility_bore_radius(&g, &pair, member);
     enum eo_code code = eo_section_init(&section, &g, member, bore, &division, &error);
     if (!code) {
-      code = eo_sector_init(&sector, &section, 4, g.face_width, eo_sector_twist(&g, member), &material, EO_WHOLE_SECTOR, &error);
+      code = eo_sector_init(&sector, &section, 4, g.face_width, eo_sector_twist(&g, member), &material, EO_WHOLE_SECTOR,
+                            &error);
       if (!code)
         eo_sector_done(&sector);
       eo_section_done(&section);
@@ -109,7 +112,8 @@ static void check_shape(const char *what, struct eo_gear_pair pair)
 
 static void check_shapes(void)
 {
-  struct eo_gear_pair spur = paper_pair(), small = spur, large = spur, shifted = spur, sharp = spur, thin = spur, steep = spur;
+  struct eo_gear_pair spur = paper_pair(), small = spur, large = spur, shifted = spur, sharp = spur, thin = spur,
+                      steep = spur;
   spur.helix_angle = 0;
   spur.teeth[0] = 20;
   check_shape("spur gears", spur);
@@ -140,7 +144,7 @@ int main(void)
   check_paper(&geometry, EO_GEAR);
   check_shapes();
   geometry.teeth[0] = 5;
-  ok(eo_section_init(&section, &geometry, EO_PINION, 20e-3, &division, &error) == EO_ERROR_INPUT, "five of five teeth are refused: %s",
-     error.text);
+  ok(eo_section_init(&section, &geometry, EO_PINION, 20e-3, &division, &error) == EO_ERROR_INPUT,
+     "five of five teeth are refused: %s", error.text);
   return tap_done();
 }

@@ -1,5 +1,5 @@
-/* The service on a coarse pair: what-if answers are those of an analysis made by hand, newest wins, pairs are prepared once and forgotten in order, jobs
-   run, stop, go on and are told about, and a graceful stop loses nothing. */
+/* The service on a coarse pair: what-if answers are those of an analysis made by hand, newest wins, pairs are prepared
+   once and forgotten in order, jobs run, stop, go on and are told about, and a graceful stop loses nothing. */
 #include <stdatomic.h>
 
 #include "document/result.h"
@@ -12,10 +12,14 @@ enum { BUDGET = 150 };
 
 static struct eo_design design;
 
-static enum eo_admission ask(struct eo_service *service, const struct eo_design *about, const char *token, double wait, struct answered *answered, int64_t *job)
+static enum eo_admission ask(struct eo_service *service, const struct eo_design *about, const char *token, double wait,
+                             struct answered *answered, int64_t *job)
 {
-  const struct eo_analysis_question question = {.common = {.design = about, .token = token, .wait = wait, .answer = take_answer, .context = answered},
-                                                .want = EO_WANT_ROOT | EO_WANT_CURVES, .maps = true, .histories = true};
+  const struct eo_analysis_question question = {
+      .common = {.design = about, .token = token, .wait = wait, .answer = take_answer, .context = answered},
+      .want = EO_WANT_ROOT | EO_WANT_CURVES,
+      .maps = true,
+      .histories = true};
   enum eo_admission admission = EO_ADMISSION_CLOSED;
   if (eo_service_analyze(service, &question, &admission, job, &error))
     printf("# %s\n", error.text);
@@ -58,10 +62,12 @@ static void test_analysis(void)
   int64_t job = 0, again = 0;
   ok(ask(service, &design, "", 0, &answered, &job) == EO_ADMISSION_PREPARING && job, "a new pair is prepared by a job");
   ok(!eo_service_is_prepared(service, &design), "and is not there yet");
-  ok(ask(service, &design, "", 0, &answered, &again) == EO_ADMISSION_PREPARING && again == job, "by one job, whoever asks");
+  ok(ask(service, &design, "", 0, &answered, &again) == EO_ADMISSION_PREPARING && again == job,
+     "by one job, whoever asks");
   ok(ask(service, &design, "", 60, &answered, &again) == EO_ADMISSION_ACCEPTED, "who wants to wait waits");
   wait_for_answers(&answered, 1);
-  ok(answered.last.kind == EO_ANSWER_DONE && wait_for(service, job, "done"), "for the answer %s", answered.last.error.text);
+  ok(answered.last.kind == EO_ANSWER_DONE && wait_for(service, job, "done"), "for the answer %s",
+     answered.last.error.text);
   char *by_hand = analyse_by_hand(&design), *text = lasting_text(answered.last.text.data);
   ok(strcmp(by_hand, text) == 0, "which is that of an analysis made by hand, %zu bytes", strlen(text));
   free(text);
@@ -74,8 +80,9 @@ static void test_analysis(void)
   text = lasting_text(answered.last.text.data);
   ok(strcmp(by_hand, text) == 0, "and back again is what it was");
   struct eo_service_status status;
-  ok(!eo_service_status(service, &status, &error) && status.database && status.analyses == 3 && status.pairs == 1 && status.jobs[EO_JOB_DONE] == 1 &&
-     status.analysis_ms_bucket[11] == 3 && status.analysis_ms_most > 0, "all of it is counted");
+  ok(!eo_service_status(service, &status, &error) && status.database && status.analyses == 3 && status.pairs == 1 &&
+         status.jobs[EO_JOB_DONE] == 1 && status.analysis_ms_bucket[11] == 3 && status.analysis_ms_most > 0,
+     "all of it is counted");
   free(text);
   free(by_hand);
   eo_text_done(&answered.last.text);
@@ -90,20 +97,24 @@ static void test_left_out(void)
   ask(service, &design, "", 60, &answered, &job);
   wait_for_answers(&answered, 1);
   size_t whole = answered.last.text.size;
-  struct eo_analysis_question question = {.common = {.design = &design, .answer = take_answer, .context = &answered}, .want = EO_WANT_CURVES};
+  struct eo_analysis_question question = {.common = {.design = &design, .answer = take_answer, .context = &answered},
+                                          .want = EO_WANT_CURVES};
   enum eo_admission admission;
   eo_service_analyze(service, &question, &admission, &job, &error);
   wait_for_answers(&answered, 2);
   json_t *document = json_loads(answered.last.text.data, 0, NULL);
   const json_t *first = json_array_get(json_object_get(document, "load_cases"), 0);
   ok(answered.last.text.size < whole / 2 && json_is_null(eo_json_find(first, "contact/pattern/left/pressure_MPa")) &&
-     json_is_null(eo_json_find(first, "vibration/left/history")) && json_is_null(eo_json_find(first, "root_stress")) &&
-     json_is_object(eo_json_find(first, "vibration/left/orders")), "what is not wanted is left out: %zu of %zu bytes", answered.last.text.size, whole);
+         json_is_null(eo_json_find(first, "vibration/left/history")) &&
+         json_is_null(eo_json_find(first, "root_stress")) &&
+         json_is_object(eo_json_find(first, "vibration/left/orders")),
+     "what is not wanted is left out: %zu of %zu bytes", answered.last.text.size, whole);
   json_decref(document);
   question.common.format = EO_ANSWER_CSV;
   eo_service_analyze(service, &question, &admission, &job, &error);
   wait_for_answers(&answered, 3);
-  ok(answered.last.kind == EO_ANSWER_DONE && strncmp(answered.last.text.data, "load_case,torque_Nm", 19) == 0, "as a table");
+  ok(answered.last.kind == EO_ANSWER_DONE && strncmp(answered.last.text.data, "load_case,torque_Nm", 19) == 0,
+     "as a table");
   eo_text_done(&answered.last.text);
   eo_service_free(service);
 }
@@ -127,9 +138,11 @@ static void test_overtaking(void)
   wait_for_answers(&last, 1);
   eo_service_status(service, &status, &error);
   ok(last.last.kind == EO_ANSWER_DONE, "the newest is answered");
-  ok(status.overtaken > 0 && status.overtaken + status.analyses == QUESTIONS + 1, "of the others %lld were overtaken", (long long)status.overtaken);
+  ok(status.overtaken > 0 && status.overtaken + status.analyses == QUESTIONS + 1, "of the others %lld were overtaken",
+     (long long)status.overtaken);
   json_t *document = json_loads(last.last.text.data, 0, NULL);
-  close_to(eo_json_find_number(document, "design/modification/pinion/left/tip_relief_um"), QUESTIONS - 1, 1e-9, "the newest is the last");
+  close_to(eo_json_find_number(document, "design/modification/pinion/left/tip_relief_um"), QUESTIONS - 1, 1e-9,
+           "the newest is the last");
   json_decref(document);
   eo_text_done(&first.last.text);
   eo_text_done(&rest.last.text);
@@ -143,13 +156,16 @@ static void test_sweep(void)
   struct answered answered = {0}, overtaken = {0};
   double torque[] = {500, 600, 700}, long_axis[200];
   const struct eo_sweep_axes axes = {.torques = 3, .torque = torque};
-  struct eo_question question = {.design = &design, .wait = 60, .token = "sweep", .answer = take_answer, .context = &answered};
+  struct eo_question question = {
+      .design = &design, .wait = 60, .token = "sweep", .answer = take_answer, .context = &answered};
   enum eo_admission admission;
   int64_t job;
-  ok(!eo_service_sweep(service, &question, &axes, &admission, &job, &error) && admission == EO_ADMISSION_ACCEPTED, "a sweep waits for its pair");
+  ok(!eo_service_sweep(service, &question, &axes, &admission, &job, &error) && admission == EO_ADMISSION_ACCEPTED,
+     "a sweep waits for its pair");
   wait_for_answers(&answered, 1);
   json_t *document = json_loads(answered.last.text.data ? answered.last.text.data : "{}", 0, NULL);
-  ok(answered.last.kind == EO_ANSWER_DONE && json_array_size(json_object_get(document, "torque_Nm")) == 3, "and is answered %s", answered.last.error.text);
+  ok(answered.last.kind == EO_ANSWER_DONE && json_array_size(json_object_get(document, "torque_Nm")) == 3,
+     "and is answered %s", answered.last.error.text);
   json_decref(document);
   for (int i = 0; i < 200; i++)
     long_axis[i] = 300 + i;
@@ -162,7 +178,9 @@ static void test_sweep(void)
   eo_service_sweep(service, &question, &axes, &admission, &job, &error);
   wait_for_answers(&overtaken, 1);
   wait_for_answers(&answered, 2);
-  ok(overtaken.last.kind == EO_ANSWER_OVERTAKEN && answered.last.kind == EO_ANSWER_DONE && strchr(answered.last.text.data, ','), "a newer one ends one that runs");
+  ok(overtaken.last.kind == EO_ANSWER_OVERTAKEN && answered.last.kind == EO_ANSWER_DONE &&
+         strchr(answered.last.text.data, ','),
+     "a newer one ends one that runs");
   eo_text_done(&answered.last.text);
   eo_text_done(&overtaken.last.text);
   eo_service_free(service);
@@ -218,7 +236,8 @@ static void hear(void *context, const struct eo_service_event *event)
   json_t *job = json_loadb(event->text, event->size, 0, NULL);
   const char *state = json_string_value(json_object_get(job, "state"));
   pthread_mutex_lock(&answer_mutex);
-  heard->ordered = (heard->count == 0 || event->number > heard->last) && (heard->count == 0 || heard->ordered) && !strchr(event->text, '\n');
+  heard->ordered = (heard->count == 0 || event->number > heard->last) && (heard->count == 0 || heard->ordered) &&
+                   !strchr(event->text, '\n');
   heard->count++;
   heard->last = event->number;
   if (state && heard->states < 40 && (!heard->states || strcmp(heard->state[heard->states - 1], state) != 0))
@@ -258,22 +277,27 @@ static void test_job(void)
   ok(outcome == EO_JOB_OUTCOME_REPEATED && again == id, "the same request again is the same job");
   ok(wait_for_evaluations(service, id, 20), "it runs");
   struct eo_text none = {0};
-  ok(!eo_service_result(service, id, &outcome, &none, &error) && outcome == EO_JOB_OUTCOME_STATE, "its result is not there yet");
+  ok(!eo_service_result(service, id, &outcome, &none, &error) && outcome == EO_JOB_OUTCOME_STATE,
+     "its result is not there yet");
   eo_text_done(&none);
   ok(wait_for(service, id, "done"), "it ends");
   undisturbed = result_of(service, id);
   ok(undisturbed != NULL, "with a result");
   json_t *job = look(service, id);
   close_to(eo_json_find_number(job, "progress/fraction"), 1, 0, "fraction");
-  ok(progress_of(service, id, "true_evaluations") == BUDGET && eo_json_find_number(job, "best/J") < 1 && eo_json_find(job, "best/modification/pinion") &&
-     eo_json_find_number(job, "unmodified/J") == 1 && json_is_true(json_object_get(job, "has_result")) && json_string_value(json_object_get(job, "finished")),
+  ok(progress_of(service, id, "true_evaluations") == BUDGET && eo_json_find_number(job, "best/J") < 1 &&
+         eo_json_find(job, "best/modification/pinion") && eo_json_find_number(job, "unmodified/J") == 1 &&
+         json_is_true(json_object_get(job, "has_result")) && json_string_value(json_object_get(job, "finished")),
      "its document says what it found");
   json_decref(job);
-  ok(!eo_service_generations(service, id, &outcome, &columns, &error) && !outcome && json_array_size(json_object_get(columns, "best")) > 1 &&
-     json_array_size(json_object_get(columns, "mean")) == json_array_size(json_object_get(columns, "pfc_percent")), "and how it converged");
+  ok(!eo_service_generations(service, id, &outcome, &columns, &error) && !outcome &&
+         json_array_size(json_object_get(columns, "best")) > 1 &&
+         json_array_size(json_object_get(columns, "mean")) == json_array_size(json_object_get(columns, "pfc_percent")),
+     "and how it converged");
   json_decref(columns);
   eo_service_unsubscribe(service, subscription);
-  ok(heard.ordered && heard.count > 3 && follows_its_life(&heard), "%d events in order: (queued, preparing,) running, done", heard.count);
+  ok(heard.ordered && heard.count > 3 && follows_its_life(&heard),
+     "%d events in order: (queued, preparing,) running, done", heard.count);
   struct heard later = {0};
   eo_service_subscribe(service, id, heard.last - 2, hear, &later, &subscription, &error);
   ok(later.count == 2 && later.last == heard.last, "who comes back hears what he missed");
@@ -287,8 +311,10 @@ static void test_cancel(void)
   struct eo_service *service = start();
   enum eo_job_outcome outcome;
   json_t *job = NULL;
-  int64_t id = submit(service, EO_JOB_OPTIMIZE, &design, NULL, &outcome), waiting = submit(service, EO_JOB_OPTIMIZE, &design, NULL, &outcome);
-  ok(!eo_service_cancel(service, waiting, &outcome, &job, &error) && !outcome && is_in(service, waiting, "cancelled"), "a waiting job is cancelled at once");
+  int64_t id = submit(service, EO_JOB_OPTIMIZE, &design, NULL, &outcome),
+          waiting = submit(service, EO_JOB_OPTIMIZE, &design, NULL, &outcome);
+  ok(!eo_service_cancel(service, waiting, &outcome, &job, &error) && !outcome && is_in(service, waiting, "cancelled"),
+     "a waiting job is cancelled at once");
   json_decref(job);
   ok(wait_for_evaluations(service, id, 30), "the other one runs");
   ok(!eo_service_remove(service, id, &outcome, &error) && outcome == EO_JOB_OUTCOME_STATE, "and cannot be removed");
@@ -300,19 +326,25 @@ static void test_cancel(void)
   char *found = result_of(service, id);
   ok(found != NULL && before < BUDGET, "with what it found in %d evaluations", before);
   free(found);
-  ok(!eo_service_cancel(service, id, &outcome, &job, &error) && outcome == EO_JOB_OUTCOME_STATE && !job, "once is enough");
+  ok(!eo_service_cancel(service, id, &outcome, &job, &error) && outcome == EO_JOB_OUTCOME_STATE && !job,
+     "once is enough");
   ok(!eo_service_retry(service, id, &outcome, &job, &error) && !outcome, "it is tried again");
   json_decref(job);
   ok(wait_for(service, id, "done"), "and goes on to its end");
   char *result = result_of(service, id);
   json_t *one = json_loads(undisturbed, 0, NULL), *two = json_loads(result ? result : "{}", 0, NULL);
-  ok(json_equal(json_object_get(json_object_get(one, "best"), "objectives"), json_object_get(json_object_get(two, "best"), "objectives")), "which is that of an undisturbed one");
+  ok(json_equal(json_object_get(json_object_get(one, "best"), "objectives"),
+                json_object_get(json_object_get(two, "best"), "objectives")),
+     "which is that of an undisturbed one");
   json_decref(one);
   json_decref(two);
   free(result);
-  ok(!eo_service_clone(service, id, NULL, &outcome, &job, &error) && !outcome && json_integer_value(json_object_get(job, "id")) > id, "a copy is another job");
+  ok(!eo_service_clone(service, id, NULL, &outcome, &job, &error) && !outcome &&
+         json_integer_value(json_object_get(job, "id")) > id,
+     "a copy is another job");
   json_decref(job);
-  ok(!eo_service_remove(service, waiting, &outcome, &error) && !outcome && !look(service, waiting), "an ended job can be removed");
+  ok(!eo_service_remove(service, waiting, &outcome, &error) && !outcome && !look(service, waiting),
+     "an ended job can be removed");
   eo_service_free(service);
 }
 
@@ -324,7 +356,8 @@ static void test_full(void)
   for (int i = 0; i < 10 && !outcome; i++)
     submit(service, EO_JOB_OPTIMIZE, &design, NULL, &outcome);
   ok(outcome == EO_JOB_OUTCOME_FULL, "a full queue says so");
-  ok(!eo_service_jobs(service, -1, -1, 0, 1, &page, &error) && json_array_size(json_object_get(page, "items")) == 1 && json_is_string(json_object_get(page, "next")),
+  ok(!eo_service_jobs(service, -1, -1, 0, 1, &page, &error) && json_array_size(json_object_get(page, "items")) == 1 &&
+         json_is_string(json_object_get(page, "next")),
      "jobs come in pages");
   json_decref(page);
   eo_service_free(service);
@@ -349,13 +382,14 @@ static void test_failure(void)
     pause_for(5);
   }
   const char *state = json_string_value(json_object_get(job, "state"));
-  ok(state && strcmp(state, "failed") == 0 && json_is_string(eo_json_find(job, "error/detail")), "a job that fails says why: %s",
-     json_string_value(eo_json_find(job, "error/detail")));
+  ok(state && strcmp(state, "failed") == 0 && json_is_string(eo_json_find(job, "error/detail")),
+     "a job that fails says why: %s", json_string_value(eo_json_find(job, "error/detail")));
   json_decref(job);
   eo_service_free(service);
 }
 
-/* Looks at the newest job as fast as it can until told to stop; counts what is said of an end that was not yet noted. */
+/* Looks at the newest job as fast as it can until told to stop; counts what is said of an end that was not yet noted.
+ */
 struct watching {
   struct eo_service *service;
   atomic_bool stop;
@@ -402,12 +436,28 @@ static void test_ends(void)
 /* The process ended after the study and before the last note: the row knows better. */
 static void test_stale_note(void)
 {
-  const struct eo_stored_job job = {.id = 1, .design = "{}", .name = "", .algorithm = "ga", .state = EO_JOB_CANCELLED, .stopped = "cancelled", .true_evaluations = 400,
-                                    .individuals = 500, .best_value = 0.5, .result = "", .created = "", .updated = "", .error = "", .started = "", .finished = "",
-                                    .progress = "{\"progress\":{\"fraction\":0.99,\"true_evaluations\":399,\"individuals\":499,\"pfc_percent\":80}}"};
+  const struct eo_stored_job job = {
+      .id = 1,
+      .design = "{}",
+      .name = "",
+      .algorithm = "ga",
+      .state = EO_JOB_CANCELLED,
+      .stopped = "cancelled",
+      .true_evaluations = 400,
+      .individuals = 500,
+      .best_value = 0.5,
+      .result = "",
+      .created = "",
+      .updated = "",
+      .error = "",
+      .started = "",
+      .finished = "",
+      .progress = "{\"progress\":{\"fraction\":0.99,\"true_evaluations\":399,\"individuals\":499,\"pfc_percent\":80}}"};
   json_t *document = eo_job_encode(&job, NULL, false);
-  ok(eo_json_find_number(document, "progress/true_evaluations") == 400 && eo_json_find_number(document, "progress/individuals") == 500 &&
-         eo_json_find_number(document, "progress/pfc_percent") == 80, "what was noted of a job does not hide what its row knows");
+  ok(eo_json_find_number(document, "progress/true_evaluations") == 400 &&
+         eo_json_find_number(document, "progress/individuals") == 500 &&
+         eo_json_find_number(document, "progress/pfc_percent") == 80,
+     "what was noted of a job does not hide what its row knows");
   json_decref(document);
 }
 
@@ -422,16 +472,19 @@ static void test_park(void)
   wait_for_evaluations(service, id, 40);
   struct eo_service *second = NULL;
   const struct eo_service_settings settings = {.data = folder};
-  ok(eo_service_new(&second, &settings, &error) == EO_ERROR_FILE && strstr(error.text, "Another server"), "a second service is refused: %s", error.text);
+  ok(eo_service_new(&second, &settings, &error) == EO_ERROR_FILE && strstr(error.text, "Another server"),
+     "a second service is refused: %s", error.text);
   struct eo_design other = design;
   other.resolution.positions = 20;
   ask(service, &other, "", 60, &answered, &job);
   double asked = eo_clock_milliseconds();
   eo_service_stop(service);
-  ok(submit(service, EO_JOB_OPTIMIZE, &design, NULL, &outcome) == 0 && outcome == EO_JOB_OUTCOME_CLOSED && ask(service, &design, "", 0, &answered, &job) == EO_ADMISSION_CLOSED,
+  ok(submit(service, EO_JOB_OPTIMIZE, &design, NULL, &outcome) == 0 && outcome == EO_JOB_OUTCOME_CLOSED &&
+         ask(service, &design, "", 0, &answered, &job) == EO_ADMISSION_CLOSED,
      "a service that stops takes nothing");
   eo_service_free(service);
-  ok(eo_clock_milliseconds() - asked < 20000 && answered.count == 1 && (answered.last.kind == EO_ANSWER_STOPPED || answered.last.kind == EO_ANSWER_DONE),
+  ok(eo_clock_milliseconds() - asked < 20000 && answered.count == 1 &&
+         (answered.last.kind == EO_ANSWER_STOPPED || answered.last.kind == EO_ANSWER_DONE),
      "it stops within %.0f ms and answers who waits", eo_clock_milliseconds() - asked);
   eo_text_done(&answered.last.text);
   struct eo_store *store = NULL;
@@ -453,7 +506,8 @@ static void test_park(void)
 
 int main(void)
 {
-  void (*const test[])(void) = {test_analysis, test_left_out, test_overtaking, test_sweep, test_pairs, test_job, test_cancel, test_full, test_failure, test_ends, test_stale_note, test_park};
+  void (*const test[])(void) = {test_analysis, test_left_out, test_overtaking, test_sweep, test_pairs,      test_job,
+                                test_cancel,   test_full,     test_failure,    test_ends,  test_stale_note, test_park};
   if (!make_folder())
     return 99;
   make_design(&design, BUDGET);

@@ -1,16 +1,17 @@
 /* The influence of twisting and bending bodies, against textbook beams.
 
-   Uniform bars: simply supported Timoshenko beam of length L, unit force at z (b = L - z), x <= z, from the left bearing (Timoshenko 1955;
-   shear after Cowper 1966):
-       v = b x (L^2 - b^2 - x^2) / (6 L E I) + x b / (L kappa G A),     psi = b (L^2 - b^2 - 3 x^2) / (6 L E I),
-   and for a unit moment at z the rotations are the derivatives of these along z, with 1 / (L kappa G A) more from the shear.
+   Uniform bars: simply supported Timoshenko beam of length L, unit force at z (b = L - z), x <= z, from the left
+   bearing (Timoshenko 1955; shear after Cowper 1966): v = b x (L^2 - b^2 - x^2) / (6 L E I) + x b / (L kappa G A), psi
+   = b (L^2 - b^2 - 3 x^2) / (6 L E I), and for a unit moment at z the rotations are the derivatives of these along z,
+   with 1 / (L kappa G A) more from the shear.
 
-   Twist of a double helical bar under even loads. Torque T enters at the left face; each end takes T/2 evenly over its width b, the
-   groove of width g carries T/2. From the left face, x along the left end, y along the right one:
-       G J theta = T x - (T/2) x^2 / (2 b),   T b (3/4) + (T/2) g over left end and groove,   then (T/2) (y - y^2 / (2 b)).
-   Each end winds up along its chord by r_b (3/4) T b / (G J) on the side of the drive and a third of that on the other; one end alone, with
-   its T entering at one side, by r_b (T/2) b / (G J), which is the slope of f(b) = r_b (T/2) / (G J) (b - b_mid). For the same load per
-   end the driven side of a double helical bar winds up three times as far as a single one: the factor 2 * 1.5 of ISO 6336-1's f_sh0. */
+   Twist of a double helical bar under even loads. Torque T enters at the left face; each end takes T/2 evenly over its
+   width b, the groove of width g carries T/2. From the left face, x along the left end, y along the right one: G J
+   theta = T x - (T/2) x^2 / (2 b),   T b (3/4) + (T/2) g over left end and groove,   then (T/2) (y - y^2 / (2 b)). Each
+   end winds up along its chord by r_b (3/4) T b / (G J) on the side of the drive and a third of that on the other; one
+   end alone, with its T entering at one side, by r_b (T/2) b / (G J), which is the slope of f(b) = r_b (T/2) / (G J) (b
+   - b_mid). For the same load per end the driven side of a double helical bar winds up three times as far as a single
+   one: the factor 2 * 1.5 of ISO 6336-1's f_sh0. */
 #include "contact/shaft.h"
 #include "numerics/dense.h"
 #include "tests/paper_pair.h"
@@ -56,7 +57,9 @@ static void set_uniform_bars(double bearing)
 
 static void set_stepped_bodies(void)
 {
-  shafts = (struct eo_shafts){.enabled = true, .shaft_diameter = {0.07, 0.15}, .bearing_position = {{-0.11, 0.16}, {-0.2, 0.125}},
+  shafts = (struct eo_shafts){.enabled = true,
+                              .shaft_diameter = {0.07, 0.15},
+                              .bearing_position = {{-0.11, 0.16}, {-0.2, 0.125}},
                               .drive_side = {EO_DRIVE_LEFT, EO_DRIVE_RIGHT}};
   pair.bore[EO_PINION] = 0.03;
   pair.bore[EO_GEAR] = 0.09;
@@ -79,7 +82,8 @@ static double entry(int i, int j)
 
 static double place(int end, int node)
 {
-  double offset = pair.ends == 2 ? (geometry.face_width + pair.groove_width) / 2 : 0, eta = geometry.face_width * ((double)node / (NODES - 1) - 0.5);
+  double offset = pair.ends == 2 ? (geometry.face_width + pair.groove_width) / 2 : 0,
+         eta = geometry.face_width * ((double)node / (NODES - 1) - 0.5);
   return end == EO_LEFT ? -(offset + eta) : offset + eta;
 }
 
@@ -89,8 +93,10 @@ static void test_sections(void)
   struct eo_shaft_section solid = eo_shaft_section_of(&m, 0.1, 0), tube = eo_shaft_section_of(&m, 0.1, 0.09999);
   near(solid.bending, 2.6e11 * M_PI * 1e-4 / 64, 1e-14, "E I of a solid shaft");
   near(solid.torsion, 1e11 * M_PI * 1e-4 / 32, 1e-14, "G J of a solid shaft");
-  near(solid.shear / (1e11 * M_PI * 1e-2 / 4), 6 * 1.3 / (7 + 6 * 0.3), 1e-14, "Cowper's coefficient, solid: 6 (1 + nu) / (7 + 6 nu)");
-  near(tube.shear / (1e11 * M_PI / 4 * (1e-2 - 0.09999 * 0.09999)), 2 * 1.3 / (4 + 3 * 0.3), 1e-7, "thin tube: 2 (1 + nu) / (4 + 3 nu)");
+  near(solid.shear / (1e11 * M_PI * 1e-2 / 4), 6 * 1.3 / (7 + 6 * 0.3), 1e-14,
+       "Cowper's coefficient, solid: 6 (1 + nu) / (7 + 6 nu)");
+  near(tube.shear / (1e11 * M_PI / 4 * (1e-2 - 0.09999 * 0.09999)), 2 * 1.3 / (4 + 3 * 0.3), 1e-7,
+       "thin tube: 2 (1 + nu) / (4 + 3 nu)");
 }
 
 /* ---- uniform bars ---- */
@@ -133,15 +139,16 @@ static double bar_twist(double clamp, double x, double z, double stiffness)
   return (x - clamp) * (z - clamp) < 0 ? 0 : fmin(fabs(x - clamp), fabs(z - clamp)) / stiffness;
 }
 
-/* What a section's motion (v, psi, chi, theta) does along the flank normal at the point (s, z) of the plane of action, by vectors: axes along
-   the line of action, normal to the plane of action, and along the shaft. */
+/* What a section's motion (v, psi, chi, theta) does along the flank normal at the point (s, z) of the plane of action,
+   by vectors: axes along the line of action, normal to the plane of action, and along the shaft. */
 static void normal_motion(int member, int end, double s, double coefficient[4])
 {
   double b = geometry.base_helix_angle, lean = end == EO_LEFT ? tan(b) : -tan(b);
   double n[3] = {cos(b), 0, cos(b) * lean}; /* flank s - c - eta tan(b) = 0, eta to the left on the left end */
   double axis = member == EO_PINION ? -geometry.tangent_length[EO_PINION] : geometry.tangent_length[EO_GEAR];
   double arm[3] = {s - axis, geometry.base_radius[member], 0};
-  /* rotations: psi turns z towards the line of action, chi turns z against the second axis, theta moves +second towards the line of action */
+  /* rotations: psi turns z towards the line of action, chi turns z against the second axis, theta moves +second towards
+     the line of action */
   double turn[3][3] = {{0, 1, 0}, {1, 0, 0}, {0, 0, -1}};
   coefficient[0] = n[0];
   for (int k = 0; k < 3; k++) {
@@ -161,7 +168,8 @@ static double bar_entry(int end, int node, double s, int other_end, int other_no
     normal_motion(member, end, s, c);
     normal_motion(member, other_end, other_s, d);
     /* at one and the same section the moment's rotation is the mean of both sides' limits, which agree */
-    sum += c[0] * d[0] * bar_deflection(&bar, x, z) + c[1] * d[0] * bar_rotation(&bar, x, z) + c[0] * d[1] * bar_rotation(&bar, z, x);
+    sum += c[0] * d[0] * bar_deflection(&bar, x, z) + c[1] * d[0] * bar_rotation(&bar, x, z) +
+           c[0] * d[1] * bar_rotation(&bar, z, x);
     sum += (c[1] * d[1] + c[2] * d[2]) * bar_rotation_by_moment(&bar, x, z);
     sum += c[3] * d[3] * bar_twist(-half, x, z, bar.section.torsion);
   }
@@ -171,7 +179,8 @@ static double bar_entry(int end, int node, double s, int other_end, int other_no
 static double deflection_at(int end, int node, double s, int other_end, int other_node, double other_s)
 {
   int i = end * VECTOR + node, j = other_end * VECTOR + other_node;
-  return entry(i, j) + s * entry(i + NODES, j) + other_s * entry(i, j + NODES) + s * other_s * entry(i + NODES, j + NODES);
+  return entry(i, j) + s * entry(i + NODES, j) + other_s * entry(i, j + NODES) +
+         s * other_s * entry(i + NODES, j + NODES);
 }
 
 static void test_uniform_bars(int ends, double helix_deg)
@@ -187,7 +196,8 @@ static void test_uniform_bars(int ends, double helix_deg)
     worst = fmax(worst, fabs(deflection_at(end, node, s, other, far, t) - expected));
     scale = fmax(scale, fabs(expected));
   }
-  ok(worst < 1e-11 * scale, "%d end(s), helix %g deg: point loads on uniform bars, off by %.2g of %.3g m/N", ends, helix_deg, worst / scale, scale);
+  ok(worst < 1e-11 * scale, "%d end(s), helix %g deg: point loads on uniform bars, off by %.2g of %.3g m/N", ends,
+     helix_deg, worst / scale, scale);
 }
 
 /* Even load over the whole span: 5 w L^4 / (384 E I) + w L^2 / (8 kappa G A) in the middle. */
@@ -230,15 +240,18 @@ static void test_double_helical_twist(void)
         struct bar bar = {0.26, -0.13, eo_shaft_section_of(&steel, shafts.shaft_diameter[member], 0)};
         double radius = geometry.base_radius[member], torque = 2 * radius; /* unit force on each end */
         for (int j = 0; j < 2 * NODES; j++)
-          bending += load[j / NODES].part[0][j % NODES] * bar_deflection(&bar, place(end, i), place(j / NODES, j % NODES));
-        double theta = end == EO_LEFT ? torque * x - torque / 2 * x * x / (2 * b) : torque * b * 3 / 4 + torque / 2 * g + torque / 2 * (y - y * y / (2 * b));
+          bending += load[j / NODES].part[0][j % NODES] *
+                     bar_deflection(&bar, place(end, i), place(j / NODES, j % NODES));
+        double theta = end == EO_LEFT ? torque * x - torque / 2 * x * x / (2 * b)
+                                      : torque * b * 3 / 4 + torque / 2 * g + torque / 2 * (y - y * y / (2 * b));
         expected += radius * theta / stiffness[member];
       }
       deflection[end].part[0][i] -= bending;
       worst = fmax(worst, fabs(deflection[end].part[0][i] - expected));
       most = fmax(most, expected);
     }
-  ok(worst < 1e-12 * most, "wind-up of a double helical bar under even loads, off by %.2g of %.3g m/N", worst / most, most);
+  ok(worst < 1e-12 * most, "wind-up of a double helical bar under even loads, off by %.2g of %.3g m/N", worst / most,
+     most);
   for (int end = 0; end < 2; end++)
     chord[end] = fabs(deflection[end].part[0][NODES - 1] - deflection[end].part[0][0]);
   for (int member = 0; member < 2; member++)
@@ -252,7 +265,9 @@ static void test_double_helical_twist(void)
 static double diameter_at(int member, double x)
 {
   double half = pair.groove_width / 2, end = half + geometry.face_width;
-  return fabs(x) > end ? shafts.shaft_diameter[member] : fabs(x) > half ? eo_shaft_effective_diameter(&geometry, member) : pair.groove_diameter[member];
+  return fabs(x) > end    ? shafts.shaft_diameter[member]
+         : fabs(x) > half ? eo_shaft_effective_diameter(&geometry, member)
+                          : pair.groove_diameter[member];
 }
 
 /* Mohr's integral of a unit normal force at s = 0 on node i and one on node j, by brute force. */
@@ -261,10 +276,13 @@ static double mohr(int end, int node, int other_end, int other_node)
   enum { STEPS = 60000 };
   double sum = 0;
   for (int member = 0; member < 2; member++) {
-    double left = shafts.bearing_position[member][EO_LEFT], right = shafts.bearing_position[member][EO_RIGHT], l = right - left;
-    double step = l / STEPS, clamp = shafts.drive_side[member] == EO_DRIVE_LEFT ? place(EO_LEFT, NODES - 1) : place(EO_RIGHT, NODES - 1);
+    double left = shafts.bearing_position[member][EO_LEFT], right = shafts.bearing_position[member][EO_RIGHT],
+           l = right - left;
+    double step = l / STEPS,
+           clamp = shafts.drive_side[member] == EO_DRIVE_LEFT ? place(EO_LEFT, NODES - 1) : place(EO_RIGHT, NODES - 1);
     for (int k = 0; k < STEPS; k++) {
-      double x = left + (k + 0.5) * step, moment[2][2], shear[2][2], torque[2], z[2] = {place(end, node), place(other_end, other_node)};
+      double x = left + (k + 0.5) * step, moment[2][2], shear[2][2], torque[2],
+             z[2] = {place(end, node), place(other_end, other_node)};
       struct eo_shaft_section section = eo_shaft_section_of(&steel, diameter_at(member, x), pair.bore[member]);
       for (int i = 0; i < 2; i++) {
         double c[4];
@@ -277,7 +295,8 @@ static double mohr(int end, int node, int other_end, int other_node)
         torque[i] = (x - clamp) * (x - z[i]) < 0 ? c[3] : 0;
       }
       for (int plane = 0; plane < 2; plane++)
-        sum += step * (moment[0][plane] * moment[1][plane] / section.bending + shear[0][plane] * shear[1][plane] / section.shear);
+        sum += step * (moment[0][plane] * moment[1][plane] / section.bending +
+                       shear[0][plane] * shear[1][plane] / section.shear);
       sum += step * torque[0] * torque[1] / section.torsion;
     }
   }
@@ -292,14 +311,16 @@ static void test_stepped_bodies(void)
   make();
   for (size_t k = 0; k < sizeof where / sizeof *where; k++) {
     double expected = mohr(where[k][0], where[k][1], where[k][2], where[k][3]);
-    near(entry(where[k][0] * VECTOR + where[k][1], where[k][2] * VECTOR + where[k][3]), expected, 2e-4, "stepped hollow bodies, Mohr's integral");
+    near(entry(where[k][0] * VECTOR + where[k][1], where[k][2] * VECTOR + where[k][3]), expected, 2e-4,
+         "stepped hollow bodies, Mohr's integral");
   }
 }
 
 static void test_semidefinite(void)
 {
   int n = influence.size, asymmetric = 0;
-  double *matrix = malloc(sizeof *matrix * (size_t)(n * n)), *value = malloc(sizeof *value * (size_t)n), largest = 0, missed = 0;
+  double *matrix = malloc(sizeof *matrix * (size_t)(n * n)), *value = malloc(sizeof *value * (size_t)n), largest = 0,
+         missed = 0;
   for (int i = 0; i < n; i++)
     for (int j = 0; j < n; j++) {
       double scale = (i % VECTOR < NODES ? 1 : 0.014) * (j % VECTOR < NODES ? 1 : 0.014), modes = 0;
@@ -312,7 +333,8 @@ static void test_semidefinite(void)
     }
   ok(asymmetric == 0, "Maxwell: the influence is symmetric, bit for bit");
   eo_dense_symmetric_eigen(n, matrix, value);
-  ok(value[0] > -1e-14 * value[n - 1], "positive semi-definite: eigenvalues from %.2g to %.2g m/N", value[0], value[n - 1]);
+  ok(value[0] > -1e-14 * value[n - 1], "positive semi-definite: eigenvalues from %.2g to %.2g m/N", value[0],
+     value[n - 1]);
   ok(missed < 0.02 * largest, "its modes leave %.2g of it", missed / largest);
   free(matrix);
   free(value);
@@ -369,7 +391,9 @@ static int trace(int member, double (*outline)[2])
     if (i <= 40)
       eo_geometry_fillet(&geometry, member, t, point, normal);
     else
-      eo_geometry_involute(&geometry, member, geometry.form_radius[member] + (t - 1) * (geometry.tip_radius[member] - geometry.form_radius[member]),
+      eo_geometry_involute(&geometry, member,
+                           geometry.form_radius[member] +
+                               (t - 1) * (geometry.tip_radius[member] - geometry.form_radius[member]),
                            point, normal);
     double radius = hypot(point[0], point[1]);
     if (points && radius <= outline[points - 1][0] + 1e-9)
@@ -397,7 +421,8 @@ static double torsion_constant(int member)
   enum { N = CELLS * CELLS };
   static double u[N], r[N], p[N], q[N];
   static char inside[N];
-  double outline[81][2], pitch = 2 * M_PI / geometry.teeth[member], width = 2.04 * geometry.tip_radius[member] / CELLS, rr = 0, volume = 0;
+  double outline[81][2], pitch = 2 * M_PI / geometry.teeth[member], width = 2.04 * geometry.tip_radius[member] / CELLS,
+                         rr = 0, volume = 0;
   int points = trace(member, outline);
   for (int i = 0; i < N; i++) {
     double x = (i % CELLS + 0.5 - CELLS / 2.) * width, y = (i / CELLS + 0.5 - CELLS / 2.) * width, angle = atan2(x, y);
@@ -432,7 +457,8 @@ static void test_effective_diameter(void)
   for (int member = 0; member < 2; member++) {
     double diameter = 2 * pow(2 * torsion_constant(member) / M_PI, 0.25);
     close_to(eo_shaft_effective_diameter(&geometry, member), diameter, 0.06 * geometry.normal_module,
-             member ? "effective diameter of the gear against Saint-Venant's torsion constant" : "effective diameter of the pinion");
+             member ? "effective diameter of the gear against Saint-Venant's torsion constant"
+                    : "effective diameter of the pinion");
   }
 }
 

@@ -18,7 +18,8 @@ static void test_fft(void)
   double complex x[N], fast[N];
   double worst = 0;
   for (int i = 0; i < N; i++)
-    fast[i] = x[i] = eo_random_normal(eo_random_at(1, 0, 0, 0), (uint64_t)i) + I * eo_random_normal(eo_random_at(1, 0, 0, 1), (uint64_t)i);
+    fast[i] = x[i] = eo_random_normal(eo_random_at(1, 0, 0, 0), (uint64_t)i) +
+                     I * eo_random_normal(eo_random_at(1, 0, 0, 1), (uint64_t)i);
   eo_fft_forward(N, fast);
   for (int k = 0; k < N; k++) {
     double complex sum = 0;
@@ -38,7 +39,8 @@ static void test_ellipse(void)
   eo_ellipse_start(&sums, (double[]){0, 0}, 1);
   for (int i = 0; i < 200; i++) {
     double a = 2 * M_PI * i / 200;
-    eo_ellipse_add(&sums, truth.offset[0] + truth.amplitude[0] * sin(a), truth.offset[1] + truth.amplitude[1] * cos(a - truth.skew));
+    eo_ellipse_add(&sums, truth.offset[0] + truth.amplitude[0] * sin(a),
+                   truth.offset[1] + truth.amplitude[1] * cos(a - truth.skew));
   }
   ok(eo_ellipse_fit(&sums, &found), "an ellipse is fitted");
   close_to(found.offset[0], truth.offset[0], 1e-12, "offset of the sine");
@@ -48,7 +50,9 @@ static void test_ellipse(void)
   close_to(found.skew, truth.skew, 1e-12, "phase beyond 90 degrees");
   for (int i = -99; i < 100; i++) {
     double a = M_PI * i / 100;
-    worst = fmax(worst, fabs(eo_ellipse_angle(&found, truth.offset[0] + truth.amplitude[0] * sin(a), truth.offset[1] + truth.amplitude[1] * cos(a - truth.skew)) - a));
+    worst = fmax(worst, fabs(eo_ellipse_angle(&found, truth.offset[0] + truth.amplitude[0] * sin(a),
+                                              truth.offset[1] + truth.amplitude[1] * cos(a - truth.skew)) -
+                             a));
   }
   ok(worst < 1e-11, "angles on it: %.2g rad", worst);
   eo_ellipse_start(&sums, (double[]){0, 0}, 1);
@@ -87,16 +91,20 @@ static void test_trend(void)
     eo_trend_done(&trend);
   }
   ok(cubic < 1e-6, "a cubic comes back: %.2g rad", cubic);
-  ok(inside < 1e-5 && order < 4e-4, "a shaft order of 1e-3 rad is left out but for %.2g rad, %.2g at the ends", inside, order);
+  ok(inside < 1e-5 && order < 4e-4, "a shaft order of 1e-3 rad is left out but for %.2g rad, %.2g at the ends", inside,
+     order);
 }
 
 static void test_nearest(void)
 {
   const int teeth[2] = {17, 44};
   int found[2];
-  ok(eo_orientation_nearest(17.0 / 43, 1e-5, teeth, found) && found[0] == 17 && found[1] == 43, "one tooth of the gear too few");
-  ok(eo_orientation_nearest(19.0 / 44, 1e-5, teeth, found) && found[0] == 19 && found[1] == 44, "two teeth of the pinion too many");
-  ok(eo_orientation_nearest(23.0 / 59, 1e-6, teeth, found) && found[0] == 23 && found[1] == 59, "other teeth altogether");
+  ok(eo_orientation_nearest(17.0 / 43, 1e-5, teeth, found) && found[0] == 17 && found[1] == 43,
+     "one tooth of the gear too few");
+  ok(eo_orientation_nearest(19.0 / 44, 1e-5, teeth, found) && found[0] == 19 && found[1] == 44,
+     "two teeth of the pinion too many");
+  ok(eo_orientation_nearest(23.0 / 59, 1e-6, teeth, found) && found[0] == 23 && found[1] == 59,
+     "other teeth altogether");
   ok(!eo_orientation_nearest(M_PI / 8, 1e-9, teeth, found), "no ratio of teeth");
 }
 
@@ -110,18 +118,21 @@ static void test_noise(void)
   for (int trial = 0; trial < 10 && beside; trial++) {
     eo_beside_init(beside, teeth, 8, 20);
     for (int i = 0; i < ROWS; i++)
-      eo_beside_add(beside, 40 * M_PI * i / ROWS, 1e-7 * eo_random_normal(eo_random_at(3, 0, 0, (uint64_t)trial), (uint64_t)i));
+      eo_beside_add(beside, 40 * M_PI * i / ROWS,
+                    1e-7 * eo_random_normal(eo_random_at(3, 0, 0, (uint64_t)trial), (uint64_t)i));
     for (int h = 0; h < 8; h++)
       sum += eo_beside_sigma(beside, h, 1e-7) / (1e-7 * sqrt(2.0 / ROWS)) / 80;
   }
-  ok(sum > 1 && sum < 1.3, "white noise: %.3f of its standard deviation on average, the largest of three estimates", sum);
+  ok(sum > 1 && sum < 1.3, "white noise: %.3f of its standard deviation on average, the largest of three estimates",
+     sum);
   eo_beside_init(beside, teeth, 8, 20);
   for (int i = 0; i < ROWS; i++) {
     double theta = 40 * M_PI * i / ROWS;
     eo_beside_add(beside, theta, 1e-6 * cos(18 * theta - 0.4));
   }
   double complex sideband = eo_beside_sideband(beside, 0, EO_PINION, 1);
-  ok(cabs(sideband - 1e-6 * cexp(-0.4 * I)) < 1e-12 && cabs(eo_beside_sideband(beside, 0, EO_PINION, -1)) < 1e-12, "a sideband one turn above the first mesh order");
+  ok(cabs(sideband - 1e-6 * cexp(-0.4 * I)) < 1e-12 && cabs(eo_beside_sideband(beside, 0, EO_PINION, -1)) < 1e-12,
+     "a sideband one turn above the first mesh order");
   free(beside);
 }
 
@@ -134,7 +145,8 @@ static void test_rms(void)
     struct eo_random random = eo_random_at(5, 0, 0, (uint64_t)trial);
     double truth = 0, weak_truth = 0, sigma;
     for (int h = 0; h < 8; h++) {
-      double complex noise = 1e-8 * (eo_random_normal(random, (uint64_t)(2 * h)) + I * eo_random_normal(random, (uint64_t)(2 * h + 1)));
+      double complex noise =
+          1e-8 * (eo_random_normal(random, (uint64_t)(2 * h)) + I * eo_random_normal(random, (uint64_t)(2 * h + 1)));
       line[h] = (struct eo_order_line){.order = 17 * (h + 1), .amplitude = 1e-7 / (h + 1) + noise, .sigma = 1e-8};
       weak[h] = (struct eo_order_line){.order = 17 * (h + 1), .amplitude = 1e-9 / (h + 1) + noise, .sigma = 1e-8};
       truth += pow(1e-7 / (h + 1) * pow(line[h].order * 200, 2), 2) / 2;

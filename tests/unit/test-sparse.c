@@ -8,7 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A chain of blocks of three unknowns on a grid of `side` x `side` nodes: the Laplacian of the grid, coupled between directions. */
+/* A chain of blocks of three unknowns on a grid of `side` x `side` nodes: the Laplacian of the grid, coupled between
+   directions. */
 enum { SIDE = 9, NODES = SIDE * SIDE, N = 3 * NODES, KEPT = 20, LOADED = 8 };
 
 static double entry(int row, int column, double shift)
@@ -23,7 +24,9 @@ static double entry(int row, int column, double shift)
 static void fill(struct eo_sparse *matrix, int *group, double shift)
 {
   int filled = 0;
-  *matrix = (struct eo_sparse){.n = N, .start = malloc((N + 1) * sizeof(int)), .row = malloc(N * 20 * sizeof(int)),
+  *matrix = (struct eo_sparse){.n = N,
+                               .start = malloc((N + 1) * sizeof(int)),
+                               .row = malloc(N * 20 * sizeof(int)),
                                .value = malloc(N * 20 * sizeof(double))};
   for (int j = 0; j < N; j++) {
     group[j] = j / 3;

@@ -1,4 +1,5 @@
-/* The study loop: threads, history, interruption, other weights, bounds and variables, failures, and what the documents say. */
+/* The study loop: threads, history, interruption, other weights, bounds and variables, failures, and what the documents
+   say. */
 #include <math.h>
 
 #include "base/parallel.h"
@@ -47,13 +48,16 @@ static void test_threads(const char *algorithm)
     if (i < 2)
       eo_study_result_done(&result);
   }
-  ok(text[0] && text[1] && text[2] && strcmp(text[0], text[1]) == 0 && strcmp(text[0], text[2]) == 0, "%s: the same bytes for 1, 2 and 4 threads", algorithm);
-  ok(result.best.there && result.best.value.objective < 0.7 && result.computed == 60 && result.true_evaluations == 60 && result.reused == 0,
+  ok(text[0] && text[1] && text[2] && strcmp(text[0], text[1]) == 0 && strcmp(text[0], text[2]) == 0,
+     "%s: the same bytes for 1, 2 and 4 threads", algorithm);
+  ok(result.best.there && result.best.value.objective < 0.7 && result.computed == 60 && result.true_evaluations == 60 &&
+         result.reused == 0,
      "%s: J %.4g after %d evaluations", algorithm, result.best.value.objective, result.computed);
   eo_study_result_done(&result);
   struct eo_study_plan plan = plan_of(&design, NULL);
   char *again = run(&plan, &result);
-  ok(again && strcmp(again, text[0]) == 0 && result.computed == 0 && result.resumed, "%s: once more, nothing is computed and the result is the same", algorithm);
+  ok(again && strcmp(again, text[0]) == 0 && result.computed == 0 && result.resumed,
+     "%s: once more, nothing is computed and the result is the same", algorithm);
   eo_study_result_done(&result);
   free(again);
   for (int i = 0; i < 3; i++)
@@ -120,14 +124,17 @@ static void test_removed_job(const char *algorithm)
     cut.context = &(int){50};
     free(run(&cut, &result));
     eo_study_result_done(&result);
-    if (removed && (eo_store_open(&store, folder, EO_STORE_WRITE, &error) || eo_queue_remove(store, first, &outcome, &error) || outcome))
+    if (removed && (eo_store_open(&store, folder, EO_STORE_WRITE, &error) ||
+                    eo_queue_remove(store, first, &outcome, &error) || outcome))
       printf("# it is not removed: %s\n", error.text);
     eo_store_close(store);
     text[removed] = run(&plan, &result);
-    ok(result.resumed && result.imported == 40 && result.true_evaluations == 90, "%s: taken up with %d rows of another job", algorithm, result.imported);
+    ok(result.resumed && result.imported == 40 && result.true_evaluations == 90,
+       "%s: taken up with %d rows of another job", algorithm, result.imported);
     eo_study_result_done(&result);
   }
-  ok(text[0] && text[1] && strcmp(text[0], text[1]) == 0, "%s: whether that job is still there or not, the same result", algorithm);
+  ok(text[0] && text[1] && strcmp(text[0], text[1]) == 0, "%s: whether that job is still there or not, the same result",
+     algorithm);
   free(text[0]);
   free(text[1]);
 }
@@ -152,7 +159,8 @@ static void test_reuse(void)
   design.optimization.true_evaluations = 40; /* the first generation of 20 does not depend on values */
   plan.fresh = true;
   free(run(&plan, &result));
-  ok(result.reused >= 20 && result.reused + result.computed == 40, "other weights and shares: %d of 40 known, fitness anew", result.reused);
+  ok(result.reused >= 20 && result.reused + result.computed == 40,
+     "other weights and shares: %d of 40 known, fitness anew", result.reused);
   ok(fabs(result.unmodified.value.objective - 1.4) < 1e-12, "J of the unmodified pair is the sum of the weights");
   eo_study_result_done(&result);
 
@@ -161,7 +169,8 @@ static void test_reuse(void)
   complete(&design);
   plan.fresh = false;
   free(run(&plan, &result));
-  ok(result.imported >= 60 && result.imported <= 100 && result.best.there && result.best.value.sums.f[0] <= sum * 1.2, "%d rows of earlier searches are imported", result.imported);
+  ok(result.imported >= 60 && result.imported <= 100 && result.best.there && result.best.value.sums.f[0] <= sum * 1.2,
+     "%d rows of earlier searches are imported", result.imported);
   ok(result.computed == 8, "and the budget is for new ones");
   eo_study_result_done(&result);
 
@@ -179,7 +188,8 @@ static void test_reuse(void)
   free(run(&plan, &result));
   ok(result.imported == 0 && result.reused == 0 && result.computed == 20, "another problem shares nothing");
   eo_study_result_done(&result);
-  ok(best.flank[EO_PINION][EO_LEFT].tip_relief == best.flank[EO_PINION][EO_RIGHT].tip_relief, "shared variables are shared");
+  ok(best.flank[EO_PINION][EO_LEFT].tip_relief == best.flank[EO_PINION][EO_RIGHT].tip_relief,
+     "shared variables are shared");
 }
 
 /* The reported optimum analysed on its own gives the numbers that were reported. */
@@ -192,16 +202,20 @@ static void test_truth(void)
   design.optimization.generations = 6;
   complete(&design);
   char *text = run(&plan, &result);
-  ok(result.predicted > 0 && result.individuals == result.true_evaluations + result.predicted + result.repeated, "fpga predicts %d of %d individuals", result.predicted,
-     result.individuals);
+  ok(result.predicted > 0 && result.individuals == result.true_evaluations + result.predicted + result.repeated,
+     "fpga predicts %d of %d individuals", result.predicted, result.individuals);
   json_t *document = text ? json_loads(text, 0, NULL) : NULL;
   const json_t *reported = eo_json_find(document, "best/result/design");
   struct eo_faults *faults = calloc(1, sizeof *faults);
   bool decoded = faults && eo_design_decode(reported, &other, NULL, faults);
-  bool good = decoded && complete(&other) && !eo_analysis_new(&analysis, pair, &error) && !eo_analysis_run(analysis, &other, 0, &error);
-  ok(good && analysis->value.objective == result.best.value.objective && analysis->value.sums.f[2] == result.best.value.sums.f[2],
+  bool good = decoded && complete(&other) && !eo_analysis_new(&analysis, pair, &error) &&
+              !eo_analysis_run(analysis, &other, 0, &error);
+  ok(good && analysis->value.objective == result.best.value.objective &&
+         analysis->value.sums.f[2] == result.best.value.sums.f[2],
      "the optimum read back from its document and analysed: J %.17g", good ? analysis->value.objective : NAN);
-  ok(good && eo_json_find_number(document, "best/result/objectives/J") == eo_json_find_number(document, "best/objectives/J"), "as its own result says");
+  ok(good && eo_json_find_number(document, "best/result/objectives/J") ==
+                 eo_json_find_number(document, "best/objectives/J"),
+     "as its own result says");
   double pfc = eo_json_find_number(document, "pfc_percent");
   ok(fabs(pfc - 100. * result.true_evaluations / result.individuals) < 1e-9, "PFC %.3g %%", pfc);
   const json_t *generations = json_object_get(document, "generations");
@@ -213,7 +227,8 @@ static void test_truth(void)
     before = eo_json_find_number(g, "best");
     sum += (int)eo_json_find_number(g, "true");
   }
-  ok(json_array_size(generations) == 6 && !worse && sum == result.true_evaluations && before == eo_json_find_number(document, "best/objectives/J"),
+  ok(json_array_size(generations) == 6 && !worse && sum == result.true_evaluations &&
+         before == eo_json_find_number(document, "best/objectives/J"),
      "generations: true evaluations add up, the best never gets worse");
   eo_analysis_free(analysis);
   eo_study_result_done(&result);
@@ -235,14 +250,15 @@ static void test_front(void)
       const double *a = result.front[i].value.sums.f, *b = result.front[j].value.sums.f;
       dominated += a[0] <= b[0] && a[1] <= b[1] && a[2] <= b[2] && (a[0] < b[0] || a[1] < b[1] || a[2] < b[2]);
     }
-  ok(result.front_count > 3 && !dominated && result.knee >= 0 && result.weighted >= 0, "nsga2: a front of %d true rows, none dominated", result.front_count);
+  ok(result.front_count > 3 && !dominated && result.knee >= 0 && result.weighted >= 0,
+     "nsga2: a front of %d true rows, none dominated", result.front_count);
   eo_study_result_done(&result);
 }
 
 /* ---- failures ---- */
 
-/* A seventh of all points fails: outcomes, kept and never the optimum. The history is filled before the search with rows as a model would
-   have left them that did not converge. */
+/* A seventh of all points fails: outcomes, kept and never the optimum. The history is filled before the search with
+   rows as a model would have left them that did not converge. */
 static void test_failures(void)
 {
   struct eo_study_plan plan = plan_of(&design, NULL);
@@ -263,22 +279,31 @@ static void test_failures(void)
   eo_store_close(second);
   eo_store_close(store);
   struct eo_text text = {0};
-  ok(good && !eo_records_rows_csv(rows, &text, &error) && strstr(text.data, "pinion/left/tip_relief_um") != NULL, "rows as comma-separated values");
+  ok(good && !eo_records_rows_csv(rows, &text, &error) && strstr(text.data, "pinion/left/tip_relief_um") != NULL,
+     "rows as comma-separated values");
   eo_text_done(&text);
   struct eo_text spec = {0};
   char hash[EO_HASH_LENGTH + 1];
   int64_t problem;
-  good = good && !eo_design_problem(&design, &spec, hash, &error) && !eo_store_open(&second, folder, EO_STORE_WRITE, &error) && !eo_store_begin(second, &error);
-  const struct eo_stored_problem p = {.hash = hash, .spec = spec.data, .name = "", .evaluator = EO_EVALUATOR_VERSION, .scenarios = 1, .cases = 3};
+  good = good && !eo_design_problem(&design, &spec, hash, &error) &&
+         !eo_store_open(&second, folder, EO_STORE_WRITE, &error) && !eo_store_begin(second, &error);
+  const struct eo_stored_problem p = {
+      .hash = hash, .spec = spec.data, .name = "", .evaluator = EO_EVALUATOR_VERSION, .scenarios = 1, .cases = 3};
   good = good && !eo_store_find_problem(second, &p, &problem, &error);
   for (size_t i = 0; good && i < json_array_size(json_object_get(rows, "rows")); i++) {
     const json_t *row = json_array_get(json_object_get(rows, "rows"), i);
     if (json_integer_value(json_object_get(row, "id")) != best)
       continue;
-    struct eo_objective_case raw[3] = {{.failed = true}, {.peak_to_peak = 1e-9, .impact = 1, .rms = 1}, {.failed = true}};
+    struct eo_objective_case raw[3] = {
+        {.failed = true}, {.peak_to_peak = 1e-9, .impact = 1, .rms = 1}, {.failed = true}};
     struct eo_text modification = {0};
     eo_json_write(&modification, json_object_get(row, "modification"), EO_JSON_CANONICAL);
-    struct eo_stored_evaluation e = {.modification = modification.data, .outcome = EO_EVALUATION_NOT_CONVERGED, .reason = "Made up.", .scenarios = 1, .cases = 3, .raw = raw};
+    struct eo_stored_evaluation e = {.modification = modification.data,
+                                     .outcome = EO_EVALUATION_NOT_CONVERGED,
+                                     .reason = "Made up.",
+                                     .scenarios = 1,
+                                     .cases = 3,
+                                     .raw = raw};
     good = !eo_store_add_evaluation(second, problem, &e, &error);
     eo_text_done(&modification);
   }
@@ -287,7 +312,8 @@ static void test_failures(void)
   plan.fresh = true;
   free(run(&plan, &result));
   ok(good && result.failed == 1 && result.reused == 1, "a failed row is found again and not evaluated once more");
-  ok(result.best.there && result.best.rank > value && result.best.evaluation != 1, "and is never the optimum: %.4g instead of %.4g", result.best.rank, value);
+  ok(result.best.there && result.best.rank > value && result.best.evaluation != 1,
+     "and is never the optimum: %.4g instead of %.4g", result.best.rank, value);
   eo_study_result_done(&result);
   empty_folder();
   rmdir(folder);
@@ -314,7 +340,8 @@ static void test_constraints(void)
   double held = 0;
   for (int k = 0; k < 3; k++)
     held = fmax(held, result.best.raw[k].contact_pressure);
-  ok(result.imported >= 60 && result.best.value.violation == 0 && held <= 0.97 * pressure && result.best.value.objective >= 0.9 * without,
+  ok(result.imported >= 60 && result.best.value.violation == 0 && held <= 0.97 * pressure &&
+         result.best.value.objective >= 0.9 * without,
      "a constraint is weighed anew over known rows and held: %.4g of %.4g MPa", held / 1e6, 0.97 * pressure / 1e6);
   eo_study_result_done(&result);
 }
@@ -348,28 +375,37 @@ static void refuse(const char *what, const char *pointer, int count, const struc
 
 static void test_variables(void)
 {
-  const int tip = parameter("tip_relief_um"), slope = parameter("lead_slope_um"), start = parameter("tip_relief_start_mm");
+  const int tip = parameter("tip_relief_um"), slope = parameter("lead_slope_um"),
+            start = parameter("tip_relief_start_mm");
   const int end = parameter("leading_end_relief_um"), length = parameter("leading_end_relief_length_mm");
   const struct eo_range open = {NAN, NAN};
-  struct eo_listed_variable three[] = {{EO_PINION, EO_BOTH_ENDS, tip, open}, {EO_GEAR, EO_LEFT, slope, {-5, 10}}, {EO_GEAR, EO_RIGHT, slope, {-10, 5}}};
+  struct eo_listed_variable three[] = {
+      {EO_PINION, EO_BOTH_ENDS, tip, open}, {EO_GEAR, EO_LEFT, slope, {-5, 10}}, {EO_GEAR, EO_RIGHT, slope, {-10, 5}}};
   ok(with_list(3, three) == EO_OK, "tip relief of the pinion, lead slope of each gear end %s", error.text);
-  design.modification.flank[EO_PINION][EO_LEFT].tip_relief_start = design.modification.flank[EO_PINION][EO_RIGHT].tip_relief_start = 1e-3;
+  design.modification.flank[EO_PINION][EO_LEFT].tip_relief_start =
+      design.modification.flank[EO_PINION][EO_RIGHT].tip_relief_start = 1e-3;
   struct eo_study_plan plan = plan_of(&design, NULL);
   empty_folder();
   free(run(&plan, &result));
-  const struct eo_flank_modification *gear = result.best.modification.flank[EO_GEAR], *pinion = result.best.modification.flank[EO_PINION];
-  ok(result.space.count == 3 && pinion[0].tip_relief == pinion[1].tip_relief && pinion[0].tip_relief_start == 1e-3 && gear[0].lead_slope != gear[1].lead_slope &&
-         gear[0].lead_slope >= -5e-6 && gear[1].lead_slope <= 5e-6,
+  const struct eo_flank_modification *gear = result.best.modification.flank[EO_GEAR],
+                                     *pinion = result.best.modification.flank[EO_PINION];
+  ok(result.space.count == 3 && pinion[0].tip_relief == pinion[1].tip_relief && pinion[0].tip_relief_start == 1e-3 &&
+         gear[0].lead_slope != gear[1].lead_slope && gear[0].lead_slope >= -5e-6 && gear[1].lead_slope <= 5e-6,
      "are searched for, the rest stays");
   struct eo_modification applied;
   double x[3] = {0.123456789, 1, 0}, back[3];
   eo_study_space_apply(&result.space, &design.modification, x, &applied);
-  ok(eo_study_space_locate(&result.space, &design.modification, &applied, back) && fabs(back[0] - x[0]) < 1e-15 && back[1] == 1 && back[2] == 0, "there and back");
-  ok(applied.flank[EO_GEAR][0].lead_slope == 10e-6 && applied.flank[EO_GEAR][1].lead_slope == -10e-6, "bounds are reached exactly");
+  ok(eo_study_space_locate(&result.space, &design.modification, &applied, back) && fabs(back[0] - x[0]) < 1e-15 &&
+         back[1] == 1 && back[2] == 0,
+     "there and back");
+  ok(applied.flank[EO_GEAR][0].lead_slope == 10e-6 && applied.flank[EO_GEAR][1].lead_slope == -10e-6,
+     "bounds are reached exactly");
   applied.flank[EO_PINION][0].root_relief = 1e-6;
-  ok(!eo_study_space_locate(&result.space, &design.modification, &applied, back), "a modification with another rest is not in the space");
+  ok(!eo_study_space_locate(&result.space, &design.modification, &applied, back),
+     "a modification with another rest is not in the space");
   struct eo_text text = {0};
-  ok(!eo_modification_write(&applied, 2, &text, &error) && !eo_modification_read(text.data, &design.modification, &error) &&
+  ok(!eo_modification_write(&applied, 2, &text, &error) &&
+         !eo_modification_read(text.data, &design.modification, &error) &&
          memcmp(&design.modification.flank[1], &applied.flank[1], sizeof applied.flank[1]) == 0,
      "a modification as text and back: %s", text.data ? text.data : "");
   eo_text_done(&text);
@@ -394,7 +430,8 @@ static void test_variables(void)
   refuse("no variable", "/optimization/variable_list", 0, good);
   with_list(1, good);
   design.optimization.variables = EO_VARIABLES_SHARED;
-  ok(!complete(&design) && strcmp(error.pointer, "/optimization/variable_list") == 0, "a list beside a preset: %s", error.text);
+  ok(!complete(&design) && strcmp(error.pointer, "/optimization/variable_list") == 0, "a list beside a preset: %s",
+     error.text);
   struct eo_listed_variable right = {EO_PINION, EO_RIGHT, tip, open};
   coarse_design(&design, "ga", 20);
   design.gear_pair.ends = 1;
@@ -402,7 +439,8 @@ static void test_variables(void)
   design.optimization.variables = EO_VARIABLES_LISTED;
   design.optimization.list[0] = right;
   design.optimization.listed = 1;
-  ok(!complete(&design) && strcmp(error.pointer, "/optimization/variable_list/0/end") == 0, "the right end of a pair that has one: %s", error.text);
+  ok(!complete(&design) && strcmp(error.pointer, "/optimization/variable_list/0/end") == 0,
+     "the right end of a pair that has one: %s", error.text);
 }
 
 int main(void)

@@ -29,7 +29,8 @@ static bool ends_with_suffix(const char *name, const struct eo_unit *unit)
 
 static bool sound_number(const struct eo_field *field)
 {
-  bool sound = field->low < field->high && (field->kind == EO_FIELD_NUMBERS || isnan(field->fallback) || (field->fallback >= field->low && field->fallback <= field->high));
+  bool sound = field->low < field->high && (field->kind == EO_FIELD_NUMBERS || isnan(field->fallback) ||
+                                            (field->fallback >= field->low && field->fallback <= field->high));
   if (field->kind == EO_FIELD_NUMBERS && field->fallbacks)
     for (int i = 0; i < field->count; i++)
       sound = sound && field->fallbacks[i] >= field->low && field->fallbacks[i] <= field->high;
@@ -41,9 +42,13 @@ static int unsound(const struct eo_table *table, const char *around)
   int bad = 0;
   for (int i = 0; i < table->count; i++) {
     const struct eo_field *field = &table->field[i];
-    bool number = field->kind == EO_FIELD_NUMBER || field->kind == EO_FIELD_NUMBERS || field->kind == EO_FIELD_LIMIT || field->kind == EO_FIELD_INTEGER;
-    bool sound = field->help && *field->help && field->offset < table->size && (!field->unit || ends_with_suffix(field->key, field->unit) || ends_with_suffix(around, field->unit)) && (!number || sound_number(field));
-    sound = sound && (field->kind != EO_FIELD_LIST || (field->high <= field->count && field->row_count <= field->count));
+    bool number = field->kind == EO_FIELD_NUMBER || field->kind == EO_FIELD_NUMBERS || field->kind == EO_FIELD_LIMIT ||
+                  field->kind == EO_FIELD_INTEGER;
+    bool sound = field->help && *field->help && field->offset < table->size &&
+                 (!field->unit || ends_with_suffix(field->key, field->unit) || ends_with_suffix(around, field->unit)) &&
+                 (!number || sound_number(field));
+    sound = sound &&
+            (field->kind != EO_FIELD_LIST || (field->high <= field->count && field->row_count <= field->count));
     sound = sound && (field->kind != EO_FIELD_CHOICE || field->choices);
     for (int j = 0; j < i; j++)
       sound = sound && strcmp(field->key, table->field[j].key) != 0;
@@ -59,7 +64,8 @@ static int unsound(const struct eo_table *table, const char *around)
 
 static void test_tables(void)
 {
-  ok(unsound(&eo_design_table, "") == 0, "design tables: unique keys, units in the suffix, defaults within ranges, help");
+  ok(unsound(&eo_design_table, "") == 0,
+     "design tables: unique keys, units in the suffix, defaults within ranges, help");
   ok(unsound(&eo_geometry_table, "") == 0, "geometry table likewise");
   const struct eo_stage *stage;
   for (int i = 0; (stage = eo_stage_at(i)); i++)
@@ -113,17 +119,34 @@ static void test_optional(void)
 {
   ok(read_outer("{}", "{\"maybe\":null,\"rows\":[]}") == 0, "an optional object may be absent");
   ok(read_outer("{\"maybe\":null}", "{\"maybe\":null,\"rows\":[]}") == 0, "or null");
-  ok(read_outer("{\"maybe\":{\"number\":1,\"series_mm\":[2,3]}}", "{\"maybe\":{\"number\":1,\"series_mm\":[2,3]},\"rows\":[]}") == 0, "or there");
+  ok(read_outer("{\"maybe\":{\"number\":1,\"series_mm\":[2,3]}}",
+                "{\"maybe\":{\"number\":1,\"series_mm\":[2,3]},\"rows\":[]}") == 0,
+     "or there");
   ok(read_outer("{\"maybe\":{}}", NULL) == 1, "when it is there, what it requires is required");
   ok(read_outer("{\"rows\":[{\"number\":1,\"series_mm\":[2]},{\"number\":2}]}",
-                "{\"maybe\":null,\"rows\":[{\"number\":1,\"series_mm\":[2]},{\"number\":2,\"series_mm\":[]}]}") == 0, "rows with series");
+                "{\"maybe\":null,\"rows\":[{\"number\":1,\"series_mm\":[2]},{\"number\":2,\"series_mm\":[]}]}") == 0,
+     "rows with series");
   ok(read_outer("{\"rows\":[{\"number\":1,\"series_mm\":[2,11]},{\"number\":12}]}", NULL) == 2, "rows with faults");
-  ok(read_outer("{\"maybe\":3,\"rows\":[{\"number\":0},{\"number\":0},{\"number\":0},{\"number\":0},{\"number\":0}]}", NULL) == 2, "no object; too many rows");
+  ok(read_outer("{\"maybe\":3,\"rows\":[{\"number\":0},{\"number\":0},{\"number\":0},{\"number\":0},{\"number\":0}]}",
+                NULL) == 2,
+     "no object; too many rows");
 }
 
-static const struct eo_unit *const units[] = {NULL, &eo_unit_mm, &eo_unit_um, &eo_unit_nm, &eo_unit_deg, &eo_unit_rpm, &eo_unit_Nm, &eo_unit_MPa,
-                                              &eo_unit_GPa, &eo_unit_N_per_um, &eo_unit_per_mm, &eo_unit_ms, &eo_unit_um_mm_per_N,
-                                              &eo_unit_um_per_N, &eo_unit_per_mm2};
+static const struct eo_unit *const units[] = {NULL,
+                                              &eo_unit_mm,
+                                              &eo_unit_um,
+                                              &eo_unit_nm,
+                                              &eo_unit_deg,
+                                              &eo_unit_rpm,
+                                              &eo_unit_Nm,
+                                              &eo_unit_MPa,
+                                              &eo_unit_GPa,
+                                              &eo_unit_N_per_um,
+                                              &eo_unit_per_mm,
+                                              &eo_unit_ms,
+                                              &eo_unit_um_mm_per_N,
+                                              &eo_unit_um_per_N,
+                                              &eo_unit_per_mm2};
 
 static void test_units(void)
 {
@@ -143,7 +166,8 @@ static void test_units(void)
   ok(long_lost == 0, "%d random document numbers of all units survive out and in", count);
   ok(short_changed == 0, "decimals of up to 12 digits come back as they were written");
   ok(unsettled == 0, "any SI double settles at once, at most one rounding away");
-  ok(eo_unit_in(&eo_unit_mm, 6) == 0.006 && eo_unit_in(&eo_unit_um, 14) == 14e-6 && eo_unit_in(&eo_unit_MPa, 1) == 1e6, "6 mm, 14 um and 1 MPa are the nearest doubles");
+  ok(eo_unit_in(&eo_unit_mm, 6) == 0.006 && eo_unit_in(&eo_unit_um, 14) == 14e-6 && eo_unit_in(&eo_unit_MPa, 1) == 1e6,
+     "6 mm, 14 um and 1 MPa are the nearest doubles");
   close_to(eo_unit_in(&eo_unit_rpm, 2000), 209.43951023931953, 1e-12, "2000 rpm in rad/s");
   close_to(eo_unit_in(&eo_unit_N_per_mm_um, 20), 2e10, 0, "20 N/(mm um) in Pa");
 }
@@ -179,11 +203,13 @@ static bool same(const struct eo_table *table, const char *a, const char *b)
       equal = strcmp(x, y) == 0;
       break;
     case EO_FIELD_NUMBERS:
-      equal = isnan(*(const double *)x) ? isnan(*(const double *)y) : same_bits(x, y, (size_t)field->count * sizeof(double));
+      equal = isnan(*(const double *)x) ? isnan(*(const double *)y)
+                                        : same_bits(x, y, (size_t)field->count * sizeof(double));
       break;
     case EO_FIELD_LIMIT:
       equal = ((const struct eo_constraint *)x)->enabled == ((const struct eo_constraint *)y)->enabled &&
-              (!((const struct eo_constraint *)x)->enabled || ((const struct eo_constraint *)x)->limit == ((const struct eo_constraint *)y)->limit);
+              (!((const struct eo_constraint *)x)->enabled ||
+               ((const struct eo_constraint *)x)->limit == ((const struct eo_constraint *)y)->limit);
       break;
     case EO_FIELD_OBJECT:
       equal = same(field->table, x, y);
@@ -235,15 +261,20 @@ static void test_examples(void)
     struct eo_geometry geometry, geometry_again;
     struct eo_error error = {0};
     char hash[EO_HASH_LENGTH + 1], hash_again[EO_HASH_LENGTH + 1];
-    ok(eo_example_build(example->name, &design) && through_text(&design, &back) && same_design(&design, &back), "%s survives its document", example->name);
+    ok(eo_example_build(example->name, &design) && through_text(&design, &back) && same_design(&design, &back),
+       "%s survives its document", example->name);
     complete = design;
-    if (!ok(eo_design_complete(&complete, &geometry, &error) == EO_OK, "%s is a possible design %s %s", example->name, error.pointer, error.text))
+    if (!ok(eo_design_complete(&complete, &geometry, &error) == EO_OK, "%s is a possible design %s %s", example->name,
+            error.pointer, error.text))
       continue;
-    ok(through_text(&complete, &back) && same_design(&complete, &back), "%s survives with every default resolved", example->name);
+    ok(through_text(&complete, &back) && same_design(&complete, &back), "%s survives with every default resolved",
+       example->name);
     again = back;
-    ok(eo_design_complete(&again, &geometry_again, &error) == EO_OK && same_design(&complete, &again) && memcmp(&geometry, &geometry_again, sizeof geometry) == 0,
+    ok(eo_design_complete(&again, &geometry_again, &error) == EO_OK && same_design(&complete, &again) &&
+           memcmp(&geometry, &geometry_again, sizeof geometry) == 0,
        "%s: completing the resolved document changes nothing, the geometry's bits included", example->name);
-    ok(!eo_design_hash(&complete, hash, &error) && !eo_design_hash(&again, hash_again, &error) && strcmp(hash, hash_again) == 0 && strlen(hash) == 64,
+    ok(!eo_design_hash(&complete, hash, &error) && !eo_design_hash(&again, hash_again, &error) &&
+           strcmp(hash, hash_again) == 0 && strlen(hash) == 64,
        "%s: hash %.8s", example->name, hash);
   }
 }
@@ -274,7 +305,8 @@ static json_t *random_value(const struct eo_field *field)
   double low;
   for (; field->choices && field->choices[choices]; choices++)
     ;
-  if (field->flags & EO_FIELD_NULLABLE && field->kind != EO_FIELD_NUMBERS && uniform() < 0.3 && strcmp(field->key, "share") != 0)
+  if (field->flags & EO_FIELD_NULLABLE && field->kind != EO_FIELD_NUMBERS && uniform() < 0.3 &&
+      strcmp(field->key, "share") != 0)
     return json_null();
   switch (field->kind) {
   case EO_FIELD_NUMBER:
@@ -286,14 +318,16 @@ static json_t *random_value(const struct eo_field *field)
   case EO_FIELD_FLAG:
     return json_boolean(uniform() < 0.5);
   case EO_FIELD_TEXT:
-    return json_string(choices ? field->choices[(int)(choices * uniform())] : "Stirnradgetriebe \xc3\xa4\xe2\x82\xac \"x\" \\ \n");
+    return json_string(choices ? field->choices[(int)(choices * uniform())]
+                               : "Stirnradgetriebe \xc3\xa4\xe2\x82\xac \"x\" \\ \n");
   case EO_FIELD_CHOICE:
     return json_string(field->choices[(int)(choices * uniform())]);
   case EO_FIELD_NUMBERS:
     array = json_array();
     low = random_number(field) / 2;
     for (int i = 0; i < field->count; i++)
-      json_array_append_new(array, json_real(low + (i + 1) * (field->high - low) / (field->count + 1) * (0.9 + 0.1 * uniform())));
+      json_array_append_new(
+          array, json_real(low + (i + 1) * (field->high - low) / (field->count + 1) * (0.9 + 0.1 * uniform())));
     return array;
   case EO_FIELD_OBJECT:
     return random_object(field->table);
@@ -313,8 +347,7 @@ static void state_shares(json_t *document)
 {
   json_t *cases = json_object_get(document, "load_cases"), *row;
   size_t i;
-  json_array_foreach(cases, i, row)
-    json_object_set_new(row, "share", json_real(1 + uniform()));
+  json_array_foreach(cases, i, row) json_object_set_new(row, "share", json_real(1 + uniform()));
 }
 
 static void test_random_designs(void)

@@ -1,4 +1,5 @@
-/* Unloaded contact in its two independent forms, pair by pair: Litvin's equations on exact surfaces and the smallest gap. */
+/* Unloaded contact in its two independent forms, pair by pair: Litvin's equations on exact surfaces and the smallest
+   gap. */
 #include "contact-fixture.h"
 #include "contact/unloaded.h"
 
@@ -18,8 +19,8 @@ struct bench {
 static struct bench bench;
 
 /* The right end, tilted about its own mid face; phases over the middle part of the path. */
-static void run(const struct eo_gear_pair *gears, const struct eo_flank_modification *pinion, const struct eo_flank_modification *gear, double kappa,
-                double gamma, double reach)
+static void run(const struct eo_gear_pair *gears, const struct eo_flank_modification *pinion,
+                const struct eo_flank_modification *gear, double kappa, double gamma, double reach)
 {
   struct eo_error error;
   struct eo_geometry *g = &bench.geometry;
@@ -29,11 +30,13 @@ static void run(const struct eo_gear_pair *gears, const struct eo_flank_modifica
   bench.errors = (struct eo_shaft_errors){kappa, gamma, 0};
   for (int i = 0; i < PHASES; i++)
     bench.phase[i] = reach * (2.0 * i / (PHASES - 1) - 1);
-  ok(eo_unloaded_exact(&bench.field, &bench.errors, PHASES, bench.phase, bench.exact, &error) == EO_OK, "exact contact");
+  ok(eo_unloaded_exact(&bench.field, &bench.errors, PHASES, bench.phase, bench.exact, &error) == EO_OK,
+     "exact contact");
   eo_unloaded_minimum(&bench.field, PHASES, bench.phase, bench.least);
 }
 
-/* Largest difference of the transmission errors where both touch inside the flank, constant removed (the axial float takes it). */
+/* Largest difference of the transmission errors where both touch inside the flank, constant removed (the axial float
+   takes it). */
 static void agree(const char *what, int fewest, double tolerance)
 {
   double mean = 0, worst = 0, residual = 0;
@@ -56,7 +59,8 @@ static void agree(const char *what, int fewest, double tolerance)
   close_to(1e6 * worst, 0, tolerance, "two forms of unloaded contact, um");
 }
 
-/* Flanks that conform along lines have no point of their own: the exact form says edge, and no transmission error arises. */
+/* Flanks that conform along lines have no point of their own: the exact form says edge, and no transmission error
+   arises. */
 static void test_conjugate(const struct eo_gear_pair *gears)
 {
   struct eo_flank_modification none = {0};
@@ -89,7 +93,8 @@ static void test_outside(const struct eo_gear_pair *gears)
   struct eo_error error;
   double away = 60e-3;
   run(gears, &a, &none, 0, 0, 9e-3);
-  ok(eo_unloaded_exact(&bench.field, &bench.errors, 1, &away, bench.exact, &error) == EO_OK && bench.exact[0].touch == EO_TOUCH_NONE,
+  ok(eo_unloaded_exact(&bench.field, &bench.errors, 1, &away, bench.exact, &error) == EO_OK &&
+         bench.exact[0].touch == EO_TOUCH_NONE,
      "a pair that is not in mesh does not touch");
 }
 

@@ -8,7 +8,8 @@
 
 static void refused(enum eo_code code, const struct eo_error *error, const char *pointer)
 {
-  ok(code == EO_ERROR_INPUT && error->text[0] && !strcmp(error->pointer, pointer), "%s: %s", error->pointer, error->text);
+  ok(code == EO_ERROR_INPUT && error->text[0] && !strcmp(error->pointer, pointer), "%s: %s", error->pointer,
+     error->text);
 }
 
 static void parameters(void)
@@ -23,12 +24,17 @@ static void parameters(void)
       {offsetof(struct eo_dynamics_parameters, mass[1]), -1, "/supports/gear_mass_kg"},
       {offsetof(struct eo_dynamics_parameters, inertia[0]), NAN, "/supports/pinion_inertia_kg_m2"},
       {offsetof(struct eo_dynamics_parameters, bearing_stiffness[0]), 0, "/supports/pinion_bearing_stiffness_N_per_um"},
-      {offsetof(struct eo_dynamics_parameters, bearing_stiffness[1]), -1e9, "/supports/gear_bearing_stiffness_N_per_um"},
+      {offsetof(struct eo_dynamics_parameters, bearing_stiffness[1]), -1e9,
+       "/supports/gear_bearing_stiffness_N_per_um"},
       {offsetof(struct eo_dynamics_parameters, bearing_damping[1]), -1, "/supports/bearing_damping_ratio"},
-      {offsetof(struct eo_dynamics_parameters, gear_axial_stiffness[1]), INFINITY, "/supports/gear_axial_stiffness_right_N_per_um"},
-      {offsetof(struct eo_dynamics_parameters, groove_axial_stiffness[0]), 0, "/supports/pinion_groove_axial_stiffness_N_per_um"},
-      {offsetof(struct eo_dynamics_parameters, groove_torsional_stiffness[1]), -1, "/supports/gear_groove_torsional_stiffness_Nm_per_rad"},
-      {offsetof(struct eo_dynamics_parameters, groove_torsional_damping[0]), 1, "/supports/pinion_groove_torsional_stiffness_Nm_per_rad"},
+      {offsetof(struct eo_dynamics_parameters, gear_axial_stiffness[1]), INFINITY,
+       "/supports/gear_axial_stiffness_right_N_per_um"},
+      {offsetof(struct eo_dynamics_parameters, groove_axial_stiffness[0]), 0,
+       "/supports/pinion_groove_axial_stiffness_N_per_um"},
+      {offsetof(struct eo_dynamics_parameters, groove_torsional_stiffness[1]), -1,
+       "/supports/gear_groove_torsional_stiffness_Nm_per_rad"},
+      {offsetof(struct eo_dynamics_parameters, groove_torsional_damping[0]), 1,
+       "/supports/pinion_groove_torsional_stiffness_Nm_per_rad"},
       {offsetof(struct eo_dynamics_parameters, mesh_damping), -1, "/supports/mesh_damping_ratio"},
       {offsetof(struct eo_dynamics_parameters, base_radius[1]), 0, "/gear_pair"},
   };
@@ -56,7 +62,8 @@ static void cases(void)
   ok(!solver, "nothing is left behind");
   eo_vibration_new(&solver, 8, 0, NULL);
   struct eo_vibration_case load = paper_case(&law, &law);
-  ok(eo_vibration_solve(solver, &load, EO_START_COLD, &r, &error) == EO_ERROR_NUMERIC, "a solver without a model is refused");
+  ok(eo_vibration_solve(solver, &load, EO_START_COLD, &r, &error) == EO_ERROR_NUMERIC,
+     "a solver without a model is refused");
   eo_vibration_set_model(solver, &p, NULL);
   load.torque = 0;
   refused(eo_vibration_solve(solver, &load, EO_START_COLD, &r, &error), &error, "/load_cases/torque_Nm");
@@ -69,7 +76,8 @@ static void cases(void)
   load.pinion_teeth = 0;
   refused(eo_vibration_solve(solver, &load, EO_START_COLD, &r, &error), &error, "/gear_pair/pinion_teeth");
   load = paper_case(&law, &empty);
-  ok(eo_vibration_solve(solver, &load, EO_START_COLD, &r, &error) == EO_ERROR_NUMERIC, "%s", "a law that was never set is refused");
+  ok(eo_vibration_solve(solver, &load, EO_START_COLD, &r, &error) == EO_ERROR_NUMERIC, "%s",
+     "a law that was never set is refused");
   load = paper_case(&law, &law);
   load.impact = EO_IMPACT_PAPER;
   load.pulse[0] = (struct eo_pulse){EO_PULSE_HALF_SINE, 100, 0, 0};
@@ -91,7 +99,8 @@ static int all_finite(const struct eo_vibration *r)
   for (int reading = 0; reading < EO_READINGS; reading++)
     if (!isfinite(r->rms[reading][0]) || !isfinite(r->rms_pair[reading]) || !isfinite(r->rms_of_mean[reading]))
       return 0;
-  return isfinite(r->force_min[0]) && isfinite(r->force_max[0]) && isfinite(r->dynamic_factor[0]) && isfinite(r->bearing_force_max[0][0]);
+  return isfinite(r->force_min[0]) && isfinite(r->force_max[0]) && isfinite(r->dynamic_factor[0]) &&
+         isfinite(r->bearing_force_max[0][0]);
 }
 
 /* Undamped, at the eigenfrequencies themselves: a finite answer, or an outcome. */
@@ -116,8 +125,8 @@ static void undamped_resonance(void)
       load.pulse[0] = load.pulse[1] = (struct eo_pulse){EO_PULSE_HALF_SINE, 5000, 0, 0.2};
       enum eo_code code = eo_vibration_solve(solver, &load, EO_START_COLD, &r, NULL);
       /* without a varying force nothing may move, however singular the equations */
-      ok(!code && all_finite(&r) && (impact || r.rms_pair[0] < 1e-6), "undamped at %.1f Hz%s: outcome %d, RMS %.3g", modes.frequency[mode], impact ? " with impacts" : "", (int)r.outcome,
-         r.rms_pair[0]);
+      ok(!code && all_finite(&r) && (impact || r.rms_pair[0] < 1e-6), "undamped at %.1f Hz%s: outcome %d, RMS %.3g",
+         modes.frequency[mode], impact ? " with impacts" : "", (int)r.outcome, r.rms_pair[0]);
     }
   eo_vibration_free(solver);
   eo_law_done(&law);
@@ -141,7 +150,8 @@ static void unfelt_resonance(void)
   struct eo_vibration_case load = paper_case(&law, NULL);
   load.pinion_teeth = 16;
   load.speed = 64;
-  ok(!eo_vibration_solve(solver, &load, EO_START_COLD, &r, NULL) && r.outcome == EO_VIBRATION_CONVERGED && all_finite(&r),
+  ok(!eo_vibration_solve(solver, &load, EO_START_COLD, &r, NULL) && r.outcome == EO_VIBRATION_CONVERGED &&
+         all_finite(&r),
      "a resonance that no mesh feels does no harm");
   eo_vibration_free(solver);
   eo_law_done(&law);

@@ -1,6 +1,6 @@
-/* Linear bricks with incompatible modes (ours) against quadratic bricks with reduced integration (C3D20R of CalculiX) on the same
-   meshes, refined step by step: which of the two moves, and where both go. A line load along one row, the mean normal deflection of
-   another row: so no dent under a point load comes in. For `make check-slow`. */
+/* Linear bricks with incompatible modes (ours) against quadratic bricks with reduced integration (C3D20R of CalculiX)
+   on the same meshes, refined step by step: which of the two moves, and where both go. A line load along one row, the
+   mean normal deflection of another row: so no dent under a point load comes in. For `make check-slow`. */
 #include "flexibility/export.h"
 #include "tests/paper_pair.h"
 #include "tests/tap.h"
@@ -63,7 +63,8 @@ static double theirs(const struct eo_geometry *g, int member, const struct eo_me
   struct eo_section section = {0};
   struct eo_sector sector = {0};
   if (eo_section_init(&section, g, member, settings->bore_radius, &settings->section, NULL) ||
-      eo_sector_init(&sector, &section, layers, g->face_width, eo_sector_twist(g, member), &material, EO_WHOLE_SECTOR, NULL))
+      eo_sector_init(&sector, &section, layers, g->face_width, eo_sector_twist(g, member), &material, EO_WHOLE_SECTOR,
+                     NULL))
     sum = NAN;
   while (file && fgets(text, sizeof text, file) && isfinite(sum)) {
     if (sscanf(text, "%d %lf %lf %lf", &number, &u[0], &u[1], &u[2]) != 4)
@@ -91,16 +92,20 @@ static void study(const struct eo_geometry *g, const struct eo_gear_pair *pair, 
   enum { STEPS = sizeof step / sizeof *step };
   double linear[STEPS], quadratic[STEPS];
   for (int i = 0; i < STEPS; i++) {
-    struct eo_member_settings settings = eo_flexibility_member_settings(&step[i], eo_flexibility_bore_radius(g, pair, member));
+    struct eo_member_settings settings = eo_flexibility_member_settings(&step[i],
+                                                                        eo_flexibility_bore_radius(g, pair, member));
     linear[i] = ours(g, member, &settings);
     quadratic[i] = theirs(g, member, &settings, EO_MESH_C3D20R, directory);
-    printf("# %s, %2d layers: ours %.5f um, C3D20R %.5f um (ours %+.2f %%)\n", member ? "gear" : "pinion", step[i].layers,
-           1e6 * linear[i], 1e6 * quadratic[i], 100 * (linear[i] / quadratic[i] - 1));
+    printf("# %s, %2d layers: ours %.5f um, C3D20R %.5f um (ours %+.2f %%)\n", member ? "gear" : "pinion",
+           step[i].layers, 1e6 * linear[i], 1e6 * quadratic[i], 100 * (linear[i] / quadratic[i] - 1));
   }
-  ok(fabs(linear[STEPS - 1] / quadratic[STEPS - 1] - 1) < 0.025, "%s: within 2.5 %% on the finest mesh", member ? "gear" : "pinion");
+  ok(fabs(linear[STEPS - 1] / quadratic[STEPS - 1] - 1) < 0.025, "%s: within 2.5 %% on the finest mesh",
+     member ? "gear" : "pinion");
   for (int i = 1; i < STEPS; i++) {
-    ok(fabs(linear[i] - quadratic[i]) < 0.6 * fabs(linear[i - 1] - quadratic[i - 1]), "refinement %d shrinks the difference below 60 %%", i);
-    ok(linear[i] > linear[i - 1] && quadratic[i] < quadratic[i - 1], "ours comes from the stiff side, the quadratic bricks from the soft");
+    ok(fabs(linear[i] - quadratic[i]) < 0.6 * fabs(linear[i - 1] - quadratic[i - 1]),
+       "refinement %d shrinks the difference below 60 %%", i);
+    ok(linear[i] > linear[i - 1] && quadratic[i] < quadratic[i - 1],
+       "ours comes from the stiff side, the quadratic bricks from the soft");
   }
 }
 

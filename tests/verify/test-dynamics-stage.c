@@ -1,5 +1,5 @@
-/* The dynamics fed with the static arrays of evaluation.json (case S02), its default parameters for two gear pairs, and the
-   harmonic balance against time integration on the same arrays. */
+/* The dynamics fed with the static arrays of evaluation.json (case S02), its default parameters for two gear pairs, and
+   the harmonic balance against time integration on the same arrays. */
 #include "../cases-json.h"
 #include "../dynamics-fixture.h"
 #include "dynamics/parameters.h"
@@ -41,7 +41,8 @@ static void against_reference(struct eo_vibration_solver *solver, const json_t *
     int failed = eo_law_set_tangent(&law[end], POSITIONS, s->z[end], s->k[end], s->load, ORDER, -1e-4, &error);
     ok(!failed, "the law is set %s", error.text);
   }
-  ok(!eo_vibration_solve(solver, &load, EO_START_COLD, &r, NULL) && r.outcome == EO_VIBRATION_CONVERGED, "S02 tangent law converges");
+  ok(!eo_vibration_solve(solver, &load, EO_START_COLD, &r, NULL) && r.outcome == EO_VIBRATION_CONVERGED,
+     "S02 tangent law converges");
   near(r.rms_pair[EO_READING_NORMAL], number_of(out, "rms_n"), 1e-3, "S02 rms_n");
   near(r.rms_pair[EO_READING_TRANSVERSE], number_of(out, "rms_t"), 1e-3, "S02 rms_t");
   near(r.rms_pair[EO_READING_ROTATIONAL], number_of(out, "rms_rot"), 1e-3, "S02 rms_rot");
@@ -50,10 +51,13 @@ static void against_reference(struct eo_vibration_solver *solver, const json_t *
   eo_vibration_orders(solver, EO_CHANNEL_NORMAL, 0, order);
   const json_t *harmonics = json_object_get(s02, "acc_harmonics_n");
   for (size_t k = 1; k <= json_array_size(harmonics); k++)
-    close_to(cabs(order[k]), json_number_value(json_array_get(harmonics, k - 1)), 1e-3 * 12.3, "S02 acceleration harmonic");
+    close_to(cabs(order[k]), json_number_value(json_array_get(harmonics, k - 1)), 1e-3 * 12.3,
+             "S02 acceleration harmonic");
   for (int end = 0; end < 2; end++)
-    eo_law_set_secant(&law[end], POSITIONS, s->z[end], s->load, 1e-6 * json_number_value(json_array_get(datum, end)), ORDER, -1e-4, NULL);
-  ok(!eo_vibration_solve(solver, &load, EO_START_COLD, &r, NULL) && r.outcome == EO_VIBRATION_CONVERGED, "S02 secant law converges");
+    eo_law_set_secant(&law[end], POSITIONS, s->z[end], s->load, 1e-6 * json_number_value(json_array_get(datum, end)),
+                      ORDER, -1e-4, NULL);
+  ok(!eo_vibration_solve(solver, &load, EO_START_COLD, &r, NULL) && r.outcome == EO_VIBRATION_CONVERGED,
+     "S02 secant law converges");
   near(r.rms_pair[EO_READING_NORMAL], number_of(out, "rms_n_secant"), 1e-3, "S02 rms_n_secant");
   eo_law_done(&law[0]);
   eo_law_done(&law[1]);
@@ -72,7 +76,8 @@ static void sense_of_phase_matters(struct eo_vibration_solver *solver, const jso
   struct eo_vibration_case load = paper_case(&law, &law);
   eo_law_set_tangent(&law, POSITIONS, z, k, s->load, ORDER, -1e-4, NULL);
   eo_vibration_solve(solver, &load, EO_START_COLD, &r, NULL);
-  ok(fabs(r.rms_pair[0] / expected - 1) > 2e-3, "a reversed sense of the phase is told apart: %.4f against %.4f", r.rms_pair[0], expected);
+  ok(fabs(r.rms_pair[0] / expected - 1) > 2e-3, "a reversed sense of the phase is told apart: %.4f against %.4f",
+     r.rms_pair[0], expected);
   eo_law_done(&law);
 }
 
@@ -80,7 +85,8 @@ static void sense_of_phase_matters(struct eo_vibration_solver *solver, const jso
 static void table_law(struct eo_law *law)
 {
   json_t *dynamics = load_cases("dynamics.json");
-  const json_t *table = json_object_get(dynamics, "table_T1"), *loads = json_object_get(table, "P"), *rows = json_object_get(table, "Z");
+  const json_t *table = json_object_get(dynamics, "table_T1"), *loads = json_object_get(table, "P"),
+               *rows = json_object_get(table, "Z");
   int count = (int)json_array_size(loads), positions = (int)json_array_size(json_array_get(rows, 0));
   double p[32], z[32 * 64];
   for (int i = 0; i < count; i++) {
@@ -103,7 +109,8 @@ static void balance_against_integration(struct eo_vibration_solver *solver)
     load.phase_right = 0.2;
     eo_vibration_solve(solver, &load, EO_START_COLD, &balance, NULL);
     eo_vibration_integrate(solver, &load, NULL, &integration, NULL, NULL);
-    ok(integration.outcome == EO_VIBRATION_CONVERGED, "time integration at %d N m settles in %d periods", torque, integration.periods);
+    ok(integration.outcome == EO_VIBRATION_CONVERGED, "time integration at %d N m settles in %d periods", torque,
+       integration.periods);
     for (int end = 0; end < 2; end++)
       for (int reading = 0; reading < EO_READINGS; reading++)
         near(balance.rms[reading][end], integration.rms[reading][end], 1e-4, "RMS, balance against integration");
@@ -113,9 +120,15 @@ static void balance_against_integration(struct eo_vibration_solver *solver)
 
 static struct eo_supports default_supports(void)
 {
-  return (struct eo_supports){.bearing_stiffness = {8e8, 1e9}, .gear_axial_stiffness = {2e8, 2e8}, .groove_axial_stiffness = {NAN, NAN},
-                              .groove_torsional_stiffness = {NAN, NAN}, .mass = {NAN, NAN}, .inertia = {NAN, NAN},
-                              .bearing_damping_ratio = 0.05, .groove_damping_ratio = 0.02, .mesh_damping_ratio = 0.07,
+  return (struct eo_supports){.bearing_stiffness = {8e8, 1e9},
+                              .gear_axial_stiffness = {2e8, 2e8},
+                              .groove_axial_stiffness = {NAN, NAN},
+                              .groove_torsional_stiffness = {NAN, NAN},
+                              .mass = {NAN, NAN},
+                              .inertia = {NAN, NAN},
+                              .bearing_damping_ratio = 0.05,
+                              .groove_damping_ratio = 0.02,
+                              .mesh_damping_ratio = 0.07,
                               .mesh_damping_stiffness = NAN};
 }
 
@@ -125,8 +138,11 @@ static void pair_of(const json_t *pair, struct eo_geometry *g, struct eo_gear_pa
   const json_t *input = json_object_get(pair, "input"), *check = json_object_get(pair, "check");
   double mn = number_of(input, "mn") * 1e-3, beta = number_of(input, "beta") * M_PI / 180;
   *g = (struct eo_geometry){.base_helix_angle = number_of(check, "bb"), .normal_module = mn};
-  *p = (struct eo_gear_pair){.ends = 2, .normal_module = mn, .face_width = number_of(input, "b") * 1e-3,
-                             .groove_width = number_of(input, "groove") * 1e-3, .groove_diameter = {NAN, NAN},
+  *p = (struct eo_gear_pair){.ends = 2,
+                             .normal_module = mn,
+                             .face_width = number_of(input, "b") * 1e-3,
+                             .groove_width = number_of(input, "groove") * 1e-3,
+                             .groove_diameter = {NAN, NAN},
                              .bore = {NAN, 2 * number_of(pair, "gear_bore_radius_m")}};
   static const char *const teeth[2] = {"z1", "z2"}, *const base[2] = {"rb1", "rb2"};
   for (int m = 0; m < 2; m++) {
@@ -152,13 +168,27 @@ static void default_parameters(const json_t *evaluation, const char *name)
   const struct {
     const char *key;
     double value;
-  } row[] = {{"Rp", p.base_radius[0]},           {"Rg", p.base_radius[1]},           {"mp", p.mass[0]},
-             {"Ip", p.inertia[0]},               {"mg", p.mass[1]},                  {"Ig", p.inertia[1]},
-             {"kpy", p.bearing_stiffness[0]},    {"kgy", p.bearing_stiffness[1]},    {"kg1z", p.gear_axial_stiffness[0]},
-             {"kpz", p.groove_axial_stiffness[0]}, {"kgz", p.groove_axial_stiffness[1]}, {"kt_p", p.groove_torsional_stiffness[0]},
-             {"kt_g", p.groove_torsional_stiffness[1]}, {"cpy", p.bearing_damping[0]}, {"cgy", p.bearing_damping[1]},
-             {"cg1z", p.gear_axial_damping[0]},  {"cg2z", p.gear_axial_damping[1]},  {"cpz", p.groove_axial_damping[0]},
-             {"cgz", p.groove_axial_damping[1]}, {"cm", p.mesh_damping},             {"me", eo_dynamics_equivalent_mass(&p)}};
+  } row[] = {{"Rp", p.base_radius[0]},
+             {"Rg", p.base_radius[1]},
+             {"mp", p.mass[0]},
+             {"Ip", p.inertia[0]},
+             {"mg", p.mass[1]},
+             {"Ig", p.inertia[1]},
+             {"kpy", p.bearing_stiffness[0]},
+             {"kgy", p.bearing_stiffness[1]},
+             {"kg1z", p.gear_axial_stiffness[0]},
+             {"kpz", p.groove_axial_stiffness[0]},
+             {"kgz", p.groove_axial_stiffness[1]},
+             {"kt_p", p.groove_torsional_stiffness[0]},
+             {"kt_g", p.groove_torsional_stiffness[1]},
+             {"cpy", p.bearing_damping[0]},
+             {"cgy", p.bearing_damping[1]},
+             {"cg1z", p.gear_axial_damping[0]},
+             {"cg2z", p.gear_axial_damping[1]},
+             {"cpz", p.groove_axial_damping[0]},
+             {"cgz", p.groove_axial_damping[1]},
+             {"cm", p.mesh_damping},
+             {"me", eo_dynamics_equivalent_mass(&p)}};
   for (size_t i = 0; i < sizeof row / sizeof *row; i++)
     near(row[i].value, number_of(expected, row[i].key), 1e-12, row[i].key);
 }

@@ -1,6 +1,6 @@
-/* Our solver against CalculiX on our own mesh: same nodes, same loads, C3D8I. The two elements are the same for parallelepipeds (see
-   test-element); elsewhere CalculiX leaves the ratio of the Jacobians out of the incompatible modes, which ours has so that
-   it passes the patch test. That is the whole of the difference seen here. */
+/* Our solver against CalculiX on our own mesh: same nodes, same loads, C3D8I. The two elements are the same for
+   parallelepipeds (see test-element); elsewhere CalculiX leaves the ratio of the Jacobians out of the incompatible
+   modes, which ours has so that it passes the patch test. That is the whole of the difference seen here. */
 #include "flexibility/export.h"
 #include "tests/paper_pair.h"
 #include "tests/tap.h"
@@ -17,23 +17,24 @@ static int write_text(void *context, const char *text, size_t length)
 }
 
 /* A point load inside the flank, a load spread over a corner, and a line load along a row. */
-static const struct eo_mesh_load inside[] = {{3, 4, 1000}},
-                                 corner[] = {{8, 0, 250}, {8, 1, 500}, {8, 2, 250}, {7, 0, 500}, {7, 1, 1000}, {7, 2, 500}},
-                                 line[] = {{1, 0, 500},  {1, 1, 1000}, {1, 2, 1000},  {1, 3, 1000},  {1, 4, 1000},
-                                           {1, 5, 1000}, {1, 6, 1000}, {1, 7, 1000},  {1, 8, 1000},  {1, 9, 1000},
+static const struct eo_mesh_load inside[] = {{3, 4, 1000}}, corner[] = {{8, 0, 250}, {8, 1, 500},  {8, 2, 250},
+                                                                        {7, 0, 500}, {7, 1, 1000}, {7, 2, 500}},
+                                 line[] = {{1, 0, 500},   {1, 1, 1000},  {1, 2, 1000}, {1, 3, 1000}, {1, 4, 1000},
+                                           {1, 5, 1000},  {1, 6, 1000},  {1, 7, 1000}, {1, 8, 1000}, {1, 9, 1000},
                                            {1, 10, 1000}, {1, 11, 1000}, {1, 12, 500}};
 static const struct eo_mesh_case load_case[CASES_COUNT] = {{1, inside}, {6, corner}, {13, line}};
 
 static struct eo_member_settings coarse(const struct eo_geometry *g, const struct eo_gear_pair *pair, int member)
 {
-  struct eo_flexibility_settings settings = {.sector_teeth = 3, .layers = LAYERS, .flank_rows = ROWS, .fillet_elements = 8,
-                                             .columns = 4, .rim_elements = 4};
+  struct eo_flexibility_settings settings = {
+      .sector_teeth = 3, .layers = LAYERS, .flank_rows = ROWS, .fillet_elements = 8, .columns = 4, .rim_elements = 4};
   return eo_flexibility_member_settings(&settings, eo_flexibility_bore_radius(g, pair, member));
 }
 
 /* Runs CalculiX on the exported mesh; displacement[case][flank node][3], m. Returns 0 when all numbers were read. */
 static int run_calculix(const struct eo_geometry *g, int member, const struct eo_material *material,
-                        const struct eo_member_settings *settings, const char *directory, int nodes, double *displacement)
+                        const struct eo_member_settings *settings, const char *directory, int nodes,
+                        double *displacement)
 {
   char path[300], command[400], text[300];
   snprintf(path, sizeof path, "%s/sector.inp", directory);
@@ -41,7 +42,8 @@ static int run_calculix(const struct eo_geometry *g, int member, const struct eo
   if (!file)
     return -1;
   struct eo_error error;
-  enum eo_code code = eo_mesh_export(g, member, material, settings, EO_MESH_C3D8I, CASES_COUNT, load_case, write_text, file, &error);
+  enum eo_code code = eo_mesh_export(g, member, material, settings, EO_MESH_C3D8I, CASES_COUNT, load_case, write_text,
+                                     file, &error);
   fclose(file);
   snprintf(command, sizeof command, "cd '%s' && OMP_NUM_THREADS=1 ccx -i sector >ccx.txt 2>&1", directory);
   if (code || system(command))
@@ -60,7 +62,8 @@ static int run_calculix(const struct eo_geometry *g, int member, const struct eo
   return found == CASES_COUNT * nodes ? 0 : -1;
 }
 
-static void compare(int member, const struct eo_member_result *result, const struct eo_sector *sector, const double *displacement)
+static void compare(int member, const struct eo_member_result *result, const struct eo_sector *sector,
+                    const double *displacement)
 {
   int across = LAYERS + 1, nodes = (ROWS + 1) * across;
   for (int k = 0; k < CASES_COUNT; k++) {
@@ -78,12 +81,14 @@ static void compare(int member, const struct eo_member_result *result, const str
       largest = fmax(largest, fabs(theirs));
       worst = fmax(worst, fabs(ours - theirs));
     }
-    ok(largest > 1e-7 && worst < 0.01 * largest, "%s, load case %d: within 1 %% of the largest displacement (%.4g um): %.4f %%",
-       member ? "gear" : "pinion", k + 1, 1e6 * largest, 100 * worst / largest);
+    ok(largest > 1e-7 && worst < 0.01 * largest,
+       "%s, load case %d: within 1 %% of the largest displacement (%.4g um): %.4f %%", member ? "gear" : "pinion",
+       k + 1, 1e6 * largest, 100 * worst / largest);
   }
 }
 
-static void check_member(const struct eo_geometry *g, const struct eo_gear_pair *pair, int member, const char *directory)
+static void check_member(const struct eo_geometry *g, const struct eo_gear_pair *pair, int member,
+                         const char *directory)
 {
   struct eo_material material = paper_steel();
   struct eo_member_settings settings = coarse(g, pair, member);
@@ -97,9 +102,11 @@ static void check_member(const struct eo_geometry *g, const struct eo_gear_pair 
   if (!code)
     code = eo_section_init(&section, g, member, settings.bore_radius, &settings.section, &error);
   if (!code)
-    code = eo_sector_init(&sector, &section, LAYERS, g->face_width, eo_sector_twist(g, member), &material, EO_WHOLE_SECTOR, &error);
+    code = eo_sector_init(&sector, &section, LAYERS, g->face_width, eo_sector_twist(g, member), &material,
+                          EO_WHOLE_SECTOR, &error);
   if (ok(!code, "the coarse model is computed %s", error.text) &&
-      ok(!run_calculix(g, member, &material, &settings, directory, (ROWS + 1) * (LAYERS + 1), displacement), "CalculiX runs"))
+      ok(!run_calculix(g, member, &material, &settings, directory, (ROWS + 1) * (LAYERS + 1), displacement),
+         "CalculiX runs"))
     compare(member, &result, &sector, displacement);
   eo_sector_done(&sector);
   eo_section_done(&section);

@@ -1,7 +1,7 @@
-/* Bulk compliance against an independent computation (tests/cases/contact.json, fe_bulk: deflection under a line load along a row).
-   One tooth pair pressed together by 7.2 um: load and root stress against the three-dimensional contact analysis of CalculiX
-   (tests/cases/calculix.json: unmodified pair, 3-tooth sectors, no neighbour coupling). The contact is solved here in a few lines, so
-   that this test stands on the flexibility alone. */
+/* Bulk compliance against an independent computation (tests/cases/contact.json, fe_bulk: deflection under a line load
+   along a row). One tooth pair pressed together by 7.2 um: load and root stress against the three-dimensional contact
+   analysis of CalculiX (tests/cases/calculix.json: unmodified pair, 3-tooth sectors, no neighbour coupling). The
+   contact is solved here in a few lines, so that this test stands on the flexibility alone. */
 #include "flexibility/flexibility.h"
 #include "tests/paper_pair.h"
 #include "tests/tap.h"
@@ -33,8 +33,8 @@ static void place_line(const struct eo_geometry *g, double c, int pair, struct l
 }
 
 /* Weber and Banaschek's local approach under the load p of a cell, and its derivative. */
-static double local_approach(const struct eo_geometry *g, const struct eo_material *m, double s, double length, double p,
-                             double *slope)
+static double local_approach(const struct eo_geometry *g, const struct eo_material *m, double s, double length,
+                             double p, double *slope)
 {
   double nu = m->poissons_ratio, factor = 2 * (1 - nu * nu) / (M_PI * m->youngs_modulus), q = fmax(p, 1e-3) / length;
   double width = 4 * factor * q * eo_geometry_relative_radius(g, s);
@@ -58,7 +58,8 @@ static double press(const struct eo_geometry *g, const struct eo_material *m, co
   for (int iteration = 0; iteration < 30; iteration++) {
     for (int i = 0; i < count; i++) {
       double slope;
-      r[i] = z - local_approach(g, m, line->point[active[i]].s[0], line->length[active[i]], line->load[active[i]], &slope);
+      r[i] = z -
+             local_approach(g, m, line->point[active[i]].s[0], line->length[active[i]], line->load[active[i]], &slope);
       for (int j = 0; j < count; j++) {
         a[i * count + j] = c[active[i] * line->n + active[j]];
         r[i] -= a[i * count + j] * line->load[active[j]];
@@ -99,8 +100,8 @@ static double root_stress(const struct eo_flexibility *flexibility, int member, 
   return largest;
 }
 
-static void compare_pairs(const struct eo_flexibility *flexibility, const struct eo_geometry *g, const struct eo_material *m,
-                          json_t *reference)
+static void compare_pairs(const struct eo_flexibility *flexibility, const struct eo_geometry *g,
+                          const struct eo_material *m, json_t *reference)
 {
   static const char *const table[2] = {"root_pinion_MPa_at_prescribed_Z", "root_gear_MPa_at_prescribed_Z"};
   struct eo_kernel kernel = eo_flexibility_kernel(flexibility);
@@ -126,7 +127,8 @@ static void compare_pairs(const struct eo_flexibility *flexibility, const struct
       double close = 1e9, other = 0, other_eta = 0;
       const char *phase;
       json_t *row;
-      json_object_foreach(json_object_get(reference, table[member]), phase, row) if (fabs(atof(phase) - 1e3 * c) < close)
+      json_object_foreach(json_object_get(reference, table[member]), phase,
+                          row) if (fabs(atof(phase) - 1e3 * c) < close)
       {
         close = fabs(atof(phase) - 1e3 * c);
         other = json_number_value(json_array_get(row, 0));
@@ -153,8 +155,8 @@ static void compare_pairs(const struct eo_flexibility *flexibility, const struct
   }
 }
 
-/* Deflection at both ends and the middle of a row under a uniform line load of 1 N per mm of face width, um. The table is not symmetric
-   in eta, so it tells the hand of the helix and the side that meets first. */
+/* Deflection at both ends and the middle of a row under a uniform line load of 1 N per mm of face width, um. The table
+   is not symmetric in eta, so it tells the hand of the helix and the side that meets first. */
 static void compare_bulk(const struct eo_flexibility *flexibility, const struct eo_geometry *g, json_t *reference)
 {
   static const char *const name[2] = {"pinion", "gear"};
@@ -182,8 +184,10 @@ static void compare_bulk(const struct eo_flexibility *flexibility, const struct 
   }
 }
 
-/* Transverse loaded transmission error, um, with two pairs in contact, at a phase where no third touches: P = 8638.6 N. */
-static double two_pairs(const struct eo_flexibility *flexibility, const struct eo_geometry *g, const struct eo_material *m)
+/* Transverse loaded transmission error, um, with two pairs in contact, at a phase where no third touches: P = 8638.6 N.
+ */
+static double two_pairs(const struct eo_flexibility *flexibility, const struct eo_geometry *g,
+                        const struct eo_material *m)
 {
   struct eo_kernel kernel = eo_flexibility_kernel(flexibility);
   struct line line = {0};
@@ -197,16 +201,18 @@ static double two_pairs(const struct eo_flexibility *flexibility, const struct e
   return 1e6 * z / cos(g->base_helix_angle);
 }
 
-/* Two pairs at once: CalculiX with each pair in its own sectors (calculix.json), and with both in one sector, where each tooth bends
-   the other's ground: 8.16 um [an independent contact analysis of the pair, quoted in the project's model notes]. */
-static void compare_coupling(const struct eo_flexibility *uncoupled, const struct eo_geometry *g, const struct eo_gear_pair *pair,
-                             const struct eo_material *m, json_t *reference)
+/* Two pairs at once: CalculiX with each pair in its own sectors (calculix.json), and with both in one sector, where
+   each tooth bends the other's ground: 8.16 um [an independent contact analysis of the pair, quoted in the project's
+   model notes]. */
+static void compare_coupling(const struct eo_flexibility *uncoupled, const struct eo_geometry *g,
+                             const struct eo_gear_pair *pair, const struct eo_material *m, json_t *reference)
 {
   struct eo_flexibility_settings settings = default_settings();
   struct eo_flexibility *coupled = NULL;
   double apart = json_number_value(json_array_get(json_object_get(reference, "LTE_um"), 3));
   near(two_pairs(uncoupled, g, m), apart, 0.02, "transmission error, each pair in its own sector, um");
-  ok(!eo_flexibility_prepare(g, pair, m, &settings, NULL, NULL, &coupled, NULL), "prepared with five teeth and coupling");
+  ok(!eo_flexibility_prepare(g, pair, m, &settings, NULL, NULL, &coupled, NULL),
+     "prepared with five teeth and coupling");
   if (coupled)
     near(two_pairs(coupled, g, m), 8.16, 0.02, "transmission error, both pairs in one sector, um");
   eo_flexibility_free(coupled);

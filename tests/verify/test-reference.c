@@ -1,6 +1,7 @@
-/* End to end against an independent computation of the same model on the paper's pair, with the boundary of that computation: 3-tooth
-   sector, no coupling between neighbouring teeth, mesh damping from 1100 N/um, no torsion through the groove. Its stated uncertainty is
-   max(0.15 um, 20 %) for peak to peak; the two agree far closer, and the tolerances here keep them so. */
+/* End to end against an independent computation of the same model on the paper's pair, with the boundary of that
+   computation: 3-tooth sector, no coupling between neighbouring teeth, mesh damping from 1100 N/um, no torsion through
+   the groove. Its stated uncertainty is max(0.15 um, 20 %) for peak to peak; the two agree far closer, and the
+   tolerances here keep them so. */
 #include <stdlib.h>
 
 #include "document/design_document.h"
@@ -36,7 +37,8 @@ static struct bench prepare(bool edges, const struct eo_flexibility *flexibility
 {
   struct bench bench = {0};
   struct eo_error error;
-  /* As evaluation.json says of the same computation: relief beyond the path of contact at the corner's own place, cells by their middles. */
+  /* As evaluation.json says of the same computation: relief beyond the path of contact at the corner's own place, cells
+     by their middles. */
   build("paper", 0.1, edges, EO_LAW_TANGENT);
   struct eo_contact_grid_settings grid = eo_contact_grid_default(&design.resolution);
   struct eo_pair_options options = {.corner_at_radius = true, .grid = &grid};
@@ -54,7 +56,8 @@ static void done(struct bench *bench)
   eo_pair_free(bench->pair);
 }
 
-static const struct eo_evaluation *run(struct bench *bench, const char *example, double degrees, enum eo_mesh_law law, int want)
+static const struct eo_evaluation *run(struct bench *bench, const char *example, double degrees, enum eo_mesh_law law,
+                                       int want)
 {
   struct eo_error error;
   build(example, degrees, bench->pair->resolution.tip_edge_contact, law);
@@ -78,7 +81,8 @@ static void check_vibration(struct bench *bench, const char *example, enum eo_me
   const struct eo_evaluation *r = run(bench, example, 0.1, law, 0);
   for (int k = 0; k < 3; k++) {
     char what[100];
-    snprintf(what, sizeof what, "%s, %s law, case %d: RMS, m/s2", example, law == EO_LAW_SECANT ? "secant" : "tangent", k + 1);
+    snprintf(what, sizeof what, "%s, %s law, case %d: RMS, m/s2", example, law == EO_LAW_SECANT ? "secant" : "tangent",
+             k + 1);
     near(r->load_case[k].vibration.rms_pair[EO_READING_NORMAL], expected[k], 0.03, what);
   }
 }
@@ -106,28 +110,36 @@ static void check_levels(struct bench *bench)
   near(c->end[0].impact.duration, 0.47e-3, 0.01, "its duration, s");
   /* 46..50 MPa there, 49.7 by ISO 6336-3. */
   for (int member = 0; member < 2; member++)
-    near(c->end[0].root[member].maximum / 1e6, 49.7, 0.1, member ? "root stress of the gear, MPa" : "root stress of the pinion, MPa");
+    near(c->end[0].root[member].maximum / 1e6, 49.7, 0.1,
+         member ? "root stress of the gear, MPa" : "root stress of the pinion, MPa");
 }
 
-/* Relief of the pinion's tip side meets the gear's root at the exit: only the root side may move the entering impact. */
+/* Relief of the pinion's tip side meets the gear's root at the exit: only the root side may move the entering impact.
+ */
 static void check_impact(struct bench *bench)
 {
   const struct eo_evaluation *r = run(bench, "paper", 0, EO_LAW_TANGENT, 0);
   struct eo_error error;
   double plain = r->load_case[1].end[0].impact.force, tip, root;
-  struct eo_flank_modification *flank[2] = {&design.modification.flank[EO_PINION][0], &design.modification.flank[EO_PINION][1]};
+  struct eo_flank_modification *flank[2] = {&design.modification.flank[EO_PINION][0],
+                                            &design.modification.flank[EO_PINION][1]};
   for (int end = 0; end < 2; end++) {
     flank[end]->tip_relief = 4e-6;
     flank[end]->tip_relief_start = 4e-3;
   }
-  tip = eo_analysis_run(bench->analysis, &design, 0, &error) ? NAN : bench->analysis->evaluation->load_case[1].end[0].impact.force;
+  tip = eo_analysis_run(bench->analysis, &design, 0, &error)
+            ? NAN
+            : bench->analysis->evaluation->load_case[1].end[0].impact.force;
   for (int end = 0; end < 2; end++) {
     flank[end]->root_relief = 4e-6;
     flank[end]->root_relief_start = 4e-3;
     flank[end]->tip_relief = flank[end]->tip_relief_start = 0;
   }
-  root = eo_analysis_run(bench->analysis, &design, 0, &error) ? NAN : bench->analysis->evaluation->load_case[1].end[0].impact.force;
-  ok(fabs(tip / plain - 1) < 0.03 && root < 0.85 * plain, "impact %.0f N, with tip relief %.0f N, with root relief %.0f N", plain, tip, root);
+  root = eo_analysis_run(bench->analysis, &design, 0, &error)
+             ? NAN
+             : bench->analysis->evaluation->load_case[1].end[0].impact.force;
+  ok(fabs(tip / plain - 1) < 0.03 && root < 0.85 * plain,
+     "impact %.0f N, with tip relief %.0f N, with root relief %.0f N", plain, tip, root);
 }
 
 int main(void)

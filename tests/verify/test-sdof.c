@@ -29,11 +29,15 @@ static void states(void)
   ok(!eo_sdof_solve(&a, EO_SDOF_HIGH, NULL, &high, NULL) && high.converged, "the large state");
   near(low.amplitude[0], linear_amplitude(&a, a.frequency), 1e-9, "the small one is linear");
   near(low.floquet, exp(-a.damping * 2 * M_PI / a.frequency), 1e-6, "its multiplier is that of the linear oscillator");
-  ok(high.rms > 3 * low.rms && high.contact_loss > 0.5 && !high.back_contact, "the large one loses contact, without touching the back");
+  ok(high.rms > 3 * low.rms && high.contact_loss > 0.5 && !high.back_contact,
+     "the large one loses contact, without touching the back");
   ok(high.floquet < 1, "and is stable: %.5f", high.floquet);
-  /* where teeth are apart the velocity decays, in contact the phase plane does: the trace of damping is the same throughout */
-  near(high.floquet, exp(-a.damping * 2 * M_PI / a.frequency), 1e-4, "its multipliers are complex, their product is exp(-2 z T)");
-  ok(!eo_sdof_solve(&a, EO_SDOF_STATE, (double[]){0.82361119, 0.13814359}, &start, NULL), "the large state from its start values");
+  /* where teeth are apart the velocity decays, in contact the phase plane does: the trace of damping is the same
+     throughout */
+  near(high.floquet, exp(-a.damping * 2 * M_PI / a.frequency), 1e-4,
+       "its multipliers are complex, their product is exp(-2 z T)");
+  ok(!eo_sdof_solve(&a, EO_SDOF_STATE, (double[]){0.82361119, 0.13814359}, &start, NULL),
+     "the large state from its start values");
   near(start.rms, high.rms, 1e-7, "is the one found by following the branch");
 }
 
@@ -45,8 +49,8 @@ static void folds(void)
   eo_sdof_grazing(&a, w);
   ok(found.going_up[0] && !found.going_up[1], "the first is met going up");
   close_to(found.contact_lost, w[0], 1e-3, "contact is first lost at the grazing frequency");
-  /* independent time integration (explicit Runge-Kutta, tolerance 1e-8): contact is lost slightly up to 0.828, the jump lies
-     between 0.828 and 0.829; the reference's 0.8206 is the grazing frequency */
+  /* independent time integration (explicit Runge-Kutta, tolerance 1e-8): contact is lost slightly up to 0.828, the jump
+     lies between 0.828 and 0.829; the reference's 0.8206 is the grazing frequency */
   ok(found.frequency[0] > 0.828 && found.frequency[0] < 0.829, "the upward jump at %.5f", found.frequency[0]);
   close_to(found.frequency[1], 0.708, 2e-3, "the downward jump");
 }
