@@ -3,7 +3,7 @@
 
 #include "app/stage.h"
 #include "app/stage_mesh.h"
-#include "excitation/impact.h"
+#include "contact/impact.h"
 
 struct input {
   struct eo_stage_mesh_input mesh;

@@ -5,7 +5,7 @@
 
 #include "contact/grid.h"
 #include "contact/root.h"
-#include "excitation/impact.h"
+#include "contact/impact.h"
 #include "flexibility/flexibility.h"
 
 struct eo_pair {

@@ -1,7 +1,7 @@
 /* The entering impact: against tests/cases/contact.json (block impact), the half sine's closed form, and what may and
    may not move it. */
 #include "contact-fixture.h"
-#include "excitation/impact.h"
+#include "contact/impact.h"
 
 enum { POSITIONS = 8 };
 

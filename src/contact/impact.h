@@ -1,7 +1,7 @@
 /* Entering impact: where the incoming gear tip first touches the deflected pinion, how fast, and how hard (Seireg and
    Houser 1970; physics: half sine of an effective mass on the compliance of a short patch). */
-#ifndef EASEOFF_EXCITATION_IMPACT_H
-#define EASEOFF_EXCITATION_IMPACT_H
+#ifndef EASEOFF_CONTACT_IMPACT_H
+#define EASEOFF_CONTACT_IMPACT_H
 
 #include "contact/loaded.h"
 

@@ -1,4 +1,4 @@
-#include "excitation/impact.h"
+#include "contact/impact.h"
 
 #include "numerics/periodic.h"
 
