@@ -3,8 +3,8 @@
 # nothing and reads no environment; each library has its one floor.
 : "${SOURCES:=.}"
 cd "$SOURCES/src" || exit 99
-floors="base numerics gear flexibility contact dynamics objective optimizer evaluation measurement document store jobs http app"
-core="base numerics gear flexibility contact dynamics objective optimizer evaluation measurement"
+floors="base numerics gear flexibility contact dynamics optimizer evaluation measurement document store jobs http app"
+core="base numerics gear flexibility contact dynamics optimizer evaluation measurement"
 count=0 failed=0
 
 result() # status, what

@@ -4,7 +4,7 @@
 
 #include "contact/field.h"
 #include "document/design_document.h"
-#include "objective/objective.h"
+#include "evaluation/objective.h"
 
 /* Rows of an input table whose struct starts with `struct eo_design design`. */
 #define EO_STAGE_GEAR_PAIR(type) \

@@ -15,7 +15,7 @@
 #include "document/design_document.h"
 #include "document/outline.h"
 #include "document/study.h"
-#include "objective/objective.h"
+#include "evaluation/objective.h"
 
 enum eo_study_stop { EO_STOP_BUDGET, EO_STOP_CONVERGED, EO_STOP_CANCELLED };
 

@@ -7,7 +7,7 @@
 #include "contact/loaded.h"
 #include "dynamics/vibration.h"
 #include "evaluation/pair.h"
-#include "objective/objective.h"
+#include "evaluation/objective.h"
 
 /* Raised with every change after which the same design gives other numbers: what a history keeps belongs to one
    version. */

@@ -4,7 +4,7 @@
 #define EASEOFF_STORE_EVALUATIONS_H
 
 #include "document/text.h"
-#include "objective/objective.h"
+#include "evaluation/objective.h"
 #include "store/store.h"
 
 #include <stdbool.h>

@@ -1,5 +1,5 @@
 /* Objectives, constraints and fitness against their formulae, paper equations (19)-(23). */
-#include "objective/objective.h"
+#include "evaluation/objective.h"
 #include "tap.h"
 
 #include <stddef.h>

@@ -1,4 +1,4 @@
-#include "objective/objective.h"
+#include "evaluation/objective.h"
 
 #include <math.h>
 

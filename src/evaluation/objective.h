@@ -1,7 +1,7 @@
 /* The three objectives, the constraints and the fitness (paper (19)-(23) with the gaps settled; see the notes at each).
  */
-#ifndef EASEOFF_OBJECTIVE_OBJECTIVE_H
-#define EASEOFF_OBJECTIVE_OBJECTIVE_H
+#ifndef EASEOFF_EVALUATION_OBJECTIVE_H
+#define EASEOFF_EVALUATION_OBJECTIVE_H
 
 #include "gear/design.h"
 
