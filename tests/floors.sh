@@ -3,8 +3,8 @@
 # nothing and reads no environment; each library has its one floor.
 : "${SOURCES:=.}"
 cd "$SOURCES/src" || exit 99
-floors="base numerics gear flexibility contact dynamics optimizer evaluation measurement document store jobs http app"
-core="base numerics gear flexibility contact dynamics optimizer evaluation measurement"
+floors="base numerics gear flexibility contact dynamics optimizer evaluation recording measurement document store jobs http app"
+core="base numerics gear flexibility contact dynamics optimizer evaluation recording measurement"
 count=0 failed=0
 
 result() # status, what
@@ -37,8 +37,8 @@ only() # LIBRARY PATTERN FOLDERS
 only SuiteSparse 'cholmod|klu' numerics
 only SUNDIALS 'kinsol|cvode|sundials|nvector|sunlinsol|sunmatrix' numerics
 only jansson 'jansson' 'document|jobs|http|app'
-only libmatio 'matio' measurement
-only HDF5 'hdf5' measurement
+only libmatio 'matio' recording
+only HDF5 'hdf5' recording
 only SQLite 'sqlite3' store
 only libmicrohttpd 'microhttpd' http
 

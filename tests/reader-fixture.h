@@ -2,7 +2,7 @@
 #ifndef EASEOFF_TESTS_READER_FIXTURE_H
 #define EASEOFF_TESTS_READER_FIXTURE_H
 
-#include "measurement/reader.h"
+#include "recording/reader.h"
 #include "tests/tap.h"
 
 #include <stdlib.h>

@@ -10,7 +10,7 @@
 #include "document/layout_document.h"
 #include "gear/geometry.h"
 #include "measurement/measurement.h"
-#include "measurement/reader.h"
+#include "recording/reader.h"
 
 /* Words in which a case may name a finding. */
 static const struct {

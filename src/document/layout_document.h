@@ -9,7 +9,7 @@
 
 #include "document/faults.h"
 #include "document/outline.h"
-#include "measurement/layout.h"
+#include "recording/layout.h"
 
 struct eo_layout_request {
   struct eo_layout_choice choice;

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "document/layout_document.h"
-#include "measurement/reader.h"
+#include "recording/reader.h"
 
 struct work {
   struct eo_recording *recording;

@@ -20,7 +20,7 @@
 #include "document/text.h"
 #include "measurement/comparison.h"
 #include "measurement/measurement.h"
-#include "measurement/notes.h"
+#include "recording/notes.h"
 
 /* What goes with a recording beside its result. */
 struct eo_measurement_label {

@@ -5,8 +5,8 @@
 #include "base/progress.h"
 #include "measurement/ellipse.h"
 #include "measurement/finding.h"
-#include "measurement/recording.h"
-#include "measurement/tracks.h"
+#include "recording/recording.h"
+#include "recording/tracks.h"
 
 enum { EO_SCAN_JUMPS = 4096, EO_SCAN_COLUMNS = 5 };
 

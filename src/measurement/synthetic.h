@@ -7,8 +7,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "measurement/recording.h"
-#include "measurement/tracks.h"
+#include "recording/recording.h"
+#include "recording/tracks.h"
 
 enum { EO_SYNTHETIC_ORDERS = 32, EO_SYNTHETIC_COLUMNS = 5 };
 

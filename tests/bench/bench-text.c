@@ -1,6 +1,6 @@
 /* How fast and in how much memory text is read: bench-text [MB [FOLDER]]. Writes a file of that size there, reads it,
    removes it. */
-#include "measurement/reader.h"
+#include "recording/reader.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,8 +1,8 @@
 /* Any bytes as a rig file: an error with a sentence, or a recording whose columns can be looked at. For libFuzzer, and
    replayed by replay.c. */
 #define _GNU_SOURCE
-#include "measurement/layout.h"
-#include "measurement/reader.h"
+#include "recording/layout.h"
+#include "recording/reader.h"
 #include "tests/fuzz/fuzz.h"
 
 #include <stdio.h>

@@ -1,5 +1,5 @@
 /* Decimal numbers against the C library's strtod, which rounds correctly. */
-#include "measurement/decimal.h"
+#include "recording/decimal.h"
 #include "tests/tap.h"
 
 #include <stdlib.h>

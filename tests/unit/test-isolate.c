@@ -1,5 +1,5 @@
 /* Readers in a process of their own: what they send arrives, and their end of whatever kind is an error of the file. */
-#include "measurement/isolate.h"
+#include "recording/isolate.h"
 #include "tests/tap.h"
 
 #include <signal.h>

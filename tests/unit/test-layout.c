@@ -1,6 +1,6 @@
 /* What columns mean: guesses from names, units and values, and what settles them when they cannot be made; two files of
    one run. */
-#include "measurement/layout.h"
+#include "recording/layout.h"
 #include "tests/reader-fixture.h"
 
 #define RATE 20000.0

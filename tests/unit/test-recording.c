@@ -1,4 +1,4 @@
-#include "measurement/recording.h"
+#include "recording/recording.h"
 #include "tests/tap.h"
 
 #include <pthread.h>

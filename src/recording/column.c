@@ -1,0 +1,155 @@
+#include "recording/column.h"
+
+#include <ctype.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define ROWS 20000 /* that are looked at */
+
+static enum eo_code read_column(const struct eo_recording *recording, int column, int64_t rows, double *values,
+                                int64_t *count, struct eo_error *error)
+{
+  int columns = eo_recording_columns(recording);
+  double *block = malloc(1000 * (size_t)columns * sizeof *block);
+  enum eo_code code = block ? EO_OK : eo_error_memory(error);
+  *count = 0;
+  for (int64_t first = 0; !code && first < rows; first += 1000) {
+    int64_t n = rows - first < 1000 ? rows - first : 1000;
+    code = eo_recording_read(recording, first, n, block, error);
+    for (int64_t i = 0; !code && i < n; i++)
+      if (!isnan(block[i * columns + column]))
+        values[(*count)++] = block[i * columns + column];
+  }
+  free(block);
+  return code;
+}
+
+static void find_range(struct eo_column *look, const double *values)
+{
+  look->low = INFINITY;
+  look->high = -INFINITY;
+  look->whole = true;
+  for (int64_t i = 0; i < look->count; i++) {
+    look->low = fmin(look->low, values[i]);
+    look->high = fmax(look->high, values[i]);
+    look->whole = look->whole && values[i] == floor(values[i]);
+  }
+}
+
+/* A reset goes against the trend of all steps, by most of the range. */
+static bool is_reset(const struct eo_column *look, double step, bool up)
+{
+  return fabs(step) > 0.5 * (look->high - look->low) && (step < 0) == up;
+}
+
+static void find_steps(struct eo_column *look, const double *values)
+{
+  for (int64_t i = 1; i < look->count; i++) {
+    look->rises += values[i] > values[i - 1];
+    look->falls += values[i] < values[i - 1];
+  }
+  bool up = look->rises >= look->falls;
+  double sum = 0, square = 0, height = 0;
+  int64_t steps = 0;
+  for (int64_t i = 1; i < look->count; i++) {
+    double step = values[i] - values[i - 1];
+    if (is_reset(look, step, up)) {
+      look->resets++;
+      height += fabs(step);
+      continue;
+    }
+    steps++;
+    sum += step;
+  }
+  look->step = steps ? sum / (double)steps : 0;
+  for (int64_t i = 1; i < look->count; i++) {
+    double step = values[i] - values[i - 1];
+    if (!is_reset(look, step, up))
+      square += (step - look->step) * (step - look->step);
+  }
+  look->spread = steps && look->step != 0 ? sqrt(square / (double)steps) / fabs(look->step) : INFINITY;
+  look->period = look->resets ? height / look->resets + fabs(look->step) : 0;
+}
+
+enum eo_code eo_column_look(const struct eo_recording *recording, int column, struct eo_column *look,
+                            struct eo_error *error)
+{
+  int64_t rows = eo_recording_length(recording, column);
+  rows = rows < ROWS ? rows : ROWS;
+  double *values = malloc((size_t)(rows ? rows : 1) * sizeof *values);
+  if (!values)
+    return eo_error_memory(error);
+  memset(look, 0, sizeof *look);
+  look->quantity = eo_unit_find(eo_recording_unit(recording, column), &look->factor);
+  enum eo_code code = read_column(recording, column, rows, values, &look->count, error);
+  if (!code) {
+    find_range(look, values);
+    find_steps(look, values);
+  }
+  free(values);
+  return code;
+}
+
+/* Counts run from 0 to one below the turn and pass over the last ones at speed: powers of two and whole hundreds come
+   into question. */
+static double find_counts(const struct eo_column *look)
+{
+  double least = look->high - (look->low < 0 ? look->low : 0) + 1, most = least + 2 * fabs(look->step) + 1;
+  for (double power = 64; power <= most; power *= 2)
+    if (power >= least)
+      return power;
+  for (double unit = 1e6; unit >= 100; unit /= 10)
+    if (ceil(least / unit) * unit <= most)
+      return ceil(least / unit) * unit;
+  return 0;
+}
+
+double eo_column_turn(const struct eo_column *look)
+{
+  static const double turns[] = {360, 6.283185307179586, 1};
+  if (!look->resets)
+    return 0;
+  if (look->whole && look->high > 400)
+    return find_counts(look);
+  for (size_t i = 0; i < sizeof turns / sizeof *turns; i++)
+    if (fabs(look->period - turns[i]) < 0.05 * turns[i] && look->high - look->low <= turns[i] * (1 + 1e-6))
+      return turns[i];
+  return look->whole ? find_counts(look) : 0;
+}
+
+/* The next word of a name: letters (bytes of UTF-8 among them) or digits; returns its end. */
+static const char *next_word(const char *name, const char **word)
+{
+  while (*name && !isalnum((unsigned char)*name) && (unsigned char)*name < 0x80)
+    name++;
+  *word = name;
+  bool digits = isdigit((unsigned char)*name);
+  while (*name && (isalnum((unsigned char)*name) || (unsigned char)*name >= 0x80) &&
+         (isdigit((unsigned char)*name) != 0) == digits)
+    name++;
+  return name;
+}
+
+static bool is_listed(const char *word, size_t length, const char *words)
+{
+  char lower[EO_RECORDING_NAME];
+  for (size_t i = 0; i < length; i++)
+    lower[i] = (char)tolower((unsigned char)word[i]);
+  for (const char *p = words; *p;) {
+    size_t n = strcspn(p, "|");
+    if (n == length && !memcmp(p, lower, n))
+      return true;
+    p += n + (p[n] == '|');
+  }
+  return false;
+}
+
+bool eo_column_named(const char *name, const char *words)
+{
+  const char *word;
+  for (const char *end = next_word(name, &word); *word; end = next_word(end, &word))
+    if (is_listed(word, (size_t)(end - word), words))
+      return true;
+  return false;
+}

@@ -1,0 +1,36 @@
+/* What one column of a recording looks like: its name in words and its values in a few figures. Internal to the layout.
+ */
+#ifndef EASEOFF_RECORDING_COLUMN_H
+#define EASEOFF_RECORDING_COLUMN_H
+
+#include "recording/recording.h"
+#include "recording/unit.h"
+
+#include <stdbool.h>
+
+struct eo_column {
+  enum eo_quantity quantity; /* of its unit */
+  double factor;             /* of its unit */
+  int64_t count;             /* values looked at */
+  double low, high;
+  bool whole;       /* all are whole numbers */
+  double step;      /* mean step between neighbours, without the resets */
+  double spread;    /* standard deviation of steps over |step| */
+  int rises, falls; /* steps up and down */
+  int resets;       /* steps against the trend by more than half the range */
+  double period;    /* mean height of the resets and a step, roughly the turn; 0: none */
+};
+
+/* Looks at the first rows. Errors of reading. */
+enum eo_code eo_column_look(const struct eo_recording *recording, int column, struct eo_column *look,
+                            struct eo_error *error);
+
+/* The turn after which a column starts again, exactly: 360, 2 pi, 1, or the roundest number of counts that the values
+   allow. 0: it does not start again, or after what cannot be told. */
+double eo_column_turn(const struct eo_column *look);
+
+/* True when one of the words, separated by '|' and in lower case, is a word of the name; digits are words of their own.
+ */
+bool eo_column_named(const char *name, const char *words);
+
+#endif

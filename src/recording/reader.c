@@ -1,0 +1,244 @@
+#include "recording/reader.h"
+#include "recording/isolate.h"
+#include "recording/readers.h"
+
+#include <limits.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#define HEAD 4096 /* bytes from which a kind is told */
+
+static const char *const kind_names[EO_READER_KINDS] = {"delimited text", "MATLAB .mat", "NI TDMS",
+                                                        "universal file (UFF 58)", "HDF5"};
+
+const char *eo_reader_kind_name(enum eo_reader_kind kind)
+{
+  return kind_names[kind];
+}
+
+static bool begins(const unsigned char *head, size_t size, const char *with, size_t length)
+{
+  return size >= length && !memcmp(head, with, length);
+}
+
+/* Kinds that people try and that no reader reads. */
+static enum eo_code refuse_others(const unsigned char *head, size_t size, struct eo_error *error)
+{
+  static const struct {
+    const char *with;
+    size_t length;
+    const char *what;
+  } others[] = {
+      {"PK\003\004", 4, "The file is a zip archive or an Excel workbook; upload the text or measurement file itself."},
+      {"\xd0\xcf\x11\xe0", 4, "The file is an old Office document; save the table as text."},
+      {"TDSh", 4, "The file is a TDMS index; upload the .tdms file itself."},
+      {"%PDF", 4, "The file is a PDF; upload the measurement itself."},
+      {"RIFF", 4, "The file is a sound or video file; save the channels as text, TDMS, MATLAB or HDF5."},
+      {"\xff\xfe", 2, "The text is UTF-16; save it as UTF-8 or plain ASCII."},
+      {"\xfe\xff", 2, "The text is UTF-16; save it as UTF-8 or plain ASCII."},
+      {"BZh", 3, "The file is compressed with bzip2; use gzip or none."},
+      {"\xfd"
+       "7zXZ",
+       5, "The file is compressed with xz; use gzip or none."},
+      {"(\xb5/\xfd", 4, "The file is compressed with zstd; use gzip or none."},
+      {"\x1f\x8b", 2, "The file is a gzip file in a gzip file; compress it once."},
+  };
+  for (size_t i = 0; i < sizeof others / sizeof *others; i++)
+    if (begins(head, size, others[i].with, others[i].length))
+      return eo_error_set(error, EO_ERROR_INPUT, "", "%s", others[i].what);
+  return EO_OK;
+}
+
+/* Text has no zero bytes; every second one means two bytes to a character. */
+static enum eo_code refuse_zeros(const unsigned char *head, size_t size, struct eo_error *error)
+{
+  const unsigned char *zero = memchr(head, 0, size);
+  if (!zero)
+    return EO_OK;
+  if (size >= 4 && (head[0] == 0) != (head[1] == 0) && (head[0] == 0) == (head[2] == 0) &&
+      (head[1] == 0) == (head[3] == 0))
+    return eo_error_set(error, EO_ERROR_INPUT, "", "The text is UTF-16; save it as UTF-8 or plain ASCII.");
+  return eo_error_set(error, EO_ERROR_INPUT, "",
+                      "The file is of no known kind: it is no text (byte %zu is 0) and not MATLAB, TDMS, UFF or HDF5.",
+                      (size_t)(zero - head));
+}
+
+static bool is_hdf5(const unsigned char *head, size_t size)
+{
+  for (size_t at = 0; at + 8 <= size; at = at ? 2 * at : 512)
+    if (!memcmp(head + at, "\x89HDF\r\n\x1a\n", 8))
+      return true;
+  return false;
+}
+
+/* A .mat file of version 4 has no signature: five small numbers, the last the length of the first name, which ends with
+   0. */
+static bool is_matlab4(const unsigned char *head, size_t size)
+{
+  uint32_t word[5];
+  if (size < 24)
+    return false;
+  memcpy(word, head, sizeof word);
+  for (int i = 0; word[0] > 5000 && i < 5; i++)
+    word[i] = __builtin_bswap32(word[i]);
+  uint32_t digits = word[0];
+  return digits < 5000 && digits % 10 <= 2 && digits / 10 % 10 <= 5 && digits / 100 % 10 == 0 && word[1] > 0 &&
+         word[2] > 0 && word[3] <= 1 && word[4] >= 2 && word[4] <= 64 && 20 + word[4] <= size &&
+         head[20 + word[4] - 1] == 0 && head[20] > ' ' && head[20] < 127;
+}
+
+/* A universal file begins with a line that holds "-1" in columns 5 and 6 and one with the number of a data set. */
+static bool is_uff(const unsigned char *head, size_t size)
+{
+  size_t at = 0;
+  while (at < size && (head[at] == '\r' || head[at] == '\n'))
+    at++;
+  if (!begins(head + at, size - at, "    -1", 6))
+    return false;
+  const unsigned char *end = memchr(head + at, '\n', size - at);
+  if (!end || end + 7 > head + size)
+    return false;
+  for (const unsigned char *p = head + at + 6; p < end; p++)
+    if (*p != ' ' && *p != '\r')
+      return false;
+  return end[1] == ' ' && end[6] >= '0' && end[6] <= '9';
+}
+
+static enum eo_code tell_kind(const unsigned char *head, size_t size, enum eo_reader_kind *kind, struct eo_error *error)
+{
+  if (!size)
+    return eo_error_set(error, EO_ERROR_INPUT, "", "The file is empty.");
+  if (begins(head, size, "TDSm", 4))
+    *kind = EO_READER_TDMS;
+  else if (begins(head, size, "MATLAB 5.0 MAT", 14) || begins(head, size, "MATLAB 7.3 MAT", 14) ||
+           is_matlab4(head, size))
+    *kind = EO_READER_MATLAB;
+  else if (is_hdf5(head, size))
+    *kind = EO_READER_HDF5;
+  else if (is_uff(head, size))
+    *kind = EO_READER_UFF;
+  else {
+    enum eo_code code = refuse_others(head, size, error);
+    if (!code)
+      code = refuse_zeros(head, size, error);
+    if (code)
+      return code;
+    *kind = EO_READER_TEXT;
+  }
+  return EO_OK;
+}
+
+/* What the first bytes say. */
+struct sign {
+  enum eo_reader_kind kind;
+  bool gzip;
+  bool hdf5; /* also of MATLAB's 7.3 */
+};
+
+static enum eo_code read_sign(const char *path, struct sign *sign, struct eo_error *error)
+{
+  struct eo_source *source;
+  unsigned char head[HEAD];
+  size_t size;
+  enum eo_code code = eo_source_open(&source, path, EO_READER_BYTES, error);
+  if (code)
+    return code;
+  code = eo_source_read(source, head, sizeof head, &size, error);
+  if (!code)
+    code = tell_kind(head, size, &sign->kind, error);
+  sign->gzip = eo_source_is_gzip(source);
+  sign->hdf5 = !code && is_hdf5(head, size);
+  eo_source_close(source);
+  return code;
+}
+
+enum eo_code eo_reader_identify(const char *path, enum eo_reader_kind *kind, int *gzip, struct eo_error *error)
+{
+  struct sign sign;
+  enum eo_code code = read_sign(path, &sign, error);
+  if (code)
+    return code;
+  *kind = sign.kind;
+  if (gzip)
+    *gzip = sign.gzip;
+  return EO_OK;
+}
+
+static enum eo_code read_text(const char *path, const struct eo_reader_options *options,
+                              struct eo_recording **recording, struct eo_notes *notes, struct eo_error *error)
+{
+  struct eo_source *source;
+  enum eo_code code = eo_source_open(&source, path, options->max_bytes, error);
+  if (code)
+    return code;
+  code = eo_delimited_read(source, options, recording, notes, error);
+  eo_source_close(source);
+  return code;
+}
+
+static enum eo_code read_isolated_matlab(const char *path, const struct eo_reader_options *options,
+                                         const struct eo_series_sink *sink, struct eo_notes *notes,
+                                         struct eo_error *error)
+{
+  return eo_isolate_read(eo_matlab_read, path, options, sink, notes, error);
+}
+
+static enum eo_code read_isolated_hdf5(const char *path, const struct eo_reader_options *options,
+                                       const struct eo_series_sink *sink, struct eo_notes *notes,
+                                       struct eo_error *error)
+{
+  return eo_isolate_read(eo_hdf5_read, path, options, sink, notes, error);
+}
+
+static enum eo_code read_series(eo_series_reader *reader, const char *path, const struct eo_reader_options *options,
+                                struct eo_recording **recording, struct eo_notes *notes, struct eo_error *error)
+{
+  struct eo_series_recorder recorder = {.spool_directory = options->spool_directory, .progress = options->progress};
+  struct eo_series_sink sink = eo_series_recorder_sink(&recorder);
+  enum eo_code code = reader(path, options, &sink, notes, error);
+  if (code)
+    eo_recording_free(recorder.recording);
+  else
+    *recording = recorder.recording;
+  return code;
+}
+
+/* Binary kinds are read at many places: what gzip hides is put into a file first, which goes when it has been read. */
+static enum eo_code read_inflated(eo_series_reader *reader, const char *path, const struct eo_reader_options *options,
+                                  struct eo_recording **recording, struct eo_notes *notes, struct eo_error *error)
+{
+  char inflated[PATH_MAX];
+  enum eo_code code = eo_source_inflate(path, options->max_bytes, options->spool_directory, inflated, sizeof inflated,
+                                        error);
+  if (code)
+    return code;
+  code = read_series(reader, inflated, options, recording, notes, error);
+  unlink(inflated);
+  return code;
+}
+
+enum eo_code eo_reader_read(const char *path, const struct eo_reader_options *options, struct eo_recording **recording,
+                            struct eo_notes *notes, struct eo_error *error)
+{
+  static eo_series_reader *const readers[EO_READER_KINDS] = {
+      [EO_READER_TDMS] = eo_tdms_read,
+      [EO_READER_UFF] = eo_uff_read,
+      [EO_READER_MATLAB] = read_isolated_matlab,
+      [EO_READER_HDF5] = read_isolated_hdf5,
+  };
+  struct eo_reader_options own = {0};
+  struct sign sign;
+  enum eo_code code = read_sign(path, &sign, error);
+  if (code)
+    return code;
+  if (options)
+    own = *options;
+  if (!own.max_bytes)
+    own.max_bytes = EO_READER_BYTES;
+  if (sign.kind == EO_READER_TEXT)
+    return read_text(path, &own, recording, notes, error);
+  eo_series_reader *reader = readers[sign.hdf5 ? EO_READER_HDF5 : sign.kind];
+  return (sign.gzip ? read_inflated : read_series)(reader, path, &own, recording, notes, error);
+}

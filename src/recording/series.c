@@ -1,0 +1,186 @@
+#include "recording/series.h"
+#include "recording/source.h"
+
+#include <math.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <strings.h>
+
+#define BLOCK 4096 /* rows that are copied at once */
+#define SHORT 20   /* a channel this many times shorter than the longest belongs to something else */
+
+static bool same_interval(double a, double b)
+{
+  return fabs(a - b) <= 1e-9 * fabs(a);
+}
+
+static bool sampled_together(const struct eo_series *a, const struct eo_series *b)
+{
+  return a->length == b->length && same_interval(a->interval, b->interval);
+}
+
+static int count_like(const struct eo_series_file *file, const struct eo_series *like)
+{
+  int count = 0;
+  for (int i = 0; i < file->count; i++)
+    count += sampled_together(&file->series[i], like);
+  return count;
+}
+
+static int64_t longest(const struct eo_series_file *file)
+{
+  int64_t length = 0;
+  for (int i = 0; i < file->count; i++)
+    if (file->series[i].length > length)
+      length = file->series[i].length;
+  return length;
+}
+
+/* The channel whose like are the most among those at least half as long as the longest; NULL when none has company. */
+static const struct eo_series *find_group(const struct eo_series_file *file)
+{
+  const struct eo_series *best = NULL;
+  int most = 1;
+  int64_t length = longest(file);
+  for (int i = 0; i < file->count; i++) {
+    const struct eo_series *s = &file->series[i];
+    int count = s->length > 1 && s->length >= length / 2 ? count_like(file, s) : 0;
+    if (count > most || (count == most && best && s->length > best->length)) {
+      most = count;
+      best = s;
+    }
+  }
+  return best;
+}
+
+/* Fills chosen[] with the channels of the table and says what stays out. */
+static int choose(const struct eo_series_file *file, int *chosen, struct eo_notes *notes)
+{
+  const struct eo_series *group = find_group(file);
+  int64_t least = longest(file) / SHORT;
+  int count = 0, left_out = 0;
+  const struct eo_series *other = NULL;
+  for (int i = 0; i < file->count; i++) {
+    const struct eo_series *s = &file->series[i];
+    if (count < EO_RECORDING_COLUMNS && (group ? sampled_together(s, group) : s->length > 1 && s->length >= least))
+      chosen[count++] = i;
+    else if (s->length > 1) {
+      left_out++;
+      other = s;
+    }
+  }
+  if (left_out)
+    eo_notes_add(
+        notes, "%d channel%s with other lengths or sampling rates %s left out, for instance \"%s\" with %lld values.",
+        left_out, left_out == 1 ? "" : "s", left_out == 1 ? "was" : "were", other->name, (long long)other->length);
+  return count;
+}
+
+static enum eo_code check_size(const struct eo_series_file *file, const int *chosen, int count, int64_t rows,
+                               struct eo_error *error)
+{
+  if (!count)
+    return eo_error_set(error, EO_ERROR_INPUT, "", "The file has no channel with numbers over time.");
+  if (rows > INT64_MAX / 8 / count / 2 || rows * count * 8 > file->limit)
+    return eo_error_set(error, EO_ERROR_INPUT, "",
+                        "The %d channels of %lld values are more than the %lld MB that are read at most.", count,
+                        (long long)rows, (long long)(file->limit >> 20));
+  if (rows * count * 8 > EO_SOURCE_FREE && rows * count * 8 / EO_SOURCE_EXPANSION > file->bytes)
+    return eo_error_set(error, EO_ERROR_INPUT, "", "The file states %lld values of \"%s\" but has only %lld bytes.",
+                        (long long)rows, file->series[chosen[0]].name, (long long)file->bytes);
+  return EO_OK;
+}
+
+static enum eo_code copy_block(const struct eo_series_file *file, const int *chosen, int count, int64_t first,
+                               int64_t rows, double *values, double *table, struct eo_error *error)
+{
+  for (int c = 0; c < count; c++) {
+    int64_t left = file->series[chosen[c]].length - first, n = left < 0 ? 0 : left < rows ? left : rows;
+    enum eo_code code = n ? file->read(file->context, chosen[c], first, n, values, error) : EO_OK;
+    if (code)
+      return code;
+    for (int64_t i = 0; i < rows; i++)
+      table[i * count + c] = i < n ? values[i] : NAN;
+  }
+  return EO_OK;
+}
+
+static enum eo_code copy_all(const struct eo_series_file *file, const int *chosen, int count, int64_t rows,
+                             const struct eo_series_sink *sink, struct eo_error *error)
+{
+  struct eo_series *column = malloc((size_t)count * sizeof *column);
+  double *values = malloc(BLOCK * sizeof *values * (size_t)(count + 1));
+  enum eo_code code = column && values ? EO_OK : eo_error_memory(error);
+  for (int c = 0; !code && c < count; c++)
+    column[c] = file->series[chosen[c]];
+  if (!code)
+    code = sink->begin(sink->context, column, count, error);
+  for (int64_t first = 0; !code && first < rows; first += BLOCK) {
+    int64_t n = rows - first < BLOCK ? rows - first : BLOCK;
+    code = copy_block(file, chosen, count, first, n, values, values + BLOCK, error);
+    if (!code)
+      code = sink->rows(sink->context, values + BLOCK, n, error);
+  }
+  free(column);
+  free(values);
+  return code;
+}
+
+enum eo_code eo_series_copy(const struct eo_series_file *file, const struct eo_series_sink *sink,
+                            struct eo_notes *notes, struct eo_error *error)
+{
+  int chosen[EO_RECORDING_COLUMNS];
+  int count = choose(file, chosen, notes);
+  int64_t rows = 0;
+  for (int c = 0; c < count; c++)
+    if (file->series[chosen[c]].length > rows)
+      rows = file->series[chosen[c]].length;
+  enum eo_code code = check_size(file, chosen, count, rows, error);
+  return code ? code : copy_all(file, chosen, count, rows, sink, error);
+}
+
+double eo_series_stated_interval(const char *name, double value)
+{
+  static const char *const rates[] = {"fs", "sample_rate", "samplerate", "sampling_rate", "sampling_frequency"};
+  static const char *const intervals[] = {"dt", "ts", "wf_increment", "increment", "sample_interval", "delta_t"};
+  if (!(value > 0) || !isfinite(value))
+    return 0;
+  for (size_t i = 0; i < sizeof rates / sizeof *rates; i++)
+    if (!strcasecmp(name, rates[i]))
+      return 1 / value;
+  for (size_t i = 0; i < sizeof intervals / sizeof *intervals; i++)
+    if (!strcasecmp(name, intervals[i]))
+      return value;
+  return 0;
+}
+
+static enum eo_code begin_recording(void *context, const struct eo_series *column, int columns, struct eo_error *error)
+{
+  struct eo_series_recorder *r = context;
+  enum eo_code code = eo_recording_new(&r->recording, columns, r->spool_directory, error);
+  if (code)
+    return code;
+  r->total = 0;
+  for (int c = 0; c < columns; c++) {
+    eo_recording_set_column(r->recording, c, column[c].name, column[c].unit);
+    eo_recording_set_length(r->recording, c, column[c].length);
+    if (column[c].length > r->total)
+      r->total = column[c].length;
+  }
+  if (column[0].interval > 0)
+    eo_recording_set_interval(r->recording, column[0].interval, column[0].start);
+  return EO_OK;
+}
+
+static enum eo_code record_rows(void *context, const double *rows, int64_t count, struct eo_error *error)
+{
+  struct eo_series_recorder *r = context;
+  if (eo_progress_report(r->progress, "rig file", (double)eo_recording_rows(r->recording) / (double)r->total))
+    return eo_error_set(error, EO_ERROR_CANCELLED, "", "Reading the file was cancelled.");
+  return eo_recording_append(r->recording, rows, count, error);
+}
+
+struct eo_series_sink eo_series_recorder_sink(struct eo_series_recorder *recorder)
+{
+  return (struct eo_series_sink){begin_recording, record_rows, recorder};
+}

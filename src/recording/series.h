@@ -1,0 +1,61 @@
+/* Files that hold each channel in one piece (TDMS, UFF, MATLAB, HDF5): which channels make a table, and copying them
+   into rows. Internal to the readers. */
+#ifndef EASEOFF_RECORDING_SERIES_H
+#define EASEOFF_RECORDING_SERIES_H
+
+#include "recording/notes.h"
+#include "recording/reader.h"
+#include "recording/recording.h"
+
+#define EO_SERIES 1024 /* channels of a file that are looked at */
+
+struct eo_series {
+  char name[EO_RECORDING_NAME];
+  char unit[EO_RECORDING_UNIT];
+  int64_t length;
+  double interval, start; /* s; interval 0: not stated */
+};
+
+/* Where the table goes: once its columns, then all rows in order. */
+struct eo_series_sink {
+  enum eo_code (*begin)(void *context, const struct eo_series *column, int columns, struct eo_error *error);
+  enum eo_code (*rows)(void *context, const double *rows, int64_t count, struct eo_error *error); /* [count][columns] */
+  void *context;
+};
+
+/* The channels of a file that is open. read copies values first .. first + count - 1 of a channel; calls for one
+   channel go forwards. */
+struct eo_series_file {
+  const struct eo_series *series; /* [count] */
+  int count;
+  int64_t bytes; /* size of the file */
+  int64_t limit; /* bytes of the table at most */
+  enum eo_code (*read)(void *context, int series, int64_t first, int64_t count, double *values, struct eo_error *error);
+  void *context;
+};
+
+/* A reader of one kind of file; max_bytes of the options is set. */
+typedef enum eo_code eo_series_reader(const char *path, const struct eo_reader_options *options,
+                                      const struct eo_series_sink *sink, struct eo_notes *notes,
+                                      struct eo_error *error);
+
+/* Chooses the channels that were sampled together - the most that share interval and length - or, where lengths differ,
+   all long ones, and hands them to the sink row by row; what is left out is noted. Errors: EO_ERROR_INPUT: no channel
+   with data, a table that is far larger than its file, and those of read and sink. */
+enum eo_code eo_series_copy(const struct eo_series_file *file, const struct eo_series_sink *sink,
+                            struct eo_notes *notes, struct eo_error *error);
+
+/* The interval in s that a number of this name states: the number itself of "dt" and the like, its inverse of "fs" or
+   "sample_rate"; 0: none. */
+double eo_series_stated_interval(const char *name, double value);
+
+/* A sink that fills a new recording. It is NULL until begin; the caller frees it. */
+struct eo_series_recorder {
+  struct eo_recording *recording;
+  const char *spool_directory;
+  const struct eo_progress *progress;
+  int64_t total;
+};
+struct eo_series_sink eo_series_recorder_sink(struct eo_series_recorder *recorder);
+
+#endif

@@ -1,0 +1,237 @@
+#define _GNU_SOURCE /* mkostemp */
+#include "recording/source.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+#include <zlib.h>
+
+#define CHUNK ((size_t)128 << 10)
+
+struct eo_source {
+  int file;
+  bool gzip, ended;
+  bool between; /* a member of the gzip file has ended, none has begun since */
+  int64_t size, taken, given, limit;
+  z_stream stream;
+  size_t waiting; /* bytes of chunk that were read and not used */
+  unsigned char *at, chunk[CHUNK];
+};
+
+/* Reads up to size bytes of the file itself. */
+static enum eo_code read_file(struct eo_source *s, void *bytes, size_t size, size_t *got, struct eo_error *error)
+{
+  char *to = bytes;
+  *got = 0;
+  while (*got < size) {
+    ssize_t n = read(s->file, to + *got, size - *got);
+    if (n < 0 && errno == EINTR)
+      continue;
+    if (n < 0)
+      return eo_error_set(error, EO_ERROR_FILE, "", "The file could not be read: %s.", strerror(errno));
+    if (n == 0)
+      break;
+    *got += (size_t)n;
+  }
+  s->taken += (int64_t)*got;
+  return EO_OK;
+}
+
+static enum eo_code refill(struct eo_source *s, struct eo_error *error)
+{
+  s->at = s->chunk;
+  return read_file(s, s->chunk, CHUNK, &s->waiting, error);
+}
+
+enum eo_code eo_source_open(struct eo_source **source, const char *path, int64_t limit, struct eo_error *error)
+{
+  struct eo_source *s = calloc(1, sizeof *s);
+  if (!s)
+    return eo_error_memory(error);
+  s->limit = limit;
+  s->file = open(path, O_RDONLY | O_CLOEXEC);
+  struct stat state;
+  enum eo_code code = EO_OK;
+  if (s->file < 0 || fstat(s->file, &state))
+    code = eo_error_set(error, EO_ERROR_FILE, "", "The file %s could not be opened: %s.", path, strerror(errno));
+  else if (!S_ISREG(state.st_mode))
+    code = eo_error_set(error, EO_ERROR_FILE, "", "%s is not a file.", path);
+  if (!code) {
+    s->size = state.st_size;
+    code = refill(s, error);
+  }
+  s->gzip = !code && s->waiting >= 3 && s->chunk[0] == 0x1f && s->chunk[1] == 0x8b && s->chunk[2] == 8;
+  if (s->gzip && inflateInit2(&s->stream, 15 + 16) != Z_OK) {
+    s->gzip = false;
+    code = eo_error_memory(error);
+  }
+  if (code) {
+    eo_source_close(s);
+    return code;
+  }
+  *source = s;
+  return EO_OK;
+}
+
+void eo_source_close(struct eo_source *source)
+{
+  if (!source)
+    return;
+  if (source->gzip)
+    inflateEnd(&source->stream);
+  if (source->file >= 0)
+    close(source->file);
+  free(source);
+}
+
+static enum eo_code read_plain(struct eo_source *s, unsigned char *bytes, size_t size, size_t *got,
+                               struct eo_error *error)
+{
+  size_t kept = s->waiting < size ? s->waiting : size;
+  memcpy(bytes, s->at, kept);
+  s->at += kept;
+  s->waiting -= kept;
+  size_t more = 0;
+  enum eo_code code = kept < size ? read_file(s, bytes + kept, size - kept, &more, error) : EO_OK;
+  *got = kept + more;
+  return code;
+}
+
+/* One call of inflate with what is waiting; *ended at the end of the last member. */
+static enum eo_code inflate_some(struct eo_source *s, unsigned char *bytes, size_t room, size_t *got,
+                                 struct eo_error *error)
+{
+  *got = 0;
+  if (!s->waiting) {
+    enum eo_code code = refill(s, error);
+    if (code)
+      return code;
+    if (!s->waiting && !s->between)
+      return eo_error_set(error, EO_ERROR_INPUT, "",
+                          "The gzip file is cut off: it ends at byte %lld in the middle of its data.",
+                          (long long)s->taken);
+    s->ended = !s->waiting;
+    if (s->ended)
+      return EO_OK;
+  }
+  if (s->between && s->at[0] != 0x1f) { /* padding after the last member, as tapes and some copiers add it */
+    s->ended = true;
+    return EO_OK;
+  }
+  s->between = false;
+  s->stream.next_in = s->at;
+  s->stream.avail_in = (uInt)s->waiting;
+  s->stream.next_out = bytes;
+  s->stream.avail_out = (uInt)room;
+  int status = inflate(&s->stream, Z_NO_FLUSH);
+  s->at = s->stream.next_in;
+  s->waiting = s->stream.avail_in;
+  *got = room - s->stream.avail_out;
+  if (status == Z_STREAM_END) {
+    s->between = true;
+    status = inflateReset(&s->stream);
+  }
+  if (status == Z_MEM_ERROR)
+    return eo_error_memory(error);
+  if (status != Z_OK && status != Z_BUF_ERROR)
+    return eo_error_set(error, EO_ERROR_INPUT, "", "The gzip file is damaged near byte %lld.",
+                        (long long)(s->taken - (int64_t)s->waiting));
+  return EO_OK;
+}
+
+static enum eo_code check_growth(const struct eo_source *s, struct eo_error *error)
+{
+  if (s->gzip && s->given > EO_SOURCE_FREE && s->given / EO_SOURCE_EXPANSION > s->taken)
+    return eo_error_set(error, EO_ERROR_INPUT, "",
+                        "The gzip file grows more than %d times by byte %lld; that is no measurement.",
+                        EO_SOURCE_EXPANSION, (long long)s->taken);
+  if (s->given > s->limit)
+    return eo_error_set(error, EO_ERROR_INPUT, "", "The file holds more than the %lld MB that are read at most.",
+                        (long long)(s->limit >> 20));
+  return EO_OK;
+}
+
+static enum eo_code read_gzip(struct eo_source *s, unsigned char *bytes, size_t size, size_t *got,
+                              struct eo_error *error)
+{
+  while (*got < size && !s->ended) {
+    size_t n, room = size - *got < CHUNK * 8 ? size - *got : CHUNK * 8;
+    enum eo_code code = inflate_some(s, bytes + *got, room, &n, error);
+    if (code)
+      return code;
+    *got += n;
+  }
+  return EO_OK;
+}
+
+enum eo_code eo_source_read(struct eo_source *source, void *bytes, size_t size, size_t *got, struct eo_error *error)
+{
+  *got = 0;
+  enum eo_code code = source->gzip ? read_gzip(source, bytes, size, got, error)
+                                   : read_plain(source, bytes, size, got, error);
+  source->given += (int64_t)*got;
+  return code ? code : check_growth(source, error);
+}
+
+int eo_source_is_gzip(const struct eo_source *source)
+{
+  return source->gzip;
+}
+
+double eo_source_fraction(const struct eo_source *source)
+{
+  return source->size > 0 && source->taken < source->size ? (double)source->taken / (double)source->size : 1;
+}
+
+static enum eo_code copy_to(struct eo_source *source, int file, struct eo_error *error)
+{
+  char *bytes = malloc(CHUNK);
+  if (!bytes)
+    return eo_error_memory(error);
+  enum eo_code code;
+  size_t got;
+  do {
+    code = eo_source_read(source, bytes, CHUNK, &got, error);
+    for (size_t done = 0; !code && done < got;) {
+      ssize_t n = write(file, bytes + done, got - done);
+      if (n < 0 && errno == EINTR)
+        continue;
+      if (n <= 0)
+        code = eo_error_set(error, EO_ERROR_FILE, "", "A temporary file could not be written: %s.",
+                            strerror(n < 0 ? errno : ENOSPC));
+      else
+        done += (size_t)n;
+    }
+  } while (!code && got == CHUNK);
+  free(bytes);
+  return code;
+}
+
+enum eo_code eo_source_inflate(const char *path, int64_t limit, const char *directory, char *inflated, size_t size,
+                               struct eo_error *error)
+{
+  struct eo_source *source;
+  if (!directory || (size_t)snprintf(inflated, size, "%s/inflated-XXXXXX", directory) >= size)
+    return eo_error_set(error, EO_ERROR_INPUT, "",
+                        "This kind of file must be uploaded without gzip: there is no folder to inflate it to.");
+  enum eo_code code = eo_source_open(&source, path, limit, error);
+  if (code)
+    return code;
+  int file = mkostemp(inflated, O_CLOEXEC);
+  if (file < 0)
+    code = eo_error_set(error, EO_ERROR_FILE, "", "No temporary file could be made in %s: %s.", directory,
+                        strerror(errno));
+  else {
+    code = copy_to(source, file, error);
+    close(file);
+    if (code)
+      unlink(inflated);
+  }
+  eo_source_close(source);
+  return code;
+}

@@ -1,0 +1,331 @@
+#define _GNU_SOURCE /* memrchr */
+/* The rows of a text file, block by block: cells go straight from the text to doubles; only lines that are not plain
+   numbers are looked at twice. */
+#include "recording/decimal.h"
+#include "recording/readers.h"
+#include "recording/text_cell.h"
+#include "recording/text_format.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define BLOCK ((size_t)1 << 20) /* bytes of text in memory, and the longest line */
+#define BATCH 16384             /* values that are appended at once */
+#define FAULTS_NAMED 8          /* odd rows that get a note of their own */
+#define FAULTS_FREE 10          /* odd rows that every file may have, */
+#define FAULT_SHARE 100         /* and one in so many rows */
+
+_Static_assert(BLOCK > EO_TEXT_HEAD, "the layout is found in the first block");
+
+struct text {
+  struct eo_text_format format;
+  struct eo_source *source;
+  const struct eo_progress *progress;
+  struct eo_recording *recording;
+  struct eo_notes *notes;
+  int64_t line;   /* of the next line of the text, from 1 */
+  int64_t faults; /* rows with cells that are no numbers, or of another length */
+  int64_t missing, missing_line;
+  int missing_cell;
+  int64_t expected;        /* line of the next row when no line is skipped */
+  int batched, batch_rows; /* rows in batch, rows that fit */
+  double batch[BATCH];     /* [batched][columns] and the row that is being read */
+  size_t filled;           /* bytes in block */
+  bool ended;              /* the block holds the end of the file */
+  char block[BLOCK + 2];   /* one byte for a line end that the file lacks, one for a final 0 */
+};
+
+static double *next_row(struct text *t)
+{
+  return t->batch + (size_t)t->batched * (size_t)t->format.columns;
+}
+
+static enum eo_code flush(struct text *t, struct eo_error *error)
+{
+  int rows = t->batched;
+  t->batched = 0;
+  return eo_recording_append(t->recording, t->batch, rows, error);
+}
+
+/* Takes the row that was read to the end of the batch. */
+static enum eo_code keep_row(struct text *t, struct eo_error *error)
+{
+  if (t->line != t->expected) {
+    const double *row = next_row(t);
+    enum eo_code code = flush(t, error);
+    if (code)
+      return code;
+    memmove(t->batch, row, (size_t)t->format.columns * sizeof *row);
+    eo_recording_set_line(t->recording, t->line);
+  }
+  t->expected = t->line + 1;
+  return ++t->batched == t->batch_rows ? flush(t, error) : EO_OK;
+}
+
+/* An odd row or cell: said once with its place; too many of them are an error. */
+static enum eo_code add_fault(struct text *t, int cell, const char *what, struct eo_error *error)
+{
+  int64_t rows = eo_recording_rows(t->recording) + t->batched;
+  t->faults++;
+  if (t->faults > FAULTS_FREE + rows / FAULT_SHARE)
+    return eo_error_set(error, EO_ERROR_INPUT, "", "Line %lld, column %d: %s; that makes %lld such rows of %lld.",
+                        (long long)t->line, cell + 1, what, (long long)t->faults, (long long)rows + 1);
+  if (t->faults <= FAULTS_NAMED)
+    eo_notes_add(t->notes, "Line %lld, column %d: %s; what is missing was left empty.", (long long)t->line, cell + 1,
+                 what);
+  return EO_OK;
+}
+
+static void describe_cell(const struct eo_cell *cell, char *what, size_t size)
+{
+  static const char tail[] = "\" is not a number";
+  size_t n = 0;
+  what[n++] = '"';
+  for (size_t i = 0; i < cell->length && i < 24 && n < size - sizeof tail; i++)
+    what[n++] = cell->text[i] >= ' ' && cell->text[i] < 127 ? cell->text[i] : '?';
+  memcpy(what + n, tail, sizeof tail);
+}
+
+static void count_missing(struct text *t, int cell)
+{
+  if (t->missing++)
+    return;
+  t->missing_line = t->line;
+  t->missing_cell = cell;
+}
+
+/* A row that has too few or too many cells: which ones are missing is not known, so that all are. */
+static enum eo_code odd_length(struct text *t, int cells, struct eo_error *error)
+{
+  char what[80];
+  bool more = cells > t->format.cells;
+  snprintf(what, sizeof what, "the row has %s%d cells instead of %d", more ? "at least " : "", cells, t->format.cells);
+  double *row = next_row(t);
+  for (int c = 0; c < t->format.columns; c++)
+    row[c] = NAN;
+  enum eo_code code = add_fault(t, more ? cells - 1 : cells, what, error);
+  return code ? code : keep_row(t, error);
+}
+
+/* True when nothing but empty cells follows. */
+static bool only_empty_cells(const char *at, const char *end, char separator)
+{
+  struct eo_cell cell;
+  while (eo_text_next_cell(&at, end, separator, &cell))
+    if (cell.length)
+      return false;
+  return true;
+}
+
+/* Reads a line cell by cell, with quotes, empty cells and everything that is not a plain number. last: the file ends
+   without a line end. */
+static enum eo_code read_slowly(struct text *t, const char *line, const char *end, bool last, struct eo_error *error)
+{
+  const struct eo_text_format *f = &t->format;
+  if (eo_text_empty(line, end) || eo_text_comment(line, end, f->separator))
+    return EO_OK;
+  double *row = next_row(t);
+  struct eo_cell cell, odd = {0};
+  const char *at = line;
+  int c = 0, odd_cell = -1;
+  for (; c < f->cells && eo_text_next_cell(&at, end, f->separator, &cell); c++) {
+    if (!f->number[c])
+      continue;
+    enum eo_cell_kind kind = eo_text_cell_value(&cell, f->point, row++);
+    if (kind == EO_CELL_MISSING)
+      count_missing(t, c);
+    if (kind != EO_CELL_TEXT || odd_cell >= 0)
+      continue;
+    odd = cell;
+    odd_cell = c;
+  }
+  if (c < f->cells && last) {
+    eo_notes_add(t->notes, "The last row, in line %lld, is cut off and was left out.", (long long)t->line);
+    return EO_OK;
+  }
+  if (c < f->cells || !only_empty_cells(at, end, f->separator))
+    return odd_length(t, c < f->cells ? c : c + 1, error);
+  enum eo_code code = EO_OK;
+  if (odd_cell >= 0) {
+    char what[64];
+    describe_cell(&odd, what, sizeof what);
+    code = add_fault(t, odd_cell, what, error);
+  }
+  return code ? code : keep_row(t, error);
+}
+
+static inline const char *skip_blanks(const char *p)
+{
+  while (*p == ' ' || *p == '\t' || *p == '\r')
+    p++;
+  return p;
+}
+
+/* Reads a line of nothing but numbers and returns its end; NULL when there is anything else. point and separator are
+   constants where it is inlined. */
+static inline __attribute__((always_inline)) const char *read_numbers(const struct eo_text_format *f, const char *p,
+                                                                      char separator, char point, double *row)
+{
+  for (int c = 0; c < f->columns; c++) {
+    while (*p == ' ' || (separator != '\t' && *p == '\t'))
+      p++;
+    p = eo_decimal_read(p, point, row + c);
+    if (!p)
+      return NULL;
+    while (*p == ' ' && separator != ' ')
+      p++;
+    if (c + 1 == f->columns)
+      break;
+    if (*p != separator && !(separator == ' ' && *p == '\t'))
+      return NULL;
+    p++;
+  }
+  p = skip_blanks(p);
+  if (*p == separator)
+    p = skip_blanks(p + 1);
+  return *p == f->line_end ? p : NULL;
+}
+
+static const char *read_quickly(const struct eo_text_format *f, const char *p, double *row)
+{
+  if (f->columns != f->cells || f->separator == f->point || f->line_end != '\n')
+    return NULL;
+  if (f->separator == ',')
+    return read_numbers(f, p, ',', '.', row);
+  if (f->point == '.')
+    return read_numbers(f, p, f->separator, '.', row);
+  return read_numbers(f, p, f->separator, ',', row);
+}
+
+/* Reads all whole lines of the block and moves what is left to its beginning. */
+static enum eo_code read_lines(struct text *t, size_t from, struct eo_error *error)
+{
+  char line_end = t->format.line_end;
+  bool open = t->ended && t->filled > from && t->block[t->filled - 1] != line_end;
+  if (open)
+    t->block[t->filled++] = line_end;
+  const char *at = t->block + from, *end = memrchr(at, line_end, t->filled - from);
+  end = end ? end + 1 : at;
+  if (end == at && t->filled - from >= BLOCK)
+    return eo_error_set(error, EO_ERROR_INPUT, "", "Line %lld is longer than the %zu kB that are read at most.",
+                        (long long)t->line, BLOCK >> 10);
+  while (at < end) {
+    const char *last = read_quickly(&t->format, at, next_row(t));
+    bool quick = last;
+    if (!quick)
+      last = memchr(at, line_end, (size_t)(end - at));
+    enum eo_code code = quick ? keep_row(t, error) : read_slowly(t, at, last, open && last + 1 == end, error);
+    if (code)
+      return code;
+    t->line++;
+    at = last + 1;
+  }
+  t->filled -= (size_t)(at - t->block);
+  memmove(t->block, at, t->filled);
+  return EO_OK;
+}
+
+static enum eo_code fill(struct text *t, struct eo_error *error)
+{
+  size_t got;
+  enum eo_code code = eo_source_read(t->source, t->block + t->filled, BLOCK - t->filled, &got, error);
+  t->ended = got < BLOCK - t->filled;
+  t->filled += got;
+  return code;
+}
+
+static enum eo_code read_rows(struct text *t, struct eo_error *error)
+{
+  enum eo_code code = read_lines(t, t->format.first_byte, error);
+  while (!code && !t->ended) {
+    if (eo_progress_report(t->progress, "rig file", eo_source_fraction(t->source)))
+      return eo_error_set(error, EO_ERROR_CANCELLED, "", "Reading the file was cancelled.");
+    code = fill(t, error);
+    if (!code)
+      code = read_lines(t, 0, error);
+  }
+  return code ? code : flush(t, error);
+}
+
+static enum eo_code make_recording(struct text *t, const char *spool_directory, struct eo_error *error)
+{
+  const struct eo_text_format *f = &t->format;
+  enum eo_code code = eo_recording_new(&t->recording, f->columns, spool_directory, error);
+  if (code)
+    return code;
+  for (int c = 0, column = 0; c < f->cells; c++)
+    if (f->number[c])
+      eo_recording_set_column(t->recording, column++, f->name[c], f->unit[c]);
+    else
+      eo_notes_add(t->notes, "Column %d \"%s\" is text and was left out.", c + 1, f->name[c]);
+  if (f->interval > 0)
+    eo_recording_set_interval(t->recording, f->interval, 0);
+  t->batch_rows = BATCH / f->columns;
+  t->line = f->first_line;
+  return EO_OK;
+}
+
+static const char *separator_name(char separator)
+{
+  return separator == ',' ? "commas" : separator == ';' ? "semicolons" : separator == '\t' ? "tabs" : "blanks";
+}
+
+static void note_format(const struct text *t)
+{
+  const struct eo_text_format *f = &t->format;
+  int64_t rows = eo_recording_rows(t->recording);
+  eo_notes_add(t->notes, "Text with %d column%s%s%s and a decimal %s; the first of %lld rows is line %lld.", f->cells,
+               f->cells == 1 ? "" : "s", f->cells == 1 ? "" : " separated by ",
+               f->cells == 1 ? "" : separator_name(f->separator), f->point == ',' ? "comma" : "point", (long long)rows,
+               (long long)f->first_line);
+  if (t->missing)
+    eo_notes_add(t->notes, "%lld cell%s without a number, the first in line %lld, column %d.", (long long)t->missing,
+                 t->missing == 1 ? " is" : "s are", (long long)t->missing_line, t->missing_cell + 1);
+  if (t->faults > FAULTS_NAMED)
+    eo_notes_add(t->notes, "%lld rows are odd in all; the first %d are named above.", (long long)t->faults,
+                 FAULTS_NAMED);
+}
+
+static enum eo_code read_text(struct text *t, const struct eo_reader_options *options, struct eo_error *error)
+{
+  enum eo_code code = fill(t, error);
+  if (code)
+    return code;
+  bool whole = t->filled <= EO_TEXT_HEAD;
+  size_t size = whole ? t->filled : EO_TEXT_HEAD;
+  char next = t->block[size];
+  t->block[size] = '\0';
+  code = eo_text_guess(&t->format, t->block, size, whole && t->ended, &options->text, error);
+  if (code)
+    return code;
+  eo_text_read_header(&t->format, t->block);
+  t->block[size] = next;
+  code = make_recording(t, options->spool_directory, error);
+  if (!code)
+    code = read_rows(t, error);
+  if (!code)
+    note_format(t);
+  return code;
+}
+
+enum eo_code eo_delimited_read(struct eo_source *source, const struct eo_reader_options *options,
+                               struct eo_recording **recording, struct eo_notes *notes, struct eo_error *error)
+{
+  struct text *t = malloc(sizeof *t);
+  if (!t)
+    return eo_error_memory(error);
+  memset(t, 0, offsetof(struct text, batch));
+  t->filled = 0;
+  t->source = source;
+  t->progress = options->progress;
+  t->notes = notes;
+  enum eo_code code = read_text(t, options, error);
+  if (code)
+    eo_recording_free(t->recording);
+  else
+    *recording = t->recording;
+  free(t);
+  return code;
+}

@@ -1,0 +1,36 @@
+/* One cell of a line of delimited text. Internal to the text reader. */
+#ifndef EASEOFF_RECORDING_TEXT_CELL_H
+#define EASEOFF_RECORDING_TEXT_CELL_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+enum eo_cell_kind { EO_CELL_NUMBER, EO_CELL_MISSING, EO_CELL_TEXT };
+
+struct eo_cell {
+  const char *text; /* without quotes and the blanks around it */
+  size_t length;
+  bool quoted;
+};
+
+static inline bool eo_text_blank(char c)
+{
+  return c == ' ' || c == '\t' || c == '\r';
+}
+
+/* Takes the next cell of the line that ends at end; *at moves behind its separator. False when the line has no more
+   cells. A line that ends with a separator has one more, empty cell, unless the separator is a run of blanks. The byte
+   at end must belong to no number. */
+bool eo_text_next_cell(const char **at, const char *end, char separator, struct eo_cell *cell);
+
+/* A number; nothing or a word for it (empty, NaN, n/a, -, *); or text. *value is NaN unless it is a finite number. */
+enum eo_cell_kind eo_text_cell_value(const struct eo_cell *cell, char point, double *value);
+
+/* Where a comment's own text starts ("# text", "% text", "// text", and "; text" where cells are not separated by
+   semicolons); NULL when the line is no comment. */
+const char *eo_text_comment(const char *line, const char *end, char separator);
+
+/* True when the line holds nothing but blanks. */
+bool eo_text_empty(const char *line, const char *end);
+
+#endif

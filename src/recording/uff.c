@@ -1,0 +1,255 @@
+/* The data sets of a universal file as channels. Text is read once, into one column each; binary data are read where
+   they are. */
+#include "recording/uff.h"
+#include "recording/decimal.h"
+#include "recording/readers.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <unistd.h>
+
+#define BATCH 4096               /* values */
+#define MEMORY ((size_t)1 << 19) /* bytes of a column of text in memory */
+#define CHANNELS EO_RECORDING_COLUMNS
+#define PIECE ((size_t)64 << 10)
+
+/* Where the values of a channel are. */
+struct values {
+  struct eo_recording *column; /* owned: of text; NULL: binary */
+  int64_t at, stride;          /* byte of the first value, from value to value */
+  int size;                    /* 4 or 8 bytes */
+  bool big;
+};
+
+struct uff {
+  struct eo_uff_lines lines;
+  const char *spool_directory;
+  struct eo_notes *notes;
+  int count, skipped;
+  bool uneven; /* a column of time is there */
+  struct eo_series series[CHANNELS];
+  struct values values[CHANNELS];
+  double batch[2 * BATCH];
+};
+
+static enum eo_code new_column(const struct uff *u, struct eo_recording **column, struct eo_error *error)
+{
+  enum eo_code code = eo_recording_new(column, 1, u->spool_directory, error);
+  if (!code && u->spool_directory)
+    eo_recording_set_memory(*column, MEMORY);
+  return code;
+}
+
+/* The values of a data set of text. What the numbers are is told by their order: widths differ between writers. */
+struct stream {
+  struct eo_uff_lines *lines;
+  const char *at; /* in the current line; NULL: take the next one */
+  const struct eo_uff_header *header;
+};
+
+static enum eo_code next_number(struct stream *s, int64_t taken, double *value, struct eo_error *error)
+{
+  enum eo_code code;
+  for (;;) {
+    while (s->at && *s->at == ' ')
+      s->at++;
+    if (s->at && *s->at)
+      break;
+    if (!eo_uff_next(s->lines, error, &code) || eo_uff_is_end(s->lines))
+      return code ? code
+                  : eo_error_set(error, EO_ERROR_INPUT, "",
+                                 "UFF: the data set in line %lld ends in line %lld after %lld of %lld values.",
+                                 (long long)s->header->line, (long long)s->lines->number, (long long)taken,
+                                 (long long)s->header->count);
+    s->at = s->lines->line;
+  }
+  const char *end = eo_decimal_read(s->at, '.', value);
+  if (!end)
+    return eo_error_set(error, EO_ERROR_INPUT, "", "UFF: line %lld, column %d: there is no number.",
+                        (long long)s->lines->number, (int)(s->at - s->lines->line) + 1);
+  s->at = end;
+  return EO_OK;
+}
+
+/* Reads the numbers of text into column and, for an uneven abscissa, time. */
+static enum eo_code read_text(struct uff *u, const struct eo_uff_header *h, struct eo_recording *time,
+                              struct eo_recording *column, struct eo_error *error)
+{
+  struct stream stream = {&u->lines, NULL, h};
+  double *times = u->batch, *ordinates = u->batch + BATCH;
+  for (int64_t first = 0; first < h->count; first += BATCH) {
+    int64_t n = h->count - first < BATCH ? h->count - first : BATCH;
+    enum eo_code code = EO_OK;
+    for (int64_t i = 0; !code && i < n; i++) {
+      if (!h->even)
+        code = next_number(&stream, first + i, &times[i], error);
+      if (!code)
+        code = next_number(&stream, first + i, &ordinates[i], error);
+    }
+    if (!code && time)
+      code = eo_recording_append(time, times, n, error);
+    if (!code)
+      code = eo_recording_append(column, ordinates, n, error);
+    if (code)
+      return code;
+  }
+  return EO_OK;
+}
+
+static enum eo_code add_text(struct uff *u, const struct eo_uff_header *h, int time, int ordinate,
+                             struct eo_error *error)
+{
+  enum eo_code code = new_column(u, &u->values[ordinate].column, error);
+  if (!code && time >= 0)
+    code = new_column(u, &u->values[time].column, error);
+  return code ? code : read_text(u, h, time >= 0 ? u->values[time].column : NULL, u->values[ordinate].column, error);
+}
+
+/* An uneven abscissa is single or, as some write it, as wide as the values; the number of bytes tells which. */
+static enum eo_code add_binary(struct uff *u, const struct eo_uff_header *h, int time, int ordinate,
+                               struct eo_error *error)
+{
+  int size = h->type == 4 ? 8 : 4;
+  int abscissa = h->even ? 0 : h->bytes == h->count * (4 + size) ? 4 : size;
+  struct values *v = &u->values[ordinate];
+  *v = (struct values){.at = u->lines.at + abscissa, .stride = abscissa + size, .size = size, .big = h->big};
+  if (h->bytes < h->count * v->stride)
+    return eo_error_set(error, EO_ERROR_INPUT, "",
+                        "UFF: the binary data set in line %lld has %lld bytes for %lld values.", (long long)h->line,
+                        (long long)h->bytes, (long long)h->count);
+  if (time >= 0)
+    u->values[time] = (struct values){.at = u->lines.at, .stride = v->stride, .size = abscissa, .big = h->big};
+  eo_uff_seek(&u->lines, u->lines.at + h->bytes);
+  return EO_OK;
+}
+
+static void name_series(struct eo_series *series, const struct eo_uff_header *h)
+{
+  const char *name = *h->title ? h->title : h->label;
+  int used = snprintf(series->name, sizeof series->name, "%.50s", name);
+  if (h->node)
+    snprintf(series->name + used, sizeof series->name - (size_t)used, "%s%d:%d", used ? " " : "", h->node,
+             h->direction);
+  snprintf(series->unit, sizeof series->unit, "%s", h->unit);
+  series->length = h->count;
+  series->interval = h->even ? h->increment : 0;
+  series->start = h->even ? h->start : 0;
+}
+
+/* Over time and real: an encoder's record. Spectra and the like are passed over. */
+static bool is_record(const struct eo_uff_header *h)
+{
+  return h->function <= 1 && (h->type == 2 || h->type == 4) && h->abscissa != 18 && h->count > 0 &&
+         (!h->even || h->increment > 0);
+}
+
+static enum eo_code add_set(struct uff *u, const struct eo_uff_header *h, struct eo_error *error)
+{
+  int time = -1;
+  if (u->count + 2 > CHANNELS)
+    return eo_error_set(error, EO_ERROR_INPUT, "", "UFF: the file has more than %d data sets.", CHANNELS);
+  if (!h->even && !u->uneven) {
+    time = u->count++;
+    u->uneven = true;
+    u->series[time] = (struct eo_series){.name = "time", .unit = "s", .length = h->count};
+  }
+  int ordinate = u->count++;
+  name_series(&u->series[ordinate], h);
+  return h->binary ? add_binary(u, h, time, ordinate, error) : add_text(u, h, time, ordinate, error);
+}
+
+/* The data set whose number stands in the current line, up to the line "    -1" that ends it. */
+static enum eo_code read_set(struct uff *u, struct eo_error *error)
+{
+  enum eo_code code = EO_OK;
+  const char *p = u->lines.line;
+  while (*p == ' ')
+    p++;
+  if (p[0] == '5' && p[1] == '8' && (!p[2] || p[2] == ' ' || (p[2] | 0x20) == 'b')) {
+    struct eo_uff_header header;
+    code = eo_uff_read_header(&u->lines, &header, error);
+    if (!code && is_record(&header))
+      code = add_set(u, &header, error);
+    else if (!code) {
+      u->skipped++;
+      if (header.binary)
+        eo_uff_seek(&u->lines,
+                    u->lines.at +
+                        (header.bytes < u->lines.size - u->lines.at ? header.bytes : u->lines.size - u->lines.at));
+    }
+  }
+  while (!code && eo_uff_next(&u->lines, error, &code) && !eo_uff_is_end(&u->lines))
+    ;
+  return code;
+}
+
+static enum eo_code read_sets(struct uff *u, struct eo_error *error)
+{
+  enum eo_code code = EO_OK;
+  while (!code && eo_uff_next(&u->lines, error, &code)) {
+    if (!eo_uff_is_end(&u->lines))
+      continue;
+    if (eo_uff_next(&u->lines, error, &code))
+      code = read_set(u, error);
+  }
+  if (!code && u->skipped)
+    eo_notes_add(u->notes, "%d data set%s that %s no real record over time %s left out.", u->skipped,
+                 u->skipped == 1 ? "" : "s", u->skipped == 1 ? "is" : "are", u->skipped == 1 ? "was" : "were");
+  return code;
+}
+
+static enum eo_code read_binary(const struct uff *u, const struct values *v, int64_t first, int64_t count,
+                                double *values, struct eo_error *error)
+{
+  unsigned char bytes[PIECE];
+  int64_t most = ((int64_t)PIECE - v->size) / v->stride + 1;
+  while (count > 0) {
+    int64_t n = count < most ? count : most;
+    enum eo_code code = eo_bytes_read(u->lines.file, v->at + first * v->stride, bytes,
+                                      (size_t)((n - 1) * v->stride + v->size), error);
+    if (code)
+      return code;
+    for (int64_t i = 0; i < n; i++) {
+      const unsigned char *p = bytes + i * v->stride;
+      *values++ = v->size == 8 ? eo_bytes_double(p, v->big) : eo_bytes_float(p, v->big);
+    }
+    first += n;
+    count -= n;
+  }
+  return EO_OK;
+}
+
+static enum eo_code read_values(void *context, int series, int64_t first, int64_t count, double *values,
+                                struct eo_error *error)
+{
+  const struct uff *u = context;
+  const struct values *v = &u->values[series];
+  return v->column ? eo_recording_read(v->column, first, count, values, error)
+                   : read_binary(u, v, first, count, values, error);
+}
+
+enum eo_code eo_uff_read(const char *path, const struct eo_reader_options *options, const struct eo_series_sink *sink,
+                         struct eo_notes *notes, struct eo_error *error)
+{
+  struct uff *u = calloc(1, sizeof *u);
+  if (!u)
+    return eo_error_memory(error);
+  u->spool_directory = options->spool_directory;
+  u->notes = notes;
+  enum eo_code code = eo_bytes_open(path, &u->lines.file, &u->lines.size, error);
+  if (code) {
+    free(u);
+    return code;
+  }
+  code = read_sets(u, error);
+  if (!code) {
+    struct eo_series_file file = {u->series, u->count, u->lines.size, options->max_bytes, read_values, u};
+    code = eo_series_copy(&file, sink, notes, error);
+  }
+  close(u->lines.file);
+  for (int i = 0; i < u->count; i++)
+    eo_recording_free(u->values[i].column);
+  free(u);
+  return code;
+}

@@ -1,0 +1,169 @@
+/* Lines and headers of universal files. */
+#include "recording/uff.h"
+#include "recording/decimal.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <strings.h>
+
+static enum eo_code fill(struct eo_uff_lines *l, struct eo_error *error)
+{
+  int64_t left = l->size - l->at;
+  l->used = 0;
+  l->filled = left < (int64_t)sizeof l->buffer ? (size_t)left : sizeof l->buffer;
+  return eo_bytes_read(l->file, l->at, l->buffer, l->filled, error);
+}
+
+bool eo_uff_next(struct eo_uff_lines *lines, struct eo_error *error, enum eo_code *code)
+{
+  lines->length = 0;
+  *code = EO_OK;
+  if (lines->at >= lines->size)
+    return false;
+  lines->number++;
+  while (lines->at < lines->size) {
+    if (lines->used == lines->filled && (*code = fill(lines, error)))
+      return false;
+    const char *from = lines->buffer + lines->used, *end = memchr(from, '\n', lines->filled - lines->used);
+    size_t n = (end ? (size_t)(end - from) : lines->filled - lines->used);
+    if (n > EO_UFF_LINE - lines->length) {
+      *code = eo_error_set(error, EO_ERROR_INPUT, "", "UFF: line %lld is longer than %d characters.",
+                           (long long)lines->number, EO_UFF_LINE);
+      return false;
+    }
+    memcpy(lines->line + lines->length, from, n);
+    lines->length += n;
+    n += end != NULL;
+    lines->used += n;
+    lines->at += (int64_t)n;
+    if (end)
+      break;
+  }
+  if (lines->length && lines->line[lines->length - 1] == '\r')
+    lines->length--;
+  lines->line[lines->length] = '\0';
+  return true;
+}
+
+void eo_uff_seek(struct eo_uff_lines *lines, int64_t at)
+{
+  lines->at = at;
+  lines->used = lines->filled = 0;
+}
+
+bool eo_uff_is_end(const struct eo_uff_lines *lines)
+{
+  const char *p = lines->line;
+  while (*p == ' ')
+    p++;
+  if (p[0] != '-' || p[1] != '1')
+    return false;
+  for (p += 2; *p == ' '; p++)
+    ;
+  return !*p;
+}
+
+/* The columns first .. first + width - 1 of the line, without blanks around; shorter lines have empty fields. */
+static void field(const struct eo_uff_lines *l, size_t first, size_t width, char *text)
+{
+  size_t end = first + width < l->length ? first + width : l->length;
+  while (first < end && l->line[first] == ' ')
+    first++;
+  while (end > first && l->line[end - 1] == ' ')
+    end--;
+  size_t n = end > first ? end - first : 0;
+  memcpy(text, l->line + first, n);
+  text[n] = '\0';
+}
+
+static int64_t integer_field(const struct eo_uff_lines *l, size_t first, size_t width)
+{
+  char text[32];
+  field(l, first, width, text);
+  return strtoll(text, NULL, 10);
+}
+
+static double number_field(const struct eo_uff_lines *l, size_t first, size_t width)
+{
+  char text[32];
+  double value = 0;
+  field(l, first, width, text);
+  return eo_decimal_read(text, '.', &value) ? value : 0;
+}
+
+static void text_field(const struct eo_uff_lines *l, size_t first, size_t width, char *text)
+{
+  field(l, first, width, text);
+  if (!strcasecmp(text, "NONE"))
+    *text = '\0';
+}
+
+/* "    58b     1     2          11       40000 ...": byte order 1 is little-endian, floating point 2 is IEEE. */
+static enum eo_code read_binary(const struct eo_uff_lines *l, struct eo_uff_header *h, struct eo_error *error)
+{
+  int64_t order = integer_field(l, 7, 6), floating = integer_field(l, 13, 6);
+  h->big = order == 2;
+  h->bytes = integer_field(l, 31, 12);
+  if (order < 1 || order > 2 || floating != 2)
+    return eo_error_set(
+        error, EO_ERROR_INPUT, "",
+        "UFF: the binary data set in line %lld has byte order %lld and number format %lld; only IEEE is read.",
+        (long long)l->number, (long long)order, (long long)floating);
+  if (h->bytes < 0 || h->bytes > l->size - l->at)
+    return eo_error_set(error, EO_ERROR_INPUT, "",
+                        "UFF: the binary data set in line %lld states %lld bytes of data; the file has %lld.",
+                        (long long)l->number, (long long)h->bytes, (long long)(l->size - l->at));
+  return EO_OK;
+}
+
+static void read_record(const struct eo_uff_lines *l, int record, struct eo_uff_header *h)
+{
+  switch (record) {
+  case 1:
+    text_field(l, 0, 80, h->title);
+    break;
+  case 6:
+    h->function = (int)integer_field(l, 0, 5);
+    h->node = (int)integer_field(l, 41, 10);
+    h->direction = (int)integer_field(l, 51, 4);
+    break;
+  case 7:
+    h->type = (int)integer_field(l, 0, 10);
+    h->count = integer_field(l, 10, 10);
+    h->even = integer_field(l, 20, 10) == 1;
+    h->start = number_field(l, 30, 13);
+    h->increment = number_field(l, 43, 13);
+    break;
+  case 8:
+    h->abscissa = (int)integer_field(l, 0, 10);
+    break;
+  case 9:
+    text_field(l, 26, 20, h->label);
+    text_field(l, 47, 20, h->unit);
+    break;
+  default:
+    break;
+  }
+}
+
+enum eo_code eo_uff_read_header(struct eo_uff_lines *lines, struct eo_uff_header *header, struct eo_error *error)
+{
+  memset(header, 0, sizeof *header);
+  header->line = lines->number;
+  header->binary = lines->length > 6 && (lines->line[6] | 0x20) == 'b';
+  enum eo_code code = header->binary ? read_binary(lines, header, error) : EO_OK;
+  for (int record = 1; !code && record <= 11; record++) {
+    if (eo_uff_next(lines, error, &code))
+      read_record(lines, record, header);
+    else if (!code)
+      code = eo_error_set(error, EO_ERROR_INPUT, "", "UFF: the file ends in line %lld, in the header of a data set.",
+                          (long long)lines->number);
+  }
+  if (!code &&
+      (header->count < 0 || header->count > lines->size || !isfinite(header->increment) || !isfinite(header->start)))
+    code = eo_error_set(error, EO_ERROR_INPUT, "",
+                        "UFF: the data set in line %lld states %lld values; the file has %lld bytes.",
+                        (long long)header->line, (long long)header->count, (long long)lines->size);
+  return code;
+}
