@@ -1,4 +1,4 @@
-#include "app/stage.h"
+#include "reference/stage.h"
 
 #include <stdlib.h>
 #include <string.h>

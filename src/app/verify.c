@@ -1,4 +1,4 @@
-#include "app/verify.h"
+#include "reference/verify.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "app/stage.h"
+#include "reference/stage.h"
 #include "document/design_document.h"
 #include "document/example.h"
 #include "document/geometry_table.h"

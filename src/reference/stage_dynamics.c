@@ -1,0 +1,370 @@
+#include <complex.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "reference/stage.h"
+#include "reference/stage_input.h"
+#include "reference/stage_law.h"
+#include "dynamics/vibration.h"
+
+struct explicit_parameters {
+  struct eo_dynamics_parameters of;
+  double half_backlash, float_position;
+};
+
+struct input {
+  struct eo_design design;
+  int has_pair, has_parameters, has_right_law, has_impact;
+  struct explicit_parameters parameters;
+  struct eo_stage_law law, right_law;
+  double torque, speed;
+  int pinion_teeth;
+  double stagger;
+  bool gated;
+  struct impact {
+    enum eo_impact_in_dynamics mode;
+    double force[2], start[2], duration[2];
+  } impact;
+  struct eo_series axial_cosine, axial_sine;
+  int harmonics;
+  enum eo_solver solver;
+};
+
+/* ---- input ---- */
+
+#define SI(member_, key_, low_, high_, help_) \
+  EO_NUMBER_REQUIRED(struct explicit_parameters, of.member_, key_, NULL, low_, high_, help_)
+#define SI_OR(member_, key_, low_, high_, default_, help_) \
+  EO_NUMBER(struct explicit_parameters, of.member_, key_, NULL, low_, high_, default_, help_)
+
+static const struct eo_field parameters[] = {
+    EO_INTEGER(struct explicit_parameters, of.ends, "ends", 1, 2, 2,
+               "2: herringbone, 12 degrees of freedom; 1: single helical or spur, 6"),
+    SI(base_radius[0], "Rp", 1e-4, 100, "base radius of the pinion, m"),
+    SI(base_radius[1], "Rg", 1e-4, 100, "base radius of the gear, m"),
+    SI(base_helix_angle, "beta", 0, 1.2, "base helix angle, rad"),
+    SI(mass[0], "mp", 1e-6, 1e7, "mass of one end of the pinion, kg"),
+    SI(mass[1], "mg", 1e-6, 1e7, "of the gear, kg"),
+    SI(inertia[0], "Ip", 1e-12, 1e8, "inertia of one end of the pinion, kg m2"),
+    SI(inertia[1], "Ig", 1e-12, 1e8, "of the gear, kg m2"),
+    SI(bearing_stiffness[0], "kpy", 1, 1e15, "transverse bearing stiffness of one end of the pinion, N/m"),
+    SI(bearing_stiffness[1], "kgy", 1, 1e15, "of the gear, N/m"),
+    SI(gear_axial_stiffness[0], "kg1z", 1, 1e15, "axial bearing stiffness at the gear's left end, N/m"),
+    SI(gear_axial_stiffness[1], "kg2z", 1, 1e15, "at its right end, N/m"),
+    SI(groove_axial_stiffness[0], "kpz", 1, 1e21, "between the pinion's ends (one end: to the ground), N/m"),
+    SI(groove_axial_stiffness[1], "kgz", 1, 1e21, "between the gear's ends, N/m"),
+    SI_OR(groove_torsional_stiffness[0], "kt_p", 0, 1e20, 0, "torsion between the pinion's ends, N m/rad"),
+    SI_OR(groove_torsional_stiffness[1], "kt_g", 0, 1e20, 0, "between the gear's ends, N m/rad"),
+    SI_OR(bearing_damping[0], "cpy", 0, 1e12, 0, "N s/m"),
+    SI_OR(bearing_damping[1], "cgy", 0, 1e12, 0, "N s/m"),
+    SI_OR(gear_axial_damping[0], "cg1z", 0, 1e12, 0, "N s/m"),
+    SI_OR(gear_axial_damping[1], "cg2z", 0, 1e12, 0, "N s/m"),
+    SI_OR(groove_axial_damping[0], "cpz", 0, 1e12, 0, "N s/m"),
+    SI_OR(groove_axial_damping[1], "cgz", 0, 1e12, 0, "N s/m"),
+    SI_OR(groove_torsional_damping[0], "ct_p", 0, 1e12, 0, "N m s/rad"),
+    SI_OR(groove_torsional_damping[1], "ct_g", 0, 1e12, 0, "N m s/rad"),
+    SI_OR(mesh_damping, "cm", 0, 1e12, 0, "mesh damping of one end along the normal, N s/m"),
+    EO_NUMBER(struct explicit_parameters, half_backlash, "tau", NULL, 1e-9, 1, 5e-5, "half the normal backlash, m"),
+    EO_NUMBER(struct explicit_parameters, float_position, "eps_z", NULL, -1, 1, 0,
+              "constant axial float, m: drops out"),
+};
+static const struct eo_table parameters_table = EO_TABLE("parameters", struct explicit_parameters, parameters);
+
+static const char *const modes[] = {"none", "paper", "consistent", NULL};
+static const char *const solvers[] = {"harmonic_balance", "time_integration", NULL};
+static const double at_once[2] = {0, 0};
+
+static const struct eo_field impact[] = {
+    EO_CHOICE(struct impact, mode, "mode", modes, EO_IMPACT_CONSISTENT,
+              "on the rotations alone, or with the mesh force's direction"),
+    EO_NUMBERS(struct impact, force, "force_N", 2, &eo_unit_N, 0, 1e12, EO_FIELD_REQUIRED, NULL, NULL,
+               "[left, right] height of the half sine, along the transverse line of action"),
+    EO_NUMBERS(struct impact, start, "start", 2, NULL, 0, 1, 0, at_once, NULL, "[left, right] phase of the mesh cycle"),
+    EO_NUMBERS(struct impact, duration, "duration", 2, NULL, 1e-6, 1, EO_FIELD_REQUIRED, NULL, NULL,
+               "[left, right] in mesh periods"),
+};
+static const struct eo_table impact_table = EO_TABLE("impact", struct impact, impact);
+
+static const struct eo_field input[] = {
+    EO_OPTIONAL(struct input, design.gear_pair, has_pair, "gear_pair", &eo_gear_pair_table, "params are needed",
+                "as in a design document: the parameters are derived from it"),
+    EO_OBJECT(struct input, design.material, "material", &eo_material_table, "with gear_pair, as in a design document"),
+    EO_OBJECT(struct input, design.supports, "supports", &eo_supports_table,
+              "with gear_pair, as in a design document; ends differ when law_right is given"),
+    EO_OPTIONAL(struct input, parameters, has_parameters, "params", &parameters_table, "derived from gear_pair",
+                "the parameters themselves, in SI"),
+    EO_OBJECT(struct input, law, "law", &eo_stage_law_table, "mesh law of both ends, or of the left one"),
+    EO_OPTIONAL(struct input, right_law, has_right_law, "law_right", &eo_stage_law_table, "as law",
+                "mesh law of the right end"),
+    EO_NUMBER_REQUIRED(struct input, torque, "torque_Nm", &eo_unit_Nm, 1e-3, 1e8, "total on the pinion"),
+    EO_NUMBER_REQUIRED(struct input, speed, "speed_rpm", &eo_unit_rpm, 0.1, 1e6, "of the pinion"),
+    {.key = "pinion_teeth",
+     .kind = EO_FIELD_INTEGER,
+     .flags = EO_FIELD_NULLABLE,
+     .offset = offsetof(struct input, pinion_teeth),
+     .low = 1,
+     .high = 2000,
+     .fallback = NAN,
+     .derived = "of gear_pair",
+     .help = "mesh cycles per turn; needed with params"},
+    EO_NUMBER(struct input, stagger, "stagger", NULL, -1, 1, 0, "right end behind the left, in mesh cycles"),
+    EO_FLAG(struct input, gated, "damping_in_contact_only", 1, "no mesh damping while the teeth are apart"),
+    EO_OPTIONAL(struct input, impact, has_impact, "impact", &impact_table, "none", "entering impacts"),
+    EO_SERIES(struct input, axial_cosine, "axial_float_cosine_um", &eo_unit_um, EO_MAX_HARMONICS, -1e6, 1e6, 0,
+              "prescribed axial float of the pinion: coefficients of cos(2 pi n phi)"),
+    EO_SERIES(struct input, axial_sine, "axial_float_sine_um", &eo_unit_um, EO_MAX_HARMONICS, -1e6, 1e6, 0,
+              "of sin(2 pi n phi)"),
+    EO_INTEGER(struct input, harmonics, "harmonics", 1, EO_MAX_HARMONICS, 24, "mesh harmonics of the response"),
+    EO_CHOICE(struct input, solver, "solver", solvers, EO_SOLVER_HARMONIC_BALANCE, "of the equations of motion"),
+};
+static const struct eo_table input_table = EO_TABLE("the input", struct input, input);
+
+/* ---- output ---- */
+
+struct spectrum {
+  struct eo_series deflection_real, deflection_imaginary, acceleration;
+};
+
+struct output {
+  struct explicit_parameters parameters;
+  struct eo_vibration r;
+  enum eo_vibration_outcome outcome;
+  int two;
+  struct spectrum left, right;
+  double stiffness[2], largest_multiplier;
+  struct eo_series frequency, damping_ratio;
+  struct eo_series freedom_rms;
+};
+
+static const struct eo_field readings[] = {
+    EO_OUT_PAIR(struct eo_vibration, rms[EO_READING_NORMAL], "normal", &eo_unit_m_per_s2, "[left, right] X\""),
+    EO_OUT_PAIR(struct eo_vibration, rms[EO_READING_TRANSVERSE], "transverse", &eo_unit_m_per_s2,
+                "[left, right] with the motion of the bearings"),
+    EO_OUT_PAIR(struct eo_vibration, rms[EO_READING_ROTATIONAL], "rotational", &eo_unit_m_per_s2,
+                "[left, right] what encoders see"),
+};
+static const struct eo_table readings_table = EO_TABLE("accelerations", struct eo_vibration, readings);
+
+static const struct eo_field pair_readings[] = {
+    EO_OUT(struct eo_vibration, rms_pair[EO_READING_NORMAL], "normal", &eo_unit_m_per_s2, "mean of the ends' RMS"),
+    EO_OUT(struct eo_vibration, rms_pair[EO_READING_TRANSVERSE], "transverse", &eo_unit_m_per_s2,
+           "mean of the ends' RMS"),
+    EO_OUT(struct eo_vibration, rms_pair[EO_READING_ROTATIONAL], "rotational", &eo_unit_m_per_s2,
+           "mean of the ends' RMS"),
+    EO_OUT(struct eo_vibration, rms_of_mean[EO_READING_NORMAL], "normal_of_mean", &eo_unit_m_per_s2,
+           "RMS of the ends' mean"),
+};
+static const struct eo_table pair_readings_table = EO_TABLE("accelerations of the pair", struct eo_vibration,
+                                                            pair_readings);
+
+static const struct eo_field spectrum[] = {
+    EO_OUT_SERIES(struct spectrum, deflection_real, "deflection_real_um", &eo_unit_um,
+                  "X = mean + Re sum X_n exp(2 pi i n phi), n = 1..: real parts"),
+    EO_OUT_SERIES(struct spectrum, deflection_imaginary, "deflection_imaginary_um", &eo_unit_um, "imaginary parts"),
+    EO_OUT_SERIES(struct spectrum, acceleration, "acceleration_m_per_s2", &eo_unit_m_per_s2, "amplitudes of X\""),
+};
+static const struct eo_table spectrum_table = EO_TABLE("harmonics", struct spectrum, spectrum);
+
+static const char *const outcomes[] = {"converged", "contact_lost", "not_converged", NULL};
+
+static const struct eo_field output[] = {
+    EO_CHOICE(struct output, outcome, "outcome", outcomes, 0, "numbers of a case that did not converge are 0"),
+    EO_OBJECT(struct output, r, "rms_m_per_s2", &readings_table, "accelerations over a mesh period"),
+    EO_OBJECT(struct output, r, "rms_pair_m_per_s2", &pair_readings_table, "of the pair"),
+    EO_OUT_PAIR(struct output, r.deflection_mean, "deflection_mean_um", &eo_unit_um,
+                "[left, right] X, along the normal"),
+    EO_OUT_PAIR(struct output, r.deflection_swing, "deflection_swing_um", &eo_unit_um, "[left, right] peak to peak"),
+    EO_OUT_PAIR(struct output, r.force_mean, "mesh_force_mean_N", &eo_unit_N, "[left, right] normal, damping included"),
+    EO_OUT_PAIR(struct output, r.force_min, "mesh_force_min_N", &eo_unit_N, "[left, right]"),
+    EO_OUT_PAIR(struct output, r.force_max, "mesh_force_max_N", &eo_unit_N, "[left, right]"),
+    EO_OUT_PAIR(struct output, r.dynamic_factor, "dynamic_factor", NULL, "[left, right] largest over mean mesh force"),
+    EO_OUT_PAIR(struct output, r.contact_loss, "contact_loss", NULL, "[left, right] share of the cycle out of contact"),
+    EO_FLAG(struct output, r.back_contact, "back_contact", 0, "back flanks touch"),
+    EO_OUT_PAIR(struct output, r.bearing_force_max[0], "pinion_bearing_force_max_N", &eo_unit_N,
+                "[left, right] radial"),
+    EO_OUT_PAIR(struct output, r.bearing_force_max[1], "gear_bearing_force_max_N", &eo_unit_N, "[left, right] radial"),
+    EO_OUT_SERIES(struct output, freedom_rms, "freedom_rms", NULL,
+                  "accelerations of y, z (m/s2) and theta (rad/s2): pinion left, right, gear left, right"),
+    EO_OBJECT(struct output, left, "left", &spectrum_table, "harmonics of the left end"),
+    EO_OPTIONAL(struct output, right, two, "right", &spectrum_table, "the pair has one end", "of the right end"),
+    EO_OUT(struct output, r.residual, "residual", NULL,
+           "of the force balance over the load; of time integration: change over the last period"),
+    EO_OUT(struct output, r.power_supplied, "power_supplied_W", NULL, "by the varying mesh to the vibration"),
+    EO_OUT(struct output, r.power_dissipated, "power_dissipated_W", NULL, "in mesh, bearings and groove"),
+    EO_NUMBER_DERIVED(struct output, largest_multiplier, "largest_multiplier", NULL, -INFINITY, INFINITY,
+                      "not computed", "size of the largest Floquet multiplier: stable below 1; harmonic balance only"),
+    EO_OUT_PAIR(struct output, stiffness, "mean_stiffness_N_per_um", &eo_unit_N_per_um,
+                "[left, right] dF/dX under the load, mean over the cycle"),
+    EO_OUT_SERIES(struct output, frequency, "eigenfrequencies_Hz", &eo_unit_Hz,
+                  "undamped, with the mean stiffness; rigid motions left out"),
+    EO_OUT_SERIES(struct output, damping_ratio, "damping_ratios", NULL, "of the same modes"),
+    EO_OBJECT(struct output, parameters, "params", &parameters_table, "the parameters used, SI"),
+};
+static const struct eo_table output_table = EO_TABLE("the output", struct output, output);
+
+/* ---- run ---- */
+
+/* A vibration problem under construction. */
+struct problem {
+  struct eo_design design;
+  struct eo_geometry geometry;
+  struct eo_law law[2];
+  struct eo_vibration_case load;
+  double axial[1 + 2 * EO_MAX_HARMONICS];
+};
+
+static enum eo_code check_source(const struct input *given, struct eo_error *error)
+{
+  if (!given->has_parameters && !given->has_pair)
+    return eo_error_set(error, EO_ERROR_INPUT, "/params", "Either params or gear_pair is needed.");
+  if (given->has_parameters && given->has_pair)
+    return eo_error_set(error, EO_ERROR_INPUT, "/params",
+                        "Parameters are given by params or by gear_pair, not by both.");
+  if (!given->pinion_teeth && !given->has_pair)
+    return eo_error_set(error, EO_ERROR_INPUT, "/pinion_teeth",
+                        "With params the number of teeth is needed: it makes the mesh frequency.");
+  return EO_OK;
+}
+
+static enum eo_code make_laws(struct problem *p, const struct input *given, double load, double backlash,
+                              double stiffness[2], struct eo_error *error)
+{
+  enum eo_code code = eo_stage_law_make(&p->law[0], &given->law, load, backlash, "/law", error);
+  if (!code && given->has_right_law)
+    code = eo_stage_law_make(&p->law[1], &given->right_law, load, backlash, "/law_right", error);
+  else if (!code)
+    code = eo_law_copy(&p->law[1], &p->law[0], error);
+  for (int end = 0; end < 2 && !code; end++)
+    stiffness[end] = eo_stage_law_stiffness(&p->law[end], load);
+  return code;
+}
+
+/* Laws and parameters, given or derived. */
+static enum eo_code make_model(struct problem *p, const struct input *given, struct output *found,
+                               struct eo_error *error)
+{
+  struct explicit_parameters *e = &found->parameters;
+  enum eo_code code = EO_OK;
+  if (given->has_parameters) {
+    *e = given->parameters;
+    return make_laws(p, given, eo_dynamics_mesh_load(&e->of, given->torque), 2 * e->half_backlash, found->stiffness,
+                     error);
+  }
+  p->design = given->design;
+  code = eo_design_complete(&p->design, &p->geometry, error);
+  if (code)
+    return code;
+  int ends = p->design.gear_pair.ends;
+  double load = given->torque / (ends * p->geometry.base_radius[EO_PINION] * cos(p->geometry.base_helix_angle));
+  e->half_backlash = p->design.gear_pair.backlash / 2;
+  code = make_laws(p, given, load, p->design.gear_pair.backlash, found->stiffness, error);
+  double mean = ends == 2 ? (found->stiffness[0] + found->stiffness[1]) / 2 : found->stiffness[0];
+  return code ? code
+              : eo_dynamics_parameters_init(&e->of, &p->geometry, &p->design.gear_pair, &p->design.material,
+                                            &p->design.supports, given->has_right_law, mean, error);
+}
+
+static void make_load(struct problem *p, const struct input *given)
+{
+  int cosines = given->axial_cosine.count, sines = given->axial_sine.count;
+  p->load = (struct eo_vibration_case){.torque = given->torque,
+                                       .speed = given->speed,
+                                       .pinion_teeth = given->pinion_teeth ? given->pinion_teeth
+                                                                           : given->design.gear_pair.teeth[EO_PINION],
+                                       .law = {&p->law[0], &p->law[1]},
+                                       .phase_right = -given->stagger,
+                                       .gated = given->gated,
+                                       .axial_order = cosines > sines ? cosines : sines,
+                                       .axial_motion = p->axial};
+  for (int n = 0; n < cosines; n++)
+    p->axial[2 * n + 1] = given->axial_cosine.value[n];
+  for (int n = 0; n < sines; n++)
+    p->axial[2 * n + 2] = given->axial_sine.value[n];
+  if (!given->has_impact)
+    return;
+  p->load.impact = given->impact.mode;
+  for (int end = 0; end < 2; end++)
+    p->load.pulse[end] = (struct eo_pulse){EO_PULSE_HALF_SINE, given->impact.force[end], given->impact.start[end],
+                                           given->impact.duration[end]};
+}
+
+static enum eo_code read_spectrum(struct spectrum *out, const struct eo_vibration_solver *solver, int end,
+                                  struct eo_error *error)
+{
+  const struct eo_spectrum *s = eo_vibration_spectrum(solver);
+  enum eo_code code = eo_stage_columns(3, &out->deflection_real, s->harmonics, error);
+  for (int n = 0; n < s->harmonics && !code; n++) {
+    double complex x = s->deflection[end][n + 1];
+    out->deflection_real.value[n] = creal(x);
+    out->deflection_imaginary.value[n] = cimag(x);
+    out->acceleration.value[n] = cabs(x) * pow((n + 1) * s->frequency, 2);
+  }
+  return code;
+}
+
+static enum eo_code read_modes(struct output *found, const struct eo_dynamics_model *model, struct eo_error *error)
+{
+  struct eo_dynamics_modes m;
+  enum eo_code code = eo_dynamics_model_modes(model, found->stiffness, &m, error);
+  if (!code)
+    code = eo_stage_copy(&found->frequency, m.n, m.frequency, error);
+  return code ? code : eo_stage_copy(&found->damping_ratio, m.n, m.damping_ratio, error);
+}
+
+static enum eo_code solve(struct problem *p, const struct input *given, struct eo_vibration_solver *solver,
+                          struct output *found, struct eo_error *error)
+{
+  double complex multiplier[2 * EO_MAX_COORDINATES];
+  bool integrate = given->solver == EO_SOLVER_TIME_INTEGRATION;
+  found->largest_multiplier = NAN;
+  enum eo_code code = eo_vibration_set_model(solver, &found->parameters.of, error);
+  if (!code)
+    code = integrate ? eo_vibration_integrate(solver, &p->load, NULL, &found->r, NULL, error)
+                     : eo_vibration_solve(solver, &p->load, EO_START_COLD, &found->r, error);
+  if (code)
+    return code;
+  found->outcome = found->r.outcome;
+  found->two = found->r.ends == 2;
+  if (!integrate && found->outcome != EO_VIBRATION_NOT_CONVERGED) {
+    code = eo_vibration_stability(solver, &p->load, multiplier, error);
+    found->largest_multiplier = code ? NAN : cabs(multiplier[0]);
+    code = code == EO_ERROR_NUMERIC ? EO_OK : code; /* too slow to judge */
+  }
+  for (int end = 0; end < found->r.ends && !code; end++)
+    code = read_spectrum(end ? &found->right : &found->left, solver, end, error);
+  if (!code)
+    code = eo_stage_copy(&found->freedom_rms, 6 * found->r.ends, found->r.freedom_rms, error);
+  return code ? code : read_modes(found, eo_vibration_model(solver), error);
+}
+
+static enum eo_code run(const void *in, void *out, struct eo_error *error)
+{
+  const struct input *given = in;
+  struct output *found = out;
+  struct eo_vibration_solver *solver = NULL;
+  enum eo_code code = check_source(given, error);
+  if (code)
+    return code;
+  struct problem *p = calloc(1, sizeof *p);
+  code = p ? make_model(p, given, found, error) : eo_error_memory(error);
+  if (!code)
+    code = eo_vibration_new(&solver, given->harmonics, 0, error);
+  if (!code) {
+    make_load(p, given);
+    code = solve(p, given, solver, found, error);
+  }
+  eo_vibration_free(solver);
+  for (int end = 0; p && end < 2; end++)
+    eo_law_done(&p->law[end]);
+  free(p);
+  return code;
+}
+
+const struct eo_stage eo_stage_dynamics = {
+    .name = "dynamics",
+    .summary = "the periodic vibration of the lumped model under given mesh laws",
+    .input = &input_table,
+    .output = &output_table,
+    .has_design = true,
+    .run = run};

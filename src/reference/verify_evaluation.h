@@ -1,0 +1,11 @@
+/* `easeoff verify` for files of kind `evaluation`: modification -> loaded contact -> impact -> vibration of whole gear
+   pairs, with the finite-element or the closed-form compliance the file states, against an independent computation; and
+   its stage arrays through the dynamics alone. */
+#ifndef EASEOFF_REFERENCE_VERIFY_EVALUATION_H
+#define EASEOFF_REFERENCE_VERIFY_EVALUATION_H
+
+#include "reference/verify.h"
+
+enum eo_code eo_verify_evaluation(const json_t *cases, struct eo_verification *verification, struct eo_error *error);
+
+#endif
