@@ -7,7 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "document/json.h"
+#include "format/json.h"
 
 static int contract_faults;
 

@@ -9,7 +9,7 @@
 
 #include "document/design_document.h"
 #include "document/example.h"
-#include "document/json.h"
+#include "format/json.h"
 #include "jobs/study.h"
 #include "store/evaluations.h"
 

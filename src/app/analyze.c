@@ -4,7 +4,7 @@
 #include "app/app.h"
 #include "app/data.h"
 #include "app/watch.h"
-#include "document/json.h"
+#include "format/json.h"
 #include "document/result.h"
 #include "evaluation/analysis.h"
 

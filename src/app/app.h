@@ -9,8 +9,8 @@
 
 #include "base/error.h"
 #include "document/design_document.h"
-#include "document/faults.h"
-#include "document/text.h"
+#include "format/faults.h"
+#include "format/text.h"
 
 enum { EO_EXIT_DONE = 0, EO_EXIT_INPUT = 1, EO_EXIT_FAILED = 2 };
 

@@ -2,7 +2,7 @@
 #ifndef EASEOFF_APP_DATA_H
 #define EASEOFF_APP_DATA_H
 
-#include "document/text.h"
+#include "format/text.h"
 
 /* The paragraph that --help of a command with --data shows. */
 #define EO_APP_DATA_HELP                                                                                          \

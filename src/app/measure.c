@@ -7,7 +7,7 @@
 #include "app/data.h"
 #include "app/watch.h"
 #include "base/hash.h"
-#include "document/json.h"
+#include "format/json.h"
 #include "document/measure_file.h"
 #include "document/update_document.h"
 

@@ -7,7 +7,7 @@
 #include "app/app.h"
 #include "app/data.h"
 #include "app/watch.h"
-#include "document/json.h"
+#include "format/json.h"
 #include "document/rig_document.h"
 
 struct request {

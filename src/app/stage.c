@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "app/app.h"
-#include "document/json.h"
+#include "format/json.h"
 
 static const struct eo_stage *const stages[] = {
     &eo_stage_geometry,    &eo_stage_modification, &eo_stage_surface, &eo_stage_gap,       &eo_stage_tca,

@@ -5,8 +5,8 @@
 #include <string.h>
 
 #include "app/app.h"
-#include "document/json.h"
-#include "document/sheet.h"
+#include "format/json.h"
+#include "format/sheet.h"
 
 static void done(struct eo_verification *v)
 {

@@ -3,10 +3,10 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "document/json.h"
+#include "format/json.h"
 #include "document/measurement_document.h"
 #include "document/result_parts.h"
-#include "document/sheet.h"
+#include "format/sheet.h"
 
 enum { CURVE = 128 };
 

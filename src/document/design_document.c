@@ -3,7 +3,7 @@
 #include <stdarg.h>
 #include <string.h>
 
-#include "document/json.h"
+#include "format/json.h"
 #include "document/study.h"
 #include "evaluation/evaluator.h"
 #include "gear/check.h"

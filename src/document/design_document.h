@@ -5,8 +5,8 @@
 #include <jansson.h>
 
 #include "base/hash.h"
-#include "document/faults.h"
-#include "document/table.h"
+#include "format/faults.h"
+#include "format/table.h"
 #include "gear/design.h"
 #include "gear/geometry.h"
 

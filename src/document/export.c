@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "document/design_document.h"
-#include "document/json.h"
+#include "format/json.h"
 #include "gear/surface.h"
 
 enum { PROFILE_POINTS = 21, FACE_POINTS = 31, CHART_POINTS = 61 };

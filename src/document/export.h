@@ -3,7 +3,7 @@
 #ifndef EASEOFF_DOCUMENT_EXPORT_H
 #define EASEOFF_DOCUMENT_EXPORT_H
 
-#include "document/text.h"
+#include "format/text.h"
 #include "gear/design.h"
 #include "gear/geometry.h"
 

@@ -2,7 +2,7 @@
 #ifndef EASEOFF_DOCUMENT_GEOMETRY_TABLE_H
 #define EASEOFF_DOCUMENT_GEOMETRY_TABLE_H
 
-#include "document/table.h"
+#include "format/table.h"
 
 extern const struct eo_table eo_geometry_table; /* struct eo_geometry */
 

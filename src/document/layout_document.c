@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "document/json.h"
+#include "format/json.h"
 #include "document/result_parts.h"
 
 static const char *const kinds[] = {"guess", "angles", "sine-cosine", "pulses", NULL};

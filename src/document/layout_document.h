@@ -7,8 +7,8 @@
 
 #include <jansson.h>
 
-#include "document/faults.h"
-#include "document/outline.h"
+#include "format/faults.h"
+#include "format/outline.h"
 #include "recording/layout.h"
 
 struct eo_layout_request {

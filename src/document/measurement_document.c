@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "document/json.h"
+#include "format/json.h"
 #include "document/layout_document.h"
 #include "document/result_parts.h"
 

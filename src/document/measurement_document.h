@@ -16,8 +16,8 @@
 
 #include <jansson.h>
 
-#include "document/outline.h"
-#include "document/text.h"
+#include "format/outline.h"
+#include "format/text.h"
 #include "measurement/comparison.h"
 #include "measurement/measurement.h"
 #include "recording/notes.h"

@@ -15,10 +15,10 @@
 
 #include <jansson.h>
 
-#include "document/bundle.h"
+#include "format/bundle.h"
 #include "document/design_document.h"
-#include "document/outline.h"
-#include "document/text.h"
+#include "format/outline.h"
+#include "format/text.h"
 #include "evaluation/analysis.h"
 
 extern const struct eo_outline eo_result_outline;

@@ -3,8 +3,8 @@
 #define EASEOFF_DOCUMENT_RESULT_PARTS_H
 
 #include "contact/pattern.h"
-#include "document/json.h"
-#include "document/outline.h"
+#include "format/json.h"
+#include "format/outline.h"
 #include "document/result.h"
 
 enum { EO_DIGITS_CURVE = 9, EO_DIGITS_MAP = 6, EO_DIGITS_NUMBER = 12 };

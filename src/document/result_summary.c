@@ -3,9 +3,9 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "document/json.h"
+#include "format/json.h"
 #include "document/result.h"
-#include "document/sheet.h"
+#include "format/sheet.h"
 
 static double find(const json_t *value, const char *path)
 {

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "document/json.h"
+#include "format/json.h"
 #include "document/result_parts.h"
 
 static const struct eo_unit unit_urad = {"urad", "urad", 1e6, true}, unit_us = {"us", "us", 1e6, true},

@@ -6,7 +6,7 @@
 
 #include <jansson.h>
 
-#include "document/table.h"
+#include "format/table.h"
 #include "gear/geometry.h"
 #include "measurement/prediction.h"
 #include "measurement/synthetic.h"

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "document/design_document.h"
-#include "document/json.h"
+#include "format/json.h"
 #include "gear/check.h"
 
 static const struct eo_field *find_field(const char *key)

@@ -3,7 +3,7 @@
 #define EASEOFF_DOCUMENT_STUDY_H
 
 #include "base/hash.h"
-#include "document/table.h"
+#include "format/table.h"
 #include "gear/design.h"
 #include "gear/geometry.h"
 #include "optimizer/settings.h"

@@ -4,9 +4,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "document/json.h"
+#include "format/json.h"
 #include "document/result_parts.h"
-#include "document/sheet.h"
+#include "format/sheet.h"
 
 #include <config.h>
 

@@ -13,7 +13,7 @@
 #include <jansson.h>
 
 #include "document/design_document.h"
-#include "document/outline.h"
+#include "format/outline.h"
 #include "document/study.h"
 #include "evaluation/objective.h"
 

@@ -12,8 +12,8 @@
 #include <jansson.h>
 
 #include "document/design_document.h"
-#include "document/outline.h"
-#include "document/text.h"
+#include "format/outline.h"
+#include "format/text.h"
 #include "evaluation/sweep.h"
 
 enum { EO_SWEEP_MOST_STEPS = 2000 };

@@ -1,7 +1,7 @@
 /* A sweep for people. */
 #include <math.h>
 
-#include "document/sheet.h"
+#include "format/sheet.h"
 #include "document/sweep_document.h"
 
 enum { DIGITS = 4 };

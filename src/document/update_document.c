@@ -4,9 +4,9 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "document/json.h"
+#include "format/json.h"
 #include "document/result_parts.h"
-#include "document/sheet.h"
+#include "format/sheet.h"
 
 static const double LARGE_CONDITION = 1e6;
 

@@ -8,9 +8,9 @@
 
 #include <jansson.h>
 
-#include "document/faults.h"
-#include "document/outline.h"
-#include "document/text.h"
+#include "format/faults.h"
+#include "format/outline.h"
+#include "format/text.h"
 #include "measurement/updating.h"
 
 void eo_update_decode(const json_t *document, struct eo_update_settings *settings, struct eo_faults *faults);

@@ -4,8 +4,8 @@
 #include <string.h>
 
 #include "document/example.h"
-#include "document/json.h"
-#include "document/schema.h"
+#include "format/json.h"
+#include "format/schema.h"
 #include "document/sweep_document.h"
 #include "http/openapi.h"
 

@@ -2,7 +2,7 @@
 #include <time.h>
 
 #include "base/clock.h"
-#include "document/json.h"
+#include "format/json.h"
 #include "http/server.h"
 
 static void add_string(struct eo_text *line, const char *key, const char *value)

@@ -7,7 +7,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "document/json.h"
+#include "format/json.h"
 #include "http/measurement.h"
 #include "http/route.h"
 #include "http/server.h"

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "base/clock.h"
-#include "document/json.h"
+#include "format/json.h"
 #include "http/route.h"
 #include "http/server.h"
 #include "http/upload.h"

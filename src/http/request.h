@@ -10,8 +10,8 @@
 #include <jansson.h>
 
 #include "document/design_document.h"
-#include "document/faults.h"
-#include "document/text.h"
+#include "format/faults.h"
+#include "format/text.h"
 #include "http/field.h"
 #include "http/http.h"
 

@@ -4,7 +4,7 @@
 
 #include <stdbool.h>
 
-#include "document/text.h"
+#include "format/text.h"
 
 struct eo_resource {
   const char *type;             /* literal */

@@ -7,7 +7,7 @@
 #include "document/measurement_document.h"
 #include "document/result.h"
 #include "document/rig_document.h"
-#include "document/schema.h"
+#include "format/schema.h"
 #include "document/sweep_document.h"
 #include "document/study_result.h"
 #include "http/openapi.h"

@@ -10,7 +10,7 @@
 #include <unistd.h>
 
 #include "base/clock.h"
-#include "document/json.h"
+#include "format/json.h"
 #include "http/address.h"
 #include "http/aside.h"
 #include "http/documents.h"

@@ -7,7 +7,7 @@
 #include <stdint.h>
 
 #include "base/error.h"
-#include "document/text.h"
+#include "format/text.h"
 
 enum { EO_EVENTS_KEPT = 1024 };
 

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "document/json.h"
+#include "format/json.h"
 #include "document/result_parts.h"
 
 void eo_job_live_done(struct eo_job_live *live)

@@ -4,7 +4,7 @@
 
 #include <jansson.h>
 
-#include "document/outline.h"
+#include "format/outline.h"
 #include "jobs/study.h"
 #include "store/jobs.h"
 

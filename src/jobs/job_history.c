@@ -6,9 +6,9 @@
 #include <string.h>
 
 #include "document/design_document.h"
-#include "document/json.h"
+#include "format/json.h"
 #include "document/result_parts.h"
-#include "document/sheet.h"
+#include "format/sheet.h"
 #include "document/study.h"
 #include "evaluation/evaluator.h"
 #include "store/evaluations.h"

@@ -4,8 +4,8 @@
 
 #include <jansson.h>
 
-#include "document/outline.h"
-#include "document/text.h"
+#include "format/outline.h"
+#include "format/text.h"
 #include "store/queue.h"
 
 extern const struct eo_outline eo_job_history_outline; /* of an item */

@@ -4,8 +4,8 @@
 
 #include <jansson.h>
 
-#include "document/outline.h"
-#include "document/text.h"
+#include "format/outline.h"
+#include "format/text.h"
 #include "store/store.h"
 
 /* { "problems": [ { "id", "hash", "name", "evaluator", "evaluations", "failed", "cost_s", "created" } ],

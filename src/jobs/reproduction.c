@@ -6,7 +6,7 @@
 #include <time.h>
 
 #include "document/example.h"
-#include "document/json.h"
+#include "format/json.h"
 #include "evaluation/analysis.h"
 
 #include <config.h>

@@ -15,7 +15,7 @@
 #include <jansson.h>
 
 #include "base/progress.h"
-#include "document/bundle.h"
+#include "format/bundle.h"
 #include "gear/design.h"
 #include "store/store.h"
 

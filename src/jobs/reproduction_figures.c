@@ -5,7 +5,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "document/json.h"
+#include "format/json.h"
 #include "evaluation/sweep.h"
 
 json_t *eo_reproduction_figure(const char *number, const char *title, const char *x_label, const char *y_label,

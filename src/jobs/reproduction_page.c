@@ -3,9 +3,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "document/json.h"
-#include "document/plot.h"
-#include "document/sheet.h"
+#include "format/json.h"
+#include "format/plot.h"
+#include "format/sheet.h"
 #include "jobs/reproduction.h"
 
 static const char *find_text(const json_t *value, const char *path)

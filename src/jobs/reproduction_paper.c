@@ -3,7 +3,7 @@
 
 #include <math.h>
 
-#include "document/json.h"
+#include "format/json.h"
 #include "gear/modification.h"
 
 /* Section 5.4. RMS of the relative vibration acceleration, m/s2, at 621, 828 and 1035 N m. */

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "document/json.h"
+#include "format/json.h"
 
 #include <config.h>
 

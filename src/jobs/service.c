@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "document/json.h"
+#include "format/json.h"
 
 #include "base/parallel.h"
 #include "store/lock.h"

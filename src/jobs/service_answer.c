@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "base/clock.h"
-#include "document/json.h"
+#include "format/json.h"
 #include "document/result.h"
 
 static const double bucket_ms[EO_SERVICE_BUCKETS - 1] = {5, 10, 15, 20, 25, 50, 100, 250, 500, 1000, 5000};

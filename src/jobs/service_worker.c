@@ -7,7 +7,7 @@
 #include <time.h>
 
 #include "base/clock.h"
-#include "document/json.h"
+#include "format/json.h"
 
 enum { EVENT_MS = 120, NOTE_MS = 1000, OPTIMIZE_NICE = 10, PREPARE_NICE = 3 };
 

@@ -3,7 +3,7 @@
 
 #include <stdlib.h>
 
-#include "document/json.h"
+#include "format/json.h"
 #include "document/result.h"
 #include "evaluation/analysis.h"
 #include "store/jobs.h"

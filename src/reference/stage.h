@@ -4,7 +4,7 @@
 #define EASEOFF_REFERENCE_STAGE_H
 
 #include "base/error.h"
-#include "document/table.h"
+#include "format/table.h"
 
 struct eo_stage {
   const char *name;

@@ -2,7 +2,7 @@
 #ifndef EASEOFF_REFERENCE_STAGE_LAW_H
 #define EASEOFF_REFERENCE_STAGE_LAW_H
 
-#include "document/table.h"
+#include "format/table.h"
 #include "dynamics/law.h"
 
 enum { EO_STAGE_LAW_ROWS = 64 };

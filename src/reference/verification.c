@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "reference/verify.h"
-#include "document/json.h"
+#include "format/json.h"
 
 static struct eo_check *next_check(struct eo_verification *v)
 {

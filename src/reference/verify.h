@@ -8,7 +8,7 @@
 #include <jansson.h>
 
 #include "base/error.h"
-#include "document/text.h"
+#include "format/text.h"
 
 struct eo_check {
   char *label;                       /* owned: the case */

@@ -3,7 +3,7 @@
 #ifndef EASEOFF_STORE_EVALUATIONS_H
 #define EASEOFF_STORE_EVALUATIONS_H
 
-#include "document/text.h"
+#include "format/text.h"
 #include "evaluation/objective.h"
 #include "store/store.h"
 

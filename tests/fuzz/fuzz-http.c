@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "document/design_document.h"
-#include "document/json.h"
+#include "format/json.h"
 #include "document/sweep_document.h"
 #include "http/field.h"
 

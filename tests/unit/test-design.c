@@ -5,7 +5,7 @@
 
 #include "document/design_document.h"
 #include "document/example.h"
-#include "document/json.h"
+#include "format/json.h"
 #include "document/study.h"
 #include "tap.h"
 

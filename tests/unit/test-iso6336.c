@@ -7,7 +7,7 @@
 #include "contact/iso6336.h"
 #include "document/design_document.h"
 #include "document/example.h"
-#include "document/json.h"
+#include "format/json.h"
 #include "tap.h"
 
 static struct eo_geometry geometry;

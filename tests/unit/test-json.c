@@ -7,8 +7,8 @@
 #include <unistd.h>
 
 #include "document/design_document.h"
-#include "document/json.h"
-#include "document/sheet.h"
+#include "format/json.h"
+#include "format/sheet.h"
 #include "tap.h"
 
 static struct eo_error error;

@@ -6,7 +6,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "document/text.h"
+#include "format/text.h"
 #include "store/designs.h"
 #include "store/measurements.h"
 #include "tap.h"

@@ -2,7 +2,7 @@
    files and page. */
 #include <math.h>
 
-#include "document/plot.h"
+#include "format/plot.h"
 #include "jobs/reproduction.h"
 #include "study-fixture.h"
 #include "tap.h"

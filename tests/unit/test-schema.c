@@ -7,10 +7,10 @@
 
 #include "document/design_document.h"
 #include "document/example.h"
-#include "document/json.h"
+#include "format/json.h"
 #include "document/measurement_document.h"
 #include "document/result_parts.h"
-#include "document/schema.h"
+#include "format/schema.h"
 #include "document/study_result.h"
 #include "document/sweep_document.h"
 #include "tap.h"

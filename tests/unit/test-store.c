@@ -7,7 +7,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "document/text.h"
+#include "format/text.h"
 #include "store/evaluations.h"
 #include "store/jobs.h"
 #include "store/lock.h"

@@ -7,7 +7,7 @@
 #include "document/design_document.h"
 #include "document/example.h"
 #include "document/geometry_table.h"
-#include "document/json.h"
+#include "format/json.h"
 #include "tap.h"
 
 static uint64_t state = 42;

@@ -1,9 +1,9 @@
 /* Several files that belong together: composed in memory, written under temporary names, then renamed, so that a folder
    holds all of them or none of them anew. */
-#ifndef EASEOFF_DOCUMENT_BUNDLE_H
-#define EASEOFF_DOCUMENT_BUNDLE_H
+#ifndef EASEOFF_FORMAT_BUNDLE_H
+#define EASEOFF_FORMAT_BUNDLE_H
 
-#include "document/text.h"
+#include "format/text.h"
 
 struct eo_bundle {
   int count, capacity;

@@ -1,4 +1,4 @@
-#include "document/unit.h"
+#include "format/unit.h"
 
 #include <math.h>
 #include <stdio.h>

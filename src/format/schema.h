@@ -1,11 +1,11 @@
 /* Field tables described for programs: the page's form and the API's description. Both say what decode() accepts and
    encode() writes. */
-#ifndef EASEOFF_DOCUMENT_SCHEMA_H
-#define EASEOFF_DOCUMENT_SCHEMA_H
+#ifndef EASEOFF_FORMAT_SCHEMA_H
+#define EASEOFF_FORMAT_SCHEMA_H
 
 #include <jansson.h>
 
-#include "document/table.h"
+#include "format/table.h"
 
 /* { "name", "fields": [ { "key", "kind": "number|integer|flag|text|choice|numbers|limit|object|list|series|seed",
    "unit", "symbol", "low", "high", "default", "choices", "count", "help", "required", "nullable", "derived", "fields" }

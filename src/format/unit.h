@@ -1,6 +1,6 @@
 /* Units of the document. Inside the program everything is SI; a key's suffix names the unit outside. */
-#ifndef EASEOFF_DOCUMENT_UNIT_H
-#define EASEOFF_DOCUMENT_UNIT_H
+#ifndef EASEOFF_FORMAT_UNIT_H
+#define EASEOFF_FORMAT_UNIT_H
 
 #include <stdbool.h>
 

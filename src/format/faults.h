@@ -1,6 +1,6 @@
 /* Everything that is wrong with an input, not only the first thing. */
-#ifndef EASEOFF_DOCUMENT_FAULTS_H
-#define EASEOFF_DOCUMENT_FAULTS_H
+#ifndef EASEOFF_FORMAT_FAULTS_H
+#define EASEOFF_FORMAT_FAULTS_H
 
 #include "base/error.h"
 

@@ -1,11 +1,11 @@
 /* Rows and columns for people (aligned text) and for spreadsheets (CSV, RFC 4180). */
-#ifndef EASEOFF_DOCUMENT_SHEET_H
-#define EASEOFF_DOCUMENT_SHEET_H
+#ifndef EASEOFF_FORMAT_SHEET_H
+#define EASEOFF_FORMAT_SHEET_H
 
 #include <stdbool.h>
 
-#include "document/text.h"
-#include "document/unit.h"
+#include "format/text.h"
+#include "format/unit.h"
 
 struct eo_sheet {
   int columns;

@@ -1,10 +1,10 @@
-#include "document/sheet.h"
+#include "format/sheet.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "document/json.h"
+#include "format/json.h"
 
 static void add_cell(struct eo_sheet *sheet, const char *text, bool number)
 {

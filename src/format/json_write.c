@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "document/json.h"
+#include "format/json.h"
 
 enum { LINE = 110 }; /* columns up to which a value stays on one line */
 

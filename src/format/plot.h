@@ -1,11 +1,11 @@
 /* Line plots as SVG (1.1) that stands alone or inside an HTML page: axes with round numbers, grid, legend; colours by
    CSS classes with attributes as a fallback, so that a page may restyle them. */
-#ifndef EASEOFF_DOCUMENT_PLOT_H
-#define EASEOFF_DOCUMENT_PLOT_H
+#ifndef EASEOFF_FORMAT_PLOT_H
+#define EASEOFF_FORMAT_PLOT_H
 
 #include <stdbool.h>
 
-#include "document/text.h"
+#include "format/text.h"
 
 enum { EO_PLOT_SERIES = 8 };
 

@@ -1,10 +1,10 @@
-#include "document/faults.h"
+#include "format/faults.h"
 
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 
-#include "document/text.h"
+#include "format/text.h"
 
 static void add(struct eo_faults *faults, const char *pointer, const char *format, va_list arguments)
 {

@@ -1,8 +1,8 @@
 #include <stdint.h>
 #include <stdlib.h>
 
-#include "document/json.h"
-#include "document/table.h"
+#include "format/json.h"
+#include "format/table.h"
 #include "gear/design.h"
 
 static const void *member(const void *source, const struct eo_field *field)

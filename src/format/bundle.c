@@ -1,4 +1,4 @@
-#include "document/bundle.h"
+#include "format/bundle.h"
 
 #include <errno.h>
 #include <stdarg.h>

@@ -1,4 +1,4 @@
-#include "document/schema.h"
+#include "format/schema.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-#include "document/plot.h"
+#include "format/plot.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,4 +1,4 @@
-#include "document/text.h"
+#include "format/text.h"
 
 #include <errno.h>
 #include <stdarg.h>

@@ -1,7 +1,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "document/json.h"
+#include "format/json.h"
 
 struct place {
   int line, column, depth;

@@ -1,8 +1,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "document/json.h"
-#include "document/table.h"
+#include "format/json.h"
+#include "format/table.h"
 
 static void describe_range(const struct eo_field *field, double low, double high, struct eo_text *text)
 {

@@ -4,14 +4,14 @@
 
    shape: the short notation of http/shape.h without names: number, integer, flag, text, word (one of words), object (of
    outline or table), [array], one|or another; `?` behind any of them: or null. */
-#ifndef EASEOFF_DOCUMENT_OUTLINE_H
-#define EASEOFF_DOCUMENT_OUTLINE_H
+#ifndef EASEOFF_FORMAT_OUTLINE_H
+#define EASEOFF_FORMAT_OUTLINE_H
 
 #include <stdbool.h>
 
 #include <jansson.h>
 
-#include "document/table.h"
+#include "format/table.h"
 
 struct eo_outline;
 

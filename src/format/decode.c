@@ -2,8 +2,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "document/json.h"
-#include "document/table.h"
+#include "format/json.h"
+#include "format/table.h"
 #include "gear/design.h"
 
 static void *member(void *target, const struct eo_field *field)

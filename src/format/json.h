@@ -1,14 +1,14 @@
 /* JSON text in and out, on top of jansson (RFC 8259). Reading is strict: bounded size and depth, no duplicate keys,
    every number a finite double or a 64 bit integer. Writing gives the shortest decimals that read back as the same
    doubles. */
-#ifndef EASEOFF_DOCUMENT_JSON_H
-#define EASEOFF_DOCUMENT_JSON_H
+#ifndef EASEOFF_FORMAT_JSON_H
+#define EASEOFF_FORMAT_JSON_H
 
 #include <jansson.h>
 
 #include "base/error.h"
-#include "document/text.h"
-#include "document/unit.h"
+#include "format/text.h"
+#include "format/unit.h"
 
 enum { EO_JSON_DEPTH = 32 };                                              /* brackets within brackets */
 enum { EO_JSON_DESIGN_BYTES = 1 << 20, EO_JSON_CASES_BYTES = 256 << 20 }; /* largest design, largest case file */

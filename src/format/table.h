@@ -1,8 +1,8 @@
 /* Field tables: one table per struct says how its members stand in a JSON object. The same table decodes, encodes,
    checks ranges, fills in defaults and describes itself (the page's form, the API's description, --help). Units are
    converted here and nowhere else. */
-#ifndef EASEOFF_DOCUMENT_TABLE_H
-#define EASEOFF_DOCUMENT_TABLE_H
+#ifndef EASEOFF_FORMAT_TABLE_H
+#define EASEOFF_FORMAT_TABLE_H
 
 #include <math.h>
 #include <stdbool.h>
@@ -10,9 +10,9 @@
 
 #include <jansson.h>
 
-#include "document/faults.h"
-#include "document/text.h"
-#include "document/unit.h"
+#include "format/faults.h"
+#include "format/text.h"
+#include "format/unit.h"
 
 enum eo_field_kind {
   EO_FIELD_NUMBER,  /* double */

@@ -1,7 +1,7 @@
 /* A text that grows, and its way to a file: everything is composed first and written in one go, so that no reader ever
    finds half of it. */
-#ifndef EASEOFF_DOCUMENT_TEXT_H
-#define EASEOFF_DOCUMENT_TEXT_H
+#ifndef EASEOFF_FORMAT_TEXT_H
+#define EASEOFF_FORMAT_TEXT_H
 
 #include <stdbool.h>
 #include <stddef.h>

@@ -1,9 +1,9 @@
-#include "document/outline.h"
+#include "format/outline.h"
 
 #include <string.h>
 
 #include "document/result_parts.h"
-#include "document/schema.h"
+#include "format/schema.h"
 
 /* Counts *index down to the row; NULL: it stands behind these. */
 static const struct eo_outline_row *walk(const struct eo_outline *outline, int *index)
