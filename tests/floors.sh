@@ -3,7 +3,7 @@
 # nothing and reads no environment; each library has its one floor.
 : "${SOURCES:=.}"
 cd "$SOURCES/src" || exit 99
-floors="base numerics gear flexibility contact dynamics optimizer evaluation recording measurement format document store jobs http reference app"
+floors="base numerics gear flexibility contact dynamics optimizer evaluation recording measurement format document store study reproduction service http reference app"
 core="base numerics gear flexibility contact dynamics optimizer evaluation recording measurement"
 count=0 failed=0
 
@@ -36,7 +36,7 @@ only() # LIBRARY PATTERN FOLDERS
 }
 only SuiteSparse 'cholmod|klu' numerics
 only SUNDIALS 'kinsol|cvode|sundials|nvector|sunlinsol|sunmatrix' numerics
-only jansson 'jansson' 'format|document|jobs|http|reference|app'
+only jansson 'jansson' 'format|document|study|reproduction|service|http|reference|app'
 only libmatio 'matio' recording
 only HDF5 'hdf5' recording
 only SQLite 'sqlite3' store

@@ -6,7 +6,7 @@
 #include <time.h>
 
 #include "base/clock.h"
-#include "jobs/service.h"
+#include "service/service.h"
 #include "study-fixture.h"
 
 __attribute__((unused)) static struct eo_service *start_with(int most_queued, int most_pairs)

@@ -10,7 +10,7 @@
 #include "document/design_document.h"
 #include "document/example.h"
 #include "format/json.h"
-#include "jobs/study.h"
+#include "study/study.h"
 #include "store/evaluations.h"
 
 static struct eo_error error;

@@ -8,7 +8,7 @@
 #include "app/number.h"
 #include "app/watch.h"
 #include "base/parallel.h"
-#include "jobs/study.h"
+#include "study/study.h"
 
 struct request {
   const char *file, *data, *algorithm, *budget, *threads;

@@ -5,7 +5,7 @@
 #include "app/number.h"
 #include "app/watch.h"
 #include "base/parallel.h"
-#include "jobs/reproduction.h"
+#include "reproduction/reproduction.h"
 
 struct request {
   const char *csv, *html, *data, *threads;

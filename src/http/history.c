@@ -2,8 +2,8 @@
 #include "http/job.h"
 #include "http/route.h"
 #include "http/server.h"
-#include "jobs/job_history.h"
-#include "jobs/records.h"
+#include "study/job_history.h"
+#include "study/records.h"
 
 static void reply_rows(struct eo_request *request, int64_t id)
 {

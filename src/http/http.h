@@ -1,12 +1,12 @@
 /* The HTTP server: the only user of libmicrohttpd. One thread serves all connections and never computes or waits;
-   designs, jobs and what-if questions go to the service (jobs/service.h), which answers from its own threads. */
+   designs, jobs and what-if questions go to the service (service/service.h), which answers from its own threads. */
 #ifndef EASEOFF_HTTP_HTTP_H
 #define EASEOFF_HTTP_HTTP_H
 
 #include <stdbool.h>
 
 #include "base/error.h"
-#include "jobs/service.h"
+#include "service/service.h"
 
 struct eo_http;
 

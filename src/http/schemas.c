@@ -12,10 +12,10 @@
 #include "document/study_result.h"
 #include "http/openapi.h"
 #include "http/shape.h"
-#include "jobs/job_document.h"
-#include "jobs/job_history.h"
-#include "jobs/records.h"
-#include "jobs/rig_work.h"
+#include "service/job_document.h"
+#include "study/job_history.h"
+#include "study/records.h"
+#include "service/rig_work.h"
 
 static const struct {
   const char *name, *notation;

@@ -9,7 +9,7 @@
 #include "base/parallel.h"
 #include "document/design_document.h"
 #include "document/example.h"
-#include "jobs/study.h"
+#include "study/study.h"
 
 static const struct {
   const char *algorithm;

@@ -6,8 +6,8 @@
 #include <time.h>
 
 #include "base/clock.h"
-#include "jobs/events.h"
-#include "jobs/lane.h"
+#include "service/events.h"
+#include "service/lane.h"
 #include "tap.h"
 
 static struct eo_error error;

@@ -3,7 +3,7 @@
 #include <math.h>
 
 #include "format/plot.h"
-#include "jobs/reproduction.h"
+#include "reproduction/reproduction.h"
 #include "study-fixture.h"
 #include "tap.h"
 

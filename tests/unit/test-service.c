@@ -3,7 +3,7 @@
 #include <stdatomic.h>
 
 #include "document/result.h"
-#include "jobs/job_document.h"
+#include "service/job_document.h"
 #include "service-fixture.h"
 #include "store/queue.h"
 #include "tap.h"

@@ -1,0 +1,58 @@
+/* What the parts of the reproduction share. */
+#ifndef EASEOFF_REPRODUCTION_REPRODUCTION_INTERNAL_H
+#define EASEOFF_REPRODUCTION_REPRODUCTION_INTERNAL_H
+
+#include "document/result_parts.h"
+#include "reproduction/reproduction.h"
+#include "study/study.h"
+
+enum { UNMODIFIED, PAPER_A, PAPER_B, OWN_A, OWN_B, VARIANTS };
+enum { CASE_A, CASE_B, CASES };
+enum { LAW_OURS, LAW_PAPER, LAWS }; /* tangent, secant */
+enum { TORQUES = 3 };
+
+extern const char *const eo_reproduction_variant[VARIANTS];
+
+struct reproduction {
+  const struct eo_reproduction_plan *plan;
+  struct eo_pair *pair; /* owned, as all below */
+  struct eo_design *design[VARIANTS];
+  json_t *result[VARIANTS]; /* analysis documents */
+  struct eo_objective_case raw[LAWS][VARIANTS][TORQUES];
+  struct eo_objective_value value[LAWS][VARIANTS];
+  json_t *optimizations;     /* array */
+  json_t *figures;           /* array */
+  double pfc[CASES];         /* of fpga, per cent; NaN: none */
+  int evaluations[CASES][2]; /* true ones of fpga and ga */
+  double rms_414[LAWS][2];   /* unmodified and case A, m/s2 */
+  double speed_slope[2];     /* RMS at the highest over that at the lowest speed, unmodified and A */
+  double speeds_better;      /* share of the speeds at which case A is quieter */
+  double torques_better[2];  /* share of the torques with less LTE, less impact, case A */
+};
+
+/* Of fpga and ga. */
+int eo_reproduction_generations(const struct reproduction *r);
+
+/* Reports the work between two fractions; EO_ERROR_CANCELLED when a stop was asked for. */
+enum eo_code eo_reproduction_report(const struct reproduction *r, const char *what, double fraction,
+                                    struct eo_error *error);
+
+/* Both cases with each algorithm; fills design[OWN_A], design[OWN_B]. */
+enum eo_code eo_reproduction_optimize(struct reproduction *r, struct eo_error *error);
+
+/* Figures 8 to 12, 14, 15, 17 and 18. */
+enum eo_code eo_reproduction_figures(struct reproduction *r, struct eo_error *error);
+
+/* A figure without series; a series on it. x, y: [count]. Both may be given a NULL figure. */
+json_t *eo_reproduction_figure(const char *number, const char *title, const char *x_label, const char *y_label,
+                               bool from_zero);
+void eo_reproduction_series(json_t *figure, const char *name, int count, const double *x, const double *y, bool dots);
+
+json_t *eo_reproduction_table(const struct reproduction *r); /* Table 3 */
+json_t *eo_reproduction_comparisons(const struct reproduction *r);
+json_t *eo_reproduction_readings(void);
+
+/* One assumption changed at a time; NULL on failure, with the code. */
+enum eo_code eo_reproduction_sensitivity(struct reproduction *r, json_t **rows, struct eo_error *error);
+
+#endif

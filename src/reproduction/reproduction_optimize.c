@@ -1,0 +1,153 @@
+/* Case A and case B with the paper's algorithm, the plain one it is compared with, and ours. */
+#include "reproduction/reproduction_internal.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "optimizer/settings.h"
+
+enum { ALGORITHMS = 3 };
+static const char *const algorithms[ALGORITHMS] = {"fpga", "ga", "credibility-ga"};
+static const char *const case_names[CASES] = {"A", "B"};
+static const double FIRST = 0.03, LAST = 0.85; /* of the whole work */
+
+struct run {
+  struct reproduction *r;
+  int step;
+  char what[60];
+};
+
+static int watch(void *context, const struct eo_study_report *report)
+{
+  const struct run *run = context;
+  double share = (run->step + report->fraction) / (CASES * ALGORITHMS);
+  return eo_progress_report(run->r->plan->progress, run->what, FIRST + (LAST - FIRST) * share);
+}
+
+int eo_reproduction_generations(const struct reproduction *r)
+{
+  return r->plan->generations > 0 ? r->plan->generations : r->plan->quick ? 20 : 200;
+}
+
+static void set_up(const struct reproduction *r, struct eo_design *design, int algorithm)
+{
+  struct eo_optimization *o = &design->optimization;
+  snprintf(o->algorithm, sizeof o->algorithm, "%s", algorithms[algorithm]);
+  o->generations = eo_reproduction_generations(r);
+  o->true_evaluations = algorithm < 2 ? 0 : r->plan->budget > 0 ? r->plan->budget : r->plan->quick ? 300 : 1000;
+}
+
+static json_t *encode_run(const struct eo_study_result *s, const char *case_name, const char *algorithm)
+{
+  struct eo_result_object o = eo_result_open();
+  json_t *values = json_object(), *best = json_array();
+  bool there = s->best.there;
+  for (int i = 0; i < s->space.count && there; i++) {
+    char name[80];
+    eo_study_variable_name(&s->space.variable[i], name, sizeof name);
+    json_object_set_new(values, name, json_real(eo_study_variable_value(&s->space.variable[i], &s->best.modification)));
+  }
+  for (int i = 0; i < s->generations; i++)
+    json_array_append_new(best, eo_result_number(s->generation[i].best, NULL));
+  eo_result_put(&o, "case", json_string(case_name));
+  eo_result_put(&o, "algorithm", json_string(algorithm));
+  eo_result_put_value(&o, &s->best.value);
+  eo_result_put(&o, "true_evaluations", json_integer(s->true_evaluations));
+  eo_result_put(&o, "individuals", json_integer(s->individuals));
+  eo_result_put(&o, "pfc_percent", eo_result_number(100. * s->true_evaluations / s->individuals, NULL));
+  eo_result_put(&o, "variables", values);
+  eo_result_put(&o, "best_by_generation", best);
+  return eo_result_close(&o);
+}
+
+/* PFC so far and best J over true evaluations, generation by generation. */
+static enum eo_code plot(const struct eo_study_result *s, const char *name, json_t *pfc, json_t *convergence,
+                         struct eo_error *error)
+{
+  size_t n = (size_t)s->generations;
+  double *column = calloc(4 * n + 1, sizeof *column), *generation = column, *share = column + n,
+         *count = column + 2 * n, *best = column + 3 * n;
+  int evaluated = 0, individuals = 0;
+  if (!column)
+    return eo_error_memory(error);
+  for (int i = 0; i < s->generations; i++) {
+    const struct eo_study_generation *g = &s->generation[i];
+    evaluated += g->true_count;
+    individuals += g->true_count + g->predicted_count + g->repeated_count;
+    generation[i] = i;
+    share[i] = individuals ? 100. * evaluated / individuals : NAN;
+    count[i] = evaluated;
+    best[i] = g->best;
+  }
+  if (pfc)
+    eo_reproduction_series(pfc, name, s->generations, generation, share, false);
+  eo_reproduction_series(convergence, name, s->generations, count, best, false);
+  free(column);
+  return EO_OK;
+}
+
+static enum eo_code study(struct run *run, int which, int algorithm, double *best, json_t *pfc, json_t *convergence,
+                          struct eo_error *error)
+{
+  struct reproduction *r = run->r;
+  struct eo_design *own = r->design[which == CASE_A ? OWN_A : OWN_B], *design = malloc(sizeof *design);
+  struct eo_study_result result;
+  char name[60];
+  if (!design)
+    return eo_error_memory(error);
+  *design = *own;
+  design->modification = r->design[UNMODIFIED]->modification;
+  set_up(r, design, algorithm);
+  const struct eo_study_plan plan = {.design = design,
+                                     .pair = r->pair,
+                                     .store = r->plan->store,
+                                     .threads = r->plan->threads,
+                                     .fresh = true,
+                                     .watch = watch,
+                                     .context = run};
+  snprintf(run->what, sizeof run->what, "case %s, %s", case_names[which], algorithms[algorithm]);
+  snprintf(name, sizeof name, "%s, %s", case_names[which], algorithms[algorithm]);
+  enum eo_code code = eo_study_run(&plan, &result, error);
+  if (!code && result.stopped == EO_STOP_CANCELLED)
+    code = eo_error_set(error, EO_ERROR_CANCELLED, "", "Stopped.");
+  if (!code && json_array_append_new(r->optimizations, encode_run(&result, case_names[which], algorithms[algorithm])))
+    code = eo_error_memory(error);
+  if (!code)
+    code = plot(&result, name, algorithm == 0 ? pfc : NULL, convergence, error);
+  if (!code && algorithm < 2)
+    r->evaluations[which][algorithm] = result.true_evaluations;
+  if (!code && algorithm == 0)
+    r->pfc[which] = 100. * result.true_evaluations / result.individuals;
+  if (!code && result.best.there && result.best.rank < *best) {
+    *best = result.best.rank;
+    own->modification = result.best.modification;
+  }
+  eo_study_result_done(&result);
+  free(design);
+  return code;
+}
+
+enum eo_code eo_reproduction_optimize(struct reproduction *r, struct eo_error *error)
+{
+  static const double printed[CASES] = {39.67, 33.25};
+  struct run run = {.r = r};
+  double generations = eo_reproduction_generations(r) - 1;
+  json_t *pfc = eo_reproduction_figure("13", "Percentage of fitness computed, fpga", "generation", "PFC so far, %",
+                                       true);
+  json_t *convergence[CASES] = {
+      eo_reproduction_figure("13 a", "Convergence, case A", "true evaluations", "best J", false),
+      eo_reproduction_figure("13 b", "Convergence, case B", "true evaluations", "best J", false)};
+  enum eo_code code = EO_OK;
+  for (int which = 0; which < CASES; which++) {
+    double best = INFINITY;
+    for (int algorithm = 0; algorithm < ALGORITHMS && !code; algorithm++, run.step++)
+      code = study(&run, which, algorithm, &best, pfc, convergence[which], error);
+  }
+  eo_reproduction_series(pfc, "printed, A", 1, &generations, &printed[0], true);
+  eo_reproduction_series(pfc, "printed, B", 1, &generations, &printed[1], true);
+  json_array_append_new(r->figures, pfc);
+  for (int which = 0; which < CASES; which++)
+    json_array_append_new(r->figures, convergence[which]);
+  return code;
+}

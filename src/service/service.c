@@ -1,0 +1,539 @@
+#include "service/service_internal.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "format/json.h"
+
+#include "base/parallel.h"
+#include "store/lock.h"
+
+enum { ANALYSIS_THREADS = 2, MOST_QUEUED = 100, MOST_WAITING = 64, MOST_PAIRS = 4, SWEEP_NICE = 5 };
+
+/* ---- begin and end ---- */
+
+static int or_standard(int value, int standard)
+{
+  return value > 0 ? value : standard;
+}
+
+static bool resolve(struct eo_service_settings *own, const struct eo_service_settings *settings)
+{
+  *own = *settings;
+  own->threads = or_standard(settings->threads, eo_parallel_cores());
+  own->analysis_threads = or_standard(settings->analysis_threads, ANALYSIS_THREADS);
+  own->most_queued = or_standard(settings->most_queued, MOST_QUEUED);
+  own->most_waiting = or_standard(settings->most_waiting, MOST_WAITING);
+  own->most_pairs = or_standard(settings->most_pairs, MOST_PAIRS);
+  own->data = strdup(settings->data);
+  own->cache = settings->cache ? strdup(settings->cache) : NULL;
+  return own->data && (own->cache || !settings->cache);
+}
+
+static enum eo_code open_store(struct eo_service *s, struct eo_error *error)
+{
+  bool taken = false;
+  int64_t queued;
+  enum eo_code code = eo_store_open(&s->store, s->settings.data, EO_STORE_WRITE, error);
+  if (!code)
+    code = eo_store_claim_server(s->store, &taken, error);
+  if (!code && !taken)
+    code = eo_error_set(error, EO_ERROR_FILE, "", "Another server works on the data folder %.200s.", s->settings.data);
+  return code ? code : eo_queue_recover(s->store, &queued, error);
+}
+
+static enum eo_code make_lanes(struct eo_service *s, struct eo_error *error)
+{
+  struct eo_lane_settings settings = {.threads = s->settings.analysis_threads,
+                                      .most = s->settings.most_waiting,
+                                      .function = eo_service_answer_analysis,
+                                      .release = eo_service_release_task,
+                                      .context = s};
+  enum eo_code code = eo_lane_new(&s->analyses, &settings, error);
+  settings.threads = 1;
+  settings.overtakes_running = true;
+  settings.nice = SWEEP_NICE;
+  settings.function = eo_service_answer_sweep;
+  if (!code)
+    code = eo_lane_new(&s->sweeps, &settings, error);
+  settings.function = eo_service_answer_work;
+  return code ? code : eo_lane_new(&s->works, &settings, error);
+}
+
+static enum eo_code make_workers(struct eo_service *s, struct eo_error *error)
+{
+  for (int kind = 0; kind < EO_JOB_KINDS; kind++) {
+    struct eo_service_worker *w = &s->worker[kind];
+    w->service = s;
+    w->kind = (enum eo_job_kind)kind;
+    enum eo_code code = eo_store_open(&w->store, s->settings.data, EO_STORE_WRITE, error);
+    if (code)
+      return code;
+    w->running = pthread_create(&w->thread, NULL, eo_service_work, w) == 0;
+    if (!w->running)
+      return eo_error_memory(error);
+  }
+  return EO_OK;
+}
+
+static void make_mutexes(struct eo_service *s)
+{
+  pthread_condattr_t attributes;
+  pthread_mutex_t *const mutex[] = {&s->preparing_mutex, &s->publish_mutex, &s->store_mutex,
+                                    &s->live_mutex,      &s->work_mutex,    &s->timing_mutex};
+  for (size_t i = 0; i < sizeof mutex / sizeof mutex[0]; i++)
+    pthread_mutex_init(mutex[i], NULL);
+  pthread_condattr_init(&attributes);
+  pthread_condattr_setclock(&attributes, CLOCK_MONOTONIC);
+  pthread_cond_init(&s->work, &attributes);
+  pthread_condattr_destroy(&attributes);
+}
+
+enum eo_code eo_service_new(struct eo_service **result, const struct eo_service_settings *settings,
+                            struct eo_error *error)
+{
+  struct eo_service *s = calloc(1, sizeof *s);
+  if (!s)
+    return eo_error_memory(error);
+  make_mutexes(s);
+  s->cores = eo_parallel_cores();
+  enum eo_code code = resolve(&s->settings, settings) ? open_store(s, error) : eo_error_memory(error);
+  if (!code)
+    code = eo_pairs_new(&s->pairs, s->settings.cache, s->settings.most_pairs, error);
+  if (!code)
+    code = eo_events_new(&s->events, error);
+  if (!code)
+    code = make_lanes(s, error);
+  if (!code)
+    code = make_workers(s, error);
+  if (code)
+    eo_service_free(s);
+  else
+    *result = s;
+  return code;
+}
+
+void eo_service_stop(struct eo_service *s)
+{
+  pthread_mutex_lock(&s->work_mutex);
+  atomic_store(&s->stopping, true);
+  pthread_cond_broadcast(&s->work);
+  pthread_mutex_unlock(&s->work_mutex);
+  if (s->analyses)
+    eo_lane_stop(s->analyses);
+  if (s->sweeps)
+    eo_lane_stop(s->sweeps);
+  if (s->works)
+    eo_lane_stop(s->works);
+}
+
+void eo_service_free(struct eo_service *s)
+{
+  if (!s)
+    return;
+  eo_service_stop(s);
+  for (int kind = 0; kind < EO_JOB_KINDS; kind++) {
+    if (s->worker[kind].running)
+      pthread_join(s->worker[kind].thread, NULL);
+    eo_job_live_done(&s->worker[kind].live);
+    eo_store_close(s->worker[kind].store);
+  }
+  eo_lane_free(s->analyses);
+  eo_lane_free(s->sweeps);
+  eo_lane_free(s->works);
+  eo_pairs_free(s->pairs);
+  eo_events_free(s->events);
+  eo_store_close(s->store);
+  pthread_mutex_t *const mutex[] = {&s->preparing_mutex, &s->publish_mutex, &s->store_mutex,
+                                    &s->live_mutex,      &s->work_mutex,    &s->timing_mutex};
+  for (size_t i = 0; i < sizeof mutex / sizeof mutex[0]; i++)
+    pthread_mutex_destroy(mutex[i]);
+  pthread_cond_destroy(&s->work);
+  free((char *)s->settings.data);
+  free((char *)s->settings.cache);
+  free(s);
+}
+
+void eo_service_call(struct eo_service *s)
+{
+  pthread_mutex_lock(&s->work_mutex);
+  s->calls++;
+  pthread_cond_broadcast(&s->work);
+  pthread_mutex_unlock(&s->work_mutex);
+}
+
+/* ---- events ---- */
+
+struct encoding {
+  struct eo_service *service;
+  bool with_design;
+  json_t *job;
+};
+
+/* From before a job's row is read until it is encoded: a job that ends in between would show its end with what was
+   noted of it a while before. */
+static void lock_jobs(struct eo_service *s)
+{
+  pthread_mutex_lock(&s->store_mutex);
+  pthread_mutex_lock(&s->live_mutex);
+}
+
+static void unlock_jobs(struct eo_service *s)
+{
+  pthread_mutex_unlock(&s->live_mutex);
+  pthread_mutex_unlock(&s->store_mutex);
+}
+
+static enum eo_code encode(void *context, const struct eo_stored_job *job, struct eo_error *error)
+{
+  struct encoding *e = context;
+  const struct eo_job_live *live = NULL;
+  for (int kind = 0; kind < EO_JOB_KINDS; kind++)
+    if (e->service->worker[kind].live.id == job->id)
+      live = &e->service->worker[kind].live;
+  e->job = eo_job_encode(job, live, e->with_design);
+  return e->job ? EO_OK : eo_error_memory(error);
+}
+
+static enum eo_code encode_only(void *context, const struct eo_stored_job *job, struct eo_error *error)
+{
+  const struct encoding *e = context;
+  return job->id == json_integer_value(json_object_get(e->job, "id")) ? EO_OK : encode(context, job, error);
+}
+
+/* Without the design and the result, which may be long. NULL: there is no such job, or an error. */
+static json_t *find_brief(struct eo_service *s, int64_t id)
+{
+  struct encoding e = {.service = s};
+  const struct eo_queue_filter filter = {.state = -1, .kind = -1, .before = id + 1, .limit = 1};
+  lock_jobs(s);
+  enum eo_code code = eo_queue_list(s->store, &filter, encode_only, &e, NULL);
+  unlock_jobs(s);
+  if (!code && e.job && json_integer_value(json_object_get(e.job, "id")) == id)
+    return e.job;
+  json_decref(e.job);
+  return NULL;
+}
+
+void eo_service_publish(struct eo_service *s, int64_t id)
+{
+  struct eo_text text = {0};
+  pthread_mutex_lock(&s->publish_mutex);
+  json_t *job = find_brief(s, id);
+  if (job)
+    eo_json_write(&text, job, EO_JSON_COMPACT);
+  if (job && !text.failed)
+    eo_events_publish(s->events, id, &text);
+  pthread_mutex_unlock(&s->publish_mutex);
+  eo_text_done(&text);
+  json_decref(job);
+}
+
+struct snapshot {
+  struct encoding encoding;
+  struct eo_service_event *event; /* owned, its texts too */
+  int count, capacity;
+};
+
+static enum eo_code add_to_snapshot(void *context, const struct eo_stored_job *job, struct eo_error *error)
+{
+  struct snapshot *snapshot = context;
+  struct eo_text text = {0};
+  if (snapshot->count == snapshot->capacity) {
+    int capacity = 2 * snapshot->capacity + 16;
+    struct eo_service_event *more = realloc(snapshot->event, sizeof *more * (size_t)capacity);
+    if (!more)
+      return eo_error_memory(error);
+    snapshot->event = more;
+    snapshot->capacity = capacity;
+  }
+  enum eo_code code = encode(&snapshot->encoding, job, error);
+  if (code)
+    return code;
+  eo_json_write(&text, snapshot->encoding.job, EO_JSON_COMPACT);
+  json_decref(snapshot->encoding.job);
+  if (text.failed)
+    return eo_error_memory(error);
+  snapshot->event[snapshot->count++] = (struct eo_service_event){.job = job->id, .text = text.data, .size = text.size};
+  return EO_OK;
+}
+
+enum eo_code eo_service_subscribe(struct eo_service *s, int64_t job, int64_t after, eo_service_listener *listener,
+                                  void *context, int64_t *subscription, struct eo_error *error)
+{
+  struct snapshot snapshot = {.encoding = {.service = s}};
+  const struct eo_queue_filter filter = {.state = -1, .kind = -1, .active = true, .limit = EO_EVENTS_KEPT};
+  int64_t newest = eo_events_newest(s->events); /* before the snapshot: what happens from now on comes after it */
+  enum eo_code code = EO_OK;
+  if (after > 0 && !eo_events_reach(s->events, after)) {
+    lock_jobs(s);
+    code = eo_queue_list(s->store, &filter, add_to_snapshot, &snapshot, error);
+    unlock_jobs(s);
+    after = newest;
+  } else if (after <= 0)
+    after = newest;
+  if (!code)
+    code = eo_events_subscribe(s->events, job, after, snapshot.event, snapshot.count, listener, context, subscription,
+                               error);
+  for (int i = 0; i < snapshot.count; i++)
+    free((char *)snapshot.event[i].text);
+  free(snapshot.event);
+  return code;
+}
+
+void eo_service_unsubscribe(struct eo_service *s, int64_t subscription)
+{
+  eo_events_unsubscribe(s->events, subscription);
+}
+
+/* ---- reading jobs ---- */
+
+static enum eo_code find_job(struct eo_service *s, int64_t id, bool with_design, enum eo_job_outcome *outcome,
+                             json_t **job, struct eo_error *error)
+{
+  struct encoding e = {.service = s, .with_design = with_design};
+  lock_jobs(s);
+  enum eo_code code = eo_queue_find(s->store, id, encode, &e, outcome, error);
+  unlock_jobs(s);
+  *job = code ? NULL : e.job;
+  return code;
+}
+
+enum eo_code eo_service_job(struct eo_service *s, int64_t id, bool with_design, enum eo_job_outcome *outcome,
+                            json_t **job, struct eo_error *error)
+{
+  return find_job(s, id, with_design, outcome, job, error);
+}
+
+struct page {
+  struct encoding encoding;
+  json_t *items; /* owned */
+  int limit;
+  int64_t last;
+  bool more;
+};
+
+static enum eo_code add_to_page(void *context, const struct eo_stored_job *job, struct eo_error *error)
+{
+  struct page *page = context;
+  if ((int)json_array_size(page->items) == page->limit) {
+    page->more = true;
+    return EO_OK;
+  }
+  enum eo_code code = encode(&page->encoding, job, error);
+  page->last = job->id;
+  return code || !json_array_append_new(page->items, page->encoding.job) ? code : eo_error_memory(error);
+}
+
+enum eo_code eo_service_jobs(struct eo_service *s, int state, int kind, int64_t before, int limit, json_t **result,
+                             struct eo_error *error)
+{
+  struct page page = {.encoding = {.service = s}, .items = json_array(), .limit = limit};
+  const struct eo_queue_filter filter = {.state = state, .kind = kind, .before = before, .limit = limit + 1};
+  char cursor[32];
+  lock_jobs(s);
+  enum eo_code code = page.items ? eo_queue_list(s->store, &filter, add_to_page, &page, error) : eo_error_memory(error);
+  unlock_jobs(s);
+  snprintf(cursor, sizeof cursor, "%lld", (long long)page.last);
+  json_t *document =
+      code ? NULL : json_pack("{s:O,s:o}", "items", page.items, "next", page.more ? json_string(cursor) : json_null());
+  if (!code && !document)
+    code = eo_error_memory(error);
+  json_decref(page.items);
+  if (!code)
+    *result = document;
+  return code;
+}
+
+struct reading {
+  struct eo_text *text;
+  bool there;
+};
+
+static enum eo_code read_result(void *context, const struct eo_stored_job *job, struct eo_error *error)
+{
+  struct reading *reading = context;
+  reading->there = *job->result != '\0';
+  eo_text_add(reading->text, job->result);
+  return reading->text->failed ? eo_error_memory(error) : EO_OK;
+}
+
+enum eo_code eo_service_result(struct eo_service *s, int64_t id, enum eo_job_outcome *outcome, struct eo_text *text,
+                               struct eo_error *error)
+{
+  struct reading reading = {.text = text};
+  pthread_mutex_lock(&s->store_mutex);
+  enum eo_code code = eo_queue_find(s->store, id, read_result, &reading, outcome, error);
+  pthread_mutex_unlock(&s->store_mutex);
+  if (!code && *outcome == EO_JOB_OUTCOME_DONE && !reading.there)
+    *outcome = EO_JOB_OUTCOME_STATE;
+  return code;
+}
+
+enum eo_code eo_service_generations(struct eo_service *s, int64_t id, enum eo_job_outcome *outcome, json_t **columns,
+                                    struct eo_error *error)
+{
+  struct eo_text text = {0};
+  const struct eo_job_live *live = &s->worker[EO_JOB_OPTIMIZE].live;
+  *columns = NULL;
+  pthread_mutex_lock(&s->live_mutex);
+  bool is_live = live->id == id;
+  if (is_live)
+    *columns = eo_job_live_generations(live);
+  pthread_mutex_unlock(&s->live_mutex);
+  *outcome = EO_JOB_OUTCOME_DONE;
+  enum eo_code code = is_live ? EO_OK : eo_service_result(s, id, outcome, &text, error);
+  if (!code && !is_live && *outcome != EO_JOB_OUTCOME_MISSING) {
+    json_t *result = text.size ? json_loadb(text.data, text.size, 0, NULL) : NULL;
+    *columns = eo_job_result_generations(result);
+    *outcome = EO_JOB_OUTCOME_DONE;
+    json_decref(result);
+  }
+  eo_text_done(&text);
+  if (!code && *outcome == EO_JOB_OUTCOME_DONE && !*columns)
+    code = eo_error_memory(error);
+  return code;
+}
+
+/* ---- changing jobs ---- */
+
+static bool is_closed(struct eo_service *s, enum eo_job_outcome *outcome)
+{
+  *outcome = EO_JOB_OUTCOME_CLOSED;
+  return atomic_load(&s->stopping);
+}
+
+/* Everybody is told of a job that was changed, and whoever changed it gets it. */
+static enum eo_code show(struct eo_service *s, int64_t id, json_t **job, struct eo_error *error)
+{
+  enum eo_job_outcome outcome;
+  eo_service_publish(s, id);
+  return find_job(s, id, true, &outcome, job, error);
+}
+
+/* In this order, so that a job is seen waiting before it is seen running. */
+static enum eo_code show_and_call(struct eo_service *s, int64_t id, json_t **job, struct eo_error *error)
+{
+  enum eo_code code = show(s, id, job, error);
+  eo_service_call(s);
+  return code;
+}
+
+static void hash_request(const struct eo_job_order *order, const struct eo_text *design, char hash[EO_HASH_LENGTH + 1])
+{
+  struct eo_hash h;
+  eo_hash_init(&h);
+  eo_hash_add_number(&h, "kind", order->kind);
+  eo_hash_add_number(&h, "priority", order->priority);
+  eo_hash_add_number(&h, "fresh", order->fresh);
+  eo_hash_add_text(&h, "design", design->data);
+  eo_hash_finish(&h, hash);
+}
+
+static enum eo_code add_job(struct eo_service *s, const struct eo_job_order *order, const struct eo_text *design,
+                            int64_t *id, enum eo_job_outcome *outcome, struct eo_error *error)
+{
+  char pair[EO_HASH_LENGTH + 1], request[EO_HASH_LENGTH + 1];
+  bool keyed = order->key && *order->key, optimize = order->kind == EO_JOB_OPTIMIZE;
+  eo_pairs_key(order->design, pair);
+  hash_request(order, design, request);
+  const struct eo_queue_entry entry = {.kind = order->kind,
+                                       .design = design->data,
+                                       .name = order->design->name,
+                                       .algorithm = optimize ? order->design->optimization.algorithm : "",
+                                       .pair = optimize ? NULL : pair,
+                                       .key = keyed ? order->key : NULL,
+                                       .request = keyed ? request : NULL,
+                                       .fresh = order->fresh,
+                                       .priority = order->priority};
+  pthread_mutex_lock(&s->store_mutex);
+  enum eo_code code = eo_queue_add(s->store, &entry, s->settings.most_queued, id, outcome, error);
+  pthread_mutex_unlock(&s->store_mutex);
+  return code;
+}
+
+/* Queues; nobody is told yet, nor begins. */
+static enum eo_code queue(struct eo_service *s, const struct eo_job_order *order, int64_t *id,
+                          enum eo_job_outcome *outcome, struct eo_error *error)
+{
+  struct eo_text design = {0};
+  json_t *document = eo_design_encode(order->design);
+  if (document)
+    eo_json_write(&design, document, EO_JSON_COMPACT);
+  enum eo_code code = document && !design.failed ? add_job(s, order, &design, id, outcome, error)
+                                                 : eo_error_memory(error);
+  json_decref(document);
+  eo_text_done(&design);
+  if (!code && *outcome == EO_JOB_OUTCOME_FULL)
+    atomic_fetch_add(&s->refused, 1);
+  return code;
+}
+
+enum eo_code eo_service_submit(struct eo_service *s, const struct eo_job_order *order, enum eo_job_outcome *outcome,
+                               json_t **job, struct eo_error *error)
+{
+  int64_t id;
+  *job = NULL;
+  if (is_closed(s, outcome))
+    return EO_OK;
+  enum eo_code code = queue(s, order, &id, outcome, error);
+  if (code || (*outcome != EO_JOB_OUTCOME_DONE && *outcome != EO_JOB_OUTCOME_REPEATED))
+    return code;
+  return show_and_call(s, id, job, error);
+}
+
+enum eo_code eo_service_cancel(struct eo_service *s, int64_t id, enum eo_job_outcome *outcome, json_t **job,
+                               struct eo_error *error)
+{
+  *job = NULL;
+  pthread_mutex_lock(&s->store_mutex);
+  enum eo_code code = eo_queue_cancel(s->store, id, outcome, error);
+  pthread_mutex_unlock(&s->store_mutex);
+  if (code || *outcome)
+    return code;
+  pthread_mutex_lock(&s->live_mutex);
+  for (int kind = 0; kind < EO_JOB_KINDS; kind++)
+    if (s->worker[kind].live.id == id)
+      atomic_store(&s->worker[kind].cancelled, true);
+  pthread_mutex_unlock(&s->live_mutex);
+  return show(s, id, job, error);
+}
+
+enum eo_code eo_service_retry(struct eo_service *s, int64_t id, enum eo_job_outcome *outcome, json_t **job,
+                              struct eo_error *error)
+{
+  *job = NULL;
+  if (is_closed(s, outcome))
+    return EO_OK;
+  pthread_mutex_lock(&s->store_mutex);
+  enum eo_code code = eo_queue_retry(s->store, id, s->settings.most_queued, outcome, error);
+  pthread_mutex_unlock(&s->store_mutex);
+  return code || *outcome ? code : show_and_call(s, id, job, error);
+}
+
+enum eo_code eo_service_clone(struct eo_service *s, int64_t id, const int *priority, enum eo_job_outcome *outcome,
+                              json_t **job, struct eo_error *error)
+{
+  int64_t clone;
+  *job = NULL;
+  if (is_closed(s, outcome))
+    return EO_OK;
+  pthread_mutex_lock(&s->store_mutex);
+  enum eo_code code = eo_queue_clone(s->store, id, priority, s->settings.most_queued, &clone, outcome, error);
+  pthread_mutex_unlock(&s->store_mutex);
+  return code || *outcome ? code : show_and_call(s, clone, job, error);
+}
+
+enum eo_code eo_service_remove(struct eo_service *s, int64_t id, enum eo_job_outcome *outcome, struct eo_error *error)
+{
+  pthread_mutex_lock(&s->live_mutex);
+  bool live = s->worker[0].live.id == id || s->worker[1].live.id == id;
+  pthread_mutex_unlock(&s->live_mutex);
+  *outcome = EO_JOB_OUTCOME_STATE;
+  if (live)
+    return EO_OK;
+  pthread_mutex_lock(&s->store_mutex);
+  enum eo_code code = eo_queue_remove(s->store, id, outcome, error);
+  pthread_mutex_unlock(&s->store_mutex);
+  return code;
+}

@@ -1,0 +1,273 @@
+/* The threads that work jobs off. */
+#include "service/service_internal.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "base/clock.h"
+#include "format/json.h"
+
+enum { EVENT_MS = 120, NOTE_MS = 1000, OPTIMIZE_NICE = 10, PREPARE_NICE = 3 };
+
+/* ---- the job in work ---- */
+
+static bool must_stop(struct eo_service_worker *w)
+{
+  return atomic_load(&w->cancelled) || atomic_load(&w->service->stopping);
+}
+
+static void begin_live(struct eo_service_worker *w, int64_t id)
+{
+  pthread_mutex_lock(&w->service->live_mutex);
+  eo_job_live_done(&w->live);
+  atomic_store(&w->cancelled, false);
+  w->live.id = id;
+  w->live.state = EO_JOB_PREPARING;
+  w->live.seconds = w->live.seconds_left = NAN;
+  pthread_mutex_unlock(&w->service->live_mutex);
+  w->published = w->noted = 0;
+}
+
+static void end_live(struct eo_service_worker *w)
+{
+  pthread_mutex_lock(&w->service->live_mutex);
+  eo_job_live_done(&w->live);
+  pthread_mutex_unlock(&w->service->live_mutex);
+}
+
+/* What is known of the job as text, to be kept with it. */
+static void write_live(struct eo_service_worker *w, struct eo_text *text)
+{
+  pthread_mutex_lock(&w->service->live_mutex);
+  json_t *document = eo_job_live_encode(&w->live);
+  pthread_mutex_unlock(&w->service->live_mutex);
+  if (document)
+    eo_json_write(text, document, EO_JSON_COMPACT);
+  json_decref(document);
+}
+
+/* Tells the listeners now and then, and the table more rarely: what it misses is found again from the history. */
+static void spread(struct eo_service_worker *w)
+{
+  double now = eo_clock_milliseconds();
+  if (now - w->published < EVENT_MS)
+    return;
+  w->published = now;
+  eo_service_publish(w->service, w->live.id);
+  if (now - w->noted < NOTE_MS)
+    return;
+  w->noted = now;
+  struct eo_text text = {0};
+  write_live(w, &text);
+  if (text.size && !text.failed)
+    eo_queue_note(w->store, w->live.id, text.data, NULL);
+  eo_text_done(&text);
+}
+
+static int follow_preparation(void *context, const char *what, double fraction)
+{
+  struct eo_service_worker *w = context;
+  pthread_mutex_lock(&w->service->live_mutex);
+  snprintf(w->live.what, sizeof w->live.what, "%s", what);
+  w->live.fraction = fraction;
+  pthread_mutex_unlock(&w->service->live_mutex);
+  spread(w);
+  return must_stop(w);
+}
+
+static int follow_study(void *context, const struct eo_study_report *report)
+{
+  struct eo_service_worker *w = context;
+  pthread_mutex_lock(&w->service->live_mutex);
+  int before = w->live.true_evaluations, reused = w->live.reused;
+  eo_job_live_follow(&w->live, report);
+  atomic_fetch_add(&w->service->true_evaluations, w->live.true_evaluations - before);
+  atomic_fetch_add(&w->service->reused_evaluations, w->live.reused - reused);
+  pthread_mutex_unlock(&w->service->live_mutex);
+  spread(w);
+  return must_stop(w);
+}
+
+/* ---- one job ---- */
+
+struct task {
+  int64_t id;
+  bool fresh, stop;
+  struct eo_text text;      /* of the design */
+  struct eo_design *design; /* owned */
+  struct eo_geometry geometry;
+  struct eo_held_pair *held;
+  struct eo_warnings warnings;
+};
+
+static enum eo_code take_job(void *context, const struct eo_stored_job *job, struct eo_error *error)
+{
+  struct task *task = context;
+  task->fresh = job->fresh;
+  task->stop = job->stop; /* asked for after it was claimed and before anybody could tell this thread */
+  eo_text_add(&task->text, job->design);
+  return task->text.failed ? eo_error_memory(error) : EO_OK;
+}
+
+static enum eo_code read_design(struct task *task, struct eo_error *error)
+{
+  struct eo_faults *faults = calloc(1, sizeof *faults);
+  json_t *document = eo_json_parse(task->text.data, task->text.size, error);
+  enum eo_code code = document ? EO_OK : EO_ERROR_INPUT;
+  if (!code && (!faults || !(task->design = malloc(sizeof *task->design))))
+    code = eo_error_memory(error);
+  if (!code && !eo_design_decode(document, task->design, &task->warnings, faults))
+    code = eo_faults_first(faults, error);
+  if (!code)
+    code = eo_design_complete(task->design, &task->geometry, error);
+  json_decref(document);
+  free(faults);
+  return code;
+}
+
+static enum eo_code optimize(struct eo_service_worker *w, struct task *task, bool *stopped, struct eo_error *error)
+{
+  const struct eo_study_plan plan = {.design = task->design,
+                                     .pair = eo_held_pair(task->held),
+                                     .store = w->store,
+                                     .threads = w->service->settings.threads,
+                                     .job = task->id,
+                                     .fresh = task->fresh,
+                                     .watch = follow_study,
+                                     .context = w};
+  struct eo_study_result result;
+  json_t *document = NULL;
+  enum eo_code code = eo_study_run(&plan, &result, error);
+  *stopped = !code && result.stopped == EO_STOP_CANCELLED;
+  pthread_mutex_lock(&w->service->live_mutex);
+  if (!code)
+    eo_job_live_conclude(&w->live, &result);
+  pthread_mutex_unlock(&w->service->live_mutex);
+  bool parked = *stopped && !atomic_load(&w->cancelled);
+  if (!code && !parked)
+    code = eo_study_document(&plan, &result, &task->warnings, &document, error);
+  json_decref(document);
+  eo_study_result_done(&result);
+  return code;
+}
+
+static enum eo_code run_job(struct eo_service_worker *w, struct task *task, bool *stopped, struct eo_error *error)
+{
+  const struct eo_progress progress = {follow_preparation, w};
+  enum eo_job_outcome outcome;
+  enum eo_code code = eo_queue_find(w->store, task->id, take_job, task, &outcome, error);
+  if (!code && task->stop)
+    atomic_store(&w->cancelled, true);
+  if (!code)
+    code = read_design(task, error);
+  if (!code)
+    code = eo_pairs_obtain(w->service->pairs, task->design, &progress, &task->held, error);
+  if (!code && w->kind == EO_JOB_OPTIMIZE)
+    code = optimize(w, task, stopped, error);
+  return code;
+}
+
+static void write_error(const struct eo_error *error, struct eo_text *text)
+{
+  json_t *document = eo_job_error_encode(error);
+  if (document)
+    eo_json_write(text, document, EO_JSON_COMPACT);
+  json_decref(document);
+}
+
+/* A stop that nobody asked for by name is the service's: the job waits for the next one. */
+static enum eo_job_state find_end(struct eo_service_worker *w, enum eo_code code, bool stopped)
+{
+  if (stopped || code == EO_ERROR_CANCELLED)
+    return atomic_load(&w->cancelled) ? EO_JOB_CANCELLED : EO_JOB_QUEUED;
+  return code ? EO_JOB_FAILED : EO_JOB_DONE;
+}
+
+static void end_job(struct eo_service_worker *w, int64_t id, enum eo_job_state state, const struct eo_error *error)
+{
+  struct eo_text progress = {0}, fault = {0};
+  pthread_mutex_lock(&w->service->live_mutex);
+  if (state == EO_JOB_DONE)
+    w->live.fraction = 1;
+  pthread_mutex_unlock(&w->service->live_mutex);
+  write_live(w, &progress);
+  if (state == EO_JOB_FAILED)
+    write_error(error, &fault);
+  /* a database that fails here leaves the job as begun: the next start of the service queues it again */
+  eo_queue_end(w->store, id, state, fault.data, progress.failed ? NULL : progress.data, NULL);
+  if (w->kind == EO_JOB_PREPARE)
+    eo_queue_tidy(w->store, EO_PREPARATIONS_KEPT, NULL);
+  eo_text_done(&progress);
+  eo_text_done(&fault);
+}
+
+/* Those who wait for a preparation have their turn. */
+static void wake(struct eo_service *s, int64_t id, enum eo_job_state state, const struct eo_error *error)
+{
+  struct eo_error why = {0};
+  if (state == EO_JOB_FAILED)
+    why = *error;
+  else if (state == EO_JOB_CANCELLED)
+    eo_error_set(&why, EO_ERROR_CANCELLED, "", "The preparation of the gear pair was cancelled.");
+  eo_lane_wake(s->analyses, id, &why);
+  eo_lane_wake(s->sweeps, id, &why);
+  eo_lane_wake(s->works, id, &why);
+}
+
+static void work_off(struct eo_service_worker *w, int64_t id)
+{
+  struct eo_service *s = w->service;
+  struct task task = {.id = id};
+  struct eo_error error = {0};
+  bool stopped = false;
+  begin_live(w, id);
+  eo_service_publish(s, id);
+  enum eo_code code = run_job(w, &task, &stopped, &error);
+  if (code && !error.code)
+    error.code = code;
+  enum eo_job_state state = find_end(w, code, stopped);
+  pthread_mutex_lock(&s->preparing_mutex);
+  end_job(w, id, state, &error);
+  end_live(w);
+  wake(s, id, state, &error);
+  pthread_mutex_unlock(&s->preparing_mutex);
+  eo_service_publish(s, id);
+  eo_pairs_release(s->pairs, task.held);
+  eo_text_done(&task.text);
+  free(task.design);
+}
+
+/* ---- the thread ---- */
+
+/* Until somebody says that there is work; at most for a while, so that a database that failed is tried again. */
+static void wait_for_work(struct eo_service *s, uint64_t *calls)
+{
+  struct timespec until;
+  clock_gettime(CLOCK_MONOTONIC, &until);
+  until.tv_sec += 2;
+  pthread_mutex_lock(&s->work_mutex);
+  while (*calls == s->calls && !atomic_load(&s->stopping))
+    if (pthread_cond_timedwait(&s->work, &s->work_mutex, &until))
+      break;
+  *calls = s->calls;
+  pthread_mutex_unlock(&s->work_mutex);
+}
+
+void *eo_service_work(void *argument)
+{
+  struct eo_service_worker *w = argument;
+  struct eo_service *s = w->service;
+  uint64_t calls = 0;
+  eo_lane_stand_back(w->kind == EO_JOB_OPTIMIZE ? OPTIMIZE_NICE : PREPARE_NICE);
+  while (!atomic_load(&s->stopping)) {
+    int64_t id;
+    enum eo_code code = eo_queue_claim(w->store, w->kind, &id, NULL);
+    if (!code && id)
+      work_off(w, id);
+    else
+      wait_for_work(s, &calls);
+  }
+  return NULL;
+}

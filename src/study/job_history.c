@@ -1,0 +1,273 @@
+#include "study/job_history.h"
+
+#include <limits.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "document/design_document.h"
+#include "format/json.h"
+#include "document/result_parts.h"
+#include "format/sheet.h"
+#include "document/study.h"
+#include "evaluation/evaluator.h"
+#include "store/evaluations.h"
+
+/* A job as its rows are weighed. */
+struct history {
+  struct eo_store *store;
+  struct eo_design design; /* of the job; its modification changes from row to row */
+  struct eo_geometry geometry;
+  int64_t problem;
+  int scenarios, cases, limit, last;
+  bool more;
+  struct eo_objective_case *unmodified, *raw; /* [scenarios][cases]; owned */
+  json_t *items;                              /* owned */
+};
+
+static void done(struct history *h)
+{
+  free(h->unmodified);
+  free(h->raw);
+  json_decref(h->items);
+  free(h);
+}
+
+/* ---- the job ---- */
+
+static enum eo_code read_design(struct history *h, const char *text, struct eo_error *error)
+{
+  struct eo_faults *faults = calloc(1, sizeof *faults);
+  json_t *document = eo_json_parse(text, strlen(text), error);
+  enum eo_code code = document ? EO_OK : error->code;
+  if (!faults)
+    code = eo_error_memory(error);
+  if (!code && !eo_design_decode(document, &h->design, NULL, faults))
+    code = eo_faults_first(faults, error);
+  if (!code)
+    code = eo_design_complete(&h->design, &h->geometry, error);
+  json_decref(document);
+  free(faults);
+  return code;
+}
+
+static enum eo_code take_job(void *context, const struct eo_stored_job *job, struct eo_error *error)
+{
+  struct history *h = context;
+  h->problem = job->problem;
+  return read_design(h, job->design, error);
+}
+
+static enum eo_code reserve(struct history *h, struct eo_error *error)
+{
+  h->scenarios = eo_evaluator_scenarios(&h->design);
+  h->cases = h->design.load_cases;
+  size_t size = (size_t)h->scenarios * (size_t)h->cases;
+  h->unmodified = calloc(size, sizeof *h->unmodified);
+  h->raw = calloc(size, sizeof *h->raw);
+  h->items = json_array();
+  return h->unmodified && h->raw && h->items ? EO_OK : eo_error_memory(error);
+}
+
+static enum eo_code find_unmodified(struct history *h, struct eo_error *error)
+{
+  struct eo_stored_evaluation row = {.scenarios = h->scenarios, .cases = h->cases, .raw = h->unmodified};
+  enum eo_code code = eo_store_find_evaluation(h->store, h->problem, "{}", &row, error);
+  for (int i = 0; !code && !row.id && i < h->scenarios * h->cases; i++)
+    h->unmodified[i].failed = true;
+  return code;
+}
+
+/* ---- a row ---- */
+
+static enum eo_code weigh(struct history *h, const char *modification, struct eo_objective_value *value,
+                          struct eo_error *error)
+{
+  enum eo_code code = eo_modification_read(modification, &h->design.modification, error);
+  if (!code)
+    eo_evaluator_combine(&h->design, &h->geometry, h->raw, h->unmodified, value);
+  return code;
+}
+
+static const struct eo_outline_row history_rows[] = {
+    EO_KEY("ordinal", "integer", "from 0, in the order in which the job asked"),
+    EO_KEY("generation", "integer", "from 0"),
+    EO_KEY("individual", "integer", "of its generation, from 0"),
+    EO_KEY("outcome", "word", "refused: the modification is impossible", .words = eo_store_outcomes),
+    EO_KEY("reason", "text", "why it has no value; else empty"),
+    EO_KEY("modification", "object", "what is not at its default", .table = &eo_modification_table,
+           .name = "SparseModification", .sparse = true),
+    {.outline = &eo_outline_value},
+    EO_KEY("reused", "flag", "the history knew it before the job asked"),
+};
+const struct eo_outline eo_job_history_outline = EO_OUTLINE("JobHistoryRow", history_rows);
+
+static json_t *encode(const struct eo_stored_candidate *c, const struct eo_stored_evaluation *row,
+                      const struct eo_objective_value *value, struct eo_error *error)
+{
+  struct eo_result_object o = eo_result_open_as(&eo_job_history_outline);
+  eo_result_put(&o, "ordinal", json_integer(c->ordinal));
+  eo_result_put(&o, "generation", json_integer(c->generation));
+  eo_result_put(&o, "individual", json_integer(c->individual));
+  eo_result_put(&o, "outcome", json_string(eo_store_outcome_name(row->outcome)));
+  eo_result_put(&o, "reason", json_string(row->reason));
+  eo_result_put(&o, "modification", eo_json_parse(row->modification, strlen(row->modification), error));
+  eo_result_put_value(&o, value);
+  eo_result_put(&o, "reused", json_boolean(c->reused));
+  return eo_result_close(&o);
+}
+
+static enum eo_code add_row(struct history *h, const struct eo_stored_candidate *c, struct eo_text *text,
+                            struct eo_error *error)
+{
+  struct eo_stored_evaluation row = {.scenarios = h->scenarios, .cases = h->cases, .raw = h->raw};
+  struct eo_objective_value value;
+  enum eo_code code = eo_store_get_evaluation(h->store, c->evaluation, &row, text, error);
+  if (!code)
+    code = weigh(h, row.modification, &value, error);
+  if (!code && json_array_append_new(h->items, encode(c, &row, &value, error)))
+    code = eo_error_memory(error);
+  return code;
+}
+
+static enum eo_code take_candidate(void *context, const struct eo_stored_candidate *c, struct eo_error *error)
+{
+  struct history *h = context;
+  struct eo_text text = {0};
+  if ((int)json_array_size(h->items) == h->limit) {
+    h->more = true;
+    return EO_OK;
+  }
+  enum eo_code code = add_row(h, c, &text, error);
+  h->last = c->ordinal;
+  eo_text_done(&text);
+  return code;
+}
+
+/* ---- all ---- */
+
+static enum eo_code collect(struct history *h, int64_t job, int after, int limit, enum eo_job_outcome *outcome,
+                            struct eo_error *error)
+{
+  enum eo_code code = eo_queue_find(h->store, job, take_job, h, outcome, error);
+  if (code || *outcome != EO_JOB_OUTCOME_DONE)
+    return code;
+  code = reserve(h, error);
+  if (code || !h->problem) /* it has not begun */
+    return code;
+  h->limit = limit;
+  code = find_unmodified(h, error);
+  if (!code)
+    code = eo_store_page_candidates(h->store, job, after, limit < INT_MAX ? limit + 1 : limit, take_candidate, h,
+                                    error);
+  return code;
+}
+
+static enum eo_code begin(struct history **history, struct eo_store *store, struct eo_error *error)
+{
+  *history = calloc(1, sizeof **history);
+  if (!*history)
+    return eo_error_memory(error);
+  (*history)->store = store;
+  return EO_OK;
+}
+
+enum eo_code eo_job_history(struct eo_store *store, int64_t job, int after, int limit, enum eo_job_outcome *outcome,
+                            json_t **page, struct eo_error *error)
+{
+  struct history *h;
+  enum eo_code code = begin(&h, store, error);
+  if (code)
+    return code;
+  *page = NULL;
+  code = collect(h, job, after, limit, outcome, error);
+  if (!code && *outcome == EO_JOB_OUTCOME_DONE) {
+    json_t *next = h->more ? json_sprintf("%d", h->last) : json_null();
+    *page = json_pack("{s:O, s:o}", "items", h->items, "next", next);
+    code = *page ? EO_OK : eo_error_memory(error);
+  }
+  done(h);
+  return code;
+}
+
+/* ---- comma-separated values ---- */
+
+/* All "pinion/left/tip_relief_um" of a modification into a set. */
+static void collect_paths(const json_t *value, const char *path, json_t *set)
+{
+  const char *key;
+  json_t *inner;
+  json_object_foreach((json_t *)value, key, inner)
+  {
+    char longer[200];
+    snprintf(longer, sizeof longer, "%.120s%s%.70s", path, *path ? "/" : "", key);
+    if (json_is_object(inner))
+      collect_paths(inner, longer, set);
+    else
+      json_object_set_new(set, longer, json_true());
+  }
+}
+
+static const char *const plain_columns[] = {"ordinal", "generation", "individual",  "outcome", "reused",
+                                            "f1_um",   "f2_N",       "f3_m_per_s2", "J",       "fitness"};
+enum { PLAIN = sizeof plain_columns / sizeof plain_columns[0] };
+
+static void add_cell(struct eo_sheet *sheet, const json_t *value, double standard)
+{
+  if (json_is_string(value))
+    eo_sheet_string(sheet, json_string_value(value));
+  else if (json_is_boolean(value))
+    eo_sheet_string(sheet, json_is_true(value) ? "true" : "false");
+  else
+    eo_sheet_number(sheet, json_is_number(value) ? json_number_value(value) : standard, NULL, 0);
+}
+
+static void write_rows(const json_t *items, const json_t *paths, const char **heading, struct eo_text *text)
+{
+  struct eo_sheet sheet;
+  const char *key;
+  json_t *row, *value;
+  size_t i;
+  int columns = PLAIN;
+  memcpy(heading, plain_columns, sizeof plain_columns);
+  json_object_foreach((json_t *)paths, key, value) heading[columns++] = key;
+  eo_sheet_init(&sheet, columns, heading);
+  json_array_foreach((json_t *)items, i, row)
+  {
+    for (int j = 0; j < PLAIN; j++)
+      add_cell(&sheet, json_object_get(row, plain_columns[j]), NAN);
+    for (int j = PLAIN; j < columns; j++)
+      add_cell(&sheet, eo_json_find(json_object_get(row, "modification"), heading[j]), 0);
+  }
+  eo_sheet_csv(&sheet, text);
+  eo_sheet_done(&sheet);
+}
+
+static enum eo_code write_csv(const json_t *items, struct eo_text *text, struct eo_error *error)
+{
+  json_t *paths = json_object(), *row;
+  size_t i;
+  json_array_foreach((json_t *)items, i, row) collect_paths(json_object_get(row, "modification"), "", paths);
+  const char **heading = calloc(PLAIN + json_object_size(paths), sizeof *heading);
+  if (paths && heading)
+    write_rows(items, paths, heading, text);
+  else
+    text->failed = true;
+  free(heading);
+  json_decref(paths);
+  return text->failed ? eo_error_memory(error) : EO_OK;
+}
+
+enum eo_code eo_job_history_csv(struct eo_store *store, int64_t job, enum eo_job_outcome *outcome, struct eo_text *text,
+                                struct eo_error *error)
+{
+  struct history *h;
+  enum eo_code code = begin(&h, store, error);
+  if (code)
+    return code;
+  code = collect(h, job, -1, INT_MAX, outcome, error);
+  if (!code && *outcome == EO_JOB_OUTCOME_DONE)
+    code = write_csv(h->items, text, error);
+  done(h);
+  return code;
+}

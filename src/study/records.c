@@ -1,0 +1,397 @@
+#include "study/records.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "format/json.h"
+#include "document/result_parts.h"
+#include "format/sheet.h"
+#include "store/evaluations.h"
+#include "store/jobs.h"
+#include "store/lock.h"
+
+static enum eo_code append(json_t *array, json_t *value, struct eo_error *error)
+{
+  return json_array_append_new(array, value) ? eo_error_memory(error) : EO_OK;
+}
+
+/* ---- list ---- */
+
+static const struct eo_outline_row problem_rows[] = {
+    EO_KEY("id", "integer", "number of the problem"),
+    EO_KEY("hash", "text", "SHA-256 of everything that an evaluation depends on but the modification"),
+    EO_KEY("name", "text", "of the first design"),
+    EO_KEY("evaluator", "integer", "version of the model"),
+    EO_KEY("evaluations", "integer", "true rows"),
+    EO_KEY("failed", "integer", "of them without a value"),
+    EO_KEY("cost_s", "number?", "computing time of all, s"),
+    EO_KEY("created", "text", "date and time, UTC"),
+};
+static const struct eo_outline problem_outline = EO_OUTLINE("HistoryProblem", problem_rows);
+
+static enum eo_code add_problem(void *context, const struct eo_stored_problem *p, struct eo_error *error)
+{
+  struct eo_result_object o = eo_result_open_as(&problem_outline);
+  eo_result_put(&o, "id", json_integer(p->id));
+  eo_result_put(&o, "hash", json_string(p->hash));
+  eo_result_put(&o, "name", json_string(p->name));
+  eo_result_put(&o, "evaluator", json_integer(p->evaluator));
+  eo_result_put(&o, "evaluations", json_integer(p->evaluations));
+  eo_result_put(&o, "failed", json_integer(p->failed));
+  eo_result_put_number(&o, "cost_s", p->cost);
+  eo_result_put(&o, "created", json_string(p->created));
+  return append(context, eo_result_close(&o), error);
+}
+
+static const struct eo_outline_row job_rows[] = {
+    EO_KEY("id", "integer", "number of the job"),
+    EO_KEY("kind", "word", "what it does", .words = eo_store_job_kinds),
+    EO_KEY("problem", "integer?", "null before it begins, and of a preparation"),
+    EO_KEY("name", "text", "of the design"),
+    EO_KEY("algorithm", "text", "of an optimization; else empty"),
+    EO_KEY("state", "text", "as of a job, or interrupted: it was running when its process ended"),
+    EO_KEY("stopped", "text", "why it ended: budget, converged, cancelled; else empty"),
+    EO_KEY("true_evaluations", "integer", "by the model, or known from the history"),
+    EO_KEY("individuals", "integer", "fitness values needed"),
+    EO_KEY("pfc_percent", "number?", "true evaluations of the individuals, per cent"),
+    EO_KEY("best_value", "number?", "J and penalties of the best"),
+    EO_KEY("has_result", "flag", "there is a result to get"),
+    EO_KEY("created", "text", "date and time, UTC"),
+    EO_KEY("updated", "text", "date and time, UTC"),
+};
+static const struct eo_outline job_outline = EO_OUTLINE("HistoryJob", job_rows);
+
+static const struct eo_outline_row list_rows[] = {
+    EO_KEY("problems", "[object]", "what was worked on", .outline = &problem_outline),
+    EO_KEY("jobs", "[object]", "of the service and of the terminal", .outline = &job_outline),
+};
+const struct eo_outline eo_records_outline = EO_OUTLINE("History", list_rows);
+
+struct job_list {
+  struct eo_store *store;
+  json_t *array;
+};
+
+static enum eo_code add_job(void *context, const struct eo_stored_job *j, struct eo_error *error)
+{
+  struct job_list *list = context;
+  bool taken = j->state != EO_JOB_RUNNING || eo_store_job_is_taken(list->store, j->id);
+  struct eo_result_object o = eo_result_open_as(&job_outline);
+  eo_result_put(&o, "id", json_integer(j->id));
+  eo_result_put(&o, "kind", json_string(eo_store_job_kind_name(j->kind)));
+  eo_result_put(&o, "problem", j->problem ? json_integer(j->problem) : json_null());
+  eo_result_put(&o, "name", json_string(j->name));
+  eo_result_put(&o, "algorithm", json_string(j->algorithm));
+  eo_result_put(&o, "state", json_string(taken ? eo_store_job_state_name(j->state) : "interrupted"));
+  eo_result_put(&o, "stopped", json_string(j->stopped));
+  eo_result_put(&o, "true_evaluations", json_integer(j->true_evaluations));
+  eo_result_put(&o, "individuals", json_integer(j->individuals));
+  eo_result_put_number(&o, "pfc_percent", j->individuals ? 100. * j->true_evaluations / j->individuals : NAN);
+  eo_result_put_number(&o, "best_value", j->best_value);
+  eo_result_put(&o, "has_result", json_boolean(*j->result));
+  eo_result_put(&o, "created", json_string(j->created));
+  eo_result_put(&o, "updated", json_string(j->updated));
+  return append(list->array, eo_result_close(&o), error);
+}
+
+enum eo_code eo_records_list(struct eo_store *store, json_t **document, struct eo_error *error)
+{
+  json_t *problems = json_array(), *jobs = json_array();
+  struct job_list list = {store, jobs};
+  enum eo_code code = problems && jobs ? eo_store_each_problem(store, add_problem, problems, error)
+                                       : eo_error_memory(error);
+  if (!code)
+    code = eo_store_each_job(store, 0, add_job, &list, error);
+  struct eo_result_object o = eo_result_open_as(&eo_records_outline);
+  eo_result_put(&o, "problems", problems);
+  eo_result_put(&o, "jobs", jobs);
+  json_t *all = eo_result_close(&o);
+  if (!code && !all)
+    code = eo_error_memory(error);
+  if (code)
+    json_decref(all);
+  else
+    *document = all;
+  return code;
+}
+
+/* ---- one result ---- */
+
+struct wanted_job {
+  int64_t job;
+  bool found;
+  struct eo_text result;
+};
+
+static enum eo_code take_result(void *context, const struct eo_stored_job *j, struct eo_error *error)
+{
+  struct wanted_job *wanted = context;
+  if (j->id != wanted->job)
+    return EO_OK;
+  wanted->found = true;
+  eo_text_add(&wanted->result, j->result);
+  return wanted->result.failed ? eo_error_memory(error) : EO_OK;
+}
+
+enum eo_code eo_records_result(struct eo_store *store, int64_t job, json_t **document, struct eo_error *error)
+{
+  struct wanted_job wanted = {.job = job};
+  enum eo_code code = eo_store_each_job(store, 0, take_result, &wanted, error);
+  if (!code && !wanted.found)
+    code = eo_error_set(error, EO_ERROR_INPUT, "", "There is no job %lld.", (long long)job);
+  if (!code && !wanted.result.size)
+    code = eo_error_set(error, EO_ERROR_INPUT, "", "Job %lld has no result yet.", (long long)job);
+  if (!code && !(*document = eo_json_parse(wanted.result.data, wanted.result.size, error)))
+    code = EO_ERROR_FILE;
+  eo_text_done(&wanted.result);
+  return code;
+}
+
+/* ---- true rows ---- */
+
+struct row_list {
+  int64_t problem;
+  int scenarios, cases; /* of the problem; 0: not found */
+  json_t *spec, *rows;
+  struct eo_load_case load_case[EO_MAX_LOAD_CASES];
+};
+
+static enum eo_code take_problem(void *context, const struct eo_stored_problem *p, struct eo_error *error)
+{
+  struct row_list *list = context;
+  if (p->id != list->problem)
+    return EO_OK;
+  list->scenarios = p->scenarios;
+  list->cases = p->cases;
+  list->spec = eo_json_parse(p->spec, strlen(p->spec), error);
+  for (int k = 0; k < p->cases && k < EO_MAX_LOAD_CASES; k++) {
+    const json_t *row = json_array_get(json_object_get(list->spec, "load_cases"), (size_t)k);
+    list->load_case[k].torque = eo_unit_in(&eo_unit_Nm, eo_json_find_number(row, "torque_Nm"));
+    list->load_case[k].speed = eo_unit_in(&eo_unit_rpm, eo_json_find_number(row, "speed_rpm"));
+  }
+  return list->spec ? EO_OK : EO_ERROR_FILE;
+}
+
+static json_t *encode_scenario(const struct row_list *list, const struct eo_objective_case *raw)
+{
+  json_t *array = json_array();
+  for (int k = 0; k < list->cases && array; k++)
+    if (json_array_append_new(array, eo_result_raw_case(&list->load_case[k], &raw[k]))) {
+      json_decref(array);
+      array = NULL;
+    }
+  return array;
+}
+
+static json_t *encode_scenarios(const struct row_list *list, const struct eo_objective_case *raw)
+{
+  json_t *array = json_array();
+  for (int s = 0; s < list->scenarios && array; s++)
+    if (json_array_append_new(array, encode_scenario(list, raw + s * list->cases))) {
+      json_decref(array);
+      array = NULL;
+    }
+  return array;
+}
+
+static enum eo_code add_row(void *context, const struct eo_stored_evaluation *e, const double *x, int size,
+                            struct eo_error *error)
+{
+  struct row_list *list = context;
+  struct eo_result_object o = eo_result_open();
+  (void)x;
+  (void)size;
+  eo_result_put(&o, "id", json_integer(e->id));
+  eo_result_put(&o, "outcome", json_string(eo_store_outcome_name(e->outcome)));
+  eo_result_put(&o, "reason", json_string(e->reason));
+  eo_result_put(&o, "cost_s", eo_result_number(e->cost, NULL));
+  eo_result_put(&o, "modification", eo_json_parse(e->modification, strlen(e->modification), error));
+  eo_result_put(&o, "scenarios", encode_scenarios(list, e->raw));
+  return append(list->rows, eo_result_close(&o), error);
+}
+
+enum eo_code eo_records_rows(struct eo_store *store, int64_t problem, json_t **document, struct eo_error *error)
+{
+  struct row_list list = {.problem = problem, .rows = json_array()};
+  enum eo_code code = list.rows ? eo_store_each_problem(store, take_problem, &list, error) : eo_error_memory(error);
+  if (!code && !list.cases)
+    code = eo_error_set(error, EO_ERROR_INPUT, "", "There is no problem %lld.", (long long)problem);
+  if (!code)
+    code = eo_store_each_evaluation(store, problem, 0, NULL, list.scenarios, list.cases, add_row, &list, error);
+  struct eo_result_object o = eo_result_open();
+  eo_result_put(&o, "problem", list.spec ? list.spec : json_null());
+  eo_result_put(&o, "rows", list.rows);
+  json_t *all = eo_result_close(&o);
+  if (!code && !all)
+    code = eo_error_memory(error);
+  if (code)
+    json_decref(all);
+  else
+    *document = all;
+  return code;
+}
+
+/* ---- comma-separated values ---- */
+
+/* All "pinion/left/tip_relief_um" of a modification into a set (an object with true for each). */
+static void collect_paths(const json_t *value, const char *path, json_t *set)
+{
+  const char *key;
+  json_t *inner;
+  json_object_foreach((json_t *)value, key, inner)
+  {
+    char longer[200];
+    snprintf(longer, sizeof longer, "%.120s%s%.70s", path, *path ? "/" : "", key);
+    if (json_is_object(inner))
+      collect_paths(inner, longer, set);
+    else
+      json_object_set_new(set, longer, json_true());
+  }
+}
+
+static const char *const value_keys[] = {"peak_to_peak_um", "impact_N",        "rms_m_per_s2", "contact_pressure_MPa",
+                                         "root_stress_MPa", "edge_load_share", "contact_loss"};
+enum { VALUES = sizeof value_keys / sizeof value_keys[0] };
+
+static const json_t *first_scenario(const json_t *row)
+{
+  return json_array_get(json_object_get(row, "scenarios"), 0);
+}
+
+static void add_headings(const json_t *paths, const json_t *cases, char **heading)
+{
+  const char *key;
+  json_t *value;
+  int i = 0;
+  for (const char *const *fixed = (const char *const[]){"id", "outcome", "cost_s", NULL}; *fixed; fixed++)
+    heading[i++] = strdup(*fixed);
+  json_object_foreach((json_t *)paths, key, value) heading[i++] = strdup(key);
+  for (size_t k = 0; k < json_array_size(cases); k++)
+    for (int v = 0; v < VALUES; v++) {
+      char text[100];
+      const json_t *c = json_array_get(cases, k);
+      snprintf(text, sizeof text, "%s at %.6g Nm %.6g rpm", value_keys[v], eo_json_find_number(c, "torque_Nm"),
+               eo_json_find_number(c, "speed_rpm"));
+      heading[i++] = strdup(text);
+    }
+}
+
+static void add_cell(struct eo_sheet *sheet, const json_t *value, double standard)
+{
+  if (json_is_string(value))
+    eo_sheet_string(sheet, json_string_value(value));
+  else
+    eo_sheet_number(sheet, json_is_number(value) ? json_number_value(value) : standard, NULL, 0);
+}
+
+static void add_cells(struct eo_sheet *sheet, const json_t *row, const json_t *paths)
+{
+  const char *key;
+  json_t *value;
+  add_cell(sheet, json_object_get(row, "id"), NAN);
+  add_cell(sheet, json_object_get(row, "outcome"), NAN);
+  add_cell(sheet, json_object_get(row, "cost_s"), NAN);
+  json_object_foreach((json_t *)paths, key, value)
+      add_cell(sheet, eo_json_find(json_object_get(row, "modification"), key), 0);
+  for (size_t k = 0; k < json_array_size(first_scenario(row)); k++)
+    for (int v = 0; v < VALUES; v++)
+      add_cell(sheet, json_object_get(json_array_get(first_scenario(row), k), value_keys[v]), NAN);
+}
+
+static void write_rows(const json_t *rows, const json_t *paths, char **heading, int columns, struct eo_text *text)
+{
+  struct eo_sheet sheet;
+  const json_t *row;
+  size_t i;
+  add_headings(paths, first_scenario(json_array_get(rows, 0)), heading);
+  for (int j = 0; j < columns; j++)
+    text->failed |= !heading[j];
+  if (text->failed)
+    return;
+  eo_sheet_init(&sheet, columns, (const char *const *)heading);
+  json_array_foreach((json_t *)rows, i, row) add_cells(&sheet, row, paths);
+  eo_sheet_csv(&sheet, text);
+  eo_sheet_done(&sheet);
+}
+
+enum eo_code eo_records_rows_csv(const json_t *document, struct eo_text *text, struct eo_error *error)
+{
+  const json_t *rows = json_object_get(document, "rows"), *row;
+  json_t *paths = json_object();
+  size_t i;
+  json_array_foreach((json_t *)rows, i, row) collect_paths(json_object_get(row, "modification"), "", paths);
+  int columns = 3 + (int)json_object_size(paths) +
+                VALUES * (int)json_array_size(first_scenario(json_array_get(rows, 0)));
+  char **heading = calloc((size_t)columns, sizeof *heading);
+  if (paths && heading)
+    write_rows(rows, paths, heading, columns, text);
+  else
+    text->failed = true;
+  for (int j = 0; heading && j < columns; j++)
+    free(heading[j]);
+  free(heading);
+  json_decref(paths);
+  return text->failed ? eo_error_memory(error) : EO_OK;
+}
+
+/* ---- the path of a job ---- */
+
+struct path_list {
+  struct eo_text *text;
+  int size; /* variables, once known */
+};
+
+static void write_head(struct path_list *list, int size)
+{
+  if (list->size)
+    return;
+  list->size = size;
+  eo_text_add(list->text, "generation,individual,kind,evaluation,fitness,credibility");
+  for (int i = 0; i < size; i++)
+    eo_text_print(list->text, ",x%d", i + 1);
+  eo_text_add(list->text, "\r\n");
+}
+
+static void write_point(struct eo_text *text, const double *x, int size)
+{
+  for (int i = 0; i < size; i++) {
+    char number[40];
+    eo_json_number(number, sizeof number, x[i]);
+    eo_text_print(text, ",%s", number);
+  }
+  eo_text_add(text, "\r\n");
+}
+
+static enum eo_code write_candidate(void *context, const struct eo_stored_candidate *c, struct eo_error *error)
+{
+  struct path_list *list = context;
+  write_head(list, c->size);
+  eo_text_print(list->text, "%d,%d,%s,%lld,,", c->generation, c->individual, c->reused ? "known" : "computed",
+                (long long)c->evaluation);
+  write_point(list->text, c->x, c->size);
+  return list->text->failed ? eo_error_memory(error) : EO_OK;
+}
+
+static enum eo_code write_prediction(void *context, const struct eo_stored_prediction *p, struct eo_error *error)
+{
+  struct path_list *list = context;
+  char fitness[40], credibility[40];
+  write_head(list, p->size);
+  eo_json_number(fitness, sizeof fitness, p->fitness);
+  eo_json_number(credibility, sizeof credibility, p->credibility);
+  eo_text_print(list->text, "%d,%d,predicted,,%s,%s", p->generation, p->individual, fitness, credibility);
+  write_point(list->text, p->x, p->size);
+  return list->text->failed ? eo_error_memory(error) : EO_OK;
+}
+
+enum eo_code eo_records_path_csv(struct eo_store *store, int64_t job, struct eo_text *text, struct eo_error *error)
+{
+  struct path_list list = {.text = text};
+  enum eo_code code = eo_store_each_candidate(store, job, write_candidate, &list, error);
+  if (!code)
+    code = eo_store_each_prediction(store, job, write_prediction, &list, error);
+  if (!code && !list.size)
+    code = eo_error_set(error, EO_ERROR_INPUT, "", "There is no path of a job %lld.", (long long)job);
+  return code;
+}

@@ -1,0 +1,56 @@
+/* A study as the document that is kept with its job. */
+#include "study/study.h"
+
+#include <stdlib.h>
+
+#include "format/json.h"
+#include "document/result.h"
+#include "evaluation/analysis.h"
+#include "store/jobs.h"
+
+bool eo_study_best_design(const struct eo_study_plan *plan, const struct eo_study_result *result,
+                          struct eo_design *best)
+{
+  *best = *plan->design;
+  best->modification = result->best.there ? result->best.modification : result->unmodified.modification;
+  return result->best.there;
+}
+
+static enum eo_code analyse(const struct eo_study_plan *plan, const struct eo_design *design, json_t **document,
+                            struct eo_error *error)
+{
+  struct eo_analysis *analysis = NULL;
+  enum eo_code code = eo_analysis_new(&analysis, plan->pair, error);
+  if (!code)
+    code = eo_analysis_run(analysis, design, EO_WANT_ROOT | EO_WANT_BAND | EO_WANT_CURVES, error);
+  if (!code && !(*document = eo_result_encode(analysis, design, NULL)))
+    code = eo_error_memory(error);
+  eo_analysis_free(analysis);
+  return code;
+}
+
+static enum eo_code keep(struct eo_store *store, int64_t job, const json_t *document, struct eo_error *error)
+{
+  struct eo_text text = {0};
+  eo_json_write(&text, document, EO_JSON_COMPACT);
+  enum eo_code code = text.failed ? eo_error_memory(error) : eo_store_keep_result(store, job, text.data, error);
+  eo_text_done(&text);
+  return code;
+}
+
+enum eo_code eo_study_document(const struct eo_study_plan *plan, const struct eo_study_result *result,
+                               const struct eo_warnings *warnings, json_t **document, struct eo_error *error)
+{
+  json_t *analysis = NULL;
+  struct eo_design *best = malloc(sizeof *best);
+  enum eo_code code = best ? EO_OK : eo_error_memory(error);
+  if (!code && eo_study_best_design(plan, result, best))
+    code = analyse(plan, best, &analysis, error);
+  if (!code && !(*document = eo_study_result_encode(result, plan->design, analysis, warnings)))
+    code = eo_error_memory(error);
+  if (!code)
+    code = keep(plan->store, result->job, *document, error);
+  json_decref(analysis);
+  free(best);
+  return code;
+}
