@@ -87,7 +87,7 @@ static const struct eo_outline column_outline = EO_OUTLINE("ComparedColumns", co
 
 static json_t *encode_columns(const struct eo_comparison *c, const struct eo_measured *m)
 {
-  struct eo_result_object o = eo_result_open_as(&column_outline);
+  struct eo_object o = eo_object_open_as(&column_outline);
   json_t *file = json_array(), *label = json_array(), *end = json_array(), *outlier = json_array(),
          *reason = json_array();
   double *value = malloc(sizeof *value * ((size_t)c->count + 1));
@@ -98,18 +98,18 @@ static json_t *encode_columns(const struct eo_comparison *c, const struct eo_mea
                json_array_append_new(end, json_string(ends[m[i].end])) ||
                json_array_append_new(outlier, json_boolean(c->point[i].outlier)) ||
                json_array_append_new(reason, *c->point[i].reason ? json_string(c->point[i].reason) : json_null());
-  eo_result_put(&o, "file", file);
-  eo_result_put(&o, "label", label);
-  eo_result_put(&o, "end", end);
+  eo_object_put(&o, "file", file);
+  eo_object_put(&o, "label", label);
+  eo_object_put(&o, "end", end);
   for (int k = 0; k < COLUMNS && !o.failed; k++) {
     for (int i = 0; i < c->count; i++)
       value[i] = columns[k].value(&m[i], &c->point[i]);
-    eo_result_put(&o, columns[k].key, eo_json_reals(c->count, value, 1, columns[k].unit, EO_DIGITS_NUMBER));
+    eo_object_put(&o, columns[k].key, eo_json_reals(c->count, value, 1, columns[k].unit, EO_DIGITS_NUMBER));
   }
-  eo_result_put(&o, "outlier", outlier);
-  eo_result_put(&o, "reason", reason);
+  eo_object_put(&o, "outlier", outlier);
+  eo_object_put(&o, "reason", reason);
   free(value);
-  return eo_result_close(&o);
+  return eo_object_close(&o);
 }
 
 static const struct eo_outline_row order_rows[] = {
@@ -139,8 +139,8 @@ static const struct eo_outline detail_outline = EO_OUTLINE("ComparedDetail", det
 static json_t *encode_detail(const struct eo_measured *m, const struct eo_compared *p)
 {
   double measured[EO_MESH_ORDERS], amplitude[2][EO_MESH_ORDERS], curve[2][CURVE], position[CURVE];
-  struct eo_result_object o = eo_result_open_as(&detail_outline), orders = eo_result_open_as(&order_outline),
-                          curves = eo_result_open_as(&curve_outline);
+  struct eo_object o = eo_object_open_as(&detail_outline), orders = eo_object_open_as(&order_outline),
+                   curves = eo_object_open_as(&curve_outline);
   for (int h = 0; h < m->harmonics; h++) {
     measured[h] = m->order[h].acceleration;
     amplitude[0][h] = cabs(m->order[h].amplitude);
@@ -149,19 +149,19 @@ static json_t *encode_detail(const struct eo_measured *m, const struct eo_compar
   for (int i = 0; i < CURVE; i++)
     position[i] = (double)i / CURVE;
   eo_comparison_curves(m, p, CURVE, curve[0], curve[1]);
-  eo_result_put(&orders, "measured_m_per_s2",
+  eo_object_put(&orders, "measured_m_per_s2",
                 eo_json_reals(m->harmonics, measured, 1, &eo_unit_m_per_s2, EO_DIGITS_CURVE));
-  eo_result_put(&orders, "predicted_m_per_s2",
+  eo_object_put(&orders, "predicted_m_per_s2",
                 eo_json_reals(m->harmonics, p->prediction.acceleration, 1, &eo_unit_m_per_s2, EO_DIGITS_CURVE));
-  eo_result_put(&orders, "measured_um", eo_json_reals(m->harmonics, amplitude[0], 1, &eo_unit_um, EO_DIGITS_CURVE));
-  eo_result_put(&orders, "predicted_um", eo_json_reals(m->harmonics, amplitude[1], 1, &eo_unit_um, EO_DIGITS_CURVE));
-  eo_result_put(&curves, "position", eo_json_reals(CURVE, position, 1, NULL, EO_DIGITS_CURVE));
-  eo_result_put(&curves, "measured_um", eo_json_reals(CURVE, curve[0], 1, &eo_unit_um, EO_DIGITS_CURVE));
-  eo_result_put(&curves, "predicted_um", eo_json_reals(CURVE, curve[1], 1, &eo_unit_um, EO_DIGITS_CURVE));
-  eo_result_put_number(&curves, "shift", p->shift);
-  eo_result_put(&o, "orders", eo_result_close(&orders));
-  eo_result_put(&o, "te", eo_result_close(&curves));
-  return eo_result_close(&o);
+  eo_object_put(&orders, "measured_um", eo_json_reals(m->harmonics, amplitude[0], 1, &eo_unit_um, EO_DIGITS_CURVE));
+  eo_object_put(&orders, "predicted_um", eo_json_reals(m->harmonics, amplitude[1], 1, &eo_unit_um, EO_DIGITS_CURVE));
+  eo_object_put(&curves, "position", eo_json_reals(CURVE, position, 1, NULL, EO_DIGITS_CURVE));
+  eo_object_put(&curves, "measured_um", eo_json_reals(CURVE, curve[0], 1, &eo_unit_um, EO_DIGITS_CURVE));
+  eo_object_put(&curves, "predicted_um", eo_json_reals(CURVE, curve[1], 1, &eo_unit_um, EO_DIGITS_CURVE));
+  eo_object_put_number(&curves, "shift", p->shift);
+  eo_object_put(&o, "orders", eo_object_close(&orders));
+  eo_object_put(&o, "te", eo_object_close(&curves));
+  return eo_object_close(&o);
 }
 
 static const struct eo_outline_row reduction_rows[] = {
@@ -183,15 +183,15 @@ static json_t *encode_reductions(const struct eo_comparison *c, const struct eo_
   bool failed = !list;
   for (int i = 0; i < c->reductions && !failed; i++) {
     const struct eo_reduction *r = &c->reduction[i];
-    struct eo_result_object o = eo_result_open_as(&reduction_outline);
-    eo_result_put(&o, "file", json_string(m[r->modified].name));
-    eo_result_put_number(&o, "torque_Nm", r->torque);
-    eo_result_put_number(&o, "speed_rpm", r->speed);
-    eo_result_put(&o, "unmodified_measurements", json_integer(r->unmodified));
-    eo_result_put_number(&o, "measured_percent", r->measured);
-    eo_result_put_number(&o, "sigma_percent", r->measured_sigma);
-    eo_result_put_number(&o, "predicted_percent", r->predicted);
-    failed = json_array_append_new(list, eo_result_close(&o)) != 0;
+    struct eo_object o = eo_object_open_as(&reduction_outline);
+    eo_object_put(&o, "file", json_string(m[r->modified].name));
+    eo_object_put_number(&o, "torque_Nm", r->torque);
+    eo_object_put_number(&o, "speed_rpm", r->speed);
+    eo_object_put(&o, "unmodified_measurements", json_integer(r->unmodified));
+    eo_object_put_number(&o, "measured_percent", r->measured);
+    eo_object_put_number(&o, "sigma_percent", r->measured_sigma);
+    eo_object_put_number(&o, "predicted_percent", r->predicted);
+    failed = json_array_append_new(list, eo_object_close(&o)) != 0;
   }
   return failed ? (json_decref(list), NULL) : list;
 }
@@ -209,16 +209,16 @@ const struct eo_outline eo_comparison_outline = EO_OUTLINE("ComparisonOfFiles", 
 
 json_t *eo_comparison_encode(const struct eo_comparison *c, const struct eo_measured *m)
 {
-  struct eo_result_object o = eo_result_open_as(&eo_comparison_outline);
+  struct eo_object o = eo_object_open_as(&eo_comparison_outline);
   json_t *details = json_array();
   for (int i = 0; i < c->count && !o.failed; i++)
     o.failed = json_array_append_new(details, encode_detail(&m[i], &c->point[i])) != 0;
-  eo_result_put(&o, "measurements", encode_columns(c, m));
-  eo_result_put(&o, "details", details);
-  eo_result_put(&o, "reductions", encode_reductions(c, m));
-  eo_result_put_number(&o, "ratio", c->ratio);
-  eo_result_put_number(&o, "spread", c->spread);
-  return eo_result_close(&o);
+  eo_object_put(&o, "measurements", encode_columns(c, m));
+  eo_object_put(&o, "details", details);
+  eo_object_put(&o, "reductions", encode_reductions(c, m));
+  eo_object_put_number(&o, "ratio", c->ratio);
+  eo_object_put_number(&o, "spread", c->spread);
+  return eo_object_close(&o);
 }
 
 /* ---- for people ---- */

@@ -158,25 +158,25 @@ const struct eo_outline eo_layout_outline = EO_OUTLINE("Layout", layout_rows);
 json_t *eo_layout_encode(const struct eo_tracks *t)
 {
   const struct eo_track_channel *c = t->channel;
-  struct eo_result_object o = eo_result_open_as(&eo_layout_outline), columns = eo_result_open_as(&column_outline);
+  struct eo_object o = eo_object_open_as(&eo_layout_outline), columns = eo_object_open_as(&column_outline);
   bool angles = c[0].track == EO_TRACK_ANGLE, counts = angles && strcmp(unit_of(&c[0]), "count") == 0;
   double lines[2] = {angles ? 2 * M_PI / c[0].scale : c[0].lines, angles ? 2 * M_PI / c[1].scale : c[1].lines};
   static const char *const time_name[] = {"s", "ms", "us", "ns"};
   static const double time_scale[] = {1, 1e-3, 1e-6, 1e-9};
-  eo_result_put(&o, "kind", json_string(kinds[1 + (int)c[0].track]));
+  eo_object_put(&o, "kind", json_string(kinds[1 + (int)c[0].track]));
   if (angles)
-    eo_result_put(&o, "unit", json_string(unit_of(&c[0])));
+    eo_object_put(&o, "unit", json_string(unit_of(&c[0])));
   if (c[0].track != EO_TRACK_PULSES)
-    eo_result_put(&o, "time", t->time_column < 0 ? json_string(no_time[0]) : json_integer(t->time_column + 1));
+    eo_object_put(&o, "time", t->time_column < 0 ? json_string(no_time[0]) : json_integer(t->time_column + 1));
   for (int i = 0; i < 4; i++)
     if (fabs(t->time_scale / time_scale[i] - 1) < 1e-9)
-      eo_result_put(&o, "time_unit", json_string(time_name[i]));
+      eo_object_put(&o, "time_unit", json_string(time_name[i]));
   if (t->time_column < 0 && t->interval > 0)
-    eo_result_put(&o, "sample_rate_Hz", eo_json_real(1 / t->interval, NULL));
+    eo_object_put(&o, "sample_rate_Hz", eo_json_real(1 / t->interval, NULL));
   for (int i = 0; i < 2; i++)
-    eo_result_put(&columns, member_key[i], encode_column(&c[i]));
-  eo_result_put(&o, "columns", eo_result_close(&columns));
+    eo_object_put(&columns, member_key[i], encode_column(&c[i]));
+  eo_object_put(&o, "columns", eo_object_close(&columns));
   if (!angles || counts)
-    eo_result_put(&o, "lines", eo_json_reals(2, lines, 1, NULL, EO_DIGITS_NUMBER));
-  return eo_result_close(&o);
+    eo_object_put(&o, "lines", eo_json_reals(2, lines, 1, NULL, EO_DIGITS_NUMBER));
+  return eo_object_close(&o);
 }

@@ -42,15 +42,15 @@ static json_t *encode_findings(const struct eo_findings *findings)
   bool failed = !list;
   for (int i = 0; i < findings->count && i < EO_MAX_FINDINGS; i++) {
     const struct eo_finding *f = &findings->finding[i];
-    struct eo_result_object o = eo_result_open_as(&finding_outline);
-    eo_result_put(&o, "kind", json_string(eo_finding_name(f->kind)));
-    eo_result_put(&o, "severity", json_string(eo_severity_name(f->severity)));
-    eo_result_put(&o, "channel", f->channel < 0 ? json_null() : json_string(channel_name[f->channel]));
-    eo_result_put(&o, "row", f->row < 0 ? json_null() : json_integer(f->row + 1));
-    eo_result_put(&o, "line", f->line > 0 ? json_integer(f->line) : json_null());
-    eo_result_put_number(&o, "value", f->value);
-    eo_result_put(&o, "text", json_string(f->text));
-    failed = failed || json_array_append_new(list, eo_result_close(&o)) != 0;
+    struct eo_object o = eo_object_open_as(&finding_outline);
+    eo_object_put(&o, "kind", json_string(eo_finding_name(f->kind)));
+    eo_object_put(&o, "severity", json_string(eo_severity_name(f->severity)));
+    eo_object_put(&o, "channel", f->channel < 0 ? json_null() : json_string(channel_name[f->channel]));
+    eo_object_put(&o, "row", f->row < 0 ? json_null() : json_integer(f->row + 1));
+    eo_object_put(&o, "line", f->line > 0 ? json_integer(f->line) : json_null());
+    eo_object_put_number(&o, "value", f->value);
+    eo_object_put(&o, "text", json_string(f->text));
+    failed = failed || json_array_append_new(list, eo_object_close(&o)) != 0;
   }
   return failed ? (json_decref(list), NULL) : list;
 }
@@ -65,12 +65,12 @@ static const struct eo_outline ellipse_outline = EO_OUTLINE("RawTracks", ellipse
 
 static json_t *encode_ellipse(const struct eo_ellipse *e)
 {
-  struct eo_result_object o = eo_result_open_as(&ellipse_outline);
-  eo_result_put(&o, "amplitude", column(2, e->amplitude, NULL));
-  eo_result_put(&o, "offset", column(2, e->offset, NULL));
-  eo_result_put_number(&o, "ratio", e->amplitude[0] / e->amplitude[1]);
-  eo_result_put_number(&o, "phase_deg", M_PI / 2 + e->skew);
-  return eo_result_close(&o);
+  struct eo_object o = eo_object_open_as(&ellipse_outline);
+  eo_object_put(&o, "amplitude", column(2, e->amplitude, NULL));
+  eo_object_put(&o, "offset", column(2, e->offset, NULL));
+  eo_object_put_number(&o, "ratio", e->amplitude[0] / e->amplitude[1]);
+  eo_object_put_number(&o, "phase_deg", M_PI / 2 + e->skew);
+  return eo_object_close(&o);
 }
 
 static const struct eo_outline_row track_rows[] = {
@@ -89,16 +89,16 @@ static const struct eo_outline signal_outline = EO_OUTLINE("Signal", signal_rows
 
 static json_t *encode_signal(const struct eo_measurement *m)
 {
-  struct eo_result_object o = eo_result_open_as(&signal_outline), tracks = eo_result_open_as(&track_outline);
-  eo_result_put(&o, "rows", json_integer(m->rows));
-  eo_result_put_number(&o, "interval_ms", m->interval);
-  eo_result_put_number(&o, "ratio", m->ratio);
+  struct eo_object o = eo_object_open_as(&signal_outline), tracks = eo_object_open_as(&track_outline);
+  eo_object_put(&o, "rows", json_integer(m->rows));
+  eo_object_put_number(&o, "interval_ms", m->interval);
+  eo_object_put_number(&o, "ratio", m->ratio);
   for (int channel = 0; channel < 2; channel++)
-    eo_result_put(&tracks, channel_name[channel],
+    eo_object_put(&tracks, channel_name[channel],
                   m->raw[channel] && m->ellipse[channel].amplitude[0] > 0 ? encode_ellipse(&m->ellipse[channel])
                                                                           : json_null());
-  eo_result_put(&o, "tracks", eo_result_close(&tracks));
-  return eo_result_close(&o);
+  eo_object_put(&o, "tracks", eo_object_close(&tracks));
+  return eo_object_close(&o);
 }
 
 static json_t *encode_notes(const struct eo_notes *notes)
@@ -125,7 +125,7 @@ static json_t *encode_lines(int count, const struct eo_order_line *line)
 {
   double order[EO_MESH_ORDERS], amplitude[EO_MESH_ORDERS], phase[EO_MESH_ORDERS], sigma[EO_MESH_ORDERS],
       acceleration[EO_MESH_ORDERS];
-  struct eo_result_object o = eo_result_open_as(&line_outline);
+  struct eo_object o = eo_object_open_as(&line_outline);
   for (int i = 0; i < count; i++) {
     order[i] = line[i].order;
     amplitude[i] = cabs(line[i].amplitude);
@@ -133,13 +133,13 @@ static json_t *encode_lines(int count, const struct eo_order_line *line)
     sigma[i] = line[i].sigma;
     acceleration[i] = line[i].acceleration;
   }
-  eo_result_put(&o, "order", column(count, order, NULL));
-  eo_result_put(&o, "amplitude_um", eo_json_reals(count, amplitude, 1, &eo_unit_um, EO_DIGITS_NUMBER));
-  eo_result_put(&o, "phase_rad", eo_json_reals(count, phase, 1, NULL, EO_DIGITS_NUMBER));
-  eo_result_put(&o, "sigma_um", column(count, sigma, &eo_unit_um));
-  eo_result_put(&o, "acceleration_m_per_s2",
+  eo_object_put(&o, "order", column(count, order, NULL));
+  eo_object_put(&o, "amplitude_um", eo_json_reals(count, amplitude, 1, &eo_unit_um, EO_DIGITS_NUMBER));
+  eo_object_put(&o, "phase_rad", eo_json_reals(count, phase, 1, NULL, EO_DIGITS_NUMBER));
+  eo_object_put(&o, "sigma_um", column(count, sigma, &eo_unit_um));
+  eo_object_put(&o, "acceleration_m_per_s2",
                 eo_json_reals(count, acceleration, 1, &eo_unit_m_per_s2, EO_DIGITS_NUMBER));
-  return eo_result_close(&o);
+  return eo_object_close(&o);
 }
 
 static const struct eo_outline_row sideband_rows[] = {
@@ -163,14 +163,14 @@ static json_t *encode_sidebands(const struct eo_transmission *t)
       const struct eo_order_line *line = &t->sideband[h][k / EO_SIDEBANDS][k % EO_SIDEBANDS];
       if (cabs(line->amplitude) < 4 * line->sigma)
         continue;
-      struct eo_result_object o = eo_result_open_as(&sideband_outline);
-      eo_result_put(&o, "mesh_order", json_integer(h + 1));
-      eo_result_put(&o, "shaft", json_string(channel_name[k / EO_SIDEBANDS]));
-      eo_result_put(&o, "turns", json_integer(turns[k % EO_SIDEBANDS]));
-      eo_result_put_number(&o, "order", line->order);
-      eo_result_put_number(&o, "amplitude_um", cabs(line->amplitude));
-      eo_result_put_number(&o, "acceleration_m_per_s2", line->acceleration);
-      failed = failed || json_array_append_new(list, eo_result_close(&o)) != 0;
+      struct eo_object o = eo_object_open_as(&sideband_outline);
+      eo_object_put(&o, "mesh_order", json_integer(h + 1));
+      eo_object_put(&o, "shaft", json_string(channel_name[k / EO_SIDEBANDS]));
+      eo_object_put(&o, "turns", json_integer(turns[k % EO_SIDEBANDS]));
+      eo_object_put_number(&o, "order", line->order);
+      eo_object_put_number(&o, "amplitude_um", cabs(line->amplitude));
+      eo_object_put_number(&o, "acceleration_m_per_s2", line->acceleration);
+      failed = failed || json_array_append_new(list, eo_object_close(&o)) != 0;
     }
   return failed ? (json_decref(list), NULL) : list;
 }
@@ -183,10 +183,10 @@ static const struct eo_outline shaft_outline = EO_OUTLINE("ShaftOrders", shaft_r
 
 static json_t *encode_shafts(const struct eo_transmission *t)
 {
-  struct eo_result_object o = eo_result_open_as(&shaft_outline);
+  struct eo_object o = eo_object_open_as(&shaft_outline);
   for (int member = 0; member < 2; member++)
-    eo_result_put(&o, channel_name[member], encode_lines(EO_SHAFT_ORDERS, t->shaft[member]));
-  return eo_result_close(&o);
+    eo_object_put(&o, channel_name[member], encode_lines(EO_SHAFT_ORDERS, t->shaft[member]));
+  return eo_object_close(&o);
 }
 
 static const struct eo_outline_row spectrum_rows[] = {
@@ -201,7 +201,7 @@ static json_t *encode_spectrum(const struct eo_transmission *t)
 {
   double order[SPECTRUM_POINTS], acceleration[SPECTRUM_POINTS];
   int stretch = t->spectrum_lines / SPECTRUM_POINTS + 1, count = 0;
-  struct eo_result_object o = eo_result_open_as(&spectrum_outline);
+  struct eo_object o = eo_object_open_as(&spectrum_outline);
   for (int first = 1; first < t->spectrum_lines && count < SPECTRUM_POINTS; first += stretch, count++) {
     acceleration[count] = -1;
     for (int k = first; k < first + stretch && k < t->spectrum_lines; k++) {
@@ -212,10 +212,10 @@ static json_t *encode_spectrum(const struct eo_transmission *t)
       }
     }
   }
-  eo_result_put(&o, "turns", json_integer(t->spectrum_turns));
-  eo_result_put(&o, "order", column(count, order, NULL));
-  eo_result_put(&o, "acceleration_m_per_s2", eo_json_reals(count, acceleration, 1, &eo_unit_m_per_s2, EO_DIGITS_MAP));
-  return eo_result_close(&o);
+  eo_object_put(&o, "turns", json_integer(t->spectrum_turns));
+  eo_object_put(&o, "order", column(count, order, NULL));
+  eo_object_put(&o, "acceleration_m_per_s2", eo_json_reals(count, acceleration, 1, &eo_unit_m_per_s2, EO_DIGITS_MAP));
+  return eo_object_close(&o);
 }
 
 /* ---- result ---- */
@@ -231,13 +231,13 @@ static const struct eo_outline rms_outline = EO_OUTLINE("MeasuredRms", rms_rows)
 
 static json_t *encode_rms(const struct eo_transmission *t)
 {
-  struct eo_result_object o = eo_result_open_as(&rms_outline);
-  eo_result_put_number(&o, "value", t->rms);
-  eo_result_put_number(&o, "sigma", t->rms_sigma);
-  eo_result_put(&o, "upto", eo_json_reals(t->harmonics, t->rms_upto, 1, &eo_unit_m_per_s2, EO_DIGITS_NUMBER));
-  eo_result_put_number(&o, "spectrum", t->rms_spectrum);
-  eo_result_put_number(&o, "band", t->rms_band);
-  return eo_result_close(&o);
+  struct eo_object o = eo_object_open_as(&rms_outline);
+  eo_object_put_number(&o, "value", t->rms);
+  eo_object_put_number(&o, "sigma", t->rms_sigma);
+  eo_object_put(&o, "upto", eo_json_reals(t->harmonics, t->rms_upto, 1, &eo_unit_m_per_s2, EO_DIGITS_NUMBER));
+  eo_object_put_number(&o, "spectrum", t->rms_spectrum);
+  eo_object_put_number(&o, "band", t->rms_band);
+  return eo_object_close(&o);
 }
 
 static const struct eo_outline_row te_rows[] = {
@@ -253,21 +253,21 @@ static const struct eo_outline te_outline = EO_OUTLINE("MeasuredTransmissionErro
 static json_t *encode_te(const struct eo_transmission *t)
 {
   double position[CURVE], mesh[CURVE];
-  struct eo_result_object o = eo_result_open_as(&te_outline);
+  struct eo_object o = eo_object_open_as(&te_outline);
   for (int i = 0; i < CURVE; i++) {
     position[i] = (i + 0.5) / CURVE;
     mesh[i] = eo_transmission_mesh(t, position[i]);
   }
-  eo_result_put_number(&o, "peak_to_peak_um", t->mesh_peak_to_peak);
-  eo_result_put(&o, "position", column(CURVE, position, NULL));
-  eo_result_put(&o, "mesh_um", column(CURVE, mesh, &eo_unit_um));
-  eo_result_put(&o, "average_um", column(EO_CYCLE_BINS, t->cycle, &eo_unit_um));
+  eo_object_put_number(&o, "peak_to_peak_um", t->mesh_peak_to_peak);
+  eo_object_put(&o, "position", column(CURVE, position, NULL));
+  eo_object_put(&o, "mesh_um", column(CURVE, mesh, &eo_unit_um));
+  eo_object_put(&o, "average_um", column(EO_CYCLE_BINS, t->cycle, &eo_unit_um));
   for (int member = 0; member < 2; member++) {
     char key[40];
     snprintf(key, sizeof key, "%s_turn_um", channel_name[member]);
-    eo_result_put(&o, key, eo_json_reals(EO_TURN_BINS, t->turn[member], 1, &eo_unit_um, EO_DIGITS_MAP));
+    eo_object_put(&o, key, eo_json_reals(EO_TURN_BINS, t->turn[member], 1, &eo_unit_um, EO_DIGITS_MAP));
   }
-  return eo_result_close(&o);
+  return eo_object_close(&o);
 }
 
 static const struct eo_outline_row turn_rows[] = {EO_KEY("pinion", "number", "turns"),
@@ -307,28 +307,28 @@ static const struct eo_outline result_outline = EO_OUTLINE("MeasuredResult", res
 
 static json_t *encode_result(const struct eo_transmission *t)
 {
-  struct eo_result_object o = eo_result_open_as(&result_outline), speed = eo_result_open_as(&speed_outline),
-                          turns = eo_result_open_as(&turn_outline);
-  eo_result_put(&o, "rows", json_integer(t->rows));
-  eo_result_put_number(&o, "seconds", t->seconds);
-  eo_result_put_number(&turns, "pinion", t->revolutions[EO_PINION]);
-  eo_result_put_number(&turns, "gear", t->revolutions[EO_GEAR]);
-  eo_result_put(&o, "turns", eo_result_close(&turns));
-  eo_result_put_number(&speed, "mean", t->speed);
-  eo_result_put_number(&speed, "lowest", t->speed_low);
-  eo_result_put_number(&speed, "highest", t->speed_high);
-  eo_result_put(&o, "speed_rpm", eo_result_close(&speed));
-  eo_result_put(&o, "harmonics", json_integer(t->harmonics));
-  eo_result_put(&o, "rms_m_per_s2", encode_rms(t));
-  eo_result_put(&o, "mesh", encode_lines(t->harmonics, t->mesh));
-  eo_result_put(&o, "sidebands", encode_sidebands(t));
-  eo_result_put(&o, "shafts", encode_shafts(t));
-  eo_result_put(&o, "te", encode_te(t));
-  eo_result_put_number(&o, "residual_um", t->residual);
-  eo_result_put(&o, "drift_um", column(3, t->drift + 1, &eo_unit_um));
-  eo_result_put(&o, "hunting_turns", json_integer(t->hunting));
-  eo_result_put(&o, "spectrum", encode_spectrum(t));
-  return eo_result_close(&o);
+  struct eo_object o = eo_object_open_as(&result_outline), speed = eo_object_open_as(&speed_outline),
+                   turns = eo_object_open_as(&turn_outline);
+  eo_object_put(&o, "rows", json_integer(t->rows));
+  eo_object_put_number(&o, "seconds", t->seconds);
+  eo_object_put_number(&turns, "pinion", t->revolutions[EO_PINION]);
+  eo_object_put_number(&turns, "gear", t->revolutions[EO_GEAR]);
+  eo_object_put(&o, "turns", eo_object_close(&turns));
+  eo_object_put_number(&speed, "mean", t->speed);
+  eo_object_put_number(&speed, "lowest", t->speed_low);
+  eo_object_put_number(&speed, "highest", t->speed_high);
+  eo_object_put(&o, "speed_rpm", eo_object_close(&speed));
+  eo_object_put(&o, "harmonics", json_integer(t->harmonics));
+  eo_object_put(&o, "rms_m_per_s2", encode_rms(t));
+  eo_object_put(&o, "mesh", encode_lines(t->harmonics, t->mesh));
+  eo_object_put(&o, "sidebands", encode_sidebands(t));
+  eo_object_put(&o, "shafts", encode_shafts(t));
+  eo_object_put(&o, "te", encode_te(t));
+  eo_object_put_number(&o, "residual_um", t->residual);
+  eo_object_put(&o, "drift_um", column(3, t->drift + 1, &eo_unit_um));
+  eo_object_put(&o, "hunting_turns", json_integer(t->hunting));
+  eo_object_put(&o, "spectrum", encode_spectrum(t));
+  return eo_object_close(&o);
 }
 
 static const struct eo_outline_row measurement_rows[] = {
@@ -347,18 +347,18 @@ const struct eo_outline eo_measurement_outline = EO_OUTLINE("MeasurementOfFile",
 
 json_t *eo_measurement_encode(const struct eo_measurement *m, const struct eo_measurement_label *label)
 {
-  struct eo_result_object o = eo_result_open_as(&eo_measurement_outline);
-  eo_result_put(&o, "file", label->file ? json_string(label->file) : json_null());
-  eo_result_put(&o, "label", json_string(label_name(label->unmodified)));
-  eo_result_put_number(&o, "torque_Nm", label->torque);
-  eo_result_put(&o, "end", json_string(eo_result_end[label->end]));
-  eo_result_put(&o, "notes", encode_notes(label->notes));
-  eo_result_put(&o, "layout", label->layout ? json_deep_copy(label->layout) : json_null());
-  eo_result_put(&o, "findings", encode_findings(&m->findings));
-  eo_result_put(&o, "refused", json_boolean(m->refused));
-  eo_result_put(&o, "signal", encode_signal(m));
-  eo_result_put(&o, "result", m->refused ? json_null() : encode_result(&m->transmission));
-  return eo_result_close(&o);
+  struct eo_object o = eo_object_open_as(&eo_measurement_outline);
+  eo_object_put(&o, "file", label->file ? json_string(label->file) : json_null());
+  eo_object_put(&o, "label", json_string(label_name(label->unmodified)));
+  eo_object_put_number(&o, "torque_Nm", label->torque);
+  eo_object_put(&o, "end", json_string(eo_result_end[label->end]));
+  eo_object_put(&o, "notes", encode_notes(label->notes));
+  eo_object_put(&o, "layout", label->layout ? json_deep_copy(label->layout) : json_null());
+  eo_object_put(&o, "findings", encode_findings(&m->findings));
+  eo_object_put(&o, "refused", json_boolean(m->refused));
+  eo_object_put(&o, "signal", encode_signal(m));
+  eo_object_put(&o, "result", m->refused ? json_null() : encode_result(&m->transmission));
+  return eo_object_close(&o);
 }
 
 /* ---- in brief ---- */

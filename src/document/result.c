@@ -12,31 +12,13 @@
 const char *const eo_result_end[2] = {"left", "right"};
 const char *const eo_result_member[2] = {"pinion", "gear"};
 
-json_t *eo_result_number(double value, const struct eo_unit *unit)
-{
-  json_t *column = eo_result_column(1, &value, 1, unit, EO_DIGITS_NUMBER),
-         *number = json_incref(json_array_get(column, 0));
-  json_decref(column);
-  return number;
-}
-
-json_t *eo_result_column(int count, const double *value, double scale, const struct eo_unit *unit, int digits)
-{
-  double *scaled = malloc(sizeof *scaled * (size_t)(count ? count : 1));
-  for (int i = 0; i < count && scaled; i++)
-    scaled[i] = value[i] * scale;
-  json_t *column = scaled ? eo_json_reals(count, scaled, 1, unit, digits) : NULL;
-  free(scaled);
-  return column;
-}
-
 json_t *eo_result_end_column(const struct eo_result_source *source, int end, const double *value, double scale,
                              const struct eo_unit *unit)
 {
   int n = source->positions, lag = end == EO_RIGHT ? source->lag : 0;
   for (int j = 0; j < n; j++)
     source->scratch[j] = value[(j + n - lag) % n];
-  return eo_result_column(n, source->scratch, scale, unit, EO_DIGITS_CURVE);
+  return eo_json_column(n, source->scratch, scale, unit, EO_DIGITS_CURVE);
 }
 
 json_t *eo_result_map(const struct eo_result_source *source, int rows, int columns, const double *value,
@@ -53,64 +35,6 @@ json_t *eo_result_map(const struct eo_result_source *source, int rows, int colum
   return map;
 }
 
-struct eo_result_object eo_result_open(void)
-{
-  struct eo_result_object object = {.json = json_object()};
-  object.failed = !object.json;
-  return object;
-}
-
-struct eo_result_object eo_result_open_as(const struct eo_outline *outline)
-{
-  struct eo_result_object object = eo_result_open();
-  object.outline = outline;
-  return object;
-}
-
-/* Steps to the row of a key, NULL: to the end; NULL when a row that is always there would be passed over. */
-static const struct eo_outline_row *step(struct eo_result_object *object, const char *key)
-{
-  const struct eo_outline_row *row;
-  while ((row = eo_outline_at(object->outline, object->next))) {
-    object->next++;
-    if (key && strcmp(row->key, key) == 0)
-      return row;
-    object->failed = object->failed || !row->when;
-  }
-  object->failed = object->failed || key;
-  return NULL;
-}
-
-void eo_result_put(struct eo_result_object *object, const char *key, json_t *value)
-{
-  if (object->outline)
-    step(object, key);
-  eo_json_put(object->json, key, value, &object->failed);
-}
-
-void eo_result_put_number(struct eo_result_object *object, const char *key, double value)
-{
-  const struct eo_outline_row *row = object->outline ? step(object, key) : NULL;
-  eo_json_put(object->json, key, row ? eo_result_number(value, row->unit) : NULL, &object->failed);
-}
-
-json_t *eo_result_close_part(struct eo_result_object *object)
-{
-  if (!object->failed)
-    return object->json;
-  json_decref(object->json);
-  return NULL;
-}
-
-json_t *eo_result_close(struct eo_result_object *object)
-{
-  if (object->outline)
-    step(object, NULL);
-  return eo_result_close_part(object);
-}
-
-/* ---- load cases ---- */
-
 static const char *const outcomes[] = {"converged", "contact_lost", "not_converged", NULL};
 
 static const char *outcome_of(const struct eo_case_result *c)
@@ -122,8 +46,8 @@ json_t *eo_result_position(const struct eo_result_source *source)
 {
   for (int j = 0; j < source->positions; j++)
     source->scratch[j] = source->pair->grid->position[j].phase;
-  return eo_result_column(source->positions, source->scratch, 1 / source->pair->geometry.transverse_base_pitch, NULL,
-                          EO_DIGITS_CURVE);
+  return eo_json_column(source->positions, source->scratch, 1 / source->pair->geometry.transverse_base_pitch, NULL,
+                        EO_DIGITS_CURVE);
 }
 
 static const struct eo_outline_row contact_rows[] = {
@@ -155,29 +79,29 @@ static const struct eo_outline case_outline = EO_OUTLINE("LoadCaseResult", case_
 json_t *eo_result_case_contact(struct eo_result_source *source, int k)
 {
   const struct eo_case_result *c = &source->evaluation->load_case[k];
-  struct eo_result_object o = eo_result_open_as(&contact_half);
-  eo_result_put_number(&o, "torque_Nm", c->load_case.torque);
-  eo_result_put_number(&o, "speed_rpm", c->load_case.speed);
-  eo_result_put_number(&o, "share", c->load_case.share);
-  eo_result_put_number(&o, "normal_force_N", c->force);
-  eo_result_put(&o, "outcome", json_string(outcome_of(c)));
-  eo_result_put(&o, "position", eo_result_position(source));
-  eo_result_put(&o, "lte", eo_result_lte(source, c));
-  eo_result_put(&o, "mesh_stiffness", eo_result_stiffness(source, c));
-  eo_result_put(&o, "contact", eo_result_contact(source, k));
-  return eo_result_close(&o);
+  struct eo_object o = eo_object_open_as(&contact_half);
+  eo_object_put_number(&o, "torque_Nm", c->load_case.torque);
+  eo_object_put_number(&o, "speed_rpm", c->load_case.speed);
+  eo_object_put_number(&o, "share", c->load_case.share);
+  eo_object_put_number(&o, "normal_force_N", c->force);
+  eo_object_put(&o, "outcome", json_string(outcome_of(c)));
+  eo_object_put(&o, "position", eo_result_position(source));
+  eo_object_put(&o, "lte", eo_result_lte(source, c));
+  eo_object_put(&o, "mesh_stiffness", eo_result_stiffness(source, c));
+  eo_object_put(&o, "contact", eo_result_contact(source, k));
+  return eo_object_close(&o);
 }
 
 json_t *eo_result_case_consequences(struct eo_result_source *source, int k)
 {
   const struct eo_case_result *c = &source->evaluation->load_case[k];
-  struct eo_result_object o = eo_result_open_as(&consequence_half);
+  struct eo_object o = eo_object_open_as(&consequence_half);
   if (source->design->shafts.enabled)
-    eo_result_put(&o, "body_deflection", eo_result_bodies(source, c));
-  eo_result_put(&o, "impact", eo_result_impact(source, c));
-  eo_result_put(&o, "root_stress", eo_result_root_stress(source, c));
-  eo_result_put(&o, "vibration", eo_result_vibration(source, c));
-  return eo_result_close(&o);
+    eo_object_put(&o, "body_deflection", eo_result_bodies(source, c));
+  eo_object_put(&o, "impact", eo_result_impact(source, c));
+  eo_object_put(&o, "root_stress", eo_result_root_stress(source, c));
+  eo_object_put(&o, "vibration", eo_result_vibration(source, c));
+  return eo_object_close(&o);
 }
 
 /* Takes both; NULL when one is. */
@@ -225,18 +149,18 @@ const struct eo_outline eo_outline_raw_case = EO_OUTLINE("RawCase", raw_case_row
 
 json_t *eo_result_raw_case(const struct eo_load_case *load_case, const struct eo_objective_case *raw)
 {
-  struct eo_result_object o = eo_result_open_as(&eo_outline_raw_case);
+  struct eo_object o = eo_object_open_as(&eo_outline_raw_case);
   double known = raw->failed ? NAN : 1;
-  eo_result_put_number(&o, "torque_Nm", load_case->torque);
-  eo_result_put_number(&o, "speed_rpm", load_case->speed);
-  eo_result_put_number(&o, "peak_to_peak_um", known * raw->peak_to_peak);
-  eo_result_put_number(&o, "impact_N", known * raw->impact);
-  eo_result_put_number(&o, "rms_m_per_s2", known * raw->rms);
-  eo_result_put_number(&o, "contact_pressure_MPa", known * raw->contact_pressure);
-  eo_result_put_number(&o, "root_stress_MPa", known * raw->root_stress);
-  eo_result_put_number(&o, "edge_load_share", known * raw->edge_load_share);
-  eo_result_put_number(&o, "contact_loss", known * raw->contact_loss);
-  return eo_result_close(&o);
+  eo_object_put_number(&o, "torque_Nm", load_case->torque);
+  eo_object_put_number(&o, "speed_rpm", load_case->speed);
+  eo_object_put_number(&o, "peak_to_peak_um", known * raw->peak_to_peak);
+  eo_object_put_number(&o, "impact_N", known * raw->impact);
+  eo_object_put_number(&o, "rms_m_per_s2", known * raw->rms);
+  eo_object_put_number(&o, "contact_pressure_MPa", known * raw->contact_pressure);
+  eo_object_put_number(&o, "root_stress_MPa", known * raw->root_stress);
+  eo_object_put_number(&o, "edge_load_share", known * raw->edge_load_share);
+  eo_object_put_number(&o, "contact_loss", known * raw->contact_loss);
+  return eo_object_close(&o);
 }
 
 static json_t *encode_raw(const struct eo_result_source *source, const struct eo_objective_case *raw)
@@ -262,13 +186,13 @@ static const struct eo_outline_row value_rows[] = {
 };
 const struct eo_outline eo_outline_value = EO_OUTLINE("Value", value_rows);
 
-void eo_result_put_value(struct eo_result_object *o, const struct eo_objective_value *value)
+void eo_result_put_value(struct eo_object *o, const struct eo_objective_value *value)
 {
   double known = value->sums.failed ? NAN : 1;
   const double number[] = {known * value->sums.f[0], known * value->sums.f[1], known * value->sums.f[2],
                            value->objective,         value->fitness,           value->violation};
   for (int i = 0; i < eo_outline_value.count; i++)
-    eo_result_put(o, value_rows[i].key, eo_result_number(number[i], value_rows[i].unit));
+    eo_object_put(o, value_rows[i].key, eo_json_quantity(number[i], value_rows[i].unit));
 }
 
 static const struct eo_outline_row unmodified_rows[] = {
@@ -288,15 +212,14 @@ static const struct eo_outline objectives_outline = EO_OUTLINE("ResultObjectives
 static json_t *encode_objectives(const struct eo_result_source *source)
 {
   const struct eo_analysis *a = source->analysis;
-  struct eo_result_object o = eo_result_open_as(&objectives_outline),
-                          unmodified = eo_result_open_as(&unmodified_outline);
+  struct eo_object o = eo_object_open_as(&objectives_outline), unmodified = eo_object_open_as(&unmodified_outline);
   eo_result_put_value(&o, &a->value);
   eo_result_put_value(&unmodified, &a->unmodified_value);
-  eo_result_put(&o, "load_cases", encode_raw(source, source->evaluation->objective));
-  eo_result_put(&unmodified, "load_cases", encode_raw(source, a->unmodified));
-  eo_result_put(&o, "unmodified", eo_result_close(&unmodified));
-  eo_result_put(&o, "scenarios", json_integer(a->scenarios));
-  return eo_result_close(&o);
+  eo_object_put(&o, "load_cases", encode_raw(source, source->evaluation->objective));
+  eo_object_put(&unmodified, "load_cases", encode_raw(source, a->unmodified));
+  eo_object_put(&o, "unmodified", eo_object_close(&unmodified));
+  eo_object_put(&o, "scenarios", json_integer(a->scenarios));
+  return eo_object_close(&o);
 }
 
 /* ---- the whole ---- */
@@ -315,7 +238,7 @@ static const struct eo_outline timing = EO_OUTLINE("Timing", timing_rows);
 static json_t *encode_timing(const struct eo_result_source *source)
 {
   const struct eo_evaluation *r = source->evaluation;
-  struct eo_result_object o = eo_result_open_as(&timing);
+  struct eo_object o = eo_object_open_as(&timing);
   const struct {
     const char *key;
     double milliseconds;
@@ -327,8 +250,8 @@ static json_t *encode_timing(const struct eo_result_source *source)
              {"dynamics", r->dynamics_ms},
              {"evaluation", source->analysis->design_ms}};
   for (size_t i = 0; i < sizeof row / sizeof *row; i++)
-    eo_result_put(&o, row[i].key, json_real(round(1e3 * row[i].milliseconds) / 1e3));
-  return eo_result_close(&o);
+    eo_object_put(&o, row[i].key, json_real(round(1e3 * row[i].milliseconds) / 1e3));
+  return eo_object_close(&o);
 }
 
 static const struct eo_outline_row result_rows[] = {
@@ -351,48 +274,48 @@ static const struct eo_outline_row result_rows[] = {
 const struct eo_outline eo_result_outline = EO_OUTLINE("Result", result_rows);
 enum { CASES_ROW = 8 }; /* load_cases: the head ends, the tail begins behind it */
 
-static void put_identity(struct eo_result_object *o, const struct eo_design *design)
+static void put_identity(struct eo_object *o, const struct eo_design *design)
 {
   char hash[EO_HASH_LENGTH + 1];
-  eo_result_put(o, "program", json_string(PACKAGE_STRING));
-  eo_result_put(o, "design", eo_design_encode(design));
-  eo_result_put(o, "design_hash", eo_design_hash(design, hash, NULL) ? NULL : json_string(hash));
-  eo_result_put(o, "evaluation_hash", eo_design_evaluation_hash(design, hash, NULL) ? NULL : json_string(hash));
-  eo_result_put(o, "resolution", eo_table_encode(&eo_resolution_table, &design->resolution));
+  eo_object_put(o, "program", json_string(PACKAGE_STRING));
+  eo_object_put(o, "design", eo_design_encode(design));
+  eo_object_put(o, "design_hash", eo_design_hash(design, hash, NULL) ? NULL : json_string(hash));
+  eo_object_put(o, "evaluation_hash", eo_design_evaluation_hash(design, hash, NULL) ? NULL : json_string(hash));
+  eo_object_put(o, "resolution", eo_table_encode(&eo_resolution_table, &design->resolution));
 }
 
 json_t *eo_result_head(struct eo_result_source *source)
 {
-  struct eo_result_object o = eo_result_open_as(&eo_result_outline);
+  struct eo_object o = eo_object_open_as(&eo_result_outline);
   put_identity(&o, source->design);
-  eo_result_put(&o, "geometry", eo_table_encode(&eo_geometry_table, &source->pair->geometry));
-  eo_result_put(&o, "modification", eo_result_modification(source));
-  eo_result_put(&o, "unloaded_contact", eo_result_unloaded(source));
-  return eo_result_close_part(&o);
+  eo_object_put(&o, "geometry", eo_table_encode(&eo_geometry_table, &source->pair->geometry));
+  eo_object_put(&o, "modification", eo_result_modification(source));
+  eo_object_put(&o, "unloaded_contact", eo_result_unloaded(source));
+  return eo_object_close_part(&o);
 }
 
 json_t *eo_result_tail(const struct eo_result_source *source, const struct eo_warnings *warnings)
 {
   const struct eo_dynamics_modes *modes = &source->evaluation->modes;
   bool have_modes = source->analysis->want & EO_WANT_CURVES;
-  struct eo_result_object o = eo_result_open_as(&eo_result_outline);
+  struct eo_object o = eo_object_open_as(&eo_result_outline);
   o.next = CASES_ROW + 1;
-  eo_result_put(&o, "objectives", encode_objectives(source));
-  eo_result_put(&o, "eigenfrequencies_Hz",
+  eo_object_put(&o, "objectives", encode_objectives(source));
+  eo_object_put(&o, "eigenfrequencies_Hz",
                 have_modes ? eo_json_reals(modes->n, modes->frequency, 1, &eo_unit_Hz, EO_DIGITS_CURVE) : json_null());
-  eo_result_put(&o, "damping_ratios",
+  eo_object_put(&o, "damping_ratios",
                 have_modes ? eo_json_reals(modes->n, modes->damping_ratio, 1, NULL, EO_DIGITS_CURVE) : json_null());
-  eo_result_put(&o, "warnings", eo_result_warnings(source, warnings));
-  eo_result_put(&o, "timing_ms", encode_timing(source));
-  return eo_result_close(&o);
+  eo_object_put(&o, "warnings", eo_result_warnings(source, warnings));
+  eo_object_put(&o, "timing_ms", encode_timing(source));
+  return eo_object_close(&o);
 }
 
 static json_t *encode_all(struct eo_result_source *source, const struct eo_warnings *warnings)
 {
-  struct eo_result_object o = {.json = eo_result_head(source), .outline = &eo_result_outline, .next = CASES_ROW};
+  struct eo_object o = {.json = eo_result_head(source), .outline = &eo_result_outline, .next = CASES_ROW};
   o.failed = !o.json;
-  eo_result_put(&o, "load_cases", encode_cases(source));
-  return unite(eo_result_close_part(&o), eo_result_tail(source, warnings));
+  eo_object_put(&o, "load_cases", encode_cases(source));
+  return unite(eo_object_close_part(&o), eo_result_tail(source, warnings));
 }
 
 bool eo_result_source_init(struct eo_result_source *source, const struct eo_analysis *analysis,

@@ -44,13 +44,13 @@ static json_t *encode_orders(int n, const double *value, const struct eo_unit *u
   return column;
 }
 
-static void put_end_columns(struct eo_result_object *o, const struct eo_result_source *source, const char *format,
+static void put_end_columns(struct eo_object *o, const struct eo_result_source *source, const char *format,
                             const double *const value[2], double scale, const struct eo_unit *unit)
 {
   for (int end = 0; end < source->ends; end++) {
     char key[64];
     snprintf(key, sizeof key, format, eo_result_end[end]);
-    eo_result_put(o, key, eo_result_end_column(source, end, value[end], scale, unit));
+    eo_object_put(o, key, eo_result_end_column(source, end, value[end], scale, unit));
   }
 }
 
@@ -61,7 +61,7 @@ static json_t *encode_float(const struct eo_result_source *source, const double 
   double scale = 1 / (2 * sqrt(fmax(0, 1 - source->normal * source->normal)));
   for (int j = 0; j < n; j++)
     source->scratch[j] = approach[0][j] - approach[1][(j + n - source->lag) % n];
-  return eo_result_column(n, source->scratch, scale, &eo_unit_um, EO_DIGITS_CURVE);
+  return eo_json_column(n, source->scratch, scale, &eo_unit_um, EO_DIGITS_CURVE);
 }
 
 static const struct eo_outline_row lte_rows[] = {
@@ -82,17 +82,17 @@ const struct eo_outline eo_outline_lte = EO_OUTLINE("TransmissionError", lte_row
 json_t *eo_result_lte(struct eo_result_source *source, const struct eo_case_result *c)
 {
   const double *const approach[2] = {c->end[0].loaded.approach, c->end[1].loaded.approach};
-  struct eo_result_object o = eo_result_open_as(&eo_outline_lte);
-  eo_result_put(&o, "pair_um", eo_result_column(source->positions, c->transmission, 1, &eo_unit_um, EO_DIGITS_CURVE));
+  struct eo_object o = eo_object_open_as(&eo_outline_lte);
+  eo_object_put(&o, "pair_um", eo_json_column(source->positions, c->transmission, 1, &eo_unit_um, EO_DIGITS_CURVE));
   put_end_columns(&o, source, "%s_um", approach, 1 / source->normal, &eo_unit_um);
-  eo_result_put_number(&o, "peak_to_peak_um", c->peak_to_peak);
+  eo_object_put_number(&o, "peak_to_peak_um", c->peak_to_peak);
   for (int end = 0; end < source->ends; end++)
-    eo_result_put_number(&o, end ? "right_peak_to_peak_um" : "left_peak_to_peak_um", c->end[end].transmission_peak);
-  eo_result_put_number(&o, "mean_um", c->mean);
-  eo_result_put(&o, "orders_um", encode_orders(source->positions, c->transmission, &eo_unit_um));
+    eo_object_put_number(&o, end ? "right_peak_to_peak_um" : "left_peak_to_peak_um", c->end[end].transmission_peak);
+  eo_object_put_number(&o, "mean_um", c->mean);
+  eo_object_put(&o, "orders_um", encode_orders(source->positions, c->transmission, &eo_unit_um));
   if (source->ends == 2 && source->design->alignment.pinion_axial == EO_AXIAL_FLOATING)
-    eo_result_put(&o, "axial_float_um", encode_float(source, approach));
-  return eo_result_close(&o);
+    eo_object_put(&o, "axial_float_um", encode_float(source, approach));
+  return eo_object_close(&o);
 }
 
 static const struct eo_outline_row stiffness_mean_rows[] = {
@@ -119,16 +119,16 @@ json_t *eo_result_stiffness(struct eo_result_source *source, const struct eo_cas
 {
   const double *const secant[2] = {c->end[0].stiffness, c->end[1].stiffness};
   const double *const tangent[2] = {c->end[0].loaded.tangent, c->end[1].loaded.tangent};
-  struct eo_result_object o = eo_result_open_as(&eo_outline_stiffness), means = eo_result_open_as(&stiffness_mean);
+  struct eo_object o = eo_object_open_as(&eo_outline_stiffness), means = eo_object_open_as(&stiffness_mean);
   put_end_columns(&o, source, "%s_N_per_um", secant, 1, &eo_unit_N_per_um);
   put_end_columns(&o, source, "tangent_%s_N_per_um", tangent, 1, &eo_unit_N_per_um);
   for (int end = 0; end < source->ends; end++) {
-    eo_result_put_number(&means, end ? "right_N_per_um" : "left_N_per_um", mean(source->positions, secant[end]));
-    eo_result_put_number(&means, end ? "tangent_right_N_per_um" : "tangent_left_N_per_um",
+    eo_object_put_number(&means, end ? "right_N_per_um" : "left_N_per_um", mean(source->positions, secant[end]));
+    eo_object_put_number(&means, end ? "tangent_right_N_per_um" : "tangent_left_N_per_um",
                          mean(source->positions, tangent[end]));
   }
-  eo_result_put(&o, "mean", eo_result_close(&means));
-  return eo_result_close(&o);
+  eo_object_put(&o, "mean", eo_object_close(&means));
+  return eo_object_close(&o);
 }
 
 /* ---- unloaded contact: the same for every load case ---- */
@@ -148,18 +148,18 @@ static json_t *encode_unloaded_end(struct eo_result_source *source, int end)
 {
   const struct eo_end_result *r = &source->evaluation->load_case[0].end[end];
   struct eo_contact_pattern *pattern = source->pattern;
-  struct eo_result_object o = eo_result_open_as(&unloaded_end);
+  struct eo_object o = eo_object_open_as(&unloaded_end);
   int marked = 0, points = EO_PATTERN_ROWS * EO_PATTERN_COLUMNS;
   eo_contact_pattern_unload(pattern, eo_evaluator_field(source->analysis->evaluator, end), r->unloaded);
   for (int i = 0; i < points; i++)
     marked += pattern->clearance[i] < source->design->resolution.marking_thickness;
-  eo_result_put(&o, "te_um", eo_result_end_column(source, end, r->unloaded, 1 / source->normal, &eo_unit_um));
-  eo_result_put_number(&o, "peak_to_peak_um", swing(source->positions, r->unloaded) / source->normal);
-  eo_result_put_number(&o, "smallest_gap_um", r->datum);
-  eo_result_put(&o, "clearance_um",
+  eo_object_put(&o, "te_um", eo_result_end_column(source, end, r->unloaded, 1 / source->normal, &eo_unit_um));
+  eo_object_put_number(&o, "peak_to_peak_um", swing(source->positions, r->unloaded) / source->normal);
+  eo_object_put_number(&o, "smallest_gap_um", r->datum);
+  eo_object_put(&o, "clearance_um",
                 eo_result_map(source, EO_PATTERN_ROWS, EO_PATTERN_COLUMNS, pattern->clearance, &eo_unit_um));
-  eo_result_put_number(&o, "marked_share", (double)marked / points);
-  return eo_result_close(&o);
+  eo_object_put_number(&o, "marked_share", (double)marked / points);
+  return eo_object_close(&o);
 }
 
 static const struct eo_outline_row place_rows[] = {
@@ -172,10 +172,10 @@ static const struct eo_outline_row place_rows[] = {
 };
 static const struct eo_outline places = EO_OUTLINE("Places", place_rows);
 
-static void put_places(struct eo_result_object *o, const struct eo_result_source *source)
+static void put_places(struct eo_object *o, const struct eo_result_source *source)
 {
-  eo_result_put(o, "s_mm", eo_json_reals(EO_PATTERN_ROWS, source->pattern->path, 1, &eo_unit_mm, EO_DIGITS_CURVE));
-  eo_result_put(o, "eta_mm", eo_json_reals(EO_PATTERN_COLUMNS, source->pattern->eta, 1, &eo_unit_mm, EO_DIGITS_CURVE));
+  eo_object_put(o, "s_mm", eo_json_reals(EO_PATTERN_ROWS, source->pattern->path, 1, &eo_unit_mm, EO_DIGITS_CURVE));
+  eo_object_put(o, "eta_mm", eo_json_reals(EO_PATTERN_COLUMNS, source->pattern->eta, 1, &eo_unit_mm, EO_DIGITS_CURVE));
 }
 
 static json_t *encode_unloaded_pair(struct eo_result_source *source, double *peak)
@@ -185,7 +185,7 @@ static json_t *encode_unloaded_pair(struct eo_result_source *source, double *pea
   for (int j = 0; j < n; j++)
     source->scratch[j] = (c->end[0].unloaded[j] + c->end[last].unloaded[(j + n - source->lag) % n]) / 2;
   *peak = swing(n, source->scratch) / source->normal;
-  return eo_result_column(n, source->scratch, 1 / source->normal, &eo_unit_um, EO_DIGITS_CURVE);
+  return eo_json_column(n, source->scratch, 1 / source->normal, &eo_unit_um, EO_DIGITS_CURVE);
 }
 
 static const struct eo_outline_row unloaded_rows[] = {
@@ -202,16 +202,16 @@ const struct eo_outline eo_outline_unloaded = EO_OUTLINE("UnloadedContact", unlo
 
 json_t *eo_result_unloaded(struct eo_result_source *source)
 {
-  struct eo_result_object o = eo_result_open_as(&eo_outline_unloaded);
+  struct eo_object o = eo_object_open_as(&eo_outline_unloaded);
   double peak;
-  eo_result_put(&o, "position", eo_result_position(source));
-  eo_result_put(&o, "pair_te_um", encode_unloaded_pair(source, &peak));
-  eo_result_put_number(&o, "peak_to_peak_um", peak);
-  eo_result_put_number(&o, "marking_thickness_um", source->design->resolution.marking_thickness);
+  eo_object_put(&o, "position", eo_result_position(source));
+  eo_object_put(&o, "pair_te_um", encode_unloaded_pair(source, &peak));
+  eo_object_put_number(&o, "peak_to_peak_um", peak);
+  eo_object_put_number(&o, "marking_thickness_um", source->design->resolution.marking_thickness);
   put_places(&o, source);
   for (int end = 0; end < source->ends; end++)
-    eo_result_put(&o, eo_result_end[end], encode_unloaded_end(source, end));
-  return eo_result_close(&o);
+    eo_object_put(&o, eo_result_end[end], encode_unloaded_end(source, end));
+  return eo_object_close(&o);
 }
 
 /* ---- loaded contact ---- */
@@ -242,17 +242,17 @@ static const struct eo_outline shares = EO_OUTLINE("LoadShare", share_rows);
 
 static json_t *encode_shares(struct eo_result_source *source, const struct eo_case_result *c)
 {
-  struct eo_result_object o = eo_result_open_as(&shares);
+  struct eo_object o = eo_object_open_as(&shares);
   int range[2];
   json_t *pairs = json_array();
   eo_contact_grid_pairs(source->pair->grid, range);
   for (int pair = range[0]; pair <= range[1]; pair++)
     o.failed = o.failed || json_array_append_new(pairs, json_integer(pair)) != 0;
-  eo_result_put(&o, "tooth_pair", pairs);
+  eo_object_put(&o, "tooth_pair", pairs);
   for (int end = 0; end < source->ends; end++)
-    eo_result_put(&o, eo_result_end[end],
+    eo_object_put(&o, eo_result_end[end],
                   encode_share(source, end, &c->end[end].loaded, range[0], range[1] - range[0] + 1));
-  return eo_result_close(&o);
+  return eo_object_close(&o);
 }
 
 static const struct eo_outline_row pattern_end_rows[] = {
@@ -270,14 +270,14 @@ static const struct eo_outline pattern_end = EO_OUTLINE("ContactPatternEnd", pat
 static json_t *encode_pattern_end(const struct eo_result_source *source)
 {
   const struct eo_contact_pattern *pattern = source->pattern;
-  struct eo_result_object o = eo_result_open_as(&pattern_end);
-  eo_result_put(&o, "pressure_MPa",
+  struct eo_object o = eo_object_open_as(&pattern_end);
+  eo_object_put(&o, "pressure_MPa",
                 eo_result_map(source, EO_PATTERN_ROWS, EO_PATTERN_COLUMNS, pattern->pressure, &eo_unit_MPa));
-  eo_result_put(&o, "gear_tip_edge_MPa",
+  eo_object_put(&o, "gear_tip_edge_MPa",
                 eo_json_reals(EO_PATTERN_COLUMNS, pattern->edge[0], 1, &eo_unit_MPa, EO_DIGITS_MAP));
-  eo_result_put(&o, "pinion_tip_edge_MPa",
+  eo_object_put(&o, "pinion_tip_edge_MPa",
                 eo_json_reals(EO_PATTERN_COLUMNS, pattern->edge[1], 1, &eo_unit_MPa, EO_DIGITS_MAP));
-  return eo_result_close(&o);
+  return eo_object_close(&o);
 }
 
 static const struct eo_outline_row pattern_rows[] = {
@@ -290,7 +290,7 @@ static const struct eo_outline contact_pattern = EO_OUTLINE("ContactPattern", pa
 static json_t *encode_pattern(struct eo_result_source *source, int k)
 {
   const struct eo_case_result *c = &source->evaluation->load_case[k];
-  struct eo_result_object o = eo_result_open_as(&contact_pattern);
+  struct eo_object o = eo_object_open_as(&contact_pattern);
   put_places(&o, source);
   for (int end = 0; end < source->ends; end++) {
     eo_contact_pattern_load(source->pattern, source->pair->grid, &c->end[end].loaded);
@@ -298,9 +298,9 @@ static json_t *encode_pattern(struct eo_result_source *source, int k)
     for (int edge = 0; edge < 2; edge++)
       for (int j = 0; j < EO_PATTERN_COLUMNS; j++)
         source->edge_pressure[k][end] = fmax(source->edge_pressure[k][end], source->pattern->edge[edge][j]);
-    eo_result_put(&o, eo_result_end[end], encode_pattern_end(source));
+    eo_object_put(&o, eo_result_end[end], encode_pattern_end(source));
   }
-  return eo_result_close(&o);
+  return eo_object_close(&o);
 }
 
 double eo_result_mean_load(const struct eo_result_source *source, const struct eo_case_result *c, int end)
@@ -335,26 +335,26 @@ const struct eo_outline eo_outline_contact = EO_OUTLINE("LoadedContact", contact
 json_t *eo_result_contact(struct eo_result_source *source, int k)
 {
   const struct eo_case_result *c = &source->evaluation->load_case[k];
-  struct eo_result_object o = eo_result_open_as(&eo_outline_contact), load = eo_result_open_as(&force_ends),
-                          pressure = eo_result_open_as(&pressure_ends), line_load = eo_result_open_as(&line_load_ends),
-                          edge = eo_result_open_as(&share_ends), edge_pressure = eo_result_open_as(&pressure_ends);
+  struct eo_object o = eo_object_open_as(&eo_outline_contact), load = eo_object_open_as(&force_ends),
+                   pressure = eo_object_open_as(&pressure_ends), line_load = eo_object_open_as(&line_load_ends),
+                   edge = eo_object_open_as(&share_ends), edge_pressure = eo_object_open_as(&pressure_ends);
   json_t *pattern = encode_pattern(source, k);
   for (int end = 0; end < source->ends; end++) {
     const struct eo_end_result *r = &c->end[end];
-    eo_result_put_number(&load, eo_result_end[end], eo_result_mean_load(source, c, end));
-    eo_result_put_number(&pressure, eo_result_end[end], r->max_pressure);
-    eo_result_put_number(&line_load, eo_result_end[end], r->max_line_load);
-    eo_result_put_number(&edge, eo_result_end[end], r->edge_share);
-    eo_result_put_number(&edge_pressure, eo_result_end[end], source->edge_pressure[k][end]);
+    eo_object_put_number(&load, eo_result_end[end], eo_result_mean_load(source, c, end));
+    eo_object_put_number(&pressure, eo_result_end[end], r->max_pressure);
+    eo_object_put_number(&line_load, eo_result_end[end], r->max_line_load);
+    eo_object_put_number(&edge, eo_result_end[end], r->edge_share);
+    eo_object_put_number(&edge_pressure, eo_result_end[end], source->edge_pressure[k][end]);
   }
-  eo_result_put(&o, "mean_load_N", eo_result_close(&load));
-  eo_result_put(&o, "max_pressure_MPa", eo_result_close(&pressure));
-  eo_result_put(&o, "max_line_load_N_per_mm", eo_result_close(&line_load));
-  eo_result_put(&o, "edge_load_share", eo_result_close(&edge));
-  eo_result_put(&o, "edge_pressure_MPa", eo_result_close(&edge_pressure));
-  eo_result_put(&o, "load_share", encode_shares(source, c));
-  eo_result_put(&o, "pattern", pattern);
-  return eo_result_close(&o);
+  eo_object_put(&o, "mean_load_N", eo_object_close(&load));
+  eo_object_put(&o, "max_pressure_MPa", eo_object_close(&pressure));
+  eo_object_put(&o, "max_line_load_N_per_mm", eo_object_close(&line_load));
+  eo_object_put(&o, "edge_load_share", eo_object_close(&edge));
+  eo_object_put(&o, "edge_pressure_MPa", eo_object_close(&edge_pressure));
+  eo_object_put(&o, "load_share", encode_shares(source, c));
+  eo_object_put(&o, "pattern", pattern);
+  return eo_object_close(&o);
 }
 
 /* ---- elastic bodies ---- */
@@ -372,15 +372,15 @@ const struct eo_outline eo_outline_bodies = EO_OUTLINE("BodyDeflection", body_ro
 json_t *eo_result_bodies(struct eo_result_source *source, const struct eo_case_result *c)
 {
   double eta[EO_DEFLECTION_NODES];
-  struct eo_result_object o = eo_result_open_as(&eo_outline_bodies);
+  struct eo_object o = eo_object_open_as(&eo_outline_bodies);
   for (int i = 0; i < EO_DEFLECTION_NODES; i++)
     eta[i] = source->pair->geometry.face_width * ((double)i / (EO_DEFLECTION_NODES - 1) - 0.5);
-  eo_result_put(&o, "eta_mm", eo_json_reals(EO_DEFLECTION_NODES, eta, 1, &eo_unit_mm, EO_DIGITS_CURVE));
+  eo_object_put(&o, "eta_mm", eo_json_reals(EO_DEFLECTION_NODES, eta, 1, &eo_unit_mm, EO_DIGITS_CURVE));
   for (int end = 0; end < source->ends; end++)
-    eo_result_put(&o, end ? "right_um" : "left_um",
+    eo_object_put(&o, end ? "right_um" : "left_um",
                   eo_json_reals(EO_DEFLECTION_NODES, c->end[end].deflection.part[0], 1, &eo_unit_um, EO_DIGITS_CURVE));
-  eo_result_put(&o, "most_iterations", json_integer(c->body_iterations));
-  return eo_result_close(&o);
+  eo_object_put(&o, "most_iterations", json_integer(c->body_iterations));
+  return eo_object_close(&o);
 }
 
 /* ---- impact ---- */
@@ -402,19 +402,19 @@ static const struct eo_outline impact_end = EO_OUTLINE("ImpactEnd", impact_end_r
 
 static json_t *encode_impact_end(const struct eo_result_source *source, const struct eo_impact *impact)
 {
-  struct eo_result_object o = eo_result_open_as(&impact_end);
+  struct eo_object o = eo_object_open_as(&impact_end);
   double known = impact->touched ? 1 : NAN, struck = impact->touched && impact->force > 0 ? 1 : NAN;
-  eo_result_put_number(&o, "force_N", impact->classical);
-  eo_result_put_number(&o, "general_force_N", impact->force);
-  eo_result_put_number(&o, "speed_mm_per_s", impact->speed);
-  eo_result_put_number(&o, "duration_ms", struck * impact->duration);
-  eo_result_put(&o, "off_line", json_boolean(impact->touched && impact->off_line));
-  eo_result_put_number(&o, "position", known * impact->start);
-  eo_result_put_number(&o, "eta_mm", known * impact->eta);
-  eo_result_put_number(&o, "s_mm", known * impact->path);
-  eo_result_put_number(&o, "lead_before_A_mm", known * fmax(0, source->pair->geometry.path_start - impact->path));
-  eo_result_put_number(&o, "pinion_radius_mm", known * impact->pinion_radius);
-  return eo_result_close(&o);
+  eo_object_put_number(&o, "force_N", impact->classical);
+  eo_object_put_number(&o, "general_force_N", impact->force);
+  eo_object_put_number(&o, "speed_mm_per_s", impact->speed);
+  eo_object_put_number(&o, "duration_ms", struck * impact->duration);
+  eo_object_put(&o, "off_line", json_boolean(impact->touched && impact->off_line));
+  eo_object_put_number(&o, "position", known * impact->start);
+  eo_object_put_number(&o, "eta_mm", known * impact->eta);
+  eo_object_put_number(&o, "s_mm", known * impact->path);
+  eo_object_put_number(&o, "lead_before_A_mm", known * fmax(0, source->pair->geometry.path_start - impact->path));
+  eo_object_put_number(&o, "pinion_radius_mm", known * impact->pinion_radius);
+  return eo_object_close(&o);
 }
 
 static const struct eo_outline_row impact_rows[] = {
@@ -425,10 +425,10 @@ const struct eo_outline eo_outline_impact = EO_OUTLINE("Impact", impact_rows);
 
 json_t *eo_result_impact(struct eo_result_source *source, const struct eo_case_result *c)
 {
-  struct eo_result_object o = eo_result_open_as(&eo_outline_impact);
+  struct eo_object o = eo_object_open_as(&eo_outline_impact);
   for (int end = 0; end < source->ends; end++)
-    eo_result_put(&o, eo_result_end[end], encode_impact_end(source, &c->end[end].impact));
-  return eo_result_close(&o);
+    eo_object_put(&o, eo_result_end[end], encode_impact_end(source, &c->end[end].impact));
+  return eo_object_close(&o);
 }
 
 /* ---- root stress ---- */
@@ -454,13 +454,13 @@ static const struct eo_outline root_end = EO_OUTLINE("RootStressEnd", root_end_r
 static json_t *encode_root_end(const struct eo_result_source *source, const struct eo_root_history *history,
                                double factor)
 {
-  struct eo_result_object o = eo_result_open_as(&root_end);
-  eo_result_put_number(&o, "max_MPa", history->maximum);
-  eo_result_put_number(&o, "max_dynamic_MPa", history->maximum * factor);
-  eo_result_put_number(&o, "arc_mm", history->arc);
-  eo_result_put_number(&o, "eta_mm", history->eta);
-  eo_result_put(&o, "history_MPa", encode_root_history(source, history));
-  return eo_result_close(&o);
+  struct eo_object o = eo_object_open_as(&root_end);
+  eo_object_put_number(&o, "max_MPa", history->maximum);
+  eo_object_put_number(&o, "max_dynamic_MPa", history->maximum * factor);
+  eo_object_put_number(&o, "arc_mm", history->arc);
+  eo_object_put_number(&o, "eta_mm", history->eta);
+  eo_object_put(&o, "history_MPa", encode_root_history(source, history));
+  return eo_object_close(&o);
 }
 
 static double force_factor(const struct eo_case_result *c, int end)
@@ -484,16 +484,16 @@ static json_t *encode_root_member(const struct eo_result_source *source, const s
   const struct eo_root_history *history[2] = {&c->end[0].root[member], &c->end[1].root[member]};
   int worst = source->ends == 2 && history[1]->maximum > history[0]->maximum ? EO_RIGHT : EO_LEFT;
   double dynamic = 0;
-  struct eo_result_object o = eo_result_open_as(&root_member);
+  struct eo_object o = eo_object_open_as(&root_member);
   for (int end = 0; end < source->ends; end++)
     dynamic = isnan(force_factor(c, end)) ? NAN : fmax(dynamic, history[end]->maximum * force_factor(c, end));
-  eo_result_put_number(&o, "max_MPa", history[worst]->maximum);
-  eo_result_put_number(&o, "max_dynamic_MPa", dynamic);
-  eo_result_put(&o, "position", eo_json_reals(history[0]->phases, history[0]->phase, 1, NULL, EO_DIGITS_CURVE));
-  eo_result_put(&o, "history_MPa", encode_root_history(source, history[worst]));
+  eo_object_put_number(&o, "max_MPa", history[worst]->maximum);
+  eo_object_put_number(&o, "max_dynamic_MPa", dynamic);
+  eo_object_put(&o, "position", eo_json_reals(history[0]->phases, history[0]->phase, 1, NULL, EO_DIGITS_CURVE));
+  eo_object_put(&o, "history_MPa", encode_root_history(source, history[worst]));
   for (int end = 0; end < source->ends; end++)
-    eo_result_put(&o, eo_result_end[end], encode_root_end(source, history[end], force_factor(c, end)));
-  return eo_result_close(&o);
+    eo_object_put(&o, eo_result_end[end], encode_root_end(source, history[end], force_factor(c, end)));
+  return eo_object_close(&o);
 }
 
 static const struct eo_outline_row root_rows[] = {
@@ -506,8 +506,8 @@ json_t *eo_result_root_stress(struct eo_result_source *source, const struct eo_c
 {
   if (!source->analysis->root)
     return json_null();
-  struct eo_result_object o = eo_result_open_as(&eo_outline_root_stress);
+  struct eo_object o = eo_object_open_as(&eo_outline_root_stress);
   for (int member = 0; member < 2; member++)
-    eo_result_put(&o, eo_result_member[member], encode_root_member(source, c, member));
-  return eo_result_close(&o);
+    eo_object_put(&o, eo_result_member[member], encode_root_member(source, c, member));
+  return eo_object_close(&o);
 }

@@ -24,19 +24,19 @@ static json_t *encode_flank(const struct eo_result_source *source, int member, i
 {
   const struct eo_flank_modification *flank = &source->design->modification.flank[member][end];
   struct eo_modification_shape shape;
-  struct eo_result_object o = eo_result_open_as(&flank_curves);
+  struct eo_object o = eo_object_open_as(&flank_curves);
   double profile[POINTS], lead[POINTS], slope[2];
   eo_modification_init(&shape, &source->pair->geometry, member, flank);
   for (int i = 0; i < POINTS; i++) {
     profile[i] = eo_modification_profile(&shape, u[i], slope);
     lead[i] = eo_modification_lead(&shape, eta[i] / cos(source->pair->geometry.helix_angle), slope);
   }
-  eo_result_put_number(&o, "lead_crowning_um", flank->lead_crowning);
-  eo_result_put_number(&o, "lead_crowning_per_um",
+  eo_object_put_number(&o, "lead_crowning_um", flank->lead_crowning);
+  eo_object_put_number(&o, "lead_crowning_per_um",
                        eo_modification_lead_coefficient(&source->pair->geometry, flank->lead_crowning));
-  eo_result_put(&o, "profile_um", encode_curve(profile));
-  eo_result_put(&o, "lead_um", encode_curve(lead));
-  return eo_result_close(&o);
+  eo_object_put(&o, "profile_um", encode_curve(profile));
+  eo_object_put(&o, "lead_um", encode_curve(lead));
+  return eo_object_close(&o);
 }
 
 static const struct eo_outline_row member_rows[] = {
@@ -54,13 +54,13 @@ static json_t *encode_member(const struct eo_result_source *source, int member, 
   const struct eo_geometry *g = &source->pair->geometry;
   double bottom = member == EO_PINION ? g->rack_bottom : -g->rack_top,
          top = member == EO_PINION ? g->rack_top : -g->rack_bottom, u[POINTS];
-  struct eo_result_object o = eo_result_open_as(&member_curves);
+  struct eo_object o = eo_object_open_as(&member_curves);
   for (int i = 0; i < POINTS; i++)
     u[i] = bottom + (top - bottom) * i / (POINTS - 1);
-  eo_result_put(&o, "u_mm", eo_json_reals(POINTS, u, 1, &eo_unit_mm, EO_DIGITS_CURVE));
+  eo_object_put(&o, "u_mm", eo_json_reals(POINTS, u, 1, &eo_unit_mm, EO_DIGITS_CURVE));
   for (int end = 0; end < source->ends; end++)
-    eo_result_put(&o, eo_result_end[end], encode_flank(source, member, end, u, eta));
-  return eo_result_close(&o);
+    eo_object_put(&o, eo_result_end[end], encode_flank(source, member, end, u, eta));
+  return eo_object_close(&o);
 }
 
 static const struct eo_outline_row modification_rows[] = {
@@ -72,12 +72,12 @@ const struct eo_outline eo_outline_modification = EO_OUTLINE("ModificationCurves
 
 json_t *eo_result_modification(struct eo_result_source *source)
 {
-  struct eo_result_object o = eo_result_open_as(&eo_outline_modification);
+  struct eo_object o = eo_object_open_as(&eo_outline_modification);
   double eta[POINTS];
   for (int i = 0; i < POINTS; i++)
     eta[i] = source->pair->geometry.face_width * ((double)i / (POINTS - 1) - 0.5);
-  eo_result_put(&o, "eta_mm", eo_json_reals(POINTS, eta, 1, &eo_unit_mm, EO_DIGITS_CURVE));
+  eo_object_put(&o, "eta_mm", eo_json_reals(POINTS, eta, 1, &eo_unit_mm, EO_DIGITS_CURVE));
   for (int member = 0; member < 2; member++)
-    eo_result_put(&o, eo_result_member[member], encode_member(source, member, eta));
-  return eo_result_close(&o);
+    eo_object_put(&o, eo_result_member[member], encode_member(source, member, eta));
+  return eo_object_close(&o);
 }

@@ -4,10 +4,9 @@
 
 #include "contact/pattern.h"
 #include "format/json.h"
+#include "format/object.h"
 #include "format/outline.h"
 #include "document/result.h"
-
-enum { EO_DIGITS_CURVE = 9, EO_DIGITS_MAP = 6, EO_DIGITS_NUMBER = 12 };
 
 struct eo_result_source {
   const struct eo_analysis *analysis;
@@ -26,11 +25,6 @@ struct eo_result_source {
 extern const char *const eo_result_end[2];
 extern const char *const eo_result_member[2];
 
-json_t *eo_result_number(double value, const struct eo_unit *unit);
-
-/* value[count] times scale. */
-json_t *eo_result_column(int count, const double *value, double scale, const struct eo_unit *unit, int digits);
-
 /* A column over the mesh positions of one end, shifted so that both ends stand at the same instant. */
 json_t *eo_result_end_column(const struct eo_result_source *source, int end, const double *value, double scale,
                              const struct eo_unit *unit);
@@ -38,23 +32,6 @@ json_t *eo_result_end_column(const struct eo_result_source *source, int end, con
 /* [rows][columns] as an array of rows; null when maps are left out. */
 json_t *eo_result_map(const struct eo_result_source *source, int rows, int columns, const double *value,
                       const struct eo_unit *unit);
-
-/* object[key] = value; what is missing marks the object itself as failed. With an outline, so does a key that it does
-   not have next (rows that are not always there may be passed over): a defect of the writer, which the first test that
-   comes by finds. */
-struct eo_result_object {
-  json_t *json;
-  bool failed;
-  const struct eo_outline *outline; /* NULL: free */
-  int next;                         /* row */
-};
-struct eo_result_object eo_result_open(void);
-struct eo_result_object eo_result_open_as(const struct eo_outline *outline);
-void eo_result_put(struct eo_result_object *object, const char *key, json_t *value);
-void eo_result_put_number(struct eo_result_object *object, const char *key,
-                          double value);                  /* SI; the outline's row has the unit */
-json_t *eo_result_close(struct eo_result_object *object); /* NULL when anything failed, or is missing of the outline */
-json_t *eo_result_close_part(struct eo_result_object *object); /* the same where others write the rows behind */
 
 /* What is there when the pair has two ends. */
 #define EO_TWO_ENDS "with two ends"
@@ -69,7 +46,7 @@ extern const struct eo_outline eo_outline_raw_case; /* eo_result_raw_case() */
 double eo_result_mean_load(const struct eo_result_source *source, const struct eo_case_result *load_case, int end);
 
 /* f1, f2, f3, J, fitness and violation into an object. */
-void eo_result_put_value(struct eo_result_object *object, const struct eo_objective_value *value);
+void eo_result_put_value(struct eo_object *object, const struct eo_objective_value *value);
 
 /* Each returns a new value, NULL without memory. */
 json_t *eo_result_raw_case(const struct eo_load_case *load_case, const struct eo_objective_case *raw);

@@ -37,10 +37,10 @@ static const struct eo_outline readings = EO_OUTLINE("Readings", reading_rows);
 
 static json_t *encode_readings(const double *value, int stride, double known)
 {
-  struct eo_result_object o = eo_result_open_as(&readings);
+  struct eo_object o = eo_object_open_as(&readings);
   for (int i = 0; i < EO_READINGS; i++)
-    eo_result_put_number(&o, reading_name[i], known * value[i * stride]);
-  return eo_result_close(&o);
+    eo_object_put_number(&o, reading_name[i], known * value[i * stride]);
+  return eo_object_close(&o);
 }
 
 static const struct eo_outline_row band_rows[] = {
@@ -53,16 +53,16 @@ static const struct eo_outline bands = EO_OUTLINE("ReadingsBand", band_rows);
 /* Lowest and highest RMS at 0.9, 1 and 1.1 times the compliance. */
 static json_t *encode_band(const struct eo_case_result *c, double known)
 {
-  struct eo_result_object o = eo_result_open_as(&bands);
+  struct eo_object o = eo_object_open_as(&bands);
   for (int i = 0; i < EO_READINGS; i++) {
     double nominal = known * c->vibration.rms_pair[i], low = c->band[i][0], high = c->band[i][1],
            missing = low + high + nominal;
     double band[2] = {fmin(nominal, fmin(low, high)), fmax(nominal, fmax(low, high))};
     if (isnan(missing))
       band[0] = band[1] = NAN;
-    eo_result_put(&o, reading_name[i], eo_json_reals(2, band, 1, &eo_unit_m_per_s2, EO_DIGITS_NUMBER));
+    eo_object_put(&o, reading_name[i], eo_json_reals(2, band, 1, &eo_unit_m_per_s2, EO_DIGITS_NUMBER));
   }
-  return eo_result_close(&o);
+  return eo_object_close(&o);
 }
 
 static json_t *encode_amplitudes(int harmonics, double complex *const order[2], int ends, const struct eo_unit *unit)
@@ -91,12 +91,12 @@ static const struct eo_outline channel_curves = EO_OUTLINE("VibrationChannels", 
 
 static json_t *encode_curves(const struct eo_result_source *source, const struct eo_end_result *r, bool orders)
 {
-  struct eo_result_object o = eo_result_open_as(&channel_curves);
+  struct eo_object o = eo_object_open_as(&channel_curves);
   for (int i = 0; i < EO_CHANNELS; i++)
-    eo_result_put(&o, channels[i].key,
+    eo_object_put(&o, channels[i].key,
                   orders ? encode_amplitudes(source->evaluation->harmonics, &r->order[i], 1, channels[i].unit)
                          : eo_json_reals(source->evaluation->samples, r->curve[i], 1, channels[i].unit, EO_DIGITS_MAP));
-  return eo_result_close(&o);
+  return eo_object_close(&o);
 }
 
 static const struct eo_outline_row end_rows[] = {
@@ -123,37 +123,36 @@ static const struct eo_outline vibration_end = EO_OUTLINE("VibrationEnd", end_ro
 static json_t *encode_end(const struct eo_result_source *source, const struct eo_case_result *c, int end, double known)
 {
   const struct eo_vibration *v = &c->vibration;
-  struct eo_result_object o = eo_result_open_as(&vibration_end);
-  eo_result_put(&o, "rms_m_per_s2", encode_readings(&v->rms[0][end], 2, known));
-  eo_result_put_number(&o, "dynamic_factor", known * v->dynamic_factor[end]);
-  eo_result_put_number(&o, "contact_loss", known * v->contact_loss[end]);
-  eo_result_put_number(&o, "mean_deflection_um", known * v->deflection_mean[end]);
-  eo_result_put_number(&o, "peak_to_peak_deflection_um", known * v->deflection_swing[end]);
-  eo_result_put_number(&o, "mean_mesh_force_N", known * v->force_mean[end]);
-  eo_result_put_number(&o, "min_mesh_force_N", known * v->force_min[end]);
-  eo_result_put_number(&o, "max_mesh_force_N", known * v->force_max[end]);
+  struct eo_object o = eo_object_open_as(&vibration_end);
+  eo_object_put(&o, "rms_m_per_s2", encode_readings(&v->rms[0][end], 2, known));
+  eo_object_put_number(&o, "dynamic_factor", known * v->dynamic_factor[end]);
+  eo_object_put_number(&o, "contact_loss", known * v->contact_loss[end]);
+  eo_object_put_number(&o, "mean_deflection_um", known * v->deflection_mean[end]);
+  eo_object_put_number(&o, "peak_to_peak_deflection_um", known * v->deflection_swing[end]);
+  eo_object_put_number(&o, "mean_mesh_force_N", known * v->force_mean[end]);
+  eo_object_put_number(&o, "min_mesh_force_N", known * v->force_min[end]);
+  eo_object_put_number(&o, "max_mesh_force_N", known * v->force_max[end]);
   for (int member = 0; member < 2; member++) {
-    eo_result_put_number(&o, member ? "mean_gear_bearing_N" : "mean_pinion_bearing_N",
+    eo_object_put_number(&o, member ? "mean_gear_bearing_N" : "mean_pinion_bearing_N",
                          known * v->bearing_force_mean[member][end]);
-    eo_result_put_number(&o, member ? "max_gear_bearing_N" : "max_pinion_bearing_N",
+    eo_object_put_number(&o, member ? "max_gear_bearing_N" : "max_pinion_bearing_N",
                          known * v->bearing_force_max[member][end]);
   }
   bool histories = !(source->left_out & EO_RESULT_NO_HISTORIES);
-  eo_result_put(&o, "history",
+  eo_object_put(&o, "history",
                 histories && has_curves(source, c) ? encode_curves(source, &c->end[end], false) : json_null());
-  eo_result_put(&o, "orders", has_curves(source, c) ? encode_curves(source, &c->end[end], true) : json_null());
-  return eo_result_close(&o);
+  eo_object_put(&o, "orders", has_curves(source, c) ? encode_curves(source, &c->end[end], true) : json_null());
+  return eo_object_close(&o);
 }
 
 /* Mean of the ends' amplitudes, as the RMS of the pair is the mean of theirs. */
-static void put_pair_orders(struct eo_result_object *o, const struct eo_result_source *source,
-                            const struct eo_case_result *c)
+static void put_pair_orders(struct eo_object *o, const struct eo_result_source *source, const struct eo_case_result *c)
 {
   for (int i = EO_CHANNEL_NORMAL; i <= EO_CHANNEL_ROTATIONAL; i++) {
     char key[64];
     double complex *const order[2] = {c->end[0].order[i], c->end[1].order[i]};
     snprintf(key, sizeof key, "orders_%s", channels[i].key);
-    eo_result_put(o, key,
+    eo_object_put(o, key,
                   has_curves(source, c)
                       ? encode_amplitudes(source->evaluation->harmonics, order, source->ends, channels[i].unit)
                       : json_null());
@@ -201,22 +200,22 @@ const struct eo_outline eo_outline_vibration = EO_OUTLINE("Vibration", vibration
 json_t *eo_result_vibration(struct eo_result_source *source, const struct eo_case_result *c)
 {
   const struct eo_vibration *v = &c->vibration;
-  struct eo_result_object o = eo_result_open_as(&eo_outline_vibration);
+  struct eo_object o = eo_object_open_as(&eo_outline_vibration);
   double known = v->outcome == EO_VIBRATION_NOT_CONVERGED ? NAN : 1;
-  eo_result_put(&o, "outcome", json_string(outcomes[v->outcome]));
-  eo_result_put_number(&o, "mesh_frequency_Hz",
+  eo_object_put(&o, "outcome", json_string(outcomes[v->outcome]));
+  eo_object_put_number(&o, "mesh_frequency_Hz",
                        c->load_case.speed * source->pair->geometry.teeth[EO_PINION] / (2 * M_PI));
-  eo_result_put(&o, "rms_m_per_s2", encode_readings(v->rms_pair, 1, known));
-  eo_result_put(&o, "rms_band_m_per_s2", encode_band(c, known));
-  eo_result_put(&o, "rms_of_mean_m_per_s2", encode_readings(v->rms_of_mean, 1, known));
-  eo_result_put_number(&o, "contact_loss",
+  eo_object_put(&o, "rms_m_per_s2", encode_readings(v->rms_pair, 1, known));
+  eo_object_put(&o, "rms_band_m_per_s2", encode_band(c, known));
+  eo_object_put(&o, "rms_of_mean_m_per_s2", encode_readings(v->rms_of_mean, 1, known));
+  eo_object_put_number(&o, "contact_loss",
                        known * fmax(v->contact_loss[0], source->ends == 2 ? v->contact_loss[1] : 0));
-  eo_result_put_number(&o, "dynamic_factor",
+  eo_object_put_number(&o, "dynamic_factor",
                        known * fmax(v->dynamic_factor[0], source->ends == 2 ? v->dynamic_factor[1] : 0));
-  eo_result_put(&o, "back_contact", json_boolean(v->back_contact));
-  eo_result_put(&o, "position", encode_samples(source));
+  eo_object_put(&o, "back_contact", json_boolean(v->back_contact));
+  eo_object_put(&o, "position", encode_samples(source));
   put_pair_orders(&o, source, c);
   for (int end = 0; end < source->ends; end++)
-    eo_result_put(&o, eo_result_end[end], encode_end(source, c, end, known));
-  return eo_result_close(&o);
+    eo_object_put(&o, eo_result_end[end], encode_end(source, c, end, known));
+  return eo_object_close(&o);
 }

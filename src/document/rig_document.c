@@ -205,7 +205,7 @@ static json_t *column(int count, const double *value)
 static json_t *encode_truth(const struct eo_synthetic *s, int orders)
 {
   double amplitude[EO_SYNTHETIC_ORDERS], acceleration[EO_SYNTHETIC_ORDERS], rms[EO_SYNTHETIC_ORDERS];
-  struct eo_result_object o = eo_result_open();
+  struct eo_object o = eo_object_open();
   double speed = eo_synthetic_speed(s);
   char key[40];
   for (int h = 1; h <= orders; h++) {
@@ -214,12 +214,12 @@ static json_t *encode_truth(const struct eo_synthetic *s, int orders)
     rms[h - 1] = eo_synthetic_rms(s, h);
   }
   snprintf(key, sizeof key, "rms_mesh_lines_H%d", orders);
-  eo_result_put(&o, "mean_rpm", eo_result_number(speed, &eo_unit_rpm));
-  eo_result_put(&o, key, eo_result_number(rms[orders - 1], NULL));
-  eo_result_put(&o, "line_amp_um", column(orders, amplitude));
-  eo_result_put(&o, "line_acc", column(orders, acceleration));
-  eo_result_put(&o, "rms_by_H", column(orders, rms));
-  return eo_result_close(&o);
+  eo_object_put(&o, "mean_rpm", eo_json_quantity(speed, &eo_unit_rpm));
+  eo_object_put(&o, key, eo_json_quantity(rms[orders - 1], NULL));
+  eo_object_put(&o, "line_amp_um", column(orders, amplitude));
+  eo_object_put(&o, "line_acc", column(orders, acceleration));
+  eo_object_put(&o, "rms_by_H", column(orders, rms));
+  return eo_object_close(&o);
 }
 
 static const char *expected_finding(enum eo_synthetic_fault fault)
@@ -233,7 +233,7 @@ static const char *expected_finding(enum eo_synthetic_fault fault)
 json_t *eo_rig_truth(const struct eo_rig_request *r, const char *file)
 {
   const struct eo_synthetic *s = &r->synthetic;
-  struct eo_result_object top = eo_result_open(), entry = eo_result_open();
+  struct eo_object top = eo_object_open(), entry = eo_object_open();
   json_t *findings = json_array(), *files = json_array(), *radii = json_array(), *teeth = json_array();
   int orders = s->orders < 8 ? s->orders : 8;
   const char *fault = expected_finding(s->fault);
@@ -244,19 +244,19 @@ json_t *eo_rig_truth(const struct eo_rig_request *r, const char *file)
   for (int i = 0; i < 2; i++)
     top.failed = json_array_append_new(radii, eo_json_real(s->base_radius[i], &eo_unit_mm)) ||
                  json_array_append_new(teeth, json_integer(s->teeth[i])) || top.failed;
-  eo_result_put(&entry, "file", json_string(file));
-  eo_result_put(&entry, "truth", encode_truth(s, orders));
-  eo_result_put(&entry, "tolerance_rms_rel", eo_result_number(0.01, NULL));
-  eo_result_put(&entry, "expected_findings", findings);
+  eo_object_put(&entry, "file", json_string(file));
+  eo_object_put(&entry, "truth", encode_truth(s, orders));
+  eo_object_put(&entry, "tolerance_rms_rel", eo_json_quantity(0.01, NULL));
+  eo_object_put(&entry, "expected_findings", findings);
   if (s->output != EO_SYNTHETIC_ANGLES) {
     int per_line = s->output == EO_SYNTHETIC_COUNTS ? s->interpolation : 1;
-    eo_result_put(&entry, "layout",
+    eo_object_put(&entry, "layout",
                   json_pack("{s:[i,i]}", "lines", s->lines[EO_PINION] * per_line, s->lines[EO_GEAR] * per_line));
   }
-  top.failed = json_array_append_new(files, eo_result_close(&entry)) != 0 || top.failed;
-  eo_result_put(&top, "kind", json_string("encoder"));
-  eo_result_put(&top, "teeth", teeth);
-  eo_result_put(&top, "base_radius_mm", radii);
-  eo_result_put(&top, "files", files);
-  return eo_result_close(&top);
+  top.failed = json_array_append_new(files, eo_object_close(&entry)) != 0 || top.failed;
+  eo_object_put(&top, "kind", json_string("encoder"));
+  eo_object_put(&top, "teeth", teeth);
+  eo_object_put(&top, "base_radius_mm", radii);
+  eo_object_put(&top, "files", files);
+  return eo_object_close(&top);
 }

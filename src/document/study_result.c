@@ -42,17 +42,17 @@ static const struct eo_outline variable_outline = EO_OUTLINE("StudyVariable", va
 
 static json_t *encode_variable(const struct eo_study_result *result, const struct eo_study_variable *v)
 {
-  struct eo_result_object o = eo_result_open_as(&variable_outline);
+  struct eo_object o = eo_object_open_as(&variable_outline);
   char name[80];
   eo_study_variable_name(v, name, sizeof name);
-  eo_result_put(&o, "name", json_string(name));
-  eo_result_put(&o, "member", json_string(members[v->member]));
-  eo_result_put(&o, "end", json_string(ends[v->end]));
-  eo_result_put(&o, "parameter", json_string(v->field->key));
-  eo_result_put(&o, "bounds", json_pack("[o,o]", json_real(v->low), json_real(v->high)));
-  eo_result_put(&o, "best",
+  eo_object_put(&o, "name", json_string(name));
+  eo_object_put(&o, "member", json_string(members[v->member]));
+  eo_object_put(&o, "end", json_string(ends[v->end]));
+  eo_object_put(&o, "parameter", json_string(v->field->key));
+  eo_object_put(&o, "bounds", json_pack("[o,o]", json_real(v->low), json_real(v->high)));
+  eo_object_put(&o, "best",
                 result->best.there ? json_real(eo_study_variable_value(v, &result->best.modification)) : json_null());
-  return eo_result_close(&o);
+  return eo_object_close(&o);
 }
 
 /* Appends value to array; a failure of either leaves NULL. */
@@ -81,13 +81,13 @@ static const struct eo_outline point_outline = EO_OUTLINE("StudyPoint", point_ro
 
 static json_t *encode_point(const struct eo_study_point *point, const struct eo_design *design)
 {
-  struct eo_result_object o = eo_result_open_as(&point_outline);
+  struct eo_object o = eo_object_open_as(&point_outline);
   json_t *cases = json_array();
   eo_result_put_value(&o, &point->value);
   for (int k = 0; k < design->load_cases && cases; k++)
     cases = append(cases, eo_result_raw_case(&design->load_case[k], &point->raw[k]));
-  eo_result_put(&o, "load_cases", cases);
-  return eo_result_close(&o);
+  eo_object_put(&o, "load_cases", cases);
+  return eo_object_close(&o);
 }
 
 static const struct eo_outline_row reduction_rows[] = {
@@ -116,14 +116,14 @@ static json_t *encode_reductions(const json_t *analysis)
                *before = eo_json_find(analysis, "objectives/unmodified/load_cases");
   json_t *array = json_array();
   for (size_t k = 0; k < json_array_size(after) && array; k++) {
-    struct eo_result_object o = eo_result_open_as(&reduction_outline);
+    struct eo_object o = eo_object_open_as(&reduction_outline);
     const json_t *a = json_array_get(after, k), *b = json_array_get(before, k);
-    eo_result_put(&o, "torque_Nm", json_incref(json_object_get(a, "torque_Nm")));
-    eo_result_put(&o, "speed_rpm", json_incref(json_object_get(a, "speed_rpm")));
+    eo_object_put(&o, "torque_Nm", json_incref(json_object_get(a, "torque_Nm")));
+    eo_object_put(&o, "speed_rpm", json_incref(json_object_get(a, "speed_rpm")));
     for (size_t i = 0; i < sizeof row / sizeof *row; i++)
-      eo_result_put_number(&o, row[i].key,
+      eo_object_put_number(&o, row[i].key,
                            100 * (1 - eo_json_find_number(a, row[i].value) / eo_json_find_number(b, row[i].value)));
-    array = append(array, eo_result_close(&o));
+    array = append(array, eo_object_close(&o));
   }
   return array;
 }
@@ -151,12 +151,12 @@ static const struct eo_outline best_outline = EO_OUTLINE("StudyBest", best_rows)
 
 static json_t *encode_best(const struct eo_study_result *result, const struct eo_design *design, const json_t *analysis)
 {
-  struct eo_result_object o = eo_result_open_as(&best_outline);
-  eo_result_put(&o, "modification", encode_modification(design, &result->best.modification));
-  eo_result_put(&o, "objectives", encode_point(&result->best, design));
-  eo_result_put(&o, "reductions_percent", encode_reductions(analysis));
-  eo_result_put(&o, "result", analysis ? json_incref((json_t *)analysis) : json_null());
-  return eo_result_close(&o);
+  struct eo_object o = eo_object_open_as(&best_outline);
+  eo_object_put(&o, "modification", encode_modification(design, &result->best.modification));
+  eo_object_put(&o, "objectives", encode_point(&result->best, design));
+  eo_object_put(&o, "reductions_percent", encode_reductions(analysis));
+  eo_object_put(&o, "result", analysis ? json_incref((json_t *)analysis) : json_null());
+  return eo_object_close(&o);
 }
 
 static const struct eo_outline_row generation_rows[] = {
@@ -172,15 +172,15 @@ static const struct eo_outline generation_outline = EO_OUTLINE("StudyGeneration"
 
 static json_t *encode_generation(const struct eo_study_generation *g)
 {
-  struct eo_result_object o = eo_result_open_as(&generation_outline);
-  eo_result_put_number(&o, "best", g->best);
-  eo_result_put_number(&o, "mean", g->mean);
-  eo_result_put(&o, "true", json_integer(g->true_count));
-  eo_result_put(&o, "predicted", json_integer(g->predicted_count));
-  eo_result_put(&o, "repeated", json_integer(g->repeated_count));
-  eo_result_put(&o, "history_rows", json_integer(g->history_rows));
-  eo_result_put(&o, "epoch", json_integer(g->epoch));
-  return eo_result_close(&o);
+  struct eo_object o = eo_object_open_as(&generation_outline);
+  eo_object_put_number(&o, "best", g->best);
+  eo_object_put_number(&o, "mean", g->mean);
+  eo_object_put(&o, "true", json_integer(g->true_count));
+  eo_object_put(&o, "predicted", json_integer(g->predicted_count));
+  eo_object_put(&o, "repeated", json_integer(g->repeated_count));
+  eo_object_put(&o, "history_rows", json_integer(g->history_rows));
+  eo_object_put(&o, "epoch", json_integer(g->epoch));
+  return eo_object_close(&o);
 }
 
 static json_t *encode_generations(const struct eo_study_result *result)
@@ -204,15 +204,15 @@ static json_t *encode_front(const struct eo_study_result *result)
   json_t *array = json_array();
   for (int i = 0; i < result->front_count && array; i++) {
     const struct eo_study_point *point = &result->front[i];
-    struct eo_result_object o = eo_result_open_as(&front_outline);
+    struct eo_object o = eo_object_open_as(&front_outline);
     json_t *values = json_array();
     for (int j = 0; j < result->space.count && values; j++)
       values = append(values, json_real(eo_study_variable_value(&result->space.variable[j], &point->modification)));
-    eo_result_put(&o, "values", values);
+    eo_object_put(&o, "values", values);
     eo_result_put_value(&o, &point->value);
-    eo_result_put(&o, "knee", json_boolean(i == result->knee));
-    eo_result_put(&o, "weighted", json_boolean(i == result->weighted));
-    array = append(array, eo_result_close(&o));
+    eo_object_put(&o, "knee", json_boolean(i == result->knee));
+    eo_object_put(&o, "weighted", json_boolean(i == result->weighted));
+    array = append(array, eo_object_close(&o));
   }
   return array;
 }
@@ -239,19 +239,19 @@ static const struct eo_outline run_outline = EO_OUTLINE("StudyRun", run_rows);
 
 static json_t *encode_run(const struct eo_study_result *r)
 {
-  struct eo_result_object o = eo_result_open_as(&run_outline);
-  eo_result_put(&o, "job", json_integer(r->job));
-  eo_result_put(&o, "taken_up", json_boolean(r->resumed));
-  eo_result_put(&o, "computed_evaluations", json_integer(r->computed));
-  eo_result_put(&o, "threads", json_integer(r->threads));
-  eo_result_put(&o, "wall_s", json_real(round(1e3 * r->seconds) / 1e3));
-  eo_result_put(&o, "model_s", json_real(round(1e3 * r->model_seconds) / 1e3));
-  eo_result_put(&o, "optimizer_s", json_real(round(1e3 * r->optimizer_seconds) / 1e3));
-  eo_result_put(&o, "history_s", json_real(round(1e3 * r->store_seconds) / 1e3));
-  return eo_result_close(&o);
+  struct eo_object o = eo_object_open_as(&run_outline);
+  eo_object_put(&o, "job", json_integer(r->job));
+  eo_object_put(&o, "taken_up", json_boolean(r->resumed));
+  eo_object_put(&o, "computed_evaluations", json_integer(r->computed));
+  eo_object_put(&o, "threads", json_integer(r->threads));
+  eo_object_put(&o, "wall_s", json_real(round(1e3 * r->seconds) / 1e3));
+  eo_object_put(&o, "model_s", json_real(round(1e3 * r->model_seconds) / 1e3));
+  eo_object_put(&o, "optimizer_s", json_real(round(1e3 * r->optimizer_seconds) / 1e3));
+  eo_object_put(&o, "history_s", json_real(round(1e3 * r->store_seconds) / 1e3));
+  return eo_object_close(&o);
 }
 
-static void put_counts(struct eo_result_object *o, const struct eo_study_result *r)
+static void put_counts(struct eo_object *o, const struct eo_study_result *r)
 {
   const struct {
     const char *key;
@@ -261,8 +261,8 @@ static void put_counts(struct eo_result_object *o, const struct eo_study_result 
              {"predicted_individuals", r->predicted}, {"repeated_individuals", r->repeated},
              {"imported_rows", r->imported}};
   for (size_t i = 0; i < sizeof row / sizeof *row; i++)
-    eo_result_put(o, row[i].key, json_integer(row[i].value));
-  eo_result_put_number(o, "pfc_percent", r->individuals ? 100. * r->true_evaluations / r->individuals : NAN);
+    eo_object_put(o, row[i].key, json_integer(row[i].value));
+  eo_object_put_number(o, "pfc_percent", r->individuals ? 100. * r->true_evaluations / r->individuals : NAN);
 }
 
 static const struct eo_outline_row study_rows[] = {
@@ -296,24 +296,24 @@ const struct eo_outline eo_study_outline = EO_OUTLINE("OptimizationResult", stud
 json_t *eo_study_result_encode(const struct eo_study_result *result, const struct eo_design *design,
                                const json_t *analysis, const struct eo_warnings *warnings)
 {
-  struct eo_result_object o = eo_result_open_as(&eo_study_outline);
+  struct eo_object o = eo_object_open_as(&eo_study_outline);
   char hash[EO_HASH_LENGTH + 1];
-  eo_result_put(&o, "program", json_string(PACKAGE_STRING));
-  eo_result_put(&o, "design", eo_design_encode(design));
-  eo_result_put(&o, "design_hash", eo_design_hash(design, hash, NULL) ? NULL : json_string(hash));
-  eo_result_put(&o, "algorithm", json_string(design->optimization.algorithm));
-  eo_result_put(&o, "seed", json_integer((json_int_t)design->optimization.seed));
-  eo_result_put(&o, "variables", encode_variables(result));
-  eo_result_put(&o, "best", result->best.there ? encode_best(result, design, analysis) : json_null());
-  eo_result_put(&o, "unmodified", encode_point(&result->unmodified, design));
+  eo_object_put(&o, "program", json_string(PACKAGE_STRING));
+  eo_object_put(&o, "design", eo_design_encode(design));
+  eo_object_put(&o, "design_hash", eo_design_hash(design, hash, NULL) ? NULL : json_string(hash));
+  eo_object_put(&o, "algorithm", json_string(design->optimization.algorithm));
+  eo_object_put(&o, "seed", json_integer((json_int_t)design->optimization.seed));
+  eo_object_put(&o, "variables", encode_variables(result));
+  eo_object_put(&o, "best", result->best.there ? encode_best(result, design, analysis) : json_null());
+  eo_object_put(&o, "unmodified", encode_point(&result->unmodified, design));
   put_counts(&o, result);
-  eo_result_put(&o, "generations", encode_generations(result));
+  eo_object_put(&o, "generations", encode_generations(result));
   if (strcmp(design->optimization.algorithm, "nsga2") == 0)
-    eo_result_put(&o, "front", encode_front(result));
-  eo_result_put(&o, "stopped", json_string(eo_study_stops[result->stopped]));
-  eo_result_put(&o, "warnings", encode_warnings(warnings));
-  eo_result_put(&o, "run", encode_run(result));
-  return eo_result_close(&o);
+    eo_object_put(&o, "front", encode_front(result));
+  eo_object_put(&o, "stopped", json_string(eo_study_stops[result->stopped]));
+  eo_object_put(&o, "warnings", encode_warnings(warnings));
+  eo_object_put(&o, "run", encode_run(result));
+  return eo_object_close(&o);
 }
 
 /* ---- for people ---- */

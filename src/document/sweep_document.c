@@ -178,7 +178,7 @@ const struct eo_outline eo_sweep_outline = EO_OUTLINE("Sweep", sweep_rows);
 /* ---- JSON ---- */
 
 /* Puts a value below the objects that the path names, which are made when missing. */
-static void put_at(struct eo_result_object *o, const char *path, json_t *value)
+static void put_at(struct eo_object *o, const char *path, json_t *value)
 {
   json_t *at = o->json;
   const char *slash;
@@ -192,7 +192,7 @@ static void put_at(struct eo_result_object *o, const char *path, json_t *value)
   eo_json_put(at, path, value, &o->failed);
 }
 
-static void put_columns(struct eo_result_object *o, const struct eo_sweep *s, int columns, const struct column *column,
+static void put_columns(struct eo_object *o, const struct eo_sweep *s, int columns, const struct column *column,
                         int rows, const void *row, size_t size)
 {
   for (int i = 0; i < columns; i++)
@@ -204,43 +204,43 @@ static void put_columns(struct eo_result_object *o, const struct eo_sweep *s, in
 
 static json_t *encode_torques(const struct eo_sweep *s, int variant)
 {
-  struct eo_result_object o = eo_result_open();
+  struct eo_object o = eo_object_open();
   json_t *failures = json_array();
   for (int i = 0; i < s->torques; i++)
     o.failed = o.failed ||
                json_array_append_new(failures, json_integer(s->at_torque[variant][i].contact_failures)) != 0;
   put_columns(&o, s, TORQUE_COLUMNS, torque_columns, s->torques, s->at_torque[variant], sizeof *s->at_torque[variant]);
-  eo_result_put(&o, "contact_failures", failures);
-  return eo_result_close(&o);
+  eo_object_put(&o, "contact_failures", failures);
+  return eo_object_close(&o);
 }
 
 static json_t *encode_points(const struct eo_sweep *s, int variant, int direction)
 {
   int points = s->torques * s->speeds;
   const struct eo_sweep_point *point = s->point[variant][direction];
-  struct eo_result_object o = eo_result_open();
+  struct eo_object o = eo_object_open();
   json_t *outcomes = json_array(), *back = json_array();
   for (int i = 0; i < points && !o.failed; i++)
     o.failed = json_array_append_new(outcomes, json_string(outcome_of(&point[i]))) != 0 ||
                json_array_append_new(back, json_boolean(point[i].back_contact)) != 0;
-  eo_result_put(&o, "outcome", outcomes);
+  eo_object_put(&o, "outcome", outcomes);
   put_columns(&o, s, POINT_COLUMNS, point_columns, points, point, sizeof *point);
-  eo_result_put(&o, "back_contact", back);
-  return eo_result_close(&o);
+  eo_object_put(&o, "back_contact", back);
+  return eo_object_close(&o);
 }
 
 static json_t *encode_variant(const struct eo_sweep *s, int variant)
 {
-  struct eo_result_object o = eo_result_open_as(&variant_outline);
-  eo_result_put(&o, "by_torque", encode_torques(s, variant));
-  eo_result_put(&o, "points", encode_points(s, variant, EO_SWEEP_UP));
-  eo_result_put(&o, "down", s->branches[variant] ? encode_points(s, variant, EO_SWEEP_DOWN) : json_null());
-  return eo_result_close(&o);
+  struct eo_object o = eo_object_open_as(&variant_outline);
+  eo_object_put(&o, "by_torque", encode_torques(s, variant));
+  eo_object_put(&o, "points", encode_points(s, variant, EO_SWEEP_UP));
+  eo_object_put(&o, "down", s->branches[variant] ? encode_points(s, variant, EO_SWEEP_DOWN) : json_null());
+  return eo_object_close(&o);
 }
 
 static json_t *encode_modes(const struct eo_sweep *s)
 {
-  struct eo_result_object o = eo_result_open_as(&mode_outline);
+  struct eo_object o = eo_object_open_as(&mode_outline);
   json_t *frequencies = json_array(), *ratios = json_array();
   for (int i = 0; i < s->torques && !o.failed; i++) {
     const struct eo_dynamics_modes *modes = &s->at_torque[EO_SWEEP_DESIGN][i].modes;
@@ -249,31 +249,31 @@ static json_t *encode_modes(const struct eo_sweep *s)
                               eo_json_reals(modes->n, modes->frequency, 1, &eo_unit_Hz, EO_DIGITS_NUMBER)) != 0 ||
         json_array_append_new(ratios, eo_json_reals(modes->n, modes->damping_ratio, 1, NULL, EO_DIGITS_NUMBER)) != 0;
   }
-  eo_result_put(&o, "frequency_Hz", frequencies);
-  eo_result_put(&o, "damping_ratio", ratios);
-  return eo_result_close(&o);
+  eo_object_put(&o, "frequency_Hz", frequencies);
+  eo_object_put(&o, "damping_ratio", ratios);
+  return eo_object_close(&o);
 }
 
 /* Modes count from 1, like orders. */
 static json_t *encode_crossings(const struct eo_sweep *s)
 {
-  struct eo_result_object o = eo_result_open_as(&crossing_outline);
+  struct eo_object o = eo_object_open_as(&crossing_outline);
   json_t *torque = json_array(), *mode = json_array(), *order = json_array(), *frequency = json_array(),
          *speed = json_array();
   for (int i = 0; i < s->crossings && !o.failed; i++) {
     const struct eo_sweep_crossing *c = &s->crossing[i];
-    o.failed = json_array_append_new(torque, eo_result_number(s->torque[c->torque], &eo_unit_Nm)) != 0 ||
+    o.failed = json_array_append_new(torque, eo_json_quantity(s->torque[c->torque], &eo_unit_Nm)) != 0 ||
                json_array_append_new(mode, json_integer(c->mode + 1)) != 0 ||
                json_array_append_new(order, json_integer(c->order)) != 0 ||
-               json_array_append_new(frequency, eo_result_number(c->frequency, &eo_unit_Hz)) != 0 ||
-               json_array_append_new(speed, eo_result_number(c->speed, &eo_unit_rpm)) != 0;
+               json_array_append_new(frequency, eo_json_quantity(c->frequency, &eo_unit_Hz)) != 0 ||
+               json_array_append_new(speed, eo_json_quantity(c->speed, &eo_unit_rpm)) != 0;
   }
-  eo_result_put(&o, "torque_Nm", torque);
-  eo_result_put(&o, "mode", mode);
-  eo_result_put(&o, "order", order);
-  eo_result_put(&o, "frequency_Hz", frequency);
-  eo_result_put(&o, "speed_rpm", speed);
-  return eo_result_close(&o);
+  eo_object_put(&o, "torque_Nm", torque);
+  eo_object_put(&o, "mode", mode);
+  eo_object_put(&o, "order", order);
+  eo_object_put(&o, "frequency_Hz", frequency);
+  eo_object_put(&o, "speed_rpm", speed);
+  return eo_object_close(&o);
 }
 
 static json_t *encode_warnings(const struct eo_warnings *warnings)
@@ -290,18 +290,18 @@ static json_t *encode_warnings(const struct eo_warnings *warnings)
 json_t *eo_sweep_encode(const struct eo_sweep *s, const struct eo_design *design, const struct eo_warnings *warnings)
 {
   char hash[EO_HASH_LENGTH + 1];
-  struct eo_result_object o = eo_result_open_as(&eo_sweep_outline);
-  eo_result_put(&o, "program", json_string(PACKAGE_STRING));
-  eo_result_put(&o, "design", eo_design_encode(design));
-  eo_result_put(&o, "design_hash", eo_design_hash(design, hash, NULL) ? NULL : json_string(hash));
-  eo_result_put(&o, "torque_Nm", eo_json_reals(s->torques, s->torque, 1, &eo_unit_Nm, EO_DIGITS_NUMBER));
-  eo_result_put(&o, "speed_rpm", eo_json_reals(s->speeds, s->speed, 1, &eo_unit_rpm, EO_DIGITS_NUMBER));
+  struct eo_object o = eo_object_open_as(&eo_sweep_outline);
+  eo_object_put(&o, "program", json_string(PACKAGE_STRING));
+  eo_object_put(&o, "design", eo_design_encode(design));
+  eo_object_put(&o, "design_hash", eo_design_hash(design, hash, NULL) ? NULL : json_string(hash));
+  eo_object_put(&o, "torque_Nm", eo_json_reals(s->torques, s->torque, 1, &eo_unit_Nm, EO_DIGITS_NUMBER));
+  eo_object_put(&o, "speed_rpm", eo_json_reals(s->speeds, s->speed, 1, &eo_unit_rpm, EO_DIGITS_NUMBER));
   for (int v = 0; v < EO_SWEEP_VARIANTS; v++)
-    eo_result_put(&o, variant_name[v], encode_variant(s, v));
-  eo_result_put(&o, "eigenfrequencies", encode_modes(s));
-  eo_result_put(&o, "crossings", encode_crossings(s));
-  eo_result_put(&o, "warnings", encode_warnings(warnings));
-  return eo_result_close(&o);
+    eo_object_put(&o, variant_name[v], encode_variant(s, v));
+  eo_object_put(&o, "eigenfrequencies", encode_modes(s));
+  eo_object_put(&o, "crossings", encode_crossings(s));
+  eo_object_put(&o, "warnings", encode_warnings(warnings));
+  return eo_object_close(&o);
 }
 
 /* ---- CSV ---- */

@@ -100,7 +100,7 @@ static void each_warning(const struct eo_update *u, warning_function *take, void
 
 static void append_warning(void *context, const char *text)
 {
-  struct eo_result_object *o = context;
+  struct eo_object *o = context;
   o->failed = json_array_append_new(o->json, json_string(text)) != 0 || o->failed;
 }
 
@@ -120,17 +120,17 @@ static const struct eo_outline unknown_outline = EO_OUTLINE("FittedInput", unkno
 static json_t *encode_unknown(const struct eo_update *u, const struct eo_updated *p)
 {
   const struct eo_unit *unit = unit_of(p->unknown);
-  struct eo_result_object o = eo_result_open_as(&unknown_outline);
-  eo_result_put(&o, "key", json_string(eo_unknown_name(p->unknown)));
-  eo_result_put(&o, "before", eo_result_number(p->before, unit));
-  eo_result_put(&o, "value", eo_result_number(p->value, unit));
-  eo_result_put(&o, "range", eo_json_reals(2, (double[]){p->low, p->high}, 1, unit, EO_DIGITS_NUMBER));
-  eo_result_put(&o, "confidence_95", eo_json_reals(2, p->confidence, 1, unit, EO_DIGITS_CURVE));
-  eo_result_put(&o, "at_bound", json_boolean(p->at_bound));
-  eo_result_put(&o, "undetermined", json_boolean(p->undetermined));
-  eo_result_put(&o, "same_as", p->twin < 0 ? json_null() : json_string(eo_unknown_name(u->unknown[p->twin].unknown)));
-  eo_result_put_number(&o, "correlation", p->correlation);
-  return eo_result_close(&o);
+  struct eo_object o = eo_object_open_as(&unknown_outline);
+  eo_object_put(&o, "key", json_string(eo_unknown_name(p->unknown)));
+  eo_object_put(&o, "before", eo_json_quantity(p->before, unit));
+  eo_object_put(&o, "value", eo_json_quantity(p->value, unit));
+  eo_object_put(&o, "range", eo_json_reals(2, (double[]){p->low, p->high}, 1, unit, EO_DIGITS_NUMBER));
+  eo_object_put(&o, "confidence_95", eo_json_reals(2, p->confidence, 1, unit, EO_DIGITS_CURVE));
+  eo_object_put(&o, "at_bound", json_boolean(p->at_bound));
+  eo_object_put(&o, "undetermined", json_boolean(p->undetermined));
+  eo_object_put(&o, "same_as", p->twin < 0 ? json_null() : json_string(eo_unknown_name(u->unknown[p->twin].unknown)));
+  eo_object_put_number(&o, "correlation", p->correlation);
+  return eo_object_close(&o);
 }
 
 static const struct eo_outline_row misfit_rows[] = {
@@ -154,8 +154,8 @@ const struct eo_outline eo_update_outline = EO_OUTLINE("FitOfFiles", update_rows
 
 json_t *eo_update_encode(const struct eo_update *u)
 {
-  struct eo_result_object o = eo_result_open_as(&eo_update_outline), misfit = eo_result_open_as(&misfit_outline),
-                          warnings = {.json = json_array()};
+  struct eo_object o = eo_object_open_as(&eo_update_outline), misfit = eo_object_open_as(&misfit_outline),
+                   warnings = {.json = json_array()};
   json_t *unknowns = json_array(), *correlation = json_array();
   for (int i = 0; i < u->unknowns; i++)
     o.failed = json_array_append_new(unknowns, encode_unknown(u, &u->unknown[i])) != 0 ||
@@ -163,18 +163,18 @@ json_t *eo_update_encode(const struct eo_update *u)
                                      eo_json_reals(u->unknowns, u->correlation[i], 1, NULL, EO_DIGITS_MAP)) != 0 ||
                o.failed;
   each_warning(u, append_warning, &warnings);
-  eo_result_put_number(&misfit, "before", u->before);
-  eo_result_put_number(&misfit, "after", u->after);
-  eo_result_put(&o, "unknowns", unknowns);
-  eo_result_put(&o, "correlation", correlation);
-  eo_result_put_number(&o, "condition", u->condition);
-  eo_result_put(&o, "misfit", eo_result_close(&misfit));
-  eo_result_put(&o, "measurements", json_integer(u->used));
-  eo_result_put(&o, "orders", json_integer(u->residuals));
-  eo_result_put(&o, "evaluations", json_integer(u->evaluations));
-  eo_result_put(&o, "converged", json_boolean(u->converged));
-  eo_result_put(&o, "warnings", eo_result_close(&warnings));
-  return eo_result_close(&o);
+  eo_object_put_number(&misfit, "before", u->before);
+  eo_object_put_number(&misfit, "after", u->after);
+  eo_object_put(&o, "unknowns", unknowns);
+  eo_object_put(&o, "correlation", correlation);
+  eo_object_put_number(&o, "condition", u->condition);
+  eo_object_put(&o, "misfit", eo_object_close(&misfit));
+  eo_object_put(&o, "measurements", json_integer(u->used));
+  eo_object_put(&o, "orders", json_integer(u->residuals));
+  eo_object_put(&o, "evaluations", json_integer(u->evaluations));
+  eo_object_put(&o, "converged", json_boolean(u->converged));
+  eo_object_put(&o, "warnings", eo_object_close(&warnings));
+  return eo_object_close(&o);
 }
 
 static void print_warning(void *context, const char *text)

@@ -2,7 +2,7 @@
 
 #include <string.h>
 
-#include "document/result_parts.h"
+#include "format/object.h"
 #include "format/schema.h"
 
 /* Counts *index down to the row; NULL: it stands behind these. */
@@ -27,27 +27,27 @@ const struct eo_outline_row *eo_outline_at(const struct eo_outline *outline, int
 
 static json_t *take_each(const struct eo_outline *outline, const json_t *array)
 {
-  struct eo_result_object list = {.json = json_array()};
+  struct eo_object list = {.json = json_array()};
   json_t *member;
   size_t i;
   json_array_foreach((json_t *)array, i, member)
       list.failed = json_array_append_new(list.json, eo_outline_take(outline, member)) != 0 || list.failed;
-  return eo_result_close(&list);
+  return eo_object_close(&list);
 }
 
 json_t *eo_outline_take(const struct eo_outline *outline, const json_t *document)
 {
-  struct eo_result_object o = eo_result_open_as(outline);
+  struct eo_object o = eo_object_open_as(outline);
   const struct eo_outline_row *row;
   for (int i = 0; (row = eo_outline_at(outline, i)); i++) {
     json_t *value = json_object_get(document, row->key);
     if (row->outline && json_is_array(value))
-      eo_result_put(&o, row->key, take_each(row->outline, value));
+      eo_object_put(&o, row->key, take_each(row->outline, value));
     else if (value)
-      eo_result_put(&o, row->key,
+      eo_object_put(&o, row->key,
                     row->outline && json_is_object(value) ? eo_outline_take(row->outline, value) : json_incref(value));
   }
-  return eo_result_close(&o);
+  return eo_object_close(&o);
 }
 
 /* ---- schema ---- */
@@ -108,28 +108,28 @@ static json_t *read_shape(const char **at, const struct eo_outline_row *row)
 static json_t *property(const struct eo_outline_row *row)
 {
   const char *at = row->shape;
-  struct eo_result_object o = {.json = read_shape(&at, row)};
+  struct eo_object o = {.json = read_shape(&at, row)};
   o.failed = !o.json || *at;
-  eo_result_put(&o, "description", row->when ? json_sprintf("%s; %s", row->help, row->when) : json_string(row->help));
+  eo_object_put(&o, "description", row->when ? json_sprintf("%s; %s", row->help, row->when) : json_string(row->help));
   if (row->unit)
-    eo_result_put(&o, "x-unit", json_string(row->unit->symbol));
-  return eo_result_close(&o);
+    eo_object_put(&o, "x-unit", json_string(row->unit->symbol));
+  return eo_object_close(&o);
 }
 
 static json_t *object_schema(const struct eo_outline *outline)
 {
-  struct eo_result_object o = eo_result_open(), properties = eo_result_open();
+  struct eo_object o = eo_object_open(), properties = eo_object_open();
   const struct eo_outline_row *row;
   json_t *required = json_array();
   for (int i = 0; (row = eo_outline_at(outline, i)); i++) {
-    eo_result_put(&properties, row->key, property(row));
+    eo_object_put(&properties, row->key, property(row));
     if (!row->when)
       json_array_append_new(required, json_string(row->key));
   }
-  eo_result_put(&o, "type", json_string("object"));
-  eo_result_put(&o, "properties", eo_result_close(&properties));
-  eo_result_put(&o, "required", required);
-  return eo_result_close(&o);
+  eo_object_put(&o, "type", json_string("object"));
+  eo_object_put(&o, "properties", eo_object_close(&properties));
+  eo_object_put(&o, "required", required);
+  return eo_object_close(&o);
 }
 
 bool eo_outline_add_schemas(const struct eo_outline *outline, json_t *schemas)

@@ -1,5 +1,5 @@
 /* Outlines: what stands in a document that code writes. One outline per object, beside the function that writes it, its
-   rows in the order of writing. The writer opens the object with its outline (result_parts.h) and can then put nothing
+   rows in the order of writing. The writer opens the object with its outline (object.h) and can then put nothing
    that is not in it, nor leave out what is; the API's description comes from the same rows.
 
    shape: the short notation of http/shape.h without names: number, integer, flag, text, word (one of words), object (of

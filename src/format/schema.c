@@ -3,7 +3,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "document/result_parts.h"
+#include "format/object.h"
 
 static const char *const kind_names[] = {
     [EO_FIELD_NUMBER] = "number",   [EO_FIELD_INTEGER] = "integer", [EO_FIELD_SEED] = "seed",
@@ -48,10 +48,10 @@ static bool is_numeric(const struct eo_field *field)
 }
 
 /* Ranges without an end are left out; a whole number reads 17, not 17.0. */
-static void put_bound(struct eo_result_object *o, const char *key, double bound)
+static void put_bound(struct eo_object *o, const char *key, double bound)
 {
   if (isfinite(bound))
-    eo_result_put(o, key,
+    eo_object_put(o, key,
                   fabs(bound) < 1e15 && bound == floor(bound) ? json_integer((json_int_t)bound) : json_real(bound));
 }
 
@@ -71,7 +71,7 @@ static json_t *list_choices(const struct eo_field *field)
 
 static json_t *list_fields(const struct eo_table *table);
 
-static void put_range(struct eo_result_object *o, const struct eo_field *field)
+static void put_range(struct eo_object *o, const struct eo_field *field)
 {
   bool rows = field->kind == EO_FIELD_LIST || field->kind == EO_FIELD_SERIES;
   if (is_numeric(field) || rows) {
@@ -83,34 +83,34 @@ static void put_range(struct eo_result_object *o, const struct eo_field *field)
     put_bound(o, "number_high", field->series_high);
   }
   if (field->kind == EO_FIELD_NUMBERS || field->kind == EO_FIELD_LIST)
-    eo_result_put(o, "count", json_integer(field->count));
+    eo_object_put(o, "count", json_integer(field->count));
   if (field->kind == EO_FIELD_TEXT)
-    eo_result_put(o, "count", json_integer(field->count - 1));
+    eo_object_put(o, "count", json_integer(field->count - 1));
 }
 
 static json_t *encode_field(const struct eo_field *field, const json_t *defaults)
 {
-  struct eo_result_object o = eo_result_open();
-  eo_result_put(&o, "key", json_string(field->key));
-  eo_result_put(&o, "kind", json_string(kind_names[field->kind]));
+  struct eo_object o = eo_object_open();
+  eo_object_put(&o, "key", json_string(field->key));
+  eo_object_put(&o, "kind", json_string(kind_names[field->kind]));
   if (field->unit) {
-    eo_result_put(&o, "unit", json_string(field->unit->suffix));
-    eo_result_put(&o, "symbol", json_string(field->unit->symbol));
+    eo_object_put(&o, "unit", json_string(field->unit->suffix));
+    eo_object_put(&o, "symbol", json_string(field->unit->symbol));
   }
   put_range(&o, field);
   if (has_default(field))
-    eo_result_put(&o, "default", default_of(field, defaults));
+    eo_object_put(&o, "default", default_of(field, defaults));
   if (field->choices)
-    eo_result_put(&o, "choices", list_choices(field));
+    eo_object_put(&o, "choices", list_choices(field));
   if (field->help)
-    eo_result_put(&o, "help", json_string(field->help));
-  eo_result_put(&o, "required", json_boolean(field->flags & EO_FIELD_REQUIRED));
-  eo_result_put(&o, "nullable", json_boolean(field->flags & EO_FIELD_NULLABLE));
+    eo_object_put(&o, "help", json_string(field->help));
+  eo_object_put(&o, "required", json_boolean(field->flags & EO_FIELD_REQUIRED));
+  eo_object_put(&o, "nullable", json_boolean(field->flags & EO_FIELD_NULLABLE));
   if (field->derived)
-    eo_result_put(&o, "derived", json_string(field->derived));
+    eo_object_put(&o, "derived", json_string(field->derived));
   if (field->table)
-    eo_result_put(&o, "fields", list_fields(field->table));
-  return eo_result_close(&o);
+    eo_object_put(&o, "fields", list_fields(field->table));
+  return eo_object_close(&o);
 }
 
 static json_t *list_fields(const struct eo_table *table)
@@ -128,20 +128,20 @@ static json_t *list_fields(const struct eo_table *table)
 
 json_t *eo_table_fields(const struct eo_table *table)
 {
-  struct eo_result_object o = eo_result_open();
-  eo_result_put(&o, "name", json_string(table->name));
-  eo_result_put(&o, "fields", list_fields(table));
-  return eo_result_close(&o);
+  struct eo_object o = eo_object_open();
+  eo_object_put(&o, "name", json_string(table->name));
+  eo_object_put(&o, "fields", list_fields(table));
+  return eo_object_close(&o);
 }
 
 /* ---- JSON Schema ---- */
 
-static void put_type(struct eo_result_object *o, const char *type, bool nullable)
+static void put_type(struct eo_object *o, const char *type, bool nullable)
 {
-  eo_result_put(o, "type", nullable ? json_pack("[s,s]", type, "null") : json_string(type));
+  eo_object_put(o, "type", nullable ? json_pack("[s,s]", type, "null") : json_string(type));
 }
 
-static void put_number(struct eo_result_object *o, const struct eo_field *field, double low, double high, bool nullable,
+static void put_number(struct eo_object *o, const struct eo_field *field, double low, double high, bool nullable,
                        bool input)
 {
   put_type(o, is_whole(field) ? "integer" : "number", nullable);
@@ -154,38 +154,38 @@ static void put_number(struct eo_result_object *o, const struct eo_field *field,
 /* Numbers of an array that is written may be missing one by one. */
 static json_t *number_items(const struct eo_field *field, double low, double high, bool input)
 {
-  struct eo_result_object o = eo_result_open();
+  struct eo_object o = eo_object_open();
   put_number(&o, field, low, high, !input, input);
-  return eo_result_close(&o);
+  return eo_object_close(&o);
 }
 
-static void put_text(struct eo_result_object *o, const struct eo_field *field)
+static void put_text(struct eo_object *o, const struct eo_field *field)
 {
   put_type(o, "string", false);
   if (field->choices)
-    eo_result_put(o, "enum", list_choices(field));
+    eo_object_put(o, "enum", list_choices(field));
   else
-    eo_result_put(o, "maxLength", json_integer(field->count - 1));
+    eo_object_put(o, "maxLength", json_integer(field->count - 1));
 }
 
-static void put_array(struct eo_result_object *o, const struct eo_field *field, json_t *items, double low, double high)
+static void put_array(struct eo_object *o, const struct eo_field *field, json_t *items, double low, double high)
 {
   put_type(o, "array", field->flags & EO_FIELD_NULLABLE);
-  eo_result_put(o, "items", items);
+  eo_object_put(o, "items", items);
   put_bound(o, "minItems", low);
   put_bound(o, "maxItems", high);
 }
 
-static void put_object(struct eo_result_object *o, const struct eo_table *table, bool nullable, bool input);
+static void put_object(struct eo_object *o, const struct eo_table *table, bool nullable, bool input);
 
 static json_t *row_schema(const struct eo_table *table, bool input)
 {
-  struct eo_result_object o = eo_result_open();
+  struct eo_object o = eo_object_open();
   put_object(&o, table, false, input);
-  return eo_result_close(&o);
+  return eo_object_close(&o);
 }
 
-static void put_constraints(struct eo_result_object *o, const struct eo_field *field, bool input)
+static void put_constraints(struct eo_object *o, const struct eo_field *field, bool input)
 {
   bool nullable = field->flags & EO_FIELD_NULLABLE || (!input && field->kind == EO_FIELD_NUMBER);
   switch (field->kind) {
@@ -220,17 +220,17 @@ static void put_constraints(struct eo_result_object *o, const struct eo_field *f
 
 static json_t *property(const struct eo_field *field, const json_t *defaults, bool input)
 {
-  struct eo_result_object o = eo_result_open();
+  struct eo_object o = eo_object_open();
   put_constraints(&o, field, input);
   if (field->help && field->derived)
-    eo_result_put(&o, "description", json_sprintf("%s; null: %s", field->help, field->derived));
+    eo_object_put(&o, "description", json_sprintf("%s; null: %s", field->help, field->derived));
   else if (field->help)
-    eo_result_put(&o, "description", json_string(field->help));
+    eo_object_put(&o, "description", json_string(field->help));
   if (field->unit)
-    eo_result_put(&o, "x-unit", json_string(field->unit->symbol));
+    eo_object_put(&o, "x-unit", json_string(field->unit->symbol));
   if (input && has_default(field))
-    eo_result_put(&o, "default", default_of(field, defaults));
-  return eo_result_close(&o);
+    eo_object_put(&o, "default", default_of(field, defaults));
+  return eo_object_close(&o);
 }
 
 /* An object that is absent is read as an empty one, in which a required key is missing. */
@@ -244,22 +244,22 @@ static bool must_be_there(const struct eo_field *field)
   return required;
 }
 
-static void put_object(struct eo_result_object *o, const struct eo_table *table, bool nullable, bool input)
+static void put_object(struct eo_object *o, const struct eo_table *table, bool nullable, bool input)
 {
   json_t *required = json_array(), *defaults = encode_defaults(table);
-  struct eo_result_object properties = eo_result_open();
+  struct eo_object properties = eo_object_open();
   o->failed = o->failed || !required || !defaults;
   put_type(o, "object", nullable);
   for (int i = 0; i < table->count && !o->failed; i++) {
     const struct eo_field *field = &table->field[i];
-    eo_result_put(&properties, field->key, property(field, defaults, input));
+    eo_object_put(&properties, field->key, property(field, defaults, input));
     if (input ? must_be_there(field) : !(field->flags & (EO_FIELD_OMIT | EO_FIELD_SOMETIMES)))
       o->failed = json_array_append_new(required, json_string(field->key)) != 0;
   }
-  eo_result_put(o, "properties", eo_result_close(&properties));
+  eo_object_put(o, "properties", eo_object_close(&properties));
   if (json_array_size(required))
-    eo_result_put(o, "required", json_incref(required));
-  eo_result_put(o, "additionalProperties", json_false());
+    eo_object_put(o, "required", json_incref(required));
+  eo_object_put(o, "additionalProperties", json_false());
   json_decref(required);
   json_decref(defaults);
 }

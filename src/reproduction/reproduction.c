@@ -97,34 +97,34 @@ static json_t *encode_summary(const struct reproduction *r)
   json_t *array = json_array();
   for (int law = 0; law < LAWS; law++)
     for (int i = 0; i < VARIANTS && array; i++) {
-      struct eo_result_object o = eo_result_open();
+      struct eo_object o = eo_object_open();
       json_t *cases = json_array();
-      eo_result_put(&o, "design", json_string(eo_reproduction_variant[i]));
-      eo_result_put(&o, "mesh_law", json_string(laws[law]));
+      eo_object_put(&o, "design", json_string(eo_reproduction_variant[i]));
+      eo_object_put(&o, "mesh_law", json_string(laws[law]));
       eo_result_put_value(&o, &r->value[law][i]);
       for (int k = 0; k < TORQUES; k++)
         json_array_append_new(cases, eo_result_raw_case(&r->design[i]->load_case[k], &r->raw[law][i][k]));
-      eo_result_put(&o, "load_cases", cases);
-      json_array_append_new(array, eo_result_close(&o));
+      eo_object_put(&o, "load_cases", cases);
+      json_array_append_new(array, eo_object_close(&o));
     }
   return array;
 }
 
 static json_t *encode(const struct reproduction *r, json_t *sensitivity, double seconds)
 {
-  struct eo_result_object o = eo_result_open();
-  eo_result_put(&o, "program", json_string(PACKAGE_STRING));
-  eo_result_put(&o, "quick", json_boolean(r->plan->quick));
-  eo_result_put(&o, "design", eo_design_encode(r->design[UNMODIFIED]));
-  eo_result_put(&o, "table_3", eo_reproduction_table(r));
-  eo_result_put(&o, "results", encode_summary(r));
-  eo_result_put(&o, "comparisons", eo_reproduction_comparisons(r));
-  eo_result_put(&o, "optimizations", json_incref(r->optimizations));
-  eo_result_put(&o, "figures", json_incref(r->figures));
-  eo_result_put(&o, "sensitivity", sensitivity);
-  eo_result_put(&o, "readings", eo_reproduction_readings());
-  eo_result_put(&o, "run", json_pack("{s:f}", "wall_s", round(1e3 * seconds) / 1e3));
-  return eo_result_close(&o);
+  struct eo_object o = eo_object_open();
+  eo_object_put(&o, "program", json_string(PACKAGE_STRING));
+  eo_object_put(&o, "quick", json_boolean(r->plan->quick));
+  eo_object_put(&o, "design", eo_design_encode(r->design[UNMODIFIED]));
+  eo_object_put(&o, "table_3", eo_reproduction_table(r));
+  eo_object_put(&o, "results", encode_summary(r));
+  eo_object_put(&o, "comparisons", eo_reproduction_comparisons(r));
+  eo_object_put(&o, "optimizations", json_incref(r->optimizations));
+  eo_object_put(&o, "figures", json_incref(r->figures));
+  eo_object_put(&o, "sensitivity", sensitivity);
+  eo_object_put(&o, "readings", eo_reproduction_readings());
+  eo_object_put(&o, "run", json_pack("{s:f}", "wall_s", round(1e3 * seconds) / 1e3));
+  return eo_object_close(&o);
 }
 
 static double wall(void)

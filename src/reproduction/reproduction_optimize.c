@@ -40,7 +40,7 @@ static void set_up(const struct reproduction *r, struct eo_design *design, int a
 
 static json_t *encode_run(const struct eo_study_result *s, const char *case_name, const char *algorithm)
 {
-  struct eo_result_object o = eo_result_open();
+  struct eo_object o = eo_object_open();
   json_t *values = json_object(), *best = json_array();
   bool there = s->best.there;
   for (int i = 0; i < s->space.count && there; i++) {
@@ -49,16 +49,16 @@ static json_t *encode_run(const struct eo_study_result *s, const char *case_name
     json_object_set_new(values, name, json_real(eo_study_variable_value(&s->space.variable[i], &s->best.modification)));
   }
   for (int i = 0; i < s->generations; i++)
-    json_array_append_new(best, eo_result_number(s->generation[i].best, NULL));
-  eo_result_put(&o, "case", json_string(case_name));
-  eo_result_put(&o, "algorithm", json_string(algorithm));
+    json_array_append_new(best, eo_json_quantity(s->generation[i].best, NULL));
+  eo_object_put(&o, "case", json_string(case_name));
+  eo_object_put(&o, "algorithm", json_string(algorithm));
   eo_result_put_value(&o, &s->best.value);
-  eo_result_put(&o, "true_evaluations", json_integer(s->true_evaluations));
-  eo_result_put(&o, "individuals", json_integer(s->individuals));
-  eo_result_put(&o, "pfc_percent", eo_result_number(100. * s->true_evaluations / s->individuals, NULL));
-  eo_result_put(&o, "variables", values);
-  eo_result_put(&o, "best_by_generation", best);
-  return eo_result_close(&o);
+  eo_object_put(&o, "true_evaluations", json_integer(s->true_evaluations));
+  eo_object_put(&o, "individuals", json_integer(s->individuals));
+  eo_object_put(&o, "pfc_percent", eo_json_quantity(100. * s->true_evaluations / s->individuals, NULL));
+  eo_object_put(&o, "variables", values);
+  eo_object_put(&o, "best_by_generation", best);
+  return eo_object_close(&o);
 }
 
 /* PFC so far and best J over true evaluations, generation by generation. */

@@ -19,15 +19,15 @@ static const double POINTS = 10, LEVEL = 0.1;
 static json_t *four(double a, double left, double right, const char *key, json_t *own_a, json_t *own_left,
                     json_t *own_right)
 {
-  struct eo_result_object o = eo_result_open();
-  eo_result_put(&o, "parameter", json_string(key));
-  eo_result_put(&o, "printed_case_a", json_real(a));
-  eo_result_put(&o, "printed_case_b_left", json_real(left));
-  eo_result_put(&o, "printed_case_b_right", json_real(right));
-  eo_result_put(&o, "ours_case_a", own_a);
-  eo_result_put(&o, "ours_case_b_left", own_left);
-  eo_result_put(&o, "ours_case_b_right", own_right);
-  return eo_result_close(&o);
+  struct eo_object o = eo_object_open();
+  eo_object_put(&o, "parameter", json_string(key));
+  eo_object_put(&o, "printed_case_a", json_real(a));
+  eo_object_put(&o, "printed_case_b_left", json_real(left));
+  eo_object_put(&o, "printed_case_b_right", json_real(right));
+  eo_object_put(&o, "ours_case_a", own_a);
+  eo_object_put(&o, "ours_case_b_left", own_left);
+  eo_object_put(&o, "ours_case_b_right", own_right);
+  return eo_object_close(&o);
 }
 
 static json_t *value_of(const struct reproduction *r, int variant, int end, int row)
@@ -36,7 +36,7 @@ static json_t *value_of(const struct reproduction *r, int variant, int end, int 
   const double value[5] = {1e6 * f->tip_relief, 1e6 * f->root_relief, 1e3 * f->tip_relief_start,
                            1e3 * f->root_relief_start,
                            1e-6 * eo_modification_lead_coefficient(&r->pair->geometry, f->lead_crowning)};
-  return eo_result_number(value[row], NULL);
+  return eo_json_quantity(value[row], NULL);
 }
 
 json_t *eo_reproduction_table(const struct reproduction *r)
@@ -82,17 +82,17 @@ static int agrees(double paper, double ours, bool level)
 static void compare(json_t *array, const char *figure, const char *quantity, const char *unit, double paper,
                     double ours, double secant, int trend, bool level)
 {
-  struct eo_result_object o = eo_result_open();
-  eo_result_put(&o, "figure", json_string(figure));
-  eo_result_put(&o, "quantity", json_string(quantity));
-  eo_result_put(&o, "unit", json_string(unit));
-  eo_result_put(&o, "paper", eo_result_number(paper, NULL));
-  eo_result_put(&o, "ours", eo_result_number(ours, NULL));
-  eo_result_put(&o, "ours_secant_law", eo_result_number(secant, NULL));
-  eo_result_put(&o, "trend_agrees", verdict(trend));
-  eo_result_put(&o, "value_agrees", verdict(agrees(paper, ours, level)));
-  eo_result_put(&o, "value_agrees_secant_law", verdict(agrees(paper, secant, level)));
-  json_array_append_new(array, eo_result_close(&o));
+  struct eo_object o = eo_object_open();
+  eo_object_put(&o, "figure", json_string(figure));
+  eo_object_put(&o, "quantity", json_string(quantity));
+  eo_object_put(&o, "unit", json_string(unit));
+  eo_object_put(&o, "paper", eo_json_quantity(paper, NULL));
+  eo_object_put(&o, "ours", eo_json_quantity(ours, NULL));
+  eo_object_put(&o, "ours_secant_law", eo_json_quantity(secant, NULL));
+  eo_object_put(&o, "trend_agrees", verdict(trend));
+  eo_object_put(&o, "value_agrees", verdict(agrees(paper, ours, level)));
+  eo_object_put(&o, "value_agrees_secant_law", verdict(agrees(paper, secant, level)));
+  json_array_append_new(array, eo_object_close(&o));
 }
 
 static void compare_rms(json_t *array, const struct reproduction *r)

@@ -131,33 +131,33 @@ static enum eo_code evaluate(struct eo_evaluator *evaluator, const struct eo_des
 static json_t *encode_row(const struct alternative *a, const struct eo_design *design,
                           const struct eo_objective_case raw[2][TORQUES])
 {
-  struct eo_result_object o = eo_result_open();
+  struct eo_object o = eo_object_open();
   struct eo_objective_value value;
   json_t *unmodified = json_array(), *modified = json_array(), *reduction = json_array(), *transmission = json_array(),
          *impact = json_array();
   json_t *force[2] = {json_array(), json_array()};
   eo_objective_value(&design->objective, TORQUES, design->load_case, raw[1], raw[0], false, &value);
   for (int k = 0; k < TORQUES; k++) {
-    json_array_append_new(unmodified, eo_result_number(raw[0][k].failed ? NAN : raw[0][k].rms, NULL));
-    json_array_append_new(modified, eo_result_number(raw[1][k].failed ? NAN : raw[1][k].rms, NULL));
-    json_array_append_new(reduction, eo_result_number(100 * (1 - raw[1][k].rms / raw[0][k].rms), NULL));
+    json_array_append_new(unmodified, eo_json_quantity(raw[0][k].failed ? NAN : raw[0][k].rms, NULL));
+    json_array_append_new(modified, eo_json_quantity(raw[1][k].failed ? NAN : raw[1][k].rms, NULL));
+    json_array_append_new(reduction, eo_json_quantity(100 * (1 - raw[1][k].rms / raw[0][k].rms), NULL));
     json_array_append_new(transmission,
-                          eo_result_number(100 * (1 - raw[1][k].peak_to_peak / raw[0][k].peak_to_peak), NULL));
+                          eo_json_quantity(100 * (1 - raw[1][k].peak_to_peak / raw[0][k].peak_to_peak), NULL));
     for (int i = 0; i < 2; i++)
-      json_array_append_new(force[i], eo_result_number(raw[i][k].impact, NULL));
-    json_array_append_new(impact, eo_result_number(100 * (1 - raw[1][k].impact / raw[0][k].impact), NULL));
+      json_array_append_new(force[i], eo_json_quantity(raw[i][k].impact, NULL));
+    json_array_append_new(impact, eo_json_quantity(100 * (1 - raw[1][k].impact / raw[0][k].impact), NULL));
   }
-  eo_result_put(&o, "assumption", json_string(a->assumption));
-  eo_result_put(&o, "value", json_string(a->value));
-  eo_result_put(&o, "rms_unmodified_m_per_s2", unmodified);
-  eo_result_put(&o, "rms_case_a_m_per_s2", modified);
-  eo_result_put(&o, "impact_unmodified_N", force[0]);
-  eo_result_put(&o, "impact_case_a_N", force[1]);
-  eo_result_put(&o, "rms_reduction_percent", reduction);
-  eo_result_put(&o, "lte_reduction_percent", transmission);
-  eo_result_put(&o, "impact_reduction_percent", impact);
-  eo_result_put(&o, "J_case_a", eo_result_number(value.objective, NULL));
-  return eo_result_close(&o);
+  eo_object_put(&o, "assumption", json_string(a->assumption));
+  eo_object_put(&o, "value", json_string(a->value));
+  eo_object_put(&o, "rms_unmodified_m_per_s2", unmodified);
+  eo_object_put(&o, "rms_case_a_m_per_s2", modified);
+  eo_object_put(&o, "impact_unmodified_N", force[0]);
+  eo_object_put(&o, "impact_case_a_N", force[1]);
+  eo_object_put(&o, "rms_reduction_percent", reduction);
+  eo_object_put(&o, "lte_reduction_percent", transmission);
+  eo_object_put(&o, "impact_reduction_percent", impact);
+  eo_object_put(&o, "J_case_a", eo_json_quantity(value.objective, NULL));
+  return eo_object_close(&o);
 }
 
 /* The pair at hand where it serves, else one made for this alternative. */

@@ -26,10 +26,10 @@ static const struct eo_outline best_outline = EO_OUTLINE("JobPoint", best_rows);
 
 static json_t *encode_point(const struct eo_study_point *point)
 {
-  struct eo_result_object o = eo_result_open_as(&best_outline);
+  struct eo_object o = eo_object_open_as(&best_outline);
   eo_result_put_value(&o, &point->value);
-  eo_result_put(&o, "modification", eo_table_encode(&eo_modification_table, &point->modification));
-  return eo_result_close(&o);
+  eo_object_put(&o, "modification", eo_table_encode(&eo_modification_table, &point->modification));
+  return eo_object_close(&o);
 }
 
 /* Without memory the history ends early: it is there to be looked at. */
@@ -118,28 +118,28 @@ static const struct eo_outline progress_outline = EO_OUTLINE("JobProgress", prog
 
 static json_t *encode_progress(const struct eo_job_live *live)
 {
-  struct eo_result_object o = eo_result_open_as(&progress_outline);
+  struct eo_object o = eo_object_open_as(&progress_outline);
   bool known = live->study;
-  eo_result_put_number(&o, "fraction", live->fraction);
-  eo_result_put(&o, "what", json_string(live->what));
-  eo_result_put(&o, "generation", whole(known, live->generation));
-  eo_result_put(&o, "true_evaluations", whole(known, live->true_evaluations));
-  eo_result_put(&o, "predicted", whole(known, live->predicted));
-  eo_result_put(&o, "reused", whole(known, live->reused));
-  eo_result_put(&o, "individuals", whole(known, live->individuals));
-  eo_result_put_number(&o, "pfc_percent", known ? pfc_percent(live->true_evaluations, live->individuals) : NAN);
-  eo_result_put_number(&o, "seconds", known ? live->seconds : NAN);
-  eo_result_put_number(&o, "seconds_left", known ? live->seconds_left : NAN);
-  return eo_result_close(&o);
+  eo_object_put_number(&o, "fraction", live->fraction);
+  eo_object_put(&o, "what", json_string(live->what));
+  eo_object_put(&o, "generation", whole(known, live->generation));
+  eo_object_put(&o, "true_evaluations", whole(known, live->true_evaluations));
+  eo_object_put(&o, "predicted", whole(known, live->predicted));
+  eo_object_put(&o, "reused", whole(known, live->reused));
+  eo_object_put(&o, "individuals", whole(known, live->individuals));
+  eo_object_put_number(&o, "pfc_percent", known ? pfc_percent(live->true_evaluations, live->individuals) : NAN);
+  eo_object_put_number(&o, "seconds", known ? live->seconds : NAN);
+  eo_object_put_number(&o, "seconds_left", known ? live->seconds_left : NAN);
+  return eo_object_close(&o);
 }
 
 json_t *eo_job_live_encode(const struct eo_job_live *live)
 {
-  struct eo_result_object o = eo_result_open();
-  eo_result_put(&o, "progress", encode_progress(live));
-  eo_result_put(&o, "best", live->best ? json_deep_copy(live->best) : json_null());
-  eo_result_put(&o, "unmodified", live->unmodified ? json_deep_copy(live->unmodified) : json_null());
-  return eo_result_close(&o);
+  struct eo_object o = eo_object_open();
+  eo_object_put(&o, "progress", encode_progress(live));
+  eo_object_put(&o, "best", live->best ? json_deep_copy(live->best) : json_null());
+  eo_object_put(&o, "unmodified", live->unmodified ? json_deep_copy(live->unmodified) : json_null());
+  return eo_object_close(&o);
 }
 
 static json_t *parse(const char *text)
@@ -160,14 +160,14 @@ static json_t *encode_columns(const struct eo_stored_job *job)
                              .seconds_left = NAN};
   json_t *document = eo_job_live_encode(&live);
   json_t *progress = json_object_get(document, "progress");
-  struct eo_result_object best = eo_result_open_as(&best_outline);
+  struct eo_object best = eo_object_open_as(&best_outline);
   for (const char *const *key = (const char *const[]){"generation", "predicted", "reused", NULL}; *key && progress;
        key++)
     json_object_set_new(progress, *key, json_null());
   eo_result_put_value(&best, &(struct eo_objective_value){
                                  .sums.failed = true, .objective = job->best_value, .fitness = NAN, .violation = NAN});
-  eo_result_put(&best, "modification", json_null());
-  json_t *value = eo_result_close(&best);
+  eo_object_put(&best, "modification", json_null());
+  json_t *value = eo_object_close(&best);
   if (isfinite(job->best_value) && value)
     json_object_set(document, "best", value);
   json_decref(value);
@@ -183,7 +183,7 @@ static void put_counts(json_t *progress, const struct eo_stored_job *job)
   json_object_set_new(progress, "true_evaluations", json_integer(job->true_evaluations));
   json_object_set_new(progress, "individuals", json_integer(job->individuals));
   json_object_set_new(progress, "pfc_percent",
-                      eo_result_number(pfc_percent(job->true_evaluations, job->individuals), NULL));
+                      eo_json_quantity(pfc_percent(job->true_evaluations, job->individuals), NULL));
 }
 
 static json_t *text_or_null(const char *text)
@@ -200,12 +200,12 @@ static const struct eo_outline error_outline = EO_OUTLINE("JobError", error_rows
 /* What names files of this machine is not for those who read the job. */
 json_t *eo_job_error_encode(const struct eo_error *error)
 {
-  struct eo_result_object o = eo_result_open_as(&error_outline);
-  eo_result_put(
+  struct eo_object o = eo_object_open_as(&error_outline);
+  eo_object_put(
       &o, "detail",
       json_string(error->code == EO_ERROR_FILE ? "The server's data cannot be read or written." : error->text));
-  eo_result_put(&o, "pointer", json_string(error->pointer));
-  return eo_result_close(&o);
+  eo_object_put(&o, "pointer", json_string(error->pointer));
+  return eo_object_close(&o);
 }
 
 static const struct eo_outline_row job_rows[] = {
@@ -235,40 +235,40 @@ const struct eo_outline eo_job_outline = EO_OUTLINE("Job", job_rows);
 
 json_t *eo_job_encode(const struct eo_stored_job *job, const struct eo_job_live *live, bool with_design)
 {
-  struct eo_result_object o = eo_result_open_as(&eo_job_outline);
+  struct eo_object o = eo_object_open_as(&eo_job_outline);
   json_t *kept = live ? eo_job_live_encode(live) : parse(job->progress), *fault = parse(job->error),
          *design = with_design ? parse(job->design) : NULL;
   if (!kept)
     kept = encode_columns(job);
   if (!live)
     put_counts(json_object_get(kept, "progress"), job);
-  eo_result_put(&o, "id", json_integer(job->id));
-  eo_result_put(&o, "kind", json_string(eo_store_job_kind_name(job->kind)));
-  eo_result_put(&o, "name", json_string(job->name));
-  eo_result_put(&o, "algorithm", text_or_null(job->algorithm));
-  eo_result_put(&o, "state", json_string(eo_store_job_state_name(live ? live->state : job->state)));
-  eo_result_put(&o, "stopping",
+  eo_object_put(&o, "id", json_integer(job->id));
+  eo_object_put(&o, "kind", json_string(eo_store_job_kind_name(job->kind)));
+  eo_object_put(&o, "name", json_string(job->name));
+  eo_object_put(&o, "algorithm", text_or_null(job->algorithm));
+  eo_object_put(&o, "state", json_string(eo_store_job_state_name(live ? live->state : job->state)));
+  eo_object_put(&o, "stopping",
                 json_boolean(job->stop && (live || job->state == EO_JOB_PREPARING || job->state == EO_JOB_RUNNING)));
-  eo_result_put(&o, "stopped", text_or_null(job->stopped));
-  eo_result_put(&o, "has_result", json_boolean(!live && *job->result));
-  eo_result_put(&o, "priority", json_integer(job->priority));
-  eo_result_put(&o, "fresh", json_boolean(job->fresh));
-  eo_result_put(&o, "attempts", json_integer(job->attempts));
-  eo_result_put(&o, "created", json_string(job->created));
-  eo_result_put(&o, "started", text_or_null(job->started));
-  eo_result_put(&o, "finished", live ? json_null() : text_or_null(job->finished));
-  eo_result_put(&o, "updated", json_string(job->updated));
+  eo_object_put(&o, "stopped", text_or_null(job->stopped));
+  eo_object_put(&o, "has_result", json_boolean(!live && *job->result));
+  eo_object_put(&o, "priority", json_integer(job->priority));
+  eo_object_put(&o, "fresh", json_boolean(job->fresh));
+  eo_object_put(&o, "attempts", json_integer(job->attempts));
+  eo_object_put(&o, "created", json_string(job->created));
+  eo_object_put(&o, "started", text_or_null(job->started));
+  eo_object_put(&o, "finished", live ? json_null() : text_or_null(job->finished));
+  eo_object_put(&o, "updated", json_string(job->updated));
   for (const char *const *key = (const char *const[]){"progress", "best", "unmodified", NULL}; *key; key++) {
     json_t *value = json_object_get(kept, *key);
-    eo_result_put(&o, *key, value ? json_incref(value) : json_null());
+    eo_object_put(&o, *key, value ? json_incref(value) : json_null());
   }
-  eo_result_put(&o, "error", fault ? json_incref(fault) : json_null());
+  eo_object_put(&o, "error", fault ? json_incref(fault) : json_null());
   if (with_design)
-    eo_result_put(&o, "design", design ? json_incref(design) : NULL);
+    eo_object_put(&o, "design", design ? json_incref(design) : NULL);
   json_decref(kept);
   json_decref(fault);
   json_decref(design);
-  return eo_result_close(&o);
+  return eo_object_close(&o);
 }
 
 /* ---- convergence ---- */
@@ -305,11 +305,11 @@ static void add(struct columns *c, int column, json_t *value)
 
 static json_t *close_columns(struct columns *c)
 {
-  struct eo_result_object o = eo_result_open_as(&eo_job_generations_outline);
+  struct eo_object o = eo_object_open_as(&eo_job_generations_outline);
   o.failed = o.failed || c->failed;
   for (int i = 0; i < COLUMNS; i++)
-    eo_result_put(&o, generation_rows[i].key, c->array[i]);
-  return eo_result_close(&o);
+    eo_object_put(&o, generation_rows[i].key, c->array[i]);
+  return eo_object_close(&o);
 }
 
 json_t *eo_job_live_generations(const struct eo_job_live *live)
@@ -321,11 +321,11 @@ json_t *eo_job_live_generations(const struct eo_job_live *live)
     evaluated += g->true_count;
     individuals += g->individuals;
     add(&c, GENERATION, json_integer(i));
-    add(&c, BEST, eo_result_number(g->best, NULL));
+    add(&c, BEST, eo_json_quantity(g->best, NULL));
     add(&c, MEAN, json_null());
     add(&c, TRUE_EVALUATIONS, json_integer(g->true_count));
     add(&c, PREDICTED, json_integer(g->predicted));
-    add(&c, PFC, eo_result_number(pfc_percent(evaluated, individuals), NULL));
+    add(&c, PFC, eo_json_quantity(pfc_percent(evaluated, individuals), NULL));
   }
   return close_columns(&c);
 }
@@ -346,7 +346,7 @@ json_t *eo_job_result_generations(const json_t *result)
     add(&c, MEAN, json_incref(json_object_get(g, "mean")));
     add(&c, TRUE_EVALUATIONS, json_incref(json_object_get(g, "true")));
     add(&c, PREDICTED, json_incref(json_object_get(g, "predicted")));
-    add(&c, PFC, eo_result_number(100 * evaluated / individuals, NULL));
+    add(&c, PFC, eo_json_quantity(100 * evaluated / individuals, NULL));
   }
   return close_columns(&c);
 }

@@ -105,16 +105,16 @@ const struct eo_outline eo_job_history_outline = EO_OUTLINE("JobHistoryRow", his
 static json_t *encode(const struct eo_stored_candidate *c, const struct eo_stored_evaluation *row,
                       const struct eo_objective_value *value, struct eo_error *error)
 {
-  struct eo_result_object o = eo_result_open_as(&eo_job_history_outline);
-  eo_result_put(&o, "ordinal", json_integer(c->ordinal));
-  eo_result_put(&o, "generation", json_integer(c->generation));
-  eo_result_put(&o, "individual", json_integer(c->individual));
-  eo_result_put(&o, "outcome", json_string(eo_store_outcome_name(row->outcome)));
-  eo_result_put(&o, "reason", json_string(row->reason));
-  eo_result_put(&o, "modification", eo_json_parse(row->modification, strlen(row->modification), error));
+  struct eo_object o = eo_object_open_as(&eo_job_history_outline);
+  eo_object_put(&o, "ordinal", json_integer(c->ordinal));
+  eo_object_put(&o, "generation", json_integer(c->generation));
+  eo_object_put(&o, "individual", json_integer(c->individual));
+  eo_object_put(&o, "outcome", json_string(eo_store_outcome_name(row->outcome)));
+  eo_object_put(&o, "reason", json_string(row->reason));
+  eo_object_put(&o, "modification", eo_json_parse(row->modification, strlen(row->modification), error));
   eo_result_put_value(&o, value);
-  eo_result_put(&o, "reused", json_boolean(c->reused));
-  return eo_result_close(&o);
+  eo_object_put(&o, "reused", json_boolean(c->reused));
+  return eo_object_close(&o);
 }
 
 static enum eo_code add_row(struct history *h, const struct eo_stored_candidate *c, struct eo_text *text,

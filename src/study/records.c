@@ -32,16 +32,16 @@ static const struct eo_outline problem_outline = EO_OUTLINE("HistoryProblem", pr
 
 static enum eo_code add_problem(void *context, const struct eo_stored_problem *p, struct eo_error *error)
 {
-  struct eo_result_object o = eo_result_open_as(&problem_outline);
-  eo_result_put(&o, "id", json_integer(p->id));
-  eo_result_put(&o, "hash", json_string(p->hash));
-  eo_result_put(&o, "name", json_string(p->name));
-  eo_result_put(&o, "evaluator", json_integer(p->evaluator));
-  eo_result_put(&o, "evaluations", json_integer(p->evaluations));
-  eo_result_put(&o, "failed", json_integer(p->failed));
-  eo_result_put_number(&o, "cost_s", p->cost);
-  eo_result_put(&o, "created", json_string(p->created));
-  return append(context, eo_result_close(&o), error);
+  struct eo_object o = eo_object_open_as(&problem_outline);
+  eo_object_put(&o, "id", json_integer(p->id));
+  eo_object_put(&o, "hash", json_string(p->hash));
+  eo_object_put(&o, "name", json_string(p->name));
+  eo_object_put(&o, "evaluator", json_integer(p->evaluator));
+  eo_object_put(&o, "evaluations", json_integer(p->evaluations));
+  eo_object_put(&o, "failed", json_integer(p->failed));
+  eo_object_put_number(&o, "cost_s", p->cost);
+  eo_object_put(&o, "created", json_string(p->created));
+  return append(context, eo_object_close(&o), error);
 }
 
 static const struct eo_outline_row job_rows[] = {
@@ -77,22 +77,22 @@ static enum eo_code add_job(void *context, const struct eo_stored_job *j, struct
 {
   struct job_list *list = context;
   bool taken = j->state != EO_JOB_RUNNING || eo_store_job_is_taken(list->store, j->id);
-  struct eo_result_object o = eo_result_open_as(&job_outline);
-  eo_result_put(&o, "id", json_integer(j->id));
-  eo_result_put(&o, "kind", json_string(eo_store_job_kind_name(j->kind)));
-  eo_result_put(&o, "problem", j->problem ? json_integer(j->problem) : json_null());
-  eo_result_put(&o, "name", json_string(j->name));
-  eo_result_put(&o, "algorithm", json_string(j->algorithm));
-  eo_result_put(&o, "state", json_string(taken ? eo_store_job_state_name(j->state) : "interrupted"));
-  eo_result_put(&o, "stopped", json_string(j->stopped));
-  eo_result_put(&o, "true_evaluations", json_integer(j->true_evaluations));
-  eo_result_put(&o, "individuals", json_integer(j->individuals));
-  eo_result_put_number(&o, "pfc_percent", j->individuals ? 100. * j->true_evaluations / j->individuals : NAN);
-  eo_result_put_number(&o, "best_value", j->best_value);
-  eo_result_put(&o, "has_result", json_boolean(*j->result));
-  eo_result_put(&o, "created", json_string(j->created));
-  eo_result_put(&o, "updated", json_string(j->updated));
-  return append(list->array, eo_result_close(&o), error);
+  struct eo_object o = eo_object_open_as(&job_outline);
+  eo_object_put(&o, "id", json_integer(j->id));
+  eo_object_put(&o, "kind", json_string(eo_store_job_kind_name(j->kind)));
+  eo_object_put(&o, "problem", j->problem ? json_integer(j->problem) : json_null());
+  eo_object_put(&o, "name", json_string(j->name));
+  eo_object_put(&o, "algorithm", json_string(j->algorithm));
+  eo_object_put(&o, "state", json_string(taken ? eo_store_job_state_name(j->state) : "interrupted"));
+  eo_object_put(&o, "stopped", json_string(j->stopped));
+  eo_object_put(&o, "true_evaluations", json_integer(j->true_evaluations));
+  eo_object_put(&o, "individuals", json_integer(j->individuals));
+  eo_object_put_number(&o, "pfc_percent", j->individuals ? 100. * j->true_evaluations / j->individuals : NAN);
+  eo_object_put_number(&o, "best_value", j->best_value);
+  eo_object_put(&o, "has_result", json_boolean(*j->result));
+  eo_object_put(&o, "created", json_string(j->created));
+  eo_object_put(&o, "updated", json_string(j->updated));
+  return append(list->array, eo_object_close(&o), error);
 }
 
 enum eo_code eo_records_list(struct eo_store *store, json_t **document, struct eo_error *error)
@@ -103,10 +103,10 @@ enum eo_code eo_records_list(struct eo_store *store, json_t **document, struct e
                                        : eo_error_memory(error);
   if (!code)
     code = eo_store_each_job(store, 0, add_job, &list, error);
-  struct eo_result_object o = eo_result_open_as(&eo_records_outline);
-  eo_result_put(&o, "problems", problems);
-  eo_result_put(&o, "jobs", jobs);
-  json_t *all = eo_result_close(&o);
+  struct eo_object o = eo_object_open_as(&eo_records_outline);
+  eo_object_put(&o, "problems", problems);
+  eo_object_put(&o, "jobs", jobs);
+  json_t *all = eo_object_close(&o);
   if (!code && !all)
     code = eo_error_memory(error);
   if (code)
@@ -199,16 +199,16 @@ static enum eo_code add_row(void *context, const struct eo_stored_evaluation *e,
                             struct eo_error *error)
 {
   struct row_list *list = context;
-  struct eo_result_object o = eo_result_open();
+  struct eo_object o = eo_object_open();
   (void)x;
   (void)size;
-  eo_result_put(&o, "id", json_integer(e->id));
-  eo_result_put(&o, "outcome", json_string(eo_store_outcome_name(e->outcome)));
-  eo_result_put(&o, "reason", json_string(e->reason));
-  eo_result_put(&o, "cost_s", eo_result_number(e->cost, NULL));
-  eo_result_put(&o, "modification", eo_json_parse(e->modification, strlen(e->modification), error));
-  eo_result_put(&o, "scenarios", encode_scenarios(list, e->raw));
-  return append(list->rows, eo_result_close(&o), error);
+  eo_object_put(&o, "id", json_integer(e->id));
+  eo_object_put(&o, "outcome", json_string(eo_store_outcome_name(e->outcome)));
+  eo_object_put(&o, "reason", json_string(e->reason));
+  eo_object_put(&o, "cost_s", eo_json_quantity(e->cost, NULL));
+  eo_object_put(&o, "modification", eo_json_parse(e->modification, strlen(e->modification), error));
+  eo_object_put(&o, "scenarios", encode_scenarios(list, e->raw));
+  return append(list->rows, eo_object_close(&o), error);
 }
 
 enum eo_code eo_records_rows(struct eo_store *store, int64_t problem, json_t **document, struct eo_error *error)
@@ -219,10 +219,10 @@ enum eo_code eo_records_rows(struct eo_store *store, int64_t problem, json_t **d
     code = eo_error_set(error, EO_ERROR_INPUT, "", "There is no problem %lld.", (long long)problem);
   if (!code)
     code = eo_store_each_evaluation(store, problem, 0, NULL, list.scenarios, list.cases, add_row, &list, error);
-  struct eo_result_object o = eo_result_open();
-  eo_result_put(&o, "problem", list.spec ? list.spec : json_null());
-  eo_result_put(&o, "rows", list.rows);
-  json_t *all = eo_result_close(&o);
+  struct eo_object o = eo_object_open();
+  eo_object_put(&o, "problem", list.spec ? list.spec : json_null());
+  eo_object_put(&o, "rows", list.rows);
+  json_t *all = eo_object_close(&o);
   if (!code && !all)
     code = eo_error_memory(error);
   if (code)

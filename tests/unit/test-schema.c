@@ -225,14 +225,14 @@ static const struct eo_outline outer = EO_OUTLINE("Outer", outer_rows);
 /* Writes these keys in their order; NULL: the outline does not allow it. */
 static json_t *write_keys(const char *keys)
 {
-  struct eo_result_object o = eo_result_open_as(&outer);
+  struct eo_object o = eo_object_open_as(&outer);
   for (; *keys; keys++) {
     if (*keys == 'b')
-      eo_result_put_number(&o, "b", 2e-3);
+      eo_object_put_number(&o, "b", 2e-3);
     else
-      eo_result_put(&o, (const char[]){*keys, 0}, json_integer(1));
+      eo_object_put(&o, (const char[]){*keys, 0}, json_integer(1));
   }
-  return eo_result_close(&o);
+  return eo_object_close(&o);
 }
 
 static void check_writing(void)

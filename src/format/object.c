@@ -1,0 +1,81 @@
+#include "format/object.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "format/json.h"
+#include "format/outline.h"
+
+json_t *eo_json_quantity(double value, const struct eo_unit *unit)
+{
+  json_t *column = eo_json_column(1, &value, 1, unit, EO_DIGITS_NUMBER),
+         *number = json_incref(json_array_get(column, 0));
+  json_decref(column);
+  return number;
+}
+
+json_t *eo_json_column(int count, const double *value, double scale, const struct eo_unit *unit, int digits)
+{
+  double *scaled = malloc(sizeof *scaled * (size_t)(count ? count : 1));
+  for (int i = 0; i < count && scaled; i++)
+    scaled[i] = value[i] * scale;
+  json_t *column = scaled ? eo_json_reals(count, scaled, 1, unit, digits) : NULL;
+  free(scaled);
+  return column;
+}
+
+struct eo_object eo_object_open(void)
+{
+  struct eo_object object = {.json = json_object()};
+  object.failed = !object.json;
+  return object;
+}
+
+struct eo_object eo_object_open_as(const struct eo_outline *outline)
+{
+  struct eo_object object = eo_object_open();
+  object.outline = outline;
+  return object;
+}
+
+/* Steps to the row of a key, NULL: to the end; NULL when a row that is always there would be passed over. */
+static const struct eo_outline_row *step(struct eo_object *object, const char *key)
+{
+  const struct eo_outline_row *row;
+  while ((row = eo_outline_at(object->outline, object->next))) {
+    object->next++;
+    if (key && strcmp(row->key, key) == 0)
+      return row;
+    object->failed = object->failed || !row->when;
+  }
+  object->failed = object->failed || key;
+  return NULL;
+}
+
+void eo_object_put(struct eo_object *object, const char *key, json_t *value)
+{
+  if (object->outline)
+    step(object, key);
+  eo_json_put(object->json, key, value, &object->failed);
+}
+
+void eo_object_put_number(struct eo_object *object, const char *key, double value)
+{
+  const struct eo_outline_row *row = object->outline ? step(object, key) : NULL;
+  eo_json_put(object->json, key, row ? eo_json_quantity(value, row->unit) : NULL, &object->failed);
+}
+
+json_t *eo_object_close_part(struct eo_object *object)
+{
+  if (!object->failed)
+    return object->json;
+  json_decref(object->json);
+  return NULL;
+}
+
+json_t *eo_object_close(struct eo_object *object)
+{
+  if (object->outline)
+    step(object, NULL);
+  return eo_object_close_part(object);
+}
