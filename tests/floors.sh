@@ -3,8 +3,8 @@
 # nothing and reads no environment; each library has its one floor.
 : "${SOURCES:=.}"
 cd "$SOURCES/src" || exit 99
-floors="base numerics gear flexibility contact dynamics optimizer evaluation recording measurement format document store study reproduction service http reference app"
-core="base numerics gear flexibility contact dynamics optimizer evaluation recording measurement"
+floors="base numerics gear flexibility contact dynamics optimizer design evaluation recording measurement format document store study reproduction service http reference app"
+core="base numerics gear flexibility contact dynamics optimizer design evaluation recording measurement"
 count=0 failed=0
 
 result() # status, what
@@ -23,7 +23,7 @@ for floor in $floors; do
   wrong=$(grep -hoE '^ *# *include "[a-z]+/' "$floor"/*.[ch] | sed 's/.*"\(.*\)\//\1/' | sort -u | while read -r used; do
     case " $allowed " in *" $used "*) ;; *) printf ' %s' "$used" ;; esac
   done)
-  [ "$floor" = optimizer ] && wrong="$wrong$(grep -hoE '"(gear|flexibility|contact|excitation|dynamics|objective|evaluation)/' optimizer/*.[ch])"
+  [ "$floor" = optimizer ] && wrong="$wrong$(grep -hoE '"(gear|flexibility|contact|dynamics|rating)/' optimizer/*.[ch])"
   [ -z "$wrong" ]
   result $? "$floor includes nothing from below:$wrong"
 done

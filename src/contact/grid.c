@@ -7,16 +7,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-struct eo_contact_grid_settings eo_contact_grid_default(const struct eo_resolution *resolution)
-{
-  return (struct eo_contact_grid_settings){.positions = resolution->positions,
-                                           .cells = resolution->cells_per_line,
-                                           .partial_cells = true,
-                                           .tip_edges = resolution->tip_edge_contact,
-                                           .edge_cells = 12,
-                                           .edge_reach = NAN};
-}
-
 double eo_contact_local_constant(const struct eo_geometry *g, const struct eo_material *material, double s)
 {
   double nu = material->poissons_ratio, modulus = material->youngs_modulus / (1 - nu * nu);

@@ -59,9 +59,6 @@ struct eo_contact_grid_settings {
   double edge_reach;  /* its length along s, m; NaN: 4/15 of the normal module */
 };
 
-/* Default settings of the resolution. */
-struct eo_contact_grid_settings eo_contact_grid_default(const struct eo_resolution *resolution);
-
 /* Errors: memory, cancelled; EO_ERROR_NUMERIC when the kernel is not positive semi-definite. phase (may be NULL):
    [positions] given phases c, m, instead of equal steps. */
 enum eo_code eo_contact_grid_new(struct eo_contact_grid **grid, const struct eo_geometry *geometry,

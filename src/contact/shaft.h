@@ -20,10 +20,23 @@
 #ifndef EASEOFF_CONTACT_SHAFT_H
 #define EASEOFF_CONTACT_SHAFT_H
 
+#include <stdbool.h>
+
 #include "base/error.h"
 #include "contact/field.h"
-#include "gear/design.h"
 #include "gear/geometry.h"
+
+/* Torsional wind-up and bending of the two bodies in their bearings (off by default).
+   Positions are measured from the middle of the groove (of the face, with one end), + to the right. The bore runs
+   through. */
+enum eo_drive_side { EO_DRIVE_LEFT, EO_DRIVE_RIGHT };
+struct eo_shafts {
+  bool enabled;
+  double bearing_position[2][2]; /* [member][left, right], m; NaN: face end + half a face width outside */
+  double shaft_diameter[2]; /* outside the toothed body, m; NaN: 0.8 of the groove diameter, at least midway from the
+                               bore to it */
+  enum eo_drive_side drive_side[2]; /* where torque enters the pinion and leaves the gear */
+};
 
 enum { EO_SHAFT_MODES = 8 };
 

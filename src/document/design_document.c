@@ -6,7 +6,7 @@
 #include "format/json.h"
 #include "document/study.h"
 #include "evaluation/evaluator.h"
-#include "gear/check.h"
+#include "design/check.h"
 
 void eo_warnings_add(struct eo_warnings *warnings, const char *format, ...)
 {

@@ -7,7 +7,7 @@
 #include "base/hash.h"
 #include "format/faults.h"
 #include "format/table.h"
-#include "gear/design.h"
+#include "design/design.h"
 #include "gear/geometry.h"
 
 extern const struct eo_table eo_design_table, eo_gear_pair_table, eo_material_table, eo_alignment_table,

@@ -2,7 +2,7 @@
 #ifndef EASEOFF_DOCUMENT_EXAMPLE_H
 #define EASEOFF_DOCUMENT_EXAMPLE_H
 
-#include "gear/design.h"
+#include "design/design.h"
 
 struct eo_example {
   const char *name;

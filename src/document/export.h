@@ -4,7 +4,7 @@
 #define EASEOFF_DOCUMENT_EXPORT_H
 
 #include "format/text.h"
-#include "gear/design.h"
+#include "design/design.h"
 #include "gear/geometry.h"
 
 struct eo_export {

@@ -6,7 +6,7 @@
 
 #include "document/design_document.h"
 #include "format/json.h"
-#include "gear/check.h"
+#include "design/check.h"
 
 static const struct eo_field *find_field(const char *key)
 {

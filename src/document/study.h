@@ -4,7 +4,7 @@
 
 #include "base/hash.h"
 #include "format/table.h"
-#include "gear/design.h"
+#include "design/design.h"
 #include "gear/geometry.h"
 #include "optimizer/settings.h"
 

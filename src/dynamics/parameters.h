@@ -6,8 +6,26 @@
 #include <stdbool.h>
 
 #include "base/error.h"
-#include "gear/design.h"
 #include "gear/geometry.h"
+
+/* What a design says of bearings, bodies and damping. [2] is [member]. */
+enum eo_torsional_coupling { EO_COUPLING_PAPER, EO_COUPLING_OFF, EO_COUPLING_ON };
+enum eo_impact_in_dynamics { EO_IMPACT_NONE, EO_IMPACT_PAPER, EO_IMPACT_CONSISTENT };
+
+struct eo_supports {
+  double bearing_stiffness[2];                   /* k_py, k_gy per end, N/m */
+  double gear_axial_stiffness[2];                /* k_g1z, k_g2z [end], N/m */
+  double groove_axial_stiffness[2];              /* k_pz, k_gz, N/m; NaN: E A / L of the groove body */
+  double groove_torsional_stiffness[2];          /* N m/rad; NaN: G J / L of the groove body */
+  enum eo_torsional_coupling torsional_coupling; /* paper: off for equal ends, on when they differ */
+  double mass[2];    /* of one end with half the groove, kg; NaN: solid of the pitch cylinder */
+  double inertia[2]; /* likewise, kg m2 */
+  double bearing_damping_ratio;
+  double groove_damping_ratio;
+  double mesh_damping_ratio;
+  double mesh_damping_stiffness; /* k in c_m = 2 zeta sqrt(k m_e)/cos b, N/m; NaN: the mean mesh stiffness of the load
+                                    case */
+};
 
 /* [2] is [member] unless it says [end]. SI. */
 struct eo_dynamics_parameters {

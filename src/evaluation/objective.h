@@ -3,7 +3,7 @@
 #ifndef EASEOFF_EVALUATION_OBJECTIVE_H
 #define EASEOFF_EVALUATION_OBJECTIVE_H
 
-#include "gear/design.h"
+#include "design/design.h"
 
 /* What the objectives need of one load case: raw, before weights, so that a history can serve any later weighting. */
 struct eo_objective_case {

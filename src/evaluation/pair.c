@@ -1,6 +1,7 @@
 #include "evaluation/pair.h"
 
 #include "base/clock.h"
+#include "design/resolution.h"
 #include "numerics/threads.h"
 
 #include <math.h>

@@ -3,6 +3,7 @@
 #ifndef EASEOFF_EVALUATION_PAIR_H
 #define EASEOFF_EVALUATION_PAIR_H
 
+#include "design/design.h"
 #include "contact/grid.h"
 #include "contact/root.h"
 #include "contact/impact.h"

@@ -4,7 +4,7 @@
 #ifndef EASEOFF_FLEXIBILITY_ELEMENT_H
 #define EASEOFF_FLEXIBILITY_ELEMENT_H
 
-#include "gear/design.h"
+#include "gear/gear_pair.h"
 
 enum { EO_BRICK_NODES = 8, EO_BRICK_UNKNOWNS = 24 };
 

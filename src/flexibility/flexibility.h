@@ -28,9 +28,6 @@ struct eo_flexibility_settings {
   int rim_elements;        /* from the root to the bore, 3..32 */
 };
 
-/* The design's resolution; 8 columns and 8 rim elements. */
-struct eo_flexibility_settings eo_flexibility_settings_of(const struct eo_resolution *resolution);
-
 /* What the preparation did. */
 struct eo_flexibility_report {
   char key[EO_HASH_LENGTH + 1]; /* of everything the result depends on */

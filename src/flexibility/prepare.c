@@ -33,17 +33,6 @@ struct worker {
   struct eo_error error;
 };
 
-struct eo_flexibility_settings eo_flexibility_settings_of(const struct eo_resolution *resolution)
-{
-  return (struct eo_flexibility_settings){.sector_teeth = resolution->sector_teeth,
-                                          .neighbour_coupling = resolution->neighbour_coupling,
-                                          .layers = resolution->layers,
-                                          .flank_rows = resolution->flank_rows,
-                                          .fillet_elements = resolution->fillet_elements,
-                                          .columns = 8,
-                                          .rim_elements = 8};
-}
-
 double eo_flexibility_bore_radius(const struct eo_geometry *geometry, const struct eo_gear_pair *pair, int member)
 {
   double root = geometry->root_radius[member], rim = root - pair->rim_thickness_coefficient * geometry->normal_module;

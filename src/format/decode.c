@@ -4,7 +4,7 @@
 
 #include "format/json.h"
 #include "format/table.h"
-#include "gear/design.h"
+#include "design/design.h"
 
 static void *member(void *target, const struct eo_field *field)
 {

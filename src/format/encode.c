@@ -3,7 +3,7 @@
 
 #include "format/json.h"
 #include "format/table.h"
-#include "gear/design.h"
+#include "design/design.h"
 
 static const void *member(const void *source, const struct eo_field *field)
 {

@@ -4,7 +4,7 @@
 #define EASEOFF_GEAR_GEOMETRY_H
 
 #include "base/error.h"
-#include "gear/design.h"
+#include "gear/gear_pair.h"
 
 /* Lengths in m, angles in rad. [2] is [member]. */
 struct eo_geometry {

@@ -4,7 +4,29 @@
 #ifndef EASEOFF_GEAR_MODIFICATION_H
 #define EASEOFF_GEAR_MODIFICATION_H
 
+#include <stdbool.h>
+
 #include "gear/geometry.h"
+
+/* What is taken off one flank, normal to it; positive removes material. u: rack coordinate, x = eta / cos(beta). */
+enum eo_relief_shape { EO_RELIEF_PARABOLIC, EO_RELIEF_LINEAR, EO_RELIEF_CIRCULAR };
+struct eo_flank_modification {
+  enum eo_relief_shape shape;
+  double tip_relief;           /* d_tr at the end of the active profile, m */
+  double tip_relief_start;     /* u_ts, distance from the pitch line along the rack profile, m, >= 0 */
+  double root_relief;          /* d_br, m */
+  double root_relief_start;    /* u_bs, m, >= 0 */
+  double profile_crowning;     /* a_m, 1/m: a_m u^2 over the middle part */
+  double lead_crowning;        /* a_l (b / (2 cos beta))^2: at the face ends, m */
+  double lead_slope;           /* b_l x at x = + b / (2 cos beta), m */
+  double lead_offset;          /* c_l, m */
+  double end_relief[2];        /* [at eta = -b/2, at eta = +b/2], parabolic, m */
+  double end_relief_length[2]; /* from the face end, axial, m */
+};
+
+struct eo_modification {
+  struct eo_flank_modification flank[2][2]; /* [member][end] */
+};
 
 /* One flank's modification with its coefficients worked out. Plain values; copy freely. */
 struct eo_modification_shape {

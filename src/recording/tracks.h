@@ -2,7 +2,7 @@
 #ifndef EASEOFF_RECORDING_TRACKS_H
 #define EASEOFF_RECORDING_TRACKS_H
 
-#include "gear/design.h"
+#include "gear/gear_pair.h"
 
 enum eo_track {
   EO_TRACK_ANGLE,       /* angle or count, wrapped or not */

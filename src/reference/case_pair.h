@@ -7,7 +7,7 @@
 
 #include "reference/verify.h"
 #include "flexibility/closed_form.h"
-#include "gear/design.h"
+#include "design/design.h"
 
 /* A design with the defaults of everything the block does not say, aligned, without modification, with one load case.
    Angles in degrees, with or without "_deg". Errors: EO_ERROR_INPUT when the block lacks a number. */

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "reference/stage.h"
+#include "design/resolution.h"
 #include "reference/stage_mesh.h"
 #include "flexibility/export.h"
 

@@ -1,4 +1,5 @@
 #include "reference/stage_mesh.h"
+#include "design/resolution.h"
 
 #include <math.h>
 

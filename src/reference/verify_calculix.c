@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "reference/case_pair.h"
+#include "design/resolution.h"
 #include "reference/verify_contact.h"
 #include "evaluation/evaluator.h"
 

@@ -5,6 +5,7 @@
 #define EASEOFF_REFERENCE_VERIFY_CONTACT_H
 
 #include "reference/verify.h"
+#include "design/design.h"
 #include "contact/loaded.h"
 
 enum eo_code eo_verify_contact(const json_t *cases, struct eo_verification *verification, struct eo_error *error);

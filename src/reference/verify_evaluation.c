@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "design/resolution.h"
 #include "reference/case_pair.h"
 #include "evaluation/evaluator.h"
 

@@ -16,7 +16,7 @@
 
 #include "base/progress.h"
 #include "format/bundle.h"
-#include "gear/design.h"
+#include "design/design.h"
 #include "store/store.h"
 
 struct eo_reproduction_plan {

@@ -3,6 +3,7 @@
    of each table. Last, whether the default resolution keeps the stated noise: 2 nm of transmission error, 0.5 % of RMS.
    An argument names a cache directory. */
 #include "document/design_document.h"
+#include "design/resolution.h"
 #include "document/example.h"
 #include "evaluation/evaluator.h"
 

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 
 #include "document/design_document.h"
+#include "design/resolution.h"
 #include "document/example.h"
 #include "evaluation/analysis.h"
 #include "tap.h"

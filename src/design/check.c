@@ -1,4 +1,4 @@
-#include "gear/check.h"
+#include "design/check.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,4 +1,4 @@
-#include "gear/design.h"
+#include "design/design.h"
 
 #include <math.h>
 

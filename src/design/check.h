@@ -1,9 +1,9 @@
 /* What a design's single ranges cannot say: keys that must agree with each other and with the geometry. */
-#ifndef EASEOFF_GEAR_CHECK_H
-#define EASEOFF_GEAR_CHECK_H
+#ifndef EASEOFF_DESIGN_CHECK_H
+#define EASEOFF_DESIGN_CHECK_H
 
 #include "base/error.h"
-#include "gear/design.h"
+#include "design/design.h"
 #include "gear/geometry.h"
 
 /* design: resolved; geometry: of its gear pair. EO_ERROR_INPUT with the key: bore or groove that leaves no body, relief

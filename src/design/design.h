@@ -1,43 +1,18 @@
 /* The design: everything a user may say about a gear pair, its duty cycle and what to do with it, as plain structs in
    SI units. The JSON document and its units live in document/; defaults and ranges are stated once, in its field
    tables. */
-#ifndef EASEOFF_GEAR_DESIGN_H
-#define EASEOFF_GEAR_DESIGN_H
+#ifndef EASEOFF_DESIGN_DESIGN_H
+#define EASEOFF_DESIGN_DESIGN_H
 
 #include <stdbool.h>
 #include <stdint.h>
 
-enum { EO_PINION = 0, EO_GEAR = 1 };
-enum { EO_LEFT = 0, EO_RIGHT = 1 };
+#include "contact/shaft.h"
+#include "dynamics/parameters.h"
+#include "gear/gear_pair.h"
+#include "gear/modification.h"
+
 enum { EO_MAX_LOAD_CASES = 64, EO_NAME_LENGTH = 200, EO_MAX_SCENARIOS = 64 };
-
-/* A number the user may leave out (JSON null) is NaN here until eo_design_resolve() puts the derived default in its
-   place. */
-struct eo_gear_pair {
-  int ends;                     /* 2: herringbone; 1: single helical or spur */
-  int teeth[2];                 /* [member]: pinion, gear */
-  double normal_module;         /* m_n, m */
-  double normal_pressure_angle; /* alpha_n, rad */
-  double helix_angle;           /* beta at the pitch cylinder, rad, >= 0 (right end; the left end has the other hand) */
-  double face_width;            /* b of one end, m */
-  double groove_width;          /* tool withdrawal groove between the ends, m; NaN: 8 m_n with two ends, 0 with one */
-  double addendum_coefficient;  /* h_aP* */
-  double dedendum_coefficient;  /* h_fP* = h_aP* + c* */
-  double fillet_radius_coefficient; /* rho_fP* of the basic rack */
-  double profile_shift[2];          /* x */
-  double centre_distance; /* working centre distance a_w, m; NaN: without backlash for the given profile shift */
-  double tip_diameter[2]; /* d_a, m; NaN: from addendum, profile shift and centre distance */
-  double bore[2]; /* bore diameter, m, 0: solid; NaN: pinion solid, gear 15 m_n (at most half its root diameter) */
-  double groove_diameter[2];        /* body diameter between the ends, m; NaN: root diameter - 2 mm */
-  double rim_thickness_coefficient; /* rim below the root that flexes, times m_n; a larger bore cuts it shorter */
-  double backlash;                  /* 2 tau, normal, m */
-};
-
-struct eo_material {
-  double youngs_modulus; /* Pa */
-  double poissons_ratio;
-  double density; /* kg/m3 */
-};
 
 enum eo_axial { EO_AXIAL_FLOATING, EO_AXIAL_FIXED, EO_AXIAL_SPRING };
 
@@ -49,60 +24,10 @@ struct eo_alignment {
   double stagger;                /* right end behind the left, in transverse base pitches, 0..1 */
 };
 
-enum eo_torsional_coupling { EO_COUPLING_PAPER, EO_COUPLING_OFF, EO_COUPLING_ON };
-enum eo_impact_in_dynamics { EO_IMPACT_NONE, EO_IMPACT_PAPER, EO_IMPACT_CONSISTENT };
-
-struct eo_supports {
-  double bearing_stiffness[2];                   /* k_py, k_gy per end, N/m */
-  double gear_axial_stiffness[2];                /* k_g1z, k_g2z [end], N/m */
-  double groove_axial_stiffness[2];              /* k_pz, k_gz, N/m; NaN: E A / L of the groove body */
-  double groove_torsional_stiffness[2];          /* N m/rad; NaN: G J / L of the groove body */
-  enum eo_torsional_coupling torsional_coupling; /* paper: off for equal ends, on when they differ */
-  double mass[2];    /* of one end with half the groove, kg; NaN: solid of the pitch cylinder */
-  double inertia[2]; /* likewise, kg m2 */
-  double bearing_damping_ratio;
-  double groove_damping_ratio;
-  double mesh_damping_ratio;
-  double mesh_damping_stiffness; /* k in c_m = 2 zeta sqrt(k m_e)/cos b, N/m; NaN: the mean mesh stiffness of the load
-                                    case */
-};
-
-/* Torsional wind-up and bending of the two bodies in their bearings (off by default; contact/shaft.h says how).
-   Positions are measured from the middle of the groove (of the face, with one end), + to the right. The bore runs
-   through. */
-enum eo_drive_side { EO_DRIVE_LEFT, EO_DRIVE_RIGHT };
-struct eo_shafts {
-  bool enabled;
-  double bearing_position[2][2]; /* [member][left, right], m; NaN: face end + half a face width outside */
-  double shaft_diameter[2]; /* outside the toothed body, m; NaN: 0.8 of the groove diameter, at least midway from the
-                               bore to it */
-  enum eo_drive_side drive_side[2]; /* where torque enters the pinion and leaves the gear */
-};
-
 struct eo_load_case {
   double torque; /* total on the pinion shaft, N m, > 0 */
   double speed;  /* pinion, rad/s, > 0 */
   double share;  /* of operating time; they sum to 1 */
-};
-
-/* What is taken off one flank, normal to it; positive removes material. u: rack coordinate, x = eta / cos(beta). */
-enum eo_relief_shape { EO_RELIEF_PARABOLIC, EO_RELIEF_LINEAR, EO_RELIEF_CIRCULAR };
-struct eo_flank_modification {
-  enum eo_relief_shape shape;
-  double tip_relief;           /* d_tr at the end of the active profile, m */
-  double tip_relief_start;     /* u_ts, distance from the pitch line along the rack profile, m, >= 0 */
-  double root_relief;          /* d_br, m */
-  double root_relief_start;    /* u_bs, m, >= 0 */
-  double profile_crowning;     /* a_m, 1/m: a_m u^2 over the middle part */
-  double lead_crowning;        /* a_l (b / (2 cos beta))^2: at the face ends, m */
-  double lead_slope;           /* b_l x at x = + b / (2 cos beta), m */
-  double lead_offset;          /* c_l, m */
-  double end_relief[2];        /* [at eta = -b/2, at eta = +b/2], parabolic, m */
-  double end_relief_length[2]; /* from the face end, axial, m */
-};
-
-struct eo_modification {
-  struct eo_flank_modification flank[2][2]; /* [member][end] */
 };
 
 struct eo_constraint {
