@@ -8,7 +8,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include "http/field.h"
+#include "http/header_field.h"
 
 struct place {
   struct sockaddr_storage address;

@@ -113,7 +113,7 @@ bool eo_request_design(struct eo_request *request, const json_t *document, const
   return good;
 }
 
-bool eo_request_key(struct eo_request *request, int n, int64_t *key)
+bool eo_request_id_at(struct eo_request *request, int n, int64_t *key)
 {
   if (eo_field_integer(request->argument[n], key) && *key > 0)
     return true;

@@ -12,7 +12,7 @@
 #include "document/design_document.h"
 #include "format/faults.h"
 #include "format/text.h"
-#include "http/field.h"
+#include "http/header_field.h"
 #include "http/http.h"
 
 struct MHD_Connection;
@@ -78,7 +78,7 @@ bool eo_request_design(struct eo_request *request, const json_t *document, const
                        struct eo_geometry *geometry, struct eo_warnings *warnings);
 
 /* The number in the path's n-th place; false: the reply is 404. */
-bool eo_request_key(struct eo_request *request, int n, int64_t *key);
+bool eo_request_id_at(struct eo_request *request, int n, int64_t *key);
 
 /* ---- the reply ---- */
 

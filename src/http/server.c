@@ -12,7 +12,7 @@
 #include "base/clock.h"
 #include "format/json.h"
 #include "http/address.h"
-#include "http/aside.h"
+#include "http/background.h"
 #include "http/documents.h"
 #include "http/pages.h"
 #include "http/route.h"
@@ -125,7 +125,7 @@ static void run_handler(struct eo_request *request)
     eo_pages_reply(request->http->pages, request);
   else if (eo_guard_spends(request, request->route->rate)) {
     if (request->route->aside || request->route->form)
-      eo_aside_take(request->route->form ? request->http->readings : request->http->aside, request);
+      eo_background_take(request->route->form ? request->http->readings : request->http->aside, request);
     else
       request->route->handle(request);
   }
@@ -248,8 +248,8 @@ static void init(struct eo_http *http, const struct eo_http_settings *settings)
 
 static void done(struct eo_http *http)
 {
-  eo_aside_free(http->aside);
-  eo_aside_free(http->readings);
+  eo_background_free(http->aside);
+  eo_background_free(http->readings);
   eo_pages_free(http->pages);
   eo_documents_free(http->documents);
   eo_store_close(http->store);
@@ -269,9 +269,9 @@ static enum eo_code start(struct eo_http *http, struct eo_error *error)
   if (!code)
     code = eo_measurement_folder_tidy(http->store, error);
   if (!code)
-    code = eo_aside_new(&http->aside, http->settings.data, error);
+    code = eo_background_new(&http->aside, http->settings.data, error);
   if (!code)
-    code = eo_aside_new(&http->readings, http->settings.data, error);
+    code = eo_background_new(&http->readings, http->settings.data, error);
   if (!code)
     code = eo_pages_new(&http->pages, http->settings.pages, error);
   if (!code)

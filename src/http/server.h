@@ -44,9 +44,9 @@ struct eo_http {
   struct eo_service *service;
   struct eo_store *store; /* of the HTTP thread */
   struct eo_guard guard;  /* of the HTTP thread but for its constants */
-  struct eo_aside *aside;
-  struct eo_aside *readings; /* reads the rig files that were uploaded */
-  int uploads;               /* on their way; HTTP thread */
+  struct eo_background *aside;
+  struct eo_background *readings; /* reads the rig files that were uploaded */
+  int uploads;                    /* on their way; HTTP thread */
   struct eo_pages *pages;
   struct eo_documents *documents; /* made once: OpenAPI, field tables, examples */
   size_t bodies;                  /* bytes of bodies in memory; HTTP thread */

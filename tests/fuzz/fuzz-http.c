@@ -8,7 +8,7 @@
 #include "document/design_document.h"
 #include "format/json.h"
 #include "document/sweep_document.h"
-#include "http/field.h"
+#include "http/header_field.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 

@@ -1,6 +1,6 @@
 /* Header fields, paths and queries; the notation of schemas. Expected values are those of RFC 9110, 6265, 7240 and
    3986. */
-#include "http/field.h"
+#include "http/header_field.h"
 #include "http/shape.h"
 #include "tap.h"
 

@@ -7,7 +7,7 @@
 #include <unistd.h>
 
 #include "format/json.h"
-#include "http/measurement.h"
+#include "http/measurement_request.h"
 #include "http/route.h"
 #include "http/server.h"
 #include "http/upload.h"
@@ -69,7 +69,7 @@ static void get_one(struct eo_request *request)
   struct eo_error error;
   enum eo_measurement_outcome outcome;
   int64_t id;
-  if (!eo_request_key(request, 0, &id))
+  if (!eo_request_id_at(request, 0, &id))
     return;
   if (eo_store_find_measurement(request->store, id, eo_measurement_take, &found, &outcome, &error))
     eo_reply_error(request, "", &error);
@@ -124,7 +124,7 @@ static void take_out(struct eo_request *request)
   struct eo_error error;
   enum eo_measurement_outcome outcome;
   int64_t id;
-  if (!eo_request_key(request, 0, &id))
+  if (!eo_request_id_at(request, 0, &id))
     return;
   if (eo_store_remove_measurement(request->store, id, &outcome, &error))
     eo_reply_error(request, "", &error);
@@ -206,7 +206,7 @@ static void get_file(struct eo_request *request)
   enum eo_measurement_outcome outcome;
   int64_t id;
   int number = (int)eo_request_number(request, "part") - 1;
-  if (!eo_request_key(request, 0, &id))
+  if (!eo_request_id_at(request, 0, &id))
     return;
   if (eo_store_find_measurement(request->store, id, visit_files, &row, &outcome, &error))
     eo_reply_error(request, "", &error);

@@ -5,7 +5,7 @@
 
 #include "document/geometry_table.h"
 #include "evaluation/evaluator.h"
-#include "http/answer.h"
+#include "http/service_reply.h"
 #include "http/route.h"
 #include "http/server.h"
 
@@ -39,7 +39,7 @@ static void put_analysis(struct eo_request *request, const struct eo_design *des
   struct eo_error error;
   int64_t job = 0;
   bool histories = eo_request_number(request, "histories") != 0;
-  struct eo_analysis_question question = {.common = eo_request_question(request, design, warnings),
+  struct eo_analysis_question question = {.common = eo_request_to_question(request, design, warnings),
                                           .want = EO_WANT_CURVES |
                                                   (eo_request_number(request, "root_stress") != 0 ? EO_WANT_ROOT : 0) |
                                                   (eo_request_number(request, "band") != 0 ? EO_WANT_BAND : 0),
@@ -49,7 +49,7 @@ static void put_analysis(struct eo_request *request, const struct eo_design *des
     return;
   eo_request_defer(request);
   enum eo_code code = eo_service_analyze(request->http->service, &question, &admission, &job, &error);
-  eo_answer_conclude(request, code, admission, job, &error);
+  eo_reply_unless_accepted(request, code, admission, job, &error);
 }
 
 static void analyze(struct eo_request *request)
@@ -128,12 +128,12 @@ static void put_sweep(struct eo_request *request, const struct eo_design *design
   enum eo_admission admission;
   struct eo_error error;
   int64_t job = 0;
-  struct eo_question question = eo_request_question(request, design, warnings);
+  struct eo_question question = eo_request_to_question(request, design, warnings);
   if (!is_small(request, axes) || !eo_request_lane(request, &question))
     return;
   eo_request_defer(request);
   enum eo_code code = eo_service_sweep(request->http->service, &question, axes, &admission, &job, &error);
-  eo_answer_conclude(request, code, admission, job, &error);
+  eo_reply_unless_accepted(request, code, admission, job, &error);
 }
 
 static void sweep(struct eo_request *request)

@@ -8,7 +8,7 @@
 #include <unistd.h>
 
 #include "format/json.h"
-#include "http/measurement.h"
+#include "http/measurement_request.h"
 #include "http/route.h"
 #include "http/server.h"
 #include "http/upload.h"

@@ -1,6 +1,6 @@
-#include "http/answer.h"
+#include "http/service_reply.h"
 
-#include "http/job.h"
+#include "http/job_reply.h"
 #include "http/route.h"
 #include "http/server.h"
 
@@ -55,8 +55,8 @@ static void receive(void *context, struct eo_answer *answer)
   eo_request_finish(request);
 }
 
-void eo_answer_conclude(struct eo_request *request, enum eo_code code, enum eo_admission admission, int64_t job,
-                        const struct eo_error *error)
+void eo_reply_unless_accepted(struct eo_request *request, enum eo_code code, enum eo_admission admission, int64_t job,
+                              const struct eo_error *error)
 {
   if (!code && admission == EO_ADMISSION_ACCEPTED)
     return;
@@ -79,8 +79,8 @@ bool eo_request_lane(struct eo_request *request, struct eo_question *question)
   return false;
 }
 
-struct eo_question eo_request_question(struct eo_request *request, const struct eo_design *design,
-                                       const struct eo_warnings *warnings)
+struct eo_question eo_request_to_question(struct eo_request *request, const struct eo_design *design,
+                                          const struct eo_warnings *warnings)
 {
   return (struct eo_question){.design = design,
                               .warnings = warnings,

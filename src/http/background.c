@@ -1,4 +1,4 @@
-#include "http/aside.h"
+#include "http/background.h"
 
 #include <pthread.h>
 #include <stdlib.h>
@@ -6,17 +6,17 @@
 #include "http/route.h"
 #include "http/server.h"
 
-struct eo_aside {
+struct eo_background {
   struct eo_store *store;
   pthread_t thread;
   pthread_mutex_t lock;
   pthread_cond_t changed;
-  struct eo_request *waiting[EO_MOST_ASIDE]; /* a ring */
+  struct eo_request *waiting[EO_MOST_BACKGROUND]; /* a ring */
   int first, count;
   bool ending;
 };
 
-static struct eo_request *next(struct eo_aside *aside)
+static struct eo_request *next(struct eo_background *aside)
 {
   struct eo_request *request = NULL;
   pthread_mutex_lock(&aside->lock);
@@ -24,7 +24,7 @@ static struct eo_request *next(struct eo_aside *aside)
     pthread_cond_wait(&aside->changed, &aside->lock);
   if (aside->count) {
     request = aside->waiting[aside->first];
-    aside->first = (aside->first + 1) % EO_MOST_ASIDE;
+    aside->first = (aside->first + 1) % EO_MOST_BACKGROUND;
     aside->count--;
   }
   pthread_mutex_unlock(&aside->lock);
@@ -33,7 +33,7 @@ static struct eo_request *next(struct eo_aside *aside)
 
 static void *work(void *context)
 {
-  struct eo_aside *aside = context;
+  struct eo_background *aside = context;
   struct eo_request *request;
   while ((request = next(aside))) {
     request->store = aside->store;
@@ -43,9 +43,9 @@ static void *work(void *context)
   return NULL;
 }
 
-enum eo_code eo_aside_new(struct eo_aside **aside, const char *data, struct eo_error *error)
+enum eo_code eo_background_new(struct eo_background **aside, const char *data, struct eo_error *error)
 {
-  struct eo_aside *made = calloc(1, sizeof *made);
+  struct eo_background *made = calloc(1, sizeof *made);
   if (!made)
     return eo_error_memory(error);
   enum eo_code code = eo_store_open(&made->store, data, EO_STORE_WRITE, error);
@@ -62,13 +62,13 @@ enum eo_code eo_aside_new(struct eo_aside **aside, const char *data, struct eo_e
   return code;
 }
 
-void eo_aside_take(struct eo_aside *aside, struct eo_request *request)
+void eo_background_take(struct eo_background *aside, struct eo_request *request)
 {
   eo_request_defer(request);
   pthread_mutex_lock(&aside->lock);
-  bool room = aside->count < EO_MOST_ASIDE;
+  bool room = aside->count < EO_MOST_BACKGROUND;
   if (room) {
-    aside->waiting[(aside->first + aside->count++) % EO_MOST_ASIDE] = request;
+    aside->waiting[(aside->first + aside->count++) % EO_MOST_BACKGROUND] = request;
     pthread_cond_signal(&aside->changed);
   }
   pthread_mutex_unlock(&aside->lock);
@@ -79,7 +79,7 @@ void eo_aside_take(struct eo_aside *aside, struct eo_request *request)
   eo_request_finish(request);
 }
 
-void eo_aside_free(struct eo_aside *aside)
+void eo_background_free(struct eo_background *aside)
 {
   if (!aside)
     return;

@@ -5,8 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "http/answer.h"
-#include "http/measurement.h"
+#include "http/service_reply.h"
+#include "http/measurement_request.h"
 #include "http/route.h"
 #include "http/server.h"
 #include "service/rig_work.h"
@@ -18,14 +18,14 @@ static void ask(struct eo_request *request, const struct eo_design *design, stru
   enum eo_admission admission;
   struct eo_error error;
   int64_t job = 0;
-  struct eo_question question = eo_request_question(request, design, NULL);
+  struct eo_question question = eo_request_to_question(request, design, NULL);
   if (!eo_request_lane(request, &question)) {
     work->release(work->data);
     return;
   }
   eo_request_defer(request);
   enum eo_code code = eo_service_compute(request->http->service, &question, work, &admission, &job, &error);
-  eo_answer_conclude(request, code, admission, job, &error);
+  eo_reply_unless_accepted(request, code, admission, job, &error);
 }
 
 /* ---- measurements of a design ---- */
@@ -88,7 +88,7 @@ static void compare_design(struct eo_request *request)
 {
   struct eo_design design;
   int64_t id;
-  if (eo_request_key(request, 0, &id) && find_design(request, id, &design, NULL))
+  if (eo_request_id_at(request, 0, &id) && find_design(request, id, &design, NULL))
     compare_all(request, id, &design);
 }
 
@@ -99,7 +99,7 @@ static void compare_what_if(struct eo_request *request)
   struct eo_geometry geometry;
   int64_t id;
   json_t *body;
-  if (!eo_request_key(request, 0, &id) || !find_design(request, id, &stored, NULL) ||
+  if (!eo_request_id_at(request, 0, &id) || !find_design(request, id, &stored, NULL) ||
       !(body = eo_request_json(request)))
     return;
   if (eo_request_design(request, body, "", &design, &geometry, NULL))
@@ -114,7 +114,7 @@ static void compare_one(struct eo_request *request)
   struct eo_error error;
   enum eo_measurement_outcome outcome;
   int64_t id;
-  if (!eo_request_key(request, 0, &id))
+  if (!eo_request_id_at(request, 0, &id))
     return;
   if (eo_store_find_measurement(request->store, id, collect, &c, &outcome, &error))
     eo_reply_error(request, "", &error);
@@ -192,7 +192,7 @@ static void fit(struct eo_request *request)
   struct basis basis = {0};
   json_t *body;
   int64_t id;
-  if (!eo_request_key(request, 0, &id) || !(body = eo_request_json(request)))
+  if (!eo_request_id_at(request, 0, &id) || !(body = eo_request_json(request)))
     return;
   if (read_fit(request, body, &basis, &settings) && find_basis(request, id, &basis))
     put_fit(request, id, &basis, &settings);

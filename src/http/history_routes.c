@@ -1,5 +1,5 @@
 /* What was evaluated: by one job, and by all. */
-#include "http/job.h"
+#include "http/job_reply.h"
 #include "http/route.h"
 #include "http/server.h"
 #include "study/job_history.h"
@@ -36,7 +36,7 @@ static void reply_csv(struct eo_request *request, int64_t id)
 static void get_of_job(struct eo_request *request)
 {
   int64_t id;
-  if (!eo_request_key(request, 0, &id))
+  if (!eo_request_id_at(request, 0, &id))
     return;
   if (request->csv)
     reply_csv(request, id);

@@ -1,4 +1,4 @@
-#include "http/field.h"
+#include "http/header_field.h"
 
 #include <arpa/inet.h>
 #include <ctype.h>

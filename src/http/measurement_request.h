@@ -1,6 +1,6 @@
 /* What the endpoints about measurements share. */
-#ifndef EASEOFF_HTTP_MEASUREMENT_H
-#define EASEOFF_HTTP_MEASUREMENT_H
+#ifndef EASEOFF_HTTP_MEASUREMENT_REQUEST_H
+#define EASEOFF_HTTP_MEASUREMENT_REQUEST_H
 
 #include "http/request.h"
 #include "store/measurements.h"

@@ -22,7 +22,7 @@ static void get_of_job(struct eo_request *request)
   struct eo_error error;
   json_t *job = NULL;
   int64_t id;
-  if (!eo_request_key(request, 0, &id))
+  if (!eo_request_id_at(request, 0, &id))
     return;
   if (eo_service_job(request->http->service, id, false, &outcome, &job, &error))
     eo_reply_error(request, "", &error);

@@ -1,6 +1,6 @@
 /* What several groups of endpoints say about jobs. */
-#ifndef EASEOFF_HTTP_JOB_H
-#define EASEOFF_HTTP_JOB_H
+#ifndef EASEOFF_HTTP_JOB_REPLY_H
+#define EASEOFF_HTTP_JOB_REPLY_H
 
 #include "http/request.h"
 

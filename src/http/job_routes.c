@@ -2,7 +2,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "http/job.h"
+#include "http/job_reply.h"
 #include "http/route.h"
 #include "http/server.h"
 
@@ -153,7 +153,7 @@ static void repeat(struct eo_request *request)
   struct eo_error error;
   int64_t id;
   json_t *job = NULL, *body = NULL;
-  if (!eo_request_key(request, 0, &id))
+  if (!eo_request_id_at(request, 0, &id))
     return;
   if (request->body.size && !(body = eo_request_json(request)))
     return;
@@ -202,7 +202,7 @@ static void get_one(struct eo_request *request)
   struct eo_error error;
   json_t *job = NULL;
   int64_t id;
-  if (!eo_request_key(request, 0, &id))
+  if (!eo_request_id_at(request, 0, &id))
     return;
   enum eo_code code = eo_service_job(request->http->service, id, true, &outcome, &job, &error);
   reply_job(request, 200, code, outcome, job, &error);
@@ -214,7 +214,7 @@ static void get_result(struct eo_request *request)
   struct eo_error error;
   struct eo_text text = {0};
   int64_t id;
-  if (!eo_request_key(request, 0, &id))
+  if (!eo_request_id_at(request, 0, &id))
     return;
   if (eo_service_result(request->http->service, id, &outcome, &text, &error))
     eo_reply_error(request, "", &error);
@@ -231,7 +231,7 @@ static void get_generations(struct eo_request *request)
   struct eo_error error;
   json_t *columns = NULL;
   int64_t id;
-  if (!eo_request_key(request, 0, &id))
+  if (!eo_request_id_at(request, 0, &id))
     return;
   enum eo_code code = eo_service_generations(request->http->service, id, &outcome, &columns, &error);
   reply_job(request, 200, code, outcome, columns, &error);
@@ -247,7 +247,7 @@ static void change(struct eo_request *request, change_function *function)
   struct eo_error error;
   json_t *job = NULL;
   int64_t id;
-  if (!eo_request_key(request, 0, &id))
+  if (!eo_request_id_at(request, 0, &id))
     return;
   enum eo_code code = function(request->http->service, id, &outcome, &job, &error);
   reply_job(request, 202, code, outcome, job, &error);
@@ -268,7 +268,7 @@ static void take_out(struct eo_request *request)
   enum eo_job_outcome outcome = EO_JOB_OUTCOME_DONE;
   struct eo_error error;
   int64_t id;
-  if (!eo_request_key(request, 0, &id))
+  if (!eo_request_id_at(request, 0, &id))
     return;
   if (eo_service_remove(request->http->service, id, &outcome, &error))
     eo_reply_error(request, "", &error);

@@ -1,6 +1,6 @@
 /* What stands in header fields, paths and queries, read without trust: no allocation, no state, any bytes may come. */
-#ifndef EASEOFF_HTTP_FIELD_H
-#define EASEOFF_HTTP_FIELD_H
+#ifndef EASEOFF_HTTP_HEADER_FIELD_H
+#define EASEOFF_HTTP_HEADER_FIELD_H
 
 #include <stdbool.h>
 #include <stddef.h>

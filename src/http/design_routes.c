@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "http/measurement.h"
+#include "http/measurement_request.h"
 #include "http/route.h"
 #include "http/server.h"
 #include "store/designs.h"
@@ -65,7 +65,7 @@ static void get_one(struct eo_request *request)
   struct eo_error error;
   enum eo_design_outcome outcome;
   int64_t id;
-  if (!eo_request_key(request, 0, &id))
+  if (!eo_request_id_at(request, 0, &id))
     return;
   if (eo_store_find_design(request->store, id, visit, &found, &outcome, &error))
     eo_reply_error(request, "", &error);
@@ -210,7 +210,8 @@ static void replace(struct eo_request *request)
   struct eo_error error;
   enum eo_design_outcome outcome;
   int64_t id, expected;
-  if (!eo_request_key(request, 0, &id) || !read_expected(request, id, true, &expected) || !read_given(request, &given))
+  if (!eo_request_id_at(request, 0, &id) || !read_expected(request, id, true, &expected) ||
+      !read_given(request, &given))
     return;
   if (eo_store_change_design(request->store, id, expected, given.name, given.text, visit, &found, &outcome, &error))
     eo_reply_error(request, "", &error);
@@ -229,7 +230,7 @@ static void take_out(struct eo_request *request)
   struct eo_error error;
   enum eo_design_outcome outcome;
   int64_t id, expected;
-  if (!eo_request_key(request, 0, &id) || !read_expected(request, id, false, &expected))
+  if (!eo_request_id_at(request, 0, &id) || !read_expected(request, id, false, &expected))
     return;
   if (eo_store_remove_design(request->store, id, expected, &outcome, &error))
     eo_reply_error(request, "", &error);
