@@ -4,7 +4,7 @@
 #include "numerics/factor.h"
 #include "numerics/minimise.h"
 #include "optimizer/evolution.h"
-#include "optimizer/history.h"
+#include "optimizer/prediction_history.h"
 #include "optimizer/operators.h"
 #include "optimizer/pareto.h"
 #include "optimizer/surrogate.h"

@@ -10,7 +10,7 @@
 #include "format/sheet.h"
 #include "document/study_result.h"
 #include "evaluation/evaluator.h"
-#include "study/records.h"
+#include "study/history_document.h"
 #include "store/evaluations.h"
 #include "store/jobs.h"
 #include "store/lock.h"

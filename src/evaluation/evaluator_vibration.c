@@ -1,4 +1,4 @@
-#include "evaluation/evaluator-internal.h"
+#include "evaluation/evaluator_private.h"
 
 #include "numerics/periodic.h"
 #include <math.h>

@@ -9,7 +9,7 @@
 #include "http/measurement_request.h"
 #include "http/route.h"
 #include "http/server.h"
-#include "service/rig_work.h"
+#include "service/rig_tasks.h"
 #include "store/measurements.h"
 
 /* Hands the work to the service, which owns it then. */

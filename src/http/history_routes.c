@@ -3,7 +3,7 @@
 #include "http/route.h"
 #include "http/server.h"
 #include "study/job_history.h"
-#include "study/records.h"
+#include "study/history_document.h"
 
 static void reply_rows(struct eo_request *request, int64_t id)
 {

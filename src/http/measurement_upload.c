@@ -12,7 +12,7 @@
 #include "http/route.h"
 #include "http/server.h"
 #include "http/upload.h"
-#include "service/rig_work.h"
+#include "service/rig_tasks.h"
 
 /* What the form said. */
 struct asked {

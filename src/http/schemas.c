@@ -14,8 +14,8 @@
 #include "http/shape.h"
 #include "service/job_document.h"
 #include "study/job_history.h"
-#include "study/records.h"
-#include "service/rig_work.h"
+#include "study/history_document.h"
+#include "service/rig_tasks.h"
 
 static const struct {
   const char *name, *notation;

@@ -10,8 +10,8 @@
    small steps: objectives made of maxima over load cases, ends and mesh positions lead along kinks, where a smooth
    surrogate stops the last share of the budget polishes the best row of all: trust region only, then refinement */
 #include "optimizer/credibility_pool.h"
-#include "optimizer/internal.h"
-#include "optimizer/local.h"
+#include "optimizer/optimizer_private.h"
+#include "optimizer/trust_region.h"
 #include "optimizer/operators.h"
 
 #include <math.h>

@@ -4,8 +4,8 @@
    - an individual bit-equal to a true row takes its value and counts neither as true nor as predicted (reuse);
    - the best predicted individual of a generation is evaluated too (verify): nothing else would ever correct it;
    - the elite replaces the worst child when no child is as good. */
-#include "optimizer/history.h"
-#include "optimizer/internal.h"
+#include "optimizer/prediction_history.h"
+#include "optimizer/optimizer_private.h"
 #include "optimizer/operators.h"
 
 #include <math.h>

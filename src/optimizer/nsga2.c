@@ -2,7 +2,7 @@
    the generations: each cycle evolves a population on one surrogate per objective (and one of the constraint
    violation), starting from the best true rows, then verifies those of its best that add most to the true front. Only
    true rows count. */
-#include "optimizer/internal.h"
+#include "optimizer/optimizer_private.h"
 #include "optimizer/operators.h"
 #include "optimizer/pareto.h"
 #include "optimizer/surrogate.h"

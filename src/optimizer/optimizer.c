@@ -1,6 +1,6 @@
 #include "optimizer/optimizer.h"
 
-#include "optimizer/internal.h"
+#include "optimizer/optimizer_private.h"
 #include "optimizer/pareto.h"
 
 #include <math.h>

@@ -3,7 +3,7 @@
 #include "reference/formula.h"
 #include "reference/verify.h"
 #include "base/random.h"
-#include "optimizer/history.h"
+#include "optimizer/prediction_history.h"
 #include "optimizer/operators.h"
 #include "optimizer/optimizer.h"
 #include "optimizer/surrogate.h"

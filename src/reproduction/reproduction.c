@@ -1,4 +1,4 @@
-#include "reproduction/reproduction_internal.h"
+#include "reproduction/reproduction_private.h"
 
 #include <math.h>
 #include <stdlib.h>

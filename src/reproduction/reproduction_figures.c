@@ -1,6 +1,6 @@
 /* The paper's figures of the theory: over torque (8, 9, 17), over the mesh cycle (10 to 12), of the root (14, 15), over
    speed (18). */
-#include "reproduction/reproduction_internal.h"
+#include "reproduction/reproduction_private.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,5 +1,5 @@
 /* Case A and case B with the paper's algorithm, the plain one it is compared with, and ours. */
-#include "reproduction/reproduction_internal.h"
+#include "reproduction/reproduction_private.h"
 
 #include <math.h>
 #include <stdlib.h>

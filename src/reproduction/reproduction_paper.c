@@ -1,5 +1,5 @@
 /* The numbers the paper prints, ours beside them, and what it leaves open. */
-#include "reproduction/reproduction_internal.h"
+#include "reproduction/reproduction_private.h"
 
 #include <math.h>
 

@@ -1,5 +1,5 @@
 /* One assumption changed at a time: what it does to the unmodified pair and to Table 3, case A. */
-#include "reproduction/reproduction_internal.h"
+#include "reproduction/reproduction_private.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-#include "service/service_internal.h"
+#include "service/service_private.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -154,7 +154,7 @@ void eo_service_free(struct eo_service *s)
   free(s);
 }
 
-void eo_service_call(struct eo_service *s)
+void eo_service_wake(struct eo_service *s)
 {
   pthread_mutex_lock(&s->work_mutex);
   s->calls++;
@@ -412,10 +412,10 @@ static enum eo_code show(struct eo_service *s, int64_t id, json_t **job, struct 
 }
 
 /* In this order, so that a job is seen waiting before it is seen running. */
-static enum eo_code show_and_call(struct eo_service *s, int64_t id, json_t **job, struct eo_error *error)
+static enum eo_code publish_then_wake(struct eo_service *s, int64_t id, json_t **job, struct eo_error *error)
 {
   enum eo_code code = show(s, id, job, error);
-  eo_service_call(s);
+  eo_service_wake(s);
   return code;
 }
 
@@ -479,7 +479,7 @@ enum eo_code eo_service_submit(struct eo_service *s, const struct eo_job_order *
   enum eo_code code = queue(s, order, &id, outcome, error);
   if (code || (*outcome != EO_JOB_OUTCOME_DONE && *outcome != EO_JOB_OUTCOME_REPEATED))
     return code;
-  return show_and_call(s, id, job, error);
+  return publish_then_wake(s, id, job, error);
 }
 
 enum eo_code eo_service_cancel(struct eo_service *s, int64_t id, enum eo_job_outcome *outcome, json_t **job,
@@ -508,7 +508,7 @@ enum eo_code eo_service_retry(struct eo_service *s, int64_t id, enum eo_job_outc
   pthread_mutex_lock(&s->store_mutex);
   enum eo_code code = eo_queue_retry(s->store, id, s->settings.most_queued, outcome, error);
   pthread_mutex_unlock(&s->store_mutex);
-  return code || *outcome ? code : show_and_call(s, id, job, error);
+  return code || *outcome ? code : publish_then_wake(s, id, job, error);
 }
 
 enum eo_code eo_service_clone(struct eo_service *s, int64_t id, const int *priority, enum eo_job_outcome *outcome,
@@ -521,7 +521,7 @@ enum eo_code eo_service_clone(struct eo_service *s, int64_t id, const int *prior
   pthread_mutex_lock(&s->store_mutex);
   enum eo_code code = eo_queue_clone(s->store, id, priority, s->settings.most_queued, &clone, outcome, error);
   pthread_mutex_unlock(&s->store_mutex);
-  return code || *outcome ? code : show_and_call(s, clone, job, error);
+  return code || *outcome ? code : publish_then_wake(s, clone, job, error);
 }
 
 enum eo_code eo_service_remove(struct eo_service *s, int64_t id, enum eo_job_outcome *outcome, struct eo_error *error)

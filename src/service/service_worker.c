@@ -1,5 +1,5 @@
 /* The threads that work jobs off. */
-#include "service/service_internal.h"
+#include "service/service_private.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-#include "study/study_internal.h"
+#include "study/study_private.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,5 +1,5 @@
 /* Before the first ask. */
-#include "study/study_internal.h"
+#include "study/study_private.h"
 
 #include <math.h>
 #include <stdlib.h>

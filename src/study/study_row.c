@@ -1,5 +1,5 @@
 /* One row of a study: looked up, computed, saved, weighed. */
-#include "study/study_internal.h"
+#include "study/study_private.h"
 
 #include <math.h>
 #include <stdlib.h>

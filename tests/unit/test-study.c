@@ -5,7 +5,7 @@
 #include "base/parallel.h"
 #include "document/study.h"
 #include "evaluation/analysis.h"
-#include "study/records.h"
+#include "study/history_document.h"
 #include "store/queue.h"
 #include "study-fixture.h"
 #include "tap.h"

@@ -1,6 +1,6 @@
 /* What the data folder knows, as documents: problems, jobs, true rows, the path of a job. */
-#ifndef EASEOFF_STUDY_RECORDS_H
-#define EASEOFF_STUDY_RECORDS_H
+#ifndef EASEOFF_STUDY_HISTORY_DOCUMENT_H
+#define EASEOFF_STUDY_HISTORY_DOCUMENT_H
 
 #include <jansson.h>
 

@@ -2,8 +2,8 @@
    |x - centre| <= radius, and the radius that follows how well this went (Powell 2009, Regis and Shoemaker 2013). What
    a batch has room for beyond the minimum are points on the way to it, where the surrogate promises a gain too: they
    teach the next surrogate where it matters. Which polynomial tail it has is decided by leave-one-out each time. */
-#ifndef EASEOFF_OPTIMIZER_LOCAL_H
-#define EASEOFF_OPTIMIZER_LOCAL_H
+#ifndef EASEOFF_OPTIMIZER_TRUST_REGION_H
+#define EASEOFF_OPTIMIZER_TRUST_REGION_H
 
 #include "optimizer/archive.h"
 #include "optimizer/surrogate.h"

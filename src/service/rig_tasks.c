@@ -1,4 +1,4 @@
-#include "service/rig_work.h"
+#include "service/rig_tasks.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,4 +1,4 @@
-#include "optimizer/history.h"
+#include "optimizer/prediction_history.h"
 
 #include "optimizer/operators.h"
 

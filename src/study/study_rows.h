@@ -1,6 +1,6 @@
 /* The true rows of a running study, in the order the optimizer has them. */
-#ifndef EASEOFF_STUDY_ROWS_H
-#define EASEOFF_STUDY_ROWS_H
+#ifndef EASEOFF_STUDY_STUDY_ROWS_H
+#define EASEOFF_STUDY_STUDY_ROWS_H
 
 #include "document/study_result.h"
 #include "store/evaluations.h"

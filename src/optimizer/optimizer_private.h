@@ -2,8 +2,8 @@
 
    An algorithm is a state machine of two calls. propose() runs until it has requested at least one true evaluation or
    sets finished; absorb() follows when all of them were told and stand in the archive. */
-#ifndef EASEOFF_OPTIMIZER_INTERNAL_H
-#define EASEOFF_OPTIMIZER_INTERNAL_H
+#ifndef EASEOFF_OPTIMIZER_OPTIMIZER_PRIVATE_H
+#define EASEOFF_OPTIMIZER_OPTIMIZER_PRIVATE_H
 
 #include "optimizer/archive.h"
 #include "optimizer/optimizer.h"

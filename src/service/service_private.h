@@ -1,7 +1,7 @@
 /* The inside of the service, shared by the files it is made of; see service.h. Where two mutexes are held, the one that
    stands first below was taken first. */
-#ifndef EASEOFF_SERVICE_SERVICE_INTERNAL_H
-#define EASEOFF_SERVICE_SERVICE_INTERNAL_H
+#ifndef EASEOFF_SERVICE_SERVICE_PRIVATE_H
+#define EASEOFF_SERVICE_SERVICE_PRIVATE_H
 
 #include <pthread.h>
 #include <stdatomic.h>
@@ -55,7 +55,7 @@ struct eo_service {
 void *eo_service_work(void *worker);
 
 /* There is work to claim. */
-void eo_service_call(struct eo_service *service);
+void eo_service_wake(struct eo_service *service);
 
 /* Puts the present state of a job into the stream of events. */
 void eo_service_publish(struct eo_service *service, int64_t id);

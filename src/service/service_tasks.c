@@ -1,5 +1,5 @@
 /* What-if analyses and sweeps: from the question over the lane to the answer. */
-#include "service/service_internal.h"
+#include "service/service_private.h"
 
 #include <stdlib.h>
 #include <string.h>

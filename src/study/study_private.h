@@ -1,10 +1,10 @@
 /* A running study and the parts it is made of; see study.h. */
-#ifndef EASEOFF_STUDY_STUDY_INTERNAL_H
-#define EASEOFF_STUDY_STUDY_INTERNAL_H
+#ifndef EASEOFF_STUDY_STUDY_PRIVATE_H
+#define EASEOFF_STUDY_STUDY_PRIVATE_H
 
 #include "base/parallel.h"
 #include "evaluation/evaluator.h"
-#include "study/rows.h"
+#include "study/study_rows.h"
 #include "study/study.h"
 #include "optimizer/optimizer.h"
 #include "store/jobs.h"

@@ -1,4 +1,4 @@
-#include "optimizer/local.h"
+#include "optimizer/trust_region.h"
 
 #include "numerics/minimise.h"
 #include "optimizer/operators.h"

@@ -1,4 +1,4 @@
-#include "study/rows.h"
+#include "study/study_rows.h"
 
 #include <stdlib.h>
 

@@ -5,8 +5,8 @@
    - (17) as printed deletes rows that are unique in space when each coordinate has neighbours; unless literal is set, a
      row goes only when another row is within the threshold of it, a true row only when a true one is;
    - S6: redundant rows leave, then predicted rows lose credibility, then those below R_0 leave. */
-#ifndef EASEOFF_OPTIMIZER_HISTORY_H
-#define EASEOFF_OPTIMIZER_HISTORY_H
+#ifndef EASEOFF_OPTIMIZER_PREDICTION_HISTORY_H
+#define EASEOFF_OPTIMIZER_PREDICTION_HISTORY_H
 
 #include "base/error.h"
 

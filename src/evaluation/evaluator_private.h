@@ -1,7 +1,7 @@
 /* The inside of an evaluator, shared by the files that make up one evaluation: contact, vibration, the order, storage.
  */
-#ifndef EASEOFF_EVALUATION_EVALUATOR_INTERNAL_H
-#define EASEOFF_EVALUATION_EVALUATOR_INTERNAL_H
+#ifndef EASEOFF_EVALUATION_EVALUATOR_PRIVATE_H
+#define EASEOFF_EVALUATION_EVALUATOR_PRIVATE_H
 
 #include "evaluation/evaluator.h"
 

@@ -1,4 +1,4 @@
-#include "study/records.h"
+#include "study/history_document.h"
 
 #include <math.h>
 #include <stdlib.h>

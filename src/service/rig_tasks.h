@@ -1,7 +1,7 @@
 /* What the service computes from stored measurements and a prepared gear pair: comparison, the fit of unknown inputs, a
    synthetic recording. Each is a struct eo_work for eo_service_compute(), which owns its data. */
-#ifndef EASEOFF_SERVICE_RIG_WORK_H
-#define EASEOFF_SERVICE_RIG_WORK_H
+#ifndef EASEOFF_SERVICE_RIG_TASKS_H
+#define EASEOFF_SERVICE_RIG_TASKS_H
 
 #include "base/hash.h"
 #include "document/measure_file.h"

@@ -1,6 +1,6 @@
 /* What the parts of the reproduction share. */
-#ifndef EASEOFF_REPRODUCTION_REPRODUCTION_INTERNAL_H
-#define EASEOFF_REPRODUCTION_REPRODUCTION_INTERNAL_H
+#ifndef EASEOFF_REPRODUCTION_REPRODUCTION_PRIVATE_H
+#define EASEOFF_REPRODUCTION_REPRODUCTION_PRIVATE_H
 
 #include "document/result_parts.h"
 #include "reproduction/reproduction.h"
