@@ -8,7 +8,7 @@
 #include <unistd.h>
 
 #include "document/design_document.h"
-#include "document/example.h"
+#include "document/examples.h"
 #include "format/json.h"
 #include "study/study.h"
 #include "store/evaluations.h"

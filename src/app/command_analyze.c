@@ -50,10 +50,10 @@ static enum eo_code analyze(const struct request *request, const struct eo_pair 
 
 static enum eo_code save_files(const json_t *result, const char *directory, struct eo_error *error)
 {
-  struct eo_bundle bundle = {0};
+  struct eo_file_set bundle = {0};
   eo_result_files(result, &bundle);
-  enum eo_code code = eo_bundle_save(&bundle, directory, error);
-  eo_bundle_done(&bundle);
+  enum eo_code code = eo_file_set_save(&bundle, directory, error);
+  eo_file_set_done(&bundle);
   return code;
 }
 

@@ -1,4 +1,4 @@
-#include "document/example.h"
+#include "document/examples.h"
 
 #include "app/app.h"
 

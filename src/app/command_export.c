@@ -2,7 +2,7 @@
 #include <string.h>
 
 #include "app/app.h"
-#include "document/export.h"
+#include "document/design_export.h"
 
 static int list_formats(void)
 {

@@ -7,7 +7,7 @@
 #include "app/data.h"
 #include "app/number.h"
 #include "format/json.h"
-#include "format/sheet.h"
+#include "format/text_table.h"
 #include "document/study_result.h"
 #include "evaluation/evaluator.h"
 #include "study/history_document.h"
@@ -34,23 +34,23 @@ static void print_problems(const json_t *list, struct eo_text *text)
   static const char *const headings[] = {"problem", "name", "hash", "evaluations", "failed", "model time, s", "since"};
   const json_t *row;
   size_t i;
-  struct eo_sheet sheet;
-  eo_sheet_init(&sheet, 7, headings);
+  struct eo_text_table sheet;
+  eo_text_table_init(&sheet, 7, headings);
   json_array_foreach(json_object_get(list, "problems"), i, row)
   {
     char name[60], hash[16];
     eo_text_clean(name, sizeof name, json_string_value(json_object_get(row, "name")));
     snprintf(hash, sizeof hash, "%.12s", json_string_value(json_object_get(row, "hash")));
-    eo_sheet_number(&sheet, eo_json_find_number(row, "id"), NULL, 0);
-    eo_sheet_string(&sheet, name);
-    eo_sheet_string(&sheet, hash);
-    eo_sheet_number(&sheet, eo_json_find_number(row, "evaluations"), NULL, 0);
-    eo_sheet_number(&sheet, eo_json_find_number(row, "failed"), NULL, 0);
-    eo_sheet_number(&sheet, eo_json_find_number(row, "cost_s"), NULL, 4);
-    eo_sheet_string(&sheet, json_string_value(json_object_get(row, "created")));
+    eo_text_table_number(&sheet, eo_json_find_number(row, "id"), NULL, 0);
+    eo_text_table_string(&sheet, name);
+    eo_text_table_string(&sheet, hash);
+    eo_text_table_number(&sheet, eo_json_find_number(row, "evaluations"), NULL, 0);
+    eo_text_table_number(&sheet, eo_json_find_number(row, "failed"), NULL, 0);
+    eo_text_table_number(&sheet, eo_json_find_number(row, "cost_s"), NULL, 4);
+    eo_text_table_string(&sheet, json_string_value(json_object_get(row, "created")));
   }
-  eo_sheet_print(&sheet, 0, text);
-  eo_sheet_done(&sheet);
+  eo_text_table_print(&sheet, 0, text);
+  eo_text_table_done(&sheet);
 }
 
 static void print_jobs(const json_t *list, struct eo_text *text)
@@ -59,25 +59,25 @@ static void print_jobs(const json_t *list, struct eo_text *text)
                                          "true", "individuals", "best J", "last"};
   const json_t *row;
   size_t i;
-  struct eo_sheet sheet;
-  eo_sheet_init(&sheet, 9, headings);
+  struct eo_text_table sheet;
+  eo_text_table_init(&sheet, 9, headings);
   json_array_foreach(json_object_get(list, "jobs"), i, row)
   {
     char name[60];
     eo_text_clean(name, sizeof name, json_string_value(json_object_get(row, "name")));
-    eo_sheet_number(&sheet, eo_json_find_number(row, "id"), NULL, 0);
-    eo_sheet_number(&sheet, eo_json_find_number(row, "problem"), NULL, 0);
-    eo_sheet_string(&sheet, name);
+    eo_text_table_number(&sheet, eo_json_find_number(row, "id"), NULL, 0);
+    eo_text_table_number(&sheet, eo_json_find_number(row, "problem"), NULL, 0);
+    eo_text_table_string(&sheet, name);
     const char *algorithm = json_string_value(json_object_get(row, "algorithm"));
-    eo_sheet_string(&sheet, *algorithm ? algorithm : json_string_value(json_object_get(row, "kind")));
-    eo_sheet_string(&sheet, json_string_value(json_object_get(row, "state")));
-    eo_sheet_number(&sheet, eo_json_find_number(row, "true_evaluations"), NULL, 0);
-    eo_sheet_number(&sheet, eo_json_find_number(row, "individuals"), NULL, 0);
-    eo_sheet_number(&sheet, eo_json_find_number(row, "best_value"), NULL, 4);
-    eo_sheet_string(&sheet, json_string_value(json_object_get(row, "updated")));
+    eo_text_table_string(&sheet, *algorithm ? algorithm : json_string_value(json_object_get(row, "kind")));
+    eo_text_table_string(&sheet, json_string_value(json_object_get(row, "state")));
+    eo_text_table_number(&sheet, eo_json_find_number(row, "true_evaluations"), NULL, 0);
+    eo_text_table_number(&sheet, eo_json_find_number(row, "individuals"), NULL, 0);
+    eo_text_table_number(&sheet, eo_json_find_number(row, "best_value"), NULL, 4);
+    eo_text_table_string(&sheet, json_string_value(json_object_get(row, "updated")));
   }
-  eo_sheet_print(&sheet, 0, text);
-  eo_sheet_done(&sheet);
+  eo_text_table_print(&sheet, 0, text);
+  eo_text_table_done(&sheet);
 }
 
 static int run_list(struct request *q)

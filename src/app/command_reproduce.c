@@ -16,17 +16,17 @@ struct request {
 static enum eo_code save(const struct request *q, const json_t *document, struct eo_error *error)
 {
   enum eo_code code = EO_OK;
-  struct eo_bundle bundle = {0};
+  struct eo_file_set bundle = {0};
   struct eo_text page = {0};
   if (q->csv) {
     eo_reproduction_files(document, &bundle);
-    code = eo_bundle_save(&bundle, q->csv, error);
+    code = eo_file_set_save(&bundle, q->csv, error);
   }
   if (!code && q->html) {
     eo_reproduction_page(document, &page);
     code = eo_text_save(&page, q->html, error);
   }
-  eo_bundle_done(&bundle);
+  eo_file_set_done(&bundle);
   eo_text_done(&page);
   return code;
 }

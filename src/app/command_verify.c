@@ -6,7 +6,7 @@
 
 #include "app/app.h"
 #include "format/json.h"
-#include "format/sheet.h"
+#include "format/text_table.h"
 
 static void done(struct eo_verification *v)
 {
@@ -69,7 +69,7 @@ static double severity(const struct eo_check *check)
   return check->tolerance > 0 ? deviation / check->tolerance : (deviation > 0 ? INFINITY : 0);
 }
 
-static void add_row(struct eo_sheet *sheet, const struct eo_verification *v, int first, int count)
+static void add_row(struct eo_text_table *sheet, const struct eo_verification *v, int first, int count)
 {
   int worst = first, bad = 0;
   for (int i = first; i < first + count; i++) {
@@ -78,17 +78,17 @@ static void add_row(struct eo_sheet *sheet, const struct eo_verification *v, int
       worst = i;
   }
   const struct eo_check *check = &v->check[worst];
-  eo_sheet_string(sheet, check->label);
-  eo_sheet_number(sheet, count, NULL, 9);
-  eo_sheet_string(sheet, check->quantity);
-  eo_sheet_number(sheet, check->value, NULL, 9);
-  eo_sheet_number(sheet, check->expected, NULL, 9);
-  eo_sheet_number(sheet, fabs(check->value - check->expected), NULL, 3);
-  eo_sheet_number(sheet, check->tolerance, NULL, 3);
+  eo_text_table_string(sheet, check->label);
+  eo_text_table_number(sheet, count, NULL, 9);
+  eo_text_table_string(sheet, check->quantity);
+  eo_text_table_number(sheet, check->value, NULL, 9);
+  eo_text_table_number(sheet, check->expected, NULL, 9);
+  eo_text_table_number(sheet, fabs(check->value - check->expected), NULL, 3);
+  eo_text_table_number(sheet, check->tolerance, NULL, 3);
   char verdict[32] = "pass";
   if (bad)
     snprintf(verdict, sizeof verdict, "FAIL (%d)", bad);
-  eo_sheet_string(sheet, verdict);
+  eo_text_table_string(sheet, verdict);
 }
 
 /* One line per case: its largest deviation, measured in tolerances. */
@@ -96,16 +96,16 @@ static void print_table(const struct eo_verification *v, struct eo_text *text)
 {
   static const char *const headings[] = {
       "case", "checks", "largest deviation in", "value", "expected", "deviation", "tolerance", "verdict"};
-  struct eo_sheet sheet;
-  eo_sheet_init(&sheet, 8, headings);
+  struct eo_text_table sheet;
+  eo_text_table_init(&sheet, 8, headings);
   for (int first = 0, count; first < v->count; first += count) {
     for (count = 1; first + count < v->count && strcmp(v->check[first].label, v->check[first + count].label) == 0;)
       count++;
     add_row(&sheet, v, first, count);
   }
   if (v->count)
-    eo_sheet_print(&sheet, 2, text);
-  eo_sheet_done(&sheet);
+    eo_text_table_print(&sheet, 2, text);
+  eo_text_table_done(&sheet);
   for (size_t i = 0; i < json_array_size(v->ignored); i++)
     eo_text_print(text, "  note: %s\n", json_string_value(json_array_get(v->ignored, i)));
 }

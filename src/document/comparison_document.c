@@ -5,8 +5,8 @@
 
 #include "format/json.h"
 #include "document/measurement_document.h"
-#include "document/result_parts.h"
-#include "format/sheet.h"
+#include "document/result_private.h"
+#include "format/text_table.h"
 
 enum { CURVE = 128 };
 
@@ -249,14 +249,15 @@ void eo_measurement_summary(const struct eo_measurement *m, const struct eo_meas
       1e6 * cabs(t->shaft[EO_GEAR][0].amplitude), 1e6 * t->residual);
 }
 
-static void fill_sheet(const struct eo_comparison *c, const struct eo_measured *m, struct eo_sheet *sheet, int digits)
+static void fill_sheet(const struct eo_comparison *c, const struct eo_measured *m, struct eo_text_table *sheet,
+                       int digits)
 {
   for (int i = 0; i < c->count; i++) {
-    eo_sheet_string(sheet, m[i].name);
-    eo_sheet_string(sheet, m[i].unmodified ? "unmodified" : "modified");
+    eo_text_table_string(sheet, m[i].name);
+    eo_text_table_string(sheet, m[i].unmodified ? "unmodified" : "modified");
     for (int k = 0; k < COLUMNS; k++)
-      eo_sheet_number(sheet, columns[k].value(&m[i], &c->point[i]), columns[k].unit, digits);
-    eo_sheet_string(sheet, c->point[i].reason);
+      eo_text_table_number(sheet, columns[k].value(&m[i], &c->point[i]), columns[k].unit, digits);
+    eo_text_table_string(sheet, c->point[i].reason);
   }
 }
 
@@ -274,13 +275,13 @@ void eo_comparison_summary(const struct eo_comparison *c, const struct eo_measur
 {
   static const char *const headings[] = {"file",           "label", "torque N m", "speed rpm", "measured m/s2", "+-",
                                          "predicted m/s2", "ratio", "likeness",   "TE um",     "remark"};
-  struct eo_sheet sheet;
+  struct eo_text_table sheet;
   eo_text_add(text,
               "\nMeasured and predicted (rotational acceleration at the encoders' end, at the measured speed):\n");
-  eo_sheet_init(&sheet, COLUMNS + 3, headings);
+  eo_text_table_init(&sheet, COLUMNS + 3, headings);
   fill_sheet(c, m, &sheet, 4);
-  eo_sheet_print(&sheet, 2, text);
-  eo_sheet_done(&sheet);
+  eo_text_table_print(&sheet, 2, text);
+  eo_text_table_done(&sheet);
   print_orders(c, m, text);
   for (int i = 0; i < c->reductions; i++) {
     const struct eo_reduction *r = &c->reduction[i];
@@ -294,12 +295,12 @@ void eo_comparison_summary(const struct eo_comparison *c, const struct eo_measur
 void eo_comparison_csv(const struct eo_comparison *c, const struct eo_measured *m, struct eo_text *text)
 {
   const char *headings[COLUMNS + 3] = {"file", "label"};
-  struct eo_sheet sheet;
+  struct eo_text_table sheet;
   for (int k = 0; k < COLUMNS; k++)
     headings[2 + k] = columns[k].key;
   headings[COLUMNS + 2] = "reason";
-  eo_sheet_init(&sheet, COLUMNS + 3, headings);
+  eo_text_table_init(&sheet, COLUMNS + 3, headings);
   fill_sheet(c, m, &sheet, EO_DIGITS_NUMBER);
-  eo_sheet_csv(&sheet, text);
-  eo_sheet_done(&sheet);
+  eo_text_table_csv(&sheet, text);
+  eo_text_table_done(&sheet);
 }

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "format/json.h"
-#include "document/study.h"
+#include "document/search_space.h"
 #include "evaluation/evaluator.h"
 #include "design/check.h"
 
@@ -104,7 +104,7 @@ enum eo_code eo_design_complete(struct eo_design *design, struct eo_geometry *ge
   if (code)
     return code;
   eo_design_resolve(&complete, &made);
-  eo_table_settle(&eo_design_table, &complete);
+  eo_table_round_to_document(&eo_design_table, &complete);
   code = eo_geometry_init(&made, &complete.gear_pair, error);
   if (!code)
     code = eo_design_check(&complete, &made, error);

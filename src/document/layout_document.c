@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "format/json.h"
-#include "document/result_parts.h"
+#include "document/result_private.h"
 
 static const char *const kinds[] = {"guess", "angles", "sine-cosine", "pulses", NULL};
 static const char *const units[] = {"guess", "deg", "rad", "turn", "count", NULL};

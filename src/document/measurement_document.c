@@ -6,7 +6,7 @@
 
 #include "format/json.h"
 #include "document/layout_document.h"
-#include "document/result_parts.h"
+#include "document/result_private.h"
 
 enum { CURVE = 128, SPECTRUM_POINTS = 2000 };
 

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "document/geometry_table.h"
-#include "document/result_parts.h"
+#include "document/result_private.h"
 
 #include <config.h>
 

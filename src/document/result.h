@@ -15,7 +15,7 @@
 
 #include <jansson.h>
 
-#include "format/bundle.h"
+#include "format/file_set.h"
 #include "document/design_document.h"
 #include "format/outline.h"
 #include "format/text.h"
@@ -50,6 +50,6 @@ void eo_result_summary_csv(const json_t *result, struct eo_text *text);
 
 /* The curves as files of comma-separated values with the same names and units: summary, modification, unloaded contact,
    and for every load case curves, root stress, vibration, orders and one contact pattern per end. */
-void eo_result_files(const json_t *result, struct eo_bundle *bundle);
+void eo_result_files(const json_t *result, struct eo_file_set *bundle);
 
 #endif

@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <stdio.h>
 
-#include "document/result_parts.h"
+#include "document/result_private.h"
 #include "numerics/periodic.h"
 
 /* ---- transmission error and stiffness ---- */

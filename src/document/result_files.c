@@ -5,7 +5,7 @@
 
 #include "format/json.h"
 #include "document/result.h"
-#include "format/sheet.h"
+#include "format/text_table.h"
 
 enum { MOST_COLUMNS = 64, HEADING = 64 };
 
@@ -25,18 +25,18 @@ static void add_column(struct table *table, const json_t *array, const char *hea
   table->column[table->columns++] = array;
 }
 
-static void add_cell(struct eo_sheet *sheet, const json_t *value)
+static void add_cell(struct eo_text_table *sheet, const json_t *value)
 {
   if (json_is_string(value))
-    eo_sheet_string(sheet, json_string_value(value));
+    eo_text_table_string(sheet, json_string_value(value));
   else
-    eo_sheet_number(sheet, json_is_number(value) ? json_number_value(value) : NAN, NULL, 0);
+    eo_text_table_number(sheet, json_is_number(value) ? json_number_value(value) : NAN, NULL, 0);
 }
 
 static void save_table(const struct table *table, struct eo_text *text)
 {
   const char *heading[MOST_COLUMNS] = {NULL};
-  struct eo_sheet sheet;
+  struct eo_text_table sheet;
   size_t rows = 0;
   if (!text || !table->columns)
     return;
@@ -44,12 +44,12 @@ static void save_table(const struct table *table, struct eo_text *text)
     heading[j] = table->heading[j];
     rows = json_array_size(table->column[j]) > rows ? json_array_size(table->column[j]) : rows;
   }
-  eo_sheet_init(&sheet, table->columns, heading);
+  eo_text_table_init(&sheet, table->columns, heading);
   for (size_t i = 0; i < rows; i++)
     for (int j = 0; j < table->columns; j++)
       add_cell(&sheet, json_array_get(table->column[j], i));
-  eo_sheet_csv(&sheet, text);
-  eo_sheet_done(&sheet);
+  eo_text_table_csv(&sheet, text);
+  eo_text_table_done(&sheet);
 }
 
 /* Columns of both ends: "%s" in heading and path stands for the end. */
@@ -144,10 +144,10 @@ static void save_pattern(const json_t *result, const json_t *load_case, const ch
   const json_t *pressure = json_object_get(json_object_get(pattern, end), "pressure_MPa");
   const json_t *clearance = json_object_get(json_object_get(json_object_get(result, "unloaded_contact"), end),
                                             "clearance_um");
-  struct eo_sheet sheet;
+  struct eo_text_table sheet;
   if (!text)
     return;
-  eo_sheet_init(&sheet, 4, heading);
+  eo_text_table_init(&sheet, 4, heading);
   for (size_t i = 0; i < json_array_size(s); i++)
     for (size_t j = 0; j < json_array_size(eta); j++) {
       add_cell(&sheet, json_array_get(s, i));
@@ -155,8 +155,8 @@ static void save_pattern(const json_t *result, const json_t *load_case, const ch
       add_cell(&sheet, json_array_get(json_array_get(pressure, i), j));
       add_cell(&sheet, json_array_get(json_array_get(clearance, i), j));
     }
-  eo_sheet_csv(&sheet, text);
-  eo_sheet_done(&sheet);
+  eo_text_table_csv(&sheet, text);
+  eo_text_table_done(&sheet);
 }
 
 static void save_modification(const json_t *result, struct eo_text *text)
@@ -198,7 +198,7 @@ static void save_summary(const json_t *result, struct eo_text *text)
   const char *heading[COLUMNS] = {"load_case", "torque_Nm", "speed_rpm", "share", "outcome"};
   char before[VALUES][HEADING];
   const json_t *cases = json_object_get(result, "load_cases");
-  struct eo_sheet sheet;
+  struct eo_text_table sheet;
   if (!text)
     return;
   for (int i = 0; i < VALUES; i++) {
@@ -206,19 +206,19 @@ static void save_summary(const json_t *result, struct eo_text *text)
     heading[5 + i] = design[i];
     heading[5 + VALUES + i] = before[i];
   }
-  eo_sheet_init(&sheet, COLUMNS, heading);
+  eo_text_table_init(&sheet, COLUMNS, heading);
   for (size_t k = 0; k < json_array_size(cases); k++) {
     const json_t *load_case = json_array_get(cases, k),
                  *values = json_array_get(eo_json_find(result, "objectives/load_cases"), k);
     const json_t *unmodified = json_array_get(eo_json_find(result, "objectives/unmodified/load_cases"), k);
-    eo_sheet_number(&sheet, (double)(k + 1), NULL, 0);
+    eo_text_table_number(&sheet, (double)(k + 1), NULL, 0);
     for (int i = 1; i < 5; i++)
       add_cell(&sheet, json_object_get(load_case, heading[i]));
     for (int i = 0; i < 2 * VALUES; i++)
       add_cell(&sheet, json_object_get(i < VALUES ? values : unmodified, design[i % VALUES]));
   }
-  eo_sheet_csv(&sheet, text);
-  eo_sheet_done(&sheet);
+  eo_text_table_csv(&sheet, text);
+  eo_text_table_done(&sheet);
 }
 
 void eo_result_summary_csv(const json_t *result, struct eo_text *text)
@@ -226,23 +226,23 @@ void eo_result_summary_csv(const json_t *result, struct eo_text *text)
   save_summary(result, text);
 }
 
-void eo_result_files(const json_t *result, struct eo_bundle *bundle)
+void eo_result_files(const json_t *result, struct eo_file_set *bundle)
 {
   const json_t *cases = json_object_get(result, "load_cases");
-  save_summary(result, eo_bundle_add(bundle, "summary.csv"));
-  save_modification(result, eo_bundle_add(bundle, "modification.csv"));
-  save_unloaded(result, eo_bundle_add(bundle, "unloaded.csv"));
+  save_summary(result, eo_file_set_add(bundle, "summary.csv"));
+  save_modification(result, eo_file_set_add(bundle, "modification.csv"));
+  save_unloaded(result, eo_file_set_add(bundle, "unloaded.csv"));
   for (size_t k = 0; k < json_array_size(cases); k++) {
     const json_t *load_case = json_array_get(cases, k);
     int number = (int)k + 1;
-    save_curves(load_case, eo_bundle_add(bundle, "case-%d-curves.csv", number));
-    save_vibration(load_case, eo_bundle_add(bundle, "case-%d-vibration.csv", number));
-    save_orders(load_case, eo_bundle_add(bundle, "case-%d-orders.csv", number));
+    save_curves(load_case, eo_file_set_add(bundle, "case-%d-curves.csv", number));
+    save_vibration(load_case, eo_file_set_add(bundle, "case-%d-vibration.csv", number));
+    save_orders(load_case, eo_file_set_add(bundle, "case-%d-orders.csv", number));
     if (json_is_object(json_object_get(load_case, "root_stress")))
-      save_root(load_case, eo_bundle_add(bundle, "case-%d-root-stress.csv", number));
+      save_root(load_case, eo_file_set_add(bundle, "case-%d-root-stress.csv", number));
     for (int end = 0; end < 2; end++)
       if (json_object_get(eo_json_find(load_case, "contact/pattern"), end ? "right" : "left"))
         save_pattern(result, load_case, end ? "right" : "left",
-                     eo_bundle_add(bundle, "case-%d-pattern-%s.csv", number, end ? "right" : "left"));
+                     eo_file_set_add(bundle, "case-%d-pattern-%s.csv", number, end ? "right" : "left"));
   }
 }

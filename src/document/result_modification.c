@@ -1,7 +1,7 @@
 /* The modification as curves: what is taken off over the profile and over the face. */
 #include <math.h>
 
-#include "document/result_parts.h"
+#include "document/result_private.h"
 #include "gear/modification.h"
 
 enum { POINTS = 61 };

@@ -5,7 +5,7 @@
 
 #include "format/json.h"
 #include "document/result.h"
-#include "format/sheet.h"
+#include "format/text_table.h"
 
 static double find(const json_t *value, const char *path)
 {
@@ -40,22 +40,22 @@ static void print_pair(const json_t *result, struct eo_text *text)
                 find(result, "resolution/cells_per_line"), find_text(result, "resolution/mesh_law"));
 }
 
-static void add_change(struct eo_sheet *sheet, double before, double after)
+static void add_change(struct eo_text_table *sheet, double before, double after)
 {
   char change[40] = "";
   double percent = 100 * (after / before - 1);
   if (isfinite(percent))
     snprintf(change, sizeof change, "%+.*f %%", fabs(percent) < 9.95 ? 1 : 0, percent);
-  eo_sheet_string(sheet, change);
+  eo_text_table_string(sheet, change);
 }
 
-static void add_row(struct eo_sheet *sheet, const char *quantity, const char *unit, double before, double after,
+static void add_row(struct eo_text_table *sheet, const char *quantity, const char *unit, double before, double after,
                     double scale)
 {
-  eo_sheet_string(sheet, quantity);
-  eo_sheet_string(sheet, unit);
-  eo_sheet_number(sheet, before * scale, NULL, 4);
-  eo_sheet_number(sheet, after * scale, NULL, 4);
+  eo_text_table_string(sheet, quantity);
+  eo_text_table_string(sheet, unit);
+  eo_text_table_number(sheet, before * scale, NULL, 4);
+  eo_text_table_number(sheet, after * scale, NULL, 4);
   add_change(sheet, before, after);
 }
 
@@ -80,10 +80,10 @@ static const struct quantity {
     {"root stress", "MPa", "root_stress_MPa", 1},           {"load on tip edges", "%", "edge_load_share", 100},
 };
 
-static void start_table(struct eo_sheet *sheet)
+static void start_table(struct eo_text_table *sheet)
 {
   static const char *const headings[] = {"", "", "unmodified", "design", "change"};
-  eo_sheet_init(sheet, 5, headings);
+  eo_text_table_init(sheet, 5, headings);
 }
 
 static void print_case(const json_t *result, size_t k, struct eo_text *text)
@@ -91,7 +91,7 @@ static void print_case(const json_t *result, size_t k, struct eo_text *text)
   const json_t *load_case = json_array_get(json_object_get(result, "load_cases"), k);
   const json_t *after = json_array_get(eo_json_find(result, "objectives/load_cases"), k);
   const json_t *before = json_array_get(eo_json_find(result, "objectives/unmodified/load_cases"), k);
-  struct eo_sheet sheet;
+  struct eo_text_table sheet;
   eo_text_print(text, "%.6g N m, %.6g rpm, share %.4g: %s\n", find(load_case, "torque_Nm"),
                 find(load_case, "speed_rpm"), find(load_case, "share"), find_text(load_case, "outcome"));
   start_table(&sheet);
@@ -100,8 +100,8 @@ static void print_case(const json_t *result, size_t k, struct eo_text *text)
     if (isfinite(find(after, q->key)))
       add_row(&sheet, q->name, q->unit, find(before, q->key), find(after, q->key), q->scale);
   }
-  eo_sheet_print(&sheet, 2, text);
-  eo_sheet_done(&sheet);
+  eo_text_table_print(&sheet, 2, text);
+  eo_text_table_done(&sheet);
   print_band(load_case, text);
   eo_text_add(text, "\n");
 }
@@ -110,7 +110,7 @@ static void print_objectives(const json_t *result, struct eo_text *text)
 {
   const json_t *after = json_object_get(result, "objectives"), *before = json_object_get(after, "unmodified");
   double violation = find(after, "violation");
-  struct eo_sheet sheet;
+  struct eo_text_table sheet;
   eo_text_add(text, "Objectives\n");
   start_table(&sheet);
   add_row(&sheet, "f1", "um", find(before, "f1_um"), find(after, "f1_um"), 1);
@@ -118,8 +118,8 @@ static void print_objectives(const json_t *result, struct eo_text *text)
   add_row(&sheet, "f3", "m/s2", find(before, "f3_m_per_s2"), find(after, "f3_m_per_s2"), 1);
   add_row(&sheet, "J", "", find(before, "J"), find(after, "J"), 1);
   add_row(&sheet, "fitness", "", find(before, "fitness"), find(after, "fitness"), 1);
-  eo_sheet_print(&sheet, 2, text);
-  eo_sheet_done(&sheet);
+  eo_text_table_print(&sheet, 2, text);
+  eo_text_table_done(&sheet);
   if (violation > 0)
     eo_text_print(text, "  Constraints are violated by %.4g in sum.\n", violation);
   eo_text_add(text, "\n");

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 
 #include "base/parallel.h"
-#include "document/result_parts.h"
+#include "document/result_private.h"
 
 enum { WRITERS = 2, HALVES = 2, MOST_PARTS = 1 + HALVES * EO_MAX_LOAD_CASES };
 

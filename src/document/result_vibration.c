@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <stdio.h>
 
-#include "document/result_parts.h"
+#include "document/result_private.h"
 
 static const char *const reading_name[EO_READINGS] = {"normal", "transverse", "rotational"};
 

@@ -3,7 +3,7 @@
 #include <stdarg.h>
 #include <stdio.h>
 
-#include "document/result_parts.h"
+#include "document/result_private.h"
 
 struct list {
   json_t *array;

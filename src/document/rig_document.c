@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "format/json.h"
-#include "document/result_parts.h"
+#include "document/result_private.h"
 
 static const struct eo_unit unit_urad = {"urad", "urad", 1e6, true}, unit_us = {"us", "us", 1e6, true},
                             unit_mV = {"mV", "mV", 1e3, true}, unit_V = {"V", "V", 1, false};

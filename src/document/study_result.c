@@ -5,8 +5,8 @@
 #include <string.h>
 
 #include "format/json.h"
-#include "document/result_parts.h"
-#include "format/sheet.h"
+#include "document/result_private.h"
+#include "format/text_table.h"
 
 #include <config.h>
 
@@ -329,27 +329,27 @@ static void print_variables(const json_t *document, struct eo_text *text)
   static const char *const headings[] = {"variable", "lowest", "highest", "best"};
   const json_t *row;
   size_t i;
-  struct eo_sheet sheet;
-  eo_sheet_init(&sheet, 4, headings);
+  struct eo_text_table sheet;
+  eo_text_table_init(&sheet, 4, headings);
   json_array_foreach(json_object_get(document, "variables"), i, row)
   {
-    eo_sheet_string(&sheet, find_text(row, "name"));
+    eo_text_table_string(&sheet, find_text(row, "name"));
     for (size_t j = 0; j < 2; j++)
-      eo_sheet_number(&sheet, json_number_value(json_array_get(json_object_get(row, "bounds"), j)), NULL, 5);
-    eo_sheet_number(&sheet, eo_json_find_number(row, "best"), NULL, 5);
+      eo_text_table_number(&sheet, json_number_value(json_array_get(json_object_get(row, "bounds"), j)), NULL, 5);
+    eo_text_table_number(&sheet, eo_json_find_number(row, "best"), NULL, 5);
   }
-  eo_sheet_print(&sheet, 2, text);
-  eo_sheet_done(&sheet);
+  eo_text_table_print(&sheet, 2, text);
+  eo_text_table_done(&sheet);
   eo_text_add(text, "\n");
 }
 
-static void add_reduction(struct eo_sheet *sheet, double before, double after)
+static void add_reduction(struct eo_text_table *sheet, double before, double after)
 {
   char change[40] = "";
   double percent = 100 * (1 - after / before);
   if (isfinite(percent))
     snprintf(change, sizeof change, "%.*f %%", fabs(percent) < 9.95 ? 1 : 0, percent);
-  eo_sheet_string(sheet, change);
+  eo_text_table_string(sheet, change);
 }
 
 static const struct quantity {
@@ -361,15 +361,15 @@ static const struct quantity {
                 {"contact_pressure_MPa", "contact pressure", "MPa"},
                 {"root_stress_MPa", "root stress", "MPa"}};
 
-static void add_rows(struct eo_sheet *sheet, const struct quantity *quantity, size_t count, const json_t *before,
+static void add_rows(struct eo_text_table *sheet, const struct quantity *quantity, size_t count, const json_t *before,
                      const json_t *after)
 {
   for (size_t i = 0; i < count; i++) {
     double a = eo_json_find_number(before, quantity[i].key), b = eo_json_find_number(after, quantity[i].key);
-    eo_sheet_string(sheet, quantity[i].name);
-    eo_sheet_string(sheet, quantity[i].unit);
-    eo_sheet_number(sheet, a, NULL, 4);
-    eo_sheet_number(sheet, b, NULL, 4);
+    eo_text_table_string(sheet, quantity[i].name);
+    eo_text_table_string(sheet, quantity[i].unit);
+    eo_text_table_number(sheet, a, NULL, 4);
+    eo_text_table_number(sheet, b, NULL, 4);
     add_reduction(sheet, a, b);
   }
 }
@@ -378,11 +378,11 @@ static void print_comparison(const struct quantity *quantity, size_t count, cons
                              struct eo_text *text)
 {
   static const char *const headings[] = {"", "", "unmodified", "optimum", "reduction"};
-  struct eo_sheet sheet;
-  eo_sheet_init(&sheet, 5, headings);
+  struct eo_text_table sheet;
+  eo_text_table_init(&sheet, 5, headings);
   add_rows(&sheet, quantity, count, before, after);
-  eo_sheet_print(&sheet, 2, text);
-  eo_sheet_done(&sheet);
+  eo_text_table_print(&sheet, 2, text);
+  eo_text_table_done(&sheet);
   eo_text_add(text, "\n");
 }
 

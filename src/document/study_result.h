@@ -14,7 +14,7 @@
 
 #include "document/design_document.h"
 #include "format/outline.h"
-#include "document/study.h"
+#include "document/search_space.h"
 #include "evaluation/objective.h"
 
 enum eo_study_stop { EO_STOP_BUDGET, EO_STOP_CONVERGED, EO_STOP_CANCELLED };

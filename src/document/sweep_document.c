@@ -5,8 +5,8 @@
 #include <string.h>
 
 #include "format/json.h"
-#include "document/result_parts.h"
-#include "format/sheet.h"
+#include "document/result_private.h"
+#include "format/text_table.h"
 
 #include <config.h>
 
@@ -307,23 +307,23 @@ json_t *eo_sweep_encode(const struct eo_sweep *s, const struct eo_design *design
 /* ---- CSV ---- */
 
 static void add_headings(const struct eo_sweep *s, int columns, const struct column *column, const char *prefix,
-                         struct eo_sheet *sheet)
+                         struct eo_text_table *sheet)
 {
   char heading[80];
   for (int i = 0; i < columns; i++)
     if (column[i].end < s->ends) {
       snprintf(heading, sizeof heading, "%s%s", prefix, column[i].heading);
-      eo_sheet_string(sheet, heading);
+      eo_text_table_string(sheet, heading);
     }
 }
 
-static void add_all_headings(const struct eo_sweep *s, struct eo_sheet *sheet)
+static void add_all_headings(const struct eo_sweep *s, struct eo_text_table *sheet)
 {
   static const char *const prefix[EO_SWEEP_VARIANTS][EO_SWEEP_DIRECTIONS] = {{"", "down_"},
                                                                              {"unmodified_", "unmodified_down_"}};
   static const struct column outcome = {.heading = "outcome", .end = -1};
-  eo_sheet_string(sheet, "torque_Nm");
-  eo_sheet_string(sheet, "speed_rpm");
+  eo_text_table_string(sheet, "torque_Nm");
+  eo_text_table_string(sheet, "speed_rpm");
   for (int v = 0; v < EO_SWEEP_VARIANTS; v++) {
     add_headings(s, TORQUE_COLUMNS, torque_columns, prefix[v][0], sheet);
     for (int d = 0; d <= s->branches[v]; d++) {
@@ -335,29 +335,29 @@ static void add_all_headings(const struct eo_sweep *s, struct eo_sheet *sheet)
 }
 
 static void add_row(const struct eo_sweep *s, int columns, const struct column *column, const void *row,
-                    struct eo_sheet *sheet)
+                    struct eo_text_table *sheet)
 {
   for (int i = 0; i < columns; i++)
     if (column[i].end < s->ends)
-      eo_sheet_number(sheet, member_of(row, &column[i]), column[i].unit, EO_DIGITS_NUMBER);
+      eo_text_table_number(sheet, member_of(row, &column[i]), column[i].unit, EO_DIGITS_NUMBER);
 }
 
 void eo_sweep_csv(const struct eo_sweep *s, struct eo_text *text)
 {
-  struct eo_sheet sheet;
-  eo_sheet_init(&sheet, 0, NULL);
+  struct eo_text_table sheet;
+  eo_text_table_init(&sheet, 0, NULL);
   add_all_headings(s, &sheet);
   for (int i = 0; i < s->torques * s->speeds; i++) {
-    eo_sheet_number(&sheet, s->torque[i / s->speeds], &eo_unit_Nm, EO_DIGITS_NUMBER);
-    eo_sheet_number(&sheet, s->speed[i % s->speeds], &eo_unit_rpm, EO_DIGITS_NUMBER);
+    eo_text_table_number(&sheet, s->torque[i / s->speeds], &eo_unit_Nm, EO_DIGITS_NUMBER);
+    eo_text_table_number(&sheet, s->speed[i % s->speeds], &eo_unit_rpm, EO_DIGITS_NUMBER);
     for (int v = 0; v < EO_SWEEP_VARIANTS; v++) {
       add_row(s, TORQUE_COLUMNS, torque_columns, &s->at_torque[v][i / s->speeds], &sheet);
       for (int d = 0; d <= s->branches[v]; d++) {
-        eo_sheet_string(&sheet, outcome_of(&s->point[v][d][i]));
+        eo_text_table_string(&sheet, outcome_of(&s->point[v][d][i]));
         add_row(s, POINT_COLUMNS, point_columns, &s->point[v][d][i], &sheet);
       }
     }
   }
-  eo_sheet_csv(&sheet, text);
-  eo_sheet_done(&sheet);
+  eo_text_table_csv(&sheet, text);
+  eo_text_table_done(&sheet);
 }

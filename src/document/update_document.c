@@ -5,8 +5,8 @@
 #include <string.h>
 
 #include "format/json.h"
-#include "document/result_parts.h"
-#include "format/sheet.h"
+#include "document/result_private.h"
+#include "format/text_table.h"
 
 static const double LARGE_CONDITION = 1e6;
 
@@ -185,20 +185,20 @@ static void print_warning(void *context, const char *text)
 void eo_update_summary(const struct eo_update *u, struct eo_text *text)
 {
   static const char *const headings[] = {"input", "before", "found", "95 % from", "to"};
-  struct eo_sheet sheet;
+  struct eo_text_table sheet;
   eo_text_print(
       text,
       "\nInputs fitted to %d orders of %d measurements (misfit %.3g before, %.3g after, in standard deviations):\n",
       u->residuals, u->used, u->before, u->after);
-  eo_sheet_init(&sheet, 5, headings);
+  eo_text_table_init(&sheet, 5, headings);
   for (int i = 0; i < u->unknowns; i++) {
     const struct eo_updated *p = &u->unknown[i];
-    eo_sheet_string(&sheet, eo_unknown_name(p->unknown));
+    eo_text_table_string(&sheet, eo_unknown_name(p->unknown));
     const double value[] = {p->before, p->value, p->confidence[0], p->confidence[1]};
     for (int k = 0; k < 4; k++)
-      eo_sheet_number(&sheet, value[k], unit_of(p->unknown), 4);
+      eo_text_table_number(&sheet, value[k], unit_of(p->unknown), 4);
   }
-  eo_sheet_print(&sheet, 2, text);
-  eo_sheet_done(&sheet);
+  eo_text_table_print(&sheet, 2, text);
+  eo_text_table_done(&sheet);
   each_warning(u, print_warning, text);
 }

@@ -125,12 +125,12 @@ static void settle_field(const struct eo_field *field, void *target)
     settle_numbers(field->unit, 1, &((struct eo_constraint *)place)->limit);
     break;
   case EO_FIELD_OBJECT:
-    eo_table_settle(field->table, place);
+    eo_table_round_to_document(field->table, place);
     break;
   case EO_FIELD_LIST:
     rows = *(const int *)((const char *)target + field->count_offset);
     for (int i = 0; i < rows; i++)
-      eo_table_settle(field->table, (char *)place + (size_t)i * field->table->size);
+      eo_table_round_to_document(field->table, (char *)place + (size_t)i * field->table->size);
     break;
   case EO_FIELD_SERIES:
     settle_numbers(field->unit, series->count, series->value);
@@ -144,7 +144,7 @@ static void settle_field(const struct eo_field *field, void *target)
   }
 }
 
-void eo_table_settle(const struct eo_table *table, void *target)
+void eo_table_round_to_document(const struct eo_table *table, void *target)
 {
   for (int i = 0; i < table->count; i++)
     settle_field(&table->field[i], target);

@@ -85,7 +85,7 @@ void eo_table_decode(const struct eo_table *table, const json_t *object, const s
 json_t *eo_table_encode(const struct eo_table *table, const void *source);
 
 /* Moves every number to the nearest one the document can express, so that decode(encode(x)) is x bit for bit. */
-void eo_table_settle(const struct eo_table *table, void *target);
+void eo_table_round_to_document(const struct eo_table *table, void *target);
 
 /* Frees SERIES members, in the rows of lists too. */
 void eo_table_done(const struct eo_table *table, void *target);

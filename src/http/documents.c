@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "document/example.h"
+#include "document/examples.h"
 #include "format/json.h"
 #include "format/schema.h"
 #include "document/sweep_document.h"

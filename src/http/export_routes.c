@@ -1,7 +1,7 @@
 /* Files for other programs. */
 #include <stdio.h>
 
-#include "document/export.h"
+#include "document/design_export.h"
 #include "http/route.h"
 #include "http/server.h"
 

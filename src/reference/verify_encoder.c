@@ -6,7 +6,7 @@
 
 #include "reference/case_pair.h"
 #include "reference/verify.h"
-#include "document/example.h"
+#include "document/examples.h"
 #include "document/layout_document.h"
 #include "gear/geometry.h"
 #include "measurement/measurement.h"

@@ -5,7 +5,7 @@
 #include <string.h>
 #include <time.h>
 
-#include "document/example.h"
+#include "document/examples.h"
 #include "format/json.h"
 #include "evaluation/analysis.h"
 

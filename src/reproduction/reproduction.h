@@ -15,7 +15,7 @@
 #include <jansson.h>
 
 #include "base/progress.h"
-#include "format/bundle.h"
+#include "format/file_set.h"
 #include "design/design.h"
 #include "store/store.h"
 
@@ -34,7 +34,7 @@ struct eo_reproduction_plan {
 enum eo_code eo_reproduction_run(const struct eo_reproduction_plan *plan, json_t **document, struct eo_error *error);
 
 /* Tables and figures as files of comma-separated values; one page that needs nothing else; a summary for people. */
-void eo_reproduction_files(const json_t *document, struct eo_bundle *bundle);
+void eo_reproduction_files(const json_t *document, struct eo_file_set *bundle);
 void eo_reproduction_page(const json_t *document, struct eo_text *text);
 void eo_reproduction_summary(const json_t *document, struct eo_text *text);
 

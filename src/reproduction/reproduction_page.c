@@ -5,7 +5,7 @@
 
 #include "format/json.h"
 #include "format/plot.h"
-#include "format/sheet.h"
+#include "format/text_table.h"
 #include "reproduction/reproduction.h"
 
 static const char *find_text(const json_t *value, const char *path)
@@ -16,34 +16,34 @@ static const char *find_text(const json_t *value, const char *path)
 
 /* ---- tables, for CSV, page and terminal alike ---- */
 
-static void add_verdict(struct eo_sheet *sheet, const json_t *row, const char *key)
+static void add_verdict(struct eo_text_table *sheet, const json_t *row, const char *key)
 {
   const json_t *value = json_object_get(row, key);
-  eo_sheet_string(sheet, json_is_boolean(value) ? json_is_true(value) ? "yes" : "no" : "");
+  eo_text_table_string(sheet, json_is_boolean(value) ? json_is_true(value) ? "yes" : "no" : "");
 }
 
-static void fill_comparisons(const json_t *document, struct eo_sheet *sheet, int digits)
+static void fill_comparisons(const json_t *document, struct eo_text_table *sheet, int digits)
 {
   static const char *const headings[] = {"figure", "quantity",     "paper",        "ours",         "ours, secant law",
                                          "unit",   "trend agrees", "value agrees", "secant agrees"};
   const json_t *row;
   size_t i;
-  eo_sheet_init(sheet, 9, headings);
+  eo_text_table_init(sheet, 9, headings);
   json_array_foreach(json_object_get(document, "comparisons"), i, row)
   {
-    eo_sheet_string(sheet, find_text(row, "figure"));
-    eo_sheet_string(sheet, find_text(row, "quantity"));
-    eo_sheet_number(sheet, eo_json_find_number(row, "paper"), NULL, digits);
-    eo_sheet_number(sheet, eo_json_find_number(row, "ours"), NULL, digits);
-    eo_sheet_number(sheet, eo_json_find_number(row, "ours_secant_law"), NULL, digits);
-    eo_sheet_string(sheet, find_text(row, "unit"));
+    eo_text_table_string(sheet, find_text(row, "figure"));
+    eo_text_table_string(sheet, find_text(row, "quantity"));
+    eo_text_table_number(sheet, eo_json_find_number(row, "paper"), NULL, digits);
+    eo_text_table_number(sheet, eo_json_find_number(row, "ours"), NULL, digits);
+    eo_text_table_number(sheet, eo_json_find_number(row, "ours_secant_law"), NULL, digits);
+    eo_text_table_string(sheet, find_text(row, "unit"));
     add_verdict(sheet, row, "trend_agrees");
     add_verdict(sheet, row, "value_agrees");
     add_verdict(sheet, row, "value_agrees_secant_law");
   }
 }
 
-static void fill_table_3(const json_t *document, struct eo_sheet *sheet, int digits)
+static void fill_table_3(const json_t *document, struct eo_text_table *sheet, int digits)
 {
   static const char *const headings[] = {"parameter",    "A, printed",       "A, ours",      "B left, printed",
                                          "B left, ours", "B right, printed", "B right, ours"};
@@ -51,16 +51,16 @@ static void fill_table_3(const json_t *document, struct eo_sheet *sheet, int dig
                                      "ours_case_b_left", "printed_case_b_right", "ours_case_b_right"};
   const json_t *row;
   size_t i;
-  eo_sheet_init(sheet, 7, headings);
+  eo_text_table_init(sheet, 7, headings);
   json_array_foreach(json_object_get(document, "table_3"), i, row)
   {
-    eo_sheet_string(sheet, find_text(row, "parameter"));
+    eo_text_table_string(sheet, find_text(row, "parameter"));
     for (int j = 0; j < 6; j++)
-      eo_sheet_number(sheet, eo_json_find_number(row, keys[j]), NULL, digits);
+      eo_text_table_number(sheet, eo_json_find_number(row, keys[j]), NULL, digits);
   }
 }
 
-static void fill_results(const json_t *document, struct eo_sheet *sheet, int digits)
+static void fill_results(const json_t *document, struct eo_text_table *sheet, int digits)
 {
   static const char *const headings[] = {"design",         "mesh law", "PPLTE 621",   "828",      "1035 N m, um",
                                          "impact 621",     "828",      "1035 N m, N", "RMS 621",  "828",
@@ -70,37 +70,37 @@ static void fill_results(const json_t *document, struct eo_sheet *sheet, int dig
                                                                                                       "J"};
   const json_t *row;
   size_t i;
-  eo_sheet_init(sheet, 15, headings);
+  eo_text_table_init(sheet, 15, headings);
   json_array_foreach(json_object_get(document, "results"), i, row)
   {
-    eo_sheet_string(sheet, find_text(row, "design"));
-    eo_sheet_string(sheet, find_text(row, "mesh_law"));
+    eo_text_table_string(sheet, find_text(row, "design"));
+    eo_text_table_string(sheet, find_text(row, "mesh_law"));
     for (int j = 0; j < 3; j++)
       for (size_t k = 0; k < 3; k++)
-        eo_sheet_number(sheet, eo_json_find_number(json_array_get(json_object_get(row, "load_cases"), k), keys[j]),
-                        NULL, digits);
+        eo_text_table_number(sheet, eo_json_find_number(json_array_get(json_object_get(row, "load_cases"), k), keys[j]),
+                             NULL, digits);
     for (int j = 0; j < 4; j++)
-      eo_sheet_number(sheet, eo_json_find_number(row, sums[j]), NULL, digits);
+      eo_text_table_number(sheet, eo_json_find_number(row, sums[j]), NULL, digits);
   }
 }
 
-static void fill_optimizations(const json_t *document, struct eo_sheet *sheet, int digits)
+static void fill_optimizations(const json_t *document, struct eo_text_table *sheet, int digits)
 {
   static const char *const headings[] = {"case", "algorithm", "J", "true evaluations", "individuals", "PFC, %"};
   static const char *const keys[] = {"J", "true_evaluations", "individuals", "pfc_percent"};
   const json_t *row;
   size_t i;
-  eo_sheet_init(sheet, 6, headings);
+  eo_text_table_init(sheet, 6, headings);
   json_array_foreach(json_object_get(document, "optimizations"), i, row)
   {
-    eo_sheet_string(sheet, find_text(row, "case"));
-    eo_sheet_string(sheet, find_text(row, "algorithm"));
+    eo_text_table_string(sheet, find_text(row, "case"));
+    eo_text_table_string(sheet, find_text(row, "algorithm"));
     for (int j = 0; j < 4; j++)
-      eo_sheet_number(sheet, eo_json_find_number(row, keys[j]), NULL, j == 1 || j == 2 ? 0 : digits);
+      eo_text_table_number(sheet, eo_json_find_number(row, keys[j]), NULL, j == 1 || j == 2 ? 0 : digits);
   }
 }
 
-static void fill_sensitivity(const json_t *document, struct eo_sheet *sheet, int digits)
+static void fill_sensitivity(const json_t *document, struct eo_text_table *sheet, int digits)
 {
   static const char *const headings[] = {"assumption",
                                          "value",
@@ -121,25 +121,25 @@ static void fill_sensitivity(const json_t *document, struct eo_sheet *sheet, int
                            *const at_828[] = {"lte_reduction_percent", "impact_unmodified_N", "impact_case_a_N"};
   const json_t *row;
   size_t i;
-  eo_sheet_init(sheet, 15, headings);
+  eo_text_table_init(sheet, 15, headings);
   json_array_foreach(json_object_get(document, "sensitivity"), i, row)
   {
-    eo_sheet_string(sheet, find_text(row, "assumption"));
-    eo_sheet_string(sheet, find_text(row, "value"));
+    eo_text_table_string(sheet, find_text(row, "assumption"));
+    eo_text_table_string(sheet, find_text(row, "value"));
     for (int j = 0; j < 3; j++)
       for (size_t k = 0; k < 3; k++) {
         const json_t *number = json_array_get(json_object_get(row, keys[j]), k);
-        eo_sheet_number(sheet, json_is_number(number) ? json_number_value(number) : NAN, NULL, digits);
+        eo_text_table_number(sheet, json_is_number(number) ? json_number_value(number) : NAN, NULL, digits);
       }
     for (int j = 0; j < 3; j++)
-      eo_sheet_number(sheet, json_number_value(json_array_get(json_object_get(row, at_828[j]), 1)), NULL, digits);
-    eo_sheet_number(sheet, eo_json_find_number(row, "J_case_a"), NULL, digits);
+      eo_text_table_number(sheet, json_number_value(json_array_get(json_object_get(row, at_828[j]), 1)), NULL, digits);
+    eo_text_table_number(sheet, eo_json_find_number(row, "J_case_a"), NULL, digits);
   }
 }
 
 static const struct table {
   const char *file, *title;
-  void (*fill)(const json_t *document, struct eo_sheet *sheet, int digits);
+  void (*fill)(const json_t *document, struct eo_text_table *sheet, int digits);
 } tables[] = {
     {"comparisons.csv", "The paper's numbers and ours", fill_comparisons},
     {"table-3.csv", "Table 3: parameters of the optimal modification", fill_table_3},
@@ -165,38 +165,38 @@ static void write_figure(const json_t *figure, struct eo_text *text)
   const char *const headings[] = {"series", find_text(figure, "x_label"), find_text(figure, "y_label")};
   const json_t *series;
   size_t i;
-  struct eo_sheet sheet;
-  eo_sheet_init(&sheet, 3, headings);
+  struct eo_text_table sheet;
+  eo_text_table_init(&sheet, 3, headings);
   json_array_foreach(json_object_get(figure, "series"), i,
                      series) for (size_t j = 0; j < json_array_size(json_object_get(series, "x")); j++)
   {
     const json_t *y = json_array_get(json_object_get(series, "y"), j);
-    eo_sheet_string(&sheet, find_text(series, "name"));
-    eo_sheet_number(&sheet, json_number_value(json_array_get(json_object_get(series, "x"), j)), NULL, 0);
-    eo_sheet_number(&sheet, json_is_number(y) ? json_number_value(y) : NAN, NULL, 0);
+    eo_text_table_string(&sheet, find_text(series, "name"));
+    eo_text_table_number(&sheet, json_number_value(json_array_get(json_object_get(series, "x"), j)), NULL, 0);
+    eo_text_table_number(&sheet, json_is_number(y) ? json_number_value(y) : NAN, NULL, 0);
   }
-  eo_sheet_csv(&sheet, text);
-  eo_sheet_done(&sheet);
+  eo_text_table_csv(&sheet, text);
+  eo_text_table_done(&sheet);
 }
 
-void eo_reproduction_files(const json_t *document, struct eo_bundle *bundle)
+void eo_reproduction_files(const json_t *document, struct eo_file_set *bundle)
 {
   const json_t *figure;
   size_t i;
   for (i = 0; i < TABLES; i++) {
-    struct eo_text *text = eo_bundle_add(bundle, "%s", tables[i].file);
-    struct eo_sheet sheet;
+    struct eo_text *text = eo_file_set_add(bundle, "%s", tables[i].file);
+    struct eo_text_table sheet;
     if (!text)
       return;
     tables[i].fill(document, &sheet, 0);
-    eo_sheet_csv(&sheet, text);
-    eo_sheet_done(&sheet);
+    eo_text_table_csv(&sheet, text);
+    eo_text_table_done(&sheet);
   }
   json_array_foreach(json_object_get(document, "figures"), i, figure)
   {
     char name[60];
     file_name(find_text(figure, "number"), name, sizeof name);
-    struct eo_text *text = eo_bundle_add(bundle, "%s", name);
+    struct eo_text *text = eo_file_set_add(bundle, "%s", name);
     if (!text)
       return;
     write_figure(figure, text);
@@ -214,7 +214,7 @@ static const char style[] =
     "figure{margin:0}svg{width:100%;height:auto}"
     "td.no{font-weight:bold}@media print{.figures{grid-template-columns:1fr 1fr}}";
 
-static void write_table(const struct eo_sheet *sheet, struct eo_text *text)
+static void write_table(const struct eo_text_table *sheet, struct eo_text *text)
 {
   eo_text_add(text, "<div class=\"wide\"><table>\n<tr>");
   for (int i = 0; i < sheet->cells; i++) {
@@ -324,11 +324,11 @@ void eo_reproduction_page(const json_t *document, struct eo_text *text)
                 json_is_true(json_object_get(document, "quick")) ? " Quick run: a tenth of the paper's generations."
                                                                  : "");
   for (i = 0; i < TABLES; i++) {
-    struct eo_sheet sheet;
+    struct eo_text_table sheet;
     tables[i].fill(document, &sheet, 4);
     eo_text_print(text, "<h2>%s</h2>\n", tables[i].title);
     write_table(&sheet, text);
-    eo_sheet_done(&sheet);
+    eo_text_table_done(&sheet);
   }
   eo_text_add(text, "<h2>Figures</h2>\n<div class=\"figures\">\n");
   json_array_foreach(json_object_get(document, "figures"), i, figure) write_plot(figure, text);
@@ -344,11 +344,11 @@ void eo_reproduction_summary(const json_t *document, struct eo_text *text)
   const json_t *item;
   size_t i;
   for (i = 0; i < TABLES; i++) {
-    struct eo_sheet sheet;
+    struct eo_text_table sheet;
     eo_text_print(text, "%s\n", tables[i].title);
     tables[i].fill(document, &sheet, 4);
-    eo_sheet_print(&sheet, 2, text);
-    eo_sheet_done(&sheet);
+    eo_text_table_print(&sheet, 2, text);
+    eo_text_table_done(&sheet);
     eo_text_add(text, "\n");
   }
   write_verdict(document, text);

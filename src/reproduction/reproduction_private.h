@@ -2,7 +2,7 @@
 #ifndef EASEOFF_REPRODUCTION_REPRODUCTION_PRIVATE_H
 #define EASEOFF_REPRODUCTION_REPRODUCTION_PRIVATE_H
 
-#include "document/result_parts.h"
+#include "document/result_private.h"
 #include "reproduction/reproduction.h"
 #include "study/study.h"
 

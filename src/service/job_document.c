@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "format/json.h"
-#include "document/result_parts.h"
+#include "document/result_private.h"
 
 void eo_job_live_done(struct eo_job_live *live)
 {

@@ -5,8 +5,8 @@
 #include <string.h>
 
 #include "format/json.h"
-#include "document/result_parts.h"
-#include "format/sheet.h"
+#include "document/result_private.h"
+#include "format/text_table.h"
 #include "store/evaluations.h"
 #include "store/jobs.h"
 #include "store/lock.h"
@@ -277,15 +277,15 @@ static void add_headings(const json_t *paths, const json_t *cases, char **headin
     }
 }
 
-static void add_cell(struct eo_sheet *sheet, const json_t *value, double standard)
+static void add_cell(struct eo_text_table *sheet, const json_t *value, double standard)
 {
   if (json_is_string(value))
-    eo_sheet_string(sheet, json_string_value(value));
+    eo_text_table_string(sheet, json_string_value(value));
   else
-    eo_sheet_number(sheet, json_is_number(value) ? json_number_value(value) : standard, NULL, 0);
+    eo_text_table_number(sheet, json_is_number(value) ? json_number_value(value) : standard, NULL, 0);
 }
 
-static void add_cells(struct eo_sheet *sheet, const json_t *row, const json_t *paths)
+static void add_cells(struct eo_text_table *sheet, const json_t *row, const json_t *paths)
 {
   const char *key;
   json_t *value;
@@ -301,7 +301,7 @@ static void add_cells(struct eo_sheet *sheet, const json_t *row, const json_t *p
 
 static void write_rows(const json_t *rows, const json_t *paths, char **heading, int columns, struct eo_text *text)
 {
-  struct eo_sheet sheet;
+  struct eo_text_table sheet;
   const json_t *row;
   size_t i;
   add_headings(paths, first_scenario(json_array_get(rows, 0)), heading);
@@ -309,10 +309,10 @@ static void write_rows(const json_t *rows, const json_t *paths, char **heading, 
     text->failed |= !heading[j];
   if (text->failed)
     return;
-  eo_sheet_init(&sheet, columns, (const char *const *)heading);
+  eo_text_table_init(&sheet, columns, (const char *const *)heading);
   json_array_foreach((json_t *)rows, i, row) add_cells(&sheet, row, paths);
-  eo_sheet_csv(&sheet, text);
-  eo_sheet_done(&sheet);
+  eo_text_table_csv(&sheet, text);
+  eo_text_table_done(&sheet);
 }
 
 enum eo_code eo_records_rows_csv(const json_t *document, struct eo_text *text, struct eo_error *error)

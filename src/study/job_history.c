@@ -7,9 +7,9 @@
 
 #include "document/design_document.h"
 #include "format/json.h"
-#include "document/result_parts.h"
-#include "format/sheet.h"
-#include "document/study.h"
+#include "document/result_private.h"
+#include "format/text_table.h"
+#include "document/search_space.h"
 #include "evaluation/evaluator.h"
 #include "store/evaluations.h"
 
@@ -212,26 +212,26 @@ static const char *const plain_columns[] = {"ordinal", "generation", "individual
                                             "f1_um",   "f2_N",       "f3_m_per_s2", "J",       "fitness"};
 enum { PLAIN = sizeof plain_columns / sizeof plain_columns[0] };
 
-static void add_cell(struct eo_sheet *sheet, const json_t *value, double standard)
+static void add_cell(struct eo_text_table *sheet, const json_t *value, double standard)
 {
   if (json_is_string(value))
-    eo_sheet_string(sheet, json_string_value(value));
+    eo_text_table_string(sheet, json_string_value(value));
   else if (json_is_boolean(value))
-    eo_sheet_string(sheet, json_is_true(value) ? "true" : "false");
+    eo_text_table_string(sheet, json_is_true(value) ? "true" : "false");
   else
-    eo_sheet_number(sheet, json_is_number(value) ? json_number_value(value) : standard, NULL, 0);
+    eo_text_table_number(sheet, json_is_number(value) ? json_number_value(value) : standard, NULL, 0);
 }
 
 static void write_rows(const json_t *items, const json_t *paths, const char **heading, struct eo_text *text)
 {
-  struct eo_sheet sheet;
+  struct eo_text_table sheet;
   const char *key;
   json_t *row, *value;
   size_t i;
   int columns = PLAIN;
   memcpy(heading, plain_columns, sizeof plain_columns);
   json_object_foreach((json_t *)paths, key, value) heading[columns++] = key;
-  eo_sheet_init(&sheet, columns, heading);
+  eo_text_table_init(&sheet, columns, heading);
   json_array_foreach((json_t *)items, i, row)
   {
     for (int j = 0; j < PLAIN; j++)
@@ -239,8 +239,8 @@ static void write_rows(const json_t *items, const json_t *paths, const char **he
     for (int j = PLAIN; j < columns; j++)
       add_cell(&sheet, eo_json_find(json_object_get(row, "modification"), heading[j]), 0);
   }
-  eo_sheet_csv(&sheet, text);
-  eo_sheet_done(&sheet);
+  eo_text_table_csv(&sheet, text);
+  eo_text_table_done(&sheet);
 }
 
 static enum eo_code write_csv(const json_t *items, struct eo_text *text, struct eo_error *error)

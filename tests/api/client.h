@@ -30,7 +30,7 @@
 #include <jansson.h>
 
 #include "document/design_document.h"
-#include "document/example.h"
+#include "document/examples.h"
 
 #define API "/api/v1"
 

@@ -2,7 +2,7 @@
    and different ends, when one value of the modification changes, and on one and two threads; and the memory of a
    worker. An argument names a cache directory, a second one the number of repeats. */
 #include "document/design_document.h"
-#include "document/example.h"
+#include "document/examples.h"
 #include "evaluation/evaluator.h"
 
 #include <malloc.h>

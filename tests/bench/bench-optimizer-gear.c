@@ -9,7 +9,7 @@
    --coarse: a third of the positions, cells and harmonics: an objective of the same kind in a fraction of the time. */
 #include "contest.h"
 #include "document/design_document.h"
-#include "document/example.h"
+#include "document/examples.h"
 #include "evaluation/analysis.h"
 
 #include <math.h>

@@ -8,7 +8,7 @@
 
 #include "base/parallel.h"
 #include "document/design_document.h"
-#include "document/example.h"
+#include "document/examples.h"
 #include "study/study.h"
 
 static const struct {

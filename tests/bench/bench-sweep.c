@@ -1,7 +1,7 @@
 /* Times a sweep of 200 speeds and one of 50 torques of a prepared example pair: make bench-sweep, then
    bench-sweep [EXAMPLE [CACHE-DIRECTORY]]. */
 #include "document/design_document.h"
-#include "document/example.h"
+#include "document/examples.h"
 #include "evaluation/sweep.h"
 
 #include <stdio.h>

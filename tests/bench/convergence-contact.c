@@ -4,7 +4,7 @@
    An argument names a cache directory. */
 #include "document/design_document.h"
 #include "design/resolution.h"
-#include "document/example.h"
+#include "document/examples.h"
 #include "evaluation/evaluator.h"
 
 #include <math.h>

@@ -1,7 +1,7 @@
 /* What holds for every evaluation, on a coarse finite-element pair: equal ends once or twice, no memory, scenarios,
    laws, bands, threads. */
 #include "document/design_document.h"
-#include "document/example.h"
+#include "document/examples.h"
 #include "evaluation/evaluator.h"
 #include "tap.h"
 

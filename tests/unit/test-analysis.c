@@ -3,7 +3,7 @@
 #include <stdlib.h>
 
 #include "contract.h"
-#include "document/example.h"
+#include "document/examples.h"
 #include "document/result.h"
 #include "flexibility/closed_form.h"
 #include "tap.h"

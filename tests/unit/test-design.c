@@ -4,9 +4,9 @@
 #include <string.h>
 
 #include "document/design_document.h"
-#include "document/example.h"
+#include "document/examples.h"
 #include "format/json.h"
-#include "document/study.h"
+#include "document/search_space.h"
 #include "tap.h"
 
 static struct eo_faults faults;

@@ -1,12 +1,12 @@
 /* Exported flanks against what is known of involute helicoids, and against each other: turned into mesh, pinion and
    gear touch. */
-#include "document/export.h"
+#include "document/design_export.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 #include "document/design_document.h"
-#include "document/example.h"
+#include "document/examples.h"
 #include "tap.h"
 
 struct point {

@@ -6,7 +6,7 @@
 #include "contact/hertz.h"
 #include "contact/iso6336.h"
 #include "document/design_document.h"
-#include "document/example.h"
+#include "document/examples.h"
 #include "format/json.h"
 #include "tap.h"
 

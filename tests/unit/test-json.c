@@ -8,7 +8,7 @@
 
 #include "document/design_document.h"
 #include "format/json.h"
-#include "format/sheet.h"
+#include "format/text_table.h"
 #include "tap.h"
 
 static struct eo_error error;
@@ -253,22 +253,22 @@ static void test_text(void)
 static void test_sheet(void)
 {
   static const char *const headings[] = {"name", "speed_rpm", "note"};
-  struct eo_sheet sheet;
+  struct eo_text_table sheet;
   struct eo_text text = {0}, csv = {0};
-  eo_sheet_init(&sheet, 3, headings);
-  eo_sheet_string(&sheet, "\xc3\xa4, \"x\"");
-  eo_sheet_number(&sheet, 2000 * (M_PI / 30), &eo_unit_rpm, 0);
-  eo_sheet_string(&sheet, "");
-  eo_sheet_string(&sheet, "b");
-  eo_sheet_number(&sheet, NAN, NULL, 0);
-  eo_sheet_string(&sheet, "two\nlines");
-  eo_sheet_csv(&sheet, &csv);
-  eo_sheet_print(&sheet, 1, &text);
+  eo_text_table_init(&sheet, 3, headings);
+  eo_text_table_string(&sheet, "\xc3\xa4, \"x\"");
+  eo_text_table_number(&sheet, 2000 * (M_PI / 30), &eo_unit_rpm, 0);
+  eo_text_table_string(&sheet, "");
+  eo_text_table_string(&sheet, "b");
+  eo_text_table_number(&sheet, NAN, NULL, 0);
+  eo_text_table_string(&sheet, "two\nlines");
+  eo_text_table_csv(&sheet, &csv);
+  eo_text_table_print(&sheet, 1, &text);
   ok(strcmp(csv.data, "name,speed_rpm,note\r\n\"\xc3\xa4, \"\"x\"\"\",2000,\r\nb,,\"two\nlines\"\r\n") == 0,
      "CSV as RFC 4180 wants it");
   const char *aligned = " name    speed_rpm  note\n \xc3\xa4, \"x\"       2000  \n";
   ok(strncmp(text.data, aligned, strlen(aligned)) == 0, "columns are aligned");
-  eo_sheet_done(&sheet);
+  eo_text_table_done(&sheet);
   eo_text_done(&text);
   eo_text_done(&csv);
 }

@@ -3,7 +3,7 @@
 #include <stdlib.h>
 
 #include "contact/pattern.h"
-#include "document/example.h"
+#include "document/examples.h"
 #include "evaluation/analysis.h"
 #include "document/design_document.h"
 #include "flexibility/closed_form.h"

@@ -116,7 +116,7 @@ static void test_agreement(const json_t *document)
 static void test_output(const json_t *document)
 {
   struct eo_text page = {0}, summary = {0};
-  struct eo_bundle bundle = {0};
+  struct eo_file_set bundle = {0};
   eo_reproduction_page(document, &page);
   eo_reproduction_summary(document, &summary);
   eo_reproduction_files(document, &bundle);
@@ -132,7 +132,7 @@ static void test_output(const json_t *document)
   ok(!summary.failed && strstr(summary.data, "trends and"), "a summary");
   eo_text_done(&page);
   eo_text_done(&summary);
-  eo_bundle_done(&bundle);
+  eo_file_set_done(&bundle);
 }
 
 static void test_plot(void)

@@ -6,10 +6,10 @@
 #include <string.h>
 
 #include "document/design_document.h"
-#include "document/example.h"
+#include "document/examples.h"
 #include "format/json.h"
 #include "document/measurement_document.h"
-#include "document/result_parts.h"
+#include "document/result_private.h"
 #include "format/schema.h"
 #include "document/study_result.h"
 #include "document/sweep_document.h"

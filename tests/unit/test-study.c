@@ -3,7 +3,7 @@
 #include <math.h>
 
 #include "base/parallel.h"
-#include "document/study.h"
+#include "document/search_space.h"
 #include "evaluation/analysis.h"
 #include "study/history_document.h"
 #include "store/queue.h"

@@ -5,7 +5,7 @@
 
 #include "reference/stage.h"
 #include "document/design_document.h"
-#include "document/example.h"
+#include "document/examples.h"
 #include "document/geometry_table.h"
 #include "format/json.h"
 #include "tap.h"

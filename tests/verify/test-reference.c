@@ -6,7 +6,7 @@
 
 #include "document/design_document.h"
 #include "design/resolution.h"
-#include "document/example.h"
+#include "document/examples.h"
 #include "evaluation/analysis.h"
 #include "tap.h"
 

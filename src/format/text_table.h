@@ -1,13 +1,13 @@
 /* Rows and columns for people (aligned text) and for spreadsheets (CSV, RFC 4180). */
-#ifndef EASEOFF_FORMAT_SHEET_H
-#define EASEOFF_FORMAT_SHEET_H
+#ifndef EASEOFF_FORMAT_TEXT_TABLE_H
+#define EASEOFF_FORMAT_TEXT_TABLE_H
 
 #include <stdbool.h>
 
 #include "format/text.h"
 #include "format/unit.h"
 
-struct eo_sheet {
+struct eo_text_table {
   int columns;
   int cells; /* filled so far, headings included */
   int capacity;
@@ -19,20 +19,20 @@ struct eo_sheet {
 };
 
 /* headings: [columns], copied. */
-void eo_sheet_init(struct eo_sheet *sheet, int columns, const char *const *headings);
-void eo_sheet_done(struct eo_sheet *sheet);
+void eo_text_table_init(struct eo_text_table *sheet, int columns, const char *const *headings);
+void eo_text_table_done(struct eo_text_table *sheet);
 
 /* Cells are added from left to right, row by row. */
-void eo_sheet_string(struct eo_sheet *sheet, const char *string);
+void eo_text_table_string(struct eo_text_table *sheet, const char *string);
 /* In the document's unit; digits 0: the shortest that reads back equal; not finite: an empty cell. */
-void eo_sheet_number(struct eo_sheet *sheet, double value, const struct eo_unit *unit, int digits);
+void eo_text_table_number(struct eo_text_table *sheet, double value, const struct eo_unit *unit, int digits);
 
 /* A curve sheet at once: column j holds column[j][0 .. rows). units: [columns], entries may be NULL. */
-void eo_sheet_fill(struct eo_sheet *sheet, int rows, const double *const *column, const struct eo_unit *const *units,
-                   int digits);
+void eo_text_table_fill(struct eo_text_table *sheet, int rows, const double *const *column,
+                        const struct eo_unit *const *units, int digits);
 
 /* Numbers to the right, the rest to the left, two blanks between columns, each line indented. */
-void eo_sheet_print(const struct eo_sheet *sheet, int indent, struct eo_text *text);
-void eo_sheet_csv(const struct eo_sheet *sheet, struct eo_text *text);
+void eo_text_table_print(const struct eo_text_table *sheet, int indent, struct eo_text *text);
+void eo_text_table_csv(const struct eo_text_table *sheet, struct eo_text *text);
 
 #endif

@@ -1,6 +1,6 @@
 /* From a design's optimization to what an optimizer works with: its settings, and the unit cube over the variables. */
-#ifndef EASEOFF_DOCUMENT_STUDY_H
-#define EASEOFF_DOCUMENT_STUDY_H
+#ifndef EASEOFF_DOCUMENT_SEARCH_SPACE_H
+#define EASEOFF_DOCUMENT_SEARCH_SPACE_H
 
 #include "base/hash.h"
 #include "format/table.h"

@@ -1,6 +1,6 @@
 /* Designs to start from, by name. */
-#ifndef EASEOFF_DOCUMENT_EXAMPLE_H
-#define EASEOFF_DOCUMENT_EXAMPLE_H
+#ifndef EASEOFF_DOCUMENT_EXAMPLES_H
+#define EASEOFF_DOCUMENT_EXAMPLES_H
 
 #include "design/design.h"
 

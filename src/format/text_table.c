@@ -1,4 +1,4 @@
-#include "format/sheet.h"
+#include "format/text_table.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -6,7 +6,7 @@
 
 #include "format/json.h"
 
-static void add_cell(struct eo_sheet *sheet, const char *text, bool number)
+static void add_cell(struct eo_text_table *sheet, const char *text, bool number)
 {
   if (sheet->failed)
     return;
@@ -27,29 +27,29 @@ static void add_cell(struct eo_sheet *sheet, const char *text, bool number)
     sheet->failed = true;
 }
 
-void eo_sheet_init(struct eo_sheet *sheet, int columns, const char *const *headings)
+void eo_text_table_init(struct eo_text_table *sheet, int columns, const char *const *headings)
 {
-  *sheet = (struct eo_sheet){.columns = columns};
+  *sheet = (struct eo_text_table){.columns = columns};
   for (int i = 0; i < columns; i++)
     add_cell(sheet, headings[i], false);
 }
 
-void eo_sheet_done(struct eo_sheet *sheet)
+void eo_text_table_done(struct eo_text_table *sheet)
 {
   if (!sheet)
     return;
   for (int i = 0; i < sheet->cells; i++)
     free(sheet->cell[i].text);
   free(sheet->cell);
-  *sheet = (struct eo_sheet){0};
+  *sheet = (struct eo_text_table){0};
 }
 
-void eo_sheet_string(struct eo_sheet *sheet, const char *string)
+void eo_text_table_string(struct eo_text_table *sheet, const char *string)
 {
   add_cell(sheet, string, false);
 }
 
-void eo_sheet_number(struct eo_sheet *sheet, double value, const struct eo_unit *unit, int digits)
+void eo_text_table_number(struct eo_text_table *sheet, double value, const struct eo_unit *unit, int digits)
 {
   char text[40] = "";
   double outside = eo_unit_out(unit, value);
@@ -60,12 +60,12 @@ void eo_sheet_number(struct eo_sheet *sheet, double value, const struct eo_unit 
   add_cell(sheet, text, true);
 }
 
-void eo_sheet_fill(struct eo_sheet *sheet, int rows, const double *const *column, const struct eo_unit *const *units,
-                   int digits)
+void eo_text_table_fill(struct eo_text_table *sheet, int rows, const double *const *column,
+                        const struct eo_unit *const *units, int digits)
 {
   for (int i = 0; i < rows; i++)
     for (int j = 0; j < sheet->columns; j++)
-      eo_sheet_number(sheet, column[j][i], units ? units[j] : NULL, digits);
+      eo_text_table_number(sheet, column[j][i], units ? units[j] : NULL, digits);
 }
 
 /* Characters, not bytes, of a UTF-8 string. */
@@ -77,7 +77,7 @@ static int width(const char *string)
   return n;
 }
 
-static int column_width(const struct eo_sheet *sheet, int column)
+static int column_width(const struct eo_text_table *sheet, int column)
 {
   int most = 0;
   for (int i = column; i < sheet->cells; i += sheet->columns)
@@ -87,13 +87,13 @@ static int column_width(const struct eo_sheet *sheet, int column)
 }
 
 /* A heading stands on the side of the cells below it. */
-static bool to_the_right(const struct eo_sheet *sheet, int i)
+static bool to_the_right(const struct eo_text_table *sheet, int i)
 {
   int below = i < sheet->columns ? i + sheet->columns : i;
   return below < sheet->cells && sheet->cell[below].number;
 }
 
-static void print_row(const struct eo_sheet *sheet, int first, int indent, const int *widths, struct eo_text *text)
+static void print_row(const struct eo_text_table *sheet, int first, int indent, const int *widths, struct eo_text *text)
 {
   int last = first + sheet->columns - 1;
   eo_text_print(text, "%*s", indent, "");
@@ -107,7 +107,7 @@ static void print_row(const struct eo_sheet *sheet, int first, int indent, const
   eo_text_add(text, "\n");
 }
 
-void eo_sheet_print(const struct eo_sheet *sheet, int indent, struct eo_text *text)
+void eo_text_table_print(const struct eo_text_table *sheet, int indent, struct eo_text *text)
 {
   int *widths = calloc((size_t)sheet->columns, sizeof *widths);
   if (!widths || sheet->failed)
@@ -136,7 +136,7 @@ static void csv_cell(const char *cell, struct eo_text *text)
   eo_text_add(text, "\"");
 }
 
-void eo_sheet_csv(const struct eo_sheet *sheet, struct eo_text *text)
+void eo_text_table_csv(const struct eo_text_table *sheet, struct eo_text *text)
 {
   if (sheet->failed)
     text->failed = true;

@@ -1,4 +1,4 @@
-#include "format/bundle.h"
+#include "format/file_set.h"
 
 #include <errno.h>
 #include <stdarg.h>
@@ -7,11 +7,11 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-static struct eo_bundle_file *next_file(struct eo_bundle *bundle)
+static struct eo_file_set_file *next_file(struct eo_file_set *bundle)
 {
   if (bundle->count == bundle->capacity) {
     int capacity = bundle->capacity ? 2 * bundle->capacity : 16;
-    struct eo_bundle_file *file = realloc(bundle->file, (size_t)capacity * sizeof *file);
+    struct eo_file_set_file *file = realloc(bundle->file, (size_t)capacity * sizeof *file);
     if (!file)
       return NULL;
     bundle->file = file;
@@ -20,9 +20,9 @@ static struct eo_bundle_file *next_file(struct eo_bundle *bundle)
   return &bundle->file[bundle->count];
 }
 
-struct eo_text *eo_bundle_add(struct eo_bundle *bundle, const char *format, ...)
+struct eo_text *eo_file_set_add(struct eo_file_set *bundle, const char *format, ...)
 {
-  struct eo_bundle_file *file = bundle->failed ? NULL : next_file(bundle);
+  struct eo_file_set_file *file = bundle->failed ? NULL : next_file(bundle);
   char name[200];
   va_list arguments;
   va_start(arguments, format);
@@ -33,19 +33,19 @@ struct eo_text *eo_bundle_add(struct eo_bundle *bundle, const char *format, ...)
     bundle->failed = true;
     return NULL;
   }
-  *file = (struct eo_bundle_file){.name = copy};
+  *file = (struct eo_file_set_file){.name = copy};
   bundle->count++;
   return &file->text;
 }
 
-void eo_bundle_done(struct eo_bundle *bundle)
+void eo_file_set_done(struct eo_file_set *bundle)
 {
   for (int i = 0; i < bundle->count; i++) {
     free(bundle->file[i].name);
     eo_text_done(&bundle->file[i].text);
   }
   free(bundle->file);
-  *bundle = (struct eo_bundle){0};
+  *bundle = (struct eo_file_set){0};
 }
 
 /* DIRECTORY/NAME, or with the ending of a file in the making. */
@@ -73,7 +73,7 @@ static enum eo_code write_one(const struct eo_text *text, const char *temporary,
   return code;
 }
 
-static enum eo_code write_all(const struct eo_bundle *bundle, const char *directory, int *written,
+static enum eo_code write_all(const struct eo_file_set *bundle, const char *directory, int *written,
                               struct eo_error *error)
 {
   enum eo_code code = EO_OK;
@@ -86,7 +86,7 @@ static enum eo_code write_all(const struct eo_bundle *bundle, const char *direct
   return code;
 }
 
-static enum eo_code rename_all(const struct eo_bundle *bundle, const char *directory, struct eo_error *error)
+static enum eo_code rename_all(const struct eo_file_set *bundle, const char *directory, struct eo_error *error)
 {
   enum eo_code code = EO_OK;
   for (int i = 0; i < bundle->count && !code; i++) {
@@ -102,7 +102,7 @@ static enum eo_code rename_all(const struct eo_bundle *bundle, const char *direc
   return code;
 }
 
-static void remove_temporaries(const struct eo_bundle *bundle, const char *directory, int written)
+static void remove_temporaries(const struct eo_file_set *bundle, const char *directory, int written)
 {
   for (int i = 0; i < written; i++) {
     char *temporary = path_of(directory, bundle->file[i].name, true);
@@ -112,7 +112,7 @@ static void remove_temporaries(const struct eo_bundle *bundle, const char *direc
   }
 }
 
-enum eo_code eo_bundle_save(const struct eo_bundle *bundle, const char *directory, struct eo_error *error)
+enum eo_code eo_file_set_save(const struct eo_file_set *bundle, const char *directory, struct eo_error *error)
 {
   int written = 0;
   for (int i = 0; i < bundle->count; i++)

@@ -1,4 +1,4 @@
-#include "document/study.h"
+#include "document/search_space.h"
 
 #include <math.h>
 #include <stdlib.h>

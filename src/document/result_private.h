@@ -1,6 +1,6 @@
 /* The parts the result document is put together from; see result.h. */
-#ifndef EASEOFF_DOCUMENT_RESULT_PARTS_H
-#define EASEOFF_DOCUMENT_RESULT_PARTS_H
+#ifndef EASEOFF_DOCUMENT_RESULT_PRIVATE_H
+#define EASEOFF_DOCUMENT_RESULT_PRIVATE_H
 
 #include "contact/pattern.h"
 #include "format/json.h"

@@ -1,7 +1,7 @@
 /* Files for other programs: points of the flanks for grinding and measuring machines, charts of the modification. One
    function for the terminal and the server. */
-#ifndef EASEOFF_DOCUMENT_EXPORT_H
-#define EASEOFF_DOCUMENT_EXPORT_H
+#ifndef EASEOFF_DOCUMENT_DESIGN_EXPORT_H
+#define EASEOFF_DOCUMENT_DESIGN_EXPORT_H
 
 #include "format/text.h"
 #include "design/design.h"

@@ -1,4 +1,4 @@
-#include "document/export.h"
+#include "document/design_export.h"
 
 #include <ctype.h>
 #include <math.h>

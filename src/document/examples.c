@@ -1,4 +1,4 @@
-#include "document/example.h"
+#include "document/examples.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -162,7 +162,7 @@ bool eo_example_build(const char *example_name, struct eo_design *design)
       memset(design, 0, sizeof *design);
       eo_table_defaults(&eo_design_table, design);
       example->build(design);
-      eo_table_settle(&eo_design_table, design);
+      eo_table_round_to_document(&eo_design_table, design);
       return true;
     }
   return false;
