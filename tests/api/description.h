@@ -3,9 +3,9 @@
 #ifndef EASEOFF_TESTS_API_DESCRIPTION_H
 #define EASEOFF_TESTS_API_DESCRIPTION_H
 
-#include "client.h"
-#include "schema.h"
-#include "tap.h"
+#include "api/client.h"
+#include "api/schema.h"
+#include "support/tap.h"
 
 static json_t *description; /* OpenAPI */
 static int heard, misfits;

@@ -1,8 +1,8 @@
 /* The API as a table of commands against a real server; every reply is held against the OpenAPI document that the
    server gives, which is held against what the server does. */
-#include "client.h"
-#include "description.h"
-#include "tap.h"
+#include "api/client.h"
+#include "api/description.h"
+#include "support/tap.h"
 
 #include <math.h>
 

@@ -1,6 +1,6 @@
 /* The API's description against what every kind of work really answers: nothing comes that is not described, nothing
    described stays away for ever. */
-#include "description.h"
+#include "api/description.h"
 
 /* ---- designs ---- */
 

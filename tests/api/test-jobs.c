@@ -1,6 +1,6 @@
 /* Jobs from outside: their events, stopping and resuming them, a server that is killed, questions that overtake each
    other. */
-#include "description.h"
+#include "api/description.h"
 
 static int add_job(const char *kind, const char *algorithm, int budget, int seed)
 {

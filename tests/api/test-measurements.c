@@ -1,6 +1,6 @@
 /* Rig files over the API: uploads that are whole, broken, too large or cut off, a server that dies in the middle, and
    what the recordings say beside the prediction. The recordings come from the API itself, with known faults. */
-#include "description.h"
+#include "api/description.h"
 
 #include <dirent.h>
 #include <math.h>

@@ -1,6 +1,6 @@
 /* Clients that do it wrong, slowly, all at once or too much; and a server that stops while they are there. */
-#include "client.h"
-#include "tap.h"
+#include "api/client.h"
+#include "support/tap.h"
 
 #include <pthread.h>
 #include <stddef.h>

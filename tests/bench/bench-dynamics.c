@@ -4,7 +4,7 @@
 #include <time.h>
 
 #include "dynamics/sweep.h"
-#include "../dynamics-fixture.h"
+#include "support/dynamics-fixture.h"
 
 enum { REPEATS = 200, SPEEDS = 200, HARMONICS = 24 };
 

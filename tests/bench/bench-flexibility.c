@@ -1,6 +1,6 @@
 /* Times the preparation of the paper pair by step and the evaluation of the kernel and of the root stress. */
 #include "flexibility/flexibility.h"
-#include "tests/paper_pair.h"
+#include "support/paper-pair.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -2,7 +2,7 @@
    curves: alone, beside connections that ask for what they have already, beside an optimization, beside both.
    bench-whatif [CACHE-DIRECTORY [REQUESTS]]; $EASEOFF is the program. The processor time is the server's, so the first
    lines can be compared where the clock cannot. */
-#include "../api/client.h"
+#include "api/client.h"
 
 enum { MOST_REQUESTS = 10000, CONNECTIONS = 1000, GETS_PER_SECOND = 1000 };
 

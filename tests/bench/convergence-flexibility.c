@@ -2,7 +2,7 @@
    convergence`. Last, what the micro-geometry changes when it is put into the mesh. */
 #include "flexibility/flexibility.h"
 #include "numerics/sparse.h"
-#include "tests/paper_pair.h"
+#include "support/paper-pair.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,6 +1,6 @@
 #!/bin/sh
 # optimize and history from outside: exit status, one-line errors, folders that cannot be written, full disks, files that are wrong.
-. "$(dirname "$0")/../tap.sh"
+. "$(dirname "$0")/../support/tap.sh"
 mounted=
 trap '[ -z "$mounted" ] || umount "$mounted"; chmod -R u+w "$folder"; rm -rf "$folder"' EXIT
 

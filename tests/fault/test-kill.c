@@ -5,8 +5,8 @@
 #include <time.h>
 
 #include "base/random.h"
-#include "study-fixture.h"
-#include "tap.h"
+#include "support/study-fixture.h"
+#include "support/tap.h"
 
 enum { BUDGET = 300 };
 

@@ -4,9 +4,9 @@
 #include <sys/wait.h>
 
 #include "base/random.h"
-#include "service-fixture.h"
+#include "support/service-fixture.h"
 #include "store/evaluations.h"
-#include "tap.h"
+#include "support/tap.h"
 
 enum { BUDGET = 150 };
 

@@ -90,7 +90,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 }
 
 #ifndef FUZZER
-#include "tap.h"
+#include "support/tap.h"
 
 static void replay(const char *path)
 {

@@ -3,7 +3,7 @@
 #define _GNU_SOURCE
 #include "recording/layout.h"
 #include "recording/reader.h"
-#include "tests/fuzz/fuzz.h"
+#include "fuzz/fuzz.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -6,7 +6,7 @@
 #include "base/hash.h"
 #include "http/server.h"
 #include "http/upload.h"
-#include "tests/fuzz/fuzz.h"
+#include "fuzz/fuzz.h"
 
 #include <ftw.h>
 #include <stdio.h>

@@ -1,7 +1,7 @@
 /* Runs a fuzz target over every file of a folder, and over each with its end cut off: replay FOLDER. A crash ends the
    test. */
-#include "tests/fuzz/fuzz.h"
-#include "tests/tap.h"
+#include "fuzz/fuzz.h"
+#include "support/tap.h"
 
 #include <dirent.h>
 #include <stdlib.h>

@@ -1,7 +1,7 @@
 #!/bin/sh
 # The reference cases of the dynamics and of the optimizer through `easeoff verify`: every number within tolerance, wrong ones
 # noticed, other files of the same kinds read.
-. "$(dirname "$0")/../tap.sh"
+. "$(dirname "$0")/../support/tap.sh"
 
 verify() # STATUS WHAT FILE...
 {

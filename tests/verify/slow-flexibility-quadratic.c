@@ -2,8 +2,8 @@
    on the same meshes, refined step by step: which of the two moves, and where both go. A line load along one row, the
    mean normal deflection of another row: so no dent under a point load comes in. For `make check-slow`. */
 #include "flexibility/export.h"
-#include "tests/paper_pair.h"
-#include "tests/tap.h"
+#include "support/paper-pair.h"
+#include "support/tap.h"
 
 #include <stdlib.h>
 #include <unistd.h>

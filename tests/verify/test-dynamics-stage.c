@@ -1,7 +1,7 @@
 /* The dynamics fed with the static arrays of evaluation.json (case S02), its default parameters for two gear pairs, and
    the harmonic balance against time integration on the same arrays. */
-#include "../cases-json.h"
-#include "../dynamics-fixture.h"
+#include "support/cases-json.h"
+#include "support/dynamics-fixture.h"
 #include "dynamics/parameters.h"
 
 enum { POSITIONS = 64, ORDER = 10, HARMONICS = 24 };

@@ -2,8 +2,8 @@
    parallelepipeds (see test-element); elsewhere CalculiX leaves the ratio of the Jacobians out of the incompatible
    modes, which ours has so that it passes the patch test. That is the whole of the difference seen here. */
 #include "flexibility/export.h"
-#include "tests/paper_pair.h"
-#include "tests/tap.h"
+#include "support/paper-pair.h"
+#include "support/tap.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -3,8 +3,8 @@
    analysis of CalculiX (tests/cases/calculix.json: unmodified pair, 3-tooth sectors, no neighbour coupling). The
    contact is solved here in a few lines, so that this test stands on the flexibility alone. */
 #include "flexibility/flexibility.h"
-#include "tests/paper_pair.h"
-#include "tests/tap.h"
+#include "support/paper-pair.h"
+#include "support/tap.h"
 
 #include <jansson.h>
 #include <lapacke.h>

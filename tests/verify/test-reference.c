@@ -8,7 +8,7 @@
 #include "design/resolution.h"
 #include "document/examples.h"
 #include "evaluation/analysis.h"
-#include "tap.h"
+#include "support/tap.h"
 
 static struct eo_design design;
 static struct eo_geometry geometry;

@@ -1,5 +1,5 @@
 /* The single degree of freedom where closed forms exist: grazing, the linear response, the folds of case A. */
-#include "../tap.h"
+#include "support/tap.h"
 #include "dynamics/sdof.h"
 
 static const struct eo_sdof a = {.damping = 0.05, .mean_force = 0.1, .alternating_force = 0.05, .frequency = 0.78};

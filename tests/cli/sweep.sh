@@ -1,0 +1,181 @@
+#!/bin/sh
+# easeoff sweep from outside, on the paper pair, case A, at a coarse resolution.
+. "$(dirname "$0")/../support/tap.sh"
+
+design=$folder/design.json
+sweep() # ARGUMENTS...: output in $folder/out
+{
+  "$EASEOFF" sweep "$design" --data "$folder/data" "$@" >"$folder/out" 2>"$folder/err"
+  result $? "sweep $*"
+}
+
+refuses() # TEXT ARGUMENTS...: on one line of standard error
+{
+  text=$1
+  shift
+  "$EASEOFF" sweep "$@" >"$folder/out" 2>"$folder/err"
+  [ $? -eq 1 ] && [ ! -s "$folder/out" ] && [ "$(wc -l <"$folder/err")" -eq 1 ] && grep -q -e "$text" "$folder/err"
+  result $? "says $text"
+}
+
+# near WHAT PLACE FILE PLACE TOLERANCE [KIND [FACTOR]]: see json-numbers.c.
+near()
+{
+  what=$1
+  shift
+  verdict=$("$numbers" "$folder/out" "$@" 2>&1)
+  result $? "$what: $verdict"
+}
+
+same() # FILE FILE WHAT
+{
+  cmp -s "$1" "$2"
+  result $? "$3"
+}
+
+column() { "$numbers" "$folder/out" "$1" | tr -d '[] ' | tr ',' '\n'; }
+
+ascends() # WHAT PLACE
+{
+  column "$2" | awk 'NR > 1 && $1 <= last { bad = 1 } { last = $1 } END { exit bad || NR < 3 }'
+  result $? "$1 ascends"
+}
+
+coarse='"resolution": {"positions": 32, "cells_per_line": 16, "sector_teeth": 3, "neighbour_coupling": false, "layers": 14, "flank_rows": 6, "fillet_elements": 8}'
+write_design() # MORE KEYS
+{
+  crowning='"lead_crowning_um": 12.23'
+  flank='{"tip_relief_um": 14, "tip_relief_start_mm": 1.6, "root_relief_um": 17, "root_relief_start_mm": 3.5, '$crowning'}'
+  cat >"$design" <<END
+{"gear_pair": {"pinion_teeth": 17, "gear_teeth": 44, "normal_module_mm": 6, "helix_angle_deg": 24, "face_width_mm": 55, "groove_width_mm": 50},
+ $1 "modification": {"pinion": {"left": $flank, "right": $flank}}, $coarse}
+END
+}
+write_design ""
+
+# ---- torque: the same numbers as one evaluation ----
+
+sweep --torque 621:1035:3 --json
+cp "$folder/out" "$folder/torque.json"
+"$EASEOFF" analyze "$design" --data "$folder/data" --json >"$folder/analysis.json" 2>"$folder/err"
+result $? "the evaluation beside it"
+near "torques are those of the load cases" /torque_Nm "$folder/analysis.json" '/load_cases/*/torque_Nm' 1e-12 relative
+near "speed of the case with the largest share" /speed_rpm "$folder/analysis.json" /load_cases/1/speed_rpm 1e-12 relative
+near "PPLTE" /modified/by_torque/peak_to_peak_um "$folder/analysis.json" '/load_cases/*/lte/peak_to_peak_um' 1e-6 relative
+near "mean LTE" /modified/by_torque/mean_um "$folder/analysis.json" '/load_cases/*/lte/mean_um' 1e-8 relative
+near "pressure" /modified/by_torque/left/max_pressure_MPa "$folder/analysis.json" '/load_cases/*/contact/max_pressure_MPa/left' 1e-5 relative
+for end in left right; do
+  near "impact, $end" "/modified/points/$end/impact_force_N" "$folder/analysis.json" "/load_cases/*/impact/$end/general_force_N" 1e-5 relative
+  near "RMS, $end" "/modified/points/$end/rms_m_per_s2/normal" "$folder/analysis.json" "/load_cases/*/vibration/$end/rms_m_per_s2/normal" 1e-3 relative
+done
+for reading in normal transverse rotational; do
+  near "RMS of the pair, $reading" "/modified/points/rms_m_per_s2/$reading" "$folder/analysis.json" "/load_cases/*/vibration/rms_m_per_s2/$reading" 1e-3 relative
+done
+near "unmodified PPLTE" /unmodified/by_torque/peak_to_peak_um "$folder/analysis.json" '/objectives/unmodified/load_cases/*/peak_to_peak_um' 1e-6 relative
+near "unmodified RMS" /unmodified/points/rms_m_per_s2/normal "$folder/analysis.json" '/objectives/unmodified/load_cases/*/rms_m_per_s2' 1e-3 relative
+
+sweep --torque 50:2000:14 --json
+ascends "mean LTE" /modified/by_torque/mean_um
+ascends "unmodified mean LTE" /unmodified/by_torque/mean_um
+ascends "tangent stiffness" /modified/by_torque/left/tangent_stiffness_N_per_um
+ascends "pressure" /modified/by_torque/left/max_pressure_MPa
+ascends "the torsional eigenfrequency, which the mesh makes," '/eigenfrequencies/frequency_Hz/*/5'
+
+# ---- speed ----
+
+sweep --speed 500:5000:10 --json
+cp "$folder/out" "$folder/speed.json"
+ascends "impact with speed" /modified/points/left/impact_force_N
+column /modified/points/left/impact_force_N | awk '{ f[NR] = $1 } END { r = f[8] / f[4]; exit !(r > 2 && r < 2.1) }' # v grows like the speed, the Hertz part stiffens
+result $? "twice the speed, a little more than twice the impact"
+near "the first torque's transmission error has nothing to do with speed" /modified/by_torque/peak_to_peak_um "$folder/torque.json" /modified/by_torque/peak_to_peak_um/1 1e-9 relative
+near "2000 rpm as in the torque sweep" /modified/points/rms_m_per_s2/normal/3 "$folder/torque.json" /modified/points/rms_m_per_s2/normal/1 1e-9 relative
+near "its impact" /modified/points/right/impact_force_N/3 "$folder/torque.json" /modified/points/right/impact_force_N/1 1e-9 relative
+grep -q '"down": null' "$folder/out"
+result $? "in full contact both directions are the same"
+for key in frequency_Hz order speed_rpm; do column "/crossings/$key" >"$folder/$key"; done
+paste "$folder/frequency_Hz" "$folder/order" "$folder/speed_rpm" |
+  awk '{ e = 60 * $1 / (17 * $2) / $3 - 1; if (e * e > 1e-18 || $3 < 500 || $3 > 5000) bad = 1 } END { exit bad || NR < 20 }'
+result $? "an order line meets a mode where order * teeth * speed is its frequency"
+
+# ---- map, threads ----
+
+sweep --torque 621:1035:3 --speed 500:5000:10 --json
+cp "$folder/out" "$folder/map.json"
+column /modified/points/rms_m_per_s2/normal | sed -n 11,20p | tr '\n' ',' | sed 's/.*/[&]/; s/,\]/]/' >"$folder/row"
+cp "$folder/speed.json" "$folder/out"
+near "the map's second row is the speed sweep" /modified/points/rms_m_per_s2/normal "$folder/row" "" 1e-9 relative
+for threads in 1 2 5; do
+  sweep --torque 621:1035:3 --speed 500:5000:10 --json --threads $threads
+  same "$folder/out" "$folder/map.json" "the same bytes with $threads threads"
+done
+sweep --torque 621:1035:3 --speed 500:5000:10 --csv "$folder/map.csv"
+[ ! -s "$folder/out" ] && [ "$(wc -l <"$folder/map.csv")" -eq 31 ] && [ "$(awk -F, '{ print NF }' "$folder/map.csv" | sort -u | wc -l)" -eq 1 ]
+result $? "a heading and 30 lines of CSV"
+awk -F, 'NR == 1 { for (i = 1; i <= NF; i++) if ($i == "rms_normal_m_per_s2") at = i } NR > 11 && NR < 22 { print $at }' "$folder/map.csv" | tr '\n' ',' | sed 's/.*/[&]/; s/,\]/]/' >"$folder/row"
+cp "$folder/speed.json" "$folder/out"
+near "the same numbers in CSV" /modified/points/rms_m_per_s2/normal "$folder/row" "" 1e-9 relative
+sweep --torque 621:1035:3
+grep -q "converged" "$folder/out" && grep -q "Eigenfrequencies at 828 N m" "$folder/out" && [ "$(grep -c '^ *[0-9.]* *2000 ' "$folder/out")" -eq 3 ]
+result $? "a table for people"
+
+# ---- contact loss: less damping, and hysteresis ----
+
+write_design '"supports": {"mesh_damping_ratio": 0.02},'
+sweep --torque 100 --speed 7000:11000:81 --json --threads 2
+cp "$folder/out" "$folder/loss.json"
+grep -q '"contact_lost"' "$folder/out"
+result $? "teeth separate near the torsional resonance"
+column /modified/points/rms_m_per_s2/normal >"$folder/up"
+column /modified/down/rms_m_per_s2/normal >"$folder/down"
+column /modified/points/left/contact_loss >"$folder/loss"
+paste "$folder/up" "$folder/down" | awk '{ d = ($2 - $1) / $1; if (d > 0.1) jump++; else if (d < -1e-6) below++; else if (d * d < 1e-12) same++ }
+  END { exit !(jump >= 2 && below == 0 && same >= 40) }'
+result $? "softening: on the way down the large state lives longer, elsewhere both are the same"
+paste "$folder/up" "$folder/loss" | awk '$2 > 0 { if (!seen++) first = $1 } END { exit !(seen > 5) }'
+result $? "contact loss is a share of the cycle"
+sweep --torque 100 --speed 7000:11000:81 --json --threads 1
+same "$folder/out" "$folder/loss.json" "the same bytes with one thread"
+
+# ---- one end; extremes; wrong input ----
+
+cat >"$folder/single.json" <<END
+{"gear_pair": {"ends": 1, "pinion_teeth": 23, "gear_teeth": 37, "normal_module_mm": 4, "helix_angle_deg": 12, "face_width_mm": 30}, $coarse}
+END
+"$EASEOFF" sweep "$folder/single.json" --torque 50:200:3 --speed 1000:2000:2 --json --data "$folder/data" >"$folder/out" 2>"$folder/err"
+result $? "a pair with one end"
+! grep -q '"right": {$' "$folder/out" && ! grep -q '"right": {.*rms' "$folder/out"
+result $? "has no right end"
+"$numbers" "$folder/out" /unmodified/points/rms_m_per_s2/normal >"$folder/expected"
+near "an unmodified design is the unmodified pair" /modified/points/rms_m_per_s2/normal "$folder/expected" "" 0
+write_design ""
+sweep --torque 0.001:1e8:3 --speed 0.1:1e6:2 --json
+! grep -q -i 'nan\|inf' "$folder/out" && grep -q '"not_converged"' "$folder/out"
+result $? "what cannot be solved is an outcome, not a number"
+
+refuses "/torque_Nm: The range ends at 1, below its start 5" "$design" --torque 5:1:3
+refuses "/torque_Nm: One point cannot reach" "$design" --torque 1:5:1
+refuses "/torque_Nm: 3 points need a range" "$design" --torque 5:5:3
+refuses "/torque_Nm/from: 0 is outside" "$design" --torque 0:5:3
+refuses "/torque_Nm/from: -5 is outside" "$design" --torque=-5:5:3
+refuses "/speed_rpm/to: 2000000 is outside" "$design" --speed 1:2e6:4
+refuses "/speed_rpm/points: 2001 is outside" "$design" --speed 1:2000:2001
+refuses "/torque_Nm/points: 2.5 is not a whole number" "$design" --torque 1:2:2.5
+refuses "/torque_Nm/points: 0 is outside" "$design" --torque 1:2:0
+refuses "more than the 20000 points" "$design" --torque 1:2000:2000 --speed 1:2000:2000
+for wrong in a:3:4 1:2:3:4 nan:2:2 1::2 1e400:2:2 : "" 1:2:; do
+  refuses "is not FIRST:LAST:POINTS" "$design" --torque "$wrong"
+done
+refuses "needs a range of torques, of speeds, or both" "$design"
+refuses "outside 1 .. 256" "$design" --torque 5 --threads 0
+refuses "outside 1 .. 256" "$design" --torque 5 --threads 2x
+refuses "unknown or incomplete option --torque" "$design" --torque
+refuses "an argument is missing" --torque 1:2:3
+refuses "cannot be opened" "$folder/none.json" --torque 1:2:3
+sweep --torque 5:5:1 --speed 1000:1000:1
+"$EASEOFF" sweep "$design" --torque 5 --csv "$folder/none/sweep.csv" --data "$folder/data" >"$folder/out" 2>"$folder/err"
+[ $? -eq 2 ] && [ "$(wc -l <"$folder/err")" -eq 1 ]
+result $? "a folder that is not there is a failure to write"
+
+echo "1..$count"
+exit $failed

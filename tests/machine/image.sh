@@ -1,0 +1,236 @@
+#!/bin/sh
+# The image of docker/Dockerfile, built and used as its users do: an unprivileged user, a read-only root, no capabilities, a volume. It
+# analyses, keeps its jobs over stop and start, asks for its token, tells its health and ends when told. By hand; needs docker or podman,
+# some gigabytes and ten minutes.
+#
+#   tests/machine/image.sh [image|compose|all]      compose takes port 8080
+#
+# IMAGE_ENGINE    docker or podman, with options before the command (default: the one that is there)
+# IMAGE_COMPOSE   the command that reads compose files (default: the engine's)
+# IMAGE_BUILD     options for the engine's build
+# IMAGE_RUN       options for the engine's run
+# IMAGE_BASE      folder with a Debian 12 (debootstrap --variant=minbase, with what a site needs laid over it) that takes the place of
+#                 debian:12 and debian:12-slim where their registry cannot be reached
+# IMAGE_BASE_ENV  NAME=VALUE ... in that base, of a site as well
+# IMAGE_KEEP      keep the image at the end
+set -eu
+
+what=${1-all}
+here=$(cd "$(dirname "$0")/../.." && pwd)
+engine=${IMAGE_ENGINE-$(command -v docker || command -v podman)}
+compose=${IMAGE_COMPOSE-$engine compose}
+name=easeoff-check-$$
+scratch=$(mktemp -d "${TMPDIR-/tmp}/image.XXXXXX")
+export BUILDAH_FORMAT=docker # for podman, whose own format has no health check
+confined="--read-only --cap-drop ALL --security-opt no-new-privileges"
+
+say() { printf 'image: %s\n' "$*"; }
+
+fail() {
+  say "NOT $*"
+  $engine logs --tail 20 "$name" 2>&1 || true
+  exit 1
+}
+
+leave() {
+  status=$?
+  {
+    [ ! -f "$scratch/composed" ] || $compose -p "$name" -f "$here/docker/compose.yaml" down -v --rmi local
+    $engine rm -f -v "$name"
+    $engine volume rm "$name"
+    [ -n "${IMAGE_KEEP-}" ] || $engine rmi "$name"
+    [ -z "${IMAGE_BASE-}" ] || $engine rmi docker.io/library/debian:12 docker.io/library/debian:12-slim
+  } >/dev/null 2>&1 || true
+  rm -rf "$scratch"
+  exit "$status"
+}
+trap leave EXIT
+trap 'exit 1' INT TERM
+
+import_base() {
+  for variable in ${IMAGE_BASE_ENV-}; do
+    set -- "$@" -c "ENV $variable"
+  done
+  for tag in 12 12-slim; do
+    tar -C "$IMAGE_BASE" -c . | $engine import -c 'CMD ["bash"]' "$@" - "docker.io/library/debian:$tag" >"$scratch/import.log" 2>&1
+  done
+}
+
+build_image() {
+  started=$(date +%s)
+  # shellcheck disable=SC2086
+  $engine build ${IMAGE_BUILD-} -t "$name" -f "$here/docker/Dockerfile" "$here" >"$scratch/build.log" 2>&1 || {
+    tail -n 30 "$scratch/build.log"
+    fail "built"
+  }
+  say "built in $(($(date +%s) - started)) s, $(($($engine image inspect -f '{{.Size}}' "$name") / 1000000)) MB"
+}
+
+# start [option of the engine's run ... --] [option of easeoff serve ...]
+start() {
+  options=
+  while [ "${1-}" != -- ]; do
+    options="$options $1"
+    shift
+  done
+  shift
+  began=$(date +%s%N)
+  # shellcheck disable=SC2086
+  $engine run -d --name "$name" $confined ${IMAGE_RUN-} -p 127.0.0.1::8080 -v "$name:/data" $options "$name" "$@" >/dev/null
+  wait_for_health
+}
+
+# The address is the engine's choice, and another one after every start; port 8080 in the host's own network.
+wait_for_health() {
+  for _ in $(seq 300); do
+    url=$($engine port "$name" 8080/tcp 2>/dev/null | head -n 1) || true
+    url=http://${url:-127.0.0.1:8080}
+    if curl -fs "$url/api/v1/health" >"$scratch/health"; then
+      say "answers $((($(date +%s%N) - began) / 1000000)) ms after its start"
+      return
+    fi
+    sleep 0.1
+  done
+  fail "answering"
+}
+
+check_stop() {
+  began=$(date +%s%N)
+  $engine stop -t 30 "$name" >/dev/null
+  code=$($engine inspect -f '{{.State.ExitCode}}' "$name")
+  [ "$code" = 0 ] || fail "stopped with 0 but $code"
+  say "$1 stopped in $((($(date +%s%N) - began) / 1000000)) ms, exit status 0"
+}
+
+remove() { $engine rm -f "$name" >/dev/null; }
+
+# expect STATUS PATH [option of curl ...]
+expect() {
+  status=$1 path=$2
+  shift 2
+  got=$(curl -s -o "$scratch/answer" -w '%{http_code}' "$@" "$url$path")
+  [ "$got" = "$status" ] || fail "$status but $got: $path $(head -c 400 "$scratch/answer")"
+}
+
+check_refusal() {
+  # shellcheck disable=SC2086
+  if $engine run --rm $confined ${IMAGE_RUN-} "$name" >"$scratch/refusal" 2>&1; then fail "refused without a token"; fi
+  grep -q 'give a token' "$scratch/refusal" || fail "refused with the reason: $(cat "$scratch/refusal")"
+  say "refuses to serve anyone unless told"
+}
+
+check_confinement() {
+  state=$($engine exec "$name" cat /proc/1/status)
+  for line in 'Name:easeoff' 'Uid:10001' 'Gid:10001' 'CapEff:0000000000000000' 'CapBnd:0000000000000000' 'NoNewPrivs:1'; do
+    printf '%s\n' "$state" | tr -d ' \t' | grep -q "^$line" || fail "$line"
+  done
+  if $engine exec "$name" touch /usr/written 2>/dev/null; then fail "read-only"; fi
+  say "uid 10001, no capabilities, no new ones, read-only root"
+}
+
+# The image's own command, in a server and where none is.
+check_health_command() {
+  command=$($engine inspect -f '{{index .Config.Healthcheck.Test 3}}' "$name")
+  $engine exec "$name" bash -c "$command" || fail "healthy"
+  # shellcheck disable=SC2086
+  if $engine run --rm --network none ${IMAGE_RUN-} --entrypoint bash "$name" -c "$command" 2>/dev/null; then fail "unhealthy without a server"; fi
+  say "tells its health"
+}
+
+check_use() {
+  curl -fs "$url/" | grep -q '<title>Easeoff' || fail "the page"
+  expect 200 /api/v1/examples/paper
+  cp "$scratch/answer" "$scratch/paper.json"
+  began=$(date +%s%N)
+  expect 200 /api/v1/analyze -H 'Prefer: wait=60' -H 'Content-Type: application/json' --data-binary "@$scratch/paper.json"
+  grep -q '"outcome":"converged"' "$scratch/answer" || fail "converged"
+  say "the page, and the paper's pair prepared and analysed in $((($(date +%s%N) - began) / 1000000)) ms"
+  expect 201 /api/v1/designs -H 'Content-Type: application/json' --data-binary "@$scratch/paper.json"
+  # Complaints about the contents come from the process that reads such files.
+  for file in version73.mat compressed.mat; do
+    expect 422 /api/v1/measurements -F design=1 -F label=unmodified -F torque_Nm=828 -F "file=@$here/tests/fuzz/reader/$file"
+    grep -q 'No column holds the time' "$scratch/answer" || fail "read: $file $(head -c 400 "$scratch/answer")"
+  done
+  say "reads MATLAB and HDF5 files"
+}
+
+# job ID PATTERN: waits until its document has the pattern.
+job() {
+  for _ in $(seq 600); do
+    curl -fs "$url/api/v1/jobs/$1" >"$scratch/job" || true
+    ! grep -q "$2" "$scratch/job" || return 0
+    sleep 0.1
+  done
+  fail "a job that comes to $2: $(head -c 400 "$scratch/job")"
+}
+
+check_jobs_stay() {
+  { printf '{"kind":"optimize","design":' && sed 's/"true_evaluations":null/"true_evaluations":400/' "$scratch/paper.json" && printf '}'; } >"$scratch/order"
+  expect 202 /api/v1/jobs -H 'Content-Type: application/json' --data-binary "@$scratch/order"
+  id=$(sed 's/^{"id":\([0-9]*\).*/\1/' "$scratch/answer")
+  job "$id" '"progress":{[^}]*"true_evaluations":[1-9]'
+  grep -q '"state":"running"' "$scratch/job" || fail "stopped in the middle of a job"
+  check_stop "in the middle of a job, it"
+  began=$(date +%s%N)
+  $engine start "$name" >/dev/null
+  wait_for_health
+  job "$id" '"state":"done"'
+  grep -q '"attempts":2' "$scratch/job" || fail "a second attempt"
+  say "the job went on after the next start and is done"
+}
+
+check_token() {
+  start -e EASEOFF_TOKEN=a-word --
+  expect 401 /api/v1/examples
+  expect 200 /api/v1/examples -H 'Authorization: Bearer a-word'
+  check_health_command
+  check_stop "with a token, it"
+  remove
+  say "asks for its token"
+}
+
+try_image() {
+  build_image
+  check_refusal
+  start -- --allow-anyone
+  check_confinement
+  check_health_command
+  check_use
+  check_jobs_stay
+  check_stop "idle, it"
+  remove
+  check_token
+}
+
+try_compose() {
+  : >"$scratch/composed"
+  $compose -p "$name" -f "$here/docker/compose.yaml" up -d --build >"$scratch/compose.log" 2>&1 || {
+    tail -n 30 "$scratch/compose.log"
+    fail "up"
+  }
+  url=http://127.0.0.1:8080
+  composed=$($compose -p "$name" -f "$here/docker/compose.yaml" ps -q)
+  for _ in $(seq 60); do
+    health=$($engine inspect -f '{{.State.Health.Status}}' "$composed")
+    [ "$health" = starting ] || break
+    sleep 1
+  done
+  [ "$health" = healthy ] || fail "healthy but $health"
+  curl -fs "$url/" | grep -q '<title>Easeoff' || fail "the page"
+  $compose -p "$name" -f "$here/docker/compose.yaml" stop >/dev/null 2>&1
+  code=$($engine inspect -f '{{.State.ExitCode}}' "$composed")
+  [ "$code" = 0 ] || fail "stopped with 0 but $code"
+  say "compose: up, healthy by its own account, serves, stops with exit status 0"
+}
+
+case $what in
+image | compose | all) ;;
+*)
+  say "image, compose or all"
+  exit 1
+  ;;
+esac
+[ -z "${IMAGE_BASE-}" ] || import_base
+[ "$what" = compose ] || try_image
+[ "$what" = image ] || try_compose
+say "all is well"

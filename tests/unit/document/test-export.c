@@ -1,0 +1,189 @@
+/* Exported flanks against what is known of involute helicoids, and against each other: turned into mesh, pinion and
+   gear touch. */
+#include "document/design_export.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "document/design_document.h"
+#include "document/examples.h"
+#include "support/tap.h"
+
+struct point {
+  int member, end, profile, face;
+  double position[3], normal[3], removed;
+};
+enum { MOST_POINTS = 4 * 21 * 31 };
+
+static struct eo_design design;
+static struct eo_geometry geometry;
+static struct point plain[MOST_POINTS], modified[MOST_POINTS];
+
+static int read_points(struct point *point)
+{
+  struct eo_text text = {0};
+  int count = 0;
+  eo_export_find("flank-points")->write(&design, &geometry, &text);
+  for (char *line = strchr(text.data, '\n') + 1; *line && count < MOST_POINTS; line = strchr(line, '\n') + 1) {
+    struct point *p = &point[count++];
+    char member[10], end[10];
+    if (sscanf(line, "%9[^,],%9[^,],%d,%d,%lf,%lf,%lf,%lf,%lf,%lf,%lf", member, end, &p->profile, &p->face,
+               &p->position[0], &p->position[1], &p->position[2], &p->normal[0], &p->normal[1], &p->normal[2],
+               &p->removed) != 11)
+      break;
+    p->member = strcmp(member, "gear") == 0;
+    p->end = strcmp(end, "right") == 0;
+  }
+  eo_text_done(&text);
+  return count;
+}
+
+static bool load(const char *name, bool bare)
+{
+  struct eo_error error;
+  bool built = eo_example_build(name, &design);
+  if (bare)
+    eo_table_defaults(&eo_modification_table, &design.modification);
+  return built && eo_design_complete(&design, &geometry, &error) == EO_OK;
+}
+
+/* The normals of an involute helicoid are tangents of its base cylinder, inclined by the base helix angle. */
+static void test_involute(int count)
+{
+  double arm = 0, tilt = 0, length = 0, inside = 0;
+  for (int i = 0; i < count; i++) {
+    const double *p = plain[i].position, *n = plain[i].normal, radius = hypot(p[0], p[1]) * 1e-3;
+    double found = fabs(p[0] * n[1] - p[1] * n[0]) / hypot(n[0], n[1]);
+    arm = fmax(arm, fabs(found * 1e-3 - geometry.base_radius[plain[i].member]));
+    tilt = fmax(tilt, fabs(fabs(n[2]) - sin(geometry.base_helix_angle)));
+    length = fmax(length, fabs(sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]) - 1));
+    inside = fmax(inside,
+                  fmax(radius - geometry.tip_radius[plain[i].member], geometry.start_radius[plain[i].member] - radius));
+  }
+  ok(arm < 1e-10, "normals touch the base cylinder: %.2g m", arm);
+  ok(tilt < 1e-9 && length < 1e-9, "their inclination is the base helix angle, their length one");
+  ok(inside < 1e-10, "from the start of the active profile to the tip: %.2g m", inside);
+}
+
+static void turn(const double position[3], double angle, double turned[3])
+{
+  turned[0] = position[0] * cos(angle) + position[1] * sin(angle);
+  turned[1] = -position[0] * sin(angle) + position[1] * cos(angle);
+  turned[2] = position[2];
+}
+
+/* Where the point lies on the path of contact when it touches, and when that is. */
+static double phase_of(const struct point *p, double s)
+{
+  double eta = geometry.face_width * (p->face / 30. - 0.5);
+  double late = p->end == EO_RIGHT ? design.alignment.stagger * geometry.transverse_base_pitch : 0;
+  return s - eta * tan(geometry.base_helix_angle) + late;
+}
+
+/* Every point of the pinion, rolled to its phase, is the point of the gear with the same place on the path. */
+static void test_mesh(int count)
+{
+  double apart = 0, opposed = 0;
+  for (int i = 0; i < count / 2; i++) {
+    const struct point *p = &plain[i], *g = NULL;
+    for (int j = count / 2; j < count && !g; j++)
+      if (plain[j].end == p->end && plain[j].face == p->face && plain[j].profile == 20 - p->profile)
+        g = &plain[j];
+    double s = geometry.path_start + (geometry.path_end - geometry.path_start) * p->profile / 20., c = phase_of(p, s);
+    double at[3], other[3], normal[3], against[3];
+    turn(p->position, c / geometry.base_radius[EO_PINION], at);
+    turn(g->position, -c / geometry.base_radius[EO_GEAR], other);
+    turn(p->normal, c / geometry.base_radius[EO_PINION], normal);
+    turn(g->normal, -c / geometry.base_radius[EO_GEAR], against);
+    const double gear_at[3] = {-other[0], 1e3 * geometry.centre_distance - other[1], other[2]},
+                 gear_normal[3] = {-against[0], -against[1], against[2]};
+    for (int k = 0; k < 3; k++) {
+      apart = fmax(apart, fabs(at[k] - gear_at[k]));
+      opposed = fmax(opposed, fabs(normal[k] + gear_normal[k]));
+    }
+  }
+  ok(apart < 1e-6, "pinion and gear touch at every point: %.2g mm apart", apart);
+  ok(opposed < 1e-8, "with opposite normals: %.2g", opposed);
+}
+
+/* Angle of the unmodified flank of a herringbone pair at a radius and the place of a point on the face, from +y towards
+   +x: involute and lead. */
+static double angle_of(const struct point *p, double radius)
+{
+  double base = geometry.base_radius[p->member],
+         eta = 1e-3 * fabs(p->position[2]) - (design.gear_pair.groove_width + geometry.face_width) / 2;
+  double involute = eo_geometry_involute_function(acos(base / radius)) -
+                    eo_geometry_involute_function(acos(base / geometry.working_radius[p->member]));
+  double lead = eta * tan(geometry.base_helix_angle) / base;
+  return (p->member == EO_PINION ? lead : -lead) - involute;
+}
+
+/* What is taken off lies between the surface and the unmodified one at the same place, normal to the flank: to the last
+   digit where the profile is plain; where it slopes, less by what the slope moves the point along the flank, which is
+   of the second order. */
+static void test_modified(int count)
+{
+  double plain_part = 0, most = 0, excess = 0, lack = 0;
+  for (int i = 0; i < count; i++) {
+    const double *p = modified[i].position;
+    double radius = hypot(p[0], p[1]) * 1e-3, behind = angle_of(&modified[i], radius) - atan2(p[0], p[1]);
+    double missing = behind * geometry.base_radius[modified[i].member] * cos(geometry.base_helix_angle) * 1e6,
+           difference = modified[i].removed - missing;
+    bool sloped = modified[i].member == EO_PINION && (modified[i].profile < 5 || modified[i].profile > 13);
+    if (!sloped)
+      plain_part = fmax(plain_part, fabs(difference));
+    excess = fmax(excess, -difference);
+    lack = fmax(lack, difference / (modified[i].removed + 1));
+    most = fmax(most, modified[i].removed);
+  }
+  ok(most > 20 && plain_part < 2e-3, "%.1f um are taken off at most; crowning is there to %.2g um", most, plain_part);
+  ok(excess < 2e-3 && lack < 0.3, "relief is there but for the second order, at most %.0f %%", 100 * lack);
+}
+
+static int count_lines(const char *format)
+{
+  struct eo_text text = {0};
+  int lines = 0;
+  eo_export_find(format)->write(&design, &geometry, &text);
+  for (const char *c = text.data; (c = strchr(c, '\n')); c++)
+    lines++;
+  eo_text_done(&text);
+  return lines;
+}
+
+static void test_name(const char *given, const char *expected)
+{
+  char name[60];
+  snprintf(design.name, sizeof design.name, "%s", given);
+  eo_export_file_name(eo_export_find("topography"), &design, name, sizeof name);
+  ok(strcmp(name, expected) == 0, "\"%s\" is saved as %s", given, name);
+}
+
+int main(void)
+{
+  ok(load("paper", true), "the paper's pair");
+  int count = read_points(plain);
+  ok(count == MOST_POINTS, "%d points", count);
+  test_involute(count);
+  test_mesh(count);
+  ok(load("paper-case-a", false) && read_points(modified) == count, "its optimum");
+  test_modified(count);
+  ok(count_lines("modification-chart") == 1 + 4 * 2 * 61 && count_lines("topography") == 1 + count, "charts");
+  test_name("Paper pair, Case \"A\"/../x", "paper-pair-case-a-x-topography.csv");
+  test_name("\xc3\xa4\xc3\xb6", "topography.csv");
+  test_name("", "topography.csv");
+  test_name("a name that is much longer than any file's name ought to be, really",
+            "a-name-that-is-much-longer-than-any-file-s-n-topography.csv");
+  ok(load("paper", true), "the paper's pair, one end behind the other");
+  design.alignment.stagger = 0.5;
+  test_mesh(read_points(plain));
+  ok(load("shifted", true), "a pair with profile shift");
+  count = read_points(plain);
+  test_involute(count);
+  test_mesh(count);
+  ok(load("single", true), "a pair with one end");
+  ok(read_points(plain) == MOST_POINTS / 2, "has half the points");
+  test_mesh(MOST_POINTS / 2);
+  ok(!eo_export_find("picture") && !eo_export_at(4) && eo_export_at(0), "formats");
+  return tap_done();
+}

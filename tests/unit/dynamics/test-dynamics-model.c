@@ -1,0 +1,233 @@
+/* Properties of the equations of motion: symmetry, zero modes, loads on them, reciprocity, the printed signs. */
+#include "support/dynamics-fixture.h"
+#include "support/tap.h"
+#include "dynamics/condensation.h"
+#include "numerics/dense.h"
+
+/* Springs that differ from end to end and a coupled groove: nothing may rest on symmetry of the model. */
+static struct eo_dynamics_parameters lopsided(double pinion_torsion, double gear_torsion)
+{
+  struct eo_dynamics_parameters p = paper_pair();
+  p.gear_axial_stiffness[1] = 3.1e8;
+  p.gear_axial_damping[1] = 4321;
+  p.groove_torsional_stiffness[0] = pinion_torsion;
+  p.groove_torsional_stiffness[1] = gear_torsion;
+  p.groove_torsional_damping[0] = pinion_torsion > 0 ? 9 : 0;
+  p.groove_torsional_damping[1] = gear_torsion > 0 ? 500 : 0;
+  return p;
+}
+
+static double smallest_eigenvalue(int n, const double *matrix, double *largest)
+{
+  double copy[EO_MAX_FREEDOMS * EO_MAX_FREEDOMS], value[EO_MAX_FREEDOMS];
+  for (int i = 0; i < n * n; i++)
+    copy[i] = matrix[i];
+  eo_dense_symmetric_eigen(n, copy, value);
+  *largest = value[n - 1];
+  return value[0];
+}
+
+static int symmetric(int n, const double *matrix)
+{
+  for (int i = 0; i < n; i++)
+    for (int j = 0; j < i; j++)
+      if (matrix[i * n + j] != matrix[j * n + i])
+        return 0;
+  return 1;
+}
+
+static void matrices(void)
+{
+  struct eo_dynamics_model m;
+  const struct eo_dynamics_parameters p = lopsided(1.2e7, 8.4e8);
+  double largest;
+  ok(!eo_dynamics_model_init(&m, &p, NULL), "a lopsided model is made");
+  ok(symmetric(12, m.stiffness) && symmetric(12, m.damping), "K and C are symmetric");
+  ok(symmetric(m.oscillator.n, m.oscillator.stiffness) && symmetric(m.oscillator.n, m.oscillator.damping),
+     "so are the reduced ones");
+  double least = smallest_eigenvalue(12, m.stiffness, &largest);
+  ok(least >= -1e-12 * largest, "K is positive semi-definite: %g of %g", least, largest);
+  least = smallest_eigenvalue(12, m.damping, &largest);
+  ok(least >= -1e-12 * largest, "C is positive semi-definite: %g of %g", least, largest);
+  ok(!m.oscillator.symmetric, "ends that differ are not taken for mirror images");
+}
+
+/* Each zero mode must leave all springs, dampers and meshes alone. */
+static double disturbance(const struct eo_dynamics_model *m)
+{
+  int n = m->freedoms, zeros = m->zero_modes;
+  double worst = 0;
+  for (int z = 0; z < zeros; z++) {
+    double mode[EO_MAX_FREEDOMS], image[EO_MAX_FREEDOMS], size = 0;
+    for (int i = 0; i < n; i++)
+      mode[i] = m->zero[i * zeros + z];
+    eo_dense_multiply(n, n, m->stiffness, mode, image);
+    for (int i = 0; i < n; i++)
+      size = fmax(size, fabs(image[i]) / 1e11);
+    for (int end = 0; end < m->parameters.ends; end++) {
+      double x = 0;
+      for (int i = 0; i < n; i++)
+        x += m->reading[EO_READING_NORMAL][end][i] * mode[i];
+      size = fmax(size, fabs(x));
+    }
+    worst = fmax(worst, size);
+  }
+  return worst;
+}
+
+static void zero_modes(struct eo_dynamics_parameters p, int expected, const char *what)
+{
+  struct eo_dynamics_model m;
+  struct eo_error error = {0};
+  int failed = eo_dynamics_model_init(&m, &p, &error);
+  ok(!failed, "%s: the model is made %s", what, error.text);
+  ok(m.zero_modes == expected && m.oscillator.n + m.zero_modes == m.freedoms, "%s: %d zero modes", what, m.zero_modes);
+  double found = disturbance(&m);
+  ok(found < 1e-14, "%s: they stretch nothing (%g)", what, found);
+  eo_dynamics_model_load(&m, 828, EO_IMPACT_PAPER);
+  ok(m.zero_mode_load < 1e-15, "%s: the torques do no work on them (%g)", what, m.zero_mode_load);
+}
+
+static struct eo_dynamics_parameters single(double helix)
+{
+  struct eo_dynamics_parameters p = paper_pair();
+  p.ends = 1;
+  p.base_helix_angle = helix;
+  p.groove_axial_stiffness[0] = 2e8;
+  return p;
+}
+
+/* Softness does not make a mode a zero mode: the count follows from geometry, not from a threshold on frequencies. */
+static struct eo_dynamics_parameters soft(void)
+{
+  struct eo_dynamics_parameters p = paper_pair();
+  p.bearing_stiffness[0] = 1e-3;
+  p.gear_axial_stiffness[0] = p.gear_axial_stiffness[1] = 1e-3;
+  return p;
+}
+
+static void impacts_on_zero_modes(void)
+{
+  struct eo_dynamics_model m;
+  const struct eo_dynamics_parameters p = paper_pair();
+  eo_dynamics_model_init(&m, &p, NULL);
+  double equal = eo_dynamics_model_impact_drift(&m, (double[]){300, 300}),
+         unequal = eo_dynamics_model_impact_drift(&m, (double[]){300, 100});
+  ok(equal < 1e-12 * 300, "equal mean impacts do no work on the zero modes (%g)", equal);
+  /* generalised force of the screw mode: z 1 at both pinion ends, theta such that X stays zero, unit modal mass */
+  double tangent = tan(p.base_helix_angle) / p.base_radius[0];
+  double mass = 2 * p.mass[0] + 2 * p.inertia[0] * tangent * tangent;
+  double roll = p.inertia[0] / (p.base_radius[0] * p.base_radius[0]) +
+                p.inertia[1] / (p.base_radius[1] * p.base_radius[1]);
+  /* made orthogonal to the two rolling modes, in which pinion and gear turn by 1 / R */
+  double overlap = p.inertia[0] * tangent / p.base_radius[0];
+  double expected = tan(p.base_helix_angle) * 200 / sqrt(mass - 2 * overlap * overlap / roll);
+  near(unequal, expected, 1e-10, "unequal ones do, by the screw mode");
+}
+
+/* Betti and Maxwell: the response at one mesh to a force at the other is the same both ways. */
+static void reciprocity(void)
+{
+  struct eo_dynamics_model m;
+  struct eo_harmonic h[9];
+  const struct eo_dynamics_parameters p = lopsided(1.2e7, 8.4e8);
+  double worst = 0;
+  eo_dynamics_model_init(&m, &p, NULL);
+  eo_dynamics_model_load(&m, 828, EO_IMPACT_CONSISTENT);
+  eo_condense(&m.oscillator, 2 * M_PI * 431, 8, true, h);
+  for (int k = 1; k <= 8; k++)
+    worst = fmax(worst, cabs(h[k].stiffness[0][1] - h[k].stiffness[1][0]) / cabs(h[k].stiffness[0][0]));
+  ok(worst < 1e-12, "cross stiffnesses of the two meshes agree (%g)", worst);
+  for (int k = 0; k <= 8; k++)
+    worst = fmax(worst, cabs(h[k].transfer[0][0] - 1 / cos(p.base_helix_angle)) + cabs(h[k].transfer[0][1]));
+  ok(worst < 1e-8, "consistent impacts are mesh forces times 1 / cos(beta_b) (%g)", worst);
+}
+
+/* The analytic slopes with frequency against differences. */
+static void slopes(void)
+{
+  struct eo_dynamics_model m;
+  struct eo_harmonic at[5], above[5], below[5];
+  const struct eo_dynamics_parameters p = lopsided(1.2e7, 0);
+  double w = 2 * M_PI * 431, step = 1e-5 * w, worst = 0;
+  eo_dynamics_model_init(&m, &p, NULL);
+  eo_dynamics_model_load(&m, 828, EO_IMPACT_PAPER);
+  eo_condense(&m.oscillator, w, 4, true, at);
+  eo_condense(&m.oscillator, w + step, 4, false, above);
+  eo_condense(&m.oscillator, w - step, 4, false, below);
+  for (int k = 1; k <= 4; k++)
+    for (int i = 0; i < 2; i++)
+      for (int j = 0; j < 2; j++) {
+        double complex s = (above[k].stiffness[i][j] - below[k].stiffness[i][j]) / (2 * step);
+        double complex t = (above[k].transfer[i][j] - below[k].transfer[i][j]) / (2 * step);
+        worst = fmax(worst, cabs(s - at[k].stiffness_slope[i][j]) / cabs(at[k].stiffness_slope[i][i]));
+        worst = fmax(worst, cabs(t - at[k].transfer_slope[i][j]) /
+                                (cabs(at[k].transfer[i][i]) / w + cabs(at[k].transfer_slope[i][i])));
+      }
+  ok(worst < 1e-4, "slopes with frequency agree with differences (%g)", worst);
+}
+
+/* The result does not depend on the stiffness added while condensing. */
+static void shift_is_free(void)
+{
+  struct eo_dynamics_model m;
+  struct eo_harmonic a[4], b[4];
+  const struct eo_dynamics_parameters p = paper_pair();
+  double worst = 0;
+  eo_dynamics_model_init(&m, &p, NULL);
+  eo_dynamics_model_load(&m, 828, EO_IMPACT_NONE);
+  eo_condense(&m.oscillator, 3000, 3, false, a);
+  m.oscillator.shift *= 3.7;
+  eo_condense(&m.oscillator, 3000, 3, false, b);
+  for (int k = 0; k < 4; k++)
+    worst = fmax(worst,
+                 cabs(a[k].stiffness[0][0] - b[k].stiffness[0][0]) / 1e8 + cabs(a[k].load[0] - b[k].load[0]) / 8638);
+  ok(worst < 1e-8, "the added stiffness cancels (%g)", worst);
+  near(creal(a[0].load[0]), eo_dynamics_mesh_load(&p, 828), 1e-12, "the mean mesh force balances the torque");
+}
+
+static void modes_and_signs(void)
+{
+  struct eo_dynamics_model m;
+  struct eo_dynamics_modes modes;
+  struct eo_error error = {0};
+  double complex pole;
+  const struct eo_dynamics_parameters p = lopsided(1.2e7, 8.4e8);
+  eo_dynamics_model_init(&m, &p, NULL);
+  ok(!eo_dynamics_model_modes(&m, (double[]){1e9, 1.2e9}, &modes, NULL) && modes.n == 11,
+     "eleven modes with both couplings");
+  int stable = 1;
+  for (int i = 0; i < 2 * modes.n; i++)
+    stable = stable && creal(modes.pole[i]) < 0;
+  ok(stable, "all poles of the corrected equations are damped");
+  double mass = 0;
+  for (int i = 0; i < 12; i++)
+    mass += m.mass[i] * modes.shape[3][i] * modes.shape[3][i];
+  near(mass, 1, 1e-12, "mode shapes have unit modal mass");
+  int failed = eo_dynamics_model_printed_pole(&m, (double[]){1e9, 1e9}, &pole, NULL);
+  ok(!failed && creal(pole) > 1e4, "the printed signs flutter: %.0f 1/s", creal(pole));
+  failed = eo_dynamics_model_modes(&m, (double[]){0, 1e9}, &modes, &error) == EO_ERROR_INPUT;
+  ok(failed, "%s", error.text);
+  const struct eo_dynamics_parameters one = single(0.3);
+  eo_dynamics_model_init(&m, &one, NULL);
+  failed = eo_dynamics_model_printed_pole(&m, (double[]){1e9, 1e9}, &pole, &error) == EO_ERROR_INPUT;
+  ok(failed, "%s", error.text);
+}
+
+int main(void)
+{
+  matrices();
+  zero_modes(paper_pair(), 3, "no coupling");
+  zero_modes(lopsided(1.2e7, 0), 2, "pinion coupled");
+  zero_modes(lopsided(0, 8.4e8), 2, "gear coupled");
+  zero_modes(lopsided(1.2e7, 8.4e8), 1, "both coupled");
+  zero_modes(soft(), 3, "very soft supports");
+  zero_modes(single(0.39), 1, "single helical");
+  zero_modes(single(0), 1, "spur");
+  impacts_on_zero_modes();
+  reciprocity();
+  slopes();
+  shift_is_free();
+  modes_and_signs();
+  return tap_done();
+}

@@ -1,0 +1,361 @@
+/* Properties of the motion: energy, power, both solvers with contact loss, convergence, both directions of a sweep, the
+   same bytes from every thread. */
+#include <pthread.h>
+#include <string.h>
+
+#include "support/dynamics-fixture.h"
+#include "support/tap.h"
+#include "dynamics/sweep.h"
+#include "numerics/ode.h"
+
+enum { HARMONICS = 32 };
+
+static struct eo_vibration_solver *solver_for(const struct eo_dynamics_parameters *p, int harmonics, int samples)
+{
+  struct eo_vibration_solver *solver = NULL;
+  struct eo_error error = {0};
+  int failed = eo_vibration_new(&solver, harmonics, samples, &error) || eo_vibration_set_model(solver, p, &error);
+  ok(!failed, "the solver of %d harmonics is made %s", harmonics, error.text);
+  return solver;
+}
+
+/* ---- energy of free vibration ---- */
+
+struct free_run {
+  const struct eo_oscillator *oscillator;
+  const struct eo_cycle *cycle;
+  int separated; /* accelerations computed with teeth apart */
+};
+
+static int free_motion(void *context, double t, const double *y, double *slope)
+{
+  struct free_run *run = context;
+  int n = run->oscillator->n;
+  struct eo_mesh_state mesh[2];
+  memcpy(slope, y + n, sizeof *y * n);
+  eo_oscillator_acceleration(run->oscillator, run->cycle, t, y, y + n, slope + n, mesh);
+  run->separated += mesh[0].margin < 0;
+  return 0;
+}
+
+static double energy_of(const struct eo_oscillator *o, const struct eo_law *law, double stiffness, const double *y)
+{
+  int n = o->n;
+  double energy = 0;
+  for (int i = 0; i < n; i++) {
+    energy += y[n + i] * y[n + i] / 2 - o->load[i] * y[i];
+    for (int j = 0; j < n; j++)
+      energy += o->stiffness[i * n + j] * y[i] * y[j] / 2;
+  }
+  for (int end = 0; end < 2; end++) {
+    double x = 0, gap;
+    for (int i = 0; i < n; i++)
+      x += o->mesh[end][i] * y[i];
+    gap = x > law->front ? x - law->front : x < law->back ? x - law->back : 0;
+    energy += stiffness * gap * gap / 2;
+  }
+  return energy;
+}
+
+/* Undamped, constant stiffness, thrown so hard that the teeth separate and meet the back flanks. */
+static void energy(void)
+{
+  struct eo_dynamics_parameters p = paper_pair();
+  struct eo_dynamics_model m;
+  struct eo_law law = {0};
+  const double stiffness = 1.1e9;
+  double y[2 * EO_MAX_COORDINATES] = {0}, tolerance[2 * EO_MAX_COORDINATES], worst = 0;
+  scale_damping(&p, 0);
+  eo_dynamics_model_init(&m, &p, NULL);
+  eo_dynamics_model_load(&m, 50, EO_IMPACT_NONE);
+  eo_law_set_stiffness(&law, 0, &stiffness, 5e-6, -5e-6, NULL);
+  struct eo_cycle cycle = {.frequency = 1, .law = {&law, &law}};
+  struct free_run run = {&m.oscillator, &cycle, 0};
+  int n = m.oscillator.n;
+  for (int i = 0; i < n; i++) {
+    y[n + i] = 0.03 * (m.oscillator.mesh[0][i] + 0.7 * m.oscillator.mesh[1][i]);
+    tolerance[i] = 1e-17;
+    tolerance[n + i] = 1e-13;
+  }
+  const struct eo_ode_problem problem = {free_motion, NULL, &run, 1e-11, tolerance, 0};
+  struct eo_ode *ode = NULL;
+  eo_ode_new(&ode, 2 * n, NULL);
+  eo_ode_start(ode, &problem, 0, y, NULL);
+  double kinetic = 0, first = energy_of(&m.oscillator, &law, stiffness, y);
+  for (int i = 0; i < n; i++)
+    kinetic += y[n + i] * y[n + i] / 2;
+  for (int step = 1; step <= 100; step++) {
+    eo_ode_advance(ode, 1e-4 * step, y, NULL);
+    worst = fmax(worst, fabs(energy_of(&m.oscillator, &law, stiffness, y) - first) / kinetic);
+  }
+  ok(run.separated > 100, "teeth are apart in %d evaluations", run.separated);
+  ok(worst < 1e-6, "undamped free vibration keeps its energy: %.2g of it lost or won", worst);
+  eo_ode_free(ode);
+  eo_law_done(&law);
+}
+
+/* ---- both solvers ---- */
+
+static void check_finite(const struct eo_vibration *r)
+{
+  const double *value = (const double *)&r->rms;
+  int finite = 1;
+  for (const double *end = (const double *)&r->contact_loss; value < end; value++)
+    finite = finite && isfinite(*value);
+  ok(finite && isfinite(r->power_supplied) && isfinite(r->residual), "every number of the result is finite");
+}
+
+/* Teeth driven apart at low torque by impacts, with the mesh damping acting always or only in contact. */
+static void contact_loss(bool gated)
+{
+  const struct eo_dynamics_parameters p = paper_pair();
+  struct eo_law law = {0};
+  struct eo_vibration balance, integration;
+  stiffness_law(&law, 1);
+  struct eo_vibration_solver *solver = solver_for(&p, 64, 2048);
+  struct eo_vibration_case load = paper_case(&law, &law);
+  load.torque = 16.56;
+  load.speed = 3000 * M_PI / 30;
+  load.gated = gated;
+  load.impact = EO_IMPACT_PAPER;
+  load.pulse[0] = load.pulse[1] = (struct eo_pulse){EO_PULSE_HALF_SINE, 300, 0, 0.1};
+  int failed = eo_vibration_solve(solver, &load, EO_START_COLD, &balance, NULL);
+  ok(!failed && balance.outcome == EO_VIBRATION_CONTACT_LOST, "contact is lost over %.3f of the cycle",
+     balance.contact_loss[0]);
+  check_finite(&balance);
+  near(balance.power_supplied, balance.power_dissipated, 1e-6, "power supplied by the mesh is dissipated");
+  ok(balance.power_dissipated > 0, "and there is some");
+  double complex multiplier[2 * EO_MAX_COORDINATES];
+  failed = eo_vibration_stability(solver, &load, multiplier, NULL);
+  ok(!failed && cabs(multiplier[0]) < 1, "the state is stable: %.4f", cabs(multiplier[0]));
+  failed = eo_vibration_integrate(solver, &load, NULL, &integration, NULL, NULL);
+  ok(!failed && integration.outcome == EO_VIBRATION_CONTACT_LOST, "time integration settles after %d periods",
+     integration.periods);
+  near(balance.rms[EO_READING_NORMAL][0], integration.rms[EO_READING_NORMAL][0], 1e-4,
+       "normal, balance against integration");
+  near(balance.rms[EO_READING_TRANSVERSE][0], integration.rms[EO_READING_TRANSVERSE][0], 1e-4, "transverse");
+  near(balance.rms[EO_READING_ROTATIONAL][0], integration.rms[EO_READING_ROTATIONAL][0], 1e-4, "rotational");
+  close_to(balance.contact_loss[0], integration.contact_loss[0], 1e-3, "share of the cycle out of contact");
+  eo_vibration_free(solver);
+  eo_law_done(&law);
+}
+
+static void power_in_contact(void)
+{
+  const struct eo_dynamics_parameters p = paper_pair();
+  struct eo_law law = {0};
+  struct eo_vibration r;
+  const double float_series[3] = {1e-5, 2e-7, 1e-7};
+  stiffness_law(&law, 1);
+  struct eo_vibration_solver *solver = solver_for(&p, HARMONICS, 0);
+  struct eo_vibration_case load = paper_case(&law, &law);
+  eo_vibration_solve(solver, &load, EO_START_COLD, &r, NULL);
+  near(r.power_supplied, r.power_dissipated, 1e-6, "full contact: power balance by harmonic balance");
+  eo_vibration_integrate(solver, &load, NULL, &r, NULL, NULL);
+  near(r.power_supplied, r.power_dissipated, 1e-6, "full contact: power balance by time integration");
+  load.impact = EO_IMPACT_PAPER;
+  load.pulse[0] = (struct eo_pulse){EO_PULSE_HALF_SINE, 300, 0.7, 0.1};
+  load.pulse[1] = (struct eo_pulse){EO_PULSE_HALF_SINE, 500, 0.2, 0.15};
+  load.axial_order = 1;
+  load.axial_motion = float_series;
+  eo_vibration_solve(solver, &load, EO_START_COLD, &r, NULL);
+  near(r.power_supplied, r.power_dissipated, 1e-6, "unequal impacts and prescribed float: power balance");
+  ok(r.impact_drift > 1, "the mean difference of the impacts is reported: %.3g", r.impact_drift);
+  struct eo_vibration t;
+  eo_vibration_integrate(solver, &load, NULL, &t, NULL, NULL);
+  for (int end = 0; end < 2; end++)
+    for (int reading = 0; reading < EO_READINGS; reading++)
+      near(r.rms[reading][end], t.rms[reading][end], 4e-4, "impacts and float, 32 harmonics against integration");
+  eo_vibration_free(solver);
+  eo_law_done(&law);
+}
+
+/* The prescribed float enters by its change only: a constant drops out. */
+static void constant_float_drops_out(void)
+{
+  const struct eo_dynamics_parameters p = paper_pair();
+  struct eo_law law = {0};
+  struct eo_vibration still, shifted, moving;
+  const double constant[3] = {3e-5, 0, 0}, wave[3] = {0, 1e-6, 0};
+  stiffness_law(&law, 1);
+  struct eo_vibration_solver *solver = solver_for(&p, HARMONICS, 0);
+  struct eo_vibration_case load = paper_case(&law, &law);
+  eo_vibration_solve(solver, &load, EO_START_COLD, &still, NULL);
+  load.axial_order = 1;
+  load.axial_motion = constant;
+  eo_vibration_solve(solver, &load, EO_START_COLD, &shifted, NULL);
+  load.axial_motion = wave;
+  eo_vibration_solve(solver, &load, EO_START_COLD, &moving, NULL);
+  near(shifted.rms_pair[0], still.rms_pair[0], 1e-9, "a constant axial float changes nothing");
+  ok(fabs(moving.rms[0][0] / still.rms[0][0] - 1) > 1e-3, "a moving one does: %.4f against %.4f", moving.rms[0][0],
+     still.rms[0][0]);
+  ok((moving.rms[0][0] > still.rms[0][0]) != (moving.rms[0][1] > still.rms[0][1]),
+     "in opposite senses at the two ends");
+  eo_vibration_free(solver);
+  eo_law_done(&law);
+}
+
+static void convergence(void)
+{
+  const struct eo_dynamics_parameters p = paper_pair();
+  struct eo_law law = {0};
+  stiffness_law(&law, 1);
+  double error_before = INFINITY, reference = 0;
+  static const int harmonics[] = {64, 4, 6, 9, 24};
+  for (int i = 0; i < 5; i++) {
+    struct eo_vibration r;
+    struct eo_vibration_case load = paper_case(&law, &law);
+    struct eo_vibration_solver *solver = solver_for(&p, harmonics[i], 0);
+    eo_vibration_solve(solver, &load, EO_START_COLD, &r, NULL);
+    double error = fabs(r.rms_pair[0] / reference - 1);
+    if (i == 0)
+      reference = r.rms_pair[0];
+    else
+      ok(error <= error_before, "%d harmonics: RMS off by %.2g", harmonics[i], error);
+    error_before = i == 0 ? INFINITY : fmax(error, 1e-10);
+    eo_vibration_free(solver);
+  }
+  ok(error_before <= 1e-9, "the default of 24 harmonics is enough for the stiffness law");
+  eo_law_done(&law);
+}
+
+/* Both ends equal but staggered by half a period: the right end does what the left did half a period before. */
+static void stagger(void)
+{
+  const struct eo_dynamics_parameters p = paper_pair();
+  struct eo_law law = {0};
+  struct eo_vibration r;
+  double complex left[1 + HARMONICS], right[1 + HARMONICS];
+  double worst = 0;
+  stiffness_law(&law, 1);
+  struct eo_vibration_solver *solver = solver_for(&p, HARMONICS, 0);
+  struct eo_vibration_case load = paper_case(&law, &law);
+  load.phase_right = 0.5;
+  eo_vibration_solve(solver, &load, EO_START_COLD, &r, NULL);
+  eo_vibration_orders(solver, EO_CHANNEL_NORMAL, 0, left);
+  eo_vibration_orders(solver, EO_CHANNEL_NORMAL, 1, right);
+  for (int k = 1; k <= HARMONICS; k++)
+    worst = fmax(worst, cabs(right[k] - left[k] * (k % 2 ? -1 : 1)) / r.rms[0][0]);
+  ok(worst < 1e-9, "a stagger of half a pitch mirrors in time (%g)", worst);
+  ok(r.rms_of_mean[0] < 0.8 * r.rms_pair[0], "odd harmonics cancel in the mean of both ends: %.2f of %.2f",
+     r.rms_of_mean[0], r.rms_pair[0]);
+  eo_vibration_free(solver);
+  eo_law_done(&law);
+}
+
+static void single_end(void)
+{
+  struct eo_dynamics_parameters p = paper_pair();
+  struct eo_law law = {0};
+  struct eo_vibration r, t;
+  p.ends = 1;
+  p.groove_axial_stiffness[0] = 2e8;
+  p.groove_axial_damping[0] = 3000;
+  stiffness_law(&law, 1);
+  struct eo_vibration_solver *solver = solver_for(&p, HARMONICS, 0);
+  struct eo_vibration_case load = paper_case(&law, NULL);
+  load.torque = 414;
+  int failed = eo_vibration_solve(solver, &load, EO_START_COLD, &r, NULL);
+  ok(!failed && r.outcome == EO_VIBRATION_CONVERGED, "a single helical pair vibrates at %.3f m/s2", r.rms_pair[0]);
+  eo_vibration_integrate(solver, &load, NULL, &t, NULL, NULL);
+  near(r.rms_pair[0], t.rms_pair[0], 1e-4, "single helical, balance against integration");
+  near(r.axial_force_mean[0], 414 / p.base_radius[0] * tan(p.base_helix_angle), 1e-9,
+       "its gear thrust is F_t tan(beta_b)");
+  near(r.bearing_force_mean[EO_PINION][0], -414 / p.base_radius[0], 1e-9, "its pinion bearing carries F_t");
+  eo_vibration_free(solver);
+  eo_law_done(&law);
+}
+
+/* ---- sweeps ---- */
+
+enum { SPEEDS = 60 };
+struct sweep_run {
+  struct eo_vibration up[SPEEDS], down[SPEEDS];
+};
+
+static void *run_sweep(void *context)
+{
+  struct sweep_run *run = context;
+  struct eo_dynamics_parameters p = paper_pair();
+  struct eo_law law = {0};
+  struct eo_vibration_solver *solver = NULL;
+  double speed[SPEEDS];
+  scale_damping(&p, 0.2);
+  stiffness_law(&law, 3);
+  for (int i = 0; i < SPEEDS; i++)
+    speed[i] = (9000 + 100.0 * i) * M_PI / 30;
+  struct eo_vibration_case load = paper_case(&law, &law);
+  if (eo_vibration_new(&solver, 16, 0, NULL) || eo_vibration_set_model(solver, &p, NULL) ||
+      eo_vibration_sweep(solver, &load, SPEEDS, speed, run->up, run->down, NULL, NULL))
+    memset(run, 0, sizeof *run);
+  eo_vibration_free(solver);
+  eo_law_done(&law);
+  return NULL;
+}
+
+static void sweeps(void)
+{
+  static struct sweep_run alone, together[2];
+  pthread_t thread[2];
+  int bistable = 0, lost = 0;
+  run_sweep(&alone);
+  for (int i = 0; i < 2; i++)
+    pthread_create(&thread[i], NULL, run_sweep, &together[i]);
+  for (int i = 0; i < 2; i++)
+    pthread_join(thread[i], NULL);
+  for (int i = 0; i < SPEEDS; i++) {
+    lost += alone.down[i].outcome == EO_VIBRATION_CONTACT_LOST;
+    bistable += alone.down[i].rms_pair[0] > 1.5 * alone.up[i].rms_pair[0];
+  }
+  ok(lost > 20 && bistable > 10, "teeth separate at %d speeds, two states exist at %d of them", lost, bistable);
+  ok(!memcmp(&alone, &together[0], sizeof alone) && !memcmp(&alone, &together[1], sizeof alone),
+     "two threads give the same bytes as one");
+}
+
+static void trace(void)
+{
+  static struct eo_trace_point point[2000];
+  struct eo_dynamics_parameters p = paper_pair();
+  struct eo_law law = {0};
+  int count = 0, folds = 0;
+  enum eo_branch_end end;
+  double up = 0, down = INFINITY;
+  scale_damping(&p, 0.2);
+  stiffness_law(&law, 3);
+  struct eo_vibration_solver *solver = solver_for(&p, 12, 0);
+  struct eo_vibration_case load = paper_case(&law, &law);
+  load.speed = 9000 * M_PI / 30;
+  int failed = eo_vibration_trace(solver, &load, load.speed, 15000 * M_PI / 30, 1, 2000, point, &count, &end, NULL);
+  ok(!failed && end == EO_BRANCH_LIMIT, "the branch is traced to its end over %d points", count);
+  for (int i = 0; i < count; i++) {
+    folds += point[i].fold;
+    up = point[i].fold ? fmax(up, point[i].speed) : up;
+    down = point[i].fold ? fmin(down, point[i].speed) : down;
+  }
+  ok(folds >= 2 && folds % 2 == 0 && up > down * 1.1, "%d folds between %.0f and %.0f rpm", folds, down * 30 / M_PI,
+     up * 30 / M_PI);
+  load.speed = up * 1.002;
+  struct eo_vibration r;
+  eo_vibration_solve(solver, &load, EO_START_COLD, &r, NULL);
+  ok(r.outcome == EO_VIBRATION_CONTACT_LOST, "just above the upper fold only the separated state is left");
+  load.speed = down * 0.99;
+  eo_vibration_solve(solver, &load, EO_START_COLD, &r, NULL);
+  ok(r.outcome == EO_VIBRATION_CONVERGED, "below the lower fold only full contact");
+  eo_vibration_free(solver);
+  eo_law_done(&law);
+}
+
+int main(void)
+{
+  energy();
+  power_in_contact();
+  contact_loss(false);
+  contact_loss(true);
+  constant_float_drops_out();
+  convergence();
+  stagger();
+  single_end();
+  sweeps();
+  trace();
+  return tap_done();
+}

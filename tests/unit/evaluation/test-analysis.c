@@ -1,0 +1,338 @@
+/* The analysis and its result document, on a compliance in closed form: what it must not depend on, what must agree
+   with what, and every name that is relied on. */
+#include <stdlib.h>
+
+#include "support/contract.h"
+#include "document/examples.h"
+#include "document/result.h"
+#include "flexibility/closed_form.h"
+#include "support/tap.h"
+
+enum { ALL = EO_WANT_ROOT | EO_WANT_BAND | EO_WANT_CURVES };
+
+static const struct eo_closed_form form = {
+    .compliance = 1.5e-9, .length = 12e-3, .centre = -0.8e-3, .linear = 20, .quadratic = 4000};
+
+struct subject {
+  struct eo_design design;
+  struct eo_geometry geometry;
+  struct eo_pair *pair;
+  struct eo_analysis *analysis;
+};
+
+static void complete(struct subject *s)
+{
+  struct eo_error error;
+  if (eo_design_complete(&s->design, &s->geometry, &error))
+    printf("# %s: %s\n", error.pointer, error.text);
+}
+
+static struct subject *start_at(const char *example, int positions)
+{
+  struct subject *s = calloc(1, sizeof *s);
+  struct eo_error error;
+  struct eo_pair_options options = {.kernel = {eo_closed_form_kernel, &form}};
+  eo_example_build(example, &s->design);
+  s->design.resolution.positions = positions;
+  s->design.resolution.te_harmonics = positions > 20 ? 10 : positions / 2 - 1;
+  s->design.resolution.cells_per_line = 20;
+  complete(s);
+  if (eo_pair_new(&s->pair, &s->design, &options, NULL, &error) || eo_analysis_new(&s->analysis, s->pair, &error))
+    printf("Bail out! %s\n", error.text);
+  return s;
+}
+
+static struct subject *start(const char *example)
+{
+  return start_at(example, 32);
+}
+
+static void end(struct subject *s)
+{
+  eo_analysis_free(s->analysis);
+  eo_pair_free(s->pair);
+  free(s);
+}
+
+/* The document as compact text without the timing. */
+static struct eo_text run(struct subject *s)
+{
+  struct eo_error error;
+  struct eo_text text = {0};
+  if (eo_analysis_run(s->analysis, &s->design, ALL, &error)) {
+    printf("# %s: %s\n", error.pointer, error.text);
+    return text;
+  }
+  json_t *result = eo_result_encode(s->analysis, &s->design, NULL);
+  json_object_del(result, "timing_ms");
+  eo_json_write(&text, result, EO_JSON_COMPACT);
+  json_decref(result);
+  return text;
+}
+
+static bool same(struct eo_text *a, struct eo_text *b)
+{
+  bool equal = a->size && a->size == b->size && memcmp(a->data, b->data, a->size) == 0;
+  eo_text_done(a);
+  eo_text_done(b);
+  return equal;
+}
+
+static json_t *result_of(struct subject *s)
+{
+  struct eo_error error;
+  return eo_analysis_run(s->analysis, &s->design, ALL, &error) ? NULL : eo_result_encode(s->analysis, &s->design, NULL);
+}
+
+static double last(const json_t *result, const char *path)
+{
+  const json_t *cases = json_object_get(result, "load_cases");
+  return eo_json_find_number(json_array_get(cases, json_array_size(cases) - 1), path);
+}
+
+static void check_names(const char *example, int ends)
+{
+  struct subject *s = start(example);
+  json_t *result = result_of(s);
+  ok(result && contract_check(result, ends, false) == 0, "%s: every name that is relied on", example);
+  json_decref(result);
+  end(s);
+}
+
+/* Results depend on the design alone: not on what was analysed before, nor on what is remembered. */
+static void check_memory(void)
+{
+  struct subject *s = start("paper-case-a"), *fresh = start("paper-case-a");
+  struct eo_text first = run(s);
+  double spent = s->analysis->unmodified_ms;
+  struct eo_text again = run(s);
+  ok(spent > 0 && s->analysis->unmodified_ms == 0, "the unmodified pair is evaluated once");
+  ok(same(&first, &again), "the same bytes on a second run");
+  s->design.modification.flank[EO_PINION][EO_LEFT].tip_relief *= 2;
+  s->design.alignment.shaft_angle_in_plane = 0;
+  s->design.load_cases = 2;
+  struct eo_text other = run(s);
+  ok(s->analysis->unmodified_ms > 0, "another alignment has another unmodified pair");
+  eo_text_done(&other);
+  s->design = fresh->design;
+  struct eo_text back = run(s), expected = run(fresh);
+  ok(same(&back, &expected), "the same bytes after another design");
+  end(s);
+  end(fresh);
+}
+
+/* The document by parts, on two threads, is the document. */
+static void check_writing(void)
+{
+  struct subject *s = start("paper-case-b");
+  struct eo_error error;
+  s->analysis->threads = 2;
+  eo_analysis_run(s->analysis, &s->design, ALL, &error);
+  for (unsigned left_out = 0; left_out < 4; left_out++) {
+    struct eo_text whole = {0}, parts = {0};
+    json_t *document = eo_result_encode_part(s->analysis, &s->design, NULL, left_out);
+    eo_json_write(&whole, document, EO_JSON_COMPACT);
+    enum eo_code code = eo_result_write(s->analysis, &s->design, NULL, left_out, &parts, &error);
+    size_t size = whole.size;
+    ok(!code && same(&whole, &parts), "written by parts: the same %zu bytes", size);
+    json_decref(document);
+  }
+  end(s);
+}
+
+/* Two threads, ends that change one at a time, ends that become equal, ends that share their load, bodies that bend,
+   impacts in the motion: the same bytes as a new analysis gives on one thread. */
+static void check_threads(void)
+{
+  struct subject *s = start("paper-case-b");
+  int different = 0;
+  s->analysis->threads = 2;
+  for (int i = 0; i < 9; i++) {
+    struct eo_modification *m = &s->design.modification;
+    if (i == 1 || i == 3)
+      m->flank[EO_PINION][EO_RIGHT].tip_relief += 1e-6;
+    if (i == 2)
+      m->flank[EO_PINION][EO_LEFT].root_relief += 1e-6;
+    if (i == 4)
+      s->design.alignment.shaft_angle_in_plane = 0;
+    if (i >= 4)
+      m->flank[EO_PINION][EO_RIGHT] = m->flank[EO_PINION][EO_LEFT];
+    if (i >= 5)
+      m->flank[EO_PINION][EO_RIGHT].lead_crowning += 1e-6;
+    s->design.alignment.pinion_axial = i == 6 ? EO_AXIAL_FIXED : EO_AXIAL_FLOATING;
+    s->design.shafts.enabled = i == 7;
+    s->design.resolution.impact_in_dynamics = i == 8 ? EO_IMPACT_CONSISTENT : EO_IMPACT_NONE;
+    struct subject *fresh = start("paper-case-b");
+    fresh->design = s->design;
+    struct eo_text here = run(s), there = run(fresh);
+    different += !same(&here, &there);
+    end(fresh);
+  }
+  ok(different == 0, "on two threads, end by end, the same bytes as anew on one");
+  end(s);
+}
+
+static void check_unmodified(void)
+{
+  struct subject *s = start("paper");
+  json_t *result = result_of(s);
+  close_to(eo_json_find_number(result, "objectives/J"), 1, 1e-12, "J of the unmodified pair");
+  close_to(eo_json_find_number(result, "objectives/fitness"), 1, 1e-12, "its fitness");
+  ok(eo_json_find_number(result, "objectives/f2_N") == eo_json_find_number(result, "objectives/unmodified/f2_N"),
+     "it is its own reference");
+  json_decref(result);
+  end(s);
+}
+
+/* f_i = sum share value / number of cases, J = sum w f / f(unmodified), from the document's own numbers. */
+static void check_objectives(void)
+{
+  static const char *const value[3] = {"peak_to_peak_um", "impact_N", "rms_m_per_s2"}, *const sum[3] = {"f1_um", "f2_N",
+                                                                                                        "f3_m_per_s2"};
+  static const double weight[3] = {0.4, 0.15, 0.45}, share[3] = {0.2, 0.5, 0.3};
+  struct subject *s = start("paper-case-b");
+  json_t *result = result_of(s);
+  const json_t *after = json_object_get(result, "objectives"), *before = json_object_get(after, "unmodified");
+  double objective = 0;
+  for (int i = 0; i < 3; i++) {
+    double f = 0, reference = 0;
+    for (size_t k = 0; k < 3; k++) {
+      f += share[k] * eo_json_find_number(json_array_get(json_object_get(after, "load_cases"), k), value[i]) / 3;
+      reference += share[k] * eo_json_find_number(json_array_get(json_object_get(before, "load_cases"), k), value[i]) /
+                   3;
+    }
+    near(eo_json_find_number(after, sum[i]), f, 1e-10, sum[i]);
+    objective += weight[i] * f / reference;
+  }
+  near(eo_json_find_number(after, "J"), objective, 1e-10, "J");
+  near(eo_json_find_number(after, "fitness"), 1 / objective, 1e-10, "fitness");
+  json_decref(result);
+  end(s);
+}
+
+/* Columns against the single numbers beside them. */
+static void check_columns(void)
+{
+  struct subject *s = start("paper-case-b");
+  s->design.alignment.stagger = 0.25;
+  complete(s);
+  json_t *result = result_of(s);
+  const json_t *c = json_array_get(json_object_get(result, "load_cases"), 1);
+  const json_t *pair = eo_json_find(c, "lte/pair_um"), *left = eo_json_find(c, "lte/left_um"),
+               *right = eo_json_find(c, "lte/right_um");
+  double worst = 0, low = INFINITY, high = -INFINITY, missing = 0, force = 0;
+  for (size_t j = 0; j < json_array_size(pair); j++) {
+    double z = json_number_value(json_array_get(pair, j)), sum = 0;
+    worst =
+        fmax(worst,
+             fabs(z - (json_number_value(json_array_get(left, j)) + json_number_value(json_array_get(right, j))) / 2));
+    low = fmin(low, z);
+    high = fmax(high, z);
+    for (size_t i = 0; i < json_array_size(eo_json_find(c, "contact/load_share/right")); i++)
+      sum += json_number_value(json_array_get(json_array_get(eo_json_find(c, "contact/load_share/right"), i), j));
+    missing = fmax(missing, fabs(sum - 1));
+  }
+  close_to(worst, 0, 1e-6, "the pair's transmission error is the mean of the ends', um, staggered too");
+  close_to(high - low, eo_json_find_number(c, "lte/peak_to_peak_um"), 1e-6, "its peak to peak, um");
+  close_to(missing, 0, 1e-6, "the shares of the tooth pairs sum to 1");
+  const json_t *history = eo_json_find(c, "vibration/left/history/normal_m_per_s2");
+  for (size_t i = 0; i < json_array_size(history); i++)
+    force += pow(json_number_value(json_array_get(history, i)), 2) / (double)json_array_size(history);
+  near(sqrt(force), eo_json_find_number(c, "vibration/left/rms_m_per_s2/normal"), 1e-4,
+       "RMS of the acceleration's history");
+  const json_t *orders = eo_json_find(c, "vibration/left/orders/normal_m_per_s2");
+  force = 0;
+  for (size_t i = 1; i < json_array_size(orders); i++)
+    force += pow(json_number_value(json_array_get(orders, i)), 2) / 2;
+  near(sqrt(force), eo_json_find_number(c, "vibration/left/rms_m_per_s2/normal"), 1e-4, "RMS of its orders");
+  const json_t *band = eo_json_find(c, "vibration/rms_band_m_per_s2/normal");
+  double rms = eo_json_find_number(c, "vibration/rms_m_per_s2/normal");
+  ok(json_number_value(json_array_get(band, 0)) <= rms && rms <= json_number_value(json_array_get(band, 1)) &&
+         json_number_value(json_array_get(band, 0)) < json_number_value(json_array_get(band, 1)),
+     "the band encloses the RMS");
+  json_decref(result);
+  end(s);
+}
+
+static bool warns(const json_t *result, const char *text)
+{
+  const json_t *warnings = json_object_get(result, "warnings");
+  for (size_t i = 0; i < json_array_size(warnings); i++)
+    if (strstr(json_string_value(json_array_get(warnings, i)), text))
+      return true;
+  return false;
+}
+
+static void check_warnings(void)
+{
+  struct subject *s = start("paper");
+  s->design.objective.peak_to_peak = (struct eo_constraint){true, 1e-8};
+  json_t *result = result_of(s);
+  ok(warns(result, "Edge contact at 828 N m and 2000 rpm, right end"), "edge contact is said, with its place");
+  ok(warns(result, "limit on the peak-to-peak transmission error is exceeded"), "a violated limit is said");
+  ok(eo_json_find_number(result, "objectives/violation") > 0 && eo_json_find_number(result, "objectives/fitness") < 1,
+     "and costs fitness");
+  json_decref(result);
+  s->design.load_cases = 1;
+  s->design.load_case[0] = (struct eo_load_case){.torque = 5, .speed = 560, .share = 1};
+  result = result_of(s);
+  const char *outcome =
+      json_string_value(eo_json_find(json_array_get(json_object_get(result, "load_cases"), 0), "outcome"));
+  ok(outcome && strcmp(outcome, "contact_lost") == 0 && warns(result, "Contact is lost at 5 N m") &&
+         last(result, "vibration/contact_loss") > 0,
+     "lost contact is an outcome: %s", outcome ? outcome : "none");
+  json_decref(result);
+  end(s);
+}
+
+/* A pinion held axially at a large shaft angle error: one end carries nothing, and there is no mesh law about its load.
+ */
+static void check_failure(void)
+{
+  struct subject *s = start_at("paper", 8);
+  struct eo_error error;
+  s->design.load_cases = 1;
+  s->design.load_case[0].torque = 50;
+  s->design.alignment.pinion_axial = EO_AXIAL_FIXED;
+  json_t *result = eo_analysis_run(s->analysis, &s->design, 0, &error)
+                       ? NULL
+                       : eo_result_encode(s->analysis, &s->design, NULL);
+  ok(json_is_null(eo_json_find(result, "objectives/J")) && warns(result, "No periodic vibration was found"),
+     "what has no vibration has no J, and says so");
+  ok(json_is_null(eo_json_find(result, "eigenfrequencies_Hz")), "what was not asked for is null");
+  json_decref(result);
+  end(s);
+}
+
+static void check_robust(void)
+{
+  struct subject *s = start("paper-case-a");
+  s->design.objective.robust = EO_ROBUST_MEAN;
+  complete(s);
+  json_t *result = result_of(s);
+  ok(eo_json_find_number(result, "objectives/scenarios") == 7, "seven scenarios by default");
+  double mean = eo_json_find_number(result, "objectives/J"), rms = last(result, "vibration/rms_m_per_s2/normal");
+  json_decref(result);
+  s->design.objective.robust = EO_ROBUST_WORST;
+  result = result_of(s);
+  ok(eo_json_find_number(result, "objectives/J") > mean, "the worst scenario is worse than the mean");
+  ok(last(result, "vibration/rms_m_per_s2/normal") == rms, "the curves stay those of the nominal alignment");
+  json_decref(result);
+  end(s);
+}
+
+int main(void)
+{
+  check_names("paper-case-b", 2);
+  check_names("single", 1);
+  check_memory();
+  check_writing();
+  check_threads();
+  check_unmodified();
+  check_objectives();
+  check_columns();
+  check_warnings();
+  check_failure();
+  check_robust();
+  return tap_done();
+}

@@ -1,0 +1,436 @@
+/* What holds for every evaluation, on a coarse finite-element pair: equal ends once or twice, no memory, scenarios,
+   laws, bands, threads. */
+#include "document/design_document.h"
+#include "document/examples.h"
+#include "evaluation/evaluator.h"
+#include "support/tap.h"
+
+#include <pthread.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MOST_CASES = 4, POSITIONS = 32 };
+
+static struct eo_pair *pair;
+static struct eo_evaluator *evaluator;
+
+static void stop(const struct eo_error *error)
+{
+  printf("Bail out! %s: %s\n", error->pointer, error->text);
+  exit(1);
+}
+
+/* An example of the paper with a coarse mesh and without shaft error. */
+static struct eo_design design_of(const char *name)
+{
+  struct eo_design design;
+  struct eo_geometry geometry;
+  struct eo_error error;
+  eo_example_build(name, &design);
+  design.alignment.shaft_angle_in_plane = 0;
+  design.resolution.layers = 8;
+  design.resolution.flank_rows = 5;
+  design.resolution.fillet_elements = 8;
+  design.resolution.sector_teeth = 3;
+  design.resolution.positions = POSITIONS;
+  design.resolution.cells_per_line = 15;
+  if (eo_design_complete(&design, &geometry, &error))
+    stop(&error);
+  return design;
+}
+
+static struct eo_pair *make_pair(const struct eo_design *design)
+{
+  struct eo_pair_options options = {0};
+  struct eo_pair *made;
+  struct eo_error error;
+  if (eo_pair_new(&made, design, &options, NULL, &error))
+    stop(&error);
+  return made;
+}
+
+static struct eo_evaluator *make_evaluator(const struct eo_pair *of)
+{
+  struct eo_evaluator *made;
+  struct eo_error error;
+  if (eo_evaluator_new(&made, of, MOST_CASES, &error))
+    stop(&error);
+  return made;
+}
+
+static const struct eo_evaluation *run(const struct eo_design *design, const struct eo_scenario *scenario, int want)
+{
+  const struct eo_evaluation *r;
+  struct eo_error error;
+  if (eo_evaluator_run(evaluator, design, scenario, want, &r, &error))
+    stop(&error);
+  return r;
+}
+
+/* Everything an evaluation says about its load cases, in one array: a fingerprint that any change shows in. */
+enum { PER_END = 4 * POSITIONS + 12, PER_CASE = 2 * PER_END + POSITIONS + 40 };
+struct record {
+  int count;
+  double value[MOST_CASES * PER_CASE];
+};
+
+static void put(struct record *record, int n, const double *value)
+{
+  memcpy(record->value + record->count, value, sizeof *value * (size_t)n);
+  record->count += n;
+}
+
+static void put_end(struct record *record, const struct eo_end_result *e)
+{
+  double single[] = {e->datum,        e->max_pressure, e->max_line_load, e->edge_share,      e->transmission_peak,
+                     e->impact.force, e->impact.phase, e->impact.speed,  e->impact.duration, e->impact.start,
+                     e->impact.eta};
+  put(record, POSITIONS, e->loaded.approach);
+  put(record, POSITIONS, e->loaded.tangent);
+  put(record, POSITIONS, e->unloaded);
+  put(record, POSITIONS, e->stiffness);
+  put(record, (int)(sizeof single / sizeof *single), single);
+}
+
+static struct record record_of(const struct eo_evaluation *r)
+{
+  struct record record = {0};
+  for (int k = 0; k < r->cases; k++) {
+    const struct eo_case_result *c = &r->load_case[k];
+    double single[] = {c->peak_to_peak,
+                       c->mean,
+                       c->dynamic_force_factor,
+                       c->vibration.dynamic_factor[0],
+                       c->vibration.dynamic_factor[1],
+                       c->vibration.contact_loss[0],
+                       r->objective[k].impact,
+                       r->objective[k].contact_pressure};
+    for (int end = 0; end < r->ends; end++)
+      put_end(&record, &c->end[end]);
+    put(&record, POSITIONS, c->transmission);
+    put(&record, 2 * EO_READINGS, &c->vibration.rms[0][0]);
+    put(&record, EO_READINGS, c->vibration.rms_pair);
+    put(&record, (int)(sizeof single / sizeof *single), single);
+  }
+  return record;
+}
+
+static bool same(const struct record *a, const struct record *b)
+{
+  return a->count == b->count && memcmp(a->value, b->value, sizeof *a->value * (size_t)a->count) == 0;
+}
+
+static bool finite_record(const struct record *record)
+{
+  bool finite = true;
+  for (int i = 0; i < record->count; i++)
+    finite = finite && isfinite(record->value[i]);
+  return finite;
+}
+
+/* ---- the ends ---- */
+
+static void test_equal_ends(void)
+{
+  struct eo_design design = design_of("paper-case-a");
+  const struct eo_evaluation *r = run(&design, NULL, 0);
+  struct record once = record_of(r);
+  ok(r->equal_ends, "aligned ends with the same flanks are computed once");
+  design.alignment.shaft_angle_in_plane = 1e-200; /* too small to change a bit, but not zero */
+  r = run(&design, NULL, 0);
+  struct record twice = record_of(r);
+  ok(!r->equal_ends && same(&once, &twice), "and equal computing both to the last bit");
+  ok(finite_record(&once), "without a number that is none");
+}
+
+/* A single helical pair under half the torque is one end of the herringbone pair. */
+static void test_single_end(void)
+{
+  struct eo_design design = design_of("paper-case-a"), single = design;
+  struct eo_geometry geometry;
+  struct eo_error error;
+  struct record both = record_of(run(&design, NULL, 0));
+  single.gear_pair.ends = 1;
+  memset(single.modification.flank[EO_PINION] + EO_RIGHT, 0, sizeof(struct eo_flank_modification));
+  for (int k = 0; k < single.load_cases; k++)
+    single.load_case[k].torque /= 2;
+  ok(eo_geometry_init(&geometry, &single.gear_pair, &error) == EO_OK, "a pair with one end");
+  eo_design_resolve(&single, &geometry);
+  struct eo_pair *kept_pair = pair;
+  struct eo_evaluator *kept = evaluator;
+  ok(!eo_pair_serves(pair, &single), "needs its own preparation");
+  pair = make_pair(&single);
+  evaluator = make_evaluator(pair);
+  const struct eo_evaluation *r = run(&single, NULL, 0);
+  ok(r->ends == 1 &&
+         memcmp(r->load_case[1].end[0].loaded.approach, both.value + both.count / 3, sizeof(double) * POSITIONS) == 0,
+     "its contact is that of one end of the herringbone pair under twice the torque");
+  ok(r->load_case[1].vibration.outcome != EO_VIBRATION_NOT_CONVERGED && r->objective[1].rms > 0, "and it vibrates");
+  eo_evaluator_free(evaluator);
+  eo_pair_free(pair);
+  evaluator = kept;
+  pair = kept_pair;
+}
+
+/* Left and right flanks and the shaft errors exchanged. */
+static void test_mirror(void)
+{
+  struct eo_design design = design_of("paper-case-b"), mirrored;
+  design.alignment.shaft_angle_in_plane = 1e-3;
+  mirrored = design;
+  mirrored.alignment.shaft_angle_in_plane = -1e-3;
+  mirrored.modification.flank[EO_PINION][EO_LEFT] = design.modification.flank[EO_PINION][EO_RIGHT];
+  mirrored.modification.flank[EO_PINION][EO_RIGHT] = design.modification.flank[EO_PINION][EO_LEFT];
+  const struct eo_evaluation *r = run(&design, NULL, 0);
+  double rms[2] = {r->load_case[1].vibration.rms[0][0], r->load_case[1].vibration.rms[0][1]},
+         force[2] = {r->load_case[1].end[0].impact.force, r->load_case[1].end[1].impact.force};
+  double peak = r->load_case[1].peak_to_peak;
+  r = run(&mirrored, NULL, 0);
+  near(r->load_case[1].peak_to_peak, peak, 1e-12, "mirrored: transmission error of the pair");
+  ok(r->load_case[1].end[0].impact.force == force[1] && r->load_case[1].end[1].impact.force == force[0],
+     "impacts exchanged");
+  near(r->load_case[1].vibration.rms[0][0], rms[1], 1e-6, "vibrations exchanged");
+  near(r->load_case[1].vibration.rms[0][1], rms[0], 1e-6, "on both ends");
+}
+
+/* ---- no memory ---- */
+
+static void test_no_memory(void)
+{
+  struct eo_design a = design_of("paper-case-a"), b = design_of("paper-case-b"), plain = design_of("paper");
+  a.alignment.shaft_angle_in_plane = 1.7e-3;
+  struct record first = record_of(run(&a, NULL, 0));
+  b.resolution.mesh_law = EO_LAW_TABLE;
+  b.resolution.harmonics = 12;
+  b.load_cases = 1;
+  b.alignment.pinion_axial = EO_AXIAL_SPRING;
+  b.alignment.stagger = 0.3;
+  run(&b, NULL, EO_WANT_ROOT | EO_WANT_BAND | EO_WANT_CURVES);
+  plain.resolution.mesh_law = EO_LAW_SECANT;
+  run(&plain, NULL, EO_WANT_CURVES);
+  struct record again = record_of(run(&a, NULL, 0));
+  ok(same(&first, &again), "an evaluator remembers nothing: the same bytes after other designs, laws and wishes");
+  struct record wanting = record_of(run(&a, NULL, EO_WANT_ROOT | EO_WANT_BAND | EO_WANT_CURVES));
+  ok(same(&first, &wanting), "asking for more changes nothing");
+  const struct eo_evaluation *r;
+  struct eo_error error;
+  bool equal = eo_evaluator_contact(evaluator, &a, &r, &error) == EO_OK;
+  for (int j = 0; j < POSITIONS; j++)
+    equal = equal && r->load_case[0].transmission[j] == first.value[2 * (4 * POSITIONS + 11) + j];
+  ok(equal, "contact alone is the static half of it");
+}
+
+struct worker {
+  struct eo_design design;
+  struct record record;
+};
+
+static void *work(void *argument)
+{
+  struct worker *w = argument;
+  struct eo_evaluator *own = make_evaluator(pair);
+  const struct eo_evaluation *r;
+  struct eo_error error;
+  for (int i = 0; i < 3; i++)
+    if (eo_evaluator_run(own, &w->design, NULL, 0, &r, &error))
+      stop(&error);
+  w->record = record_of(r);
+  eo_evaluator_free(own);
+  return NULL;
+}
+
+static void test_threads(void)
+{
+  static struct worker worker[2];
+  pthread_t thread[2];
+  for (int i = 0; i < 2; i++) {
+    worker[i].design = design_of(i ? "paper-case-b" : "paper-case-a");
+    worker[i].design.alignment.shaft_angle_in_plane = 1.7e-3;
+    pthread_create(&thread[i], NULL, work, &worker[i]);
+  }
+  for (int i = 0; i < 2; i++)
+    pthread_join(thread[i], NULL);
+  for (int i = 0; i < 2; i++) {
+    struct record alone = record_of(run(&worker[i].design, NULL, 0));
+    ok(same(&alone, &worker[i].record), "two evaluators on one pair at once: the same bytes as alone");
+  }
+}
+
+/* ---- scenarios ---- */
+
+static void test_scenarios(void)
+{
+  struct eo_design plain = design_of("paper");
+  double mean = run(&plain, NULL, 0)->load_case[0].mean, force = run(&plain, NULL, 0)->load_case[0].end[0].impact.speed;
+  const struct eo_evaluation *r = run(&plain, &(struct eo_scenario){NAN, NAN, 1.1, 1}, 0);
+  ok(r->load_case[0].mean > 1.09 * mean && r->load_case[0].mean <= 1.1 * mean * (1 + 1e-9),
+     "a tenth more compliance: %.4f of the deflection", r->load_case[0].mean / mean);
+  r = run(&plain, &(struct eo_scenario){NAN, NAN, 1, 1.2}, 0);
+  near(r->load_case[0].mean, mean, 1e-15, "the running speed leaves the statics alone");
+  near(r->load_case[0].end[0].impact.speed, 1.2 * force, 1e-12, "and scales the impact");
+  near(r->load_case[0].vibration.frequency, 1.2 * plain.load_case[0].speed * 17, 1e-12, "and the mesh frequency");
+  struct eo_design tilted = plain;
+  tilted.alignment.shaft_angle_in_plane = 1e-3;
+  tilted.alignment.shaft_angle_out_of_plane = 2e-4;
+  struct record direct = record_of(run(&tilted, NULL, 0)),
+                scenario = record_of(run(&plain, &(struct eo_scenario){1e-3, 2e-4, 1, 1}, 0));
+  ok(same(&direct, &scenario), "shaft errors of a scenario replace the nominal ones");
+  struct record nominal = record_of(run(&tilted, &(struct eo_scenario){NAN, NAN, 1, 1}, 0));
+  ok(same(&direct, &nominal), "or leave them");
+}
+
+static void test_robust(void)
+{
+  struct eo_design design = design_of("paper-case-a"), unmodified = design;
+  struct eo_objective_case raw[3 * MOST_CASES], before[3 * MOST_CASES];
+  struct eo_objective_value one[3], mean, worst;
+  struct eo_error error;
+  memset(&unmodified.modification, 0, sizeof unmodified.modification);
+  design.objective.scenarios = unmodified.objective.scenarios = 3;
+  design.objective.contact_pressure = unmodified.objective.contact_pressure = (struct eo_constraint){true, 900e6};
+  for (int s = 0; s < 3; s++)
+    design.objective.scenario[s] = unmodified.objective.scenario[s] = (struct eo_scenario){s * 0.8e-3, NAN, 1,
+                                                                                           1 + 0.05 * s};
+  design.objective.robust = unmodified.objective.robust = EO_ROBUST_MEAN;
+  ok(eo_evaluator_scenarios(&design) == 3, "three scenarios count");
+  ok(eo_evaluator_raw(evaluator, &design, raw, &error) == EO_OK &&
+         eo_evaluator_raw(evaluator, &unmodified, before, &error) == EO_OK,
+     "raw values");
+  eo_evaluator_combine(&design, &pair->geometry, raw, before, &mean);
+  design.objective.robust = EO_ROBUST_WORST;
+  eo_evaluator_combine(&design, &pair->geometry, raw, before, &worst);
+  int cases = design.load_cases;
+  for (int s = 0; s < 3; s++)
+    eo_objective_value(&design.objective, cases, design.load_case, raw + s * cases, before + s * cases, false, &one[s]);
+  near(mean.objective, (one[0].objective + one[1].objective + one[2].objective) / 3, 1e-14, "mean objective");
+  near(mean.fitness,
+       1 / mean.objective - design.objective.penalty * (one[0].violation + one[1].violation + one[2].violation) / 3,
+       1e-14, "fitness of the mean");
+  near(worst.fitness, fmin(one[0].fitness, fmin(one[1].fitness, one[2].fitness)), 0, "worst fitness");
+  ok(one[0].violation > 0 || one[2].violation > 0, "with a constraint that bites");
+  raw[1].failed = true;
+  eo_evaluator_combine(&design, &pair->geometry, raw, before, &worst);
+  design.objective.robust = EO_ROBUST_MEAN;
+  eo_evaluator_combine(&design, &pair->geometry, raw, before, &mean);
+  ok(worst.fitness == EO_FITNESS_WORST && mean.fitness == EO_FITNESS_WORST,
+     "one scenario that failed spoils mean and worst");
+}
+
+/* ---- laws, bands, curves ---- */
+
+static double rms_with(struct eo_design design, enum eo_mesh_law law, enum eo_solver solver)
+{
+  design.resolution.mesh_law = law;
+  design.resolution.solver = solver;
+  return run(&design, NULL, 0)->load_case[1].vibration.rms_pair[EO_READING_NORMAL];
+}
+
+/* The table is straight between its loads, so that it equals the tangent law to a per cent or two while teeth stay in
+   contact; the secant law agrees only without gaps, and then roughly. */
+static void test_laws(void)
+{
+  struct eo_design a = design_of("paper-case-a"), plain = design_of("paper");
+  double tangent = rms_with(a, EO_LAW_TANGENT, EO_SOLVER_HARMONIC_BALANCE),
+         table = rms_with(a, EO_LAW_TABLE, EO_SOLVER_HARMONIC_BALANCE);
+  near(table, tangent, 0.02, "table and tangent law in contact, m/s2");
+  near(rms_with(plain, EO_LAW_SECANT, EO_SOLVER_HARMONIC_BALANCE),
+       rms_with(plain, EO_LAW_TANGENT, EO_SOLVER_HARMONIC_BALANCE), 0.2, "secant and tangent law without gaps, m/s2");
+  near(rms_with(a, EO_LAW_TANGENT, EO_SOLVER_TIME_INTEGRATION), tangent, 1e-4,
+       "time integration and harmonic balance, m/s2");
+}
+
+static void test_band(void)
+{
+  struct eo_design design = design_of("paper-case-a");
+  design.alignment.shaft_angle_in_plane = 1e-3;
+  const struct eo_evaluation *r = run(&design, NULL, EO_WANT_BAND);
+  double band[2] = {r->load_case[1].band[EO_READING_NORMAL][0], r->load_case[1].band[EO_READING_NORMAL][1]};
+  for (int side = 0; side < 2; side++) {
+    struct eo_scenario scenario = {NAN, NAN, side ? 1.1 : 0.9, 1};
+    near(band[side], run(&design, &scenario, 0)->load_case[1].vibration.rms_pair[EO_READING_NORMAL], 2e-5,
+         "band of the RMS: the same as a scenario, m/s2");
+  }
+  ok(isnan(run(&design, NULL, 0)->load_case[1].band[EO_READING_NORMAL][0]), "no band unless asked for");
+}
+
+static void test_curves(void)
+{
+  struct eo_design design = design_of("paper-case-b");
+  const struct eo_evaluation *r = run(&design, NULL, EO_WANT_CURVES);
+  const struct eo_case_result *c = &r->load_case[1];
+  for (int end = 0; end < 2; end++) {
+    double square = 0, orders = 0;
+    for (int i = 0; i < r->samples; i++)
+      square += c->end[end].curve[EO_CHANNEL_NORMAL][i] * c->end[end].curve[EO_CHANNEL_NORMAL][i] / r->samples;
+    for (int h = 1; h <= r->harmonics; h++)
+      orders += creal(c->end[end].order[EO_CHANNEL_NORMAL][h] * conj(c->end[end].order[EO_CHANNEL_NORMAL][h])) / 2;
+    near(sqrt(square), c->vibration.rms[EO_READING_NORMAL][end], 1e-9, "RMS of the curve, m/s2");
+    near(sqrt(orders), c->vibration.rms[EO_READING_NORMAL][end], 1e-9, "RMS of the orders, m/s2");
+  }
+}
+
+static void test_root_stress(void)
+{
+  struct eo_design design = design_of("paper");
+  const struct eo_evaluation *r = run(&design, NULL, EO_WANT_ROOT);
+  ok(r->objective[1].root_stress > 30e6 && r->objective[1].root_stress < 80e6, "root stress %.1f MPa",
+     1e-6 * r->objective[1].root_stress);
+  ok(r->objective[2].root_stress > r->objective[1].root_stress &&
+         r->objective[1].root_stress > r->objective[0].root_stress,
+     "grows with the torque");
+  r = run(&design, NULL, 0);
+  ok(isnan(r->objective[1].root_stress) && r->load_case[1].end[0].root[0].phases == 0, "not computed unless asked for");
+  design.objective.root_stress.enabled = true;
+  ok(run(&design, NULL, 0)->objective[1].root_stress > 0, "or constrained");
+}
+
+/* ---- axially held pinions ---- */
+
+static void test_axial(void)
+{
+  struct eo_design design = design_of("paper-case-a");
+  design.alignment.pinion_axial = EO_AXIAL_FIXED;
+  design.alignment.shaft_angle_in_plane = 1e-4;
+  const struct eo_evaluation *r = run(&design, NULL, 0);
+  ok(fabs(r->load_case[1].end[0].loaded.load[0] / r->load_case[1].force - 1) > 0.01 && !r->objective[1].failed,
+     "a fixed pinion shares unevenly");
+  design.alignment.shaft_angle_in_plane = 1.7e-3;
+  r = run(&design, NULL, 0);
+  struct record record = record_of(r);
+  ok(fmin(r->load_case[1].end[0].loaded.load[0], r->load_case[1].end[1].loaded.load[0]) == 0,
+     "and bears on one end only under a large shaft error");
+  ok(r->objective[1].failed && r->load_case[1].vibration.outcome == EO_VIBRATION_NOT_CONVERGED,
+     "which has no vibration about its load");
+  ok(finite_record(&record), "and no number that is none");
+  design.alignment.shaft_angle_in_plane = 0;
+  design.alignment.stagger = 0.5;
+  r = run(&design, NULL, 0);
+  struct record stagger = record_of(r);
+  design.alignment.shaft_angle_in_plane = 1e-200;
+  struct record twice = record_of(run(&design, NULL, 0));
+  ok(r->load_case[1].end[0].loaded.load[3] != r->load_case[1].force && same(&stagger, &twice),
+     "equal ends half a pitch apart share unevenly too");
+}
+
+int main(void)
+{
+  struct eo_design design = design_of("paper");
+  pair = make_pair(&design);
+  evaluator = make_evaluator(pair);
+  ok(eo_pair_serves(pair, &design), "a coarse pair, prepared in %.1f s", pair->seconds);
+  test_equal_ends();
+  test_single_end();
+  test_mirror();
+  test_no_memory();
+  test_threads();
+  test_scenarios();
+  test_robust();
+  test_laws();
+  test_band();
+  test_curves();
+  test_root_stress();
+  test_axial();
+  eo_evaluator_free(evaluator);
+  eo_pair_free(pair);
+  return tap_done();
+}

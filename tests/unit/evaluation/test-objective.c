@@ -1,0 +1,180 @@
+/* Objectives, constraints and fitness against their formulae, paper equations (19)-(23). */
+#include "evaluation/objective.h"
+#include "support/tap.h"
+
+#include <stddef.h>
+
+static const struct eo_load_case load_case[3] = {{.torque = 621, .speed = 209, .share = 0.2},
+                                                 {.torque = 828, .speed = 209, .share = 0.5},
+                                                 {.torque = 1035, .speed = 209, .share = 0.3}};
+static const struct eo_objective_case before[3] = {{2.05e-6, 2900, 62, 900e6, 48e6, 0.1, 0, false},
+                                                   {1.78e-6, 3300, 66, 1000e6, 52e6, 0.1, 0, false},
+                                                   {1.53e-6, 3700, 68, 1100e6, 60e6, 0.1, 0, false}};
+static const struct eo_objective_case after[3] = {{0.77e-6, 700, 22.2, 800e6, 47e6, 0, 0, false},
+                                                  {0.71e-6, 800, 27.9, 950e6, 51e6, 0.02, 0.01, false},
+                                                  {0.57e-6, 900, 28.9, 1050e6, 59e6, 0.05, 0, false}};
+
+static struct eo_objective plain(void)
+{
+  return (struct eo_objective){.weight = {0.4, 0.3, 0.3}, .normalise = EO_NORMALISE_UNMODIFIED, .penalty = 10};
+}
+
+static struct eo_objective_value value_of(const struct eo_objective *objective, const struct eo_objective_case *value,
+                                          bool outside)
+{
+  struct eo_objective_value result;
+  eo_objective_value(objective, 3, load_case, value, before, outside, &result);
+  return result;
+}
+
+static void test_sums(void)
+{
+  struct eo_objective_sums sums;
+  eo_objective_sum(3, load_case, after, &sums);
+  near(sums.f[0], (0.2 * 0.77e-6 + 0.5 * 0.71e-6 + 0.3 * 0.57e-6) / 3, 1e-14,
+       "f1: peak-to-peak weighted by the shares, over three, m");
+  near(sums.f[1], (0.2 * 700 + 0.5 * 800 + 0.3 * 900) / 3, 1e-14, "f2: impacts, N");
+  near(sums.f[2], (0.2 * 22.2 + 0.5 * 27.9 + 0.3 * 28.9) / 3, 1e-14, "f3: accelerations, m/s2");
+  ok(!sums.failed, "nothing failed");
+  eo_objective_sum(1, load_case, after, &sums);
+  near(sums.f[2], 0.2 * 22.2, 1e-14, "one load case divides by one");
+  struct eo_objective_case backward = after[0];
+  backward.impact = -700;
+  eo_objective_sum(1, load_case, &backward, &sums);
+  near(sums.f[1], 0.2 * 700, 1e-14, "the size of an impact counts, not its sign");
+}
+
+static void test_objective(void)
+{
+  struct eo_objective objective = plain();
+  struct eo_objective_value v = value_of(&objective, after, false), same = value_of(&objective, before, false);
+  double f1 = (0.2 * 0.77 + 0.5 * 0.71 + 0.3 * 0.57) / (0.2 * 2.05 + 0.5 * 1.78 + 0.3 * 1.53);
+  double f2 = (0.2 * 700 + 0.5 * 800 + 0.3 * 900) / (0.2 * 2900 + 0.5 * 3300 + 0.3 * 3700);
+  double f3 = (0.2 * 22.2 + 0.5 * 27.9 + 0.3 * 28.9) / (0.2 * 62 + 0.5 * 66 + 0.3 * 68);
+  near(v.objective, 0.4 * f1 + 0.3 * f2 + 0.3 * f3, 1e-13, "J against the unmodified pair");
+  near(v.fitness, 1 / v.objective, 1e-14, "fitness without violations");
+  near(same.objective, 1, 1e-14, "the unmodified pair itself has J = 1");
+  objective.weight[0] = objective.weight[1] = 0;
+  objective.weight[2] = 2;
+  near(value_of(&objective, after, false).objective, 2 * f3, 1e-13, "one objective alone");
+  objective = plain();
+  objective.normalise = EO_NORMALISE_NONE;
+  v = value_of(&objective, after, false);
+  near(v.objective, 0.4 * v.sums.f[0] + 0.3 * v.sums.f[1] + 0.3 * v.sums.f[2], 1e-14, "not normalised, as printed");
+}
+
+static void test_constraints(void)
+{
+  static const struct {
+    const char *what;
+    size_t offset;
+    double limit, excess; /* the sum over the load cases of value / limit - 1 */
+  } row[] = {
+      {"contact pressure", offsetof(struct eo_objective, contact_pressure), 900e6, 950.0 / 900 - 1 + 1050.0 / 900 - 1},
+      {"root stress", offsetof(struct eo_objective, root_stress), 50e6, 51.0 / 50 - 1 + 59.0 / 50 - 1},
+      {"peak to peak", offsetof(struct eo_objective, peak_to_peak), 0.75e-6, 0.77 / 0.75 - 1},
+      {"edge load", offsetof(struct eo_objective, edge_load_share), 0.04, 0.05 / 0.04 - 1},
+      {"contact loss, limit 0", offsetof(struct eo_objective, contact_loss), 0, 0.01},
+  };
+  for (size_t i = 0; i < sizeof row / sizeof *row; i++) {
+    struct eo_objective objective = plain();
+    struct eo_constraint *constraint = (struct eo_constraint *)(void *)((char *)&objective + row[i].offset);
+    double free_fitness = value_of(&objective, after, false).fitness;
+    constraint->limit = row[i].limit;
+    ok(value_of(&objective, after, false).violation == 0, "%s: off by default", row[i].what);
+    constraint->enabled = true;
+    struct eo_objective_value v = value_of(&objective, after, false);
+    near(v.violation, row[i].excess, 1e-12, row[i].what);
+    near(v.fitness, free_fitness - 10 * row[i].excess, 1e-12, "lowers the fitness");
+    constraint->limit = 1e12;
+    ok(value_of(&objective, after, false).violation == 0, "%s: a generous limit is kept", row[i].what);
+  }
+}
+
+static void test_no_worse(void)
+{
+  struct eo_objective objective = plain();
+  struct eo_objective_case worse[3] = {after[0], after[1], after[2]};
+  objective.no_worse_than_unmodified = true;
+  ok(value_of(&objective, after, false).violation == 0, "better everywhere: no violation");
+  worse[2].rms = 1.25 * before[2].rms;
+  worse[0].peak_to_peak = 1.5 * before[0].peak_to_peak;
+  near(value_of(&objective, worse, false).violation, 0.75, 1e-12, "worse at single load cases");
+  objective.no_worse_than_unmodified = false;
+  ok(value_of(&objective, worse, false).violation == 0, "off by default");
+}
+
+static void test_relief(void)
+{
+  struct eo_objective objective = plain();
+  struct eo_modification m = {0};
+  double bottom = -5.7e-3, top = 5.1e-3;
+  ok(!eo_objective_relief_outside(&m, bottom, top), "no relief lies outside");
+  m.flank[EO_PINION][EO_LEFT] = (struct eo_flank_modification){
+      .tip_relief = 1e-6, .tip_relief_start = 5.0e-3, .root_relief = 1e-6, .root_relief_start = 5.6e-3};
+  m.flank[EO_GEAR][EO_RIGHT] = (struct eo_flank_modification){
+      .tip_relief = 1e-6, .tip_relief_start = 5.6e-3, .root_relief = 1e-6, .root_relief_start = 5.0e-3};
+  ok(!eo_objective_relief_outside(&m, bottom, top),
+     "relief that starts inside: the gear's tip meets the pinion's root");
+  m.flank[EO_GEAR][EO_RIGHT].root_relief_start = 5.2e-3;
+  ok(eo_objective_relief_outside(&m, bottom, top), "root relief of the gear beyond the pinion's tip");
+  m.flank[EO_GEAR][EO_RIGHT].root_relief = 0;
+  ok(!eo_objective_relief_outside(&m, bottom, top), "a start without relief says nothing");
+  m.flank[EO_PINION][EO_LEFT].tip_relief_start = 5.1e-3;
+  ok(eo_objective_relief_outside(&m, bottom, top), "a relief that starts at the very end");
+  ok(value_of(&objective, after, true).violation == 0, "is allowed unless forbidden");
+  objective.relief_inside_active_flank = true;
+  ok(value_of(&objective, after, true).violation == 1 && value_of(&objective, after, false).violation == 0,
+     "then it counts as one violation");
+}
+
+static void test_failures(void)
+{
+  struct eo_objective objective = plain();
+  struct eo_objective_case bad[3] = {after[0], after[1], after[2]};
+  bad[1].failed = true;
+  struct eo_objective_value v = value_of(&objective, bad, false);
+  ok(v.sums.failed && isnan(v.objective) && v.fitness == EO_FITNESS_WORST,
+     "one load case that failed spoils the design");
+  bad[1] = after[1];
+  bad[1].rms = NAN;
+  v = value_of(&objective, bad, false);
+  ok(v.sums.failed && v.fitness == EO_FITNESS_WORST, "so does a number that is none");
+  bad[1] = after[1];
+  bad[1].root_stress = NAN;
+  objective.root_stress = (struct eo_constraint){true, 1e9};
+  v = value_of(&objective, bad, false);
+  ok(!v.sums.failed && v.violation == 0, "a root stress that was not computed violates nothing");
+}
+
+/* Where the unmodified pair is already perfect there is nothing to divide by. */
+static void test_zero_baseline(void)
+{
+  struct eo_objective objective = plain();
+  struct eo_objective_case perfect[3] = {before[0], before[1], before[2]}, quiet[3] = {after[0], after[1], after[2]};
+  struct eo_objective_value v;
+  for (int k = 0; k < 3; k++)
+    perfect[k].impact = quiet[k].impact = 0;
+  eo_objective_value(&objective, 3, load_case, quiet, perfect, false, &v);
+  ok(isfinite(v.objective) && v.objective < 0.7, "an objective at zero before and after drops out: J = %.3f",
+     v.objective);
+  double without = v.objective;
+  eo_objective_value(&objective, 3, load_case, after, perfect, false, &v);
+  near(v.objective, without + 0.3, 1e-12, "one that was zero and is not counts fully");
+  for (int k = 0; k < 3; k++)
+    quiet[k] = (struct eo_objective_case){0};
+  eo_objective_value(&objective, 3, load_case, quiet, before, false, &v);
+  ok(v.fitness == EO_FITNESS_WORST, "all objectives at zero cannot be: no infinite fitness");
+}
+
+int main(void)
+{
+  test_sums();
+  test_objective();
+  test_constraints();
+  test_no_worse();
+  test_relief();
+  test_failures();
+  test_zero_baseline();
+  return tap_done();
+}

@@ -1,0 +1,308 @@
+/* The descriptions of the design for programs against the design itself: every example obeys its schema as it is
+   written and as it is read, what the tables refuse the schema refuses too, and the form's fields are the keys of the
+   document with its defaults. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "document/design_document.h"
+#include "document/examples.h"
+#include "format/json.h"
+#include "document/measurement_document.h"
+#include "document/result_private.h"
+#include "format/schema.h"
+#include "document/study_result.h"
+#include "document/sweep_document.h"
+#include "support/tap.h"
+
+/* ---- as much of JSON Schema 2020-12 as the descriptions use ---- */
+
+static bool has_type(const json_t *value, const char *type)
+{
+  return (strcmp(type, "object") == 0 && json_is_object(value)) ||
+         (strcmp(type, "array") == 0 && json_is_array(value)) ||
+         (strcmp(type, "string") == 0 && json_is_string(value)) ||
+         (strcmp(type, "boolean") == 0 && json_is_boolean(value)) ||
+         (strcmp(type, "null") == 0 && json_is_null(value)) || (strcmp(type, "number") == 0 && json_is_number(value)) ||
+         (strcmp(type, "integer") == 0 && json_is_number(value) &&
+          floor(json_number_value(value)) == json_number_value(value));
+}
+
+static bool type_fits(const json_t *schema, const json_t *value)
+{
+  const json_t *type = json_object_get(schema, "type");
+  bool fits = json_is_string(type) && has_type(value, json_string_value(type));
+  for (size_t i = 0; i < json_array_size(type); i++)
+    fits = fits || has_type(value, json_string_value(json_array_get(type, i)));
+  return fits;
+}
+
+static bool within(const json_t *schema, const char *low, const char *high, double value)
+{
+  return !(value < eo_json_find_number(schema, low)) && !(value > eo_json_find_number(schema, high));
+}
+
+static int count_wrong(const json_t *schema, const json_t *value, const char *where);
+
+static int wrong_in_object(const json_t *schema, const json_t *object)
+{
+  const json_t *properties = json_object_get(schema, "properties"), *required = json_object_get(schema, "required");
+  const char *key;
+  json_t *value;
+  int wrong = 0;
+  for (size_t i = 0; i < json_array_size(required); i++)
+    wrong += !json_object_get(object, json_string_value(json_array_get(required, i)));
+  json_object_foreach((json_t *)object, key, value)
+      wrong += json_object_get(properties, key) ? count_wrong(json_object_get(properties, key), value, key) : 1;
+  return wrong;
+}
+
+static int count_wrong(const json_t *schema, const json_t *value, const char *where)
+{
+  int wrong = !type_fits(schema, value);
+  const json_t *choices = json_object_get(schema, "enum");
+  bool chosen = !choices;
+  for (size_t i = 0; i < json_array_size(choices); i++)
+    chosen = chosen || json_equal(json_array_get(choices, i), value);
+  wrong += !chosen;
+  if (json_is_number(value))
+    wrong += !within(schema, "minimum", "maximum", json_number_value(value));
+  if (json_is_string(value))
+    wrong += !within(schema, "minLength", "maxLength", (double)json_string_length(value));
+  if (json_is_array(value)) {
+    wrong += !within(schema, "minItems", "maxItems", (double)json_array_size(value));
+    for (size_t i = 0; i < json_array_size(value); i++)
+      wrong += count_wrong(json_object_get(schema, "items"), json_array_get(value, i), where);
+  }
+  if (json_is_object(value))
+    wrong += wrong_in_object(schema, value);
+  if (wrong)
+    printf("# %s\n", where);
+  return wrong;
+}
+
+/* ---- designs ---- */
+
+static void check_examples(const json_t *input, const json_t *output)
+{
+  struct eo_design design;
+  struct eo_geometry geometry;
+  for (int i = 0; eo_example_at(i); i++) {
+    eo_example_build(eo_example_at(i)->name, &design);
+    json_t *open = eo_design_encode(&design);
+    ok(count_wrong(input, open, "input") == 0, "%s obeys the schema of what is read", eo_example_at(i)->name);
+    ok(eo_design_complete(&design, &geometry, NULL) == EO_OK, "it is complete");
+    json_t *resolved = eo_design_encode(&design);
+    ok(count_wrong(output, resolved, "output") == 0, "with every default it obeys that of what is written");
+    json_decref(open);
+    json_decref(resolved);
+  }
+}
+
+static void check_refusals(const json_t *input)
+{
+  static const char *const wrong[] = {
+      "{}",
+      "{\"gear_pair\":{}}",
+      "{\"gear_pair\":{\"pinion_teeth\":17,\"gear_teeth\":44,\"normal_module_mm\":6,\"helix_angle_deg\":24}}",
+      "{\"gear_pair\":{\"pinion_teeth\":17.5,\"gear_teeth\":44,\"normal_module_mm\":6,\"helix_angle_deg\":24,\"face_"
+      "width_mm\":55}}",
+      "{\"gear_pair\":{\"pinion_teeth\":3,\"gear_teeth\":44,\"normal_module_mm\":6,\"helix_angle_deg\":24,\"face_width_"
+      "mm\":55}}",
+      "{\"gear_pair\":{\"pinion_teeth\":17,\"gear_teeth\":44,\"normal_module_mm\":\"6\",\"helix_angle_deg\":24,\"face_"
+      "width_mm\":55}}",
+      "{\"gear_pair\":{\"pinion_teeth\":17,\"gear_teeth\":44,\"normal_module_mm\":6,\"helix_angle_deg\":24,\"face_"
+      "width_mm\":55},\"extra\":1}",
+      "{\"gear_pair\":{\"pinion_teeth\":17,\"gear_teeth\":44,\"normal_module_mm\":6,\"helix_angle_deg\":24,\"face_"
+      "width_mm\":55},\"load_cases\":{}}",
+      "{\"gear_pair\":{\"pinion_teeth\":17,\"gear_teeth\":44,\"normal_module_mm\":6,\"helix_angle_deg\":24,\"face_"
+      "width_mm\":55},"
+      "\"alignment\":{\"pinion_axial\":\"glued\"}}",
+      "{\"gear_pair\":{\"pinion_teeth\":17,\"gear_teeth\":44,\"normal_module_mm\":6,\"helix_angle_deg\":24,\"face_"
+      "width_mm\":55},"
+      "\"objective\":{\"weights\":[1,2]}}"};
+  for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
+    struct eo_design design;
+    struct eo_faults faults = {0};
+    json_t *document = json_loads(wrong[i], 0, NULL);
+    ok(document && !eo_design_decode(document, &design, NULL, &faults) &&
+           count_wrong(input, document, "as it should be") > 0,
+       "both refuse design %zu: %s", i + 1, faults.fault[0].text);
+    json_decref(document);
+  }
+}
+
+/* ---- the form ---- */
+
+static int count_strange(const json_t *fields, const struct eo_table *table, const json_t *defaults)
+{
+  int strange = json_array_size(fields) != (size_t)table->count;
+  for (int i = 0; i < table->count && !strange; i++) {
+    const json_t *field = json_array_get(fields, (size_t)i), *value = json_object_get(field, "default"),
+                 *below = json_object_get(field, "fields");
+    const struct eo_field *row = &table->field[i];
+    bool required = row->flags & EO_FIELD_REQUIRED;
+    strange += strcmp(json_string_value(json_object_get(field, "key")), row->key) != 0 ||
+               !json_is_string(json_object_get(field, "kind")) ||
+               json_is_true(json_object_get(field, "required")) != required || (required && value) ||
+               !json_is_string(json_object_get(field, "help"));
+    strange += value && defaults && !json_equal(value, json_object_get(defaults, row->key));
+    strange += (row->kind == EO_FIELD_NUMBER && json_number_value(json_object_get(field, "low")) != row->low);
+    strange += (row->table != NULL) != (below != NULL);
+    if (below)
+      strange += count_strange(below, row->table,
+                               row->kind == EO_FIELD_OBJECT ? json_object_get(defaults, row->key) : NULL);
+    if (strange)
+      printf("# %s\n", row->key);
+  }
+  return strange;
+}
+
+static void check_form(void)
+{
+  struct eo_design design;
+  memset(&design, 0, sizeof design);
+  eo_table_defaults(&eo_design_table, &design);
+  json_t *form = eo_table_fields(&eo_design_table), *defaults = eo_table_encode(&eo_design_table, &design);
+  ok(form && count_strange(json_object_get(form, "fields"), &eo_design_table, defaults) == 0,
+     "the form has every key with its default");
+  json_decref(form);
+  json_decref(defaults);
+}
+
+/* ---- outlines ---- */
+
+static const struct eo_unit *const units[] = {
+    &eo_unit_mm_per_s, &eo_unit_m_per_s2, &eo_unit_N_per_um, &eo_unit_N_per_mm, &eo_unit_per_um,
+    &eo_unit_mm,       &eo_unit_um,       &eo_unit_deg,      &eo_unit_rpm,      &eo_unit_Nm,
+    &eo_unit_N,        &eo_unit_MPa,      &eo_unit_ms,       &eo_unit_Hz};
+
+/* The unit that a key ends with; the longer ones come first. */
+static const struct eo_unit *unit_of(const char *key)
+{
+  for (size_t i = 0; i < sizeof units / sizeof units[0]; i++) {
+    size_t whole = strlen(key), length = strlen(units[i]->suffix);
+    if (whole > length && key[whole - length - 1] == '_' && strcmp(key + whole - length, units[i]->suffix) == 0)
+      return units[i];
+  }
+  return NULL;
+}
+
+/* above: the unit that the key of the object names. */
+static int count_odd_units(const struct eo_outline *outline, const struct eo_unit *above)
+{
+  const struct eo_outline_row *row;
+  int odd = 0;
+  for (int i = 0; (row = eo_outline_at(outline, i)); i++) {
+    const struct eo_unit *named = unit_of(row->key) ? unit_of(row->key) : above;
+    if (row->outline)
+      odd += count_odd_units(row->outline, unit_of(row->key));
+    else if (!row->table && row->unit != named && strchr("[n", *row->shape)) {
+      printf("# %s/%s\n", outline->name, row->key);
+      odd++;
+    }
+  }
+  return odd;
+}
+
+static void check_units(void)
+{
+  static const struct eo_outline *const outlines[] = {&eo_result_outline, &eo_study_outline, &eo_sweep_outline,
+                                                      &eo_measurement_outline, &eo_measurement_brief};
+  int odd = 0;
+  for (size_t i = 0; i < sizeof outlines / sizeof outlines[0]; i++)
+    odd += count_odd_units(outlines[i], NULL);
+  ok(odd == 0, "every number has the unit that its key, or the one above, names");
+}
+
+static const struct eo_outline_row inner_rows[] = {EO_KEY("b", "number?", "included", .unit = &eo_unit_mm),
+                                                   EO_KEY("c", "flag", "not always", .when = "now and then")};
+static const struct eo_outline inner = EO_OUTLINE("Inner", inner_rows);
+static const struct eo_outline_row outer_rows[] = {
+    EO_KEY("a", "[text?]|integer", "first"), {.outline = &inner}, EO_KEY("d", "object?", "last", .outline = &inner)};
+static const struct eo_outline outer = EO_OUTLINE("Outer", outer_rows);
+
+/* Writes these keys in their order; NULL: the outline does not allow it. */
+static json_t *write_keys(const char *keys)
+{
+  struct eo_object o = eo_object_open_as(&outer);
+  for (; *keys; keys++) {
+    if (*keys == 'b')
+      eo_object_put_number(&o, "b", 2e-3);
+    else
+      eo_object_put(&o, (const char[]){*keys, 0}, json_integer(1));
+  }
+  return eo_object_close(&o);
+}
+
+static void check_writing(void)
+{
+  static const char *const good[] = {"abcd", "abd"}, *const bad[] = {"", "ab", "bacd", "abdc", "abcde", "acd", "abbcd"};
+  for (size_t i = 0; i < sizeof good / sizeof good[0]; i++) {
+    json_t *object = write_keys(good[i]);
+    ok(object && json_number_value(json_object_get(object, "b")) == 2, "\"%s\" is an object of the outline", good[i]);
+    json_decref(object);
+  }
+  for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+    json_t *object = write_keys(bad[i]);
+    ok(!object, "\"%s\" is none", bad[i]);
+    json_decref(object);
+  }
+}
+
+static void check_outline_schema(void)
+{
+  json_t *
+      schemas = json_object(),
+     *expected = json_loads(
+         "{\"Outer\":{\"type\":\"object\",\"properties\":{"
+         "\"a\":{\"anyOf\":[{\"type\":\"array\",\"items\":{\"anyOf\":[{\"type\":\"string\"},{\"type\":\"null\"}]}},{"
+         "\"type\":\"integer\"}],\"description\":\"first\"},"
+         "\"b\":{\"anyOf\":[{\"type\":\"number\"},{\"type\":\"null\"}],\"description\":\"included\",\"x-unit\":\"mm\"},"
+         "\"c\":{\"type\":\"boolean\",\"description\":\"not always; now and then\"},"
+         "\"d\":{\"anyOf\":[{\"$ref\":\"#/components/schemas/"
+         "Inner\"},{\"type\":\"null\"}],\"description\":\"last\"}},\"required\":[\"a\",\"b\",\"d\"]},"
+         "\"Inner\":{\"type\":\"object\",\"properties\":{\"b\":{\"anyOf\":[{\"type\":\"number\"},{\"type\":\"null\"}],"
+         "\"description\":\"included\",\"x-unit\":\"mm\"},"
+         "\"c\":{\"type\":\"boolean\",\"description\":\"not always; now and then\"}},\"required\":[\"b\"]}}",
+         0, NULL);
+  ok(eo_outline_add_schemas(&outer, schemas) && expected && json_equal(schemas, expected), "an outline as JSON Schema");
+  json_decref(schemas);
+  json_decref(expected);
+  static const struct eo_outline_row wrong_rows[] = {EO_KEY("a", "[text", "no end")};
+  static const struct eo_outline wrong = EO_OUTLINE("Wrong", wrong_rows);
+  schemas = json_object();
+  ok(!eo_outline_add_schemas(&wrong, schemas), "a shape that is none");
+  json_decref(schemas);
+}
+
+static void check_taking(void)
+{
+  json_t *whole = json_loads("{\"x\":1,\"a\":2,\"b\":3,\"d\":{\"b\":4,\"y\":5}}", 0, NULL),
+         *wanted = json_loads("{\"a\":2,\"b\":3,\"d\":{\"b\":4}}", 0, NULL);
+  json_t *part = eo_outline_take(&outer, whole);
+  ok(json_equal(part, wanted), "what an outline names of a longer document");
+  json_decref(part);
+  json_decref(wanted);
+  json_decref(whole);
+}
+
+int main(void)
+{
+  check_units();
+  check_writing();
+  check_outline_schema();
+  check_taking();
+  json_t *input = eo_table_json_schema(&eo_design_table, true), *output = eo_table_json_schema(&eo_design_table, false);
+  check_examples(input, output);
+  check_refusals(input);
+  check_form();
+  json_t *sweep = eo_table_json_schema(&eo_sweep_request_table, true),
+         *request = json_loads("{\"torque_Nm\":{\"from\":1,\"to\":2,\"points\":3}}", 0, NULL);
+  ok(sweep && count_wrong(sweep, request, "sweep") == 0, "a sweep's request has a schema too");
+  json_decref(sweep);
+  json_decref(request);
+  json_decref(input);
+  json_decref(output);
+  return tap_done();
+}

@@ -1,0 +1,173 @@
+/* The parts of the signal chain, each against a closed form. */
+#include "measurement/beside.h"
+#include "measurement/ellipse.h"
+#include "measurement/orientation.h"
+#include "measurement/trend.h"
+
+#include <stdlib.h>
+
+#include "base/random.h"
+#include "numerics/fft.h"
+#include "support/tap.h"
+
+static struct eo_error error;
+
+static void test_fft(void)
+{
+  enum { N = 64 };
+  double complex x[N], fast[N];
+  double worst = 0;
+  for (int i = 0; i < N; i++)
+    fast[i] = x[i] = eo_random_normal(eo_random_at(1, 0, 0, 0), (uint64_t)i) +
+                     I * eo_random_normal(eo_random_at(1, 0, 0, 1), (uint64_t)i);
+  eo_fft_forward(N, fast);
+  for (int k = 0; k < N; k++) {
+    double complex sum = 0;
+    for (int i = 0; i < N; i++)
+      sum += x[i] * cexp(-2 * M_PI * I * i * k / N);
+    worst = fmax(worst, cabs(sum - fast[k]));
+  }
+  ok(worst < 1e-12, "the fast transform is the slow one: %.2g", worst);
+}
+
+static void test_ellipse(void)
+{
+  const struct eo_ellipse truth = {.offset = {0.07, -0.11}, .amplitude = {0.55, 0.43}, .skew = -0.21};
+  struct eo_ellipse found = {0};
+  struct eo_ellipse_sums sums;
+  double worst = 0;
+  eo_ellipse_start(&sums, (double[]){0, 0}, 1);
+  for (int i = 0; i < 200; i++) {
+    double a = 2 * M_PI * i / 200;
+    eo_ellipse_add(&sums, truth.offset[0] + truth.amplitude[0] * sin(a),
+                   truth.offset[1] + truth.amplitude[1] * cos(a - truth.skew));
+  }
+  ok(eo_ellipse_fit(&sums, &found), "an ellipse is fitted");
+  close_to(found.offset[0], truth.offset[0], 1e-12, "offset of the sine");
+  close_to(found.offset[1], truth.offset[1], 1e-12, "offset of the cosine");
+  close_to(found.amplitude[0], truth.amplitude[0], 1e-12, "amplitude of the sine");
+  close_to(found.amplitude[1], truth.amplitude[1], 1e-12, "amplitude of the cosine");
+  close_to(found.skew, truth.skew, 1e-12, "phase beyond 90 degrees");
+  for (int i = -99; i < 100; i++) {
+    double a = M_PI * i / 100;
+    worst = fmax(worst, fabs(eo_ellipse_angle(&found, truth.offset[0] + truth.amplitude[0] * sin(a),
+                                              truth.offset[1] + truth.amplitude[1] * cos(a - truth.skew)) -
+                             a));
+  }
+  ok(worst < 1e-11, "angles on it: %.2g rad", worst);
+  eo_ellipse_start(&sums, (double[]){0, 0}, 1);
+  for (int i = 0; i < 200; i++)
+    eo_ellipse_add(&sums, 0.01 * i, 0.02 * i);
+  ok(!eo_ellipse_fit(&sums, &found), "a line is none");
+  eo_ellipse_start(&sums, (double[]){0, 0}, 1);
+  for (int i = 0; i < 200; i++)
+    eo_ellipse_add(&sums, 0.3, 0.2);
+  ok(!eo_ellipse_fit(&sums, &found), "a point is none");
+}
+
+/* A spline reproduces cubics, follows slow swings and does not see a shaft order. */
+static void test_trend(void)
+{
+  struct eo_trend trend;
+  double cubic = 0, order = 0, inside = 0, speed;
+  for (int swinging = 0; swinging < 2; swinging++) {
+    double worst = 0;
+    eo_trend_start(&trend, 0, 2, 12, 5, 200, &error);
+    for (int i = 0; i <= 20000; i++) {
+      double t = 1e-4 * i, angle = 5 + 200 * t + 3 * t * t - t * t * t;
+      eo_trend_add(&trend, t, angle + (swinging ? 1e-3 * sin(angle) : 0));
+    }
+    eo_trend_finish(&trend, &error);
+    for (int i = 0; i <= 100; i++) {
+      double t = 0.02 * i;
+      double off = fabs(eo_trend_at(&trend, t, &speed) - (5 + 200 * t + 3 * t * t - t * t * t));
+      worst = fmax(worst, off);
+      if (swinging && i > 20 && i < 80)
+        inside = fmax(inside, off);
+    }
+    *(swinging ? &order : &cubic) = worst;
+    if (!swinging)
+      close_to(speed, 200 + 12 - 12, 1e-4, "speed at the end");
+    eo_trend_done(&trend);
+  }
+  ok(cubic < 1e-6, "a cubic comes back: %.2g rad", cubic);
+  ok(inside < 1e-5 && order < 4e-4, "a shaft order of 1e-3 rad is left out but for %.2g rad, %.2g at the ends", inside,
+     order);
+}
+
+static void test_nearest(void)
+{
+  const int teeth[2] = {17, 44};
+  int found[2];
+  ok(eo_orientation_nearest(17.0 / 43, 1e-5, teeth, found) && found[0] == 17 && found[1] == 43,
+     "one tooth of the gear too few");
+  ok(eo_orientation_nearest(19.0 / 44, 1e-5, teeth, found) && found[0] == 19 && found[1] == 44,
+     "two teeth of the pinion too many");
+  ok(eo_orientation_nearest(23.0 / 59, 1e-6, teeth, found) && found[0] == 23 && found[1] == 59,
+     "other teeth altogether");
+  ok(!eo_orientation_nearest(M_PI / 8, 1e-9, teeth, found), "no ratio of teeth");
+}
+
+/* Noise of known size: its standard deviation per amplitude is s sqrt(2 / n). */
+static void test_noise(void)
+{
+  enum { ROWS = 8000 };
+  const int teeth[2] = {17, 44};
+  struct eo_beside *beside = malloc(sizeof *beside);
+  double sum = 0;
+  for (int trial = 0; trial < 10 && beside; trial++) {
+    eo_beside_init(beside, teeth, 8, 20);
+    for (int i = 0; i < ROWS; i++)
+      eo_beside_add(beside, 40 * M_PI * i / ROWS,
+                    1e-7 * eo_random_normal(eo_random_at(3, 0, 0, (uint64_t)trial), (uint64_t)i));
+    for (int h = 0; h < 8; h++)
+      sum += eo_beside_sigma(beside, h, 1e-7) / (1e-7 * sqrt(2.0 / ROWS)) / 80;
+  }
+  ok(sum > 1 && sum < 1.3, "white noise: %.3f of its standard deviation on average, the largest of three estimates",
+     sum);
+  eo_beside_init(beside, teeth, 8, 20);
+  for (int i = 0; i < ROWS; i++) {
+    double theta = 40 * M_PI * i / ROWS;
+    eo_beside_add(beside, theta, 1e-6 * cos(18 * theta - 0.4));
+  }
+  double complex sideband = eo_beside_sideband(beside, 0, EO_PINION, 1);
+  ok(cabs(sideband - 1e-6 * cexp(-0.4 * I)) < 1e-12 && cabs(eo_beside_sideband(beside, 0, EO_PINION, -1)) < 1e-12,
+     "a sideband one turn above the first mesh order");
+  free(beside);
+}
+
+/* The RMS of noise alone, its expected part taken off. */
+static void test_rms(void)
+{
+  int inside = 0, small_inside = 0;
+  for (int trial = 0; trial < 1000; trial++) {
+    struct eo_order_line line[8], weak[8];
+    struct eo_random random = eo_random_at(5, 0, 0, (uint64_t)trial);
+    double truth = 0, weak_truth = 0, sigma;
+    for (int h = 0; h < 8; h++) {
+      double complex noise =
+          1e-8 * (eo_random_normal(random, (uint64_t)(2 * h)) + I * eo_random_normal(random, (uint64_t)(2 * h + 1)));
+      line[h] = (struct eo_order_line){.order = 17 * (h + 1), .amplitude = 1e-7 / (h + 1) + noise, .sigma = 1e-8};
+      weak[h] = (struct eo_order_line){.order = 17 * (h + 1), .amplitude = 1e-9 / (h + 1) + noise, .sigma = 1e-8};
+      truth += pow(1e-7 / (h + 1) * pow(line[h].order * 200, 2), 2) / 2;
+      weak_truth += pow(1e-9 / (h + 1) * pow(line[h].order * 200, 2), 2) / 2;
+    }
+    double rms = eo_transmission_rms(line, 8, 200, &sigma);
+    inside += fabs(rms - sqrt(truth)) <= 2 * sigma;
+    rms = eo_transmission_rms(weak, 8, 200, &sigma);
+    small_inside += fabs(rms - sqrt(weak_truth)) <= 2 * sigma;
+  }
+  ok(inside >= 940, "RMS above the noise: the truth within two standard deviations in %.1f %%", inside / 10.0);
+  ok(small_inside >= 940, "RMS below the noise: in %.1f %%", small_inside / 10.0);
+}
+
+int main(void)
+{
+  test_fft();
+  test_ellipse();
+  test_trend();
+  test_nearest();
+  test_noise();
+  test_rms();
+  return tap_done();
+}

@@ -1,0 +1,91 @@
+/* Periodic spline and harmonics against functions in closed form. */
+#include "numerics/periodic.h"
+#include "support/tap.h"
+
+static double smooth(double phase, double *slope)
+{
+  double a = 2 * M_PI * phase, value = exp(sin(a)) + 0.3 * cos(3 * a + 0.7);
+  *slope = 2 * M_PI * (cos(a) * exp(sin(a)) - 0.9 * sin(3 * a + 0.7));
+  return value;
+}
+
+/* Largest error of value and slope between n nodes. */
+static void spline_error(int n, double error[2])
+{
+  static struct eo_periodic spline;
+  static double node[EO_PERIODIC_MOST];
+  double slope, rate;
+  for (int i = 0; i < n; i++)
+    node[i] = smooth((double)i / n, &slope);
+  eo_periodic_init(&spline, n, node);
+  error[0] = error[1] = 0;
+  for (int i = 0; i < 2000; i++) {
+    double phase = (i + 0.3) / 2000, wanted = smooth(phase, &slope);
+    error[0] = fmax(error[0], fabs(eo_periodic_at(&spline, phase, &rate) - wanted));
+    error[1] = fmax(error[1], fabs(rate - slope));
+  }
+}
+
+static void test_order(void)
+{
+  double coarse[2], fine[2];
+  spline_error(64, coarse);
+  spline_error(128, fine);
+  close_to(log2(coarse[0] / fine[0]), 4, 0.15, "order of the value");
+  close_to(log2(coarse[1] / fine[1]), 3, 0.15, "order of the slope");
+  ok(fine[0] < 3e-6, "error with 128 nodes %.1e", fine[0]);
+}
+
+/* What makes it a spline: the second derivative, taken from the slopes on either side of each node, does not jump. */
+static void test_continuity(void)
+{
+  struct eo_periodic spline;
+  double node[5] = {1, -2, 0.5, 4, 3}, bend = 0, h = 1e-4;
+  eo_periodic_init(&spline, 5, node);
+  for (int i = 0; i < 5; i++) {
+    double at = i / 5.0, before = i ? at : 1,
+           slope[6]; /* on a cubic three slopes give the second derivative at their end exactly */
+    close_to(eo_periodic_at(&spline, at, NULL), node[i], 1e-14, "through the node");
+    for (int k = 0; k < 3; k++) {
+      eo_periodic_at(&spline, before - (k + 0.5) * h, &slope[k]);
+      eo_periodic_at(&spline, at + (k + 0.5) * h, &slope[3 + k]);
+    }
+    double left = (2 * slope[0] - 3 * slope[1] + slope[2]) / h, right = (-2 * slope[3] + 3 * slope[4] - slope[5]) / h;
+    bend = fmax(bend, fabs(left - right) / fmax(1, fabs(left)));
+  }
+  ok(bend < 1e-8, "its second derivative does not jump: %.1e", bend);
+  close_to(eo_periodic_at(&spline, 1, NULL), node[0], 1e-14, "phase 1 is phase 0");
+}
+
+static void test_flat(void)
+{
+  struct eo_periodic spline;
+  double node[3] = {7, 7, 7}, slope;
+  eo_periodic_init(&spline, 3, node);
+  close_to(eo_periodic_at(&spline, 0.41, &slope), 7, 1e-14, "a constant stays one with three nodes");
+  close_to(slope, 0, 1e-13, "without slope");
+}
+
+static void test_harmonics(void)
+{
+  enum { COUNT = 32, HARMONICS = 15 };
+  double node[COUNT], amplitude[HARMONICS][2], worst = 0;
+  for (int i = 0; i < COUNT; i++) {
+    node[i] = 2.5;
+    for (int h = 1; h <= HARMONICS; h++)
+      node[i] += cos(2 * M_PI * h * i / COUNT) / h - 0.1 * h * sin(2 * M_PI * h * i / COUNT);
+  }
+  close_to(eo_periodic_harmonics(COUNT, node, HARMONICS, amplitude), 2.5, 1e-14, "mean");
+  for (int h = 1; h <= HARMONICS; h++)
+    worst = fmax(worst, hypot(amplitude[h - 1][0] - 1.0 / h, amplitude[h - 1][1] - 0.1 * h));
+  close_to(worst, 0, 1e-13, "harmonics of a trigonometric polynomial are exact");
+}
+
+int main(void)
+{
+  test_order();
+  test_continuity();
+  test_flat();
+  test_harmonics();
+  return tap_done();
+}

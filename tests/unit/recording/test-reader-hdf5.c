@@ -1,0 +1,163 @@
+/* HDF5 files written by the library itself: one data set per channel, tables, units, other files that must not be read.
+ */
+#include "support/reader-fixture.h"
+
+#include <hdf5.h>
+
+#define COUNT 5000
+
+static double t[COUNT], pinion[COUNT];
+static float gear[COUNT];
+
+static hid_t open_file(void)
+{
+  unlink(fixture_path);
+  hid_t file = H5Fcreate(fixture_path, H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+  if (file < 0)
+    exit(97);
+  return file;
+}
+
+static hid_t put(hid_t place, const char *name, int rank, const hsize_t *dims, hid_t stored, hid_t type,
+                 const void *data, hid_t list)
+{
+  hid_t space = H5Screate_simple(rank, dims, NULL);
+  hid_t set = H5Dcreate2(place, name, stored, space, H5P_DEFAULT, list, H5P_DEFAULT);
+  if (set < 0 || (data && H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data) < 0))
+    exit(96);
+  H5Sclose(space);
+  return set;
+}
+
+static void put_text(hid_t object, const char *name, const char *text, int variable)
+{
+  hid_t type = H5Tcopy(H5T_C_S1), space = H5Screate(H5S_SCALAR);
+  H5Tset_size(type, variable ? H5T_VARIABLE : strlen(text));
+  hid_t attribute = H5Acreate2(object, name, type, space, H5P_DEFAULT, H5P_DEFAULT);
+  H5Awrite(attribute, type, variable ? (const void *)&text : text);
+  H5Aclose(attribute);
+  H5Sclose(space);
+  H5Tclose(type);
+}
+
+static void put_double(hid_t object, const char *name, double value)
+{
+  hid_t space = H5Screate(H5S_SCALAR);
+  hid_t attribute = H5Acreate2(object, name, H5T_NATIVE_DOUBLE, space, H5P_DEFAULT, H5P_DEFAULT);
+  H5Awrite(attribute, H5T_NATIVE_DOUBLE, &value);
+  H5Aclose(attribute);
+  H5Sclose(space);
+}
+
+static void test_channels(void)
+{
+  struct eo_error error;
+  hsize_t count = COUNT, few = 3, chunk = 512;
+  hid_t list = H5Pcreate(H5P_DATASET_CREATE), file = open_file();
+  H5Pset_chunk(list, 1, &chunk);
+  H5Pset_deflate(list, 6);
+  hid_t group = H5Gcreate2(file, "run", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+  hid_t set = put(group, "a time", 1, &count, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, t, H5P_DEFAULT);
+  put_text(set, "unit", "s", 0);
+  H5Dclose(set);
+  set = put(group, "pinion", 1, &count, H5T_IEEE_F64BE, H5T_NATIVE_DOUBLE, pinion, list);
+  put_text(set, "units", "deg", 1);
+  H5Dclose(set);
+  H5Dclose(put(group, "rear gear", 1, &count, H5T_IEEE_F32LE, H5T_NATIVE_FLOAT, gear, list));
+  H5Dclose(put(file, "settings", 1, &few, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, t, H5P_DEFAULT));
+  H5Gclose(group);
+  put_double(file, "sample_rate", 20000);
+  H5Fclose(file);
+  H5Pclose(list);
+  enum eo_reader_kind kind;
+  ok(!eo_reader_identify(fixture_path, &kind, NULL, &error) && kind == EO_READER_HDF5, "told as HDF5");
+  struct eo_notes notes = {0};
+  struct eo_recording *r = read_fixture(NULL, &notes, &error);
+  int wrong = !r || eo_recording_columns(r) != 3 || eo_recording_rows(r) != COUNT;
+  for (int i = 0; !wrong && i < COUNT; i++)
+    wrong += cell_of(r, i, 0) != t[i] || cell_of(r, i, 1) != pinion[i] || cell_of(r, i, 2) != gear[i];
+  ok(!wrong, "three data sets of one length, one compressed, one of the other byte order%s", r ? "" : error.text);
+  ok(r && !strcmp(eo_recording_unit(r, 0), "s") && !strcmp(eo_recording_unit(r, 1), "deg") &&
+         !strcmp(eo_recording_name(r, 2), "rear gear"),
+     "names and units");
+  ok(r && eo_recording_interval(r) == 5e-5 && noted(&notes, "\"settings\" with 3 values"),
+     "sampling rate, and what was left out");
+  eo_recording_free(r);
+}
+
+static void test_table(void)
+{
+  struct eo_error error;
+  hsize_t dims[2] = {COUNT, 2};
+  int32_t *table = malloc(2 * COUNT * sizeof *table);
+  for (int i = 0; i < COUNT; i++) {
+    table[2 * i] = i;
+    table[2 * i + 1] = -3 * i;
+  }
+  hid_t file = open_file();
+  H5Dclose(put(file, "counts", 2, dims, H5T_STD_I32LE, H5T_NATIVE_INT32, table, H5P_DEFAULT));
+  H5Fclose(file);
+  struct eo_recording *r = read_fixture(NULL, NULL, &error);
+  ok(r && eo_recording_columns(r) == 2 && cell_of(r, 4321, 0) == 4321 && cell_of(r, 4321, 1) == -12963 &&
+         !strcmp(eo_recording_name(r, 1), "counts 2"),
+     "a table of integers%s", r ? "" : error.text);
+  eo_recording_free(r);
+  free(table);
+}
+
+static void test_hostile(void)
+{
+  struct eo_error error;
+  hsize_t count = COUNT, huge = (hsize_t)1 << 50, chunk = 1 << 20;
+  hid_t list = H5Pcreate(H5P_DATASET_CREATE), file = open_file();
+  H5Pset_external(list, "/etc/passwd", 0, COUNT * 8);
+  H5Dclose(put(file, "stolen", 1, &count, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, NULL, list));
+  H5Lcreate_external("/etc/other.h5", "/set", file, "elsewhere", H5P_DEFAULT, H5P_DEFAULT);
+  H5Fclose(file);
+  H5Pclose(list);
+  refused("no channel with numbers", "data in other files");
+  list = H5Pcreate(H5P_DATASET_CREATE);
+  file = open_file();
+  H5Pset_chunk(list, 1, &chunk);
+  H5Dclose(put(file, "endless", 1, &huge, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, NULL, list));
+  H5Fclose(file);
+  H5Pclose(list);
+  refused("more than the", "a data set of 2^50 values that are nowhere");
+  file = open_file();
+  H5Dclose(put(file, "pinion", 1, &count, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, pinion, H5P_DEFAULT));
+  H5Fclose(file);
+  ok(!truncate(fixture_path, 20000), "cut");
+  refused("cut off at byte 20000", "a file that is cut off");
+  static unsigned char bytes[1 << 17];
+  file = open_file();
+  H5Dclose(put(file, "pinion", 1, &count, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, pinion, H5P_DEFAULT));
+  H5Fclose(file);
+  FILE *plain = fopen(fixture_path, "rb");
+  size_t size = fread(bytes, 1, sizeof bytes, plain);
+  fclose(plain);
+  int answers = 0;
+  for (size_t i = 0; i < 100; i++) {
+    unsigned char old = bytes[9 + 7 * i];
+    bytes[9 + 7 * i] = i % 2 ? 0xff : 0x21;
+    write_bytes(bytes, size);
+    bytes[9 + 7 * i] = old;
+    struct eo_recording *r = read_fixture(NULL, NULL, &error);
+    answers += r || error.code == EO_ERROR_INPUT;
+    eo_recording_free(r);
+  }
+  ok(answers == 100, "damaged in 100 places: a recording or an error each time");
+}
+
+int main(void)
+{
+  fixture_open();
+  for (int i = 0; i < COUNT; i++) {
+    t[i] = 5e-5 * i;
+    pinion[i] = 17.25 + 0.6 * i;
+    gear[i] = (float)(63.5 - 0.25 * i);
+  }
+  test_channels();
+  test_table();
+  test_hostile();
+  return fixture_close();
+}

@@ -1,0 +1,331 @@
+/* NI TDMS: segments written here byte by byte after NI's public description of the format. */
+#include "support/byte-writer.h"
+#include "support/reader-fixture.h"
+
+enum { METADATA = 2, NEW_LIST = 4, DATA = 8, INTERLEAVED = 32, BIG = 64, DAQMX = 128 };
+enum { INT16 = 2, INT32 = 3, INT64 = 4, UINT8 = 5, SINGLE = 9, DOUBLE = 10, STRING = 0x20, TIMESTAMP = 0x44 };
+
+static struct writer w;
+static size_t lead_in, metadata_end;
+
+static void begin_segment(int toc)
+{
+  lead_in = w.size;
+  w.big = (toc & BIG) != 0;
+  put_bytes(&w, "TDSm", 4);
+  int big = w.big;
+  w.big = 0; /* the mask of contents is always little-endian */
+  put_number(&w, (uint64_t)toc, 4);
+  w.big = big;
+  put_number(&w, 4713, 4);
+  put_number(&w, 0, 8);
+  put_number(&w, 0, 8);
+}
+
+static void set_at(size_t at, uint64_t value)
+{
+  size_t size = w.size;
+  w.size = at;
+  put_number(&w, value, 8);
+  w.size = size;
+}
+
+static void end_metadata(void)
+{
+  metadata_end = w.size;
+  set_at(lead_in + 20, w.size - lead_in - 28);
+}
+
+static void end_segment(void)
+{
+  set_at(lead_in + 12, w.size - lead_in - 28);
+}
+
+static void put_index(int type, uint64_t count)
+{
+  put_number(&w, 20, 4);
+  put_number(&w, (uint64_t)type, 4);
+  put_number(&w, 1, 4);
+  put_number(&w, count, 8);
+}
+
+static void put_double_property(const char *name, double value)
+{
+  put_string(&w, name);
+  put_number(&w, DOUBLE, 4);
+  put_double(&w, value);
+}
+
+static void put_string_property(const char *name, const char *value)
+{
+  put_string(&w, name);
+  put_number(&w, STRING, 4);
+  put_string(&w, value);
+}
+
+/* Root, group, and two channels of doubles with waveform properties; `chunk` values of each per chunk. */
+static void put_objects(uint64_t chunk)
+{
+  put_number(&w, 4, 4);
+  put_string(&w, "/");
+  put_number(&w, 0xffffffff, 4);
+  put_number(&w, 1, 4);
+  put_string_property("name", "rig run");
+  put_string(&w, "/'Encoders'");
+  put_number(&w, 0xffffffff, 4);
+  put_number(&w, 0, 4);
+  put_string(&w, "/'Encoders'/'Pinion''s angle'");
+  put_index(DOUBLE, chunk);
+  put_number(&w, 3, 4);
+  put_double_property("wf_increment", 5e-5);
+  put_double_property("wf_start_offset", 0.25);
+  put_string_property("unit_string", "deg");
+  put_string(&w, "/'Encoders'/'Gear angle'");
+  put_index(DOUBLE, chunk);
+  put_number(&w, 2, 4);
+  put_double_property("wf_increment", 5e-5);
+  put_string_property("unit_string", "deg");
+}
+
+static double pinion(int i)
+{
+  return 17.154 + 0.6 * i;
+}
+
+static double gear(int i)
+{
+  return 63.027 - 0.23 * i;
+}
+
+static void put_chunk(int first, int count, int interleaved)
+{
+  for (int i = 0; interleaved && i < count; i++) {
+    put_double(&w, pinion(first + i));
+    put_double(&w, gear(first + i));
+  }
+  for (int i = 0; !interleaved && i < count; i++)
+    put_double(&w, pinion(first + i));
+  for (int i = 0; !interleaved && i < count; i++)
+    put_double(&w, gear(first + i));
+}
+
+/* Segment 1 with metadata and two chunks, segment 2 without metadata, segment 3 whose list is kept and one index is
+   stated anew. */
+static void put_file(int toc)
+{
+  w.size = 0;
+  begin_segment(toc | METADATA | NEW_LIST | DATA);
+  put_objects(100);
+  end_metadata();
+  put_chunk(0, 100, toc & INTERLEAVED);
+  put_chunk(100, 100, toc & INTERLEAVED);
+  end_segment();
+  begin_segment(toc | DATA);
+  end_metadata();
+  put_chunk(200, 100, toc & INTERLEAVED);
+  end_segment();
+  begin_segment(toc | METADATA | DATA);
+  put_number(&w, 2, 4);
+  put_string(&w, "/'Encoders'/'Gear angle'");
+  put_index(DOUBLE, 50);
+  put_number(&w, 0, 4);
+  put_string(&w, "/'Encoders'/'Pinion''s angle'");
+  put_index(DOUBLE, 50);
+  put_number(&w, 0, 4);
+  end_metadata();
+  put_chunk(300, 50, toc & INTERLEAVED);
+  end_segment();
+}
+
+static int wrong_rows(const struct eo_recording *r, int rows)
+{
+  int wrong = eo_recording_rows(r) != rows || eo_recording_columns(r) != 2;
+  for (int i = 0; !wrong && i < rows; i++)
+    wrong += cell_of(r, i, 0) != pinion(i) || cell_of(r, i, 1) != gear(i);
+  return wrong;
+}
+
+static void test_kind(int toc, const char *what)
+{
+  struct eo_error error;
+  put_file(toc);
+  write_bytes(w.bytes, w.size);
+  enum eo_reader_kind kind;
+  ok(!eo_reader_identify(fixture_path, &kind, NULL, &error) && kind == EO_READER_TDMS, "told as TDMS");
+  struct eo_recording *r = read_fixture(NULL, NULL, &error);
+  ok(r && !wrong_rows(r, 350), "%s%s", what, r ? "" : error.text);
+  ok(r && !strcmp(eo_recording_name(r, 0), "Pinion's angle") && !strcmp(eo_recording_unit(r, 1), "deg"),
+     "name and unit");
+  ok(r && eo_recording_interval(r) == 5e-5 && eo_recording_start(r) == 0.25 && eo_recording_line(r, 3) == 0,
+     "sampling interval and start");
+  eo_recording_free(r);
+}
+
+/* One segment with one channel of this type, `values` of `bytes` each already at data. */
+static void put_typed(int type, int big, uint64_t count)
+{
+  w.size = 0;
+  begin_segment(METADATA | NEW_LIST | DATA | (big ? BIG : 0));
+  put_number(&w, 1, 4);
+  put_string(&w, "/'g'/'c'");
+  put_index(type, count);
+  put_number(&w, 0, 4);
+  end_metadata();
+}
+
+static void check_typed(double first, double second, const char *what)
+{
+  struct eo_error error;
+  end_segment();
+  write_bytes(w.bytes, w.size);
+  struct eo_recording *r = read_fixture(NULL, NULL, &error);
+  ok(r && cell_of(r, 0, 0) == first && cell_of(r, 1, 0) == second, "%s%s", what, r ? "" : error.text);
+  eo_recording_free(r);
+}
+
+static void test_types(void)
+{
+  for (int big = 0; big < 2; big++) {
+    put_typed(INT16, big, 2);
+    put_number(&w, (uint64_t)-1234, 2);
+    put_number(&w, 567, 2);
+    check_typed(-1234, 567, big ? "int16, big-endian" : "int16");
+    put_typed(INT32, big, 2);
+    put_number(&w, (uint64_t)-123456, 4);
+    put_number(&w, 567890, 4);
+    check_typed(-123456, 567890, big ? "int32, big-endian" : "int32");
+    put_typed(INT64, big, 2);
+    put_number(&w, (uint64_t)-123456789012, 8);
+    put_number(&w, 5, 8);
+    check_typed(-123456789012.0, 5, big ? "int64, big-endian" : "int64");
+    put_typed(UINT8, big, 2);
+    put_number(&w, 200, 1);
+    put_number(&w, 7, 1);
+    check_typed(200, 7, "uint8");
+    put_typed(SINGLE, big, 2);
+    put_float(&w, 1.25);
+    put_float(&w, -3.5);
+    check_typed(1.25, -3.5, big ? "single, big-endian" : "single");
+    put_typed(TIMESTAMP, big, 2);
+    for (int i = 0; i < 2; i++) {
+      uint64_t seconds = 3600000000u + (uint64_t)i, fraction = i ? (uint64_t)3 << 62 : (uint64_t)1 << 62;
+      put_number(&w, big ? seconds : fraction, 8);
+      put_number(&w, big ? fraction : seconds, 8);
+    }
+    check_typed(0.25, 1.75, big ? "timestamp, big-endian" : "timestamp: seconds since the first one's second");
+  }
+}
+
+static void test_scaled(void)
+{
+  w.size = 0;
+  begin_segment(METADATA | NEW_LIST | DATA);
+  put_number(&w, 1, 4);
+  put_string(&w, "/'g'/'sine'");
+  put_index(INT16, 2);
+  put_number(&w, 4, 4);
+  put_string_property("NI_Scaling_Status", "unscaled");
+  put_string(&w, "NI_Number_Of_Scales");
+  put_number(&w, 7, 4);
+  put_number(&w, 1, 4);
+  put_double_property("NI_Scale[0]_Linear_Slope", 0.5);
+  put_double_property("NI_Scale[0]_Linear_Y_Intercept", 10);
+  end_metadata();
+  put_number(&w, 4, 2);
+  put_number(&w, 6, 2);
+  check_typed(12, 13, "raw values with a linear scale");
+}
+
+static void test_damage(void)
+{
+  struct eo_error error;
+  struct eo_notes notes = {0};
+  put_file(0);
+  size_t whole = w.size;
+  write_bytes(w.bytes, whole - 40);
+  struct eo_recording *r = read_fixture(NULL, &notes, &error);
+  ok(r && !wrong_rows(r, 300) && noted(&notes, "not complete"), "a last chunk that is cut off is left out");
+  eo_recording_free(r);
+  put_file(INTERLEAVED);
+  write_bytes(w.bytes, w.size - 40);
+  r = read_fixture(NULL, NULL, &error);
+  ok(r && !wrong_rows(r, 347), "of an interleaved one whole rows are kept");
+  eo_recording_free(r);
+  write_bytes(w.bytes, 100);
+  refused("cut off in its metadata", "metadata that are cut off");
+  put_file(0);
+  set_at(20, 100);
+  write_bytes(w.bytes, w.size);
+  refused("TDMS: the metadata at byte", "metadata shorter than their content");
+  put_file(0);
+  w.bytes[4] |= DAQMX;
+  write_bytes(w.bytes, w.size);
+  refused("DAQmx", "raw DAQmx data");
+  put_file(0);
+  memset(w.bytes + 8, 9, 4);
+  write_bytes(w.bytes, w.size);
+  refused("unknown version", "another version");
+  put_file(0);
+  w.bytes[lead_in] = 'X';
+  write_bytes(w.bytes, w.size);
+  refused("does not begin with", "a lead-in that is none");
+  put_file(0);
+  memset(w.bytes + lead_in + 20, 0x7f, 8);
+  write_bytes(w.bytes, w.size);
+  refused("data behind its end", "data behind the segment's end");
+  put_typed(DOUBLE, 0, (uint64_t)1 << 40);
+  put_double(&w, 1);
+  end_segment();
+  write_bytes(w.bytes, w.size);
+  refused("more data than the file holds", "more values than the file holds");
+  put_typed(DOUBLE, 0, (uint64_t)1 << 62);
+  end_segment();
+  write_bytes(w.bytes, w.size);
+  refused("values of type 0xa", "a number of values beyond reason");
+  put_typed(11, 0, 2);
+  end_segment();
+  write_bytes(w.bytes, w.size);
+  refused("of type 0xb", "an unknown type");
+  w.size = 0;
+  begin_segment(METADATA | NEW_LIST);
+  put_number(&w, 0, 4);
+  end_metadata();
+  end_segment();
+  write_bytes(w.bytes, w.size);
+  refused("no channel with numbers", "no channel");
+}
+
+/* Every byte of a small file is set to other values: an error or a recording, and nothing else (sanitizers watch). */
+static void test_every_byte(void)
+{
+  static const unsigned char values[] = {0, 1, 0x7f, 0x80, 0xff};
+  put_file(INTERLEAVED);
+  int read = 0, failed = 0;
+  for (size_t i = 0; i < metadata_end; i += i < 500 ? 1 : 97)
+    for (size_t k = 0; k < sizeof values; k++) {
+      unsigned char old = w.bytes[i];
+      w.bytes[i] = values[k];
+      write_bytes(w.bytes, w.size);
+      w.bytes[i] = old;
+      struct eo_error error;
+      struct eo_recording *r = read_fixture(NULL, NULL, &error);
+      read += r != NULL;
+      failed += r == NULL;
+      eo_recording_free(r);
+    }
+  ok(read > 0 && failed > 0, "bytes set at random: %d files read, %d refused", read, failed);
+}
+
+int main(void)
+{
+  fixture_open();
+  test_kind(0, "contiguous, three segments");
+  test_kind(INTERLEAVED, "interleaved, three segments");
+  test_kind(BIG, "big-endian, contiguous");
+  test_kind(BIG | INTERLEAVED, "big-endian, interleaved");
+  test_types();
+  test_scaled();
+  test_damage();
+  test_every_byte();
+  return fixture_close();
+}

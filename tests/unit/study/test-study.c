@@ -1,0 +1,465 @@
+/* The study loop: threads, history, interruption, other weights, bounds and variables, failures, and what the documents
+   say. */
+#include <math.h>
+
+#include "base/parallel.h"
+#include "document/search_space.h"
+#include "evaluation/analysis.h"
+#include "study/history_document.h"
+#include "store/queue.h"
+#include "support/study-fixture.h"
+#include "support/tap.h"
+
+static struct eo_pair *pair;
+static struct eo_design design, other;
+static struct eo_study_result result;
+
+static struct eo_study_plan plan_of(const struct eo_design *of, struct eo_store *store)
+{
+  return (struct eo_study_plan){.design = of, .pair = pair, .store = store, .threads = 2};
+}
+
+/* One study in a folder; its lasting part (owned), *r the result. */
+static char *run(const struct eo_study_plan *wanted, struct eo_study_result *r)
+{
+  struct eo_study_plan plan = *wanted;
+  char *text = NULL;
+  memset(&error, 0, sizeof error);
+  if (!eo_store_open(&plan.store, folder, EO_STORE_WRITE, &error) && !eo_study_run(&plan, r, &error))
+    text = lasting_part(&plan, r);
+  if (!text)
+    printf("# %s\n", error.text);
+  eo_store_close(plan.store);
+  return text;
+}
+
+/* ---- same path ---- */
+
+static void test_threads(const char *algorithm)
+{
+  char *text[3];
+  coarse_design(&design, algorithm, 60);
+  complete(&design);
+  for (int i = 0; i < 3; i++) {
+    struct eo_study_plan plan = plan_of(&design, NULL);
+    plan.threads = 1 << i;
+    empty_folder();
+    text[i] = run(&plan, &result);
+    if (i < 2)
+      eo_study_result_done(&result);
+  }
+  ok(text[0] && text[1] && text[2] && strcmp(text[0], text[1]) == 0 && strcmp(text[0], text[2]) == 0,
+     "%s: the same bytes for 1, 2 and 4 threads", algorithm);
+  ok(result.best.there && result.best.value.objective < 0.7 && result.computed == 60 && result.true_evaluations == 60 &&
+         result.reused == 0,
+     "%s: J %.4g after %d evaluations", algorithm, result.best.value.objective, result.computed);
+  eo_study_result_done(&result);
+  struct eo_study_plan plan = plan_of(&design, NULL);
+  char *again = run(&plan, &result);
+  ok(again && strcmp(again, text[0]) == 0 && result.computed == 0 && result.resumed,
+     "%s: once more, nothing is computed and the result is the same", algorithm);
+  eo_study_result_done(&result);
+  free(again);
+  for (int i = 0; i < 3; i++)
+    free(text[i]);
+}
+
+/* Stops after a number of evaluations. */
+static int stop_after(void *context, const struct eo_study_report *report)
+{
+  return report->true_evaluations >= *(int *)context;
+}
+
+static void test_cancel(void)
+{
+  struct eo_study_plan plan = plan_of(&design, NULL);
+  coarse_design(&design, "credibility-ga", 80);
+  complete(&design);
+  empty_folder();
+  char *whole = run(&plan, &result);
+  eo_study_result_done(&result);
+  empty_folder();
+  int stop = 0, computed = 0, cuts = 0;
+  char *text = NULL;
+  for (; stop < 80; stop += 13) {
+    struct eo_study_plan cut = plan;
+    cut.watch = stop_after;
+    cut.context = &stop;
+    free(text);
+    text = run(&cut, &result);
+    computed += result.computed;
+    cuts += result.stopped == EO_STOP_CANCELLED;
+    eo_study_result_done(&result);
+  }
+  free(text);
+  text = run(&plan, &result);
+  computed += result.computed;
+  ok(cuts == 7 && text && strcmp(text, whole) == 0, "stopped %d times: the result of an undisturbed run", cuts);
+  ok(computed == 80 && result.reused == 0, "with %d evaluations in all, none twice", computed);
+  eo_study_result_done(&result);
+  free(text);
+  free(whole);
+}
+
+/* A study that knew the rows of another job, cut short: that job may be removed before it goes on. */
+static void test_removed_job(const char *algorithm)
+{
+  struct eo_study_plan plan = plan_of(&other, NULL), cut;
+  char *text[2] = {NULL, NULL};
+  int64_t first = 0;
+  coarse_design(&design, algorithm, 40);
+  coarse_design(&other, algorithm, 90);
+  complete(&design);
+  complete(&other);
+  for (int removed = 0; removed < 2; removed++) {
+    struct eo_study_plan before = plan_of(&design, NULL);
+    enum eo_job_outcome outcome = EO_JOB_OUTCOME_DONE;
+    struct eo_store *store = NULL;
+    empty_folder();
+    free(run(&before, &result));
+    first = result.job;
+    eo_study_result_done(&result);
+    cut = plan;
+    cut.watch = stop_after;
+    cut.context = &(int){50};
+    free(run(&cut, &result));
+    eo_study_result_done(&result);
+    if (removed && (eo_store_open(&store, folder, EO_STORE_WRITE, &error) ||
+                    eo_queue_remove(store, first, &outcome, &error) || outcome))
+      printf("# it is not removed: %s\n", error.text);
+    eo_store_close(store);
+    text[removed] = run(&plan, &result);
+    ok(result.resumed && result.imported == 40 && result.true_evaluations == 90,
+       "%s: taken up with %d rows of another job", algorithm, result.imported);
+    eo_study_result_done(&result);
+  }
+  ok(text[0] && text[1] && strcmp(text[0], text[1]) == 0, "%s: whether that job is still there or not, the same result",
+     algorithm);
+  free(text[0]);
+  free(text[1]);
+}
+
+/* ---- the history ---- */
+
+static void test_reuse(void)
+{
+  struct eo_study_plan plan = plan_of(&design, NULL);
+  empty_folder();
+  coarse_design(&design, "ga", 60);
+  complete(&design);
+  free(run(&plan, &result));
+  struct eo_modification best = result.best.modification;
+  double sum = result.best.value.sums.f[0];
+  eo_study_result_done(&result);
+
+  /* other weights: the same points, no evaluation */
+  design.objective.weight[0] = 0.8;
+  design.load_case[0].share = 0.4;
+  design.load_case[1].share = 0.3;
+  design.optimization.true_evaluations = 40; /* the first generation of 20 does not depend on values */
+  plan.fresh = true;
+  free(run(&plan, &result));
+  ok(result.reused >= 20 && result.reused + result.computed == 40,
+     "other weights and shares: %d of 40 known, fitness anew", result.reused);
+  ok(fabs(result.unmodified.value.objective - 1.4) < 1e-12, "J of the unmodified pair is the sum of the weights");
+  eo_study_result_done(&result);
+
+  /* told of earlier rows, a search starts at the best of them */
+  coarse_design(&design, "credibility-ga", 8);
+  complete(&design);
+  plan.fresh = false;
+  free(run(&plan, &result));
+  ok(result.imported >= 60 && result.imported <= 100 && result.best.there && result.best.value.sums.f[0] <= sum * 1.2,
+     "%d rows of earlier searches are imported", result.imported);
+  ok(result.computed == 8, "and the budget is for new ones");
+  eo_study_result_done(&result);
+
+  /* another space: both ends apart; the rows with equal ends lie in it */
+  design.optimization.variables = EO_VARIABLES_PER_END;
+  complete(&design);
+  free(run(&plan, &result));
+  ok(result.space.count == 10 && result.imported >= 60, "case B imports the %d rows of case A", result.imported);
+  eo_study_result_done(&result);
+
+  /* other supports: nothing may be used */
+  coarse_design(&design, "ga", 20);
+  design.supports.mesh_damping_ratio = 0.08;
+  complete(&design);
+  free(run(&plan, &result));
+  ok(result.imported == 0 && result.reused == 0 && result.computed == 20, "another problem shares nothing");
+  eo_study_result_done(&result);
+  ok(best.flank[EO_PINION][EO_LEFT].tip_relief == best.flank[EO_PINION][EO_RIGHT].tip_relief,
+     "shared variables are shared");
+}
+
+/* The reported optimum analysed on its own gives the numbers that were reported. */
+static void test_truth(void)
+{
+  struct eo_study_plan plan = plan_of(&design, NULL);
+  struct eo_analysis *analysis = NULL;
+  empty_folder();
+  coarse_design(&design, "fpga", 0);
+  design.optimization.generations = 6;
+  complete(&design);
+  char *text = run(&plan, &result);
+  ok(result.predicted > 0 && result.individuals == result.true_evaluations + result.predicted + result.repeated,
+     "fpga predicts %d of %d individuals", result.predicted, result.individuals);
+  json_t *document = text ? json_loads(text, 0, NULL) : NULL;
+  const json_t *reported = eo_json_find(document, "best/result/design");
+  struct eo_faults *faults = calloc(1, sizeof *faults);
+  bool decoded = faults && eo_design_decode(reported, &other, NULL, faults);
+  bool good = decoded && complete(&other) && !eo_analysis_new(&analysis, pair, &error) &&
+              !eo_analysis_run(analysis, &other, 0, &error);
+  ok(good && analysis->value.objective == result.best.value.objective &&
+         analysis->value.sums.f[2] == result.best.value.sums.f[2],
+     "the optimum read back from its document and analysed: J %.17g", good ? analysis->value.objective : NAN);
+  ok(good && eo_json_find_number(document, "best/result/objectives/J") ==
+                 eo_json_find_number(document, "best/objectives/J"),
+     "as its own result says");
+  double pfc = eo_json_find_number(document, "pfc_percent");
+  ok(fabs(pfc - 100. * result.true_evaluations / result.individuals) < 1e-9, "PFC %.3g %%", pfc);
+  const json_t *generations = json_object_get(document, "generations");
+  double before = INFINITY;
+  int worse = 0, sum = 0;
+  for (size_t i = 0; i < json_array_size(generations); i++) {
+    const json_t *g = json_array_get(generations, i);
+    worse += eo_json_find_number(g, "best") > before;
+    before = eo_json_find_number(g, "best");
+    sum += (int)eo_json_find_number(g, "true");
+  }
+  ok(json_array_size(generations) == 6 && !worse && sum == result.true_evaluations &&
+         before == eo_json_find_number(document, "best/objectives/J"),
+     "generations: true evaluations add up, the best never gets worse");
+  eo_analysis_free(analysis);
+  eo_study_result_done(&result);
+  json_decref(document);
+  free(faults);
+  free(text);
+}
+
+static void test_front(void)
+{
+  struct eo_study_plan plan = plan_of(&design, NULL);
+  empty_folder();
+  coarse_design(&design, "nsga2", 96);
+  complete(&design);
+  free(run(&plan, &result));
+  int dominated = 0;
+  for (int i = 0; i < result.front_count; i++)
+    for (int j = 0; j < result.front_count; j++) {
+      const double *a = result.front[i].value.sums.f, *b = result.front[j].value.sums.f;
+      dominated += a[0] <= b[0] && a[1] <= b[1] && a[2] <= b[2] && (a[0] < b[0] || a[1] < b[1] || a[2] < b[2]);
+    }
+  ok(result.front_count > 3 && !dominated && result.knee >= 0 && result.weighted >= 0,
+     "nsga2: a front of %d true rows, none dominated", result.front_count);
+  eo_study_result_done(&result);
+}
+
+/* ---- failures ---- */
+
+/* A seventh of all points fails: outcomes, kept and never the optimum. The history is filled before the search with
+   rows as a model would have left them that did not converge. */
+static void test_failures(void)
+{
+  struct eo_study_plan plan = plan_of(&design, NULL);
+  empty_folder();
+  coarse_design(&design, "ga", 40);
+  complete(&design);
+  free(run(&plan, &result));
+  int64_t best = result.best.evaluation;
+  double value = result.best.rank;
+  eo_study_result_done(&result);
+  json_t *rows = NULL;
+  struct eo_store *store = NULL, *second = NULL;
+  char first[200];
+  bool good = !eo_store_open(&store, folder, EO_STORE_WRITE, &error) && !eo_records_rows(store, 1, &rows, &error);
+  snprintf(first, sizeof first, "%s", folder);
+  /* the same rows into a second folder, the best one as failed */
+  good = good && make_folder() && !eo_store_open(&second, folder, EO_STORE_WRITE, &error);
+  eo_store_close(second);
+  eo_store_close(store);
+  struct eo_text text = {0};
+  ok(good && !eo_records_rows_csv(rows, &text, &error) && strstr(text.data, "pinion/left/tip_relief_um") != NULL,
+     "rows as comma-separated values");
+  eo_text_done(&text);
+  struct eo_text spec = {0};
+  char hash[EO_HASH_LENGTH + 1];
+  int64_t problem;
+  good = good && !eo_design_problem(&design, &spec, hash, &error) &&
+         !eo_store_open(&second, folder, EO_STORE_WRITE, &error) && !eo_store_begin(second, &error);
+  const struct eo_stored_problem p = {
+      .hash = hash, .spec = spec.data, .name = "", .evaluator = EO_EVALUATOR_VERSION, .scenarios = 1, .cases = 3};
+  good = good && !eo_store_find_problem(second, &p, &problem, &error);
+  for (size_t i = 0; good && i < json_array_size(json_object_get(rows, "rows")); i++) {
+    const json_t *row = json_array_get(json_object_get(rows, "rows"), i);
+    if (json_integer_value(json_object_get(row, "id")) != best)
+      continue;
+    struct eo_objective_case raw[3] = {
+        {.failed = true}, {.peak_to_peak = 1e-9, .impact = 1, .rms = 1}, {.failed = true}};
+    struct eo_text modification = {0};
+    eo_json_write(&modification, json_object_get(row, "modification"), EO_JSON_CANONICAL);
+    struct eo_stored_evaluation e = {.modification = modification.data,
+                                     .outcome = EO_EVALUATION_NOT_CONVERGED,
+                                     .reason = "Made up.",
+                                     .scenarios = 1,
+                                     .cases = 3,
+                                     .raw = raw};
+    good = !eo_store_add_evaluation(second, problem, &e, &error);
+    eo_text_done(&modification);
+  }
+  good = good && !eo_store_commit(second, &error);
+  eo_store_close(second);
+  plan.fresh = true;
+  free(run(&plan, &result));
+  ok(good && result.failed == 1 && result.reused == 1, "a failed row is found again and not evaluated once more");
+  ok(result.best.there && result.best.rank > value && result.best.evaluation != 1,
+     "and is never the optimum: %.4g instead of %.4g", result.best.rank, value);
+  eo_study_result_done(&result);
+  empty_folder();
+  rmdir(folder);
+  snprintf(folder, sizeof folder, "%s", first);
+  eo_text_done(&spec);
+  json_decref(rows);
+}
+
+static void test_constraints(void)
+{
+  struct eo_study_plan plan = plan_of(&design, NULL);
+  empty_folder();
+  coarse_design(&design, "credibility-ga", 60);
+  complete(&design);
+  free(run(&plan, &result));
+  double pressure = 0;
+  for (int k = 0; k < 3; k++)
+    pressure = fmax(pressure, result.best.raw[k].contact_pressure);
+  double without = result.best.value.objective;
+  eo_study_result_done(&result);
+  design.objective.contact_pressure = (struct eo_constraint){true, 0.97 * pressure};
+  complete(&design);
+  free(run(&plan, &result));
+  double held = 0;
+  for (int k = 0; k < 3; k++)
+    held = fmax(held, result.best.raw[k].contact_pressure);
+  ok(result.imported >= 60 && result.best.value.violation == 0 && held <= 0.97 * pressure &&
+         result.best.value.objective >= 0.9 * without,
+     "a constraint is weighed anew over known rows and held: %.4g of %.4g MPa", held / 1e6, 0.97 * pressure / 1e6);
+  eo_study_result_done(&result);
+}
+
+/* ---- variables ---- */
+
+static enum eo_code with_list(int count, const struct eo_listed_variable *list)
+{
+  coarse_design(&design, "ga", 20);
+  design.optimization.variables = EO_VARIABLES_LISTED;
+  design.optimization.listed = count;
+  memcpy(design.optimization.list, list, sizeof *list * (size_t)count);
+  memset(&error, 0, sizeof error);
+  struct eo_geometry geometry;
+  return eo_design_complete(&design, &geometry, &error);
+}
+
+static int parameter(const char *key)
+{
+  int i = 0;
+  while (eo_variable_parameters[i] && strcmp(eo_variable_parameters[i], key) != 0)
+    i++;
+  return i;
+}
+
+static void refuse(const char *what, const char *pointer, int count, const struct eo_listed_variable *list)
+{
+  enum eo_code code = with_list(count, list);
+  ok(code == EO_ERROR_INPUT && strcmp(error.pointer, pointer) == 0, "%s: %s: %s", what, error.pointer, error.text);
+}
+
+static void test_variables(void)
+{
+  const int tip = parameter("tip_relief_um"), slope = parameter("lead_slope_um"),
+            start = parameter("tip_relief_start_mm");
+  const int end = parameter("leading_end_relief_um"), length = parameter("leading_end_relief_length_mm");
+  const struct eo_range open = {NAN, NAN};
+  struct eo_listed_variable three[] = {
+      {EO_PINION, EO_BOTH_ENDS, tip, open}, {EO_GEAR, EO_LEFT, slope, {-5, 10}}, {EO_GEAR, EO_RIGHT, slope, {-10, 5}}};
+  ok(with_list(3, three) == EO_OK, "tip relief of the pinion, lead slope of each gear end %s", error.text);
+  design.modification.flank[EO_PINION][EO_LEFT].tip_relief_start =
+      design.modification.flank[EO_PINION][EO_RIGHT].tip_relief_start = 1e-3;
+  struct eo_study_plan plan = plan_of(&design, NULL);
+  empty_folder();
+  free(run(&plan, &result));
+  const struct eo_flank_modification *gear = result.best.modification.flank[EO_GEAR],
+                                     *pinion = result.best.modification.flank[EO_PINION];
+  ok(result.space.count == 3 && pinion[0].tip_relief == pinion[1].tip_relief && pinion[0].tip_relief_start == 1e-3 &&
+         gear[0].lead_slope != gear[1].lead_slope && gear[0].lead_slope >= -5e-6 && gear[1].lead_slope <= 5e-6,
+     "are searched for, the rest stays");
+  struct eo_modification applied;
+  double x[3] = {0.123456789, 1, 0}, back[3];
+  eo_study_space_apply(&result.space, &design.modification, x, &applied);
+  ok(eo_study_space_locate(&result.space, &design.modification, &applied, back) && fabs(back[0] - x[0]) < 1e-15 &&
+         back[1] == 1 && back[2] == 0,
+     "there and back");
+  ok(applied.flank[EO_GEAR][0].lead_slope == 10e-6 && applied.flank[EO_GEAR][1].lead_slope == -10e-6,
+     "bounds are reached exactly");
+  applied.flank[EO_PINION][0].root_relief = 1e-6;
+  ok(!eo_study_space_locate(&result.space, &design.modification, &applied, back),
+     "a modification with another rest is not in the space");
+  struct eo_text text = {0};
+  ok(!eo_modification_write(&applied, 2, &text, &error) &&
+         !eo_modification_read(text.data, &design.modification, &error) &&
+         memcmp(&design.modification.flank[1], &applied.flank[1], sizeof applied.flank[1]) == 0,
+     "a modification as text and back: %s", text.data ? text.data : "");
+  eo_text_done(&text);
+  eo_study_result_done(&result);
+
+  struct eo_listed_variable twice[] = {{EO_PINION, EO_BOTH_ENDS, tip, open}, {EO_PINION, EO_RIGHT, tip, {0, 10}}};
+  refuse("the same parameter twice", "/optimization/variable_list/1", 2, twice);
+  struct eo_listed_variable unbounded = {EO_PINION, EO_BOTH_ENDS, slope, open};
+  refuse("no bounds", "/optimization/variable_list/0/bounds", 1, &unbounded);
+  struct eo_listed_variable fixed = {EO_PINION, EO_BOTH_ENDS, slope, {5, 5}};
+  refuse("a fixed variable", "/optimization/variable_list/0/bounds", 1, &fixed);
+  struct eo_listed_variable negative = {EO_PINION, EO_BOTH_ENDS, tip, {-1, 5}};
+  refuse("bounds outside the parameter's range", "/optimization/variable_list/0/bounds", 1, &negative);
+  struct eo_listed_variable late[] = {{EO_PINION, EO_BOTH_ENDS, tip, open}, {EO_PINION, EO_BOTH_ENDS, start, {1, 5.5}}};
+  refuse("a relief that may start outside the active flank", "/optimization/variable_list", 2, late);
+  struct eo_listed_variable endless = {EO_PINION, EO_LEFT, end, {0, 10}};
+  refuse("an end relief without a length", "/optimization/variable_list", 1, &endless);
+  struct eo_listed_variable zero[] = {{EO_PINION, EO_LEFT, end, {0, 10}}, {EO_PINION, EO_LEFT, length, {0, 10}}};
+  refuse("an end relief whose length may vanish", "/optimization/variable_list", 2, zero);
+  struct eo_listed_variable good[] = {{EO_PINION, EO_LEFT, end, {0, 10}}, {EO_PINION, EO_LEFT, length, {1, 10}}};
+  ok(with_list(2, good) == EO_OK, "an end relief with a length");
+  refuse("no variable", "/optimization/variable_list", 0, good);
+  with_list(1, good);
+  design.optimization.variables = EO_VARIABLES_SHARED;
+  ok(!complete(&design) && strcmp(error.pointer, "/optimization/variable_list") == 0, "a list beside a preset: %s",
+     error.text);
+  struct eo_listed_variable right = {EO_PINION, EO_RIGHT, tip, open};
+  coarse_design(&design, "ga", 20);
+  design.gear_pair.ends = 1;
+  design.gear_pair.groove_width = NAN;
+  design.optimization.variables = EO_VARIABLES_LISTED;
+  design.optimization.list[0] = right;
+  design.optimization.listed = 1;
+  ok(!complete(&design) && strcmp(error.pointer, "/optimization/variable_list/0/end") == 0,
+     "the right end of a pair that has one: %s", error.text);
+}
+
+int main(void)
+{
+  if (!make_folder() || !(pair = coarse_pair()))
+    return 99;
+  for (int i = 0; i < EO_ALGORITHMS; i++)
+    test_threads(eo_optimizer_algorithm_name(i));
+  test_cancel();
+  test_removed_job("ga");
+  test_removed_job("credibility-ga");
+  test_reuse();
+  test_truth();
+  test_front();
+  test_failures();
+  test_constraints();
+  test_variables();
+  empty_folder();
+  rmdir(folder);
+  eo_pair_free(pair);
+  return tap_done();
+}
