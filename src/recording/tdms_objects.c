@@ -219,8 +219,8 @@ static const char *take_name(const char *path, char *name, size_t size)
   return *path ? path + 1 : path;
 }
 
-/* "/'group'/'channel'" becomes "channel". Whether two groups have channels of one name is no matter: columns may share
-   a name. */
+/* "/'group'/'channel'" (no NUL in it) becomes "channel". Whether two groups have channels of one name is no matter:
+   columns may share a name. */
 static void name_channel(const char *path, char *name, size_t size)
 {
   char group[EO_RECORDING_NAME];
@@ -274,12 +274,24 @@ static void list_channel(struct eo_tdms *tdms, int channel, bool data)
   tdms->list[*at] = (struct eo_tdms_list){channel, data};
 }
 
+/* Every path begins with "/". One with a NUL in it would be another, shorter one for whoever takes it as a C string. */
+static bool take_path(struct reader *r, const char **path, uint32_t *length)
+{
+  if (!take_string(r, path, length))
+    return false;
+  if (*length && **path == '/' && !memchr(*path, '\0', *length))
+    return true;
+  eo_error_set(r->error, EO_ERROR_INPUT, "", "TDMS: the object's path before byte %lld %s; the file is damaged.",
+               (long long)r->at, *length && **path == '/' ? "holds a NUL" : "does not begin with \"/\"");
+  return false;
+}
+
 static bool take_object(struct eo_tdms *tdms, struct reader *r, int hint)
 {
   const char *path;
   uint32_t length;
   bool data;
-  if (!take_string(r, &path, &length))
+  if (!take_path(r, &path, &length))
     return false;
   if (!is_channel(path, length))
     return take_index(r, NULL, -1, &data) && take_properties(r, NULL, NULL);

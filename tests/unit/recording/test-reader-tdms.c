@@ -295,6 +295,43 @@ static void test_damage(void)
   refused("no channel with numbers", "no channel");
 }
 
+/* Two channels, the first with this path of size bytes. */
+static void put_paths(const char *path, uint32_t size)
+{
+  w.size = 0;
+  begin_segment(METADATA | NEW_LIST | DATA);
+  put_number(&w, 2, 4);
+  put_number(&w, size, 4);
+  put_bytes(&w, path, size);
+  put_index(DOUBLE, 2);
+  put_number(&w, 0, 4);
+  put_string(&w, "/'g'/'other'");
+  put_index(DOUBLE, 2);
+  put_number(&w, 0, 4);
+  end_metadata();
+  for (int i = 0; i < 4; i++)
+    put_double(&w, i);
+  end_segment();
+  write_bytes(w.bytes, w.size);
+}
+
+/* The whole path counts, not what a C string would show of it: the first of these was read beyond its copy's end. */
+static void test_paths(void)
+{
+  put_paths("\0/'g'/'c'", 9);
+  refused("path before byte 45 does not begin with \"/\"", "a path that begins with a NUL");
+  put_paths("/\0'g'/'c'", 9);
+  refused("path before byte 45 holds a NUL", "a path with a NUL behind its slash");
+  put_paths("/'g'/'c\0'", 9);
+  refused("path before byte 45 holds a NUL", "a path with a NUL in a name");
+  put_paths("/'g\0'", 5);
+  refused("path before byte 41 holds a NUL", "a group's path with a NUL");
+  put_paths("x/'g'/'c'", 9);
+  refused("path before byte 45 does not begin with \"/\"", "a path without its slash");
+  put_paths("", 0);
+  refused("path before byte 36 does not begin with \"/\"", "an empty path");
+}
+
 /* Every byte of a small file is set to other values: an error or a recording, and nothing else (sanitizers watch). */
 static void test_every_byte(void)
 {
@@ -326,6 +363,7 @@ int main(void)
   test_types();
   test_scaled();
   test_damage();
+  test_paths();
   test_every_byte();
   return fixture_close();
 }
