@@ -3,6 +3,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "app/app.h"
 #include "app/data.h"
@@ -124,8 +125,8 @@ static enum eo_code write_file(const struct request *r, const struct eo_progress
   if (strcmp(r->output, "-") == 0)
     return eo_rig_write(&r->rig, progress, stdout, error);
   struct eo_text part = {0};
-  eo_text_print(&part, "%s.part", r->output);
-  FILE *stream = part.failed ? NULL : fopen(part.data, "w");
+  eo_text_print(&part, "%s.%ld.part", r->output, (long)getpid());
+  FILE *stream = part.failed ? NULL : fopen(part.data, "wx"); /* never over, and then away with, a file of somebody's */
   enum eo_code code = stream ? eo_rig_write(&r->rig, progress, stream, error)
                              : eo_error_set(error, EO_ERROR_FILE, "", "%.200s cannot be written: %s.", r->output,
                                             strerror(errno));
