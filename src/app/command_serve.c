@@ -103,6 +103,8 @@ static void serve_until_told(struct eo_http *http, struct eo_service *service, c
   int signal;
   printf("%s: %s\n", PACKAGE_NAME, eo_http_url(http));
   fflush(stdout);
+  if (*eo_http_notice(http))
+    fprintf(stderr, "%s: %s\n", PACKAGE_NAME, eo_http_notice(http));
   tell_manager();
   sigwait(signals, &signal);
   eo_http_quiesce(http);

@@ -16,11 +16,16 @@ static void get_health(struct eo_request *request)
   bool good = eo_service_status(request->http->service, &status, &error) == EO_OK && status.database;
   if (!good)
     memset(&status, 0, sizeof status);
-  json_t *health = json_pack(
-      "{s:s, s:s, s:f, s:{s:I, s:I}, s:s}", "status", good ? "ok" : "failing", "program", PACKAGE_STRING, "uptime_s",
-      (double)(long)(eo_clock_milliseconds() - request->http->started) / 1e3, "jobs", "queued",
-      (json_int_t)status.jobs[EO_JOB_QUEUED], "running",
-      (json_int_t)(status.jobs[EO_JOB_PREPARING] + status.jobs[EO_JOB_RUNNING]), "database", good ? "ok" : "failing");
+  const char *notice = eo_http_notice(request->http);
+  json_t *warnings = json_array();
+  if (*notice)
+    json_array_append_new(warnings, json_string(notice));
+  json_t *health = json_pack("{s:s, s:s, s:f, s:{s:I, s:I}, s:s, s:o}", "status", good ? "ok" : "failing", "program",
+                             PACKAGE_STRING, "uptime_s",
+                             (double)(long)(eo_clock_milliseconds() - request->http->started) / 1e3, "jobs", "queued",
+                             (json_int_t)status.jobs[EO_JOB_QUEUED], "running",
+                             (json_int_t)(status.jobs[EO_JOB_PREPARING] + status.jobs[EO_JOB_RUNNING]), "database",
+                             good ? "ok" : "failing", "warnings", warnings);
   eo_reply_json(request, good ? 200 : 503, health);
 }
 

@@ -25,11 +25,14 @@ struct eo_http_settings {
 };
 
 /* Starts answering. Errors: EO_ERROR_INPUT (address, token), EO_ERROR_FILE (the address is taken, pages or database
-   cannot be read). */
+   cannot be read, recordings that cannot be the database's). */
 enum eo_code eo_http_start(struct eo_http **http, const struct eo_http_settings *settings, struct eo_error *error);
 
 /* "http://127.0.0.1:8080/" */
 const char *eo_http_url(const struct eo_http *http);
+
+/* A sentence about what the start found and did with recordings that the database does not know; "": nothing. */
+const char *eo_http_notice(const struct eo_http *http);
 
 /* Takes no new connections and ends the streams; waiting requests are answered as the service lets go of them. First
    half of a stop: then end the service, then eo_http_stop(). */

@@ -25,7 +25,7 @@ static const struct {
      "{type text, title text, status integer, detail text, errors [{pointer text, detail text}], request_id text,"
      " findings? [Finding], notes? [text], layout? Layout?, signal? Signal, ...}"},
     {"Health", "{status 'ok|failing', program text, uptime_s number, jobs {queued integer, running integer}, database "
-               "'ok|failing'}"},
+               "'ok|failing', warnings [text]}"},
     {"Session", "{required flag, authorized flag}"},
     {"Token", "{token text}"},
     {"Examples", "{items [{name text, title text}]}"},

@@ -260,6 +260,17 @@ static void done(struct eo_http *http)
   free(http);
 }
 
+static enum eo_code tidy(struct eo_http *http, struct eo_error *error)
+{
+  int aside = 0;
+  enum eo_code code = eo_measurement_folder_tidy(http->store, &aside, error);
+  if (!code && aside)
+    snprintf(http->notice, sizeof http->notice,
+             "%d recording%s without a row in the database %s set aside in %.200s/measurements/lost+found.", aside,
+             aside == 1 ? "" : "s", aside == 1 ? "was" : "were", http->settings.data);
+  return code;
+}
+
 static enum eo_code start(struct eo_http *http, struct eo_error *error)
 {
   struct eo_listening listening;
@@ -267,7 +278,7 @@ static enum eo_code start(struct eo_http *http, struct eo_error *error)
   if (!code)
     code = eo_store_open(&http->store, http->settings.data, EO_STORE_WRITE, error);
   if (!code)
-    code = eo_measurement_folder_tidy(http->store, error);
+    code = tidy(http, error);
   if (!code)
     code = eo_background_new(&http->aside, http->settings.data, error);
   if (!code)
@@ -307,6 +318,11 @@ enum eo_code eo_http_start(struct eo_http **http, const struct eo_http_settings 
 const char *eo_http_url(const struct eo_http *http)
 {
   return http->url;
+}
+
+const char *eo_http_notice(const struct eo_http *http)
+{
+  return http->notice;
 }
 
 void eo_http_quiesce(struct eo_http *http)

@@ -39,8 +39,9 @@ struct eo_http {
   struct MHD_Daemon *daemon;
   int socket;
   char url[120];
-  double started; /* ms */
-  uint64_t run;   /* first half of request ids */
+  char notice[400]; /* what the start found, "": nothing */
+  double started;   /* ms */
+  uint64_t run;     /* first half of request ids */
   struct eo_service *service;
   struct eo_store *store; /* of the HTTP thread */
   struct eo_guard guard;  /* of the HTTP thread but for its constants */

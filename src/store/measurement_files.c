@@ -12,8 +12,6 @@
 #include "store/measurement_files.h"
 #include "store/statement.h"
 
-#define INCOMING "incoming-"
-
 static enum eo_code fault(const char *path, struct eo_error *error)
 {
   return eo_error_set(error, EO_ERROR_FILE, "", "%.250s: %s.", path, strerror(errno));
@@ -27,6 +25,11 @@ static bool fits(int length, size_t size)
 static bool name_root(const struct eo_store *store, char *path, size_t size)
 {
   return fits(snprintf(path, size, "%s/measurements", store->directory), size);
+}
+
+bool eo_measurement_folder_path(const struct eo_store *store, const char *prefix, int64_t id, char *path, size_t size)
+{
+  return fits(snprintf(path, size, "%s/measurements/%s%lld", store->directory, prefix, (long long)id), size);
 }
 
 bool eo_measurement_file_path(const struct eo_store *store, int64_t id, int file, char *path, size_t size)
@@ -52,65 +55,36 @@ enum eo_code eo_measurement_folder_new(struct eo_store *store, char *path, size_
   enum eo_code code = make_root(store, root, sizeof root, error);
   if (code)
     return code;
-  if (!fits(snprintf(path, size, "%s/" INCOMING "XXXXXX", root), size))
+  if (!fits(snprintf(path, size, "%s/" EO_MEASUREMENT_INCOMING "XXXXXX", root), size))
     return too_long(error);
   return mkdtemp(path) ? EO_OK : fault(path, error);
 }
 
-/* Two levels are all there are; links are removed, not followed. */
-static void remove_all(const char *path, int depth)
+bool eo_measurement_file_is_ours(const char *name)
 {
-  DIR *folder = depth ? opendir(path) : NULL;
-  const struct dirent *entry;
-  char inner[EO_STORE_PATH];
-  while (folder && (entry = readdir(folder)))
-    if (strcmp(entry->d_name, ".") != 0 && strcmp(entry->d_name, "..") != 0 &&
-        fits(snprintf(inner, sizeof inner, "%s/%s", path, entry->d_name), sizeof inner)) {
-      if (unlink(inner) && (errno == EISDIR || errno == EPERM))
-        remove_all(inner, depth - 1);
-    }
-  if (folder)
-    closedir(folder);
-  rmdir(path);
+  static const char *const temporary[] = {"inflated-", "recording-"};
+  if (name[0] >= '0' && name[0] < '0' + EO_MEASUREMENT_FILES && !name[1])
+    return true;
+  for (size_t i = 0; i < sizeof temporary / sizeof *temporary; i++) {
+    size_t length = strlen(temporary[i]);
+    if (strncmp(name, temporary[i], length) == 0 && strlen(name + length) == EO_MEASUREMENT_LETTERS)
+      return true;
+  }
+  return false;
 }
 
 void eo_measurement_folder_remove(const char *path)
 {
-  remove_all(path, 2);
-}
-
-/* ---- tidying ---- */
-
-static bool has_row(struct eo_store *store, const char *name, enum eo_code *code, struct eo_error *error)
-{
-  char *end;
-  long long id = strtoll(name, &end, 10);
-  if (*end || end == name || id <= 0 || *name == '0')
-    return false;
-  struct eo_statement s = eo_statement_begin(store, "SELECT 1 FROM measurement WHERE id = ?", "i", (int64_t)id);
-  bool there = eo_statement_step(&s);
-  *code = eo_statement_end(&s, error);
-  return there;
-}
-
-enum eo_code eo_measurement_folder_tidy(struct eo_store *store, struct eo_error *error)
-{
-  char root[EO_STORE_PATH], path[EO_STORE_PATH];
-  enum eo_code code = EO_OK;
-  if (!name_root(store, root, sizeof root))
-    return too_long(error);
-  DIR *folder = opendir(root);
-  if (!folder)
-    return errno == ENOENT ? EO_OK : fault(root, error);
+  DIR *folder = opendir(path);
   const struct dirent *entry;
-  while (!code && (entry = readdir(folder))) {
-    if (*entry->d_name == '.' || has_row(store, entry->d_name, &code, error) || code)
-      continue;
-    if (fits(snprintf(path, sizeof path, "%s/%s", root, entry->d_name), sizeof path) && unlink(path))
-      eo_measurement_folder_remove(path);
-  }
-  closedir(folder);
-  return code;
+  char file[EO_STORE_PATH];
+  while (folder && (entry = readdir(folder)))
+    if (eo_measurement_file_is_ours(entry->d_name) &&
+        fits(snprintf(file, sizeof file, "%s/%s", path, entry->d_name), sizeof file))
+      unlink(file);
+  if (folder)
+    closedir(folder);
+  rmdir(path);
 }
 
 /* ---- to the disk ---- */
@@ -134,24 +108,48 @@ enum eo_code eo_measurement_folder_flush(const char *folder, int files, struct e
   return code ? code : flush(folder, O_DIRECTORY, error);
 }
 
+bool eo_measurement_folder_is_there(const struct eo_store *store, int64_t id)
+{
+  char path[EO_STORE_PATH];
+  struct stat status;
+  return !eo_measurement_folder_path(store, "", id, path, sizeof path) || lstat(path, &status) == 0;
+}
+
 enum eo_code eo_measurement_folder_keep(const struct eo_store *store, const char *folder, int64_t id,
                                         struct eo_error *error)
 {
-  char root[EO_STORE_PATH], path[EO_STORE_PATH + 24];
-  if (!name_root(store, root, sizeof root))
+  char root[EO_STORE_PATH], path[EO_STORE_PATH];
+  if (!name_root(store, root, sizeof root) || !eo_measurement_folder_path(store, "", id, path, sizeof path))
     return too_long(error);
-  snprintf(path, sizeof path, "%s/%lld", root, (long long)id);
-  eo_measurement_folder_remove(path); /* of a transaction that was taken back: its number was never given */
-  if (rename(folder, path))
+  if (rename(folder, path)) /* onto a folder that holds anything it fails */
     return fault(path, error);
-  return flush(root, O_DIRECTORY, error);
+  enum eo_code code = flush(root, O_DIRECTORY, error);
+  if (code)
+    rename(path, folder);
+  return code;
+}
+
+void eo_measurement_folder_give_back(const struct eo_store *store, const char *folder, int64_t id)
+{
+  char path[EO_STORE_PATH];
+  if (eo_measurement_folder_path(store, "", id, path, sizeof path))
+    rename(path, folder);
+}
+
+enum eo_code eo_measurement_folder_mark(const struct eo_store *store, int64_t id, bool deleted, struct eo_error *error)
+{
+  char kept[EO_STORE_PATH], marked[EO_STORE_PATH];
+  if (!eo_measurement_folder_path(store, "", id, kept, sizeof kept) ||
+      !eo_measurement_folder_path(store, EO_MEASUREMENT_DELETED, id, marked, sizeof marked))
+    return too_long(error);
+  if (rename(deleted ? kept : marked, deleted ? marked : kept) && errno != ENOENT)
+    return fault(kept, error);
+  return EO_OK;
 }
 
 void eo_measurement_folder_drop(const struct eo_store *store, int64_t id)
 {
-  char root[EO_STORE_PATH], path[EO_STORE_PATH + 24];
-  if (!name_root(store, root, sizeof root))
-    return;
-  snprintf(path, sizeof path, "%s/%lld", root, (long long)id);
-  eo_measurement_folder_remove(path);
+  char path[EO_STORE_PATH];
+  if (eo_measurement_folder_path(store, EO_MEASUREMENT_DELETED, id, path, sizeof path))
+    eo_measurement_folder_remove(path);
 }

@@ -111,16 +111,31 @@ static enum eo_code has_design(struct eo_store *store, int64_t design, bool *the
   return eo_statement_end(&s, error);
 }
 
+/* Above every number that was ever given and every folder that bears one: after an older database was put back there
+   are folders that it knows nothing of. */
+static enum eo_code next_number(struct eo_store *store, int64_t *id, struct eo_error *error)
+{
+  struct eo_statement s = eo_statement_begin(
+      store, "SELECT max(?, ifnull((SELECT seq FROM sqlite_sequence WHERE name = 'measurement'), 0)) + 1", "i",
+      eo_measurement_folder_highest(store));
+  *id = eo_statement_step(&s) ? eo_column_integer(&s, 0) : 0;
+  enum eo_code code = eo_statement_end(&s, error);
+  while (!code && eo_measurement_folder_is_there(store, *id))
+    ++*id;
+  return code;
+}
+
 static enum eo_code insert(struct eo_store *store, const struct eo_stored_measurement *m, int64_t *id,
                            struct eo_error *error)
 {
-  enum eo_code code = EO_STATEMENT_RUN(
-      store, error,
-      "INSERT INTO measurement (design, digest, label, torque_Nm, speed_rad_s, layout, pair, summary, result) "
-      "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)",
-      "ittrrtttt", m->design, m->digest, m->unmodified ? "unmodified" : "modified", m->torque, m->speed,
-      *m->layout ? m->layout : NULL, m->pair, m->summary, m->result);
-  *id = sqlite3_last_insert_rowid(store->handle);
+  enum eo_code code = next_number(store, id, error);
+  if (!code)
+    code = EO_STATEMENT_RUN(
+        store, error,
+        "INSERT INTO measurement (id, design, digest, label, torque_Nm, speed_rad_s, layout, pair, summary, result) "
+        "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
+        "iittrrtttt", *id, m->design, m->digest, m->unmodified ? "unmodified" : "modified", m->torque, m->speed,
+        *m->layout ? m->layout : NULL, m->pair, m->summary, m->result);
   for (int i = 0; i < m->files && !code; i++)
     code = EO_STATEMENT_RUN(
         store, error, "INSERT INTO measurement_file (measurement, ordinal, name, size, sha256) VALUES (?, ?, ?, ?, ?)",
@@ -128,9 +143,10 @@ static enum eo_code insert(struct eo_store *store, const struct eo_stored_measur
   return code;
 }
 
+/* *kept: the number that the folder bears from then on. */
 static enum eo_code add(struct eo_store *store, const struct eo_stored_measurement *m, const char *folder,
-                        eo_store_visit_measurement *visit, void *context, enum eo_measurement_outcome *outcome,
-                        struct eo_error *error)
+                        int64_t *kept, eo_store_visit_measurement *visit, void *context,
+                        enum eo_measurement_outcome *outcome, struct eo_error *error)
 {
   int64_t id;
   bool design;
@@ -146,6 +162,8 @@ static enum eo_code add(struct eo_store *store, const struct eo_stored_measureme
   code = insert(store, m, &id, error);
   if (!code)
     code = eo_measurement_folder_keep(store, folder, id, error);
+  if (!code)
+    *kept = id;
   return code ? code : eo_store_find_measurement(store, id, visit, context, outcome, error);
 }
 
@@ -153,18 +171,39 @@ enum eo_code eo_store_add_measurement(struct eo_store *store, const struct eo_st
                                       eo_store_visit_measurement *visit, void *context,
                                       enum eo_measurement_outcome *outcome, struct eo_error *error)
 {
+  int64_t kept = 0;
   enum eo_code code = eo_measurement_folder_flush(folder, m->files, error);
   if (!code)
     code = eo_store_begin(store, error);
-  return code ? code : close(store, add(store, m, folder, visit, context, outcome, error), error);
+  if (code)
+    return code;
+  code = close(store, add(store, m, folder, &kept, visit, context, outcome, error), error);
+  if (code && kept)
+    eo_measurement_folder_give_back(store, folder, kept);
+  return code;
 }
 
+static enum eo_code remove_row(struct eo_store *store, int64_t id, enum eo_measurement_outcome *outcome,
+                               struct eo_error *error)
+{
+  enum eo_code code = EO_STATEMENT_RUN(store, error, "DELETE FROM measurement WHERE id = ?", "i", id);
+  bool gone = !code && sqlite3_changes(store->handle);
+  *outcome = gone ? EO_MEASUREMENT_DONE : EO_MEASUREMENT_MISSING;
+  return gone ? eo_measurement_folder_mark(store, id, true, error) : code;
+}
+
+/* The folder is marked before the row is gone for good: a start that finds the mark without a row knows that the
+   deletion was asked for, and one that finds both takes the mark off. */
 enum eo_code eo_store_remove_measurement(struct eo_store *store, int64_t id, enum eo_measurement_outcome *outcome,
                                          struct eo_error *error)
 {
-  enum eo_code code = EO_STATEMENT_RUN(store, error, "DELETE FROM measurement WHERE id = ?", "i", id);
-  *outcome = !code && sqlite3_changes(store->handle) ? EO_MEASUREMENT_DONE : EO_MEASUREMENT_MISSING;
-  if (!code && *outcome == EO_MEASUREMENT_DONE)
+  enum eo_code code = eo_store_begin(store, error);
+  if (code)
+    return code;
+  code = close(store, remove_row(store, id, outcome, error), error);
+  if (*outcome == EO_MEASUREMENT_DONE && code)
+    eo_measurement_folder_mark(store, id, false, NULL);
+  else if (*outcome == EO_MEASUREMENT_DONE)
     eo_measurement_folder_drop(store, id);
   return code;
 }

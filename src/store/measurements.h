@@ -1,6 +1,6 @@
 /* Recordings of a rig: rows, and the files they stand for. A measurement is there once its row is; its files are then
    complete in DATA/measurements/ID/0 (and 1), brought to the disk before the row. What a process left that ended in
-   between has no row and goes away with eo_measurement_folder_tidy(). Functions that write open their own transaction;
+   between is put in order by eo_measurement_folder_tidy(). Functions that write open their own transaction;
    texts that a visit gets are borrowed until it returns. */
 #ifndef EASEOFF_STORE_MEASUREMENTS_H
 #define EASEOFF_STORE_MEASUREMENTS_H
@@ -62,7 +62,7 @@ enum eo_code eo_store_find_measurement_digest(struct eo_store *store, const char
 enum eo_code eo_store_list_measurements(struct eo_store *store, int64_t design, int64_t before, int limit,
                                         eo_store_visit_measurement *visit, void *context, struct eo_error *error);
 
-/* The row, then its files. Outcomes: DONE, MISSING. */
+/* Its row and its files. Outcomes: DONE, MISSING. */
 enum eo_code eo_store_remove_measurement(struct eo_store *store, int64_t id, enum eo_measurement_outcome *outcome,
                                          struct eo_error *error);
 
@@ -71,14 +71,17 @@ enum eo_code eo_store_measured_bytes(struct eo_store *store, int64_t *bytes, str
 
 /* ---- files ---- */
 
-/* Removes what has no row: files that were on their way when a process ended, those of deleted rows. Nobody else may
-   add or remove meanwhile: once, when the server starts. */
-enum eo_code eo_measurement_folder_tidy(struct eo_store *store, struct eo_error *error);
+/* Puts DATA/measurements in order after whatever ended the process before. Unfinished uploads go away, and so does what
+   somebody asked to have deleted. A recording without a row (an older database was put back, or an upload ended before
+   its answer) is set aside: moved to DATA/measurements/lost+found, under its number or NUMBER-2, ... where that is
+   taken; *aside: how many. What is not ours stays. Errors: EO_ERROR_FILE too when there are recordings beside a
+   database that never had a design. Nobody else may add or remove meanwhile: once, when the server starts. */
+enum eo_code eo_measurement_folder_tidy(struct eo_store *store, int *aside, struct eo_error *error);
 
 /* A new empty folder for files on their way, below the data folder; copied to path[size]. */
 enum eo_code eo_measurement_folder_new(struct eo_store *store, char *path, size_t size, struct eo_error *error);
 
-/* With everything in it; what cannot be removed is left for the next start. */
+/* With the files in it that we put there; it stays when it holds anything else, or cannot be removed. */
 void eo_measurement_folder_remove(const char *path);
 
 /* "DATA/measurements/ID/FILE"; false: it does not fit. */

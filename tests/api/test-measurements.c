@@ -568,6 +568,52 @@ static void test_other_pair(void)
   free(text);
 }
 
+static void name_in_folder(char *path, size_t size, const char *name)
+{
+  snprintf(path, size, "%s/%s", server.folder, name);
+}
+
+/* A recording that the database does not know, as after an older one was put back, and a folder of somebody's. */
+static void test_set_aside(void)
+{
+  char path[300];
+  name_in_folder(path, sizeof path, "measurements/700");
+  mkdir(path, 0777);
+  name_in_folder(path, sizeof path, "measurements/700/0");
+  FILE *file = fopen(path, "w");
+  ok(file && fputs("1,2,3", file) >= 0 && fclose(file) == 0, "a recording without a row");
+  name_in_folder(path, sizeof path, "measurements/backup");
+  mkdir(path, 0777);
+  int kept = count_kept();
+  ok(stop_server(SIGTERM) == 0 && start_server("--quiet"), "the next server starts");
+  json_t *health = call_json("GET", API "/health", NULL, NULL, NULL);
+  const char *warning = json_string_value(json_array_get(json_object_get(health, "warnings"), 0));
+  ok(warning && strstr(warning, "1 recording ") && strstr(warning, "lost+found"), "and says: %s", warning);
+  json_decref(health);
+  ok(access(path, F_OK) == 0 && count_kept() == kept, "what is not its own stays, and so do all recordings with a row");
+  name_in_folder(path, sizeof path, "measurements/lost+found/700/0");
+  ok(access(path, F_OK) == 0, "the one without lies where it says");
+}
+
+/* The recordings beside a database that is not theirs. */
+static void test_new_database(void)
+{
+  static const char *const names[] = {"easeoff.db", "easeoff.db-wal", "easeoff.db-shm"};
+  char path[300];
+  int status = 0;
+  for (int i = 0; i < 3; i++) {
+    name_in_folder(path, sizeof path, names[i]);
+    unlink(path);
+  }
+  bool started = start_server("--quiet");
+  waitpid(server.pid, &status, started ? WNOHANG : 0);
+  name_in_folder(path, sizeof path, "measurements/1/0");
+  ok(!started && WIFEXITED(status) && WEXITSTATUS(status) == 2 && access(path, F_OK) == 0,
+     "beside a new database no server starts, and the recordings stay");
+  if (started)
+    stop_server(SIGTERM);
+}
+
 int main(void)
 {
   signal(SIGPIPE, SIG_IGN);
@@ -588,11 +634,13 @@ int main(void)
   test_comparison();
   test_fit();
   test_other_pair();
+  test_set_aside();
   free(text);
   json_decref(design);
   free_reply(&modified);
   free_reply(&unmodified);
   ok(stop_server(SIGTERM) == 0, "it stops");
+  test_new_database();
   remove_data_folder();
   expect_all_of((const char *const[]){"Measurement", "ListedMeasurement", "Comparison", "Fit", NULL}, NULL);
   tell_what_was_heard();

@@ -151,31 +151,127 @@ static void test_removing(void)
   ok(add(1, 'd', &kept) == EO_MEASUREMENT_DONE && kept.id == 3, "its number is not used again");
 }
 
-/* What the death of a process leaves: files on their way, a folder that was renamed before its row was committed, one
-   whose row is gone. */
+static void make(const char *name)
+{
+  char path[400];
+  snprintf(path, sizeof path, "%s/measurements/%s", folder, name);
+  mkdir(path, 0777);
+}
+
+/* A folder with one file in it. */
+static void make_with(const char *name, const char *file, const char *content)
+{
+  char path[400];
+  make(name);
+  snprintf(path, sizeof path, "%s/measurements/%s", folder, name);
+  put_file(path, file, content);
+}
+
+static bool holds(const char *name, const char *content)
+{
+  char path[600], found[100] = "";
+  snprintf(path, sizeof path, "%s/measurements/%s", folder, name);
+  FILE *stream = fopen(path, "r");
+  if (stream) {
+    found[fread(found, 1, sizeof found - 1, stream)] = '\0';
+    fclose(stream);
+  }
+  return stream && strcmp(found, content) == 0;
+}
+
+static int tidy(void)
+{
+  int aside = -1;
+  if (eo_measurement_folder_tidy(store, &aside, &error))
+    printf("# %s\n", error.text);
+  return aside;
+}
+
+/* What the death of a process leaves: files on their way, a folder that was renamed before its row was committed,
+   deletions before and after the row was gone. */
 static void test_tidying(void)
 {
-  char path[400], outside[300];
+  make_with("incoming-a1B2c3", "0", "half");
+  make_with("incoming-a1B2c3", "inflated-Zz09aa", "half");
+  make_with("4", "0", "whole, but without a row");
+  make_with("deleted-2", "0", "asked for");
+  char kept[400], marked[400];
+  snprintf(kept, sizeof kept, "%s/measurements/3", folder);
+  snprintf(marked, sizeof marked, "%s/measurements/deleted-3", folder);
+  ok(rename(kept, marked) == 0 && tidy() == 1, "one recording has no row");
+  ok(!is_there("%s/measurements/%s", "incoming-a1B2c3"), "an unfinished upload goes away at a start");
+  ok(!is_there("%s/measurements/%s", "4") && holds("lost+found/4/0", "whole, but without a row"),
+     "a recording without a row is set aside");
+  ok(!is_there("%s/measurements/%s", "deleted-2"), "a deletion without a row is finished");
+  ok(holds("3/0", "1,2,3") && !is_there("%s/measurements/%s", "deleted-3"), "one with its row is undone");
+  ok(holds("1/0", "1,2,3"), "what has a row stays");
+  make_with("4", "0", "another one");
+  make_with("deleted-1", "0", "nobody knows how");
+  ok(tidy() == 2 && holds("lost+found/4/0", "whole, but without a row") && holds("lost+found/4-2/0", "another one") &&
+         holds("lost+found/deleted-1/0", "nobody knows how") && holds("1/0", "1,2,3"),
+     "nothing that was set aside is overwritten");
+  ok(tidy() == 0 && count_entries() == 3, "once");
+}
+
+/* Whatever lies there that we did not put there stays as it is. */
+static void test_strangers(void)
+{
+  char outside[300], link[400];
   snprintf(outside, sizeof outside, "%s/outside", folder);
   mkdir(outside, 0777);
-  put_file(outside, "kept", "x");
-  eo_measurement_folder_new(store, path, sizeof path, &error);
-  put_file(path, "0", "half");
-  snprintf(path, sizeof path, "%s/measurements/4", folder);
-  mkdir(path, 0777);
-  put_file(path, "0", "whole, but without a row");
-  snprintf(path, sizeof path, "%s/measurements/01", folder);
-  mkdir(path, 0777);
-  snprintf(path, sizeof path, "%s/measurements/link", folder);
-  ok(symlink(outside, path) == 0, "a link");
+  put_file(outside, "0", "x");
+  snprintf(link, sizeof link, "%s/measurements/99", folder);
+  ok(symlink(outside, link) == 0, "a link");
   put_file(folder, "measurements/file", "x");
-  ok(count_entries() == 7, "leftovers");
-  ok(eo_measurement_folder_tidy(store, &error) == EO_OK && count_entries() == 2, "go away at a start %s", error.text);
-  ok(is_there("%s/measurements/1/%s", "0") && is_there("%s/measurements/3/%s", "0"), "what has a row stays");
-  ok(is_there("%s/outside/%s", "kept"), "and so does what a link leads to");
-  snprintf(path, sizeof path, "%s/kept", outside);
-  unlink(path);
-  rmdir(outside);
+  put_file(folder, "measurements/77", "a file with a number for a name");
+  make_with("backup", "0", "x");
+  make_with("2026", "notes.txt", "x");
+  make_with("01", "0", "x");
+  make_with("12345678901234567890", "0", "x");
+  make_with("incoming-photos", "0", "x");
+  make_with("incoming-photos", "cat.jpg", "x");
+  make_with("incoming-letters", "0", "x");
+  make_with("deleted-8", "notes.txt", "x");
+  ok(tidy() == 0 && holds("file", "x") && holds("77", "a file with a number for a name") && holds("99/0", "x") &&
+         holds("backup/0", "x") && holds("2026/notes.txt", "x") && holds("01/0", "x") &&
+         holds("12345678901234567890/0", "x") && holds("incoming-photos/0", "x") &&
+         holds("incoming-photos/cat.jpg", "x") && holds("incoming-letters/0", "x") && holds("deleted-8/notes.txt", "x"),
+     "what is not ours stays where it is");
+}
+
+/* Folders that the database knows nothing of, as after an older one was put back. */
+static void test_numbers(void)
+{
+  struct eo_stored_measurement kept = {0};
+  make_with("20", "0", "came while the server ran");
+  make_with("21", "notes.txt", "not ours, but in the way");
+  enum eo_measurement_outcome outcome = add(1, 'f', &kept);
+  ok(outcome == EO_MEASUREMENT_DONE && kept.id == 22 && holds("22/0", "1,2,3") &&
+         holds("20/0", "came while the server ran") && holds("21/notes.txt", "not ours, but in the way"),
+     "a new recording has a number above every folder's: %d", (int)kept.id);
+  make_with("lost+found/40-3", "0", "set aside");
+  outcome = add(1, 'g', &kept);
+  ok(outcome == EO_MEASUREMENT_DONE && kept.id == 41, "and above those set aside: %d", (int)kept.id);
+  make_with("23", "0", "above the rows, below the highest");
+  ok(tidy() == 2 && holds("22/0", "1,2,3") && holds("41/0", "1,2,3"), "which are set aside at the next start");
+}
+
+/* A deletion that cannot be finished is undone, files and all. */
+static void test_undeleting(void)
+{
+  enum eo_measurement_outcome outcome;
+  make_with("deleted-22", "notes.txt", "in the way");
+  ok(eo_store_remove_measurement(store, 22, &outcome, &error) == EO_ERROR_FILE && holds("22/0", "1,2,3"),
+     "a deletion that fails leaves the files: %s", error.text);
+  struct eo_stored_measurement kept = {0};
+  ok(eo_store_find_measurement(store, 22, remember, &kept, &outcome, &error) == EO_OK && outcome == EO_MEASUREMENT_DONE,
+     "and the row");
+}
+
+static enum eo_code refuse(void *context, const struct eo_stored_measurement *row, struct eo_error *fault)
+{
+  (void)context, (void)row;
+  return eo_error_memory(fault);
 }
 
 /* A transaction that cannot be finished, because there is nothing to keep. */
@@ -183,7 +279,7 @@ static void test_failing(void)
 {
   enum eo_measurement_outcome outcome;
   char digest[EO_HASH_LENGTH + 1] = "";
-  int all = 0;
+  int all = 0, entries = count_entries();
   memset(digest, 'e', EO_HASH_LENGTH);
   struct eo_stored_measurement row = {.design = 1,
                                       .digest = digest,
@@ -202,31 +298,62 @@ static void test_failing(void)
   eo_measurement_folder_new(store, incoming, sizeof incoming, &error);
   put_file(incoming, "0", "");
   ok(eo_store_add_measurement(store, &row, incoming, NULL, NULL, &outcome, &error) == EO_ERROR_FILE, "no JSON");
+  row.result = "{}";
+  enum eo_code code = eo_store_add_measurement(store, &row, incoming, refuse, NULL, &outcome, &error);
+  ok(code == EO_ERROR_MEMORY && access(incoming, F_OK) == 0, "a transaction that ends badly gives the files back");
   eo_measurement_folder_remove(incoming);
   eo_store_list_measurements(store, 0, 0, 10, count, &all, &error);
-  ok(all == 2 && count_entries() == 2, "nothing of either stays");
+  ok(all == 4 && count_entries() == entries, "nothing of them stays");
+}
+
+/* ---- databases that do not belong to the recordings ---- */
+
+static bool is_refused(const char *words)
+{
+  int aside;
+  struct eo_store *other = NULL;
+  enum eo_code code = eo_store_open(&other, folder, EO_STORE_WRITE, &error);
+  if (!code)
+    code = eo_measurement_folder_tidy(other, &aside, &error);
+  eo_store_close(other);
+  return code == EO_ERROR_FILE && strstr(error.text, words) && holds("1/0", "1,2,3") && holds("41/0", "1,2,3");
+}
+
+static void test_other_databases(void)
+{
+  char path[300], away[300];
+  snprintf(path, sizeof path, "%s/easeoff.db", folder);
+  snprintf(away, sizeof away, "%s/away.db", folder);
+  eo_store_close(store);
+  store = NULL;
+  ok(rename(path, away) == 0 && is_refused("4 recordings, but the database beside it is new"),
+     "recordings beside a new database: %s", error.text);
+  ok(is_refused("is new"), "and at the next start");
+  ok(truncate(path, 0) == 0 && is_refused("is new"), "beside an empty file");
+  rename(away, path);
 }
 
 int main(void)
 {
-  static const char *const names[] = {"easeoff.db", "easeoff.db-wal", "easeoff.db-shm"};
-  char path[300];
+  char path[300], command[400];
+  int aside;
   snprintf(folder, sizeof folder, "%s/easeoff-measurements-XXXXXX", getenv("TMPDIR") ? getenv("TMPDIR") : "/tmp");
   if (!mkdtemp(folder) || eo_store_open(&store, folder, EO_STORE_WRITE, &error))
     return 99;
-  ok(eo_measurement_folder_tidy(store, &error) == EO_OK, "an empty data folder is tidy");
+  ok(eo_measurement_folder_tidy(store, &aside, &error) == EO_OK && aside == 0, "an empty data folder is tidy");
   test_adding();
   test_listing();
   test_removing();
   test_tidying();
+  test_strangers();
+  test_numbers();
+  test_undeleting();
   test_failing();
+  test_other_databases();
   eo_store_close(store);
-  snprintf(path, sizeof path, "%s/measurements", folder);
-  eo_measurement_folder_remove(path);
-  for (int i = 0; i < 3; i++) {
-    snprintf(path, sizeof path, "%s/%s", folder, names[i]);
-    unlink(path);
-  }
-  ok(rmdir(folder) == 0, "nothing else was written");
+  snprintf(path, sizeof path, "%s/measurements/99", folder);
+  unlink(path);
+  snprintf(command, sizeof command, "rm -rf '%s'", folder);
+  ok(system(command) == 0, "the folder is removed");
   return tap_done();
 }
