@@ -27,6 +27,27 @@ static enum eo_code read_integer(struct eo_store *store, const char *sql, int *v
   return eo_statement_end(&s, error);
 }
 
+/* A new database is one page. More pages or a schema's number without a table: the first page is damaged, and writing a
+   new one there would lose what the others still hold. */
+static enum eo_code expect_tables(struct eo_store *store, int schema, struct eo_error *error)
+{
+  struct stat status = {0};
+  int pages = 0, page_size = 0, tables = 0;
+  enum eo_code code = read_integer(store, "PRAGMA page_count", &pages, error);
+  if (!code)
+    code = read_integer(store, "PRAGMA page_size", &page_size, error);
+  if (code || (!schema && pages <= 1 && (stat(store->path, &status) != 0 || status.st_size <= page_size)))
+    return code;
+  code = read_integer(store, "SELECT count(*) FROM sqlite_schema", &tables,
+                      error); /* another process may be making it */
+  return code || tables
+             ? code
+             : eo_error_set(error, EO_ERROR_FILE, "",
+                            "%.200s is damaged: it has content, but no table can be found in it. Put a copy back that "
+                            "is whole, or move the file to another place to begin anew.",
+                            store->path);
+}
+
 /* Whose database this is and how old; both 0 in a new file. */
 static enum eo_code identify(struct eo_store *store, int *schema, struct eo_error *error)
 {
@@ -44,7 +65,7 @@ static enum eo_code identify(struct eo_store *store, int *schema, struct eo_erro
     return eo_error_set(error, EO_ERROR_FILE, "",
                         "%.200s has schema %d, this program knows only %d: a newer version of the program wrote it.",
                         store->path, *schema, eo_store_schema);
-  return EO_OK;
+  return tables ? EO_OK : expect_tables(store, *schema, error);
 }
 
 /* Within a transaction: another process may have been faster. */
@@ -142,10 +163,30 @@ static enum eo_code use_journal(struct eo_store *store, struct eo_error *error)
   return fault ? eo_store_fault(store, fault, error) : EO_OK;
 }
 
+/* SQLite takes a journal without its database for one that was left over, and deletes it. */
+static enum eo_code expect_no_lone_journal(const struct eo_store *store, struct eo_error *error)
+{
+  struct stat database = {0}, journal = {0};
+  char *name = malloc(strlen(store->path) + sizeof "-wal");
+  if (!name)
+    return eo_error_memory(error);
+  sprintf(name, "%s-wal", store->path);
+  bool left = stat(name, &journal) == 0 && journal.st_size > 0; /* before the database, which is always made first */
+  bool alone = left && (stat(store->path, &database) != 0 || database.st_size == 0);
+  free(name);
+  return alone ? eo_error_set(error, EO_ERROR_FILE, "",
+                              "%.150s is missing or empty, but its journal %.150s-wal is there: put the database back, "
+                              "or move the journal to another place.",
+                              store->path, store->path)
+               : EO_OK;
+}
+
 static enum eo_code open_for_writing(struct eo_store *store, int flags, struct eo_error *error)
 {
   int schema = 0;
-  enum eo_code code = connect(store, store->path, SQLITE_OPEN_READWRITE | flags, error);
+  enum eo_code code = expect_no_lone_journal(store, error);
+  if (!code)
+    code = connect(store, store->path, SQLITE_OPEN_READWRITE | flags, error);
   if (!code)
     code = identify(store, &schema, error);
   if (!code)

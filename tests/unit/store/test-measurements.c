@@ -319,18 +319,47 @@ static bool is_refused(const char *words)
   return code == EO_ERROR_FILE && strstr(error.text, words) && holds("1/0", "1,2,3") && holds("41/0", "1,2,3");
 }
 
+static void overwrite(const char *path, long at, const void *bytes, size_t size)
+{
+  FILE *file = fopen(path, "r+");
+  if (file) {
+    fseek(file, at, SEEK_SET);
+    fwrite(bytes, 1, size, file);
+    fclose(file);
+  }
+}
+
 static void test_other_databases(void)
 {
-  char path[300], away[300];
+  char path[300], away[300], journal[300];
   snprintf(path, sizeof path, "%s/easeoff.db", folder);
   snprintf(away, sizeof away, "%s/away.db", folder);
+  snprintf(journal, sizeof journal, "%s/easeoff.db-wal", folder);
   eo_store_close(store);
   store = NULL;
   ok(rename(path, away) == 0 && is_refused("4 recordings, but the database beside it is new"),
      "recordings beside a new database: %s", error.text);
   ok(is_refused("is new"), "and at the next start");
   ok(truncate(path, 0) == 0 && is_refused("is new"), "beside an empty file");
+  truncate(path, 0);
+  put_file(folder, "easeoff.db-wal", "what was last written");
+  ok(is_refused("its journal") && access(journal, F_OK) == 0, "a journal without its database: %s", error.text);
+  unlink(journal);
   rename(away, path);
+}
+
+/* The first page of a database, damaged so that it says: a new one, without tables. */
+static void test_damaged_database(void)
+{
+  static const unsigned char leaf[8] = {13, 0, 0, 0, 0, 16, 0, 0}, nothing[12] = {0};
+  char path[300];
+  struct stat before, after;
+  snprintf(path, sizeof path, "%s/easeoff.db", folder);
+  overwrite(path, 60, nothing, sizeof nothing); /* whose database it is, and its schema's number */
+  overwrite(path, 100, leaf, sizeof leaf);      /* the root of the table of tables */
+  stat(path, &before);
+  ok(is_refused("no table can be found"), "a database whose first page is damaged: %s", error.text);
+  ok(stat(path, &after) == 0 && after.st_size == before.st_size && after.st_size > 4096, "which is left as it is");
 }
 
 int main(void)
@@ -350,6 +379,7 @@ int main(void)
   test_undeleting();
   test_failing();
   test_other_databases();
+  test_damaged_database();
   eo_store_close(store);
   snprintf(path, sizeof path, "%s/measurements/99", folder);
   unlink(path);
