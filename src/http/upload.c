@@ -121,6 +121,8 @@ static enum MHD_Result add_to_field(struct eo_request *request, const char *data
   struct eo_text *value = &upload->field[upload->fields - 1].value;
   if (value->size + size > EO_UPLOAD_FIELD_BYTES)
     return refuse(request, 413, "A part of the form that is no file is too long.");
+  if (memchr(data, '\0', size)) /* what follows it would not be looked at */
+    return refuse(request, 422, "A part of the form that is no file holds a NUL byte.");
   eo_text_add_bytes(value, data, size);
   return MHD_YES;
 }

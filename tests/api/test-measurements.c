@@ -442,6 +442,13 @@ static void test_bodies(void)
   expect("a part with an empty name before all that is known", post_bytes(&twice, twice.size, twice.size), 422);
   free(twice.text);
   twice = (struct form){0};
+  add_part(&twice, "layout", NULL, "null\0{", 6);
+  twice.text = realloc(twice.text, twice.size + form.size);
+  memcpy(twice.text + twice.size, form.text, form.size);
+  twice.size += form.size;
+  expect("a part with a NUL, behind which nobody would look", post_bytes(&twice, twice.size, twice.size), 422);
+  free(twice.text);
+  twice = (struct form){0};
   char *long_text = calloc(1, 100001);
   memset(long_text, 'x', 100000);
   add_text(&twice, "layout", long_text);
