@@ -13,7 +13,10 @@ for (const name of await readdir(target)) {
 }
 await build({
   absWorkingDir: here,
-  entryPoints: [{ in: 'src/main.js', out: 'page' }, { in: 'src/style.css', out: 'page' }],
+  entryPoints: [
+    { in: 'src/main.js', out: 'page' },
+    { in: 'src/style.css', out: 'page' },
+  ],
   outdir: target,
   bundle: true,
   splitting: true, // three.js is loaded when it is first seen

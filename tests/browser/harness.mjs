@@ -52,22 +52,37 @@ export class Server {
 
   /** Starts it, the second time at the same address. */
   async open() {
-    this.process = spawn(EASEOFF, ['serve', '--listen', `127.0.0.1:${this.port}`, '--data', this.folder, '--web', PAGE, '--quiet', '--threads', '2'], { stdio: ['ignore', 'pipe', 'inherit'], env: { ...process.env, ...this.environment } });
+    this.process = spawn(
+      EASEOFF,
+      [
+        'serve',
+        '--listen',
+        `127.0.0.1:${this.port}`,
+        '--data',
+        this.folder,
+        '--web',
+        PAGE,
+        '--quiet',
+        '--threads',
+        '2',
+      ],
+      { stdio: ['ignore', 'pipe', 'inherit'], env: { ...process.env, ...this.environment } },
+    );
     this.address = await new Promise((resolve, reject) => {
       let text = '';
-      this.process.stdout.on('data', (data) => {
+      this.process.stdout.on('data', data => {
         text += data;
         const address = /http:\/\/\S+/.exec(text);
         if (address) resolve(address[0]);
       });
-      this.process.on('exit', (code) => reject(new Error(`the server ended with ${code}`)));
+      this.process.on('exit', code => reject(new Error(`the server ended with ${code}`)));
     });
     this.port = new URL(this.address).port;
   }
 
   /** Ends it and waits for that. */
   async close() {
-    const ended = new Promise((resolve) => this.process.on('exit', resolve));
+    const ended = new Promise(resolve => this.process.on('exit', resolve));
     this.process.kill('SIGTERM');
     await ended;
   }

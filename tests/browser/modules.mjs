@@ -21,13 +21,26 @@ const ok = (condition, what) => {
   if (!condition) failed += 1;
   console.log(`${condition ? 'ok' : 'not ok'} ${count} - ${what}`);
 };
-const is = (value, expected, what) => ok(same(value, expected), `${what}${same(value, expected) ? '' : `: ${JSON.stringify(value)}, expected ${JSON.stringify(expected)}`}`);
-const near = (value, expected, tolerance, what) => ok(Math.abs(value - expected) <= tolerance, `${what}: ${value} against ${expected}`);
+const is = (value, expected, what) =>
+  ok(
+    same(value, expected),
+    `${what}${same(value, expected) ? '' : `: ${JSON.stringify(value)}, expected ${JSON.stringify(expected)}`}`,
+  );
+const near = (value, expected, tolerance, what) =>
+  ok(Math.abs(value - expected) <= tolerance, `${what}: ${value} against ${expected}`);
 
 // ---- names of rig files ----
 is(guess('mod_828Nm_2000rpm.csv'), { label: 'modified', torque: '828', speed: '2000' }, 'units in the name');
-is(guess('Unmodified 1035,5 N m 600 rpm.tdms'), { label: 'unmodified', torque: '1035.5', speed: '600' }, 'blanks and a comma');
-is(guess('u-621-1000.csv.gz'), { label: 'unmodified', torque: '621', speed: '1000' }, 'bare numbers: torque, then speed');
+is(
+  guess('Unmodified 1035,5 N m 600 rpm.tdms'),
+  { label: 'unmodified', torque: '1035.5', speed: '600' },
+  'blanks and a comma',
+);
+is(
+  guess('u-621-1000.csv.gz'),
+  { label: 'unmodified', torque: '621', speed: '1000' },
+  'bare numbers: torque, then speed',
+);
 is(guess('run7.csv'), { label: '', torque: '', speed: '' }, 'a name that says nothing');
 
 // ---- numbers ----
@@ -56,18 +69,41 @@ const changed = withValue(document, '/a/b/2/c', 5);
 is([valueAt(changed, '/a/b/2/c'), valueAt(document, '/a/b/2/c')], [5, 3], 'a changed copy');
 ok(changed.a !== document.a && Array.isArray(changed.a.b), 'lists stay lists');
 is(valueAt(document, '/x/y'), undefined, 'a value that is not there');
-is([...leaves({ a: { b: 1 }, c: [1, 2] })], [['a.b', 1], ['c', [1, 2]]], 'leaves');
+is(
+  [...leaves({ a: { b: 1 }, c: [1, 2] })],
+  [
+    ['a.b', 1],
+    ['c', [1, 2]],
+  ],
+  'leaves',
+);
 
 // ---- field tables ----
 const fields = [
   { key: 'name', kind: 'text', default: '', help: '' },
-  { key: 'pair', kind: 'object', fields: [{ key: 'teeth', kind: 'integer', low: 4, high: 2000, required: true }, { key: 'width_mm', kind: 'number', low: 0.5, high: 5000, default: null, nullable: true }] },
+  {
+    key: 'pair',
+    kind: 'object',
+    fields: [
+      { key: 'teeth', kind: 'integer', low: 4, high: 2000, required: true },
+      { key: 'width_mm', kind: 'number', low: 0.5, high: 5000, default: null, nullable: true },
+    ],
+  },
   { key: 'rows', kind: 'list', fields: [{ key: 'share', kind: 'number', default: null, nullable: true }] },
 ];
-is(complete(fields, { pair: { teeth: 17 }, rows: [{}] }), { pair: { teeth: 17, width_mm: null }, rows: [{ share: null }], name: '' }, 'defaults are written out');
+is(
+  complete(fields, { pair: { teeth: 17 }, rows: [{}] }),
+  { pair: { teeth: 17, width_mm: null }, rows: [{ share: null }], name: '' },
+  'defaults are written out',
+);
 is(fieldAt(fields, '/rows/3/share')?.key, 'share', 'field of a row');
 is(fieldAt(fields, '/pair/none'), undefined, 'no such field');
-ok(numberFault(fields[1].fields[0], 3) !== '' && numberFault(fields[1].fields[0], 4.5) !== '' && numberFault(fields[1].fields[0], 4) === '', 'range and whole number');
+ok(
+  numberFault(fields[1].fields[0], 3) !== '' &&
+    numberFault(fields[1].fields[0], 4.5) !== '' &&
+    numberFault(fields[1].fields[0], 4) === '',
+  'range and whole number',
+);
 
 // ---- addresses ----
 const base = { name: 'x', gear_pair: { teeth: 17, module: 6 }, load_cases: [{ torque: 1 }] };
@@ -82,7 +118,11 @@ is(readPlace(''), { view: 'design', parameters: {} }, 'no address at all');
 // ---- the store ----
 const store = new DesignStore();
 const flank = { tip: 0, start: 0 };
-store.open({ gear_pair: { ends: 2 }, modification: { pinion: { left: flank, right: flank } }, load_cases: [] }, { example: 'paper' }, { fresh: true });
+store.open(
+  { gear_pair: { ends: 2 }, modification: { pinion: { left: flank, right: flank } }, load_cases: [] },
+  { example: 'paper' },
+  { fresh: true },
+);
 ok(store.tied && !store.canUndo, 'equal ends are tied');
 for (const tip of [1, 2, 3]) store.set('/modification/pinion/left/tip', tip, { live: true });
 store.settle();
@@ -96,11 +136,16 @@ store.redo();
 is(store.get('/modification/pinion/right/tip'), 3, 'redo');
 store.tie(false);
 store.set('/modification/pinion/right/tip', 9);
-is([store.get('/modification/pinion/left/tip'), store.get('/modification/pinion/right/tip')], [3, 9], 'each end for itself');
+is(
+  [store.get('/modification/pinion/left/tip'), store.get('/modification/pinion/right/tip')],
+  [3, 9],
+  'each end for itself',
+);
 store.tie(true);
 is(store.get('/modification/pinion/right/tip'), 3, 'tied again: the right takes what the left has');
 
-// ---- the tooth's section: closed forms of a 17-tooth gear of module 6, 20 degrees, 24 degrees helix, no profile shift ----
+// ---- the tooth's section: closed forms of a 17-tooth gear of module 6, 20 degrees, 24 degrees helix, no profile shift
+// ----
 const radians = Math.PI / 180;
 const transverse = 6 / Math.cos(24 * radians);
 const pressure = Math.atan(Math.tan(20 * radians) / Math.cos(24 * radians));
@@ -110,22 +155,45 @@ const baseRadius = reference * Math.cos(pressure);
 const below = 1.25 * 6 - 0.38 * 6 * (1 - Math.sin(20 * radians));
 const form = Math.hypot(baseRadius, baseRadius * Math.tan(pressure) - below / Math.sin(pressure));
 const geometry = {
-  pinion_teeth: 17, gear_teeth: 44, normal_module_mm: 6, normal_pressure_angle_deg: 20, transverse_pressure_angle_deg: pressure / radians, helix_angle_deg: 24,
-  profile_shift: [0, 0], reference_radius_mm: [reference, 0], base_radius_mm: [baseRadius, 0], tip_radius_mm: [reference + 6, 0], form_radius_mm: [form, 0],
-  active_start_radius_mm: [form + 0.2, 0], tangent_length_mm: [baseRadius * Math.tan(pressure), 0],
+  pinion_teeth: 17,
+  gear_teeth: 44,
+  normal_module_mm: 6,
+  normal_pressure_angle_deg: 20,
+  transverse_pressure_angle_deg: pressure / radians,
+  helix_angle_deg: 24,
+  profile_shift: [0, 0],
+  reference_radius_mm: [reference, 0],
+  base_radius_mm: [baseRadius, 0],
+  tip_radius_mm: [reference + 6, 0],
+  form_radius_mm: [form, 0],
+  active_start_radius_mm: [form + 0.2, 0],
+  tangent_length_mm: [baseRadius * Math.tan(pressure), 0],
 };
 const pair = { fillet_radius_coefficient: 0.38, dedendum_coefficient: 1.25 };
-near(2 * reference * halfAngle(geometry, 0, reference), (Math.PI * transverse) / 2, 1e-9, 'tooth thickness at the reference circle');
+near(
+  2 * reference * halfAngle(geometry, 0, reference),
+  (Math.PI * transverse) / 2,
+  1e-9,
+  'tooth thickness at the reference circle',
+);
 const tooth = halfTooth(geometry, pair, 0);
 const radii = tooth.map(([x, y]) => Math.hypot(x, y));
 near(radii[0], reference - 1.25 * 6, 1e-9, 'the fillet starts on the root circle');
-ok(radii.every((radius, i) => i === 0 || radius >= radii[i - 1] - 1e-9), 'the radius grows from root to tip');
+ok(
+  radii.every((radius, i) => i === 0 || radius >= radii[i - 1] - 1e-9),
+  'the radius grows from root to tip',
+);
 const jump = Math.max(...tooth.slice(1).map(([x, y], i) => Math.hypot(x - tooth[i][0], y - tooth[i][1])));
 ok(jump < 1.5, `fillet and involute meet without a step (longest piece ${jump.toFixed(2)} mm)`);
 const last = tooth[tooth.length - 1];
 near(Math.hypot(...last), reference + 6, 1e-9, 'the tip');
 const [plainFlank, lower] = [halfTooth(geometry, pair, 0, () => 0), halfTooth(geometry, pair, 0, () => 0.1)];
-ok(plainFlank.every(([x, y], i) => Math.abs(Math.hypot(x - lower[i][0], y - lower[i][1]) - 0.1) < 1e-9 && lower[i][0] < x), 'what is taken off is taken off the flank, square to it');
+ok(
+  plainFlank.every(
+    ([x, y], i) => Math.abs(Math.hypot(x - lower[i][0], y - lower[i][1]) - 0.1) < 1e-9 && lower[i][0] < x,
+  ),
+  'what is taken off is taken off the flank, square to it',
+);
 
 console.log(`1..${count}`);
 process.exit(failed ? 1 : 0);

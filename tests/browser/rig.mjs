@@ -1,20 +1,38 @@
-// A rig engineer's day: recordings come in, one of them is broken, they lie beside the prediction, an input is fitted, one is deleted.
+// A rig engineer's day: recordings come in, one of them is broken, they lie beside the prediction, an input is fitted,
+// one is deleted.
 import { readFile } from 'node:fs/promises';
 import { Server, chapter, finish, load, note, ok, openBrowser } from './harness.mjs';
 
-const COARSE = { positions: 16, cells_per_line: 6, sector_teeth: 3, neighbour_coupling: false, layers: 6, flank_rows: 4, fillet_elements: 6, harmonics: 6, te_harmonics: 6 };
-const START = `#rig?from=paper-case-a&${Object.entries(COARSE).map(([key, value]) => `resolution.${key}=${value}`).join('&')}`;
+const COARSE = {
+  positions: 16,
+  cells_per_line: 6,
+  sector_teeth: 3,
+  neighbour_coupling: false,
+  layers: 6,
+  flank_rows: 4,
+  fillet_elements: 6,
+  harmonics: 6,
+  te_harmonics: 6,
+};
+const START = `#rig?from=paper-case-a&${Object.entries(COARSE)
+  .map(([key, value]) => `resolution.${key}=${value}`)
+  .join('&')}`;
 
 const server = await Server.start();
 const browser = await openBrowser();
-const context = await browser.newContext({ viewport: { width: 1280, height: 800 }, reducedMotion: 'reduce', acceptDownloads: true });
+const context = await browser.newContext({
+  viewport: { width: 1280, height: 800 },
+  reducedMotion: 'reduce',
+  acceptDownloads: true,
+});
 const page = await context.newPage();
 page.setDefaultTimeout(30000);
 const troubles = [];
-page.on('console', (message) => {
-  if ((message.type() === 'error' || message.type() === 'warning') && !/GL Driver Message|422|409/.test(message.text())) troubles.push(message.text());
+page.on('console', message => {
+  if ((message.type() === 'error' || message.type() === 'warning') && !/GL Driver Message|422|409/.test(message.text()))
+    troubles.push(message.text());
 });
-page.on('pageerror', (error) => troubles.push(error.message));
+page.on('pageerror', error => troubles.push(error.message));
 
 const rows = page.locator('section[aria-label="Measurements"] tbody tr');
 /** Records without a rig and puts the recording into the queue. */
@@ -24,12 +42,13 @@ const record = async ({ pair = '', speed = '', fault = 'none' }) => {
   await page.getByLabel('Synthetic speed, rpm').fill(speed);
   await page.getByLabel('Synthetic fault').selectOption(fault);
   await page.getByRole('button', { name: 'Record and use' }).click();
-  await page.waitForFunction((count) => document.querySelectorAll('.recording').length > count, before);
+  await page.waitForFunction(count => document.querySelectorAll('.recording').length > count, before);
 };
-const compared = () => page.waitForFunction(() => {
-  const cells = [...document.querySelectorAll('section[aria-label="Measurements"] tbody td')];
-  return cells.length > 0 && cells.every((cell) => cell.textContent !== '…');
-});
+const compared = () =>
+  page.waitForFunction(() => {
+    const cells = [...document.querySelectorAll('section[aria-label="Measurements"] tbody td')];
+    return cells.length > 0 && cells.every(cell => cell.textContent !== '…');
+  });
 
 await chapter('open', async () => {
   await page.goto(server.address + START);
@@ -42,14 +61,29 @@ await chapter('measure', async () => {
   await record({});
   await record({ pair: 'unmodified' });
   await record({ pair: 'unmodified', speed: '1000' });
-  ok(await page.getByLabel(/^Torque of/).first().inputValue() === '828', 'torque and speed are known from the name');
+  ok(
+    (await page
+      .getByLabel(/^Torque of/)
+      .first()
+      .inputValue()) === '828',
+    'torque and speed are known from the name',
+  );
   await page.getByRole('button', { name: 'Measure 3 recordings' }).click();
   await rows.nth(2).waitFor();
   await compared();
-  ok(await page.locator('.recording').count() === 0 && await rows.count() === 3, 'the queue is empty, three measurements stand in the table');
-  const ratios = (await rows.allInnerTexts()).map((text) => Number(text.split('\t')[6]));
-  ok(ratios.every((ratio) => Math.abs(ratio - 1) < 0.02), `measured over predicted: ${ratios.join(', ')}`);
-  ok(/\d %/.test(await page.locator('section[aria-label="Reductions"]').innerText()), 'the modification is judged in per cent');
+  ok(
+    (await page.locator('.recording').count()) === 0 && (await rows.count()) === 3,
+    'the queue is empty, three measurements stand in the table',
+  );
+  const ratios = (await rows.allInnerTexts()).map(text => Number(text.split('\t')[6]));
+  ok(
+    ratios.every(ratio => Math.abs(ratio - 1) < 0.02),
+    `measured over predicted: ${ratios.join(', ')}`,
+  );
+  ok(
+    /\d %/.test(await page.locator('section[aria-label="Reductions"]').innerText()),
+    'the modification is judged in per cent',
+  );
   ok(/id=1/.test(page.url()), 'the design was stored for its measurements');
 });
 
@@ -58,8 +92,11 @@ await chapter('a broken recording', async () => {
   await page.getByRole('button', { name: 'Measure', exact: true }).click();
   const finding = page.locator('.recording .findings li').first();
   await finding.waitFor();
-  ok(/no result/.test(await finding.innerText()) && /jumps/.test(await finding.innerText()), 'says in plain words why it has no result');
-  ok(await rows.count() === 3, 'and is not kept');
+  ok(
+    /no result/.test(await finding.innerText()) && /jumps/.test(await finding.innerText()),
+    'says in plain words why it has no result',
+  );
+  ok((await rows.count()) === 3, 'and is not kept');
   await page.getByRole('button', { name: 'Say what the columns mean' }).click();
   ok(await page.getByLabel('Pinion column or columns').isVisible(), 'the columns can be named');
   ok(/pinion 2, gear 3/.test(await page.locator('.form-pane').innerText()), 'beside what was guessed');
@@ -68,8 +105,13 @@ await chapter('a broken recording', async () => {
 
 await chapter('look', async () => {
   await rows.first().getByRole('button').first().click();
-  await page.waitForFunction(() => /SHA-256/.test(document.querySelector('section[aria-label="About the recording"]').textContent));
-  ok(/Eccentricity/.test(await page.locator('section[aria-label="About the recording"]').innerText()), 'a measurement tells about itself');
+  await page.waitForFunction(() =>
+    /SHA-256/.test(document.querySelector('section[aria-label="About the recording"]').textContent),
+  );
+  ok(
+    /Eccentricity/.test(await page.locator('section[aria-label="About the recording"]').innerText()),
+    'a measurement tells about itself',
+  );
   const download = page.waitForEvent('download');
   await rows.first().getByRole('link').click();
   const text = await readFile(await (await download).path(), 'utf8');
@@ -90,24 +132,42 @@ await chapter('fit', async () => {
 
 await chapter('for everybody', async () => {
   const source = await readFile(load.resolve('axe-core/axe.min.js'), 'utf8');
-  for (const [scheme, width] of [['light', 1280], ['dark', 1280], ['light', 390]]) {
+  for (const [scheme, width] of [
+    ['light', 1280],
+    ['dark', 1280],
+    ['light', 390],
+  ]) {
     await page.emulateMedia({ colorScheme: scheme });
     await page.setViewportSize({ width, height: 800 });
     await page.waitForTimeout(300);
-    ok(await page.evaluate(() => document.documentElement.scrollWidth) <= width, `${scheme}, ${width} px: nothing sticks out`);
+    ok(
+      (await page.evaluate(() => document.documentElement.scrollWidth)) <= width,
+      `${scheme}, ${width} px: nothing sticks out`,
+    );
     await page.evaluate(source);
     const { violations } = await page.evaluate(() => window.axe.run(document, { resultTypes: ['violations'] }));
-    const serious = violations.filter((violation) => violation.impact === 'serious' || violation.impact === 'critical');
-    for (const violation of serious) note(`${violation.id}: ${violation.nodes.slice(0, 3).map((node) => node.target.join(' ')).join(' | ')} ${violation.nodes[0].failureSummary.split('\n')[1] ?? ''}`);
+    const serious = violations.filter(violation => violation.impact === 'serious' || violation.impact === 'critical');
+    for (const violation of serious)
+      note(
+        `${violation.id}: ${violation.nodes
+          .slice(0, 3)
+          .map(node => node.target.join(' '))
+          .join(' | ')} ${violation.nodes[0].failureSummary.split('\n')[1] ?? ''}`,
+      );
     ok(serious.length === 0, `${scheme}, ${width} px: no serious finding`);
   }
   await page.setViewportSize({ width: 1280, height: 800 });
 });
 
 await chapter('delete', async () => {
-  page.on('dialog', (dialog) => dialog.accept());
-  await rows.first().getByRole('button', { name: /^Delete/ }).click();
-  await page.waitForFunction(() => document.querySelectorAll('section[aria-label="Measurements"] tbody tr').length === 2);
+  page.on('dialog', dialog => dialog.accept());
+  await rows
+    .first()
+    .getByRole('button', { name: /^Delete/ })
+    .click();
+  await page.waitForFunction(
+    () => document.querySelectorAll('section[aria-label="Measurements"] tbody tr').length === 2,
+  );
   ok(true, 'a measurement is deleted');
 });
 

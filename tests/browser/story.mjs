@@ -1,66 +1,106 @@
-// A designer's day: look, drag, mistype, search, close the laptop, come back, compare, print; and a server that goes away.
+// A designer's day: look, drag, mistype, search, close the laptop, come back, compare, print; and a server that goes
+// away.
 import { readFile } from 'node:fs/promises';
 import { Server, chapter, finish, load, note, ok, openBrowser } from './harness.mjs';
 
 // a coarse mesh, so that preparing the pair takes a second
-const COARSE = { positions: 32, cells_per_line: 16, sector_teeth: 3, neighbour_coupling: false, layers: 14, flank_rows: 6, fillet_elements: 8 };
-const START = `#design?from=paper-case-a&${Object.entries(COARSE).map(([key, value]) => `resolution.${key}=${value}`).join('&')}`;
+const COARSE = {
+  positions: 32,
+  cells_per_line: 16,
+  sector_teeth: 3,
+  neighbour_coupling: false,
+  layers: 14,
+  flank_rows: 6,
+  fillet_elements: 8,
+};
+const START = `#design?from=paper-case-a&${Object.entries(COARSE)
+  .map(([key, value]) => `resolution.${key}=${value}`)
+  .join('&')}`;
 const WAIT = 60000;
 const MOST_BYTES = 1e6; // of the first view
 
 const server = await Server.start();
 const browser = await openBrowser();
-const context = await browser.newContext({ viewport: { width: 1280, height: 800 }, colorScheme: 'light', reducedMotion: 'reduce', acceptDownloads: true });
+const context = await browser.newContext({
+  viewport: { width: 1280, height: 800 },
+  colorScheme: 'light',
+  reducedMotion: 'reduce',
+  acceptDownloads: true,
+});
 const page = await context.newPage();
 page.setDefaultTimeout(WAIT);
 const troubles = [];
 let quiet = false;
-page.on('console', (message) => {
-  if (!quiet && (message.type() === 'error' || message.type() === 'warning') && !/GL Driver Message|422|409/.test(message.text())) troubles.push(message.text());
+page.on('console', message => {
+  if (
+    !quiet &&
+    (message.type() === 'error' || message.type() === 'warning') &&
+    !/GL Driver Message|422|409/.test(message.text())
+  )
+    troubles.push(message.text());
 });
-page.on('pageerror', (error) => troubles.push(error.message));
+page.on('pageerror', error => troubles.push(error.message));
 
 /** Text of one of the large numbers. */
-const number = (label, where = page) => where.locator('.number-cell', { hasText: label }).locator('.value').textContent();
-const settled = (where = page) => where.waitForFunction(() => {
-  const values = [...document.querySelectorAll('.number-cell .value')];
-  return values.length > 0 && values.every((value) => /\d/.test(value.textContent)) && !document.querySelector('.preparing');
-});
+const number = (label, where = page) =>
+  where.locator('.number-cell', { hasText: label }).locator('.value').textContent();
+const settled = (where = page) =>
+  where.waitForFunction(() => {
+    const values = [...document.querySelectorAll('.number-cell .value')];
+    return (
+      values.length > 0 && values.every(value => /\d/.test(value.textContent)) && !document.querySelector('.preparing')
+    );
+  });
 /** A picture of a figure as a number. */
-const ink = (title) => page.evaluate((wanted) => {
-  const figure = [...document.querySelectorAll('.figure')].find((each) => each.querySelector('h3')?.textContent.startsWith(wanted));
-  const text = figure.querySelector('canvas').toDataURL();
-  let sum = 0;
-  for (let i = 0; i < text.length; i++) sum = (sum * 31 + text.charCodeAt(i)) % 1e9;
-  return sum;
-}, title);
-const slider = (name) => page.getByRole('slider', { name, exact: true });
-const field = (name) => page.getByLabel(name, { exact: true }).and(page.locator('input[type=text]'));
+const ink = title =>
+  page.evaluate(wanted => {
+    const figure = [...document.querySelectorAll('.figure')].find(each =>
+      each.querySelector('h3')?.textContent.startsWith(wanted),
+    );
+    const text = figure.querySelector('canvas').toDataURL();
+    let sum = 0;
+    for (let i = 0; i < text.length; i++) sum = (sum * 31 + text.charCodeAt(i)) % 1e9;
+    return sum;
+  }, title);
+const slider = name => page.getByRole('slider', { name, exact: true });
+const field = name => page.getByLabel(name, { exact: true }).and(page.locator('input[type=text]'));
 let job = '';
-const rest = (ms) => new Promise((resolve) => setTimeout(resolve, ms));
+const rest = ms => new Promise(resolve => setTimeout(resolve, ms));
 
 await chapter('open', async () => {
-  let bytes = 0;
-  page.on('response', async (response) => {
-    const body = await response.body().catch(() => null);
-    if (body) bytes += body.length;
-  });
   const start = performance.now();
   await page.goto(server.address + START);
   await page.locator('.form-pane input').first().waitFor();
   note(`form shown after ${Math.round(performance.now() - start)} ms`);
-  await page.waitForFunction(() => performance.getEntriesByType('resource').some((entry) => entry.name.endsWith('page.js')));
-  const page_bytes = await page.evaluate(() => performance.getEntriesByType('resource').concat(performance.getEntriesByType('navigation')).filter((entry) => !entry.name.includes('/api/')).reduce((sum, entry) => sum + entry.transferSize, 0));
+  await page.waitForFunction(() =>
+    performance.getEntriesByType('resource').some(entry => entry.name.endsWith('page.js')),
+  );
+  const page_bytes = await page.evaluate(() =>
+    performance
+      .getEntriesByType('resource')
+      .concat(performance.getEntriesByType('navigation'))
+      .filter(entry => !entry.name.includes('/api/'))
+      .reduce((sum, entry) => sum + entry.transferSize, 0),
+  );
   note(`first view ${Math.round(page_bytes / 1000)} kB without its data`);
   await settled();
   ok(page_bytes > 0 && page_bytes < MOST_BYTES, 'the first view is light');
-  ok(!(await page.evaluate(() => performance.getEntriesByType('resource').some((entry) => entry.name.includes('scene')))), 'three.js is not fetched before it is seen');
+  ok(
+    !(await page.evaluate(() => performance.getEntriesByType('resource').some(entry => entry.name.includes('scene')))),
+    'three.js is not fetched before it is seen',
+  );
   ok(/paper pair/.test(await page.title()), 'the title names the design');
   await page.waitForFunction(() => /−\d/.test(document.querySelector('.delta').textContent));
-  ok(/−\d+ %/.test(await page.locator('.number-cell').first().innerText()), 'the change against the unmodified pair stands beside the number');
-  ok(await page.locator('.figure .uplot').count() >= 5, 'curves are drawn');
+  ok(
+    /−\d+ %/.test(await page.locator('.number-cell').first().innerText()),
+    'the change against the unmodified pair stands beside the number',
+  );
+  ok((await page.locator('.figure .uplot').count()) >= 5, 'curves are drawn');
   ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), 'nothing is wider than the screen');
-  ok(await page.evaluate(() => document.documentElement.scrollHeight <= innerHeight), 'the window scrolls in its panes only');
+  ok(
+    await page.evaluate(() => document.documentElement.scrollHeight <= innerHeight),
+    'the window scrolls in its panes only',
+  );
 });
 
 await chapter('drag a slider', async () => {
@@ -73,13 +113,16 @@ await chapter('drag a slider', async () => {
     await rest(25);
   }
   await page.mouse.up();
-  await page.waitForFunction((old) => document.querySelector('.number-cell .value').textContent !== old, before[0]);
+  await page.waitForFunction(old => document.querySelector('.number-cell .value').textContent !== old, before[0]);
   await rest(400);
-  ok(await number('PPLTE') !== before[0], 'the number follows');
-  ok(await ink('Loaded TE') !== before[1] && await ink('Contact pressure') !== before[2], 'the figures follow');
-  ok(/modification\.pinion\.left\.tip_relief_um=/.test(page.url()) && /right\.tip_relief_um=/.test(page.url()), 'the address holds it, left and right');
+  ok((await number('PPLTE')) !== before[0], 'the number follows');
+  ok((await ink('Loaded TE')) !== before[1] && (await ink('Contact pressure')) !== before[2], 'the figures follow');
+  ok(
+    /modification\.pinion\.left\.tip_relief_um=/.test(page.url()) && /right\.tip_relief_um=/.test(page.url()),
+    'the address holds it, left and right',
+  );
   await page.keyboard.press('Control+z');
-  await page.waitForFunction((old) => document.querySelector('.number-cell .value').textContent === old, before[0]);
+  await page.waitForFunction(old => document.querySelector('.number-cell .value').textContent === old, before[0]);
   ok(!/tip_relief_um/.test(page.url()), 'one undo takes the whole stroke back');
   await slider('Lead crowning').focus();
   await page.keyboard.press('ArrowRight');
@@ -93,10 +136,10 @@ await chapter('type numbers', async () => {
   await tip.fill('12,5');
   await tip.press('Enter');
   await page.waitForFunction(() => /left\.tip_relief_um=12\.5/.test(location.hash));
-  ok(await slider('Tip relief').inputValue() === '12.5', 'a comma is a decimal sign');
+  ok((await slider('Tip relief').inputValue()) === '12.5', 'a comma is a decimal sign');
   await tip.fill('abc');
   await page.locator('.field .fault:not(:empty)').first().waitFor();
-  ok(await tip.getAttribute('aria-invalid') === 'true', 'what is no number is said at its field');
+  ok((await tip.getAttribute('aria-invalid')) === 'true', 'what is no number is said at its field');
   await tip.fill('2000');
   await page.getByText('2000 is outside 0 … 1000.').waitFor();
   ok(true, 'so is what is out of range');
@@ -107,7 +150,13 @@ await chapter('type numbers', async () => {
   await teeth.fill('9');
   await teeth.press('Enter');
   await page.locator('.field .fault:not(:empty)').first().waitFor();
-  ok(/undercut|interferes|pointed/.test(await page.locator('.parameters .fault:not(:empty)').first().innerText() + await page.locator('.trouble').innerText()), 'what the gears refuse is said in words');
+  ok(
+    /undercut|interferes|pointed/.test(
+      (await page.locator('.parameters .fault:not(:empty)').first().innerText()) +
+        (await page.locator('.trouble').innerText()),
+    ),
+    'what the gears refuse is said in words',
+  );
   await page.keyboard.press('Control+z');
   await teeth.fill('17');
   await teeth.press('Enter');
@@ -118,7 +167,7 @@ await chapter('type numbers', async () => {
 await chapter('pin and compare with it', async () => {
   await page.getByLabel('Compare with').selectOption('pin');
   await page.waitForFunction(() => /±0/.test(document.querySelector('.delta').textContent));
-  ok(await page.locator('.legend', { hasText: 'pinned 1' }).count() > 0, 'the pinned design is in the figures');
+  ok((await page.locator('.legend', { hasText: 'pinned 1' }).count()) > 0, 'the pinned design is in the figures');
   await page.getByLabel('Compare with').selectOption('');
   await page.waitForFunction(() => /−\d/.test(document.querySelector('.delta').textContent));
 });
@@ -126,26 +175,36 @@ await chapter('pin and compare with it', async () => {
 await chapter('figures', async () => {
   const figure = page.locator('.figure', { hasText: 'Loaded TE' }).first();
   await figure.getByRole('button', { name: /menu/ }).click();
-  const [csv] = await Promise.all([page.waitForEvent('download'), page.getByRole('menuitem', { name: 'Save as CSV' }).click()]);
+  const [csv] = await Promise.all([
+    page.waitForEvent('download'),
+    page.getByRole('menuitem', { name: 'Save as CSV' }).click(),
+  ]);
   const lines = (await readFile(await csv.path(), 'utf8')).trim().split('\n');
   ok(lines.length === 33 && lines[0].startsWith('mesh cycle,'), 'a figure as CSV');
   await figure.getByRole('button', { name: /menu/ }).click();
-  const [png] = await Promise.all([page.waitForEvent('download'), page.getByRole('menuitem', { name: 'Save as PNG' }).click()]);
+  const [png] = await Promise.all([
+    page.waitForEvent('download'),
+    page.getByRole('menuitem', { name: 'Save as PNG' }).click(),
+  ]);
   ok((await readFile(await png.path())).subarray(1, 4).toString() === 'PNG', 'a figure as PNG');
   await figure.getByRole('button', { name: /menu/ }).click();
   await page.getByRole('menuitem', { name: 'Open large' }).click();
   ok((await page.locator('dialog .figure-body').boundingBox()).height > 400, 'a figure opens large');
   await page.keyboard.press('Escape');
   await page.waitForFunction(() => !document.querySelector('dialog'));
-  ok(await page.locator('.figures .figure', { hasText: 'Loaded TE' }).count() > 0, 'and goes back to its place');
+  ok((await page.locator('.figures .figure', { hasText: 'Loaded TE' }).count()) > 0, 'and goes back to its place');
   const box = await figure.locator('.u-over').boundingBox();
   await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
   await figure.locator('.tip:not([hidden])').waitFor();
-  ok(await figure.locator('.tip-row').count() >= 6, 'the pointer reads every curve');
+  ok((await figure.locator('.tip-row').count()) >= 6, 'the pointer reads every curve');
   await page.mouse.move(5, 5);
   await page.evaluate(() => document.querySelector('.figure-pane').scrollTo(0, 99999));
-  await page.waitForFunction(() => document.querySelector('.figure.tall canvas') || document.querySelector('.figure.tall .figure-note:not([hidden])'));
-  ok(await page.locator('.figure.tall canvas').count() === 1, 'the topography is drawn in space');
+  await page.waitForFunction(
+    () =>
+      document.querySelector('.figure.tall canvas') ||
+      document.querySelector('.figure.tall .figure-note:not([hidden])'),
+  );
+  ok((await page.locator('.figure.tall canvas').count()) === 1, 'the topography is drawn in space');
   await page.locator('.figure.wide').first().scrollIntoViewIfNeeded();
   await page.locator('.figure.wide .uplot').first().waitFor();
   ok(true, 'the speed sweep is drawn');
@@ -154,7 +213,10 @@ await chapter('figures', async () => {
 
 await chapter('keep a design', async () => {
   await page.locator('.design-button').click();
-  const [file] = await Promise.all([page.waitForEvent('download'), page.getByRole('button', { name: 'Export JSON' }).click()]);
+  const [file] = await Promise.all([
+    page.waitForEvent('download'),
+    page.getByRole('button', { name: 'Export JSON' }).click(),
+  ]);
   const document = JSON.parse(await readFile(await file.path(), 'utf8'));
   ok(document.gear_pair.pinion_teeth === 17, 'the design as JSON');
   await page.locator('.design-button').click();
@@ -162,14 +224,21 @@ await chapter('keep a design', async () => {
   await page.waitForFunction(() => /[?&]id=1/.test(location.hash));
   ok(true, 'it is stored');
   await page.locator('.design-button').click();
-  const [points] = await Promise.all([page.waitForEvent('download'), page.getByRole('button', { name: /flank points/ }).click()]);
+  const [points] = await Promise.all([
+    page.waitForEvent('download'),
+    page.getByRole('button', { name: /flank points/ }).click(),
+  ]);
   ok((await readFile(await points.path(), 'utf8')).split('\n').length > 100, 'points of the flanks');
   document.name = 'from a file';
   document.modification.pinion.left.tip_relief_um = document.modification.pinion.right.tip_relief_um = 11;
   await page.locator('.design-button').click();
-  await page.locator('input[type=file]').setInputFiles({ name: 'design.json', mimeType: 'application/json', buffer: Buffer.from(JSON.stringify(document)) });
+  await page.locator('input[type=file]').setInputFiles({
+    name: 'design.json',
+    mimeType: 'application/json',
+    buffer: Buffer.from(JSON.stringify(document)),
+  });
   await page.waitForFunction(() => /from a file/.test(document.title));
-  ok(await field('Tip relief').inputValue() === '11', 'a design comes back from its file');
+  ok((await field('Tip relief').inputValue()) === '11', 'a design comes back from its file');
   await settled();
 });
 
@@ -183,8 +252,13 @@ await chapter('search', async () => {
   ok(true, 'the job bar shows it');
   await page.reload();
   await page.locator('.job-list tbody tr').first().waitFor();
-  ok(/running|preparing|queued|done/.test(await page.locator('.job-list tbody tr').first().innerText()), 'after a reload it is still there');
-  await page.waitForFunction(() => document.querySelector('.job-list tbody .job-state')?.textContent === 'done', null, { timeout: 4 * WAIT });
+  ok(
+    /running|preparing|queued|done/.test(await page.locator('.job-list tbody tr').first().innerText()),
+    'after a reload it is still there',
+  );
+  await page.waitForFunction(() => document.querySelector('.job-list tbody .job-state')?.textContent === 'done', null, {
+    timeout: 4 * WAIT,
+  });
   ok(true, 'it ends');
   await page.locator('.job-detail .figure', { hasText: 'Convergence' }).locator('.uplot').waitFor();
   await page.locator('.job-detail .figure', { hasText: 'History' }).waitFor();
@@ -192,14 +266,22 @@ await chapter('search', async () => {
   ok(/−\d+ %/.test(before), 'the best is better than the unmodified pair');
   await page.getByRole('button', { name: 'Open the best' }).click();
   await settled();
-  ok(await field('Tip relief').inputValue() !== '11', 'the optimum opens in the design view');
+  ok((await field('Tip relief').inputValue()) !== '11', 'the optimum opens in the design view');
   ok(/J\s*0\.[1-9]/.test(await page.locator('.number-cell').last().innerText()), 'with its objective');
 });
 
 await chapter('compare and print', async () => {
-  await page.goto(`${server.address}#compare?from=paper-case-a&items=unmodified,current,job:${job}&${START.split('&').slice(1).join('&')}`);
-  await page.waitForFunction(() => document.querySelectorAll('.comparison thead th').length === 3 && !/…/.test(document.querySelector('.comparison').textContent), null, { timeout: 3 * WAIT });
-  ok(await page.locator('.comparison tbody tr').count() > 20, 'three designs side by side');
+  await page.goto(
+    `${server.address}#compare?from=paper-case-a&items=unmodified,current,job:${job}&${START.split('&').slice(1).join('&')}`,
+  );
+  await page.waitForFunction(
+    () =>
+      document.querySelectorAll('.comparison thead th').length === 3 &&
+      !/…/.test(document.querySelector('.comparison').textContent),
+    null,
+    { timeout: 3 * WAIT },
+  );
+  ok((await page.locator('.comparison tbody tr').count()) > 20, 'three designs side by side');
   await page.locator('.compare-view .uplot').first().waitFor();
   const legend = await page.locator('.compare-view .legend').first().innerText();
   ok(/unmodified/.test(legend), 'their curves over one another');
@@ -218,10 +300,12 @@ await chapter('two pages share one stream', async () => {
   const rows = await other.locator('.job-list tbody tr').count();
   await page.getByRole('navigation').getByRole('button', { name: 'Optimize' }).click();
   await page.getByRole('button', { name: 'Again' }).click();
-  await other.waitForFunction((before) => document.querySelectorAll('.job-list tbody tr').length === before + 1, rows);
+  await other.waitForFunction(before => document.querySelectorAll('.job-list tbody tr').length === before + 1, rows);
   ok(true, 'the other page sees a search that this one starts');
   await other.locator('.job-bar').getByRole('button', { name: 'stop' }).click();
-  await page.waitForFunction(() => /cancelled|done/.test(document.querySelector('.job-list tbody .job-state')?.textContent ?? ''));
+  await page.waitForFunction(() =>
+    /cancelled|done/.test(document.querySelector('.job-list tbody .job-state')?.textContent ?? ''),
+  );
   ok(true, 'and this one that the other has stopped it');
   await other.close();
   await page.getByRole('navigation').getByRole('button', { name: 'Compare' }).click();
@@ -245,8 +329,14 @@ await chapter('every view is accessible', async () => {
       await rest(600);
       await page.evaluate(source);
       const { violations } = await page.evaluate(() => window.axe.run(document, { resultTypes: ['violations'] }));
-      const serious = violations.filter((violation) => violation.impact === 'serious' || violation.impact === 'critical');
-      for (const violation of serious) note(`${violation.id}: ${violation.nodes.slice(0, 3).map((node) => node.target.join(' ')).join(' | ')} ${violation.nodes[0].failureSummary.split('\n')[1] ?? ''}`);
+      const serious = violations.filter(violation => violation.impact === 'serious' || violation.impact === 'critical');
+      for (const violation of serious)
+        note(
+          `${violation.id}: ${violation.nodes
+            .slice(0, 3)
+            .map(node => node.target.join(' '))
+            .join(' | ')} ${violation.nodes[0].failureSummary.split('\n')[1] ?? ''}`,
+        );
       ok(serious.length === 0, `${view}, ${scheme}: no serious finding`);
     }
   }
@@ -254,7 +344,12 @@ await chapter('every view is accessible', async () => {
 });
 
 await chapter('a narrow screen', async () => {
-  const phone = await browser.newContext({ viewport: { width: 390, height: 844 }, deviceScaleFactor: 2, hasTouch: true, isMobile: true });
+  const phone = await browser.newContext({
+    viewport: { width: 390, height: 844 },
+    deviceScaleFactor: 2,
+    hasTouch: true,
+    isMobile: true,
+  });
   const small = await phone.newPage();
   for (const view of ['design', 'optimize', 'compare']) {
     await small.goto(`${server.address}${START.replace('design', view)}`);
@@ -293,11 +388,11 @@ await chapter('the server goes away and comes back', async () => {
   await tip.fill('7');
   await tip.press('Enter');
   await page.locator('.away-banner:not([hidden])').waitFor();
-  ok(await tip.inputValue() === '7', 'the page says so and keeps the design');
+  ok((await tip.inputValue()) === '7', 'the page says so and keeps the design');
   const before = await number('PPLTE');
   await server.open();
   await page.locator('.away-banner[hidden]').waitFor({ state: 'attached' });
-  await page.waitForFunction((old) => document.querySelector('.number-cell .value').textContent !== old, before);
+  await page.waitForFunction(old => document.querySelector('.number-cell .value').textContent !== old, before);
   ok(true, 'it goes on by itself');
   quiet = false;
 });
@@ -306,13 +401,19 @@ await chapter('fluency', async () => {
   const rate = await page.evaluate(async () => {
     const range = document.querySelector('.slider input[type=range]');
     let updates = 0;
-    const observer = new MutationObserver(() => { updates += 1; });
-    observer.observe(document.querySelector('.number-cell .value'), { childList: true, characterData: true, subtree: true });
+    const observer = new MutationObserver(() => {
+      updates += 1;
+    });
+    observer.observe(document.querySelector('.number-cell .value'), {
+      childList: true,
+      characterData: true,
+      subtree: true,
+    });
     const start = performance.now();
     for (let i = 0; performance.now() - start < 2000; i++) {
       range.value = String(5 + (i % 150) * 0.1);
       range.dispatchEvent(new Event('input', { bubbles: true }));
-      await new Promise((resolve) => setTimeout(resolve, 8));
+      await new Promise(resolve => setTimeout(resolve, 8));
     }
     return updates / 2;
   });

@@ -9,7 +9,10 @@ import { readPlace, writePlace } from './base/address.js';
  * @property {() => void} [print]
  */
 
-/** @typedef {{ id: string, title: string, make: (app: App) => View }} Entry one tab; make is called when it is first opened */
+/**
+ * @typedef {{ id: string, title: string, make: (app: App) => View }} Entry one tab; make is called when it is first
+ * opened
+ */
 
 export class App extends EventTarget {
   /** @type {Map<string, View>} */ #views = new Map();
@@ -18,8 +21,10 @@ export class App extends EventTarget {
 
   /**
    * @param {Entry[]} entries
-   * @param {{ store: import('./base/store.js').DesignStore, analyst: import('./base/analyst.js').Analyst, form: import('./form.js').Form,
-   *   fields: import('./base/schema.js').Field[], examples: { name: string, title: string }[], jobs: import('./base/jobs.js').Jobs,
+   * @param {{ store: import('./base/store.js').DesignStore, analyst: import('./base/analyst.js').Analyst,
+   *   form: import('./form.js').Form,
+   *   fields: import('./base/schema.js').Field[], examples: { name: string, title: string }[],
+   *   jobs: import('./base/jobs.js').Jobs,
    *   addressOf: () => URLSearchParams, openPlace: (parameters: URLSearchParams) => Promise<void> }} shared
    */
   constructor(entries, shared) {
@@ -38,7 +43,11 @@ export class App extends EventTarget {
     window.addEventListener('popstate', () => this.follow());
   }
 
-  /** Opens a view and makes a step in the browser's history. @param {string} id @param {Record<string, string>} [own] parameters of the view itself */
+  /**
+   * Opens a view and makes a step in the browser's history.
+   * @param {string} id
+   * @param {Record<string, string>} [own] parameters of the view itself
+   */
   go(id, own = {}) {
     const parameters = this.addressOf();
     for (const [key, value] of Object.entries(own)) parameters.set(key, value);
@@ -51,7 +60,8 @@ export class App extends EventTarget {
   note() {
     if (!this.current || this.#following) return;
     const parameters = this.addressOf();
-    for (const [key, value] of readPlace(location.hash).parameters) if (['job', 'items', 'tab'].includes(key)) parameters.set(key, value);
+    for (const [key, value] of readPlace(location.hash).parameters)
+      if (['job', 'items', 'tab'].includes(key)) parameters.set(key, value);
     history.replaceState(null, '', writePlace(this.current, parameters));
   }
 
@@ -70,7 +80,7 @@ export class App extends EventTarget {
 
   /** @param {string} id @param {URLSearchParams} parameters */
   show(id, parameters) {
-    const entry = this.entries.find((candidate) => candidate.id === id) ?? this.entries[0];
+    const entry = this.entries.find(candidate => candidate.id === id) ?? this.entries[0];
     let view = this.#views.get(entry.id);
     if (!view) {
       view = entry.make(this);

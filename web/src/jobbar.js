@@ -12,15 +12,29 @@ export function progressText(job) {
   if (state === 'preparing') return 'preparing the teeth';
   if (state !== 'running') return state;
   const generations = job.design?.optimization?.generations;
-  const parts = [typeof progress.generation === 'number' ? `gen ${progress.generation + 1}${generations ? `/${generations}` : ''}` : progress.what];
+  const parts = [
+    typeof progress.generation === 'number'
+      ? `gen ${progress.generation + 1}${generations ? `/${generations}` : ''}`
+      : progress.what,
+  ];
   if (typeof progress.pfc_percent === 'number') parts.push(`PFC ${Math.round(progress.pfc_percent)} %`);
   return parts.filter(Boolean).join('  ');
 }
 
 /** A bar; unknown progress is told as such. @param {any} job */
 export function progressBar(job) {
-  const fraction = job.state === 'done' ? 1 : job.progress?.fraction ?? 0;
-  const bar = h('span.progress', { role: 'progressbar', 'aria-label': `Progress of ${job.name || `job ${job.id}`}`, 'aria-valuemin': 0, 'aria-valuemax': 100, 'aria-valuenow': Math.round(100 * fraction) }, h('span'));
+  const fraction = job.state === 'done' ? 1 : (job.progress?.fraction ?? 0);
+  const bar = h(
+    'span.progress',
+    {
+      role: 'progressbar',
+      'aria-label': `Progress of ${job.name || `job ${job.id}`}`,
+      'aria-valuemin': 0,
+      'aria-valuemax': 100,
+      'aria-valuenow': Math.round(100 * fraction),
+    },
+    h('span'),
+  );
   /** @type {HTMLElement} */ (bar.firstElementChild).style.width = `${100 * fraction}%`;
   return bar;
 }
@@ -36,18 +50,53 @@ export class JobBar {
 
   draw() {
     const searches = this.app.jobs.searches();
-    const active = searches.filter((job) => ACTIVE.includes(job.state));
-    const job = active.find((each) => each.state === 'running') ?? active[active.length - 1];
+    const active = searches.filter(job => ACTIVE.includes(job.state));
+    const job = active.find(each => each.state === 'running') ?? active[active.length - 1];
     if (!job) {
-      const last = searches.find((each) => each.state === 'done');
-      fill(this.element, h('span.job-name', null, 'No search runs.'), last ? h('button.link', { type: 'button', onclick: () => this.app.go('optimize', { job: String(last.id) }) }, `last: ${last.name || 'unnamed'}, J ${sig(last.best?.J, 3)}`) : null);
+      const last = searches.find(each => each.state === 'done');
+      fill(
+        this.element,
+        h('span.job-name', null, 'No search runs.'),
+        last
+          ? h(
+              'button.link',
+              { type: 'button', onclick: () => this.app.go('optimize', { job: String(last.id) }) },
+              `last: ${last.name || 'unnamed'}, J ${sig(last.best?.J, 3)}`,
+            )
+          : null,
+      );
       return;
     }
     const more = active.length - 1;
-    fill(this.element, h('button.link.job-name', { type: 'button', onclick: () => this.app.go('optimize', { job: String(job.id) }) }, job.name || `job ${job.id}`),
-      h('span.algorithm', null, choiceText(job.algorithm ?? '')), h('span', null, progressText(job)), h('span', null, job.best ? `best J ${sig(job.best.J, 3)}` : ''), progressBar(job),
-      h('span.left', null, typeof job.progress?.seconds_left === 'number' ? `${duration(job.progress.seconds_left)} left` : ''),
-      h('button.small', { type: 'button', disabled: Boolean(job.stopping), onclick: () => post(`jobs/${job.id}/cancel`).then((answer) => this.app.jobs.put(answer)).catch(() => this.app.jobs.reload()) }, 'stop'),
-      more > 0 ? h('button.link', { type: 'button', onclick: () => this.app.go('optimize') }, `+${more} more`) : null);
+    fill(
+      this.element,
+      h(
+        'button.link.job-name',
+        { type: 'button', onclick: () => this.app.go('optimize', { job: String(job.id) }) },
+        job.name || `job ${job.id}`,
+      ),
+      h('span.algorithm', null, choiceText(job.algorithm ?? '')),
+      h('span', null, progressText(job)),
+      h('span', null, job.best ? `best J ${sig(job.best.J, 3)}` : ''),
+      progressBar(job),
+      h(
+        'span.left',
+        null,
+        typeof job.progress?.seconds_left === 'number' ? `${duration(job.progress.seconds_left)} left` : '',
+      ),
+      h(
+        'button.small',
+        {
+          type: 'button',
+          disabled: Boolean(job.stopping),
+          onclick: () =>
+            post(`jobs/${job.id}/cancel`)
+              .then(answer => this.app.jobs.put(answer))
+              .catch(() => this.app.jobs.reload()),
+        },
+        'stop',
+      ),
+      more > 0 ? h('button.link', { type: 'button', onclick: () => this.app.go('optimize') }, `+${more} more`) : null,
+    );
   }
 }

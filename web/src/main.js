@@ -34,7 +34,9 @@ async function baseOf({ example, id }) {
   const key = id ? `id:${id}` : `example:${example}`;
   let base = bases.get(key);
   if (!base) {
-    const document = id ? (await get(`designs/${encodeURIComponent(id)}`)).design : await get(`examples/${encodeURIComponent(example || 'paper')}`);
+    const document = id
+      ? (await get(`designs/${encodeURIComponent(id)}`)).design
+      : await get(`examples/${encodeURIComponent(example || 'paper')}`);
     base = complete(fields, document);
     bases.set(key, base);
   }
@@ -55,7 +57,11 @@ function addressOf() {
 /** Opens what an address says, unless it is open already. @param {URLSearchParams} parameters */
 async function openPlace(parameters) {
   const now = addressOf();
-  const wanted = new URLSearchParams([...parameters].filter(([key]) => key === 'id' || key === 'from' || key === 'name' || key === 'load_cases' || key.includes('.')));
+  const wanted = new URLSearchParams(
+    [...parameters].filter(
+      ([key]) => key === 'id' || key === 'from' || key === 'name' || key === 'load_cases' || key.includes('.'),
+    ),
+  );
   if (store.design.gear_pair && (wanted.toString() === now.toString() || wanted.size === 0)) return;
   const from = { example: parameters.get('from') ?? 'paper', id: parameters.get('id') ?? '' };
   try {
@@ -82,7 +88,7 @@ async function start(page) {
   page.replaceChildren(...new Shell(app, bases).elements);
   analyst.update();
   await app.follow();
-  store.addEventListener('change', (event) => {
+  store.addEventListener('change', event => {
     if (/** @type {CustomEvent} */ (event).detail === 'design') app.note();
   });
   app.note();
@@ -106,7 +112,21 @@ function askToken(page) {
       fault.textContent = /** @type {Error} */ (error).message;
     }
   };
-  page.replaceChildren(h('main.first-word', null, h('form.token-form', { onsubmit: give }, h('h1', null, 'Easeoff'), h('label', { for: 'token' }, 'Token of this server'), token, h('button.primary', { type: 'submit' }, 'Open'), fault)));
+  page.replaceChildren(
+    h(
+      'main.first-word',
+      null,
+      h(
+        'form.token-form',
+        { onsubmit: give },
+        h('h1', null, 'Easeoff'),
+        h('label', { for: 'token' }, 'Token of this server'),
+        token,
+        h('button.primary', { type: 'submit' }, 'Open'),
+        fault,
+      ),
+    ),
+  );
   token.focus();
 }
 
@@ -120,10 +140,14 @@ async function startWhenThere(page) {
       return;
     }
     if (!(error instanceof Away)) {
-      page.replaceChildren(h('p.first-word', { role: 'alert' }, `The page could not start: ${/** @type {Error} */ (error).message}`));
+      page.replaceChildren(
+        h('p.first-word', { role: 'alert' }, `The page could not start: ${/** @type {Error} */ (error).message}`),
+      );
       throw error;
     }
-    page.replaceChildren(h('p.first-word', { role: 'status' }, 'The service does not answer yet; the page opens when it does.'));
+    page.replaceChildren(
+      h('p.first-word', { role: 'status' }, 'The service does not answer yet; the page opens when it does.'),
+    );
     const again = () => {
       if (connection.away) return;
       connection.removeEventListener('change', again);

@@ -1,4 +1,5 @@
-// Round the views: title bar with the design's menu, what it is compared with, tabs, state; below, the job bar; between, a word when the service is away.
+// Round the views: title bar with the design's menu, what it is compared with, tabs, state; below, the job bar;
+// between, a word when the service is away.
 import { Refusal, ask, connection, get, list } from './base/api.js';
 import { copyText, download, fileName, fill, h } from './base/dom.js';
 import { dateText, sig } from './base/format.js';
@@ -6,8 +7,16 @@ import { complete } from './base/schema.js';
 import { theme } from './base/theme.js';
 import { JobBar } from './jobbar.js';
 
-const THEMES = /** @type {Record<string, [string, string]>} */ ({ system: ['◐', 'as the system'], light: ['○', 'light'], dark: ['●', 'dark'] });
-const EXPORTS = [['flank-points', 'Flank points (CSV)'], ['modification-chart', 'Modification chart (CSV)'], ['topography', 'Topography (CSV)']];
+const THEMES = /** @type {Record<string, [string, string]>} */ ({
+  system: ['◐', 'as the system'],
+  light: ['○', 'light'],
+  dark: ['●', 'dark'],
+});
+const EXPORTS = [
+  ['flank-points', 'Flank points (CSV)'],
+  ['modification-chart', 'Modification chart (CSV)'],
+  ['topography', 'Topography (CSV)'],
+];
 
 export class Shell {
   /** @type {import('./base/store.js').Pin[]} */ #pins = [];
@@ -18,22 +27,73 @@ export class Shell {
     this.bases = bases;
     this.name = h('span.design-name');
     this.menu = this.#menu();
-    this.undo = h('button.icon', { type: 'button', title: 'Undo (Ctrl+Z)', 'aria-label': 'Undo', onclick: () => app.store.undo() }, '↶');
-    this.redo = h('button.icon', { type: 'button', title: 'Redo (Ctrl+Shift+Z)', 'aria-label': 'Redo', onclick: () => app.store.redo() }, '↷');
-    this.pin = h('select', { 'aria-label': 'Compare with', title: 'What the numbers and dashed curves compare with', onchange: () => this.#choosePin() });
-    this.tabs = h('nav.tabs', { 'aria-label': 'Views' }, app.entries.filter((entry) => entry.title).map((entry) => h('button', { type: 'button', 'data-view': entry.id, onclick: () => app.go(entry.id) }, entry.title)));
+    this.undo = h(
+      'button.icon',
+      { type: 'button', title: 'Undo (Ctrl+Z)', 'aria-label': 'Undo', onclick: () => app.store.undo() },
+      '↶',
+    );
+    this.redo = h(
+      'button.icon',
+      { type: 'button', title: 'Redo (Ctrl+Shift+Z)', 'aria-label': 'Redo', onclick: () => app.store.redo() },
+      '↷',
+    );
+    this.pin = h('select', {
+      'aria-label': 'Compare with',
+      title: 'What the numbers and dashed curves compare with',
+      onchange: () => this.#choosePin(),
+    });
+    this.tabs = h(
+      'nav.tabs',
+      { 'aria-label': 'Views' },
+      app.entries
+        .filter(entry => entry.title)
+        .map(entry =>
+          h('button', { type: 'button', 'data-view': entry.id, onclick: () => app.go(entry.id) }, entry.title),
+        ),
+    );
     this.state = h('span.state', { role: 'status', 'aria-live': 'off' });
     this.theme = h('button.icon', { type: 'button', onclick: () => this.#nextTheme() });
-    this.away = h('p.away-banner', { role: 'alert', hidden: true }, 'The service does not answer. Your design stays here; the page goes on by itself when it is back.');
+    this.away = h(
+      'p.away-banner',
+      { role: 'alert', hidden: true },
+      'The service does not answer. Your design stays here; the page goes on by itself when it is back.',
+    );
     this.notice = h('p.notice', { role: 'status', hidden: true });
-    const bar = h('header.bar', null, h('a.brand', { href: '#design', 'aria-label': 'Easeoff' }, brand(), h('span', null, 'Easeoff')), this.menu, this.undo, this.redo,
-      h('label.pin', null, h('span', null, 'against'), this.pin), this.tabs, this.state, this.theme);
-    this.elements = [h('a.skip', { href: '#stage', onclick: (/** @type {Event} */ event) => { event.preventDefault(); app.stage.querySelector('input')?.focus(); } }, 'To the parameters'), bar, this.away, this.notice, app.stage, new JobBar(app).element];
+    const bar = h(
+      'header.bar',
+      null,
+      h('a.brand', { href: '#design', 'aria-label': 'Easeoff' }, brand(), h('span', null, 'Easeoff')),
+      this.menu,
+      this.undo,
+      this.redo,
+      h('label.pin', null, h('span', null, 'against'), this.pin),
+      this.tabs,
+      this.state,
+      this.theme,
+    );
+    this.elements = [
+      h(
+        'a.skip',
+        {
+          href: '#stage',
+          onclick: (/** @type {Event} */ event) => {
+            event.preventDefault();
+            app.stage.querySelector('input')?.focus();
+          },
+        },
+        'To the parameters',
+      ),
+      bar,
+      this.away,
+      this.notice,
+      app.stage,
+      new JobBar(app).element,
+    ];
     app.store.addEventListener('change', () => this.#refresh());
     app.addEventListener('view', () => this.#refresh());
     app.analyst.addEventListener('state', () => this.#drawState());
     connection.addEventListener('change', () => this.#drawState());
-    document.addEventListener('keydown', (event) => this.#key(event));
+    document.addEventListener('keydown', event => this.#key(event));
     this.#drawTheme();
     this.#refresh();
   }
@@ -45,7 +105,8 @@ export class Shell {
     document.title = `${store.design.name || 'unnamed'} – Easeoff`;
     this.undo.disabled = !store.canUndo;
     this.redo.disabled = !store.canRedo;
-    for (const tab of this.tabs.children) tab.setAttribute('aria-current', String(/** @type {HTMLElement} */ (tab).dataset.view === current));
+    for (const tab of this.tabs.children)
+      tab.setAttribute('aria-current', String(/** @type {HTMLElement} */ (tab).dataset.view === current));
     this.#drawPins();
   }
 
@@ -65,8 +126,12 @@ export class Shell {
 
   #drawPins() {
     const { pin } = this.app.store;
-    const options = [h('option', { value: '' }, 'unmodified'), ...this.#pins.map((each, i) => h('option', { value: String(i) }, each.label)), h('option', { value: 'pin' }, 'pin this design')];
-    const shape = options.map((option) => option.textContent).join('|');
+    const options = [
+      h('option', { value: '' }, 'unmodified'),
+      ...this.#pins.map((each, i) => h('option', { value: String(i) }, each.label)),
+      h('option', { value: 'pin' }, 'pin this design'),
+    ];
+    const shape = options.map(option => option.textContent).join('|');
     if (this.pin.dataset.shape !== shape) {
       fill(this.pin, options);
       this.pin.dataset.shape = shape;
@@ -88,9 +153,14 @@ export class Shell {
 
   #menu() {
     const panel = h('.menu-list.design-menu', { hidden: true });
-    const button = h('button.design-button', { type: 'button', 'aria-haspopup': 'true', 'aria-expanded': 'false', title: 'Open, store, import, export' }, this.name, ' ▾');
+    const button = h(
+      'button.design-button',
+      { type: 'button', 'aria-haspopup': 'true', 'aria-expanded': 'false', title: 'Open, store, import, export' },
+      this.name,
+      ' ▾',
+    );
     /** @param {Event} event */
-    const outside = (event) => {
+    const outside = event => {
       if (!holder.contains(/** @type {Node} */ (event.target))) this.#closeMenu();
     };
     this.#closeMenu = () => {
@@ -111,12 +181,19 @@ export class Shell {
         // the examples are there all the same
       }
     });
-    const holder = h('.menu', { onkeydown: (/** @type {KeyboardEvent} */ event) => {
-      if (event.key === 'Escape' && !panel.hidden) {
-        this.#closeMenu();
-        button.focus();
-      }
-    } }, button, panel);
+    const holder = h(
+      '.menu',
+      {
+        onkeydown: (/** @type {KeyboardEvent} */ event) => {
+          if (event.key === 'Escape' && !panel.hidden) {
+            this.#closeMenu();
+            button.focus();
+          }
+        },
+      },
+      button,
+      panel,
+    );
     return holder;
   }
 
@@ -126,17 +203,81 @@ export class Shell {
   #drawMenu(panel, designs) {
     const { store } = this.app;
     /** @param {string} text @param {() => unknown} act @param {string} [note] */
-    const item = (text, act, note) => h('button', { type: 'button', onclick: () => { this.#closeMenu(); this.#try(act); } }, h('span', null, text), note ? h('small', null, note) : null);
-    const upload = h('input.away', { type: 'file', accept: '.json,application/json', tabindex: '-1', 'aria-hidden': 'true', onchange: () => this.#try(() => this.#import(upload)) });
-    fill(panel,
-      h('.menu-column', null, h('h2', null, 'This design'),
-        store.from.id ? item('Store', () => this.#save(false)) : null, item('Store as new', () => this.#save(true)),
-        item('Import JSON…', () => upload.click()), upload, item('Export JSON', () => this.#export()),
-        EXPORTS.map(([format, text]) => item(`Export ${text.charAt(0).toLowerCase()}${text.slice(1)}`, () => this.#exportAs(format))),
-        item('Copy a link to it', () => this.#copyLink()), item('Print a report…', () => window.print())),
-      h('.menu-column', null, h('h2', null, 'Examples'), this.app.examples.map((example) => item(example.name, () => this.#openExample(example.name), example.title))),
-      designs.length ? h('.menu-column', null, h('h2', null, 'Stored'), designs.map((design) => h('.menu-row', null, item(design.name || 'unnamed', () => this.#openStored(design.id), dateText(design.updated ?? design.created)),
-        h('button.icon', { type: 'button', 'aria-label': `Delete ${design.name}`, title: 'Delete', onclick: () => { this.#closeMenu(); this.#try(() => this.#delete(design)); } }, '✕')))) : null);
+    const item = (text, act, note) =>
+      h(
+        'button',
+        {
+          type: 'button',
+          onclick: () => {
+            this.#closeMenu();
+            this.#try(act);
+          },
+        },
+        h('span', null, text),
+        note ? h('small', null, note) : null,
+      );
+    const upload = h('input.away', {
+      type: 'file',
+      accept: '.json,application/json',
+      tabindex: '-1',
+      'aria-hidden': 'true',
+      onchange: () => this.#try(() => this.#import(upload)),
+    });
+    fill(
+      panel,
+      h(
+        '.menu-column',
+        null,
+        h('h2', null, 'This design'),
+        store.from.id ? item('Store', () => this.#save(false)) : null,
+        item('Store as new', () => this.#save(true)),
+        item('Import JSON…', () => upload.click()),
+        upload,
+        item('Export JSON', () => this.#export()),
+        EXPORTS.map(([format, text]) =>
+          item(`Export ${text.charAt(0).toLowerCase()}${text.slice(1)}`, () => this.#exportAs(format)),
+        ),
+        item('Copy a link to it', () => this.#copyLink()),
+        item('Print a report…', () => window.print()),
+      ),
+      h(
+        '.menu-column',
+        null,
+        h('h2', null, 'Examples'),
+        this.app.examples.map(example => item(example.name, () => this.#openExample(example.name), example.title)),
+      ),
+      designs.length
+        ? h(
+            '.menu-column',
+            null,
+            h('h2', null, 'Stored'),
+            designs.map(design =>
+              h(
+                '.menu-row',
+                null,
+                item(
+                  design.name || 'unnamed',
+                  () => this.#openStored(design.id),
+                  dateText(design.updated ?? design.created),
+                ),
+                h(
+                  'button.icon',
+                  {
+                    type: 'button',
+                    'aria-label': `Delete ${design.name}`,
+                    title: 'Delete',
+                    onclick: () => {
+                      this.#closeMenu();
+                      this.#try(() => this.#delete(design));
+                    },
+                  },
+                  '✕',
+                ),
+              ),
+            ),
+          )
+        : null,
+    );
   }
 
   /** Tells what went wrong instead of nothing. @param {() => unknown} act */
@@ -144,7 +285,11 @@ export class Shell {
     try {
       await act();
     } catch (error) {
-      this.say(error instanceof Refusal && error.faults.length ? error.faults.map((fault) => `${fault.pointer} ${fault.detail}`).join(' ') : /** @type {Error} */ (error).message);
+      this.say(
+        error instanceof Refusal && error.faults.length
+          ? error.faults.map(fault => `${fault.pointer} ${fault.detail}`).join(' ')
+          : /** @type {Error} */ (error).message,
+      );
     }
   }
 
@@ -155,13 +300,16 @@ export class Shell {
     this.notice.textContent = text;
     this.notice.hidden = false;
     clearTimeout(this.#timer);
-    this.#timer = window.setTimeout(() => { this.notice.hidden = true; }, 6000);
+    this.#timer = window.setTimeout(() => {
+      this.notice.hidden = true;
+    }, 6000);
   }
 
   /** @param {string} name */
   async #openExample(name) {
     const key = `example:${name}`;
-    if (!this.bases.has(key)) this.bases.set(key, complete(this.app.fields, await get(`examples/${encodeURIComponent(name)}`)));
+    if (!this.bases.has(key))
+      this.bases.set(key, complete(this.app.fields, await get(`examples/${encodeURIComponent(name)}`)));
     this.app.store.open(this.bases.get(key), { example: name });
     this.app.go(this.app.current || 'design');
   }
@@ -224,13 +372,19 @@ export class Shell {
     }
     const design = document?.design?.gear_pair ? document.design : document;
     await ask('POST', 'check', { body: design });
-    this.app.store.open(complete(this.app.fields, { load_cases: this.bases.get('example:paper')?.load_cases, ...design }), { example: 'paper' });
+    this.app.store.open(
+      complete(this.app.fields, { load_cases: this.bases.get('example:paper')?.load_cases, ...design }),
+      { example: 'paper' },
+    );
     this.app.go('design');
   }
 
   #export() {
     const { design } = this.app.store;
-    download(`${fileName(design.name || 'design')}.json`, new Blob([`${JSON.stringify(design, null, 2)}\n`], { type: 'application/json' }));
+    download(
+      `${fileName(design.name || 'design')}.json`,
+      new Blob([`${JSON.stringify(design, null, 2)}\n`], { type: 'application/json' }),
+    );
   }
 
   /** @param {string} format */
@@ -271,7 +425,14 @@ export class Shell {
       this.#try(() => this.#save(false));
       return;
     }
-    if ((key !== 'z' && key !== 'y') || (event.target instanceof HTMLInputElement && event.target.type === 'text' && event.target.value !== event.target.defaultValue && this.app.store.faults.size)) return;
+    if (
+      (key !== 'z' && key !== 'y') ||
+      (event.target instanceof HTMLInputElement &&
+        event.target.type === 'text' &&
+        event.target.value !== event.target.defaultValue &&
+        this.app.store.faults.size)
+    )
+      return;
     event.preventDefault();
     if (key === 'y' || event.shiftKey) this.app.store.redo();
     else this.app.store.undo();

@@ -15,7 +15,12 @@ export function writePlace(view, parameters) {
   return `#${view}${query ? `?${query}` : ''}`;
 }
 
-/** What differs from the base, one parameter for each value. @param {any} base @param {any} design @param {URLSearchParams} parameters */
+/**
+ * What differs from the base, one parameter for each value.
+ * @param {any} base
+ * @param {any} design
+ * @param {URLSearchParams} parameters
+ */
 export function putDifference(base, design, parameters) {
   const before = leaves(base);
   const after = leaves(design);
@@ -25,7 +30,11 @@ export function putDifference(base, design, parameters) {
   for (const path of before.keys()) if (!after.has(path)) parameters.set(path, '');
 }
 
-/** The base with those parameters; texts that are no JSON stay texts. @param {any} base @param {URLSearchParams} parameters */
+/**
+ * The base with those parameters; texts that are no JSON stay texts.
+ * @param {any} base
+ * @param {URLSearchParams} parameters
+ */
 export function takeDifference(base, parameters) {
   let design = base;
   for (const [path, text] of parameters) {

@@ -52,11 +52,11 @@ export class Analyst extends EventTarget {
         this.#tell('result');
         if (task.note === 'plain') this.#askPin();
       },
-      refused: (task) => {
+      refused: task => {
         this[task.note === 'pin' ? 'pinned' : 'plain'] = null;
       },
     });
-    store.addEventListener('change', (event) => {
+    store.addEventListener('change', event => {
       const what = /** @type {CustomEvent} */ (event).detail;
       if (what === 'view') this.#tell('result');
       else this.update();

@@ -121,5 +121,5 @@ export function address(path) {
 
 /** A random token, for lanes and idempotency keys. */
 export function token() {
-  return Array.from(crypto.getRandomValues(new Uint8Array(12)), (byte) => byte.toString(16).padStart(2, '0')).join('');
+  return Array.from(crypto.getRandomValues(new Uint8Array(12)), byte => byte.toString(16).padStart(2, '0')).join('');
 }

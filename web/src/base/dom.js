@@ -8,8 +8,17 @@ function assign(element, attributes) {
     if (value === null || value === undefined || value === false) continue;
     if (name.startsWith('on')) element.addEventListener(name.slice(2), value);
     else if (name === 'css') {
-      for (const [property, text] of Object.entries(value)) /** @type {HTMLElement} */ (element).style.setProperty(property, String(text));
-    } else if (name === 'value' || name === 'checked' || name === 'disabled' || name === 'selected' || name === 'hidden' || name === 'open') /** @type {any} */ (element)[name] = value;
+      for (const [property, text] of Object.entries(value))
+        /** @type {HTMLElement} */ (element).style.setProperty(property, String(text));
+    } else if (
+      name === 'value' ||
+      name === 'checked' ||
+      name === 'disabled' ||
+      name === 'selected' ||
+      name === 'hidden' ||
+      name === 'open'
+    )
+      /** @type {any} */ (element)[name] = value;
     else element.setAttribute(name, value === true ? '' : String(value));
   }
 }
@@ -26,10 +35,18 @@ function append(element, children) {
 /**
  * The element type that "tag.class" makes.
  * @template {string} T
- * @typedef {T extends keyof HTMLElementTagNameMap ? HTMLElementTagNameMap[T] : T extends `${infer Tag}.${string}` ? (Tag extends keyof HTMLElementTagNameMap ? HTMLElementTagNameMap[Tag] : HTMLElement) : HTMLElement} ElementOf
+ * @typedef {T extends keyof HTMLElementTagNameMap ? HTMLElementTagNameMap[T]
+ *   : T extends `${infer Tag}.${string}` 
+ *   ? (Tag extends keyof HTMLElementTagNameMap ? HTMLElementTagNameMap[Tag] : HTMLElement) : HTMLElement} ElementOf
  */
 
-/** @template {string} T @param {T} name @param {Record<string, any> | null} [attributes] @param {...Child} children @returns {ElementOf<T>} */
+/**
+ * @template {string} T
+ * @param {T} name
+ * @param {Record<string, any> | null} [attributes]
+ * @param {...Child} children
+ * @returns {ElementOf<T>}
+ */
 export function h(name, attributes, ...children) {
   const [tag, ...classes] = name.split('.');
   const element = document.createElement(tag || 'div');
@@ -62,7 +79,12 @@ export function download(name, blob) {
 
 /** A name that any file system takes. @param {string} text */
 export function fileName(text) {
-  return text.toLowerCase().replace(/[^a-z0-9]+/g, '-').replace(/^-|-$/g, '') || 'design';
+  return (
+    text
+      .toLowerCase()
+      .replace(/[^a-z0-9]+/g, '-')
+      .replace(/^-|-$/g, '') || 'design'
+  );
 }
 
 /** @param {string} text */

@@ -1,7 +1,16 @@
 // Numbers and words for people.
 
 const SYMBOLS = /** @type {Record<string, string>} */ ({
-  um: 'µm', deg: '°', Nm: 'N m', N_per_um: 'N/µm', m_per_s2: 'm/s²', kg_m2: 'kg m²', kg_per_m3: 'kg/m³', Nm_per_rad: 'N m/rad', per_mm: '1/mm', per_um: '1/µm',
+  um: 'µm',
+  deg: '°',
+  Nm: 'N m',
+  N_per_um: 'N/µm',
+  m_per_s2: 'm/s²',
+  kg_m2: 'kg m²',
+  kg_per_m3: 'kg/m³',
+  Nm_per_rad: 'N m/rad',
+  per_mm: '1/mm',
+  per_um: '1/µm',
 });
 
 /** The unit as it is printed. @param {string | null | undefined} unit */
@@ -11,7 +20,12 @@ export function unitText(unit) {
 }
 
 const SUFFIX = /_(um|mm|deg|Nm|rpm|MPa|GPa|N|N_per_um|Nm_per_rad|kg|kg_m2|kg_per_m3|per_mm|m_per_s2|Hz)$/;
-const ACRONYMS = /** @type {Record<string, string>} */ ({ ga: 'GA', fpga: 'FPGA', nsga2: 'NSGA-II', 'credibility-ga': 'credibility GA' });
+const ACRONYMS = /** @type {Record<string, string>} */ ({
+  ga: 'GA',
+  fpga: 'FPGA',
+  nsga2: 'NSGA-II',
+  'credibility-ga': 'credibility GA',
+});
 
 /** "tip_relief_start_mm" -> "Tip relief start". @param {string} key */
 export function labelOf(key) {
@@ -24,12 +38,20 @@ export function choiceText(choice) {
   return ACRONYMS[choice] ?? choice.replaceAll('_', ' ');
 }
 
-/** Significant digits, no exponent where a person would not write one. @param {number | null | undefined} value @param {number} [digits] */
+/**
+ * Significant digits, no exponent where a person would not write one.
+ * @param {number | null | undefined} value
+ * @param {number} [digits]
+ */
 export function sig(value, digits = 3) {
   if (value === null || value === undefined || !Number.isFinite(value)) return '–';
   if (value === 0) return '0';
   const size = Math.abs(value);
-  if (size >= 1e7 || size < 1e-4) return value.toExponential(digits - 1).replace('-', '−').replace('e+', 'e');
+  if (size >= 1e7 || size < 1e-4)
+    return value
+      .toExponential(digits - 1)
+      .replace('-', '−')
+      .replace('e+', 'e');
   const decimals = Math.max(0, digits - 1 - Math.floor(Math.log10(size)));
   return value.toFixed(Math.min(decimals, 8)).replace('-', '−');
 }
@@ -40,17 +62,36 @@ export function plain(value) {
   return Number.isInteger(value) ? String(value) : String(Number(value.toPrecision(6)));
 }
 
-/** "1,5" and "1.5" are the same; undefined when it is not a number. @param {string} text @returns {number | undefined} */
+/**
+ * "1,5" and "1.5" are the same; undefined when it is not a number.
+ * @param {string} text
+ * @returns {number | undefined}
+ */
 export function parseNumber(text) {
-  const clean = text.trim().replace(/[\s\u00a0\u202f]/g, '').replace('−', '-').replace(',', '.');
+  const clean = text
+    .trim()
+    .replace(/[\s\u00a0\u202f]/g, '')
+    .replace('−', '-')
+    .replace(',', '.');
   if (!/^[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?$/i.test(clean)) return undefined;
   const value = Number(clean);
   return Number.isFinite(value) ? value : undefined;
 }
 
-/** Change of a value against a reference in per cent; undefined without one. @param {number | null | undefined} value @param {number | null | undefined} reference */
+/**
+ * Change of a value against a reference in per cent; undefined without one.
+ * @param {number | null | undefined} value
+ * @param {number | null | undefined} reference
+ */
 export function change(value, reference) {
-  if (typeof value !== 'number' || typeof reference !== 'number' || !Number.isFinite(value) || !Number.isFinite(reference) || reference === 0) return undefined;
+  if (
+    typeof value !== 'number' ||
+    typeof reference !== 'number' ||
+    !Number.isFinite(value) ||
+    !Number.isFinite(reference) ||
+    reference === 0
+  )
+    return undefined;
   return (100 * (value - reference)) / Math.abs(reference);
 }
 
@@ -66,7 +107,7 @@ export function changeText(percent) {
 export function duration(seconds) {
   if (seconds === null || seconds === undefined || !Number.isFinite(seconds)) return '–';
   const whole = Math.max(0, Math.round(seconds));
-  const parts = [Math.floor(whole / 60) % 60, whole % 60].map((part) => String(part).padStart(2, '0'));
+  const parts = [Math.floor(whole / 60) % 60, whole % 60].map(part => String(part).padStart(2, '0'));
   return whole >= 3600 ? `${Math.floor(whole / 3600)}:${parts.join(':')}` : parts.join(':');
 }
 
@@ -74,5 +115,7 @@ export function duration(seconds) {
 export function dateText(text) {
   if (!text) return '';
   const date = new Date(text);
-  return Number.isNaN(date.getTime()) ? text : date.toLocaleString(undefined, { dateStyle: 'medium', timeStyle: 'short' });
+  return Number.isNaN(date.getTime())
+    ? text
+    : date.toLocaleString(undefined, { dateStyle: 'medium', timeStyle: 'short' });
 }

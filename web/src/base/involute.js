@@ -1,4 +1,5 @@
-// The transverse section of a generated tooth, from the geometry the service reports: involute, fillet of the rack's rounded tip, root circle.
+// The transverse section of a generated tooth, from the geometry the service reports: involute, fillet of the rack's
+// rounded tip, root circle.
 // The formulas are those of ISO 21771 and of the trochoid in src/gear/fillet.c; lengths in mm, angles in rad.
 
 /** @typedef {[number, number]} Point */
@@ -7,18 +8,33 @@ const INVOLUTE = 24;
 const FILLET = 14;
 
 /** @param {number} angle */
-const inv = (angle) => Math.tan(angle) - angle;
+const inv = angle => Math.tan(angle) - angle;
 /** @param {number} degrees */
-const radians = (degrees) => (degrees * Math.PI) / 180;
+const radians = degrees => (degrees * Math.PI) / 180;
 
-/** Angle from the tooth's middle to the involute at a radius. @param {any} g @param {0 | 1} member @param {number} radius */
+/**
+ * Angle from the tooth's middle to the involute at a radius.
+ * @param {any} g
+ * @param {0 | 1} member
+ * @param {number} radius
+ */
 export function halfAngle(g, member, radius) {
   const teeth = member === 0 ? g.pinion_teeth : g.gear_teeth;
-  const middle = Math.PI / 2 / teeth + (2 * g.profile_shift[member] * Math.tan(radians(g.normal_pressure_angle_deg))) / teeth;
-  return middle + inv(radians(g.transverse_pressure_angle_deg)) - inv(Math.acos(Math.min(1, g.base_radius_mm[member] / radius)));
+  const middle =
+    Math.PI / 2 / teeth + (2 * g.profile_shift[member] * Math.tan(radians(g.normal_pressure_angle_deg))) / teeth;
+  return (
+    middle +
+    inv(radians(g.transverse_pressure_angle_deg)) -
+    inv(Math.acos(Math.min(1, g.base_radius_mm[member] / radius)))
+  );
 }
 
-/** @param {any} g @param {any} pair @param {0 | 1} member @returns {Point[]} from the lowest point to the form radius */
+/**
+ * @param {any} g
+ * @param {any} pair
+ * @param {0 | 1} member
+ * @returns {Point[]} from the lowest point to the form radius
+ */
 function fillet(g, pair, member) {
   const module = g.normal_module_mm;
   const pressure = radians(g.normal_pressure_angle_deg);
@@ -27,7 +43,8 @@ function fillet(g, pair, member) {
   const reference = g.reference_radius_mm[member];
   const stretch = 1 / Math.cos(radians(g.helix_angle_deg));
   const up = shift - pair.dedendum_coefficient * module + radius;
-  const across = (Math.PI * module) / 4 + shift * Math.tan(pressure) - up * Math.tan(pressure) + radius / Math.cos(pressure);
+  const across =
+    (Math.PI * module) / 4 + shift * Math.tan(pressure) - up * Math.tan(pressure) + radius / Math.cos(pressure);
   /** @type {Point[]} */
   const points = [];
   for (let i = 0; i <= FILLET; i++) {
@@ -44,7 +61,8 @@ function fillet(g, pair, member) {
 /**
  * The right half of a tooth whose middle is the y axis: from the root through fillet and involute to the tip.
  * @param {any} g geometry of a result @param {any} pair gear_pair of its resolved design @param {0 | 1} member
- * @param {(sigma: number) => number} [taken] what is taken off at a path coordinate, + towards the member's tip, mm: the active involute alone, that much lower
+ * @param {(sigma: number) => number} [taken] what is taken off at a path coordinate, + towards the member's tip, mm:
+ *   the active involute alone, that much lower
  * @returns {Point[]}
  */
 export function halfTooth(g, pair, member, taken) {
@@ -55,8 +73,13 @@ export function halfTooth(g, pair, member, taken) {
     const radius = from + ((to - from) * i) / INVOLUTE;
     const angle = halfAngle(g, member, radius);
     const normal = angle - Math.acos(Math.min(1, base / radius));
-    const depth = taken ? taken(Math.sqrt(Math.max(0, radius * radius - base * base)) - g.tangent_length_mm[member]) : 0;
-    points.push([radius * Math.sin(angle) - depth * Math.cos(normal), radius * Math.cos(angle) + depth * Math.sin(normal)]);
+    const depth = taken
+      ? taken(Math.sqrt(Math.max(0, radius * radius - base * base)) - g.tangent_length_mm[member])
+      : 0;
+    points.push([
+      radius * Math.sin(angle) - depth * Math.cos(normal),
+      radius * Math.cos(angle) + depth * Math.sin(normal),
+    ]);
   }
   return points;
 }

@@ -12,7 +12,7 @@ export class Jobs extends EventTarget {
 
   start() {
     this.reload();
-    this.#channel?.addEventListener('message', (event) => this.#take(event.data));
+    this.#channel?.addEventListener('message', event => this.#take(event.data));
     connection.addEventListener('change', () => {
       if (!connection.away) this.reload();
     });
@@ -20,7 +20,10 @@ export class Jobs extends EventTarget {
     else this.#alone();
   }
 
-  /** One page of this browser holds the stream and tells the others: a browser opens six connections to a host, no more. */
+  /**
+   * One page of this browser holds the stream and tells the others: a browser opens six connections to a host, no
+   * more.
+   */
   #lead() {
     navigator.locks.request(CHANNEL, () => new Promise(() => this.#open())).catch(() => this.#alone());
   }
@@ -44,7 +47,7 @@ export class Jobs extends EventTarget {
     const source = new EventSource(address('events'));
     this.#source = source;
     source.addEventListener('open', () => this.reload()); // what happened before it is in the list
-    source.addEventListener('job', (event) => {
+    source.addEventListener('job', event => {
       const job = JSON.parse(event.data);
       this.#channel?.postMessage(job);
       this.#take(job);
@@ -64,7 +67,7 @@ export class Jobs extends EventTarget {
   async reload() {
     try {
       const items = await list('jobs', 400);
-      this.all = new Map(items.map((job) => [job.id, job]));
+      this.all = new Map(items.map(job => [job.id, job]));
       this.dispatchEvent(new CustomEvent('change', { detail: null }));
     } catch {
       // comes again with the connection
@@ -87,6 +90,8 @@ export class Jobs extends EventTarget {
 
   /** Optimizations, newest first. */
   searches() {
-    return [...this.all.values()].filter((job) => job.kind === 'optimize').sort((a, b) => String(b.created).localeCompare(String(a.created)) || Number(b.id) - Number(a.id));
+    return [...this.all.values()]
+      .filter(job => job.kind === 'optimize')
+      .sort((a, b) => String(b.created).localeCompare(String(a.created)) || Number(b.id) - Number(a.id));
   }
 }

@@ -15,7 +15,7 @@ const POLL = 400; // ms between two looks at a preparation
  *   preparing?: (task: Task, job: any) => void }} Listener */
 
 /** @param {number} ms */
-const sleep = (ms) => new Promise((resolve) => setTimeout(resolve, ms));
+const sleep = ms => new Promise(resolve => setTimeout(resolve, ms));
 
 export class Lane {
   /** @type {Task | null} */ #waiting = null;
@@ -80,7 +80,11 @@ export class Lane {
     queueMicrotask(() => this.listener.result?.(task, answer.data, ms));
   }
 
-  /** Waits for the preparation of the pair; a newer task of another pair ends it. @param {Task} task @param {any} job */
+  /**
+   * Waits for the preparation of the pair; a newer task of another pair ends it.
+   * @param {Task} task
+   * @param {any} job
+   */
   async #prepare(task, job) {
     let state = job;
     while (state.state === 'queued' || state.state === 'preparing' || state.state === 'running') {
@@ -93,7 +97,8 @@ export class Lane {
       state = (await ask('GET', `jobs/${job.id}`)).data;
     }
     if (state.state === 'failed') throw new Refusal(422, state.error ?? { title: 'The pair could not be prepared.' });
-    if (state.state === 'cancelled' && !this.#waiting) throw new Refusal(409, { title: 'The preparation of the teeth was stopped.' });
+    if (state.state === 'cancelled' && !this.#waiting)
+      throw new Refusal(409, { title: 'The preparation of the teeth was stopped.' });
     if (!this.#waiting) this.#waiting = task;
   }
 }

@@ -10,7 +10,12 @@ export function valueAt(document, pointer) {
   return value;
 }
 
-/** A copy of the document with one value changed; the rest is shared. @param {any} document @param {string} pointer @param {any} value */
+/**
+ * A copy of the document with one value changed; the rest is shared.
+ * @param {any} document
+ * @param {string} pointer
+ * @param {any} value
+ */
 export function withValue(document, pointer, value) {
   const keys = pointer.split('/').slice(1);
   /** @param {any} node @param {number} depth @returns {any} */
@@ -30,7 +35,12 @@ export function same(a, b) {
   return a === b || JSON.stringify(a) === JSON.stringify(b);
 }
 
-/** Leaves of a document as "a.b.c" -> value; lists are leaves. @param {any} document @param {string} [prefix] @param {Map<string, any>} [into] */
+/**
+ * Leaves of a document as "a.b.c" -> value; lists are leaves.
+ * @param {any} document
+ * @param {string} [prefix]
+ * @param {Map<string, any>} [into]
+ */
 export function leaves(document, prefix = '', into = new Map()) {
   for (const [key, value] of Object.entries(document ?? {})) {
     const path = prefix ? `${prefix}.${key}` : key;

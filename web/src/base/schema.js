@@ -5,7 +5,8 @@
  * @property {string} key
  * @property {string} kind number, integer, seed, flag, text, choice, numbers, limit, object, list, series
  * @property {string} [unit] @property {number | null} [low] @property {number | null} [high] @property {any} [default]
- * @property {string[]} [choices] @property {string} [help] @property {boolean} [required] @property {boolean} [nullable]
+ * @property {string[]} [choices] @property {string} [help] @property {boolean} [required]
+ * @property {boolean} [nullable]
  * @property {string} [derived] @property {number} [count] @property {Field[]} [fields]
  */
 
@@ -23,7 +24,7 @@ export function fieldAt(fields, pointer) {
   let level = fields;
   for (const key of pointer.split('/').slice(1)) {
     if (field?.kind === 'list' && /^\d+$/.test(key)) continue;
-    field = level?.find((candidate) => candidate.key === key);
+    field = level?.find(candidate => candidate.key === key);
     if (!field) return undefined;
     level = field.fields;
   }
@@ -52,7 +53,8 @@ export function complete(fields, document) {
       if (whole[field.key] === undefined && field.key === 'gear') continue; // absent: unmodified
       whole[field.key] = complete(field.fields, whole[field.key] ?? {});
     } else if (field.kind === 'list') {
-      if (Array.isArray(whole[field.key])) whole[field.key] = whole[field.key].map((/** @type {any} */ row) => complete(field.fields ?? [], row));
+      if (Array.isArray(whole[field.key]))
+        whole[field.key] = whole[field.key].map((/** @type {any} */ row) => complete(field.fields ?? [], row));
     } else if (whole[field.key] === undefined && !field.required) {
       whole[field.key] = fallbackOf(field);
     }
@@ -62,7 +64,8 @@ export function complete(fields, document) {
 
 /** Why a number cannot be taken, or nothing. @param {Field} field @param {number} value */
 export function numberFault(field, value) {
-  if ((field.kind === 'integer' || field.kind === 'seed') && !Number.isInteger(value)) return 'A whole number is needed.';
+  if ((field.kind === 'integer' || field.kind === 'seed') && !Number.isInteger(value))
+    return 'A whole number is needed.';
   const low = field.low ?? -Infinity;
   const high = field.high ?? Infinity;
   if (value < low || value > high) return `${value} is outside ${low} … ${high}.`;

@@ -71,7 +71,12 @@ export class DesignStore extends EventTarget {
     this.#tell('design');
   }
 
-  /** Another design altogether. @param {any} design @param {{ example?: string, id?: string, etag?: string }} from @param {{ fresh?: boolean }} [options] */
+  /**
+   * Another design altogether.
+   * @param {any} design
+   * @param {{ example?: string, id?: string, etag?: string }} from
+   * @param {{ fresh?: boolean }} [options]
+   */
   open(design, from, { fresh = false } = {}) {
     if (!fresh) this.#remember('');
     else {
@@ -88,7 +93,9 @@ export class DesignStore extends EventTarget {
   }
 
   #endsEqual() {
-    return ['pinion', 'gear'].every((member) => same(this.get(`/modification/${member}/left`), this.get(`/modification/${member}/right`)));
+    return ['pinion', 'gear'].every(member =>
+      same(this.get(`/modification/${member}/left`), this.get(`/modification/${member}/right`)),
+    );
   }
 
   /** @param {boolean} tied the right end takes what the left has */
@@ -98,7 +105,8 @@ export class DesignStore extends EventTarget {
       this.#remember('');
       for (const member of ['pinion', 'gear']) {
         const left = this.get(`/modification/${member}/${ENDS[0]}`);
-        if (this.get(`/modification/${member}`)) this.design = withValue(this.design, `/modification/${member}/${ENDS[1]}`, left);
+        if (this.get(`/modification/${member}`))
+          this.design = withValue(this.design, `/modification/${member}/${ENDS[1]}`, left);
       }
       this.#tell('design');
     } else this.#tell('view');

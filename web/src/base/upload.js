@@ -22,7 +22,9 @@ export function upload(path, form, tell, signal) {
     const request = new XMLHttpRequest();
     request.open('POST', address(path));
     request.responseType = 'text';
-    request.upload.addEventListener('progress', (event) => tell(event.lengthComputable && event.total ? event.loaded / event.total : 0));
+    request.upload.addEventListener('progress', event =>
+      tell(event.lengthComputable && event.total ? event.loaded / event.total : 0),
+    );
     request.addEventListener('load', () => {
       /** @type {any} */
       let data = null;

@@ -13,7 +13,11 @@ export class Painting {
   #seen = false;
   #asked = false;
 
-  /** @param {ConstructorParameters<typeof Frame>[0] extends infer T ? Omit<T, 'drawing'> : never} options @param {Paint} paint @param {{ table?: () => (string | number | null)[][], label?: string }} [more] */
+  /**
+   * @param {ConstructorParameters<typeof Frame>[0] extends infer T ? Omit<T, 'drawing'> : never} options
+   * @param {Paint} paint
+   * @param {{ table?: () => (string | number | null)[][], label?: string }} [more]
+   */
   constructor(options, paint, { table, label } = {}) {
     this.paint = paint;
     this.canvas = h('canvas', { role: 'img', 'aria-label': label ?? options.title });
@@ -21,7 +25,7 @@ export class Painting {
     this.element = this.frame.element;
     this.element.classList.add('keyless');
     this.frame.body.append(this.canvas);
-    whenSeen(this.element, (visible) => {
+    whenSeen(this.element, visible => {
       this.#seen = visible;
       if (visible) this.repaint();
     });

@@ -1,4 +1,5 @@
-// Curves over one abscissa, drawn by uPlot: live, with a reading at the pointer, zoom by dragging, reset by a double click.
+// Curves over one abscissa, drawn by uPlot: live, with a reading at the pointer, zoom by dragging, reset by a double
+// click.
 import uPlot from 'uplot';
 import { fill, h } from '../base/dom.js';
 import { sig } from '../base/format.js';
@@ -21,7 +22,8 @@ import { Frame, placeTip, whenSeen } from './frame.js';
 /** @typedef {{ x: ArrayLike<number>, curves: Curve[], marks?: Mark[] }} ChartData */
 /**
  * @typedef {object} ChartOptions
- * @property {string} title @property {string} [unit] @property {string} [help] @property {string} xLabel @property {string} [xUnit]
+ * @property {string} title @property {string} [unit] @property {string} [help] @property {string} xLabel
+ * @property {string} [xUnit]
  * @property {boolean} [bars] groups of bars at whole x; dashed curves become ticks across them
  * @property {boolean} [cycle] x is the phase of the mesh cycle
  * @property {boolean} [zero] y starts at zero
@@ -34,14 +36,22 @@ const FONT = '11px system-ui, sans-serif';
 /** Values of a curve at the places of another abscissa. @param {Curve} curve @param {ArrayLike<number>} x */
 function onAbscissa(curve, x) {
   const from = curve.x;
-  if (!from || from === x || (from.length === x.length && from[0] === x[0] && from[from.length - 1] === x[x.length - 1])) return curve.y;
+  if (
+    !from ||
+    from === x ||
+    (from.length === x.length && from[0] === x[0] && from[from.length - 1] === x[x.length - 1])
+  )
+    return curve.y;
   const y = new Array(x.length).fill(null);
   let k = 0;
   for (let i = 0; i < x.length; i++) {
     if (x[i] < from[0] || x[i] > from[from.length - 1]) continue;
     while (k < from.length - 2 && from[k + 1] < x[i]) k++;
     const [a, b] = [curve.y[k], curve.y[k + 1]];
-    y[i] = a === null || b === null || a === undefined || b === undefined ? null : a + ((b - a) * (x[i] - from[k])) / (from[k + 1] - from[k]);
+    y[i] =
+      a === null || b === null || a === undefined || b === undefined
+        ? null
+        : a + ((b - a) * (x[i] - from[k])) / (from[k + 1] - from[k]);
   }
   return y;
 }
@@ -59,12 +69,16 @@ export class Chart {
   constructor(options) {
     this.options = options;
     this.frame = new Frame({
-      title: options.title, unit: options.unit, help: options.help, wide: options.wide, controls: options.controls,
+      title: options.title,
+      unit: options.unit,
+      help: options.help,
+      wide: options.wide,
+      controls: options.controls,
       drawing: { picture: () => this.#picture(), table: () => this.#table(), reset: () => this.#reset() },
     });
     this.element = this.frame.element;
     this.tip = h('.tip', { hidden: true });
-    whenSeen(this.element, (visible) => {
+    whenSeen(this.element, visible => {
       this.#seen = visible;
       if (visible && this.#stale) this.#draw();
     });
@@ -100,8 +114,10 @@ export class Chart {
       if (data && !data.x.length) this.#clear();
       return;
     }
-    const columns = /** @type {uPlot.AlignedData} */ (/** @type {unknown} */ ([data.x, ...data.curves.map((curve) => onAbscissa(curve, data.x))]));
-    const shape = JSON.stringify([data.curves.map((curve) => [curve.label, curve.colour, curve.line, curve.width])]);
+    const columns = /** @type {uPlot.AlignedData} */ (
+      /** @type {unknown} */ ([data.x, ...data.curves.map(curve => onAbscissa(curve, data.x))])
+    );
+    const shape = JSON.stringify([data.curves.map(curve => [curve.label, curve.colour, curve.line, curve.width])]);
     if (shape === this.#shape && this.#plot) {
       const zoomed = this.#zoom();
       this.#plot.setData(columns, !zoomed);
@@ -136,9 +152,17 @@ export class Chart {
   /** @param {ChartData} data @param {number} width @param {number} height @returns {uPlot.Options} */
   #settings(data, width, height) {
     const { bars, zero, xLabel, xUnit } = this.options;
-    const axis = { stroke: colour('muted'), grid: { stroke: colour('grid'), width: 1 }, ticks: { show: false }, font: FONT, gap: 4 };
+    const axis = {
+      stroke: colour('muted'),
+      grid: { stroke: colour('grid'), width: 1 },
+      ticks: { show: false },
+      font: FONT,
+      gap: 4,
+    };
     return {
-      width, height, pxAlign: 0,
+      width,
+      height,
+      pxAlign: 0,
       padding: [6, 8, 0, 0],
       legend: { show: false },
       cursor: { sync: undefined, drag: { x: !bars, y: false, dist: 6 }, points: { size: 5 }, y: false },
@@ -147,34 +171,60 @@ export class Chart {
         y: { range: (_plot, low, high) => yRange(low, high, Boolean(zero || bars)) },
       },
       axes: [
-        { ...axis, size: 18, label: xUnit ? `${xLabel}, ${xUnit}` : xLabel, labelFont: FONT, labelSize: 15, labelGap: 0, space: 44,
-          grid: bars ? { show: false } : axis.grid, splits: bars ? () => Array.from(data.x) : undefined },
-        { ...axis, size: (_plot, texts) => 12 + 6.4 * Math.max(2, ...(texts ?? []).map((text) => text.length)), space: 24,
-          values: (_plot, splits) => splits.map((value) => (value === null ? '' : String(Number(value.toPrecision(6))).replace('-', '−'))) },
+        {
+          ...axis,
+          size: 18,
+          label: xUnit ? `${xLabel}, ${xUnit}` : xLabel,
+          labelFont: FONT,
+          labelSize: 15,
+          labelGap: 0,
+          space: 44,
+          grid: bars ? { show: false } : axis.grid,
+          splits: bars ? () => Array.from(data.x) : undefined,
+        },
+        {
+          ...axis,
+          size: (_plot, texts) => 12 + 6.4 * Math.max(2, ...(texts ?? []).map(text => text.length)),
+          space: 24,
+          values: (_plot, splits) =>
+            splits.map(value => (value === null ? '' : String(Number(value.toPrecision(6))).replace('-', '−'))),
+        },
       ],
-      series: [{}, ...data.curves.map((curve) => ({
-        label: curve.label, stroke: colour(curve.colour), width: curve.width ?? (curve.line ? 1.25 : 1.75), dash: DASHES[curve.line ?? 'solid'],
-        points: { show: false }, spanGaps: false, paths: bars ? () => null : undefined,
-      }))],
+      series: [
+        {},
+        ...data.curves.map(curve => ({
+          label: curve.label,
+          stroke: colour(curve.colour),
+          width: curve.width ?? (curve.line ? 1.25 : 1.75),
+          dash: DASHES[curve.line ?? 'solid'],
+          points: { show: false },
+          spanGaps: false,
+          paths: bars ? () => null : undefined,
+        })),
+      ],
       hooks: {
-        drawClear: [(plot) => drawMarks(plot, this.#data?.marks ?? [])],
-        draw: bars ? [(plot) => drawBars(plot, this.#data?.curves ?? [])] : [],
-        setCursor: [(plot) => this.#read(plot)],
+        drawClear: [plot => drawMarks(plot, this.#data?.marks ?? [])],
+        draw: bars ? [plot => drawBars(plot, this.#data?.curves ?? [])] : [],
+        setCursor: [plot => this.#read(plot)],
       },
     };
   }
 
   /** @param {uPlot} plot */
   #listen(plot) {
-    plot.over.addEventListener('mouseenter', () => { this.#hover = true; });
+    plot.over.addEventListener('mouseenter', () => {
+      this.#hover = true;
+    });
     plot.over.addEventListener('mouseleave', () => {
       this.#hover = false;
       this.tip.hidden = true;
       if (this.options.cycle) phase.set(null);
     });
     let from = [0, 0];
-    plot.over.addEventListener('pointerdown', (event) => { from = [event.clientX, event.clientY]; });
-    plot.over.addEventListener('click', (event) => {
+    plot.over.addEventListener('pointerdown', event => {
+      from = [event.clientX, event.clientY];
+    });
+    plot.over.addEventListener('click', event => {
       if (Math.hypot(event.clientX - from[0], event.clientY - from[1]) > 4 || event.detail > 1) return;
       this.#click = window.setTimeout(() => this.frame.enlarge(), 280);
     });
@@ -189,12 +239,18 @@ export class Chart {
       return;
     }
     const x = this.#data.x[at];
-    const order = this.#data.curves.map((curve, k) => ({ curve, k })).sort((a, b) => Number(Boolean(a.curve.line)) - Number(Boolean(b.curve.line)));
+    const order = this.#data.curves
+      .map((curve, k) => ({ curve, k }))
+      .sort((a, b) => Number(Boolean(a.curve.line)) - Number(Boolean(b.curve.line)));
     const rows = order.map(({ curve, k }) => {
       const value = /** @type {number | null | undefined} */ (plot.data[k + 1][at]);
       return h('.tip-row', null, swatch(curve), h('span', null, curve.label), h('b', null, sig(value, 4)));
     });
-    fill(this.tip, h('.tip-x', null, `${this.options.xLabel} ${sig(x, 4)}${this.options.xUnit ? ` ${this.options.xUnit}` : ''}`), rows);
+    fill(
+      this.tip,
+      h('.tip-x', null, `${this.options.xLabel} ${sig(x, 4)}${this.options.xUnit ? ` ${this.options.xUnit}` : ''}`),
+      rows,
+    );
     this.tip.hidden = false;
     const left = (plot.cursor.left ?? 0) + plot.over.offsetLeft;
     placeTip(this.tip, left, this.frame.body.clientWidth);
@@ -210,12 +266,19 @@ export class Chart {
 
   /** @param {ChartData} data */
   #drawLegend(data) {
-    const solid = data.curves.filter((curve) => !curve.line);
+    const solid = data.curves.filter(curve => !curve.line);
     // one key for all curves of a reference: "828 N m, unmodified" and its like
-    const others = new Map(data.curves.filter((curve) => curve.line).map((curve) => [curve.label.replace(/^.*, /, ''), curve]));
-    const mixed = new Set(data.curves.map((curve) => curve.colour)).size > 1;
-    fill(this.frame.legend, solid.map((curve) => h('span.key', null, swatch(curve), curve.label)),
-      [...others].map(([label, curve]) => h('span.key', null, swatch(mixed ? { ...curve, colour: 'muted' } : curve), label)));
+    const others = new Map(
+      data.curves.filter(curve => curve.line).map(curve => [curve.label.replace(/^.*, /, ''), curve]),
+    );
+    const mixed = new Set(data.curves.map(curve => curve.colour)).size > 1;
+    fill(
+      this.frame.legend,
+      solid.map(curve => h('span.key', null, swatch(curve), curve.label)),
+      [...others].map(([label, curve]) =>
+        h('span.key', null, swatch(mixed ? { ...curve, colour: 'muted' } : curve), label),
+      ),
+    );
   }
 
   #resize() {
@@ -224,7 +287,8 @@ export class Chart {
       if (this.#seen && this.#data) this.#draw();
       return;
     }
-    if (Math.abs(this.#plot.width - width) > 0.5 || Math.abs(this.#plot.height - height) > 0.5) this.#plot.setSize({ width, height });
+    if (Math.abs(this.#plot.width - width) > 0.5 || Math.abs(this.#plot.height - height) > 0.5)
+      this.#plot.setSize({ width, height });
   }
 
   #reset() {
@@ -266,9 +330,15 @@ export class Chart {
     const data = this.#data;
     if (!data) return [];
     const { xLabel, xUnit, unit } = this.options;
-    const columns = data.curves.map((curve) => onAbscissa(curve, data.x));
-    const rows = Array.from(data.x, (x, i) => [x, ...columns.map((column) => column[i] ?? null)]);
-    return [[xUnit ? `${xLabel} (${xUnit})` : xLabel, ...data.curves.map((curve) => (unit ? `${curve.label} (${unit})` : curve.label))], ...rows];
+    const columns = data.curves.map(curve => onAbscissa(curve, data.x));
+    const rows = Array.from(data.x, (x, i) => [x, ...columns.map(column => column[i] ?? null)]);
+    return [
+      [
+        xUnit ? `${xLabel} (${xUnit})` : xLabel,
+        ...data.curves.map(curve => (unit ? `${curve.label} (${unit})` : curve.label)),
+      ],
+      ...rows,
+    ];
   }
 }
 
@@ -312,11 +382,15 @@ function drawMarks(plot, marks) {
   ctx.restore();
 }
 
-/** Solid curves as bars side by side; those of a reference pale behind the bar of the same colour. @param {uPlot} plot @param {Curve[]} curves */
+/**
+ * Solid curves as bars side by side; those of a reference pale behind the bar of the same colour.
+ * @param {uPlot} plot
+ * @param {Curve[]} curves
+ */
 function drawBars(plot, curves) {
   const { ctx, bbox } = plot;
   const ratio = devicePixelRatio;
-  const solid = curves.filter((curve) => !curve.line || curve.line === 'solid');
+  const solid = curves.filter(curve => !curve.line || curve.line === 'solid');
   const x = plot.data[0];
   const step = x.length > 1 ? plot.valToPos(x[1], 'x', true) - plot.valToPos(x[0], 'x', true) : bbox.width / 2;
   const width = (0.76 * step) / Math.max(1, solid.length);
@@ -324,7 +398,7 @@ function drawBars(plot, curves) {
   ctx.save();
   curves.forEach((curve, k) => {
     const pale = Boolean(curve.line) && curve.line !== 'solid';
-    const slot = pale ? solid.findIndex((other) => other.colour === curve.colour) : solid.indexOf(curve);
+    const slot = pale ? solid.findIndex(other => other.colour === curve.colour) : solid.indexOf(curve);
     ctx.fillStyle = ctx.strokeStyle = colour(curve.colour);
     ctx.lineWidth = ratio;
     ctx.setLineDash(pale ? [3 * ratio, 2 * ratio] : []);

@@ -1,4 +1,5 @@
-// Contact pattern and pressure of both ends on the plane of action's flank coordinates: the face across, root to tip upwards.
+// Contact pattern and pressure of both ends on the plane of action's flank coordinates: the face across, root to tip
+// upwards.
 import { fill, h } from '../base/dom.js';
 import { sig } from '../base/format.js';
 import { phase } from '../base/phase.js';
@@ -20,13 +21,20 @@ export class Contact {
   /** @type {Record<string, Panel>} */ #panels = {};
 
   constructor() {
-    this.painting = new Painting({ title: 'Contact pressure', unit: 'MPa', help: 'Largest at each place of the pinion flank over the mesh cycle; the lines are the contact lines at the pointer' },
-      (pen, width, height) => this.#paint(pen, width, height), { table: () => this.#table(), label: 'Map of the contact pressure on both ends' });
+    this.painting = new Painting(
+      {
+        title: 'Contact pressure',
+        unit: 'MPa',
+        help: 'Largest at each place of the pinion flank over the mesh cycle; the lines are the contact lines at the pointer',
+      },
+      (pen, width, height) => this.#paint(pen, width, height),
+      { table: () => this.#table(), label: 'Map of the contact pressure on both ends' },
+    );
     this.elements = [this.painting.element];
     this.tip = h('.tip', { hidden: true });
     this.painting.frame.body.append(this.tip);
     phase.addEventListener('change', () => this.painting.repaint());
-    this.painting.canvas.addEventListener('pointermove', (event) => this.#read(event));
+    this.painting.canvas.addEventListener('pointermove', event => this.#read(event));
     this.painting.canvas.addEventListener('pointerleave', () => {
       this.tip.hidden = true;
       phase.set(null);
@@ -38,7 +46,11 @@ export class Contact {
     this.#context = context;
     const pattern = this.#pattern();
     if (!pattern) return;
-    const before = sameCase(context.references[0]?.result, context.result.load_cases[context.loadCase], context.loadCase);
+    const before = sameCase(
+      context.references[0]?.result,
+      context.result.load_cases[context.loadCase],
+      context.loadCase,
+    );
     this.#most = Math.max(peak(context.result.load_cases[context.loadCase]), before ? peak(before) : 0, 1);
     this.painting.repaint();
   }
@@ -58,7 +70,13 @@ export class Contact {
     const panelWidth = (width - frame.left - frame.right - gap) / ends.length;
     const panelHeight = height - frame.top - frame.bottom;
     ends.forEach((end, i) => {
-      const panel = { left: frame.left + i * (panelWidth + gap), top: frame.top, width: panelWidth, height: panelHeight, mirrored: end === 'left' && ends.length === 2 };
+      const panel = {
+        left: frame.left + i * (panelWidth + gap),
+        top: frame.top,
+        width: panelWidth,
+        height: panelHeight,
+        mirrored: end === 'left' && ends.length === 2,
+      };
       this.#panels[end] = panel;
       this.#paintEnd(pen, end, panel);
       pen.fillStyle = colour('muted');
@@ -91,36 +109,65 @@ export class Contact {
     pen.strokeRect(panel.left, panel.top, panel.width, panel.height);
   }
 
-  /** The pinion's tip edge above, the gear's (the pinion's root) below. @param {CanvasRenderingContext2D} pen @param {any} pattern @param {Panel} panel */
+  /**
+   * The pinion's tip edge above, the gear's (the pinion's root) below.
+   * @param {CanvasRenderingContext2D} pen
+   * @param {any} pattern
+   * @param {Panel} panel
+   */
   #paintEdges(pen, pattern, panel) {
     const step = panel.width / pattern.pinion_tip_edge_MPa.length;
-    for (const [key, top] of /** @type {[string, number][]} */ ([['pinion_tip_edge_MPa', panel.top], ['gear_tip_edge_MPa', panel.top + panel.height - EDGE]])) {
+    for (const [key, top] of /** @type {[string, number][]} */ ([
+      ['pinion_tip_edge_MPa', panel.top],
+      ['gear_tip_edge_MPa', panel.top + panel.height - EDGE],
+    ])) {
       pattern[key].forEach((/** @type {number} */ value, /** @type {number} */ j) => {
         if (!(value > 0)) return;
         const column = panel.mirrored ? pattern[key].length - 1 - j : j;
-        pen.fillStyle = `rgb(${scaleColour(value / this.#most).map(Math.round).join()})`;
+        pen.fillStyle = `rgb(${scaleColour(value / this.#most)
+          .map(Math.round)
+          .join()})`;
         pen.fillRect(panel.left + column * step, top, step + 0.5, EDGE);
       });
     }
   }
 
-  /** Where the reference carries load. @param {CanvasRenderingContext2D} pen @param {'left' | 'right'} end @param {Panel} panel */
+  /**
+   * Where the reference carries load.
+   * @param {CanvasRenderingContext2D} pen
+   * @param {'left' | 'right'} end
+   * @param {Panel} panel
+   */
   #paintOutlines(pen, end, panel) {
     const context = /** @type {import('./context.js').Context} */ (this.#context);
     const reference = context.references[0];
-    const other = reference && sameCase(reference.result, context.result.load_cases[context.loadCase], context.loadCase);
+    const other =
+      reference && sameCase(reference.result, context.result.load_cases[context.loadCase], context.loadCase);
     const grid = other?.contact?.pattern?.[end]?.pressure_MPa;
     if (!grid) return;
     pen.strokeStyle = colour('text');
     pen.lineWidth = 1;
     pen.setLineDash([4, 3]);
     pen.beginPath();
-    outline(grid, 0.02 * this.#most, (row, column) => [panel.left + (panel.mirrored ? 1 - column : column) * panel.width, panel.top + (1 - row) * panel.height], pen);
+    outline(
+      grid,
+      0.02 * this.#most,
+      (row, column) => [
+        panel.left + (panel.mirrored ? 1 - column : column) * panel.width,
+        panel.top + (1 - row) * panel.height,
+      ],
+      pen,
+    );
     pen.stroke();
     pen.setLineDash([]);
   }
 
-  /** Contact lines s = c + eta tan(beta_b) at the phase of the pointer. @param {CanvasRenderingContext2D} pen @param {'left' | 'right'} end @param {Panel} panel */
+  /**
+   * Contact lines s = c + eta tan(beta_b) at the phase of the pointer.
+   * @param {CanvasRenderingContext2D} pen
+   * @param {'left' | 'right'} end
+   * @param {Panel} panel
+   */
   #paintLines(pen, end, panel) {
     if (phase.value === null) return;
     const { geometry, design } = /** @type {import('./context.js').Context} */ (this.#context).result;
@@ -129,7 +176,7 @@ export class Contact {
     const half = geometry.face_width_mm / 2;
     const pitch = geometry.transverse_base_pitch_mm;
     const lean = Math.tan((geometry.base_helix_angle_deg * Math.PI) / 180);
-    const at = phase.value - (end === 'right' ? design.alignment?.stagger ?? 0 : 0);
+    const at = phase.value - (end === 'right' ? (design.alignment?.stagger ?? 0) : 0);
     pen.save();
     pen.beginPath();
     pen.rect(panel.left, panel.top, panel.width, panel.height);
@@ -155,13 +202,20 @@ export class Contact {
   #paintScale(pen, width, top, height) {
     const left = width - 38;
     for (let i = 0; i < height; i++) {
-      pen.fillStyle = `rgb(${scaleColour(1 - i / height).map(Math.round).join()})`;
+      pen.fillStyle = `rgb(${scaleColour(1 - i / height)
+        .map(Math.round)
+        .join()})`;
       pen.fillRect(left, top + i, 7, 1.2);
     }
     pen.fillStyle = colour('muted');
     pen.textAlign = 'left';
     pen.font = SMALL;
-    for (const part of [0, 0.5, 1]) pen.fillText(sig(part * this.#most, 3), left + 10, top + height * (1 - part) + (part === 1 ? 7 : part === 0 ? 0 : 3));
+    for (const part of [0, 0.5, 1])
+      pen.fillText(
+        sig(part * this.#most, 3),
+        left + 10,
+        top + height * (1 - part) + (part === 1 ? 7 : part === 0 ? 0 : 3),
+      );
   }
 
   /** @param {PointerEvent} event */
@@ -180,11 +234,22 @@ export class Contact {
       const s = pattern.s_mm[0] + v * (pattern.s_mm[rows] - pattern.s_mm[0]);
       const eta = pattern.eta_mm[0] + across * (pattern.eta_mm[columns] - pattern.eta_mm[0]);
       const radius = Math.hypot(geometry.base_radius_mm[0], geometry.tangent_length_mm[0] + s);
-      fill(this.tip, h('.tip-x', null, `${end} end`), h('.tip-row', null, h('span', null, 'pressure, MPa'), h('b', null, sig(gridValue(pattern[end].pressure_MPa, v * rows, across * columns), 4))),
-        h('.tip-row', null, h('span', null, 'pinion radius, mm'), h('b', null, radius.toFixed(2))), h('.tip-row', null, h('span', null, 'from mid face, mm'), h('b', null, eta.toFixed(1))));
+      fill(
+        this.tip,
+        h('.tip-x', null, `${end} end`),
+        h(
+          '.tip-row',
+          null,
+          h('span', null, 'pressure, MPa'),
+          h('b', null, sig(gridValue(pattern[end].pressure_MPa, v * rows, across * columns), 4)),
+        ),
+        h('.tip-row', null, h('span', null, 'pinion radius, mm'), h('b', null, radius.toFixed(2))),
+        h('.tip-row', null, h('span', null, 'from mid face, mm'), h('b', null, eta.toFixed(1))),
+      );
       this.tip.hidden = false;
       placeTip(this.tip, event.offsetX, this.painting.frame.body.clientWidth);
-      const cycle = (s - eta * Math.tan((geometry.base_helix_angle_deg * Math.PI) / 180)) / geometry.transverse_base_pitch_mm;
+      const cycle =
+        (s - eta * Math.tan((geometry.base_helix_angle_deg * Math.PI) / 180)) / geometry.transverse_base_pitch_mm;
       phase.set(cycle - Math.floor(cycle));
       return;
     }
@@ -234,12 +299,23 @@ function paintGrid(canvas, grid, most, mirrored) {
   pen.putImageData(image, 0, 0);
 }
 
-/** Line of equal value (marching squares), in parts 0..1 of the grid. @param {number[][]} grid @param {number} level @param {(row: number, column: number) => [number, number]} place @param {CanvasRenderingContext2D} pen */
+/**
+ * Line of equal value (marching squares), in parts 0..1 of the grid.
+ * @param {number[][]} grid
+ * @param {number} level
+ * @param {(row: number, column: number) => [number, number]} place
+ * @param {CanvasRenderingContext2D} pen
+ */
 function outline(grid, level, place, pen) {
   const [rows, columns] = [grid.length - 1, grid[0].length - 1];
   for (let i = 0; i < rows; i++) {
     for (let j = 0; j < columns; j++) {
-      const corner = [[i, j], [i, j + 1], [i + 1, j + 1], [i + 1, j]];
+      const corner = [
+        [i, j],
+        [i, j + 1],
+        [i + 1, j + 1],
+        [i + 1, j],
+      ];
       /** @type {[number, number][]} */
       const crossings = [];
       for (let k = 0; k < 4; k++) {

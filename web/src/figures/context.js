@@ -24,10 +24,18 @@ export function caseColour(index) {
   return `c${(index % 8) + 1}`;
 }
 
-/** The load case of a reference that stands for the same torque and speed, or the one in the same place. @param {any} result @param {any} loadCase @param {number} index */
+/**
+ * The load case of a reference that stands for the same torque and speed, or the one in the same place.
+ * @param {any} result
+ * @param {any} loadCase
+ * @param {number} index
+ */
 export function sameCase(result, loadCase, index) {
   const cases = result?.load_cases ?? [];
-  return cases.find((/** @type {any} */ c) => c.torque_Nm === loadCase.torque_Nm && c.speed_rpm === loadCase.speed_rpm) ?? cases[index];
+  return (
+    cases.find((/** @type {any} */ c) => c.torque_Nm === loadCase.torque_Nm && c.speed_rpm === loadCase.speed_rpm) ??
+    cases[index]
+  );
 }
 
 /** Numbers 0 .. count-1 or from the given start. @param {number} count @param {number} [start] */

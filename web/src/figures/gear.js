@@ -1,4 +1,5 @@
-// Transverse section at mid face: teeth in mesh, line of action, points of contact; the modification drawn larger than it is.
+// Transverse section at mid face: teeth in mesh, line of action, points of contact; the modification drawn larger than
+// it is.
 import { halfAngle, halfTooth } from '../base/involute.js';
 import { phase } from '../base/phase.js';
 import { colour } from '../base/theme.js';
@@ -16,8 +17,11 @@ export class GearDrawing {
   #scale = 100;
 
   constructor() {
-    this.painting = new Painting({ title: 'Teeth in mesh', help: 'Transverse section at mid face; pinion above, driving' }, (pen, width, height) => this.#paint(pen, width, height),
-      { label: 'Transverse section of the teeth in mesh' });
+    this.painting = new Painting(
+      { title: 'Teeth in mesh', help: 'Transverse section at mid face; pinion above, driving' },
+      (pen, width, height) => this.#paint(pen, width, height),
+      { label: 'Transverse section of the teeth in mesh' },
+    );
     this.elements = [this.painting.element];
     phase.addEventListener('change', () => this.painting.repaint());
   }
@@ -33,10 +37,19 @@ export class GearDrawing {
   #profiles() {
     if (this.#teeth) return this.#teeth;
     const { geometry: g, design, modification } = this.#result;
-    const largest = Math.max(1, ...[modification?.pinion, modification?.gear].flatMap((member) => (member?.left ? member.left.profile_um : [])));
-    this.#scale = SCALES.find((scale) => (scale * largest) / 1000 < 0.2 * g.normal_module_mm) ?? 10;
+    const largest = Math.max(
+      1,
+      ...[modification?.pinion, modification?.gear].flatMap(member => (member?.left ? member.left.profile_um : [])),
+    );
+    this.#scale = SCALES.find(scale => (scale * largest) / 1000 < 0.2 * g.normal_module_mm) ?? 10;
     /** @param {0 | 1} member @param {any} trace */
-    const modified = (member, trace) => halfTooth(g, design.gear_pair, member, (sigma) => (this.#scale / 1000) * valueAtPlace(trace?.u_mm, trace?.left?.profile_um, g.rack_factor * sigma));
+    const modified = (member, trace) =>
+      halfTooth(
+        g,
+        design.gear_pair,
+        member,
+        sigma => (this.#scale / 1000) * valueAtPlace(trace?.u_mm, trace?.left?.profile_um, g.rack_factor * sigma),
+      );
     this.#teeth = {
       plain: [halfTooth(g, design.gear_pair, 0), halfTooth(g, design.gear_pair, 1)],
       active: [halfTooth(g, design.gear_pair, 0, () => 0), halfTooth(g, design.gear_pair, 1, () => 0)],
@@ -56,7 +69,8 @@ export class GearDrawing {
     const centres = [g.working_radius_mm[0], -g.working_radius_mm[1]];
     const c = (phase.value ?? 0.25) * g.transverse_base_pitch_mm;
     const teeth = this.#profiles();
-    for (const member of /** @type {(0 | 1)[]} */ ([1, 0])) this.#paintMember(pen, member, teeth, centres[member], pressure, c, place);
+    for (const member of /** @type {(0 | 1)[]} */ ([1, 0]))
+      this.#paintMember(pen, member, teeth, centres[member], pressure, c, place);
     this.#paintAction(pen, pressure, c, place);
     pen.fillStyle = colour('muted');
     pen.font = SMALL;
@@ -68,7 +82,8 @@ export class GearDrawing {
   }
 
   /**
-   * @param {CanvasRenderingContext2D} pen @param {0 | 1} member @param {Teeth} teeth @param {number} centre height above the pitch point
+   * @param {CanvasRenderingContext2D} pen @param {0 | 1} member @param {Teeth} teeth
+   * @param {number} centre height above the pitch point
    * @param {number} pressure @param {number} c @param {(point: Point) => Point} place
    */
   #paintMember(pen, member, teeth, centre, pressure, c, place) {
@@ -79,11 +94,15 @@ export class GearDrawing {
     // the middle of the tooth that touches at c; its loaded flank is on the counterclockwise side of both members
     const middle = Math.atan2(touch[1], touch[0]) - halfAngle(g, member, radius);
     /** @param {Point[]} half @param {number} side @param {number} tooth */
-    const turned = (half, side, tooth) => half.map(([x, y]) => {
-      const angle = middle + (tooth * 2 * Math.PI) / count - Math.PI / 2;
-      const [px, py] = [-side * x, y];
-      return /** @type {Point} */ ([px * Math.cos(angle) - py * Math.sin(angle), px * Math.sin(angle) + py * Math.cos(angle) + centre]);
-    });
+    const turned = (half, side, tooth) =>
+      half.map(([x, y]) => {
+        const angle = middle + (tooth * 2 * Math.PI) / count - Math.PI / 2;
+        const [px, py] = [-side * x, y];
+        return /** @type {Point} */ ([
+          px * Math.cos(angle) - py * Math.sin(angle),
+          px * Math.sin(angle) + py * Math.cos(angle) + centre,
+        ]);
+      });
     pen.beginPath();
     const inner = g.root_radius_mm[member] - 3 * g.normal_module_mm;
     for (let k = -AROUND; k <= AROUND; k++) {
@@ -107,7 +126,8 @@ export class GearDrawing {
     pen.fillStyle = colour('c2');
     for (let k = -AROUND; k <= AROUND; k++) {
       pen.beginPath();
-      for (const point of [...turned(teeth.active[member], 1, k), ...turned(teeth.modified[member], 1, k).reverse()]) pen.lineTo(...place(point));
+      for (const point of [...turned(teeth.active[member], 1, k), ...turned(teeth.modified[member], 1, k).reverse()])
+        pen.lineTo(...place(point));
       pen.closePath();
       pen.fill();
     }
@@ -120,11 +140,16 @@ export class GearDrawing {
     pen.setLineDash([]);
   }
 
-  /** @param {CanvasRenderingContext2D} pen @param {number} pressure @param {number} c @param {(point: Point) => Point} place */
+  /**
+   * @param {CanvasRenderingContext2D} pen
+   * @param {number} pressure
+   * @param {number} c
+   * @param {(point: Point) => Point} place
+   */
   #paintAction(pen, pressure, c, place) {
     const g = this.#result.geometry;
     /** @param {number} s @returns {Point} */
-    const at = (s) => place([s * Math.cos(pressure), -s * Math.sin(pressure)]);
+    const at = s => place([s * Math.cos(pressure), -s * Math.sin(pressure)]);
     pen.strokeStyle = colour('accent');
     pen.lineWidth = 1;
     pen.beginPath();
@@ -147,7 +172,12 @@ export class GearDrawing {
   }
 }
 
-/** Linear interpolation, 0 without a curve, its end values outside. @param {number[] | undefined} x @param {number[] | undefined} y @param {number} at */
+/**
+ * Linear interpolation, 0 without a curve, its end values outside.
+ * @param {number[] | undefined} x
+ * @param {number[] | undefined} y
+ * @param {number} at
+ */
 export function valueAtPlace(x, y, at) {
   if (!x || !y) return 0;
   const place = ((at - x[0]) / (x[x.length - 1] - x[0])) * (x.length - 1);

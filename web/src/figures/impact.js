@@ -4,14 +4,23 @@ import { change, changeText, sig } from '../base/format.js';
 import { caseText, endsOf, sameCase } from './context.js';
 import { Frame } from './frame.js';
 
-const COLUMNS = /** @type {[string, string][]} */ ([['general_force_N', 'force, N'], ['speed_mm_per_s', 'speed, mm/s'], ['duration_ms', 'time, ms'], ['lead_before_A_mm', 'early, mm']]);
+const COLUMNS = /** @type {[string, string][]} */ ([
+  ['general_force_N', 'force, N'],
+  ['speed_mm_per_s', 'speed, mm/s'],
+  ['duration_ms', 'time, ms'],
+  ['lead_before_A_mm', 'early, mm'],
+]);
 const SHOWN = 3; // on the page; the rest is in the CSV
 
 export class Impact {
   /** @type {(string | number | null)[][]} */ #rows = [];
 
   constructor() {
-    this.frame = new Frame({ title: 'Entering impact', help: 'Where the incoming tooth touches first: force, approach speed, duration, and how far before the path of contact', drawing: { table: () => this.#rows } });
+    this.frame = new Frame({
+      title: 'Entering impact',
+      help: 'Where the incoming tooth touches first: force, approach speed, duration, and how far before the path of contact',
+      drawing: { table: () => this.#rows },
+    });
     this.elements = [this.frame.element];
     this.frame.element.classList.add('with-table', 'keyless');
   }
@@ -27,12 +36,30 @@ export class Impact {
         const percent = change(impact?.general_force_N, before?.general_force_N);
         const values = COLUMNS.map(([key]) => (impact && typeof impact[key] === 'number' ? impact[key] : null));
         this.#rows.push([loadCase.torque_Nm, end, ...values, percent ?? null]);
-        body.append(h(k === chosen ? 'tr.chosen' : 'tr', null, h('th', { scope: 'row' }, end === 'left' ? caseText(loadCase) : ''), h('td', null, end),
-          values.slice(0, SHOWN).map((value) => h('td.number', null, sig(value, 3))), h('td.number.change', null, changeText(percent))));
+        body.append(
+          h(
+            k === chosen ? 'tr.chosen' : 'tr',
+            null,
+            h('th', { scope: 'row' }, end === 'left' ? caseText(loadCase) : ''),
+            h('td', null, end),
+            values.slice(0, SHOWN).map(value => h('td.number', null, sig(value, 3))),
+            h('td.number.change', null, changeText(percent)),
+          ),
+        );
       }
     });
-    const head = h('thead', null, h('tr', null, h('th', { scope: 'col' }, 'torque'), h('th', { scope: 'col' }, 'end'),
-      COLUMNS.slice(0, SHOWN).map(([, text]) => h('th', { scope: 'col' }, text)), h('th', { scope: 'col' }, 'change')));
+    const head = h(
+      'thead',
+      null,
+      h(
+        'tr',
+        null,
+        h('th', { scope: 'col' }, 'torque'),
+        h('th', { scope: 'col' }, 'end'),
+        COLUMNS.slice(0, SHOWN).map(([, text]) => h('th', { scope: 'col' }, text)),
+        h('th', { scope: 'col' }, 'change'),
+      ),
+    );
     fill(this.frame.body, h('table.numbers', null, head, body));
   }
 }

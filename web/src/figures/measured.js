@@ -4,8 +4,14 @@ import { sig } from '../base/format.js';
 import { colour } from '../base/theme.js';
 import { Painting, SMALL } from './canvas.js';
 
-/** @typedef {{ x: number, measured: number, sigma: number, predicted: number | null, label: string, outlier?: boolean, chosen?: boolean, pick?: () => void }} Point */
-/** @typedef {{ label: string, group?: string, colour: string, open?: boolean, points: Point[] }} Series open: hollow marks; group: what shares a colour */
+/**
+ * @typedef {{ x: number, measured: number, sigma: number, predicted: number | null, label: string, outlier?: boolean,
+ * chosen?: boolean, pick?: () => void }} Point
+ */
+/**
+ * @typedef {{ label: string, group?: string, colour: string, open?: boolean, points: Point[] }} Series open: hollow
+ * marks; group: what shares a colour
+ */
 
 const NEAR = 14; // px
 const BOX = { left: 42, top: 10, right: 14, bottom: 30 };
@@ -14,14 +20,16 @@ const BOX = { left: 42, top: 10, right: 14, bottom: 30 };
 function ticks(low, high) {
   const raw = (high - low) / 4;
   const power = 10 ** Math.floor(Math.log10(raw));
-  const step = [1, 2, 2.5, 5, 10].map((factor) => factor * power).find((candidate) => candidate >= raw) ?? raw;
+  const step = [1, 2, 2.5, 5, 10].map(factor => factor * power).find(candidate => candidate >= raw) ?? raw;
   const values = [];
-  for (let value = Math.ceil(low / step) * step; value <= high * (1 + 1e-9); value += step) values.push(Number(value.toPrecision(10)));
+  for (let value = Math.ceil(low / step) * step; value <= high * (1 + 1e-9); value += step)
+    values.push(Number(value.toPrecision(10)));
   return values;
 }
 
 /**
- * @param {CanvasRenderingContext2D} pen @param {number} width @param {number} height @param {number[]} xs @param {number[]} ys
+ * @param {CanvasRenderingContext2D} pen @param {number} width @param {number} height
+ * @param {number[]} xs @param {number[]} ys
  * @param {(value: number) => number} across @param {(value: number) => number} down @param {string} xLabel
  */
 function axes(pen, width, height, xs, ys, across, down, xLabel) {
@@ -64,13 +72,17 @@ export class MeasuredPoints {
   /** @param {{ title: string, unit: string, help: string, xLabel: string }} options */
   constructor({ title, unit, help, xLabel }) {
     this.xLabel = xLabel;
-    this.painting = new Painting({ title, unit, help }, (pen, width, height) => this.#paint(pen, width, height), { table: () => this.#table() });
+    this.painting = new Painting({ title, unit, help }, (pen, width, height) => this.#paint(pen, width, height), {
+      table: () => this.#table(),
+    });
     this.tip = h('.tip', { hidden: true });
     this.painting.frame.body.append(this.tip);
     const { canvas } = this.painting;
-    canvas.addEventListener('pointermove', (event) => this.#point(event));
-    canvas.addEventListener('pointerleave', () => { this.tip.hidden = true; });
-    canvas.addEventListener('click', (event) => this.#nearest(event)?.point.pick?.());
+    canvas.addEventListener('pointermove', event => this.#point(event));
+    canvas.addEventListener('pointerleave', () => {
+      this.tip.hidden = true;
+    });
+    canvas.addEventListener('click', event => this.#nearest(event)?.point.pick?.());
     this.element = this.painting.element;
     this.element.classList.remove('keyless');
   }
@@ -78,37 +90,48 @@ export class MeasuredPoints {
   /** @param {Series[]} series */
   set(series) {
     this.#series = series;
-    const groups = new Map(series.map((each) => [each.group ?? each.label, each.colour]));
+    const groups = new Map(series.map(each => [each.group ?? each.label, each.colour]));
     /** @param {string} kind @param {string} name @param {string} text */
     const key = (kind, name, text) => {
       const mark = h(kind);
       mark.style.setProperty('--swatch', `var(--${name})`);
       return h('span.key', null, mark, text);
     };
-    fill(this.painting.frame.legend, series.some((each) => !each.open) ? key('span.dot', 'muted', 'modified') : null, series.some((each) => each.open) ? key('span.dot.hollow', 'muted', 'unmodified') : null,
-      series.length ? key('span.swatch.dashed', 'muted', 'predicted') : null, [...groups].map(([text, name]) => key('span.dot', name, text)));
+    fill(
+      this.painting.frame.legend,
+      series.some(each => !each.open) ? key('span.dot', 'muted', 'modified') : null,
+      series.some(each => each.open) ? key('span.dot.hollow', 'muted', 'unmodified') : null,
+      series.length ? key('span.swatch.dashed', 'muted', 'predicted') : null,
+      [...groups].map(([text, name]) => key('span.dot', name, text)),
+    );
     this.painting.repaint();
   }
 
   /** @param {CanvasRenderingContext2D} pen @param {number} width @param {number} height */
   #paint(pen, width, height) {
-    const points = this.#series.flatMap((series) => series.points);
+    const points = this.#series.flatMap(series => series.points);
     this.#places = [];
     if (!points.length) return;
-    const xs = points.map((point) => point.x);
+    const xs = points.map(point => point.x);
     const [first, last] = [Math.min(...xs), Math.max(...xs)];
-    const pad = Math.max((last - first) * 0.08, Math.abs(first) * 0.02) || 1; // speeds that differ by their noise stand together
-    const top = 1.08 * Math.max(...points.map((point) => Math.max(point.measured + point.sigma, point.predicted ?? 0)));
+    // Speeds that differ by their noise stand together.
+    const pad = Math.max((last - first) * 0.08, Math.abs(first) * 0.02) || 1;
+    const top = 1.08 * Math.max(...points.map(point => Math.max(point.measured + point.sigma, point.predicted ?? 0)));
     const [w, t] = [width - BOX.left - BOX.right, height - BOX.top - BOX.bottom];
     /** @param {number} value */
-    const across = (value) => BOX.left + ((value - first + pad) / (last - first + 2 * pad)) * w;
+    const across = value => BOX.left + ((value - first + pad) / (last - first + 2 * pad)) * w;
     /** @param {number} value */
-    const down = (value) => BOX.top + (1 - value / top) * t;
+    const down = value => BOX.top + (1 - value / top) * t;
     axes(pen, width, height, ticks(first - pad, last + pad), ticks(0, top), across, down, this.xLabel);
     for (const series of this.#series) this.#paintSeries(pen, series, across, down);
   }
 
-  /** @param {CanvasRenderingContext2D} pen @param {Series} series @param {(value: number) => number} across @param {(value: number) => number} down */
+  /**
+   * @param {CanvasRenderingContext2D} pen
+   * @param {Series} series
+   * @param {(value: number) => number} across
+   * @param {(value: number) => number} down
+   */
   #paintSeries(pen, series, across, down) {
     const ordered = [...series.points].sort((a, b) => a.x - b.x);
     pen.strokeStyle = pen.fillStyle = colour(series.colour);
@@ -140,7 +163,13 @@ export class MeasuredPoints {
     }
   }
 
-  /** A ring round the chosen point; a cross through an outlier, so that it shows without its colour. @param {CanvasRenderingContext2D} pen @param {number} x @param {number} y @param {boolean} outlier */
+  /**
+   * A ring round the chosen point; a cross through an outlier, so that it shows without its colour.
+   * @param {CanvasRenderingContext2D} pen
+   * @param {number} x
+   * @param {number} y
+   * @param {boolean} outlier
+   */
   #ring(pen, x, y, outlier) {
     pen.strokeStyle = colour(outlier ? 'bad' : 'text');
     pen.lineWidth = 1.5;
@@ -171,30 +200,55 @@ export class MeasuredPoints {
     this.painting.canvas.style.cursor = place?.point.pick ? 'pointer' : '';
     if (!place) return;
     const { point, series } = place;
-    fill(this.tip, h('.tip-x', null, point.label), h('.tip-row', null, h('span', null, series.label), h('b', null, `${sig(point.measured, 4)} ± ${sig(point.sigma, 2)}`)),
-      h('.tip-row', null, h('span', null, 'predicted'), h('b', null, sig(point.predicted, 4))), point.outlier ? h('.tip-row', null, 'outlier') : null);
+    fill(
+      this.tip,
+      h('.tip-x', null, point.label),
+      h(
+        '.tip-row',
+        null,
+        h('span', null, series.label),
+        h('b', null, `${sig(point.measured, 4)} ± ${sig(point.sigma, 2)}`),
+      ),
+      h('.tip-row', null, h('span', null, 'predicted'), h('b', null, sig(point.predicted, 4))),
+      point.outlier ? h('.tip-row', null, 'outlier') : null,
+    );
     const right = place.x > this.painting.frame.body.clientWidth / 2;
     this.tip.style.left = right ? '' : `${place.x + 12}px`;
     this.tip.style.right = right ? `${this.painting.frame.body.clientWidth - place.x + 12}px` : '';
   }
 
   #table() {
-    return [[this.xLabel, 'series', 'measured', 'sigma', 'predicted'], ...this.#series.flatMap((series) => series.points.map((point) => [point.x, series.label, point.measured, point.sigma, point.predicted]))];
+    return [
+      [this.xLabel, 'series', 'measured', 'sigma', 'predicted'],
+      ...this.#series.flatMap(series =>
+        series.points.map(point => [point.x, series.label, point.measured, point.sigma, point.predicted]),
+      ),
+    ];
   }
 }
 
 /** Orders of one measurement: bars with their uncertainty, the predicted ones pale beside them. */
 export class MeasuredOrders {
-  /** @type {{ measured: number[], sigma: number[], predicted: (number | null)[] }} */ #data = { measured: [], sigma: [], predicted: [] };
+  /** @type {{ measured: number[], sigma: number[], predicted: (number | null)[] }} */ #data = {
+    measured: [],
+    sigma: [],
+    predicted: [],
+  };
 
   /** @param {{ title: string, unit: string, help: string }} options */
   constructor({ title, unit, help }) {
-    this.painting = new Painting({ title, unit, help }, (pen, width, height) => this.#paint(pen, width, height), { table: () => this.#table() });
+    this.painting = new Painting({ title, unit, help }, (pen, width, height) => this.#paint(pen, width, height), {
+      table: () => this.#table(),
+    });
     const measured = h('span.dot');
     measured.style.setProperty('--swatch', 'var(--c1)');
     const predicted = h('span.dot.pale');
     predicted.style.setProperty('--swatch', 'var(--c2)');
-    fill(this.painting.frame.legend, h('span.key', null, measured, 'measured, ±σ'), h('span.key', null, predicted, 'predicted'));
+    fill(
+      this.painting.frame.legend,
+      h('span.key', null, measured, 'measured, ±σ'),
+      h('span.key', null, predicted, 'predicted'),
+    );
     this.element = this.painting.element;
     this.element.classList.remove('keyless');
   }
@@ -213,10 +267,19 @@ export class MeasuredOrders {
     const [w, t] = [width - BOX.left - BOX.right, height - BOX.top - BOX.bottom];
     const step = w / measured.length;
     /** @param {number} order */
-    const across = (order) => BOX.left + (order - 0.5) * step;
+    const across = order => BOX.left + (order - 0.5) * step;
     /** @param {number} value */
-    const down = (value) => BOX.top + (1 - value / top) * t;
-    axes(pen, width, height, measured.map((_, i) => i + 1), ticks(0, top), across, down, 'mesh order');
+    const down = value => BOX.top + (1 - value / top) * t;
+    axes(
+      pen,
+      width,
+      height,
+      measured.map((_, i) => i + 1),
+      ticks(0, top),
+      across,
+      down,
+      'mesh order',
+    );
     measured.forEach((value, i) => {
       const x = across(i + 1);
       const size = 0.36 * step;
@@ -240,6 +303,9 @@ export class MeasuredOrders {
 
   #table() {
     const { measured, sigma, predicted } = this.#data;
-    return [['mesh order', 'measured', 'sigma', 'predicted'], ...measured.map((value, i) => [i + 1, value, sigma[i], predicted[i] ?? null])];
+    return [
+      ['mesh order', 'measured', 'sigma', 'predicted'],
+      ...measured.map((value, i) => [i + 1, value, sigma[i], predicted[i] ?? null]),
+    ];
   }
 }

@@ -11,11 +11,25 @@ export class Stiffness {
   /** @param {() => void} again */
   constructor(again) {
     this.chart = new Chart({
-      title: 'Mesh stiffness', unit: 'N/µm', help: 'Normal to the flank, of each end', xLabel: 'mesh cycle', cycle: true,
-      controls: [switcher('Stiffness', [['tangent', 'tangent'], ['secant', 'secant']], this.#kind, (value) => {
-        this.#kind = value;
-        again();
-      })],
+      title: 'Mesh stiffness',
+      unit: 'N/µm',
+      help: 'Normal to the flank, of each end',
+      xLabel: 'mesh cycle',
+      cycle: true,
+      controls: [
+        switcher(
+          'Stiffness',
+          [
+            ['tangent', 'tangent'],
+            ['secant', 'secant'],
+          ],
+          this.#kind,
+          value => {
+            this.#kind = value;
+            again();
+          },
+        ),
+      ],
     });
     this.elements = [this.chart.element];
   }
@@ -29,7 +43,14 @@ export class Stiffness {
       const other = sameCase(reference.result, loadCase, k);
       for (const end of endsOf(result)) {
         const y = other?.mesh_stiffness?.[`${prefix}${end}_N_per_um`];
-        if (y) curves.push({ label: `${end}, ${reference.label}`, x: other.position, y, colour: END_COLOUR[end], line: reference.line });
+        if (y)
+          curves.push({
+            label: `${end}, ${reference.label}`,
+            x: other.position,
+            y,
+            colour: END_COLOUR[end],
+            line: reference.line,
+          });
       }
     }
     for (const end of endsOf(result)) {
@@ -45,11 +66,25 @@ export class Sharing {
 
   /** @param {() => void} again */
   constructor(again) {
-    this.choose = switcher('End', [['left', 'left'], ['right', 'right']], this.#end, (value) => {
-      this.#end = /** @type {'left' | 'right'} */ (value);
-      again();
+    this.choose = switcher(
+      'End',
+      [
+        ['left', 'left'],
+        ['right', 'right'],
+      ],
+      this.#end,
+      value => {
+        this.#end = /** @type {'left' | 'right'} */ (value);
+        again();
+      },
+    );
+    this.chart = new Chart({
+      title: 'Load sharing',
+      unit: '%',
+      help: 'Part of the end’s load that one tooth pair carries on its way through the mesh',
+      xLabel: 'mesh cycles',
+      controls: [this.choose],
     });
-    this.chart = new Chart({ title: 'Load sharing', unit: '%', help: 'Part of the end’s load that one tooth pair carries on its way through the mesh', xLabel: 'mesh cycles', controls: [this.choose] });
     this.elements = [this.chart.element];
   }
 
@@ -63,14 +98,19 @@ export class Sharing {
     const curves = [];
     for (const reference of references) {
       const other = passage(sameCase(reference.result, loadCase, k), end);
-      if (other) curves.push({ label: reference.label, x: other.x, y: other.y, colour: END_COLOUR[end], line: reference.line });
+      if (other)
+        curves.push({ label: reference.label, x: other.x, y: other.y, colour: END_COLOUR[end], line: reference.line });
     }
     curves.push({ label: `one pair, ${end} end`, x: own.x, y: own.y, colour: END_COLOUR[end] });
     this.chart.set({ x: own.x, curves });
   }
 }
 
-/** The share of one pair from where it enters to where it leaves. @param {any} loadCase @param {'left' | 'right'} end */
+/**
+ * The share of one pair from where it enters to where it leaves.
+ * @param {any} loadCase
+ * @param {'left' | 'right'} end
+ */
 function passage(loadCase, end) {
   const sharing = loadCase?.contact?.load_share;
   const rows = sharing?.[end];
@@ -92,11 +132,24 @@ export class RootStress {
   /** @param {() => void} again */
   constructor(again) {
     this.chart = new Chart({
-      title: 'Root stress', unit: 'MPa', help: 'Largest over the face in the most stressed fillet, while one tooth passes through the mesh', xLabel: 'mesh cycles',
-      controls: [switcher('Member', [['pinion', 'pinion'], ['gear', 'gear']], this.#member, (value) => {
-        this.#member = /** @type {'pinion' | 'gear'} */ (value);
-        again();
-      })],
+      title: 'Root stress',
+      unit: 'MPa',
+      help: 'Largest over the face in the most stressed fillet, while one tooth passes through the mesh',
+      xLabel: 'mesh cycles',
+      controls: [
+        switcher(
+          'Member',
+          [
+            ['pinion', 'pinion'],
+            ['gear', 'gear'],
+          ],
+          this.#member,
+          value => {
+            this.#member = /** @type {'pinion' | 'gear'} */ (value);
+            again();
+          },
+        ),
+      ],
     });
     this.elements = [this.chart.element];
   }
@@ -109,9 +162,18 @@ export class RootStress {
     const curves = [];
     for (const reference of references) {
       const other = sameCase(reference.result, loadCase, k)?.root_stress?.[this.#member];
-      for (const end of endsOf(result)) if (other?.[end]) curves.push({ label: `${end}, ${reference.label}`, x: other.position, y: other[end].history_MPa, colour: END_COLOUR[end], line: reference.line });
+      for (const end of endsOf(result))
+        if (other?.[end])
+          curves.push({
+            label: `${end}, ${reference.label}`,
+            x: other.position,
+            y: other[end].history_MPa,
+            colour: END_COLOUR[end],
+            line: reference.line,
+          });
     }
-    for (const end of endsOf(result)) if (own[end]) curves.push({ label: end, y: own[end].history_MPa, colour: END_COLOUR[end] });
+    for (const end of endsOf(result))
+      if (own[end]) curves.push({ label: end, y: own[end].history_MPa, colour: END_COLOUR[end] });
     this.chart.set({ x: own.position, curves });
   }
 }

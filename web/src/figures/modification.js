@@ -1,4 +1,5 @@
-// What is taken off the flanks, as on an inspection sheet: profile traces upright from root to tip, lead traces along the face.
+// What is taken off the flanks, as on an inspection sheet: profile traces upright from root to tip, lead traces along
+// the face.
 import { sig } from '../base/format.js';
 import { colour } from '../base/theme.js';
 import { Painting, SMALL } from './canvas.js';
@@ -16,15 +17,36 @@ export class ModificationCharts {
 
   constructor() {
     /** @param {string} value */
-    const choose = (value) => {
+    const choose = value => {
       this.#member = /** @type {'pinion' | 'gear'} */ (value);
       this.#repaint();
     };
-    const controls = () => [switcher('Member', [['pinion', 'pinion'], ['gear', 'gear']], this.#member, choose)];
-    this.profile = new Painting({ title: 'Profile modification', unit: 'µm', help: 'Material taken off, to the right; K-chart form, root below, tip above', controls: controls() },
-      (pen, width, height) => this.#paintProfile(pen, width, height), { table: () => this.#table('profile_um', 'u_mm') });
-    this.lead = new Painting({ title: 'Lead modification', unit: 'µm', help: 'Material taken off, downwards, over the face of each end' },
-      (pen, width, height) => this.#paintLead(pen, width, height), { table: () => this.#table('lead_um', 'eta_mm') });
+    const controls = () => [
+      switcher(
+        'Member',
+        [
+          ['pinion', 'pinion'],
+          ['gear', 'gear'],
+        ],
+        this.#member,
+        choose,
+      ),
+    ];
+    this.profile = new Painting(
+      {
+        title: 'Profile modification',
+        unit: 'µm',
+        help: 'Material taken off, to the right; K-chart form, root below, tip above',
+        controls: controls(),
+      },
+      (pen, width, height) => this.#paintProfile(pen, width, height),
+      { table: () => this.#table('profile_um', 'u_mm') },
+    );
+    this.lead = new Painting(
+      { title: 'Lead modification', unit: 'µm', help: 'Material taken off, downwards, over the face of each end' },
+      (pen, width, height) => this.#paintLead(pen, width, height),
+      { table: () => this.#table('lead_um', 'eta_mm') },
+    );
     this.elements = [this.profile.element, this.lead.element];
   }
 
@@ -52,7 +74,7 @@ export class ModificationCharts {
     const context = /** @type {import('./context.js').Context} */ (this.#context);
     let low = 0;
     let high = 10;
-    for (const result of [context.result, ...context.references.map((reference) => reference.result)]) {
+    for (const result of [context.result, ...context.references.map(reference => reference.result)]) {
       for (const end of endsOf(context.result)) {
         for (const value of this.#trace(result, end, what)?.value ?? []) {
           low = Math.min(low, value);
@@ -75,9 +97,20 @@ export class ModificationCharts {
     ends.forEach((end, i) => {
       const left = box.left + i * (panelWidth + gap);
       /** @param {number} value */
-      const across = (value) => left + (panelWidth * (value - range.low)) / (range.high - range.low);
-      this.#grid(pen, range, (value) => [[across(value), box.top], [across(value), box.top + box.height]], (value) => [across(value), height - 19, 'center']);
-      this.#traces(pen, end, 'profile_um', (at, value, trace) => [across(value), box.top + box.height * (1 - (at - trace.at[0]) / (trace.at[trace.at.length - 1] - trace.at[0]))]);
+      const across = value => left + (panelWidth * (value - range.low)) / (range.high - range.low);
+      this.#grid(
+        pen,
+        range,
+        value => [
+          [across(value), box.top],
+          [across(value), box.top + box.height],
+        ],
+        value => [across(value), height - 19, 'center'],
+      );
+      this.#traces(pen, end, 'profile_um', (at, value, trace) => [
+        across(value),
+        box.top + box.height * (1 - (at - trace.at[0]) / (trace.at[trace.at.length - 1] - trace.at[0])),
+      ]);
       this.#starts(pen, end, left, panelWidth, box);
       pen.fillStyle = colour('muted');
       pen.textAlign = 'center';
@@ -88,7 +121,14 @@ export class ModificationCharts {
     pen.fillText('root', box.left - 6, box.top + box.height);
   }
 
-  /** Where the reliefs start. @param {CanvasRenderingContext2D} pen @param {'left' | 'right'} end @param {number} left @param {number} width @param {{ top: number, height: number }} box */
+  /**
+   * Where the reliefs start.
+   * @param {CanvasRenderingContext2D} pen
+   * @param {'left' | 'right'} end
+   * @param {number} left
+   * @param {number} width
+   * @param {{ top: number, height: number }} box
+   */
   #starts(pen, end, left, width, box) {
     const { result } = /** @type {import('./context.js').Context} */ (this.#context);
     const trace = this.#trace(result, end, 'profile_um');
@@ -97,7 +137,10 @@ export class ModificationCharts {
     const [bottom, top] = [trace.at[0], trace.at[trace.at.length - 1]];
     pen.strokeStyle = colour('line');
     pen.setLineDash([2, 3]);
-    for (const [amount, u] of [[flank.tip_relief_um, flank.tip_relief_start_mm], [flank.root_relief_um, -flank.root_relief_start_mm]]) {
+    for (const [amount, u] of [
+      [flank.tip_relief_um, flank.tip_relief_start_mm],
+      [flank.root_relief_um, -flank.root_relief_start_mm],
+    ]) {
       if (!(amount > 0)) continue;
       const y = box.top + box.height * (1 - (u - bottom) / (top - bottom));
       pen.beginPath();
@@ -120,10 +163,18 @@ export class ModificationCharts {
     const gap = 22;
     const panelWidth = (width - box.left - 12 - gap * (ends.length - 1)) / ends.length;
     /** @param {number} value */
-    const down = (value) => box.top + (box.height * (value - range.low)) / (range.high - range.low);
+    const down = value => box.top + (box.height * (value - range.low)) / (range.high - range.low);
     ends.forEach((end, i) => {
       const left = box.left + i * (panelWidth + gap);
-      this.#grid(pen, range, (value) => [[left, down(value)], [left + panelWidth, down(value)]], i === 0 ? (value) => [box.left - 5, down(value) + 3, 'right'] : undefined);
+      this.#grid(
+        pen,
+        range,
+        value => [
+          [left, down(value)],
+          [left + panelWidth, down(value)],
+        ],
+        i === 0 ? value => [box.left - 5, down(value) + 3, 'right'] : undefined,
+      );
       const mirrored = end === 'left' && ends.length === 2;
       this.#traces(pen, end, 'lead_um', (at, value, trace) => {
         const part = (at - trace.at[0]) / (trace.at[trace.at.length - 1] - trace.at[0]);
@@ -135,7 +186,12 @@ export class ModificationCharts {
     });
   }
 
-  /** @param {CanvasRenderingContext2D} pen @param {{ low: number, high: number }} range @param {(value: number) => number[][]} line @param {((value: number) => [number, number, string]) | undefined} label */
+  /**
+   * @param {CanvasRenderingContext2D} pen
+   * @param {{ low: number, high: number }} range
+   * @param {(value: number) => number[][]} line
+   * @param {((value: number) => [number, number, string]) | undefined} label
+   */
   #grid(pen, range, line, label) {
     const step = niceStep(range.high - range.low);
     pen.font = SMALL;
@@ -155,7 +211,12 @@ export class ModificationCharts {
     }
   }
 
-  /** @param {CanvasRenderingContext2D} pen @param {'left' | 'right'} end @param {'profile_um' | 'lead_um'} what @param {(at: number, value: number, trace: Trace) => [number, number]} place */
+  /**
+   * @param {CanvasRenderingContext2D} pen
+   * @param {'left' | 'right'} end
+   * @param {'profile_um' | 'lead_um'} what
+   * @param {(at: number, value: number, trace: Trace) => [number, number]} place
+   */
   #traces(pen, end, what, place) {
     const context = /** @type {import('./context.js').Context} */ (this.#context);
     /** @param {any} result @param {number[]} dash @param {number} width */
@@ -183,10 +244,13 @@ export class ModificationCharts {
     const context = this.#context;
     if (!context) return [];
     const ends = endsOf(context.result);
-    const traces = ends.map((end) => this.#trace(context.result, end, what));
+    const traces = ends.map(end => this.#trace(context.result, end, what));
     const first = traces[0];
     if (!first) return [];
-    return [[place, ...ends.map((end) => `${this.#member} ${end} (um)`)], ...first.at.map((at, i) => [at, ...traces.map((trace) => trace?.value[i] ?? null)])];
+    return [
+      [place, ...ends.map(end => `${this.#member} ${end} (um)`)],
+      ...first.at.map((at, i) => [at, ...traces.map(trace => trace?.value[i] ?? null)]),
+    ];
   }
 }
 

@@ -1,4 +1,5 @@
-// Points of a search: any column against any other, or all of them as parallel axes; new evaluations, known ones and the best told apart.
+// Points of a search: any column against any other, or all of them as parallel axes; new evaluations, known ones and
+// the best told apart.
 import { fill, h } from '../base/dom.js';
 import { sig } from '../base/format.js';
 import { colour } from '../base/theme.js';
@@ -35,16 +36,32 @@ export class Scatter {
   constructor({ title, help, x, y, wide }) {
     this.#x = x;
     this.#y = y;
-    this.across = h('select.small-select', { 'aria-label': 'Across', onchange: () => { this.#x = this.across.value; this.painting.repaint(); } });
-    this.up = h('select.small-select', { 'aria-label': 'Upwards', onchange: () => { this.#y = this.up.value; this.painting.repaint(); } });
-    this.painting = new Painting({ title, help, wide }, (pen, width, height) => this.#paint(pen, width, height), { table: () => this.#table() });
+    this.across = h('select.small-select', {
+      'aria-label': 'Across',
+      onchange: () => {
+        this.#x = this.across.value;
+        this.painting.repaint();
+      },
+    });
+    this.up = h('select.small-select', {
+      'aria-label': 'Upwards',
+      onchange: () => {
+        this.#y = this.up.value;
+        this.painting.repaint();
+      },
+    });
+    this.painting = new Painting({ title, help, wide }, (pen, width, height) => this.#paint(pen, width, height), {
+      table: () => this.#table(),
+    });
     this.painting.element.classList.remove('keyless');
     this.painting.frame.legend.append(h('span.range-fields', null, this.up, ' over ', this.across));
     this.tip = h('.tip', { hidden: true });
     this.painting.frame.body.append(this.tip);
-    this.painting.canvas.addEventListener('pointermove', (event) => this.#point(event));
-    this.painting.canvas.addEventListener('pointerleave', () => { this.tip.hidden = true; });
-    this.painting.canvas.addEventListener('click', (event) => this.#nearest(event)?.dot.pick?.());
+    this.painting.canvas.addEventListener('pointermove', event => this.#point(event));
+    this.painting.canvas.addEventListener('pointerleave', () => {
+      this.tip.hidden = true;
+    });
+    this.painting.canvas.addEventListener('click', event => this.#nearest(event)?.dot.pick?.());
     this.element = this.painting.element;
   }
 
@@ -54,8 +71,14 @@ export class Scatter {
     if (shape !== this.#cloud.columns.join('|')) {
       if (!cloud.columns.includes(this.#x)) this.#x = cloud.columns[0] ?? '';
       if (!cloud.columns.includes(this.#y)) this.#y = cloud.columns[cloud.columns.length - 1] ?? '';
-      for (const [select, value] of /** @type {[HTMLSelectElement, string][]} */ ([[this.across, this.#x], [this.up, this.#y]])) {
-        fill(select, cloud.columns.map((name) => h('option', { value: name }, name)));
+      for (const [select, value] of /** @type {[HTMLSelectElement, string][]} */ ([
+        [this.across, this.#x],
+        [this.up, this.#y],
+      ])) {
+        fill(
+          select,
+          cloud.columns.map(name => h('option', { value: name }, name)),
+        );
         select.value = value;
       }
     }
@@ -68,13 +91,13 @@ export class Scatter {
     const [i, j] = [this.#cloud.columns.indexOf(this.#x), this.#cloud.columns.indexOf(this.#y)];
     this.#places = [];
     if (i < 0 || j < 0) return;
-    const [x0, x1] = extent(this.#cloud.dots.map((dot) => dot.values[i]));
-    const [y0, y1] = extent(this.#cloud.dots.map((dot) => dot.values[j]));
+    const [x0, x1] = extent(this.#cloud.dots.map(dot => dot.values[i]));
+    const [y0, y1] = extent(this.#cloud.dots.map(dot => dot.values[j]));
     const [w, t] = [width - BOX.left - BOX.right, height - BOX.top - BOX.bottom];
     /** @param {number} value */
-    const across = (value) => BOX.left + ((value - x0) / (x1 - x0)) * w;
+    const across = value => BOX.left + ((value - x0) / (x1 - x0)) * w;
     /** @param {number} value */
-    const down = (value) => BOX.top + (1 - (value - y0) / (y1 - y0)) * t;
+    const down = value => BOX.top + (1 - (value - y0) / (y1 - y0)) * t;
     axes(pen, width, height, [x0, x1], [y0, y1], across, down);
     pen.fillStyle = colour('muted');
     pen.textAlign = 'center';
@@ -120,18 +143,29 @@ export class Scatter {
     this.tip.hidden = !place;
     this.painting.canvas.style.cursor = place?.dot.pick ? 'pointer' : '';
     if (!place) return;
-    fill(this.tip, h('.tip-x', null, place.dot.kind === 'known' ? 'known from before' : place.dot.kind === 'new' ? 'evaluated' : 'front', place.dot.pick ? ' – click to open' : ''),
-      this.#cloud.columns.map((name, k) => h('.tip-row', null, h('span', null, name), h('b', null, sig(place.dot.values[k], 4)))));
+    fill(
+      this.tip,
+      h(
+        '.tip-x',
+        null,
+        place.dot.kind === 'known' ? 'known from before' : place.dot.kind === 'new' ? 'evaluated' : 'front',
+        place.dot.pick ? ' – click to open' : '',
+      ),
+      this.#cloud.columns.map((name, k) =>
+        h('.tip-row', null, h('span', null, name), h('b', null, sig(place.dot.values[k], 4))),
+      ),
+    );
     placeTip(this.tip, place.x, this.painting.frame.body.clientWidth);
   }
 
   #table() {
-    return [['kind', ...this.#cloud.columns], ...this.#cloud.dots.map((dot) => [dot.kind, ...dot.values])];
+    return [['kind', ...this.#cloud.columns], ...this.#cloud.dots.map(dot => [dot.kind, ...dot.values])];
   }
 }
 
 /**
- * @param {CanvasRenderingContext2D} pen @param {number} width @param {number} height @param {[number, number]} xs @param {[number, number]} ys
+ * @param {CanvasRenderingContext2D} pen @param {number} width @param {number} height
+ * @param {[number, number]} xs @param {[number, number]} ys
  * @param {(value: number) => number} across @param {(value: number) => number} down
  */
 function axes(pen, width, height, xs, ys, across, down) {
@@ -161,9 +195,10 @@ function axes(pen, width, height, xs, ys, across, down) {
 function ticks([low, high]) {
   const raw = (high - low) / 4;
   const power = 10 ** Math.floor(Math.log10(raw));
-  const step = [1, 2, 5, 10].map((factor) => factor * power).find((candidate) => candidate >= raw) ?? raw;
+  const step = [1, 2, 5, 10].map(factor => factor * power).find(candidate => candidate >= raw) ?? raw;
   const values = [];
-  for (let value = Math.ceil(low / step) * step; value <= high; value += step) values.push(Number(value.toPrecision(10)));
+  for (let value = Math.ceil(low / step) * step; value <= high; value += step)
+    values.push(Number(value.toPrecision(10)));
   return values;
 }
 
@@ -172,7 +207,14 @@ export class Parallel {
 
   /** @param {string} title */
   constructor(title) {
-    this.painting = new Painting({ title, wide: true, help: 'One line for each true evaluation through all its variables; the better the later and the brighter' }, (pen, width, height) => this.#paint(pen, width, height));
+    this.painting = new Painting(
+      {
+        title,
+        wide: true,
+        help: 'One line for each true evaluation through all its variables; the better the later and the brighter',
+      },
+      (pen, width, height) => this.#paint(pen, width, height),
+    );
     this.element = this.painting.element;
   }
 
@@ -186,11 +228,16 @@ export class Parallel {
   #paint(pen, width, height) {
     const { columns, dots } = this.#cloud;
     if (columns.length < 2 || dots.length === 0) return;
-    const ranges = columns.map((_, k) => extent(dots.map((dot) => dot.values[k]), 0));
+    const ranges = columns.map((_, k) =>
+      extent(
+        dots.map(dot => dot.values[k]),
+        0,
+      ),
+    );
     const last = columns.length - 1;
     const [left, right, top, bottom] = [34, width - 34, 16, height - 22];
     /** @param {number} k */
-    const across = (k) => left + ((right - left) * k) / last;
+    const across = k => left + ((right - left) * k) / last;
     const ordered = [...dots].sort((a, b) => (b.values[last] ?? Infinity) - (a.values[last] ?? Infinity));
     ordered.forEach((dot, rank) => {
       const part = ordered.length > 1 ? rank / (ordered.length - 1) : 1;

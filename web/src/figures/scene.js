@@ -1,5 +1,20 @@
-// The surfaces of the topography. Heights are exaggerated; the picture is drawn when something changes, never by itself.
-import { AmbientLight, BufferAttribute, BufferGeometry, Color, DirectionalLight, DoubleSide, LineBasicMaterial, LineSegments, Mesh, MeshLambertMaterial, PerspectiveCamera, Scene as World, WebGLRenderer } from 'three';
+// The surfaces of the topography. Heights are exaggerated; the picture is drawn when something changes, never by
+// itself.
+import {
+  AmbientLight,
+  BufferAttribute,
+  BufferGeometry,
+  Color,
+  DirectionalLight,
+  DoubleSide,
+  LineBasicMaterial,
+  LineSegments,
+  Mesh,
+  MeshLambertMaterial,
+  PerspectiveCamera,
+  Scene as World,
+  WebGLRenderer,
+} from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 import { colour } from '../base/theme.js';
 import { gridValue, scaleColour } from './colours.js';
@@ -13,7 +28,10 @@ const DEPTH = 1.5;
 const HEIGHT = 0.55;
 const GAP = 0.16;
 
-/** @typedef {{ mesh: Mesh, grid: LineSegments, height: Float32Array, pressure: Float32Array, cycle: Float32Array }} Surface */
+/**
+ * @typedef {{ mesh: Mesh, grid: LineSegments, height: Float32Array, pressure: Float32Array, cycle: Float32Array }}
+ * Surface
+ */
 
 export class Scene {
   /** @type {Map<string, Surface>} */ #surfaces = new Map();
@@ -53,7 +71,8 @@ export class Scene {
   set(context) {
     this.#context = context;
     const ends = endsOf(context.result);
-    for (const [end, surface] of this.#surfaces) surface.mesh.visible = surface.grid.visible = ends.includes(/** @type {any} */ (end));
+    for (const [end, surface] of this.#surfaces)
+      surface.mesh.visible = surface.grid.visible = ends.includes(/** @type {any} */ (end));
     for (const end of ends) this.#shape(end, ends.length === 2);
   }
 
@@ -69,7 +88,8 @@ export class Scene {
     for (let i = 0; i < ROWS; i++) {
       for (let j = 0; j < COLUMNS; j++) {
         const at = i * COLUMNS + j;
-        if (i < ROWS - 1 && j < COLUMNS - 1) index.push(at, at + 1, at + COLUMNS, at + 1, at + COLUMNS + 1, at + COLUMNS);
+        if (i < ROWS - 1 && j < COLUMNS - 1)
+          index.push(at, at + 1, at + COLUMNS, at + 1, at + COLUMNS + 1, at + COLUMNS);
         if (j < COLUMNS - 1 && i % 10 === 0) lines.push(at, at + 1);
         if (i < ROWS - 1 && j % 6 === 0) lines.push(at, at + COLUMNS);
       }
@@ -78,16 +98,29 @@ export class Scene {
     const wires = new BufferGeometry();
     wires.setAttribute('position', geometry.getAttribute('position'));
     wires.setIndex(lines);
-    const mesh = new Mesh(geometry, new MeshLambertMaterial({ vertexColors: true, side: DoubleSide, polygonOffset: true, polygonOffsetFactor: 1 }));
+    const mesh = new Mesh(
+      geometry,
+      new MeshLambertMaterial({ vertexColors: true, side: DoubleSide, polygonOffset: true, polygonOffsetFactor: 1 }),
+    );
     const grid = new LineSegments(wires, new LineBasicMaterial({ transparent: true, opacity: 0.45 }));
     this.world.add(mesh, grid);
     const count = ROWS * COLUMNS;
-    surface = { mesh, grid, height: new Float32Array(count), pressure: new Float32Array(count), cycle: new Float32Array(count) };
+    surface = {
+      mesh,
+      grid,
+      height: new Float32Array(count),
+      pressure: new Float32Array(count),
+      cycle: new Float32Array(count),
+    };
     this.#surfaces.set(end, surface);
     return surface;
   }
 
-  /** Heights, pressures and the phase at which each place touches. @param {'left' | 'right'} end @param {boolean} two */
+  /**
+   * Heights, pressures and the phase at which each place touches.
+   * @param {'left' | 'right'} end
+   * @param {boolean} two
+   */
   #shape(end, two) {
     const { result, loadCase } = /** @type {import('./context.js').Context} */ (this.#context);
     const g = result.geometry;
@@ -96,7 +129,7 @@ export class Scene {
     const surface = this.#surface(end);
     const position = /** @type {BufferAttribute} */ (surface.mesh.geometry.getAttribute('position'));
     const lean = Math.tan((g.base_helix_angle_deg * Math.PI) / 180);
-    const stagger = end === 'right' ? result.design.alignment?.stagger ?? 0 : 0;
+    const stagger = end === 'right' ? (result.design.alignment?.stagger ?? 0) : 0;
     const scale = HEIGHT / Math.max(20, largest(result));
     this.#most = Math.max(1, ...Object.values(result.load_cases[loadCase].contact?.max_pressure_MPa ?? {}).map(Number));
     for (let i = 0; i < ROWS; i++) {
@@ -106,11 +139,16 @@ export class Scene {
         const across = j / (COLUMNS - 1);
         const eta = (across - 0.5) * g.face_width_mm;
         const at = i * COLUMNS + j;
-        const taken = valueAtPlace(pinion?.u_mm, pinion?.[end]?.profile_um, g.rack_factor * s) + valueAtPlace(faces, pinion?.[end]?.lead_um, eta)
-          + valueAtPlace(gear?.u_mm, gear?.[end]?.profile_um, -g.rack_factor * s) + valueAtPlace(faces, gear?.[end]?.lead_um, eta);
+        const taken =
+          valueAtPlace(pinion?.u_mm, pinion?.[end]?.profile_um, g.rack_factor * s) +
+          valueAtPlace(faces, pinion?.[end]?.lead_um, eta) +
+          valueAtPlace(gear?.u_mm, gear?.[end]?.profile_um, -g.rack_factor * s) +
+          valueAtPlace(faces, gear?.[end]?.lead_um, eta);
         const outwards = two ? GAP / 2 + across * LENGTH : (across - 0.5) * LENGTH;
         surface.height[at] = taken;
-        surface.pressure[at] = pattern ? gridValue(pattern[end].pressure_MPa, up * (pattern.s_mm.length - 1), across * (pattern.eta_mm.length - 1)) : 0;
+        surface.pressure[at] = pattern
+          ? gridValue(pattern[end].pressure_MPa, up * (pattern.s_mm.length - 1), across * (pattern.eta_mm.length - 1))
+          : 0;
         surface.cycle[at] = (s - eta * lean) / g.transverse_base_pitch_mm + stagger;
         position.setXYZ(at, two && end === 'left' ? -outwards : outwards, -taken * scale, (0.5 - up) * DEPTH);
       }
@@ -177,7 +215,12 @@ export class Scene {
       if (!surface.mesh.visible) continue;
       surface.height.forEach((taken, at) => {
         const [i, j] = [Math.floor(at / COLUMNS), at % COLUMNS];
-        rows.push([end, g.path_start_mm + (i / (ROWS - 1)) * (g.path_end_mm - g.path_start_mm), (j / (COLUMNS - 1) - 0.5) * g.face_width_mm, Number(taken.toPrecision(6))]);
+        rows.push([
+          end,
+          g.path_start_mm + (i / (ROWS - 1)) * (g.path_end_mm - g.path_start_mm),
+          (j / (COLUMNS - 1) - 0.5) * g.face_width_mm,
+          Number(taken.toPrecision(6)),
+        ]);
       });
     }
     return rows;

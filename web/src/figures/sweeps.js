@@ -33,7 +33,7 @@ class Sweep {
       },
       refused: (_task, error) => this.chart.frame.say(error.message),
     });
-    whenSeen(chart.element, (visible) => {
+    whenSeen(chart.element, visible => {
       this.#seen = visible;
       if (visible && this.#stale) this.later();
     });
@@ -80,19 +80,31 @@ class Sweep {
   draw() {}
 }
 
-/** Two fields for a range. @param {string} unit @param {() => [number, number]} read @param {(low: number, high: number) => void} take */
+/**
+ * Two fields for a range.
+ * @param {string} unit
+ * @param {() => [number, number]} read
+ * @param {(low: number, high: number) => void} take
+ */
 function rangeFields(unit, read, take) {
-  const fields = ['from', 'to'].map((name, i) => h('input.tiny', {
-    type: 'text', inputmode: 'decimal', 'aria-label': `${labelOf(name)}, ${unit}`, value: plain(read()[i]),
-    onchange: (/** @type {Event} */ event) => {
-      const field = /** @type {HTMLInputElement} */ (event.target);
-      const range = read();
-      const value = parseNumber(field.value);
-      if (value !== undefined && value > 0) range[i] = value;
-      if (range[0] < range[1]) take(range[0], range[1]);
-      fields.forEach((each, k) => { /** @type {HTMLInputElement} */ (each).value = plain(read()[k]); });
-    },
-  }));
+  const fields = ['from', 'to'].map((name, i) =>
+    h('input.tiny', {
+      type: 'text',
+      inputmode: 'decimal',
+      'aria-label': `${labelOf(name)}, ${unit}`,
+      value: plain(read()[i]),
+      onchange: (/** @type {Event} */ event) => {
+        const field = /** @type {HTMLInputElement} */ (event.target);
+        const range = read();
+        const value = parseNumber(field.value);
+        if (value !== undefined && value > 0) range[i] = value;
+        if (range[0] < range[1]) take(range[0], range[1]);
+        fields.forEach((each, k) => {
+          /** @type {HTMLInputElement} */ (each).value = plain(read()[k]);
+        });
+      },
+    }),
+  );
   return h('span.range-fields', null, fields[0], '…', fields[1], ` ${unit}`);
 }
 
@@ -102,11 +114,26 @@ export class SpeedSweep extends Sweep {
   constructor() {
     /** @type {[number, number]} */
     const range = [400, 8000];
-    const fields = rangeFields('rpm', () => [range[0], range[1]], (low, high) => {
-      [range[0], range[1]] = [low, high];
-      this.later();
-    });
-    super(new Chart({ title: 'Vibration over speed', unit: 'm/s²', help: 'RMS of the normal acceleration; upright lines: a mesh order meets an eigenfrequency', xLabel: 'pinion speed', xUnit: 'rpm', zero: true, wide: true, controls: [fields] }));
+    const fields = rangeFields(
+      'rpm',
+      () => [range[0], range[1]],
+      (low, high) => {
+        [range[0], range[1]] = [low, high];
+        this.later();
+      },
+    );
+    super(
+      new Chart({
+        title: 'Vibration over speed',
+        unit: 'm/s²',
+        help: 'RMS of the normal acceleration; upright lines: a mesh order meets an eigenfrequency',
+        xLabel: 'pinion speed',
+        xUnit: 'rpm',
+        zero: true,
+        wide: true,
+        controls: [fields],
+      }),
+    );
     this.range = range;
     this.elements = [this.chart.element];
   }
@@ -119,7 +146,11 @@ export class SpeedSweep extends Sweep {
   /** @param {any} design */
   request(design) {
     const torque = design.load_cases[this.#case]?.torque_Nm ?? design.load_cases[0].torque_Nm;
-    return { design, torque: { from: torque, to: torque, points: 1 }, speed: { from: this.range[0], to: this.range[1], points: SPEEDS } };
+    return {
+      design,
+      torque: { from: torque, to: torque, points: 1 },
+      speed: { from: this.range[0], to: this.range[1], points: SPEEDS },
+    };
   }
 
   draw() {
@@ -127,20 +158,54 @@ export class SpeedSweep extends Sweep {
     if (!own) return;
     const curves = [];
     const before = own.unmodified?.points?.rms_m_per_s2?.normal;
-    if (before) curves.push({ label: 'unmodified', y: before, colour: 'c1', line: pinned ? /** @type {const} */ ('dotted') : /** @type {const} */ ('dashed') });
-    if (pinned) curves.push({ label: this.pinLabel, x: pinned.speed_rpm, y: pinned.modified.points.rms_m_per_s2.normal, colour: 'c1', line: /** @type {const} */ ('dashed') });
-    curves.push({ label: `this design, ${caseText({ torque_Nm: own.torque_Nm[0] })}`, y: own.modified.points.rms_m_per_s2.normal, colour: 'c1' });
-    if (own.modified.down) curves.push({ label: 'slowing down', y: own.modified.down.rms_m_per_s2.normal, colour: 'c2' });
+    if (before)
+      curves.push({
+        label: 'unmodified',
+        y: before,
+        colour: 'c1',
+        line: pinned ? /** @type {const} */ ('dotted') : /** @type {const} */ ('dashed'),
+      });
+    if (pinned)
+      curves.push({
+        label: this.pinLabel,
+        x: pinned.speed_rpm,
+        y: pinned.modified.points.rms_m_per_s2.normal,
+        colour: 'c1',
+        line: /** @type {const} */ ('dashed'),
+      });
+    curves.push({
+      label: `this design, ${caseText({ torque_Nm: own.torque_Nm[0] })}`,
+      y: own.modified.points.rms_m_per_s2.normal,
+      colour: 'c1',
+    });
+    if (own.modified.down)
+      curves.push({ label: 'slowing down', y: own.modified.down.rms_m_per_s2.normal, colour: 'c2' });
     const { mode = [], order = [], speed_rpm: speed = [] } = own.crossings ?? {};
-    const marks = speed.map((/** @type {number} */ x, /** @type {number} */ i) => ({ x, label: order[i] <= 2 ? `${order[i]}× mode ${mode[i]}` : '', strong: order[i] === 1, order: order[i] }))
-      .filter((/** @type {any} */ mark) => mark.order <= 3).sort((/** @type {any} */ a, /** @type {any} */ b) => a.order - b.order || a.x - b.x);
+    const marks = speed
+      .map((/** @type {number} */ x, /** @type {number} */ i) => ({
+        x,
+        label: order[i] <= 2 ? `${order[i]}× mode ${mode[i]}` : '',
+        strong: order[i] === 1,
+        order: order[i],
+      }))
+      .filter((/** @type {any} */ mark) => mark.order <= 3)
+      .sort((/** @type {any} */ a, /** @type {any} */ b) => a.order - b.order || a.x - b.x);
     this.chart.set({ x: own.speed_rpm, curves, marks });
   }
 }
 
 export class TorqueSweep extends Sweep {
   constructor() {
-    super(new Chart({ title: 'PPLTE over torque', unit: 'µm', help: 'Peak-to-peak loaded transmission error from light to heavy load; upright lines: the load cases', xLabel: 'torque', xUnit: 'N m', zero: true }));
+    super(
+      new Chart({
+        title: 'PPLTE over torque',
+        unit: 'µm',
+        help: 'Peak-to-peak loaded transmission error from light to heavy load; upright lines: the load cases',
+        xLabel: 'torque',
+        xUnit: 'N m',
+        zero: true,
+      }),
+    );
     this.elements = [this.chart.element];
   }
 
@@ -154,10 +219,27 @@ export class TorqueSweep extends Sweep {
     const { own, pinned } = this;
     if (!own) return;
     const curves = [];
-    if (own.unmodified) curves.push({ label: 'unmodified', y: own.unmodified.by_torque.peak_to_peak_um, colour: 'c1', line: pinned ? /** @type {const} */ ('dotted') : /** @type {const} */ ('dashed') });
-    if (pinned) curves.push({ label: this.pinLabel, x: pinned.torque_Nm, y: pinned.modified.by_torque.peak_to_peak_um, colour: 'c1', line: /** @type {const} */ ('dashed') });
+    if (own.unmodified)
+      curves.push({
+        label: 'unmodified',
+        y: own.unmodified.by_torque.peak_to_peak_um,
+        colour: 'c1',
+        line: pinned ? /** @type {const} */ ('dotted') : /** @type {const} */ ('dashed'),
+      });
+    if (pinned)
+      curves.push({
+        label: this.pinLabel,
+        x: pinned.torque_Nm,
+        y: pinned.modified.by_torque.peak_to_peak_um,
+        colour: 'c1',
+        line: /** @type {const} */ ('dashed'),
+      });
     curves.push({ label: 'this design', y: own.modified.by_torque.peak_to_peak_um, colour: 'c1' });
-    const marks = own.design.load_cases.map((/** @type {any} */ row) => ({ x: row.torque_Nm, label: '', strong: true }));
+    const marks = own.design.load_cases.map((/** @type {any} */ row) => ({
+      x: row.torque_Nm,
+      label: '',
+      strong: true,
+    }));
     this.chart.set({ x: own.torque_Nm, curves, marks });
   }
 }

@@ -1,4 +1,5 @@
-// The ease-off of both ends in space, with the load of the mesh cycle moving over it. three.js is fetched when this is first seen.
+// The ease-off of both ends in space, with the load of the mesh cycle moving over it. three.js is fetched when this is
+// first seen.
 import { h } from '../base/dom.js';
 import { phase } from '../base/phase.js';
 import { theme } from '../base/theme.js';
@@ -15,15 +16,27 @@ export class Topography {
   #own = 0;
 
   constructor() {
-    this.play = h('button.small', { type: 'button', 'aria-pressed': 'false', onclick: () => this.#toggle() }, '▶ mesh cycle');
+    this.play = h(
+      'button.small',
+      { type: 'button', 'aria-pressed': 'false', onclick: () => this.#toggle() },
+      '▶ mesh cycle',
+    );
     this.frame = new Frame({
-      title: 'Ease-off', unit: 'of both flanks together', wide: true, help: 'Material taken off pinion and gear together, seen on the pinion flank; bright: load on the contact lines. Drag turns it',
-      controls: [this.play], drawing: { picture: () => this.#picture(), reset: () => this.#scene?.home(), table: () => this.#scene?.table() ?? [] },
+      title: 'Ease-off',
+      unit: 'of both flanks together',
+      wide: true,
+      help: 'Material taken off pinion and gear together, seen on the pinion flank; bright: load on the contact lines. Drag turns it',
+      controls: [this.play],
+      drawing: {
+        picture: () => this.#picture(),
+        reset: () => this.#scene?.home(),
+        table: () => this.#scene?.table() ?? [],
+      },
     });
     this.elements = [this.frame.element];
     this.frame.element.classList.replace('wide', 'tall');
     this.frame.legend.textContent = 'drag to turn; opened large, the wheel comes closer';
-    whenSeen(this.frame.element, (visible) => {
+    whenSeen(this.frame.element, visible => {
       this.#seen = visible;
       if (visible) this.#load();
     });
@@ -65,7 +78,7 @@ export class Topography {
     this.play.setAttribute('aria-pressed', String(this.#playing));
     let last = performance.now();
     /** @param {number} now */
-    const step = (now) => {
+    const step = now => {
       if (!this.#playing) return;
       this.#own = (this.#own + (now - last) / CYCLE) % 1;
       last = now;
@@ -76,7 +89,7 @@ export class Topography {
   }
 
   #draw() {
-    if (this.#seen) this.#scene?.draw(this.#playing ? this.#own : phase.value ?? this.#own);
+    if (this.#seen) this.#scene?.draw(this.#playing ? this.#own : (phase.value ?? this.#own));
   }
 
   async #picture() {

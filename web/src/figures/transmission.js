@@ -9,7 +9,7 @@ const ORDERS = 8;
 function aboutMean(values) {
   if (!values) return [];
   const mean = values.reduce((sum, value) => sum + value, 0) / values.length;
-  return values.map((value) => value - mean);
+  return values.map(value => value - mean);
 }
 
 export class Transmission {
@@ -17,13 +17,34 @@ export class Transmission {
 
   /** @param {() => void} again draws again */
   constructor(again) {
-    const choose = switcher('Transmission error of', [['pair', 'pair'], ['left', 'left'], ['right', 'right']], this.#which, (value) => {
-      this.#which = value;
-      again();
+    const choose = switcher(
+      'Transmission error of',
+      [
+        ['pair', 'pair'],
+        ['left', 'left'],
+        ['right', 'right'],
+      ],
+      this.#which,
+      value => {
+        this.#which = value;
+        again();
+      },
+    );
+    this.chart = new Chart({
+      title: 'Loaded TE',
+      unit: 'µm',
+      help: 'Loaded transmission error along the transverse line of action, less its mean over the cycle',
+      xLabel: 'mesh cycle',
+      cycle: true,
+      controls: [choose],
     });
-    this.chart = new Chart({ title: 'Loaded TE', unit: 'µm', help: 'Loaded transmission error along the transverse line of action, less its mean over the cycle',
-      xLabel: 'mesh cycle', cycle: true, controls: [choose] });
-    this.orders = new Chart({ title: 'Orders of the loaded TE', unit: 'µm', help: 'Amplitudes of the mesh orders of the pair', xLabel: 'mesh order', bars: true });
+    this.orders = new Chart({
+      title: 'Orders of the loaded TE',
+      unit: 'µm',
+      help: 'Amplitudes of the mesh orders of the pair',
+      xLabel: 'mesh order',
+      bars: true,
+    });
     this.elements = [this.chart.element, this.orders.element];
     this.choose = choose;
   }
@@ -42,14 +63,34 @@ export class Transmission {
         const other = sameCase(reference.result, loadCase, k);
         if (!other?.lte) return;
         const label = `${caseText(loadCase)}, ${reference.label}`;
-        curves.push({ label, x: other.position, y: aboutMean(other.lte[`${which}_um`]), colour: caseColour(k), line: reference.line });
-        bars.push({ label, y: (other.lte.orders_um ?? []).slice(1, ORDERS + 1), colour: caseColour(k), line: reference.line });
+        curves.push({
+          label,
+          x: other.position,
+          y: aboutMean(other.lte[`${which}_um`]),
+          colour: caseColour(k),
+          line: reference.line,
+        });
+        bars.push({
+          label,
+          y: (other.lte.orders_um ?? []).slice(1, ORDERS + 1),
+          colour: caseColour(k),
+          line: reference.line,
+        });
       });
     }
     cases.forEach((/** @type {any} */ loadCase, /** @type {number} */ k) => {
       if (!loadCase.lte) return;
-      curves.push({ label: caseText(loadCase), x: loadCase.position, y: aboutMean(loadCase.lte[`${which}_um`]), colour: caseColour(k) });
-      bars.push({ label: caseText(loadCase), y: (loadCase.lte.orders_um ?? []).slice(1, ORDERS + 1), colour: caseColour(k) });
+      curves.push({
+        label: caseText(loadCase),
+        x: loadCase.position,
+        y: aboutMean(loadCase.lte[`${which}_um`]),
+        colour: caseColour(k),
+      });
+      bars.push({
+        label: caseText(loadCase),
+        y: (loadCase.lte.orders_um ?? []).slice(1, ORDERS + 1),
+        colour: caseColour(k),
+      });
     });
     this.chart.set({ x: cases[0].position, curves });
     this.orders.set({ x: counting(ORDERS, 1), curves: bars });

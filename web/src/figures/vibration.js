@@ -3,7 +3,11 @@ import { Chart } from './chart.js';
 import { caseColour, caseText, counting, endsOf, sameCase } from './context.js';
 import { switcher } from './frame.js';
 
-const READINGS = /** @type {[string, string][]} */ ([['normal', 'normal'], ['transverse', 'transv.'], ['rotational', 'rotat.']]);
+const READINGS = /** @type {[string, string][]} */ ([
+  ['normal', 'normal'],
+  ['transverse', 'transv.'],
+  ['rotational', 'rotat.'],
+]);
 const ORDERS = 12;
 const END_COLOUR = { left: 'c1', right: 'c2' };
 
@@ -13,14 +17,25 @@ export class Vibration {
   /** @param {() => void} again */
   constructor(again) {
     this.cycle = new Chart({
-      title: 'Vibration', unit: 'm/s²', help: 'Relative acceleration of the teeth of each end along the line of action: normal, transverse, or by rotation alone',
-      xLabel: 'mesh cycle', cycle: true,
-      controls: [switcher('Acceleration', READINGS, this.#reading, (value) => {
-        this.#reading = value;
-        again();
-      })],
+      title: 'Vibration',
+      unit: 'm/s²',
+      help: 'Relative acceleration of the teeth of each end along the line of action: normal, transverse, or by rotation alone',
+      xLabel: 'mesh cycle',
+      cycle: true,
+      controls: [
+        switcher('Acceleration', READINGS, this.#reading, value => {
+          this.#reading = value;
+          again();
+        }),
+      ],
     });
-    this.orders = new Chart({ title: 'Orders of the vibration', unit: 'm/s²', help: 'Amplitudes of the mesh orders, mean of the ends', xLabel: 'mesh order', bars: true });
+    this.orders = new Chart({
+      title: 'Orders of the vibration',
+      unit: 'm/s²',
+      help: 'Amplitudes of the mesh orders, mean of the ends',
+      xLabel: 'mesh order',
+      bars: true,
+    });
     this.elements = [this.cycle.element, this.orders.element];
   }
 
@@ -36,15 +51,29 @@ export class Vibration {
       const other = sameCase(reference.result, loadCase, k)?.vibration;
       for (const end of endsOf(result)) {
         const y = other?.[end]?.history?.[reading];
-        if (y) curves.push({ label: `${end}, ${reference.label}`, x: other.position, y, colour: END_COLOUR[end], line: reference.line });
+        if (y)
+          curves.push({
+            label: `${end}, ${reference.label}`,
+            x: other.position,
+            y,
+            colour: END_COLOUR[end],
+            line: reference.line,
+          });
       }
       result.load_cases.forEach((/** @type {any} */ c, /** @type {number} */ i) => {
         const orders = sameCase(reference.result, c, i)?.vibration?.[`orders_${reading}`];
-        if (orders) bars.push({ label: `${caseText(c)}, ${reference.label}`, y: orders.slice(1, ORDERS + 1), colour: caseColour(i), line: reference.line });
+        if (orders)
+          bars.push({
+            label: `${caseText(c)}, ${reference.label}`,
+            y: orders.slice(1, ORDERS + 1),
+            colour: caseColour(i),
+            line: reference.line,
+          });
       });
     }
     const own = loadCase.vibration;
-    for (const end of endsOf(result)) if (own?.[end]?.history) curves.push({ label: end, y: own[end].history[reading], colour: END_COLOUR[end] });
+    for (const end of endsOf(result))
+      if (own?.[end]?.history) curves.push({ label: end, y: own[end].history[reading], colour: END_COLOUR[end] });
     result.load_cases.forEach((/** @type {any} */ c, /** @type {number} */ i) => {
       const orders = c.vibration?.[`orders_${reading}`];
       if (orders) bars.push({ label: caseText(c), y: orders.slice(1, ORDERS + 1), colour: caseColour(i) });

@@ -16,9 +16,20 @@ export function designView(app) {
   const top = h('.report');
   const end = h('.report');
   const foot = h('div');
-  const element = h('.design-view', null, top,
-    h('aside.form-pane', { 'aria-label': 'Parameters' }, h('.form-scroll', null, parameters.element), foot, h('.form-foot', null, h('button.primary', { type: 'button', onclick: () => app.go('optimize') }, 'Optimize…'))),
-    h('.head-pane', null, headline.element, trouble), h('.figure-pane', null, results.element, end));
+  const element = h(
+    '.design-view',
+    null,
+    top,
+    h(
+      'aside.form-pane',
+      { 'aria-label': 'Parameters' },
+      h('.form-scroll', null, parameters.element),
+      foot,
+      h('.form-foot', null, h('button.primary', { type: 'button', onclick: () => app.go('optimize') }, 'Optimize…')),
+    ),
+    h('.head-pane', null, headline.element, trouble),
+    h('.figure-pane', null, results.element, end),
+  );
 
   const drawResult = () => {
     const { result } = analyst;
@@ -36,7 +47,11 @@ export function designView(app) {
     trouble.hidden = !refused;
     if (refused) {
       const faulty = store.faults.size + analyst.faults.length;
-      trouble.textContent = stray.length ? stray.map(({ pointer, detail }) => `${pointer} ${detail}`).join(' ') : faulty ? `${faulty === 1 ? 'One value is' : `${faulty} values are`} not possible, see the form. The figures show the last design that was.` : analyst.message;
+      trouble.textContent = stray.length
+        ? stray.map(({ pointer, detail }) => `${pointer} ${detail}`).join(' ')
+        : faulty
+          ? `${faulty === 1 ? 'One value is' : `${faulty} values are`} not possible, see the form. The figures show the last design that was.`
+          : analyst.message;
     }
     element.classList.toggle('refused', refused);
     element.classList.toggle('preparing', analyst.state === 'preparing');

@@ -8,18 +8,54 @@ import { group } from '../form.js';
 
 /** Unknowns: key, unit, where it stands in the design, usual range. */
 const UNKNOWNS = /** @type {{ key: string, unit: string, pointers: string[], low: number, high: number }[]} */ ([
-  { key: 'pinion_bearing_stiffness_N_per_um', unit: 'N_per_um', pointers: ['/supports/pinion_bearing_stiffness_N_per_um'], low: 100, high: 5000 },
-  { key: 'gear_bearing_stiffness_N_per_um', unit: 'N_per_um', pointers: ['/supports/gear_bearing_stiffness_N_per_um'], low: 100, high: 5000 },
+  {
+    key: 'pinion_bearing_stiffness_N_per_um',
+    unit: 'N_per_um',
+    pointers: ['/supports/pinion_bearing_stiffness_N_per_um'],
+    low: 100,
+    high: 5000,
+  },
+  {
+    key: 'gear_bearing_stiffness_N_per_um',
+    unit: 'N_per_um',
+    pointers: ['/supports/gear_bearing_stiffness_N_per_um'],
+    low: 100,
+    high: 5000,
+  },
   { key: 'mesh_damping_ratio', unit: '', pointers: ['/supports/mesh_damping_ratio'], low: 0.02, high: 0.3 },
-  { key: 'gear_axial_stiffness_N_per_um', unit: 'N_per_um', pointers: ['/supports/gear_axial_stiffness_left_N_per_um', '/supports/gear_axial_stiffness_right_N_per_um'], low: 10, high: 2000 },
-  { key: 'pinion_axial_stiffness_N_per_um', unit: 'N_per_um', pointers: ['/alignment/pinion_axial_stiffness_N_per_um'], low: 1, high: 1000 },
-  { key: 'shaft_angle_error_in_plane_deg', unit: 'deg', pointers: ['/alignment/shaft_angle_error_in_plane_deg'], low: -0.1, high: 0.1 },
-  { key: 'shaft_angle_error_out_of_plane_deg', unit: 'deg', pointers: ['/alignment/shaft_angle_error_out_of_plane_deg'], low: -0.1, high: 0.1 },
+  {
+    key: 'gear_axial_stiffness_N_per_um',
+    unit: 'N_per_um',
+    pointers: ['/supports/gear_axial_stiffness_left_N_per_um', '/supports/gear_axial_stiffness_right_N_per_um'],
+    low: 10,
+    high: 2000,
+  },
+  {
+    key: 'pinion_axial_stiffness_N_per_um',
+    unit: 'N_per_um',
+    pointers: ['/alignment/pinion_axial_stiffness_N_per_um'],
+    low: 1,
+    high: 1000,
+  },
+  {
+    key: 'shaft_angle_error_in_plane_deg',
+    unit: 'deg',
+    pointers: ['/alignment/shaft_angle_error_in_plane_deg'],
+    low: -0.1,
+    high: 0.1,
+  },
+  {
+    key: 'shaft_angle_error_out_of_plane_deg',
+    unit: 'deg',
+    pointers: ['/alignment/shaft_angle_error_out_of_plane_deg'],
+    low: -0.1,
+    high: 0.1,
+  },
   { key: 'impact_patch_mm', unit: 'mm', pointers: ['/resolution/impact_patch_mm'], low: 0.5, high: 10 },
 ]);
 
 /** "12.3 … 14.5" @param {number[]} range */
-const rangeText = (range) => `${sig(range[0], 4)} … ${sig(range[1], 4)}`;
+const rangeText = range => `${sig(range[0], 4)} … ${sig(range[1], 4)}`;
 
 export class FitPanel {
   /** @type {any} */ #answer = null;
@@ -28,13 +64,22 @@ export class FitPanel {
   constructor(app, designId) {
     this.app = app;
     this.designId = designId;
-    this.rows = UNKNOWNS.map((unknown) => this.#unknown(unknown));
+    this.rows = UNKNOWNS.map(unknown => this.#unknown(unknown));
     this.start = h('button', { type: 'button', onclick: () => this.#run() }, 'Fit to the measurements');
     this.note = h('p.figure-note', { role: 'status' });
-    this.element = group('fit', 'Fit what nobody knows', false, [h('p.figure-note', null, 'Finds these inputs by least squares on the orders of all measurements but outliers.'), ...this.rows.map((row) => row.element), h('.form-foot', null, this.start), this.note]);
+    this.element = group('fit', 'Fit what nobody knows', false, [
+      h('p.figure-note', null, 'Finds these inputs by least squares on the orders of all measurements but outliers.'),
+      ...this.rows.map(row => row.element),
+      h('.form-foot', null, this.start),
+      this.note,
+    ]);
     this.result = h('section.figure.with-table.wide', { 'aria-label': 'Fit', hidden: true });
     this.lane = new Lane({
-      result: (_task, data) => { this.#answer = data; this.#busy(''); this.#draw(); },
+      result: (_task, data) => {
+        this.#answer = data;
+        this.#busy('');
+        this.#draw();
+      },
       refused: (_task, error) => this.#busy(error.message),
       preparing: () => this.#busy('The teeth are being prepared…', true),
     });
@@ -44,8 +89,26 @@ export class FitPanel {
   #unknown(unknown) {
     const id = newId('unknown');
     const box = h('input', { type: 'checkbox', id, checked: unknown.key === 'mesh_damping_ratio' });
-    const [low, high] = [unknown.low, unknown.high].map((value, i) => h('input.tiny', { type: 'text', inputmode: 'decimal', value: plain(value), 'aria-label': `${labelOf(unknown.key)}, ${i ? 'highest' : 'lowest'}` }));
-    return { unknown, box, low, high, element: h('.field.unknown', null, h('label.flag', { for: id }, box, h('span', null, labelOf(unknown.key))), h('span.range-fields', null, low, '…', high, ` ${unitText(unknown.unit)}`)) };
+    const [low, high] = [unknown.low, unknown.high].map((value, i) =>
+      h('input.tiny', {
+        type: 'text',
+        inputmode: 'decimal',
+        value: plain(value),
+        'aria-label': `${labelOf(unknown.key)}, ${i ? 'highest' : 'lowest'}`,
+      }),
+    );
+    return {
+      unknown,
+      box,
+      low,
+      high,
+      element: h(
+        '.field.unknown',
+        null,
+        h('label.flag', { for: id }, box, h('span', null, labelOf(unknown.key))),
+        h('span.range-fields', null, low, '…', high, ` ${unitText(unknown.unit)}`),
+      ),
+    };
   }
 
   /** @param {string} text @param {boolean} [busy] */
@@ -71,17 +134,81 @@ export class FitPanel {
   #draw() {
     const answer = this.#answer;
     const rows = answer.unknowns.map((/** @type {any} */ unknown) => {
-      const unit = UNKNOWNS.find((each) => each.key === unknown.key)?.unit ?? '';
-      return h('tr', null, h('th', { scope: 'row' }, labelOf(unknown.key), unit ? h('span.unit', null, ` ${unitText(unit)}`) : null), h('td.number', null, sig(unknown.before, 4)), h('td.number', null, h('b', null, sig(unknown.value, 4))),
-        h('td.number', null, rangeText(unknown.confidence_95)), h('td.number', null, rangeText(unknown.range)),
-        h('td', null, unknown.undetermined ? 'not determined' : unknown.at_bound ? 'at its bound' : unknown.same_as ? `not apart from ${labelOf(unknown.same_as)}` : ''));
+      const unit = UNKNOWNS.find(each => each.key === unknown.key)?.unit ?? '';
+      return h(
+        'tr',
+        null,
+        h('th', { scope: 'row' }, labelOf(unknown.key), unit ? h('span.unit', null, ` ${unitText(unit)}`) : null),
+        h('td.number', null, sig(unknown.before, 4)),
+        h('td.number', null, h('b', null, sig(unknown.value, 4))),
+        h('td.number', null, rangeText(unknown.confidence_95)),
+        h('td.number', null, rangeText(unknown.range)),
+        h(
+          'td',
+          null,
+          unknown.undetermined
+            ? 'not determined'
+            : unknown.at_bound
+              ? 'at its bound'
+              : unknown.same_as
+                ? `not apart from ${labelOf(unknown.same_as)}`
+                : '',
+        ),
+      );
     });
     this.result.hidden = false;
-    fill(this.result, h('.figure-head', null, h('h3', null, 'Fit'), h('.figure-controls', null, h('button.small.primary', { type: 'button', onclick: () => this.#apply() }, 'Take over into the design'))),
-      h('.table-scroll', { tabindex: '0', role: 'region', 'aria-label': 'Table of the fit' }, h('table.numbers', null, h('thead', null, h('tr', null, ['', 'before', 'found', '95 % interval', 'range', ''].map((text) => h('th', { scope: 'col' }, text)))), h('tbody', null, rows))),
-      h('p.figure-note', null, `${answer.measurements} measurements, ${answer.orders} orders; misfit ${sig(answer.misfit?.before, 3)} before, ${sig(answer.misfit?.after, 3)} after (1: as large as its uncertainty).`),
-      answer.warnings.length ? h('ul.findings', null, answer.warnings.map((/** @type {string} */ text) => h('li', null, h('span.severity.warning', null, 'doubtful'), ' ', text))) : null,
-      answer.left_out.length ? h('p.figure-note', null, `Left out: ${answer.left_out.map((/** @type {any} */ item) => `measurement ${item.id} (${item.reason})`).join(' ')}`) : null);
+    fill(
+      this.result,
+      h(
+        '.figure-head',
+        null,
+        h('h3', null, 'Fit'),
+        h(
+          '.figure-controls',
+          null,
+          h('button.small.primary', { type: 'button', onclick: () => this.#apply() }, 'Take over into the design'),
+        ),
+      ),
+      h(
+        '.table-scroll',
+        { tabindex: '0', role: 'region', 'aria-label': 'Table of the fit' },
+        h(
+          'table.numbers',
+          null,
+          h(
+            'thead',
+            null,
+            h(
+              'tr',
+              null,
+              ['', 'before', 'found', '95 % interval', 'range', ''].map(text => h('th', { scope: 'col' }, text)),
+            ),
+          ),
+          h('tbody', null, rows),
+        ),
+      ),
+      h(
+        'p.figure-note',
+        null,
+        `${answer.measurements} measurements, ${answer.orders} orders; misfit ${sig(answer.misfit?.before, 3)} before, ${sig(answer.misfit?.after, 3)} after (1: as large as its uncertainty).`,
+      ),
+      answer.warnings.length
+        ? h(
+            'ul.findings',
+            null,
+            answer.warnings.map((/** @type {string} */ text) =>
+              h('li', null, h('span.severity.warning', null, 'doubtful'), ' ', text),
+            ),
+          )
+        : null,
+      answer.left_out.length
+        ? h(
+            'p.figure-note',
+            null,
+            `Left out: ${answer.left_out.map((/** @type {any} */ item) => `measurement ${item.id} (${item.reason})`).join(' ')}`,
+          )
+        : null,
+    );
   }
 
   #apply() {
@@ -89,8 +216,11 @@ export class FitPanel {
     const { design, unknowns } = this.#answer;
     /** @type {string[]} */
     const keys = unknowns.map((/** @type {any} */ unknown) => unknown.key);
-    const pointers = UNKNOWNS.filter(({ key }) => keys.includes(key)).flatMap((unknown) => unknown.pointers);
-    for (const pointer of [...pointers, ...(keys.includes('pinion_axial_stiffness_N_per_um') ? ['/alignment/pinion_axial'] : [])]) {
+    const pointers = UNKNOWNS.filter(({ key }) => keys.includes(key)).flatMap(unknown => unknown.pointers);
+    for (const pointer of [
+      ...pointers,
+      ...(keys.includes('pinion_axial_stiffness_N_per_um') ? ['/alignment/pinion_axial'] : []),
+    ]) {
       const value = valueAt(design, pointer);
       if (value !== undefined) store.set(pointer, value);
     }

@@ -1,4 +1,5 @@
-// Rig files on their way: what is dropped or chosen, what is known of each, its upload and what the service found in it.
+// Rig files on their way: what is dropped or chosen, what is known of each, its upload and what the service found in
+// it.
 import { Refusal } from '../base/api.js';
 import { fill, h, newId } from '../base/dom.js';
 import { parseNumber, plain } from '../base/format.js';
@@ -6,32 +7,75 @@ import { guess } from '../base/recording.js';
 import { RefusedRecording, upload } from '../base/upload.js';
 import { group } from '../form.js';
 
-/** @typedef {{ file: File, gear: File | null, label: string, torque: string, speed: string, state: 'waiting' | 'sending' | 'reading' | 'refused' | 'failed', part: number, error: Error | null, bar: HTMLElement | null }} Recording */
+/**
+ * @typedef {{ file: File, gear: File | null, label: string, torque: string, speed: string, state: 'waiting' |
+ * 'sending' | 'reading' | 'refused' | 'failed', part: number, error: Error | null, bar: HTMLElement | null }}
+ * Recording
+ */
 
 const AT_ONCE = 2;
 const TRIES = 5;
 const PAUSE = 2000; // ms before a busy service is asked again
-const SEVERITY = /** @type {Record<string, string>} */ ({ refused: 'no result', warning: 'doubtful', repaired: 'repaired', note: 'note' });
+const SEVERITY = /** @type {Record<string, string>} */ ({
+  refused: 'no result',
+  warning: 'doubtful',
+  repaired: 'repaired',
+  note: 'note',
+});
 
 /** Findings in plain words, the gravest first. @param {any[]} findings */
 export function findingList(findings) {
   const order = ['refused', 'warning', 'repaired', 'note'];
   const sorted = [...findings].sort((a, b) => order.indexOf(a.severity) - order.indexOf(b.severity));
-  return h('ul.findings', null, sorted.map((finding) => h('li', null, h(`span.severity.${finding.severity}`, null, SEVERITY[finding.severity] ?? finding.severity), ' ', finding.text,
-    finding.line ? h('span.unit', null, ` line ${finding.line}`) : null)));
+  return h(
+    'ul.findings',
+    null,
+    sorted.map(finding =>
+      h(
+        'li',
+        null,
+        h(`span.severity.${finding.severity}`, null, SEVERITY[finding.severity] ?? finding.severity),
+        ' ',
+        finding.text,
+        finding.line ? h('span.unit', null, ` line ${finding.line}`) : null,
+      ),
+    ),
+  );
 }
 
 /** Override of what the columns mean; what is left open is guessed. */
 class LayoutForm {
   constructor() {
     /** @param {string} label @param {[string, string][]} choices */
-    const select = (label, choices) => h('select', { 'aria-label': label }, choices.map(([value, text]) => h('option', { value }, text)));
+    const select = (label, choices) =>
+      h(
+        'select',
+        { 'aria-label': label },
+        choices.map(([value, text]) => h('option', { value }, text)),
+      );
     /** @param {string} label @param {string} hint */
     const text = (label, hint) => h('input', { type: 'text', 'aria-label': label, placeholder: hint, class: 'short' });
-    this.kind = select('What the columns hold', [['', 'guess'], ['angles', 'angles'], ['sine-cosine', 'raw sine and cosine'], ['pulses', 'pulse times']]);
-    this.unit = select('Unit of the angles', [['', 'guess'], ['deg', 'degrees'], ['rad', 'radians'], ['turn', 'turns'], ['count', 'counts']]);
+    this.kind = select('What the columns hold', [
+      ['', 'guess'],
+      ['angles', 'angles'],
+      ['sine-cosine', 'raw sine and cosine'],
+      ['pulses', 'pulse times'],
+    ]);
+    this.unit = select('Unit of the angles', [
+      ['', 'guess'],
+      ['deg', 'degrees'],
+      ['rad', 'radians'],
+      ['turn', 'turns'],
+      ['count', 'counts'],
+    ]);
     this.time = text('Time column', 'guess');
-    this.timeUnit = select('Unit of the time', [['', 'guess'], ['s', 's'], ['ms', 'ms'], ['us', 'µs'], ['ns', 'ns']]);
+    this.timeUnit = select('Unit of the time', [
+      ['', 'guess'],
+      ['s', 's'],
+      ['ms', 'ms'],
+      ['us', 'µs'],
+      ['ns', 'ns'],
+    ]);
     this.rate = text('Sampling rate without time column, Hz', '–');
     this.pinion = text('Pinion column or columns', 'guess');
     this.gear = text('Gear column or columns', 'guess');
@@ -39,8 +83,22 @@ class LayoutForm {
     this.guessed = h('p.figure-note');
     /** @param {string} label @param {HTMLElement} entry */
     const row = (label, entry) => h('.field', null, h('span.label', null, label), entry);
-    this.element = group('layout', 'What the columns mean', false, [h('p.figure-note', null, 'Guessed from names, units and values. Say it where the guess is wrong: a name, or a number from 1; two with a comma for raw tracks.'),
-      row('Columns hold', this.kind), row('Unit', this.unit), row('Pinion', this.pinion), row('Gear', this.gear), row('Time', this.time), row('Time unit', this.timeUnit), row('Rate, Hz', this.rate), row('Lines per turn', this.lines), this.guessed]);
+    this.element = group('layout', 'What the columns mean', false, [
+      h(
+        'p.figure-note',
+        null,
+        'Guessed from names, units and values. Say it where the guess is wrong: a name, or a number from 1; two with a comma for raw tracks.',
+      ),
+      row('Columns hold', this.kind),
+      row('Unit', this.unit),
+      row('Pinion', this.pinion),
+      row('Gear', this.gear),
+      row('Time', this.time),
+      row('Time unit', this.timeUnit),
+      row('Rate, Hz', this.rate),
+      row('Lines per turn', this.lines),
+      this.guessed,
+    ]);
   }
 
   /** JSON, or nothing when all is open. */
@@ -48,20 +106,31 @@ class LayoutForm {
     /** @type {any} */
     const layout = {};
     /** @param {string} text */
-    const column = (text) => (/^\d+$/.test(text) ? Number(text) : text);
+    const column = text => (/^\d+$/.test(text) ? Number(text) : text);
     /** @param {HTMLInputElement} field */
-    const columns = (field) => field.value.split(/[,;]/).map((part) => part.trim()).filter(Boolean).map(column);
+    const columns = field =>
+      field.value
+        .split(/[,;]/)
+        .map(part => part.trim())
+        .filter(Boolean)
+        .map(column);
     if (this.kind.value) layout.kind = this.kind.value;
     if (this.unit.value) layout.unit = this.unit.value;
     if (this.time.value.trim()) layout.time = column(this.time.value.trim());
     if (this.timeUnit.value) layout.time_unit = this.timeUnit.value;
     const rate = parseNumber(this.rate.value);
     if (rate !== undefined) layout.sample_rate_Hz = rate;
-    for (const [member, field] of /** @type {[string, HTMLInputElement][]} */ ([['pinion', this.pinion], ['gear', this.gear]])) {
+    for (const [member, field] of /** @type {[string, HTMLInputElement][]} */ ([
+      ['pinion', this.pinion],
+      ['gear', this.gear],
+    ])) {
       const list = columns(field);
       if (list.length) (layout.columns ??= {})[member] = list.length > 1 ? list : list[0];
     }
-    const lines = this.lines.value.split(/[,;]/).map((part) => parseNumber(part)).filter((value) => value !== undefined);
+    const lines = this.lines.value
+      .split(/[,;]/)
+      .map(part => parseNumber(part))
+      .filter(value => value !== undefined);
     if (lines.length) layout.lines = lines.length > 1 ? lines : lines[0];
     return Object.keys(layout).length ? layout : null;
   }
@@ -70,7 +139,7 @@ class LayoutForm {
   show(layout) {
     if (!layout) return;
     /** @param {any} value */
-    const text = (value) => (Array.isArray(value) ? value.join(', ') : String(value ?? '–'));
+    const text = value => (Array.isArray(value) ? value.join(', ') : String(value ?? '–'));
     this.guessed.textContent = `Last file: ${layout.kind ?? ''}${layout.unit ? ` in ${layout.unit}` : ''}, pinion ${text(layout.columns?.pinion)}, gear ${text(layout.columns?.gear)}, time ${text(layout.time)}${layout.time_unit ? ` in ${layout.time_unit}` : ''}${layout.lines ? `, lines ${text(layout.lines)}` : ''}.`;
   }
 
@@ -86,7 +155,7 @@ async function patiently(act) {
       return await act();
     } catch (error) {
       if (left === 0 || !(error instanceof Refusal) || (error.status !== 429 && error.status !== 503)) throw error;
-      await new Promise((resolve) => setTimeout(resolve, PAUSE));
+      await new Promise(resolve => setTimeout(resolve, PAUSE));
     }
   }
 }
@@ -94,20 +163,68 @@ async function patiently(act) {
 export class Recordings {
   /** @type {Recording[]} */ #queue = [];
 
-  /** @param {{ designId: () => Promise<string>, kept: (measurement: any, known: boolean) => void, loadCase: () => any }} host */
+  /**
+   * @param {{ designId: () => Promise<string>, kept: (measurement: any, known: boolean) => void, loadCase: () => any
+   * }} host
+   */
   constructor(host) {
     this.host = host;
     this.layout = new LayoutForm();
-    this.chooser = h('input.away', { type: 'file', multiple: true, tabindex: '-1', 'aria-hidden': 'true', onchange: () => { this.add([...(this.chooser.files ?? [])]); this.chooser.value = ''; } });
+    this.chooser = h('input.away', {
+      type: 'file',
+      multiple: true,
+      tabindex: '-1',
+      'aria-hidden': 'true',
+      onchange: () => {
+        this.add([...(this.chooser.files ?? [])]);
+        this.chooser.value = '';
+      },
+    });
     this.two = h('input', { type: 'checkbox', id: newId('two') });
-    this.end = h('select', { 'aria-label': 'Where the encoders sit' }, h('option', { value: 'right' }, 'right end'), h('option', { value: 'left' }, 'left end'));
+    this.end = h(
+      'select',
+      { 'aria-label': 'Where the encoders sit' },
+      h('option', { value: 'right' }, 'right end'),
+      h('option', { value: 'left' }, 'left end'),
+    );
     this.harmonics = h('input.number', { type: 'text', inputmode: 'numeric', value: '8', 'aria-label': 'Mesh orders' });
-    this.drop = h('.drop', { onclick: () => this.chooser.click(), ondragover: (/** @type {DragEvent} */ event) => { event.preventDefault(); this.drop.classList.add('over'); }, ondragleave: () => this.drop.classList.remove('over'), ondrop: (/** @type {DragEvent} */ event) => this.#dropped(event) },
-      h('button', { type: 'button', onclick: (/** @type {Event} */ event) => { event.stopPropagation(); this.chooser.click(); } }, 'Choose files'), h('p', null, 'or drop what the rig recorded: text, MATLAB, TDMS, UFF 58, HDF5, gzip'));
+    this.drop = h(
+      '.drop',
+      {
+        onclick: () => this.chooser.click(),
+        ondragover: (/** @type {DragEvent} */ event) => {
+          event.preventDefault();
+          this.drop.classList.add('over');
+        },
+        ondragleave: () => this.drop.classList.remove('over'),
+        ondrop: (/** @type {DragEvent} */ event) => this.#dropped(event),
+      },
+      h(
+        'button',
+        {
+          type: 'button',
+          onclick: (/** @type {Event} */ event) => {
+            event.stopPropagation();
+            this.chooser.click();
+          },
+        },
+        'Choose files',
+      ),
+      h('p', null, 'or drop what the rig recorded: text, MATLAB, TDMS, UFF 58, HDF5, gzip'),
+    );
     this.list = h('.recordings');
-    this.element = h('div', null, h('.drop-box', null, this.drop, this.chooser), this.list,
-      group('encoders', 'Encoders', true, [h('.field', null, h('span.label', null, 'They sit at the'), this.end), h('.field', null, h('span.label', null, 'Mesh orders of the RMS'), this.harmonics),
-        h('label.field.flag', { for: this.two.id }, this.two, h('span', null, 'one file for each: pinion, then gear'))]), this.layout.element);
+    this.element = h(
+      'div',
+      null,
+      h('.drop-box', null, this.drop, this.chooser),
+      this.list,
+      group('encoders', 'Encoders', true, [
+        h('.field', null, h('span.label', null, 'They sit at the'), this.end),
+        h('.field', null, h('span.label', null, 'Mesh orders of the RMS'), this.harmonics),
+        h('label.field.flag', { for: this.two.id }, this.two, h('span', null, 'one file for each: pinion, then gear')),
+      ]),
+      this.layout.element,
+    );
   }
 
   /** @param {DragEvent} event */
@@ -123,35 +240,133 @@ export class Recordings {
     const ordered = [...files].sort((a, b) => a.name.localeCompare(b.name, undefined, { numeric: true }));
     for (let i = 0; i < ordered.length; i += this.two.checked ? 2 : 1) {
       const said = guess(ordered[i].name);
-      this.#queue.push({ file: ordered[i], gear: this.two.checked ? ordered[i + 1] ?? null : null, label: said.label || 'modified', torque: said.torque || plain(usual?.torque_Nm), speed: said.speed, state: 'waiting', part: 0, error: null, bar: null, ...known });
+      this.#queue.push({
+        file: ordered[i],
+        gear: this.two.checked ? (ordered[i + 1] ?? null) : null,
+        label: said.label || 'modified',
+        torque: said.torque || plain(usual?.torque_Nm),
+        speed: said.speed,
+        state: 'waiting',
+        part: 0,
+        error: null,
+        bar: null,
+        ...known,
+      });
     }
     this.draw();
   }
 
   draw() {
-    const waiting = this.#queue.filter((item) => item.state === 'waiting').length;
-    const button = h('button.primary', { type: 'button', disabled: waiting === 0, onclick: () => this.send() }, waiting > 1 ? `Measure ${waiting} recordings` : 'Measure');
-    fill(this.list, this.#queue.length ? h('.form-foot', null, button) : null, this.#queue.map((item) => this.#row(item)));
+    const waiting = this.#queue.filter(item => item.state === 'waiting').length;
+    const button = h(
+      'button.primary',
+      { type: 'button', disabled: waiting === 0, onclick: () => this.send() },
+      waiting > 1 ? `Measure ${waiting} recordings` : 'Measure',
+    );
+    fill(
+      this.list,
+      this.#queue.length ? h('.form-foot', null, button) : null,
+      this.#queue.map(item => this.#row(item)),
+    );
   }
 
   /** @param {Recording} item */
   #row(item) {
     const idle = item.state !== 'sending' && item.state !== 'reading';
     /** @param {'torque' | 'speed'} key @param {string} label @param {string} unit */
-    const number = (key, label, unit) => h('label.part', null, h('input.number', { type: 'text', inputmode: 'decimal', 'aria-label': `${label} of ${item.file.name}, ${unit}`, title: label, value: item[key], disabled: !idle, onchange: (/** @type {Event} */ event) => {
-      item[key] = /** @type {HTMLInputElement} */ (event.target).value;
-      this.#again(item);
-    } }), h('span.unit', null, unit));
-    const label = h('select', { 'aria-label': 'Label', disabled: !idle, onchange: () => { item.label = label.value; this.#again(item); } }, ['modified', 'unmodified'].map((each) => h('option', { value: each, selected: each === item.label }, each)));
-    const bar = h('span.progress', { role: 'progressbar', 'aria-label': `Upload of ${item.file.name}`, 'aria-valuenow': Math.round(100 * item.part) }, h('span', { css: { width: `${100 * item.part}%` } }));
+    const number = (key, label, unit) =>
+      h(
+        'label.part',
+        null,
+        h('input.number', {
+          type: 'text',
+          inputmode: 'decimal',
+          'aria-label': `${label} of ${item.file.name}, ${unit}`,
+          title: label,
+          value: item[key],
+          disabled: !idle,
+          onchange: (/** @type {Event} */ event) => {
+            item[key] = /** @type {HTMLInputElement} */ (event.target).value;
+            this.#again(item);
+          },
+        }),
+        h('span.unit', null, unit),
+      );
+    const label = h(
+      'select',
+      {
+        'aria-label': 'Label',
+        disabled: !idle,
+        onchange: () => {
+          item.label = label.value;
+          this.#again(item);
+        },
+      },
+      ['modified', 'unmodified'].map(each => h('option', { value: each, selected: each === item.label }, each)),
+    );
+    const bar = h(
+      'span.progress',
+      {
+        role: 'progressbar',
+        'aria-label': `Upload of ${item.file.name}`,
+        'aria-valuenow': Math.round(100 * item.part),
+      },
+      h('span', { css: { width: `${100 * item.part}%` } }),
+    );
     item.bar = /** @type {HTMLElement} */ (bar.firstElementChild);
     const state = item.state === 'sending' ? [bar] : item.state === 'reading' ? ['is being read…'] : [];
     const faults = item.error instanceof Refusal ? item.error.faults : [];
-    return h('.recording', { 'data-state': item.state }, h('.recording-head', null, h('b', null, item.file.name, item.gear ? ` + ${item.gear.name}` : ''), state,
-      idle ? h('button.icon', { type: 'button', 'aria-label': `Leave ${item.file.name} out`, title: 'Leave out', onclick: () => { this.#queue = this.#queue.filter((other) => other !== item); this.draw(); } }, '✕') : null),
-    h('.recording-parts', null, label, number('torque', 'Torque', 'N m'), number('speed', 'Speed', 'rpm')),
-    item.error ? h('div', { role: 'alert' }, item.error instanceof RefusedRecording ? findingList(item.error.findings) : h('p.fault', null, faults.length ? faults.map((fault) => fault.detail).join(' ') : item.error.message),
-      h('.switches', null, h('button.small', { type: 'button', onclick: () => { this.#again(item); this.send(); } }, 'Try again'), h('button.small', { type: 'button', onclick: () => this.layout.open() }, 'Say what the columns mean'))) : null);
+    return h(
+      '.recording',
+      { 'data-state': item.state },
+      h(
+        '.recording-head',
+        null,
+        h('b', null, item.file.name, item.gear ? ` + ${item.gear.name}` : ''),
+        state,
+        idle
+          ? h(
+              'button.icon',
+              {
+                type: 'button',
+                'aria-label': `Leave ${item.file.name} out`,
+                title: 'Leave out',
+                onclick: () => {
+                  this.#queue = this.#queue.filter(other => other !== item);
+                  this.draw();
+                },
+              },
+              '✕',
+            )
+          : null,
+      ),
+      h('.recording-parts', null, label, number('torque', 'Torque', 'N m'), number('speed', 'Speed', 'rpm')),
+      item.error
+        ? h(
+            'div',
+            { role: 'alert' },
+            item.error instanceof RefusedRecording
+              ? findingList(item.error.findings)
+              : h('p.fault', null, faults.length ? faults.map(fault => fault.detail).join(' ') : item.error.message),
+            h(
+              '.switches',
+              null,
+              h(
+                'button.small',
+                {
+                  type: 'button',
+                  onclick: () => {
+                    this.#again(item);
+                    this.send();
+                  },
+                },
+                'Try again',
+              ),
+              h('button.small', { type: 'button', onclick: () => this.layout.open() }, 'Say what the columns mean'),
+            ),
+          )
+        : null,
+    );
   }
 
   /** @param {Recording} item */
@@ -170,7 +385,7 @@ export class Recordings {
   }
 
   #next() {
-    const item = this.#queue.find((each) => each.state === 'waiting');
+    const item = this.#queue.find(each => each.state === 'waiting');
     if (item) item.state = 'sending';
     return item;
   }
@@ -193,8 +408,8 @@ export class Recordings {
       if (layout) form.set('layout', JSON.stringify(layout));
       form.append('file', item.file, item.file.name);
       if (item.gear) form.append('file', item.gear, item.gear.name);
-      const { status, data } = await patiently(() => upload('measurements', form, (part) => this.#progress(item, part)));
-      this.#queue = this.#queue.filter((other) => other !== item);
+      const { status, data } = await patiently(() => upload('measurements', form, part => this.#progress(item, part)));
+      this.#queue = this.#queue.filter(other => other !== item);
       this.layout.show(data.layout);
       this.host.kept(data, status === 200);
     } catch (error) {

@@ -30,8 +30,21 @@ export class Results {
     this.torque = new TorqueSweep();
     this.figures = [transmission, contact, stiffness, sharing, impact, vibration, root, charts, topography, drawing];
     this.notes = h('section.notes', { 'aria-label': 'Warnings' });
-    const ordered = [transmission.elements[0], contact.elements[0], transmission.elements[1], stiffness.elements[0], sharing.elements[0], impact.elements[0], ...vibration.elements, ...root.elements,
-      ...this.speed.elements, ...this.torque.elements, ...charts.elements, ...drawing.elements, ...topography.elements];
+    const ordered = [
+      transmission.elements[0],
+      contact.elements[0],
+      transmission.elements[1],
+      stiffness.elements[0],
+      sharing.elements[0],
+      impact.elements[0],
+      ...vibration.elements,
+      ...root.elements,
+      ...this.speed.elements,
+      ...this.torque.elements,
+      ...charts.elements,
+      ...drawing.elements,
+      ...topography.elements,
+    ];
     this.element = h('.figures', null, ordered, this.notes);
   }
 
@@ -57,6 +70,18 @@ export class Results {
     for (const figure of this.figures) figure.set(context);
     this.speed.show(context);
     const warnings = context.result.warnings ?? [];
-    fill(this.notes, warnings.length ? [h('h3', null, 'What to know about this result'), h('ul', null, warnings.map((/** @type {string} */ text) => h('li', null, text)))] : null);
+    fill(
+      this.notes,
+      warnings.length
+        ? [
+            h('h3', null, 'What to know about this result'),
+            h(
+              'ul',
+              null,
+              warnings.map((/** @type {string} */ text) => h('li', null, text)),
+            ),
+          ]
+        : null,
+    );
   }
 }
