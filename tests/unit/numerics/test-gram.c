@@ -168,6 +168,42 @@ static void test_size(int rows, int stride)
   input_done(&in);
 }
 
+/* c = a b and c += a b in single precision; then every row on its own and in batches of every size: the same bytes. */
+static void test_multiply(const struct eo_gram *gram, int rows, int inner, int columns)
+{
+  int a_stride = inner + 3;
+  float *a = (float *)eo_gram_allocate((rows * a_stride + 1) / 2), *b = (float *)eo_gram_allocate(inner * columns / 2),
+        *c = (float *)eo_gram_allocate(rows * columns / 2), *alone = (float *)eo_gram_allocate(rows * columns / 2);
+  double worst = 0;
+  int different = 0;
+  for (int i = 0; i < rows * a_stride; i++)
+    a[i] = (float)draw(8, i);
+  for (int i = 0; i < inner * columns; i++)
+    b[i] = (float)draw(9, i);
+  gram->multiply(rows, inner, columns, a, a_stride, b, columns, false, c, columns);
+  gram->multiply(rows, inner, columns, a, a_stride, b, columns, true, c, columns);
+  for (int i = 0; i < rows; i++)
+    for (int j = 0; j < columns; j++) {
+      long double sum = 0;
+      for (int k = 0; k < inner; k++)
+        sum += 2 * (long double)a[i * a_stride + k] * b[k * columns + j];
+      worst = fmax(worst, fabs((double)(c[i * columns + j] - sum)));
+    }
+  for (int batch = 1; batch < rows; batch++) {
+    for (int i = 0; i < rows; i += batch)
+      for (int add = 0; add < 2; add++)
+        gram->multiply(rows - i < batch ? rows - i : batch, inner, columns, a + i * a_stride, a_stride, b, columns, add,
+                       alone + i * columns, columns);
+    different += memcmp(c, alone, sizeof *c * (size_t)(rows * columns)) != 0;
+  }
+  ok(worst < 2e-7 * inner, "%s: product of %d x %d x %d, %.1e", gram->name, rows, inner, columns, worst);
+  ok(different == 0, "each row the same in batches of any size");
+  free(a);
+  free(b);
+  free(c);
+  free(alone);
+}
+
 /* Matrices that have no Cholesky factor. */
 static void test_refusals(void)
 {
@@ -202,6 +238,10 @@ int main(void)
   test_size(7, 8);
   test_size(40, 24);
   test_size(MOST_ROWS, MOST_STRIDE);
+  for (int version = 0; eo_gram_version(version); version++) {
+    test_multiply(eo_gram_version(version), 13, 31, 7 * EO_GRAM_COLUMNS);
+    test_multiply(eo_gram_version(version), 7, 5, EO_GRAM_COLUMNS);
+  }
   test_refusals();
   double *memory = eo_gram_allocate(3);
   ok((size_t)memory % EO_GRAM_ALIGN == 0 && memory[0] == 0 && memory[2] == 0, "memory is aligned and zero");
