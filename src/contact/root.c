@@ -1,5 +1,7 @@
 #include "contact/root.h"
 
+#include "numerics/gram.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -48,8 +50,8 @@ struct eo_root_workspace {
   struct eo_root_weights *weights[2];   /* [member]: [grid->points], of the positions that count */
   double *force;                        /* [ends][most points] */
   float *load;                          /* [positions][ends][slots] */
-  float *scratch;                       /* [positions][ends][rank] */
-  float *stress;                        /* [positions][ends][EO_STRESSES][nodes] */
+  float *scratch;                       /* [positions][ends][rank stride] */
+  float *stress;                        /* [positions][ends][stress stride] */
   unsigned *touched;                    /* [positions]: see eo_root_modes_add() */
 };
 
@@ -71,16 +73,16 @@ enum eo_code eo_root_workspace_new(struct eo_root_workspace **result, const stru
                                    struct eo_error *error)
 {
   struct eo_root_workspace *ws = calloc(1, sizeof *ws);
-  size_t rank = 1, nodes = 1, slots = 1;
+  size_t rank = 1, length = 1, slots = 1;
   if (!ws)
     return eo_error_memory(error);
   ws->grid = grid;
   ws->step = step;
   ws->count = (grid->positions + step - 1) / step;
   for (int member = 0; member < 2; member++) {
-    size_t r = (size_t)eo_root_modes_rank(modes[member]), m = (size_t)eo_root_modes_nodes(modes[member]);
+    size_t r = (size_t)eo_root_modes_rank_stride(modes[member]), m = (size_t)eo_root_modes_stress_stride(modes[member]);
     rank = r > rank ? r : rank;
-    nodes = m > nodes ? m : nodes;
+    length = m > length ? m : length;
     m = (size_t)eo_root_modes_slots(modes[member]);
     slots = m > slots ? m : slots;
     ws->modes[member] = modes[member];
@@ -89,8 +91,8 @@ enum eo_code eo_root_workspace_new(struct eo_root_workspace **result, const stru
   size_t rows = (size_t)ws->count * (size_t)ends;
   ws->force = malloc(sizeof(double) * (size_t)grid->most_points * (size_t)ends);
   ws->load = malloc(sizeof *ws->load * rows * slots);
-  ws->scratch = malloc(sizeof *ws->scratch * rows * rank);
-  ws->stress = malloc(sizeof *ws->stress * rows * nodes * EO_STRESSES);
+  ws->scratch = (float *)eo_gram_allocate((long)(rows * rank / 2));
+  ws->stress = (float *)eo_gram_allocate((long)(rows * length / 2));
   ws->touched = malloc(sizeof *ws->touched * (size_t)ws->count);
   if (!ws->weights[0] || !ws->weights[1] || !ws->force || !ws->load || !ws->scratch || !ws->stress || !ws->touched) {
     eo_root_workspace_free(ws);
@@ -183,7 +185,7 @@ void eo_root_tooth_compute(struct eo_root_workspace *ws, int member, int tooth, 
 {
   const struct eo_contact_grid *grid = ws->grid;
   const struct eo_root_modes *modes = ws->modes[member];
-  int range[2], nodes = eo_root_modes_nodes(modes);
+  int range[2], nodes = eo_root_modes_nodes(modes), stride = eo_root_modes_stress_stride(modes);
   eo_contact_grid_pairs(grid, range);
   int first = (tooth - range[0]) * ws->count;
   collect(ws, member, tooth, ends, end);
@@ -192,7 +194,8 @@ void eo_root_tooth_compute(struct eo_root_workspace *ws, int member, int tooth, 
     peak[e] = (struct eo_root_peak){0};
     for (int j = 0; j < ws->count; j++) {
       int node = 0;
-      double s = largest_principal(nodes, ws->stress + (size_t)(j * ends + e) * (size_t)(nodes * EO_STRESSES), &node);
+      const float *stress = ws->stress + (size_t)(j * ends + e) * (size_t)stride;
+      double s = ws->touched[j] ? largest_principal(nodes, stress, &node) : 0;
       history[e]->phase[first + j] = grid->position[j * ws->step].phase / grid->geometry.transverse_base_pitch + tooth;
       history[e]->stress[first + j] = s;
       if (s > peak[e].stress)

@@ -1,6 +1,7 @@
 #include "flexibility/root_modes.h"
 
 #include "flexibility/prepared.h"
+#include "numerics/gram.h"
 #include "numerics/lowrank.h"
 
 #include <cblas.h>
@@ -10,10 +11,12 @@
 struct eo_root_modes {
   const struct eo_flank_table *table;
   bool coupled;
-  int member, rank, length; /* length = nodes x EO_STRESSES */
-  int slots, slot[3];       /* grid points of loads on pair k - 1, k, k + 1, and where each begins */
-  float *coefficient;       /* [slots][rank] */
-  float *shape;             /* [rank][EO_STRESSES][nodes] */
+  const struct eo_gram *gram;
+  int member, rank, length;      /* length = nodes x EO_STRESSES */
+  int rank_stride, shape_stride; /* rank and length, padded with zeros as the kernel wants them */
+  int slots, slot[3];            /* grid points of loads on pair k - 1, k, k + 1, and where each begins */
+  float *coefficient;            /* [slots][rank_stride] */
+  float *shape;                  /* [rank][shape_stride]: [EO_STRESSES][nodes] */
 };
 
 static const struct eo_grid *grid_of(const struct eo_root_modes *modes, int ahead_by)
@@ -44,6 +47,17 @@ static double *stack_rows(const struct eo_root_modes *modes, size_t skip)
   return stack;
 }
 
+static int padded(int count)
+{
+  return (count + EO_GRAM_COLUMNS - 1) / EO_GRAM_COLUMNS * EO_GRAM_COLUMNS;
+}
+
+/* Zeros; NULL without memory. */
+static float *make_floats(int rows, int stride)
+{
+  return (float *)eo_gram_allocate(((long)rows * stride + 1) / 2);
+}
+
 /* stack = factor x shape in the least-squares sense: (factor' factor) shape = factor' stack. */
 static enum eo_code fit_shapes(struct eo_root_modes *modes, int rows, int stride, const double *factor,
                                const double *stack, struct eo_error *error)
@@ -51,7 +65,8 @@ static enum eo_code fit_shapes(struct eo_root_modes *modes, int rows, int stride
   int rank = modes->rank;
   size_t length = (size_t)modes->length, size = (size_t)rank * length;
   double *normal = malloc(sizeof *normal * (size_t)rank * (size_t)rank), *shape = malloc(sizeof *shape * size);
-  modes->shape = malloc(sizeof *modes->shape * size);
+  modes->shape_stride = padded(modes->length);
+  modes->shape = make_floats(rank, modes->shape_stride);
   enum eo_code code = normal && shape && modes->shape ? EO_OK : eo_error_memory(error);
   if (!code) {
     cblas_dgemm(CblasRowMajor, CblasTrans, CblasNoTrans, rank, modes->length, rows, 1, factor, stride, stack,
@@ -62,7 +77,7 @@ static enum eo_code fit_shapes(struct eo_root_modes *modes, int rows, int stride
   }
   for (size_t i = 0; !code && i < size; i++) {
     size_t row = i / length, node = i % length / EO_STRESSES, part = i % EO_STRESSES;
-    modes->shape[row * length + part * (length / EO_STRESSES) + node] = (float)shape[i];
+    modes->shape[row * (size_t)modes->shape_stride + part * (length / EO_STRESSES) + node] = (float)shape[i];
   }
   free(normal);
   free(shape);
@@ -72,10 +87,11 @@ static enum eo_code fit_shapes(struct eo_root_modes *modes, int rows, int stride
 static enum eo_code keep_coefficients(struct eo_root_modes *modes, int stride, const double *factor,
                                       struct eo_error *error)
 {
-  modes->coefficient = malloc(sizeof *modes->coefficient * (size_t)modes->slots * (size_t)modes->rank);
+  modes->rank_stride = padded(modes->rank);
+  modes->coefficient = make_floats(modes->slots, modes->rank_stride);
   for (int i = 0; modes->coefficient && i < modes->slots; i++)
     for (int r = 0; r < modes->rank; r++)
-      modes->coefficient[i * modes->rank + r] = (float)factor[i * stride + r];
+      modes->coefficient[i * modes->rank_stride + r] = (float)factor[i * stride + r];
   return modes->coefficient ? EO_OK : eo_error_memory(error);
 }
 
@@ -89,6 +105,7 @@ enum eo_code eo_root_modes_new(struct eo_root_modes **result, const struct eo_fl
     return eo_error_memory(error);
   modes->table = &flexibility->table[member];
   modes->coupled = flexibility->settings.neighbour_coupling;
+  modes->gram = eo_gram_select();
   modes->member = member;
   modes->length = (root.points - root.first) * (root.layers + 1) * EO_STRESSES;
   count_slots(modes);
@@ -124,9 +141,14 @@ void eo_root_modes_free(struct eo_root_modes *modes)
   free(modes);
 }
 
-int eo_root_modes_rank(const struct eo_root_modes *modes)
+int eo_root_modes_rank_stride(const struct eo_root_modes *modes)
 {
-  return modes->rank;
+  return modes->rank_stride;
+}
+
+int eo_root_modes_stress_stride(const struct eo_root_modes *modes)
+{
+  return modes->shape_stride;
 }
 
 int eo_root_modes_nodes(const struct eo_root_modes *modes)
@@ -181,29 +203,47 @@ unsigned eo_root_modes_add(const struct eo_root_modes *modes, int pair, int n, c
   return touched;
 }
 
-/* Adds what one part of the loads gives, run by run of positions at which it is touched: a tooth is loaded during a
-   part of the cycle. */
-static void add_part(const struct eo_root_modes *modes, int part, int count, int sets, const float *load,
-                     const unsigned *touched, float *scratch)
+/* Adds what one part of the loads gives at positions first .. last - 1. */
+static void add_part(const struct eo_root_modes *modes, int part, int first, int last, int sets, const float *load,
+                     float *scratch)
 {
-  int slots = (part == 2 ? modes->slots : modes->slot[part + 1]) - modes->slot[part], rank = modes->rank;
-  for (int first = 0, last; first < count; first = last + 1) {
-    for (last = first; last < count && touched[last] & 1u << part; last++)
-      ;
-    if (last == first)
-      continue;
-    cblas_sgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, (last - first) * sets, rank, slots, 1,
-                load + first * sets * modes->slots + modes->slot[part], modes->slots,
-                modes->coefficient + modes->slot[part] * rank, rank, 1, scratch + first * sets * rank, rank);
-  }
+  int slots = (part == 2 ? modes->slots : modes->slot[part + 1]) - modes->slot[part], row = first * sets;
+  modes->gram->multiply((last - first) * sets, slots, modes->rank_stride,
+                        load + (size_t)row * (size_t)modes->slots + modes->slot[part], modes->slots,
+                        modes->coefficient + (size_t)modes->slot[part] * (size_t)modes->rank_stride, modes->rank_stride,
+                        true, scratch + (size_t)row * (size_t)modes->rank_stride, modes->rank_stride);
 }
 
+/* The end of the run of positions from `first` on that are loaded in one of the parts, or in none of them. */
+static int run_end(int first, int count, const unsigned *touched, unsigned parts)
+{
+  bool loaded = touched[first] & parts;
+  int last = first + 1;
+  while (last < count && !(touched[last] & parts) == !loaded)
+    last++;
+  return last;
+}
+
+/* Run by run of positions: a tooth is loaded during a part of the cycle, and each part of the loads during less. What
+   is left out is zero, and a row of a product does not depend on the others: so it does not matter which load sets are
+   asked for together. */
 void eo_root_modes_stress(const struct eo_root_modes *modes, int count, int sets, const float *load,
                           const unsigned *touched, float *scratch, float *stress)
 {
-  memset(scratch, 0, sizeof *scratch * (size_t)(count * sets) * (size_t)modes->rank);
+  size_t rank = (size_t)modes->rank_stride, stride = (size_t)modes->shape_stride;
+  memset(scratch, 0, sizeof *scratch * (size_t)(count * sets) * rank);
   for (int part = 0; part < 3; part++)
-    add_part(modes, part, count, sets, load, touched, scratch);
-  cblas_sgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, count * sets, modes->length, modes->rank, 1, scratch,
-              modes->rank, modes->shape, modes->length, 0, stress, modes->length);
+    for (int first = 0, last; first < count; first = last) {
+      last = run_end(first, count, touched, 1u << part);
+      if (touched[first] & 1u << part)
+        add_part(modes, part, first, last, sets, load, scratch);
+    }
+  for (int first = 0, last; first < count; first = last) {
+    size_t row = (size_t)(first * sets);
+    last = run_end(first, count, touched, ~0u);
+    if (touched[first])
+      modes->gram->multiply((last - first) * sets, modes->rank, modes->shape_stride, scratch + row * rank,
+                            modes->rank_stride, modes->shape, modes->shape_stride, false, stress + row * stride,
+                            modes->shape_stride);
+  }
 }

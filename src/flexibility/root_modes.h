@@ -16,9 +16,10 @@ enum eo_code eo_root_modes_new(struct eo_root_modes **modes, const struct eo_fle
                                struct eo_error *error);
 void eo_root_modes_free(struct eo_root_modes *modes);
 
-int eo_root_modes_rank(const struct eo_root_modes *modes);
-int eo_root_modes_slots(const struct eo_root_modes *modes); /* numbers that describe a load distribution */
-int eo_root_modes_nodes(const struct eo_root_modes *modes); /* of the root: [point][layer] from root.first on */
+int eo_root_modes_rank_stride(const struct eo_root_modes *modes);   /* floats between two rows of the scratch */
+int eo_root_modes_stress_stride(const struct eo_root_modes *modes); /* floats between the stresses of two loads */
+int eo_root_modes_slots(const struct eo_root_modes *modes);         /* numbers that describe a load distribution */
+int eo_root_modes_nodes(const struct eo_root_modes *modes);         /* of the root: [point][layer] from root.first on */
 
 /* How a load at a flank point is told to the splines of its own tooth [0] and of a neighbour [1]. The same for every
    tooth, load and time. */
@@ -34,8 +35,10 @@ void eo_root_modes_weigh(const struct eo_root_modes *modes, const struct eo_flan
 unsigned eo_root_modes_add(const struct eo_root_modes *modes, int pair, int n, const struct eo_flank_point *point,
                            const struct eo_root_weights *weights, int sets, const double *force, float *load);
 
-/* stress[count][sets][EO_STRESSES][nodes], Pa, under load[count][sets][slots], of which touched[count] says which parts
-   are not zero (see above). scratch: [count][sets][rank]. */
+/* stress[count][sets][stress stride], Pa: [EO_STRESSES][nodes] and zeros, under load[count][sets][slots], of which
+   touched[count] says which parts are not zero (see above); where none is, nothing is written. scratch:
+   [count][sets][rank stride]; both aligned to EO_GRAM_ALIGN. The stresses under one load are the same to the last bit
+   whatever else is asked for. */
 void eo_root_modes_stress(const struct eo_root_modes *modes, int count, int sets, const float *load,
                           const unsigned *touched, float *scratch, float *stress);
 
