@@ -8,56 +8,37 @@
 #include "format/json.h"
 #include "format/text_table.h"
 
-static void done(struct eo_verification *v)
-{
-  for (int i = 0; i < v->count; i++) {
-    free(v->check[i].label);
-    free(v->check[i].quantity);
-  }
-  free(v->check);
-  json_decref(v->ignored);
-  free((char *)v->folder);
-  *v = (struct eo_verification){0};
-}
-
-static enum eo_code run_kind(const json_t *cases, struct eo_verification *v, struct eo_error *error)
-{
-  const char *kind = json_string_value(json_object_get(cases, "kind"));
-  struct eo_text known = {0};
-  enum eo_code code = EO_ERROR_INPUT;
-  const struct eo_verify_kind *candidate;
-  for (int i = 0; (candidate = eo_verify_kind_at(i)); i++) {
-    if (kind && strcmp(kind, candidate->name) == 0) {
-      eo_text_done(&known);
-      return candidate->run(cases, v, error);
-    }
-    eo_text_print(&known, "%s%s", i ? ", " : "", candidate->name);
-  }
-  eo_error_set(error, code, "/kind", "\"%.40s\" is not a kind of case file; known: %s.", kind ? kind : "(none)",
-               known.data ? known.data : "");
-  eo_text_done(&known);
-  return code;
-}
-
 static char *folder_of(const char *path)
 {
   const char *slash = strrchr(path, '/');
   return slash ? strndup(path, slash == path ? 1 : (size_t)(slash - path)) : strdup(".");
 }
 
-static enum eo_code verify_file(const char *path, struct eo_verification *v, struct eo_error *error)
+/* A case file and what came of it. */
+struct verified {
+  struct eo_case *file;
+  struct eo_verification v;
+  char *folder;
+};
+
+static void done(struct verified *verified)
 {
-  enum eo_code code = EO_OK;
-  *v = (struct eo_verification){.folder = folder_of(path), .ignored = json_array()};
-  json_t *cases = eo_json_load(path, EO_JSON_CASES_BYTES, error);
-  if (!cases)
-    code = error->code;
-  else
-    code = run_kind(cases, v, error);
-  if (!code && (v->failed || !v->folder || !v->ignored))
-    code = eo_error_memory(error);
-  json_decref(cases);
-  return code;
+  eo_verification_done(&verified->v);
+  eo_case_close(verified->file);
+  free(verified->folder);
+}
+
+static enum eo_code verify_file(const char *path, struct verified *verified, struct eo_error *error)
+{
+  *verified = (struct verified){.folder = folder_of(path)};
+  verified->v = (struct eo_verification){.folder = verified->folder, .notes = json_array()};
+  json_t *document = eo_json_load(path, EO_JSON_CASES_BYTES, error);
+  if (!document)
+    return error->code;
+  verified->file = eo_case_open(document);
+  if (!verified->file || !verified->folder || !verified->v.notes)
+    return eo_error_memory(error);
+  return eo_verify_run(verified->file, &verified->v, error);
 }
 
 /* How far out, in tolerances; what should be exact counts as far out as it can. */
@@ -91,6 +72,23 @@ static void add_row(struct eo_text_table *sheet, const struct eo_verification *v
   eo_text_table_string(sheet, verdict);
 }
 
+/* Checks of a block stand together: how many from the first on. */
+static int block_size(const struct eo_verification *v, int first)
+{
+  int count = 1;
+  while (first + count < v->count && strcmp(v->check[first].block, v->check[first + count].block) == 0)
+    count++;
+  return count;
+}
+
+static void print_blocks(const struct eo_verification *v, struct eo_text *text)
+{
+  eo_text_print(text, "  checks:");
+  for (int first = 0; first < v->count; first += block_size(v, first))
+    eo_text_print(text, "%s %s %d", first ? "," : "", v->check[first].block, block_size(v, first));
+  eo_text_add(text, "\n");
+}
+
 /* One line per case: its largest deviation, measured in tolerances. */
 static void print_table(const struct eo_verification *v, struct eo_text *text)
 {
@@ -106,8 +104,9 @@ static void print_table(const struct eo_verification *v, struct eo_text *text)
   if (v->count)
     eo_text_table_print(&sheet, 2, text);
   eo_text_table_done(&sheet);
-  for (size_t i = 0; i < json_array_size(v->ignored); i++)
-    eo_text_print(text, "  note: %s\n", json_string_value(json_array_get(v->ignored, i)));
+  print_blocks(v, text);
+  for (size_t i = 0; i < json_array_size(v->notes); i++)
+    eo_text_print(text, "  note: %s\n", json_string_value(json_array_get(v->notes, i)));
 }
 
 static json_t *encode_check(const struct eo_check *check)
@@ -116,6 +115,7 @@ static json_t *encode_check(const struct eo_check *check)
   bool failed = !row;
   eo_json_put(row, "case", json_string(check->label), &failed);
   eo_json_put(row, "quantity", json_string(check->quantity), &failed);
+  eo_json_put(row, "pointer", json_string(check->pointer), &failed);
   eo_json_put(row, "value", eo_json_real(check->value, NULL), &failed);
   eo_json_put(row, "expected", eo_json_real(check->expected, NULL), &failed);
   eo_json_put(row, "tolerance", eo_json_real(check->tolerance, NULL), &failed);
@@ -123,19 +123,43 @@ static json_t *encode_check(const struct eo_check *check)
   return failed ? (json_decref(row), NULL) : row;
 }
 
-static json_t *encode_file(const char *path, const struct eo_verification *v)
+static json_t *encode_fault(const struct eo_error *fault)
 {
-  json_t *file = json_object(), *rows = json_array();
-  bool failed = !file || !rows, pass = true;
+  json_t *row = json_object();
+  bool failed = !row;
+  eo_json_put(row, "pointer", json_string(fault->pointer), &failed);
+  eo_json_put(row, "text", json_string(fault->text), &failed);
+  return failed ? (json_decref(row), NULL) : row;
+}
+
+static json_t *encode_blocks(const struct eo_verification *v)
+{
+  json_t *blocks = json_object();
+  bool failed = !blocks;
+  for (int first = 0; first < v->count; first += block_size(v, first))
+    eo_json_put(blocks, v->check[first].block, json_integer(block_size(v, first)), &failed);
+  return failed ? (json_decref(blocks), NULL) : blocks;
+}
+
+static json_t *encode_file(const char *path, const struct verified *verified)
+{
+  const struct eo_verification *v = &verified->v;
+  const struct eo_faults *faults = eo_case_faults(verified->file);
+  json_t *file = json_object(), *rows = json_array(), *told = json_array();
+  bool failed = !file || !rows || !told, pass = faults->count == 0;
   for (int i = 0; i < v->count; i++) {
     failed = failed || json_array_append_new(rows, encode_check(&v->check[i])) != 0;
     pass = pass && v->check[i].pass;
   }
+  for (int i = 0; i < faults->count && i < EO_MAX_FAULTS; i++)
+    failed = failed || json_array_append_new(told, encode_fault(&faults->fault[i])) != 0;
   json_t *name = json_string(path);
   eo_json_put(file, "file", name ? name : json_null(), &failed);
   eo_json_put(file, "pass", json_boolean(pass), &failed);
+  eo_json_put(file, "faults", told, &failed);
+  eo_json_put(file, "blocks", encode_blocks(v), &failed);
   eo_json_put(file, "checks", rows, &failed);
-  eo_json_put(file, "notes", json_incref(v->ignored), &failed);
+  eo_json_put(file, "notes", json_incref(v->notes), &failed);
   return failed ? (json_decref(file), NULL) : file;
 }
 
@@ -143,40 +167,60 @@ struct totals {
   struct eo_text text;
   json_t *files;
   int checks, bad;
+  int refused; /* files */
   bool failed;
 };
 
+static void count_checks(struct totals *totals, const struct eo_verification *v)
+{
+  totals->checks += v->count;
+  for (int i = 0; i < v->count; i++)
+    totals->bad += !v->check[i].pass;
+}
+
+/* A file with faults is refused as a whole: nothing of it counts. */
 static int verify_into(struct totals *totals, const char *path)
 {
-  struct eo_verification v;
+  struct verified verified;
   struct eo_error error;
-  if (verify_file(path, &v, &error)) {
-    done(&v);
-    return eo_app_fail(path, &error);
+  int status = EO_EXIT_DONE;
+  if (verify_file(path, &verified, &error)) {
+    totals->refused++;
+    status = eo_app_fail(path, &error);
+  } else if (eo_case_faulty(verified.file)) {
+    totals->refused++;
+    status = eo_app_fail_all(path, eo_case_faults(verified.file));
+  } else {
+    count_checks(totals, &verified.v);
+    eo_text_print(&totals->text, "%s\n", path);
+    print_table(&verified.v, &totals->text);
   }
-  for (int i = 0; i < v.count; i++)
-    totals->bad += !v.check[i].pass;
-  totals->checks += v.count;
-  eo_text_print(&totals->text, "%s\n", path);
-  print_table(&v, &totals->text);
-  totals->failed = totals->failed || json_array_append_new(totals->files, encode_file(path, &v)) != 0;
-  done(&v);
-  return EO_EXIT_DONE;
+  if (verified.file)
+    totals->failed = totals->failed || json_array_append_new(totals->files, encode_file(path, &verified)) != 0;
+  done(&verified);
+  return status;
+}
+
+static int print_verdict(struct totals *totals)
+{
+  if (totals->bad)
+    eo_text_print(&totals->text, "%d of %d checks are out of tolerance.\n", totals->bad, totals->checks);
+  else if (totals->checks)
+    eo_text_print(&totals->text, "All %d checks are within tolerance.\n", totals->checks);
+  if (totals->refused && totals->checks)
+    eo_text_print(&totals->text, "%d more %s refused.\n", totals->refused,
+                  totals->refused > 1 ? "files are" : "file is");
+  return eo_app_print(&totals->text);
 }
 
 static int print_totals(struct totals *totals, bool as_json)
 {
-  if (!as_json) {
-    if (totals->bad)
-      eo_text_print(&totals->text, "%d of %d checks are out of tolerance.\n", totals->bad, totals->checks);
-    else
-      eo_text_print(&totals->text, "All %d checks are within tolerance.\n", totals->checks);
-    return eo_app_print(&totals->text);
-  }
+  if (!as_json)
+    return print_verdict(totals);
   json_t *document = json_object();
   totals->failed = totals->failed || !document;
   eo_json_put(document, "program", json_string(eo_program), &totals->failed);
-  eo_json_put(document, "pass", json_boolean(totals->bad == 0), &totals->failed);
+  eo_json_put(document, "pass", json_boolean(totals->bad == 0 && totals->refused == 0), &totals->failed);
   eo_json_put(document, "files", json_incref(totals->files), &totals->failed);
   if (totals->failed)
     json_decref(document);
@@ -197,10 +241,8 @@ static int run(const struct eo_command *command, int argc, char **argv)
     worst = status > worst ? status : worst;
   }
   status = worst;
-  if (totals.checks || !worst) {
-    int printed = print_totals(&totals, as_json);
-    status = printed > worst ? printed : worst;
-  }
+  int printed = print_totals(&totals, as_json);
+  status = printed > worst ? printed : worst;
   if (!status && totals.bad)
     status = EO_EXIT_INPUT;
 out:
@@ -210,9 +252,23 @@ out:
   return status;
 }
 
-const struct eo_command eo_command_verify = {"verify", "CASES.json... [--json]",
-                                             "computes reference cases and compares them with what is expected",
-                                             "Each file says its kind. One line per case shows its largest deviation, "
-                                             "in tolerances; --json prints every number.\n"
-                                             "Exit status 1 when a number is out of tolerance.\n",
-                                             run};
+const struct eo_command eo_command_verify = {
+    "verify", "CASES.json... [--json]", "computes reference cases and compares them with what is expected",
+    "Each file says its kind. One line per case shows its largest deviation, in tolerances, and one per file how many "
+    "checks each block holds;\n"
+    "--json prints every number.\n\n"
+    "A file is read in full or refused: an unknown kind, block, key or name, a number given as text, a missing number "
+    "and a file or case in which\n"
+    "nothing is checked are faults, told as file:pointer: sentence, and nothing of that file counts. Commentary may "
+    "stand anywhere: about, what, note,\n"
+    "notes, source, remarks, units, conventions, uncertainty, mesh, reference_*.\n\n"
+    "A number is within tolerance when |value - expected| is at most the larger of a relative part of |expected| and "
+    "an "
+    "absolute part. The relative\n"
+    "part is what the file states (tol_rel and the like: above 0, below 1) or what the kind of case is known to hold. "
+    "The absolute part is stated in the\n"
+    "file's unit, is the rounding of a printed number, or a part of a scale: the largest number of the same list, the "
+    "mean load. An expected 0 needs it.\n"
+    "Counts and flags agree exactly. What did not converge fails and says so.\n\n"
+    "Exit status 1 when a number is out of tolerance or a file is refused.\n",
+    run};

@@ -8,92 +8,200 @@
 #include "document/design_document.h"
 #include "gear/modification.h"
 
-static double either(const json_t *object, const char *a, const char *b, double fallback)
+/* Whichever of two spellings is there; the other then stays unread and is a fault. */
+static double either(struct eo_case *object, const char *a, const char *b, double missing)
 {
-  double value = eo_verify_number(object, a);
-  if (isnan(value))
-    value = eo_verify_number(object, b);
-  return isnan(value) ? fallback : value;
+  return eo_case_find(object, a) ? eo_case_number(object, a) : eo_case_number_or(object, b, missing);
 }
 
-static int teeth_of(const json_t *input, int member)
+static void read_teeth(struct eo_case *input, int teeth[2])
 {
-  double z = eo_verify_element(input, "z", member);
-  if (isnan(z))
-    z = eo_verify_number(input, member ? "z2" : "z1");
-  return z >= 1 && z < 1e5 ? (int)z : 0;
+  enum { MOST = 100000 };
+  static const char *const key[2] = {"z1", "z2"};
+  struct eo_case *both = eo_case_find(input, "z");
+  double z[2] = {NAN, NAN};
+  for (int i = 0; i < 2; i++) {
+    if (both)
+      z[i] = eo_case_element(both, i);
+    else
+      z[i] = eo_case_number(input, key[i]);
+    bool whole = z[i] >= 1 && z[i] < MOST && z[i] == floor(z[i]);
+    teeth[i] = whole ? (int)z[i] : 0;
+    if (!whole && !isnan(z[i]))
+      eo_case_fault(both ? both : eo_case_find(input, key[i]), "Numbers of teeth are whole, from 1.");
+  }
 }
 
-static double shift_of(const json_t *input, int member)
+static void read_shifts(struct eo_case *input, double shift[2])
 {
-  double x = eo_verify_element(input, "x", member);
-  if (isnan(x))
-    x = eo_verify_number(input, member ? "x2" : "x1");
-  if (isnan(x))
-    x = eo_verify_number(input, "x");
-  return isnan(x) ? 0 : x;
+  static const char *const key[2] = {"x1", "x2"};
+  struct eo_case *both = eo_case_find(input, "x");
+  for (int i = 0; i < 2; i++) {
+    if (eo_case_is_list(both))
+      shift[i] = eo_case_element(both, i);
+    else if (both)
+      shift[i] = eo_case_real(both);
+    else
+      shift[i] = eo_case_number_or(input, key[i], 0);
+  }
 }
 
-enum eo_code eo_case_design(const json_t *input, struct eo_design *design, struct eo_error *error)
+static double positive(struct eo_case *input, const char *key, double value)
+{
+  if (value <= 0)
+    eo_case_fault(eo_case_find(input, key), "A number above 0 is expected here.");
+  return value;
+}
+
+void eo_case_design(struct eo_case *input, struct eo_design *design)
 {
   memset(design, 0, sizeof *design);
   eo_table_defaults(&eo_design_table, design);
   struct eo_gear_pair *pair = &design->gear_pair;
   double degree = M_PI / 180;
   design->alignment.shaft_angle_in_plane = design->alignment.shaft_angle_out_of_plane = 0;
-  for (int i = 0; i < 2; i++) {
-    pair->teeth[i] = teeth_of(input, i);
-    pair->profile_shift[i] = shift_of(input, i);
-  }
+  read_teeth(input, pair->teeth);
+  read_shifts(input, pair->profile_shift);
   pair->ends = 2;
-  pair->normal_module = 1e-3 * eo_verify_number(input, "mn");
+  pair->normal_module = 1e-3 * positive(input, "mn", eo_case_number(input, "mn"));
   pair->normal_pressure_angle = degree * either(input, "alpha_n_deg", "alpha_n", 20);
-  pair->helix_angle = degree * either(input, "beta_deg", "beta", NAN);
-  pair->face_width = 1e-3 * eo_verify_number(input, "b");
+  pair->helix_angle = degree * (eo_case_find(input, "beta_deg") ? eo_case_number(input, "beta_deg")
+                                                                : eo_case_number(input, "beta"));
+  pair->face_width = 1e-3 * positive(input, "b", eo_case_number(input, "b"));
   pair->groove_width = 1e-3 * either(input, "groove", "groove_mm", 0);
-  pair->addendum_coefficient = either(input, "ha", "ha", 1);
-  pair->dedendum_coefficient = pair->addendum_coefficient + either(input, "c", "c", 0.25);
-  pair->fillet_radius_coefficient = either(input, "rho_f", "rho_f", 0.38);
-  pair->rim_thickness_coefficient = either(input, "rim_mn", "rim_mn", 3.5);
-  design->material.youngs_modulus = 1e6 * either(input, "E", "E", 206000);
-  design->material.poissons_ratio = either(input, "nu", "nu", 0.3);
+  pair->addendum_coefficient = eo_case_number_or(input, "ha", 1);
+  pair->dedendum_coefficient = pair->addendum_coefficient + eo_case_number_or(input, "c", 0.25);
+  pair->fillet_radius_coefficient = eo_case_number_or(input, "rho_f", 0.38);
+  pair->rim_thickness_coefficient = eo_case_number_or(input, "rim_mn", 3.5);
+  design->material.youngs_modulus = 1e6 * eo_case_number_or(input, "E", 206000);
+  design->material.poissons_ratio = eo_case_number_or(input, "nu", 0.3);
   design->material.density = 1e12 * either(input, "rho_t_mm3", "rho", 7.85e-9);
   design->load_cases = 1;
   design->load_case[0] = (struct eo_load_case){.torque = 1, .speed = 1, .share = 1};
-  if (pair->teeth[0] > 0 && pair->teeth[1] > 0 && pair->normal_module > 0 && pair->face_width > 0 &&
-      isfinite(pair->helix_angle))
-    return EO_OK;
-  return eo_error_set(error, EO_ERROR_INPUT, "", "A gear pair needs z, mn, beta and b.");
 }
 
-void eo_case_modification(const json_t *block, const struct eo_gear_pair *pair, struct eo_flank_modification *flank)
+void eo_case_check_geometry(struct eo_verification *v, struct eo_case *output, const struct eo_geometry *g,
+                            double scale, double relative)
+{
+  const struct {
+    const char *key;
+    double value;
+  } row[] = {{"mt", scale * g->transverse_module},
+             {"at", g->transverse_pressure_angle},
+             {"bb", g->base_helix_angle},
+             {"r1", scale * g->reference_radius[0]},
+             {"r2", scale * g->reference_radius[1]},
+             {"rb1", scale * g->base_radius[0]},
+             {"rb2", scale * g->base_radius[1]},
+             {"ra1", scale * g->tip_radius[0]},
+             {"ra2", scale * g->tip_radius[1]},
+             {"rf1", scale * g->root_radius[0]},
+             {"rf2", scale * g->root_radius[1]},
+             {"a", scale * g->centre_distance},
+             {"pbt", scale * g->transverse_base_pitch},
+             {"pbn", scale * g->normal_base_pitch},
+             {"ga", scale * (g->path_end - g->path_start)},
+             {"sA", scale * g->path_start},
+             {"sE", scale * g->path_end},
+             {"eps_a", g->transverse_contact_ratio},
+             {"eps_b", g->overlap_ratio},
+             {"ku", g->rack_factor},
+             {"u_bot", scale * g->rack_bottom},
+             {"u_tip", scale * g->rack_top},
+             {"T1C", scale * g->tangent_length[0]},
+             {"T2C", scale * g->tangent_length[1]},
+             {"awt", g->working_pressure_angle}};
+  for (size_t i = 0; i < sizeof row / sizeof row[0]; i++)
+    eo_verify_member(v, output, row[i].key, row[i].value, relative, 0);
+}
+
+void eo_case_modification(struct eo_case *block, const struct eo_gear_pair *pair, struct eo_flank_modification *flank)
 {
   memset(flank, 0, sizeof *flank);
   if (!block)
     return;
   double half = pair->face_width / 2 / cos(pair->helix_angle), mm = 1e-3, um = 1e-6;
-  double tip = eo_verify_number(block, "d_tr"), root = eo_verify_number(block, "d_br"),
-         lead = eo_verify_number(block, "a_l");
-  flank->tip_relief = isnan(tip) ? um * either(block, "d_tr_um", "d_tr_um", 0) : mm * tip;
-  flank->root_relief = isnan(root) ? um * either(block, "d_br_um", "d_br_um", 0) : mm * root;
+  bool in_um[2] = {eo_case_find(block, "d_tr_um"), eo_case_find(block, "d_br_um")};
+  bool per_um = eo_case_find(block, "a_l_per_um");
+  flank->tip_relief = in_um[0] ? um * eo_case_number(block, "d_tr_um") : mm * eo_case_number_or(block, "d_tr", 0);
+  flank->root_relief = in_um[1] ? um * eo_case_number(block, "d_br_um") : mm * eo_case_number_or(block, "d_br", 0);
   flank->tip_relief_start = mm * either(block, "u_ts", "u_ts_mm", 0);
   flank->root_relief_start = mm * either(block, "u_bs", "u_bs_mm", 0);
   flank->profile_crowning = 1e3 * either(block, "a_m", "a_m_per_mm", 0);
-  flank->lead_crowning = half * half * (isnan(lead) ? 1e6 * either(block, "a_l_per_um", "a_l_per_um", 0) : 1e3 * lead);
-  flank->lead_slope = half * either(block, "b_l", "b_l", 0);
-  flank->lead_offset = mm * either(block, "c_l", "c_l", 0);
+  flank->lead_crowning =
+      half * half * (per_um ? 1e6 * eo_case_number(block, "a_l_per_um") : 1e3 * eo_case_number_or(block, "a_l", 0));
+  flank->lead_slope = half * eo_case_number_or(block, "b_l", 0);
+  flank->lead_offset = mm * eo_case_number_or(block, "c_l", 0);
 }
 
-void eo_case_misalignment(const json_t *value, struct eo_alignment *alignment)
+void eo_case_named_modification(struct eo_case *mods, const char *name, struct eo_case *where,
+                                const struct eo_gear_pair *pair, struct eo_flank_modification *flank)
 {
-  const char *words = json_string_value(value);
+  static const char *const none[] = {"unmod", "unmodified", "none"};
+  bool plain = false;
+  struct eo_case *block = mods && name ? eo_case_find(mods, name) : NULL;
+  for (size_t i = 0; name && i < sizeof none / sizeof *none; i++)
+    plain = plain || strcmp(name, none[i]) == 0;
+  if (!block && !plain)
+    eo_case_fault(where, "\"%.40s\" is no modification of this file.", name ? name : "");
+  eo_case_modification(block, pair, flank);
+}
+
+/* ---- misalignment in words ---- */
+
+/* Moves *text behind the first of the words that stands there; its index, or -1. */
+static int take_word(const char **text, const char *const *words)
+{
+  *text += strspn(*text, " ");
+  for (int i = 0; words[i]; i++)
+    if (strncmp(*text, words[i], strlen(words[i])) == 0) {
+      *text += strlen(words[i]);
+      return i;
+    }
+  return -1;
+}
+
+/* "0.1 deg in-plane": moves *text behind it. */
+static bool take_angle(const char **text, struct eo_alignment *alignment)
+{
+  static const char *const units[] = {"degrees", "deg", "arcmin", "mrad", "rad", NULL};
+  static const char *const planes[] = {"in-plane", "in plane",     "inplane",      "in the plane",
+                                       "crossing", "out-of-plane", "out of plane", NULL};
+  enum { IN_PLANE = 4 };
+  const double unit[] = {M_PI / 180, M_PI / 180, M_PI / 180 / 60, 1e-3, 1};
+  char *end;
+  double angle = strtod(*text, &end);
+  if (end == *text)
+    return false;
+  *text = end;
+  int which = take_word(text, units), plane = take_word(text, planes);
+  if (which < 0 || plane < 0)
+    return false;
+  if (plane < IN_PLANE)
+    alignment->shaft_angle_in_plane = angle * unit[which];
+  else
+    alignment->shaft_angle_out_of_plane = angle * unit[which];
+  return true;
+}
+
+static bool read_alignment(const char *text, struct eo_alignment *alignment)
+{
+  static const char *const nothing[] = {"none", "aligned", NULL}, *const more[] = {",", "+", "and", NULL};
+  bool understood = true;
+  if (take_word(&text, nothing) < 0)
+    do
+      understood = take_angle(&text, alignment);
+    while (understood && take_word(&text, more) >= 0);
+  return understood && text[strspn(text, " ")] == '\0';
+}
+
+void eo_case_misalignment(struct eo_case *value, struct eo_alignment *alignment)
+{
   alignment->shaft_angle_in_plane = alignment->shaft_angle_out_of_plane = 0;
-  if (words) {
-    double angle = strtod(words, NULL) * M_PI / 180 * (strstr(words, "arcmin") ? 1.0 / 60 : 1);
-    if (strstr(words, "in-plane") || strstr(words, "in plane"))
-      alignment->shaft_angle_in_plane = angle;
-    else
-      alignment->shaft_angle_out_of_plane = angle;
+  if (eo_case_is_text(value)) {
+    if (!read_alignment(eo_case_text(value), alignment))
+      eo_case_fault(value, "This misalignment is not understood; it is none, or for instance \"0.1 deg in-plane\", "
+                           "\"2 arcmin crossing\".");
     return;
   }
   alignment->shaft_angle_in_plane = either(value, "inplane", "in_plane", 0);
@@ -114,20 +222,21 @@ static double number_after(const char **text, const char *mark)
   return value;
 }
 
-bool eo_case_closed_form(const char *text, struct eo_closed_form *form)
+void eo_case_closed_form(struct eo_case *text, struct eo_closed_form *form)
 {
-  const char *at = text;
+  const char *at = eo_case_text(text);
   form->compliance = 1e-3 * number_after(&at, "C(i,j) = ");
   form->length = 1e-3 * number_after(&at, "|/");
   form->linear = 1e3 * number_after(&at, "f = 1+");
   form->centre = -1e-3 * number_after(&at, "|s");
   form->quadratic = 1e6 * number_after(&at, "|+");
-  return isfinite(form->compliance + form->length + form->linear + form->centre + form->quadratic) && form->length > 0;
+  if (!isfinite(form->compliance + form->length + form->linear + form->centre + form->quadratic) || form->length <= 0)
+    eo_case_fault(text, "The closed-form compliance could not be read.");
 }
 
-int eo_case_count(const char *text, const char *phrase, int fallback)
+int eo_case_count(struct eo_case *object, const char *key, const char *phrase, int fallback)
 {
-  const char *found = text ? strstr(text, phrase) : NULL;
+  const char *text = eo_case_word_given(object, key), *found = text ? strstr(text, phrase) : NULL;
   if (!found)
     return fallback;
   while (found > text && !isdigit((unsigned char)found[-1]))
@@ -136,4 +245,26 @@ int eo_case_count(const char *text, const char *phrase, int fallback)
     found--;
   int value = atoi(found);
   return value > 0 ? value : fallback;
+}
+
+bool eo_case_on(struct eo_case *object, const char *key, bool missing)
+{
+  const char *text = eo_case_word_given(object, key);
+  if (!text)
+    return missing;
+  bool off = strncmp(text, "off", 3) == 0;
+  if (!off && strncmp(text, "on", 2) != 0)
+    eo_case_fault(eo_case_find(object, key), "The text begins with on or off.");
+  return !off;
+}
+
+double eo_case_key_number(const struct eo_case *value)
+{
+  const char *key = eo_case_key(value);
+  char *end;
+  double number = key ? strtod(key, &end) : NAN;
+  if (key && end != key && !*end && isfinite(number))
+    return number;
+  eo_case_fault(value, "The key must be a number.");
+  return NAN;
 }

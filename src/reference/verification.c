@@ -3,46 +3,194 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "reference/verify.h"
 #include "format/json.h"
+#include "format/text.h"
+#include "reference/verify.h"
 
-static struct eo_check *next_check(struct eo_verification *v)
+enum { NAME_SIZE = 200 };
+
+/* ---- names ---- */
+
+/* "rows[0].Z_um[1]": the way from above to the value. */
+static void print_way(struct eo_text *text, const struct eo_case *above, const struct eo_case *value)
 {
-  if (v->count == v->capacity) {
-    int capacity = v->capacity ? 2 * v->capacity : 64;
-    struct eo_check *check = realloc(v->check, (size_t)capacity * sizeof *check);
-    if (!check)
-      return NULL;
-    v->check = check;
-    v->capacity = capacity;
-  }
-  return &v->check[v->count];
+  const struct eo_case *parent = eo_case_parent(value);
+  if (parent && parent != above && eo_case_parent(parent))
+    print_way(text, above, parent);
+  if (eo_case_key(value))
+    eo_text_print(text, "%s%s", text->size ? "." : "", eo_case_key(value));
+  else
+    eo_text_print(text, "[%d]", eo_case_index(value));
 }
 
-void eo_verify_add(struct eo_verification *v, const char *label, const char *quantity, double value, double expected,
-                   double tolerance)
+/* What people call the case: its id, name or file. */
+static const char *given_name(struct eo_case *value)
 {
-  bool pass = value == expected || fabs(value - expected) <= tolerance;
-  struct eo_check *check = v->failed ? NULL : next_check(v);
-  char *label_copy = strdup(label), *quantity_copy = strdup(quantity);
-  if (!check || !label_copy || !quantity_copy) {
-    free(label_copy);
-    free(quantity_copy);
+  static const char *const keys[] = {"id", "name", "file"};
+  const char *name = NULL;
+  for (size_t i = 0; i < sizeof keys / sizeof *keys && !name && eo_case_is_object(value); i++)
+    if (eo_case_is_text(eo_case_find(value, keys[i])))
+      name = eo_case_word_given(value, keys[i]);
+  return name;
+}
+
+static struct eo_case *block_of(struct eo_case *value)
+{
+  while (eo_case_parent(value) && eo_case_parent(eo_case_parent(value)))
+    value = eo_case_parent(value);
+  return value;
+}
+
+/* The case that the value belongs to: the nearest with a name, else the nearest object in a list, else the block. */
+static struct eo_case *case_of(struct eo_case *value, const char **name)
+{
+  struct eo_case *element = NULL;
+  for (struct eo_case *up = value; eo_case_parent(up); up = eo_case_parent(up)) {
+    *name = given_name(up);
+    if (*name)
+      return up;
+    if (!element && !eo_case_key(up) && eo_case_is_object(up))
+      element = up;
+  }
+  return element ? element : block_of(value);
+}
+
+static bool name_check(struct eo_check *check, struct eo_case *value, const char *quantity)
+{
+  struct eo_text label = {0}, way = {0};
+  char pointer[NAME_SIZE];
+  const char *name, *block = eo_case_key(block_of(value));
+  struct eo_case *item = case_of(value, &name);
+  if (name)
+    eo_text_print(&label, "%s: %s", block ? block : "file", name);
+  else
+    print_way(&label, NULL, item);
+  if (item != value)
+    print_way(&way, item, value);
+  if (quantity)
+    eo_text_print(&way, "%s%s", way.size ? ": " : "", quantity);
+  else if (item == value)
+    eo_text_add(&way, eo_case_key(value) ? eo_case_key(value) : "value");
+  eo_case_pointer(value, pointer, sizeof pointer);
+  check->block = strdup(block ? block : "");
+  check->pointer = strdup(pointer);
+  check->label = label.data;
+  check->quantity = way.data;
+  return check->block && check->pointer && check->label && check->quantity && !label.failed && !way.failed;
+}
+
+/* ---- checks ---- */
+
+static void done_check(struct eo_check *check)
+{
+  free(check->block);
+  free(check->label);
+  free(check->quantity);
+  free(check->pointer);
+}
+
+static bool make_room(struct eo_verification *v)
+{
+  if (v->count < v->capacity)
+    return true;
+  int capacity = v->capacity ? 2 * v->capacity : 64;
+  struct eo_check *check = realloc(v->check, (size_t)capacity * sizeof *check);
+  if (!check)
+    return false;
+  v->check = check;
+  v->capacity = capacity;
+  return true;
+}
+
+static void add(struct eo_verification *v, struct eo_case *where, const char *quantity, double value, double expected,
+                double tolerance, bool pass)
+{
+  struct eo_check check = {.value = value, .expected = expected, .tolerance = tolerance, .pass = pass};
+  if (v->failed || !make_room(v) || !name_check(&check, where, quantity)) {
+    done_check(&check);
     v->failed = true;
     return;
   }
-  *check = (struct eo_check){label_copy, quantity_copy, value, expected, tolerance, pass};
-  v->count++;
+  v->check[v->count++] = check;
 }
 
-void eo_verify_broken(struct eo_verification *v, const char *label, const struct eo_error *error)
+void eo_verify_derived(struct eo_verification *v, struct eo_case *where, const char *quantity, double value,
+                       double expected, double tolerance)
 {
-  eo_verify_add(v, label, "computed at all", NAN, 1, 0);
-  eo_verify_ignore(v, "%s could not be computed: %s%s%s", label, error->pointer, *error->pointer ? ": " : "",
-                   error->text);
+  if (isnan(expected)) {
+    if (!eo_case_faulty(where))
+      eo_case_fault(where, "No number is expected here.");
+  } else if (!(tolerance > 0 && isfinite(tolerance)))
+    eo_case_fault(where, "An expected 0 needs an absolute tolerance or a scale, and this one has none.");
+  else
+    add(v, where, quantity, value, expected, tolerance, fabs(value - expected) <= tolerance);
 }
 
-void eo_verify_ignore(struct eo_verification *v, const char *format, ...)
+void eo_verify_number(struct eo_verification *v, struct eo_case *expected, double value, double relative,
+                      double absolute)
+{
+  if (!expected)
+    return;
+  double wanted = eo_case_real(expected);
+  eo_verify_derived(v, expected, NULL, value, wanted, fmax(relative * fabs(wanted), absolute));
+}
+
+void eo_verify_member(struct eo_verification *v, struct eo_case *object, const char *key, double value, double relative,
+                      double absolute)
+{
+  eo_verify_number(v, eo_case_find(object, key), value, relative, absolute);
+}
+
+void eo_verify_exact(struct eo_verification *v, struct eo_case *expected, double value)
+{
+  if (!expected)
+    return;
+  bool flag = json_is_boolean(eo_case_json(expected));
+  double wanted = flag ? eo_case_flag(expected) : eo_case_real(expected);
+  if (wanted != floor(wanted))
+    eo_case_fault(expected, "A whole number is expected here.");
+  else if (!isnan(wanted))
+    add(v, expected, NULL, value, wanted, 0, value == wanted);
+}
+
+void eo_verify_size(struct eo_verification *v, struct eo_case *list, int count)
+{
+  int size = eo_case_size(list);
+  if (list && !eo_case_is_list(list))
+    eo_case_fault(list, "A list is expected here.");
+  else if (list)
+    add(v, list, "length", count, size, 0, count == size);
+}
+
+void eo_verify_list(struct eo_verification *v, struct eo_case *expected, int count, const double *value, double unit,
+                    double relative, double absolute)
+{
+  eo_verify_size(v, expected, count);
+  for (int i = 0; i < eo_case_size(expected); i++)
+    eo_verify_number(v, eo_case_at(expected, i), i < count ? value[i] * unit : NAN, relative, absolute);
+}
+
+void eo_verify_fact(struct eo_verification *v, struct eo_case *where, const char *quantity, bool holds)
+{
+  add(v, where, quantity, holds, 1, 0, holds);
+}
+
+void eo_verify_diverged(struct eo_verification *v, struct eo_case *where)
+{
+  eo_case_skip(where);
+  add(v, where, "did not converge", NAN, NAN, NAN, false);
+}
+
+void eo_verify_broken(struct eo_verification *v, struct eo_case *where, const struct eo_error *error)
+{
+  eo_case_skip(where);
+  add(v, where, "computed at all", NAN, 1, 0, false);
+  if (!v->failed)
+    eo_verify_note(v, "%s could not be computed: %s%s%s", v->check[v->count - 1].label, error->pointer,
+                   *error->pointer ? ": " : "", error->text);
+}
+
+void eo_verify_note(struct eo_verification *v, const char *format, ...)
 {
   char line[600], clean[300];
   va_list arguments;
@@ -50,46 +198,21 @@ void eo_verify_ignore(struct eo_verification *v, const char *format, ...)
   vsnprintf(line, sizeof line, format, arguments);
   va_end(arguments);
   eo_text_clean(clean, sizeof clean, line);
-  if (json_array_append_new(v->ignored, json_string_nocheck(clean)) != 0)
+  for (size_t i = 0; i < json_array_size(v->notes); i++)
+    if (strcmp(json_string_value(json_array_get(v->notes, i)), clean) == 0)
+      return;
+  if (json_array_append_new(v->notes, json_string_nocheck(clean)) != 0)
     v->failed = true;
 }
 
-void eo_verify_unknown(struct eo_verification *v, const char *where, const json_t *object, const char *const *known)
+void eo_verify_uncompared(struct eo_verification *v, struct eo_case *value, const char *why)
 {
-  const char *key;
-  json_t *value;
-  json_object_foreach((json_t *)object, key, value)
-  {
-    bool found = false;
-    for (int i = 0; known[i] && !found; i++)
-      found = strcmp(known[i], key) == 0;
-    if (!found)
-      eo_verify_ignore(v, "%s: \"%s\" is not a key of this kind", where, key);
-  }
-}
-
-double eo_verify_number(const json_t *object, const char *key)
-{
-  const json_t *value = json_object_get(object, key);
-  return json_is_number(value) ? json_number_value(value) : NAN;
-}
-
-double eo_verify_number_or(const json_t *object, const char *key, double missing)
-{
-  double value = eo_verify_number(object, key);
-  return isnan(value) ? missing : value;
-}
-
-double eo_verify_element(const json_t *object, const char *key, int index)
-{
-  const json_t *value = json_array_get(json_object_get(object, key), (size_t)index);
-  return json_is_number(value) ? json_number_value(value) : NAN;
-}
-
-double eo_verify_at(const json_t *array, size_t index)
-{
-  const json_t *value = json_array_get(array, index);
-  return json_is_number(value) ? json_number_value(value) : NAN;
+  char pointer[NAME_SIZE];
+  if (!value)
+    return;
+  eo_case_skip(value);
+  eo_case_pointer(value, pointer, sizeof pointer);
+  eo_verify_note(v, "%s is not compared: %s", pointer, why);
 }
 
 double eo_verify_rounding(double printed)
@@ -108,4 +231,92 @@ char *eo_verify_path(const struct eo_verification *v, const char *name)
   if (text.failed)
     eo_text_done(&text);
   return text.data;
+}
+
+void eo_verification_done(struct eo_verification *v)
+{
+  for (int i = 0; i < v->count; i++)
+    done_check(&v->check[i]);
+  free(v->check);
+  json_decref(v->notes);
+  *v = (struct eo_verification){0};
+}
+
+/* ---- blocks ---- */
+
+static enum eo_code run_one(struct eo_verification *v, struct eo_case *item, bool checks, eo_verify_function *run,
+                            void *context, struct eo_error *error)
+{
+  int before = v->count;
+  enum eo_code code = run(context, item, error);
+  if (code == EO_ERROR_INPUT || code == EO_ERROR_NUMERIC || code == EO_ERROR_FILE) {
+    eo_verify_broken(v, item, error);
+    code = EO_OK;
+  }
+  if (!code && checks && !v->failed && v->count == before && !eo_case_faulty(item))
+    eo_case_fault(item, "Nothing here is checked.");
+  return code;
+}
+
+enum eo_code eo_verify_each(struct eo_verification *v, struct eo_case *items, eo_verify_function *run, void *context,
+                            struct eo_error *error)
+{
+  enum eo_code code = EO_OK;
+  if (!items)
+    return EO_OK;
+  if (eo_case_size(items) == 0)
+    eo_case_fault(items, "Cases are expected here.");
+  for (int i = 0; i < eo_case_size(items) && !code && !eo_case_faulty(items); i++) {
+    struct eo_case *item = eo_case_peek(items, i);
+    if (eo_case_key(item) && eo_case_is_commentary(eo_case_key(item)))
+      continue;
+    eo_case_at(items, i);
+    code = run_one(v, item, true, run, context, error);
+    eo_case_sweep(item);
+  }
+  return code;
+}
+
+static bool matches(const char *key, const char *pattern)
+{
+  size_t length = strcspn(pattern, "*");
+  return pattern[length] ? strncmp(key, pattern, length) == 0 : strcmp(key, pattern) == 0;
+}
+
+static const struct eo_verify_block *block_named(const struct eo_verify_block *blocks, const char *key)
+{
+  for (; blocks->key; blocks++)
+    if (matches(key, blocks->key))
+      return blocks;
+  return NULL;
+}
+
+static void refuse_unknown(struct eo_case *file, const struct eo_verify_block *blocks)
+{
+  for (int i = 0; i < eo_case_size(file); i++) {
+    struct eo_case *member = eo_case_peek(file, i);
+    const char *key = eo_case_key(member);
+    if (strcmp(key, "kind") && !eo_case_is_commentary(key) && !block_named(blocks, key))
+      eo_case_fault(member, "This block is not known in a file of this kind.");
+  }
+}
+
+enum eo_code eo_verify_blocks(struct eo_verification *v, struct eo_case *file, const struct eo_verify_block *blocks,
+                              void *context, struct eo_error *error)
+{
+  enum eo_code code = EO_OK;
+  refuse_unknown(file, blocks);
+  for (int i = 0; i < eo_case_size(file) && !code && !eo_case_faulty(file); i++) {
+    struct eo_case *member = eo_case_peek(file, i);
+    const struct eo_verify_block *block = block_named(blocks, eo_case_key(member));
+    if (eo_case_is_commentary(eo_case_key(member)) || !block)
+      continue;
+    if (block->shape == EO_BLOCK_REMARKS)
+      eo_case_remark(file, eo_case_key(member));
+    else if (block->shape == EO_BLOCK_WHOLE || block->shape == EO_BLOCK_EITHER)
+      code = run_one(v, member, block->shape == EO_BLOCK_WHOLE, block->run, context, error);
+    else if (block->shape == EO_BLOCK_EACH)
+      code = eo_verify_each(v, member, block->run, context, error);
+  }
+  return code;
 }

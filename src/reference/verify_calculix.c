@@ -1,121 +1,199 @@
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "reference/case_pair.h"
 #include "design/resolution.h"
-#include "reference/verify_contact.h"
 #include "evaluation/evaluator.h"
+#include "reference/case_pair.h"
+#include "reference/verify_contact.h"
 
-/* A number in the file's words, for instance after "z " in "z 17/44, mn 6". */
-static double number_in(const char *text, const char *mark, double fallback)
+enum { MOST_PHASES = 512 };
+
+struct calculix {
+  struct eo_case *file;
+  struct eo_verification *v;
+  struct eo_design design;
+  struct eo_geometry geometry;
+};
+
+/* A number in the file's words, for instance after "mn " in "z 17/44, mn 6"; a fault when it is not there and there is
+   no substitute (NaN). */
+static double stated(struct eo_case *what, const char *mark, double missing)
 {
-  const char *found = text ? strstr(text, mark) : NULL;
-  return found ? atof(found + strlen(mark)) : fallback;
+  const char *text = eo_case_text(what), *found = text ? strstr(text, mark) : NULL;
+  char *end;
+  double value = found ? strtod(found + strlen(mark), &end) : missing;
+  if (text && (isnan(value) || (found && end == found + strlen(mark))))
+    eo_case_fault(what, "The words do not say \"%sNUMBER\".", mark);
+  return value;
 }
 
-/* The pair: the block "input", or the paper's with the teeth and module of the words. */
-static enum eo_code read_design(const json_t *file, struct eo_design *design, struct eo_error *error)
+/* The pair of the words "z 17/44, mn 6, beta 24, b 55"; helix and face width are the paper's where only its teeth and
+   module are stated. */
+static void read_words(struct eo_case *what, struct eo_design *design)
 {
-  const char *what = json_string_value(json_object_get(file, "what"));
-  const char *teeth = what ? strstr(what, "z ") : NULL, *slash = teeth ? strchr(teeth, '/') : NULL;
-  json_t *input = json_object_get(file, "input");
-  json_t *made = input ? json_incref(input)
-                       : json_pack("{s:[i,i], s:f, s:f, s:f}", "z", teeth ? atoi(teeth + 2) : 17,
-                                   slash ? atoi(slash + 1) : 44, "mn", number_in(what, "mn ", 6), "beta_deg",
-                                   number_in(what, "beta ", 24), "b", number_in(what, "b ", 55));
-  if (!made)
-    return eo_error_memory(error);
-  enum eo_code code = eo_case_design(made, design, error);
-  json_decref(made);
-  struct eo_resolution *r = &design->resolution;
-  r->sector_teeth = eo_case_count(json_string_value(json_object_get(file, "boundary")), "-tooth sectors", 3);
-  r->neighbour_coupling = false;
-  r->tip_edge_contact = true;
-  return code;
+  const double teeth = stated(what, "z ", NAN), other = stated(what, "/", NAN), module = stated(what, "mn ", NAN);
+  const bool paper = teeth == 17 && other == 44 && module == 6;
+  json_t *made = json_pack("{s:[f,f], s:f, s:f, s:f}", "z", teeth, other, "mn", module, "beta_deg",
+                           stated(what, "beta ", paper ? 24 : NAN), "b", stated(what, ", b ", paper ? 55 : NAN));
+  struct eo_case *input = eo_case_faulty(what) ? (json_decref(made), NULL) : eo_case_open(made);
+  if (!input)
+    return;
+  eo_case_design(input, design);
+  if (eo_case_faulty(input))
+    eo_case_fault(what, "%s", eo_case_faults(input)->fault[0].text);
+  eo_case_close(input);
 }
 
-static void check_phase(struct eo_verification *v, const char *label, const json_t *block, const struct eo_pair *pair,
-                        const struct eo_evaluation *r, int j, double shift)
+static enum eo_code read_file(struct calculix *x, struct eo_error *error)
 {
+  struct eo_design *design = &x->design;
+  struct eo_case *what = eo_case_need(x->file, "what"), *input = eo_case_find(x->file, "input");
+  double force = stated(what, "normal force ", NAN);
+  if (input)
+    eo_case_design(input, design);
+  else
+    read_words(what, design);
+  design->resolution.sector_teeth = eo_case_count(x->file, "boundary", "-tooth sectors", 3);
+  design->resolution.neighbour_coupling = false;
+  design->resolution.tip_edge_contact = true;
+  if (eo_case_faulty(x->file))
+    return EO_OK;
+  enum eo_code code = eo_geometry_init(&x->geometry, &design->gear_pair, error);
+  if (code)
+    return code;
+  eo_design_resolve(design, &x->geometry);
+  design->load_case[0].torque = 2 * force * x->geometry.base_radius[0] * cos(x->geometry.base_helix_angle);
+  return EO_OK;
+}
+
+/* The modification of a block: "mod", or none in a block called unmodified. */
+static void read_modification(const struct calculix *x, struct eo_case *block, struct eo_design *design)
+{
+  static const char *const plain[] = {"unmodified", "unmod"};
+  struct eo_case *mod = eo_case_find(block, "mod");
+  struct eo_flank_modification *flank = design->modification.flank[EO_PINION];
+  bool named = mod != NULL;
+  for (size_t i = 0; i < sizeof plain / sizeof *plain; i++)
+    named = named || strncmp(eo_case_key(block), plain[i], strlen(plain[i])) == 0;
+  if (!named)
+    eo_case_fault(block, "The block states no modification \"mod\", and its name does not begin with unmodified.");
+  if (eo_case_is_text(mod))
+    eo_case_named_modification(NULL, eo_case_text(mod), mod, &x->design.gear_pair, &flank[EO_LEFT]);
+  else
+    eo_case_modification(mod, &x->design.gear_pair, &flank[EO_LEFT]);
+  flank[EO_RIGHT] = flank[EO_LEFT];
+}
+
+/* Shares of the pairs that stand near the phases which the keys name, mm. */
+static void check_shares(const struct calculix *x, struct eo_case *shares, const struct eo_pair *pair,
+                         const struct eo_evaluation *r, int j)
+{
+  const double tolerance = 0.015, near = 1e-2;
   const struct eo_contact_position *p = &pair->grid->position[j];
   const double *line_load = r->load_case[0].end[0].loaded.line_load + p->first;
-  char quantity[80];
-  const char *key;
-  json_t *share;
-  double lte = 1e6 * r->load_case[0].transmission[j];
-  snprintf(quantity, sizeof quantity, "LTE um less the mean difference, c %.6g", 1e3 * p->phase);
-  eo_verify_add(v, label, quantity, lte - shift, eo_verify_element(block, "LTE_um", j), 0.1);
-  json_object_foreach(json_array_get(json_object_get(block, "share"), (size_t)j), key, share)
-  {
-    double load = 0, pitch = pair->geometry.transverse_base_pitch;
+  const double pitch = pair->geometry.transverse_base_pitch;
+  for (int k = 0; k < eo_case_size(shares); k++) {
+    struct eo_case *share = eo_case_at(shares, k);
+    double load = 0, place = 1e-3 * eo_case_key_number(share), whole = (place - p->phase) / pitch;
+    if (fabs(whole - round(whole)) > near)
+      eo_case_fault(share, "No pair of teeth is in this place at the phase of %g mm.", 1e3 * p->phase);
     for (int i = 0; i < p->points; i++)
-      if (fabs(p->phase + p->point[i].pair * pitch - 1e-3 * atof(key)) < 1e-2 * pitch)
+      if (p->point[i].pair == (int)round(whole))
         load += line_load[i] * p->length[i];
-    snprintf(quantity, sizeof quantity, "load share of the pair at c %.8s", key);
-    eo_verify_add(v, label, quantity, load / r->load_case[0].force, json_number_value(share), 0.015);
+    eo_verify_number(x->v, share, load / r->load_case[0].force, 0, tolerance);
   }
 }
 
-static enum eo_code check_block(struct eo_verification *v, const char *label, const json_t *file, const json_t *block,
-                                struct eo_error *error)
+/* The level within 3 %; the curve, less the difference of the means, within 0.1 um; its sampled range as the two
+   curves' extremes may each be out. */
+static void check_transmission(const struct calculix *x, struct eo_case *block, int n, const double *lte)
 {
-  const json_t *phases = json_object_get(block, "phases_mm");
-  int n = (int)json_array_size(phases);
-  double *phase = calloc((size_t)n + 1, sizeof *phase);
-  struct eo_design *design = malloc(sizeof *design);
+  const double of_mean = 0.03, of_curve = 0.1;
+  double wanted[MOST_PHASES], mean = 0, expected = 0, low = INFINITY, high = -INFINITY;
+  struct eo_case *list = eo_case_need(block, "LTE_um");
+  if (eo_case_numbers(list, n, MOST_PHASES, wanted) < 0)
+    return;
+  for (int j = 0; j < n; j++) {
+    mean += 1e6 * lte[j] / n;
+    expected += wanted[j] / n;
+    low = fmin(low, 1e6 * lte[j]);
+    high = fmax(high, 1e6 * lte[j]);
+  }
+  eo_verify_derived(x->v, list, "mean LTE um", mean, expected, of_mean * fabs(expected));
+  for (int j = 0; j < n; j++)
+    eo_verify_number(x->v, eo_case_at(list, j), 1e6 * lte[j] - (mean - expected), 0, of_curve);
+  eo_verify_member(x->v, block, "LTE_mean_um", mean, of_mean, 0);
+  eo_verify_member(x->v, block, "LTE_pp_sampled_um", high - low, 0, 2 * of_curve);
+}
+
+static enum eo_code solve_block(struct calculix *x, struct eo_case *block, struct eo_design *design, int n,
+                                const double *phase, struct eo_error *error)
+{
+  struct eo_contact_grid_settings grid = eo_contact_grid_default(&design->resolution);
+  struct eo_pair_options options = {.grid = &grid, .phase = phase, .own_pivots = true};
   struct eo_pair *pair = NULL;
   struct eo_evaluator *evaluator = NULL;
   const struct eo_evaluation *r;
-  enum eo_code code = phase && design ? read_design(file, design, error) : eo_error_memory(error);
-  if (!code) {
-    struct eo_contact_grid_settings grid = eo_contact_grid_default(&design->resolution);
-    struct eo_pair_options options = {.grid = &grid, .phase = phase, .own_pivots = true};
-    struct eo_geometry geometry;
-    grid.positions = design->resolution.positions = n;
-    for (int j = 0; j < n; j++)
-      phase[j] = 1e-3 * json_number_value(json_array_get(phases, (size_t)j));
-    code = eo_geometry_init(&geometry, &design->gear_pair, error);
-    if (!code) {
-      eo_design_resolve(design, &geometry);
-      double force = number_in(json_string_value(json_object_get(file, "what")), "normal force ", NAN);
-      design->load_case[0].torque = 2 * force * geometry.base_radius[0] * cos(geometry.base_helix_angle);
-      eo_case_modification(json_object_get(block, "mod"), &design->gear_pair,
-                           &design->modification.flank[EO_PINION][EO_LEFT]);
-      design->modification.flank[EO_PINION][EO_RIGHT] = design->modification.flank[EO_PINION][EO_LEFT];
-      code = eo_pair_new(&pair, design, &options, NULL, error);
-    }
-  }
+  struct eo_case *share = eo_case_find(block, "share");
+  grid.positions = design->resolution.positions = n;
+  enum eo_code code = eo_pair_new(&pair, design, &options, NULL, error);
   if (!code)
     code = eo_evaluator_new(&evaluator, pair, 1, error);
   if (!code)
     code = eo_evaluator_contact(evaluator, design, &r, error);
-  if (!code) {
-    double mean = 0, expected = 0;
-    for (int j = 0; j < n; j++) {
-      mean += 1e6 * r->load_case[0].transmission[j] / n;
-      expected += eo_verify_element(block, "LTE_um", j) / n;
-    }
-    eo_verify_add(v, label, "mean LTE um", mean, expected, 0.03 * expected);
-    for (int j = 0; j < n; j++)
-      check_phase(v, label, block, pair, r, j, mean - expected);
+  if (!code && r->load_case[0].contact_failures)
+    eo_verify_diverged(x->v, block);
+  else if (!code) {
+    check_transmission(x, block, n, r->load_case[0].transmission);
+    if (share)
+      eo_verify_size(x->v, share, n);
+    for (int j = 0; j < n && j < eo_case_size(share); j++)
+      check_shares(x, eo_case_at(share, j), pair, r, j);
   }
   eo_evaluator_free(evaluator);
   eo_pair_free(pair);
-  free(design);
-  free(phase);
   return code;
 }
 
-enum eo_code eo_verify_calculix(const json_t *file, struct eo_verification *v, struct eo_error *error)
+static enum eo_code check_block(void *context, struct eo_case *block, struct eo_error *error)
 {
-  const char *name;
-  json_t *block;
-  json_object_foreach((json_t *)file, name, block) if (json_is_object(block) && json_object_get(block, "phases_mm"))
-  {
-    enum eo_code code = check_block(v, name, file, block, error);
-    if (code)
-      return code;
-  }
-  return EO_OK;
+  static const char *const prescribed[] = {"Z_prescribed_um", "pair_load_N", "pair_load_uncertainty_rel",
+                                           "root_pinion_MPa_at_prescribed_Z", "root_gear_MPa_at_prescribed_Z"};
+  struct calculix *x = context;
+  struct eo_design design = x->design;
+  double phase[MOST_PHASES];
+  int n = eo_case_numbers(eo_case_need(block, "phases_mm"), -1, MOST_PHASES, phase);
+  read_modification(x, block, &design);
+  for (size_t i = 0; i < sizeof prescribed / sizeof *prescribed; i++)
+    eo_verify_uncompared(x->v, eo_case_find(block, prescribed[i]),
+                         "one pair of teeth under a prescribed approach is not computed.");
+  if (n == 0)
+    eo_case_fault(eo_case_find(block, "phases_mm"), "Phases are expected here.");
+  if (eo_case_faulty(block))
+    return EO_OK;
+  for (int j = 0; j < n; j++)
+    phase[j] *= 1e-3;
+  return solve_block(x, block, &design, n, phase, error);
+}
+
+enum eo_code eo_verify_calculix(struct eo_case *file, struct eo_verification *v, struct eo_error *error)
+{
+  /* Any other key is a block of its own. */
+  static const struct eo_verify_block blocks[] = {{"boundary", EO_BLOCK_REMARKS, NULL},
+                                                  {"input", EO_BLOCK_INPUT, NULL},
+                                                  {"kind", EO_BLOCK_INPUT, NULL},
+                                                  {"*", EO_BLOCK_WHOLE, check_block},
+                                                  {NULL, EO_BLOCK_INPUT, NULL}};
+  struct calculix *x = calloc(1, sizeof *x);
+  if (!x)
+    return eo_error_memory(error);
+  x->file = file;
+  x->v = v;
+  enum eo_code code = read_file(x, error);
+  if (!code && !eo_case_faulty(file))
+    code = eo_verify_blocks(v, file, blocks, x, error);
+  free(x);
+  return code;
 }

@@ -4,232 +4,233 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "reference/case_pair.h"
 #include "contact/hertz.h"
 #include "contact/iso6336.h"
 #include "contact/unloaded.h"
+#include "reference/contact_case.h"
 
-void eo_contact_case_modification(struct eo_contact_case *c, const char *name, struct eo_flank_modification *flank)
-{
-  const json_t *mods = json_object_get(json_object_get(c->file, "modification"), "mods");
-  const json_t *block = name ? json_object_get(mods, name) : NULL;
-  if (!block && name && strncmp(name, "unmod", 5) != 0)
-    eo_verify_ignore(c->v, "modification \"%.40s\" is not in the file; taken as none", name);
-  eo_case_modification(block, &c->design.gear_pair, flank);
-}
+/* ---- macro ---- */
 
-static void check_relative(struct eo_verification *v, const char *label, const json_t *block, const char *key,
-                           double value, double relative)
+static enum eo_code check_macro(void *context, struct eo_case *macro, struct eo_error *error)
 {
-  double expected = eo_verify_number(block, key);
-  if (!isnan(expected))
-    eo_verify_add(v, label, key, value, expected, relative * fmax(fabs(expected), 1e-300));
-}
-
-static void check_macro(struct eo_contact_case *c)
-{
-  const json_t *macro = json_object_get(c->file, "macro"), *o = json_object_get(macro, "output"), *list;
+  struct eo_contact_case *c = context;
   const struct eo_geometry *g = &c->geometry;
-  double tolerance = eo_verify_number_or(macro, "tol_rel", 1e-9);
-  const struct {
-    const char *key;
-    double value;
-  } row[] = {{"mt", 1e3 * g->transverse_module},
-             {"at", g->transverse_pressure_angle},
-             {"bb", g->base_helix_angle},
-             {"r1", 1e3 * g->reference_radius[0]},
-             {"r2", 1e3 * g->reference_radius[1]},
-             {"rb1", 1e3 * g->base_radius[0]},
-             {"rb2", 1e3 * g->base_radius[1]},
-             {"ra1", 1e3 * g->tip_radius[0]},
-             {"ra2", 1e3 * g->tip_radius[1]},
-             {"rf1", 1e3 * g->root_radius[0]},
-             {"rf2", 1e3 * g->root_radius[1]},
-             {"a", 1e3 * g->centre_distance},
-             {"pbt", 1e3 * g->transverse_base_pitch},
-             {"pbn", 1e3 * g->normal_base_pitch},
-             {"sA", 1e3 * g->path_start},
-             {"sE", 1e3 * g->path_end},
-             {"eps_a", g->transverse_contact_ratio},
-             {"eps_b", g->overlap_ratio},
-             {"ku", g->rack_factor},
-             {"u_bot", 1e3 * g->rack_bottom},
-             {"u_tip", 1e3 * g->rack_top},
-             {"T1C", 1e3 * g->tangent_length[0]},
-             {"T2C", 1e3 * g->tangent_length[1]},
-             {"awt", g->working_pressure_angle}};
-  for (size_t i = 0; i < sizeof row / sizeof row[0]; i++)
-    check_relative(c->v, "macro", o, row[i].key, row[i].value, tolerance);
-  list = json_object_get(macro, "fillet_form_radius");
-  for (size_t i = 0; i < json_array_size(list) && i < 2; i++)
-    eo_verify_add(c->v, "macro", i ? "fillet_form_radius gear" : "fillet_form_radius pinion", 1e3 * g->form_radius[i],
-                  eo_verify_at(list, i), tolerance * eo_verify_at(list, i));
-  const char *key;
-  json_t *value;
-  json_object_foreach(json_object_get(macro, "rho_n"), key, value)
-      eo_verify_add(c->v, "macro rho_n", key, 1e3 * eo_geometry_relative_radius(g, 1e-3 * atof(key)),
-                    json_number_value(value), tolerance * json_number_value(value));
-  json_object_foreach(json_object_get(macro, "h_depth"), key, value) for (int member = 0; member < 2; member++)
-      eo_verify_add(c->v, "macro h_depth", key, 1e3 * eo_geometry_depth(g, member, 1e-3 * atof(key)),
-                    eo_verify_at(value, (size_t)member), tolerance * eo_verify_at(value, (size_t)member));
+  double relative = eo_case_relative_or(macro, "tol_rel", 1e-9);
+  (void)error;
+  eo_case_check_geometry(c->v, eo_case_find(macro, "output"), g, 1e3, relative);
+  struct eo_case *form = eo_case_find(macro, "fillet_form_radius"), *radius = eo_case_find(macro, "rho_n"),
+                 *depth = eo_case_find(macro, "h_depth");
+  if (form)
+    eo_verify_list(c->v, form, 2, g->form_radius, 1e3, relative, 0);
+  for (int i = 0; i < eo_case_size(radius); i++) {
+    struct eo_case *expected = eo_case_at(radius, i);
+    double s = 1e-3 * eo_case_key_number(expected);
+    eo_verify_number(c->v, expected, 1e3 * eo_geometry_relative_radius(g, s), relative, 0);
+  }
+  for (int i = 0; i < eo_case_size(depth); i++) {
+    double s = 1e-3 * eo_case_key_number(eo_case_at(depth, i));
+    const double value[2] = {eo_geometry_depth(g, 0, s), eo_geometry_depth(g, 1, s)};
+    eo_verify_list(c->v, eo_case_at(depth, i), 2, value, 1e3, relative, 0);
+  }
+  return EO_OK;
 }
 
-static void check_modification(struct eo_contact_case *c)
+/* ---- flanks ---- */
+
+static void name_shape(struct eo_contact_case *c, const char *name, struct eo_case *where,
+                       struct eo_modification_shape *shape)
 {
-  const json_t *block = json_object_get(c->file, "modification"), *points = json_object_get(block, "points");
-  double tolerance = eo_verify_number_or(block, "tol_um", 1e-6);
-  const char *name;
-  json_t *expected;
-  json_object_foreach(json_object_get(block, "delta_um"), name, expected)
-  {
-    struct eo_flank_modification flank;
+  struct eo_flank_modification flank;
+  eo_contact_case_modification(c, name, where, &flank);
+  eo_modification_init(shape, &c->geometry, EO_PINION, &flank);
+}
+
+static double modification_at(const struct eo_contact_case *c, const struct eo_modification_shape *shape,
+                              struct eo_case *point)
+{
+  double place[2], slope[2], lead;
+  if (eo_case_numbers(point, 2, 2, place) < 0)
+    return NAN;
+  return eo_modification_profile(shape, c->geometry.rack_factor * 1e-3 * place[0], slope) +
+         eo_modification_lead(shape, 1e-3 * place[1] / cos(c->geometry.helix_angle), &lead);
+}
+
+static enum eo_code check_modification(void *context, struct eo_case *block, struct eo_error *error)
+{
+  struct eo_contact_case *c = context;
+  struct eo_case *all = eo_case_find(block, "delta_um"), *points = all ? eo_case_need(block, "points") : NULL;
+  double tolerance = eo_case_absolute_or(block, "tol_um", 1e-6);
+  (void)error;
+  for (int k = 0; k < eo_case_size(all); k++) {
+    struct eo_case *expected = eo_case_at(all, k);
     struct eo_modification_shape shape;
-    char label[80], quantity[60];
-    eo_contact_case_modification(c, name, &flank);
-    eo_modification_init(&shape, &c->geometry, EO_PINION, &flank);
-    snprintf(label, sizeof label, "modification %.40s", name);
-    for (size_t i = 0; i < json_array_size(points); i++) {
-      double s = 1e-3 * eo_verify_at(json_array_get(points, i), 0),
-             eta = 1e-3 * eo_verify_at(json_array_get(points, i), 1), slope[2], lead;
-      double value = eo_modification_profile(&shape, c->geometry.rack_factor * s, slope) +
-                     eo_modification_lead(&shape, eta / cos(c->geometry.helix_angle), &lead);
-      snprintf(quantity, sizeof quantity, "delta_um at s %g, eta %g", 1e3 * s, 1e3 * eta);
-      eo_verify_add(c->v, label, quantity, 1e6 * value, eo_verify_at(expected, i), tolerance);
-    }
+    name_shape(c, eo_case_key(expected), expected, &shape);
+    eo_verify_size(c->v, expected, eo_case_size(points));
+    for (int i = 0; i < eo_case_size(points); i++)
+      eo_verify_number(c->v, eo_case_at(expected, i), 1e6 * modification_at(c, &shape, eo_case_at(points, i)), 0,
+                       tolerance);
   }
+  return EO_OK;
 }
 
-static void check_surface(struct eo_contact_case *c, const char *name, const json_t *block)
+static enum eo_code check_surface(void *context, struct eo_case *block, struct eo_error *error)
 {
-  struct eo_flank_modification flank;
+  struct eo_contact_case *c = context;
   struct eo_modification_shape shape;
-  size_t index;
-  json_t *row;
-  double tolerance = eo_verify_number_or(block, "tol_mm", 1e-8);
-  char label[80], quantity[60];
-  eo_contact_case_modification(c, name, &flank);
-  eo_modification_init(&shape, &c->geometry, EO_PINION, &flank);
-  snprintf(label, sizeof label, "exact surface %.40s", name);
-  json_array_foreach(json_object_get(block, "points"), index, row)
-  {
+  struct eo_case *points = eo_case_need(block, "points");
+  double tolerance = eo_case_absolute_or(block, "tol_mm", 1e-8);
+  (void)error;
+  name_shape(c, eo_case_key(block) + strlen("exact_surface_"), block, &shape);
+  for (int i = 0; i < eo_case_size(points) && !eo_case_faulty(block); i++) {
+    struct eo_case *row = eo_case_at(points, i);
     struct eo_surface_point p;
-    double u = eo_verify_number(row, "u"), v = eo_verify_number(row, "v");
-    eo_surface_evaluate(&c->geometry, EO_PINION, &shape, 1e-3 * u, 1e-3 * v, &p);
-    for (int k = 0; k < 3; k++) {
-      snprintf(quantity, sizeof quantity, "x[%d] mm at u %g, v %g", k, u, v);
-      eo_verify_add(c->v, label, quantity, 1e3 * p.position[k], eo_verify_element(row, "x", k), tolerance);
-      snprintf(quantity, sizeof quantity, "n[%d] at u %g, v %g", k, u, v);
-      eo_verify_add(c->v, label, quantity, p.normal[k], eo_verify_element(row, "n", k), tolerance);
-    }
+    eo_surface_evaluate(&c->geometry, EO_PINION, &shape, 1e-3 * eo_case_number(row, "u"),
+                        1e-3 * eo_case_number(row, "v"), &p);
+    eo_verify_list(c->v, eo_case_need(row, "x"), 3, p.position, 1e3, 0, tolerance);
+    eo_verify_list(c->v, eo_case_need(row, "n"), 3, p.normal, 1, 0, tolerance);
   }
+  return EO_OK;
 }
 
-static void check_slice_gap(struct eo_contact_case *c, const char *name, const json_t *block)
+static enum eo_code check_slice_gap(void *context, struct eo_case *block, struct eo_error *error)
 {
-  struct eo_flank_modification flank;
+  struct eo_contact_case *c = context;
   struct eo_modification_shape shape[2] = {{0}, {0}};
   struct eo_slice_gap *table = malloc(sizeof *table);
-  const json_t *phase = json_object_get(block, "c"), *exact = json_object_get(block, "exact_um");
-  double tolerance = eo_verify_number_or(block, "tol_um", 0.002);
-  char label[80], quantity[60];
-  eo_contact_case_modification(c, name, &flank);
-  eo_modification_init(&shape[EO_PINION], &c->geometry, EO_PINION, &flank);
-  snprintf(label, sizeof label, "slice gap %.40s", name);
-  if (table)
-    eo_slice_gap_init(table, &c->geometry, shape);
-  for (size_t i = 0; table && i < json_array_size(phase); i++) {
-    snprintf(quantity, sizeof quantity, "gap_um at c %g", eo_verify_at(phase, i));
-    eo_verify_add(c->v, label, quantity, 1e6 * eo_slice_gap_at(table, 1e-3 * eo_verify_at(phase, i), NULL),
-                  eo_verify_at(exact, i), tolerance);
+  struct eo_case *phase = eo_case_need(block, "c"), *exact = eo_case_need(block, "exact_um"),
+                 *first = eo_case_find(block, "first_order_um");
+  double tolerance = eo_case_absolute_or(block, "tol_um", 0.002), slope[2];
+  if (!table)
+    return eo_error_memory(error);
+  name_shape(c, eo_case_key(block) + strlen("slice_gap_"), block, &shape[EO_PINION]);
+  eo_slice_gap_init(table, &c->geometry, shape);
+  eo_verify_size(c->v, exact, eo_case_size(phase));
+  if (first)
+    eo_verify_size(c->v, first, eo_case_size(phase));
+  for (int i = 0; i < eo_case_size(phase) && !eo_case_faulty(block); i++) {
+    double s = 1e-3 * eo_case_element(phase, i);
+    eo_verify_number(c->v, eo_case_at(exact, i), 1e6 * eo_slice_gap_at(table, s, NULL), 0, tolerance);
+    eo_verify_number(c->v, eo_case_at(first, i),
+                     1e6 * eo_modification_profile(&shape[EO_PINION], c->geometry.rack_factor * s, slope), 0,
+                     tolerance);
   }
   free(table);
+  return EO_OK;
 }
 
-/* Transmission errors after the mean difference is taken out (the axial float does that). */
-static void compare_errors(struct eo_contact_case *c, const char *label, const char *what, const json_t *expected,
-                           const struct eo_unloaded *got, double tolerance)
+/* ---- unloaded contact ---- */
+
+enum { MOST_PHASES = 512 };
+
+/* Transmission errors after the mean difference is taken out (the axial float does that), so one alone says nothing. */
+static void compare_errors(struct eo_contact_case *c, struct eo_case *expected, int n, const struct eo_unloaded *got,
+                           double tolerance)
 {
-  size_t n = json_array_size(expected);
-  double shift = 0;
-  for (size_t i = 0; i < n; i++)
-    shift += (1e6 * got[i].transmission_error - eo_verify_at(expected, i)) / (double)n;
-  for (size_t i = 0; i < n; i++) {
-    char quantity[60];
-    snprintf(quantity, sizeof quantity, "%s [%zu]", what, i);
-    eo_verify_add(c->v, label, quantity, 1e6 * got[i].transmission_error - shift, eo_verify_at(expected, i), tolerance);
+  double shift = 0, wanted[MOST_PHASES];
+  if (!expected || eo_case_numbers(expected, n, MOST_PHASES, wanted) < 0)
+    return;
+  if (n < 2)
+    eo_case_fault(expected, "At least 2 values are needed: their mean difference is taken out.");
+  for (int i = 0; i < n; i++)
+    shift += (1e6 * got[i].transmission_error - wanted[i]) / n;
+  for (int i = 0; i < n; i++)
+    eo_verify_number(c->v, eo_case_at(expected, i), 1e6 * got[i].transmission_error - shift, 0, tolerance);
+}
+
+/* Where the teeth touch, within 0.05 mm; at an edge the place slides with the least change of the gap, and only the
+   transmission error is compared. */
+static void compare_places(struct eo_contact_case *c, struct eo_case *item, int n, const struct eo_unloaded *got)
+{
+  static const char *const keys[] = {"s", "eta"};
+  const double tolerance = 0.05;
+  for (int k = 0; k < 2; k++) {
+    struct eo_case *expected = eo_case_find(item, keys[k]);
+    if (expected)
+      eo_verify_size(c->v, expected, n);
+    for (int i = 0; i < n && expected; i++)
+      if (got[i].touch == EO_TOUCH_POINT)
+        eo_verify_number(c->v, eo_case_at(expected, i), 1e3 * (k ? got[i].eta : got[i].path), 0, tolerance);
+      else
+        eo_verify_uncompared(c->v, eo_case_at(expected, i), "an edge touches there.");
   }
 }
 
-static enum eo_code check_unloaded(struct eo_contact_case *c, const json_t *item, struct eo_error *error)
+/* +1, "right": the right end; -1, "left". */
+static int side_of(struct eo_case *item)
 {
-  enum { MOST = 512 };
+  static const char *const names[] = {"left", "right", NULL};
+  struct eo_case *end = eo_case_find(item, "end");
+  if (eo_case_is_text(end))
+    return eo_case_choice(item, "end", names, 1) == 0 ? EO_LEFT : EO_RIGHT;
+  double sign = end ? eo_case_real(end) : 1;
+  if (!isnan(sign) && fabs(sign) != 1)
+    eo_case_fault(end, "An end is 1 (right) or -1 (left).");
+  return sign < 0 ? EO_LEFT : EO_RIGHT;
+}
+
+static enum eo_code check_unloaded(void *context, struct eo_case *item, struct eo_error *error)
+{
+  struct eo_contact_case *c = context;
   struct eo_flank_modification flank, none = {0};
   struct eo_alignment alignment;
   struct eo_corner_gap corner[2];
+  struct eo_unloaded exact[MOST_PHASES], least[MOST_PHASES];
+  double phase[MOST_PHASES], tolerance = eo_case_absolute_or(item, "tol_um", 0.04);
+  int n = eo_case_numbers(eo_case_need(item, "phase"), -1, MOST_PHASES, phase), side = side_of(item);
+  double sign = side == EO_LEFT ? -1 : 1;
+  eo_contact_case_modification(c, eo_case_word(item, "mod"), eo_case_find(item, "mod"), &flank);
+  eo_case_misalignment(eo_case_need(item, "mis"), &alignment);
+  if (eo_case_faulty(item))
+    return EO_OK;
   struct eo_gap_field *field = malloc(sizeof *field);
-  struct eo_unloaded exact[MOST], least[MOST];
-  double phase[MOST], tolerance = eo_verify_number_or(item, "tol_um", 0.04);
-  const json_t *list = json_object_get(item, "phase");
-  const char *label = json_string_value(json_object_get(item, "name")),
-             *end = json_string_value(json_object_get(item, "end"));
-  int n = (int)json_array_size(list);
-  label = label ? label : "unloaded contact";
   if (!field)
     return eo_error_memory(error);
-  for (int i = 0; i < n && i < MOST; i++)
-    phase[i] = 1e-3 * eo_verify_at(list, (size_t)i);
-  eo_contact_case_modification(c, json_string_value(json_object_get(item, "mod")), &flank);
-  eo_case_misalignment(json_object_get(item, "mis"), &alignment);
-  int side = (end && strcmp(end, "left") == 0) || eo_verify_number_or(item, "end", 1) < 0 ? EO_LEFT : EO_RIGHT;
-  double sign = side == EO_LEFT ? -1 : 1;
+  for (int i = 0; i < n; i++)
+    phase[i] *= 1e-3;
   eo_corner_gap_init(corner, &c->geometry);
   eo_gap_field_init(field, &c->geometry, &flank, &none, side, alignment.shaft_angle_in_plane,
                     alignment.shaft_angle_out_of_plane, 0, corner);
   struct eo_shaft_errors errors = {sign * alignment.shaft_angle_in_plane, sign * alignment.shaft_angle_out_of_plane, 0};
-  enum eo_code code = n > MOST ? eo_error_set(error, EO_ERROR_INPUT, "/unloaded_tca", "More than %d phases.", MOST)
-                               : eo_unloaded_exact(field, &errors, n, phase, exact, error);
+  enum eo_code code = eo_unloaded_exact(field, &errors, n, phase, exact, error);
   if (!code) {
     eo_unloaded_minimum(field, n, phase, least);
-    compare_errors(c, label, "TE_exact_um", json_object_get(item, "TE_exact_um"), exact, tolerance);
-    compare_errors(c, label, "TE_mingap_um", json_object_get(item, "TE_mingap_um"), least, tolerance);
-    for (int i = 0; i < n; i++) {
-      char quantity[60];
-      double s = eo_verify_at(json_object_get(item, "s"), (size_t)i),
-             eta = eo_verify_at(json_object_get(item, "eta"), (size_t)i);
-      snprintf(quantity, sizeof quantity, "s mm [%d]", i);
-      if (!isnan(s) && exact[i].touch == EO_TOUCH_POINT)
-        eo_verify_add(c->v, label, quantity, 1e3 * exact[i].path, s, 0.05);
-      snprintf(quantity, sizeof quantity, "eta mm [%d]", i);
-      if (!isnan(eta) && exact[i].touch == EO_TOUCH_POINT)
-        eo_verify_add(c->v, label, quantity, 1e3 * exact[i].eta, eta, 0.05);
-    }
+    compare_errors(c, eo_case_need(item, "TE_exact_um"), n, exact, tolerance);
+    compare_errors(c, eo_case_find(item, "TE_mingap_um"), n, least, tolerance);
+    compare_places(c, item, n, exact);
   }
   free(field);
   return code;
 }
 
-static void check_hertz(struct eo_contact_case *c, const json_t *block)
+/* ---- local contact and standards ---- */
+
+static enum eo_code check_hertz(void *context, struct eo_case *block, struct eo_error *error)
 {
-  const json_t *q = json_object_get(block, "q"), *s = json_object_get(block, "s"),
-               *expected = json_object_get(block, "delta_um");
-  double relative = eo_verify_number_or(block, "tol_rel", 1e-6);
-  for (size_t i = 0; i < json_array_size(q); i++)
-    for (size_t j = 0; j < json_array_size(s); j++) {
+  struct eo_contact_case *c = context;
+  struct eo_case *q = eo_case_need(block, "q"), *s = eo_case_need(block, "s"),
+                 *expected = eo_case_need(block, "delta_um");
+  double relative = eo_case_relative_or(block, "tol_rel", 1e-6);
+  (void)error;
+  eo_verify_size(c->v, expected, eo_case_size(q));
+  for (int i = 0; i < eo_case_size(q); i++) {
+    double load = 1e3 * eo_case_element(q, i);
+    eo_verify_size(c->v, eo_case_at(expected, i), eo_case_size(s));
+    for (int j = 0; j < eo_case_size(s); j++) {
       struct eo_local_law law;
-      double place = 1e-3 * eo_verify_at(s, j),
+      double place = 1e-3 * eo_case_element(s, j),
              depth[2] = {eo_geometry_depth(&c->geometry, 0, place), eo_geometry_depth(&c->geometry, 1, place)};
-      double wanted = eo_verify_at(json_array_get(expected, i), j);
-      char quantity[60];
       eo_local_law_init(&law, c->design.material.youngs_modulus, c->design.material.poissons_ratio,
                         eo_geometry_relative_radius(&c->geometry, place), depth);
-      snprintf(quantity, sizeof quantity, "delta_um at q %g, s %g", eo_verify_at(q, i), eo_verify_at(s, j));
-      eo_verify_add(c->v, "hertz", quantity, 1e6 * eo_local_law_approach(&law, 1e3 * eo_verify_at(q, i)), wanted,
-                    relative * fabs(wanted));
+      eo_verify_number(c->v, eo_case_at(eo_case_at(expected, i), j), 1e6 * eo_local_law_approach(&law, load), relative,
+                       0);
     }
+  }
+  return EO_OK;
 }
 
-static void check_iso_stiffness(struct eo_contact_case *c, const json_t *block)
+static enum eo_code check_iso_stiffness(void *context, struct eo_case *block, struct eo_error *error)
 {
+  struct eo_contact_case *c = context;
   const struct eo_geometry *g = &c->geometry;
   struct eo_iso_stiffness plain, corrected;
   struct eo_iso_stiffness_input input = {.teeth = {g->teeth[0], g->teeth[1]},
@@ -242,79 +243,87 @@ static void check_iso_stiffness(struct eo_contact_case *c, const json_t *block)
                                          .blank_factor = 1,
                                          .theory_factor = 1,
                                          .youngs_modulus = c->design.material.youngs_modulus};
-  double relative = 1e-3;
+  const double relative = 1e-3;
+  (void)error;
   eo_iso_stiffness(&plain, &input);
   input.theory_factor = 0.8;
   eo_iso_stiffness(&corrected, &input);
-  check_relative(c->v, "iso6336_1", block, "qprime", 1e9 * plain.flexibility, relative);
-  check_relative(c->v, "iso6336_1", block, "cth", 1e-9 * plain.theoretical, relative);
-  check_relative(c->v, "iso6336_1", block, "CB", plain.rack_factor, relative);
-  check_relative(c->v, "iso6336_1", block, "c_noCM", 1e-9 * plain.single, relative);
-  check_relative(c->v, "iso6336_1", block, "c", 1e-9 * corrected.single, relative);
-  check_relative(c->v, "iso6336_1", block, "cgamma_noCM", 1e-9 * plain.mesh_alpha, relative);
-  check_relative(c->v, "iso6336_1", block, "cgamma", 1e-9 * corrected.mesh_alpha, relative);
+  eo_verify_member(c->v, block, "qprime", 1e9 * plain.flexibility, relative, 0);
+  eo_verify_member(c->v, block, "cth", 1e-9 * plain.theoretical, relative, 0);
+  eo_verify_member(c->v, block, "CB", plain.rack_factor, relative, 0);
+  eo_verify_member(c->v, block, "c_noCM", 1e-9 * plain.single, relative, 0);
+  eo_verify_member(c->v, block, "c", 1e-9 * corrected.single, relative, 0);
+  eo_verify_member(c->v, block, "cgamma_noCM", 1e-9 * plain.mesh_alpha, relative, 0);
+  eo_verify_member(c->v, block, "cgamma", 1e-9 * corrected.mesh_alpha, relative, 0);
+  return EO_OK;
 }
 
-/* The block's name carries the torque: iso6336_3_pinion_828. */
-static void check_iso_root(struct eo_contact_case *c, const char *name, const json_t *block)
+/* Member and torque of a block called iso6336_3_pinion_828; false with a fault when its name says neither. */
+static bool read_root_name(struct eo_case *block, int *member, double *torque)
 {
-  int member = strstr(name, "gear") ? EO_GEAR : EO_PINION;
-  const char *last = strrchr(name, '_');
-  double torque = last ? atof(last + 1) : 0, relative = 5e-3;
+  static const char *const names[2] = {"iso6336_3_pinion_", "iso6336_3_gear_"};
+  const char *key = eo_case_key(block);
+  char *end = NULL;
+  for (*member = EO_PINION; *member <= EO_GEAR; ++*member)
+    if (strncmp(key, names[*member], strlen(names[*member])) == 0) {
+      *torque = strtod(key + strlen(names[*member]), &end);
+      break;
+    }
+  if (end && !*end && *torque > 0 && isfinite(*torque))
+    return true;
+  eo_case_fault(block, "The name says member and torque in N m, like iso6336_3_pinion_828.");
+  return false;
+}
+
+static enum eo_code check_iso_root(void *context, struct eo_case *block, struct eo_error *error)
+{
+  struct eo_contact_case *c = context;
+  const double relative = 5e-3, module = c->geometry.normal_module;
+  int member;
+  double torque;
   struct eo_iso_root root;
+  (void)error;
+  if (!read_root_name(block, &member, &torque))
+    return EO_OK;
   if (member == EO_GEAR)
     torque *= (double)c->geometry.teeth[1] / c->geometry.teeth[0];
   eo_iso_root(&root, &c->geometry, member, 0, torque / 2);
-  check_relative(c->v, name, block, "zn", root.virtual_teeth, relative);
-  check_relative(c->v, name, block, "YF", root.form_factor, relative);
-  check_relative(c->v, name, block, "YS", root.stress_correction, relative);
-  check_relative(c->v, name, block, "Yb", root.helix_factor, relative);
-  check_relative(c->v, name, block, "sF", root.chord / c->geometry.normal_module, relative);
-  check_relative(c->v, name, block, "hF", root.arm / c->geometry.normal_module, relative);
-  check_relative(c->v, name, block, "rF", root.fillet_radius / c->geometry.normal_module, relative);
-  check_relative(c->v, name, block, "sigmaF0", 1e-6 * root.stress, relative);
+  eo_verify_member(c->v, block, "zn", root.virtual_teeth, relative, 0);
+  eo_verify_member(c->v, block, "YF", root.form_factor, relative, 0);
+  eo_verify_member(c->v, block, "YS", root.stress_correction, relative, 0);
+  eo_verify_member(c->v, block, "Yb", root.helix_factor, relative, 0);
+  eo_verify_member(c->v, block, "sF", root.chord / module, relative, 0);
+  eo_verify_member(c->v, block, "hF", root.arm / module, relative, 0);
+  eo_verify_member(c->v, block, "rF", root.fillet_radius / module, relative, 0);
+  eo_verify_member(c->v, block, "sigmaF0", 1e-6 * root.stress, relative, 0);
+  return EO_OK;
 }
 
-static enum eo_code check_blocks(struct eo_contact_case *c, struct eo_error *error)
-{
-  const char *key;
-  json_t *block, *item;
-  size_t index;
-  enum eo_code code = EO_OK;
-  check_macro(c);
-  check_modification(c);
-  json_object_foreach((json_t *)c->file, key, block)
-  {
-    if (strncmp(key, "exact_surface_", 14) == 0)
-      check_surface(c, key + 14, block);
-    else if (strncmp(key, "slice_gap_", 10) == 0)
-      check_slice_gap(c, key + 10, block);
-    else if (strcmp(key, "hertz") == 0)
-      check_hertz(c, block);
-    else if (strcmp(key, "iso6336_1") == 0)
-      check_iso_stiffness(c, block);
-    else if (strncmp(key, "iso6336_3_", 10) == 0)
-      check_iso_root(c, key, block);
-  }
-  json_array_foreach(json_object_get(c->file, "unloaded_tca"), index, item) if (!code)
-      code = check_unloaded(c, item, error);
-  return code ? code : eo_verify_contact_loaded(c, error);
-}
+static const struct eo_verify_block blocks[] = {
+    {"macro", EO_BLOCK_EITHER, check_macro},
+    {"modification", EO_BLOCK_EITHER, check_modification},
+    {"exact_surface_*", EO_BLOCK_WHOLE, check_surface},
+    {"slice_gap_*", EO_BLOCK_WHOLE, check_slice_gap},
+    {"unloaded_tca", EO_BLOCK_EACH, check_unloaded},
+    {"hertz", EO_BLOCK_WHOLE, check_hertz},
+    {"ltca_synthetic", EO_BLOCK_WHOLE, eo_verify_contact_synthetic},
+    {"impact", EO_BLOCK_WHOLE, eo_verify_contact_impact},
+    {"iso6336_1", EO_BLOCK_WHOLE, check_iso_stiffness},
+    {"iso6336_3_*", EO_BLOCK_WHOLE, check_iso_root},
+    {"fe_bulk", EO_BLOCK_WHOLE, eo_verify_contact_bulk},
+    {"ltca_table", EO_BLOCK_WHOLE, eo_verify_contact_table},
+    {NULL, EO_BLOCK_INPUT, NULL},
+};
 
-enum eo_code eo_verify_contact(const json_t *file, struct eo_verification *v, struct eo_error *error)
+enum eo_code eo_verify_contact(struct eo_case *file, struct eo_verification *v, struct eo_error *error)
 {
   struct eo_contact_case *c = calloc(1, sizeof *c);
   if (!c)
     return eo_error_memory(error);
-  c->file = file;
-  c->v = v;
-  enum eo_code code = eo_case_design(json_object_get(json_object_get(file, "macro"), "input"), &c->design, error);
-  if (!code)
-    code = eo_geometry_init(&c->geometry, &c->design.gear_pair, error);
-  if (!code)
-    eo_design_resolve(&c->design, &c->geometry);
-  if (!code)
-    code = check_blocks(c, error);
+  enum eo_code code = eo_contact_case_init(c, file, v, error);
+  if (!code && !eo_case_faulty(file))
+    code = eo_verify_blocks(v, file, blocks, c, error);
+  eo_contact_case_done(c);
   free(c);
   return code;
 }

@@ -1,234 +1,316 @@
 #include "reference/verify_contact.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "reference/case_pair.h"
-#include "evaluation/evaluator.h"
-
-static void check_one(struct eo_contact_case *c, const char *label, const char *quantity, double value, double expected,
-                      double tolerance)
-{
-  if (!isnan(expected))
-    eo_verify_add(c->v, label, quantity, value, expected, tolerance);
-}
-
-static void check_pair(struct eo_contact_case *c, const char *label, const char *quantity, const json_t *expected,
-                       const double value[2], double relative, double least)
-{
-  for (int end = 0; end < 2; end++) {
-    char name[80];
-    double wanted = eo_verify_at(expected, (size_t)end);
-    snprintf(name, sizeof name, "%s %s", quantity, end ? "right" : "left");
-    check_one(c, label, name, value[end], wanted, fmax(relative * fabs(wanted), least));
-  }
-}
-
-/* The modification a case names by "mod", "left" and "right", or by the first word of its name. */
-static void set_modification(struct eo_contact_case *c, const json_t *item, struct eo_design *design)
-{
-  static const char *const side[2] = {"left", "right"};
-  const json_t *mods = json_object_get(json_object_get(c->file, "modification"), "mods");
-  const char *both = json_string_value(json_object_get(item, "mod"));
-  char word[41] = "";
-  const char *name = json_string_value(json_object_get(item, json_object_get(item, "case") ? "case" : "name"));
-  if (name)
-    snprintf(word, sizeof word, "%.*s", (int)strcspn(name, " ,"), name);
-  for (int end = 0; end < 2; end++) {
-    const char *own = json_string_value(json_object_get(item, side[end]));
-    const char *use = own                              ? own
-                      : both                           ? both
-                      : json_object_get(mods, word)    ? word
-                      : strncmp(word, "unmod", 5) == 0 ? "unmod"
-                                                       : word;
-    eo_contact_case_modification(c, use, &design->modification.flank[EO_PINION][end]);
-  }
-}
+#include "reference/contact_case.h"
 
 /* ---- ltca_synthetic ---- */
 
-static void check_row(struct eo_contact_case *c, const char *label, const json_t *block, const json_t *row,
-                      const struct eo_pair *pair, const struct eo_evaluation *r, int j)
+struct synthetic {
+  struct eo_contact_case *c;
+  struct eo_case *block;
+  struct eo_closed_form form;
+  double relative_share, relative_z, relative_q;
+};
+
+enum { LARGEST_PAIR = 1000 };
+
+static double load_of_pair(const struct eo_contact_position *p, const double *line_load, int pair)
 {
-  const struct eo_contact_position *p = &pair->grid->position[j];
+  double load = 0;
+  for (int i = 0; i < p->points; i++)
+    load += p->point[i].pair == pair ? line_load[i] * p->length[i] : 0;
+  return load;
+}
+
+/* Loads of the pairs of one end, to 1 N where they vanish; all pairs that carry are named. */
+static void check_shares(const struct synthetic *s, struct eo_case *shares, const struct eo_contact_position *p,
+                         const double *line_load)
+{
+  const double least = 1;
+  double named = 0, total = 0;
+  for (int i = 0; i < p->points; i++)
+    total += line_load[i] * p->length[i];
+  for (int i = 0; i < eo_case_size(shares); i++) {
+    struct eo_case *share = eo_case_at(shares, i);
+    double pair = eo_case_key_number(share);
+    if (!(fabs(pair) < LARGEST_PAIR) || pair != floor(pair)) {
+      eo_case_fault(share, "The key is the number of a pair of teeth.");
+      return;
+    }
+    double load = load_of_pair(p, line_load, (int)pair);
+    named += load;
+    eo_verify_number(s->c->v, share, load, s->relative_share, least);
+  }
+  eo_verify_derived(s->c->v, shares, "load of all pairs named, N", named, total, s->relative_share * total);
+}
+
+static void check_row(const struct synthetic *s, struct eo_case *row, const struct eo_contact_position *p,
+                      const struct eo_evaluation *r, int j)
+{
   double z[2], q[2] = {0, 0};
-  char quantity[60];
+  struct eo_case *shares = eo_case_find(row, "share_N");
+  if (shares)
+    eo_verify_size(s->c->v, shares, 2);
   for (int end = 0; end < 2; end++) {
     const struct eo_loaded_end *loaded = &r->load_case[0].end[end].loaded;
-    const char *key;
-    json_t *share;
     z[end] = 1e6 * loaded->approach[j];
     for (int i = 0; i < p->points; i++)
       q[end] = fmax(q[end], 1e-3 * loaded->line_load[p->first + i]);
-    json_object_foreach(json_array_get(json_object_get(row, "share_N"), (size_t)end), key, share)
-    {
-      double load = 0;
-      for (int i = 0; i < p->points; i++)
-        load += p->point[i].pair == atoi(key) ? loaded->line_load[p->first + i] * p->length[i] : 0;
-      snprintf(quantity, sizeof quantity, "load of pair %.10s, N, c %.6g %s", key, eo_verify_number(row, "c"),
-               end ? "right" : "left");
-      eo_verify_add(c->v, label, quantity, load, json_number_value(share),
-                    fmax(eo_verify_number_or(block, "tol_rel_share", 0.01) * json_number_value(share), 1));
-    }
+    if (shares && eo_case_at(shares, end))
+      check_shares(s, eo_case_at(shares, end), p, loaded->line_load + p->first);
   }
-  snprintf(quantity, sizeof quantity, "Z_um at c %.6g", eo_verify_number(row, "c"));
-  check_pair(c, label, quantity, json_object_get(row, "Z_um"), z, eo_verify_number_or(block, "tol_rel_Z", 0.002), 0);
-  snprintf(quantity, sizeof quantity, "qmax at c %.6g", eo_verify_number(row, "c"));
-  check_pair(c, label, quantity, json_object_get(row, "qmax"), q, eo_verify_number_or(block, "tol_rel_qmax", 0.03), 0);
+  eo_verify_list(s->c->v, eo_case_need(row, "Z_um"), 2, z, 1, s->relative_z, 0);
+  eo_contact_case_ends(s->c, row, "qmax", q, s->relative_q, 0);
 }
 
-static enum eo_code check_synthetic(struct eo_contact_case *c, const json_t *block, const json_t *item,
-                                    const struct eo_closed_form *form, struct eo_error *error)
+static enum eo_code solve_rows(const struct synthetic *s, struct eo_case *rows, const double *phase,
+                               struct eo_contact_rig *rig, struct eo_error *error)
 {
-  const json_t *rows = json_object_get(item, "rows");
-  size_t n = json_array_size(rows);
-  const char *name = json_string_value(json_object_get(item, "name")),
-             *kernel = json_string_value(json_object_get(block, "kernel"));
-  double *phase = calloc(n + 1, sizeof *phase);
-  struct eo_design *design = malloc(sizeof *design);
-  struct eo_pair *pair = NULL;
-  struct eo_evaluator *evaluator = NULL;
+  int n = eo_case_size(rows);
+  struct eo_contact_grid_settings grid = {.positions = n,
+                                          .cells = eo_case_count(s->block, "kernel", "equal cells per line", 60)};
+  struct eo_pair_options options = {
+      .kernel = {eo_closed_form_kernel, &s->form}, .grid = &grid, .phase = phase, .own_pivots = true};
   const struct eo_evaluation *r;
-  enum eo_code code = phase && design ? EO_OK : eo_error_memory(error);
+  rig->design.resolution.positions = n;
+  enum eo_code code = eo_contact_rig_prepare(rig, &options, error);
+  if (!code)
+    code = eo_evaluator_contact(rig->evaluator, &rig->design, &r, error);
+  if (code)
+    return code;
+  if (r->load_case[0].contact_failures)
+    eo_verify_diverged(s->c->v, rows);
+  else
+    for (int i = 0; i < n; i++)
+      check_row(s, eo_case_at(rows, i), &rig->pair->grid->position[i], r, i);
+  return EO_OK;
+}
+
+static enum eo_code check_synthetic(void *context, struct eo_case *item, struct eo_error *error)
+{
+  const struct synthetic *s = context;
+  struct eo_case *rows = eo_case_need(item, "rows");
+  int n = eo_case_size(rows);
+  double *phase = calloc((size_t)n + 1, sizeof *phase);
+  struct eo_contact_rig *rig = calloc(1, sizeof *rig);
+  enum eo_code code = phase && rig ? EO_OK : eo_error_memory(error);
   if (!code) {
-    struct eo_contact_grid_settings grid = {.positions = (int)n,
-                                            .cells = eo_case_count(kernel, "equal cells per line", 60)};
-    struct eo_pair_options options = {
-        .kernel = {eo_closed_form_kernel, form}, .grid = &grid, .phase = phase, .own_pivots = true};
-    for (size_t i = 0; i < n; i++)
-      phase[i] = 1e-3 * eo_verify_number(json_array_get(rows, i), "c");
-    *design = c->design;
-    design->load_case[0].torque = eo_verify_number_or(item, "T", NAN);
-    design->alignment.pinion_axial = json_is_true(json_object_get(item, "fixed")) ? EO_AXIAL_FIXED : EO_AXIAL_FLOATING;
-    eo_case_misalignment(json_object_get(item, "mis"), &design->alignment);
-    set_modification(c, item, design);
-    design->resolution.positions = grid.positions;
-    code = n < 1 ? eo_error_set(error, EO_ERROR_INPUT, "/ltca_synthetic/cases", "A case has no rows.")
-                 : eo_pair_new(&pair, design, &options, NULL, error);
+    struct eo_design *design = &rig->design;
+    *design = s->c->design;
+    for (int i = 0; i < n; i++)
+      phase[i] = 1e-3 * eo_case_number(eo_case_at(rows, i), "c");
+    design->load_case[0].torque = eo_case_number(item, "T");
+    design->alignment.pinion_axial = eo_case_flag_or(item, "fixed", false) ? EO_AXIAL_FIXED : EO_AXIAL_FLOATING;
+    eo_case_misalignment(eo_case_need(item, "mis"), &design->alignment);
+    eo_contact_case_modify(s->c, item, design);
+    if (rows && n < 1)
+      eo_case_fault(rows, "Rows are expected here.");
+    if (!eo_case_faulty(item))
+      code = solve_rows(s, rows, phase, rig, error);
   }
-  if (!code)
-    code = eo_evaluator_new(&evaluator, pair, 1, error);
-  if (!code)
-    code = eo_evaluator_contact(evaluator, design, &r, error);
-  for (size_t i = 0; i < n && !code; i++)
-    check_row(c, name ? name : "ltca", block, json_array_get(rows, i), pair, r, (int)i);
-  eo_evaluator_free(evaluator);
-  eo_pair_free(pair);
-  free(design);
+  if (rig)
+    eo_contact_rig_done(rig);
+  free(rig);
   free(phase);
   return code;
 }
 
+enum eo_code eo_verify_contact_synthetic(void *context, struct eo_case *block, struct eo_error *error)
+{
+  struct synthetic s = {.c = context,
+                        .block = block,
+                        .relative_share = eo_case_relative_or(block, "tol_rel_share", 0.01),
+                        .relative_z = eo_case_relative_or(block, "tol_rel_Z", 0.002),
+                        .relative_q = eo_case_relative_or(block, "tol_rel_qmax", 0.03)};
+  eo_case_closed_form(eo_case_need(block, "kernel"), &s.form);
+  return eo_verify_each(s.c->v, eo_case_need(block, "cases"), check_synthetic, &s, error);
+}
+
 /* ---- impact ---- */
 
-static void check_corners(struct eo_contact_case *c, const json_t *list)
+struct impacts {
+  struct eo_contact_case *c;
+  double speed;
+  double inertia[2];
+};
+
+static enum eo_code check_corners(struct eo_contact_case *c, struct eo_case *list, struct eo_error *error)
 {
+  const double tolerance = 1e-3; /* um, as the files say */
   struct eo_flank_modification none = {0};
   struct eo_corner_gap corner[2];
   struct eo_gap_field *field = malloc(sizeof *field);
-  size_t index;
-  json_t *row;
   if (!field)
-    return;
+    return eo_error_memory(error);
   eo_corner_gap_init(corner, &c->geometry);
   eo_gap_field_init(field, &c->geometry, &none, &none, EO_RIGHT, 0, 0, 0, corner);
-  json_array_foreach(list, index, row)
-  {
-    char quantity[60];
-    double before = eo_verify_number(row, "before_A_mm"),
-           gap = eo_gap_field_at(field, c->geometry.path_start - 1e-3 * before, 0, NULL, NULL);
-    snprintf(quantity, sizeof quantity, "corner gap um, %g mm before A", before);
-    check_one(c, "impact", quantity, 1e6 * gap, eo_verify_number(row, "gap_um"), 1e-3);
+  for (int i = 0; i < eo_case_size(list); i++) {
+    struct eo_case *row = eo_case_at(list, i);
+    double s = c->geometry.path_start - 1e-3 * eo_case_number(row, "before_A_mm");
+    eo_verify_number(c->v, eo_case_need(row, "gap_um"), 1e6 * eo_gap_field_at(field, s, 0, NULL, NULL), 0, tolerance);
   }
   free(field);
+  return EO_OK;
 }
 
-static enum eo_code check_impact(struct eo_contact_case *c, const json_t *block, const json_t *item,
-                                 struct eo_error *error)
+static void compare_impact(struct eo_contact_case *c, struct eo_case *item, const struct eo_impact *impact)
 {
-  enum { POSITIONS = 8 };
+  const double millimetre = 0.02, face = 0.5, on_line = 0.03, off_line = 0.005;
+  eo_verify_fact(c->v, item, "touches", impact->touched);
+  if (!impact->touched) {
+    eo_case_skip(item);
+    return;
+  }
+  eo_verify_member(c->v, item, "c", 1e3 * impact->phase, 0, millimetre);
+  eo_verify_member(c->v, item, "eta", 1e3 * impact->eta, 0, face);
+  eo_verify_exact(c->v, eo_case_need(item, "off_line"), impact->off_line);
+  eo_verify_member(c->v, item, "pinion_radius", 1e3 * impact->pinion_radius, 0, millimetre);
+  eo_verify_member(c->v, item, "closing_speed_mm_s", 1e3 * impact->speed, impact->off_line ? off_line : on_line, 0);
+}
+
+static void impact_flank(struct eo_contact_case *c, struct eo_case *mod, struct eo_flank_modification *flank)
+{
+  if (eo_case_is_text(mod))
+    eo_contact_case_modification(c, eo_case_text(mod), mod, flank);
+  else
+    eo_case_modification(mod, &c->design.gear_pair, flank);
+}
+
+static enum eo_code check_impact(void *context, struct eo_case *item, struct eo_error *error)
+{
+  enum { POSITIONS = 8, CELLS = 4 };
+  /* Where teeth touch does not depend on the compliance; any will do. */
   static const struct eo_closed_form form = {1.5e-9, 12e-3, 0, 0, 0};
+  const struct impacts *all = context;
+  struct eo_contact_case *c = all->c;
   struct eo_kernel kernel = {eo_closed_form_kernel, &form};
-  struct eo_contact_grid_settings settings = {.positions = POSITIONS, .cells = 4};
-  struct eo_contact_grid *grid = NULL;
-  struct eo_gap_field *field = malloc(sizeof *field);
+  struct eo_contact_grid_settings settings = {.positions = POSITIONS, .cells = CELLS};
+  struct eo_impact_settings how = {.patch = c->design.resolution.impact_patch,
+                                   .inertia = {all->inertia[0], all->inertia[1]}};
   struct eo_flank_modification flank, none = {0};
   struct eo_alignment alignment;
+  struct eo_corner_gap corner[2];
   struct eo_impact impact;
-  double approach[POSITIONS], speed = eo_verify_number_or(block, "rpm", 2000) * M_PI / 30;
-  struct eo_impact_settings how = {.patch = c->design.resolution.impact_patch};
-  const char *label = json_string_value(json_object_get(item, "name"));
+  double approach[POSITIONS], z = 1e-6 * eo_case_number(item, "Z_um"), end = eo_case_number(item, "end");
+  if (!isnan(end) && fabs(end) != 1)
+    eo_case_fault(eo_case_find(item, "end"), "An end is 1 (right) or -1 (left).");
+  impact_flank(c, eo_case_need(item, "mod"), &flank);
+  eo_case_misalignment(eo_case_need(item, "mis"), &alignment);
+  if (eo_case_faulty(item))
+    return EO_OK;
+  struct eo_contact_grid *grid = NULL;
+  struct eo_gap_field *field = malloc(sizeof *field);
   enum eo_code code = field ? eo_contact_grid_new(&grid, &c->geometry, &c->design.material, &settings, NULL, kernel,
                                                   NULL, error)
                             : eo_error_memory(error);
   if (!code) {
-    eo_impact_inertia(&c->geometry, &c->design.material, how.inertia);
-    eo_case_modification(json_object_get(item, "mod"), &c->design.gear_pair, &flank);
-    eo_case_misalignment(json_object_get(item, "mis"), &alignment);
-    eo_gap_field_init(field, &c->geometry, &flank, &none, eo_verify_number_or(item, "end", 1) < 0 ? EO_LEFT : EO_RIGHT,
-                      alignment.shaft_angle_in_plane, alignment.shaft_angle_out_of_plane, 0, grid->corner);
+    eo_corner_gap_init(corner, &c->geometry);
+    eo_gap_field_init(field, &c->geometry, &flank, &none, end < 0 ? EO_LEFT : EO_RIGHT, alignment.shaft_angle_in_plane,
+                      alignment.shaft_angle_out_of_plane, 0, corner);
     for (int j = 0; j < POSITIONS; j++)
-      approach[j] = 1e-6 * eo_verify_number_or(item, "Z_um", NAN);
-    eo_impact_find(&impact, grid, field, kernel, &how, approach, speed, 1);
-    bool off = json_is_true(json_object_get(item, "off_line"));
-    double wanted = eo_verify_number(item, "closing_speed_mm_s");
-    check_one(c, label, "c mm", 1e3 * impact.phase, eo_verify_number(item, "c"), 0.02);
-    check_one(c, label, "eta mm", 1e3 * impact.eta, eo_verify_number(item, "eta"), 0.5);
-    check_one(c, label, "off the line", impact.off_line, json_is_boolean(json_object_get(item, "off_line")) ? off : NAN,
-              0);
-    check_one(c, label, "pinion radius mm", 1e3 * impact.pinion_radius, eo_verify_number(item, "pinion_radius"), 0.02);
-    check_one(c, label, "closing speed mm/s", 1e3 * impact.speed, wanted, (off ? 0.005 : 0.03) * fabs(wanted));
-    for (int member = 0; member < 2; member++)
-      check_one(c, label, member ? "inertia gear, t mm2" : "inertia pinion, t mm2", 1e3 * how.inertia[member],
-                eo_verify_element(block, "inertia_t_mm2", member),
-                1e-6 * eo_verify_element(block, "inertia_t_mm2", member));
-    check_one(c, label, "effective mass, t", 1e-3 * eo_impact_mass(&c->geometry, how.inertia),
-              eo_verify_number(block, "m_eff_t"), 1e-9 * eo_verify_number(block, "m_eff_t") + 1e-12);
+      approach[j] = z;
+    eo_impact_find(&impact, grid, field, kernel, &how, approach, all->speed, 1);
+    compare_impact(c, item, &impact);
   }
   eo_contact_grid_free(grid);
   free(field);
   return code;
 }
 
+enum eo_code eo_verify_contact_impact(void *context, struct eo_case *block, struct eo_error *error)
+{
+  struct impacts all = {.c = context, .speed = eo_case_number(block, "rpm") * M_PI / 30};
+  struct eo_case *inertia = eo_case_find(block, "inertia_t_mm2");
+  eo_impact_inertia(&all.c->geometry, &all.c->design.material, all.inertia);
+  eo_case_remark(block, "tol");
+  if (inertia)
+    eo_verify_list(all.c->v, inertia, 2, all.inertia, 1e3, 1e-6, 0);
+  eo_verify_member(all.c->v, block, "m_eff_t", 1e-3 * eo_impact_mass(&all.c->geometry, all.inertia), 1e-9, 1e-12);
+  enum eo_code code = check_corners(all.c, eo_case_find(block, "corner_gap_unmod"), error);
+  return code ? code : eo_verify_each(all.c->v, eo_case_find(block, "cases"), check_impact, &all, error);
+}
+
 /* ---- finite elements: fe_bulk, ltca_table ---- */
 
-static void check_bulk(struct eo_contact_case *c, const struct eo_flexibility *flexibility, const json_t *block,
-                       int member)
+/* As the files' reference has it: sectors of 3 teeth, each tooth pair with its own flexibility only unless the table
+   says otherwise, no contact of tip edges. */
+static enum eo_code prepare_sector(struct eo_contact_case *c, struct eo_error *error)
 {
-  enum { N = 111 };
-  double *compliance = malloc(sizeof *compliance * N * N);
-  double relative = eo_verify_number_or(block, "tol_rel", 0.06), width = c->geometry.face_width;
-  size_t index;
-  json_t *row;
-  json_array_foreach(json_object_get(block, member ? "gear" : "pinion"), index, row)
-  {
-    struct eo_flank_point point[N];
-    double s = 1e-3 * eo_verify_number(row, "s");
-    if (!compliance)
-      break;
-    /* Midpoints of equal stretches carry 1 N per mm of face width; the ends and the middle are read as well, unloaded.
-     */
-    for (int i = 0; i < N - 3; i++)
-      point[i] = (struct eo_flank_point){0, {s, s}, width * ((i + 0.5) / (N - 3) - 0.5)};
-    for (int i = 0; i < 3; i++)
-      point[N - 3 + i] = (struct eo_flank_point){0, {s, s}, width * (0.5 * i - 0.5)};
-    memset(compliance, 0, sizeof *compliance * N * N);
-    eo_flexibility_add_compliance(flexibility, member, N, point, compliance);
-    for (int k = 0; k < 3; k++) {
-      double sum = 0, wanted = eo_verify_element(row, "d", k);
-      char quantity[80];
-      for (int i = 0; i < N - 3; i++)
-        sum += compliance[(N - 3 + k) * N + i] * 1e3 * width / (N - 3);
-      snprintf(quantity, sizeof quantity, "%s, um at s %g, %s", member ? "gear" : "pinion", 1e3 * s,
-               k == 0   ? "-b/2"
-               : k == 1 ? "0"
-                        : "+b/2");
-      check_one(c, "fe_bulk", quantity, 1e6 * sum, wanted, relative * fabs(wanted));
-    }
+  struct eo_pair_options options = {.own_pivots = true, .impact_stations = 221};
+  struct eo_case *table = eo_case_find(c->file, "ltca_table");
+  struct eo_resolution *r = &c->sector.design.resolution;
+  if (c->sector.evaluator)
+    return EO_OK;
+  c->sector.design = c->design;
+  r->sector_teeth = 3;
+  r->neighbour_coupling = table && eo_case_on(table, "neighbour_tooth_coupling", false);
+  r->tip_edge_contact = false;
+  r->positions = table ? eo_case_count(table, "note", "positions", 32) : 32;
+  r->cells_per_line = table ? eo_case_count(table, "note", "cells per line", 30) : 30;
+  return eo_case_faulty(c->file) ? EO_OK : eo_contact_rig_prepare(&c->sector, &options, error);
+}
+
+/* Midpoints of equal stretches carry 1 N per mm of face width; the ends and the middle are read as well, unloaded. */
+static enum eo_code row_deflection(const struct eo_flexibility *flexibility, int member, double s, double width,
+                                   double deflection[3], struct eo_error *error)
+{
+  enum { N = 111, LOADED = N - 3 };
+  struct eo_flank_point point[N];
+  double *compliance = calloc((size_t)N * N, sizeof *compliance);
+  if (!compliance)
+    return eo_error_memory(error);
+  for (int i = 0; i < LOADED; i++)
+    point[i] = (struct eo_flank_point){0, {s, s}, width * ((i + 0.5) / LOADED - 0.5)};
+  for (int i = 0; i < 3; i++)
+    point[LOADED + i] = (struct eo_flank_point){0, {s, s}, width * (0.5 * i - 0.5)};
+  eo_flexibility_add_compliance(flexibility, member, N, point, compliance);
+  for (int k = 0; k < 3; k++) {
+    deflection[k] = 0;
+    for (int i = 0; i < LOADED; i++)
+      deflection[k] += compliance[(LOADED + k) * N + i] * 1e3 * width / LOADED;
   }
   free(compliance);
+  return EO_OK;
 }
+
+static enum eo_code check_bulk(struct eo_contact_case *c, const struct eo_flexibility *flexibility,
+                               struct eo_case *block, int member, struct eo_error *error)
+{
+  double relative = eo_case_relative_or(block, "tol_rel", 0.06), deflection[3];
+  struct eo_case *rows = eo_case_find(block, member ? "gear" : "pinion");
+  enum eo_code code = EO_OK;
+  for (int i = 0; i < eo_case_size(rows) && !code; i++) {
+    struct eo_case *row = eo_case_at(rows, i);
+    double s = 1e-3 * eo_case_number(row, "s");
+    if (isnan(s))
+      break;
+    code = row_deflection(flexibility, member, s, c->geometry.face_width, deflection, error);
+    if (!code)
+      eo_verify_list(c->v, eo_case_need(row, "d"), 3, deflection, 1e6, relative, 0);
+  }
+  return code;
+}
+
+enum eo_code eo_verify_contact_bulk(void *context, struct eo_case *block, struct eo_error *error)
+{
+  struct eo_contact_case *c = context;
+  enum eo_code code = prepare_sector(c, error);
+  for (int member = 0; member < 2 && !code && !eo_case_faulty(block); member++)
+    code = check_bulk(c, c->sector.pair->flexibility, block, member, error);
+  return code;
+}
+
+struct table {
+  struct eo_contact_case *c;
+  double speed; /* of the pinion, rad/s */
+};
+
+/* Tolerances of the table, as its "tol" says: mean and stiffness, peak to peak, impact. */
+static const double of_level = 0.08, of_peak = 0.2, of_edge = 0.3, of_impact = 0.2, least_peak = 0.15;
 
 static double mean_of(int n, const double *value)
 {
@@ -238,123 +320,127 @@ static double mean_of(int n, const double *value)
   return sum;
 }
 
-static void check_table_row(struct eo_contact_case *c, const json_t *row, const struct eo_evaluation *r, bool modified)
+static void check_stiffness(struct eo_contact_case *c, struct eo_case *row, const struct eo_evaluation *r)
 {
   const struct eo_case_result *o = &r->load_case[0];
-  const struct eo_end_result *e = o->end;
-  char label[100];
-  double k[2] = {0, 0}, k0[2] = {0, 0}, kt[2], low = INFINITY, high = -INFINITY,
-         pp = eo_verify_number_or(row, "PPLTE_um", 0);
-  double normal = cos(c->geometry.base_helix_angle);
-  snprintf(label, sizeof label, "table: %s, %s, %g N m", json_string_value(json_object_get(row, "case")),
-           json_string_value(json_object_get(row, "mis")), eo_verify_number(row, "T"));
-  for (int end = 0; end < 2; end++)
+  double k[2] = {0, 0}, k0[2] = {0, 0}, kt[2];
+  for (int end = 0; end < 2; end++) {
+    const struct eo_end_result *e = &o->end[end];
+    kt[end] = 1e-6 * mean_of(r->positions, e->loaded.tangent);
     for (int j = 0; j < r->positions; j++) {
-      k[end] += 1e-6 * o->force / e[end].loaded.approach[j] / r->positions;
-      k0[end] += 1e-6 * o->force / (e[end].loaded.approach[j] - e[end].datum) / r->positions;
+      k[end] += 1e-6 * o->force / e->loaded.approach[j] / r->positions;
+      k0[end] += 1e-6 * o->force / (e->loaded.approach[j] - e->datum) / r->positions;
     }
+  }
+  eo_contact_case_ends(c, row, "k_PZ_N_um", k, of_level, 0);
+  eo_contact_case_ends(c, row, "k_PZ0_N_um", k0, of_level, 0);
+  eo_contact_case_ends(c, row, "kt_N_um", kt, of_level, 0);
+}
+
+/* Impacts are within 20 %, to a thousandth of the mesh load where there is none. */
+static void check_impacts(struct eo_contact_case *c, struct eo_case *row, const struct eo_case_result *o)
+{
+  const double least = 1e-3 * o->force;
+  double classical[2], general[2], speed[2], duration[2];
+  for (int end = 0; end < 2; end++) {
+    const struct eo_impact *impact = &o->end[end].impact;
+    classical[end] = impact->classical;
+    general[end] = impact->force;
+    speed[end] = 1e3 * impact->speed;
+    duration[end] = 1e3 * impact->duration;
+  }
+  eo_contact_case_ends(c, row, "impact_N", classical, of_impact, least);
+  eo_contact_case_ends(c, row, "impact_general_N", general, of_impact, least);
+  eo_contact_case_ends(c, row, "v_mm_s", speed, of_impact, 0);
+  eo_contact_case_ends(c, row, "pulse_ms", duration, of_impact, 0);
+  eo_verify_uncompared(c->v, eo_case_find(row, "emip_lead_mm"),
+                       "the table states no tolerance for it; places of first touch are compared in \"impact\".");
+}
+
+/* Peak to peak of the unloaded transmission error, both ends together, transverse. */
+static double unloaded_peak(const struct eo_contact_case *c, const struct eo_evaluation *r)
+{
+  const struct eo_end_result *e = r->load_case[0].end;
+  double low = INFINITY, high = -INFINITY;
   for (int j = 0; j < r->positions; j++) {
-    double z = (e[0].unloaded[j] + e[1].unloaded[j]) / 2 / normal;
+    double z = (e[0].unloaded[j] + e[1].unloaded[j]) / 2 / cos(c->geometry.base_helix_angle);
     low = fmin(low, z);
     high = fmax(high, z);
   }
-  for (int end = 0; end < 2; end++)
-    kt[end] = 1e-6 * mean_of(r->positions, e[end].loaded.tangent);
-  check_one(c, label, "PPLTE_um", 1e6 * o->peak_to_peak, pp, fmax(0.15, 0.2 * pp));
-  check_pair(c, label, "PPLTE_um of the end", json_object_get(row, "PPLTE_ends_um"),
-             (double[]){1e6 * e[0].transmission_peak, 1e6 * e[1].transmission_peak}, 0.2, 0.15);
-  check_one(c, label, "LTE_mean_um", 1e6 * o->mean, eo_verify_number(row, "LTE_mean_um"),
-            0.08 * eo_verify_number(row, "LTE_mean_um"));
-  check_one(c, label, "TE0_pp_um", 1e6 * (high - low), eo_verify_number(row, "TE0_pp_um"),
-            fmax(0.15, 0.2 * eo_verify_number_or(row, "TE0_pp_um", 0)));
-  check_pair(c, label, "k_PZ_N_um", json_object_get(row, "k_PZ_N_um"), k, 0.08, 0);
-  check_pair(c, label, "k_PZ0_N_um", json_object_get(row, "k_PZ0_N_um"), k0, 0.08, 0);
-  check_pair(c, label, "kt_N_um", json_object_get(row, "kt_N_um"), kt, 0.08, 0);
-  check_pair(c, label, "qmax_N_mm", json_object_get(row, "qmax_N_mm"),
-             (double[]){1e-3 * e[0].max_line_load, 1e-3 * e[1].max_line_load}, modified ? 0.08 : 0.3, 0);
-  check_pair(c, label, "pH_MPa", json_object_get(row, "pH_MPa"),
-             (double[]){1e-6 * e[0].max_pressure, 1e-6 * e[1].max_pressure}, modified ? 0.08 : 0.3, 0);
-  check_pair(c, label, "impact_N", json_object_get(row, "impact_N"),
-             (double[]){e[0].impact.classical, e[1].impact.classical}, 0.2, 0);
-  check_pair(c, label, "impact_general_N", json_object_get(row, "impact_general_N"),
-             (double[]){e[0].impact.force, e[1].impact.force}, 0.2, 0);
-  check_pair(c, label, "v_mm_s", json_object_get(row, "v_mm_s"),
-             (double[]){1e3 * e[0].impact.speed, 1e3 * e[1].impact.speed}, 0.2, 0);
-  check_pair(c, label, "pulse_ms", json_object_get(row, "pulse_ms"),
-             (double[]){1e3 * e[0].impact.duration, 1e3 * e[1].impact.duration}, 0.2, 0);
-  const json_t *z = json_object_get(row, "Z_um");
-  size_t rows = json_array_size(z);
-  for (size_t i = 0; i < rows; i++) {
-    size_t j = i * (size_t)r->positions / rows;
-    char quantity[60];
-    snprintf(quantity, sizeof quantity, "Z_um [%zu]", i);
-    check_pair(c, label, quantity, json_array_get(z, i),
-               (double[]){1e6 * e[0].loaded.approach[j], 1e6 * e[1].loaded.approach[j]}, 0.08, 0);
+  return high - low;
+}
+
+/* Rows of [left, right] at equal steps over the mesh cycle. */
+static void check_approaches(struct eo_contact_case *c, struct eo_case *rows, const struct eo_evaluation *r)
+{
+  const struct eo_end_result *e = r->load_case[0].end;
+  int n = eo_case_size(rows);
+  if (n && r->positions % n)
+    eo_case_fault(rows, "%d rows do not divide the %d positions.", n, r->positions);
+  for (int i = 0; i < n; i++) {
+    int j = i * r->positions / n;
+    const double z[2] = {e[0].loaded.approach[j], e[1].loaded.approach[j]};
+    eo_verify_list(c->v, eo_case_at(rows, i), 2, z, 1e6, of_level, 0);
   }
 }
 
-static enum eo_code check_finite_elements(struct eo_contact_case *c, struct eo_error *error)
+static void check_table_row(struct eo_contact_case *c, struct eo_case *row, const struct eo_evaluation *r,
+                            bool modified)
 {
-  const json_t *bulk = json_object_get(c->file, "fe_bulk"), *table = json_object_get(c->file, "ltca_table");
-  const char *note = json_string_value(json_object_get(table, "note"));
-  struct eo_design *design = malloc(sizeof *design);
-  struct eo_pair *pair = NULL;
-  struct eo_evaluator *evaluator = NULL;
+  const struct eo_case_result *o = &r->load_case[0];
+  const struct eo_end_result *e = o->end;
+  const double of_pressure = modified ? of_level : of_edge;
+  eo_verify_number(c->v, eo_case_need(row, "PPLTE_um"), 1e6 * o->peak_to_peak, of_peak, least_peak);
+  eo_contact_case_ends(c, row, "PPLTE_ends_um", (double[]){1e6 * e[0].transmission_peak, 1e6 * e[1].transmission_peak},
+                       of_peak, least_peak);
+  eo_verify_number(c->v, eo_case_need(row, "LTE_mean_um"), 1e6 * o->mean, of_level, 0);
+  eo_verify_member(c->v, row, "TE0_pp_um", 1e6 * unloaded_peak(c, r), of_peak, least_peak);
+  check_stiffness(c, row, r);
+  eo_contact_case_ends(c, row, "qmax_N_mm", (double[]){1e-3 * e[0].max_line_load, 1e-3 * e[1].max_line_load},
+                       of_pressure, 0);
+  eo_contact_case_ends(c, row, "pH_MPa", (double[]){1e-6 * e[0].max_pressure, 1e-6 * e[1].max_pressure}, of_pressure,
+                       0);
+  check_impacts(c, row, o);
+  check_approaches(c, eo_case_find(row, "Z_um"), r);
+}
+
+static enum eo_code check_row_of_table(void *context, struct eo_case *row, struct eo_error *error)
+{
+  const struct table *t = context;
+  struct eo_design *design = &t->c->sector.design;
   const struct eo_evaluation *r;
-  struct eo_pair_options options = {.own_pivots = true, .impact_stations = 221};
-  size_t index;
-  json_t *row;
-  if (!bulk && !table) {
-    free(design);
+  design->load_case[0] = (struct eo_load_case){eo_case_number(row, "T"), t->speed, 1};
+  eo_case_misalignment(eo_case_need(row, "mis"), &design->alignment);
+  eo_contact_case_modify(t->c, row, design);
+  if (eo_case_faulty(row))
     return EO_OK;
-  }
-  enum eo_code code = design ? EO_OK : eo_error_memory(error);
-  if (!code) {
-    *design = c->design;
-    design->resolution.sector_teeth = 3;
-    design->resolution.neighbour_coupling = false;
-    design->resolution.tip_edge_contact = false;
-    design->resolution.positions = eo_case_count(note, "positions", 32);
-    design->resolution.cells_per_line = eo_case_count(note, "cells per line", 30);
-    code = eo_pair_new(&pair, design, &options, NULL, error);
-  }
-  if (!code)
-    code = eo_evaluator_new(&evaluator, pair, 1, error);
-  for (int member = 0; member < 2 && !code && bulk; member++)
-    check_bulk(c, pair->flexibility, bulk, member);
-  json_array_foreach(json_object_get(table, "rows"), index, row)
-  {
-    if (code)
-      break;
-    design->load_case[0] =
-        (struct eo_load_case){eo_verify_number_or(row, "T", NAN),
-                              eo_verify_number_or(json_object_get(c->file, "impact"), "rpm", 2000) * M_PI / 30, 1};
-    eo_case_misalignment(json_object_get(row, "mis"), &design->alignment);
-    set_modification(c, row, design);
-    code = eo_evaluator_contact(evaluator, design, &r, error);
-    if (!code)
-      check_table_row(c, row, r, !eo_modification_is_none(&design->modification.flank[EO_PINION][EO_LEFT]));
-  }
-  eo_evaluator_free(evaluator);
-  eo_pair_free(pair);
-  free(design);
-  return code;
+  enum eo_code code = eo_evaluator_contact(t->c->sector.evaluator, design, &r, error);
+  if (code)
+    return code;
+  if (r->load_case[0].contact_failures)
+    eo_verify_diverged(t->c->v, row);
+  else
+    check_table_row(t->c, row, r, !eo_modification_is_none(&design->modification.flank[EO_PINION][EO_LEFT]));
+  return EO_OK;
 }
 
-enum eo_code eo_verify_contact_loaded(struct eo_contact_case *c, struct eo_error *error)
+/* The speed of the table's impacts is that of the block "impact". */
+static double table_speed(struct eo_contact_case *c)
 {
-  const json_t *synthetic = json_object_get(c->file, "ltca_synthetic"), *impact = json_object_get(c->file, "impact");
-  struct eo_closed_form form;
-  enum eo_code code = EO_OK;
-  size_t index;
-  json_t *item;
-  if (synthetic && !eo_case_closed_form(json_string_value(json_object_get(synthetic, "kernel")), &form))
-    return eo_error_set(error, EO_ERROR_INPUT, "/ltca_synthetic/kernel",
-                        "The closed-form compliance could not be read.");
-  json_array_foreach(json_object_get(synthetic, "cases"), index, item) if (!code)
-      code = check_synthetic(c, synthetic, item, &form, error);
-  check_corners(c, json_object_get(impact, "corner_gap_unmod"));
-  json_array_foreach(json_object_get(impact, "cases"), index, item) if (!code)
-      code = check_impact(c, impact, item, error);
-  return code ? code : check_finite_elements(c, error);
+  const double usual = 2000;
+  struct eo_case *impact = eo_case_find(c->file, "impact");
+  if (!impact)
+    eo_verify_note(c->v, "No block \"impact\" states the speed; ltca_table is run at %g rpm.", usual);
+  return (impact ? eo_case_number(impact, "rpm") : usual) * M_PI / 30;
+}
+
+enum eo_code eo_verify_contact_table(void *context, struct eo_case *block, struct eo_error *error)
+{
+  struct eo_contact_case *c = context;
+  struct table t = {.c = c, .speed = table_speed(c)};
+  eo_case_remark(block, "tol");
+  enum eo_code code = prepare_sector(c, error);
+  return code || eo_case_faulty(block)
+             ? code
+             : eo_verify_each(c->v, eo_case_need(block, "rows"), check_row_of_table, &t, error);
 }

@@ -1,220 +1,270 @@
 /* Kind "dynamics": the lumped model through the functions that analyse designs. Blocks, each optional and of any
-   length: geometry.z1                  pinion teeth (17 when missing) defaults, torsional_coupling parameters for the
-   cases that carry none law_NAME, table_NAME         laws and tables that cases name eigen[] eigenfrequencies, damping
-   ratios, number of zero modes negative_control_literal_signs  the pole of the printed signs dynamics[] periodic
-   responses; a case's law is a name, an object, or a pair [left, right] of them sdof.cases[], sdof.folds     the single
-   degree of freedom */
+   length: geometry (z1: pinion teeth; a whole pair is compared), defaults and torsional_coupling (parameters for the
+   cases that carry none), law_NAME and table_NAME (what cases name), eigen[] (eigenfrequencies, damping ratios, number
+   of zero modes), negative_control_literal_signs (the pole of the printed signs), dynamics[] (periodic responses; a
+   case's law is a name, an object, or a pair [left, right] of them), sdof.cases[], sdof.folds (the single degree of
+   freedom). */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "reference/verify_mesh.h"
 #include "dynamics/sdof.h"
 #include "dynamics/vibration.h"
+#include "reference/case_pair.h"
+#include "reference/verify_mesh.h"
 
-enum { HARMONICS = 96, SAMPLES = 4096, NAME_LENGTH = 120 };
+enum { HARMONICS = 96, SAMPLES = 4096, NAME_LENGTH = 120, LARGEST_TEETH = 100000 };
 
-/* key[i], or the key itself when it is a single number; NaN when there is none. */
-static double entry(const json_t *object, const char *key, int i)
+/* How close the references were computed. */
+static const double of_mean = 1e-5, of_frequency = 1e-6, of_damping = 2e-5, of_floquet = 1e-3;
+
+struct dynamics {
+  struct eo_case *file;
+  struct eo_verification *v;
+  struct eo_vibration_solver *solver;
+  int teeth; /* of the pinion */
+};
+
+/* The value, or its element i when it is a list; NULL when there is none. */
+static struct eo_case *entry(struct eo_case *value, int i)
 {
-  const json_t *value = json_object_get(object, key);
-  if (json_is_array(value))
-    value = json_array_get(value, (size_t)i);
-  return json_is_number(value) ? json_number_value(value) : NAN;
+  return eo_case_is_list(value) ? eo_case_at(value, i) : value;
 }
 
-static double entry_or(const json_t *object, const char *key, int i, double missing)
+static double entry_number(struct eo_case *object, const char *key, int i)
 {
-  return json_object_get(object, key) ? entry(object, key, i) : missing;
+  struct eo_case *value = eo_case_need(object, key);
+  return eo_case_is_list(value) ? eo_case_element(value, i) : eo_case_real(value);
 }
 
-static enum eo_code wrong(struct eo_error *error, const char *pointer, const char *what)
+/* The case's own parameters, or the file's. */
+static void read_parameters(const struct dynamics *d, struct eo_case *item, struct eo_dynamics_parameters *p,
+                            double *tau)
 {
-  return eo_error_set(error, EO_ERROR_INPUT, pointer, "%s: %s.", pointer, what);
+  struct eo_case *given = eo_case_find(item, "params");
+  eo_verify_read_parameters(given ? given : eo_case_need(d->file, "defaults"), p, tau);
+  eo_verify_couple(d->file, item, p);
 }
 
-static struct eo_dynamics_parameters parameters_of(struct eo_verification *v, const json_t *cases, const json_t *item,
-                                                   const char *name)
+/* ---- input blocks ---- */
+
+/* A block that describes the whole pair, in m and rad, is compared with our geometry; else it states the pinion's
+ * teeth.
+ */
+static enum eo_code check_geometry(void *context, struct eo_case *block, struct eo_error *error)
 {
-  const json_t *given = json_object_get(item, "params");
-  struct eo_dynamics_parameters p = eo_verify_read_parameters(v, name,
-                                                              given ? given : json_object_get(cases, "defaults"));
-  eo_verify_couple(cases, json_string_value(json_object_get(item, "coupling")), &p);
-  return p;
+  const struct dynamics *d = context;
+  struct eo_gear_pair pair = {.ends = 1, .backlash = 1e-4, .centre_distance = NAN, .tip_diameter = {NAN, NAN}};
+  struct eo_geometry geometry;
+  if (!eo_case_find(block, "mn"))
+    return EO_OK;
+  pair.addendum_coefficient = 1; /* the usual rack */
+  pair.dedendum_coefficient = 1.25;
+  pair.fillet_radius_coefficient = 0.38;
+  pair.teeth[0] = d->teeth;
+  pair.teeth[1] = eo_case_whole(block, "z2", 1, LARGEST_TEETH);
+  pair.normal_module = eo_case_number(block, "mn");
+  pair.normal_pressure_angle = eo_case_number(block, "an");
+  pair.helix_angle = eo_case_number(block, "beta");
+  pair.face_width = eo_case_number(block, "b");
+  pair.groove_width = eo_case_number_or(block, "groove", 0);
+  enum eo_code code = eo_case_faulty(block) ? EO_OK : eo_geometry_init(&geometry, &pair, error);
+  if (!code && !eo_case_faulty(block))
+    eo_case_check_geometry(d->v, block, &geometry, 1, 1e-9);
+  return code;
+}
+
+static enum eo_code check_defaults(void *context, struct eo_case *block, struct eo_error *error)
+{
+  struct eo_dynamics_parameters p;
+  double tau;
+  (void)context;
+  (void)error;
+  eo_verify_read_parameters(block, &p, &tau);
+  return EO_OK;
+}
+
+static enum eo_code check_coupling(void *context, struct eo_case *block, struct eo_error *error)
+{
+  (void)context;
+  (void)error;
+  eo_case_number(block, "kt_p");
+  eo_case_number(block, "kt_g");
+  return EO_OK;
+}
+
+/* Laws are read where they stand, so that one which no case names cannot be wrong unseen. */
+static enum eo_code check_law(void *context, struct eo_case *block, struct eo_error *error)
+{
+  const struct dynamics *d = context;
+  struct eo_law law = {0};
+  struct eo_case *defaults = eo_case_find(d->file, "defaults");
+  enum eo_code code = eo_verify_read_law(d->file, block, eo_case_number_or(defaults, "tau", 0), &law, error);
+  eo_law_done(&law);
+  return code == EO_ERROR_INPUT ? (eo_case_fault(block, "%s", error->text), EO_OK) : code;
 }
 
 /* ---- eigenvalues ---- */
 
-static enum eo_code verify_modes(const json_t *cases, const json_t *item, const char *name, struct eo_verification *v,
-                                 struct eo_error *error)
+static enum eo_code check_modes(void *context, struct eo_case *item, struct eo_error *error)
 {
+  const struct dynamics *d = context;
   struct eo_dynamics_model model;
   struct eo_dynamics_modes modes;
-  static const char *const known[] = {"id", "about",      "note",    "params",        "coupling",
-                                      "km", "zero_modes", "freq_hz", "damping_ratio", NULL};
-  struct eo_dynamics_parameters p = parameters_of(v, cases, item, name);
-  double km[2] = {entry(item, "km", 0), entry(item, "km", 1)};
-  eo_verify_unknown(v, name, item, known);
+  struct eo_dynamics_parameters p;
+  double tau;
+  read_parameters(d, item, &p, &tau);
+  double km[2] = {entry_number(item, "km", 0), p.ends == 2 ? entry_number(item, "km", 1) : NAN};
+  if (eo_case_faulty(item))
+    return EO_OK;
   enum eo_code code = eo_dynamics_model_init(&model, &p, error);
   if (!code)
     code = eo_dynamics_model_modes(&model, km, &modes, error);
   if (code)
     return code;
-  const json_t *frequency = json_object_get(item, "freq_hz"), *ratio = json_object_get(item, "damping_ratio");
-  if (json_object_get(item, "zero_modes"))
-    eo_verify_add(v, name, "zero_modes", modes.zero_modes, eo_verify_number(item, "zero_modes"), 0);
-  eo_verify_add(v, name, "number of frequencies", modes.n, (double)json_array_size(frequency), 0);
-  for (int i = 0; i < modes.n; i++) {
-    char quantity[NAME_LENGTH];
-    double expected = json_number_value(json_array_get(frequency, i)),
-           damping = json_number_value(json_array_get(ratio, i));
-    snprintf(quantity, sizeof quantity, "freq_hz[%d]", i);
-    eo_verify_add(v, name, quantity, modes.frequency[i], expected, 1e-6 * expected);
-    snprintf(quantity, sizeof quantity, "damping_ratio[%d]", i);
-    if (i < (int)json_array_size(ratio))
-      eo_verify_add(v, name, quantity, modes.damping_ratio[i], damping, 2e-5 * damping);
-  }
+  struct eo_case *ratio = eo_case_find(item, "damping_ratio");
+  eo_verify_exact(d->v, eo_case_find(item, "zero_modes"), modes.zero_modes);
+  eo_verify_list(d->v, eo_case_need(item, "freq_hz"), modes.n, modes.frequency, 1, of_frequency, 0);
+  if (ratio)
+    eo_verify_list(d->v, ratio, modes.n, modes.damping_ratio, 1, of_damping, 0);
   return EO_OK;
 }
 
-static enum eo_code verify_printed_signs(const json_t *cases, const json_t *item, struct eo_verification *v,
-                                         struct eo_error *error)
+/* The mesh stiffness of the block, or of the first case of eigen. imag_hz: the imaginary part over 2 pi. */
+static enum eo_code check_printed_signs(void *context, struct eo_case *item, struct eo_error *error)
 {
-  const char *name = "negative_control_literal_signs";
+  const struct dynamics *d = context;
+  struct eo_case *other = eo_case_at(eo_case_find(d->file, "eigen"), 0);
   struct eo_dynamics_model model;
-  static const char *const known[] = {"id",      "about", "note", "params", "coupling", "km", "max_real_pole_per_s",
-                                      "imag_hz", NULL};
-  struct eo_dynamics_parameters p = parameters_of(v, cases, item, name);
+  struct eo_dynamics_parameters p;
   double complex pole;
-  eo_verify_unknown(v, name, item, known);
-  double km = eo_verify_number_or(item, "km",
-                                  eo_verify_number_or(json_array_get(json_object_get(cases, "eigen"), 0), "km", 1.1e9));
+  double tau;
+  read_parameters(d, item, &p, &tau);
+  struct eo_case *from = eo_case_find(item, "km") || !other ? item : other;
+  double km[2] = {entry_number(from, "km", 0), p.ends == 2 ? entry_number(from, "km", 1) : NAN};
+  if (eo_case_faulty(item))
+    return EO_OK;
   enum eo_code code = eo_dynamics_model_init(&model, &p, error);
   if (!code)
-    code = eo_dynamics_model_printed_pole(&model, (double[]){km, km}, &pole, error);
+    code = eo_dynamics_model_printed_pole(&model, km, &pole, error);
   if (code)
     return code;
-  double real = eo_verify_number(item, "max_real_pole_per_s"), imaginary = eo_verify_number(item, "imag_hz");
-  eo_verify_add(v, name, "max_real_pole_per_s", creal(pole), real, 1e-6 * fabs(real));
-  if (isfinite(
-          imaginary)) /* given as angular frequency or in Hz: the reference's figure is the imaginary part over 2 pi */
-    eo_verify_add(v, name, "imag_hz", fabs(cimag(pole)) / (2 * M_PI), imaginary, 1e-6 * fabs(imaginary));
+  eo_verify_number(d->v, eo_case_need(item, "max_real_pole_per_s"), creal(pole), of_frequency, 0);
+  eo_verify_member(d->v, item, "imag_hz", fabs(cimag(pole)) / (2 * M_PI), of_frequency, 0);
   return EO_OK;
 }
 
 /* ---- periodic responses ---- */
 
 struct verified {
-  struct eo_verification *to;
-  const char *name;
-  const json_t *expected;
+  struct eo_verification *v;
+  struct eo_case *expected;
   double relative; /* tolerance of an RMS */
 };
 
-/* A number or a pair [left, right] under one key. */
-static void compare(const struct verified *v, const char *key, const double *value, int ends, double relative,
-                    double floor)
+/* What a reference may not have found, and states as null. */
+static bool is_stated_absent(const struct verified *at, struct eo_case *expected)
 {
-  const json_t *expected = json_object_get(v->expected, key);
-  if (!expected || json_is_null(expected))
-    return;
-  for (int end = 0; end < ends; end++) {
-    char quantity[NAME_LENGTH];
-    double e = entry(v->expected, key, end);
-    if (json_is_array(expected))
-      snprintf(quantity, sizeof quantity, "%s[%d]", key, end);
-    else
-      snprintf(quantity, sizeof quantity, "%s", key);
-    eo_verify_add(v->to, v->name, quantity, value[end], e, fmax(relative * fabs(e), floor));
-  }
-}
-
-static void compare_harmonics(const struct verified *v, const char *key, const double complex *value)
-{
-  const json_t *expected = json_object_get(v->expected, key);
-  double largest = 0;
-  size_t k;
-  json_t *pair;
-  json_array_foreach(expected, k, pair) largest =
-      fmax(largest, hypot(json_number_value(json_array_get(pair, 0)), json_number_value(json_array_get(pair, 1))));
-  json_array_foreach(expected, k, pair)
-  {
-    if (k + 1 > HARMONICS)
-      break;
-    for (int part = 0; part < 2; part++) {
-      char quantity[NAME_LENGTH];
-      snprintf(quantity, sizeof quantity, "%s[%zu].%s", key, k, part ? "im" : "re");
-      double found = part ? cimag(value[k + 1]) : creal(value[k + 1]);
-      eo_verify_add(v->to, v->name, quantity, found, json_number_value(json_array_get(pair, part)), 1e-3 * largest);
+  static const char *const keys[] = {"max_floquet", "time_domain_rms_n"};
+  for (size_t i = 0; i < sizeof keys / sizeof *keys && eo_case_is_null(expected); i++)
+    if (strcmp(eo_case_key(expected), keys[i]) == 0) {
+      eo_verify_uncompared(at->v, expected, "the reference has none.");
+      return true;
     }
-  }
+  return false;
 }
 
-static void compare_freedoms(const struct verified *v, const struct eo_vibration *r)
+/* A number or a pair [left, right] under one key. */
+static void compare(const struct verified *at, const char *key, const double *value, int ends, double relative,
+                    double absolute)
 {
-  const json_t *expected = json_object_get(v->expected, "dof_acc_rms");
-  size_t i;
-  json_t *value;
-  double largest[3] = {0};
-  json_array_foreach(expected, i, value) largest[i % 3] = fmax(largest[i % 3], json_number_value(value));
-  json_array_foreach(expected, i, value)
-  {
-    char quantity[NAME_LENGTH];
-    snprintf(quantity, sizeof quantity, "dof_acc_rms[%zu]", i);
-    if (i < EO_MAX_FREEDOMS)
-      eo_verify_add(v->to, v->name, quantity, r->freedom_rms[i], json_number_value(value),
-                    fmax(v->relative * json_number_value(value), 1e-5 * largest[i % 3]));
+  struct eo_case *expected = eo_case_find(at->expected, key);
+  if (is_stated_absent(at, expected))
+    return;
+  if (eo_case_is_list(expected))
+    eo_verify_list(at->v, expected, ends, value, 1, relative, absolute);
+  else
+    for (int end = 0; end < ends && expected; end++) /* one number stands for both ends */
+      eo_verify_number(at->v, expected, value[end], relative, absolute);
+}
+
+/* Real and imaginary parts from the first harmonic on, to a thousandth of the largest. */
+static void compare_harmonics(const struct verified *at, const char *key, const double complex *value)
+{
+  struct eo_case *expected = eo_case_find(at->expected, key);
+  const double scale = 1e-3 * eo_case_largest(expected);
+  if (eo_case_size(expected) > HARMONICS)
+    eo_case_fault(expected, "At most %d harmonics are computed.", HARMONICS);
+  for (int k = 0; k < eo_case_size(expected) && k < HARMONICS; k++) {
+    const double part[2] = {creal(value[k + 1]), cimag(value[k + 1])};
+    eo_verify_list(at->v, eo_case_at(expected, k), 2, part, 1, 0, scale);
   }
 }
 
-static void compare_response(const struct verified *v, const struct eo_vibration_solver *solver,
+/* Motions y, z, theta in turn, to 1e-5 of the largest of their kind. */
+static void compare_freedoms(const struct verified *at, const struct eo_vibration *r)
+{
+  enum { MOTIONS = 3 };
+  struct eo_case *expected = eo_case_find(at->expected, "dof_acc_rms");
+  const int freedoms = 2 * MOTIONS * r->ends;
+  double largest[MOTIONS] = {0}, wanted[EO_MAX_FREEDOMS];
+  if (!expected || eo_case_numbers(expected, freedoms, EO_MAX_FREEDOMS, wanted) < 0)
+    return;
+  for (int i = 0; i < freedoms; i++)
+    largest[i % MOTIONS] = fmax(largest[i % MOTIONS], fabs(wanted[i]));
+  for (int i = 0; i < freedoms; i++)
+    eo_verify_number(at->v, eo_case_at(expected, i), r->freedom_rms[i], at->relative, 1e-5 * largest[i % MOTIONS]);
+}
+
+static void compare_statics(const struct verified *at, const struct eo_vibration *r)
+{
+  const double *q = r->freedom_mean;
+  double apart = q[eo_dynamics_freedom(2, EO_PINION, 0, EO_MOTION_Z)] -
+                 q[eo_dynamics_freedom(2, EO_PINION, 1, EO_MOTION_Z)];
+  compare(at, "y_static_p1", &q[eo_dynamics_freedom(2, EO_PINION, 0, EO_MOTION_Y)], 1, of_mean, 0);
+  compare(at, "y_static_g1", &q[eo_dynamics_freedom(2, EO_GEAR, 0, EO_MOTION_Y)], 1, of_mean, 0);
+  compare(at, "z_p1_minus_z_p2", &apart, 1, of_mean, 0);
+  compare(at, "z_static_g1", &q[eo_dynamics_freedom(2, EO_GEAR, 0, EO_MOTION_Z)], 1, of_mean, 0);
+}
+
+static void compare_response(const struct verified *at, const struct eo_vibration_solver *solver,
                              const struct eo_vibration *r)
 {
   const struct eo_spectrum *s = eo_vibration_spectrum(solver);
+  const double load = fabs(r->force_mean[0]), rms = at->relative, least_force = 3e-4;
   int ends = r->ends;
-  double load = fabs(r->force_mean[0]), rms = v->relative;
-  compare(v, "X_mean", r->deflection_mean, ends, 1e-5, 0);
-  compare(v, "rms_n", r->rms[EO_READING_NORMAL], ends, rms, 0);
-  compare(v, "rms_t", r->rms[EO_READING_TRANSVERSE], ends, rms, 0);
-  compare(v, "rms_rot", r->rms[EO_READING_ROTATIONAL], ends, rms, 0);
-  compare(v, "time_domain_rms_n", r->rms[EO_READING_NORMAL], ends, rms, 0);
-  compare(v, "rms_meanLR", r->rms_of_mean, 1, rms, 0);
-  compare(v, "F_mean", r->force_mean, ends, 1e-5, 0);
-  compare(v, "F_min", r->force_min, ends, 0, fmax(rms, 3e-4) * load);
-  compare(v, "F_max", r->force_max, ends, 0, fmax(rms, 3e-4) * load);
-  if (ends == 2) {
-    const double *q = r->freedom_mean;
-    double apart = q[eo_dynamics_freedom(2, EO_PINION, 0, EO_MOTION_Z)] -
-                   q[eo_dynamics_freedom(2, EO_PINION, 1, EO_MOTION_Z)];
-    compare(v, "y_static_p1", &q[eo_dynamics_freedom(2, EO_PINION, 0, EO_MOTION_Y)], 1, 1e-5, 0);
-    compare(v, "y_static_g1", &q[eo_dynamics_freedom(2, EO_GEAR, 0, EO_MOTION_Y)], 1, 1e-5, 0);
-    compare(v, "z_p1_minus_z_p2", &apart, 1, 1e-5, 0);
-    compare(v, "z_static_g1", &q[eo_dynamics_freedom(2, EO_GEAR, 0, EO_MOTION_Z)], 1, 1e-5, 0);
-  }
-  compare_harmonics(v, "X_harm_left", s->deflection[0]);
+  compare(at, "X_mean", r->deflection_mean, ends, of_mean, 0);
+  compare(at, "rms_n", r->rms[EO_READING_NORMAL], ends, rms, 0);
+  compare(at, "rms_t", r->rms[EO_READING_TRANSVERSE], ends, rms, 0);
+  compare(at, "rms_rot", r->rms[EO_READING_ROTATIONAL], ends, rms, 0);
+  compare(at, "time_domain_rms_n", r->rms[EO_READING_NORMAL], ends, rms, 0);
+  compare(at, "rms_meanLR", r->rms_of_mean, 1, rms, 0);
+  compare(at, "F_mean", r->force_mean, ends, of_mean, 0);
+  compare(at, "F_min", r->force_min, ends, 0, fmax(rms, least_force) * load);
+  compare(at, "F_max", r->force_max, ends, 0, fmax(rms, least_force) * load);
   if (ends == 2)
-    compare_harmonics(v, "X_harm_right", s->deflection[1]);
-  compare_freedoms(v, r);
+    compare_statics(at, r);
+  compare_harmonics(at, "X_harm_left", s->deflection[0]);
+  if (ends == 2)
+    compare_harmonics(at, "X_harm_right", s->deflection[1]);
+  compare_freedoms(at, r);
 }
 
-static enum eo_code read_impact(const json_t *impact, const struct verified *at, struct eo_vibration_case *load,
-                                struct eo_error *error)
+static void read_impact(struct eo_case *impact, struct eo_vibration_case *load)
 {
-  static const char *const known[] = {"mode", "A", "start", "d", "about", "note", NULL};
-  if (!json_is_object(impact))
-    return EO_OK;
-  const char *mode = json_string_value(json_object_get(impact, "mode"));
-  if (!mode || (strcmp(mode, "paper") && strcmp(mode, "consistent")))
-    return wrong(error, "/dynamics/impact/mode", "an impact acts as \"paper\" or \"consistent\"");
-  eo_verify_unknown(at->to, at->name, impact, known);
-  load->impact = !strcmp(mode, "paper") ? EO_IMPACT_PAPER : EO_IMPACT_CONSISTENT;
+  static const char *const modes[] = {"paper", "consistent", NULL};
+  if (!impact)
+    return;
+  if (!eo_case_need(impact, "mode"))
+    return;
+  load->impact = eo_case_choice(impact, "mode", modes, 0) == 0 ? EO_IMPACT_PAPER : EO_IMPACT_CONSISTENT;
   for (int end = 0; end < 2; end++)
     load->pulse[end] = (struct eo_pulse){.shape = EO_PULSE_HALF_SINE,
-                                         .amplitude = entry(impact, "A", end),
-                                         .start = entry_or(impact, "start", end, 0),
-                                         .duration = entry(impact, "d", end)};
-  return EO_OK;
+                                         .amplitude = entry_number(impact, "A", end),
+                                         .start = eo_case_find(impact, "start") ? entry_number(impact, "start", end)
+                                                                                : 0,
+                                         .duration = entry_number(impact, "d", end)};
 }
 
 /* The response by harmonic balance. Where teeth separate several states may exist: an unstable one is replaced by the
@@ -236,259 +286,194 @@ static enum eo_code solve_stable(struct eo_vibration_solver *solver, const struc
   return code;
 }
 
-static struct eo_vibration_case read_case(const json_t *cases, const json_t *item, const struct eo_law law[2])
+static struct eo_vibration_case read_case(const struct dynamics *d, struct eo_case *item, const struct eo_law law[2])
 {
-  double teeth = eo_verify_number_or(item, "z1", eo_verify_number_or(json_object_get(cases, "geometry"), "z1", 17));
-  return (struct eo_vibration_case){.torque = eo_verify_number(item, "T"),
-                                    .speed = eo_verify_number(item, "rpm") * M_PI / 30,
-                                    .pinion_teeth = teeth >= 1 && teeth < 1e6 ? (int)teeth : 0,
+  return (struct eo_vibration_case){.torque = eo_case_number(item, "T"),
+                                    .speed = eo_case_number(item, "rpm") * M_PI / 30,
+                                    .pinion_teeth = eo_case_whole_or(item, "z1", 1, LARGEST_TEETH, d->teeth),
                                     .law = {&law[0], &law[1]},
-                                    .phase_right = eo_verify_number_or(item, "shift_right", 0),
-                                    .gated = json_is_true(json_object_get(item, "gate"))};
+                                    .phase_right = eo_case_number_or(item, "shift_right", 0),
+                                    .gated = eo_case_flag_or(item, "gate", false)};
 }
 
-static enum eo_code solve_case(const struct verified *at, const json_t *cases, const json_t *item,
-                               struct eo_vibration_solver *solver, struct eo_law law[2], struct eo_vibration *r,
-                               double *floquet, struct eo_error *error)
+static enum eo_code solve_case(const struct dynamics *d, struct eo_case *item, struct eo_law law[2],
+                               struct eo_vibration *r, double *floquet, struct eo_error *error)
 {
-  const json_t *given = json_object_get(item, "params"), *laws = json_object_get(item, "law");
-  double tau = eo_verify_number_or(given ? given : json_object_get(cases, "defaults"), "tau", 0);
-  struct eo_dynamics_parameters p = parameters_of(at->to, cases, item, at->name);
-  struct eo_vibration_case load = read_case(cases, item, law);
-  enum eo_code code = eo_vibration_set_model(solver, &p, error);
+  struct eo_case *laws = eo_case_need(item, "law");
+  struct eo_dynamics_parameters p;
+  double tau;
+  read_parameters(d, item, &p, &tau);
+  struct eo_vibration_case load = read_case(d, item, law);
+  read_impact(eo_case_given(item, "impact"), &load);
+  if (eo_case_is_list(laws) && eo_case_size(laws) != 2)
+    eo_case_fault(laws, "A law, or a pair [left, right] of laws, is expected here.");
+  if (eo_case_faulty(item))
+    return EO_OK;
+  enum eo_code code = eo_vibration_set_model(d->solver, &p, error);
   for (int end = 0; end < 2 && !code; end++)
-    code = eo_verify_read_law(at->to, cases, json_is_array(laws) ? json_array_get(laws, (size_t)end) : laws, tau,
-                              &law[end], error);
-  if (!code)
-    code = read_impact(json_object_get(item, "impact"), at, &load, error);
-  return code ? code : solve_stable(solver, &load, r, floquet, error);
+    code = eo_verify_read_law(d->file, entry(laws, end), tau, &law[end], error);
+  return code || eo_case_faulty(item) ? code : solve_stable(d->solver, &load, r, floquet, error);
 }
 
-static enum eo_code verify_response(const json_t *cases, const json_t *item, const char *name,
-                                    struct eo_vibration_solver *solver, struct eo_verification *v,
-                                    struct eo_error *error)
+/* A response that was not found fails, unless the case says that there is none. */
+static void compare_outcome(const struct dynamics *d, struct eo_case *expected, const struct eo_vibration *r,
+                            double floquet)
 {
-  static const char *const known[] = {"id",  "about", "note", "params",      "coupling", "law",      "T",
-                                      "rpm", "z1",    "gate", "shift_right", "impact",   "expected", NULL};
-  static const char *const answers[] = {
-      "converged",   "X_mean",  "X_harm_left",       "X_harm_right", "rms_n",
-      "rms_t",       "rms_rot", "rms_meanLR",        "dof_acc_rms",  "F_mean",
-      "F_min",       "F_max",   "y_static_p1",       "y_static_g1",  "z_p1_minus_z_p2",
-      "z_static_g1", "rel_unc", "time_domain_rms_n", "max_floquet",  NULL};
+  const struct verified at = {d->v, expected, fmax(10 * eo_case_number_or(expected, "rel_unc", 0), 1e-4)};
+  bool found = r->outcome != EO_VIBRATION_NOT_CONVERGED, wanted = eo_case_flag_or(expected, "converged", true);
+  if (at.relative >= 1)
+    eo_case_fault(eo_case_find(expected, "rel_unc"), "An uncertainty is below 0.1.");
+  if (!found && wanted) {
+    eo_verify_diverged(d->v, expected);
+    return;
+  }
+  eo_verify_exact(d->v, eo_case_find(expected, "converged"), found);
+  if (!found)
+    return;
+  compare_response(&at, d->solver, r);
+  compare(&at, "max_floquet", &floquet, 1, of_floquet, 0);
+}
+
+static enum eo_code check_response(void *context, struct eo_case *item, struct eo_error *error)
+{
+  const struct dynamics *d = context;
   struct eo_law law[2] = {{0}, {0}};
   struct eo_vibration r;
-  double floquet;
-  const json_t *expected = json_object_get(item, "expected");
-  const struct verified at = {v, name, expected, fmax(10 * eo_verify_number_or(expected, "rel_unc", 0), 1e-4)};
-  eo_verify_unknown(v, name, item, known);
-  eo_verify_unknown(v, name, expected, answers);
-  enum eo_code code = solve_case(&at, cases, item, solver, law, &r, &floquet, error);
-  if (!code) {
-    bool found = r.outcome != EO_VIBRATION_NOT_CONVERGED;
-    eo_verify_add(v, name, "converged", found, json_is_false(json_object_get(expected, "converged")) ? 0 : 1, 0);
-    if (found) {
-      compare_response(&at, solver, &r);
-      compare(&at, "max_floquet", &floquet, 1, 1e-3, 0);
-    }
-  }
+  double floquet = NAN;
+  struct eo_case *expected = eo_case_need(item, "expected");
+  enum eo_code code = solve_case(d, item, law, &r, &floquet, error);
+  if (!code && !eo_case_faulty(item))
+    compare_outcome(d, expected, &r, floquet);
   eo_law_done(&law[0]);
   eo_law_done(&law[1]);
   return code;
 }
 
-/* ---- single degree of freedom ---- */
-
-static struct eo_sdof read_sdof(const json_t *item)
+static enum eo_code check_responses(void *context, struct eo_case *items, struct eo_error *error)
 {
-  return (struct eo_sdof){.damping = eo_verify_number(item, "z"),
-                          .mean_force = eo_verify_number(item, "Fm"),
-                          .alternating_force = eo_verify_number(item, "Fh"),
-                          .stiffness_share = eo_verify_number_or(item, "e", 0),
-                          .frequency = eo_verify_number(item, "W")};
+  struct dynamics *d = context;
+  enum eo_code code = eo_vibration_new(&d->solver, HARMONICS, SAMPLES, error);
+  if (!code)
+    code = eo_verify_each(d->v, items, check_response, d, error);
+  eo_vibration_free(d->solver);
+  return code;
 }
 
-static enum eo_code verify_sdof(const json_t *item, const char *name, struct eo_verification *v, struct eo_error *error)
+/* ---- single degree of freedom ---- */
+
+static struct eo_sdof read_sdof(struct eo_case *item)
 {
-  static const char *const known[] = {"id", "about", "note",   "z",  "Fm",       "Fh",
-                                      "e",  "W",     "branch", "x0", "expected", NULL};
-  static const char *const answers[] = {"mean",         "rms",         "pp",      "h1", "h2", "contact_loss_fraction",
-                                        "back_contact", "max_floquet", "rel_unc", NULL};
-  struct eo_sdof_response r;
+  return (struct eo_sdof){.damping = eo_case_number(item, "z"),
+                          .mean_force = eo_case_number(item, "Fm"),
+                          .alternating_force = eo_case_number(item, "Fh"),
+                          .stiffness_share = eo_case_number_or(item, "e", 0),
+                          .frequency = eo_case_number(item, "W")};
+}
+
+static void compare_single(const struct verified *at, const struct eo_sdof_response *r)
+{
+  const double second = fmax(1e-3 * r->amplitude[0], at->relative * r->amplitude[1]), of_loss = 1e-3;
+  compare(at, "mean", &r->mean, 1, of_mean, 0);
+  compare(at, "rms", &r->rms, 1, at->relative, 0);
+  compare(at, "pp", &r->peak_to_peak, 1, at->relative, 0);
+  compare(at, "h1", &r->amplitude[0], 1, at->relative, 0);
+  compare(at, "h2", &r->amplitude[1], 1, 0, second);
+  compare(at, "contact_loss_fraction", &r->contact_loss, 1, 0, of_loss);
+  compare(at, "max_floquet", &r->floquet, 1, of_floquet, 0);
+  eo_verify_exact(at->v, eo_case_find(at->expected, "back_contact"), r->back_contact);
+}
+
+static enum eo_code check_sdof(void *context, struct eo_case *item, struct eo_error *error)
+{
+  static const char *const branches[] = {"lo", "hi", NULL};
+  const struct dynamics *d = context;
   const struct eo_sdof sdof = read_sdof(item);
-  const json_t *state = json_object_get(item, "x0"), *expected = json_object_get(item, "expected");
-  const char *branch = json_string_value(json_object_get(item, "branch"));
-  const double x0[2] = {json_number_value(json_array_get(state, 0)), json_number_value(json_array_get(state, 1))};
-  enum eo_sdof_start start = state ? EO_SDOF_STATE : branch && !strcmp(branch, "hi") ? EO_SDOF_HIGH : EO_SDOF_LOW;
-  eo_verify_unknown(v, name, item, known);
-  eo_verify_unknown(v, name, expected, answers);
+  struct eo_sdof_response r;
+  struct eo_case *state = eo_case_find(item, "x0"), *expected = eo_case_need(item, "expected");
+  double x0[2] = {0, 0};
+  enum eo_sdof_start start = eo_case_choice(item, "branch", branches, 0) == 1 ? EO_SDOF_HIGH : EO_SDOF_LOW;
+  if (state && eo_case_numbers(state, 2, 2, x0) == 2)
+    start = EO_SDOF_STATE;
+  if (eo_case_faulty(item))
+    return EO_OK;
   enum eo_code code = eo_sdof_solve(&sdof, start, x0, &r, error);
   if (code)
     return code;
-  const struct verified at = {v, name, expected, fmax(10 * eo_verify_number_or(expected, "rel_unc", 0), 1e-4)};
-  eo_verify_add(v, name, "converged", r.converged, 1, 0);
-  compare(&at, "mean", &r.mean, 1, 1e-5, 0);
-  compare(&at, "rms", &r.rms, 1, at.relative, 0);
-  compare(&at, "pp", &r.peak_to_peak, 1, at.relative, 0);
-  compare(&at, "h1", &r.amplitude[0], 1, at.relative, 0);
-  compare(&at, "h2", &r.amplitude[1], 1, 0, fmax(1e-3 * r.amplitude[0], at.relative * r.amplitude[1]));
-  compare(&at, "contact_loss_fraction", &r.contact_loss, 1, 0, 1e-3);
-  compare(&at, "max_floquet", &r.floquet, 1, 1e-3, 0);
-  if (json_is_boolean(json_object_get(expected, "back_contact")))
-    eo_verify_add(v, name, "back_contact", r.back_contact, json_is_true(json_object_get(expected, "back_contact")), 0);
+  const struct verified at = {d->v, expected, fmax(10 * eo_case_number_or(expected, "rel_unc", 0), 1e-4)};
+  if (at.relative >= 1)
+    eo_case_fault(eo_case_find(expected, "rel_unc"), "An uncertainty is below 0.1.");
+  if (r.converged)
+    compare_single(&at, &r);
+  else
+    eo_verify_diverged(d->v, expected);
   return EO_OK;
 }
 
 /* The first case called SDOF-FAMILY-... */
-static const json_t *case_of_family(const json_t *sdof, const char *family)
+static struct eo_case *case_of_family(struct eo_case *cases, const char *family)
 {
   char prefix[NAME_LENGTH];
-  size_t i;
-  json_t *item;
   snprintf(prefix, sizeof prefix, "SDOF-%s-", family);
-  json_array_foreach(json_object_get(sdof, "cases"), i, item)
-  {
-    const char *id = json_string_value(json_object_get(item, "id"));
-    if (id && !strncmp(id, prefix, strlen(prefix)))
-      return item;
+  for (int i = 0; i < eo_case_size(cases); i++) {
+    const char *id = eo_case_word_given(eo_case_at(cases, i), "id");
+    if (id && strncmp(id, prefix, strlen(prefix)) == 0)
+      return eo_case_at(cases, i);
   }
   return NULL;
 }
 
 /* Folds of a family of cases; "up" is where an upward sweep leaves the state without contact loss, "down" where a
    downward sweep falls back to it. */
-static enum eo_code verify_folds(const json_t *sdof, const char *family, const json_t *expected, const char *name,
-                                 struct eo_verification *v, struct eo_error *error)
+static enum eo_code check_folds(void *context, struct eo_case *expected, struct eo_error *error)
 {
-  static const char *const known[] = {"up", "down", "about", "note", NULL};
-  const json_t *item = case_of_family(sdof, family);
-  if (!item)
-    return wrong(error, "/sdof/folds", "no case belongs to these folds");
+  const struct dynamics *d = context;
+  const double slowest = 0.3, fastest = 3, tolerance = 2e-3;
+  struct eo_case *item = case_of_family(eo_case_find(eo_case_find(d->file, "sdof"), "cases"), eo_case_key(expected));
+  if (!item) {
+    eo_case_fault(expected, "No case belongs to these folds.");
+    return EO_OK;
+  }
   const struct eo_sdof model = read_sdof(item);
   struct eo_sdof_folds folds;
-  enum eo_code code = eo_sdof_folds(&model, 0.3, 3, &folds, error);
+  enum eo_code code = eo_sdof_folds(&model, slowest, fastest, &folds, error);
   if (code)
     return code;
-  eo_verify_unknown(v, name, expected, known);
-  if (json_object_get(expected, "up"))
-    eo_verify_add(v, name, "up", folds.contact_lost, eo_verify_number(expected, "up"), 2e-3);
   int down = 0;
   while (down < folds.count && folds.going_up[down])
     down++;
-  if (json_object_get(expected, "down"))
-    eo_verify_add(v, name, "down", down < folds.count ? folds.frequency[down] : NAN, eo_verify_number(expected, "down"),
-                  2e-3);
+  eo_verify_member(d->v, expected, "up", folds.contact_lost, 0, tolerance);
+  eo_verify_member(d->v, expected, "down", down < folds.count ? folds.frequency[down] : NAN, 0, tolerance);
   return EO_OK;
 }
 
-/* ---- the file ---- */
-
-static const char *name_of(const json_t *item, const char *block, size_t i, char buffer[NAME_LENGTH])
+static enum eo_code check_single(void *context, struct eo_case *block, struct eo_error *error)
 {
-  const char *id = json_string_value(json_object_get(item, "id"));
-  if (id)
-    return id;
-  snprintf(buffer, NAME_LENGTH, "%s[%zu]", block, i);
-  return buffer;
+  struct dynamics *d = context;
+  eo_case_remark(block, "equation");
+  eo_case_remark(block, "analytic_A");
+  enum eo_code code = eo_verify_each(d->v, eo_case_find(block, "cases"), check_sdof, d, error);
+  return code ? code : eo_verify_each(d->v, eo_case_find(block, "folds"), check_folds, d, error);
 }
 
-/* A case that cannot be computed is a failed check of its own; the others still count. */
-static enum eo_code settle(struct eo_verification *v, const char *name, enum eo_code code, const struct eo_error *error)
-{
-  if (code != EO_ERROR_INPUT && code != EO_ERROR_NUMERIC)
-    return code;
-  eo_verify_broken(v, name, error);
-  return EO_OK;
-}
+static const struct eo_verify_block blocks[] = {
+    {"geometry", EO_BLOCK_EITHER, check_geometry},
+    {"defaults", EO_BLOCK_EITHER, check_defaults},
+    {"inertia_assumption", EO_BLOCK_REMARKS, NULL},
+    {"torsional_coupling", EO_BLOCK_EITHER, check_coupling},
+    {"law_*", EO_BLOCK_EITHER, check_law},
+    {"table_*", EO_BLOCK_EITHER, check_law},
+    {"eigen", EO_BLOCK_EACH, check_modes},
+    {"negative_control_literal_signs", EO_BLOCK_WHOLE, check_printed_signs},
+    {"dynamics", EO_BLOCK_WHOLE, check_responses},
+    {"sdof", EO_BLOCK_WHOLE, check_single},
+    {NULL, EO_BLOCK_INPUT, NULL},
+};
 
-static enum eo_code verify_responses(const json_t *cases, struct eo_verification *v, struct eo_error *error)
+enum eo_code eo_verify_dynamics(struct eo_case *file, struct eo_verification *v, struct eo_error *error)
 {
-  char buffer[NAME_LENGTH];
-  struct eo_vibration_solver *solver = NULL;
-  enum eo_code code = eo_vibration_new(&solver, HARMONICS, SAMPLES, error);
-  size_t i;
-  json_t *item;
-  json_array_foreach(json_object_get(cases, "dynamics"), i, item)
-  {
-    const char *name = name_of(item, "dynamics", i, buffer);
-    if (!code)
-      code = settle(v, name, verify_response(cases, item, name, solver, v, error), error);
-  }
-  eo_vibration_free(solver);
-  return code;
-}
-
-static enum eo_code verify_single(const json_t *sdof, struct eo_verification *v, struct eo_error *error)
-{
-  static const char *const known[] = {"equation", "note", "about", "cases", "analytic_A", "folds", NULL};
-  char buffer[NAME_LENGTH];
-  enum eo_code code = EO_OK;
-  size_t i;
-  json_t *item;
-  const char *family;
-  json_array_foreach(json_object_get(sdof, "cases"), i, item)
-  {
-    const char *name = name_of(item, "sdof", i, buffer);
-    if (!code)
-      code = settle(v, name, verify_sdof(item, name, v, error), error);
-  }
-  json_object_foreach(json_object_get(sdof, "folds"), family, item)
-  {
-    snprintf(buffer, sizeof buffer, "folds.%s", family);
-    if (!code)
-      code = settle(v, buffer, verify_folds(sdof, family, item, buffer, v, error), error);
-  }
-  eo_verify_unknown(v, "sdof", sdof, known);
-  return code;
-}
-
-/* Keys of the file that nobody reads; law_NAME and table_NAME are read by the cases that name them. */
-static void note_unknown(const json_t *cases, struct eo_verification *v)
-{
-  static const char *const known[] = {"kind",
-                                      "about",
-                                      "conventions",
-                                      "geometry",
-                                      "defaults",
-                                      "inertia_assumption",
-                                      "torsional_coupling",
-                                      "negative_control_literal_signs",
-                                      "eigen",
-                                      "dynamics",
-                                      "sdof",
-                                      "note",
-                                      "source",
-                                      NULL};
-  const char *key;
-  json_t *value;
-  json_object_foreach((json_t *)cases, key, value)
-  {
-    bool found = !strncmp(key, "law_", 4) || !strncmp(key, "table_", 6);
-    for (int i = 0; known[i] && !found; i++)
-      found = !strcmp(known[i], key);
-    if (!found)
-      eo_verify_ignore(v, "\"%s\" is not a block of this kind", key);
-  }
-}
-
-enum eo_code eo_verify_dynamics(const json_t *cases, struct eo_verification *v, struct eo_error *error)
-{
-  char buffer[NAME_LENGTH];
-  enum eo_code code = EO_OK;
-  size_t i;
-  json_t *item;
-  const json_t *control = json_object_get(cases, "negative_control_literal_signs");
-  json_array_foreach(json_object_get(cases, "eigen"), i, item)
-  {
-    const char *name = name_of(item, "eigen", i, buffer);
-    if (!code)
-      code = settle(v, name, verify_modes(cases, item, name, v, error), error);
-  }
-  if (!code && control)
-    code = settle(v, "negative_control_literal_signs", verify_printed_signs(cases, control, v, error), error);
-  if (!code)
-    code = verify_responses(cases, v, error);
-  if (!code)
-    code = verify_single(json_object_get(cases, "sdof"), v, error);
-  note_unknown(cases, v);
-  return code;
+  enum { USUAL_TEETH = 17 };
+  struct eo_case *geometry = eo_case_find(file, "geometry");
+  struct dynamics d = {
+      .file = file, .v = v, .teeth = geometry ? eo_case_whole(geometry, "z1", 1, LARGEST_TEETH) : USUAL_TEETH};
+  return eo_verify_blocks(v, file, blocks, &d, error);
 }

@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "reference/case_pair.h"
-#include "reference/verify.h"
 #include "document/examples.h"
 #include "document/layout_document.h"
 #include "gear/geometry.h"
@@ -61,7 +60,7 @@ static const struct {
              {"resolution", EO_FINDING_RESOLUTION}};
 
 struct run {
-  const json_t *file;
+  struct eo_case *file;
   struct eo_verification *v;
   struct eo_measurement_settings settings; /* of the file as a whole */
 };
@@ -79,244 +78,259 @@ static bool finding_kind(const char *text, enum eo_finding_kind *kind)
   return false;
 }
 
-/* A finding is named by a text, or by the first text in an object. */
-static const char *finding_text(const json_t *value)
+/* A finding is named by a text, or by the "kind" of an object; false with a fault when it is none. */
+static bool read_finding(struct eo_case *value, enum eo_finding_kind *kind)
 {
-  const char *key;
-  json_t *member;
-  if (json_is_object(value) && !json_object_get(value, "kind"))
-    json_object_foreach((json_t *)value, key, member) if (json_is_string(member)) return json_string_value(member);
-  return json_string_value(json_is_object(value) ? json_object_get(value, "kind") : value);
+  const char *text = eo_case_is_object(value) ? eo_case_word(value, "kind") : eo_case_text(value);
+  if (text && finding_kind(text, kind))
+    return true;
+  if (text)
+    eo_case_fault(value, "\"%.60s\" is not a finding.", text);
+  return false;
 }
 
-static double either(const json_t *object, const char *key, const char *other, double missing)
+/* Numbers of teeth as a pair under "teeth" or "z", or one by one. */
+static void read_teeth(struct eo_case *object, int teeth[2])
 {
-  double value = eo_verify_number(object, key);
-  return isnan(value) ? eo_verify_number_or(object, other, missing) : value;
-}
-
-/* "teeth": [17, 44], under this key or one that has "teeth" in it or is "z...". */
-static double teeth_of(const json_t *object, int member)
-{
-  const char *key;
-  json_t *value;
-  json_object_foreach((json_t *)object, key,
-                      value) if ((strstr(key, "teeth") || key[0] == 'z') && json_array_size(value) == 2 &&
-                                 json_is_integer(json_array_get(value, 0))) return eo_verify_at(value, (size_t)member);
-  return NAN;
+  enum { MOST = 100000 };
+  static const char *const single[2] = {"z1", "z2"};
+  const char *both = eo_case_find(object, "teeth") ? "teeth" : "z";
+  double pair[2];
+  if (eo_case_find(object, both)) {
+    if (eo_case_numbers(eo_case_find(object, both), 2, 2, pair) < 0)
+      return;
+    for (int i = 0; i < 2; i++) {
+      if (!(pair[i] >= 1 && pair[i] <= MOST && pair[i] == floor(pair[i])))
+        eo_case_fault(eo_case_find(object, both), "Numbers of teeth are whole, from 1.");
+      else
+        teeth[i] = (int)pair[i];
+    }
+  } else
+    for (int i = 0; i < 2; i++)
+      teeth[i] = eo_case_whole_or(object, single[i], 1, MOST, teeth[i]);
 }
 
 /* Tooth numbers, radii, orders and speed as an object states them; what it leaves out stays. */
-static void read_settings(const json_t *object, struct eo_measurement_settings *s)
+static void read_settings(struct eo_case *object, struct eo_measurement_settings *s)
 {
-  static const char *const teeth[2] = {"z1", "z2"}, *const radius[2] = {"rb1_mm", "rb2_mm"},
-                           *const metre[2] = {"rb1_m", "rb2_m"};
+  enum { MOST_ORDERS = 10000 };
+  static const char *const millimetre[2] = {"rb1_mm", "rb2_mm"}, *const metre[2] = {"rb1_m", "rb2_m"};
   struct eo_transmission_settings *t = &s->transmission;
+  struct eo_case *both = eo_case_find(object, "base_radius_mm");
+  read_teeth(object, t->teeth);
   for (int i = 0; i < 2; i++) {
-    double count = either(object, teeth[i], teeth[i], NAN);
-    if (isnan(count))
-      count = teeth_of(object, i);
-    if (count > 0)
-      t->teeth[i] = (int)count;
-    double length = eo_verify_number(object, radius[i]);
-    t->base_radius[i] = isnan(length) ? eo_verify_number_or(object, metre[i], t->base_radius[i]) : 1e-3 * length;
-    length = eo_verify_element(object, "base_radius_mm", i);
-    t->base_radius[i] = isnan(length) ? t->base_radius[i] : 1e-3 * length;
+    if (both)
+      t->base_radius[i] = 1e-3 * eo_case_element(both, i);
+    else if (eo_case_find(object, millimetre[i]))
+      t->base_radius[i] = 1e-3 * eo_case_number(object, millimetre[i]);
+    else
+      t->base_radius[i] = eo_case_number_or(object, metre[i], t->base_radius[i]);
   }
-  t->harmonics = (int)either(object, "harmonics", "H", t->harmonics);
-  double speed = either(object, "speed_rpm", "stated_rpm", NAN);
-  s->stated_speed = isnan(speed) ? s->stated_speed : speed * M_PI / 30;
+  t->harmonics = eo_case_whole_or(object, eo_case_find(object, "harmonics") ? "harmonics" : "H", 1, MOST_ORDERS,
+                                  t->harmonics);
+  s->stated_speed = eo_case_number_or(object, eo_case_find(object, "speed_rpm") ? "speed_rpm" : "stated_rpm",
+                                      s->stated_speed * 30 / M_PI) *
+                    M_PI / 30;
 }
 
 /* The paper's pair unless the file says otherwise. */
 static enum eo_code set_pair(struct run *r, struct eo_error *error)
 {
   struct eo_design *design = calloc(1, sizeof *design);
-  const json_t *pair = json_object_get(r->file, "pair");
+  struct eo_case *pair = eo_case_find(r->file, "pair");
   struct eo_geometry geometry;
-  enum eo_code code = design ? EO_OK : eo_error_memory(error);
-  if (!code && json_is_object(pair) && json_object_get(pair, "mn"))
-    code = eo_case_design(pair, design, error);
-  else if (!code)
+  if (!design)
+    return eo_error_memory(error);
+  if (pair)
+    eo_case_design(pair, design);
+  else
     eo_example_build("paper", design);
-  if (!code)
-    code = eo_geometry_init(&geometry, &design->gear_pair, error);
-  for (int i = 0; i < 2 && !code; i++) {
+  enum eo_code code = eo_case_faulty(r->file) ? EO_OK : eo_geometry_init(&geometry, &design->gear_pair, error);
+  free(design);
+  if (code || eo_case_faulty(r->file))
+    return code;
+  for (int i = 0; i < 2; i++) {
     r->settings.transmission.teeth[i] = geometry.teeth[i];
     r->settings.transmission.base_radius[i] = geometry.base_radius[i];
   }
   r->settings.stated_speed = NAN;
   read_settings(r->file, &r->settings);
-  read_settings(json_object_get(r->file, "mesh"), &r->settings);
-  free(design);
-  return code;
+  read_settings(eo_case_find(r->file, "mesh"), &r->settings);
+  return EO_OK;
 }
 
 /* ---- what is expected ---- */
 
-static bool among(const struct eo_findings *findings, enum eo_finding_kind kind)
-{
-  return eo_findings_find(findings, kind) != NULL;
-}
-
-static void check_findings(struct eo_verification *v, const char *label, const json_t *item,
-                           const struct eo_findings *found)
+/* Every finding of the list, and none besides that repairs or refuses. */
+static void check_findings(struct eo_verification *v, struct eo_case *list, const struct eo_findings *found)
 {
   bool expected[EO_FINDING_KINDS] = {false};
-  size_t index;
-  json_t *value;
   int surprises = 0;
-  if (!json_is_array(json_object_get(item, "expected_findings")))
+  if (!list)
     return;
-  json_array_foreach(json_object_get(item, "expected_findings"), index, value)
-  {
-    const char *text = finding_text(value);
+  if (!eo_case_is_list(list))
+    eo_case_fault(list, "A list of findings is expected here.");
+  for (int i = 0; i < eo_case_size(list); i++) {
     enum eo_finding_kind kind;
-    char quantity[120];
-    if (!text || !finding_kind(text, &kind)) {
-      eo_verify_ignore(v, "%s: \"%.60s\" is not a finding", label, text ? text : "(no text)");
+    char quantity[100];
+    if (!read_finding(eo_case_at(list, i), &kind))
       continue;
-    }
+    const struct eo_case *value = eo_case_at(list, i);
     expected[kind] = true;
-    snprintf(quantity, sizeof quantity, "finding %.60s", text);
-    eo_verify_add(v, label, quantity, among(found, kind), 1, 0);
+    snprintf(quantity, sizeof quantity, "finding %.60s",
+             eo_case_is_text(value) ? json_string_value(eo_case_json(value)) : "of this kind");
+    eo_verify_fact(v, eo_case_at(list, i), quantity, eo_findings_find(found, kind) != NULL);
   }
   for (int i = 0; i < found->count && i < EO_MAX_FINDINGS; i++)
     if (found->finding[i].severity >= EO_SEVERITY_REPAIRED && !expected[found->finding[i].kind]) {
       surprises++;
-      eo_verify_ignore(v, "%s: not expected: %s", label, found->finding[i].text);
+      eo_verify_note(v, "not expected: %s", found->finding[i].text);
     }
-  eo_verify_add(v, label, "findings not expected", surprises, 0, 0);
+  eo_verify_fact(v, list, "no finding besides", surprises == 0);
 }
 
 /* An order may deviate by four standard deviations of the noise beside it. */
-static void check_orders(struct eo_verification *v, const char *label, const json_t *truth, double relative,
+static void check_orders(struct eo_verification *v, struct eo_case *truth, double relative,
                          const struct eo_transmission *t)
 {
-  for (int h = 0; h < t->harmonics; h++) {
-    char quantity[60];
-    double amplitude = eo_verify_element(truth, "line_amp_um", h),
-           acceleration = eo_verify_element(truth, "line_acc", h), rms = eo_verify_element(truth, "rms_by_H", h);
-    double noise = 4 * t->mesh[h].sigma, weight = pow(t->mesh[h].order * t->speed, 2);
-    snprintf(quantity, sizeof quantity, "amplitude of mesh order %d", h + 1);
-    if (!isnan(amplitude))
-      eo_verify_add(v, label, quantity, 1e6 * cabs(t->mesh[h].amplitude), amplitude,
-                    relative * amplitude + 1e6 * noise);
-    snprintf(quantity, sizeof quantity, "acceleration of mesh order %d", h + 1);
-    if (!isnan(acceleration))
-      eo_verify_add(v, label, quantity, t->mesh[h].acceleration, acceleration,
-                    relative * acceleration + weight * noise);
-    snprintf(quantity, sizeof quantity, "RMS of %d orders", h + 1);
-    if (!isnan(rms))
-      eo_verify_add(v, label, quantity, t->rms_upto[h], rms, relative * rms);
+  const double deviations = 4;
+  struct eo_case *amplitude = eo_case_find(truth, "line_amp_um"), *acceleration = eo_case_find(truth, "line_acc"),
+                 *rms = eo_case_find(truth, "rms_by_H");
+  struct eo_case *const lists[] = {amplitude, acceleration, rms};
+  for (size_t i = 0; i < sizeof lists / sizeof *lists; i++)
+    if (lists[i] && (!eo_case_is_list(lists[i]) || eo_case_size(lists[i]) > t->harmonics))
+      eo_case_fault(lists[i], "A list of at most %d numbers, the orders measured, is expected here.", t->harmonics);
+  for (int h = 0; h < t->harmonics && !eo_case_faulty(truth); h++) {
+    double noise = deviations * t->mesh[h].sigma, weight = pow(t->mesh[h].order * t->speed, 2);
+    struct eo_case *a = eo_case_at(amplitude, h), *b = eo_case_at(acceleration, h);
+    if (a)
+      eo_verify_number(v, a, 1e6 * cabs(t->mesh[h].amplitude), 0, relative * fabs(eo_case_real(a)) + 1e6 * noise);
+    if (b)
+      eo_verify_number(v, b, t->mesh[h].acceleration, 0, relative * fabs(eo_case_real(b)) + weight * noise);
+    eo_verify_number(v, eo_case_at(rms, h), t->rms_upto[h], relative, 0);
   }
 }
 
-static double stated_rms(const json_t *truth, int *orders)
+/* "rms", "rms_mesh_lines" and "rms_mesh_lines_H8": of all orders, or of so many. */
+static void check_rms(struct eo_verification *v, struct eo_case *truth, double relative, const struct eo_measurement *m)
 {
-  const char *key;
-  json_t *value;
-  json_object_foreach((json_t *)truth, key, value) if (strncmp(key, "rms_mesh_lines", 14) == 0 && json_is_number(value))
-  {
-    const char *count = strstr(key, "_H");
-    *orders = count ? atoi(count + 2) : 0;
-    return json_number_value(value);
-  }
-  *orders = 0;
-  return eo_verify_number(truth, "rms");
-}
-
-static void check_numbers(struct eo_verification *v, const char *label, const json_t *item,
-                          const struct eo_measurement *m)
-{
-  static const char *const known[] = {"mean_rpm", "line_amp_um", "line_acc", "rms_by_H", "rms", NULL};
-  const json_t *truth = json_object_get(item, "truth"), *reference = json_object_get(item, "reference_pipeline");
-  double relative = either(item, "tolerance_rms_rel", "tolerance", 0.002), speed = eo_verify_number(truth, "mean_rpm");
+  static const char stem[] = "rms_mesh_lines";
   const struct eo_transmission *t = &m->transmission;
-  int orders;
-  double rms = stated_rms(truth, &orders), other = eo_verify_number(reference, "rms_lines_ls");
-  const char *key;
-  json_t *value;
-  json_object_foreach((json_t *)truth, key, value)
-  {
-    bool read = strncmp(key, "rms_mesh_lines", 14) == 0;
-    for (int i = 0; known[i]; i++)
-      read = read || strcmp(key, known[i]) == 0;
-    if (!read)
-      eo_verify_ignore(v, "%s: truth: \"%s\" is not read", label, key);
+  for (int i = 0; i < eo_case_size(truth); i++) {
+    const char *key = eo_case_key(eo_case_peek(truth, i));
+    bool all = strcmp(key, "rms") == 0 || strcmp(key, stem) == 0;
+    char *end = NULL;
+    if (!all && (strncmp(key, stem, strlen(stem)) != 0 || strncmp(key + strlen(stem), "_H", 2) != 0))
+      continue;
+    long orders = all ? t->harmonics : strtol(key + strlen(stem) + 2, &end, 10);
+    if (orders < 1 || (end && *end))
+      eo_case_fault(eo_case_peek(truth, i), "The key says how many orders, like rms_mesh_lines_H8.");
+    if (orders > t->harmonics && !m->refused)
+      eo_verify_note(v, "%s is compared with the %d orders that this recording shows.", key, t->harmonics);
+    int upto = orders > t->harmonics ? t->harmonics : (int)orders;
+    eo_verify_number(v, eo_case_peek(truth, i), m->refused || upto < 1 ? NAN : t->rms_upto[upto - 1], relative, 0);
   }
-  int upto = orders > 0 && orders <= t->harmonics ? orders : t->harmonics;
-  if (!isnan(rms))
-    eo_verify_add(v, label, "RMS", m->refused || upto < 1 ? NAN : t->rms_upto[upto - 1], rms, relative * rms);
-  if (m->refused)
+}
+
+static void check_numbers(struct eo_verification *v, struct eo_case *item, const struct eo_measurement *m)
+{
+  const double of_speed = 1e-4;
+  struct eo_case *truth = eo_case_find(item, "truth");
+  double relative = eo_case_relative_or(item, eo_case_find(item, "tolerance") ? "tolerance" : "tolerance_rms_rel",
+                                        0.002);
+  const struct eo_transmission *t = &m->transmission;
+  if (!truth)
     return;
-  if (!isnan(other))
-    eo_verify_add(v, label, "RMS beside the reference's least squares", t->rms, other, relative * other);
-  if (!isnan(speed))
-    eo_verify_add(v, label, "mean speed", t->speed * 30 / M_PI, speed, 1e-4 * speed);
-  check_orders(v, label, truth, relative, t);
+  if (eo_case_size(truth) == 0)
+    eo_case_fault(truth, "Numbers are expected here.");
+  if (m->refused) {
+    eo_verify_fact(v, truth, "measured, not refused", false);
+    eo_case_skip(truth);
+    return;
+  }
+  check_rms(v, truth, relative, m);
+  eo_verify_member(v, eo_case_find(item, "reference_pipeline"), "rms_lines_ls", t->rms, relative, 0);
+  eo_verify_member(v, truth, "mean_rpm", t->speed * 30 / M_PI, of_speed, 0);
+  check_orders(v, truth, relative, t);
 }
 
 /* ---- one recording ---- */
 
 /* The layout of the entry; lines per turn also as a key of their own or in the words of the note. */
-static enum eo_code find_tracks(const json_t *item, const struct eo_recording *recording, struct eo_notes *notes,
+static enum eo_code find_tracks(struct eo_case *item, const struct eo_recording *recording, struct eo_notes *notes,
                                 struct eo_tracks *tracks, struct eo_error *error)
 {
+  static const char *const names[] = {"lines_per_rev", "lines", "lines_per_turn"};
   struct eo_faults *faults = calloc(1, sizeof *faults);
   struct eo_layout_request layout;
-  const char *note = json_string_value(json_object_get(item, "note"));
+  struct eo_case *stated = eo_case_find(item, "layout");
+  double lines = eo_case_count(item, "note", " lines", 0);
   if (!faults)
     return eo_error_memory(error);
-  eo_layout_decode(json_object_get(item, "layout"), &layout, faults);
-  double stated = eo_case_count(note ? note : "", " lines", 0);
-  double lines = either(item, "lines_per_rev", "lines", either(item, "lines_per_turn", "lines_per_turn", stated));
+  eo_layout_decode(eo_case_json(stated), &layout, faults);
+  eo_case_skip(stated); /* the decoder refuses what it does not know */
+  for (int i = 0; i < faults->count && i < EO_MAX_FAULTS; i++)
+    eo_case_fault(stated, "%s: %s", faults->fault[i].pointer, faults->fault[i].text);
+  free(faults);
+  for (size_t i = sizeof names / sizeof *names; i-- > 0;)
+    lines = eo_case_number_or(item, names[i], lines);
   for (int i = 0; i < 2; i++)
     layout.choice.lines[i] = layout.choice.lines[i] > 0 ? layout.choice.lines[i] : lines;
-  enum eo_code code = eo_faults_first(faults, error);
-  free(faults);
-  return code ? code : eo_layout_find(recording, &layout.choice, tracks, notes, error);
+  return eo_case_faulty(item) ? EO_OK : eo_layout_find(recording, &layout.choice, tracks, notes, error);
 }
 
-static bool refusal_expected(const json_t *item)
+/* A recording with such a finding has no numbers. */
+static bool refusal_expected(struct eo_case *item)
 {
-  size_t index;
-  json_t *value;
-  if (json_is_true(json_object_get(item, "refused")))
-    return true;
-  json_array_foreach(json_object_get(item, "expected_findings"), index, value)
-  {
-    const char *text = finding_text(value);
+  static const enum eo_finding_kind refusing[] = {EO_FINDING_SLIP,      EO_FINDING_TEETH, EO_FINDING_CONSTANT,
+                                                  EO_FINDING_TOO_SHORT, EO_FINDING_TIME,  EO_FINDING_SAMPLE_RATE,
+                                                  EO_FINDING_SATURATED, EO_FINDING_UNITS};
+  struct eo_case *list = eo_case_find(item, "expected_findings");
+  bool expected = eo_case_flag_or(item, "refusal_accepted", false) || eo_case_flag_or(item, "refused", false);
+  for (int i = 0; i < eo_case_size(list); i++) {
     enum eo_finding_kind kind;
-    if (text && finding_kind(text, &kind) &&
-        (kind == EO_FINDING_SLIP || kind == EO_FINDING_TEETH || kind == EO_FINDING_CONSTANT ||
-         kind == EO_FINDING_TOO_SHORT || kind == EO_FINDING_TIME || kind == EO_FINDING_SAMPLE_RATE ||
-         kind == EO_FINDING_SATURATED || kind == EO_FINDING_UNITS))
-      return true;
+    if (read_finding(eo_case_at(list, i), &kind))
+      for (size_t k = 0; k < sizeof refusing / sizeof *refusing; k++)
+        expected = expected || kind == refusing[k];
   }
-  return false;
+  return expected;
 }
 
-static enum eo_code run_file(struct run *r, const json_t *item, const char *label, struct eo_error *error)
+static void check_measurement(struct eo_verification *v, struct eo_case *item, const struct eo_measurement *m)
 {
+  bool accepted = refusal_expected(item);
+  eo_verify_exact(v, eo_case_find(item, "refused"), m->refused);
+  check_findings(v, eo_case_find(item, "expected_findings"), &m->findings);
+  if (m->refused && accepted) {
+    eo_verify_fact(v, item, "refused, as may be", true);
+    eo_verify_uncompared(v, eo_case_find(item, "truth"), "the recording is refused, as it may be.");
+    eo_case_relative_or(item, eo_case_find(item, "tolerance") ? "tolerance" : "tolerance_rms_rel", 0.002);
+  } else
+    check_numbers(v, item, m);
+}
+
+static enum eo_code run_file(void *context, struct eo_case *item, struct eo_error *error)
+{
+  struct run *r = context;
   struct eo_measurement_settings settings = r->settings;
+  const char *name = eo_case_word(item, "file");
+  eo_case_remark(item, "columns");
+  read_settings(item, &settings);
+  if (eo_case_faulty(item))
+    return EO_OK;
   struct eo_measurement *m = calloc(1, sizeof *m);
   struct eo_recording *recording = NULL;
   struct eo_notes *notes = calloc(1, sizeof *notes);
   struct eo_tracks tracks;
-  char *path = eo_verify_path(r->v, label);
+  char *path = eo_verify_path(r->v, name);
   enum eo_code code = m && notes && path ? eo_reader_read(path, NULL, &recording, notes, error)
                                          : eo_error_memory(error);
-  read_settings(item, &settings);
   if (!code)
     code = find_tracks(item, recording, notes, &tracks, error);
-  if (!code)
+  if (!code && !eo_case_faulty(item))
     code = eo_measurement_run(m, recording, &tracks, &settings, NULL, error);
-  if (!code) {
-    check_findings(r->v, label, item, &m->findings);
-    if (!m->refused || !refusal_expected(item))
-      check_numbers(r->v, label, item, m);
-  }
+  if (!code && !eo_case_faulty(item))
+    check_measurement(r->v, item, m);
   if (m)
     eo_measurement_done(m);
   eo_recording_free(recording);
@@ -326,47 +340,30 @@ static enum eo_code run_file(struct run *r, const json_t *item, const char *labe
   return code;
 }
 
-enum eo_code eo_verify_encoder(const json_t *file, struct eo_verification *v, struct eo_error *error)
+static const struct eo_verify_block blocks[] = {
+    {"files", EO_BLOCK_EACH, run_file},
+    {"pair", EO_BLOCK_INPUT, NULL},
+    {"teeth", EO_BLOCK_INPUT, NULL},
+    {"z", EO_BLOCK_INPUT, NULL},
+    {"z1", EO_BLOCK_INPUT, NULL},
+    {"z2", EO_BLOCK_INPUT, NULL},
+    {"rb1_mm", EO_BLOCK_INPUT, NULL},
+    {"rb2_mm", EO_BLOCK_INPUT, NULL},
+    {"rb1_m", EO_BLOCK_INPUT, NULL},
+    {"rb2_m", EO_BLOCK_INPUT, NULL},
+    {"base_radius_mm", EO_BLOCK_INPUT, NULL},
+    {"harmonics", EO_BLOCK_INPUT, NULL},
+    {"H", EO_BLOCK_INPUT, NULL},
+    {"speed_rpm", EO_BLOCK_INPUT, NULL},
+    {"stated_rpm", EO_BLOCK_INPUT, NULL},
+    {"mesh_order_line", EO_BLOCK_REMARKS, NULL},
+    {NULL, EO_BLOCK_INPUT, NULL},
+};
+
+enum eo_code eo_verify_encoder(struct eo_case *file, struct eo_verification *v, struct eo_error *error)
 {
-  static const char *const known[] = {"file",
-                                      "note",
-                                      "truth",
-                                      "tolerance_rms_rel",
-                                      "expected_findings",
-                                      "reference_pipeline",
-                                      "layout",
-                                      "lines",
-                                      "lines_per_turn",
-                                      "lines_per_rev",
-                                      "teeth",
-                                      "z",
-                                      "z1",
-                                      "z2",
-                                      "speed_rpm",
-                                      "stated_rpm",
-                                      "harmonics",
-                                      "H",
-                                      "refused",
-                                      "columns",
-                                      NULL};
   struct run r = {.file = file, .v = v};
+  eo_case_need(file, "files");
   enum eo_code code = set_pair(&r, error);
-  size_t index;
-  json_t *item;
-  if (code)
-    return code;
-  if (!json_is_array(json_object_get(file, "files")))
-    return eo_error_set(error, EO_ERROR_INPUT, "/files", "An encoder case file needs a list of files.");
-  json_array_foreach(json_object_get(file, "files"), index, item)
-  {
-    const char *label = json_string_value(json_object_get(item, "file"));
-    code = label ? run_file(&r, item, label, error)
-                 : eo_error_set(error, EO_ERROR_INPUT, "", "The entry names no file.");
-    if (code && code != EO_ERROR_INPUT && code != EO_ERROR_NUMERIC && code != EO_ERROR_FILE)
-      return code;
-    if (code) /* this file alone */
-      eo_verify_broken(v, label ? label : "(no file)", error);
-    eo_verify_unknown(v, label ? label : "(no file)", item, known);
-  }
-  return EO_OK;
+  return code || eo_case_faulty(file) ? code : eo_verify_blocks(v, file, blocks, &r, error);
 }

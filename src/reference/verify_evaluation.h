@@ -6,6 +6,6 @@
 
 #include "reference/verify.h"
 
-enum eo_code eo_verify_evaluation(const json_t *cases, struct eo_verification *verification, struct eo_error *error);
+enum eo_code eo_verify_evaluation(struct eo_case *file, struct eo_verification *verification, struct eo_error *error);
 
 #endif

@@ -1,4 +1,7 @@
 /* All kinds of case files. */
+#include <string.h>
+
+#include "format/text.h"
 #include "reference/verify.h"
 #include "reference/verify_contact.h"
 #include "reference/verify_evaluation.h"
@@ -12,4 +15,39 @@ static const struct eo_verify_kind kinds[] = {
 const struct eo_verify_kind *eo_verify_kind_at(int index)
 {
   return index >= 0 && index < (int)(sizeof kinds / sizeof kinds[0]) ? &kinds[index] : NULL;
+}
+
+static const struct eo_verify_kind *find_kind(struct eo_case *file)
+{
+  const char *name = eo_case_word(file, "kind");
+  struct eo_text known = {0};
+  const struct eo_verify_kind *kind;
+  if (!name)
+    return NULL;
+  for (int i = 0; (kind = eo_verify_kind_at(i)); i++) {
+    if (strcmp(name, kind->name) == 0) {
+      eo_text_done(&known);
+      return kind;
+    }
+    eo_text_print(&known, "%s%s", i ? ", " : "", kind->name);
+  }
+  eo_case_fault(eo_case_find(file, "kind"), "\"%.40s\" is not a kind of case file; known: %s.", name,
+                known.data ? known.data : "");
+  eo_text_done(&known);
+  return NULL;
+}
+
+enum eo_code eo_verify_run(struct eo_case *file, struct eo_verification *v, struct eo_error *error)
+{
+  const struct eo_verify_kind *kind = find_kind(file);
+  enum eo_code code = kind ? kind->run(file, v, error) : EO_OK;
+  if (!code && v->failed)
+    code = eo_error_memory(error);
+  if (code)
+    return code;
+  if (kind && v->count == 0 && !eo_case_faulty(file))
+    eo_case_fault(file, "Nothing in this file is checked.");
+  if (kind)
+    eo_case_sweep(file);
+  return EO_OK;
 }

@@ -4,21 +4,20 @@
 #ifndef EASEOFF_REFERENCE_VERIFY_MESH_H
 #define EASEOFF_REFERENCE_VERIFY_MESH_H
 
-#include "reference/verify.h"
 #include "dynamics/law.h"
 #include "dynamics/parameters.h"
+#include "reference/verify.h"
 
-/* A law given in place or by name: the file's key law_NAME or table_NAME. tau: half the backlash, m.
-   Errors: EO_ERROR_INPUT with a pointer into the file, EO_ERROR_MEMORY. */
-enum eo_code eo_verify_read_law(struct eo_verification *verification, const json_t *cases, const json_t *law,
-                                double tau, struct eo_law *out, struct eo_error *error);
+/* A law given in place or by name: the file's key law_NAME or table_NAME. tau: half the backlash, m. What cannot be
+   understood is a fault of the file. Errors: EO_ERROR_INPUT of the law, EO_ERROR_MEMORY. */
+enum eo_code eo_verify_read_law(struct eo_case *file, struct eo_case *law, double tau, struct eo_law *out,
+                                struct eo_error *error);
 
-/* What is not there is NaN, torsional coupling 0. name: of the case, for keys that nobody knows. */
-struct eo_dynamics_parameters eo_verify_read_parameters(struct eo_verification *verification, const char *name,
-                                                        const json_t *params);
+/* Damping and stiffness of the groove's torsion are 0 when absent; all else is needed. *tau: 0 when absent. */
+void eo_verify_read_parameters(struct eo_case *params, struct eo_dynamics_parameters *out, double *tau);
 
-/* Adds the file's torsional_coupling to "pinion", "gear" or both members (any other word), where its parameters
-   have none; "none" and NULL change nothing. */
-void eo_verify_couple(const json_t *cases, const char *coupling, struct eo_dynamics_parameters *parameters);
+/* A case's "coupling": adds the file's torsional_coupling to "pinion", "gear" or "both" members, where its parameters
+   have none; "none" and no key change nothing. */
+void eo_verify_couple(struct eo_case *file, struct eo_case *item, struct eo_dynamics_parameters *parameters);
 
 #endif

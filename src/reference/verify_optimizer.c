@@ -1,563 +1,589 @@
 /* Kind "optimizer": the counter, prediction, redundancy, decay, clean-up, operators, whole runs, and the successor's
    latin hypercube, surrogate and credibility. */
-#include "reference/formula.h"
-#include "reference/verify.h"
-#include "base/random.h"
-#include "optimizer/prediction_history.h"
-#include "optimizer/operators.h"
-#include "optimizer/optimizer.h"
-#include "optimizer/surrogate.h"
-
-#include <inttypes.h>
 #include <math.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/random.h"
+#include "optimizer/operators.h"
+#include "optimizer/optimizer.h"
+#include "optimizer/prediction_history.h"
+#include "optimizer/surrogate.h"
+#include "reference/formula.h"
+#include "reference/verify.h"
+
+enum { MOST_ROWS = 100000, MOST_GENERATIONS = 100000 };
+
 struct verifier {
-  const json_t *root;
-  struct eo_verification *to;
-  struct eo_error *error;
-  enum eo_code code; /* of the first fault; later steps do nothing */
-  const char *block; /* the case under work */
-  int index;
-  double relative; /* tolerance in force */
+  struct eo_case *file;
+  struct eo_verification *v;
+  double usual;    /* relative tolerance of the file */
+  double relative; /* of the case under work */
 };
 
-static void fault(struct verifier *v, const char *text)
+/* ---- reading ---- */
+
+static void begin(struct verifier *v, struct eo_case *item)
 {
-  if (v->code != EO_OK)
-    return;
-  char pointer[100];
-  snprintf(pointer, sizeof pointer, "/%s/%d", v->block, v->index);
-  v->code = eo_error_set(v->error, EO_ERROR_INPUT, pointer, "%s", text);
+  v->relative = eo_case_relative_or(item, "rel_tol", v->usual);
 }
 
-__attribute__((format(printf, 4, 5))) static void compare(struct verifier *v, double value, double expected,
-                                                          const char *format, ...)
+/* To the tolerance in force; a 0 to the same part of 1, the size of the unit cube and of a credibility. */
+static void compare(const struct verifier *v, struct eo_case *expected, double value)
 {
-  char name[100], quantity[100];
-  va_list arguments;
-  va_start(arguments, format);
-  vsnprintf(quantity, sizeof quantity, format, arguments);
-  va_end(arguments);
-  snprintf(name, sizeof name, "%s[%d]", v->block, v->index);
-  const double tolerance = v->relative * (expected == 0 || isinf(expected) ? 1 : fabs(expected));
-  eo_verify_add(v->to, name, quantity, value, expected, tolerance);
+  eo_verify_number(v->v, expected, value, v->relative, eo_case_largest(expected) == 0 ? v->relative : 0);
 }
 
-/* The value of a key; a missing one is a fault. */
-static const json_t *need(struct verifier *v, const json_t *object, const char *key)
+static void compare_list(const struct verifier *v, struct eo_case *expected, int count, const double *value)
 {
-  const json_t *value = json_object_get(object, key);
-  if (value)
-    return value;
-  char text[120];
-  snprintf(text, sizeof text, "The key %s is missing.", key);
-  fault(v, text);
-  return NULL;
+  eo_verify_size(v->v, expected, count);
+  for (int i = 0; i < eo_case_size(expected); i++)
+    compare(v, eo_case_at(expected, i), i < count ? value[i] : NAN);
 }
 
-/* A number; null stands for infinite. */
-static double number(struct verifier *v, const json_t *object, const char *key)
+/* Whole numbers up to 2^64 - 1, as text or as a number. */
+static uint64_t big_whole(struct eo_case *value)
 {
-  const json_t *value = need(v, object, key);
-  if (value && !json_is_number(value) && !json_is_null(value) && !json_is_boolean(value))
-    fault(v, "A number is expected.");
-  return !value || json_is_null(value) ? INFINITY : json_is_true(value) ? 1 : json_number_value(value);
+  const char *text = eo_case_is_text(value) ? eo_case_text(value) : NULL;
+  char *end = NULL;
+  if (text) {
+    uint64_t number = strtoull(text, &end, 10);
+    if (end == text || *end || *text == '-')
+      eo_case_fault(value, "A whole number, as digits, is expected here.");
+    return number;
+  }
+  double number = eo_case_real(value);
+  if (number >= 0 && number < 9e15 && number == floor(number))
+    return (uint64_t)number;
+  if (!isnan(number))
+    eo_case_fault(value, "A whole number from 0 is expected here.");
+  return 0;
 }
 
-static double number_or(const json_t *object, const char *key, double standard)
+/* 0 or 1, or a flag. */
+static double number_or_flag(struct eo_case *value)
 {
-  const json_t *value = json_object_get(object, key);
-  return json_is_number(value) ? json_number_value(value) : json_is_boolean(value) ? json_is_true(value) : standard;
+  return value && json_is_boolean(eo_case_json(value)) ? eo_case_flag(value) : eo_case_real(value);
 }
 
-static uint64_t seed_of(struct verifier *v, const json_t *object, const char *key)
+/* A list of numbers, or of rows of numbers of equal length; freed by the caller. NULL with a fault. *columns is 1 for a
+   flat one. */
+static double *numbers(struct eo_case *list, int *rows, int *columns)
 {
-  const json_t *value = need(v, object, key);
-  return json_is_string(value) ? strtoull(json_string_value(value), NULL, 10) : (uint64_t)json_number_value(value);
-}
-
-static double element(const json_t *array, size_t i)
-{
-  const json_t *value = json_array_get(array, i);
-  return json_is_number(value) ? json_number_value(value)
-         : json_is_true(value) ? 1
-         : json_is_null(value) ? INFINITY
-                               : 0;
-}
-
-/* An array of numbers, or of rows of numbers of equal length; freed by the caller. *columns is 1 for a flat one. */
-static double *numbers(struct verifier *v, const json_t *array, int *rows, int *columns)
-{
-  *rows = (int)json_array_size(array);
-  *columns = 1;
-  if (*rows > 0 && json_is_array(json_array_get(array, 0)))
-    *columns = (int)json_array_size(json_array_get(array, 0));
-  double *result = calloc((size_t)*rows * (size_t)*columns + 1, sizeof *result);
-  if (!result) {
-    v->code = eo_error_memory(v->error);
-    *rows = 0;
+  struct eo_case *first = eo_case_at(list, 0);
+  *rows = eo_case_size(list);
+  *columns = eo_case_is_list(first) ? eo_case_size(first) : 1;
+  if (!list || !eo_case_is_list(list) || *rows < 1 || *rows > MOST_ROWS || *columns < 1 ||
+      *columns > EO_MAX_VARIABLES) {
+    eo_case_fault(list, "A list of numbers or of rows of numbers is expected here.");
     return NULL;
   }
-  for (int i = 0; i < *rows; i++) {
-    const json_t *row = json_array_get(array, (size_t)i);
-    if (json_is_array(row) && (int)json_array_size(row) != *columns)
-      fault(v, "The rows of an array differ in length.");
-    for (int k = 0; k < *columns; k++)
-      result[i * *columns + k] = json_is_array(row) ? element(row, (size_t)k) : element(array, (size_t)i);
+  double *result = calloc((size_t)*rows * (size_t)*columns, sizeof *result);
+  for (int i = 0; i < *rows && result; i++) {
+    struct eo_case *row = eo_case_at(list, i);
+    if (eo_case_is_list(first))
+      eo_case_numbers(row, *columns, *columns, result + (size_t)i * (size_t)*columns);
+    else
+      result[i] = number_or_flag(row);
   }
   return result;
 }
 
-static void compare_all(struct verifier *v, const double *value, int count, const json_t *expected,
-                        const char *quantity)
+/* ---- the counter ---- */
+
+static enum eo_code check_random(void *context, struct eo_case *item, struct eo_error *error)
 {
-  compare(v, count, (double)json_array_size(expected), "length of %s", quantity);
-  for (int i = 0; i < count && i < (int)json_array_size(expected); i++)
-    compare(v, value[i], element(expected, (size_t)i), "%s[%d]", quantity, i);
+  const struct verifier *v = context;
+  const double unit = 0x1p-53;
+  struct eo_case *expected = eo_case_need(item, "u64");
+  const uint64_t wanted = big_whole(expected), seed = big_whole(eo_case_need(item, "seed")),
+                 stream = big_whole(eo_case_need(item, "stream")), generation = big_whole(eo_case_need(item, "gen")),
+                 index = big_whole(eo_case_need(item, "idx")), draw = big_whole(eo_case_need(item, "draw"));
+  const struct eo_random random = eo_random_at(seed, stream, generation, index);
+  const uint64_t bits = eo_random_bits(random, draw);
+  (void)error;
+  if (eo_case_faulty(item))
+    return EO_OK;
+  eo_verify_fact(v->v, expected, "the same 64 bits", bits == wanted);
+  eo_verify_number(v->v, eo_case_need(item, "u01"), eo_random_unit(random, draw), 0, unit / 2);
+  return EO_OK;
 }
 
-/* The positions that are set in mark against a list of them. */
-static void compare_marks(struct verifier *v, const bool *mark, int count, const json_t *expected, const char *quantity)
+/* ---- the history ---- */
+
+/* Rows from {x, fit, R, pred}; rows without R and pred are true ones. */
+static enum eo_code load_history(struct eo_case *object, struct eo_history *history, struct eo_error *error)
 {
-  size_t seen = 0;
-  for (int i = 0; i < count; i++) {
-    if (!mark[i])
+  int rows, n, count[3];
+  static const char *const keys[3] = {"fit", "R", "pred"};
+  double *x = numbers(eo_case_need(object, "x"), &rows, &n), *column[3] = {NULL};
+  enum eo_code code = EO_OK;
+  for (int k = 0; k < 3 && x; k++) {
+    struct eo_case *list = eo_case_find(object, keys[k]);
+    int columns;
+    column[k] = list ? numbers(list, &count[k], &columns) : NULL;
+    if (column[k] && (count[k] != rows || columns != 1))
+      eo_case_fault(list, "A list of %d numbers, one for each row, is expected here.", rows);
+  }
+  if (!eo_case_faulty(object))
+    code = x ? eo_history_init(history, n, rows + 1, error) : eo_error_memory(error);
+  for (int i = 0; i < rows && !code && !eo_case_faulty(object); i++)
+    code = eo_history_add(history, x + (size_t)i * (size_t)n, column[0] ? column[0][i] : 0,
+                          column[1] ? column[1][i] : 1, column[2] && column[2][i] != 0, error);
+  for (int k = 0; k < 3; k++)
+    free(column[k]);
+  free(x);
+  return code;
+}
+
+/* Histories are read where they stand, so that one which no case names cannot be wrong unseen. */
+static enum eo_code read_histories(void *context, struct eo_case *block, struct eo_error *error)
+{
+  enum eo_code code = EO_OK;
+  (void)context;
+  for (int i = 0; i < eo_case_size(block) && !code && !eo_case_faulty(block); i++) {
+    struct eo_history history = {0};
+    if (eo_case_is_commentary(eo_case_key(eo_case_peek(block, i))))
       continue;
-    compare(v, i, seen < json_array_size(expected) ? element(expected, seen) : NAN, "%s[%zu]", quantity, seen);
-    seen++;
+    code = load_history(eo_case_at(block, i), &history, error);
+    eo_history_done(&history);
   }
-  compare(v, (double)seen, (double)json_array_size(expected), "length of %s", quantity);
+  return code;
 }
 
-static void verify_random(struct verifier *v, const json_t *item)
+static bool is_choice(struct eo_case *object, const char *key, const char *usual, const char *other)
 {
-  const struct eo_random random = eo_random_at(seed_of(v, item, "seed"), (uint64_t)number(v, item, "stream"),
-                                               (uint64_t)number(v, item, "gen"), (uint64_t)number(v, item, "idx"));
-  const uint64_t draw = (uint64_t)number(v, item, "draw"), bits = eo_random_bits(random, draw),
-                 expected = seed_of(v, item, "u64");
-  v->relative = 0; /* bit for bit; a number has 53 bits, so the 64 are compared in halves */
-  compare(v, (double)(bits >> 32), (double)(expected >> 32), "u64, upper half");
-  compare(v, (double)(bits & UINT32_MAX), (double)(expected & UINT32_MAX), "u64, lower half");
-  compare(v, eo_random_unit(random, draw), number(v, item, "u01"), "u01");
+  const char *const words[] = {usual, other, NULL};
+  return eo_case_choice(object, key, words, 0) == 1;
 }
 
-/* Rows from {x, fit, R, pred}; what is missing is a true row. */
-static void load_history(struct verifier *v, struct eo_history *history, const json_t *object)
+/* The rows of the region with their distances and weights. */
+static void compare_region(const struct verifier *v, struct eo_case *item, const struct eo_history *history,
+                           double radius)
 {
-  int rows, n;
-  double *x = numbers(v, need(v, object, "x"), &rows, &n);
-  if (x && v->code == EO_OK)
-    v->code = eo_history_init(history, n, rows + 1, v->error);
-  for (int i = 0; i < rows && v->code == EO_OK; i++) {
-    const json_t *credibility = json_array_get(json_object_get(object, "R"), (size_t)i);
-    v->code = eo_history_add(history, x + (size_t)i * n, element(json_object_get(object, "fit"), (size_t)i),
-                             credibility ? json_number_value(credibility) : 1,
-                             element(json_object_get(object, "pred"), (size_t)i) != 0, v->error);
+  struct eo_case *rows = eo_case_need(item, "region"), *e = eo_case_need(item, "e"), *w = eo_case_need(item, "w");
+  int region = 0;
+  for (int j = 0; j < history->count; j++) {
+    if (!(history->distance[j] <= radius))
+      continue;
+    eo_verify_exact(v->v, eo_case_at(rows, region), j);
+    compare(v, eo_case_at(e, region), history->distance[j]);
+    compare(v, eo_case_at(w, region), history->weight[j]);
+    region++;
   }
-  free(x);
+  eo_verify_size(v->v, rows, region);
+  eo_verify_size(v->v, e, region);
+  eo_verify_size(v->v, w, region);
 }
 
-static bool is_choice(const json_t *object, const char *key, const char *choice)
+/* null where the point has to be evaluated: then there is no estimate. */
+static void compare_fitness(const struct verifier *v, struct eo_case *item, const char *key, double fitness,
+                            bool predicts)
 {
-  const char *value = json_string_value(json_object_get(object, key));
-  return value && strcmp(value, choice) == 0;
+  struct eo_case *expected = eo_case_find(item, key);
+  if (expected && eo_case_is_null(expected))
+    eo_verify_fact(v->v, expected, "not predicted", !predicts);
+  else
+    compare(v, expected, fitness);
 }
 
-static void verify_estimate(struct verifier *v, const json_t *item, struct eo_history *history)
+static void compare_estimate(const struct verifier *v, struct eo_case *item, struct eo_history *history)
 {
-  const struct eo_history_law law = {.share_radius = number(v, item, "r_share"),
-                                     .weight_decay = number(v, item, "alpha"),
-                                     .rms = is_choice(item, "norm", "rms"),
-                                     .weights_over_all = is_choice(item, "wnorm", "all")};
-  int n, columns, region = 0;
-  double *x = numbers(v, need(v, item, "x"), &n, &columns);
-  if (x && n == history->variables && v->code == EO_OK) {
+  static const char decision_key[] = "decision_at_Rstar_0_6";
+  const double usual_trust = 0.6;
+  const struct eo_history_law law = {.share_radius = eo_case_number(item, "r_share"),
+                                     .weight_decay = eo_case_number(item, "alpha"),
+                                     .rms = is_choice(item, "norm", "range", "rms"),
+                                     .weights_over_all = is_choice(item, "wnorm", "region", "all")};
+  const double trust = eo_case_number_or(item, "Rstar", usual_trust);
+  int n, columns;
+  double *x = numbers(eo_case_need(item, "x"), &n, &columns);
+  if (x && (n != history->variables || columns != 1))
+    eo_case_fault(eo_case_find(item, "x"), "x has another length than the rows of its history.");
+  const bool evaluates = is_choice(item, decision_key, "predict", "evaluate");
+  eo_case_need(item, decision_key);
+  if (x && !eo_case_faulty(item)) {
     const struct eo_history_estimate estimate = eo_history_predict(history, &law, x);
-    for (int j = 0; j < history->count; j++) {
-      if (!(history->distance[j] <= law.share_radius))
-        continue;
-      compare(v, j, element(json_object_get(item, "region"), (size_t)region), "region[%d]", region);
-      compare(v, history->distance[j], element(json_object_get(item, "e"), (size_t)region), "e[%d]", region);
-      compare(v, history->weight[j], element(json_object_get(item, "w"), (size_t)region), "w[%d]", region);
-      region++;
-    }
-    compare(v, region, (double)json_array_size(json_object_get(item, "region")), "rows in the region");
-    compare(v, estimate.credibility, number(v, item, "R"), "R");
-    const bool predicts = eo_history_trusts(&estimate, number_or(item, "Rstar", 0.6));
-    compare(v, predicts, is_choice(item, "decision_at_Rstar_0_6", "predict"), "predicted (1) or evaluated (0)");
-    static const char *const fitness[] = {"fitness", "weighted_fitness"};
-    for (int i = 0; i < 2; i++)
-      if (json_is_number(json_object_get(item, fitness[i])))
-        compare(v, estimate.fitness, number(v, item, fitness[i]), "%s", fitness[i]);
-  } else if (v->code == EO_OK) {
-    fault(v, "x has another length than the rows of its history.");
+    const bool predicts = eo_history_trusts(&estimate, trust);
+    compare_region(v, item, history, law.share_radius);
+    compare(v, eo_case_need(item, "R"), estimate.credibility);
+    eo_verify_fact(v->v, eo_case_find(item, decision_key), "the same decision", predicts == !evaluates);
+    compare_fitness(v, item, "fitness", estimate.fitness, predicts);
+    compare_fitness(v, item, "weighted_fitness", estimate.fitness, predicts);
   }
   free(x);
 }
 
-static void verify_predict(struct verifier *v, const json_t *item)
+static enum eo_code check_predict(void *context, struct eo_case *item, struct eo_error *error)
 {
+  struct verifier *v = context;
   struct eo_history history = {0};
-  const char *name = json_string_value(need(v, item, "history"));
-  load_history(v, &history, name ? json_object_get(json_object_get(v->root, "histories"), name) : NULL);
-  if (v->code == EO_OK)
-    verify_estimate(v, item, &history);
+  struct eo_case *name = eo_case_need(item, "history"), *all = eo_case_need(v->file, "histories");
+  struct eo_case *block = eo_case_text(name) ? eo_case_find(all, eo_case_text(name)) : NULL;
+  begin(v, item);
+  if (!block && eo_case_is_text(name))
+    eo_case_fault(name, "There is no such history.");
+  enum eo_code code = block ? load_history(block, &history, error) : EO_OK;
+  if (!code && !eo_case_faulty(item))
+    compare_estimate(v, item, &history);
   eo_history_done(&history);
+  return code;
 }
 
-static void verify_redundancy(struct verifier *v, const json_t *item)
+/* Positions that are set in mark, in order, as the ids of their rows. ids NULL: the positions themselves. */
+static void compare_marks(const struct verifier *v, const bool *mark, const double *ids, int count,
+                          struct eo_case *expected)
 {
+  int seen = 0;
+  for (int i = 0; i < count; i++)
+    if (mark[i]) {
+      eo_verify_exact(v->v, eo_case_at(expected, seen), ids ? ids[i] : i);
+      seen++;
+    }
+  eo_verify_size(v->v, expected, seen);
+}
+
+static enum eo_code check_redundancy(void *context, struct eo_case *item, struct eo_error *error)
+{
+  struct verifier *v = context;
   struct eo_history history = {0};
-  load_history(v, &history, item);
-  if (v->code == EO_OK) {
-    const struct eo_history_law law = {.redundancy_threshold = number(v, item, "threshold"),
-                                       .literal_redundancy = true};
+  const struct eo_history_law law = {.redundancy_threshold = eo_case_number(item, "threshold"),
+                                     .literal_redundancy = true};
+  struct eo_case *expected = eo_case_need(item, "I_r"), *removed = eo_case_need(item, "removed");
+  begin(v, item);
+  enum eo_code code = load_history(item, &history, error);
+  if (!code && !eo_case_faulty(item)) {
     eo_history_mark_redundant(&history, &law);
-    compare_all(v, history.redundancy, history.count, need(v, item, "I_r"), "I_r");
-    compare_marks(v, history.removed, history.count, need(v, item, "removed"), "removed");
+    eo_verify_size(v->v, expected, history.count);
+    for (int i = 0; i < history.count && i < eo_case_size(expected); i++) {
+      struct eo_case *one = eo_case_at(expected, i);
+      if (eo_case_is_null(one)) /* the first and last row of a coordinate */
+        eo_verify_fact(v->v, one, "infinite", isinf(history.redundancy[i]));
+      else
+        compare(v, one, history.redundancy[i]);
+    }
+    compare_marks(v, history.removed, NULL, history.count, removed);
   }
   eo_history_done(&history);
+  return code;
 }
 
-static void verify_decay(struct verifier *v, const json_t *item)
+static enum eo_code check_decay(void *context, struct eo_case *item, struct eo_error *error)
 {
+  struct verifier *v = context;
   struct eo_history history = {0};
-  const struct eo_history_law law = {.credibility_loss = number(v, item, "beta"),
-                                     .removal_threshold = number(v, item, "R0")};
-  const double origin = 0, trust = number_or(item, "Rstar", 0.6);
-  const json_t *expected = need(v, item, "R_after_each_generation");
-  v->code = v->code == EO_OK ? eo_history_init(&history, 1, 1, v->error) : v->code;
-  if (v->code == EO_OK)
-    v->code = eo_history_add(&history, &origin, 1, number(v, item, "R"), true, v->error);
+  const struct eo_history_law law = {.credibility_loss = eo_case_number(item, "beta"),
+                                     .removal_threshold = eo_case_number(item, "R0")};
+  const double origin = 0, trust = eo_case_number_or(item, "Rstar", 0.6), start = eo_case_number(item, "R");
+  struct eo_case *expected = eo_case_need(item, "R_after_each_generation");
   int last_trusted = 0, removed_after = 0;
-  for (int generation = 1; generation <= (int)json_array_size(expected) && v->code == EO_OK; generation++) {
+  begin(v, item);
+  if (eo_case_faulty(item))
+    return EO_OK;
+  enum eo_code code = eo_history_init(&history, 1, 1, error);
+  if (!code)
+    code = eo_history_add(&history, &origin, 1, start, true, error);
+  for (int generation = 1; generation <= eo_case_size(expected) && !code; generation++) {
     if (eo_history_decay(&history, &law) > 0)
       removed_after = generation;
-    compare(v, history.credibility[0], element(expected, (size_t)generation - 1), "R after generation %d", generation);
+    compare(v, eo_case_at(expected, generation - 1), history.credibility[0]);
     if (history.credibility[0] >= trust)
       last_trusted = generation;
   }
-  compare(v, removed_after, number(v, item, "removed_after_generation"), "removed after generation");
-  compare(v, last_trusted, number(v, item, "last_generation_with_R_at_least_Rstar"), "last generation with R >= R*");
+  if (!code) {
+    eo_verify_exact(v->v, eo_case_need(item, "removed_after_generation"), removed_after);
+    eo_verify_exact(v->v, eo_case_need(item, "last_generation_with_R_at_least_Rstar"), last_trusted);
+  }
   eo_history_done(&history);
+  return code;
 }
 
-/* Compares ids of the marked rows (redundant), then of those that decay marks in addition. */
-static void verify_clean_up(struct verifier *v, const json_t *item)
+/* Ids of the redundant rows, of those that decay marks in addition, and of what stays. */
+static enum eo_code compare_clean_up(const struct verifier *v, struct eo_case *item, struct eo_history *history,
+                                     const double *ids, const struct eo_history_law *law, struct eo_error *error)
 {
-  struct eo_history history = {0};
-  const json_t *before = need(v, item, "before"), *after = need(v, item, "after");
-  load_history(v, &history, before);
-  if (v->code == EO_OK) {
-    const struct eo_history_law law = {.redundancy_threshold = number(v, item, "Ir"),
-                                       .literal_redundancy = true,
-                                       .credibility_loss = number(v, item, "beta"),
-                                       .removal_threshold = number(v, item, "R0")};
-    const json_t *ids = need(v, before, "id"), *redundant = need(v, item, "removed_redundant"),
-                 *decayed = need(v, item, "removed_decayed"), *kept_ids = need(v, after, "id");
-    eo_history_mark_redundant(&history, &law);
-    size_t seen[3] = {0};
-    for (int j = 0; j < history.count; j++)
-      if (history.removed[j])
-        compare(v, element(ids, (size_t)j), element(redundant, seen[0]), "removed_redundant[%zu]", seen[0]), seen[0]++;
-    bool *earlier = calloc((size_t)history.count + 1, sizeof *earlier);
-    memcpy(earlier, history.removed, (size_t)history.count * sizeof *earlier);
-    eo_history_decay(&history, &law);
-    for (int j = 0; j < history.count; j++) {
-      if (history.removed[j] && !earlier[j])
-        compare(v, element(ids, (size_t)j), element(decayed, seen[1]), "removed_decayed[%zu]", seen[1]), seen[1]++;
-      if (!history.removed[j])
-        compare(v, element(ids, (size_t)j), element(kept_ids, seen[2]), "after id[%zu]", seen[2]), seen[2]++;
+  struct eo_case *after = eo_case_need(item, "after");
+  const int count = history->count;
+  bool *decayed = calloc((size_t)count + 1, sizeof *decayed), *kept = calloc((size_t)count + 1, sizeof *kept);
+  enum eo_code code = decayed && kept ? EO_OK : eo_error_memory(error);
+  if (!code) {
+    eo_history_mark_redundant(history, law);
+    compare_marks(v, history->removed, ids, count, eo_case_need(item, "removed_redundant"));
+    for (int j = 0; j < count; j++)
+      kept[j] = history->removed[j]; /* before decay */
+    eo_history_decay(history, law);
+    for (int j = 0; j < count; j++) {
+      decayed[j] = history->removed[j] && !kept[j];
+      kept[j] = !history->removed[j];
     }
-    free(earlier);
-    compare(v, (double)seen[0], (double)json_array_size(redundant), "rows removed as redundant");
-    compare(v, (double)seen[1], (double)json_array_size(decayed), "rows removed as decayed");
-    eo_history_compact(&history);
-    compare_all(v, history.credibility, history.count, need(v, after, "R"), "after R");
+    compare_marks(v, decayed, ids, count, eo_case_need(item, "removed_decayed"));
+    compare_marks(v, kept, ids, count, eo_case_need(after, "id"));
+    eo_history_compact(history);
+    compare_list(v, eo_case_need(after, "R"), history->count, history->credibility);
   }
+  free(kept);
+  free(decayed);
+  return code;
+}
+
+static enum eo_code check_clean_up(void *context, struct eo_case *item, struct eo_error *error)
+{
+  struct verifier *v = context;
+  struct eo_history history = {0};
+  struct eo_case *before = eo_case_need(item, "before");
+  const struct eo_history_law law = {.redundancy_threshold = eo_case_number(item, "Ir"),
+                                     .literal_redundancy = true,
+                                     .credibility_loss = eo_case_number(item, "beta"),
+                                     .removal_threshold = eo_case_number(item, "R0")};
+  int count, columns;
+  double *ids = numbers(eo_case_need(before, "id"), &count, &columns);
+  begin(v, item);
+  enum eo_code code = before ? load_history(before, &history, error) : EO_OK;
+  if (!code && ids && !eo_case_faulty(item) && (count != history.count || columns != 1))
+    eo_case_fault(eo_case_find(before, "id"), "There are %d rows.", history.count);
+  if (!code && !eo_case_faulty(item))
+    code = compare_clean_up(v, item, &history, ids, &law, error);
   eo_history_done(&history);
+  free(ids);
+  return code;
 }
 
-/* The parameters of the files' operators and runs blocks. */
-static void read_parameters(struct eo_optimizer_settings *s, const json_t *p)
+/* ---- operators and runs ---- */
+
+static void replace(struct eo_case *object, const char *key, double *value)
 {
-  s->crossover = number_or(p, "pc", s->crossover);
-  s->mutation = number_or(p, "pm", s->mutation);
-  s->crossover_index = number_or(p, "eta_c", s->crossover_index);
-  s->mutation_index = number_or(p, "eta_m", s->mutation_index);
-  s->mutation_mode = is_choice(p, "pm_mode", "individual") ? EO_MUTATE_INDIVIDUAL : EO_MUTATE_GENE;
-  s->population = (int)number_or(p, "npop", s->population);
-  s->generations = (int)number_or(p, "ngen", s->generations);
-  s->elite = (int)number_or(p, "elite", s->elite);
-  s->share_radius = number_or(p, "r_share", 0);
-  s->weight_decay = number_or(p, "alpha", s->weight_decay);
-  s->trust_threshold = number_or(p, "Rstar", s->trust_threshold);
-  s->credibility_loss = number_or(p, "beta", s->credibility_loss);
-  s->removal_threshold = number_or(p, "R0", s->removal_threshold);
-  s->redundancy_threshold = number_or(p, "Ir", s->redundancy_threshold);
-  s->distance_norm = is_choice(p, "norm", "rms") ? EO_NORM_RMS : EO_NORM_RANGE;
-  s->weight_sum = is_choice(p, "wnorm", "all") ? EO_WEIGHTS_ALL : EO_WEIGHTS_REGION;
-  s->decision_order = is_choice(p, "order", "batch") ? EO_ORDER_BATCH : EO_ORDER_SEQUENTIAL;
-  s->store_predicted = number_or(p, "store_predicted", 1) != 0;
-  /* The files hold the algorithm as printed. */
-  s->literal_redundancy = number_or(p, "literal", 1) != 0;
-  s->verify = number_or(p, "verify", 0) != 0;
-  s->reuse = number_or(p, "reuse", 0) != 0;
+  *value = eo_case_number_or(object, key, *value);
 }
 
-static void verify_operators(struct verifier *v, const json_t *item)
+/* The parameters of the files' operators and runs blocks; the files hold the algorithm as printed. */
+static void read_parameters(struct eo_optimizer_settings *s, struct eo_case *p)
 {
-  int size, n, count, columns;
-  double *parents = numbers(v, need(v, item, "parents"), &size, &n);
-  double *fitness = numbers(v, need(v, item, "fitness"), &count, &columns);
-  const json_t *expected = need(v, item, "children");
-  const int children = (int)json_array_size(expected);
+  replace(p, "pc", &s->crossover);
+  replace(p, "pm", &s->mutation);
+  replace(p, "eta_c", &s->crossover_index);
+  replace(p, "eta_m", &s->mutation_index);
+  s->mutation_mode = is_choice(p, "pm_mode", "gene", "individual") ? EO_MUTATE_INDIVIDUAL : EO_MUTATE_GENE;
+  s->population = eo_case_whole_or(p, "npop", 1, MOST_ROWS, s->population);
+  s->generations = eo_case_whole_or(p, "ngen", 1, MOST_GENERATIONS, s->generations);
+  s->elite = eo_case_whole_or(p, "elite", 0, MOST_ROWS, s->elite);
+  s->share_radius = eo_case_number_or(p, "r_share", 0);
+  replace(p, "alpha", &s->weight_decay);
+  replace(p, "Rstar", &s->trust_threshold);
+  replace(p, "beta", &s->credibility_loss);
+  replace(p, "R0", &s->removal_threshold);
+  replace(p, "Ir", &s->redundancy_threshold);
+  s->distance_norm = is_choice(p, "norm", "range", "rms") ? EO_NORM_RMS : EO_NORM_RANGE;
+  s->weight_sum = is_choice(p, "wnorm", "region", "all") ? EO_WEIGHTS_ALL : EO_WEIGHTS_REGION;
+  s->decision_order = is_choice(p, "order", "sequential", "batch") ? EO_ORDER_BATCH : EO_ORDER_SEQUENTIAL;
+  s->store_predicted = eo_case_flag_or(p, "store_predicted", true);
+  s->literal_redundancy = eo_case_flag_or(p, "literal", true);
+  s->verify = eo_case_whole_or(p, "verify", 0, 1, 0);
+  s->reuse = eo_case_flag_or(p, "reuse", false);
+}
+
+static enum eo_code compare_children(const struct verifier *v, struct eo_case *expected,
+                                     const struct eo_optimizer_settings *settings, const double *parents,
+                                     const double *fitness, int size, int n, int generation, struct eo_error *error)
+{
+  const int children = eo_case_size(expected);
   double *child = calloc((size_t)children * (size_t)n + 1, sizeof *child);
-  struct eo_optimizer_settings settings;
-  eo_optimizer_defaults(&settings, EO_GA, n);
-  read_parameters(&settings, need(v, item, "params"));
-  settings.seed = seed_of(v, item, "seed");
-  if (n < 1 || n > EO_MAX_VARIABLES || count != size)
-    fault(v, "parents and fitness do not belong together.");
-  if (v->code == EO_OK && child) {
-    eo_breed(&settings, parents, fitness, size, (int)number(v, item, "gen"), 0, child, children);
-    for (int i = 0; i < children; i++)
-      for (int k = 0; k < n; k++)
-        compare(v, child[i * n + k], element(json_array_get(expected, (size_t)i), (size_t)k), "children[%d][%d]", i, k);
-  }
+  if (!child)
+    return eo_error_memory(error);
+  eo_breed(settings, parents, fitness, size, generation, 0, child, children);
+  for (int i = 0; i < children; i++)
+    compare_list(v, eo_case_at(expected, i), n, child + (size_t)i * (size_t)n);
   free(child);
+  return EO_OK;
+}
+
+static enum eo_code check_operators(void *context, struct eo_case *item, struct eo_error *error)
+{
+  struct verifier *v = context;
+  int size, n, count, columns;
+  double *parents = numbers(eo_case_need(item, "parents"), &size, &n);
+  double *fitness = numbers(eo_case_need(item, "fitness"), &count, &columns);
+  struct eo_case *expected = eo_case_need(item, "children"), *parameters = eo_case_need(item, "params");
+  const int generation = eo_case_whole(item, "gen", 0, MOST_GENERATIONS);
+  struct eo_optimizer_settings settings;
+  enum eo_code code = EO_OK;
+  begin(v, item);
+  eo_optimizer_defaults(&settings, EO_GA, n);
+  read_parameters(&settings, parameters);
+  settings.seed = big_whole(eo_case_need(item, "seed"));
+  if (parents && fitness && count != size)
+    eo_case_fault(item, "parents and fitness do not belong together.");
+  if (!eo_case_faulty(item))
+    code = compare_children(v, expected, &settings, parents, fitness, size, n, generation, error);
   free(fitness);
   free(parents);
+  return code;
 }
 
-static void run_to_the_end(struct verifier *v, struct eo_optimizer *optimizer, const char *formula, int n)
+static enum eo_code run_to_the_end(struct eo_optimizer *optimizer, const char *formula, int n, struct eo_error *error)
 {
   struct eo_batch batch = {.count = 1};
-  while (v->code == EO_OK && batch.count > 0) {
-    v->code = eo_optimizer_ask(optimizer, &batch, v->error);
-    for (int i = 0; i < batch.count && v->code == EO_OK; i++) {
+  enum eo_code code = EO_OK;
+  while (!code && batch.count > 0) {
+    code = eo_optimizer_ask(optimizer, &batch, error);
+    for (int i = 0; i < batch.count && !code; i++) {
       double fitness;
-      v->code = eo_formula_evaluate(formula, batch.candidates[i].x, n, &fitness, v->error);
+      code = eo_formula_evaluate(formula, batch.candidates[i].x, n, &fitness, error);
       const struct eo_outcome outcome = {.value = -fitness};
-      if (v->code == EO_OK)
-        v->code = eo_optimizer_tell(optimizer, i, &outcome, v->error);
+      if (!code)
+        code = eo_optimizer_tell(optimizer, i, &outcome, error);
     }
   }
+  return code;
 }
 
-static void compare_run(struct verifier *v, const struct eo_optimizer *optimizer, const json_t *item)
+static void compare_run(const struct verifier *v, const struct eo_optimizer *optimizer, struct eo_case *item)
 {
-  int generations, true_evaluations = 0;
+  static const char *const keys[] = {"true_evaluations_after_generation", "rows_after_generation", "removed_redundant",
+                                     "removed_decayed", "best_true_fitness"};
+  enum { KEYS = sizeof keys / sizeof *keys, COUNTS = KEYS - 1 };
+  int generations, true_evaluations = 0, best = eo_optimizer_best(optimizer);
   const struct eo_generation *g = eo_optimizer_generations(optimizer, &generations);
-  const json_t *expected = need(v, item, "true_evaluations_after_generation");
-  compare(v, generations, (double)json_array_size(expected), "generations");
+  struct eo_case *list[KEYS], *best_x = eo_case_need(item, "best_x");
+  for (int k = 0; k < KEYS; k++) {
+    list[k] = eo_case_need(item, keys[k]);
+    eo_verify_size(v->v, list[k], generations);
+  }
   for (int i = 0; i < generations; i++) {
     true_evaluations += g[i].true_count;
-    const size_t j = (size_t)i;
-    compare(v, true_evaluations, element(expected, j), "true_evaluations_after_generation[%d]", i);
-    compare(v, g[i].history_rows, element(need(v, item, "rows_after_generation"), j), "rows_after_generation[%d]", i);
-    compare(v, g[i].removed_redundant, element(need(v, item, "removed_redundant"), j), "removed_redundant[%d]", i);
-    compare(v, g[i].removed_decayed, element(need(v, item, "removed_decayed"), j), "removed_decayed[%d]", i);
-    compare(v, -g[i].best_value, element(need(v, item, "best_true_fitness"), j), "best_true_fitness[%d]", i);
+    const double count[COUNTS] = {true_evaluations, g[i].history_rows, g[i].removed_redundant, g[i].removed_decayed};
+    for (int k = 0; k < COUNTS; k++)
+      eo_verify_exact(v->v, eo_case_at(list[k], i), count[k]);
+    compare(v, eo_case_at(list[COUNTS], i), -g[i].best_value);
   }
-  compare(v, eo_optimizer_counters(optimizer).fitness_computed, number(v, item, "pfc"), "pfc");
-  const int best = eo_optimizer_best(optimizer);
+  compare(v, eo_case_need(item, "pfc"), eo_optimizer_counters(optimizer).fitness_computed);
+  eo_verify_fact(v->v, best_x, "there is a best point", best >= 0);
   if (best >= 0)
-    compare_all(v, eo_optimizer_row(optimizer, best).x, (int)json_array_size(json_object_get(item, "best_x")),
-                need(v, item, "best_x"), "best_x");
+    compare_list(v, best_x, eo_case_whole(item, "n", 1, EO_MAX_VARIABLES), eo_optimizer_row(optimizer, best).x);
 }
 
-static void verify_run(struct verifier *v, const json_t *item)
+static enum eo_code check_run(void *context, struct eo_case *item, struct eo_error *error)
 {
-  const char *formula = json_string_value(need(v, item, "fitness"));
-  const int n = (int)number(v, item, "n");
+  struct verifier *v = context;
+  const char *formula = eo_case_word(item, "fitness");
+  const int n = eo_case_whole(item, "n", 1, EO_MAX_VARIABLES);
   struct eo_optimizer *optimizer = NULL;
   struct eo_optimizer_settings settings;
+  begin(v, item);
   eo_optimizer_defaults(&settings, EO_FPGA, n);
-  read_parameters(&settings, need(v, item, "params"));
-  settings.seed = seed_of(v, item, "seed");
+  read_parameters(&settings, eo_case_need(item, "params"));
+  settings.seed = big_whole(eo_case_need(item, "seed"));
   settings.fitness_form = EO_FITNESS_NEGATIVE;
-  if (!formula)
-    fault(v, "fitness is no text.");
-  if (v->code == EO_OK)
-    v->code = eo_optimizer_new(&settings, &optimizer, v->error);
-  if (v->code == EO_OK)
-    run_to_the_end(v, optimizer, formula, n);
-  if (v->code == EO_OK)
+  if (eo_case_faulty(item))
+    return EO_OK;
+  enum eo_code code = eo_optimizer_new(&settings, &optimizer, error);
+  if (!code)
+    code = run_to_the_end(optimizer, formula, n, error);
+  if (!code)
     compare_run(v, optimizer, item);
   eo_optimizer_free(optimizer);
+  return code;
 }
+
+/* ---- the successor ---- */
 
 /* Reads "... ridge 1e-9" from the description of the surrogate. */
-static double ridge_of(const json_t *item)
+static double ridge_of(struct eo_case *item)
 {
-  const char *text = json_string_value(json_object_get(item, "rbf"));
-  const char *ridge = text ? strstr(text, "ridge") : NULL;
-  return ridge ? strtod(ridge + strlen("ridge"), NULL) : 0;
+  struct eo_case *words = eo_case_need(item, "rbf");
+  const char *text = eo_case_text(words), *ridge = text ? strstr(text, "ridge ") : NULL;
+  char *end = NULL;
+  double value = ridge ? strtod(ridge + strlen("ridge "), &end) : NAN;
+  if (text && (!ridge || end == ridge + strlen("ridge ") || !(value >= 0)))
+    eo_case_fault(words, "The words end with the ridge, like \"ridge 1e-9\".");
+  return value;
 }
 
-static void compare_surrogate(struct verifier *v, const json_t *item, struct eo_surrogate *s, const double *query,
-                              int queries)
+static void compare_surrogate(const struct verifier *v, struct eo_case *item, struct eo_surrogate *s,
+                              const double *query, int queries)
 {
-  const json_t *credibility = need(v, item, "credibility");
-  const double length = number(v, credibility, "ell");
-  compare_all(v, s->residual, s->rows, need(v, item, "loo_abs"), "loo_abs");
-  compare_all(v, s->residual, s->rows, need(v, item, "loo_by_refit"), "loo_by_refit");
-  eo_surrogate_set_scale(s, number(v, credibility, "scale"));
+  struct eo_case *credibility = eo_case_need(item, "credibility"), *trust = eo_case_need(credibility, "R"),
+                 *prediction = eo_case_need(item, "prediction");
+  const double length = eo_case_number(credibility, "ell"), scale = eo_case_number(credibility, "scale");
+  eo_case_remark(credibility, "formula");
+  if (eo_case_faulty(item))
+    return;
+  compare_list(v, eo_case_need(item, "loo_abs"), s->rows, s->residual);
+  compare_list(v, eo_case_need(item, "loo_by_refit"), s->rows, s->residual);
+  eo_surrogate_set_scale(s, scale);
+  eo_verify_size(v->v, prediction, queries);
+  eo_verify_size(v->v, trust, queries);
   for (int i = 0; i < queries; i++) {
-    eo_surrogate_visit(s, query + (size_t)i * s->variables);
-    compare(v, eo_surrogate_value(s, 0), element(need(v, item, "prediction"), (size_t)i), "prediction[%d]", i);
-    compare(v, eo_surrogate_credibility(s, length), element(need(v, credibility, "R"), (size_t)i), "credibility R[%d]",
-            i);
+    eo_surrogate_visit(s, query + (size_t)i * (size_t)s->variables);
+    compare(v, eo_case_at(prediction, i), eo_surrogate_value(s, 0));
+    compare(v, eo_case_at(trust, i), eo_surrogate_credibility(s, length));
   }
 }
 
-static void verify_surrogate(struct verifier *v, const json_t *item, const double *x, int m, int n)
+static enum eo_code check_surrogate(const struct verifier *v, struct eo_case *item, const double *x, int m, int n,
+                                    struct eo_error *error)
 {
-  int rows, columns, queries;
-  double *y = numbers(v, need(v, item, "y"), &rows, &columns);
-  double *query = numbers(v, need(v, item, "query"), &queries, &columns);
+  int rows, queries, one, columns;
+  double *y = numbers(eo_case_need(item, "y"), &rows, &one);
+  double *query = numbers(eo_case_need(item, "query"), &queries, &columns);
   struct eo_surrogate surrogate = {0};
-  if (rows != m || columns != n)
-    fault(v, "y or query do not belong to the latin hypercube.");
-  if (v->code == EO_OK)
-    v->code = eo_surrogate_init(&surrogate, n, m, 1, EO_TAIL_LINEAR, v->error);
-  if (v->code == EO_OK && !eo_surrogate_fit(&surrogate, EO_TAIL_LINEAR, ridge_of(item), x, y, m, 1))
-    fault(v, "The rows do not determine a surrogate.");
-  if (v->code == EO_OK)
+  const double ridge = ridge_of(item);
+  enum eo_code code = EO_OK;
+  if (y && query && (rows != m || one != 1 || columns != n))
+    eo_case_fault(item, "y or query do not belong to the latin hypercube.");
+  if (!eo_case_faulty(item))
+    code = eo_surrogate_init(&surrogate, n, m, 1, EO_TAIL_LINEAR, error);
+  if (!code && !eo_case_faulty(item) && !eo_surrogate_fit(&surrogate, EO_TAIL_LINEAR, ridge, x, y, m, 1))
+    code = eo_error_set(error, EO_ERROR_NUMERIC, "", "The rows do not determine a surrogate.");
+  if (!code && !eo_case_faulty(item))
     compare_surrogate(v, item, &surrogate, query, queries);
   eo_surrogate_done(&surrogate);
   free(query);
   free(y);
+  return code;
 }
 
-static void verify_successor(struct verifier *v, const json_t *item)
+static enum eo_code check_successor(void *context, struct eo_case *item, struct eo_error *error)
 {
-  const json_t *latin = need(v, item, "lhs");
-  const int n = (int)number(v, latin, "n"), m = (int)number(v, latin, "m");
-  if (v->code != EO_OK || n < 1 || n > EO_MAX_VARIABLES || m < 1 || m > 100000) {
-    fault(v, "lhs does not say how many points of how many variables.");
-    return;
-  }
+  struct verifier *v = context;
+  struct eo_case *latin = eo_case_need(item, "lhs"), *expected = eo_case_need(latin, "x");
+  const int n = eo_case_whole(latin, "n", 1, EO_MAX_VARIABLES), m = eo_case_whole(latin, "m", 1, MOST_ROWS);
+  const uint64_t seed = big_whole(eo_case_need(latin, "seed"));
+  begin(v, item);
+  if (eo_case_faulty(item))
+    return EO_OK;
   double *x = calloc((size_t)m * (size_t)n, sizeof *x), *scratch = calloc((size_t)m, sizeof *scratch);
-  if (x && scratch) {
-    eo_latin_hypercube(x, m, n, seed_of(v, latin, "seed"), 0, scratch);
-    for (int i = 0; i < m; i++)
-      for (int k = 0; k < n; k++)
-        compare(v, x[i * n + k], element(json_array_get(need(v, latin, "x"), (size_t)i), (size_t)k), "lhs[%d][%d]", i,
-                k);
-    if (json_object_get(item, "y"))
-      verify_surrogate(v, item, x, m, n);
-  } else {
-    v->code = eo_error_memory(v->error);
+  enum eo_code code = x && scratch ? EO_OK : eo_error_memory(error);
+  if (!code) {
+    eo_latin_hypercube(x, m, n, seed, 0, scratch);
+    eo_verify_size(v->v, expected, m);
+    for (int i = 0; i < m && i < eo_case_size(expected); i++)
+      compare_list(v, eo_case_at(expected, i), n, x + (size_t)i * (size_t)n);
+    if (eo_case_find(item, "y"))
+      code = check_surrogate(v, item, x, m, n, error);
   }
   free(scratch);
   free(x);
+  return code;
 }
 
-static const char *const random_keys[] = {"seed", "stream", "gen", "idx", "draw", "u64", "u01", NULL};
-static const char *const predict_keys[] = {"history", "x",
-                                           "r_share", "alpha",
-                                           "norm",    "wnorm",
-                                           "Rstar",   "region",
-                                           "e",       "w",
-                                           "R",       "decision_at_Rstar_0_6",
-                                           "fitness", "weighted_fitness",
-                                           NULL};
-static const char *const redundancy_keys[] = {"x", "fit", "R", "pred", "threshold", "I_r", "removed", NULL};
-static const char *const decay_keys[] = {"R",
-                                         "beta",
-                                         "R0",
-                                         "Rstar",
-                                         "R_after_each_generation",
-                                         "removed_after_generation",
-                                         "last_generation_with_R_at_least_Rstar",
-                                         NULL};
-static const char *const clean_up_keys[] = {"before",          "after", "beta", "R0", "Ir", "removed_redundant",
-                                            "removed_decayed", NULL};
-static const char *const operator_keys[] = {"seed", "gen", "parents", "fitness", "params", "children", NULL};
-static const char *const run_keys[] = {"fitness",
-                                       "n",
-                                       "seed",
-                                       "params",
-                                       "true_evaluations_after_generation",
-                                       "rows_after_generation",
-                                       "removed_redundant",
-                                       "removed_decayed",
-                                       "best_true_fitness",
-                                       "pfc",
-                                       "best_x",
-                                       NULL};
-static const char *const successor_keys[] = {"lhs",          "y",           "rbf", "query", "prediction", "loo_abs",
-                                             "loo_by_refit", "credibility", NULL};
+static const struct eo_verify_block blocks[] = {
+    {"rng", EO_BLOCK_EACH, check_random},
+    {"histories", EO_BLOCK_EITHER, read_histories},
+    {"predict", EO_BLOCK_EACH, check_predict},
+    {"redundancy", EO_BLOCK_EACH, check_redundancy},
+    {"decay", EO_BLOCK_EACH, check_decay},
+    {"S6", EO_BLOCK_EACH, check_clean_up},
+    {"operators", EO_BLOCK_EACH, check_operators},
+    {"runs", EO_BLOCK_EACH, check_run},
+    {"invariants", EO_BLOCK_REMARKS, NULL},
+    {"successor", EO_BLOCK_WHOLE, check_successor},
+    {NULL, EO_BLOCK_INPUT, NULL},
+};
 
-static const struct block {
-  const char *key;
-  void (*verify)(struct verifier *, const json_t *);
-  const char *const *keys;
-} blocks[] = {{"rng", verify_random, random_keys},
-              {"predict", verify_predict, predict_keys},
-              {"redundancy", verify_redundancy, redundancy_keys},
-              {"decay", verify_decay, decay_keys},
-              {"S6", verify_clean_up, clean_up_keys},
-              {"operators", verify_operators, operator_keys},
-              {"runs", verify_run, run_keys},
-              {"successor", verify_successor, successor_keys}};
-enum { BLOCKS = sizeof blocks / sizeof *blocks };
-
-/* Keys of a case that its block does not read; every case may carry words for people and its own tolerance. */
-static void note_unknown(struct verifier *v, const json_t *object, const char *const *keys)
+enum eo_code eo_verify_optimizer(struct eo_case *file, struct eo_verification *v, struct eo_error *error)
 {
-  static const char *const always[] = {"name", "id", "about", "note", "rel_tol", NULL};
-  const char *key;
-  json_t *value;
-  json_object_foreach((json_t *)object, key, value)
-  {
-    bool found = false;
-    for (int i = 0; keys[i] && !found; i++)
-      found = strcmp(keys[i], key) == 0;
-    for (int i = 0; always[i] && !found; i++)
-      found = strcmp(always[i], key) == 0;
-    if (!found)
-      eo_verify_ignore(v->to, "%s[%d]: \"%s\" is not a key of this block", v->block, v->index, key);
-  }
-}
-
-/* One case; what cannot be computed is a failed check of its own. */
-static enum eo_code verify_item(struct verifier *v, const struct block *block, const json_t *item)
-{
-  char name[100];
-  note_unknown(v, item, block->keys);
-  block->verify(v, item);
-  if (v->code != EO_ERROR_INPUT && v->code != EO_ERROR_NUMERIC)
-    return v->code;
-  snprintf(name, sizeof name, "%s[%d]", v->block, v->index);
-  eo_verify_broken(v->to, name, v->error);
-  return v->code = EO_OK;
-}
-
-enum eo_code eo_verify_optimizer(const json_t *cases, struct eo_verification *to, struct eo_error *error)
-{
-  static const char *const other[] = {"kind", "about", "conventions", "histories", "invariants", "note", "source"};
-  enum { OTHERS = sizeof other / sizeof *other };
-  const double relative = number_or(json_object_get(cases, "conventions"), "rel_tol", 1e-12);
-  struct verifier v = {.root = cases, .to = to, .error = error};
-  const char *known[BLOCKS + OTHERS + 1] = {NULL};
-  for (int b = 0; b < BLOCKS; b++) {
-    const json_t *block = json_object_get(cases, blocks[b].key);
-    const int items = json_is_array(block) ? (int)json_array_size(block) : block != NULL;
-    v.block = known[b] = blocks[b].key;
-    for (v.index = 0; v.index < items && v.code == EO_OK; v.index++) {
-      const json_t *item = json_is_array(block) ? json_array_get(block, (size_t)v.index) : block;
-      v.relative = number_or(item, "rel_tol", relative);
-      verify_item(&v, &blocks[b], item);
-    }
-  }
-  memcpy(known + BLOCKS, other, sizeof other);
-  eo_verify_unknown(to, "the file", cases, known);
-  return v.code;
+  struct eo_case *conventions = eo_case_find(file, "conventions");
+  struct verifier verifier = {.file = file, .v = v, .usual = eo_case_relative_or(conventions, "rel_tol", 1e-12)};
+  return eo_verify_blocks(v, file, blocks, &verifier, error);
 }

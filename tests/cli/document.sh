@@ -129,7 +129,7 @@ expect 1 "an unknown kind" with_input '{"kind":"gears"}' "$EASEOFF" verify -
 says '"gears" is not a kind'
 expect 1 "no kind" with_input '{}' "$EASEOFF" verify -
 expect 1 "verify without a file" "$EASEOFF" verify
-expect 1 "a block that cannot be computed" sh -c "echo '{\"kind\":\"standards\",\"fzg_x\":{\"z\":[16,24],\"mn_mm\":4.5,\"a_mm\":80}}' | \"$EASEOFF\" verify -; status=\$?; echo >&2; exit \$status"
+expect 1 "a block that cannot be computed" sh -c "echo '{\"kind\":\"standards\",\"fzg_x\":{\"z\":[16,24],\"mn_mm\":4.5,\"a_mm\":80,\"r_a_mm\":[41,59],\"p_b_mm\":13}}' | \"$EASEOFF\" verify -; status=\$?; echo >&2; exit \$status"
 prints "could not be computed"
 
 if [ -w /dev/full ]; then
