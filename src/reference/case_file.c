@@ -92,7 +92,7 @@ const struct eo_faults *eo_case_faults(const struct eo_case *value)
 
 bool eo_case_faulty(const struct eo_case *value)
 {
-  return value->tree->faults.count > 0;
+  return !value || value->tree->faults.count > 0;
 }
 
 void eo_case_pointer(const struct eo_case *value, char *pointer, int size)
@@ -117,6 +117,15 @@ void eo_case_fault(const struct eo_case *value, const char *format, ...)
 
 /* ---- the way down ---- */
 
+static struct eo_case *member_named(struct eo_case *object, const char *key)
+{
+  if (json_is_object(object->json))
+    for (int i = 0; i < object->size; i++)
+      if (strcmp(object->member[i].path.key, key) == 0)
+        return &object->member[i];
+  return NULL;
+}
+
 struct eo_case *eo_case_find(struct eo_case *object, const char *key)
 {
   if (!object)
@@ -126,12 +135,10 @@ struct eo_case *eo_case_find(struct eo_case *object, const char *key)
     eo_case_fault(object, "An object is expected here.");
     return NULL;
   }
-  for (int i = 0; i < object->size; i++)
-    if (strcmp(object->member[i].path.key, key) == 0) {
-      object->member[i].read = true;
-      return &object->member[i];
-    }
-  return NULL;
+  struct eo_case *member = member_named(object, key);
+  if (member)
+    member->read = true;
+  return member;
 }
 
 struct eo_case *eo_case_need(struct eo_case *object, const char *key)
@@ -148,6 +155,11 @@ struct eo_case *eo_case_given(struct eo_case *object, const char *key)
 {
   struct eo_case *value = eo_case_find(object, key);
   return value && json_is_null(value->json) ? NULL : value;
+}
+
+const char *eo_case_peek_text(struct eo_case *object, const char *key)
+{
+  return eo_case_is_text(member_named(object, key)) ? eo_case_word_given(object, key) : NULL;
 }
 
 int eo_case_size(const struct eo_case *value)

@@ -20,6 +20,7 @@ struct eo_case *eo_case_open(json_t *document);
 void eo_case_close(struct eo_case *file);
 
 const struct eo_faults *eo_case_faults(const struct eo_case *value);
+/* True for NULL as well: what is needed and not there is a fault already. */
 bool eo_case_faulty(const struct eo_case *value);
 /* A fault at the value; the text is one sentence. */
 void eo_case_fault(const struct eo_case *value, const char *format, ...) __attribute__((format(printf, 2, 3)));
@@ -28,6 +29,9 @@ void eo_case_fault(const struct eo_case *value, const char *format, ...) __attri
 struct eo_case *eo_case_find(struct eo_case *object, const char *key);
 struct eo_case *eo_case_need(struct eo_case *object, const char *key);
 struct eo_case *eo_case_given(struct eo_case *object, const char *key);
+
+/* A text of that name; NULL, and nothing is read, when there is no text. */
+const char *eo_case_peek_text(struct eo_case *object, const char *key);
 
 /* Members of an object or elements of a list, in the order of the file; 0 for anything else. */
 int eo_case_size(const struct eo_case *value);

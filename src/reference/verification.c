@@ -28,9 +28,8 @@ static const char *given_name(struct eo_case *value)
 {
   static const char *const keys[] = {"id", "name", "file"};
   const char *name = NULL;
-  for (size_t i = 0; i < sizeof keys / sizeof *keys && !name && eo_case_is_object(value); i++)
-    if (eo_case_is_text(eo_case_find(value, keys[i])))
-      name = eo_case_word_given(value, keys[i]);
+  for (size_t i = 0; i < sizeof keys / sizeof *keys && !name; i++)
+    name = eo_case_peek_text(value, keys[i]);
   return name;
 }
 
@@ -105,6 +104,8 @@ static bool make_room(struct eo_verification *v)
 static void add(struct eo_verification *v, struct eo_case *where, const char *quantity, double value, double expected,
                 double tolerance, bool pass)
 {
+  if (!where) /* needed and not there: a fault already */
+    return;
   struct eo_check check = {.value = value, .expected = expected, .tolerance = tolerance, .pass = pass};
   if (v->failed || !make_room(v) || !name_check(&check, where, quantity)) {
     done_check(&check);

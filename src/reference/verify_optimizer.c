@@ -42,6 +42,16 @@ static void compare_list(const struct verifier *v, struct eo_case *expected, int
     compare(v, eo_case_at(expected, i), i < count ? value[i] : NAN);
 }
 
+static uint64_t whole_number(struct eo_case *value)
+{
+  double number = eo_case_real(value);
+  if (number >= 0 && number < 9e15 && number == floor(number))
+    return (uint64_t)number;
+  if (!isnan(number))
+    eo_case_fault(value, "A whole number from 0 is expected here.");
+  return 0;
+}
+
 /* Whole numbers up to 2^64 - 1, as text or as a number. */
 static uint64_t big_whole(struct eo_case *value)
 {
@@ -53,12 +63,7 @@ static uint64_t big_whole(struct eo_case *value)
       eo_case_fault(value, "A whole number, as digits, is expected here.");
     return number;
   }
-  double number = eo_case_real(value);
-  if (number >= 0 && number < 9e15 && number == floor(number))
-    return (uint64_t)number;
-  if (!isnan(number))
-    eo_case_fault(value, "A whole number from 0 is expected here.");
-  return 0;
+  return whole_number(value);
 }
 
 /* 0 or 1, or a flag. */
@@ -98,8 +103,9 @@ static enum eo_code check_random(void *context, struct eo_case *item, struct eo_
   const double unit = 0x1p-53;
   struct eo_case *expected = eo_case_need(item, "u64");
   const uint64_t wanted = big_whole(expected), seed = big_whole(eo_case_need(item, "seed")),
-                 stream = big_whole(eo_case_need(item, "stream")), generation = big_whole(eo_case_need(item, "gen")),
-                 index = big_whole(eo_case_need(item, "idx")), draw = big_whole(eo_case_need(item, "draw"));
+                 stream = whole_number(eo_case_need(item, "stream")),
+                 generation = whole_number(eo_case_need(item, "gen")), index = whole_number(eo_case_need(item, "idx")),
+                 draw = whole_number(eo_case_need(item, "draw"));
   const struct eo_random random = eo_random_at(seed, stream, generation, index);
   const uint64_t bits = eo_random_bits(random, draw);
   (void)error;

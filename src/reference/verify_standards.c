@@ -89,6 +89,7 @@ static enum eo_code check_stiffness_row(void *context, struct eo_case *row, stru
   eo_verify_member(v, row, "c_gamma_alpha", found.mesh_alpha / 1e9, tolerance, 0);
   eo_verify_member(v, row, "c_gamma_beta", found.mesh_beta / 1e9, tolerance, 0);
   eo_case_number_or(row, "a_mm", NAN); /* the stiffness does not depend on it */
+  eo_case_number_or(row, "n_E1_rpm", NAN);
   eo_verify_uncompared(v, eo_case_find(row, "n_E1_rpm"), "it needs the masses of the blanks, which the row lacks.");
   return EO_OK;
 }

@@ -26,7 +26,7 @@ recording() # WHAT OPTIONS...
   what=$1
   shift
   rig r.csv --torque 828 --speed 2000 "$@" && "$EASEOFF" verify "$folder/r.csv.json" >"$folder/out" 2>"$folder/err"
-  result $? "$what: $(sed -n 's/^  r.csv  *\([0-9]*\) .*/\1/p' "$folder/out") numbers"
+  result $? "$what: $(sed -n 's/^  files: r.csv  *\([0-9]*\) .*/\1/p' "$folder/out") numbers"
 }
 recording "angles in degrees"
 recording "wrapped radians without a heading" --radians yes --wrapped yes --heading none
