@@ -206,11 +206,20 @@ void eo_verify_note(struct eo_verification *v, const char *format, ...)
     v->failed = true;
 }
 
+static void refuse_text(const struct eo_case *value)
+{
+  if (eo_case_is_text(value))
+    eo_case_fault(value, "A number is expected here.");
+  for (int i = 0; i < eo_case_size(value); i++)
+    refuse_text(eo_case_peek(value, i));
+}
+
 void eo_verify_uncompared(struct eo_verification *v, struct eo_case *value, const char *why)
 {
   char pointer[NAME_SIZE];
   if (!value)
     return;
+  refuse_text(value);
   eo_case_skip(value);
   eo_case_pointer(value, pointer, sizeof pointer);
   eo_verify_note(v, "%s is not compared: %s", pointer, why);

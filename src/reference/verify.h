@@ -51,7 +51,7 @@ void eo_verify_diverged(struct eo_verification *v, struct eo_case *where);
 void eo_verify_broken(struct eo_verification *v, struct eo_case *where, const struct eo_error *error);
 /* Told once, however often it is said. */
 void eo_verify_note(struct eo_verification *v, const char *format, ...) __attribute__((format(printf, 2, 3)));
-/* The value is information: it counts as read, and a note says that it is not compared, and why. */
+/* Numbers for information: they count as read, and a note says that it is not compared, and why. */
 void eo_verify_uncompared(struct eo_verification *v, struct eo_case *value, const char *why);
 
 /* Half a unit in the last decimal that a printed number shows: 2.35 -> 0.005. */

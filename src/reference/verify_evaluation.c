@@ -527,6 +527,20 @@ static enum eo_code check_runs(struct bench *b, struct eo_case *item, const stru
   return code;
 }
 
+/* How the tolerances came about: a number for each of the case's results, or null. */
+static void read_uncertainty(struct eo_case *item, const char *key, struct eo_case *out)
+{
+  struct eo_case *block = eo_case_given(item, key);
+  if (block && !eo_case_is_object(block))
+    eo_case_fault(block, "An object or null is expected here.");
+  for (int i = 0; i < eo_case_size(block); i++) {
+    struct eo_case *value = eo_case_at(block, i);
+    eo_case_real(value);
+    if (eo_case_key(value) && !eo_case_find(out, eo_case_key(value)))
+      eo_case_fault(value, "The case expects no such result.");
+  }
+}
+
 static enum eo_code run_case(void *context, struct eo_case *item, struct eo_error *error)
 {
   struct bench *b = context;
@@ -536,8 +550,8 @@ static enum eo_code run_case(void *context, struct eo_case *item, struct eo_erro
   struct eo_design design = b->design;
   const struct expected e = {b->v, eo_case_need(item, "out"), eo_case_find(item, "ends"),
                              eo_case_find(item, "tol_rel")};
-  eo_case_skip(eo_case_find(item, "discretisation_rel")); /* how the tolerances came about */
-  eo_case_skip(eo_case_find(item, "compliance_8pct_rel"));
+  read_uncertainty(item, "discretisation_rel", e.out);
+  read_uncertainty(item, "compliance_8pct_rel", e.out);
   code = read_case(b, item, &design, error);
   if (code || eo_case_faulty(item))
     return code;
