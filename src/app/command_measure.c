@@ -376,10 +376,10 @@ out:
 
 const struct eo_command eo_command_measure = {
     "measure", "DESIGN.json FILE... [--label L] [--torque T] [--speed S] [--layout JSON] [--json]",
-    "rig files: transmission error, vibration, beside the prediction",
+    "rig files: transmission error, vibration, compared with the prediction",
     "Reads recordings of two encoders (text, gzip, MATLAB, TDMS, UFF 58, HDF5), says what is wrong with them, and sets "
     "the vibration of the mesh orders\n"
-    "beside the prediction at their torque and measured speed. The options hold for all files:\n"
+    "compared with the prediction at their torque and measured speed. The options hold for all files:\n"
     "  --label modified|unmodified   which of the two the recording shows (modified)\n"
     "  --torque N m, --speed rpm     of the pinion; the speed is only checked\n"
     "  --end left|right              where the encoders sit (right)\n"

@@ -210,7 +210,7 @@ out:
 
 const struct eo_command eo_command_rig = {
     "rig", "--design FILE --torque T --speed S -o FILE [--truth FILE] [--KEY VALUE]...",
-    "a recording of a rig that does not exist, with known truth",
+    "a synthetic recording with known truth",
     "Simulates the design at a torque (N m, on the pinion) and speed (rpm) and writes what two encoders would record. "
     "--truth writes a case file\n"
     "for easeoff verify beside it. Every key of the settings is an option, for instance --sample-rate-Hz 50000 "

@@ -191,7 +191,7 @@ static int run(const struct eo_command *command, int argc, char **argv)
 
 const struct eo_command eo_command_sweep = {
     "sweep", "DESIGN.json --torque A:B:N | --speed A:B:N [--json] [--csv FILE] [--threads N] [--data DIR] [--no-cache]",
-    "a design over torque, speed or both, beside the unmodified pair",
+    "a design over torque, speed or both, compared with the unmodified pair",
     "N torques from A to B (N m, on the pinion), N speeds from A to B (rpm, of the pinion), or both: a map. The axis "
     "that is not given\n"
     "stands at the load case with the largest share. A alone is one value. Loaded contact is solved once per torque; "

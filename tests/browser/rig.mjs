@@ -53,8 +53,8 @@ const compared = () =>
 await chapter('open', async () => {
   await page.goto(server.address + START);
   await page.locator('.drop').waitFor();
-  ok(await page.getByText('Beside what the rig says').isVisible(), 'an empty bench says what belongs on it');
-  await page.locator('summary', { hasText: 'A rig that does not exist' }).click();
+  ok(await page.getByText('Measured and predicted').isVisible(), 'an empty bench says what belongs on it');
+  await page.locator('summary', { hasText: 'Synthetic recording' }).click();
 });
 
 await chapter('measure', async () => {

@@ -22,7 +22,7 @@ export class Form {
     this.help = h(
       'p.help-line',
       { 'aria-live': 'off' },
-      'Point at a field: here stands what it means and what it may be.',
+      'Point at a field to read what it means and which values it takes.',
     );
     store.addEventListener('change', () => this.refresh());
   }

@@ -1,4 +1,4 @@
-// The Rig view: what a rig recorded, what was found in it, and how it lies beside the prediction for the design on the
+// The Rig view: what a rig recorded, what was found in it, and how it compares with the prediction for the design on the
 // table.
 import { Away, address, ask, get, list } from '../base/api.js';
 import { download, fill, h } from '../base/dom.js';
@@ -118,7 +118,7 @@ class Bench extends EventTarget {
   }
 }
 
-/** A recording of a rig that does not exist. @param {import('../app.js').App} app @param {Recordings} recordings */
+/** A synthetic recording. @param {import('../app.js').App} app @param {Recordings} recordings */
 function teaching(app, recordings) {
   const unmodified = h(
     'select',
@@ -188,7 +188,7 @@ function teaching(app, recordings) {
   };
   /** @param {string} label @param {HTMLElement} entry */
   const row = (label, entry) => h('.field', null, h('span.label', null, label), entry);
-  return group('teaching', 'A rig that does not exist', false, [
+  return group('teaching', 'Synthetic recording', false, [
     h(
       'p.figure-note',
       null,
@@ -287,13 +287,13 @@ export function rigView(app) {
   const empty = h(
     '.empty',
     null,
-    h('h2', null, 'Beside what the rig says'),
+    h('h2', null, 'Measured and predicted'),
     h(
       'p',
       null,
       'Drop recordings of two encoders here, on the pinion and the gear shaft: one file for each torque and speed, of the unmodified and of the modified pair. They are kept with the design and shown beside its prediction at their torque and measured speed.',
     ),
-    h('p', null, 'Without a rig at hand, “A rig that does not exist” records one.'),
+    h('p', null, 'Without a rig at hand, make one under “Synthetic recording”.'),
   );
   const figures = h(
     '.figures',
