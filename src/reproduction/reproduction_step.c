@@ -1,0 +1,13 @@
+/* What each part of the reproduction calls: the names of the variants, and progress. */
+#include "reproduction/reproduction_private.h"
+
+const char *const eo_reproduction_variant[VARIANTS] = {"unmodified", "Table 3, case A", "Table 3, case B",
+                                                       "our optimum, case A", "our optimum, case B"};
+
+enum eo_code eo_reproduction_report(const struct reproduction *r, const char *what, double fraction,
+                                    struct eo_error *error)
+{
+  if (eo_progress_report(r->plan->progress, what, fraction))
+    return eo_error_set(error, EO_ERROR_CANCELLED, "", "Stopped.");
+  return EO_OK;
+}
