@@ -1,7 +1,7 @@
 #include "contact/corner.h"
 
 #include <math.h>
-#include <stddef.h>
+#include <string.h>
 
 /* The flank in polar coordinates about its own centre, at pinion phase 0, root first: angle as a function of the
    radius. */
@@ -24,6 +24,7 @@ struct corner {
 
 struct touch {
   double gap, slope; /* slope by c */
+  struct eo_tilt tilt;
 };
 
 static void turn(const double from[2], double angle, double to[2])
@@ -113,6 +114,19 @@ static double flank_angle(const struct outline *o, double radius, double *slope)
   return o->angle[low] + difference * t + t * r * (a * r + b * t) + *slope * (radius - o->radius[low] - t * h);
 }
 
+/* The normal of a flank with the polar slope d angle/d radius at the point x from its centre, and the share of shaft
+   angle errors that goes with it: tan of the normal's angle against the circle is radius times slope. */
+static struct eo_tilt tilt_at(const struct corner *corner, const double x[2], double bend)
+{
+  const struct eo_geometry *g = corner->geometry;
+  double radius = hypot(x[0], x[1]), steep = radius * bend, arm = radius / sqrt(1 + steep * steep);
+  double turned = atan2(x[1], x[0]) + atan(steep), place[2] = {x[0], x[1]};
+  if (corner->flank == EO_PINION)
+    place[1] -= g->centre_distance;
+  return eo_tilt_at(g, corner->flank == EO_PINION ? turned - M_PI / 2 : turned + M_PI / 2,
+                    g->base_radius[corner->flank] / arm, place);
+}
+
 /* The angle by which the flank has to turn (the pinion forwards, the gear back: clockwise both) until it meets the
    point, as an arc of its base circle, normal. */
 static struct touch touch_at(const struct corner *corner, int which, double c)
@@ -124,7 +138,7 @@ static struct touch touch_at(const struct corner *corner, int which, double c)
   double v[2] = {-rate * (x[1] - centre), rate * x[0]}, arm = g->base_radius[corner->flank] * cos(g->base_helix_angle);
   double angle = flank_angle(&corner->outline, radius, &bend) + own * c - atan2(x[1], x[0]);
   double turned = bend * (x[0] * v[0] + x[1] * v[1]) / radius + own - (x[0] * v[1] - x[1] * v[0]) / (radius * radius);
-  return (struct touch){arm * remainder(angle, 2 * M_PI), arm * turned};
+  return (struct touch){arm * remainder(angle, 2 * M_PI), arm * turned, tilt_at(corner, x, bend)};
 }
 
 /* Distance up to which a point inside the tip is nearer than the corner. The gap is tangent there, so that this place
@@ -160,18 +174,76 @@ static void corner_init(struct corner *corner, const struct eo_geometry *g, cons
   trace_flank(corner, reach);
 }
 
-static void fill(struct eo_corner_gap *table, const struct corner *corner)
+/* Nodes crowd near the start, where contact happens: d - start = reach (i/n)^2. */
+static double node_distance(const struct eo_corner_gap *table, int i)
 {
-  /* Nodes crowd near the start, where contact happens: d - start = reach (i/n)^2. */
+  double t = (double)i / (EO_CORNER_NODES - 1);
+  return table->start + (table->reach - table->start) * t * t;
+}
+
+/* What the corner has over the slices, errors' share in `advance`. */
+static void fill(struct eo_corner_gap *table, const struct corner *corner, const struct eo_slice_gap *slice)
+{
   for (int i = 0; i < EO_CORNER_NODES; i++) {
-    double t = (double)i / (EO_CORNER_NODES - 1), d = table->start + (table->reach - table->start) * t * t;
-    struct touch here = touch_at(corner, 0, phase_at(corner, d));
-    double nominal[2];
-    place_tip(corner, 2, phase_at(corner, d), nominal);
-    table->gap[i] = here.gap;
+    double c = phase_at(corner, node_distance(table, i)), nominal[2], rate = 0;
+    struct touch here = touch_at(corner, 0, c);
+    place_tip(corner, 2, c, nominal);
     table->path[i] = eo_geometry_path_at(corner->geometry, corner->flank, hypot(nominal[0], nominal[1]));
-    table->slope[i] = corner->tip == EO_GEAR ? -here.slope : here.slope;
+    table->excess[i] = here.gap - (slice ? eo_slice_gap_at(slice, c, &rate) : 0);
+    table->slope[i] = (here.slope - rate) * (corner->tip == EO_GEAR ? -1 : 1);
+    struct eo_tilt tilt = eo_slice_tilt_at(slice, corner->geometry, c);
+    for (int axis = 0; axis < 2; axis++) {
+      table->advance[i].lever[axis] = here.tilt.lever[axis] - tilt.lever[axis];
+      table->advance[i].shift[axis] = here.tilt.shift[axis] - tilt.shift[axis];
+    }
   }
+}
+
+/* Takes off what is left at the start, where the corner takes over tangentially: rounding on unmodified flanks; with
+   relief the slice gap turns the gear and the corner's the flank, and off the line of action they differ by some
+   hundredths. */
+static void join(struct eo_corner_gap *table)
+{
+  double gap = table->excess[0], slope = table->slope[0];
+  struct eo_tilt tilt = table->advance[0];
+  for (int i = 0; i < EO_CORNER_NODES; i++) {
+    table->excess[i] -= gap + slope * (node_distance(table, i) - table->start);
+    table->slope[i] -= slope;
+    for (int axis = 0; axis < 2; axis++) {
+      table->advance[i].lever[axis] -= tilt.lever[axis];
+      table->advance[i].shift[axis] -= tilt.shift[axis];
+    }
+  }
+}
+
+/* From the errors' first-order share to the advance that makes it: share / E'. Next to the start both are too small for
+   their quotient, which is smooth: there it follows a straight line. */
+static void advance(struct eo_corner_gap *table)
+{
+  enum { NEAR = 4, FAR = 8 };
+  for (int axis = 0; axis < 2; axis++)
+    for (int part = 0; part < 2; part++) {
+      double value[EO_CORNER_NODES];
+      for (int i = NEAR; i < EO_CORNER_NODES; i++) {
+        const struct eo_tilt *share = &table->advance[i];
+        double rise = part ? share->shift[axis] : share->lever[axis];
+        value[i] = table->slope[i] > 0 ? rise / table->slope[i] : i > NEAR ? value[i - 1] : 0;
+      }
+      for (int i = 0; i < EO_CORNER_NODES; i++) {
+        double t = (node_distance(table, i) - node_distance(table, NEAR)) /
+                   (node_distance(table, FAR) - node_distance(table, NEAR));
+        double smooth = i < NEAR ? value[NEAR] + t * (value[FAR] - value[NEAR]) : value[i];
+        *(part ? &table->advance[i].shift[axis] : &table->advance[i].lever[axis]) = smooth;
+      }
+    }
+}
+
+static void make(struct eo_corner_gap *table, const struct corner *corner, const struct eo_slice_gap *slice)
+{
+  memset(table->added, 0, sizeof table->added);
+  fill(table, corner, slice);
+  join(table);
+  advance(table);
 }
 
 void eo_corner_gap_init(struct eo_corner_gap table[2], const struct eo_geometry *g)
@@ -183,7 +255,7 @@ void eo_corner_gap_init(struct eo_corner_gap table[2], const struct eo_geometry 
     table[side].start = 0;
     table[side].reach = 0.25 * g->transverse_base_pitch;
     corner_init(&corner, g, none, side, table[side].reach);
-    fill(&table[side], &corner);
+    make(&table[side], &corner, NULL);
   }
 }
 
@@ -199,49 +271,108 @@ void eo_corner_gap_modified(struct eo_corner_gap table[2], const struct eo_geome
         8) /* relief so steep that the flank has no outline where the corner strikes: take it without */
       corner_init(&corner, g, none, side, table[side].reach);
     table[side].start = find_start(&corner, 0.9 * table[side].reach);
-    fill(&table[side], &corner);
-    /* The slice gap turns the gear back, the corner's turns the flank: off the line of action they differ by some
-       hundredths. */
-    double step = eo_slice_gap_at(slice, phase_at(&corner, table[side].start), NULL) - table[side].gap[0];
-    for (int i = 0; i < EO_CORNER_NODES; i++)
-      table[side].gap[i] += step;
+    make(&table[side], &corner, slice);
   }
 }
 
 void eo_corner_gap_at_radius(struct eo_corner_gap table[2], const struct eo_geometry *g,
-                             const struct eo_modification_shape shape[2])
+                             const struct eo_modification_shape shape[2], const struct eo_slice_gap *slice)
 {
   static const struct eo_modification_shape none;
-  struct eo_slice_gap slice[2];
+  struct eo_slice_gap alone[2];
   for (int member = 0; member < 2; member++) {
-    struct eo_modification_shape alone[2] = {none, none};
-    alone[member] = shape[member];
-    eo_slice_gap_init(&slice[member], g, alone);
+    struct eo_modification_shape only[2] = {none, none};
+    only[member] = shape[member];
+    eo_slice_gap_init(&alone[member], g, only);
   }
   for (int side = 0; side < 2; side++) {
-    int tip = side == 0 ? EO_GEAR : EO_PINION;
-    double at_tip = eo_slice_gap_at(&slice[tip], side == 0 ? g->path_start : g->path_end, NULL);
+    int tip = side == 0 ? EO_GEAR : EO_PINION, sign = side == 0 ? -1 : 1;
+    double end = side == 0 ? g->path_start : g->path_end, at_tip = eo_slice_gap_at(&alone[tip], end, NULL);
     for (int i = 0; i < EO_CORNER_NODES; i++) {
       int before = i > 0 ? i - 1 : 0, after = i + 1 < EO_CORNER_NODES ? i + 1 : i;
-      double unit = table[side].reach / ((EO_CORNER_NODES - 1) * (EO_CORNER_NODES - 1)), slope;
-      double travel = (table[side].path[after] - table[side].path[before]) / (unit * (after * after - before * before));
-      table[side].gap[i] += eo_slice_gap_at(&slice[1 - tip], table[side].path[i], &slope) + at_tip;
-      table[side].slope[i] += slope * travel;
+      double slope, rate, c = end + sign * node_distance(&table[side], i),
+                          travel = (table[side].path[after] - table[side].path[before]) /
+                                   (node_distance(&table[side], after) - node_distance(&table[side], before));
+      table[side].excess[i] += eo_slice_gap_at(&alone[1 - tip], table[side].path[i], &slope) + at_tip -
+                               eo_slice_gap_at(slice, c, &rate);
+      table[side].slope[i] += slope * travel - sign * rate;
+      struct eo_tilt struck = eo_slice_tilt_at(NULL, g, table[side].path[i]), even = eo_slice_tilt_at(NULL, g, c);
+      for (int axis = 0; axis < 2; axis++)
+        table[side].added[i].shift[axis] = struck.shift[axis] - even.shift[axis];
     }
+    memset(table[side].advance, 0, sizeof table[side].advance);
   }
 }
 
-double eo_corner_gap_at(const struct eo_corner_gap *table, double d, double *slope, double *place, double *travel)
+/* Slopes at the nodes: of the parabola through each and its neighbours, exact at unequal steps. */
+static void differentiate(const double d[EO_CORNER_NODES], const double value[EO_CORNER_NODES],
+                          double slope[EO_CORNER_NODES])
 {
-  int last = EO_CORNER_NODES - 1,
-      i = (int)fmin(last - 1, sqrt((d - table->start) / (table->reach - table->start)) * last);
-  double unit = (table->reach - table->start) / (last * last), low = unit * (double)(i * i),
-         high = unit * (double)((i + 1) * (i + 1));
-  double h = high - low, t = (d - table->start - low) / h, r = 1 - t;
-  double difference = table->gap[i + 1] - table->gap[i], a = table->slope[i] * h - difference,
-         b = difference - table->slope[i + 1] * h;
-  *slope = (difference + (r - t) * (a * r + b * t) + t * r * (b - a)) / h;
-  *place = table->path[i] * r + table->path[i + 1] * t;
-  *travel = (table->path[i + 1] - table->path[i]) / h;
-  return table->gap[i] * r + table->gap[i + 1] * t + t * r * (a * r + b * t);
+  for (int i = 0; i < EO_CORNER_NODES; i++) {
+    int k = i == 0 ? 1 : i == EO_CORNER_NODES - 1 ? i - 1 : i;
+    double before = (value[k] - value[k - 1]) / (d[k] - d[k - 1]),
+           after = (value[k + 1] - value[k]) / (d[k + 1] - d[k]);
+    double bend = (after - before) / (d[k + 1] - d[k - 1]);
+    slope[i] = before + bend * (2 * d[i] - d[k] - d[k - 1]);
+  }
+}
+
+void eo_corner_gap_tilt(struct eo_tilted_corner *tilted, const struct eo_corner_gap *corner, const double errors[2])
+{
+  double d[EO_CORNER_NODES], added[EO_CORNER_NODES], added_slope[EO_CORNER_NODES];
+  for (int i = 0; i < EO_CORNER_NODES; i++) {
+    const struct eo_tilt *advance = &corner->advance[i], *more = &corner->added[i];
+    d[i] = node_distance(corner, i);
+    added[i] = errors[0] * more->shift[0] + errors[1] * more->shift[1];
+    tilted->lever[i] = errors[0] * advance->lever[0] + errors[1] * advance->lever[1];
+    tilted->shift[i] = errors[0] * advance->shift[0] + errors[1] * advance->shift[1];
+  }
+  differentiate(d, added, added_slope);
+  for (int i = 0; i < EO_CORNER_NODES; i++) {
+    tilted->level[i] = corner->excess[i] + added[i];
+    tilted->level_slope[i] = corner->slope[i] + added_slope[i];
+  }
+}
+
+/* The piece that holds d (the first one also below the start, the last one also beyond the reach), its ends from the
+   start. */
+static int piece_of(const struct eo_corner_gap *table, double d, double ends[2])
+{
+  int last = EO_CORNER_NODES - 1;
+  double beyond = fmax(0, d - table->start), span = table->reach - table->start;
+  int i = (int)fmin(last - 1, sqrt(beyond / span) * last);
+  ends[0] = span / (last * last) * (double)(i * i);
+  ends[1] = span / (last * last) * (double)((i + 1) * (i + 1));
+  return i;
+}
+
+double eo_corner_gap_at(const struct eo_corner_gap *table, const struct eo_tilted_corner *tilted, double d, double z,
+                        double *slope)
+{
+  double ends[2], beyond = d - table->start;
+  int i = piece_of(table, d, ends);
+  double from = tilted->shift[i] + z * tilted->lever[i], h = ends[1] - ends[0],
+         rate = (tilted->shift[i + 1] + z * tilted->lever[i + 1] - from) / h;
+  if (beyond < 0)
+    rate = 0;
+  beyond += from + rate * (beyond - ends[0]);
+  *slope = 0;
+  if (beyond < 0)
+    return 0;
+  i = piece_of(table, table->start + beyond, ends);
+  h = ends[1] - ends[0];
+  double t = (beyond - ends[0]) / h, r = 1 - t, difference = tilted->level[i + 1] - tilted->level[i],
+         a = tilted->level_slope[i] * h - difference, b = difference - tilted->level_slope[i + 1] * h;
+  *slope = (difference + (r - t) * (a * r + b * t) + t * r * (b - a)) / h * (1 + rate);
+  return tilted->level[i] * r + tilted->level[i + 1] * t + t * r * (a * r + b * t);
+}
+
+double eo_corner_gap_place(const struct eo_corner_gap *table, double end, double d)
+{
+  double ends[2];
+  if (d < table->start)
+    return end + d * (table->path[0] - end) / table->start;
+  int i = piece_of(table, d, ends);
+  double t = (d - table->start - ends[0]) / (ends[1] - ends[0]);
+  return table->path[i] + t * (table->path[i + 1] - table->path[i]);
 }

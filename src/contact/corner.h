@@ -5,34 +5,60 @@
 
 #include "gear/surface.h"
 
-/* Gap over the distance d >= 0 from the end of the path (transverse, m), normal to the flank, the tip at its nominal
-   phase, the flank turned until it touches; and the place on the flank at the corner's radius. [0]: gear tip before
-   s_A, [1]: pinion tip after s_E. Up to `start` the flanks still meet inside the tip, because relief has moved the
-   contact away from it: there the slice gap goes on. */
+/* Beyond the path of contact the slices would go on touching where the tip has already ended; what touches instead is
+   the corner, and the gap is larger than the slices' by the excess E(d), d the distance from the end of the path
+   (transverse, m). [0]: gear tip before s_A, [1]: pinion tip after s_E. The corner takes over at `start`, where E and
+   its slope are 0: at the end of the path on unmodified flanks, beyond it where relief moves the contact away from the
+   tip.
+
+   A shaft angle error displaces the gear in every slice, and with it the place where the corner takes over: the excess
+   becomes E(d + advance). To first order in the angles that is the turned normal and the moved place of the corner on
+   the flank, E' advance; as a whole it is off the rigid rotation by a tenth of what the first order leaves (some tenths
+   of a micrometre at 0.1 deg), and has no step and no kink where the corner takes over. */
 enum { EO_CORNER_NODES = 41 };
 struct eo_corner_gap {
-  bool at_radius;                /* relief by eo_corner_gap_at_radius() instead of exactly */
-  double start;                  /* d from which the corner is nearest, m; 0 for unmodified flanks */
-  double reach;                  /* the table covers start .. reach, m */
-  double gap[EO_CORNER_NODES];   /* m */
-  double slope[EO_CORNER_NODES]; /* d gap / d d */
-  double path[EO_CORNER_NODES];  /* s of the place on the other member's flank, m */
+  bool at_radius;                 /* by eo_corner_gap_at_radius() instead */
+  double start;                   /* d from which the corner is nearest, m; 0 for unmodified flanks */
+  double reach;                   /* the table covers start .. reach, m */
+  double excess[EO_CORNER_NODES]; /* E, m, normal to the flank, the tip at its nominal phase, the flank turned
+                                     until it touches */
+  double slope[EO_CORNER_NODES];  /* dE / dd */
+  double path[EO_CORNER_NODES];   /* s of the place on the other member's flank, m */
+  struct eo_tilt
+      advance[EO_CORNER_NODES];          /* of d by shaft angle errors: lever, m per rad and m of z; shift, m per rad */
+  struct eo_tilt added[EO_CORNER_NODES]; /* at_radius: what they add to E directly */
 };
 
 /* Unmodified flanks: depends on the macro-geometry alone. */
 void eo_corner_gap_init(struct eo_corner_gap corner[2], const struct eo_geometry *geometry);
 
-/* Flanks with profile relief (shape: [member]) and their slice gap, which the corner's joins without a step. */
+/* Flanks with profile relief (shape: [member]) and their slice gap. */
 void eo_corner_gap_modified(struct eo_corner_gap corner[2], const struct eo_geometry *geometry,
                             const struct eo_modification_shape shape[2], const struct eo_slice_gap *slice);
 
-/* A shorter convention, for reference cases that state it: the unmodified table plus the slice gap of each member's
-   relief at the corner's own place. It is up to some micrometres too small just beyond the path, where the slices still
-   meet inside the tip. */
+/* A shorter convention, for reference cases that state it: the unmodified excess plus the slice gap of each member's
+   relief at the corner's own place, and the shaft angle errors' share of flanks that meet on the path there. slice: of
+   both members. The relief is up to some micrometres too small just beyond the path, where the slices still meet inside
+   the tip; the errors' share is off by up to 3 um at 0.1 deg half a millimetre beyond the path (module 6 mm). */
 void eo_corner_gap_at_radius(struct eo_corner_gap corner[2], const struct eo_geometry *geometry,
-                             const struct eo_modification_shape shape[2]);
+                             const struct eo_modification_shape shape[2], const struct eo_slice_gap *slice);
 
-/* d >= start; *slope: by d; *place: s on the flank; *travel: its derivative by d. */
-double eo_corner_gap_at(const struct eo_corner_gap *corner, double d, double *slope, double *place, double *travel);
+/* The corner under one pair of shaft angle errors. */
+struct eo_tilted_corner {
+  double level[EO_CORNER_NODES], level_slope[EO_CORNER_NODES]; /* E and what is added to it, m, and by d */
+  double lever[EO_CORNER_NODES], shift[EO_CORNER_NODES];       /* advance: shift + z lever, m */
+};
+
+/* errors: kappa, gamma, rad, as the end sees them. */
+void eo_corner_gap_tilt(struct eo_tilted_corner *tilted, const struct eo_corner_gap *corner, const double errors[2]);
+
+/* Excess at d (negative inside the path), z from the pivot of the errors, m; 0 where the flanks meet inside the tip.
+ *slope: by d. */
+double eo_corner_gap_at(const struct eo_corner_gap *corner, const struct eo_tilted_corner *tilted, double d, double z,
+                        double *slope);
+
+/* s of the place on the flank that the corner strikes (or, before it does, the slices) at d >= 0, errors apart; end: of
+   the path. */
+double eo_corner_gap_place(const struct eo_corner_gap *corner, double end, double d);
 
 #endif

@@ -14,7 +14,7 @@ static const double MOST_SHIFT = 0.999; /* of P: an axially held pinion may all 
 struct place {
   int node;      /* the one below */
   double weight; /* of the one above */
-  double path;   /* s, where its gap is taken: on the flank that a tip corner meets */
+  double path;   /* s; at a tip corner, too, that of the corner */
 };
 
 struct eo_elastic {
@@ -40,7 +40,7 @@ static void set_places(const struct eo_elastic *el, const struct eo_contact_posi
     double u = (p->point[i].eta / el->grid->geometry.face_width + 0.5) * (EO_DEFLECTION_NODES - 1);
     place[i].node = (int)fmax(0, fmin(EO_DEFLECTION_NODES - 2, floor(u)));
     place[i].weight = u - place[i].node;
-    place[i].path = p->kind[i] == EO_POINT_GEAR_TIP ? p->point[i].s[EO_PINION] : p->point[i].s[EO_GEAR];
+    place[i].path = p->path[i];
   }
 }
 

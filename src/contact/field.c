@@ -4,25 +4,58 @@
 #include <stddef.h>
 #include <string.h>
 
-/* Beyond the path of contact: the slices as long as they meet inside the tip, then the tip's corner. *place: s on the
-   flank, joined without a step; *slope: by s, with tilt, that of misalignment and bodies, at the place. */
-static double beyond_path(const struct eo_gap_field *field, int tip, double s, double tilt, double *slope,
-                          double *place)
+/* The slices in mesh with the share of shaft angle errors, z from their pivot; *slope by s. */
+static double slices_at(const struct eo_gap_field *field, double s, double z, double *slope)
 {
-  const struct eo_corner_gap *corner = &field->corner[tip == EO_GEAR ? 0 : 1];
-  double end = tip == EO_GEAR ? field->geometry->path_start : field->geometry->path_end, d = fabs(s - end), rate,
-         travel, gap;
-  int sign = tip == EO_GEAR ? -1 : 1;
-  if (d < corner->start) {
-    gap = eo_slice_gap_at(&field->slice, s, &rate);
-    rate *= sign;
-    travel = (corner->path[0] - end) / corner->start;
-    *place = end + d * travel;
-  } else {
-    gap = eo_corner_gap_at(corner, d, &rate, place, &travel);
+  const struct eo_slice_gap *slice = &field->slice;
+  double part;
+  if (slice->nodes == 0) {
+    *slope = field->misalignment * field->lean;
+    return field->misalignment * (z + s * field->lean);
   }
-  *slope = (rate + tilt * travel) * sign;
+  int i = eo_slice_gap_piece(slice, s, &part);
+  double gap = eo_slice_gap_within(slice, i, part, slope);
+  double from = field->shift[i] + z * field->lever[i], to = field->shift[i + 1] + z * field->lever[i + 1];
+  if (part < 0 || part > 1)
+    return gap + (part < 0 ? from : to);
+  *slope += (to - from) / (slice->phase[i + 1] - slice->phase[i]);
+  return gap + from + part * (to - from);
+}
+
+/* What the tip corner at the nearer end of the path has over the slices; *slope by s. It strikes from where shaft angle
+   errors have moved its start, inside the path too. */
+static double corner_at(const struct eo_gap_field *field, double s, double z, double *slope)
+{
+  const struct eo_geometry *g = field->geometry;
+  int side = g->path_start - s > s - g->path_end ? 0 : 1;
+  double d = side == 0 ? g->path_start - s : s - g->path_end;
+  *slope = 0;
+  if (d < field->takes_over[side])
+    return 0;
+  double excess = eo_corner_gap_at(&field->corner[side], &field->tilted[side], d, z, slope);
+  *slope *= side == 0 ? -1 : 1;
+  return excess;
+}
+
+/* Both flanks' profiles in the slice z from the pivot. */
+static double profiles_at(const struct eo_gap_field *field, double s, double z, double *slope)
+{
+  double rate, gap = slices_at(field, s, z, slope) + corner_at(field, s, z, &rate);
+  *slope += rate;
   return gap;
+}
+
+static void set_path(const struct eo_gap_field *field, double s, double path[2])
+{
+  const struct eo_geometry *g = field->geometry;
+  path[EO_PINION] = path[EO_GEAR] = s;
+  if (s < g->path_start) {
+    path[EO_PINION] = eo_corner_gap_place(&field->corner[0], g->path_start, g->path_start - s);
+    path[EO_GEAR] = g->path_start;
+  } else if (s > g->path_end) {
+    path[EO_PINION] = g->path_end;
+    path[EO_GEAR] = eo_corner_gap_place(&field->corner[1], g->path_end, s - g->path_end);
+  }
 }
 
 /* Values of both parts at eta. */
@@ -41,6 +74,24 @@ double eo_deflection_at(const struct eo_deflection *deflection, double face_widt
   return part[0] + s * part[1];
 }
 
+/* errors: kappa, gamma as the end sees them. */
+static void set_errors(struct eo_gap_field *field, const double errors[2])
+{
+  struct eo_tilt even = eo_slice_tilt_at(NULL, field->geometry, 0);
+  field->misalignment = errors[0] * even.lever[0] + errors[1] * even.lever[1];
+  for (int i = 0; i < field->slice.nodes; i++) {
+    const struct eo_tilt *tilt = &field->slice.tilt[i];
+    field->lever[i] = errors[0] * tilt->lever[0] + errors[1] * tilt->lever[1];
+    field->shift[i] = errors[0] * tilt->shift[0] + errors[1] * tilt->shift[1];
+  }
+  for (int side = 0; side < 2; side++) {
+    struct eo_tilted_corner *tilted = &field->tilted[side];
+    double most = fabs(field->pivot) + field->geometry->face_width / 2;
+    eo_corner_gap_tilt(tilted, &field->corner[side], errors);
+    field->takes_over[side] = field->corner[side].start - fabs(tilted->shift[0]) - most * fabs(tilted->lever[0]);
+  }
+}
+
 void eo_gap_field_init(struct eo_gap_field *field, const struct eo_geometry *g,
                        const struct eo_flank_modification *pinion, const struct eo_flank_modification *gear, int end,
                        double in_plane, double out_of_plane, double pivot, const struct eo_corner_gap corner[2])
@@ -53,39 +104,31 @@ void eo_gap_field_init(struct eo_gap_field *field, const struct eo_geometry *g,
   eo_modification_init(&field->shape[EO_GEAR], g, EO_GEAR, gear);
   eo_slice_gap_init(&field->slice, g, field->shape);
   memcpy(field->corner, corner, sizeof field->corner);
-  if (field->slice.nodes > 0 && corner[0].at_radius)
-    eo_corner_gap_at_radius(field->corner, g, field->shape);
-  else if (field->slice.nodes > 0)
+  if (corner[0].at_radius) {
+    eo_corner_gap_at_radius(field->corner, g, field->shape, &field->slice);
+    for (int i = 0; i < field->slice.nodes; i++)
+      field->slice.tilt[i] = eo_slice_tilt_at(NULL, g, field->slice.phase[i]);
+  } else if (field->slice.nodes > 0)
     eo_corner_gap_modified(field->corner, g, field->shape, &field->slice);
-  /* physics: D = end cos(beta_b) (gamma cos(alpha_t) - kappa sin(alpha_t)) (eta + s tan(beta_b)) */
-  field->misalignment = sign * cos(g->base_helix_angle) *
-                        (out_of_plane * cos(g->working_pressure_angle) - in_plane * sin(g->working_pressure_angle));
-  field->misalignment_offset = field->misalignment * pivot;
+  field->pivot = pivot;
   field->deflection = NULL;
+  set_errors(field, (const double[]){sign * in_plane, sign * out_of_plane});
 }
 
 double eo_gap_field_at(const struct eo_gap_field *field, double s, double eta, double *slope, double path[2])
 {
   const struct eo_geometry *g = field->geometry;
-  double rate, unused, place = s, gap, x = eta * field->stretch, tangent = field->lean, body[2] = {0, 0};
-  int tip = -1;
-  if (field->deflection)
+  double rate, unused, x = eta * field->stretch, gap = profiles_at(field, s, eta + field->pivot, &rate);
+  if (field->deflection) {
+    double body[2];
     deflection_parts(field->deflection, g->face_width, eta, body);
-  double tilt = field->misalignment * tangent + body[1];
-  if (s < g->path_start || s > g->path_end) {
-    tip = s < g->path_start ? EO_GEAR : EO_PINION;
-    gap = beyond_path(field, tip, s, tilt, &rate, &place);
-  } else {
-    gap = eo_slice_gap_at(&field->slice, s, &rate);
-    rate += tilt;
+    gap += body[0] + s * body[1];
+    rate += body[1];
   }
-  if (path) {
-    path[EO_PINION] = tip == EO_PINION ? g->path_end : place;
-    path[EO_GEAR] = tip == EO_GEAR ? g->path_start : place;
-  }
+  if (path)
+    set_path(field, s, path);
   gap += eo_modification_lead(&field->shape[EO_PINION], x, &unused) +
          eo_modification_lead(&field->shape[EO_GEAR], x, &unused);
-  gap += field->misalignment * eta + field->misalignment_offset + body[0] + place * tilt;
   if (slope)
     *slope = rate;
   return gap;
@@ -147,34 +190,81 @@ double eo_gap_field_line_minimum(const struct eo_gap_field *field, double c, boo
   return best;
 }
 
-/* The smallest gap over the path of contact in the transverse slice at eta, lead modification and what else is constant
-   there apart. */
-static double lowest_profile(int samples, const double *path, const double *profile, double tilt)
+/* The profile at places over the path of contact: gap = level + z lever + what tip corners have over that + s part[1]
+   of the bodies; lead modification and what else is constant in a slice apart. */
+enum { DATUM_SAMPLES = 401 };
+struct profile {
+  int samples;
+  double path[DATUM_SAMPLES], level[DATUM_SAMPLES], lever[DATUM_SAMPLES];
+};
+
+static void set_profile(struct profile *profile, const struct eo_gap_field *field)
 {
-  double lowest = INFINITY;
-  for (int i = 0; i < samples; i++)
-    lowest = fmin(lowest, profile[i] + path[i] * tilt);
+  const struct eo_geometry *g = field->geometry;
+  double unused;
+  profile->samples = DATUM_SAMPLES;
+  for (int i = 0; i < DATUM_SAMPLES; i++) {
+    double s = g->path_start + (g->path_end - g->path_start) * i / (DATUM_SAMPLES - 1);
+    profile->path[i] = s;
+    profile->level[i] = slices_at(field, s, 0, &unused);
+    profile->lever[i] = slices_at(field, s, 1, &unused) - profile->level[i];
+  }
+}
+
+static double lowest_profile(const struct eo_gap_field *field, const struct profile *profile, double z, double tilt)
+{
+  double lowest = INFINITY, unused;
+  for (int i = 0; i < profile->samples; i++) {
+    double gap = profile->level[i] + z * profile->lever[i] + profile->path[i] * tilt;
+    if (gap < lowest)
+      lowest = fmin(lowest, gap + corner_at(field, profile->path[i], z, &unused));
+  }
   return lowest;
+}
+
+/* Drops the places that are nowhere lower than the lowest one that no corner reaches: without corners gaps are straight
+   over z, so both ends tell; a corner only adds to them. */
+static void prune(const struct eo_gap_field *field, struct profile *profile)
+{
+  const struct eo_geometry *g = field->geometry;
+  double low = field->pivot - g->face_width / 2, high = field->pivot + g->face_width / 2;
+  int best = -1, kept = 0;
+  for (int i = 0; i < profile->samples; i++) {
+    double s = profile->path[i], value = profile->level[i] + field->pivot * profile->lever[i];
+    bool free_of_corners = g->path_start - s < field->takes_over[0] && s - g->path_end < field->takes_over[1];
+    if (free_of_corners && (best < 0 || value < profile->level[best] + field->pivot * profile->lever[best]))
+      best = i;
+  }
+  if (best < 0)
+    return;
+  double level = profile->level[best], lever = profile->lever[best];
+  for (int i = 0; i < profile->samples; i++) {
+    double above = profile->level[i] - level, steeper = profile->lever[i] - lever;
+    if (i == best || above + low * steeper < 0 || above + high * steeper < 0) {
+      profile->path[kept] = profile->path[i];
+      profile->level[kept] = profile->level[i];
+      profile->lever[kept++] = profile->lever[i];
+    }
+  }
+  profile->samples = kept;
 }
 
 double eo_gap_field_datum(const struct eo_gap_field *field)
 {
-  enum { SAMPLES = 401 };
+  enum { SAMPLES = DATUM_SAMPLES };
   const struct eo_geometry *g = field->geometry;
-  double path[SAMPLES], profile[SAMPLES], unused, lowest = INFINITY;
-  for (int i = 0; i < SAMPLES; i++) {
-    path[i] = g->path_start + (g->path_end - g->path_start) * i / (SAMPLES - 1);
-    profile[i] = eo_slice_gap_at(&field->slice, path[i], NULL) + field->misalignment * path[i] * field->lean;
-  }
-  double common = lowest_profile(SAMPLES, path, profile, 0);
+  struct profile profile;
+  double unused, lowest = INFINITY;
+  set_profile(&profile, field);
+  if (!field->deflection)
+    prune(field, &profile);
   for (int i = 0; i < SAMPLES; i++) {
     double eta = g->face_width * ((double)i / (SAMPLES - 1) - 0.5), x = eta * field->stretch, body[2] = {0, 0};
     double lead = eo_modification_lead(&field->shape[0], x, &unused) +
-                  eo_modification_lead(&field->shape[1], x, &unused) + field->misalignment * eta;
+                  eo_modification_lead(&field->shape[1], x, &unused);
     if (field->deflection)
       deflection_parts(field->deflection, g->face_width, eta, body);
-    lowest = fmin(lowest,
-                  lead + body[0] + (field->deflection ? lowest_profile(SAMPLES, path, profile, body[1]) : common));
+    lowest = fmin(lowest, lead + body[0] + lowest_profile(field, &profile, eta + field->pivot, body[1]));
   }
-  return lowest + field->misalignment_offset;
+  return lowest;
 }

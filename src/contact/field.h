@@ -16,15 +16,35 @@ struct eo_deflection {
 double eo_deflection_at(const struct eo_deflection *deflection, double face_width, double s, double eta);
 
 struct eo_gap_field {
-  const struct eo_geometry *geometry;     /* borrowed */
-  struct eo_modification_shape shape[2];  /* [member] */
-  struct eo_slice_gap slice;              /* of both members' profile relief */
-  struct eo_corner_gap corner[2];         /* beyond s_A, beyond s_E */
-  double lean, stretch;                   /* tan(beta_b); 1/cos(beta), from eta to x */
-  double misalignment;                    /* slope of the misalignment gap along eta + s tan(beta_b) */
-  double misalignment_offset;             /* its constant, m (removed by axial float) */
+  const struct eo_geometry *geometry;    /* borrowed */
+  struct eo_modification_shape shape[2]; /* [member] */
+  struct eo_slice_gap slice;             /* of both members' profile relief */
+  struct eo_corner_gap corner[2];        /* beyond s_A, beyond s_E */
+  double lean, stretch;                  /* tan(beta_b); 1/cos(beta), from eta to x */
+  double pivot;                          /* of the shaft angle errors from mid face, m */
+  double misalignment;                   /* unmodified flanks on the path: the gap by eta + pivot + s tan(beta_b) */
+  double lever[EO_SLICE_NODES], shift[EO_SLICE_NODES]; /* the errors' share at the nodes of the slice gap */
+  struct eo_tilted_corner tilted[2];                   /* the corners under them */
+  double takes_over[2];                                /* the least d at which a corner can strike anywhere, m */
   const struct eo_deflection *deflection; /* of the bodies; borrowed; NULL: rigid, as eo_gap_field_init() leaves it */
 };
+
+/* Shaft angle errors enter as a rigid rotation of the gear (kappa in the plane of the axes, gamma across it), with the
+   normal and the place of the contact as relief has moved them. On unmodified flanks, end = -1 left, +1 right,
+   alpha = alpha_wt:
+     D = end [gamma cos(alpha) - kappa sin(alpha)] [cos(beta_b) (eta + pivot) + sin(beta_b) s]
+   as long as flanks meet; at a tip corner d beyond the end of the path, to first order in the angles,
+     D = end {cos(beta_b) [gamma cos(alpha') - kappa sin(alpha')] (eta + pivot)
+            + sin(beta_b) [(gamma cos(alpha) - kappa sin(alpha)) s + f d (kappa cos(alpha) + gamma sin(alpha))]},
+   alpha' = alpha + |place - s| / r_b of the flank that is struck (relief turns it back by delta' r_b / (rho cos
+   beta_b)), f = -(T2C - s_A)/r_b2 at the gear's tip, (T1C + s_E)/r_b1 at the pinion's. The code has the share over the
+   first line as an advance of d (contact/corner.h): the errors move the end of the path of contact in each slice, and
+   the corner takes over there. The constant that the rotation has at the pitch point, end sin(beta_b) kappa r_w2, and
+   the axial shift kappa r_w2 are left out: axial float removes them.
+
+   Elastic bodies open the gap by part[0](eta) + s part[1](eta), at tip corners too: their sections move in the plane of
+   action, for which the rule above is the same but for 1 - cos(alpha' - alpha), less than 0.1 % of part[0] at half a
+   millimetre. What the sections move across that plane, times sin(alpha' - alpha), is left out. */
 
 /* end: EO_LEFT or EO_RIGHT (sign -1, +1). in_plane (kappa), out_of_plane (gamma): shaft angle errors, rad.
    pivot: distance of the end's mid face from the pivot of the error, m ((b + groove)/2 for the middle of the groove, 0
@@ -33,8 +53,8 @@ void eo_gap_field_init(struct eo_gap_field *field, const struct eo_geometry *geo
                        const struct eo_flank_modification *pinion, const struct eo_flank_modification *gear, int end,
                        double in_plane, double out_of_plane, double pivot, const struct eo_corner_gap corner[2]);
 
-/* Gap at (s, eta), m, normal; beyond the path of contact the tip corner's against the modified flank at the
-   corner's radius. *slope (may be NULL): its derivative along s at constant eta.
+/* Gap at (s, eta), m, normal; beyond the path of contact the tip corner's against the modified flank, from where the
+   slices no longer meet inside the tip. *slope (may be NULL): its derivative along s at constant eta.
    path (may be NULL): [member] place on each flank. */
 double eo_gap_field_at(const struct eo_gap_field *field, double s, double eta, double *slope, double path[2]);
 

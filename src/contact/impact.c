@@ -97,9 +97,10 @@ static double patch_bulk(const struct eo_geometry *g, struct eo_kernel kernel, d
 /* How far the place of a touch may be off along the path, m: what the search for the smallest gap leaves open. */
 static const double place_error = 5e-7;
 
-/* Slope of the gap over the roll where the line touches. The gap has a kink at A, where the tip corner takes over, and
-   the touch stays on it for a whole range of designs: there the line closes at the rate of its smallest gap, -dg/deta /
-   tan(beta_b) along the kink, between the slopes of both sides. Away from kinks the three are the same. */
+/* Slope of the gap over the roll where the line touches. Where the gap has a kink (a relief that starts with an angle),
+   the touch can stay on it for a whole range of designs: there the line closes at the rate of its smallest gap,
+   -dg/deta / tan(beta_b) along the kink, between the slopes of both sides. Away from kinks the three are the same;
+   where the tip corner takes over there is none. */
 static double closing_slope(const struct search *search, double s, double eta)
 {
   const struct eo_gap_field *field = search->field;

@@ -216,15 +216,26 @@ static double phase_of(const struct eo_geometry *g, int member, const struct ray
   return g->base_radius[member] * (ray->angle - common - offset);
 }
 
+struct eo_tilt eo_tilt_at(const struct eo_geometry *g, double angle, double ratio, const double place[2])
+{
+  double normal = ratio * cos(g->base_helix_angle), axial = sin(g->base_helix_angle);
+  return (struct eo_tilt){.lever = {-normal * sin(angle), normal * cos(angle)},
+                          .shift = {-axial * (place[1] + g->working_radius[EO_GEAR]), axial * place[0]}};
+}
+
 struct node {
   double phase, gap, slope;
+  struct eo_tilt tilt;
 };
 
 static struct node node_of(const struct eo_geometry *g, const struct ray *p, const struct ray *q)
 {
   double common = common_angle(g, p, q), c = phase_of(g, EO_PINION, p, common), normal = cos(g->base_helix_angle);
-  double rate = p->arm * g->base_radius[EO_GEAR] / (q->arm * g->base_radius[EO_PINION]);
-  return (struct node){c, (c + phase_of(g, EO_GEAR, q, common)) * normal, (1 - rate) * normal};
+  double turned = g->base_radius[EO_GEAR] / q->arm, rate = p->arm * turned / g->base_radius[EO_PINION];
+  double along[2] = {cos(common), sin(common)},
+         place[2] = {q->arm * along[1] - q->distance * along[0], -q->arm * along[0] - q->distance * along[1]};
+  return (struct node){c, (c + phase_of(g, EO_GEAR, q, common)) * normal, (1 - rate) * normal,
+                       eo_tilt_at(g, common, turned, place)};
 }
 
 static bool profile_is_modified(const struct eo_modification_shape *shape)
@@ -338,30 +349,66 @@ void eo_slice_gap_init(struct eo_slice_gap *table, const struct eo_geometry *g,
     const struct node *n = i <= 0 ? &node[0][-i] : &node[1][i];
     table->phase[table->nodes] = n->phase;
     table->gap[table->nodes] = n->gap;
+    table->tilt[table->nodes] = n->tilt;
     table->slope[table->nodes++] = n->slope;
   }
-  fill_buckets(table);
+  if (table->nodes < 2)
+    table->nodes = 0; /* no two places with a normal in common: no table either */
+  else
+    fill_buckets(table);
 }
 
-double eo_slice_gap_at(const struct eo_slice_gap *table, double c, double *slope)
+int eo_slice_gap_piece(const struct eo_slice_gap *table, double c, double *part)
 {
-  double unused;
-  slope = slope ? slope : &unused;
-  *slope = 0;
-  if (table->nodes == 0)
-    return 0;
-  int last = table->nodes - 1, i;
-  if (c <= table->phase[0] || c >= table->phase[last]) {
-    i = c <= table->phase[0] ? 0 : last;
-    *slope = table->slope[i];
-    return table->gap[i] + table->slope[i] * (c - table->phase[i]);
+  int last = table->nodes - 1, i = 0;
+  if (c >= table->phase[last]) {
+    i = last - 1;
+  } else if (c > table->phase[0]) {
+    i = table->bucket[(int)((c - table->phase[0]) * table->bucket_rate) & (EO_SLICE_BUCKETS - 1)];
+    while (i < last - 1 && table->phase[i + 1] < c)
+      i++;
   }
-  i = table->bucket[(int)((c - table->phase[0]) * table->bucket_rate) & (EO_SLICE_BUCKETS - 1)];
-  while (i < last - 1 && table->phase[i + 1] < c)
-    i++;
-  double h = table->phase[i + 1] - table->phase[i], t = (c - table->phase[i]) / h, r = 1 - t;
+  *part = (c - table->phase[i]) / (table->phase[i + 1] - table->phase[i]);
+  return i;
+}
+
+double eo_slice_gap_within(const struct eo_slice_gap *table, int i, double t, double *slope)
+{
+  double h = table->phase[i + 1] - table->phase[i], r = 1 - t;
+  if (t < 0 || t > 1) {
+    int end = t < 0 ? i : i + 1;
+    *slope = table->slope[end];
+    return table->gap[end] + *slope * h * (t < 0 ? t : t - 1);
+  }
   double difference = table->gap[i + 1] - table->gap[i], a = table->slope[i] * h - difference,
          b = difference - table->slope[i + 1] * h;
   *slope = (difference + (r - t) * (a * r + b * t) + t * r * (b - a)) / h;
   return table->gap[i] * r + table->gap[i + 1] * t + t * r * (a * r + b * t);
+}
+
+double eo_slice_gap_at(const struct eo_slice_gap *table, double c, double *slope)
+{
+  double unused, part;
+  slope = slope ? slope : &unused;
+  *slope = 0;
+  if (table->nodes == 0)
+    return 0;
+  int piece = eo_slice_gap_piece(table, c, &part);
+  return eo_slice_gap_within(table, piece, part, slope);
+}
+
+struct eo_tilt eo_slice_tilt_at(const struct eo_slice_gap *table, const struct eo_geometry *g, double c)
+{
+  double along[2] = {cos(g->working_pressure_angle), sin(g->working_pressure_angle)},
+         place[2] = {c * along[0], c * along[1] - g->working_radius[EO_GEAR]}, t;
+  if (!table || table->nodes == 0)
+    return eo_tilt_at(g, g->working_pressure_angle, 1, place);
+  int i = eo_slice_gap_piece(table, c, &t);
+  struct eo_tilt tilt = table->tilt[i];
+  t = fmin(1, fmax(0, t));
+  for (int axis = 0; axis < 2; axis++) {
+    tilt.lever[axis] += t * (table->tilt[i + 1].lever[axis] - tilt.lever[axis]);
+    tilt.shift[axis] += t * (table->tilt[i + 1].shift[axis] - tilt.shift[axis]);
+  }
+  return tilt;
 }

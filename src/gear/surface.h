@@ -32,6 +32,24 @@ struct eo_slice_point {
 void eo_slice_point_at(const struct eo_geometry *geometry, int member, const struct eo_modification_shape *shape,
                        double u, struct eo_slice_point *point);
 
+/* ---- shaft angle errors ----
+   A rigid rotation of the gear by kappa about x (in the plane of the axes) and gamma about y (across it), about a pivot
+   on its axis at the axial distance z from the slice, moves the gear's point r (from its centre) by
+   kappa (0, -z, r_y) + gamma (z, 0, -r_x). What that adds to the gap, z lever + shift, depends on where the flanks are
+   next to each other and on how their normal leans there. */
+
+/* Per rad of [kappa, gamma]. */
+struct eo_tilt {
+  double lever[2]; /* per m of z */
+  double shift[2]; /* m; without the constant that the rotation has at the pitch point */
+};
+
+/* angle: of the transverse normal, from the pinion to the gear, against x. ratio: base radius of the member that turns
+   to close the gap over the arm of that normal about its axis (1 on unmodified flanks). place: of the contact from the
+   gear's centre, m. Exact to first order in the angles for any flank that is a screw surface: its normal has the axial
+   part sin(beta_b) arm / base radius. */
+struct eo_tilt eo_tilt_at(const struct eo_geometry *geometry, double angle, double ratio, const double place[2]);
+
 /* ---- slice gap ----
    Two transverse slices in mesh at the working centre distance, profile modification on either member. At pinion phase
    c (base-circle arc, c = s of the unmodified contact) the gear has to come back by gap(c) / cos(beta_b) for the slices
@@ -46,6 +64,7 @@ struct eo_slice_gap {
   double phase[EO_SLICE_NODES];           /* c, m, increasing */
   double gap[EO_SLICE_NODES];             /* normal to the flank, m */
   double slope[EO_SLICE_NODES];           /* d gap / dc */
+  struct eo_tilt tilt[EO_SLICE_NODES];    /* share of shaft angle errors where the slices touch */
   double bucket_rate;                     /* buckets per m */
   unsigned char bucket[EO_SLICE_BUCKETS]; /* the piece in which each of equal stretches of c starts */
 };
@@ -57,5 +76,14 @@ void eo_slice_gap_init(struct eo_slice_gap *table, const struct eo_geometry *geo
 
 /* Gap at c, m, normal; *slope (may be NULL) its derivative. */
 double eo_slice_gap_at(const struct eo_slice_gap *table, double c, double *slope);
+
+/* The same in two steps, for a table with nodes: the piece that holds c with *part of it below c (beyond the ends of
+   the table less than 0 or more than 1), and the gap there. */
+int eo_slice_gap_piece(const struct eo_slice_gap *table, double c, double *part);
+double eo_slice_gap_within(const struct eo_slice_gap *table, int piece, double part, double *slope);
+
+/* Share of shaft angle errors where the slices touch at c, linear between the nodes; table NULL or without nodes: of
+   unmodified flanks, which touch at s = c with the normal of the path of contact. */
+struct eo_tilt eo_slice_tilt_at(const struct eo_slice_gap *table, const struct eo_geometry *geometry, double c);
 
 #endif

@@ -113,13 +113,14 @@ static double difference(int n, const double *a, const double *b)
 
 /* ---- the gap field ---- */
 
-/* A small rotation of a rigid body in the plane of action is a shaft angle error. */
+/* A small rotation of a rigid body in the plane of action is a shaft angle error; at tip corners but for the cosine by
+   which the normal there is turned. */
 static void test_field(void)
 {
   struct bench b;
   build(&b, 2, 0, 5e-6);
-  double angle = 1e-4, worst = 0, slope_error = 0, lowest = INFINITY,
-         per_radian = -sin(b.geometry.working_pressure_angle);
+  double angle = 1e-4, worst = 0, beyond = 0, slope_error = 0, lowest = INFINITY,
+         alpha = b.geometry.working_pressure_angle;
   double offset = (b.geometry.face_width + b.pair.groove_width) / 2, cosine = cos(b.geometry.base_helix_angle),
          sine = sin(b.geometry.base_helix_angle);
   for (int end = 0; end < 2; end++) {
@@ -127,25 +128,32 @@ static void test_field(void)
     struct eo_flank_modification flank = {.lead_crowning = 5e-6}, none = {0};
     struct eo_deflection rigid;
     double sign = end == EO_LEFT ? -1 : 1;
-    eo_gap_field_init(&turned, &b.geometry, &flank, &none, end, angle, 0, offset, b.grid->corner);
+    eo_gap_field_init(&turned, &b.geometry, &flank, &none, end, -angle * sin(alpha), angle * cos(alpha), offset,
+                      b.grid->corner);
     for (int i = 0; i < NODES; i++) {
       double eta = b.geometry.face_width * (i / (NODES - 1.) - 0.5);
-      rigid.part[0][i] = sign * cosine * (offset + eta) * angle * per_radian;
-      rigid.part[1][i] = sign * sine * angle * per_radian;
+      rigid.part[0][i] = sign * cosine * (offset + eta) * angle;
+      rigid.part[1][i] = sign * sine * angle;
     }
     b.field[end].deflection = &rigid;
     for (int k = 0; k < 900; k++) {
       double s = -15.5e-3 + 30e-3 * k / 900, eta = b.geometry.face_width * (k % 37 / 36. - 0.5), slope[2];
-      double here = eo_gap_field_at(&b.field[end], s, eta, &slope[0], NULL);
-      worst = fmax(worst, fabs(here - eo_gap_field_at(&turned, s, eta, &slope[1], NULL)));
+      double here = eo_gap_field_at(&b.field[end], s, eta, &slope[0], NULL),
+             off = fabs(here - eo_gap_field_at(&turned, s, eta, &slope[1], NULL));
+      bool inside = s > b.geometry.path_start && s < b.geometry.path_end;
+      if (!inside) {
+        beyond = fmax(beyond, off / (cosine * (offset + eta) * angle));
+        continue;
+      }
+      worst = fmax(worst, off);
       slope_error = fmax(slope_error, fabs(slope[0] - slope[1]));
-      if (s > b.geometry.path_start && s < b.geometry.path_end)
-        lowest = fmin(lowest, here - eo_gap_field_datum(&b.field[end]));
+      lowest = fmin(lowest, here - eo_gap_field_datum(&b.field[end]));
     }
     worst = fmax(worst, fabs(eo_gap_field_datum(&turned) - eo_gap_field_datum(&b.field[end])));
   }
-  ok(worst < 1e-15 && slope_error < 1e-12,
+  ok(worst < 2e-9 && slope_error < 3e-6,
      "a rigid rotation as a deflection is the shaft angle error: off by %.2g m, slope %.2g", worst, slope_error);
+  ok(beyond < 3e-3, "beyond the path too, by %.2g of it", beyond);
   ok(lowest > -1e-12 && lowest < 5e-7, "no gap is below the datum, %.2g m", lowest);
   clear_bench(&b);
 }
@@ -157,8 +165,7 @@ static void set_load(const struct bench *b, int end, int j, struct eo_deflection
   const struct eo_contact_position *p = &b->grid->position[j];
   memset(load, 0, sizeof *load);
   for (int i = 0; i < p->points; i++) {
-    double s = p->kind[i] == EO_POINT_GEAR_TIP ? p->point[i].s[EO_PINION] : p->point[i].s[EO_GEAR];
-    eo_shaft_load_add(load, b->geometry.face_width, s, p->point[i].eta,
+    eo_shaft_load_add(load, b->geometry.face_width, p->path[i], p->point[i].eta,
                       b->result[end].line_load[p->first + i] * p->length[i]);
   }
 }
@@ -188,9 +195,8 @@ static int iterate(struct bench *b, const struct eo_shafts *shafts, double most)
       eo_shaft_deflect(&influence, force, deflection);
       for (int end = 0; end < 2; end++)
         for (int i = 0; i < p->points; i++) {
-          double s = p->kind[i] == EO_POINT_GEAR_TIP ? p->point[i].s[EO_PINION] : p->point[i].s[EO_GEAR];
           double gap = b->gaps[end].gap[p->first + i] +
-                       eo_deflection_at(&deflection[end], b->geometry.face_width, s, p->point[i].eta);
+                       eo_deflection_at(&deflection[end], b->geometry.face_width, p->path[i], p->point[i].eta);
           change = fmax(change, fabs(gap - bent[end].gap[p->first + i]));
           bent[end].gap[p->first + i] = gap;
         }

@@ -16,7 +16,7 @@ static void make_pair(struct pair *pair, const struct eo_gear_pair *gears)
   eo_corner_gap_init(pair->corner, &pair->geometry);
 }
 
-/* physics: D = end cos(beta_b) (gamma cos(alpha_t) - kappa sin(alpha_t)) (eta + s tan(beta_b)), end = -1 left. */
+/* D = end (gamma cos(alpha) - kappa sin(alpha)) (cos(beta_b) (eta + pivot) + sin(beta_b) s), end = -1 left. */
 static double misalignment(const struct eo_geometry *g, int end, double kappa, double gamma, double s, double eta,
                            double pivot)
 {
@@ -25,24 +25,34 @@ static double misalignment(const struct eo_geometry *g, int end, double kappa, d
          (gamma * cos(g->working_pressure_angle) - kappa * sin(g->working_pressure_angle)) * lean;
 }
 
+/* Over the part of the path that no corner reaches. */
 static void test_sum(const struct pair *pair)
 {
   const struct eo_geometry *g = &pair->geometry;
-  struct eo_flank_modification pinion = case_a(), gear = random_modification(g, 1, 0);
+  struct eo_flank_modification lead = {.lead_crowning = case_a().lead_crowning}, flank[2][2] = {{lead, {0}}};
   struct eo_gap_field field;
-  double kappa = 0.1 * degree, gamma = -0.03 * degree, pivot = 52.5e-3, worst = 0;
-  for (int end = 0; end < 2; end++) {
-    eo_gap_field_init(&field, g, &pinion, &gear, end, kappa, gamma, pivot, pair->corner);
+  double kappa = 0.1 * degree, gamma = -0.03 * degree, pivot = 52.5e-3, worst[2] = {0, 0}, most = 0;
+  flank[1][EO_PINION] = case_a();
+  flank[1][EO_GEAR] = random_modification(g, 1, 0);
+  for (int k = 0; k < 4; k++) {
+    int end = k % 2, relieved = k / 2;
+    eo_gap_field_init(&field, g, &flank[relieved][EO_PINION], &flank[relieved][EO_GEAR], end, kappa, gamma, pivot,
+                      pair->corner);
     for (int i = 0; i < 200; i++) {
-      double s = random_between(i, 0, g->path_start, g->path_end), eta = random_between(i, 1, -27.5e-3, 27.5e-3),
-             x = eta / cos(g->helix_angle);
-      double unused, wanted = eo_slice_gap_at(&field.slice, s, NULL) + 1.35e-2 * x * x +
-                              eo_modification_lead(&field.shape[EO_GEAR], x, &unused) +
-                              misalignment(g, end, kappa, gamma, s, eta, pivot);
-      worst = fmax(worst, fabs(eo_gap_field_at(&field, s, eta, NULL, NULL) - wanted));
+      double s = random_between(i, 0, g->path_start + 0.4e-3, g->path_end - 0.4e-3),
+             eta = random_between(i, 1, -27.5e-3, 27.5e-3), x = eta / cos(g->helix_angle), unused;
+      double rest = eo_slice_gap_at(&field.slice, s, NULL) + 1.35e-2 * x * x +
+                    eo_modification_lead(&field.shape[EO_GEAR], x, &unused),
+             share = misalignment(g, end, kappa, gamma, s, eta, pivot),
+             off = fabs(eo_gap_field_at(&field, s, eta, NULL, NULL) - rest - share);
+      worst[relieved] = fmax(worst[relieved], off);
+      most = fmax(most, fabs(share));
     }
   }
-  close_to(worst, 0, 1e-16, "the gap is the sum of profile, lead and misalignment");
+  close_to(worst[0], 0, 1e-16, "the gap is the sum of profile, lead and misalignment");
+  ok(worst[1] > 0.05e-6 && worst[1] < 0.02 * most,
+     "relief turns the common normal: misalignment's share changes by up to %.2f of %.0f um", 1e6 * worst[1],
+     1e6 * most);
 }
 
 static void test_mirror(const struct pair *pair)
@@ -154,21 +164,39 @@ static void test_relieved_corner(const struct pair *pair)
   }
 }
 
-/* Both sides of the ends of the path, and slopes everywhere against differences. */
+/* The two places beyond an end of the path where a corner's gap takes over from the slices at eta, as the field has it.
+ */
+static double takes_over(const struct eo_gap_field *field, int side, double eta)
+{
+  const struct eo_geometry *g = field->geometry;
+  double z = eta + field->pivot, low = field->takes_over[side], high = 0.9 * field->corner[side].reach, slope;
+  for (int i = 0; i < 60; i++) {
+    double middle = (low + high) / 2;
+    *(eo_corner_gap_at(&field->corner[side], &field->tilted[side], middle, z, &slope) > 0 ? &high : &low) = middle;
+  }
+  return side == 0 ? g->path_start - high : g->path_end + high;
+}
+
+/* Both sides of the ends of the path and of where the corner takes over, and slopes everywhere against differences. */
 static void test_continuity(const struct pair *pair)
 {
   const struct eo_geometry *g = &pair->geometry;
-  double jump = 0, off = 0;
+  double jump = 0, kink = 0, off = 0;
   for (int index = 0; index < 20; index++) {
     struct eo_flank_modification pinion = random_modification(g, index, 0), gear = random_modification(g, index, 20),
                                  none = {0};
     struct eo_gap_field field;
-    eo_gap_field_init(&field, g, &pinion, index % 2 ? &gear : &none, index % 2, random_between(index, 40, -2e-3, 2e-3),
-                      random_between(index, 41, -2e-3, 2e-3), 52.5e-3, pair->corner);
-    for (int side = 0; side < 2; side++) {
-      double s = side ? g->path_end : g->path_start, h = side ? 1e-12 : -1e-12;
-      jump = fmax(jump,
-                  fabs(eo_gap_field_at(&field, s + h, 0, NULL, NULL) - eo_gap_field_at(&field, s - h, 0, NULL, NULL)));
+    eo_gap_field_init(&field, g, index == 0 ? &none : &pinion, index % 2 ? &gear : &none, index % 2,
+                      random_between(index, 40, -2e-3, 2e-3), random_between(index, 41, -2e-3, 2e-3), 52.5e-3,
+                      pair->corner);
+    for (int k = 0; k < 4; k++) {
+      int side = k % 2;
+      double eta = 10e-3, s = k < 2 ? (side ? g->path_end : g->path_start) : takes_over(&field, side, eta), h = 1e-10,
+             gap[2], slope[2];
+      for (int i = 0; i < 2; i++)
+        gap[i] = eo_gap_field_at(&field, i ? s + h : s - h, eta, &slope[i], NULL);
+      jump = fmax(jump, fabs(gap[1] - gap[0] - h * (slope[0] + slope[1])));
+      kink = k < 2 ? kink : fmax(kink, fabs(slope[1] - slope[0]));
     }
     for (int i = 0; i < 60; i++) {
       double s = random_between(index, 50 + i, g->path_start - 2e-3, g->path_end + 2e-3), h = 1e-8, slope;
@@ -179,7 +207,8 @@ static void test_continuity(const struct pair *pair)
       off = fmax(off, fabs(slope - rate));
     }
   }
-  ok(jump < 1e-12, "no step at the ends of the path: %.1e um", 1e6 * jump);
+  ok(jump < 1e-13, "no step at the ends of the path and where the corner takes over: %.1e um", 1e6 * jump);
+  ok(kink < 2e-5, "no kink where the corner takes over: %.1e", kink);
   ok(off < 2e-6, "slopes are derivatives, off the path too: %.1e", off);
 }
 

@@ -171,10 +171,9 @@ static void test_continuity(void)
   ok(path < 0.01e-3, "place in steps of at most %.4f mm", 1e3 * path);
 }
 
-/* At A the gap has a kink, where the tip corner takes over. With crowning and a shaft angle error the touch stays on it
-   for a range of approaches: the force has to lead from one side to the other, not to fall on either by the last digits
-   of the place. */
-static void test_kink(void)
+/* Where the tip corner takes over the gap has neither a step nor a kink. With crowning and a shaft angle error the
+   touch passes there slowly, over a range of approaches: the force has to follow evenly. */
+static void test_takeover(void)
 {
   struct eo_flank_modification early = {.tip_relief = 8e-6,
                                         .tip_relief_start = 0.3e-3,
@@ -182,7 +181,7 @@ static void test_kink(void)
                                         .root_relief_start = 0.3e-3,
                                         .lead_crowning = 14e-6};
   enum { STEPS = 1000 };
-  double step = 0, least = INFINITY, most = 0, last = 0;
+  double step = 0, last = 0;
   eo_gap_field_init(&field, &grid->geometry, &early, &none, EO_LEFT, 0.1 * M_PI / 180, 0, 52.5e-3, grid->corner);
   int on = 0, before = 0, after = 0;
   for (int i = 0; i <= STEPS; i++) {
@@ -192,13 +191,10 @@ static void test_kink(void)
     before += now.off_line && !there;
     after += !now.off_line && !there;
     step = i > 0 ? fmax(step, fabs(now.force - last) / last) : 0;
-    least = there ? fmin(least, now.force) : least;
-    most = there ? fmax(most, now.force) : most;
     last = now.force;
   }
-  ok(on > STEPS / 20 && before > 0 && after > 0, "the touch stays at A for %d of %d approaches", on, STEPS);
-  ok(step < 0.02 && most > 1.2 * least, "where the force leads from %.0f to %.0f N in steps of at most %.2f %%", least,
-     most, 100 * step);
+  ok(on > 0 && before > 0 && after > 0, "the touch is at A for %d of %d approaches", on, STEPS);
+  ok(step < 0.003, "the force changes in steps of at most %.2f %%", 100 * step);
 }
 
 static void test_outcomes(void)
@@ -221,7 +217,7 @@ int main(void)
   test_speed();
   test_what_moves_it();
   test_continuity();
-  test_kink();
+  test_takeover();
   test_outcomes();
   eo_contact_grid_free(grid);
   return tap_done();
