@@ -251,7 +251,7 @@ void eo_corner_gap_init(struct eo_corner_gap table[2], const struct eo_geometry 
   static const struct eo_modification_shape none[2];
   for (int side = 0; side < 2; side++) {
     struct corner corner;
-    table[side].at_radius = false;
+    table[side].rule = EO_TILT_ROTATED;
     table[side].start = 0;
     table[side].reach = 0.25 * g->transverse_base_pitch;
     corner_init(&corner, g, none, side, table[side].reach);

@@ -104,12 +104,12 @@ void eo_gap_field_init(struct eo_gap_field *field, const struct eo_geometry *g,
   eo_modification_init(&field->shape[EO_GEAR], g, EO_GEAR, gear);
   eo_slice_gap_init(&field->slice, g, field->shape);
   memcpy(field->corner, corner, sizeof field->corner);
-  if (corner[0].at_radius) {
+  if (corner[0].rule == EO_TILT_AT_RADIUS)
     eo_corner_gap_at_radius(field->corner, g, field->shape, &field->slice);
-    for (int i = 0; i < field->slice.nodes; i++)
-      field->slice.tilt[i] = eo_slice_tilt_at(NULL, g, field->slice.phase[i]);
-  } else if (field->slice.nodes > 0)
+  else if (field->slice.nodes > 0)
     eo_corner_gap_modified(field->corner, g, field->shape, &field->slice);
+  for (int i = 0; corner[0].rule != EO_TILT_ROTATED && i < field->slice.nodes; i++)
+    field->slice.tilt[i] = eo_slice_tilt_at(NULL, g, field->slice.phase[i]);
   field->pivot = pivot;
   field->deflection = NULL;
   set_errors(field, (const double[]){sign * in_plane, sign * out_of_plane});

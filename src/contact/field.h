@@ -44,7 +44,8 @@ struct eo_gap_field {
 
    Elastic bodies open the gap by part[0](eta) + s part[1](eta), at tip corners too: their sections move in the plane of
    action, for which the rule above is the same but for 1 - cos(alpha' - alpha), less than 0.1 % of part[0] at half a
-   millimetre. What the sections move across that plane, times sin(alpha' - alpha), is left out. */
+   millimetre. What the sections move across that plane (some 0.3 um from the moments of the thrust on the paper pair),
+   times sin(alpha' - alpha), is left out. */
 
 /* end: EO_LEFT or EO_RIGHT (sign -1, +1). in_plane (kappa), out_of_plane (gamma): shaft angle errors, rad.
    pivot: distance of the end's mid face from the pivot of the error, m ((b + groove)/2 for the middle of the groove, 0

@@ -28,7 +28,7 @@ static enum eo_code prepare(struct eo_pair *pair, const struct eo_pair_options *
     code = eo_contact_grid_new(&pair->grid, &pair->geometry, &pair->material, &grid, options->phase, pair->kernel,
                                progress, error);
   for (int side = 0; side < 2 && !code; side++)
-    pair->grid->corner[side].at_radius = options->corner_at_radius;
+    pair->grid->corner[side].rule = options->tilt_rule;
   return code;
 }
 

@@ -31,7 +31,7 @@ struct eo_pair_options {
   const struct eo_contact_grid_settings *grid; /* NULL: of the resolution */
   const double *phase;                         /* [grid->positions] c, m; NULL: equal steps */
   int impact_stations;                         /* see struct eo_impact_settings */
-  bool corner_at_radius;                       /* see eo_corner_gap_at_radius() */
+  enum eo_tilt_rule tilt_rule;                 /* see contact/corner.h */
   bool own_pivots;                             /* shaft angle errors about each end's mid face */
 };
 

@@ -208,6 +208,41 @@ void eo_case_misalignment(struct eo_case *value, struct eo_alignment *alignment)
   alignment->shaft_angle_out_of_plane = either(value, "crossing", "out_of_plane", 0);
 }
 
+static bool says(struct eo_case *block, const char *words)
+{
+  const char *key;
+  json_t *value, *object = block ? (json_t *)eo_case_json(block) : NULL;
+  json_object_foreach(object, key, value)
+  {
+    const char *text = json_string_value(value);
+    if (text && strstr(text, words))
+      return true;
+  }
+  return false;
+}
+
+enum eo_tilt_rule eo_case_tilt_rule(struct eo_case *file)
+{
+  static const char *const names[] = {"tip_corner_convention", "tip corner convention"};
+  struct eo_case *block[] = {eo_case_find(file, "defaults"), eo_case_find(file, "conventions")};
+  bool path = false, radius = false;
+  for (int i = 0; i < 2; i++) {
+    path = path || says(block[i], "+ misalignment") || says(block[i], "misalignment slope");
+    radius = radius || says(block[i], "at the pinion radius of the corner");
+  }
+  for (int i = 0; i < 4; i++) {
+    const char *text = block[i / 2] ? eo_case_word_given(block[i / 2], names[i % 2]) : NULL;
+    if (!text)
+      continue;
+    bool rotation = strstr(text, "rotation") || strstr(text, "rigid");
+    if (!rotation && !strstr(text, "radius"))
+      eo_case_fault(eo_case_find(block[i / 2], names[i % 2]),
+                    "The convention at tip corners is \"rotation\" or \"radius\".");
+    radius = !rotation;
+  }
+  return radius ? EO_TILT_AT_RADIUS : path ? EO_TILT_SLOPE : EO_TILT_ROTATED;
+}
+
 /* The number that follows a mark; moves *text behind it. NaN when either is missing. */
 static double number_after(const char **text, const char *mark)
 {

@@ -3,6 +3,7 @@
 #ifndef EASEOFF_REFERENCE_CASE_PAIR_H
 #define EASEOFF_REFERENCE_CASE_PAIR_H
 
+#include "contact/corner.h"
 #include "flexibility/closed_form.h"
 #include "design/design.h"
 #include "gear/geometry.h"
@@ -25,6 +26,12 @@ void eo_case_named_modification(struct eo_case *mods, const char *name, struct e
 
 /* A block's "crossing" and "inplane", rad, or words like "0.1 deg in-plane", "none"; NULL: aligned. */
 void eo_case_misalignment(struct eo_case *value, struct eo_alignment *alignment);
+
+/* How a file takes shaft angle errors and relief: by its words in "defaults" and "conventions" (a sum "+ misalignment"
+   or a "misalignment slope" is the short form on the path, "at the pinion radius of the corner" the short form at tip
+   corners), unless "tip_corner_convention" there says "rotation" or "radius", which it must then; a rotation when
+   nothing is said. */
+enum eo_tilt_rule eo_case_tilt_rule(struct eo_case *file);
 
 /* The kernel written out as text: "C(i,j) = 1.5e-6*exp(-|eta_i-eta_j|/12)*f(s_i)f(s_j) mm/N ...; f =
    1+0.02|s+0.8|+0.004(s+0.8)^2". */

@@ -27,7 +27,7 @@ enum eo_code eo_contact_case_init(struct eo_contact_case *c, struct eo_case *fil
                                   struct eo_error *error)
 {
   struct eo_case *block = eo_case_find(file, "modification");
-  *c = (struct eo_contact_case){.file = file, .v = v};
+  *c = (struct eo_contact_case){.file = file, .v = v, .tilt_rule = eo_case_tilt_rule(file)};
   eo_case_design(eo_case_need(eo_case_need(file, "macro"), "input"), &c->design);
   c->mods = block ? eo_case_find(block, "mods") : NULL;
   for (int i = 0; i < eo_case_size(c->mods) && !eo_case_faulty(file); i++) {

@@ -21,6 +21,7 @@ struct eo_contact_case {
   struct eo_verification *v;
   struct eo_design design; /* of macro.input */
   struct eo_geometry geometry;
+  enum eo_tilt_rule tilt_rule;  /* what the file's conventions say */
   struct eo_contact_rig sector; /* with finite elements, prepared when first wanted */
 };
 

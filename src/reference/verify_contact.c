@@ -188,6 +188,7 @@ static enum eo_code check_unloaded(void *context, struct eo_case *item, struct e
   for (int i = 0; i < n; i++)
     phase[i] *= 1e-3;
   eo_corner_gap_init(corner, &c->geometry);
+  corner[0].rule = corner[1].rule = c->tilt_rule;
   eo_gap_field_init(field, &c->geometry, &flank, &none, side, alignment.shaft_angle_in_plane,
                     alignment.shaft_angle_out_of_plane, 0, corner);
   struct eo_shaft_errors errors = {sign * alignment.shaft_angle_in_plane, sign * alignment.shaft_angle_out_of_plane, 0};

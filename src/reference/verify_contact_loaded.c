@@ -73,8 +73,11 @@ static enum eo_code solve_rows(const struct synthetic *s, struct eo_case *rows, 
   int n = eo_case_size(rows);
   struct eo_contact_grid_settings grid = {.positions = n,
                                           .cells = eo_case_count(s->block, "kernel", "equal cells per line", 60)};
-  struct eo_pair_options options = {
-      .kernel = {eo_closed_form_kernel, &s->form}, .grid = &grid, .phase = phase, .own_pivots = true};
+  struct eo_pair_options options = {.kernel = {eo_closed_form_kernel, &s->form},
+                                    .grid = &grid,
+                                    .phase = phase,
+                                    .own_pivots = true,
+                                    .tilt_rule = s->c->tilt_rule};
   const struct eo_evaluation *r;
   rig->design.resolution.positions = n;
   enum eo_code code = eo_contact_rig_prepare(rig, &options, error);
@@ -209,6 +212,7 @@ static enum eo_code check_impact(void *context, struct eo_case *item, struct eo_
                             : eo_error_memory(error);
   if (!code) {
     eo_corner_gap_init(corner, &c->geometry);
+    corner[0].rule = corner[1].rule = c->tilt_rule;
     eo_gap_field_init(field, &c->geometry, &flank, &none, end < 0 ? EO_LEFT : EO_RIGHT, alignment.shaft_angle_in_plane,
                       alignment.shaft_angle_out_of_plane, 0, corner);
     for (int j = 0; j < POSITIONS; j++)
@@ -240,7 +244,7 @@ enum eo_code eo_verify_contact_impact(void *context, struct eo_case *block, stru
    says otherwise, no contact of tip edges. */
 static enum eo_code prepare_sector(struct eo_contact_case *c, struct eo_error *error)
 {
-  struct eo_pair_options options = {.own_pivots = true, .impact_stations = 221};
+  struct eo_pair_options options = {.own_pivots = true, .impact_stations = 221, .tilt_rule = c->tilt_rule};
   struct eo_case *table = eo_case_find(c->file, "ltca_table");
   struct eo_resolution *r = &c->sector.design.resolution;
   if (c->sector.evaluator)

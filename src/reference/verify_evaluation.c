@@ -201,12 +201,9 @@ static enum eo_code read_defaults(void *context, struct eo_case *block, struct e
 
 static enum eo_code make_pair(struct bench *b, struct eo_error *error)
 {
-  const char *gap = eo_case_word_given(b->defaults, "gap");
   struct eo_contact_grid_settings grid = eo_contact_grid_default(&b->design.resolution);
-  struct eo_pair_options options = {.grid = &grid,
-                                    .impact_stations = 221,
-                                    .own_pivots = true,
-                                    .corner_at_radius = gap && strstr(gap, "at the pinion radius of the corner")};
+  struct eo_pair_options options = {
+      .grid = &grid, .impact_stations = 221, .own_pivots = true, .tilt_rule = eo_case_tilt_rule(b->file)};
   grid.partial_cells = false; /* the references load a cell by its middle */
   grid.edge_cells = 12;
   grid.edge_reach = 1.6e-3;

@@ -42,7 +42,7 @@ static struct bench prepare(bool edges, const struct eo_flexibility *flexibility
      by their middles. */
   build("paper", 0.1, edges, EO_LAW_TANGENT);
   struct eo_contact_grid_settings grid = eo_contact_grid_default(&design.resolution);
-  struct eo_pair_options options = {.corner_at_radius = true, .grid = &grid};
+  struct eo_pair_options options = {.tilt_rule = EO_TILT_AT_RADIUS, .grid = &grid};
   grid.partial_cells = false;
   if (flexibility)
     options.kernel = eo_flexibility_kernel(flexibility);
