@@ -1,5 +1,5 @@
-/* Entering impact: where the incoming gear tip first touches the deflected pinion, how fast, and how hard (Seireg and
-   Houser 1970; physics: half sine of an effective mass on the compliance of a short patch). */
+/* Entering impact: where the incoming gear tip first touches the deflected pinion, how fast, and how hard ((I1) of
+   doc/theory.md: half sine of an effective mass on the compliance of a short patch; Seireg and Houser 1970). */
 #ifndef EASEOFF_CONTACT_IMPACT_H
 #define EASEOFF_CONTACT_IMPACT_H
 

@@ -1,4 +1,5 @@
-/* Loaded contact over the mesh cycle (paper (11)-(13)): exact complementarity with the nonlinear local part, both ends.
+/* Loaded contact over the mesh cycle ((C1) to (C3) of doc/theory.md): exact complementarity with the nonlinear local
+   part, both ends.
 
    Per end and mesh position, points i with loads p >= 0 and clearances d >= 0, p.d = 0, sum p = P:
        sum_j C_ij p_j + delta_H(p_i) + w_i = Z + d_i .

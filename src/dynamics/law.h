@@ -7,14 +7,14 @@
 #include "base/error.h"
 
 enum eo_law_kind {
-  EO_MESH_STIFFNESS, /* F = k(phi) (X - front) while X > front: paper equations (8)-(10), the secant law; rows: k */
+  EO_MESH_STIFFNESS, /* F = k(phi) (X - front) while X > front: (L1) of doc/theory.md, the secant law; rows: k */
   EO_MESH_POWER,     /* F = K(phi) (X - front - e(phi))^exponent; rows: K, e */
   EO_MESH_TABLE,     /* F piecewise linear through (Z_i(phi) + front, load_i), 0 below the first load; rows: Z_i */
   EO_MESH_TANGENT, /* F = P + k_tan(phi) (X - front - Z(phi)), 0 where that is negative: the teeth part; rows: Z, k_tan
                     */
 };
 
-/* The back flanks touch where X < back. The stiffness law uses k(phi) there (equation (8)), the others back_stiffness
+/* The back flanks touch where X < back. The stiffness law uses k(phi) there, the others back_stiffness
    (0: they never touch): the coast flanks' own static curve is not computed, so a constant stands for it. */
 struct eo_law {
   enum eo_law_kind kind;

@@ -1,5 +1,4 @@
-/* The three objectives, the constraints and the fitness (paper (19)-(23) with the gaps settled; see the notes at each).
- */
+/* The three objectives, the constraints and the fitness: (O1) to (O3) of doc/theory.md. */
 #ifndef EASEOFF_EVALUATION_OBJECTIVE_H
 #define EASEOFF_EVALUATION_OBJECTIVE_H
 

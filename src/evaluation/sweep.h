@@ -1,4 +1,4 @@
-/* A design over torque and speed, and the same design without modification beside it (paper Figs 8, 9, 17 and 18):
+/* A design over torque and speed, and the same design without modification beside it:
    loaded contact and mesh laws once per torque, vibration at every speed, upwards and downwards. */
 #ifndef EASEOFF_EVALUATION_SWEEP_H
 #define EASEOFF_EVALUATION_SWEEP_H

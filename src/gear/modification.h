@@ -1,6 +1,6 @@
-/* Micro-geometry: what is taken off a flank, as one function delta(u, x) (paper (1), (2); physics: three parabolas and
-   a lead parabola). u: profile coordinate k_u sigma, m from the pitch point, + towards the member's own tip; x = eta /
-   cos(beta), m from mid face. */
+/* Micro-geometry: what is taken off a flank, as one function delta(u, x) ((F1) to (F4) of doc/theory.md: three
+   parabolas and a lead parabola). u: profile coordinate k_u sigma, m from the pitch point, + towards the member's own
+   tip; x = eta / cos(beta), m from mid face. */
 #ifndef EASEOFF_GEAR_MODIFICATION_H
 #define EASEOFF_GEAR_MODIFICATION_H
 

@@ -1,6 +1,7 @@
 /* `ga` and `fpga`, the paper's fitness-predicted genetic algorithm (section 4); ga is fpga that never predicts: the
    same operators on the same random numbers. What was settled where the paper is silent:
-   - decisions in batch order see the history as it was before the generation; sequential order is S2-S5 as printed;
+   - decisions in batch order see the history as it was before the generation; sequential order is as the paper prints
+   it;
    - an individual bit-equal to a true row takes its value and counts neither as true nor as predicted (reuse);
    - the best predicted individual of a generation is evaluated too (verify): nothing else would ever correct it;
    - the elite replaces the worst child when no child is as good. */
@@ -116,7 +117,7 @@ static void decide_true(struct eo_optimizer *o, int i, bool repeat)
   g->cut |= g->row[i] < 0;
 }
 
-/* S2, S3. */
+/* Predicts an individual by (H3) where its region is trusted, else asks for its evaluation. */
 static enum eo_code decide(struct eo_optimizer *o, int i, struct eo_error *error)
 {
   struct genetic *g = o->state;
@@ -139,7 +140,7 @@ static enum eo_code decide(struct eo_optimizer *o, int i, struct eo_error *error
   return eo_optimizer_note_prediction(o, &prediction, error);
 }
 
-/* S4 for individual i, whose fitness is known by now. Reused rows stand in the history already. */
+/* Individual i, whose fitness is known by now, enters the history. Reused rows stand in it already. */
 static enum eo_code remember(struct eo_optimizer *o, int i, struct eo_error *error)
 {
   struct genetic *g = o->state;
@@ -201,7 +202,7 @@ static enum eo_code decide_in_sequence(struct eo_optimizer *o, struct eo_error *
   return code;
 }
 
-/* S6. */
+/* (H4), then (H5). */
 static void clean_history(struct genetic *g, struct eo_generation *statistics)
 {
   statistics->removed_redundant = eo_history_mark_redundant(&g->history, &g->law);

@@ -1,10 +1,11 @@
 /* The history of the fitness-predicted genetic algorithm: rows with a credibility that predict their neighbourhood, and
-   how they age. Paper section 4.1, equations (14)-(18), S2-S6. What was settled:
+   how they age: (H1) to (H5) of doc/theory.md. What was settled:
    - the region is closed (e <= r_share); an empty one has credibility 0;
-   - (15) sums over the m rows of the region (the printed n is a misprint; option all keeps every row);
-   - (17) as printed deletes rows that are unique in space when each coordinate has neighbours; unless literal is set, a
+   - (H1) sums over the m rows of the region (the printed n is a misprint; option all keeps every row);
+   - (H4) as printed deletes rows that are unique in space when each coordinate has neighbours; unless literal is set, a
      row goes only when another row is within the threshold of it, a true row only when a true one is;
-   - S6: redundant rows leave, then predicted rows lose credibility, then those below R_0 leave. */
+   - at the end of a generation redundant rows leave, then predicted rows lose credibility, then those below R_0 leave.
+ */
 #ifndef EASEOFF_OPTIMIZER_PREDICTION_HISTORY_H
 #define EASEOFF_OPTIMIZER_PREDICTION_HISTORY_H
 
@@ -45,17 +46,18 @@ void eo_history_done(struct eo_history *history);
 enum eo_code eo_history_add(struct eo_history *history, const double *x, double fitness, double credibility,
                             bool predicted, struct eo_error *error);
 
-/* (14)-(16) at x; history->distance and history->weight hold e and w afterwards. */
+/* (H1) to (H3) at x; history->distance and history->weight hold e and w afterwards. */
 struct eo_history_estimate eo_history_predict(struct eo_history *history, const struct eo_history_law *law,
                                               const double *x);
 
-/* S3: whether an individual is predicted, R(i) >= R*. */
+/* Whether an individual is predicted, R(i) >= R*. */
 bool eo_history_trusts(const struct eo_history_estimate *estimate, double trust_threshold);
 
-/* (17) of every row into history->redundancy. */
+/* (H4) of every row into history->redundancy. */
 void eo_history_measure_redundancy(struct eo_history *history);
 
-/* The steps of S6. The first two mark rows in history->removed and return how many, the last takes them out. */
+/* The steps at the end of a generation, (H4) and (H5). The first two mark rows in history->removed and return how many,
+ * the last takes them out. */
 int eo_history_mark_redundant(struct eo_history *history, const struct eo_history_law *law);
 int eo_history_decay(struct eo_history *history, const struct eo_history_law *law);
 void eo_history_compact(struct eo_history *history);
