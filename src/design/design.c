@@ -10,6 +10,13 @@ static void fill(double *value, double derived)
     *value = derived;
 }
 
+double eo_alignment_axial_stiffness(const struct eo_alignment *alignment)
+{
+  return alignment->pinion_axial == EO_AXIAL_FIXED    ? INFINITY
+         : alignment->pinion_axial == EO_AXIAL_SPRING ? alignment->pinion_axial_stiffness
+                                                      : 0;
+}
+
 static void resolve_gear_pair(struct eo_gear_pair *pair, const struct eo_geometry *geometry)
 {
   fill(&pair->groove_width, pair->ends == 2 ? 8 * pair->normal_module : 0);

@@ -24,6 +24,9 @@ struct eo_alignment {
   double stagger;                /* right end behind the left, in transverse base pitches, 0..1 */
 };
 
+/* Stiffness with which the pinion is held along its axis, N/m: 0 floating, INFINITY fixed. */
+double eo_alignment_axial_stiffness(const struct eo_alignment *alignment);
+
 struct eo_load_case {
   double torque; /* total on the pinion shaft, N m, > 0 */
   double speed;  /* pinion, rad/s, > 0 */

@@ -66,10 +66,12 @@ static const struct eo_field alignment[] = {
               "shaft angle error in the plane of the axes, pivot in the middle of the groove"),
     EO_NUMBER(struct eo_alignment, shaft_angle_out_of_plane, "shaft_angle_error_out_of_plane_deg", &eo_unit_deg, -2, 2,
               0, "shaft angle error out of the plane of the axes"),
-    EO_CHOICE(struct eo_alignment, pinion_axial, "pinion_axial", axial, EO_AXIAL_FLOATING,
-              "how the pinion is held along its axis"),
+    EO_CHOICE(
+        struct eo_alignment, pinion_axial, "pinion_axial", axial, EO_AXIAL_FLOATING,
+        "how the pinion is held along its axis, in contact and vibration alike; with one end \"floating\" means held "
+        "like the gear"),
     EO_NUMBER(struct eo_alignment, pinion_axial_stiffness, "pinion_axial_stiffness_N_per_um", &eo_unit_N_per_um, 1e-3,
-              1e6, 200, "axial stiffness of the pinion's bearing, used with \"spring\""),
+              1e6, 200, "from the pinion's mean axial motion to the ground, used with \"spring\""),
     EO_NUMBER(struct eo_alignment, stagger, "stagger", NULL, 0, 1, 0,
               "right end behind the left, in transverse base pitches"),
 };
@@ -95,8 +97,9 @@ static const struct eo_field supports[] = {
     EO_NUMBER_DERIVED(struct eo_supports, groove_torsional_stiffness[EO_GEAR],
                       "gear_groove_torsional_stiffness_Nm_per_rad", &eo_unit_Nm_per_rad, 1e-9, 1e20,
                       "G J / L of the groove body", "between the gear's ends"),
-    EO_CHOICE(struct eo_supports, torsional_coupling, "torsional_coupling", coupling, EO_COUPLING_PAPER,
-              "of the ends through the groove; \"paper\": off for equal ends, on when they differ"),
+    EO_CHOICE(
+        struct eo_supports, torsional_coupling, "torsional_coupling", coupling, EO_COUPLING_PAPER,
+        "of the ends through the groove; \"paper\": off for equal ends, on when they differ or the pinion is held"),
     EO_NUMBER_DERIVED(struct eo_supports, mass[EO_PINION], "pinion_mass_kg", &eo_unit_kg, 1e-6, 1e7,
                       "solid of the pitch cylinder", "of one end of the pinion with half the groove"),
     EO_NUMBER_DERIVED(struct eo_supports, mass[EO_GEAR], "gear_mass_kg", &eo_unit_kg, 1e-6, 1e7,
@@ -111,6 +114,16 @@ static const struct eo_field supports[] = {
     EO_NUMBER_DERIVED(struct eo_supports, mesh_damping_stiffness, "mesh_damping_stiffness_N_per_um", &eo_unit_N_per_um,
                       1e-3, 1e6, "mean mesh stiffness of the load case",
                       "k in the mesh damping 2 zeta sqrt(k m_e)/cos beta_b"),
+    EO_NUMBER(struct eo_supports, machine_inertia[EO_PINION], "driver_inertia_kg_m2", &eo_unit_kg_m2, 0, 1e9, 0,
+              "of the machine that drives the pinion, on the pinion's shaft; 0: none, the torque is constant"),
+    EO_NUMBER(struct eo_supports, machine_stiffness[EO_PINION], "driver_stiffness_Nm_per_rad", &eo_unit_Nm_per_rad, 0,
+              1e20, 0, "torsion of shaft and coupling between driver and pinion; needed with driver_inertia_kg_m2"),
+    EO_NUMBER(struct eo_supports, machine_inertia[EO_GEAR], "load_inertia_kg_m2", &eo_unit_kg_m2, 0, 1e9, 0,
+              "of the machine that the gear drives, on the gear's shaft; 0: none, the torque is constant"),
+    EO_NUMBER(struct eo_supports, machine_stiffness[EO_GEAR], "load_stiffness_Nm_per_rad", &eo_unit_Nm_per_rad, 0, 1e20,
+              0, "torsion of shaft and coupling between gear and load; needed with load_inertia_kg_m2"),
+    EO_NUMBER(struct eo_supports, machine_damping_ratio, "machine_damping_ratio", NULL, 0, 1, 0.02,
+              "of the torsion towards driver and load"),
 };
 
 static const char *const side[] = {"left", "right", NULL};

@@ -172,10 +172,49 @@ static json_t *encode_samples(const struct eo_result_source *source)
 
 static const char *const outcomes[] = {"converged", "contact_lost", "not_converged", NULL};
 
+static const struct eo_outline_row state_rows[] = {
+    EO_KEY("mesh_periods", "integer", "after which the motion repeats, 1 to 4"),
+    EO_KEY("rms_m_per_s2", "object", "RMS of the pair", .outline = &readings),
+    EO_KEY("contact_loss", "number", "share of the mesh cycle without contact, worse end"),
+    EO_KEY("floquet_multiplier", "number?",
+           "size of the largest: what becomes of a small disturbance over one mesh period; null where the motion takes "
+           "more "
+           "than one"),
+};
+static const struct eo_outline vibration_state = EO_OUTLINE("VibrationState", state_rows);
+
+static json_t *encode_states(const struct eo_vibration *v)
+{
+  json_t *array = json_array();
+  for (int i = 0; i < v->states; i++) {
+    const struct eo_vibration_state *s = &v->state[i];
+    struct eo_object o = eo_object_open_as(&vibration_state);
+    eo_object_put(&o, "mesh_periods", json_integer(s->repeat));
+    eo_object_put(&o, "rms_m_per_s2", encode_readings(s->rms, 1, 1));
+    eo_object_put_number(&o, "contact_loss", s->contact_loss);
+    eo_object_put_number(&o, "floquet_multiplier", s->multiplier);
+    json_array_append_new(array, eo_object_close(&o));
+  }
+  return array;
+}
+
 static const struct eo_outline_row vibration_rows[] = {
-    EO_KEY("outcome", "word",
-           "contact_lost: teeth separate; not_converged: no periodic state was found, and what hangs on it is null",
-           .words = outcomes),
+    EO_KEY(
+        "outcome", "word",
+        "contact_lost: teeth separate; not_converged: no stable periodic state was found, and what hangs on it is null",
+        .words = outcomes),
+    EO_KEY("mesh_periods", "integer?",
+           "after which the motion repeats: 1, up to 4 where teeth separate; null without a state"),
+    EO_KEY("floquet_multiplier", "number?",
+           "size of the largest, below 1: stable; null without a state, or where the motion takes more than one mesh "
+           "period"),
+    EO_KEY("unstable_multiplier", "number?",
+           "of a periodic state that was left because a disturbance of it grows; null: there was none"),
+    EO_KEY("stable_states", "[object]",
+           "found from several starts where contact is lost, the loudest first: the numbers here and f3 are its own",
+           .outline = &vibration_state),
+    EO_KEY("rms_range_m_per_s2", "[number?]", "lowest and highest normal RMS of the stable states",
+           .unit = &eo_unit_m_per_s2),
     EO_KEY("mesh_frequency_Hz", "number", "teeth per second", .unit = &eo_unit_Hz),
     EO_KEY("rms_m_per_s2", "object", "RMS of the pair: mean of the ends' RMS", .outline = &readings),
     EO_KEY("rms_band_m_per_s2", "object",
@@ -184,6 +223,9 @@ static const struct eo_outline_row vibration_rows[] = {
     EO_KEY("contact_loss", "number?", "share of the mesh cycle without contact, worse end"),
     EO_KEY("dynamic_factor", "number?", "largest over static mesh force, worse end"),
     EO_KEY("back_contact", "flag", "the back flanks touch"),
+    EO_KEY("mean_pinion_thrust_N", "number?", "of the pinion's axial support, + to the right; 0: floating",
+           .unit = &eo_unit_N),
+    EO_KEY("max_pinion_thrust_N", "number?", "largest size of it", .unit = &eo_unit_N),
     EO_KEY("position", "[number]", "phase of the mesh cycle, 0..1, of the histories"),
     EO_KEY("orders_normal_m_per_s2", "[number?]?",
            "mean of the ends' amplitudes: the mean, then mesh harmonics 1, 2, ...; null without a periodic state",
@@ -203,6 +245,16 @@ json_t *eo_result_vibration(struct eo_result_source *source, const struct eo_cas
   struct eo_object o = eo_object_open_as(&eo_outline_vibration);
   double known = v->outcome == EO_VIBRATION_NOT_CONVERGED ? NAN : 1;
   eo_object_put(&o, "outcome", json_string(outcomes[v->outcome]));
+  eo_object_put(&o, "mesh_periods", isnan(known) ? json_null() : json_integer(v->repeat));
+  eo_object_put_number(&o, "floquet_multiplier", known * v->multiplier);
+  eo_object_put_number(&o, "unstable_multiplier", v->unstable > 0 ? v->unstable : NAN);
+  eo_object_put(&o, "stable_states", encode_states(v));
+  double range[2] = {NAN, NAN};
+  if (v->states > 0) {
+    range[0] = v->state[v->states - 1].rms[EO_READING_NORMAL];
+    range[1] = v->state[0].rms[EO_READING_NORMAL];
+  }
+  eo_object_put(&o, "rms_range_m_per_s2", eo_json_reals(2, range, 1, &eo_unit_m_per_s2, EO_DIGITS_NUMBER));
   eo_object_put_number(&o, "mesh_frequency_Hz",
                        c->load_case.speed * source->pair->geometry.teeth[EO_PINION] / (2 * M_PI));
   eo_object_put(&o, "rms_m_per_s2", encode_readings(v->rms_pair, 1, known));
@@ -213,6 +265,8 @@ json_t *eo_result_vibration(struct eo_result_source *source, const struct eo_cas
   eo_object_put_number(&o, "dynamic_factor",
                        known * fmax(v->dynamic_factor[0], source->ends == 2 ? v->dynamic_factor[1] : 0));
   eo_object_put(&o, "back_contact", json_boolean(v->back_contact));
+  eo_object_put_number(&o, "mean_pinion_thrust_N", known * v->pinion_thrust_mean);
+  eo_object_put_number(&o, "max_pinion_thrust_N", known * v->pinion_thrust_max);
   eo_object_put(&o, "position", encode_samples(source));
   put_pair_orders(&o, source, c);
   for (int end = 0; end < source->ends; end++)

@@ -64,13 +64,11 @@ static void say_contact(struct list *list, const struct eo_result_source *source
   }
 }
 
-/* The tangent law is straight: where the force swings widely (ends coupled in torsion and misaligned), the contact's
-   stiffening counts. */
+/* The tangent law is straight, or bent about P only: beyond its reach the contact's stiffening counts. */
 static void say_swing(struct list *list, const struct eo_result_source *source, const struct eo_case_result *c, int end)
 {
-  static const double WIDE = 0.1;
   double swing = fmax(c->vibration.force_max[end] / c->force - 1, 1 - c->vibration.force_min[end] / c->force);
-  if (source->design->resolution.mesh_law == EO_LAW_TANGENT && swing > WIDE)
+  if (swing > c->law_reach)
     say(list,
         "The mesh force swings by %.2g %% %s%s, more than the tangent law follows well: compare mesh_law \"table\".",
         100 * swing, place_of(&c->load_case).text, end_of(source, end));
@@ -81,7 +79,21 @@ static void say_vibration(struct list *list, const struct eo_result_source *sour
   const struct eo_vibration *v = &c->vibration;
   struct place place = place_of(&c->load_case);
   if (v->outcome == EO_VIBRATION_NOT_CONVERGED)
-    say(list, "No periodic vibration was found %s: the teeth may hammer without a period.", place.text);
+    say(list, "No stable periodic vibration was found %s: the teeth may hammer without a period.", place.text);
+  else if (v->unstable > 0)
+    say(list,
+        "The periodic state that the harmonic balance finds %s is not stable (multiplier %.3g): the stable one that "
+        "time "
+        "integration leads to is given.",
+        place.text, v->unstable);
+  if (v->states > 1)
+    say(list,
+        "%d stable vibrations exist %s, with an RMS of %.4g to %.4g m/s2; which one the teeth take depends on how the "
+        "drive "
+        "came there. The loudest counts.",
+        v->states, place.text, v->state[v->states - 1].rms[EO_READING_NORMAL], v->state[0].rms[EO_READING_NORMAL]);
+  if (v->outcome != EO_VIBRATION_NOT_CONVERGED && v->repeat > 1)
+    say(list, "The vibration %s repeats after %d mesh periods only.", place.text, v->repeat);
   for (int end = 0; end < source->ends && v->outcome == EO_VIBRATION_CONTACT_LOST; end++)
     if (v->contact_loss[end] > 0)
       say(list, "Contact is lost %s%s, for %.3g %% of the mesh cycle.", place.text, end_of(source, end),
@@ -129,7 +141,19 @@ static void say_held(struct list *list, const struct eo_result_source *source)
       say(list, "The ends share the load unevenly %s: the %s end carries %.3g %% of it.", place_of(&c->load_case).text,
           left > right ? "left" : "right", 100 * fmax(left, right) / (left + right));
   }
-  say(list, "The pinion is held along its axis in the loaded contact; the vibration is that of a floating pinion.");
+}
+
+/* Where a key cannot mean what it says. */
+static void say_supports(struct list *list, const struct eo_result_source *source)
+{
+  const struct eo_alignment *a = &source->design->alignment;
+  bool floating = a->pinion_axial == EO_AXIAL_FLOATING;
+  if (source->ends == 1 && floating && source->design->gear_pair.helix_angle != 0)
+    say(list, "A single helical pinion cannot float along its axis: it is held there like the gear. See "
+              "alignment.pinion_axial.");
+  if (source->ends == 2 && !floating && source->design->supports.torsional_coupling == EO_COUPLING_OFF)
+    say(list, "The ends are not coupled in torsion: each carries half the torque, however the pinion is held along its "
+              "axis.");
 }
 
 static void say_modelling(struct list *list, const struct eo_result_source *source)
@@ -139,6 +163,7 @@ static void say_modelling(struct list *list, const struct eo_result_source *sour
   if (*note)
     say(list, "%s", note);
   say_held(list, source);
+  say_supports(list, source);
   if (source->design->objective.relief_inside_active_flank &&
       eo_objective_relief_outside(&source->design->modification, g->rack_bottom, g->rack_top))
     say(list, "A relief starts outside the active flank and takes nothing off where the teeth touch.");

@@ -7,12 +7,15 @@
 #include "numerics/fourier.h"
 #include "numerics/ode.h"
 
-enum { MAX_LAW_ROWS = 1024, PATIENCE = 30 };
+enum { MAX_LAW_ROWS = 1024, PATIENCE = 30, LONGEST = 4 };
 /* Where the integration's own noise keeps the state from settling further. */
 static const double noise = 1e-5, progress_factor = 0.9;
+/* Unless the state comes back so much nearer after several periods than after fewer, it may still be on its way to
+   repeating after fewer: a slow decay that alternates looks like twice the period. */
+static const double distinct = 1e-3;
 
 const struct eo_integration_options eo_integration_defaults = {
-    .relative_tolerance = 1e-8, .settled = 1e-7, .max_periods = 1000, .samples = 1024};
+    .relative_tolerance = 1e-8, .settled = 1e-7, .max_periods = 1000, .samples = 1024, .max_repeat = 1};
 
 /* The state handed to CVODE is the departure from the start, its velocity per phase: tolerances then see the swing. */
 struct run {
@@ -154,14 +157,15 @@ static void record(const struct run *run, int sample, double phase, const double
                              r->acceleration + (size_t)sample * run->oscillator->n, r->mesh + 2 * sample);
 }
 
-/* One period from integer phase `period`; y is the state, *swing the largest departure met. With `r` it is recorded. */
+/* One period from integer phase `period`; y is the state, *swing the largest departure met. With `r` it is recorded
+   from sample `first` on. */
 static enum eo_code one_period(struct eo_ode *ode, const struct run *run, int period, int samples, double *y,
-                               double *swing, struct eo_integration *r, struct eo_error *error)
+                               double *swing, struct eo_integration *r, int first, struct eo_error *error)
 {
   int n = run->oscillator->n;
   for (int i = 0; i < samples; i++) {
     if (r)
-      record(run, i, (double)i / samples, y, r);
+      record(run, first + i, (double)i / samples, y, r);
     enum eo_code code = eo_ode_advance(ode, period + (i + 1.0) / samples, y, error);
     if (code)
       return code;
@@ -171,36 +175,83 @@ static enum eo_code one_period(struct eo_ode *ode, const struct run *run, int pe
   return EO_OK;
 }
 
+/* How nearly the state comes back after 1, 2, 3 and 4 periods, by number less one. */
+struct settling {
+  int n, seen;                                    /* coordinates; periods so far */
+  double before[LONGEST][2 * EO_MAX_COORDINATES]; /* states at the beginning of the last periods, by period % LONGEST */
+  double swing[LONGEST];                          /* of these periods */
+  double change[LONGEST], best[LONGEST];          /* shares of the swing */
+  int idle[LONGEST];                              /* periods since the best was last bettered */
+};
+
+/* Change of the state over the last `repeat` periods against the largest swing within them. */
+static double change_over(const struct settling *s, int repeat, const double *y)
+{
+  const double *before = s->before[(s->seen - repeat) % LONGEST];
+  double change = 0, swing = 0;
+  for (int i = 0; i < s->n; i++)
+    change = fmax(change, fmax(fabs(y[i] - before[i]), fabs(y[s->n + i] - before[s->n + i]) / (2 * M_PI)));
+  for (int i = 1; i <= repeat; i++)
+    swing = fmax(swing, s->swing[(s->seen - i) % LONGEST]);
+  return swing > 0 ? change / swing : 0;
+}
+
+/* Notes a period that ended in y; returns after how many periods the state repeats, or 0. */
+static int note_period(struct settling *s, const struct eo_integration_options *options, const double *y)
+{
+  int found = 0;
+  double sooner = INFINITY; /* smallest change after fewer periods */
+  s->seen++;
+  for (int i = 0; i < options->max_repeat && i < s->seen && !found; i++) {
+    double change = s->change[i] = change_over(s, i + 1, y);
+    s->idle[i]++;
+    if (change < progress_factor * s->best[i]) {
+      s->best[i] = change;
+      s->idle[i] = 0;
+    }
+    bool still = s->idle[i] >= PATIENCE && change <= noise && change < sooner / 2;
+    if ((change <= options->settled && change <= distinct * sooner) || still)
+      found = i + 1;
+    sooner = fmin(sooner, change);
+  }
+  return found;
+}
+
+/* Smallest change over any of the times allowed. */
+static double nearest_return(const struct settling *s, const struct eo_integration_options *options)
+{
+  double change = s->change[0];
+  for (int i = 1; i < options->max_repeat && i < s->seen; i++)
+    change = fmin(change, s->change[i]);
+  return change;
+}
+
 static enum eo_code run_periods(struct eo_ode *ode, const struct run *run, const struct eo_integration_options *options,
                                 double *y, struct eo_integration *result, const struct eo_progress *progress,
                                 struct eo_error *error)
 {
-  int n = run->oscillator->n, period = 0, idle = 0;
-  double before[2 * EO_MAX_COORDINATES], best = INFINITY;
-  result->periodic = false;
+  struct settling s = {.n = run->oscillator->n, .best = {INFINITY, INFINITY, INFINITY, INFINITY}};
+  int period = 0, repeat = 0;
   result->change = 0;
-  while (period < options->max_periods - 1 && !result->periodic) {
-    double swing = 0, change = 0;
-    memcpy(before, y, sizeof *y * 2 * n);
-    enum eo_code code = one_period(ode, run, period++, 8, y, &swing, NULL, error);
+  while (period < options->max_periods - 1 && !repeat) {
+    memcpy(s.before[period % LONGEST], y, sizeof *y * 2 * (size_t)s.n);
+    s.swing[period % LONGEST] = 0;
+    enum eo_code code = one_period(ode, run, period, 8, y, &s.swing[period % LONGEST], NULL, 0, error);
     if (code)
       return code;
-    for (int i = 0; i < n; i++)
-      change = fmax(change, fmax(fabs(y[i] - before[i]), fabs(y[n + i] - before[n + i]) / (2 * M_PI)));
-    result->change = swing > 0 ? change / swing : 0;
-    if (result->change < progress_factor * best) {
-      best = result->change;
-      idle = 0;
-    } else
-      idle++;
-    result->periodic = result->change <= options->settled || (idle >= PATIENCE && result->change <= noise);
+    period++;
+    repeat = note_period(&s, options, y);
+    result->change = nearest_return(&s, options);
     if (eo_progress_report(progress, "time integration", (double)period / options->max_periods))
       return eo_error_set(error, EO_ERROR_CANCELLED, "", "The time integration was cancelled.");
   }
-  double swing = 0;
-  result->periods = period + 1;
-  enum eo_code code = one_period(ode, run, period, options->samples, y, &swing, result, error);
-  unpack(run, y, result->state, result->state + n);
+  result->periodic = repeat > 0;
+  result->repeat = repeat > 0 ? repeat : 1;
+  enum eo_code code = EO_OK;
+  for (int i = 0; i < result->repeat && !code; i++)
+    code = one_period(ode, run, period++, options->samples, y, &(double){0}, result, i * options->samples, error);
+  result->periods = period;
+  unpack(run, y, result->state, result->state + s.n);
   return code;
 }
 

@@ -12,10 +12,12 @@ struct eo_integration_options {
   double settled;  /* periodic when the state changes over one period by less than this share of its swing, > 0;
                       or by less than 1e-5 of it without settling further, which is the integration's own noise */
   int max_periods; /* >= 1 */
-  int samples;     /* of the period that is recorded, >= 2 */
+  int samples;     /* of each mesh period that is recorded, >= 2 */
+  int max_repeat;  /* 1..4: the most mesh periods after which the state may repeat; the smallest number counts, and more
+                      than one only where the state comes back a thousand times nearer than after fewer */
 };
 
-/* rtol 1e-8, settled 1e-7, 1000 periods, 1024 samples. */
+/* rtol 1e-8, settled 1e-7, 1000 periods, 1024 samples, repeating with every period. */
 extern const struct eo_integration_options eo_integration_defaults;
 
 /* One mesh at one instant. */
@@ -25,13 +27,15 @@ struct eo_mesh_state {
   double margin, margin_slope; /* as struct eo_mesh_force */
 };
 
-/* The last period at equidistant phases; the arrays belong to the caller. */
+/* The last period, of so many mesh periods as the state takes to repeat, at equidistant phases; the arrays belong to
+   the caller and have room for max_repeat mesh periods. */
 struct eo_integration {
-  double *acceleration;                 /* [samples][n] r", from the equation of motion */
-  struct eo_mesh_state *mesh;           /* [samples][2] */
+  double *acceleration;                 /* [repeat samples][n] r", from the equation of motion */
+  struct eo_mesh_state *mesh;           /* [repeat samples][2] */
   double state[2 * EO_MAX_COORDINATES]; /* r, r' at the end of the period */
+  int repeat;                           /* mesh periods after which the state repeats; 1 where it does not settle */
   bool periodic;                        /* settled; else the last of max_periods is recorded */
-  double change;                        /* of the state over the last but one period / swing */
+  double change;                        /* of the state over the last but one period / swing, the smallest allowed */
   int periods;
   long steps; /* CVODE's, of the whole run */
 };

@@ -323,6 +323,14 @@ double eo_law_deflection(const struct eo_law *law, const double *row, double loa
   return 0;
 }
 
+double eo_law_least(const struct eo_law *law)
+{
+  double least = INFINITY;
+  for (int i = 0; i < CHECKED_PHASES; i++)
+    least = fmin(least, law->front + eo_fourier_value(law->order, law->series, (double)i / CHECKED_PHASES));
+  return least;
+}
+
 int eo_law_equal(const struct eo_law *a, const struct eo_law *b)
 {
   if (a == b)

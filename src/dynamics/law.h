@@ -88,6 +88,9 @@ int eo_law_is_affine(const struct eo_law *law);
 /* Deflection at which rows of these values carry the load > 0: the static guess, m. */
 double eo_law_deflection(const struct eo_law *law, const double *row, double load);
 
+/* The least deflection at which the front flanks of a table law touch, over 256 equidistant phases, m. */
+double eo_law_least(const struct eo_law *law);
+
 /* Non-zero when the two laws are the same function. */
 int eo_law_equal(const struct eo_law *a, const struct eo_law *b);
 

@@ -3,7 +3,9 @@
 #include <math.h>
 #include <string.h>
 
-enum { MAX_ELEMENTS = 16 };
+#include "numerics/dense.h"
+
+enum { MAX_ELEMENTS = 24 };
 
 /* Adds k e e' and c e e' to the matrices. */
 static void add_element(struct eo_dynamics_model *m, const double *e, double k, double c)
@@ -16,21 +18,57 @@ static void add_element(struct eo_dynamics_model *m, const double *e, double k, 
     }
 }
 
-/* Directions of relative motion that meet a spring, kept for the zero modes. */
+/* Directions of relative motion that meet a spring, kept for the zero modes; those of rigid springs apart. */
 struct elements {
-  int n;
+  int n, rigid;
   double e[MAX_ELEMENTS][EO_MAX_FREEDOMS];
+  double constraint[MAX_ELEMENTS][EO_MAX_FREEDOMS];
 };
 
-static void join(struct eo_dynamics_model *m, struct elements *all, int plus, int minus, double k, double c)
+/* A spring and damper along e. */
+static void put_element(struct eo_dynamics_model *m, struct elements *all, const double *e, double k, double c)
 {
   if (k == 0)
     return;
-  double *e = all->e[all->n++];
+  if (isinf(k)) {
+    memcpy(all->constraint[all->rigid++], e, sizeof *all->constraint);
+    return;
+  }
+  memcpy(all->e[all->n++], e, sizeof *all->e);
+  add_element(m, e, k, c);
+}
+
+static void join(struct eo_dynamics_model *m, struct elements *all, int plus, int minus, double k, double c)
+{
+  double e[EO_MAX_FREEDOMS] = {0};
   e[plus] = 1;
   if (minus >= 0)
     e[minus] = -1;
-  add_element(m, e, k, c);
+  put_element(m, all, e, k, c);
+}
+
+/* k_a from the mean axial motion of the pinion to ground. */
+static void hold_pinion(struct eo_dynamics_model *m, struct elements *all)
+{
+  const struct eo_dynamics_parameters *p = &m->parameters;
+  double e[EO_MAX_FREEDOMS] = {0};
+  for (int end = 0; end < p->ends; end++)
+    e[eo_dynamics_freedom(p->ends, EO_PINION, end, EO_MOTION_Z)] = 1.0 / p->ends;
+  put_element(m, all, e, p->pinion_axial_stiffness, p->pinion_axial_damping);
+}
+
+static void join_machines(struct eo_dynamics_model *m, struct elements *all)
+{
+  const struct eo_dynamics_parameters *p = &m->parameters;
+  for (int member = 0; member < 2; member++) {
+    double e[EO_MAX_FREEDOMS] = {0};
+    if (m->machine[member] < 0)
+      continue;
+    e[m->machine[member]] = 1;
+    for (int end = 0; end < p->ends; end++)
+      e[eo_dynamics_freedom(p->ends, member, end, EO_MOTION_ROTATION)] = -1.0 / p->ends;
+    put_element(m, all, e, p->machine_stiffness[member], p->machine_damping[member]);
+  }
 }
 
 static void add_supports(struct eo_dynamics_model *m, struct elements *all)
@@ -44,6 +82,8 @@ static void add_supports(struct eo_dynamics_model *m, struct elements *all)
   for (int end = 0; end < ends; end++)
     join(m, all, eo_dynamics_freedom(ends, EO_GEAR, end, EO_MOTION_Z), -1, p->gear_axial_stiffness[end],
          p->gear_axial_damping[end]);
+  hold_pinion(m, all);
+  join_machines(m, all);
   if (ends == 1) {
     join(m, all, eo_dynamics_freedom(1, EO_PINION, 0, EO_MOTION_Z), -1, p->groove_axial_stiffness[0],
          p->groove_axial_damping[0]);
@@ -127,31 +167,43 @@ static int extend(int n, int count, double (*vector)[EO_MAX_FREEDOMS], int candi
   }
 }
 
-/* In coordinates scaled by sqrt(m) the zero modes are the orthogonal complement of all element directions. */
-static void split_motions(struct eo_dynamics_model *m, const struct elements *all)
+/* Directions in coordinates scaled by sqrt(m), as unit vectors. */
+static void scale_directions(const struct eo_dynamics_model *m, int count, double (*direction)[EO_MAX_FREEDOMS])
 {
-  int n = m->freedoms, candidates = all->n;
-  double candidate[MAX_ELEMENTS][EO_MAX_FREEDOMS] = {0}, vector[EO_MAX_FREEDOMS][EO_MAX_FREEDOMS] = {0};
-  for (int c = 0; c < candidates; c++) {
+  int n = m->freedoms;
+  for (int c = 0; c < count; c++) {
     for (int i = 0; i < n; i++)
-      candidate[c][i] = all->e[c][i] / sqrt(m->mass[i]);
-    double length = sqrt(dot(n, candidate[c], candidate[c]));
+      direction[c][i] /= sqrt(m->mass[i]);
+    double length = sqrt(dot(n, direction[c], direction[c]));
     for (int i = 0; i < n; i++)
-      candidate[c][i] /= length;
+      direction[c][i] /= length;
   }
-  int rank = extend(n, 0, vector, candidates, candidate);
+}
+
+/* In coordinates scaled by sqrt(m) the motions there are stand at right angles to the directions of rigid springs, and
+   the zero modes to all element directions besides. */
+static void split_motions(struct eo_dynamics_model *m, struct elements *all)
+{
+  int n = m->freedoms;
+  double vector[EO_MAX_FREEDOMS][EO_MAX_FREEDOMS] = {0};
+  scale_directions(m, all->rigid, all->constraint);
+  scale_directions(m, all->n, all->e);
+  int held = extend(n, 0, vector, all->rigid, all->constraint);
+  int known = extend(n, held, vector, all->n, all->e), rank = known - held;
   double unit[EO_MAX_FREEDOMS][EO_MAX_FREEDOMS] = {0};
   for (int i = 0; i < n; i++)
     unit[i][i] = 1;
-  extend(n, rank, vector, n, unit);
-  m->zero_modes = n - rank;
+  extend(n, known, vector, n, unit);
+  m->constraints = held;
+  m->zero_modes = n - known;
+  m->oscillator.n = rank;
   for (int i = 0; i < n; i++)
-    for (int k = 0; k < n; k++) {
+    for (int k = held; k < n; k++) {
       double value = vector[k][i] / sqrt(m->mass[i]);
-      if (k < rank)
-        m->basis[i * rank + k] = value;
+      if (k < known)
+        m->basis[i * rank + k - held] = value;
       else
-        m->zero[i * m->zero_modes + k - rank] = value;
+        m->zero[i * m->zero_modes + k - known] = value;
     }
 }
 
@@ -185,13 +237,15 @@ static void project_matrix(const struct eo_dynamics_model *m, const double *full
   }
 }
 
+/* Stiffness added while condensing where no bearing gives it a size, N/m: that of a mesh; its value cancels. */
+static const double rigid_shift = 1e9;
+
 static void reduce(struct eo_dynamics_model *m)
 {
   const struct eo_dynamics_parameters *p = &m->parameters;
   struct eo_oscillator *o = &m->oscillator;
-  o->n = m->freedoms - m->zero_modes;
   o->ends = p->ends;
-  o->shift = p->bearing_stiffness[EO_PINION];
+  o->shift = isfinite(p->bearing_stiffness[EO_PINION]) ? p->bearing_stiffness[EO_PINION] : rigid_shift;
   o->symmetric = p->ends == 2 && p->gear_axial_stiffness[0] == p->gear_axial_stiffness[1] &&
                  p->gear_axial_damping[0] == p->gear_axial_damping[1];
   project_matrix(m, m->stiffness, o->stiffness);
@@ -206,13 +260,18 @@ enum eo_code eo_dynamics_model_init(struct eo_dynamics_model *model, const struc
   enum eo_code code = eo_dynamics_parameters_check(parameters, error);
   if (code)
     return code;
-  *model = (struct eo_dynamics_model){.parameters = *parameters, .freedoms = 6 * parameters->ends};
+  *model = (struct eo_dynamics_model){.parameters = *parameters, .freedoms = 6 * parameters->ends, .machine = {-1, -1}};
   for (int member = 0; member < 2; member++)
     for (int end = 0; end < parameters->ends; end++)
       for (int motion = EO_MOTION_Y; motion <= EO_MOTION_ROTATION; motion++)
         model->mass[eo_dynamics_freedom(parameters->ends, member, end, motion)] = motion == EO_MOTION_ROTATION
                                                                                       ? parameters->inertia[member]
                                                                                       : parameters->mass[member];
+  for (int member = 0; member < 2; member++)
+    if (parameters->machine_inertia[member] > 0) {
+      model->machine[member] = model->freedoms;
+      model->mass[model->freedoms++] = parameters->machine_inertia[member];
+    }
   struct elements all = {0};
   add_supports(model, &all);
   set_readings(model);
@@ -223,15 +282,25 @@ enum eo_code eo_dynamics_model_init(struct eo_dynamics_model *model, const struc
   return EO_OK;
 }
 
+/* Where the torque comes in and goes out: at the machine, or by equal parts at the ends. */
+static void set_torque(const struct eo_dynamics_model *m, int member, double torque, double *load)
+{
+  int ends = m->parameters.ends;
+  if (m->machine[member] >= 0)
+    load[m->machine[member]] = torque;
+  else
+    for (int end = 0; end < ends; end++)
+      load[eo_dynamics_freedom(ends, member, end, EO_MOTION_ROTATION)] = torque / ends;
+}
+
 void eo_dynamics_model_load(struct eo_dynamics_model *model, double torque, enum eo_impact_in_dynamics impact)
 {
   const struct eo_dynamics_parameters *p = &model->parameters;
   int ends = p->ends;
   double load[EO_MAX_FREEDOMS] = {0};
+  set_torque(model, EO_PINION, torque, load);
+  set_torque(model, EO_GEAR, -torque * p->base_radius[EO_GEAR] / p->base_radius[EO_PINION], load);
   for (int end = 0; end < ends; end++) {
-    load[eo_dynamics_freedom(ends, EO_PINION, end, EO_MOTION_ROTATION)] = torque / ends;
-    load[eo_dynamics_freedom(ends, EO_GEAR, end, EO_MOTION_ROTATION)] = -torque / ends * p->base_radius[EO_GEAR] /
-                                                                        p->base_radius[EO_PINION];
     struct eo_oscillator *o = &model->oscillator;
     if (impact == EO_IMPACT_PAPER)
       project(model, model->theta_impact[end], o->pulse[end]);
@@ -263,4 +332,28 @@ double eo_dynamics_model_impact_drift(const struct eo_dynamics_model *model, con
     square += work * work;
   }
   return sqrt(square);
+}
+
+/* H = mesh' (K + shift mesh mesh')^-1 mesh is (S + shift)^-1 and S = s [1 -1; -1 1], since both ends together roll
+   freely: (1, -1) H (1, -1)' = 2 / (2 s + shift). */
+double eo_dynamics_model_axial_stiffness(const struct eo_dynamics_model *model)
+{
+  const struct eo_oscillator *o = &model->oscillator;
+  double lean = sin(model->parameters.base_helix_angle);
+  if (o->ends == 1 || lean == 0 || model->parameters.pinion_axial_stiffness == 0 || model->zero_modes > 1)
+    return 0;
+  int n = o->n, pivot[EO_MAX_COORDINATES];
+  double k[EO_MAX_COORDINATES * EO_MAX_COORDINATES], apart[EO_MAX_COORDINATES], response[EO_MAX_COORDINATES];
+  memcpy(k, o->stiffness, sizeof k);
+  for (int i = 0; i < n; i++) {
+    response[i] = apart[i] = o->mesh[0][i] - o->mesh[1][i];
+    for (int j = 0; j < n; j++)
+      for (int end = 0; end < 2; end++)
+        k[i * n + j] += o->shift * o->mesh[end][i] * o->mesh[end][j];
+  }
+  if (eo_dense_solve(n, k, pivot, 1, response))
+    return 0;
+  double soft = o->shift * dot(n, apart, response) / 2; /* 1 / (1 + 2 s / shift) */
+  const double none = 1e-12;
+  return soft < none ? INFINITY : 2 * lean * lean * o->shift * (1 / soft - 1);
 }

@@ -1,6 +1,8 @@
 /* Equations of motion of the lumped model, paper (3)-(7) with the signs corrected: every spring, damper and mesh is one
    direction e of relative motion and adds k e e', c e e'. So K and C are symmetric and C is positive semi-definite.
-   Coordinates: y_p1 z_p1 th_p1 [y_p2 z_p2 th_p2] y_g1 z_g1 th_g1 [y_g2 z_g2 th_g2]. */
+   Coordinates: y_p1 z_p1 th_p1 [y_p2 z_p2 th_p2] y_g1 z_g1 th_g1 [y_g2 z_g2 th_g2] [th_driver] [th_load].
+   A rigid spring takes its direction e out of the motions there are. A machine turns against the mean rotation of the
+   ends it is joined to, so that half the torque goes to each end. */
 #ifndef EASEOFF_DYNAMICS_MODEL_H
 #define EASEOFF_DYNAMICS_MODEL_H
 
@@ -8,7 +10,7 @@
 #include "dynamics/oscillator.h"
 #include "dynamics/parameters.h"
 
-enum { EO_MAX_FREEDOMS = 12 };
+enum { EO_MAX_FREEDOMS = 14 };
 enum eo_motion { EO_MOTION_Y = 0, EO_MOTION_Z = 1, EO_MOTION_ROTATION = 2 };
 
 /* Three readings of one end's relative motion: X; y_p - y_g + R_p th_p - R_g th_g; R_p th_p - R_g th_g. */
@@ -16,8 +18,10 @@ enum eo_reading { EO_READING_NORMAL, EO_READING_TRANSVERSE, EO_READING_ROTATIONA
 
 struct eo_dynamics_model {
   struct eo_dynamics_parameters parameters;
-  int freedoms;                                        /* 6 per end */
+  int freedoms;                                        /* 6 per end, 1 per machine */
+  int machine[2];                                      /* [member] freedom of the driver, of the load; -1: none */
   int zero_modes;                                      /* 3, 2 or 1 with two ends */
+  int constraints;                                     /* directions that rigid springs take out */
   double mass[EO_MAX_FREEDOMS];                        /* diagonal */
   double stiffness[EO_MAX_FREEDOMS * EO_MAX_FREEDOMS]; /* [freedoms][freedoms], without the mesh */
   double damping[EO_MAX_FREEDOMS * EO_MAX_FREEDOMS];
@@ -25,7 +29,7 @@ struct eo_dynamics_model {
   double theta_impact[2][EO_MAX_FREEDOMS];         /* h_j of the paper's form: theta only */
   /* q = basis r + zero z: mass-orthonormal, zero spans the motions in which no spring, damper or mesh takes part. The
      number of zero modes follows from the directions alone, whatever the stiffnesses. */
-  double basis[EO_MAX_FREEDOMS * EO_MAX_COORDINATES]; /* [freedoms][freedoms - zero_modes] */
+  double basis[EO_MAX_FREEDOMS * EO_MAX_COORDINATES]; /* [freedoms][oscillator.n] */
   double zero[EO_MAX_FREEDOMS * 3];                   /* [freedoms][zero_modes] */
   struct eo_oscillator oscillator;                    /* in r, for `torque` and `impact` as last set */
   double zero_mode_load; /* largest |load . zero| / (|load| |zero|) of the torques: zero but for roundoff */
@@ -49,13 +53,20 @@ void eo_dynamics_model_load(struct eo_dynamics_model *model, double torque, enum
 double eo_dynamics_model_impact_drift(const struct eo_dynamics_model *model, const double mean[2]);
 
 struct eo_dynamics_modes {
-  int n; /* freedoms - zero modes */
+  int n; /* freedoms - zero modes - constraints */
   int zero_modes;
   double frequency[EO_MAX_COORDINATES];     /* undamped, Hz, ascending */
   double damping_ratio[EO_MAX_COORDINATES]; /* -Re(pole) / |pole| of the damped system; 1 and above: overdamped */
   double shape[EO_MAX_COORDINATES][EO_MAX_FREEDOMS]; /* [mode][freedom], unit modal mass */
   double complex pole[2 * EO_MAX_COORDINATES]; /* of the damped system, 1/s, by |pole|, conjugate pairs together */
 };
+
+/* The axial stiffness, N/m, that alone - everything else rigid - would make the ends share a load at rest as all
+   springs of the model do together: the pinion's axial support and the gear's, the bearings and the torsion of the
+   grooves. With P the mean of both ends, what the left one carries more is D = - s (X_L - X_R), and k = 4 s
+   sin^2(beta_b). 0: each end carries P (floating pinion, ends not coupled in torsion, no helix, one end); INFINITY: X_L
+   = X_R. */
+double eo_dynamics_model_axial_stiffness(const struct eo_dynamics_model *model);
 
 /* Eigenfrequencies with a constant mesh stiffness per end (N/m, > 0) and the mesh damping of the parameters.
    Errors: EO_ERROR_INPUT (stiffness), EO_ERROR_MEMORY, EO_ERROR_NUMERIC. */

@@ -10,7 +10,7 @@
 
 #include "dynamics/law.h"
 
-enum { EO_MAX_COORDINATES = 12, EO_MAX_HARMONICS = 256 };
+enum { EO_MAX_COORDINATES = 13, EO_MAX_HARMONICS = 256 };
 
 struct eo_oscillator {
   int n;                                                     /* coordinates, 1..EO_MAX_COORDINATES */

@@ -8,17 +8,24 @@
 struct rule {
   const char *key, *name;
   double value;
-  bool positive; /* else >= 0 */
+  enum {
+    NOT_NEGATIVE,
+    POSITIVE,
+    SPRING,
+    SUPPORT
+  } kind; /* SPRING: not negative, may be rigid; SUPPORT: also positive */
 };
 
 static enum eo_code check_rules(int n, const struct rule *rule, struct eo_error *error)
 {
   for (int i = 0; i < n; i++) {
     char pointer[sizeof error->pointer];
+    bool positive = rule[i].kind == POSITIVE || rule[i].kind == SUPPORT, rigid = rule[i].kind >= SPRING;
     snprintf(pointer, sizeof pointer, "/supports/%s", rule[i].key);
-    if (!isfinite(rule[i].value) || rule[i].value < 0 || (rule[i].positive && rule[i].value == 0))
+    if (isnan(rule[i].value) || (isinf(rule[i].value) && !rigid) || rule[i].value < 0 ||
+        (positive && rule[i].value == 0))
       return eo_error_set(error, EO_ERROR_INPUT, pointer, "The %s must be a finite %s number, not %g.", rule[i].name,
-                          rule[i].positive ? "positive" : "non-negative", rule[i].value);
+                          positive ? "positive" : "non-negative", rule[i].value);
   }
   return EO_OK;
 }
@@ -33,6 +40,28 @@ static enum eo_code check_dampers(const struct eo_dynamics_parameters *p, struct
   return EO_OK;
 }
 
+/* A machine and its spring come together; without a spring it would not be there, without inertia it would be a wall.
+ */
+static enum eo_code check_machines(const struct eo_dynamics_parameters *p, struct eo_error *error)
+{
+  static const char *const inertia[2] = {"/supports/driver_inertia_kg_m2", "/supports/load_inertia_kg_m2"},
+                           *const stiffness[2] = {"/supports/driver_stiffness_Nm_per_rad",
+                                                  "/supports/load_stiffness_Nm_per_rad"},
+                           *const name[2] = {"driver", "load"};
+  for (int m = 0; m < 2; m++) {
+    if (p->machine_inertia[m] > 0 && p->machine_stiffness[m] == 0)
+      return eo_error_set(error, EO_ERROR_INPUT, stiffness[m],
+                          "The inertia of the %s needs the torsional stiffness between it and the gear pair.", name[m]);
+    if (p->machine_inertia[m] == 0 && p->machine_stiffness[m] > 0)
+      return eo_error_set(error, EO_ERROR_INPUT, inertia[m],
+                          "The torsional stiffness towards the %s needs the inertia of the %s.", name[m], name[m]);
+  }
+  if (p->pinion_axial_stiffness == 0 && p->pinion_axial_damping > 0)
+    return eo_error_set(error, EO_ERROR_INPUT, "/alignment/pinion_axial",
+                        "An axial damper on the pinion needs its spring.");
+  return EO_OK;
+}
+
 enum eo_code eo_dynamics_parameters_check(const struct eo_dynamics_parameters *p, struct eo_error *error)
 {
   if (p->ends != 1 && p->ends != 2)
@@ -43,34 +72,46 @@ enum eo_code eo_dynamics_parameters_check(const struct eo_dynamics_parameters *p
                         "Base radii %g and %g m with a base helix angle of %g rad make no gear pair.",
                         p->base_radius[0], p->base_radius[1], p->base_helix_angle);
   const struct rule rule[] = {
-      {"pinion_mass_kg", "mass of the pinion", p->mass[0], true},
-      {"gear_mass_kg", "mass of the gear", p->mass[1], true},
-      {"pinion_inertia_kg_m2", "inertia of the pinion", p->inertia[0], true},
-      {"gear_inertia_kg_m2", "inertia of the gear", p->inertia[1], true},
-      {"pinion_bearing_stiffness_N_per_um", "pinion's bearing stiffness", p->bearing_stiffness[0], true},
-      {"gear_bearing_stiffness_N_per_um", "gear's bearing stiffness", p->bearing_stiffness[1], true},
-      {"bearing_damping_ratio", "pinion's bearing damping", p->bearing_damping[0], false},
-      {"bearing_damping_ratio", "gear's bearing damping", p->bearing_damping[1], false},
-      {"gear_axial_stiffness_left_N_per_um", "gear's axial stiffness on the left", p->gear_axial_stiffness[0], true},
-      {"bearing_damping_ratio", "gear's axial damping on the left", p->gear_axial_damping[0], false},
-      {"pinion_groove_axial_stiffness_N_per_um", "pinion's axial stiffness", p->groove_axial_stiffness[0], true},
-      {"groove_damping_ratio", "pinion's axial damping", p->groove_axial_damping[0], false},
-      {"mesh_damping_ratio", "mesh damping", p->mesh_damping, false},
+      {"pinion_mass_kg", "mass of the pinion", p->mass[0], POSITIVE},
+      {"gear_mass_kg", "mass of the gear", p->mass[1], POSITIVE},
+      {"pinion_inertia_kg_m2", "inertia of the pinion", p->inertia[0], POSITIVE},
+      {"gear_inertia_kg_m2", "inertia of the gear", p->inertia[1], POSITIVE},
+      {"pinion_bearing_stiffness_N_per_um", "pinion's bearing stiffness", p->bearing_stiffness[0], SUPPORT},
+      {"gear_bearing_stiffness_N_per_um", "gear's bearing stiffness", p->bearing_stiffness[1], SUPPORT},
+      {"bearing_damping_ratio", "pinion's bearing damping", p->bearing_damping[0], NOT_NEGATIVE},
+      {"bearing_damping_ratio", "gear's bearing damping", p->bearing_damping[1], NOT_NEGATIVE},
+      {"gear_axial_stiffness_left_N_per_um", "gear's axial stiffness on the left", p->gear_axial_stiffness[0], SUPPORT},
+      {"bearing_damping_ratio", "gear's axial damping on the left", p->gear_axial_damping[0], NOT_NEGATIVE},
+      {"pinion_groove_axial_stiffness_N_per_um", "pinion's axial stiffness", p->groove_axial_stiffness[0], POSITIVE},
+      {"groove_damping_ratio", "pinion's axial damping", p->groove_axial_damping[0], NOT_NEGATIVE},
+      {"mesh_damping_ratio", "mesh damping", p->mesh_damping, NOT_NEGATIVE},
+      {"pinion_axial_stiffness_N_per_um", "stiffness of the pinion's axial bearing", p->pinion_axial_stiffness, SPRING},
+      {"bearing_damping_ratio", "damping of the pinion's axial bearing", p->pinion_axial_damping, NOT_NEGATIVE},
+      {"driver_inertia_kg_m2", "inertia of the driver", p->machine_inertia[0], NOT_NEGATIVE},
+      {"load_inertia_kg_m2", "inertia of the load", p->machine_inertia[1], NOT_NEGATIVE},
+      {"driver_stiffness_Nm_per_rad", "torsional stiffness towards the driver", p->machine_stiffness[0], NOT_NEGATIVE},
+      {"load_stiffness_Nm_per_rad", "torsional stiffness towards the load", p->machine_stiffness[1], NOT_NEGATIVE},
+      {"machine_damping_ratio", "torsional damping towards the driver", p->machine_damping[0], NOT_NEGATIVE},
+      {"machine_damping_ratio", "torsional damping towards the load", p->machine_damping[1], NOT_NEGATIVE},
       /* from here on with two ends only */
-      {"gear_axial_stiffness_right_N_per_um", "gear's axial stiffness on the right", p->gear_axial_stiffness[1], true},
-      {"bearing_damping_ratio", "gear's axial damping on the right", p->gear_axial_damping[1], false},
+      {"gear_axial_stiffness_right_N_per_um", "gear's axial stiffness on the right", p->gear_axial_stiffness[1],
+       SUPPORT},
+      {"bearing_damping_ratio", "gear's axial damping on the right", p->gear_axial_damping[1], NOT_NEGATIVE},
       {"gear_groove_axial_stiffness_N_per_um", "axial stiffness of the gear's groove", p->groove_axial_stiffness[1],
-       true},
-      {"groove_damping_ratio", "axial damping of the gear's groove", p->groove_axial_damping[1], false},
+       POSITIVE},
+      {"groove_damping_ratio", "axial damping of the gear's groove", p->groove_axial_damping[1], NOT_NEGATIVE},
       {"pinion_groove_torsional_stiffness_Nm_per_rad", "torsional stiffness of the pinion's groove",
-       p->groove_torsional_stiffness[0], false},
+       p->groove_torsional_stiffness[0], SPRING},
       {"gear_groove_torsional_stiffness_Nm_per_rad", "torsional stiffness of the gear's groove",
-       p->groove_torsional_stiffness[1], false},
-      {"groove_damping_ratio", "torsional damping of the pinion's groove", p->groove_torsional_damping[0], false},
-      {"groove_damping_ratio", "torsional damping of the gear's groove", p->groove_torsional_damping[1], false},
+       p->groove_torsional_stiffness[1], SPRING},
+      {"groove_damping_ratio", "torsional damping of the pinion's groove", p->groove_torsional_damping[0],
+       NOT_NEGATIVE},
+      {"groove_damping_ratio", "torsional damping of the gear's groove", p->groove_torsional_damping[1], NOT_NEGATIVE},
   };
   int all = sizeof rule / sizeof *rule;
   enum eo_code code = check_rules(p->ends == 2 ? all : all - 8, rule, error);
+  if (!code)
+    code = check_machines(p, error);
   return code || p->ends == 1 ? code : check_dampers(p, error);
 }
 
@@ -132,23 +173,56 @@ static void set_bodies(struct eo_dynamics_parameters *p, const struct eo_geometr
   }
 }
 
+/* c = 2 zeta sqrt(k m); none on a rigid support. */
+static double damper(double zeta, double stiffness, double mass)
+{
+  return isinf(stiffness) ? 0 : 2 * zeta * sqrt(stiffness * mass);
+}
+
 static void set_bearings(struct eo_dynamics_parameters *p, const struct eo_supports *supports)
 {
   double zeta = supports->bearing_damping_ratio;
   for (int i = 0; i < 2; i++) {
     p->bearing_stiffness[i] = supports->bearing_stiffness[i];
-    p->bearing_damping[i] = 2 * zeta * sqrt(p->bearing_stiffness[i] * p->mass[i]);
+    p->bearing_damping[i] = damper(zeta, p->bearing_stiffness[i], p->mass[i]);
     p->gear_axial_stiffness[i] = supports->gear_axial_stiffness[i];
-    p->gear_axial_damping[i] = 2 * zeta * sqrt(p->gear_axial_stiffness[i] * p->mass[EO_GEAR]);
+    p->gear_axial_damping[i] = damper(zeta, p->gear_axial_stiffness[i], p->mass[EO_GEAR]);
   }
 }
 
-static void set_single_axial(struct eo_dynamics_parameters *p, const struct eo_supports *supports)
+/* With one end the pinion's thrust bearing stands where the groove's spring stands with two. */
+static enum eo_code set_single_axial(struct eo_dynamics_parameters *p, double held, const struct eo_supports *supports,
+                                     struct eo_error *error)
 {
-  p->groove_axial_stiffness[EO_PINION] = or_default(supports->groove_axial_stiffness[EO_PINION],
-                                                    p->gear_axial_stiffness[0]);
-  p->groove_axial_damping[EO_PINION] = 2 * supports->bearing_damping_ratio *
-                                       sqrt(p->groove_axial_stiffness[EO_PINION] * p->mass[EO_PINION]);
+  double groove = supports->groove_axial_stiffness[EO_PINION];
+  if (held > 0 && !isnan(groove))
+    return eo_error_set(error, EO_ERROR_INPUT, "/supports/pinion_groove_axial_stiffness_N_per_um",
+                        "A pair with one end has no groove; /alignment/pinion_axial already says how the pinion is "
+                        "held: leave this key out.");
+  p->groove_axial_stiffness[EO_PINION] = held > 0 && isfinite(held) ? held
+                                                                    : or_default(groove, p->gear_axial_stiffness[0]);
+  p->groove_axial_damping[EO_PINION] = damper(supports->bearing_damping_ratio, p->groove_axial_stiffness[EO_PINION],
+                                              p->mass[EO_PINION]);
+  p->pinion_axial_stiffness = isinf(held) ? held : 0;
+  return EO_OK;
+}
+
+static void set_pinion_axial(struct eo_dynamics_parameters *p, double held, const struct eo_supports *supports)
+{
+  p->pinion_axial_stiffness = held;
+  p->pinion_axial_damping = damper(supports->bearing_damping_ratio, p->pinion_axial_stiffness, 2 * p->mass[EO_PINION]);
+}
+
+static void set_machines(struct eo_dynamics_parameters *p, const struct eo_supports *supports)
+{
+  for (int m = 0; m < 2; m++) {
+    double own = p->ends * p->inertia[m], machine = supports->machine_inertia[m];
+    p->machine_inertia[m] = machine;
+    p->machine_stiffness[m] = supports->machine_stiffness[m];
+    if (machine > 0)
+      p->machine_damping[m] = damper(supports->machine_damping_ratio, p->machine_stiffness[m],
+                                     own * machine / (own + machine));
+  }
 }
 
 static enum eo_code set_groove(struct eo_dynamics_parameters *p, const struct eo_geometry *g,
@@ -169,7 +243,7 @@ static enum eo_code set_groove(struct eo_dynamics_parameters *p, const struct eo
     if (!coupled)
       continue;
     p->groove_torsional_stiffness[m] = or_default(torsional, shear * M_PI / 2 * (r2 * r2 - b2 * b2) / body.length);
-    p->groove_torsional_damping[m] = 2 * zeta * sqrt(p->groove_torsional_stiffness[m] * p->inertia[m] / 2);
+    p->groove_torsional_damping[m] = damper(zeta, p->groove_torsional_stiffness[m], p->inertia[m] / 2);
   }
   return EO_OK;
 }
@@ -177,18 +251,19 @@ static enum eo_code set_groove(struct eo_dynamics_parameters *p, const struct eo
 static enum eo_code check_supports(const struct eo_supports *s, double mean_mesh_stiffness, struct eo_error *error)
 {
   const struct rule rule[] = {
-      {"bearing_damping_ratio", "damping ratio of the bearings", s->bearing_damping_ratio, false},
-      {"groove_damping_ratio", "damping ratio of the groove", s->groove_damping_ratio, false},
-      {"mesh_damping_ratio", "damping ratio of the mesh", s->mesh_damping_ratio, false},
+      {"bearing_damping_ratio", "damping ratio of the bearings", s->bearing_damping_ratio, NOT_NEGATIVE},
+      {"groove_damping_ratio", "damping ratio of the groove", s->groove_damping_ratio, NOT_NEGATIVE},
+      {"mesh_damping_ratio", "damping ratio of the mesh", s->mesh_damping_ratio, NOT_NEGATIVE},
+      {"machine_damping_ratio", "damping ratio towards driver and load", s->machine_damping_ratio, NOT_NEGATIVE},
       {"mesh_damping_stiffness_N_per_um", "mesh stiffness that sets the mesh damping",
-       or_default(s->mesh_damping_stiffness, mean_mesh_stiffness), true},
+       or_default(s->mesh_damping_stiffness, mean_mesh_stiffness), POSITIVE},
   };
   return check_rules(sizeof rule / sizeof *rule, rule, error);
 }
 
 enum eo_code eo_dynamics_parameters_init(struct eo_dynamics_parameters *parameters, const struct eo_geometry *geometry,
                                          const struct eo_gear_pair *pair, const struct eo_material *material,
-                                         const struct eo_supports *supports, bool ends_differ,
+                                         double held, const struct eo_supports *supports, bool ends_differ,
                                          double mean_mesh_stiffness, struct eo_error *error)
 {
   enum eo_code code = check_supports(supports, mean_mesh_stiffness, error);
@@ -200,15 +275,26 @@ enum eo_code eo_dynamics_parameters_init(struct eo_dynamics_parameters *paramete
   set_bodies(&p, geometry, pair, material, supports);
   set_bearings(&p, supports);
   bool coupled = supports->torsional_coupling == EO_COUPLING_ON ||
-                 (supports->torsional_coupling == EO_COUPLING_PAPER && ends_differ);
-  if (pair->ends == 1)
-    set_single_axial(&p, supports);
-  else if ((code = set_groove(&p, geometry, pair, material, supports, coupled, error)))
+                 (supports->torsional_coupling == EO_COUPLING_PAPER && (ends_differ || held > 0));
+  set_machines(&p, supports);
+  code = pair->ends == 1 ? set_single_axial(&p, held, supports, error)
+                         : set_groove(&p, geometry, pair, material, supports, coupled, error);
+  if (code)
     return code;
+  if (pair->ends == 2)
+    set_pinion_axial(&p, held, supports);
   p.mesh_damping = eo_dynamics_mesh_damping(&p, supports->mesh_damping_ratio,
                                             or_default(supports->mesh_damping_stiffness, mean_mesh_stiffness));
   if ((code = eo_dynamics_parameters_check(&p, error)))
     return code;
   *parameters = p;
   return EO_OK;
+}
+
+void eo_supports_make_rigid(struct eo_supports *supports)
+{
+  for (int i = 0; i < 2; i++)
+    supports->bearing_stiffness[i] = supports->gear_axial_stiffness[i] = supports->groove_torsional_stiffness[i] =
+        INFINITY;
+  supports->torsional_coupling = EO_COUPLING_ON;
 }

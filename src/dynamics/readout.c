@@ -170,10 +170,32 @@ static void read_force(const struct eo_vibration_solver *s, const struct eo_alte
   *largest = fmax(fabs(r.least), fabs(r.most));
 }
 
-static void read_bearings(const struct eo_vibration_solver *s, const struct eo_alternating *grid,
-                          struct eo_vibration *result)
+/* Harmonic k of the axial force of the pinion on its support: that of the spring, or what a rigid one has to take up,
+   the axial parts of mesh forces and consistent impacts. */
+static double complex pinion_thrust(const struct eo_vibration_solver *s, const struct eo_cycle *cycle, int k)
 {
   const struct eo_dynamics_parameters *p = &s->model.parameters;
+  const struct eo_spectrum *spectrum = &s->spectrum;
+  double complex force = 0, z = 0;
+  for (int end = 0; end < p->ends; end++) {
+    int freedom_z = eo_dynamics_freedom(p->ends, EO_PINION, end, EO_MOTION_Z);
+    double lean = s->model.reading[EO_READING_NORMAL][end][freedom_z];
+    force -= lean * spectrum->force[end][k];
+    if (s->condensed_impact == EO_IMPACT_CONSISTENT)
+      force -= lean / cos(p->base_helix_angle) *
+               eo_pulse_harmonic(&cycle->pulse[end], cycle->frequency, cycle->shift[end], k);
+    z += freedom(spectrum, EO_PINION, end, EO_MOTION_Z, k) / p->ends;
+  }
+  if (isinf(p->pinion_axial_stiffness))
+    return force;
+  double ground = p->ends == 1 ? p->groove_axial_stiffness[0] : 0,
+         damper = p->ends == 1 ? p->groove_axial_damping[0] : 0;
+  return (p->pinion_axial_stiffness + ground + I * k * spectrum->frequency * (p->pinion_axial_damping + damper)) * z;
+}
+
+static void read_bearings(const struct eo_vibration_solver *s, const struct eo_cycle *cycle,
+                          const struct eo_alternating *grid, struct eo_vibration *result)
+{
   double complex order[1 + EO_MAX_HARMONICS];
   for (int end = 0; end < s->spectrum.ends; end++) {
     for (int member = 0; member < 2; member++) {
@@ -183,12 +205,9 @@ static void read_bearings(const struct eo_vibration_solver *s, const struct eo_a
     eo_vibration_orders(s, EO_CHANNEL_GEAR_THRUST, end, order);
     read_force(s, grid, order, &result->axial_force_mean[end], &result->axial_force_max[end]);
   }
-  if (s->spectrum.ends == 2)
-    return;
   for (int k = 0; k <= s->spectrum.harmonics; k++)
-    order[k] = support(&s->spectrum, EO_PINION, 0, EO_MOTION_Z, p->groove_axial_stiffness[0],
-                       p->groove_axial_damping[0], k);
-  read_force(s, grid, order, &result->axial_force_mean[1], &result->axial_force_max[1]);
+    order[k] = pinion_thrust(s, cycle, k);
+  read_force(s, grid, order, &result->pinion_thrust_mean, &result->pinion_thrust_max);
 }
 
 /* Power of the damping outside the meshes at harmonic k of the oscillator's response. */
@@ -278,7 +297,11 @@ static void begin_result(struct eo_vibration_solver *s, const struct eo_vibratio
   s->spectrum.ends = s->model.parameters.ends;
   s->spectrum.freedoms = s->model.freedoms;
   s->spectrum.frequency = cycle->frequency;
-  *result = (struct eo_vibration){.ends = s->spectrum.ends, .harmonics = s->harmonics, .frequency = cycle->frequency};
+  *result = (struct eo_vibration){.ends = s->spectrum.ends,
+                                  .harmonics = s->harmonics,
+                                  .frequency = cycle->frequency,
+                                  .repeat = 1,
+                                  .multiplier = NAN};
   if (load->impact == EO_IMPACT_PAPER) {
     double mean[2] = {0};
     for (int end = 0; end < s->spectrum.ends; end++)
@@ -304,6 +327,6 @@ void eo_vibration_read_balance(struct eo_vibration_solver *s, const struct eo_vi
     read_mesh(s, report->grid, end % report->ends, cycle, end,
               eo_dynamics_mesh_load(&s->model.parameters, load->torque), result);
   read_accelerations(s, result);
-  read_bearings(s, report->grid, result);
+  read_bearings(s, cycle, report->grid, result);
   set_outcome(s, true, result);
 }

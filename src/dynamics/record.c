@@ -25,20 +25,31 @@ void eo_vibration_free_run(struct eo_integration *run)
   free(run->mesh);
 }
 
-/* The recorded meshes on a time grid like the harmonic balance's, and their deflections as series. */
-static void fill_grid(const struct eo_cycle *cycle, const struct eo_integration *run, int ends,
+/* The recorded meshes on a time grid like the harmonic balance's, and their deflections as series: of the mesh periods
+   first..last, phase by phase their mean. */
+static void fill_grid(const struct eo_cycle *cycle, const struct eo_integration *run, int ends, int first, int last,
                       struct eo_alternating *grid, double *x)
 {
   for (int end = 0; end < ends; end++) {
     struct eo_time_end *e = &grid->end[end];
+    double share = 1.0 / (last - first + 1);
     for (int i = 0; i < grid->samples; i++) {
-      const struct eo_mesh_state *m = &run->mesh[2 * i + end];
-      e->x[i] = m->deflection;
-      e->v[i] = m->rate;
-      e->force[i] = m->force;
-      e->elastic[i] = m->elastic;
-      e->margin[i] = m->margin;
-      e->margin_slope[i] = m->margin_slope;
+      struct eo_mesh_state m = {0};
+      for (int period = first; period <= last; period++) {
+        const struct eo_mesh_state *at = &run->mesh[2 * (period * grid->samples + i) + end];
+        m.deflection += share * at->deflection;
+        m.rate += share * at->rate;
+        m.force += share * at->force;
+        m.elastic += share * at->elastic;
+        m.margin += share * at->margin;
+        m.margin_slope = at->margin_slope;
+      }
+      e->x[i] = m.deflection;
+      e->v[i] = m.rate;
+      e->force[i] = m.force;
+      e->elastic[i] = m.elastic;
+      e->margin[i] = m.margin;
+      e->margin_slope[i] = m.margin_slope;
     }
     eo_alternating_gate(grid, end, cycle->gated);
     eo_alternating_transform(grid, eo_fourier_terms(grid->harmonics), e->x,
@@ -54,7 +65,7 @@ static void read_rms(const struct eo_vibration_solver *s, const struct eo_cycle 
   int ends = m->oscillator.ends;
   double sum[EO_READINGS][3] = {0}, square[EO_READINGS][3] = {0}; /* left, right, mean of both */
   for (int i = 0; i < samples; i++) {
-    double q[EO_MAX_FREEDOMS], phase = (double)i / samples;
+    double q[EO_MAX_FREEDOMS], phase = (double)i * run->repeat / samples;
     eo_dense_multiply(m->freedoms, m->oscillator.n, m->basis, run->acceleration + (size_t)i * m->oscillator.n, q);
     for (int reading = 0; reading < EO_READINGS; reading++) {
       double value[3] = {0};
@@ -81,6 +92,38 @@ static void read_rms(const struct eo_vibration_solver *s, const struct eo_cycle 
   }
 }
 
+/* What the mean over several mesh periods hides: extremes, contact and power of each of them. */
+static void merge_periods(const struct eo_vibration *period, int repeat, struct eo_vibration *result)
+{
+  result->power_supplied = result->power_dissipated = 0;
+  for (int end = 0; end < result->ends; end++) {
+    result->contact_loss[end] = 0;
+    result->force_min[end] = INFINITY;
+    result->force_max[end] = -INFINITY;
+    result->dynamic_factor[end] = -INFINITY;
+    result->deflection_swing[end] = 0;
+  }
+  for (int i = 0; i < repeat; i++) {
+    const struct eo_vibration *p = &period[i];
+    result->back_contact = result->back_contact || p->back_contact;
+    result->power_supplied += p->power_supplied / repeat;
+    result->power_dissipated += p->power_dissipated / repeat;
+    for (int end = 0; end < result->ends; end++) {
+      result->contact_loss[end] += p->contact_loss[end] / repeat;
+      result->force_min[end] = fmin(result->force_min[end], p->force_min[end]);
+      result->force_max[end] = fmax(result->force_max[end], p->force_max[end]);
+      result->dynamic_factor[end] = fmax(result->dynamic_factor[end], p->dynamic_factor[end]);
+      result->deflection_swing[end] = fmax(result->deflection_swing[end], p->deflection_swing[end]);
+      if (p->contact_loss[end] > 0)
+        result->outcome = EO_VIBRATION_CONTACT_LOST;
+    }
+    for (int member = 0; member < 2; member++)
+      for (int end = 0; end < result->ends; end++)
+        result->bearing_force_max[member][end] = fmax(result->bearing_force_max[member][end],
+                                                      p->bearing_force_max[member][end]);
+  }
+}
+
 enum eo_code eo_vibration_read_run(struct eo_vibration_solver *s, const struct eo_vibration_case *load,
                                    const struct eo_cycle *cycle, const struct eo_integration *run, int samples,
                                    struct eo_vibration *result, struct eo_error *error)
@@ -89,13 +132,21 @@ enum eo_code eo_vibration_read_run(struct eo_vibration_solver *s, const struct e
   enum eo_code code = eo_alternating_new(&grid, s->harmonics, samples, error);
   if (code)
     return code;
-  fill_grid(cycle, run, s->model.parameters.ends, grid, s->x);
+  struct eo_vibration period[4];
   const struct eo_balance_report report = {
       .converged = run->periodic, .residual = run->change, .grid = grid, .ends = s->model.parameters.ends};
+  for (int i = 0; i < run->repeat && run->repeat > 1; i++) {
+    fill_grid(cycle, run, s->model.parameters.ends, i, i, grid, s->x);
+    eo_vibration_read_balance(s, load, cycle, &report, &period[i]);
+  }
+  fill_grid(cycle, run, s->model.parameters.ends, 0, run->repeat - 1, grid, s->x);
   eo_vibration_read_balance(s, load, cycle, &report, result);
+  if (run->periodic && run->repeat > 1)
+    merge_periods(period, run->repeat, result);
   result->periods = run->periods;
+  result->repeat = run->repeat;
   if (run->periodic)
-    read_rms(s, cycle, run, samples, result);
+    read_rms(s, cycle, run, samples * run->repeat, result);
   eo_alternating_free(grid);
   return EO_OK;
 }

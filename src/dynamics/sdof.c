@@ -87,7 +87,7 @@ static enum eo_code guess_from_state(struct setup *setup, const double state[2],
   struct eo_mesh_state *mesh = malloc(sizeof *mesh * 2 * SAMPLES);
   if (!mesh)
     return eo_error_memory(error);
-  const struct eo_integration_options options = {1e-9, 1e-12, LEAD_PERIODS, SAMPLES};
+  const struct eo_integration_options options = {1e-9, 1e-12, LEAD_PERIODS, SAMPLES, 1};
   struct eo_integration run = {.acceleration = acceleration, .mesh = mesh};
   enum eo_code code = eo_integrate(&setup->oscillator, &setup->cycle, &options, state, &run, NULL, error);
   for (int i = 0; i < SAMPLES && !code; i++)

@@ -24,7 +24,16 @@ struct eo_vibration_solver {
 enum eo_code eo_vibration_prepare(struct eo_vibration_solver *solver, const struct eo_vibration_case *load,
                                   struct eo_cycle *cycle, struct eo_error *error);
 
-/* Arrays of a time integration. */
+/* The oscillator condensed at the frequency of the case, into s->harmonic. */
+void eo_vibration_condense(struct eo_vibration_solver *solver, const struct eo_vibration_case *load, double frequency);
+
+/* Static state at the mean deflection of the law, condensed already: the start of a time integration; [2 n]. */
+void eo_vibration_static_state(const struct eo_vibration_solver *solver, const struct eo_cycle *cycle, double *state);
+
+/* State at phase 0 of the spectrum last read; [2 n]. */
+void eo_vibration_spectrum_state(const struct eo_vibration_solver *solver, const struct eo_cycle *cycle, double *state);
+
+/* Arrays of a time integration. samples: of all periods recorded. */
 enum eo_code eo_vibration_make_run(struct eo_integration *run, const struct eo_oscillator *oscillator, int samples,
                                    struct eo_error *error);
 void eo_vibration_free_run(struct eo_integration *run);

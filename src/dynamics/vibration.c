@@ -157,7 +157,7 @@ enum eo_code eo_vibration_prepare(struct eo_vibration_solver *s, const struct eo
 }
 
 /* The condensed oscillator depends on model, speed, kind of impact and (harmonic 0) torque. */
-static void condense(struct eo_vibration_solver *s, const struct eo_vibration_case *load, double frequency)
+void eo_vibration_condense(struct eo_vibration_solver *s, const struct eo_vibration_case *load, double frequency)
 {
   bool same = s->condensed_frequency == frequency && s->condensed_impact == load->impact;
   if (!same)
@@ -170,7 +170,7 @@ static void condense(struct eo_vibration_solver *s, const struct eo_vibration_ca
 }
 
 /* Static state at the mean deflection of the law: the start of a time integration. */
-static void static_state(const struct eo_vibration_solver *s, const struct eo_cycle *cycle, double *state)
+void eo_vibration_static_state(const struct eo_vibration_solver *s, const struct eo_cycle *cycle, double *state)
 {
   const struct eo_oscillator *o = &s->model.oscillator;
   double complex force[2] = {0}, deflection[2] = {0}, impact[2] = {0}, response[EO_MAX_COORDINATES];
@@ -193,6 +193,25 @@ static void static_state(const struct eo_vibration_solver *s, const struct eo_cy
   }
 }
 
+void eo_vibration_spectrum_state(const struct eo_vibration_solver *s, const struct eo_cycle *cycle, double *state)
+{
+  const struct eo_oscillator *o = &s->model.oscillator;
+  memset(state, 0, sizeof *state * 2 * (size_t)o->n);
+  for (int k = 0; k <= s->harmonics; k++) {
+    double complex force[2] = {0}, deflection[2] = {0}, impact[2] = {0}, response[EO_MAX_COORDINATES];
+    for (int end = 0; end < o->ends; end++) {
+      force[end] = s->spectrum.force[end][k];
+      deflection[end] = s->spectrum.deflection[end][k] - eo_motion_harmonic(cycle, end, k);
+      impact[end] = eo_pulse_harmonic(&cycle->pulse[end], cycle->frequency, cycle->shift[end], k);
+    }
+    eo_condensed_response(o, s->harmonic, k, force, deflection, impact, response);
+    for (int i = 0; i < o->n; i++) {
+      state[i] += creal(response[i]);
+      state[o->n + i] += creal(I * k * cycle->frequency * response[i]);
+    }
+  }
+}
+
 /* A few dozen periods of time integration lead Newton to a stable periodic state if there is one. */
 static enum eo_code rescue(struct eo_vibration_solver *s, const struct eo_cycle *cycle,
                            struct eo_balance_report *report, struct eo_error *error)
@@ -201,11 +220,11 @@ static enum eo_code rescue(struct eo_vibration_solver *s, const struct eo_cycle 
   double state[2 * EO_MAX_COORDINATES];
   struct eo_error reason;
   const struct eo_oscillator *o = &s->model.oscillator;
-  const struct eo_integration_options options = {1e-6, 1e-6, RESCUE_PERIODS, RESCUE_SAMPLES};
+  const struct eo_integration_options options = {1e-6, 1e-6, RESCUE_PERIODS, RESCUE_SAMPLES, 1};
   enum eo_code code = eo_vibration_make_run(&run, o, RESCUE_SAMPLES, error);
   if (code)
     return code;
-  static_state(s, cycle, state);
+  eo_vibration_static_state(s, cycle, state);
   /* an integration that cannot go on leaves the case not converged: an outcome */
   if (eo_integrate(o, cycle, &options, state, &run, NULL, &reason) == EO_OK) {
     int order = s->harmonics < RESCUE_SAMPLES / 2 ? s->harmonics : RESCUE_SAMPLES / 2 - 1,
@@ -231,7 +250,7 @@ enum eo_code eo_vibration_solve(struct eo_vibration_solver *s, const struct eo_v
   enum eo_code code = eo_vibration_prepare(s, load, &cycle, error);
   if (code)
     return code;
-  condense(s, load, cycle.frequency);
+  eo_vibration_condense(s, load, cycle.frequency);
   bool warm = start == EO_START_WARM && s->solved;
   code = eo_balance_solve(s->balance, &s->model.oscillator, s->harmonic, &cycle, warm, s->x, &report, error);
   if (!code && !report.converged && !warm)
@@ -258,10 +277,10 @@ enum eo_code eo_vibration_integrate(struct eo_vibration_solver *s, const struct 
   if (options->samples <= 2 * s->harmonics)
     return eo_error_set(error, EO_ERROR_INPUT, "/resolution/harmonics",
                         "%d samples of a period cannot carry %d harmonics.", options->samples, s->harmonics);
-  if ((code = eo_vibration_make_run(&run, &s->model.oscillator, options->samples, error)))
+  if ((code = eo_vibration_make_run(&run, &s->model.oscillator, options->samples * options->max_repeat, error)))
     return code;
-  condense(s, load, cycle.frequency);
-  static_state(s, &cycle, state);
+  eo_vibration_condense(s, load, cycle.frequency);
+  eo_vibration_static_state(s, &cycle, state);
   s->solved = false;
   code = eo_integrate(&s->model.oscillator, &cycle, options, state, &run, progress, error);
   if (!code)

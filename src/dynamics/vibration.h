@@ -35,6 +35,15 @@ enum eo_vibration_outcome {
   EO_VIBRATION_NOT_CONVERGED, /* none was found; the numbers below are all zero */
 };
 
+/* A stable periodic state of a load case. */
+struct eo_vibration_state {
+  int repeat;              /* mesh periods after which it repeats, 1..4 */
+  double rms[EO_READINGS]; /* mean of the ends' RMS, m/s2 */
+  double contact_loss;     /* share of the cycle, worse end */
+  double multiplier;       /* size of the largest Floquet multiplier, < 1; NaN with repeat > 1 */
+};
+enum { EO_MAX_STATES = 4 };
+
 /* The zero modes are no part of any number here: neither torques nor meshes nor consistent impacts excite them. The
    paper's impacts do when they differ between the ends, because they leave out the axial component of the force; their
    mean would let the pinion drift away and their alternating part rattle it along its screw, so both are dropped with
@@ -58,10 +67,18 @@ struct eo_vibration {
   bool back_contact;                                /* back flanks touch */
   double bearing_force_mean[2][2];                  /* radial [member][end], signed along y, N */
   double bearing_force_max[2][2];                   /* largest size over the period */
-  double axial_force_mean[2], axial_force_max[2];   /* gear thrust bearings [end]; with one end: gear, pinion */
+  double axial_force_mean[2], axial_force_max[2];   /* gear thrust bearings [end], N */
+  double pinion_thrust_mean, pinion_thrust_max;     /* of the pinion's axial support, + to the right; 0: floating */
   double power_supplied;                            /* by the varying mesh (law and impacts) to the vibration, W */
   double power_dissipated;                          /* in mesh, bearings and groove, W; equal in the periodic state */
   double impact_drift; /* mean impact load on the zero modes, left out like all motion in them, N/sqrt(kg) */
+  int repeat;          /* mesh periods after which the state repeats; everything above is taken over all of them, but
+                          spectra are of the mesh harmonics alone */
+  /* Of eo_vibration_settle(); else NaN and none. */
+  double multiplier; /* size of the largest Floquet multiplier; NaN with repeat > 1 */
+  double unstable;   /* of the periodic state that was left because it is not stable; 0: there was none */
+  int states;        /* stable states found */
+  struct eo_vibration_state state[EO_MAX_STATES]; /* the loudest first: the one that is described above */
 };
 
 /* Complex amplitudes over the mesh harmonics: value = a_0 + Re sum a_k exp(2 pi i k phi). */
@@ -88,6 +105,19 @@ const struct eo_dynamics_model *eo_vibration_model(const struct eo_vibration_sol
 /* Harmonic balance. Errors: EO_ERROR_INPUT (torque, speed, pulses), EO_ERROR_MEMORY. */
 enum eo_code eo_vibration_solve(struct eo_vibration_solver *solver, const struct eo_vibration_case *load,
                                 enum eo_vibration_start start, struct eo_vibration *result, struct eo_error *error);
+
+/* The vibration that teeth can keep up. Harmonic balance first; where contact is never lost and the state is stable
+   that is the answer. Where contact is lost, no state was found or the one found is not stable, time integration goes
+   from that state and from the static one, and from where the balance leads when the speed comes up or down to this one
+   if that is another state, until the motion repeats after at most four mesh periods. The result is the stable state
+   with the largest normal RMS, all that were found are listed, and none found is EO_VIBRATION_NOT_CONVERGED. Errors: as
+   eo_vibration_solve(). */
+enum eo_code eo_vibration_settle(struct eo_vibration_solver *solver, const struct eo_vibration_case *load,
+                                 struct eo_vibration *result, struct eo_error *error);
+
+/* The same search when the answer is to come by time integration: from the static state first. */
+enum eo_code eo_vibration_settle_integrated(struct eo_vibration_solver *solver, const struct eo_vibration_case *load,
+                                            struct eo_vibration *result, struct eo_error *error);
 
 /* Time integration from the static state to the periodic one; NULL options: eo_integration_defaults. */
 enum eo_code eo_vibration_integrate(struct eo_vibration_solver *solver, const struct eo_vibration_case *load,

@@ -186,6 +186,8 @@ static enum eo_code solve_static(struct eo_evaluator *e, const struct eo_design 
                                  const struct eo_scenario *scenario, struct eo_error *error)
 {
   enum eo_code code = eo_evaluator_fit_bodies(e, &design->shafts, error);
+  if (!code)
+    code = eo_evaluator_find_hold(e, design, error);
   if (code)
     return code;
   double start = eo_clock_milliseconds();

@@ -11,7 +11,7 @@
 
 /* Raised with every change after which the same design gives other numbers: what a history keeps belongs to one
    version. */
-enum { EO_EVALUATOR_VERSION = 2 };
+enum { EO_EVALUATOR_VERSION = 3 };
 
 /* What to compute beyond the objectives. */
 enum {
@@ -47,6 +47,7 @@ struct eo_case_result {
   double peak_to_peak, mean;   /* of it, m */
   double dynamic_force_factor; /* largest dynamic over static mesh force */
   struct eo_vibration vibration;
+  double law_reach; /* swing of the mesh force, share of P, up to which the mesh law follows the loaded contact */
   double band[EO_READINGS][2]; /* pair's RMS at 0.9 and 1.1 times the compliance; NaN unless asked for */
   int contact_failures;        /* positions whose loaded contact did not converge */
   int body_iterations;         /* the most that elastic bodies took at one position; 0: rigid */

@@ -45,11 +45,27 @@ int eo_evaluator_stagger(const struct eo_design *design, int positions)
   return (int)lround(design->alignment.stagger * positions) % positions;
 }
 
-static double axial_stiffness(const struct eo_alignment *alignment)
+/* How stiffly the ends are held to one axial position of the pinion: the springs of the dynamic model at rest, so that
+   the loads here and the mean forces of the vibration are the same. Elastic bodies twist in the gaps already: their
+   grooves count as rigid here. */
+enum eo_code eo_evaluator_find_hold(struct eo_evaluator *e, const struct eo_design *design, struct eo_error *error)
 {
-  return alignment->pinion_axial == EO_AXIAL_FIXED    ? INFINITY
-         : alignment->pinion_axial == EO_AXIAL_SPRING ? alignment->pinion_axial_stiffness
-                                                      : 0;
+  struct eo_dynamics_parameters parameters;
+  struct eo_dynamics_model model;
+  e->axial_stiffness = 0;
+  if (design->gear_pair.ends == 1 || eo_alignment_axial_stiffness(&design->alignment) == 0)
+    return EO_OK;
+  enum eo_code code = eo_evaluator_parameters(e, design, 1, &parameters, error);
+  for (int member = 0; member < 2 && !code && design->shafts.enabled; member++)
+    if (parameters.groove_torsional_stiffness[member] > 0) {
+      parameters.groove_torsional_stiffness[member] = INFINITY;
+      parameters.groove_torsional_damping[member] = 0;
+    }
+  if (!code)
+    code = eo_dynamics_model_init(&model, &parameters, error);
+  if (!code)
+    e->axial_stiffness = eo_dynamics_model_axial_stiffness(&model);
+  return code;
 }
 
 static bool same_key(const struct eo_end_key *a, const struct eo_end_key *b)
@@ -116,7 +132,7 @@ enum eo_code eo_evaluator_fit_bodies(struct eo_evaluator *e, const struct eo_sha
 void eo_evaluator_bend_bodies(struct eo_evaluator *e, const struct eo_design *design, double force, double factor,
                               struct eo_loaded_end both[2], struct eo_elastic_report *report)
 {
-  struct eo_elastic_case load = {force, factor, axial_stiffness(&design->alignment),
+  struct eo_elastic_case load = {force, factor, e->axial_stiffness,
                                  eo_evaluator_stagger(design, e->pair->grid->positions)};
   eo_elastic_solve(e->bodies, e->contact, e->gaps, &load, both, report);
   both[EO_LEFT].failures += report->failures;
@@ -149,7 +165,7 @@ static void bend_cases(struct eo_evaluator *e, const struct eo_design *design, d
 static bool shares_unevenly(const struct eo_evaluator *e, const struct eo_design *design)
 {
   const struct eo_evaluation *r = &e->result;
-  return r->ends == 2 && axial_stiffness(&design->alignment) > 0 &&
+  return r->ends == 2 && e->axial_stiffness > 0 &&
          !(r->equal_ends && eo_evaluator_stagger(design, e->pair->grid->positions) == 0);
 }
 
@@ -251,7 +267,7 @@ enum eo_code eo_evaluator_solve_contact(struct eo_evaluator *e, const struct eo_
 {
   struct eo_evaluation *r = &e->result;
   const struct eo_contact_grid *grid = e->pair->grid;
-  double stiffness = axial_stiffness(&design->alignment);
+  double stiffness = e->axial_stiffness;
   bool final = !e->bodies && !shares_unevenly(e, design);
   enum eo_code code = load_ends(e, final, error);
   if (code)

@@ -15,10 +15,11 @@ struct eo_evaluator {
     double in_plane, out_of_plane, factor;
     int cases;
     double force[EO_MAX_LOAD_CASES];
-  } known[2];     /* [end]: of what is kept; cases 0: nothing is */
-  bool fresh[2];  /* [end]: to be solved in this run; the other end is as the last run left it */
-  bool rooted[2]; /* [end]: its root stress belongs to what is kept */
-  int threads;    /* 1 or 2 */
+  } known[2];             /* [end]: of what is kept; cases 0: nothing is */
+  bool fresh[2];          /* [end]: to be solved in this run; the other end is as the last run left it */
+  bool rooted[2];         /* [end]: its root stress belongs to what is kept */
+  double axial_stiffness; /* between the ends and one axial position of the pinion, N/m: 0 floating, INFINITY rigid */
+  int threads;            /* 1 or 2 */
   struct eo_loaded_workspace *contact, *second_contact; /* second_...: of the second thread; NULL until asked for */
   struct eo_elastic *bodies;                            /* NULL: rigid */
   struct eo_shafts shafts;                              /* those of the bodies */
@@ -26,6 +27,7 @@ struct eo_evaluator {
   struct eo_loaded_end spare[2];                        /* [end]: for the compliance band */
   struct eo_loaded_end
       *table;         /* [EO_EVALUATOR_TABLE_LOADS] of the table law, one end at a time; NULL until asked for */
+  double *shifted;    /* [positions] scratch of one mesh law */
   double *table_rows; /* [EO_EVALUATOR_TABLE_LOADS][positions] */
   struct eo_root_workspace *root[2]; /* [thread]; NULL until asked for */
   struct eo_root_peak *peaks;        /* [member][teeth][most_cases * 2]; NULL until asked for */
@@ -51,8 +53,13 @@ int eo_evaluator_kept_at(const struct eo_evaluator *e, int end);
 /* Whether the right end's loads are the left one's. */
 bool eo_evaluator_copies_end(const struct eo_evaluator *e, const struct eo_design *design);
 
+/* Parameters of the dynamic model, mesh damping of the given mean mesh stiffness, N/m. */
+enum eo_code eo_evaluator_parameters(const struct eo_evaluator *e, const struct eo_design *design, double stiffness,
+                                     struct eo_dynamics_parameters *parameters, struct eo_error *error);
+
 /* The contact half, in the order in which eo_evaluator_run() calls it. factor: of the compliance. */
 enum eo_code eo_evaluator_fit_bodies(struct eo_evaluator *e, const struct eo_shafts *shafts, struct eo_error *error);
+enum eo_code eo_evaluator_find_hold(struct eo_evaluator *e, const struct eo_design *design, struct eo_error *error);
 void eo_evaluator_set_keys(struct eo_evaluator *e, const struct eo_design *design, const struct eo_scenario *scenario);
 enum eo_code eo_evaluator_solve_contact(struct eo_evaluator *e, const struct eo_design *design, double factor,
                                         struct eo_error *error);

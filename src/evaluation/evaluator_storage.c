@@ -48,7 +48,8 @@ static enum eo_code init_storage(struct eo_evaluator *e, struct eo_error *error)
   r->objective = calloc(most, sizeof *r->objective);
   e->law = calloc(most, sizeof *e->law);
   e->problem = calloc(most, sizeof *e->problem);
-  if (!r->load_case || !r->objective || !e->law || !e->problem)
+  e->shifted = calloc((size_t)grid->positions, sizeof *e->shifted);
+  if (!r->load_case || !r->objective || !e->law || !e->problem || !e->shifted)
     return eo_error_memory(error);
   for (int k = 0; k < e->most_cases && !code; k++) {
     r->load_case[k].transmission = calloc((size_t)grid->positions, sizeof(double));
@@ -112,6 +113,7 @@ void eo_evaluator_free(struct eo_evaluator *e)
     eo_loaded_end_done(&e->table[i]);
   free(e->table);
   free(e->table_rows);
+  free(e->shifted);
   eo_loaded_workspace_free(e->contact);
   eo_loaded_workspace_free(e->second_contact);
   for (int thread = 0; thread < 2; thread++)

@@ -11,6 +11,7 @@
 struct explicit_parameters {
   struct eo_dynamics_parameters of;
   double half_backlash, float_position;
+  int fixed;
 };
 
 struct input {
@@ -64,6 +65,16 @@ static const struct eo_field parameters[] = {
     SI_OR(groove_axial_damping[1], "cgz", 0, 1e12, 0, "N s/m"),
     SI_OR(groove_torsional_damping[0], "ct_p", 0, 1e12, 0, "N m s/rad"),
     SI_OR(groove_torsional_damping[1], "ct_g", 0, 1e12, 0, "N m s/rad"),
+    SI_OR(pinion_axial_stiffness, "ka", 0, 1e15, 0,
+          "from the pinion's mean axial motion to the ground, N/m; 0: floating"),
+    SI_OR(pinion_axial_damping, "ca", 0, 1e12, 0, "N s/m"),
+    EO_FLAG(struct explicit_parameters, fixed, "axially_fixed", 0, "ka is infinite"),
+    SI_OR(machine_inertia[0], "Jd", 0, 1e12, 0, "inertia of the driver, kg m2; 0: none"),
+    SI_OR(machine_inertia[1], "Jl", 0, 1e12, 0, "of the load, kg m2"),
+    SI_OR(machine_stiffness[0], "kt_d", 0, 1e20, 0, "torsion between driver and pinion, N m/rad"),
+    SI_OR(machine_stiffness[1], "kt_l", 0, 1e20, 0, "between gear and load, N m/rad"),
+    SI_OR(machine_damping[0], "ct_d", 0, 1e12, 0, "N m s/rad"),
+    SI_OR(machine_damping[1], "ct_l", 0, 1e12, 0, "N m s/rad"),
     SI_OR(mesh_damping, "cm", 0, 1e12, 0, "mesh damping of one end along the normal, N s/m"),
     EO_NUMBER(struct explicit_parameters, half_backlash, "tau", NULL, 1e-9, 1, 5e-5, "half the normal backlash, m"),
     EO_NUMBER(struct explicit_parameters, float_position, "eps_z", NULL, -1, 1, 0,
@@ -90,6 +101,9 @@ static const struct eo_field input[] = {
     EO_OPTIONAL(struct input, design.gear_pair, has_pair, "gear_pair", &eo_gear_pair_table, "params are needed",
                 "as in a design document: the parameters are derived from it"),
     EO_OBJECT(struct input, design.material, "material", &eo_material_table, "with gear_pair, as in a design document"),
+    EO_OBJECT(
+        struct input, design.alignment, "alignment", &eo_alignment_table,
+        "with gear_pair, as in a design document: how the pinion is held along its axis; the laws contain the rest"),
     EO_OBJECT(struct input, design.supports, "supports", &eo_supports_table,
               "with gear_pair, as in a design document; ends differ when law_right is given"),
     EO_OPTIONAL(struct input, parameters, has_parameters, "params", &parameters_table, "derived from gear_pair",
@@ -132,7 +146,9 @@ struct output {
   enum eo_vibration_outcome outcome;
   int two;
   struct spectrum left, right;
-  double stiffness[2], largest_multiplier;
+  int repeat, states;
+  struct eo_vibration_state state[EO_MAX_STATES];
+  double stiffness[2], multiplier, unstable;
   struct eo_series frequency, damping_ratio;
   struct eo_series freedom_rms;
 };
@@ -168,8 +184,20 @@ static const struct eo_table spectrum_table = EO_TABLE("harmonics", struct spect
 
 static const char *const outcomes[] = {"converged", "contact_lost", "not_converged", NULL};
 
+static const struct eo_field state_fields[] = {
+    EO_INTEGER(struct eo_vibration_state, repeat, "mesh_periods", 1, 4, 1, "after which the motion repeats"),
+    EO_OUT(struct eo_vibration_state, rms[EO_READING_NORMAL], "normal", &eo_unit_m_per_s2, "RMS of the pair"),
+    EO_OUT(struct eo_vibration_state, rms[EO_READING_TRANSVERSE], "transverse", &eo_unit_m_per_s2, "likewise"),
+    EO_OUT(struct eo_vibration_state, rms[EO_READING_ROTATIONAL], "rotational", &eo_unit_m_per_s2, "likewise"),
+    EO_OUT(struct eo_vibration_state, contact_loss, "contact_loss", NULL, "share of the cycle, worse end"),
+    EO_NUMBER_DERIVED(struct eo_vibration_state, multiplier, "largest_multiplier", NULL, -INFINITY, INFINITY,
+                      "not computed", "size of the largest Floquet multiplier"),
+};
+static const struct eo_table state_table = EO_TABLE("a stable state", struct eo_vibration_state, state_fields);
+
 static const struct eo_field output[] = {
-    EO_CHOICE(struct output, outcome, "outcome", outcomes, 0, "numbers of a case that did not converge are 0"),
+    EO_CHOICE(struct output, outcome, "outcome", outcomes, 0,
+              "not_converged: no stable periodic state was found, and its numbers are 0"),
     EO_OBJECT(struct output, r, "rms_m_per_s2", &readings_table, "accelerations over a mesh period"),
     EO_OBJECT(struct output, r, "rms_pair_m_per_s2", &pair_readings_table, "of the pair"),
     EO_OUT_PAIR(struct output, r.deflection_mean, "deflection_mean_um", &eo_unit_um,
@@ -184,16 +212,26 @@ static const struct eo_field output[] = {
     EO_OUT_PAIR(struct output, r.bearing_force_max[0], "pinion_bearing_force_max_N", &eo_unit_N,
                 "[left, right] radial"),
     EO_OUT_PAIR(struct output, r.bearing_force_max[1], "gear_bearing_force_max_N", &eo_unit_N, "[left, right] radial"),
-    EO_OUT_SERIES(struct output, freedom_rms, "freedom_rms", NULL,
-                  "accelerations of y, z (m/s2) and theta (rad/s2): pinion left, right, gear left, right"),
+    EO_OUT_SERIES(
+        struct output, freedom_rms, "freedom_rms", NULL,
+        "accelerations of y, z (m/s2) and theta (rad/s2): pinion left, right, gear left, right; then theta of "
+        "driver and load where there are any"),
     EO_OBJECT(struct output, left, "left", &spectrum_table, "harmonics of the left end"),
     EO_OPTIONAL(struct output, right, two, "right", &spectrum_table, "the pair has one end", "of the right end"),
     EO_OUT(struct output, r.residual, "residual", NULL,
            "of the force balance over the load; of time integration: change over the last period"),
     EO_OUT(struct output, r.power_supplied, "power_supplied_W", NULL, "by the varying mesh to the vibration"),
     EO_OUT(struct output, r.power_dissipated, "power_dissipated_W", NULL, "in mesh, bearings and groove"),
-    EO_NUMBER_DERIVED(struct output, largest_multiplier, "largest_multiplier", NULL, -INFINITY, INFINITY,
-                      "not computed", "size of the largest Floquet multiplier: stable below 1; harmonic balance only"),
+    EO_INTEGER(struct output, repeat, "mesh_periods", 0, 4, 1, "after which the motion repeats"),
+    EO_NUMBER_DERIVED(struct output, multiplier, "largest_multiplier", NULL, -INFINITY, INFINITY, "not computed",
+                      "size of the largest Floquet multiplier: stable below 1"),
+    EO_NUMBER_DERIVED(struct output, unstable, "unstable_multiplier", NULL, -INFINITY, INFINITY, "there was none",
+                      "of a periodic state that was left because a disturbance of it grows"),
+    EO_LIST(struct output, state, states, "stable_states", &state_table, 0, EO_MAX_STATES,
+            "found where contact is lost, the loudest first: the numbers above are its own"),
+    EO_OUT(struct output, r.pinion_thrust_mean, "pinion_thrust_mean_N", &eo_unit_N,
+           "of the pinion's axial support, + to the right"),
+    EO_OUT(struct output, r.pinion_thrust_max, "pinion_thrust_max_N", &eo_unit_N, "largest size of it"),
     EO_OUT_PAIR(struct output, stiffness, "mean_stiffness_N_per_um", &eo_unit_N_per_um,
                 "[left, right] dF/dX under the load, mean over the cycle"),
     EO_OUT_SERIES(struct output, frequency, "eigenfrequencies_Hz", &eo_unit_Hz,
@@ -248,6 +286,8 @@ static enum eo_code make_model(struct problem *p, const struct input *given, str
   enum eo_code code = EO_OK;
   if (given->has_parameters) {
     *e = given->parameters;
+    if (e->fixed)
+      e->of.pinion_axial_stiffness = INFINITY;
     return make_laws(p, given, eo_dynamics_mesh_load(&e->of, given->torque), 2 * e->half_backlash, found->stiffness,
                      error);
   }
@@ -262,7 +302,8 @@ static enum eo_code make_model(struct problem *p, const struct input *given, str
   double mean = ends == 2 ? (found->stiffness[0] + found->stiffness[1]) / 2 : found->stiffness[0];
   return code ? code
               : eo_dynamics_parameters_init(&e->of, &p->geometry, &p->design.gear_pair, &p->design.material,
-                                            &p->design.supports, given->has_right_law, mean, error);
+                                            eo_alignment_axial_stiffness(&p->design.alignment), &p->design.supports,
+                                            given->has_right_law, mean, error);
 }
 
 static void make_load(struct problem *p, const struct input *given)
@@ -315,26 +356,24 @@ static enum eo_code read_modes(struct output *found, const struct eo_dynamics_mo
 static enum eo_code solve(struct problem *p, const struct input *given, struct eo_vibration_solver *solver,
                           struct output *found, struct eo_error *error)
 {
-  double complex multiplier[2 * EO_MAX_COORDINATES];
   bool integrate = given->solver == EO_SOLVER_TIME_INTEGRATION;
-  found->largest_multiplier = NAN;
   enum eo_code code = eo_vibration_set_model(solver, &found->parameters.of, error);
   if (!code)
-    code = integrate ? eo_vibration_integrate(solver, &p->load, NULL, &found->r, NULL, error)
-                     : eo_vibration_solve(solver, &p->load, EO_START_COLD, &found->r, error);
+    code = integrate ? eo_vibration_settle_integrated(solver, &p->load, &found->r, error)
+                     : eo_vibration_settle(solver, &p->load, &found->r, error);
   if (code)
     return code;
   found->outcome = found->r.outcome;
   found->two = found->r.ends == 2;
-  if (!integrate && found->outcome != EO_VIBRATION_NOT_CONVERGED) {
-    code = eo_vibration_stability(solver, &p->load, multiplier, error);
-    found->largest_multiplier = code ? NAN : cabs(multiplier[0]);
-    code = code == EO_ERROR_NUMERIC ? EO_OK : code; /* too slow to judge */
-  }
+  found->repeat = found->r.repeat;
+  found->multiplier = found->r.multiplier;
+  found->unstable = found->r.unstable > 0 ? found->r.unstable : NAN;
+  found->states = found->r.states;
+  memcpy(found->state, found->r.state, sizeof found->state);
   for (int end = 0; end < found->r.ends && !code; end++)
     code = read_spectrum(end ? &found->right : &found->left, solver, end, error);
   if (!code)
-    code = eo_stage_copy(&found->freedom_rms, 6 * found->r.ends, found->r.freedom_rms, error);
+    code = eo_stage_copy(&found->freedom_rms, eo_vibration_model(solver)->freedoms, found->r.freedom_rms, error);
   return code ? code : read_modes(found, eo_vibration_model(solver), error);
 }
 
@@ -353,6 +392,10 @@ static enum eo_code run(const void *in, void *out, struct eo_error *error)
   if (!code) {
     make_load(p, given);
     code = solve(p, given, solver, found, error);
+  }
+  if (isinf(found->parameters.of.pinion_axial_stiffness)) { /* the output says it with the flag */
+    found->parameters.fixed = 1;
+    found->parameters.of.pinion_axial_stiffness = 0;
   }
   eo_vibration_free(solver);
   for (int end = 0; p && end < 2; end++)

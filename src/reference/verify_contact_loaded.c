@@ -108,6 +108,7 @@ static enum eo_code check_synthetic(void *context, struct eo_case *item, struct 
       phase[i] = 1e-3 * eo_case_number(eo_case_at(rows, i), "c");
     design->load_case[0].torque = eo_case_number(item, "T");
     design->alignment.pinion_axial = eo_case_flag_or(item, "fixed", false) ? EO_AXIAL_FIXED : EO_AXIAL_FLOATING;
+    eo_supports_make_rigid(&design->supports); /* fixed: one Z for both ends */
     eo_case_misalignment(eo_case_need(item, "mis"), &design->alignment);
     eo_contact_case_modify(s->c, item, design);
     if (rows && n < 1)

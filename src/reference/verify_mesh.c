@@ -132,6 +132,8 @@ void eo_verify_read_parameters(struct eo_case *params, struct eo_dynamics_parame
   enum { PAIRS = sizeof pair / sizeof *pair, COUPLINGS = 2 };
   *out = (struct eo_dynamics_parameters){.ends = eo_case_whole_or(params, "ends", 1, 2, 2),
                                          .base_helix_angle = eo_case_number(params, "beta"),
+                                         .pinion_axial_stiffness = eo_case_number_or(params, "ka", 0),
+                                         .pinion_axial_damping = eo_case_number_or(params, "ca", 0),
                                          .mesh_damping = eo_case_number(params, "cm")};
   double *const member[PAIRS] = {out->base_radius,
                                  out->mass,

@@ -47,7 +47,7 @@ near "power balance, W" /power_dissipated_W "$folder/expected" "" 1e-6 relative
 cp "$folder/out" "$folder/first"
 stage dynamics "{$parameters,$fourier,$running,\"harmonics\":40,\"solver\":\"time_integration\"}"
 near "the same by time integration" /rms_m_per_s2/normal "$folder/first" /rms_m_per_s2/normal 1e-4 relative
-prints '"largest_multiplier": null'
+near "the state of time integration has the same multiplier" /largest_multiplier "$reference" /dynamics/0/expected/max_floquet 1e-3 relative
 
 stage dynamics "{$parameters,$fourier,$running,\"harmonics\":96,\"impact\":{\"mode\":\"paper\",\"force_N\":[300,300],\"duration\":[0.1,0.1]}}"
 near "RMS with impacts" /rms_m_per_s2/normal "$reference" /dynamics/1/expected/rms_n 1e-4 relative

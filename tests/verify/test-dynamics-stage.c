@@ -163,7 +163,7 @@ static void default_parameters(const json_t *evaluation, const char *name)
   const json_t *expected = json_object_get(json_object_get(evaluation, "dynamics_params"), name);
   const struct eo_material steel = {206e9, 0.3, 7850};
   pair_of(given, &g, &pair);
-  int failed = eo_dynamics_parameters_init(&p, &g, &pair, &steel, &supports, false, 20e9 * pair.face_width, &error);
+  int failed = eo_dynamics_parameters_init(&p, &g, &pair, &steel, 0, &supports, false, 20e9 * pair.face_width, &error);
   ok(!failed, "%s parameters %s", name, error.text);
   const struct {
     const char *key;
@@ -202,7 +202,7 @@ static void torsional_coupling(const json_t *evaluation)
   const struct eo_supports supports = default_supports();
   const struct eo_material steel = {206e9, 0.3, 7850};
   pair_of(json_object_get(json_object_get(evaluation, "pairs"), "P0"), &g, &pair);
-  eo_dynamics_parameters_init(&p, &g, &pair, &steel, &supports, true, 1e9, NULL);
+  eo_dynamics_parameters_init(&p, &g, &pair, &steel, 0, &supports, true, 1e9, NULL);
   near(p.groove_torsional_stiffness[0], 12487038.99751322, 1e-12, "kt_p");
   near(p.groove_torsional_stiffness[1], 841121351.5381075, 1e-12, "kt_g");
   near(p.groove_torsional_damping[0], 0.04 * sqrt(12487038.99751322 * 0.008133856745044276 / 2), 1e-12, "ct_p");

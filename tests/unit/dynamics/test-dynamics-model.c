@@ -1,6 +1,9 @@
 /* Properties of the equations of motion: symmetry, zero modes, loads on them, reciprocity, the printed signs. */
 #include "support/dynamics-fixture.h"
 #include "support/tap.h"
+
+#include <string.h>
+
 #include "dynamics/condensation.h"
 #include "numerics/dense.h"
 
@@ -81,7 +84,8 @@ static void zero_modes(struct eo_dynamics_parameters p, int expected, const char
   struct eo_error error = {0};
   int failed = eo_dynamics_model_init(&m, &p, &error);
   ok(!failed, "%s: the model is made %s", what, error.text);
-  ok(m.zero_modes == expected && m.oscillator.n + m.zero_modes == m.freedoms, "%s: %d zero modes", what, m.zero_modes);
+  ok(m.zero_modes == expected && m.oscillator.n + m.zero_modes + m.constraints == m.freedoms, "%s: %d zero modes", what,
+     m.zero_modes);
   double found = disturbance(&m);
   ok(found < 1e-14, "%s: they stretch nothing (%g)", what, found);
   eo_dynamics_model_load(&m, 828, EO_IMPACT_PAPER);
@@ -214,8 +218,167 @@ static void modes_and_signs(void)
   ok(failed, "%s", error.text);
 }
 
+/* ---- pinions held along their axis ---- */
+
+static struct eo_dynamics_parameters held(double stiffness, bool coupled)
+{
+  struct eo_dynamics_parameters p = coupled ? lopsided(1.2e7, 8.4e8) : lopsided(0, 0);
+  p.pinion_axial_stiffness = stiffness;
+  return p;
+}
+
+/* Eigenfrequencies of M q" + K q = 0 from matrices typed row by row, Hz; those of rigid motions are 0. */
+static void typed_frequencies(const struct eo_dynamics_parameters *p, double mesh, double frequency[12])
+{
+  double k[144] = {0}, square[12], mass[12], c = cos(p->base_helix_angle), s = sin(p->base_helix_angle);
+  for (int i = 0; i < 12; i++)
+    mass[i] = i % 3 == 2 ? p->inertia[i / 6] : p->mass[i / 6];
+  for (int end = 0; end < 2; end++) {
+    double hand = end ? -1 : 1, g[12] = {0};
+    int a = 3 * end, b = 6 + 3 * end;
+    g[a] = c, g[a + 1] = hand * s, g[a + 2] = c * p->base_radius[0];
+    g[b] = -c, g[b + 1] = -hand * s, g[b + 2] = -c * p->base_radius[1];
+    for (int i = 0; i < 144; i++)
+      k[i] += mesh * g[i / 12] * g[i % 12];
+    k[a * 12 + a] += p->bearing_stiffness[0];
+    k[b * 12 + b] += p->bearing_stiffness[1];
+    k[(b + 1) * 13] += p->gear_axial_stiffness[end];
+  }
+  for (int m = 0; m < 2; m++)
+    for (int motion = 1; motion < 3; motion++) {
+      double spring = motion == 1 ? p->groove_axial_stiffness[m] : p->groove_torsional_stiffness[m];
+      int i = 6 * m + motion, j = i + 3;
+      k[i * 13] += spring;
+      k[j * 13] += spring;
+      k[i * 12 + j] -= spring;
+      k[j * 12 + i] -= spring;
+    }
+  for (int i = 1; i <= 4; i += 3) /* k_a (z_p1 + z_p2)/2 on each half: a quarter of k_a in each place */
+    for (int j = 1; j <= 4; j += 3)
+      k[i * 12 + j] += p->pinion_axial_stiffness / 4;
+  for (int i = 0; i < 144; i++)
+    k[i] /= sqrt(mass[i / 12] * mass[i % 12]);
+  eo_dense_symmetric_eigen(12, k, square);
+  for (int i = 0; i < 12; i++)
+    frequency[i] = sqrt(fmax(square[i], 0)) / (2 * M_PI);
+}
+
+static void held_frequencies(bool coupled)
+{
+  struct eo_dynamics_model m;
+  struct eo_dynamics_modes modes;
+  double typed[12], worst = 0;
+  const struct eo_dynamics_parameters p = held(3e8, coupled);
+  eo_dynamics_model_init(&m, &p, NULL);
+  eo_dynamics_model_modes(&m, (double[]){1.1e9, 1.1e9}, &modes, NULL);
+  typed_frequencies(&p, 1.1e9, typed);
+  for (int i = 0; i < modes.n; i++)
+    worst = fmax(worst, fabs(modes.frequency[i] / typed[12 - modes.n + i] - 1));
+  ok(modes.n == (coupled ? 11 : 10) && worst < 1e-9, "held%s: %d frequencies as of the typed equations (%.1g)",
+     coupled ? ", coupled" : "", modes.n, worst);
+}
+
+/* With next to no mesh the pinion swings along its axis as one body: k_a / (2 m_p). */
+static void axial_swing(void)
+{
+  struct eo_dynamics_model m;
+  struct eo_dynamics_modes modes;
+  const struct eo_dynamics_parameters p = held(2.5e8, false);
+  double expected = sqrt(2.5e8 / (2 * p.mass[0])) / (2 * M_PI), nearest = INFINITY;
+  eo_dynamics_model_init(&m, &p, NULL);
+  eo_dynamics_model_modes(&m, (double[]){1, 1}, &modes, NULL);
+  for (int i = 0; i < modes.n; i++)
+    if (fabs(modes.frequency[i] - expected) < fabs(nearest - expected))
+      nearest = modes.frequency[i];
+  near(nearest, expected, 1e-7, "axial swing of a held pinion, sqrt(k_a / (2 m_p))");
+}
+
+/* Springs in series: D (left end more than the mean) = - s (X_L - X_R), k = 4 s sin2(beta_b). */
+static void held_at_rest(void)
+{
+  struct eo_dynamics_model m;
+  struct eo_dynamics_parameters p = held(3e8, true);
+  p.gear_axial_stiffness[1] = p.gear_axial_stiffness[0];
+  double s2 = pow(sin(p.base_helix_angle), 2), c2 = 1 - s2;
+  double give = 2 * s2 / 3e8 + 2 * s2 / (p.gear_axial_stiffness[0] + p.gear_axial_stiffness[1]) +
+                c2 * (1 / p.bearing_stiffness[0] + 1 / p.bearing_stiffness[1]);
+  for (int member = 0; member < 2; member++)
+    give += c2 * pow(p.base_radius[member], 2) / (2 * p.groove_torsional_stiffness[member]);
+  eo_dynamics_model_init(&m, &p, NULL);
+  near(eo_dynamics_model_axial_stiffness(&m), 2 * s2 / give, 1e-9, "the ends' hold at rest: all springs in series");
+  p.bearing_stiffness[0] = p.bearing_stiffness[1] = p.gear_axial_stiffness[0] = p.gear_axial_stiffness[1] = INFINITY;
+  p.groove_torsional_stiffness[0] = p.groove_torsional_stiffness[1] = INFINITY;
+  for (int i = 0; i < 2; i++)
+    p.bearing_damping[i] = p.gear_axial_damping[i] = p.groove_torsional_damping[i] = 0;
+  eo_dynamics_model_init(&m, &p, NULL);
+  near(eo_dynamics_model_axial_stiffness(&m), 3e8, 1e-9, "with all else rigid it is the pinion's own");
+  p.pinion_axial_stiffness = INFINITY;
+  eo_dynamics_model_init(&m, &p, NULL);
+  ok(isinf(eo_dynamics_model_axial_stiffness(&m)), "all rigid: both ends one deflection");
+  p = held(3e8, false);
+  eo_dynamics_model_init(&m, &p, NULL);
+  ok(eo_dynamics_model_axial_stiffness(&m) == 0, "ends not coupled in torsion carry their own torque");
+  p = held(0, true);
+  eo_dynamics_model_init(&m, &p, NULL);
+  ok(eo_dynamics_model_axial_stiffness(&m) == 0, "a floating pinion's ends carry the same");
+}
+
+/* ---- driver and load ---- */
+
+/* Everything rigid but the meshes and the machines' shafts: four inertias in a row, the gear's reduced by nothing. */
+static void driver_and_load(void)
+{
+  struct eo_dynamics_model m;
+  struct eo_dynamics_modes modes;
+  struct eo_dynamics_parameters p = lopsided(INFINITY, INFINITY);
+  double c = cos(p.base_helix_angle), mesh = 1.1e9, value[4];
+  p.groove_torsional_damping[0] = p.groove_torsional_damping[1] = 0;
+  for (int i = 0; i < 2; i++) {
+    p.bearing_stiffness[i] = p.gear_axial_stiffness[i] = INFINITY;
+    p.bearing_damping[i] = p.gear_axial_damping[i] = 0;
+    p.groove_axial_stiffness[i] = 1e14; /* apart from it, the halves of the pinion */
+  }
+  p.pinion_axial_stiffness = INFINITY;
+  p.machine_inertia[0] = 0.12, p.machine_inertia[1] = 3.1;
+  p.machine_stiffness[0] = 2e5, p.machine_stiffness[1] = 6e5;
+  int failed = eo_dynamics_model_init(&m, &p, NULL);
+  ok(!failed && m.freedoms == 14 && m.zero_modes == 1, "driver and load: %d zero mode, of %d freedoms", m.zero_modes,
+     m.freedoms);
+  eo_dynamics_model_load(&m, 828, EO_IMPACT_NONE);
+  ok(m.zero_mode_load < 1e-15, "the torques do no work on it");
+  eo_dynamics_model_modes(&m, (double[]){mesh, mesh}, &modes, NULL);
+  const double inertia[4] = {0.12, 2 * p.inertia[0], 2 * p.inertia[1], 3.1};
+  const double direction[3][4] = {{1, -1, 0, 0}, {0, c * p.base_radius[0], -c * p.base_radius[1], 0}, {0, 0, 1, -1}};
+  const double spring[3] = {2e5, 2 * mesh, 6e5};
+  double k[16] = {0};
+  for (int e = 0; e < 3; e++)
+    for (int i = 0; i < 16; i++)
+      k[i] += spring[e] * direction[e][i / 4] * direction[e][i % 4] / sqrt(inertia[i / 4] * inertia[i % 4]);
+  eo_dense_symmetric_eigen(4, k, value);
+  int found = 0;
+  for (int i = 1; i < 4; i++)
+    for (int j = 0; j < modes.n; j++)
+      found += fabs(modes.frequency[j] * 2 * M_PI / sqrt(value[i]) - 1) < 1e-6;
+  ok(found == 3, "the frequencies of four inertias on three springs are among them (%d)", found);
+  near(modes.frequency[0] * 2 * M_PI, sqrt(value[1]), 1e-7, "the lowest is");
+  p = paper_pair();
+  p.machine_inertia[0] = 0.12;
+  struct eo_error error = {0};
+  failed = eo_dynamics_model_init(&m, &p, &error) == EO_ERROR_INPUT;
+  ok(failed && !strcmp(error.pointer, "/supports/driver_stiffness_Nm_per_rad"), "%s", error.text);
+}
+
 int main(void)
 {
+  zero_modes(held(2e8, false), 2, "held, no coupling");
+  zero_modes(held(2e8, true), 1, "held, both coupled");
+  zero_modes(held(INFINITY, false), 2, "fixed, no coupling");
+  zero_modes(held(INFINITY, true), 1, "fixed, both coupled");
+  held_frequencies(false);
+  held_frequencies(true);
+  axial_swing();
+  held_at_rest();
+  driver_and_load();
   matrices();
   zero_modes(paper_pair(), 3, "no coupling");
   zero_modes(lopsided(1.2e7, 0), 2, "pinion coupled");

@@ -345,8 +345,105 @@ static void trace(void)
   eo_law_done(&law);
 }
 
+/* ---- held pinions ---- */
+
+static double held_rms(double stiffness, struct eo_vibration *r)
+{
+  struct eo_dynamics_parameters p = paper_pair();
+  struct eo_law left = {0}, right = {0};
+  p.groove_torsional_stiffness[0] = 1.2e7;
+  p.groove_torsional_stiffness[1] = 8.4e8;
+  p.pinion_axial_stiffness = stiffness;
+  stiffness_law(&left, 1);
+  stiffness_law(&right, 0.5);
+  struct eo_vibration_solver *solver = solver_for(&p, HARMONICS, 0);
+  struct eo_vibration_case load = paper_case(&left, &right);
+  load.phase_right = 0.2;
+  eo_vibration_solve(solver, &load, EO_START_COLD, r, NULL);
+  struct eo_vibration t;
+  eo_vibration_integrate(solver, &load, NULL, &t, NULL, NULL);
+  near(r->rms_pair[0], t.rms_pair[0], 1e-4, "held: balance against integration");
+  near(r->pinion_thrust_max, t.pinion_thrust_max, 1e-3, "held: thrust by balance and integration");
+  eo_vibration_free(solver);
+  eo_law_done(&left);
+  eo_law_done(&right);
+  return r->rms_pair[0];
+}
+
+static void held_limits(void)
+{
+  struct eo_vibration floating, soft, middle, stiff, fixed;
+  double f = held_rms(0, &floating), s = held_rms(1e-3, &soft), m = held_rms(3e8, &middle), h = held_rms(1e16, &stiff),
+         x = held_rms(INFINITY, &fixed);
+  near(s, f, 1e-9, "k_a towards 0 is floating");
+  near(h, x, 1e-6, "k_a towards infinity is fixed");
+  near(stiff.pinion_thrust_mean, fixed.pinion_thrust_mean, 1e-6, "and so is the thrust");
+  ok(fabs(m / f - 1) > 1e-2 && fabs(m / x - 1) > 1e-2, "between: %.3f, %.3f, %.3f m/s2", f, m, x);
+  ok(floating.pinion_thrust_max == 0, "a floating pinion has no thrust");
+}
+
+/* ---- stable states ---- */
+
+/* Where the balance finds a state that is not stable: what motion settles to, integrated here once more from elsewhere.
+ */
+static void doubled(void)
+{
+  const struct eo_dynamics_parameters p = paper_pair();
+  struct eo_law law = {0};
+  struct eo_vibration r, balance;
+  stiffness_law(&law, 1);
+  struct eo_vibration_solver *solver = solver_for(&p, 24, 0);
+  struct eo_vibration_case load = paper_case(&law, &law);
+  load.torque = 12.8;
+  load.speed = 4882.8125 * M_PI / 30;
+  load.impact = EO_IMPACT_PAPER;
+  load.pulse[0] = load.pulse[1] = (struct eo_pulse){EO_PULSE_HALF_SINE, 300, 0, 0.1};
+  eo_vibration_solve(solver, &load, EO_START_COLD, &balance, NULL);
+  int failed = eo_vibration_settle(solver, &load, &r, NULL);
+  ok(!failed && balance.outcome == EO_VIBRATION_CONTACT_LOST && r.unstable > 1.1,
+     "the state of the balance is not stable (%.3f)", r.unstable);
+  ok(r.outcome == EO_VIBRATION_CONTACT_LOST && r.repeat > 1 && r.states >= 1, "motion repeats after %d periods",
+     r.repeat);
+  ok(fabs(r.rms_pair[0] / balance.rms_pair[0] - 1) > 1e-3 && r.state[0].rms[0] == r.rms_pair[0],
+     "at %.3f m/s2 and not %.3f", r.rms_pair[0], balance.rms_pair[0]);
+  const struct eo_integration_options options = {1e-9, 1e-6, 1000, 2048, 4};
+  struct eo_vibration again;
+  eo_vibration_integrate(solver, &load, &options, &again, NULL, NULL);
+  near(r.rms_pair[0], again.rms_pair[0], 1e-3, "as by a finer integration from the static start");
+  ok(again.repeat > 1, "which repeats after %d", again.repeat);
+  eo_vibration_free(solver);
+  eo_law_done(&law);
+}
+
+/* Teeth in contact: the quick multiplier against the full one, and nothing else changes. */
+static void settled_in_contact(void)
+{
+  struct eo_dynamics_parameters p = paper_pair();
+  struct eo_law law = {0};
+  struct eo_vibration r, plain;
+  double complex multiplier[2 * EO_MAX_COORDINATES];
+  scale_damping(&p, 0.2);
+  stiffness_law(&law, 3);
+  struct eo_vibration_solver *solver = solver_for(&p, 24, 0);
+  for (int i = 0; i < 3; i++) {
+    struct eo_vibration_case load = paper_case(&law, &law);
+    load.speed = (i == 0 ? 700 : i == 1 ? 2300 : 6000) * M_PI / 30;
+    eo_vibration_settle(solver, &load, &r, NULL);
+    eo_vibration_solve(solver, &load, EO_START_COLD, &plain, NULL);
+    eo_vibration_stability(solver, &load, multiplier, NULL);
+    ok(plain.outcome == EO_VIBRATION_CONVERGED && r.rms_pair[0] == plain.rms_pair[0] && r.periods == 0,
+       "in contact: the answer of the balance, no integration");
+    near(r.multiplier, cabs(multiplier[0]), 1e-4, "multipliers by kicks and by Runge-Kutta");
+  }
+  eo_vibration_free(solver);
+  eo_law_done(&law);
+}
+
 int main(void)
 {
+  held_limits();
+  doubled();
+  settled_in_contact();
   energy();
   power_in_contact();
   contact_loss(false);

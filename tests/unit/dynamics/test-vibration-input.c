@@ -27,7 +27,7 @@ static void parameters(void)
       {offsetof(struct eo_dynamics_parameters, bearing_stiffness[1]), -1e9,
        "/supports/gear_bearing_stiffness_N_per_um"},
       {offsetof(struct eo_dynamics_parameters, bearing_damping[1]), -1, "/supports/bearing_damping_ratio"},
-      {offsetof(struct eo_dynamics_parameters, gear_axial_stiffness[1]), INFINITY,
+      {offsetof(struct eo_dynamics_parameters, gear_axial_stiffness[1]), NAN,
        "/supports/gear_axial_stiffness_right_N_per_um"},
       {offsetof(struct eo_dynamics_parameters, groove_axial_stiffness[0]), 0,
        "/supports/pinion_groove_axial_stiffness_N_per_um"},

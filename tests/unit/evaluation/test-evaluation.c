@@ -394,14 +394,26 @@ static void test_axial(void)
   const struct eo_evaluation *r = run(&design, NULL, 0);
   ok(fabs(r->load_case[1].end[0].loaded.load[0] / r->load_case[1].force - 1) > 0.01 && !r->objective[1].failed,
      "a fixed pinion shares unevenly");
+  double share = r->load_case[1].end[0].loaded.load[0] / r->load_case[1].force;
+  const struct eo_supports supports = design.supports;
+  eo_supports_make_rigid(&design.supports);
+  r = run(&design, NULL, 0);
+  ok(fabs(r->load_case[1].end[0].loaded.load[0] / r->load_case[1].force - 1) > 1.5 * fabs(share - 1),
+     "the more so the less bearings and grooves give");
+  ok(r->load_case[1].end[0].loaded.approach[3] == r->load_case[1].end[1].loaded.approach[3] ||
+         fabs(r->load_case[1].end[0].loaded.approach[3] - r->load_case[1].end[1].loaded.approach[3]) < 1e-12,
+     "rigid ones make one approach of both ends");
   design.alignment.shaft_angle_in_plane = 1.7e-3;
+  design.resolution.mesh_law = EO_LAW_SECANT;
   r = run(&design, NULL, 0);
   struct record record = record_of(r);
   ok(fmin(r->load_case[1].end[0].loaded.load[0], r->load_case[1].end[1].loaded.load[0]) == 0,
-     "and bears on one end only under a large shaft error");
+     "and it bears on one end only under a large shaft error");
   ok(r->objective[1].failed && r->load_case[1].vibration.outcome == EO_VIBRATION_NOT_CONVERGED,
-     "which has no vibration about its load");
+     "which has no secant vibration about its load");
   ok(finite_record(&record), "and no number that is none");
+  design.supports = supports;
+  design.resolution.mesh_law = EO_LAW_TANGENT;
   design.alignment.shaft_angle_in_plane = 0;
   design.alignment.stagger = 0.5;
   r = run(&design, NULL, 0);
@@ -410,6 +422,53 @@ static void test_axial(void)
   struct record twice = record_of(run(&design, NULL, 0));
   ok(r->load_case[1].end[0].loaded.load[3] != r->load_case[1].force && same(&stagger, &twice),
      "equal ends half a pitch apart share unevenly too");
+}
+
+/* The loads of the ends at rest are those of the vibration at a crawl, mean and least and most: one set of springs. */
+static void test_held_share(void)
+{
+  static const enum eo_axial how[2] = {EO_AXIAL_SPRING, EO_AXIAL_FIXED};
+  for (int i = 0; i < 2; i++) {
+    struct eo_design design = design_of("paper-case-a");
+    design.alignment.pinion_axial = how[i];
+    design.alignment.pinion_axial_stiffness = 1.5e8;
+    design.alignment.shaft_angle_in_plane = 3e-4;
+    for (int k = 0; k < design.load_cases; k++)
+      design.load_case[k].speed = 2;
+    const struct eo_evaluation *r = run(&design, NULL, 0);
+    const struct eo_case_result *c = &r->load_case[1];
+    for (int end = 0; end < 2; end++) {
+      double mean = 0, least = INFINITY, most = 0;
+      for (int j = 0; j < r->positions; j++) {
+        double load = c->end[end].loaded.load[j];
+        mean += load / r->positions;
+        least = fmin(least, load);
+        most = fmax(most, load);
+      }
+      near(c->vibration.force_mean[end], mean, 3e-3, "held: mean force of the vibration and at rest");
+      near(c->vibration.force_max[end], most, 1e-2, "held: largest");
+      near(c->vibration.force_min[end], least, 1e-2, "held: least");
+    }
+    double uneven = c->vibration.force_mean[0] / c->vibration.force_mean[1];
+    ok(fabs(uneven - 1) > 0.05, "the ends share unevenly: %.3f", uneven);
+    near(c->vibration.pinion_thrust_mean,
+         -sin(0.39218390684663407) * (c->vibration.force_mean[0] - c->vibration.force_mean[1]), 1e-6,
+         "the pinion's thrust is the difference of the ends'");
+  }
+}
+
+/* Ends coupled in torsion whose transmission errors differ press on each other: the default law against a table. */
+static void test_coupled_law(void)
+{
+  struct eo_design design = design_of("paper-case-b");
+  double tangent[EO_MAX_LOAD_CASES];
+  const struct eo_evaluation *r = run(&design, NULL, 0);
+  for (int k = 0; k < r->cases; k++)
+    tangent[k] = r->load_case[k].vibration.rms_pair[0];
+  design.resolution.mesh_law = EO_LAW_TABLE;
+  r = run(&design, NULL, 0);
+  for (int k = 0; k < r->cases; k++)
+    near(tangent[k], r->load_case[k].vibration.rms_pair[0], 0.03, "coupled ends: default law against the table");
 }
 
 int main(void)
@@ -430,6 +489,8 @@ int main(void)
   test_curves();
   test_root_stress();
   test_axial();
+  test_held_share();
+  test_coupled_law();
   eo_evaluator_free(evaluator);
   eo_pair_free(pair);
   return tap_done();
