@@ -52,7 +52,7 @@ struct eo_root_workspace {
   float *load;                          /* [positions][ends][slots] */
   float *scratch;                       /* [positions][ends][rank stride] */
   float *stress;                        /* [positions][ends][stress stride] */
-  unsigned *touched;                    /* [positions]: see eo_root_modes_add() */
+  uint64_t *touched;                    /* [positions]: see eo_root_modes_add() */
 };
 
 /* NULL without memory. */

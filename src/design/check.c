@@ -121,7 +121,7 @@ static enum eo_code check_resolution(const struct eo_resolution *resolution, con
 {
   static const double MOST_POINTS = 2000, MOST_BYTES = 1 << 30;
   double points = contact_points(resolution, geometry), bytes = sizeof(float) * points * points * resolution->positions;
-  if (resolution->sector_teeth == 4)
+  if (resolution->body == EO_BODY_SECTOR && resolution->sector_teeth == 4)
     return eo_error_set(error, EO_ERROR_INPUT, "/resolution/sector_teeth",
                         "The sector has its loaded tooth in the middle: 3 or 5 teeth, not 4.");
   if (2 * resolution->te_harmonics > resolution->positions)

@@ -9,6 +9,7 @@
 
 #include "contact/shaft.h"
 #include "dynamics/parameters.h"
+#include "flexibility/body.h"
 #include "gear/gear_pair.h"
 #include "gear/modification.h"
 
@@ -105,13 +106,16 @@ struct eo_resolution {
   int positions; /* mesh positions over one base pitch */
   int cells_per_line;
   bool tip_edge_contact;
-  int sector_teeth; /* 3 or 5 */
-  bool neighbour_coupling;
-  int layers;               /* of the finite-element mesh over the face width */
-  int flank_rows;           /* elements over the active profile */
-  int fillet_elements;      /* along the loaded fillet */
-  double impact_patch;      /* length of the impact patch, m */
-  double marking_thickness; /* of the contact pattern, m */
+  enum eo_body body;
+  enum eo_body_support body_support; /* of a ring */
+  bool hub_windup;                   /* state the wind-up of hubs that take their torque through a bore */
+  int sector_teeth;                  /* 3 or 5, with EO_BODY_SECTOR */
+  bool neighbour_coupling;           /* compliance between tooth pairs */
+  int layers;                        /* of the finite-element mesh over the face width */
+  int flank_rows;                    /* elements over the active profile */
+  int fillet_elements;               /* along the loaded fillet */
+  double impact_patch;               /* length of the impact patch, m */
+  double marking_thickness;          /* of the contact pattern, m */
   enum eo_mesh_law mesh_law;
   enum eo_solver solver;
   enum eo_impact_in_dynamics impact_in_dynamics;

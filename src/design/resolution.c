@@ -4,7 +4,9 @@
 
 struct eo_flexibility_settings eo_flexibility_settings_of(const struct eo_resolution *resolution)
 {
-  return (struct eo_flexibility_settings){.sector_teeth = resolution->sector_teeth,
+  return (struct eo_flexibility_settings){.body = resolution->body,
+                                          .support = resolution->body_support,
+                                          .sector_teeth = resolution->sector_teeth,
                                           .neighbour_coupling = resolution->neighbour_coupling,
                                           .layers = resolution->layers,
                                           .flank_rows = resolution->flank_rows,

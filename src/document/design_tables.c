@@ -211,15 +211,32 @@ static const char *const mesh_laws[] = {"tangent", "secant", "table", NULL};
 static const char *const solvers[] = {"harmonic_balance", "time_integration", NULL};
 static const char *const impacts[] = {"none", "paper", "consistent", NULL};
 
+static const char *const bodies[] = {"ring", "sector", NULL};
+static const char *const body_supports[] = {"floating", "held", "held_at_bore", NULL};
+
 static const struct eo_field resolution[] = {
     EO_INTEGER(struct eo_resolution, positions, "positions", 8, 1024, 64, "mesh positions over one base pitch"),
     EO_INTEGER(struct eo_resolution, cells_per_line, "cells_per_line", 4, 400, 30, "equal cells of a contact line"),
     EO_FLAG(struct eo_resolution, tip_edge_contact, "tip_edge_contact", 1,
             "contact of the tip edges outside the path of contact"),
+    {.key = "body",
+     .kind = EO_FIELD_CHOICE,
+     .offset = offsetof(struct eo_resolution, body),
+     .choices = bodies,
+     .fallback = EO_BODY_RING,
+     .elder_key = "sector_teeth",
+     .elder_choice = EO_BODY_SECTOR,
+     .help = "of the finite elements: the ring of all teeth, or a sector of sector_teeth teeth with held cut faces; a "
+             "document that names sector_teeth but no body, as older ones do, means the sector"},
+    EO_CHOICE(struct eo_resolution, body_support, "body_support", body_supports, EO_SUPPORT_FLOATING,
+              "of the ring: floating = deflection relative to the mean rigid motion of the body in its plane; held at "
+              "the depth of rim_thickness_coefficient; or at the bore, where members without one float"),
+    EO_FLAG(struct eo_resolution, hub_windup, "hub_windup", 0,
+            "state the wind-up of hubs that take their torque through a bore, as a line of its own"),
     EO_INTEGER(struct eo_resolution, sector_teeth, "sector_teeth", 3, 5, 5,
-               "teeth of the finite-element sector, 3 or 5"),
+               "teeth of the sector, 3 or 5; with body \"sector\""),
     EO_FLAG(struct eo_resolution, neighbour_coupling, "neighbour_coupling", 1,
-            "compliance between neighbouring tooth pairs"),
+            "compliance between tooth pairs: of a sector the next ones, of a ring all in contact at once"),
     EO_INTEGER(struct eo_resolution, layers, "layers", 4, 120, 28, "finite elements over the face width"),
     EO_INTEGER(struct eo_resolution, flank_rows, "flank_rows", 4, 60, 10, "finite elements over the active profile"),
     EO_INTEGER(struct eo_resolution, fillet_elements, "fillet_elements", 4, 80, 18,

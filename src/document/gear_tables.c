@@ -47,7 +47,7 @@ static const struct eo_field gear_pair[] = {
                       TO_MM, "root diameter - 2 mm, at least nine tenths of it",
                       "diameter of the gear's body between its ends"),
     EO_NUMBER(struct eo_gear_pair, rim_thickness_coefficient, "rim_thickness_coefficient", NULL, 1, 20, 3.5,
-              "rim below the root that flexes / m_n; a larger bore cuts it shorter"),
+              "rim below the root that flexes / m_n, of a sector or a held ring; a larger bore cuts it shorter"),
     EO_NUMBER(struct eo_gear_pair, backlash, "backlash_um", &eo_unit_um, 1, 10000, 100,
               "normal backlash at the reference centre distance"),
 };

@@ -261,6 +261,7 @@ static const struct eo_outline_row result_rows[] = {
     EO_KEY("evaluation_hash", "text", "the same without name, objective and optimization"),
     EO_KEY("resolution", "object", "of the design, once more", .table = &eo_resolution_table, .name = "Resolution"),
     EO_KEY("geometry", "object", "macro-geometry", .table = &eo_geometry_table, .name = "Geometry"),
+    EO_KEY("flexibility", "object", "how the teeth's flexibility was modelled", .outline = &eo_outline_flexibility),
     EO_KEY("modification", "object", "as curves", .outline = &eo_outline_modification),
     EO_KEY("unloaded_contact", "object", "the same for every load case", .outline = &eo_outline_unloaded),
     EO_KEY("load_cases", "[object]", "in the order of the design", .outline = &case_outline),
@@ -272,7 +273,7 @@ static const struct eo_outline_row result_rows[] = {
     EO_KEY("timing_ms", "object", "the only part that differs between two runs", .outline = &timing),
 };
 const struct eo_outline eo_result_outline = EO_OUTLINE("Result", result_rows);
-enum { CASES_ROW = 8 }; /* load_cases: the head ends, the tail begins behind it */
+enum { CASES_ROW = 9 }; /* load_cases: the head ends, the tail begins behind it */
 
 static void put_identity(struct eo_object *o, const struct eo_design *design)
 {
@@ -289,6 +290,7 @@ json_t *eo_result_head(struct eo_result_source *source)
   struct eo_object o = eo_object_open_as(&eo_result_outline);
   put_identity(&o, source->design);
   eo_object_put(&o, "geometry", eo_table_encode(&eo_geometry_table, &source->pair->geometry));
+  eo_object_put(&o, "flexibility", eo_result_flexibility(source));
   eo_object_put(&o, "modification", eo_result_modification(source));
   eo_object_put(&o, "unloaded_contact", eo_result_unloaded(source));
   return eo_object_close_part(&o);

@@ -72,6 +72,9 @@ static const struct eo_outline_row lte_rows[] = {
     EO_KEY("left_peak_to_peak_um", "number?", "of the left end", .unit = &eo_unit_um),
     EO_KEY("right_peak_to_peak_um", "number?", "of the right end", .unit = &eo_unit_um, .when = EO_TWO_ENDS),
     EO_KEY("mean_um", "number?", "of the pair over the mesh cycle", .unit = &eo_unit_um),
+    EO_KEY("hub_windup_um", "number?",
+           "what hubs that take their torque through a bore add to the mean, not in it; null unless hub_windup is on",
+           .unit = &eo_unit_um),
     EO_KEY("orders_um", "[number?]", "the mean, then the amplitudes of the mesh harmonics 1, 2, ... of the pair",
            .unit = &eo_unit_um),
     EO_KEY("axial_float_um", "[number?]", "where the pinion settles along its axis, over the positions",
@@ -89,6 +92,9 @@ json_t *eo_result_lte(struct eo_result_source *source, const struct eo_case_resu
   for (int end = 0; end < source->ends; end++)
     eo_object_put_number(&o, end ? "right_peak_to_peak_um" : "left_peak_to_peak_um", c->end[end].transmission_peak);
   eo_object_put_number(&o, "mean_um", c->mean);
+  eo_object_put_number(&o, "hub_windup_um",
+                       (eo_result_hub_windup(source, EO_PINION) + eo_result_hub_windup(source, EO_GEAR)) * c->force /
+                           source->pair->geometry.face_width / source->normal);
   eo_object_put(&o, "orders_um", encode_orders(source->positions, c->transmission, &eo_unit_um));
   if (source->ends == 2 && source->design->alignment.pinion_axial == EO_AXIAL_FLOATING)
     eo_object_put(&o, "axial_float_um", encode_float(source, approach));
@@ -98,8 +104,14 @@ json_t *eo_result_lte(struct eo_result_source *source, const struct eo_case_resu
 static const struct eo_outline_row stiffness_mean_rows[] = {
     EO_KEY("left_N_per_um", "number?", "left end", .unit = &eo_unit_N_per_um),
     EO_KEY("tangent_left_N_per_um", "number?", "left end, tangent", .unit = &eo_unit_N_per_um),
+    EO_KEY("mesh_left_N_per_mm_um", "number?",
+           "left end, transverse per face width: left_N_per_um cos^2(beta_b)/b; beside iso_c_gamma_N_per_mm_um, which "
+           "means an aligned, unmodified pair",
+           .unit = &eo_unit_N_per_mm_um),
     EO_KEY("right_N_per_um", "number?", "right end", .unit = &eo_unit_N_per_um, .when = EO_TWO_ENDS),
     EO_KEY("tangent_right_N_per_um", "number?", "right end, tangent", .unit = &eo_unit_N_per_um, .when = EO_TWO_ENDS),
+    EO_KEY("mesh_right_N_per_mm_um", "number?", "right end, transverse per face width", .unit = &eo_unit_N_per_mm_um,
+           .when = EO_TWO_ENDS),
 };
 static const struct eo_outline stiffness_mean = EO_OUTLINE("MeanMeshStiffness", stiffness_mean_rows);
 
@@ -126,6 +138,9 @@ json_t *eo_result_stiffness(struct eo_result_source *source, const struct eo_cas
     eo_object_put_number(&means, end ? "right_N_per_um" : "left_N_per_um", mean(source->positions, secant[end]));
     eo_object_put_number(&means, end ? "tangent_right_N_per_um" : "tangent_left_N_per_um",
                          mean(source->positions, tangent[end]));
+    eo_object_put_number(&means, end ? "mesh_right_N_per_mm_um" : "mesh_left_N_per_mm_um",
+                         mean(source->positions, secant[end]) * source->normal * source->normal /
+                             source->pair->geometry.face_width);
   }
   eo_object_put(&o, "mean", eo_object_close(&means));
   return eo_object_close(&o);

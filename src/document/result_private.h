@@ -38,12 +38,16 @@ json_t *eo_result_map(const struct eo_result_source *source, int rows, int colum
 
 /* The parts; each stands beside its writer. */
 extern const struct eo_outline eo_outline_lte, eo_outline_stiffness, eo_outline_unloaded, eo_outline_contact,
-    eo_outline_bodies, eo_outline_impact, eo_outline_root_stress, eo_outline_vibration, eo_outline_modification;
+    eo_outline_bodies, eo_outline_flexibility, eo_outline_impact, eo_outline_root_stress, eo_outline_vibration,
+    eo_outline_modification;
 extern const struct eo_outline eo_outline_value;    /* eo_result_put_value() */
 extern const struct eo_outline eo_outline_raw_case; /* eo_result_raw_case() */
 
 /* Normal force that one end carries, mean over the mesh cycle, N. */
 double eo_result_mean_load(const struct eo_result_source *source, const struct eo_case_result *load_case, int end);
+
+/* Wind-up of a member's hub, normal, m per N/m of face width; NaN unless the design asks for it. */
+double eo_result_hub_windup(const struct eo_result_source *source, int member);
 
 /* f1, f2, f3, J, fitness and violation into an object. */
 void eo_result_put_value(struct eo_object *object, const struct eo_objective_value *value);
@@ -51,6 +55,7 @@ void eo_result_put_value(struct eo_object *object, const struct eo_objective_val
 /* Each returns a new value, NULL without memory. */
 json_t *eo_result_raw_case(const struct eo_load_case *load_case, const struct eo_objective_case *raw);
 json_t *eo_result_position(const struct eo_result_source *source);
+json_t *eo_result_flexibility(const struct eo_result_source *source);
 json_t *eo_result_unloaded(struct eo_result_source *source);
 json_t *eo_result_lte(struct eo_result_source *source, const struct eo_case_result *load_case);
 json_t *eo_result_stiffness(struct eo_result_source *source, const struct eo_case_result *load_case);

@@ -156,6 +156,31 @@ static void say_supports(struct list *list, const struct eo_result_source *sourc
               "axis.");
 }
 
+/* A narrow disc of a single helical pair dishes under the thrust, which a body whose sections stay plane leaves out; a
+   thin rim is not filled by its shaft. */
+static void say_body(struct list *list, const struct eo_result_source *source)
+{
+  static const double NARROW = 0.5, THIN = 0.5;
+  const struct eo_flexibility *flexibility = source->pair->flexibility;
+  const struct eo_geometry *g = &source->pair->geometry;
+  for (int m = 0; flexibility && m < 2; m++) {
+    if (eo_flexibility_report(flexibility)->support[m] != EO_MEMBER_FLOATING)
+      continue;
+    double bore = source->design->gear_pair.bore[m] / 2;
+    if (source->ends == 1 && g->helix_angle > 0 && bore > 0 && g->face_width < NARROW * g->root_radius[m])
+      say(list,
+          "The %s is a narrow disc that carries thrust: it also dishes, which the floating body leaves to the shaft "
+          "and "
+          "which can be as much as the teeth's own deflection.",
+          eo_result_member[m]);
+    if (bore > THIN * g->root_radius[m])
+      say(list,
+          "The rim of the %s is thin, but the floating body takes its bore as filled: with a web or a soft hub choose "
+          "body_support \"held_at_bore\".",
+          eo_result_member[m]);
+  }
+}
+
 static void say_modelling(struct list *list, const struct eo_result_source *source)
 {
   const struct eo_geometry *g = &source->pair->geometry;
@@ -164,6 +189,7 @@ static void say_modelling(struct list *list, const struct eo_result_source *sour
     say(list, "%s", note);
   say_held(list, source);
   say_supports(list, source);
+  say_body(list, source);
   if (source->design->objective.relief_inside_active_flank &&
       eo_objective_relief_outside(&source->design->modification, g->rack_bottom, g->rack_top))
     say(list, "A relief starts outside the active flank and takes nothing off where the teeth touch.");

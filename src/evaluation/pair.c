@@ -73,13 +73,28 @@ void eo_pair_free(struct eo_pair *pair)
   free(pair);
 }
 
+struct eo_iso_stiffness_input eo_pair_iso_stiffness_input(const struct eo_pair *pair)
+{
+  const struct eo_gear_pair *p = &pair->gear_pair;
+  return (struct eo_iso_stiffness_input){.teeth = {p->teeth[0], p->teeth[1]},
+                                         .virtual_teeth = EO_ISO_VIRTUAL_CUBED,
+                                         .normal_pressure_angle = p->normal_pressure_angle,
+                                         .helix_angle = p->helix_angle,
+                                         .profile_shift = {p->profile_shift[0], p->profile_shift[1]},
+                                         .dedendum_coefficient = p->dedendum_coefficient,
+                                         .transverse_contact_ratio = pair->geometry.transverse_contact_ratio,
+                                         .blank_factor = 1,
+                                         .theory_factor = 0.8,
+                                         .youngs_modulus = pair->material.youngs_modulus};
+}
+
 bool eo_pair_serves(const struct eo_pair *pair, const struct eo_design *design)
 {
   const struct eo_resolution *a = &pair->resolution, *b = &design->resolution;
   return memcmp(&pair->gear_pair, &design->gear_pair, sizeof pair->gear_pair) == 0 &&
          memcmp(&pair->material, &design->material, sizeof pair->material) == 0 && a->positions == b->positions &&
-         a->cells_per_line == b->cells_per_line && a->tip_edge_contact == b->tip_edge_contact &&
-         a->sector_teeth == b->sector_teeth && a->neighbour_coupling == b->neighbour_coupling &&
-         a->layers == b->layers && a->flank_rows == b->flank_rows && a->fillet_elements == b->fillet_elements &&
-         a->impact_patch == b->impact_patch;
+         a->cells_per_line == b->cells_per_line && a->tip_edge_contact == b->tip_edge_contact && a->body == b->body &&
+         a->body_support == b->body_support && a->sector_teeth == b->sector_teeth &&
+         a->neighbour_coupling == b->neighbour_coupling && a->layers == b->layers && a->flank_rows == b->flank_rows &&
+         a->fillet_elements == b->fillet_elements && a->impact_patch == b->impact_patch;
 }

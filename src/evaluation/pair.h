@@ -5,6 +5,7 @@
 
 #include "design/design.h"
 #include "contact/grid.h"
+#include "contact/iso6336.h"
 #include "contact/root.h"
 #include "contact/impact.h"
 #include "flexibility/flexibility.h"
@@ -40,6 +41,9 @@ struct eo_pair_options {
 enum eo_code eo_pair_new(struct eo_pair **pair, const struct eo_design *design, const struct eo_pair_options *options,
                          const struct eo_progress *progress, struct eo_error *error);
 void eo_pair_free(struct eo_pair *pair);
+
+/* What ISO 6336-1 asks of this pair: solid discs, C_M = 0.8. */
+struct eo_iso_stiffness_input eo_pair_iso_stiffness_input(const struct eo_pair *pair);
 
 /* True when the pair serves this design as it is (same gear pair, material and the parts of the resolution that
    preparation uses). */

@@ -1,6 +1,6 @@
 /* The finite-element model of one member as an input file of Abaqus and CalculiX, to check our solver on its own mesh.
-   Lengths in m, forces in N. Nodes are numbered from 1, layer * section nodes + section node; node set FLANK lists the
-   loaded flank, rows in ascending s, layers in ascending eta within a row; FIXED is the bore and both cut faces. One
+   Lengths in m, forces in N. A sector, or all teeth of a ring that is held; node set FLANK lists the
+   loaded flank, rows in ascending s, layers in ascending eta within a row; FIXED is what is held. One
    step per load case; the displacements of FLANK are printed. */
 #ifndef EASEOFF_FLEXIBILITY_EXPORT_H
 #define EASEOFF_FLEXIBILITY_EXPORT_H
@@ -25,7 +25,8 @@ struct eo_mesh_case {
 /* Takes text as it comes; returns non-zero to stop. */
 typedef int eo_writer_function(void *context, const char *text, size_t length);
 
-/* Errors: as eo_section_init() and eo_sector_init(); EO_ERROR_FILE when the writer stops. */
+/* Errors: as eo_section_init() and eo_sector_init(); EO_ERROR_INPUT for a floating ring; EO_ERROR_FILE when the writer
+   stops. */
 enum eo_code eo_mesh_export(const struct eo_geometry *geometry, int member, const struct eo_material *material,
                             const struct eo_member_settings *settings, enum eo_mesh_element element, int cases,
                             const struct eo_mesh_case *load_case, eo_writer_function *writer, void *context,

@@ -32,34 +32,37 @@ static double contract(const struct eo_grid *grid, const struct eo_grid_weights 
   return sum;
 }
 
-/* Adds one member's compliance between loads j and points from..to-1, whose weights are given. */
-static void add_block(const struct eo_flexibility *flexibility, int member, int n, const struct eo_flank_point *point,
-                      int from, int to, const struct eo_grid_weights *weights, double *compliance)
+/* Coupled pairs ahead. */
+static int reach_of(const struct eo_flexibility *flexibility, int member)
+{
+  return flexibility->settings.neighbour_coupling ? flexibility->table[member].reach : 0;
+}
+
+/* Adds one member's compliance between loads j and points from..to-1, whose weights are given, that stand ahead_by
+   pairs ahead of them. */
+static void add_block(const struct eo_flexibility *flexibility, int member, int ahead_by, int n,
+                      const struct eo_flank_point *point, int from, int to, const struct eo_grid_weights *weights,
+                      double *compliance)
 {
   const struct eo_flank_table *table = &flexibility->table[member];
   const struct eo_grid *grid = &table->flank;
+  const double *matrix = ahead_by ? eo_flank_table_ahead(table, ahead_by) : table->bulk;
   size_t points = (size_t)grid->points;
   for (int j = 0; j < n; j++) {
-    double own[MAX_POINTS], ahead[MAX_POINTS];
-    int have_own = 0, have_ahead = 0;
+    double column[MAX_POINTS];
+    int have_column = 0;
     struct eo_grid_weights at;
-    eo_grid_weights(grid, point[j].s[member], point[j].eta, &at);
     for (int i = from; i < to; i++) {
-      int ahead_by = point[i].pair - point[j].pair;
-      if (ahead_by == 0 && i <= j) {
-        if (!have_own++)
-          combine(grid, &at, table->bulk, points, points, own);
-        double value = contract(grid, &weights[i - from], own);
-        compliance[(size_t)i * (size_t)n + (size_t)j] += value;
-        if (i != j)
-          compliance[(size_t)j * (size_t)n + (size_t)i] += value;
-      } else if (ahead_by == 1 && flexibility->settings.neighbour_coupling) {
-        if (!have_ahead++)
-          combine(grid, &at, table->ahead, points, points, ahead);
-        double value = contract(grid, &weights[i - from], ahead);
-        compliance[(size_t)i * (size_t)n + (size_t)j] += value;
-        compliance[(size_t)j * (size_t)n + (size_t)i] += value;
+      if (point[i].pair - point[j].pair != ahead_by || (!ahead_by && i > j))
+        continue;
+      if (!have_column++) {
+        eo_grid_weights(grid, point[j].s[member], point[j].eta, &at);
+        combine(grid, &at, matrix, points, points, column);
       }
+      double value = contract(grid, &weights[i - from], column);
+      compliance[(size_t)i * (size_t)n + (size_t)j] += value;
+      if (i != j)
+        compliance[(size_t)j * (size_t)n + (size_t)i] += value;
     }
   }
 }
@@ -72,7 +75,8 @@ void eo_flexibility_add_compliance(const struct eo_flexibility *flexibility, int
     int to = from + BLOCK < n ? from + BLOCK : n;
     for (int i = from; i < to; i++)
       eo_grid_weights(&flexibility->table[member].flank, point[i].s[member], point[i].eta, &weights[i - from]);
-    add_block(flexibility, member, n, point, from, to, weights, compliance);
+    for (int ahead_by = 0; ahead_by <= reach_of(flexibility, member); ahead_by++)
+      add_block(flexibility, member, ahead_by, n, point, from, to, weights, compliance);
   }
 }
 
@@ -114,13 +118,9 @@ struct eo_root eo_flexibility_root(const struct eo_flexibility *flexibility, int
 static const double *stress_table(const struct eo_flexibility *flexibility, int member, int ahead_by,
                                   const struct eo_grid **grid)
 {
-  const struct eo_flank_table *table = &flexibility->table[member];
-  *grid = ahead_by == 0 ? &table->flank : &table->next;
-  if (ahead_by == 0)
-    return table->stress;
-  if (!flexibility->settings.neighbour_coupling || ahead_by < -1 || ahead_by > 1)
-    return NULL;
-  return table->next_stress[ahead_by > 0];
+  return abs(ahead_by) > reach_of(flexibility, member)
+             ? NULL
+             : eo_flank_table_stress(&flexibility->table[member], ahead_by, grid);
 }
 
 void eo_flexibility_root_influence(const struct eo_flexibility *flexibility, int member, int pair, int n,
@@ -148,7 +148,8 @@ void eo_flexibility_root_stress(const struct eo_flexibility *flexibility, int me
   const struct eo_flank_table *table = &flexibility->table[member];
   size_t line = ((size_t)table->layers + 1) * EO_STRESSES, length = (size_t)(to - from) * line;
   memset(stress, 0, length * sizeof *stress);
-  for (int ahead_by = -1; ahead_by <= 1; ahead_by++) {
+  int reach = reach_of(flexibility, member);
+  for (int ahead_by = -reach; ahead_by <= reach; ahead_by++) {
     double load[MAX_POINTS];
     const struct eo_grid *grid;
     const double *row = stress_table(flexibility, member, ahead_by, &grid);
@@ -173,6 +174,28 @@ void eo_flexibility_root_stress(const struct eo_flexibility *flexibility, int me
 double eo_stress_principal(const double stress[EO_STRESSES])
 {
   return 0.5 * (stress[0] + stress[1]) + hypot(0.5 * (stress[0] - stress[1]), stress[2]);
+}
+
+/* Straight between the rows. */
+void eo_flexibility_parts(const struct eo_flexibility *flexibility, int member, double s, double part[2])
+{
+  const struct eo_flank_table *table = &flexibility->table[member];
+  int row = 0;
+  while (row < table->rows - 2 && table->s[row + 1] < s)
+    row++;
+  double way = (s - table->s[row]) / (table->s[row + 1] - table->s[row]);
+  for (int k = 0; k < 2; k++)
+    part[k] = (1 - way) * table->part[k][row] + way * table->part[k][row + 1];
+}
+
+double eo_flexibility_hub_windup(const struct eo_geometry *geometry, const struct eo_material *material, int member,
+                                 double bore_radius)
+{
+  double shear = material->youngs_modulus / (2 * (1 + material->poissons_ratio));
+  double arm = geometry->base_radius[member] * cos(geometry->base_helix_angle), root = geometry->root_radius[member];
+  if (!(bore_radius > 0))
+    return 0;
+  return fmax(0, arm * arm / (4 * M_PI * shear) * (1 / (bore_radius * bore_radius) - 4 / (3 * root * root)));
 }
 
 const struct eo_flexibility_report *eo_flexibility_report(const struct eo_flexibility *flexibility)

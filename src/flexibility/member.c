@@ -1,4 +1,4 @@
-#include "flexibility/member.h"
+#include "flexibility/member_private.h"
 
 #include "base/clock.h"
 
@@ -10,25 +10,11 @@
 struct wanted {
   int *unknown; /* [count] */
   int count;
-  int root;    /* first of the root's displacements: [root_nodes][layers + 1][3], the flank's own normal left out */
-  int next[2]; /* first of the normal displacements of pair k - 1, k + 1 */
+  int next[2]; /* first of the normal displacements of pair k - 1, k + 1; before them those of the root */
   int flank;   /* first of the normal displacements of the loaded flank, the last of all */
 };
 
-struct job {
-  struct eo_member_result *result;
-  const struct eo_geometry *geometry;
-  const struct eo_material *material;
-  const struct eo_member_settings *settings;
-  const struct eo_progress *progress;
-  struct eo_member_times *times;
-  struct eo_error *error;
-  int member;
-  struct eo_section section;
-  struct eo_sector sector;
-};
-
-static enum eo_code report(const struct job *job, const char *step, double fraction)
+enum eo_code eo_member_report(const struct eo_member_job *job, const char *step, double fraction)
 {
   static const char *const name[2] = {"pinion", "gear"};
   char what[64];
@@ -41,11 +27,23 @@ static enum eo_code report(const struct job *job, const char *step, double fract
   return EO_OK;
 }
 
-static void add_normals(const struct eo_sector *sector, const struct eo_flank_nodes *flank, struct wanted *wanted)
+int eo_member_list_flank(const struct eo_sector *sector, const struct eo_flank_nodes *flank, int *unknown)
 {
+  int count = 0;
   for (int k = 0; k < flank->count; k++)
     for (int l = 0; l <= sector->layers; l++)
-      wanted->unknown[wanted->count++] = eo_sector_unknown(sector, flank->node[k], l, 0);
+      unknown[count++] = eo_sector_unknown(sector, flank->node[k], l, 0);
+  return count;
+}
+
+int eo_member_list_root(const struct eo_sector *sector, int nodes, int *unknown)
+{
+  int count = 0;
+  for (int i = 0; i < nodes; i++)
+    for (int l = 0; l <= sector->layers; l++)
+      for (int c = i == 0; c < 3; c++)
+        unknown[count++] = eo_sector_unknown(sector, sector->section->root[i], l, c);
+  return count;
 }
 
 static enum eo_code list_wanted(const struct eo_sector *sector, struct wanted *wanted)
@@ -56,22 +54,18 @@ static enum eo_code list_wanted(const struct eo_sector *sector, struct wanted *w
   *wanted = (struct wanted){.unknown = malloc((size_t)(nodes * across) * sizeof *wanted->unknown)};
   if (!wanted->unknown)
     return EO_ERROR_MEMORY;
-  for (int i = 0; i < s->root_nodes; i++)
-    for (int l = 0; l < across; l++)
-      for (int c = i == 0; c < 3; c++)
-        wanted->unknown[wanted->count++] = eo_sector_unknown(sector, s->root[i], l, c);
+  wanted->count = eo_member_list_root(sector, s->root_nodes, wanted->unknown);
   for (int k = 0; k < 2; k++) {
     wanted->next[k] = wanted->count;
-    add_normals(sector, &s->next_flank[k], wanted);
+    wanted->count += eo_member_list_flank(sector, &s->next_flank[k], wanted->unknown + wanted->count);
   }
   wanted->flank = wanted->count;
-  add_normals(sector, &s->flank, wanted);
+  wanted->count += eo_member_list_flank(sector, &s->flank, wanted->unknown + wanted->count);
   return EO_OK;
 }
 
-/* Displacements of the root, [root_nodes][layers + 1][3] in the frames of the layers, from one row of kept values. */
-static void root_displacement(const struct eo_sector *sector, const struct wanted *wanted, const double *kept,
-                              double *displacement)
+void eo_member_root_displacement(const struct eo_sector *sector, int nodes, const double *root, const double *flank,
+                                 double *displacement)
 {
   const struct eo_section *s = sector->section;
   int across = sector->layers + 1, corner_row = 0;
@@ -79,17 +73,15 @@ static void root_displacement(const struct eo_sector *sector, const struct wante
     corner_row++;
   const double(*frame)[3] = (const double(*)[3])sector->frame[s->root[0]];
   for (int l = 0; l < across; l++) {
-    double local[3] = {kept[wanted->flank + corner_row * across + l], kept[wanted->root + 2 * l],
-                       kept[wanted->root + 2 * l + 1]};
+    double local[3] = {flank[corner_row * across + l], root[2 * l], root[2 * l + 1]};
     for (int c = 0; c < 3; c++)
       displacement[3 * l + c] = frame[0][c] * local[0] + frame[1][c] * local[1] + frame[2][c] * local[2];
   }
-  memcpy(displacement + 3 * across, kept + wanted->root + 2 * across,
-         (size_t)(3 * across * (s->root_nodes - 1)) * sizeof *displacement);
+  memcpy(displacement + 3 * across, root + 2 * across, (size_t)(3 * across * (nodes - 1)) * sizeof *displacement);
 }
 
 /* Splits the inverse, one row per load (pair k - 1, pair k + 1, the tooth itself), into the results. */
-static enum eo_code split_inverse(struct job *job, const struct wanted *wanted, const double *inverse)
+static enum eo_code split_inverse(struct eo_member_job *job, const struct wanted *wanted, const double *inverse)
 {
   struct eo_member_result *r = job->result;
   const struct eo_section *s = &job->section;
@@ -105,7 +97,7 @@ static enum eo_code split_inverse(struct job *job, const struct wanted *wanted, 
     int own = load - (wanted->flank - wanted->next[0]), side = load >= next;
     double *stress = own >= 0 ? r->stress + (size_t)own * stresses
                               : r->next_stress[side] + (size_t)(load - side * next) * stresses;
-    root_displacement(&job->sector, wanted, kept, displacement);
+    eo_member_root_displacement(&job->sector, s->root_nodes, kept, kept + wanted->flank, displacement);
     eo_stress_operator_apply(&operator, displacement, stress);
     if (own < 0)
       continue;
@@ -118,34 +110,29 @@ static enum eo_code split_inverse(struct job *job, const struct wanted *wanted, 
   return code;
 }
 
-static enum eo_code solve_whole(struct job *job)
+static enum eo_code solve_sector(struct eo_member_job *job)
 {
   struct wanted wanted = {0};
   struct eo_sparse_factor *factor = NULL;
-  double *inverse = NULL, start = (1e-3 * eo_clock_milliseconds());
-  enum eo_code code = eo_sector_init(&job->sector, &job->section, job->settings->layers, job->geometry->face_width,
-                                     eo_sector_twist(job->geometry, job->member), job->material, EO_WHOLE_SECTOR,
-                                     job->error);
+  double *inverse = NULL;
+  enum eo_code code = list_wanted(&job->sector, &wanted);
   if (!code)
-    code = list_wanted(&job->sector, &wanted);
-  job->times->mesh += (1e-3 * eo_clock_milliseconds()) - start;
-  if (!code)
-    code = report(job, "ordering", 0.05);
+    code = eo_member_report(job, "ordering", 0.05);
   if (code)
     goto out;
-  start = (1e-3 * eo_clock_milliseconds());
-  code = eo_sparse_analyse(&job->sector.matrix, job->sector.group, job->sector.matrix.n / 3, wanted.unknown,
-                           wanted.count, &factor, job->error);
+  double start = (1e-3 * eo_clock_milliseconds());
+  code = eo_sparse_analyse(&job->sector.matrix, job->sector.group, job->sector.groups, wanted.unknown, wanted.count,
+                           &factor, job->error);
   job->times->ordering = (1e-3 * eo_clock_milliseconds()) - start;
   if (!code)
-    code = report(job, "factorisation", 0.15);
+    code = eo_member_report(job, "factorisation", 0.15);
   if (code)
     goto out;
   start = (1e-3 * eo_clock_milliseconds());
   code = eo_sparse_factorise(factor, job->error);
   job->times->factorisation = (1e-3 * eo_clock_milliseconds()) - start;
   if (!code)
-    code = report(job, "compliance", 0.85);
+    code = eo_member_report(job, "compliance", 0.85);
   if (code)
     goto out;
   job->times->unknowns = job->sector.matrix.n;
@@ -167,8 +154,20 @@ out:
   return code;
 }
 
+static enum eo_code solve_whole(struct eo_member_job *job)
+{
+  double start = (1e-3 * eo_clock_milliseconds());
+  enum eo_code code = eo_sector_init(&job->sector, &job->section, job->settings->layers, job->geometry->face_width,
+                                     eo_sector_twist(job->geometry, job->member), job->material, EO_WHOLE_SECTOR,
+                                     job->error);
+  job->times->mesh += (1e-3 * eo_clock_milliseconds()) - start;
+  if (code)
+    return code;
+  return job->settings->section.open ? eo_member_solve_ring(job) : solve_sector(job);
+}
+
 /* Compliance of the half tooth; rows whose nodes it holds stay 0. */
-static enum eo_code solve_half(struct job *job)
+static enum eo_code solve_half(struct eo_member_job *job)
 {
   struct eo_sector half = {0};
   struct eo_sparse_factor *factor = NULL;
@@ -188,7 +187,7 @@ static enum eo_code solve_half(struct job *job)
     if (unknown >= 0)
       keep[kept++] = unknown;
   }
-  code = eo_sparse_analyse(&half.matrix, half.group, half.matrix.n / 3, keep, kept, &factor, job->error);
+  code = eo_sparse_analyse(&half.matrix, half.group, half.groups, keep, kept, &factor, job->error);
   if (!code)
     code = eo_sparse_factorise(factor, job->error);
   if (!code)
@@ -212,18 +211,37 @@ static void symmetrise(double *matrix, int n)
       matrix[i * n + j] = matrix[j * n + i] = 0.5 * (matrix[i * n + j] + matrix[j * n + i]);
 }
 
-static enum eo_code allocate(struct job *job)
+/* Places of the rows and of the root's nodes. */
+static void fill_places(struct eo_member_result *r, const struct eo_section *s, bool ring)
+{
+  const struct eo_flank_nodes *next = ring ? &s->flank : &s->next_flank[0];
+  int step = ring ? eo_member_row_step(r->rows) : 1;
+  memcpy(r->s, s->flank.s, (size_t)r->rows * sizeof *r->s);
+  for (int row = 0; row < r->next_rows; row++)
+    r->next_s[row] = next->s[row * step];
+  for (int i = 0; i < r->root_points; i++) {
+    const double *point = s->point + 2 * s->root[i + 1], *before = s->point + 2 * s->root[i];
+    memcpy(r->root + 2 * i, point, 2 * sizeof *point);
+    r->arc[i] = (i ? r->arc[i - 1] : 0) + hypot(point[0] - before[0], point[1] - before[1]);
+  }
+}
+
+static enum eo_code allocate(struct eo_member_job *job)
 {
   struct eo_member_result *r = job->result;
   const struct eo_section *s = &job->section;
+  bool ring = job->settings->section.open;
+  int rows = s->flank.count;
   size_t across = (size_t)job->settings->layers + 1;
-  *r = (struct eo_member_result){.rows = s->flank.count,
-                                 .next_rows = s->next_flank[0].count,
+  *r = (struct eo_member_result){.rows = rows,
+                                 .coupled_rows = ring ? rows : s->next_flank[0].count,
+                                 .next_rows = ring ? (rows - 1) / eo_member_row_step(rows) + 1 : s->next_flank[0].count,
                                  .layers = job->settings->layers,
-                                 .root_points = s->root_nodes - 2};
-  size_t flank = (size_t)r->rows * across, next = (size_t)r->next_rows * across;
-  size_t stresses = (size_t)r->root_points * across * EO_STRESSES;
-  r->s = malloc((size_t)r->rows * sizeof *r->s);
+                                 .root_points = s->root_nodes - 2,
+                                 .reach = job->settings->reach};
+  size_t flank = (size_t)rows * across, next = (size_t)r->next_rows * across, reach = (size_t)r->reach;
+  size_t coupled = (size_t)r->coupled_rows * across, stresses = (size_t)r->root_points * across * EO_STRESSES;
+  r->s = malloc((size_t)rows * sizeof *r->s);
   r->next_s = malloc((size_t)r->next_rows * sizeof *r->next_s + 1);
   r->root = malloc((size_t)r->root_points * 2 * sizeof *r->root);
   r->arc = malloc((size_t)r->root_points * sizeof *r->arc);
@@ -232,20 +250,14 @@ static enum eo_code allocate(struct job *job)
   r->stress = malloc(flank * stresses * sizeof *r->stress);
   int complete = r->s && r->next_s && r->root && r->arc && r->full && r->half && r->stress;
   for (int k = 0; k < 2; k++) {
-    r->next[k] = malloc(flank * next * sizeof(double) + 1);
-    r->next_stress[k] = malloc(next * stresses * sizeof(double) + 1);
-    complete = complete && r->next[k] && r->next_stress[k];
+    r->next[k] = malloc(reach * flank * coupled * sizeof(double) + 1);
+    r->next_stress[k] = malloc(reach * next * stresses * sizeof(double) + 1);
+    r->part[k] = calloc((size_t)rows, sizeof *r->part[k]);
+    complete = complete && r->next[k] && r->next_stress[k] && r->part[k];
   }
   if (!complete)
     return EO_ERROR_MEMORY;
-  memcpy(r->s, s->flank.s, (size_t)r->rows * sizeof *r->s);
-  if (r->next_rows)
-    memcpy(r->next_s, s->next_flank[0].s, (size_t)r->next_rows * sizeof *r->next_s);
-  for (int i = 0; i < r->root_points; i++) {
-    const double *point = s->point + 2 * s->root[i + 1], *before = s->point + 2 * s->root[i];
-    memcpy(r->root + 2 * i, point, 2 * sizeof *point);
-    r->arc[i] = (i ? r->arc[i - 1] : 0) + hypot(point[0] - before[0], point[1] - before[1]);
-  }
+  fill_places(r, s, ring);
   return EO_OK;
 }
 
@@ -254,14 +266,14 @@ enum eo_code eo_member_compute(struct eo_member_result *result, const struct eo_
                                const struct eo_progress *progress, struct eo_member_times *times,
                                struct eo_error *error)
 {
-  struct job job = {.result = result,
-                    .geometry = geometry,
-                    .material = material,
-                    .settings = settings,
-                    .progress = progress,
-                    .times = times,
-                    .error = error,
-                    .member = member};
+  struct eo_member_job job = {.result = result,
+                              .geometry = geometry,
+                              .material = material,
+                              .settings = settings,
+                              .progress = progress,
+                              .times = times,
+                              .error = error,
+                              .member = member};
   *result = (struct eo_member_result){0};
   *times = (struct eo_member_times){0};
   double start = (1e-3 * eo_clock_milliseconds());
@@ -273,7 +285,7 @@ enum eo_code eo_member_compute(struct eo_member_result *result, const struct eo_
     code = solve_whole(&job);
   start = (1e-3 * eo_clock_milliseconds());
   if (!code)
-    code = report(&job, "half tooth", 0.95);
+    code = eo_member_report(&job, "half tooth", 0.95);
   if (!code)
     code = solve_half(&job);
   times->half_tooth = (1e-3 * eo_clock_milliseconds()) - start;
@@ -300,6 +312,7 @@ void eo_member_result_done(struct eo_member_result *result)
   for (int k = 0; k < 2; k++) {
     free(result->next[k]);
     free(result->next_stress[k]);
+    free(result->part[k]);
   }
   *result = (struct eo_member_result){0};
 }

@@ -10,13 +10,14 @@
 
 struct eo_root_modes {
   const struct eo_flank_table *table;
-  bool coupled;
+  int reach; /* loads on pairs k - reach .. k + reach count */
   const struct eo_gram *gram;
   int member, rank, length;      /* length = nodes x EO_STRESSES */
   int rank_stride, shape_stride; /* rank and length, padded with zeros as the kernel wants them */
-  int slots, slot[3];            /* grid points of loads on pair k - 1, k, k + 1, and where each begins */
-  float *coefficient;            /* [slots][rank_stride] */
-  float *shape;                  /* [rank][shape_stride]: [EO_STRESSES][nodes] */
+  int slots, slot[2 * EO_FLEXIBILITY_REACH + 2]; /* grid points of loads on pair k - reach .. k + reach, and where each
+                                                    begins; at last their end */
+  float *coefficient;                            /* [slots][rank_stride] */
+  float *shape;                                  /* [rank][shape_stride]: [EO_STRESSES][nodes] */
 };
 
 static const struct eo_grid *grid_of(const struct eo_root_modes *modes, int ahead_by)
@@ -24,26 +25,25 @@ static const struct eo_grid *grid_of(const struct eo_root_modes *modes, int ahea
   return ahead_by == 0 ? &modes->table->flank : &modes->table->next;
 }
 
-static const double *rows_of(const struct eo_root_modes *modes, int ahead_by)
-{
-  return ahead_by == 0 ? modes->table->stress : modes->table->next_stress[ahead_by > 0];
-}
-
 static void count_slots(struct eo_root_modes *modes)
 {
-  for (int ahead = -1; ahead <= 1; ahead++) {
-    modes->slot[ahead + 1] = modes->slots;
-    modes->slots += ahead == 0 || modes->coupled ? grid_of(modes, ahead)->points : 0;
+  for (int part = 0; part <= 2 * modes->reach; part++) {
+    modes->slot[part] = modes->slots;
+    modes->slots += grid_of(modes, part - modes->reach)->points;
   }
+  modes->slot[2 * modes->reach + 1] = modes->slots;
 }
 
 /* All influence rows below each other: [slots][length], Pa/N, from the root's first point on. */
 static double *stack_rows(const struct eo_root_modes *modes, size_t skip)
 {
   double *stack = malloc(sizeof *stack * (size_t)modes->slots * (size_t)modes->length), *to = stack;
-  for (int ahead = -1; stack && ahead <= 1; ahead++)
-    for (int i = 0; (ahead == 0 || modes->coupled) && i < grid_of(modes, ahead)->points; i++, to += modes->length)
-      memcpy(to, rows_of(modes, ahead) + (size_t)i * modes->table->stresses + skip, sizeof *to * (size_t)modes->length);
+  for (int ahead = -modes->reach; stack && ahead <= modes->reach; ahead++) {
+    const struct eo_grid *grid;
+    const double *row = eo_flank_table_stress(modes->table, ahead, &grid) + skip;
+    for (int i = 0; i < grid->points; i++, to += modes->length, row += modes->table->stresses)
+      memcpy(to, row, sizeof *to * (size_t)modes->length);
+  }
   return stack;
 }
 
@@ -104,7 +104,7 @@ enum eo_code eo_root_modes_new(struct eo_root_modes **result, const struct eo_fl
   if (!modes)
     return eo_error_memory(error);
   modes->table = &flexibility->table[member];
-  modes->coupled = flexibility->settings.neighbour_coupling;
+  modes->reach = flexibility->settings.neighbour_coupling ? modes->table->reach : 0;
   modes->gram = eo_gram_select();
   modes->member = member;
   modes->length = (root.points - root.first) * (root.layers + 1) * EO_STRESSES;
@@ -172,7 +172,7 @@ static bool is_loaded(int n, int sets, const double *force)
 void eo_root_modes_weigh(const struct eo_root_modes *modes, const struct eo_flank_point *point,
                          struct eo_root_weights *weights)
 {
-  for (int ahead = 0; ahead <= (modes->coupled ? 1 : 0); ahead++) {
+  for (int ahead = 0; ahead <= (modes->reach ? 1 : 0); ahead++) {
     const struct eo_grid *grid = grid_of(modes, ahead);
     int row, layer;
     eo_spline_weights(&grid->s, point->s[modes->member], &row, weights->across[ahead]);
@@ -181,20 +181,20 @@ void eo_root_modes_weigh(const struct eo_root_modes *modes, const struct eo_flan
   }
 }
 
-unsigned eo_root_modes_add(const struct eo_root_modes *modes, int pair, int n, const struct eo_flank_point *point,
+uint64_t eo_root_modes_add(const struct eo_root_modes *modes, int pair, int n, const struct eo_flank_point *point,
                            const struct eo_root_weights *weights, int sets, const double *force, float *load)
 {
-  unsigned touched = 0;
+  uint64_t touched = 0;
   for (int j = 0; j < n; j++) {
     int ahead = point[j].pair - pair;
-    if (ahead < -1 || ahead > 1 || (ahead != 0 && !modes->coupled) || !is_loaded(n, sets, force + j))
+    if (abs(ahead) > modes->reach || !is_loaded(n, sets, force + j))
       continue;
     int columns = grid_of(modes, ahead)->eta.count;
     const double *across = weights[j].across[ahead != 0], *along = weights[j].along[ahead != 0];
-    touched |= 1u << (ahead + 1);
+    touched |= (uint64_t)1 << (ahead + modes->reach);
     for (int set = 0; set < sets; set++) {
       double f = force[set * n + j];
-      float *to = load + set * modes->slots + modes->slot[ahead + 1] + weights[j].first[ahead != 0];
+      float *to = load + set * modes->slots + modes->slot[ahead + modes->reach] + weights[j].first[ahead != 0];
       for (int r = 0; f != 0 && r < EO_SPLINE_WIDTH; r++)
         for (int l = 0; l < EO_SPLINE_WIDTH; l++)
           to[r * columns + l] += (float)(f * (across[r] * along[l]));
@@ -207,7 +207,7 @@ unsigned eo_root_modes_add(const struct eo_root_modes *modes, int pair, int n, c
 static void add_part(const struct eo_root_modes *modes, int part, int first, int last, int sets, const float *load,
                      float *scratch)
 {
-  int slots = (part == 2 ? modes->slots : modes->slot[part + 1]) - modes->slot[part], row = first * sets;
+  int slots = modes->slot[part + 1] - modes->slot[part], row = first * sets;
   modes->gram->multiply((last - first) * sets, slots, modes->rank_stride,
                         load + (size_t)row * (size_t)modes->slots + modes->slot[part], modes->slots,
                         modes->coefficient + (size_t)modes->slot[part] * (size_t)modes->rank_stride, modes->rank_stride,
@@ -215,7 +215,7 @@ static void add_part(const struct eo_root_modes *modes, int part, int first, int
 }
 
 /* The end of the run of positions from `first` on that are loaded in one of the parts, or in none of them. */
-static int run_end(int first, int count, const unsigned *touched, unsigned parts)
+static int run_end(int first, int count, const uint64_t *touched, uint64_t parts)
 {
   bool loaded = touched[first] & parts;
   int last = first + 1;
@@ -228,19 +228,19 @@ static int run_end(int first, int count, const unsigned *touched, unsigned parts
    is left out is zero, and a row of a product does not depend on the others: so it does not matter which load sets are
    asked for together. */
 void eo_root_modes_stress(const struct eo_root_modes *modes, int count, int sets, const float *load,
-                          const unsigned *touched, float *scratch, float *stress)
+                          const uint64_t *touched, float *scratch, float *stress)
 {
   size_t rank = (size_t)modes->rank_stride, stride = (size_t)modes->shape_stride;
   memset(scratch, 0, sizeof *scratch * (size_t)(count * sets) * rank);
-  for (int part = 0; part < 3; part++)
+  for (int part = 0; part <= 2 * modes->reach; part++)
     for (int first = 0, last; first < count; first = last) {
-      last = run_end(first, count, touched, 1u << part);
-      if (touched[first] & 1u << part)
+      last = run_end(first, count, touched, (uint64_t)1 << part);
+      if (touched[first] & (uint64_t)1 << part)
         add_part(modes, part, first, last, sets, load, scratch);
     }
   for (int first = 0, last; first < count; first = last) {
     size_t row = (size_t)(first * sets);
-    last = run_end(first, count, touched, ~0u);
+    last = run_end(first, count, touched, ~(uint64_t)0);
     if (touched[first])
       modes->gram->multiply((last - first) * sets, modes->rank, modes->shape_stride, scratch + row * rank,
                             modes->rank_stride, modes->shape, modes->shape_stride, false, stress + row * stride,

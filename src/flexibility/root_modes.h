@@ -8,6 +8,8 @@
 #include "flexibility/flexibility.h"
 #include "flexibility/spline.h"
 
+#include <stdint.h>
+
 struct eo_root_modes; /* constant once made; borrows the flexibility */
 
 /* Error of the stress under distributed flank loads below about 1e-3 of the largest. Errors: memory, EO_ERROR_NUMERIC.
@@ -21,7 +23,7 @@ int eo_root_modes_stress_stride(const struct eo_root_modes *modes); /* floats be
 int eo_root_modes_slots(const struct eo_root_modes *modes);         /* numbers that describe a load distribution */
 int eo_root_modes_nodes(const struct eo_root_modes *modes);         /* of the root: [point][layer] from root.first on */
 
-/* How a load at a flank point is told to the splines of its own tooth [0] and of a neighbour [1]. The same for every
+/* How a load at a flank point is told to the splines of its own tooth [0] and of any other [1]. The same for every
    tooth, load and time. */
 struct eo_root_weights {
   int first[2];
@@ -32,7 +34,7 @@ void eo_root_modes_weigh(const struct eo_root_modes *modes, const struct eo_flan
 
 /* Adds the loads force[sets][n], N, at the points, weights[n] of them, to load[sets][slots] of the root of tooth pair
    `pair`. Returns which parts of load they touch. */
-unsigned eo_root_modes_add(const struct eo_root_modes *modes, int pair, int n, const struct eo_flank_point *point,
+uint64_t eo_root_modes_add(const struct eo_root_modes *modes, int pair, int n, const struct eo_flank_point *point,
                            const struct eo_root_weights *weights, int sets, const double *force, float *load);
 
 /* stress[count][sets][stress stride], Pa: [EO_STRESSES][nodes] and zeros, under load[count][sets][slots], of which
@@ -40,6 +42,6 @@ unsigned eo_root_modes_add(const struct eo_root_modes *modes, int pair, int n, c
    [count][sets][rank stride]; both aligned to EO_GRAM_ALIGN. The stresses under one load are the same to the last bit
    whatever else is asked for. */
 void eo_root_modes_stress(const struct eo_root_modes *modes, int count, int sets, const float *load,
-                          const unsigned *touched, float *scratch, float *stress);
+                          const uint64_t *touched, float *scratch, float *stress);
 
 #endif

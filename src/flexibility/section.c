@@ -4,14 +4,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MAX_TEETH = 5 };
+enum { MAX_TEETH = 5, MOST_RINGS = 64 };
 
 /* The nodes of one tooth, as grids of node numbers. */
 struct tooth {
   const struct eo_tooth_division *division;
   int place;    /* 0: the loaded tooth; + counterclockwise */
-  int *core;    /* [rows + rim + 1][columns + 1] */
-  int *side[2]; /* [rim + 1][fillet + 1]; column 0 is the core's edge, the last column the radial cut */
+  int *core;    /* [rows + depth + 1][columns + 1] */
+  int *side[2]; /* [depth + 1][fillet + 1]; column 0 is the core's edge, the last column the radial cut */
 };
 
 struct builder {
@@ -21,8 +21,10 @@ struct builder {
   int member;
   double pitch_angle;
   double involute_share; /* of the root curve: from the start of the active profile to the form radius */
-  double inner_angle;    /* of the core's edge on the bore, from the tooth's centre line */
-  double *level;         /* [rim + 1]: 0 at the root .. 1 at the bore */
+  double inner_angle;    /* of the core's edge on the foot and below, from the tooth's centre line */
+  double foot_radius;
+  int depth;     /* elements from the root to the bore: rim and rings */
+  double *level; /* [depth + 1]: 0 at the root .. 1 at the foot; below it, radii in m */
   struct tooth tooth[MAX_TEETH];
 };
 
@@ -75,6 +77,26 @@ static void grade_levels(double *level, int count, double first)
     level[k] /= sum;
 }
 
+/* Rings between foot and bore, from the foot inwards: the first is as thick as the rim's last element, each next one a
+   quarter thicker, up to 2.5 times the first or a quarter of the radius, whichever is more: what the deep body carries
+   varies over lengths of the radius. All are stretched alike to end at the bore. radius[0] = foot; returns how many. */
+static int grade_rings(double foot, double bore, double first, double *radius)
+{
+  static const double GROWTH = 1.25, THICKEST = 2.5, SHARE = 0.25, LEAST = 1e-6;
+  double thickness = first, reached = foot;
+  int count = 0;
+  while (reached > bore + LEAST * foot && count < MOST_RINGS) {
+    double next = fmax(0, reached - thickness);
+    if (count > 0 && bore - next > reached - bore) /* a thinner ring than half: stretch those above instead */
+      break;
+    radius[++count] = reached = next;
+    thickness = fmin(GROWTH * thickness, fmax(THICKEST * first, SHARE * reached));
+  }
+  for (int k = 1; k <= count; k++)
+    radius[k] = foot - (foot - radius[k]) * (foot - bore) / (foot - reached);
+  return count;
+}
+
 /* Length of the root from the form radius to the middle of the tooth space. */
 static double fillet_length(const struct builder *b)
 {
@@ -103,20 +125,31 @@ static void root_point(const struct builder *b, double q, double point[2], doubl
   }
 }
 
-/* Share u of a cubic line from share q of the root down to the bore. It leaves the root halfway between the inward
+/* Share u of a cubic line from share q of the root down to the foot. It leaves the root halfway between the inward
    normal and the radius and arrives radially. */
 static void line_point(const struct builder *b, double q, double u, double *radius, double *angle)
 {
   double top[2], normal[2], p[2], bottom = b->inner_angle + q * (b->pitch_angle / 2 - b->inner_angle);
   root_point(b, q, top, normal);
-  double down[2] = {-sin(bottom), -cos(bottom)}, bore = b->section->bore_radius, r = hypot(top[0], top[1]);
+  double down[2] = {-sin(bottom), -cos(bottom)}, foot = b->foot_radius, r = hypot(top[0], top[1]);
   double start[2] = {-normal[0] - top[0] / r, -normal[1] - top[1] / r}, size = hypot(start[0], start[1]);
-  double length = hypot(top[0] + bore * down[0], top[1] + bore * down[1]), v = 1 - u;
+  double length = hypot(top[0] + foot * down[0], top[1] + foot * down[1]), v = 1 - u;
   for (int i = 0; i < 2; i++)
-    p[i] = (1 + 2 * u) * v * v * top[i] - u * u * (3 - 2 * u) * bore * down[i] +
+    p[i] = (1 + 2 * u) * v * v * top[i] - u * u * (3 - 2 * u) * foot * down[i] +
            length * (u * v * v * start[i] / size - u * u * v * down[i]);
   *radius = hypot(p[0], p[1]);
   *angle = atan2(p[0], p[1]);
+}
+
+/* Node row j below the root at share q of it: on the cubic lines down to the foot, radially below. */
+static void depth_point(const struct builder *b, double q, int j, double *radius, double *angle)
+{
+  if (j <= b->settings->rim) {
+    line_point(b, q, b->level[j], radius, angle);
+    return;
+  }
+  *radius = b->level[j];
+  *angle = b->inner_angle + q * (b->pitch_angle / 2 - b->inner_angle);
 }
 
 /* Path coordinate of row j: 0 at the tip, rows at the start of the active profile. */
@@ -131,14 +164,14 @@ static double row_path(const struct builder *b, int rows, int j)
 static void add_core_nodes(struct builder *b, struct tooth *tooth)
 {
   int columns = tooth->division->columns, rows = tooth->division->rows, *node = tooth->core;
-  for (int j = 0; j <= rows + b->settings->rim; j++) {
+  for (int j = 0; j <= rows + b->depth; j++) {
     double radius, angle, point[2], normal[2];
     if (j < rows) {
       radius = eo_geometry_radius_at(b->geometry, b->member, row_path(b, rows, j));
       eo_geometry_involute(b->geometry, b->member, radius, point, normal);
       angle = atan2(point[0], point[1]);
     } else {
-      line_point(b, 0, b->level[j - rows], &radius, &angle);
+      depth_point(b, 0, j - rows, &radius, &angle);
     }
     for (int i = 0; i <= columns; i++)
       *node++ = add_node(b, tooth, radius, angle * (2.0 * i / columns - 1));
@@ -150,12 +183,12 @@ static void add_side_nodes(struct builder *b, struct tooth *tooth, int side, con
 {
   int columns = tooth->division->columns, fillet = tooth->division->fillet[side], *node = tooth->side[side];
   const int *edge = tooth->core + tooth->division->rows * (columns + 1) + (side ? columns : 0);
-  for (int j = 0; j <= b->settings->rim; j++, node += fillet + 1) {
+  for (int j = 0; j <= b->depth; j++, node += fillet + 1) {
     node[0] = edge[j * (columns + 1)];
     int last = side && before ? fillet : fillet + 1;
     for (int i = 1; i < last; i++) {
       double radius, angle;
-      line_point(b, (double)i / fillet, b->level[j], &radius, &angle);
+      depth_point(b, (double)i / fillet, j, &radius, &angle);
       node[i] = add_node(b, tooth, radius, side ? angle : -angle);
     }
     if (side && before)
@@ -166,11 +199,11 @@ static void add_side_nodes(struct builder *b, struct tooth *tooth, int side, con
 static void add_quads(struct builder *b, const struct tooth *tooth)
 {
   const struct eo_tooth_division *d = tooth->division;
-  for (int j = 0; j < d->rows + b->settings->rim; j++)
+  for (int j = 0; j < d->rows + b->depth; j++)
     for (int i = 0; i < d->columns; i++)
       add_quad(b, tooth->core, d->columns, j, i, 0, !tooth->place && i >= d->columns / 2);
   for (int side = 0; side < 2; side++)
-    for (int j = 0; j < b->settings->rim; j++)
+    for (int j = 0; j < b->depth; j++)
       for (int i = 0; i < d->fillet[side]; i++)
         add_quad(b, tooth->side[side], d->fillet[side], j, i, !side, !tooth->place && side);
 }
@@ -178,21 +211,33 @@ static void add_quads(struct builder *b, const struct tooth *tooth)
 static void mark_cut(const struct builder *b, const struct tooth *tooth, int side)
 {
   int fillet = tooth->division->fillet[side];
-  for (int j = 0; j <= b->settings->rim; j++)
-    b->section->fixed[tooth->side[side][j * (fillet + 1) + fillet]] = 1;
+  for (int j = 0; j <= b->depth; j++) {
+    int node = tooth->side[side][j * (fillet + 1) + fillet];
+    if (b->settings->open)
+      b->section->cut[side][j] = node;
+    else
+      b->section->fixed[node] = EO_HELD_ALL;
+  }
 }
 
 static void mark_nodes(struct builder *b)
 {
+  static const double ROUNDING = 1e-9;
   struct eo_section *s = b->section;
   int teeth = b->settings->teeth;
-  for (int i = 0; i < s->nodes; i++)
-    s->fixed[i] = hypot(s->point[2 * i], s->point[2 * i + 1]) < s->bore_radius * (1 + 1e-9);
+  for (int i = 0; i < s->nodes; i++) {
+    double radius = hypot(s->point[2 * i], s->point[2 * i + 1]);
+    if (b->settings->floating)
+      s->fixed[i] = radius < b->foot_radius * (1 + ROUNDING) ? EO_HELD_AXIAL : 0;
+    else
+      s->fixed[i] = radius < s->bore_radius * (1 + ROUNDING) ? EO_HELD_ALL : 0;
+  }
   mark_cut(b, &b->tooth[0], 1);
   mark_cut(b, &b->tooth[teeth - 1], 0);
+  s->cut_nodes = b->settings->open ? b->depth + 1 : 0;
   const struct tooth *loaded = &b->tooth[teeth / 2];
   int columns = loaded->division->columns;
-  for (int j = 0; j <= loaded->division->rows + b->settings->rim; j++)
+  for (int j = 0; j <= loaded->division->rows + b->depth; j++)
     s->centre[loaded->core[j * (columns + 1) + columns / 2]] = 1;
 }
 
@@ -238,7 +283,7 @@ static enum eo_code list_boundary(struct builder *b)
 /* Upper bounds of the number of nodes and quadrilaterals, and the grids of node numbers. */
 static enum eo_code allocate(struct builder *b)
 {
-  int rim = b->settings->rim;
+  int depth = b->depth;
   size_t nodes = 0, quads = 0;
   for (int t = 0; t < b->settings->teeth; t++) {
     struct tooth *tooth = &b->tooth[t];
@@ -247,12 +292,12 @@ static enum eo_code allocate(struct builder *b)
                       : abs(tooth->place) == 1 ? &b->settings->next
                                                : &b->settings->outer;
     const struct eo_tooth_division *d = tooth->division;
-    size_t core = (size_t)(d->rows + rim + 1) * (size_t)(d->columns + 1);
+    size_t core = (size_t)(d->rows + depth + 1) * (size_t)(d->columns + 1);
     tooth->core = malloc(core * sizeof *tooth->core);
     nodes += core;
     quads += core;
     for (int side = 0; side < 2; side++) {
-      size_t block = (size_t)(rim + 1) * (size_t)(d->fillet[side] + 1);
+      size_t block = (size_t)(depth + 1) * (size_t)(d->fillet[side] + 1);
       tooth->side[side] = malloc(block * sizeof *tooth->side[side]);
       nodes += block;
       quads += block;
@@ -266,8 +311,9 @@ static enum eo_code allocate(struct builder *b)
   s->half = malloc(quads);
   s->fixed = calloc(nodes, 1);
   s->centre = calloc(nodes, 1);
-  b->level = malloc((size_t)(rim + 1) * sizeof *b->level);
-  return s->point && s->quad && s->half && s->fixed && s->centre && b->level ? EO_OK : EO_ERROR_MEMORY;
+  for (int side = 0; side < 2; side++)
+    s->cut[side] = malloc((size_t)(depth + 1) * sizeof *s->cut[side]);
+  return s->point && s->quad && s->half && s->fixed && s->centre && s->cut[0] && s->cut[1] ? EO_OK : EO_ERROR_MEMORY;
 }
 
 static enum eo_code check(const struct builder *b, struct eo_error *error)
@@ -283,17 +329,33 @@ static enum eo_code check(const struct builder *b, struct eo_error *error)
   return EO_OK;
 }
 
-static void build(struct builder *b)
+/* Everything that the nodes are placed by. */
+static enum eo_code plan(struct builder *b)
 {
   const struct eo_geometry *g = b->geometry;
-  double point[2], normal[2], start = g->start_radius[b->member];
+  double point[2], normal[2], start = g->start_radius[b->member], bore = b->section->bore_radius;
   double fillet = fillet_length(b), involute = start - g->form_radius[b->member];
+  int rim = b->settings->rim;
+  b->level = malloc((size_t)(rim + MOST_RINGS + 1) * sizeof *b->level);
+  if (!b->level)
+    return EO_ERROR_MEMORY;
   b->pitch_angle = 2 * M_PI / g->teeth[b->member];
   b->involute_share = involute > 1e-6 * fillet ? involute / (involute + fillet) : 0;
   eo_geometry_involute(g, b->member, start, point, normal);
   b->inner_angle = 0.6 * fmin(atan2(point[0], point[1]), 0.35 * b->pitch_angle);
-  double depth = g->root_radius[b->member] - b->section->bore_radius;
-  grade_levels(b->level, b->settings->rim, (fillet + involute) / b->settings->loaded.fillet[1] / depth);
+  b->foot_radius = fmax(bore, b->settings->foot_radius);
+  double depth = g->root_radius[b->member] - b->foot_radius;
+  grade_levels(b->level, rim, (fillet + involute) / b->settings->loaded.fillet[1] / depth);
+  double last = depth * (b->level[rim] - b->level[rim - 1]), radius[MOST_RINGS + 1];
+  int rings = grade_rings(b->foot_radius, bore, last, radius);
+  for (int k = 1; k <= rings; k++)
+    b->level[rim + k] = radius[k];
+  b->depth = rim + rings;
+  return EO_OK;
+}
+
+static void build(struct builder *b)
+{
   for (int t = 0; t < b->settings->teeth; t++) {
     struct tooth *tooth = &b->tooth[t];
     const struct tooth *before = t ? tooth - 1 : NULL;
@@ -313,7 +375,9 @@ enum eo_code eo_section_init(struct eo_section *section, const struct eo_geometr
   enum eo_code code = check(&b, error);
   if (code)
     return code;
-  code = allocate(&b);
+  code = plan(&b);
+  if (!code)
+    code = allocate(&b);
   if (!code)
     build(&b);
   if (!code)
@@ -348,6 +412,8 @@ void eo_section_done(struct eo_section *section)
   free(section->fixed);
   free(section->centre);
   free(section->root);
+  free(section->cut[0]);
+  free(section->cut[1]);
   free_flank(&section->flank);
   free_flank(&section->next_flank[0]);
   free_flank(&section->next_flank[1]);

@@ -2,12 +2,14 @@
    (columns across the tooth, rows from the tip down to the start of the active profile and on down to the bore) and two
    side blocks whose upper edge is the root from there to the middle of the tooth space (after the division of a tooth
    in Litvin and Fuentes 2004). Neighbours share only the radial cut between them, so that teeth may be divided
-   differently. */
+   differently. Below the side blocks plain rings may go on towards the axis. */
 #ifndef EASEOFF_FLEXIBILITY_SECTION_H
 #define EASEOFF_FLEXIBILITY_SECTION_H
 
 #include "base/error.h"
 #include "gear/geometry.h"
+
+#include <stdbool.h>
 
 /* How one tooth is divided. */
 struct eo_tooth_division {
@@ -19,8 +21,15 @@ struct eo_tooth_division {
 struct eo_section_settings {
   int teeth;                                    /* 1, 3 or 5 */
   struct eo_tooth_division loaded, next, outer; /* the loaded tooth, its two neighbours, the teeth beyond */
-  int rim;                                      /* from the root to the bore */
+  int rim;                                      /* from the root to the foot */
+  double foot_radius; /* where the lines that follow the root end, m; plain rings go on to the bore below it. Not above
+                         the bore: no rings */
+  bool open;          /* one tooth of a ring: the cut faces are free, and its cuts are listed */
+  bool floating;      /* so is the bore; what lies at the foot or below keeps its place along the axis */
 };
+
+/* Which displacements of a node are held: those along x, y and the axis. */
+enum { EO_HELD_X = 1, EO_HELD_Y = 2, EO_HELD_AXIAL = 4, EO_HELD_ALL = 7 };
 
 /* Nodes of a section on one flank, in ascending path coordinate s. */
 struct eo_flank_nodes {
@@ -37,12 +46,14 @@ struct eo_section {
   int *quad;           /* [quads][4], counterclockwise */
   unsigned char *half; /* [quads]: 1 in the loaded half of the loaded tooth: loaded side of its centre line, outside the
                           root circle */
-  unsigned char *fixed;  /* [nodes]: 1 on the bore and on both radial cut faces */
+  unsigned char *fixed;  /* [nodes]: EO_HELD_... bits; all on the bore and on both radial cut faces of a sector */
   unsigned char *centre; /* [nodes]: 1 on the centre line of the loaded tooth, tip to bore */
   double bore_radius;
   struct eo_flank_nodes flank; /* loaded flank of the loaded tooth */
   struct eo_flank_nodes
       next_flank[2]; /* same side of the neighbours; [0]: pair k - 1, [1]: pair k + 1; empty with 1 tooth */
+  int cut_nodes;     /* on each cut of an open section, from the root inwards */
+  int *cut[2];       /* [cut_nodes]: at x < 0, x > 0; the second is the first turned clockwise by a pitch */
   int root_nodes;    /* on the loaded side, from the start of the active profile to the middle of the tooth space */
   int *root;         /* [root_nodes]; root[0] is also a flank node */
 };

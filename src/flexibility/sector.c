@@ -95,11 +95,24 @@ static void number_nodes(struct eo_sector *sector, enum eo_sector_extent extent)
     for (int k = 0; k < 4 && !belongs(s, extent, q); k++)
       sector->free[s->quad[4 * q + k]] = -1;
   for (int a = 0; a < s->nodes; a++) {
-    if (s->fixed[a] || (extent == EO_HALF_TOOTH && s->centre[a]))
+    if (s->fixed[a] == EO_HELD_ALL || (extent == EO_HALF_TOOTH && s->centre[a]))
       sector->free[a] = -1;
     if (sector->free[a] == 0)
       sector->free[a] = sector->free_nodes++;
   }
+}
+
+/* Numbers the unknowns of one layer: those directions of the free nodes that are not held. */
+static enum eo_code number_unknowns(struct eo_sector *sector)
+{
+  const struct eo_section *s = sector->section;
+  sector->place = malloc((size_t)(3 * sector->free_nodes + 1) * sizeof *sector->place);
+  if (!sector->place)
+    return EO_ERROR_MEMORY;
+  for (int a = 0; a < s->nodes; a++)
+    for (int c = 0; c < 3 && sector->free[a] >= 0; c++)
+      sector->place[3 * sector->free[a] + c] = s->fixed[a] & EO_HELD_X << c ? -1 : sector->layer_unknowns++;
+  return EO_OK;
 }
 
 static int compare(const void *a, const void *b)
@@ -216,17 +229,23 @@ static int put_column(const struct eo_sector *sector, const struct blocks *block
                       int filled)
 {
   const struct eo_sparse *m = &sector->matrix;
-  int base = 3 * layer * sector->free_nodes, from = blocks->start[node], end = blocks->start[node + 1];
+  int base = layer * sector->layer_unknowns, from = blocks->start[node], end = blocks->start[node + 1];
   double below = layer > 0, above = layer < sector->layers;
   for (int p = from; p < end; p++)
     for (int i = blocks->row[p] == node ? direction : 0; i < 3 && blocks->row[p] >= node; i++) {
-      m->row[filled] = base + 3 * blocks->row[p] + i;
+      int place = sector->place[3 * blocks->row[p] + i];
+      if (place < 0)
+        continue;
+      m->row[filled] = base + place;
       m->value[filled++] = above * blocks->value[p][LOWER][3 * i + direction] +
                            below * blocks->value[p][UPPER][3 * i + direction];
     }
   for (int p = from; p < end && layer < sector->layers; p++)
     for (int i = 0; i < 3; i++) {
-      m->row[filled] = base + 3 * (sector->free_nodes + blocks->row[p]) + i;
+      int place = sector->place[3 * blocks->row[p] + i];
+      if (place < 0)
+        continue;
+      m->row[filled] = base + sector->layer_unknowns + place;
       m->value[filled++] = blocks->value[p][ACROSS][3 * i + direction];
     }
   return filled;
@@ -237,19 +256,23 @@ static enum eo_code assemble(struct eo_sector *sector, const struct blocks *bloc
   struct eo_sparse *m = &sector->matrix;
   int nodes = sector->free_nodes;
   size_t entries = 9 * 2 * (size_t)blocks->start[nodes] * (size_t)(sector->layers + 1);
-  m->n = 3 * nodes * (sector->layers + 1);
+  m->n = sector->layer_unknowns * (sector->layers + 1);
   m->start = malloc(((size_t)m->n + 1) * sizeof *m->start);
   m->row = malloc(entries * sizeof *m->row);
   m->value = malloc(entries * sizeof *m->value);
   sector->group = malloc(((size_t)m->n + 1) * sizeof *sector->group);
+  sector->groups = nodes * (sector->layers + 1);
   if (!m->start || !m->row || !m->value || !sector->group)
     return EO_ERROR_MEMORY;
-  int filled = 0;
-  for (int column = 0; column < m->n; column++) {
-    sector->group[column] = column / 3;
-    m->start[column] = filled;
-    filled = put_column(sector, blocks, column / 3 / nodes, column / 3 % nodes, column % 3, filled);
-  }
+  int filled = 0, column = 0;
+  for (int layer = 0; layer <= sector->layers; layer++)
+    for (int k = 0; k < 3 * nodes; k++) {
+      if (sector->place[k] < 0)
+        continue;
+      sector->group[column] = layer * nodes + k / 3;
+      m->start[column++] = filled;
+      filled = put_column(sector, blocks, layer, k / 3, k % 3, filled);
+    }
   m->start[m->n] = filled;
   return EO_OK;
 }
@@ -274,7 +297,9 @@ enum eo_code eo_sector_init(struct eo_sector *sector, const struct eo_section *s
     goto out;
   set_frames(sector);
   number_nodes(sector, extent);
-  code = find_neighbours(sector, extent, &blocks);
+  code = number_unknowns(sector);
+  if (!code)
+    code = find_neighbours(sector, extent, &blocks);
   for (int q = 0; q < section->quads && !code; q++) {
     double k[EO_BRICK_NODES][EO_BRICK_NODES][9];
     if (!belongs(section, extent, q))
@@ -300,6 +325,7 @@ void eo_sector_done(struct eo_sector *sector)
     return;
   free(sector->frame);
   free(sector->free);
+  free(sector->place);
   free(sector->group);
   eo_sparse_done(&sector->matrix);
   *sector = (struct eo_sector){0};

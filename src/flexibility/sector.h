@@ -19,10 +19,19 @@ struct eo_sector {
   double (*frame)[3][3]; /* [section node][direction][component]: (1, 0, 0).. or, on flanks, into the tooth along
                             the normal, along the profile, across both; in the frame of the layer */
   int free_nodes;
-  int *free; /* [section node]: number among the free nodes, -1: fixed or absent */
+  int *free;          /* [section node]: number among the free nodes, -1: fixed or absent */
+  int layer_unknowns; /* of one layer */
+  int *place;         /* [free_nodes][3]: number among them, -1: held in this direction */
   struct eo_sparse matrix;
+  int groups; /* nodes with unknowns */
   int *group; /* [matrix.n]: node of each unknown */
 };
+
+/* Adds a spring to the ground to an unknown, N/m. */
+static inline void eo_sector_add_spring(struct eo_sector *sector, int unknown, double stiffness)
+{
+  sector->matrix.value[sector->matrix.start[unknown]] += stiffness;
+}
 
 /* eta > 0 is the side that meets first: it leads on the pinion (turned clockwise, towards its loaded flank) and on the
    gear. */
@@ -35,11 +44,12 @@ enum eo_code eo_sector_init(struct eo_sector *sector, const struct eo_section *s
                             struct eo_error *error);
 void eo_sector_done(struct eo_sector *sector);
 
-/* Number of the unknown, -1 when the node is fixed or absent. */
+/* Number of the unknown, -1 when the node is absent or held in this direction. */
 static inline int eo_sector_unknown(const struct eo_sector *sector, int node, int layer, int direction)
 {
   int free = sector->free[node];
-  return free < 0 ? -1 : 3 * (layer * sector->free_nodes + free) + direction;
+  int place = free < 0 ? -1 : sector->place[3 * free + direction];
+  return place < 0 ? -1 : layer * sector->layer_unknowns + place;
 }
 
 /* Position of a node, m, in the frame of the middle of the face. */

@@ -8,24 +8,30 @@ enum eo_code eo_flank_table_init(struct eo_flank_table *table, const struct eo_m
                                  struct eo_error *error)
 {
   const struct eo_section_settings *section = &settings->section;
-  *table = (struct eo_flank_table){.rows = section->loaded.rows + 1,
-                                   .next_rows = section->next.rows + 1,
+  int fine = section->loaded.rows, step = eo_member_row_step(fine + 1);
+  *table = (struct eo_flank_table){.rows = fine + 1,
+                                   .next_rows = (section->open ? fine / step : section->next.rows) + 1,
                                    .layers = settings->layers,
-                                   .root_points = section->loaded.fillet[1] - 1};
+                                   .root_points = section->loaded.fillet[1] - 1,
+                                   .reach = settings->reach};
   size_t across = (size_t)table->layers + 1, rows = (size_t)table->rows, next_rows = (size_t)table->next_rows;
   size_t flank = rows * across, next = next_rows * across, points = (size_t)table->root_points;
+  size_t reach = (size_t)table->reach;
   table->stresses = points * across * EO_STRESSES;
   size_t length[] = {rows,
                      next_rows,
                      2 * points,
                      points,
                      flank * flank,
-                     flank * flank,
+                     reach * flank * flank,
                      flank * table->stresses,
-                     next * table->stresses,
-                     next * table->stresses};
-  double **place[] = {&table->s,     &table->next_s, &table->root,           &table->arc,           &table->bulk,
-                      &table->ahead, &table->stress, &table->next_stress[0], &table->next_stress[1]};
+                     reach * next * table->stresses,
+                     reach * next * table->stresses,
+                     rows,
+                     rows};
+  double **place[] = {
+      &table->s,      &table->next_s,         &table->root,           &table->arc,     &table->bulk,   &table->ahead,
+      &table->stress, &table->next_stress[0], &table->next_stress[1], &table->part[0], &table->part[1]};
   for (size_t i = 0; i < sizeof length / sizeof *length; i++)
     table->size += length[i];
   double *data = table->data = malloc(table->size * sizeof *data);
@@ -122,11 +128,15 @@ static enum eo_code to_coefficients_twice(const struct eo_grid *grid, double *ma
   return code;
 }
 
-/* Response on a neighbour's coarser rows to the rows of the flank: [flank][next] to [flank][flank]. */
-static enum eo_code refine(const struct eo_flank_table *table, const double *coarse, double *fine)
+/* Response on another tooth's own rows to the rows of the flank: [flank][coupled] to [flank][flank]. */
+static enum eo_code refine(const struct eo_flank_table *table, size_t coupled, const double *coarse, double *fine)
 {
   size_t rows = (size_t)table->rows, next_rows = (size_t)table->next_rows, across = (size_t)table->layers + 1;
   size_t flank = rows * across, next = next_rows * across;
+  if (coupled == flank) {
+    memcpy(fine, coarse, flank * flank * sizeof *fine);
+    return EO_OK;
+  }
   double *weight = malloc(rows * next_rows * sizeof *weight);
   if (!weight)
     return EO_ERROR_MEMORY;
@@ -142,69 +152,106 @@ static enum eo_code refine(const struct eo_flank_table *table, const double *coa
   return EO_OK;
 }
 
-/* C(k + 1, k) from the sector's own columns. The sector is not the same seen from tooth k + 1 as from k, so the mean of
-   the response ahead and of the transposed response behind is taken: then C(k + 1, k) = C(k, k + 1)' exactly. */
+/* C(k + d, k) from the responses ahead and behind. A sector is not the same seen from tooth k + 1 as from k, so the
+   mean of the response ahead and of the transposed response behind is taken: then C(k + d, k) = C(k, k + d)' exactly.
+   In a ring both agree to rounding. */
 static enum eo_code fill_ahead(struct eo_flank_table *table, const struct eo_member_result *result)
 {
-  size_t n = (size_t)table->flank.points;
+  size_t n = (size_t)table->flank.points, coupled = (size_t)(result->coupled_rows * (result->layers + 1));
   double *behind = malloc(n * n * sizeof *behind);
-  enum eo_code code = behind ? refine(table, result->next[1], table->ahead) : EO_ERROR_MEMORY;
-  if (!code)
-    code = refine(table, result->next[0], behind);
-  for (size_t i = 0; i < n && !code; i++)
-    for (size_t j = 0; j < n; j++)
-      table->ahead[i * n + j] = 0.5 * (table->ahead[i * n + j] + behind[j * n + i]);
+  enum eo_code code = behind ? EO_OK : EO_ERROR_MEMORY;
+  for (size_t d = 0; d < (size_t)table->reach && !code; d++) {
+    double *ahead = table->ahead + d * n * n;
+    code = refine(table, coupled, result->next[1] + d * n * coupled, ahead);
+    if (!code)
+      code = refine(table, coupled, result->next[0] + d * n * coupled, behind);
+    for (size_t i = 0; i < n && !code; i++)
+      for (size_t j = 0; j < n; j++)
+        ahead[i * n + j] = 0.5 * (ahead[i * n + j] + behind[j * n + i]);
+  }
   free(behind);
   return code;
 }
 
-/* Smallest over largest eigenvalue of bulk + sign (ahead + ahead'), the worse of the three signs 0, +, -. */
+/* Largest number of unknowns whose eigenvalues are looked for: half a second. */
+enum { MOST_EIGENVALUES = 1000 };
+
+/* matrix[teeth n][teeth n]: compliance of teeth side by side, its lower triangle by blocks. */
+static void fill_side_by_side(const struct eo_flank_table *table, size_t teeth, double *matrix)
+{
+  size_t n = (size_t)table->flank.points, row = teeth * n;
+  for (size_t a = 0; a < teeth; a++)
+    for (size_t b = 0; b <= a; b++) {
+      const double *block = a == b ? table->bulk : eo_flank_table_ahead(table, (int)(a - b));
+      /* block[on pair b][on pair a], a ahead of b */
+      for (size_t i = 0; i < n; i++)
+        for (size_t j = 0; j < n; j++)
+          matrix[(b * n + i) * row + a * n + j] = matrix[(a * n + j) * row + b * n + i] = block[i * n + j];
+    }
+}
+
+/* Smallest over largest eigenvalue of the compliance of as many teeth side by side as are coupled, or as stay within
+   the largest number. */
 static enum eo_code measure(const struct eo_flank_table *table, double *smallest, struct eo_error *error)
 {
-  size_t n = (size_t)table->flank.points;
-  double *matrix = malloc(n * n * sizeof *matrix);
-  enum eo_code code = matrix ? EO_OK : eo_error_memory(error);
-  *smallest = INFINITY;
-  for (int sign = -1; sign <= 1 && !code; sign++) {
-    double low = 0, high = 1;
-    for (size_t i = 0; i < n; i++)
-      for (size_t j = 0; j < n; j++)
-        matrix[i * n + j] = table->bulk[i * n + j] + sign * (table->ahead[i * n + j] + table->ahead[j * n + i]);
-    code = eo_symmetric_extremes((int)n, matrix, &low, &high, error);
-    *smallest = fmin(*smallest, low / high);
-  }
+  size_t n = (size_t)table->flank.points, teeth = (size_t)table->reach + 1;
+  while (teeth > 1 && teeth * n > MOST_EIGENVALUES)
+    teeth--;
+  double *matrix = malloc(teeth * n * teeth * n * sizeof *matrix), low = 0, high = 1;
+  if (!matrix)
+    return eo_error_memory(error);
+  fill_side_by_side(table, teeth, matrix);
+  enum eo_code code = eo_symmetric_extremes((int)(teeth * n), matrix, &low, &high, error);
+  *smallest = low / high;
   free(matrix);
+  return code;
+}
+
+static void copy_values(struct eo_flank_table *table, const struct eo_member_result *result)
+{
+  size_t n = (size_t)(result->rows * (result->layers + 1)), next = (size_t)(result->next_rows * (result->layers + 1));
+  size_t reach = (size_t)table->reach;
+  memcpy(table->s, result->s, (size_t)table->rows * sizeof *table->s);
+  memcpy(table->next_s, result->next_s, (size_t)table->next_rows * sizeof *table->next_s);
+  memcpy(table->root, result->root, 2 * (size_t)table->root_points * sizeof *table->root);
+  memcpy(table->arc, result->arc, (size_t)table->root_points * sizeof *table->arc);
+  memcpy(table->stress, result->stress, n * table->stresses * sizeof *table->stress);
+  for (int k = 0; k < 2; k++) {
+    memcpy(table->next_stress[k], result->next_stress[k], reach * next * table->stresses * sizeof *table->stress);
+    memcpy(table->part[k], result->part[k], (size_t)table->rows * sizeof *table->part[k]);
+  }
+  for (size_t i = 0; i < n * n; i++)
+    table->bulk[i] = result->full[i] - result->half[i];
+}
+
+/* Everything but the parts, from values at nodes to coefficients. */
+static enum eo_code make_coefficients(struct eo_flank_table *table)
+{
+  size_t n = (size_t)table->flank.points, next = (size_t)table->next.points;
+  enum eo_code code = to_coefficients_twice(&table->flank, table->bulk);
+  if (!code)
+    code = to_coefficients(&table->flank, table->stresses, table->stress);
+  for (size_t d = 0; d < (size_t)table->reach && !code; d++) {
+    code = to_coefficients_twice(&table->flank, table->ahead + d * n * n);
+    for (int k = 0; k < 2 && !code; k++)
+      code = to_coefficients(&table->next, table->stresses, table->next_stress[k] + d * next * table->stresses);
+  }
+  for (size_t i = 0; i < n && !code; i++)
+    for (size_t j = 0; j < i; j++)
+      table->bulk[i * n + j] = table->bulk[j * n + i] = 0.5 * (table->bulk[i * n + j] + table->bulk[j * n + i]);
   return code;
 }
 
 enum eo_code eo_flank_table_fill(struct eo_flank_table *table, const struct eo_member_result *result, double width,
                                  double *smallest, struct eo_error *error)
 {
-  size_t n = (size_t)(result->rows * (result->layers + 1)), next = (size_t)(result->next_rows * (result->layers + 1));
-  memcpy(table->s, result->s, (size_t)table->rows * sizeof *table->s);
-  memcpy(table->next_s, result->next_s, (size_t)table->next_rows * sizeof *table->next_s);
-  memcpy(table->root, result->root, 2 * (size_t)table->root_points * sizeof *table->root);
-  memcpy(table->arc, result->arc, (size_t)table->root_points * sizeof *table->arc);
-  memcpy(table->stress, result->stress, n * table->stresses * sizeof *table->stress);
-  for (int k = 0; k < 2; k++)
-    memcpy(table->next_stress[k], result->next_stress[k], next * table->stresses * sizeof *table->stress);
-  for (size_t i = 0; i < n * n; i++)
-    table->bulk[i] = result->full[i] - result->half[i];
+  copy_values(table, result);
   enum eo_code code = eo_flank_table_connect(table, width, error);
   if (!code)
     code = fill_ahead(table, result);
   if (!code)
     code = measure(table, smallest, error);
   if (!code)
-    code = to_coefficients_twice(&table->flank, table->bulk);
-  if (!code)
-    code = to_coefficients_twice(&table->flank, table->ahead);
-  if (!code)
-    code = to_coefficients(&table->flank, table->stresses, table->stress);
-  for (int k = 0; k < 2 && !code; k++)
-    code = to_coefficients(&table->next, table->stresses, table->next_stress[k]);
-  for (size_t i = 0; i < n && !code; i++)
-    for (size_t j = 0; j < i; j++)
-      table->bulk[i * n + j] = table->bulk[j * n + i] = 0.5 * (table->bulk[i * n + j] + table->bulk[j * n + i]);
+    code = make_coefficients(table);
   return code == EO_ERROR_MEMORY ? eo_error_memory(error) : code;
 }

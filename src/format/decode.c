@@ -388,6 +388,8 @@ void eo_table_decode(const struct eo_table *table, const json_t *object, const s
     struct eo_path place = {path, field->key, 0};
     if (value)
       decode_field(field, value, &place, target, faults);
+    else if (field->elder_key && json_object_get(object, field->elder_key))
+      *(int *)member(target, field) = field->elder_choice;
     else
       decode_absent(field, &place, target, faults);
   }

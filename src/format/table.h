@@ -61,8 +61,10 @@ struct eo_field {
   int row_count;
   double series_low, series_high; /* SERIES: range of each number */
   const struct eo_table *table;   /* OBJECT, LIST */
-  const char *derived;            /* what stands in place of null */
-  const char *help;               /* one line for people */
+  const char *elder_key; /* CHOICE: a document that names this key but not the choice is older than the choice */
+  int elder_choice;      /* and means this one */
+  const char *derived;   /* what stands in place of null */
+  const char *help;      /* one line for people */
 };
 
 struct eo_table {

@@ -23,7 +23,8 @@ struct eo_gear_pair {
   double tip_diameter[2]; /* d_a, m; NaN: from addendum, profile shift and centre distance */
   double bore[2]; /* bore diameter, m, 0: solid; NaN: pinion solid, gear 15 m_n (at most half its root diameter) */
   double groove_diameter[2];        /* body diameter between the ends, m; NaN: root diameter - 2 mm */
-  double rim_thickness_coefficient; /* rim below the root that flexes, times m_n; a larger bore cuts it shorter */
+  double rim_thickness_coefficient; /* rim below the root that flexes, times m_n; a larger bore cuts it shorter.
+                                       Of a sector and a ring that is held */
   double backlash;                  /* 2 tau, normal, m */
 };
 

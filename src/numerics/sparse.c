@@ -281,6 +281,47 @@ enum eo_code eo_sparse_inverse(const struct eo_sparse_factor *factor, int loaded
   return EO_OK;
 }
 
+/* Unit loads on the last `loaded` of the first `inner` kept unknowns, solved with L_ii alone:
+ * compliance[loaded][inner].
+ */
+static void solve_inner(const struct eo_sparse_factor *factor, int inner, int loaded, double *compliance)
+{
+  const double *trailing = factor->trailing;
+  size_t height = (size_t)factor->kept, first = (size_t)(inner - loaded);
+  memset(compliance, 0, (size_t)loaded * (size_t)inner * sizeof *compliance);
+  for (size_t j = 0; j < (size_t)loaded; j++)
+    compliance[j * (size_t)inner + first + j] = 1;
+  cblas_dtrsm(CblasColMajor, CblasLeft, CblasLower, CblasNoTrans, CblasNonUnit, loaded, loaded, 1,
+              trailing + first * height + first, factor->kept, compliance + first, inner);
+  cblas_dtrsm(CblasColMajor, CblasLeft, CblasLower, CblasTrans, CblasNonUnit, inner, loaded, 1, trailing, factor->kept,
+              compliance, inner);
+}
+
+enum eo_code eo_sparse_condense(const struct eo_sparse_factor *factor, int inner, int loaded, double *compliance,
+                                double *influence, double *stiffness, struct eo_error *error)
+{
+  int outer = factor->kept - inner;
+  size_t height = (size_t)factor->kept, rest = (size_t)outer;
+  if (!factor->trailing || loaded < 0 || loaded > inner || outer < 0)
+    return eo_error_set(error, EO_ERROR_NUMERIC, "", "The sparse solver was asked for more than it kept.");
+  const double *corner = factor->trailing + (size_t)inner * height + (size_t)inner;
+  solve_inner(factor, inner, loaded, compliance);
+  for (size_t j = 0; j < (size_t)inner; j++)
+    memcpy(influence + j * rest, factor->trailing + j * height + (size_t)inner, rest * sizeof *influence);
+  cblas_dtrsm(CblasColMajor, CblasRight, CblasLower, CblasNoTrans, CblasNonUnit, outer, inner, 1, factor->trailing,
+              factor->kept, influence, outer);
+  for (size_t j = 0; j < rest; j++) {
+    memset(stiffness + j * rest, 0, j * sizeof *stiffness);
+    memcpy(stiffness + j * rest + j, corner + j * height + j, (rest - j) * sizeof *stiffness);
+  }
+  cblas_dtrmm(CblasColMajor, CblasRight, CblasLower, CblasTrans, CblasNonUnit, outer, outer, 1, corner, factor->kept,
+              stiffness, outer);
+  for (size_t i = 0; i < rest; i++)
+    for (size_t j = 0; j < i; j++)
+      stiffness[i * rest + j] = stiffness[j * rest + i] = 0.5 * (stiffness[i * rest + j] + stiffness[j * rest + i]);
+  return EO_OK;
+}
+
 double eo_sparse_entries(const struct eo_sparse_factor *factor)
 {
   return factor->entries;

@@ -36,6 +36,14 @@ enum eo_code eo_sparse_factorise(struct eo_sparse_factor *factor, struct eo_erro
 enum eo_code eo_sparse_inverse(const struct eo_sparse_factor *factor, int loaded, double *inverse,
                                struct eo_error *error);
 
+/* Condenses the kept unknowns onto the last of them. keep[0..inner-1] are eliminated too, of which the last `loaded`
+   may carry loads p; the others, outer = kept - inner, remain with a stiffness S and unit loads on them left out:
+       u_inner = G p - F' u_outer,   S u_outer = -F p + loads on outer.
+   compliance: G, [loaded][inner]; influence: F, [inner][outer]; stiffness: S, [outer][outer], symmetric. From the
+   trailing block [L_ii 0; L_oi L_oo] of the factor: G = (L_ii L_ii')^-1, F = L_oi L_ii^-1, S = L_oo L_oo'. */
+enum eo_code eo_sparse_condense(const struct eo_sparse_factor *factor, int inner, int loaded, double *compliance,
+                                double *influence, double *stiffness, struct eo_error *error);
+
 /* Entries of L and the bytes CHOLMOD held at most; known after eo_sparse_factorise(). */
 double eo_sparse_entries(const struct eo_sparse_factor *factor);
 size_t eo_sparse_peak_memory(const struct eo_sparse_factor *factor);

@@ -203,12 +203,13 @@ static int write_text(void *context, const char *text, size_t length)
 
 static enum eo_code export_mesh(const struct input *given, const struct eo_design *design,
                                 const struct eo_geometry *geometry, const struct eo_flexibility_settings *settings,
-                                double bore_radius, struct eo_error *error)
+                                struct eo_error *error)
 {
   const struct mesh_input *mesh = &given->mesh;
   if (mesh->row > settings->flank_rows)
     return eo_error_set(error, EO_ERROR_INPUT, "/mesh/row", "The flank has rows 0 to %d.", settings->flank_rows);
-  struct eo_member_settings member = eo_flexibility_member_settings(settings, bore_radius);
+  struct eo_member_settings member = eo_flexibility_member_settings(settings, geometry, &design->gear_pair,
+                                                                    mesh->member);
   struct eo_mesh_load *load = calloc((size_t)settings->layers + 1, sizeof *load);
   struct eo_text text = {0};
   if (!load)
@@ -247,9 +248,9 @@ static enum eo_code run(const void *in, void *out, struct eo_error *error)
     return code;
   struct eo_flexibility_settings settings = eo_flexibility_settings_of(&design.resolution);
   for (int i = 0; i < 2; i++)
-    found->bore_radius[i] = eo_flexibility_bore_radius(&geometry, &design.gear_pair, i);
+    found->bore_radius[i] = eo_flexibility_bore_radius(&settings, &geometry, &design.gear_pair, i);
   if (given->export)
-    code = export_mesh(given, &design, &geometry, &settings, found->bore_radius[given->mesh.member], error);
+    code = export_mesh(given, &design, &geometry, &settings, error);
   if (!code)
     code = eo_stage_prepare(&design, &given->kernel, &flexibility, error);
   if (!code) {

@@ -55,6 +55,7 @@ static enum eo_code read_file(struct calculix *x, struct eo_error *error)
     eo_case_design(input, design);
   else
     read_words(what, design);
+  design->resolution.body = EO_BODY_SECTOR;
   design->resolution.sector_teeth = eo_case_count(x->file, "boundary", "-tooth sectors", 3);
   design->resolution.neighbour_coupling = false;
   design->resolution.tip_edge_contact = true;

@@ -251,6 +251,7 @@ static enum eo_code prepare_sector(struct eo_contact_case *c, struct eo_error *e
   if (c->sector.evaluator)
     return EO_OK;
   c->sector.design = c->design;
+  r->body = EO_BODY_SECTOR;
   r->sector_teeth = 3;
   r->neighbour_coupling = table && eo_case_on(table, "neighbour_tooth_coupling", false);
   r->tip_edge_contact = false;

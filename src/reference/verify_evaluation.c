@@ -107,6 +107,7 @@ static void read_pair(const struct bench *b, struct eo_case *pair, struct eo_des
   r->cells_per_line = eo_case_whole_or(b->defaults, "cells_per_line", 2, MOST_CELLS, 30);
   r->harmonics = eo_case_whole_or(b->defaults, "hb_harmonics", 1, MOST_HARMONICS, 24);
   r->te_harmonics = HARMONICS;
+  r->body = EO_BODY_SECTOR;
   r->sector_teeth = eo_case_count(b->defaults, "fe_flexibility", "-tooth sector", 3);
   r->neighbour_coupling = eo_case_on(b->defaults, "neighbour_tooth_coupling", true);
   d->supports.torsional_coupling = EO_COUPLING_OFF;

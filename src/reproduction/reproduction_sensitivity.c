@@ -86,8 +86,17 @@ static void no_edges(struct eo_design *d)
 {
   d->resolution.tip_edge_contact = false;
 }
+static void held_ring(struct eo_design *d)
+{
+  d->resolution.body_support = EO_SUPPORT_HELD;
+}
+static void sector(struct eo_design *d)
+{
+  d->resolution.body = EO_BODY_SECTOR;
+}
 static void small_sector(struct eo_design *d)
 {
+  d->resolution.body = EO_BODY_SECTOR;
   d->resolution.sector_teeth = 3;
   d->resolution.neighbour_coupling = false;
 }
@@ -111,7 +120,9 @@ static const struct alternative alternatives[] = {
     {"mesh damping", "half", less_damping, 0},
     {"mesh damping", "+50 %", more_damping, 0},
     {"tip edge contact", "off", no_edges, 0},
-    {"sector", "3 teeth, no coupling of neighbours", small_sector, 0},
+    {"body of the members", "ring, held 3.5 m_n below the root", held_ring, 0},
+    {"body of the members", "sector of 5 teeth, next pairs coupled", sector, 0},
+    {"body of the members", "sector of 3 teeth, no coupling", small_sector, 0},
 };
 enum { ALTERNATIVES = sizeof alternatives / sizeof alternatives[0] };
 

@@ -75,6 +75,8 @@ void eo_pairs_key(const struct eo_design *design, char key[EO_HASH_LENGTH + 1])
   } part[] = {{"positions", r->positions},
               {"cells_per_line", r->cells_per_line},
               {"tip_edge_contact", r->tip_edge_contact},
+              {"body", r->body},
+              {"body_support", r->body_support},
               {"sector_teeth", r->sector_teeth},
               {"neighbour_coupling", r->neighbour_coupling},
               {"layers", r->layers},

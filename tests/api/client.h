@@ -328,6 +328,7 @@ __attribute__((unused)) static json_t *coarse_document(const char *algorithm, in
   struct eo_resolution *r = &design.resolution;
   r->positions = 16;
   r->cells_per_line = 6;
+  r->body = EO_BODY_SECTOR;
   r->sector_teeth = 3;
   r->neighbour_coupling = false;
   r->layers = 6;

@@ -77,10 +77,14 @@ static void vary(const struct eo_geometry *g, const struct eo_gear_pair *pair, c
    or not. */
 static double *flank_compliance(const struct eo_geometry *g, const struct eo_gear_pair *pair, double relief, int *count)
 {
-  struct eo_flexibility_settings settings = {
-      .sector_teeth = 3, .layers = 14, .flank_rows = 10, .fillet_elements = 16, .columns = 8, .rim_elements = 6};
-  struct eo_member_settings member = eo_flexibility_member_settings(&settings,
-                                                                    eo_flexibility_bore_radius(g, pair, EO_PINION));
+  struct eo_flexibility_settings settings = {.body = EO_BODY_SECTOR,
+                                             .sector_teeth = 3,
+                                             .layers = 14,
+                                             .flank_rows = 10,
+                                             .fillet_elements = 16,
+                                             .columns = 8,
+                                             .rim_elements = 6};
+  struct eo_member_settings member = eo_flexibility_member_settings(&settings, g, pair, EO_PINION);
   struct eo_material material = paper_steel();
   struct eo_section section = {0};
   struct eo_sector sector = {0};
@@ -100,7 +104,7 @@ static double *flank_compliance(const struct eo_geometry *g, const struct eo_gea
     for (int i = 0; i < n; i++)
       keep[i] = eo_sector_unknown(&sector, section.flank.node[i / across], i % across, 0);
     inverse = malloc((size_t)(n * n) * sizeof *inverse);
-    if (eo_sparse_analyse(&sector.matrix, sector.group, sector.matrix.n / 3, keep, n, &factor, &error) ||
+    if (eo_sparse_analyse(&sector.matrix, sector.group, sector.groups, keep, n, &factor, &error) ||
         eo_sparse_factorise(factor, &error) || eo_sparse_inverse(factor, n, inverse, &error)) {
       free(inverse);
       inverse = NULL;

@@ -32,7 +32,8 @@ __attribute__((unused)) static struct eo_material paper_steel(void)
 
 __attribute__((unused)) static struct eo_flexibility_settings default_settings(void)
 {
-  return (struct eo_flexibility_settings){.sector_teeth = 5,
+  return (struct eo_flexibility_settings){.body = EO_BODY_SECTOR,
+                                          .sector_teeth = 5,
                                           .neighbour_coupling = true,
                                           .layers = 28,
                                           .flank_rows = 10,

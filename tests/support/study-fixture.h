@@ -22,6 +22,7 @@ __attribute__((unused)) static void coarse_design(struct eo_design *design, cons
   struct eo_resolution *r = &design->resolution;
   r->positions = 16;
   r->cells_per_line = 6;
+  r->body = EO_BODY_SECTOR;
   r->sector_teeth = 3;
   r->neighbour_coupling = false;
   r->layers = 6;

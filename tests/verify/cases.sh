@@ -106,5 +106,35 @@ prints "linear  *3 .* pass"
 prints "one end  *7 .* pass"
 prints "checks: sdof 3, eigen 7"
 
+# Whole gear bodies: a part of ring.json on a coarser mesh (`make check-slow` has all of it); nothing is read loosely.
+cat >"$folder/ring.json" <<'END'
+{"kind": "ring", "mesh": "14 layers, 8 rows on the active flank, 8 elements along the root",
+ "macro": {"z": [17, 44], "mn": 6, "alpha_n_deg": 20, "beta_deg": 24, "ha": 1, "c": 0.25, "rho_f": 0.38, "x": [0, 0], "b": 55, "E": 206000, "nu": 0.3},
+ "tolerances": {"line compliance of the tooth itself, mid face, rel": 0.02, "the same, face ends, rel": 0.03,
+  "between teeth, rel of the largest value of that distance": 0.02, "harmonic parts, rel": 0.03, "mean LTE, k, k_tan, c, rel": 0.015,
+  "PPLTE (32 positions)": "max(0.03 um, 6 %)", "PPLTE of the list of pairs (16 positions)": "max(0.06 um, 10 %)", "share": 0.01,
+  "root stress, rel (9 root elements; ratios between supports 0.01)": 0.05},
+ "points": {"points": [[-0.8, 0.0], [-0.8, 20.0]], "pinion_floating": {"1": [[0.10346, 0.13085], [0.04639, 0.22997]]}},
+ "line": {"pinion": {"floating": {"tip": [0.059637, 0.077877, 0.046583], "coupling_mid_pitch": {"-1": 0.0043595, "1": 0.0047757},
+  "part_of_harmonic_0_and_1_in_C_full_mid_pitch": {"0": 0.0018619, "1": 0.0057895}}}}}
+END
+verify 0 "whole bodies" "$folder/ring.json"
+prints "points, pinion, floating  *4 .* pass"
+prints "line, pinion, floating  *7 .* pass"
+wrong() # FROM TO: what is said of a file with one change
+{
+  sed "$1" "$folder/ring.json" >"$folder/wrong.json"
+  ! cmp -s "$folder/ring.json" "$folder/wrong.json"
+  result $? "ring.json changed by $1"
+  verify "$2" "ring.json with $1" "$folder/wrong.json"
+  grep -q -e "$3" "$folder/out" "$folder/err"
+  result $? "says $3"
+}
+wrong 's/"0": 0.0018619/"0": 0.0028619/' 1 "harmonic 0.*FAIL (1)"
+wrong 's/"mesh"/"mehs"/' 1 'unknown key "mehs"'
+wrong 's/pinion_floating/pinion_float3d/' 1 'does not have the support "float3d"'
+wrong 's/"tip"/"tipp"/' 1 '/line/pinion/floating has the unknown key "tipp"'
+wrong 's/"share": 0.01/"share": "0.01"/' 1 'has no number "share"'
+
 echo "1..$count"
 exit $failed

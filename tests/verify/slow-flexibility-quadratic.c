@@ -85,15 +85,31 @@ static double theirs(const struct eo_geometry *g, int member, const struct eo_me
 
 static void study(const struct eo_geometry *g, const struct eo_gear_pair *pair, int member, const char *directory)
 {
-  static const struct eo_flexibility_settings step[] = {
-      {.sector_teeth = 3, .layers = 5, .flank_rows = ROWS, .fillet_elements = 6, .columns = 4, .rim_elements = 4},
-      {.sector_teeth = 3, .layers = 10, .flank_rows = ROWS, .fillet_elements = 8, .columns = 4, .rim_elements = 5},
-      {.sector_teeth = 3, .layers = 20, .flank_rows = ROWS, .fillet_elements = 12, .columns = 6, .rim_elements = 7}};
+  static const struct eo_flexibility_settings step[] = {{.body = EO_BODY_SECTOR,
+                                                         .sector_teeth = 3,
+                                                         .layers = 5,
+                                                         .flank_rows = ROWS,
+                                                         .fillet_elements = 6,
+                                                         .columns = 4,
+                                                         .rim_elements = 4},
+                                                        {.body = EO_BODY_SECTOR,
+                                                         .sector_teeth = 3,
+                                                         .layers = 10,
+                                                         .flank_rows = ROWS,
+                                                         .fillet_elements = 8,
+                                                         .columns = 4,
+                                                         .rim_elements = 5},
+                                                        {.body = EO_BODY_SECTOR,
+                                                         .sector_teeth = 3,
+                                                         .layers = 20,
+                                                         .flank_rows = ROWS,
+                                                         .fillet_elements = 12,
+                                                         .columns = 6,
+                                                         .rim_elements = 7}};
   enum { STEPS = sizeof step / sizeof *step };
   double linear[STEPS], quadratic[STEPS];
   for (int i = 0; i < STEPS; i++) {
-    struct eo_member_settings settings = eo_flexibility_member_settings(&step[i],
-                                                                        eo_flexibility_bore_radius(g, pair, member));
+    struct eo_member_settings settings = eo_flexibility_member_settings(&step[i], g, pair, member);
     linear[i] = ours(g, member, &settings);
     quadratic[i] = theirs(g, member, &settings, EO_MESH_C3D20R, directory);
     printf("# %s, %2d layers: ours %.5f um, C3D20R %.5f um (ours %+.2f %%)\n", member ? "gear" : "pinion",

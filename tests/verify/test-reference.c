@@ -17,6 +17,7 @@ static void build(const char *example, double degrees, bool edges, enum eo_mesh_
 {
   struct eo_error error;
   eo_example_build(example, &design);
+  design.resolution.body = EO_BODY_SECTOR;
   design.resolution.sector_teeth = 3;
   design.resolution.neighbour_coupling = false;
   design.resolution.tip_edge_contact = edges;

@@ -388,6 +388,7 @@ static void high_floor(struct eo_design *d)
 }
 static void even_sector(struct eo_design *d)
 {
+  d->resolution.body = EO_BODY_SECTOR;
   d->resolution.sector_teeth = 4;
 }
 static void many_harmonics(struct eo_design *d)

@@ -31,6 +31,7 @@ static struct eo_design design_of(const char *name)
   design.resolution.layers = 8;
   design.resolution.flank_rows = 5;
   design.resolution.fillet_elements = 8;
+  design.resolution.body = EO_BODY_SECTOR;
   design.resolution.sector_teeth = 3;
   design.resolution.positions = POSITIONS;
   design.resolution.cells_per_line = 15;

@@ -16,7 +16,8 @@ enum { PAIRS = 4, PER_PAIR = 15, POINTS = PAIRS * PER_PAIR };
 
 static struct eo_geometry geometry;
 static struct eo_gear_pair pair;
-static struct eo_flexibility_settings coarse = {.sector_teeth = 5,
+static struct eo_flexibility_settings coarse = {.body = EO_BODY_SECTOR,
+                                                .sector_teeth = 5,
                                                 .neighbour_coupling = true,
                                                 .layers = 10,
                                                 .flank_rows = 6,
@@ -98,8 +99,7 @@ static void check_matrix(const struct eo_flexibility *flexibility)
 static void check_nodes(const struct eo_flexibility *flexibility)
 {
   struct eo_material material = paper_steel();
-  struct eo_member_settings settings =
-      eo_flexibility_member_settings(&coarse, eo_flexibility_bore_radius(&geometry, &pair, EO_GEAR));
+  struct eo_member_settings settings = eo_flexibility_member_settings(&coarse, &geometry, &pair, EO_GEAR);
   struct eo_member_result result = {0};
   struct eo_member_times times;
   struct eo_error error = {0};

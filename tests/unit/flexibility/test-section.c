@@ -80,12 +80,14 @@ static void check_paper(const struct eo_geometry *g, int member)
   for (int a = 0; a < s.nodes; a++) {
     double r = hypot(s.point[2 * a], s.point[2 * a + 1]), angle = fabs(atan2(s.point[2 * a], s.point[2 * a + 1]));
     int edge = fabs(r - bore) < 1e-9 || fabs(angle - 5 * M_PI / g->teeth[member]) < 1e-9;
-    held = held && edge == s.fixed[a];
+    held = held && (edge ? EO_HELD_ALL : 0) == s.fixed[a];
     ends += edge;
   }
   ok(held && ends > 20, "%s: the bore and the two outer cuts are held, and nothing else", name);
   eo_section_done(&s);
 }
+
+static const struct eo_flexibility_settings held = {.body = EO_BODY_SECTOR};
 
 static void check_shape(const char *what, struct eo_gear_pair pair)
 {
@@ -97,7 +99,7 @@ static void check_shape(const char *what, struct eo_gear_pair pair)
   for (int member = 0; member < 2; member++) {
     struct eo_section section;
     struct eo_sector sector;
-    double bore = eo_flexibility_bore_radius(&g, &pair, member);
+    double bore = eo_flexibility_bore_radius(&held, &g, &pair, member);
     enum eo_code code = eo_section_init(&section, &g, member, bore, &division, &error);
     if (!code) {
       code = eo_sector_init(&sector, &section, 4, g.face_width, eo_sector_twist(&g, member), &material, EO_WHOLE_SECTOR,

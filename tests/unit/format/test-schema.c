@@ -173,9 +173,10 @@ static void check_form(void)
 /* ---- outlines ---- */
 
 static const struct eo_unit *const units[] = {
-    &eo_unit_mm_per_s, &eo_unit_m_per_s2, &eo_unit_N_per_um, &eo_unit_N_per_mm, &eo_unit_per_um,
-    &eo_unit_mm,       &eo_unit_um,       &eo_unit_deg,      &eo_unit_rpm,      &eo_unit_Nm,
-    &eo_unit_N,        &eo_unit_MPa,      &eo_unit_ms,       &eo_unit_Hz};
+    &eo_unit_N_per_mm_um, &eo_unit_um_mm_per_N, &eo_unit_mm_per_s, &eo_unit_m_per_s2,
+    &eo_unit_N_per_um,    &eo_unit_N_per_mm,    &eo_unit_per_um,   &eo_unit_mm,
+    &eo_unit_um,          &eo_unit_deg,         &eo_unit_rpm,      &eo_unit_Nm,
+    &eo_unit_N,           &eo_unit_MPa,         &eo_unit_ms,       &eo_unit_Hz};
 
 /* The unit that a key ends with; the longer ones come first. */
 static const struct eo_unit *unit_of(const char *key)

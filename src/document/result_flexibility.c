@@ -1,0 +1,123 @@
+/* How the teeth's flexibility was modelled: body, support, what of it belongs to shaft and bearings, and the standard's
+   level of mesh stiffness beside it. */
+#include <math.h>
+
+#include "document/result_private.h"
+
+static const char *const support_text[] = {
+    [EO_MEMBER_SECTOR] = "sector",
+    [EO_MEMBER_FLOATING] = "floating",
+    [EO_MEMBER_HELD] = "held",
+    [EO_MEMBER_HELD_AT_BORE] = "held_at_bore",
+};
+
+static const struct eo_outline_row member_rows[] = {
+    EO_KEY("support", "text",
+           "floating: deflection relative to the mean rigid motion of the body in its plane; held, held_at_bore: its "
+           "inner cylinder; sector: inner cylinder and cut faces"),
+    EO_KEY("inner_radius_mm", "number", "where the finite elements end inwards; held there unless floating",
+           .unit = &eo_unit_mm),
+    EO_KEY("coupled_pairs", "integer", "tooth pairs ahead and behind with which each is coupled"),
+    EO_KEY("deflection_um_mm_per_N", "number?",
+           "of mid face at the pitch point under a uniform load there, per load over the face width, without the local "
+           "part",
+           .unit = &eo_unit_um_mm_per_N),
+    EO_KEY("harmonic_0_um_mm_per_N", "number?",
+           "what the ring's harmonic 0, torque and thrust, gives to the full deflection there; null of a sector",
+           .unit = &eo_unit_um_mm_per_N),
+    EO_KEY("harmonic_1_um_mm_per_N", "number?",
+           "the same of harmonics +-1, net force and tilting moment: what shaft, hub and bearings take",
+           .unit = &eo_unit_um_mm_per_N),
+    EO_KEY(
+        "hub_windup_um_mm_per_N", "number?",
+        "wind-up of a hub that takes the torque through its bore, beyond the floating body, in the normal direction; "
+        "in no other number here; null unless hub_windup is on",
+        .unit = &eo_unit_um_mm_per_N),
+};
+static const struct eo_outline member_outline = EO_OUTLINE("MemberFlexibility", member_rows);
+
+static const struct eo_outline_row iso_rows[] = {
+    EO_KEY("C_M_0.8", "number", "with the correction to measured stiffness, C_M = 0.8", .unit = &eo_unit_N_per_mm_um),
+    EO_KEY("C_M_1", "number", "without it", .unit = &eo_unit_N_per_mm_um),
+};
+static const struct eo_outline iso_outline = EO_OUTLINE("IsoMeshStiffness", iso_rows);
+
+static const struct eo_outline_row flexibility_rows[] = {
+    EO_KEY("body", "text", "ring: all teeth of a member; sector: a few between held cut faces; given: neither"),
+    EO_KEY("pinion", "object?", "null of a given compliance", .outline = &member_outline),
+    EO_KEY("gear", "object?", "the same of the gear", .outline = &member_outline),
+    EO_KEY("iso_c_gamma_N_per_mm_um", "object",
+           "mesh stiffness c_gamma_alpha by ISO 6336-1 method B, solid discs, transverse, per face width, beside "
+           "the mean stiffness of the load cases",
+           .outline = &iso_outline),
+};
+const struct eo_outline eo_outline_flexibility = EO_OUTLINE("Flexibility", flexibility_rows);
+
+double eo_result_hub_windup(const struct eo_result_source *source, int member)
+{
+  const struct eo_flexibility *flexibility = source->pair->flexibility;
+  if (!source->design->resolution.hub_windup || !flexibility)
+    return NAN;
+  if (eo_flexibility_report(flexibility)->support[member] != EO_MEMBER_FLOATING)
+    return 0;
+  return eo_flexibility_hub_windup(&source->pair->geometry, &source->pair->material, member,
+                                   source->design->gear_pair.bore[member] / 2);
+}
+
+/* Deflection of mid face at s = 0 under 1 N/m on that row, by the trapezoidal rule, m. */
+static double pitch_deflection(const struct eo_flexibility *flexibility, int member, double width)
+{
+  enum { STRETCHES = 56, POINTS = STRETCHES + 1 };
+  struct eo_flank_point point[POINTS];
+  double compliance[POINTS * POINTS] = {0}, sum = 0;
+  for (int i = 0; i < POINTS; i++)
+    point[i] = (struct eo_flank_point){0, {0, 0}, width * ((double)i / STRETCHES - 0.5)};
+  eo_flexibility_add_compliance(flexibility, member, POINTS, point, compliance);
+  for (int i = 0; i < POINTS; i++)
+    sum += compliance[STRETCHES / 2 * POINTS + i] * width / STRETCHES * (i == 0 || i == STRETCHES ? 0.5 : 1);
+  return sum;
+}
+
+static json_t *encode_member(const struct eo_result_source *source, int member)
+{
+  const struct eo_flexibility *flexibility = source->pair->flexibility;
+  const struct eo_flexibility_report *report = eo_flexibility_report(flexibility);
+  bool ring = report->support[member] != EO_MEMBER_SECTOR;
+  struct eo_object o = eo_object_open_as(&member_outline);
+  double part[2];
+  eo_flexibility_parts(flexibility, member, 0, part);
+  eo_object_put(&o, "support", json_string(support_text[report->support[member]]));
+  eo_object_put_number(&o, "inner_radius_mm", report->radius[member]);
+  eo_object_put(&o, "coupled_pairs", json_integer(report->reach[member]));
+  eo_object_put_number(&o, "deflection_um_mm_per_N",
+                       pitch_deflection(flexibility, member, source->pair->geometry.face_width));
+  eo_object_put_number(&o, "harmonic_0_um_mm_per_N", ring ? part[0] : NAN);
+  eo_object_put_number(&o, "harmonic_1_um_mm_per_N", ring ? part[1] : NAN);
+  eo_object_put_number(&o, "hub_windup_um_mm_per_N", eo_result_hub_windup(source, member));
+  return eo_object_close(&o);
+}
+
+static json_t *encode_iso(const struct eo_result_source *source)
+{
+  struct eo_object o = eo_object_open_as(&iso_outline);
+  struct eo_iso_stiffness_input input = eo_pair_iso_stiffness_input(source->pair);
+  struct eo_iso_stiffness iso;
+  eo_iso_stiffness(&iso, &input);
+  eo_object_put_number(&o, "C_M_0.8", iso.mesh_alpha);
+  input.theory_factor = 1;
+  eo_iso_stiffness(&iso, &input);
+  eo_object_put_number(&o, "C_M_1", iso.mesh_alpha);
+  return eo_object_close(&o);
+}
+
+json_t *eo_result_flexibility(const struct eo_result_source *source)
+{
+  const struct eo_flexibility *flexibility = source->pair->flexibility;
+  struct eo_object o = eo_object_open_as(&eo_outline_flexibility);
+  bool sector = flexibility && eo_flexibility_report(flexibility)->support[EO_PINION] == EO_MEMBER_SECTOR;
+  eo_object_put(&o, "body", json_string(!flexibility ? "given" : sector ? "sector" : "ring"));
+  for (int member = 0; member < 2; member++)
+    eo_object_put(&o, eo_result_member[member], flexibility ? encode_member(source, member) : json_null());
+  eo_object_put(&o, "iso_c_gamma_N_per_mm_um", encode_iso(source));
+  return eo_object_close(&o);
+}

@@ -1,0 +1,292 @@
+#include "base/clock.h"
+#include "base/parallel.h"
+#include "flexibility/member_private.h"
+#include "flexibility/ring.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Unknowns of the tooth in the order in which the solver keeps them: root, flank, left face, right face. The root's
+   last node lies on the right face and is not repeated. */
+struct kept {
+  int *unknown; /* [root + flank + 2 face] */
+  int root, flank, face;
+  int *direction; /* [face]: 0, 1, 2 */
+  int *node;      /* [face]: place along the cut, from the root inwards */
+  int *layer;     /* [face] */
+};
+
+static double seconds(void)
+{
+  return 1e-3 * eo_clock_milliseconds();
+}
+
+static void kept_done(struct kept *kept)
+{
+  free(kept->unknown);
+  free(kept->direction);
+  free(kept->node);
+  free(kept->layer);
+}
+
+static int list_cut(const struct eo_sector *sector, int side, int *unknown, struct kept *kept)
+{
+  const struct eo_section *s = sector->section;
+  int count = 0;
+  for (int i = 0; i < s->cut_nodes; i++)
+    for (int l = 0; l <= sector->layers; l++)
+      for (int c = 0; c < 3; c++) {
+        int number = eo_sector_unknown(sector, s->cut[side][i], l, c);
+        if (number < 0)
+          continue;
+        kept->direction[count] = c;
+        kept->node[count] = i;
+        kept->layer[count] = l;
+        unknown[count++] = number;
+      }
+  return count;
+}
+
+static enum eo_code list_kept(const struct eo_sector *sector, struct kept *kept)
+{
+  const struct eo_section *s = sector->section;
+  size_t across = (size_t)sector->layers + 1, face = 3 * (size_t)s->cut_nodes * across;
+  size_t inner = (size_t)(3 * s->root_nodes + s->flank.count) * across;
+  *kept = (struct kept){.unknown = malloc(sizeof(int) * (inner + 2 * face)),
+                        .direction = malloc(sizeof(int) * face),
+                        .node = malloc(sizeof(int) * face),
+                        .layer = malloc(sizeof(int) * face)};
+  if (!kept->unknown || !kept->direction || !kept->node || !kept->layer)
+    return EO_ERROR_MEMORY;
+  kept->root = eo_member_list_root(sector, s->root_nodes - 1, kept->unknown);
+  kept->flank = eo_member_list_flank(sector, &s->flank, kept->unknown + kept->root);
+  int *faces = kept->unknown + kept->root + kept->flank;
+  kept->face = list_cut(sector, 0, faces, kept);
+  list_cut(sector, 1, faces + kept->face, kept);
+  return EO_OK;
+}
+
+/* The rigid motion of harmonic k at a node, in the frame of its layer: the rotation (-y, x), or the translation
+   (1, -i), whose components in a frame turned clockwise by an angle are exp(i angle) times those before. */
+static void rigid_motion(const struct eo_sector *sector, int k, int node, int layer, double complex motion[3])
+{
+  const double *point = sector->section->point + 2 * node;
+  double angle = sector->twist * sector->width * ((double)layer / sector->layers - 0.5);
+  double complex turned = cos(angle) - I * sin(angle);
+  motion[0] = k == 0 ? -point[1] : turned;
+  motion[1] = k == 0 ? point[0] : -I * turned;
+  motion[2] = 0;
+}
+
+/* What node i of a row of nodes stands for by the trapezoidal rule. */
+static double share_of(const double *place, int count, int i)
+{
+  double before = i > 0 ? place[i - 1] : place[i], after = i < count - 1 ? place[i + 1] : place[i];
+  return 0.5 * fabs(after - before);
+}
+
+/* Weights and rigid motions of the left face and the flank. */
+static enum eo_code set_rigid(const struct eo_member_job *job, const struct kept *kept, struct eo_ring_tooth *tooth)
+{
+  const struct eo_sector *sector = &job->sector;
+  const struct eo_section *s = &job->section;
+  double *radius = malloc(sizeof *radius * (size_t)s->cut_nodes);
+  double complex motion[3];
+  if (!radius)
+    return EO_ERROR_MEMORY;
+  for (int i = 0; i < s->cut_nodes; i++)
+    radius[i] = hypot(s->point[2 * s->cut[0][i]], s->point[2 * s->cut[0][i] + 1]);
+  for (int i = 0; i < kept->face; i++) {
+    int node = kept->node[i], layer = kept->layer[i];
+    double height = sector->width / sector->layers * (layer == 0 || layer == sector->layers ? 0.5 : 1);
+    tooth->weight[i] = 2 * M_PI / tooth->teeth * radius[node] * share_of(radius, s->cut_nodes, node) * height;
+    for (int k = 0; k < EO_RING_RIGID; k++) {
+      rigid_motion(sector, k, s->cut[0][node], layer, motion);
+      tooth->rigid[k][i] = motion[kept->direction[i]];
+    }
+  }
+  for (int j = 0; j < kept->flank; j++)
+    for (int k = 0; k < EO_RING_RIGID; k++) {
+      int node = s->flank.node[j / (sector->layers + 1)];
+      const double *into = sector->frame[node][0];
+      rigid_motion(sector, k, node, j % (sector->layers + 1), motion);
+      tooth->rigid_flank[k][j] = into[0] * motion[0] + into[1] * motion[1] + into[2] * motion[2];
+    }
+  free(radius);
+  return EO_OK;
+}
+
+/* Factorises the tooth and condenses it. The free tooth is singular: springs of E m_n, about the stiffness of its
+   nodes, stand on the cut faces meanwhile; they are taken off again exactly, because those unknowns are all kept. */
+static enum eo_code condense(struct eo_member_job *job, const struct kept *kept, struct eo_ring_tooth *tooth)
+{
+  struct eo_sector *sector = &job->sector;
+  struct eo_sparse_factor *factor = NULL;
+  int inner = kept->root + kept->flank, outer = 2 * kept->face;
+  double spring = job->material->youngs_modulus * job->geometry->normal_module, start = seconds();
+  for (int i = 0; i < outer; i++)
+    eo_sector_add_spring(sector, kept->unknown[inner + i], spring);
+  enum eo_code code = eo_sparse_analyse(&sector->matrix, sector->group, sector->groups, kept->unknown, inner + outer,
+                                        &factor, job->error);
+  job->times->ordering = seconds() - start;
+  if (!code)
+    code = eo_member_report(job, "factorisation", 0.1);
+  start = seconds();
+  if (!code)
+    code = eo_sparse_factorise(factor, job->error);
+  job->times->factorisation = seconds() - start;
+  if (!code)
+    code = eo_member_report(job, "compliance", 0.45);
+  start = seconds();
+  if (!code)
+    code = eo_ring_tooth_init(tooth, job->geometry->teeth[job->member], inner, kept->flank, kept->face,
+                              job->settings->section.floating, job->error);
+  if (!code)
+    code = eo_sparse_condense(factor, inner, kept->flank, tooth->compliance, tooth->influence, tooth->stiffness,
+                              job->error);
+  if (!code) {
+    job->times->unknowns = sector->matrix.n;
+    job->times->entries = eo_sparse_entries(factor);
+    job->times->memory = (double)eo_sparse_peak_memory(factor);
+    for (int i = 0; i < outer; i++)
+      tooth->stiffness[(size_t)i * (size_t)outer + (size_t)i] -= spring;
+    eo_ring_tooth_turn(tooth, kept->direction);
+  }
+  eo_sparse_factor_free(factor);
+  job->times->compliance = seconds() - start;
+  return code;
+}
+
+/* Room for one tooth's answers. */
+struct answer {
+  double *all;          /* [flank][inner]: displacement of the tooth */
+  double *displacement; /* [root_nodes][layers + 1][3]: of its root, of one load */
+  struct eo_stress_operator operator;
+};
+
+/* Stress in a tooth's root under the loads of every step-th row; the root's last node lies on the right face, which
+   stands in the next tooth's frame. */
+static void stress_of(const struct eo_member_job *job, const struct kept *kept, const struct eo_ring_motion *motion,
+                      int t, int step, struct answer *answer, double *stress)
+{
+  const struct eo_section *s = &job->section;
+  int layers = job->result->layers, inner = kept->root + kept->flank;
+  size_t stresses = (size_t)(job->result->root_points * (layers + 1) * EO_STRESSES);
+  double alpha = 2 * M_PI / job->geometry->teeth[job->member], c = cos(alpha), sine = sin(alpha);
+  const double *face = motion->left + (size_t)(t + 1 + motion->reach) * (size_t)kept->flank * (size_t)kept->face;
+  for (int j = 0; j < kept->flank; j++, face += kept->face) {
+    if (j / (layers + 1) % step)
+      continue;
+    const double *row = answer->all + (size_t)j * (size_t)inner;
+    double *last = answer->displacement + (size_t)(s->root_nodes - 1) * (size_t)(layers + 1) * 3;
+    eo_member_root_displacement(&job->sector, s->root_nodes - 1, row, row + kept->root, answer->displacement);
+    for (int i = 0; i < kept->face && kept->node[i] == 0; i++)
+      last[3 * kept->layer[i] + kept->direction[i]] = face[i];
+    for (int l = 0; l <= layers; l++) {
+      double x = last[3 * l], y = last[3 * l + 1];
+      last[3 * l] = c * x + sine * y;
+      last[3 * l + 1] = c * y - sine * x;
+    }
+    eo_stress_operator_apply(&answer->operator, answer->displacement, stress);
+    stress += stresses;
+  }
+}
+
+/* Response at tooth t, counted clockwise, to loads on tooth 0. The pinion's pair k + 1 is its next tooth clockwise, the
+   gear's the one before. */
+static enum eo_code answer_tooth(struct eo_member_job *job, const struct kept *kept, const struct eo_ring_tooth *tooth,
+                                 const struct eo_ring_motion *motion, int t, struct answer *answer)
+{
+  struct eo_member_result *r = job->result;
+  size_t flank = (size_t)kept->flank, inner = (size_t)tooth->inner, next = (size_t)(r->next_rows * (r->layers + 1));
+  size_t stresses = (size_t)(r->root_points * (r->layers + 1) * EO_STRESSES);
+  int ahead = job->member == EO_PINION ? t : -t, d = abs(t);
+  enum eo_code code = eo_ring_displacement(tooth, motion, t, answer->all, job->error);
+  if (code)
+    return code;
+  double *to = d == 0 ? r->full : r->next[ahead > 0] + (size_t)(d - 1) * flank * flank;
+  for (size_t j = 0; j < flank; j++)
+    memcpy(to + j * flank, answer->all + j * inner + (inner - flank), flank * sizeof *to);
+  /* Seen from that tooth's root, the loads stand as far on the other side. */
+  stress_of(job, kept, motion, t, d == 0 ? 1 : eo_member_row_step(r->rows), answer,
+            d == 0 ? r->stress : r->next_stress[ahead < 0] + (size_t)(d - 1) * next * stresses);
+  return EO_OK;
+}
+
+/* Deflection of mid face under a uniform load of 1 N/m on the row, by the trapezoidal rule. */
+static void fill_parts(struct eo_member_result *r, const struct eo_ring_motion *motion, double width)
+{
+  int across = r->layers + 1, flank = r->rows * across;
+  for (int k = 0; k < EO_RING_RIGID; k++)
+    for (int row = 0; row < r->rows; row++)
+      for (int l = 0; l < across; l++) {
+        double load = width / r->layers * (l == 0 || l == r->layers ? 0.5 : 1);
+        const double *part = motion->part[k] + (size_t)(row * across + l) * (size_t)flank + row * across;
+        r->part[k][row] += load * 0.5 * (part[r->layers / 2] + part[(r->layers + 1) / 2]);
+      }
+}
+
+static enum eo_code answer_all(struct eo_member_job *job, const struct kept *kept, const struct eo_ring_tooth *tooth,
+                               const struct eo_ring_motion *motion)
+{
+  size_t nodes = (size_t)job->section.root_nodes * (size_t)(job->result->layers + 1);
+  struct answer answer = {.all = malloc(sizeof(double) * (size_t)tooth->flank * (size_t)tooth->inner),
+                          .displacement = calloc(3 * nodes, sizeof(double))};
+  double start = seconds();
+  enum eo_code code = eo_stress_operator_init(&answer.operator, & job->sector, job->material, job->error);
+  if (!answer.all || !answer.displacement)
+    code = EO_ERROR_MEMORY;
+  for (int t = -motion->reach; t <= motion->reach && !code; t++)
+    code = answer_tooth(job, kept, tooth, motion, t, &answer);
+  if (!code)
+    fill_parts(job->result, motion, job->geometry->face_width);
+  eo_stress_operator_done(&answer.operator);
+  free(answer.all);
+  free(answer.displacement);
+  job->times->stress = seconds() - start;
+  return code;
+}
+
+/* What the progress says of the ring: how long it takes is known beforehand where it is long. */
+static void describe(const struct eo_member_job *job, const struct eo_ring_tooth *tooth, size_t size, char *what)
+{
+  static const double OPERATIONS_PER_SECOND = 2e10, WORTH_SAYING = 5; /* of one core; s */
+  double operations;
+  eo_ring_cheapest(tooth, job->settings->reach, &operations);
+  double estimate = operations / OPERATIONS_PER_SECOND;
+  int length = snprintf(what, size, "%s: all %d teeth", job->member ? "gear" : "pinion", tooth->teeth);
+  if (estimate > WORTH_SAYING)
+    snprintf(what + length, size - (size_t)length, ", about %.0f s", estimate);
+}
+
+enum eo_code eo_member_solve_ring(struct eo_member_job *job)
+{
+  char what[80];
+  struct kept kept = {0};
+  struct eo_ring_tooth tooth = {0};
+  struct eo_ring_motion motion = {0};
+  enum eo_code code = list_kept(&job->sector, &kept);
+  if (!code)
+    code = eo_member_report(job, "ordering", 0.05);
+  if (!code)
+    code = condense(job, &kept, &tooth);
+  if (!code)
+    code = set_rigid(job, &kept, &tooth);
+  if (!code)
+    code = eo_ring_motion_init(&motion, &tooth, job->settings->reach, job->error);
+  double start = seconds();
+  if (!code) {
+    describe(job, &tooth, sizeof what, what);
+    code = eo_ring_solve(&motion, &tooth, job->settings->threads ? job->settings->threads : eo_parallel_cores(),
+                         job->settings->method, job->progress, what, 0.5, 0.9, job->error);
+  }
+  job->times->harmonics = seconds() - start;
+  if (!code)
+    code = answer_all(job, &kept, &tooth, &motion);
+  eo_ring_motion_done(&motion);
+  eo_ring_tooth_done(&tooth);
+  kept_done(&kept);
+  return code;
+}
