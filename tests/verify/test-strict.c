@@ -50,6 +50,8 @@ static const struct part parts[] = {
     {"contact", "fe_bulk", {"macro"}, 31, true},
     {"contact", "ltca_table", {"macro", "modification", "impact"}, 61, true},
     {"encoder", "files", {"mesh"}, 11, false},
+    {"ring", "points", {"macro", "supports", "tolerances"}, 211, true},
+    {"ring", "line", {"macro", "supports", "tolerances"}, 61, true},
     {"calculix", "unmodified", {"what", "boundary"}, 61, true},
     {"evaluation", "cases", {"defaults", "pairs", "dynamics_params", "mods"}, 61, true},
 };
