@@ -12,8 +12,8 @@ struct eo_root_modes {
   const struct eo_flank_table *table;
   int reach; /* loads on pairs k - reach .. k + reach count */
   const struct eo_gram *gram;
-  int member, rank, length;      /* length = nodes x EO_STRESSES */
-  int rank_stride, shape_stride; /* rank and length, padded with zeros as the kernel wants them */
+  int member, rank, length;                      /* length = nodes x EO_STRESSES */
+  int rank_stride, shape_stride;                 /* rank and length, padded with zeros as the kernel wants them */
   int slots, slot[2 * EO_FLEXIBILITY_REACH + 2]; /* grid points of loads on pair k - reach .. k + reach, and where each
                                                     begins; at last their end */
   float *coefficient;                            /* [slots][rank_stride] */
