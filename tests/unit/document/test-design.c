@@ -550,8 +550,30 @@ static void test_study(void)
      "what the design says reaches the optimizer");
 }
 
+/* A resolution that names the sector's teeth but no body is older than the ring. */
+static void test_body(void)
+{
+  static const struct {
+    const char *text;
+    enum eo_body body;
+  } row[] = {{"{}", EO_BODY_RING},
+             {"{\"sector_teeth\": 3}", EO_BODY_SECTOR},
+             {"{\"sector_teeth\": 5, \"body\": \"ring\"}", EO_BODY_RING},
+             {"{\"body\": \"sector\"}", EO_BODY_SECTOR}};
+  for (size_t i = 0; i < sizeof row / sizeof *row; i++) {
+    struct eo_resolution resolution;
+    struct eo_faults faults = {0};
+    json_t *document = json_loads(row[i].text, 0, NULL);
+    eo_table_decode(&eo_resolution_table, document, NULL, &resolution, &faults);
+    ok(faults.count == 0 && resolution.body == row[i].body, "%s means the %s", row[i].text,
+       row[i].body == EO_BODY_RING ? "ring" : "sector");
+    json_decref(document);
+  }
+}
+
 int main(void)
 {
+  test_body();
   test_every_fault();
   test_all_at_once();
   test_many_faults();
