@@ -37,8 +37,6 @@ enum eo_code eo_ring_prepare(const struct eo_ring_case *c, bool pairs, int reach
   r->flank_rows = mesh_count(c, pairs, " rows", r->flank_rows);
   r->fillet_elements = mesh_count(c, pairs, pairs ? " root elements" : " elements along the root", r->fillet_elements);
   struct eo_flexibility_settings settings = eo_flexibility_settings_of(r);
-  settings.columns = 2 * mesh_count(c, false, " columns per half tooth", settings.columns / 2);
-  settings.rim_elements = mesh_count(c, pairs, " rim elements", settings.rim_elements);
   settings.reach = reach;
   return code ? code
               : eo_flexibility_prepare(&geometry, &design->gear_pair, &design->material, &settings, NULL, NULL,
