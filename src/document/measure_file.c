@@ -53,7 +53,9 @@ static enum eo_code measure(struct work *w, const struct eo_measure_request *r, 
   struct eo_measurement_settings settings = {.stated_speed = r->stated_speed,
                                              .spool_directory = r->spool_directory,
                                              .transmission = {.harmonics = r->harmonics}};
+  struct eo_layout_pair pair = {.speed = {r->speed[0], r->speed[1]}};
   for (int i = 0; i < 2; i++) {
+    pair.teeth[i] = r->geometry->teeth[i];
     settings.transmission.teeth[i] = r->geometry->teeth[i];
     settings.transmission.base_radius[i] = r->geometry->base_radius[i];
   }
@@ -62,7 +64,9 @@ static enum eo_code measure(struct work *w, const struct eo_measure_request *r, 
   if (!code)
     code = read_recordings(w, r, progress, error);
   if (!code)
-    code = below_layout(eo_layout_find(w->recording, &w->layout.choice, &w->tracks, &w->notes, error), error);
+    code = below_layout(
+        eo_layout_find(&w->recording, &w->layout.choice, &pair, r->spool_directory, &w->tracks, &w->notes, error),
+        error);
   if (!code)
     code = eo_measurement_run(&w->measurement, w->recording, &w->tracks, &settings, progress, error);
   return code;

@@ -12,6 +12,7 @@ struct eo_measure_request {
   bool unmodified;
   double torque;       /* N m */
   double stated_speed; /* rad/s; NaN: not known */
+  double speed[2];     /* of the pinion in the load cases of the design, lowest and highest, rad/s; 0: not known */
   int end;
   int harmonics;        /* 0: 8 */
   const json_t *layout; /* borrowed; NULL: guessed */

@@ -112,9 +112,9 @@ static enum eo_code move_window(struct window *w, int64_t keep, struct eo_error 
   enum eo_code code = eo_recording_read(w->recording, w->first + w->held, n, w->row + w->held * w->columns, error);
   for (int64_t i = w->held; !code && i < w->held + n; i++) {
     unwrap_row(w, i);
-    w->t[i] = w->time >= 0
-                  ? w->row[i * w->columns + w->time] * w->scale
-                  : eo_recording_start(w->recording) + (double)(w->first + i) * eo_recording_interval(w->recording);
+    w->t[i] = w->time >= 0 ? w->row[i * w->columns + w->time] * w->scale
+                           : eo_recording_clock(w->recording, 0).start +
+                                 (double)(w->first + i) * eo_recording_clock(w->recording, 0).interval;
   }
   w->held += code ? 0 : n;
   return code;
@@ -247,7 +247,7 @@ static enum eo_code combine_pulses(struct combination *m, struct eo_error *error
 
 static bool has_time(const struct window *w)
 {
-  return w->time >= 0 || eo_recording_interval(w->recording) > 0;
+  return w->time >= 0 || eo_recording_clock(w->recording, 0).interval > 0;
 }
 
 static enum eo_code combine(struct combination *m, const struct eo_layout_choice *choice, const char *spool_directory,
@@ -256,7 +256,7 @@ static enum eo_code combine(struct combination *m, const struct eo_layout_choice
   bool pulses = choice && choice->kind == EO_LAYOUT_PULSES;
   for (int s = 0; s < 2; s++) {
     struct window *w = &m->side[s];
-    pulses = pulses || (w->columns == 1 && !(eo_recording_interval(w->recording) > 0));
+    pulses = pulses || (w->columns == 1 && !(eo_recording_clock(w->recording, 0).interval > 0));
     if (!pulses && (!has_time(w) || w->rows < POINTS))
       return eo_error_set(error, EO_ERROR_INPUT, "/time",
                           "The file of the %s has no time and no sampling rate, or fewer than %d rows.",

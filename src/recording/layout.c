@@ -90,14 +90,15 @@ static bool looks_like_pulses(const struct guess *g)
              look->quantity == EO_QUANTITY_TIME;
   }
   return times == 2 && uneven && g->look[1].quantity == g->look[0].quantity &&
-         !(eo_recording_interval(g->recording) > 0);
+         !(eo_recording_clock(g->recording, 0).interval > 0);
 }
 
 /* Without a column of time the rows are even: an interval from the file or the caller. */
 static enum eo_code find_interval(struct guess *g, struct eo_error *error)
 {
   g->tracks->time_column = -1;
-  g->tracks->interval = g->choice->sample_rate > 0 ? 1 / g->choice->sample_rate : eo_recording_interval(g->recording);
+  g->tracks->interval = g->choice->sample_rate > 0 ? 1 / g->choice->sample_rate
+                                                   : eo_recording_clock(g->recording, 0).interval;
   if (!(g->tracks->interval > 0))
     return eo_error_set(error, EO_ERROR_INPUT, "/sample_rate_Hz",
                         "No column holds the time and the file states no sampling rate; give one.");
@@ -351,19 +352,22 @@ static enum eo_code find(struct guess *g, struct eo_error *error)
   return code ? code : settle(g, error);
 }
 
-enum eo_code eo_layout_find(const struct eo_recording *recording, const struct eo_layout_choice *choice,
-                            struct eo_tracks *tracks, struct eo_notes *notes, struct eo_error *error)
+enum eo_code eo_layout_find(struct eo_recording **recording, const struct eo_layout_choice *choice,
+                            const struct eo_layout_pair *pair, const char *spool_directory, struct eo_tracks *tracks,
+                            struct eo_notes *notes, struct eo_error *error)
 {
+  (void)pair;
+  (void)spool_directory;
   static const struct eo_layout_choice none;
   struct guess *g = calloc(1, sizeof *g);
   if (!g)
     return eo_error_memory(error);
   struct eo_tracks found = {0};
-  g->recording = recording;
+  g->recording = *recording;
   g->choice = choice ? choice : &none;
   g->tracks = &found;
   g->notes = notes;
-  g->columns = eo_recording_columns(recording);
+  g->columns = eo_recording_columns(*recording);
   enum eo_code code = find(g, error);
   if (!code)
     *tracks = found;

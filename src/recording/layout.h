@@ -21,11 +21,22 @@ struct eo_layout_choice {
   double time_scale;        /* s per unit of the time */
 };
 
-/* Fills *tracks and adds what was guessed to notes. Errors: EO_ERROR_INPUT, with the key of the layout that would
-   settle it as pointer
-   ("/time", "/sample_rate_Hz", "/columns", "/lines"), EO_ERROR_FILE. */
-enum eo_code eo_layout_find(const struct eo_recording *recording, const struct eo_layout_choice *choice,
-                            struct eo_tracks *tracks, struct eo_notes *notes, struct eo_error *error);
+/* What is known of the pair before its recording is read; zeroed: nothing. */
+struct eo_layout_pair {
+  int teeth[2];    /* [member]: the encoders turn in the inverse ratio */
+  double speed[2]; /* lowest and highest of the pinion in the load cases of the design, rad/s */
+};
+
+/* Finds what the columns of *recording mean: fills *tracks and adds what was guessed to notes. Where pinion and gear
+   have different clocks (own rates, own columns of time, own rows), the gear's columns are brought to the times of the
+   pinion's and *recording is replaced by one that holds both on one clock, its columns being the time, the pinion's and
+   the gear's values (turns counted), torque and speed; the old one is freed. pair may be NULL. spool_directory: see
+   eo_recording_new(). Errors: EO_ERROR_INPUT, with the key of the layout that would settle it as pointer ("/time",
+   "/time_unit", "/sample_rate_Hz", "/columns", "/lines", "/unit", "/kind"), EO_ERROR_FILE, EO_ERROR_MEMORY; *recording
+   is then as it was. */
+enum eo_code eo_layout_find(struct eo_recording **recording, const struct eo_layout_choice *choice,
+                            const struct eo_layout_pair *pair, const char *spool_directory, struct eo_tracks *tracks,
+                            struct eo_notes *notes, struct eo_error *error);
 
 /* One recording from two files of one run, one per encoder, pinion first: the columns of the second are put beside
    those of the first. Rows with equal times stay as they are; else the second is interpolated to the times of the first

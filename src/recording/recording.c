@@ -20,6 +20,7 @@ struct column {
   char name[EO_RECORDING_NAME];
   char unit[EO_RECORDING_UNIT];
   int64_t length; /* -1: that of the table */
+  struct eo_clock clock;
 };
 
 struct eo_recording {
@@ -34,7 +35,6 @@ struct eo_recording {
   int marks, mark_capacity;
   int64_t next_line;  /* line of the next row, 0: unknown */
   int64_t known_rows; /* rows from here on have no line any more */
-  double interval, start;
 };
 
 enum eo_code eo_recording_new(struct eo_recording **recording, int columns, const char *spool_directory,
@@ -56,8 +56,10 @@ enum eo_code eo_recording_new(struct eo_recording **recording, int columns, cons
     eo_recording_free(r);
     return eo_error_memory(error);
   }
-  for (int c = 0; c < columns; c++)
+  for (int c = 0; c < columns; c++) {
     r->column[c].length = -1;
+    r->column[c].clock = (struct eo_clock){.column = -1, .epoch = EO_CLOCK_NO_EPOCH};
+  }
   *recording = r;
   return EO_OK;
 }
@@ -158,20 +160,20 @@ int64_t eo_recording_length(const struct eo_recording *recording, int column)
   return length < 0 || length > rows ? rows : length;
 }
 
+void eo_recording_set_clock(struct eo_recording *recording, int column, const struct eo_clock *clock)
+{
+  recording->column[column].clock = *clock;
+}
+
+struct eo_clock eo_recording_clock(const struct eo_recording *recording, int column)
+{
+  return recording->column[column].clock;
+}
+
 void eo_recording_set_interval(struct eo_recording *recording, double interval, double start)
 {
-  recording->interval = interval;
-  recording->start = start;
-}
-
-double eo_recording_interval(const struct eo_recording *recording)
-{
-  return recording->interval;
-}
-
-double eo_recording_start(const struct eo_recording *recording)
-{
-  return recording->start;
+  for (int c = 0; c < recording->columns; c++)
+    recording->column[c].clock = (struct eo_clock){-1, interval, start, EO_CLOCK_NO_EPOCH};
 }
 
 /* Creates the temporary file; it has no name, so that it ends with the process. */

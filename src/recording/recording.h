@@ -42,11 +42,24 @@ int64_t eo_recording_rows(const struct eo_recording *recording);
 void eo_recording_set_length(struct eo_recording *recording, int column, int64_t length);
 int64_t eo_recording_length(const struct eo_recording *recording, int column);
 
-/* The interval between rows in seconds and the time of row 0, when the file states them instead of holding a time
-   column; 0: not stated. */
+/* When the rows of one column were taken, as the file states it. Every column has a clock of its own, since a file may
+   hold channels of several loggers or rates; columns that were sampled together have equal ones. Row k stands at
+   start + k interval when the rows are even, else at the value in column `column` of the same row, in that column's
+   unit. A file that says nothing has interval 0 and column -1: what the times are is then for the layout to find. */
+struct eo_clock {
+  int column;      /* of the recording, that holds the times of this one; -1: none */
+  double interval; /* s between rows that are even; 0: not stated */
+  double start;    /* s: time of row 0 where rows are even */
+  int64_t epoch;   /* ns since 1970-01-01: when the time 0 was; EO_CLOCK_NO_EPOCH: not stated. Local or universal: two
+                      clocks are only compared with each other */
+};
+#define EO_CLOCK_NO_EPOCH INT64_MIN
+
+void eo_recording_set_clock(struct eo_recording *recording, int column, const struct eo_clock *clock);
+struct eo_clock eo_recording_clock(const struct eo_recording *recording, int column);
+
+/* One even clock for all columns. */
 void eo_recording_set_interval(struct eo_recording *recording, double interval, double start);
-double eo_recording_interval(const struct eo_recording *recording); /* s */
-double eo_recording_start(const struct eo_recording *recording);    /* s */
 
 /* The next row to be appended stands in this line of the file (from 1); those after it count on by one. */
 void eo_recording_set_line(struct eo_recording *recording, int64_t line);

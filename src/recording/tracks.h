@@ -1,8 +1,12 @@
-/* What the columns of a recording mean, as the signal chain needs it: where the time is and what each encoder gave. */
+/* What the columns of a recording mean, as the signal chain needs it: where the time is, what each encoder gave and
+   which columns beside them are torque and speed. Both encoders stand on one clock here: where a recording has a clock
+   for each, eo_layout_find() has brought the gear's channel to the times of the pinion's. */
 #ifndef EASEOFF_RECORDING_TRACKS_H
 #define EASEOFF_RECORDING_TRACKS_H
 
 #include "gear/gear_pair.h"
+
+#include <stdbool.h>
 
 enum eo_track {
   EO_TRACK_ANGLE,       /* angle or count, wrapped or not */
@@ -21,11 +25,19 @@ struct eo_track_channel {
   double factor;           /* raw tracks: V or uA per unit of the column; 1 when the unit is not known */
 };
 
+/* A column beside the encoders. */
+struct eo_track_beside {
+  double scale; /* N m or rad/s per unit of the column; 0: there is no such column */
+  int column;   /* of the recording */
+  bool stated;  /* the unit is the file's own, else it is a guess from the name */
+};
+
 struct eo_tracks {
-  int time_column;                    /* -1: none; then the recording states the interval between rows */
-  double time_scale;                  /* s per unit of the time column, and of pulse times */
-  double interval;                    /* s between rows without a time column */
-  struct eo_track_channel channel[2]; /* [member] */
+  int time_column;   /* -1: rows are even: row k stands at k interval, whatever a column of time looks like */
+  double time_scale; /* s per unit of the time column, and of pulse times */
+  double interval;   /* s between rows without a time column */
+  struct eo_track_channel channel[2];         /* [member] */
+  struct eo_track_beside torque[2], speed[2]; /* [member]; torque in N m, speed in rad/s */
 };
 
 #endif

@@ -257,7 +257,7 @@ static void check_numbers(struct eo_verification *v, struct eo_case *item, const
 /* ---- one recording ---- */
 
 /* The layout of the entry; lines per turn also as a key of their own or in the words of the note. */
-static enum eo_code find_tracks(struct eo_case *item, const struct eo_recording *recording, struct eo_notes *notes,
+static enum eo_code find_tracks(struct eo_case *item, struct eo_recording **recording, struct eo_notes *notes,
                                 struct eo_tracks *tracks, struct eo_error *error)
 {
   static const char *const names[] = {"lines_per_rev", "lines", "lines_per_turn"};
@@ -276,7 +276,7 @@ static enum eo_code find_tracks(struct eo_case *item, const struct eo_recording 
     lines = eo_case_number_or(item, names[i], lines);
   for (int i = 0; i < 2; i++)
     layout.choice.lines[i] = layout.choice.lines[i] > 0 ? layout.choice.lines[i] : lines;
-  return eo_case_faulty(item) ? EO_OK : eo_layout_find(recording, &layout.choice, tracks, notes, error);
+  return eo_case_faulty(item) ? EO_OK : eo_layout_find(recording, &layout.choice, NULL, NULL, tracks, notes, error);
 }
 
 /* A recording with such a finding has no numbers. */
@@ -326,7 +326,7 @@ static enum eo_code run_file(void *context, struct eo_case *item, struct eo_erro
   enum eo_code code = m && notes && path ? eo_reader_read(path, NULL, &recording, notes, error)
                                          : eo_error_memory(error);
   if (!code)
-    code = find_tracks(item, recording, notes, &tracks, error);
+    code = find_tracks(item, &recording, notes, &tracks, error);
   if (!code && !eo_case_faulty(item))
     code = eo_measurement_run(m, recording, &tracks, &settings, NULL, error);
   if (!code && !eo_case_faulty(item))

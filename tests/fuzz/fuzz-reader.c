@@ -29,8 +29,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size)
   } else {
     struct eo_layout_choice choice = {.sample_rate = 20000, .lines = {1024, 1024}};
     struct eo_tracks tracks;
-    eo_layout_find(recording, NULL, &tracks, &notes, &error);
-    eo_layout_find(recording, &choice, &tracks, &notes, &error);
+    eo_layout_find(&recording, NULL, NULL, NULL, &tracks, &notes, &error);
+    eo_layout_find(&recording, &choice, NULL, NULL, &tracks, &notes, &error);
   }
   eo_recording_free(recording);
   close(file);

@@ -88,7 +88,7 @@ static void check(struct eo_recording *r, const struct eo_layout_choice *choice,
   struct eo_error error;
   struct eo_notes notes = {0};
   struct eo_tracks found;
-  enum eo_code code = eo_layout_find(r, choice, &found, &notes, &error);
+  enum eo_code code = eo_layout_find(&r, choice, NULL, NULL, &found, &notes, &error);
   int right = !code && found.time_column == expected->time_column && found.time_scale == expected->time_scale;
   for (int m = 0; right && m < 2; m++) {
     const struct eo_track_channel *a = &found.channel[m], *b = &expected->channel[m];
@@ -109,7 +109,7 @@ static void unclear(struct eo_recording *r, const struct eo_layout_choice *choic
 {
   struct eo_error error;
   struct eo_tracks found;
-  enum eo_code code = eo_layout_find(r, choice, &found, NULL, &error);
+  enum eo_code code = eo_layout_find(&r, choice, NULL, NULL, &found, NULL, &error);
   ok(code == EO_ERROR_INPUT && !strcmp(error.pointer, pointer), "%s: %s %s", what, code ? error.pointer : "was found",
      code ? error.text : "");
   eo_recording_free(r);

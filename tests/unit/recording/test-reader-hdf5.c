@@ -80,7 +80,7 @@ static void test_channels(void)
   ok(r && !strcmp(eo_recording_unit(r, 0), "s") && !strcmp(eo_recording_unit(r, 1), "deg") &&
          !strcmp(eo_recording_name(r, 2), "rear gear"),
      "names and units");
-  ok(r && eo_recording_interval(r) == 5e-5 && noted(&notes, "\"settings\" with 3 values"),
+  ok(r && eo_recording_clock(r, 0).interval == 5e-5 && noted(&notes, "\"settings\" with 3 values"),
      "sampling rate, and what was left out");
   eo_recording_free(r);
 }

@@ -87,7 +87,7 @@ static void test_vectors(enum mat_ft version, enum matio_compression compression
   ok(r && column_of(r, "t") >= 0 && !wrong_values(r, column_of(r, "t"), t) &&
          !wrong_values(r, column_of(r, "phi1"), pinion) && !wrong_values(r, column_of(r, "phi2"), gear),
      "values");
-  ok(r && (c < 0 || cell_of(r, 65999, c) == counts[65999]) && fabs(eo_recording_interval(r) - 5e-5) < 1e-18,
+  ok(r && (c < 0 || cell_of(r, 65999, c) == counts[65999]) && fabs(eo_recording_clock(r, 0).interval - 5e-5) < 1e-18,
      "integers, sampling rate");
   if (version != MAT_FT_MAT4)
     ok(noted(&notes, "no channel of"), "the text is left out and said so");

@@ -156,7 +156,7 @@ static void test_kind(int toc, const char *what)
   ok(r && !wrong_rows(r, 350), "%s%s", what, r ? "" : error.text);
   ok(r && !strcmp(eo_recording_name(r, 0), "Pinion's angle") && !strcmp(eo_recording_unit(r, 1), "deg"),
      "name and unit");
-  ok(r && eo_recording_interval(r) == 5e-5 && eo_recording_start(r) == 0.25 && eo_recording_line(r, 3) == 0,
+  ok(r && eo_recording_clock(r, 0).interval == 5e-5 && eo_recording_clock(r, 0).start == 0.25 && eo_recording_line(r, 3) == 0,
      "sampling interval and start");
   eo_recording_free(r);
 }

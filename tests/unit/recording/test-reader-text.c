@@ -83,7 +83,7 @@ static void test_ways(void)
             "5e-5;10:00:00.2;17.7542265;63.25901205\n1e-4;10:00:00.3;18.35439856;63.49082088\n1.5e-4;10:00:00.4;18."
             "95457267;-63.72262965\n",
             "a block of header, a column of text");
-  ok(named(r, 1, "a", "") && r && fabs(eo_recording_interval(r) - 5e-5) < 1e-18, "and its sampling rate");
+  ok(named(r, 1, "a", "") && r && fabs(eo_recording_clock(r, 0).interval - 5e-5) < 1e-18, "and its sampling rate");
   eo_recording_free(r);
 }
 

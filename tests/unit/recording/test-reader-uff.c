@@ -100,7 +100,7 @@ static void check_even(const char *what)
   for (int i = 0; !wrong && i < COUNT; i++)
     wrong += cell_of(r, i, 0) != pinion(i) || cell_of(r, i, 1) != gear(i);
   ok(!wrong, "values");
-  ok(r && eo_recording_interval(r) == 5e-5 && eo_recording_start(r) == 0.5 &&
+  ok(r && eo_recording_clock(r, 0).interval == 5e-5 && eo_recording_clock(r, 0).start == 0.5 &&
          !strcmp(eo_recording_name(r, 0), "Pinion 12:3") && !strcmp(eo_recording_unit(r, 1), "deg"),
      "interval, start, name and unit");
   eo_recording_free(r);
