@@ -9,7 +9,7 @@
 
 static const char *const kinds[] = {"guess", "angles", "sine-cosine", "pulses", NULL};
 static const char *const units[] = {"guess", "deg", "rad", "turn", "count", NULL};
-static const char *const times[] = {"s", "ms", "us", "ns", NULL};
+static const char *const times[] = {"s", "ms", "us", "ns", "min", "d", NULL};
 static const char *const member_key[2] = {"pinion", "gear"};
 
 static int choice_of(const json_t *value, const char *const *choices, const char *pointer, struct eo_faults *faults)
@@ -86,9 +86,26 @@ static void read_lines(const json_t *lines, double target[2], struct eo_faults *
       target[i] = positive(pair ? json_array_get(lines, i) : lines, "/lines", faults);
 }
 
+/* The column of the times, or the pinion's and the gear's; their unit as a word or as seconds. */
+static void read_time(const json_t *document, struct eo_layout_request *r, struct eo_faults *faults)
+{
+  static const double time_scale[] = {1, 1e-3, 1e-6, 1e-9, 60, 86400};
+  const json_t *time = json_object_get(document, "time"), *unit = json_object_get(document, "time_unit");
+  if (json_is_array(time) && json_array_size(time) != 2)
+    eo_faults_add(faults, "/time", "Times are one column or two, the pinion's and the gear's.");
+  else if (json_is_array(time)) {
+    r->choice.time = column_of(json_array_get(time, 0), r->name[0], "/time", faults);
+    r->choice.gear_time = column_of(json_array_get(time, 1), r->name[5], "/time", faults);
+  } else
+    r->choice.time = column_of(time, r->name[0], "/time", faults);
+  if (json_is_number(unit))
+    r->choice.time_scale = positive(unit, "/time_unit", faults);
+  else if (unit)
+    r->choice.time_scale = time_scale[choice_of(unit, times, "/time_unit", faults)];
+}
+
 void eo_layout_decode(const json_t *document, struct eo_layout_request *r, struct eo_faults *faults)
 {
-  static const double time_scale[] = {1, 1e-3, 1e-6, 1e-9};
   static const char *const known[] = {"kind", "unit", "time", "time_unit", "columns", "sample_rate_Hz", "lines", NULL};
   const char *key;
   json_t *value;
@@ -111,9 +128,7 @@ void eo_layout_decode(const json_t *document, struct eo_layout_request *r, struc
   }
   r->choice.kind = (enum eo_layout_kind)choice_of(json_object_get(document, "kind"), kinds, "/kind", faults);
   r->choice.unit = (enum eo_layout_unit)choice_of(json_object_get(document, "unit"), units, "/unit", faults);
-  r->choice.time = column_of(json_object_get(document, "time"), r->name[0], "/time", faults);
-  if (json_object_get(document, "time_unit"))
-    r->choice.time_scale = time_scale[choice_of(json_object_get(document, "time_unit"), times, "/time_unit", faults)];
+  read_time(document, r, faults);
   r->choice.sample_rate = positive(json_object_get(document, "sample_rate_Hz"), "/sample_rate_Hz", faults);
   read_lines(json_object_get(document, "lines"), r->choice.lines, faults);
   read_columns(json_object_get(document, "columns"), r, faults);
@@ -129,11 +144,11 @@ static const char *unit_of(const struct eo_track_channel *c)
                                                    : "count";
 }
 
-static json_t *encode_column(const struct eo_track_channel *c)
+static json_t *encode_column(const struct eo_track_source *source, enum eo_track track)
 {
-  if (c->track != EO_TRACK_SINE_COSINE)
-    return json_integer(c->column[0] + 1);
-  return json_pack("[i, i]", c->column[0] + 1, c->column[1] + 1);
+  if (track != EO_TRACK_SINE_COSINE)
+    return json_integer(source->column[0] + 1);
+  return json_pack("[i, i]", source->column[0] + 1, source->column[1] + 1);
 }
 
 static const char *const no_time[] = {"none", NULL};
@@ -147,7 +162,8 @@ static const struct eo_outline column_outline = EO_OUTLINE("LayoutColumns", colu
 static const struct eo_outline_row layout_rows[] = {
     EO_KEY("kind", "word", "what the columns hold", .words = kinds + 1),
     EO_KEY("unit", "word", "of the angles", .when = "of angles and counts", .words = units + 1),
-    EO_KEY("time", "integer|word", "column of the time, from 1, or none", .when = "but of pulses", .words = no_time),
+    EO_KEY("time", "integer|word|[integer]", "column of the time, from 1, or none; the pinion's and the gear's",
+           .when = "but of pulses", .words = no_time),
     EO_KEY("time_unit", "word", "of the time", .when = "where it is one of these", .words = times),
     EO_KEY("sample_rate_Hz", "number", "rows per second", .unit = &eo_unit_Hz, .when = "without a column of the time"),
     EO_KEY("columns", "object", "where each encoder is", .outline = &column_outline),
@@ -161,20 +177,24 @@ json_t *eo_layout_encode(const struct eo_tracks *t)
   struct eo_object o = eo_object_open_as(&eo_layout_outline), columns = eo_object_open_as(&column_outline);
   bool angles = c[0].track == EO_TRACK_ANGLE, counts = angles && strcmp(unit_of(&c[0]), "count") == 0;
   double lines[2] = {angles ? 2 * M_PI / c[0].scale : c[0].lines, angles ? 2 * M_PI / c[1].scale : c[1].lines};
-  static const char *const time_name[] = {"s", "ms", "us", "ns"};
-  static const double time_scale[] = {1, 1e-3, 1e-6, 1e-9};
+  static const double time_scale[] = {1, 1e-3, 1e-6, 1e-9, 60, 86400};
+  const struct eo_track_source *source = t->source;
+  bool one = source[0].time == source[1].time || source[0].time < 0 || source[1].time < 0;
   eo_object_put(&o, "kind", json_string(kinds[1 + (int)c[0].track]));
   if (angles)
     eo_object_put(&o, "unit", json_string(unit_of(&c[0])));
   if (c[0].track != EO_TRACK_PULSES)
-    eo_object_put(&o, "time", t->time_column < 0 ? json_string(no_time[0]) : json_integer(t->time_column + 1));
-  for (int i = 0; i < 4; i++)
-    if (fabs(t->time_scale / time_scale[i] - 1) < 1e-9)
-      eo_object_put(&o, "time_unit", json_string(time_name[i]));
-  if (t->time_column < 0 && t->interval > 0)
+    eo_object_put(&o, "time",
+                  source[0].time < 0 ? json_string(no_time[0])
+                  : one              ? json_integer(source[0].time + 1)
+                                     : json_pack("[i, i]", source[0].time + 1, source[1].time + 1));
+  for (int i = 0; times[i]; i++)
+    if (fabs(source[0].time_scale / time_scale[i] - 1) < 1e-9)
+      eo_object_put(&o, "time_unit", json_string(times[i]));
+  if (source[0].time < 0 && t->interval > 0)
     eo_object_put(&o, "sample_rate_Hz", eo_json_real(1 / t->interval, NULL));
   for (int i = 0; i < 2; i++)
-    eo_object_put(&columns, member_key[i], encode_column(&c[i]));
+    eo_object_put(&columns, member_key[i], encode_column(&source[i], c[i].track));
   eo_object_put(&o, "columns", eo_object_close(&columns));
   if (!angles || counts)
     eo_object_put(&o, "lines", eo_json_reals(2, lines, 1, NULL, EO_DIGITS_NUMBER));

@@ -1,7 +1,8 @@
 /* The layout of a recording as people state it, in JSON; every key may be left out and is then guessed:
-     { "kind": "angles" | "sine-cosine" | "pulses", "unit": "deg" | "rad" | "turn" | "count", "time": COLUMN | "none",
-   "time_unit": "s" | "ms" | "us" | "ns", "columns": { "pinion": COLUMN | [SINE, COSINE], "gear": the same },
-   "sample_rate_Hz": 20000, "lines": 18000 | [pinion, gear] } A COLUMN is a name or a number from 1. */
+     { "kind": "angles" | "sine-cosine" | "pulses", "unit": "deg" | "rad" | "turn" | "count", "time": COLUMN | "none" |
+   [PINION'S, GEAR'S], "time_unit": "s" | "ms" | "us" | "ns" | "min" | "d" | seconds, "columns": { "pinion": COLUMN |
+   [SINE, COSINE], "gear": the same }, "sample_rate_Hz": 20000, "lines": 18000 | [pinion, gear] } A COLUMN is a name or
+   a number from 1. */
 #ifndef EASEOFF_DOCUMENT_LAYOUT_DOCUMENT_H
 #define EASEOFF_DOCUMENT_LAYOUT_DOCUMENT_H
 
@@ -13,7 +14,7 @@
 
 struct eo_layout_request {
   struct eo_layout_choice choice;
-  char name[5][EO_RECORDING_NAME]; /* what the names of choice point to: time, then member by member */
+  char name[6][EO_RECORDING_NAME]; /* what the names of choice point to: time, member by member, the gear's time */
 };
 
 /* Fills *request, which must stay where it is while choice is used; NULL or null: everything is guessed. Unknown keys

@@ -39,6 +39,7 @@ static enum eo_code read_recordings(struct work *w, const struct eo_measure_requ
       code = below_layout(
           eo_layout_combine(both[0], both[1], &w->layout.choice, r->spool_directory, &w->recording, &w->notes, error),
           error);
+    w->layout.choice.time = w->layout.choice.gear_time = NULL; /* each file has its own now */
     eo_recording_free(both[0]);
     eo_recording_free(both[1]);
   } else {

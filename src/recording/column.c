@@ -4,22 +4,26 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 #define ROWS 20000 /* that are looked at */
 
 static enum eo_code read_column(const struct eo_recording *recording, int column, int64_t rows, double *values,
-                                int64_t *count, struct eo_error *error)
+                                struct eo_column *look, struct eo_error *error)
 {
   int columns = eo_recording_columns(recording);
   double *block = malloc(1000 * (size_t)columns * sizeof *block);
   enum eo_code code = block ? EO_OK : eo_error_memory(error);
-  *count = 0;
+  look->count = 0;
   for (int64_t first = 0; !code && first < rows; first += 1000) {
     int64_t n = rows - first < 1000 ? rows - first : 1000;
     code = eo_recording_read(recording, first, n, block, error);
     for (int64_t i = 0; !code && i < n; i++)
-      if (!isnan(block[i * columns + column]))
-        values[(*count)++] = block[i * columns + column];
+      if (!isnan(block[i * columns + column])) {
+        look->first = look->count ? look->first : first + i;
+        look->last = first + i;
+        values[look->count++] = block[i * columns + column];
+      }
   }
   free(block);
   return code;
@@ -35,6 +39,20 @@ static void find_range(struct eo_column *look, const double *values)
     look->high = fmax(look->high, values[i]);
     look->whole = look->whole && values[i] == floor(values[i]);
   }
+}
+
+/* Nine tenths of the values lie within a fifth of the range of its ends, and both ends are in use; of a sine they would
+   be six tenths. */
+static void find_levels(struct eo_column *look, const double *values)
+{
+  int64_t low = 0, high = 0;
+  double fifth = (look->high - look->low) / 5;
+  for (int64_t i = 0; i < look->count; i++) {
+    low += values[i] < look->low + fifth;
+    high += values[i] > look->high - fifth;
+  }
+  look->levels = look->count > 20 && fifth > 0 && low + high > look->count * 9 / 10 && low > look->count / 20 &&
+                 high > look->count / 20;
 }
 
 /* A reset goes against the trend of all steps, by most of the range. */
@@ -82,10 +100,11 @@ enum eo_code eo_column_look(const struct eo_recording *recording, int column, st
     return eo_error_memory(error);
   memset(look, 0, sizeof *look);
   look->quantity = eo_unit_find(eo_recording_unit(recording, column), &look->factor);
-  enum eo_code code = read_column(recording, column, rows, values, &look->count, error);
+  enum eo_code code = read_column(recording, column, rows, values, look, error);
   if (!code) {
     find_range(look, values);
     find_steps(look, values);
+    find_levels(look, values);
   }
   free(values);
   return code;
@@ -152,4 +171,24 @@ bool eo_column_named(const char *name, const char *words)
     if (is_listed(word, (size_t)(end - word), words))
       return true;
   return false;
+}
+
+int eo_column_shared_words(const char *name, const char *other, const char *ignored)
+{
+  const char *word, *again;
+  int shared = 0;
+  uint64_t used = 0;
+  for (const char *end = next_word(name, &word); *word; end = next_word(end, &word)) {
+    size_t length = (size_t)(end - word);
+    int place = 0;
+    if (is_listed(word, length, ignored))
+      continue;
+    for (const char *stop = next_word(other, &again); *again; stop = next_word(stop, &again), place++)
+      if (place < 64 && !(used >> place & 1) && (size_t)(stop - again) == length && !strncasecmp(word, again, length)) {
+        used |= (uint64_t)1 << place;
+        shared++;
+        break;
+      }
+  }
+  return shared;
 }

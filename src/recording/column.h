@@ -12,12 +12,14 @@ struct eo_column {
   enum eo_quantity quantity; /* of its unit */
   double factor;             /* of its unit */
   int64_t count;             /* values looked at */
+  int64_t first, last;       /* rows of the first and the last of them */
   double low, high;
   bool whole;       /* all are whole numbers */
   double step;      /* mean step between neighbours, without the resets */
   double spread;    /* standard deviation of steps over |step| */
   int rises, falls; /* steps up and down */
   int resets;       /* steps against the trend by more than half the range */
+  bool levels;      /* nearly all values lie at one of two levels, as those of a square wave */
   double period;    /* mean height of the resets and a step, roughly the turn; 0: none */
 };
 
@@ -28,6 +30,9 @@ enum eo_code eo_column_look(const struct eo_recording *recording, int column, st
 /* The turn after which a column starts again, exactly: 360, 2 pi, 1, or the roundest number of counts that the values
    allow. 0: it does not start again, or after what cannot be told. */
 double eo_column_turn(const struct eo_column *look);
+
+/* Words that two names share, each as often as it is in both; words of the list count for nothing. */
+int eo_column_shared_words(const char *name, const char *other, const char *ignored);
 
 /* True when one of the words, separated by '|' and in lower case, is a word of the name; digits are words of their own.
  */

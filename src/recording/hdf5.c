@@ -1,7 +1,8 @@
-/* HDF5 files, MATLAB's 7.3 among them: data sets of one dimension, or of two with one channel per column. Runs in a
-   process of its own. */
+/* HDF5 files, MATLAB's 7.3 among them: data sets of one dimension, of two with one channel per column, of records with
+   one channel per field, and references to such. Runs in a process of its own. */
 #define H5_USE_110_API
 #include "recording/readers.h"
+#include "recording/tree.h"
 
 #include <hdf5.h>
 #include <stdbool.h>
@@ -10,77 +11,116 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#define CHANNELS EO_RECORDING_COLUMNS
-#define WIDE 64 /* a data set with more columns is no table of channels */
+#define CHANNELS EO_TREE_CHANNELS
+#define WIDE 64                   /* a data set with more columns is no table of channels */
+#define FIELDS 64                 /* fields of a record that are looked at */
+#define TEXTS 64                  /* texts of a list */
+#define REFERENCES 4096           /* elements of an array of structs or a cell that are looked at */
+#define CACHE ((size_t)256 << 20) /* bytes of chunks kept for all data sets together */
+#define PATH EO_TREE_PATH
 
 struct channel {
-  hid_t set;       /* borrowed from sets */
+  hid_t set, type; /* borrowed from sets; of a value in memory: a double, or a record with one field */
   int rank, along; /* dimensions; the one along which values follow each other */
   hsize_t across;  /* place in the other one */
 };
 
 struct hdf5 {
-  int count, sets, left_out;
-  hid_t set[CHANNELS];
+  int sets, left_out;
+  size_t cache; /* bytes promised so far */
+  hid_t file, set[CHANNELS];
   struct channel channel[CHANNELS];
-  struct eo_series series[CHANNELS];
-  double interval; /* s, of the file; 0: not stated */
+  struct eo_tree *tree; /* owned */
+  struct eo_notes *notes;
 };
 
-/* A text attribute of fixed or variable length. */
-static bool read_text_attribute(hid_t object, const char *name, char *text, size_t size)
+/* ---- facts ---- */
+
+static bool join(char *path, const char *group, const char *name)
 {
-  *text = '\0';
-  if (H5Aexists(object, name) <= 0)
-    return false;
-  hid_t attribute = H5Aopen(object, name, H5P_DEFAULT), type = H5Aget_type(attribute), space = H5Aget_space(attribute);
-  size_t length = H5Tget_size(type);
-  if (H5Tget_class(type) == H5T_STRING && H5Sget_simple_extent_npoints(space) == 1) {
-    char fixed[256] = "", *variable = NULL;
-    if (H5Tis_variable_str(type) > 0 && H5Aread(attribute, type, &variable) >= 0 && variable) {
-      snprintf(text, size, "%s", variable);
-      H5Dvlen_reclaim(type, space, H5P_DEFAULT, &variable);
-    } else if (H5Tis_variable_str(type) == 0 && length < sizeof fixed && H5Aread(attribute, type, fixed) >= 0)
-      snprintf(text, size, "%.*s", (int)length, fixed);
-  }
-  H5Sclose(space);
-  H5Tclose(type);
-  H5Aclose(attribute);
-  return *text;
+  return snprintf(path, PATH, "%s%s%s", group, *group ? "/" : "", name) < PATH;
 }
 
-static double read_number(hid_t attribute)
+/* The texts of an attribute or data set with `count` of them, one a line; size bytes of fixed length, else variable. */
+static void join_texts(const char *bytes, size_t width, char **variable, hssize_t count, char *list, size_t size)
 {
-  double value = 0;
-  hid_t type = H5Aget_type(attribute), space = H5Aget_space(attribute);
-  H5T_class_t class = H5Tget_class(type);
-  if ((class == H5T_INTEGER || class == H5T_FLOAT) && H5Sget_simple_extent_npoints(space) == 1 &&
-      H5Aread(attribute, H5T_NATIVE_DOUBLE, &value) < 0)
-    value = 0;
-  H5Sclose(space);
-  H5Tclose(type);
-  return value;
+  size_t used = 0;
+  list[0] = '\0';
+  for (hssize_t i = 0; i < count; i++) {
+    const char *text = variable ? variable[i] ? variable[i] : "" : bytes + (size_t)i * width;
+    size_t n = variable ? strlen(text) : strnlen(text, width);
+    while (n && text[n - 1] == ' ')
+      n--;
+    if (used + n + 2 > size)
+      return;
+    used += (size_t)snprintf(list + used, size - used, "%s%.*s", i ? "\n" : "", (int)n, text);
+  }
 }
+
+/* Reads texts of an attribute (set: data set) into one list; false when they are none. */
+static bool read_texts(hid_t object, bool set, hid_t type, hid_t space, char *list, size_t size)
+{
+  hssize_t count = H5Sget_simple_extent_npoints(space);
+  size_t width = H5Tget_size(type);
+  if (H5Tget_class(type) != H5T_STRING || count < 1 || count > TEXTS || width > 4096)
+    return false;
+  bool variable = H5Tis_variable_str(type) > 0, done = false;
+  char **pointers = variable ? calloc((size_t)count, sizeof(char *)) : NULL,
+       *bytes = variable ? NULL : calloc((size_t)count, width + 1);
+  void *to = variable ? (void *)pointers : (void *)bytes;
+  if (to && (set ? H5Dread(object, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, to) : H5Aread(object, type, to)) >= 0) {
+    join_texts(bytes, width, pointers, count, list, size);
+    if (variable)
+      H5Dvlen_reclaim(type, space, H5P_DEFAULT, pointers);
+    done = true;
+  }
+  free(pointers);
+  free(bytes);
+  return done;
+}
+
+static void add_texts(struct hdf5 *h, const char *path, const char *list)
+{
+  if (strchr(list, '\n'))
+    eo_tree_add_list(h->tree, path, list);
+  else if (*list)
+    eo_tree_add_text(h->tree, path, list);
+}
+
+struct attributes {
+  struct hdf5 *h;
+  const char *path;
+};
 
 static herr_t visit_attribute(hid_t object, const char *name, const H5A_info_t *info, void *context)
 {
-  double *interval = context;
-  (void)info;
+  const struct attributes *a = context;
+  char path[PATH], list[4096];
+  double value = 0;
   hid_t attribute = H5Aopen(object, name, H5P_DEFAULT);
-  if (attribute >= 0 && !(*interval > 0))
-    *interval = eo_series_stated_interval(name, read_number(attribute));
-  if (attribute >= 0)
-    H5Aclose(attribute);
+  (void)info;
+  if (attribute < 0 || !join(path, a->path, name))
+    return 0;
+  hid_t type = H5Aget_type(attribute), space = H5Aget_space(attribute);
+  H5T_class_t class = H5Tget_class(type);
+  if (read_texts(attribute, false, type, space, list, sizeof list))
+    add_texts(a->h, path, list);
+  else if ((class == H5T_INTEGER || class == H5T_FLOAT) && H5Sget_simple_extent_npoints(space) == 1 &&
+           H5Aread(attribute, H5T_NATIVE_DOUBLE, &value) >= 0)
+    eo_tree_add_number(a->h->tree, path, value);
+  H5Sclose(space);
+  H5Tclose(type);
+  H5Aclose(attribute);
   return 0;
 }
 
-/* From an attribute such as "sample_rate"; 0: none. */
-static double interval_of(hid_t object)
+static void add_attributes(struct hdf5 *h, hid_t object, const char *path)
 {
-  double interval = 0;
-  H5Aiterate2(object, H5_INDEX_NAME, H5_ITER_NATIVE, NULL, visit_attribute, &interval);
-  return interval;
+  struct attributes a = {h, path};
+  H5Aiterate2(object, H5_INDEX_NAME, H5_ITER_NATIVE, NULL, visit_attribute, &a);
 }
+
+/* ---- data sets ---- */
 
 /* Data of other files are not ours to read, whatever the file says. */
 static bool reads_other_files(hid_t set)
@@ -91,86 +131,218 @@ static bool reads_other_files(hid_t set)
   return other;
 }
 
-static bool is_text_or_cell(hid_t set)
+static void matlab_class(hid_t set, char *class, size_t size)
 {
-  char class[32];
-  return read_text_attribute(set, "MATLAB_class", class, sizeof class) &&
-         (!strcmp(class, "char") || !strcmp(class, "cell"));
-}
-
-/* The dimensions of a data set that can be channels; rank 0: none. */
-static int numeric_rank(hid_t set, hsize_t *length)
-{
-  hid_t type = H5Dget_type(set), space = H5Dget_space(set);
-  H5T_class_t class = H5Tget_class(type);
-  int rank = H5Sget_simple_extent_ndims(space);
-  bool usable = (class == H5T_INTEGER || class == H5T_FLOAT) && (rank == 1 || rank == 2) &&
-                H5Sget_simple_extent_dims(space, length, NULL) == rank;
+  *class = '\0';
+  if (H5Aexists(set, "MATLAB_class") <= 0)
+    return;
+  hid_t attribute = H5Aopen(set, "MATLAB_class", H5P_DEFAULT), type = H5Aget_type(attribute),
+        space = H5Aget_space(attribute);
+  if (!read_texts(attribute, false, type, space, class, size))
+    *class = '\0';
   H5Sclose(space);
   H5Tclose(type);
-  return usable && !is_text_or_cell(set) && !reads_other_files(set) ? rank : 0;
+  H5Aclose(attribute);
 }
 
-/* A single number whose name says that it is the sampling rate or interval, as MATLAB users keep it. */
-static void use_scalar(struct hdf5 *h, hid_t set, const char *name)
+/* MATLAB's texts are numbers of two bytes. */
+static void add_characters(struct hdf5 *h, hid_t set, hsize_t count, const char *path)
+{
+  uint16_t wide[128];
+  char text[129];
+  if (count > 128 || H5Dread(set, H5T_NATIVE_UINT16, H5S_ALL, H5S_ALL, H5P_DEFAULT, wide) < 0)
+    return;
+  for (hsize_t i = 0; i < count; i++)
+    text[i] = (char)(wide[i] < 256 ? wide[i] : '?');
+  text[count] = '\0';
+  eo_tree_add_text(h->tree, path, text);
+}
+
+static void add_number(struct hdf5 *h, hid_t set, const char *path)
 {
   double value = 0;
-  if (H5Dread(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, &value) < 0)
-    return;
-  double interval = eo_series_stated_interval(name, value);
-  if (interval > 0)
-    h->interval = interval;
+  if (H5Dread(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, &value) >= 0)
+    eo_tree_add_number(h->tree, path, value);
 }
 
-/* One channel per column, columns lying across the longer dimension. */
-static bool add_channels(struct hdf5 *h, hid_t set, const char *name, int rank, const hsize_t *length)
+/* One channel per column, columns lying across the longer dimension. type: of a value in memory. */
+static bool add_channels(struct hdf5 *h, hid_t set, hid_t type, bool whole, const char *path, int rank,
+                         const hsize_t *length)
 {
   int along = rank == 2 && length[1] > length[0];
   hsize_t across = rank == 2 ? length[!along] : 1;
-  if (across > WIDE || h->count + (int)across > CHANNELS)
-    return false;
-  struct eo_series series = {.length = (int64_t)length[along], .interval = interval_of(set)};
-  static const char *const keys[] = {"unit", "units", "Unit", "Units", "unit_string"};
-  for (size_t i = 0;
-       i < sizeof keys / sizeof *keys && !read_text_attribute(set, keys[i], series.unit, sizeof series.unit); i++)
-    ;
-  for (hsize_t k = 0; k < across; k++) {
-    if (across > 1)
-      snprintf(series.name, sizeof series.name, "%.50s %d", name, (int)k + 1);
-    else
-      snprintf(series.name, sizeof series.name, "%s", name);
-    h->channel[h->count] = (struct channel){set, rank, along, k};
-    h->series[h->count++] = series;
-  }
-  return true;
+  int base = across > WIDE || length[along] > INT64_MAX / 16
+                 ? -1
+                 : eo_tree_add_series(h->tree, path, (int)across, (int64_t)length[along], whole);
+  for (hsize_t k = 0; base >= 0 && k < across; k++)
+    h->channel[base + (int)k] = (struct channel){set, type, rank, along, k};
+  return base >= 0;
 }
 
-static void add_set(struct hdf5 *h, hid_t file, const char *path)
+/* Records: each field that is a number is a channel. */
+static bool add_records(struct hdf5 *h, hid_t set, hid_t type, const char *path, int rank, const hsize_t *length)
+{
+  bool any = false;
+  int fields = H5Tget_nmembers(type);
+  for (int i = 0; i < fields && i < FIELDS && rank == 1; i++) {
+    char *name = H5Tget_member_name(type, (unsigned)i), below[PATH];
+    hid_t field = H5Tget_member_type(type, (unsigned)i);
+    H5T_class_t class = H5Tget_class(field);
+    if ((class == H5T_INTEGER || class == H5T_FLOAT) && name && join(below, path, name)) {
+      hid_t memory = H5Tcreate(H5T_COMPOUND, sizeof(double));
+      H5Tinsert(memory, name, 0, H5T_NATIVE_DOUBLE);
+      bool added = add_channels(h, set, memory, class == H5T_INTEGER, below, rank, length);
+      any = any || added;
+      if (!added)
+        H5Tclose(memory);
+    }
+    H5Tclose(field);
+    H5free_memory(name);
+  }
+  return any;
+}
+
+static void add_object(struct hdf5 *h, hid_t object, const char *path, int depth);
+
+/* What MATLAB refers to: the elements of a cell, or one field of all elements of an array of structs, "ch(2)/y". */
+static void add_references(struct hdf5 *h, hid_t set, hsize_t count, bool cell, const char *path, int depth)
+{
+  hobj_ref_t *reference = count && count <= REFERENCES ? malloc(count * sizeof *reference) : NULL;
+  const char *slash = strrchr(path, '/');
+  if (!reference || H5Dread(set, H5T_STD_REF_OBJ, H5S_ALL, H5S_ALL, H5P_DEFAULT, reference) < 0)
+    count = 0;
+  for (hsize_t i = 0; i < count; i++) {
+    char below[PATH];
+    int n = cell || !slash
+                ? snprintf(below, sizeof below, "%s %d", path, (int)i + 1)
+                : snprintf(below, sizeof below, "%.*s(%d)/%s", (int)(slash - path), path, (int)i + 1, slash + 1);
+    hid_t object = H5Rdereference2(set, H5P_DEFAULT, H5R_OBJECT, &reference[i]);
+    if (object >= 0 && n < (int)sizeof below)
+      add_object(h, object, below, depth + 1);
+    else if (object >= 0)
+      H5Oclose(object);
+  }
+  free(reference);
+}
+
+/* The cache holds a whole chunk of each data set as long as all together stay small: without it a chunk would be
+   unpacked again for every piece that is read of it. */
+static hid_t open_cached(struct hdf5 *h, hid_t set)
+{
+  hid_t list = H5Dget_create_plist(set), type = H5Dget_type(set), again = -1;
+  hsize_t chunk[8];
+  size_t bytes = H5Tget_size(type);
+  int rank = H5Pget_layout(list) == H5D_CHUNKED ? H5Pget_chunk(list, 8, chunk) : 0;
+  for (int i = 0; i < rank && i < 8; i++)
+    bytes = chunk[i] < CACHE && bytes < CACHE ? bytes * chunk[i] : CACHE;
+  if (rank > 0 && rank <= 8 && bytes > (1 << 20) && bytes < CACHE - h->cache) {
+    char name[1024];
+    hid_t access = H5Pcreate(H5P_DATASET_ACCESS);
+    H5Pset_chunk_cache(access, 521, bytes + 1024, 1);
+    if (H5Iget_name(set, name, sizeof name) > 0)
+      again = H5Dopen2(h->file, name, access);
+    h->cache += again >= 0 ? bytes : 0;
+    H5Pclose(access);
+  }
+  H5Tclose(type);
+  H5Pclose(list);
+  return again;
+}
+
+static bool keep_set(struct hdf5 *h, hid_t set)
+{
+  if (h->sets < CHANNELS)
+    h->set[h->sets++] = set;
+  return h->sets <= CHANNELS;
+}
+
+/* A data set with numbers, texts or references; it is closed unless channels read it. */
+static void add_set(struct hdf5 *h, hid_t set, const char *path, int depth)
 {
   hsize_t length[2] = {0, 0};
-  hid_t set = H5Dopen(file, path, H5P_DEFAULT);
-  if (set < 0)
-    return;
-  const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path;
-  int rank = numeric_rank(set, length);
-  if (rank && length[0] * (rank == 2 ? length[1] : 1) == 1)
-    use_scalar(h, set, name);
-  else if (rank && h->sets < CHANNELS && length[0] <= INT64_MAX / 2 && length[1] <= INT64_MAX / 2 &&
-           add_channels(h, set, name, rank, length)) {
-    h->set[h->sets++] = set;
-    return;
-  } else
+  char class_name[32], list[4096];
+  hid_t type = H5Dget_type(set), space = H5Dget_space(set), cached = -1;
+  H5T_class_t class = H5Tget_class(type);
+  int rank = H5Sget_simple_extent_ndims(space);
+  hssize_t count = H5Sget_simple_extent_npoints(space);
+  bool plain = rank >= 0 && rank <= 2 && H5Sget_simple_extent_dims(space, length, NULL) == rank &&
+               !reads_other_files(set) && count > 0;
+  bool number = class == H5T_INTEGER || class == H5T_FLOAT, kept = false;
+  matlab_class(set, class_name, sizeof class_name);
+  bool object = H5Aexists(set, "MATLAB_object_decode") > 0;
+  if (rank == 0)
+    length[0] = 1;
+  if (plain && h->sets < CHANNELS && count > 1 && (number || class == H5T_COMPOUND) &&
+      (cached = open_cached(h, set)) >= 0) {
+    H5Dclose(set);
+    set = cached;
+  }
+  add_attributes(h, set, path);
+  if (!plain || object)
     h->left_out++;
-  H5Dclose(set);
+  else if (!strcmp(class_name, "char"))
+    add_characters(h, set, (hsize_t)count, path);
+  else if (class == H5T_REFERENCE && depth < 8)
+    add_references(h, set, (hsize_t)count, !strcmp(class_name, "cell"), path, depth);
+  else if (read_texts(set, true, type, space, list, sizeof list))
+    add_texts(h, path, list);
+  else if (number && count == 1)
+    add_number(h, set, path);
+  else if (h->sets < CHANNELS &&
+           ((number && add_channels(h, set, H5T_NATIVE_DOUBLE, class == H5T_INTEGER, path, rank ? rank : 1, length)) ||
+            (class == H5T_COMPOUND && add_records(h, set, type, path, rank, length))))
+    kept = keep_set(h, set);
+  else
+    h->left_out++;
+  if (object)
+    eo_notes_add(h->notes,
+                 "\"%.60s\" is an object (a table, timetable, timeseries or the like) whose numbers only MATLAB reads; "
+                 "save s = table2struct(T, 'ToScalar', true) with the times in seconds instead.",
+                 path);
+  H5Sclose(space);
+  H5Tclose(type);
+  if (!kept)
+    H5Dclose(set);
+}
+
+struct group {
+  struct hdf5 *h;
+  const char *path;
+  int depth;
+};
+
+static herr_t visit_link(hid_t group, const char *name, const H5L_info_t *info, void *context)
+{
+  const struct group *g = context;
+  char path[PATH];
+  if (info->type == H5L_TYPE_EXTERNAL || !join(path, g->path, name))
+    return 0;
+  hid_t object = H5Oopen(group, name, H5P_DEFAULT);
+  if (object >= 0)
+    add_object(g->h, object, path, g->depth + 1);
+  return 0;
+}
+
+/* A group or data set; closes it. */
+static void add_object(struct hdf5 *h, hid_t object, const char *path, int depth)
+{
+  H5I_type_t kind = H5Iget_type(object);
+  if (kind == H5I_DATASET) {
+    add_set(h, object, path, depth);
+    return;
+  }
+  if (kind == H5I_GROUP && depth < 16) {
+    struct group group = {h, path, depth};
+    add_attributes(h, object, path);
+    H5Literate(object, H5_INDEX_NAME, H5_ITER_NATIVE, NULL, visit_link, &group);
+  }
+  H5Oclose(object);
 }
 
 /* MATLAB keeps what cells and objects refer to in groups whose names begin with '#'. */
-static herr_t visit(hid_t file, const char *path, const H5O_info_t *info, void *context)
+static herr_t visit_root(hid_t group, const char *name, const H5L_info_t *info, void *context)
 {
-  struct hdf5 *h = context;
-  if (info->type == H5O_TYPE_DATASET && path[0] != '#')
-    add_set(h, file, path);
-  return 0;
+  return *name == '#' ? 0 : visit_link(group, name, info, context);
 }
 
 static enum eo_code read_values(void *context, int series, int64_t first, int64_t count, double *values,
@@ -184,30 +356,37 @@ static enum eo_code read_values(void *context, int series, int64_t first, int64_
   hid_t space = H5Dget_space(c->set), memory = H5Screate_simple(1, &length, NULL);
   herr_t status = H5Sselect_hyperslab(space, H5S_SELECT_SET, start, NULL, size, NULL);
   if (status >= 0)
-    status = H5Dread(c->set, H5T_NATIVE_DOUBLE, memory, space, H5P_DEFAULT, values);
+    status = H5Dread(c->set, c->type, memory, space, H5P_DEFAULT, values);
   H5Sclose(memory);
   H5Sclose(space);
   if (status < 0)
     return eo_error_set(
         error, EO_ERROR_INPUT, "",
         "HDF5: the values of \"%s\" from %lld on cannot be read; the file is damaged or uses an unknown filter.",
-        h->series[series].name, (long long)first);
+        eo_tree_series(h->tree)[series].name, (long long)first);
+  for (int64_t i = 0; i < count; i++)
+    values[i] = eo_tree_value(h->tree, series, values[i]);
   return EO_OK;
 }
 
 static enum eo_code read_file(struct hdf5 *h, hid_t file, int64_t bytes, const struct eo_reader_options *options,
                               const struct eo_series_sink *sink, struct eo_notes *notes, struct eo_error *error)
 {
-  h->interval = interval_of(file);
-  if (H5Ovisit2(file, H5_INDEX_NAME, H5_ITER_NATIVE, visit, h, H5O_INFO_BASIC) < 0)
+  struct group root = {h, "", 0};
+  h->file = file;
+  h->notes = notes;
+  enum eo_code code = eo_tree_new(&h->tree, error);
+  if (code)
+    return code;
+  add_attributes(h, file, "");
+  if (H5Literate(file, H5_INDEX_NAME, H5_ITER_NATIVE, NULL, visit_root, &root) < 0)
     return eo_error_set(error, EO_ERROR_INPUT, "", "HDF5: the groups of the file cannot be read; it is damaged.");
+  eo_tree_settle(h->tree, notes);
   if (h->left_out)
     eo_notes_add(notes, "%d data set%s %s no channel of numbers and %s left out.", h->left_out,
                  h->left_out == 1 ? "" : "s", h->left_out == 1 ? "is" : "are", h->left_out == 1 ? "was" : "were");
-  for (int i = 0; i < h->count; i++)
-    if (!(h->series[i].interval > 0))
-      h->series[i].interval = h->interval;
-  struct eo_series_file content = {h->series, h->count, bytes, options->max_bytes, read_values, h};
+  struct eo_series_file content = {
+      eo_tree_series(h->tree), eo_tree_count(h->tree), bytes, options->max_bytes, read_values, h};
   return eo_series_copy(&content, sink, notes, error);
 }
 
@@ -230,6 +409,7 @@ enum eo_code eo_hdf5_read(const char *path, const struct eo_reader_options *opti
                           : read_file(h, file, state.st_size, options, sink, notes, error);
   for (int i = 0; i < h->sets; i++)
     H5Dclose(h->set[i]);
+  eo_tree_free(h->tree);
   if (file >= 0)
     H5Fclose(file);
   free(h);

@@ -183,10 +183,12 @@ static enum eo_code no_answer(int state, struct eo_error *error)
                       "The file is damaged or takes too much memory or time: its reader gave up without an answer.");
 }
 
-static void end_series(struct eo_series *series)
+static void end_series(struct eo_series *series, int columns)
 {
   series->name[sizeof series->name - 1] = '\0';
   series->unit[sizeof series->unit - 1] = '\0';
+  if (series->clock.column >= columns)
+    series->clock.column = -1;
 }
 
 static enum eo_code receive_columns(struct parent *p, int count, struct eo_error *error)
@@ -200,7 +202,7 @@ static enum eo_code receive_columns(struct parent *p, int count, struct eo_error
   if (state != RECEIVED)
     code = no_answer(state, error);
   for (int c = 0; !code && c < count; c++)
-    end_series(&column[c]);
+    end_series(&column[c], count);
   if (!code) {
     p->columns = count;
     code = p->sink->begin(p->sink->context, column, count, error);

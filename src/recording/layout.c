@@ -1,15 +1,14 @@
-#include "recording/layout.h"
-#include "recording/column.h"
+#include "recording/layout_private.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
-#define TURN 6.283185307179586 /* rad */
+#define TURN EO_TURN
 #define PINION_WORDS "1|pinion|ritzel|input|driver|drive|driving|eingang|antrieb|motor|p"
 #define GEAR_WORDS "2|gear|wheel|rad|grossrad|output|driven|ausgang|abtrieb|g"
-#define TIME_WORDS "t|time|zeit|timestamp|elapsed|x"
 #define SINE_WORDS "sin|sine|sinus"
 #define COSINE_WORDS "cos|cosine|kosinus|cosinus"
 #define SINE_LETTER "a" /* only of names without such a word: in a_sin and a_cos it names the encoder */
@@ -17,22 +16,11 @@
 #define OTHER_WORDS                                                                                             \
   "torque|moment|drehmoment|speed|rpm|drehzahl|temperature|temp|temperatur|acc|acceleration|accel|force|kraft|" \
   "trigger|index|sample|count_no|status"
+#define INCREMENT_WORDS "increment|increments|inkrement|inkremente|delta|diff|difference|differenz|dcount|dcounts"
 
 static const char *const member_names[2] = {"pinion", "gear"};
 
-struct guess {
-  const struct eo_recording *recording;
-  const struct eo_layout_choice *choice;
-  struct eo_tracks *tracks;
-  struct eo_notes *notes;
-  int columns;
-  struct eo_column look[EO_RECORDING_COLUMNS];
-  int candidates, candidate[EO_RECORDING_COLUMNS]; /* columns that may be angles, tracks or pulses */
-  enum eo_layout_kind kind;
-};
-
-/* For people: the name of a column, or its number. */
-static const char *label(const struct guess *g, int column, char *text, size_t size)
+const char *eo_layout_label(const struct eo_guess *g, int column, char *text, size_t size)
 {
   const char *name = eo_recording_name(g->recording, column);
   if (*name)
@@ -42,9 +30,8 @@ static const char *label(const struct guess *g, int column, char *text, size_t s
   return text;
 }
 
-/* A column by its name, else by its number. */
-static enum eo_code find_chosen(const struct guess *g, const char *chosen, const char *pointer, int *column,
-                                struct eo_error *error)
+enum eo_code eo_layout_chosen(const struct eo_guess *g, const char *chosen, const char *pointer, int *column,
+                              struct eo_error *error)
 {
   for (int c = 0; c < g->columns; c++)
     if (!strcmp(eo_recording_name(g->recording, c), chosen)) {
@@ -60,30 +47,16 @@ static enum eo_code find_chosen(const struct guess *g, const char *chosen, const
   return EO_OK;
 }
 
-/* Time goes up by nearly equal steps and never starts again; a unit or a name that says so counts more than the values.
- */
-static double time_score(const struct guess *g, int column)
-{
-  const struct eo_column *look = &g->look[column];
-  const char *name = eo_recording_name(g->recording, column);
-  if (look->count < 2 || look->falls > look->rises / 10 || look->step <= 0)
-    return 0;
-  double score = look->quantity == EO_QUANTITY_TIME ? 4 : 0;
-  score += eo_column_named(name, TIME_WORDS) ? 2 : 0;
-  if (score > 0 || look->quantity != EO_QUANTITY_NONE || *name)
-    return score;
-  return !look->resets && look->spread < 1e-3 && look->step < 0.1 && !look->whole ? 1 / (1 + look->spread) : 0;
-}
-
 /* Several columns of times with different lengths, and nothing else, are pulses. */
-static bool looks_like_pulses(const struct guess *g)
+static bool looks_like_pulses(const struct eo_guess *g)
 {
   int times = 0;
   bool uneven = false;
   for (int c = 0; c < g->columns; c++) {
     const struct eo_column *look = &g->look[c];
-    if (look->falls || look->resets || look->rises < 2 ||
-        (look->quantity != EO_QUANTITY_TIME && look->quantity != EO_QUANTITY_NONE))
+    bool ticks = look->quantity == EO_QUANTITY_COUNT && eo_recording_tick(g->recording) > 0;
+    if (look->falls || look->resets || look->rises < 2 || eo_recording_clock(g->recording, c).column >= 0 ||
+        (look->quantity != EO_QUANTITY_TIME && look->quantity != EO_QUANTITY_NONE && !ticks))
       return false;
     times++;
     uneven = uneven || eo_recording_length(g->recording, c) != eo_recording_length(g->recording, 0) ||
@@ -93,56 +66,17 @@ static bool looks_like_pulses(const struct guess *g)
          !(eo_recording_clock(g->recording, 0).interval > 0);
 }
 
-/* Without a column of time the rows are even: an interval from the file or the caller. */
-static enum eo_code find_interval(struct guess *g, struct eo_error *error)
-{
-  g->tracks->time_column = -1;
-  g->tracks->interval = g->choice->sample_rate > 0 ? 1 / g->choice->sample_rate
-                                                   : eo_recording_clock(g->recording, 0).interval;
-  if (!(g->tracks->interval > 0))
-    return eo_error_set(error, EO_ERROR_INPUT, "/sample_rate_Hz",
-                        "No column holds the time and the file states no sampling rate; give one.");
-  if (!(g->choice->sample_rate > 0))
-    eo_notes_add(g->notes, "The file states a sampling rate of %.8g Hz.", 1 / g->tracks->interval);
-  return EO_OK;
-}
-
-static enum eo_code find_time(struct guess *g, struct eo_error *error)
-{
-  char text[80];
-  int best = -1;
-  g->tracks->time_scale = g->choice->time_scale > 0 ? g->choice->time_scale : 1;
-  if (g->choice->time && strcmp(g->choice->time, "none")) {
-    enum eo_code code = find_chosen(g, g->choice->time, "/time", &best, error);
-    if (code)
-      return code;
-  } else if (!g->choice->time && !(g->choice->sample_rate > 0)) {
-    double most = 0;
-    for (int c = 0; c < g->columns; c++)
-      if (time_score(g, c) > most) {
-        most = time_score(g, c);
-        best = c;
-      }
-  }
-  if (best < 0)
-    return find_interval(g, error);
-  g->tracks->time_column = best;
-  if (g->look[best].quantity == EO_QUANTITY_TIME && !(g->choice->time_scale > 0))
-    g->tracks->time_scale = g->look[best].factor;
-  eo_notes_add(g->notes, "%s is taken as time in units of %g s: steps of %.6g s.", label(g, best, text, sizeof text),
-               g->tracks->time_scale, g->look[best].step * g->tracks->time_scale);
-  return EO_OK;
-}
-
 /* What is neither time nor empty, constant or of another quantity. */
-static void find_candidates(struct guess *g)
+static void find_candidates(struct eo_guess *g)
 {
   for (int c = 0; c < g->columns; c++) {
     const struct eo_column *look = &g->look[c];
-    if (c == g->tracks->time_column || !look->count || look->quantity == EO_QUANTITY_OTHER ||
-        (look->quantity == EO_QUANTITY_TIME && g->kind != EO_LAYOUT_PULSES))
+    enum eo_quantity q = look->quantity;
+    bool pulses = g->kind == EO_LAYOUT_PULSES;
+    if (!look->count || (!pulses && (g->time[c] || g->number[c] || q == EO_QUANTITY_TIME)) || q == EO_QUANTITY_OTHER ||
+        q == EO_QUANTITY_TORQUE || q == EO_QUANTITY_SPEED || q == EO_QUANTITY_FREQUENCY)
       continue;
-    if (look->quantity != EO_QUANTITY_ANGLE && eo_column_named(eo_recording_name(g->recording, c), OTHER_WORDS))
+    if (q != EO_QUANTITY_ANGLE && eo_column_named(eo_recording_name(g->recording, c), OTHER_WORDS))
       continue;
     g->candidate[g->candidates++] = c;
   }
@@ -155,9 +89,33 @@ static bool swings(const struct eo_column *look)
   return less - look->resets > (look->rises + look->falls) / 10;
 }
 
-static enum eo_layout_kind guess_kind(const struct guess *g)
+/* Two or four columns with two levels each, and no angle beside them, are square waves. */
+static bool find_squares(struct eo_guess *g)
+{
+  int squares = 0, square[EO_RECORDING_COLUMNS];
+  for (int i = 0; i < g->candidates; i++) {
+    const struct eo_column *look = &g->look[g->candidate[i]];
+    if (look->levels && (look->quantity == EO_QUANTITY_VOLTAGE || look->quantity == EO_QUANTITY_NONE ||
+                         look->quantity == EO_QUANTITY_CURRENT))
+      square[squares++] = g->candidate[i];
+  }
+  if (squares != 2 && squares != 4)
+    return false;
+  g->candidates = squares;
+  memcpy(g->candidate, square, (size_t)squares * sizeof *square);
+  return true;
+}
+
+/* Angles where two columns turn together, whatever swings beside them; else what most columns look like. */
+static void guess_kind(struct eo_guess *g)
 {
   int tracks = 0;
+  bool pair = (!g->kind || g->kind == EO_LAYOUT_ANGLES) && eo_layout_find_pair(g);
+  if (!g->kind && !pair && find_squares(g)) {
+    g->square = true;
+    g->kind = g->candidates == 4 ? EO_LAYOUT_SINE_COSINE : EO_LAYOUT_ANGLES;
+    return;
+  }
   for (int i = 0; i < g->candidates; i++) {
     int c = g->candidate[i];
     const char *name = eo_recording_name(g->recording, c);
@@ -165,7 +123,8 @@ static enum eo_layout_kind guess_kind(const struct guess *g)
     bool measured = g->look[c].quantity == EO_QUANTITY_VOLTAGE || g->look[c].quantity == EO_QUANTITY_CURRENT;
     tracks += g->look[c].quantity != EO_QUANTITY_ANGLE && (named || measured || swings(&g->look[c]));
   }
-  return tracks >= 4 ? EO_LAYOUT_SINE_COSINE : EO_LAYOUT_ANGLES;
+  if (!g->kind)
+    g->kind = !pair && tracks >= 4 ? EO_LAYOUT_SINE_COSINE : EO_LAYOUT_ANGLES;
 }
 
 /* 1: the name says sine, -1: cosine, 0: neither. */
@@ -176,14 +135,14 @@ static int sine_or_cosine(const char *name)
 }
 
 /* How well a column's name fits a member and a track (0: sine or the only one, 1: cosine). */
-static int fit_of(const struct guess *g, int column, int member, int track)
+static int fit_of(const struct eo_guess *g, int column, int member, int track)
 {
   const char *name = eo_recording_name(g->recording, column);
   int fit = eo_column_named(name, member ? GEAR_WORDS : PINION_WORDS) -
             eo_column_named(name, member ? PINION_WORDS : GEAR_WORDS);
   if (g->kind == EO_LAYOUT_SINE_COSINE)
     fit += 2 * (track ? -1 : 1) * sine_or_cosine(name);
-  if (g->kind == EO_LAYOUT_ANGLES &&
+  if (g->kind == EO_LAYOUT_ANGLES && !g->square &&
       (g->look[column].quantity == EO_QUANTITY_ANGLE || g->look[column].quantity == EO_QUANTITY_COUNT))
     fit += 4;
   return fit;
@@ -191,7 +150,7 @@ static int fit_of(const struct guess *g, int column, int member, int track)
 
 /* Columns that the caller named come first; each other place then takes the best fitting column, the earlier one of
    equals. */
-static enum eo_code assign(struct guess *g, struct eo_error *error)
+static enum eo_code assign(struct eo_guess *g, struct eo_error *error)
 {
   int tracks = g->kind == EO_LAYOUT_SINE_COSINE ? 2 : 1;
   bool taken[EO_RECORDING_COLUMNS] = {false};
@@ -201,7 +160,7 @@ static enum eo_code assign(struct guess *g, struct eo_error *error)
       *column = -1;
       if (!g->choice->column[member][track])
         continue;
-      enum eo_code code = find_chosen(g, g->choice->column[member][track], "/columns", column, error);
+      enum eo_code code = eo_layout_chosen(g, g->choice->column[member][track], "/columns", column, error);
       if (code)
         return code;
       taken[*column] = true;
@@ -228,12 +187,9 @@ static enum eo_code assign(struct guess *g, struct eo_error *error)
 }
 
 /* Without a unit and without turns: degrees unless the shaft would then crawl. */
-static double scale_by_speed(const struct guess *g, const struct eo_column *look)
+static double scale_by_speed(const struct eo_guess *g, int member)
 {
-  double step = g->tracks->interval;
-  if (g->tracks->time_column >= 0)
-    step = g->look[g->tracks->time_column].step * g->tracks->time_scale;
-  double rpm = fabs(look->step) / step / 6; /* as degrees */
+  double rpm = fabs(eo_layout_rate(g, g->tracks->channel[member].column[0], &g->clock[member])) / 6; /* as degrees */
   return rpm < 60 && rpm * 180 / M_PI < 30000 ? 1 : TURN / 360;
 }
 
@@ -242,36 +198,82 @@ static const char *scale_name(double scale)
   return scale == 1 ? "radians" : scale == TURN ? "turns" : fabs(scale - TURN / 360) < 1e-9 ? "degrees" : "counts";
 }
 
-static enum eo_code find_scale(struct guess *g, int member, struct eo_error *error)
+/* Counts per turn: as chosen, as the file states, or by where they start again; 0: not known. */
+static double counts_per_turn(const struct eo_guess *g, int member)
+{
+  int column = g->tracks->channel[member].column[0];
+  if (g->choice->lines[member] > 0)
+    return g->choice->lines[member];
+  if (eo_recording_turn(g->recording, column) > 0)
+    return eo_recording_turn(g->recording, column);
+  return eo_column_turn(&g->look[column]);
+}
+
+/* A unit that the file states must be known: a guess in its place would be a wrong speed. */
+static enum eo_code check_unit(const struct eo_guess *g, int member, struct eo_error *error)
+{
+  int column = g->tracks->channel[member].column[0];
+  const char *unit = eo_recording_unit(g->recording, column);
+  enum eo_quantity q = g->look[column].quantity;
+  char text[80];
+  bool none = !*unit || !strcmp(unit, "-") || !strcmp(unit, "1") || !strcasecmp(unit, "none") || !strcmp(unit, "--");
+  if (g->choice->unit || none || q == EO_QUANTITY_ANGLE || q == EO_QUANTITY_COUNT)
+    return EO_OK;
+  if (q == EO_QUANTITY_NONE)
+    return eo_error_set(error, EO_ERROR_INPUT, "/unit",
+                        "The file states \"%s\" as the unit of %s, which is not known here: give the unit (deg, rad, "
+                        "turn, or count with the counts per turn).",
+                        unit, eo_layout_label(g, column, text, sizeof text));
+  return eo_error_set(
+      error, EO_ERROR_INPUT, "/unit",
+      "%s is in %s, which is no angle: choose other columns, or the kind (sine-cosine for raw tracks), or "
+      "give the unit of an angle.",
+      eo_layout_label(g, column, text, sizeof text), unit);
+}
+
+static enum eo_code find_scale(struct eo_guess *g, int member, struct eo_error *error)
 {
   struct eo_track_channel *channel = &g->tracks->channel[member];
   const struct eo_column *look = &g->look[channel->column[0]];
-  double lines = g->choice->lines[member];
   bool counts = g->choice->unit == EO_LAYOUT_COUNT || (!g->choice->unit && look->quantity == EO_QUANTITY_COUNT);
+  double turn = counts_per_turn(g, member);
+  bool stated = g->choice->lines[member] > 0 || eo_recording_turn(g->recording, channel->column[0]) > 0;
+  enum eo_code code = check_unit(g, member, error);
+  if (code)
+    return code;
   channel->scale = g->choice->unit == EO_LAYOUT_DEGREE   ? TURN / 360
                    : g->choice->unit == EO_LAYOUT_RADIAN ? 1
                    : g->choice->unit == EO_LAYOUT_TURN   ? TURN
                                                          : 0;
   if (!g->choice->unit && look->quantity == EO_QUANTITY_ANGLE)
     channel->scale = look->factor;
-  else if (lines > 0 && (counts || (!g->choice->unit && look->whole)))
-    channel->scale = TURN / lines;
-  double turn = eo_column_turn(look);
-  if (!(channel->scale > 0) && turn > 0)
+  else if (turn > 0 && (counts || (!g->choice->unit && (!stated || look->whole))))
     channel->scale = TURN / turn;
   if (channel->scale > 0)
     return EO_OK;
   char text[80];
   if (counts || look->whole)
     return eo_error_set(error, EO_ERROR_INPUT, "/lines", "%s counts; give the counts per turn of the %s's encoder.",
-                        label(g, channel->column[0], text, sizeof text), member_names[member]);
-  channel->scale = scale_by_speed(g, look);
+                        eo_layout_label(g, channel->column[0], text, sizeof text), member_names[member]);
+  channel->scale = scale_by_speed(g, member);
   eo_notes_add(g->notes, "Nothing states the unit of %s; %s are a guess from its speed.",
-               label(g, channel->column[0], text, sizeof text), scale_name(channel->scale));
+               eo_layout_label(g, channel->column[0], text, sizeof text), scale_name(channel->scale));
   return EO_OK;
 }
 
-static void note_angle(const struct guess *g, int member)
+/* Counts since the row before go neither up nor down, but stay on one side of 0. */
+static bool are_increments(const struct eo_guess *g, int member)
+{
+  int column = g->tracks->channel[member].column[0];
+  const struct eo_column *look = &g->look[column];
+  bool named = eo_column_named(eo_recording_name(g->recording, column), INCREMENT_WORDS);
+  bool counts = g->choice->unit == EO_LAYOUT_COUNT || look->quantity == EO_QUANTITY_COUNT;
+  double middle = fabs(look->low + look->high) / 2;
+  return g->kind == EO_LAYOUT_ANGLES && !g->square && (named || (counts && look->whole)) &&
+         look->rises + look->falls > 20 && swings(look) && look->high - look->low < middle;
+}
+
+static void note_angle(const struct eo_guess *g, int member)
 {
   const struct eo_track_channel *channel = &g->tracks->channel[member];
   const struct eo_column *look = &g->look[channel->column[0]];
@@ -280,23 +282,24 @@ static void note_angle(const struct guess *g, int member)
     snprintf(turns, sizeof turns, "starting again after %.6g",
              eo_column_turn(look) > 0 ? eo_column_turn(look) : look->period);
   eo_notes_add(g->notes, "%s is taken as the angle of the %s in %s of %.6g rad, %s.",
-               label(g, channel->column[0], text, sizeof text), member_names[member], scale_name(channel->scale),
-               channel->scale, turns);
+               eo_layout_label(g, channel->column[0], text, sizeof text), member_names[member],
+               scale_name(channel->scale), channel->scale, turns);
 }
 
-static enum eo_code settle_lines(struct guess *g, int member, struct eo_error *error)
+static enum eo_code settle_lines(struct eo_guess *g, int member, struct eo_error *error)
 {
   struct eo_track_channel *channel = &g->tracks->channel[member];
   char text[80], second[80];
   const struct eo_column *look = &g->look[channel->column[0]];
-  channel->lines = g->choice->lines[member];
+  channel->lines = g->choice->lines[member] > 0 ? g->choice->lines[member]
+                                                : eo_recording_turn(g->recording, channel->column[0]);
   channel->factor = 1;
   if (!(channel->lines > 0))
     return eo_error_set(error, EO_ERROR_INPUT, "/lines", "Give the %s per turn of the %s's encoder.",
                         g->kind == EO_LAYOUT_PULSES ? "pulses" : "lines (sine periods)", member_names[member]);
   if (g->kind == EO_LAYOUT_PULSES) {
     eo_notes_add(g->notes, "%s is taken as the times of the pulses of the %s.",
-                 label(g, channel->column[0], text, sizeof text), member_names[member]);
+                 eo_layout_label(g, channel->column[0], text, sizeof text), member_names[member]);
     return EO_OK;
   }
   if (look->quantity == EO_QUANTITY_VOLTAGE) {
@@ -307,12 +310,38 @@ static enum eo_code settle_lines(struct guess *g, int member, struct eo_error *e
     channel->factor = look->factor * 1e6;
   }
   eo_notes_add(g->notes, "%s and %s are taken as the sine and cosine tracks of the %s.",
-               label(g, channel->column[0], text, sizeof text), label(g, channel->column[1], second, sizeof second),
-               member_names[member]);
+               eo_layout_label(g, channel->column[0], text, sizeof text),
+               eo_layout_label(g, channel->column[1], second, sizeof second), member_names[member]);
   return EO_OK;
 }
 
-static enum eo_code settle(struct guess *g, struct eo_error *error)
+/* Where the channels are in the file, before anything takes their place. */
+static void note_source(struct eo_guess *g)
+{
+  for (int member = 0; member < 2; member++) {
+    struct eo_track_source *source = &g->tracks->source[member];
+    source->time = g->clock[member].column;
+    source->time_scale = g->clock[member].scale;
+    memcpy(source->column, g->tracks->channel[member].column, sizeof source->column);
+  }
+}
+
+static void note_time(const struct eo_guess *g)
+{
+  char text[80];
+  for (int member = 0; member < 2; member++) {
+    const struct eo_layout_clock *clock = &g->clock[member];
+    if (member && clock->column == g->clock[0].column && clock->interval == g->clock[0].interval)
+      continue;
+    if (clock->column >= 0)
+      eo_notes_add(g->notes, "%s is taken as time in units of %g s: steps of %.6g s.",
+                   eo_layout_label(g, clock->column, text, sizeof text), clock->scale, clock->interval);
+    else if (!(g->choice->sample_rate > 0))
+      eo_notes_add(g->notes, "The file states a sampling rate of %.8g Hz.", 1 / clock->interval);
+  }
+}
+
+static enum eo_code settle(struct eo_guess *g, struct eo_error *error)
 {
   static const enum eo_track tracks[] = {[EO_LAYOUT_ANGLES] = EO_TRACK_ANGLE,
                                          [EO_LAYOUT_SINE_COSINE] = EO_TRACK_SINE_COSINE,
@@ -328,7 +357,50 @@ static enum eo_code settle(struct guess *g, struct eo_error *error)
   return EO_OK;
 }
 
-static enum eo_code find(struct guess *g, struct eo_error *error)
+/* Pulse times are the values themselves: of a stated clock's ticks, in the unit of the column, or in seconds. */
+static enum eo_code find_pulse_time(struct eo_guess *g, struct eo_error *error)
+{
+  const struct eo_column *look = &g->look[g->tracks->channel[0].column[0]];
+  double tick = eo_recording_tick(g->recording);
+  char text[80];
+  g->tracks->time_scale = g->choice->time_scale > 0             ? g->choice->time_scale
+                          : look->quantity == EO_QUANTITY_TIME  ? look->factor
+                          : tick > 0                            ? tick
+                          : look->quantity == EO_QUANTITY_COUNT ? 0
+                                                                : 1;
+  for (int member = 0; member < 2; member++)
+    g->clock[member] = (struct eo_layout_clock){.column = -1, .scale = g->tracks->time_scale};
+  if (g->tracks->time_scale > 0)
+    return EO_OK;
+  return eo_error_set(error, EO_ERROR_INPUT, "/time_unit",
+                      "%s holds ticks of a clock that the file does not state; give "
+                      "the seconds of one tick.",
+                      eo_layout_label(g, g->tracks->channel[0].column[0], text, sizeof text));
+}
+
+/* Clocks and scales of the channels that were found. */
+static enum eo_code settle_channels(struct eo_guess *g, struct eo_error *error)
+{
+  enum eo_code code = g->kind == EO_LAYOUT_PULSES ? find_pulse_time(g, error) : eo_layout_find_clocks(g, error);
+  for (int member = 0; member < 2; member++)
+    g->increments[member] = are_increments(g, member);
+  note_source(g);
+  if (!code && !g->square)
+    code = settle(g, error);
+  if (!code && !g->square)
+    code = eo_layout_judge_speed(g, error);
+  if (code || g->kind == EO_LAYOUT_PULSES)
+    return code;
+  note_time(g);
+  code = eo_layout_make_even(g, error);
+  eo_layout_find_beside(g);
+  g->tracks->time_column = g->clock[0].column;
+  g->tracks->time_scale = g->clock[0].column >= 0 ? g->clock[0].scale : 1;
+  g->tracks->interval = g->clock[0].interval;
+  return code;
+}
+
+static enum eo_code find(struct eo_guess *g, struct eo_error *error)
 {
   enum eo_code code = EO_OK;
   for (int c = 0; !code && c < g->columns; c++)
@@ -337,38 +409,55 @@ static enum eo_code find(struct guess *g, struct eo_error *error)
     return code;
   g->kind = g->choice->kind ? g->choice->kind : looks_like_pulses(g) ? EO_LAYOUT_PULSES : EO_LAYOUT_GUESS_KIND;
   g->tracks->time_column = -1;
-  if (g->kind == EO_LAYOUT_PULSES)
-    g->tracks->time_scale = g->choice->time_scale > 0                 ? g->choice->time_scale
-                            : g->look[0].quantity == EO_QUANTITY_TIME ? g->look[0].factor
-                                                                      : 1;
-  else
-    code = find_time(g, error);
-  if (code)
-    return code;
+  eo_layout_mark_times(g);
+  if (g->choice->time && strcmp(g->choice->time, "none") && g->kind != EO_LAYOUT_PULSES) {
+    int chosen;
+    code = eo_layout_chosen(g, g->choice->time, "/time", &chosen, error);
+    if (code)
+      return code;
+    g->time[chosen] = true;
+  }
   find_candidates(g);
-  if (!g->kind)
-    g->kind = guess_kind(g);
+  guess_kind(g);
   code = assign(g, error);
-  return code ? code : settle(g, error);
+  return code ? code : settle_channels(g, error);
+}
+
+/* Brings the channels to one clock, or decodes them, where that is needed. */
+static enum eo_code replace(struct eo_guess *g, const char *spool_directory, struct eo_recording **recording,
+                            struct eo_error *error)
+{
+  struct eo_recording *made = NULL;
+  bool needed = false;
+  enum eo_code code = g->square ? eo_layout_decode_squares(g, spool_directory, &made, error)
+                                : eo_layout_needs_align(g, &needed, error);
+  if (!code && needed)
+    code = eo_layout_align(g, spool_directory, &made, error);
+  if (!code && made) {
+    eo_recording_free(*recording);
+    *recording = made;
+  }
+  return code;
 }
 
 enum eo_code eo_layout_find(struct eo_recording **recording, const struct eo_layout_choice *choice,
                             const struct eo_layout_pair *pair, const char *spool_directory, struct eo_tracks *tracks,
                             struct eo_notes *notes, struct eo_error *error)
 {
-  (void)pair;
-  (void)spool_directory;
   static const struct eo_layout_choice none;
-  struct guess *g = calloc(1, sizeof *g);
+  struct eo_guess *g = calloc(1, sizeof *g);
   if (!g)
     return eo_error_memory(error);
   struct eo_tracks found = {0};
   g->recording = *recording;
   g->choice = choice ? choice : &none;
+  g->pair = pair;
   g->tracks = &found;
   g->notes = notes;
   g->columns = eo_recording_columns(*recording);
   enum eo_code code = find(g, error);
+  if (!code)
+    code = replace(g, spool_directory, recording, error);
   if (!code)
     *tracks = found;
   free(g);

@@ -15,6 +15,7 @@ struct eo_layout_choice {
   enum eo_layout_kind kind;
   enum eo_layout_unit unit; /* of angles */
   const char *time;         /* column; "none": there is none, whatever it looks like */
+  const char *gear_time;    /* column of the gear's own times; NULL: as above */
   const char *column[2][2]; /* [member]: the angle, sine and cosine, or pulse times */
   double sample_rate;       /* Hz, for rows without time */
   double lines[2];          /* [member] per turn: counts, sine periods or pulses; 0: not known */
@@ -39,11 +40,10 @@ enum eo_code eo_layout_find(struct eo_recording **recording, const struct eo_lay
                             struct eo_notes *notes, struct eo_error *error);
 
 /* One recording from two files of one run, one per encoder, pinion first: the columns of the second are put beside
-   those of the first. Rows with equal times stay as they are; else the second is interpolated to the times of the first
-   where both have data, by polynomials through 16 rows (error below 0.05 % of a component with 4.4 rows per period),
-   turns counted on. Pulse times (one column each) keep their lengths. The recordings must share a clock. choice may
-   name the time column; NULL: guess. The caller frees *combined. Errors: EO_ERROR_INPUT: no time, no overlap;
-   EO_ERROR_FILE; EO_ERROR_MEMORY. */
+   those of the first, each with the clock of its file; their names tell which file they are of. Where both files state
+   when they began, the difference of their clocks is kept, else their times are taken for those of one clock, which is
+   noted. eo_layout_find() brings them together. choice may name the time column; NULL: guess. The caller frees
+   *combined. Errors: EO_ERROR_INPUT: too many columns; EO_ERROR_FILE; EO_ERROR_MEMORY. */
 enum eo_code eo_layout_combine(const struct eo_recording *pinion, const struct eo_recording *gear,
                                const struct eo_layout_choice *choice, const char *spool_directory,
                                struct eo_recording **combined, struct eo_notes *notes, struct eo_error *error);

@@ -1,8 +1,10 @@
 /* MATLAB files of versions 4, 5 and 7 by libmatio: numeric vectors, matrices with one channel per column, the same in
-   structs. Runs in a process of its own. Version 7.3 is HDF5 and read as such. */
+   structs, arrays of structs and cells at any depth. Runs in a process of its own. Version 7.3 is HDF5 and read as
+   such. */
 #include "recording/bytes.h"
 #include "recording/readers.h"
 #include "recording/source.h"
+#include "recording/tree.h"
 
 #include <matio.h>
 #include <stdbool.h>
@@ -11,9 +13,11 @@
 #include <string.h>
 #include <unistd.h>
 
-#define CHANNELS EO_RECORDING_COLUMNS
+#define CHANNELS EO_TREE_CHANNELS
 #define WIDE 64                  /* a matrix with more columns is no table of channels */
 #define VARIABLES 1024           /* of a file that are looked at */
+#define DEPTH 8                  /* of structs and cells in each other */
+#define ELEMENTS 4096            /* of an array of structs or a cell that are looked at */
 #define PIECE 65536              /* values read at once from variables that are not compressed */
 #define MEMORY ((size_t)1 << 19) /* bytes of a channel in memory */
 
@@ -21,9 +25,9 @@ struct matlab {
   mat_t *file;
   int64_t bytes;
   const char *spool_directory;
-  int count, left_out;
-  double interval; /* s, from a variable such as fs; 0: none */
-  struct eo_series series[CHANNELS];
+  int left_out;
+  struct eo_tree *tree; /* owned */
+  struct eo_notes *notes;
   struct eo_recording *column[CHANNELS]; /* owned */
 };
 
@@ -103,10 +107,9 @@ static enum eo_code read_values(struct matlab *m, matvar_t *v, int64_t first, in
 
 /* Gives each value of a piece to its channel. Only pieces that begin and end with whole runs of channels reach here
    when along > 1. */
-static enum eo_code keep_values(struct matlab *m, const struct table *t, int64_t first, int64_t count, const void *data,
-                                enum matio_classes class, double *values, struct eo_error *error)
+static enum eo_code keep_values(struct matlab *m, const struct table *t, int base, int64_t first, int64_t count,
+                                const void *data, enum matio_classes class, double *values, struct eo_error *error)
 {
-  int base = m->count;
   for (int64_t c = 0; c < t->channels; c++) {
     int64_t from = t->along == 1 ? c * t->length : c, n = 0;
     if (t->along == 1)
@@ -123,7 +126,7 @@ static enum eo_code keep_values(struct matlab *m, const struct table *t, int64_t
 }
 
 /* Compressed variables can only be read at once; their size is bounded by that of the file. */
-static enum eo_code copy_values(struct matlab *m, matvar_t *v, const struct table *t, struct eo_error *error)
+static enum eo_code copy_values(struct matlab *m, matvar_t *v, const struct table *t, int base, struct eo_error *error)
 {
   int64_t total = t->length * t->channels, size = class_size(v->class_type);
   int64_t piece = v->compression == MAT_COMPRESSION_NONE ? PIECE / t->channels * t->channels : total;
@@ -140,65 +143,144 @@ static enum eo_code copy_values(struct matlab *m, matvar_t *v, const struct tabl
     int64_t n = total - first < piece ? total - first : piece;
     code = read_values(m, v, first, n, data, error);
     if (!code)
-      code = keep_values(m, t, first, n, data, v->class_type, values, error);
+      code = keep_values(m, t, base, first, n, data, v->class_type, values, error);
   }
   free(values);
   free(data);
   return code;
 }
 
-/* A single number whose name says that it is the sampling rate or interval. */
-static void use_scalar(struct matlab *m, matvar_t *v)
+static bool is_whole(enum matio_classes class)
+{
+  return class != MAT_C_DOUBLE && class != MAT_C_SINGLE;
+}
+
+/* A text of one row; characters of two bytes beyond ASCII become '?'. */
+static bool text_of(struct matlab *m, matvar_t *v, char *text, size_t size)
+{
+  *text = '\0';
+  if (!v || v->class_type != MAT_C_CHAR || v->rank != 2 || !v->dims || v->dims[0] > 1 || v->dims[1] >= size)
+    return false;
+  if (!v->data && Mat_VarReadDataAll(m->file, v))
+    return false;
+  size_t n = v->dims[1];
+  if (!v->data || v->nbytes < n * (size_t)v->data_size)
+    return false;
+  bool wide = v->data_type == MAT_T_UINT16 || v->data_type == MAT_T_UTF16;
+  const unsigned char *bytes = v->data;
+  const uint16_t *words = v->data;
+  for (size_t i = 0; i < n; i++)
+    text[i] = (char)(wide ? words[i] < 256 ? words[i] : '?' : bytes[i]);
+  text[n] = '\0';
+  return true;
+}
+
+static void add_number(struct matlab *m, matvar_t *v, const char *path)
 {
   char data[8] = "";
   struct eo_error error;
-  if (read_values(m, v, 0, 1, data, &error))
-    return;
-  double interval = eo_series_stated_interval(v->name, value_at(data, v->class_type, 0));
-  if (interval > 0)
-    m->interval = interval;
+  if (!read_values(m, v, 0, 1, data, &error))
+    eo_tree_add_number(m->tree, path, value_at(data, v->class_type, 0));
 }
 
-static enum eo_code add_variable(struct matlab *m, matvar_t *v, struct eo_error *error)
+static enum eo_code add_channels(struct matlab *m, matvar_t *v, const char *path, struct eo_error *error)
 {
   struct table t;
-  if (!v || !v->name)
-    return EO_OK;
-  if (!find_table(v, &t) || m->count + t.channels > CHANNELS) {
+  if (!find_table(v, &t)) {
     m->left_out++;
     return EO_OK;
   }
   if (t.length == 1) {
-    use_scalar(m, v);
+    add_number(m, v, path);
+    return EO_OK;
+  }
+  int base = eo_tree_add_series(m->tree, path, (int)t.channels, t.length, is_whole(v->class_type));
+  if (base < 0) {
+    m->left_out++;
     return EO_OK;
   }
   enum eo_code code = EO_OK;
   for (int c = 0; !code && c < t.channels; c++) {
-    code = eo_recording_new(&m->column[m->count + c], 1, m->spool_directory, error);
+    code = eo_recording_new(&m->column[base + c], 1, m->spool_directory, error);
     if (!code && m->spool_directory)
-      eo_recording_set_memory(m->column[m->count + c], MEMORY);
+      eo_recording_set_memory(m->column[base + c], MEMORY);
   }
-  if (!code)
-    code = copy_values(m, v, &t, error);
-  for (int c = 0; c < t.channels; c++) {
-    struct eo_series *s = &m->series[m->count++];
-    s->length = t.length;
-    if (t.channels > 1)
-      snprintf(s->name, sizeof s->name, "%.50s %d", v->name, c + 1);
-    else
-      snprintf(s->name, sizeof s->name, "%s", v->name);
+  return code ? code : copy_values(m, v, &t, base, error);
+}
+
+static enum eo_code add_variable(struct matlab *m, matvar_t *v, const char *path, int depth, struct eo_error *error);
+
+/* Structs: "name/field", arrays of them "name(2)/field". */
+static enum eo_code add_struct(struct matlab *m, matvar_t *v, const char *path, int depth, struct eo_error *error)
+{
+  char *const *names = Mat_VarGetStructFieldnames(v);
+  unsigned fields = Mat_VarGetNumberOfFields(v);
+  size_t elements = 1;
+  for (int i = 0; v->dims && i < v->rank; i++)
+    elements = v->dims[i] < ELEMENTS && elements < ELEMENTS ? elements * v->dims[i] : ELEMENTS;
+  enum eo_code code = EO_OK;
+  for (size_t e = 0; !code && names && e < elements && e < ELEMENTS; e++)
+    for (unsigned i = 0; !code && i < fields; i++) {
+      char below[EO_TREE_PATH];
+      int n = elements > 1 ? snprintf(below, sizeof below, "%s(%zu)/%s", path, e + 1, names[i])
+                           : snprintf(below, sizeof below, "%s/%s", path, names[i]);
+      matvar_t *field = Mat_VarGetStructFieldByName(v, names[i], e);
+      if (field && n < (int)sizeof below)
+        code = add_variable(m, field, below, depth + 1, error);
+    }
+  return code;
+}
+
+/* A cell of texts is a list; other cells are channels "name 1", "name 2". */
+static enum eo_code add_cell(struct matlab *m, matvar_t *v, const char *path, int depth, struct eo_error *error)
+{
+  size_t elements = v->data_size ? v->nbytes / (size_t)v->data_size : 0, used = 0;
+  matvar_t **cell = v->data;
+  char list[4096] = "", text[EO_RECORDING_NAME];
+  bool texts = elements > 0 && cell;
+  for (size_t i = 0; texts && i < elements; i++) {
+    texts = text_of(m, cell[i], text, sizeof text) && used + strlen(text) + 2 < sizeof list;
+    if (texts)
+      used += (size_t)snprintf(list + used, sizeof list - used, "%s%s", i ? "\n" : "", text);
+  }
+  if (texts) {
+    eo_tree_add_list(m->tree, path, list);
+    return EO_OK;
+  }
+  enum eo_code code = EO_OK;
+  for (size_t i = 0; !code && cell && i < elements && i < ELEMENTS; i++) {
+    char below[EO_TREE_PATH];
+    if (cell[i] && snprintf(below, sizeof below, "%s %zu", path, i + 1) < (int)sizeof below)
+      code = add_variable(m, cell[i], below, depth + 1, error);
   }
   return code;
 }
 
-static enum eo_code add_struct(struct matlab *m, matvar_t *v, struct eo_error *error)
+static enum eo_code add_variable(struct matlab *m, matvar_t *v, const char *path, int depth, struct eo_error *error)
 {
-  char *const *names = Mat_VarGetStructFieldnames(v);
-  unsigned fields = Mat_VarGetNumberOfFields(v);
-  enum eo_code code = EO_OK;
-  for (unsigned i = 0; !code && names && i < fields; i++)
-    code = add_variable(m, Mat_VarGetStructFieldByName(v, names[i], 0), error);
-  return code;
+  char text[256];
+  if (!v || depth > DEPTH)
+    return EO_OK;
+  switch (v->class_type) {
+  case MAT_C_STRUCT:
+    return add_struct(m, v, path, depth, error);
+  case MAT_C_CELL:
+    return add_cell(m, v, path, depth, error);
+  case MAT_C_CHAR:
+    if (text_of(m, v, text, sizeof text))
+      eo_tree_add_text(m->tree, path, text);
+    return EO_OK;
+  case MAT_C_OBJECT:
+  case MAT_C_OPAQUE:
+  case MAT_C_FUNCTION:
+    eo_notes_add(m->notes,
+                 "The variable \"%.60s\" is an object (a table, timetable, timeseries or the like) whose numbers only "
+                 "MATLAB reads; save s = table2struct(T, 'ToScalar', true) with the times in seconds instead.",
+                 path);
+    return EO_OK;
+  default:
+    return add_channels(m, v, path, error);
+  }
 }
 
 /* All variables are found before the first is read: reading moves the place where libmatio looks for the next one. */
@@ -211,11 +293,9 @@ static enum eo_code read_variables(struct matlab *m, struct eo_error *error)
     return eo_error_memory(error);
   while (count < VARIABLES && (list[count] = Mat_VarReadNextInfo(m->file)))
     count++;
-  for (int i = 0; !code && i < count; i++) {
-    matvar_t *v = list[i];
-    bool one = v->class_type == MAT_C_STRUCT && v->rank == 2 && v->dims && v->dims[0] == 1 && v->dims[1] == 1;
-    code = one ? add_struct(m, v, error) : add_variable(m, v, error);
-  }
+  for (int i = 0; !code && i < count; i++)
+    if (list[i]->name)
+      code = add_variable(m, list[i], list[i]->name, 0, error);
   for (int i = 0; i < count; i++)
     Mat_VarFree(list[i]);
   free(list);
@@ -258,21 +338,27 @@ static enum eo_code read_column(void *context, int series, int64_t first, int64_
                                 struct eo_error *error)
 {
   const struct matlab *m = context;
-  return eo_recording_read(m->column[series], first, count, values, error);
+  enum eo_code code = eo_recording_read(m->column[series], first, count, values, error);
+  for (int64_t i = 0; !code && i < count; i++)
+    values[i] = eo_tree_value(m->tree, series, values[i]);
+  return code;
 }
 
 static enum eo_code read_file(struct matlab *m, const struct eo_reader_options *options,
                               const struct eo_series_sink *sink, struct eo_notes *notes, struct eo_error *error)
 {
-  enum eo_code code = read_variables(m, error);
+  m->notes = notes;
+  enum eo_code code = eo_tree_new(&m->tree, error);
+  if (!code)
+    code = read_variables(m, error);
   if (code)
     return code;
-  for (int i = 0; i < m->count; i++)
-    m->series[i].interval = m->interval;
+  eo_tree_settle(m->tree, notes);
   if (m->left_out)
     eo_notes_add(notes, "%d variable%s %s no channel of real numbers and %s left out.", m->left_out,
                  m->left_out == 1 ? "" : "s", m->left_out == 1 ? "is" : "are", m->left_out == 1 ? "was" : "were");
-  struct eo_series_file content = {m->series, m->count, m->bytes, options->max_bytes, read_column, m};
+  struct eo_series_file content = {
+      eo_tree_series(m->tree), eo_tree_count(m->tree), m->bytes, options->max_bytes, read_column, m};
   return eo_series_copy(&content, sink, notes, error);
 }
 
@@ -302,6 +388,7 @@ enum eo_code eo_matlab_read(const char *path, const struct eo_reader_options *op
     Mat_Close(m->file);
   for (int i = 0; i < CHANNELS; i++)
     eo_recording_free(m->column[i]);
+  eo_tree_free(m->tree);
   free(m);
   return code;
 }

@@ -35,9 +35,31 @@ static enum eo_code refuse_others(const unsigned char *head, size_t size, struct
       {"\xd0\xcf\x11\xe0", 4, "The file is an old Office document; save the table as text."},
       {"TDSh", 4, "The file is a TDMS index; upload the .tdms file itself."},
       {"%PDF", 4, "The file is a PDF; upload the measurement itself."},
-      {"RIFF", 4, "The file is a sound or video file; save the channels as text, TDMS, MATLAB or HDF5."},
-      {"\xff\xfe", 2, "The text is UTF-16; save it as UTF-8 or plain ASCII."},
-      {"\xfe\xff", 2, "The text is UTF-16; save it as UTF-8 or plain ASCII."},
+      {"RIFF", 4,
+       "The file is a sound file (WAV): its numbers have no unit; save the channels as text, TDMS, MATLAB or "
+       "HDF5, with their scale."},
+      {"MDF ", 4,
+       "The file is an ASAM MDF; export the channels as text, MATLAB or HDF5 (asammdf: Export; CANape, INCA, "
+       "vSignalyzer: convert to .mat)."},
+      {"UnFinMF ", 8, "The file is an ASAM MDF 4 that was not finalised; export the channels as text, MATLAB or HDF5."},
+      {"PAR1", 4, "The file is a Parquet table; save it as text (pandas: read_parquet(...).to_csv(...))."},
+      {"ARROW1", 6, "The file is an Arrow or Feather table; save it as text (pandas: read_feather(...).to_csv(...))."},
+      {"FEA1", 4, "The file is a Feather table; save it as text (pandas: read_feather(...).to_csv(...))."},
+      {"\x93NUMPY", 6, "The file is a NumPy array; save it as text or .mat (numpy.savetxt, scipy.io.savemat)."},
+      {"|CF,", 4, "The file is an imc FAMOS file; export it from FAMOS or imc STUDIO as text, MATLAB or TDMS."},
+      {"|CK,", 4, "The file is an imc FAMOS file; export it from FAMOS or imc STUDIO as text, MATLAB or TDMS."},
+      {"DEWESoft", 8, "The file is a DEWESoft recording; export it from DEWESoft as text, MATLAB, UFF 58 or HDF5."},
+      {"DXD", 3, "The file is a DEWESoft recording; export it from DEWESoft as text, MATLAB, UFF 58 or HDF5."},
+      {"SQLite format 3", 15, "The file is a SQLite database; save the table as text."},
+      {"CDF\001", 4,
+       "The file is a netCDF of the classic kind; convert it to HDF5 (nccopy -k nc4) or save it as text."},
+      {"CDF\002", 4,
+       "The file is a netCDF of the classic kind; convert it to HDF5 (nccopy -k nc4) or save it as text."},
+      {"fLaC", 4, "The file is a sound file; save the channels as text, TDMS, MATLAB or HDF5, with their scale."},
+      {"RF64", 4, "The file is a sound file; save the channels as text, TDMS, MATLAB or HDF5, with their scale."},
+      {"\x80\004\x95", 3, "The file is a Python pickle; save the table as text."},
+      {"7z\xbc\xaf", 4, "The file is a 7z archive; unpack it, or use zip or gzip."},
+      {"Rar!", 4, "The file is a RAR archive; unpack it, or use zip or gzip."},
       {"BZh", 3, "The file is compressed with bzip2; use gzip or none."},
       {"\xfd"
        "7zXZ",
@@ -51,17 +73,31 @@ static enum eo_code refuse_others(const unsigned char *head, size_t size, struct
   return EO_OK;
 }
 
-/* Text has no zero bytes; every second one means two bytes to a character. */
+/* Text of two bytes a character: with a byte order mark, or with every second byte 0. 1: low bytes first, 2: high
+   bytes first, 0: no. */
+static int wide_order(const unsigned char *head, size_t size)
+{
+  if (size >= 2 && head[0] == 0xff && head[1] == 0xfe)
+    return 1;
+  if (size >= 2 && head[0] == 0xfe && head[1] == 0xff)
+    return 2;
+  size_t zero[2] = {0, 0}, looked = size < 64 ? size & ~(size_t)1 : 64;
+  for (size_t i = 0; i < looked; i++)
+    zero[i % 2] += head[i] == 0;
+  if (looked < 8 || zero[0] + zero[1] < looked * 2 / 5)
+    return 0;
+  return zero[0] == 0 ? 1 : zero[1] == 0 ? 2 : 0;
+}
+
+/* Text has no zero bytes. */
 static enum eo_code refuse_zeros(const unsigned char *head, size_t size, struct eo_error *error)
 {
   const unsigned char *zero = memchr(head, 0, size);
   if (!zero)
     return EO_OK;
-  if (size >= 4 && (head[0] == 0) != (head[1] == 0) && (head[0] == 0) == (head[2] == 0) &&
-      (head[1] == 0) == (head[3] == 0))
-    return eo_error_set(error, EO_ERROR_INPUT, "", "The text is UTF-16; save it as UTF-8 or plain ASCII.");
   return eo_error_set(error, EO_ERROR_INPUT, "",
-                      "The file is of no known kind: it is no text (byte %zu is 0) and not MATLAB, TDMS, UFF or HDF5.",
+                      "The file is of no known kind: it is no text (byte %zu is 0) and not MATLAB, TDMS, UFF or HDF5. "
+                      "Save the channels as one of these.",
                       (size_t)(zero - head));
 }
 
@@ -89,21 +125,28 @@ static bool is_matlab4(const unsigned char *head, size_t size)
          head[20 + word[4] - 1] == 0 && head[20] > ' ' && head[20] < 127;
 }
 
-/* A universal file begins with a line that holds "-1" in columns 5 and 6 and one with the number of a data set. */
+/* A universal file begins with a line that holds "-1" alone and one with the number of a data set that such files begin
+ * with. */
 static bool is_uff(const unsigned char *head, size_t size)
 {
   size_t at = 0;
-  while (at < size && (head[at] == '\r' || head[at] == '\n'))
+  while (at < size && (head[at] == '\r' || head[at] == '\n' || head[at] == ' '))
     at++;
-  if (!begins(head + at, size - at, "    -1", 6))
+  if (!begins(head + at, size - at, "-1", 2))
     return false;
-  const unsigned char *end = memchr(head + at, '\n', size - at);
-  if (!end || end + 7 > head + size)
-    return false;
-  for (const unsigned char *p = head + at + 6; p < end; p++)
-    if (*p != ' ' && *p != '\r')
+  for (at += 2; at < size && head[at] != '\n'; at++)
+    if (head[at] != ' ' && head[at] != '\r')
       return false;
-  return end[1] == ' ' && end[6] >= '0' && end[6] <= '9';
+  static const int known[] = {15, 18, 55, 58, 82, 151, 164, 757, 780, 1858, 2411, 2412, 2414, 2420};
+  int number = 0;
+  for (at++; at < size && head[at] == ' '; at++)
+    ;
+  for (; at < size && head[at] >= '0' && head[at] <= '9' && number < 100000; at++)
+    number = number * 10 + (head[at] - '0');
+  for (size_t i = 0; i < sizeof known / sizeof *known; i++)
+    if (number == known[i])
+      return at < size && (head[at] == ' ' || head[at] == '\r' || head[at] == '\n' || (head[at] | 0x20) == 'b');
+  return false;
 }
 
 static enum eo_code tell_kind(const unsigned char *head, size_t size, enum eo_reader_kind *kind, struct eo_error *error)
@@ -121,7 +164,7 @@ static enum eo_code tell_kind(const unsigned char *head, size_t size, enum eo_re
     *kind = EO_READER_UFF;
   else {
     enum eo_code code = refuse_others(head, size, error);
-    if (!code)
+    if (!code && !wide_order(head, size))
       code = refuse_zeros(head, size, error);
     if (code)
       return code;
@@ -135,6 +178,7 @@ struct sign {
   enum eo_reader_kind kind;
   bool gzip;
   bool hdf5; /* also of MATLAB's 7.3 */
+  int wide;  /* text of two bytes a character, see wide_order() */
 };
 
 static enum eo_code read_sign(const char *path, struct sign *sign, struct eo_error *error)
@@ -150,6 +194,7 @@ static enum eo_code read_sign(const char *path, struct sign *sign, struct eo_err
     code = tell_kind(head, size, &sign->kind, error);
   sign->gzip = eo_source_is_gzip(source);
   sign->hdf5 = !code && is_hdf5(head, size);
+  sign->wide = !code && sign->kind == EO_READER_TEXT ? wide_order(head, size) : 0;
   eo_source_close(source);
   return code;
 }
@@ -166,13 +211,15 @@ enum eo_code eo_reader_identify(const char *path, enum eo_reader_kind *kind, int
   return EO_OK;
 }
 
-static enum eo_code read_text(const char *path, const struct eo_reader_options *options,
+static enum eo_code read_text(const char *path, int wide, const struct eo_reader_options *options,
                               struct eo_recording **recording, struct eo_notes *notes, struct eo_error *error)
 {
   struct eo_source *source;
   enum eo_code code = eo_source_open(&source, path, options->max_bytes, error);
   if (code)
     return code;
+  if (wide)
+    eo_source_decode_wide(source, wide == 2);
   code = eo_delimited_read(source, options, recording, notes, error);
   eo_source_close(source);
   return code;
@@ -238,7 +285,7 @@ enum eo_code eo_reader_read(const char *path, const struct eo_reader_options *op
   if (!own.max_bytes)
     own.max_bytes = EO_READER_BYTES;
   if (sign.kind == EO_READER_TEXT)
-    return read_text(path, &own, recording, notes, error);
+    return read_text(path, sign.wide, &own, recording, notes, error);
   eo_series_reader *reader = readers[sign.hdf5 ? EO_READER_HDF5 : sign.kind];
   return (sign.gzip ? read_inflated : read_series)(reader, path, &own, recording, notes, error);
 }

@@ -21,6 +21,7 @@ struct column {
   char unit[EO_RECORDING_UNIT];
   int64_t length; /* -1: that of the table */
   struct eo_clock clock;
+  double turn; /* counts, 0: not stated */
 };
 
 struct eo_recording {
@@ -34,6 +35,7 @@ struct eo_recording {
   struct mark *mark; /* [marks], by row */
   int marks, mark_capacity;
   int64_t next_line;  /* line of the next row, 0: unknown */
+  double tick;        /* s, 0: not stated */
   int64_t known_rows; /* rows from here on have no line any more */
 };
 
@@ -174,6 +176,26 @@ void eo_recording_set_interval(struct eo_recording *recording, double interval, 
 {
   for (int c = 0; c < recording->columns; c++)
     recording->column[c].clock = (struct eo_clock){-1, interval, start, EO_CLOCK_NO_EPOCH};
+}
+
+void eo_recording_set_turn(struct eo_recording *recording, int column, double counts)
+{
+  recording->column[column].turn = counts;
+}
+
+double eo_recording_turn(const struct eo_recording *recording, int column)
+{
+  return recording->column[column].turn;
+}
+
+void eo_recording_set_tick(struct eo_recording *recording, double tick)
+{
+  recording->tick = tick;
+}
+
+double eo_recording_tick(const struct eo_recording *recording)
+{
+  return recording->tick;
 }
 
 /* Creates the temporary file; it has no name, so that it ends with the process. */

@@ -61,6 +61,14 @@ struct eo_clock eo_recording_clock(const struct eo_recording *recording, int col
 /* One even clock for all columns. */
 void eo_recording_set_interval(struct eo_recording *recording, double interval, double start);
 
+/* What the file states of an encoder's counts: per turn of the one in this column; 0: nothing. */
+void eo_recording_set_turn(struct eo_recording *recording, int column, double counts);
+double eo_recording_turn(const struct eo_recording *recording, int column);
+
+/* The length of one tick in which columns of ticks count the time, s; 0: not stated. */
+void eo_recording_set_tick(struct eo_recording *recording, double tick);
+double eo_recording_tick(const struct eo_recording *recording);
+
 /* The next row to be appended stands in this line of the file (from 1); those after it count on by one. */
 void eo_recording_set_line(struct eo_recording *recording, int64_t line);
 /* The line of the file a row was read from; 0 when the file has no lines. */

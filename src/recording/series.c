@@ -3,6 +3,7 @@
 
 #include <math.h>
 #include <stdbool.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <strings.h>
 
@@ -16,7 +17,7 @@ static bool same_interval(double a, double b)
 
 static bool sampled_together(const struct eo_series *a, const struct eo_series *b)
 {
-  return a->length == b->length && same_interval(a->interval, b->interval);
+  return a->length == b->length && same_interval(a->clock.interval, b->clock.interval);
 }
 
 static int count_like(const struct eo_series_file *file, const struct eo_series *like)
@@ -53,26 +54,33 @@ static const struct eo_series *find_group(const struct eo_series_file *file)
   return best;
 }
 
+static int ascending(const void *a, const void *b)
+{
+  return *(const int *)a - *(const int *)b;
+}
+
 /* Fills chosen[] with the channels of the table and says what stays out. */
 static int choose(const struct eo_series_file *file, int *chosen, struct eo_notes *notes)
 {
-  const struct eo_series *group = find_group(file);
+  const struct eo_series *group = find_group(file), *other = NULL;
   int64_t least = longest(file) / SHORT;
   int count = 0, left_out = 0;
-  const struct eo_series *other = NULL;
-  for (int i = 0; i < file->count; i++) {
-    const struct eo_series *s = &file->series[i];
-    if (count < EO_RECORDING_COLUMNS && (group ? sampled_together(s, group) : s->length > 1 && s->length >= least))
-      chosen[count++] = i;
-    else if (s->length > 1) {
-      left_out++;
-      other = s;
+  for (int pass = 0; pass < 2; pass++)
+    for (int i = 0; i < file->count; i++) {
+      const struct eo_series *s = &file->series[i];
+      bool first = group && sampled_together(s, group);
+      if (first != (pass == 0) || s->length <= 1)
+        continue;
+      if (count < EO_RECORDING_COLUMNS && s->length >= least)
+        chosen[count++] = i;
+      else
+        left_out++, other = s;
     }
-  }
+  qsort(chosen, (size_t)count, sizeof *chosen, ascending);
   if (left_out)
-    eo_notes_add(
-        notes, "%d channel%s with other lengths or sampling rates %s left out, for instance \"%s\" with %lld values.",
-        left_out, left_out == 1 ? "" : "s", left_out == 1 ? "was" : "were", other->name, (long long)other->length);
+    eo_notes_add(notes, "%d channel%s far shorter than the others %s left out, for instance \"%s\" with %lld values.",
+                 left_out, left_out == 1 ? "" : "s", left_out == 1 ? "was" : "were", other->name,
+                 (long long)other->length);
   return count;
 }
 
@@ -111,8 +119,14 @@ static enum eo_code copy_all(const struct eo_series_file *file, const int *chose
   struct eo_series *column = malloc((size_t)count * sizeof *column);
   double *values = malloc(BLOCK * sizeof *values * (size_t)(count + 1));
   enum eo_code code = column && values ? EO_OK : eo_error_memory(error);
-  for (int c = 0; !code && c < count; c++)
+  for (int c = 0; !code && c < count; c++) {
     column[c] = file->series[chosen[c]];
+    int time = column[c].clock.column;
+    column[c].clock.column = -1;
+    for (int k = 0; time >= 0 && k < count; k++)
+      if (chosen[k] == time)
+        column[c].clock.column = k;
+  }
   if (!code)
     code = sink->begin(sink->context, column, count, error);
   for (int64_t first = 0; !code && first < rows; first += BLOCK) {
@@ -139,19 +153,30 @@ enum eo_code eo_series_copy(const struct eo_series_file *file, const struct eo_s
   return code ? code : copy_all(file, chosen, count, rows, sink, error);
 }
 
-double eo_series_stated_interval(const char *name, double value)
+void eo_series_init(struct eo_series *series, const char *name, int64_t length)
 {
-  static const char *const rates[] = {"fs", "sample_rate", "samplerate", "sampling_rate", "sampling_frequency"};
-  static const char *const intervals[] = {"dt", "ts", "wf_increment", "increment", "sample_interval", "delta_t"};
-  if (!(value > 0) || !isfinite(value))
-    return 0;
-  for (size_t i = 0; i < sizeof rates / sizeof *rates; i++)
-    if (!strcasecmp(name, rates[i]))
-      return 1 / value;
-  for (size_t i = 0; i < sizeof intervals / sizeof *intervals; i++)
-    if (!strcasecmp(name, intervals[i]))
-      return value;
-  return 0;
+  *series = (struct eo_series){.length = length, .clock = {.column = -1, .epoch = EO_CLOCK_NO_EPOCH}};
+  snprintf(series->name, sizeof series->name, "%s", name);
+}
+
+bool eo_series_state(struct eo_series *series, const struct eo_stated *stated)
+{
+  switch (stated->kind) {
+  case EO_STATED_INTERVAL:
+    series->clock.interval = stated->value;
+    return true;
+  case EO_STATED_START:
+    series->clock.start = stated->value;
+    return true;
+  case EO_STATED_TICK:
+    series->tick = stated->value;
+    return true;
+  case EO_STATED_TURN:
+    series->turn = stated->value;
+    return true;
+  default:
+    return false;
+  }
 }
 
 static enum eo_code begin_recording(void *context, const struct eo_series *column, int columns, struct eo_error *error)
@@ -164,11 +189,13 @@ static enum eo_code begin_recording(void *context, const struct eo_series *colum
   for (int c = 0; c < columns; c++) {
     eo_recording_set_column(r->recording, c, column[c].name, column[c].unit);
     eo_recording_set_length(r->recording, c, column[c].length);
+    eo_recording_set_clock(r->recording, c, &column[c].clock);
+    eo_recording_set_turn(r->recording, c, column[c].turn);
+    if (column[c].tick > 0)
+      eo_recording_set_tick(r->recording, column[c].tick);
     if (column[c].length > r->total)
       r->total = column[c].length;
   }
-  if (column[0].interval > 0)
-    eo_recording_set_interval(r->recording, column[0].interval, column[0].start);
   return EO_OK;
 }
 

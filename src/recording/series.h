@@ -6,6 +6,9 @@
 #include "recording/notes.h"
 #include "recording/reader.h"
 #include "recording/recording.h"
+#include "recording/stated.h"
+
+#include <stdbool.h>
 
 #define EO_SERIES 1024 /* channels of a file that are looked at */
 
@@ -13,8 +16,17 @@ struct eo_series {
   char name[EO_RECORDING_NAME];
   char unit[EO_RECORDING_UNIT];
   int64_t length;
-  double interval, start; /* s; interval 0: not stated */
+  struct eo_clock clock; /* its column: number of the series with the times of this one, -1: none */
+  double turn;           /* counts per turn; 0: not stated */
+  double tick;           /* s of a tick, where the file states one; 0: not */
 };
+
+/* A series of this name and length whose clock is not known. */
+void eo_series_init(struct eo_series *series, const char *name, int64_t length);
+
+/* Takes what a number under a key says of a series (interval, start, tick, counts per turn); scale and offset are the
+   reader's. False when the key says nothing of that. */
+bool eo_series_state(struct eo_series *series, const struct eo_stated *stated);
 
 /* Where the table goes: once its columns, then all rows in order. */
 struct eo_series_sink {
@@ -39,15 +51,11 @@ typedef enum eo_code eo_series_reader(const char *path, const struct eo_reader_o
                                       const struct eo_series_sink *sink, struct eo_notes *notes,
                                       struct eo_error *error);
 
-/* Chooses the channels that were sampled together - the most that share interval and length - or, where lengths differ,
-   all long ones, and hands them to the sink row by row; what is left out is noted. Errors: EO_ERROR_INPUT: no channel
-   with data, a table that is far larger than its file, and those of read and sink. */
+/* Hands all channels that are long enough to the sink row by row, each with its clock; what is left out is noted. Where
+   there are more than a recording holds, those that share interval and length with the most come first. Errors:
+   EO_ERROR_INPUT: no channel with data, a table that is far larger than its file, and those of read and sink. */
 enum eo_code eo_series_copy(const struct eo_series_file *file, const struct eo_series_sink *sink,
                             struct eo_notes *notes, struct eo_error *error);
-
-/* The interval in s that a number of this name states: the number itself of "dt" and the like, its inverse of "fs" or
-   "sample_rate"; 0: none. */
-double eo_series_stated_interval(const char *name, double value);
 
 /* A sink that fills a new recording. It is NULL until begin; the caller frees it. */
 struct eo_series_recorder {

@@ -13,8 +13,17 @@
 
 #define CHUNK ((size_t)128 << 10)
 
+/* Text of two bytes a character on its way to UTF-8. */
+struct wide {
+  bool on, big;
+  uint32_t high; /* first half of a pair; 0: none */
+  size_t at, filled;
+  char text[6 * 1024]; /* of at most 4096 bytes */
+};
+
 struct eo_source {
   int file;
+  struct wide wide;
   bool gzip, ended;
   bool between; /* a member of the gzip file has ended, none has begun since */
   int64_t size, taken, given, limit;
@@ -169,13 +178,78 @@ static enum eo_code read_gzip(struct eo_source *s, unsigned char *bytes, size_t 
   return EO_OK;
 }
 
-enum eo_code eo_source_read(struct eo_source *source, void *bytes, size_t size, size_t *got, struct eo_error *error)
+static enum eo_code read_bytes(struct eo_source *source, void *bytes, size_t size, size_t *got, struct eo_error *error)
 {
   *got = 0;
   enum eo_code code = source->gzip ? read_gzip(source, bytes, size, got, error)
                                    : read_plain(source, bytes, size, got, error);
   source->given += (int64_t)*got;
   return code ? code : check_growth(source, error);
+}
+
+/* One character as UTF-8; byte order marks go away, halves of pairs wait for the other half. */
+static void put_character(struct wide *w, uint32_t c)
+{
+  if (c >= 0xd800 && c < 0xdc00) {
+    w->high = c;
+    return;
+  }
+  if (c >= 0xdc00 && c < 0xe000)
+    c = w->high ? 0x10000 + ((w->high - 0xd800) << 10) + (c - 0xdc00) : '?';
+  w->high = 0;
+  if (c == 0xfeff)
+    return;
+  char *to = w->text + w->filled;
+  if (c < 0x80) {
+    *to++ = (char)c;
+  } else if (c < 0x800) {
+    *to++ = (char)(0xc0 | c >> 6);
+    *to++ = (char)(0x80 | (c & 0x3f));
+  } else if (c < 0x10000) {
+    *to++ = (char)(0xe0 | c >> 12);
+    *to++ = (char)(0x80 | (c >> 6 & 0x3f));
+    *to++ = (char)(0x80 | (c & 0x3f));
+  } else {
+    *to++ = (char)(0xf0 | c >> 18);
+    *to++ = (char)(0x80 | (c >> 12 & 0x3f));
+    *to++ = (char)(0x80 | (c >> 6 & 0x3f));
+    *to++ = (char)(0x80 | (c & 0x3f));
+  }
+  w->filled = (size_t)(to - w->text);
+}
+
+static enum eo_code read_wide(struct eo_source *source, char *bytes, size_t size, size_t *got, struct eo_error *error)
+{
+  struct wide *w = &source->wide;
+  unsigned char raw[4096];
+  *got = 0;
+  while (*got < size) {
+    if (w->at == w->filled) {
+      size_t n;
+      enum eo_code code = read_bytes(source, raw, sizeof raw, &n, error);
+      if (code || n < 2)
+        return code;
+      w->at = w->filled = 0;
+      for (size_t i = 0; i + 1 < n; i += 2)
+        put_character(w, w->big ? (uint32_t)(raw[i] << 8 | raw[i + 1]) : (uint32_t)(raw[i + 1] << 8 | raw[i]));
+    }
+    size_t n = w->filled - w->at < size - *got ? w->filled - w->at : size - *got;
+    memcpy(bytes + *got, w->text + w->at, n);
+    w->at += n;
+    *got += n;
+  }
+  return EO_OK;
+}
+
+void eo_source_decode_wide(struct eo_source *source, int big)
+{
+  source->wide.on = true;
+  source->wide.big = big;
+}
+
+enum eo_code eo_source_read(struct eo_source *source, void *bytes, size_t size, size_t *got, struct eo_error *error)
+{
+  return source->wide.on ? read_wide(source, bytes, size, got, error) : read_bytes(source, bytes, size, got, error);
 }
 
 int eo_source_is_gzip(const struct eo_source *source)

@@ -19,6 +19,9 @@ void eo_source_close(struct eo_source *source); /* NULL is fine */
 /* Fills bytes with size bytes; *got is smaller only at the end of the file. Errors: EO_ERROR_FILE; EO_ERROR_INPUT:
    damaged, cut off or growing beyond the limits, with the byte of the file. */
 enum eo_code eo_source_read(struct eo_source *source, void *bytes, size_t size, size_t *got, struct eo_error *error);
+/* From now on UTF-16 (big: its high bytes first) comes out as UTF-8, without byte order marks. Before the first read.
+ */
+void eo_source_decode_wide(struct eo_source *source, int big);
 int eo_source_is_gzip(const struct eo_source *source);
 double eo_source_fraction(const struct eo_source *source); /* 0..1 of the file that has been read */
 

@@ -3,14 +3,18 @@
 #include "recording/bytes.h"
 #include "recording/readers.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <unistd.h>
 
 #define PIECE ((size_t)64 << 10) /* bytes read at once */
 
-static double value_at(struct eo_tdms_channel *channel, enum eo_tdms_type type, const unsigned char *p, bool big)
+static double value_at(struct eo_tdms_channel *channel, const struct eo_tdms_part *part, const unsigned char *p,
+                       bool big)
 {
-  switch (type) {
+  if (part->bit >= 0)
+    return p[0] >> part->bit & 1;
+  switch (part->type) {
   case EO_TDMS_INT8:
     return (int8_t)p[0];
   case EO_TDMS_INT16:
@@ -36,6 +40,8 @@ static double value_at(struct eo_tdms_channel *channel, enum eo_tdms_type type, 
     return eo_bytes_double(p, big);
   case EO_TDMS_TIMESTAMP:
     break;
+  case EO_TDMS_COMPLEX_SINGLE:
+  case EO_TDMS_COMPLEX_DOUBLE:
   case EO_TDMS_STRING:
     return 0;
   }
@@ -49,34 +55,31 @@ static double value_at(struct eo_tdms_channel *channel, enum eo_tdms_type type, 
   return (double)(int64_t)(seconds - (uint64_t)channel->base) + fraction;
 }
 
-/* Where one channel's values stand in a segment. */
-struct place {
-  const struct eo_tdms_part *part; /* NULL: it has none there */
-  int64_t offset;                  /* of its first value in a chunk, bytes */
-  int64_t stride;                  /* from value to value, bytes */
-  int64_t values;                  /* in the segment */
-};
-
-static struct place find_place(const struct eo_tdms_segment *segment, int channel)
+/* Values of one chunk follow each other, lie between those of other channels, or stand in rows of a buffer. */
+struct eo_tdms_place eo_tdms_place(const struct eo_tdms_segment *segment, int channel)
 {
-  struct place place = {0};
+  struct eo_tdms_place place = {0};
   const struct eo_tdms_layout *layout = segment->layout;
   for (int i = 0; i < layout->parts; i++) {
     const struct eo_tdms_part *part = &layout->part[i];
-    if (part->channel == channel && part->count) {
-      place.part = part;
-      place.stride = segment->interleaved ? layout->chunk / part->count : eo_tdms_type_size(part->type);
-      place.values = part->count * segment->chunks + segment->rest_rows;
-      return place;
+    int64_t size = eo_tdms_type_size(part->type);
+    if (part->channel != channel || !part->count) {
+      place.offset += segment->interleaved ? size : part->size;
+      continue;
     }
-    place.offset += segment->interleaved ? eo_tdms_type_size(part->type) : part->size;
+    place.part = part;
+    place.offset = part->width ? part->offset : place.offset;
+    place.stride = part->width ? part->width : segment->interleaved ? layout->chunk / part->count : size;
+    int64_t left = segment->rest - place.offset - size, rest = left < 0 || !place.stride ? 0 : left / place.stride + 1;
+    place.values = part->count * segment->chunks + (rest < part->count ? rest : part->count);
+    return place;
   }
   return place;
 }
 
 /* Reads up to count values of a chunk from the n-th of the segment on, as many as one piece and the chunk hold. */
 static enum eo_code read_piece(const struct eo_tdms *tdms, struct eo_tdms_channel *channel,
-                               const struct eo_tdms_segment *segment, const struct place *place, int64_t n,
+                               const struct eo_tdms_segment *segment, const struct eo_tdms_place *place, int64_t n,
                                int64_t *count, double *values, unsigned char *bytes, struct eo_error *error)
 {
   int64_t size = eo_tdms_type_size(place->part->type), chunk = n / place->part->count,
@@ -89,8 +92,7 @@ static enum eo_code read_piece(const struct eo_tdms *tdms, struct eo_tdms_channe
   int64_t at = segment->at + chunk * segment->layout->chunk + place->offset + in_chunk * place->stride;
   enum eo_code code = eo_bytes_read(tdms->file, at, bytes, (size_t)((*count - 1) * place->stride + size), error);
   for (int64_t i = 0; !code && i < *count; i++)
-    values[i] = value_at(channel, place->part->type, bytes + i * place->stride, segment->big) * channel->slope +
-                channel->intercept;
+    values[i] = eo_tdms_scaled(channel, value_at(channel, place->part, bytes + i * place->stride, segment->big));
   return code;
 }
 
@@ -103,7 +105,7 @@ static enum eo_code read_values(void *context, int number, int64_t first, int64_
   unsigned char bytes[PIECE];
   while (count > 0 && channel->segment < tdms->segments) {
     const struct eo_tdms_segment *segment = &tdms->segment[channel->segment];
-    struct place place = find_place(segment, number);
+    struct eo_tdms_place place = eo_tdms_place(segment, number);
     int64_t n = first - channel->passed, got = count < place.values - n ? count : place.values - n;
     if (got <= 0) {
       channel->passed += place.values;
@@ -120,27 +122,73 @@ static enum eo_code read_values(void *context, int number, int64_t first, int64_
   return EO_OK;
 }
 
-/* Channels of text have no values for us. Raw data with one linear scale are scaled; other scales are only noted. */
+/* Facts of the group, then of the file, for what the channel does not say itself. */
+static void inherit(struct eo_tdms *tdms, int c)
+{
+  struct eo_series *s = &tdms->series[c];
+  for (int pass = 0; pass < 2; pass++)
+    for (int i = 0; i < tdms->groups; i++) {
+      const struct eo_tdms_group *group = &tdms->group[i];
+      size_t length = strlen(group->path);
+      bool mine = pass ? length == 1
+                       : length > 1 && !strncmp(tdms->channel[c].path, group->path, length) &&
+                             tdms->channel[c].path[length] == '/';
+      if (!mine)
+        continue;
+      if (!(s->clock.interval > 0))
+        s->clock.interval = group->stated.clock.interval;
+      if (s->clock.epoch == EO_CLOCK_NO_EPOCH)
+        s->clock.epoch = group->stated.clock.epoch;
+      s->turn = s->turn > 0 ? s->turn : group->stated.turn;
+      s->tick = s->tick > 0 ? s->tick : group->stated.tick;
+    }
+}
+
+/* Channels of one name in several groups are told apart by the group. */
+static void name_by_group(struct eo_tdms *tdms, int c)
+{
+  char group[EO_RECORDING_NAME] = "", name[EO_RECORDING_NAME];
+  for (int i = 0; i < tdms->channels; i++) {
+    const char *end = strstr(tdms->channel[c].path, "'/'");
+    if (i == c || strcmp(tdms->series[i].name, tdms->series[c].name) || !end)
+      continue;
+    snprintf(group, sizeof group, "%.*s", (int)(end - tdms->channel[c].path - 2), tdms->channel[c].path + 2);
+    snprintf(name, sizeof name, "%.30s %.30s", group, tdms->series[c].name);
+    memcpy(tdms->series[c].name, name, sizeof name);
+    return;
+  }
+}
+
+/* Channels of text and of complex numbers have no values for us, nor have raw values without a scale we know. */
 static void settle_channels(struct eo_tdms *tdms, struct eo_notes *notes)
 {
   for (int c = 0; c < tdms->channels; c++) {
     struct eo_tdms_channel *channel = &tdms->channel[c];
-    if (channel->index_known && channel->index.type == EO_TDMS_STRING)
+    enum eo_tdms_type type = channel->index.type;
+    if (channel->index_known &&
+        (type == EO_TDMS_STRING || type == EO_TDMS_COMPLEX_SINGLE || type == EO_TDMS_COMPLEX_DOUBLE)) {
+      if (type != EO_TDMS_STRING)
+        eo_notes_add(notes, "The channel \"%s\" holds complex numbers and was left out.", tdms->series[c].name);
       tdms->series[c].length = 0;
-    if (channel->index_known && channel->index.type == EO_TDMS_TIMESTAMP)
-      memcpy(tdms->series[c].unit, "s", 2);
-    bool raw = channel->scales > 0 && !channel->scaled;
-    if (!raw || channel->scales > 1 || channel->unknown_scale) {
-      channel->slope = 1;
-      channel->intercept = 0;
     }
-    if (raw && (channel->scales > 1 || channel->unknown_scale))
+    if (channel->index_known && type == EO_TDMS_TIMESTAMP)
+      memcpy(tdms->series[c].unit, "s", 2);
+    if (channel->scaled || channel->scales <= 0) {
+      free(channel->scale);
+      channel->scale = NULL;
+    } else if (!eo_tdms_can_scale(channel)) {
+      tdms->series[c].length = 0;
       eo_notes_add(notes,
-                   "The channel \"%s\" holds raw values with a scale that is not linear; they were left as they are.",
+                   "The channel \"%s\" holds raw values with a scale that is not known here and was left out; save it "
+                   "scaled (as double).",
                    tdms->series[c].name);
+    }
+    inherit(tdms, c);
   }
+  for (int c = tdms->channels; c-- > 0;)
+    name_by_group(tdms, c);
   if (tdms->cut)
-    eo_notes_add(notes, "The TDMS file is not complete; its last, unfinished chunk was left out.");
+    eo_notes_add(notes, "The TDMS file was not closed or is cut off; what is there of its last chunk was read.");
 }
 
 enum eo_code eo_tdms_read(const char *path, const struct eo_reader_options *options, const struct eo_series_sink *sink,

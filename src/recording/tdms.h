@@ -24,14 +24,39 @@ enum eo_tdms_type {
   EO_TDMS_STRING = 0x20,
   EO_TDMS_BOOLEAN = 0x21,
   EO_TDMS_TIMESTAMP = 0x44,
+  EO_TDMS_COMPLEX_SINGLE = 0x08000c,
+  EO_TDMS_COMPLEX_DOUBLE = 0x10000d,
 };
 
 /* One channel's values in one chunk. */
 struct eo_tdms_part {
   int channel;
   enum eo_tdms_type type;
-  int64_t count; /* values per chunk */
-  int64_t size;  /* bytes of them */
+  int64_t count;  /* values per chunk */
+  int64_t size;   /* bytes of them; of raw data of DAQmx those of all channels */
+  int64_t width;  /* of raw data of DAQmx: bytes of a row of the channel's buffer; else 0 */
+  int64_t offset; /* of raw data of DAQmx: byte of the first value in the chunk */
+  int bit;        /* of a digital line: its place in the byte; -1: no digital line */
+};
+
+/* How a raw value becomes one with a unit. */
+enum eo_tdms_scale_kind {
+  EO_TDMS_NO_SCALE,
+  EO_TDMS_LINEAR,
+  EO_TDMS_POLYNOMIAL,
+  EO_TDMS_TABLE,
+  EO_TDMS_ADD,
+  EO_TDMS_SUBTRACT,
+  EO_TDMS_OTHER_SCALE
+};
+
+enum { EO_TDMS_SCALES = 16, EO_TDMS_TERMS = 64 };
+
+struct eo_tdms_scale {
+  enum eo_tdms_scale_kind kind;
+  int64_t source[2];             /* number of the scale whose result it takes; one that does not exist: the raw value */
+  int terms[2];                  /* of term; coefficients, or scaled values and values before */
+  double term[2][EO_TDMS_TERMS]; /* slope and intercept of a linear one */
 };
 
 struct eo_tdms_layout {
@@ -43,7 +68,7 @@ struct eo_tdms_layout {
 struct eo_tdms_segment {
   const struct eo_tdms_layout *layout; /* borrowed from the list of layouts */
   int64_t at, chunks;                  /* byte of the first chunk, whole chunks */
-  int64_t rest_rows;                   /* rows of an interleaved chunk that is cut off */
+  int64_t rest;                        /* bytes of a last chunk that is cut off */
   bool interleaved, big;
 };
 
@@ -51,17 +76,27 @@ struct eo_tdms_channel {
   char *path;    /* owned, as in the file */
   int listed_at; /* place in the list of objects when it is there */
   bool index_known;
-  struct eo_tdms_part index; /* as last stated */
-  double slope, intercept;   /* of the one linear scale of unscaled data */
-  int64_t scales;            /* stated in NI_Number_Of_Scales */
-  bool scaled, unknown_scale;
+  struct eo_tdms_part index;   /* as last stated */
+  int64_t scales;              /* stated in NI_Number_Of_Scales */
+  struct eo_tdms_scale *scale; /* owned, [EO_TDMS_SCALES]; NULL: none */
+  bool scaled;
   int64_t base; /* s, whole seconds of the first timestamp */
   bool base_known;
   int64_t segment, passed; /* where reading has come to: segment, values before it */
 };
 
+/* What the properties of the file or of a group say of the channels in it. */
+struct eo_tdms_group {
+  char *path; /* owned; "/" for the file */
+  struct eo_series stated;
+};
+
+enum { EO_TDMS_GROUPS = 256 };
+
 struct eo_tdms {
   int file;
+  int groups;
+  struct eo_tdms_group group[EO_TDMS_GROUPS];
   int64_t size;
   bool cut; /* the last segment is not complete */
   int channels;
@@ -78,6 +113,20 @@ struct eo_tdms {
     bool data;
   } list[EO_SERIES];
 };
+
+/* Where one channel's values stand in a segment. */
+struct eo_tdms_place {
+  const struct eo_tdms_part *part; /* NULL: it has none there */
+  int64_t offset;                  /* of its first value in a chunk, bytes */
+  int64_t stride;                  /* from value to value, bytes */
+  int64_t values;                  /* in the segment, with those of a chunk that is cut off */
+};
+struct eo_tdms_place eo_tdms_place(const struct eo_tdms_segment *segment, int channel);
+
+/* A raw value through the channel's scales. */
+double eo_tdms_scaled(const struct eo_tdms_channel *channel, double raw);
+/* False when one of the scales is of a kind that is not known. */
+bool eo_tdms_can_scale(const struct eo_tdms_channel *channel);
 
 int64_t eo_tdms_type_size(uint32_t type); /* bytes of a value, 0 when it has no fixed size or is not read */
 

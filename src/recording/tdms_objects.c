@@ -1,10 +1,12 @@
 /* The metadata of a TDMS segment: objects, where their raw data are, properties. */
 #include "recording/bytes.h"
+#include "recording/decimal.h"
 #include "recording/tdms.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <strings.h>
 
 /* What is left of the metadata; at: byte of the file, for errors. */
 struct reader {
@@ -35,7 +37,10 @@ int64_t eo_tdms_type_size(uint32_t type)
   case EO_TDMS_DOUBLE:
   case EO_TDMS_DOUBLE_UNIT:
     return 8;
+  case EO_TDMS_COMPLEX_SINGLE:
+    return 8;
   case EO_TDMS_TIMESTAMP:
+  case EO_TDMS_COMPLEX_DOUBLE:
     return 16;
   default:
     return 0;
@@ -73,16 +78,61 @@ static bool take_string(struct reader *r, const char **text, uint32_t *length)
   return *text;
 }
 
-/* A property's value: *number for those that are numbers, else NaN; *text for strings, else NULL. */
-static bool take_value(struct reader *r, double *number, const char **text, uint32_t *length)
+/* A property's value. */
+struct property {
+  double number;    /* NaN unless it is one */
+  const char *text; /* NULL unless it is one */
+  uint32_t length;
+  int64_t epoch; /* of a time stamp, else EO_CLOCK_NO_EPOCH */
+};
+
+static double number_of(uint32_t type, const unsigned char *p, bool big)
+{
+  switch (type) {
+  case EO_TDMS_INT8:
+    return (int8_t)p[0];
+  case EO_TDMS_INT16:
+    return (int16_t)eo_bytes_16(p, big);
+  case EO_TDMS_INT32:
+    return (int32_t)eo_bytes_32(p, big);
+  case EO_TDMS_INT64:
+    return (double)(int64_t)eo_bytes_64(p, big);
+  case EO_TDMS_UINT8:
+    return p[0];
+  case EO_TDMS_UINT16:
+    return eo_bytes_16(p, big);
+  case EO_TDMS_UINT32:
+    return eo_bytes_32(p, big);
+  case EO_TDMS_UINT64:
+    return (double)eo_bytes_64(p, big);
+  case EO_TDMS_SINGLE:
+  case EO_TDMS_SINGLE_UNIT:
+    return eo_bytes_float(p, big);
+  case EO_TDMS_DOUBLE:
+  case EO_TDMS_DOUBLE_UNIT:
+    return eo_bytes_double(p, big);
+  default:
+    return NAN;
+  }
+}
+
+/* Time stamps are seconds since 1904-01-01 and fractions of 2^-64 s. */
+static int64_t epoch_of(const unsigned char *p, bool big)
+{
+  int64_t seconds = (int64_t)eo_bytes_64(big ? p : p + 8, big) - 2082844800;
+  double fraction = (double)eo_bytes_64(big ? p + 8 : p, big) * 0x1p-64;
+  return seconds > -4000000000 && seconds < 8000000000 ? seconds * 1000000000 + llround(fraction * 1e9)
+                                                       : EO_CLOCK_NO_EPOCH;
+}
+
+static bool take_value(struct reader *r, struct property *value)
 {
   uint32_t type;
-  *number = NAN;
-  *text = NULL;
+  *value = (struct property){.number = NAN, .epoch = EO_CLOCK_NO_EPOCH};
   if (!take_32(r, &type))
     return false;
   if (type == EO_TDMS_STRING)
-    return take_string(r, text, length);
+    return take_string(r, &value->text, &value->length);
   int64_t size = eo_tdms_type_size(type);
   if (!size) {
     eo_error_set(r->error, EO_ERROR_INPUT, "", "TDMS: the property before byte %lld is of the unknown type %u.",
@@ -92,14 +142,9 @@ static bool take_value(struct reader *r, double *number, const char **text, uint
   const unsigned char *p = take(r, (size_t)size);
   if (!p)
     return false;
-  if (type == EO_TDMS_DOUBLE || type == EO_TDMS_DOUBLE_UNIT)
-    *number = eo_bytes_double(p, r->big);
-  else if (type == EO_TDMS_SINGLE || type == EO_TDMS_SINGLE_UNIT)
-    *number = eo_bytes_float(p, r->big);
-  else if (type == EO_TDMS_INT32)
-    *number = (int32_t)eo_bytes_32(p, r->big);
-  else if (type == EO_TDMS_UINT32)
-    *number = eo_bytes_32(p, r->big);
+  value->number = number_of(type, p, r->big);
+  if (type == EO_TDMS_TIMESTAMP)
+    value->epoch = epoch_of(p, r->big);
   return true;
 }
 
@@ -108,32 +153,110 @@ static bool is_named(const char *text, uint32_t length, const char *name)
   return strlen(name) == length && !memcmp(text, name, length);
 }
 
-static bool ends_with(const char *text, uint32_t length, const char *tail)
+/* The scale of a channel with this number, made when it is not there. */
+static struct eo_tdms_scale *scale_at(struct eo_tdms_channel *channel, int number)
 {
-  size_t n = strlen(tail);
-  return length >= n && !memcmp(text + length - n, tail, n);
+  if (!channel->scale) {
+    channel->scale = calloc(EO_TDMS_SCALES, sizeof *channel->scale);
+    for (int i = 0; channel->scale && i < EO_TDMS_SCALES; i++)
+      channel->scale[i].source[0] = channel->scale[i].source[1] = -1;
+  }
+  return channel->scale && number >= 0 && number < EO_TDMS_SCALES ? &channel->scale[number] : NULL;
 }
 
-/* What a channel's properties mean to us: its sampling and unit, and the scale of data that were stored raw. */
-static void use_property(struct eo_tdms_channel *channel, struct eo_series *series, const char *name, uint32_t length,
-                         double number, const char *text, uint32_t text_length)
+static enum eo_tdms_scale_kind scale_kind(const struct property *value)
 {
-  if (is_named(name, length, "wf_increment") && number > 0 && isfinite(number))
-    series->interval = number;
-  else if (is_named(name, length, "wf_start_offset") && isfinite(number))
-    series->start = number;
-  else if (is_named(name, length, "unit_string") && text)
-    snprintf(series->unit, sizeof series->unit, "%.*s", (int)(text_length < 64 ? text_length : 64), text);
-  else if (is_named(name, length, "NI_Scaling_Status") && text)
-    channel->scaled = is_named(text, text_length, "scaled");
-  else if (is_named(name, length, "NI_Number_Of_Scales") && number >= 0)
-    channel->scales = (int64_t)number;
-  else if (ends_with(name, length, "_Scale_Type") && text)
-    channel->unknown_scale = channel->unknown_scale || !is_named(text, text_length, "Linear");
-  else if (ends_with(name, length, "_Linear_Slope"))
-    channel->slope = number;
-  else if (ends_with(name, length, "_Linear_Y_Intercept"))
-    channel->intercept = number;
+  static const char *const names[] = {[EO_TDMS_LINEAR] = "Linear",
+                                      [EO_TDMS_POLYNOMIAL] = "Polynomial",
+                                      [EO_TDMS_TABLE] = "Table",
+                                      [EO_TDMS_ADD] = "Add",
+                                      [EO_TDMS_SUBTRACT] = "Subtract"};
+  for (int i = EO_TDMS_LINEAR; i < EO_TDMS_OTHER_SCALE; i++)
+    if (value->text && is_named(value->text, value->length, names[i]))
+      return (enum eo_tdms_scale_kind)i;
+  return EO_TDMS_OTHER_SCALE;
+}
+
+/* "Polynomial_Coefficients[2]": a place in a list of terms; more than are kept make the scale one we cannot apply. */
+static void use_term(struct eo_tdms_scale *scale, int list, const char *index, double number)
+{
+  long at = strtol(index, NULL, 10);
+  if (at < 0 || at >= EO_TDMS_TERMS || !isfinite(number))
+    scale->kind = EO_TDMS_OTHER_SCALE;
+  else {
+    scale->term[list][at] = number;
+    scale->terms[list] = at + 1 > scale->terms[list] ? (int)at + 1 : scale->terms[list];
+  }
+}
+
+/* "NI_Scale[1]_Linear_Slope" and the like. */
+static void use_scale(struct eo_tdms_channel *channel, const char *name, const struct property *value)
+{
+  char *rest;
+  long number = strtol(name + strlen("NI_Scale["), &rest, 10);
+  struct eo_tdms_scale *scale = scale_at(channel, (int)number);
+  if (!scale || strncmp(rest, "]_", 2))
+    return;
+  rest += 2;
+  const char *bracket = strchr(rest, '[');
+  if (!strcmp(rest, "Scale_Type"))
+    scale->kind = scale_kind(value);
+  else if (strstr(rest, "Input_Source"))
+    scale->source[strstr(rest, "Right_") != NULL] = value->number < 1e9 ? (int64_t)value->number : -1;
+  else if (!strcmp(rest, "Linear_Slope"))
+    use_term(scale, 0, "1", value->number);
+  else if (!strcmp(rest, "Linear_Y_Intercept"))
+    use_term(scale, 0, "0", value->number);
+  else if (bracket && (strstr(rest, "Polynomial_Coefficients[") || strstr(rest, "Table_Scaled_Values[")))
+    use_term(scale, 0, bracket + 1, value->number);
+  else if (bracket && strstr(rest, "Table_Pre_Scaled_Values["))
+    use_term(scale, 1, bracket + 1, value->number);
+}
+
+/* The number in a text such as "4000 Hz"; unit: what follows it. */
+static double number_in_text(const struct property *value, char *unit, size_t size)
+{
+  char text[64], *end;
+  *unit = '\0';
+  if (!value->text || value->length >= sizeof text)
+    return value->number;
+  memcpy(text, value->text, value->length);
+  text[value->length] = '\0';
+  double number;
+  const char *after = eo_decimal_read(text, strchr(text, ',') && !strchr(text, '.') ? ',' : '.', &number);
+  end = text + (after ? after - text : 0);
+  snprintf(unit, size, "%s", after ? end : "");
+  return after ? number : NAN;
+}
+
+/* What a property of a channel, a group or the file says of the sampling. */
+static void use_fact(struct eo_series *series, const char *name, const struct property *value)
+{
+  char unit[64];
+  double number = number_in_text(value, unit, sizeof unit);
+  struct eo_stated stated = eo_stated_read(name, number, unit);
+  if (stated.kind == EO_STATED_INTERVAL && !strcmp(name, "wf_increment") && !(number > 0))
+    return;
+  eo_series_state(series, &stated);
+  if (value->epoch != EO_CLOCK_NO_EPOCH && (!strcmp(name, "wf_start_time") || eo_stated_begin(name)))
+    series->clock.epoch = value->epoch;
+}
+
+/* What a channel's properties mean to us: its sampling and unit, and the scales of data that were stored raw. */
+static void use_property(struct eo_tdms_channel *channel, struct eo_series *series, const char *name,
+                         const struct property *value)
+{
+  if (!strncmp(name, "NI_Scale[", 9))
+    use_scale(channel, name, value);
+  else if (!strcmp(name, "NI_Scaling_Status") && value->text)
+    channel->scaled = is_named(value->text, value->length, "scaled");
+  else if (!strcmp(name, "NI_Number_Of_Scales") && value->number >= 0)
+    channel->scales = (int64_t)value->number;
+  else if (value->text && (!strcmp(name, "unit_string") || (!*series->unit && !strcasecmp(name, "unit")) ||
+                           (!*series->unit && !strcasecmp(name, "units"))))
+    snprintf(series->unit, sizeof series->unit, "%.*s", (int)(value->length < 64 ? value->length : 64), value->text);
+  else if (strncmp(name, "NI_", 3) != 0)
+    use_fact(series, name, value);
 }
 
 static bool take_properties(struct reader *r, struct eo_tdms_channel *channel, struct eo_series *series)
@@ -142,15 +265,78 @@ static bool take_properties(struct reader *r, struct eo_tdms_channel *channel, s
   if (!take_32(r, &count))
     return false;
   for (uint32_t i = 0; i < count; i++) {
-    const char *name, *text;
-    uint32_t length, text_length = 0;
-    double number;
-    if (!take_string(r, &name, &length) || !take_value(r, &number, &text, &text_length))
+    const char *text;
+    char name[128];
+    uint32_t length;
+    struct property value;
+    if (!take_string(r, &text, &length) || !take_value(r, &value))
       return false;
+    snprintf(name, sizeof name, "%.*s", (int)(length < sizeof name ? length : 0), text);
     if (channel)
-      use_property(channel, series, name, length, number, text, text_length);
+      use_property(channel, series, name, &value);
+    else if (series)
+      use_fact(series, name, &value);
   }
   return true;
+}
+
+/* The scaler of raw DAQmx data: type of the values, their buffer and place in a row of it. Types are numbered on their
+   own; the last is a time stamp. */
+static bool take_scaler(struct reader *r, bool digital, struct eo_tdms_part *part, uint32_t *buffer)
+{
+  static const enum eo_tdms_type types[] = {EO_TDMS_UINT8,  EO_TDMS_INT8,  EO_TDMS_UINT16, EO_TDMS_INT16,
+                                            EO_TDMS_UINT32, EO_TDMS_INT32, EO_TDMS_UINT64, EO_TDMS_INT64,
+                                            EO_TDMS_SINGLE, EO_TDMS_DOUBLE};
+  uint32_t type, offset;
+  if (!take_32(r, &type) || !take_32(r, buffer) || !take_32(r, &offset) || !take(r, digital ? 5 : 8))
+    return false;
+  part->type = type < sizeof types / sizeof *types ? types[type] : EO_TDMS_TIMESTAMP;
+  part->bit = digital ? (int)(offset % 8) : -1;
+  part->offset = digital ? offset / 8 : offset;
+  if (digital)
+    part->type = EO_TDMS_UINT8;
+  return type < sizeof types / sizeof *types || type == 0xffffffffu;
+}
+
+/* Where raw DAQmx data are: rows of one or more buffers, one after the other in the chunk. Of several scalers of a
+   channel the first counts. */
+static bool take_raw_index(struct reader *r, bool digital, struct eo_tdms_channel *channel, int number)
+{
+  int64_t at = r->at;
+  uint32_t type, dimension, scalers, widths, width, buffer = 0, other;
+  struct eo_tdms_part part = {.channel = number}, ignored;
+  const unsigned char *p;
+  if (!channel || !take_32(r, &type) || !take_32(r, &dimension) || !(p = take(r, 8)))
+    goto damaged;
+  uint64_t count = eo_bytes_64(p, r->big);
+  if (!take_32(r, &scalers) || !scalers || scalers > 64 || count > INT64_MAX >> 24 || dimension != 1)
+    goto damaged;
+  for (uint32_t i = 0; i < scalers; i++)
+    if (!take_scaler(r, digital, i ? &ignored : &part, i ? &other : &buffer))
+      goto damaged;
+  if (!take_32(r, &widths) || !widths || widths > 64 || buffer >= widths)
+    goto damaged;
+  int64_t row = 0, place = part.offset;
+  part.count = (int64_t)count;
+  for (uint32_t i = 0; i < widths; i++) {
+    if (!take_32(r, &width) || width > 1 << 16)
+      goto damaged;
+    if (i == buffer)
+      part.width = width, part.offset += row * part.count;
+    row += width;
+  }
+  part.size = row * part.count;
+  if (place + eo_tdms_type_size(part.type) > part.width)
+    goto damaged;
+  channel->index = part;
+  channel->index_known = true;
+  return true;
+damaged:
+  eo_error_set(r->error, EO_ERROR_INPUT, "",
+               "TDMS: the index of raw DAQmx data at byte %lld is damaged or of a kind that is not read; save the "
+               "channels converted (as double).",
+               (long long)at);
+  return false;
 }
 
 /* Where the raw data of a channel are: a new index, the one it had (length 0), or none in this segment. */
@@ -163,12 +349,8 @@ static bool take_index(struct reader *r, struct eo_tdms_channel *channel, int nu
   *data = length != 0xffffffffu;
   if (!*data || (length == 0 && channel && channel->index_known))
     return true;
-  if (length == 0x1269 || length == 0x126a || length == 0x1369) {
-    eo_error_set(r->error, EO_ERROR_INPUT, "",
-                 "TDMS: the channel before byte %lld holds raw DAQmx data; save it converted (as double).",
-                 (long long)at);
-    return false;
-  }
+  if (length == 0x1269 || length == 0x126a)
+    return take_raw_index(r, length == 0x126a, channel, number);
   const unsigned char *p;
   if (length != 20 && length != 28) {
     eo_error_set(r->error, EO_ERROR_INPUT, "", "TDMS: the index of raw data at byte %lld has a length of %u bytes.",
@@ -199,7 +381,7 @@ static bool take_index(struct reader *r, struct eo_tdms_channel *channel, int nu
                  (long long)at);
     return false;
   }
-  channel->index = (struct eo_tdms_part){number, (enum eo_tdms_type)type, (int64_t)count, (int64_t)size};
+  channel->index = (struct eo_tdms_part){number, (enum eo_tdms_type)type, (int64_t)count, (int64_t)size, 0, 0, -1};
   channel->index_known = true;
   return true;
 }
@@ -260,9 +442,26 @@ static int find_channel(struct eo_tdms *tdms, const char *path, uint32_t length,
     eo_error_memory(error);
     return -1;
   }
-  channel->slope = 1;
+  eo_series_init(&tdms->series[tdms->channels], "", 0);
   name_channel(channel->path, tdms->series[tdms->channels].name, sizeof tdms->series->name);
   return tdms->channels++;
+}
+
+/* The group of this path, or the file itself; NULL when there are too many. */
+static struct eo_series *find_group(struct eo_tdms *tdms, const char *path, uint32_t length)
+{
+  for (int i = 0; i < tdms->groups; i++)
+    if (is_named(path, length, tdms->group[i].path))
+      return &tdms->group[i].stated;
+  if (tdms->groups == EO_TDMS_GROUPS)
+    return NULL;
+  struct eo_tdms_group *group = &tdms->group[tdms->groups];
+  group->path = strndup(path, length);
+  if (!group->path)
+    return NULL;
+  eo_series_init(&group->stated, "", 0);
+  tdms->groups++;
+  return &group->stated;
 }
 
 /* Puts a channel into the list of the segment's objects, where it may already be. */
@@ -294,7 +493,7 @@ static bool take_object(struct eo_tdms *tdms, struct reader *r, int hint)
   if (!take_path(r, &path, &length))
     return false;
   if (!is_channel(path, length))
-    return take_index(r, NULL, -1, &data) && take_properties(r, NULL, NULL);
+    return take_index(r, NULL, -1, &data) && take_properties(r, NULL, find_group(tdms, path, length));
   int c = find_channel(tdms, path, length, hint, r->error);
   if (c < 0 || !take_index(r, &tdms->channel[c], c, &data))
     return false;

@@ -35,13 +35,13 @@ static enum eo_code read_lead_in(struct eo_tdms *tdms, int64_t at, struct lead_i
   uint32_t version = eo_bytes_32(bytes + 8, big);
   if (version != 4712 && version != 4713)
     return damaged(at, "is of an unknown version, neither 4712 nor 4713", error);
-  if (lead->toc & TOC_DAQMX)
-    return damaged(at, "holds raw DAQmx data; save the channels converted (as double)", error);
   uint64_t next = eo_bytes_64(bytes + 12, big), data = eo_bytes_64(bytes + 20, big);
   uint64_t left = (uint64_t)(tdms->size - at - LEAD_IN);
   tdms->cut = next == UINT64_MAX || next > left;
   if (tdms->cut)
     next = left;
+  if (data == UINT64_MAX && tdms->cut)
+    data = left;
   if (data > next)
     return damaged(at, tdms->cut ? "is cut off in its metadata" : "has its data behind its end", error);
   lead->data = at + LEAD_IN + (int64_t)data;
@@ -75,7 +75,8 @@ static bool is_current(const struct eo_tdms *tdms, const struct eo_tdms_layout *
       continue;
     const struct eo_tdms_part *part = &tdms->channel[tdms->list[i].channel].index;
     if (n >= layout->parts || layout->part[n].channel != part->channel || layout->part[n].type != part->type ||
-        layout->part[n].count != part->count || layout->part[n].size != part->size)
+        layout->part[n].count != part->count || layout->part[n].size != part->size ||
+        layout->part[n].width != part->width || layout->part[n].offset != part->offset)
       return false;
     n++;
   }
@@ -109,10 +110,13 @@ static const struct eo_tdms_layout *current_layout(struct eo_tdms *tdms, int64_t
   }
   for (int i = 0; i < tdms->listed; i++)
     if (tdms->list[i].data) {
-      layout->part[layout->parts] = tdms->channel[tdms->list[i].channel].index;
-      layout->chunk +=
-          layout->part[layout->parts++].size; /* sizes are below 2^58: no sum of them overflows after the check below */
-      if (layout->chunk > tdms->size) {
+      const struct eo_tdms_part *part = &tdms->channel[tdms->list[i].channel].index;
+      layout->part[layout->parts++] = *part;
+      if (part->width) /* all channels share the rows */
+        layout->chunk = part->size > layout->chunk ? part->size : layout->chunk;
+      else
+        layout->chunk += part->size; /* sizes are below 2^58: no sum of them overflows after the check below */
+      if (layout->chunk > (tdms->cut ? INT64_MAX >> 3 : tdms->size)) {
         free(layout);
         damaged(at, "states more data than the file holds", error);
         return NULL;
@@ -125,7 +129,8 @@ static const struct eo_tdms_layout *current_layout(struct eo_tdms *tdms, int64_t
 static bool may_interleave(const struct eo_tdms_layout *layout)
 {
   for (int i = 0; i < layout->parts; i++)
-    if (layout->part[i].count != layout->part[0].count || layout->part[i].type == EO_TDMS_STRING)
+    if (layout->part[i].count != layout->part[0].count || layout->part[i].type == EO_TDMS_STRING ||
+        layout->part[i].width)
       return false;
   return true;
 }
@@ -147,17 +152,16 @@ static enum eo_code add_segment(struct eo_tdms *tdms, int64_t at, const struct l
   }
   struct eo_tdms_segment s = {
       .layout = layout, .at = lead->data, .interleaved = lead->toc & TOC_INTERLEAVED, .big = lead->toc & TOC_BIG};
+  s.interleaved = s.interleaved && !(lead->toc & TOC_DAQMX);
   if (s.interleaved && !may_interleave(layout))
     return damaged(at, "interleaves channels of different lengths", error);
-  int64_t bytes = lead->next - lead->data, rest;
+  int64_t bytes = lead->next - lead->data;
   s.chunks = bytes / layout->chunk;
-  rest = bytes % layout->chunk;
-  if (s.interleaved)
-    s.rest_rows = rest / (layout->chunk / layout->part[0].count);
-  tdms->cut = tdms->cut || rest;
+  s.rest = bytes % layout->chunk;
+  tdms->cut = tdms->cut || s.rest;
   for (int i = 0; i < layout->parts; i++)
     if (layout->part[i].type != EO_TDMS_STRING)
-      tdms->series[layout->part[i].channel].length += layout->part[i].count * s.chunks + s.rest_rows;
+      tdms->series[layout->part[i].channel].length += eo_tdms_place(&s, layout->part[i].channel).values;
   tdms->segment[tdms->segments++] = s;
   return EO_OK;
 }
@@ -185,8 +189,12 @@ enum eo_code eo_tdms_scan(struct eo_tdms *tdms, struct eo_error *error)
 
 void eo_tdms_done(struct eo_tdms *tdms)
 {
-  for (int i = 0; i < tdms->channels; i++)
+  for (int i = 0; i < tdms->channels; i++) {
     free(tdms->channel[i].path);
+    free(tdms->channel[i].scale);
+  }
+  for (int i = 0; i < tdms->groups; i++)
+    free(tdms->group[i].path);
   for (int i = 0; i < tdms->layouts; i++)
     free(tdms->layout[i]);
   free(tdms->layout);

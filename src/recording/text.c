@@ -2,9 +2,11 @@
 /* The rows of a text file, block by block: cells go straight from the text to doubles; only lines that are not plain
    numbers are looked at twice. */
 #include "recording/decimal.h"
+#include "recording/moment.h"
 #include "recording/readers.h"
 #include "recording/text_cell.h"
 #include "recording/text_format.h"
+#include "recording/unit.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -29,12 +31,16 @@ struct text {
   int64_t faults; /* rows with cells that are no numbers, or of another length */
   int64_t missing, missing_line;
   int missing_cell;
-  int64_t expected;        /* line of the next row when no line is skipped */
-  int batched, batch_rows; /* rows in batch, rows that fit */
-  double batch[BATCH];     /* [batched][columns] and the row that is being read */
-  size_t filled;           /* bytes in block */
-  bool ended;              /* the block holds the end of the file */
-  char block[BLOCK + 2];   /* one byte for a line end that the file lacks, one for a final 0 */
+  int64_t expected;                   /* line of the next row when no line is skipped */
+  int batched, batch_rows;            /* rows in batch, rows that fit */
+  bool based[EO_TEXT_CELLS];          /* [cells] of moments: day and before are known */
+  int64_t day[EO_TEXT_CELLS];         /* from whose beginning moments are counted */
+  double before[EO_TEXT_CELLS];       /* s, the moment of the row before */
+  struct eo_cell cell[EO_TEXT_CELLS]; /* of the row that is being read */
+  double batch[BATCH];                /* [batched][columns] and the row that is being read */
+  size_t filled;                      /* bytes in block */
+  bool ended;                         /* the block holds the end of the file */
+  char block[BLOCK + 2];              /* one byte for a line end that the file lacks, one for a final 0 */
 };
 
 static double *next_row(struct text *t)
@@ -119,6 +125,84 @@ static bool only_empty_cells(const char *at, const char *end, char separator)
   return true;
 }
 
+/* A number with a unit behind it, in the unit of the column's first one. */
+static enum eo_cell_kind unit_value(const struct text *t, int c, double *value)
+{
+  char unit[EO_RECORDING_UNIT];
+  double own, first;
+  enum eo_cell_kind kind = eo_text_cell_value(&t->cell[c], t->format.point, value);
+  if (kind != EO_CELL_UNIT)
+    return kind;
+  eo_text_cell_unit(&t->cell[c], t->format.point, unit, (int)sizeof unit);
+  if (eo_unit_find(unit, &own) != eo_unit_find(t->format.unit[c], &first))
+    return EO_CELL_TEXT;
+  *value *= own / first;
+  return EO_CELL_NUMBER;
+}
+
+/* Seconds from the beginning of the first row's day. A time of day without a date goes on over midnight. */
+static enum eo_cell_kind moment_value(struct text *t, int c, double *value)
+{
+  const struct eo_cell *cell = &t->cell[c], *date = t->format.date[c] < 0 ? NULL : &t->cell[t->format.date[c]];
+  struct eo_moment m, day;
+  if (!cell->length || !eo_moment_read(cell->text, cell->length, &m))
+    return eo_text_cell_value(cell, t->format.point, value) == EO_CELL_MISSING ? EO_CELL_MISSING : EO_CELL_TEXT;
+  if (date && eo_moment_read(date->text, date->length, &day) && day.has_day)
+    m.has_day = true, m.day = day.day;
+  if (!t->based[c]) {
+    struct eo_clock clock = {.column = -1, .epoch = EO_CLOCK_NO_EPOCH};
+    t->day[c] = m.day;
+    if (m.has_day)
+      clock.epoch = m.day * 86400000000000LL;
+    t->format.clock[c] = clock;
+  }
+  *value = (double)(m.day - t->day[c]) * EO_MOMENT_DAY + m.seconds;
+  if (t->based[c] && !m.has_day) {
+    *value += (double)t->day[c] * EO_MOMENT_DAY; /* whole days passed so far */
+    if (*value < t->before[c] - EO_MOMENT_DAY / 2) {
+      *value += EO_MOMENT_DAY;
+      t->day[c]++;
+    }
+  }
+  t->based[c] = true;
+  t->before[c] = *value;
+  return EO_CELL_NUMBER;
+}
+
+static enum eo_cell_kind cell_value(struct text *t, int c, double *value)
+{
+  *value = NAN;
+  if (t->format.content[c] == EO_TEXT_MOMENT)
+    return moment_value(t, c, value);
+  if (t->format.content[c] == EO_TEXT_UNIT)
+    return unit_value(t, c, value);
+  if (t->format.content[c] == EO_TEXT_HEX && eo_text_cell_hex(&t->cell[c], value))
+    return EO_CELL_NUMBER;
+  enum eo_cell_kind kind = eo_text_cell_value(&t->cell[c], t->format.point, value);
+  bool number = kind == EO_CELL_NUMBER || kind == EO_CELL_GROUPED;
+  if (!number)
+    *value = NAN;
+  return number || kind == EO_CELL_MISSING ? kind : EO_CELL_TEXT;
+}
+
+/* Converts the cells of the row that was split; returns the place of the first that is no number, -1: none is. */
+static int convert_cells(struct text *t)
+{
+  const struct eo_text_format *f = &t->format;
+  double *row = next_row(t);
+  int odd = -1;
+  for (int c = 0; c < f->cells; c++) {
+    if (f->content[c] == EO_TEXT_WORDS || f->content[c] == EO_TEXT_DATE)
+      continue;
+    enum eo_cell_kind kind = cell_value(t, c, row++);
+    if (kind == EO_CELL_MISSING)
+      count_missing(t, c);
+    if (kind == EO_CELL_TEXT && odd < 0)
+      odd = c;
+  }
+  return odd;
+}
+
 /* Reads a line cell by cell, with quotes, empty cells and everything that is not a plain number. last: the file ends
    without a line end. */
 static enum eo_code read_slowly(struct text *t, const char *line, const char *end, bool last, struct eo_error *error)
@@ -126,21 +210,10 @@ static enum eo_code read_slowly(struct text *t, const char *line, const char *en
   const struct eo_text_format *f = &t->format;
   if (eo_text_empty(line, end) || eo_text_comment(line, end, f->separator))
     return EO_OK;
-  double *row = next_row(t);
-  struct eo_cell cell, odd = {0};
   const char *at = line;
-  int c = 0, odd_cell = -1;
-  for (; c < f->cells && eo_text_next_cell(&at, end, f->separator, &cell); c++) {
-    if (!f->number[c])
-      continue;
-    enum eo_cell_kind kind = eo_text_cell_value(&cell, f->point, row++);
-    if (kind == EO_CELL_MISSING)
-      count_missing(t, c);
-    if (kind != EO_CELL_TEXT || odd_cell >= 0)
-      continue;
-    odd = cell;
-    odd_cell = c;
-  }
+  int c = 0;
+  while (c < f->cells && eo_text_next_cell(&at, end, f->separator, &t->cell[c]))
+    c++;
   if (c < f->cells && last) {
     eo_notes_add(t->notes, "The last row, in line %lld, is cut off and was left out.", (long long)t->line);
     return EO_OK;
@@ -148,10 +221,11 @@ static enum eo_code read_slowly(struct text *t, const char *line, const char *en
   if (c < f->cells || !only_empty_cells(at, end, f->separator))
     return odd_length(t, c < f->cells ? c : c + 1, error);
   enum eo_code code = EO_OK;
-  if (odd_cell >= 0) {
+  int odd = convert_cells(t);
+  if (odd >= 0) {
     char what[64];
-    describe_cell(&odd, what, sizeof what);
-    code = add_fault(t, odd_cell, what, error);
+    describe_cell(&t->cell[odd], what, sizeof what);
+    code = add_fault(t, odd, what, error);
   }
   return code ? code : keep_row(t, error);
 }
@@ -190,7 +264,7 @@ static inline __attribute__((always_inline)) const char *read_numbers(const stru
 
 static const char *read_quickly(const struct eo_text_format *f, const char *p, double *row)
 {
-  if (f->columns != f->cells || f->separator == f->point || f->line_end != '\n')
+  if (!f->plain || f->separator == f->point || f->line_end != '\n')
     return NULL;
   if (f->separator == ',')
     return read_numbers(f, p, ',', '.', row);
@@ -256,20 +330,34 @@ static enum eo_code make_recording(struct text *t, const char *spool_directory, 
   if (code)
     return code;
   for (int c = 0, column = 0; c < f->cells; c++)
-    if (f->number[c])
-      eo_recording_set_column(t->recording, column++, f->name[c], f->unit[c]);
-    else
+    if (f->content[c] == EO_TEXT_WORDS)
       eo_notes_add(t->notes, "Column %d \"%s\" is text and was left out.", c + 1, f->name[c]);
-  if (f->interval > 0)
-    eo_recording_set_interval(t->recording, f->interval, 0);
+    else if (f->content[c] != EO_TEXT_DATE)
+      eo_recording_set_column(t->recording, column++, f->name[c], f->content[c] == EO_TEXT_MOMENT ? "s" : f->unit[c]);
   t->batch_rows = BATCH / f->columns;
   t->line = f->first_line;
   return EO_OK;
 }
 
+/* What the heading and the moments say of each column's clock and counts. */
+static void state_columns(const struct text *t)
+{
+  const struct eo_text_format *f = &t->format;
+  for (int c = 0, column = 0; c < f->cells; c++)
+    if (f->content[c] != EO_TEXT_WORDS && f->content[c] != EO_TEXT_DATE) {
+      eo_recording_set_clock(t->recording, column, &f->clock[c]);
+      eo_recording_set_turn(t->recording, column++, f->turn[c]);
+    }
+  eo_recording_set_tick(t->recording, f->tick);
+}
+
 static const char *separator_name(char separator)
 {
-  return separator == ',' ? "commas" : separator == ';' ? "semicolons" : separator == '\t' ? "tabs" : "blanks";
+  return separator == ','    ? "commas"
+         : separator == '|'  ? "bars"
+         : separator == ';'  ? "semicolons"
+         : separator == '\t' ? "tabs"
+                             : "blanks";
 }
 
 static void note_format(const struct text *t)
@@ -305,8 +393,10 @@ static enum eo_code read_text(struct text *t, const struct eo_reader_options *op
   code = make_recording(t, options->spool_directory, error);
   if (!code)
     code = read_rows(t, error);
-  if (!code)
+  if (!code) {
+    state_columns(t);
     note_format(t);
+  }
   return code;
 }
 

@@ -1,7 +1,12 @@
 #include "recording/text_cell.h"
 #include "recording/decimal.h"
+#include "recording/moment.h"
+#include "recording/recording.h"
+#include "recording/unit.h"
 
+#include <ctype.h>
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 #include <strings.h>
 
@@ -68,15 +73,145 @@ static bool means_nothing(const char *text, size_t length)
   return false;
 }
 
+/* A mark of thousands: the other one of point and comma, an apostrophe, or a blank of any kind. Returns its bytes. */
+static size_t group_mark(const char *at, const char *end, char point)
+{
+  static const char *const marks[] = {"'", " ", "\xc2\xa0", "\xe2\x80\xaf", "\xe2\x80\x99", "\xa0"};
+  if (at < end && *at == (point == '.' ? ',' : '.'))
+    return 1;
+  for (size_t i = 0; i < sizeof marks / sizeof *marks; i++) {
+    size_t n = strlen(marks[i]);
+    if ((size_t)(end - at) > n && !memcmp(at, marks[i], n))
+      return n;
+  }
+  return 0;
+}
+
+static size_t digits_at(const char *at, const char *end)
+{
+  size_t n = 0;
+  while (at + n < end && at[n] >= '0' && at[n] <= '9')
+    n++;
+  return n;
+}
+
+/* "1,018.896": one to three digits, then groups of three that one mark parts, then perhaps the decimal point. Copies
+   the number without the marks to plain. */
+static bool ungroup(const struct eo_cell *cell, char point, char *plain, size_t size, bool *fraction)
+{
+  const char *at = cell->text, *end = at + cell->length;
+  size_t n = 0, length, mark = 0;
+  if (cell->length + 1 > size)
+    return false;
+  if (at < end && (*at == '-' || *at == '+'))
+    plain[n++] = *at++;
+  length = digits_at(at, end);
+  if (length < 1 || length > 3 || *at == '0' || !(mark = group_mark(at + length, end, point)))
+    return false;
+  const char *first = at + length;
+  memcpy(plain + n, at, length);
+  n += length;
+  for (at = first; at < end && (size_t)(end - at) > mark && !memcmp(at, first, mark); at += mark + 3) {
+    if (digits_at(at + mark, end) != 3)
+      return false;
+    memcpy(plain + n, at + mark, 3);
+    n += 3;
+  }
+  *fraction = at < end && *at == point;
+  memcpy(plain + n, at, (size_t)(end - at));
+  plain[n + (size_t)(end - at)] = '\0';
+  return at > first;
+}
+
+static enum eo_cell_kind grouped_value(const struct eo_cell *cell, char point, double *value)
+{
+  char plain[64];
+  bool fraction;
+  if (!ungroup(cell, point, plain, sizeof plain, &fraction))
+    return EO_CELL_TEXT;
+  const char *end = eo_decimal_read(plain, point, value);
+  return end && !*end && isfinite(*value) ? fraction ? EO_CELL_NUMBER : EO_CELL_GROUPED : EO_CELL_TEXT;
+}
+
+bool eo_text_cell_hex(const struct eo_cell *cell, double *value)
+{
+  const char *at = cell->text, *end = at + cell->length;
+  uint64_t number = 0;
+  int digits = 0;
+  if (end - at > 2 && at[0] == '0' && (at[1] | 0x20) == 'x')
+    at += 2;
+  else if (end - at > 2 && at[0] == '&' && (at[1] | 0x20) == 'h')
+    at += 2;
+  else if (end - at > 3 && !memcmp(at, "16#", 3))
+    at += 3;
+  else if (end - at > 1 && (*at == '$' || *at == '#'))
+    at++;
+  else if (end - at > 1 && (end[-1] | 0x20) == 'h')
+    end--;
+  for (; at < end && isxdigit((unsigned char)*at) && digits < 16; at++, digits++)
+    number = number << 4 | (uint64_t)(*at <= '9' ? *at - '0' : (*at | 0x20) - 'a' + 10);
+  *value = (double)number;
+  return at == end && digits > 0;
+}
+
+/* Without a mark only digits with a letter among them are hexadecimal, and only when they begin with a digit or are
+   long. */
+static bool looks_hexadecimal(const struct eo_cell *cell)
+{
+  double value;
+  bool letter = false, digit = false;
+  for (size_t i = 0; i < cell->length; i++) {
+    letter = letter || isalpha((unsigned char)cell->text[i]);
+    digit = digit || isdigit((unsigned char)cell->text[i]);
+  }
+  return letter && digit && cell->length >= 4 && eo_text_cell_hex(cell, &value);
+}
+
+static bool is_marked_hexadecimal(const struct eo_cell *cell)
+{
+  return cell->length > 2 && ((cell->text[0] == '0' && (cell->text[1] | 0x20) == 'x') || cell->text[0] == '&' ||
+                              !memcmp(cell->text, "16#", 3));
+}
+
+void eo_text_cell_unit(const struct eo_cell *cell, char point, char *unit, int size)
+{
+  double value, factor;
+  const char *end = cell->text + cell->length, *at = eo_decimal_read(cell->text, point, &value);
+  *unit = '\0';
+  if (!at || at >= end || end - at >= size)
+    return;
+  while (at < end && eo_text_blank(*at))
+    at++;
+  snprintf(unit, (size_t)size, "%.*s", (int)(end - at), at);
+  if (eo_unit_find(unit, &factor) == EO_QUANTITY_NONE || (*at >= '0' && *at <= '9'))
+    *unit = '\0';
+}
+
 enum eo_cell_kind eo_text_cell_value(const struct eo_cell *cell, char point, double *value)
 {
   double number;
-  if (cell->length && eo_decimal_read(cell->text, point, &number) == cell->text + cell->length) {
+  char unit[EO_RECORDING_UNIT];
+  const char *end = cell->length ? eo_decimal_read(cell->text, point, &number) : NULL;
+  if (end == cell->text + cell->length) {
     *value = number;
     return EO_CELL_NUMBER;
   }
   *value = NAN;
-  return means_nothing(cell->text, cell->length) ? EO_CELL_MISSING : EO_CELL_TEXT;
+  if (means_nothing(cell->text, cell->length))
+    return EO_CELL_MISSING;
+  if (is_marked_hexadecimal(cell) && eo_text_cell_hex(cell, value))
+    return EO_CELL_NUMBER;
+  struct eo_moment moment;
+  if (cell->length < 64 && eo_moment_read(cell->text, cell->length, &moment))
+    return EO_CELL_MOMENT;
+  enum eo_cell_kind kind = grouped_value(cell, point, value);
+  if (kind != EO_CELL_TEXT)
+    return kind;
+  if (looks_hexadecimal(cell))
+    return EO_CELL_HEX;
+  eo_text_cell_unit(cell, point, unit, (int)sizeof unit);
+  *value = *unit ? number : NAN;
+  return *unit ? EO_CELL_UNIT : EO_CELL_TEXT;
 }
 
 const char *eo_text_comment(const char *line, const char *end, char separator)

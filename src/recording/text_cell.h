@@ -5,7 +5,15 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-enum eo_cell_kind { EO_CELL_NUMBER, EO_CELL_MISSING, EO_CELL_TEXT };
+enum eo_cell_kind {
+  EO_CELL_NUMBER,
+  EO_CELL_GROUPED, /* a number whose only mark is that of thousands: it may be a decimal point after all */
+  EO_CELL_UNIT,    /* a number with its unit behind it: "0.25 ms" */
+  EO_CELL_MOMENT,  /* a date or a time of day */
+  EO_CELL_HEX,     /* digits that are no decimal number but a hexadecimal one, without a mark */
+  EO_CELL_MISSING,
+  EO_CELL_TEXT
+};
 
 struct eo_cell {
   const char *text; /* without quotes and the blanks around it */
@@ -23,8 +31,16 @@ static inline bool eo_text_blank(char c)
    at end must belong to no number. */
 bool eo_text_next_cell(const char **at, const char *end, char separator, struct eo_cell *cell);
 
-/* A number; nothing or a word for it (empty, NaN, n/a, -, *); or text. *value is NaN unless it is a finite number. */
+/* What a cell holds: a number ("1.5", "1,018.9", "1 018,9", "0x3F", "0.25 ms"), a moment, nothing or a word for it
+   (empty, NaN, n/a, -, *), or text. *value is NaN unless it is a finite number; of a number with a unit it is the
+   number. */
 enum eo_cell_kind eo_text_cell_value(const struct eo_cell *cell, char point, double *value);
+
+/* A hexadecimal number with or without a mark ("0x3F", "3Fh", "$3F", "3F"); false when the cell is none. */
+bool eo_text_cell_hex(const struct eo_cell *cell, double *value);
+
+/* The unit behind a number, as the cell has it; "" when there is none. */
+void eo_text_cell_unit(const struct eo_cell *cell, char point, char *unit, int size);
 
 /* Where a comment's own text starts ("# text", "% text", "// text", and "; text" where cells are not separated by
    semicolons); NULL when the line is no comment. */

@@ -1,4 +1,5 @@
 #include "recording/text_format.h"
+#include "recording/moment.h"
 #include "recording/text_cell.h"
 
 #include <stdlib.h>
@@ -18,11 +19,12 @@ struct lines {
   struct line line[LINES];
 };
 
-/* What one way of reading makes of a line. */
+/* What one way of reading makes of a line. The sets have a bit for each of the first 64 cells. */
 struct shape {
   int cells, numbers, texts;
-  bool open;        /* ends with a separator, which counts as no cell */
-  uint64_t pattern; /* which of the first 64 cells are text */
+  int points; /* how much speaks for this way of reading */
+  bool open;  /* ends with a separator, which counts as no cell */
+  uint64_t text, moment, unit, missing;
 };
 
 /* A run of consecutive lines of one shape. */
@@ -57,6 +59,24 @@ static bool follows_comma(const struct eo_cell *cell)
          !memchr(cell->text, '.', cell->length);
 }
 
+/* A number whose comma may be the point of another way of reading speaks less for this one than a plain number. */
+static int points_of(enum eo_cell_kind kind)
+{
+  return kind == EO_CELL_TEXT ? -1 : kind == EO_CELL_MISSING ? 0 : kind == EO_CELL_NUMBER ? 2 : 1;
+}
+
+static void add_cell(struct shape *s, enum eo_cell_kind kind)
+{
+  uint64_t bit = s->cells < 64 ? (uint64_t)1 << s->cells : 0;
+  s->numbers += kind != EO_CELL_TEXT && kind != EO_CELL_MISSING;
+  s->texts += kind == EO_CELL_TEXT;
+  s->points += points_of(kind);
+  s->text |= kind == EO_CELL_TEXT ? bit : 0;
+  s->moment |= kind == EO_CELL_MOMENT ? bit : 0;
+  s->unit |= kind == EO_CELL_UNIT ? bit : 0;
+  s->missing |= kind == EO_CELL_MISSING ? bit : 0;
+}
+
 static struct shape shape_of(const struct line *line, char separator, char point)
 {
   struct shape s = {0};
@@ -68,20 +88,32 @@ static struct shape shape_of(const struct line *line, char separator, char point
     if (kind == EO_CELL_NUMBER && separator == ',' && point == '.' && s.cells > 0 && follows_comma(&cell))
       kind = EO_CELL_TEXT;
     s.open = !cell.length && !cell.quoted && s.cells > 0;
-    s.numbers += kind == EO_CELL_NUMBER;
-    s.texts += kind == EO_CELL_TEXT;
-    if (kind == EO_CELL_TEXT && s.cells < 64)
-      s.pattern |= (uint64_t)1 << s.cells;
+    add_cell(&s, kind);
   }
   s.cells -= s.open;
   return s;
 }
 
-/* Lines belong together when they have as many cells, but for a last empty one, and text in the same places. */
+static bool as_many(const struct shape *a, const struct shape *b)
+{
+  return a->cells == b->cells || (a->cells == b->cells + 1 && b->open) || (b->cells == a->cells + 1 && a->open);
+}
+
+/* Lines belong together when they have as many cells, but for a last empty one, and the same content in the same
+   places; an empty cell goes with any. */
 static bool same_shape(const struct shape *a, const struct shape *b)
 {
-  bool as_many = a->cells == b->cells || (a->cells == b->cells + 1 && b->open) || (b->cells == a->cells + 1 && a->open);
-  return as_many && a->pattern == b->pattern;
+  uint64_t both = ~(a->missing | b->missing);
+  return as_many(a, b) && !((a->text ^ b->text) & both) && !((a->moment ^ b->moment) & both) &&
+         !((a->unit ^ b->unit) & both);
+}
+
+/* A row of the table in which a word stands for a number ("OVER"): it does not end the table. */
+static bool is_flawed_row(const struct shape *run, const struct shape *row)
+{
+  uint64_t both = ~(run->missing | row->missing);
+  return as_many(run, row) && row->numbers > 0 && !(run->text & ~row->text & both) &&
+         !((run->moment ^ row->moment) & both & ~row->text);
 }
 
 static bool is_row(const struct shape *s)
@@ -94,12 +126,24 @@ static bool holds_cells(const struct line *line, char separator)
   return !eo_text_empty(line->start, line->end) && !eo_text_comment(line->start, line->end, separator);
 }
 
+/* Cells that were empty so far take what a later row holds there. */
+static void fill_shape(struct shape *run, const struct shape *row)
+{
+  uint64_t learned = run->missing & ~row->missing;
+  run->text |= row->text & learned;
+  run->moment |= row->moment & learned;
+  run->unit |= row->unit & learned;
+  run->missing &= row->missing;
+  if (row->cells > run->cells)
+    run->cells = row->cells;
+}
+
 /* The best run of rows; long ones with many numbers and little text win. A few odd lines do not end a run that is under
    way. */
 static struct run find_run(const struct lines *lines, char separator, char point)
 {
   struct run best = {0}, run = {0};
-  int odd = 0, first_odd = 0;
+  int odd = 0, first_odd = 0, flawed = 0;
   for (int i = 0; i < lines->count; i++) {
     if (!holds_cells(&lines->line[i], separator))
       continue;
@@ -107,6 +151,10 @@ static struct run find_run(const struct lines *lines, char separator, char point
     if (run.lines && !same_shape(&run.shape, &shape)) {
       if (!odd)
         first_odd = i;
+      if (is_flawed_row(&run.shape, &shape) && flawed < run.lines + STEADY_ROWS) {
+        flawed++;
+        continue;
+      }
       if (run.lines >= STEADY_ROWS && ++odd < ODD_LINES)
         continue;
       i = odd ? first_odd : i;
@@ -117,12 +165,13 @@ static struct run find_run(const struct lines *lines, char separator, char point
     if (!is_row(&shape))
       continue;
     odd = 0;
-    if (!run.lines)
+    if (!run.lines) {
       run = (struct run){.first = i, .shape = shape};
-    if (shape.cells > run.shape.cells)
-      run.shape.cells = shape.cells;
+      flawed = 0;
+    }
+    fill_shape(&run.shape, &shape);
     run.lines++;
-    run.score += 2 * shape.numbers - shape.texts;
+    run.score += shape.points;
     if (run.score > best.score)
       best = run;
   }
@@ -142,24 +191,77 @@ static enum eo_code no_table(const struct lines *lines, const char *head, struct
                       lines->count, start);
 }
 
-/* Which cells hold numbers: those that are not text in the first row; cells without content count as numbers. */
-static void mark_numbers(struct eo_text_format *f, const struct line *row)
+/* What each place holds, by the rows of the run: the first cell that is not empty decides, and one hexadecimal number
+   makes a place hexadecimal. */
+static void find_content(struct eo_text_format *f, const struct lines *lines, const struct run *run)
 {
+  bool known[EO_TEXT_CELLS] = {false};
+  for (int c = 0; c < f->cells; c++)
+    f->content[c] = EO_TEXT_NUMBER;
+  for (int i = run->first; i < lines->count && i < run->first + run->lines; i++) {
+    struct shape shape = shape_of(&lines->line[i], f->separator, f->point);
+    struct eo_cell cell;
+    double value;
+    const char *at = lines->line[i].start;
+    if (!same_shape(&run->shape, &shape))
+      continue;
+    for (int c = 0; c < f->cells && eo_text_next_cell(&at, lines->line[i].end, f->separator, &cell); c++) {
+      enum eo_cell_kind kind = eo_text_cell_value(&cell, f->point, &value);
+      if (kind == EO_CELL_HEX)
+        f->content[c] = EO_TEXT_HEX;
+      else if (!known[c] && kind != EO_CELL_MISSING)
+        f->content[c] = kind == EO_CELL_TEXT     ? EO_TEXT_WORDS
+                        : kind == EO_CELL_MOMENT ? EO_TEXT_MOMENT
+                        : kind == EO_CELL_UNIT   ? EO_TEXT_UNIT
+                                                 : EO_TEXT_NUMBER;
+      known[c] = known[c] || kind != EO_CELL_MISSING;
+    }
+  }
+}
+
+/* A date beside a time of day makes one moment with it. Dates alone tell no time between rows. */
+static void join_dates(struct eo_text_format *f, const struct line *row)
+{
+  struct eo_moment moment[EO_TEXT_CELLS] = {0};
   struct eo_cell cell;
-  double value;
   const char *at = row->start;
+  for (int c = 0; c < f->cells && eo_text_next_cell(&at, row->end, f->separator, &cell); c++) {
+    f->date[c] = -1;
+    if (f->content[c] == EO_TEXT_MOMENT)
+      eo_moment_read(cell.text, cell.length, &moment[c]);
+  }
   for (int c = 0; c < f->cells; c++)
-    f->number[c] = !eo_text_next_cell(&at, row->end, f->separator, &cell) ||
-                   eo_text_cell_value(&cell, f->point, &value) != EO_CELL_TEXT;
-  for (int c = 0; c < f->cells; c++)
-    f->columns += f->number[c];
+    if (moment[c].has_day && !moment[c].has_time) {
+      int time = c + 1 < f->cells && moment[c + 1].has_time && !moment[c + 1].has_day ? c + 1
+                 : c > 0 && moment[c - 1].has_time && !moment[c - 1].has_day          ? c - 1
+                                                                                      : -1;
+      f->content[c] = time < 0 ? EO_TEXT_WORDS : EO_TEXT_DATE;
+      if (time >= 0)
+        f->date[time] = c;
+    }
+}
+
+static void settle_content(struct eo_text_format *f, const struct lines *lines, const struct run *run)
+{
+  find_content(f, lines, run);
+  join_dates(f, &lines->line[run->first]);
+  f->plain = true;
+  struct eo_cell cell;
+  const char *at = lines->line[run->first].start;
+  for (int c = 0; c < f->cells && eo_text_next_cell(&at, lines->line[run->first].end, f->separator, &cell); c++)
+    if (f->content[c] == EO_TEXT_UNIT)
+      eo_text_cell_unit(&cell, f->point, f->unit[c], (int)sizeof f->unit[c]);
+  for (int c = 0; c < f->cells; c++) {
+    f->columns += f->content[c] != EO_TEXT_WORDS && f->content[c] != EO_TEXT_DATE;
+    f->plain = f->plain && f->content[c] == EO_TEXT_NUMBER;
+  }
 }
 
 /* Tries every way of reading that the choice leaves; the earlier one wins when two are as good. */
 static struct run best_run(struct eo_text_format *f, const struct lines *lines, const struct eo_text_choice *choice)
 {
-  static const char ways[][2] = {{'\t', '.'}, {';', '.'}, {',', '.'}, {' ', '.'},
-                                 {'\t', ','}, {';', ','}, {' ', ','}, {',', ','}};
+  static const char ways[][2] = {{'\t', '.'}, {';', '.'}, {'|', '.'}, {',', '.'}, {' ', '.'},
+                                 {'\t', ','}, {';', ','}, {'|', ','}, {' ', ','}, {',', ','}};
   struct run best = {0};
   for (size_t i = 0; i < sizeof ways / sizeof *ways; i++) {
     if ((choice->separator && choice->separator != ways[i][0]) || (choice->point && choice->point != ways[i][1]))
@@ -191,7 +293,7 @@ static enum eo_code guess_from(struct eo_text_format *f, struct lines *lines, co
   if (!run.lines)
     return no_table(lines, head, error);
   f->cells = run.shape.cells;
-  mark_numbers(f, &lines->line[run.first]);
+  settle_content(f, lines, &run);
   if (f->columns < 1 || f->columns > EO_RECORDING_COLUMNS || f->cells >= EO_TEXT_CELLS)
     return eo_error_set(error, EO_ERROR_INPUT, "",
                         "The rows of the text have %d cells from line %d on; at most %d columns are read.", f->cells,

@@ -4,21 +4,35 @@
 
 #include "base/error.h"
 #include "recording/reader.h"
+#include "recording/recording.h"
 
 #include <stdbool.h>
 
 #define EO_TEXT_HEAD ((size_t)256 << 10) /* bytes from which the layout is found */
 #define EO_TEXT_CELLS 512                /* cells of a row at most */
 
+/* What the cells of one place hold. */
+enum eo_text_content {
+  EO_TEXT_WORDS, /* left out */
+  EO_TEXT_NUMBER,
+  EO_TEXT_UNIT,   /* numbers with a unit behind them */
+  EO_TEXT_HEX,    /* hexadecimal numbers without a mark */
+  EO_TEXT_MOMENT, /* dates and times */
+  EO_TEXT_DATE,   /* dates that go with the times of day in the cell beside them */
+};
+
 struct eo_text_format {
   char separator, point, line_end;
   int cells;                                   /* of a row */
-  int columns;                                 /* cells that hold numbers */
-  bool number[EO_TEXT_CELLS];                  /* [cells] */
+  int columns;                                 /* cells that become columns: all but words and dates */
+  bool plain;                                  /* every cell is a decimal number */
+  enum eo_text_content content[EO_TEXT_CELLS]; /* [cells] */
+  int date[EO_TEXT_CELLS];                     /* [cells] of a time of day: place of its date, -1: none */
   int64_t first_line;                          /* of the first row, from 1 */
   size_t first_byte;                           /* of the first row, in the text */
   size_t header_byte;                          /* where the header starts: behind a byte order mark */
-  double interval;                             /* s, from a sampling rate in the header; 0: not stated */
+  struct eo_clock clock[EO_TEXT_CELLS];        /* [cells] as the heading states it */
+  double tick, turn[EO_TEXT_CELLS];            /* s; counts per turn; 0: not stated */
   char name[EO_TEXT_CELLS][EO_RECORDING_NAME]; /* [cells] */
   char unit[EO_TEXT_CELLS][EO_RECORDING_UNIT]; /* [cells] */
 };
@@ -29,7 +43,7 @@ struct eo_text_format {
 enum eo_code eo_text_guess(struct eo_text_format *format, const char *head, size_t size, bool whole,
                            const struct eo_text_choice *choice, struct eo_error *error);
 
-/* Fills names, units and interval from the lines before the first row. */
+/* Fills names, units and what is stated of the sampling from the lines before the first row. */
 void eo_text_read_header(struct eo_text_format *format, const char *head);
 
 #endif

@@ -1,45 +1,29 @@
-/* Names, units and the sampling rate that a text file states before its first row. */
-#include "recording/decimal.h"
+/* Names, units and what else a text file states before its first row. Lines of facts, names and units come in any order
+   and number; names are the line that reads most like names. */
+#include "recording/column.h"
+#include "recording/moment.h"
+#include "recording/stated.h"
 #include "recording/text_cell.h"
+#include "recording/text_facts.h"
 #include "recording/text_format.h"
 #include "recording/unit.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 
-#define LOOK_BACK 8 /* lines before the first row that may hold names and units */
-
-/* A line of the header without the mark of a comment. */
-struct header_line {
-  const char *start, *end;
-};
-
-/* The last lines of the header that hold anything, the very last one first. */
-static int last_lines(const struct eo_text_format *f, const char *head, struct header_line *line)
-{
-  int count = 0;
-  const char *first = head + f->header_byte, *end = head + f->first_byte;
-  while (end > first && count < LOOK_BACK) {
-    end--; /* the line's end */
-    const char *start = end;
-    while (start > first && start[-1] != f->line_end)
-      start--;
-    const char *comment = eo_text_comment(start, end, f->separator);
-    line[count] = (struct header_line){comment ? comment : start, end};
-    if (!eo_text_empty(line[count].start, end))
-      count++;
-    end = start;
-  }
-  return count;
-}
+#define TELLING_WORDS                                                                                          \
+  "t|time|zeit|timestamp|pinion|gear|ritzel|rad|wheel|angle|winkel|phi|encoder|geber|channel|kanal|ch|ai|ctr|" \
+  "torque|moment|drehmoment|speed|drehzahl|count|counts|value|x|y|sin|cos|input|output|antrieb|abtrieb"
+#define UNIT_WORDS "unit|units|einheit|einheiten|sequence"
 
 static void copy_cell(char *to, size_t size, const struct eo_cell *cell)
 {
   snprintf(to, size, "%.*s", (int)(cell->length < size ? cell->length : size - 1), cell->text);
 }
 
-static int count_cells(const struct header_line *line, char separator)
+static int count_cells(const struct eo_header_line *line, char separator)
 {
   struct eo_cell cell;
   int count = 0, filled = 0;
@@ -51,45 +35,95 @@ static int count_cells(const struct header_line *line, char separator)
   return filled;
 }
 
-/* The separator that cuts the line into as many cells as a row has; headers do not always use that of the rows. 0: none
-   does. */
-static char header_separator(const struct eo_text_format *f, const struct header_line *line)
+/* The separator that cuts the line into as many cells as a row has; headers do not always use that of the rows. A line
+   with the rows' own separator may have more cells. 0: none does. */
+static char header_separator(const struct eo_text_format *f, const struct eo_header_line *line)
 {
-  const char separators[] = {f->separator, '\t', ';', ',', ' '};
+  const char separators[] = {f->separator, '\t', ';', ',', '|', ' '};
   for (size_t i = 0; i < sizeof separators; i++)
     if (count_cells(line, separators[i]) == f->cells)
       return separators[i];
-  return '\0';
+  return f->cells > 1 && f->separator != ' ' && count_cells(line, f->separator) > f->cells ? f->separator : '\0';
 }
 
-static bool is_units(const struct header_line *line, char separator)
+static bool is_unit(const struct eo_cell *cell)
 {
-  struct eo_cell cell;
-  int known = 0;
   char text[EO_RECORDING_UNIT];
   double factor;
-  for (const char *at = line->start; eo_text_next_cell(&at, line->end, separator, &cell);) {
-    copy_cell(text, sizeof text, &cell);
-    bool bracketed = cell.length >= 2 && text[0] == '[';
-    if (cell.length >= sizeof text || (cell.length && !bracketed && strcmp(text, "-") && !eo_unit_find(text, &factor)))
-      return false;
-    known += cell.length > 0;
-  }
-  return known > 0;
+  copy_cell(text, sizeof text, cell);
+  return cell->length < sizeof text && ((cell->length >= 2 && text[0] == '[') || !strcmp(text, "-") ||
+                                        eo_unit_find(text, &factor) != EO_QUANTITY_NONE);
 }
 
-static void take_units(struct eo_text_format *f, const struct header_line *line, char separator)
+/* How much a line reads like units: all cells, or most, or all behind a word for units; 0 when it does not. */
+static int units_score(const struct eo_header_line *line, char separator, int cells)
+{
+  struct eo_cell cell;
+  int known = 0, filled = 0, first_known = 0;
+  bool key = false;
+  const char *at = line->start;
+  for (int c = 0; c < cells && eo_text_next_cell(&at, line->end, separator, &cell); c++) {
+    char text[EO_RECORDING_NAME];
+    bool unit = cell.length && is_unit(&cell);
+    copy_cell(text, sizeof text, &cell);
+    filled += cell.length > 0;
+    known += unit;
+    if (c == 0)
+      first_known = unit, key = !unit && eo_column_named(text, UNIT_WORDS);
+  }
+  if (known && known == filled)
+    return 3;
+  if (known && key && known == filled - 1)
+    return 2;
+  return known > 1 && known >= filled - 1 && !first_known ? 1 : 0;
+}
+
+static int name_score(const struct eo_cell *cell, char point)
+{
+  char text[EO_RECORDING_NAME + EO_RECORDING_UNIT], name[EO_RECORDING_NAME], unit[EO_RECORDING_UNIT];
+  double value, factor;
+  if (!cell->length)
+    return 0;
+  if (eo_text_cell_value(cell, point, &value) != EO_CELL_TEXT || memchr(cell->text, '=', cell->length))
+    return -2;
+  copy_cell(text, sizeof text, cell);
+  eo_unit_split(text, name, (int)sizeof name, unit, (int)sizeof unit);
+  bool known = *unit && eo_unit_find(unit, &factor) != EO_QUANTITY_NONE;
+  return 1 + (known || eo_column_named(name, TELLING_WORDS) ? 2 : 0);
+}
+
+/* How much a line reads like the names of the columns; not at all when all its cells are equal. */
+static int names_score(const struct eo_header_line *line, char separator, int cells, char point)
+{
+  struct eo_cell cell, first = {0};
+  int score = 0, filled = 0, equal = 0;
+  const char *at = line->start;
+  for (int c = 0; c < cells && eo_text_next_cell(&at, line->end, separator, &cell); c++) {
+    score += name_score(&cell, point);
+    if (cell.length && !filled++)
+      first = cell;
+    equal += cell.length && cell.length == first.length && !memcmp(cell.text, first.text, cell.length);
+  }
+  return filled > 1 && equal == filled ? 0 : score;
+}
+
+static void take_units(struct eo_text_format *f, const struct eo_header_line *line, char separator)
 {
   struct eo_cell cell;
   const char *at = line->start;
   for (int c = 0; c < f->cells && eo_text_next_cell(&at, line->end, separator, &cell); c++) {
-    if (cell.length >= 2 && cell.text[0] == '[' && cell.text[cell.length - 1] == ']')
-      cell.text++, cell.length -= 2;
-    copy_cell(f->unit[c], sizeof f->unit[c], &cell);
+    char text[EO_RECORDING_UNIT + 2];
+    double factor;
+    copy_cell(text, sizeof text, &cell);
+    size_t length = strlen(text);
+    bool bracketed = length >= 2 && text[0] == '[' && text[length - 1] == ']';
+    if (!cell.length || (!bracketed && eo_unit_find(text, &factor) == EO_QUANTITY_NONE))
+      continue;
+    snprintf(f->unit[c], sizeof f->unit[c], "%.*s", (int)(bracketed ? length - 2 : length), text + bracketed);
   }
 }
 
-static void take_names(struct eo_text_format *f, const struct header_line *line, char separator)
+static void take_names(struct eo_text_format *f, const struct eo_header_line *line, char separator)
 {
   struct eo_cell cell;
   const char *at = line->start;
@@ -105,74 +139,40 @@ static void take_names(struct eo_text_format *f, const struct header_line *line,
   }
 }
 
-/* Hertz or the like behind a number, as a factor. */
-static double frequency_factor(const char *p, const char *end)
+/* The lines of names and units; of equally good ones the last. */
+static int find_names(const struct eo_text_format *f, const struct eo_header *h, int *units)
 {
-  while (p < end && (eo_text_blank(*p) || *p == '[' || *p == '(' || *p == ';' || *p == ','))
-    p++;
-  size_t left = (size_t)(end - p);
-  if (left >= 3 && (!strncasecmp(p, "khz", 3) || !strncasecmp(p, "ks/", 3)))
-    return 1e3;
-  return left >= 3 && (!strncmp(p, "MHz", 3) || !strncmp(p, "MS/", 3)) ? 1e6 : 1;
-}
-
-/* A number behind a key such as "Sample rate:" or "fs="; 0 when the line has no such key. */
-static double value_behind(const char *line, const char *end, const char *key, char point, const char **after)
-{
-  size_t length = strlen(key);
-  for (const char *p = line; p + length < end; p++) {
-    if (strncasecmp(p, key, length) || (p > line && (p[-1] | 0x20) >= 'a' && (p[-1] | 0x20) <= 'z'))
-      continue;
-    p += length;
-    while (p < end && strchr(" \t:=;,\"[](){}/", *p) && *p)
-      p++;
-    if (end - p >= 2 && !strncasecmp(p, "hz", 2)) /* "rate [Hz]: 20000" */
-      for (p += 2; p < end && strchr(" \t:=;,\"])", *p) && *p;)
-        p++;
-    double value;
-    *after = eo_decimal_read(p, point, &value);
-    return *after && *after <= end && value > 0 ? value : 0;
+  int names = -1, best = 0, most = 0;
+  *units = -1;
+  for (int i = 0; i < h->lines; i++) {
+    char separator = header_separator(f, &h->line[i]);
+    int as_units = units_score(&h->line[i], separator ? separator : f->separator, f->cells);
+    int as_names = separator ? names_score(&h->line[i], separator, f->cells, f->point) : 0;
+    if (as_units >= (separator ? 3 : 2) || (as_units && i > 0 && names == i - 1)) {
+      if (as_units >= most)
+        most = as_units, *units = i;
+    } else if (as_names > 0 && as_names >= best)
+      best = as_names, names = i;
   }
-  return 0;
-}
-
-static void find_interval(struct eo_text_format *f, const char *head)
-{
-  static const char *const rates[] = {
-      "sample rate",        "sampling rate",    "samplerate", "sample_rate",    "sampling_rate",
-      "sampling frequency", "sample frequency", "abtastrate", "abtastfrequenz", "fs"};
-  static const char *const intervals[] = {"delta_x",           "delta t",         "sample interval",
-                                          "sampling interval", "abtastintervall", "dt"};
-  const char *last = head + f->first_byte, *after;
-  for (const char *line = head + f->header_byte; line < last && f->interval <= 0;) {
-    const char *end = memchr(line, f->line_end, (size_t)(last - line));
-    end = end ? end : last;
-    for (size_t i = 0; i < sizeof rates / sizeof *rates && f->interval <= 0; i++) {
-      double rate = value_behind(line, end, rates[i], f->point, &after);
-      f->interval = rate > 0 ? 1 / (rate * frequency_factor(after, end)) : 0;
-    }
-    for (size_t i = 0; i < sizeof intervals / sizeof *intervals && f->interval <= 0; i++)
-      f->interval = value_behind(line, end, intervals[i], f->point, &after);
-    line = end + 1;
-  }
+  return names;
 }
 
 void eo_text_read_header(struct eo_text_format *format, const char *head)
 {
-  struct header_line line[LOOK_BACK];
-  int count = last_lines(format, head, line);
-  bool units = false;
-  for (int i = 0; i < count; i++) {
-    char separator = header_separator(format, &line[i]);
-    if (!separator)
-      continue;
-    if (!units && is_units(&line[i], separator)) {
-      take_units(format, &line[i], separator);
-      units = true;
-      continue;
-    }
-    take_names(format, &line[i], separator);
-    break;
+  struct eo_header *h = malloc(sizeof *h);
+  int units;
+  for (int c = 0; c < format->cells; c++)
+    format->clock[c] = (struct eo_clock){.column = -1, .epoch = EO_CLOCK_NO_EPOCH};
+  if (!h)
+    return;
+  eo_header_split(h, format, head);
+  int names = find_names(format, h, &units);
+  if (units >= 0) {
+    char separator = header_separator(format, &h->line[units]);
+    take_units(format, &h->line[units], separator ? separator : format->separator);
   }
-  find_interval(format, head);
+  if (names >= 0)
+    take_names(format, &h->line[names], header_separator(format, &h->line[names]));
+  eo_header_facts(h, format, names);
+  free(h);
 }

@@ -38,6 +38,10 @@ struct eo_tracks {
   double interval;   /* s between rows without a time column */
   struct eo_track_channel channel[2];         /* [member] */
   struct eo_track_beside torque[2], speed[2]; /* [member]; torque in N m, speed in rad/s */
+  struct eo_track_source { /* [member]: where the values were in the file, whatever the recording is now */
+    int time, column[2];
+    double time_scale;
+  } source[2];
 };
 
 #endif

@@ -4,6 +4,7 @@
 #include "recording/decimal.h"
 #include "recording/readers.h"
 
+#include <ctype.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -27,7 +28,6 @@ struct uff {
   const char *spool_directory;
   struct eo_notes *notes;
   int count, skipped;
-  bool uneven; /* a column of time is there */
   struct eo_series series[CHANNELS];
   struct values values[CHANNELS];
   double batch[2 * BATCH];
@@ -106,35 +106,62 @@ static enum eo_code add_text(struct uff *u, const struct eo_uff_header *h, int t
   return code ? code : read_text(u, h, time >= 0 ? u->values[time].column : NULL, u->values[ordinate].column, error);
 }
 
+/* True when the line that ends a data set follows at a place. */
+static bool ends_at(const struct uff *u, int64_t at)
+{
+  char text[16] = "";
+  int64_t left = u->lines.size - at;
+  if (at < 0 || left < 0)
+    return false;
+  size_t size = left < (int64_t)sizeof text - 1 ? (size_t)left : sizeof text - 1, i = 0;
+  if (eo_bytes_read(u->lines.file, at, text, size, NULL))
+    return false;
+  while (text[i] == ' ' || text[i] == '\r' || text[i] == '\n')
+    i++;
+  return text[i] == '-' && text[i + 1] == '1' && !isdigit((unsigned char)text[i + 2]);
+}
+
+/* The bytes of a binary data set: as stated, or, where the writer left them at 0, by the number of values. */
+static int64_t count_bytes(const struct uff *u, const struct eo_uff_header *h)
+{
+  int64_t size = h->type == 4 ? 8 : 4, single = h->count * (4 + size), equal = h->count * 2 * size;
+  if (h->bytes > 0)
+    return h->bytes;
+  if (h->even)
+    return h->count * size;
+  return ends_at(u, u->lines.at + equal) && !ends_at(u, u->lines.at + single) ? equal : single;
+}
+
 /* An uneven abscissa is single or, as some write it, as wide as the values; the number of bytes tells which. */
 static enum eo_code add_binary(struct uff *u, const struct eo_uff_header *h, int time, int ordinate,
                                struct eo_error *error)
 {
   int size = h->type == 4 ? 8 : 4;
-  int abscissa = h->even ? 0 : h->bytes == h->count * (4 + size) ? 4 : size;
+  int64_t bytes = count_bytes(u, h);
+  int abscissa = h->even ? 0 : bytes == h->count * (4 + size) ? 4 : size;
   struct values *v = &u->values[ordinate];
   *v = (struct values){.at = u->lines.at + abscissa, .stride = abscissa + size, .size = size, .big = h->big};
-  if (h->bytes < h->count * v->stride)
+  if (bytes < h->count * v->stride || bytes > u->lines.size - u->lines.at)
     return eo_error_set(error, EO_ERROR_INPUT, "",
                         "UFF: the binary data set in line %lld has %lld bytes for %lld values.", (long long)h->line,
-                        (long long)h->bytes, (long long)h->count);
+                        (long long)bytes, (long long)h->count);
   if (time >= 0)
     u->values[time] = (struct values){.at = u->lines.at, .stride = v->stride, .size = abscissa, .big = h->big};
-  eo_uff_seek(&u->lines, u->lines.at + h->bytes);
+  eo_uff_seek(&u->lines, u->lines.at + bytes);
   return EO_OK;
 }
 
 static void name_series(struct eo_series *series, const struct eo_uff_header *h)
 {
   const char *name = *h->title ? h->title : h->label;
+  eo_series_init(series, "", h->count);
   int used = snprintf(series->name, sizeof series->name, "%.50s", name);
   if (h->node)
     snprintf(series->name + used, sizeof series->name - (size_t)used, "%s%d:%d", used ? " " : "", h->node,
              h->direction);
   snprintf(series->unit, sizeof series->unit, "%s", h->unit);
-  series->length = h->count;
-  series->interval = h->even ? h->increment : 0;
-  series->start = h->even ? h->start : 0;
+  series->clock.interval = h->even ? h->increment * h->time_scale : 0;
+  series->clock.start = h->even ? h->start * h->time_scale : 0;
 }
 
 /* Over time and real: an encoder's record. Spectra and the like are passed over. */
@@ -149,13 +176,14 @@ static enum eo_code add_set(struct uff *u, const struct eo_uff_header *h, struct
   int time = -1;
   if (u->count + 2 > CHANNELS)
     return eo_error_set(error, EO_ERROR_INPUT, "", "UFF: the file has more than %d data sets.", CHANNELS);
-  if (!h->even && !u->uneven) {
+  if (!h->even) {
     time = u->count++;
-    u->uneven = true;
-    u->series[time] = (struct eo_series){.name = "time", .unit = "s", .length = h->count};
+    eo_series_init(&u->series[time], "time", h->count);
+    snprintf(u->series[time].unit, sizeof u->series[time].unit, "%s", *h->time_unit ? h->time_unit : "s");
   }
   int ordinate = u->count++;
   name_series(&u->series[ordinate], h);
+  u->series[ordinate].clock.column = time;
   return h->binary ? add_binary(u, h, time, ordinate, error) : add_text(u, h, time, ordinate, error);
 }
 

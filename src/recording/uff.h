@@ -38,6 +38,8 @@ struct eo_uff_header {
   bool even;                /* abscissa */
   double start, increment;  /* of an even one */
   int abscissa;             /* 17: time, 18: frequency */
+  char time_unit[21];       /* of the abscissa, "" when it is not stated */
+  double time_scale;        /* s per unit of the abscissa */
   char label[21], unit[21]; /* of the ordinate's axis */
   bool binary, big;
   int64_t bytes; /* of binary data */

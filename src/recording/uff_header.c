@@ -1,6 +1,7 @@
 /* Lines and headers of universal files. */
 #include "recording/uff.h"
 #include "recording/decimal.h"
+#include "recording/unit.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -117,6 +118,27 @@ static enum eo_code read_binary(const struct eo_uff_lines *l, struct eo_uff_head
   return EO_OK;
 }
 
+/* The fields of record 7 by the blanks between them. */
+static void read_fields(const struct eo_uff_lines *l, struct eo_uff_header *h)
+{
+  double field[6] = {0};
+  int n = 0;
+  for (const char *p = l->line; *p && n < 6; n++) {
+    while (*p == ' ')
+      p++;
+    p = eo_decimal_read(p, '.', &field[n]);
+    if (!p)
+      break;
+  }
+  if (n < 5 || !(field[1] > 0) || field[1] > (double)l->size)
+    return;
+  h->type = (int)field[0];
+  h->count = (int64_t)field[1];
+  h->even = field[2] == 1;
+  h->start = field[3];
+  h->increment = field[4];
+}
+
 static void read_record(const struct eo_uff_lines *l, int record, struct eo_uff_header *h)
 {
   switch (record) {
@@ -134,9 +156,16 @@ static void read_record(const struct eo_uff_lines *l, int record, struct eo_uff_
     h->even = integer_field(l, 20, 10) == 1;
     h->start = number_field(l, 30, 13);
     h->increment = number_field(l, 43, 13);
+    if (h->count <= 0) /* fields that were moved: their order tells them */
+      read_fields(l, h);
     break;
   case 8:
     h->abscissa = (int)integer_field(l, 0, 10);
+    text_field(l, 47, 20, h->time_unit);
+    if (eo_unit_find(h->time_unit, &h->time_scale) != EO_QUANTITY_TIME) {
+      h->time_unit[0] = '\0';
+      h->time_scale = 1;
+    }
     break;
   case 9:
     text_field(l, 26, 20, h->label);
@@ -150,6 +179,7 @@ static void read_record(const struct eo_uff_lines *l, int record, struct eo_uff_
 enum eo_code eo_uff_read_header(struct eo_uff_lines *lines, struct eo_uff_header *header, struct eo_error *error)
 {
   memset(header, 0, sizeof *header);
+  header->time_scale = 1;
   header->line = lines->number;
   header->binary = lines->length > 6 && (lines->line[6] | 0x20) == 'b';
   enum eo_code code = header->binary ? read_binary(lines, header, error) : EO_OK;

@@ -1,112 +1,74 @@
 #include "recording/unit.h"
 
-#include <math.h>
+#include <ctype.h>
 #include <stdio.h>
 #include <string.h>
 #include <strings.h>
 
-#define DEGREE 0.017453292519943295 /* rad */
-#define TURN 6.283185307179586      /* rad */
+#define DEGREE 0.017453292519943295   /* rad */
+#define TURN 6.283185307179586        /* rad */
+#define INCH_POUND 0.1129848290276167 /* N m */
 
+/* Units by their spelling after fold(); of a list that shares a factor. */
 static const struct {
-  const char *text;
+  const char *spellings; /* separated by blanks */
   enum eo_quantity quantity;
   double factor;
 } units[] = {
-    {"s", EO_QUANTITY_TIME, 1},
-    {"sec", EO_QUANTITY_TIME, 1},
-    {"second", EO_QUANTITY_TIME, 1},
-    {"seconds", EO_QUANTITY_TIME, 1},
-    {"sek", EO_QUANTITY_TIME, 1},
-    {"ms", EO_QUANTITY_TIME, 1e-3},
-    {"msec", EO_QUANTITY_TIME, 1e-3},
-    {"us", EO_QUANTITY_TIME, 1e-6},
-    {"usec", EO_QUANTITY_TIME, 1e-6},
-    {"\xc2\xb5s", EO_QUANTITY_TIME, 1e-6},
-    {"\xce\xbcs", EO_QUANTITY_TIME, 1e-6},
-    {"\xb5s", EO_QUANTITY_TIME, 1e-6},
-    {"ns", EO_QUANTITY_TIME, 1e-9},
-    {"min", EO_QUANTITY_TIME, 60},
-    {"deg", EO_QUANTITY_ANGLE, DEGREE},
-    {"degree", EO_QUANTITY_ANGLE, DEGREE},
-    {"degrees", EO_QUANTITY_ANGLE, DEGREE},
-    {"grad", EO_QUANTITY_ANGLE, DEGREE}, /* what German rigs call degrees */
-    {"\xc2\xb0", EO_QUANTITY_ANGLE, DEGREE},
-    {"\xb0", EO_QUANTITY_ANGLE, DEGREE},
-    {"rad", EO_QUANTITY_ANGLE, 1},
-    {"radian", EO_QUANTITY_ANGLE, 1},
-    {"radians", EO_QUANTITY_ANGLE, 1},
-    {"mrad", EO_QUANTITY_ANGLE, 1e-3},
-    {"urad", EO_QUANTITY_ANGLE, 1e-6},
-    {"mdeg", EO_QUANTITY_ANGLE, DEGREE * 1e-3},
-    {"arcsec", EO_QUANTITY_ANGLE, DEGREE / 3600},
-    {"arcmin", EO_QUANTITY_ANGLE, DEGREE / 60},
-    {"rev", EO_QUANTITY_ANGLE, TURN},
-    {"revs", EO_QUANTITY_ANGLE, TURN},
-    {"turn", EO_QUANTITY_ANGLE, TURN},
-    {"turns", EO_QUANTITY_ANGLE, TURN},
-    {"count", EO_QUANTITY_COUNT, 1},
-    {"counts", EO_QUANTITY_COUNT, 1},
-    {"cnt", EO_QUANTITY_COUNT, 1},
-    {"cts", EO_QUANTITY_COUNT, 1},
-    {"inc", EO_QUANTITY_COUNT, 1},
-    {"incs", EO_QUANTITY_COUNT, 1},
-    {"increments", EO_QUANTITY_COUNT, 1},
-    {"inkr", EO_QUANTITY_COUNT, 1},
-    {"ticks", EO_QUANTITY_COUNT, 1},
-    {"pulses", EO_QUANTITY_COUNT, 1},
-    {"lsb", EO_QUANTITY_COUNT, 1},
-    {"adc", EO_QUANTITY_COUNT, 1},
-    {"digits", EO_QUANTITY_COUNT, 1},
-    {"v", EO_QUANTITY_VOLTAGE, 1},
-    {"volt", EO_QUANTITY_VOLTAGE, 1},
-    {"volts", EO_QUANTITY_VOLTAGE, 1},
+    {"s sec secs second seconds sek sekunde sekunden", EO_QUANTITY_TIME, 1},
+    {"ms msec msecs millisecond milliseconds millis msek millisekunden", EO_QUANTITY_TIME, 1e-3},
+    {"us usec usecs microsecond microseconds micros mikrosekunden", EO_QUANTITY_TIME, 1e-6},
+    {"ns nsec nanosecond nanoseconds nanos", EO_QUANTITY_TIME, 1e-9},
+    {"ps", EO_QUANTITY_TIME, 1e-12},
+    {"min mins minute minutes minuten", EO_QUANTITY_TIME, 60},
+    {"h hr hrs hour hours std stunden", EO_QUANTITY_TIME, 3600},
+    {"d day days tag tage", EO_QUANTITY_TIME, 86400},
+    {"deg degs degree degrees grad altgrad degre degres \xc2\xb0", EO_QUANTITY_ANGLE, DEGREE},
+    {"rad rads radian radians radiant", EO_QUANTITY_ANGLE, 1},
+    {"mrad millirad milliradian milliradians", EO_QUANTITY_ANGLE, 1e-3},
+    {"urad microrad microradian microradians mikrorad", EO_QUANTITY_ANGLE, 1e-6},
+    {"nrad", EO_QUANTITY_ANGLE, 1e-9},
+    {"mdeg m\xc2\xb0 millidegree millidegrees", EO_QUANTITY_ANGLE, DEGREE * 1e-3},
+    {"udeg", EO_QUANTITY_ANGLE, DEGREE * 1e-6},
+    {"arcsec arcsecs arcsecond arcseconds asec as \" '' winkelsekunden bogensekunden", EO_QUANTITY_ANGLE,
+     DEGREE / 3600},
+    {"marcsec mas", EO_QUANTITY_ANGLE, DEGREE / 3.6e6},
+    {"arcmin arcmins arcminute arcminutes amin ' winkelminuten bogenminuten", EO_QUANTITY_ANGLE, DEGREE / 60},
+    {"gon gons gradian gradians grads ngrad neugrad", EO_QUANTITY_ANGLE, TURN / 400},
+    {"mgon", EO_QUANTITY_ANGLE, TURN / 4e5},
+    {"rev revs revolution revolutions turn turns tr tour tours u umdr umdrehung umdrehungen cycle cycles cyc cycs rot "
+     "rots rotation rotations",
+     EO_QUANTITY_ANGLE, TURN},
+    {"mrev", EO_QUANTITY_ANGLE, TURN * 1e-3},
+    {"count counts cnt cnts cts ct inc incs increment increments inkr ink inkrement inkremente tick ticks pulse pulses "
+     "puls pulse(s) impuls impulse imp lsb adc digit digits step steps schritt schritte strich striche edges flanken "
+     "quadcounts",
+     EO_QUANTITY_COUNT, 1},
+    {"v volt volts", EO_QUANTITY_VOLTAGE, 1},
     {"mv", EO_QUANTITY_VOLTAGE, 1e-3},
-    {"ua", EO_QUANTITY_CURRENT, 1e-6},
-    {"\xc2\xb5"
-     "a",
-     EO_QUANTITY_CURRENT, 1e-6},
-    {"\xb5"
-     "a",
-     EO_QUANTITY_CURRENT, 1e-6},
+    {"uv", EO_QUANTITY_VOLTAGE, 1e-6},
+    {"a amp amps ampere", EO_QUANTITY_CURRENT, 1},
     {"ma", EO_QUANTITY_CURRENT, 1e-3},
-    {"a", EO_QUANTITY_CURRENT, 1},
-    {"rpm", EO_QUANTITY_OTHER, 1},
-    {"1/min", EO_QUANTITY_OTHER, 1},
-    {"min-1", EO_QUANTITY_OTHER, 1},
-    {"hz", EO_QUANTITY_OTHER, 1},
-    {"khz", EO_QUANTITY_OTHER, 1},
-    {"nm", EO_QUANTITY_OTHER, 1},
-    {"n", EO_QUANTITY_OTHER, 1},
-    {"n*m", EO_QUANTITY_OTHER, 1},
-    {"n.m", EO_QUANTITY_OTHER, 1},
-    {"n\xc2\xb7m", EO_QUANTITY_OTHER, 1},
-    {"kn", EO_QUANTITY_OTHER, 1},
-    {"knm", EO_QUANTITY_OTHER, 1},
-    {"g", EO_QUANTITY_OTHER, 1},
-    {"m/s2", EO_QUANTITY_OTHER, 1},
-    {"m/s^2", EO_QUANTITY_OTHER, 1},
-    {"m/s\xc2\xb2", EO_QUANTITY_OTHER, 1},
-    {"m/s", EO_QUANTITY_OTHER, 1},
-    {"rad/s", EO_QUANTITY_OTHER, 1},
-    {"deg/s", EO_QUANTITY_OTHER, 1},
-    {"m", EO_QUANTITY_OTHER, 1},
-    {"mm", EO_QUANTITY_OTHER, 1},
-    {"um", EO_QUANTITY_OTHER, 1},
-    {"\xc2\xb5m", EO_QUANTITY_OTHER, 1},
-    {"\xb5m", EO_QUANTITY_OTHER, 1},
-    {"c", EO_QUANTITY_OTHER, 1},
-    {"\xc2\xb0"
-     "c",
+    {"ua", EO_QUANTITY_CURRENT, 1e-6},
+    {"hz hertz 1/s s-1 s/s sa/s samples/s samples/sec sps spers s/sec samplespersecond", EO_QUANTITY_FREQUENCY, 1},
+    {"khz ks/s ksa/s ksps kilohertz ksamples/s", EO_QUANTITY_FREQUENCY, 1e3},
+    {"mhz ms/s msa/s msps megahertz", EO_QUANTITY_FREQUENCY, 1e6},
+    {"ghz gs/s gsa/s", EO_QUANTITY_FREQUENCY, 1e9},
+    {"rpm 1/min min-1 u/min umdr/min rev/min r/min rev./min tr/min upm", EO_QUANTITY_SPEED, TURN / 60},
+    {"rps u/s rev/s r/s umdr/s turns/s", EO_QUANTITY_SPEED, TURN},
+    {"rad/s rad/sec rads-1", EO_QUANTITY_SPEED, 1},
+    {"deg/s \xc2\xb0/s deg/sec grad/s", EO_QUANTITY_SPEED, DEGREE},
+    {"Nm NM newtonmeter newtonmetre", EO_QUANTITY_TORQUE, 1},
+    {"kNm KNM knm", EO_QUANTITY_TORQUE, 1e3},
+    {"mNm", EO_QUANTITY_TORQUE, 1e-3},
+    {"MNm", EO_QUANTITY_TORQUE, 1e6},
+    {"Ncm", EO_QUANTITY_TORQUE, 1e-2},
+    {"lbin inlb lbfin inlbf", EO_QUANTITY_TORQUE, INCH_POUND},
+    {"lbft ftlb lbfft ftlbf", EO_QUANTITY_TORQUE, 12 * INCH_POUND},
+    {"n kn lbf g mg gn m/s2 mm/s2 m/ss m/s mm/s m mm um nm cm km c \xc2\xb0"
+     "c degc f k celsius bar mbar pa kpa mpa psi n/mm2 % 1 db dbv w kw l/min kg ohm mm/m um/m ue rad/s2 hpa pc nc "
+     "ppm mv/v",
      EO_QUANTITY_OTHER, 1},
-    {"\xb0"
-     "c",
-     EO_QUANTITY_OTHER, 1},
-    {"degc", EO_QUANTITY_OTHER, 1},
-    {"bar", EO_QUANTITY_OTHER, 1},
-    {"pa", EO_QUANTITY_OTHER, 1},
-    {"%", EO_QUANTITY_OTHER, 1},
-    {"1", EO_QUANTITY_OTHER, 1},
 };
 
 static bool opens(char c)
@@ -119,25 +81,97 @@ static bool closes(char c)
   return c == ']' || c == ')' || c == '}' || c == '>';
 }
 
+/* Signs that have several spellings, as bytes of UTF-8 and of Latin 1, and what they become. "" : nothing. */
+static const char *const signs[][2] = {
+    {"\xc2\xb5", "u"},
+    {"\xce\xbc", "u"},
+    {"\xc2\xba", "\xc2\xb0"},
+    {"\xcb\x9a", "\xc2\xb0"},
+    {"\xe2\x80\xb3", "\""},
+    {"\xe2\x80\xb2", "'"},
+    {"\xe2\x80\x9d", "\""},
+    {"\xe2\x80\x99", "'"},
+    {"\xc2\xb4", "'"},
+    {"\xc2\xb7", ""},
+    {"\xe2\x8b\x85", ""},
+    {"\xe2\x88\x99", ""},
+    {"\xc3\x97", ""},
+    {"\xc2\xb2", "2"},
+    {"\xe2\x81\xbb", "-"},
+    {"\xc2\xb9", "1"},
+    {"\xe2\x88\x92", "-"},
+    {"\xc2\xa0", ""},
+    {"\xc2\xb0", "\xc2\xb0"},
+    {"\xb5", "u"},
+    {"\xb0", "\xc2\xb0"},
+    {"\xba", "\xc2\xb0"},
+    {"\xb7", ""},
+    {"\xb2", "2"},
+    {"\xb9", "1"},
+    {"\xb4", "'"},
+    {"*", ""},
+    {"^", ""},
+    {" ", ""},
+    {"\xf8", "\xc2\xb0"},
+};
+
+/* Writes the unit with one spelling for each sign; false when it is too long for a unit. */
+static bool fold(const char *text, size_t length, char *unit, size_t size)
+{
+  size_t n = 0;
+  for (size_t at = 0; at < length;) {
+    const char *with = NULL;
+    size_t used = 1;
+    for (size_t i = 0; i < sizeof signs / sizeof *signs && !with; i++) {
+      size_t bytes = strlen(signs[i][0]);
+      if (bytes <= length - at && !memcmp(text + at, signs[i][0], bytes))
+        with = signs[i][1], used = bytes;
+    }
+    char one[2] = {text[at], '\0'};
+    with = with ? with : one;
+    if (n + strlen(with) + 1 > size)
+      return false;
+    memcpy(unit + n, with, strlen(with));
+    n += strlen(with);
+    at += used;
+  }
+  unit[n] = '\0';
+  return n > 0;
+}
+
+/* Case tells a newton metre from a nanometre and its multiples apart, so that spellings with capitals are exact. */
+static bool is_spelling(const char *unit, size_t length, const char *spelling, size_t n)
+{
+  bool exact = false;
+  for (size_t i = 0; i < n; i++)
+    exact = exact || isupper((unsigned char)spelling[i]);
+  return n == length && (exact ? !memcmp(unit, spelling, n) : !strncasecmp(unit, spelling, n));
+}
+
 enum eo_quantity eo_unit_find(const char *text, double *factor)
 {
-  char unit[32];
+  char unit[48];
   size_t length = strlen(text);
+  *factor = 1;
   while (length && text[length - 1] == ' ')
     length--;
   while (length && *text == ' ')
     text++, length--;
   if (length >= 2 && opens(text[0]) && closes(text[length - 1]))
     text++, length -= 2;
-  *factor = 1;
-  if (!length || length >= sizeof unit)
+  if (!length || length >= 40 || !fold(text, length, unit, sizeof unit) || !strcmp(unit, "S"))
     return EO_QUANTITY_NONE;
-  memcpy(unit, text, length);
-  unit[length] = '\0';
+  length = strlen(unit);
+  if (unit[0] == 'N' && !strcasecmp(unit, "n.m")) /* a point for the product */
+    memcpy(unit, "Nm", 3), length = 2;
   for (size_t i = 0; i < sizeof units / sizeof *units; i++)
-    if (!strcasecmp(unit, units[i].text) && strcmp(unit, "S")) {
-      *factor = units[i].factor;
-      return units[i].quantity;
+    for (const char *p = units[i].spellings; *p;) {
+      size_t n = strcspn(p, " ");
+      if (is_spelling(unit, length, p, n)) {
+        *factor = units[i].factor;
+        return units[i].quantity;
+      }
+      p += n + (p[n] == ' ');
     }
   return EO_QUANTITY_NONE;
 }
@@ -151,6 +185,39 @@ static void copy_part(char *to, int size, const char *from, size_t length)
   snprintf(to, (size_t)size, "%.*s", (int)length, from);
 }
 
+/* "(raw)" and "(encoder 1)" name a channel: a known unit, or what is too short and too odd for a word, is a unit. */
+static bool names_channel(const char *text, size_t length)
+{
+  char unit[48];
+  double factor;
+  bool word = length >= 3, number = length > 0;
+  copy_part(unit, (int)sizeof unit, text, length);
+  for (size_t i = 0; i < length; i++)
+    word = word && (isalnum((unsigned char)text[i]) || text[i] == ' ' || text[i] == '_' || text[i] == '-');
+  for (size_t i = 0; i < length; i++)
+    number = number && isdigit((unsigned char)text[i]);
+  return number || (eo_unit_find(unit, &factor) == EO_QUANTITY_NONE && word);
+}
+
+/* Splits at a slash, an underscore, a comma, a blank or the word "in" when a unit stands behind it. */
+static bool split_word(const char *label, size_t length, size_t at, char *name, int name_size, char *unit,
+                       int unit_size)
+{
+  char last[32];
+  double factor;
+  copy_part(last, (int)sizeof last, label + at + 1, length - at - 1);
+  if (eo_unit_find(last, &factor) == EO_QUANTITY_NONE ||
+      (strlen(last) == 1 && strchr("1cmgnaukfdhvw\"'", tolower((unsigned char)last[0]))))
+    return false;
+  copy_part(unit, unit_size, last, strlen(last));
+  while (at > 1 && strchr("_ /,:-", label[at - 1]))
+    at--;
+  if (at > 3 && !strncasecmp(label + at - 3, " in", 3))
+    at -= 3;
+  copy_part(name, name_size, label, at);
+  return true;
+}
+
 void eo_unit_split(const char *label, char *name, int name_size, char *unit, int unit_size)
 {
   size_t length = strlen(label);
@@ -161,27 +228,19 @@ void eo_unit_split(const char *label, char *name, int name_size, char *unit, int
     size_t open = length - 1;
     while (open > 0 && !opens(label[open]))
       open--;
-    if (open > 0) {
+    bool round = label[open] == '(';
+    if (open > 0 && !(round && names_channel(label + open + 1, length - open - 2))) {
       copy_part(name, name_size, label, open);
       copy_part(unit, unit_size, label + open + 1, length - open - 2);
       return;
     }
   }
-  /* The last part after a slash, an underscore or a blank, when it is a unit. */
-  for (size_t i = length; i-- > 1;) {
-    if (label[i] != '_' && label[i] != ' ' && label[i] != '/')
-      continue;
-    char last[32];
-    double factor;
-    copy_part(last, (int)sizeof last, label + i + 1, length - i - 1);
-    enum eo_quantity quantity = eo_unit_find(last, &factor);
-    if (quantity == EO_QUANTITY_NONE || (strlen(last) == 1 && strchr("1cmgna", last[0])))
-      break;
-    copy_part(unit, unit_size, last, strlen(last));
-    while (i > 1 && (label[i - 1] == ' ' || label[i - 1] == '_' || label[i - 1] == '/'))
-      i--;
-    copy_part(name, name_size, label, i);
-    return;
-  }
+  for (size_t i = length; i-- > 1;)
+    if (strchr("_ /,:", label[i])) {
+      if (split_word(label, length, i, name, name_size, unit, unit_size))
+        return;
+      if (label[i] != '/') /* "1/min" has one of its own */
+        break;
+    }
   copy_part(name, name_size, label, length);
 }

@@ -1,0 +1,367 @@
+/* Channels with clocks of their own become one recording: the gear's values are brought to the times of the pinion's.
+   Increments are summed up on the way. */
+#include "recording/layout_private.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define BLOCK 4096
+#define POINTS 16 /* samples of a polynomial */
+#define HELD (3 * BLOCK)
+#define SAME 1e-6  /* of an interval: times that differ less are equal */
+#define WIDEST 1.8 /* usual intervals: a polynomial over a longer gap swings */
+#define CARRIED 6  /* columns of one side at most: tracks, torque and speed of both members */
+
+/* The samples of one channel, read forwards. */
+struct side {
+  const struct eo_recording *recording;
+  struct eo_layout_clock clock;
+  int columns, column[CARRIED], keys; /* the first `keys` are the channel's own: samples without them are passed over */
+  double period[CARRIED];             /* of columns that start again, 0: they do not */
+  double shift[CARRIED];              /* turns counted so far, in the column's unit; of increments their sum */
+  bool sum;                           /* the first column holds increments */
+  int64_t next, rows;                 /* of the recording */
+  int64_t first, held;                /* samples: number of the first that is held, how many are */
+  bool ended;
+  double *block;        /* [BLOCK][columns of the recording] */
+  double *time, *value; /* [HELD], [HELD][columns] */
+};
+
+struct aligner {
+  struct side side[2];
+  struct eo_recording *out;
+  int columns;
+  double *rows; /* [BLOCK][columns] */
+  int64_t filled, kept;
+};
+
+/* ---- whether ---- */
+
+static bool same_clock(const struct eo_layout_clock *a, const struct eo_layout_clock *b)
+{
+  bool column = a->column == b->column && a->scale == b->scale;
+  bool even = a->column >= 0 || (fabs(a->interval - b->interval) <= 1e-9 * a->interval &&
+                                 fabs(a->start - b->start) <= SAME * a->interval);
+  return column && even && fabs(a->shift - b->shift) <= SAME * a->interval;
+}
+
+/* Whether two columns of times are equal, and whether rows hold both channels' values: a table with the times of both
+   channels has one of them in each row. */
+static enum eo_code compare_rows(const struct eo_guess *g, bool *equal, bool *together, struct eo_error *error)
+{
+  const struct eo_layout_clock *a = &g->clock[0], *b = &g->clock[1];
+  int first_column = g->tracks->channel[0].column[0], second_column = g->tracks->channel[1].column[0];
+  int64_t rows = eo_recording_rows(g->recording), both = 0, one = 0;
+  double *block = malloc(BLOCK * (size_t)g->columns * sizeof *block);
+  enum eo_code code = block ? EO_OK : eo_error_memory(error);
+  *equal = true;
+  for (int64_t first = 0; !code && first < rows; first += BLOCK) {
+    int64_t n = rows - first < BLOCK ? rows - first : BLOCK;
+    code = eo_recording_read(g->recording, first, n, block, error);
+    for (int64_t i = 0; !code && i < n; i++) {
+      const double *row = block + i * g->columns;
+      bool here = !isnan(row[first_column]), there = !isnan(row[second_column]);
+      both += here && there;
+      one += here != there;
+      if (a->column >= 0 && b->column >= 0 && here && there &&
+          fabs(row[a->column] * a->scale - row[b->column] * b->scale - b->shift) > 1e-4 * a->interval)
+        *equal = false;
+    }
+  }
+  free(block);
+  *together = both >= one;
+  return code;
+}
+
+enum eo_code eo_layout_needs_align(const struct eo_guess *g, bool *needed, struct eo_error *error)
+{
+  bool equal, together;
+  *needed = false;
+  if (g->kind == EO_LAYOUT_PULSES)
+    return EO_OK;
+  enum eo_code code = compare_rows(g, &equal, &together, error);
+  bool columns = g->clock[0].column >= 0 && g->clock[1].column >= 0;
+  bool same = same_clock(&g->clock[0], &g->clock[1]) || (columns && equal);
+  *needed = !same || !together || g->increments[0] || g->increments[1];
+  return code;
+}
+
+/* ---- reading one side ---- */
+
+static enum eo_code open_side(struct side *s, const struct eo_guess *g, int member, struct eo_error *error)
+{
+  const struct eo_track_channel *channel = &g->tracks->channel[member];
+  s->recording = g->recording;
+  s->clock = g->clock[member];
+  s->sum = g->increments[member];
+  s->keys = g->kind == EO_LAYOUT_SINE_COSINE ? 2 : 1;
+  for (int k = 0; k < s->keys; k++)
+    s->column[s->columns++] = channel->column[k];
+  s->rows = eo_recording_length(g->recording, channel->column[0]);
+  if (g->kind == EO_LAYOUT_ANGLES && !s->sum && g->look[channel->column[0]].resets) {
+    double turn = eo_column_turn(&g->look[channel->column[0]]);
+    s->period[0] = turn > 0 ? turn : EO_TURN / channel->scale;
+  }
+  s->block = malloc(BLOCK * (size_t)g->columns * sizeof *s->block);
+  s->time = malloc(HELD * sizeof *s->time);
+  s->value = malloc(HELD * CARRIED * sizeof *s->value);
+  return s->block && s->time && s->value ? EO_OK : eo_error_memory(error);
+}
+
+static void close_side(struct side *s)
+{
+  free(s->block);
+  free(s->time);
+  free(s->value);
+}
+
+static double time_of(const struct side *s, const double *row, int64_t number)
+{
+  double time = s->clock.column >= 0 ? row[s->clock.column] * s->clock.scale
+                                     : s->clock.start + (double)number * s->clock.interval;
+  return time + s->clock.shift;
+}
+
+/* Takes one row of the recording as the next sample. Rows without a value or with a time that does not go on are passed
+   over. */
+static void take_row(struct side *s, const double *row, int64_t number)
+{
+  double time = time_of(s, row, number), *value = s->value + s->held * CARRIED;
+  bool good = isfinite(time) && (!s->held || time > s->time[s->held - 1]);
+  for (int k = 0; k < s->columns; k++) {
+    value[k] = row[s->column[k]];
+    good = good && (k >= s->keys || isfinite(value[k]));
+  }
+  if (!good)
+    return;
+  if (s->sum) {
+    s->shift[0] += value[0];
+    value[0] = s->shift[0];
+  }
+  for (int k = 0; k < s->keys; k++)
+    if (s->period[k] > 0) {
+      value[k] += s->shift[k];
+      double turns = s->held ? round((value[k] - value[k - CARRIED]) / s->period[k]) : 0;
+      value[k] -= turns * s->period[k];
+      s->shift[k] -= turns * s->period[k];
+    }
+  s->time[s->held++] = time;
+}
+
+/* Forgets samples before `keep` and reads until there is no room for another block. */
+static enum eo_code fill(struct side *s, int64_t keep, struct eo_error *error)
+{
+  int64_t drop = keep - s->first;
+  enum eo_code code = EO_OK;
+  if (drop > s->held)
+    drop = s->held;
+  if (drop > 0) {
+    memmove(s->time, s->time + drop, (size_t)(s->held - drop) * sizeof *s->time);
+    memmove(s->value, s->value + drop * CARRIED, (size_t)(s->held - drop) * CARRIED * sizeof *s->value);
+    s->first += drop;
+    s->held -= drop;
+  }
+  while (!code && !s->ended && s->held + BLOCK <= HELD) {
+    int64_t n = s->rows - s->next < BLOCK ? s->rows - s->next : BLOCK;
+    int columns = eo_recording_columns(s->recording);
+    code = eo_recording_read(s->recording, s->next, n, s->block, error);
+    for (int64_t i = 0; !code && i < n; i++)
+      take_row(s, s->block + i * columns, s->next + i);
+    s->next += n;
+    s->ended = s->next >= s->rows;
+  }
+  return code;
+}
+
+/* ---- bringing them together ---- */
+
+/* Values of all columns at a time inside samples from .. from + POINTS - 1, by the polynomial through them. */
+static void interpolate(const struct side *s, int64_t from, double t, double *values)
+{
+  const double *time = s->time + from;
+  double weight[POINTS];
+  for (int i = 0; i < POINTS; i++) {
+    weight[i] = 1;
+    for (int k = 0; k < POINTS; k++)
+      if (k != i)
+        weight[i] *= (t - time[k]) / (time[i] - time[k]);
+  }
+  for (int c = 0; c < s->columns; c++) {
+    const double *column = s->value + from * CARRIED + c;
+    double base = column[(long)POINTS / 2 * CARRIED], sum = 0;
+    for (int i = 0; i < POINTS; i++)
+      sum += weight[i] * (column[(long)i * CARRIED] - base);
+    values[c] = base + sum;
+  }
+}
+
+/* No two neighbours of the samples are far from each other. */
+static bool is_dense(const struct side *s, int64_t from)
+{
+  double usual = (s->time[from + POINTS - 1] - s->time[from]) / (POINTS - 1), widest = 0, least = INFINITY;
+  for (int i = 1; i < POINTS; i++) {
+    widest = fmax(widest, s->time[from + i] - s->time[from + i - 1]);
+    least = fmin(least, s->time[from + i] - s->time[from + i - 1]);
+  }
+  return widest < WIDEST * usual && least > 0.2 * usual;
+}
+
+static enum eo_code flush(struct aligner *a, struct eo_error *error)
+{
+  enum eo_code code = eo_recording_append(a->out, a->rows, a->filled, error);
+  a->kept += a->filled;
+  a->filled = 0;
+  return code;
+}
+
+static enum eo_code put_row(struct aligner *a, double t, const double *first, const double *second,
+                            struct eo_error *error)
+{
+  double *to = a->rows + a->filled * a->columns;
+  *to++ = t;
+  for (int c = 0; c < a->side[0].columns; c++)
+    *to++ = first[c];
+  for (int c = 0; c < a->side[1].columns; c++)
+    *to++ = second[c];
+  return ++a->filled == BLOCK ? flush(a, error) : EO_OK;
+}
+
+/* The gear's values at a time: those of a sample that stands there, else between samples; NULL where it has none. at:
+   number of the last sample not after t. */
+static const double *values_at(const struct side *b, int64_t at, double t, double *values)
+{
+  int64_t i = at - b->first, from = i - POINTS / 2 + 1;
+  double before = b->time[i], step = i + 1 < b->held ? b->time[i + 1] - before : before - b->time[i - 1];
+  if (fabs(t - before) <= SAME * step)
+    return b->value + i * CARRIED;
+  if (i + 1 < b->held && fabs(t - before - step) <= SAME * step)
+    return b->value + (i + 1) * CARRIED;
+  if (t < before || from < 0 || from + POINTS > b->held || !is_dense(b, from))
+    return NULL; /* at the ends a polynomial swings: only its middle is used */
+  interpolate(b, from, t, values);
+  return values;
+}
+
+static enum eo_code align_rows(struct aligner *m, struct eo_error *error)
+{
+  struct side *a = &m->side[0], *b = &m->side[1];
+  double values[CARRIED];
+  int64_t at = 0;
+  enum eo_code code = fill(b, 0, error);
+  for (int64_t n = 0; !code; n++) {
+    if (n >= a->first + a->held) {
+      code = fill(a, n ? n - 1 : 0, error); /* the sample before stays, for its turns */
+      if (code || n >= a->first + a->held)
+        break;
+    }
+    double t = a->time[n - a->first];
+    for (;;) {
+      if (at + 2 + POINTS > b->first + b->held && !b->ended)
+        code = fill(b, at > POINTS ? at - POINTS : 0, error);
+      if (code || at + 1 >= b->first + b->held || !(b->time[at + 1 - b->first] <= t))
+        break;
+      at++;
+    }
+    const double *second = !code && b->held > POINTS ? values_at(b, at, t, values) : NULL;
+    if (!second && m->kept + m->filled < POINTS)
+      m->filled = 0; /* a lone sample at the beginning makes a gap */
+    if (second)
+      code = put_row(m, t, a->value + (n - a->first) * CARRIED, second, error);
+  }
+  return code ? code : flush(m, error);
+}
+
+/* Torque and speed go with the side whose clock they share; others are left behind. */
+static void carry_beside(struct eo_guess *g, struct aligner *m)
+{
+  struct eo_track_beside *beside[4] = {&g->tracks->torque[0], &g->tracks->torque[1], &g->tracks->speed[0],
+                                       &g->tracks->speed[1]};
+  for (int i = 0; i < 4; i++) {
+    int side = -1;
+    for (int s = 0; beside[i]->scale != 0 && s < 2 && side < 0; s++) {
+      struct eo_clock own = eo_recording_clock(g->recording, beside[i]->column);
+      int time = own.column >= 0 ? own.column : eo_layout_pick_time(g, beside[i]->column);
+      bool same = g->tracks->source[s].time >= 0 ? time == g->tracks->source[s].time
+                                                 : fabs(own.interval / g->clock[s].interval - 1) < 1e-6;
+      bool whole = eo_recording_length(g->recording, beside[i]->column) >= m->side[s].rows;
+      side = same && whole && m->side[s].columns < CARRIED ? s : -1;
+    }
+    if (side < 0) {
+      beside[i]->scale = 0;
+      continue;
+    }
+    m->side[side].column[m->side[side].columns++] = beside[i]->column;
+  }
+}
+
+/* The tracks now speak of the new columns, whose names and units are the old ones. */
+static void rename_tracks(struct eo_guess *g, const struct aligner *m)
+{
+  int to = 1, moved[EO_RECORDING_COLUMNS] = {0};
+  eo_recording_set_column(m->out, 0, "time", "s");
+  for (int s = 0; s < 2; s++)
+    for (int c = 0; c < m->side[s].columns; c++) {
+      int old = m->side[s].column[c];
+      eo_recording_set_column(m->out, to, eo_recording_name(g->recording, old), eo_recording_unit(g->recording, old));
+      moved[old] = to++;
+    }
+  for (int s = 0; s < 2; s++) {
+    for (int k = 0; k < m->side[s].keys; k++)
+      g->tracks->channel[s].column[k] = moved[g->tracks->channel[s].column[k]];
+    g->tracks->torque[s].column = moved[g->tracks->torque[s].column];
+    g->tracks->speed[s].column = moved[g->tracks->speed[s].column];
+  }
+  g->tracks->time_column = 0;
+  g->tracks->time_scale = 1;
+  g->tracks->interval = g->clock[0].interval;
+}
+
+static enum eo_code align(struct eo_guess *g, struct aligner *m, const char *spool_directory, struct eo_error *error)
+{
+  carry_beside(g, m);
+  m->columns = 1 + m->side[0].columns + m->side[1].columns;
+  m->rows = malloc(BLOCK * (size_t)m->columns * sizeof *m->rows);
+  enum eo_code code = m->rows ? eo_recording_new(&m->out, m->columns, spool_directory, error) : eo_error_memory(error);
+  if (!code)
+    code = align_rows(m, error);
+  if (code)
+    return code;
+  if (!m->kept)
+    return eo_error_set(error, EO_ERROR_INPUT, "/time",
+                        "The times of pinion and gear do not overlap, or one has fewer than %d values.", POINTS + 1);
+  for (int s = 0; s < 2; s++)
+    if (g->increments[s])
+      eo_notes_add(g->notes, "The increments of the %s were summed up.", s ? "gear" : "pinion");
+  if (!same_clock(&g->clock[0], &g->clock[1]) || m->kept < m->side[0].rows)
+    eo_notes_add(
+        g->notes,
+        "Pinion and gear have times of their own: the gear's values were brought to the times of the pinion's, "
+        "which leaves %lld of %lld rows.",
+        (long long)m->kept, (long long)m->side[0].rows);
+  rename_tracks(g, m);
+  return EO_OK;
+}
+
+enum eo_code eo_layout_align(struct eo_guess *g, const char *spool_directory, struct eo_recording **aligned,
+                             struct eo_error *error)
+{
+  struct aligner *m = calloc(1, sizeof *m);
+  if (!m)
+    return eo_error_memory(error);
+  enum eo_code code = open_side(&m->side[0], g, 0, error);
+  if (!code)
+    code = open_side(&m->side[1], g, 1, error);
+  if (!code)
+    code = align(g, m, spool_directory, error);
+  if (code)
+    eo_recording_free(m->out);
+  else
+    *aligned = m->out;
+  close_side(&m->side[0]);
+  close_side(&m->side[1]);
+  free(m->rows);
+  free(m);
+  return code;
+}

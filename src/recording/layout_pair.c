@@ -1,0 +1,133 @@
+/* Which columns are the encoders, seen from the columns themselves, and which hold torque and speed beside them. */
+#include "recording/layout_private.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define CLOSE 3e-3 /* of a ratio: teeth pass with errors of micrometres, other ratios are further away */
+
+#define PINION_WORDS "1|pinion|ritzel|input|driver|drive|driving|eingang|antrieb|motor|p|in"
+#define TORQUE_WORDS "torque|moment|drehmoment|md|m|tq|trq|mt"
+#define SPEED_WORDS "speed|rpm|drehzahl|n|velocity|omega|rotspeed"
+
+bool eo_layout_turns(const struct eo_column *look)
+{
+  int less = look->rises < look->falls ? look->rises : look->falls;
+  return look->count > 20 && look->step != 0 && !look->levels &&
+         less - look->resets <= (look->rises + look->falls) / 50 && look->rises + look->falls > look->count / 20;
+}
+
+/* Values that count up from row to row by the same number and never turn back tell nothing of a shaft. */
+static bool may_turn(const struct eo_guess *g, int column)
+{
+  enum eo_quantity q = g->look[column].quantity;
+  return eo_layout_turns(&g->look[column]) && q != EO_QUANTITY_OTHER && q != EO_QUANTITY_TORQUE &&
+         q != EO_QUANTITY_SPEED && q != EO_QUANTITY_FREQUENCY && q != EO_QUANTITY_TIME && !g->number[column];
+}
+
+/* rad per unit of the column where its unit or its turn tells; 0: not known. */
+static double factor_of(const struct eo_guess *g, int column)
+{
+  const struct eo_column *look = &g->look[column];
+  double turn = eo_column_turn(look);
+  if (look->quantity == EO_QUANTITY_ANGLE)
+    return look->factor;
+  if (eo_recording_turn(g->recording, column) > 0 && look->whole)
+    return EO_TURN / eo_recording_turn(g->recording, column);
+  return turn > 0 ? EO_TURN / turn : 0;
+}
+
+/* Speed by the clock of the column itself. */
+static double speed_of(const struct eo_guess *g, int column)
+{
+  struct eo_clock stated = eo_recording_clock(g->recording, column);
+  const struct eo_column *look = &g->look[column];
+  struct eo_layout_clock clock = {.column = stated.column, .scale = 1, .interval = stated.interval};
+  double rows = (double)(look->last - look->first);
+  if (clock.column < 0 && !(stated.interval > 0))
+    clock.column = eo_layout_pick_time(g, column);
+  if (clock.column < 0 && !(stated.interval > 0))
+    return look->step * (double)(look->count - 1) / rows;
+  if (clock.column >= 0 && g->look[clock.column].quantity == EO_QUANTITY_TIME)
+    clock.scale = g->look[clock.column].factor;
+  return eo_layout_rate(g, column, &clock);
+}
+
+/* True when two columns turn in the ratio of the teeth, the first faster or the second. */
+static bool fits_teeth(const struct eo_guess *g, int a, int b)
+{
+  double fa = factor_of(g, a), fb = factor_of(g, b);
+  if (!(fa > 0) || !(fb > 0))
+    fa = fb = 1;
+  double ratio = fabs(speed_of(g, a) * fa / (speed_of(g, b) * fb)),
+         teeth = (double)g->pair->teeth[1] / g->pair->teeth[0];
+  return fabs(ratio / teeth - 1) < CLOSE || fabs(ratio * teeth - 1) < CLOSE;
+}
+
+static int unit_points(const struct eo_guess *g, int column)
+{
+  enum eo_quantity q = g->look[column].quantity;
+  return (q == EO_QUANTITY_ANGLE   ? 4
+          : q == EO_QUANTITY_COUNT ? 3
+                                   : 0) +
+         2 * eo_column_named(eo_recording_name(g->recording, column),
+                             "phi|angle|winkel|encoder|enc|pos|position|theta");
+}
+
+bool eo_layout_find_pair(struct eo_guess *g)
+{
+  int best = -1, pair[2] = {-1, -1};
+  if (!g->pair || g->pair->teeth[0] < 1 || g->pair->teeth[0] == g->pair->teeth[1])
+    return false;
+  for (int i = 0; i < g->candidates; i++)
+    for (int k = i + 1; k < g->candidates; k++) {
+      int a = g->candidate[i], b = g->candidate[k];
+      int points = unit_points(g, a) + unit_points(g, b);
+      if (points <= best || !may_turn(g, a) || !may_turn(g, b) || !fits_teeth(g, a, b))
+        continue;
+      best = points;
+      pair[0] = a;
+      pair[1] = b;
+    }
+  if (best < 0)
+    return false;
+  if (g->candidates > 2) {
+    char text[80], second[80];
+    eo_notes_add(g->notes, "Of %d columns %s and %s turn in the ratio of the teeth.", g->candidates,
+                 eo_layout_label(g, pair[0], text, sizeof text), eo_layout_label(g, pair[1], second, sizeof second));
+  }
+  g->candidates = 2;
+  g->candidate[0] = pair[0];
+  g->candidate[1] = pair[1];
+  return true;
+}
+
+/* A column beside the encoders by its unit, else by its name. */
+static void take_beside(struct eo_guess *g, int column, enum eo_quantity quantity, const char *words, double usual,
+                        struct eo_track_beside beside[2])
+{
+  const struct eo_column *look = &g->look[column];
+  const char *name = eo_recording_name(g->recording, column);
+  bool stated = look->quantity == quantity, named = eo_column_named(name, words) && look->quantity == EO_QUANTITY_NONE;
+  bool one = eo_column_named(name, PINION_WORDS),
+       two = eo_column_named(name, "2|gear|wheel|rad|output|abtrieb|out|ausgang");
+  int member = two && !one;
+  if ((!stated && !named) || !look->count || (beside[member].scale != 0 && beside[member].stated >= stated))
+    return;
+  beside[member] = (struct eo_track_beside){stated ? look->factor : usual, column, stated};
+}
+
+void eo_layout_find_beside(struct eo_guess *g)
+{
+  for (int c = 0; c < g->columns; c++) {
+    bool used = g->time[c] || g->number[c];
+    for (int member = 0; member < 2; member++)
+      used = used || c == g->clock[member].column || c == g->tracks->channel[member].column[0] ||
+             (g->kind == EO_LAYOUT_SINE_COSINE && c == g->tracks->channel[member].column[1]);
+    if (used)
+      continue;
+    take_beside(g, c, EO_QUANTITY_TORQUE, TORQUE_WORDS, 1, g->tracks->torque);
+    take_beside(g, c, EO_QUANTITY_SPEED, SPEED_WORDS, EO_TURN / 60, g->tracks->speed);
+  }
+}

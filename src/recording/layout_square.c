@@ -1,0 +1,173 @@
+/* Square waves, as counters get them, recorded by a voltage input: the times at which they pass the middle between
+   their levels are pulses. Of two tracks of an encoder all edges count. */
+#include "recording/layout_private.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#define BLOCK 4096
+#define ROWS_PER_LINE 8 /* with fewer rows the time of an edge is known to a coarse part of a line only */
+
+struct encoder {
+  int tracks, column[2];
+  double middle[2];
+  bool high[2], begun;
+  double before[2], time;      /* values and time of the row before */
+  int64_t edges, forward;      /* of two tracks: edges in all, those of one direction */
+  struct eo_recording *pulses; /* owned, [edges][1], s */
+};
+
+static double time_of(const struct eo_layout_clock *clock, const double *row, int64_t number)
+{
+  return clock->column >= 0 ? row[clock->column] * clock->scale : clock->start + (double)number * clock->interval;
+}
+
+/* The time between two rows at which a track passes the middle, by a straight line. */
+static enum eo_code keep_edge(struct encoder *e, int track, double value, double time, struct eo_error *error)
+{
+  double share = (e->middle[track] - e->before[track]) / (value - e->before[track]);
+  double at = e->time + share * (time - e->time);
+  return eo_recording_append(e->pulses, &at, 1, error);
+}
+
+/* Direction of an edge of two tracks in quadrature: A rises while B is low, and so on. */
+static bool goes_forward(const struct encoder *e, int track, bool high)
+{
+  return track == 0 ? high != e->high[1] : high == e->high[0];
+}
+
+static enum eo_code take_row(struct encoder *e, const double *row, double time, struct eo_error *error)
+{
+  enum eo_code code = EO_OK;
+  for (int k = 0; k < e->tracks; k++)
+    if (isnan(row[e->column[k]]))
+      return EO_OK;
+  for (int k = 0; k < e->tracks && !code; k++) {
+    double value = row[e->column[k]];
+    bool high = value > e->middle[k];
+    if (e->begun && high != e->high[k] && (e->tracks == 2 || high)) {
+      e->edges++;
+      e->forward += e->tracks == 2 && goes_forward(e, k, high);
+      code = keep_edge(e, k, value, time, error);
+    }
+    e->high[k] = high;
+    e->before[k] = value;
+  }
+  e->time = time;
+  e->begun = true;
+  return code;
+}
+
+static enum eo_code find_edges(const struct eo_guess *g, struct encoder encoder[2], struct eo_error *error)
+{
+  int64_t rows = eo_recording_rows(g->recording);
+  double *block = malloc(BLOCK * (size_t)g->columns * sizeof *block);
+  enum eo_code code = block ? EO_OK : eo_error_memory(error);
+  for (int64_t first = 0; !code && first < rows; first += BLOCK) {
+    int64_t n = rows - first < BLOCK ? rows - first : BLOCK;
+    code = eo_recording_read(g->recording, first, n, block, error);
+    for (int64_t i = 0; !code && i < n; i++)
+      for (int s = 0; s < 2 && !code; s++) {
+        const double *row = block + i * g->columns;
+        code = take_row(&encoder[s], row, time_of(&g->clock[s], row, first + i) + g->clock[s].shift, error);
+      }
+  }
+  free(block);
+  return code;
+}
+
+static enum eo_code check(const struct eo_guess *g, const struct encoder *e, int member, struct eo_error *error)
+{
+  const char *whose = member ? "gear" : "pinion";
+  double lines = (double)e->edges / (e->tracks == 2 ? 4 : 1), rows = (double)eo_recording_rows(g->recording);
+  if (!(g->choice->lines[member] > 0) && !(eo_recording_turn(g->recording, e->column[0]) > 0))
+    return eo_error_set(error, EO_ERROR_INPUT, "/lines",
+                        "The %s's encoder was recorded as a square wave; give its lines per turn.", whose);
+  if (lines < 3 || rows / lines < ROWS_PER_LINE)
+    return eo_error_set(
+        error, EO_ERROR_INPUT, "/kind",
+        "The %s's encoder was recorded as a square wave with %.3g rows per line: the times of its edges "
+        "cannot be told from that. Record at %d rows per line or more, or the counts of a counter.",
+        whose, rows / lines, ROWS_PER_LINE);
+  if (e->tracks == 2 && fabs((double)e->forward / (double)e->edges - 0.5) < 0.48)
+    return eo_error_set(error, EO_ERROR_INPUT, "/columns",
+                        "The square waves of the %s change direction in %.3g %% of their edges: they are no two tracks "
+                        "of one encoder, or the shaft swings.",
+                        whose, 100 * fmin((double)e->forward, (double)(e->edges - e->forward)) / (double)e->edges);
+  return EO_OK;
+}
+
+static enum eo_code join(const struct encoder encoder[2], const char *spool_directory, struct eo_recording **pulses,
+                         struct eo_error *error)
+{
+  double column[BLOCK], rows[2 * BLOCK];
+  struct eo_recording *out = NULL;
+  int64_t most = encoder[0].edges > encoder[1].edges ? encoder[0].edges : encoder[1].edges;
+  enum eo_code code = eo_recording_new(&out, 2, spool_directory, error);
+  for (int64_t first = 0; !code && first < most; first += BLOCK) {
+    int64_t n = most - first < BLOCK ? most - first : BLOCK;
+    for (int s = 0; s < 2 && !code; s++) {
+      int64_t left = encoder[s].edges - first, got = left < 0 ? 0 : left < n ? left : n;
+      if (got)
+        code = eo_recording_read(encoder[s].pulses, first, got, column, error);
+      for (int64_t i = 0; i < n; i++)
+        rows[2 * i + s] = i < got ? column[i] : NAN;
+    }
+    if (!code)
+      code = eo_recording_append(out, rows, n, error);
+  }
+  for (int s = 0; s < 2 && !code; s++) {
+    eo_recording_set_column(out, s, s ? "gear" : "pinion", "s");
+    eo_recording_set_length(out, s, encoder[s].edges);
+  }
+  if (code)
+    eo_recording_free(out);
+  else
+    *pulses = out;
+  return code;
+}
+
+static void set_tracks(struct eo_guess *g, const struct encoder encoder[2])
+{
+  for (int s = 0; s < 2; s++) {
+    double stated = eo_recording_turn(g->recording, encoder[s].column[0]);
+    double lines = g->choice->lines[s] > 0 ? g->choice->lines[s] : stated;
+    g->tracks->channel[s] = (struct eo_track_channel){
+        .track = EO_TRACK_PULSES, .column = {s, s}, .lines = lines * (encoder[s].tracks == 2 ? 4 : 1), .factor = 1};
+    g->tracks->torque[s].scale = g->tracks->speed[s].scale = 0;
+    eo_notes_add(g->notes, "%lld edges of the square wave%s of the %s are its pulses, %.6g per turn.",
+                 (long long)encoder[s].edges, encoder[s].tracks == 2 ? "s" : "", s ? "gear" : "pinion",
+                 g->tracks->channel[s].lines);
+  }
+  g->tracks->time_column = -1;
+  g->tracks->time_scale = 1;
+  g->kind = EO_LAYOUT_PULSES;
+}
+
+enum eo_code eo_layout_decode_squares(struct eo_guess *g, const char *spool_directory, struct eo_recording **pulses,
+                                      struct eo_error *error)
+{
+  struct encoder encoder[2] = {0};
+  enum eo_code code = EO_OK;
+  for (int s = 0; s < 2 && !code; s++) {
+    encoder[s].tracks = g->kind == EO_LAYOUT_SINE_COSINE ? 2 : 1;
+    for (int k = 0; k < encoder[s].tracks; k++) {
+      int column = g->tracks->channel[s].column[k];
+      encoder[s].column[k] = column;
+      encoder[s].middle[k] = (g->look[column].low + g->look[column].high) / 2;
+    }
+    code = eo_recording_new(&encoder[s].pulses, 1, spool_directory, error);
+  }
+  if (!code)
+    code = find_edges(g, encoder, error);
+  for (int s = 0; s < 2 && !code; s++)
+    code = check(g, &encoder[s], s, error);
+  if (!code)
+    code = join(encoder, spool_directory, pulses, error);
+  if (!code)
+    set_tracks(g, encoder);
+  eo_recording_free(encoder[0].pulses);
+  eo_recording_free(encoder[1].pulses);
+  return code;
+}

@@ -1,0 +1,392 @@
+/* Which columns are times, which belong to which channel, in what unit, and whether the rows are even within what they
+   tell. */
+#include "recording/layout_private.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define BLOCK 2048  /* rows read at once */
+#define STEPS 20000 /* steps from which the resolution of times is told */
+#define FEW 20      /* fewer odd steps than this are gaps or repeated rows, not the resolution of the times */
+#define FAR 100.0   /* times a load case: no speed of this pair */
+#define NEAR 30.0   /* times a load case: a unit of time is believed; units differ by more than the square of it */
+
+static const char *unit_name(double scale)
+{
+  return scale == 1e-3    ? "milliseconds"
+         : scale == 1e-6  ? "microseconds"
+         : scale == 1e-9  ? "nanoseconds"
+         : scale == 1e-7  ? "tenths of a microsecond"
+         : scale == 86400 ? "days"
+                          : "seconds";
+}
+
+/* ---- which columns ---- */
+
+/* Goes up and never starts again. */
+static bool rises(const struct eo_column *look)
+{
+  return look->count > 1 && look->step > 0 && !look->resets && look->falls <= look->rises / 10;
+}
+
+static bool is_referred(const struct eo_guess *g, int column)
+{
+  for (int c = 0; c < g->columns; c++)
+    if (c != column && eo_recording_clock(g->recording, c).column == column)
+      return true;
+  return false;
+}
+
+static bool counts_rows(const struct eo_guess *g, int column)
+{
+  const struct eo_column *look = &g->look[column];
+  bool counting = look->whole && look->step == 1 && look->spread < 1e-12 && !look->resets;
+  bool named = eo_column_named(eo_recording_name(g->recording, column), EO_TIME_WORDS);
+  return counting && look->quantity != EO_QUANTITY_TIME && look->quantity != EO_QUANTITY_ANGLE &&
+         (!named || eo_recording_clock(g->recording, column).interval > 0);
+}
+
+/* The first column without a unit that rises more evenly than what follows it. */
+static bool leads_evenly(const struct eo_guess *g, int column)
+{
+  const struct eo_column *look = &g->look[column];
+  int behind = 0;
+  for (int c = 0; c < column; c++)
+    if (!g->number[c])
+      return false;
+  for (int c = column + 1; c < g->columns; c++)
+    behind += g->look[c].count > 1 && g->look[c].step != 0 &&
+              (g->look[c].spread > 5 * look->spread || look->spread < 1e-9);
+  return look->spread < 1e-3 && look->step < 0.1 && !look->whole && behind >= 2;
+}
+
+/* A column of time goes up by nearly equal steps and never starts again; a unit, a name or another column that refers
+   to it says so. */
+static bool is_time(const struct eo_guess *g, int column)
+{
+  const struct eo_column *look = &g->look[column];
+  const char *name = eo_recording_name(g->recording, column);
+  bool free_of_unit = look->quantity == EO_QUANTITY_NONE || look->quantity == EO_QUANTITY_COUNT;
+  if (!rises(look) || g->number[column])
+    return false;
+  if (look->quantity == EO_QUANTITY_TIME || is_referred(g, column))
+    return true;
+  return (free_of_unit && eo_column_named(name, EO_TIME_WORDS)) ||
+         (look->quantity == EO_QUANTITY_NONE && !(eo_recording_clock(g->recording, column).interval > 0) &&
+          leads_evenly(g, column));
+}
+
+void eo_layout_mark_times(struct eo_guess *g)
+{
+  for (int c = 0; c < g->columns; c++)
+    g->number[c] = counts_rows(g, c);
+  for (int c = 0; c < g->columns; c++)
+    g->time[c] = is_time(g, c);
+}
+
+/* ---- of which channel ---- */
+
+int eo_layout_pick_time(const struct eo_guess *g, int channel)
+{
+  int best = -1, most = -1;
+  for (int c = 0; c < g->columns; c++) {
+    if (!g->time[c] || eo_recording_length(g->recording, c) < 2)
+      continue;
+    int shared = eo_column_shared_words(eo_recording_name(g->recording, c), eo_recording_name(g->recording, channel),
+                                        EO_TIME_WORDS);
+    bool fits = eo_recording_length(g->recording, c) >= eo_recording_length(g->recording, channel);
+    int score = 4 * shared + 2 * (c < channel) + 100 * fits + (g->look[c].quantity == EO_QUANTITY_TIME);
+    if (score > most || (score == most && c < channel)) {
+      most = score;
+      best = c;
+    }
+  }
+  return best;
+}
+
+static enum eo_code even_clock(struct eo_guess *g, int channel, struct eo_layout_clock *clock, struct eo_error *error)
+{
+  struct eo_clock stated = eo_recording_clock(g->recording, channel);
+  clock->interval = g->choice->sample_rate > 0 ? 1 / g->choice->sample_rate : stated.interval;
+  clock->start = stated.start;
+  if (!(clock->interval > 0))
+    return eo_error_set(error, EO_ERROR_INPUT, "/sample_rate_Hz",
+                        "No column holds the time and the file states no sampling rate; give one.");
+  return EO_OK;
+}
+
+static enum eo_code find_clock(struct eo_guess *g, int member, struct eo_error *error)
+{
+  struct eo_layout_clock *clock = &g->clock[member];
+  int channel = g->tracks->channel[member].column[0];
+  const char *chosen = member && g->choice->gear_time ? g->choice->gear_time : g->choice->time;
+  *clock = (struct eo_layout_clock){.column = -1, .scale = g->choice->time_scale > 0 ? g->choice->time_scale : 1};
+  if (chosen && strcmp(chosen, "none")) {
+    enum eo_code code = eo_layout_chosen(g, chosen, "/time", &clock->column, error);
+    if (code)
+      return code;
+  } else if (!chosen && !(g->choice->sample_rate > 0)) {
+    clock->column = eo_recording_clock(g->recording, channel).column;
+    if (clock->column < 0)
+      clock->column = eo_layout_pick_time(g, channel);
+  }
+  if (clock->column < 0)
+    return even_clock(g, channel, clock, error);
+  const struct eo_column *look = &g->look[clock->column];
+  if (!(g->choice->time_scale > 0) && look->quantity == EO_QUANTITY_TIME)
+    clock->scale = look->factor;
+  else if (!(g->choice->time_scale > 0) && eo_recording_tick(g->recording) > 0 &&
+           (look->quantity == EO_QUANTITY_COUNT || look->whole))
+    clock->scale = eo_recording_tick(g->recording);
+  clock->interval = look->step * clock->scale;
+  return EO_OK;
+}
+
+static int64_t epoch_of(const struct eo_guess *g, int member)
+{
+  int column = g->clock[member].column >= 0 ? g->clock[member].column : g->tracks->channel[member].column[0];
+  return eo_recording_clock(g->recording, column).epoch;
+}
+
+enum eo_code eo_layout_find_clocks(struct eo_guess *g, struct eo_error *error)
+{
+  for (int member = 0; member < 2; member++) {
+    enum eo_code code = find_clock(g, member, error);
+    if (code)
+      return code;
+  }
+  int64_t epoch[2] = {epoch_of(g, 0), epoch_of(g, 1)};
+  if (epoch[0] != EO_CLOCK_NO_EPOCH && epoch[1] != EO_CLOCK_NO_EPOCH && !(g->choice->sample_rate > 0))
+    g->clock[1].shift = (double)(epoch[1] - epoch[0]) * 1e-9;
+  return EO_OK;
+}
+
+/* ---- units of time ---- */
+
+static double time_at(const struct eo_guess *g, const struct eo_layout_clock *clock, int64_t row)
+{
+  double values[EO_RECORDING_COLUMNS];
+  struct eo_error error;
+  if (clock->column < 0)
+    return clock->start + (double)row * clock->interval;
+  return eo_recording_read(g->recording, row, 1, values, &error) ? NAN : values[clock->column] * clock->scale;
+}
+
+double eo_layout_rate(const struct eo_guess *g, int column, const struct eo_layout_clock *clock)
+{
+  const struct eo_column *look = &g->look[column];
+  double seconds = time_at(g, clock, look->last) - time_at(g, clock, look->first);
+  return look->step * (double)(look->count - 1) / seconds;
+}
+
+/* Dates as numbers give themselves away by their size: days since 1900 or since year 0 with steps below 0.2 s,
+   milliseconds, microseconds, nanoseconds and tenths of a microsecond since 1970, 1601 or year 1. 0: no date. */
+static double scale_by_size(const struct eo_column *look)
+{
+  static const struct {
+    double low, high, scale, most; /* step at most, in the unit */
+  } dates[] = {{20000, 80000, 86400, 2e-6}, {700000, 800000, 86400, 2e-6}, {1e12, 2.2e12, 1e-3, 1e4},
+               {1e15, 2.2e15, 1e-6, 1e7},   {1e18, 2.2e18, 1e-9, 1e10},    {1.2e17, 1.5e17, 1e-7, 1e8},
+               {6.2e17, 6.6e17, 1e-7, 1e8}, {1e9, 2.2e9, 1, 10},           {2.9e9, 4.6e9, 1, 10}};
+  for (size_t i = 0; i < sizeof dates / sizeof *dates; i++)
+    if (look->low > dates[i].low && look->high < dates[i].high && look->step < dates[i].most)
+      return dates[i].scale;
+  return 0;
+}
+
+static bool is_open(const struct eo_guess *g, int member)
+{
+  int column = g->clock[member].column;
+  return column >= 0 && !(g->choice->time_scale > 0) && g->look[column].quantity != EO_QUANTITY_TIME &&
+         g->clock[member].scale == 1;
+}
+
+static void set_scale(struct eo_guess *g, int member, double scale)
+{
+  struct eo_layout_clock *clock = &g->clock[member];
+  clock->interval *= scale / clock->scale;
+  clock->scale = scale;
+}
+
+/* Pinion's speed in rad/s; NaN where values do not tell it. */
+static double pinion_speed(const struct eo_guess *g)
+{
+  const struct eo_track_channel *channel = &g->tracks->channel[0];
+  const struct eo_column *look = &g->look[channel->column[0]];
+  if (g->kind == EO_LAYOUT_PULSES)
+    return EO_TURN / channel->lines / (look->step * g->clock[0].scale);
+  if (g->kind != EO_LAYOUT_ANGLES)
+    return NAN;
+  if (g->increments[0])
+    return fabs((look->low + look->high) / 2 * channel->scale / g->clock[0].interval);
+  return fabs(eo_layout_rate(g, channel->column[0], &g->clock[0]) * channel->scale);
+}
+
+/* The one unit of time that makes a speed near the load cases; 0: none or several do. */
+static double scale_by_speed(const struct eo_guess *g, double speed)
+{
+  static const double scales[] = {1e-3, 1e-6, 1e-9, 86400};
+  double found = 0;
+  for (size_t i = 0; i < sizeof scales / sizeof *scales; i++)
+    if (speed / scales[i] > g->pair->speed[0] / NEAR && speed / scales[i] < g->pair->speed[1] * NEAR)
+      found = found > 0 ? -1 : scales[i];
+  return found > 0 ? found : 0;
+}
+
+enum eo_code eo_layout_judge_speed(struct eo_guess *g, struct eo_error *error)
+{
+  char text[80];
+  bool open[2] = {is_open(g, 0), is_open(g, 1)};
+  for (int member = 0; member < 2; member++) {
+    double scale = open[member] ? scale_by_size(&g->look[g->clock[member].column]) : 0;
+    if (scale > 0) {
+      set_scale(g, member, scale);
+      open[member] = false;
+      eo_notes_add(g->notes, "%s holds dates as numbers, in %s.",
+                   eo_layout_label(g, g->clock[member].column, text, sizeof text), unit_name(scale));
+    }
+  }
+  double speed = pinion_speed(g), low = g->pair ? g->pair->speed[0] : 0, high = g->pair ? g->pair->speed[1] : 0;
+  if (!(high > 0) || isnan(speed) || (speed > low / FAR && speed < high * FAR))
+    return EO_OK;
+  double scale = open[0] ? scale_by_speed(g, speed) : 0;
+  if (scale > 0) {
+    for (int member = 0; member < 2; member++)
+      if (open[member])
+        set_scale(g, member, scale);
+    eo_notes_add(
+        g->notes,
+        "Nothing states the unit of %s; in seconds the pinion would turn at %.3g rpm, far from every load case: "
+        "read in %s.",
+        eo_layout_label(g, g->clock[0].column, text, sizeof text), speed * 60 / EO_TURN, unit_name(scale));
+    return EO_OK;
+  }
+  if (g->choice->time_scale > 0 || g->choice->sample_rate > 0)
+    return EO_OK;
+  return eo_error_set(
+      error, EO_ERROR_INPUT, g->clock[0].column < 0 ? "/sample_rate_Hz" : "/time_unit",
+      "The pinion would turn at %.3g rpm, a hundred times away from every load case of the design (%.4g "
+      "to %.4g rpm): state the unit of the time or the sampling rate, and the unit of the angles.",
+      speed * 60 / EO_TURN, low * 60 / EO_TURN, high * 60 / EO_TURN);
+}
+
+/* ---- even rows ---- */
+
+/* Straight line through the times over the number of the row, by least squares, and what it leaves. */
+struct line {
+  int64_t count;
+  double row, time; /* means */
+  double square, product;
+  double slope, most; /* per row; largest distance */
+};
+
+static void add_time(struct line *l, double row, double time)
+{
+  double before = row - l->row;
+  l->count++;
+  l->row += before / (double)l->count;
+  l->time += (time - l->time) / (double)l->count;
+  l->square += before * (row - l->row);
+  l->product += before * (time - l->time);
+}
+
+static enum eo_code pass(const struct eo_guess *g, int column, struct line *l, bool fit, struct eo_error *error)
+{
+  int64_t rows = eo_recording_length(g->recording, column);
+  double *block = malloc(BLOCK * (size_t)g->columns * sizeof *block);
+  enum eo_code code = block ? EO_OK : eo_error_memory(error);
+  for (int64_t first = 0; !code && first < rows; first += BLOCK) {
+    int64_t n = rows - first < BLOCK ? rows - first : BLOCK;
+    code = eo_recording_read(g->recording, first, n, block, error);
+    for (int64_t i = 0; !code && i < n; i++) {
+      double time = block[i * g->columns + column];
+      if (isnan(time))
+        continue;
+      if (fit)
+        add_time(l, (double)(first + i), time);
+      else
+        l->most = fmax(l->most, fabs(time - l->time - l->slope * ((double)(first + i) - l->row)));
+    }
+  }
+  free(block);
+  l->slope = l->product / l->square;
+  return code;
+}
+
+static int ascending(const void *a, const void *b)
+{
+  double x = *(const double *)a, y = *(const double *)b;
+  return (x > y) - (x < y);
+}
+
+/* The smallest distance of a step from the usual one, when there are enough such steps: what the times resolve. 0: all
+   steps are equal. */
+static double resolution(double *step, int64_t count)
+{
+  if (count < 2 * FEW)
+    return 0;
+  qsort(step, (size_t)count, sizeof *step, ascending);
+  double usual = step[count / 2], least = INFINITY;
+  int64_t odd = 0;
+  for (int64_t i = 0; i < count; i++) {
+    double distance = fabs(step[i] - usual);
+    odd += distance > 1e-4 * usual;
+    if (distance > 1e-4 * usual && distance < least)
+      least = distance;
+  }
+  return odd >= FEW ? least : 0;
+}
+
+static enum eo_code find_resolution(const struct eo_guess *g, int column, double *quantum, struct eo_error *error)
+{
+  int64_t rows = eo_recording_length(g->recording, column), count = 0;
+  rows = rows < STEPS ? rows : STEPS;
+  double *step = malloc((size_t)(rows + 1) * sizeof *step), *row = malloc((size_t)g->columns * sizeof *row * BLOCK),
+         before = NAN;
+  enum eo_code code = step && row ? EO_OK : eo_error_memory(error);
+  for (int64_t first = 0; !code && first < rows; first += BLOCK) {
+    int64_t n = rows - first < BLOCK ? rows - first : BLOCK;
+    code = eo_recording_read(g->recording, first, n, row, error);
+    for (int64_t i = 0; !code && i < n; i++) {
+      double time = row[i * g->columns + column];
+      if (!isnan(time - before))
+        step[count++] = time - before;
+      before = time;
+    }
+  }
+  *quantum = code ? 0 : resolution(step, count);
+  free(step);
+  free(row);
+  return code;
+}
+
+enum eo_code eo_layout_make_even(struct eo_guess *g, struct eo_error *error)
+{
+  char text[80];
+  for (int member = 0; member < 2; member++) {
+    struct eo_layout_clock *clock = &g->clock[member];
+    struct line line = {0};
+    double quantum;
+    int column = clock->column;
+    if (column < 0)
+      continue;
+    enum eo_code code = find_resolution(g, column, &quantum, error);
+    if (!code && quantum > 0)
+      code = pass(g, column, &line, true, error);
+    if (!code && quantum > 0)
+      code = pass(g, column, &line, false, error);
+    if (code)
+      return code;
+    if (!(quantum > 0) || !(line.slope > 0) || line.most > 1.01 * quantum)
+      continue;
+    clock->interval = line.slope * clock->scale;
+    clock->start = (line.time - line.slope * line.row) * clock->scale;
+    clock->column = -1;
+    if (!member || g->clock[0].start != clock->start)
+      eo_notes_add(g->notes,
+                   "%s only tells steps of %.3g s; within that its rows are even, %.9g s each: the rows count.",
+                   eo_layout_label(g, column, text, sizeof text), quantum * clock->scale, clock->interval);
+  }
+  return EO_OK;
+}

@@ -1,0 +1,35 @@
+/* What a file states about its sampling beside its numbers: one list of words for headings of text, properties of TDMS,
+   variables of MATLAB and attributes of HDF5. Internal to the readers. */
+#ifndef EASEOFF_RECORDING_STATED_H
+#define EASEOFF_RECORDING_STATED_H
+
+#include <stdbool.h>
+
+enum eo_stated_kind {
+  EO_STATED_NOTHING,
+  EO_STATED_INTERVAL, /* s between rows */
+  EO_STATED_START,    /* s: time of the first row */
+  EO_STATED_TICK,     /* s of one tick of the clock that times are counted by */
+  EO_STATED_TURN,     /* counts or pulses per turn of an encoder */
+  EO_STATED_SCALE,    /* value = scale * stored + offset */
+  EO_STATED_OFFSET,
+};
+
+struct eo_stated {
+  enum eo_stated_kind kind;
+  double value; /* in the unit above */
+  int member;   /* 0: of the pinion, 1: of the gear, -1: the key does not say */
+};
+
+/* What a number under a key means. unit: of the number, "" when it stands in the key ("Sampling rate [kHz]", "dt_ms")
+   or nowhere; the unit wins over the word, so that an interval in Hz is a rate. EO_STATED_NOTHING for other keys and
+   for numbers that are no such thing. */
+struct eo_stated eo_stated_read(const char *key, double number, const char *unit);
+
+/* 0 and 1 when a name says pinion and gear, -1 else. */
+int eo_stated_member(const char *name);
+
+/* True for keys that state when a recording began: "Start time", "Startzeit", "T0", ... */
+bool eo_stated_begin(const char *key);
+
+#endif

@@ -1,0 +1,243 @@
+#include "recording/text_facts.h"
+#include "recording/decimal.h"
+#include "recording/moment.h"
+#include "recording/stated.h"
+#include "recording/text_cell.h"
+
+#include <ctype.h>
+#include <stdio.h>
+#include <string.h>
+
+#define KEY 96
+#define MARKS " \t:=;,|\"([{<>)]}'"
+
+void eo_header_split(struct eo_header *h, const struct eo_text_format *f, const char *head)
+{
+  const char *last = head + f->first_byte;
+  h->lines = 0;
+  for (const char *start = head + f->header_byte; start < last;) {
+    const char *end = memchr(start, f->line_end, (size_t)(last - start));
+    end = end ? end : last;
+    const char *comment = eo_text_comment(start, end, f->separator), *from = comment ? comment : start;
+    if (!eo_text_empty(from, end)) {
+      if (h->lines == EO_HEADER_LINES)
+        memmove(h->line, h->line + 1, (size_t)--h->lines * sizeof *h->line);
+      h->line[h->lines++] = (struct eo_header_line){from, end};
+    }
+    start = end + 1;
+  }
+}
+
+static const char *skip_digits(const char *p, const char *end)
+{
+  while (p < end && isdigit((unsigned char)*p))
+    p++;
+  return p;
+}
+
+/* A number of the header. A comma with digits behind it is a decimal comma wherever commas part no cells or nothing
+   else makes sense of "0,00025"; before groups of three of a file with decimal points it marks thousands. */
+static const char *number_at(const struct eo_text_format *f, const char *p, const char *end, double *value)
+{
+  const char *after = eo_decimal_read(p, '.', value);
+  if (!after || after >= end || *after != ',' || !isdigit((unsigned char)after[1]) ||
+      memchr(p, '.', (size_t)(after - p)))
+    return after;
+  const char *group = skip_digits(after + 1, end);
+  bool thousands = group - after == 4 && *value >= 1 && *value < 1000 && f->point == '.';
+  if (f->separator == ',' && *value != 0)
+    return after;
+  if (!thousands)
+    return eo_decimal_read(p, ',', value);
+  double rest;
+  after = eo_decimal_read(after + 1, '.', &rest);
+  *value = *value * 1000 + rest;
+  return after;
+}
+
+static void copy_trimmed(char *to, size_t size, const char *from, const char *end)
+{
+  while (from < end && strchr(" \t:=;,|\"", *from))
+    from++;
+  while (end > from && strchr(" \t:=;,|\"([{<", end[-1]))
+    end--;
+  snprintf(to, size, "%.*s", (int)((size_t)(end - from) < size ? (size_t)(end - from) : size - 1), from);
+}
+
+/* The word behind a number: "kHz", "counts/rev", "counts per rev". */
+static const char *unit_behind(const char *p, const char *end, char *unit, size_t size)
+{
+  while (p < end && strchr(" \t[(;,", *p) && *p)
+    p++;
+  const char *last = p;
+  while (last < end && !strchr("\t;,|)]\"=:", *last))
+    last++;
+  size_t length = (size_t)(last - p);
+  while (length && p[length - 1] == ' ')
+    length--;
+  snprintf(unit, size, "%.*s", (int)(length < size ? length : 0), p);
+  return last;
+}
+
+static void use_fact(struct eo_text_format *f, const struct eo_stated *s)
+{
+  for (int c = 0; c < f->cells; c++) {
+    int member = eo_stated_member(f->name[c]);
+    if (s->member >= 0 && member >= 0 && member != s->member)
+      continue;
+    if (s->kind == EO_STATED_INTERVAL && !(f->clock[c].interval > 0))
+      f->clock[c].interval = s->value;
+    else if (s->kind == EO_STATED_START)
+      f->clock[c].start = s->value;
+    else if (s->kind == EO_STATED_TURN && !(f->turn[c] > 0))
+      f->turn[c] = s->value;
+  }
+  if (s->kind == EO_STATED_TICK)
+    f->tick = s->value;
+}
+
+/* The key as it stands in its cell, else with what is before it in the line. */
+static struct eo_stated read_fact(const char *from, const char *number, double value, const char *unit)
+{
+  char key[KEY], cell[KEY];
+  copy_trimmed(key, sizeof key, from, number);
+  const char *cut = key;
+  for (const char *p = key; *p; p++)
+    if (strchr(";\t|,", *p))
+      cut = p + 1;
+  copy_trimmed(cell, sizeof cell, cut, key + strlen(key));
+  struct eo_stated s = eo_stated_read(cell, value, unit);
+  return s.kind || cut == key ? s : eo_stated_read(key, value, unit);
+}
+
+struct begin {
+  struct eo_moment moment;
+};
+
+/* A date or time in the line up to its end or the next cell; *after: behind it. */
+static bool moment_at(const char *p, const char *end, struct eo_moment *moment, const char **after)
+{
+  const char *last = p;
+  while (last < end && !strchr("\t;|\"", *last))
+    last++;
+  for (*after = last; last > p; last--) {
+    size_t length = (size_t)(last - p);
+    if (length < 64 && !strchr(" \t\r", last[-1]) && eo_moment_read(p, length, moment))
+      return true;
+    while (last > p && last[-1] != ' ' && last[-1] != ',' && last[-1] != '\t' && last[-1] != '\r')
+      last--;
+  }
+  return false;
+}
+
+static void use_moment(struct begin *begin, const char *from, const char *at, const struct eo_moment *moment)
+{
+  char key[KEY];
+  copy_trimmed(key, sizeof key, from, at);
+  if (!eo_stated_begin(key))
+    return;
+  if (moment->has_day && !begin->moment.has_day)
+    begin->moment.has_day = true, begin->moment.day = moment->day;
+  if (moment->has_time && !begin->moment.has_time)
+    begin->moment.has_time = true, begin->moment.seconds = moment->seconds;
+}
+
+/* Every number of a line with the words before and behind it. */
+static void take_facts(struct eo_text_format *f, const struct eo_header_line *line, struct begin *begin)
+{
+  const char *from = line->start;
+  for (const char *p = line->start; p < line->end; p++) {
+    bool digit = isdigit((unsigned char)*p) || ((*p == '-' || *p == '.') && isdigit((unsigned char)p[1]));
+    if (!digit || (p > line->start && !strchr(MARKS, p[-1])))
+      continue;
+    char unit[32];
+    double value;
+    struct eo_moment moment;
+    const char *after, *behind;
+    if (moment_at(p, line->end, &moment, &after)) {
+      use_moment(begin, from, p, &moment);
+      from = p = after;
+      continue;
+    }
+    after = number_at(f, p, line->end, &value);
+    if (!after || after > line->end)
+      continue;
+    behind = unit_behind(after, line->end, unit, sizeof unit);
+    struct eo_stated s = read_fact(from, p, value, unit);
+    if (!s.kind)
+      s = read_fact(from, p, value, "");
+    if (s.kind) {
+      use_fact(f, &s);
+      from = behind;
+    }
+    p = after - 1;
+  }
+}
+
+static void copy_cell(char *to, size_t size, const struct eo_cell *cell)
+{
+  snprintf(to, size, "%.*s", (int)(cell->length < size ? cell->length : size - 1), cell->text);
+}
+
+/* Names in one line and their numbers in the next: "..., Start, Increment" over "..., 0, 2.5e-4". */
+static void take_below(struct eo_text_format *f, const struct eo_header_line *names,
+                       const struct eo_header_line *values)
+{
+  struct eo_cell name, value;
+  const char *at = names->start, *below = values->start;
+  while (eo_text_next_cell(&at, names->end, f->separator, &name) &&
+         eo_text_next_cell(&below, values->end, f->separator, &value)) {
+    char key[KEY];
+    double number;
+    const char *end = value.length ? number_at(f, value.text, value.text + value.length, &number) : NULL;
+    copy_cell(key, sizeof key, &name);
+    if (end != value.text + value.length)
+      continue;
+    struct eo_stated s = eo_stated_read(key, number, "");
+    use_fact(f, &s);
+  }
+}
+
+/* "Delta_X  2.5E-4    3E-4": a key and a number for each column, in the places of the columns. */
+static void take_for_columns(struct eo_text_format *f, const struct eo_header_line *line)
+{
+  struct eo_cell cell;
+  char key[KEY];
+  struct eo_stated stated[EO_TEXT_CELLS] = {0};
+  int count = 0;
+  const char *at = line->start;
+  if (f->separator == ' ' || !eo_text_next_cell(&at, line->end, f->separator, &cell))
+    return;
+  copy_cell(key, sizeof key, &cell);
+  for (int c = 1; c < f->cells && eo_text_next_cell(&at, line->end, f->separator, &cell); c++) {
+    double number;
+    if (!cell.length || number_at(f, cell.text, cell.text + cell.length, &number) != cell.text + cell.length)
+      continue;
+    stated[c] = eo_stated_read(key, number, "");
+    count += stated[c].kind != EO_STATED_NOTHING;
+  }
+  for (int c = 1; c < f->cells && count > 1; c++) {
+    if (stated[c].kind == EO_STATED_INTERVAL)
+      f->clock[c].interval = stated[c].value;
+    if (stated[c].kind == EO_STATED_START)
+      f->clock[c].start = stated[c].value;
+    if (stated[c].kind == EO_STATED_TURN)
+      f->turn[c] = stated[c].value;
+  }
+}
+
+void eo_header_facts(const struct eo_header *h, struct eo_text_format *f, int names)
+{
+  struct begin begin = {0};
+  for (int i = 0; i < h->lines; i++) {
+    if (i != names)
+      take_facts(f, &h->line[i], &begin);
+    if (i + 1 < h->lines && f->separator != ' ')
+      take_below(f, &h->line[i], &h->line[i + 1]);
+  }
+  for (int i = 0; i < h->lines; i++)
+    take_for_columns(f, &h->line[i]);
+  if (begin.moment.has_day)
+    for (int c = 0; c < f->cells; c++)
+      f->clock[c].epoch = eo_moment_epoch(&begin.moment);
+}
