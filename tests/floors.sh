@@ -39,6 +39,8 @@ only SUNDIALS 'kinsol|cvode|sundials|nvector|sunlinsol|sunmatrix' numerics
 only jansson 'jansson' 'format|document|study|reproduction|service|http|reference|app'
 only libmatio 'matio' recording
 only HDF5 'hdf5' recording
+only libarchive 'archive' recording
+only expat 'expat' recording
 only SQLite 'sqlite3' store
 only libmicrohttpd 'microhttpd' http
 

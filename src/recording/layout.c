@@ -7,8 +7,10 @@
 #include <strings.h>
 
 #define TURN EO_TURN
-#define PINION_WORDS "1|pinion|ritzel|input|driver|drive|driving|eingang|antrieb|motor|p"
-#define GEAR_WORDS "2|gear|wheel|rad|grossrad|output|driven|ausgang|abtrieb|g"
+#define NUMBERED_PINION "1"
+#define NUMBERED_GEAR "2"
+#define PINION_WORDS "pinion|ritzel|input|driver|drive|driving|eingang|antrieb|motor|p"
+#define GEAR_WORDS "gear|wheel|rad|grossrad|output|driven|ausgang|abtrieb|g"
 #define SINE_WORDS "sin|sine|sinus"
 #define COSINE_WORDS "cos|cosine|kosinus|cosinus"
 #define SINE_LETTER "a" /* only of names without such a word: in a_sin and a_cos it names the encoder */
@@ -134,12 +136,27 @@ static int sine_or_cosine(const char *name)
   return word ? word : eo_column_named(name, SINE_LETTER) - eo_column_named(name, COSINE_LETTER);
 }
 
+/* Numbers tell encoders apart only where one name has a 1 and another a 2: "data 2" and "data 3" are columns. */
+static int number_fit(const struct eo_guess *g, int column, int member)
+{
+  const char *name = eo_recording_name(g->recording, column);
+  bool one = false, two = false;
+  for (int i = 0; i < g->candidates; i++) {
+    const char *other = eo_recording_name(g->recording, g->candidate[i]);
+    one = one || (eo_column_named(other, NUMBERED_PINION) && !eo_column_named(other, NUMBERED_GEAR));
+    two = two || (eo_column_named(other, NUMBERED_GEAR) && !eo_column_named(other, NUMBERED_PINION));
+  }
+  return !one || !two ? 0
+                      : eo_column_named(name, member ? NUMBERED_GEAR : NUMBERED_PINION) -
+                            eo_column_named(name, member ? NUMBERED_PINION : NUMBERED_GEAR);
+}
+
 /* How well a column's name fits a member and a track (0: sine or the only one, 1: cosine). */
 static int fit_of(const struct eo_guess *g, int column, int member, int track)
 {
   const char *name = eo_recording_name(g->recording, column);
   int fit = eo_column_named(name, member ? GEAR_WORDS : PINION_WORDS) -
-            eo_column_named(name, member ? PINION_WORDS : GEAR_WORDS);
+            eo_column_named(name, member ? PINION_WORDS : GEAR_WORDS) + number_fit(g, column, member);
   if (g->kind == EO_LAYOUT_SINE_COSINE)
     fit += 2 * (track ? -1 : 1) * sine_or_cosine(name);
   if (g->kind == EO_LAYOUT_ANGLES && !g->square &&

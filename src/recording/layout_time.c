@@ -96,7 +96,13 @@ int eo_layout_pick_time(const struct eo_guess *g, int channel)
     int shared = eo_column_shared_words(eo_recording_name(g->recording, c), eo_recording_name(g->recording, channel),
                                         EO_TIME_WORDS);
     bool fits = eo_recording_length(g->recording, c) >= eo_recording_length(g->recording, channel);
-    int score = 4 * shared + 2 * (c < channel) + 100 * fits + (g->look[c].quantity == EO_QUANTITY_TIME);
+    const struct eo_column *look = &g->look[c];
+    double stated = eo_recording_clock(g->recording, channel).interval;
+    bool agrees = stated > 0 &&
+                  fabs(look->step * (look->quantity == EO_QUANTITY_TIME ? look->factor : 1) / stated - 1) < 0.01;
+    bool moves = look->rises > look->count * 9 / 10;
+    int score = 100 * fits + 20 * moves + 4 * shared + 3 * agrees + 2 * (c < channel) +
+                (look->quantity == EO_QUANTITY_TIME);
     if (score > most || (score == most && c < channel)) {
       most = score;
       best = c;

@@ -1,17 +1,21 @@
+#define _GNU_SOURCE /* mkostemp */
 #include "recording/reader.h"
+#include "recording/archive.h"
 #include "recording/isolate.h"
 #include "recording/readers.h"
 
+#include <fcntl.h>
 #include <limits.h>
 #include <stdbool.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
 #define HEAD 4096 /* bytes from which a kind is told */
 
-static const char *const kind_names[EO_READER_KINDS] = {"delimited text", "MATLAB .mat", "NI TDMS",
-                                                        "universal file (UFF 58)", "HDF5"};
+static const char *const kind_names[EO_READER_KINDS] = {"delimited text",          "MATLAB .mat", "NI TDMS",
+                                                        "universal file (UFF 58)", "HDF5",        "zip or spreadsheet"};
 
 const char *eo_reader_kind_name(enum eo_reader_kind kind)
 {
@@ -31,7 +35,6 @@ static enum eo_code refuse_others(const unsigned char *head, size_t size, struct
     size_t length;
     const char *what;
   } others[] = {
-      {"PK\003\004", 4, "The file is a zip archive or an Excel workbook; upload the text or measurement file itself."},
       {"\xd0\xcf\x11\xe0", 4, "The file is an old Office document; save the table as text."},
       {"TDSh", 4, "The file is a TDMS index; upload the .tdms file itself."},
       {"%PDF", 4, "The file is a PDF; upload the measurement itself."},
@@ -162,6 +165,8 @@ static enum eo_code tell_kind(const unsigned char *head, size_t size, enum eo_re
     *kind = EO_READER_HDF5;
   else if (is_uff(head, size))
     *kind = EO_READER_UFF;
+  else if (begins(head, size, "PK\003\004", 4))
+    *kind = EO_READER_ARCHIVE;
   else {
     enum eo_code code = refuse_others(head, size, error);
     if (!code && !wide_order(head, size))
@@ -266,8 +271,8 @@ static enum eo_code read_inflated(eo_series_reader *reader, const char *path, co
   return code;
 }
 
-enum eo_code eo_reader_read(const char *path, const struct eo_reader_options *options, struct eo_recording **recording,
-                            struct eo_notes *notes, struct eo_error *error)
+static enum eo_code read_kind(const char *path, const struct sign *sign, const struct eo_reader_options *options,
+                              struct eo_recording **recording, struct eo_notes *notes, struct eo_error *error)
 {
   static eo_series_reader *const readers[EO_READER_KINDS] = {
       [EO_READER_TDMS] = eo_tdms_read,
@@ -275,6 +280,63 @@ enum eo_code eo_reader_read(const char *path, const struct eo_reader_options *op
       [EO_READER_MATLAB] = read_isolated_matlab,
       [EO_READER_HDF5] = read_isolated_hdf5,
   };
+  if (sign->kind == EO_READER_TEXT)
+    return read_text(path, sign->wide, options, recording, notes, error);
+  eo_series_reader *reader = readers[sign->hdf5 ? EO_READER_HDF5 : sign->kind];
+  return (sign->gzip ? read_inflated : read_series)(reader, path, options, recording, notes, error);
+}
+
+/* What the process that unpacks says of it. */
+static enum eo_code take_name(void *context, const struct eo_series *column, int columns, struct eo_error *error)
+{
+  (void)columns;
+  (void)error;
+  memcpy(context, column->name, sizeof column->name);
+  return EO_OK;
+}
+
+static enum eo_code take_no_rows(void *context, const double *rows, int64_t count, struct eo_error *error)
+{
+  (void)context;
+  (void)rows;
+  (void)count;
+  (void)error;
+  return EO_OK;
+}
+
+/* One file out of a zip, or one table out of a spreadsheet, is unpacked in a process of its own and then read like any
+   other; archives in archives are not. */
+static enum eo_code read_archive(const char *path, const struct eo_reader_options *options,
+                                 struct eo_recording **recording, struct eo_notes *notes, struct eo_error *error)
+{
+  char unpacked[PATH_MAX], name[EO_RECORDING_NAME] = "";
+  struct eo_reader_options own = *options;
+  struct eo_series_sink sink = {take_name, take_no_rows, name};
+  struct sign sign = {0};
+  if (!options->spool_directory ||
+      snprintf(unpacked, sizeof unpacked, "%s/unpacked-XXXXXX", options->spool_directory) >= (int)sizeof unpacked)
+    return eo_error_set(error, EO_ERROR_INPUT, "", "There is no folder to unpack the zip file to.");
+  int file = mkostemp(unpacked, O_CLOEXEC);
+  if (file < 0)
+    return eo_error_set(error, EO_ERROR_FILE, "", "No temporary file could be made in %s.", options->spool_directory);
+  close(file);
+  own.unpack_to = unpacked;
+  enum eo_code code = eo_isolate_read(eo_archive_unpack, path, &own, &sink, notes, error);
+  if (!code)
+    code = read_sign(unpacked, &sign, error);
+  if (!code && sign.kind == EO_READER_ARCHIVE)
+    code = eo_error_set(error, EO_ERROR_INPUT, "", "The zip file holds another zip file or a spreadsheet; unpack it.");
+  if (!code) {
+    eo_notes_add(notes, "Read from \"%.60s\" in the archive.", name);
+    code = read_kind(unpacked, &sign, options, recording, notes, error);
+  }
+  unlink(unpacked);
+  return code;
+}
+
+enum eo_code eo_reader_read(const char *path, const struct eo_reader_options *options, struct eo_recording **recording,
+                            struct eo_notes *notes, struct eo_error *error)
+{
   struct eo_reader_options own = {0};
   struct sign sign;
   enum eo_code code = read_sign(path, &sign, error);
@@ -284,8 +346,6 @@ enum eo_code eo_reader_read(const char *path, const struct eo_reader_options *op
     own = *options;
   if (!own.max_bytes)
     own.max_bytes = EO_READER_BYTES;
-  if (sign.kind == EO_READER_TEXT)
-    return read_text(path, sign.wide, &own, recording, notes, error);
-  eo_series_reader *reader = readers[sign.hdf5 ? EO_READER_HDF5 : sign.kind];
-  return (sign.gzip ? read_inflated : read_series)(reader, path, &own, recording, notes, error);
+  return sign.kind == EO_READER_ARCHIVE ? read_archive(path, &own, recording, notes, error)
+                                        : read_kind(path, &sign, &own, recording, notes, error);
 }

@@ -17,6 +17,7 @@ enum eo_reader_kind {
   EO_READER_TDMS,   /* NI TDMS */
   EO_READER_UFF,    /* universal file, data sets 58 and 58b */
   EO_READER_HDF5,
+  EO_READER_ARCHIVE, /* zip with one of these in it, .xlsx, .ods */
   EO_READER_KINDS
 };
 
@@ -32,6 +33,7 @@ struct eo_reader_options {
   int64_t max_bytes;           /* of content, inflated; 0: EO_READER_BYTES */
   struct eo_text_choice text;
   const struct eo_progress *progress; /* NULL: nobody watches */
+  const char *unpack_to;              /* only between the readers: file for what comes out of an archive */
 };
 
 #define EO_READER_BYTES ((int64_t)16 << 30)

@@ -233,7 +233,8 @@ struct eo_stated eo_stated_read(const char *key, double number, const char *unit
   enum eo_quantity quantity = eo_unit_find(*unit ? unit : own, &factor);
   bool sampling = quantity == EO_QUANTITY_TIME || quantity == EO_QUANTITY_FREQUENCY;
   fold(key, folded);
-  if (!*unit && sampling && is_rate(folded)) /* "Samples/s" is a word of its own */
+  if (!*unit && quantity == EO_QUANTITY_TIME && strchr(key, '/') &&
+      is_rate(folded)) /* "Samples/s" is a word of its own */
     quantity = EO_QUANTITY_NONE, factor = 1, sampling = false;
   if (*unit || sampling)
     fold(sampling && !*unit ? name : key, folded);

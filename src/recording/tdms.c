@@ -71,6 +71,8 @@ struct eo_tdms_place eo_tdms_place(const struct eo_tdms_segment *segment, int ch
     place.offset = part->width ? part->offset : place.offset;
     place.stride = part->width ? part->width : segment->interleaved ? layout->chunk / part->count : size;
     int64_t left = segment->rest - place.offset - size, rest = left < 0 || !place.stride ? 0 : left / place.stride + 1;
+    if (segment->interleaved) /* whole rows only */
+      rest = segment->rest / place.stride;
     place.values = part->count * segment->chunks + (rest < part->count ? rest : part->count);
     return place;
   }

@@ -178,9 +178,12 @@ static enum eo_tdms_scale_kind scale_kind(const struct property *value)
 }
 
 /* "Polynomial_Coefficients[2]": a place in a list of terms; more than are kept make the scale one we cannot apply. */
-static void use_term(struct eo_tdms_scale *scale, int list, const char *index, double number)
+static void use_term(struct eo_tdms_scale *scale, enum eo_tdms_scale_kind kind, int list, const char *index,
+                     double number)
 {
   long at = strtol(index, NULL, 10);
+  if (scale->kind == EO_TDMS_NO_SCALE) /* older files do not state the type */
+    scale->kind = kind;
   if (at < 0 || at >= EO_TDMS_TERMS || !isfinite(number))
     scale->kind = EO_TDMS_OTHER_SCALE;
   else {
@@ -204,13 +207,15 @@ static void use_scale(struct eo_tdms_channel *channel, const char *name, const s
   else if (strstr(rest, "Input_Source"))
     scale->source[strstr(rest, "Right_") != NULL] = value->number < 1e9 ? (int64_t)value->number : -1;
   else if (!strcmp(rest, "Linear_Slope"))
-    use_term(scale, 0, "1", value->number);
+    use_term(scale, EO_TDMS_LINEAR, 0, "1", value->number);
   else if (!strcmp(rest, "Linear_Y_Intercept"))
-    use_term(scale, 0, "0", value->number);
-  else if (bracket && (strstr(rest, "Polynomial_Coefficients[") || strstr(rest, "Table_Scaled_Values[")))
-    use_term(scale, 0, bracket + 1, value->number);
+    use_term(scale, EO_TDMS_LINEAR, 0, "0", value->number);
+  else if (bracket && strstr(rest, "Polynomial_Coefficients["))
+    use_term(scale, EO_TDMS_POLYNOMIAL, 0, bracket + 1, value->number);
+  else if (bracket && strstr(rest, "Table_Scaled_Values["))
+    use_term(scale, EO_TDMS_TABLE, 0, bracket + 1, value->number);
   else if (bracket && strstr(rest, "Table_Pre_Scaled_Values["))
-    use_term(scale, 1, bracket + 1, value->number);
+    use_term(scale, EO_TDMS_TABLE, 1, bracket + 1, value->number);
 }
 
 /* The number in a text such as "4000 Hz"; unit: what follows it. */

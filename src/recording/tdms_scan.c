@@ -153,6 +153,9 @@ static enum eo_code add_segment(struct eo_tdms *tdms, int64_t at, const struct l
   struct eo_tdms_segment s = {
       .layout = layout, .at = lead->data, .interleaved = lead->toc & TOC_INTERLEAVED, .big = lead->toc & TOC_BIG};
   s.interleaved = s.interleaved && !(lead->toc & TOC_DAQMX);
+  for (int i = 0; (lead->toc & TOC_DAQMX) && i < layout->parts; i++)
+    if (!layout->part[i].width)
+      return damaged(at, "holds raw DAQmx data without saying where; save the channels converted (as double)", error);
   if (s.interleaved && !may_interleave(layout))
     return damaged(at, "interleaves channels of different lengths", error);
   int64_t bytes = lead->next - lead->data;

@@ -156,7 +156,8 @@ static void test_kind(int toc, const char *what)
   ok(r && !wrong_rows(r, 350), "%s%s", what, r ? "" : error.text);
   ok(r && !strcmp(eo_recording_name(r, 0), "Pinion's angle") && !strcmp(eo_recording_unit(r, 1), "deg"),
      "name and unit");
-  ok(r && eo_recording_clock(r, 0).interval == 5e-5 && eo_recording_clock(r, 0).start == 0.25 && eo_recording_line(r, 3) == 0,
+  ok(r && eo_recording_clock(r, 0).interval == 5e-5 && eo_recording_clock(r, 0).start == 0.25 &&
+         eo_recording_line(r, 3) == 0,
      "sampling interval and start");
   eo_recording_free(r);
 }
@@ -244,7 +245,8 @@ static void test_damage(void)
   size_t whole = w.size;
   write_bytes(w.bytes, whole - 40);
   struct eo_recording *r = read_fixture(NULL, &notes, &error);
-  ok(r && !wrong_rows(r, 300) && noted(&notes, "not complete"), "a last chunk that is cut off is left out");
+  ok(r && eo_recording_rows(r) >= 300 && noted(&notes, "was not closed or is cut off"),
+     "what is there of a last chunk that is cut off is kept");
   eo_recording_free(r);
   put_file(INTERLEAVED);
   write_bytes(w.bytes, w.size - 40);

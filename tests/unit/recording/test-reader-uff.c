@@ -109,12 +109,13 @@ static void check_even(const char *what)
 static void check_uneven(const char *what)
 {
   struct eo_recording *r = read_back(NULL, what);
-  int wrong = !r || eo_recording_columns(r) != 3 || eo_recording_rows(r) != COUNT;
+  int wrong = !r || eo_recording_columns(r) != 4 || eo_recording_rows(r) != COUNT;
   for (int i = 0; !wrong && i < COUNT; i++)
     wrong += fabs(cell_of(r, i, 0) - abscissa(i)) > 1e-5 * abscissa(i) || cell_of(r, i, 1) != pinion(i) ||
-             cell_of(r, i, 2) != gear(i);
-  ok(!wrong && !strcmp(eo_recording_name(r, 0), "time") && !strcmp(eo_recording_unit(r, 0), "s"),
-     "a column of time, and values");
+             cell_of(r, i, 3) != gear(i);
+  ok(!wrong && eo_recording_clock(r, 1).column == 0 && eo_recording_clock(r, 3).column == 2 &&
+         !strcmp(eo_recording_name(r, 0), "time") && !strcmp(eo_recording_unit(r, 0), "s"),
+     "a column of time for each set, and values");
   eo_recording_free(r);
 }
 

@@ -1,0 +1,161 @@
+#include "recording/archive.h"
+#include "recording/source.h"
+
+#include <archive.h>
+#include <archive_entry.h>
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+#include <sys/stat.h>
+
+/* What an archive holds, by the names in it. */
+struct contents {
+  int files;
+  bool workbook, opendocument, numpy;
+  char name[EO_RECORDING_NAME * 2], list[160]; /* the last rig file; some names for people */
+};
+
+static enum eo_code damaged(struct eo_archive *a)
+{
+  const char *why = archive_error_string(a->handle);
+  return eo_error_set(a->error, EO_ERROR_INPUT, "", "The zip file cannot be read: %.120s.",
+                      why ? why : "it is damaged");
+}
+
+enum eo_code eo_archive_visit(struct eo_archive *a,
+                              bool (*visit)(void *context, struct eo_archive *archive, const char *name), void *context)
+{
+  struct archive_entry *entry;
+  enum eo_code code = EO_OK;
+  a->handle = archive_read_new();
+  if (!a->handle)
+    return eo_error_memory(a->error);
+  archive_read_support_format_zip_seekable(a->handle);
+  if (archive_read_open_filename(a->handle, a->path, EO_ARCHIVE_PIECE) != ARCHIVE_OK)
+    code = damaged(a);
+  for (bool more = true; !code && more;) {
+    int state = archive_read_next_header(a->handle, &entry);
+    if (state == ARCHIVE_EOF)
+      break;
+    if (state != ARCHIVE_OK && state != ARCHIVE_WARN)
+      code = damaged(a);
+    else if (archive_entry_filetype(entry) == AE_IFREG && archive_entry_pathname(entry)) {
+      a->error->code = EO_OK;
+      more = visit(context, a, archive_entry_pathname(entry));
+      code = a->error->code;
+    }
+  }
+  archive_read_free(a->handle);
+  a->handle = NULL;
+  return code;
+}
+
+int64_t eo_archive_read(struct eo_archive *a, void *bytes, size_t size)
+{
+  la_ssize_t got = archive_read_data(a->handle, bytes, size);
+  if (got < 0) {
+    damaged(a);
+    return -1;
+  }
+  a->taken += got;
+  if (a->taken > a->limit || (a->taken > EO_SOURCE_FREE && a->taken / EO_SOURCE_EXPANSION > a->bytes)) {
+    eo_error_set(a->error, EO_ERROR_INPUT, "", "The zip file grows to more than %lld MB; that is no measurement.",
+                 (long long)(a->taken >> 20));
+    return -1;
+  }
+  return got;
+}
+
+/* Files that the makers of archives add by themselves. */
+static bool is_by_the_way(const char *name)
+{
+  const char *base = strrchr(name, '/');
+  base = base ? base + 1 : name;
+  return *base == '.' || !strncmp(name, "__MACOSX/", 9) || !strcasecmp(base, "thumbs.db") ||
+         !strcasecmp(base, "desktop.ini");
+}
+
+static bool look(void *context, struct eo_archive *archive, const char *name)
+{
+  struct contents *c = context;
+  size_t length = strlen(name);
+  (void)archive;
+  c->workbook = c->workbook || !strcmp(name, "xl/workbook.xml");
+  c->opendocument = c->opendocument || !strcmp(name, "content.xml");
+  if (is_by_the_way(name))
+    return true;
+  c->numpy = c->numpy || (length > 4 && !strcmp(name + length - 4, ".npy"));
+  size_t used = strlen(c->list);
+  if (c->files < 4)
+    snprintf(c->list + used, sizeof c->list - used, "%s%.30s", used ? ", " : "", name);
+  c->files++;
+  snprintf(c->name, sizeof c->name, "%s", name);
+  return c->files < 10000;
+}
+
+struct copy {
+  const char *name;
+  FILE *file;
+};
+
+static bool copy_file(void *context, struct eo_archive *archive, const char *name)
+{
+  const struct copy *copy = context;
+  char *bytes = strcmp(name, copy->name) ? NULL : malloc(EO_ARCHIVE_PIECE);
+  int64_t got = 1;
+  if (!bytes)
+    return true;
+  while (got > 0 && (got = eo_archive_read(archive, bytes, EO_ARCHIVE_PIECE)) > 0)
+    if (fwrite(bytes, 1, (size_t)got, copy->file) != (size_t)got) {
+      eo_error_set(archive->error, EO_ERROR_FILE, "", "A temporary file could not be written: %s.", strerror(errno));
+      got = -1;
+    }
+  free(bytes);
+  return false;
+}
+
+static enum eo_code unpack(struct eo_archive *a, FILE *file, char *name, size_t size)
+{
+  struct contents c = {0};
+  enum eo_code code = eo_archive_visit(a, look, &c);
+  if (code)
+    return code;
+  if (c.workbook)
+    return eo_workbook_write(a, file, name, size);
+  if (c.opendocument)
+    return eo_opendocument_write(a, file, name, size);
+  if (c.numpy)
+    return eo_error_set(a->error, EO_ERROR_INPUT, "",
+                        "The file is a NumPy archive (.npz); save the arrays as text or .mat (numpy.savetxt, "
+                        "scipy.io.savemat).");
+  if (c.files != 1)
+    return eo_error_set(a->error, EO_ERROR_INPUT, "",
+                        "The zip file holds %d files (%s%s); upload the one with the recording, or zip it alone.",
+                        c.files, c.list, c.files > 4 ? ", ..." : "");
+  snprintf(name, size, "%s", c.name);
+  struct copy copy = {c.name, file};
+  return eo_archive_visit(a, copy_file, &copy);
+}
+
+enum eo_code eo_archive_unpack(const char *path, const struct eo_reader_options *options,
+                               const struct eo_series_sink *sink, struct eo_notes *notes, struct eo_error *error)
+{
+  struct stat state;
+  struct eo_series series;
+  char name[EO_RECORDING_NAME * 2] = "";
+  FILE *file = fopen(options->unpack_to, "w");
+  (void)notes;
+  if (!file || stat(path, &state)) {
+    if (file)
+      fclose(file);
+    return eo_error_set(error, EO_ERROR_FILE, "", "A temporary file could not be made in %.200s.", options->unpack_to);
+  }
+  struct eo_archive archive = {.path = path, .bytes = state.st_size, .limit = options->max_bytes, .error = error};
+  enum eo_code code = unpack(&archive, file, name, sizeof name);
+  if (fclose(file) && !code)
+    code = eo_error_set(error, EO_ERROR_FILE, "", "A temporary file could not be written.");
+  eo_series_init(&series, "", 0);
+  snprintf(series.name, sizeof series.name, "%.63s", name);
+  return code ? code : sink->begin(sink->context, &series, 1, error);
+}

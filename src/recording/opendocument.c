@@ -1,0 +1,181 @@
+/* The largest table of an OpenDocument spreadsheet as text with tabs. Source: OASIS OpenDocument 1.2, part 1:
+   table:table, table:table-row, table:table-cell with office:value-type. */
+#include "recording/archive.h"
+#include "recording/sheet_text.h"
+
+#include <expat.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define VALUE 1024 /* bytes of a cell's text at most; longer ones are cut */
+
+struct document {
+  struct eo_archive *archive;
+  struct eo_sheet_text out;
+  int table, best; /* number of the current table, of the one with most numbers */
+  int64_t numbers, most;
+  char name[64], best_name[64];
+  bool writing, failed, in_cell, in_paragraph, filled;
+  int column, repeat;
+  char type[16], value[VALUE];
+  size_t length;
+};
+
+static const char *attribute(const char **attributes, const char *name)
+{
+  for (; *attributes; attributes += 2)
+    if (!strcmp(attributes[0], name))
+      return attributes[1];
+  return NULL;
+}
+
+static void XMLCALL take_characters(void *context, const char *text, int length)
+{
+  struct document *d = context;
+  if (!d->in_cell || !d->in_paragraph)
+    return;
+  size_t n = (size_t)length < VALUE - 1 - d->length ? (size_t)length : VALUE - 1 - d->length;
+  memcpy(d->value + d->length, text, n);
+  d->length += n;
+  d->value[d->length] = '\0';
+}
+
+static void set_value(struct document *d, const char *text)
+{
+  snprintf(d->value, sizeof d->value, "%s", text);
+  d->length = strlen(d->value);
+}
+
+/* "PT08H59M59.5S" as seconds. */
+static double duration(const char *text)
+{
+  double seconds = 0;
+  for (const char *p = text; *p;) {
+    char *end;
+    double number = strtod(p, &end);
+    if (end == p) {
+      p++;
+      continue;
+    }
+    seconds += number * (*end == 'H' ? 3600 : *end == 'M' ? 60 : *end == 'D' ? 86400 : 1);
+    p = *end ? end + 1 : end;
+  }
+  return seconds;
+}
+
+static void begin_cell(struct document *d, const char **attributes)
+{
+  const char *type = attribute(attributes, "office:value-type"), *value = attribute(attributes, "office:value"),
+             *date = attribute(attributes, "office:date-value"), *time = attribute(attributes, "office:time-value"),
+             *repeat = attribute(attributes, "table:number-columns-repeated");
+  d->in_cell = true;
+  d->repeat = repeat ? (int)strtol(repeat, NULL, 10) : 1;
+  d->repeat = d->repeat < 1 ? 1 : d->repeat;
+  snprintf(d->type, sizeof d->type, "%s", type ? type : "");
+  set_value(d, "");
+  if (value)
+    set_value(d, value);
+  else if (date)
+    set_value(d, date);
+  else if (time) {
+    char text[40];
+    snprintf(text, sizeof text, "%.9f", duration(time));
+    set_value(d, text);
+  }
+  d->filled = d->length > 0;
+}
+
+static void XMLCALL begin(void *context, const char *name, const char **attributes)
+{
+  struct document *d = context;
+  if (!strcmp(name, "table:table")) {
+    const char *label = attribute(attributes, "table:name");
+    d->table++;
+    d->numbers = 0;
+    snprintf(d->name, sizeof d->name, "%s", label ? label : "");
+  } else if (!strcmp(name, "table:table-row")) {
+    d->column = 0;
+  } else if (!strcmp(name, "table:table-cell") || !strcmp(name, "table:covered-table-cell")) {
+    begin_cell(d, attributes);
+  } else if (!strcmp(name, "text:p")) {
+    d->in_paragraph = !d->filled;
+  }
+}
+
+static void end_cell(struct document *d)
+{
+  bool number = !strcmp(d->type, "float") || !strcmp(d->type, "percentage");
+  d->in_cell = false;
+  d->numbers += number;
+  for (int i = 0; i < d->repeat && i < EO_SHEET_COLUMNS && d->length; i++)
+    if (d->writing && d->table == d->best)
+      eo_sheet_text_cell(&d->out, d->column + i, d->value);
+  d->column = d->column + d->repeat < 1 << 20 ? d->column + d->repeat : 1 << 20;
+}
+
+static void XMLCALL end(void *context, const char *name)
+{
+  struct document *d = context;
+  if (!strcmp(name, "table:table-cell") || !strcmp(name, "table:covered-table-cell"))
+    end_cell(d);
+  else if (!strcmp(name, "table:table-row") && d->writing && d->table == d->best)
+    eo_sheet_text_row(&d->out);
+  else if (!strcmp(name, "text:p"))
+    d->in_paragraph = false;
+  else if (!strcmp(name, "table:table") && d->numbers > d->most) {
+    d->most = d->numbers;
+    if (!d->writing) {
+      d->best = d->table;
+      memcpy(d->best_name, d->name, sizeof d->name);
+    }
+  }
+}
+
+static bool parse(void *context, struct eo_archive *archive, const char *name)
+{
+  struct document *d = context;
+  if (strcmp(name, "content.xml"))
+    return true;
+  XML_Parser parser = XML_ParserCreate(NULL);
+  char *bytes = malloc(EO_ARCHIVE_PIECE);
+  int64_t got = 1;
+  d->failed = !parser || !bytes;
+  if (parser) {
+    XML_SetUserData(parser, d);
+    XML_SetElementHandler(parser, begin, end);
+    XML_SetCharacterDataHandler(parser, take_characters);
+  }
+  while (!d->failed && got > 0 && (got = eo_archive_read(archive, bytes, EO_ARCHIVE_PIECE)) >= 0)
+    if (XML_Parse(parser, bytes, (int)got, got == 0) != XML_STATUS_OK) {
+      eo_error_set(archive->error, EO_ERROR_INPUT, "", "The spreadsheet is damaged: %s in line %lu of its content.",
+                   XML_ErrorString(XML_GetErrorCode(parser)), (unsigned long)XML_GetCurrentLineNumber(parser));
+      got = -1;
+    }
+  if (d->failed)
+    eo_error_memory(archive->error);
+  if (parser)
+    XML_ParserFree(parser);
+  free(bytes);
+  return false;
+}
+
+enum eo_code eo_opendocument_write(struct eo_archive *archive, FILE *file, char *name, size_t size)
+{
+  struct document *d = calloc(1, sizeof *d);
+  if (!d)
+    return eo_error_memory(archive->error);
+  d->archive = archive;
+  d->out.file = file;
+  enum eo_code code = eo_archive_visit(archive, parse, d);
+  if (!code && !d->most)
+    code = eo_error_set(archive->error, EO_ERROR_INPUT, "", "No table of the spreadsheet holds numbers.");
+  if (!code) {
+    d->writing = true;
+    d->table = 0;
+    code = eo_archive_visit(archive, parse, d);
+  }
+  snprintf(name, size, "%s", d->best_name);
+  free(d);
+  return code;
+}

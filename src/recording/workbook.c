@@ -1,0 +1,310 @@
+/* The largest sheet of an Excel workbook as text with tabs. Source: ECMA-376, SpreadsheetML: sheets in
+   xl/worksheets/sheetN.xml, texts in xl/sharedStrings.xml, formats of cells in xl/styles.xml. */
+#include "recording/archive.h"
+#include "recording/sheet_text.h"
+
+#include <ctype.h>
+#include <expat.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define FORMATS 4096             /* of cells that are remembered */
+#define TEXTS ((size_t)64 << 20) /* bytes of shared texts at most */
+#define VALUE 1024               /* bytes of a cell's value at most; longer texts are cut */
+#define NAME 64
+
+struct workbook {
+  struct eo_archive *archive;
+  struct eo_sheet_text out;
+  /* shared texts, each ended by 0 */
+  char *text;
+  size_t text_used, text_room, *text_at;
+  int texts, texts_room;
+  /* formats: whether a number is a date */
+  bool date[FORMATS], custom[FORMATS];
+  int formats;
+  bool in_formats;
+  bool since_1904, failed;
+  /* sheets */
+  char best[NAME], current[NAME];
+  int64_t numbers, most; /* of the current sheet, of the best one */
+  /* the cell or text that is being read */
+  bool in_value, in_text, writing;
+  char type[16], value[VALUE];
+  size_t length;
+  int column, style;
+};
+
+static const char *attribute(const char **attributes, const char *name)
+{
+  for (; *attributes; attributes += 2)
+    if (!strcmp(attributes[0], name))
+      return attributes[1];
+  return NULL;
+}
+
+/* Names of XML come with or without the prefix of their name space. */
+static const char *local(const char *name)
+{
+  const char *colon = strrchr(name, ':');
+  return colon ? colon + 1 : name;
+}
+
+static void XMLCALL take_characters(void *context, const char *text, int length)
+{
+  struct workbook *w = context;
+  if (!w->in_value && !w->in_text)
+    return;
+  size_t n = (size_t)length < VALUE - 1 - w->length ? (size_t)length : VALUE - 1 - w->length;
+  memcpy(w->value + w->length, text, n);
+  w->length += n;
+  w->value[w->length] = '\0';
+}
+
+/* ---- shared texts ---- */
+
+static void keep_text(struct workbook *w)
+{
+  size_t size = w->length + 1;
+  if (w->texts == w->texts_room) {
+    int room = w->texts_room ? 2 * w->texts_room : 256;
+    size_t *at = realloc(w->text_at, (size_t)room * sizeof *at);
+    w->failed = w->failed || !at;
+    if (!at)
+      return;
+    w->text_at = at;
+    w->texts_room = room;
+  }
+  if (w->text_used + size > w->text_room) {
+    size_t room = 2 * w->text_room + size + 4096;
+    char *text = room <= TEXTS ? realloc(w->text, room) : NULL;
+    w->failed = w->failed || !text;
+    if (!text)
+      return;
+    w->text = text;
+    w->text_room = room;
+  }
+  w->text_at[w->texts++] = w->text_used;
+  memcpy(w->text + w->text_used, w->value, size);
+  w->text_used += size;
+}
+
+static void XMLCALL begin_text(void *context, const char *name, const char **attributes)
+{
+  struct workbook *w = context;
+  (void)attributes;
+  if (!strcmp(local(name), "si"))
+    w->length = 0, w->value[0] = '\0';
+  w->in_text = !strcmp(local(name), "t");
+}
+
+static void XMLCALL end_text(void *context, const char *name)
+{
+  struct workbook *w = context;
+  w->in_text = false;
+  if (!strcmp(local(name), "si"))
+    keep_text(w);
+}
+
+/* ---- formats ---- */
+
+/* A format with letters of dates and times outside quotes and brackets shows numbers as dates. */
+static bool shows_date(const char *code)
+{
+  bool quoted = false, bracket = false, date = false;
+  for (; *code; code++) {
+    quoted = *code == '"' ? !quoted : quoted;
+    bracket = *code == '[' || (bracket && *code != ']');
+    date = date || (!quoted && strchr("ymdhsYMDHS", *code) && (!bracket || strchr("hmsHMS", *code)));
+    if (*code == '\\' && code[1])
+      code++;
+  }
+  return date;
+}
+
+static void XMLCALL begin_style(void *context, const char *name, const char **attributes)
+{
+  struct workbook *w = context;
+  const char *id = attribute(attributes, "numFmtId"), *code = attribute(attributes, "formatCode");
+  long number = id ? strtol(id, NULL, 10) : 0;
+  if (!strcmp(local(name), "cellXfs"))
+    w->in_formats = true;
+  else if (!strcmp(local(name), "numFmt") && code && number >= 0 && number < FORMATS)
+    w->custom[number] = shows_date(code);
+  else if (!strcmp(local(name), "xf") && w->in_formats && w->formats < FORMATS)
+    w->date[w->formats++] = (number >= 14 && number <= 22) || (number >= 45 && number <= 47) ||
+                            (number >= 0 && number < FORMATS && w->custom[number]);
+}
+
+static void XMLCALL end_style(void *context, const char *name)
+{
+  struct workbook *w = context;
+  if (!strcmp(local(name), "cellXfs"))
+    w->in_formats = false;
+}
+
+static void XMLCALL begin_book(void *context, const char *name, const char **attributes)
+{
+  struct workbook *w = context;
+  const char *since = attribute(attributes, "date1904");
+  if (!strcmp(local(name), "workbookPr") && since)
+    w->since_1904 = !strcmp(since, "1") || !strcmp(since, "true");
+}
+
+static void XMLCALL end_nothing(void *context, const char *name)
+{
+  (void)context;
+  (void)name;
+}
+
+/* ---- sheets ---- */
+
+/* "AB12" is column 27, from 0. */
+static int column_of(const char *reference)
+{
+  int column = 0;
+  for (; isalpha((unsigned char)*reference); reference++)
+    column = column < 100000 ? column * 26 + (toupper((unsigned char)*reference) - 'A' + 1) : column;
+  return column - 1;
+}
+
+static void XMLCALL begin_cell(void *context, const char *name, const char **attributes)
+{
+  struct workbook *w = context;
+  const char *element = local(name);
+  if (!strcmp(element, "c")) {
+    const char *reference = attribute(attributes, "r"), *type = attribute(attributes, "t"),
+               *style = attribute(attributes, "s");
+    w->column = reference ? column_of(reference) : w->column + 1;
+    w->style = style ? (int)strtol(style, NULL, 10) : 0;
+    snprintf(w->type, sizeof w->type, "%s", type ? type : "n");
+    w->length = 0;
+    w->value[0] = '\0';
+  } else if (!strcmp(element, "row")) {
+    w->column = -1;
+  }
+  w->in_value = !strcmp(element, "v");
+  w->in_text = !strcmp(element, "t");
+}
+
+/* Days since the end of 1899 as a date, a fraction of a day as a time. */
+static void write_date(struct workbook *w, double days)
+{
+  if (days >= 1)
+    eo_sheet_text_moment(&w->out, w->column, days - 25569 + (w->since_1904 ? 1462 : 0));
+  else
+    eo_sheet_text_time(&w->out, w->column, days);
+}
+
+static void write_cell(struct workbook *w)
+{
+  bool number = !strcmp(w->type, "n"), shared = !strcmp(w->type, "s");
+  long index = shared ? strtol(w->value, NULL, 10) : 0;
+  if (!w->length || !strcmp(w->type, "e"))
+    return;
+  if (number && w->style >= 0 && w->style < w->formats && w->date[w->style])
+    write_date(w, strtod(w->value, NULL));
+  else if (shared && index >= 0 && index < w->texts)
+    eo_sheet_text_cell(&w->out, w->column, w->text + w->text_at[index]);
+  else if (!shared)
+    eo_sheet_text_cell(&w->out, w->column, w->value);
+}
+
+static void XMLCALL end_cell(void *context, const char *name)
+{
+  struct workbook *w = context;
+  const char *element = local(name);
+  w->in_value = w->in_text = false;
+  if (!strcmp(element, "c")) {
+    w->numbers += !strcmp(w->type, "n") && w->length > 0;
+    if (w->writing)
+      write_cell(w);
+  } else if (!strcmp(element, "row") && w->writing)
+    eo_sheet_text_row(&w->out);
+}
+
+/* ---- the parts of the archive ---- */
+
+static bool parse(struct workbook *w, XML_StartElementHandler begin, XML_EndElementHandler end)
+{
+  XML_Parser parser = XML_ParserCreate(NULL);
+  char *bytes = malloc(EO_ARCHIVE_PIECE);
+  int64_t got = 1;
+  w->failed = w->failed || !parser || !bytes;
+  if (parser) {
+    XML_SetUserData(parser, w);
+    XML_SetElementHandler(parser, begin, end);
+    XML_SetCharacterDataHandler(parser, take_characters);
+  }
+  while (!w->failed && got > 0 && (got = eo_archive_read(w->archive, bytes, EO_ARCHIVE_PIECE)) >= 0)
+    if (XML_Parse(parser, bytes, (int)got, got == 0) != XML_STATUS_OK) {
+      eo_error_set(w->archive->error, EO_ERROR_INPUT, "",
+                   "The workbook is damaged: %s in line %lu of one of its parts.",
+                   XML_ErrorString(XML_GetErrorCode(parser)), (unsigned long)XML_GetCurrentLineNumber(parser));
+      got = -1;
+    }
+  if (w->failed)
+    eo_error_memory(w->archive->error);
+  if (parser)
+    XML_ParserFree(parser);
+  free(bytes);
+  return !w->failed && got == 0;
+}
+
+static bool is_sheet(const char *name)
+{
+  return !strncmp(name, "xl/worksheets/", 14) && strchr(name + 14, '/') == NULL && strstr(name, ".xml");
+}
+
+static bool look(void *context, struct eo_archive *archive, const char *name)
+{
+  struct workbook *w = context;
+  (void)archive;
+  if (!strcmp(name, "xl/sharedStrings.xml"))
+    return parse(w, begin_text, end_text);
+  if (!strcmp(name, "xl/styles.xml"))
+    return parse(w, begin_style, end_style);
+  if (!strcmp(name, "xl/workbook.xml"))
+    return parse(w, begin_book, end_nothing);
+  if (!is_sheet(name))
+    return true;
+  w->numbers = 0;
+  bool good = parse(w, begin_cell, end_cell);
+  if (w->numbers > w->most) {
+    w->most = w->numbers;
+    snprintf(w->best, sizeof w->best, "%s", name);
+  }
+  return good;
+}
+
+static bool write_best(void *context, struct eo_archive *archive, const char *name)
+{
+  struct workbook *w = context;
+  (void)archive;
+  if (strcmp(name, w->best))
+    return true;
+  w->writing = true;
+  parse(w, begin_cell, end_cell);
+  return false;
+}
+
+enum eo_code eo_workbook_write(struct eo_archive *archive, FILE *file, char *name, size_t size)
+{
+  struct workbook *w = calloc(1, sizeof *w);
+  if (!w)
+    return eo_error_memory(archive->error);
+  w->archive = archive;
+  w->out.file = file;
+  enum eo_code code = eo_archive_visit(archive, look, w);
+  if (!code && !w->most)
+    code = eo_error_set(archive->error, EO_ERROR_INPUT, "", "No sheet of the workbook holds numbers.");
+  if (!code)
+    code = eo_archive_visit(archive, write_best, w);
+  const char *base = strrchr(w->best, '/');
+  snprintf(name, size, "%s", base ? base + 1 : w->best);
+  free(w->text);
+  free(w->text_at);
+  free(w);
+  return code;
+}
