@@ -185,6 +185,7 @@ static bool take_time(struct rest *r, struct eo_moment *m)
     return false;
   }
   m->has_time = true;
+  m->minutes = minutes;
   m->seconds += hour * 3600.0 + minute * 60.0 + second + rest;
   return take_zone(r, m);
 }

@@ -8,6 +8,7 @@
 
 struct eo_moment {
   bool has_day, has_time;
+  bool minutes;   /* of the hour only: the times start again after an hour */
   int64_t day;    /* since 1970-01-01 */
   double seconds; /* since midnight, or of a duration; may be beyond a day */
 };

@@ -4,6 +4,7 @@
 
 #include <ctype.h>
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #define KEY 96
@@ -75,6 +76,10 @@ static bool is_rate(const char *key)
                                      "aufzeichnungsrate",
                                      "ratehz",
                                      "bandrate",
+                                     "recordedat",
+                                     "sampledat",
+                                     "acquiredat",
+                                     "loggedat",
                                      "frequenceechantillonnage",
                                      "fsample",
                                      NULL};
@@ -222,6 +227,56 @@ static struct eo_stated nothing(void)
   return (struct eo_stated){EO_STATED_NOTHING, 0, -1};
 }
 
+/* The key without the words that only say whose it is. */
+static void strip_owner(const char *key, char *rest, size_t size)
+{
+  static const char owners[] =
+      "pinion|gear|ritzel|rad|wheel|input|output|antrieb|abtrieb|eingang|ausgang|channel|chan|ch|"
+      "kanal|encoder|enc|geber|of|the|for|des|der|von|1|2";
+  size_t n = 0;
+  for (const char *p = key; *p;) {
+    char word[KEY];
+    size_t length = strcspn(p, " _.-:;,()[]"), used = length < KEY ? length : KEY - 1;
+    memcpy(word, p, used);
+    word[used] = '\0';
+    if (length && !eo_column_named(word, owners) && n + used + 2 < size)
+      n += (size_t)snprintf(rest + n, size - n, "%s ", word);
+    p += length + (p[length] != '\0');
+  }
+  rest[n] = '\0';
+}
+
+/* "counts/rev" and "pulses per revolution". */
+static bool is_turn_unit(const char *unit)
+{
+  static const char *const none[] = {NULL};
+  static const char *const part[] = {"perrev", "perturn", "/rev", "/turn", "/umdr", "proumdr", NULL};
+  char folded[KEY];
+  fold(unit, folded);
+  return matches(folded, none, part);
+}
+
+/* What a key of one meaning says; folded: in lower case, its unit taken off. */
+static void judge_key(const char *folded, double number, enum eo_quantity quantity, double factor, bool turn_unit,
+                      struct eo_stated *s)
+{
+  bool positive = number > 0, time = quantity == EO_QUANTITY_TIME, frequency = quantity == EO_QUANTITY_FREQUENCY;
+  bool plain = quantity == EO_QUANTITY_NONE || quantity == EO_QUANTITY_OTHER || quantity == EO_QUANTITY_COUNT;
+  bool rate = is_rate(folded), interval = is_interval(folded), tick = is_tick(folded);
+  if (plain && (is_turn(folded) || turn_unit) && positive && number < 1e12)
+    s->kind = EO_STATED_TURN, s->value = number;
+  else if (tick && positive && (time || frequency || number > 1000))
+    s->kind = EO_STATED_TICK, s->value = time ? number * factor : 1 / (number * factor);
+  else if ((rate || interval) && positive && (time || frequency || plain))
+    s->kind = EO_STATED_INTERVAL, s->value = time || (interval && !frequency) ? number * factor : 1 / (number * factor);
+  else if (is_start(folded) && (time || plain))
+    s->kind = EO_STATED_START, s->value = number * factor;
+  else if (is_scale(folded) && number != 0)
+    s->kind = EO_STATED_SCALE, s->value = number;
+  else if (is_offset(folded))
+    s->kind = EO_STATED_OFFSET, s->value = number;
+}
+
 struct eo_stated eo_stated_read(const char *key, double number, const char *unit)
 {
   char name[KEY], own[32], folded[KEY];
@@ -233,28 +288,18 @@ struct eo_stated eo_stated_read(const char *key, double number, const char *unit
   enum eo_quantity quantity = eo_unit_find(*unit ? unit : own, &factor);
   bool sampling = quantity == EO_QUANTITY_TIME || quantity == EO_QUANTITY_FREQUENCY;
   fold(key, folded);
-  if (!*unit && quantity == EO_QUANTITY_TIME && strchr(key, '/') &&
-      is_rate(folded)) /* "Samples/s" is a word of its own */
-    quantity = EO_QUANTITY_NONE, factor = 1, sampling = false;
-  if (*unit || sampling)
-    fold(sampling && !*unit ? name : key, folded);
-  if (!*unit && !sampling)
+  bool word = quantity == EO_QUANTITY_TIME && is_rate(folded) && (strchr(key, '/') || strstr(folded, "per"));
+  if (!*unit && (word || !sampling)) /* "Samples/s" is a word of its own; other units are none of a sampling */
     quantity = EO_QUANTITY_NONE, factor = 1;
-  bool positive = number > 0, time = quantity == EO_QUANTITY_TIME, frequency = quantity == EO_QUANTITY_FREQUENCY;
-  bool plain = quantity == EO_QUANTITY_NONE || quantity == EO_QUANTITY_OTHER || quantity == EO_QUANTITY_COUNT;
-  bool rate = is_rate(folded), interval = is_interval(folded), tick = is_tick(folded);
+  const char *bare = !*unit && sampling && !word ? name : key;
   s.member = eo_stated_member(name);
-  if (plain && (is_turn(folded) || (*unit && strchr(unit, '/') && is_turn(unit))) && positive && number < 1e12)
-    s.kind = EO_STATED_TURN, s.value = number;
-  else if (tick && positive && (time || frequency || number > 1000))
-    s.kind = EO_STATED_TICK, s.value = time ? number * factor : 1 / (number * factor);
-  else if ((rate || interval) && positive && (time || frequency || plain))
-    s.kind = EO_STATED_INTERVAL, s.value = time || (interval && !frequency) ? number * factor : 1 / (number * factor);
-  else if (is_start(folded) && (time || plain))
-    s.kind = EO_STATED_START, s.value = number * factor;
-  else if (is_scale(folded) && number != 0)
-    s.kind = EO_STATED_SCALE, s.value = number;
-  else if (is_offset(folded))
-    s.kind = EO_STATED_OFFSET, s.value = number;
+  fold(bare, folded);
+  judge_key(folded, number, quantity, factor, is_turn_unit(unit), &s);
+  if (!s.kind) {
+    char rest[KEY];
+    strip_owner(bare, rest, sizeof rest);
+    fold(rest, folded);
+    judge_key(folded, number, quantity, factor, false, &s);
+  }
   return s;
 }

@@ -158,9 +158,10 @@ static enum eo_cell_kind moment_value(struct text *t, int c, double *value)
   }
   *value = (double)(m.day - t->day[c]) * EO_MOMENT_DAY + m.seconds;
   if (t->based[c] && !m.has_day) {
-    *value += (double)t->day[c] * EO_MOMENT_DAY; /* whole days passed so far */
-    if (*value < t->before[c] - EO_MOMENT_DAY / 2) {
-      *value += EO_MOMENT_DAY;
+    double turn = m.minutes ? 3600 : EO_MOMENT_DAY;
+    *value = m.seconds + (double)t->day[c] * turn; /* whole days, or hours, passed so far */
+    if (*value < t->before[c] - turn / 2) {
+      *value += turn;
       t->day[c]++;
     }
   }

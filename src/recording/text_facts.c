@@ -226,6 +226,22 @@ static void take_for_columns(struct eo_text_format *f, const struct eo_header_li
   }
 }
 
+/* What is stated for one channel only holds for those of which nothing is said. */
+static void fill_clocks(struct eo_text_format *f)
+{
+  double interval = 0, turn = 0;
+  for (int c = 0; c < f->cells; c++) {
+    interval = interval > 0 ? interval : f->clock[c].interval;
+    turn = turn > 0 ? turn : f->turn[c];
+  }
+  for (int c = 0; c < f->cells; c++) {
+    if (!(f->clock[c].interval > 0))
+      f->clock[c].interval = interval;
+    if (!(f->turn[c] > 0) && eo_stated_member(f->name[c]) < 0)
+      f->turn[c] = turn;
+  }
+}
+
 void eo_header_facts(const struct eo_header *h, struct eo_text_format *f, int names)
 {
   struct begin begin = {0};
@@ -237,6 +253,7 @@ void eo_header_facts(const struct eo_header *h, struct eo_text_format *f, int na
   }
   for (int i = 0; i < h->lines; i++)
     take_for_columns(f, &h->line[i]);
+  fill_clocks(f);
   if (begin.moment.has_day)
     for (int c = 0; c < f->cells; c++)
       f->clock[c].epoch = eo_moment_epoch(&begin.moment);

@@ -159,6 +159,8 @@ enum eo_quantity eo_unit_find(const char *text, double *factor)
     text++, length--;
   if (length >= 2 && opens(text[0]) && closes(text[length - 1]))
     text++, length -= 2;
+  if (length > 2 && text[length - 1] == '.') /* an abbreviation */
+    length--;
   if (!length || length >= 40 || !fold(text, length, unit, sizeof unit) || !strcmp(unit, "S"))
     return EO_QUANTITY_NONE;
   length = strlen(unit);
