@@ -163,17 +163,22 @@ static enum eo_code measure(struct eo_request *request, const struct asked *aske
   const struct eo_progress progress = {watch, request->http};
   for (int i = 0; i < upload->files; i++)
     eo_upload_path(upload, i, path[i]);
-  const struct eo_measure_request work = {.path = path[0],
-                                          .gear_path = upload->files > 1 ? path[1] : NULL,
-                                          .name = upload->file[0].name,
-                                          .unmodified = asked->unmodified,
-                                          .torque = asked->torque,
-                                          .stated_speed = asked->speed,
-                                          .end = asked->end,
-                                          .harmonics = asked->harmonics,
-                                          .layout = asked->layout,
-                                          .geometry = &asked->geometry,
-                                          .spool_directory = upload->folder};
+  struct eo_measure_request work = {.path = path[0],
+                                    .gear_path = upload->files > 1 ? path[1] : NULL,
+                                    .name = upload->file[0].name,
+                                    .unmodified = asked->unmodified,
+                                    .torque = asked->torque,
+                                    .stated_speed = asked->speed,
+                                    .end = asked->end,
+                                    .harmonics = asked->harmonics,
+                                    .layout = asked->layout,
+                                    .geometry = &asked->geometry,
+                                    .spool_directory = upload->folder};
+  for (int i = 0; i < asked->parsed.load_cases; i++) {
+    double speed = asked->parsed.load_case[i].speed;
+    work.speed[0] = i ? fmin(work.speed[0], speed) : speed;
+    work.speed[1] = fmax(work.speed[1], speed);
+  }
   return eo_measure_file(&work, &progress, document, NULL, NULL, error);
 }
 

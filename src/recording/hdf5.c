@@ -20,9 +20,10 @@
 #define PATH EO_TREE_PATH
 
 struct channel {
-  hid_t set, type; /* borrowed from sets; of a value in memory: a double, or a record with one field */
-  int rank, along; /* dimensions; the one along which values follow each other */
-  hsize_t across;  /* place in the other one */
+  hid_t set, type;  /* borrowed from sets; of a value in memory: a double, or a record with one field */
+  int width, place; /* values of one element in memory, and which of them is the channel's */
+  int rank, along;  /* dimensions; the one along which values follow each other */
+  hsize_t across;   /* place in the other one */
 };
 
 struct hdf5 {
@@ -175,27 +176,87 @@ static bool add_channels(struct hdf5 *h, hid_t set, hid_t type, bool whole, cons
                  ? -1
                  : eo_tree_add_series(h->tree, path, (int)across, (int64_t)length[along], whole);
   for (hsize_t k = 0; base >= 0 && k < across; k++)
-    h->channel[base + (int)k] = (struct channel){set, type, rank, along, k};
+    h->channel[base + (int)k] = (struct channel){set, type, 1, 0, rank, along, k};
   return base >= 0;
 }
 
+/* A record with nothing but one field, which is of this type in memory. */
+static hid_t field_type(const char *name, hid_t field)
+{
+  hid_t memory = H5Tcreate(H5T_COMPOUND, H5Tget_size(field));
+  H5Tinsert(memory, name, 0, field);
+  return memory;
+}
+
+/* A field that is an array: one channel per element. */
+static bool add_array(struct hdf5 *h, hid_t set, hid_t memory, int width, bool whole, const char *path, hsize_t length)
+{
+  int base = width > WIDE || length > INT64_MAX / 16 ? -1
+                                                     : eo_tree_add_series(h->tree, path, width, (int64_t)length, whole);
+  for (int k = 0; base >= 0 && k < width; k++)
+    h->channel[base + k] = (struct channel){set, memory, width, k, 1, 0, 0};
+  return base >= 0;
+}
+
+/* Names of the records around a field, the outermost first. */
+struct nest {
+  const struct nest *outer;
+  const char *name;
+};
+
+static hid_t nested_type(const struct nest *nest, hid_t inner)
+{
+  hid_t memory = H5Tcopy(inner);
+  for (; nest; nest = nest->outer) {
+    hid_t record = field_type(nest->name, memory);
+    H5Tclose(memory);
+    memory = record;
+  }
+  return memory;
+}
+
+static bool add_records(struct hdf5 *h, hid_t set, hid_t type, const struct nest *outer, const char *path,
+                        hsize_t length, int depth);
+
+/* A field that is a number, an array of numbers, or a record. */
+static bool add_field(struct hdf5 *h, hid_t set, hid_t field, const struct nest *nest, const char *path, hsize_t length,
+                      int depth)
+{
+  H5T_class_t class = H5Tget_class(field);
+  hsize_t width = 1;
+  hid_t inner = H5Tcopy(H5T_NATIVE_DOUBLE), element = -1;
+  if (class == H5T_COMPOUND && depth < 4) {
+    H5Tclose(inner);
+    return add_records(h, set, field, nest, path, length, depth + 1);
+  }
+  if (class == H5T_ARRAY && H5Tget_array_ndims(field) == 1 && H5Tget_array_dims2(field, &width) == 1) {
+    element = H5Tget_super(field);
+    class = H5Tget_class(element);
+    H5Tclose(inner);
+    inner = H5Tarray_create2(H5T_NATIVE_DOUBLE, 1, &width);
+    H5Tclose(element);
+  }
+  hid_t memory = nested_type(nest, inner);
+  H5Tclose(inner);
+  bool added = (class == H5T_INTEGER || class == H5T_FLOAT) && width >= 1 &&
+               add_array(h, set, memory, width <= WIDE ? (int)width : WIDE + 1, class == H5T_INTEGER, path, length);
+  if (!added)
+    H5Tclose(memory);
+  return added;
+}
+
 /* Records: each field that is a number is a channel. */
-static bool add_records(struct hdf5 *h, hid_t set, hid_t type, const char *path, int rank, const hsize_t *length)
+static bool add_records(struct hdf5 *h, hid_t set, hid_t type, const struct nest *outer, const char *path,
+                        hsize_t length, int depth)
 {
   bool any = false;
   int fields = H5Tget_nmembers(type);
-  for (int i = 0; i < fields && i < FIELDS && rank == 1; i++) {
+  for (int i = 0; i < fields && i < FIELDS; i++) {
     char *name = H5Tget_member_name(type, (unsigned)i), below[PATH];
     hid_t field = H5Tget_member_type(type, (unsigned)i);
-    H5T_class_t class = H5Tget_class(field);
-    if ((class == H5T_INTEGER || class == H5T_FLOAT) && name && join(below, path, name)) {
-      hid_t memory = H5Tcreate(H5T_COMPOUND, sizeof(double));
-      H5Tinsert(memory, name, 0, H5T_NATIVE_DOUBLE);
-      bool added = add_channels(h, set, memory, class == H5T_INTEGER, below, rank, length);
-      any = any || added;
-      if (!added)
-        H5Tclose(memory);
-    }
+    struct nest nest = {outer, name};
+    if (name && join(below, path, name))
+      any = add_field(h, set, field, &nest, below, length, depth) || any;
     H5Tclose(field);
     H5free_memory(name);
   }
@@ -226,27 +287,29 @@ static void add_references(struct hdf5 *h, hid_t set, hsize_t count, bool cell, 
 }
 
 /* The cache holds a whole chunk of each data set as long as all together stay small: without it a chunk would be
-   unpacked again for every piece that is read of it. */
+   unpacked again for every piece that is read of it. The set is opened anew for that; a set that is open keeps the
+   cache it has. */
 static hid_t open_cached(struct hdf5 *h, hid_t set)
 {
-  hid_t list = H5Dget_create_plist(set), type = H5Dget_type(set), again = -1;
+  hid_t list = H5Dget_create_plist(set), type = H5Dget_type(set);
   hsize_t chunk[8];
+  char name[1024];
   size_t bytes = H5Tget_size(type);
   int rank = H5Pget_layout(list) == H5D_CHUNKED ? H5Pget_chunk(list, 8, chunk) : 0;
   for (int i = 0; i < rank && i < 8; i++)
     bytes = chunk[i] < CACHE && bytes < CACHE ? bytes * chunk[i] : CACHE;
-  if (rank > 0 && rank <= 8 && bytes > (1 << 20) && bytes < CACHE - h->cache) {
-    char name[1024];
-    hid_t access = H5Pcreate(H5P_DATASET_ACCESS);
-    H5Pset_chunk_cache(access, 521, bytes + 1024, 1);
-    if (H5Iget_name(set, name, sizeof name) > 0)
-      again = H5Dopen2(h->file, name, access);
-    h->cache += again >= 0 ? bytes : 0;
-    H5Pclose(access);
-  }
   H5Tclose(type);
   H5Pclose(list);
-  return again;
+  if (rank < 1 || rank > 8 || bytes <= (1 << 20) || bytes >= CACHE - h->cache ||
+      H5Iget_name(set, name, sizeof name) <= 0)
+    return set;
+  hid_t access = H5Pcreate(H5P_DATASET_ACCESS);
+  H5Pset_chunk_cache(access, 521, bytes + 1024, 1);
+  H5Dclose(set);
+  set = H5Dopen2(h->file, name, access);
+  h->cache += set >= 0 ? bytes : 0;
+  H5Pclose(access);
+  return set;
 }
 
 static bool keep_set(struct hdf5 *h, hid_t set)
@@ -261,7 +324,9 @@ static void add_set(struct hdf5 *h, hid_t set, const char *path, int depth)
 {
   hsize_t length[2] = {0, 0};
   char class_name[32], list[4096];
-  hid_t type = H5Dget_type(set), space = H5Dget_space(set), cached = -1;
+  if ((set = open_cached(h, set)) < 0)
+    return;
+  hid_t type = H5Dget_type(set), space = H5Dget_space(set);
   H5T_class_t class = H5Tget_class(type);
   int rank = H5Sget_simple_extent_ndims(space);
   hssize_t count = H5Sget_simple_extent_npoints(space);
@@ -272,11 +337,6 @@ static void add_set(struct hdf5 *h, hid_t set, const char *path, int depth)
   bool object = H5Aexists(set, "MATLAB_object_decode") > 0;
   if (rank == 0)
     length[0] = 1;
-  if (plain && h->sets < CHANNELS && count > 1 && (number || class == H5T_COMPOUND) &&
-      (cached = open_cached(h, set)) >= 0) {
-    H5Dclose(set);
-    set = cached;
-  }
   add_attributes(h, set, path);
   if (!plain || object)
     h->left_out++;
@@ -290,7 +350,7 @@ static void add_set(struct hdf5 *h, hid_t set, const char *path, int depth)
     add_number(h, set, path);
   else if (h->sets < CHANNELS &&
            ((number && add_channels(h, set, H5T_NATIVE_DOUBLE, class == H5T_INTEGER, path, rank ? rank : 1, length)) ||
-            (class == H5T_COMPOUND && add_records(h, set, type, path, rank, length))))
+            (class == H5T_COMPOUND && rank == 1 && add_records(h, set, type, NULL, path, length[0], 0))))
     kept = keep_set(h, set);
   else
     h->left_out++;
@@ -353,10 +413,17 @@ static enum eo_code read_values(void *context, int series, int64_t first, int64_
   hsize_t start[2] = {c->across, c->across}, size[2] = {1, 1}, length = (hsize_t)count;
   start[c->along] = (hsize_t)first;
   size[c->along] = length;
+  double *all = c->width > 1 ? malloc((size_t)count * (size_t)c->width * sizeof *all) : values;
+  if (!all)
+    return eo_error_memory(error);
   hid_t space = H5Dget_space(c->set), memory = H5Screate_simple(1, &length, NULL);
   herr_t status = H5Sselect_hyperslab(space, H5S_SELECT_SET, start, NULL, size, NULL);
   if (status >= 0)
-    status = H5Dread(c->set, c->type, memory, space, H5P_DEFAULT, values);
+    status = H5Dread(c->set, c->type, memory, space, H5P_DEFAULT, all);
+  for (int64_t i = 0; c->width > 1 && i < count; i++)
+    values[i] = all[i * c->width + c->place];
+  if (c->width > 1)
+    free(all);
   H5Sclose(memory);
   H5Sclose(space);
   if (status < 0)

@@ -6,7 +6,9 @@
 #include "recording/layout.h"
 
 #define EO_TURN 6.283185307179586 /* rad */
-#define EO_TIME_WORDS "t|time|zeit|timestamp|timestamps|elapsed|x|uhrzeit|zeitstempel|datum|date|axis|tid|temps|tempo"
+#define EO_TIME_WORDS                                                                                                 \
+  "t|time|times|zeit|timestamp|timestamps|elapsed|uhrzeit|zeitstempel|datum|date|datetime|datenum|tid|temps|tempo|x|" \
+  "axis"
 
 /* Times of one channel. */
 struct eo_layout_clock {

@@ -12,6 +12,11 @@
 #define FAR 100.0   /* times a load case: no speed of this pair */
 #define NEAR 30.0   /* times a load case: a unit of time is believed; units differ by more than the square of it */
 
+#define STRONG_WORDS                                                                                                \
+  "t|time|times|zeit|timestamp|timestamps|elapsed|uhrzeit|zeitstempel|datum|date|datetime|datenum|tid|temps|tempo|" \
+  "seconds"
+#define WEAK_WORDS "x|axis|abscissa" /* may as well name a signal */
+
 static const char *unit_name(double scale)
 {
   return scale == 1e-3    ? "milliseconds"
@@ -23,6 +28,21 @@ static const char *unit_name(double scale)
 }
 
 /* ---- which columns ---- */
+
+/* Dates as numbers give themselves away by their size: days since 1900 or since year 0 with steps below 0.2 s,
+   milliseconds, microseconds, nanoseconds and tenths of a microsecond since 1970, 1601 or year 1. 0: no date. */
+static double scale_by_size(const struct eo_column *look)
+{
+  static const struct {
+    double low, high, scale, most; /* step at most, in the unit */
+  } dates[] = {{20000, 80000, 86400, 2e-6}, {700000, 800000, 86400, 2e-6}, {1e12, 2.2e12, 1e-3, 1e4},
+               {1e15, 2.2e15, 1e-6, 1e7},   {1e18, 2.2e18, 1e-9, 1e10},    {1.2e17, 1.5e17, 1e-7, 1e8},
+               {6.2e17, 6.6e17, 1e-7, 1e8}, {1e9, 2.2e9, 1, 10},           {2.9e9, 4.6e9, 1, 10}};
+  for (size_t i = 0; i < sizeof dates / sizeof *dates; i++)
+    if (look->low > dates[i].low && look->high < dates[i].high && look->step < dates[i].most)
+      return dates[i].scale;
+  return 0;
+}
 
 /* Goes up and never starts again. */
 static bool rises(const struct eo_column *look)
@@ -61,28 +81,39 @@ static bool leads_evenly(const struct eo_guess *g, int column)
   return look->spread < 1e-3 && look->step < 0.1 && !look->whole && behind >= 2;
 }
 
-/* A column of time goes up by nearly equal steps and never starts again; a unit, a name or another column that refers
-   to it says so. */
+/* A column of time goes up by nearly equal steps and never starts again; a unit, a name, its size or another column
+   that refers to it says so. */
 static bool is_time(const struct eo_guess *g, int column)
 {
   const struct eo_column *look = &g->look[column];
-  const char *name = eo_recording_name(g->recording, column);
   bool free_of_unit = look->quantity == EO_QUANTITY_NONE || look->quantity == EO_QUANTITY_COUNT;
   if (!rises(look) || g->number[column])
     return false;
-  if (look->quantity == EO_QUANTITY_TIME || is_referred(g, column))
-    return true;
-  return (free_of_unit && eo_column_named(name, EO_TIME_WORDS)) ||
-         (look->quantity == EO_QUANTITY_NONE && !(eo_recording_clock(g->recording, column).interval > 0) &&
-          leads_evenly(g, column));
+  return look->quantity == EO_QUANTITY_TIME || is_referred(g, column) ||
+         (free_of_unit && eo_column_named(eo_recording_name(g->recording, column), STRONG_WORDS)) ||
+         (look->quantity == EO_QUANTITY_NONE && scale_by_size(look) > 0 && look->spread < 0.5);
+}
+
+/* An abscissa without a name of time, where nothing better is there. */
+static bool is_abscissa(const struct eo_guess *g, int column)
+{
+  const struct eo_column *look = &g->look[column];
+  bool named = eo_column_named(eo_recording_name(g->recording, column), WEAK_WORDS) && look->spread < 0.05;
+  return rises(look) && !g->number[column] && look->quantity == EO_QUANTITY_NONE &&
+         !(eo_recording_clock(g->recording, column).interval > 0) && (named || leads_evenly(g, column));
 }
 
 void eo_layout_mark_times(struct eo_guess *g)
 {
   for (int c = 0; c < g->columns; c++)
     g->number[c] = counts_rows(g, c);
-  for (int c = 0; c < g->columns; c++)
+  bool any = false;
+  for (int c = 0; c < g->columns; c++) {
     g->time[c] = is_time(g, c);
+    any = any || g->time[c];
+  }
+  for (int c = 0; c < g->columns && !any; c++)
+    any = g->time[c] = is_abscissa(g, c);
 }
 
 /* ---- of which channel ---- */
@@ -145,6 +176,9 @@ static enum eo_code find_clock(struct eo_guess *g, int member, struct eo_error *
   else if (!(g->choice->time_scale > 0) && eo_recording_tick(g->recording) > 0 &&
            (look->quantity == EO_QUANTITY_COUNT || look->whole))
     clock->scale = eo_recording_tick(g->recording);
+  if (clock->scale == 1 && !(g->choice->time_scale > 0) && look->quantity == EO_QUANTITY_NONE &&
+      scale_by_size(look) > 0)
+    clock->scale = scale_by_size(look);
   clock->interval = look->step * clock->scale;
   return EO_OK;
 }
@@ -184,21 +218,6 @@ double eo_layout_rate(const struct eo_guess *g, int column, const struct eo_layo
   const struct eo_column *look = &g->look[column];
   double seconds = time_at(g, clock, look->last) - time_at(g, clock, look->first);
   return look->step * (double)(look->count - 1) / seconds;
-}
-
-/* Dates as numbers give themselves away by their size: days since 1900 or since year 0 with steps below 0.2 s,
-   milliseconds, microseconds, nanoseconds and tenths of a microsecond since 1970, 1601 or year 1. 0: no date. */
-static double scale_by_size(const struct eo_column *look)
-{
-  static const struct {
-    double low, high, scale, most; /* step at most, in the unit */
-  } dates[] = {{20000, 80000, 86400, 2e-6}, {700000, 800000, 86400, 2e-6}, {1e12, 2.2e12, 1e-3, 1e4},
-               {1e15, 2.2e15, 1e-6, 1e7},   {1e18, 2.2e18, 1e-9, 1e10},    {1.2e17, 1.5e17, 1e-7, 1e8},
-               {6.2e17, 6.6e17, 1e-7, 1e8}, {1e9, 2.2e9, 1, 10},           {2.9e9, 4.6e9, 1, 10}};
-  for (size_t i = 0; i < sizeof dates / sizeof *dates; i++)
-    if (look->low > dates[i].low && look->high < dates[i].high && look->step < dates[i].most)
-      return dates[i].scale;
-  return 0;
 }
 
 static bool is_open(const struct eo_guess *g, int member)
@@ -244,15 +263,10 @@ enum eo_code eo_layout_judge_speed(struct eo_guess *g, struct eo_error *error)
 {
   char text[80];
   bool open[2] = {is_open(g, 0), is_open(g, 1)};
-  for (int member = 0; member < 2; member++) {
-    double scale = open[member] ? scale_by_size(&g->look[g->clock[member].column]) : 0;
-    if (scale > 0) {
-      set_scale(g, member, scale);
-      open[member] = false;
-      eo_notes_add(g->notes, "%s holds dates as numbers, in %s.",
-                   eo_layout_label(g, g->clock[member].column, text, sizeof text), unit_name(scale));
-    }
-  }
+  if (g->clock[0].column >= 0 && g->look[g->clock[0].column].quantity == EO_QUANTITY_NONE && g->clock[0].scale != 1 &&
+      g->clock[0].scale == scale_by_size(&g->look[g->clock[0].column]))
+    eo_notes_add(g->notes, "%s holds dates as numbers, in %s.",
+                 eo_layout_label(g, g->clock[0].column, text, sizeof text), unit_name(g->clock[0].scale));
   double speed = pinion_speed(g), low = g->pair ? g->pair->speed[0] : 0, high = g->pair ? g->pair->speed[1] : 0;
   if (!(high > 0) || isnan(speed) || (speed > low / FAR && speed < high * FAR))
     return EO_OK;

@@ -281,6 +281,24 @@ static bool names_other(const struct eo_tree *t, const struct leaf *fact, const 
   return false;
 }
 
+/* "ms" under "SampleIntervalUnit" beside "SampleInterval"; "" when there is none. */
+static const char *unit_named_after(const struct eo_tree *t, const struct leaf *number)
+{
+  char key[64], other[64];
+  size_t group = group_size(number->path);
+  fold(base_of(number->path), strlen(base_of(number->path)), key, sizeof key);
+  for (int i = 0; i < t->leaves; i++) {
+    const struct leaf *l = &t->leaf[i];
+    if (l->kind != TEXT || group_size(l->path) != group || strncmp(l->path, number->path, group))
+      continue;
+    fold(base_of(l->path), strlen(base_of(l->path)), other, sizeof other);
+    size_t length = strlen(key);
+    if (!strncmp(key, other, length) && (!strcmp(other + length, "unit") || !strcmp(other + length, "units")))
+      return l->text;
+  }
+  return "";
+}
+
 /* The unit of a number: a text beside it that is a unit of time or frequency, or one below its group. */
 static const char *unit_beside(const struct eo_tree *t, const struct leaf *number)
 {
@@ -310,7 +328,9 @@ static void use_number(struct eo_tree *t, const struct leaf *fact, const struct 
   if (!mine)
     snprintf(key, sizeof key, "%s", base_of(fact->path));
   depth += mine ? 50 : 0;
-  struct eo_stated s = eo_stated_read(key, fact->number, about_abscissa(fact, outer) ? unit_beside(t, fact) : "");
+  const char *unit = unit_named_after(t, fact);
+  struct eo_stated s = eo_stated_read(key, fact->number,
+                                      !*unit && about_abscissa(fact, outer) ? unit_beside(t, fact) : unit);
   int member = eo_stated_member(base_of(series->path));
   if (!s.kind || (s.member >= 0 && member >= 0 && s.member != member))
     return;

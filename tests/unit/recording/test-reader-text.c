@@ -2,6 +2,7 @@
    limits. */
 #include "support/reader-fixture.h"
 
+#include <stdbool.h>
 #include <zlib.h>
 
 static const double expected[4][3] = {{0, 17.15407647, 63.02719913},
