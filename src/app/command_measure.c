@@ -377,8 +377,7 @@ out:
 const struct eo_command eo_command_measure = {
     "measure", "DESIGN.json FILE... [--label L] [--torque T] [--speed S] [--layout JSON] [--json]",
     "rig files: transmission error, vibration, compared with the prediction",
-    "Reads recordings of two encoders (text, gzip, MATLAB, TDMS, UFF 58, HDF5), says what is wrong with them, and sets "
-    "the vibration of the mesh orders\n"
+    "Reads recordings of two encoders, says what is wrong with them, and sets the vibration of the mesh orders\n"
     "compared with the prediction at their torque and measured speed. The options hold for all files:\n"
     "  --label modified|unmodified   which of the two the recording shows (modified)\n"
     "  --torque N m, --speed rpm     of the pinion; the speed is only checked\n"
@@ -386,7 +385,9 @@ const struct eo_command eo_command_measure = {
     "  --harmonics N                 mesh orders (8)\n"
     "  --layout JSON                 what the columns mean, in place or a file: {\"kind\": "
     "\"angles|sine-cosine|pulses\", \"unit\": \"deg|rad|turn|count\",\n"
-    "                                \"time\": COLUMN, \"columns\": {\"pinion\": COLUMN or [SINE, COSINE], \"gear\": "
+    "                                \"time\": COLUMN or [PINION'S, GEAR'S], \"time_unit\": \"s|ms|us|ns|min|d\" or "
+    "seconds, "
+    "\"columns\": {\"pinion\": COLUMN or [SINE, COSINE], \"gear\": "
     "...}, \"sample_rate_Hz\", \"lines\"}; guessed else\n"
     "  --gear FILE                   the gear's encoder, when each has a file of its own\n"
     "  --list LIST.json              {\"measurements\": [{\"file\", \"label\", \"torque_Nm\", \"speed_rpm\", \"end\", "

@@ -409,7 +409,9 @@ static enum eo_code settle_channels(struct eo_guess *g, struct eo_error *error)
   if (code || g->kind == EO_LAYOUT_PULSES)
     return code;
   note_time(g);
-  code = eo_layout_make_even(g, error);
+  code = eo_layout_compare(g, error);
+  if (!code && g->together) /* a joint column of times is uneven by its nature */
+    code = eo_layout_make_even(g, error);
   eo_layout_find_beside(g);
   g->tracks->time_column = g->clock[0].column;
   g->tracks->time_scale = g->clock[0].column >= 0 ? g->clock[0].scale : 1;
@@ -445,10 +447,10 @@ static enum eo_code replace(struct eo_guess *g, const char *spool_directory, str
                             struct eo_error *error)
 {
   struct eo_recording *made = NULL;
-  bool needed = false;
-  enum eo_code code = g->square ? eo_layout_decode_squares(g, spool_directory, &made, error)
-                                : eo_layout_needs_align(g, &needed, error);
-  if (!code && needed)
+  enum eo_code code = EO_OK;
+  if (g->square)
+    code = eo_layout_decode_squares(g, spool_directory, &made, error);
+  else if (eo_layout_needs_align(g))
     code = eo_layout_align(g, spool_directory, &made, error);
   if (!code && made) {
     eo_recording_free(*recording);

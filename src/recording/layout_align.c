@@ -49,14 +49,14 @@ static bool same_clock(const struct eo_layout_clock *a, const struct eo_layout_c
 
 /* Whether two columns of times are equal, and whether rows hold both channels' values: a table with the times of both
    channels has one of them in each row. */
-static enum eo_code compare_rows(const struct eo_guess *g, bool *equal, bool *together, struct eo_error *error)
+enum eo_code eo_layout_compare(struct eo_guess *g, struct eo_error *error)
 {
   const struct eo_layout_clock *a = &g->clock[0], *b = &g->clock[1];
   int first_column = g->tracks->channel[0].column[0], second_column = g->tracks->channel[1].column[0];
   int64_t rows = eo_recording_rows(g->recording), both = 0, one = 0;
   double *block = malloc(BLOCK * (size_t)g->columns * sizeof *block);
   enum eo_code code = block ? EO_OK : eo_error_memory(error);
-  *equal = true;
+  g->equal = true;
   for (int64_t first = 0; !code && first < rows; first += BLOCK) {
     int64_t n = rows - first < BLOCK ? rows - first : BLOCK;
     code = eo_recording_read(g->recording, first, n, block, error);
@@ -67,25 +67,19 @@ static enum eo_code compare_rows(const struct eo_guess *g, bool *equal, bool *to
       one += here != there;
       if (a->column >= 0 && b->column >= 0 && here && there &&
           fabs(row[a->column] * a->scale - row[b->column] * b->scale - b->shift) > 1e-4 * a->interval)
-        *equal = false;
+        g->equal = false;
     }
   }
   free(block);
-  *together = both >= one;
+  g->together = both >= one;
   return code;
 }
 
-enum eo_code eo_layout_needs_align(const struct eo_guess *g, bool *needed, struct eo_error *error)
+bool eo_layout_needs_align(const struct eo_guess *g)
 {
-  bool equal, together;
-  *needed = false;
-  if (g->kind == EO_LAYOUT_PULSES)
-    return EO_OK;
-  enum eo_code code = compare_rows(g, &equal, &together, error);
   bool columns = g->clock[0].column >= 0 && g->clock[1].column >= 0;
-  bool same = same_clock(&g->clock[0], &g->clock[1]) || (columns && equal);
-  *needed = !same || !together || g->increments[0] || g->increments[1];
-  return code;
+  bool same = same_clock(&g->clock[0], &g->clock[1]) || (columns && g->equal);
+  return g->kind != EO_LAYOUT_PULSES && (!same || !g->together || g->increments[0] || g->increments[1]);
 }
 
 /* ---- reading one side ---- */

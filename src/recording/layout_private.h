@@ -31,6 +31,7 @@ struct eo_guess {
   bool number[EO_RECORDING_COLUMNS];               /* counts the rows */
   int candidates, candidate[EO_RECORDING_COLUMNS]; /* columns that may be angles, tracks or pulses */
   enum eo_layout_kind kind;
+  bool equal, together;            /* times of both channels are equal; rows hold values of both */
   bool square;                     /* the tracks are square waves */
   bool increments[2];              /* [member]: counts since the row before */
   struct eo_layout_clock clock[2]; /* [member] */
@@ -72,8 +73,10 @@ void eo_layout_find_beside(struct eo_guess *g);
 
 /* ---- one clock (layout_align.c) ---- */
 
+/* Fills equal and together. */
+enum eo_code eo_layout_compare(struct eo_guess *g, struct eo_error *error);
 /* True when the channels must be brought to one clock, or their increments summed up. */
-enum eo_code eo_layout_needs_align(const struct eo_guess *g, bool *needed, struct eo_error *error);
+bool eo_layout_needs_align(const struct eo_guess *g);
 /* A new recording with the time in s, the channels and what is beside them; the tracks then speak of it. */
 enum eo_code eo_layout_align(struct eo_guess *g, const char *spool_directory, struct eo_recording **aligned,
                              struct eo_error *error);

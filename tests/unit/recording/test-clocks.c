@@ -1,0 +1,258 @@
+/* Recordings whose channels have clocks of their own, times in every unit, counters and square waves: the right angles
+   on one clock, or a question. */
+#include "recording/layout.h"
+#include "support/reader-fixture.h"
+
+#define ROWS 4000
+#define SPEED 62.8 /* of the pinion, rad/s */
+
+static const struct eo_layout_pair pair = {.teeth = {17, 44}, .speed = {209.44, 209.44}};
+
+static double pinion(double t)
+{
+  return 0.3 + SPEED * t + 1e-3 * sin(SPEED * t);
+}
+
+static double gear(double t)
+{
+  return 1.1 + SPEED * 17 / 44 * t + 1e-4 * sin(17 * SPEED * t);
+}
+
+static double degrees(double angle)
+{
+  return angle * 180 / M_PI;
+}
+
+static FILE *begin(const char *header)
+{
+  FILE *file = fopen(fixture_path, "w");
+  if (!file)
+    exit(99);
+  fputs(header, file);
+  return file;
+}
+
+/* Reads the file that was written and finds its layout; NULL on an error. */
+static struct eo_recording *find(FILE *file, const struct eo_layout_choice *choice, struct eo_tracks *tracks,
+                                 struct eo_notes *notes, struct eo_error *error)
+{
+  fclose(file);
+  memset(notes, 0, sizeof *notes);
+  struct eo_recording *r = read_fixture(NULL, notes, error);
+  if (r && eo_layout_find(&r, choice, &pair, NULL, tracks, notes, error)) {
+    eo_recording_free(r);
+    return NULL;
+  }
+  return r;
+}
+
+/* The largest difference, in rad, between what a row gives and the two functions at its time. */
+static double worst(const struct eo_recording *r, const struct eo_tracks *t)
+{
+  double most = 0, shift[2] = {0, 0};
+  for (int64_t i = 0; i < eo_recording_rows(r); i++) {
+    double time = t->time_column < 0 ? (double)i * t->interval : cell_of(r, i, t->time_column) * t->time_scale;
+    double angle[2] = {pinion(time), gear(time)};
+    for (int m = 0; m < 2; m++) {
+      double value = cell_of(r, i, t->channel[m].column[0]) * t->channel[m].scale - angle[m];
+      if (i == 0)
+        shift[m] = value;
+      most = isnan(value) ? most : fmax(most, fabs(value - shift[m]));
+    }
+  }
+  return most;
+}
+
+static void right(FILE *file, const struct eo_layout_choice *choice, double tolerance, const char *note,
+                  const char *what)
+{
+  struct eo_tracks tracks;
+  struct eo_notes notes;
+  struct eo_error error = {0};
+  struct eo_recording *r = find(file, choice, &tracks, &notes, &error);
+  double most = r ? worst(r, &tracks) : NAN;
+  ok(r && eo_recording_rows(r) > ROWS / 2 && most < tolerance && noted(&notes, note), "%s: %.2g rad%s%s", what, most,
+     r ? "" : ": ", r ? "" : error.text);
+  eo_recording_free(r);
+}
+
+static void asked(FILE *file, const struct eo_layout_choice *choice, const char *pointer, const char *words,
+                  const char *what)
+{
+  struct eo_tracks tracks;
+  struct eo_notes notes;
+  struct eo_error error = {0};
+  struct eo_recording *r = find(file, choice, &tracks, &notes, &error);
+  ok(!r && !strcmp(error.pointer, pointer) && strstr(error.text, words), "%s: %s %s", what,
+     r ? "was found" : error.pointer, r ? "" : error.text);
+  eo_recording_free(r);
+}
+
+static void test_clocks(void)
+{
+  FILE *f = begin("Time Pinion [s];Pinion [deg];Time Gear [s];Gear [deg]\n");
+  for (int i = 0; i < ROWS; i++) {
+    double t = i / 4000.0, u = i / 3300.0;
+    fprintf(f, "%.9f;%.12g;%.9f;%.12g\n", t, degrees(pinion(t)), u, degrees(gear(u)));
+  }
+  right(f, NULL, 2e-6, "times of their own", "two rates");
+  f = begin("t1 [s];t2 [s];phi1 [deg];phi2 [deg]\n");
+  for (int i = 0; i < ROWS; i++) {
+    double t = i / 4000.0, u = t + 1.25e-4;
+    fprintf(f, "%.9f;%.9f;%.12g;%.12g\n", t, u, degrees(pinion(t)), degrees(gear(u)));
+  }
+  right(f, NULL, 1e-7, "times of their own", "half a step, times before both channels");
+  f = begin("timestamps,pinion_deg,gear_deg\n");
+  for (int i = 0; i < ROWS; i++) {
+    double t = i / 4000.0, u = t + 1e-4;
+    fprintf(f, "%.9f,%.12g,\n%.9f,,%.12g\n", t, degrees(pinion(t)), u, degrees(gear(u)));
+  }
+  right(f, NULL, 1e-7, "times of their own", "one column of times for both rasters");
+  f = begin("Rate pinion: 4 kHz\nRate gear: 3300 Hz\npinion [deg];gear [deg]\n");
+  for (int i = 0; i < ROWS; i++)
+    fprintf(f, "%.12g;%.12g\n", degrees(pinion(i / 4000.0)), degrees(gear(i / 3300.0)));
+  right(f, NULL, 2e-6, "times of their own", "two rates in the heading");
+}
+
+static void table(FILE *f, double unit, double start, const char *format)
+{
+  for (int i = 0; i < ROWS; i++) {
+    double t = i / 4000.0;
+    fprintf(f, format, (start + t) / unit);
+    fprintf(f, ";%.12g;%.12g\n", degrees(pinion(t)), degrees(gear(t)));
+  }
+}
+
+static void test_times(void)
+{
+  const char *header = "Time;Pinion [deg];Gear [deg]\n";
+  FILE *f = begin(header);
+  table(f, 1e-3, 0, "%.2f");
+  right(f, NULL, 1e-6, "read in milliseconds", "milliseconds that nobody states");
+  f = begin("Time [s];Pinion [deg];Gear [deg]\n");
+  table(f, 1e-3, 0, "%.2f");
+  asked(f, NULL, "/time_unit", "a hundred times away", "a speed that no load case has");
+  struct eo_layout_choice chosen = {.time_scale = 1e-3};
+  f = begin("Time [s];Pinion [deg];Gear [deg]\n");
+  table(f, 1e-3, 0, "%.2f");
+  right(f, &chosen, 1e-6, "steps of 0.00025 s", "and the answer to it");
+  f = begin("Time [s];Pinion [deg];Gear [deg]\n");
+  table(f, 1, 0, "%.3f");
+  right(f, NULL, 2e-3, "the rows count", "times that only tell milliseconds");
+  f = begin(header);
+  table(f, 86400, 45356 * 86400.0, "%.11f");
+  struct eo_tracks tracks;
+  struct eo_notes notes;
+  struct eo_error error = {0};
+  struct eo_recording *r = find(f, NULL, &tracks, &notes, &error);
+  ok(r && fabs(tracks.interval / 2.5e-4 - 1) < 1e-6 && noted(&notes, "in days"), "days of a spreadsheet: %.9g s%s",
+     r ? tracks.interval : NAN, r ? "" : error.text);
+  eo_recording_free(r);
+}
+
+static void test_units(void)
+{
+  FILE *f = begin("t [s];Pinion [foo];Gear [foo]\n");
+  table(f, 1, 0, "%.6f");
+  asked(f, NULL, "/unit", "\"foo\"", "a unit that is stated and not known");
+  f = begin("t [s];Pinion [V];Gear [V]\n");
+  table(f, 1, 0, "%.6f");
+  asked(f, NULL, "/unit", "no angle", "a voltage is no angle");
+}
+
+static void test_columns(void)
+{
+  FILE *f = begin("");
+  for (int i = 0; i < ROWS; i++)
+    fprintf(f, "%d,%.6f,%.12g,%.12g\n", i, i / 4000.0, degrees(pinion(i / 4000.0)), degrees(gear(i / 4000.0)));
+  right(f, NULL, 1e-6, "column 2 is taken as time", "a column that counts the rows");
+  f = begin("t;M1;M2;n1;q;phi1;phi2\n");
+  for (int i = 0; i < ROWS; i++) {
+    double t = i / 4000.0;
+    fprintf(f, "%.6f;%.3f;%.3f;600.0;%.4f;%.12g;%.12g\n", t, 828 + t, -2143 - t, sin(300 * t), degrees(pinion(t)),
+            degrees(gear(t)));
+  }
+  struct eo_tracks tracks;
+  struct eo_notes notes;
+  struct eo_error error = {0};
+  struct eo_recording *r = find(f, NULL, &tracks, &notes, &error);
+  ok(r && tracks.channel[0].column[0] == 5 && tracks.channel[1].column[0] == 6,
+     "two columns turn in the ratio of the teeth");
+  ok(r && tracks.torque[0].column == 1 && tracks.torque[0].scale == 1 && !tracks.torque[0].stated &&
+         tracks.torque[1].column == 2 && tracks.speed[0].column == 3 && tracks.speed[1].scale == 0,
+     "torque and speed beside them");
+  eo_recording_free(r);
+}
+
+static void test_counters(void)
+{
+  const double lines = 7.2e6;
+  struct eo_layout_choice counts = {.unit = EO_LAYOUT_COUNT, .lines = {lines, lines}};
+  FILE *f = begin("t [s];Pinion increments;Gear increments\n");
+  for (int i = 0; i < ROWS; i++) {
+    double t = i / 4000.0, before = t - 1 / 4000.0, k = lines / (2 * M_PI);
+    fprintf(f, "%.6f;%.0f;%.0f\n", t, floor(pinion(t) * k) - floor(pinion(before) * k),
+            floor(gear(t) * k) - floor(gear(before) * k));
+  }
+  right(f, &counts, 1e-5, "summed up", "counts since the row before");
+  f = begin("Encoder resolution: 7200000 counts/rev\nt [s];Pinion [counts];Gear [counts]\n");
+  for (int i = 0; i < ROWS; i++)
+    fprintf(f, "%.6f;%.0f;%.0f\n", i / 4000.0, floor(pinion(i / 4000.0) * lines / (2 * M_PI)),
+            floor(gear(i / 4000.0) * lines / (2 * M_PI)));
+  right(f, NULL, 1e-5, "of the pinion in counts", "counts per turn in the heading");
+  f = begin("t [s];Pinion [counts];Gear [counts]\n");
+  for (int i = 0; i < ROWS; i++)
+    fprintf(f, "%.6f;%.0f;%.0f\n", i / 4000.0, floor(pinion(i / 4000.0) * lines), floor(gear(i / 4000.0) * lines));
+  asked(f, NULL, "/lines", "counts per turn", "counts without it");
+}
+
+static void squares(FILE *f, double rate, int tracks)
+{
+  for (int i = 0; i < 20000; i++) {
+    double t = i / rate, phase[2] = {pinion(t) * 60 / (2 * M_PI), gear(t) * 60 / (2 * M_PI)};
+    fprintf(f, "%.7f", t);
+    for (int m = 0; m < 2; m++)
+      for (int k = 0; k < tracks; k++) {
+        double p = phase[m] - 0.25 * k;
+        fprintf(f, ";%.1f", p - floor(p) < 0.5 ? 4.9 : 0.1);
+      }
+    fputc('\n', f);
+  }
+}
+
+static void test_squares(void)
+{
+  struct eo_layout_choice lines = {.lines = {60, 60}};
+  struct eo_tracks tracks;
+  struct eo_notes notes;
+  struct eo_error error = {0};
+  for (int k = 1; k <= 2; k++) {
+    FILE *f = begin(k == 1 ? "t_s;Pinion_TTL [V];Gear_TTL [V]\n"
+                           : "t;Pinion_A [V];Pinion_B [V];Gear_A [V];Gear_B [V]\n");
+    squares(f, 40000, k);
+    struct eo_recording *r = find(f, &lines, &tracks, &notes, &error);
+    double turns = r ? (double)eo_recording_length(r, 0) / tracks.channel[0].lines : NAN;
+    ok(r && tracks.channel[0].track == EO_TRACK_PULSES && tracks.channel[0].lines == (k == 1 ? 60 : 240) &&
+           fabs(turns - SPEED * 0.5 / (2 * M_PI)) < 0.05,
+       "square waves of %d track%s: %.4g turns%s", k, k == 1 ? "" : "s", turns, r ? "" : error.text);
+    eo_recording_free(r);
+  }
+  FILE *f = begin("t_s;Pinion_TTL [V];Gear_TTL [V]\n");
+  squares(f, 40000, 1);
+  asked(f, NULL, "/lines", "square wave", "square waves without their lines");
+  f = begin("t_s;Pinion_TTL [V];Gear_TTL [V]\n");
+  squares(f, 3000, 1);
+  asked(f, &lines, "/kind", "rows per line", "square waves with few rows per line");
+}
+
+int main(void)
+{
+  fixture_open();
+  test_clocks();
+  test_times();
+  test_units();
+  test_columns();
+  test_counters();
+  test_squares();
+  return fixture_close();
+}

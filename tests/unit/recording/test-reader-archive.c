@@ -1,0 +1,178 @@
+/* Zip files and spreadsheets, made here byte by byte without compression. */
+#include "support/reader-fixture.h"
+
+#include <stdbool.h>
+#include <zlib.h>
+
+static unsigned char bytes[1 << 16];
+static size_t size, directory_size;
+static unsigned char directory[4096];
+static int entries;
+
+static void put(unsigned char *to, size_t *at, uint64_t value, int count)
+{
+  for (int i = 0; i < count; i++)
+    to[(*at)++] = (unsigned char)(value >> 8 * i);
+}
+
+/* A stored file: local header, name, content; and its line in the directory. */
+static void add(const char *name, const char *content)
+{
+  size_t length = strlen(content), at = size;
+  uint32_t sum = (uint32_t)crc32(0, (const unsigned char *)content, (unsigned)length);
+  put(bytes, &size, 0x04034b50, 4);
+  put(directory, &directory_size, 0x02014b50, 4);
+  put(directory, &directory_size, 20, 2);
+  for (int side = 0; side < 2; side++) {
+    unsigned char *to = side ? directory : bytes;
+    size_t *end = side ? &directory_size : &size;
+    put(to, end, 20, 2);
+    put(to, end, 0, 8); /* flags, method, time, date */
+    put(to, end, sum, 4);
+    put(to, end, length, 4);
+    put(to, end, length, 4);
+    put(to, end, strlen(name), 2);
+    put(to, end, 0, 2);
+  }
+  put(directory, &directory_size, 0, 2 + 2 + 2 + 4);
+  put(directory, &directory_size, at, 4);
+  memcpy(directory + directory_size, name, strlen(name));
+  directory_size += strlen(name);
+  memcpy(bytes + size, name, strlen(name));
+  size += strlen(name);
+  memcpy(bytes + size, content, length);
+  size += length;
+  entries++;
+}
+
+static void finish(void)
+{
+  size_t at = size;
+  memcpy(bytes + size, directory, directory_size);
+  size += directory_size;
+  put(bytes, &size, 0x06054b50, 4);
+  put(bytes, &size, 0, 4);
+  put(bytes, &size, (uint64_t)entries, 2);
+  put(bytes, &size, (uint64_t)entries, 2);
+  put(bytes, &size, directory_size, 4);
+  put(bytes, &size, at, 4);
+  put(bytes, &size, 0, 2);
+  write_bytes(bytes, size);
+  size = directory_size = 0;
+  entries = 0;
+}
+
+static struct eo_recording *take(struct eo_notes *notes, struct eo_error *error)
+{
+  struct eo_reader_options options = {.spool_directory = fixture_directory};
+  return read_fixture(&options, notes, error);
+}
+
+static void refuse(const char *words, const char *what)
+{
+  struct eo_error error;
+  struct eo_recording *r = take(NULL, &error);
+  ok(!r && strstr(error.text, words), "%s: %s", what, r ? "was read" : error.text);
+  eo_recording_free(r);
+}
+
+static void test_zip(void)
+{
+  struct eo_error error;
+  struct eo_notes notes = {0};
+  add("run/data.csv", "t;a\n0;1.5\n1;2.5\n2;3.5\n");
+  add("__MACOSX/._data.csv", "x");
+  finish();
+  struct eo_recording *r = take(&notes, &error);
+  ok(r && eo_recording_rows(r) == 3 && cell_of(r, 2, 1) == 3.5 && noted(&notes, "run/data.csv"), "one file in a zip%s",
+     r ? "" : error.text);
+  eo_recording_free(r);
+  add("a.csv", "1;2\n3;4\n");
+  add("b.csv", "1;2\n3;4\n");
+  finish();
+  refuse("holds 2 files (a.csv, b.csv)", "two files in a zip");
+  add("a.zip", "PK\003\004 and so on");
+  finish();
+  refuse("another zip file", "a zip in a zip");
+  add("t.npy", "x");
+  finish();
+  refuse("NumPy", "an archive of arrays");
+  add("a.csv", "1;2\n3;4\n");
+  finish();
+  FILE *file = fopen(fixture_path, "r+");
+  if (!file || fseek(file, 40, SEEK_SET) || fputc('9', file) == EOF || fclose(file))
+    exit(99);
+  refuse("cannot be read", "a wrong check sum");
+}
+
+static void test_workbook(void)
+{
+  struct eo_error error;
+  struct eo_notes notes = {0};
+  add("xl/workbook.xml", "<workbook><workbookPr/></workbook>");
+  add("xl/styles.xml",
+      "<styleSheet><numFmts><numFmt numFmtId=\"170\" formatCode=\"yyyy-mm-dd hh:mm:ss.000\"/></numFmts>"
+      "<cellStyleXfs><xf numFmtId=\"0\"/></cellStyleXfs><cellXfs><xf numFmtId=\"0\"/>"
+      "<xf numFmtId=\"170\"/></cellXfs></styleSheet>");
+  add("xl/sharedStrings.xml", "<sst><si><t>Zeit</t></si><si><r><t>Pinion </t></r><r><t>[deg]</t></r></si></sst>");
+  add("xl/worksheets/sheet1.xml",
+      "<worksheet><sheetData><row r=\"1\"><c r=\"A1\"><v>1</v></c></row></sheetData></worksheet>");
+  add("xl/worksheets/sheet2.xml",
+      "<worksheet><sheetData><row r=\"1\"><c r=\"A1\" t=\"s\"><v>0</v></c><c r=\"C1\" t=\"s\"><v>1</v></c></row>"
+      "<row r=\"2\"><c r=\"A2\" s=\"1\"><v>45356.5</v></c><c r=\"C2\"><v>73.5</v></c></row>"
+      "<row r=\"3\"><c r=\"A3\" s=\"1\"><v>45356.500005787</v></c><c r=\"C3\"><v>74.5</v></c></row>"
+      "<row r=\"4\"><c r=\"A4\" s=\"1\"><v>45356.500011574</v></c><c r=\"B4\" t=\"e\"><v>#N/A</v></c>"
+      "<c r=\"C4\"><v>7.55e1</v></c></row></sheetData></worksheet>");
+  finish();
+  struct eo_recording *r = take(&notes, &error);
+  int last = r ? eo_recording_columns(r) - 1 : 0;
+  ok(r && eo_recording_rows(r) == 3 && cell_of(r, 2, last) == 75.5 && fabs(cell_of(r, 1, 0) - 43200.5) < 1e-3 &&
+         eo_recording_clock(r, 0).epoch == 1709596800000000000,
+     "a workbook: the larger sheet, dates as dates%s", r ? "" : error.text);
+  ok(r && !strcmp(eo_recording_name(r, last), "Pinion") && !strcmp(eo_recording_unit(r, last), "deg"),
+     "and its heading");
+  eo_recording_free(r);
+}
+
+static void test_opendocument(void)
+{
+  struct eo_error error;
+  add("mimetype", "application/vnd.oasis.opendocument.spreadsheet");
+  add("content.xml",
+      "<office:document-content xmlns:office=\"o\" xmlns:table=\"t\" xmlns:text=\"x\"><table:table "
+      "table:name=\"Daten\">"
+      "<table:table-row><table:table-cell office:value-type=\"string\"><text:p>t [s]</text:p></table:table-cell>"
+      "<table:table-cell office:value-type=\"string\"><text:p>a</text:p></table:table-cell></table:table-row>"
+      "<table:table-row><table:table-cell office:value-type=\"float\" office:value=\"0\"><text:p>0,0</text:p>"
+      "</table:table-cell><table:table-cell office:value-type=\"float\" office:value=\"1.25\"/></table:table-row>"
+      "<table:table-row><table:table-cell table:number-columns-repeated=\"2\" office:value-type=\"float\" "
+      "office:value=\"2.5\"/></table:table-row><table:table-row table:number-rows-repeated=\"1048000\">"
+      "<table:table-cell table:number-columns-repeated=\"16384\"/></table:table-row></table:table>"
+      "</office:document-content>");
+  finish();
+  struct eo_recording *r = take(NULL, &error);
+  ok(r && eo_recording_rows(r) == 2 && cell_of(r, 0, 1) == 1.25 && cell_of(r, 1, 0) == 2.5 && cell_of(r, 1, 1) == 2.5,
+     "an OpenDocument spreadsheet%s", r ? "" : error.text);
+  eo_recording_free(r);
+}
+
+static void test_names(void)
+{
+  static const char *const kinds[][2] = {
+      {"MDF     4.10", "ASAM MDF"}, {"PAR1", "Parquet"},           {"\x93NUMPY", "NumPy"}, {"|CF,2,1,1;", "imc FAMOS"},
+      {"RIFF....WAVE", "WAV"},      {"SQLite format 3", "SQLite"}, {"ARROW1", "Arrow"},    {"7z\xbc\xaf", "7z"}};
+  for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
+    write_text(kinds[i][0]);
+    refuse(kinds[i][1], "a kind that is not read is called by its name");
+  }
+}
+
+int main(void)
+{
+  fixture_open();
+  test_zip();
+  test_workbook();
+  test_opendocument();
+  test_names();
+  return fixture_close();
+}

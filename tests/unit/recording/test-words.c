@@ -1,0 +1,130 @@
+/* Dates and times, units, and what a number under a key states, in the spellings that are in use. */
+#include "recording/moment.h"
+#include "recording/stated.h"
+#include "recording/unit.h"
+#include "support/tap.h"
+
+#include <math.h>
+#include <string.h>
+
+static void moment(const char *text, int64_t day, double seconds)
+{
+  struct eo_moment m;
+  bool read = eo_moment_read(text, strlen(text), &m);
+  ok(read && (day < 0 ? !m.has_day : m.has_day && m.day == day) && fabs(m.seconds - seconds) < 1e-9,
+     "%s: day %lld, %.9g s", text, read ? (long long)m.day : -99, read ? m.seconds : NAN);
+}
+
+static void no_moment(const char *text)
+{
+  struct eo_moment m;
+  ok(!eo_moment_read(text, strlen(text), &m), "%s is no moment", text);
+}
+
+static void test_moments(void)
+{
+  const int64_t day = 19787; /* 2024-03-05, by `date -d 2024-03-05 +%s` / 86400 */
+  const double time = 32399.5;
+  ok(eo_moment_day(1970, 1, 1) == 0 && eo_moment_day(2000, 2, 29) == 11016 && eo_moment_day(2024, 3, 5) == day,
+     "days of the calendar");
+  moment("2024-03-05T08:59:59.5Z", day, time);
+  moment("2024-03-05 08:59:59,5", day, time);
+  moment("2024-03-05T09:59:59.5+01:00", day, time);
+  moment("2024/03/05 08:59:59.5", day, time);
+  moment("05.03.2024 08:59:59,500000", day, time);
+  moment("5.3.24 8:59:59.5", day, time);
+  moment("03/05/2024 08:59:59.5 AM", day, time);
+  moment("25/03/2024 8:59:59.5", day + 20, time);
+  moment("3/5/2024 8:59:59.5 PM", day, time + 43200);
+  moment("05-Mar-2024 08:59:59.5", day, time);
+  moment("05-MRZ-24", day, 0);
+  moment("12:00:00 AM", -1, 0);
+  moment("08:59:59:500", -1, time);
+  moment("59:59.5", -1, 3599.5);
+  moment("0 days 00:00:01.25", -1, 1.25);
+  struct eo_moment m;
+  ok(eo_moment_read("2024-03-05T08:59:59.5", 21, &m) && eo_moment_epoch(&m) == 1709629199500000000, "as an epoch");
+  no_moment("12.5");
+  no_moment("05.13.2024");
+  no_moment("2024-02-30");
+  no_moment("13:00:00 PM");
+  no_moment("08:61:00");
+  no_moment("1-2");
+  no_moment("3:4 parts");
+}
+
+static void unit(const char *text, enum eo_quantity quantity, double expected)
+{
+  double factor;
+  enum eo_quantity found = eo_unit_find(text, &factor);
+  ok(found == quantity && fabs(factor / expected - 1) < 1e-12, "unit %s: %d, %.9g", text, (int)found, factor);
+}
+
+static void test_units(void)
+{
+  const double degree = M_PI / 180;
+  unit("[U]", EO_QUANTITY_ANGLE, 2 * M_PI);
+  unit("Umdr.", EO_QUANTITY_ANGLE, 2 * M_PI);
+  unit("cycles", EO_QUANTITY_ANGLE, 2 * M_PI);
+  unit("\"", EO_QUANTITY_ANGLE, degree / 3600);
+  unit("\xe2\x80\xb3", EO_QUANTITY_ANGLE, degree / 3600);
+  unit("'", EO_QUANTITY_ANGLE, degree / 60);
+  unit("\xc2\xb5rad", EO_QUANTITY_ANGLE, 1e-6);
+  unit("\xce\xbcrad", EO_QUANTITY_ANGLE, 1e-6);
+  unit("\xb0", EO_QUANTITY_ANGLE, degree);
+  unit("gon", EO_QUANTITY_ANGLE, M_PI / 200);
+  unit("kS/s", EO_QUANTITY_FREQUENCY, 1e3);
+  unit("U/min", EO_QUANTITY_SPEED, M_PI / 30);
+  unit("min\xe2\x81\xbb\xc2\xb9", EO_QUANTITY_SPEED, M_PI / 30);
+  unit("N\xc2\xb7m", EO_QUANTITY_TORQUE, 1);
+  unit("lbf ft", EO_QUANTITY_TORQUE, 1.3558179483314);
+  unit("nm", EO_QUANTITY_OTHER, 1);
+  unit("S", EO_QUANTITY_NONE, 1);
+  unit("foo", EO_QUANTITY_NONE, 1);
+  char name[32], text[32];
+  eo_unit_split("Winkel in Grad", name, sizeof name, text, sizeof text);
+  ok(!strcmp(name, "Winkel") && !strcmp(text, "Grad"), "split at \"in\"");
+  eo_unit_split("Pinion (encoder 1)", name, sizeof name, text, sizeof text);
+  ok(!strcmp(name, "Pinion (encoder 1)") && !*text, "a name in brackets is no unit");
+  eo_unit_split("Pinion [foo]", name, sizeof name, text, sizeof text);
+  ok(!strcmp(name, "Pinion") && !strcmp(text, "foo"), "square brackets hold a unit, known or not");
+}
+
+static void stated(const char *key, double number, const char *unit, enum eo_stated_kind kind, double value)
+{
+  struct eo_stated s = eo_stated_read(key, number, unit);
+  ok(s.kind == kind && (!kind || fabs(s.value / value - 1) < 1e-12), "%s %g %s: %d, %.9g", key, number, unit,
+     (int)s.kind, s.value);
+}
+
+static void test_stated(void)
+{
+  stated("Sampling rate [kHz]", 4, "", EO_STATED_INTERVAL, 2.5e-4);
+  stated("Sample Interval", 0.25, "ms", EO_STATED_INTERVAL, 2.5e-4);
+  stated("Sampling interval [us]", 250, "", EO_STATED_INTERVAL, 2.5e-4);
+  stated("Samples/s", 4000, "", EO_STATED_INTERVAL, 2.5e-4);
+  stated("Samples per second", 4000, "", EO_STATED_INTERVAL, 2.5e-4);
+  stated("Scan rate", 4000, "Hz", EO_STATED_INTERVAL, 2.5e-4);
+  stated("Delta X", 2.5e-4, "", EO_STATED_INTERVAL, 2.5e-4);
+  stated("wf_increment", 2.5e-4, "", EO_STATED_INTERVAL, 2.5e-4);
+  stated("dt_ms", 0.25, "", EO_STATED_INTERVAL, 2.5e-4);
+  stated("Interval", 4, "kHz", EO_STATED_INTERVAL, 2.5e-4);
+  stated("Rate pinion", 4000, "Hz", EO_STATED_INTERVAL, 2.5e-4);
+  stated("Timebase", 80, "MHz", EO_STATED_TICK, 1.25e-8);
+  stated("Encoder resolution", 18000, "counts/rev", EO_STATED_TURN, 18000);
+  stated("Pinion", 3600, "pulses per revolution", EO_STATED_TURN, 3600);
+  stated("scale_factor", 4e-6, "", EO_STATED_SCALE, 4e-6);
+  stated("Operators", 4, "", EO_STATED_NOTHING, 0);
+  stated("Sampling rate", -4, "Hz", EO_STATED_NOTHING, 0);
+  ok(eo_stated_read("Rate gear", 1, "Hz").member == 1 && eo_stated_read("fs_pinion", 1, "Hz").member == 0,
+     "whose it is");
+  ok(eo_stated_begin("Start time") && eo_stated_begin("T0") && !eo_stated_begin("Duration"), "when it began");
+}
+
+int main(void)
+{
+  test_moments();
+  test_units();
+  test_stated();
+  return tap_done();
+}
