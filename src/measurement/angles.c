@@ -7,6 +7,9 @@
 #include "measurement/sampler.h"
 
 static const double DEGREES = 180 / M_PI;
+static const double UNEVEN =
+    0.2; /* range of the speed in a block, relative: above, steps are judged by their neighbours */
+static const double MOVING = 0.1; /* of the fastest block: slower ones do not tell the usual speed */
 enum { MOST_LOSSES = 3, AHEAD = 4, ROOM = EO_SAMPLER_BLOCK + AHEAD };
 
 static const char *const member_name[2] = {"pinion", "gear"};
@@ -15,6 +18,7 @@ static const char *const member_name[2] = {"pinion", "gear"};
 struct usual {
   double rate[2], interval;
   double limit[2], fine[2]; /* of what a row lost, of what a few counts lost stand out of */
+  bool uneven;              /* the speed changes much among the samples */
 };
 
 struct maker {
@@ -25,8 +29,11 @@ struct maker {
   struct eo_scan *scan; /* owned */
   struct eo_sampler sampler;
   struct eo_sample sample[ROOM];
-  int held;              /* samples not yet passed on */
-  struct eo_sample last; /* good one before them */
+  int held;                       /* samples not yet passed on */
+  struct eo_sample last;          /* good one before them */
+  struct eo_sample recent[AHEAD]; /* the ones before that, the oldest at kept % AHEAD */
+  int64_t kept;
+  struct eo_sample low, high; /* of all good ones: those with the extreme pinion angles */
   bool begun;
   struct usual usual; /* of the last block that is long enough to tell */
   bool known;
@@ -42,7 +49,6 @@ struct maker {
     double jump;
   } loss[MOST_LOSSES];
   int64_t gaps, gap_row, spikes, spike_row;
-  double first[2], end[2]; /* rad */
   bool wrapped[2];
 };
 
@@ -136,7 +142,7 @@ static void judge_still(struct maker *m, int channel)
 static void judge_turns(struct maker *m, int channel)
 {
   const struct eo_scan_column *c = &m->scan->column[channel][0];
-  double scale = m->tracks->channel[channel].scale, period = eo_scan_period(c), turn = period * scale;
+  double scale = m->tracks->channel[channel].scale, period = eo_scan_period(c, 2 * M_PI / scale), turn = period * scale;
   m->sampler.scale[channel] = scale;
   if (fabs(scale - 1) < 1e-9)
     eo_findings_add(m->findings, EO_FINDING_UNITS, EO_SEVERITY_NOTE, channel, scale, "The %s angle is read as radians.",
@@ -153,6 +159,16 @@ static void judge_turns(struct maker *m, int channel)
     turn = 2 * M_PI;
   } else if (fabs(turn / (2 * M_PI) - 1) < 0.05) {
     turn = 2 * M_PI;
+  }
+  int64_t index = eo_scan_index_row(c, turn / m->sampler.scale[channel]);
+  if (index) {
+    m->sampler.begin = index > m->sampler.begin ? index : m->sampler.begin;
+    at_row(m,
+           eo_findings_add(m->findings, EO_FINDING_WRAPPED, EO_SEVERITY_NOTE, channel, (double)index,
+                           "The %s counter starts anew at its index pulse before row %lld; what stands before that is "
+                           "part of a turn without a zero and is left out.",
+                           member_name[channel], (long long)index + 1),
+           index);
   }
   m->sampler.period[channel] = turn;
   m->wrapped[channel] = true;
@@ -254,6 +270,7 @@ static double step_of(const struct eo_sample *from, const struct eo_sample *to, 
 static void learn(struct maker *m, const struct eo_sample *s, int count, struct usual *u)
 {
   int lag = count / 8 > 0 ? count / 8 : 1, n = 0;
+  bool uneven = false;
   for (int i = 1; i < count; i++)
     m->scratch[n++] = s[i].time - s[i - 1].time;
   u->interval = eo_scan_quantile(m->scratch, n, 0.5);
@@ -262,6 +279,8 @@ static void learn(struct maker *m, const struct eo_sample *s, int count, struct 
     for (int i = lag; i < count; i++)
       m->scratch[n++] = step_of(&s[i - lag], &s[i], c) / (s[i].time - s[i - lag].time);
     u->rate[c] = eo_scan_quantile(m->scratch, n, 0.5);
+    double slow = m->scratch[(int)(0.05 * (n - 1))], fast = m->scratch[(int)(0.95 * (n - 1))];
+    uneven = uneven || fast - slow > UNEVEN * fmax(fabs(slow), fabs(fast));
     n = 0;
     for (int i = 1; i < count; i++)
       m->scratch[n++] = fabs(step_of(&s[i - 1], &s[i], c) - u->rate[c] * (s[i].time - s[i - 1].time));
@@ -270,6 +289,7 @@ static void learn(struct maker *m, const struct eo_sample *s, int count, struct 
     u->limit[c] = fmax(fmax(4 * spread, 0.4 * row), 1.6 * m->quantum[c]);
     u->fine[c] = fmax(fmax(8 * spread, 3 * most), 1.6 * m->quantum[c]);
   }
+  u->uneven = uneven;
 }
 
 /* How far the step between two samples is from the usual one. */
@@ -284,6 +304,54 @@ static bool odd_step(const struct usual *u, const double limit[2], const struct 
     odd = odd || fabs(excess[c]) > limit[c] + 0.02 * fabs(u->rate[c]) * slack;
   }
   return odd;
+}
+
+/* What is usual between two samples, with a speed that holds on one side of them. */
+static bool fits_beside(const struct usual *u, const struct eo_sample *from, const struct eo_sample *to,
+                        const struct eo_sample *a, const struct eo_sample *b, struct usual *here)
+{
+  double time = b->time - a->time, passed = to->time - from->time;
+  bool fits = time > 0;
+  *here = *u;
+  for (int c = 0; c < 2 && time > 0; c++) {
+    here->rate[c] = step_of(a, b, c) / time;
+    here->limit[c] = fmax(u->limit[c], 0.4 * fabs(here->rate[c]) * u->interval);
+    fits = fits && fabs(step_of(from, to, c) - here->rate[c] * passed) <= here->limit[c];
+  }
+  return fits;
+}
+
+/* A step between the speed before and the speed after it, in both channels: the shafts start or stop there. */
+static bool lies_between(const struct usual *before, const struct usual *after, const struct eo_sample *from,
+                         const struct eo_sample *to)
+{
+  double time = to->time - from->time;
+  bool between = true;
+  for (int c = 0; c < 2; c++) {
+    double step = step_of(from, to, c), low = fmin(before->rate[c], after->rate[c]) * time,
+           high = fmax(before->rate[c], after->rate[c]) * time, slack = fmax(before->limit[c], after->limit[c]) / 4;
+    between = between && step >= low - slack && step <= high + slack;
+  }
+  return between;
+}
+
+/* Where the speed changes within a block, a step that goes on as those before it or as those after it is none. *here:
+   what is usual there. */
+static bool odd_beside(const struct maker *m, const struct usual *u, const struct eo_sample *s, int left,
+                       struct usual *here, double excess[2])
+{
+  struct usual after;
+  int ahead = left - 1 < AHEAD - 1 ? left - 1 : AHEAD - 1;
+  const struct eo_sample *oldest = &m->recent[m->kept < AHEAD ? 0 : m->kept % AHEAD];
+  bool before = m->kept > 1;
+  *here = *u;
+  if (before && fits_beside(u, &m->last, s, oldest, &m->last, here))
+    return false;
+  if (ahead > 0 && fits_beside(u, &m->last, s, s, s + ahead, &after))
+    return false;
+  if (before && ahead > 0 && u->uneven && lies_between(here, &after, &m->last, s))
+    return false;
+  return odd_step(here, here->limit, &m->last, s, excess);
 }
 
 /* Both channels went on by the same time: rows are missing, and time was written on as if they were not. Else one
@@ -316,12 +384,12 @@ static enum eo_code keep(struct maker *m, struct eo_angles *a, struct eo_sample 
                          struct eo_error *error)
 {
   double *row = out[*count];
-  if (!m->begun) {
-    m->first[0] = s->angle[0];
-    m->first[1] = s->angle[1];
-  }
+  if (!m->begun || s->angle[0] < m->low.angle[0])
+    m->low = *s;
+  if (!m->begun || s->angle[0] > m->high.angle[0])
+    m->high = *s;
   m->begun = true;
-  m->last = *s;
+  m->last = m->recent[m->kept++ % AHEAD] = *s;
   row[0] = s->time + m->delay;
   row[1] = s->angle[0];
   row[2] = s->angle[1];
@@ -333,6 +401,8 @@ static enum eo_code keep(struct maker *m, struct eo_angles *a, struct eo_sample 
 
 static bool note_block(struct maker *m, const struct usual *u)
 {
+  if (u->rate[0] == 0 || u->rate[1] == 0)
+    return true;
   if (m->blocks == m->block_room) {
     int room = m->block_room ? 2 * m->block_room : 64;
     double *bigger = realloc(m->rate[0], sizeof *bigger * (size_t)room * 3);
@@ -391,8 +461,11 @@ static enum eo_code pass_on(struct maker *m, struct eo_angles *a, bool final, do
   }
   for (; i < until && !code; i++) {
     struct eo_sample *s = &m->sample[i];
-    if (m->known && m->begun && odd_step(u, u->limit, &m->last, s, excess)) {
-      int skip = spike_length(u, u->limit, &m->last, s, m->held - i);
+    struct usual here = *u;
+    bool judge = m->known && m->begun;
+    if (judge && (u->uneven || odd_step(u, u->limit, &m->last, s, excess)) &&
+        odd_beside(m, u, s, m->held - i, &here, excess)) {
+      int skip = spike_length(&here, here.limit, &m->last, s, m->held - i);
       if (skip) {
         if (!m->spikes)
           m->spike_row = s->row;
@@ -400,10 +473,10 @@ static enum eo_code pass_on(struct maker *m, struct eo_angles *a, bool final, do
         i += skip - 1;
         continue;
       }
-      judge_jump(m, a, u, excess, s);
-    } else if (m->known && m->begun && odd_step(u, u->fine, &m->last, s, excess)) {
+      judge_jump(m, a, &here, excess, s);
+    } else if (judge && !u->uneven && odd_step(u, u->fine, &m->last, s, excess)) {
       note_lost_counts(m, u, excess, s, m->held - i);
-    } else if (m->known && m->begun && s->time - m->last.time > 1.5 * u->interval && s->row - m->last.row == 1) {
+    } else if (judge && s->time - m->last.time > 1.5 * u->interval && s->row - m->last.row == 1) {
       a->dropped += llround((s->time - m->last.time) / u->interval) - 1;
       if (!m->gaps++)
         m->gap_row = s->row;
@@ -473,19 +546,31 @@ static void judge_jumps(struct maker *m, const struct eo_angles *a)
                     "There are %d such jumps altogether.", a->slips);
 }
 
+/* The median over the blocks that move. */
+static double usual_rate(double *rate, int blocks)
+{
+  double fastest = 0;
+  int moving = 0;
+  for (int i = 0; i < blocks; i++)
+    fastest = fmax(fastest, fabs(rate[i]));
+  for (int i = 0; i < blocks; i++)
+    if (fabs(rate[i]) > MOVING * fastest)
+      rate[moving++] = rate[i];
+  return eo_scan_quantile(rate, moving, 0.5);
+}
+
 static void conclude(struct maker *m, struct eo_angles *a)
 {
-  double advance = fabs(m->last.angle[0] - m->first[0]);
+  double advance = m->high.angle[0] - m->low.angle[0];
   a->rows = eo_recording_rows(a->series);
   a->interval = m->usual.interval;
   a->from[0] = 0;
   a->from[1] = 1;
   a->factor[0] = a->factor[1] = 1;
   bool even = a->slips == 0 && advance > 0;
-  a->ratio = even ? (m->last.angle[1] - m->first[1]) / (m->last.angle[0] - m->first[0])
-                  : eo_scan_quantile(m->proportion, m->blocks, 0.5);
+  a->ratio = even ? (m->high.angle[1] - m->low.angle[1]) / advance : eo_scan_quantile(m->proportion, m->blocks, 0.5);
   for (int c = 0; c < 2; c++) {
-    a->rate[c] = eo_scan_quantile(m->rate[c], m->blocks, 0.5);
+    a->rate[c] = usual_rate(m->rate[c], m->blocks);
     a->wrapped[c] = m->wrapped[c];
   }
   if (!even)

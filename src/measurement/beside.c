@@ -4,6 +4,8 @@
 #include <stdlib.h>
 
 enum { SIDEBANDS = 2 }; /* whole turns that count as such */
+static const double REPEATS =
+    2.5; /* times the power between the orders: the median of a dozen reaches it by chance in 1 % */
 
 void eo_beside_init(struct eo_beside *b, const int teeth[2], int harmonics, double turns)
 {
@@ -112,8 +114,11 @@ double eo_beside_sigma(const struct eo_beside *b, int h, double residual)
   for (int i = 0; i < 2 * EO_BESIDE_BINS; i++)
     if (!is_sideband(b, (i % EO_BESIDE_BINS + EO_BESIDE_NEAREST) / b->turns))
       power[n++] = power_at(b, h, i);
-  if (n >= 6)
-    most = fmax(mean_power(power, n), fmax(repeating_power(b, h, EO_PINION), repeating_power(b, h, EO_GEAR)));
+  if (n >= 6) {
+    double repeating = fmax(repeating_power(b, h, EO_PINION), repeating_power(b, h, EO_GEAR));
+    most = mean_power(power, n);
+    most = repeating > REPEATS * most ? repeating : most;
+  }
   return sqrt(2 * most) / rows;
 }
 

@@ -23,9 +23,10 @@ struct eo_beside {
 void eo_beside_init(struct eo_beside *beside, const int teeth[2], int harmonics, double turns);
 void eo_beside_add(struct eo_beside *beside, double theta, double residual);
 
-/* Standard deviation of the cosine and sine amplitudes of mesh order h + 1: from the largest of three robust mean
-   powers, between the orders and at whole turns of either shaft beyond the sidebands (steps of an encoder that is
-   sampled in step with its shaft only show there). residual: RMS, stands in where too few bins are free of sidebands.
+/* Standard deviation of the cosine and sine amplitudes of mesh order h + 1: from a robust mean power
+   between the orders, or, where that is clearly larger, at whole turns of either shaft beyond the sidebands (steps of
+   an encoder that is sampled in step with its shaft only show there). residual: RMS, stands in where too few bins are
+   free of sidebands.
  */
 double eo_beside_sigma(const struct eo_beside *beside, int h, double residual);
 

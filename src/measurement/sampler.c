@@ -62,7 +62,7 @@ enum eo_code eo_sampler_next(struct eo_sampler *s, struct eo_sample *sample, int
       double angle[2] = {raw_angle(s, 0, row), raw_angle(s, 1, row)};
       bool usable = isfinite(time) && isfinite(angle[0]) && isfinite(angle[1]);
       bool repeated = s->started && time == s->time && angle[0] == s->raw[0] && angle[1] == s->raw[1];
-      if (!usable || repeated)
+      if (!usable || repeated || s->next + i < s->begin)
         continue;
       sample[*count] = (struct eo_sample){time, {unwrap(s, 0, angle[0]), unwrap(s, 1, angle[1])}, s->next + i};
       s->time = time;

@@ -19,6 +19,7 @@ struct eo_sampler {
   bool count_rows;                  /* time is the number of the row times the interval */
   double interval;                  /* s */
   double scale[2], period[2]; /* [channel] rad per unit of an angle; rad after which it starts again, 0: it does not */
+  int64_t begin;              /* rows before it are left out */
   int64_t next;               /* row */
   int64_t turns[2];           /* seen so far */
   bool started;

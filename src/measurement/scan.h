@@ -13,14 +13,18 @@ enum { EO_SCAN_JUMPS = 4096, EO_SCAN_COLUMNS = 5 };
 /* One column of values, in its own unit. */
 struct eo_scan_column {
   double low, high;
-  double typical;               /* size of a step: mean of the smaller nine tenths over the first rows */
+  double typical;               /* size of a step: mean of the smaller nine tenths in samples of all rows */
   double quantum;               /* smallest step that is not zero there */
   int64_t at_low, at_high;      /* values equal to low, to high */
-  int64_t longest, longest_row; /* run of equal values */
+  int64_t longest, longest_row; /* run of equal values while the other channel goes on */
   int64_t run;
+  double travel; /* of the other channel in that run, its own typical steps */
   double before;
   int jumps; /* steps of more than ten typical ones, all; the first EO_SCAN_JUMPS are kept */
   double jump[EO_SCAN_JUMPS];
+  int falls;          /* of the jumps, those downwards */
+  int64_t landing[2]; /* first row at which the values step back to 0: from above, from below; -1: never */
+  double landed[2];   /* size of that step */
 };
 
 struct eo_scan {
@@ -29,7 +33,7 @@ struct eo_scan {
   int64_t backward, standing, duplicate,
       time_row;   /* rows whose time lies before, at that of the row before; with the same values too */
   int64_t steady; /* of the first two, those at which the first angle goes on as usual */
-  double time_first, time_last, interval; /* s; typical step of time over the first rows */
+  double time_first, time_last, interval; /* s; typical step of time */
   struct eo_scan_column column[2][2];     /* [member][track] */
 };
 
@@ -37,8 +41,13 @@ struct eo_scan {
 enum eo_code eo_scan_run(struct eo_scan *scan, const struct eo_recording *recording, const struct eo_tracks *tracks,
                          const struct eo_progress *progress, struct eo_error *error);
 
-/* The turn after which a column starts again, in its unit; NaN when it does not. */
-double eo_scan_period(const struct eo_scan_column *column);
+/* The turn after which a column starts again, in its unit; NaN when it does not. turn: of its unit, 0: not known. The
+   first turn may be a part of one, up to an index pulse. */
+double eo_scan_period(const struct eo_scan_column *column, double turn);
+
+/* The row of the index pulse that ended a first turn in part, so that the values before it have another zero; 0: none.
+ */
+int64_t eo_scan_index_row(const struct eo_scan_column *column, double period);
 
 /* The part of the samples of a sine that is cut off at its extremes; 0 for a clean one. */
 double eo_scan_clipped(const struct eo_scan_column *column, int64_t rows);

@@ -8,20 +8,78 @@
 enum { STREAM_PLACES, STREAM_NOISE, STREAM_JITTER, STREAM_SKEW, STREAM_TRACKS };
 
 static const double DEGREES = 180 / M_PI;
+static const double STEP_TURNS = 0.25; /* turns in which the speed changes from one steady state to the other */
+static const double SQUARE_HIGH = 4.8, SQUARE_LOW = 0.2; /* V */
+static const double DOUBLE_PULSE = 0.01;                 /* lines between a pulse and its double */
 
+enum content { TIME, ANGLE, TRACK, PULSE, TORQUE, SPEED };
+
+/* What a column holds; channel: whose clock and values. */
+struct column {
+  enum content content;
+  int channel, track;
+};
+
+static bool own_clock(const struct eo_synthetic *s)
+{
+  return s->gear_rate > 0 || s->gear_delay != 0;
+}
+
+static int list_columns(const struct eo_synthetic *s, struct column list[EO_SYNTHETIC_COLUMNS])
+{
+  int count = 0, tracks = s->output == EO_SYNTHETIC_SINE_COSINE || s->output == EO_SYNTHETIC_SQUARE ? 2 : 1;
+  bool pulses = s->output == EO_SYNTHETIC_PULSES;
+  for (int channel = 0; channel < 2; channel++) {
+    if (!pulses && (channel == 0 || own_clock(s)))
+      list[count++] = (struct column){TIME, channel, 0};
+    for (int track = 0; track < tracks; track++)
+      list[count++] = (struct column){pulses ? PULSE : tracks == 2 ? TRACK : ANGLE, channel, track};
+  }
+  if (s->torque != 0 && !pulses)
+    list[count++] = (struct column){TORQUE, 0, 0};
+  if (s->shows_speed && !pulses)
+    list[count++] = (struct column){SPEED, 0, 0};
+  return count;
+}
+
+static double rate_of(const struct eo_synthetic *s, int channel)
+{
+  return channel == EO_GEAR && s->gear_rate > 0 ? s->gear_rate : s->sample_rate;
+}
+
+/* Of the way there. */
 static double duration(const struct eo_synthetic *s)
 {
   return 2 * M_PI * s->turns / s->speed;
 }
 
-/* The pinion's angle without vibration. */
+static double whole_duration(const struct eo_synthetic *s)
+{
+  return s->rest[0] + duration(s) * (s->turn_back ? 2 : 1) + s->rest[1];
+}
+
+static double log_cosh(double x)
+{
+  return fabs(x) + log1p(exp(-2 * fabs(x))) - M_LN2;
+}
+
+/* The pinion's angle without vibration: speed (1 + drift (t/T - 1/2) + swing sin + step/2 tanh) integrated, held at
+   rests, run through backwards on the way back. */
 static double smooth(const struct eo_synthetic *s, double time)
 {
-  double total = duration(s), x = time / total,
-         start = 2 * M_PI * eo_random_unit(eo_random_at(s->seed, STREAM_PLACES, 0, 0), 0);
-  double rate = s->swing_turns > 0 ? s->speed / s->swing_turns : 0;
+  double total = duration(s), start = 2 * M_PI * eo_random_unit(eo_random_at(s->seed, STREAM_PLACES, 0, 0), 0);
+  time -= s->rest[0];
+  if (s->turn_back && time > total)
+    time = 2 * total - time;
+  if (s->rest[0] > 0 || s->turn_back)
+    time = fmax(time, 0);
+  if (s->rest[1] > 0 && !s->turn_back)
+    time = fmin(time, total);
+  double x = time / total, rate = s->swing_turns > 0 ? s->speed / s->swing_turns : 0;
   double slow = rate > 0 ? s->swing / rate * (1 - cos(rate * time)) : 0;
-  return start + s->speed * (time + s->drift * total * (x * x - x) / 2 + slow);
+  double change = 2 * M_PI / s->speed * STEP_TURNS; /* s, of the tanh */
+  double step = s->step / 2 * change * (log_cosh((time - total / 2) / change) - log_cosh(total / 2 / change));
+  return start + s->speed * (time + s->drift * total * (x * x - x) / 2 + slow + (s->step != 0 ? step : 0));
 }
 
 static double vibration(const struct eo_synthetic *s, double theta)
@@ -72,9 +130,9 @@ static int64_t shown_row(const struct eo_synthetic *s, int64_t row, int channel)
 static double channel_angle(const struct eo_synthetic *s, int64_t row, int channel)
 {
   int64_t at = s->fault == EO_FAULT_CONSTANT && channel == EO_GEAR ? 0 : shown_row(s, row, channel);
-  double time = (double)at / s->sample_rate + s->jitter * draw(s, STREAM_JITTER, at, 0);
+  double time = (double)at / rate_of(s, channel) + s->jitter * draw(s, STREAM_JITTER, at, 0);
   if (channel == EO_GEAR)
-    time += s->skew * draw(s, STREAM_SKEW, at, 0);
+    time += s->gear_delay + s->skew * draw(s, STREAM_SKEW, at, 0);
   double angle = shown_angle(s, channel, time) + s->noise * draw(s, STREAM_NOISE, at, channel);
   if (channel == EO_GEAR && s->fault == EO_FAULT_SPIKE && row == s->row)
     angle += 0.1;
@@ -85,23 +143,47 @@ static double channel_angle(const struct eo_synthetic *s, int64_t row, int chann
 
 /* ---- rows ---- */
 
-static double written_angle(const struct eo_synthetic *s, double angle, int channel)
+/* The angle at the index pulse before it. */
+static double turn_begin(double angle)
 {
-  double step = s->interpolation > 0 ? 2 * M_PI / ((double)s->lines[channel] * s->interpolation) : 0;
+  return 2 * M_PI * floor(angle / (2 * M_PI));
+}
+
+static double step_of(const struct eo_synthetic *s, int channel)
+{
+  return s->interpolation > 0 ? 2 * M_PI / ((double)s->lines[channel] * s->interpolation) : 0;
+}
+
+/* Counts since the encoder was switched on, or since the last index pulse once one has come. */
+static double written_count(const struct eo_synthetic *s, double angle, int channel)
+{
+  double step = step_of(s, channel), begin = shown_angle(s, channel, 0);
+  if (s->index)
+    begin = fabs(turn_begin(angle) - turn_begin(begin)) > 1 ? turn_begin(angle) : begin;
+  return s->index ? floor((angle - begin) / step) : floor(angle / step + 0.5);
+}
+
+static double written_angle(const struct eo_synthetic *s, int64_t row, int channel)
+{
+  double angle = channel_angle(s, row, channel), step = step_of(s, channel);
+  if (s->output == EO_SYNTHETIC_COUNTS)
+    return written_count(s, step * floor(angle / step), channel);
+  if (s->output == EO_SYNTHETIC_INCREMENTS)
+    return row ? floor(angle / step) - floor(channel_angle(s, row - 1, channel) / step) : 0;
   if (step > 0)
     angle = step * floor(angle / step);
-  if (s->output == EO_SYNTHETIC_COUNTS)
-    return floor(angle / step + 0.5);
   if (s->wrapped)
-    angle -= 2 * M_PI * floor(angle / (2 * M_PI));
+    angle -= turn_begin(angle);
   bool in_radians = s->radians || s->fault == EO_FAULT_RADIANS ||
                     (s->fault == EO_FAULT_RADIANS_GEAR && channel == EO_GEAR);
   return in_radians ? angle : DEGREES * angle;
 }
 
-static double written_track(const struct eo_synthetic *s, double angle, int64_t row, int channel, int track)
+static double written_track(const struct eo_synthetic *s, int64_t row, int channel, int track)
 {
-  double phase = angle * s->lines[channel], size = s->amplitude * (track ? 1 : 1 + s->gain);
+  double phase = channel_angle(s, row, channel) * s->lines[channel], size = s->amplitude * (track ? 1 : 1 + s->gain);
+  if (s->output == EO_SYNTHETIC_SQUARE)
+    return (track ? cos(phase) : sin(phase)) >= 0 ? SQUARE_HIGH : SQUARE_LOW;
   double value = (track ? cos(phase - s->phase) : sin(phase)) * size + s->offset * s->amplitude * (track ? -0.5 : 1);
   value += s->track_noise * draw(s, STREAM_TRACKS, row, 2 * channel + track);
   if (s->fault == EO_FAULT_SATURATED)
@@ -109,106 +191,167 @@ static double written_track(const struct eo_synthetic *s, double angle, int64_t 
   return s->track_step > 0 ? s->track_step * round(value / s->track_step) : value;
 }
 
-static double written_time(const struct eo_synthetic *s, int64_t row)
+static double written_time(const struct eo_synthetic *s, int64_t row, int channel)
 {
   int64_t at = s->fault == EO_FAULT_DROPPED ? shown_row(s, row, EO_PINION) : row;
   if (s->fault == EO_FAULT_TIME && row >= s->row)
     at -= s->size > 0 ? s->size : 10;
-  return (double)at / s->sample_rate;
+  return (double)at / rate_of(s, channel) + (channel == EO_GEAR ? s->gear_delay : 0);
 }
 
-/* The time at which line `pulse` of an encoder passes, by secants: the angle is all but straight. */
-static double pulse_time(const struct eo_synthetic *s, int channel, int64_t pulse)
+/* The time at which an encoder's line passes, by secants: the angle goes one way. */
+static double passing_time(const struct eo_synthetic *s, int channel, double line)
 {
-  double step = 2 * M_PI / s->lines[channel], first = ceil(shown_angle(s, channel, 0) / step);
-  double wanted = step * (first + (double)pulse),
+  double step = 2 * M_PI / s->lines[channel], first = ceil(shown_angle(s, channel, s->rest[0]) / step);
+  double wanted = step * (first + line),
          rate = channel == EO_GEAR ? s->speed * s->teeth[EO_PINION] / s->teeth[EO_GEAR] : s->speed;
-  double time = (wanted - shown_angle(s, channel, 0)) / rate;
-  for (int i = 0; i < 30; i++) {
+  double time = s->rest[0] + (wanted - shown_angle(s, channel, s->rest[0])) / rate;
+  for (int i = 0; i < 400; i++) {
     double off = wanted - shown_angle(s, channel, time);
     time += off / rate;
     if (fabs(off) < 1e-14 * fabs(wanted))
       break;
   }
-  return time + s->jitter * draw(s, STREAM_JITTER, pulse, channel);
+  return time;
 }
 
 static int64_t pulses_of(const struct eo_synthetic *s, int channel)
 {
   double ratio = channel == EO_GEAR ? (double)s->teeth[EO_PINION] / s->teeth[EO_GEAR] : 1;
-  return (int64_t)(s->turns * ratio * s->lines[channel]) - 1;
+  double teeth = s->lines[channel] - s->missing[channel], turns = s->turns * ratio;
+  int64_t pulses = (int64_t)(turns * teeth) - (s->missing[channel] ? (int64_t)teeth : 1);
+  if (channel == EO_GEAR && s->fault == EO_FAULT_MISSED_PULSE)
+    pulses -= s->size;
+  return pulses + (channel == EO_GEAR && s->fault == EO_FAULT_DOUBLE_PULSE);
 }
 
-static void fill_row(const struct eo_synthetic *s, int64_t row, double *value)
+/* The pulse-th time that the wheel gives: teeth that are missing and faults left out or put in. */
+static double pulse_time(const struct eo_synthetic *s, int channel, int64_t pulse)
 {
-  int swapped = s->fault == EO_FAULT_SWAPPED;
-  bool empty = s->fault == EO_FAULT_NAN && row >= s->row && row < s->row + (s->size > 0 ? s->size : 1);
-  if (s->output == EO_SYNTHETIC_PULSES) {
-    for (int channel = 0; channel < 2; channel++)
-      value[channel ^ swapped] = row < pulses_of(s, channel) ? pulse_time(s, channel, row) : NAN;
-    return;
+  int64_t teeth = s->lines[channel] - s->missing[channel];
+  double extra = 0;
+  if (channel == EO_GEAR && pulse >= s->row && s->fault == EO_FAULT_MISSED_PULSE)
+    pulse += s->size;
+  if (channel == EO_GEAR && pulse > s->row && s->fault == EO_FAULT_DOUBLE_PULSE) {
+    extra = pulse == s->row + 1 ? DOUBLE_PULSE : 0;
+    pulse--;
   }
-  value[0] = written_time(s, row);
-  for (int channel = 0; channel < 2; channel++) {
-    double angle = channel_angle(s, row, channel);
-    int place = channel ^ swapped;
-    if (s->output == EO_SYNTHETIC_SINE_COSINE) {
-      value[1 + 2 * place] = written_track(s, angle, row, channel, 0);
-      value[2 + 2 * place] = written_track(s, angle, row, channel, 1);
-    } else {
-      value[1 + place] = written_angle(s, angle, channel);
-    }
+  double line = (double)(pulse / teeth * s->lines[channel] + pulse % teeth) + extra;
+  return passing_time(s, channel, line) + s->jitter * draw(s, STREAM_JITTER, pulse, channel);
+}
+
+static int64_t rows_of(const struct eo_synthetic *s, int channel)
+{
+  double delay = channel == EO_GEAR ? s->gear_delay : 0;
+  return s->output == EO_SYNTHETIC_PULSES ? pulses_of(s, channel)
+                                          : (int64_t)((whole_duration(s) - delay) * rate_of(s, channel)) + 1;
+}
+
+static double cell(const struct eo_synthetic *s, const struct column *c, int64_t row)
+{
+  int channel = c->content == TIME ? c->channel : c->channel ^ (s->fault == EO_FAULT_SWAPPED);
+  double time = (double)row / s->sample_rate, moment = 1e-3 / s->speed;
+  if (row >= rows_of(s, channel))
+    return NAN;
+  switch (c->content) {
+  case TIME:
+    return written_time(s, row, channel);
+  case ANGLE:
+    return written_angle(s, row, channel);
+  case TRACK:
+    return written_track(s, row, channel, c->track);
+  case PULSE:
+    return pulse_time(s, channel, row);
+  case TORQUE:
+    return s->torque * (1 + s->torque_change * (time / whole_duration(s) - 0.5));
+  case SPEED:
+    break;
   }
-  if (empty)
-    value[2] = NAN;
+  return 30 / M_PI * (smooth(s, time + moment) - smooth(s, time - moment)) / (2 * moment);
 }
 
 void eo_synthetic_fill(const struct eo_synthetic *s, int64_t first, int64_t count, double *rows)
 {
-  int columns = eo_synthetic_columns(s);
-  for (int64_t i = 0; i < count; i++)
-    fill_row(s, first + i, rows + i * columns);
+  struct column list[EO_SYNTHETIC_COLUMNS];
+  int columns = list_columns(s, list);
+  for (int64_t i = 0; i < count; i++) {
+    int64_t row = first + i;
+    bool empty = s->fault == EO_FAULT_NAN && row >= s->row && row < s->row + (s->size > 0 ? s->size : 1);
+    for (int c = 0; c < columns; c++)
+      rows[i * columns + c] = cell(s, &list[c], row);
+    if (empty && columns > 2)
+      rows[i * columns + 2] = NAN;
+  }
 }
 
 int64_t eo_synthetic_rows(const struct eo_synthetic *s)
 {
-  if (s->output == EO_SYNTHETIC_PULSES)
-    return pulses_of(s, 0) > pulses_of(s, 1) ? pulses_of(s, 0) : pulses_of(s, 1);
-  return (int64_t)(duration(s) * s->sample_rate) + 1;
+  return rows_of(s, 0) > rows_of(s, 1) ? rows_of(s, 0) : rows_of(s, 1);
 }
 
 int eo_synthetic_columns(const struct eo_synthetic *s)
 {
-  return s->output == EO_SYNTHETIC_PULSES ? 2 : s->output == EO_SYNTHETIC_SINE_COSINE ? 5 : 3;
+  struct column list[EO_SYNTHETIC_COLUMNS];
+  return list_columns(s, list);
 }
 
 const char *eo_synthetic_heading(const struct eo_synthetic *s, int column)
 {
-  static const char *const pulses[] = {"pinion_pulse_s", "gear_pulse_s"}, *const degrees[] = {"t_s", "angle1_deg",
-                                                                                              "angle2_deg"};
-  static const char *const radians[] = {"t_s", "angle1_rad", "angle2_rad"}, *const counts[] = {"t_s", "count1",
-                                                                                               "count2"};
-  static const char *const tracks[] = {"t_s", "pinion_sin_V", "pinion_cos_V", "gear_sin_V", "gear_cos_V"};
-  switch (s->output) {
-  case EO_SYNTHETIC_PULSES:
-    return pulses[column];
-  case EO_SYNTHETIC_SINE_COSINE:
-    return tracks[column];
-  case EO_SYNTHETIC_COUNTS:
-    return counts[column];
-  case EO_SYNTHETIC_ANGLES:
+  static const char *const time[] = {"t_s", "t2_s"}, *const pulses[] = {"pinion_pulse_s", "gear_pulse_s"};
+  static const char *const degrees[] = {"angle1_deg", "angle2_deg"}, *const radians[] = {"angle1_rad", "angle2_rad"};
+  static const char *const counts[] = {"count1", "count2"};
+  static const char *const sines[2][2] = {{"pinion_sin_V", "pinion_cos_V"}, {"gear_sin_V", "gear_cos_V"}};
+  static const char *const squares[2][2] = {{"pinion_A_V", "pinion_B_V"}, {"gear_A_V", "gear_B_V"}};
+  struct column list[EO_SYNTHETIC_COLUMNS];
+  list_columns(s, list);
+  const struct column *c = &list[column];
+  bool counted = s->output == EO_SYNTHETIC_COUNTS || s->output == EO_SYNTHETIC_INCREMENTS;
+  switch (c->content) {
+  case TIME:
+    return time[c->channel];
+  case PULSE:
+    return pulses[c->channel];
+  case TRACK:
+    return (s->output == EO_SYNTHETIC_SQUARE ? squares : sines)[c->channel][c->track];
+  case TORQUE:
+    return "torque1_Nm";
+  case SPEED:
+    return "speed1_rpm";
+  case ANGLE:
     break;
   }
-  return s->radians ? radians[column] : degrees[column];
+  return (counted ? counts : s->radians ? radians : degrees)[c->channel];
 }
 
 int eo_synthetic_decimals(const struct eo_synthetic *s, int column)
 {
-  if (s->output == EO_SYNTHETIC_PULSES)
-    return 12;
-  if (column == 0)
+  struct column list[EO_SYNTHETIC_COLUMNS];
+  list_columns(s, list);
+  bool counted = s->output == EO_SYNTHETIC_COUNTS || s->output == EO_SYNTHETIC_INCREMENTS;
+  switch (list[column].content) {
+  case TIME:
     return 9;
-  return s->output == EO_SYNTHETIC_COUNTS ? 0 : s->output == EO_SYNTHETIC_SINE_COSINE ? 6 : s->radians ? 11 : 9;
+  case PULSE:
+    return 12;
+  case TRACK:
+    return 6;
+  case TORQUE:
+  case SPEED:
+    return 3;
+  case ANGLE:
+    break;
+  }
+  return counted ? 0 : s->radians ? 11 : 9;
+}
+
+static int column_of(const struct eo_synthetic *s, enum content content, int channel)
+{
+  struct column list[EO_SYNTHETIC_COLUMNS];
+  int columns = list_columns(s, list);
+  for (int c = 0; c < columns; c++)
+    if (list[c].content == content && list[c].channel == channel)
+      return c;
+  return -1;
 }
 
 void eo_synthetic_tracks(const struct eo_synthetic *s, struct eo_tracks *tracks)
@@ -218,32 +361,54 @@ void eo_synthetic_tracks(const struct eo_synthetic *s, struct eo_tracks *tracks)
   for (int i = 0; i < 2; i++) {
     struct eo_track_channel *c = &tracks->channel[i];
     c->track = pulses ? EO_TRACK_PULSES : raw ? EO_TRACK_SINE_COSINE : EO_TRACK_ANGLE;
-    c->column[0] = pulses ? i : raw ? 1 + 2 * i : 1 + i;
+    c->column[0] = column_of(s, pulses ? PULSE : raw ? TRACK : ANGLE, i);
     c->column[1] = c->column[0] + 1;
-    c->scale = s->output == EO_SYNTHETIC_COUNTS ? 2 * M_PI / ((double)s->lines[i] * s->interpolation)
-               : s->radians                     ? 1
-                                                : M_PI / 180;
+    c->scale = s->output == EO_SYNTHETIC_COUNTS ? step_of(s, i) : s->radians ? 1 : M_PI / 180;
     c->lines = s->lines[i];
     c->unit = EO_TRACK_VOLT;
     c->factor = 1;
   }
+  if (s->torque != 0 && !pulses)
+    tracks->torque[EO_PINION] = (struct eo_track_beside){.scale = 1, .column = column_of(s, TORQUE, 0), .stated = true};
+  if (s->shows_speed && !pulses)
+    tracks->speed[EO_PINION] =
+        (struct eo_track_beside){.scale = M_PI / 30, .column = column_of(s, SPEED, 0), .stated = true};
+}
+
+static enum eo_code check_kind(const struct eo_synthetic *s, struct eo_error *error)
+{
+  bool pulses = s->output == EO_SYNTHETIC_PULSES, counted = s->output == EO_SYNTHETIC_COUNTS;
+  if (pulses && s->turn_back)
+    return eo_error_set(error, EO_ERROR_INPUT, "", "Pulses do not tell a way back.");
+  if (s->index && !counted)
+    return eo_error_set(error, EO_ERROR_INPUT, "", "An index pulse goes with counts.");
+  for (int i = 0; i < 2; i++)
+    if (s->missing[i] && (!pulses || s->missing[i] > s->lines[i] / 3))
+      return eo_error_set(error, EO_ERROR_INPUT, "",
+                          "Missing teeth go with pulses, and leave two thirds of the wheel.");
+  if (fabs(s->drift) / 2 + s->swing + fabs(s->step) / 2 >= 1)
+    return eo_error_set(error, EO_ERROR_INPUT, "", "Drift, swing and step of the speed would stop the shaft.");
+  return EO_OK;
 }
 
 enum eo_code eo_synthetic_check(const struct eo_synthetic *s, struct eo_error *error)
 {
-  bool lines = s->output == EO_SYNTHETIC_ANGLES && !s->interpolation;
+  bool lines = s->output == EO_SYNTHETIC_ANGLES && !s->interpolation,
+       counted = s->output == EO_SYNTHETIC_COUNTS || s->output == EO_SYNTHETIC_INCREMENTS;
   if (!(s->speed > 0) || !(s->turns > 0) || !(s->sample_rate > 0) || s->orders < 0 || s->orders > EO_SYNTHETIC_ORDERS)
     return eo_error_set(error, EO_ERROR_INPUT, "", "Speed, turns and sample rate of a rig are positive.");
-  if (!lines && (s->lines[0] < 1 || s->lines[1] < 1 || (s->output == EO_SYNTHETIC_COUNTS && s->interpolation < 1)))
+  if (!lines && (s->lines[0] < 1 || s->lines[1] < 1 || (counted && s->interpolation < 1)))
     return eo_error_set(error, EO_ERROR_INPUT, "",
                         "Counts, pulses and raw tracks need lines per turn, counts and steps an interpolation.");
-  if (s->output == EO_SYNTHETIC_COUNTS &&
-      ((double)s->lines[0] * s->interpolation > 1e9 || (double)s->lines[1] * s->interpolation > 1e9))
+  if (counted && ((double)s->lines[0] * s->interpolation > 1e9 || (double)s->lines[1] * s->interpolation > 1e9))
     return eo_error_set(error, EO_ERROR_INPUT, "", "More than 1e9 counts per turn are no counts any more.");
-  if (duration(s) * s->sample_rate > 1e9)
+  enum eo_code code = check_kind(s, error);
+  if (!code && whole_duration(s) * rate_of(s, EO_GEAR) > 1e9)
+    return eo_error_set(error, EO_ERROR_INPUT, "", "The recording would have more than 1e9 rows.");
+  if (!code && whole_duration(s) * s->sample_rate > 1e9)
     return eo_error_set(error, EO_ERROR_INPUT, "", "The recording would have %.3g rows, more than 1e9.",
-                        duration(s) * s->sample_rate);
-  return EO_OK;
+                        whole_duration(s) * s->sample_rate);
+  return code;
 }
 
 enum eo_code eo_synthetic_record(const struct eo_synthetic *s, struct eo_recording **recording, struct eo_error *error)
@@ -265,7 +430,8 @@ enum eo_code eo_synthetic_record(const struct eo_synthetic *s, struct eo_recordi
 
 double eo_synthetic_speed(const struct eo_synthetic *s)
 {
-  return (smooth(s, duration(s)) - smooth(s, 0)) / duration(s);
+  double begin = s->rest[0], end = begin + duration(s);
+  return (smooth(s, end) - smooth(s, begin)) / duration(s);
 }
 
 double eo_synthetic_rms(const struct eo_synthetic *s, int harmonics)

@@ -10,9 +10,16 @@
 #include "recording/recording.h"
 #include "recording/tracks.h"
 
-enum { EO_SYNTHETIC_ORDERS = 32, EO_SYNTHETIC_COLUMNS = 5 };
+enum { EO_SYNTHETIC_ORDERS = 32, EO_SYNTHETIC_COLUMNS = 8 };
 
-enum eo_synthetic_output { EO_SYNTHETIC_ANGLES, EO_SYNTHETIC_COUNTS, EO_SYNTHETIC_SINE_COSINE, EO_SYNTHETIC_PULSES };
+enum eo_synthetic_output {
+  EO_SYNTHETIC_ANGLES,
+  EO_SYNTHETIC_COUNTS,
+  EO_SYNTHETIC_SINE_COSINE,
+  EO_SYNTHETIC_PULSES,
+  EO_SYNTHETIC_INCREMENTS, /* counts since the row before */
+  EO_SYNTHETIC_SQUARE,     /* A and B track of each encoder as square waves, V */
+};
 
 /* What is wrong with the recording; row and size say where and how much. */
 enum eo_synthetic_fault {
@@ -32,6 +39,8 @@ enum eo_synthetic_fault {
   EO_FAULT_TIME,           /* time runs back at the row */
   EO_FAULT_NAN,            /* `size` rows without a number */
   EO_FAULT_SPIKE,          /* one value of the gear is off by 0.1 rad */
+  EO_FAULT_MISSED_PULSE,   /* `size` pulses of the gear in a row are not there */
+  EO_FAULT_DOUBLE_PULSE,   /* a pulse of the gear is there twice, a hundredth of a line apart */
   EO_FAULTS
 };
 
@@ -42,15 +51,24 @@ struct eo_synthetic {
   double complex order[EO_SYNTHETIC_ORDERS]; /* [orders] TE = Re sum order[h - 1] exp(i h teeth theta), m */
   double pinion_share;                       /* of the vibration, 0..1 */
   double speed;                              /* of the pinion, rad/s, mean */
-  double drift;                              /* of the speed from start to end, relative */
-  double swing, swing_turns; /* relative amplitude of a slow change of speed, its period in turns of the pinion */
-  double turns;              /* of the pinion */
-  double sample_rate;        /* Hz */
-  double eccentricity[2];    /* amplitude of the first shaft order, m along the line of action */
-  double noise;              /* of each angle, standard deviation, rad */
-  double jitter, skew;       /* of the sampling: of both channels, of the gear alone, s */
-  int lines[2];              /* per turn */
-  int interpolation;         /* steps per line that angles and counts are rounded to; 0: not rounded */
+  double drift;                              /* of the speed from start to end, relative; 1.9: a run-up from 0.05 */
+  double swing, swing_turns;    /* relative amplitude of a swing of the speed, its period in turns of the pinion */
+  double step;                  /* of the speed half way, between two steady states, relative */
+  double rest[2];               /* standstill at start and end, s */
+  bool turn_back;               /* the pinion then turns back to where it began */
+  double turns;                 /* of the pinion, one way */
+  double sample_rate;           /* Hz */
+  double eccentricity[2];       /* amplitude of the first shaft order, m along the line of action */
+  double noise;                 /* of each angle, standard deviation, rad */
+  double jitter, skew;          /* of the sampling: of both channels, of the gear alone, s */
+  double gear_rate;             /* samples per second of the gear, with a time column of its own; 0: the same clock */
+  double gear_delay;            /* s, of the gear's first sample, with a time column of its own unless 0 */
+  double torque, torque_change; /* N m, mean, in a column of its own unless 0; change from start to end, relative */
+  bool shows_speed;             /* in a column of its own, rpm */
+  bool index;                   /* counts start again at 0 with an index pulse each turn */
+  int missing[2];               /* teeth left out of each turn of a pulse wheel */
+  int lines[2];                 /* per turn */
+  int interpolation;            /* steps per line that angles and counts are rounded to; 0: not rounded */
   enum eo_synthetic_output output;
   bool wrapped, radians;      /* angles */
   double amplitude;           /* of raw tracks, zero to peak, V */

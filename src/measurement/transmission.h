@@ -1,48 +1,75 @@
 /* Transmission error of two measured angles, TE = r_b,gear phi_gear - r_b,pinion phi_pinion (transverse, along the line
    of action; the paper's (24) as printed exchanges the radii: a plausible signal, for 17:44 two to three times too
-   large), and what least squares on its samples tell: drift, shaft orders and mesh orders together. Accelerations are
-   (h z omega)^2 times the amplitudes: nothing is differentiated. */
+   large), and what least squares on its samples tell: drift, shaft orders and mesh orders together, over the measured
+   angle of the pinion. Accelerations are (h z omega)^2 times the amplitudes, omega the mean speed of the rows that were
+   used: nothing is differentiated. Where the speed changes, the mean amplitudes stand for all of it and the tracks tell
+   what each stretch has at its own speed. */
 #ifndef EASEOFF_MEASUREMENT_TRANSMISSION_H
 #define EASEOFF_MEASUREMENT_TRANSMISSION_H
 
 #include <complex.h>
 
 #include "measurement/angles.h"
-#include "measurement/trend.h"
+#include "measurement/parts.h"
 
-enum { EO_MESH_ORDERS = 32, EO_SHAFT_ORDERS = 3, EO_SIDEBANDS = 4, EO_CYCLE_BINS = 128, EO_TURN_BINS = 512 };
+enum {
+  EO_MESH_ORDERS = 32,
+  EO_SHAFT_ORDERS = 3,
+  EO_SIDEBANDS = 4,
+  EO_CYCLE_BINS = 128,
+  EO_TURN_BINS = 512,
+  EO_TRACKS = 64
+};
 
 struct eo_transmission_settings {
   int teeth[2];
   double base_radius[2]; /* m */
   int harmonics;         /* mesh orders, 1..EO_MESH_ORDERS; 0: 8 */
+  struct eo_part_choice part;
 };
 
-/* One order: value = Re amplitude exp(i order theta), theta the pinion's smooth angle with its encoder's zero. */
+/* One order: value = Re amplitude exp(i order theta), theta the pinion's angle with its encoder's zero. */
 struct eo_order_line {
   double order;             /* per turn of the pinion */
   double complex amplitude; /* m */
   double sigma;             /* m, of its real and of its imaginary part, from the noise beside it */
+  double systematic;        /* m, of the amplitude: how sure the axis is */
   double acceleration;      /* (order omega)^2 |amplitude|, m/s2 */
 };
 
-struct eo_transmission {
+/* One stretch of the recording. */
+struct eo_order_track {
+  double from, to; /* s after the first row of the recording */
+  double turns;    /* of the pinion */
+  double speed;    /* of the pinion, rad/s, mean */
   int64_t rows;
-  double seconds, revolutions[2];                 /* of pinion and gear */
-  double speed, speed_low, speed_high;            /* of the pinion, rad/s: mean and extremes of the trend */
-  int asked, harmonics;                           /* mesh orders wanted and possible */
+  double complex amplitude[EO_MESH_ORDERS]; /* [harmonics] m */
+  double rms;                               /* m/s2, of the mesh orders at that speed; noise is in it */
+};
+
+struct eo_transmission {
+  struct eo_parts parts; /* of the recording, and what was measured of it */
+  int64_t rows;
+  double seconds, revolutions[2];      /* of pinion and gear */
+  double speed, speed_low, speed_high; /* of the pinion, rad/s: turns over time of the part, extremes of whole turns */
+  int asked, harmonics;                /* mesh orders wanted and possible */
   struct eo_order_line mesh[EO_MESH_ORDERS];      /* [harmonics] */
   struct eo_order_line shaft[2][EO_SHAFT_ORDERS]; /* [member]; amplitude 0 where it coincides with another order */
   bool separate[2][EO_SHAFT_ORDERS];
   struct eo_order_line sideband[EO_MESH_ORDERS][2][EO_SIDEBANDS]; /* [h][member] at -2, -1, 1, 2 turns of that shaft */
   double rms, rms_sigma;           /* m/s2 of the mesh orders together, its standard deviation */
   double rms_upto[EO_MESH_ORDERS]; /* [harmonics] of the orders up to h */
-  double mesh_peak_to_peak;        /* m, of the mesh orders over a cycle */
-  double residual;                 /* m, RMS of what no term explains */
-  double drift[4];                 /* m, Legendre coefficients over the time of the recording */
-  double condition;                /* of the scaled normal equations */
-  double step;                     /* m: the largest sudden change of level, if it stands out of the noise; else 0 */
-  int64_t step_row;                /* row of the series near it */
+  int tracks;
+  struct eo_order_track *track; /* owned, [tracks], in the order of time; none where the recording is short */
+  double axis_swing;            /* rad: first order of the pinion's encoder that was taken out of the axis */
+  double axis_noise;            /* rad, standard deviation of a reading of the pinion's encoder */
+  double axis_bias;             /* relative, of the RMS: what both would have taken away, put right */
+  double mesh_peak_to_peak;     /* m, of the mesh orders over a cycle */
+  double residual;              /* m, RMS of what no term explains */
+  double drift[4];              /* m, Legendre coefficients over the time of the recording */
+  double condition;             /* of the scaled normal equations */
+  double step;                  /* m: the largest sudden change of level, if it stands out of the noise; else 0 */
+  int64_t step_row;             /* row of the series near it */
   /* Secondary: the samples interpolated to equal steps of the pinion's angle, over whole hunting periods where there
      are any. */
   int hunting;                        /* turns of the pinion until the same teeth meet again */
@@ -54,10 +81,12 @@ struct eo_transmission {
 };
 
 static const double EO_RMS_SYSTEMATIC =
-    0.005; /* relative standard deviation that stands for radii, speed and drift of amplitudes */
+    0.0002; /* relative standard deviation that stands for what is left out in second order: the vibration of the pinion
+               in its own axis, (h z a / r_b)^2 / 4 for an order of amplitude a */
 
-/* Fits the trend and everything above. Findings are added: too short, unsteady, sample rate, resolution, level steps;
-   after a refusal the result is empty. Errors: memory, files, cancelled. eo_transmission_done() also after an error. */
+/* Chooses the rows and fits everything above. Findings are added: too short, unsteady, sample rate, resolution, level
+   steps; after a refusal the result is empty. Errors: memory, files, cancelled. eo_transmission_done() also after an
+   error. */
 enum eo_code eo_transmission_measure(struct eo_transmission *result, const struct eo_angles *angles,
                                      const struct eo_transmission_settings *settings, struct eo_findings *findings,
                                      const struct eo_progress *progress, struct eo_error *error);

@@ -5,23 +5,24 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/random.h"
-#include "measurement/synthetic.h"
+#include "support/drawn-recordings.h"
 #include "support/tap.h"
+
+enum { SHORT = 96, SLOW = 512, MOST_RECORDINGS = 4096 };
 
 static struct eo_error error;
 static struct eo_measurement measurement;
 
 /* The paper's pair: 17 and 44 teeth, base radii of module 6 mm, helix 24, pressure angle 20 degrees. */
 static const int teeth[2] = {17, 44};
-static const double radius[2] = {0.0517783, 0.134014};
+static const double radius[2] = {0.0518616, 0.1342300};
 
 static struct eo_synthetic usual(void)
 {
   static const double amplitude[8] = {0.9, 0.25, 0.1, 0.05, 0.03, 0.03, 0.03, 0.01},
                       phase[8] = {0.3, 1.1, -0.7, 2, 0, -2.2, 0.9, 1.7};
   struct eo_synthetic s = {.teeth = {17, 44},
-                           .base_radius = {0.0517783, 0.134014},
+                           .base_radius = {0.0518616, 0.1342300},
                            .orders = 8,
                            .pinion_share = 0.879,
                            .speed = 2000 * M_PI / 30,
@@ -37,20 +38,26 @@ static struct eo_synthetic usual(void)
   return s;
 }
 
-static const struct eo_measurement *measure_stated(const struct eo_synthetic *s, double stated)
+static const struct eo_measurement *measure_with(const struct eo_synthetic *s,
+                                                 const struct eo_measurement_settings *settings)
 {
   struct eo_recording *recording = NULL;
   struct eo_tracks tracks;
-  const struct eo_measurement_settings settings = {
-      .transmission = {.teeth = {teeth[0], teeth[1]}, .base_radius = {radius[0], radius[1]}}, .stated_speed = stated};
   eo_measurement_done(&measurement);
   memset(&measurement, 0, sizeof measurement);
   eo_synthetic_tracks(s, &tracks);
   if (eo_synthetic_record(s, &recording, &error) ||
-      eo_measurement_run(&measurement, recording, &tracks, &settings, NULL, &error))
+      eo_measurement_run(&measurement, recording, &tracks, settings, NULL, &error))
     printf("# %s\n", error.text);
   eo_recording_free(recording);
   return &measurement;
+}
+
+static const struct eo_measurement *measure_stated(const struct eo_synthetic *s, double stated)
+{
+  const struct eo_measurement_settings settings = {
+      .transmission = {.teeth = {teeth[0], teeth[1]}, .base_radius = {radius[0], radius[1]}}, .stated_speed = stated};
+  return measure_with(s, &settings);
 }
 
 static const struct eo_measurement *measure(const struct eo_synthetic *s)
@@ -68,79 +75,65 @@ static void show(const struct eo_measurement *m)
 
 /* ---- truth ---- */
 
-static double between(struct eo_random random, uint64_t draw, double low, double high)
+struct tally {
+  int recordings, refused, one, two, lines, lines_inside;
+  double square;
+  double *sigma; /* relative, [recordings] */
+};
+
+static void add_truth(struct tally *tally, uint64_t seed)
 {
-  return low + (high - low) * eo_random_unit(random, draw);
+  enum drawn_kind kind;
+  struct eo_synthetic s = drawn(seed, &kind);
+  const struct eo_measurement *m = measure(&s);
+  const struct eo_transmission *t = &m->transmission;
+  double truth = eo_synthetic_rms(&s, 8), off = fabs(t->rms - truth) / t->rms_sigma;
+  bool refused = m->refused || t->harmonics != 8;
+  tally->sigma[tally->recordings++] = refused ? INFINITY : t->rms_sigma / truth;
+  tally->refused += refused;
+  tally->one += !refused && off <= 1;
+  tally->two += !refused && off <= 2;
+  tally->square += refused ? 0 : off * off;
+  if (refused || off > 3) {
+    printf("# %llu (%s): RMS %.4f, truth %.4f, standard deviation %.4f; lines %d %d x %d\n", (unsigned long long)seed,
+           drawn_names[kind], t->rms, truth, t->rms_sigma, s.lines[0], s.lines[1], s.interpolation);
+    show(m);
+  }
+  for (int h = 0; h < t->harmonics; h++) {
+    tally->lines++;
+    tally->lines_inside += fabs(cabs(t->mesh[h].amplitude) - cabs(s.order[h])) <=
+                           2 * t->mesh[h].sigma + 0.003 * cabs(s.order[h]);
+  }
 }
 
-static struct eo_synthetic drawn(int seed)
+static int ascending(const void *a, const void *b)
 {
-  static const int lines[] = {1024, 2048, 5000, 9000, 18000, 36000};
-  struct eo_random r = eo_random_at(2016, 0, 0, (uint64_t)seed);
-  struct eo_synthetic s = usual();
-  s.seed = (uint64_t)seed + 10;
-  for (int h = 0; h < 8; h++)
-    s.order[h] = 1e-6 * pow(10, between(r, 10 + (uint64_t)h, -1, 0.5)) / pow(h + 1, 1.5) *
-                 cexp(2 * M_PI * I * between(r, 20 + (uint64_t)h, 0, 1));
-  s.pinion_share = between(r, 0, 0, 1);
-  s.speed = pow(10, between(r, 1, 2.5, 3.5)) * M_PI / 30;
-  s.sample_rate = s.speed / (2 * M_PI) * between(r, 2, 340, 480);
-  s.turns = between(r, 3, 14, 24);
-  s.eccentricity[0] = 1e-6 * between(r, 4, 0, 60);
-  s.eccentricity[1] = 1e-6 * between(r, 5, 0, 60);
-  s.noise = pow(10, between(r, 6, -8, -6));
-  if (seed % 2)
-    s.drift = between(r, 7, -0.015, 0.015);
-  if (seed % 3 == 0) {
-    s.swing = between(r, 8, 0, 0.006);
-    s.swing_turns = between(r, 9, 40, 100);
-  }
-  if (seed % 3 == 1)
-    s.jitter = 1e-7 / s.speed * between(r, 30, 0, 300);
-  if (seed % 4 == 2)
-    s.skew = 1e-7 / s.speed * between(r, 31, 0, 20);
-  if (seed % 5 < 3) {
-    s.lines[0] = lines[eo_random_index(r, 32, 6)];
-    s.lines[1] = lines[eo_random_index(r, 33, 6)];
-    s.interpolation = seed % 5 == 0 ? 1024 : seed % 5 == 1 ? 64 : 4;
-  }
-  s.wrapped = seed % 7 == 0;
-  return s;
+  double x = *(const double *)a, y = *(const double *)b;
+  return (x > y) - (x < y);
 }
 
-static void check_truth(int seeds)
+/* The truth lies within two stated standard deviations in 93 to 98 of 100 recordings of every kind, within one in 62 to
+   75: they are neither too small nor too large. A short run leaves its own chance beside these limits: three standard
+   deviations of the share. */
+static void check_truth(int recordings)
 {
-  int inside = 0, one = 0, refused = 0, lines = 0, lines_inside = 0;
-  double squares = 0;
-  for (int seed = 0; seed < seeds; seed++) {
-    struct eo_synthetic s = drawn(seed);
-    const struct eo_measurement *m = measure(&s);
-    const struct eo_transmission *t = &m->transmission;
-    double truth = eo_synthetic_rms(&s, t->harmonics), off = fabs(t->rms - truth);
-    refused += m->refused || t->harmonics != 8;
-    inside += !m->refused && off <= 2 * t->rms_sigma;
-    one += !m->refused && off <= t->rms_sigma;
-    if (m->refused || off > 2 * t->rms_sigma) {
-      printf("# seed %d: RMS %.4f, truth %.4f, standard deviation %.4f; lines %d %d x %d\n", seed, t->rms, truth,
-             t->rms_sigma, s.lines[0], s.lines[1], s.interpolation);
-      show(m);
-    }
-    for (int h = 0; h < t->harmonics; h++) {
-      double amplitude = cabs(t->mesh[h].amplitude), deviation = fabs(amplitude - cabs(s.order[h]));
-      lines++;
-      lines_inside += deviation <= 2 * t->mesh[h].sigma + 0.003 * cabs(s.order[h]);
-    }
-    squares += pow(off / t->rms_sigma, 2) / seeds;
-  }
-  printf(
-      "# %d of %d within one, %d within two standard deviations, root mean square %.3f of one; %d of %d amplitudes\n",
-      one, seeds, inside, sqrt(squares), lines_inside, lines);
-  ok(refused == 0, "no sound recording is refused or cut short (%d of %d)", refused, seeds);
-  ok(inside >= 0.95 * seeds, "the true RMS stands within twice the stated standard deviation in %d of %d recordings",
-     inside, seeds);
-  ok(one >= 0.6 * seeds, "within once in %d", one);
-  ok(lines_inside >= 0.95 * lines,
-     "%d of %d amplitudes of orders within two standard deviations of their noise and 0.3 %%", lines_inside, lines);
+  double sigma[MOST_RECORDINGS];
+  struct tally t = {.sigma = sigma};
+  for (int seed = 0; seed < recordings; seed++)
+    add_truth(&t, (uint64_t)seed);
+  qsort(sigma, (size_t)recordings, sizeof *sigma, ascending);
+  bool slow = recordings >= 500;
+  double one = 100.0 * t.one / recordings, two = 100.0 * t.two / recordings,
+         slack[2] = {slow ? 0 : 300 * sqrt(0.69 * 0.31 / recordings),
+                     slow ? 0 : 300 * sqrt(0.955 * 0.045 / recordings)};
+  printf("# root mean square %.3f standard deviations\n", sqrt(t.square / recordings));
+  ok(t.refused == 0, "no sound recording is refused or cut short (%d of %d)", t.refused, recordings);
+  ok(two >= 93 - slack[1] && two <= 98 + slack[1],
+     "the true RMS stands within two stated standard deviations in %.1f %% of %d recordings", two, recordings);
+  ok(one >= 62 - slack[0] && one <= 75 + slack[0], "within one in %.1f %%", one);
+  ok(sigma[recordings / 2] <= 0.015, "their median is %.2f %% of the value", 100 * sigma[recordings / 2]);
+  ok(t.lines_inside >= 0.95 * t.lines,
+     "%d of %d amplitudes of orders within two standard deviations of their noise and 0.3 %%", t.lines_inside, t.lines);
 }
 
 /* ---- faults ---- */
@@ -282,12 +275,85 @@ static void check_printed_radii(void)
   eo_recording_free(recording);
 }
 
-int main(void)
+/* ---- speed ---- */
+
+static void check_speed(const char *what, struct eo_synthetic s, double tolerance, bool said)
 {
+  const struct eo_measurement *m = measure(&s);
+  double truth = eo_synthetic_rms(&s, 8);
+  ok(!m->refused && fabs(m->transmission.rms / truth - 1) < tolerance &&
+         (eo_findings_find(&m->findings, EO_FINDING_UNSTEADY) != NULL) == said,
+     "%s: RMS %.4f, truth %.4f%s", what, m->transmission.rms, truth, said ? ", and it is said" : "");
+  if (said || m->refused)
+    show(m);
+}
+
+/* Orders belong to the angle: no change of speed smears them. */
+static void check_speeds(void)
+{
+  struct eo_synthetic s = usual();
+  s.swing = 0.02;
+  s.swing_turns = 1;
+  check_speed("2 % once per turn", s, 1e-3, false);
+  s.swing = 0.05;
+  s.swing_turns = 0.5;
+  check_speed("5 % twice per turn", s, 1e-3, false);
+  s.swing = 0.03;
+  s.swing_turns = 20;
+  check_speed("3 % in twenty turns", s, 1e-3, true);
+  s = usual();
+  s.step = 0.1;
+  check_speed("two steady states", s, 1e-3, true);
+  s = usual();
+  s.drift = 1.5;
+  s.sample_rate *= 2;
+  check_speed("a run-up from a quarter of the mean speed", s, 2e-3, true);
+  const struct eo_transmission *t = &measurement.transmission;
+  double worst = 0;
+  for (int i = 0; i < t->tracks; i++)
+    worst = fmax(worst, fabs(cabs(t->track[i].amplitude[0]) / cabs(s.order[0]) - 1));
+  ok(t->tracks >= 8 && worst < 0.02 && t->track[t->tracks - 1].speed > 3 * t->track[0].speed,
+     "its first order in %d stretches from %.0f to %.0f rpm: within %.2g of the truth", t->tracks,
+     30 / M_PI * t->track[0].speed, 30 / M_PI * t->track[t->tracks - 1].speed, worst);
+  s = usual();
+  s.rest[0] = 0.2;
+  s.rest[1] = 0.1;
+  check_speed("a rest at start and end", s, 1e-3, true);
+  s = usual();
+  s.turn_back = true;
+  check_speed("there and back", s, 1e-3, true);
+  ok(measurement.transmission.parts.count == 2, "two parts");
+}
+
+/* A run-up that ends in a long steady state: what leads there is left out, unless all of it is asked for. */
+static void check_parts(void)
+{
+  struct eo_synthetic s = usual();
+  struct eo_measurement_settings settings = {.transmission = {.teeth = {17, 44}, .base_radius = {radius[0], radius[1]}},
+                                             .stated_speed = NAN};
+  s.turn_back = true;
+  settings.transmission.part.part = 2;
+  const struct eo_measurement *m = measure_with(&s, &settings);
+  ok(!m->refused && m->transmission.parts.used == 1 && m->transmission.parts.measured.from > 1,
+     "the second part when it is asked for: from %.3f s", m->transmission.parts.measured.from);
+  settings.transmission.part.part = 3;
+  ok(measure_with(&s, &settings)->refused, "there is no third");
+  settings.transmission.part = (struct eo_part_choice){.from = 0.1, .to = 0.8};
+  m = measure_with(&s, &settings);
+  ok(!m->refused && fabs(m->transmission.parts.measured.from - 0.1) < 0.01 &&
+         fabs(m->transmission.parts.measured.to - 0.8) < 0.01,
+     "from 0.1 to 0.8 s when that is asked for");
+}
+
+int main(int argc, char **argv)
+{
+  int recordings = argc > 1 && strcmp(argv[1], "slow") == 0 ? SLOW : SHORT;
   check_faults();
   check_limits();
   check_printed_radii();
-  check_truth(205);
+  check_speeds();
+  check_parts();
+  check_truth(recordings);
   eo_measurement_done(&measurement);
   return tap_done();
 }

@@ -1,16 +1,14 @@
 /* The parts of the signal chain, each against a closed form. */
+#include "measurement/axis.h"
 #include "measurement/beside.h"
 #include "measurement/ellipse.h"
 #include "measurement/orientation.h"
-#include "measurement/trend.h"
 
 #include <stdlib.h>
 
 #include "base/random.h"
 #include "numerics/fft.h"
 #include "support/tap.h"
-
-static struct eo_error error;
 
 static void test_fft(void)
 {
@@ -65,34 +63,25 @@ static void test_ellipse(void)
   ok(!eo_ellipse_fit(&sums, &found), "a point is none");
 }
 
-/* A spline reproduces cubics, follows slow swings and does not see a shaft order. */
-static void test_trend(void)
+/* What an eccentric encoder shows leads back to the angle; what it costs an order is a Bessel function. */
+static void test_axis(void)
 {
-  struct eo_trend trend;
-  double cubic = 0, order = 0, inside = 0, speed;
-  for (int swinging = 0; swinging < 2; swinging++) {
-    double worst = 0;
-    eo_trend_start(&trend, 0, 2, 12, 5, 200, &error);
-    for (int i = 0; i <= 20000; i++) {
-      double t = 1e-4 * i, angle = 5 + 200 * t + 3 * t * t - t * t * t;
-      eo_trend_add(&trend, t, angle + (swinging ? 1e-3 * sin(angle) : 0));
-    }
-    eo_trend_finish(&trend, &error);
-    for (int i = 0; i <= 100; i++) {
-      double t = 0.02 * i;
-      double off = fabs(eo_trend_at(&trend, t, &speed) - (5 + 200 * t + 3 * t * t - t * t * t));
-      worst = fmax(worst, off);
-      if (swinging && i > 20 && i < 80)
-        inside = fmax(inside, off);
-    }
-    *(swinging ? &order : &cubic) = worst;
-    if (!swinging)
-      close_to(speed, 200 + 12 - 12, 1e-4, "speed at the end");
-    eo_trend_done(&trend);
+  const struct eo_axis axis = {.sign = -1, .share = 1, .swing = {1e-3 * cexp(0.7 * I), 2e-4 * cexp(-2 * I), 1e-4}};
+  double worst = 0;
+  double complex line = 0;
+  for (int i = 0; i < 4096; i++) {
+    double theta = 2 * M_PI * i / 4096, reading = -(theta + eo_axis_swing(&axis, theta));
+    worst = fmax(worst, fabs(eo_axis_angle(&axis, reading) - theta));
+    line += cexp(136 * I * (theta + eo_axis_swing(&axis, theta)) - 136 * I * theta) / 4096;
   }
-  ok(cubic < 1e-6, "a cubic comes back: %.2g rad", cubic);
-  ok(inside < 1e-5 && order < 4e-4, "a shaft order of 1e-3 rad is left out but for %.2g rad, %.2g at the ends", inside,
-     order);
+  ok(worst < 1e-8, "the angle behind a swing of 1e-3 rad: within %.2g rad", worst);
+  close_to(eo_axis_loss(&axis, 136, 1), cabs(line), 1e-6, "what is left of order 136");
+  struct eo_axis_noise *noise = calloc(1, sizeof *noise);
+  for (int i = 0; i < 100000 && noise; i++)
+    eo_axis_noise_add(noise, 0.01 * i + 1e-7 * i * i + (i > 5000) +
+                                 3e-6 * eo_random_normal(eo_random_at(8, 0, 0, 0), (uint64_t)i));
+  close_to(eo_axis_noise_sigma(noise), 3e-6, 1e-7, "noise of readings with a change of speed and a gap");
+  free(noise);
 }
 
 static void test_nearest(void)
@@ -123,8 +112,7 @@ static void test_noise(void)
     for (int h = 0; h < 8; h++)
       sum += eo_beside_sigma(beside, h, 1e-7) / (1e-7 * sqrt(2.0 / ROWS)) / 80;
   }
-  ok(sum > 1 && sum < 1.3, "white noise: %.3f of its standard deviation on average, the largest of three estimates",
-     sum);
+  ok(sum > 0.95 && sum < 1.1, "white noise: %.3f of its standard deviation on average", sum);
   eo_beside_init(beside, teeth, 8, 20);
   for (int i = 0; i < ROWS; i++) {
     double theta = 40 * M_PI * i / ROWS;
@@ -165,7 +153,7 @@ int main(void)
 {
   test_fft();
   test_ellipse();
-  test_trend();
+  test_axis();
   test_nearest();
   test_noise();
   test_rms();

@@ -1,0 +1,40 @@
+/* The order axis: the angle that the pinion was measured at. Orders belong to the angle, not to the time, so no change
+   of speed smears them. What the pinion's encoder itself does to the axis is taken out again: the shaft orders of an
+   eccentric encoder move the mesh by a phase e(theta), which takes the mesh order h down to J0(h z |e|) of itself;
+   noise of standard deviation s takes it down to exp(-(h z s)^2 / 2). */
+#ifndef EASEOFF_MEASUREMENT_AXIS_H
+#define EASEOFF_MEASUREMENT_AXIS_H
+
+#include <complex.h>
+
+#include "measurement/transmission.h"
+
+struct eo_axis {
+  double sign;                           /* -1: the part turns backwards */
+  double complex swing[EO_SHAFT_ORDERS]; /* rad: the encoder shows theta + Re sum swing[k] exp(i (k + 1) theta) */
+  double share;                          /* of the swing that is taken out, 0..1 */
+};
+
+/* The pinion's angle at a reading of its encoder, both rad. */
+double eo_axis_angle(const struct eo_axis *axis, double reading);
+
+/* The swing at an angle, rad. */
+double eo_axis_swing(const struct eo_axis *axis, double theta);
+
+/* What is left of an order on an axis that still has the part `share` of the swing in it, 0..1. */
+double eo_axis_loss(const struct eo_axis *axis, double order, double share);
+
+/* Noise of the readings from their third differences, which no steady change of speed reaches: of white noise they have
+   20 times the variance. The median over blocks of rows, so that a gap does not count. Rows one after the other. */
+enum { EO_AXIS_BLOCK = 64, EO_AXIS_BLOCKS = 2048 };
+struct eo_axis_noise {
+  double reading[3];
+  int64_t rows;
+  double square; /* sum of the squared third differences of the block */
+  int64_t blocks;
+  double mean_square[EO_AXIS_BLOCKS]; /* of the last blocks */
+};
+void eo_axis_noise_add(struct eo_axis_noise *noise, double reading);
+double eo_axis_noise_sigma(struct eo_axis_noise *noise); /* rad; at the end */
+
+#endif
