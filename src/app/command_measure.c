@@ -17,24 +17,25 @@ struct entry {
   char *joined;                 /* owned: path as the list means it */
   bool unmodified;
   double torque, speed; /* N m, rad/s; NaN: not stated */
+  struct eo_part_choice part;
   int end;
   json_t *layout; /* owned */
 };
 
 struct request {
   const char *design_file, *label, *torque, *speed, *end, *harmonics, *layout, *gear, *list, *csv, *update, *apply,
-      *data;
+      *data, *part, *from, *to;
   bool json, no_cache, alone;
   struct eo_design design, updated;
   struct eo_geometry geometry;
   struct eo_warnings warnings;
-  int entries, harmonic_count;
+  int entries, harmonic_count, results;    /* results: recordings that were not refused */
   struct entry *entry;                     /* owned */
   json_t *list_document, *update_document; /* owned */
   json_t *documents;                       /* owned array */
   struct eo_text text;
   int measured_count;
-  struct eo_measured *measured; /* owned, [entries]: those that were not refused */
+  struct eo_measured *measured; /* owned, [entries]: those with a result and a torque */
   struct eo_comparison comparison;
   struct eo_update_settings update_settings;
   struct eo_update fit;
@@ -73,6 +74,27 @@ static json_t *load_json(const char *text, struct eo_error *error)
 
 static const char *const label_words[2] = {"modified", "unmodified"}, *const end_words[2] = {"left", "right"};
 
+/* --part N or "whole", --from and --to in s after the first row. */
+static enum eo_code read_part(const char *part, const char *from, const char *to, struct eo_part_choice *choice,
+                              struct eo_error *error)
+{
+  char *end = NULL;
+  long number = part && strcmp(part, "whole") != 0 ? strtol(part, &end, 10) : 1;
+  *choice = (struct eo_part_choice){.whole = part && strcmp(part, "whole") == 0};
+  if (end && (end == part || *end || number < 1 || number > EO_PARTS))
+    return eo_error_set(error, EO_ERROR_INPUT, "", "--part %.40s is neither \"whole\" nor a number from 1 to %d.", part,
+                        EO_PARTS);
+  choice->part = end ? (int)number : 0;
+  enum eo_code code = EO_OK;
+  if (from && strcmp(from, "0") != 0)
+    code = read_positive("--from", from, &choice->from, error);
+  if (!code && to)
+    code = read_positive("--to", to, &choice->to, error);
+  if (!code && to && choice->to <= choice->from)
+    return eo_error_set(error, EO_ERROR_INPUT, "", "--to %.40s s is not after --from %.40s s.", to, from);
+  return code;
+}
+
 /* The options hold for every file; an entry of the list may say otherwise. */
 static enum eo_code set_usual(const struct request *r, struct entry *e, struct eo_error *error)
 {
@@ -84,6 +106,8 @@ static enum eo_code set_usual(const struct request *r, struct entry *e, struct e
     code = read_word("--label", r->label, label_words, 0, &unmodified, error);
   if (!code)
     code = read_word("--end", r->end, end_words, EO_RIGHT, &e->end, error);
+  if (!code)
+    code = read_part(r->part, r->from, r->to, &e->part, error);
   if (!code && r->layout && !(e->layout = load_json(r->layout, error)))
     code = error->code;
   if (code)
@@ -99,7 +123,7 @@ static double stated(const json_t *item, const char *key, double fallback, doubl
   return json_is_number(value) ? scale * json_number_value(value) : fallback;
 }
 
-/* A row of the list: file relative to it, label, torque_Nm, speed_rpm, end, gear_file, layout. */
+/* A row of the list: file relative to it, label, torque_Nm, speed_rpm, end, part, from_s, to_s, layout. */
 static enum eo_code read_item(const struct request *r, const json_t *item, struct entry *e, struct eo_error *error)
 {
   const char *file = json_string_value(json_object_get(item, "file")), *slash = strrchr(r->list, '/');
@@ -118,6 +142,9 @@ static enum eo_code read_item(const struct request *r, const json_t *item, struc
   if (!code)
     code = read_word("An end", json_string_value(json_object_get(item, "end")), end_words, e->end, &e->end, error);
   e->unmodified = unmodified == 1;
+  e->part.part = (int)stated(item, "part", e->part.part, 1);
+  e->part.from = stated(item, "from_s", e->part.from, 1);
+  e->part.to = stated(item, "to_s", e->part.to, 1);
   if (json_object_get(item, "layout")) {
     json_decref(e->layout);
     e->layout = json_incref(json_object_get(item, "layout"));
@@ -179,17 +206,14 @@ static enum eo_code read_update(struct request *r, struct eo_error *error)
 
 /* ---- work ---- */
 
-/* The torque of the load case whose speed is nearest to the stated one, else of the one with the largest share. */
-static double usual_torque(const struct request *r, double speed)
+/* Lowest and highest speed of the load cases: a speed far from both is a question. */
+static void find_speeds(const struct eo_design *design, double speed[2])
 {
-  const struct eo_load_case *best = &r->design.load_case[0];
-  for (int i = 1; i < r->design.load_cases; i++) {
-    const struct eo_load_case *c = &r->design.load_case[i];
-    double nearer = isnan(speed) ? 0 : fabs(c->speed - speed) - fabs(best->speed - speed);
-    if (nearer < 0 || (nearer == 0 && c->share > best->share))
-      best = c;
+  speed[0] = speed[1] = design->load_case[0].speed;
+  for (int i = 1; i < design->load_cases; i++) {
+    speed[0] = fmin(speed[0], design->load_case[i].speed);
+    speed[1] = fmax(speed[1], design->load_case[i].speed);
   }
-  return best->torque;
 }
 
 static enum eo_code measure_all(struct request *r, const struct eo_progress *progress, const char **failed_at,
@@ -205,23 +229,26 @@ static enum eo_code measure_all(struct request *r, const struct eo_progress *pro
                                      .stated_speed = e->speed,
                                      .end = e->end,
                                      .harmonics = r->harmonic_count,
+                                     .part = e->part,
                                      .layout = e->layout,
                                      .geometry = &r->geometry,
                                      .spool_directory = folder ? folder : "/tmp"};
     struct eo_measured *measured = &r->measured[r->measured_count];
     json_t *document;
-    if (isnan(one.torque))
-      one.torque = usual_torque(r, e->speed);
+    find_speeds(&r->design, one.speed);
     *failed_at = e->path;
     enum eo_code code = eo_measure_file(&one, progress, &document, &r->text, measured, error);
     if (!code && json_array_append_new(r->documents, document))
       code = eo_error_memory(error);
     if (code)
       return code;
-    if (isnan(e->torque))
-      eo_text_print(&r->text, "  note: no torque was stated; that of a load case of the design, %.6g N m, stands in.\n",
-                    one.torque);
-    r->measured_count += measured->harmonics > 0;
+    bool result = measured->harmonics > 0, loaded = measured->torque > 0;
+    if (result && !loaded && !r->alone)
+      eo_text_add(&r->text,
+                  "  note: no torque was stated and no column of the recording tells it; nothing is compared. "
+                  "State it (--torque).\n");
+    r->results += result;
+    r->measured_count += result && loaded;
   }
   *failed_at = NULL;
   return EO_OK;
@@ -314,7 +341,7 @@ static int run_request(struct request *r)
     code = save_csv(r, &error);
   int status = code ? eo_app_fail(failed_at, &error) : show(r);
   eo_watch_end(&watch);
-  return status ? status : r->measured_count ? EO_EXIT_DONE : EO_EXIT_INPUT;
+  return status ? status : r->results ? EO_EXIT_DONE : EO_EXIT_INPUT;
 }
 
 static void done(struct request *r)
@@ -352,6 +379,9 @@ static int run(const struct eo_command *command, int argc, char **argv)
                                       {.name = "--harmonics", .value = &r->harmonics},
                                       {.name = "--layout", .value = &r->layout},
                                       {.name = "--gear", .value = &r->gear},
+                                      {.name = "--part", .value = &r->part},
+                                      {.name = "--from", .value = &r->from},
+                                      {.name = "--to", .value = &r->to},
                                       {.name = "--list", .value = &r->list},
                                       {.name = "--csv", .value = &r->csv},
                                       {.name = "--update", .value = &r->update},
@@ -395,7 +425,8 @@ const struct eo_command eo_command_measure = {
     "them.\n"
     "The options hold for all files:\n"
     "  --label modified|unmodified   which of the two the recording shows (modified)\n"
-    "  --torque N m, --speed rpm     of the pinion; the speed is only checked\n"
+    "  --torque N m, --speed rpm     of the pinion; without a torque a column of the recording tells it, or nothing is "
+    "compared; the speed is only checked\n"
     "  --end left|right              where the encoders sit (right)\n"
     "  --harmonics N                 mesh orders (8)\n"
     "  --layout JSON                 what the columns mean, in place or a file: {\"kind\": "
@@ -405,8 +436,13 @@ const struct eo_command eo_command_measure = {
     "\"columns\": {\"pinion\": COLUMN or [SINE, COSINE], \"gear\": "
     "...}, \"sample_rate_Hz\", \"lines\"}; guessed else\n"
     "  --gear FILE                   the gear's encoder, when each has a file of its own\n"
+    "  --part N|whole                the N-th stretch without a stop, or run-up and run-down with the steady state "
+    "(the "
+    "longest stretch,\n"
+    "                                what leads to a long steady state left out)\n"
+    "  --from s, --to s              the times to measure, after the first row\n"
     "  --list LIST.json              {\"measurements\": [{\"file\", \"label\", \"torque_Nm\", \"speed_rpm\", \"end\", "
-    "\"layout\"}, ...]}, files relative to it\n"
+    "\"part\", \"from_s\", \"to_s\", \"layout\"}, ...]}, files relative to it\n"
     "  --no-prediction               the recordings alone\n"
     "  --csv FILE                    measured and predicted, one line per recording\n"
     "  --update JSON                 fits inputs within ranges: {\"unknowns\": {\"pinion_bearing_stiffness_N_per_um\": "

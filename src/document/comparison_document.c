@@ -9,6 +9,7 @@
 #include "format/text_table.h"
 
 enum { CURVE = 128 };
+static const double CHANGING = 0.02; /* range of the speed, relative, from which the stretches are told */
 
 static const struct eo_unit percent = {"percent", "%", 100, true};
 
@@ -223,13 +224,26 @@ json_t *eo_comparison_encode(const struct eo_comparison *c, const struct eo_meas
 
 /* ---- for people ---- */
 
+/* The stretches of a recording whose speed changes. */
+static void print_order_tracks(const struct eo_transmission *t, struct eo_text *text)
+{
+  if (t->speed_high - t->speed_low < CHANGING * t->speed || !t->tracks)
+    return;
+  eo_text_add(text, "  rpm and m/s2 of stretches:");
+  for (int i = 0; i < t->tracks; i++)
+    eo_text_print(text, " %.5g|%.4g", t->track[i].speed * 30 / M_PI, t->track[i].rms);
+  eo_text_add(text, "\n");
+}
+
 void eo_measurement_summary(const struct eo_measurement *m, const struct eo_measurement_label *label,
                             struct eo_text *text)
 {
   const struct eo_transmission *t = &m->transmission;
-  eo_text_print(text, "%s: %s, %.6g N m, %s end, %lld rows\n", label->file ? label->file : "recording",
-                label->unmodified ? "unmodified" : "modified", label->torque, eo_result_end[label->end],
-                (long long)m->rows);
+  char torque[40] = "torque not known";
+  if (label->torque > 0)
+    snprintf(torque, sizeof torque, "%.6g N m", label->torque);
+  eo_text_print(text, "%s: %s, %s, %s end, %lld rows\n", label->file ? label->file : "recording",
+                label->unmodified ? "unmodified" : "modified", torque, eo_result_end[label->end], (long long)m->rows);
   for (int i = 0; label->notes && i < label->notes->count && i < EO_NOTES; i++)
     eo_text_print(text, "  note: %s\n", label->notes->text[i]);
   for (int i = 0; i < m->findings.count && i < EO_MAX_FINDINGS; i++)
@@ -247,6 +261,7 @@ void eo_measurement_summary(const struct eo_measurement *m, const struct eo_meas
       "  TE of the mesh %.4g um peak to peak; first shaft orders %.4g um pinion, %.4g um gear; residual %.3g um\n",
       1e6 * t->mesh_peak_to_peak, 1e6 * cabs(t->shaft[EO_PINION][0].amplitude),
       1e6 * cabs(t->shaft[EO_GEAR][0].amplitude), 1e6 * t->residual);
+  print_order_tracks(t, text);
 }
 
 static void fill_sheet(const struct eo_comparison *c, const struct eo_measured *m, struct eo_text_table *sheet,

@@ -54,9 +54,12 @@ static enum eo_code measure(struct work *w, const struct eo_measure_request *r, 
   struct eo_measurement_settings settings = {.stated_speed = r->stated_speed,
                                              .spool_directory = r->spool_directory,
                                              .transmission = {.harmonics = r->harmonics}};
+  settings.stated_torque = r->torque;
+  settings.transmission.part = r->part;
   struct eo_layout_pair pair = {.speed = {r->speed[0], r->speed[1]}};
   for (int i = 0; i < 2; i++) {
     pair.teeth[i] = r->geometry->teeth[i];
+    settings.expected_speed[i] = r->speed[i];
     settings.transmission.teeth[i] = r->geometry->teeth[i];
     settings.transmission.base_radius[i] = r->geometry->base_radius[i];
   }
@@ -76,14 +79,11 @@ static enum eo_code measure(struct work *w, const struct eo_measure_request *r, 
 static enum eo_code tell(const struct work *w, const struct eo_measure_request *r, json_t **document,
                          struct eo_text *summary, struct eo_measured *outcome, struct eo_error *error)
 {
+  double torque = r->torque > 0 ? r->torque : w->measurement.load.pinion_torque;
   const char *slash = strrchr(r->path, '/'), *name = r->name ? r->name : slash ? slash + 1 : r->path;
   json_t *layout = eo_layout_encode(&w->tracks);
-  const struct eo_measurement_label label = {.file = name,
-                                             .unmodified = r->unmodified,
-                                             .torque = r->torque,
-                                             .end = r->end,
-                                             .notes = &w->notes,
-                                             .layout = layout};
+  const struct eo_measurement_label label = {
+      .file = name, .unmodified = r->unmodified, .torque = torque, .end = r->end, .notes = &w->notes, .layout = layout};
   *document = layout ? eo_measurement_encode(&w->measurement, &label) : NULL;
   if (*document && summary)
     eo_measurement_summary(&w->measurement, &label, summary);
@@ -96,7 +96,7 @@ static enum eo_code tell(const struct work *w, const struct eo_measure_request *
       eo_measured_take(outcome, &w->measurement.transmission, &w->measurement.findings);
     snprintf(outcome->name, sizeof outcome->name, "%s", name);
     outcome->unmodified = r->unmodified;
-    outcome->torque = r->torque;
+    outcome->torque = torque;
     outcome->end = r->end;
   }
   return EO_OK;

@@ -10,11 +10,12 @@ struct eo_measure_request {
       *gear_path;   /* the recording; gear_path: the other encoder's of the same run, NULL when one file holds both */
   const char *name; /* for people; NULL: the path without folders */
   bool unmodified;
-  double torque;       /* N m */
+  double torque;       /* N m; NaN: not known, that of a column of the recording counts */
   double stated_speed; /* rad/s; NaN: not known */
   double speed[2];     /* of the pinion in the load cases of the design, lowest and highest, rad/s; 0: not known */
   int end;
-  int harmonics;        /* 0: 8 */
+  int harmonics; /* 0: 8 */
+  struct eo_part_choice part;
   const json_t *layout; /* borrowed; NULL: guessed */
   const struct eo_geometry *geometry;
   const char *spool_directory; /* NULL: recordings beyond EO_RECORDING_MEMORY are refused */

@@ -6,6 +6,7 @@
 
 #include "format/json.h"
 #include "document/layout_document.h"
+#include "document/measurement_parts.h"
 #include "document/result_private.h"
 
 enum { CURVE = 128, SPECTRUM_POINTS = 2000 };
@@ -302,6 +303,11 @@ static const struct eo_outline_row result_rows[] = {
     EO_KEY("drift_um", "[number?]", "Legendre coefficients 1, 2, 3 over the time", .unit = &eo_unit_um),
     EO_KEY("hunting_turns", "integer", "turns of the pinion after which the same teeth meet"),
     EO_KEY("spectrum", "object", "of the acceleration over order", .outline = &spectrum_outline),
+    EO_KEY("part", "object", "what was measured", .outline = &eo_part_outline),
+    EO_KEY("parts", "[object]", "all in which the pinion turns one way without a stop", .outline = &eo_part_outline),
+    EO_KEY("axis", "object", "the measured angle of the pinion, over which orders are taken",
+           .outline = &eo_axis_outline),
+    EO_KEY("tracks", "object", "the orders of successive stretches", .outline = &eo_order_tracks_outline),
 };
 static const struct eo_outline result_outline = EO_OUTLINE("MeasuredResult", result_rows);
 
@@ -328,19 +334,24 @@ static json_t *encode_result(const struct eo_transmission *t)
   eo_object_put(&o, "drift_um", column(3, t->drift + 1, &eo_unit_um));
   eo_object_put(&o, "hunting_turns", json_integer(t->hunting));
   eo_object_put(&o, "spectrum", encode_spectrum(t));
+  eo_object_put(&o, "part", eo_part_encode(&t->parts.measured));
+  eo_object_put(&o, "parts", eo_parts_encode(&t->parts));
+  eo_object_put(&o, "axis", eo_axis_encode(t));
+  eo_object_put(&o, "tracks", eo_order_tracks_encode(t));
   return eo_object_close(&o);
 }
 
 static const struct eo_outline_row measurement_rows[] = {
     EO_KEY("file", "text?", "name as it came"),
     EO_KEY("label", "word", "which pair was measured", .words = labels),
-    EO_KEY("torque_Nm", "number", "on the pinion shaft", .unit = &eo_unit_Nm),
+    EO_KEY("torque_Nm", "number?", "on the pinion shaft; null: neither stated nor recorded", .unit = &eo_unit_Nm),
     EO_KEY("end", "word", "where the encoders sat", .words = ends),
     EO_KEY("notes", "[text]", "what the reader of the file has to say"),
     EO_KEY("layout", "object?", "what the columns hold, as it was found", .outline = &eo_layout_outline),
     EO_KEY("findings", "[object]", "what is remarkable", .outline = &finding_outline),
     EO_KEY("refused", "flag", "there is no result"),
     EO_KEY("signal", "object", "the recording itself", .outline = &signal_outline),
+    EO_KEY("load", "object", "columns of torque and speed over what was measured", .outline = &eo_load_outline),
     EO_KEY("result", "object?", "null when refused", .outline = &result_outline),
 };
 const struct eo_outline eo_measurement_outline = EO_OUTLINE("MeasurementOfFile", measurement_rows);
@@ -357,6 +368,7 @@ json_t *eo_measurement_encode(const struct eo_measurement *m, const struct eo_me
   eo_object_put(&o, "findings", encode_findings(&m->findings));
   eo_object_put(&o, "refused", json_boolean(m->refused));
   eo_object_put(&o, "signal", encode_signal(m));
+  eo_object_put(&o, "load", eo_load_encode(&m->load));
   eo_object_put(&o, "result", m->refused ? json_null() : encode_result(&m->transmission));
   return eo_object_close(&o);
 }
@@ -384,7 +396,7 @@ static const struct eo_outline brief_result = EO_OUTLINE("BriefResult", brief_re
 static const struct eo_outline_row brief_rows[] = {
     EO_KEY("file", "text?", "name as it came"),
     EO_KEY("label", "word", "which pair was measured", .words = labels),
-    EO_KEY("torque_Nm", "number", "on the pinion shaft", .unit = &eo_unit_Nm),
+    EO_KEY("torque_Nm", "number?", "on the pinion shaft; null: neither stated nor recorded", .unit = &eo_unit_Nm),
     EO_KEY("end", "word", "where the encoders sat", .words = ends),
     EO_KEY("refused", "flag", "there is no result"),
     EO_KEY("findings", "[object]", "what is remarkable", .outline = &brief_finding),

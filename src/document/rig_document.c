@@ -9,12 +9,13 @@
 static const struct eo_unit unit_urad = {"urad", "urad", 1e6, true}, unit_us = {"us", "us", 1e6, true},
                             unit_mV = {"mV", "mV", 1e3, true}, unit_V = {"V", "V", 1, false};
 
-static const char *const ends[] = {"left", "right", NULL}, *const outputs[] = {"angles", "counts", "sine-cosine",
-                                                                               "pulses", NULL};
-static const char *const faults[] = {"none",         "swapped", "reversed",       "teeth", "radians",
-                                     "radians-gear", "dropped", "dropped-silent", "slip",  "lost-count",
-                                     "constant",     "stuck",   "saturated",      "time",  "nan",
-                                     "spike",        NULL};
+static const char *const ends[] = {"left", "right", NULL}, *const outputs[] = {"angles", "counts",     "sine-cosine",
+                                                                               "pulses", "increments", "square",
+                                                                               NULL};
+static const char *const faults[] = {"none",         "swapped",      "reversed",       "teeth", "radians",
+                                     "radians-gear", "dropped",      "dropped-silent", "slip",  "lost-count",
+                                     "constant",     "stuck",        "saturated",      "time",  "nan",
+                                     "spike",        "missed-pulse", "double-pulse",   NULL};
 static const char *const separators[] = {"comma", "semicolon", "tab", "blank", NULL}, *const headings[] = {
                                                                                           "names", "units-row", "block",
                                                                                           "none", NULL};
@@ -32,12 +33,17 @@ static const struct eo_field fields[] = {
     EO_NUMBER(struct eo_rig_request, SYNTHETIC(turns), "turns", NULL, 0.1, 1e7, 45, "turns of the pinion"),
     EO_NUMBER(struct eo_rig_request, SYNTHETIC(sample_rate), "sample_rate_Hz", &eo_unit_Hz, 1, 1e8, 20000,
               "samples per second"),
-    EO_NUMBER(struct eo_rig_request, SYNTHETIC(drift), "speed_drift", NULL, -0.9, 0.9, 0,
-              "change of speed from start to end, relative"),
+    EO_NUMBER(struct eo_rig_request, SYNTHETIC(drift), "speed_drift", NULL, -1.9, 1.9, 0,
+              "change of speed from start to end, relative; 1.9 is a run-up from a twentieth of the mean speed"),
     EO_NUMBER(struct eo_rig_request, SYNTHETIC(swing), "speed_swing", NULL, 0, 0.5, 0,
-              "amplitude of a slow swing of the speed, relative"),
-    EO_NUMBER(struct eo_rig_request, SYNTHETIC(swing_turns), "speed_swing_turns", NULL, 1, 1e6, 60,
+              "amplitude of a swing of the speed, relative"),
+    EO_NUMBER(struct eo_rig_request, SYNTHETIC(swing_turns), "speed_swing_turns", NULL, 0.1, 1e6, 60,
               "its period in turns of the pinion"),
+    EO_NUMBER(struct eo_rig_request, SYNTHETIC(step), "speed_step", NULL, -1.9, 1.9, 0,
+              "change of the speed half way, between two steady states, relative"),
+    EO_NUMBER(struct eo_rig_request, SYNTHETIC(rest[0]), "rest_before_s", NULL, 0, 1e6, 0, "standstill at the start"),
+    EO_NUMBER(struct eo_rig_request, SYNTHETIC(rest[1]), "rest_after_s", NULL, 0, 1e6, 0, "standstill at the end"),
+    EO_FLAG(struct eo_rig_request, SYNTHETIC(turn_back), "turn_back", 0, "the shafts turn back to where they began"),
     EO_NUMBER(struct eo_rig_request, SYNTHETIC(eccentricity[EO_PINION]), "pinion_eccentricity_um", &eo_unit_um, 0, 1000,
               20, "first order of the pinion shaft, along the line of action"),
     EO_NUMBER(struct eo_rig_request, SYNTHETIC(eccentricity[EO_GEAR]), "gear_eccentricity_um", &eo_unit_um, 0, 1000, 30,
@@ -48,6 +54,19 @@ static const struct eo_field fields[] = {
               "jitter of the sampling, both channels alike"),
     EO_NUMBER(struct eo_rig_request, SYNTHETIC(skew), "skew_us", &unit_us, 0, 1e4, 0,
               "jitter of the gear channel alone"),
+    EO_NUMBER(struct eo_rig_request, SYNTHETIC(gear_rate), "gear_sample_rate_Hz", &eo_unit_Hz, 0, 1e8, 0,
+              "samples per second of the gear, with a time column of its own; 0: those of the pinion"),
+    EO_NUMBER(struct eo_rig_request, SYNTHETIC(gear_delay), "gear_delay_us", &unit_us, 0, 1e9, 0,
+              "by which the gear's samples are later, with a time column of their own"),
+    EO_NUMBER(struct eo_rig_request, shown_torque_change, "torque_change", NULL, -1.9, 1.9, 0,
+              "change of the recorded torque from start to end, relative"),
+    EO_FLAG(struct eo_rig_request, shows_torque, "torque_column", 0, "a column with the torque of the pinion"),
+    EO_FLAG(struct eo_rig_request, SYNTHETIC(shows_speed), "speed_column", 0, "a column with the speed of the pinion"),
+    EO_FLAG(struct eo_rig_request, SYNTHETIC(index), "index_pulse", 0, "counts start again at an index pulse"),
+    EO_INTEGER(struct eo_rig_request, SYNTHETIC(missing[EO_PINION]), "pinion_missing_teeth", 0, 100000, 0,
+               "of its pulse wheel, in each turn"),
+    EO_INTEGER(struct eo_rig_request, SYNTHETIC(missing[EO_GEAR]), "gear_missing_teeth", 0, 100000, 0,
+               "of its pulse wheel, in each turn"),
     EO_INTEGER(struct eo_rig_request, SYNTHETIC(lines[EO_PINION]), "pinion_lines", 1, 1000000, 18000,
                "lines per turn of the pinion's encoder"),
     EO_INTEGER(struct eo_rig_request, SYNTHETIC(lines[EO_GEAR]), "gear_lines", 1, 1000000, 18000,
@@ -120,6 +139,8 @@ void eo_rig_set_pair(struct eo_rig_request *request, const struct eo_geometry *g
   memcpy(s->order, prediction->order, sizeof *s->order * (size_t)prediction->harmonics);
   s->row = (int64_t)request->fault_row;
   s->size = (int64_t)request->fault_size;
+  s->torque = request->shows_torque ? request->torque : 0;
+  s->torque_change = request->shown_torque_change;
 }
 
 /* ---- text ---- */
@@ -225,8 +246,8 @@ static json_t *encode_truth(const struct eo_synthetic *s, int orders)
 static const char *expected_finding(enum eo_synthetic_fault fault)
 {
   static const char *const expected[EO_FAULTS] = {
-      NULL,   "swapped",    "reversed", "teeth",    "radians",   "radians", "dropped rows", "dropped rows",
-      "slip", "lost-count", "constant", "constant", "saturated", "time",    "nan",          "spike"};
+      NULL,         "swapped",  "reversed", "teeth",     "radians", "radians", "dropped rows", "dropped rows", "slip",
+      "lost-count", "constant", "constant", "saturated", "time",    "nan",     "spike",        "pulse",        "pulse"};
   return expected[fault];
 }
 
@@ -249,7 +270,8 @@ json_t *eo_rig_truth(const struct eo_rig_request *r, const char *file)
   eo_object_put(&entry, "tolerance_rms_rel", eo_json_quantity(0.01, NULL));
   eo_object_put(&entry, "expected_findings", findings);
   if (s->output != EO_SYNTHETIC_ANGLES) {
-    int per_line = s->output == EO_SYNTHETIC_COUNTS ? s->interpolation : 1;
+    bool counted = s->output == EO_SYNTHETIC_COUNTS || s->output == EO_SYNTHETIC_INCREMENTS;
+    int per_line = counted ? s->interpolation : 1;
     eo_object_put(&entry, "layout",
                   json_pack("{s:[i,i]}", "lines", s->lines[EO_PINION] * per_line, s->lines[EO_GEAR] * per_line));
   }

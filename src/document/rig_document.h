@@ -21,6 +21,8 @@ struct eo_rig_request {
   int harmonics; /* mesh orders of the response that are in the recording */
   struct eo_synthetic synthetic;
   double fault_row, fault_size; /* whole numbers */
+  bool shows_torque;
+  double shown_torque_change;
   enum eo_rig_separator separator;
   enum eo_rig_heading heading;
   bool decimal_comma, byte_order_mark, carriage_return;

@@ -596,7 +596,7 @@ enum eo_code eo_angles_make(struct eo_angles *a, const struct eo_recording *reco
   m->findings = findings;
   m->progress = progress;
   bool pulses = tracks->channel[0].track == EO_TRACK_PULSES;
-  enum eo_code code = eo_sampler_init(&m->sampler, recording, tracks, error);
+  enum eo_code code = eo_sampler_init(&m->sampler, recording, tracks, spool_directory, error);
   if (!code && !pulses)
     code = eo_scan_run(m->scan, recording, tracks, progress, error);
   if (!code && !pulses) {
@@ -604,6 +604,8 @@ enum eo_code eo_angles_make(struct eo_angles *a, const struct eo_recording *reco
     judge_gaps(m);
     code = prepare_tracks(m, a, error);
   }
+  if (pulses && !code)
+    eo_pulses_judge(m->sampler.pulses, findings);
   if (pulses)
     m->scan->rows = eo_recording_rows(recording);
   if (!code && eo_findings_worst(findings) != EO_SEVERITY_REFUSED) {

@@ -5,8 +5,9 @@
 #include <string.h>
 
 const char *const eo_finding_names[EO_FINDING_KINDS + 1] = {
-    "swapped",  "reversed",    "teeth", "units", "wrapped", "dropped", "slip",  "constant",   "saturated", "too-short",
-    "unsteady", "sample-rate", "time",  "nan",   "spike",   "track",   "speed", "resolution", "layout",    NULL};
+    "swapped",   "reversed",   "teeth",    "units",       "wrapped", "dropped", "slip",  "constant",
+    "saturated", "too-short",  "unsteady", "sample-rate", "time",    "nan",     "spike", "track",
+    "speed",     "resolution", "layout",   "torque",      "pulse",   NULL};
 
 struct eo_finding *eo_findings_add(struct eo_findings *findings, enum eo_finding_kind kind, enum eo_severity severity,
                                    int channel, double value, const char *format, ...)

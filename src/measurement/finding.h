@@ -26,6 +26,8 @@ enum eo_finding_kind {
   EO_FINDING_SPEED,       /* not the speed that was stated */
   EO_FINDING_RESOLUTION,  /* the signal drowns in noise or quantisation */
   EO_FINDING_LAYOUT,      /* what the columns mean is unclear */
+  EO_FINDING_TORQUE,      /* not steady, or not what was stated */
+  EO_FINDING_PULSE,       /* missing, double, or teeth missing of the wheel */
   EO_FINDING_KINDS
 };
 

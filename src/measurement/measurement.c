@@ -13,12 +13,31 @@ static bool unit_is_open(const struct eo_angles *a, const struct eo_tracks *trac
          tracks->channel[1].track == EO_TRACK_ANGLE;
 }
 
+/* Torque and speed beside the encoders; a speed that cannot be forbids the result. */
+static enum eo_code judge_load(struct eo_measurement *m, const struct eo_recording *recording,
+                               const struct eo_tracks *tracks, const struct eo_measurement_settings *settings,
+                               struct eo_error *error)
+{
+  const struct eo_part *part = &m->transmission.parts.measured;
+  struct eo_load_known known = {.torque = settings->stated_torque > 0 ? settings->stated_torque : NAN,
+                                .speed = settings->stated_speed,
+                                .measured = m->transmission.speed,
+                                .expected = {settings->expected_speed[0], settings->expected_speed[1]}};
+  for (int i = 0; i < 2; i++)
+    known.teeth[i] = settings->transmission.teeth[i];
+  enum eo_code code = eo_load_read(&m->load, recording, tracks, part->from, part->to, error);
+  if (!code)
+    eo_load_judge(&m->load, &known, &m->findings);
+  return code;
+}
+
 enum eo_code eo_measurement_run(struct eo_measurement *m, const struct eo_recording *recording,
                                 const struct eo_tracks *tracks, const struct eo_measurement_settings *settings,
                                 const struct eo_progress *progress, struct eo_error *error)
 {
   struct eo_angles angles = {0};
   memset(m, 0, sizeof *m);
+  m->load.pinion_torque = NAN;
   m->rows = eo_recording_rows(recording);
   m->ratio = NAN;
   enum eo_code code = eo_angles_make(&angles, recording, tracks, settings->spool_directory, &m->findings, progress,
@@ -37,6 +56,8 @@ enum eo_code eo_measurement_run(struct eo_measurement *m, const struct eo_record
     code = eo_units_judge(&angles, &settings->transmission, &m->findings, error);
   if (!code && angles.series && eo_findings_worst(&m->findings) != EO_SEVERITY_REFUSED)
     code = eo_transmission_measure(&m->transmission, &angles, &settings->transmission, &m->findings, progress, error);
+  if (!code && m->transmission.harmonics > 0)
+    code = judge_load(m, recording, tracks, settings, error);
   m->refused = eo_findings_worst(&m->findings) == EO_SEVERITY_REFUSED;
   eo_angles_done(&angles);
   return code;

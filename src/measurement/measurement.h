@@ -3,6 +3,7 @@
 #ifndef EASEOFF_MEASUREMENT_MEASUREMENT_H
 #define EASEOFF_MEASUREMENT_MEASUREMENT_H
 
+#include "measurement/load.h"
 #include "measurement/transmission.h"
 
 struct eo_measurement {
@@ -14,11 +15,14 @@ struct eo_measurement {
   bool raw[2];                  /* [channel] */
   struct eo_ellipse ellipse[2]; /* [channel] of raw tracks */
   struct eo_transmission transmission;
+  struct eo_load load; /* columns of torque and speed over what was measured */
 };
 
 struct eo_measurement_settings {
   struct eo_transmission_settings transmission;
   double stated_speed;         /* of the pinion, rad/s; NaN: not known */
+  double stated_torque;        /* of the pinion, N m; NaN: not known */
+  double expected_speed[2];    /* of the pinion: lowest and highest of the load cases, rad/s; 0: not known */
   const char *spool_directory; /* borrowed; see eo_recording_new() */
 };
 

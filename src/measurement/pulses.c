@@ -1,6 +1,8 @@
-/* Pulse times as angles: the k-th pulse of an encoder with N lines passes at the angle 2 pi k / N. The samples stand at
+/* Pulse times as angles: line k of an encoder with N lines passes at the angle 2 pi k / N. The samples stand at
    the pulses of the pinion; the angle of the gear there comes from Lagrange's polynomial through the six gear pulses
-   around (about 1e-4 of a harmonic that has eight pulses per period). */
+   around (about 1e-4 of a harmonic that has eight pulses per period); none stands where a line of the gear is missing.
+ */
+#include "measurement/pulse_train.h"
 #include "measurement/sampler.h"
 
 #include <math.h>
@@ -10,54 +12,24 @@ enum { NODES = 6, SIDE = EO_SAMPLER_BLOCK };
 
 /* The pulses of one encoder, in blocks. */
 struct train {
-  int column;
-  int64_t length, first; /* pulses; index of the first one in the block */
+  struct eo_pulse_train made;
+  int64_t first; /* index of the first one in the block */
   int count;
-  double time[SIDE];
+  double pulse[SIDE][2]; /* time, line */
 };
 
 struct eo_pulses {
-  const struct eo_recording *recording;
-  const struct eo_tracks *tracks;
   struct train train[2];
   int64_t next, near; /* pinion pulse; gear pulse at or before it */
-  double *rows;
 };
 
-/* Empty cells at the end of the shorter column are no pulses. */
-static enum eo_code find_length(struct eo_pulses *p, struct train *train, struct eo_error *error)
-{
-  int columns = eo_recording_columns(p->recording);
-  train->length = eo_recording_length(p->recording, train->column);
-  while (train->length > 0) {
-    int64_t first = train->length > SIDE ? train->length - SIDE : 0;
-    enum eo_code code = eo_recording_read(p->recording, first, train->length - first, p->rows, error);
-    if (code)
-      return code;
-    for (; train->length > first; train->length--)
-      if (isfinite(p->rows[(size_t)(train->length - 1 - first) * (size_t)columns + (size_t)train->column]))
-        return EO_OK;
-  }
-  return EO_OK;
-}
-
 enum eo_code eo_pulses_new(struct eo_pulses **pulses, const struct eo_recording *recording,
-                           const struct eo_tracks *tracks, struct eo_error *error)
+                           const struct eo_tracks *tracks, const char *spool_directory, struct eo_error *error)
 {
   struct eo_pulses *p = calloc(1, sizeof *p);
-  if (p)
-    p->rows = malloc(sizeof *p->rows * SIDE * (size_t)eo_recording_columns(recording));
-  if (!p || !p->rows) {
-    eo_pulses_free(p);
-    return eo_error_memory(error);
-  }
-  p->recording = recording;
-  p->tracks = tracks;
-  enum eo_code code = EO_OK;
-  for (int i = 0; i < 2 && !code; i++) {
-    p->train[i].column = tracks->channel[i].column[0];
-    code = find_length(p, &p->train[i], error);
-  }
+  enum eo_code code = p ? EO_OK : eo_error_memory(error);
+  for (int i = 0; i < 2 && !code; i++)
+    code = eo_pulse_train_make(&p->train[i].made, recording, tracks, i, spool_directory, error);
   if (code)
     eo_pulses_free(p);
   else
@@ -67,92 +39,111 @@ enum eo_code eo_pulses_new(struct eo_pulses **pulses, const struct eo_recording 
 
 void eo_pulses_free(struct eo_pulses *p)
 {
-  if (p)
-    free(p->rows);
+  for (int i = 0; i < 2 && p; i++)
+    eo_pulse_train_done(&p->train[i].made);
   free(p);
 }
 
-/* Makes the pulses from `first` on available. */
-static enum eo_code load(struct eo_pulses *p, struct train *train, int64_t first, struct eo_error *error)
+void eo_pulses_judge(const struct eo_pulses *p, struct eo_findings *findings)
 {
-  int columns = eo_recording_columns(p->recording);
-  int64_t left = train->length - first;
-  int count = left < SIDE ? (int)left : SIDE;
-  enum eo_code code = eo_recording_read(p->recording, first, count, p->rows, error);
-  if (code)
-    return code;
-  train->first = first;
-  train->count = count;
-  for (int i = 0; i < count; i++)
-    train->time[i] = p->rows[(size_t)i * (size_t)columns + (size_t)train->column] * p->tracks->time_scale;
-  return EO_OK;
+  for (int i = 0; i < 2; i++)
+    eo_pulse_train_judge(&p->train[i].made, i, findings);
 }
 
-/* The time of a pulse; the block moves when the pulse is not in it. */
-static enum eo_code pulse_at(struct eo_pulses *p, struct train *train, int64_t pulse, double *time,
-                             struct eo_error *error)
+/* Time and line of a pulse; the block moves when the pulse is not in it. */
+static enum eo_code pulse_at(struct train *train, int64_t pulse, const double **found, struct eo_error *error)
 {
   if (pulse < train->first || pulse >= train->first + train->count) {
-    int64_t first = pulse > NODES ? pulse - NODES : 0;
-    enum eo_code code = load(p, train, first, error);
+    int64_t first = pulse > NODES ? pulse - NODES : 0, left = train->made.count - first;
+    int count = left < SIDE ? (int)left : SIDE;
+    enum eo_code code = eo_recording_read(train->made.pulses, first, count, train->pulse[0], error);
     if (code)
       return code;
+    train->first = first;
+    train->count = count;
   }
-  *time = train->time[pulse - train->first];
+  *found = train->pulse[pulse - train->first];
   return EO_OK;
 }
 
-/* The pulse of the gear, with its fraction, that passes at `time`: between pulses near and near + 1. */
-static enum eo_code interpolate(struct eo_pulses *p, double time, double *pulse, struct eo_error *error)
+/* The line of the gear, with its fraction, that passes at `time`: between pulses near and near + 1. */
+static enum eo_code interpolate(struct eo_pulses *p, double time, double *line, struct eo_error *error)
 {
   struct train *gear = &p->train[1];
   int64_t first = p->near - NODES / 2 + 1;
-  first = first < 0 ? 0 : first + NODES > gear->length ? gear->length - NODES : first;
-  double node[NODES];
-  *pulse = 0;
+  first = first < 0 ? 0 : first + NODES > gear->made.count ? gear->made.count - NODES : first;
+  double node[NODES][2];
+  *line = 0;
   for (int i = 0; i < NODES; i++) {
-    enum eo_code code = pulse_at(p, gear, first + i, &node[i], error);
+    const double *pulse;
+    enum eo_code code = pulse_at(gear, first + i, &pulse, error);
     if (code)
       return code;
+    node[i][0] = pulse[0];
+    node[i][1] = pulse[1];
   }
   for (int i = 0; i < NODES; i++) {
     double weight = 1;
     for (int j = 0; j < NODES; j++)
       if (j != i)
-        weight *= (time - node[j]) / (node[i] - node[j]);
-    *pulse += weight * i;
+        weight *= (time - node[j][0]) / (node[i][0] - node[j][0]);
+    *line += weight * (node[i][1] - node[0][1]);
   }
-  *pulse += (double)first;
+  *line += node[0][1];
   return EO_OK;
+}
+
+/* Moves the gear's pulses on until the next one is after `time`. */
+static enum eo_code advance(struct eo_pulses *p, double time, struct eo_error *error)
+{
+  const double *after;
+  while (p->near + 1 < p->train[1].made.count) {
+    enum eo_code code = pulse_at(&p->train[1], p->near + 1, &after, error);
+    if (code || after[0] > time)
+      return code;
+    p->near++;
+  }
+  return EO_OK;
+}
+
+/* One sample at a pinion pulse. *taken: it lies between neighbouring lines of the gear. */
+static enum eo_code sample_at(struct eo_pulses *p, struct eo_sample *sample, bool *taken, struct eo_error *error)
+{
+  const double *pulse;
+  double time, own, line, low[2], high[2];
+  *taken = false;
+  enum eo_code code = pulse_at(&p->train[0], p->next, &pulse, error);
+  if (code)
+    return code;
+  time = pulse[0];
+  own = pulse[1];
+  code = advance(p, time, error);
+  for (int i = 0; i < 2 && !code && p->near + 1 < p->train[1].made.count; i++) {
+    code = pulse_at(&p->train[1], p->near + i, &pulse, error);
+    (i ? high : low)[0] = pulse[0];
+    (i ? high : low)[1] = pulse[1];
+  }
+  if (code || p->near + 1 >= p->train[1].made.count || time < low[0] || high[1] - low[1] > 1.5)
+    return code;
+  code = interpolate(p, time, &line, error);
+  *sample = (struct eo_sample){
+      time, {2 * M_PI * own / p->train[0].made.lines, 2 * M_PI * line / p->train[1].made.lines}, p->next};
+  *taken = !code && isfinite(line);
+  return code;
 }
 
 enum eo_code eo_pulses_next(struct eo_pulses *p, struct eo_sample *sample, int *count, struct eo_error *error)
 {
-  const struct eo_track_channel *channel = p->tracks->channel;
   *count = 0;
-  if (p->train[1].length < NODES)
+  if (p->train[1].made.count < NODES)
     return EO_OK;
-  for (; *count < EO_SAMPLER_BLOCK && p->next < p->train[0].length; p->next++) {
-    double time, after, pulse;
-    enum eo_code code = pulse_at(p, &p->train[0], p->next, &time, error);
-    while (!code && isfinite(time) && p->near + 1 < p->train[1].length &&
-           !(code = pulse_at(p, &p->train[1], p->near + 1, &after, error)) && !(after > time))
-      p->near++;
+  for (; *count < EO_SAMPLER_BLOCK && p->next < p->train[0].made.count && p->near + 1 < p->train[1].made.count;
+       p->next++) {
+    bool taken;
+    enum eo_code code = sample_at(p, &sample[*count], &taken, error);
     if (code)
       return code;
-    if (p->near + 1 >= p->train[1].length)
-      break;
-    code = pulse_at(p, &p->train[1], p->near, &after, error);
-    if (!code && isfinite(time) && time >= after)
-      code = interpolate(p, time, &pulse, error);
-    else
-      continue; /* before the first pulse of the gear, or no number */
-    if (code)
-      return code;
-    if (!isfinite(pulse))
-      continue;
-    sample[(*count)++] = (struct eo_sample){
-        time, {2 * M_PI * (double)p->next / channel[0].lines, 2 * M_PI * pulse / channel[1].lines}, p->next};
+    *count += taken;
   }
   return EO_OK;
 }

@@ -4,11 +4,11 @@
 #include <stdlib.h>
 
 enum eo_code eo_sampler_init(struct eo_sampler *s, const struct eo_recording *recording, const struct eo_tracks *tracks,
-                             struct eo_error *error)
+                             const char *spool_directory, struct eo_error *error)
 {
   *s = (struct eo_sampler){.recording = recording, .tracks = tracks};
   if (tracks->channel[0].track == EO_TRACK_PULSES)
-    return eo_pulses_new(&s->pulses, recording, tracks, error);
+    return eo_pulses_new(&s->pulses, recording, tracks, spool_directory, error);
   s->rows = malloc(sizeof *s->rows * EO_SAMPLER_BLOCK * (size_t)eo_recording_columns(recording));
   return s->rows ? EO_OK : eo_error_memory(error);
 }

@@ -30,7 +30,7 @@ struct eo_sampler {
 };
 
 enum eo_code eo_sampler_init(struct eo_sampler *sampler, const struct eo_recording *recording,
-                             const struct eo_tracks *tracks, struct eo_error *error);
+                             const struct eo_tracks *tracks, const char *spool_directory, struct eo_error *error);
 void eo_sampler_done(struct eo_sampler *sampler);
 
 /* sample[EO_SAMPLER_BLOCK]; *count 0 at the end. Rows without numbers and repeated rows are left out. */
@@ -38,8 +38,9 @@ enum eo_code eo_sampler_next(struct eo_sampler *sampler, struct eo_sample *sampl
 
 /* Pulse times: the angle of the gear at the pulses of the pinion, by interpolation between its own pulses. */
 enum eo_code eo_pulses_new(struct eo_pulses **pulses, const struct eo_recording *recording,
-                           const struct eo_tracks *tracks, struct eo_error *error);
+                           const struct eo_tracks *tracks, const char *spool_directory, struct eo_error *error);
 void eo_pulses_free(struct eo_pulses *pulses);
+void eo_pulses_judge(const struct eo_pulses *pulses, struct eo_findings *findings);
 enum eo_code eo_pulses_next(struct eo_pulses *pulses, struct eo_sample *sample, int *count, struct eo_error *error);
 
 #endif

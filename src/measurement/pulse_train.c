@@ -1,0 +1,193 @@
+#include "measurement/pulse_train.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "measurement/scan.h"
+
+enum { BLOCK = 4096, SIDE = 4, WINDOW = 2 * SIDE + 2, MOST_GAPS = 64 };
+static const double DOUBLE = 0.4; /* of the usual distance: two pulses of the same line */
+static const double WHOLE = 0.25; /* a gap is a whole number of lines but for so much */
+
+/* The pulses around the one that is judged. */
+struct maker {
+  const struct eo_recording *recording;
+  struct eo_pulse_train *train;
+  int column;
+  double scale;               /* s per unit */
+  double before;              /* time of the last pulse that counts */
+  double line;                /* of it */
+  double usual[SIDE];         /* distances per line before, a ring */
+  int64_t seen;               /* pulses that count */
+  double gap_line[MOST_GAPS]; /* where lines are missing, and how many */
+  int gap_size[MOST_GAPS];
+  int64_t gaps;
+  double out[BLOCK][2];
+  int held;
+};
+
+static enum eo_code flush(struct maker *m, struct eo_error *error)
+{
+  enum eo_code code = m->held ? eo_recording_append(m->train->pulses, m->out[0], m->held, error) : EO_OK;
+  m->train->count += m->held;
+  m->held = 0;
+  return code;
+}
+
+/* The usual distance of two lines there: the median of those before and after. */
+static double usual_distance(const struct maker *m, const double *time, int ahead)
+{
+  double distance[WINDOW];
+  int count = 0;
+  for (int i = 0; i < SIDE && i < m->seen - 1; i++)
+    distance[count++] = m->usual[i];
+  for (int i = 1; i <= ahead && i <= SIDE; i++)
+    distance[count++] = time[i] - time[i - 1];
+  return eo_scan_quantile(distance, count, 0.5);
+}
+
+static void note_gap(struct maker *m, int size, int64_t row)
+{
+  struct eo_pulse_train *t = m->train;
+  if (m->gaps < MOST_GAPS) {
+    m->gap_line[m->gaps] = m->line;
+    m->gap_size[m->gaps] = size;
+  }
+  if (!m->gaps++)
+    t->missed_at = row;
+  t->missed += size;
+}
+
+/* One pulse: time[0] is judged, time[1..ahead] are those after it. */
+static enum eo_code take(struct maker *m, const double *time, int ahead, int64_t row, struct eo_error *error)
+{
+  struct eo_pulse_train *t = m->train;
+  double distance = time[0] - m->before, lines = 1;
+  if (m->seen > 0) {
+    double usual = usual_distance(m, time, ahead), share = distance / usual;
+    if (share < DOUBLE) {
+      if (!t->doubled++)
+        t->doubled_at = row;
+      return EO_OK;
+    }
+    lines = fmax(1, round(share));
+    if (lines > 1 && fabs(share - lines) > WHOLE * lines) {
+      if (!t->unclear)
+        t->unclear_at = row;
+      t->unclear = true;
+    }
+    if (lines > 1)
+      note_gap(m, (int)lines - 1, row);
+    m->usual[(m->seen - 1) % SIDE] = distance / lines;
+    m->line += lines;
+  }
+  m->before = time[0];
+  m->seen++;
+  m->out[m->held][0] = time[0];
+  m->out[m->held++][1] = m->line;
+  return m->held == BLOCK ? flush(m, error) : EO_OK;
+}
+
+/* Gaps of one size, each a turn after the one before: teeth that are missing of the wheel. Lines per turn may have been
+   stated with them or without. */
+static void find_wheel(struct maker *m, double stated)
+{
+  struct eo_pulse_train *t = m->train;
+  int gaps = m->gaps < MOST_GAPS ? (int)m->gaps : MOST_GAPS, size = m->gap_size[0];
+  t->lines = stated;
+  for (int with = 0; with < 2 && gaps >= 2; with++) {
+    double turn = stated + (with ? size : 0);
+    bool each = true;
+    for (int i = 1; i < gaps; i++)
+      each = each && m->gap_size[i] == size && fabs(m->gap_line[i] - m->gap_line[i - 1] - turn) < 0.5;
+    if (!each)
+      continue;
+    t->lines = turn;
+    t->teeth_missing = size;
+    t->missed = 0;
+    return;
+  }
+}
+
+static enum eo_code read_all(struct maker *m, int64_t length, struct eo_error *error)
+{
+  int columns = eo_recording_columns(m->recording), ahead = 0;
+  double time[SIDE + 1], *block = malloc(sizeof *block * BLOCK * (size_t)columns);
+  int64_t row[SIDE + 1];
+  enum eo_code code = block ? EO_OK : eo_error_memory(error);
+  for (int64_t first = 0; first < length && !code; first += BLOCK) {
+    int count = length - first < BLOCK ? (int)(length - first) : BLOCK;
+    code = eo_recording_read(m->recording, first, count, block, error);
+    for (int i = 0; i < count && !code; i++) {
+      double value = block[(size_t)i * (size_t)columns + (size_t)m->column] * m->scale;
+      if (!isfinite(value))
+        continue;
+      row[ahead] = first + i;
+      time[ahead++] = value;
+      if (ahead <= SIDE)
+        continue;
+      code = take(m, time, SIDE, row[0], error);
+      for (int k = 1; k < ahead; k++) {
+        time[k - 1] = time[k];
+        row[k - 1] = row[k];
+      }
+      ahead--;
+    }
+  }
+  for (int k = 0; k < ahead && !code; k++)
+    code = take(m, time + k, ahead - k - 1, row[k], error);
+  free(block);
+  return code ? code : flush(m, error);
+}
+
+enum eo_code eo_pulse_train_make(struct eo_pulse_train *train, const struct eo_recording *recording,
+                                 const struct eo_tracks *tracks, int channel, const char *spool_directory,
+                                 struct eo_error *error)
+{
+  struct maker *m = calloc(1, sizeof *m);
+  *train = (struct eo_pulse_train){.missed_at = -1, .doubled_at = -1, .unclear_at = -1};
+  enum eo_code code = m ? eo_recording_new(&train->pulses, 2, spool_directory, error) : eo_error_memory(error);
+  if (!code) {
+    m->recording = recording;
+    m->train = train;
+    m->column = tracks->channel[channel].column[0];
+    m->scale = tracks->time_scale;
+    code = read_all(m, eo_recording_length(recording, m->column), error);
+    find_wheel(m, tracks->channel[channel].lines);
+  }
+  free(m);
+  return code;
+}
+
+void eo_pulse_train_done(struct eo_pulse_train *train)
+{
+  eo_recording_free(train->pulses);
+  train->pulses = NULL;
+}
+
+void eo_pulse_train_judge(const struct eo_pulse_train *t, int channel, struct eo_findings *findings)
+{
+  const char *name = channel ? "gear" : "pinion";
+  if (t->teeth_missing)
+    eo_findings_add(findings, EO_FINDING_PULSE, EO_SEVERITY_NOTE, channel, t->teeth_missing,
+                    "The wheel of the %s has %.0f teeth less %d that are missing; their lines were counted.", name,
+                    t->lines, t->teeth_missing);
+  if (t->missed)
+    eo_findings_add(findings, EO_FINDING_PULSE, EO_SEVERITY_REPAIRED, channel, (double)t->missed,
+                    "%lld lines of the %s gave no pulse, the first before row %lld; they were counted by the time that "
+                    "passed.",
+                    (long long)t->missed, name, (long long)t->missed_at + 1)
+        ->row = t->missed_at;
+  if (t->doubled)
+    eo_findings_add(findings, EO_FINDING_PULSE, EO_SEVERITY_REPAIRED, channel, (double)t->doubled,
+                    "%lld pulses of the %s follow the one before at once, the first in row %lld; they were left out.",
+                    (long long)t->doubled, name, (long long)t->doubled_at + 1)
+        ->row = t->doubled_at;
+  if (t->unclear)
+    eo_findings_add(
+        findings, EO_FINDING_PULSE, EO_SEVERITY_REFUSED, channel, (double)t->unclear_at,
+        "Before row %lld the %s has a gap that is no whole number of lines: how many pulses were lost there "
+        "cannot be told.",
+        (long long)t->unclear_at + 1, name)
+        ->row = t->unclear_at;
+}
