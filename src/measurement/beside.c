@@ -82,11 +82,16 @@ static int ascending(const void *a, const void *b)
   return (x > y) - (x < y);
 }
 
-/* The mean power of noise from the median: power is exponentially distributed, its median is ln 2 of its mean. */
+/* The mean power of noise from the median: power is exponentially distributed, and the r-th smallest of n such values
+   has the mean 1/n + ... + 1/(n - r + 1) of theirs (Renyi 1953); ln 2 for many. */
 static double mean_power(double *power, int n)
 {
+  double expected = 0;
+  for (int k = n - n / 2 + 1; k <= n; k++)
+    expected += 1.0 / k;
+  expected += (n % 2 ? 1.0 : 0.5) / (n - n / 2);
   qsort(power, (size_t)n, sizeof *power, ascending);
-  return (power[(n - 1) / 2] + power[n / 2]) / (2 * M_LN2);
+  return (power[(n - 1) / 2] + power[n / 2]) / (2 * expected);
 }
 
 static double repeating_power(const struct eo_beside *b, int h, int member)

@@ -14,6 +14,7 @@ enum { BLOCK = 4096 };
 static const double UNSTEADY = 0.02;   /* range of the speed of whole turns, relative: an acceleration changes by 4 % */
 static const double SWING_KNOWN = 0.3; /* standard deviation of its share up to which the sidebands settle it */
 static const double SWING_PRIOR = 0.5; /* standard deviation of the share where they do not */
+static const double OWN_SHARE = 0.5, OWN_SIGMA = 0.29; /* of the vibration, at the pinion: 0 to 1, all alike */
 static const double NOISE_KNOWN = 0.3; /* relative: noise from third differences, which is not white in every encoder */
 
 struct worker {
@@ -306,16 +307,34 @@ static struct eo_order_line line_of(const struct worker *w, int at)
       .order = order, .amplitude = amplitude, .acceleration = order * order * speed * speed * cabs(amplitude)};
 }
 
+/* The axis shows the pinion's share s of the vibration f too, theta = reading + s f / r_b: what is fitted is
+   f + s (f^2)' / (2 r_b). Its part at mesh order h + 1 for s = 1, m. */
+static double complex own_vibration(const struct worker *w, int h)
+{
+  int orders = w->result->harmonics;
+  double complex square = 0; /* of f^2 at that order */
+  for (int j = 0; j < h; j++)
+    square += amplitude_of(w, j) * amplitude_of(w, h - 1 - j) / 2;
+  for (int j = 0; j + h + 1 < orders; j++)
+    square += conj(amplitude_of(w, j)) * amplitude_of(w, j + h + 1);
+  return I * w->terms.order[h] * square / (2 * w->settings->base_radius[EO_PINION]);
+}
+
 /* A mesh order, what noise of the axis takes away put back; how sure the axis is. */
 static struct eo_order_line mesh_line(const struct worker *w, int h)
 {
   struct eo_order_line line = line_of(w, h);
+  double complex own = own_vibration(w, h);
+  double in_phase = creal(own * conj(line.amplitude)) / fmax(cabs(line.amplitude), 1e-300);
+  line.amplitude -= OWN_SHARE * own;
+  line.acceleration = pow(line.order * w->result->speed, 2) * cabs(line.amplitude);
   double phase = line.order * w->result->axis_noise, left = exp(-phase * phase / 2);
   line.amplitude /= left;
   line.acceleration /= left;
   line.sigma = eo_beside_sigma(&w->beside, h, w->result->residual) / left;
   double swing = 1 - eo_axis_loss(&w->axis, line.order, w->share_sigma);
-  line.systematic = cabs(line.amplitude) * hypot(swing, NOISE_KNOWN * (1 - left));
+  line.systematic[0] = cabs(line.amplitude) * hypot(swing, NOISE_KNOWN * (1 - left));
+  line.systematic[1] = OWN_SIGMA * in_phase;
   return line;
 }
 
@@ -404,18 +423,20 @@ double eo_transmission_mesh(const struct eo_transmission *r, double phase)
 
 double eo_transmission_rms(const struct eo_order_line *line, int count, double omega, double *sigma)
 {
-  double square = 0, variance = 0, shift = 0;
+  double square = 0, variance = 0, shift[2] = {0, 0};
   for (int i = 0; i < count; i++) {
     double weight = pow(line[i].order * omega, 4) / 2, noise = line[i].sigma * line[i].sigma;
     double signal = pow(cabs(line[i].amplitude), 2) - 2 * noise;
     square += weight * signal;
     variance += weight * weight * 4 * noise * (fmax(signal, 0) + noise);
-    shift += 2 * weight * cabs(line[i].amplitude) * line[i].systematic;
+    for (int k = 0; k < 2; k++)
+      shift[k] += 2 * weight * cabs(line[i].amplitude) * line[i].systematic[k];
   }
   square = fmax(square, 0);
   double rms = sqrt(square), spread = sqrt(variance);
   double above = sqrt(square + spread) - rms, below = (rms - sqrt(fmax(0, square - 2 * spread))) / 2;
-  *sigma = hypot(hypot(fmax(above, below), EO_RMS_SYSTEMATIC * rms), rms > 0 ? shift / (2 * rms) : 0);
+  *sigma = hypot(hypot(fmax(above, below), EO_RMS_SYSTEMATIC * rms),
+                 rms > 0 ? hypot(shift[0], shift[1]) / (2 * rms) : 0);
   return rms;
 }
 

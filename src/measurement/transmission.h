@@ -33,8 +33,8 @@ struct eo_order_line {
   double order;             /* per turn of the pinion */
   double complex amplitude; /* m */
   double sigma;             /* m, of its real and of its imaginary part, from the noise beside it */
-  double systematic;        /* m, of the amplitude: how sure the axis is */
-  double acceleration;      /* (order omega)^2 |amplitude|, m/s2 */
+  double systematic[2]; /* m, of the amplitude, alike in all orders: eccentricity and noise, vibration in the axis */
+  double acceleration;  /* (order omega)^2 |amplitude|, m/s2 */
 };
 
 /* One stretch of the recording. */
@@ -80,9 +80,9 @@ struct eo_transmission {
   double turn[2][EO_TURN_BINS];  /* [member] over a turn, without drift */
 };
 
-static const double EO_RMS_SYSTEMATIC =
-    0.0002; /* relative standard deviation that stands for what is left out in second order: the vibration of the pinion
-               in its own axis, (h z a / r_b)^2 / 4 for an order of amplitude a */
+/* Relative standard deviation that stands for what is left out in second order: sidebands on sidebands, shaft orders
+   beyond the third. */
+static const double EO_RMS_SYSTEMATIC = 0.0001;
 
 /* Chooses the rows and fits everything above. Findings are added: too short, unsteady, sample rate, resolution, level
    steps; after a refusal the result is empty. Errors: memory, files, cancelled. eo_transmission_done() also after an

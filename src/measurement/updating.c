@@ -1,29 +1,16 @@
-#include "measurement/updating.h"
+#include "measurement/updating_private.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/random.h"
 #include "numerics/dense.h"
-#include "numerics/least_squares.h"
 
-static const double MODEL_ERROR = 0.05, TWIN = 0.95, STUDENT = 1.96, OPEN = 0.5;
-enum { STARTS_PER_UNKNOWN = 8, ITERATIONS = 25 };
-
-struct fit {
-  const struct eo_design *design;
-  const struct eo_measured *measured;
-  const struct eo_update_settings *settings;
-  const struct eo_progress *progress;
-  struct eo_pair pair;            /* with an impact patch of its own */
-  struct eo_evaluator *evaluator; /* on it */
-  struct eo_design trial;
-  int order[EO_MOST_MEASURED]; /* measurements with the same loaded contact after each other: the evaluator solves it
-                                  once */
-  int count, residuals, evaluations, expected;
-  double model_error;
-};
+static const double FIRST_MODEL_ERROR = 0.05; /* of the search, before the misfit tells */
+static const double LEAST_MODEL_ERROR = 1e-4; /* no model of a gear pair is better */
+static const double POOR = 0.2; /* model error that the misfit would need: beyond, the inputs do not explain the data */
+static const double TWIN = 0.95, OPEN = 0.5;
+enum { ROUNDS = 3 }; /* of the model error with the minima */
 
 /* ---- the unknowns ---- */
 
@@ -85,12 +72,12 @@ static bool logarithmic(enum eo_unknown unknown)
   return unknown != EO_UNKNOWN_IN_PLANE && unknown != EO_UNKNOWN_OUT_OF_PLANE;
 }
 
-static double from_unit(const struct eo_update_range *r, double x)
+double eo_fit_from_unit(const struct eo_update_range *r, double x)
 {
   return logarithmic(r->unknown) ? r->low * pow(r->high / r->low, x) : r->low + x * (r->high - r->low);
 }
 
-static double to_unit(const struct eo_update_range *r, double value)
+double eo_fit_to_unit(const struct eo_update_range *r, double value)
 {
   double x = logarithmic(r->unknown) ? log(value / r->low) / log(r->high / r->low)
                                      : (value - r->low) / (r->high - r->low);
@@ -99,34 +86,49 @@ static double to_unit(const struct eo_update_range *r, double value)
 
 /* ---- residuals ---- */
 
-static void set_trial(struct fit *f, const double *x)
+void eo_fit_begin(struct eo_fit *f, const char *stage, double from, double to, int expected)
+{
+  f->stage = stage;
+  f->from = from;
+  f->to = to;
+  f->begun = f->evaluations;
+  f->expected = expected > 0 ? expected : 1;
+}
+
+void eo_fit_set_trial(struct eo_fit *f, const double *x)
 {
   f->trial = *f->design;
   for (int i = 0; i < f->settings->unknowns; i++)
-    eo_unknown_set(&f->trial, f->settings->range[i].unknown, from_unit(&f->settings->range[i], x[i]));
+    eo_unknown_set(&f->trial, f->settings->range[i].unknown, eo_fit_from_unit(&f->settings->range[i], x[i]));
   f->pair.impact.patch = f->pair.resolution.impact_patch = f->trial.resolution.impact_patch;
 }
 
-/* (measured - predicted) / standard deviation of each order's acceleration; a state that is not found counts as none at
-   all. */
-static void add_residuals(const struct fit *f, const struct eo_measured *m, const struct eo_rig_prediction *p,
-                          double *residual)
+/* Variance of an order's acceleration from the recording alone. */
+static double noise_variance(const struct eo_measured *m, int h)
 {
-  for (int h = 0; h < m->harmonics; h++) {
-    double noise = m->order[h].sigma * pow(m->order[h].order * m->speed, 2);
-    double sigma =
-        sqrt(noise * noise + pow(EO_RMS_SYSTEMATIC * m->order[h].acceleration, 2) + pow(f->model_error * m->rms, 2));
-    residual[h] = (m->order[h].acceleration - (p->valid ? p->acceleration[h] : 0)) / sigma;
+  double noise = m->order[h].sigma * pow(m->order[h].order * m->speed, 2);
+  return noise * noise + pow(EO_RMS_SYSTEMATIC * m->order[h].acceleration, 2);
+}
+
+/* (measured - predicted) / standard deviation of each order's acceleration. */
+static void weigh(const struct eo_fit *f, double *residual)
+{
+  for (int i = 0, at = 0; i < f->count; i++) {
+    const struct eo_measured *m = &f->measured[f->order[i]];
+    for (int h = 0; h < m->harmonics; h++, at++)
+      residual[at] = (m->order[h].acceleration - f->predicted[at]) /
+                     sqrt(noise_variance(m, h) + pow(f->model_error * m->rms, 2));
   }
 }
 
-static enum eo_code residuals_at(void *context, const double *x, double *residual, struct eo_error *error)
+enum eo_code eo_fit_residuals(void *context, const double *x, double *residual, struct eo_error *error)
 {
-  struct fit *f = context;
+  struct eo_fit *f = context;
   struct eo_rig_prediction prediction;
-  set_trial(f, x);
+  double done = fmin(1, (double)(f->evaluations - f->begun) / f->expected), *predicted = f->predicted;
+  eo_fit_set_trial(f, x);
   f->evaluations++;
-  if (eo_progress_report(f->progress, "fit of the inputs", fmin(0.99, (double)f->evaluations / f->expected)))
+  if (eo_progress_report(f->progress, f->stage, f->from + done * (f->to - f->from)))
     return eo_error_set(error, EO_ERROR_CANCELLED, "", "Stopped.");
   for (int i = 0; i < f->count; i++) {
     const struct eo_measured *m = &f->measured[f->order[i]];
@@ -134,21 +136,14 @@ static enum eo_code residuals_at(void *context, const double *x, double *residua
                                           m->end, m->harmonics, error);
     if (code)
       return code;
-    add_residuals(f, m, &prediction, residual);
-    residual += m->harmonics;
+    for (int h = 0; h < m->harmonics; h++) /* a state that is not found counts as none at all */
+      *predicted++ = prediction.valid ? prediction.acceleration[h] : 0;
   }
+  weigh(f, residual);
   return EO_OK;
 }
 
-static double mean_square(int count, const double *value)
-{
-  double sum = 0;
-  for (int i = 0; i < count; i++)
-    sum += value[i] * value[i] / count;
-  return sum;
-}
-
-static void sort_measurements(struct fit *f)
+static void sort_measurements(struct eo_fit *f)
 {
   for (int i = 0; i < f->count; i++) {
     const struct eo_measured *m = &f->measured[i];
@@ -163,69 +158,82 @@ static void sort_measurements(struct fit *f)
   }
 }
 
-/* ---- the search ---- */
+/* ---- how good the model is ---- */
 
-static int greatest_divisor(int a, int b)
+static double sum_of_squares(int count, const double *value)
 {
-  return b ? greatest_divisor(b, a % b) : a;
+  double sum = 0;
+  for (int i = 0; i < count; i++)
+    sum += value[i] * value[i];
+  return sum;
 }
 
-/* The at-th number from 1 that shares no divisor with `of`: multiplying by it permutes 0 .. of - 1. */
-static int permuting_factor(int at, int of)
+/* The model error with which the squares of the best fit come out as large as they should, one for each order beyond
+   the unknowns; by halving, its square grows the sum's denominators. */
+static enum eo_code find_model_error(struct eo_fit *f, const double *x, double *residual, struct eo_error *error)
 {
-  int factor = 1;
-  while (at > 0)
-    at -= greatest_divisor(++factor, of) == 1;
-  return factor;
-}
-
-/* Points spread over the ranges, one in each slice of every unknown (McKay, Beckman, Conover 1979), and what the design
-   says now. */
-static enum eo_code look_around(struct fit *f, int starts, double *best, double *residual, double *before,
-                                struct eo_error *error)
-{
-  int n = f->settings->unknowns;
-  double lowest, x[EO_UNKNOWNS];
-  for (int j = 0; j < n; j++)
-    best[j] = to_unit(&f->settings->range[j], eo_unknown_get(f->design, f->settings->range[j].unknown));
-  enum eo_code code = residuals_at(f, best, residual, error);
-  lowest = *before = code ? NAN : mean_square(f->residuals, residual);
-  for (int i = 0; i < starts && !code; i++) {
-    for (int j = 0; j < n; j++) {
-      struct eo_random r = eo_random_at(f->settings->seed, 1, (uint64_t)i, (uint64_t)j);
-      int slice = (i * permuting_factor(j, starts) + j) % starts;
-      x[j] = (slice + eo_random_unit(r, 0)) / starts;
-    }
-    code = residuals_at(f, x, residual, error);
-    double value = code ? NAN : mean_square(f->residuals, residual);
-    if (value < lowest) {
-      lowest = value;
-      memcpy(best, x, sizeof *x * (size_t)n);
-    }
+  double low = LEAST_MODEL_ERROR, high = 1;
+  enum eo_code code = eo_fit_residuals(f, x, residual, error);
+  for (int i = 0; i < 40 && !code; i++) {
+    f->model_error = sqrt(low * high);
+    weigh(f, residual);
+    *(sum_of_squares(f->residuals, residual) > f->residuals - f->settings->unknowns ? &low : &high) = f->model_error;
   }
   return code;
 }
 
+/* The two-sided 95 % quantile of Student's distribution, by its series in 1 / freedom (Fisher and Cornish 1960); to
+   1e-2 from three degrees on. */
+static double student(int freedom)
+{
+  double z = 1.959964, v = freedom;
+  return z + (pow(z, 3) + z) / (4 * v) + (5 * pow(z, 5) + 16 * pow(z, 3) + 3 * z) / (96 * v * v) +
+         (3 * pow(z, 7) + 19 * pow(z, 5) + 17 * pow(z, 3) - 15 * z) / (384 * v * v * v);
+}
+
 /* ---- what the data tell ---- */
 
-static void read_intervals(const struct fit *f, struct eo_update *u, const double *x, const double *covariance)
+/* Covariance (J'J)^-1 at the best values, with differences of a thousandth of the ranges. */
+static enum eo_code find_covariance(struct eo_fit *f, struct eo_update *u, const double *x, double *covariance,
+                                    double *room, struct eo_error *error)
+{
+  int n = u->unknowns, m = f->residuals;
+  double matrix[EO_UNKNOWNS * EO_UNKNOWNS] = {0}, values[EO_UNKNOWNS], moved[EO_UNKNOWNS], *here = room;
+  enum eo_code code = eo_fit_residuals(f, x, here, error);
+  for (int j = 0; j < n && !code; j++) {
+    double step = x[j] < 0.5 ? 2e-4 : -2e-4, *there = room + (size_t)(j + 1) * (size_t)m;
+    memcpy(moved, x, sizeof moved);
+    moved[j] += step;
+    code = eo_fit_residuals(f, moved, there, error);
+    for (int i = 0; i < m && !code; i++)
+      there[i] = (there[i] - here[i]) / step;
+  }
+  if (code)
+    return code;
+  for (int a = 0; a < n; a++)
+    for (int b = 0; b < n; b++)
+      for (int i = 0; i < m; i++)
+        matrix[a * n + b] += room[(size_t)(a + 1) * (size_t)m + (size_t)i] *
+                             room[(size_t)(b + 1) * (size_t)m + (size_t)i];
+  if (eo_dense_symmetric_eigen(n, matrix, values))
+    return eo_error_memory(error);
+  double least = fmax(values[n - 1], 1) * 1e-12;
+  u->condition = values[n - 1] / fmax(values[0], least);
+  for (int i = 0; i < n * n; i++)
+    covariance[i] = 0;
+  for (int k = 0; k < n; k++)
+    for (int a = 0; a < n; a++)
+      for (int b = 0; b < n; b++)
+        covariance[a * n + b] += matrix[k * n + a] * matrix[k * n + b] / fmax(values[k], least);
+  return EO_OK;
+}
+
+static void read_twins(struct eo_update *u, const double *covariance)
 {
   int n = u->unknowns;
-  for (int i = 0; i < n; i++) {
-    struct eo_updated *p = &u->unknown[i];
-    const struct eo_update_range *r = &f->settings->range[i];
-    double sigma = sqrt(fmax(covariance[i * n + i], 0)), reach = STUDENT * sigma;
-    *p = (struct eo_updated){.unknown = r->unknown,
-                             .before = eo_unknown_get(f->design, r->unknown),
-                             .value = from_unit(r, x[i]),
-                             .low = r->low,
-                             .high = r->high,
-                             .twin = -1};
-    p->confidence[0] = from_unit(r, fmax(0, x[i] - reach));
-    p->confidence[1] = from_unit(r, fmin(1, x[i] + reach));
-    p->at_bound = x[i] < 1e-6 || x[i] > 1 - 1e-6;
-    p->undetermined = !(2 * reach < OPEN);
+  for (int i = 0; i < n; i++)
     for (int j = 0; j < n; j++) {
+      struct eo_updated *p = &u->unknown[i];
       double size = sqrt(covariance[i * n + i] * covariance[j * n + j]);
       u->correlation[i][j] = size > 0 ? covariance[i * n + j] / size : 0;
       if (j != i && fabs(u->correlation[i][j]) > fmax(TWIN, fabs(p->correlation))) {
@@ -233,29 +241,70 @@ static void read_intervals(const struct fit *f, struct eo_update *u, const doubl
         p->correlation = u->correlation[i][j];
       }
     }
+}
+
+/* One minimum in the units of the inputs; within reach, with the profile of every input. */
+static enum eo_code read_minimum(struct eo_fit *f, struct eo_update *u, const struct eo_minimum *minimum, double limit,
+                                 const double *covariance, double hull[][2], struct eo_error *error)
+{
+  struct eo_update_minimum *out = &u->minimum[u->minima++];
+  *out = (struct eo_update_minimum){.misfit = sqrt(minimum->square / f->residuals), .within = minimum->square <= limit};
+  enum eo_code code = EO_OK;
+  u->within += out->within;
+  for (int i = 0; i < u->unknowns && !code; i++) {
+    double reach[2] = {minimum->x[i], minimum->x[i]}, sigma = sqrt(covariance[i * u->unknowns + i]);
+    if (out->within)
+      code = eo_fit_profile(f, minimum, i, sigma, limit, reach, error);
+    out->value[i] = eo_fit_from_unit(&f->settings->range[i], minimum->x[i]);
+    for (int side = 0; side < 2; side++)
+      out->confidence[i][side] = eo_fit_from_unit(&f->settings->range[i], reach[side]);
+    if (out->within) {
+      hull[i][0] = fmin(hull[i][0], reach[0]);
+      hull[i][1] = fmax(hull[i][1], reach[1]);
+    }
+  }
+  return code;
+}
+
+static void read_unknowns(const struct eo_fit *f, struct eo_update *u, const double *x, double hull[][2])
+{
+  for (int i = 0; i < u->unknowns; i++) {
+    const struct eo_update_range *r = &f->settings->range[i];
+    u->unknown[i] =
+        (struct eo_updated){.unknown = r->unknown,
+                            .before = eo_unknown_get(f->design, r->unknown),
+                            .value = eo_fit_from_unit(r, x[i]),
+                            .low = r->low,
+                            .high = r->high,
+                            .confidence = {eo_fit_from_unit(r, hull[i][0]), eo_fit_from_unit(r, hull[i][1])},
+                            .at_bound = x[i] < 1e-6 || x[i] > 1 - 1e-6,
+                            .undetermined = !(hull[i][1] - hull[i][0] < OPEN),
+                            .twin = -1};
   }
 }
 
-/* Covariance (J'J)^-1, widened where the residuals are larger than their standard deviations say. */
-static enum eo_code judge(const struct fit *f, struct eo_update *u, const double *x, const double *jacobian,
-                          double square, struct eo_error *error)
+/* The sum of squares up to which values are not ruled out: the best one plus the square of Student's quantile, in units
+   of what the fit leaves where that is more than the standard deviations say. */
+static enum eo_code judge(struct eo_fit *f, struct eo_update *u, const struct eo_minima *minima, double *room,
+                          struct eo_error *error)
 {
-  int n = u->unknowns;
-  double matrix[EO_UNKNOWNS * EO_UNKNOWNS] = {0}, values[EO_UNKNOWNS], covariance[EO_UNKNOWNS * EO_UNKNOWNS] = {0};
-  for (int i = 0; i < f->residuals; i++)
-    for (int a = 0; a < n; a++)
-      for (int b = 0; b < n; b++)
-        matrix[a * n + b] += jacobian[i * n + a] * jacobian[i * n + b];
-  if (eo_dense_symmetric_eigen(n, matrix, values))
-    return eo_error_memory(error);
-  double widen = fmax(1, square / (f->residuals - n)), least = fmax(values[n - 1], 1) * 1e-12;
-  u->condition = values[n - 1] / fmax(values[0], least);
-  for (int k = 0; k < n; k++)
-    for (int a = 0; a < n; a++)
-      for (int b = 0; b < n; b++)
-        covariance[a * n + b] += widen * matrix[k * n + a] * matrix[k * n + b] / fmax(values[k], least);
-  read_intervals(f, u, x, covariance);
-  return EO_OK;
+  int freedom = f->residuals - u->unknowns;
+  double covariance[EO_UNKNOWNS * EO_UNKNOWNS], hull[EO_UNKNOWNS][2];
+  double widen = fmax(1, minima->minimum[0].square / freedom),
+         limit = minima->minimum[0].square + widen * pow(student(freedom > 2 ? freedom : 3), 2);
+  const double *x = minima->minimum[0].x;
+  enum eo_code code = find_covariance(f, u, x, covariance, room, error);
+  for (int i = 0; i < u->unknowns; i++)
+    hull[i][0] = hull[i][1] = x[i];
+  int reachable = 0;
+  for (int i = 0; i < minima->count; i++)
+    reachable += minima->minimum[i].square <= limit;
+  eo_fit_begin(f, "fit: how sure", 0.7, 1, reachable * u->unknowns * 40 * (u->unknowns > 1 ? 3 * u->unknowns : 1));
+  for (int i = 0; i < minima->count && !code; i++)
+    code = read_minimum(f, u, &minima->minimum[i], limit, covariance, hull, error);
+  read_unknowns(f, u, x, hull);
+  read_twins(u, covariance);
+  return code;
 }
 
 static enum eo_code check(const struct eo_update_settings *s, int count, int residuals, struct eo_error *error)
@@ -278,31 +327,55 @@ static enum eo_code check(const struct eo_update_settings *s, int count, int res
   return EO_OK;
 }
 
-static enum eo_code search(struct fit *f, struct eo_update *u, struct eo_design *updated, struct eo_error *error)
+static int usual_starts(int unknowns)
 {
-  int n = u->unknowns, starts = f->settings->starts > 0 ? f->settings->starts : STARTS_PER_UNKNOWN * n;
-  const struct eo_least_squares_options options = {.iterations = ITERATIONS, .step = 1e-3, .tolerance = 1e-5};
-  struct eo_least_squares_report report;
-  double x[EO_UNKNOWNS], *residual = malloc(sizeof *residual * (size_t)(f->residuals * (n + 1))),
-                         *jacobian = residual + f->residuals;
-  if (!residual)
-    return eo_error_memory(error);
-  f->expected = starts + 6 * (n + 2);
-  enum eo_code code = look_around(f, starts, x, residual, &u->before, error);
+  return unknowns == 1 ? 96 : unknowns == 2 ? 384 : 768;
+}
+
+/* The model error and the minima belong to each other: the one that leaves least says how good the model is. */
+static enum eo_code settle(struct eo_fit *f, struct eo_minima *minima, double *room, struct eo_error *error)
+{
+  enum eo_code code = EO_OK;
+  if (f->settings->model_error > 0)
+    return EO_OK;
+  eo_fit_begin(f, "fit: how good the model is", 0.6, 0.7, ROUNDS * minima->count * 3 * (f->settings->unknowns + 1));
+  for (int i = 0; i < ROUNDS && !code; i++) {
+    code = find_model_error(f, minima->minimum[0].x, room, error);
+    if (!code)
+      code = eo_fit_refine(f, minima, error);
+  }
+  return code;
+}
+
+static enum eo_code search(struct eo_fit *f, struct eo_update *u, struct eo_design *updated, struct eo_error *error)
+{
+  int n = u->unknowns, starts = f->settings->starts > 0 ? f->settings->starts : usual_starts(n);
+  struct eo_minima *minima = malloc(sizeof *minima);
+  double *room = malloc(sizeof *room * (size_t)(f->residuals * (n + 1))), start[EO_UNKNOWNS];
+  enum eo_code code = minima && room ? eo_fit_search(f, starts, minima, &u->before, error) : eo_error_memory(error);
   if (!code)
-    code = eo_least_squares(residuals_at, f, n, f->residuals, &options, x, jacobian, &report, error);
+    code = settle(f, minima, room, error);
+  for (int i = 0; i < n; i++)
+    start[i] = eo_fit_to_unit(&f->settings->range[i], eo_unknown_get(f->design, f->settings->range[i].unknown));
   if (!code)
-    code = judge(f, u, x, jacobian, report.square, error);
+    code = eo_fit_residuals(f, start, room, error);
   if (!code) {
-    u->before = sqrt(u->before);
-    u->after = sqrt(report.square / f->residuals);
-    u->converged = report.converged;
+    u->before = sqrt(sum_of_squares(f->residuals, room) / f->residuals);
+    u->after = sqrt(minima->minimum[0].square / f->residuals);
+    u->model_error = f->model_error;
+    u->converged = minima->minimum[0].converged;
+    code = judge(f, u, minima, room, error);
+  }
+  if (!code) {
+    double spent = f->settings->model_error > 0 ? u->after * f->model_error : f->model_error;
+    u->poor = spent > POOR;
     u->evaluations = f->evaluations;
-    set_trial(f, x);
+    eo_fit_set_trial(f, minima->minimum[0].x);
     if (updated)
       *updated = f->trial;
   }
-  free(residual);
+  free(minima);
+  free(room);
   return code;
 }
 
@@ -310,7 +383,7 @@ enum eo_code eo_update_run(struct eo_update *update, const struct eo_pair *pair,
                            int count, const struct eo_measured *measured, const struct eo_update_settings *settings,
                            struct eo_design *updated, const struct eo_progress *progress, struct eo_error *error)
 {
-  struct fit *f = calloc(1, sizeof *f);
+  struct eo_fit *f = calloc(1, sizeof *f);
   *update = (struct eo_update){.unknowns = settings->unknowns, .used = count};
   if (!f)
     return eo_error_memory(error);
@@ -320,7 +393,7 @@ enum eo_code eo_update_run(struct eo_update *update, const struct eo_pair *pair,
   f->progress = progress;
   f->pair = *pair;
   f->count = count;
-  f->model_error = settings->model_error > 0 ? settings->model_error : MODEL_ERROR;
+  f->model_error = settings->model_error > 0 ? settings->model_error : FIRST_MODEL_ERROR;
   for (int i = 0; i < count; i++)
     f->residuals += measured[i].harmonics;
   update->residuals = f->residuals;
@@ -330,11 +403,16 @@ enum eo_code eo_update_run(struct eo_update *update, const struct eo_pair *pair,
   if (!code)
     sort_measurements(f);
   code = code ? code : check(settings, count, f->residuals, error);
+  if (!code) {
+    f->predicted = calloc((size_t)f->residuals, sizeof *f->predicted);
+    code = f->predicted ? EO_OK : eo_error_memory(error);
+  }
   if (!code)
     code = eo_evaluator_new(&f->evaluator, &f->pair, 1, error);
   if (!code)
     code = search(f, update, updated, error);
   eo_evaluator_free(f->evaluator);
+  free(f->predicted);
   free(f);
   return code;
 }

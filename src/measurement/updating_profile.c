@@ -1,0 +1,101 @@
+#include "measurement/updating_private.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "numerics/least_squares.h"
+
+enum { ITERATIONS = 12, MOST_STEPS = 60, HALVINGS = 12 };
+static const double STEP = 2e-4, TOLERANCE = 1e-5;
+static const double FIRST = 0.3, GROWTH = 1.5, LONGEST = 0.04, SHORTEST = 1e-5; /* steps along the unknown: of its
+                                                                                  standard deviation, each times the one
+                                                                                  before, of its range */
+
+/* The others of one unknown that is held. */
+struct held {
+  struct eo_fit *fit;
+  int held, n;
+  double at;
+};
+
+static void put_together(const struct held *h, const double *others, double *x)
+{
+  for (int j = 0, k = 0; j < h->n; j++)
+    x[j] = j == h->held ? h->at : others[k++];
+}
+
+static enum eo_code residuals_of_others(void *context, const double *others, double *residual, struct eo_error *error)
+{
+  struct held *h = context;
+  double x[EO_UNKNOWNS];
+  put_together(h, others, x);
+  return eo_fit_residuals(h->fit, x, residual, error);
+}
+
+/* The least sum of squares over the others with the unknown held at a place; others[n - 1] go along. */
+static enum eo_code least_at(struct held *h, double at, double *others, double *residual, double *square,
+                             struct eo_error *error)
+{
+  const struct eo_least_squares_options options = {.iterations = ITERATIONS, .step = STEP, .tolerance = TOLERANCE};
+  struct eo_least_squares_report report = {0};
+  enum eo_code code;
+  h->at = at;
+  if (h->n > 1) {
+    code = eo_least_squares(residuals_of_others, h, h->n - 1, h->fit->residuals, &options, others, NULL, &report,
+                            error);
+    *square = report.square;
+    return code;
+  }
+  code = eo_fit_residuals(h->fit, &h->at, residual, error);
+  *square = 0;
+  for (int i = 0; i < h->fit->residuals && !code; i++)
+    *square += residual[i] * residual[i];
+  return code;
+}
+
+/* The place beyond which the profile leaves the limit, in one direction: growing steps out, then halvings between the
+   last inside and the first outside. */
+static enum eo_code walk(struct held *h, const struct eo_minimum *minimum, int way, double first, double limit,
+                         double *residual, double *reach, struct eo_error *error)
+{
+  double others[EO_UNKNOWNS], inside = minimum->x[h->held], outside = NAN, step = first, square;
+  for (int j = 0, k = 0; j < h->n; j++)
+    if (j != h->held)
+      others[k++] = minimum->x[j];
+  for (int i = 0; i < MOST_STEPS && isnan(outside) && inside != (way > 0); i++) {
+    double at = fmin(1, fmax(0, inside + way * step));
+    enum eo_code code = least_at(h, at, others, residual, &square, error);
+    if (code)
+      return code;
+    if (square > limit)
+      outside = at;
+    else
+      inside = at;
+    step = fmin(step * GROWTH, LONGEST);
+  }
+  for (int i = 0; i < HALVINGS && !isnan(outside) && fabs(outside - inside) > SHORTEST; i++) {
+    double at = (inside + outside) / 2;
+    enum eo_code code = least_at(h, at, others, residual, &square, error);
+    if (code)
+      return code;
+    *(square > limit ? &outside : &inside) = at;
+  }
+  *reach = isnan(outside) ? inside : (inside + outside) / 2;
+  return EO_OK;
+}
+
+enum eo_code eo_fit_profile(struct eo_fit *fit, const struct eo_minimum *minimum, int i, double sigma, double limit,
+                            double reach[2], struct eo_error *error)
+{
+  struct held h = {.fit = fit, .held = i, .n = fit->settings->unknowns};
+  double *residual = malloc(sizeof *residual * (size_t)fit->residuals);
+  double first = fmin(fmax(FIRST * sigma, SHORTEST), LONGEST);
+  if (!residual)
+    return eo_error_memory(error);
+  enum eo_code code = walk(&h, minimum, -1, first, limit, residual, &reach[0], error);
+  if (!code)
+    code = walk(&h, minimum, 1, first, limit, residual, &reach[1], error);
+  free(residual);
+  return code;
+}
