@@ -89,6 +89,21 @@ static void each_warning(const struct eo_update *u, warning_function *take, void
       continue;
     take(context, text);
   }
+  if (u->within > 1) {
+    snprintf(
+        text, sizeof text,
+        "%d different sets of inputs fit the measurements about equally well; the intervals span all of them. More "
+        "torques or speeds would tell them apart.",
+        u->within);
+    take(context, text);
+  }
+  if (u->poor) {
+    snprintf(text, sizeof text,
+             "Even the best values leave %.0f %% of the measured RMS unexplained: something else than these inputs is "
+             "different, or they lie outside the ranges.",
+             100 * u->model_error * fmax(1, u->after));
+    take(context, text);
+  }
   if (u->condition > LARGE_CONDITION) {
     snprintf(text, sizeof text, "The condition number of the fit is %.2g: not all inputs are determined together.",
              u->condition);
@@ -109,7 +124,7 @@ static const struct eo_outline_row unknown_rows[] = {
     EO_KEY("before", "number?", "as the design had it"),
     EO_KEY("value", "number?", "found"),
     EO_KEY("range", "[number]", "lowest, highest, as asked for"),
-    EO_KEY("confidence_95", "[number?]", "lowest, highest: the interval of 95 %"),
+    EO_KEY("confidence_95", "[number?]", "lowest, highest: the interval of 95 %, over all minima within reach"),
     EO_KEY("at_bound", "flag", "stands at an end of its range"),
     EO_KEY("undetermined", "flag", "the measurements do not determine it"),
     EO_KEY("same_as", "word?", "an input that it cannot be told apart from", .words = eo_unknown_names),
@@ -133,6 +148,40 @@ static json_t *encode_unknown(const struct eo_update *u, const struct eo_updated
   return eo_object_close(&o);
 }
 
+static const struct eo_outline_row minimum_rows[] = {
+    EO_KEY("values", "[number?]", "of the inputs, in their order and units"),
+    EO_KEY("confidence_95", "[[number?]]", "lowest, highest of each, about this minimum alone; null: out of reach"),
+    EO_KEY("misfit", "number?", "root mean square of measured less predicted acceleration over its standard deviation"),
+    EO_KEY("within", "flag", "the measurements do not rule it out at 95 %"),
+};
+static const struct eo_outline minimum_outline = EO_OUTLINE("FitMinimum", minimum_rows);
+
+static json_t *encode_minimum(const struct eo_update *u, const struct eo_update_minimum *m)
+{
+  struct eo_object o = eo_object_open_as(&minimum_outline);
+  json_t *values = json_array(), *confidence = json_array();
+  for (int i = 0; i < u->unknowns; i++) {
+    const struct eo_unit *unit = unit_of(u->unknown[i].unknown);
+    json_t *interval = m->within ? eo_json_reals(2, m->confidence[i], 1, unit, EO_DIGITS_CURVE) : json_null();
+    o.failed = json_array_append_new(values, eo_json_quantity(m->value[i], unit)) != 0 ||
+               json_array_append_new(confidence, interval) != 0 || o.failed;
+  }
+  eo_object_put(&o, "values", values);
+  eo_object_put(&o, "confidence_95", confidence);
+  eo_object_put_number(&o, "misfit", m->misfit);
+  eo_object_put(&o, "within", json_boolean(m->within));
+  return eo_object_close(&o);
+}
+
+static json_t *encode_minima(const struct eo_update *u)
+{
+  json_t *list = json_array();
+  bool failed = !list;
+  for (int i = 0; i < u->minima; i++)
+    failed = failed || json_array_append_new(list, encode_minimum(u, &u->minimum[i])) != 0;
+  return failed ? (json_decref(list), NULL) : list;
+}
+
 static const struct eo_outline_row misfit_rows[] = {
     EO_KEY("before", "number?", "root mean square of measured less predicted acceleration over its standard deviation"),
     EO_KEY("after", "number?", "the same with the values found"),
@@ -144,6 +193,9 @@ static const struct eo_outline_row update_rows[] = {
     EO_KEY("correlation", "[[number?]]", "of the inputs with each other"),
     EO_KEY("condition", "number?", "of the fit: how much worse its worst direction is determined than its best"),
     EO_KEY("misfit", "object", "before and after", .outline = &misfit_outline),
+    EO_KEY("model_error", "number?", "of an order's acceleration in parts of the measured RMS: stated, or found"),
+    EO_KEY("minima", "[object]", "places where the misfit has a minimum, the lowest first",
+           .outline = &minimum_outline),
     EO_KEY("measurements", "integer", "used"),
     EO_KEY("orders", "integer", "compared"),
     EO_KEY("evaluations", "integer", "of all measurements"),
@@ -169,6 +221,8 @@ json_t *eo_update_encode(const struct eo_update *u)
   eo_object_put(&o, "correlation", correlation);
   eo_object_put_number(&o, "condition", u->condition);
   eo_object_put(&o, "misfit", eo_object_close(&misfit));
+  eo_object_put_number(&o, "model_error", u->model_error);
+  eo_object_put(&o, "minima", encode_minima(u));
   eo_object_put(&o, "measurements", json_integer(u->used));
   eo_object_put(&o, "orders", json_integer(u->residuals));
   eo_object_put(&o, "evaluations", json_integer(u->evaluations));
@@ -180,6 +234,22 @@ json_t *eo_update_encode(const struct eo_update *u)
 static void print_warning(void *context, const char *text)
 {
   eo_text_print(context, "  warning: %s\n", text);
+}
+
+/* The other sets of values that fit about as well. */
+static void print_minima(const struct eo_update *u, struct eo_text *text)
+{
+  for (int k = 1; k < u->minima; k++) {
+    if (!u->minimum[k].within)
+      continue;
+    eo_text_add(text, "  or:");
+    for (int i = 0; i < u->unknowns; i++) {
+      const struct eo_unit *unit = unit_of(u->unknown[i].unknown);
+      eo_text_print(text, " %s %.4g", eo_unknown_name(u->unknown[i].unknown),
+                    eo_unit_out(unit, u->minimum[k].value[i]));
+    }
+    eo_text_print(text, " (misfit %.3g)\n", u->minimum[k].misfit);
+  }
 }
 
 void eo_update_summary(const struct eo_update *u, struct eo_text *text)
@@ -199,6 +269,7 @@ void eo_update_summary(const struct eo_update *u, struct eo_text *text)
       eo_text_table_number(&sheet, value[k], unit_of(p->unknown), 4);
   }
   eo_text_table_print(&sheet, 2, text);
+  print_minima(u, text);
   eo_text_table_done(&sheet);
   each_warning(u, print_warning, text);
 }

@@ -1,8 +1,8 @@
 /* The fit of unknown inputs as JSON and for people.
      request {"unknowns": {"pinion_bearing_stiffness_N_per_um": [200, 3000], ...}, "model_error": 0.05, "seed": 1}
      answer  {"unknowns": [{key, before, value, range, confidence_95, at_bound, undetermined, same_as, correlation}],
-   "correlation": [[..]], "condition", "misfit": {before, after}, "measurements", "orders", "evaluations", "converged",
-   "warnings"} */
+   "correlation": [[..]], "condition", "misfit": {before, after}, "model_error", "minima": [{values, confidence_95,
+   misfit, within}], "measurements", "orders", "evaluations", "converged", "warnings"} */
 #ifndef EASEOFF_DOCUMENT_UPDATE_DOCUMENT_H
 #define EASEOFF_DOCUMENT_UPDATE_DOCUMENT_H
 

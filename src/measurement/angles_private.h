@@ -1,0 +1,64 @@
+/* The making of angles from the inside: angles.c reads, corrects and concludes, jumps.c finds what is missing, doubled
+   or far off between one sample and the next. */
+#ifndef EASEOFF_MEASUREMENT_ANGLES_PRIVATE_H
+#define EASEOFF_MEASUREMENT_ANGLES_PRIVATE_H
+
+#include "measurement/angles.h"
+#include "measurement/sampler.h"
+
+enum { EO_MOST_LOSSES = 3, EO_AHEAD = 4, EO_HELD = EO_SAMPLER_BLOCK + EO_AHEAD };
+
+/* Usual speeds of the samples that are held, and the size of step that is out of the ordinary. */
+struct eo_usual {
+  double rate[2], interval;
+  double limit[2], fine[2]; /* of what a row lost, of what a few counts lost stand out of */
+  bool uneven;              /* the speed changes much among the samples */
+};
+
+struct eo_angles_maker {
+  const struct eo_recording *recording;
+  const struct eo_tracks *tracks;
+  struct eo_findings *findings;
+  const struct eo_progress *progress;
+  struct eo_scan *scan; /* owned */
+  struct eo_sampler sampler;
+  struct eo_sample sample[EO_HELD];
+  int held;                          /* samples not yet passed on */
+  struct eo_sample last;             /* good one before them */
+  struct eo_sample recent[EO_AHEAD]; /* the ones before that, the oldest at kept % EO_AHEAD */
+  int64_t kept;
+  struct eo_sample low, high; /* of all good ones: those with the extreme pinion angles */
+  bool begun;
+  struct eo_usual usual; /* of the last block that is long enough to tell */
+  bool known;
+  double delay;                 /* s taken out of or put into time so far */
+  double quantum[2];            /* rad */
+  double *rate[2], *proportion; /* [blocks] owned: of each block */
+  int blocks, block_room;
+  double scratch[EO_HELD];
+  int losses;
+  struct loss {
+    int channel;
+    int64_t row;
+    double jump;
+  } loss[EO_MOST_LOSSES];
+  int64_t gaps, gap_row, spikes, spike_row;
+  bool wrapped[2];
+};
+
+/* Sets row and line of a finding. */
+struct eo_finding *eo_angles_at_row(const struct eo_angles_maker *maker, struct eo_finding *finding, int64_t row);
+
+/* Judges the samples that are held and passes them on as rows; the last EO_AHEAD stay unless `final`. */
+enum eo_code eo_jumps_pass_on(struct eo_angles_maker *maker, struct eo_angles *angles, bool final, double (*out)[3],
+                              int *written, struct eo_error *error);
+
+/* Findings about gaps, single values and lost counts, at the end. */
+void eo_jumps_judge(struct eo_angles_maker *maker, const struct eo_angles *angles);
+
+static inline const char *eo_channel_name(int channel)
+{
+  return channel ? "gear" : "pinion";
+}
+
+#endif
