@@ -1,6 +1,6 @@
 /* Pulse times as angles: line k of an encoder with N lines passes at the angle 2 pi k / N. The samples stand at
-   the pulses of the pinion; the angle of the gear there comes from Lagrange's polynomial through the six gear pulses
-   around (about 1e-4 of a harmonic that has eight pulses per period); none stands where a line of the gear is missing.
+   the pulses of the pinion; the angle of the gear there comes from Lagrange's polynomial through the twelve gear pulses
+   around (below 1e-4 of a harmonic that has seven pulses per period); none stands where a line of the gear is missing.
  */
 #include "measurement/pulse_train.h"
 #include "measurement/sampler.h"
@@ -8,7 +8,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-enum { NODES = 6, SIDE = EO_SAMPLER_BLOCK };
+enum { NODES = 12, SIDE = EO_SAMPLER_BLOCK };
 
 /* The pulses of one encoder, in blocks. */
 struct train {
@@ -71,7 +71,6 @@ static enum eo_code interpolate(struct eo_pulses *p, double time, double *line, 
 {
   struct train *gear = &p->train[1];
   int64_t first = p->near - NODES / 2 + 1;
-  first = first < 0 ? 0 : first + NODES > gear->made.count ? gear->made.count - NODES : first;
   double node[NODES][2];
   *line = 0;
   for (int i = 0; i < NODES; i++) {
@@ -123,7 +122,8 @@ static enum eo_code sample_at(struct eo_pulses *p, struct eo_sample *sample, boo
     (i ? high : low)[0] = pulse[0];
     (i ? high : low)[1] = pulse[1];
   }
-  if (code || p->near + 1 >= p->train[1].made.count || time < low[0] || high[1] - low[1] > 1.5)
+  bool amid = p->near >= NODES / 2 - 1 && p->near + NODES / 2 < p->train[1].made.count;
+  if (code || !amid || time < low[0] || high[1] - low[1] > 1.5)
     return code;
   code = interpolate(p, time, &line, error);
   *sample = (struct eo_sample){

@@ -132,7 +132,7 @@ enum eo_code eo_fit_residuals(void *context, const double *x, double *residual, 
     return eo_error_set(error, EO_ERROR_CANCELLED, "", "Stopped.");
   for (int i = 0; i < f->count; i++) {
     const struct eo_measured *m = &f->measured[f->order[i]];
-    enum eo_code code = eo_prediction_run(&prediction, f->evaluator, &f->trial, m->unmodified, m->torque, m->speed,
+    enum eo_code code = eo_prediction_run(&prediction, f->evaluator[f->with[i]], &f->trial, m->unmodified, m->torque, m->speed,
                                           m->end, m->harmonics, error);
     if (code)
       return code;
@@ -156,6 +156,21 @@ static void sort_measurements(struct eo_fit *f)
     }
     f->order[at] = i;
   }
+}
+
+/* An evaluator for each label and torque, in turns where there are many. */
+static enum eo_code make_evaluators(struct eo_fit *f, struct eo_error *error)
+{
+  int group = 0;
+  enum eo_code code = EO_OK;
+  for (int i = 0; i < f->count && !code; i++) {
+    const struct eo_measured *m = &f->measured[f->order[i]], *before = &f->measured[f->order[i ? i - 1 : 0]];
+    group += m->unmodified != before->unmodified || m->torque != before->torque;
+    f->with[i] = group % EO_FIT_EVALUATORS;
+    if (f->with[i] == f->evaluators)
+      code = eo_evaluator_new(&f->evaluator[f->evaluators++], &f->pair, 1, error);
+  }
+  return code;
 }
 
 /* ---- how good the model is ---- */
@@ -408,10 +423,11 @@ enum eo_code eo_update_run(struct eo_update *update, const struct eo_pair *pair,
     code = f->predicted ? EO_OK : eo_error_memory(error);
   }
   if (!code)
-    code = eo_evaluator_new(&f->evaluator, &f->pair, 1, error);
+    code = make_evaluators(f, error);
   if (!code)
     code = search(f, update, updated, error);
-  eo_evaluator_free(f->evaluator);
+  for (int i = 0; i < f->evaluators; i++)
+    eo_evaluator_free(f->evaluator[i]);
   free(f->predicted);
   free(f);
   return code;

@@ -5,14 +5,19 @@
 
 #include "measurement/updating.h"
 
+enum { EO_FIT_EVALUATORS = 8 };
+
 struct eo_fit {
   const struct eo_design *design;
   const struct eo_measured *measured;
   const struct eo_update_settings *settings;
   const struct eo_progress *progress;
   struct eo_pair pair;            /* with an impact patch of its own */
-  struct eo_evaluator *evaluator; /* on it */
+  int evaluators;
+  struct eo_evaluator *evaluator[EO_FIT_EVALUATORS]; /* on it, one for each loaded contact: supports and damping leave it
+                                                        as it was, and then it is not solved again */
   struct eo_design trial;
+  int with[EO_MOST_MEASURED];  /* evaluator of each place in the order */
   int order[EO_MOST_MEASURED]; /* measurements with the same loaded contact after each other: the evaluator solves it
                                   once */
   int count, residuals, evaluations;

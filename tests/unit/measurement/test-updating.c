@@ -47,7 +47,7 @@ static bool measure(const struct eo_design *rig, struct eo_random r, uint64_t po
 }
 
 struct tally {
-  int rigs, intervals, covered, determined, several;
+  int rigs, intervals, covered, determined, several, evaluations;
 };
 
 /* One rig: one or two unknown inputs, three to six measurements at torques and speeds of its own. */
@@ -92,16 +92,18 @@ static void add_rig(struct tally *tally, uint64_t seed)
   tally->rigs++;
   tally->determined += determined;
   tally->several += u.within > 1;
+  tally->evaluations += u.evaluations;
 }
 
 /* The limits of 200 rigs are 91 to 99 %; a short run leaves its own chance beside them, three standard deviations. */
-static void test_coverage(int rigs)
+static void test_coverage(int rigs, int first)
 {
   struct tally t = {0};
   for (int i = 0; i < rigs; i++)
-    add_rig(&t, (uint64_t)i);
+    add_rig(&t, (uint64_t)(first + i));
   double covered = 100.0 * t.covered / t.intervals, slack = rigs < SLOW ? 300 * sqrt(0.05 * 0.95 / t.intervals) : 0;
-  printf("# %d rigs, %d with several minima within reach\n", t.rigs, t.several);
+  printf("# %d rigs, %d with several minima within reach, %d evaluations each\n", t.rigs, t.several,
+         t.evaluations / (t.rigs ? t.rigs : 1));
   ok(t.rigs == rigs, "%d rigs drawn, measured and fitted", rigs);
   ok(covered >= 91 - slack && covered <= 99 + slack, "the 95 %% intervals cover the truth in %.1f %% of %d", covered,
      t.intervals);
@@ -114,7 +116,7 @@ static int stop_at(void *context, const char *what, double fraction)
   (void)what;
   bool back = fraction < *furthest;
   *furthest = back ? 2 : fraction;
-  return back || fraction > 0.4;
+  return back || fraction > 0.4 ? 1 : 0;
 }
 
 static void test_cancel(void)
@@ -127,8 +129,8 @@ static void test_cancel(void)
       .unknowns = 1, .seed = 1, .starts = 24, .range = {{EO_UNKNOWN_PINION_BEARING, 2e8, 3e9}}};
   for (int i = 0; i < 3; i++)
     measure(&design, eo_random_at(5, 0, 0, 0), (uint64_t)i, 828, 1000 + 700 * i, 0, &measured[i]);
-  ok(eo_update_run(&u, pair, &design, 3, measured, &settings, NULL, &progress, &error) == EO_ERROR_CANCELLED &&
-         furthest > 0.4 && furthest <= 1,
+  enum eo_code code = eo_update_run(&u, pair, &design, 3, measured, &settings, NULL, &progress, &error);
+  ok(code == EO_ERROR_CANCELLED && furthest > 0.4 && furthest <= 1,
      "a fit goes forwards and stops when it is told to, at %.2f", furthest);
 }
 
@@ -147,7 +149,10 @@ int main(int argc, char **argv)
   if (!pair || eo_design_complete(&design, &geometry, &error) || eo_evaluator_new(&evaluator, pair, 1, &error))
     return 99;
   test_cancel();
-  test_coverage(argc > 1 && strcmp(argv[1], "slow") == 0 ? SLOW : argc > 1 ? atoi(argv[1]) : SHORT);
+  test_coverage(argc > 1 && strcmp(argv[1], "slow") == 0 ? SLOW
+                : argc > 1                               ? atoi(argv[1])
+                                                         : SHORT,
+                argc > 2 ? atoi(argv[2]) : 0);
   eo_evaluator_free(evaluator);
   eo_pair_free(pair);
   return tap_done();
