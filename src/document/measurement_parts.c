@@ -100,38 +100,45 @@ json_t *eo_axis_encode(const struct eo_transmission *t)
 
 /* ---- load ---- */
 
-static const struct eo_outline_row load_column_rows[] = {
-    EO_KEY("mean", "number", "over what was measured"),
-    EO_KEY("lowest", "number", "of fiftieths of it"),
-    EO_KEY("highest", "number", "of fiftieths of it"),
+static const struct eo_outline_row torque_column_rows[] = {
+    EO_KEY("mean", "number", "over what was measured", .unit = &eo_unit_Nm),
+    EO_KEY("lowest", "number", "of fiftieths of it", .unit = &eo_unit_Nm),
+    EO_KEY("highest", "number", "of fiftieths of it", .unit = &eo_unit_Nm),
 };
-static const struct eo_outline load_column_outline = EO_OUTLINE("LoadColumn", load_column_rows);
+static const struct eo_outline torque_column_outline = EO_OUTLINE("TorqueColumn", torque_column_rows);
 
-static json_t *encode_load_column(const struct eo_load_column *c, const struct eo_unit *unit)
+static const struct eo_outline_row speed_column_rows[] = {
+    EO_KEY("mean", "number", "over what was measured", .unit = &eo_unit_rpm),
+    EO_KEY("lowest", "number", "of fiftieths of it", .unit = &eo_unit_rpm),
+    EO_KEY("highest", "number", "of fiftieths of it", .unit = &eo_unit_rpm),
+};
+static const struct eo_outline speed_column_outline = EO_OUTLINE("SpeedColumn", speed_column_rows);
+
+static json_t *encode_load_column(const struct eo_load_column *c, const struct eo_outline *outline)
 {
   if (!(c->mean > 0))
     return json_null();
-  struct eo_object o = eo_object_open_as(&load_column_outline);
-  eo_object_put(&o, "mean", eo_json_quantity(c->mean, unit));
-  eo_object_put(&o, "lowest", eo_json_quantity(c->low, unit));
-  eo_object_put(&o, "highest", eo_json_quantity(c->high, unit));
+  struct eo_object o = eo_object_open_as(outline);
+  eo_object_put_number(&o, "mean", c->mean);
+  eo_object_put_number(&o, "lowest", c->low);
+  eo_object_put_number(&o, "highest", c->high);
   return eo_object_close(&o);
 }
 
 static const struct eo_outline_row load_rows[] = {
-    EO_KEY("pinion_torque_Nm", "object?", "null: there is no such column", .outline = &load_column_outline),
-    EO_KEY("gear_torque_Nm", "object?", "null: there is no such column", .outline = &load_column_outline),
-    EO_KEY("pinion_speed_rpm", "object?", "null: there is no such column", .outline = &load_column_outline),
-    EO_KEY("gear_speed_rpm", "object?", "null: there is no such column", .outline = &load_column_outline),
+    EO_KEY("pinion_torque_Nm", "object?", "null: there is no such column", .outline = &torque_column_outline),
+    EO_KEY("gear_torque_Nm", "object?", "null: there is no such column", .outline = &torque_column_outline),
+    EO_KEY("pinion_speed_rpm", "object?", "null: there is no such column", .outline = &speed_column_outline),
+    EO_KEY("gear_speed_rpm", "object?", "null: there is no such column", .outline = &speed_column_outline),
 };
 const struct eo_outline eo_load_outline = EO_OUTLINE("MeasuredLoad", load_rows);
 
 json_t *eo_load_encode(const struct eo_load *load)
 {
   struct eo_object o = eo_object_open_as(&eo_load_outline);
-  eo_object_put(&o, "pinion_torque_Nm", encode_load_column(&load->torque[EO_PINION], &eo_unit_Nm));
-  eo_object_put(&o, "gear_torque_Nm", encode_load_column(&load->torque[EO_GEAR], &eo_unit_Nm));
-  eo_object_put(&o, "pinion_speed_rpm", encode_load_column(&load->speed[EO_PINION], &eo_unit_rpm));
-  eo_object_put(&o, "gear_speed_rpm", encode_load_column(&load->speed[EO_GEAR], &eo_unit_rpm));
+  eo_object_put(&o, "pinion_torque_Nm", encode_load_column(&load->torque[EO_PINION], &torque_column_outline));
+  eo_object_put(&o, "gear_torque_Nm", encode_load_column(&load->torque[EO_GEAR], &torque_column_outline));
+  eo_object_put(&o, "pinion_speed_rpm", encode_load_column(&load->speed[EO_PINION], &speed_column_outline));
+  eo_object_put(&o, "gear_speed_rpm", encode_load_column(&load->speed[EO_GEAR], &speed_column_outline));
   return eo_object_close(&o);
 }

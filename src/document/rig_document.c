@@ -9,6 +9,8 @@
 static const struct eo_unit unit_urad = {"urad", "urad", 1e6, true}, unit_us = {"us", "us", 1e6, true},
                             unit_mV = {"mV", "mV", 1e3, true}, unit_V = {"V", "V", 1, false};
 
+static const double SPEED_CHANGES = 0.02, TORQUE_CHANGES = 0.1; /* relative, over the recording: said by a finding */
+
 static const char *const ends[] = {"left", "right", NULL}, *const outputs[] = {"angles", "counts",     "sine-cosine",
                                                                                "pulses", "increments", "square",
                                                                                NULL};
@@ -41,6 +43,8 @@ static const struct eo_field fields[] = {
               "its period in turns of the pinion"),
     EO_NUMBER(struct eo_rig_request, SYNTHETIC(step), "speed_step", NULL, -1.9, 1.9, 0,
               "change of the speed half way, between two steady states, relative"),
+    EO_NUMBER(struct eo_rig_request, SYNTHETIC(run_up), "run_up_turns", NULL, 0, 1e6, 0,
+              "first turns in which the speed rises from a tenth to that of the rest"),
     EO_NUMBER(struct eo_rig_request, SYNTHETIC(rest[0]), "rest_before_s", NULL, 0, 1e6, 0, "standstill at the start"),
     EO_NUMBER(struct eo_rig_request, SYNTHETIC(rest[1]), "rest_after_s", NULL, 0, 1e6, 0, "standstill at the end"),
     EO_FLAG(struct eo_rig_request, SYNTHETIC(turn_back), "turn_back", 0, "the shafts turn back to where they began"),
@@ -262,6 +266,10 @@ json_t *eo_rig_truth(const struct eo_rig_request *r, const char *file)
     entry.failed = json_array_append_new(findings, json_string(fault)) != 0;
   else if (s->wrapped)
     entry.failed = json_array_append_new(findings, json_string("wrapped")) != 0;
+  if (eo_synthetic_swing(s) > SPEED_CHANGES || s->rest[0] > 0 || s->rest[1] > 0 || s->turn_back || s->run_up > 0)
+    entry.failed = json_array_append_new(findings, json_string("unsteady")) != 0 || entry.failed;
+  if (s->torque != 0 && fabs(s->torque_change) > TORQUE_CHANGES)
+    entry.failed = json_array_append_new(findings, json_string("torque")) != 0 || entry.failed;
   for (int i = 0; i < 2; i++)
     top.failed = json_array_append_new(radii, eo_json_real(s->base_radius[i], &eo_unit_mm)) ||
                  json_array_append_new(teeth, json_integer(s->teeth[i])) || top.failed;
@@ -272,8 +280,10 @@ json_t *eo_rig_truth(const struct eo_rig_request *r, const char *file)
   if (s->output != EO_SYNTHETIC_ANGLES) {
     bool counted = s->output == EO_SYNTHETIC_COUNTS || s->output == EO_SYNTHETIC_INCREMENTS;
     int per_line = counted ? s->interpolation : 1;
-    eo_object_put(&entry, "layout",
-                  json_pack("{s:[i,i]}", "lines", s->lines[EO_PINION] * per_line, s->lines[EO_GEAR] * per_line));
+    json_t *layout = json_pack("{s:[i,i]}", "lines", s->lines[EO_PINION] * per_line, s->lines[EO_GEAR] * per_line);
+    if (s->output == EO_SYNTHETIC_INCREMENTS)
+      entry.failed = json_object_set_new(layout, "unit", json_string("count")) != 0 || entry.failed;
+    eo_object_put(&entry, "layout", layout);
   }
   top.failed = json_array_append_new(files, eo_object_close(&entry)) != 0 || top.failed;
   eo_object_put(&top, "kind", json_string("encoder"));

@@ -9,6 +9,7 @@ enum { STREAM_PLACES, STREAM_NOISE, STREAM_JITTER, STREAM_SKEW, STREAM_TRACKS };
 
 static const double DEGREES = 180 / M_PI;
 static const double STEP_TURNS = 0.25; /* turns in which the speed changes from one steady state to the other */
+static const double RUN_UP_FROM = 0.1; /* of the speed that the run-up leads to */
 static const double SQUARE_HIGH = 4.8, SQUARE_LOW = 0.2; /* V */
 static const double DOUBLE_PULSE = 0.01;                 /* lines between a pulse and its double */
 
@@ -53,9 +54,16 @@ static double duration(const struct eo_synthetic *s)
   return 2 * M_PI * s->turns / s->speed;
 }
 
+/* Of the run-up. */
+static double run_up_duration(const struct eo_synthetic *s)
+{
+  return 2 * (2 * M_PI * s->run_up / s->speed) / (1 + RUN_UP_FROM);
+}
+
 static double whole_duration(const struct eo_synthetic *s)
 {
-  return s->rest[0] + duration(s) * (s->turn_back ? 2 : 1) + s->rest[1];
+  double longer = run_up_duration(s) * (1 - RUN_UP_FROM) / 2;
+  return s->rest[0] + (duration(s) + longer) * (s->turn_back ? 2 : 1) + s->rest[1];
 }
 
 static double log_cosh(double x)
@@ -63,23 +71,33 @@ static double log_cosh(double x)
   return fabs(x) + log1p(exp(-2 * fabs(x))) - M_LN2;
 }
 
-/* The pinion's angle without vibration: speed (1 + drift (t/T - 1/2) + swing sin + step/2 tanh) integrated, held at
-   rests, run through backwards on the way back. */
-static double smooth(const struct eo_synthetic *s, double time)
+/* The pinion's angle without vibration on its way: speed (1 + drift (t/T - 1/2) + swing sin + step/2 tanh) integrated.
+ */
+static double way(const struct eo_synthetic *s, double time)
 {
   double total = duration(s), start = 2 * M_PI * eo_random_unit(eo_random_at(s->seed, STREAM_PLACES, 0, 0), 0);
-  time -= s->rest[0];
-  if (s->turn_back && time > total)
-    time = 2 * total - time;
-  if (s->rest[0] > 0 || s->turn_back)
-    time = fmax(time, 0);
-  if (s->rest[1] > 0 && !s->turn_back)
-    time = fmin(time, total);
   double x = time / total, rate = s->swing_turns > 0 ? s->speed / s->swing_turns : 0;
   double slow = rate > 0 ? s->swing / rate * (1 - cos(rate * time)) : 0;
   double change = 2 * M_PI / s->speed * STEP_TURNS; /* s, of the tanh */
   double step = s->step / 2 * change * (log_cosh((time - total / 2) / change) - log_cosh(total / 2 / change));
   return start + s->speed * (time + s->drift * total * (x * x - x) / 2 + slow + (s->step != 0 ? step : 0));
+}
+
+/* The same with rests, run through backwards on the way back, slower in the run-up: there time goes by as the integral
+   of a speed that rises evenly. */
+static double smooth(const struct eo_synthetic *s, double time)
+{
+  double ramp = run_up_duration(s), total = duration(s) + ramp * (1 - RUN_UP_FROM) / 2;
+  time -= s->rest[0];
+  if (s->turn_back && time > total)
+    time = 2 * total - time;
+  if (s->rest[0] > 0 || s->turn_back || ramp > 0)
+    time = fmax(time, 0);
+  if (s->rest[1] > 0 && !s->turn_back)
+    time = fmin(time, total);
+  if (ramp > 0 && time < ramp)
+    return way(s, RUN_UP_FROM * time + (1 - RUN_UP_FROM) * time * time / (2 * ramp));
+  return way(s, time - ramp * (1 - RUN_UP_FROM) / 2);
 }
 
 static double vibration(const struct eo_synthetic *s, double theta)
@@ -169,7 +187,7 @@ static double written_angle(const struct eo_synthetic *s, int64_t row, int chann
   if (s->output == EO_SYNTHETIC_COUNTS)
     return written_count(s, step * floor(angle / step), channel);
   if (s->output == EO_SYNTHETIC_INCREMENTS)
-    return row ? floor(angle / step) - floor(channel_angle(s, row - 1, channel) / step) : 0;
+    return floor(angle / step) - floor(channel_angle(s, row - 1, channel) / step);
   if (step > 0)
     angle = step * floor(angle / step);
   if (s->wrapped)
@@ -378,8 +396,10 @@ void eo_synthetic_tracks(const struct eo_synthetic *s, struct eo_tracks *tracks)
 static enum eo_code check_kind(const struct eo_synthetic *s, struct eo_error *error)
 {
   bool pulses = s->output == EO_SYNTHETIC_PULSES, counted = s->output == EO_SYNTHETIC_COUNTS;
-  if (pulses && s->turn_back)
-    return eo_error_set(error, EO_ERROR_INPUT, "", "Pulses do not tell a way back.");
+  if (pulses && (s->turn_back || s->run_up > 0))
+    return eo_error_set(error, EO_ERROR_INPUT, "", "Pulses are recorded without a way back and without a run-up.");
+  if (s->run_up < 0 || s->run_up > s->turns)
+    return eo_error_set(error, EO_ERROR_INPUT, "", "The run-up is longer than the recording.");
   if (s->index && !counted)
     return eo_error_set(error, EO_ERROR_INPUT, "", "An index pulse goes with counts.");
   for (int i = 0; i < 2; i++)
@@ -430,8 +450,18 @@ enum eo_code eo_synthetic_record(const struct eo_synthetic *s, struct eo_recordi
 
 double eo_synthetic_speed(const struct eo_synthetic *s)
 {
-  double begin = s->rest[0], end = begin + duration(s);
-  return (smooth(s, end) - smooth(s, begin)) / duration(s);
+  return (way(s, duration(s)) - way(s, 0)) / duration(s);
+}
+
+double eo_synthetic_swing(const struct eo_synthetic *s)
+{
+  double turn = 2 * M_PI / s->speed, low = INFINITY, high = 0;
+  for (int i = 0; i + 1 <= s->turns; i++) {
+    double speed = (way(s, (i + 1) * turn) - way(s, i * turn)) / turn;
+    low = fmin(low, speed);
+    high = fmax(high, speed);
+  }
+  return high > low ? (high - low) / s->speed : 0;
 }
 
 double eo_synthetic_rms(const struct eo_synthetic *s, int harmonics)

@@ -52,17 +52,18 @@ struct eo_synthetic {
   double pinion_share;                       /* of the vibration, 0..1 */
   double speed;                              /* of the pinion, rad/s, mean */
   double drift;                              /* of the speed from start to end, relative; 1.9: a run-up from 0.05 */
-  double swing, swing_turns;    /* relative amplitude of a swing of the speed, its period in turns of the pinion */
-  double step;                  /* of the speed half way, between two steady states, relative */
-  double rest[2];               /* standstill at start and end, s */
-  bool turn_back;               /* the pinion then turns back to where it began */
-  double turns;                 /* of the pinion, one way */
-  double sample_rate;           /* Hz */
-  double eccentricity[2];       /* amplitude of the first shaft order, m along the line of action */
-  double noise;                 /* of each angle, standard deviation, rad */
-  double jitter, skew;          /* of the sampling: of both channels, of the gear alone, s */
-  double gear_rate;             /* samples per second of the gear, with a time column of its own; 0: the same clock */
-  double gear_delay;            /* s, of the gear's first sample, with a time column of its own unless 0 */
+  double swing, swing_turns; /* relative amplitude of a swing of the speed, its period in turns of the pinion */
+  double step;               /* of the speed half way, between two steady states, relative */
+  double run_up;             /* of the turns, the first ones: the speed rises there from a tenth to that of the rest */
+  double rest[2];            /* standstill at start and end, s */
+  bool turn_back;            /* the pinion then turns back to where it began */
+  double turns;              /* of the pinion, one way */
+  double sample_rate;        /* Hz */
+  double eccentricity[2];    /* amplitude of the first shaft order, m along the line of action */
+  double noise;              /* of each angle, standard deviation, rad */
+  double jitter, skew;       /* of the sampling: of both channels, of the gear alone, s */
+  double gear_rate;          /* samples per second of the gear, with a time column of its own; 0: the same clock */
+  double gear_delay;         /* s, of the gear's first sample, with a time column of its own unless 0 */
   double torque, torque_change; /* N m, mean, in a column of its own unless 0; change from start to end, relative */
   bool shows_speed;             /* in a column of its own, rpm */
   bool index;                   /* counts start again at 0 with an index pulse each turn */
@@ -100,8 +101,11 @@ void eo_synthetic_tracks(const struct eo_synthetic *synthetic, struct eo_tracks 
 enum eo_code eo_synthetic_record(const struct eo_synthetic *synthetic, struct eo_recording **recording,
                                  struct eo_error *error);
 
-/* Mean speed of the pinion over the whole recording, slow swings included, rad/s. */
+/* Mean speed of the pinion without run-up and rests, slow swings included, rad/s. */
 double eo_synthetic_speed(const struct eo_synthetic *synthetic);
+
+/* Highest less lowest speed over mean turns of the pinion, relative to the mean: what makes a recording unsteady. */
+double eo_synthetic_swing(const struct eo_synthetic *synthetic);
 
 /* RMS of the acceleration of mesh orders 1..harmonics at the mean speed, m/s2. */
 double eo_synthetic_rms(const struct eo_synthetic *synthetic, int harmonics);

@@ -30,6 +30,8 @@ static const struct {
              {"slip", EO_FINDING_SLIP},
              {"jump", EO_FINDING_SLIP},
              {"step", EO_FINDING_SLIP},
+             {"pulse", EO_FINDING_PULSE},
+             {"torque", EO_FINDING_TORQUE},
              {"drop", EO_FINDING_DROPPED},
              {"gap", EO_FINDING_DROPPED},
              {"missing", EO_FINDING_DROPPED},

@@ -37,6 +37,15 @@ recording "counts" --output counts --interpolation 1024 --pinion-lines 9000 --ge
 recording "pulse times" --output pulses --pinion-lines 1024 --gear-lines 2500 --noise-urad 0
 recording "jitter of both channels" --jitter-us 2
 recording "a speed that drifts and swings" --speed-drift 0.01 --speed-swing 0.002 --speed-swing-turns 90
+recording "a coupling that swings once per turn" --speed-swing 0.03 --speed-swing-turns 1
+recording "a run-up" --speed-drift 1.2 --sample-rate-Hz 30000
+recording "two steady states" --speed-step 0.15
+recording "rests, and a run-up to a steady state" --rest-before-s 0.1 --rest-after-s 0.1 --run-up-turns 6 --sample-rate-Hz 24000
+recording "there and back" --turn-back yes
+recording "a clock for each encoder" --gear-sample-rate-Hz 17000 --gear-delay-us 30
+recording "counts from an index pulse on" --output counts --interpolation 1024 --index-pulse yes
+recording "a wheel with missing teeth" --output pulses --pinion-lines 1024 --gear-lines 2500 --gear-missing-teeth 2 --noise-urad 0
+recording "torque and speed beside" --torque-column yes --torque-change 0.4 --speed-column yes
 for fault in swapped reversed radians radians-gear "dropped --fault-size 40" "dropped-silent --fault-size 3" nan spike "time --fault-size 10" teeth slip constant stuck; do
   recording "fault $fault" --fault $fault
 done

@@ -209,6 +209,10 @@ static void check_faults(void)
   check_fault(raw, EO_FAULT_CONSTANT, 0, 0, EO_FINDING_CONSTANT, true, -1, "a constant raw channel");
   check_fault(s, EO_FAULT_TIME, 9000, 10, EO_FINDING_TIME, false, 9000, "time that runs back");
   check_fault(s, EO_FAULT_NAN, 9000, 5, EO_FINDING_NAN, false, 9000, "rows without numbers");
+  check_fault(pulses, EO_FAULT_MISSED_PULSE, 9000, 3, EO_FINDING_PULSE, false, 9000, "three pulses missing");
+  check_fault(pulses, EO_FAULT_DOUBLE_PULSE, 9000, 1, EO_FINDING_PULSE, false, 9001, "a pulse that is there twice");
+  pulses.missing[EO_GEAR] = 2;
+  check_clean(&pulses, "a wheel with two teeth missing");
   check_fault(s, EO_FAULT_SPIKE, 9000, 1, EO_FINDING_SPIKE, false, 9000, "a value far off");
 }
 
@@ -320,12 +324,19 @@ static void check_speeds(void)
   s.rest[1] = 0.1;
   check_speed("a rest at start and end", s, 1e-3, true);
   s = usual();
+  s.rest[0] = 0.1;
+  s.run_up = 8;
+  s.sample_rate *= 2;
+  check_speed("a run-up from rest to a long steady state", s, 2e-3, true);
+  ok(measurement.transmission.revolutions[EO_PINION] < 37 && measurement.transmission.revolutions[EO_PINION] > 30,
+     "of which %.1f turns are measured", measurement.transmission.revolutions[EO_PINION]);
+  s = usual();
   s.turn_back = true;
   check_speed("there and back", s, 1e-3, true);
   ok(measurement.transmission.parts.count == 2, "two parts");
 }
 
-/* A run-up that ends in a long steady state: what leads there is left out, unless all of it is asked for. */
+/* Another part, or other times, when they are asked for. */
 static void check_parts(void)
 {
   struct eo_synthetic s = usual();
@@ -345,6 +356,46 @@ static void check_parts(void)
      "from 0.1 to 0.8 s when that is asked for");
 }
 
+/* ---- torque and speed columns ---- */
+
+static bool said(const struct eo_measurement *m, enum eo_finding_kind kind, enum eo_severity severity)
+{
+  bool found = false;
+  for (int i = 0; i < m->findings.count && i < EO_MAX_FINDINGS; i++)
+    found = found || (m->findings.finding[i].kind == kind && m->findings.finding[i].severity == severity);
+  return found;
+}
+
+static void check_load(void)
+{
+  struct eo_synthetic s = usual();
+  struct eo_measurement_settings settings = {.transmission = {.teeth = {17, 44}, .base_radius = {radius[0], radius[1]}},
+                                             .stated_speed = NAN};
+  s.torque = 700;
+  s.shows_speed = true;
+  const struct eo_measurement *m = measure_with(&s, &settings);
+  ok(fabs(m->load.pinion_torque - 700) < 1e-6 && fabs(m->load.speed[0].mean / m->transmission.speed - 1) < 1e-3 &&
+         eo_findings_worst(&m->findings) == EO_SEVERITY_NOTE,
+     "a torque of %.3f N m and a speed in columns", m->load.pinion_torque);
+  settings.stated_torque = 828;
+  ok(said(measure_with(&s, &settings), EO_FINDING_TORQUE, EO_SEVERITY_WARNING), "it is not the stated 828 N m");
+  settings.stated_torque = 700;
+  s.torque_change = 0.4;
+  ok(said(measure_with(&s, &settings), EO_FINDING_TORQUE, EO_SEVERITY_WARNING) && !measurement.refused,
+     "a torque that changes");
+  show(&measurement);
+  s.torque = 0;
+  s.shows_speed = false;
+  settings.expected_speed[0] = settings.expected_speed[1] = 40 * s.speed;
+  ok(measure_with(&s, &settings)->refused && said(&measurement, EO_FINDING_SPEED, EO_SEVERITY_REFUSED),
+     "a speed that no load case comes near is a question");
+  settings.stated_speed = s.speed;
+  ok(!measure_with(&s, &settings)->refused, "unless it is stated");
+  settings.stated_speed = NAN;
+  s.shows_speed = true;
+  ok(!measure_with(&s, &settings)->refused, "or a column tells it too");
+}
+
 int main(int argc, char **argv)
 {
   int recordings = argc > 1 && strcmp(argv[1], "slow") == 0 ? SLOW : SHORT;
@@ -353,6 +404,7 @@ int main(int argc, char **argv)
   check_printed_radii();
   check_speeds();
   check_parts();
+  check_load();
   check_truth(recordings);
   eo_measurement_done(&measurement);
   return tap_done();
