@@ -145,6 +145,13 @@ static enum eo_code read_item(const struct request *r, const json_t *item, struc
   e->part.part = (int)stated(item, "part", e->part.part, 1);
   e->part.from = stated(item, "from_s", e->part.from, 1);
   e->part.to = stated(item, "to_s", e->part.to, 1);
+  const struct eo_part_choice *part = &e->part;
+  double number = stated(item, "part", part->part, 1);
+  if (!code && (number != floor(number) || part->part < 0 || part->part > EO_PARTS || part->from < 0 ||
+                (part->to != 0 && part->to <= part->from)))
+    return eo_error_set(error, EO_ERROR_INPUT, "/measurements",
+                        "An entry of the list has \"part\" from 1 to %d and \"to_s\" after \"from_s\", in s.",
+                        EO_PARTS);
   if (json_object_get(item, "layout")) {
     json_decref(e->layout);
     e->layout = json_incref(json_object_get(item, "layout"));
