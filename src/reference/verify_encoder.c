@@ -162,6 +162,7 @@ static enum eo_code set_pair(struct run *r, struct eo_error *error)
     r->settings.transmission.base_radius[i] = geometry.base_radius[i];
   }
   r->settings.stated_speed = NAN;
+  memcpy(r->settings.expected_speed, r->speed, sizeof r->speed);
   read_settings(r->file, &r->settings);
   read_settings(eo_case_find(r->file, "mesh"), &r->settings);
   return EO_OK;
