@@ -7,7 +7,7 @@
 #include "support/study-fixture.h"
 #include "support/tap.h"
 
-enum { SHORT = 12, SLOW = 200, MOST_POINTS = 6 };
+enum { SHORT = 4, SLOW = 200, MOST_POINTS = 6 };
 
 static struct eo_design design;
 static struct eo_geometry geometry;
