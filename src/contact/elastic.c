@@ -116,6 +116,7 @@ static void resolve(struct eo_elastic *el, struct eo_loaded_workspace *ws, const
 static void respond(struct eo_elastic *el, struct eo_loaded_workspace *ws, double factor, int end, int j)
 {
   const struct eo_contact_position *p = &el->grid->position[j];
+  eo_loaded_prepare_response(ws, p);
   for (int k = 0; k < MODES; k++) {
     struct eo_deflection mode;
     memcpy(&mode, el->influence.mode + k * el->influence.size + end * PART, sizeof mode);

@@ -66,8 +66,12 @@ static enum eo_code allocate_position(struct eo_contact_position *p, struct eo_e
   p->kind = calloc(n, sizeof *p->kind);
   p->length = calloc(n, sizeof *p->length);
   p->law = calloc(n, sizeof *p->law);
+  p->per_depth = calloc(n, sizeof *p->per_depth);
+  p->strength = calloc(n, sizeof *p->strength);
   p->radius = calloc(n, sizeof *p->radius);
-  return p->line && p->point && p->path && p->kind && p->length && p->law && p->radius ? EO_OK : eo_error_memory(error);
+  return p->line && p->point && p->path && p->kind && p->length && p->law && p->per_depth && p->strength && p->radius
+             ? EO_OK
+             : eo_error_memory(error);
 }
 
 static void fill_line(struct eo_contact_position *p, int first, const struct eo_gap_field *field,
@@ -87,6 +91,15 @@ static void fill_line(struct eo_contact_position *p, int first, const struct eo_
     p->length[first + i] = width / cos(g->base_helix_angle);
     p->law[first + i] = eo_contact_local_constant(g, material, clamped);
     p->radius[first + i] = eo_geometry_relative_radius(g, clamped);
+  }
+}
+
+/* The local law as the table of its inverse takes it. */
+static void scale_law(struct eo_contact_position *p, double compliance_scale)
+{
+  for (int i = 0; i < p->points; i++) {
+    p->per_depth[i] = exp(-p->law[i]) / compliance_scale;
+    p->strength[i] = exp(p->law[i]) * p->length[i];
   }
 }
 
@@ -112,28 +125,36 @@ static enum eo_code fill_position(struct eo_contact_position *p, const struct eo
   return code;
 }
 
-/* The few strongest modes carry Newton's matrix; what they leave is added back as a correction, so the compliance is
-   exact. */
+/* The few strongest modes carry Newton's matrix; what they leave, the rounding of the modes included, is added back as
+   a correction, so the compliance is exact. */
 static enum eo_code factor_position(struct eo_contact_position *p, struct eo_kernel kernel, double *compliance,
                                     struct eo_error *error)
 {
-  static const double TOLERANCE = 2e-3;
-  size_t n = (size_t)p->points, stride;
+  static const double TOLERANCE = 5e-3;
+  size_t n = (size_t)p->points;
+  double *factor = NULL;
+  int stride = 0;
   kernel.evaluate(kernel.context, p->points, p->point, compliance);
-  p->remainder_stride = (p->points + EO_GRAM_FLOATS - 1) / EO_GRAM_FLOATS * EO_GRAM_FLOATS;
-  p->remainder = (float *)eo_gram_allocate((long)p->points * p->remainder_stride / 2);
-  if (!p->remainder)
-    return eo_error_memory(error);
-  enum eo_code code = eo_lowrank_factor(p->points, compliance, TOLERANCE, &p->rank, &p->stride, &p->factor, error);
+  enum eo_code code = eo_lowrank_factor(p->points, compliance, TOLERANCE, &p->rank, &stride, &factor, error);
   if (code)
     return code;
+  p->stride = eo_gram_width(p->rank - (p->rank > 0));
+  p->factor = (float *)eo_gram_allocate((long)p->points * p->stride / 2);
+  p->remainder_stride = (p->points + EO_GRAM_FLOATS - 1) / EO_GRAM_FLOATS * EO_GRAM_FLOATS;
+  p->remainder = (float *)eo_gram_allocate((long)p->points * p->remainder_stride / 2);
+  for (int i = 0; p->factor && i < p->points; i++)
+    for (int k = 0; k < p->rank; k++)
+      p->factor[i * p->stride + k] = (float)factor[i * stride + k];
+  free(factor);
+  if (!p->factor || !p->remainder)
+    return eo_error_memory(error);
   kernel.evaluate(kernel.context, p->points, p->point, compliance);
-  stride = (size_t)p->stride;
   for (size_t i = 0; i < n; i++)
     for (size_t j = 0; j < n; j++) {
+      const float *a = p->factor + i * (size_t)p->stride, *b = p->factor + j * (size_t)p->stride;
       double sum = compliance[i * n + j];
       for (int k = 0; k < p->rank; k++)
-        sum -= p->factor[i * stride + (size_t)k] * p->factor[j * stride + (size_t)k];
+        sum -= (double)a[k] * (double)b[k];
       p->remainder[i * (size_t)p->remainder_stride + j] = (float)sum;
     }
   return EO_OK;
@@ -147,6 +168,8 @@ static void free_position(struct eo_contact_position *p)
   free(p->kind);
   free(p->length);
   free(p->law);
+  free(p->per_depth);
+  free(p->strength);
   free(p->radius);
   free(p->factor);
   free(p->remainder);
@@ -191,6 +214,8 @@ static enum eo_code fill_grid(struct eo_contact_grid *grid, const struct eo_mate
     struct eo_contact_position *p = &grid->position[i];
     p->phase = phase ? phase[i] : grid->geometry.transverse_base_pitch * i / grid->positions;
     code = fill_position(p, field, material, stretch, stretches, error);
+    if (!code)
+      scale_law(p, grid->compliance_scale);
     p->first = grid->points;
     grid->points += p->points;
     grid->most_points = p->points > grid->most_points ? p->points : grid->most_points;

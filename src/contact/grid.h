@@ -28,11 +28,13 @@ struct eo_contact_position {
   struct eo_flank_point *point; /* pair, place on each flank (m), eta (m) */
   double *path;                 /* s on the plane of action, m; outside [s_A, s_E] for tip points */
   enum eo_point_kind *kind;
-  double *length;   /* of the point's piece of contact line, m */
-  double *law;      /* L of the local law: delta = K q (L - ln q), q in N/m */
-  double *radius;   /* relative curvature radius rho_n, m */
-  int rank, stride; /* of the factor; stride: see numerics/gram.h */
-  double *factor;   /* [points][stride]: bulk compliance = factor factor' + remainder, m/N */
+  double *length;    /* of the point's piece of contact line, m */
+  double *law;       /* L of the local law: delta = K q (L - ln q), q in N/m */
+  double *per_depth; /* 1/(K e^L), 1/m: with u = delta times it ... */
+  double *strength;  /* ... the point carries length e^L w(u), N; w: contact/local_inverse.h */
+  double *radius;    /* relative curvature radius rho_n, m */
+  int rank, stride;  /* of the factor; stride: see numerics/gram.h */
+  float *factor;     /* [points][stride]: bulk compliance = factor factor' + remainder, m/N */
   int remainder_stride;
   float *remainder; /* [points][remainder_stride]: what the low rank leaves, some thousandths */
 };

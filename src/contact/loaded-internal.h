@@ -15,8 +15,7 @@ struct eo_loaded_workspace {
   double *local, *spread;    /* [most_points]: local approach g, and half its change over the cell */
   double *mode, *trial;      /* [most_rank + 1]: a and Z */
   double *residual, *step, *tangent; /* [most_rank + 1] */
-  double *matrix, *packed;           /* scratch of the kernel */
-  float *blend;
+  float *matrix, *packed, *blend;    /* scratch of the kernel; matrix: minus the inverse of Newton's */
 };
 
 #endif

@@ -10,7 +10,6 @@
 struct problem {
   const struct eo_contact_position *position;
   const double *gap; /* [points] */
-  double scale;      /* K */
   double force;      /* P */
 };
 
@@ -18,8 +17,7 @@ struct problem {
 static void load_points(struct eo_loaded_workspace *ws, const struct problem *problem, const double *mode)
 {
   const struct eo_contact_position *p = problem->position;
-  int stride = p->stride;
-  double approach = mode[stride], sum = 0;
+  double approach = mode[p->rank], sum = 0;
   for (int i = 0; i < p->points; i++) {
     double local = ws->local[i] = approach - problem->gap[i] - ws->bend[i] - ws->correction[i], spread = ws->spread[i],
            share = 1;
@@ -30,26 +28,19 @@ static void load_points(struct eo_loaded_workspace *ws, const struct problem *pr
       share = (local + spread) / (2 * spread);
       local = share * share * spread;
     }
-    double scaled = local / problem->scale, t = p->law[i] - log(scaled);
-    if (t > EO_LOCAL_INVERSE_LOW) {
-      double x = eo_local_inverse_at(&ws->inverse, t);
-      ws->load[i] = p->length[i] * scaled / x;
-      ws->rate[i] = share * p->length[i] / (problem->scale * (x - 1));
-    } else {
-      ws->load[i] = p->length[i] * (scaled - exp(p->law[i] - EO_LOCAL_INVERSE_STRAIGHT)) /
-                    (EO_LOCAL_INVERSE_STRAIGHT - 1);
-      ws->rate[i] = share * p->length[i] / (problem->scale * (EO_LOCAL_INVERSE_STRAIGHT - 1));
-    }
+    double slope, carried = eo_local_inverse_at(&ws->inverse, local * p->per_depth[i], &slope);
+    ws->load[i] = p->strength[i] * carried;
+    ws->rate[i] = share * slope * p->strength[i] * p->per_depth[i];
     sum += ws->load[i];
   }
-  memcpy(ws->residual, mode, sizeof *mode * (size_t)stride);
-  ws->gram->gather(p->points, stride, p->factor, ws->load, ws->residual);
-  ws->residual[stride] = sum - problem->force;
+  memcpy(ws->residual, mode, sizeof *mode * (size_t)p->rank);
+  ws->gram->gather(p->points, p->rank, p->stride, p->factor, ws->load, ws->residual);
+  ws->residual[p->rank] = sum - problem->force;
 }
 
 static void bend(struct eo_loaded_workspace *ws, const struct eo_contact_position *p, const double *mode)
 {
-  ws->gram->apply(p->points, p->stride, p->factor, mode, ws->bend);
+  ws->gram->apply(p->points, p->rank, p->stride, p->factor, mode, ws->bend);
 }
 
 static void evaluate(struct eo_loaded_workspace *ws, const struct problem *problem, const double *mode)
@@ -63,20 +54,30 @@ static inline double larger(double a, double b)
   return a > b ? a : b;
 }
 
+/* Notes half the change of the local approach over a cell; returns how much that is news, for cells that the end of the
+   contact may lie in. */
+static inline double spread_cell(struct eo_loaded_workspace *ws, int i, double spread)
+{
+  double before = ws->spread[i], moved = fabs(spread - before);
+  ws->spread[i] = spread;
+  return fabs(ws->local[i]) < larger(spread, before) ? moved : 0;
+}
+
 /* Half the change of the local approach over each cell, from its neighbours on the line; returns its largest change. */
 static double spread_cells(struct eo_loaded_workspace *ws, const struct eo_contact_position *p)
 {
   double change = 0;
   for (int l = 0; l < p->lines; l++) {
     int first = p->line[l].first, last = first + p->line[l].cells - 1;
-    for (int i = first; i <= last; i++) {
-      int a = i > first ? i - 1 : i, b = i < last ? i + 1 : i;
-      double half = b - a == 2 ? 0.25 : 0.5, spread = fabs(ws->local[b] - ws->local[a]) * half,
-             moved = fabs(spread - ws->spread[i]);
-      if (fabs(ws->local[i]) < larger(spread, ws->spread[i]))
-        change = larger(change, moved);
-      ws->spread[i] = spread;
+    const double *local = ws->local;
+    if (first == last) {
+      change = larger(change, spread_cell(ws, first, 0));
+      continue;
     }
+    change = larger(change, spread_cell(ws, first, 0.5 * fabs(local[first + 1] - local[first])));
+    for (int i = first + 1; i < last; i++)
+      change = larger(change, spread_cell(ws, i, 0.25 * fabs(local[i + 1] - local[i - 1])));
+    change = larger(change, spread_cell(ws, last, 0.5 * fabs(local[last] - local[last - 1])));
   }
   return change;
 }
@@ -92,7 +93,7 @@ static void spread_gaps(struct eo_loaded_workspace *ws, const struct problem *pr
 
 /* Deflection of the present loads by the part of the compliance that the modes leave out; returns its largest change.
  */
-static double correct(struct eo_loaded_workspace *ws, const struct eo_contact_position *p)
+static double blend(struct eo_loaded_workspace *ws, const struct eo_contact_position *p)
 {
   double change = 0;
   ws->gram->blend(p->points, p->remainder_stride, p->remainder, ws->load, ws->blend);
@@ -100,6 +101,13 @@ static double correct(struct eo_loaded_workspace *ws, const struct eo_contact_po
     change = larger(change, fabs((double)ws->blend[i] - ws->correction[i]));
     ws->correction[i] = (double)ws->blend[i];
   }
+  return change;
+}
+
+/* The same, and how far cells reach into contact. */
+static double correct(struct eo_loaded_workspace *ws, const struct eo_contact_position *p)
+{
+  double change = blend(ws, p);
   if (ws->partial)
     change = fmax(change, 0.02 * spread_cells(ws, p));
   return change;
@@ -115,24 +123,24 @@ static double dot(int n, const double *a, const double *b)
 
 static bool factorise(struct eo_loaded_workspace *ws, const struct eo_contact_position *p)
 {
-  ws->gram->assemble(p->points, p->stride, p->factor, ws->rate, ws->packed, ws->matrix);
-  return ws->gram->factor(p->stride + 1, p->stride, ws->matrix);
+  ws->gram->assemble(p->points, p->rank, p->stride, p->factor, ws->rate, ws->packed, ws->matrix);
+  return ws->gram->invert(p->rank + 1, ws->matrix);
 }
 
 /* Raises Z until the loads at a = 0 carry P: a start from nowhere, with every point that matters in contact. */
 static void start_cold(struct eo_loaded_workspace *ws, const struct problem *problem, double *mode)
 {
-  int stride = problem->position->stride;
+  int rank = problem->position->rank;
   double lowest = INFINITY, rise = 1e-6;
   for (int i = 0; i < problem->position->points; i++)
     lowest = fmin(lowest, problem->gap[i]);
-  memset(mode, 0, sizeof *mode * (size_t)stride);
+  memset(mode, 0, sizeof *mode * (size_t)rank);
   memset(ws->correction, 0, sizeof *ws->correction * (size_t)problem->position->points);
   spread_gaps(ws, problem);
   for (int i = 0; i < 60; i++, rise *= 1.5) {
-    mode[stride] = lowest + rise;
+    mode[rank] = lowest + rise;
     evaluate(ws, problem, mode);
-    if (ws->residual[stride] > 0)
+    if (ws->residual[rank] > 0)
       break;
   }
 }
@@ -143,7 +151,7 @@ static void advance(struct eo_loaded_workspace *ws, const struct problem *proble
 {
   enum { CUTS = 30 };
   static const double SMALL = 1e-13;
-  int n = problem->position->stride + 1;
+  int n = problem->position->rank + 1;
   double slope = dot(n, ws->residual, ws->step), length = 1;
   for (int cut = 0; cut < CUTS; cut++) {
     for (int k = 0; k < n; k++)
@@ -159,19 +167,44 @@ static void advance(struct eo_loaded_workspace *ws, const struct problem *proble
 
 static void newton_step(struct eo_loaded_workspace *ws, const struct eo_contact_position *p)
 {
-  int n = p->stride + 1;
-  for (int k = 0; k < n; k++)
-    ws->step[k] = -ws->residual[k];
-  ws->gram->solve(n, p->stride, ws->matrix, ws->step);
+  ws->gram->solve(p->rank + 1, ws->matrix, ws->residual, ws->step);
+  for (int k = 0; k <= p->rank; k++)
+    ws->step[k] = -ws->step[k];
+}
+
+static void take_step(struct eo_loaded_workspace *ws, const struct eo_contact_position *p)
+{
+  for (int k = 0; k <= p->rank; k++)
+    ws->mode[k] += ws->step[k];
+  bend(ws, p, ws->mode);
+}
+
+/* How far a step goes, m: sqrt(r'H^-1 r dZ/dP), the approach that stores as much energy; at least that of the step. */
+static double step_length(const struct eo_loaded_workspace *ws, const struct eo_contact_position *p)
+{
+  double energy = -dot(p->rank + 1, ws->step, ws->residual),
+         compliance = -(double)ws->matrix[p->rank * (eo_gram_width(p->rank) + 1)];
+  return sqrt(larger(0, energy) * compliance);
+}
+
+/* Makes loads that all but carry P carry it. */
+static void balance(struct eo_loaded_workspace *ws, const struct problem *problem)
+{
+  const struct eo_contact_position *p = problem->position;
+  double factor = problem->force / (problem->force + ws->residual[p->rank]);
+  for (int i = 0; i < p->points; i++)
+    ws->load[i] *= factor;
 }
 
 /* The steps that end Newton, with the matrix of the last one: they also take in the correction of the compliance and
-   the partial cells, until nothing moves by more than a thousandth of a nanometre and the loads add up to P. The
-   deflection by the modes is there already. */
-static bool polish(struct eo_loaded_workspace *ws, const struct problem *problem)
+   the partial cells, until all that is still to come, moved / (1 - moved / before) of a geometric series, is less than
+   a thousandth of a nanometre and the loads add up to P but for what such a movement makes of them. Correction and
+   cells follow one step behind and take up a tenth of it or less (LAG); before: the length of the step that led here,
+   whose deflection by the modes is there already. */
+static bool polish(struct eo_loaded_workspace *ws, const struct problem *problem, double before)
 {
   enum { STEPS = 32, RENEW = 8 };
-  static const double DONE = 1e-12, BALANCE = 5e-10;
+  static const double DONE = 1e-12, BALANCED = 2e-8, LAG = 0.1;
   const struct eo_contact_position *p = problem->position;
   bool settled = false;
   for (int i = 0; i < STEPS; i++) {
@@ -180,25 +213,28 @@ static bool polish(struct eo_loaded_workspace *ws, const struct problem *problem
     if (i % RENEW == RENEW - 1 && !factorise(ws, p))
       return false;
     newton_step(ws, p);
-    settled = change < DONE && fabs(ws->step[p->stride]) < DONE;
-    if (settled && fabs(ws->residual[p->stride]) < BALANCE * problem->force)
+    double moved = larger(change, step_length(ws, p));
+    settled = LAG * before < DONE && moved < before && moved * before < DONE * (before - moved);
+    before = moved;
+    if (settled && fabs(ws->residual[p->rank]) < BALANCED * problem->force) {
+      balance(ws, problem);
       return true;
-    for (int k = 0; k <= p->stride; k++)
-      ws->mode[k] += ws->step[k];
-    bend(ws, p, ws->mode);
+    }
+    take_step(ws, p);
   }
   load_points(ws, problem, ws->mode);
   return settled;
 }
 
-/* Newton on the convex function of (a, Z) from ws->mode. Leaves the loads, the factored matrix and (a, Z) of the
-   solution; returns whether it converged. */
+/* Newton on the convex function of (a, Z) from ws->mode, with its deflection in ws->bend. Leaves the loads, the inverse
+   of the last matrix and (a, Z) of the solution; returns whether it converged. From a step that is short enough on, the
+   matrix stays as it is. */
 static bool newton(struct eo_loaded_workspace *ws, const struct problem *problem)
 {
   enum { STEPS = 60 };
-  static const double NEAR = 3e-9;
+  static const double NEAR = 3e-8, HALFWAY = 0.1; /* m, of P: a matrix from so near halves an error or better */
   const struct eo_contact_position *p = problem->position;
-  evaluate(ws, problem, ws->mode);
+  load_points(ws, problem, ws->mode);
   for (int i = 0; i < STEPS; i++) {
     if (!factorise(ws, p)) {
       start_cold(ws, problem, ws->mode);
@@ -206,9 +242,14 @@ static bool newton(struct eo_loaded_workspace *ws, const struct problem *problem
         return false;
     }
     newton_step(ws, p);
-    advance(ws, problem);
-    if (fabs(ws->step[p->stride]) < NEAR && fabs(ws->residual[p->stride]) < 1e-3 * problem->force)
-      return polish(ws, problem);
+    if (fabs(ws->step[p->rank]) < NEAR && fabs(ws->residual[p->rank]) < HALFWAY * problem->force) {
+      double length = step_length(ws, p);
+      take_step(ws, p);
+      if (polish(ws, problem, length))
+        return true;
+    } else {
+      advance(ws, problem);
+    }
     correct(ws, p);
     load_points(ws, problem, ws->mode);
   }
@@ -218,31 +259,56 @@ static bool newton(struct eo_loaded_workspace *ws, const struct problem *problem
 /* d(a, Z)/dP, unscaled, from the last factorisation: some nanometres of approach from the solution. */
 static void follow_load(struct eo_loaded_workspace *ws, const struct eo_contact_position *p)
 {
-  int n = p->stride + 1;
-  memset(ws->tangent, 0, sizeof *ws->tangent * (size_t)n);
-  ws->tangent[n - 1] = 1;
-  ws->gram->solve(n, p->stride, ws->matrix, ws->tangent);
+  memset(ws->trial, 0, sizeof *ws->trial * (size_t)p->rank);
+  ws->trial[p->rank] = 1;
+  ws->gram->solve(p->rank + 1, ws->matrix, ws->trial, ws->tangent);
 }
 
-/* dZ/dP = the least value of dp'(C + diag(dg/dp))dp over load changes dp that sum to 1. With dp from the last
-   factorisation but the rates of the solution it is right to the square of what dp is wrong. Overwrites the loads. */
+/* Load changes dp = W (dZ - F da - rest) of the last tangent, whose F da is in ws->bend, into ws->load; returns their
+   sum. */
+static double change_loads(struct eo_loaded_workspace *ws, const struct eo_contact_position *p)
+{
+  double sum = 0;
+  for (int i = 0; i < p->points; i++)
+    sum += ws->load[i] = ws->rate[i] * (ws->tangent[p->rank] - ws->bend[i] - ws->correction[i]);
+  return sum;
+}
+
+/* One step towards the tangent at the rates of the solution, with the last matrix, from what its equations leave over:
+   da - F'dp and sum dp - 1. */
+static void correct_tangent(struct eo_loaded_workspace *ws, const struct eo_contact_position *p)
+{
+  double sum = change_loads(ws, p);
+  memcpy(ws->residual, ws->tangent, sizeof *ws->residual * (size_t)p->rank);
+  ws->gram->gather(p->points, p->rank, p->stride, p->factor, ws->load, ws->residual);
+  ws->residual[p->rank] = sum - 1;
+  newton_step(ws, p);
+  for (int k = 0; k <= p->rank; k++)
+    ws->tangent[k] += ws->step[k];
+  bend(ws, p, ws->tangent);
+}
+
+/* dZ/dP = the least value of dp'(C + diag(dg/dp))dp over load changes dp that sum to 1, and so right to the square of
+   what dp is wrong. dp: from the last matrix, then corrected once for the rates of the solution and for what the modes
+   leave of the compliance. Overwrites the loads and the correction. */
 static double tangent_compliance(struct eo_loaded_workspace *ws, const struct eo_contact_position *p)
 {
-  double sum = 0, square = 0, *change = ws->load, *mode = ws->trial;
+  double square = 0, *mode = ws->trial;
   follow_load(ws, p);
   bend(ws, p, ws->tangent);
-  for (int i = 0; i < p->points; i++) {
-    double local = ws->tangent[p->stride] - ws->bend[i];
-    change[i] = ws->rate[i] * local;
-    square += change[i] * local;
-    sum += change[i];
-  }
-  memset(mode, 0, sizeof *mode * (size_t)p->stride);
-  ws->gram->gather(p->points, p->stride, p->factor, change, mode);
-  ws->gram->blend(p->points, p->remainder_stride, p->remainder, change, ws->blend);
-  square += dot(p->stride, mode, mode);
+  memset(ws->correction, 0, sizeof *ws->correction * (size_t)p->points);
+  change_loads(ws, p);
+  blend(ws, p);
+  correct_tangent(ws, p);
+  double sum = change_loads(ws, p);
   for (int i = 0; i < p->points; i++)
-    square += change[i] * (double)ws->blend[i];
+    square += ws->load[i] * (ws->tangent[p->rank] - ws->bend[i] - ws->correction[i]);
+  memset(mode, 0, sizeof *mode * (size_t)p->rank);
+  ws->gram->gather(p->points, p->rank, p->stride, p->factor, ws->load, mode);
+  blend(ws, p);
+  square += dot(p->rank, mode, mode);
+  for (int i = 0; i < p->points; i++)
+    square += ws->load[i] * ws->correction[i];
   return square / (sum * sum);
 }
 
@@ -254,36 +320,68 @@ static const struct eo_contact_line *same_line(const struct eo_contact_position 
   return NULL;
 }
 
-/* Start from the neighbouring position: the same line loads on the same lines, scaled to carry P. */
-static void start_from(struct eo_loaded_workspace *ws, const struct eo_contact_position *from, const double *line_load,
-                       double approach, const struct problem *problem)
+/* Start from the line loads that ws->load holds, scaled to carry P, and an approach. */
+static void start_from(struct eo_loaded_workspace *ws, double approach, const struct problem *problem)
 {
   const struct eo_contact_position *p = problem->position;
   double sum = 0;
+  for (int i = 0; i < p->points; i++)
+    sum += ws->load[i];
+  if (!(sum > 0) || !isfinite(sum) || !isfinite(approach)) {
+    start_cold(ws, problem, ws->mode);
+    return;
+  }
+  for (int i = 0; i < p->points; i++)
+    ws->load[i] *= problem->force / sum;
+  memset(ws->mode, 0, sizeof *ws->mode * (size_t)p->rank);
+  ws->gram->gather(p->points, p->rank, p->stride, p->factor, ws->load, ws->mode);
+  for (int k = 0; k < p->rank; k++)
+    ws->mode[k] = -ws->mode[k];
+  ws->mode[p->rank] = approach;
+  bend(ws, p, ws->mode);
+  blend(ws, p);
+  memset(ws->spread, 0, sizeof *ws->spread * (size_t)p->points);
+  for (int i = 0; i < p->points; i++)
+    ws->local[i] = approach - problem->gap[i] - ws->bend[i] - ws->correction[i];
+  if (ws->partial)
+    spread_cells(ws, p);
+}
+
+/* What a line carries at a position, known->line_load or zero where it is not there. */
+static const double *carried_by(const struct eo_contact_position *p, const struct eo_contact_line *line,
+                                const struct eo_loaded_end *known)
+{
+  const struct eo_contact_line *same = same_line(p, line);
+  return same ? known->line_load + p->first + same->first : NULL;
+}
+
+/* Start from up to three positions before: what their lines carry goes on as it did, q = 3 q1 - 3 q2 + q3. */
+static void start_from_before(struct eo_loaded_workspace *ws, int j, const struct eo_loaded_end *known, double factor,
+                              const struct problem *problem)
+{
+  const struct eo_contact_position *p = problem->position;
+  const double *z = known->approach + j - 1;
+  double approach = j > 2 ? 3 * z[0] - 3 * z[-1] + z[-2] : j > 1 ? 2 * z[0] - z[-1] : z[0];
   memset(ws->load, 0, sizeof *ws->load * (size_t)p->points);
   for (int l = 0; l < p->lines; l++) {
-    const struct eo_contact_line *line = &p->line[l], *old = same_line(from, line);
-    for (int i = 0; old && i < line->cells; i++)
-      sum += ws->load[line->first + i] = line_load[old->first + i] * p->length[line->first + i];
+    const struct eo_contact_line *line = &p->line[l];
+    const double *q[3];
+    for (int back = 0; back < 3; back++)
+      q[back] = back < j ? carried_by(p - 1 - back, line, known) : NULL;
+    double *load = ws->load + line->first;
+    for (int i = 0; q[0] && i < line->cells; i++) {
+      double next = q[1] && q[2] ? 3 * (q[0][i] - q[1][i]) + q[2][i] : q[1] ? 2 * q[0][i] - q[1][i] : q[0][i];
+      load[i] = larger(0, next) * p->length[line->first + i];
+    }
   }
-  memset(ws->mode, 0, sizeof *ws->mode * (size_t)p->stride);
-  for (int i = 0; sum > 0 && i < p->points; i++)
-    ws->load[i] *= problem->force / sum;
-  ws->gram->gather(p->points, p->stride, p->factor, ws->load, ws->mode);
-  for (int k = 0; k < p->stride; k++)
-    ws->mode[k] = -ws->mode[k];
-  ws->mode[p->stride] = approach;
-  spread_gaps(ws, problem);
-  correct(ws, p);
-  if (sum <= 0)
-    start_cold(ws, problem, ws->mode);
+  start_from(ws, approach / factor, problem);
 }
 
 /* The long way when Newton fails: from a load so high that every point touches, down in steps along the tangent. */
 static bool descend(struct eo_loaded_workspace *ws, const struct problem *problem)
 {
   enum { TRIES = 6, STEPS = 400 };
-  int n = problem->position->stride + 1;
+  int n = problem->position->rank + 1;
   for (int start = 2; start < TRIES; start++) {
     struct problem high = *problem;
     high.force *= pow(10, start);
@@ -296,6 +394,7 @@ static bool descend(struct eo_loaded_workspace *ws, const struct problem *proble
       follow_load(ws, problem->position);
       for (int k = 0; k < n; k++)
         ws->mode[k] += (next - high.force) * ws->tangent[k];
+      bend(ws, problem->position, ws->mode);
       high.force = next;
     }
   }
@@ -310,7 +409,7 @@ static void solve_position(struct eo_loaded_workspace *ws, const struct problem 
   bool converged = newton(ws, problem) || descend(ws, problem);
   result->failures += !converged;
   result->load[j] = problem->force;
-  result->approach[j] = ws->mode[p->stride] * factor;
+  result->approach[j] = ws->mode[p->rank] * factor;
   for (int i = 0; i < p->points; i++)
     result->line_load[p->first + i] = ws->load[i] / p->length[i];
   result->tangent[j] = 1 / (tangent_compliance(ws, p) * factor);
@@ -334,22 +433,14 @@ void eo_loaded_solve(struct eo_loaded_workspace *ws, const struct eo_contact_gri
     result[l].failures = 0;
   for (int j = 0; j < grid->positions; j++) {
     const struct eo_contact_position *p = &grid->position[j];
-    struct problem problem = {p, scaled_gaps(ws, p, gaps->gap, compliance_factor), grid->compliance_scale, load[0]};
-    if (j == 0)
-      start_cold(ws, &problem, ws->mode);
-    else
-      start_from(ws, &grid->position[j - 1], result[0].line_load + grid->position[j - 1].first,
-                 result[0].approach[j - 1] / compliance_factor, &problem);
-    bool sound = true;
+    struct problem problem = {p, scaled_gaps(ws, p, gaps->gap, compliance_factor), load[0]};
     for (int l = 0; l < loads; l++) {
-      int failures = result[l].failures;
       problem.force = load[l];
-      for (int k = 0; l > 0 && sound && k <= p->stride; k++) /* along the tangent from the load before */
-        ws->mode[k] += (load[l] - load[l - 1]) * ws->tangent[k];
-      if (!sound)
+      if (j == 0)
         start_cold(ws, &problem, ws->mode);
+      else
+        start_from_before(ws, j, &result[l], compliance_factor, &problem);
       solve_position(ws, &problem, j, compliance_factor, &result[l]);
-      sound = result[l].failures == failures;
     }
   }
 }
@@ -360,135 +451,36 @@ void eo_loaded_resolve(struct eo_loaded_workspace *ws, const struct eo_contact_g
                        double factor, int j, double load, struct eo_loaded_end *result)
 {
   const struct eo_contact_position *p = &grid->position[j];
-  struct problem problem = {p, scaled_gaps(ws, p, gap, factor), grid->compliance_scale, load};
-  start_from(ws, p, result->line_load + p->first, result->approach[j] / factor, &problem);
+  struct problem problem = {p, scaled_gaps(ws, p, gap, factor), load};
+  for (int i = 0; i < p->points; i++)
+    ws->load[i] = result->line_load[p->first + i] * p->length[i];
+  start_from(ws, result->approach[j] / factor, &problem);
   solve_position(ws, &problem, j, factor, result);
+}
+
+void eo_loaded_prepare_response(struct eo_loaded_workspace *ws, const struct eo_contact_position *p)
+{
+  if (!factorise(ws, p))
+    memset(ws->matrix, 0, sizeof *ws->matrix * (size_t)(p->rank + 1) * (size_t)eo_gram_width(p->rank));
+  follow_load(ws, p);
 }
 
 double eo_loaded_response(struct eo_loaded_workspace *ws, const struct eo_contact_position *p, double factor,
                           const double *change, double *load_change)
 {
-  int stride = p->stride;
-  double *mode = change ? ws->step : ws->tangent;
+  int rank = p->rank;
+  double *mode = change ? ws->step : ws->tangent, *load = ws->trial;
   if (change) {
-    memset(mode, 0, sizeof *mode * (size_t)(stride + EO_GRAM_LANE));
+    memset(load, 0, sizeof *load * (size_t)(rank + 1));
     for (int i = 0; i < p->points; i++) {
       ws->load[i] = ws->rate[i] * change[i] / factor;
-      mode[stride] += ws->load[i];
+      load[rank] += ws->load[i];
     }
-    ws->gram->gather(p->points, stride, p->factor, ws->load, mode);
-    ws->gram->solve(stride + 1, stride, ws->matrix, mode);
+    ws->gram->gather(p->points, rank, p->stride, p->factor, ws->load, load);
+    ws->gram->solve(rank + 1, ws->matrix, load, mode);
   }
   bend(ws, p, mode);
   for (int i = 0; i < p->points; i++)
-    load_change[i] = ws->rate[i] * (mode[stride] - ws->bend[i] - (change ? change[i] / factor : 0));
-  return mode[stride] * factor;
-}
-
-/* ---- axially held pinion ---- */
-
-/* Position j of an end that carries nothing. */
-static void release_end(const struct eo_contact_grid *grid, int j, double approach, struct eo_loaded_end *end)
-{
-  const struct eo_contact_position *p = &grid->position[j];
-  end->load[j] = end->tangent[j] = 0;
-  end->approach[j] = approach;
-  memset(end->line_load + p->first, 0, sizeof *end->line_load * (size_t)p->points);
-}
-
-static double least_gap(const struct eo_contact_grid *grid, const struct eo_loaded_gaps *gaps, int j)
-{
-  const struct eo_contact_position *p = &grid->position[j];
-  double least = INFINITY;
-  for (int i = 0; i < p->points; i++)
-    least = fmin(least, gaps->gap[p->first + i]);
-  return least;
-}
-
-/* One mesh position of both ends: P_L = P + shift, P_R = P - shift. Equilibrium of the pinion along its axis,
-   Z_L - Z_R + shift 4 sin^2(beta_b)/k = 0, grows with the shift: Newton, kept between the shifts already known to be
-   too small and too large. When even the whole load does not bring the other end into contact, that end carries
-   nothing. */
-static bool balance_position(struct eo_loaded_workspace *ws, const struct eo_contact_grid *grid,
-                             const struct eo_loaded_gaps gaps[2], double factor, double soft, const int at[2],
-                             double load, struct eo_loaded_end result[2])
-{
-  enum { STEPS = 60 };
-  double shift = 0, bound[2] = {-load, load};
-  bool tried[2] = {false, false};
-  for (int i = 0; i < STEPS; i++) {
-    double miss = result[0].approach[at[0]] - result[1].approach[at[1]] + soft * shift;
-    double rate = 1 / result[0].tangent[at[0]] + 1 / result[1].tangent[at[1]] + soft, next = shift - miss / rate;
-    int up = miss < 0, heavy = up ? EO_LEFT : EO_RIGHT, light = 1 - heavy;
-    bound[1 - up] = shift;
-    if (fabs(next - shift) < 1e-9 * load)
-      return true;
-    if (!(next > bound[0] && next < bound[1])) {
-      if (fabs(bound[up]) == load && !tried[up]) {
-        tried[up] = true;
-        eo_loaded_resolve(ws, grid, gaps[heavy].gap, factor, at[heavy], 2 * load, &result[heavy]);
-        double approach = result[heavy].approach[at[heavy]] + soft * load;
-        if (approach <= least_gap(grid, &gaps[light], at[light])) {
-          release_end(grid, at[light], approach, &result[light]);
-          return true;
-        }
-      }
-      next = (shift + bound[up]) / 2;
-    }
-    shift = next;
-    eo_loaded_resolve(ws, grid, gaps[EO_LEFT].gap, factor, at[EO_LEFT], load + shift, &result[EO_LEFT]);
-    eo_loaded_resolve(ws, grid, gaps[EO_RIGHT].gap, factor, at[EO_RIGHT], load - shift, &result[EO_RIGHT]);
-  }
-  return false;
-}
-
-void eo_loaded_balance(struct eo_loaded_workspace *workspace, const struct eo_contact_grid *grid,
-                       const struct eo_loaded_gaps gaps[2], double compliance_factor, double stiffness, int stagger,
-                       double load, struct eo_loaded_end result[2])
-{
-  double lean = sin(grid->geometry.base_helix_angle), soft = isinf(stiffness) ? 0 : 4 * lean * lean / stiffness;
-  if (stiffness <= 0 || lean == 0)
-    return;
-  for (int j = 0; j < grid->positions; j++) {
-    int at[2] = {j, (j + grid->positions - stagger % grid->positions) % grid->positions};
-    result[EO_LEFT].failures += !balance_position(workspace, grid, gaps, compliance_factor, soft, at, load, result);
-  }
-}
-
-/* ---- gaps and pressure ---- */
-
-void eo_loaded_first_contact(const struct eo_contact_grid *grid, const struct eo_gap_field *field, double *unloaded)
-{
-  for (int j = 0; j < grid->positions; j++) {
-    const struct eo_contact_position *p = &grid->position[j];
-    bool edges = false;
-    unloaded[j] = INFINITY;
-    for (int l = 0; l < p->lines; l++)
-      edges |= p->line[l].kind != EO_POINT_LINE;
-    for (int l = 0; l < p->lines; l++) {
-      bool seen = false;
-      for (int m = 0; m < l; m++)
-        seen |= p->line[m].pair == p->line[l].pair;
-      double c = p->phase + p->line[l].pair * grid->geometry.transverse_base_pitch;
-      if (!seen)
-        unloaded[j] = fmin(unloaded[j], eo_gap_field_line_minimum(field, c, edges, NULL));
-    }
-  }
-}
-
-void eo_loaded_gaps_set(struct eo_loaded_gaps *gaps, const struct eo_contact_grid *grid,
-                        const struct eo_gap_field *field)
-{
-  for (int j = 0; j < grid->positions; j++) {
-    const struct eo_contact_position *p = &grid->position[j];
-    for (int i = 0; i < p->points; i++)
-      gaps->gap[p->first + i] = eo_gap_field_at(field, p->path[i], p->point[i].eta, NULL, NULL);
-  }
-  eo_loaded_first_contact(grid, field, gaps->unloaded);
-}
-
-double eo_loaded_pressure(const struct eo_contact_grid *grid, double line_load, double radius)
-{
-  /* p = sqrt(q E* / (pi rho)) with 1/E* = 2 (1 - nu^2)/E = pi K */
-  return sqrt(line_load / (M_PI * M_PI * grid->compliance_scale * radius));
+    load_change[i] = ws->rate[i] * (mode[rank] - ws->bend[i] - (change ? change[i] / factor : 0));
+  return mode[rank] * factor;
 }

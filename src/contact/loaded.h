@@ -6,7 +6,8 @@
    With C = factor factor' and a = factor' p the local approach g_i = Z - w_i - factor_i a fixes every load by itself:
    p_i is the inverse of the local law at g_i where g_i > 0, else 0. So the complementarity holds by construction and
    what is left is the minimum of a convex function of (a, Z): rank + 1 smooth equations, Newton with a symmetric
-   positive definite matrix. Its last pivot is dP/dZ, the tangent stiffness.
+   positive definite matrix. The matrix is in single precision and stays as it is near the solution; the equations, in
+   double precision, hold until nothing moves by more than a thousandth of a nanometre. dP/dZ is the tangent stiffness.
 
    Partial cells (struct eo_contact_grid_settings): over a cell g changes by 2 e, taken from its neighbours on the line;
    where it changes sign the law is applied to the mean of its positive part, (g + e)^2 / (4 e) for |g| < e. Away from
@@ -48,7 +49,8 @@ enum eo_code eo_loaded_workspace_new(struct eo_loaded_workspace **workspace, con
 void eo_loaded_workspace_free(struct eo_loaded_workspace *workspace);
 
 /* One end, every position, several loads P (normal force per end, N, > 0): result[loads]. compliance_factor scales bulk
-   and local compliance (1: as it is). The floating pinion and the single helical pair. */
+   and local compliance (1: as it is). The floating pinion and the single helical pair. A load's result does not depend
+   on the other loads, nor on what the workspace was used for before. */
 void eo_loaded_solve(struct eo_loaded_workspace *workspace, const struct eo_contact_grid *grid,
                      const struct eo_loaded_gaps *gaps, double compliance_factor, int loads, const double *load,
                      struct eo_loaded_end *result);
@@ -67,8 +69,12 @@ void eo_loaded_balance(struct eo_loaded_workspace *workspace, const struct eo_co
 void eo_loaded_resolve(struct eo_loaded_workspace *workspace, const struct eo_contact_grid *grid, const double *gap,
                        double compliance_factor, int j, double load, struct eo_loaded_end *result);
 
-/* How the position solved last answers: the change of its loads, N, and of its approach, m, per unit of a change of its
-   gaps [points], m, at constant load P; or, with change NULL, per N of P. Within some thousandths. */
+/* Makes Newton's matrix of the position solved last at its solution, for the answers below. */
+void eo_loaded_prepare_response(struct eo_loaded_workspace *workspace, const struct eo_contact_position *position);
+
+/* How the position solved last answers, once they are prepared: the change of its loads, N, and of its approach, m, per
+   unit of a change of its gaps [points], m, at constant load P; or, with change NULL, per N of P. Within some
+   thousandths. */
 double eo_loaded_response(struct eo_loaded_workspace *workspace, const struct eo_contact_position *position,
                           double compliance_factor, const double *change, double *load_change);
 

@@ -9,18 +9,16 @@ enum eo_code eo_loaded_workspace_new(struct eo_loaded_workspace **result, const 
   struct eo_loaded_workspace *ws = calloc(1, sizeof *ws);
   if (!ws)
     return eo_error_memory(error);
-  long points = grid->most_points + EO_GRAM_LANE, modes = 0;
-  for (int j = 0; j < grid->positions; j++)
-    modes = grid->position[j].stride > modes ? grid->position[j].stride : modes;
+  long points = grid->most_points + EO_GRAM_LANE, width = eo_gram_width(grid->most_rank);
   double **vector[] = {&ws->load, &ws->rate, &ws->gap, &ws->bend, &ws->correction, &ws->local, &ws->spread};
   double **modal[] = {&ws->mode, &ws->trial, &ws->residual, &ws->step, &ws->tangent};
   bool complete = eo_local_inverse_init(&ws->inverse, error) == EO_OK;
   for (int i = 0; i < 7; i++)
     complete = (*vector[i] = eo_gram_allocate(points)) && complete;
   for (int i = 0; i < 5; i++)
-    complete = (*modal[i] = eo_gram_allocate(modes + EO_GRAM_LANE)) && complete;
-  complete = (ws->matrix = eo_gram_allocate((modes + EO_GRAM_LANE) * (modes + EO_GRAM_LANE))) && complete;
-  complete = (ws->packed = eo_gram_allocate(2 * points * modes)) && complete;
+    complete = (*modal[i] = eo_gram_allocate(width)) && complete;
+  complete = (ws->matrix = (float *)eo_gram_allocate(width * width / 2)) && complete;
+  complete = (ws->packed = (float *)eo_gram_allocate(points * width / 2)) && complete;
   complete = (ws->blend = (float *)eo_gram_allocate(points + EO_GRAM_FLOATS)) && complete;
   if (!complete) {
     eo_loaded_workspace_free(ws);
@@ -36,10 +34,12 @@ void eo_loaded_workspace_free(struct eo_loaded_workspace *ws)
 {
   if (!ws)
     return;
-  double *const owned[] = {ws->load, ws->rate,  ws->gap,      ws->bend, ws->correction, ws->local,  ws->spread,
-                           ws->mode, ws->trial, ws->residual, ws->step, ws->tangent,    ws->matrix, ws->packed};
+  double *const owned[] = {ws->load,   ws->rate, ws->gap,   ws->bend,     ws->correction, ws->local,
+                           ws->spread, ws->mode, ws->trial, ws->residual, ws->step,       ws->tangent};
   for (size_t i = 0; i < sizeof owned / sizeof *owned; i++)
     free(owned[i]);
+  free(ws->matrix);
+  free(ws->packed);
   free(ws->blend);
   eo_local_inverse_done(&ws->inverse);
   free(ws);

@@ -3,9 +3,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-static const double HIGH = 84.0; /* t at the end of the table */
-
-double eo_local_inverse_root(double t)
+/* x of x - ln x = t, the larger one, by Newton. */
+static double root(double t)
 {
   double x = t + log(t) + 0.5;
   for (int i = 0; i < 60; i++) {
@@ -19,14 +18,19 @@ double eo_local_inverse_root(double t)
 
 enum eo_code eo_local_inverse_init(struct eo_local_inverse *inverse, struct eo_error *error)
 {
-  inverse->node = malloc(sizeof *inverse->node * EO_LOCAL_INVERSE_NODES);
+  enum { NODES = EO_LOCAL_INVERSE_CELLS + 1 };
+  static const double HIGHEST = 0.3; /* beyond the last cell that is read, below the turning point e^-1 */
+  inverse->node = calloc((size_t)EO_LOCAL_INVERSE_OCTAVES * NODES, sizeof *inverse->node);
   if (!inverse->node)
     return eo_error_memory(error);
-  inverse->step = (HIGH - EO_LOCAL_INVERSE_LOW) / (EO_LOCAL_INVERSE_NODES - 1);
-  for (int i = 0; i < EO_LOCAL_INVERSE_NODES; i++) {
-    double x = eo_local_inverse_root(EO_LOCAL_INVERSE_LOW + i * inverse->step);
-    inverse->node[i][0] = x;
-    inverse->node[i][1] = inverse->step * x / (x - 1);
+  for (int i = 0; i < EO_LOCAL_INVERSE_OCTAVES * NODES; i++) {
+    double octave = ldexp(EO_LOCAL_INVERSE_LEAST, i / NODES), width = octave / EO_LOCAL_INVERSE_CELLS,
+           u = octave + i % NODES * width;
+    if (u > HIGHEST)
+      break;
+    double x = root(-log(u));
+    inverse->node[i][0] = u / x; /* = e^-x */
+    inverse->node[i][1] = width / (x - 1);
   }
   return EO_OK;
 }

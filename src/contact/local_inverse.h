@@ -1,38 +1,59 @@
 /* The local law of line contact (Weber and Banaschek 1953) and its inverse: delta = K q (L - ln q).
-   With x = L - ln q and t = L - ln(delta/K): x - ln x = t, x > 1 (q below the law's turning point), q = delta/(K x),
-   dq/ddelta = 1/(K (x - 1)). x(t) is one universal function, tabulated with its slope x/(x - 1). From x = 2 on, where
-   the contact is as wide as the tooth is thick and the law has lost its meaning, q goes on in a straight line, so that
-   every load has its solution. */
+   With x = L - ln q and u = delta/(K e^L): u = x e^-x, q = e^L w(u) with w = e^-x, x > 1 (q below the law's turning
+   point) and dw/du = 1/(x - 1). w(u) is one universal function, tabulated over octaves of u with its slope, so that a
+   load and its rate take neither a logarithm nor a division. From x = 2 on, where the contact is as wide as the tooth
+   is thick and the law has lost its meaning, q goes on in a straight line, so that every load has its solution. */
 #ifndef EASEOFF_CONTACT_LOCAL_INVERSE_H
 #define EASEOFF_CONTACT_LOCAL_INVERSE_H
 
 #include "base/error.h"
 
-enum { EO_LOCAL_INVERSE_NODES = 4096 };
-static const double EO_LOCAL_INVERSE_STRAIGHT = 2;             /* x from which the law is straight */
-static const double EO_LOCAL_INVERSE_LOW = 1.3068528194400546; /* t there: 2 - ln 2 */
+#include <stdint.h>
+#include <string.h>
+
+enum {
+  EO_LOCAL_INVERSE_OCTAVES = 63, /* 2^-64 <= u < 2^-1 */
+  EO_LOCAL_INVERSE_CELLS = 64    /* of an octave: their width is at most 1/64 of u, which leaves some 1e-10 of w */
+};
+static const double EO_LOCAL_INVERSE_STRAIGHT = 0.27067056647322535; /* u from which the law is straight: 2 e^-2 */
+static const double EO_LOCAL_INVERSE_OFFSET = 0.1353352832366127;    /* w = u - e^-2 there */
+static const double EO_LOCAL_INVERSE_LEAST = 5.421010862427522e-20;  /* 2^-64 */
 
 struct eo_local_inverse {
-  double (*node)[2]; /* [EO_LOCAL_INVERSE_NODES], owned: x and step * dx/dt at t = EO_LOCAL_INVERSE_LOW + i step */
-  double step;
+  double (*node)[2]; /* [OCTAVES][CELLS + 1], owned: w, and its slope times the width of the octave's cells */
 };
 
 enum eo_code eo_local_inverse_init(struct eo_local_inverse *inverse, struct eo_error *error);
 void eo_local_inverse_done(struct eo_local_inverse *inverse);
 
-/* x at t > EO_LOCAL_INVERSE_LOW, by iteration. */
-double eo_local_inverse_root(double t);
-
-/* The same from the table; beyond its end by iteration. */
-static inline double eo_local_inverse_at(const struct eo_local_inverse *inverse, double t)
+/* w(u) and dw/du for u > 0: the cubic of the cell with its own slope. Below the table, at gaps of a thousandth of an
+   atom, the line through zero. */
+static inline double eo_local_inverse_at(const struct eo_local_inverse *inverse, double u, double *slope)
 {
-  double u = (t - EO_LOCAL_INVERSE_LOW) / inverse->step;
-  if (!(u < EO_LOCAL_INVERSE_NODES - 1))
-    return eo_local_inverse_root(t);
-  int i = (int)u;
-  const double *low = inverse->node[i], *high = inverse->node[i + 1];
-  double r = u - i, l = 1 - r, difference = high[0] - low[0], a = low[1] - difference, b = difference - high[1];
-  return low[0] * l + high[0] * r + r * l * (a * l + b * r);
+  if (u >= EO_LOCAL_INVERSE_STRAIGHT) {
+    *slope = 1;
+    return u - EO_LOCAL_INVERSE_OFFSET;
+  }
+  if (u < EO_LOCAL_INVERSE_LEAST) {
+    *slope = inverse->node[0][0] / EO_LOCAL_INVERSE_LEAST;
+    return u * *slope;
+  }
+  /* the exponent of u tells the octave, the first six bits of its mantissa the cell, the others the place in it */
+  static const uint64_t ONE = UINT64_C(1023) << 52, WITHIN = (UINT64_C(1) << 46) - 1;
+  uint64_t bits, cell, place;
+  memcpy(&bits, &u, sizeof bits);
+  cell = (bits >> 46) - (UINT64_C(959) << 6); /* 959: the exponent of 2^-64 */
+  cell += cell >> 6;
+  place = ONE | (bits & WITHIN) << 6;
+  bits = (UINT64_C(2052) << 52) - (bits & UINT64_C(2047) << 52); /* one over the width of a cell */
+  double r, per_width;
+  memcpy(&r, &place, sizeof r);
+  memcpy(&per_width, &bits, sizeof per_width);
+  r -= 1;
+  const double *low = inverse->node[cell], *high = inverse->node[cell + 1];
+  double rise = high[0] - low[0], bow = 3 * rise - 2 * low[1] - high[1], turn = low[1] + high[1] - 2 * rise;
+  *slope = (low[1] + r * (2 * bow + 3 * r * turn)) * per_width;
+  return low[0] + r * (low[1] + r * (bow + r * turn));
 }
 
 #endif

@@ -179,7 +179,7 @@ static void summarise_end(struct eo_evaluator *e, struct eo_case_result *c, int 
 {
   const struct eo_contact_grid *grid = e->pair->grid;
   struct eo_end_result *r = &c->end[end];
-  double low = INFINITY, high = -INFINITY;
+  double low = INFINITY, high = -INFINITY, steepest = 0; /* q / rho, which the largest pressure goes with */
   const double *first_contact = e->bodies ? e->bent.unloaded : r->unloaded;
   memcpy(r->unloaded, e->gaps[eo_evaluator_kept_at(e, end)].unloaded, sizeof *r->unloaded * (size_t)grid->positions);
   r->max_pressure = r->max_line_load = r->edge_share = 0;
@@ -193,8 +193,11 @@ static void summarise_end(struct eo_evaluator *e, struct eo_case_result *c, int 
     double edge = 0;
     for (int i = 0; i < p->points; i++) {
       double q = r->loaded.line_load[p->first + i];
-      r->max_line_load = fmax(r->max_line_load, q);
-      r->max_pressure = fmax(r->max_pressure, q > 0 ? eo_loaded_pressure(grid, q, p->radius[i]) : 0);
+      r->max_line_load = q > r->max_line_load ? q : r->max_line_load;
+      if (q > steepest * p->radius[i]) {
+        steepest = q / p->radius[i];
+        r->max_pressure = eo_loaded_pressure(grid, q, p->radius[i]);
+      }
       edge += p->kind[i] == EO_POINT_LINE ? 0 : q * p->length[i];
     }
     r->edge_share = fmax(r->edge_share, r->loaded.load[j] > 0 ? edge / r->loaded.load[j] : 0);

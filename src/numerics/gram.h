@@ -1,36 +1,48 @@
-/* The small dense kernel of loaded contact: H = D + F' W F bordered by one row, its Cholesky factor and solves, for
-   matrices of a few dozen rows where a general library spends its time on being general. Vector code, compiled for the
-   instruction sets a processor may have. */
+/* The small dense kernel of loaded contact and root stress, for matrices of a few dozen columns where a general library
+   spends its time on being general: products with F, Newton's matrix H = I + F' W F bordered by one row, its inverse,
+   and a product of matrices whose rows do not depend on each other. Vector code, compiled for the instruction sets a
+   processor may have. F and H are in single precision: what is solved for is told by residuals in double precision, to
+   which H only shows the way. */
 #ifndef EASEOFF_NUMERICS_GRAM_H
 #define EASEOFF_NUMERICS_GRAM_H
 
 #include <stdbool.h>
 
 enum {
-  EO_GRAM_LANE = 8,
-  EO_GRAM_FLOATS = 64,
-  EO_GRAM_COLUMNS = 16,
-  EO_GRAM_ALIGN = 64
-}; /* strides are multiples of the lane (doubles), arrays aligned to 64 bytes */
+  EO_GRAM_LANE = 16,           /* floats: strides are multiples of it */
+  EO_GRAM_FLOATS = 64,         /* the same for the matrix of blend */
+  EO_GRAM_COLUMNS = 16,        /* the same for the product of matrices */
+  EO_GRAM_ALIGN = 64,          /* of all arrays, bytes */
+  EO_GRAM_MOST_COLUMNS = 2032, /* of F */
+};
 
-/* All arrays aligned to EO_GRAM_ALIGN; stride a multiple of EO_GRAM_LANE; a matrix has stride + EO_GRAM_LANE rows and
-   as many columns, row-major. */
+/* Rows and columns of the arrays that hold H of size columns + 1. */
+static inline int eo_gram_width(int columns)
+{
+  return (columns + EO_GRAM_LANE) / EO_GRAM_LANE * EO_GRAM_LANE;
+}
+
+/* All arrays aligned to EO_GRAM_ALIGN, row-major. F: f[rows][stride], stride a multiple of EO_GRAM_LANE, zero behind
+   its columns. */
 struct eo_gram {
   const char *name; /* "avx512", "avx2" or "plain" */
-  /* product[rows] = F x: f[rows][stride], x[stride]. */
-  void (*apply)(int rows, int stride, const double *f, const double *x, double *product);
-  /* x[stride] -= F' load, rows with load 0 skipped. */
-  void (*gather)(int rows, int stride, const double *f, const double *load, double *x);
-  /* Lower triangle of [I + F'WF, .; -1'WF, 1'W1] of size stride + 1 from the rows with weight > 0. packed: scratch
-     [2][rows][stride]. */
-  void (*assemble)(int rows, int stride, const double *f, const double *weight, double *packed, double *matrix);
+  /* product[rows] = F x, x[stride]. */
+  void (*apply)(int rows, int columns, int stride, const float *f, const double *x, double *product);
+  /* x[stride] -= F' load, rows with load 0 skipped; what lies behind the columns stays. */
+  void (*gather)(int rows, int columns, int stride, const float *f, const double *load, double *x);
   /* sum[stride] = sum_i load[i] rows[i][stride] in single precision; stride a multiple of EO_GRAM_FLOATS; rows with
      load 0 skipped. */
   void (*blend)(int rows, int stride, const float *f, const double *load, float *sum);
-  /* In place, lower triangle, size n <= stride + 1 <= 2048; false when not positive definite. */
-  bool (*factor)(int n, int stride, double *matrix);
-  /* Solves L L' x = b in place; x[stride + EO_GRAM_LANE], what lies behind n is set to zero. */
-  void (*solve)(int n, int stride, const double *matrix, double *x);
+  /* H = [I + F'WF, -F'W1; -1'WF, 1'W1] of size n = columns + 1 from the rows with weight > 0:
+     matrix[width][width], identity behind H; width: eo_gram_width(columns). packed: scratch
+     [rows][width]. */
+  void (*assemble)(int rows, int columns, int stride, const float *f, const double *weight, float *packed,
+                   float *matrix);
+  /* In place: minus the inverse of the symmetric matrix of size n; false when it is not positive definite, as far as
+     single precision can tell. */
+  bool (*invert)(int n, float *matrix);
+  /* x[n] = H^-1 b[n] with what invert left, to some digits of single precision. */
+  void (*solve)(int n, const float *inverse, const double *b, double *x);
   /* c[rows][columns] = a[rows][inner] b[inner][columns], or c += a b, in single precision; rows a_stride, b_stride and
      c_stride apart; columns, b_stride and c_stride multiples of EO_GRAM_COLUMNS. A row of c comes from its row of a
      alone, to the last bit, whatever the number of rows. */

@@ -6,9 +6,14 @@
 #define NAME "avx2"
 #define TARGET __attribute__((target("avx2,fma")))
 #define WIDTH 4
+#define SPLAT(a) _mm256_set1_pd(a)
+#define SPLAT_FLOAT(a) _mm256_set1_ps(a)
+#define WIDEN(at) _mm256_cvtps_pd(_mm_load_ps(at))
+#define MADD(a, b, c) _mm256_fmadd_pd(a, b, c)
+#define MADD_FLOAT(a, b, c) _mm256_fmadd_ps(a, b, c)
+#define APPLY_ROWS 4
+#define GATHER_UNITS 6
 #define TILE_ROWS 6
 #define TILE_LANES 2
-#define FUSED(a, b, c) _mm256_fmadd_pd(_mm256_set1_pd(a), b, c)
-#define FUSED_FLOAT(a, b, c) _mm256_fmadd_ps(_mm256_set1_ps(a), b, c)
 #include "numerics/gram_body.h"
 #endif

@@ -6,9 +6,14 @@
 #define NAME "avx512"
 #define TARGET __attribute__((target("avx512f,avx512dq,avx512vl,fma")))
 #define WIDTH 8
-#define TILE_ROWS 6
-#define TILE_LANES 4
-#define FUSED(a, b, c) _mm512_fmadd_pd(_mm512_set1_pd(a), b, c)
-#define FUSED_FLOAT(a, b, c) _mm512_fmadd_ps(_mm512_set1_ps(a), b, c)
+#define SPLAT(a) _mm512_set1_pd(a)
+#define SPLAT_FLOAT(a) _mm512_set1_ps(a)
+#define WIDEN(at) _mm512_cvtps_pd(_mm256_load_ps(at))
+#define MADD(a, b, c) _mm512_fmadd_pd(a, b, c)
+#define MADD_FLOAT(a, b, c) _mm512_fmadd_ps(a, b, c)
+#define APPLY_ROWS 8
+#define GATHER_UNITS 6
+#define TILE_ROWS 8
+#define TILE_LANES 3
 #include "numerics/gram_body.h"
 #endif

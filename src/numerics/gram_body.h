@@ -1,293 +1,370 @@
-/* The kernel for one width of vectors, compiled once per version: the file that includes this one says how many doubles
-   a lane holds (WIDTH), what the processor must have (TARGET), the product with a sum (FUSED and FUSED_FLOAT: a b + c)
-   and how many rows and lanes of a product of matrices its registers hold (TILE_ROWS, TILE_LANES). What a result is
-   made of and in which order does not depend on the width, but for the sums over one row (sum_lane). */
+/* The kernel for one width of vectors, compiled once per version: the file that includes this one says
+   VERSION, NAME        what the version is called
+   TARGET               what the processor must have
+   WIDTH                doubles in a vector; there are twice as many floats in one
+   SPLAT, SPLAT_FLOAT   a vector of equal numbers
+   WIDEN                WIDTH floats of the memory as doubles
+   MADD, MADD_FLOAT     a b + c
+   APPLY_ROWS           rows of a product with a vector at a time
+   GATHER_UNITS         sets of eight sums over points at a time
+   TILE_ROWS, TILE_LANES  rows and vectors of a product of matrices at a time
+   so that the sums of an inner loop stay in registers. Every sum is taken in the same order whatever the width, so
+   versions that round alike (avx2 and avx512: MADD rounds once) give the same bytes. */
 #include "numerics/gram_private.h"
 
 #include <math.h>
 #include <string.h>
 
-typedef double lane __attribute__((vector_size(64), aligned(64), may_alias));
-typedef float float_lane __attribute__((vector_size(64), aligned(64), may_alias));
-typedef float narrow __attribute__((vector_size(8 * WIDTH), aligned(8 * WIDTH), may_alias));
-enum { FLOATS = 2 * WIDTH };
+enum { UNIT = 8, PARTS = UNIT / WIDTH, FLOATS = 2 * WIDTH, PIVOTS = 4, SOLVE_LANES = WIDTH == 8 ? 3 : 6 };
+
+/* A pivot above it is infinite, but for rounding. */
+static const float LARGEST_PIVOT = 3e38f;
+
+typedef double lane __attribute__((vector_size(8 * WIDTH), aligned(8 * WIDTH), may_alias));
+typedef float float_lane __attribute__((vector_size(8 * WIDTH), aligned(8 * WIDTH), may_alias));
+#if WIDTH > 2
+typedef double four __attribute__((vector_size(32), may_alias));
+#endif
+typedef double pair __attribute__((vector_size(16), may_alias));
+typedef float quad __attribute__((vector_size(16), aligned(16), may_alias));
 
 /* clang unrolls by its own lights and warns where a request cannot be met. */
 #ifdef __clang__
 #define UNROLL
 #else
-#define UNROLL _Pragma("GCC unroll 8")
+#define UNROLL _Pragma("GCC unroll 16")
 #endif
 
 #define INLINE TARGET static inline __attribute__((always_inline))
 
-INLINE double sum_lane(const lane *vector)
+/* ---- products with a vector ---- */
+
+/* Eight partial sums to two. */
+INLINE pair fold(const lane part[PARTS])
 {
-  lane v = *vector;
-  return ((v[0] + v[4]) + (v[2] + v[6])) + ((v[1] + v[5]) + (v[3] + v[7]));
+#if WIDTH == 2
+  return (part[0] + part[2]) + (part[1] + part[3]);
+#else
+#if WIDTH == 8
+  four sum = __builtin_shufflevector(part[0], part[0], 0, 1, 2, 3) +
+             __builtin_shufflevector(part[0], part[0], 4, 5, 6, 7);
+#else
+  four sum = part[0] + part[1];
+#endif
+  return __builtin_shufflevector(sum, sum, 0, 1) + __builtin_shufflevector(sum, sum, 2, 3);
+#endif
 }
 
-INLINE void apply_body(int rows, int stride, const double *f, const double *x, double *product)
+INLINE void apply_rows(int rows, int units, int stride, const float *f, const double *x, double *product)
 {
-  int lanes = stride / EO_GRAM_LANE;
-  const lane *vector = (const lane *)x;
-  for (int i = 0; i < rows; i++) {
-    const lane *row = (const lane *)(f + (long)i * stride);
-    lane sum = {0};
-    for (int k = 0; k < lanes; k++)
-      sum += row[k] * vector[k];
-    product[i] = sum_lane(&sum);
+  lane sum[APPLY_ROWS][PARTS];
+  UNROLL
+  for (int r = 0; r < rows; r++)
+    UNROLL
+  for (int p = 0; p < PARTS; p++)
+    sum[r][p] = (lane){0};
+  for (int k = 0; k < units * UNIT; k += UNIT)
+    UNROLL
+  for (int p = 0; p < PARTS; p++) {
+    lane v = *(const lane *)(x + k + p * WIDTH);
+    UNROLL
+    for (int r = 0; r < rows; r++)
+      sum[r][p] = MADD(WIDEN(f + (long)r * stride + k + p * WIDTH), v, sum[r][p]);
+  }
+  UNROLL
+  for (int r = 0; r < rows; r += 2) {
+    pair a = fold(sum[r]), b = fold(sum[r + 1 < rows ? r + 1 : r]);
+    pair both = __builtin_shufflevector(a, b, 0, 2) + __builtin_shufflevector(a, b, 1, 3);
+    product[r] = both[0];
+    if (r + 1 < rows)
+      product[r + 1] = both[1];
   }
 }
 
-INLINE void gather_body(int rows, int stride, const double *f, const double *load, double *x)
+TARGET static void apply(int rows, int columns, int stride, const float *f, const double *x, double *product)
 {
-  int lanes = stride / EO_GRAM_LANE;
-  lane *vector = (lane *)x;
+  int units = (columns + UNIT - 1) / UNIT, i = 0;
+  for (; i + APPLY_ROWS <= rows; i += APPLY_ROWS)
+    apply_rows(APPLY_ROWS, units, stride, f + (long)i * stride, x, product + i);
+  for (; i < rows; i++)
+    apply_rows(1, units, stride, f + (long)i * stride, x, product + i);
+}
+
+INLINE void gather_units(int units, int rows, int stride, const float *f, const double *load, double *x)
+{
+  lane sum[GATHER_UNITS * PARTS];
+  UNROLL
+  for (int k = 0; k < units * PARTS; k++)
+    sum[k] = *(const lane *)(x + k * WIDTH);
   for (int i = 0; i < rows; i++) {
     if (load[i] == 0)
       continue;
-    const lane *row = (const lane *)(f + (long)i * stride);
-    for (int k = 0; k < lanes; k++)
-      vector[k] -= load[i] * row[k];
+    lane less = SPLAT(-load[i]);
+    UNROLL
+    for (int k = 0; k < units * PARTS; k++)
+      sum[k] = MADD(WIDEN(f + (long)i * stride + k * WIDTH), less, sum[k]);
+  }
+  UNROLL
+  for (int k = 0; k < units * PARTS; k++)
+    *(lane *)(x + k * WIDTH) = sum[k];
+}
+
+TARGET static void gather(int rows, int columns, int stride, const float *f, const double *load, double *x)
+{
+  int units = (columns + UNIT - 1) / UNIT, first = 0;
+  for (; first + GATHER_UNITS <= units; first += GATHER_UNITS)
+    gather_units(GATHER_UNITS, rows, stride, f + first * UNIT, load, x + first * UNIT);
+  f += first * UNIT;
+  x += first * UNIT;
+  switch (units - first) { /* known counts, so that the sums find their registers */
+  case 5:
+    gather_units(GATHER_UNITS < 5 ? GATHER_UNITS : 5, rows, stride, f, load, x);
+    break;
+  case 4:
+    gather_units(GATHER_UNITS < 4 ? GATHER_UNITS : 4, rows, stride, f, load, x);
+    break;
+  case 3:
+    gather_units(3, rows, stride, f, load, x);
+    break;
+  case 2:
+    gather_units(2, rows, stride, f, load, x);
+    break;
+  case 1:
+    gather_units(1, rows, stride, f, load, x);
+    break;
+  default:
+    break;
   }
 }
 
-/* Four rows of the product at once over one lane of columns; the sums stay in registers over all points. */
-INLINE void tile(int points, int stride, const double *plain, const double *weighted, int row, int column,
-                 double *matrix, int ld)
+TARGET static void blend(int rows, int stride, const float *f, const double *load, float *sum)
 {
-  lane sum[4] = {{0}, {0}, {0}, {0}};
-  for (int i = 0; i < points; i++) {
-    const double *w = weighted + (long)i * stride + row;
-    lane f = *(const lane *)(plain + (long)i * stride + column);
-    sum[0] += w[0] * f;
-    sum[1] += w[1] * f;
-    sum[2] += w[2] * f;
-    sum[3] += w[3] * f;
-  }
-  for (int k = 0; k < 4; k++)
-    *(lane *)(matrix + (long)(row + k) * ld + column) = sum[k];
-}
-
-INLINE void assemble_body(int rows, int stride, const double *f, const double *weight, double *packed, double *matrix)
-{
-  int ld = stride + EO_GRAM_LANE, points = 0, lanes = stride / EO_GRAM_LANE;
-  double *plain = packed, *weighted = packed + (long)rows * stride, total = 0;
-  lane *last = (lane *)(matrix + (long)stride * ld);
-  memset(last, 0, sizeof(double) * (size_t)ld);
-  for (int i = 0; i < rows; i++) {
-    if (weight[i] <= 0)
-      continue;
-    const lane *from = (const lane *)(f + (long)i * stride);
-    lane *a = (lane *)(plain + (long)points * stride), *b = (lane *)(weighted + (long)points * stride);
-    for (int k = 0; k < lanes; k++) {
-      a[k] = from[k];
-      b[k] = weight[i] * from[k];
-      last[k] -= b[k];
-    }
-    total += weight[i];
-    points++;
-  }
-  for (int row = 0; row < stride; row += 4)
-    for (int column = 0; column <= row; column += EO_GRAM_LANE)
-      tile(points, stride, plain, weighted, row, column, matrix, ld);
-  for (int j = 0; j < stride; j++)
-    matrix[(long)j * (ld + 1)] += 1;
-  matrix[(long)stride * (ld + 1)] = total;
-}
-
-INLINE void blend_body(int rows, int stride, const float *f, const double *load, float *sum)
-{
-  for (int column = 0; column < stride; column += EO_GRAM_FLOATS) {
-    float_lane part[4] = {{0}, {0}, {0}, {0}};
+  enum { LANES = EO_GRAM_FLOATS / FLOATS < 8 ? EO_GRAM_FLOATS / FLOATS : 8 };
+  for (int column = 0; column < stride; column += LANES * FLOATS) {
+    float_lane part[LANES];
+    memset(part, 0, sizeof part);
     for (int i = 0; i < rows; i++) {
-      const float_lane *row = (const float_lane *)(f + (long)i * stride + column);
-      float factor = (float)load[i];
-      if (factor == 0)
+      if (load[i] == 0)
         continue;
-      for (int k = 0; k < 4; k++)
-        part[k] += factor * row[k];
+      float_lane factor = SPLAT_FLOAT((float)load[i]);
+      const float *row = f + (long)i * stride + column;
+      UNROLL
+      for (int k = 0; k < LANES; k++)
+        part[k] = MADD_FLOAT(factor, *(const float_lane *)(row + k * FLOATS), part[k]);
     }
     memcpy(sum + column, part, sizeof part);
   }
 }
 
-enum { LANE = EO_GRAM_LANE };
+/* ---- Newton's matrix ---- */
 
-/* Factors the lower triangle of a diagonal block of n <= LANE rows, row-major with leading dimension ld, and writes
-   inverse[p]: row p of the transposed inverse of its factor, zero where there is none. What lies right of the diagonal
-   ends as zero. */
-INLINE bool factor_diagonal(int n, int ld, double *block, lane inverse[LANE])
+/* `rows` rows of A'A from `row` on over `lanes` vectors of columns from `column` on. */
+INLINE void square_tile(int rows, int lanes, int points, int stride, const float *a, int row, int column, float *matrix)
 {
-  double l[LANE][LANE] __attribute__((aligned(EO_GRAM_ALIGN))) = {{0}}, scale[LANE] = {0};
-  for (int i = 0; i < n; i++)
-    for (int k = 0; k <= i; k++)
-      l[i][k] = block[(long)i * ld + k];
-  UNROLL
-  for (int j = 0; j < n; j++) {
-    if (!(l[j][j] > 0))
-      return false;
-    l[j][j] = sqrt(l[j][j]);
-    scale[j] = 1 / l[j][j];
+  float_lane sum[TILE_ROWS][TILE_LANES];
+  memset(sum, 0, sizeof sum);
+  for (int i = 0; i < points; i++) {
+    const float *from = a + (long)i * stride;
+    float_lane right[TILE_LANES];
     UNROLL
-    for (int i = j + 1; i < n; i++)
-      l[i][j] *= scale[j];
+    for (int l = 0; l < lanes; l++)
+      right[l] = *(const float_lane *)(from + column + l * FLOATS);
     UNROLL
-    for (int k = j + 1; k < n; k++)
+    for (int r = 0; r < rows; r++) {
+      float_lane left = SPLAT_FLOAT(from[row + r]);
       UNROLL
-    for (int i = k; i < n; i++)
-      l[i][k] -= l[i][j] * l[k][j];
+      for (int l = 0; l < lanes; l++)
+        sum[r][l] = MADD_FLOAT(left, right[l], sum[r][l]);
+    }
+  }
+  UNROLL
+  for (int r = 0; r < rows; r++)
+    UNROLL
+  for (int l = 0; l < lanes; l++)
+    *(float_lane *)(matrix + (long)(row + r) * stride + column + l * FLOATS) = sum[r][l];
+}
+
+/* The rows with a weight, times its root; -1 stands behind the columns of f. Returns their number. */
+INLINE int pack(int rows, int columns, int stride, const float *f, int width, const double *weight, float *packed)
+{
+  int points = 0;
+  for (int i = 0; i < rows; i++) {
+    if (!(weight[i] > 0))
+      continue;
+    float root = (float)sqrt(weight[i]), *to = packed + (long)points++ * width;
+    float_lane factor = SPLAT_FLOAT(root);
+    for (int k = 0; k < stride; k += FLOATS)
+      *(float_lane *)(to + k) = factor * *(const float_lane *)(f + (long)i * stride + k);
+    for (int k = stride; k < width; k++)
+      to[k] = 0;
+    to[columns] = -root;
+  }
+  return points;
+}
+
+/* The lower triangle comes from the tiles, which also reach across the diagonal; the rest is its mirror image. Rows and
+   columns behind the matrix are those of the identity. */
+TARGET static void assemble(int rows, int columns, int stride, const float *f, const double *weight, float *packed,
+                            float *matrix)
+{
+  int n = columns + 1, width = eo_gram_width(columns);
+  int points = pack(rows, columns, stride, f, width, weight, packed);
+  for (int first = 0; first < n; first += TILE_ROWS) {
+    int column = 0, row = first + TILE_ROWS <= width ? first : width - TILE_ROWS, last = row + TILE_ROWS;
+    for (; column + (TILE_LANES - 1) * FLOATS < last && column + TILE_LANES * FLOATS <= width;
+         column += TILE_LANES * FLOATS)
+      square_tile(TILE_ROWS, TILE_LANES, points, width, packed, row, column, matrix);
+    for (; column < last; column += FLOATS)
+      square_tile(TILE_ROWS, 1, points, width, packed, row, column, matrix);
   }
   for (int i = 0; i < n; i++)
-    *(lane *)(block + (long)i * ld) = *(const lane *)l[i];
-  /* L^-1 by rows: e_i less what the rows above take, over the diagonal; then transposed. */
-  lane rows[LANE] = {{0}};
-  UNROLL
-  for (int i = 0; i < n; i++) {
-    lane sum = {0};
-    sum[i] = 1;
-    UNROLL
-    for (int k = 0; k < i; k++)
-      sum -= l[i][k] * rows[k];
-    rows[i] = sum * scale[i];
+    for (int j = 0; j < i; j++)
+      matrix[(long)j * width + i] = matrix[(long)i * width + j];
+  for (int i = 0; i < columns; i++)
+    matrix[(long)i * (width + 1)] += 1;
+  for (int i = n; i < width; i++) {
+    memset(matrix + (long)i * width, 0, sizeof *matrix * (size_t)width);
+    for (int j = 0; j < n; j++)
+      matrix[(long)j * width + i] = 0;
+    matrix[(long)i * (width + 1)] = 1;
   }
-  for (int p = 0; p < LANE; p++)
-    for (int i = 0; i < LANE; i++)
-      inverse[p][i] = rows[i][p];
-  return true;
 }
 
-/* Block column by block column, each as wide as a lane: the diagonal block, the rows below it through its inverse, and
-   what they take from the columns to their right. across: the rows below as columns, [n][LANE]. */
-INLINE bool factor_body(int n, int stride, double *matrix)
+/* The inverse of a symmetric block, pivot by pivot; false unless it is positive definite. */
+INLINE bool invert_block(float block[PIVOTS][PIVOTS])
 {
-  enum { MOST_ROWS = 2048 };
-  int ld = stride + LANE;
-  double across[MOST_ROWS][LANE] __attribute__((aligned(EO_GRAM_ALIGN)));
-  for (int first = 0; first < n; first += LANE) {
-    lane inverse[LANE];
-    int below = first + LANE;
-    double *diagonal = matrix + (long)first * (ld + 1);
-    if (!(below <= n ? factor_diagonal(LANE, ld, diagonal, inverse)
-                     : factor_diagonal(n - first, ld, diagonal, inverse)))
+  UNROLL
+  for (int k = 0; k < PIVOTS; k++) {
+    float pivot = block[k][k];
+    if (!(pivot > 0) || pivot > LARGEST_PIVOT)
       return false;
-    for (int i = below; i < n; i++) {
-      double *row = matrix + (long)i * ld + first;
-      lane sum = {0};
-      for (int p = 0; p < LANE; p++)
-        sum += row[p] * inverse[p];
-      *(lane *)row = sum;
-      for (int p = 0; p < LANE; p++)
-        across[i / LANE * LANE + p][i % LANE] = sum[p];
-    }
-    for (int i = below; i < n; i++) {
-      const double *row = matrix + (long)i * ld + first;
-      for (int column = below; column <= i; column += LANE) {
-        lane *target = (lane *)(matrix + (long)i * ld + column), sum = *target;
-        for (int p = 0; p < LANE; p++)
-          sum -= row[p] * *(const lane *)across[column + p];
-        *target = sum;
-      }
+    float scale = 1 / pivot, row[PIVOTS];
+    UNROLL
+    for (int j = 0; j < PIVOTS; j++)
+      row[j] = scale * block[k][j];
+    UNROLL
+    for (int i = 0; i < PIVOTS; i++) {
+      float factor = block[i][k];
+      UNROLL
+      for (int j = 0; j < PIVOTS; j++)
+        block[i][j] = i == k ? j == k ? -scale : row[j] : j == k ? row[i] : block[i][j] - factor * row[j];
     }
   }
   return true;
 }
 
-/* Rows of one diagonal block of the factor against part: L y = part. */
-INLINE void solve_forward(int rows, int ld, const double *diagonal, double *part)
+/* Sweeps the matrix by blocks of pivots K: with D = A_KK and R = D^-1 A_K, A_ij -= A_iK R_j for the others, A_K = R,
+   A_iK = R_i', A_KK = -D^-1. It stays symmetric, and ends as minus the inverse (Goodnight, A tutorial on the sweep
+   operator, 1979). */
+INLINE void sweep(int first, int n, int width, float block[PIVOTS][PIVOTS], float *matrix, float *kept, float *rows)
 {
-  double scale[LANE] = {0};
-  for (int i = 0; i < rows; i++)
-    scale[i] = 1 / diagonal[(long)i * (ld + 1)];
-  UNROLL
-  for (int i = 0; i < rows; i++) {
-    part[i] *= scale[i];
+  memcpy(kept, matrix + (long)first * width, sizeof *kept * PIVOTS * (size_t)width);
+  for (int c = 0; c < n; c += FLOATS)
     UNROLL
-    for (int k = i + 1; k < rows; k++)
-      part[k] -= diagonal[(long)k * ld + i] * part[i];
-  }
-}
-
-/* The same with the transpose: L' y = part. */
-INLINE void solve_backward(int rows, int ld, const double *diagonal, double *part)
-{
-  double scale[LANE] = {0};
-  for (int i = 0; i < rows; i++)
-    scale[i] = 1 / diagonal[(long)i * (ld + 1)];
-  UNROLL
-  for (int i = rows - 1; i >= 0; i--) {
-    part[i] *= scale[i];
+  for (int a = 0; a < PIVOTS; a++) {
+    float_lane sum = {0};
     UNROLL
-    for (int k = 0; k < i; k++)
-      part[k] -= diagonal[(long)i * ld + k] * part[i];
+    for (int b = 0; b < PIVOTS; b++)
+      sum = MADD_FLOAT(SPLAT_FLOAT(-block[a][b]), *(const float_lane *)(kept + b * width + c), sum);
+    *(float_lane *)(rows + a * width + c) = sum;
   }
-}
-
-/* x is padded with zeros to whole lanes, the rows of the factor are zero right of the diagonal. A block of rows as wide
-   as a lane takes in the blocks before it at once; only the small triangle on the diagonal goes row by row. */
-INLINE void solve_body(int n, int stride, const double *matrix, double *x)
-{
-  int ld = stride + LANE, whole = n / LANE, left = n % LANE;
-  lane *vector = (lane *)x;
-  for (int i = n; i < ld; i++)
-    x[i] = 0;
-  for (int b = 0; b <= whole; b++) {
-    const double *diagonal = matrix + (long)b * LANE * (ld + 1);
-    double part[LANE];
-    for (int i = 0; i < (b < whole ? LANE : left); i++) {
-      const lane *row = (const lane *)(matrix + (long)(b * LANE + i) * ld);
-      lane sum = {0};
-      for (int k = 0; k < b; k++)
-        sum += row[k] * vector[k];
-      part[i] = x[b * LANE + i] - sum_lane(&sum);
+  for (int i = 0; i < n; i++) {
+    if (i >= first && i < first + PIVOTS)
+      continue;
+    float *row = matrix + (long)i * width;
+    float_lane factor[PIVOTS];
+    UNROLL
+    for (int b = 0; b < PIVOTS; b++)
+      factor[b] = SPLAT_FLOAT(-kept[b * width + i]);
+    for (int c = 0; c < n; c += FLOATS) {
+      float_lane sum = *(const float_lane *)(row + c);
+      UNROLL
+      for (int b = 0; b < PIVOTS; b++)
+        sum = MADD_FLOAT(factor[b], *(const float_lane *)(rows + b * width + c), sum);
+      *(float_lane *)(row + c) = sum;
     }
-    if (b < whole)
-      solve_forward(LANE, ld, diagonal, part);
-    else
-      solve_forward(left, ld, diagonal, part);
-    memcpy(x + b * LANE, part, sizeof *part * (size_t)(b < whole ? LANE : left));
+    *(quad *)(row + first) = (quad){rows[i], rows[width + i], rows[2 * width + i], rows[3 * width + i]};
   }
-  for (int b = whole; b >= 0; b--) {
-    const double *diagonal = matrix + (long)b * LANE * (ld + 1);
-    double *part = x + b * LANE;
-    if (b < whole)
-      solve_backward(LANE, ld, diagonal, part);
-    else
-      solve_backward(left, ld, diagonal, part);
-    for (int i = 0; i < (b < whole ? LANE : left); i++)
-      for (int k = 0; k < b; k++)
-        vector[k] -= part[i] * ((const lane *)(matrix + (long)(b * LANE + i) * ld))[k];
-  }
+  memcpy(matrix + (long)first * width, rows, sizeof *rows * PIVOTS * (size_t)width);
+  for (int a = 0; a < PIVOTS; a++)
+    for (int b = 0; b < PIVOTS; b++)
+      matrix[(long)(first + a) * width + first + b] = block[a][b];
 }
 
-/* c = a b, or c += a b, over `rows` rows and `lanes` lanes of columns; the sums stay in registers over all of b's rows.
- */
+TARGET static bool invert(int n, float *matrix)
+{
+  enum { MOST = EO_GRAM_MOST_COLUMNS + EO_GRAM_LANE };
+  float kept[PIVOTS * MOST] __attribute__((aligned(EO_GRAM_ALIGN))),
+      rows[PIVOTS * MOST] __attribute__((aligned(EO_GRAM_ALIGN)));
+  int width = eo_gram_width(n - 1), whole = (n + PIVOTS - 1) / PIVOTS * PIVOTS;
+  for (int first = 0; first < n; first += PIVOTS) {
+    float block[PIVOTS][PIVOTS];
+    for (int a = 0; a < PIVOTS; a++)
+      memcpy(block[a], matrix + (long)(first + a) * width + first, sizeof block[a]);
+    if (!invert_block(block))
+      return false;
+    sweep(first, whole, width, block, matrix, kept, rows);
+  }
+  return true;
+}
+
+INLINE void solve_lanes(int lanes, int n, int width, const float *inverse, const double *b, float *x)
+{
+  float_lane sum[SOLVE_LANES];
+  memset(sum, 0, sizeof sum);
+  for (int k = 0; k < n; k++) {
+    float_lane factor = SPLAT_FLOAT((float)-b[k]);
+    UNROLL
+    for (int l = 0; l < lanes; l++)
+      sum[l] = MADD_FLOAT(factor, *(const float_lane *)(inverse + (long)k * width + l * FLOATS), sum[l]);
+  }
+  memcpy(x, sum, sizeof *sum * (size_t)lanes);
+}
+
+TARGET static void solve(int n, const float *inverse, const double *b, double *x)
+{
+  enum { MOST = EO_GRAM_MOST_COLUMNS + EO_GRAM_LANE };
+  float sum[MOST] __attribute__((aligned(EO_GRAM_ALIGN)));
+  int width = eo_gram_width(n - 1), column = 0;
+  for (; column + SOLVE_LANES * FLOATS <= width; column += SOLVE_LANES * FLOATS)
+    solve_lanes(SOLVE_LANES, n, width, inverse + column, b, sum + column);
+  for (; column < n; column += FLOATS)
+    solve_lanes(1, n, width, inverse + column, b, sum + column);
+  for (int k = 0; k < n; k++)
+    x[k] = (double)sum[k];
+}
+
+/* ---- product of matrices ---- */
+
+/* c = a b, or c += a b, over `rows` rows and `lanes` vectors of columns; the sums stay in registers over all of b's
+   rows. */
 INLINE void multiply_tile(int rows, int lanes, int inner, const float *a, int a_stride, const float *b, int b_stride,
                           bool add, float *c, int c_stride)
 {
-  narrow sum[TILE_ROWS][TILE_LANES];
+  float_lane sum[TILE_ROWS][TILE_LANES];
   UNROLL
   for (int r = 0; r < rows; r++)
     UNROLL
   for (int l = 0; l < lanes; l++)
-    sum[r][l] = add ? *(const narrow *)(c + (long)r * c_stride + l * FLOATS) : (narrow){0};
+    sum[r][l] = add ? *(const float_lane *)(c + (long)r * c_stride + l * FLOATS) : (float_lane){0};
   for (int k = 0; k < inner; k++) {
-    narrow from[TILE_LANES];
+    float_lane right[TILE_LANES];
     UNROLL
     for (int l = 0; l < lanes; l++)
-      from[l] = *(const narrow *)(b + (long)k * b_stride + l * FLOATS);
+      right[l] = *(const float_lane *)(b + (long)k * b_stride + l * FLOATS);
     UNROLL
-    for (int r = 0; r < rows; r++)
+    for (int r = 0; r < rows; r++) {
+      float_lane left = SPLAT_FLOAT(a[(long)r * a_stride + k]);
       UNROLL
-    for (int l = 0; l < lanes; l++)
-      sum[r][l] = FUSED_FLOAT(a[(long)r * a_stride + k], from[l], sum[r][l]);
+      for (int l = 0; l < lanes; l++)
+        sum[r][l] = MADD_FLOAT(left, right[l], sum[r][l]);
+    }
   }
   UNROLL
   for (int r = 0; r < rows; r++)
     UNROLL
   for (int l = 0; l < lanes; l++)
-    *(narrow *)(c + (long)r * c_stride + l * FLOATS) = sum[r][l];
+    *(float_lane *)(c + (long)r * c_stride + l * FLOATS) = sum[r][l];
 }
 
 /* Strips of columns, so that b's strip stays in the cache while all rows pass over it. Every number of c is one sum in
@@ -314,29 +391,4 @@ TARGET static void multiply(int rows, int inner, int columns, const float *a, in
   }
 }
 
-TARGET static void apply(int rows, int stride, const double *f, const double *x, double *product)
-{
-  apply_body(rows, stride, f, x, product);
-}
-TARGET static void gather(int rows, int stride, const double *f, const double *load, double *x)
-{
-  gather_body(rows, stride, f, load, x);
-}
-TARGET static void assemble(int rows, int stride, const double *f, const double *weight, double *packed, double *matrix)
-{
-  assemble_body(rows, stride, f, weight, packed, matrix);
-}
-TARGET static void blend(int rows, int stride, const float *f, const double *load, float *sum)
-{
-  blend_body(rows, stride, f, load, sum);
-}
-TARGET static bool factor(int n, int stride, double *matrix)
-{
-  return factor_body(n, stride, matrix);
-}
-TARGET static void solve(int n, int stride, const double *matrix, double *x)
-{
-  solve_body(n, stride, matrix, x);
-}
-
-const struct eo_gram VERSION = {NAME, apply, gather, assemble, blend, factor, solve, multiply};
+const struct eo_gram VERSION = {NAME, apply, gather, blend, assemble, invert, solve, multiply};

@@ -6,13 +6,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_ROWS = 131, MOST_STRIDE = 40, MOST_SIZE = MOST_STRIDE + EO_GRAM_LANE, MOST_FLOATS = 192 };
+enum { MOST_ROWS = 131, MOST_COLUMNS = 61, MOST_SIZE = 96, MOST_FLOATS = 192 };
 
 /* Inputs of one size; a third of the weights and loads are zero. */
 struct input {
-  int rows, stride, floats;
-  double *f, *x, *load, *weight;
-  float *plain;
+  int rows, columns, stride, floats;
+  float *f, *plain;
+  double *x, *load, *weight;
 };
 
 static double draw(int stream, int index)
@@ -20,19 +20,27 @@ static double draw(int stream, int index)
   return 2 * eo_random_unit(eo_random_at(7, (uint64_t)stream, 0, (uint64_t)index), 0) - 1;
 }
 
-static void input_init(struct input *in, int rows, int stride)
+static float *make_floats(int count)
 {
-  *in = (struct input){
-      .rows = rows, .stride = stride, .floats = (rows + EO_GRAM_FLOATS - 1) / EO_GRAM_FLOATS * EO_GRAM_FLOATS};
-  in->f = eo_gram_allocate((long)rows * stride);
-  in->x = eo_gram_allocate(stride);
+  return (float *)eo_gram_allocate((count + 1) / 2);
+}
+
+static void input_init(struct input *in, int rows, int columns)
+{
+  *in = (struct input){.rows = rows,
+                       .columns = columns,
+                       .stride = (columns + EO_GRAM_LANE - 1) / EO_GRAM_LANE * EO_GRAM_LANE,
+                       .floats = (rows + EO_GRAM_FLOATS - 1) / EO_GRAM_FLOATS * EO_GRAM_FLOATS};
+  in->f = make_floats(rows * in->stride);
+  in->x = eo_gram_allocate(in->stride);
   in->load = eo_gram_allocate(rows);
   in->weight = eo_gram_allocate(rows);
-  in->plain = (float *)eo_gram_allocate((long)rows * in->floats / 2);
-  for (int i = 0; i < rows * stride; i++)
-    in->f[i] = draw(1, i);
-  for (int k = 0; k < stride; k++)
-    in->x[k] = draw(2, k);
+  in->plain = make_floats(rows * in->floats);
+  for (int i = 0; i < rows; i++)
+    for (int k = 0; k < columns; k++)
+      in->f[i * in->stride + k] = (float)draw(1, i * columns + k);
+  for (int k = 0; k < in->stride; k++)
+    in->x[k] = draw(2, k); /* what stands behind the columns meets zeros */
   for (int i = 0; i < rows; i++) {
     in->load[i] = i % 3 == 1 ? 0 : 1000 * (1 + draw(3, i));
     in->weight[i] = i % 3 == 1 ? 0 : 1 + draw(4, i);
@@ -52,12 +60,12 @@ static void input_done(struct input *in)
 
 /* What one version makes of an input. */
 struct output {
-  double product[MOST_ROWS], gathered[MOST_STRIDE] __attribute__((aligned(EO_GRAM_ALIGN)));
-  double matrix[MOST_SIZE * MOST_SIZE] __attribute__((aligned(EO_GRAM_ALIGN)));
-  double factor[MOST_SIZE * MOST_SIZE] __attribute__((aligned(EO_GRAM_ALIGN)));
-  double solution[MOST_SIZE] __attribute__((aligned(EO_GRAM_ALIGN)));
+  double product[MOST_ROWS], gathered[MOST_SIZE] __attribute__((aligned(EO_GRAM_ALIGN)));
+  float matrix[MOST_SIZE * MOST_SIZE] __attribute__((aligned(EO_GRAM_ALIGN)));
+  float inverse[MOST_SIZE * MOST_SIZE] __attribute__((aligned(EO_GRAM_ALIGN)));
+  double solution[MOST_SIZE];
   float blended[MOST_FLOATS] __attribute__((aligned(EO_GRAM_ALIGN)));
-  bool factored;
+  bool inverted;
 };
 
 static double right_side(int i)
@@ -67,19 +75,20 @@ static double right_side(int i)
 
 static void run(const struct eo_gram *gram, const struct input *in, struct output *out)
 {
-  int n = in->stride + 1;
-  double *packed = eo_gram_allocate(2L * in->rows * in->stride);
+  int n = in->columns + 1;
+  float *packed = make_floats(in->rows * eo_gram_width(in->columns));
+  double b[MOST_SIZE];
   memset(out, 0, sizeof *out);
-  gram->apply(in->rows, in->stride, in->f, in->x, out->product);
+  gram->apply(in->rows, in->columns, in->stride, in->f, in->x, out->product);
   memcpy(out->gathered, in->x, sizeof *in->x * (size_t)in->stride);
-  gram->gather(in->rows, in->stride, in->f, in->load, out->gathered);
+  gram->gather(in->rows, in->columns, in->stride, in->f, in->load, out->gathered);
   gram->blend(in->rows, in->floats, in->plain, in->load, out->blended);
-  gram->assemble(in->rows, in->stride, in->f, in->weight, packed, out->matrix);
-  memcpy(out->factor, out->matrix, sizeof out->matrix);
-  out->factored = gram->factor(n, in->stride, out->factor);
+  gram->assemble(in->rows, in->columns, in->stride, in->f, in->weight, packed, out->matrix);
+  memcpy(out->inverse, out->matrix, sizeof out->matrix);
+  out->inverted = gram->invert(n, out->inverse);
   for (int i = 0; i < MOST_SIZE; i++)
-    out->solution[i] = i < n ? right_side(i) : 1e9; /* what lies behind is not to be read */
-  gram->solve(n, in->stride, out->factor, out->solution);
+    b[i] = i < n ? right_side(i) : 1e9; /* what lies behind is not to be read */
+  gram->solve(n, out->inverse, b, out->solution);
   free(packed);
 }
 
@@ -88,7 +97,7 @@ static double check_products(const struct input *in, const struct output *out)
   double worst = 0;
   for (int i = 0; i < in->rows; i++) {
     long double sum = 0;
-    for (int k = 0; k < in->stride; k++)
+    for (int k = 0; k < in->columns; k++)
       sum += (long double)in->f[i * in->stride + k] * in->x[k];
     worst = fmax(worst, fabs((double)(out->product[i] - sum)));
   }
@@ -114,56 +123,82 @@ static double check_blend(const struct input *in, const struct output *out)
 }
 
 /* Entry (i, j) of [I + F'WF, .; -1'WF, 1'W1]. */
-static long double entry(const struct input *in, int i, int j)
+static double entry(const struct input *in, int i, int j)
 {
-  long double sum = i == j && i < in->stride;
+  double sum = i == j && i < in->columns;
   for (int p = 0; p < in->rows; p++) {
-    long double a = i < in->stride ? (long double)in->f[p * in->stride + i] : -1,
-                b = j < in->stride ? (long double)in->f[p * in->stride + j] : -1;
+    double a = i < in->columns ? (double)in->f[p * in->stride + i] : -1,
+           b = j < in->columns ? (double)in->f[p * in->stride + j] : -1;
     sum += in->weight[p] * a * b;
   }
   return sum;
 }
 
-/* Largest error of the assembled lower triangle, of L L' against it, and of the solution's residual. */
+/* Largest error of the assembled matrix against the root of its diagonal's entries, of its product with the inverse,
+   and of the solution's residual; the matrix is at most some hundreds times as stiff one way as another. */
 static void check_matrix(const struct input *in, const struct output *out, double error[3])
 {
-  int n = in->stride + 1, ld = in->stride + EO_GRAM_LANE;
+  int n = in->columns + 1, width = eo_gram_width(in->columns);
+  static double wanted[MOST_SIZE][MOST_SIZE];
   error[0] = error[1] = error[2] = 0;
+  for (int i = 0; i < n; i++)
+    for (int j = 0; j < n; j++)
+      wanted[i][j] = entry(in, i, j);
   for (int i = 0; i < n; i++) {
-    long double residual = -right_side(i);
+    double residual = -right_side(i);
     for (int j = 0; j < n; j++) {
-      long double wanted = entry(in, i, j), product = 0;
-      residual += wanted * out->solution[j];
-      if (j > i)
-        continue;
-      for (int k = 0; k <= j; k++)
-        product += (long double)out->factor[i * ld + k] * out->factor[j * ld + k];
-      error[0] = fmax(error[0], fabs((double)(out->matrix[i * ld + j] - wanted)));
-      error[1] = fmax(error[1], fabs((double)(product - wanted)));
+      double product = i == j;
+      residual += wanted[i][j] * out->solution[j];
+      for (int k = 0; k < n; k++)
+        product += wanted[i][k] * (double)out->inverse[k * width + j];
+      error[0] = fmax(error[0],
+                      fabs((double)out->matrix[i * width + j] - wanted[i][j]) / sqrt(wanted[i][i] * wanted[j][j]));
+      error[1] = fmax(error[1], fabs(product));
     }
-    error[2] = fmax(error[2], fabs((double)residual));
+    error[2] = fmax(error[2], fabs(residual));
   }
-  for (int i = n; i < ld; i++)
-    error[2] = fmax(error[2], fabs(out->solution[i]));
+  for (int i = 0; i < width; i++)
+    for (int j = 0; j < width; j++)
+      if (i >= n || j >= n)
+        error[0] = fmax(error[0], fabs((double)out->matrix[i * width + j] - (i == j)));
 }
 
-static void test_size(int rows, int stride)
+/* avx2 and avx512 round alike. */
+static bool round_alike(const struct eo_gram *a, const struct eo_gram *b)
+{
+  return a == b || (strcmp(a->name, "plain") != 0 && strcmp(b->name, "plain") != 0);
+}
+
+static int count_differences(const struct input *in, const struct output *a, const struct output *b)
+{
+  int different = memcmp(a->blended, b->blended, sizeof a->blended) != 0;
+  for (int i = 0; i < in->rows; i++)
+    different += a->product[i] != b->product[i];
+  for (int i = 0; i < MOST_SIZE; i++)
+    different += a->gathered[i] != b->gathered[i] || a->solution[i] != b->solution[i];
+  for (int i = 0; i < MOST_SIZE * MOST_SIZE; i++) /* zeros behind the matrix may have either sign */
+    different += a->matrix[i] != b->matrix[i] || a->inverse[i] != b->inverse[i];
+  return different;
+}
+
+static void test_size(int rows, int columns)
 {
   static struct output first, out;
   struct input in;
-  input_init(&in, rows, stride);
+  input_init(&in, rows, columns);
   for (int version = 0; eo_gram_version(version); version++) {
+    const struct eo_gram *gram = eo_gram_version(version);
     double error[3];
-    run(eo_gram_version(version), &in, &out);
+    run(gram, &in, &out);
     check_matrix(&in, &out, error);
-    ok(check_products(&in, &out) < 1e-12, "version %d, %d x %d: products", version, rows, stride);
+    ok(check_products(&in, &out) < 1e-12, "%s, %d x %d: products", gram->name, rows, columns);
     ok(check_blend(&in, &out) < 2e-7, "single precision sums");
-    ok(out.factored && error[0] < 1e-12 && error[1] < 1e-11 && error[2] < 1e-11,
-       "matrix %.1e, factor %.1e, solution %.1e", error[0], error[1], error[2]);
+    ok(out.inverted && error[0] < 1e-6 && error[1] < 3e-4 && error[2] < 3e-4,
+       "matrix %.1e, inverse %.1e, solution %.1e", error[0], error[1], error[2]);
     if (version == 0)
       first = out;
-    ok(memcmp(&first, &out, sizeof out) == 0, "the same bytes as the fastest version");
+    if (round_alike(gram, eo_gram_version(0)))
+      ok(count_differences(&in, &first, &out) == 0, "the same numbers as the fastest version");
   }
   input_done(&in);
 }
@@ -172,8 +207,8 @@ static void test_size(int rows, int stride)
 static void test_multiply(const struct eo_gram *gram, int rows, int inner, int columns)
 {
   int a_stride = inner + 3;
-  float *a = (float *)eo_gram_allocate((rows * a_stride + 1) / 2), *b = (float *)eo_gram_allocate(inner * columns / 2),
-        *c = (float *)eo_gram_allocate(rows * columns / 2), *alone = (float *)eo_gram_allocate(rows * columns / 2);
+  float *a = make_floats(rows * a_stride), *b = make_floats(inner * columns), *c = make_floats(rows * columns),
+        *alone = make_floats(rows * columns);
   double worst = 0;
   int different = 0;
   for (int i = 0; i < rows * a_stride; i++)
@@ -204,29 +239,28 @@ static void test_multiply(const struct eo_gram *gram, int rows, int inner, int c
   free(alone);
 }
 
-/* Matrices that have no Cholesky factor. */
+/* Matrices that are not positive definite. */
 static void test_refusals(void)
 {
-  static double matrix[MOST_SIZE * MOST_SIZE] __attribute__((aligned(EO_GRAM_ALIGN)));
+  static float matrix[MOST_SIZE * MOST_SIZE] __attribute__((aligned(EO_GRAM_ALIGN)));
   static const struct {
     const char *what;
-    double value;
+    float value;
     int row, column;
-  } spoilt[] = {{"a negative pivot", -1, 8, 8},
-                {"a zero first pivot", 0, 0, 0},
-                {"a NaN on the diagonal", NAN, 5, 5},
-                {"a NaN beside it", NAN, 7, 3},
-                {"an entry that is too large", 2, 6, 1}};
-  int stride = 8, n = stride + 1, ld = stride + EO_GRAM_LANE;
+  } spoilt[] = {{"a negative pivot", -1, 8, 8},        {"a zero first pivot", 0, 0, 0},
+                {"a NaN on the diagonal", NAN, 5, 5},  {"a NaN beside it", NAN, 7, 3},
+                {"an infinite pivot", INFINITY, 2, 2}, {"an entry that is too large", 2, 6, 1}};
+  int n = 9, width = eo_gram_width(n - 1);
   for (int version = 0; eo_gram_version(version); version++)
     for (size_t s = 0; s <= sizeof spoilt / sizeof *spoilt; s++) {
       memset(matrix, 0, sizeof matrix);
-      for (int i = 0; i < n; i++)
-        matrix[i * (ld + 1)] = 1;
+      for (int i = 0; i < width; i++)
+        matrix[i * (width + 1)] = 1;
       bool sound = s == sizeof spoilt / sizeof *spoilt;
       if (!sound)
-        matrix[spoilt[s].row * ld + spoilt[s].column] = spoilt[s].value;
-      ok(eo_gram_version(version)->factor(n, stride, matrix) == sound, "version %d: %s", version,
+        matrix[spoilt[s].row * width + spoilt[s].column] = matrix[spoilt[s].column * width + spoilt[s].row] =
+            spoilt[s].value;
+      ok(eo_gram_version(version)->invert(n, matrix) == sound, "version %d: %s", version,
          sound ? "the sound matrix is accepted" : spoilt[s].what);
     }
 }
@@ -234,10 +268,12 @@ static void test_refusals(void)
 int main(void)
 {
   ok(eo_gram_select() == eo_gram_version(0), "the fastest version comes first");
-  test_size(1, 8);
+  test_size(1, 1);
   test_size(7, 8);
-  test_size(40, 24);
-  test_size(MOST_ROWS, MOST_STRIDE);
+  test_size(40, 23);
+  test_size(97, 36);
+  test_size(MOST_ROWS, 48);
+  test_size(MOST_ROWS, MOST_COLUMNS);
   for (int version = 0; eo_gram_version(version); version++) {
     test_multiply(eo_gram_version(version), 13, 31, 7 * EO_GRAM_COLUMNS);
     test_multiply(eo_gram_version(version), 7, 5, EO_GRAM_COLUMNS);
