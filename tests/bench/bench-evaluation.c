@@ -1,17 +1,24 @@
 /* Times true evaluations of the paper pair (three torques, default resolution) on finite elements: by stage, for equal
    and different ends, when one value of the modification changes, and on one and two threads; and the memory of a
-   worker. An argument names a cache directory, a second one the number of repeats. */
+   worker. Then, for every version of the kernel that this processor can run, the figure of one evaluation: its
+   processor time times what one core makes of a product of matrices of the same library in the same run, in Gflop, so
+   that it says the same on a slower processor. An argument names a cache directory, a second one the number of repeats.
+ */
 #include "document/design_document.h"
 #include "document/examples.h"
 #include "evaluation/evaluator.h"
+#include "numerics/gram.h"
 
+#include <cblas.h>
 #include <malloc.h>
 #include <math.h>
 #include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/wait.h>
 #include <time.h>
+#include <unistd.h>
 
 enum { MOST_REPEATS = 1001 };
 
@@ -182,17 +189,70 @@ static void measure_memory(const struct eo_pair *pair, const struct eo_design *d
   eo_evaluator_free(evaluator);
 }
 
-/* Operations of the loaded contact of one end and one torque: two factorisations, five evaluations and the tangent per
-   position. */
-static double operations(const struct eo_contact_grid *grid)
+/* ---- the figure of one evaluation ---- */
+
+/* Gflop/s of one core on c = a b of 512 rows. */
+static double product_rate(void)
 {
-  double sum = 0;
-  for (int j = 0; j < grid->positions; j++) {
-    const struct eo_contact_position *p = &grid->position[j];
-    double points = p->points, rank = p->stride, factor = points * rank * rank + rank * rank * rank / 3;
-    sum += 2 * factor + 6 * (4 * points * rank + 2 * points * points + 25 * points);
+  enum { N = 512 };
+  static double a[N * N], b[N * N], c[N * N];
+  for (int i = 0; i < N * N; i++) {
+    a[i] = i % 7 - 3;
+    b[i] = i % 5 - 2;
   }
-  return sum;
+  double start = now(CLOCK_THREAD_CPUTIME_ID);
+  cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, N, N, N, 1, a, N, b, N, 0, c, N);
+  return 2e-6 * N * N * N / (now(CLOCK_THREAD_CPUTIME_ID) - start);
+}
+
+/* Case A at 0.1 degrees, three torques, two different ends, tip edges, vibration: evaluations and products in turn. */
+static void print_figure(const struct eo_pair *pair)
+{
+  static double spent[MOST_REPEATS], rate[MOST_REPEATS];
+  struct eo_design design = design_of("paper-case-a", 0.1);
+  struct eo_evaluator *evaluator = make_evaluator(pair);
+  const struct eo_evaluation *r;
+  struct eo_error error;
+  for (int i = 0; i < repeats; i++) {
+    change(&design, both_ends);
+    double start = now(CLOCK_THREAD_CPUTIME_ID);
+    if (eo_evaluator_run(evaluator, &design, NULL, 0, &r, &error))
+      stop(&error);
+    spent[i] = now(CLOCK_THREAD_CPUTIME_ID) - start;
+    rate[i] = product_rate();
+  }
+  qsort(spent, (size_t)repeats, sizeof *spent, compare);
+  qsort(rate, (size_t)repeats, sizeof *rate, compare);
+  const char *core = getenv("OPENBLAS_CORETYPE");
+  printf("  %-7s %7.2f ms x %6.1f Gflop/s (OpenBLAS for %s) = %.3f Gflop\n", eo_gram_select()->name, spent[repeats / 2],
+         rate[repeats / 2], core && *core ? core : "this processor", 1e-3 * spent[repeats / 2] * rate[repeats / 2]);
+  eo_evaluator_free(evaluator);
+}
+
+/* This program once more, as on a processor that has fewer features. */
+static void print_figure_as(const char *features, const char *core, char **argv)
+{
+  char text[16];
+  snprintf(text, sizeof text, "%d", repeats);
+  fflush(stdout);
+  pid_t child = fork();
+  if (child == 0) {
+    setenv("GLIBC_TUNABLES", features, 1);
+    setenv("OPENBLAS_CORETYPE", core, 1);
+    execl("/proc/self/exe", argv[0], argv[1], text, "figure", (char *)NULL);
+    _exit(1);
+  }
+  waitpid(child, NULL, 0);
+}
+
+static void print_figures(const struct eo_pair *pair, char **argv)
+{
+  printf("\none evaluation of case A at 0.1 degrees:\n");
+  print_figure(pair);
+  if (strcmp(eo_gram_select()->name, "avx512") == 0)
+    print_figure_as("glibc.cpu.hwcaps=-AVX512F", "Haswell", argv);
+  if (strcmp(eo_gram_select()->name, "plain") != 0)
+    print_figure_as("glibc.cpu.hwcaps=-AVX512F,-AVX2", "Nehalem", argv);
 }
 
 int main(int argc, char **argv)
@@ -211,6 +271,11 @@ int main(int argc, char **argv)
   }
   if (eo_pair_new(&pair, &aligned, &options, NULL, &error))
     stop(&error);
+  if (argc > 3) {
+    print_figure(pair);
+    eo_pair_free(pair);
+    return 0;
+  }
   printf("preparation %.2f s%s, contact grid of %d positions with up to %d points and %d modes\n", pair->seconds,
          eo_flexibility_report(pair->flexibility)->from_cache ? " (from the cache)" : "", pair->grid->positions,
          pair->grid->most_points, pair->grid->most_rank);
@@ -222,9 +287,11 @@ int main(int argc, char **argv)
   time_design("case B, 0.1 deg", pair, different, both_ends);
   time_design("unmodified, 0.1 deg", pair, plain, both_ends);
   time_design("what if: left tip relief + 10 nm", pair, tilted, left_end);
-  printf("\ncontact: %.1f Mflop for three torques and both ends\n\n", 6e-6 * operations(pair->grid));
+  printf("\n");
   time_threads(pair, &tilted);
   measure_memory(pair, &tilted);
+  if (argc > 1)
+    print_figures(pair, argv);
   eo_pair_free(pair);
   return 0;
 }
