@@ -25,4 +25,12 @@ enum eo_code eo_error_set(struct eo_error *error, enum eo_code code, const char 
 /* Shorthand for an allocation that failed. */
 enum eo_code eo_error_memory(struct eo_error *error);
 
+/* Returns the code of a call that failed; only where nothing is held that would have to be released. */
+#define EO_TRY(call)                   \
+  do {                                 \
+    enum eo_code eo_try_code = (call); \
+    if (eo_try_code)                   \
+      return eo_try_code;              \
+  } while (0)
+
 #endif

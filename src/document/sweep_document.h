@@ -28,7 +28,8 @@ struct eo_sweep_range {
 struct eo_sweep_request {
   struct eo_sweep_range torque, speed; /* N m, rpm */
 };
-extern const struct eo_table eo_sweep_request_table; /* keys torque_Nm and speed_rpm */
+extern const struct eo_table eo_sweep_request_table;                      /* keys torque_Nm and speed_rpm */
+extern const struct eo_table eo_sweep_torque_table, eo_sweep_speed_table; /* of one range each */
 
 /* The points of a request, owned; SI. */
 struct eo_sweep_axes {

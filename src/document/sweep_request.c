@@ -17,7 +17,7 @@ static const struct eo_field torque[] = {
     EO_NUMBER_DERIVED(struct eo_sweep_range, to, "to", NULL, 1e-3, 1e8, "from", "last torque, N m"),
     POINTS,
 };
-static const struct eo_table torque_table = EO_TABLE("a range of torques", struct eo_sweep_range, torque);
+const struct eo_table eo_sweep_torque_table = EO_TABLE("a range of torques", struct eo_sweep_range, torque);
 
 static const struct eo_field speed[] = {
     EO_NUMBER_DERIVED(struct eo_sweep_range, from, "from", NULL, 0.1, 1e6, "of the load case with the largest share",
@@ -25,12 +25,12 @@ static const struct eo_field speed[] = {
     EO_NUMBER_DERIVED(struct eo_sweep_range, to, "to", NULL, 0.1, 1e6, "from", "last speed, rpm"),
     POINTS,
 };
-static const struct eo_table speed_table = EO_TABLE("a range of speeds", struct eo_sweep_range, speed);
+const struct eo_table eo_sweep_speed_table = EO_TABLE("a range of speeds", struct eo_sweep_range, speed);
 
 static const struct eo_field request[] = {
-    EO_OBJECT(struct eo_sweep_request, torque, "torque_Nm", &torque_table,
+    EO_OBJECT(struct eo_sweep_request, torque, "torque_Nm", &eo_sweep_torque_table,
               "torques; without them that of the load case with the largest share"),
-    EO_OBJECT(struct eo_sweep_request, speed, "speed_rpm", &speed_table,
+    EO_OBJECT(struct eo_sweep_request, speed, "speed_rpm", &eo_sweep_speed_table,
               "speeds; without them that of the load case with the largest share"),
 };
 const struct eo_table eo_sweep_request_table = EO_TABLE("a sweep", struct eo_sweep_request, request);
@@ -57,9 +57,7 @@ static enum eo_code make_axis(const struct eo_sweep_range *range, const struct e
     return eo_error_set(error, EO_ERROR_INPUT, pointer, "The range has no start: \"from\" is missing.");
   if (isnan(range->from))
     return EO_OK;
-  enum eo_code code = check_range(range, pointer, error);
-  if (code)
-    return code;
+  EO_TRY(check_range(range, pointer, error));
   double to = isnan(range->to) ? range->from : range->to;
   int points = range->points ? range->points : to > range->from ? 2 : 1;
   *value = malloc((size_t)points * sizeof **value);

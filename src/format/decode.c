@@ -82,6 +82,9 @@ static void default_field(const struct eo_field *field, void *target)
   case EO_FIELD_SERIES:
     *(struct eo_series *)place = (struct eo_series){0};
     break;
+  case EO_FIELD_DOCUMENT:
+    *(const json_t **)place = NULL;
+    break;
   }
 }
 
@@ -116,15 +119,23 @@ static bool read_number(const json_t *value, const struct eo_field *field, doubl
   return true;
 }
 
-static bool read_whole(const json_t *value, const struct eo_field *field, const struct eo_path *path,
-                       struct eo_faults *faults, double *number)
+static bool read_whole(const json_t *value, const struct eo_field *field, double low, double high,
+                       const struct eo_path *path, struct eo_faults *faults, double *number)
 {
-  if (!read_number(value, field, field->low, field->high, path, faults, number))
+  if (!read_number(value, field, low, high, path, faults, number))
     return false;
   if (*number == floor(*number))
     return true;
   eo_faults_at(faults, path, "%.15g is not a whole number.", *number);
   return false;
+}
+
+/* A number, or a whole one where the field says so. */
+static bool read_real(const json_t *value, const struct eo_field *field, double low, double high,
+                      const struct eo_path *path, struct eo_faults *faults, double *number)
+{
+  return field->flags & EO_FIELD_WHOLE ? read_whole(value, field, low, high, path, faults, number)
+                                       : read_number(value, field, low, high, path, faults, number);
 }
 
 static void list_choices(const char *const *choices, struct eo_text *text)
@@ -165,6 +176,9 @@ static void decode_text(const struct eo_field *field, const json_t *value, const
   else if (json_string_length(value) >= (size_t)field->count)
     eo_faults_at(faults, path, "A string of %zu bytes is longer than the %d allowed.", json_string_length(value),
                  field->count - 1);
+  else if ((double)json_string_length(value) < field->low)
+    eo_faults_at(faults, path, "A string of %zu bytes is shorter than the %.0f needed.", json_string_length(value),
+                 field->low);
   else
     set_text(place, field->count, json_string_value(value));
 }
@@ -177,7 +191,7 @@ static bool read_numbers(const json_t *value, const struct eo_field *field, doub
   for (int i = 0; i < count; i++) {
     struct eo_path element = {path, NULL, i};
     double outside;
-    if (read_number(json_array_get(value, (size_t)i), field, low, high, &element, faults, &outside))
+    if (read_real(json_array_get(value, (size_t)i), field, low, high, &element, faults, &outside))
       number[i] = eo_unit_in(field->unit, outside);
     else
       good = false;
@@ -273,15 +287,15 @@ static void decode_field(const struct eo_field *field, const json_t *value, cons
   }
   switch (field->kind) {
   case EO_FIELD_NUMBER:
-    if (read_number(value, field, field->low, field->high, path, faults, &number))
+    if (read_real(value, field, field->low, field->high, path, faults, &number))
       *(double *)place = eo_unit_in(field->unit, number);
     break;
   case EO_FIELD_INTEGER:
-    if (read_whole(value, field, path, faults, &number))
+    if (read_whole(value, field, field->low, field->high, path, faults, &number))
       *(int *)place = (int)number;
     break;
   case EO_FIELD_SEED:
-    if (read_whole(value, field, path, faults, &number))
+    if (read_whole(value, field, field->low, field->high, path, faults, &number))
       *(uint64_t *)place = (uint64_t)number;
     break;
   case EO_FIELD_FLAG:
@@ -315,13 +329,19 @@ static void decode_field(const struct eo_field *field, const json_t *value, cons
   case EO_FIELD_SERIES:
     decode_series(field, value, path, place, faults);
     break;
+  case EO_FIELD_DOCUMENT:
+    if (json_is_object(value))
+      *(const json_t **)place = value;
+    else
+      eo_faults_at(faults, path, "Must be an object, not %s.", type_name(value));
+    break;
   }
 }
 
 static const struct eo_field *find_field(const struct eo_table *table, const char *key)
 {
   for (int i = 0; i < table->count; i++)
-    if (strcmp(table->field[i].key, key) == 0)
+    if (strcmp(table->field[i].key, key) == 0 || (table->field[i].alias && strcmp(table->field[i].alias, key) == 0))
       return &table->field[i];
   return NULL;
 }
@@ -374,6 +394,17 @@ static void decode_absent(const struct eo_field *field, const struct eo_path *pa
     eo_faults_at(faults, path, "This key is required.");
 }
 
+/* What stands under the key, or under its other name. */
+static const json_t *find_value(const struct eo_field *field, const json_t *object, const struct eo_path *path,
+                                struct eo_faults *faults)
+{
+  const json_t *value = json_object_get(object, field->key),
+               *other = field->alias ? json_object_get(object, field->alias) : NULL;
+  if (value && other)
+    eo_faults_at(faults, path, "This key is there twice, as \"%s\" too.", field->alias);
+  return value ? value : other;
+}
+
 void eo_table_decode(const struct eo_table *table, const json_t *object, const struct eo_path *path, void *target,
                      struct eo_faults *faults)
 {
@@ -384,8 +415,8 @@ void eo_table_decode(const struct eo_table *table, const json_t *object, const s
   }
   for (int i = 0; i < table->count; i++) {
     const struct eo_field *field = &table->field[i];
-    const json_t *value = json_object_get(object, field->key);
     struct eo_path place = {path, field->key, 0};
+    const json_t *value = find_value(field, object, &place, faults);
     if (value)
       decode_field(field, value, &place, target, faults);
     else if (field->elder_key && json_object_get(object, field->elder_key))

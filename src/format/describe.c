@@ -52,6 +52,7 @@ static void describe_type(const struct eo_field *field, struct eo_text *text)
       describe_range(field, field->series_low, field->series_high, text);
     break;
   case EO_FIELD_OBJECT:
+  case EO_FIELD_DOCUMENT:
     eo_text_add(text, "object");
     break;
   case EO_FIELD_LIST:

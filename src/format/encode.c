@@ -51,7 +51,7 @@ static json_t *encode_field(const struct eo_field *field, const void *source)
   case EO_FIELD_FLAG:
     return json_boolean(*(const bool *)place);
   case EO_FIELD_TEXT:
-    return json_string(place);
+    return *(const char *)place || !(field->flags & EO_FIELD_NULLABLE) ? json_string(place) : json_null();
   case EO_FIELD_CHOICE:
     return json_string(field->choices[*(const int *)place]);
   case EO_FIELD_NUMBERS:
@@ -66,6 +66,8 @@ static json_t *encode_field(const struct eo_field *field, const void *source)
     return encode_list(field, source);
   case EO_FIELD_SERIES:
     return eo_json_reals(series->count, series->value, 1, field->unit, 0);
+  case EO_FIELD_DOCUMENT:
+    return *(json_t *const *)place ? json_incref(*(json_t *const *)place) : json_null();
   }
   return NULL;
 }
@@ -140,6 +142,7 @@ static void settle_field(const struct eo_field *field, void *target)
   case EO_FIELD_FLAG:
   case EO_FIELD_TEXT:
   case EO_FIELD_CHOICE:
+  case EO_FIELD_DOCUMENT:
     break;
   }
 }

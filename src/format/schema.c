@@ -9,7 +9,7 @@ static const char *const kind_names[] = {
     [EO_FIELD_NUMBER] = "number",   [EO_FIELD_INTEGER] = "integer", [EO_FIELD_SEED] = "seed",
     [EO_FIELD_FLAG] = "flag",       [EO_FIELD_TEXT] = "text",       [EO_FIELD_CHOICE] = "choice",
     [EO_FIELD_NUMBERS] = "numbers", [EO_FIELD_LIMIT] = "limit",     [EO_FIELD_OBJECT] = "object",
-    [EO_FIELD_LIST] = "list",       [EO_FIELD_SERIES] = "series"};
+    [EO_FIELD_LIST] = "list",       [EO_FIELD_SERIES] = "series",   [EO_FIELD_DOCUMENT] = "document"};
 
 /* What the document says where every key is absent: the defaults, as the tables themselves write them. */
 static json_t *encode_defaults(const struct eo_table *table)
@@ -32,19 +32,19 @@ static json_t *default_of(const struct eo_field *field, const json_t *defaults)
 
 static bool has_default(const struct eo_field *field)
 {
-  return !(field->flags & EO_FIELD_REQUIRED) && field->kind != EO_FIELD_SERIES &&
+  return !(field->flags & EO_FIELD_REQUIRED) && field->kind != EO_FIELD_SERIES && field->kind != EO_FIELD_DOCUMENT &&
          (field->kind != EO_FIELD_OBJECT || field->flags & EO_FIELD_NULLABLE);
 }
 
 static bool is_whole(const struct eo_field *field)
 {
-  return field->kind == EO_FIELD_INTEGER || field->kind == EO_FIELD_SEED;
+  return field->kind == EO_FIELD_INTEGER || field->kind == EO_FIELD_SEED || field->flags & EO_FIELD_WHOLE;
 }
 
 static bool is_numeric(const struct eo_field *field)
 {
-  return is_whole(field) || field->kind == EO_FIELD_NUMBER || field->kind == EO_FIELD_NUMBERS ||
-         field->kind == EO_FIELD_LIMIT;
+  return field->kind == EO_FIELD_INTEGER || field->kind == EO_FIELD_SEED || field->kind == EO_FIELD_NUMBER ||
+         field->kind == EO_FIELD_NUMBERS || field->kind == EO_FIELD_LIMIT;
 }
 
 /* Ranges without an end are left out; a whole number reads 17, not 17.0. */
@@ -161,7 +161,9 @@ static json_t *number_items(const struct eo_field *field, double low, double hig
 
 static void put_text(struct eo_object *o, const struct eo_field *field)
 {
-  put_type(o, "string", false);
+  put_type(o, "string", field->flags & EO_FIELD_NULLABLE);
+  if (!field->choices && field->low > 0)
+    eo_object_put(o, "minLength", json_integer((json_int_t)field->low));
   if (field->choices)
     eo_object_put(o, "enum", list_choices(field));
   else
@@ -183,6 +185,15 @@ static json_t *row_schema(const struct eo_table *table, bool input)
   struct eo_object o = eo_object_open();
   put_object(&o, table, false, input);
   return eo_object_close(&o);
+}
+
+static void put_reference(struct eo_object *o, const struct eo_field *field)
+{
+  json_t *reference = json_sprintf("#/components/schemas/%s", field->document);
+  if (field->flags & EO_FIELD_NULLABLE)
+    eo_object_put(o, "anyOf", json_pack("[{s:o}, {s:s}]", "$ref", reference, "type", "null"));
+  else
+    eo_object_put(o, "$ref", reference);
 }
 
 static void put_constraints(struct eo_object *o, const struct eo_field *field, bool input)
@@ -214,6 +225,9 @@ static void put_constraints(struct eo_object *o, const struct eo_field *field, b
     break;
   case EO_FIELD_OBJECT:
     put_object(o, field->table, nullable, input);
+    break;
+  case EO_FIELD_DOCUMENT:
+    put_reference(o, field);
     break;
   }
 }
@@ -253,6 +267,8 @@ static void put_object(struct eo_object *o, const struct eo_table *table, bool n
   for (int i = 0; i < table->count && !o->failed; i++) {
     const struct eo_field *field = &table->field[i];
     eo_object_put(&properties, field->key, property(field, defaults, input));
+    if (input && field->alias)
+      eo_object_put(&properties, field->alias, property(field, defaults, input));
     if (input ? must_be_there(field) : !(field->flags & (EO_FIELD_OMIT | EO_FIELD_SOMETIMES)))
       o->failed = json_array_append_new(required, json_string(field->key)) != 0;
   }

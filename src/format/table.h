@@ -15,17 +15,19 @@
 #include "format/unit.h"
 
 enum eo_field_kind {
-  EO_FIELD_NUMBER,  /* double */
-  EO_FIELD_INTEGER, /* int; null (when nullable) is 0 */
-  EO_FIELD_SEED,    /* uint64_t, up to 2^53 - 1 so that every JSON reader keeps it */
-  EO_FIELD_FLAG,    /* bool */
-  EO_FIELD_TEXT,    /* char[count]; with choices: one of them */
-  EO_FIELD_CHOICE,  /* an enum whose values are the indices of choices */
-  EO_FIELD_NUMBERS, /* double[count] */
-  EO_FIELD_LIMIT,   /* struct eo_constraint; null: off */
-  EO_FIELD_OBJECT,  /* a struct with its own table */
-  EO_FIELD_LIST,    /* array of structs with their own table; the number of rows stands in an int at count_offset */
-  EO_FIELD_SERIES,  /* struct eo_series */
+  EO_FIELD_NUMBER,   /* double */
+  EO_FIELD_INTEGER,  /* int; null (when nullable) is 0 */
+  EO_FIELD_SEED,     /* uint64_t, up to 2^53 - 1 so that every JSON reader keeps it */
+  EO_FIELD_FLAG,     /* bool */
+  EO_FIELD_TEXT,     /* char[count]; with choices: one of them */
+  EO_FIELD_CHOICE,   /* an enum whose values are the indices of choices */
+  EO_FIELD_NUMBERS,  /* double[count] */
+  EO_FIELD_LIMIT,    /* struct eo_constraint; null: off */
+  EO_FIELD_OBJECT,   /* a struct with its own table */
+  EO_FIELD_LIST,     /* array of structs with their own table; the number of rows stands in an int at count_offset */
+  EO_FIELD_SERIES,   /* struct eo_series */
+  EO_FIELD_DOCUMENT, /* const json_t *: an object that somebody else reads, borrowed from what is decoded; NULL: absent
+                      */
 };
 
 enum {
@@ -34,6 +36,7 @@ enum {
   EO_FIELD_ASCENDING = 4,  /* NUMBERS: strictly increasing */
   EO_FIELD_OMIT = 8,       /* OBJECT: left out of the encoded document while everything in it has its default */
   EO_FIELD_SOMETIMES = 16, /* OBJECT: whoever encodes the document may take it out; said in the schema alone */
+  EO_FIELD_WHOLE = 32,     /* NUMBER, SERIES: whole numbers alone */
 };
 
 /* A list of numbers of any length. */
@@ -46,15 +49,18 @@ struct eo_table;
 
 struct eo_field {
   const char *key;
+  const char *alias; /* another name under which the key is taken; NULL: none. Faults name the key */
   enum eo_field_kind kind;
   unsigned flags;
   size_t offset;
   const struct eo_unit *unit; /* NULL: dimensionless */
-  double low, high;        /* inclusive, in the document's unit; of a LIST or SERIES: number of rows; see `series_*` */
-  double fallback;         /* default in the document's unit; NaN: null. CHOICE: the index, FLAG: 0 or 1 */
-  const double *fallbacks; /* NUMBERS: [count]; NULL: null */
+  double low, high;           /* inclusive, in the document's unit; of a LIST or SERIES: number of rows; see `series_*`;
+                                 TEXT: low is the least number of bytes */
+  double fallback;            /* default in the document's unit; NaN: null. CHOICE: the index, FLAG: 0 or 1 */
+  const double *fallbacks;    /* NUMBERS: [count]; NULL: null */
   const char *fallback_text;  /* TEXT */
   const char *const *choices; /* CHOICE, TEXT: ends with NULL */
+  const char *document;       /* DOCUMENT: name of its schema */
   int count;                  /* NUMBERS: how many; TEXT: bytes; LIST: capacity */
   size_t count_offset;        /* LIST: int, number of rows; nullable OBJECT: int, 1 when it is there, 0 for null */
   const void *rows;           /* LIST: default rows, [row_count] structs */
@@ -166,6 +172,18 @@ void eo_table_describe(const struct eo_table *table, bool output, struct eo_text
   {                                                                                                           \
     .key = key_, .kind = EO_FIELD_TEXT, .offset = offsetof(type, member), .count = sizeof((type *)0)->member, \
     .help = help_                                                                                             \
+  }
+/* A text of low_ bytes or more; null, or absent: "". */
+#define EO_TEXT_DERIVED(type, member, key_, low_, derived_, help_)                                                 \
+  {                                                                                                                \
+    .key = key_, .kind = EO_FIELD_TEXT, .flags = EO_FIELD_NULLABLE, .offset = offsetof(type, member), .low = low_, \
+    .count = sizeof((type *)0)->member, .derived = derived_, .help = help_                                         \
+  }
+/* An object of its own, which the schema names. */
+#define EO_DOCUMENT(type, member, key_, document_, flags_, help_)                                                     \
+  {                                                                                                                   \
+    .key = key_, .kind = EO_FIELD_DOCUMENT, .flags = flags_, .offset = offsetof(type, member), .document = document_, \
+    .help = help_                                                                                                     \
   }
 #define EO_SERIES(type, member, key_, unit_, most_, low_, high_, flags_, help_)                                       \
   {                                                                                                                   \

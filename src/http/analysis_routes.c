@@ -22,13 +22,12 @@ static void check(struct eo_request *request)
   struct eo_design design;
   struct eo_geometry geometry;
   struct eo_warnings warnings = {0};
-  json_t *body = eo_request_json(request);
+  const json_t *body = eo_request_json(request);
   if (body && eo_request_design(request, body, "", &design, &geometry, &warnings))
     eo_reply_json(request, 200,
                   json_pack("{s:o, s:o, s:o, s:b}", "design", eo_design_encode(&design), "geometry",
                             eo_table_encode(&eo_geometry_table, &geometry), "warnings", encode_warnings(&warnings),
                             "prepared", eo_service_is_prepared(request->http->service, &design)));
-  json_decref(body);
 }
 
 /* ---- analyses ---- */
@@ -57,59 +56,40 @@ static void analyze(struct eo_request *request)
   struct eo_design design;
   struct eo_geometry geometry;
   struct eo_warnings warnings = {0};
-  json_t *body = eo_request_json(request);
+  const json_t *body = eo_request_json(request);
   if (body && eo_request_design(request, body, "", &design, &geometry, &warnings))
     put_analysis(request, &design, &warnings);
-  json_decref(body);
 }
 
 /* ---- sweeps ---- */
 
-/* "torque" and "speed" are shorter names of the request's own keys. */
-static json_t *collect_ranges(const json_t *body, struct eo_faults *faults)
-{
-  static const char *const known[] = {"design", "torque", "torque_Nm", "speed", "speed_rpm"};
-  json_t *ranges = json_object();
-  const char *key;
-  json_t *value;
-  json_object_foreach((json_t *)body, key, value)
-  {
-    bool found = false;
-    for (size_t i = 0; i < sizeof known / sizeof known[0]; i++)
-      found = found || strcmp(known[i], key) == 0;
-    if (!found) {
-      struct eo_path path = {.key = key};
-      eo_faults_at(faults, &path, "There is no such key; design, torque_Nm and speed_rpm are known.");
-    }
-    const char *full = strcmp(key, "torque") == 0 ? "torque_Nm" : strcmp(key, "speed") == 0 ? "speed_rpm" : key;
-    if (found && strcmp(key, "design") != 0 && !json_is_null(value))
-      json_object_set(ranges, full, value);
-  }
-  return ranges;
-}
-
-static bool read_axes(struct eo_request *request, const json_t *body, struct eo_sweep_axes *axes)
-{
-  struct eo_sweep_request asked;
-  struct eo_error error;
-  struct eo_faults *faults = calloc(1, sizeof *faults);
-  bool good = false;
-  if (!faults) {
-    eo_reply_error(request, "", (eo_error_memory(&error), &error));
-    return false;
-  }
-  json_t *ranges = collect_ranges(body, faults);
-  eo_table_decode(&eo_sweep_request_table, ranges, NULL, &asked, faults);
-  if (faults->count)
-    eo_reply_faults(request, "", faults);
-  else if (eo_sweep_axes_init(axes, &asked, &error))
-    eo_reply_error(request, "", &error);
-  else
-    good = true;
-  json_decref(ranges);
-  free(faults);
-  return good;
-}
+struct sweep_order {
+  const json_t *design;
+  struct eo_sweep_request range;
+  int has_torque, has_speed;
+};
+static const struct eo_field sweep_fields[] = {
+    EO_DOCUMENT(struct sweep_order, design, "design", "Design", EO_FIELD_REQUIRED, "what is swept"),
+    {.key = "torque_Nm",
+     .alias = "torque",
+     .kind = EO_FIELD_OBJECT,
+     .flags = EO_FIELD_NULLABLE,
+     .offset = offsetof(struct sweep_order, range.torque),
+     .count_offset = offsetof(struct sweep_order, has_torque),
+     .table = &eo_sweep_torque_table,
+     .derived = "that of the load case with the largest share",
+     .help = "torques"},
+    {.key = "speed_rpm",
+     .alias = "speed",
+     .kind = EO_FIELD_OBJECT,
+     .flags = EO_FIELD_NULLABLE,
+     .offset = offsetof(struct sweep_order, range.speed),
+     .count_offset = offsetof(struct sweep_order, has_speed),
+     .table = &eo_sweep_speed_table,
+     .derived = "that of the load case with the largest share",
+     .help = "speeds"},
+};
+static const struct eo_table sweep_table = EO_TABLE("a sweep", struct sweep_order, sweep_fields);
 
 enum { MOST_SWEEP_POINTS = 20000 };
 
@@ -138,18 +118,19 @@ static void put_sweep(struct eo_request *request, const struct eo_design *design
 
 static void sweep(struct eo_request *request)
 {
+  struct sweep_order order;
   struct eo_design design;
   struct eo_geometry geometry;
   struct eo_warnings warnings = {0};
   struct eo_sweep_axes axes = {0};
-  json_t *body = eo_request_json(request), *document = json_object_get(body, "design");
-  if (body && !json_is_object(document))
-    eo_reply_problem(request, 422, "invalid", "The body has no design.");
-  else if (body && read_axes(request, body, &axes) &&
-           eo_request_design(request, document, "/design", &design, &geometry, &warnings))
+  struct eo_error error;
+  if (!eo_request_read(request, &order))
+    return;
+  if (eo_sweep_axes_init(&axes, &order.range, &error))
+    eo_reply_error(request, "", &error);
+  else if (eo_request_design(request, order.design, "/design", &design, &geometry, &warnings))
     put_sweep(request, &design, &warnings, &axes);
   eo_sweep_axes_done(&axes);
-  json_decref(body);
 }
 
 #define LANE "Easeoff-Lane, Prefer"
@@ -183,6 +164,7 @@ const struct eo_route eo_routes_analysis[] = {
      .handle = sweep,
      .name = "sweep",
      .takes = "SweepRequest",
+     .order = &sweep_table,
      .design_at = "/design",
      .gives = "200 Sweep, 202 Preparing",
      .headers = LANE,

@@ -37,7 +37,7 @@ static void *work(void *context)
   struct eo_request *request;
   while ((request = next(aside))) {
     request->store = aside->store;
-    request->route->handle(request);
+    eo_request_handle(request);
     eo_request_finish(request);
   }
   return NULL;

@@ -98,13 +98,10 @@ static void compare_what_if(struct eo_request *request)
   struct eo_design stored, design;
   struct eo_geometry geometry;
   int64_t id;
-  json_t *body;
-  if (!eo_request_id_at(request, 0, &id) || !find_design(request, id, &stored, NULL) ||
-      !(body = eo_request_json(request)))
-    return;
-  if (eo_request_design(request, body, "", &design, &geometry, NULL))
+  const json_t *body;
+  if (eo_request_id_at(request, 0, &id) && find_design(request, id, &stored, NULL) &&
+      (body = eo_request_json(request)) && eo_request_design(request, body, "", &design, &geometry, NULL))
     compare_all(request, id, &design);
-  json_decref(body);
 }
 
 static void compare_one(struct eo_request *request)
@@ -190,43 +187,26 @@ static void fit(struct eo_request *request)
 {
   struct eo_update_settings settings;
   struct basis basis = {0};
-  json_t *body;
   int64_t id;
-  if (!eo_request_id_at(request, 0, &id) || !(body = eo_request_json(request)))
+  if (!eo_request_id_at(request, 0, &id) || !eo_request_json(request))
     return;
-  if (read_fit(request, body, &basis, &settings) && find_basis(request, id, &basis))
+  if (read_fit(request, request->document, &basis, &settings) && find_basis(request, id, &basis))
     put_fit(request, id, &basis, &settings);
   json_decref(basis.wanted);
   json_decref(basis.given);
-  json_decref(body);
 }
 
 /* ---- synthetic recordings ---- */
 
-static bool read_rig(struct eo_request *request, const json_t *body, const struct eo_design *design,
-                     struct eo_rig_request *rig)
-{
-  struct eo_faults *faults = calloc(1, sizeof *faults);
-  json_t *empty = json_object();
-  const json_t *settings = json_object_get(body, "rig");
-  struct eo_error error = {0};
-  bool good = false;
-  if (!faults || !empty)
-    eo_reply_error(request, "", (eo_error_memory(&error), &error));
-  else {
-    eo_table_decode(&eo_rig_table, settings ? settings : empty, NULL, rig, faults);
-    good = faults->count == 0;
-    if (!good)
-      eo_reply_faults(request, "/rig", faults);
-  }
-  if (good && eo_rig_complete(rig, design, &error)) {
-    eo_reply_error(request, "/rig", &error);
-    good = false;
-  }
-  json_decref(empty);
-  free(faults);
-  return good;
-}
+struct rig_order {
+  const json_t *design;
+  struct eo_rig_request rig;
+};
+static const struct eo_field rig_fields[] = {
+    EO_DOCUMENT(struct rig_order, design, "design", "Design", EO_FIELD_REQUIRED, "what is recorded"),
+    EO_OBJECT(struct rig_order, rig, "rig", &eo_rig_table, "the rig and its encoders"),
+};
+static const struct eo_table rig_table = EO_TABLE("an order of a recording", struct rig_order, rig_fields);
 
 static void put_rig(struct eo_request *request, const struct eo_design *design, const struct eo_rig_request *rig)
 {
@@ -243,16 +223,17 @@ static void put_rig(struct eo_request *request, const struct eo_design *design, 
 
 static void record(struct eo_request *request)
 {
+  struct rig_order order;
   struct eo_design design;
   struct eo_geometry geometry;
-  struct eo_rig_request rig;
-  json_t *body = eo_request_json(request), *document = json_object_get(body, "design");
-  if (body && !json_is_object(document))
-    eo_reply_problem(request, 422, "invalid", "The body has no design.");
-  else if (body && eo_request_design(request, document, "/design", &design, &geometry, NULL) &&
-           read_rig(request, body, &design, &rig))
-    put_rig(request, &design, &rig);
-  json_decref(body);
+  struct eo_error error;
+  if (!eo_request_read(request, &order) ||
+      !eo_request_design(request, order.design, "/design", &design, &geometry, NULL))
+    return;
+  if (eo_rig_complete(&order.rig, &design, &error))
+    eo_reply_error(request, "/rig", &error);
+  else
+    put_rig(request, &design, &order.rig);
 }
 
 #define LANE "Easeoff-Lane, Prefer"
@@ -303,6 +284,7 @@ const struct eo_route eo_routes_comparison[] = {
      .handle = record,
      .name = "recordRig",
      .takes = "RigOrder",
+     .order = &rig_table,
      .design_at = "/design",
      .headers = LANE,
      .gives = "200 text/csv, 202 Preparing",

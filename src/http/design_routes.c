@@ -112,44 +112,45 @@ static void list(struct eo_request *request)
 
 /* ---- writing ---- */
 
-/* A body is a design, or { "name", "design" }. */
+/* A body is a design, or a design with a name. */
+struct order {
+  char name[EO_NAME_LENGTH];
+  const json_t *design;
+};
+static const struct eo_field order_fields[] = {
+    EO_TEXT_DERIVED(struct order, name, "name", 1, "that of the design", "under which it is kept"),
+    EO_DOCUMENT(struct order, design, "design", "Design", EO_FIELD_REQUIRED, "what is kept"),
+};
+static const struct eo_table order_table = EO_TABLE("a design with its name", struct order, order_fields);
+
+/* What is to be kept. */
 struct given {
   char name[EO_NAME_LENGTH];
   char *text; /* JSON as it came, owned: defaults that change later are not frozen into it */
   struct eo_warnings warnings;
 };
 
-static bool read_name(struct eo_request *request, const json_t *name, struct given *given)
+static bool read_order(struct eo_request *request, bool named, struct order *order)
 {
-  if (!name)
-    return true;
-  const char *text = json_string_value(name);
-  if (text && *text && strlen(text) < sizeof given->name) {
-    snprintf(given->name, sizeof given->name, "%s", text);
-    return true;
-  }
-  eo_reply_problem(request, 422, "invalid", "The name must be a text of 1 to %zu bytes.", sizeof given->name - 1);
-  return false;
+  *order = (struct order){.design = eo_request_json(request)};
+  return named ? eo_request_read(request, order) : order->design != NULL;
 }
 
 static bool read_given(struct eo_request *request, struct given *given)
 {
+  struct order order;
   struct eo_design design;
   struct eo_geometry geometry;
-  json_t *body = eo_request_json(request), *inner = json_object_get(body, "design");
-  const json_t *document = inner ? inner : body;
-  bool good = body &&
-              eo_request_design(request, document, inner ? "/design" : "", &design, &geometry, &given->warnings);
-  if (good)
-    snprintf(given->name, sizeof given->name, "%s", *design.name ? design.name : "unnamed");
-  good = good && (!inner || read_name(request, json_object_get(body, "name"), given));
-  if (good && !(given->text = json_dumps(document, JSON_COMPACT))) {
-    struct eo_error error;
+  struct eo_error error;
+  bool named = json_object_get(eo_request_json(request), "design");
+  if (!read_order(request, named, &order) ||
+      !eo_request_design(request, order.design, named ? "/design" : "", &design, &geometry, &given->warnings))
+    return false;
+  snprintf(given->name, sizeof given->name, "%s", *order.name ? order.name : *design.name ? design.name : "unnamed");
+  given->text = json_dumps(order.design, JSON_COMPACT);
+  if (!given->text)
     eo_reply_error(request, "", (eo_error_memory(&error), &error));
-    good = false;
-  }
-  json_decref(body);
-  return good;
+  return given->text != NULL;
 }
 
 static void add(struct eo_request *request)
@@ -279,7 +280,8 @@ const struct eo_route eo_routes_designs[] = {{.method = EO_GET,
                                               .handle = add,
                                               .name = "addDesign",
                                               .summary = "Stores a design, alone or with a name.",
-                                              .takes = "DesignOrNamed",
+                                              .takes = "Design|NamedDesign",
+                                              .order = &order_table,
                                               .gives = "201 StoredDesign",
                                               .rate = EO_RATE_QUESTION},
                                              {.method = EO_GET,
@@ -294,7 +296,8 @@ const struct eo_route eo_routes_designs[] = {{.method = EO_GET,
                                               .handle = replace,
                                               .name = "replaceDesign",
                                               .summary = "Replaces a stored design.",
-                                              .takes = "DesignOrNamed",
+                                              .takes = "Design|NamedDesign",
+                                              .order = &order_table,
                                               .gives = "200 StoredDesign",
                                               .headers = "If-Match",
                                               .rate = EO_RATE_QUESTION},

@@ -14,14 +14,13 @@ static void export(struct eo_request *request)
     eo_reply_problem(request, 404, NULL, "There is no format of this name; " EO_API "/export lists them.");
     return;
   }
-  json_t *body = eo_request_json(request);
+  const json_t *body = eo_request_json(request);
   if (body && eo_request_design(request, body, "", &design, &geometry, NULL)) {
     struct eo_text text = {0};
     format->write(&design, &geometry, &text);
     eo_reply_text(request, 200, format->type, &text);
     eo_export_file_name(format, &design, request->reply.file_name, sizeof request->reply.file_name);
   }
-  json_decref(body);
 }
 
 static void list(struct eo_request *request)

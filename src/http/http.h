@@ -10,7 +10,7 @@
 
 struct eo_http;
 
-enum { EO_HTTP_HOSTS = 8 };
+enum { EO_HTTP_HOSTS = 8, EO_TOKEN_BYTES = 200 }; /* of a token, with its end */
 
 struct eo_http_settings {
   const char *listen;              /* "127.0.0.1:8080", "[::1]:0"; a port of 0 takes a free one */

@@ -1,4 +1,5 @@
 /* Jobs: ordering them, looking at them, stopping them. */
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -58,59 +59,36 @@ static void reply_job(struct eo_request *request, unsigned status, enum eo_code 
 /* ---- ordering ---- */
 
 struct order {
-  enum eo_job_kind kind;
+  int kind; /* enum eo_job_kind */
+  const json_t *design;
   int priority;
-  bool fresh, has_priority;
+  bool fresh;
 };
+static const struct eo_field order_fields[] = {
+    EO_CHOICE(struct order, kind, "kind", eo_store_job_kinds, EO_JOB_OPTIMIZE, "what is to be done"),
+    EO_DOCUMENT(struct order, design, "design", "Design", EO_FIELD_REQUIRED, "what it is done with"),
+    EO_INTEGER(struct order, priority, "priority", -EO_MOST_PRIORITY, EO_MOST_PRIORITY, 0,
+               "higher ones come first, then the older"),
+    EO_FLAG(struct order, fresh, "fresh", 0, "the algorithm shall know no earlier evaluations"),
+};
+static const struct eo_table order_table = EO_TABLE("an order of a job", struct order, order_fields);
 
-static const char *const kinds[EO_JOB_KINDS] = {"optimize", "prepare"};
-
-static bool read_kind(const json_t *value, struct order *order)
-{
-  for (int i = 0; i < EO_JOB_KINDS; i++)
-    if (json_is_string(value) && strcmp(json_string_value(value), kinds[i]) == 0) {
-      order->kind = (enum eo_job_kind)i;
-      return true;
-    }
-  return false;
-}
-
-static void read_member(const char *key, const json_t *value, bool design, struct order *order,
-                        struct eo_faults *faults)
-{
-  struct eo_path path = {.key = key};
-  if (design && strcmp(key, "kind") == 0) {
-    if (!read_kind(value, order))
-      eo_faults_at(faults, &path, "The kind is one of optimize, prepare.");
-  } else if (strcmp(key, "priority") == 0) {
-    if (!json_is_integer(value) || json_integer_value(value) < -10 || json_integer_value(value) > 10)
-      eo_faults_at(faults, &path, "The priority is a whole number from -10 to 10.");
-    else
-      order->priority = (int)json_integer_value(value);
-    order->has_priority = true;
-  } else if (design && strcmp(key, "fresh") == 0) {
-    if (!json_is_boolean(value))
-      eo_faults_at(faults, &path, "fresh is true or false.");
-    order->fresh = json_is_true(value);
-  } else if (!(design && strcmp(key, "design") == 0))
-    eo_faults_at(faults, &path, "There is no such key here.");
-}
-
-/* design: the body brings one. False: the reply says what is wrong. */
-static bool read_order(struct eo_request *request, const json_t *body, bool design, struct order *order)
-{
-  struct eo_faults faults;
-  const char *key;
-  json_t *value;
-  faults.count = 0;
-  *order = (struct order){.kind = EO_JOB_OPTIMIZE};
-  json_object_foreach((json_t *)body, key, value) read_member(key, value, design, order, &faults);
-  if (design && !json_is_object(json_object_get(body, "design")))
-    eo_faults_add(&faults, "/design", "A design is needed.");
-  if (faults.count)
-    eo_reply_faults(request, "", &faults);
-  return !faults.count;
-}
+/* Of a job that is ordered once more. */
+struct change {
+  double priority; /* NaN: the same */
+};
+static const struct eo_field change_fields[] = {
+    {.key = "priority",
+     .kind = EO_FIELD_NUMBER,
+     .flags = EO_FIELD_NULLABLE | EO_FIELD_WHOLE,
+     .offset = offsetof(struct change, priority),
+     .low = -EO_MOST_PRIORITY,
+     .high = EO_MOST_PRIORITY,
+     .fallback = NAN,
+     .derived = "that of the other job",
+     .help = "higher ones come first, then the older"},
+};
+static const struct eo_table change_table = EO_TABLE("a change of a job", struct change, change_fields);
 
 static bool read_key(struct eo_request *request, const char **key)
 {
@@ -124,7 +102,7 @@ static bool read_key(struct eo_request *request, const char **key)
 static void submit(struct eo_request *request, const struct order *order, const struct eo_design *design)
 {
   struct eo_job_order wanted = {
-      .kind = order->kind, .design = design, .priority = order->priority, .fresh = order->fresh};
+      .kind = (enum eo_job_kind)order->kind, .design = design, .priority = order->priority, .fresh = order->fresh};
   enum eo_job_outcome outcome = EO_JOB_OUTCOME_DONE;
   struct eo_error error;
   json_t *job = NULL;
@@ -139,58 +117,41 @@ static void add(struct eo_request *request)
   struct order order;
   struct eo_design design;
   struct eo_geometry geometry;
-  json_t *body = eo_request_json(request);
-  if (body && read_order(request, body, true, &order) &&
-      eo_request_design(request, json_object_get(body, "design"), "/design", &design, &geometry, NULL))
+  if (eo_request_read(request, &order) && eo_request_design(request, order.design, "/design", &design, &geometry, NULL))
     submit(request, &order, &design);
-  json_decref(body);
 }
 
 static void repeat(struct eo_request *request)
 {
-  struct order order = {0};
+  struct change change;
   enum eo_job_outcome outcome = EO_JOB_OUTCOME_DONE;
   struct eo_error error;
   int64_t id;
-  json_t *job = NULL, *body = NULL;
-  if (!eo_request_id_at(request, 0, &id))
+  json_t *job = NULL;
+  if (!eo_request_id_at(request, 0, &id) || !eo_request_read(request, &change))
     return;
-  if (request->body.size && !(body = eo_request_json(request)))
-    return;
-  if (!body || read_order(request, body, false, &order)) {
-    enum eo_code code = eo_service_clone(request->http->service, id, order.has_priority ? &order.priority : NULL,
-                                         &outcome, &job, &error);
-    reply_job(request, 202, code, outcome, job, &error);
-  }
-  json_decref(body);
+  int priority = isnan(change.priority) ? 0 : (int)change.priority;
+  enum eo_code code = eo_service_clone(request->http->service, id, isnan(change.priority) ? NULL : &priority, &outcome,
+                                       &job, &error);
+  reply_job(request, 202, code, outcome, job, &error);
 }
 
 /* ---- looking ---- */
 
 /* -1: any. */
-static int state_of(const char *name)
+static int find(const char *name, int (*find_named)(const char *name))
 {
-  for (int i = 0; name && i < EO_JOB_STATES; i++)
-    if (strcmp(name, eo_store_job_state_name((enum eo_job_state)i)) == 0)
-      return i;
-  return -1;
-}
-
-static int kind_of(const char *name)
-{
-  for (int i = 0; name && i < EO_JOB_KINDS; i++)
-    if (strcmp(name, kinds[i]) == 0)
-      return i;
-  return -1;
+  return name ? find_named(name) : -1;
 }
 
 static void list(struct eo_request *request)
 {
   struct eo_error error;
   json_t *page = NULL;
-  if (eo_service_jobs(request->http->service, state_of(eo_request_query(request, "state")),
-                      kind_of(eo_request_query(request, "kind")), (int64_t)eo_request_number(request, "cursor"),
-                      (int)eo_request_number(request, "limit"), &page, &error))
+  if (eo_service_jobs(request->http->service, find(eo_request_query(request, "state"), eo_store_job_state_find),
+                      find(eo_request_query(request, "kind"), eo_store_job_kind_find),
+                      (int64_t)eo_request_number(request, "cursor"), (int)eo_request_number(request, "limit"), &page,
+                      &error))
     eo_reply_error(request, "", &error);
   else
     eo_reply_json(request, 200, page);
@@ -285,6 +246,7 @@ const struct eo_route eo_routes_jobs[] = {
      .name = "addJob",
      .summary = "Orders an optimization, or the preparation of a gear pair.",
      .takes = "JobOrder",
+     .order = &order_table,
      .gives = "202 Job",
      .headers = "Idempotency-Key",
      .rate = EO_RATE_START},
@@ -344,6 +306,7 @@ const struct eo_route eo_routes_jobs[] = {
      .name = "cloneJob",
      .summary = "Orders the same once more.",
      .takes = "JobChange",
+     .order = &change_table,
      .takes_nothing = true,
      .gives = "202 Job",
      .rate = EO_RATE_START},

@@ -20,8 +20,9 @@ struct eo_found_measurement {
 /* Visits a row; context: a struct eo_found_measurement. */
 enum eo_code eo_measurement_take(void *context, const struct eo_stored_measurement *row, struct eo_error *error);
 
-/* The handler of POST /measurements; on the thread that reads recordings. */
+/* The handler of POST /measurements, on the thread that reads recordings, and the parts of its form. */
 void eo_measurement_add(struct eo_request *request);
+extern const struct eo_table eo_measurement_form;
 
 void eo_reply_no_measurement(struct eo_request *request);
 

@@ -233,6 +233,7 @@ const struct eo_route eo_routes_measurements[] = {
      .handle = eo_measurement_add,
      .name = "addMeasurement",
      .takes = "MeasurementForm",
+     .order = &eo_measurement_form,
      .form = true,
      .gives = "201 Measurement, 200 Measurement",
      .rate = EO_RATE_QUESTION,

@@ -16,75 +16,57 @@
 
 /* What the form said. */
 struct asked {
-  int64_t design;
-  bool unmodified;
-  int end, harmonics;
-  double torque, speed; /* speed: rad/s, NaN: not stated */
-  json_t *layout;       /* owned */
+  uint64_t design;
+  int label, end, harmonics; /* label: as in labels; harmonics 0: 8 */
+  double torque, speed;      /* speed: rad/s, NaN: not stated */
+  const json_t *layout;      /* NULL: to be found */
   struct eo_design parsed;
   struct eo_geometry geometry;
-  struct eo_faults faults;
 };
+enum { MODIFIED, UNMODIFIED };
+static const char *const labels[] = {"modified", "unmodified", NULL}, *const ends[] = {"left", "right", NULL};
 
-static double read_positive(struct asked *asked, const char *text, const char *pointer)
-{
-  double value = NAN;
-  if (text && *text && (!eo_field_real(text, &value) || !(value > 0) || value > 1e9))
-    eo_faults_add(&asked->faults, pointer, "This must be a positive number.");
-  return value;
-}
-
-/* 0 or 1 of two words; the first one is what holds without any. */
-static int read_word(struct asked *asked, const char *text, const char *pointer, const char *usual, const char *other)
-{
-  if (text && *text && strcmp(text, usual) != 0 && strcmp(text, other) != 0)
-    eo_faults_add(&asked->faults, pointer, "This must be \"%s\" or \"%s\".", usual, other);
-  return text && strcmp(text, other) == 0;
-}
-
-static void read_layout(struct asked *asked, const char *text)
-{
-  struct eo_error error;
-  if (!text || !*text || strcmp(text, "null") == 0)
-    return;
-  asked->layout = eo_json_parse(text, strlen(text), &error);
-  if (!asked->layout)
-    eo_faults_add(&asked->faults, "/layout", "%s", error.text);
-}
-
-static bool read_form(struct eo_request *request, struct asked *asked)
-{
-  const struct eo_upload *form = request->upload;
-  const char *design = eo_upload_field(form, "design"), *label = eo_upload_field(form, "label"),
-             *harmonics = eo_upload_field(form, "harmonics");
-  int64_t orders = 0;
-  if (!design || !eo_field_integer(design, &asked->design) || asked->design < 1)
-    eo_faults_add(&asked->faults, "/design", "The number of the stored design that was measured is missing.");
-  if (!label || !*label)
-    eo_faults_add(&asked->faults, "/label", "Say whether the pair was \"unmodified\" or \"modified\".");
-  asked->unmodified = read_word(asked, label, "/label", "modified", "unmodified") == 1;
-  asked->end = read_word(asked, eo_upload_field(form, "end"), "/end", "right", "left") ? EO_LEFT : EO_RIGHT;
-  asked->torque = read_positive(asked, eo_upload_field(form, "torque_Nm"), "/torque_Nm");
-  if (isnan(asked->torque) && !asked->faults.count)
-    eo_faults_add(&asked->faults, "/torque_Nm", "The torque on the pinion is missing.");
-  asked->speed = eo_unit_in(&eo_unit_rpm, read_positive(asked, eo_upload_field(form, "speed_rpm"), "/speed_rpm"));
-  if (harmonics && *harmonics && (!eo_field_integer(harmonics, &orders) || orders < 1 || orders > EO_MESH_ORDERS))
-    eo_faults_add(&asked->faults, "/harmonics", "This must be a whole number from 1 to %d.", EO_MESH_ORDERS);
-  asked->harmonics = (int)orders;
-  read_layout(asked, eo_upload_field(form, "layout"));
-  if (asked->faults.count)
-    eo_reply_faults(request, "", &asked->faults);
-  return !asked->faults.count;
-}
+static const struct eo_field form_fields[] = {
+    {.key = "design",
+     .kind = EO_FIELD_SEED,
+     .flags = EO_FIELD_REQUIRED,
+     .offset = offsetof(struct asked, design),
+     .low = 1,
+     .high = 9007199254740991.0,
+     .help = "number of the stored design that was measured"},
+    {.key = "label",
+     .kind = EO_FIELD_CHOICE,
+     .flags = EO_FIELD_REQUIRED,
+     .offset = offsetof(struct asked, label),
+     .choices = labels,
+     .fallback = NAN,
+     .help = "whether the pair had its modification"},
+    EO_NUMBER_REQUIRED(struct asked, torque, "torque_Nm", &eo_unit_Nm, 1e-3, 1e8, "on the pinion"),
+    EO_NUMBER_DERIVED(struct asked, speed, "speed_rpm", &eo_unit_rpm, 0.1, 1e6, "as measured", "of the pinion"),
+    EO_CHOICE(struct asked, end, "end", ends, EO_RIGHT, "where the encoders sit"),
+    {.key = "harmonics",
+     .kind = EO_FIELD_INTEGER,
+     .flags = EO_FIELD_NULLABLE,
+     .offset = offsetof(struct asked, harmonics),
+     .low = 1,
+     .high = EO_MESH_ORDERS,
+     .fallback = NAN,
+     .derived = "8",
+     .help = "mesh orders that are measured"},
+    EO_DOCUMENT(struct asked, layout, "layout", "AskedLayout", EO_FIELD_NULLABLE,
+                "what the columns are; without it they are recognised"),
+};
+const struct eo_table eo_measurement_form = EO_TABLE("a measurement", struct asked, form_fields);
 
 static bool find_design(struct eo_request *request, struct asked *asked)
 {
   bool missing = false;
-  if (eo_request_stored_design(request, asked->design, &asked->parsed, &asked->geometry, NULL, &missing))
+  struct eo_error error;
+  if (eo_request_stored_design(request, (int64_t)asked->design, &asked->parsed, &asked->geometry, NULL, &missing))
     return true;
   if (missing) {
-    eo_faults_add(&asked->faults, "/design", "There is no design with this number.");
-    eo_reply_faults(request, "", &asked->faults);
+    eo_error_set(&error, EO_ERROR_INPUT, "/design", "There is no design with this number.");
+    eo_reply_error(request, "", &error);
   }
   return false;
 }
@@ -129,7 +111,7 @@ static void write_request_digest(const struct asked *asked, const struct eo_uplo
     eo_json_write(&layout, asked->layout, EO_JSON_CANONICAL);
   eo_hash_init(&hash);
   eo_hash_add_number(&hash, "design", (double)asked->design);
-  eo_hash_add_number(&hash, "unmodified", asked->unmodified);
+  eo_hash_add_number(&hash, "unmodified", asked->label == UNMODIFIED);
   eo_hash_add_number(&hash, "end", asked->end);
   eo_hash_add_number(&hash, "harmonics", asked->harmonics);
   eo_hash_add_number(&hash, "torque", asked->torque);
@@ -166,7 +148,7 @@ static enum eo_code measure(struct eo_request *request, const struct asked *aske
   struct eo_measure_request work = {.path = path[0],
                                     .gear_path = upload->files > 1 ? path[1] : NULL,
                                     .name = upload->file[0].name,
-                                    .unmodified = asked->unmodified,
+                                    .unmodified = asked->label == UNMODIFIED,
                                     .torque = asked->torque,
                                     .stated_speed = asked->speed,
                                     .end = asked->end,
@@ -221,9 +203,9 @@ static enum eo_code keep(struct eo_request *request, const struct asked *asked, 
   const struct eo_upload *upload = request->upload;
   json_t *summary = eo_outline_take(&eo_measurement_brief, document);
   char *texts[3] = {dump(document), summary ? dump(summary) : NULL, asked->layout ? dump(asked->layout) : strdup("")};
-  struct eo_stored_measurement row = {.design = asked->design,
+  struct eo_stored_measurement row = {.design = (int64_t)asked->design,
                                       .digest = digest,
-                                      .unmodified = asked->unmodified,
+                                      .unmodified = asked->label == UNMODIFIED,
                                       .torque = asked->torque,
                                       .speed = asked->speed,
                                       .layout = texts[2],
@@ -274,7 +256,7 @@ static void answer_upload(struct eo_request *request, struct asked *asked)
   struct eo_error error;
   enum eo_measurement_outcome outcome = EO_MEASUREMENT_MISSING;
   char pair[EO_HASH_LENGTH + 1], digest[EO_HASH_LENGTH + 1];
-  if (!read_form(request, asked) || !find_design(request, asked))
+  if (!eo_request_read(request, asked) || !find_design(request, asked))
     return;
   eo_rig_pair_hash(&asked->geometry, pair);
   enum eo_code code = hash_files(request->upload, &error);
@@ -300,6 +282,5 @@ void eo_measurement_add(struct eo_request *request)
     return;
   }
   answer_upload(request, asked);
-  json_decref(asked->layout);
   free(asked);
 }

@@ -14,6 +14,15 @@ static json_t *reference(const char *name, size_t length)
   return text ? json_pack("{s:o}", "$ref", text) : NULL;
 }
 
+/* "Name", or one of several: "One|Other". */
+static json_t *reference_any(const char *names)
+{
+  size_t length = strcspn(names, "|");
+  if (!names[length])
+    return reference(names, length);
+  return json_pack("{s:[o, o]}", "anyOf", reference(names, length), reference_any(names + length + 1));
+}
+
 /* ---- parameters ---- */
 
 static json_t *encode_parameter(const char *name, size_t length, const char *place, json_t *schema, const char *help)
@@ -146,7 +155,7 @@ static json_t *encode_operation(const struct eo_route *route)
     json_object_set_new(operation, "requestBody",
                         json_pack("{s:b, s:{s:{s:o}}}", "required", !route->takes_nothing, "content",
                                   route->form ? "multipart/form-data" : "application/json", "schema",
-                                  reference(route->takes, strlen(route->takes))));
+                                  reference_any(route->takes)));
   if (route->csv)
     json_object_set_new(operation, "description",
                         json_sprintf("As text/csv by the Accept header, or at %s%s.csv.", EO_API, route->pattern));

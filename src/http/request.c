@@ -50,6 +50,7 @@ void eo_request_free(struct eo_request *request)
   if (!request)
     return;
   eo_upload_free(request);
+  json_decref(request->document);
   eo_text_done(&request->body);
   eo_text_done(&request->reply.body);
   if (request->reply.stream)
@@ -82,15 +83,54 @@ double eo_request_number(const struct eo_request *request, const char *name)
   return 0;
 }
 
-json_t *eo_request_json(struct eo_request *request)
+const json_t *eo_request_json(struct eo_request *request)
 {
   struct eo_error error;
-  json_t *document = eo_json_parse(request->body.data ? request->body.data : "", request->body.size, &error);
-  if (!document && error.code == EO_ERROR_INPUT)
+  if (request->document)
+    return request->document;
+  request->document = eo_json_parse(request->body.data ? request->body.data : "", request->body.size, &error);
+  if (!request->document && error.code == EO_ERROR_INPUT)
     eo_reply_problem(request, 400, "not-json", "%s", error.text);
-  else if (!document)
+  else if (!request->document)
     eo_reply_error(request, "", &error);
-  return document;
+  return request->document;
+}
+
+static bool decode(struct eo_request *request, const json_t *document, struct eo_faults *faults, void *order)
+{
+  eo_table_decode(request->route->order, document, NULL, order, faults);
+  if (faults->count)
+    eo_reply_faults(request, "", faults);
+  return !faults->count;
+}
+
+/* Where there is a form, its parts; where the body may be left out, nothing in its place. */
+static const json_t *find_document(struct eo_request *request, struct eo_faults *faults)
+{
+  if (request->upload)
+    return request->document = eo_upload_document(request->upload, request->route->order, faults);
+  if (request->route->takes_nothing && !request->body.size)
+    return request->document = json_object();
+  return eo_request_json(request);
+}
+
+bool eo_request_read(struct eo_request *request, void *order)
+{
+  struct eo_faults *faults = calloc(1, sizeof *faults);
+  struct eo_error error;
+  const json_t *document = faults ? find_document(request, faults) : NULL;
+  bool good = document && decode(request, document, faults, order);
+  if (!document && !request->reply.status)
+    eo_reply_error(request, "", (eo_error_memory(&error), &error));
+  free(faults);
+  return good;
+}
+
+void eo_request_handle(struct eo_request *request)
+{
+  request->route->handle(request);
+  json_decref(request->document);
+  request->document = NULL;
 }
 
 bool eo_request_design(struct eo_request *request, const json_t *document, const char *path, struct eo_design *design,

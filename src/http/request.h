@@ -51,7 +51,8 @@ struct eo_request {
   char argument[EO_ARGUMENTS][64]; /* what stood in the places of the pattern */
   bool csv;                        /* asked for by Accept or by the suffix */
   struct eo_text body;
-  struct eo_upload *upload;             /* in place of the body, of a route that takes a form; owned */
+  json_t *document;         /* the body as JSON, once it was asked for; owned until the handler has returned */
+  struct eo_upload *upload; /* in place of the body, of a route that takes a form; owned */
   size_t received, body_limit, refused; /* refused: bytes that came after the reply was known */
   size_t held;                          /* bytes of the body in memory */
   double started;                       /* ms of the monotonic clock */
@@ -69,8 +70,16 @@ const char *eo_request_query(const struct eo_request *request, const char *name)
 /* Query numbers, checked against their rows in the route's table before the handler runs: the value or its default. */
 double eo_request_number(const struct eo_request *request, const char *name);
 
-/* The body as JSON; NULL: the reply says what is wrong with it. */
-json_t *eo_request_json(struct eo_request *request);
+/* The body as JSON, a form as the object of its parts; it lasts until the handler returns. NULL: the reply says what is
+   wrong with it. */
+const json_t *eo_request_json(struct eo_request *request);
+
+/* Reads the body by the field table of the route into a struct of that table; false: the reply says everything that is
+   wrong. A body that may be left out and was is an empty object. Release with eo_table_done() where it has lists. */
+bool eo_request_read(struct eo_request *request, void *order);
+
+/* Runs the handler of the route, and lets go of what it has read. */
+void eo_request_handle(struct eo_request *request);
 
 /* A design out of a JSON value, read, completed and checked; path: where it stands in the body ("" for all of it).
    False: the reply says everything that is wrong. warnings may be NULL. */

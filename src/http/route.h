@@ -20,13 +20,14 @@ struct eo_route {
   unsigned method;
   const char *pattern; /* below /api/v1; NULL ends a table */
   void (*handle)(struct eo_request *request);
-  const char *name;      /* operationId */
-  const char *summary;   /* one line */
-  const char *takes;     /* name of the body's schema; NULL: no body */
-  const char *design_at; /* where the body holds the design; NULL: it is the body */
-  bool takes_nothing;    /* the body may be left out */
-  const char *gives;     /* "200 Result, 202 Ticket": status and schema; "-": no body; problems are added */
-  const char *headers;   /* request headers that matter here, "If-Match, Prefer"; may be NULL */
+  const char *name;             /* operationId */
+  const char *summary;          /* one line */
+  const char *takes;            /* name of the body's schema, "A|B": either; NULL: no body */
+  const struct eo_table *order; /* describes the last name of `takes` and reads it: eo_request_read(); NULL: a design */
+  const char *design_at;        /* where the body holds the design; NULL: it is the body */
+  bool takes_nothing;           /* the body may be left out */
+  const char *gives;            /* "200 Result, 202 Ticket": status and schema; "-": no body; problems are added */
+  const char *headers;          /* request headers that matter here, "If-Match, Prefer"; may be NULL */
   struct eo_query query[EO_MOST_QUERIES];
   enum eo_rate rate;
   size_t body; /* most bytes; 0: EO_JSON_DESIGN_BYTES where a body is taken */

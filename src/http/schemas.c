@@ -1,16 +1,16 @@
-/* The documents of the API: what document/ and jobs/ write comes from their outlines and field tables, the rest stands
-   here in the short notation of shape.h. */
+/* The documents of the API: what comes in is described by the field tables of the routes, what document/, study/ and
+   service/ write by their outlines, the rest stands here in the short notation of shape.h. */
 #include <string.h>
 
 #include "document/design_document.h"
 #include "document/geometry_table.h"
 #include "document/measurement_document.h"
 #include "document/result.h"
-#include "document/rig_document.h"
-#include "format/schema.h"
 #include "document/sweep_document.h"
+#include "format/schema.h"
 #include "document/study_result.h"
 #include "http/openapi.h"
+#include "http/route.h"
 #include "http/shape.h"
 #include "service/job_document.h"
 #include "study/job_history.h"
@@ -27,7 +27,6 @@ static const struct {
     {"Health", "{status 'ok|failing', program text, uptime_s number, jobs {queued integer, running integer}, database "
                "'ok|failing', warnings [text]}"},
     {"Session", "{required flag, authorized flag}"},
-    {"Token", "{token text}"},
     {"Examples", "{items [{name text, title text}]}"},
     {"Exports", "{items [{name text, title text, type text}]}"},
     {"Form", "{design Fields, sweep Fields}"},
@@ -38,18 +37,12 @@ static const struct {
               "required flag, nullable flag,"
               " derived? text, fields? [Field]}"},
     {"Check", "{design ResolvedDesign, geometry Geometry, warnings [text], prepared flag}"},
-    {"NamedDesign", "{name? text, design Design}"},
     {"StoredDesign",
      "{id integer, revision integer, name text, created text, updated text, design Design, warnings [text]}"},
     {"Designs", "{items [{id integer, revision integer, name text, created text, updated text}], next text?}"},
     {"Preparing", "{job Job?}"},
     {"Jobs", "{items [Job], next text?}"},
-    {"JobOrder", "{kind? 'optimize|prepare', design Design, priority? integer, fresh? flag}"},
-    {"JobChange", "{priority? integer}"},
     {"JobHistory", "{items [JobHistoryRow], next text?}"},
-    {"MeasurementForm", "{design text, label 'modified|unmodified', torque_Nm text, speed_rpm? text, end? "
-                        "'left|right', harmonics? text, layout? text,"
-                        " file any}"},
     {"AskedLayout", "{kind? text, unit? text, time? any, time_unit? text, columns? {pinion? any, gear? any}, "
                     "sample_rate_Hz? number?, lines? any}"},
     {"Stored", "{id integer, design integer, created text, stated_speed_rpm number?, asked_layout AskedLayout?,"
@@ -86,48 +79,36 @@ static json_t *fit_order(const json_t *plain)
   return schema;
 }
 
-/* A design, and the axes to sweep; torque and speed are taken as shorter keys too. */
-static json_t *sweep_request(void)
+/* What a route takes, under the last of its names; a form has files too. */
+static bool add_order(json_t *schemas, const struct eo_route *route)
 {
-  json_t *schema = eo_table_json_schema(&eo_sweep_request_table, true),
-         *properties = json_object_get(schema, "properties");
-  json_t *design = json_pack("{s:s}", "$ref", "#/components/schemas/Design");
-  static const char *const full[] = {"torque_Nm", "speed_rpm"}, *const brief[] = {"torque", "speed"};
-  for (int i = 0; i < 2; i++) {
-    json_t *axis = json_pack("{s:[O, {s:s}]}", "anyOf", json_object_get(properties, full[i]), "type", "null");
-    json_object_set(properties, brief[i], axis);
-    json_object_set_new(properties, full[i], axis);
-  }
-  if (json_object_set_new(properties, "design", design) == 0 &&
-      json_object_set_new(schema, "required", json_pack("[s]", "design")) == 0)
-    return schema;
-  json_decref(schema);
-  return NULL;
+  const char *other = strrchr(route->takes, '|');
+  json_t *schema = eo_table_json_schema(route->order, true);
+  bool good = !route->form || (json_object_set_new(json_object_get(schema, "properties"), "file", json_object()) == 0 &&
+                               json_array_append_new(json_object_get(schema, "required"), json_string("file")) == 0);
+  return json_object_set_new(schemas, other ? other + 1 : route->takes, schema) == 0 && good;
 }
 
-/* A design, and the keys of eo_rig_table. */
-static json_t *rig_order(void)
+static bool add_orders(json_t *schemas)
 {
-  return json_pack("{s:s, s:{s:{s:s}, s:o}, s:[s], s:b}", "type", "object", "properties", "design", "$ref",
-                   "#/components/schemas/Design", "rig", eo_table_json_schema(&eo_rig_table, true), "required",
-                   "design", "additionalProperties", 0);
+  bool good = true;
+  for (int i = 0; eo_routes[i]; i++)
+    for (const struct eo_route *route = eo_routes[i]; route->pattern && good; route++)
+      good = !route->order || add_order(schemas, route);
+  return good;
 }
 
 json_t *eo_openapi_schemas(void)
 {
   json_t *schemas = json_object();
   bool good = json_object_set_new(schemas, "Design", eo_table_json_schema(&eo_design_table, true)) == 0 &&
-              json_object_set_new(schemas, "SweepRequest", sweep_request()) == 0 &&
-              json_object_set_new(schemas, "RigOrder", rig_order()) == 0;
+              add_orders(schemas);
   for (size_t i = 0; i < sizeof outlines / sizeof outlines[0]; i++)
     good = good && eo_outline_add_schemas(outlines[i], schemas);
   for (size_t i = 0; i < sizeof shapes / sizeof shapes[0]; i++)
     good = good && json_object_set_new(schemas, shapes[i].name, eo_shape_schema(shapes[i].notation)) == 0;
   good = good && json_object_set_new(schemas, "Measurement", stored(schemas, "MeasurementOfFile")) == 0 &&
          json_object_set_new(schemas, "ListedMeasurement", stored(schemas, "BriefMeasurement")) == 0;
-  good = good && json_object_set_new(schemas, "DesignOrNamed",
-                                     json_pack("{s:[{s:s}, {s:s}]}", "anyOf", "$ref", "#/components/schemas/Design",
-                                               "$ref", "#/components/schemas/NamedDesign")) == 0;
   good = good && json_object_set_new(schemas, "FitOrder", fit_order(json_object_get(schemas, "FitOrder"))) == 0;
   if (good)
     return schemas;

@@ -127,7 +127,7 @@ static void run_handler(struct eo_request *request)
     if (request->route->aside || request->route->form)
       eo_background_take(request->route->form ? request->http->readings : request->http->aside, request);
     else
-      request->route->handle(request);
+      eo_request_handle(request);
   }
   eo_http_leave(request->http);
 }
@@ -182,7 +182,7 @@ static enum eo_code check_access(const struct eo_http_settings *settings, struct
   bool loopback;
   enum eo_code code = eo_listen_is_loopback(settings->listen, &loopback, error);
   bool token = settings->token && *settings->token;
-  if (!code && token && !eo_field_is_visible(settings->token, 200))
+  if (!code && token && !eo_field_is_visible(settings->token, EO_TOKEN_BYTES))
     code = eo_error_set(error, EO_ERROR_INPUT, "", "The token must be 1 to 199 printable characters without blanks.");
   if (!code && !loopback && !token && !settings->allow_anyone)
     code = eo_error_set(

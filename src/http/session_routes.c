@@ -13,23 +13,34 @@ static void tell(struct eo_request *request)
       json_pack("{s:b, s:b}", "required", request->http->guard.token != NULL, "authorized", eo_guard_knows(request)));
 }
 
+struct order {
+  char token[EO_TOKEN_BYTES];
+};
+static const struct eo_field order_fields[] = {
+    {.key = "token",
+     .kind = EO_FIELD_TEXT,
+     .flags = EO_FIELD_REQUIRED,
+     .offset = offsetof(struct order, token),
+     .count = EO_TOKEN_BYTES,
+     .help = "as the server was started with it"},
+};
+static const struct eo_table order_table = EO_TABLE("a token", struct order, order_fields);
+
 static void begin(struct eo_request *request)
 {
   const struct eo_guard *guard = &request->http->guard;
-  json_t *body = eo_request_json(request);
-  const char *given = json_string_value(json_object_get(body, "token"));
-  if (!body)
+  struct order order;
+  if (!eo_request_read(request, &order))
     return;
   if (!guard->token)
     eo_reply_empty(request, 204);
-  else if (!given || !eo_field_equal_secret(given, guard->token))
+  else if (!eo_field_equal_secret(order.token, guard->token))
     eo_reply_problem(request, 403, "wrong-token", "That is not this server's token.");
   else {
     snprintf(request->reply.cookie, sizeof request->reply.cookie, "%s=%s; Path=/; HttpOnly; SameSite=Strict",
              eo_guard_cookie, guard->session);
     eo_reply_empty(request, 204);
   }
-  json_decref(body);
 }
 
 static void end(struct eo_request *request)
@@ -56,6 +67,7 @@ const struct eo_route eo_routes_session[] = {
      .body = 4096,
      .summary = "Gives the token and gets a cookie for it, as the page does; scripts send Authorization: Bearer TOKEN.",
      .takes = "Token",
+     .order = &order_table,
      .gives = "204 -"},
     {.method = EO_DELETE,
      .pattern = "/session",

@@ -10,11 +10,12 @@
 #include <unistd.h>
 
 #include "base/clock.h"
+#include "format/json.h"
+#include "format/object.h"
+#include "http/route.h"
 #include "http/server.h"
 
 enum { BUFFER = 64 << 10, SLOWEST = 64 << 10 }; /* bytes; bytes per second */
-
-static const char *const known_fields[] = {"design", "label", "torque_Nm", "speed_rpm", "end", "harmonics", "layout"};
 
 /* ---- names ---- */
 
@@ -41,10 +42,19 @@ static enum MHD_Result refuse(struct eo_request *request, unsigned status, const
   return MHD_NO;
 }
 
-static bool is_known(const char *name)
+/* A row of the form's table. */
+static const struct eo_field *find_row(const struct eo_table *table, const char *name)
 {
-  for (size_t i = 0; i < sizeof known_fields / sizeof known_fields[0]; i++)
-    if (strcmp(known_fields[i], name) == 0)
+  for (int i = 0; i < table->count; i++)
+    if (strcmp(table->field[i].key, name) == 0)
+      return &table->field[i];
+  return NULL;
+}
+
+static bool came_before(const struct eo_upload *upload, const char *name)
+{
+  for (int i = 0; i < upload->fields; i++)
+    if (strcmp(upload->field[i].name, name) == 0)
       return true;
   return false;
 }
@@ -80,7 +90,7 @@ static enum MHD_Result begin_field(struct eo_request *request, const char *name)
   char shown[40], text[120];
   eo_text_clean(shown, sizeof shown, name);
   snprintf(text, sizeof text, "The form has a part \"%s\" that is not known, or has it twice.", shown);
-  if (!is_known(name) || eo_upload_field(upload, name) || upload->fields == EO_UPLOAD_FIELDS)
+  if (!find_row(request->route->order, name) || came_before(upload, name) || upload->fields == EO_UPLOAD_FIELDS)
     return refuse(request, 422, text);
   snprintf(upload->field[upload->fields++].name, sizeof upload->field[0].name, "%s", name);
   return MHD_YES;
@@ -223,12 +233,43 @@ void eo_upload_path(const struct eo_upload *upload, int file, char *path)
   snprintf(path, EO_UPLOAD_PATH, "%s/%d", upload->folder, file);
 }
 
-const char *eo_upload_field(const struct eo_upload *upload, const char *name)
+static json_t *read_object(const struct eo_field *row, const struct eo_text *text, struct eo_faults *faults)
 {
-  for (int i = 0; i < upload->fields; i++)
-    if (strcmp(upload->field[i].name, name) == 0)
-      return upload->field[i].value.data ? upload->field[i].value.data : "";
-  return NULL;
+  struct eo_error error;
+  const struct eo_path path = {.key = row->key};
+  if (strcmp(text->data, "null") == 0)
+    return json_null();
+  json_t *object = eo_json_parse(text->data, text->size, &error);
+  if (object)
+    return object;
+  eo_faults_at(faults, &path, "%s", error.text);
+  return json_object();
+}
+
+/* A part's text as the row wants it; what is no number stays a text, which the table refuses. */
+static json_t *read_part(const struct eo_field *row, const struct eo_text *text, struct eo_faults *faults)
+{
+  double number;
+  bool numeric = row->kind == EO_FIELD_NUMBER || row->kind == EO_FIELD_INTEGER || row->kind == EO_FIELD_SEED;
+  if (row->kind == EO_FIELD_DOCUMENT)
+    return read_object(row, text, faults);
+  return numeric && eo_field_real(text->data, &number) ? json_real(number) : json_string(text->data);
+}
+
+json_t *eo_upload_document(const struct eo_upload *upload, const struct eo_table *table, struct eo_faults *faults)
+{
+  struct eo_object object = eo_object_open();
+  for (int i = 0; i < upload->fields; i++) {
+    const struct eo_upload_field *field = &upload->field[i];
+    const struct eo_field *row = find_row(table, field->name);
+    const struct eo_path path = {.key = field->name};
+    json_t *value = row && field->value.size ? read_part(row, &field->value, faults) : NULL;
+    if (value)
+      eo_object_put(&object, field->name, value);
+    else if (field->value.size)
+      eo_faults_at(faults, &path, "The text is not UTF-8.");
+  }
+  return eo_object_close(&object);
 }
 
 void eo_upload_free(struct eo_request *request)

@@ -4,6 +4,7 @@
 #ifndef EASEOFF_HTTP_UPLOAD_H
 #define EASEOFF_HTTP_UPLOAD_H
 
+#include "format/table.h"
 #include "http/request.h"
 #include "store/measurements.h"
 
@@ -49,8 +50,9 @@ void eo_upload_path(const struct eo_upload *upload, int file, char *path);
 /* Seconds that the rest of a body may take, so that who drips does not stay for ever. */
 int eo_upload_patience(const struct eo_request *request);
 
-/* The text of a part; NULL: it did not come. */
-const char *eo_upload_field(const struct eo_upload *upload, const char *name);
+/* The parts that are no files as an object that the table can read: numbers and objects out of their texts, empty parts
+   left out. What is no JSON where an object is wanted is a fault. New; NULL without memory. */
+json_t *eo_upload_document(const struct eo_upload *upload, const struct eo_table *table, struct eo_faults *faults);
 
 void eo_upload_free(struct eo_request *request);
 

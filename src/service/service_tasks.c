@@ -69,7 +69,7 @@ static struct asked *copy_question(struct eo_service *s, const struct eo_questio
 static enum eo_code ask_for_pair(struct eo_service *s, const struct eo_design *design, enum eo_admission *admission,
                                  int64_t *job, struct eo_error *error)
 {
-  const struct eo_job_order order = {.kind = EO_JOB_PREPARE, .design = design, .priority = 10};
+  const struct eo_job_order order = {.kind = EO_JOB_PREPARE, .design = design, .priority = EO_MOST_PRIORITY};
   enum eo_job_outcome outcome;
   json_t *document = NULL;
   enum eo_code code = eo_service_submit(s, &order, &outcome, &document, error);

@@ -8,6 +8,8 @@
 
 #include "store/jobs.h"
 
+enum { EO_MOST_PRIORITY = 10 }; /* -10..10 */
+
 enum eo_job_outcome {
   EO_JOB_OUTCOME_DONE,
   EO_JOB_OUTCOME_MISSING,  /* there is no such job */

@@ -124,6 +124,7 @@ static void provoke_field(const json_t *complete, const char *pointer, const str
     provoke_table(complete, inner, field->table);
     break;
   case EO_FIELD_SERIES:
+  case EO_FIELD_DOCUMENT:
     break;
   }
 }

@@ -8,6 +8,7 @@
 #include "document/examples.h"
 #include "document/geometry_table.h"
 #include "format/json.h"
+#include "http/route.h"
 #include "support/tap.h"
 
 static uint64_t state = 42;
@@ -68,8 +69,12 @@ static void test_tables(void)
      "design tables: unique keys, units in the suffix, defaults within ranges, help");
   ok(unsound(&eo_geometry_table, "") == 0, "geometry table likewise");
   const struct eo_stage *stage;
-  for (int i = 0; (stage = eo_stage_at(i)); i++)
+  int i;
+  for (i = 0; (stage = eo_stage_at(i)); i++)
     ok(unsound(stage->input, "") + unsound(stage->output, "") == 0, "tables of the stage %s likewise", stage->name);
+  for (i = 0; eo_routes[i]; i++)
+    for (const struct eo_route *route = eo_routes[i]; route->pattern; route++)
+      ok(!route->order || unsound(route->order, "") == 0, "the table of what %s takes likewise", route->name);
 }
 
 /* An object that may be absent, with a series in it, alone and in a list. */
@@ -130,6 +135,68 @@ static void test_optional(void)
   ok(read_outer("{\"maybe\":3,\"rows\":[{\"number\":0},{\"number\":0},{\"number\":0},{\"number\":0},{\"number\":0}]}",
                 NULL) == 2,
      "no object; too many rows");
+}
+
+/* What requests have that designs do not: another name of a key, an object that somebody else reads, whole numbers that
+   may be absent, texts that may not be empty. */
+struct order {
+  double number, whole;
+  char name[8];
+  const json_t *document;
+};
+static const struct eo_field order[] = {
+    {.key = "number_mm",
+     .alias = "number",
+     .kind = EO_FIELD_NUMBER,
+     .offset = offsetof(struct order, number),
+     .unit = &eo_unit_mm,
+     .low = 0,
+     .high = 10,
+     .fallback = 1,
+     .help = "a number"},
+    {.key = "whole",
+     .kind = EO_FIELD_NUMBER,
+     .flags = EO_FIELD_NULLABLE | EO_FIELD_WHOLE,
+     .offset = offsetof(struct order, whole),
+     .low = -10,
+     .high = 10,
+     .fallback = NAN,
+     .derived = "none",
+     .help = "a whole number"},
+    EO_TEXT_DERIVED(struct order, name, "name", 2, "none", "a text"),
+    EO_DOCUMENT(struct order, document, "document", "Document", EO_FIELD_REQUIRED, "an object"),
+};
+static const struct eo_table order_table = EO_TABLE("order", struct order, order);
+
+static void test_orders(void)
+{
+  static const struct {
+    const char *input, *pointer; /* of the only fault; NULL: none */
+    double number, whole;        /* mm */
+    const char *name;
+  } row[] = {{"{\"document\":{}}", NULL, 1, NAN, ""},
+             {"{\"number\":2,\"whole\":-3,\"name\":\"ab\",\"document\":{\"any\":[1]}}", NULL, 2, -3, "ab"},
+             {"{\"number_mm\":2,\"whole\":null,\"name\":null,\"document\":{}}", NULL, 2, NAN, ""},
+             {"{\"number\":2,\"number_mm\":2,\"document\":{}}", "/number_mm", 2, NAN, ""},
+             {"{\"number\":11,\"document\":{}}", "/number_mm", 1, NAN, ""},
+             {"{\"whole\":0.5,\"document\":{}}", "/whole", 1, NAN, ""},
+             {"{\"name\":\"a\",\"document\":{}}", "/name", 1, NAN, ""},
+             {"{\"name\":\"\",\"document\":{}}", "/name", 1, NAN, ""},
+             {"{\"document\":null}", "/document", 1, NAN, ""},
+             {"{}", "/document", 1, NAN, ""}};
+  static struct eo_faults faults;
+  for (size_t i = 0; i < sizeof row / sizeof row[0]; i++) {
+    struct order read;
+    json_t *document = json_loads(row[i].input, 0, NULL);
+    faults.count = 0;
+    eo_table_decode(&order_table, document, NULL, &read, &faults);
+    bool right = row[i].pointer ? faults.count == 1 && strcmp(faults.fault[0].pointer, row[i].pointer) == 0
+                                : !faults.count && read.document == json_object_get(document, "document");
+    ok(right && fabs(1e3 * read.number - row[i].number) < 1e-9 && strcmp(read.name, row[i].name) == 0 &&
+           (isnan(row[i].whole) ? isnan(read.whole) : read.whole == row[i].whole),
+       "%s: %s", row[i].input, faults.count ? faults.fault[0].text : "read");
+    json_decref(document);
+  }
 }
 
 static const struct eo_unit *const units[] = {NULL,
@@ -220,6 +287,7 @@ static bool same(const struct eo_table *table, const char *a, const char *b)
         equal = same(field->table, x + (size_t)j * field->table->size, y + (size_t)j * field->table->size);
       break;
     case EO_FIELD_SERIES:
+    case EO_FIELD_DOCUMENT:
       break;
     }
     if (!equal)
@@ -337,6 +405,7 @@ static json_t *random_value(const struct eo_field *field)
       json_array_append_new(array, random_object(field->table));
     return array;
   case EO_FIELD_SERIES:
+  case EO_FIELD_DOCUMENT:
     break;
   }
   return NULL;
@@ -378,6 +447,7 @@ int main(void)
 {
   test_tables();
   test_optional();
+  test_orders();
   test_units();
   test_examples();
   test_random_designs();
