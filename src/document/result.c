@@ -133,34 +133,36 @@ static json_t *encode_cases(struct eo_result_source *source)
 
 /* ---- objectives ---- */
 
+struct raw_case {
+  struct eo_load_case load_case;
+  struct eo_objective_case raw;
+};
+
+static bool raw_is_known(const void *source)
+{
+  return !((const struct raw_case *)source)->raw.failed;
+}
+
+#define EO_RAW(member) EO_AT(struct raw_case, raw.member), .known = raw_is_known
 static const struct eo_outline_row raw_case_rows[] = {
-    EO_KEY("torque_Nm", "number", "on the pinion shaft", .unit = &eo_unit_Nm),
-    EO_KEY("speed_rpm", "number", "of the pinion", .unit = &eo_unit_rpm),
+    EO_KEY("torque_Nm", "number", "on the pinion shaft", .unit = &eo_unit_Nm, EO_AT(struct raw_case, load_case.torque)),
+    EO_KEY("speed_rpm", "number", "of the pinion", .unit = &eo_unit_rpm, EO_AT(struct raw_case, load_case.speed)),
     EO_KEY("peak_to_peak_um", "number?", "loaded transmission error; null, as all below, when the evaluation failed",
-           .unit = &eo_unit_um),
-    EO_KEY("impact_N", "number?", "general entering impact, worse end", .unit = &eo_unit_N),
-    EO_KEY("rms_m_per_s2", "number?", "normal acceleration, RMS", .unit = &eo_unit_m_per_s2),
-    EO_KEY("contact_pressure_MPa", "number?", "largest", .unit = &eo_unit_MPa),
-    EO_KEY("root_stress_MPa", "number?", "largest; null when it was not computed", .unit = &eo_unit_MPa),
-    EO_KEY("edge_load_share", "number?", "share of the load on tip edges"),
-    EO_KEY("contact_loss", "number?", "share of the mesh cycle without contact"),
+           .unit = &eo_unit_um, EO_RAW(peak_to_peak)),
+    EO_KEY("impact_N", "number?", "general entering impact, worse end", .unit = &eo_unit_N, EO_RAW(impact)),
+    EO_KEY("rms_m_per_s2", "number?", "normal acceleration, RMS", .unit = &eo_unit_m_per_s2, EO_RAW(rms)),
+    EO_KEY("contact_pressure_MPa", "number?", "largest", .unit = &eo_unit_MPa, EO_RAW(contact_pressure)),
+    EO_KEY("root_stress_MPa", "number?", "largest; null when it was not computed", .unit = &eo_unit_MPa,
+           EO_RAW(root_stress)),
+    EO_KEY("edge_load_share", "number?", "share of the load on tip edges", EO_RAW(edge_load_share)),
+    EO_KEY("contact_loss", "number?", "share of the mesh cycle without contact", EO_RAW(contact_loss)),
 };
 const struct eo_outline eo_outline_raw_case = EO_OUTLINE("RawCase", raw_case_rows);
 
 json_t *eo_result_raw_case(const struct eo_load_case *load_case, const struct eo_objective_case *raw)
 {
-  struct eo_object o = eo_object_open_as(&eo_outline_raw_case);
-  double known = raw->failed ? NAN : 1;
-  eo_object_put_number(&o, "torque_Nm", load_case->torque);
-  eo_object_put_number(&o, "speed_rpm", load_case->speed);
-  eo_object_put_number(&o, "peak_to_peak_um", known * raw->peak_to_peak);
-  eo_object_put_number(&o, "impact_N", known * raw->impact);
-  eo_object_put_number(&o, "rms_m_per_s2", known * raw->rms);
-  eo_object_put_number(&o, "contact_pressure_MPa", known * raw->contact_pressure);
-  eo_object_put_number(&o, "root_stress_MPa", known * raw->root_stress);
-  eo_object_put_number(&o, "edge_load_share", known * raw->edge_load_share);
-  eo_object_put_number(&o, "contact_loss", known * raw->contact_loss);
-  return eo_object_close(&o);
+  const struct raw_case source = {*load_case, *raw};
+  return eo_outline_encode(&eo_outline_raw_case, &source);
 }
 
 static json_t *encode_raw(const struct eo_result_source *source, const struct eo_objective_case *raw)
@@ -174,26 +176,24 @@ static json_t *encode_raw(const struct eo_result_source *source, const struct eo
   return cases;
 }
 
+static bool sums_are_known(const void *source)
+{
+  return !((const struct eo_objective_value *)source)->sums.failed;
+}
+
+#define EO_SUM(index) EO_AT(struct eo_objective_value, sums.f[index]), .known = sums_are_known
 static const struct eo_outline_row value_rows[] = {
     EO_KEY("f1_um", "number?",
            "first objective: loaded transmission error over the duty cycle; null, as all, when it is not known",
-           .unit = &eo_unit_um),
-    EO_KEY("f2_N", "number?", "second: entering impact", .unit = &eo_unit_N),
-    EO_KEY("f3_m_per_s2", "number?", "third: vibration", .unit = &eo_unit_m_per_s2),
-    EO_KEY("J", "number?", "their weighted sum: what is minimised"),
-    EO_KEY("fitness", "number?", "1/J less penalties"),
-    EO_KEY("violation", "number?", "sum of the violated constraints, relative; 0: feasible"),
+           .unit = &eo_unit_um, EO_SUM(0)),
+    EO_KEY("f2_N", "number?", "second: entering impact", .unit = &eo_unit_N, EO_SUM(1)),
+    EO_KEY("f3_m_per_s2", "number?", "third: vibration", .unit = &eo_unit_m_per_s2, EO_SUM(2)),
+    EO_KEY("J", "number?", "their weighted sum: what is minimised", EO_AT(struct eo_objective_value, objective)),
+    EO_KEY("fitness", "number?", "1/J less penalties", EO_AT(struct eo_objective_value, fitness)),
+    EO_KEY("violation", "number?", "sum of the violated constraints, relative; 0: feasible",
+           EO_AT(struct eo_objective_value, violation)),
 };
 const struct eo_outline eo_outline_value = EO_OUTLINE("Value", value_rows);
-
-void eo_result_put_value(struct eo_object *o, const struct eo_objective_value *value)
-{
-  double known = value->sums.failed ? NAN : 1;
-  const double number[] = {known * value->sums.f[0], known * value->sums.f[1], known * value->sums.f[2],
-                           value->objective,         value->fitness,           value->violation};
-  for (int i = 0; i < eo_outline_value.count; i++)
-    eo_object_put(o, value_rows[i].key, eo_json_quantity(number[i], value_rows[i].unit));
-}
 
 static const struct eo_outline_row unmodified_rows[] = {
     {.outline = &eo_outline_value},
@@ -213,8 +213,8 @@ static json_t *encode_objectives(const struct eo_result_source *source)
 {
   const struct eo_analysis *a = source->analysis;
   struct eo_object o = eo_object_open_as(&objectives_outline), unmodified = eo_object_open_as(&unmodified_outline);
-  eo_result_put_value(&o, &a->value);
-  eo_result_put_value(&unmodified, &a->unmodified_value);
+  eo_outline_put(&o, &eo_outline_value, &a->value);
+  eo_outline_put(&unmodified, &eo_outline_value, &a->unmodified_value);
   eo_object_put(&o, "load_cases", encode_raw(source, source->evaluation->objective));
   eo_object_put(&unmodified, "load_cases", encode_raw(source, a->unmodified));
   eo_object_put(&o, "unmodified", eo_object_close(&unmodified));
@@ -224,34 +224,39 @@ static json_t *encode_objectives(const struct eo_result_source *source)
 
 /* ---- the whole ---- */
 
+struct timing {
+  double preparation, unmodified, contact, impact, root, dynamics, evaluation; /* s */
+};
+
 static const struct eo_outline_row timing_rows[] = {
-    EO_KEY("preparation", "number", "of the gear pair, once", .unit = &eo_unit_ms),
-    EO_KEY("unmodified", "number", "of the unmodified pair, once", .unit = &eo_unit_ms),
-    EO_KEY("static", "number", "loaded contact", .unit = &eo_unit_ms),
-    EO_KEY("impact", "number", "entering impact", .unit = &eo_unit_ms),
-    EO_KEY("root", "number", "root stress", .unit = &eo_unit_ms),
-    EO_KEY("dynamics", "number", "vibration", .unit = &eo_unit_ms),
-    EO_KEY("evaluation", "number", "of the design altogether", .unit = &eo_unit_ms),
+    EO_KEY("preparation", "number", "of the gear pair, once", .unit = &eo_unit_ms, EO_AT(struct timing, preparation)),
+    EO_KEY("unmodified", "number", "of the unmodified pair, once", .unit = &eo_unit_ms,
+           EO_AT(struct timing, unmodified)),
+    EO_KEY("static", "number", "loaded contact", .unit = &eo_unit_ms, EO_AT(struct timing, contact)),
+    EO_KEY("impact", "number", "entering impact", .unit = &eo_unit_ms, EO_AT(struct timing, impact)),
+    EO_KEY("root", "number", "root stress", .unit = &eo_unit_ms, EO_AT(struct timing, root)),
+    EO_KEY("dynamics", "number", "vibration", .unit = &eo_unit_ms, EO_AT(struct timing, dynamics)),
+    EO_KEY("evaluation", "number", "of the design altogether", .unit = &eo_unit_ms, EO_AT(struct timing, evaluation)),
 };
 static const struct eo_outline timing = EO_OUTLINE("Timing", timing_rows);
+
+/* To the microsecond. */
+static double seconds_of(double milliseconds)
+{
+  return 1e-6 * round(1e3 * milliseconds);
+}
 
 static json_t *encode_timing(const struct eo_result_source *source)
 {
   const struct eo_evaluation *r = source->evaluation;
-  struct eo_object o = eo_object_open_as(&timing);
-  const struct {
-    const char *key;
-    double milliseconds;
-  } row[] = {{"preparation", 1e3 * source->pair->seconds},
-             {"unmodified", source->analysis->unmodified_ms},
-             {"static", r->static_ms},
-             {"impact", r->impact_ms},
-             {"root", r->root_ms},
-             {"dynamics", r->dynamics_ms},
-             {"evaluation", source->analysis->design_ms}};
-  for (size_t i = 0; i < sizeof row / sizeof *row; i++)
-    eo_object_put(&o, row[i].key, json_real(round(1e3 * row[i].milliseconds) / 1e3));
-  return eo_object_close(&o);
+  const struct timing seconds = {.preparation = seconds_of(1e3 * source->pair->seconds),
+                                 .unmodified = seconds_of(source->analysis->unmodified_ms),
+                                 .contact = seconds_of(r->static_ms),
+                                 .impact = seconds_of(r->impact_ms),
+                                 .root = seconds_of(r->root_ms),
+                                 .dynamics = seconds_of(r->dynamics_ms),
+                                 .evaluation = seconds_of(source->analysis->design_ms)};
+  return eo_outline_encode(&timing, &seconds);
 }
 
 static const struct eo_outline_row result_rows[] = {

@@ -40,7 +40,7 @@ json_t *eo_result_map(const struct eo_result_source *source, int rows, int colum
 extern const struct eo_outline eo_outline_lte, eo_outline_stiffness, eo_outline_unloaded, eo_outline_contact,
     eo_outline_bodies, eo_outline_flexibility, eo_outline_impact, eo_outline_root_stress, eo_outline_vibration,
     eo_outline_modification;
-extern const struct eo_outline eo_outline_value;    /* eo_result_put_value() */
+extern const struct eo_outline eo_outline_value;    /* of a struct eo_objective_value */
 extern const struct eo_outline eo_outline_raw_case; /* eo_result_raw_case() */
 
 /* Normal force that one end carries, mean over the mesh cycle, N. */
@@ -48,9 +48,6 @@ double eo_result_mean_load(const struct eo_result_source *source, const struct e
 
 /* Wind-up of a member's hub, normal, m per N/m of face width; NaN unless the design asks for it. */
 double eo_result_hub_windup(const struct eo_result_source *source, int member);
-
-/* f1, f2, f3, J, fitness and violation into an object. */
-void eo_result_put_value(struct eo_object *object, const struct eo_objective_value *value);
 
 /* Each returns a new value, NULL without memory. */
 json_t *eo_result_raw_case(const struct eo_load_case *load_case, const struct eo_objective_case *raw);

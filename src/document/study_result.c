@@ -30,29 +30,45 @@ void eo_study_result_done(struct eo_study_result *result)
 
 static const char *const members[] = {"pinion", "gear", NULL}, *const ends[] = {"left", "right", "both", NULL};
 
+struct variable {
+  char name[80];
+  const struct eo_study_variable *variable;
+  int member, end;
+  const char *parameter;
+  double best; /* in the unit of its key; NaN: none */
+};
+
+static json_t *write_bounds(const void *source)
+{
+  const struct variable *v = source;
+  return json_pack("[o,o]", json_real(v->variable->low), json_real(v->variable->high));
+}
+
+static json_t *write_best_value(const void *source)
+{
+  return eo_json_real(((const struct variable *)source)->best, NULL);
+}
+
 static const struct eo_outline_row variable_rows[] = {
-    EO_KEY("name", "text", "MEMBER/END/PARAMETER"),
-    EO_KEY("member", "word", "whose flank", .words = members),
-    EO_KEY("end", "word", "both: the same on both ends", .words = ends),
-    EO_KEY("parameter", "word", "key of the flank's modification, with its unit", .words = eo_variable_parameters),
-    EO_KEY("bounds", "[number]", "lowest, highest"),
-    EO_KEY("best", "number?", "of the best design; null while there is none"),
+    EO_KEY("name", "text", "MEMBER/END/PARAMETER", EO_AT(struct variable, name)),
+    EO_KEY("member", "word", "whose flank", .words = members, EO_AT(struct variable, member)),
+    EO_KEY("end", "word", "both: the same on both ends", .words = ends, EO_AT(struct variable, end)),
+    EO_KEY("parameter", "word", "key of the flank's modification, with its unit", .words = eo_variable_parameters,
+           EO_AT(struct variable, parameter)),
+    EO_KEY("bounds", "[number]", "lowest, highest", .write = write_bounds),
+    EO_KEY("best", "number?", "of the best design; null while there is none", .write = write_best_value),
 };
 static const struct eo_outline variable_outline = EO_OUTLINE("StudyVariable", variable_rows);
 
 static json_t *encode_variable(const struct eo_study_result *result, const struct eo_study_variable *v)
 {
-  struct eo_object o = eo_object_open_as(&variable_outline);
-  char name[80];
-  eo_study_variable_name(v, name, sizeof name);
-  eo_object_put(&o, "name", json_string(name));
-  eo_object_put(&o, "member", json_string(members[v->member]));
-  eo_object_put(&o, "end", json_string(ends[v->end]));
-  eo_object_put(&o, "parameter", json_string(v->field->key));
-  eo_object_put(&o, "bounds", json_pack("[o,o]", json_real(v->low), json_real(v->high)));
-  eo_object_put(&o, "best",
-                result->best.there ? json_real(eo_study_variable_value(v, &result->best.modification)) : json_null());
-  return eo_object_close(&o);
+  struct variable row = {.variable = v,
+                         .member = v->member,
+                         .end = v->end,
+                         .parameter = v->field->key,
+                         .best = result->best.there ? eo_study_variable_value(v, &result->best.modification) : NAN};
+  eo_study_variable_name(v, row.name, sizeof row.name);
+  return eo_outline_encode(&variable_outline, &row);
 }
 
 /* Appends value to array; a failure of either leaves NULL. */
@@ -64,69 +80,88 @@ static json_t *append(json_t *array, json_t *value)
   return NULL;
 }
 
-static json_t *encode_variables(const struct eo_study_result *result)
+struct point {
+  const struct eo_study_point *point;
+  const struct eo_design *design;
+  struct eo_objective_value value;
+};
+
+static json_t *write_cases(const void *source)
 {
-  json_t *array = json_array();
-  for (int i = 0; i < result->space.count && array; i++)
-    array = append(array, encode_variable(result, &result->space.variable[i]));
-  return array;
+  const struct point *p = source;
+  json_t *cases = json_array();
+  for (int k = 0; k < p->design->load_cases && cases; k++)
+    cases = append(cases, eo_result_raw_case(&p->design->load_case[k], &p->point->raw[k]));
+  return cases;
 }
 
 static const struct eo_outline_row point_rows[] = {
-    {.outline = &eo_outline_value},
-    EO_KEY("load_cases", "[object]", "of the nominal scenario, one for each load case",
-           .outline = &eo_outline_raw_case),
+    {.outline = &eo_outline_value, .offset = offsetof(struct point, value)},
+    EO_KEY("load_cases", "[object]", "of the nominal scenario, one for each load case", .outline = &eo_outline_raw_case,
+           .write = write_cases),
 };
 static const struct eo_outline point_outline = EO_OUTLINE("StudyPoint", point_rows);
 
 static json_t *encode_point(const struct eo_study_point *point, const struct eo_design *design)
 {
-  struct eo_object o = eo_object_open_as(&point_outline);
-  json_t *cases = json_array();
-  eo_result_put_value(&o, &point->value);
-  for (int k = 0; k < design->load_cases && cases; k++)
-    cases = append(cases, eo_result_raw_case(&design->load_case[k], &point->raw[k]));
-  eo_object_put(&o, "load_cases", cases);
-  return eo_object_close(&o);
+  const struct point source = {point, design, point->value};
+  return eo_outline_encode(&point_outline, &source);
 }
 
+struct reduction {
+  double torque, speed;                                            /* N m, rad/s */
+  double peak_to_peak, impact, rms, contact_pressure, root_stress; /* per cent */
+};
+
 static const struct eo_outline_row reduction_rows[] = {
-    EO_KEY("torque_Nm", "number", "of the load case", .unit = &eo_unit_Nm),
-    EO_KEY("speed_rpm", "number", "of the load case", .unit = &eo_unit_rpm),
+    EO_KEY("torque_Nm", "number", "of the load case", .unit = &eo_unit_Nm, EO_AT(struct reduction, torque)),
+    EO_KEY("speed_rpm", "number", "of the load case", .unit = &eo_unit_rpm, EO_AT(struct reduction, speed)),
     EO_KEY("peak_to_peak", "number?",
-           "of the loaded transmission error, in per cent of the unmodified pair, positive when better"),
-    EO_KEY("impact", "number?", "of the entering impact, likewise"),
-    EO_KEY("rms", "number?", "of the vibration, likewise"),
-    EO_KEY("contact_pressure", "number?", "of the largest contact pressure, likewise"),
-    EO_KEY("root_stress", "number?", "of the largest root stress, likewise"),
+           "of the loaded transmission error, in per cent of the unmodified pair, positive when better",
+           EO_AT(struct reduction, peak_to_peak)),
+    EO_KEY("impact", "number?", "of the entering impact, likewise", EO_AT(struct reduction, impact)),
+    EO_KEY("rms", "number?", "of the vibration, likewise", EO_AT(struct reduction, rms)),
+    EO_KEY("contact_pressure", "number?", "of the largest contact pressure, likewise",
+           EO_AT(struct reduction, contact_pressure)),
+    EO_KEY("root_stress", "number?", "of the largest root stress, likewise", EO_AT(struct reduction, root_stress)),
 };
 static const struct eo_outline reduction_outline = EO_OUTLINE("StudyReduction", reduction_rows);
+
+static double reduction_of(const json_t *after, const json_t *before, const char *key)
+{
+  return 100 * (1 - eo_json_find_number(after, key) / eo_json_find_number(before, key));
+}
 
 /* In per cent of the unmodified pair, positive when better, for every load case of the analysis. */
 static json_t *encode_reductions(const json_t *analysis)
 {
-  static const struct {
-    const char *key, *value;
-  } row[] = {{"peak_to_peak", "peak_to_peak_um"},
-             {"impact", "impact_N"},
-             {"rms", "rms_m_per_s2"},
-             {"contact_pressure", "contact_pressure_MPa"},
-             {"root_stress", "root_stress_MPa"}};
   const json_t *after = eo_json_find(analysis, "objectives/load_cases"),
                *before = eo_json_find(analysis, "objectives/unmodified/load_cases");
   json_t *array = json_array();
   for (size_t k = 0; k < json_array_size(after) && array; k++) {
-    struct eo_object o = eo_object_open_as(&reduction_outline);
     const json_t *a = json_array_get(after, k), *b = json_array_get(before, k);
-    eo_object_put(&o, "torque_Nm", json_incref(json_object_get(a, "torque_Nm")));
-    eo_object_put(&o, "speed_rpm", json_incref(json_object_get(a, "speed_rpm")));
-    for (size_t i = 0; i < sizeof row / sizeof *row; i++)
-      eo_object_put_number(&o, row[i].key,
-                           100 * (1 - eo_json_find_number(a, row[i].value) / eo_json_find_number(b, row[i].value)));
-    array = append(array, eo_object_close(&o));
+    const struct reduction row = {.torque = eo_unit_in(&eo_unit_Nm, eo_json_find_number(a, "torque_Nm")),
+                                  .speed = eo_unit_in(&eo_unit_rpm, eo_json_find_number(a, "speed_rpm")),
+                                  .peak_to_peak = reduction_of(a, b, "peak_to_peak_um"),
+                                  .impact = reduction_of(a, b, "impact_N"),
+                                  .rms = reduction_of(a, b, "rms_m_per_s2"),
+                                  .contact_pressure = reduction_of(a, b, "contact_pressure_MPa"),
+                                  .root_stress = reduction_of(a, b, "root_stress_MPa")};
+    array = append(array, eo_outline_encode(&reduction_outline, &row));
   }
   return array;
 }
+
+/* What the document is about. */
+struct source {
+  struct eo_study_result result; /* borrowed members */
+  const struct eo_design *design;
+  const json_t *analysis;
+  const struct eo_warnings *warnings;
+  char algorithm[sizeof((struct eo_optimization *)0)->algorithm];
+  uint64_t seed;
+  double pfc_percent;
+};
 
 static json_t *encode_modification(const struct eo_design *design, const struct eo_modification *modification)
 {
@@ -141,84 +176,100 @@ static json_t *encode_modification(const struct eo_design *design, const struct 
   return part;
 }
 
+static json_t *write_best_modification(const void *source)
+{
+  const struct source *s = source;
+  return encode_modification(s->design, &s->result.best.modification);
+}
+
+static json_t *write_best_objectives(const void *source)
+{
+  const struct source *s = source;
+  return encode_point(&s->result.best, s->design);
+}
+
+static json_t *write_reductions(const void *source)
+{
+  return encode_reductions(((const struct source *)source)->analysis);
+}
+
+static json_t *write_analysis(const void *source)
+{
+  const struct source *s = source;
+  return s->analysis ? json_incref((json_t *)s->analysis) : json_null();
+}
+
 static const struct eo_outline_row best_rows[] = {
-    EO_KEY("modification", "object", "as a design takes it", .table = &eo_modification_table, .name = "Modification"),
-    EO_KEY("objectives", "object", "of the duty cycle", .outline = &point_outline),
-    EO_KEY("reductions_percent", "[object]", "one for each load case", .outline = &reduction_outline),
-    EO_KEY("result", "object?", "the best design analysed; null when it was not", .outline = &eo_result_outline),
+    EO_KEY("modification", "object", "as a design takes it", .table = &eo_modification_table, .name = "Modification",
+           .write = write_best_modification),
+    EO_KEY("objectives", "object", "of the duty cycle", .outline = &point_outline, .write = write_best_objectives),
+    EO_KEY("reductions_percent", "[object]", "one for each load case", .outline = &reduction_outline,
+           .write = write_reductions),
+    EO_KEY("result", "object?", "the best design analysed; null when it was not", .outline = &eo_result_outline,
+           .write = write_analysis),
 };
 static const struct eo_outline best_outline = EO_OUTLINE("StudyBest", best_rows);
 
-static json_t *encode_best(const struct eo_study_result *result, const struct eo_design *design, const json_t *analysis)
-{
-  struct eo_object o = eo_object_open_as(&best_outline);
-  eo_object_put(&o, "modification", encode_modification(design, &result->best.modification));
-  eo_object_put(&o, "objectives", encode_point(&result->best, design));
-  eo_object_put(&o, "reductions_percent", encode_reductions(analysis));
-  eo_object_put(&o, "result", analysis ? json_incref((json_t *)analysis) : json_null());
-  return eo_object_close(&o);
-}
-
 static const struct eo_outline_row generation_rows[] = {
-    EO_KEY("best", "number?", "J and penalties of the best so far"),
-    EO_KEY("mean", "number?", "of this generation's true evaluations that converged"),
-    EO_KEY("true", "integer", "evaluations by the model, or known from the history"),
-    EO_KEY("predicted", "integer", "individuals whose fitness was predicted"),
-    EO_KEY("repeated", "integer", "individuals equal to an earlier one"),
-    EO_KEY("history_rows", "integer", "fpga: rows of its history after the generation"),
-    EO_KEY("epoch", "integer", "credibility-ga: how often it started anew"),
+    EO_KEY("best", "number?", "J and penalties of the best so far", EO_AT(struct eo_study_generation, best)),
+    EO_KEY("mean", "number?", "of this generation's true evaluations that converged",
+           EO_AT(struct eo_study_generation, mean)),
+    EO_KEY("true", "integer", "evaluations by the model, or known from the history",
+           EO_AT(struct eo_study_generation, true_count)),
+    EO_KEY("predicted", "integer", "individuals whose fitness was predicted",
+           EO_AT(struct eo_study_generation, predicted_count)),
+    EO_KEY("repeated", "integer", "individuals equal to an earlier one",
+           EO_AT(struct eo_study_generation, repeated_count)),
+    EO_KEY("history_rows", "integer", "fpga: rows of its history after the generation",
+           EO_AT(struct eo_study_generation, history_rows)),
+    EO_KEY("epoch", "integer", "credibility-ga: how often it started anew", EO_AT(struct eo_study_generation, epoch)),
 };
 static const struct eo_outline generation_outline = EO_OUTLINE("StudyGeneration", generation_rows);
 
-static json_t *encode_generation(const struct eo_study_generation *g)
-{
-  struct eo_object o = eo_object_open_as(&generation_outline);
-  eo_object_put_number(&o, "best", g->best);
-  eo_object_put_number(&o, "mean", g->mean);
-  eo_object_put(&o, "true", json_integer(g->true_count));
-  eo_object_put(&o, "predicted", json_integer(g->predicted_count));
-  eo_object_put(&o, "repeated", json_integer(g->repeated_count));
-  eo_object_put(&o, "history_rows", json_integer(g->history_rows));
-  eo_object_put(&o, "epoch", json_integer(g->epoch));
-  return eo_object_close(&o);
-}
+struct front_point {
+  const struct eo_study_result *result;
+  const struct eo_study_point *point;
+  struct eo_objective_value value;
+  bool knee, weighted;
+};
 
-static json_t *encode_generations(const struct eo_study_result *result)
+static json_t *write_values(const void *source)
 {
-  json_t *array = json_array();
-  for (int i = 0; i < result->generations && array; i++)
-    array = append(array, encode_generation(&result->generation[i]));
-  return array;
+  const struct front_point *p = source;
+  json_t *values = json_array();
+  for (int j = 0; j < p->result->space.count && values; j++)
+    values = append(values, json_real(eo_study_variable_value(&p->result->space.variable[j], &p->point->modification)));
+  return values;
 }
 
 static const struct eo_outline_row front_rows[] = {
-    EO_KEY("values", "[number]", "of the variables, in their order and units"),
-    {.outline = &eo_outline_value},
-    EO_KEY("knee", "flag", "the point at the knee of the front"),
-    EO_KEY("weighted", "flag", "the point that the weights choose"),
+    EO_KEY("values", "[number]", "of the variables, in their order and units", .write = write_values),
+    {.outline = &eo_outline_value, .offset = offsetof(struct front_point, value)},
+    EO_KEY("knee", "flag", "the point at the knee of the front", EO_AT(struct front_point, knee)),
+    EO_KEY("weighted", "flag", "the point that the weights choose", EO_AT(struct front_point, weighted)),
 };
 static const struct eo_outline front_outline = EO_OUTLINE("FrontPoint", front_rows);
 
-static json_t *encode_front(const struct eo_study_result *result)
+static json_t *write_front(const void *source)
 {
+  const struct eo_study_result *result = &((const struct source *)source)->result;
   json_t *array = json_array();
   for (int i = 0; i < result->front_count && array; i++) {
     const struct eo_study_point *point = &result->front[i];
-    struct eo_object o = eo_object_open_as(&front_outline);
-    json_t *values = json_array();
-    for (int j = 0; j < result->space.count && values; j++)
-      values = append(values, json_real(eo_study_variable_value(&result->space.variable[j], &point->modification)));
-    eo_object_put(&o, "values", values);
-    eo_result_put_value(&o, &point->value);
-    eo_object_put(&o, "knee", json_boolean(i == result->knee));
-    eo_object_put(&o, "weighted", json_boolean(i == result->weighted));
-    array = append(array, eo_object_close(&o));
+    const struct front_point row = {result, point, point->value, i == result->knee, i == result->weighted};
+    array = append(array, eo_outline_encode(&front_outline, &row));
   }
   return array;
 }
 
-static json_t *encode_warnings(const struct eo_warnings *warnings)
+static bool has_front(const void *source)
 {
+  return strcmp(((const struct source *)source)->algorithm, "nsga2") == 0;
+}
+
+static json_t *write_warnings(const void *source)
+{
+  const struct eo_warnings *warnings = ((const struct source *)source)->warnings;
   json_t *array = json_array();
   for (int i = 0; warnings && i < warnings->count && array; i++)
     array = append(array, json_string(warnings->text[i]));
@@ -226,94 +277,111 @@ static json_t *encode_warnings(const struct eo_warnings *warnings)
 }
 
 static const struct eo_outline_row run_rows[] = {
-    EO_KEY("job", "integer", "number of the job"),
-    EO_KEY("taken_up", "flag", "an earlier run was continued"),
-    EO_KEY("computed_evaluations", "integer", "by this run"),
-    EO_KEY("threads", "integer", "that evaluated"),
-    EO_KEY("wall_s", "number", "of this run, s"),
-    EO_KEY("model_s", "number", "of it, while the model computed, s"),
-    EO_KEY("optimizer_s", "number", "of it, in the algorithm, s"),
-    EO_KEY("history_s", "number", "of it, in the database, s"),
+    EO_KEY("job", "integer", "number of the job", EO_AT(struct eo_study_result, job)),
+    EO_KEY("taken_up", "flag", "an earlier run was continued", EO_AT(struct eo_study_result, resumed)),
+    EO_KEY("computed_evaluations", "integer", "by this run", EO_AT(struct eo_study_result, computed)),
+    EO_KEY("threads", "integer", "that evaluated", EO_AT(struct eo_study_result, threads)),
+    EO_KEY("wall_s", "number", "of this run, s", EO_AT(struct eo_study_result, seconds)),
+    EO_KEY("model_s", "number", "of it, while the model computed, s", EO_AT(struct eo_study_result, model_seconds)),
+    EO_KEY("optimizer_s", "number", "of it, in the algorithm, s", EO_AT(struct eo_study_result, optimizer_seconds)),
+    EO_KEY("history_s", "number", "of it, in the database, s", EO_AT(struct eo_study_result, store_seconds)),
 };
 static const struct eo_outline run_outline = EO_OUTLINE("StudyRun", run_rows);
 
-static json_t *encode_run(const struct eo_study_result *r)
+static double to_milliseconds(double seconds)
 {
-  struct eo_object o = eo_object_open_as(&run_outline);
-  eo_object_put(&o, "job", json_integer(r->job));
-  eo_object_put(&o, "taken_up", json_boolean(r->resumed));
-  eo_object_put(&o, "computed_evaluations", json_integer(r->computed));
-  eo_object_put(&o, "threads", json_integer(r->threads));
-  eo_object_put(&o, "wall_s", json_real(round(1e3 * r->seconds) / 1e3));
-  eo_object_put(&o, "model_s", json_real(round(1e3 * r->model_seconds) / 1e3));
-  eo_object_put(&o, "optimizer_s", json_real(round(1e3 * r->optimizer_seconds) / 1e3));
-  eo_object_put(&o, "history_s", json_real(round(1e3 * r->store_seconds) / 1e3));
-  return eo_object_close(&o);
+  return round(1e3 * seconds) / 1e3;
 }
 
-static void put_counts(struct eo_object *o, const struct eo_study_result *r)
+static json_t *write_program(const void *source)
 {
-  const struct {
-    const char *key;
-    int value;
-  } row[] = {{"individuals", r->individuals},         {"true_evaluations", r->true_evaluations},
-             {"reused_evaluations", r->reused},       {"failed_evaluations", r->failed},
-             {"predicted_individuals", r->predicted}, {"repeated_individuals", r->repeated},
-             {"imported_rows", r->imported}};
-  for (size_t i = 0; i < sizeof row / sizeof *row; i++)
-    eo_object_put(o, row[i].key, json_integer(row[i].value));
-  eo_object_put_number(o, "pfc_percent", r->individuals ? 100. * r->true_evaluations / r->individuals : NAN);
+  (void)source;
+  return json_string(PACKAGE_STRING);
+}
+
+static json_t *write_design(const void *source)
+{
+  return eo_design_encode(((const struct source *)source)->design);
+}
+
+static json_t *write_hash(const void *source)
+{
+  char hash[EO_HASH_LENGTH + 1];
+  return eo_design_hash(((const struct source *)source)->design, hash, NULL) ? NULL : json_string(hash);
+}
+
+static json_t *write_variables(const void *source)
+{
+  const struct eo_study_result *result = &((const struct source *)source)->result;
+  json_t *array = json_array();
+  for (int i = 0; i < result->space.count && array; i++)
+    array = append(array, encode_variable(result, &result->space.variable[i]));
+  return array;
+}
+
+static json_t *write_best(const void *source)
+{
+  return ((const struct source *)source)->result.best.there ? eo_outline_encode(&best_outline, source) : json_null();
+}
+
+static json_t *write_unmodified(const void *source)
+{
+  const struct source *s = source;
+  return encode_point(&s->result.unmodified, s->design);
 }
 
 static const struct eo_outline_row study_rows[] = {
-    EO_KEY("program", "text", "name and version"),
-    EO_KEY("design", "object", "with every default resolved", .table = &eo_design_table, .name = "ResolvedDesign"),
-    EO_KEY("design_hash", "text", "SHA-256 of the canonical design"),
-    EO_KEY("algorithm", "text", "as in the design's optimization"),
-    EO_KEY("seed", "integer", "of everything random"),
-    EO_KEY("variables", "[object]", "what was varied", .outline = &variable_outline),
-    EO_KEY("best", "object?", "null when no evaluation gave a value", .outline = &best_outline),
-    EO_KEY("unmodified", "object", "of the pair without its modification", .outline = &point_outline),
-    EO_KEY("individuals", "integer", "fitness values needed"),
-    EO_KEY("true_evaluations", "integer", "of them by the model, or known from the history"),
-    EO_KEY("reused_evaluations", "integer", "true evaluations that the history knew before the study asked"),
-    EO_KEY("failed_evaluations", "integer", "true evaluations without a value"),
-    EO_KEY("predicted_individuals", "integer", "fitness values that were predicted"),
-    EO_KEY("repeated_individuals", "integer", "equal to an earlier individual"),
-    EO_KEY("imported_rows", "integer", "true rows of other studies that the algorithm knew at its start"),
-    EO_KEY("pfc_percent", "number?", "true evaluations of the individuals, per cent"),
+    EO_KEY("program", "text", "name and version", .write = write_program),
+    EO_KEY("design", "object", "with every default resolved", .table = &eo_design_table, .name = "ResolvedDesign",
+           .write = write_design),
+    EO_KEY("design_hash", "text", "SHA-256 of the canonical design", .write = write_hash),
+    EO_KEY("algorithm", "text", "as in the design's optimization", EO_AT(struct source, algorithm)),
+    EO_KEY("seed", "integer", "of everything random", EO_AT(struct source, seed)),
+    EO_KEY("variables", "[object]", "what was varied", .outline = &variable_outline, .write = write_variables),
+    EO_KEY("best", "object?", "null when no evaluation gave a value", .outline = &best_outline, .write = write_best),
+    EO_KEY("unmodified", "object", "of the pair without its modification", .outline = &point_outline,
+           .write = write_unmodified),
+    EO_KEY("individuals", "integer", "fitness values needed", EO_AT(struct source, result.individuals)),
+    EO_KEY("true_evaluations", "integer", "of them by the model, or known from the history",
+           EO_AT(struct source, result.true_evaluations)),
+    EO_KEY("reused_evaluations", "integer", "true evaluations that the history knew before the study asked",
+           EO_AT(struct source, result.reused)),
+    EO_KEY("failed_evaluations", "integer", "true evaluations without a value", EO_AT(struct source, result.failed)),
+    EO_KEY("predicted_individuals", "integer", "fitness values that were predicted",
+           EO_AT(struct source, result.predicted)),
+    EO_KEY("repeated_individuals", "integer", "equal to an earlier individual", EO_AT(struct source, result.repeated)),
+    EO_KEY("imported_rows", "integer", "true rows of other studies that the algorithm knew at its start",
+           EO_AT(struct source, result.imported)),
+    EO_KEY("pfc_percent", "number?", "true evaluations of the individuals, per cent",
+           EO_AT(struct source, pfc_percent)),
     EO_KEY("generations", "[object]",
            "generations (ga, fpga), batches (credibility-ga) or cycles (nsga2), in their order",
-           .outline = &generation_outline),
-    EO_KEY("front", "[object]", "non-dominated points", .when = "of nsga2", .outline = &front_outline),
-    EO_KEY("stopped", "word", "why it ended", .words = eo_study_stops),
-    EO_KEY("warnings", "[text]", "in plain words"),
+           .outline = &generation_outline, EO_ROWS_AT(struct source, result.generation, result.generations)),
+    EO_KEY("front", "[object]", "non-dominated points", .when = "of nsga2", .outline = &front_outline,
+           .write = write_front, .there = has_front),
+    EO_KEY("stopped", "word", "why it ended", .words = eo_study_stops, EO_AT(struct source, result.stopped)),
+    EO_KEY("warnings", "[text]", "in plain words", .write = write_warnings),
     EO_KEY("run", "object", "with best/result/timing_ms the only part that differs between two runs",
-           .outline = &run_outline),
+           .outline = &run_outline, EO_AT(struct source, result)),
 };
 const struct eo_outline eo_study_outline = EO_OUTLINE("OptimizationResult", study_rows);
 
 json_t *eo_study_result_encode(const struct eo_study_result *result, const struct eo_design *design,
                                const json_t *analysis, const struct eo_warnings *warnings)
 {
-  struct eo_object o = eo_object_open_as(&eo_study_outline);
-  char hash[EO_HASH_LENGTH + 1];
-  eo_object_put(&o, "program", json_string(PACKAGE_STRING));
-  eo_object_put(&o, "design", eo_design_encode(design));
-  eo_object_put(&o, "design_hash", eo_design_hash(design, hash, NULL) ? NULL : json_string(hash));
-  eo_object_put(&o, "algorithm", json_string(design->optimization.algorithm));
-  eo_object_put(&o, "seed", json_integer((json_int_t)design->optimization.seed));
-  eo_object_put(&o, "variables", encode_variables(result));
-  eo_object_put(&o, "best", result->best.there ? encode_best(result, design, analysis) : json_null());
-  eo_object_put(&o, "unmodified", encode_point(&result->unmodified, design));
-  put_counts(&o, result);
-  eo_object_put(&o, "generations", encode_generations(result));
-  if (strcmp(design->optimization.algorithm, "nsga2") == 0)
-    eo_object_put(&o, "front", encode_front(result));
-  eo_object_put(&o, "stopped", json_string(eo_study_stops[result->stopped]));
-  eo_object_put(&o, "warnings", encode_warnings(warnings));
-  eo_object_put(&o, "run", encode_run(result));
-  return eo_object_close(&o);
+  struct source source = {.result = *result,
+                          .design = design,
+                          .analysis = analysis,
+                          .warnings = warnings,
+                          .seed = design->optimization.seed,
+                          .pfc_percent = result->individuals ? 100. * result->true_evaluations / result->individuals
+                                                             : NAN};
+  snprintf(source.algorithm, sizeof source.algorithm, "%s", design->optimization.algorithm);
+  source.result.seconds = to_milliseconds(result->seconds);
+  source.result.model_seconds = to_milliseconds(result->model_seconds);
+  source.result.optimizer_seconds = to_milliseconds(result->optimizer_seconds);
+  source.result.store_seconds = to_milliseconds(result->store_seconds);
+  return eo_outline_encode(&eo_study_outline, &source);
 }
 
 /* ---- for people ---- */

@@ -1,5 +1,7 @@
 #include "format/outline.h"
 
+#include <math.h>
+#include <stdint.h>
 #include <string.h>
 
 #include "format/object.h"
@@ -21,6 +23,92 @@ static const struct eo_outline_row *walk(const struct eo_outline *outline, int *
 const struct eo_outline_row *eo_outline_at(const struct eo_outline *outline, int index)
 {
   return walk(outline, &index);
+}
+
+/* ---- writing ---- */
+
+static bool may_be_null(const struct eo_outline_row *row)
+{
+  return row->shape[strlen(row->shape) - 1] == '?';
+}
+
+static json_t *encode_number(const struct eo_outline_row *row, double value)
+{
+  if (strncmp(row->shape, "integer", 7) != 0)
+    return eo_json_quantity(value, row->unit);
+  return isnan(value) ? json_null() : json_integer((json_int_t)value);
+}
+
+static json_t *encode_integer(const struct eo_outline_row *row, int value)
+{
+  if (!row->words)
+    return json_integer(value);
+  return value < 0 ? json_null() : json_string(row->words[value]);
+}
+
+static json_t *encode_text(const struct eo_outline_row *row, const char *value)
+{
+  return !*value && may_be_null(row) ? json_null() : json_string(value);
+}
+
+static json_t *encode_part(const struct eo_outline_row *row, const void *part)
+{
+  return row->outline ? eo_outline_encode(row->outline, part) : eo_table_encode(row->table, part);
+}
+
+static json_t *encode_rows(const struct eo_outline_row *row, const void *source)
+{
+  struct eo_object list = {.json = json_array()};
+  const char *part = *(const char *const *)((const char *)source + row->offset);
+  int count = *(const int *)((const char *)source + row->count_offset);
+  for (int i = 0; i < count; i++)
+    list.failed = json_array_append_new(list.json, encode_part(row, part + (size_t)i * row->stride)) != 0 ||
+                  list.failed;
+  return eo_object_close(&list);
+}
+
+static json_t *encode(const struct eo_outline_row *row, const void *source)
+{
+  const void *place = (const char *)source + row->offset;
+  switch (row->member) {
+  case EO_MEMBER_NONE:
+    return row->write ? row->write(source) : NULL;
+  case EO_MEMBER_NUMBER:
+    return encode_number(row, !row->known || row->known(source) ? *(const double *)place : NAN);
+  case EO_MEMBER_INTEGER:
+    return encode_integer(row, *(const int *)place);
+  case EO_MEMBER_LONG:
+    return json_integer((json_int_t) * (const int64_t *)place);
+  case EO_MEMBER_FLAG:
+    return json_boolean(*(const bool *)place);
+  case EO_MEMBER_TEXT:
+    return encode_text(row, place);
+  case EO_MEMBER_STRING:
+    return encode_text(row, *(const char *const *)place);
+  case EO_MEMBER_PART:
+    return encode_part(row, place);
+  case EO_MEMBER_ROWS:
+    return encode_rows(row, source);
+  }
+  return NULL;
+}
+
+void eo_outline_put(struct eo_object *object, const struct eo_outline *outline, const void *source)
+{
+  for (int i = 0; i < outline->count; i++) {
+    const struct eo_outline_row *row = &outline->row[i];
+    if (!row->key)
+      eo_outline_put(object, row->outline, (const char *)source + row->offset);
+    else if (!row->there || row->there(source))
+      eo_object_put(object, row->key, encode(row, source));
+  }
+}
+
+json_t *eo_outline_encode(const struct eo_outline *outline, const void *source)
+{
+  struct eo_object object = eo_object_open();
+  eo_outline_put(&object, outline, source);
+  return eo_object_close(&object);
 }
 
 /* ---- parts of documents ---- */

@@ -1,9 +1,12 @@
-/* Outlines: what stands in a document that code writes. One outline per object, beside the function that writes it, its
-   rows in the order of writing. The writer opens the object with its outline (object.h) and can then put nothing
-   that is not in it, nor leave out what is; the API's description comes from the same rows.
+/* Outlines: what stands in a document that the program writes, one outline per object, its rows in the order of
+   writing. A row says of which member of a struct its value is, or names the function that writes it; so the same row
+   writes a key (eo_outline_encode()) and describes it in the API. Where code must put the values itself (a part of a
+   document that several threads write), it opens the object with its outline (object.h) and can then put nothing that
+   is not in it, nor leave out what is.
 
-   shape: the short notation of http/shape.h without names: number, integer, flag, text, word (one of words), object (of
-   outline or table), [array], one|or another; `?` behind any of them: or null. */
+   shape: number, integer, flag, text, word (one of words), object (of outline or table), [array], one|or another; `?`
+   behind any of them: or null. Numbers are written with EO_DIGITS_NUMBER digits in the row's unit, NaN as null; of an
+   empty text? and a negative word? it is null too; `integer` of a double member is its whole number. */
 #ifndef EASEOFF_FORMAT_OUTLINE_H
 #define EASEOFF_FORMAT_OUTLINE_H
 
@@ -14,9 +17,23 @@
 #include "format/table.h"
 
 struct eo_outline;
+struct eo_object;
+
+/* How a row's value lies in the struct that is written. */
+enum eo_outline_member {
+  EO_MEMBER_NONE,    /* `write` gives it */
+  EO_MEMBER_NUMBER,  /* double */
+  EO_MEMBER_INTEGER, /* int, or an enum; of a word its index */
+  EO_MEMBER_LONG,    /* int64_t or uint64_t */
+  EO_MEMBER_FLAG,    /* bool */
+  EO_MEMBER_TEXT,    /* char[] */
+  EO_MEMBER_STRING,  /* const char * */
+  EO_MEMBER_PART,    /* a struct that the row's outline or table writes */
+  EO_MEMBER_ROWS,    /* pointer to `stride` bytes each, as many as the int at count_offset says: an array */
+};
 
 struct eo_outline_row {
-  const char *key; /* NULL: the rows of outline stand here */
+  const char *key; /* NULL: the rows of outline stand here, of the part at offset */
   const char *shape, *help;
   const struct eo_unit *unit;       /* NULL: dimensionless, or said in help */
   const char *when;                 /* NULL: the key is always there; else when it is */
@@ -25,6 +42,11 @@ struct eo_outline_row {
   const char *name;                 /* of the table's schema */
   bool sparse;                      /* table: keys with their default may be missing */
   const char *const *words;         /* word: ends with NULL */
+  enum eo_outline_member member;
+  size_t offset, count_offset, stride;
+  json_t *(*write)(const void *source); /* new; NULL without memory */
+  bool (*there)(const void *source);    /* NULL: always; see `when` */
+  bool (*known)(const void *source);    /* number: false: it means nothing and is null; NULL: always known */
 };
 
 struct eo_outline {
@@ -37,6 +59,17 @@ struct eo_outline {
   {                                                   \
     .key = key_, .shape = shape_, .help = __VA_ARGS__ \
   }
+/* ... of a member; plain ones are told by their type. */
+#define EO_AT(type, member_) \
+  .offset = offsetof(type, member_), .member = _Generic(((type *)0)->member_, double: EO_MEMBER_NUMBER,       \
+                                                        int: EO_MEMBER_INTEGER, unsigned: EO_MEMBER_INTEGER,  \
+                                                        long: EO_MEMBER_LONG, unsigned long: EO_MEMBER_LONG,  \
+                                                        bool: EO_MEMBER_FLAG, char *: EO_MEMBER_TEXT,         \
+                                                        const char *: EO_MEMBER_STRING, default: EO_MEMBER_PART)
+/* ... of an array that the struct points to. */
+#define EO_ROWS_AT(type, member_, count)                                                              \
+  .offset = offsetof(type, member_), .count_offset = offsetof(type, count), .member = EO_MEMBER_ROWS, \
+  .stride = sizeof *((type *)0)->member_
 #define EO_OUTLINE(name_, rows)                                                \
   {                                                                            \
     .name = name_, .count = (int)(sizeof(rows) / sizeof(rows)[0]), .row = rows \
@@ -44,6 +77,13 @@ struct eo_outline {
 
 /* Row number `index` with included rows counted in place; NULL behind the last. */
 const struct eo_outline_row *eo_outline_at(const struct eo_outline *outline, int index);
+
+/* A new object with every row of the outline that is there, from the struct it is about; NULL without memory, and when
+   a row says neither member nor function. */
+json_t *eo_outline_encode(const struct eo_outline *outline, const void *source);
+
+/* The same into an object that is open with this outline or one that has its rows here. */
+void eo_outline_put(struct eo_object *object, const struct eo_outline *outline, const void *source);
 
 /* What an outline names of a document that has more; the result shares its values. New; NULL without memory. */
 json_t *eo_outline_take(const struct eo_outline *outline, const json_t *document);

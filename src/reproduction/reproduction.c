@@ -90,7 +90,7 @@ static json_t *encode_summary(const struct reproduction *r)
       json_t *cases = json_array();
       eo_object_put(&o, "design", json_string(eo_reproduction_variant[i]));
       eo_object_put(&o, "mesh_law", json_string(laws[law]));
-      eo_result_put_value(&o, &r->value[law][i]);
+      eo_outline_put(&o, &eo_outline_value, &r->value[law][i]);
       for (int k = 0; k < TORQUES; k++)
         json_array_append_new(cases, eo_result_raw_case(&r->design[i]->load_case[k], &r->raw[law][i][k]));
       eo_object_put(&o, "load_cases", cases);

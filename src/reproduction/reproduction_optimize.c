@@ -52,7 +52,7 @@ static json_t *encode_run(const struct eo_study_result *s, const char *case_name
     json_array_append_new(best, eo_json_quantity(s->generation[i].best, NULL));
   eo_object_put(&o, "case", json_string(case_name));
   eo_object_put(&o, "algorithm", json_string(algorithm));
-  eo_result_put_value(&o, &s->best.value);
+  eo_outline_put(&o, &eo_outline_value, &s->best.value);
   eo_object_put(&o, "true_evaluations", json_integer(s->true_evaluations));
   eo_object_put(&o, "individuals", json_integer(s->individuals));
   eo_object_put(&o, "pfc_percent", eo_json_quantity(100. * s->true_evaluations / s->individuals, NULL));

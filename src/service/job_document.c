@@ -27,7 +27,7 @@ static const struct eo_outline best_outline = EO_OUTLINE("JobPoint", best_rows);
 static json_t *encode_point(const struct eo_study_point *point)
 {
   struct eo_object o = eo_object_open_as(&best_outline);
-  eo_result_put_value(&o, &point->value);
+  eo_outline_put(&o, &eo_outline_value, &point->value);
   eo_object_put(&o, "modification", eo_table_encode(&eo_modification_table, &point->modification));
   return eo_object_close(&o);
 }
@@ -164,8 +164,9 @@ static json_t *encode_columns(const struct eo_stored_job *job)
   for (const char *const *key = (const char *const[]){"generation", "predicted", "reused", NULL}; *key && progress;
        key++)
     json_object_set_new(progress, *key, json_null());
-  eo_result_put_value(&best, &(struct eo_objective_value){
-                                 .sums.failed = true, .objective = job->best_value, .fitness = NAN, .violation = NAN});
+  eo_outline_put(&best, &eo_outline_value,
+                 &(struct eo_objective_value){
+                     .sums.failed = true, .objective = job->best_value, .fitness = NAN, .violation = NAN});
   eo_object_put(&best, "modification", json_null());
   json_t *value = eo_object_close(&best);
   if (isfinite(job->best_value) && value)

@@ -19,46 +19,56 @@ static enum eo_code append(json_t *array, json_t *value, struct eo_error *error)
 /* ---- list ---- */
 
 static const struct eo_outline_row problem_rows[] = {
-    EO_KEY("id", "integer", "number of the problem"),
-    EO_KEY("hash", "text", "SHA-256 of everything that an evaluation depends on but the modification"),
-    EO_KEY("name", "text", "of the first design"),
-    EO_KEY("evaluator", "integer", "version of the model"),
-    EO_KEY("evaluations", "integer", "true rows"),
-    EO_KEY("failed", "integer", "of them without a value"),
-    EO_KEY("cost_s", "number?", "computing time of all, s"),
-    EO_KEY("created", "text", "date and time, UTC"),
+    EO_KEY("id", "integer", "number of the problem", EO_AT(struct eo_stored_problem, id)),
+    EO_KEY("hash", "text", "SHA-256 of everything that an evaluation depends on but the modification",
+           EO_AT(struct eo_stored_problem, hash)),
+    EO_KEY("name", "text", "of the first design", EO_AT(struct eo_stored_problem, name)),
+    EO_KEY("evaluator", "integer", "version of the model", EO_AT(struct eo_stored_problem, evaluator)),
+    EO_KEY("evaluations", "integer", "true rows", EO_AT(struct eo_stored_problem, evaluations)),
+    EO_KEY("failed", "integer", "of them without a value", EO_AT(struct eo_stored_problem, failed)),
+    EO_KEY("cost_s", "number?", "computing time of all, s", EO_AT(struct eo_stored_problem, cost)),
+    EO_KEY("created", "text", "date and time, UTC", EO_AT(struct eo_stored_problem, created)),
 };
 static const struct eo_outline problem_outline = EO_OUTLINE("HistoryProblem", problem_rows);
 
-static enum eo_code add_problem(void *context, const struct eo_stored_problem *p, struct eo_error *error)
+static enum eo_code add_problem(void *context, const struct eo_stored_problem *problem, struct eo_error *error)
 {
-  struct eo_object o = eo_object_open_as(&problem_outline);
-  eo_object_put(&o, "id", json_integer(p->id));
-  eo_object_put(&o, "hash", json_string(p->hash));
-  eo_object_put(&o, "name", json_string(p->name));
-  eo_object_put(&o, "evaluator", json_integer(p->evaluator));
-  eo_object_put(&o, "evaluations", json_integer(p->evaluations));
-  eo_object_put(&o, "failed", json_integer(p->failed));
-  eo_object_put_number(&o, "cost_s", p->cost);
-  eo_object_put(&o, "created", json_string(p->created));
-  return append(context, eo_object_close(&o), error);
+  return append(context, eo_outline_encode(&problem_outline, problem), error);
+}
+
+struct listed_job {
+  struct eo_stored_job job;
+  const char *state;
+  double pfc_percent;
+  bool has_result;
+};
+
+/* null before the job begins */
+static json_t *write_problem(const void *source)
+{
+  int64_t problem = ((const struct listed_job *)source)->job.problem;
+  return problem ? json_integer(problem) : json_null();
 }
 
 static const struct eo_outline_row job_rows[] = {
-    EO_KEY("id", "integer", "number of the job"),
-    EO_KEY("kind", "word", "what it does", .words = eo_store_job_kinds),
-    EO_KEY("problem", "integer?", "null before it begins, and of a preparation"),
-    EO_KEY("name", "text", "of the design"),
-    EO_KEY("algorithm", "text", "of an optimization; else empty"),
-    EO_KEY("state", "text", "as of a job, or interrupted: it was running when its process ended"),
-    EO_KEY("stopped", "text", "why it ended: budget, converged, cancelled; else empty"),
-    EO_KEY("true_evaluations", "integer", "by the model, or known from the history"),
-    EO_KEY("individuals", "integer", "fitness values needed"),
-    EO_KEY("pfc_percent", "number?", "true evaluations of the individuals, per cent"),
-    EO_KEY("best_value", "number?", "J and penalties of the best"),
-    EO_KEY("has_result", "flag", "there is a result to get"),
-    EO_KEY("created", "text", "date and time, UTC"),
-    EO_KEY("updated", "text", "date and time, UTC"),
+    EO_KEY("id", "integer", "number of the job", EO_AT(struct listed_job, job.id)),
+    EO_KEY("kind", "word", "what it does", .words = eo_store_job_kinds, EO_AT(struct listed_job, job.kind)),
+    EO_KEY("problem", "integer?", "null before it begins, and of a preparation", .write = write_problem),
+    EO_KEY("name", "text", "of the design", EO_AT(struct listed_job, job.name)),
+    EO_KEY("algorithm", "text", "of an optimization; else empty", EO_AT(struct listed_job, job.algorithm)),
+    EO_KEY("state", "text", "as of a job, or interrupted: it was running when its process ended",
+           EO_AT(struct listed_job, state)),
+    EO_KEY("stopped", "text", "why it ended: budget, converged, cancelled; else empty",
+           EO_AT(struct listed_job, job.stopped)),
+    EO_KEY("true_evaluations", "integer", "by the model, or known from the history",
+           EO_AT(struct listed_job, job.true_evaluations)),
+    EO_KEY("individuals", "integer", "fitness values needed", EO_AT(struct listed_job, job.individuals)),
+    EO_KEY("pfc_percent", "number?", "true evaluations of the individuals, per cent",
+           EO_AT(struct listed_job, pfc_percent)),
+    EO_KEY("best_value", "number?", "J and penalties of the best", EO_AT(struct listed_job, job.best_value)),
+    EO_KEY("has_result", "flag", "there is a result to get", EO_AT(struct listed_job, has_result)),
+    EO_KEY("created", "text", "date and time, UTC", EO_AT(struct listed_job, job.created)),
+    EO_KEY("updated", "text", "date and time, UTC", EO_AT(struct listed_job, job.updated)),
 };
 static const struct eo_outline job_outline = EO_OUTLINE("HistoryJob", job_rows);
 
@@ -73,26 +83,16 @@ struct job_list {
   json_t *array;
 };
 
-static enum eo_code add_job(void *context, const struct eo_stored_job *j, struct eo_error *error)
+static enum eo_code add_job(void *context, const struct eo_stored_job *job, struct eo_error *error)
 {
   struct job_list *list = context;
-  bool taken = j->state != EO_JOB_RUNNING || eo_store_job_is_taken(list->store, j->id);
-  struct eo_object o = eo_object_open_as(&job_outline);
-  eo_object_put(&o, "id", json_integer(j->id));
-  eo_object_put(&o, "kind", json_string(eo_store_job_kind_name(j->kind)));
-  eo_object_put(&o, "problem", j->problem ? json_integer(j->problem) : json_null());
-  eo_object_put(&o, "name", json_string(j->name));
-  eo_object_put(&o, "algorithm", json_string(j->algorithm));
-  eo_object_put(&o, "state", json_string(taken ? eo_store_job_state_name(j->state) : "interrupted"));
-  eo_object_put(&o, "stopped", json_string(j->stopped));
-  eo_object_put(&o, "true_evaluations", json_integer(j->true_evaluations));
-  eo_object_put(&o, "individuals", json_integer(j->individuals));
-  eo_object_put_number(&o, "pfc_percent", j->individuals ? 100. * j->true_evaluations / j->individuals : NAN);
-  eo_object_put_number(&o, "best_value", j->best_value);
-  eo_object_put(&o, "has_result", json_boolean(*j->result));
-  eo_object_put(&o, "created", json_string(j->created));
-  eo_object_put(&o, "updated", json_string(j->updated));
-  return append(list->array, eo_object_close(&o), error);
+  bool taken = job->state != EO_JOB_RUNNING || eo_store_job_is_taken(list->store, job->id);
+  const struct listed_job row = {.job = *job,
+                                 .state = taken ? eo_store_job_state_name(job->state) : "interrupted",
+                                 .pfc_percent = job->individuals ? 100. * job->true_evaluations / job->individuals
+                                                                 : NAN,
+                                 .has_result = *job->result != '\0'};
+  return append(list->array, eo_outline_encode(&job_outline, &row), error);
 }
 
 enum eo_code eo_records_list(struct eo_store *store, json_t **document, struct eo_error *error)

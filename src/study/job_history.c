@@ -89,45 +89,41 @@ static enum eo_code weigh(struct history *h, const char *modification, struct eo
   return code;
 }
 
+struct row {
+  struct eo_stored_candidate candidate;
+  struct eo_stored_evaluation evaluation;
+  struct eo_objective_value value;
+};
+
+static json_t *write_modification(const void *source)
+{
+  const char *text = ((const struct row *)source)->evaluation.modification;
+  return eo_json_parse(text, strlen(text), NULL);
+}
+
 static const struct eo_outline_row history_rows[] = {
-    EO_KEY("ordinal", "integer", "from 0, in the order in which the job asked"),
-    EO_KEY("generation", "integer", "from 0"),
-    EO_KEY("individual", "integer", "of its generation, from 0"),
-    EO_KEY("outcome", "word", "refused: the modification is impossible", .words = eo_store_outcomes),
-    EO_KEY("reason", "text", "why it has no value; else empty"),
+    EO_KEY("ordinal", "integer", "from 0, in the order in which the job asked", EO_AT(struct row, candidate.ordinal)),
+    EO_KEY("generation", "integer", "from 0", EO_AT(struct row, candidate.generation)),
+    EO_KEY("individual", "integer", "of its generation, from 0", EO_AT(struct row, candidate.individual)),
+    EO_KEY("outcome", "word", "refused: the modification is impossible", .words = eo_store_outcomes,
+           EO_AT(struct row, evaluation.outcome)),
+    EO_KEY("reason", "text", "why it has no value; else empty", EO_AT(struct row, evaluation.reason)),
     EO_KEY("modification", "object", "what is not at its default", .table = &eo_modification_table,
-           .name = "SparseModification", .sparse = true),
-    {.outline = &eo_outline_value},
-    EO_KEY("reused", "flag", "the history knew it before the job asked"),
+           .name = "SparseModification", .sparse = true, .write = write_modification),
+    {.outline = &eo_outline_value, .offset = offsetof(struct row, value)},
+    EO_KEY("reused", "flag", "the history knew it before the job asked", EO_AT(struct row, candidate.reused)),
 };
 const struct eo_outline eo_job_history_outline = EO_OUTLINE("JobHistoryRow", history_rows);
 
-static json_t *encode(const struct eo_stored_candidate *c, const struct eo_stored_evaluation *row,
-                      const struct eo_objective_value *value, struct eo_error *error)
-{
-  struct eo_object o = eo_object_open_as(&eo_job_history_outline);
-  eo_object_put(&o, "ordinal", json_integer(c->ordinal));
-  eo_object_put(&o, "generation", json_integer(c->generation));
-  eo_object_put(&o, "individual", json_integer(c->individual));
-  eo_object_put(&o, "outcome", json_string(eo_store_outcome_name(row->outcome)));
-  eo_object_put(&o, "reason", json_string(row->reason));
-  eo_object_put(&o, "modification", eo_json_parse(row->modification, strlen(row->modification), error));
-  eo_result_put_value(&o, value);
-  eo_object_put(&o, "reused", json_boolean(c->reused));
-  return eo_object_close(&o);
-}
-
-static enum eo_code add_row(struct history *h, const struct eo_stored_candidate *c, struct eo_text *text,
+static enum eo_code add_row(struct history *h, const struct eo_stored_candidate *candidate, struct eo_text *text,
                             struct eo_error *error)
 {
-  struct eo_stored_evaluation row = {.scenarios = h->scenarios, .cases = h->cases, .raw = h->raw};
-  struct eo_objective_value value;
-  enum eo_code code = eo_store_get_evaluation(h->store, c->evaluation, &row, text, error);
-  if (!code)
-    code = weigh(h, row.modification, &value, error);
-  if (!code && json_array_append_new(h->items, encode(c, &row, &value, error)))
-    code = eo_error_memory(error);
-  return code;
+  struct row row = {.candidate = *candidate,
+                    .evaluation = {.scenarios = h->scenarios, .cases = h->cases, .raw = h->raw}};
+  EO_TRY(eo_store_get_evaluation(h->store, candidate->evaluation, &row.evaluation, text, error));
+  EO_TRY(weigh(h, row.evaluation.modification, &row.value, error));
+  return json_array_append_new(h->items, eo_outline_encode(&eo_job_history_outline, &row)) ? eo_error_memory(error)
+                                                                                           : EO_OK;
 }
 
 static enum eo_code take_candidate(void *context, const struct eo_stored_candidate *c, struct eo_error *error)
