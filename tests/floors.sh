@@ -36,7 +36,10 @@ only() # LIBRARY PATTERN FOLDERS
 }
 only SuiteSparse 'cholmod|klu' numerics
 only SUNDIALS 'kinsol|cvode|sundials|nvector|sunlinsol|sunmatrix' numerics
-only jansson 'jansson' 'format|document|study|reproduction|service|http|reference|app'
+only jansson 'jansson' 'format|document|study|reproduction|http|reference|app'
+wrong=$(grep -lE '\bjson_[a-z]' service/*.[ch])
+[ -z "$wrong" ]
+result $? "the service speaks structs and text, no JSON values:$wrong"
 only libmatio 'matio' recording
 only HDF5 'hdf5' recording
 only libarchive 'archive' recording

@@ -1,6 +1,7 @@
 #include "document/design_document.h"
 
 #include <stdarg.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "format/json.h"
@@ -93,6 +94,37 @@ json_t *eo_design_encode(const struct eo_design *design)
     json_object_del(json_object_get(modification, "gear"), "right");
   }
   return document;
+}
+
+void eo_design_write(const struct eo_design *design, struct eo_text *text)
+{
+  json_t *document = eo_design_encode(design);
+  if (document)
+    eo_json_write(text, document, EO_JSON_COMPACT);
+  text->failed = text->failed || !document;
+  json_decref(document);
+}
+
+static enum eo_code decode(const json_t *document, struct eo_design *design, struct eo_warnings *warnings,
+                           struct eo_error *error)
+{
+  struct eo_faults *faults = calloc(1, sizeof *faults);
+  if (!faults)
+    return eo_error_memory(error);
+  enum eo_code code = eo_design_decode(document, design, warnings, faults) ? EO_OK : eo_faults_first(faults, error);
+  free(faults);
+  return code;
+}
+
+enum eo_code eo_design_read(const char *text, size_t size, struct eo_design *design, struct eo_geometry *geometry,
+                            struct eo_warnings *warnings, struct eo_error *error)
+{
+  json_t *document = eo_json_parse(text, size, error);
+  if (!document)
+    return error->code;
+  enum eo_code code = decode(document, design, warnings, error);
+  json_decref(document);
+  return code ? code : eo_design_complete(design, geometry, error);
 }
 
 enum eo_code eo_design_complete(struct eo_design *design, struct eo_geometry *geometry, struct eo_error *error)

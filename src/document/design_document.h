@@ -40,6 +40,13 @@ void eo_design_note_assumptions(const json_t *document, const struct eo_design *
 /* New document with every key; derived values that are not resolved are null. NULL without memory. */
 json_t *eo_design_encode(const struct eo_design *design);
 
+/* The same as compact text; without memory the text has failed. */
+void eo_design_write(const struct eo_design *design, struct eo_text *text);
+
+/* Out of a document as text, read and completed. Errors: EO_ERROR_INPUT (the first fault), memory. */
+enum eo_code eo_design_read(const char *text, size_t size, struct eo_design *design, struct eo_geometry *geometry,
+                            struct eo_warnings *warnings, struct eo_error *error);
+
 /* Resolves every derived default, moves each number to the nearest one that the document can express and checks what
    needs more than one key. Afterwards analysing *design and analysing its document are the same thing, bit for bit.
    Outputs untouched on failure. */

@@ -48,6 +48,10 @@ void eo_result_summary(const json_t *result, struct eo_text *text);
 /* One line per load case, CSV: what stands in "objectives", as designed and unmodified. */
 void eo_result_summary_csv(const json_t *result, struct eo_text *text);
 
+/* The same right from an analysis. Errors: memory. */
+enum eo_code eo_result_write_csv(const struct eo_analysis *analysis, const struct eo_design *design,
+                                 struct eo_text *text, struct eo_error *error);
+
 /* The curves as files of comma-separated values with the same names and units: summary, modification, unloaded contact,
    and for every load case curves, root stress, vibration, orders and one contact pattern per end. */
 void eo_result_files(const json_t *result, struct eo_file_set *bundle);

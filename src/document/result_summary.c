@@ -163,3 +163,14 @@ void eo_result_summary(const json_t *result, struct eo_text *text)
   print_warnings(result, text);
   print_timing(result, text);
 }
+
+enum eo_code eo_result_write_csv(const struct eo_analysis *analysis, const struct eo_design *design,
+                                 struct eo_text *text, struct eo_error *error)
+{
+  json_t *document = eo_result_encode_part(analysis, design, NULL, EO_RESULT_NO_MAPS | EO_RESULT_NO_HISTORIES);
+  if (!document)
+    return eo_error_memory(error);
+  eo_result_summary_csv(document, text);
+  json_decref(document);
+  return text->failed ? eo_error_memory(error) : EO_OK;
+}

@@ -49,6 +49,10 @@ extern const struct eo_outline eo_sweep_outline;
 json_t *eo_sweep_encode(const struct eo_sweep *sweep, const struct eo_design *design,
                         const struct eo_warnings *warnings);
 
+/* The same as compact JSON, appended; without memory the text has failed. */
+void eo_sweep_write(const struct eo_sweep *sweep, const struct eo_design *design, const struct eo_warnings *warnings,
+                    struct eo_text *text);
+
 /* For people: a line per point, eigenfrequencies and where mesh orders meet them. */
 void eo_sweep_summary(const struct eo_sweep *sweep, const struct eo_design *design, const struct eo_warnings *warnings,
                       struct eo_text *text);

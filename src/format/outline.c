@@ -67,9 +67,9 @@ static json_t *encode_rows(const struct eo_outline_row *row, const void *source)
   return eo_object_close(&list);
 }
 
-static json_t *encode(const struct eo_outline_row *row, const void *source)
+/* The value at its place in what the row is about. */
+static json_t *encode_at(const struct eo_outline_row *row, const void *source, const void *place)
 {
-  const void *place = (const char *)source + row->offset;
   switch (row->member) {
   case EO_MEMBER_NONE:
     return row->write ? row->write(source) : NULL;
@@ -91,6 +91,24 @@ static json_t *encode(const struct eo_outline_row *row, const void *source)
     return encode_rows(row, source);
   }
   return NULL;
+}
+
+/* source: of which rows are at an offset, as many as it says */
+static json_t *encode_column(const struct eo_outline_row *row, const void *source)
+{
+  struct eo_object list = {.json = json_array()};
+  const char *first = *(const char *const *)((const char *)source + row->offset);
+  int count = *(const int *)((const char *)source + row->count_offset);
+  for (int i = 0; i < count; i++) {
+    const char *each = first + (size_t)i * row->stride;
+    list.failed = json_array_append_new(list.json, encode_at(row, each, each + row->column_offset)) != 0 || list.failed;
+  }
+  return eo_object_close(&list);
+}
+
+static json_t *encode(const struct eo_outline_row *row, const void *source)
+{
+  return row->column ? encode_column(row, source) : encode_at(row, source, (const char *)source + row->offset);
 }
 
 void eo_outline_put(struct eo_object *object, const struct eo_outline *outline, const void *source)

@@ -44,6 +44,8 @@ struct eo_outline_row {
   const char *const *words;         /* word: ends with NULL */
   enum eo_outline_member member;
   size_t offset, count_offset, stride;
+  bool column; /* an array: the member at column_offset of each of the rows at offset */
+  size_t column_offset;
   json_t *(*write)(const void *source); /* new; NULL without memory */
   bool (*there)(const void *source);    /* NULL: always; see `when` */
   bool (*known)(const void *source);    /* number: false: it means nothing and is null; NULL: always known */
@@ -60,16 +62,19 @@ struct eo_outline {
     .key = key_, .shape = shape_, .help = __VA_ARGS__ \
   }
 /* ... of a member; plain ones are told by their type. */
-#define EO_AT(type, member_) \
-  .offset = offsetof(type, member_), .member = _Generic(((type *)0)->member_, double: EO_MEMBER_NUMBER,       \
-                                                        int: EO_MEMBER_INTEGER, unsigned: EO_MEMBER_INTEGER,  \
-                                                        long: EO_MEMBER_LONG, unsigned long: EO_MEMBER_LONG,  \
-                                                        bool: EO_MEMBER_FLAG, char *: EO_MEMBER_TEXT,         \
-                                                        const char *: EO_MEMBER_STRING, default: EO_MEMBER_PART)
+#define EO_KIND_OF(type, member_) \
+  _Generic(((type *)0)->member_, double: EO_MEMBER_NUMBER, int: EO_MEMBER_INTEGER, unsigned: EO_MEMBER_INTEGER,     \
+           long: EO_MEMBER_LONG, unsigned long: EO_MEMBER_LONG, bool: EO_MEMBER_FLAG, char *: EO_MEMBER_TEXT,       \
+           const char *: EO_MEMBER_STRING, default: EO_MEMBER_PART)
+#define EO_AT(type, member_) .offset = offsetof(type, member_), .member = EO_KIND_OF(type, member_)
 /* ... of an array that the struct points to. */
 #define EO_ROWS_AT(type, member_, count)                                                              \
   .offset = offsetof(type, member_), .count_offset = offsetof(type, count), .member = EO_MEMBER_ROWS, \
   .stride = sizeof *((type *)0)->member_
+/* ... of a member of each of these: a column. */
+#define EO_COLUMN_AT(type, rows_, count, row_type, member_)                                                           \
+  .offset = offsetof(type, rows_), .count_offset = offsetof(type, count), .column = true, .stride = sizeof(row_type), \
+  .column_offset = offsetof(row_type, member_), .member = EO_KIND_OF(row_type, member_)
 #define EO_OUTLINE(name_, rows)                                                \
   {                                                                            \
     .name = name_, .count = (int)(sizeof(rows) / sizeof(rows)[0]), .row = rows \

@@ -173,14 +173,18 @@ static void put_fit(struct eo_request *request, int64_t id, const struct basis *
   struct collected c = {.wanted = basis->wanted};
   struct eo_error error;
   struct eo_work work;
-  enum eo_code code = eo_store_list_measurements(request->store, id, 0, EO_MOST_MEASURED + 1, collect, &c, &error);
+  char *given = json_dumps(basis->given, JSON_COMPACT);
+  enum eo_code code = given
+                          ? eo_store_list_measurements(request->store, id, 0, EO_MOST_MEASURED + 1, collect, &c, &error)
+                          : eo_error_memory(&error);
   if (!code)
-    code = eo_rig_fit(&work, &c.points, settings, basis->given, &error);
+    code = eo_rig_fit(&work, &c.points, settings, given, &error);
   if (code)
     eo_reply_error(request, "", &error);
   else
     ask(request, &basis->design, &work);
   eo_rig_points_done(&c.points);
+  free(given);
 }
 
 static void fit(struct eo_request *request)

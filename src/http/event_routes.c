@@ -20,7 +20,7 @@ static void get_of_job(struct eo_request *request)
 {
   enum eo_job_outcome outcome;
   struct eo_error error;
-  json_t *job = NULL;
+  struct eo_job_view job;
   int64_t id;
   if (!eo_request_id_at(request, 0, &id))
     return;
@@ -30,7 +30,7 @@ static void get_of_job(struct eo_request *request)
     eo_reply_problem(request, 404, NULL, "There is no job with this number.");
   else
     eo_stream_open(request, id, last_seen(request));
-  json_decref(job);
+  eo_job_view_done(&job);
 }
 
 #define STREAM \

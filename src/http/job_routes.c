@@ -40,20 +40,18 @@ void eo_reply_job_outcome(struct eo_request *request, enum eo_job_outcome outcom
 
 /* The job as the reply, or why there is none. Takes the job over. */
 static void reply_job(struct eo_request *request, unsigned status, enum eo_code code, enum eo_job_outcome outcome,
-                      json_t *job, const struct eo_error *error)
+                      struct eo_job_view *job, const struct eo_error *error)
 {
   if (code)
     eo_reply_error(request, "", error);
   else if (outcome != EO_JOB_OUTCOME_DONE && outcome != EO_JOB_OUTCOME_REPEATED)
     eo_reply_job_outcome(request, outcome);
   else {
-    int64_t id = json_integer_value(json_object_get(job, "id"));
-    eo_reply_json(request, status, job);
+    eo_reply_json(request, status, eo_job_view_encode(job));
     if (status == 202)
-      eo_reply_job_location(request, id);
-    return;
+      eo_reply_job_location(request, job->row.id);
   }
-  json_decref(job);
+  eo_job_view_done(job);
 }
 
 /* ---- ordering ---- */
@@ -105,11 +103,11 @@ static void submit(struct eo_request *request, const struct order *order, const 
       .kind = (enum eo_job_kind)order->kind, .design = design, .priority = order->priority, .fresh = order->fresh};
   enum eo_job_outcome outcome = EO_JOB_OUTCOME_DONE;
   struct eo_error error;
-  json_t *job = NULL;
+  struct eo_job_view job = {0};
   if (!read_key(request, &wanted.key))
     return;
   enum eo_code code = eo_service_submit(request->http->service, &wanted, &outcome, &job, &error);
-  reply_job(request, 202, code, outcome, job, &error);
+  reply_job(request, 202, code, outcome, &job, &error);
 }
 
 static void add(struct eo_request *request)
@@ -127,13 +125,13 @@ static void repeat(struct eo_request *request)
   enum eo_job_outcome outcome = EO_JOB_OUTCOME_DONE;
   struct eo_error error;
   int64_t id;
-  json_t *job = NULL;
+  struct eo_job_view job = {0};
   if (!eo_request_id_at(request, 0, &id) || !eo_request_read(request, &change))
     return;
   int priority = isnan(change.priority) ? 0 : (int)change.priority;
   enum eo_code code = eo_service_clone(request->http->service, id, isnan(change.priority) ? NULL : &priority, &outcome,
                                        &job, &error);
-  reply_job(request, 202, code, outcome, job, &error);
+  reply_job(request, 202, code, outcome, &job, &error);
 }
 
 /* ---- looking ---- */
@@ -144,29 +142,42 @@ static int find(const char *name, int (*find_named)(const char *name))
   return name ? find_named(name) : -1;
 }
 
+static json_t *encode_page(const struct eo_job_page *page)
+{
+  json_t *items = json_array();
+  char cursor[24] = "";
+  for (int i = 0; i < page->count; i++)
+    json_array_append_new(items, eo_job_view_encode(&page->job[i]));
+  if (page->more)
+    snprintf(cursor, sizeof cursor, "%lld", (long long)page->job[page->count - 1].row.id);
+  return json_pack("{s:o, s:o}", "items", items, "next", page->more ? json_string(cursor) : json_null());
+}
+
 static void list(struct eo_request *request)
 {
   struct eo_error error;
-  json_t *page = NULL;
+  struct eo_job_page page;
   if (eo_service_jobs(request->http->service, find(eo_request_query(request, "state"), eo_store_job_state_find),
                       find(eo_request_query(request, "kind"), eo_store_job_kind_find),
                       (int64_t)eo_request_number(request, "cursor"), (int)eo_request_number(request, "limit"), &page,
-                      &error))
+                      &error)) {
     eo_reply_error(request, "", &error);
-  else
-    eo_reply_json(request, 200, page);
+    return;
+  }
+  eo_reply_json(request, 200, encode_page(&page));
+  eo_job_page_done(&page);
 }
 
 static void get_one(struct eo_request *request)
 {
   enum eo_job_outcome outcome = EO_JOB_OUTCOME_DONE;
   struct eo_error error;
-  json_t *job = NULL;
+  struct eo_job_view job = {0};
   int64_t id;
   if (!eo_request_id_at(request, 0, &id))
     return;
   enum eo_code code = eo_service_job(request->http->service, id, true, &outcome, &job, &error);
-  reply_job(request, 200, code, outcome, job, &error);
+  reply_job(request, 200, code, outcome, &job, &error);
 }
 
 static void get_result(struct eo_request *request)
@@ -190,28 +201,34 @@ static void get_generations(struct eo_request *request)
 {
   enum eo_job_outcome outcome = EO_JOB_OUTCOME_DONE;
   struct eo_error error;
-  json_t *columns = NULL;
+  struct eo_job_convergence convergence;
   int64_t id;
   if (!eo_request_id_at(request, 0, &id))
     return;
-  enum eo_code code = eo_service_generations(request->http->service, id, &outcome, &columns, &error);
-  reply_job(request, 200, code, outcome, columns, &error);
+  if (eo_service_convergence(request->http->service, id, &outcome, &convergence, &error))
+    eo_reply_error(request, "", &error);
+  else if (outcome != EO_JOB_OUTCOME_DONE)
+    eo_reply_job_outcome(request, outcome);
+  else
+    eo_reply_json(request, 200, eo_job_convergence_encode(&convergence));
+  eo_job_convergence_done(&convergence);
 }
 
 /* ---- changing ---- */
 
-typedef enum eo_code change_function(struct eo_service *, int64_t, enum eo_job_outcome *, json_t **, struct eo_error *);
+typedef enum eo_code change_function(struct eo_service *, int64_t, enum eo_job_outcome *, struct eo_job_view *,
+                                     struct eo_error *);
 
 static void change(struct eo_request *request, change_function *function)
 {
   enum eo_job_outcome outcome = EO_JOB_OUTCOME_DONE;
   struct eo_error error;
-  json_t *job = NULL;
+  struct eo_job_view job = {0};
   int64_t id;
   if (!eo_request_id_at(request, 0, &id))
     return;
   enum eo_code code = function(request->http->service, id, &outcome, &job, &error);
-  reply_job(request, 202, code, outcome, job, &error);
+  reply_job(request, 202, code, outcome, &job, &error);
 }
 
 static void cancel(struct eo_request *request)

@@ -12,6 +12,7 @@
 #include "http/route.h"
 #include "http/server.h"
 #include "http/upload.h"
+#include "document/measure_file.h"
 #include "service/rig_tasks.h"
 
 /* What the form said. */

@@ -12,10 +12,10 @@
 #include "http/openapi.h"
 #include "http/route.h"
 #include "http/shape.h"
-#include "service/job_document.h"
+#include "study/job_document.h"
 #include "study/job_history.h"
 #include "study/history_document.h"
-#include "service/rig_tasks.h"
+#include "document/rig_answer.h"
 
 static const struct {
   const char *name, *notation;

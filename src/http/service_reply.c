@@ -16,12 +16,13 @@ static void reply_preparing(struct eo_request *request, int64_t id)
 {
   enum eo_job_outcome outcome;
   struct eo_error error;
-  json_t *job = NULL;
+  struct eo_job_view job;
   if (eo_service_job(request->http->service, id, false, &outcome, &job, &error)) {
     eo_reply_error(request, "", &error);
     return;
   }
-  eo_reply_json(request, 202, json_pack("{s:o}", "job", job ? job : json_null()));
+  eo_reply_json(request, 202, json_pack("{s:o}", "job", job.texts ? eo_job_view_encode(&job) : json_null()));
+  eo_job_view_done(&job);
   eo_reply_job_location(request, id);
   request->reply.retry_after = 1;
 }

@@ -5,10 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "format/json.h"
-
-#include <config.h>
-
 void eo_rig_pair_hash(const struct eo_geometry *geometry, char key[EO_HASH_LENGTH + 1])
 {
   struct eo_hash hash;
@@ -54,15 +50,14 @@ struct order {
   struct eo_rig_points points;
   bool csv;
   struct eo_update_settings settings;
-  json_t *stored;
+  char *given; /* the design as it was given, JSON; owned */
   struct eo_rig_request rig;
 };
 
 /* What a computation works on. */
 struct work {
-  int count;
-  struct eo_measured *measured; /* owned, [count] */
-  json_t *ids, *left_out;       /* owned arrays */
+  struct eo_measured *measured;      /* owned */
+  struct eo_rig_selection selection; /* owned arrays, as long as there are measurements */
   struct eo_comparison comparison;
 };
 
@@ -70,7 +65,7 @@ static void release(void *data)
 {
   struct order *order = data;
   eo_rig_points_done(&order->points);
-  json_decref(order->stored);
+  free(order->given);
   free(order);
 }
 
@@ -96,23 +91,31 @@ static enum eo_code make(struct eo_work *work, struct eo_rig_points *points, str
 
 static void leave_out(struct work *w, int64_t id, const char *reason)
 {
-  json_array_append_new(w->left_out, json_pack("{s:I, s:s}", "id", (json_int_t)id, "reason", reason));
+  struct eo_left_out *left_out = &w->selection.left_out[w->selection.left_outs++];
+  left_out->id = id;
+  snprintf(left_out->reason, sizeof left_out->reason, "%s", reason);
 }
 
 static void read_point(struct work *w, const struct eo_rig_point *point, const char *pair)
 {
   struct eo_error error;
-  json_t *summary = json_loads(point->summary, 0, NULL);
+  struct eo_rig_selection *selection = &w->selection;
   if (strcmp(point->pair, pair) != 0)
     leave_out(w, point->id,
               "It was measured with other tooth numbers or base radii than the design has now; upload its file again.");
-  else if (eo_measured_decode(summary, &w->measured[w->count], &error))
+  else if (eo_rig_measured_read(point->summary, &w->measured[selection->count], &error))
     leave_out(w, point->id, error.text);
-  else {
-    w->count++;
-    json_array_append_new(w->ids, json_integer(point->id));
-  }
-  json_decref(summary);
+  else
+    selection->id[selection->count++] = point->id;
+}
+
+static bool reserve(struct work *w, int count)
+{
+  size_t size = (size_t)count + 1;
+  w->measured = calloc(size, sizeof *w->measured);
+  w->selection.id = calloc(size, sizeof *w->selection.id);
+  w->selection.left_out = calloc(size, sizeof *w->selection.left_out);
+  return w->measured && w->selection.id && w->selection.left_out;
 }
 
 static enum eo_code compare(struct work *w, const struct order *order, const struct eo_pair *pair,
@@ -120,17 +123,14 @@ static enum eo_code compare(struct work *w, const struct order *order, const str
 {
   char key[EO_HASH_LENGTH + 1];
   struct eo_evaluator *evaluator = NULL;
-  w->measured = calloc((size_t)order->points.count + 1, sizeof *w->measured);
-  w->ids = json_array();
-  w->left_out = json_array();
-  if (!w->measured || !w->ids || !w->left_out)
+  if (!reserve(w, order->points.count))
     return eo_error_memory(error);
   eo_rig_pair_hash(&pair->geometry, key);
   for (int i = 0; i < order->points.count; i++)
     read_point(w, &order->points.point[i], key);
-  enum eo_code code = eo_evaluator_new(&evaluator, pair, 1, error);
-  if (!code)
-    code = eo_comparison_run(&w->comparison, evaluator, design, w->count, w->measured, progress, error);
+  EO_TRY(eo_evaluator_new(&evaluator, pair, 1, error));
+  enum eo_code code = eo_comparison_run(&w->comparison, evaluator, design, w->selection.count, w->measured, progress,
+                                        error);
   eo_evaluator_free(evaluator);
   return code;
 }
@@ -139,50 +139,8 @@ static void work_done(struct work *w)
 {
   eo_comparison_done(&w->comparison);
   free(w->measured);
-  json_decref(w->ids);
-  json_decref(w->left_out);
-}
-
-static enum eo_code write(json_t *document, bool failed, struct eo_text *text, struct eo_error *error)
-{
-  if (document && !failed)
-    eo_json_write(text, document, EO_JSON_COMPACT);
-  json_decref(document);
-  return document && !failed ? EO_OK : eo_error_memory(error);
-}
-
-static const struct eo_outline_row left_out_rows[] = {
-    EO_KEY("id", "integer", "number of the measurement"),
-    EO_KEY("reason", "text", "why it was left out, for people"),
-};
-static const struct eo_outline left_out_outline = EO_OUTLINE("LeftOut", left_out_rows);
-
-static const struct eo_outline_row comparison_rows[] = {
-    EO_KEY("program", "text", "name and version"),
-    EO_KEY("design_hash", "text", "SHA-256 of the canonical design that predicts"),
-    EO_KEY("id", "[integer]", "numbers of the measurements, in the order of the columns"),
-    EO_KEY("left_out", "[object]", "measurements that cannot be compared", .outline = &left_out_outline),
-    {.outline = &eo_comparison_outline},
-};
-const struct eo_outline eo_rig_comparison_outline = EO_OUTLINE("Comparison", comparison_rows);
-
-/* The numbers of the measurements beside the rows that stand for them. */
-static json_t *encode_comparison(const struct work *w, const struct eo_design *design)
-{
-  char hash[EO_HASH_LENGTH + 1];
-  json_t *document = json_object(), *inner = eo_comparison_encode(&w->comparison, w->measured);
-  json_t *reduction;
-  size_t i;
-  bool failed = !inner;
-  json_array_foreach(json_object_get(inner, "reductions"), i, reduction) eo_json_put(
-      reduction, "id", json_incref(json_array_get(w->ids, (size_t)w->comparison.reduction[i].modified)), &failed);
-  eo_json_put(document, "program", json_string(PACKAGE_STRING), &failed);
-  eo_json_put(document, "design_hash", eo_design_hash(design, hash, NULL) ? NULL : json_string(hash), &failed);
-  eo_json_put(document, "id", json_incref(w->ids), &failed);
-  eo_json_put(document, "left_out", json_incref(w->left_out), &failed);
-  failed = json_object_update(document, inner) != 0 || failed;
-  json_decref(inner);
-  return failed ? (json_decref(document), NULL) : document;
+  free(w->selection.id);
+  free(w->selection.left_out);
 }
 
 static enum eo_code run_comparison(void *data, const struct eo_pair *pair, const struct eo_design *design,
@@ -194,7 +152,7 @@ static enum eo_code run_comparison(void *data, const struct eo_pair *pair, const
   if (!code && order->csv)
     eo_comparison_csv(&w.comparison, w.measured, text);
   else if (!code)
-    code = write(encode_comparison(&w, design), false, text, error);
+    eo_rig_comparison_write(&w.selection, &w.comparison, w.measured, design, text);
   work_done(&w);
   return code;
 }
@@ -212,65 +170,20 @@ enum eo_code eo_rig_comparison(struct eo_work *work, struct eo_rig_points *point
 
 /* ---- fit ---- */
 
-/* Sets in document what differs between two resolved designs, and nothing else: defaults that were not written stay
-   unwritten. */
-static bool overlay(json_t *document, const json_t *before, const json_t *after)
-{
-  const char *key;
-  json_t *value;
-  bool done = true;
-  json_object_foreach((json_t *)after, key, value)
-  {
-    const json_t *old = json_object_get(before, key);
-    if (json_equal(old, value))
-      continue;
-    json_t *inner = json_object_get(document, key);
-    if (!json_is_object(value))
-      done = json_object_set(document, key, value) == 0 && done;
-    else {
-      if (!json_is_object(inner))
-        json_object_set_new(document, key, inner = json_object());
-      done = overlay(inner, old, value) && done;
-    }
-  }
-  return done;
-}
-
-static json_t *changed_design(const json_t *stored, const struct eo_design *design, const struct eo_design *updated)
-{
-  json_t *document = json_deep_copy(stored), *before = eo_design_encode(design), *after = eo_design_encode(updated);
-  bool done = document && before && after && overlay(document, before, after);
-  json_decref(before);
-  json_decref(after);
-  return done ? document : (json_decref(document), NULL);
-}
-
 static void drop_outliers(struct work *w)
 {
+  struct eo_rig_selection *selection = &w->selection;
   int kept = 0;
-  json_t *ids = json_array();
-  for (int i = 0; i < w->count; i++) {
-    json_t *id = json_array_get(w->ids, (size_t)i);
-    if (w->comparison.point[i].outlier)
-      leave_out(w, json_integer_value(id), w->comparison.point[i].reason);
-    else {
-      w->measured[kept++] = w->measured[i];
-      json_array_append(ids, id);
+  for (int i = 0; i < selection->count; i++) {
+    if (w->comparison.point[i].outlier) {
+      leave_out(w, selection->id[i], w->comparison.point[i].reason);
+      continue;
     }
+    w->measured[kept] = w->measured[i];
+    selection->id[kept++] = selection->id[i];
   }
-  w->count = kept;
-  json_decref(w->ids);
-  w->ids = ids;
+  selection->count = kept;
 }
-
-static const struct eo_outline_row fit_rows[] = {
-    {.outline = &eo_update_outline},
-    EO_KEY("id", "[integer]", "numbers of the measurements used"),
-    EO_KEY("left_out", "[object]", "measurements that were not, outliers too", .outline = &left_out_outline),
-    EO_KEY("design", "object", "the design with the values found, as it was given but for them",
-           .table = &eo_design_table, .name = "Design", .sparse = true),
-};
-const struct eo_outline eo_rig_fit_outline = EO_OUTLINE("Fit", fit_rows);
 
 static enum eo_code run_fit(void *data, const struct eo_pair *pair, const struct eo_design *design,
                             const struct eo_progress *progress, struct eo_text *text, struct eo_error *error)
@@ -282,31 +195,29 @@ static enum eo_code run_fit(void *data, const struct eo_pair *pair, const struct
   enum eo_code code = compare(&w, order, pair, design, progress, error);
   if (!code) {
     drop_outliers(&w);
-    code = eo_update_run(&update, pair, design, w.count, w.measured, &order->settings, &updated, progress, error);
+    code = eo_update_run(&update, pair, design, w.selection.count, w.measured, &order->settings, &updated, progress,
+                         error);
   }
-  if (!code) {
-    json_t *document = eo_update_encode(&update);
-    bool failed = !document;
-    eo_json_put(document, "id", json_incref(w.ids), &failed);
-    eo_json_put(document, "left_out", json_incref(w.left_out), &failed);
-    eo_json_put(document, "design", changed_design(order->stored, design, &updated), &failed);
-    code = write(document, failed, text, error);
-  }
+  if (!code)
+    eo_rig_fit_write(&w.selection, &update, order->given, design, &updated, text);
   work_done(&w);
   return code;
 }
 
 enum eo_code eo_rig_fit(struct eo_work *work, struct eo_rig_points *points, const struct eo_update_settings *settings,
-                        const json_t *stored, struct eo_error *error)
+                        const char *given, struct eo_error *error)
 {
   struct order *order;
   enum eo_code code = make(work, points, &order, error);
   if (code)
     return code;
   order->settings = *settings;
-  order->stored = json_deep_copy(stored);
+  order->given = strdup(given);
   work->run = run_fit;
-  return EO_OK;
+  if (order->given)
+    return EO_OK;
+  release(order);
+  return eo_error_memory(error);
 }
 
 /* ---- synthetic recording ---- */

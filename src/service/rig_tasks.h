@@ -4,9 +4,8 @@
 #define EASEOFF_SERVICE_RIG_TASKS_H
 
 #include "base/hash.h"
-#include "document/measure_file.h"
+#include "document/rig_answer.h"
 #include "document/rig_document.h"
-#include "document/update_document.h"
 #include "service/service.h"
 
 /* What of a pair a recording is measured with: measurements of another one are left out of comparisons. */
@@ -27,18 +26,14 @@ enum eo_code eo_rig_points_add(struct eo_rig_points *points, int64_t id, const c
 void eo_rig_points_done(struct eo_rig_points *points);
 
 /* The functions below take points over, and fill work (unless there is no memory: then they release what they took).
+   Their answers are the documents of document/rig_answer.h.
 
-   Comparison: the document of eo_comparison_encode() with "program", "design_hash", the numbers of the measurements as
-   "id", and "left_out"
-   [{id, reason}]; CSV: its table. */
-extern const struct eo_outline eo_rig_comparison_outline;
+   Comparison; CSV: its table. */
 enum eo_code eo_rig_comparison(struct eo_work *work, struct eo_rig_points *points, bool csv, struct eo_error *error);
 
-/* Fit: the document of eo_update_encode() with "id" of the measurements used, "left_out" [{id, reason}] (outliers too),
-   and "design": the document that is stored with the values found. stored: borrowed, copied. */
-extern const struct eo_outline eo_rig_fit_outline;
+/* Fit. given: the design as it was given, JSON; copied. */
 enum eo_code eo_rig_fit(struct eo_work *work, struct eo_rig_points *points, const struct eo_update_settings *settings,
-                        const json_t *stored, struct eo_error *error);
+                        const char *given, struct eo_error *error);
 
 /* Recording of a rig that does not exist, as text. request: complete (eo_rig_complete()). Errors when it runs:
    EO_ERROR_INPUT for more than EO_RIG_MOST_ROWS rows. */

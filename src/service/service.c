@@ -3,8 +3,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "format/json.h"
-
 #include "base/parallel.h"
 #include "store/lock.h"
 
@@ -34,30 +32,26 @@ static enum eo_code open_store(struct eo_service *s, struct eo_error *error)
 {
   bool taken = false;
   int64_t queued;
-  enum eo_code code = eo_store_open(&s->store, s->settings.data, EO_STORE_WRITE, error);
-  if (!code)
-    code = eo_store_claim_server(s->store, &taken, error);
-  if (!code && !taken)
-    code = eo_error_set(error, EO_ERROR_FILE, "", "Another server works on the data folder %.200s.", s->settings.data);
-  return code ? code : eo_queue_recover(s->store, &queued, error);
+  EO_TRY(eo_store_open(&s->store, s->settings.data, EO_STORE_WRITE, error));
+  EO_TRY(eo_store_claim_server(s->store, &taken, error));
+  if (!taken)
+    return eo_error_set(error, EO_ERROR_FILE, "", "Another server works on the data folder %.200s.", s->settings.data);
+  return eo_queue_recover(s->store, &queued, error);
 }
 
 static enum eo_code make_lanes(struct eo_service *s, struct eo_error *error)
 {
   struct eo_lane_settings settings = {.threads = s->settings.analysis_threads,
                                       .most = s->settings.most_waiting,
-                                      .function = eo_service_answer_analysis,
+                                      .function = eo_service_run_task,
                                       .release = eo_service_release_task,
                                       .context = s};
-  enum eo_code code = eo_lane_new(&s->analyses, &settings, error);
+  EO_TRY(eo_lane_new(&s->analyses, &settings, error));
   settings.threads = 1;
   settings.overtakes_running = true;
   settings.nice = SWEEP_NICE;
-  settings.function = eo_service_answer_sweep;
-  if (!code)
-    code = eo_lane_new(&s->sweeps, &settings, error);
-  settings.function = eo_service_answer_work;
-  return code ? code : eo_lane_new(&s->works, &settings, error);
+  EO_TRY(eo_lane_new(&s->sweeps, &settings, error));
+  return eo_lane_new(&s->works, &settings, error);
 }
 
 static enum eo_code make_workers(struct eo_service *s, struct eo_error *error)
@@ -66,9 +60,7 @@ static enum eo_code make_workers(struct eo_service *s, struct eo_error *error)
     struct eo_service_worker *w = &s->worker[kind];
     w->service = s;
     w->kind = (enum eo_job_kind)kind;
-    enum eo_code code = eo_store_open(&w->store, s->settings.data, EO_STORE_WRITE, error);
-    if (code)
-      return code;
+    EO_TRY(eo_store_open(&w->store, s->settings.data, EO_STORE_WRITE, error));
     w->running = pthread_create(&w->thread, NULL, eo_service_work, w) == 0;
     if (!w->running)
       return eo_error_memory(error);
@@ -89,6 +81,17 @@ static void make_mutexes(struct eo_service *s)
   pthread_condattr_destroy(&attributes);
 }
 
+static enum eo_code begin(struct eo_service *s, const struct eo_service_settings *settings, struct eo_error *error)
+{
+  if (!resolve(&s->settings, settings))
+    return eo_error_memory(error);
+  EO_TRY(open_store(s, error));
+  EO_TRY(eo_pairs_new(&s->pairs, s->settings.cache, s->settings.most_pairs, error));
+  EO_TRY(eo_events_new(&s->events, error));
+  EO_TRY(make_lanes(s, error));
+  return make_workers(s, error);
+}
+
 enum eo_code eo_service_new(struct eo_service **result, const struct eo_service_settings *settings,
                             struct eo_error *error)
 {
@@ -97,15 +100,7 @@ enum eo_code eo_service_new(struct eo_service **result, const struct eo_service_
     return eo_error_memory(error);
   make_mutexes(s);
   s->cores = eo_parallel_cores();
-  enum eo_code code = resolve(&s->settings, settings) ? open_store(s, error) : eo_error_memory(error);
-  if (!code)
-    code = eo_pairs_new(&s->pairs, s->settings.cache, s->settings.most_pairs, error);
-  if (!code)
-    code = eo_events_new(&s->events, error);
-  if (!code)
-    code = make_lanes(s, error);
-  if (!code)
-    code = make_workers(s, error);
+  enum eo_code code = begin(s, settings, error);
   if (code)
     eo_service_free(s);
   else
@@ -164,13 +159,7 @@ void eo_service_wake(struct eo_service *s)
 
 /* ---- events ---- */
 
-struct encoding {
-  struct eo_service *service;
-  bool with_design;
-  json_t *job;
-};
-
-/* From before a job's row is read until it is encoded: a job that ends in between would show its end with what was
+/* From before a job's row is read until it is copied: a job that ends in between would show its end with what was
    noted of it a while before. */
 static void lock_jobs(struct eo_service *s)
 {
@@ -184,84 +173,93 @@ static void unlock_jobs(struct eo_service *s)
   pthread_mutex_unlock(&s->store_mutex);
 }
 
-static enum eo_code encode(void *context, const struct eo_stored_job *job, struct eo_error *error)
+/* Where a job is copied to. */
+struct copying {
+  struct eo_service *service;
+  bool with_design;
+  int64_t only; /* 0: whichever comes */
+  struct eo_job_view *job;
+};
+
+static enum eo_code copy(void *context, const struct eo_stored_job *row, struct eo_error *error)
 {
-  struct encoding *e = context;
+  const struct copying *c = context;
   const struct eo_job_live *live = NULL;
+  if (c->only && row->id != c->only)
+    return EO_OK;
   for (int kind = 0; kind < EO_JOB_KINDS; kind++)
-    if (e->service->worker[kind].live.id == job->id)
-      live = &e->service->worker[kind].live;
-  e->job = eo_job_encode(job, live, e->with_design);
-  return e->job ? EO_OK : eo_error_memory(error);
+    if (c->service->worker[kind].live.id == row->id)
+      live = &c->service->worker[kind].live;
+  return eo_job_view_init(c->job, row, live, c->with_design, error);
 }
 
-static enum eo_code encode_only(void *context, const struct eo_stored_job *job, struct eo_error *error)
+/* Without the design and the result, which may be long. False: there is no such job, or an error. */
+static bool find_brief(struct eo_service *s, int64_t id, struct eo_job_view *job)
 {
-  const struct encoding *e = context;
-  return job->id == json_integer_value(json_object_get(e->job, "id")) ? EO_OK : encode(context, job, error);
-}
-
-/* Without the design and the result, which may be long. NULL: there is no such job, or an error. */
-static json_t *find_brief(struct eo_service *s, int64_t id)
-{
-  struct encoding e = {.service = s};
+  struct copying copying = {.service = s, .only = id, .job = job};
   const struct eo_queue_filter filter = {.state = -1, .kind = -1, .before = id + 1, .limit = 1};
+  *job = (struct eo_job_view){0};
   lock_jobs(s);
-  enum eo_code code = eo_queue_list(s->store, &filter, encode_only, &e, NULL);
+  eo_queue_list(s->store, &filter, copy, &copying, NULL);
   unlock_jobs(s);
-  if (!code && e.job && json_integer_value(json_object_get(e.job, "id")) == id)
-    return e.job;
-  json_decref(e.job);
-  return NULL;
+  return job->texts;
 }
 
 void eo_service_publish(struct eo_service *s, int64_t id)
 {
   struct eo_text text = {0};
+  struct eo_job_view job;
   pthread_mutex_lock(&s->publish_mutex);
-  json_t *job = find_brief(s, id);
-  if (job)
-    eo_json_write(&text, job, EO_JSON_COMPACT);
-  if (job && !text.failed)
+  if (find_brief(s, id, &job))
+    eo_job_view_write(&job, &text);
+  if (text.size && !text.failed)
     eo_events_publish(s->events, id, &text);
   pthread_mutex_unlock(&s->publish_mutex);
   eo_text_done(&text);
-  json_decref(job);
+  eo_job_view_done(&job);
 }
 
 struct snapshot {
-  struct encoding encoding;
+  struct eo_service *service;
   struct eo_service_event *event; /* owned, its texts too */
   int count, capacity;
 };
 
-static enum eo_code add_to_snapshot(void *context, const struct eo_stored_job *job, struct eo_error *error)
+static enum eo_code grow(struct snapshot *snapshot, struct eo_error *error)
+{
+  if (snapshot->count < snapshot->capacity)
+    return EO_OK;
+  int capacity = 2 * snapshot->capacity + 16;
+  struct eo_service_event *more = realloc(snapshot->event, sizeof *more * (size_t)capacity);
+  if (!more)
+    return eo_error_memory(error);
+  snapshot->event = more;
+  snapshot->capacity = capacity;
+  return EO_OK;
+}
+
+static enum eo_code add_to_snapshot(void *context, const struct eo_stored_job *row, struct eo_error *error)
 {
   struct snapshot *snapshot = context;
   struct eo_text text = {0};
-  if (snapshot->count == snapshot->capacity) {
-    int capacity = 2 * snapshot->capacity + 16;
-    struct eo_service_event *more = realloc(snapshot->event, sizeof *more * (size_t)capacity);
-    if (!more)
-      return eo_error_memory(error);
-    snapshot->event = more;
-    snapshot->capacity = capacity;
-  }
-  enum eo_code code = encode(&snapshot->encoding, job, error);
-  if (code)
-    return code;
-  eo_json_write(&text, snapshot->encoding.job, EO_JSON_COMPACT);
-  json_decref(snapshot->encoding.job);
-  if (text.failed)
+  struct eo_job_view job;
+  struct copying copying = {.service = snapshot->service, .job = &job};
+  EO_TRY(grow(snapshot, error));
+  EO_TRY(copy(&copying, row, error));
+  eo_job_view_write(&job, &text);
+  eo_job_view_done(&job);
+  if (text.failed) {
+    eo_text_done(&text);
     return eo_error_memory(error);
-  snapshot->event[snapshot->count++] = (struct eo_service_event){.job = job->id, .text = text.data, .size = text.size};
+  }
+  snapshot->event[snapshot->count++] = (struct eo_service_event){.job = row->id, .text = text.data, .size = text.size};
   return EO_OK;
 }
 
 enum eo_code eo_service_subscribe(struct eo_service *s, int64_t job, int64_t after, eo_service_listener *listener,
                                   void *context, int64_t *subscription, struct eo_error *error)
 {
-  struct snapshot snapshot = {.encoding = {.service = s}};
+  struct snapshot snapshot = {.service = s};
   const struct eo_queue_filter filter = {.state = -1, .kind = -1, .active = true, .limit = EO_EVENTS_KEPT};
   int64_t newest = eo_events_newest(s->events); /* before the snapshot: what happens from now on comes after it */
   enum eo_code code = EO_OK;
@@ -288,61 +286,59 @@ void eo_service_unsubscribe(struct eo_service *s, int64_t subscription)
 
 /* ---- reading jobs ---- */
 
-static enum eo_code find_job(struct eo_service *s, int64_t id, bool with_design, enum eo_job_outcome *outcome,
-                             json_t **job, struct eo_error *error)
+enum eo_code eo_service_job(struct eo_service *s, int64_t id, bool with_design, enum eo_job_outcome *outcome,
+                            struct eo_job_view *job, struct eo_error *error)
 {
-  struct encoding e = {.service = s, .with_design = with_design};
+  struct copying copying = {.service = s, .with_design = with_design, .job = job};
+  *job = (struct eo_job_view){0};
   lock_jobs(s);
-  enum eo_code code = eo_queue_find(s->store, id, encode, &e, outcome, error);
+  enum eo_code code = eo_queue_find(s->store, id, copy, &copying, outcome, error);
   unlock_jobs(s);
-  *job = code ? NULL : e.job;
   return code;
 }
 
-enum eo_code eo_service_job(struct eo_service *s, int64_t id, bool with_design, enum eo_job_outcome *outcome,
-                            json_t **job, struct eo_error *error)
-{
-  return find_job(s, id, with_design, outcome, job, error);
-}
-
-struct page {
-  struct encoding encoding;
-  json_t *items; /* owned */
+struct paging {
+  struct eo_service *service;
+  struct eo_job_page *page;
   int limit;
-  int64_t last;
-  bool more;
 };
 
-static enum eo_code add_to_page(void *context, const struct eo_stored_job *job, struct eo_error *error)
+static enum eo_code add_to_page(void *context, const struct eo_stored_job *row, struct eo_error *error)
 {
-  struct page *page = context;
-  if ((int)json_array_size(page->items) == page->limit) {
+  struct paging *paging = context;
+  struct eo_job_page *page = paging->page;
+  if (page->count == paging->limit) {
     page->more = true;
     return EO_OK;
   }
-  enum eo_code code = encode(&page->encoding, job, error);
-  page->last = job->id;
-  return code || !json_array_append_new(page->items, page->encoding.job) ? code : eo_error_memory(error);
+  struct copying copying = {.service = paging->service, .job = &page->job[page->count]};
+  EO_TRY(copy(&copying, row, error));
+  page->count++;
+  return EO_OK;
 }
 
-enum eo_code eo_service_jobs(struct eo_service *s, int state, int kind, int64_t before, int limit, json_t **result,
-                             struct eo_error *error)
+enum eo_code eo_service_jobs(struct eo_service *s, int state, int kind, int64_t before, int limit,
+                             struct eo_job_page *page, struct eo_error *error)
 {
-  struct page page = {.encoding = {.service = s}, .items = json_array(), .limit = limit};
+  struct paging paging = {s, page, limit};
   const struct eo_queue_filter filter = {.state = state, .kind = kind, .before = before, .limit = limit + 1};
-  char cursor[32];
+  *page = (struct eo_job_page){.job = calloc((size_t)limit, sizeof *page->job)};
+  if (!page->job)
+    return eo_error_memory(error);
   lock_jobs(s);
-  enum eo_code code = page.items ? eo_queue_list(s->store, &filter, add_to_page, &page, error) : eo_error_memory(error);
+  enum eo_code code = eo_queue_list(s->store, &filter, add_to_page, &paging, error);
   unlock_jobs(s);
-  snprintf(cursor, sizeof cursor, "%lld", (long long)page.last);
-  json_t *document =
-      code ? NULL : json_pack("{s:O,s:o}", "items", page.items, "next", page.more ? json_string(cursor) : json_null());
-  if (!code && !document)
-    code = eo_error_memory(error);
-  json_decref(page.items);
-  if (!code)
-    *result = document;
+  if (code)
+    eo_job_page_done(page);
   return code;
+}
+
+void eo_job_page_done(struct eo_job_page *page)
+{
+  for (int i = 0; i < page->count; i++)
+    eo_job_view_done(&page->job[i]);
+  free(page->job);
+  *page = (struct eo_job_page){0};
 }
 
 struct reading {
@@ -370,28 +366,34 @@ enum eo_code eo_service_result(struct eo_service *s, int64_t id, enum eo_job_out
   return code;
 }
 
-enum eo_code eo_service_generations(struct eo_service *s, int64_t id, enum eo_job_outcome *outcome, json_t **columns,
-                                    struct eo_error *error)
+/* Of a job that is being worked on; false: it is another one. */
+static bool copy_live(struct eo_service *s, int64_t id, struct eo_job_convergence *convergence, enum eo_code *code,
+                      struct eo_error *error)
 {
-  struct eo_text text = {0};
   const struct eo_job_live *live = &s->worker[EO_JOB_OPTIMIZE].live;
-  *columns = NULL;
   pthread_mutex_lock(&s->live_mutex);
   bool is_live = live->id == id;
   if (is_live)
-    *columns = eo_job_live_generations(live);
+    *code = eo_job_convergence_copy(convergence, live, error);
   pthread_mutex_unlock(&s->live_mutex);
+  return is_live;
+}
+
+enum eo_code eo_service_convergence(struct eo_service *s, int64_t id, enum eo_job_outcome *outcome,
+                                    struct eo_job_convergence *convergence, struct eo_error *error)
+{
+  struct eo_text text = {0};
+  enum eo_code code;
+  *convergence = (struct eo_job_convergence){0};
   *outcome = EO_JOB_OUTCOME_DONE;
-  enum eo_code code = is_live ? EO_OK : eo_service_result(s, id, outcome, &text, error);
-  if (!code && !is_live && *outcome != EO_JOB_OUTCOME_MISSING) {
-    json_t *result = text.size ? json_loadb(text.data, text.size, 0, NULL) : NULL;
-    *columns = eo_job_result_generations(result);
+  if (copy_live(s, id, convergence, &code, error))
+    return code;
+  code = eo_service_result(s, id, outcome, &text, error);
+  if (!code && *outcome != EO_JOB_OUTCOME_MISSING) {
     *outcome = EO_JOB_OUTCOME_DONE;
-    json_decref(result);
+    code = eo_job_convergence_read(convergence, text.size ? text.data : "", error);
   }
   eo_text_done(&text);
-  if (!code && *outcome == EO_JOB_OUTCOME_DONE && !*columns)
-    code = eo_error_memory(error);
   return code;
 }
 
@@ -404,15 +406,15 @@ static bool is_closed(struct eo_service *s, enum eo_job_outcome *outcome)
 }
 
 /* Everybody is told of a job that was changed, and whoever changed it gets it. */
-static enum eo_code show(struct eo_service *s, int64_t id, json_t **job, struct eo_error *error)
+static enum eo_code show(struct eo_service *s, int64_t id, struct eo_job_view *job, struct eo_error *error)
 {
   enum eo_job_outcome outcome;
   eo_service_publish(s, id);
-  return find_job(s, id, true, &outcome, job, error);
+  return eo_service_job(s, id, true, &outcome, job, error);
 }
 
 /* In this order, so that a job is seen waiting before it is seen running. */
-static enum eo_code publish_then_wake(struct eo_service *s, int64_t id, json_t **job, struct eo_error *error)
+static enum eo_code publish_then_wake(struct eo_service *s, int64_t id, struct eo_job_view *job, struct eo_error *error)
 {
   enum eo_code code = show(s, id, job, error);
   eo_service_wake(s);
@@ -457,12 +459,8 @@ static enum eo_code queue(struct eo_service *s, const struct eo_job_order *order
                           enum eo_job_outcome *outcome, struct eo_error *error)
 {
   struct eo_text design = {0};
-  json_t *document = eo_design_encode(order->design);
-  if (document)
-    eo_json_write(&design, document, EO_JSON_COMPACT);
-  enum eo_code code = document && !design.failed ? add_job(s, order, &design, id, outcome, error)
-                                                 : eo_error_memory(error);
-  json_decref(document);
+  eo_design_write(order->design, &design);
+  enum eo_code code = design.failed ? eo_error_memory(error) : add_job(s, order, &design, id, outcome, error);
   eo_text_done(&design);
   if (!code && *outcome == EO_JOB_OUTCOME_FULL)
     atomic_fetch_add(&s->refused, 1);
@@ -470,10 +468,10 @@ static enum eo_code queue(struct eo_service *s, const struct eo_job_order *order
 }
 
 enum eo_code eo_service_submit(struct eo_service *s, const struct eo_job_order *order, enum eo_job_outcome *outcome,
-                               json_t **job, struct eo_error *error)
+                               struct eo_job_view *job, struct eo_error *error)
 {
   int64_t id;
-  *job = NULL;
+  *job = (struct eo_job_view){0};
   if (is_closed(s, outcome))
     return EO_OK;
   enum eo_code code = queue(s, order, &id, outcome, error);
@@ -482,10 +480,10 @@ enum eo_code eo_service_submit(struct eo_service *s, const struct eo_job_order *
   return publish_then_wake(s, id, job, error);
 }
 
-enum eo_code eo_service_cancel(struct eo_service *s, int64_t id, enum eo_job_outcome *outcome, json_t **job,
+enum eo_code eo_service_cancel(struct eo_service *s, int64_t id, enum eo_job_outcome *outcome, struct eo_job_view *job,
                                struct eo_error *error)
 {
-  *job = NULL;
+  *job = (struct eo_job_view){0};
   pthread_mutex_lock(&s->store_mutex);
   enum eo_code code = eo_queue_cancel(s->store, id, outcome, error);
   pthread_mutex_unlock(&s->store_mutex);
@@ -499,10 +497,10 @@ enum eo_code eo_service_cancel(struct eo_service *s, int64_t id, enum eo_job_out
   return show(s, id, job, error);
 }
 
-enum eo_code eo_service_retry(struct eo_service *s, int64_t id, enum eo_job_outcome *outcome, json_t **job,
+enum eo_code eo_service_retry(struct eo_service *s, int64_t id, enum eo_job_outcome *outcome, struct eo_job_view *job,
                               struct eo_error *error)
 {
-  *job = NULL;
+  *job = (struct eo_job_view){0};
   if (is_closed(s, outcome))
     return EO_OK;
   pthread_mutex_lock(&s->store_mutex);
@@ -512,10 +510,10 @@ enum eo_code eo_service_retry(struct eo_service *s, int64_t id, enum eo_job_outc
 }
 
 enum eo_code eo_service_clone(struct eo_service *s, int64_t id, const int *priority, enum eo_job_outcome *outcome,
-                              json_t **job, struct eo_error *error)
+                              struct eo_job_view *job, struct eo_error *error)
 {
   int64_t clone;
-  *job = NULL;
+  *job = (struct eo_job_view){0};
   if (is_closed(s, outcome))
     return EO_OK;
   pthread_mutex_lock(&s->store_mutex);

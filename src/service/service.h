@@ -16,12 +16,11 @@
 #ifndef EASEOFF_SERVICE_SERVICE_H
 #define EASEOFF_SERVICE_SERVICE_H
 
-#include <jansson.h>
-
 #include "document/sweep_document.h"
 #include "evaluation/analysis.h"
 #include "service/events.h"
 #include "store/queue.h"
+#include "study/job_document.h"
 
 struct eo_service;
 
@@ -59,22 +58,25 @@ struct eo_job_order {
   const char *key;                /* idempotency key, NULL or "": none; kept as long as the job */
 };
 
-/* Queues a job; *job is the new job's document (or that of then), to be released by the caller; NULL with any other
+/* Queues a job; *job is the new job (or that of then) as it is now, to be released by the caller; empty with any other
    outcome. A pair that waits for its preparation or is in it is prepared once: that job is the answer, as DONE. */
 enum eo_code eo_service_submit(struct eo_service *service, const struct eo_job_order *order,
-                               enum eo_job_outcome *outcome, json_t **job, struct eo_error *error);
+                               enum eo_job_outcome *outcome, struct eo_job_view *job, struct eo_error *error);
 
-/* The document of a job: id, kind, name, algorithm, state, priority, attempts, created, started, finished, progress {
-   fraction, what, generation, true_evaluations, predicted, reused, individuals, pfc_percent, seconds, seconds_left },
-   best and unmodified { J, f1_um, f2_N, f3_m_per_s2, fitness, modification }, error { detail, pointer }; what is not
-   known is null. with_design adds design. Outcomes: DONE, MISSING. */
+/* A job as it is now, to be released by the caller; with its design or without. Outcomes: DONE, MISSING. */
 enum eo_code eo_service_job(struct eo_service *service, int64_t id, bool with_design, enum eo_job_outcome *outcome,
-                            json_t **job, struct eo_error *error);
+                            struct eo_job_view *job, struct eo_error *error);
 
-/* A page of jobs, newest first: { "items": [ job... ], "next": "cursor" | null }. state: -1 or one; kind: -1 or one;
-   before: 0 or the cursor's number; limit: 1... */
-enum eo_code eo_service_jobs(struct eo_service *service, int state, int kind, int64_t before, int limit, json_t **page,
-                             struct eo_error *error);
+/* A page of jobs, newest first. state: -1 or one; kind: -1 or one; before: 0 or the number of the last job of the page
+   before; limit: 1... */
+struct eo_job_page {
+  int count;
+  bool more;               /* older ones follow */
+  struct eo_job_view *job; /* [count]; owned */
+};
+enum eo_code eo_service_jobs(struct eo_service *service, int state, int kind, int64_t before, int limit,
+                             struct eo_job_page *page, struct eo_error *error);
+void eo_job_page_done(struct eo_job_page *page);
 
 /* The result document of a finished optimization as compact JSON, appended to text. Outcomes: DONE, MISSING, STATE (not
    finished, or of a kind that has none). */
@@ -84,21 +86,20 @@ enum eo_code eo_service_result(struct eo_service *service, int64_t id, enum eo_j
 /* Cancel: waiting, preparing and running jobs; one that runs ends within an evaluation (its state says so later) and
    keeps what it found. Retry: failed and cancelled ones are queued again under their number, an optimization goes on
    where it stopped. Clone: a new job of the same kind and design, queued; priority NULL: the same. Remove: jobs that
-   have ended. Each gives the job's document (not remove). Outcomes: DONE, MISSING, STATE; retry and clone also FULL,
+   have ended. Each gives the job (not remove). Outcomes: DONE, MISSING, STATE; retry and clone also FULL,
    CLOSED. */
-enum eo_code eo_service_cancel(struct eo_service *service, int64_t id, enum eo_job_outcome *outcome, json_t **job,
-                               struct eo_error *error);
-enum eo_code eo_service_retry(struct eo_service *service, int64_t id, enum eo_job_outcome *outcome, json_t **job,
-                              struct eo_error *error);
+enum eo_code eo_service_cancel(struct eo_service *service, int64_t id, enum eo_job_outcome *outcome,
+                               struct eo_job_view *job, struct eo_error *error);
+enum eo_code eo_service_retry(struct eo_service *service, int64_t id, enum eo_job_outcome *outcome,
+                              struct eo_job_view *job, struct eo_error *error);
 enum eo_code eo_service_clone(struct eo_service *service, int64_t id, const int *priority, enum eo_job_outcome *outcome,
-                              json_t **job, struct eo_error *error);
+                              struct eo_job_view *job, struct eo_error *error);
 enum eo_code eo_service_remove(struct eo_service *service, int64_t id, enum eo_job_outcome *outcome,
                                struct eo_error *error);
 
-/* The convergence of an optimization, live too: columns { "generation", "best", "mean", "true_evaluations",
-   "predicted", "pfc_percent" }; mean is null while it runs. Outcomes: DONE, MISSING. */
-enum eo_code eo_service_generations(struct eo_service *service, int64_t id, enum eo_job_outcome *outcome,
-                                    json_t **columns, struct eo_error *error);
+/* The convergence of an optimization, live too (without means then). Outcomes: DONE, MISSING. */
+enum eo_code eo_service_convergence(struct eo_service *service, int64_t id, enum eo_job_outcome *outcome,
+                                    struct eo_job_convergence *convergence, struct eo_error *error);
 
 /* ---- events ---- */
 

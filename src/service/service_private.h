@@ -6,7 +6,6 @@
 #include <pthread.h>
 #include <stdatomic.h>
 
-#include "service/job_document.h"
 #include "service/lane.h"
 #include "service/pairs.h"
 #include "service/service.h"
@@ -61,9 +60,7 @@ void eo_service_wake(struct eo_service *service);
 void eo_service_publish(struct eo_service *service, int64_t id);
 
 /* What the lanes call, and how they release a task. */
-void eo_service_answer_analysis(void *service, struct eo_lane_task *task, enum eo_lane_fate fate);
-void eo_service_answer_sweep(void *service, struct eo_lane_task *task, enum eo_lane_fate fate);
-void eo_service_answer_work(void *service, struct eo_lane_task *task, enum eo_lane_fate fate);
+void eo_service_run_task(void *service, struct eo_lane_task *task, enum eo_lane_fate fate);
 void eo_service_release_task(struct eo_lane_task *task);
 
 #endif

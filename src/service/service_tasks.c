@@ -5,14 +5,20 @@
 #include <string.h>
 
 #include "base/clock.h"
-#include "format/json.h"
 #include "document/result.h"
 
 static const double bucket_ms[EO_SERVICE_BUCKETS - 1] = {5, 10, 15, 20, 25, 50, 100, 250, 500, 1000, 5000};
 
+struct asked;
+
+/* Computes what was asked for and adds it to the answer's text. Errors: EO_ERROR_CANCELLED when it was to end early,
+   any other. */
+typedef enum eo_code run_function(struct asked *asked, struct eo_held_pair *held, struct eo_answer *answer);
+
 /* A question on its way; the lane's task first. */
 struct asked {
   struct eo_lane_task task;
+  run_function *run;
   struct eo_design design;
   struct eo_warnings warnings;
   enum eo_answer_format format;
@@ -45,9 +51,86 @@ static uint64_t user_of(const char *token)
   return *token ? hash | 1 : 0;
 }
 
+/* ---- computing ---- */
+
+static enum eo_code write_analysis(const struct asked *asked, const struct eo_analysis *analysis,
+                                   struct eo_answer *answer)
+{
+  if (asked->format == EO_ANSWER_CSV)
+    return eo_result_write_csv(analysis, &asked->design, &answer->text, &answer->error);
+  return eo_result_write(analysis, &asked->design, &asked->warnings, asked->left_out, &answer->text, &answer->error);
+}
+
+/* Notes how long the model took, and the writing. */
+static void note_parts(struct eo_answer *answer, double start, double computed)
+{
+  answer->computed_ms = computed - start;
+  answer->written_ms = eo_clock_milliseconds() - computed;
+}
+
+static enum eo_code run_analysis(struct asked *asked, struct eo_held_pair *held, struct eo_answer *answer)
+{
+  struct eo_service *s = asked->service;
+  uint64_t user = user_of(asked->task.token);
+  struct eo_analysis *analysis;
+  double start = eo_clock_milliseconds();
+  EO_TRY(eo_pairs_borrow(s->pairs, held, user, &analysis, &answer->error));
+  analysis->threads = s->cores > 1 ? 2 : 1;
+  enum eo_code code = eo_analysis_run(analysis, &asked->design, asked->want, &answer->error);
+  double computed = eo_clock_milliseconds();
+  if (!code)
+    code = write_analysis(asked, analysis, answer);
+  note_parts(answer, start, computed);
+  eo_pairs_give_back(s->pairs, held, user, analysis);
+  return code;
+}
+
+static int watch_task(void *context, const char *what, double fraction)
+{
+  const struct asked *asked = context;
+  (void)what;
+  (void)fraction;
+  return atomic_load(&asked->task.overtaken) || atomic_load(&asked->service->stopping);
+}
+
+static void write_sweep(const struct asked *asked, const struct eo_sweep *sweep, struct eo_text *text)
+{
+  if (asked->format == EO_ANSWER_CSV)
+    eo_sweep_csv(sweep, text);
+  else
+    eo_sweep_write(sweep, &asked->design, &asked->warnings, text);
+}
+
+static enum eo_code run_sweep(struct asked *asked, struct eo_held_pair *held, struct eo_answer *answer)
+{
+  const struct eo_progress progress = {watch_task, asked};
+  const struct eo_sweep_plan plan = {asked->axes.torques, asked->axes.speeds, asked->axes.torque, asked->axes.speed,
+                                     asked->service->settings.threads};
+  struct eo_sweep result = {0};
+  double start = eo_clock_milliseconds();
+  enum eo_code code = eo_sweep_run(&result, eo_held_pair(held), &asked->design, &plan, &progress, &answer->error);
+  double computed = eo_clock_milliseconds();
+  if (!code)
+    write_sweep(asked, &result, &answer->text);
+  note_parts(answer, start, computed);
+  eo_sweep_done(&result);
+  return code;
+}
+
+static enum eo_code run_work(struct asked *asked, struct eo_held_pair *held, struct eo_answer *answer)
+{
+  const struct eo_progress progress = {watch_task, asked};
+  double start = eo_clock_milliseconds();
+  enum eo_code code = asked->work.run(asked->work.data, eo_held_pair(held), &asked->design, &progress, &answer->text,
+                                      &answer->error);
+  note_parts(answer, start, eo_clock_milliseconds());
+  return code;
+}
+
 /* ---- asking ---- */
 
-static struct asked *copy_question(struct eo_service *s, const struct eo_question *q, struct eo_error *error)
+static struct asked *copy_question(struct eo_service *s, const struct eo_question *q, run_function *run,
+                                   struct eo_error *error)
 {
   struct asked *asked = calloc(1, sizeof *asked);
   if (!asked) {
@@ -55,6 +138,7 @@ static struct asked *copy_question(struct eo_service *s, const struct eo_questio
     return NULL;
   }
   asked->service = s;
+  asked->run = run;
   asked->design = *q->design;
   if (q->warnings)
     asked->warnings = *q->warnings;
@@ -71,13 +155,13 @@ static enum eo_code ask_for_pair(struct eo_service *s, const struct eo_design *d
 {
   const struct eo_job_order order = {.kind = EO_JOB_PREPARE, .design = design, .priority = EO_MOST_PRIORITY};
   enum eo_job_outcome outcome;
-  json_t *document = NULL;
-  enum eo_code code = eo_service_submit(s, &order, &outcome, &document, error);
-  *job = json_integer_value(json_object_get(document, "id"));
+  struct eo_job_view made;
+  enum eo_code code = eo_service_submit(s, &order, &outcome, &made, error);
+  *job = made.row.id;
   *admission = outcome == EO_JOB_OUTCOME_CLOSED ? EO_ADMISSION_CLOSED
                : outcome == EO_JOB_OUTCOME_FULL ? EO_ADMISSION_FULL
                                                 : EO_ADMISSION_PREPARING;
-  json_decref(document);
+  eo_job_view_done(&made);
   return code;
 }
 
@@ -116,7 +200,7 @@ static enum eo_code admit(struct eo_service *s, struct eo_lane *lane, struct ask
 enum eo_code eo_service_analyze(struct eo_service *s, const struct eo_analysis_question *q,
                                 enum eo_admission *admission, int64_t *job, struct eo_error *error)
 {
-  struct asked *asked = copy_question(s, &q->common, error);
+  struct asked *asked = copy_question(s, &q->common, run_analysis, error);
   if (!asked)
     return EO_ERROR_MEMORY;
   asked->want = q->want;
@@ -138,7 +222,7 @@ static enum eo_code copy_axis(const double *from, int count, double **to, struct
 enum eo_code eo_service_sweep(struct eo_service *s, const struct eo_question *q, const struct eo_sweep_axes *axes,
                               enum eo_admission *admission, int64_t *job, struct eo_error *error)
 {
-  struct asked *asked = copy_question(s, q, error);
+  struct asked *asked = copy_question(s, q, run_sweep, error);
   if (!asked)
     return EO_ERROR_MEMORY;
   asked->axes.torques = axes->torques;
@@ -155,7 +239,7 @@ enum eo_code eo_service_sweep(struct eo_service *s, const struct eo_question *q,
 enum eo_code eo_service_compute(struct eo_service *s, const struct eo_question *q, const struct eo_work *work,
                                 enum eo_admission *admission, int64_t *job, struct eo_error *error)
 {
-  struct asked *asked = copy_question(s, q, error);
+  struct asked *asked = copy_question(s, q, run_work, error);
   if (!asked) {
     work->release(work->data);
     return EO_ERROR_MEMORY;
@@ -214,47 +298,19 @@ static struct eo_held_pair *hold_pair(struct eo_service *s, const struct asked *
   return NULL;
 }
 
-static void fail(struct eo_answer *answer, enum eo_code code)
+/* What the code of a computation makes of its answer. */
+static void conclude(struct eo_service *s, enum eo_code code, struct eo_answer *answer)
 {
-  answer->kind = EO_ANSWER_FAILED;
+  if (!code && answer->text.failed)
+    code = eo_error_memory(&answer->error);
+  if (!code)
+    return;
+  answer->kind = code != EO_ERROR_CANCELLED  ? EO_ANSWER_FAILED
+                 : atomic_load(&s->stopping) ? EO_ANSWER_STOPPED
+                                             : EO_ANSWER_OVERTAKEN;
   if (!answer->error.code)
     eo_error_set(&answer->error, code, "", "The computation failed.");
   eo_text_done(&answer->text);
-}
-
-static enum eo_code write_analysis(const struct asked *asked, const struct eo_analysis *analysis,
-                                   struct eo_answer *answer)
-{
-  if (asked->format == EO_ANSWER_JSON)
-    return eo_result_write(analysis, &asked->design, &asked->warnings, asked->left_out, &answer->text, &answer->error);
-  json_t *document = eo_result_encode_part(analysis, &asked->design, &asked->warnings, asked->left_out);
-  if (!document)
-    return eo_error_memory(&answer->error);
-  eo_result_summary_csv(document, &answer->text);
-  json_decref(document);
-  return answer->text.failed ? eo_error_memory(&answer->error) : EO_OK;
-}
-
-static void analyze(struct eo_service *s, struct asked *asked, struct eo_held_pair *held, struct eo_answer *answer)
-{
-  uint64_t user = user_of(asked->task.token);
-  struct eo_analysis *analysis;
-  double start = eo_clock_milliseconds();
-  enum eo_code code = eo_pairs_borrow(s->pairs, held, user, &analysis, &answer->error);
-  if (code) {
-    fail(answer, code);
-    return;
-  }
-  analysis->threads = s->cores > 1 ? 2 : 1;
-  code = eo_analysis_run(analysis, &asked->design, asked->want, &answer->error);
-  double computed = eo_clock_milliseconds();
-  if (!code)
-    code = write_analysis(asked, analysis, answer);
-  answer->computed_ms = computed - start;
-  answer->written_ms = eo_clock_milliseconds() - computed;
-  eo_pairs_give_back(s->pairs, held, user, analysis);
-  if (code)
-    fail(answer, code);
 }
 
 static void note_time(struct eo_service *s, const struct eo_answer *answer)
@@ -269,101 +325,25 @@ static void note_time(struct eo_service *s, const struct eo_answer *answer)
   pthread_mutex_unlock(&s->timing_mutex);
 }
 
-void eo_service_answer_analysis(void *context, struct eo_lane_task *task, enum eo_lane_fate fate)
+static void note_done(struct eo_service *s, const struct asked *asked, const struct eo_answer *answer)
 {
-  struct eo_service *s = context;
-  struct asked *asked = (struct asked *)task;
-  struct eo_answer answer = {.kind = EO_ANSWER_DONE, .waited_ms = eo_clock_milliseconds() - task->queued};
-  struct eo_held_pair *held = NULL;
-  if (!answer_at_once(s, asked, fate, &answer) && (held = hold_pair(s, asked, &answer)))
-    analyze(s, asked, held, &answer);
-  eo_pairs_release(s->pairs, held);
-  if (answer.kind == EO_ANSWER_DONE)
-    note_time(s, &answer);
-  asked->answer(asked->context, &answer);
-  eo_text_done(&answer.text);
-}
-
-static int watch_task(void *context, const char *what, double fraction)
-{
-  const struct asked *asked = context;
-  (void)what;
-  (void)fraction;
-  return atomic_load(&asked->task.overtaken) || atomic_load(&asked->service->stopping);
-}
-
-static enum eo_code write_sweep(const struct asked *asked, const struct eo_sweep *sweep, struct eo_answer *answer)
-{
-  if (asked->format == EO_ANSWER_CSV) {
-    eo_sweep_csv(sweep, &answer->text);
-    return answer->text.failed ? eo_error_memory(&answer->error) : EO_OK;
-  }
-  json_t *document = eo_sweep_encode(sweep, &asked->design, &asked->warnings);
-  if (document)
-    eo_json_write(&answer->text, document, EO_JSON_COMPACT);
-  json_decref(document);
-  return document && !answer->text.failed ? EO_OK : eo_error_memory(&answer->error);
-}
-
-static void sweep(struct eo_service *s, struct asked *asked, struct eo_held_pair *held, struct eo_answer *answer)
-{
-  const struct eo_progress progress = {watch_task, asked};
-  const struct eo_sweep_plan plan = {asked->axes.torques, asked->axes.speeds, asked->axes.torque, asked->axes.speed,
-                                     s->settings.threads};
-  struct eo_sweep result = {0};
-  double start = eo_clock_milliseconds();
-  enum eo_code code = eo_sweep_run(&result, eo_held_pair(held), &asked->design, &plan, &progress, &answer->error);
-  double computed = eo_clock_milliseconds();
-  if (!code)
-    code = write_sweep(asked, &result, answer);
-  answer->computed_ms = computed - start;
-  answer->written_ms = eo_clock_milliseconds() - computed;
-  eo_sweep_done(&result);
-  if (code == EO_ERROR_CANCELLED)
-    answer->kind = atomic_load(&s->stopping) ? EO_ANSWER_STOPPED : EO_ANSWER_OVERTAKEN;
-  else if (code)
-    fail(answer, code);
-}
-
-void eo_service_answer_sweep(void *context, struct eo_lane_task *task, enum eo_lane_fate fate)
-{
-  struct eo_service *s = context;
-  struct asked *asked = (struct asked *)task;
-  struct eo_answer answer = {.kind = EO_ANSWER_DONE, .waited_ms = eo_clock_milliseconds() - task->queued};
-  struct eo_held_pair *held = NULL;
-  if (!answer_at_once(s, asked, fate, &answer) && (held = hold_pair(s, asked, &answer)))
-    sweep(s, asked, held, &answer);
-  eo_pairs_release(s->pairs, held);
-  if (answer.kind == EO_ANSWER_DONE)
+  if (asked->run == run_analysis)
+    note_time(s, answer);
+  else if (asked->run == run_sweep)
     atomic_fetch_add(&s->sweeps_done, 1);
-  asked->answer(asked->context, &answer);
-  eo_text_done(&answer.text);
 }
 
-static void work(struct eo_service *s, struct asked *asked, struct eo_held_pair *held, struct eo_answer *answer)
-{
-  const struct eo_progress progress = {watch_task, asked};
-  double start = eo_clock_milliseconds();
-  enum eo_code code = asked->work.run(asked->work.data, eo_held_pair(held), &asked->design, &progress, &answer->text,
-                                      &answer->error);
-  if (!code && answer->text.failed)
-    code = eo_error_memory(&answer->error);
-  answer->computed_ms = eo_clock_milliseconds() - start;
-  if (code)
-    fail(answer, code);
-  if (code == EO_ERROR_CANCELLED)
-    answer->kind = atomic_load(&s->stopping) ? EO_ANSWER_STOPPED : EO_ANSWER_OVERTAKEN;
-}
-
-void eo_service_answer_work(void *context, struct eo_lane_task *task, enum eo_lane_fate fate)
+void eo_service_run_task(void *context, struct eo_lane_task *task, enum eo_lane_fate fate)
 {
   struct eo_service *s = context;
   struct asked *asked = (struct asked *)task;
   struct eo_answer answer = {.kind = EO_ANSWER_DONE, .waited_ms = eo_clock_milliseconds() - task->queued};
   struct eo_held_pair *held = NULL;
   if (!answer_at_once(s, asked, fate, &answer) && (held = hold_pair(s, asked, &answer)))
-    work(s, asked, held, &answer);
+    conclude(s, asked->run(asked, held, &answer), &answer);
   eo_pairs_release(s->pairs, held);
+  if (answer.kind == EO_ANSWER_DONE)
+    note_done(s, asked, &answer);
   asked->answer(asked->context, &answer);
   eo_text_done(&answer.text);
 }

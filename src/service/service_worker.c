@@ -7,7 +7,6 @@
 #include <time.h>
 
 #include "base/clock.h"
-#include "format/json.h"
 
 enum { EVENT_MS = 120, NOTE_MS = 1000, OPTIMIZE_NICE = 10, PREPARE_NICE = 3 };
 
@@ -41,11 +40,8 @@ static void end_live(struct eo_service_worker *w)
 static void write_live(struct eo_service_worker *w, struct eo_text *text)
 {
   pthread_mutex_lock(&w->service->live_mutex);
-  json_t *document = eo_job_live_encode(&w->live);
+  eo_job_live_write(&w->live, text);
   pthread_mutex_unlock(&w->service->live_mutex);
-  if (document)
-    eo_json_write(text, document, EO_JSON_COMPACT);
-  json_decref(document);
 }
 
 /* Tells the listeners now and then, and the table more rarely: what it misses is found again from the history. */
@@ -113,18 +109,11 @@ static enum eo_code take_job(void *context, const struct eo_stored_job *job, str
 
 static enum eo_code read_design(struct task *task, struct eo_error *error)
 {
-  struct eo_faults *faults = calloc(1, sizeof *faults);
-  json_t *document = eo_json_parse(task->text.data, task->text.size, error);
-  enum eo_code code = document ? EO_OK : EO_ERROR_INPUT;
-  if (!code && (!faults || !(task->design = malloc(sizeof *task->design))))
-    code = eo_error_memory(error);
-  if (!code && !eo_design_decode(document, task->design, &task->warnings, faults))
-    code = eo_faults_first(faults, error);
-  if (!code)
-    code = eo_design_complete(task->design, &task->geometry, error);
-  json_decref(document);
-  free(faults);
-  return code;
+  task->design = malloc(sizeof *task->design);
+  if (!task->design)
+    return eo_error_memory(error);
+  return eo_design_read(task->text.data ? task->text.data : "", task->text.size, task->design, &task->geometry,
+                        &task->warnings, error);
 }
 
 static enum eo_code optimize(struct eo_service_worker *w, struct task *task, bool *stopped, struct eo_error *error)
@@ -138,7 +127,6 @@ static enum eo_code optimize(struct eo_service_worker *w, struct task *task, boo
                                      .watch = follow_study,
                                      .context = w};
   struct eo_study_result result;
-  json_t *document = NULL;
   enum eo_code code = eo_study_run(&plan, &result, error);
   *stopped = !code && result.stopped == EO_STOP_CANCELLED;
   pthread_mutex_lock(&w->service->live_mutex);
@@ -147,8 +135,7 @@ static enum eo_code optimize(struct eo_service_worker *w, struct task *task, boo
   pthread_mutex_unlock(&w->service->live_mutex);
   bool parked = *stopped && !atomic_load(&w->cancelled);
   if (!code && !parked)
-    code = eo_study_document(&plan, &result, &task->warnings, &document, error);
-  json_decref(document);
+    code = eo_study_document(&plan, &result, &task->warnings, NULL, error);
   eo_study_result_done(&result);
   return code;
 }
@@ -157,24 +144,12 @@ static enum eo_code run_job(struct eo_service_worker *w, struct task *task, bool
 {
   const struct eo_progress progress = {follow_preparation, w};
   enum eo_job_outcome outcome;
-  enum eo_code code = eo_queue_find(w->store, task->id, take_job, task, &outcome, error);
-  if (!code && task->stop)
+  EO_TRY(eo_queue_find(w->store, task->id, take_job, task, &outcome, error));
+  if (task->stop)
     atomic_store(&w->cancelled, true);
-  if (!code)
-    code = read_design(task, error);
-  if (!code)
-    code = eo_pairs_obtain(w->service->pairs, task->design, &progress, &task->held, error);
-  if (!code && w->kind == EO_JOB_OPTIMIZE)
-    code = optimize(w, task, stopped, error);
-  return code;
-}
-
-static void write_error(const struct eo_error *error, struct eo_text *text)
-{
-  json_t *document = eo_job_error_encode(error);
-  if (document)
-    eo_json_write(text, document, EO_JSON_COMPACT);
-  json_decref(document);
+  EO_TRY(read_design(task, error));
+  EO_TRY(eo_pairs_obtain(w->service->pairs, task->design, &progress, &task->held, error));
+  return w->kind == EO_JOB_OPTIMIZE ? optimize(w, task, stopped, error) : EO_OK;
 }
 
 /* A stop that nobody asked for by name is the service's: the job waits for the next one. */
@@ -194,9 +169,9 @@ static void end_job(struct eo_service_worker *w, int64_t id, enum eo_job_state s
   pthread_mutex_unlock(&w->service->live_mutex);
   write_live(w, &progress);
   if (state == EO_JOB_FAILED)
-    write_error(error, &fault);
+    eo_job_error_write(error, &fault);
   /* a database that fails here leaves the job as begun: the next start of the service queues it again */
-  eo_queue_end(w->store, id, state, fault.data, progress.failed ? NULL : progress.data, NULL);
+  eo_queue_end(w->store, id, state, fault.failed ? NULL : fault.data, progress.failed ? NULL : progress.data, NULL);
   if (w->kind == EO_JOB_PREPARE)
     eo_queue_tidy(w->store, EO_PREPARATIONS_KEPT, NULL);
   eo_text_done(&progress);

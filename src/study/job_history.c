@@ -35,27 +35,11 @@ static void done(struct history *h)
 
 /* ---- the job ---- */
 
-static enum eo_code read_design(struct history *h, const char *text, struct eo_error *error)
-{
-  struct eo_faults *faults = calloc(1, sizeof *faults);
-  json_t *document = eo_json_parse(text, strlen(text), error);
-  enum eo_code code = document ? EO_OK : error->code;
-  if (!faults)
-    code = eo_error_memory(error);
-  if (!code && !eo_design_decode(document, &h->design, NULL, faults))
-    code = eo_faults_first(faults, error);
-  if (!code)
-    code = eo_design_complete(&h->design, &h->geometry, error);
-  json_decref(document);
-  free(faults);
-  return code;
-}
-
 static enum eo_code take_job(void *context, const struct eo_stored_job *job, struct eo_error *error)
 {
   struct history *h = context;
   h->problem = job->problem;
-  return read_design(h, job->design, error);
+  return eo_design_read(job->design, strlen(job->design), &h->design, &h->geometry, NULL, error);
 }
 
 static enum eo_code reserve(struct history *h, struct eo_error *error)

@@ -49,7 +49,8 @@ enum eo_code eo_study_run(const struct eo_study_plan *plan, struct eo_study_resu
 bool eo_study_best_design(const struct eo_study_plan *plan, const struct eo_study_result *result,
                           struct eo_design *best);
 
-/* The study's document: analyses the best design and keeps the text with the job. warnings may be NULL. */
+/* The study's document: analyses the best design and keeps the text with the job. warnings may be NULL; document too:
+   it is only kept then. */
 enum eo_code eo_study_document(const struct eo_study_plan *plan, const struct eo_study_result *result,
                                const struct eo_warnings *warnings, json_t **document, struct eo_error *error);
 

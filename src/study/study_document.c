@@ -41,15 +41,19 @@ static enum eo_code keep(struct eo_store *store, int64_t job, const json_t *docu
 enum eo_code eo_study_document(const struct eo_study_plan *plan, const struct eo_study_result *result,
                                const struct eo_warnings *warnings, json_t **document, struct eo_error *error)
 {
-  json_t *analysis = NULL;
+  json_t *analysis = NULL, *made = NULL;
   struct eo_design *best = malloc(sizeof *best);
   enum eo_code code = best ? EO_OK : eo_error_memory(error);
   if (!code && eo_study_best_design(plan, result, best))
     code = analyse(plan, best, &analysis, error);
-  if (!code && !(*document = eo_study_result_encode(result, plan->design, analysis, warnings)))
+  if (!code && !(made = eo_study_result_encode(result, plan->design, analysis, warnings)))
     code = eo_error_memory(error);
   if (!code)
-    code = keep(plan->store, result->job, *document, error);
+    code = keep(plan->store, result->job, made, error);
+  if (document)
+    *document = made;
+  else
+    json_decref(made);
   json_decref(analysis);
   free(best);
   return code;

@@ -45,11 +45,11 @@ __attribute__((unused)) static int64_t submit(struct eo_service *service, enum e
                                               enum eo_job_outcome *outcome)
 {
   const struct eo_job_order order = {.kind = kind, .design = design, .key = key};
-  json_t *job = NULL;
+  struct eo_job_view job;
   if (eo_service_submit(service, &order, outcome, &job, &error))
     printf("# %s\n", error.text);
-  int64_t id = json_integer_value(json_object_get(job, "id"));
-  json_decref(job);
+  int64_t id = job.row.id;
+  eo_job_view_done(&job);
   return id;
 }
 
@@ -57,9 +57,11 @@ __attribute__((unused)) static int64_t submit(struct eo_service *service, enum e
 __attribute__((unused)) static json_t *look(struct eo_service *service, int64_t id)
 {
   enum eo_job_outcome outcome;
-  json_t *job = NULL;
+  struct eo_job_view job;
   eo_service_job(service, id, false, &outcome, &job, &error);
-  return job;
+  json_t *document = job.texts ? eo_job_view_encode(&job) : NULL;
+  eo_job_view_done(&job);
+  return document;
 }
 
 __attribute__((unused)) static bool is_in(struct eo_service *service, int64_t id, const char *state)

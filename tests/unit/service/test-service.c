@@ -3,7 +3,6 @@
 #include <stdatomic.h>
 
 #include "document/result.h"
-#include "service/job_document.h"
 #include "support/service-fixture.h"
 #include "store/queue.h"
 #include "support/tap.h"
@@ -269,7 +268,7 @@ static void test_job(void)
   struct heard heard = {0};
   enum eo_job_outcome outcome;
   int64_t subscription, id, again;
-  json_t *columns = NULL;
+  struct eo_job_convergence convergence;
   eo_service_subscribe(service, 0, 0, hear, &heard, &subscription, &error);
   id = submit(service, EO_JOB_OPTIMIZE, &design, "once", &outcome);
   ok(outcome == EO_JOB_OUTCOME_DONE && id, "an optimization is queued");
@@ -290,8 +289,10 @@ static void test_job(void)
          json_is_true(json_object_get(job, "has_result")) && json_string_value(json_object_get(job, "finished")),
      "its document says what it found");
   json_decref(job);
-  ok(!eo_service_generations(service, id, &outcome, &columns, &error) && !outcome &&
-         json_array_size(json_object_get(columns, "best")) > 1 &&
+  ok(!eo_service_convergence(service, id, &outcome, &convergence, &error) && !outcome, "it tells");
+  json_t *columns = eo_job_convergence_encode(&convergence);
+  eo_job_convergence_done(&convergence);
+  ok(json_array_size(json_object_get(columns, "best")) > 1 &&
          json_array_size(json_object_get(columns, "mean")) == json_array_size(json_object_get(columns, "pfc_percent")),
      "and how it converged");
   json_decref(columns);
@@ -310,26 +311,26 @@ static void test_cancel(void)
 {
   struct eo_service *service = start();
   enum eo_job_outcome outcome;
-  json_t *job = NULL;
+  struct eo_job_view job;
   int64_t id = submit(service, EO_JOB_OPTIMIZE, &design, NULL, &outcome),
           waiting = submit(service, EO_JOB_OPTIMIZE, &design, NULL, &outcome);
   ok(!eo_service_cancel(service, waiting, &outcome, &job, &error) && !outcome && is_in(service, waiting, "cancelled"),
      "a waiting job is cancelled at once");
-  json_decref(job);
+  eo_job_view_done(&job);
   ok(wait_for_evaluations(service, id, 30), "the other one runs");
   ok(!eo_service_remove(service, id, &outcome, &error) && outcome == EO_JOB_OUTCOME_STATE, "and cannot be removed");
   double asked = eo_clock_milliseconds();
   ok(!eo_service_cancel(service, id, &outcome, &job, &error) && !outcome, "it is told to stop");
-  json_decref(job);
+  eo_job_view_done(&job);
   ok(wait_for(service, id, "cancelled"), "and does, after %.0f ms", eo_clock_milliseconds() - asked);
   int before = progress_of(service, id, "true_evaluations");
   char *found = result_of(service, id);
   ok(found != NULL && before < BUDGET, "with what it found in %d evaluations", before);
   free(found);
-  ok(!eo_service_cancel(service, id, &outcome, &job, &error) && outcome == EO_JOB_OUTCOME_STATE && !job,
+  ok(!eo_service_cancel(service, id, &outcome, &job, &error) && outcome == EO_JOB_OUTCOME_STATE && !job.texts,
      "once is enough");
   ok(!eo_service_retry(service, id, &outcome, &job, &error) && !outcome, "it is tried again");
-  json_decref(job);
+  eo_job_view_done(&job);
   ok(wait_for(service, id, "done"), "and goes on to its end");
   char *result = result_of(service, id);
   json_t *one = json_loads(undisturbed, 0, NULL), *two = json_loads(result ? result : "{}", 0, NULL);
@@ -339,10 +340,9 @@ static void test_cancel(void)
   json_decref(one);
   json_decref(two);
   free(result);
-  ok(!eo_service_clone(service, id, NULL, &outcome, &job, &error) && !outcome &&
-         json_integer_value(json_object_get(job, "id")) > id,
+  ok(!eo_service_clone(service, id, NULL, &outcome, &job, &error) && !outcome && job.row.id > id,
      "a copy is another job");
-  json_decref(job);
+  eo_job_view_done(&job);
   ok(!eo_service_remove(service, waiting, &outcome, &error) && !outcome && !look(service, waiting),
      "an ended job can be removed");
   eo_service_free(service);
@@ -352,14 +352,12 @@ static void test_full(void)
 {
   struct eo_service *service = start_with(2, 0);
   enum eo_job_outcome outcome = EO_JOB_OUTCOME_DONE;
-  json_t *page = NULL;
+  struct eo_job_page page;
   for (int i = 0; i < 10 && !outcome; i++)
     submit(service, EO_JOB_OPTIMIZE, &design, NULL, &outcome);
   ok(outcome == EO_JOB_OUTCOME_FULL, "a full queue says so");
-  ok(!eo_service_jobs(service, -1, -1, 0, 1, &page, &error) && json_array_size(json_object_get(page, "items")) == 1 &&
-         json_is_string(json_object_get(page, "next")),
-     "jobs come in pages");
-  json_decref(page);
+  ok(!eo_service_jobs(service, -1, -1, 0, 1, &page, &error) && page.count == 1 && page.more, "jobs come in pages");
+  eo_job_page_done(&page);
   eo_service_free(service);
 }
 
@@ -400,14 +398,15 @@ static void *watch_ends(void *argument)
 {
   struct watching *w = argument;
   while (!atomic_load(&w->stop)) {
-    json_t *page = NULL;
+    struct eo_job_page page = {0};
     eo_service_jobs(w->service, -1, EO_JOB_OPTIMIZE, 0, 1, &page, NULL);
-    const json_t *job = json_array_get(json_object_get(page, "items"), 0);
+    json_t *job = page.count ? eo_job_view_encode(page.job) : NULL;
     const char *state = json_string_value(json_object_get(job, "state"));
     bool done = state && strcmp(state, "done") == 0;
     w->ends += done;
     w->torn += done && eo_json_find_number(job, "progress/fraction") != 1;
-    json_decref(page);
+    json_decref(job);
+    eo_job_page_done(&page);
   }
   return NULL;
 }
@@ -453,7 +452,10 @@ static void test_stale_note(void)
       .started = "",
       .finished = "",
       .progress = "{\"progress\":{\"fraction\":0.99,\"true_evaluations\":399,\"individuals\":499,\"pfc_percent\":80}}"};
-  json_t *document = eo_job_encode(&job, NULL, false);
+  struct eo_job_view view;
+  eo_job_view_init(&view, &job, NULL, false, &error);
+  json_t *document = eo_job_view_encode(&view);
+  eo_job_view_done(&view);
   ok(eo_json_find_number(document, "progress/true_evaluations") == 400 &&
          eo_json_find_number(document, "progress/individuals") == 500 &&
          eo_json_find_number(document, "progress/pfc_percent") == 80,
