@@ -5,9 +5,11 @@
 
 #include "document/geometry_table.h"
 #include "evaluation/evaluator.h"
+#include "http/body.h"
+#include "http/deferred.h"
 #include "http/service_reply.h"
 #include "http/route.h"
-#include "http/server.h"
+#include "http/http_private.h"
 
 static json_t *encode_warnings(const struct eo_warnings *warnings)
 {
@@ -24,7 +26,7 @@ static void check(struct eo_request *request)
   struct eo_warnings warnings = {0};
   const json_t *body = eo_request_json(request);
   if (body && eo_request_design(request, body, "", &design, &geometry, &warnings))
-    eo_reply_json(request, 200,
+    eo_reply_json(&request->reply, 200,
                   json_pack("{s:o, s:o, s:o, s:b}", "design", eo_design_encode(&design), "geometry",
                             eo_table_encode(&eo_geometry_table, &geometry), "warnings", encode_warnings(&warnings),
                             "prepared", eo_service_is_prepared(request->http->service, &design)));
@@ -37,12 +39,12 @@ static void put_analysis(struct eo_request *request, const struct eo_design *des
   enum eo_admission admission;
   struct eo_error error;
   int64_t job = 0;
-  bool histories = eo_request_number(request, "histories") != 0;
+  bool histories = eo_route_number(request, "histories") != 0;
   struct eo_analysis_question question = {.common = eo_request_to_question(request, design, warnings),
                                           .want = EO_WANT_CURVES |
-                                                  (eo_request_number(request, "root_stress") != 0 ? EO_WANT_ROOT : 0) |
-                                                  (eo_request_number(request, "band") != 0 ? EO_WANT_BAND : 0),
-                                          .maps = eo_request_number(request, "maps") != 0,
+                                                  (eo_route_number(request, "root_stress") != 0 ? EO_WANT_ROOT : 0) |
+                                                  (eo_route_number(request, "band") != 0 ? EO_WANT_BAND : 0),
+                                          .maps = eo_route_number(request, "maps") != 0,
                                           .histories = histories};
   if (!eo_request_lane(request, &question.common))
     return;
@@ -98,7 +100,8 @@ static bool is_small(struct eo_request *request, const struct eo_sweep_axes *axe
   long points = (long)(axes->torques ? axes->torques : 1) * (axes->speeds ? axes->speeds : 1);
   if (points <= MOST_SWEEP_POINTS)
     return true;
-  eo_reply_problem(request, 422, "too-large", "A sweep may have %d points here, not %ld.", MOST_SWEEP_POINTS, points);
+  eo_reply_problem(&request->reply, 422, "too-large", "A sweep may have %d points here, not %ld.", MOST_SWEEP_POINTS,
+                   points);
   return false;
 }
 
@@ -124,10 +127,10 @@ static void sweep(struct eo_request *request)
   struct eo_warnings warnings = {0};
   struct eo_sweep_axes axes = {0};
   struct eo_error error;
-  if (!eo_request_read(request, &order))
+  if (!eo_body_read(request, &order))
     return;
   if (eo_sweep_axes_init(&axes, &order.range, &error))
-    eo_reply_error(request, "", &error);
+    eo_reply_error(&request->reply, "", &error);
   else if (eo_request_design(request, order.design, "/design", &design, &geometry, &warnings))
     put_sweep(request, &design, &warnings, &axes);
   eo_sweep_axes_done(&axes);

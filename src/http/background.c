@@ -1,10 +1,11 @@
+#include "http/deferred.h"
 #include "http/background.h"
 
 #include <pthread.h>
 #include <stdlib.h>
 
 #include "http/route.h"
-#include "http/server.h"
+#include "http/http_private.h"
 
 struct eo_background {
   struct eo_store *store;
@@ -37,7 +38,7 @@ static void *work(void *context)
   struct eo_request *request;
   while ((request = next(aside))) {
     request->store = aside->store;
-    eo_request_handle(request);
+    eo_route_run(request);
     eo_request_finish(request);
   }
   return NULL;
@@ -74,7 +75,7 @@ void eo_background_take(struct eo_background *aside, struct eo_request *request)
   pthread_mutex_unlock(&aside->lock);
   if (room)
     return;
-  eo_reply_problem(request, 503, "busy", "Too many requests are waiting already.");
+  eo_reply_problem(&request->reply, 503, "busy", "Too many requests are waiting already.");
   request->reply.retry_after = 1;
   eo_request_finish(request);
 }

@@ -6,9 +6,12 @@
 #include <string.h>
 
 #include "http/service_reply.h"
-#include "http/measurement_request.h"
+#include "http/body.h"
+#include "http/deferred.h"
+#include "http/stored_design.h"
+#include "http/stored_measurement.h"
 #include "http/route.h"
-#include "http/server.h"
+#include "http/http_private.h"
 #include "service/rig_tasks.h"
 #include "store/measurements.h"
 
@@ -59,7 +62,7 @@ static bool find_design(struct eo_request *request, int64_t id, struct eo_design
   if (eo_request_stored_design(request, id, design, &geometry, document, &missing))
     return true;
   if (missing)
-    eo_reply_problem(request, 404, NULL, "There is no design with this number.");
+    eo_reply_problem(&request->reply, 404, NULL, "There is no design with this number.");
   return false;
 }
 
@@ -68,7 +71,7 @@ static void compare(struct eo_request *request, const struct eo_design *design, 
   struct eo_work work;
   struct eo_error error;
   if (eo_rig_comparison(&work, points, request->csv, &error))
-    eo_reply_error(request, "", &error);
+    eo_reply_error(&request->reply, "", &error);
   else
     ask(request, design, &work);
 }
@@ -78,7 +81,7 @@ static void compare_all(struct eo_request *request, int64_t id, const struct eo_
   struct collected c = {0};
   struct eo_error error;
   if (eo_store_list_measurements(request->store, id, 0, EO_MOST_MEASURED + 1, collect, &c, &error))
-    eo_reply_error(request, "", &error);
+    eo_reply_error(&request->reply, "", &error);
   else
     compare(request, design, &c.points);
   eo_rig_points_done(&c.points);
@@ -114,9 +117,9 @@ static void compare_one(struct eo_request *request)
   if (!eo_request_id_at(request, 0, &id))
     return;
   if (eo_store_find_measurement(request->store, id, collect, &c, &outcome, &error))
-    eo_reply_error(request, "", &error);
+    eo_reply_error(&request->reply, "", &error);
   else if (outcome == EO_MEASUREMENT_MISSING)
-    eo_reply_no_measurement(request);
+    eo_reply_no_measurement(&request->reply);
   else if (find_design(request, c.design, &design, NULL))
     compare(request, &design, &c.points);
   eo_rig_points_done(&c.points);
@@ -137,7 +140,7 @@ static bool read_fit(struct eo_request *request, json_t *body, struct basis *bas
   struct eo_faults *faults = calloc(1, sizeof *faults);
   struct eo_error error;
   if (!faults) {
-    eo_reply_error(request, "", (eo_error_memory(&error), &error));
+    eo_reply_error(&request->reply, "", (eo_error_memory(&error), &error));
     return false;
   }
   basis->wanted = json_incref(json_object_get(body, "measurements"));
@@ -149,7 +152,7 @@ static bool read_fit(struct eo_request *request, json_t *body, struct basis *bas
     eo_faults_add(faults, "/measurements", "This must be a list of the numbers of measurements.");
   bool good = faults->count == 0;
   if (!good)
-    eo_reply_faults(request, "", faults);
+    eo_reply_faults(&request->reply, "", faults);
   free(faults);
   return good;
 }
@@ -180,7 +183,7 @@ static void put_fit(struct eo_request *request, int64_t id, const struct basis *
   if (!code)
     code = eo_rig_fit(&work, &c.points, settings, given, &error);
   if (code)
-    eo_reply_error(request, "", &error);
+    eo_reply_error(&request->reply, "", &error);
   else
     ask(request, &basis->design, &work);
   eo_rig_points_done(&c.points);
@@ -220,7 +223,7 @@ static void put_rig(struct eo_request *request, const struct eo_design *design, 
   snprintf(request->reply.file_name, sizeof request->reply.file_name, "rig-%.6gNm-%.6grpm.csv", rig->torque,
            rig->speed * 30 / M_PI);
   if (eo_rig_recording(&work, rig, &error))
-    eo_reply_error(request, "", &error);
+    eo_reply_error(&request->reply, "", &error);
   else
     ask(request, design, &work);
 }
@@ -231,11 +234,10 @@ static void record(struct eo_request *request)
   struct eo_design design;
   struct eo_geometry geometry;
   struct eo_error error;
-  if (!eo_request_read(request, &order) ||
-      !eo_request_design(request, order.design, "/design", &design, &geometry, NULL))
+  if (!eo_body_read(request, &order) || !eo_request_design(request, order.design, "/design", &design, &geometry, NULL))
     return;
   if (eo_rig_complete(&order.rig, &design, &error))
-    eo_reply_error(request, "/rig", &error);
+    eo_reply_error(&request->reply, "/rig", &error);
   else
     put_rig(request, &design, &order.rig);
 }

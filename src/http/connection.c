@@ -1,14 +1,13 @@
-/* Connections and the time they have: between requests, for header fields, for a body, for taking a reply. The
-   library's own timeout starts again with every byte, so that a client which drips would stay for ever; here a thread
-   looks once a second who is overdue. It is also what keeps event streams alive. */
+/* Between requests, for header fields, for a body, for taking a reply there is a time. The library's own timeout starts
+   again with every byte, so that a client which drips would stay for ever. */
+#include "http/connection.h"
+
 #include <stdlib.h>
 #include <string.h>
 #include <sys/socket.h>
-#include <time.h>
 
 #include "base/clock.h"
-#include "http/server.h"
-#include "http/stream.h"
+#include "http/http_private.h"
 
 static void add(struct eo_http *http, struct MHD_Connection *connection, void **place)
 {
@@ -62,41 +61,11 @@ void eo_connection_allow(struct eo_http *http, struct eo_connection *place, int 
 }
 
 /* The HTTP thread notices the end of the socket and cleans up. */
-static void end_overdue(struct eo_http *http, double now)
+void eo_connections_end_overdue(struct eo_http *http, double now)
 {
   for (struct eo_connection *place = http->connections; place; place = place->after)
     if (place->deadline > 0 && place->deadline < now) {
       shutdown(place->socket, SHUT_RDWR);
       place->deadline = 0;
     }
-}
-
-static void *tick(void *context)
-{
-  struct eo_http *http = context;
-  struct timespec next;
-  clock_gettime(CLOCK_MONOTONIC, &next);
-  pthread_mutex_lock(&http->lock);
-  for (int second = 1; !http->closing; second++) {
-    next.tv_sec++;
-    while (!http->closing && pthread_cond_timedwait(&http->changed, &http->lock, &next) == 0)
-      ;
-    end_overdue(http, eo_clock_milliseconds());
-    if (second % EO_HEARTBEAT_SECONDS == 0)
-      eo_streams_beat(http);
-  }
-  pthread_mutex_unlock(&http->lock);
-  return NULL;
-}
-
-enum eo_code eo_ticker_start(struct eo_http *http, struct eo_error *error)
-{
-  if (pthread_create(&http->ticker, NULL, tick, http) != 0)
-    return eo_error_set(error, EO_ERROR_MEMORY, "", "A thread cannot be started.");
-  return EO_OK;
-}
-
-void eo_ticker_stop(struct eo_http *http)
-{
-  pthread_join(http->ticker, NULL);
 }

@@ -1,7 +1,6 @@
-/* Replies that come later: the connection sleeps, other connections go on. */
-#include <stdlib.h>
+#include "http/deferred.h"
 
-#include "http/server.h"
+#include "http/http_private.h"
 
 bool eo_http_enter(struct eo_http *http)
 {

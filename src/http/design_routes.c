@@ -3,55 +3,27 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "http/measurement_request.h"
+#include "http/body.h"
+#include "http/stored_design.h"
 #include "http/route.h"
-#include "http/server.h"
+#include "http/http_private.h"
 #include "store/designs.h"
 
 enum { MOST_DESIGNS = 100000, MOST_LISTED = 200 };
 
-/* Without the design: a row of a list. */
-static json_t *encode(const struct eo_stored_design *row)
-{
-  return json_pack("{s:I, s:I, s:s, s:s, s:s}", "id", (json_int_t)row->id, "revision", (json_int_t)row->revision,
-                   "name", row->name, "created", row->created, "updated", row->updated);
-}
-
-static void write_tag(const struct eo_stored_design *row, char tag[EO_TAG])
-{
-  snprintf(tag, EO_TAG, "%lld.%lld", (long long)row->id, (long long)row->revision);
-}
-
-/* A row on its way into a reply. */
-struct found {
-  json_t *document;
-  int64_t id;
-  char tag[EO_TAG];
-};
-
-static enum eo_code visit(void *context, const struct eo_stored_design *row, struct eo_error *error)
-{
-  struct found *found = context;
-  found->id = row->id;
-  write_tag(row, found->tag);
-  found->document = encode(row);
-  json_t *design = json_loads(row->document, 0, NULL);
-  return json_object_set_new(found->document, "design", design ? design : json_null()) ? eo_error_memory(error) : EO_OK;
-}
-
 static void reply_missing(struct eo_request *request)
 {
-  eo_reply_problem(request, 404, NULL, "There is no design with this number.");
+  eo_reply_problem(&request->reply, 404, NULL, "There is no design with this number.");
 }
 
-static void reply_found(struct eo_request *request, unsigned status, struct found *found,
+static void reply_found(struct eo_request *request, unsigned status, struct eo_found_design *found,
                         const struct eo_warnings *warnings)
 {
   json_t *list = json_array();
   for (int i = 0; warnings && i < warnings->count; i++)
     json_array_append_new(list, json_string(warnings->text[i]));
   json_object_set_new(found->document, "warnings", list);
-  eo_reply_json(request, status, found->document);
+  eo_reply_json(&request->reply, status, found->document);
   found->document = NULL;
   snprintf(request->reply.tag, sizeof request->reply.tag, "%s", found->tag);
   request->reply.revalidate = true;
@@ -61,17 +33,17 @@ static void reply_found(struct eo_request *request, unsigned status, struct foun
 
 static void get_one(struct eo_request *request)
 {
-  struct found found = {0};
+  struct eo_found_design found = {0};
   struct eo_error error;
   enum eo_design_outcome outcome;
   int64_t id;
   if (!eo_request_id_at(request, 0, &id))
     return;
-  if (eo_store_find_design(request->store, id, visit, &found, &outcome, &error))
-    eo_reply_error(request, "", &error);
+  if (eo_store_find_design(request->store, id, eo_design_take, &found, &outcome, &error))
+    eo_reply_error(&request->reply, "", &error);
   else if (outcome == EO_DESIGN_MISSING)
     reply_missing(request);
-  else if (!eo_reply_unchanged(request, found.tag))
+  else if (!eo_request_unchanged(request, found.tag))
     reply_found(request, 200, &found, NULL);
   json_decref(found.document);
 }
@@ -91,22 +63,22 @@ static enum eo_code visit_listed(void *context, const struct eo_stored_design *r
     return EO_OK;
   }
   page->last = row->id;
-  return json_array_append_new(page->items, encode(row)) ? eo_error_memory(error) : EO_OK;
+  return json_array_append_new(page->items, eo_stored_design_encode(row)) ? eo_error_memory(error) : EO_OK;
 }
 
 static void list(struct eo_request *request)
 {
   struct eo_error error;
-  struct page page = {.items = json_array(), .limit = (int)eo_request_number(request, "limit")};
-  int64_t before = (int64_t)eo_request_number(request, "cursor");
+  struct page page = {.items = json_array(), .limit = (int)eo_route_number(request, "limit")};
+  int64_t before = (int64_t)eo_route_number(request, "cursor");
   if (eo_store_list_designs(request->store, before, page.limit + 1, visit_listed, &page, &error)) {
     json_decref(page.items);
-    eo_reply_error(request, "", &error);
+    eo_reply_error(&request->reply, "", &error);
     return;
   }
   char cursor[24];
   snprintf(cursor, sizeof cursor, "%lld", (long long)page.last);
-  eo_reply_json(request, 200,
+  eo_reply_json(&request->reply, 200,
                 json_pack("{s:o, s:o}", "items", page.items, "next", page.more ? json_string(cursor) : json_null()));
 }
 
@@ -133,7 +105,7 @@ struct given {
 static bool read_order(struct eo_request *request, bool named, struct order *order)
 {
   *order = (struct order){.design = eo_request_json(request)};
-  return named ? eo_request_read(request, order) : order->design != NULL;
+  return named ? eo_body_read(request, order) : order->design != NULL;
 }
 
 static bool read_given(struct eo_request *request, struct given *given)
@@ -149,22 +121,23 @@ static bool read_given(struct eo_request *request, struct given *given)
   snprintf(given->name, sizeof given->name, "%s", *order.name ? order.name : *design.name ? design.name : "unnamed");
   given->text = json_dumps(order.design, JSON_COMPACT);
   if (!given->text)
-    eo_reply_error(request, "", (eo_error_memory(&error), &error));
+    eo_reply_error(&request->reply, "", (eo_error_memory(&error), &error));
   return given->text != NULL;
 }
 
 static void add(struct eo_request *request)
 {
   struct given given = {0};
-  struct found found = {0};
+  struct eo_found_design found = {0};
   struct eo_error error;
   enum eo_design_outcome outcome;
   if (!read_given(request, &given))
     return;
-  if (eo_store_add_design(request->store, given.name, given.text, MOST_DESIGNS, visit, &found, &outcome, &error))
-    eo_reply_error(request, "", &error);
+  if (eo_store_add_design(request->store, given.name, given.text, MOST_DESIGNS, eo_design_take, &found, &outcome,
+                          &error))
+    eo_reply_error(&request->reply, "", &error);
   else if (outcome == EO_DESIGN_FULL)
-    eo_reply_problem(request, 507, "full", "%d designs are stored already.", MOST_DESIGNS);
+    eo_reply_problem(&request->reply, 507, "full", "%d designs are stored already.", MOST_DESIGNS);
   else {
     reply_found(request, 201, &found, &given.warnings);
     snprintf(request->reply.location, sizeof request->reply.location, EO_API "/designs/%lld", (long long)found.id);
@@ -178,17 +151,17 @@ static void add(struct eo_request *request)
 static bool read_expected(struct eo_request *request, int64_t id, bool required, int64_t *expected)
 {
   const char *header = eo_request_header(request, "If-Match");
-  struct found found = {0};
+  struct eo_found_design found = {0};
   struct eo_error error;
   enum eo_design_outcome outcome;
   *expected = 0;
   if (!header && required)
-    eo_reply_problem(request, 428, NULL,
+    eo_reply_problem(&request->reply, 428, NULL,
                      "Say with If-Match which version is to be replaced (the ETag of the design, or *).");
   if (!header)
     return !required;
-  if (eo_store_find_design(request->store, id, visit, &found, &outcome, &error)) {
-    eo_reply_error(request, "", &error);
+  if (eo_store_find_design(request->store, id, eo_design_take, &found, &outcome, &error)) {
+    eo_reply_error(&request->reply, "", &error);
     return false;
   }
   if (strcmp(header, "*") != 0 && outcome == EO_DESIGN_DONE)
@@ -201,21 +174,22 @@ static bool read_expected(struct eo_request *request, int64_t id, bool required,
 
 static void reply_stale(struct eo_request *request)
 {
-  eo_reply_problem(request, 412, "stale", "The design has changed since that version.");
+  eo_reply_problem(&request->reply, 412, "stale", "The design has changed since that version.");
 }
 
 static void replace(struct eo_request *request)
 {
   struct given given = {0};
-  struct found found = {0};
+  struct eo_found_design found = {0};
   struct eo_error error;
   enum eo_design_outcome outcome;
   int64_t id, expected;
   if (!eo_request_id_at(request, 0, &id) || !read_expected(request, id, true, &expected) ||
       !read_given(request, &given))
     return;
-  if (eo_store_change_design(request->store, id, expected, given.name, given.text, visit, &found, &outcome, &error))
-    eo_reply_error(request, "", &error);
+  if (eo_store_change_design(request->store, id, expected, given.name, given.text, eo_design_take, &found, &outcome,
+                             &error))
+    eo_reply_error(&request->reply, "", &error);
   else if (outcome == EO_DESIGN_MISSING)
     reply_missing(request);
   else if (outcome == EO_DESIGN_STALE)
@@ -234,37 +208,15 @@ static void take_out(struct eo_request *request)
   if (!eo_request_id_at(request, 0, &id) || !read_expected(request, id, false, &expected))
     return;
   if (eo_store_remove_design(request->store, id, expected, &outcome, &error))
-    eo_reply_error(request, "", &error);
+    eo_reply_error(&request->reply, "", &error);
   else if (outcome == EO_DESIGN_MISSING)
     reply_missing(request);
   else if (outcome == EO_DESIGN_STALE)
     reply_stale(request);
   else if (outcome == EO_DESIGN_USED)
-    eo_reply_problem(request, 409, "in-use", "Measurements belong to this design; remove them first.");
+    eo_reply_problem(&request->reply, 409, "in-use", "Measurements belong to this design; remove them first.");
   else
-    eo_reply_empty(request, 204);
-}
-
-/* ---- for others ---- */
-
-bool eo_request_stored_design(struct eo_request *request, int64_t id, struct eo_design *design,
-                              struct eo_geometry *geometry, json_t **document, bool *missing)
-{
-  struct found found = {0};
-  struct eo_error error;
-  enum eo_design_outcome outcome;
-  bool good = false;
-  *missing = false;
-  if (eo_store_find_design(request->store, id, visit, &found, &outcome, &error))
-    eo_reply_error(request, "", &error);
-  else if (outcome == EO_DESIGN_MISSING)
-    *missing = true;
-  else
-    good = eo_request_design(request, json_object_get(found.document, "design"), "", design, geometry, NULL);
-  if (good && document)
-    *document = json_incref(json_object_get(found.document, "design"));
-  json_decref(found.document);
-  return good;
+    eo_reply_empty(&request->reply, 204);
 }
 
 const struct eo_route eo_routes_designs[] = {{.method = EO_GET,

@@ -41,22 +41,23 @@ static enum eo_code put_examples(struct eo_documents *documents, struct eo_error
   return code ? code : put(&documents->list, list, error);
 }
 
-static enum eo_code put_all(struct eo_documents *documents, struct eo_error *error)
+static enum eo_code put_all(struct eo_documents *documents, const struct eo_route *const *routes,
+                            struct eo_error *error)
 {
   json_t *schema = json_pack("{s:o, s:o}", "design", eo_table_fields(&eo_design_table), "sweep",
                              eo_table_fields(&eo_sweep_request_table));
-  enum eo_code code = put(&documents->schema, schema, error);
-  if (!code)
-    code = put(&documents->openapi, eo_openapi(), error);
-  return code ? code : put_examples(documents, error);
+  EO_TRY(put(&documents->schema, schema, error));
+  EO_TRY(put(&documents->openapi, eo_openapi(routes), error));
+  return put_examples(documents, error);
 }
 
-enum eo_code eo_documents_new(struct eo_documents **documents, struct eo_error *error)
+enum eo_code eo_documents_new(struct eo_documents **documents, const struct eo_route *const *routes,
+                              struct eo_error *error)
 {
   struct eo_documents *made = calloc(1, sizeof *made);
   if (!made)
     return eo_error_memory(error);
-  enum eo_code code = put_all(made, error);
+  enum eo_code code = put_all(made, routes, error);
   if (code)
     eo_documents_free(made);
   else

@@ -4,6 +4,8 @@
 
 #include "http/resource.h"
 
+struct eo_route;
+
 enum { EO_MOST_EXAMPLES = 16 };
 
 struct eo_documents {
@@ -15,7 +17,9 @@ struct eo_documents {
   } example[EO_MOST_EXAMPLES];
 };
 
-enum eo_code eo_documents_new(struct eo_documents **documents, struct eo_error *error);
+/* routes: what OpenAPI describes, NULL after the last table. Errors: memory. */
+enum eo_code eo_documents_new(struct eo_documents **documents, const struct eo_route *const *routes,
+                              struct eo_error *error);
 void eo_documents_free(struct eo_documents *documents);
 
 #endif

@@ -1,6 +1,6 @@
 /* Job events as Server-Sent Events. */
 #include "http/route.h"
-#include "http/server.h"
+#include "http/http_private.h"
 #include "http/stream.h"
 
 /* The number of the last event that was seen; 0: none. */
@@ -25,9 +25,9 @@ static void get_of_job(struct eo_request *request)
   if (!eo_request_id_at(request, 0, &id))
     return;
   if (eo_service_job(request->http->service, id, false, &outcome, &job, &error))
-    eo_reply_error(request, "", &error);
+    eo_reply_error(&request->reply, "", &error);
   else if (outcome == EO_JOB_OUTCOME_MISSING)
-    eo_reply_problem(request, 404, NULL, "There is no job with this number.");
+    eo_reply_problem(&request->reply, 404, NULL, "There is no job with this number.");
   else
     eo_stream_open(request, id, last_seen(request));
   eo_job_view_done(&job);

@@ -3,11 +3,11 @@
 
 #include "http/documents.h"
 #include "http/route.h"
-#include "http/server.h"
+#include "http/http_private.h"
 
 static void list_examples(struct eo_request *request)
 {
-  eo_reply_resource(request, &request->http->documents->list);
+  eo_request_resource(request, &request->http->documents->list);
 }
 
 static void get_example(struct eo_request *request)
@@ -15,10 +15,10 @@ static void get_example(struct eo_request *request)
   const struct eo_documents *documents = request->http->documents;
   for (int i = 0; i < documents->examples; i++)
     if (strcmp(documents->example[i].name, request->argument[0]) == 0) {
-      eo_reply_resource(request, &documents->example[i].resource);
+      eo_request_resource(request, &documents->example[i].resource);
       return;
     }
-  eo_reply_problem(request, 404, NULL, "There is no example of this name; " EO_API "/examples lists them.");
+  eo_reply_problem(&request->reply, 404, NULL, "There is no example of this name; " EO_API "/examples lists them.");
 }
 
 const struct eo_route eo_routes_examples[] = {

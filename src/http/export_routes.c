@@ -3,7 +3,7 @@
 
 #include "document/design_export.h"
 #include "http/route.h"
-#include "http/server.h"
+#include "http/http_private.h"
 
 static void export(struct eo_request *request)
 {
@@ -11,14 +11,14 @@ static void export(struct eo_request *request)
   struct eo_design design;
   struct eo_geometry geometry;
   if (!format) {
-    eo_reply_problem(request, 404, NULL, "There is no format of this name; " EO_API "/export lists them.");
+    eo_reply_problem(&request->reply, 404, NULL, "There is no format of this name; " EO_API "/export lists them.");
     return;
   }
   const json_t *body = eo_request_json(request);
   if (body && eo_request_design(request, body, "", &design, &geometry, NULL)) {
     struct eo_text text = {0};
     format->write(&design, &geometry, &text);
-    eo_reply_text(request, 200, format->type, &text);
+    eo_reply_text(&request->reply, 200, format->type, &text);
     eo_export_file_name(format, &design, request->reply.file_name, sizeof request->reply.file_name);
   }
 }
@@ -30,7 +30,7 @@ static void list(struct eo_request *request)
   for (int i = 0; (format = eo_export_at(i)); i++)
     json_array_append_new(
         items, json_pack("{s:s, s:s, s:s}", "name", format->name, "title", format->summary, "type", format->type));
-  eo_reply_json(request, 200, json_pack("{s:o}", "items", items));
+  eo_reply_json(&request->reply, 200, json_pack("{s:o}", "items", items));
 }
 
 const struct eo_route eo_routes_export[] = {

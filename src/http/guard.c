@@ -2,23 +2,29 @@
 
 #include <math.h>
 #include <netinet/in.h>
+#include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 
 #include "base/clock.h"
-#include "http/route.h"
-#include "http/server.h"
+#include "http/connection.h"
+#include "http/http_private.h"
 
 const char eo_guard_cookie[] = "easeoff_session";
 
-void eo_guard_init(struct eo_guard *guard, const struct eo_http_settings *settings)
+enum eo_code eo_guard_new(struct eo_guard **result, const struct eo_http_settings *settings, struct eo_error *error)
 {
-  *guard = (struct eo_guard){.token = settings->token && *settings->token ? settings->token : NULL,
-                             .host = settings->host};
+  struct eo_guard *guard = calloc(1, sizeof *guard);
   struct eo_hash hash;
+  if (!guard)
+    return eo_error_memory(error);
+  guard->token = settings->token && *settings->token ? settings->token : NULL;
+  guard->host = settings->host;
   eo_hash_init(&hash);
   eo_hash_add_text(&hash, "easeoff session", guard->token ? guard->token : "");
   eo_hash_finish(&hash, guard->session);
+  *result = guard;
+  return EO_OK;
 }
 
 /* ---- token ---- */
@@ -38,7 +44,7 @@ static bool has_session(const struct eo_request *request, const char *session)
 
 bool eo_guard_knows(const struct eo_request *request)
 {
-  const struct eo_guard *guard = &request->http->guard;
+  const struct eo_guard *guard = request->http->guard;
   return !guard->token || bears_token(request, guard->token) || has_session(request, guard->session);
 }
 
@@ -58,7 +64,7 @@ static bool host_is_right(const struct eo_request *request)
 {
   char host[256];
   const char *header = eo_request_header(request, "Host");
-  const struct eo_guard *guard = &request->http->guard;
+  const struct eo_guard *guard = request->http->guard;
   return header && eo_field_host(header, host, sizeof host) && (guard->token || is_own_name(guard, host));
 }
 
@@ -78,11 +84,12 @@ static bool is_cross_site(const struct eo_request *request)
 bool eo_guard_admits(struct eo_request *request)
 {
   if (!host_is_right(request))
-    eo_reply_problem(request, 421, "wrong-host", "This server does not answer under that name; --host NAME adds one.");
+    eo_reply_problem(&request->reply, 421, "wrong-host",
+                     "This server does not answer under that name; --host NAME adds one.");
   else if ((request->method & (EO_POST | EO_PUT | EO_DELETE)) && is_cross_site(request))
-    eo_reply_problem(request, 403, "cross-site", "A page of another site may not change anything here.");
+    eo_reply_problem(&request->reply, 403, "cross-site", "A page of another site may not change anything here.");
   else if (request->route && !request->route->open && !eo_guard_knows(request)) {
-    eo_reply_problem(request, 401, NULL, "This server asks for its token.");
+    eo_reply_problem(&request->reply, 401, NULL, "This server asks for its token.");
     request->reply.authenticate = true;
   } else
     return true;
@@ -130,13 +137,13 @@ bool eo_guard_spends(struct eo_request *request, enum eo_rate rate)
   if (rate == EO_RATE_FREE)
     return true;
   address_of(&request->place->address, key);
-  struct eo_allowance *row = find_allowance(&request->http->guard, key);
+  struct eo_allowance *row = find_allowance(request->http->guard, key);
   double passed = row->at > 0 ? now - row->at : 0;
   for (int k = 0; k < EO_RATE_KINDS; k++)
     row->left[k] = fmin(row->left[k] + passed * rates[k].per_second, rates[k].burst);
   row->at = now;
   if (row->left[rate] < 1) {
-    eo_reply_problem(request, 429, NULL, "That is more than one client may ask for at once.");
+    eo_reply_problem(&request->reply, 429, NULL, "That is more than one client may ask for at once.");
     request->reply.retry_after = (int)ceil((1 - row->left[rate]) / rates[rate].per_second);
     return false;
   }

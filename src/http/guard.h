@@ -9,11 +9,9 @@
 
 #include "base/hash.h"
 #include "http/http.h"
-
-struct eo_request;
+#include "http/route.h"
 
 enum { EO_RATES = 256 };
-enum eo_rate { EO_RATE_FREE, EO_RATE_QUESTION, EO_RATE_START, EO_RATE_KINDS };
 
 struct eo_guard {
   const char *token;                /* NULL: none */
@@ -27,7 +25,8 @@ struct eo_guard {
 
 extern const char eo_guard_cookie[];
 
-void eo_guard_init(struct eo_guard *guard, const struct eo_http_settings *settings);
+/* Errors: memory. */
+enum eo_code eo_guard_new(struct eo_guard **guard, const struct eo_http_settings *settings, struct eo_error *error);
 
 /* False: the reply says why not. */
 bool eo_guard_admits(struct eo_request *request);

@@ -5,7 +5,7 @@
 #include "base/clock.h"
 #include "http/documents.h"
 #include "http/route.h"
-#include "http/server.h"
+#include "http/http_private.h"
 
 #include <config.h>
 
@@ -26,7 +26,7 @@ static void get_health(struct eo_request *request)
                              (json_int_t)status.jobs[EO_JOB_QUEUED], "running",
                              (json_int_t)(status.jobs[EO_JOB_PREPARING] + status.jobs[EO_JOB_RUNNING]), "database",
                              good ? "ok" : "failing", "warnings", warnings);
-  eo_reply_json(request, good ? 200 : 503, health);
+  eo_reply_json(&request->reply, good ? 200 : 503, health);
 }
 
 /* ---- metrics: the text format of Prometheus ---- */
@@ -76,7 +76,7 @@ static void get_metrics(struct eo_request *request)
   struct eo_error error;
   struct eo_text text = {0};
   if (eo_service_status(http->service, &status, &error)) {
-    eo_reply_error(request, "", &error);
+    eo_reply_error(&request->reply, "", &error);
     return;
   }
   pthread_mutex_lock(&http->lock);
@@ -98,17 +98,17 @@ static void get_metrics(struct eo_request *request)
   put(&text, "reused_evaluations_total", "counter", "Evaluations that the history knew.",
       (double)status.reused_evaluations);
   put(&text, "events_total", "counter", "Events published.", (double)status.events);
-  eo_reply_text(request, 200, "text/plain; version=0.0.4; charset=utf-8", &text);
+  eo_reply_text(&request->reply, 200, "text/plain; version=0.0.4; charset=utf-8", &text);
 }
 
 static void get_openapi(struct eo_request *request)
 {
-  eo_reply_resource(request, &request->http->documents->openapi);
+  eo_request_resource(request, &request->http->documents->openapi);
 }
 
 static void get_schema(struct eo_request *request)
 {
-  eo_reply_resource(request, &request->http->documents->schema);
+  eo_request_resource(request, &request->http->documents->schema);
 }
 
 const struct eo_route eo_routes_service[] = {

@@ -1,7 +1,7 @@
 /* What was evaluated: by one job, and by all. */
 #include "http/job_reply.h"
 #include "http/route.h"
-#include "http/server.h"
+#include "http/http_private.h"
 #include "study/job_history.h"
 #include "study/history_document.h"
 
@@ -10,13 +10,13 @@ static void reply_rows(struct eo_request *request, int64_t id)
   enum eo_job_outcome outcome;
   struct eo_error error;
   json_t *page = NULL;
-  int after = (int)eo_request_number(request, "cursor"), limit = (int)eo_request_number(request, "limit");
+  int after = (int)eo_route_number(request, "cursor"), limit = (int)eo_route_number(request, "limit");
   if (eo_job_history(request->store, id, after, limit, &outcome, &page, &error))
-    eo_reply_error(request, "", &error);
+    eo_reply_error(&request->reply, "", &error);
   else if (outcome != EO_JOB_OUTCOME_DONE)
-    eo_reply_job_outcome(request, outcome);
+    eo_reply_job_outcome(&request->reply, outcome);
   else
-    eo_reply_json(request, 200, page);
+    eo_reply_json(&request->reply, 200, page);
 }
 
 static void reply_csv(struct eo_request *request, int64_t id)
@@ -25,11 +25,11 @@ static void reply_csv(struct eo_request *request, int64_t id)
   struct eo_error error;
   struct eo_text text = {0};
   if (eo_job_history_csv(request->store, id, &outcome, &text, &error))
-    eo_reply_error(request, "", &error);
+    eo_reply_error(&request->reply, "", &error);
   else if (outcome != EO_JOB_OUTCOME_DONE)
-    eo_reply_job_outcome(request, outcome);
+    eo_reply_job_outcome(&request->reply, outcome);
   else
-    eo_reply_text(request, 200, "text/csv; charset=utf-8", &text);
+    eo_reply_text(&request->reply, 200, "text/csv; charset=utf-8", &text);
   eo_text_done(&text);
 }
 
@@ -49,9 +49,9 @@ static void get_all(struct eo_request *request)
   struct eo_error error;
   json_t *document = NULL;
   if (eo_records_list(request->store, &document, &error))
-    eo_reply_error(request, "", &error);
+    eo_reply_error(&request->reply, "", &error);
   else
-    eo_reply_json(request, 200, document);
+    eo_reply_json(&request->reply, 200, document);
 }
 
 const struct eo_route eo_routes_history[] = {

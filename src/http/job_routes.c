@@ -3,53 +3,23 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "http/body.h"
 #include "http/job_reply.h"
 #include "http/route.h"
-#include "http/server.h"
-
-void eo_reply_job_location(struct eo_request *request, int64_t id)
-{
-  snprintf(request->reply.location, sizeof request->reply.location, EO_API "/jobs/%lld", (long long)id);
-}
-
-void eo_reply_job_outcome(struct eo_request *request, enum eo_job_outcome outcome)
-{
-  switch (outcome) {
-  case EO_JOB_OUTCOME_MISSING:
-    eo_reply_problem(request, 404, NULL, "There is no job with this number.");
-    break;
-  case EO_JOB_OUTCOME_CONFLICT:
-    eo_reply_problem(request, 422, "key-used", "This Idempotency-Key came with another order before.");
-    break;
-  case EO_JOB_OUTCOME_STATE:
-    eo_reply_problem(request, 409, "state", "The state of the job does not allow that.");
-    break;
-  case EO_JOB_OUTCOME_FULL:
-    eo_reply_problem(request, 503, "queue-full", "Too many jobs are waiting already.");
-    request->reply.retry_after = 30;
-    break;
-  case EO_JOB_OUTCOME_CLOSED:
-    eo_reply_problem(request, 503, "stopping", "The server is stopping.");
-    request->reply.retry_after = 5;
-    break;
-  case EO_JOB_OUTCOME_DONE:
-  case EO_JOB_OUTCOME_REPEATED:
-    break;
-  }
-}
+#include "http/http_private.h"
 
 /* The job as the reply, or why there is none. Takes the job over. */
 static void reply_job(struct eo_request *request, unsigned status, enum eo_code code, enum eo_job_outcome outcome,
                       struct eo_job_view *job, const struct eo_error *error)
 {
   if (code)
-    eo_reply_error(request, "", error);
+    eo_reply_error(&request->reply, "", error);
   else if (outcome != EO_JOB_OUTCOME_DONE && outcome != EO_JOB_OUTCOME_REPEATED)
-    eo_reply_job_outcome(request, outcome);
+    eo_reply_job_outcome(&request->reply, outcome);
   else {
-    eo_reply_json(request, status, eo_job_view_encode(job));
+    eo_reply_json(&request->reply, status, eo_job_view_encode(job));
     if (status == 202)
-      eo_reply_job_location(request, job->row.id);
+      eo_reply_job_location(&request->reply, job->row.id);
   }
   eo_job_view_done(job);
 }
@@ -93,7 +63,7 @@ static bool read_key(struct eo_request *request, const char **key)
   *key = eo_request_header(request, "Idempotency-Key");
   if (!*key || eo_field_is_visible(*key, 129))
     return true;
-  eo_reply_problem(request, 400, NULL, "Idempotency-Key takes 1 to 128 visible characters.");
+  eo_reply_problem(&request->reply, 400, NULL, "Idempotency-Key takes 1 to 128 visible characters.");
   return false;
 }
 
@@ -115,7 +85,7 @@ static void add(struct eo_request *request)
   struct order order;
   struct eo_design design;
   struct eo_geometry geometry;
-  if (eo_request_read(request, &order) && eo_request_design(request, order.design, "/design", &design, &geometry, NULL))
+  if (eo_body_read(request, &order) && eo_request_design(request, order.design, "/design", &design, &geometry, NULL))
     submit(request, &order, &design);
 }
 
@@ -126,7 +96,7 @@ static void repeat(struct eo_request *request)
   struct eo_error error;
   int64_t id;
   struct eo_job_view job = {0};
-  if (!eo_request_id_at(request, 0, &id) || !eo_request_read(request, &change))
+  if (!eo_request_id_at(request, 0, &id) || !eo_body_read(request, &change))
     return;
   int priority = isnan(change.priority) ? 0 : (int)change.priority;
   enum eo_code code = eo_service_clone(request->http->service, id, isnan(change.priority) ? NULL : &priority, &outcome,
@@ -159,12 +129,12 @@ static void list(struct eo_request *request)
   struct eo_job_page page;
   if (eo_service_jobs(request->http->service, find(eo_request_query(request, "state"), eo_store_job_state_find),
                       find(eo_request_query(request, "kind"), eo_store_job_kind_find),
-                      (int64_t)eo_request_number(request, "cursor"), (int)eo_request_number(request, "limit"), &page,
+                      (int64_t)eo_route_number(request, "cursor"), (int)eo_route_number(request, "limit"), &page,
                       &error)) {
-    eo_reply_error(request, "", &error);
+    eo_reply_error(&request->reply, "", &error);
     return;
   }
-  eo_reply_json(request, 200, encode_page(&page));
+  eo_reply_json(&request->reply, 200, encode_page(&page));
   eo_job_page_done(&page);
 }
 
@@ -189,11 +159,11 @@ static void get_result(struct eo_request *request)
   if (!eo_request_id_at(request, 0, &id))
     return;
   if (eo_service_result(request->http->service, id, &outcome, &text, &error))
-    eo_reply_error(request, "", &error);
+    eo_reply_error(&request->reply, "", &error);
   else if (outcome != EO_JOB_OUTCOME_DONE)
-    eo_reply_job_outcome(request, outcome);
+    eo_reply_job_outcome(&request->reply, outcome);
   else
-    eo_reply_text(request, 200, "application/json", &text);
+    eo_reply_text(&request->reply, 200, "application/json", &text);
   eo_text_done(&text);
 }
 
@@ -206,11 +176,11 @@ static void get_generations(struct eo_request *request)
   if (!eo_request_id_at(request, 0, &id))
     return;
   if (eo_service_convergence(request->http->service, id, &outcome, &convergence, &error))
-    eo_reply_error(request, "", &error);
+    eo_reply_error(&request->reply, "", &error);
   else if (outcome != EO_JOB_OUTCOME_DONE)
-    eo_reply_job_outcome(request, outcome);
+    eo_reply_job_outcome(&request->reply, outcome);
   else
-    eo_reply_json(request, 200, eo_job_convergence_encode(&convergence));
+    eo_reply_json(&request->reply, 200, eo_job_convergence_encode(&convergence));
   eo_job_convergence_done(&convergence);
 }
 
@@ -249,11 +219,11 @@ static void take_out(struct eo_request *request)
   if (!eo_request_id_at(request, 0, &id))
     return;
   if (eo_service_remove(request->http->service, id, &outcome, &error))
-    eo_reply_error(request, "", &error);
+    eo_reply_error(&request->reply, "", &error);
   else if (outcome != EO_JOB_OUTCOME_DONE)
-    eo_reply_job_outcome(request, outcome);
+    eo_reply_job_outcome(&request->reply, outcome);
   else
-    eo_reply_empty(request, 204);
+    eo_reply_empty(&request->reply, 204);
 }
 
 const struct eo_route eo_routes_jobs[] = {

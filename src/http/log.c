@@ -1,9 +1,10 @@
+#include "http/log.h"
+
 #include <stdio.h>
 #include <time.h>
 
 #include "base/clock.h"
 #include "format/json.h"
-#include "http/server.h"
 
 static void add_string(struct eo_text *line, const char *key, const char *value)
 {

@@ -6,62 +6,15 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "format/json.h"
-#include "http/measurement_request.h"
+#include "http/measurement_upload.h"
+#include "http/stored_measurement.h"
 #include "http/route.h"
-#include "http/server.h"
+#include "http/http_private.h"
 #include "http/upload.h"
 
 enum { MOST_LISTED = 200 };
 
-/* ---- documents: written as text, since the results are kept as text ---- */
-
-static void add_json(struct eo_text *text, json_t *value)
-{
-  if (value)
-    eo_json_write(text, value, EO_JSON_COMPACT);
-  text->failed = text->failed || !value;
-  json_decref(value);
-}
-
-static void add_files(struct eo_text *text, const struct eo_stored_measurement *row)
-{
-  json_t *files = json_array();
-  for (int i = 0; i < row->files; i++)
-    json_array_append_new(files, json_pack("{s:s, s:I, s:s}", "name", row->file[i].name, "size",
-                                           (json_int_t)row->file[i].size, "sha256", row->file[i].sha256));
-  eo_text_add(text, ",\"files\":");
-  add_json(text, files);
-}
-
-/* document: of the result or its summary, a JSON object. */
-static void add_row(struct eo_text *text, const struct eo_stored_measurement *row, const char *document)
-{
-  eo_text_print(text, "{\"id\":%lld,\"design\":%lld,\"created\":\"%s\",\"stated_speed_rpm\":", (long long)row->id,
-                (long long)row->design, row->created);
-  json_t *speed = eo_json_real(row->speed, &eo_unit_rpm);
-  add_json(text, speed);
-  eo_text_print(text, ",\"asked_layout\":%s", *row->layout ? row->layout : "null");
-  add_files(text, row);
-  eo_text_add(text, ",");
-  eo_text_add(text, document + 1);
-}
-
 /* ---- reading ---- */
-
-enum eo_code eo_measurement_take(void *context, const struct eo_stored_measurement *row, struct eo_error *error)
-{
-  struct eo_found_measurement *found = context;
-  found->id = row->id;
-  snprintf(found->tag, sizeof found->tag, "%s", row->digest);
-  add_row(&found->text, row, row->result);
-  return found->text.failed ? eo_error_memory(error) : EO_OK;
-}
-
-void eo_reply_no_measurement(struct eo_request *request)
-{
-  eo_reply_problem(request, 404, NULL, "There is no measurement with this number.");
-}
 
 static void get_one(struct eo_request *request)
 {
@@ -72,11 +25,11 @@ static void get_one(struct eo_request *request)
   if (!eo_request_id_at(request, 0, &id))
     return;
   if (eo_store_find_measurement(request->store, id, eo_measurement_take, &found, &outcome, &error))
-    eo_reply_error(request, "", &error);
+    eo_reply_error(&request->reply, "", &error);
   else if (outcome == EO_MEASUREMENT_MISSING)
-    eo_reply_no_measurement(request);
-  else if (!eo_reply_unchanged(request, found.tag))
-    eo_reply_text(request, 200, "application/json", &found.text);
+    eo_reply_no_measurement(&request->reply);
+  else if (!eo_request_unchanged(request, found.tag))
+    eo_reply_text(&request->reply, 200, "application/json", &found.text);
   eo_text_done(&found.text);
 }
 
@@ -95,16 +48,16 @@ static enum eo_code visit_listed(void *context, const struct eo_stored_measureme
     return EO_OK;
   page->last = row->id;
   eo_text_add(&page->text, page->count++ ? "," : "{\"items\":[");
-  add_row(&page->text, row, row->summary);
+  eo_stored_measurement_write(row, row->summary, &page->text);
   return page->text.failed ? eo_error_memory(error) : EO_OK;
 }
 
 static void list(struct eo_request *request)
 {
-  struct page page = {.limit = (int)eo_request_number(request, "limit")};
+  struct page page = {.limit = (int)eo_route_number(request, "limit")};
   struct eo_error error;
-  enum eo_code code = eo_store_list_measurements(request->store, (int64_t)eo_request_number(request, "design"),
-                                                 (int64_t)eo_request_number(request, "cursor"), page.limit + 1,
+  enum eo_code code = eo_store_list_measurements(request->store, (int64_t)eo_route_number(request, "design"),
+                                                 (int64_t)eo_route_number(request, "cursor"), page.limit + 1,
                                                  visit_listed, &page, &error);
   if (!page.count)
     eo_text_add(&page.text, "{\"items\":[");
@@ -113,9 +66,9 @@ static void list(struct eo_request *request)
   else
     eo_text_add(&page.text, "],\"next\":null}\n");
   if (code)
-    eo_reply_error(request, "", &error);
+    eo_reply_error(&request->reply, "", &error);
   else
-    eo_reply_text(request, 200, "application/json", &page.text);
+    eo_reply_text(&request->reply, 200, "application/json", &page.text);
   eo_text_done(&page.text);
 }
 
@@ -127,11 +80,11 @@ static void take_out(struct eo_request *request)
   if (!eo_request_id_at(request, 0, &id))
     return;
   if (eo_store_remove_measurement(request->store, id, &outcome, &error))
-    eo_reply_error(request, "", &error);
+    eo_reply_error(&request->reply, "", &error);
   else if (outcome == EO_MEASUREMENT_MISSING)
-    eo_reply_no_measurement(request);
+    eo_reply_no_measurement(&request->reply);
   else
-    eo_reply_empty(request, 204);
+    eo_reply_empty(&request->reply, 204);
 }
 
 /* ---- the file as it came ---- */
@@ -187,12 +140,12 @@ static void send_file(struct eo_request *request, const struct eo_stored_measure
     if (descriptor >= 0)
       close(descriptor);
     eo_error_set(&error, EO_ERROR_FILE, "", "%.250s: %s.", path, strerror(errno));
-    eo_reply_error(request, "", &error);
+    eo_reply_error(&request->reply, "", &error);
     return;
   }
   write_digest(file->sha256, digest, sizeof digest);
   MHD_add_response_header(response, "Repr-Digest", digest);
-  eo_reply_empty(request, 200);
+  eo_reply_empty(&request->reply, 200);
   request->reply.type = "application/octet-stream";
   request->reply.stream = response;
   request->sent = (size_t)file->size;
@@ -205,16 +158,16 @@ static void get_file(struct eo_request *request)
   struct eo_error error;
   enum eo_measurement_outcome outcome;
   int64_t id;
-  int number = (int)eo_request_number(request, "part") - 1;
+  int number = (int)eo_route_number(request, "part") - 1;
   if (!eo_request_id_at(request, 0, &id))
     return;
   if (eo_store_find_measurement(request->store, id, visit_files, &row, &outcome, &error))
-    eo_reply_error(request, "", &error);
+    eo_reply_error(&request->reply, "", &error);
   else if (outcome == EO_MEASUREMENT_MISSING)
-    eo_reply_no_measurement(request);
+    eo_reply_no_measurement(&request->reply);
   else if (number >= row.files)
-    eo_reply_problem(request, 404, NULL, "This measurement has one file.");
-  else if (!eo_reply_unchanged(request, row.file[number].sha256))
+    eo_reply_problem(&request->reply, 404, NULL, "This measurement has one file.");
+  else if (!eo_request_unchanged(request, row.file[number].sha256))
     send_file(request, &row, number);
 }
 

@@ -1,4 +1,6 @@
 /* What is uploaded is read and measured on a thread of its own, and kept only when that gave a result. */
+#include "http/measurement_upload.h"
+
 #include <errno.h>
 #include <fcntl.h>
 #include <math.h>
@@ -8,9 +10,11 @@
 #include <unistd.h>
 
 #include "format/json.h"
-#include "http/measurement_request.h"
+#include "http/body.h"
+#include "http/stored_design.h"
+#include "http/stored_measurement.h"
 #include "http/route.h"
-#include "http/server.h"
+#include "http/http_private.h"
 #include "http/upload.h"
 #include "document/measure_file.h"
 #include "service/rig_tasks.h"
@@ -67,7 +71,7 @@ static bool find_design(struct eo_request *request, struct asked *asked)
     return true;
   if (missing) {
     eo_error_set(&error, EO_ERROR_INPUT, "/design", "There is no design with this number.");
-    eo_reply_error(request, "", &error);
+    eo_reply_error(&request->reply, "", &error);
   }
   return false;
 }
@@ -180,12 +184,12 @@ static void reply_refused(struct eo_request *request, const json_t *document)
     detail = json_string_value(json_object_get(finding, "text"));
     break;
   }
-  eo_reply_problem_with(request, 422, "refused", more, detail);
+  eo_reply_problem_with(&request->reply, 422, "refused", more, detail);
 }
 
 static void reply_stored(struct eo_request *request, unsigned status, struct eo_found_measurement *found)
 {
-  eo_reply_text(request, status, "application/json", &found->text);
+  eo_reply_text(&request->reply, status, "application/json", &found->text);
   snprintf(request->reply.tag, sizeof request->reply.tag, "%s", found->tag);
   snprintf(request->reply.location, sizeof request->reply.location, EO_API "/measurements/%lld", (long long)found->id);
 }
@@ -234,16 +238,16 @@ static void measure_and_keep(struct eo_request *request, const struct asked *ask
   json_t *document = NULL;
   enum eo_code code = measure(request, asked, &document, &error);
   if (code == EO_ERROR_CANCELLED) {
-    eo_reply_problem(request, 503, "stopping", "The server is stopping.");
+    eo_reply_problem(&request->reply, 503, "stopping", "The server is stopping.");
     request->reply.retry_after = 5;
   } else if (code)
-    eo_reply_error(request, "", &error);
+    eo_reply_error(&request->reply, "", &error);
   else if (json_is_true(json_object_get(document, "refused")))
     reply_refused(request, document);
   else if (keep(request, asked, pair, digest, document, &found, &outcome, &error))
-    eo_reply_error(request, "", &error);
+    eo_reply_error(&request->reply, "", &error);
   else if (outcome == EO_MEASUREMENT_NO_DESIGN)
-    eo_reply_problem(request, 409, NULL, "The design was removed meanwhile.");
+    eo_reply_problem(&request->reply, 409, NULL, "The design was removed meanwhile.");
   else
     reply_stored(request, outcome == EO_MEASUREMENT_KNOWN ? 200 : 201, &found);
   eo_text_done(&found.text);
@@ -257,7 +261,7 @@ static void answer_upload(struct eo_request *request, struct asked *asked)
   struct eo_error error;
   enum eo_measurement_outcome outcome = EO_MEASUREMENT_MISSING;
   char pair[EO_HASH_LENGTH + 1], digest[EO_HASH_LENGTH + 1];
-  if (!eo_request_read(request, asked) || !find_design(request, asked))
+  if (!eo_body_read(request, asked) || !find_design(request, asked))
     return;
   eo_rig_pair_hash(&asked->geometry, pair);
   enum eo_code code = hash_files(request->upload, &error);
@@ -266,7 +270,7 @@ static void answer_upload(struct eo_request *request, struct asked *asked)
     code = eo_store_find_measurement_digest(request->store, digest, eo_measurement_take, &found, &outcome, &error);
   }
   if (code)
-    eo_reply_error(request, "", &error);
+    eo_reply_error(&request->reply, "", &error);
   else if (outcome == EO_MEASUREMENT_DONE)
     reply_stored(request, 200, &found);
   else
@@ -279,7 +283,7 @@ void eo_measurement_add(struct eo_request *request)
   struct asked *asked = calloc(1, sizeof *asked);
   struct eo_error error;
   if (!asked) {
-    eo_reply_error(request, "", (eo_error_memory(&error), &error));
+    eo_reply_error(&request->reply, "", (eo_error_memory(&error), &error));
     return;
   }
   answer_upload(request, asked);

@@ -4,7 +4,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "http/guard.h"
 #include "http/route.h"
+#include "http/schemas.h"
 
 #include <config.h>
 
@@ -164,11 +166,11 @@ static json_t *encode_operation(const struct eo_route *route)
   return operation;
 }
 
-static json_t *encode_paths(void)
+static json_t *encode_paths(const struct eo_route *const *routes)
 {
   json_t *paths = json_object();
-  for (int i = 0; eo_routes[i]; i++)
-    for (const struct eo_route *route = eo_routes[i]; route->pattern; route++) {
+  for (; *routes; routes++)
+    for (const struct eo_route *route = *routes; route->pattern; route++) {
       char method[8] = "";
       const char *name = eo_method_name(route->method);
       json_t *path = json_object_get(paths, route->pattern);
@@ -183,12 +185,12 @@ static json_t *encode_paths(void)
   return paths;
 }
 
-json_t *eo_openapi(void)
+json_t *eo_openapi(const struct eo_route *const *routes)
 {
   return json_pack(
       "{s:s, s:{s:s, s:s, s:s}, s:[{s:s}], s:[{s:[]}, {s:[]}], s:o, s:{s:o, s:{s:{s:s, s:s}, s:{s:s, s:s, s:s}}}}",
       "openapi", "3.1.0", "info", "title", "Easeoff", "version", PACKAGE_VERSION, "description",
       "Quiet herringbone gears by tooth micro-geometry.", "servers", "url", EO_API, "security", "token", "session",
-      "paths", encode_paths(), "components", "schemas", eo_openapi_schemas(), "securitySchemes", "token", "type",
-      "http", "scheme", "bearer", "session", "type", "apiKey", "in", "cookie", "name", eo_guard_cookie);
+      "paths", encode_paths(routes), "components", "schemas", eo_openapi_schemas(routes), "securitySchemes", "token",
+      "type", "http", "scheme", "bearer", "session", "type", "apiKey", "in", "cookie", "name", eo_guard_cookie);
 }

@@ -4,10 +4,9 @@
 
 #include <jansson.h>
 
-/* NULL without memory. */
-json_t *eo_openapi(void);
+struct eo_route;
 
-/* "components": the schemas. */
-json_t *eo_openapi_schemas(void);
+/* routes: NULL after the last table. NULL without memory. */
+json_t *eo_openapi(const struct eo_route *const *routes);
 
 #endif

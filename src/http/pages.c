@@ -148,13 +148,13 @@ void eo_pages_reply(const struct eo_pages *pages, struct eo_request *request)
   const struct page *page = pages->count ? bsearch(&wanted, pages->page, (size_t)pages->count, sizeof wanted, compare)
                                          : NULL;
   if (request->method == EO_OPTIONS) {
-    eo_reply_empty(request, 204);
+    eo_reply_empty(&request->reply, 204);
     request->reply.allow = EO_GET | EO_OPTIONS;
   } else if (page)
-    eo_reply_resource(request, &page->resource);
+    eo_request_resource(request, &page->resource);
   else if (!pages->count && strcmp(request->path, "/") == 0)
-    eo_reply_problem(request, 404, NULL,
+    eo_reply_problem(&request->reply, 404, NULL,
                      "This server was started without its page; the API is at /api/v1/openapi.json.");
   else
-    eo_reply_problem(request, 404, NULL, "There is no page at this address.");
+    eo_reply_problem(&request->reply, 404, NULL, "There is no page at this address.");
 }

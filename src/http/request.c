@@ -6,9 +6,21 @@
 
 #include "base/clock.h"
 #include "format/json.h"
-#include "http/route.h"
-#include "http/server.h"
-#include "http/upload.h"
+#include "http/http_private.h"
+#include "http/resource.h"
+
+static const struct {
+  unsigned method;
+  const char *name;
+} methods[] = {{EO_GET, "GET"}, {EO_POST, "POST"}, {EO_PUT, "PUT"}, {EO_DELETE, "DELETE"}, {EO_OPTIONS, "OPTIONS"}};
+
+const char *eo_method_name(unsigned method)
+{
+  for (size_t i = 0; i < sizeof methods / sizeof methods[0]; i++)
+    if (methods[i].method == method)
+      return methods[i].name;
+  return "";
+}
 
 /* HEAD is GET without the bytes; the library leaves them out. */
 static unsigned method_of(const char *name, bool *head)
@@ -40,6 +52,7 @@ struct eo_request *eo_request_new(struct eo_http *http, struct MHD_Connection *c
     return NULL;
   }
   request->method = method_of(method, &request->head);
+  request->reply.request = request->id;
   snprintf(request->id, sizeof request->id, "%08x%08x", (unsigned)(http->run & 0xffffffff),
            (unsigned)(++http->requests & 0xffffffff));
   return request;
@@ -49,12 +62,9 @@ void eo_request_free(struct eo_request *request)
 {
   if (!request)
     return;
-  eo_upload_free(request);
   json_decref(request->document);
   eo_text_done(&request->body);
-  eo_text_done(&request->reply.body);
-  if (request->reply.stream)
-    MHD_destroy_response(request->reply.stream);
+  eo_reply_done(&request->reply);
   free(request->path);
   free(request->method_name);
   free(request);
@@ -70,19 +80,6 @@ const char *eo_request_query(const struct eo_request *request, const char *name)
   return MHD_lookup_connection_value(request->connection, MHD_GET_ARGUMENT_KIND, name);
 }
 
-double eo_request_number(const struct eo_request *request, const char *name)
-{
-  const char *text = eo_request_query(request, name);
-  int64_t value;
-  if (text && eo_field_integer(text, &value))
-    return (double)value;
-  for (const struct eo_query *query = request->route->query;
-       query < request->route->query + EO_MOST_QUERIES && query->name; query++)
-    if (strcmp(query->name, name) == 0)
-      return query->fallback;
-  return 0;
-}
-
 const json_t *eo_request_json(struct eo_request *request)
 {
   struct eo_error error;
@@ -90,47 +87,10 @@ const json_t *eo_request_json(struct eo_request *request)
     return request->document;
   request->document = eo_json_parse(request->body.data ? request->body.data : "", request->body.size, &error);
   if (!request->document && error.code == EO_ERROR_INPUT)
-    eo_reply_problem(request, 400, "not-json", "%s", error.text);
+    eo_reply_problem(&request->reply, 400, "not-json", "%s", error.text);
   else if (!request->document)
-    eo_reply_error(request, "", &error);
+    eo_reply_error(&request->reply, "", &error);
   return request->document;
-}
-
-static bool decode(struct eo_request *request, const json_t *document, struct eo_faults *faults, void *order)
-{
-  eo_table_decode(request->route->order, document, NULL, order, faults);
-  if (faults->count)
-    eo_reply_faults(request, "", faults);
-  return !faults->count;
-}
-
-/* Where there is a form, its parts; where the body may be left out, nothing in its place. */
-static const json_t *find_document(struct eo_request *request, struct eo_faults *faults)
-{
-  if (request->upload)
-    return request->document = eo_upload_document(request->upload, request->route->order, faults);
-  if (request->route->takes_nothing && !request->body.size)
-    return request->document = json_object();
-  return eo_request_json(request);
-}
-
-bool eo_request_read(struct eo_request *request, void *order)
-{
-  struct eo_faults *faults = calloc(1, sizeof *faults);
-  struct eo_error error;
-  const json_t *document = faults ? find_document(request, faults) : NULL;
-  bool good = document && decode(request, document, faults, order);
-  if (!document && !request->reply.status)
-    eo_reply_error(request, "", (eo_error_memory(&error), &error));
-  free(faults);
-  return good;
-}
-
-void eo_request_handle(struct eo_request *request)
-{
-  request->route->handle(request);
-  json_decref(request->document);
-  request->document = NULL;
 }
 
 bool eo_request_design(struct eo_request *request, const json_t *document, const char *path, struct eo_design *design,
@@ -140,11 +100,11 @@ bool eo_request_design(struct eo_request *request, const json_t *document, const
   struct eo_error error;
   bool good = false;
   if (!faults)
-    eo_reply_error(request, path, (eo_error_memory(&error), &error));
+    eo_reply_error(&request->reply, path, (eo_error_memory(&error), &error));
   else if (!eo_design_decode(document, design, warnings, faults))
-    eo_reply_faults(request, path, faults);
+    eo_reply_faults(&request->reply, path, faults);
   else if (eo_design_complete(design, geometry, &error))
-    eo_reply_error(request, path, &error);
+    eo_reply_error(&request->reply, path, &error);
   else
     good = true;
   if (good && warnings)
@@ -157,6 +117,26 @@ bool eo_request_id_at(struct eo_request *request, int n, int64_t *key)
 {
   if (eo_field_integer(request->argument[n], key) && *key > 0)
     return true;
-  eo_reply_problem(request, 404, NULL, "There is nothing with this number.");
+  eo_reply_problem(&request->reply, 404, NULL, "There is nothing with this number.");
   return false;
+}
+
+bool eo_request_unchanged(struct eo_request *request, const char *tag)
+{
+  const char *known = eo_request_header(request, "If-None-Match");
+  snprintf(request->reply.tag, sizeof request->reply.tag, "%s", tag);
+  request->reply.revalidate = true;
+  if (!known || !eo_field_lists_tag(known, tag, true))
+    return false;
+  eo_reply_empty(&request->reply, 304);
+  return true;
+}
+
+void eo_request_resource(struct eo_request *request, const struct eo_resource *resource)
+{
+  if (eo_request_unchanged(request, resource->tag))
+    return;
+  request->reply.status = 200;
+  request->reply.type = resource->type;
+  request->reply.resource = resource;
 }

@@ -3,25 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "http/server.h"
-
-const struct eo_route *const eo_routes[] = {eo_routes_service,      eo_routes_session,    eo_routes_examples,
-                                            eo_routes_designs,      eo_routes_analysis,   eo_routes_jobs,
-                                            eo_routes_events,       eo_routes_history,    eo_routes_export,
-                                            eo_routes_measurements, eo_routes_comparison, NULL};
-
-static const struct {
-  unsigned method;
-  const char *name;
-} methods[] = {{EO_GET, "GET"}, {EO_POST, "POST"}, {EO_PUT, "PUT"}, {EO_DELETE, "DELETE"}, {EO_OPTIONS, "OPTIONS"}};
-
-const char *eo_method_name(unsigned method)
-{
-  for (size_t i = 0; i < sizeof methods / sizeof methods[0]; i++)
-    if (methods[i].method == method)
-      return methods[i].name;
-  return "";
-}
+#include "http/http_private.h"
 
 static bool ends_with(const char *text, const char *end)
 {
@@ -38,8 +20,8 @@ static bool matches(const struct eo_route *route, const char *path, struct eo_re
 static unsigned find(struct eo_request *request, const char *path, bool csv)
 {
   unsigned allowed = 0;
-  for (int i = 0; eo_routes[i]; i++)
-    for (const struct eo_route *route = eo_routes[i]; route->pattern; route++) {
+  for (const struct eo_route *const *table = request->http->routes; *table; table++)
+    for (const struct eo_route *route = *table; route->pattern; route++) {
       if ((csv && !route->csv) || !matches(route, path, request))
         continue;
       allowed |= route->method;
@@ -67,13 +49,13 @@ bool eo_route_find(struct eo_request *request)
 {
   unsigned allowed = find_with_suffix(request, request->path + strlen(EO_API));
   if (!allowed)
-    eo_reply_problem(request, 404, NULL,
+    eo_reply_problem(&request->reply, 404, NULL,
                      "There is nothing at this address; " EO_API "/openapi.json lists what there is.");
   else if (request->method == EO_OPTIONS) {
-    eo_reply_empty(request, 204);
+    eo_reply_empty(&request->reply, 204);
     request->reply.allow = allowed | EO_OPTIONS;
   } else if (!request->route) {
-    eo_reply_problem(request, 405, NULL, "This address does not answer that method.");
+    eo_reply_problem(&request->reply, 405, NULL, "This address does not answer that method.");
     request->reply.allow = allowed | EO_OPTIONS;
   } else {
     request->csv = request->csv ||
@@ -118,13 +100,14 @@ static enum MHD_Result check_one(void *context, enum MHD_ValueKind kind, const c
     if (value && is_allowed(query, value))
       return MHD_YES;
     if (query->words)
-      eo_reply_problem(request, 400, "query", "The query parameter %s takes one of %s.", query->name, query->words);
+      eo_reply_problem(&request->reply, 400, "query", "The query parameter %s takes one of %s.", query->name,
+                       query->words);
     else
-      eo_reply_problem(request, 400, "query", "The query parameter %s takes a whole number from %.0f to %.0f.",
+      eo_reply_problem(&request->reply, 400, "query", "The query parameter %s takes a whole number from %.0f to %.0f.",
                        query->name, query->low, query->high);
     return MHD_NO;
   }
-  eo_reply_problem(request, 400, "query", "There is no query parameter \"%s\" here.", shown);
+  eo_reply_problem(&request->reply, 400, "query", "There is no query parameter \"%s\" here.", shown);
   return MHD_NO;
 }
 
@@ -132,4 +115,26 @@ bool eo_route_check_query(struct eo_request *request)
 {
   MHD_get_connection_values(request->connection, MHD_GET_ARGUMENT_KIND, check_one, request);
   return !request->reply.status;
+}
+
+double eo_route_number(const struct eo_request *request, const char *name)
+{
+  const char *text = eo_request_query(request, name);
+  int64_t value;
+  if (text && eo_field_integer(text, &value))
+    return (double)value;
+  for (const struct eo_query *query = request->route->query;
+       query < request->route->query + EO_MOST_QUERIES && query->name; query++)
+    if (strcmp(query->name, name) == 0)
+      return query->fallback;
+  return 0;
+}
+
+/* ---- handler ---- */
+
+void eo_route_run(struct eo_request *request)
+{
+  request->route->handle(request);
+  json_decref(request->document);
+  request->document = NULL;
 }

@@ -3,10 +3,13 @@
 #ifndef EASEOFF_HTTP_ROUTE_H
 #define EASEOFF_HTTP_ROUTE_H
 
-#include "http/guard.h"
+#include "format/table.h"
 #include "http/request.h"
 
 enum { EO_MOST_QUERIES = 4, EO_MOST_ANSWERS = 10 };
+
+/* What a request costs of what an address may start (guard.h). */
+enum eo_rate { EO_RATE_FREE, EO_RATE_QUESTION, EO_RATE_START, EO_RATE_KINDS };
 
 /* A query parameter: a whole number, or one word of a list. */
 struct eo_query {
@@ -23,7 +26,7 @@ struct eo_route {
   const char *name;             /* operationId */
   const char *summary;          /* one line */
   const char *takes;            /* name of the body's schema, "A|B": either; NULL: no body */
-  const struct eo_table *order; /* describes the last name of `takes` and reads it: eo_request_read(); NULL: a design */
+  const struct eo_table *order; /* describes the last name of `takes` and reads it: eo_body_read(); NULL: a design */
   const char *design_at;        /* where the body holds the design; NULL: it is the body */
   bool takes_nothing;           /* the body may be left out */
   const char *gives;            /* "200 Result, 202 Ticket": status and schema; "-": no body; problems are added */
@@ -39,18 +42,19 @@ struct eo_route {
 
 #define EO_API "/api/v1"
 
-/* The parts of the table; each ends with a row without pattern. */
-extern const struct eo_route *const eo_routes[]; /* NULL after the last */
-
 /* Finds what a request means; false: the reply is there (404, 405, OPTIONS). */
 bool eo_route_find(struct eo_request *request);
 
 /* Checks the query against the route's list; false: the reply is 400. */
 bool eo_route_check_query(struct eo_request *request);
 
-/* "GET" ... of one method. */
-const char *eo_method_name(unsigned method);
+/* Query numbers, checked against their rows in the route's table before the handler runs: the value or its default. */
+double eo_route_number(const struct eo_request *request, const char *name);
 
+/* Runs the handler, and lets go of what it has read. */
+void eo_route_run(struct eo_request *request);
+
+/* The parts of the table, each in the file of its endpoints; each ends with a row without pattern. routes.h has all. */
 extern const struct eo_route eo_routes_service[], eo_routes_session[], eo_routes_examples[], eo_routes_designs[],
     eo_routes_analysis[], eo_routes_jobs[], eo_routes_events[], eo_routes_history[], eo_routes_export[],
     eo_routes_measurements[], eo_routes_comparison[];

@@ -1,5 +1,5 @@
-/* The documents of the API: what comes in is described by the field tables of the routes, what document/, study/ and
-   service/ write by their outlines, the rest stands here in the short notation of shape.h. */
+#include "http/schemas.h"
+
 #include <string.h>
 
 #include "document/design_document.h"
@@ -9,7 +9,6 @@
 #include "document/sweep_document.h"
 #include "format/schema.h"
 #include "document/study_result.h"
-#include "http/openapi.h"
 #include "http/route.h"
 #include "http/shape.h"
 #include "study/job_document.h"
@@ -89,20 +88,20 @@ static bool add_order(json_t *schemas, const struct eo_route *route)
   return json_object_set_new(schemas, other ? other + 1 : route->takes, schema) == 0 && good;
 }
 
-static bool add_orders(json_t *schemas)
+static bool add_orders(json_t *schemas, const struct eo_route *const *routes)
 {
   bool good = true;
-  for (int i = 0; eo_routes[i]; i++)
-    for (const struct eo_route *route = eo_routes[i]; route->pattern && good; route++)
+  for (; *routes; routes++)
+    for (const struct eo_route *route = *routes; route->pattern && good; route++)
       good = !route->order || add_order(schemas, route);
   return good;
 }
 
-json_t *eo_openapi_schemas(void)
+json_t *eo_openapi_schemas(const struct eo_route *const *routes)
 {
   json_t *schemas = json_object();
   bool good = json_object_set_new(schemas, "Design", eo_table_json_schema(&eo_design_table, true)) == 0 &&
-              add_orders(schemas);
+              add_orders(schemas, routes);
   for (size_t i = 0; i < sizeof outlines / sizeof outlines[0]; i++)
     good = good && eo_outline_add_schemas(outlines[i], schemas);
   for (size_t i = 0; i < sizeof shapes / sizeof shapes[0]; i++)

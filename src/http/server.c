@@ -1,4 +1,4 @@
-#include "http/server.h"
+#include "http/http_private.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -13,10 +13,16 @@
 #include "format/json.h"
 #include "http/address.h"
 #include "http/background.h"
+#include "http/connection.h"
+#include "http/deferred.h"
 #include "http/documents.h"
+#include "http/guard.h"
+#include "http/log.h"
 #include "http/pages.h"
-#include "http/route.h"
+#include "http/routes.h"
+#include "http/send.h"
 #include "http/stream.h"
+#include "http/ticker.h"
 #include "http/upload.h"
 #include "store/measurements.h"
 
@@ -32,9 +38,9 @@ static bool is_for_api(const char *path)
 static void look_at(struct eo_request *request)
 {
   if (!eo_field_path_is_plain(request->path))
-    eo_reply_problem(request, 400, NULL, "The address is malformed.");
+    eo_reply_problem(&request->reply, 400, NULL, "The address is malformed.");
   else if (!is_for_api(request->path) && !(request->method & (EO_GET | EO_OPTIONS))) {
-    eo_reply_problem(request, 405, NULL, "Pages can only be read.");
+    eo_reply_problem(&request->reply, 405, NULL, "Pages can only be read.");
     request->reply.allow = EO_GET | EO_OPTIONS;
   } else if ((!is_for_api(request->path) || eo_route_find(request)) && eo_guard_admits(request) && request->route)
     eo_route_check_query(request);
@@ -54,9 +60,9 @@ static void look_at_body(struct eo_request *request)
   const char *expected = route && route->form ? "multipart/form-data" : "application/json";
   if (!request->reply.status && has_body && route && route->takes && type &&
       strncasecmp(type, expected, strlen(expected)) != 0)
-    eo_reply_problem(request, 415, NULL, "The body must be %s.", expected);
+    eo_reply_problem(&request->reply, 415, NULL, "The body must be %s.", expected);
   if (!request->reply.status && (uint64_t)size > request->body_limit)
-    eo_reply_problem(request, 413, NULL, "The body may have %zu bytes here.", request->body_limit);
+    eo_reply_problem(&request->reply, 413, NULL, "The body may have %zu bytes here.", request->body_limit);
   if (!request->reply.status && route && route->form)
     eo_upload_begin(request, size);
   /* A reply before the body costs the connection; a small body is read and thrown away instead. */
@@ -83,7 +89,7 @@ static enum MHD_Result begin(struct eo_http *http, struct MHD_Connection *connec
   eo_connection_allow(http, request->place, EO_IDLE_SECONDS);
   look_at(request);
   look_at_body(request);
-  return request->reply.close ? eo_reply_send(request) : MHD_YES;
+  return request->reply.close ? eo_send_reply(request) : MHD_YES;
 }
 
 /* A body without a stated length is only known to be too long when it is; the library takes a reply then at its end and
@@ -99,9 +105,9 @@ static enum MHD_Result take(struct eo_request *request, const char *data, size_t
       return MHD_NO;
   }
   if (!request->reply.status && request->received > request->body_limit)
-    eo_reply_problem(request, 413, NULL, "The body may have %zu bytes here.", request->body_limit);
+    eo_reply_problem(&request->reply, 413, NULL, "The body may have %zu bytes here.", request->body_limit);
   if (!request->reply.status && !request->upload && request->http->bodies + size > EO_MOST_BODIES)
-    eo_reply_problem(request, 503, "busy", "Too much is being sent at once.");
+    eo_reply_problem(&request->reply, 503, "busy", "Too much is being sent at once.");
   if (request->reply.status)
     return MHD_YES;
   if (request->upload)
@@ -117,7 +123,7 @@ static enum MHD_Result take(struct eo_request *request, const char *data, size_t
 static void run_handler(struct eo_request *request)
 {
   if (!eo_http_enter(request->http)) {
-    eo_reply_problem(request, 503, "stopping", "The server is stopping.");
+    eo_reply_problem(&request->reply, 503, "stopping", "The server is stopping.");
     request->reply.retry_after = 5;
     return;
   }
@@ -127,7 +133,7 @@ static void run_handler(struct eo_request *request)
     if (request->route->aside || request->route->form)
       eo_background_take(request->route->form ? request->http->readings : request->http->aside, request);
     else
-      eo_request_handle(request);
+      eo_route_run(request);
   }
   eo_http_leave(request->http);
 }
@@ -154,7 +160,7 @@ static enum MHD_Result handle(void *context, struct MHD_Connection *connection, 
   }
   if (!request->dispatched)
     dispatch(request);
-  return eo_request_sleep(request) ? MHD_YES : eo_reply_send(request);
+  return eo_request_sleep(request) ? MHD_YES : eo_send_reply(request);
 }
 
 static void complete(void *context, struct MHD_Connection *connection, void **place,
@@ -171,6 +177,7 @@ static void complete(void *context, struct MHD_Connection *connection, void **pl
     eo_log_request(request);
   http->bodies -= request->held;
   count_active(http, -1);
+  eo_upload_free(request);
   eo_request_free(request);
   *place = NULL;
 }
@@ -234,14 +241,16 @@ static enum eo_code start_daemon(struct eo_http *http, bool version6, struct eo_
 static void init(struct eo_http *http, const struct eo_http_settings *settings)
 {
   pthread_condattr_t attributes;
-  *http = (struct eo_http){
-      .settings = *settings, .socket = -1, .service = settings->service, .started = eo_clock_milliseconds()};
+  *http = (struct eo_http){.settings = *settings,
+                           .routes = eo_routes,
+                           .socket = -1,
+                           .service = settings->service,
+                           .started = eo_clock_milliseconds()};
   pthread_condattr_init(&attributes);
   pthread_condattr_setclock(&attributes, CLOCK_MONOTONIC);
   pthread_mutex_init(&http->lock, NULL);
   pthread_cond_init(&http->changed, &attributes);
   pthread_condattr_destroy(&attributes);
-  eo_guard_init(&http->guard, &http->settings);
   if (getrandom(&http->run, sizeof http->run, 0) != sizeof http->run)
     http->run = (uint64_t)time(NULL);
 }
@@ -257,6 +266,7 @@ static void done(struct eo_http *http)
     close(http->socket);
   pthread_cond_destroy(&http->changed);
   pthread_mutex_destroy(&http->lock);
+  free(http->guard);
   free(http);
 }
 
@@ -271,30 +281,29 @@ static enum eo_code tidy(struct eo_http *http, struct eo_error *error)
   return code;
 }
 
+static enum eo_code open_all(struct eo_http *http, struct eo_error *error)
+{
+  const struct eo_http_settings *settings = &http->settings;
+  EO_TRY(check_access(settings, error));
+  EO_TRY(eo_guard_new(&http->guard, settings, error));
+  EO_TRY(eo_store_open(&http->store, settings->data, EO_STORE_WRITE, error));
+  EO_TRY(tidy(http, error));
+  EO_TRY(eo_background_new(&http->aside, settings->data, error));
+  EO_TRY(eo_background_new(&http->readings, settings->data, error));
+  EO_TRY(eo_pages_new(&http->pages, settings->pages, error));
+  return eo_documents_new(&http->documents, http->routes, error);
+}
+
 static enum eo_code start(struct eo_http *http, struct eo_error *error)
 {
   struct eo_listening listening;
-  enum eo_code code = check_access(&http->settings, error);
-  if (!code)
-    code = eo_store_open(&http->store, http->settings.data, EO_STORE_WRITE, error);
-  if (!code)
-    code = tidy(http, error);
-  if (!code)
-    code = eo_background_new(&http->aside, http->settings.data, error);
-  if (!code)
-    code = eo_background_new(&http->readings, http->settings.data, error);
-  if (!code)
-    code = eo_pages_new(&http->pages, http->settings.pages, error);
-  if (!code)
-    code = eo_documents_new(&http->documents, error);
-  if (!code)
-    code = eo_listen(&listening, http->settings.listen, error);
-  if (code)
-    return code;
+  EO_TRY(open_all(http, error));
+  EO_TRY(eo_listen(&listening, http->settings.listen, error));
   http->socket = listening.socket;
   snprintf(http->url, sizeof http->url, "%s", listening.url);
-  code = eo_ticker_start(http, error);
-  if (!code && (code = start_daemon(http, listening.version6, error)) != EO_OK) {
+  EO_TRY(eo_ticker_start(http, error));
+  enum eo_code code = start_daemon(http, listening.version6, error);
+  if (code) {
     eo_http_quiesce(http);
     eo_ticker_stop(http);
   }

@@ -1,12 +1,13 @@
+#include "http/deferred.h"
 #include "http/service_reply.h"
 
 #include "http/job_reply.h"
 #include "http/route.h"
-#include "http/server.h"
+#include "http/http_private.h"
 
 static void reply_busy(struct eo_request *request, bool closing)
 {
-  eo_reply_problem(request, 503, closing ? "stopping" : "busy",
+  eo_reply_problem(&request->reply, 503, closing ? "stopping" : "busy",
                    closing ? "The server is stopping." : "Too many questions are waiting already.");
   request->reply.retry_after = closing ? 5 : 1;
 }
@@ -18,12 +19,12 @@ static void reply_preparing(struct eo_request *request, int64_t id)
   struct eo_error error;
   struct eo_job_view job;
   if (eo_service_job(request->http->service, id, false, &outcome, &job, &error)) {
-    eo_reply_error(request, "", &error);
+    eo_reply_error(&request->reply, "", &error);
     return;
   }
-  eo_reply_json(request, 202, json_pack("{s:o}", "job", job.texts ? eo_job_view_encode(&job) : json_null()));
+  eo_reply_json(&request->reply, 202, json_pack("{s:o}", "job", job.texts ? eo_job_view_encode(&job) : json_null()));
   eo_job_view_done(&job);
-  eo_reply_job_location(request, id);
+  eo_reply_job_location(&request->reply, id);
   request->reply.retry_after = 1;
 }
 
@@ -31,13 +32,13 @@ static void take_answer(struct eo_request *request, struct eo_answer *answer)
 {
   switch (answer->kind) {
   case EO_ANSWER_DONE:
-    eo_reply_text(request, 200, request->csv ? "text/csv; charset=utf-8" : "application/json", &answer->text);
+    eo_reply_text(&request->reply, 200, request->csv ? "text/csv; charset=utf-8" : "application/json", &answer->text);
     break;
   case EO_ANSWER_OVERTAKEN:
-    eo_reply_problem(request, 409, "overtaken", "A newer question of the same lane took this one's place.");
+    eo_reply_problem(&request->reply, 409, "overtaken", "A newer question of the same lane took this one's place.");
     break;
   case EO_ANSWER_FAILED:
-    eo_reply_error(request, request->route->design_at ? request->route->design_at : "", &answer->error);
+    eo_reply_error(&request->reply, request->route->design_at ? request->route->design_at : "", &answer->error);
     break;
   case EO_ANSWER_PREPARING:
     reply_preparing(request, answer->job);
@@ -62,7 +63,7 @@ void eo_reply_unless_accepted(struct eo_request *request, enum eo_code code, enu
   if (!code && admission == EO_ADMISSION_ACCEPTED)
     return;
   if (code)
-    eo_reply_error(request, "", error);
+    eo_reply_error(&request->reply, "", error);
   else if (admission == EO_ADMISSION_PREPARING)
     reply_preparing(request, job);
   else
@@ -76,7 +77,7 @@ bool eo_request_lane(struct eo_request *request, struct eo_question *question)
   question->token = token;
   if (!token || eo_field_is_visible(token, EO_TOKEN_LENGTH + 1))
     return true;
-  eo_reply_problem(request, 400, NULL, "Easeoff-Lane takes 1 to %d visible characters.", EO_TOKEN_LENGTH);
+  eo_reply_problem(&request->reply, 400, NULL, "Easeoff-Lane takes 1 to %d visible characters.", EO_TOKEN_LENGTH);
   return false;
 }
 

@@ -4,6 +4,7 @@
 #define EASEOFF_HTTP_SERVICE_REPLY_H
 
 #include "http/request.h"
+#include "service/service.h"
 
 /* A question with what the headers say; its answer becomes the reply. */
 struct eo_question eo_request_to_question(struct eo_request *request, const struct eo_design *design,

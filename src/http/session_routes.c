@@ -3,14 +3,16 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "http/body.h"
+#include "http/guard.h"
 #include "http/route.h"
-#include "http/server.h"
+#include "http/http_private.h"
 
 static void tell(struct eo_request *request)
 {
   eo_reply_json(
-      request, 200,
-      json_pack("{s:b, s:b}", "required", request->http->guard.token != NULL, "authorized", eo_guard_knows(request)));
+      &request->reply, 200,
+      json_pack("{s:b, s:b}", "required", request->http->guard->token != NULL, "authorized", eo_guard_knows(request)));
 }
 
 struct order {
@@ -28,18 +30,18 @@ static const struct eo_table order_table = EO_TABLE("a token", struct order, ord
 
 static void begin(struct eo_request *request)
 {
-  const struct eo_guard *guard = &request->http->guard;
+  const struct eo_guard *guard = request->http->guard;
   struct order order;
-  if (!eo_request_read(request, &order))
+  if (!eo_body_read(request, &order))
     return;
   if (!guard->token)
-    eo_reply_empty(request, 204);
+    eo_reply_empty(&request->reply, 204);
   else if (!eo_field_equal_secret(order.token, guard->token))
-    eo_reply_problem(request, 403, "wrong-token", "That is not this server's token.");
+    eo_reply_problem(&request->reply, 403, "wrong-token", "That is not this server's token.");
   else {
     snprintf(request->reply.cookie, sizeof request->reply.cookie, "%s=%s; Path=/; HttpOnly; SameSite=Strict",
              eo_guard_cookie, guard->session);
-    eo_reply_empty(request, 204);
+    eo_reply_empty(&request->reply, 204);
   }
 }
 
@@ -47,7 +49,7 @@ static void end(struct eo_request *request)
 {
   snprintf(request->reply.cookie, sizeof request->reply.cookie, "%s=; Path=/; HttpOnly; SameSite=Strict; Max-Age=0",
            eo_guard_cookie);
-  eo_reply_empty(request, 204);
+  eo_reply_empty(&request->reply, 204);
 }
 
 const struct eo_route eo_routes_session[] = {

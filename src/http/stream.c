@@ -1,3 +1,5 @@
+#include "http/connection.h"
+#include "http/http_private.h"
 #include "http/stream.h"
 
 #include <stdio.h>
@@ -168,13 +170,13 @@ void eo_stream_open(struct eo_request *request, int64_t job, int64_t after)
   struct eo_error error;
   struct eo_stream *stream = calloc(1, sizeof *stream);
   if (!stream) {
-    eo_reply_error(request, "", (eo_error_memory(&error), &error));
+    eo_reply_error(&request->reply, "", (eo_error_memory(&error), &error));
     return;
   }
   *stream = (struct eo_stream){.http = request->http, .connection = request->connection, .place = request->place};
   if (!enlist(request->http, stream)) {
     free(stream);
-    eo_reply_problem(request, 503, NULL, "There are too many event streams.");
+    eo_reply_problem(&request->reply, 503, NULL, "There are too many event streams.");
     request->reply.retry_after = EO_HEARTBEAT_SECONDS;
     return;
   }
@@ -182,12 +184,12 @@ void eo_stream_open(struct eo_request *request, int64_t job, int64_t after)
                                                                     free_stream);
   if (!response) {
     free_stream(stream);
-    eo_reply_error(request, "", (eo_error_memory(&error), &error));
+    eo_reply_error(&request->reply, "", (eo_error_memory(&error), &error));
     return;
   }
   if (eo_service_subscribe(request->http->service, job, after, take_event, stream, &stream->subscription, &error)) {
     MHD_destroy_response(response);
-    eo_reply_error(request, "", &error);
+    eo_reply_error(&request->reply, "", &error);
     return;
   }
   open_stream(stream);

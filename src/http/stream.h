@@ -3,7 +3,7 @@
 #ifndef EASEOFF_HTTP_STREAM_H
 #define EASEOFF_HTTP_STREAM_H
 
-#include "http/server.h"
+#include "http/request.h"
 
 /* Bytes that one client, once its stream is open, and all of them may leave unread. */
 enum { EO_STREAM_BACKLOG = 1 << 20, EO_MOST_BACKLOG = 128 << 20, EO_MOST_STREAMS = 1000 };

@@ -1,3 +1,4 @@
+#include "http/connection.h"
 #include "http/upload.h"
 
 #include <errno.h>
@@ -13,7 +14,7 @@
 #include "format/json.h"
 #include "format/object.h"
 #include "http/route.h"
-#include "http/server.h"
+#include "http/http_private.h"
 
 enum { BUFFER = 64 << 10, SLOWEST = 64 << 10 }; /* bytes; bytes per second */
 
@@ -38,7 +39,7 @@ static void clean_name(char *target, size_t size, const char *name)
 static enum MHD_Result refuse(struct eo_request *request, unsigned status, const char *what)
 {
   if (!request->reply.status)
-    eo_reply_problem(request, status, status == 507 ? "full" : "form", "%s", what);
+    eo_reply_problem(&request->reply, status, status == 507 ? "full" : "form", "%s", what);
   return MHD_NO;
 }
 
@@ -163,7 +164,7 @@ static bool has_room(struct eo_request *request, const struct eo_upload *upload,
   struct eo_error error;
   int64_t kept;
   if (eo_store_measured_bytes(request->store, &kept, &error)) {
-    eo_reply_error(request, "", &error);
+    eo_reply_error(&request->reply, "", &error);
     return false;
   }
   bool free = statvfs(upload->folder, &disk) != 0 ||
@@ -178,13 +179,13 @@ void eo_upload_begin(struct eo_request *request, int64_t size)
 {
   struct eo_error error;
   if (request->http->uploads >= EO_MOST_UPLOADS) {
-    eo_reply_problem(request, 503, "busy", "%d uploads are on their way already.", EO_MOST_UPLOADS);
+    eo_reply_problem(&request->reply, 503, "busy", "%d uploads are on their way already.", EO_MOST_UPLOADS);
     request->reply.retry_after = 5;
     return;
   }
   struct eo_upload *upload = calloc(1, sizeof *upload);
   if (!upload) {
-    eo_reply_error(request, "", (eo_error_memory(&error), &error));
+    eo_reply_error(&request->reply, "", (eo_error_memory(&error), &error));
     return;
   }
   upload->output = -1;
@@ -192,11 +193,11 @@ void eo_upload_begin(struct eo_request *request, int64_t size)
   request->http->uploads++;
   if (eo_measurement_folder_new(request->store, upload->folder, sizeof upload->folder, &error)) {
     *upload->folder = '\0';
-    eo_reply_error(request, "", &error);
+    eo_reply_error(&request->reply, "", &error);
   } else if (has_room(request, upload, size)) {
     upload->processor = MHD_create_post_processor(request->connection, BUFFER, take_part, request);
     if (!upload->processor)
-      eo_reply_problem(request, 415, NULL, "The body must be multipart/form-data with a boundary.");
+      eo_reply_problem(&request->reply, 415, NULL, "The body must be multipart/form-data with a boundary.");
   }
 }
 

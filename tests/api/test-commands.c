@@ -309,7 +309,7 @@ static int count_operations(void)
 }
 
 /* The table in the program, by itself. */
-#include "http/route.h"
+#include "http/routes.h"
 static void check_routes(void)
 {
   int count = 0;

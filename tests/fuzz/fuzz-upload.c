@@ -4,8 +4,8 @@
    does not pass through it. For libFuzzer, and replayed by replay.c. */
 #define _GNU_SOURCE
 #include "base/hash.h"
-#include "http/server.h"
-#include "http/measurement_request.h"
+#include "http/http_private.h"
+#include "http/measurement_upload.h"
 #include "http/route.h"
 #include "http/upload.h"
 #include "fuzz/fuzz.h"
@@ -80,6 +80,7 @@ static struct outcome upload_in_pieces(struct MHD_Connection *connection, size_t
   static const struct eo_route route = {.order = &eo_measurement_form, .form = true};
   struct eo_request request = {
       .http = &http, .store = http.store, .connection = connection, .route = &route, .id = "0123456789abcdef"};
+  request.reply.request = request.id;
   struct outcome outcome = {0};
   eo_upload_begin(&request, (int64_t)body_size);
   for (size_t at = 0; at < body_size && !request.reply.status; at += piece)

@@ -8,7 +8,7 @@
 #include "document/examples.h"
 #include "document/geometry_table.h"
 #include "format/json.h"
-#include "http/route.h"
+#include "http/routes.h"
 #include "support/tap.h"
 
 static uint64_t state = 42;

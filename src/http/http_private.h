@@ -1,16 +1,13 @@
 /* What the files of src/http/ share of the running server. */
-#ifndef EASEOFF_HTTP_SERVER_H
-#define EASEOFF_HTTP_SERVER_H
+#ifndef EASEOFF_HTTP_HTTP_PRIVATE_H
+#define EASEOFF_HTTP_HTTP_PRIVATE_H
 
 #include <pthread.h>
 #include <stdint.h>
 
 #include <microhttpd.h>
 
-#include "http/guard.h"
-#include "http/request.h"
-#include "http/resource.h"
-#include "store/store.h"
+#include "http/http.h"
 
 enum {
   EO_MOST_CONNECTIONS = 4000,
@@ -24,14 +21,13 @@ enum {
   EO_DRAINED = 64 << 10,      /* bytes of a refused body that are read so that the connection can go on */
 };
 
-/* A client's connection. */
-struct eo_connection {
-  int socket;
-  double deadline; /* ms of the monotonic clock; 0: none */
-  struct eo_connection *before, *after;
-  struct sockaddr_storage address;
-};
-
+struct eo_background;
+struct eo_connection;
+struct eo_documents;
+struct eo_guard;
+struct eo_pages;
+struct eo_route;
+struct eo_store;
 struct eo_stream;
 
 struct eo_http {
@@ -43,8 +39,9 @@ struct eo_http {
   double started;   /* ms */
   uint64_t run;     /* first half of request ids */
   struct eo_service *service;
-  struct eo_store *store; /* of the HTTP thread */
-  struct eo_guard guard;  /* of the HTTP thread but for its constants */
+  struct eo_store *store;               /* of the HTTP thread */
+  struct eo_guard *guard;               /* of the HTTP thread but for its constants */
+  const struct eo_route *const *routes; /* NULL after the last table */
   struct eo_background *aside;
   struct eo_background *readings; /* reads the rig files that were uploaded */
   int uploads;                    /* on their way; HTTP thread */
@@ -65,30 +62,5 @@ struct eo_http {
   bool closing;
   pthread_t ticker;
 };
-
-/* connection.c: who is connected, and for how long a client may keep a connection busy */
-void eo_connection_notify(void *context, struct MHD_Connection *connection, void **place,
-                          enum MHD_ConnectionNotificationCode code);
-void eo_connection_allow(struct eo_http *http, struct eo_connection *place, int seconds); /* 0: no deadline */
-enum eo_code eo_ticker_start(struct eo_http *http, struct eo_error *error);
-void eo_ticker_stop(struct eo_http *http);
-
-/* request.c */
-struct eo_request *eo_request_new(struct eo_http *http, struct MHD_Connection *connection, const char *path,
-                                  const char *method);
-void eo_request_free(struct eo_request *request);
-
-/* deferred.c: brackets a handler, so that a stop waits for it; false: the server is stopping */
-bool eo_http_enter(struct eo_http *http);
-void eo_http_leave(struct eo_http *http);
-
-/* deferred.c: true when the request has no reply yet and now sleeps */
-bool eo_request_sleep(struct eo_request *request);
-
-/* reply.c: hands the reply to the connection */
-enum MHD_Result eo_reply_send(struct eo_request *request);
-
-/* log.c: one JSON line on standard error */
-void eo_log_request(const struct eo_request *request);
 
 #endif

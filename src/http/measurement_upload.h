@@ -1,0 +1,12 @@
+/* POST /measurements. */
+#ifndef EASEOFF_HTTP_MEASUREMENT_UPLOAD_H
+#define EASEOFF_HTTP_MEASUREMENT_UPLOAD_H
+
+#include "format/table.h"
+#include "http/request.h"
+
+/* The handler, on the thread that reads recordings, and the parts of its form. */
+void eo_measurement_add(struct eo_request *request);
+extern const struct eo_table eo_measurement_form;
+
+#endif

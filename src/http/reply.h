@@ -1,0 +1,56 @@
+/* A reply while it is made: what it says and the header fields beside. It knows no request; send.h hands it to the
+   connection. This header is for src/http/ alone. */
+#ifndef EASEOFF_HTTP_REPLY_H
+#define EASEOFF_HTTP_REPLY_H
+
+#include <stdbool.h>
+
+#include <jansson.h>
+
+#include "format/faults.h"
+#include "format/text.h"
+
+struct MHD_Response;
+struct eo_resource;
+
+enum { EO_TAG = 70 };
+
+struct eo_reply {
+  const char *request;                            /* its id, borrowed; it stands in problems */
+  unsigned status;                                /* 0: there is no reply yet */
+  const char *type;                               /* literal */
+  struct eo_text body;                            /* owned */
+  const struct eo_resource *resource;             /* in place of the body: borrowed from the server */
+  struct MHD_Response *stream;                    /* in place of the body: owned until it is queued */
+  char tag[EO_TAG];                               /* ETag without quotes; "": none */
+  char location[128], file_name[80], cookie[160]; /* "": none */
+  int retry_after;                                /* s; 0: none */
+  unsigned allow;                                 /* methods; 0: no Allow */
+  bool authenticate, revalidate; /* WWW-Authenticate; the client may keep a copy and ask whether it still holds */
+  bool close;                    /* the connection ends with this reply */
+};
+
+/* Takes the document over; NULL: no memory, 500. */
+void eo_reply_json(struct eo_reply *reply, unsigned status, json_t *document);
+
+/* Takes the text over. type: a literal. */
+void eo_reply_text(struct eo_reply *reply, unsigned status, const char *type, struct eo_text *text);
+void eo_reply_empty(struct eo_reply *reply, unsigned status);
+
+/* A problem document (RFC 9457). name: the last part of "/problems/NAME", or NULL for a status that says enough by
+   itself. */
+void eo_reply_problem(struct eo_reply *reply, unsigned status, const char *name, const char *format, ...)
+    __attribute__((format(printf, 4, 5)));
+
+/* The same with further members, taken over: what a program can read about the problem. */
+void eo_reply_problem_with(struct eo_reply *reply, unsigned status, const char *name, json_t *more, const char *detail);
+
+/* 422 with every fault and its pointer below path. */
+void eo_reply_faults(struct eo_reply *reply, const char *path, const struct eo_faults *faults);
+
+/* An error of the core: 422 when the input is wrong, else 500. */
+void eo_reply_error(struct eo_reply *reply, const char *path, const struct eo_error *error);
+
+void eo_reply_done(struct eo_reply *reply);
+
+#endif

@@ -1,0 +1,12 @@
+/* The thread that looks once a second whose time is over, and keeps event streams alive. */
+#ifndef EASEOFF_HTTP_TICKER_H
+#define EASEOFF_HTTP_TICKER_H
+
+#include "base/error.h"
+
+struct eo_http;
+
+enum eo_code eo_ticker_start(struct eo_http *http, struct eo_error *error);
+void eo_ticker_stop(struct eo_http *http); /* after http->closing was set */
+
+#endif
