@@ -47,6 +47,11 @@ only expat 'expat' recording
 only SQLite 'sqlite3' store
 only libmicrohttpd 'microhttpd' http
 
+# every file of http/ is named like the header that declares what it gives, so includes are its calls too
+wrong=$(grep -oE '^#include "http/[a-z_0-9]+' http/*.[ch] | sed 's/^http\/\([a-z_0-9]*\)\.[ch]:#include "http\//\1 /' | tsort 2>&1 >/dev/null | grep -v 'loop:' | sed 's/.*: //')
+[ -z "$wrong" ]
+result $? "no files of http include each other in a circle:$(echo $wrong)"
+
 for floor in $core; do
   [ -d "$floor" ] || continue
   wrong=$(grep -lE '\b(printf|fprintf|puts|getenv|rand|srand|exit)\(' "$floor"/*.c)

@@ -35,7 +35,7 @@ struct eo_route {
   enum eo_rate rate;
   size_t body; /* most bytes; 0: EO_JSON_DESIGN_BYTES where a body is taken */
   bool open;   /* answers without the token */
-  bool aside;  /* runs on the other thread: see aside.h */
+  bool aside;  /* runs on the other thread: see background.h */
   bool form;   /* takes multipart/form-data: see upload.h; runs on the thread that reads recordings */
   bool csv;    /* as text/csv too, by Accept or ".csv" */
 };

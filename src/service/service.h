@@ -168,7 +168,7 @@ enum eo_code eo_service_sweep(struct eo_service *service, const struct eo_questi
                               const struct eo_sweep_axes *axes, enum eo_admission *admission, int64_t *job,
                               struct eo_error *error);
 
-/* Other work on a prepared pair (see rig_work.h), one at a time at a lower priority. run: adds the answer to text;
+/* Other work on a prepared pair (see rig_tasks.h), one at a time at a lower priority. run: adds the answer to text;
    release: of data, called once in any case. A newer question with the same token ends one that runs. */
 struct eo_work {
   enum eo_code (*run)(void *data, const struct eo_pair *pair, const struct eo_design *design,
