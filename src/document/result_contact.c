@@ -324,52 +324,80 @@ double eo_result_mean_load(const struct eo_result_source *source, const struct e
 }
 
 /* One number per end. */
-#define EACH_END(variable, name, unit_)                                             \
-  static const struct eo_outline_row variable##_rows[] = {                          \
-      EO_KEY("left", "number?", "left end", .unit = unit_),                         \
-      EO_KEY("right", "number?", "right end", .unit = unit_, .when = EO_TWO_ENDS)}; \
+struct of_ends {
+  double end[2];
+  bool two;
+};
+
+static bool has_right(const void *source)
+{
+  return ((const struct of_ends *)source)->two;
+}
+
+#define EACH_END(variable, name, unit_)                                                          \
+  static const struct eo_outline_row variable##_rows[] = {                                       \
+      EO_KEY("left", "number?", "left end", .unit = unit_, EO_AT(struct of_ends, end[EO_LEFT])), \
+      EO_KEY("right", "number?", "right end", .unit = unit_, .when = EO_TWO_ENDS,                \
+             EO_AT(struct of_ends, end[EO_RIGHT]), .there = has_right)};                         \
   static const struct eo_outline variable = EO_OUTLINE(name, variable##_rows)
 EACH_END(force_ends, "ForceOfEnds", &eo_unit_N);
 EACH_END(pressure_ends, "PressureOfEnds", &eo_unit_MPa);
 EACH_END(line_load_ends, "LineLoadOfEnds", &eo_unit_N_per_mm);
 EACH_END(share_ends, "ShareOfEnds", NULL);
 
+/* What a load case says about its contact. */
+struct contact {
+  struct eo_result_source *source;
+  const struct eo_case_result *load_case;
+  struct of_ends load, pressure, line_load, edge_share, edge_pressure;
+  json_t *pattern; /* owned */
+};
+
+static json_t *write_shares(const void *source)
+{
+  const struct contact *contact = source;
+  return encode_shares(contact->source, contact->load_case);
+}
+
+static json_t *write_pattern(const void *source)
+{
+  return json_incref(((const struct contact *)source)->pattern);
+}
+
 static const struct eo_outline_row contact_rows[] = {
     EO_KEY("mean_load_N", "object", "normal force that an end carries, mean over the mesh cycle",
-           .outline = &force_ends),
+           .outline = &force_ends, EO_AT(struct contact, load)),
     EO_KEY("max_pressure_MPa", "object", "largest contact pressure of the mesh cycle, tip edges included",
-           .outline = &pressure_ends),
-    EO_KEY("max_line_load_N_per_mm", "object", "largest load per length of contact line", .outline = &line_load_ends),
-    EO_KEY("edge_load_share", "object", "largest share of the load on tip edges", .outline = &share_ends),
-    EO_KEY("edge_pressure_MPa", "object", "largest pressure of the tip edges (nominal)", .outline = &pressure_ends),
-    EO_KEY("load_share", "object", "shares of the tooth pairs", .outline = &shares),
-    EO_KEY("pattern", "object", "contact pattern", .outline = &contact_pattern),
+           .outline = &pressure_ends, EO_AT(struct contact, pressure)),
+    EO_KEY("max_line_load_N_per_mm", "object", "largest load per length of contact line", .outline = &line_load_ends,
+           EO_AT(struct contact, line_load)),
+    EO_KEY("edge_load_share", "object", "largest share of the load on tip edges", .outline = &share_ends,
+           EO_AT(struct contact, edge_share)),
+    EO_KEY("edge_pressure_MPa", "object", "largest pressure of the tip edges (nominal)", .outline = &pressure_ends,
+           EO_AT(struct contact, edge_pressure)),
+    EO_KEY("load_share", "object", "shares of the tooth pairs", .outline = &shares, .write = write_shares),
+    EO_KEY("pattern", "object", "contact pattern", .outline = &contact_pattern, .write = write_pattern),
 };
 const struct eo_outline eo_outline_contact = EO_OUTLINE("LoadedContact", contact_rows);
 
 json_t *eo_result_contact(struct eo_result_source *source, int k)
 {
   const struct eo_case_result *c = &source->evaluation->load_case[k];
-  struct eo_object o = eo_object_open_as(&eo_outline_contact), load = eo_object_open_as(&force_ends),
-                   pressure = eo_object_open_as(&pressure_ends), line_load = eo_object_open_as(&line_load_ends),
-                   edge = eo_object_open_as(&share_ends), edge_pressure = eo_object_open_as(&pressure_ends);
-  json_t *pattern = encode_pattern(source, k);
+  struct contact contact = {.source = source, .load_case = c, .pattern = encode_pattern(source, k)};
+  struct of_ends *const ends[] = {&contact.load, &contact.pressure, &contact.line_load, &contact.edge_share,
+                                  &contact.edge_pressure};
+  for (size_t i = 0; i < sizeof ends / sizeof *ends; i++)
+    ends[i]->two = source->ends == 2;
   for (int end = 0; end < source->ends; end++) {
-    const struct eo_end_result *r = &c->end[end];
-    eo_object_put_number(&load, eo_result_end[end], eo_result_mean_load(source, c, end));
-    eo_object_put_number(&pressure, eo_result_end[end], r->max_pressure);
-    eo_object_put_number(&line_load, eo_result_end[end], r->max_line_load);
-    eo_object_put_number(&edge, eo_result_end[end], r->edge_share);
-    eo_object_put_number(&edge_pressure, eo_result_end[end], source->edge_pressure[k][end]);
+    contact.load.end[end] = eo_result_mean_load(source, c, end);
+    contact.pressure.end[end] = c->end[end].max_pressure;
+    contact.line_load.end[end] = c->end[end].max_line_load;
+    contact.edge_share.end[end] = c->end[end].edge_share;
+    contact.edge_pressure.end[end] = source->edge_pressure[k][end];
   }
-  eo_object_put(&o, "mean_load_N", eo_object_close(&load));
-  eo_object_put(&o, "max_pressure_MPa", eo_object_close(&pressure));
-  eo_object_put(&o, "max_line_load_N_per_mm", eo_object_close(&line_load));
-  eo_object_put(&o, "edge_load_share", eo_object_close(&edge));
-  eo_object_put(&o, "edge_pressure_MPa", eo_object_close(&edge_pressure));
-  eo_object_put(&o, "load_share", encode_shares(source, c));
-  eo_object_put(&o, "pattern", pattern);
-  return eo_object_close(&o);
+  json_t *document = eo_outline_encode(&eo_outline_contact, &contact);
+  json_decref(contact.pattern);
+  return document;
 }
 
 /* ---- elastic bodies ---- */
@@ -400,36 +428,48 @@ json_t *eo_result_bodies(struct eo_result_source *source, const struct eo_case_r
 
 /* ---- impact ---- */
 
+struct impact_end {
+  struct eo_impact impact;
+  double lead; /* m before the path of contact */
+};
+
+static bool has_touched(const void *source)
+{
+  return ((const struct impact_end *)source)->impact.touched;
+}
+
+static bool has_struck(const void *source)
+{
+  return has_touched(source) && ((const struct impact_end *)source)->impact.force > 0;
+}
+
+#define OF_IMPACT(member) EO_AT(struct impact_end, impact.member)
 static const struct eo_outline_row impact_end_rows[] = {
     EO_KEY("force_N", "number?", "of the classical impact: 0 when first touch happens on the line of action",
-           .unit = &eo_unit_N),
-    EO_KEY("general_force_N", "number?", "of the general impact, wherever first touch happens", .unit = &eo_unit_N),
-    EO_KEY("speed_mm_per_s", "number?", "of approach along the normal", .unit = &eo_unit_mm_per_s),
-    EO_KEY("duration_ms", "number?", "of the half sine; null without a force", .unit = &eo_unit_ms),
-    EO_KEY("off_line", "flag", "first touch happens before the line of action"),
-    EO_KEY("position", "number?", "phase of first touch (EMIP); null, as all below, when nothing touches"),
-    EO_KEY("eta_mm", "number?", "its place along the face", .unit = &eo_unit_mm),
-    EO_KEY("s_mm", "number?", "its roll from the pitch point", .unit = &eo_unit_mm),
-    EO_KEY("lead_before_A_mm", "number?", "how far before the path of contact", .unit = &eo_unit_mm),
-    EO_KEY("pinion_radius_mm", "number?", "where the gear's tip meets the pinion's flank", .unit = &eo_unit_mm),
+           .unit = &eo_unit_N, OF_IMPACT(classical)),
+    EO_KEY("general_force_N", "number?", "of the general impact, wherever first touch happens", .unit = &eo_unit_N,
+           OF_IMPACT(force)),
+    EO_KEY("speed_mm_per_s", "number?", "of approach along the normal", .unit = &eo_unit_mm_per_s, OF_IMPACT(speed)),
+    EO_KEY("duration_ms", "number?", "of the half sine; null without a force", .unit = &eo_unit_ms, OF_IMPACT(duration),
+           .known = has_struck),
+    EO_KEY("off_line", "flag", "first touch happens before the line of action", OF_IMPACT(off_line)),
+    EO_KEY("position", "number?", "phase of first touch (EMIP); null, as all below, when nothing touches",
+           OF_IMPACT(start), .known = has_touched),
+    EO_KEY("eta_mm", "number?", "its place along the face", .unit = &eo_unit_mm, OF_IMPACT(eta), .known = has_touched),
+    EO_KEY("s_mm", "number?", "its roll from the pitch point", .unit = &eo_unit_mm, OF_IMPACT(path),
+           .known = has_touched),
+    EO_KEY("lead_before_A_mm", "number?", "how far before the path of contact", .unit = &eo_unit_mm,
+           EO_AT(struct impact_end, lead), .known = has_touched),
+    EO_KEY("pinion_radius_mm", "number?", "where the gear's tip meets the pinion's flank", .unit = &eo_unit_mm,
+           OF_IMPACT(pinion_radius), .known = has_touched),
 };
 static const struct eo_outline impact_end = EO_OUTLINE("ImpactEnd", impact_end_rows);
 
 static json_t *encode_impact_end(const struct eo_result_source *source, const struct eo_impact *impact)
 {
-  struct eo_object o = eo_object_open_as(&impact_end);
-  double known = impact->touched ? 1 : NAN, struck = impact->touched && impact->force > 0 ? 1 : NAN;
-  eo_object_put_number(&o, "force_N", impact->classical);
-  eo_object_put_number(&o, "general_force_N", impact->force);
-  eo_object_put_number(&o, "speed_mm_per_s", impact->speed);
-  eo_object_put_number(&o, "duration_ms", struck * impact->duration);
-  eo_object_put(&o, "off_line", json_boolean(impact->touched && impact->off_line));
-  eo_object_put_number(&o, "position", known * impact->start);
-  eo_object_put_number(&o, "eta_mm", known * impact->eta);
-  eo_object_put_number(&o, "s_mm", known * impact->path);
-  eo_object_put_number(&o, "lead_before_A_mm", known * fmax(0, source->pair->geometry.path_start - impact->path));
-  eo_object_put_number(&o, "pinion_radius_mm", known * impact->pinion_radius);
-  return eo_object_close(&o);
+  struct impact_end end = {*impact, fmax(0, source->pair->geometry.path_start - impact->path)};
+  end.impact.off_line = impact->touched && impact->off_line;
+  return eo_outline_encode(&impact_end, &end);
 }
 
 static const struct eo_outline_row impact_rows[] = {
@@ -455,27 +495,37 @@ static json_t *encode_root_history(const struct eo_result_source *source, const 
              : eo_json_reals(history->phases, history->stress, 1, &eo_unit_MPa, EO_DIGITS_CURVE);
 }
 
+struct root_end {
+  const struct eo_result_source *source;
+  const struct eo_root_history *history;
+  double maximum, dynamic, arc, eta; /* Pa, m */
+};
+
+static json_t *write_root_history(const void *source)
+{
+  const struct root_end *end = source;
+  return encode_root_history(end->source, end->history);
+}
+
 static const struct eo_outline_row root_end_rows[] = {
-    EO_KEY("max_MPa", "number?", "largest static root stress of the end", .unit = &eo_unit_MPa),
+    EO_KEY("max_MPa", "number?", "largest static root stress of the end", .unit = &eo_unit_MPa,
+           EO_AT(struct root_end, maximum)),
     EO_KEY("max_dynamic_MPa", "number?", "times the dynamic factor; null without a periodic vibration",
-           .unit = &eo_unit_MPa),
-    EO_KEY("arc_mm", "number?", "its place along the fillet", .unit = &eo_unit_mm),
-    EO_KEY("eta_mm", "number?", "its place along the face", .unit = &eo_unit_mm),
+           .unit = &eo_unit_MPa, EO_AT(struct root_end, dynamic)),
+    EO_KEY("arc_mm", "number?", "its place along the fillet", .unit = &eo_unit_mm, EO_AT(struct root_end, arc)),
+    EO_KEY("eta_mm", "number?", "its place along the face", .unit = &eo_unit_mm, EO_AT(struct root_end, eta)),
     EO_KEY("history_MPa", "[number?]?",
-           "largest stress of one tooth over `position` of the member; null without histories", .unit = &eo_unit_MPa),
+           "largest stress of one tooth over `position` of the member; null without histories", .unit = &eo_unit_MPa,
+           .write = write_root_history),
 };
 static const struct eo_outline root_end = EO_OUTLINE("RootStressEnd", root_end_rows);
 
 static json_t *encode_root_end(const struct eo_result_source *source, const struct eo_root_history *history,
                                double factor)
 {
-  struct eo_object o = eo_object_open_as(&root_end);
-  eo_object_put_number(&o, "max_MPa", history->maximum);
-  eo_object_put_number(&o, "max_dynamic_MPa", history->maximum * factor);
-  eo_object_put_number(&o, "arc_mm", history->arc);
-  eo_object_put_number(&o, "eta_mm", history->eta);
-  eo_object_put(&o, "history_MPa", encode_root_history(source, history));
-  return eo_object_close(&o);
+  const struct root_end end = {source,       history,     history->maximum, history->maximum * factor,
+                               history->arc, history->eta};
+  return eo_outline_encode(&root_end, &end);
 }
 
 static double force_factor(const struct eo_case_result *c, int end)
