@@ -8,6 +8,7 @@
 #include "document/design_document.h"
 #include "document/examples.h"
 #include "format/json.h"
+#include "format/object.h"
 #include "document/measurement_document.h"
 #include "document/result_private.h"
 #include "format/schema.h"
@@ -288,6 +289,106 @@ static void check_taking(void)
   json_decref(whole);
 }
 
+/* ---- outlines ---- */
+
+struct part {
+  double length;
+  int count;
+};
+
+struct whole {
+  double mass, missing, steps;
+  int kind, none;
+  int64_t big;
+  bool yes;
+  char name[8], empty[8];
+  const char *text;
+  struct part part, inner;
+  int rows;
+  struct part *row;
+};
+
+static const char *const kinds[] = {"one", "other", NULL};
+
+static bool never(const void *source)
+{
+  (void)source;
+  return false;
+}
+
+static json_t *write_kind_twice(const void *source)
+{
+  const struct whole *whole = source;
+  return json_pack("[s, s]", kinds[whole->kind], kinds[whole->kind]);
+}
+
+static const struct eo_outline_row part_rows[] = {
+    EO_KEY("length_mm", "number?", "a length", .unit = &eo_unit_mm, EO_AT(struct part, length)),
+    EO_KEY("count", "integer", "a number", EO_AT(struct part, count)),
+};
+static const struct eo_outline part_outline = EO_OUTLINE("Part", part_rows);
+
+static const struct eo_outline_row whole_rows[] = {
+    EO_KEY("mass", "number?", "a number", EO_AT(struct whole, mass)),
+    EO_KEY("missing", "number?", "not a number", EO_AT(struct whole, missing)),
+    EO_KEY("unknown", "number?", "not known", EO_AT(struct whole, mass), .known = never),
+    EO_KEY("steps", "integer?", "a whole number", EO_AT(struct whole, steps)),
+    EO_KEY("no_steps", "integer?", "not known", EO_AT(struct whole, missing)),
+    EO_KEY("kind", "word", "a word", .words = kinds, EO_AT(struct whole, kind)),
+    EO_KEY("none", "word?", "no word", .words = kinds, EO_AT(struct whole, none)),
+    EO_KEY("big", "integer", "a large number", EO_AT(struct whole, big)),
+    EO_KEY("yes", "flag", "a flag", EO_AT(struct whole, yes)),
+    EO_KEY("name", "text", "a text", EO_AT(struct whole, name)),
+    EO_KEY("empty", "text", "no text", EO_AT(struct whole, empty)),
+    EO_KEY("no_text", "text?", "no text", EO_AT(struct whole, empty)),
+    EO_KEY("text", "text?", "a text", EO_AT(struct whole, text)),
+    EO_KEY("part", "object", "a part", .outline = &part_outline, EO_AT(struct whole, part)),
+    {.outline = &part_outline, .offset = offsetof(struct whole, inner)},
+    EO_KEY("rows", "[object]", "parts", .outline = &part_outline, EO_ROWS_AT(struct whole, row, rows)),
+    EO_KEY("lengths_mm", "[number?]", "a column", .unit = &eo_unit_mm,
+           EO_COLUMN_AT(struct whole, row, rows, struct part, length)),
+    EO_KEY("twice", "[text]", "written by a function", .write = write_kind_twice),
+    EO_KEY("absent", "flag", "not there", .when = "never", EO_AT(struct whole, yes), .there = never),
+};
+static const struct eo_outline whole_outline = EO_OUTLINE("Whole", whole_rows);
+
+static const struct eo_outline_row silent_rows[] = {EO_KEY("mass", "number", "neither member nor function")};
+static const struct eo_outline silent_outline = EO_OUTLINE("Silent", silent_rows);
+
+static void test_outline(void)
+{
+  static const char expected[] =
+      "{\"mass\":0.333333333333,\"missing\":null,\"unknown\":null,\"steps\":12,\"no_steps\":null,\"kind\":\"other\","
+      "\"none\":"
+      "null,\"big\":9007199254740991,\"yes\":true,\"name\":\"abc\",\"empty\":\"\",\"no_text\":null,\"text\":\"long\","
+      "\"part\":{\"length_mm\":2,\"count\":3},\"length_mm\":4,\"count\":5,\"rows\":[{\"length_mm\":1,\"count\":7},{"
+      "\"length_mm\":null,\"count\":8}],\"lengths_mm\":[1,null],\"twice\":[\"other\",\"other\"]}";
+  struct part rows[] = {{1e-3, 7}, {NAN, 8}};
+  const struct whole whole = {.mass = 1. / 3,
+                              .missing = NAN,
+                              .steps = 12,
+                              .kind = 1,
+                              .none = -1,
+                              .big = 9007199254740991,
+                              .yes = true,
+                              .name = "abc",
+                              .text = "long",
+                              .part = {2e-3, 3},
+                              .inner = {4e-3, 5},
+                              .rows = 2,
+                              .row = rows};
+  struct eo_text text = {0};
+  json_t *document = eo_outline_encode(&whole_outline, &whole), *silent = eo_outline_encode(&silent_outline, &whole);
+  if (document)
+    eo_json_write(&text, document, EO_JSON_COMPACT);
+  ok(text.data && strcmp(text.data, expected) == 0, "an outline writes a struct: %s",
+     text.data ? text.data : "nothing");
+  ok(!silent, "a row that says neither member nor function is a fault");
+  json_decref(document);
+  json_decref(silent);
+  eo_text_done(&text);
+}
+
 int main(void)
 {
   check_units();
@@ -305,5 +406,6 @@ int main(void)
   json_decref(request);
   json_decref(input);
   json_decref(output);
+  test_outline();
   return tap_done();
 }
