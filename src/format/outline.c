@@ -190,6 +190,8 @@ static json_t *read_plain(const char **at, const struct eo_outline_row *row)
       return json_pack("{s:s}", "type", type[i]);
   if (take(at, "word") && row->words)
     return json_pack("{s:s, s:o}", "type", "string", "enum", list_words(row->words));
+  if (take(at, "any"))
+    return json_object();
   return take(at, "object") ? reference(row) : NULL;
 }
 

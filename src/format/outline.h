@@ -4,9 +4,10 @@
    document that several threads write), it opens the object with its outline (object.h) and can then put nothing that
    is not in it, nor leave out what is.
 
-   shape: number, integer, flag, text, word (one of words), object (of outline or table), [array], one|or another; `?`
-   behind any of them: or null. Numbers are written with EO_DIGITS_NUMBER digits in the row's unit, NaN as null; of an
-   empty text? and a negative word? it is null too; `integer` of a double member is its whole number. */
+   shape: number, integer, flag, text, word (one of words), any, object (of outline, of table, or `name`), [array],
+   one|or another; `?` behind any of them: or null. Numbers are written with EO_DIGITS_NUMBER digits in the row's unit,
+   NaN as null; of an empty text? and a negative word? it is null too; `integer` of a double member is its whole number.
+ */
 #ifndef EASEOFF_FORMAT_OUTLINE_H
 #define EASEOFF_FORMAT_OUTLINE_H
 
@@ -39,7 +40,7 @@ struct eo_outline_row {
   const char *when;                 /* NULL: the key is always there; else when it is */
   const struct eo_outline *outline; /* object */
   const struct eo_table *table;     /* object that a field table encodes */
-  const char *name;                 /* of the table's schema */
+  const char *name;                 /* of the table's schema, or of one that stands elsewhere */
   bool sparse;                      /* table: keys with their default may be missing */
   const char *const *words;         /* word: ends with NULL */
   enum eo_outline_member member;

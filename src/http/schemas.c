@@ -10,50 +10,230 @@
 #include "format/schema.h"
 #include "document/study_result.h"
 #include "http/route.h"
-#include "http/shape.h"
 #include "study/job_document.h"
 #include "study/job_history.h"
 #include "study/history_document.h"
 #include "document/rig_answer.h"
 
-static const struct {
-  const char *name, *notation;
-} shapes[] = {
-    {"Description", "{openapi text, info any, servers any, security any, paths any, components any}"},
-    {"Problem",
-     "{type text, title text, status integer, detail text, errors [{pointer text, detail text}], request_id text,"
-     " findings? [Finding], notes? [text], layout? Layout?, signal? Signal, ...}"},
-    {"Health", "{status 'ok|failing', program text, uptime_s number, jobs {queued integer, running integer}, database "
-               "'ok|failing', warnings [text]}"},
-    {"Session", "{required flag, authorized flag}"},
-    {"Examples", "{items [{name text, title text}]}"},
-    {"Exports", "{items [{name text, title text, type text}]}"},
-    {"Form", "{design Fields, sweep Fields}"},
-    {"Fields", "{name text, fields [Field]}"},
-    {"Field", "{key text, kind 'number|integer|seed|flag|text|choice|numbers|limit|object|list|series', unit? text, "
-              "symbol? text, low? number, high? number,"
-              " number_low? number, number_high? number, count? integer, default? any, choices? [text], help? text, "
-              "required flag, nullable flag,"
-              " derived? text, fields? [Field]}"},
-    {"Check", "{design ResolvedDesign, geometry Geometry, warnings [text], prepared flag}"},
-    {"StoredDesign",
-     "{id integer, revision integer, name text, created text, updated text, design Design, warnings [text]}"},
-    {"Designs", "{items [{id integer, revision integer, name text, created text, updated text}], next text?}"},
-    {"Preparing", "{job Job?}"},
-    {"Jobs", "{items [Job], next text?}"},
-    {"JobHistory", "{items [JobHistoryRow], next text?}"},
-    {"AskedLayout", "{kind? text, unit? text, time? any, time_unit? text, columns? {pinion? any, gear? any}, "
-                    "sample_rate_Hz? number?, lines? any}"},
-    {"Stored", "{id integer, design integer, created text, stated_speed_rpm number?, asked_layout AskedLayout?,"
-               " files [{name text, size integer, sha256 text}]}"},
-    {"Measurements", "{items [ListedMeasurement], next text?}"},
-    {"FitOrder", "{unknowns {}, model_error? number, seed? integer, measurements? [integer], design? Design}"},
-};
+static const char *const states[] = {"ok", "failing", NULL};
+static const char *const kinds[] = {"number",  "integer", "seed",   "flag", "text",   "choice",
+                                    "numbers", "limit",   "object", "list", "series", NULL};
 
-static const struct eo_outline *const outlines[] = {
-    &eo_result_outline,          &eo_sweep_outline,       &eo_study_outline,    &eo_job_outline,
-    &eo_job_generations_outline, &eo_job_history_outline, &eo_records_outline,  &eo_rig_comparison_outline,
-    &eo_rig_fit_outline,         &eo_measurement_outline, &eo_measurement_brief};
+static const struct eo_outline_row description_rows[] = {
+    EO_KEY("openapi", "text", "version of OpenAPI"), EO_KEY("info", "any", "as OpenAPI says"),
+    EO_KEY("servers", "any", "as OpenAPI says"),     EO_KEY("security", "any", "as OpenAPI says"),
+    EO_KEY("paths", "any", "as OpenAPI says"),       EO_KEY("components", "any", "as OpenAPI says"),
+};
+static const struct eo_outline description = EO_OUTLINE("Description", description_rows);
+
+static const struct eo_outline_row fault_rows[] = {
+    EO_KEY("pointer", "text", "to the key of the body that is to blame, or empty"),
+    EO_KEY("detail", "text", "what is wrong with it, for people"),
+};
+static const struct eo_outline fault = EO_OUTLINE("ProblemError", fault_rows);
+
+static const struct eo_outline_row problem_rows[] = {
+    EO_KEY("type", "text", "which problem, /problems/NAME, or about:blank"),
+    EO_KEY("title", "text", "of the status"),
+    EO_KEY("status", "integer", "of the reply"),
+    EO_KEY("detail", "text", "what is wrong, for people"),
+    EO_KEY("errors", "[object]", "every fault of the body", .outline = &fault),
+    EO_KEY("request_id", "text", "under which the log has it"),
+    EO_KEY("findings", "[object]", "of the recording", .when = "of a recording without a result", .name = "Finding"),
+    EO_KEY("notes", "[text]", "of reading it", .when = "of a recording without a result"),
+    EO_KEY("layout", "object?", "of its columns", .when = "of a recording without a result", .name = "Layout"),
+    EO_KEY("signal", "object", "its quality", .when = "of a recording without a result", .name = "Signal"),
+};
+static const struct eo_outline problem = EO_OUTLINE("Problem", problem_rows);
+
+static const struct eo_outline_row health_jobs_rows[] = {
+    EO_KEY("queued", "integer", "jobs that wait"),
+    EO_KEY("running", "integer", "jobs that are being worked on"),
+};
+static const struct eo_outline health_jobs = EO_OUTLINE("HealthJobs", health_jobs_rows);
+
+static const struct eo_outline_row health_rows[] = {
+    EO_KEY("status", "word", "of all", .words = states),
+    EO_KEY("program", "text", "name and version"),
+    EO_KEY("uptime_s", "number", "since the start, s"),
+    EO_KEY("jobs", "object", "by state", .outline = &health_jobs),
+    EO_KEY("database", "word", "whether it can be read", .words = states),
+    EO_KEY("warnings", "[text]", "what the start found"),
+};
+static const struct eo_outline health = EO_OUTLINE("Health", health_rows);
+
+static const struct eo_outline_row session_rows[] = {
+    EO_KEY("required", "flag", "the server asks for a token"),
+    EO_KEY("authorized", "flag", "this client has given it"),
+};
+static const struct eo_outline session = EO_OUTLINE("Session", session_rows);
+
+static const struct eo_outline_row example_rows[] = {
+    EO_KEY("name", "text", "in its address"),
+    EO_KEY("title", "text", "for people"),
+};
+static const struct eo_outline example = EO_OUTLINE("Example", example_rows);
+
+static const struct eo_outline_row examples_rows[] = {
+    EO_KEY("items", "[object]", "designs to start from", .outline = &example),
+};
+static const struct eo_outline examples = EO_OUTLINE("Examples", examples_rows);
+
+static const struct eo_outline_row export_rows[] = {
+    EO_KEY("name", "text", "in its address"),
+    EO_KEY("title", "text", "for people"),
+    EO_KEY("type", "text", "media type"),
+};
+static const struct eo_outline export = EO_OUTLINE("Export", export_rows);
+
+static const struct eo_outline_row exports_rows[] = {
+    EO_KEY("items", "[object]", "formats", .outline = &export),
+};
+static const struct eo_outline exports = EO_OUTLINE("Exports", exports_rows);
+
+static const struct eo_outline_row field_rows[] = {
+    EO_KEY("key", "text", "of the document"),
+    EO_KEY("kind", "word", "of its value", .words = kinds),
+    EO_KEY("unit", "text", "suffix of the key", .when = "where it applies"),
+    EO_KEY("symbol", "text", "of the unit", .when = "where it applies"),
+    EO_KEY("low", "number", "lowest", .when = "where it applies"),
+    EO_KEY("high", "number", "highest", .when = "where it applies"),
+    EO_KEY("number_low", "number", "lowest of each number", .when = "where it applies"),
+    EO_KEY("number_high", "number", "highest of each number", .when = "where it applies"),
+    EO_KEY("count", "integer", "how many", .when = "where it applies"),
+    EO_KEY("default", "any", "as the document says it", .when = "where it applies"),
+    EO_KEY("choices", "[text]", "one of these", .when = "where it applies"),
+    EO_KEY("help", "text", "one line for people", .when = "where it applies"),
+    EO_KEY("required", "flag", "there is no default"),
+    EO_KEY("nullable", "flag", "null is allowed"),
+    EO_KEY("derived", "text", "what null means", .when = "where it applies"),
+    EO_KEY("fields", "[object]", "of the object, or of each row", .when = "where it applies", .name = "Field"),
+};
+static const struct eo_outline field = EO_OUTLINE("Field", field_rows);
+
+static const struct eo_outline_row fields_rows[] = {
+    EO_KEY("name", "text", "for people"),
+    EO_KEY("fields", "[object]", "in the order of the document", .outline = &field),
+};
+static const struct eo_outline fields = EO_OUTLINE("Fields", fields_rows);
+
+static const struct eo_outline_row form_rows[] = {
+    EO_KEY("design", "object", "of a design", .outline = &fields),
+    EO_KEY("sweep", "object", "of a sweep", .outline = &fields),
+};
+static const struct eo_outline form = EO_OUTLINE("Form", form_rows);
+
+static const struct eo_outline_row check_rows[] = {
+    EO_KEY("design", "object", "with every default resolved", .name = "ResolvedDesign"),
+    EO_KEY("geometry", "object", "macro-geometry", .name = "Geometry"),
+    EO_KEY("warnings", "[text]", "in plain words"),
+    EO_KEY("prepared", "flag", "an analysis would be answered at once"),
+};
+static const struct eo_outline check = EO_OUTLINE("Check", check_rows);
+
+static const struct eo_outline_row listed_design_rows[] = {
+    EO_KEY("id", "integer", "number of the design"),  EO_KEY("revision", "integer", "grows with each replacement"),
+    EO_KEY("name", "text", "under which it is kept"), EO_KEY("created", "text", "date and time, UTC"),
+    EO_KEY("updated", "text", "date and time, UTC"),
+};
+static const struct eo_outline listed_design = EO_OUTLINE("ListedDesign", listed_design_rows);
+
+static const struct eo_outline_row stored_design_rows[] = {
+    {.outline = &listed_design},
+    EO_KEY("design", "object", "as it came", .name = "Design"),
+    EO_KEY("warnings", "[text]", "in plain words"),
+};
+static const struct eo_outline stored_design = EO_OUTLINE("StoredDesign", stored_design_rows);
+
+static const struct eo_outline_row designs_rows[] = {
+    EO_KEY("items", "[object]", "newest first", .outline = &listed_design),
+    EO_KEY("next", "text?", "cursor of the next page"),
+};
+static const struct eo_outline designs = EO_OUTLINE("Designs", designs_rows);
+
+static const struct eo_outline_row preparing_rows[] = {
+    EO_KEY("job", "object?", "that prepares the gear pair", .name = "Job"),
+};
+static const struct eo_outline preparing = EO_OUTLINE("Preparing", preparing_rows);
+
+static const struct eo_outline_row jobs_rows[] = {
+    EO_KEY("items", "[object]", "newest first", .name = "Job"),
+    EO_KEY("next", "text?", "cursor of the next page"),
+};
+static const struct eo_outline jobs = EO_OUTLINE("Jobs", jobs_rows);
+
+static const struct eo_outline_row job_history_rows[] = {
+    EO_KEY("items", "[object]", "true evaluations in their order", .name = "JobHistoryRow"),
+    EO_KEY("next", "text?", "cursor of the next page"),
+};
+static const struct eo_outline job_history = EO_OUTLINE("JobHistory", job_history_rows);
+
+static const struct eo_outline_row asked_columns_rows[] = {
+    EO_KEY("pinion", "any", "of the pinion", .when = "where it is chosen"),
+    EO_KEY("gear", "any", "of the gear", .when = "where it is chosen"),
+};
+static const struct eo_outline asked_columns = EO_OUTLINE("AskedColumns", asked_columns_rows);
+
+static const struct eo_outline_row asked_layout_rows[] = {
+    EO_KEY("kind", "text", "of the recording", .when = "where it is chosen"),
+    EO_KEY("unit", "text", "of the angles", .when = "where it is chosen"),
+    EO_KEY("time", "any", "column of the time", .when = "where it is chosen"),
+    EO_KEY("time_unit", "text", "of the time", .when = "where it is chosen"),
+    EO_KEY("columns", "object", "of the channels", .when = "where it is chosen", .outline = &asked_columns),
+    EO_KEY("sample_rate_Hz", "number?", "samples per second", .when = "where it is chosen"),
+    EO_KEY("lines", "any", "of the encoders", .when = "where it is chosen"),
+};
+static const struct eo_outline asked_layout = EO_OUTLINE("AskedLayout", asked_layout_rows);
+
+static const struct eo_outline_row stored_file_rows[] = {
+    EO_KEY("name", "text", "without folders"),
+    EO_KEY("size", "integer", "bytes"),
+    EO_KEY("sha256", "text", "of its bytes"),
+};
+static const struct eo_outline stored_file = EO_OUTLINE("StoredFile", stored_file_rows);
+
+static const struct eo_outline_row storage_rows[] = {
+    EO_KEY("id", "integer", "number of the measurement"),
+    EO_KEY("design", "integer", "number of the design"),
+    EO_KEY("created", "text", "date and time, UTC"),
+    EO_KEY("stated_speed_rpm", "number?", "as it was said"),
+    EO_KEY("asked_layout", "object?", "as it was asked for", .outline = &asked_layout),
+    EO_KEY("files", "[object]", "as they came", .outline = &stored_file),
+};
+static const struct eo_outline storage = EO_OUTLINE("Stored", storage_rows);
+
+static const struct eo_outline_row measurements_rows[] = {
+    EO_KEY("items", "[object]", "newest first", .name = "ListedMeasurement"),
+    EO_KEY("next", "text?", "cursor of the next page"),
+};
+static const struct eo_outline measurements = EO_OUTLINE("Measurements", measurements_rows);
+
+static const struct eo_outline *const outlines[] = {&eo_result_outline,
+                                                    &eo_sweep_outline,
+                                                    &eo_study_outline,
+                                                    &eo_job_outline,
+                                                    &eo_job_generations_outline,
+                                                    &eo_job_history_outline,
+                                                    &eo_records_outline,
+                                                    &eo_rig_comparison_outline,
+                                                    &eo_rig_fit_outline,
+                                                    &eo_measurement_outline,
+                                                    &eo_measurement_brief,
+                                                    &description,
+                                                    &problem,
+                                                    &health,
+                                                    &session,
+                                                    &examples,
+                                                    &exports,
+                                                    &form,
+                                                    &check,
+                                                    &stored_design,
+                                                    &designs,
+                                                    &preparing,
+                                                    &jobs,
+                                                    &job_history,
+                                                    &storage,
+                                                    &measurements};
 
 /* A stored measurement is what was measured, behind what is known of its storage. */
 static json_t *stored(const json_t *schemas, const char *measured)
@@ -61,21 +241,23 @@ static json_t *stored(const json_t *schemas, const char *measured)
   const json_t *inner = json_object_get(schemas, measured);
   json_t *schema = json_deep_copy(json_object_get(schemas, "Stored"));
   bool good = json_object_update(json_object_get(schema, "properties"), json_object_get(inner, "properties")) == 0 &&
-              json_array_extend(json_object_get(schema, "required"), json_object_get(inner, "required")) == 0 &&
-              json_object_del(schema, "additionalProperties") == 0;
+              json_array_extend(json_object_get(schema, "required"), json_object_get(inner, "required")) == 0;
   return good ? schema : (json_decref(schema), NULL);
 }
 
 /* Any of the inputs that can be fitted, each with its range. */
-static json_t *fit_order(const json_t *plain)
+static json_t *fit_order(void)
 {
-  json_t *schema = json_deep_copy(plain),
-         *unknowns = json_object_get(json_object_get(schema, "properties"), "unknowns");
+  json_t *unknowns = json_object();
   for (int i = 0; eo_unknown_names[i]; i++)
-    json_object_set_new(json_object_get(unknowns, "properties"), eo_unknown_names[i],
+    json_object_set_new(unknowns, eo_unknown_names[i],
                         json_pack("{s:s, s:{s:s}, s:i, s:i, s:s}", "type", "array", "items", "type", "number",
                                   "minItems", 2, "maxItems", 2, "description", "lowest, highest"));
-  return schema;
+  return json_pack("{s:s, s:{s:{s:s, s:o, s:b}, s:{s:s}, s:{s:s}, s:{s:s, s:{s:s}}, s:{s:s}}, s:[s], s:b}", "type",
+                   "object", "properties", "unknowns", "type", "object", "properties", unknowns, "additionalProperties",
+                   0, "model_error", "type", "number", "seed", "type", "integer", "measurements", "type", "array",
+                   "items", "type", "integer", "design", "$ref", "#/components/schemas/Design", "required", "unknowns",
+                   "additionalProperties", 0);
 }
 
 /* What a route takes, under the last of its names; a form has files too. */
@@ -104,11 +286,11 @@ json_t *eo_openapi_schemas(const struct eo_route *const *routes)
               add_orders(schemas, routes);
   for (size_t i = 0; i < sizeof outlines / sizeof outlines[0]; i++)
     good = good && eo_outline_add_schemas(outlines[i], schemas);
-  for (size_t i = 0; i < sizeof shapes / sizeof shapes[0]; i++)
-    good = good && json_object_set_new(schemas, shapes[i].name, eo_shape_schema(shapes[i].notation)) == 0;
+  good = good &&
+         json_object_set_new(json_object_get(schemas, "AskedLayout"), "additionalProperties", json_false()) == 0;
   good = good && json_object_set_new(schemas, "Measurement", stored(schemas, "MeasurementOfFile")) == 0 &&
          json_object_set_new(schemas, "ListedMeasurement", stored(schemas, "BriefMeasurement")) == 0;
-  good = good && json_object_set_new(schemas, "FitOrder", fit_order(json_object_get(schemas, "FitOrder"))) == 0;
+  good = good && json_object_set_new(schemas, "FitOrder", fit_order()) == 0;
   if (good)
     return schemas;
   json_decref(schemas);

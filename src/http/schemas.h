@@ -1,6 +1,5 @@
 /* The documents of the API as JSON Schemas, "components" of OpenAPI: what comes in is described by the field tables of
-   the routes, what the floors above write by their outlines, the rest stands in schemas.c in the short notation of
-   shape.h. */
+   the routes, what goes out by outlines. */
 #ifndef EASEOFF_HTTP_SCHEMAS_H
 #define EASEOFF_HTTP_SCHEMAS_H
 

@@ -1,7 +1,6 @@
-/* Header fields, paths and queries; the notation of schemas. Expected values are those of RFC 9110, 6265, 7240 and
+/* Header fields, paths and queries. Expected values are those of RFC 9110, 6265, 7240 and
    3986. */
 #include "http/header_field.h"
-#include "http/shape.h"
 #include "support/tap.h"
 
 #include <string.h>
@@ -154,35 +153,6 @@ static void test_patterns(void)
   ok(matches("/a/{x}/{y}/{z}", "/a/1/2/3", NULL, NULL), "no more places than there is room");
 }
 
-static bool shape_is(const char *notation, const char *expected)
-{
-  json_t *schema = eo_shape_schema(notation), *wanted = expected ? json_loads(expected, JSON_DECODE_ANY, NULL) : NULL;
-  bool same = expected ? json_equal(schema, wanted) : !schema;
-  json_decref(schema);
-  json_decref(wanted);
-  return same;
-}
-
-static void test_shapes(void)
-{
-  ok(shape_is("text", "{\"type\":\"string\"}") && shape_is("Job", "{\"$ref\":\"#/components/schemas/Job\"}") &&
-         shape_is("any", "{}"),
-     "words");
-  ok(shape_is("'a|b c'", "{\"type\":\"string\",\"enum\":[\"a\",\"b c\"]}"), "choices");
-  ok(shape_is("[number?]", "{\"type\":\"array\",\"items\":{\"anyOf\":[{\"type\":\"number\"},{\"type\":\"null\"}]}}"),
-     "numbers or null");
-  ok(shape_is("{a integer, b? flag}", "{\"type\":\"object\",\"properties\":{\"a\":{\"type\":\"integer\"},\"b\":{"
-                                      "\"type\":\"boolean\"}},\"required\":[\"a\"],"
-                                      "\"additionalProperties\":false}"),
-     "an object");
-  ok(shape_is("{...}", "{\"type\":\"object\",\"properties\":{},\"required\":[],\"additionalProperties\":true}"),
-     "an open object");
-  static const char *const wrong[] = {"",      "txt",           "{a}",      "{a text", "{a text b text}",
-                                      "[text", "{..., a text}", "text text"};
-  for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++)
-    ok(shape_is(wrong[i], NULL), "%s is wrong", wrong[i]);
-}
-
 int main(void)
 {
   test_numbers();
@@ -195,6 +165,5 @@ int main(void)
   test_secrets();
   test_paths();
   test_patterns();
-  test_shapes();
   return tap_done();
 }
