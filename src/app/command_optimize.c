@@ -53,8 +53,8 @@ static int show_progress(void *context, const struct eo_study_report *r)
 /* What the command line says in place of the design. */
 static bool apply_options(struct request *q, struct eo_error *error)
 {
-  struct eo_optimization *o = &q->design.optimization;
-  int budget = o->true_evaluations;
+  struct eo_optimizer_settings *search = &q->design.optimization.search;
+  int budget = search->true_evaluations;
   q->thread_count = 0;
   if (q->algorithm && eo_optimizer_algorithm_find(q->algorithm) < 0) {
     eo_error_set(error, EO_ERROR_INPUT, "", "\"%.40s\" is no algorithm: credibility-ga, fpga, ga or nsga2.",
@@ -62,10 +62,10 @@ static bool apply_options(struct request *q, struct eo_error *error)
     return false;
   }
   if (q->algorithm)
-    snprintf(o->algorithm, sizeof o->algorithm, "%s", q->algorithm);
+    search->algorithm = eo_optimizer_algorithm_find(q->algorithm);
   if (q->budget && !eo_app_read_whole(q->budget, "--budget", 1, 10000000, &budget, error))
     return false;
-  o->true_evaluations = budget;
+  search->true_evaluations = budget;
   return !q->threads || eo_app_read_whole(q->threads, "--threads", 1, EO_MAX_THREADS, &q->thread_count, error);
 }
 

@@ -97,12 +97,15 @@ static enum eo_code check_start_bounds(const struct eo_range *range, double acti
 static enum eo_code check_optimization(const struct eo_optimization *optimization, const struct eo_geometry *geometry,
                                        struct eo_error *error)
 {
-  if (optimization->removal_threshold >= optimization->trust_threshold)
-    return eo_error_set(error, EO_ERROR_INPUT, "/optimization/removal_threshold",
-                        "%.6g is not below the trust threshold %.6g: no prediction would survive a generation.",
-                        optimization->removal_threshold, optimization->trust_threshold);
-  enum eo_code code = check_start_bounds(&optimization->tip_relief_start, geometry->rack_top,
-                                         "/optimization/bounds/tip_relief_start_mm", error);
+  if (optimization->variables != EO_VARIABLES_LISTED && optimization->listed)
+    return eo_error_set(error, EO_ERROR_INPUT, "/optimization/variable_list",
+                        "Variables are listed, but variables is not \"listed\".");
+  if (optimization->variables == EO_VARIABLES_LISTED && !optimization->listed)
+    return eo_error_set(error, EO_ERROR_INPUT, "/optimization/variable_list", "At least one variable must be listed.");
+  enum eo_code code = eo_optimizer_settings_check(&optimization->search, error);
+  if (!code)
+    code = check_start_bounds(&optimization->tip_relief_start, geometry->rack_top,
+                              "/optimization/bounds/tip_relief_start_mm", error);
   if (!code)
     code = check_start_bounds(&optimization->root_relief_start, -geometry->rack_bottom,
                               "/optimization/bounds/root_relief_start_mm", error);

@@ -96,13 +96,26 @@ static void resolve_start_range(struct eo_range *range, double active, double mo
   fill(&range->low, fmin(0.05 * module, 0.5 * range->high));
 }
 
+/* The paper's five parameters of a flank, once or at each end, or those of the list. */
+static int count_variables(const struct eo_optimization *optimization, int ends)
+{
+  switch (optimization->variables) {
+  case EO_VARIABLES_SHARED:
+    return 5;
+  case EO_VARIABLES_PER_END:
+    return 5 * ends;
+  case EO_VARIABLES_LISTED:
+    break;
+  }
+  return optimization->listed;
+}
+
 static void resolve_optimization(struct eo_optimization *optimization, const struct eo_gear_pair *pair,
                                  const struct eo_geometry *geometry)
 {
-  int variables = optimization->variables == EO_VARIABLES_LISTED                       ? optimization->listed
-                  : optimization->variables == EO_VARIABLES_PER_END && pair->ends == 2 ? 10
-                                                                                       : 5;
-  fill(&optimization->share_radius, 0.03 * pow(variables / 5., 1.9));
+  optimization->search.variables = count_variables(optimization, pair->ends);
+  optimization->search.objectives = 3;
+  optimization->search.share_radius = eo_optimizer_share_radius(&optimization->search);
   resolve_start_range(&optimization->tip_relief_start, geometry->rack_top, pair->normal_module);
   resolve_start_range(&optimization->root_relief_start, -geometry->rack_bottom, pair->normal_module);
 }

@@ -12,6 +12,7 @@
 #include "flexibility/body.h"
 #include "gear/gear_pair.h"
 #include "gear/modification.h"
+#include "optimizer/settings.h"
 
 enum { EO_MAX_LOAD_CASES = 64, EO_NAME_LENGTH = 200, EO_MAX_SCENARIOS = 64 };
 
@@ -76,28 +77,8 @@ struct eo_optimization {
   enum eo_variable_set variables;
   int listed; /* rows below, with EO_VARIABLES_LISTED */
   struct eo_listed_variable list[EO_MAX_LISTED];
-  char algorithm[32];
   struct eo_range tip_relief, root_relief, tip_relief_start, root_relief_start, lead_crowning; /* m; NaN: derived */
-
-  /* What the optimizer can be told, member by member as in its own table (optimizer/settings.h), which also explains
-     it. Choices are indices there. */
-  int true_evaluations; /* budget; 0: none stated */
-  double crossover, crossover_index, mutation, mutation_index;
-  int mutation_mode;
-  int population, generations, elite, fitness_form;
-  double trust_threshold, redundancy_threshold; /* R*, I_r* */
-  double share_radius;                          /* r_share; NaN: 0.03 (n/5)^1.9 for n variables */
-  double weight_decay, credibility_loss;        /* alpha of (15), beta of (18) */
-  double removal_threshold;                     /* R_0 < R* */
-  int verify, distance_norm, weight_sum, decision_order;
-  bool store_predicted, literal_redundancy, reuse;
-  int batch, initial_factor, model_rows, children;
-  double exploration, credibility_length, taboo_radius;
-  int stall_batches;
-  double stall_gain, polish_share, local_share, local_radius, sampling_step, evolution_step;
-  int sampling_stall, evolution_samples, evolution_stall;
-  int front_population, front_verified, front_rounds;
-  uint64_t seed;
+  struct eo_optimizer_settings search; /* its variables and objectives follow from the above: eo_design_resolve() */
 };
 
 enum eo_mesh_law { EO_LAW_TANGENT, EO_LAW_SECANT, EO_LAW_TABLE };

@@ -81,20 +81,25 @@ const char *const eo_variable_parameters[] = {"tip_relief_um",
                                               "trailing_end_relief_um",
                                               "trailing_end_relief_length_mm",
                                               NULL};
-static const char *const algorithms[] = {"credibility-ga", "fpga", "ga", "nsga2", NULL};
-static const char *const mutation_modes[] = {"gene", "individual", NULL};
-static const char *const fitness_forms[] = {"reciprocal", "negative", NULL};
-static const char *const distance_norms[] = {"range", "rms", NULL};
-static const char *const weight_sums[] = {"region", "all", NULL};
-static const char *const decision_orders[] = {"batch", "sequential", NULL};
-
-/* The optimizer's own names, ranges and defaults: optimizer/settings.h has the same table in its terms, and a test
-   compares them. */
-#define PARAMETER(key, low, high, fallback, help) \
-  EO_NUMBER(struct eo_optimization, key, #key, NULL, low, high, fallback, help)
-#define COUNT(key, low, high, fallback, help) EO_INTEGER(struct eo_optimization, key, #key, low, high, fallback, help)
-#define FLAG(key, fallback, help) EO_FLAG(struct eo_optimization, key, #key, fallback, help)
-#define CHOICE(key, choices, fallback, help) EO_CHOICE(struct eo_optimization, key, #key, choices, fallback, help)
+/* clang-format off */
+/* What a row of EO_OPTIMIZER_SETTINGS (optimizer/settings.h) becomes here. */
+#define SEED(member, fallback_, help_)                                                                     \
+  {.key = #member, .kind = EO_FIELD_SEED, .offset = offsetof(struct eo_optimization, search.member), .low = 0, \
+   .high = 9007199254740991., .fallback = fallback_, .help = help_},
+#define BUDGET(member, low_, high_, derived_, help_)                                                           \
+  {.key = #member, .kind = EO_FIELD_INTEGER, .flags = EO_FIELD_NULLABLE,                                       \
+   .offset = offsetof(struct eo_optimization, search.member), .low = low_, .high = high_, .fallback = NAN,     \
+   .derived = derived_, .help = help_},
+#define PARAMETER(member, low, high, fallback, help) \
+  EO_NUMBER(struct eo_optimization, search.member, #member, NULL, low, high, fallback, help),
+#define DERIVED(member, low, high, derived, help) \
+  EO_NUMBER_DERIVED(struct eo_optimization, search.member, #member, NULL, low, high, derived, help),
+#define COUNT(member, low, high, fallback, help) \
+  EO_INTEGER(struct eo_optimization, search.member, #member, low, high, fallback, help),
+#define FLAG(member, fallback, help) EO_FLAG(struct eo_optimization, search.member, #member, fallback, help),
+#define CHOICE(member, choices, fallback, help) \
+  EO_CHOICE(struct eo_optimization, search.member, #member, choices, fallback, help),
+/* clang-format on */
 
 static const struct eo_field bounds[] = {
     EO_NUMBERS(struct eo_optimization, tip_relief, "tip_relief_um", 2, &eo_unit_um, 0, 1000, EO_FIELD_ASCENDING,
@@ -132,80 +137,10 @@ static const struct eo_field optimization[] = {
               "5 of the pinion shared by both ends (case A), 10, 5 per end (case B), or those in variable_list"),
     EO_LIST(struct eo_optimization, list, listed, "variable_list", &listed_variable_table, 0, EO_MAX_LISTED,
             "the variables, when variables is listed"),
-    {.key = "algorithm",
-     .kind = EO_FIELD_TEXT,
-     .offset = offsetof(struct eo_optimization, algorithm),
-     .count = sizeof((struct eo_optimization *)0)->algorithm,
-     .choices = algorithms,
-     .fallback_text = "credibility-ga",
-     .help = "optimizer"},
+    EO_CHOICE(struct eo_optimization, search.algorithm, "algorithm", eo_algorithm_names, EO_CREDIBILITY_GA,
+              "optimizer"),
     EO_GROUP("bounds", &bounds_table, "lowest and highest value of each variable"),
-    {.key = "seed",
-     .kind = EO_FIELD_SEED,
-     .offset = offsetof(struct eo_optimization, seed),
-     .low = 0,
-     .high = 9007199254740991.,
-     .fallback = 1,
-     .help = "equal seeds give equal results"},
-    {.key = "true_evaluations",
-     .kind = EO_FIELD_INTEGER,
-     .flags = EO_FIELD_NULLABLE,
-     .offset = offsetof(struct eo_optimization, true_evaluations),
-     .low = 1,
-     .high = 1e7,
-     .fallback = NAN,
-     .derived = "none for ga and fpga, 500 + 100 n for the others",
-     .help = "most evaluations by the model"},
-    PARAMETER(crossover, 0, 1, 0.8, "probability p_c that a pair of parents is crossed"),
-    PARAMETER(crossover_index, 0, 1000, 10, "eta of the simulated binary crossover; larger stays nearer the parents"),
-    PARAMETER(mutation, 0, 1, 0.3, "probability p_m of mutation"),
-    PARAMETER(mutation_index, 0, 1000, 20, "eta of the polynomial mutation; larger changes less"),
-    CHOICE(mutation_mode, mutation_modes, 0, "what p_m counts for"),
-    COUNT(population, 4, 1000, 50, "individuals of a generation (ga, fpga, credibility-ga)"),
-    COUNT(generations, 1, 100000, 200, "generations, the first included (ga, fpga)"),
-    COUNT(elite, 0, 100, 1, "best individuals that cannot be lost (ga, fpga)"),
-    CHOICE(fitness_form, fitness_forms, 0, "fitness from the value J to minimise: 1/J or -J (ga, fpga)"),
-    PARAMETER(trust_threshold, 0, 1, 0.6, "R*: an individual at least this credible is predicted (fpga)"),
-    PARAMETER(redundancy_threshold, 0, 1, 1e-7,
-              "I_r*: rows closer than this to their neighbours leave the history (fpga)"),
-    EO_NUMBER_DERIVED(struct eo_optimization, share_radius, "share_radius", NULL, 1e-6, 10,
-                      "0.03 (n/5)^1.9 for n variables",
-                      "r_share, radius in the unit cube of the region that predicts (fpga)"),
-    PARAMETER(weight_decay, 0, 10000, 20, "alpha of equation (15) (fpga)"),
-    PARAMETER(credibility_loss, 0, 1, 0.8, "beta of equation (18): factor on predicted rows per generation (fpga)"),
-    PARAMETER(removal_threshold, 0, 1, 0.1,
-              "R_0: predicted rows less credible leave the history; below trust_threshold (fpga)"),
-    COUNT(verify, 0, 1, 1, "1: the best predicted individual of each generation is evaluated; 0: as printed (fpga)"),
-    CHOICE(distance_norm, distance_norms, 0, "Euclidean distance of normalised variables, or that over sqrt n (fpga)"),
-    CHOICE(weight_sum, weight_sums, 0, "rows in the sum of (15) (fpga)"),
-    CHOICE(decision_order, decision_orders, 0, "history frozen for a generation, or used as it grows (fpga)"),
-    FLAG(store_predicted, 1, "predicted individuals enter the history too (fpga)"),
-    FLAG(literal_redundancy, 0, "redundancy exactly as printed, which deletes unique rows too (fpga)"),
-    FLAG(reuse, 1, "an individual equal to an evaluated one takes its value (ga, fpga)"),
-    COUNT(batch, 1, 1024, 8, "true evaluations at a time (credibility-ga)"),
-    COUNT(initial_factor, 1, 100, 4, "latin hypercube points per variable at the start of an epoch (credibility-ga)"),
-    COUNT(model_rows, 20, 1000, 300, "most rows of the surrogate (credibility-ga, nsga2)"),
-    COUNT(children, 4, 10000, 100, "children bred for each batch (credibility-ga)"),
-    PARAMETER(exploration, 0, 100, 0.3, "kappa: how much doubt counts against a predicted gain (credibility-ga)"),
-    PARAMETER(credibility_length, 1e-6, 10, 0.05, "length over sqrt n at which credibility fades (credibility-ga)"),
-    PARAMETER(taboo_radius, 0, 1, 0.03, "radius over sqrt n round finished optima (credibility-ga)"),
-    COUNT(stall_batches, 1, 10000, 4, "batches without gain before a new epoch (credibility-ga)"),
-    PARAMETER(stall_gain, 0, 1, 0.002, "gain that counts, relative (credibility-ga)"),
-    PARAMETER(polish_share, 0, 1, 0.2, "share of the budget that only improves the best (credibility-ga)"),
-    PARAMETER(local_share, 0, 1, 0.5, "share of each batch for the trust region round the best (credibility-ga)"),
-    PARAMETER(local_radius, 1e-6, 0.5, 0.3, "radius of that trust region at the start of an epoch (credibility-ga)"),
-    PARAMETER(sampling_step, 1e-6, 0.5, 0.25,
-              "first step of the evolution strategy that makes every second epoch (credibility-ga)"),
-    COUNT(sampling_stall, 1, 10000, 10, "batches without gain that end such an epoch (credibility-ga)"),
-    PARAMETER(evolution_step, 1e-6, 0.5, 0.03,
-              "first step of the evolution strategy that refines the best (credibility-ga)"),
-    COUNT(evolution_samples, 1, 100, 12,
-          "samples of an evolution strategy from which the surrogate chooses each point (credibility-ga)"),
-    COUNT(evolution_stall, 1, 10000, 6, "batches without gain that end that refinement (credibility-ga)"),
-    COUNT(front_population, 4, 1000, 48, "individuals of a generation (nsga2)"),
-    COUNT(front_verified, 1, 1000, 12, "true evaluations per cycle (nsga2)"),
-    COUNT(front_rounds, 1, 1000, 20, "generations on the surrogates per cycle (nsga2)"),
-};
+    EO_OPTIMIZER_SETTINGS(SEED, BUDGET, PARAMETER, DERIVED, COUNT, FLAG, CHOICE)};
 
 static const char *const mesh_laws[] = {"tangent", "secant", "table", NULL};
 static const char *const solvers[] = {"harmonic_balance", "time_integration", NULL};

@@ -8,51 +8,6 @@
 #include "format/json.h"
 #include "design/check.h"
 
-static const struct eo_field *find_field(const char *key)
-{
-  for (int i = 0; i < eo_optimization_table.count; i++)
-    if (strcmp(eo_optimization_table.field[i].key, key) == 0)
-      return &eo_optimization_table.field[i];
-  return NULL;
-}
-
-static void copy_parameter(const struct eo_parameter *parameter, const void *source, void *target)
-{
-  const struct eo_field *field = find_field(parameter->key);
-  if (!field)
-    return;
-  const char *from = (const char *)source + field->offset;
-  char *to = (char *)target + parameter->offset;
-  if (field->kind == EO_FIELD_SEED)
-    memcpy(to, from, sizeof(uint64_t));
-  else if (field->kind == EO_FIELD_FLAG)
-    *(int *)to = *(const bool *)from;
-  else if (field->kind != EO_FIELD_NUMBER)
-    *(int *)to = *(const int *)from;
-  else if (!isnan(*(const double *)from)) /* open: the optimizer's own rule */
-    *(double *)to = *(const double *)from;
-}
-
-static int count_variables(const struct eo_design *design)
-{
-  const struct eo_optimization *o = &design->optimization;
-  if (o->variables == EO_VARIABLES_LISTED)
-    return o->listed;
-  return o->variables == EO_VARIABLES_PER_END && design->gear_pair.ends == 2 ? 10 : 5;
-}
-
-void eo_design_study(const struct eo_design *design, struct eo_optimizer_settings *settings)
-{
-  int count;
-  const struct eo_parameter *parameter = eo_optimizer_parameters(&count);
-  eo_optimizer_defaults(settings, eo_optimizer_algorithm_find(design->optimization.algorithm), count_variables(design));
-  settings->objectives = 3;
-  for (int i = 0; i < count; i++)
-    copy_parameter(&parameter[i], &design->optimization, settings);
-}
-
-/* ---- variables ---- */
-
 static const struct eo_field *flank_field(const char *key)
 {
   for (int i = 0; i < eo_flank_modification_table.count; i++)
@@ -161,11 +116,6 @@ enum eo_code eo_study_space_init(struct eo_study_space *result, const struct eo_
   const struct eo_optimization *o = &design->optimization;
   struct eo_study_space space = {0};
   enum eo_code code = EO_OK;
-  if (o->variables != EO_VARIABLES_LISTED && o->listed)
-    return eo_error_set(error, EO_ERROR_INPUT, "/optimization/variable_list",
-                        "Variables are listed, but variables is not \"listed\".");
-  if (o->variables == EO_VARIABLES_LISTED && !o->listed)
-    return eo_error_set(error, EO_ERROR_INPUT, "/optimization/variable_list", "At least one variable must be listed.");
   if (o->variables == EO_VARIABLES_SHARED)
     add_preset(&space, o, design->gear_pair.ends == 2 ? EO_BOTH_ENDS : EO_LEFT);
   for (int end = 0; end < design->gear_pair.ends && o->variables == EO_VARIABLES_PER_END; end++)

@@ -1,4 +1,4 @@
-/* From a design's optimization to what an optimizer works with: its settings, and the unit cube over the variables. */
+/* From a design's optimization to what an optimizer works with: the unit cube over the variables. */
 #ifndef EASEOFF_DOCUMENT_SEARCH_SPACE_H
 #define EASEOFF_DOCUMENT_SEARCH_SPACE_H
 
@@ -6,7 +6,6 @@
 #include "format/table.h"
 #include "design/design.h"
 #include "gear/geometry.h"
-#include "optimizer/settings.h"
 
 /* One coordinate of the unit cube. */
 struct eo_study_variable {
@@ -19,9 +18,6 @@ struct eo_study_space {
   int count;
   struct eo_study_variable variable[EO_MAX_LISTED];
 };
-
-/* Everything but the bounds: algorithm, number of variables, three objectives, and each parameter by its key. */
-void eo_design_study(const struct eo_design *design, struct eo_optimizer_settings *settings);
 
 /* The variables of a resolved design. Shared and per end: the five parameters of the paper on the pinion, of both ends
    or of the left and then the right one. EO_ERROR_INPUT, with the key: two variables for one parameter, bounds that a

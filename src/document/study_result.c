@@ -373,10 +373,11 @@ json_t *eo_study_result_encode(const struct eo_study_result *result, const struc
                           .design = design,
                           .analysis = analysis,
                           .warnings = warnings,
-                          .seed = design->optimization.seed,
+                          .seed = design->optimization.search.seed,
                           .pfc_percent = result->individuals ? 100. * result->true_evaluations / result->individuals
                                                              : NAN};
-  snprintf(source.algorithm, sizeof source.algorithm, "%s", design->optimization.algorithm);
+  snprintf(source.algorithm, sizeof source.algorithm, "%s",
+           eo_optimizer_algorithm_name(design->optimization.search.algorithm));
   source.result.seconds = to_milliseconds(result->seconds);
   source.result.model_seconds = to_milliseconds(result->model_seconds);
   source.result.optimizer_seconds = to_milliseconds(result->optimizer_seconds);

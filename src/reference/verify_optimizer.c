@@ -373,7 +373,7 @@ static void read_parameters(struct eo_optimizer_settings *s, struct eo_case *p)
   s->population = eo_case_whole_or(p, "npop", 1, MOST_ROWS, s->population);
   s->generations = eo_case_whole_or(p, "ngen", 1, MOST_GENERATIONS, s->generations);
   s->elite = eo_case_whole_or(p, "elite", 0, MOST_ROWS, s->elite);
-  s->share_radius = eo_case_number_or(p, "r_share", 0);
+  s->share_radius = eo_case_number_or(p, "r_share", NAN);
   replace(p, "alpha", &s->weight_decay);
   replace(p, "Rstar", &s->trust_threshold);
   replace(p, "beta", &s->credibility_loss);

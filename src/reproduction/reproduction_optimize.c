@@ -8,7 +8,7 @@
 #include "optimizer/settings.h"
 
 enum { ALGORITHMS = 3 };
-static const char *const algorithms[ALGORITHMS] = {"fpga", "ga", "credibility-ga"};
+static const enum eo_algorithm algorithms[ALGORITHMS] = {EO_FPGA, EO_GA, EO_CREDIBILITY_GA};
 static const char *const case_names[CASES] = {"A", "B"};
 static const double FIRST = 0.03, LAST = 0.85; /* of the whole work */
 
@@ -32,10 +32,10 @@ int eo_reproduction_generations(const struct reproduction *r)
 
 static void set_up(const struct reproduction *r, struct eo_design *design, int algorithm)
 {
-  struct eo_optimization *o = &design->optimization;
-  snprintf(o->algorithm, sizeof o->algorithm, "%s", algorithms[algorithm]);
-  o->generations = eo_reproduction_generations(r);
-  o->true_evaluations = algorithm < 2 ? 0 : r->plan->budget > 0 ? r->plan->budget : r->plan->quick ? 300 : 1000;
+  struct eo_optimizer_settings *search = &design->optimization.search;
+  search->algorithm = algorithms[algorithm];
+  search->generations = eo_reproduction_generations(r);
+  search->true_evaluations = algorithm < 2 ? 0 : r->plan->budget > 0 ? r->plan->budget : r->plan->quick ? 300 : 1000;
 }
 
 static json_t *encode_run(const struct eo_study_result *s, const char *case_name, const char *algorithm)
@@ -106,12 +106,14 @@ static enum eo_code study(struct run *run, int which, int algorithm, double *bes
                                      .fresh = true,
                                      .watch = watch,
                                      .context = run};
-  snprintf(run->what, sizeof run->what, "case %s, %s", case_names[which], algorithms[algorithm]);
-  snprintf(name, sizeof name, "%s, %s", case_names[which], algorithms[algorithm]);
+  snprintf(run->what, sizeof run->what, "case %s, %s", case_names[which],
+           eo_optimizer_algorithm_name(algorithms[algorithm]));
+  snprintf(name, sizeof name, "%s, %s", case_names[which], eo_optimizer_algorithm_name(algorithms[algorithm]));
   enum eo_code code = eo_study_run(&plan, &result, error);
   if (!code && result.stopped == EO_STOP_CANCELLED)
     code = eo_error_set(error, EO_ERROR_CANCELLED, "", "Stopped.");
-  if (!code && json_array_append_new(r->optimizations, encode_run(&result, case_names[which], algorithms[algorithm])))
+  if (!code && json_array_append_new(r->optimizations, encode_run(&result, case_names[which],
+                                                                  eo_optimizer_algorithm_name(algorithms[algorithm]))))
     code = eo_error_memory(error);
   if (!code)
     code = plot(&result, name, algorithm == 0 ? pfc : NULL, convergence, error);

@@ -439,15 +439,16 @@ static enum eo_code add_job(struct eo_service *s, const struct eo_job_order *ord
   bool keyed = order->key && *order->key, optimize = order->kind == EO_JOB_OPTIMIZE;
   eo_pairs_key(order->design, pair);
   hash_request(order, design, request);
-  const struct eo_queue_entry entry = {.kind = order->kind,
-                                       .design = design->data,
-                                       .name = order->design->name,
-                                       .algorithm = optimize ? order->design->optimization.algorithm : "",
-                                       .pair = optimize ? NULL : pair,
-                                       .key = keyed ? order->key : NULL,
-                                       .request = keyed ? request : NULL,
-                                       .fresh = order->fresh,
-                                       .priority = order->priority};
+  const struct eo_queue_entry entry = {
+      .kind = order->kind,
+      .design = design->data,
+      .name = order->design->name,
+      .algorithm = optimize ? eo_optimizer_algorithm_name(order->design->optimization.search.algorithm) : "",
+      .pair = optimize ? NULL : pair,
+      .key = keyed ? order->key : NULL,
+      .request = keyed ? request : NULL,
+      .fresh = order->fresh,
+      .priority = order->priority};
   pthread_mutex_lock(&s->store_mutex);
   enum eo_code code = eo_queue_add(s->store, &entry, s->settings.most_queued, id, outcome, error);
   pthread_mutex_unlock(&s->store_mutex);

@@ -39,7 +39,7 @@ static enum eo_code new_job(struct study *s, struct eo_error *error)
   bool taken = false;
   s->job.design = s->design.data;
   s->job.name = s->plan->design->name;
-  s->job.algorithm = s->plan->design->optimization.algorithm;
+  s->job.algorithm = eo_optimizer_algorithm_name(s->plan->design->optimization.search.algorithm);
   s->job.state = EO_JOB_RUNNING;
   s->job.best_value = NAN;
   enum eo_code code = eo_store_add_job(s->plan->store, &s->job, error);
@@ -151,7 +151,7 @@ enum eo_code eo_study_begin(struct study *s, struct eo_error *error)
   if (!s->scratch)
     return eo_error_memory(error);
   *s->scratch = *design;
-  eo_design_study(design, &s->settings);
+  s->settings = design->optimization.search;
   enum eo_code code = eo_study_space_init(&r->space, design, &s->plan->pair->geometry, error);
   if (code)
     return code;

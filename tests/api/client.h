@@ -336,9 +336,9 @@ __attribute__((unused)) static json_t *coarse_document(const char *algorithm, in
   r->fillet_elements = 6;
   r->harmonics = 6;
   r->te_harmonics = 6;
-  snprintf(design.optimization.algorithm, sizeof design.optimization.algorithm, "%s", algorithm);
-  design.optimization.true_evaluations = budget;
-  design.optimization.population = 20;
+  design.optimization.search.algorithm = eo_optimizer_algorithm_find(algorithm);
+  design.optimization.search.true_evaluations = budget;
+  design.optimization.search.population = 20;
   return eo_design_encode(&design);
 }
 

@@ -12,9 +12,9 @@
 #include "study/study.h"
 
 static const struct {
-  const char *algorithm;
+  enum eo_algorithm algorithm;
   int budget;
-} searches[] = {{"fpga", 0}, {"ga", 0}, {"credibility-ga", 400}, {"credibility-ga", 1000}, {"nsga2", 400}};
+} searches[] = {{EO_FPGA, 0}, {EO_GA, 0}, {EO_CREDIBILITY_GA, 400}, {EO_CREDIBILITY_GA, 1000}, {EO_NSGA2, 400}};
 enum { SEARCHES = sizeof searches / sizeof searches[0] };
 
 static struct eo_error error;
@@ -39,15 +39,15 @@ static void forget(const char *folder)
 static void search(const struct eo_design *design, const struct eo_pair *pair, const char *folder, const char *name)
 {
   struct eo_study_plan plan = {.design = design, .pair = pair};
+  const char *algorithm = eo_optimizer_algorithm_name(design->optimization.search.algorithm);
   struct eo_study_result r;
   forget(folder);
   if (eo_store_open(&plan.store, folder, EO_STORE_WRITE, &error) || eo_study_run(&plan, &r, &error))
-    fail(design->optimization.algorithm);
+    fail(algorithm);
   double overhead = r.seconds - r.model_seconds;
-  printf("%-4s %-15s %8.4f %6d %6d %6.1f %8.2f %6.1f %6.1f %6.1f\n", name, design->optimization.algorithm,
-         r.best.value.objective, r.true_evaluations, r.individuals, 100. * r.true_evaluations / r.individuals,
-         r.seconds, 100 * r.optimizer_seconds / r.seconds, 100 * r.store_seconds / r.seconds,
-         100 * overhead / r.seconds);
+  printf("%-4s %-15s %8.4f %6d %6d %6.1f %8.2f %6.1f %6.1f %6.1f\n", name, algorithm, r.best.value.objective,
+         r.true_evaluations, r.individuals, 100. * r.true_evaluations / r.individuals, r.seconds,
+         100 * r.optimizer_seconds / r.seconds, 100 * r.store_seconds / r.seconds, 100 * overhead / r.seconds);
   fflush(stdout);
   eo_study_result_done(&r);
   eo_store_close(plan.store);
@@ -72,10 +72,10 @@ int main(int argc, char **argv)
     for (int i = 0; i < SEARCHES; i++) {
       eo_example_build("paper", &design);
       design.optimization.variables = which ? EO_VARIABLES_PER_END : EO_VARIABLES_SHARED;
-      snprintf(design.optimization.algorithm, sizeof design.optimization.algorithm, "%s", searches[i].algorithm);
-      design.optimization.true_evaluations = searches[i].budget;
+      design.optimization.search.algorithm = (int)searches[i].algorithm;
+      design.optimization.search.true_evaluations = searches[i].budget;
       if (argc > 2)
-        design.optimization.generations = atoi(argv[2]);
+        design.optimization.search.generations = atoi(argv[2]);
       if (eo_design_complete(&design, &geometry, &error))
         fail("design");
       search(&design, pair, folder, which ? "B" : "A");

@@ -58,14 +58,15 @@ static void measure_front(struct trace *trace)
 
 static void apply_changes(const struct contest *contest, struct eo_optimizer_settings *settings)
 {
-  int count;
-  const struct eo_parameter *parameter = eo_optimizer_parameters(&count);
-  for (int c = 0; c < contest->changes; c++)
-    for (int i = 0; i < count; i++) {
-      const size_t length = strlen(parameter[i].key);
-      if (strncmp(contest->change[c], parameter[i].key, length) == 0 && contest->change[c][length] == '=')
-        eo_optimizer_put(settings, &parameter[i], atof(contest->change[c] + length + 1));
-    }
+  for (int c = 0; c < contest->changes; c++) {
+    const char *const value = strchr(contest->change[c], '=');
+    if (!value)
+      continue;
+#define CHANGE(member, ...)                                          \
+  if (strncmp(contest->change[c], #member "=", sizeof #member) == 0) \
+    settings->member = (__typeof__(settings->member))atof(value + 1);
+    EO_OPTIMIZER_SETTINGS(CHANGE, CHANGE, CHANGE, CHANGE, CHANGE, CHANGE, CHANGE)
+  }
 }
 
 static void run_own(const struct contest *contest, struct trace *trace, int algorithm, uint64_t seed)

@@ -30,9 +30,9 @@ __attribute__((unused)) static void coarse_design(struct eo_design *design, cons
   r->fillet_elements = 6;
   r->harmonics = 6;
   r->te_harmonics = 6;
-  snprintf(design->optimization.algorithm, sizeof design->optimization.algorithm, "%s", algorithm);
-  design->optimization.true_evaluations = budget;
-  design->optimization.population = 20;
+  design->optimization.search.algorithm = eo_optimizer_algorithm_find(algorithm);
+  design->optimization.search.true_evaluations = budget;
+  design->optimization.search.population = 20;
 }
 
 __attribute__((unused)) static bool complete(struct eo_design *design)

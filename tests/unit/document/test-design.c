@@ -230,9 +230,9 @@ static void test_defaults(void)
   close_to(design.load_case[2].speed, 2000 * 2 * 3.14159265358979323846 / 60, 1e-12, "at 2000 rpm");
   ok(design.objective.weight[0] == 0.4 && design.objective.weight[1] == 0.15 && design.objective.weight[2] == 0.45,
      "weights of section 5.2");
-  ok(design.optimization.population == 50 && design.optimization.generations == 200 &&
-         design.optimization.crossover == 0.8 && design.optimization.mutation == 0.3 &&
-         design.optimization.trust_threshold == 0.6 && design.optimization.redundancy_threshold == 1e-7,
+  ok(design.optimization.search.population == 50 && design.optimization.search.generations == 200 &&
+         design.optimization.search.crossover == 0.8 && design.optimization.search.mutation == 0.3 &&
+         design.optimization.search.trust_threshold == 0.6 && design.optimization.search.redundancy_threshold == 1e-7,
      "Table 2");
   ok(design.resolution.positions == 64 && design.resolution.cells_per_line == 30 &&
          design.resolution.sector_teeth == 5 && design.resolution.tip_edge_contact &&
@@ -310,10 +310,10 @@ static void test_derived(void)
   close_to(design.modification.flank[EO_PINION][EO_LEFT].lead_crowning, 12.23e-6, 0.005e-6,
            "a_l 1.35e-8/um at the face ends");
   ok(isnan(design.supports.mesh_damping_stiffness), "mesh damping waits for the mesh stiffness");
-  close_to(design.optimization.share_radius, 0.03, 1e-15, "r_share for 5 variables");
+  close_to(design.optimization.search.share_radius, 0.03, 1e-15, "r_share for 5 variables");
   eo_example_build("paper-case-b", &design);
   eo_design_complete(&design, &geometry, &error);
-  close_to(design.optimization.share_radius, 0.11, 0.005, "r_share for 10 variables");
+  close_to(design.optimization.search.share_radius, 0.11, 0.005, "r_share for 10 variables");
   close_to(design.shafts.bearing_position[EO_PINION][EO_RIGHT], 0.025 + 0.055 + 0.0275, 1e-15,
            "right bearing half a face width outside");
 }
@@ -385,7 +385,7 @@ static void wide_root_bounds(struct eo_design *d)
 }
 static void high_floor(struct eo_design *d)
 {
-  d->optimization.removal_threshold = 0.6;
+  d->optimization.search.removal_threshold = 0.6;
 }
 static void even_sector(struct eo_design *d)
 {
@@ -494,7 +494,7 @@ static void test_hashes(void)
   eo_design_hash(&design, first, NULL);
   eo_design_problem(&design, &spec, problem[0], NULL);
   design.modification.flank[EO_PINION][EO_LEFT].tip_relief = 1e-6;
-  design.optimization.seed = 7;
+  design.optimization.search.seed = 7;
   eo_design_hash(&design, second, NULL);
   eo_design_problem(&design, &spec, problem[1], NULL);
   ok(strcmp(first, second) != 0 && strcmp(problem[0], problem[1]) == 0,
@@ -508,47 +508,29 @@ static void test_hashes(void)
      "SHA-256 of \"abc\" (FIPS 180-4)");
 }
 
-/* The document's optimization and the optimizer's own table say the same. */
-static void test_study(void)
+/* Every setting of the optimizer has its row in the document, with the same default. */
+static void test_search(void)
 {
-  int count, strange = 0;
-  const struct eo_parameter *parameter = eo_optimizer_parameters(&count);
-  for (int i = 0; i < count; i++) {
-    const struct eo_field *field = NULL;
-    for (int j = 0; j < eo_optimization_table.count; j++)
-      if (strcmp(eo_optimization_table.field[j].key, parameter[i].key) == 0)
-        field = &eo_optimization_table.field[j];
-    bool same = field != NULL;
-    for (int k = 0; same && field->choices && parameter[i].choices && (field->choices[k] || parameter[i].choices[k]);
-         k++)
-      same = field->choices[k] && parameter[i].choices[k] && strcmp(field->choices[k], parameter[i].choices[k]) == 0;
-    if (same && field->kind != EO_FIELD_CHOICE && field->kind != EO_FIELD_FLAG && !(field->flags & EO_FIELD_NULLABLE))
-      same = field->low == parameter[i].low && field->high == parameter[i].high;
-    if (same && !(field->flags & EO_FIELD_NULLABLE))
-      same = field->fallback == parameter[i].standard;
-    if (!same)
-      printf("# %s\n", parameter[i].key);
-    strange += !same;
-  }
-  ok(strange == 0, "%d optimizer parameters: keys, ranges, defaults and choices agree", count);
-  struct eo_optimizer_settings settings, standard;
+  struct eo_optimizer_settings standard;
+  const struct eo_optimizer_settings *search = &design.optimization.search;
   struct eo_error error = {0};
+  struct eo_geometry geometry;
+  int differing = 0;
   eo_example_build("paper-case-b", &design);
-  eo_design_study(&design, &settings);
   eo_optimizer_defaults(&standard, EO_CREDIBILITY_GA, 10);
-  standard.objectives = 3;
-  ok(memcmp(&settings, &standard, sizeof settings) == 0,
-     "an example gives the optimizer's defaults with ten variables");
-  design.optimization.seed = 77;
-  design.optimization.trust_threshold = 0.7;
-  design.optimization.literal_redundancy = true;
-  design.optimization.decision_order = EO_ORDER_SEQUENTIAL;
-  snprintf(design.optimization.algorithm, sizeof design.optimization.algorithm, "fpga");
-  eo_design_study(&design, &settings);
-  ok(settings.seed == 77 && settings.trust_threshold == 0.7 && settings.literal_redundancy == 1 &&
-         settings.decision_order == EO_ORDER_SEQUENTIAL && settings.algorithm == EO_FPGA &&
-         eo_optimizer_settings_check(&settings, &error) == EO_OK,
-     "what the design says reaches the optimizer");
+#define COMPARE(member, ...) differing += search->member != standard.member;
+#define SKIP(...)
+  EO_OPTIMIZER_SETTINGS(COMPARE, COMPARE, COMPARE, SKIP, COMPARE, COMPARE, COMPARE)
+  ok(differing == 0 && search->algorithm == EO_CREDIBILITY_GA && isnan(search->share_radius),
+     "an example has the optimizer's defaults");
+  ok(eo_design_complete(&design, &geometry, &error) == EO_OK && search->variables == 10 && search->objectives == 3 &&
+         search->share_radius == eo_optimizer_share_radius(&standard),
+     "a complete design says how many variables there are");
+  design.optimization.search.algorithm = EO_GA;
+  design.optimization.search.elite = design.optimization.search.population;
+  ok(eo_design_complete(&design, &geometry, &error) == EO_ERROR_INPUT &&
+         strcmp(error.pointer, "/optimization/elite") == 0,
+     "what the optimizer would refuse is refused with the design: %s", error.text);
 }
 
 /* A resolution that names the sector's teeth but no body is older than the ring. */
@@ -585,6 +567,6 @@ int main(void)
   test_robust();
   test_contradictions();
   test_hashes();
-  test_study();
+  test_search();
   return tap_done();
 }

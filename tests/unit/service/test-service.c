@@ -419,11 +419,11 @@ static void test_ends(void)
   struct eo_design small = design;
   enum eo_job_outcome outcome;
   pthread_t thread;
-  small.optimization.true_evaluations = 12;
-  small.optimization.population = 12;
+  small.optimization.search.true_evaluations = 12;
+  small.optimization.search.population = 12;
   pthread_create(&thread, NULL, watch_ends, &watching);
   for (int i = 0; i < 12; i++) {
-    small.optimization.seed = (uint64_t)(1 + i);
+    small.optimization.search.seed = (uint64_t)(1 + i);
     wait_for(service, submit(service, EO_JOB_OPTIMIZE, &small, NULL, &outcome), "done");
   }
   atomic_store(&watching.stop, true);

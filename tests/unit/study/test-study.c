@@ -156,7 +156,7 @@ static void test_reuse(void)
   design.objective.weight[0] = 0.8;
   design.load_case[0].share = 0.4;
   design.load_case[1].share = 0.3;
-  design.optimization.true_evaluations = 40; /* the first generation of 20 does not depend on values */
+  design.optimization.search.true_evaluations = 40; /* the first generation of 20 does not depend on values */
   plan.fresh = true;
   free(run(&plan, &result));
   ok(result.reused >= 20 && result.reused + result.computed == 40,
@@ -199,7 +199,7 @@ static void test_truth(void)
   struct eo_analysis *analysis = NULL;
   empty_folder();
   coarse_design(&design, "fpga", 0);
-  design.optimization.generations = 6;
+  design.optimization.search.generations = 6;
   complete(&design);
   char *text = run(&plan, &result);
   ok(result.predicted > 0 && result.individuals == result.true_evaluations + result.predicted + result.repeated,
