@@ -24,6 +24,7 @@ for floor in $floors; do
     case " $allowed " in *" $used "*) ;; *) printf ' %s' "$used" ;; esac
   done)
   [ "$floor" = optimizer ] && wrong="$wrong$(grep -hoE '"(gear|flexibility|contact|dynamics|rating)/' optimizer/*.[ch])"
+  [ "$floor" = format ] && wrong="$wrong$(grep -hoE 'include "[a-z]+/' format/*.[ch] | grep -vE '(base|format)/')"
   [ -z "$wrong" ]
   result $? "$floor includes nothing from below:$wrong"
 done

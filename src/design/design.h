@@ -35,21 +35,17 @@ struct eo_load_case {
   double share;  /* of operating time; they sum to 1 */
 };
 
-struct eo_constraint {
-  bool enabled;
-  double limit;
-};
-
 enum eo_normalise { EO_NORMALISE_UNMODIFIED, EO_NORMALISE_NONE };
 enum eo_robust { EO_ROBUST_OFF, EO_ROBUST_MEAN, EO_ROBUST_WORST };
 struct eo_objective {
   double weight[3];
   enum eo_normalise normalise;
-  struct eo_constraint contact_pressure; /* Pa */
-  struct eo_constraint root_stress;      /* Pa */
-  struct eo_constraint peak_to_peak;     /* PPLTE, m */
-  struct eo_constraint edge_load_share;  /* static load on tip-edge points, share of P */
-  struct eo_constraint contact_loss;     /* fraction of the mesh cycle out of contact */
+  /* Limits; NaN: off. */
+  double contact_pressure; /* Pa */
+  double root_stress;      /* Pa */
+  double peak_to_peak;     /* PPLTE, m */
+  double edge_load_share;  /* static load on tip-edge points, share of P */
+  double contact_loss;     /* fraction of the mesh cycle out of contact */
   bool relief_inside_active_flank;
   bool no_worse_than_unmodified;
   double penalty; /* factor on every violated constraint */

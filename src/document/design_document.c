@@ -193,7 +193,7 @@ static json_t *encode_wants(const struct eo_design *design)
     eo_json_put(wants, "scenarios", json_incref(json_object_get(objective, "scenarios")), &failed);
     json_decref(objective);
   }
-  eo_json_put(wants, "root_stress", json_boolean(design->objective.root_stress.enabled), &failed);
+  eo_json_put(wants, "root_stress", json_boolean(!isnan(design->objective.root_stress)), &failed);
   eo_json_put(wants, "evaluator", json_integer(EO_EVALUATOR_VERSION), &failed);
   if (!failed)
     return wants;

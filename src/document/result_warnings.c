@@ -104,13 +104,13 @@ static void say_vibration(struct list *list, const struct eo_result_source *sour
     say(list, "The back flanks touch %s: the vibration is larger than the backlash.", place.text);
 }
 
-static void say_limit(struct list *list, const struct eo_constraint *limit, double value, const char *what,
-                      const struct eo_unit *unit, const char *place)
+static void say_limit(struct list *list, double limit, double value, const char *what, const struct eo_unit *unit,
+                      const char *place)
 {
-  if (!limit->enabled || !(value > limit->limit))
+  if (!(value > limit)) /* nor when it is off, NaN */
     return;
   say(list, "The limit on the %s is exceeded %s: %.4g%s%s, allowed %.4g.", what, place, eo_unit_out(unit, value),
-      unit ? " " : "", unit ? unit->symbol : "", eo_unit_out(unit, limit->limit));
+      unit ? " " : "", unit ? unit->symbol : "", eo_unit_out(unit, limit));
 }
 
 static void say_limits(struct list *list, const struct eo_result_source *source, int k)
@@ -118,11 +118,11 @@ static void say_limits(struct list *list, const struct eo_result_source *source,
   const struct eo_objective *o = &source->design->objective;
   const struct eo_objective_case *v = &source->evaluation->objective[k], *before = &source->analysis->unmodified[k];
   struct place place = place_of(&source->design->load_case[k]);
-  say_limit(list, &o->contact_pressure, v->contact_pressure, "contact pressure", &eo_unit_MPa, place.text);
-  say_limit(list, &o->root_stress, v->root_stress, "root stress", &eo_unit_MPa, place.text);
-  say_limit(list, &o->peak_to_peak, v->peak_to_peak, "peak-to-peak transmission error", &eo_unit_um, place.text);
-  say_limit(list, &o->edge_load_share, v->edge_load_share, "load share of the tip edges", NULL, place.text);
-  say_limit(list, &o->contact_loss, v->contact_loss, "loss of contact", NULL, place.text);
+  say_limit(list, o->contact_pressure, v->contact_pressure, "contact pressure", &eo_unit_MPa, place.text);
+  say_limit(list, o->root_stress, v->root_stress, "root stress", &eo_unit_MPa, place.text);
+  say_limit(list, o->peak_to_peak, v->peak_to_peak, "peak-to-peak transmission error", &eo_unit_um, place.text);
+  say_limit(list, o->edge_load_share, v->edge_load_share, "load share of the tip edges", NULL, place.text);
+  say_limit(list, o->contact_loss, v->contact_loss, "loss of contact", NULL, place.text);
   if (o->no_worse_than_unmodified &&
       (v->peak_to_peak > before->peak_to_peak || v->impact > before->impact || v->rms > before->rms))
     say(list, "The design is worse than the unmodified pair %s.", place.text);

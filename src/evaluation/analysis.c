@@ -160,7 +160,7 @@ enum eo_code eo_analysis_run(struct eo_analysis *a, const struct eo_design *desi
   a->cases = design->load_cases;
   a->scenarios = eo_evaluator_scenarios(design);
   a->want = want;
-  a->root = a->pair->flexibility && (want & EO_WANT_ROOT || design->objective.root_stress.enabled);
+  a->root = a->pair->flexibility && (want & EO_WANT_ROOT || !isnan(design->objective.root_stress));
   enum eo_code code = fit(a, a->cases, a->scenarios, error);
   if (!code)
     code = eo_evaluator_use_threads(a->evaluator, a->threads, error);

@@ -272,7 +272,7 @@ enum eo_code eo_evaluator_run(struct eo_evaluator *e, const struct eo_design *de
 {
   const struct eo_scenario *s = scenario ? scenario : &nominal_scenario;
   struct eo_evaluation *r = &e->result;
-  bool root = e->pair->flexibility && (want & EO_WANT_ROOT || design->objective.root_stress.enabled);
+  bool root = e->pair->flexibility && (want & EO_WANT_ROOT || !isnan(design->objective.root_stress));
   enum eo_code code = fit_vibration(e, design->resolution.harmonics, error);
   if (!code)
     code = solve_static(e, design, s, error);

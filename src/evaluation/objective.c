@@ -16,11 +16,12 @@ void eo_objective_sum(int cases, const struct eo_load_case *load_case, const str
     sums->failed |= !isfinite(sums->f[i]);
 }
 
-static double excess(const struct eo_constraint *constraint, double value)
+/* By how much of the limit a value exceeds it; a limit that is off (NaN) is never exceeded. */
+static double excess(double limit, double value)
 {
-  if (!constraint->enabled || !(value > constraint->limit))
+  if (!(value > limit))
     return 0;
-  return constraint->limit > 0 ? value / constraint->limit - 1 : value;
+  return limit > 0 ? value / limit - 1 : value;
 }
 
 static double worse(double value, double before)
@@ -31,9 +32,9 @@ static double worse(double value, double before)
 static double violation(const struct eo_objective *o, const struct eo_objective_case *v,
                         const struct eo_objective_case *before)
 {
-  double sum = excess(&o->contact_pressure, v->contact_pressure) + excess(&o->root_stress, v->root_stress) +
-               excess(&o->peak_to_peak, v->peak_to_peak) + excess(&o->edge_load_share, v->edge_load_share) +
-               excess(&o->contact_loss, v->contact_loss);
+  double sum = excess(o->contact_pressure, v->contact_pressure) + excess(o->root_stress, v->root_stress) +
+               excess(o->peak_to_peak, v->peak_to_peak) + excess(o->edge_load_share, v->edge_load_share) +
+               excess(o->contact_loss, v->contact_loss);
   if (o->no_worse_than_unmodified)
     sum += worse(v->peak_to_peak, before->peak_to_peak) + worse(v->impact, before->impact) + worse(v->rms, before->rms);
   return sum;

@@ -4,7 +4,6 @@
 
 #include "format/json.h"
 #include "format/table.h"
-#include "design/design.h"
 
 static void *member(void *target, const struct eo_field *field)
 {
@@ -67,10 +66,6 @@ static void default_field(const struct eo_field *field, void *target)
     break;
   case EO_FIELD_NUMBERS:
     default_numbers(field, place);
-    break;
-  case EO_FIELD_LIMIT:
-    *(struct eo_constraint *)place = (struct eo_constraint){!isnan(field->fallback),
-                                                            eo_unit_in(field->unit, field->fallback)};
     break;
   case EO_FIELD_OBJECT:
     eo_table_defaults(field->table, place);
@@ -266,8 +261,6 @@ static void decode_null(const struct eo_field *field, void *target)
     *(double *)place = NAN;
   else if (field->kind == EO_FIELD_INTEGER)
     *(int *)place = 0;
-  else if (field->kind == EO_FIELD_LIMIT)
-    *(struct eo_constraint *)place = (struct eo_constraint){false, NAN};
   else if (field->kind == EO_FIELD_NUMBERS)
     for (int i = 0; i < field->count; i++)
       ((double *)place)[i] = NAN;
@@ -314,10 +307,6 @@ static void decode_field(const struct eo_field *field, const json_t *value, cons
     break;
   case EO_FIELD_NUMBERS:
     decode_numbers(field, value, path, place, faults);
-    break;
-  case EO_FIELD_LIMIT:
-    if (read_number(value, field, field->low, field->high, path, faults, &number))
-      *(struct eo_constraint *)place = (struct eo_constraint){true, eo_unit_in(field->unit, number)};
     break;
   case EO_FIELD_OBJECT:
     set_present(field, target, true);

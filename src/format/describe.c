@@ -23,7 +23,6 @@ static void describe_type(const struct eo_field *field, struct eo_text *text)
 {
   switch (field->kind) {
   case EO_FIELD_NUMBER:
-  case EO_FIELD_LIMIT:
     describe_range(field, field->low, field->high, text);
     break;
   case EO_FIELD_INTEGER:
@@ -63,8 +62,7 @@ static void describe_type(const struct eo_field *field, struct eo_text *text)
 
 static void describe_default(const struct eo_field *field, struct eo_text *text)
 {
-  bool plain = field->kind == EO_FIELD_NUMBER || field->kind == EO_FIELD_INTEGER || field->kind == EO_FIELD_SEED ||
-               field->kind == EO_FIELD_LIMIT;
+  bool plain = field->kind == EO_FIELD_NUMBER || field->kind == EO_FIELD_INTEGER || field->kind == EO_FIELD_SEED;
   if (field->flags & EO_FIELD_REQUIRED)
     eo_text_add(text, "; required");
   else if (field->derived)

@@ -3,7 +3,6 @@
 
 #include "format/json.h"
 #include "format/table.h"
-#include "design/design.h"
 
 static const void *member(const void *source, const struct eo_field *field)
 {
@@ -39,7 +38,6 @@ static json_t *encode_integer(const struct eo_field *field, int value)
 static json_t *encode_field(const struct eo_field *field, const void *source)
 {
   const void *place = member(source, field);
-  const struct eo_constraint *limit = place;
   const struct eo_series *series = place;
   switch (field->kind) {
   case EO_FIELD_NUMBER:
@@ -56,8 +54,6 @@ static json_t *encode_field(const struct eo_field *field, const void *source)
     return json_string(field->choices[*(const int *)place]);
   case EO_FIELD_NUMBERS:
     return encode_numbers(field, place);
-  case EO_FIELD_LIMIT:
-    return limit->enabled ? eo_json_real(limit->limit, field->unit) : json_null();
   case EO_FIELD_OBJECT:
     if (field->flags & EO_FIELD_NULLABLE && !*(const int *)((const char *)source + field->count_offset))
       return json_null();
@@ -122,9 +118,6 @@ static void settle_field(const struct eo_field *field, void *target)
     break;
   case EO_FIELD_NUMBERS:
     settle_numbers(field->unit, field->count, place);
-    break;
-  case EO_FIELD_LIMIT:
-    settle_numbers(field->unit, 1, &((struct eo_constraint *)place)->limit);
     break;
   case EO_FIELD_OBJECT:
     eo_table_round_to_document(field->table, place);

@@ -6,10 +6,10 @@
 #include "format/object.h"
 
 static const char *const kind_names[] = {
-    [EO_FIELD_NUMBER] = "number",   [EO_FIELD_INTEGER] = "integer", [EO_FIELD_SEED] = "seed",
-    [EO_FIELD_FLAG] = "flag",       [EO_FIELD_TEXT] = "text",       [EO_FIELD_CHOICE] = "choice",
-    [EO_FIELD_NUMBERS] = "numbers", [EO_FIELD_LIMIT] = "limit",     [EO_FIELD_OBJECT] = "object",
-    [EO_FIELD_LIST] = "list",       [EO_FIELD_SERIES] = "series",   [EO_FIELD_DOCUMENT] = "document"};
+    [EO_FIELD_NUMBER] = "number",   [EO_FIELD_INTEGER] = "integer",  [EO_FIELD_SEED] = "seed",
+    [EO_FIELD_FLAG] = "flag",       [EO_FIELD_TEXT] = "text",        [EO_FIELD_CHOICE] = "choice",
+    [EO_FIELD_NUMBERS] = "numbers", [EO_FIELD_OBJECT] = "object",    [EO_FIELD_LIST] = "list",
+    [EO_FIELD_SERIES] = "series",   [EO_FIELD_DOCUMENT] = "document"};
 
 /* What the document says where every key is absent: the defaults, as the tables themselves write them. */
 static json_t *encode_defaults(const struct eo_table *table)
@@ -44,7 +44,7 @@ static bool is_whole(const struct eo_field *field)
 static bool is_numeric(const struct eo_field *field)
 {
   return field->kind == EO_FIELD_INTEGER || field->kind == EO_FIELD_SEED || field->kind == EO_FIELD_NUMBER ||
-         field->kind == EO_FIELD_NUMBERS || field->kind == EO_FIELD_LIMIT;
+         field->kind == EO_FIELD_NUMBERS;
 }
 
 /* Ranges without an end are left out; a whole number reads 17, not 17.0. */
@@ -203,7 +203,6 @@ static void put_constraints(struct eo_object *o, const struct eo_field *field, b
   case EO_FIELD_NUMBER:
   case EO_FIELD_INTEGER:
   case EO_FIELD_SEED:
-  case EO_FIELD_LIMIT:
     put_number(o, field, field->low, field->high, nullable, input);
     break;
   case EO_FIELD_FLAG:

@@ -22,7 +22,6 @@ enum eo_field_kind {
   EO_FIELD_TEXT,     /* char[count]; with choices: one of them */
   EO_FIELD_CHOICE,   /* an enum whose values are the indices of choices */
   EO_FIELD_NUMBERS,  /* double[count] */
-  EO_FIELD_LIMIT,    /* struct eo_constraint; null: off */
   EO_FIELD_OBJECT,   /* a struct with its own table */
   EO_FIELD_LIST,     /* array of structs with their own table; the number of rows stands in an int at count_offset */
   EO_FIELD_SERIES,   /* struct eo_series */
@@ -141,11 +140,6 @@ void eo_table_describe(const struct eo_table *table, bool output, struct eo_text
   {                                                                                                          \
     .key = key_, .kind = EO_FIELD_NUMBERS, .flags = flags_, .offset = offsetof(type, member), .unit = unit_, \
     .low = low_, .high = high_, .count = count_, .fallbacks = fallbacks_, .derived = derived_, .help = help_ \
-  }
-#define EO_LIMIT(type, member, key_, unit_, low_, high_, help_)                                                       \
-  {                                                                                                                   \
-    .key = key_, .kind = EO_FIELD_LIMIT, .flags = EO_FIELD_NULLABLE, .offset = offsetof(type, member), .unit = unit_, \
-    .low = low_, .high = high_, .fallback = NAN, .derived = "off", .help = help_                                      \
   }
 #define EO_OBJECT(type, member, key_, table_, help_)                                                       \
   {                                                                                                        \

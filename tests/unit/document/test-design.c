@@ -92,7 +92,6 @@ static void provoke_field(const json_t *complete, const char *pointer, const str
   case EO_FIELD_NUMBER:
   case EO_FIELD_INTEGER:
   case EO_FIELD_SEED:
-  case EO_FIELD_LIMIT:
     provoke_number(complete, pointer, field, field->low, field->high);
     break;
   case EO_FIELD_FLAG:

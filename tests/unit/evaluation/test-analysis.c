@@ -266,7 +266,7 @@ static bool warns(const json_t *result, const char *text)
 static void check_warnings(void)
 {
   struct subject *s = start("paper");
-  s->design.objective.peak_to_peak = (struct eo_constraint){true, 1e-8};
+  s->design.objective.peak_to_peak = 1e-8;
   json_t *result = result_of(s);
   ok(warns(result, "Edge contact at 828 N m and 2000 rpm, right end"), "edge contact is said, with its place");
   ok(warns(result, "limit on the peak-to-peak transmission error is exceeded"), "a violated limit is said");

@@ -43,8 +43,7 @@ static int unsound(const struct eo_table *table, const char *around)
   int bad = 0;
   for (int i = 0; i < table->count; i++) {
     const struct eo_field *field = &table->field[i];
-    bool number = field->kind == EO_FIELD_NUMBER || field->kind == EO_FIELD_NUMBERS || field->kind == EO_FIELD_LIMIT ||
-                  field->kind == EO_FIELD_INTEGER;
+    bool number = field->kind == EO_FIELD_NUMBER || field->kind == EO_FIELD_NUMBERS || field->kind == EO_FIELD_INTEGER;
     bool sound = field->help && *field->help && field->offset < table->size &&
                  (!field->unit || ends_with_suffix(field->key, field->unit) || ends_with_suffix(around, field->unit)) &&
                  (!number || sound_number(field));
@@ -273,11 +272,6 @@ static bool same(const struct eo_table *table, const char *a, const char *b)
       equal = isnan(*(const double *)x) ? isnan(*(const double *)y)
                                         : same_bits(x, y, (size_t)field->count * sizeof(double));
       break;
-    case EO_FIELD_LIMIT:
-      equal = ((const struct eo_constraint *)x)->enabled == ((const struct eo_constraint *)y)->enabled &&
-              (!((const struct eo_constraint *)x)->enabled ||
-               ((const struct eo_constraint *)x)->limit == ((const struct eo_constraint *)y)->limit);
-      break;
     case EO_FIELD_OBJECT:
       equal = same(field->table, x, y);
       break;
@@ -378,7 +372,6 @@ static json_t *random_value(const struct eo_field *field)
     return json_null();
   switch (field->kind) {
   case EO_FIELD_NUMBER:
-  case EO_FIELD_LIMIT:
     return json_real(random_number(field));
   case EO_FIELD_INTEGER:
   case EO_FIELD_SEED:

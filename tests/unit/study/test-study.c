@@ -334,7 +334,7 @@ static void test_constraints(void)
     pressure = fmax(pressure, result.best.raw[k].contact_pressure);
   double without = result.best.value.objective;
   eo_study_result_done(&result);
-  design.objective.contact_pressure = (struct eo_constraint){true, 0.97 * pressure};
+  design.objective.contact_pressure = 0.97 * pressure;
   complete(&design);
   free(run(&plan, &result));
   double held = 0;

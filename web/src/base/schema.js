@@ -3,7 +3,7 @@
 /**
  * @typedef {object} Field
  * @property {string} key
- * @property {string} kind number, integer, seed, flag, text, choice, numbers, limit, object, list, series
+ * @property {string} kind number, integer, seed, flag, text, choice, numbers, object, list, series
  * @property {string} [unit] @property {number | null} [low] @property {number | null} [high] @property {any} [default]
  * @property {string[]} [choices] @property {string} [help] @property {boolean} [required]
  * @property {boolean} [nullable]
@@ -33,7 +33,7 @@ export function fieldAt(fields, pointer) {
 
 /** @param {Field} field */
 export function isNumeric(field) {
-  return ['number', 'integer', 'seed', 'limit'].includes(field.kind);
+  return ['number', 'integer', 'seed'].includes(field.kind);
 }
 
 /** @param {Field} field */
