@@ -6,6 +6,16 @@
 #include <stdlib.h>
 #include <string.h>
 
+bool eo_shafts_equal(const struct eo_shafts *a, const struct eo_shafts *b)
+{
+  bool equal = a->enabled == b->enabled;
+  for (int i = 0; i < 2; i++)
+    equal = equal && a->bearing_position[i][EO_LEFT] == b->bearing_position[i][EO_LEFT] &&
+            a->bearing_position[i][EO_RIGHT] == b->bearing_position[i][EO_RIGHT] &&
+            a->shaft_diameter[i] == b->shaft_diameter[i] && a->drive_side[i] == b->drive_side[i];
+  return equal;
+}
+
 enum { NODES = EO_DEFLECTION_NODES, VECTOR = 2 * NODES, MOST_PIECES = 2 * (NODES - 1) + 3, MOST_SIZE = 2 * VECTOR };
 
 /* A stretch of a body with one section. */

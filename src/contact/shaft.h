@@ -49,6 +49,8 @@ struct eo_shaft_influence {
   double *mode;   /* [EO_SHAFT_MODES][size]: matrix = sum of mode' mode, nearly */
 };
 
+bool eo_shafts_equal(const struct eo_shafts *a, const struct eo_shafts *b);
+
 /* pair: resolved, of the geometry. Errors: memory; EO_ERROR_NUMERIC from the eigenvalues. */
 enum eo_code eo_shaft_influence_init(struct eo_shaft_influence *influence, const struct eo_geometry *geometry,
                                      const struct eo_gear_pair *pair, const struct eo_material *material,

@@ -117,14 +117,14 @@ int eo_evaluator_kept_at(const struct eo_evaluator *e, int end)
 /* Makes the bodies' influence when the design asks for elastic bodies and they have changed. */
 enum eo_code eo_evaluator_fit_bodies(struct eo_evaluator *e, const struct eo_shafts *shafts, struct eo_error *error)
 {
-  if (shafts->enabled && e->bodies && memcmp(shafts, &e->shafts, sizeof *shafts) == 0)
+  if (shafts->enabled && e->bodies && eo_shafts_equal(shafts, &e->shafts))
     return EO_OK;
   eo_elastic_free(e->bodies);
   e->bodies = NULL;
   if (!shafts->enabled)
     return EO_OK;
   enum eo_code code = e->bent.gap ? EO_OK : eo_loaded_gaps_init(&e->bent, e->pair->grid, error);
-  memcpy(&e->shafts, shafts, sizeof *shafts);
+  e->shafts = *shafts;
   return code ? code : eo_elastic_new(&e->bodies, e->pair->grid, &e->pair->gear_pair, shafts, error);
 }
 

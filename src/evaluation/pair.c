@@ -1,12 +1,12 @@
 #include "evaluation/pair.h"
 
 #include "base/clock.h"
+#include "design/pair_identity.h"
 #include "design/resolution.h"
 #include "numerics/threads.h"
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 static enum eo_code prepare(struct eo_pair *pair, const struct eo_pair_options *options,
                             const struct eo_progress *progress, struct eo_error *error)
@@ -90,11 +90,7 @@ struct eo_iso_stiffness_input eo_pair_iso_stiffness_input(const struct eo_pair *
 
 bool eo_pair_serves(const struct eo_pair *pair, const struct eo_design *design)
 {
-  const struct eo_resolution *a = &pair->resolution, *b = &design->resolution;
-  return memcmp(&pair->gear_pair, &design->gear_pair, sizeof pair->gear_pair) == 0 &&
-         memcmp(&pair->material, &design->material, sizeof pair->material) == 0 && a->positions == b->positions &&
-         a->cells_per_line == b->cells_per_line && a->tip_edge_contact == b->tip_edge_contact && a->body == b->body &&
-         a->body_support == b->body_support && a->sector_teeth == b->sector_teeth &&
-         a->neighbour_coupling == b->neighbour_coupling && a->layers == b->layers && a->flank_rows == b->flank_rows &&
-         a->fillet_elements == b->fillet_elements && a->impact_patch == b->impact_patch;
+  struct eo_pair_identity own = eo_pair_identity_of(&pair->gear_pair, &pair->material, &pair->resolution),
+                          asked = eo_pair_identity_of(&design->gear_pair, &design->material, &design->resolution);
+  return eo_pair_identity_equal(&own, &asked);
 }

@@ -6,6 +6,8 @@
 #include <string.h>
 #include <time.h>
 
+#include "design/pair_identity.h"
+
 enum { MOST_ANALYSES = 4, LOOK_MS = 50 };
 
 struct eo_held_pair {
@@ -68,28 +70,8 @@ void eo_pairs_free(struct eo_pairs *pairs)
 
 void eo_pairs_key(const struct eo_design *design, char key[EO_HASH_LENGTH + 1])
 {
-  const struct eo_resolution *r = &design->resolution;
-  const struct {
-    const char *name;
-    double value;
-  } part[] = {{"positions", r->positions},
-              {"cells_per_line", r->cells_per_line},
-              {"tip_edge_contact", r->tip_edge_contact},
-              {"body", r->body},
-              {"body_support", r->body_support},
-              {"sector_teeth", r->sector_teeth},
-              {"neighbour_coupling", r->neighbour_coupling},
-              {"layers", r->layers},
-              {"flank_rows", r->flank_rows},
-              {"fillet_elements", r->fillet_elements},
-              {"impact_patch", r->impact_patch}};
-  struct eo_hash hash;
-  eo_hash_init(&hash);
-  eo_hash_add(&hash, &design->gear_pair, sizeof design->gear_pair);
-  eo_hash_add(&hash, &design->material, sizeof design->material);
-  for (size_t i = 0; i < sizeof part / sizeof part[0]; i++)
-    eo_hash_add_number(&hash, part[i].name, part[i].value);
-  eo_hash_finish(&hash, key);
+  struct eo_pair_identity identity = eo_pair_identity_of(&design->gear_pair, &design->material, &design->resolution);
+  eo_pair_identity_key(&identity, key);
 }
 
 /* ---- with the mutex held ---- */

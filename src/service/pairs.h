@@ -15,7 +15,7 @@ struct eo_held_pair; /* a reference: eo_pairs_release() gives it back */
 enum eo_code eo_pairs_new(struct eo_pairs **pairs, const char *cache, int most, struct eo_error *error);
 void eo_pairs_free(struct eo_pairs *pairs); /* nothing may be held any more; NULL is fine */
 
-/* What decides whether two complete designs share a prepared pair (eo_pair_serves()), as a hash. */
+/* The key of the pair that a complete design needs (design/pair_identity.h). */
 void eo_pairs_key(const struct eo_design *design, char key[EO_HASH_LENGTH + 1]);
 
 /* The pair that serves a complete design, NULL when it is not in memory. Does not wait. */

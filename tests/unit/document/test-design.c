@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "design/pair_identity.h"
 #include "document/design_document.h"
 #include "document/examples.h"
 #include "format/json.h"
@@ -507,6 +508,61 @@ static void test_hashes(void)
      "SHA-256 of \"abc\" (FIPS 180-4)");
 }
 
+static struct eo_pair_identity identity_of(const struct eo_design *d)
+{
+  return eo_pair_identity_of(&d->gear_pair, &d->material, &d->resolution);
+}
+
+/* Moves one member of a group of the design by its field. */
+static void nudge(void *group, const struct eo_field *field)
+{
+  char *place = (char *)group + field->offset;
+  if (field->kind == EO_FIELD_NUMBER)
+    *(double *)(void *)place = nextafter(*(double *)(void *)place, INFINITY);
+  else if (field->kind == EO_FIELD_FLAG)
+    *(bool *)(void *)place = !*(bool *)(void *)place;
+  else
+    *(int *)(void *)place += 1;
+}
+
+/* How many fields of a group change the identity of the pair; those that do not are listed in `kept`, and the key says
+   the same. */
+static int count_identifying(const struct eo_table *table, size_t group, const char *const *kept)
+{
+  int count = 0;
+  for (int i = 0; i < table->count; i++) {
+    static struct eo_design moved;
+    char key[2][EO_HASH_LENGTH + 1];
+    moved = design;
+    nudge((char *)&moved + group, &table->field[i]);
+    struct eo_pair_identity before = identity_of(&design), after = identity_of(&moved);
+    eo_pair_identity_key(&before, key[0]);
+    eo_pair_identity_key(&after, key[1]);
+    bool equal = eo_pair_identity_equal(&before, &after), listed = false;
+    for (int k = 0; kept[k]; k++)
+      listed = listed || strcmp(kept[k], table->field[i].key) == 0;
+    ok(equal == listed && equal == (strcmp(key[0], key[1]) == 0), "%s %s", table->field[i].key,
+       listed ? "keeps the prepared pair" : "needs another pair");
+    count += !equal;
+  }
+  return count;
+}
+
+static void test_pair_identity(void)
+{
+  struct eo_geometry geometry;
+  static const char *const none[] = {NULL}, *const kept[] = {"hub_windup",         "marking_thickness_um",
+                                                             "mesh_law",           "solver",
+                                                             "impact_in_dynamics", "harmonics",
+                                                             "te_harmonics",       NULL};
+  eo_example_build("paper", &design);
+  eo_design_complete(&design, &geometry, NULL);
+  int count = count_identifying(&eo_gear_pair_table, offsetof(struct eo_design, gear_pair), none) +
+              count_identifying(&eo_material_table, offsetof(struct eo_design, material), none) +
+              count_identifying(&eo_resolution_table, offsetof(struct eo_design, resolution), kept);
+  ok(count == EO_PAIR_MEMBERS, "and that is all that identifies a pair: %d members", count);
+}
+
 /* Every setting of the optimizer has its row in the document, with the same default. */
 static void test_search(void)
 {
@@ -566,6 +622,7 @@ int main(void)
   test_robust();
   test_contradictions();
   test_hashes();
+  test_pair_identity();
   test_search();
   return tap_done();
 }

@@ -1,0 +1,71 @@
+#include "design/pair_identity.h"
+
+#include <math.h>
+
+/* One row for each member: what it is called in the key, and its value. */
+#define PAIR_MEMBERS(ROW)                                           \
+  ROW("ends", pair->ends)                                           \
+  ROW("pinion_teeth", pair->teeth[EO_PINION])                       \
+  ROW("gear_teeth", pair->teeth[EO_GEAR])                           \
+  ROW("normal_module", pair->normal_module)                         \
+  ROW("normal_pressure_angle", pair->normal_pressure_angle)         \
+  ROW("helix_angle", pair->helix_angle)                             \
+  ROW("face_width", pair->face_width)                               \
+  ROW("groove_width", pair->groove_width)                           \
+  ROW("addendum_coefficient", pair->addendum_coefficient)           \
+  ROW("dedendum_coefficient", pair->dedendum_coefficient)           \
+  ROW("fillet_radius_coefficient", pair->fillet_radius_coefficient) \
+  ROW("pinion_profile_shift", pair->profile_shift[EO_PINION])       \
+  ROW("gear_profile_shift", pair->profile_shift[EO_GEAR])           \
+  ROW("centre_distance", pair->centre_distance)                     \
+  ROW("pinion_tip_diameter", pair->tip_diameter[EO_PINION])         \
+  ROW("gear_tip_diameter", pair->tip_diameter[EO_GEAR])             \
+  ROW("pinion_bore", pair->bore[EO_PINION])                         \
+  ROW("gear_bore", pair->bore[EO_GEAR])                             \
+  ROW("pinion_groove_diameter", pair->groove_diameter[EO_PINION])   \
+  ROW("gear_groove_diameter", pair->groove_diameter[EO_GEAR])       \
+  ROW("rim_thickness_coefficient", pair->rim_thickness_coefficient) \
+  ROW("backlash", pair->backlash)                                   \
+  ROW("youngs_modulus", material->youngs_modulus)                   \
+  ROW("poissons_ratio", material->poissons_ratio)                   \
+  ROW("density", material->density)                                 \
+  ROW("positions", resolution->positions)                           \
+  ROW("cells_per_line", resolution->cells_per_line)                 \
+  ROW("tip_edge_contact", resolution->tip_edge_contact)             \
+  ROW("body", resolution->body)                                     \
+  ROW("body_support", resolution->body_support)                     \
+  ROW("sector_teeth", resolution->sector_teeth)                     \
+  ROW("neighbour_coupling", resolution->neighbour_coupling)         \
+  ROW("layers", resolution->layers)                                 \
+  ROW("flank_rows", resolution->flank_rows)                         \
+  ROW("fillet_elements", resolution->fillet_elements)               \
+  ROW("impact_patch", resolution->impact_patch)
+
+#define NAME(name, value) name,
+#define VALUE(name, value) value,
+
+static const char *const names[] = {PAIR_MEMBERS(NAME)};
+_Static_assert(sizeof names / sizeof *names == EO_PAIR_MEMBERS, "one value for each name");
+
+struct eo_pair_identity eo_pair_identity_of(const struct eo_gear_pair *pair, const struct eo_material *material,
+                                            const struct eo_resolution *resolution)
+{
+  return (struct eo_pair_identity){{PAIR_MEMBERS(VALUE)}};
+}
+
+bool eo_pair_identity_equal(const struct eo_pair_identity *a, const struct eo_pair_identity *b)
+{
+  for (int i = 0; i < EO_PAIR_MEMBERS; i++)
+    if (a->value[i] != b->value[i] && !(isnan(a->value[i]) && isnan(b->value[i])))
+      return false;
+  return true;
+}
+
+void eo_pair_identity_key(const struct eo_pair_identity *identity, char key[EO_HASH_LENGTH + 1])
+{
+  struct eo_hash hash;
+  eo_hash_init(&hash);
+  for (int i = 0; i < EO_PAIR_MEMBERS; i++)
+    eo_hash_add_number(&hash, names[i], identity->value[i]);
+  eo_hash_finish(&hash, key);
+}
