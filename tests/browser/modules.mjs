@@ -195,5 +195,63 @@ ok(
   'what is taken off is taken off the flank, square to it',
 );
 
+// ---- the lane of requests: whose preparation is waited for, left and asked for again ----
+globalThis.document ??= { baseURI: 'http://localhost/' };
+globalThis.sessionStorage ??= { getItem: () => null, setItem: () => {} };
+globalThis.localStorage ??= { getItem: () => null, setItem: () => {} };
+const { Lane } = await import('../../web/src/base/lane.js');
+
+/** A service that prepares the pair of `teeth`; stopped: numbers of jobs that somebody else stops. */
+function serve({ stopped = [] } = {}) {
+  const log = [];
+  const jobs = new Map();
+  const ready = new Set();
+  const answer = (status, data) =>
+    new Response(JSON.stringify(data), { status, headers: { 'content-type': 'application/json' } });
+  globalThis.fetch = async (url, { method, body } = {}) => {
+    const path = new URL(url).pathname.replace('/api/v1/', '');
+    const [, id, verb] = /^jobs\/(\d+)\/?(.*)$/.exec(path) ?? [];
+    if (verb === 'cancel') log.push(`cancel ${id}`);
+    if (verb === 'cancel') return answer(200, {});
+    if (id && method === 'GET') {
+      const job = jobs.get(Number(id));
+      job.looks += 1;
+      if (stopped.includes(job.id)) return answer(200, { id: job.id, state: 'cancelled' });
+      if (job.looks === 3) ready.add(job.teeth);
+      return answer(200, { id: job.id, state: job.looks < 3 ? 'preparing' : 'done' });
+    }
+    const { teeth, harmonics } = JSON.parse(body);
+    if (ready.has(teeth)) return answer(200, { teeth, harmonics });
+    let job = [...jobs.values()].find(one => one.teeth === teeth && !stopped.includes(one.id));
+    if (!job) jobs.set(jobs.size + 1, (job = { id: jobs.size + 1, teeth, looks: 0 }));
+    log.push(`wait ${job.id}`);
+    return answer(202, { id: job.id, state: 'preparing' });
+  };
+  return log;
+}
+
+/** What comes of tasks that follow each other while the first one's pair is prepared. */
+function follow(bodies) {
+  return new Promise(resolve => {
+    const lane = new Lane({
+      result: (_task, data) => resolve(data),
+      refused: (_task, error) => resolve(error.message),
+      preparing: () => bodies.length && lane.submit({ path: 'analyze', body: bodies.shift() }),
+    });
+    lane.submit({ path: 'analyze', body: bodies.shift() });
+  });
+}
+
+let log = serve();
+is(await follow([{ teeth: 17, harmonics: 24 }, { teeth: 17, harmonics: 12 }]), { teeth: 17, harmonics: 12 }, 'the newer');
+is(log, ['wait 1', 'wait 1'], 'a change that needs the same pair stops no preparation');
+log = serve();
+is(await follow([{ teeth: 19 }, { teeth: 17 }]), { teeth: 17 }, 'the newer pair');
+is(log, ['wait 1', 'wait 2', 'cancel 1'], 'a preparation that is of no use any more is stopped');
+log = serve({ stopped: [1] });
+is(await follow([{ teeth: 19 }]), { teeth: 19 }, 'stopped by somebody else, the preparation is asked for once more');
+log = serve({ stopped: [1, 2] });
+is(await follow([{ teeth: 19 }]), 'The preparation of the teeth was stopped.', 'but not for ever');
+
 console.log(`1..${count}`);
 process.exit(failed ? 1 : 0);

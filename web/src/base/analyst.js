@@ -1,7 +1,7 @@
 // Keeps results in step with the design: its own, the unmodified pair's and the pinned design's.
 import { Refusal, connection } from './api.js';
 import { Lane } from './lane.js';
-import { pairKey, unmodified } from './store.js';
+import { unmodified } from './store.js';
 
 const ANALYZE = 'analyze?histories=1';
 
@@ -73,11 +73,11 @@ export class Analyst extends EventTarget {
     }
     const { design } = store;
     if (this.state !== 'preparing') this.#state('busy');
-    this.own.submit({ path: ANALYZE, body: design, pair: pairKey(design) });
+    this.own.submit({ path: ANALYZE, body: design });
     const key = loadKey(design);
     if (key !== this.#plainKey) {
       this.#plainKey = key;
-      this.reference.submit({ path: ANALYZE, body: unmodified(design), pair: pairKey(design), note: 'plain' });
+      this.reference.submit({ path: ANALYZE, body: unmodified(design), note: 'plain' });
     } else this.#askPin();
   }
 
@@ -95,7 +95,7 @@ export class Analyst extends EventTarget {
     const key = JSON.stringify(body);
     if (key === this.#pinKey) return;
     this.#pinKey = key;
-    this.reference.submit({ path: ANALYZE, body, pair: pairKey(body), note: 'pin' });
+    this.reference.submit({ path: ANALYZE, body, note: 'pin' });
   }
 
   /** @param {string} state */

@@ -7,7 +7,7 @@ const POLL = 400; // ms between two looks at a preparation
  * @typedef {object} Task
  * @property {string} path
  * @property {any} body
- * @property {string} pair what has to be prepared: equal texts share a preparation
+ * @property {boolean} [again] asked once more because somebody else stopped its preparation
  * @property {any} [note] handed back with the result
  */
 
@@ -21,6 +21,8 @@ export class Lane {
   /** @type {Task | null} */ #waiting = null;
   /** @type {Task | null} */ #interrupted = null;
   #busy = false;
+  /** Number of the preparation that the last task waited for; 0: none. */
+  #preparation = 0;
   #token = token();
 
   /** @param {Listener} listener */
@@ -71,8 +73,10 @@ export class Lane {
   async #run(task) {
     const start = performance.now();
     const answer = await ask('POST', task.path, { body: task.body, headers: { 'Easeoff-Lane': this.#token } });
-    if (answer.status === 202) {
-      await this.#prepare(task, answer.data.job ?? answer.data);
+    const job = answer.status === 202 ? (answer.data.job ?? answer.data) : null;
+    this.#leave(job?.id ?? 0);
+    if (job) {
+      await this.#prepare(task, job);
       return;
     }
     const ms = performance.now() - start;
@@ -81,7 +85,18 @@ export class Lane {
   }
 
   /**
-   * Waits for the preparation of the pair; a newer task of another pair ends it.
+   * The service says which preparation a task waits for: a change that needs the same pair has the same one. Another is
+   * of no use here any more and is stopped.
+   * @param {number} id of the preparation to wait for now; 0: none
+   */
+  #leave(id) {
+    const left = this.#preparation;
+    this.#preparation = id;
+    if (left && left !== id) ask('POST', `jobs/${left}/cancel`, { body: {} }).catch(() => {});
+  }
+
+  /**
+   * Waits for the preparation of the pair, until there is a newer task: that one asks the service for itself.
    * @param {Task} task
    * @param {any} job
    */
@@ -90,15 +105,15 @@ export class Lane {
     while (state.state === 'queued' || state.state === 'preparing' || state.state === 'running') {
       this.listener.preparing?.(this.#waiting ?? task, state);
       await sleep(POLL);
-      if (this.#waiting && this.#waiting.pair !== task.pair) {
-        ask('POST', `jobs/${job.id}/cancel`, { body: {} }).catch(() => {});
-        return;
-      }
+      if (this.#waiting) return;
       state = (await ask('GET', `jobs/${job.id}`)).data;
     }
+    this.#preparation = 0;
     if (state.state === 'failed') throw new Refusal(422, state.error ?? { title: 'The pair could not be prepared.' });
-    if (state.state === 'cancelled' && !this.#waiting)
+    // another page that no longer needs the pair may have stopped it
+    const stopped = state.state === 'cancelled';
+    if (stopped && task.again && !this.#waiting)
       throw new Refusal(409, { title: 'The preparation of the teeth was stopped.' });
-    if (!this.#waiting) this.#waiting = task;
+    if (!this.#waiting) this.#waiting = stopped ? { ...task, again: true } : task;
   }
 }

@@ -164,8 +164,3 @@ export class DesignStore extends EventTarget {
 export function unmodified(design) {
   return { ...design, modification: {} };
 }
-
-/** What the preparation of a pair depends on, as a text. @param {any} design */
-export function pairKey(design) {
-  return JSON.stringify([design.gear_pair, design.material, design.resolution]);
-}

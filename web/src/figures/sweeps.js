@@ -2,7 +2,6 @@
 import { h } from '../base/dom.js';
 import { labelOf, parseNumber, plain } from '../base/format.js';
 import { Lane } from '../base/lane.js';
-import { pairKey } from '../base/store.js';
 import { Chart } from './chart.js';
 import { caseText } from './context.js';
 import { whenSeen } from './frame.js';
@@ -69,7 +68,7 @@ class Sweep {
       this.chart.element.classList.add('waiting');
     }
     this.chart.frame.say('');
-    this.lane.submit({ path: 'sweep', body, pair: pairKey(design), note: which });
+    this.lane.submit({ path: 'sweep', body, note: which });
   }
 
   /** @param {any} design @returns {any} */

@@ -5,7 +5,7 @@ import { change, changeText, choiceText, labelOf, plain, sig, unitText } from '.
 import { Lane } from '../base/lane.js';
 import { valueAt } from '../base/pointer.js';
 import { complete } from '../base/schema.js';
-import { pairKey, unmodified } from '../base/store.js';
+import { unmodified } from '../base/store.js';
 import { Chart } from '../figures/chart.js';
 import { caseText, counting, mainCase, sameCase } from '../figures/context.js';
 import { NUMBERS, numbersOf } from '../headline.js';
@@ -59,7 +59,7 @@ class Library {
     const first = this.#busy === '' ? this.#queue.shift() : undefined;
     if (!first) return;
     this.#busy = first.key;
-    this.lane.submit({ path: 'analyze?histories=1&maps=0', body: first.body, pair: pairKey(first.body) });
+    this.lane.submit({ path: 'analyze?histories=1&maps=0', body: first.body });
   }
 
   /** @param {any} data @param {() => void} tell */

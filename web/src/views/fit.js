@@ -3,7 +3,6 @@ import { fill, h, newId } from '../base/dom.js';
 import { labelOf, parseNumber, plain, sig, unitText } from '../base/format.js';
 import { Lane } from '../base/lane.js';
 import { valueAt } from '../base/pointer.js';
-import { pairKey } from '../base/store.js';
 import { group } from '../form.js';
 
 /** Unknowns: key, unit, where it stands in the design, usual range. */
@@ -128,7 +127,7 @@ export class FitPanel {
     if (!Object.keys(unknowns).length) return this.#busy('Choose at least one input.');
     this.#busy('Fitting…', true);
     const { design } = this.app.store;
-    this.lane.submit({ path: `designs/${this.designId()}/fit`, body: { unknowns, design }, pair: pairKey(design) });
+    this.lane.submit({ path: `designs/${this.designId()}/fit`, body: { unknowns, design } });
   }
 
   #draw() {

@@ -4,7 +4,6 @@ import { Away, address, ask, get, list } from '../base/api.js';
 import { download, fill, h } from '../base/dom.js';
 import { dateText, plain, sig } from '../base/format.js';
 import { Lane } from '../base/lane.js';
-import { pairKey } from '../base/store.js';
 import { Chart } from '../figures/chart.js';
 import { mainCase } from '../figures/context.js';
 import { MeasuredOrders, MeasuredPoints } from '../figures/measured.js';
@@ -97,7 +96,6 @@ class Bench extends EventTarget {
     this.lane.submit({
       path: `designs/${encodeURIComponent(this.designId)}/comparison`,
       body: design,
-      pair: pairKey(design),
     });
   }
 
@@ -183,7 +181,6 @@ function teaching(app, recordings) {
           ...(output.value === 'angles' ? {} : { pinion_lines: 1024, gear_lines: 1024 }),
         },
       },
-      pair: pairKey(app.store.design),
     });
   };
   /** @param {string} label @param {HTMLElement} entry */
