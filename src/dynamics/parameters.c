@@ -131,46 +131,9 @@ double eo_dynamics_mesh_load(const struct eo_dynamics_parameters *p, double torq
   return torque / (p->ends * p->base_radius[EO_PINION] * cos(p->base_helix_angle));
 }
 
-/* Ring of outer radius r and length l: mass and polar inertia are added to *mass and *inertia. */
-static void add_ring(double r, double bore, double length, double density, double *mass, double *inertia)
-{
-  double ring = density * M_PI * (r * r - bore * bore) * length;
-  *mass += ring;
-  *inertia += ring * (r * r + bore * bore) / 2;
-}
-
-/* The groove body as a bar; its length and section may vanish, the spring then has no default. */
-struct groove {
-  double radius, bore, length;
-};
-
-static struct groove groove_of(const struct eo_geometry *g, const struct eo_gear_pair *pair, int member)
-{
-  double bore = pair->bore[member];
-  if (isnan(bore))
-    bore = member == EO_PINION ? 0 : fmin(15 * pair->normal_module, g->root_radius[member]);
-  double diameter = pair->groove_diameter[member];
-  if (isnan(diameter))
-    diameter = 2 * g->root_radius[member] - 2e-3;
-  return (struct groove){diameter / 2, bore / 2, pair->ends == 2 ? pair->groove_width : 0};
-}
-
 static double or_default(double given, double otherwise)
 {
   return isnan(given) ? otherwise : given;
-}
-
-static void set_bodies(struct eo_dynamics_parameters *p, const struct eo_geometry *g, const struct eo_gear_pair *pair,
-                       const struct eo_material *material, const struct eo_supports *supports)
-{
-  for (int m = 0; m < 2; m++) {
-    struct groove body = groove_of(g, pair, m);
-    double mass = 0, inertia = 0;
-    add_ring(g->reference_radius[m], body.bore, pair->face_width, material->density, &mass, &inertia);
-    add_ring(body.radius, body.bore, body.length / 2, material->density, &mass, &inertia);
-    p->mass[m] = or_default(supports->mass[m], mass);
-    p->inertia[m] = or_default(supports->inertia[m], inertia);
-  }
 }
 
 /* c = 2 zeta sqrt(k m); none on a rigid support. */
@@ -225,27 +188,17 @@ static void set_machines(struct eo_dynamics_parameters *p, const struct eo_suppo
   }
 }
 
-static enum eo_code set_groove(struct eo_dynamics_parameters *p, const struct eo_geometry *g,
-                               const struct eo_gear_pair *pair, const struct eo_material *material,
-                               const struct eo_supports *supports, bool coupled, struct eo_error *error)
+static void set_groove(struct eo_dynamics_parameters *p, const struct eo_supports *supports, bool coupled)
 {
-  double shear = material->youngs_modulus / (2 * (1 + material->poissons_ratio)), zeta = supports->groove_damping_ratio;
+  double zeta = supports->groove_damping_ratio;
   for (int m = 0; m < 2; m++) {
-    struct groove body = groove_of(g, pair, m);
-    double r2 = body.radius * body.radius, b2 = body.bore * body.bore;
-    double axial = supports->groove_axial_stiffness[m], torsional = supports->groove_torsional_stiffness[m];
-    if ((isnan(axial) || (coupled && isnan(torsional))) && !(body.length > 0 && r2 > b2))
-      return eo_error_set(
-          error, EO_ERROR_INPUT, "/gear_pair/groove_width_mm",
-          "Without a groove of positive width and section its stiffnesses must be given in the supports.");
-    p->groove_axial_stiffness[m] = or_default(axial, material->youngs_modulus * M_PI * (r2 - b2) / body.length);
+    p->groove_axial_stiffness[m] = supports->groove_axial_stiffness[m];
     p->groove_axial_damping[m] = 2 * zeta * sqrt(p->groove_axial_stiffness[m] * p->mass[m] / 2);
     if (!coupled)
       continue;
-    p->groove_torsional_stiffness[m] = or_default(torsional, shear * M_PI / 2 * (r2 * r2 - b2 * b2) / body.length);
+    p->groove_torsional_stiffness[m] = supports->groove_torsional_stiffness[m];
     p->groove_torsional_damping[m] = damper(zeta, p->groove_torsional_stiffness[m], p->inertia[m] / 2);
   }
-  return EO_OK;
 }
 
 static enum eo_code check_supports(const struct eo_supports *s, double mean_mesh_stiffness, struct eo_error *error)
@@ -262,27 +215,31 @@ static enum eo_code check_supports(const struct eo_supports *s, double mean_mesh
 }
 
 enum eo_code eo_dynamics_parameters_init(struct eo_dynamics_parameters *parameters, const struct eo_geometry *geometry,
-                                         const struct eo_gear_pair *pair, const struct eo_material *material,
-                                         double held, const struct eo_supports *supports, bool ends_differ,
+                                         int ends, double held, const struct eo_supports *supports, bool ends_differ,
                                          double mean_mesh_stiffness, struct eo_error *error)
 {
   enum eo_code code = check_supports(supports, mean_mesh_stiffness, error);
   if (code)
     return code;
-  struct eo_dynamics_parameters p = {.ends = pair->ends, .base_helix_angle = geometry->base_helix_angle};
+  struct eo_dynamics_parameters p = {.ends = ends, .base_helix_angle = geometry->base_helix_angle};
   p.base_radius[0] = geometry->base_radius[0];
   p.base_radius[1] = geometry->base_radius[1];
-  set_bodies(&p, geometry, pair, material, supports);
+  for (int m = 0; m < 2; m++) {
+    p.mass[m] = supports->mass[m];
+    p.inertia[m] = supports->inertia[m];
+  }
   set_bearings(&p, supports);
   bool coupled = supports->torsional_coupling == EO_COUPLING_ON ||
                  (supports->torsional_coupling == EO_COUPLING_PAPER && (ends_differ || held > 0));
   set_machines(&p, supports);
-  code = pair->ends == 1 ? set_single_axial(&p, held, supports, error)
-                         : set_groove(&p, geometry, pair, material, supports, coupled, error);
+  if (ends == 1)
+    code = set_single_axial(&p, held, supports, error);
+  else {
+    set_groove(&p, supports, coupled);
+    set_pinion_axial(&p, held, supports);
+  }
   if (code)
     return code;
-  if (pair->ends == 2)
-    set_pinion_axial(&p, held, supports);
   p.mesh_damping = eo_dynamics_mesh_damping(&p, supports->mesh_damping_ratio,
                                             or_default(supports->mesh_damping_stiffness, mean_mesh_stiffness));
   if ((code = eo_dynamics_parameters_check(&p, error)))

@@ -63,20 +63,18 @@ struct eo_dynamics_parameters {
    and a machine without its spring or a spring without its machine. Pointers are those of the design's `supports`. */
 enum eo_code eo_dynamics_parameters_check(const struct eo_dynamics_parameters *parameters, struct eo_error *error);
 
-/* Parameters of a design. NaN members of supports take the defaults of the model: solids of the pitch cylinder with
-   half the groove (bores taken out), groove springs E A / L and G J / L, damping c = 2 zeta sqrt(k m) at the bearings,
-   2 zeta sqrt(k m / 2) in the groove, 2 zeta sqrt(k_a 2 m) at the axial support of the whole pinion, 2 zeta sqrt(k J)
-   with the reduced inertia 1/J = 1/J_machine + 1/(J of both ends) at a machine, c_m = 2 zeta sqrt(k m_e) / cos(beta_b)
-   with k the mesh_damping_stiffness of the supports or, when that is NaN, mean_mesh_stiffness (normal, one end, N/m).
-   Torsional coupling follows supports: `paper` couples when ends_differ or the pinion is held along its axis, since
-   what one end carries more than the other can only come through the groove. pinion_axial: stiffness with which the
-   pinion is held, N/m, 0: floating, INFINITY: fixed;
-   with one end a pinion that is said to float is held like its gear (without a bearing its thrust would carry it away).
-   Errors: EO_ERROR_INPUT with the key. */
+/* Parameters of a design whose supports are resolved (eo_design_resolve(), design/): masses, inertias and the springs
+   of the groove that are used must be numbers here. Damping is c = 2 zeta sqrt(k m) at the bearings, 2 zeta sqrt(k m /
+   2) in the groove, 2 zeta sqrt(k_a 2 m) at the axial support of the whole pinion, 2 zeta sqrt(k J) with the reduced
+   inertia 1/J = 1/J_machine + 1/(J of both ends) at a machine, c_m = 2 zeta sqrt(k m_e) / cos(beta_b) with k the
+   mesh_damping_stiffness of the supports or, when that is NaN, mean_mesh_stiffness (normal, one end, N/m). Torsional
+   coupling follows supports: `paper` couples when ends_differ or the pinion is held along its axis, since what one end
+   carries more than the other can only come through the groove. pinion_axial: stiffness with which the pinion is held,
+   N/m, 0: floating, INFINITY: fixed; with one end a pinion that is said to float is held like its gear (without a
+   bearing its thrust would carry it away). Errors: EO_ERROR_INPUT with the key. */
 enum eo_code eo_dynamics_parameters_init(struct eo_dynamics_parameters *parameters, const struct eo_geometry *geometry,
-                                         const struct eo_gear_pair *pair, const struct eo_material *material,
-                                         double pinion_axial, const struct eo_supports *supports, bool ends_differ,
-                                         double mean_mesh_stiffness, struct eo_error *error);
+                                         int ends, double pinion_axial, const struct eo_supports *supports,
+                                         bool ends_differ, double mean_mesh_stiffness, struct eo_error *error);
 
 /* Equivalent mass of the two inertias along the transverse line of action, m_e = J_p J_g / (J_p r_bg^2 + J_g r_bp^2),
    kg. */

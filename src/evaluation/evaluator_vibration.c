@@ -9,7 +9,7 @@ enum eo_code eo_evaluator_parameters(const struct eo_evaluator *e, const struct 
                                      struct eo_dynamics_parameters *parameters, struct eo_error *error)
 {
   bool differ = design->gear_pair.ends == 2 && !eo_evaluator_same_flanks(&design->modification);
-  return eo_dynamics_parameters_init(parameters, &e->pair->geometry, &design->gear_pair, &design->material,
+  return eo_dynamics_parameters_init(parameters, &e->pair->geometry, design->gear_pair.ends,
                                      eo_alignment_axial_stiffness(&design->alignment), &design->supports, differ,
                                      stiffness, error);
 }

@@ -22,7 +22,7 @@ struct eo_gear_pair {
   double centre_distance; /* working centre distance a_w, m; NaN: without backlash for the given profile shift */
   double tip_diameter[2]; /* d_a, m; NaN: from addendum, profile shift and centre distance */
   double bore[2]; /* bore diameter, m, 0: solid; NaN: pinion solid, gear 15 m_n (at most half its root diameter) */
-  double groove_diameter[2];        /* body diameter between the ends, m; NaN: root diameter - 2 mm */
+  double groove_diameter[2]; /* body diameter between the ends, m; NaN: root diameter - 2 mm, at least 0.9 of it */
   double rim_thickness_coefficient; /* rim below the root that flexes, times m_n; a larger bore cuts it shorter.
                                        Of a sector and a ring that is held */
   double backlash;                  /* 2 tau, normal, m */

@@ -301,7 +301,7 @@ static enum eo_code make_model(struct problem *p, const struct input *given, str
   code = make_laws(p, given, load, p->design.gear_pair.backlash, found->stiffness, error);
   double mean = ends == 2 ? (found->stiffness[0] + found->stiffness[1]) / 2 : found->stiffness[0];
   return code ? code
-              : eo_dynamics_parameters_init(&e->of, &p->geometry, &p->design.gear_pair, &p->design.material,
+              : eo_dynamics_parameters_init(&e->of, &p->geometry, ends,
                                             eo_alignment_axial_stiffness(&p->design.alignment), &p->design.supports,
                                             given->has_right_law, mean, error);
 }

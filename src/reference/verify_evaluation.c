@@ -69,8 +69,7 @@ static enum eo_code check_parameters(struct eo_verification *v, struct eo_case *
   struct eo_dynamics_parameters p;
   enum eo_code code = eo_geometry_init(&geometry, &design->gear_pair, error);
   if (!code)
-    code = eo_dynamics_parameters_init(&p, &geometry, &design->gear_pair, &design->material, 0, &design->supports,
-                                       false, 1, error);
+    code = eo_dynamics_parameters_init(&p, &geometry, design->gear_pair.ends, 0, &design->supports, false, 1, error);
   if (code)
     return code;
   const struct {
@@ -446,8 +445,8 @@ static enum eo_code check_stage(const struct bench *b, struct eo_case *item, con
     free(stage);
     return code;
   }
-  code = eo_dynamics_parameters_init(&parameters, &b->pair->geometry, &design->gear_pair, &design->material, 0,
-                                     &design->supports, false, 1, error);
+  code = eo_dynamics_parameters_init(&parameters, &b->pair->geometry, design->gear_pair.ends, 0, &design->supports,
+                                     false, 1, error);
   if (!code)
     code = eo_vibration_new(&solver, design->resolution.harmonics, 0, error);
   if (!code)

@@ -2,6 +2,7 @@
    the harmonic balance against time integration on the same arrays. */
 #include "support/cases-json.h"
 #include "support/dynamics-fixture.h"
+#include "design/design.h"
 #include "dynamics/parameters.h"
 
 enum { POSITIONS = 64, ORDER = 10, HARMONICS = 24 };
@@ -152,18 +153,27 @@ static void pair_of(const json_t *pair, struct eo_geometry *g, struct eo_gear_pa
   }
 }
 
+/* Masses, inertias and springs of the groove as a design derives them. */
+static struct eo_supports resolved_supports(const struct eo_gear_pair *pair, const struct eo_geometry *geometry)
+{
+  static struct eo_design design;
+  design = (struct eo_design){.gear_pair = *pair, .material = {206e9, 0.3, 7850}, .supports = default_supports()};
+  eo_design_resolve(&design, geometry);
+  return design.supports;
+}
+
 static void default_parameters(const json_t *evaluation, const char *name)
 {
   struct eo_geometry g;
   struct eo_gear_pair pair;
   struct eo_dynamics_parameters p;
   struct eo_error error = {0};
-  const struct eo_supports supports = default_supports();
+  struct eo_supports supports;
   const json_t *given = json_object_get(json_object_get(evaluation, "pairs"), name);
   const json_t *expected = json_object_get(json_object_get(evaluation, "dynamics_params"), name);
-  const struct eo_material steel = {206e9, 0.3, 7850};
   pair_of(given, &g, &pair);
-  int failed = eo_dynamics_parameters_init(&p, &g, &pair, &steel, 0, &supports, false, 20e9 * pair.face_width, &error);
+  supports = resolved_supports(&pair, &g);
+  int failed = eo_dynamics_parameters_init(&p, &g, 2, 0, &supports, false, 20e9 * pair.face_width, &error);
   ok(!failed, "%s parameters %s", name, error.text);
   const struct {
     const char *key;
@@ -199,13 +209,22 @@ static void torsional_coupling(const json_t *evaluation)
   struct eo_geometry g;
   struct eo_gear_pair pair;
   struct eo_dynamics_parameters p;
-  const struct eo_supports supports = default_supports();
-  const struct eo_material steel = {206e9, 0.3, 7850};
+  struct eo_error error = {0};
+  struct eo_supports supports;
   pair_of(json_object_get(json_object_get(evaluation, "pairs"), "P0"), &g, &pair);
-  eo_dynamics_parameters_init(&p, &g, &pair, &steel, 0, &supports, true, 1e9, NULL);
+  supports = resolved_supports(&pair, &g);
+  eo_dynamics_parameters_init(&p, &g, 2, 0, &supports, true, 1e9, NULL);
   near(p.groove_torsional_stiffness[0], 12487038.99751322, 1e-12, "kt_p");
   near(p.groove_torsional_stiffness[1], 841121351.5381075, 1e-12, "kt_g");
   near(p.groove_torsional_damping[0], 0.04 * sqrt(12487038.99751322 * 0.008133856745044276 / 2), 1e-12, "ct_p");
+  supports.groove_torsional_stiffness[EO_GEAR] = NAN;
+  ok(eo_dynamics_parameters_init(&p, &g, 2, 0, &supports, true, 1e9, &error) == EO_ERROR_INPUT &&
+         strcmp(error.pointer, "/supports/gear_groove_torsional_stiffness_Nm_per_rad") == 0,
+     "a spring that nobody derived is refused: %s", error.text);
+  supports.mass[EO_PINION] = NAN;
+  ok(eo_dynamics_parameters_init(&p, &g, 2, 0, &supports, false, 1e9, &error) == EO_ERROR_INPUT &&
+         strcmp(error.pointer, "/supports/pinion_mass_kg") == 0,
+     "and so is a mass: %s", error.text);
 }
 
 int main(void)
