@@ -158,7 +158,7 @@ struct source {
   const struct eo_design *design;
   const json_t *analysis;
   const struct eo_warnings *warnings;
-  char algorithm[sizeof((struct eo_optimization *)0)->algorithm];
+  char algorithm[32];
   uint64_t seed;
   double pfc_percent;
 };

@@ -600,10 +600,10 @@ static void test_body(void)
              {"{\"body\": \"sector\"}", EO_BODY_SECTOR}};
   for (size_t i = 0; i < sizeof row / sizeof *row; i++) {
     struct eo_resolution resolution;
-    struct eo_faults faults = {0};
+    struct eo_faults wrong = {0};
     json_t *document = json_loads(row[i].text, 0, NULL);
-    eo_table_decode(&eo_resolution_table, document, NULL, &resolution, &faults);
-    ok(faults.count == 0 && resolution.body == row[i].body, "%s means the %s", row[i].text,
+    eo_table_decode(&eo_resolution_table, document, NULL, &resolution, &wrong);
+    ok(wrong.count == 0 && resolution.body == row[i].body, "%s means the %s", row[i].text,
        row[i].body == EO_BODY_RING ? "ring" : "sector");
     json_decref(document);
   }
