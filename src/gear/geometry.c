@@ -21,11 +21,15 @@ double eo_geometry_shift_sum(const int teeth[2], double normal_pressure_angle, d
   return difference * (teeth[0] + teeth[1]) / (2 * tan(normal_pressure_angle));
 }
 
-/* Newton on inv(angle) = value; inv is convex, so the start above the root converges from the right. */
-static double inverse_involute(double value)
+/* Newton from above: inv is convex, and tan(alpha) = value + alpha < value + pi/2 bounds alpha; small values start from
+   alpha^3/3. */
+double eo_geometry_involute_inverse(double value)
 {
-  double angle = fmin(cbrt(3 * value), 1.4);
-  for (int i = 0; i < 60; i++) {
+  enum { MOST_STEPS = 60 };
+  if (!(value > 0))
+    return isnan(value) ? NAN : 0;
+  double angle = fmin(cbrt(3 * value), atan(M_PI / 2 + value));
+  for (int i = 0; i < MOST_STEPS; i++) {
     double tangent = tan(angle), step = (tangent - angle - value) / (tangent * tangent);
     angle -= step;
     if (fabs(step) < 1e-16)
@@ -78,7 +82,7 @@ static enum eo_code set_working(struct eo_geometry *g, const struct eo_gear_pair
                   "The sum of the profile shifts is so negative that the pair has no working pressure angle.");
   /* Exactly the reference values when nothing shifts them. */
   double tight = pair->profile_shift[0] + pair->profile_shift[1] == 0 ? g->transverse_pressure_angle
-                                                                      : inverse_involute(value);
+                                                                      : eo_geometry_involute_inverse(value);
   g->working_pressure_angle = tight;
   g->centre_distance = pair->profile_shift[0] + pair->profile_shift[1] == 0 ? sum : base / cos(tight);
   g->normal_backlash = pair->backlash;

@@ -50,6 +50,8 @@ double eo_geometry_shift_sum(const int teeth[2], double normal_pressure_angle, d
 
 /* inv(alpha) = tan(alpha) - alpha. */
 double eo_geometry_involute_function(double angle);
+/* The angle, rad, whose involute function it is; 0 for what is not above 0. */
+double eo_geometry_involute_inverse(double value);
 
 /* The path coordinate as a member sees it: sigma = s on the pinion, -s on the gear; + towards its own tip. */
 static inline double eo_geometry_own_path(int member, double s)
