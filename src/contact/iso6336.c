@@ -73,44 +73,53 @@ static double rim_factor(const struct eo_geometry *geometry, int member, double 
   return ratio >= 1.2 ? 1 : 1.6 * log(2.242 / ratio);
 }
 
-/* Chord, arm and fillet radius at the critical section, over m_n. */
-static void set_section(struct eo_iso_root *root, const struct eo_geometry *geometry, int member, double *load_angle)
+/* ISO 6336-3 6.2 and 7: the 30 degree tangents (9) to (14), the arm (16), Y_F (8), Y_S (32). */
+void eo_iso_section(struct eo_iso_section *section, const struct eo_iso_section_input *in)
 {
-  double module = geometry->normal_module, alpha = geometry->normal_pressure_angle, zn = root->virtual_teeth,
-         x = geometry->profile_shift[member];
-  double dedendum = geometry->dedendum / module, fillet = geometry->fillet_radius / module;
+  double alpha = in->normal_pressure_angle, zn = in->virtual_teeth, x = in->profile_shift;
+  double dedendum = in->dedendum_coefficient, fillet = in->fillet_radius_coefficient;
   double e = M_PI / 4 - dedendum * tan(alpha) - (1 - sin(alpha)) * fillet / cos(alpha);
   double g = fillet - dedendum + x;
   double h = 2 / zn * (M_PI / 2 - e) - M_PI / 3;
   double theta = tangent_angle(zn, g, h);
-  root->chord = zn * sin(M_PI / 3 - theta) + sqrt(3) * (g / cos(theta) - fillet);
-  root->fillet_radius = fillet + 2 * g * g / (cos(theta) * (zn * cos(theta) * cos(theta) - 2 * g));
+  section->chord = zn * sin(M_PI / 3 - theta) + sqrt(3) * (g / cos(theta) - fillet);
+  section->fillet_radius = fillet + 2 * g * g / (cos(theta) * (zn * cos(theta) * cos(theta) - 2 * g));
 
-  double base = zn / 2 * cos(alpha), radius = load_radius(geometry, member, zn, base);
-  double pressure = acos(base / radius);
+  double pressure = acos(zn / 2 * cos(alpha) / in->load_radius);
   double gamma = (M_PI / 2 + 2 * tan(alpha) * x) / zn + eo_geometry_involute_function(alpha) -
                  eo_geometry_involute_function(pressure);
-  *load_angle = pressure - gamma;
-  root->arm = 0.5 * ((cos(gamma) - sin(gamma) * tan(*load_angle)) * 2 * radius - zn * cos(M_PI / 3 - theta) -
-                     (g / cos(theta) - fillet));
+  double load_angle = pressure - gamma;
+  section->load_angle = load_angle;
+  section->arm = 0.5 * ((cos(gamma) - sin(gamma) * tan(load_angle)) * 2 * in->load_radius - zn * cos(M_PI / 3 - theta) -
+                        (g / cos(theta) - fillet));
+  section->form_factor = 6 * section->arm * cos(load_angle) / (section->chord * section->chord * cos(alpha));
+  double slenderness = section->chord / section->arm, notch = section->chord / (2 * section->fillet_radius);
+  section->stress_correction = (1.2 + 0.13 * slenderness) * pow(notch, 1 / (1.21 + 2.3 / slenderness));
 }
 
 void eo_iso_root(struct eo_iso_root *root, const struct eo_geometry *geometry, int member, double bore, double torque)
 {
   struct eo_iso_root r = {0};
-  double module = geometry->normal_module, load_angle;
-  r.virtual_teeth = virtual_teeth(geometry->teeth[member], geometry->normal_pressure_angle, geometry->helix_angle);
-  set_section(&r, geometry, member, &load_angle);
-  r.form_factor = 6 * r.arm * cos(load_angle) / (r.chord * r.chord * cos(geometry->normal_pressure_angle));
-  double slenderness = r.chord / r.arm, notch = r.chord / (2 * r.fillet_radius);
-  r.stress_correction = (1.2 + 0.13 * slenderness) * pow(notch, 1 / (1.21 + 2.3 / slenderness));
+  struct eo_iso_section section;
+  double module = geometry->normal_module, alpha = geometry->normal_pressure_angle;
+  r.virtual_teeth = virtual_teeth(geometry->teeth[member], alpha, geometry->helix_angle);
+  struct eo_iso_section_input input = {
+      .virtual_teeth = r.virtual_teeth,
+      .normal_pressure_angle = alpha,
+      .profile_shift = geometry->profile_shift[member],
+      .dedendum_coefficient = geometry->dedendum / module,
+      .fillet_radius_coefficient = geometry->fillet_radius / module,
+      .load_radius = load_radius(geometry, member, r.virtual_teeth, r.virtual_teeth / 2 * cos(alpha))};
+  eo_iso_section(&section, &input);
+  r.form_factor = section.form_factor;
+  r.stress_correction = section.stress_correction;
   r.helix_factor = 1 - fmin(geometry->overlap_ratio, 1) * fmin(geometry->helix_angle * 180 / M_PI, 30) / 120;
   r.rim_factor = rim_factor(geometry, member, bore);
   r.tangential_force = torque / geometry->reference_radius[member];
   r.stress = r.tangential_force / (geometry->face_width * module) * r.form_factor * r.stress_correction *
              r.helix_factor * r.rim_factor;
-  r.chord *= module;
-  r.arm *= module;
-  r.fillet_radius *= module;
+  r.chord = section.chord * module;
+  r.arm = section.arm * module;
+  r.fillet_radius = section.fillet_radius * module;
   *root = r;
 }

@@ -38,6 +38,26 @@ void eo_iso_stiffness(struct eo_iso_stiffness *stiffness, const struct eo_iso_st
    at least 1; outside, the nearest value within is used, as the standard says. */
 double eo_iso_blank_factor(double web_ratio, double rim_ratio);
 
+/* The critical section of ISO 6336-3 method B, of any external tooth that a rack cuts. Lengths over m_n. */
+struct eo_iso_section_input {
+  double virtual_teeth;                                   /* z_n */
+  double normal_pressure_angle;                           /* rad */
+  double profile_shift;                                   /* of the tooth that is cut */
+  double dedendum_coefficient, fillet_radius_coefficient; /* h_fP, rho_fP */
+  double load_radius;                                     /* d_en / 2 */
+};
+
+struct eo_iso_section {
+  double chord;             /* s_Fn at the 30 degree tangents */
+  double arm;               /* h_Fe */
+  double fillet_radius;     /* rho_F there */
+  double load_angle;        /* alpha_Fen, rad */
+  double form_factor;       /* Y_F */
+  double stress_correction; /* Y_S */
+};
+
+void eo_iso_section(struct eo_iso_section *section, const struct eo_iso_section_input *input);
+
 /* ISO 6336-3 method B, load at the outer point of single pair contact; no rounding of the tip, Y_DT = 1. */
 struct eo_iso_root {
   double virtual_teeth;     /* z_n */
