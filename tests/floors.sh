@@ -3,8 +3,8 @@
 # nothing and reads no environment; each library has its one floor.
 : "${SOURCES:=.}"
 cd "$SOURCES/src" || exit 99
-floors="base numerics gear flexibility contact dynamics optimizer design evaluation recording measurement format document store study reproduction service http reference app"
-core="base numerics gear flexibility contact dynamics optimizer design evaluation recording measurement"
+floors="base numerics gear flexibility contact dynamics rating optimizer design evaluation recording measurement format document store study reproduction service http reference app"
+core="base numerics gear flexibility contact dynamics rating optimizer design evaluation recording measurement"
 count=0 failed=0
 
 result() # status, what
