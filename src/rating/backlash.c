@@ -1,0 +1,45 @@
+#include "rating/backlash.h"
+
+#include <math.h>
+
+#include "gear/geometry.h"
+
+double eo_backlash_recommended(double centre_distance, double normal_module)
+{
+  return 2.0 / 3 * (0.06e-3 + 0.0005 * centre_distance + 0.03 * normal_module);
+}
+
+/* inv alpha = inv alpha_t + (2 tan alpha_n sum x + sum A_sn/m_n)/sum z: where the (thinned) teeth touch on both flanks
+   (ISO 21771). */
+static double tight_involute(const struct eo_backlash_input *in, double transverse, double allowance)
+{
+  double shift = in->profile_shift[0] + in->profile_shift[1];
+  return eo_geometry_involute_function(transverse) +
+         (2 * tan(in->normal_pressure_angle) * shift + allowance / in->normal_module) / (in->teeth[0] + in->teeth[1]);
+}
+
+enum eo_code eo_backlash(struct eo_backlash *j, const struct eo_backlash_input *in, struct eo_error *error)
+{
+  double transverse = atan(tan(in->normal_pressure_angle) / cos(in->helix_angle));
+  double base_helix = asin(sin(in->helix_angle) * cos(in->normal_pressure_angle));
+  double base = in->normal_module / cos(in->helix_angle) * (in->teeth[0] + in->teeth[1]) / 2 * cos(transverse);
+  double allowance = in->allowance[0] + in->allowance[1];
+  double unthinned = tight_involute(in, transverse, 0), thinned = tight_involute(in, transverse, allowance);
+  if (!(in->centre_distance > base))
+    return eo_error_set(error, EO_ERROR_INPUT, "/centre_distance_mm",
+                        "The centre distance %.9g mm is not above the sum of the base radii, %.9g mm.",
+                        1e3 * in->centre_distance, 1e3 * base);
+  if (!(thinned > 0))
+    return eo_error_set(error, EO_ERROR_INPUT, "/x",
+                        "Profile shifts and allowances are so negative that both flanks never touch.");
+  double working = acos(base / in->centre_distance);
+  double beyond = 2 * base * cos(base_helix) * (eo_geometry_involute_function(working) - unthinned);
+  j->normal = -allowance * cos(in->normal_pressure_angle) +
+              2 * in->centre_distance_allowance * sin(working) * cos(base_helix) + beyond; /* DIN 3967 */
+  j->circumferential = j->normal / (cos(working) * cos(base_helix));
+  j->of_reference = j->circumferential * cos(in->normal_pressure_angle) * cos(in->helix_angle);
+  j->of_distance = 2 * in->centre_distance_allowance * tan(working);
+  j->tight_distance = base / cos(eo_geometry_involute_inverse(thinned));
+  j->radial = in->centre_distance + in->centre_distance_allowance - j->tight_distance;
+  return EO_OK;
+}
