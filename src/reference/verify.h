@@ -110,6 +110,9 @@ enum eo_code eo_verify_encoder(struct eo_case *file, struct eo_verification *v, 
 /* The optimizer's random numbers, prediction, history, operators and whole runs. */
 enum eo_code eo_verify_optimizer(struct eo_case *file, struct eo_verification *v, struct eo_error *error);
 
+/* Drawing dimensions and rating by ISO 6336. */
+enum eo_code eo_verify_rating(struct eo_case *file, struct eo_verification *v, struct eo_error *error);
+
 /* Compliance of whole gear bodies and loaded contact on it. */
 enum eo_code eo_verify_ring(struct eo_case *file, struct eo_verification *v, struct eo_error *error);
 
