@@ -33,6 +33,13 @@ changed() # FILE FROM TO: a copy with one change, which must have taken place
   result $? "$1 changed by $2"
 }
 
+refuses() # POINTER SENTENCE FILE: one line for each fault, no verdict on numbers
+{
+  verify 1 "$2" "$3"
+  grep -q -e "^easeoff: .*$3: $1: $2" "$folder/err" && ! grep -q "within tolerance" "$folder/out"
+  result $? "says $1: $2"
+}
+
 verify 0 "dynamics" --json "$CASES/dynamics.json"
 checks 260
 verify 0 "optimizer" --json "$CASES/optimizer.json"
@@ -61,6 +68,16 @@ prints "finding swapped .*FAIL (1)"
 awk -F, -v OFS=, 'NR > 1 { t = $2; $2 = $3; $3 = t } { print }' "$CASES/enc1_clean_unwrapped_deg.csv" >"$folder/enc1_clean_unwrapped_deg.csv"
 verify 0 "channels swapped, said and set right" "$folder/encoder.json"
 
+verify 0 "rating" --json "$CASES/rating.json"
+checks 800
+changed rating.json 's/"printed": 1.092,/"printed": 1.094,/'
+verify 1 "a wrong dynamic factor" "$folder/rating.json"
+prints "kv-nrel3 .*K_V.*FAIL (1)"
+changed rating.json '0,/"quantity": "backlash"/ s/"quantity": "backlash"/"quantity": "micropitting"/'
+refuses /rows/[0-9]*/quantity 'The quantity "micropitting" is not computed here' "$folder/rating.json"
+changed rating.json '0,/"A_sn_mm"/ s/"A_sn_mm"/"A_sm_mm"/'
+refuses /rows/[0-9]*/inputs/A_sm_mm "This key is not known here" "$folder/rating.json"
+
 # An RMS that is off by 3e-4 is noticed, in both kinds of output.
 changed dynamics.json 's/"rms_meanLR": 18.703694/"rms_meanLR": 18.71/'
 verify 1 "a wrong RMS" "$folder/dynamics.json"
@@ -76,12 +93,6 @@ verify 1 "a spring that pushes" "$folder/dynamics.json"
 prints "K1-828 .*computed at all.*FAIL"
 prints "K1-828 could not be computed: "
 prints "T1-828 .* pass"
-refuses() # POINTER SENTENCE FILE: one line for each fault, no verdict on numbers
-{
-  verify 1 "$2" "$3"
-  grep -q -e "^easeoff: .*$3: $1: $2" "$folder/err" && ! grep -q "within tolerance" "$folder/out"
-  result $? "says $1: $2"
-}
 changed dynamics.json '0,/"law": "K1"/ s/"law": "K1"/"law": "K99"/'
 refuses /dynamics/0/law "There is no law_K99 and no table_K99 in the file" "$folder/dynamics.json"
 changed optimizer.json 's/"fitness": "1\/(1+sum((x-c)^2)), c=\[0.3,0.6,0.45\]"/"fitnes": "1"/'

@@ -54,6 +54,7 @@ static const struct part parts[] = {
     {"ring", "line", {"macro", "supports", "tolerances"}, 61, true},
     {"calculix", "unmodified", {"what", "boundary"}, 61, true},
     {"evaluation", "cases", {"defaults", "pairs", "dynamics_params", "mods"}, 61, true},
+    {"rating", "rows", {NULL}, 1, false},
 };
 
 /* The block and what it needs, without commentary; of long lists of cases the first. */
@@ -280,7 +281,7 @@ static void check_sentences(void)
 {
 #define PAIR "\"macro\": {\"input\": {\"z\": [17, 44], \"mn\": 6, \"beta\": 24, \"b\": 55}}"
   static const char *const kinds[] = {"calculix",   "contact",   "dynamics", "encoder",
-                                      "evaluation", "optimizer", "standards"};
+                                      "evaluation", "optimizer", "rating",   "standards"};
   for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
     char text[60];
     struct eo_error error = {0};
