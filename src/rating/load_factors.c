@@ -166,6 +166,26 @@ double eo_helix_deviation(double shaft_deviation, double mesh_deviation, double 
   return fmax(1.33 * b1 * shaft_deviation + b2 * mesh_deviation, least);
 }
 
+double eo_helix_deviation_proven(double shaft_deviation, double slope_grade_five, double b1, double least)
+{
+  return fmax(fabs(1.33 * b1 * shaft_deviation - slope_grade_five), least);
+}
+
+/* ISO 6336-1 clause 7, method C: B_1 and B_2 of (52). */
+void eo_helix_measure_factors(enum eo_helix_measure measure, double *b1, double *b2)
+{
+  static const double factors[][2] = {
+      [EO_HELIX_AS_IS] = {1, 1},
+      [EO_HELIX_CROWNED_HALF_MESH] = {1, 0.5},
+      [EO_HELIX_CROWNED_HALF_BOTH] = {0.5, 0.5},
+      [EO_HELIX_CORRECTED] = {0.1, 1},
+      [EO_HELIX_CORRECTED_CROWNED] = {0.1, 0.5},
+      [EO_HELIX_END_RELIEF] = {0.7, 0.7},
+  };
+  *b1 = factors[measure][0];
+  *b2 = factors[measure][1];
+}
+
 double eo_face_load_factor(double effective_deviation, double mesh_stiffness, double mean_load)
 {
   double ratio = effective_deviation * mesh_stiffness / (2 * mean_load);

@@ -86,8 +86,21 @@ enum eo_code eo_shaft_deviation(double *deviation, const struct eo_shaft_input *
 double eo_mesh_deviation(double pinion_slope, double gear_slope);
 /* Least F_beta_x: max(0.005 mm2/N F_m/b, f_Hbeta/2) (55), (56). */
 double eo_least_deviation(double mean_load, double helix_slope);
+/* B_1, B_2 of what is done to the helix (unchecked). */
+enum eo_helix_measure {
+  EO_HELIX_AS_IS,
+  EO_HELIX_CROWNED_HALF_MESH, /* crowning of 0.5 f_ma */
+  EO_HELIX_CROWNED_HALF_BOTH, /* crowning of 0.5 (f_ma + f_sh) */
+  EO_HELIX_CORRECTED,         /* for the computed deflection */
+  EO_HELIX_CORRECTED_CROWNED,
+  EO_HELIX_END_RELIEF,
+};
+void eo_helix_measure_factors(enum eo_helix_measure measure, double *b1, double *b2);
 /* F_beta_x = 1.33 B_1 f_sh + B_2 f_ma, at least `least` (52). */
 double eo_helix_deviation(double shaft_deviation, double mesh_deviation, double b1, double b2, double least);
+/* The same with a contact pattern proven favourable: |1.33 B_1 f_sh - f_Hbeta5| (53), f_Hbeta5: f_Hbeta of ISO 1328
+   grade 5. Unchecked; one program takes B_2 f_ma there. */
+double eo_helix_deviation_proven(double shaft_deviation, double slope_grade_five, double b1, double least);
 /* K_Hbeta (39) to (42) from F_beta_y = F_beta_x - y_beta, c_gamma_beta and F_m/b. */
 double eo_face_load_factor(double effective_deviation, double mesh_stiffness, double mean_load);
 /* K_Fbeta = K_Hbeta^N_F with the smaller b/h of the two members; double helical: b_B (69), (70). */

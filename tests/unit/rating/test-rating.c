@@ -76,6 +76,11 @@ static void test_face(void)
   close_to(1e6 * found, 200 * 0.046 * 1.5, 1e-9, "of a double helical pinion, b_B = d");
   in.offset = 0.1;
   ok(eo_shaft_deviation(&found, &in, &error) == EO_ERROR_INPUT && !strcmp(error.pointer, "/offset"), "%s", error.text);
+  double b1, b2;
+  eo_helix_measure_factors(EO_HELIX_END_RELIEF, &b1, &b2);
+  close_to(1e6 * eo_helix_deviation(10e-6, 10e-6, b1, b2, 0), 7 * 2.33, 1e-12, "F_beta_x of end relief");
+  close_to(1e6 * eo_helix_deviation_proven(10e-6, 9e-6, 1, 0), 4.3, 1e-9, "F_beta_x of a proven contact pattern");
+  close_to(1e6 * eo_helix_deviation_proven(10e-6, 13.3e-6, 1, 4e-6), 4, 1e-9, "never below the least");
   near(eo_root_face_factor(1.5, 1), eo_root_face_factor(1.5, 3), 1e-15, "b/h below 3 counts as 3");
 }
 
