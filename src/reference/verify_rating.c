@@ -116,6 +116,7 @@ static const struct {
     {"permissible root stress", eo_row_root_strength},
     {"life factor", eo_row_life},
     {"cumulative damage", eo_row_damage},
+    {"service life", eo_row_service_life},
     {"tooth thickness", eo_row_thickness},
     {"tooth thickness allowance", eo_row_allowance},
     {"backlash", eo_row_backlash},

@@ -41,6 +41,6 @@ eo_row_function eo_row_geometry, eo_row_thickness, eo_row_allowance, eo_row_back
 eo_row_function eo_row_stiffness, eo_row_mass, eo_row_dynamic, eo_row_transverse, eo_row_root_face, eo_row_face;
 /* Strength. */
 eo_row_function eo_row_contact, eo_row_flank_strength, eo_row_root, eo_row_root_strength, eo_row_life, eo_row_damage,
-    eo_row_material;
+    eo_row_material, eo_row_service_life;
 
 #endif

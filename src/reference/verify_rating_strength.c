@@ -291,6 +291,41 @@ enum eo_code eo_row_life(struct eo_rating_row *row, struct eo_error *error)
   return EO_OK;
 }
 
+/* Z_NT at which the flank just holds S_Hmin: from the strength at the required life, or from sigma_Hlim and its
+ * factors. */
+static double least_life_factor(struct eo_rating_row *row, const struct eo_life_line *line, double required)
+{
+  static const char *const factors[] = {"Z_L", "Z_v", "Z_R", "Z_W", "Z_X"};
+  double least = eo_row_number_or(row, "S_H_min", 1);
+  if (eo_row_has(row, "S_H"))
+    return eo_life_factor(line, required) * least / eo_row_number(row, "S_H");
+  double strength = eo_row_number(row, "sigma_Hlim_MPa");
+  for (size_t i = 0; i < sizeof factors / sizeof *factors; i++)
+    strength *= eo_row_number_or(row, factors[i], 1);
+  return least * eo_row_number(row, "sigma_H_MPa") / strength;
+}
+
+/* Life at the least safety: the cycles of that Z_NT over 60 n; damage: the required life as its share. */
+enum eo_code eo_row_service_life(struct eo_rating_row *row, struct eo_error *error)
+{
+  enum eo_rating_material material;
+  (void)error;
+  double speed = eo_row_number(row, "speed_rpm"), contacts = eo_row_number_or(row, "meshes_per_turn", 1);
+  double required = eo_row_number_or(row, "required_life_h", NAN);
+  double limit = eo_row_number_or(row, "long_life_limit", 0.85);
+  bool pitting = eo_case_flag_or(row->inputs, "limited_pitting", false);
+  if (!read_material(row, &material))
+    return EO_OK;
+  struct eo_life_line line = eo_life_flank(material, pitting, limit);
+  double per_hour = 60 * speed * contacts;
+  double life = eo_life_cycles(&line, least_life_factor(row, &line, required * per_hour)) / per_hour;
+  if (eo_case_faulty(row->inputs))
+    return EO_OK;
+  eo_row_check(row, "life_h", life);
+  eo_row_check(row, "damage_percent", 100 * required / life);
+  return EO_OK;
+}
+
 /* Stress of class i: as listed, or from that of the first class. */
 static double class_stress(struct eo_rating_row *row, int i)
 {
