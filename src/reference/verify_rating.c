@@ -35,14 +35,10 @@ void eo_row_both(struct eo_rating_row *row, const char *key, double value[2])
 
 void eo_row_unused(struct eo_rating_row *row, const char *const *keys)
 {
-  for (; *keys; keys++) {
-    struct eo_case *value = eo_case_find(row->inputs, *keys);
-    if (eo_case_is_list(value))
-      for (int i = 0; i < eo_case_size(value); i++)
-        eo_case_element(value, i);
-    else if (value)
-      eo_case_real(value);
-  }
+  double value[2];
+  for (; *keys; keys++)
+    if (eo_row_has(row, *keys))
+      eo_row_both(row, *keys, value);
 }
 
 int eo_row_member(struct eo_rating_row *row)
