@@ -12,4 +12,19 @@ static inline double eo_clock_milliseconds(void)
   return 1e3 * (double)now.tv_sec + 1e-6 * (double)now.tv_nsec;
 }
 
+/* A time that is being taken. */
+struct eo_stopwatch {
+  double *slot, start; /* ms */
+};
+
+static inline void eo_stopwatch_stop(const struct eo_stopwatch *stopwatch)
+{
+  *stopwatch->slot += eo_clock_milliseconds() - stopwatch->start;
+}
+
+/* Adds the milliseconds from here to the end of the enclosing block, however it is left, to the double `slot`. */
+#define EO_TIMED(slot)               \
+  const struct eo_stopwatch eo_timed \
+      __attribute__((cleanup(eo_stopwatch_stop), unused)) = {&(slot), eo_clock_milliseconds()}
+
 #endif
