@@ -9,50 +9,50 @@
 
 enum eo_code eo_analysis_new(struct eo_analysis **result, const struct eo_pair *pair, struct eo_error *error)
 {
-  struct eo_analysis *a = calloc(1, sizeof *a);
-  if (!a || !(a->known = calloc(1, sizeof *a->known))) {
-    free(a);
+  struct eo_analysis *analysis = calloc(1, sizeof *analysis);
+  if (!analysis || !(analysis->known = calloc(1, sizeof *analysis->known))) {
+    free(analysis);
     return eo_error_memory(error);
   }
-  a->pair = pair;
-  a->threads = 1;
-  *result = a;
+  analysis->pair = pair;
+  analysis->threads = 1;
+  *result = analysis;
   return EO_OK;
 }
 
-void eo_analysis_free(struct eo_analysis *a)
+void eo_analysis_free(struct eo_analysis *analysis)
 {
-  if (!a)
+  if (!analysis)
     return;
-  eo_evaluator_free(a->evaluator);
-  free(a->unmodified);
-  free(a->raw);
-  free(a->raw_unmodified);
-  free(a->known);
-  free(a);
+  eo_evaluator_free(analysis->evaluator);
+  free(analysis->unmodified);
+  free(analysis->raw);
+  free(analysis->raw_unmodified);
+  free(analysis->known);
+  free(analysis);
 }
 
 /* Makes room, forgetting what is known when it has to grow. */
-static enum eo_code fit(struct eo_analysis *a, int cases, int scenarios, struct eo_error *error)
+static enum eo_code fit(struct eo_analysis *analysis, int cases, int scenarios, struct eo_error *error)
 {
-  if (a->evaluator && cases <= a->most_cases && scenarios <= a->most_scenarios)
+  if (analysis->evaluator && cases <= analysis->most_cases && scenarios <= analysis->most_scenarios)
     return EO_OK;
   size_t n = (size_t)cases, all = n * (size_t)scenarios;
-  eo_evaluator_free(a->evaluator);
-  free(a->unmodified);
-  free(a->raw);
-  free(a->raw_unmodified);
-  a->evaluator = NULL;
-  a->evaluation = NULL;
-  a->most_cases = cases;
-  a->most_scenarios = scenarios;
-  memset(a->known, 0, sizeof *a->known);
-  a->unmodified = calloc(n, sizeof *a->unmodified);
-  a->raw = calloc(all, sizeof *a->raw);
-  a->raw_unmodified = calloc(all, sizeof *a->raw_unmodified);
-  if (!a->unmodified || !a->raw || !a->raw_unmodified)
+  eo_evaluator_free(analysis->evaluator);
+  free(analysis->unmodified);
+  free(analysis->raw);
+  free(analysis->raw_unmodified);
+  analysis->evaluator = NULL;
+  analysis->evaluation = NULL;
+  analysis->most_cases = cases;
+  analysis->most_scenarios = scenarios;
+  memset(analysis->known, 0, sizeof *analysis->known);
+  analysis->unmodified = calloc(n, sizeof *analysis->unmodified);
+  analysis->raw = calloc(all, sizeof *analysis->raw);
+  analysis->raw_unmodified = calloc(all, sizeof *analysis->raw_unmodified);
+  if (!analysis->unmodified || !analysis->raw || !analysis->raw_unmodified)
     return eo_error_memory(error);
-  return eo_evaluator_new(&a->evaluator, a->pair, cases, error);
+  return eo_evaluator_new(&analysis->evaluator, analysis->pair, cases, error);
 }
 
 /* The same design without modification; what the evaluation does not look at is blank, so that it can be compared. */
@@ -78,94 +78,93 @@ static bool is_robust(const struct eo_design *design)
   return design->objective.robust != EO_ROBUST_OFF && design->objective.scenarios > 0;
 }
 
-static enum eo_code find_unmodified(struct eo_analysis *a, const struct eo_design *bare, int want,
+static enum eo_code find_unmodified(struct eo_analysis *analysis, const struct eo_design *bare, int want,
                                     struct eo_error *error)
 {
-  const struct eo_evaluation *r;
-  size_t bytes = sizeof *a->raw * (size_t)a->cases;
-  enum eo_code code = eo_evaluator_run(a->evaluator, bare, NULL, want & EO_WANT_ROOT, &r, error);
-  if (code)
-    return code;
-  memcpy(a->unmodified, r->objective, bytes);
+  const struct eo_evaluation *evaluation;
+  size_t bytes = sizeof *analysis->raw * (size_t)analysis->cases;
+  EO_TIMED(analysis->unmodified_ms);
+  EO_TRY(eo_evaluator_run(analysis->evaluator, bare, NULL, want & EO_WANT_ROOT, &evaluation, error));
+  memcpy(analysis->unmodified, evaluation->objective, bytes);
   if (is_robust(bare))
-    return eo_evaluator_raw(a->evaluator, bare, a->raw_unmodified, error);
-  memcpy(a->raw_unmodified, a->unmodified, bytes);
+    return eo_evaluator_raw(analysis->evaluator, bare, analysis->raw_unmodified, error);
+  memcpy(analysis->raw_unmodified, analysis->unmodified, bytes);
   return EO_OK;
 }
 
-static enum eo_code find_design(struct eo_analysis *a, const struct eo_design *design, int want, struct eo_error *error)
+static enum eo_code find_design(struct eo_analysis *analysis, const struct eo_design *design, int want,
+                                struct eo_error *error)
 {
-  enum eo_code code = is_robust(design) ? eo_evaluator_raw(a->evaluator, design, a->raw, error) : EO_OK;
-  if (!code)
-    code = eo_evaluator_run(a->evaluator, design, NULL, want, &a->evaluation, error);
-  if (!code && !is_robust(design))
-    memcpy(a->raw, a->evaluation->objective, sizeof *a->raw * (size_t)a->cases);
-  return code;
+  EO_TIMED(analysis->design_ms);
+  if (is_robust(design))
+    EO_TRY(eo_evaluator_raw(analysis->evaluator, design, analysis->raw, error));
+  EO_TRY(eo_evaluator_run(analysis->evaluator, design, NULL, want, &analysis->evaluation, error));
+  if (!is_robust(design))
+    memcpy(analysis->raw, analysis->evaluation->objective, sizeof *analysis->raw * (size_t)analysis->cases);
+  return EO_OK;
 }
 
 /* An unmodified design is its own reference. */
-static void copy_reference(struct eo_analysis *a)
+static void copy_reference(struct eo_analysis *analysis)
 {
-  size_t bytes = sizeof *a->raw * (size_t)a->cases;
-  memcpy(a->unmodified, a->evaluation->objective, bytes);
-  memcpy(a->raw_unmodified, a->raw, bytes * (size_t)a->scenarios);
+  size_t bytes = sizeof *analysis->raw * (size_t)analysis->cases;
+  memcpy(analysis->unmodified, analysis->evaluation->objective, bytes);
+  memcpy(analysis->raw_unmodified, analysis->raw, bytes * (size_t)analysis->scenarios);
 }
 
 /* A reference found with root stress is told without it to who did not ask: an answer does not show what was asked
    before. */
-static void forget_root(struct eo_analysis *a)
+static void forget_root(struct eo_analysis *analysis)
 {
-  for (int k = 0; k < a->cases; k++)
-    a->unmodified[k].root_stress = NAN;
-  for (int k = 0; k < a->cases * a->scenarios; k++)
-    a->raw_unmodified[k].root_stress = NAN;
-  a->known_root = false;
+  for (int k = 0; k < analysis->cases; k++)
+    analysis->unmodified[k].root_stress = NAN;
+  for (int k = 0; k < analysis->cases * analysis->scenarios; k++)
+    analysis->raw_unmodified[k].root_stress = NAN;
+  analysis->known_root = false;
 }
 
-static enum eo_code run_both(struct eo_analysis *a, const struct eo_design *design, const struct eo_design *bare,
+/* The reference and the design; what is known of the reference is used again. */
+static enum eo_code run_both(struct eo_analysis *analysis, const struct eo_design *design, const struct eo_design *bare,
                              int want, struct eo_error *error)
 {
-  bool own_reference = is_unmodified(design),
-       known = a->known_root >= a->root && memcmp(a->known, bare, sizeof *bare) == 0;
-  double start = eo_clock_milliseconds();
-  if (known && a->known_root && !a->root)
-    forget_root(a);
-  enum eo_code code = known || own_reference ? EO_OK : find_unmodified(a, bare, want, error);
-  a->unmodified_ms = known || own_reference ? 0 : eo_clock_milliseconds() - start;
-  start = eo_clock_milliseconds();
-  if (!code)
-    code = find_design(a, design, want, error);
-  a->design_ms = eo_clock_milliseconds() - start;
-  if (code) {
-    memset(a->known, 0, sizeof *a->known);
-    return code;
-  }
+  bool own_reference = is_unmodified(design);
+  bool known = analysis->known_root >= analysis->root && memcmp(analysis->known, bare, sizeof *bare) == 0;
+  analysis->unmodified_ms = analysis->design_ms = 0;
+  if (known && analysis->known_root && !analysis->root)
+    forget_root(analysis);
+  if (!known && !own_reference)
+    EO_TRY(find_unmodified(analysis, bare, want, error));
+  EO_TRY(find_design(analysis, design, want, error));
   if (own_reference)
-    copy_reference(a);
+    copy_reference(analysis);
   if (!known) {
-    memcpy(a->known, bare, sizeof *bare);
-    a->known_root = a->root;
+    memcpy(analysis->known, bare, sizeof *bare);
+    analysis->known_root = analysis->root;
   }
-  eo_evaluator_combine(design, &a->pair->geometry, a->raw, a->raw_unmodified, &a->value);
-  eo_evaluator_combine(bare, &a->pair->geometry, a->raw_unmodified, a->raw_unmodified, &a->unmodified_value);
+  eo_evaluator_combine(design, &analysis->pair->geometry, analysis->raw, analysis->raw_unmodified, &analysis->value);
+  eo_evaluator_combine(bare, &analysis->pair->geometry, analysis->raw_unmodified, analysis->raw_unmodified,
+                       &analysis->unmodified_value);
   return EO_OK;
 }
 
-enum eo_code eo_analysis_run(struct eo_analysis *a, const struct eo_design *design, int want, struct eo_error *error)
+enum eo_code eo_analysis_run(struct eo_analysis *analysis, const struct eo_design *design, int want,
+                             struct eo_error *error)
 {
   struct eo_design *bare = malloc(sizeof *bare);
   if (!bare)
     return eo_error_memory(error);
   strip(bare, design);
-  a->cases = design->load_cases;
-  a->scenarios = eo_evaluator_scenarios(design);
-  a->want = want;
-  a->root = a->pair->flexibility && (want & EO_WANT_ROOT || !isnan(design->objective.root_stress));
-  enum eo_code code = fit(a, a->cases, a->scenarios, error);
+  analysis->cases = design->load_cases;
+  analysis->scenarios = eo_evaluator_scenarios(design);
+  analysis->want = want;
+  analysis->root = analysis->pair->flexibility && (want & EO_WANT_ROOT || !isnan(design->objective.root_stress));
+  enum eo_code code = fit(analysis, analysis->cases, analysis->scenarios, error);
   if (!code)
-    code = eo_evaluator_use_threads(a->evaluator, a->threads, error);
+    code = eo_evaluator_use_threads(analysis->evaluator, analysis->threads, error);
   if (!code)
-    code = run_both(a, design, bare, want, error);
+    code = run_both(analysis, design, bare, want, error);
+  if (code)
+    memset(analysis->known, 0, sizeof *analysis->known);
   free(bare);
   return code;
 }

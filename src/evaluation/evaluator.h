@@ -1,5 +1,6 @@
-/* One true evaluation: the one place where the order gear -> contact -> excitation -> dynamics -> objective is written.
-   An evaluator belongs to one thread and owns all workspaces; results do not depend on what it evaluated before. */
+/* One true evaluation: gear -> contact -> dynamics -> objective. The order is written in one place, order.c; what is
+   still valid from the run before is decided in another, reuse.c. An evaluator belongs to one thread and owns all
+   workspaces; results do not depend on what it evaluated before. */
 #ifndef EASEOFF_EVALUATION_EVALUATOR_H
 #define EASEOFF_EVALUATION_EVALUATOR_H
 
@@ -59,8 +60,8 @@ struct eo_evaluation {
   struct eo_case_result *load_case;    /* [cases] */
   struct eo_objective_case *objective; /* [cases] */
   struct eo_dynamics_modes modes;      /* with the mean mesh stiffness of the heaviest share */
-  double static_ms, impact_ms, dynamics_ms,
-      root_ms; /* where the time went; root: of both threads, beside impact and dynamics */
+  /* where the time went, ms; root: of both threads, beside impact and dynamics */
+  double static_ms, impact_ms, dynamics_ms, root_ms;
 };
 
 struct eo_evaluator;
@@ -75,8 +76,8 @@ void eo_evaluator_free(struct eo_evaluator *evaluator);
 enum eo_code eo_evaluator_use_threads(struct eo_evaluator *evaluator, int threads, struct eo_error *error);
 
 /* Evaluates alignment, supports, load cases, modification and dynamics of a resolved design. scenario: NULL for the
- *nominal one. evaluation stays valid until the next run. Errors: EO_ERROR_INPUT (supports), memory; what does not
- *converge is an outcome. */
+   nominal one. evaluation stays valid until the next run. Errors: EO_ERROR_INPUT (supports), memory; what does not
+   converge is an outcome. */
 enum eo_code eo_evaluator_run(struct eo_evaluator *evaluator, const struct eo_design *design,
                               const struct eo_scenario *scenario, int want, const struct eo_evaluation **evaluation,
                               struct eo_error *error);

@@ -1,82 +1,199 @@
-/* The inside of an evaluator, shared by the files that make up one evaluation: contact, vibration, the order, storage.
- */
+/* The inside of an evaluator, shared by the files that make up one evaluation. order.c calls them; a step's name is its
+   line in that list. */
 #ifndef EASEOFF_EVALUATION_EVALUATOR_PRIVATE_H
 #define EASEOFF_EVALUATION_EVALUATOR_PRIVATE_H
 
+#include "base/clock.h"
 #include "evaluation/evaluator.h"
+
+#include <math.h>
+#include <pthread.h>
+#include <stdatomic.h>
+#include <stddef.h>
+
+enum { EO_EVALUATOR_SAMPLES = 256, EO_EVALUATOR_TABLE_LOADS = 12 };
+
+/* Beside EO_WANT_...: stop after the entering impact. */
+enum { EO_WANT_CONTACT_ALONE = 1 << 8 };
+
+/* What one run is asked for. */
+struct eo_run {
+  const struct eo_design *design; /* resolved, borrowed */
+  struct eo_scenario scenario;    /* with shaft angle errors as numbers */
+  int want;                       /* EO_WANT_... */
+  bool root;                      /* with root stress */
+};
+
+/* What the gap field, the gaps and the loads of one end depend on beside the pair. */
+struct eo_end_key {
+  struct eo_flank_modification flank[2]; /* [member] */
+  double in_plane, out_of_plane, compliance;
+  int cases; /* 0: nothing is stored */
+  double force[EO_MAX_LOAD_CASES];
+};
 
 struct eo_evaluator {
   const struct eo_pair *pair;
   int most_cases;
-  struct eo_gap_field field[2];            /* [end] */
-  struct eo_loaded_gaps gaps[2];           /* [end] */
-  struct eo_end_key {                      /* what an end's fields, gaps and loads depend on beside the pair */
-    struct eo_flank_modification flank[2]; /* [member] */
-    double in_plane, out_of_plane, factor;
-    int cases;
-    double force[EO_MAX_LOAD_CASES];
-  } known[2];             /* [end]: of what is kept; cases 0: nothing is */
-  bool fresh[2];          /* [end]: to be solved in this run; the other end is as the last run left it */
-  bool rooted[2];         /* [end]: its root stress belongs to what is kept */
+  int threads; /* 1 or 2 */
+
+  /* what is still valid from the last run: reuse.c */
+  struct eo_end_key solved_for[2]; /* [end] */
+  bool needs_solving[2];           /* [end]: in this run; the other end is as the last run left it */
+  bool root_valid[2];              /* [end]: its root stress belongs to the loads that are stored */
+
+  /* contact */
+  struct eo_gap_field field[2];          /* [end] */
+  struct eo_loaded_gaps gaps[2];         /* [end] */
+  struct eo_loaded_workspace *loaded[2]; /* [thread]; the second NULL until asked for */
   double axial_stiffness; /* between the ends and one axial position of the pinion, N/m: 0 floating, INFINITY rigid */
-  int threads;            /* 1 or 2 */
-  struct eo_loaded_workspace *contact, *second_contact; /* second_...: of the second thread; NULL until asked for */
-  struct eo_elastic *bodies;                            /* NULL: rigid */
-  struct eo_shafts shafts;                              /* those of the bodies */
-  struct eo_loaded_gaps bent;                           /* of one end on bodies that stay as they are */
-  struct eo_loaded_end spare[2];                        /* [end]: for the compliance band */
-  struct eo_loaded_end
-      *table;         /* [EO_EVALUATOR_TABLE_LOADS] of the table law, one end at a time; NULL until asked for */
-  double *shifted;    /* [positions] scratch of one mesh law */
-  double *table_rows; /* [EO_EVALUATOR_TABLE_LOADS][positions] */
+  struct eo_elastic *elastic_bodies;         /* NULL: rigid */
+  struct eo_shafts shafts;                   /* those of the bodies */
+  struct eo_loaded_gaps gaps_on_bent_bodies; /* of one end at a time, on bodies that stay as they are */
+  struct eo_loaded_end spare[2];             /* [end]: for the compliance band */
+
+  /* root stress */
   struct eo_root_workspace *root[2]; /* [thread]; NULL until asked for */
   struct eo_root_peak *peaks;        /* [member][teeth][most_cases * 2]; NULL until asked for */
+
+  /* mesh laws and vibration */
+  struct eo_loaded_end *table; /* [EO_EVALUATOR_TABLE_LOADS], one end at a time; NULL until asked for */
+  double *table_rows;          /* [EO_EVALUATOR_TABLE_LOADS][positions] */
+  double *shifted;             /* [positions] scratch of one mesh law */
+  struct eo_law (*law)[2];     /* [most_cases][end] */
   struct eo_vibration_solver *vibration;
   int vibration_harmonics;
-  struct eo_law (*law)[2]; /* [most_cases][end] */
-  struct vibration_problem {
+  struct eo_vibration_problem {
     struct eo_dynamics_parameters parameters;
     struct eo_vibration_case load;
     bool solvable; /* false: no mesh law, or no converged contact to make one from */
   } * problem;     /* [most_cases], as last solved */
+
   struct eo_evaluation result;
 };
 
-enum { EO_EVALUATOR_SAMPLES = 256, EO_EVALUATOR_TABLE_LOADS = 12 };
+/* In evaluator_contact.c. */
 
-/* Modification of both ends alike. */
-bool eo_evaluator_same_flanks(const struct eo_modification *modification);
+void eo_evaluator_set_cases(struct eo_evaluator *evaluator, const struct eo_run *run);
+enum eo_code eo_evaluator_fit_bodies(struct eo_evaluator *evaluator, const struct eo_run *run, struct eo_error *error);
+enum eo_code eo_evaluator_find_hold(struct eo_evaluator *evaluator, const struct eo_run *run, struct eo_error *error);
 
-/* Where the gaps and fields of an end are kept: equal ends share the left one's. */
-int eo_evaluator_kept_at(const struct eo_evaluator *e, int end);
+/* Steps of one end, on any thread; they pass over an end that is kept. */
+typedef void eo_end_step(struct eo_evaluator *evaluator, const struct eo_run *run, int thread, int end);
+eo_end_step eo_end_set_gaps, eo_end_solve;
 
-/* Whether the right end's loads are the left one's. */
-bool eo_evaluator_copies_end(const struct eo_evaluator *e, const struct eo_design *design);
-
-/* Parameters of the dynamic model, mesh damping of the given mean mesh stiffness, N/m. */
-enum eo_code eo_evaluator_parameters(const struct eo_evaluator *e, const struct eo_design *design, double stiffness,
-                                     struct eo_dynamics_parameters *parameters, struct eo_error *error);
-
-/* The contact half, in the order in which eo_evaluator_run() calls it. factor: of the compliance. */
-enum eo_code eo_evaluator_fit_bodies(struct eo_evaluator *e, const struct eo_shafts *shafts, struct eo_error *error);
-enum eo_code eo_evaluator_find_hold(struct eo_evaluator *e, const struct eo_design *design, struct eo_error *error);
-void eo_evaluator_set_keys(struct eo_evaluator *e, const struct eo_design *design, const struct eo_scenario *scenario);
-enum eo_code eo_evaluator_solve_contact(struct eo_evaluator *e, const struct eo_design *design, double factor,
-                                        struct eo_error *error);
-void eo_evaluator_find_impacts(struct eo_evaluator *e, const struct eo_design *design, double speed_factor,
-                               double factor);
+void eo_evaluator_copy_equal_end(struct eo_evaluator *evaluator);
+void eo_evaluator_bend_cases(struct eo_evaluator *evaluator, const struct eo_run *run);
+void eo_evaluator_balance_cases(struct eo_evaluator *evaluator, const struct eo_run *run);
 
 /* Both ends of one load case on elastic bodies, from their solution on rigid ones. */
-void eo_evaluator_bend_bodies(struct eo_evaluator *e, const struct eo_design *design, double force, double factor,
+void eo_evaluator_bend_bodies(struct eo_evaluator *evaluator, const struct eo_run *run, double force,
                               struct eo_loaded_end both[2], struct eo_elastic_report *report);
 
-/* The gap field of an end with the deflection of its bodies in a load case (NULL: rigid), valid until the next call. */
-const struct eo_gap_field *eo_evaluator_field_of(struct eo_evaluator *e, const struct eo_case_result *c, int end);
+/* Parameters of the dynamic model, mesh damping of the given mean mesh stiffness, N/m. */
+enum eo_code eo_evaluator_parameters(const struct eo_evaluator *evaluator, const struct eo_design *design,
+                                     double stiffness, struct eo_dynamics_parameters *parameters,
+                                     struct eo_error *error);
 
-/* The vibration half: every load case, then again at other compliances. */
-enum eo_code eo_evaluator_solve_dynamics(struct eo_evaluator *e, const struct eo_design *design, double speed_factor,
-                                         double factor, int want, struct eo_error *error);
-enum eo_code eo_evaluator_find_band(struct eo_evaluator *e, const struct eo_design *design, double speed_factor,
-                                    double factor, struct eo_error *error);
+/* In evaluator_summary.c. */
+
+/* A step of every end. */
+eo_end_step eo_end_summarise;
+
+void eo_evaluator_summarise_pairs(struct eo_evaluator *evaluator, const struct eo_run *run);
+void eo_evaluator_find_impacts(struct eo_evaluator *evaluator, const struct eo_run *run);
+
+/* In evaluator_threads.c. */
+
+/* Takes each end through the steps (NULL ends the list), two ends at once where there are two threads. */
+enum eo_code eo_evaluator_each_end(struct eo_evaluator *evaluator, const struct eo_run *run, eo_end_step *const *step,
+                                   struct eo_error *error);
+
+/* Work of a second thread beside the calling one. */
+struct eo_beside {
+  pthread_t thread;
+  bool started;
+  void (*work)(void *context, int thread);
+  void *context; /* borrowed */
+};
+
+/* Starts work(context, 1) where there are two threads; otherwise nothing. */
+void eo_beside_start(struct eo_beside *beside, int threads);
+
+/* work(context, 0) on the calling thread, then waits for the other one. */
+void eo_beside_finish(struct eo_beside *beside);
+
+/* In evaluator_roots.c. */
+
+/* Root stress of several ends; the work is one tooth of a member under a batch of ends at a time. */
+struct eo_roots {
+  struct eo_evaluator *evaluator;
+  bool wanted, copies_left;     /* copies_left: the right end is a copy of the left one */
+  int ends, teeth, first_tooth; /* ends: to compute; teeth: of a member that are in mesh over the cycle */
+  struct eo_end_result *end[EO_MAX_LOAD_CASES * 2];
+  atomic_int next;        /* piece of work to be taken */
+  double milliseconds[2]; /* [thread] */
+  struct eo_beside beside;
+};
+
+/* Begins on the second thread where there is one; from here to the end the loads must not change. After an error
+   nothing has begun. */
+enum eo_code eo_roots_begin(struct eo_roots *roots, struct eo_evaluator *evaluator, const struct eo_run *run,
+                            struct eo_error *error);
+void eo_roots_finish(struct eo_roots *roots);
+
+/* In evaluator_vibration.c. */
+
+enum eo_code eo_evaluator_set_laws(struct eo_evaluator *evaluator, const struct eo_run *run, struct eo_error *error);
+enum eo_code eo_evaluator_find_vibrations(struct eo_evaluator *evaluator, const struct eo_run *run,
+                                          struct eo_error *error);
+enum eo_code eo_evaluator_find_modes(struct eo_evaluator *evaluator, const struct eo_run *run, struct eo_error *error);
+enum eo_code eo_evaluator_find_band(struct eo_evaluator *evaluator, const struct eo_run *run, struct eo_error *error);
+
+/* In evaluator_law.c. */
+
+/* One end of a load case that is to become a mesh law. */
+struct eo_law_request {
+  const struct eo_case_result *load_case;
+  const struct eo_dynamics_parameters *parameters;
+  const struct eo_loaded_end *loaded; /* at the compliance of the run */
+  int end;
+};
+
+/* EO_ERROR_INPUT: next to no load, with a stiffness so uneven that its first harmonics are negative somewhere. */
+enum eo_code eo_evaluator_set_law(struct eo_evaluator *evaluator, const struct eo_run *run,
+                                  const struct eo_law_request *request, struct eo_law *law, struct eo_error *error);
+
+/* Whether the law is a table of loaded contact at many loads. */
+bool eo_evaluator_law_is_table(const struct eo_evaluator *evaluator, const struct eo_design *design,
+                               const struct eo_dynamics_parameters *parameters);
+
+/* Swing of the mesh force, share of P, up to which the law follows the loaded contact. */
+double eo_evaluator_law_reach(const struct eo_evaluator *evaluator, const struct eo_design *design,
+                              const struct eo_dynamics_parameters *parameters);
+
+/* In evaluator_fitness.c. */
+
+void eo_evaluator_collect_objectives(struct eo_evaluator *evaluator, const struct eo_run *run);
+
+/* In reuse.c. */
+
+/* Tells equal ends, and which ends need solving; notes what will be stored after this run. */
+void eo_reuse_compare(struct eo_evaluator *evaluator, const struct eo_run *run);
+
+/* Nothing that is stored is valid. */
+void eo_reuse_forget(struct eo_evaluator *evaluator);
+
+/* Modification of both ends alike. */
+bool eo_reuse_same_flanks(const struct eo_modification *modification);
+
+/* Where the gaps and the field of an end are stored: equal ends share the left one's. */
+int eo_reuse_stored_at(const struct eo_evaluator *evaluator, int end);
+
+/* Whether a held pinion moves load from one end to the other. */
+bool eo_reuse_shares_unevenly(const struct eo_evaluator *evaluator, const struct eo_design *design);
+
+/* Whether the right end carries exactly what the left one does, so that its results are copies. */
+bool eo_reuse_copies_left(const struct eo_evaluator *evaluator, const struct eo_design *design);
 
 #endif

@@ -5,11 +5,9 @@
 static enum eo_code init_end(struct eo_end_result *end, const struct eo_contact_grid *grid, struct eo_error *error)
 {
   size_t n = (size_t)grid->positions;
-  enum eo_code code = eo_loaded_end_init(&end->loaded, grid, error);
-  for (int member = 0; member < 2 && !code; member++)
-    code = eo_root_history_init(&end->root[member], grid, error);
-  if (code)
-    return code;
+  EO_TRY(eo_loaded_end_init(&end->loaded, grid, error));
+  for (int member = 0; member < 2; member++)
+    EO_TRY(eo_root_history_init(&end->root[member], grid, error));
   end->unloaded = calloc(n, sizeof(double));
   end->stiffness = calloc(n, sizeof(double));
   if (!end->unloaded || !end->stiffness)
@@ -36,95 +34,107 @@ static void done_end(struct eo_end_result *end)
   }
 }
 
-static enum eo_code init_storage(struct eo_evaluator *e, struct eo_error *error)
-{
-  const struct eo_contact_grid *grid = e->pair->grid;
-  struct eo_evaluation *r = &e->result;
-  size_t most = (size_t)e->most_cases;
-  enum eo_code code = EO_OK;
-  r->positions = grid->positions;
-  r->samples = EO_EVALUATOR_SAMPLES;
-  r->load_case = calloc(most, sizeof *r->load_case);
-  r->objective = calloc(most, sizeof *r->objective);
-  e->law = calloc(most, sizeof *e->law);
-  e->problem = calloc(most, sizeof *e->problem);
-  e->shifted = calloc((size_t)grid->positions, sizeof *e->shifted);
-  if (!r->load_case || !r->objective || !e->law || !e->problem || !e->shifted)
-    return eo_error_memory(error);
-  for (int k = 0; k < e->most_cases && !code; k++) {
-    r->load_case[k].transmission = calloc((size_t)grid->positions, sizeof(double));
-    if (!r->load_case[k].transmission)
-      return eo_error_memory(error);
-    for (int end = 0; end < 2 && !code; end++)
-      code = init_end(&r->load_case[k].end[end], grid, error);
-  }
-  for (int end = 0; end < 2 && !code; end++) {
-    code = eo_loaded_gaps_init(&e->gaps[end], grid, error);
-    if (!code)
-      code = eo_loaded_end_init(&e->spare[end], grid, error);
-  }
-  return code ? code : eo_loaded_workspace_new(&e->contact, grid, error);
-}
-
-enum eo_code eo_evaluator_new(struct eo_evaluator **evaluator, const struct eo_pair *pair, int most_cases,
+static enum eo_code init_case(struct eo_case_result *load_case, const struct eo_contact_grid *grid,
                               struct eo_error *error)
 {
-  struct eo_evaluator *e = calloc(1, sizeof *e);
-  if (!e)
+  load_case->transmission = calloc((size_t)grid->positions, sizeof(double));
+  if (!load_case->transmission)
     return eo_error_memory(error);
-  e->pair = pair;
-  e->most_cases = most_cases;
-  e->threads = 1;
-  enum eo_code code = init_storage(e, error);
+  for (int end = 0; end < 2; end++)
+    EO_TRY(init_end(&load_case->end[end], grid, error));
+  return EO_OK;
+}
+
+static enum eo_code init_storage(struct eo_evaluator *evaluator, struct eo_error *error)
+{
+  const struct eo_contact_grid *grid = evaluator->pair->grid;
+  struct eo_evaluation *result = &evaluator->result;
+  size_t most = (size_t)evaluator->most_cases;
+  result->positions = grid->positions;
+  result->samples = EO_EVALUATOR_SAMPLES;
+  result->load_case = calloc(most, sizeof *result->load_case);
+  result->objective = calloc(most, sizeof *result->objective);
+  evaluator->law = calloc(most, sizeof *evaluator->law);
+  evaluator->problem = calloc(most, sizeof *evaluator->problem);
+  evaluator->shifted = calloc((size_t)grid->positions, sizeof *evaluator->shifted);
+  if (!result->load_case || !result->objective || !evaluator->law || !evaluator->problem || !evaluator->shifted)
+    return eo_error_memory(error);
+  for (int k = 0; k < evaluator->most_cases; k++)
+    EO_TRY(init_case(&result->load_case[k], grid, error));
+  for (int end = 0; end < 2; end++) {
+    EO_TRY(eo_loaded_gaps_init(&evaluator->gaps[end], grid, error));
+    EO_TRY(eo_loaded_end_init(&evaluator->spare[end], grid, error));
+  }
+  return eo_loaded_workspace_new(&evaluator->loaded[0], grid, error);
+}
+
+enum eo_code eo_evaluator_new(struct eo_evaluator **result, const struct eo_pair *pair, int most_cases,
+                              struct eo_error *error)
+{
+  struct eo_evaluator *evaluator = calloc(1, sizeof *evaluator);
+  if (!evaluator)
+    return eo_error_memory(error);
+  evaluator->pair = pair;
+  evaluator->most_cases = most_cases;
+  evaluator->threads = 1;
+  enum eo_code code = init_storage(evaluator, error);
   if (code)
-    eo_evaluator_free(e);
+    eo_evaluator_free(evaluator);
   else
-    *evaluator = e;
+    *result = evaluator;
   return code;
 }
 
-enum eo_code eo_evaluator_use_threads(struct eo_evaluator *e, int threads, struct eo_error *error)
+enum eo_code eo_evaluator_use_threads(struct eo_evaluator *evaluator, int threads, struct eo_error *error)
 {
-  enum eo_code code = EO_OK;
-  if (threads > 1 && !e->second_contact)
-    code = eo_loaded_workspace_new(&e->second_contact, e->pair->grid, error);
-  if (!code)
-    e->threads = threads > 1 ? 2 : 1;
-  return code;
+  if (threads > 1 && !evaluator->loaded[1])
+    EO_TRY(eo_loaded_workspace_new(&evaluator->loaded[1], evaluator->pair->grid, error));
+  evaluator->threads = threads > 1 ? 2 : 1;
+  return EO_OK;
 }
 
-void eo_evaluator_free(struct eo_evaluator *e)
+const struct eo_gap_field *eo_evaluator_field(const struct eo_evaluator *evaluator, int end)
 {
-  if (!e)
-    return;
-  struct eo_evaluation *r = &e->result;
-  for (int k = 0; r->load_case && k < e->most_cases; k++) {
-    free(r->load_case[k].transmission);
+  return &evaluator->field[eo_reuse_stored_at(evaluator, end)];
+}
+
+static void done_results(struct eo_evaluator *evaluator)
+{
+  struct eo_evaluation *result = &evaluator->result;
+  for (int k = 0; result->load_case && k < evaluator->most_cases; k++) {
+    free(result->load_case[k].transmission);
     for (int end = 0; end < 2; end++) {
-      done_end(&r->load_case[k].end[end]);
-      eo_law_done(e->law ? &e->law[k][end] : NULL);
+      done_end(&result->load_case[k].end[end]);
+      eo_law_done(evaluator->law ? &evaluator->law[k][end] : NULL);
     }
   }
+  free(result->load_case);
+  free(result->objective);
+  free(evaluator->law);
+  free(evaluator->problem);
+}
+
+void eo_evaluator_free(struct eo_evaluator *evaluator)
+{
+  if (!evaluator)
+    return;
+  done_results(evaluator);
   for (int end = 0; end < 2; end++) {
-    eo_loaded_gaps_done(&e->gaps[end]);
-    eo_loaded_end_done(&e->spare[end]);
+    eo_loaded_gaps_done(&evaluator->gaps[end]);
+    eo_loaded_end_done(&evaluator->spare[end]);
   }
-  for (int i = 0; e->table && i < EO_EVALUATOR_TABLE_LOADS; i++)
-    eo_loaded_end_done(&e->table[i]);
-  free(e->table);
-  free(e->table_rows);
-  free(e->shifted);
-  eo_loaded_workspace_free(e->contact);
-  eo_loaded_workspace_free(e->second_contact);
-  for (int thread = 0; thread < 2; thread++)
-    eo_root_workspace_free(e->root[thread]);
-  free(e->peaks);
-  eo_elastic_free(e->bodies);
-  eo_loaded_gaps_done(&e->bent);
-  eo_vibration_free(e->vibration);
-  free(e->law);
-  free(e->problem);
-  free(r->load_case);
-  free(r->objective);
-  free(e);
+  for (int i = 0; evaluator->table && i < EO_EVALUATOR_TABLE_LOADS; i++)
+    eo_loaded_end_done(&evaluator->table[i]);
+  free(evaluator->table);
+  free(evaluator->table_rows);
+  free(evaluator->shifted);
+  for (int thread = 0; thread < 2; thread++) {
+    eo_loaded_workspace_free(evaluator->loaded[thread]);
+    eo_root_workspace_free(evaluator->root[thread]);
+  }
+  free(evaluator->peaks);
+  eo_elastic_free(evaluator->elastic_bodies);
+  eo_loaded_gaps_done(&evaluator->gaps_on_bent_bodies);
+  eo_vibration_free(evaluator->vibration);
+  free(evaluator);
 }

@@ -385,6 +385,33 @@ static void test_root_stress(void)
   ok(run(&design, NULL, 0)->objective[1].root_stress > 0, "or constrained");
 }
 
+/* Loads that shafts or a held pinion move from what is stored take the root stress with them. */
+static void test_root_stress_moves(void)
+{
+  struct eo_evaluator *shared = evaluator, *own;
+  for (int i = 0; i < 2; i++) {
+    struct eo_design design = design_of("paper");
+    double moved[2], alone[2];
+    run(&design, NULL, EO_WANT_ROOT);
+    design.alignment.stagger = i == 0 ? 0 : 0.25;
+    run(&design, NULL, EO_WANT_ROOT);
+    design.shafts.enabled = i == 0;
+    design.alignment.pinion_axial = i == 0 ? EO_AXIAL_FLOATING : EO_AXIAL_FIXED;
+    const struct eo_evaluation *r = run(&design, NULL, EO_WANT_ROOT);
+    for (int end = 0; end < 2; end++)
+      moved[end] = r->load_case[1].end[end].root[EO_PINION].maximum;
+    evaluator = own = make_evaluator(pair);
+    r = run(&design, NULL, EO_WANT_ROOT);
+    for (int end = 0; end < 2; end++)
+      alone[end] = r->load_case[1].end[end].root[EO_PINION].maximum;
+    evaluator = shared;
+    eo_evaluator_free(own);
+    ok(moved[0] == alone[0] && moved[1] == alone[1],
+       "root stress with %s after a run without: %.3f, %.3f MPa, is %.3f, %.3f", i == 0 ? "shafts" : "a held pinion",
+       1e-6 * moved[0], 1e-6 * moved[1], 1e-6 * alone[0], 1e-6 * alone[1]);
+  }
+}
+
 /* ---- axially held pinions ---- */
 
 static void test_axial(void)
@@ -489,6 +516,7 @@ int main(void)
   test_band();
   test_curves();
   test_root_stress();
+  test_root_stress_moves();
   test_axial();
   test_held_share();
   test_coupled_law();

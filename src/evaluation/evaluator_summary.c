@@ -1,0 +1,130 @@
+#include "evaluation/evaluator_private.h"
+
+#include <string.h>
+
+/* The gap field of an end as the bodies of a load case hold it. */
+static struct eo_gap_field loaded_field(const struct eo_evaluator *evaluator, const struct eo_case_result *load_case,
+                                        int end)
+{
+  struct eo_gap_field field = evaluator->field[eo_reuse_stored_at(evaluator, end)];
+  field.deflection = evaluator->elastic_bodies ? &load_case->end[end].deflection : NULL;
+  return field;
+}
+
+/* Z0 and the datum on rigid bodies, the datum again with the bodies as the load holds them; first_contact[positions]
+   receives Z0 with those. */
+static void find_first_contact(const struct eo_evaluator *evaluator, struct eo_case_result *load_case, int end,
+                               double *first_contact)
+{
+  struct eo_end_result *result = &load_case->end[end];
+  int stored = eo_reuse_stored_at(evaluator, end);
+  size_t bytes = sizeof *result->unloaded * (size_t)evaluator->pair->grid->positions;
+  memcpy(result->unloaded, evaluator->gaps[stored].unloaded, bytes);
+  result->datum = result->loaded_datum = eo_gap_field_datum(&evaluator->field[stored]);
+  memcpy(first_contact, result->unloaded, bytes);
+  if (evaluator->elastic_bodies) {
+    struct eo_gap_field field = loaded_field(evaluator, load_case, end);
+    result->loaded_datum = eo_gap_field_datum(&field);
+    eo_loaded_first_contact(evaluator->pair->grid, &field, first_contact);
+  }
+}
+
+/* Raises the largest line load, Hertz pressure and share of P on tip edges to those of one position. *steepest: the
+   largest q / rho up to here, which the largest pressure goes with. */
+static void raise_peaks(struct eo_end_result *result, const struct eo_contact_grid *grid, int position,
+                        double *steepest)
+{
+  const struct eo_contact_position *line = &grid->position[position];
+  double edge = 0;
+  for (int i = 0; i < line->points; i++) {
+    double q = result->loaded.line_load[line->first + i];
+    result->max_line_load = q > result->max_line_load ? q : result->max_line_load;
+    if (q > *steepest * line->radius[i]) {
+      *steepest = q / line->radius[i];
+      result->max_pressure = eo_loaded_pressure(grid, q, line->radius[i]);
+    }
+    edge += line->kind[i] == EO_POINT_LINE ? 0 : q * line->length[i];
+  }
+  if (result->loaded.load[position] > 0)
+    result->edge_share = fmax(result->edge_share, edge / result->loaded.load[position]);
+}
+
+/* Peaks over the mesh cycle, and the secant stiffness P / (Z - Z0). */
+static void summarise(const struct eo_evaluator *evaluator, struct eo_case_result *load_case, int end)
+{
+  const struct eo_contact_grid *grid = evaluator->pair->grid;
+  struct eo_end_result *result = &load_case->end[end];
+  double low = INFINITY, high = -INFINITY, steepest = 0;
+  double *first_contact = result->stiffness; /* until the stiffness takes its place */
+  result->max_pressure = result->max_line_load = result->edge_share = 0;
+  find_first_contact(evaluator, load_case, end, first_contact);
+  for (int j = 0; j < grid->positions; j++) {
+    raise_peaks(result, grid, j, &steepest);
+    result->stiffness[j] = result->loaded.load[j] / (result->loaded.approach[j] - first_contact[j]);
+    low = fmin(low, result->loaded.approach[j]);
+    high = fmax(high, result->loaded.approach[j]);
+  }
+  result->transmission_peak = (high - low) / cos(grid->geometry.base_helix_angle);
+}
+
+void eo_end_summarise(struct eo_evaluator *evaluator, const struct eo_run *run, int thread, int end)
+{
+  (void)run;
+  (void)thread;
+  for (int k = 0; k < evaluator->result.cases; k++)
+    summarise(evaluator, &evaluator->result.load_case[k], end);
+}
+
+/* LTE of the pair: the mean of the ends, the right one behind by the stagger. */
+static void summarise_pair(const struct eo_evaluator *evaluator, const struct eo_run *run,
+                           struct eo_case_result *load_case)
+{
+  int n = evaluator->result.positions, last = evaluator->result.ends - 1;
+  int stagger = eo_evaluator_stagger(run->design, n);
+  const double *left = load_case->end[EO_LEFT].loaded.approach, *right = load_case->end[last].loaded.approach;
+  double low = INFINITY, high = -INFINITY, normal = cos(evaluator->pair->geometry.base_helix_angle);
+  load_case->mean = 0;
+  for (int j = 0; j < n; j++) {
+    double z = (left[j] + right[(j + n - stagger) % n]) / 2 / normal;
+    load_case->transmission[j] = z;
+    load_case->mean += z / n;
+    low = fmin(low, z);
+    high = fmax(high, z);
+  }
+  load_case->peak_to_peak = high - low;
+  load_case->contact_failures = 0;
+  for (int end = 0; end <= last; end++)
+    load_case->contact_failures += load_case->end[end].loaded.failures;
+}
+
+void eo_evaluator_summarise_pairs(struct eo_evaluator *evaluator, const struct eo_run *run)
+{
+  EO_TIMED(evaluator->result.static_ms);
+  for (int k = 0; k < evaluator->result.cases; k++)
+    summarise_pair(evaluator, run, &evaluator->result.load_case[k]);
+}
+
+static void find_impact(const struct eo_evaluator *evaluator, const struct eo_run *run,
+                        struct eo_case_result *load_case, int end)
+{
+  const struct eo_pair *pair = evaluator->pair;
+  struct eo_gap_field field = loaded_field(evaluator, load_case, end);
+  eo_impact_find(&load_case->end[end].impact, pair->grid, &field, pair->kernel, &pair->impact,
+                 load_case->end[end].loaded.approach, load_case->load_case.speed * run->scenario.speed,
+                 run->scenario.compliance);
+}
+
+void eo_evaluator_find_impacts(struct eo_evaluator *evaluator, const struct eo_run *run)
+{
+  struct eo_evaluation *result = &evaluator->result;
+  EO_TIMED(result->impact_ms);
+  bool copies_left = eo_reuse_copies_left(evaluator, run->design);
+  for (int k = 0; k < result->cases; k++)
+    for (int end = 0; end < result->ends; end++) {
+      struct eo_case_result *load_case = &result->load_case[k];
+      if (end == EO_RIGHT && copies_left)
+        load_case->end[end].impact = load_case->end[EO_LEFT].impact;
+      else
+        find_impact(evaluator, run, load_case, end);
+    }
+}

@@ -1,0 +1,101 @@
+#include "evaluation/evaluator_private.h"
+
+static const struct eo_scenario nominal_scenario = {NAN, NAN, 1, 1};
+
+/* Fills in what a scenario leaves to the design. */
+static struct eo_run run_of(const struct eo_evaluator *evaluator, const struct eo_design *design,
+                            const struct eo_scenario *scenario, int want)
+{
+  struct eo_run run = {.design = design, .scenario = scenario ? *scenario : nominal_scenario, .want = want};
+  if (isnan(run.scenario.in_plane))
+    run.scenario.in_plane = design->alignment.shaft_angle_in_plane;
+  if (isnan(run.scenario.out_of_plane))
+    run.scenario.out_of_plane = design->alignment.shaft_angle_out_of_plane;
+  run.root = evaluator->pair->flexibility && !(want & EO_WANT_CONTACT_ALONE) &&
+             (want & EO_WANT_ROOT || !isnan(design->objective.root_stress));
+  return run;
+}
+
+/* The order of one evaluation: the list in src/README.md, call by call. */
+static enum eo_code follow_order(struct eo_evaluator *evaluator, const struct eo_run *run, struct eo_error *error)
+{
+  /* P of every load case: the torque over the base radius, shared by the ends */
+  eo_evaluator_set_cases(evaluator, run);
+  /* elastic shafts and bodies, made anew when they have changed */
+  EO_TRY(eo_evaluator_fit_bodies(evaluator, run, error));
+  /* springs that hold both ends to one axial position of the pinion */
+  EO_TRY(eo_evaluator_find_hold(evaluator, run, error));
+  /* which ends differ from what the last run solved; the others are kept */
+  eo_reuse_compare(evaluator, run);
+
+  /* each end alone, both at once: */
+  EO_TRY(eo_evaluator_each_end(
+      evaluator, run,
+      (eo_end_step *const[]){eo_end_set_gaps, /* slice gap, lead, tip corners, misalignment at every point */
+                             eo_end_solve,    /* loaded contact: Z, k_tan, line loads at every position and P */
+                             NULL},
+      error));
+  /* equal ends: the right one carries what the left one does */
+  eo_evaluator_copy_equal_end(evaluator);
+  /* elastic bodies: gaps and loads until they agree */
+  eo_evaluator_bend_cases(evaluator, run);
+  /* a held pinion: the ends share the torque as the springs have it */
+  eo_evaluator_balance_cases(evaluator, run);
+  /* first contact, secant stiffness, pressure, edge load of each end */
+  EO_TRY(eo_evaluator_each_end(evaluator, run, (eo_end_step *const[]){eo_end_summarise, NULL}, error));
+  /* transmission error of the pair */
+  eo_evaluator_summarise_pairs(evaluator, run);
+
+  /* root stress, tooth by tooth: on the second thread from here on */
+  struct eo_roots roots;
+  EO_TRY(eo_roots_begin(&roots, evaluator, run, error));
+  /* entering impact: first touch, speed, force */
+  eo_evaluator_find_impacts(evaluator, run);
+  /* contact alone ends here; it has no root stress */
+  if (run->want & EO_WANT_CONTACT_ALONE)
+    return EO_OK;
+  /* Z and k_tan of every end as mesh laws of the dynamic model */
+  enum eo_code code = eo_evaluator_set_laws(evaluator, run, error);
+  /* the periodic state of every load case */
+  if (!code)
+    code = eo_evaluator_find_vibrations(evaluator, run, error);
+  /* natural frequencies at the mean mesh stiffness */
+  if (!code)
+    code = eo_evaluator_find_modes(evaluator, run, error);
+  /* teeth that are left; histories and their maxima */
+  eo_roots_finish(&roots);
+  EO_TRY(code);
+
+  /* contact and vibration again at other compliances */
+  EO_TRY(eo_evaluator_find_band(evaluator, run, error));
+  /* raw numbers of every load case, which f1, f2, f3, J and the fitness are made of */
+  eo_evaluator_collect_objectives(evaluator, run);
+  return EO_OK;
+}
+
+/* One run; after an error nothing that is kept can be relied on. */
+static enum eo_code follow(struct eo_evaluator *evaluator, const struct eo_design *design,
+                           const struct eo_scenario *scenario, int want, const struct eo_evaluation **evaluation,
+                           struct eo_error *error)
+{
+  struct eo_run run = run_of(evaluator, design, scenario, want);
+  enum eo_code code = follow_order(evaluator, &run, error);
+  if (code)
+    eo_reuse_forget(evaluator);
+  else
+    *evaluation = &evaluator->result;
+  return code;
+}
+
+enum eo_code eo_evaluator_run(struct eo_evaluator *evaluator, const struct eo_design *design,
+                              const struct eo_scenario *scenario, int want, const struct eo_evaluation **evaluation,
+                              struct eo_error *error)
+{
+  return follow(evaluator, design, scenario, want, evaluation, error);
+}
+
+enum eo_code eo_evaluator_contact(struct eo_evaluator *evaluator, const struct eo_design *design,
+                                  const struct eo_evaluation **evaluation, struct eo_error *error)
+{
+  return follow(evaluator, design, NULL, EO_WANT_CONTACT_ALONE, evaluation, error);
+}
