@@ -30,7 +30,7 @@ void eo_local_inverse_done(struct eo_local_inverse *inverse);
    atom, the line through zero. */
 static inline double eo_local_inverse_at(const struct eo_local_inverse *inverse, double u, double *slope)
 {
-  if (u >= EO_LOCAL_INVERSE_STRAIGHT) {
+  if (!(u < EO_LOCAL_INVERSE_STRAIGHT)) { /* NaN too: it is not to become an index */
     *slope = 1;
     return u - EO_LOCAL_INVERSE_OFFSET;
   }

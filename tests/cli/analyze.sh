@@ -155,6 +155,11 @@ bad "no harmonics" 's/"harmonics": 24/"harmonics": 0/' '/resolution/harmonics: 0
 "$EASEOFF" example paper >"$folder/fine.json"
 "$EASEOFF" analyze "$folder/fine.json" --json --data "$folder/stopped" >"$folder/out" 2>"$folder/err" &
 process=$!
+waited=0 # until it catches SIGTERM (bit 14), then into the preparation
+until grep -qE '^SigCgt:.*[4-7c-f][0-9a-f]{3}$' "/proc/$process/status" 2>/dev/null || [ $waited -ge 100 ]; do
+  sleep 0.1
+  waited=$((waited + 1))
+done
 sleep 0.4
 kill -TERM $process
 wait $process
