@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Data flows down the floors: a file includes its own folder and those above it in src/README.md's list, never below. The core prints
 # nothing and reads no environment; each library has its one floor.
 : "${SOURCES:=.}"

@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
 # The tour's list of one evaluation in src/README.md is the list of calls in src/evaluation/order.c: the same names in the same order.
 : "${SOURCES:=.}"
 code=$(sed -n '/^static enum eo_code follow_order/,/^}/p' "$SOURCES/src/evaluation/order.c" |

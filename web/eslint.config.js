@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What `make lint` asks of the page's modules and of its tests: eslint's own recommendations, and lines one can read.
 import js from '@eslint/js';
 import globals from 'globals';

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The program: sub-commands, their options, and how they end. Exit status 0: done; 1: the input is wrong; 2: it failed.
  */
 #ifndef EASEOFF_APP_APP_H

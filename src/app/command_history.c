@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -26,8 +27,6 @@ static enum eo_code read_id(const char *text, const char *what, int *id, struct 
 {
   return eo_app_read_whole(text, what, 1, 2000000000, id, error) ? EO_OK : EO_ERROR_INPUT;
 }
-
-/* ---- list ---- */
 
 static void print_problems(const json_t *list, struct eo_text *text)
 {
@@ -96,8 +95,6 @@ static int run_list(struct request *q)
   return eo_app_print(&text);
 }
 
-/* ---- show, export ---- */
-
 static int run_show(struct request *q)
 {
   struct eo_error error;
@@ -143,8 +140,6 @@ static int run_export(struct request *q)
   eo_text_done(&text);
   return eo_app_fail(NULL, &error);
 }
-
-/* ---- prune ---- */
 
 struct outdated {
   int count;
@@ -217,8 +212,6 @@ static int run_prune(struct request *q)
   eo_text_print(&text, "%lld true rows and %lld predictions removed\n", (long long)rows, (long long)predictions);
   return eo_app_print(&text);
 }
-
-/* ---- the command ---- */
 
 static const struct action {
   const char *name;

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -40,8 +41,6 @@ struct request {
   struct eo_update_settings update_settings;
   struct eo_update fit;
 };
-
-/* ---- what was asked for ---- */
 
 static enum eo_code read_positive(const char *option, const char *text, double *value, struct eo_error *error)
 {
@@ -210,8 +209,6 @@ static enum eo_code read_update(struct request *r, struct eo_error *error)
   free(faults);
   return code;
 }
-
-/* ---- work ---- */
 
 /* Lowest and highest speed of the load cases: a speed far from both is a question. */
 static void find_speeds(const struct eo_design *design, double speed[2])

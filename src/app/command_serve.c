@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #include <signal.h>
 #include <stddef.h>
 #include <stdio.h>
@@ -19,8 +20,6 @@ struct request {
   bool allow_anyone, quiet;
   struct eo_text token, directory, cache;
 };
-
-/* ---- settings ---- */
 
 static enum eo_code read_token(struct request *request, struct eo_error *error)
 {
@@ -64,8 +63,6 @@ static enum eo_code read_threads(const struct request *request, int *threads, st
   *threads = (int)count;
   return EO_OK;
 }
-
-/* ---- life ---- */
 
 /* The two signals are blocked in every thread from here on and taken by sigwait() alone. */
 static void block_signals(sigset_t *signals)

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>
@@ -18,8 +19,6 @@ struct request {
   struct eo_warnings warnings;
   struct eo_sweep_axes axes;
 };
-
-/* ---- options ---- */
 
 static bool read_number(const char **text, double *value)
 {
@@ -108,8 +107,6 @@ static bool read_threads(struct request *request, int *status)
   request->thread_count = (int)count;
   return *status == EO_EXIT_DONE;
 }
-
-/* ---- work ---- */
 
 static enum eo_code prepare(struct request *request, const struct eo_progress *progress, struct eo_pair **pair,
                             struct eo_error *error)

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Where the program keeps what it may need again. */
 #ifndef EASEOFF_APP_DATA_H
 #define EASEOFF_APP_DATA_H

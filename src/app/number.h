@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Numbers on the command line. */
 #ifndef EASEOFF_APP_NUMBER_H
 #define EASEOFF_APP_NUMBER_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Long work at a terminal: a progress line on standard error, only when that is a terminal, and a clean stop on Ctrl-C
    or SIGTERM. The two signals are blocked in every thread and taken by one that waits for them: METIS puts handlers of
    its own in their place while it orders a matrix, which must never run. */

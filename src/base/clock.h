@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The monotonic clock, for reporting where the time went; results never depend on it. */
 #ifndef EASEOFF_BASE_CLOCK_H
 #define EASEOFF_BASE_CLOCK_H

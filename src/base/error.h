@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Errors: filled once, at the lowest place that knows what went wrong, and handed up unchanged. */
 #ifndef EASEOFF_BASE_ERROR_H
 #define EASEOFF_BASE_ERROR_H

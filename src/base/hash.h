@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* SHA-256 (FIPS 180-4) as a hexadecimal key: what a result depends on, in one file name. */
 #ifndef EASEOFF_BASE_HASH_H
 #define EASEOFF_BASE_HASH_H

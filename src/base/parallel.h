@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Independent items on several threads: handed out in ascending order, each with the number of the thread that runs it,
    so that every thread can have workspaces of its own. What an item computes must not depend on which thread runs it;
    then results do not depend on the number of threads. */

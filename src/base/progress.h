@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Progress and cancellation of long work: one callback, called from the thread that does the work. */
 #ifndef EASEOFF_BASE_PROGRESS_H
 #define EASEOFF_BASE_PROGRESS_H

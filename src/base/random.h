@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Random numbers from a counter: each value is a pure function of where it is used, so threads, the order of completion
    and resuming change nothing. The mixing function is the finaliser of SplitMix64 (Steele, Lea, Flood 2014). */
 #ifndef EASEOFF_BASE_RANDOM_H

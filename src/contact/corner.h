@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The tip corner of one member against the flank of the other beyond the ends of the path of contact (tip-edge
    contact). */
 #ifndef EASEOFF_CONTACT_CORNER_H

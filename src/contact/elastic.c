@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "contact/elastic.h"
 
 #include "numerics/dense.h"
@@ -31,8 +32,6 @@ struct eo_elastic {
   double rate[2];                          /* [end] dZ/dP, m/N */
   struct eo_deflection *history[2];        /* [end][positions] */
 };
-
-/* ---- between points and nodes ---- */
 
 static void set_places(const struct eo_elastic *el, const struct eo_contact_position *p, struct place *place)
 {
@@ -91,8 +90,6 @@ static double largest(const struct eo_elastic *el, const struct eo_deflection *a
     most = fmax(most, fabs(a->part[0][i] - b->part[0][i]) + reach * fabs(a->part[1][i] - b->part[1][i]));
   return most;
 }
-
-/* ---- one mesh position ---- */
 
 /* Contact of one end at the present deflection, warm: its approach moves with its gaps. */
 static void resolve(struct eo_elastic *el, struct eo_loaded_workspace *ws, const struct eo_loaded_gaps *gaps,
@@ -227,8 +224,6 @@ static int solve_position(struct eo_elastic *el, struct eo_loaded_workspace *ws,
   return 0;
 }
 
-/* ---- the mesh cycle ---- */
-
 static int other_position(const struct eo_elastic *el, int j, int stagger)
 {
   int n = el->grid->positions;
@@ -298,8 +293,6 @@ void eo_elastic_gaps(struct eo_elastic *el, const struct eo_loaded_gaps *gaps, i
       bent[p->first + i] = gaps[end].gap[p->first + i] + el->change[i];
   }
 }
-
-/* ---- storage ---- */
 
 static enum eo_code allocate(struct eo_elastic *el, struct eo_error *error)
 {

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Loaded contact of both ends on bodies that twist and bend (contact/shaft.h). At every mesh position the gaps are
    those of the rigid bodies plus the deflection d under the present flank loads,  d = S f(d),  both ends together: the
    ends feel each other through the bodies.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The gap between the flanks of one end, everywhere they can meet: one field serves loaded contact, unloaded contact
    and impact. */
 #ifndef EASEOFF_CONTACT_FIELD_H

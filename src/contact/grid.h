@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Where teeth can touch over the mesh cycle, and how compliant they are there: all that loaded contact needs and that
    neither load nor micro-geometry changes. Made once per gear pair and resolution; read-only afterwards, shared by both
    ends and all threads. */

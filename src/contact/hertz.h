@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Line contact of two elastic bodies: Hertz's closed forms, and the local approach of two gear teeth. SI units; both
    bodies of the same material. */
 #ifndef EASEOFF_CONTACT_HERTZ_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The standard's estimates beside the computed ones: mesh stiffness by ISO 6336-1:2006 method B and nominal root stress
    by ISO 6336-3:2006 method B. External gears, one end of a pair. SI units. */
 #ifndef EASEOFF_CONTACT_ISO6336_H

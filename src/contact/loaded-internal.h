@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The workspace of loaded contact, shared by the files that make it and work in it. */
 #ifndef EASEOFF_CONTACT_LOADED_INTERNAL_H
 #define EASEOFF_CONTACT_LOADED_INTERNAL_H

@@ -1,9 +1,8 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "contact/loaded-internal.h"
 
 #include <math.h>
 #include <string.h>
-
-/* ---- one position ---- */
 
 /* The problem of one position in units of the unscaled compliance: gaps and approach are divided by the compliance
    factor. */
@@ -444,8 +443,6 @@ void eo_loaded_solve(struct eo_loaded_workspace *ws, const struct eo_contact_gri
     }
   }
 }
-
-/* ---- one position again ---- */
 
 void eo_loaded_resolve(struct eo_loaded_workspace *ws, const struct eo_contact_grid *grid, const double *gap,
                        double factor, int j, double load, struct eo_loaded_end *result)

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Loaded contact over the mesh cycle ((C1) to (C3) of doc/theory.md): exact complementarity with the nonlinear local
    part, both ends.
 

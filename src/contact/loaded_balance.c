@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Loaded contact of both ends of an axially held pinion. */
 #include "contact/loaded.h"
 

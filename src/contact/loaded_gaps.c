@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What loaded contact starts from and leads to: gaps at the points of a grid, first contact, pressure. */
 #include "contact/loaded.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What loaded contact works in and fills, made and freed. */
 #include "contact/loaded-internal.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The local law of line contact (Weber and Banaschek 1953) and its inverse: delta = K q (L - ln q).
    With x = L - ln q and u = delta/(K e^L): u = x e^-x, q = e^L w(u) with w = e^-x, x > 1 (q below the law's turning
    point) and dw/du = 1/(x - 1). w(u) is one universal function, tabulated over octaves of u with its slope, so that a

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a flank shows over one mesh cycle: pressure and unloaded clearance on a regular grid, and how the tooth pairs
    share the load. Every point of the flank is passed by the contact line once per mesh, so the largest value over the
    cycle is the one at its passing. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "contact/root.h"
 
 #include "numerics/gram.h"
@@ -115,8 +116,6 @@ void eo_root_workspace_free(struct eo_root_workspace *ws)
   free(ws->touched);
   free(ws);
 }
-
-/* ---- the largest stress of a root: s and t normal along and across, u shear ---- */
 
 /* Whether the larger principal stress (s + t + sqrt((s - t)^2 + 4 u^2))/2 passes the largest so far. */
 static inline bool passes(float s, float t, float u, float largest)

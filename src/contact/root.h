@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Root bending stress of one tooth through its mesh, from the contact loads and the stress influence of the
    finite-element model. */
 #ifndef EASEOFF_CONTACT_ROOT_H

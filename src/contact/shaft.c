@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "contact/shaft.h"
 
 #include "numerics/dense.h"
@@ -52,8 +53,6 @@ double eo_shaft_effective_diameter(const struct eo_geometry *geometry, int membe
   return 2 * geometry->root_radius[member] + 0.75 * geometry->normal_module;
 }
 
-/* ---- the body ---- */
-
 /* z of a node: eta runs to the left on the left end, to the right on the right one. */
 static double node_place(const struct body *body, int end, int node)
 {
@@ -96,8 +95,6 @@ static void init_body(struct body *body, const struct eo_geometry *g, const stru
   }
   add_piece(body, half, body->bearing[EO_RIGHT], shaft);
 }
-
-/* ---- virtual work ---- */
 
 /* Internal bending moment and shear at x of a simply supported beam under a unit force, or a unit moment, at z. */
 static double moment_of_force(const double bearing[2], double z, double x)
@@ -167,8 +164,6 @@ static void add_piece_work(const struct body *body, const struct piece *piece, i
   add_square(size, row[SIDE_SHEAR], length / piece->section.shear, matrix);
   add_square(size, row[TWIST], length / piece->section.torsion, matrix);
 }
-
-/* ---- the influence ---- */
 
 /* The strongest eigenvectors, times the root of their eigenvalues; tilt is weighed by half the path of contact. */
 static enum eo_code find_modes(struct eo_shaft_influence *influence, double reach, struct eo_error *error)

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Torsion and bending of the pinion's and the gear's body: how far a load on the flanks opens the gap everywhere on the
    flanks.
 

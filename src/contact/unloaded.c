@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "contact/unloaded.h"
 
 #include "numerics/nonlinear.h"
@@ -22,8 +23,6 @@ void eo_unloaded_minimum(const struct eo_gap_field *field, int n, const double *
                                      .eta = eta};
   }
 }
-
-/* ---- Litvin's five equations ---- */
 
 struct contact {
   const struct eo_gap_field *field;

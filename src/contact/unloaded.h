@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Unloaded contact of one pair of teeth: two independent forms that must agree.
    (a) Litvin's: two exact surfaces touch where positions and normals coincide; five equations (Litvin and Fuentes 2004,
    chapter 9). (b) The smallest gap of the gap field along the potential contact line. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a design's single ranges cannot say: keys that must agree with each other and with the geometry. */
 #ifndef EASEOFF_DESIGN_CHECK_H
 #define EASEOFF_DESIGN_CHECK_H

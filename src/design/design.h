@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The design: everything a user may say about a gear pair, its duty cycle and what to do with it, as plain structs in
    SI units. The JSON document and its units live in document/; defaults and ranges are stated once, in its field
    tables. */

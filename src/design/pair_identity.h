@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What the preparation of a pair depends on: gear pair, material, and of the resolution what the finite elements and
    the contact grid are made of. Whoever keeps prepared pairs tells them apart by this and by nothing else. (The cache
    on disk keeps the finite-element tables alone, which depend on less: flexibility/prepare.c.) */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What the resolution of a design means to the rooms above: the settings of the finite-element model and of the contact
    grid. */
 #ifndef EASEOFF_DESIGN_RESOLUTION_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Measured beside predicted: JSON, tables for people, CSV. */
 #include <math.h>
 #include <stdio.h>
@@ -221,8 +222,6 @@ json_t *eo_comparison_encode(const struct eo_comparison *c, const struct eo_meas
   eo_object_put_number(&o, "spread", c->spread);
   return eo_object_close(&o);
 }
-
-/* ---- for people ---- */
 
 /* The stretches of a recording whose speed changes. */
 static void print_order_tracks(const struct eo_transmission *t, struct eo_text *text)

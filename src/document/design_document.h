@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The design document: JSON <-> struct eo_design. */
 #ifndef EASEOFF_DOCUMENT_DESIGN_DOCUMENT_H
 #define EASEOFF_DOCUMENT_DESIGN_DOCUMENT_H

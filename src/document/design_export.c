@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "document/design_export.h"
 
 #include <ctype.h>
@@ -11,8 +12,6 @@
 enum { PROFILE_POINTS = 21, FACE_POINTS = 31, CHART_POINTS = 61 };
 
 static const char *const member_name[2] = {"pinion", "gear"}, *const end_name[2] = {"left", "right"};
-
-/* ---- cells ---- */
 
 static void put(struct eo_text *text, double value, const struct eo_unit *unit)
 {
@@ -29,8 +28,6 @@ static void end_row(struct eo_text *text)
 {
   eo_text_add(text, "\r\n");
 }
-
-/* ---- flanks ---- */
 
 struct flank {
   const struct eo_geometry *geometry;
@@ -102,7 +99,7 @@ static double lead_part(const struct flank *flank, double eta)
   return eo_modification_lead(&flank->shape, eta / cos(flank->geometry->helix_angle), &slope);
 }
 
-/* ---- points ----
+/* Points:
    Frame of a member: z its axis, from the middle of the groove to the right; the working flank of a tooth faces +x and
    would, unmodified, pass through the plane x = 0 at the working pitch radius in mid face. eo_surface_evaluate() gives
    one end with z along eta (pinion) or against it (gear). The left end mirrors the right one. A stagger turns the right
@@ -150,8 +147,6 @@ static void write_points(const struct eo_design *design, const struct eo_geometr
   each_flank(design, geometry, write_flank_points, text);
 }
 
-/* ---- charts ---- */
-
 static void write_profile_chart(const struct flank *flank, struct eo_text *text)
 {
   for (int i = 0; i < CHART_POINTS; i++) {
@@ -191,8 +186,6 @@ static void write_charts(const struct eo_design *design, const struct eo_geometr
   each_flank(design, geometry, write_charts_of, text);
 }
 
-/* ---- topography ---- */
-
 static void write_topography_of(const struct flank *flank, struct eo_text *text)
 {
   for (int i = 0; i < PROFILE_POINTS; i++)
@@ -224,8 +217,6 @@ static void write_design(const struct eo_design *design, const struct eo_geometr
     text->failed = true;
   json_decref(document);
 }
-
-/* ---- formats ---- */
 
 static const struct eo_export formats[] = {
     {"flank-points", "points and normals of the working flanks, exactly as generated, with what is taken off",

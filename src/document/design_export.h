@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Files for other programs: points of the flanks for grinding and measuring machines, charts of the modification. One
    function for the terminal and the server. */
 #ifndef EASEOFF_DOCUMENT_DESIGN_EXPORT_H

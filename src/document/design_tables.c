@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Field tables of the duty cycle, the objective, the optimization and the resolution, and of the whole design. */
 #include "document/design_document.h"
 

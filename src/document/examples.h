@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Designs to start from, by name. */
 #ifndef EASEOFF_DOCUMENT_EXAMPLES_H
 #define EASEOFF_DOCUMENT_EXAMPLES_H

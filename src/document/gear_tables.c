@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Field tables of the gear pair, its material, alignment, supports and flank modifications. Ranges are in the
    document's units. */
 #include "document/design_document.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "document/geometry_table.h"
 
 #include "gear/geometry.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* How the macro-geometry is presented: the result's "geometry", the geometry stage. */
 #ifndef EASEOFF_DOCUMENT_GEOMETRY_TABLE_H
 #define EASEOFF_DOCUMENT_GEOMETRY_TABLE_H

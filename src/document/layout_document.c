@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "document/layout_document.h"
 
 #include <math.h>
@@ -133,8 +134,6 @@ void eo_layout_decode(const json_t *document, struct eo_layout_request *r, struc
   read_lines(json_object_get(document, "lines"), r->choice.lines, faults);
   read_columns(json_object_get(document, "columns"), r, faults);
 }
-
-/* ---- back ---- */
 
 static const char *unit_of(const struct eo_track_channel *c)
 {

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The layout of a recording as people state it, in JSON; every key may be left out and is then guessed:
      { "kind": "angles" | "sine-cosine" | "pulses", "unit": "deg" | "rad" | "turn" | "count", "time": COLUMN | "none" |
    [PINION'S, GEAR'S], "time_unit": "s" | "ms" | "us" | "ns" | "min" | "d" | seconds, "columns": { "pinion": COLUMN |

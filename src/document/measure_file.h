@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* One rig file to its measurement document: read, lay out, measure, encode. The terminal and the service call this. */
 #ifndef EASEOFF_DOCUMENT_MEASURE_FILE_H
 #define EASEOFF_DOCUMENT_MEASURE_FILE_H

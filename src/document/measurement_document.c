@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "document/measurement_document.h"
 
 #include <math.h>
@@ -23,8 +24,6 @@ static const char *label_name(bool unmodified)
 {
   return labels[unmodified];
 }
-
-/* ---- findings and signal ---- */
 
 static const struct eo_outline_row finding_rows[] = {
     EO_KEY("kind", "word", "what it is about", .words = eo_finding_names),
@@ -110,8 +109,6 @@ static json_t *encode_notes(const struct eo_notes *notes)
     failed = json_array_append_new(list, json_string(notes->text[i])) != 0;
   return failed ? (json_decref(list), NULL) : list;
 }
-
-/* ---- orders ---- */
 
 static const struct eo_outline_row line_rows[] = {
     EO_KEY("order", "[number]", "per turn of the pinion; columns of all lines"),
@@ -218,8 +215,6 @@ static json_t *encode_spectrum(const struct eo_transmission *t)
   eo_object_put(&o, "acceleration_m_per_s2", eo_json_reals(count, acceleration, 1, &eo_unit_m_per_s2, EO_DIGITS_MAP));
   return eo_object_close(&o);
 }
-
-/* ---- result ---- */
 
 static const struct eo_outline_row rms_rows[] = {
     EO_KEY("value", "number?", "rotational acceleration of the mesh orders, RMS", .unit = &eo_unit_m_per_s2),
@@ -373,8 +368,6 @@ json_t *eo_measurement_encode(const struct eo_measurement *m, const struct eo_me
   return eo_object_close(&o);
 }
 
-/* ---- in brief ---- */
-
 static const struct eo_outline_row brief_finding_rows[] = {
     EO_KEY("kind", "word", "what it is about", .words = eo_finding_names),
     EO_KEY("severity", "word", "repaired: taken care of; refused: there is no result", .words = eo_severity_names),
@@ -403,8 +396,6 @@ static const struct eo_outline_row brief_rows[] = {
     EO_KEY("result", "object", "without its curves", .outline = &brief_result),
 };
 const struct eo_outline eo_measurement_brief = EO_OUTLINE("BriefMeasurement", brief_rows);
-
-/* ---- back ---- */
 
 static double number_at(const json_t *document, const char *path, int index)
 {

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Measurements as JSON: what was found in one recording, and several beside the prediction. The terminal and the
    service print the same documents; a stored measurement is read back from its own.
 

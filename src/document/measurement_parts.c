@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "document/measurement_parts.h"
 
 #include <math.h>
@@ -9,8 +10,6 @@ static json_t *column(int count, const double *value, const struct eo_unit *unit
 {
   return eo_json_reals(count, value, 1, unit, EO_DIGITS_CURVE);
 }
-
-/* ---- speed ---- */
 
 static const struct eo_outline_row part_rows[] = {
     EO_KEY("from_s", "number", "after the first row, s"),
@@ -97,8 +96,6 @@ json_t *eo_axis_encode(const struct eo_transmission *t)
   eo_object_put(&o, "bias", eo_json_quantity(t->axis_bias, NULL));
   return eo_object_close(&o);
 }
-
-/* ---- load ---- */
 
 static const struct eo_outline_row torque_column_rows[] = {
     EO_KEY("mean", "number", "over what was measured", .unit = &eo_unit_Nm),

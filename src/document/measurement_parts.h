@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Parts of a measurement document: which rows were measured, the order axis, order tracks, torque and speed columns.
    Internal to the document. */
 #ifndef EASEOFF_DOCUMENT_MEASUREMENT_PARTS_H

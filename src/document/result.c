@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "document/result.h"
 
 #include <math.h>
@@ -131,8 +132,6 @@ static json_t *encode_cases(struct eo_result_source *source)
   return cases;
 }
 
-/* ---- objectives ---- */
-
 struct raw_case {
   struct eo_load_case load_case;
   struct eo_objective_case raw;
@@ -221,8 +220,6 @@ static json_t *encode_objectives(const struct eo_result_source *source)
   eo_object_put(&o, "scenarios", json_integer(a->scenarios));
   return eo_object_close(&o);
 }
-
-/* ---- the whole ---- */
 
 struct timing {
   double preparation, unmodified, contact, impact, root, dynamics, evaluation; /* s */

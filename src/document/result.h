@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The result document: one true evaluation as JSON. The terminal, the server and the files of --csv show this and
    nothing else.
 

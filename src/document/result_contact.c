@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The static part of a load case: transmission error, stiffness, contact, impact, root stress. */
 #include <math.h>
 #include <stdlib.h>
@@ -5,8 +6,6 @@
 
 #include "document/result_private.h"
 #include "numerics/periodic.h"
-
-/* ---- transmission error and stiffness ---- */
 
 static double swing(int n, const double *value)
 {
@@ -146,8 +145,6 @@ json_t *eo_result_stiffness(struct eo_result_source *source, const struct eo_cas
   return eo_object_close(&o);
 }
 
-/* ---- unloaded contact: the same for every load case ---- */
-
 static const struct eo_outline_row unloaded_end_rows[] = {
     EO_KEY("te_um", "[number?]", "unloaded transmission error, over the positions", .unit = &eo_unit_um),
     EO_KEY("peak_to_peak_um", "number?", "of the end", .unit = &eo_unit_um),
@@ -228,8 +225,6 @@ json_t *eo_result_unloaded(struct eo_result_source *source)
     eo_object_put(&o, eo_result_end[end], encode_unloaded_end(source, end));
   return eo_object_close(&o);
 }
-
-/* ---- loaded contact ---- */
 
 static json_t *encode_share(struct eo_result_source *source, int end, const struct eo_loaded_end *loaded, int first,
                             int pairs)
@@ -400,8 +395,6 @@ json_t *eo_result_contact(struct eo_result_source *source, int k)
   return document;
 }
 
-/* ---- elastic bodies ---- */
-
 static const struct eo_outline_row body_rows[] = {
     EO_KEY("eta_mm", "[number]", "place along the face from its middle, + on the side that meets first",
            .unit = &eo_unit_mm),
@@ -425,8 +418,6 @@ json_t *eo_result_bodies(struct eo_result_source *source, const struct eo_case_r
   eo_object_put(&o, "most_iterations", json_integer(c->body_iterations));
   return eo_object_close(&o);
 }
-
-/* ---- impact ---- */
 
 struct impact_end {
   struct eo_impact impact;
@@ -485,8 +476,6 @@ json_t *eo_result_impact(struct eo_result_source *source, const struct eo_case_r
     eo_object_put(&o, eo_result_end[end], encode_impact_end(source, &c->end[end].impact));
   return eo_object_close(&o);
 }
-
-/* ---- root stress ---- */
 
 static json_t *encode_root_history(const struct eo_result_source *source, const struct eo_root_history *history)
 {

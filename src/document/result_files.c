@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The result's curves as files of comma-separated values. */
 #include <math.h>
 #include <stdio.h>

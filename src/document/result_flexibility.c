@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* How the teeth's flexibility was modelled: body, support, what of it belongs to shaft and bearings, and the standard's
    level of mesh stiffness beside it. */
 #include <math.h>

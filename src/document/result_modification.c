@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The modification as curves: what is taken off over the profile and over the face. */
 #include <math.h>
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The parts the result document is put together from; see result.h. */
 #ifndef EASEOFF_DOCUMENT_RESULT_PRIVATE_H
 #define EASEOFF_DOCUMENT_RESULT_PRIVATE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The result for people at a terminal. */
 #include <math.h>
 #include <stdio.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A result as text without the whole of it as JSON before: the head, the halves of each load case and the tail, written
    side by side. */
 #include "document/result.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The dynamic part of a load case. */
 #include <math.h>
 #include <stdlib.h>

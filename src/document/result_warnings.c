@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a designer should know before trusting or liking a result, in plain words. */
 #include <math.h>
 #include <stdarg.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "document/rig_answer.h"
 
 #include <string.h>
@@ -83,8 +84,6 @@ void eo_rig_comparison_write(const struct eo_rig_selection *selection, const str
 {
   write(text, encode_comparison(selection, comparison, measured, design));
 }
-
-/* ---- fit ---- */
 
 /* Sets in document what differs between two resolved designs, and nothing else: defaults that were not written stay
    unwritten. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What the service computes from stored measurements, as documents: the comparison and the fit with the numbers of the
    measurements they are about. */
 #ifndef EASEOFF_DOCUMENT_RIG_ANSWER_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "document/rig_document.h"
 
 #include <math.h>
@@ -147,8 +148,6 @@ void eo_rig_set_pair(struct eo_rig_request *request, const struct eo_geometry *g
   s->torque_change = request->shown_torque_change;
 }
 
-/* ---- text ---- */
-
 static const char separator_of[] = {',', ';', '\t', ' '};
 
 static void write_heading(const struct eo_rig_request *r, FILE *stream)
@@ -219,8 +218,6 @@ enum eo_code eo_rig_write(const struct eo_rig_request *r, const struct eo_progre
     return eo_error_set(error, EO_ERROR_FILE, "", "The recording could not be written.");
   return EO_OK;
 }
-
-/* ---- truth ---- */
 
 static json_t *column(int count, const double *value)
 {

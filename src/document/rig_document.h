@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The synthetic rig: what it is asked for, and its recording as a text file. */
 #ifndef EASEOFF_DOCUMENT_RIG_DOCUMENT_H
 #define EASEOFF_DOCUMENT_RIG_DOCUMENT_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "document/search_space.h"
 
 #include <math.h>
@@ -197,8 +198,6 @@ void eo_study_space_hash(const struct eo_study_space *space, char hex[EO_HASH_LE
   }
   eo_hash_finish(&hash, hex);
 }
-
-/* ---- modifications as text ---- */
 
 /* What differs from the defaults of a flank; NULL without memory. */
 static json_t *encode_flank(const struct eo_flank_modification *flank)

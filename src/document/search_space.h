@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* From a design's optimization to what an optimizer works with: the unit cube over the variables. */
 #ifndef EASEOFF_DOCUMENT_SEARCH_SPACE_H
 #define EASEOFF_DOCUMENT_SEARCH_SPACE_H

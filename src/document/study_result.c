@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "document/study_result.h"
 
 #include <math.h>
@@ -25,8 +26,6 @@ void eo_study_result_done(struct eo_study_result *result)
   free(result->front);
   *result = (struct eo_study_result){.knee = -1, .weighted = -1};
 }
-
-/* ---- JSON ---- */
 
 static const char *const members[] = {"pinion", "gear", NULL}, *const ends[] = {"left", "right", "both", NULL};
 
@@ -384,8 +383,6 @@ json_t *eo_study_result_encode(const struct eo_study_result *result, const struc
   source.result.store_seconds = to_milliseconds(result->store_seconds);
   return eo_outline_encode(&eo_study_outline, &source);
 }
-
-/* ---- for people ---- */
 
 static const char *find_text(const json_t *value, const char *path)
 {

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What an optimization gives: plain values, and the document that the terminal and the server show.
 
    Top level: program, design (every default resolved), job, algorithm, seed, variables (name, bounds, unmodified and

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "document/sweep_document.h"
 
 #include <math.h>
@@ -89,8 +90,6 @@ static double member_of(const void *row, const struct column *column)
   return value;
 }
 
-/* ---- outline: `columns` below fill these, by their paths ---- */
-
 static const struct eo_outline_row torque_end_rows[] = {
     EO_KEY("stiffness_N_per_um", "[number?]", "mean mesh stiffness, load over approach, normal",
            .unit = &eo_unit_N_per_um),
@@ -174,8 +173,6 @@ static const struct eo_outline_row sweep_rows[] = {
     EO_KEY("warnings", "[text]", "in plain words"),
 };
 const struct eo_outline eo_sweep_outline = EO_OUTLINE("Sweep", sweep_rows);
-
-/* ---- JSON ---- */
 
 /* Puts a value below the objects that the path names, which are made when missing. */
 static void put_at(struct eo_object *o, const char *path, json_t *value)
@@ -313,8 +310,6 @@ void eo_sweep_write(const struct eo_sweep *sweep, const struct eo_design *design
   text->failed = text->failed || !document;
   json_decref(document);
 }
-
-/* ---- CSV ---- */
 
 static void add_headings(const struct eo_sweep *s, int columns, const struct column *column, const char *prefix,
                          struct eo_text_table *sheet)

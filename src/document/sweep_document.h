@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A sweep as a request and as a document. The terminal and the server use this and nothing else.
 
    Document: program, design, design_hash, torque_Nm and speed_rpm (the axes), modified and unmodified, eigenfrequencies

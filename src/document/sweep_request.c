@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a sweep is asked for. */
 #include "document/sweep_document.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "document/update_document.h"
 
 #include <math.h>
@@ -17,8 +18,6 @@ static const struct eo_unit *unit_of(enum eo_unknown unknown)
                                                           &eo_unit_deg,      &eo_unit_mm};
   return unit[unknown];
 }
-
-/* ---- request ---- */
 
 static void add_unknown(const char *key, const json_t *range, struct eo_update_settings *s, struct eo_faults *faults)
 {
@@ -65,8 +64,6 @@ void eo_update_decode(const json_t *document, struct eo_update_settings *s, stru
   else if (seed)
     s->seed = (uint64_t)json_integer_value(seed);
 }
-
-/* ---- answer ---- */
 
 typedef void warning_function(void *context, const char *text);
 

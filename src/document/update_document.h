@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The fit of unknown inputs as JSON and for people.
      request {"unknowns": {"pinion_bearing_stiffness_N_per_um": [200, 3000], ...}, "model_error": 0.05, "seed": 1}
      answer  {"unknowns": [{key, before, value, range, confidence_95, at_bound, undetermined, same_as, correlation}],

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Alternating frequency-time: a mesh law evaluated on equidistant phases of a truncated Fourier series, and brought
    back (Cameron and Griffin 1989). Where teeth separate between two samples both count by the share of their cells that
    is in contact, so that force and Jacobian stay continuous and do not feel the samples. */

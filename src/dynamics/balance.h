@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Harmonic balance condensed on the deflections of the meshes: find X with S X + F(X) = P - T W + S motion, harmonic by
    harmonic. Teeth that stay in contact under an affine law need one linear solve; everything else goes to Newton with
    the analytic Jacobian (KINSOL) on a finer time grid. Mirror ends with equal laws are solved as one. */

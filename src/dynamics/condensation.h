@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The oscillator seen from its meshes at the harmonics of one speed: with D = K - (k w)^2 + i k w C,
      S_k X_k + F_k = P_k - T_k W_k,   S_k = (mesh' D^-1 mesh)^-1,   T_k = S_k mesh' D^-1 pulse,
    computed with the meshes stiffened by `shift` so that harmonic 0 exists although rigid rolling is free. */

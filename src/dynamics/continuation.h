@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A branch of periodic states followed in speed through its folds: pseudo-arclength continuation of the harmonic
    balance (Keller 1977; Seydel 2010, chapter 4). */
 #ifndef EASEOFF_DYNAMICS_CONTINUATION_H

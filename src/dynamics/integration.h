@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The same oscillator by time integration (CVODE), from a given or the static start to the periodic state: the
    independent check of the harmonic balance, and a way to a start value where Newton finds none. */
 #ifndef EASEOFF_DYNAMICS_INTEGRATION_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The mesh law of one end: the normal force of the teeth as a function of the deflection X and the mesh phase, without
    the mesh damping. Everything that depends on the phase is a Fourier series, so a law is as smooth in phase as its
    order. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The form in which an oscillator with gear meshes reaches the solvers: coordinates r with unit mass,
      r" + C r' + K r + sum_j mesh_j F_j(X_j, X_j', phi) + sum_j pulse_j W_j(phi) = load,   X_j = mesh_j . r +
    motion_j(phi). The twelve degrees of freedom without their zero modes are one case, the single degree of freedom

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The numbers of the lumped model of paper Fig 4 and equations (3)-(10): two bodies (pinion, gear), one or two ends
    each, every end with transverse (y), axial (z) and rotational (th) freedom; beyond them, where asked for, the
    machine that drives the pinion and the one that loads the gear, each with its rotation. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Everything that is read off a periodic solution. */
 #include <math.h>
 #include <string.h>

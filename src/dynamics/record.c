@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A period recorded by time integration, brought into the same spectrum and result as the harmonic balance. */
 #include <math.h>
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A single degree of freedom with backlash, the classical test of everything above (Comparin and Singh 1989; Kahraman
    and Singh 1990):  x" + 2 z x' + (1 + e cos W t) f(x) = F_m + F_h W^2 cos W t,  f = x - 1, 0, x + 1 outside, inside
    the backlash. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The stable states of a load case: where teeth separate, the state that the harmonic balance finds may be one of
    several, or one that no motion keeps to. */
 #include <complex.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "dynamics/stability.h"
 
 #include <math.h>
@@ -163,8 +164,6 @@ enum eo_code eo_floquet(const struct eo_oscillator *oscillator, const struct eo_
   qsort(multiplier, size, sizeof *multiplier, by_size);
   return EO_OK;
 }
-
-/* ---- teeth in contact ---- */
 
 enum { LEAST_KICKS = 64, MOST_KICKS = 2048, KICKS_PER_HARMONIC = 4, TAYLOR = 12 };
 /* Largest angle by which the meshes alone would turn between two kicks, rad: 1e-5 in the multipliers. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Floquet multipliers of a periodic state: what becomes of a small disturbance over one mesh period. */
 #ifndef EASEOFF_DYNAMICS_STABILITY_H
 #define EASEOFF_DYNAMICS_STABILITY_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Vibration over speed: the branches that an upward and a downward sweep meet, and a branch traced through its folds.
  */
 #ifndef EASEOFF_DYNAMICS_SWEEP_H

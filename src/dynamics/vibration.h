@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The periodic vibration of one load case: the lumped model under its mesh laws, solved by harmonic balance or by time
    integration, and everything that is read off it. One workspace per thread; results do not depend on what it solved
    before, except for a start from the last solution, which the caller asks for. */

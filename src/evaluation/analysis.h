@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* One analysis: a design and the same design without modification on one prepared pair, down to J and the fitness. The
    terminal and the server call this; optimizers work with evaluators alone. One per thread. */
 #ifndef EASEOFF_EVALUATION_ANALYSIS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* One true evaluation: gear -> contact -> dynamics -> objective. The order is written in one place, order.c; what is
    still valid from the run before is decided in another, reuse.c. An evaluator belongs to one thread and owns all
    workspaces; results do not depend on what it evaluated before. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The inside of an evaluator, shared by the files that make up one evaluation. order.c calls them; a step's name is its
    line in that list. */
 #ifndef EASEOFF_EVALUATION_EVALUATOR_PRIVATE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The three objectives, the constraints and the fitness: (O1) to (O3) of doc/theory.md. */
 #ifndef EASEOFF_EVALUATION_OBJECTIVE_H
 #define EASEOFF_EVALUATION_OBJECTIVE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "evaluation/evaluator_private.h"
 
 static const struct eo_scenario nominal_scenario = {NAN, NAN, 1, 1};

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A gear pair made ready for evaluation: everything that micro-geometry, load and speed do not change. Constant once
    made; shared by every thread. */
 #ifndef EASEOFF_EVALUATION_PAIR_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "evaluation/sweep.h"
 
 #include "numerics/periodic.h"
@@ -34,8 +35,6 @@ struct job {
   struct problem *problem;    /* [variant][torque] */
   struct eo_vibration *alone; /* [variant][torque][speed]: every point on its own */
 };
-
-/* ---- plan ---- */
 
 static enum eo_code check_axis(int count, const double *value, const char *what, struct eo_error *error)
 {
@@ -114,8 +113,6 @@ void eo_sweep_done(struct eo_sweep *s)
   }
   *s = (struct eo_sweep){0};
 }
-
-/* ---- one torque: contact, mesh laws, impacts, modes ---- */
 
 /* sound: the loaded contact converged; where it did not, everything built on it means nothing. */
 static void read_point(struct eo_sweep_point *p, const struct eo_vibration *r, bool sound)
@@ -215,8 +212,6 @@ static enum eo_code solve_torque(void *context, int thread, int item, struct eo_
   return EO_OK;
 }
 
-/* ---- one speed ---- */
-
 static struct eo_vibration_case case_at(const struct job *job, const struct problem *p, double speed, double impact[2])
 {
   struct eo_vibration_case load = p->load;
@@ -262,8 +257,6 @@ static enum eo_code solve_speed(void *context, int thread, int item, struct eo_e
              : eo_vibration_solve(w->solver, &load, EO_START_COLD, result, error);
 }
 
-/* ---- the branches of one torque ---- */
-
 static bool separates(const struct job *job, const struct eo_vibration *alone)
 {
   bool lost = false;
@@ -298,8 +291,6 @@ static enum eo_code solve_branch(void *context, int thread, int item, struct eo_
   free(followed);
   return code;
 }
-
-/* ---- the order ---- */
 
 static enum eo_code make_job(struct job *job, struct eo_error *error)
 {

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What is modelled of a member's body, and how the ring of all teeth is supported (flexibility/flexibility.h). */
 #ifndef EASEOFF_FLEXIBILITY_BODY_H
 #define EASEOFF_FLEXIBILITY_BODY_H

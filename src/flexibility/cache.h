@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* One file of the cache: numbers under a key. A lock keeps two processes from making the same file at once; the file
    appears under its name only when it is complete and on the disk. Nothing that goes wrong here is an error: the work
    is then simply done again. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A ring of many teeth by condensed chains of 1, 2, 4 .. teeth: log2(z) real steps in place of z/2 complex harmonics.
    Two chains A, B side by side share a face; eliminating it leaves a chain between A's left and B's right face,
        K = A_RR + B_LL,  S_LL = A_LL - A_LR K^-1 A_RL,  S_LR = -A_LR K^-1 B_LR,  S_RR = B_RR - B_RL K^-1 B_LR.

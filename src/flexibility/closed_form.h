@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A compliance in closed form, for checking everything above it without finite elements:
    C(i,j) = c exp(-|eta_i - eta_j|/l) f(s_i) f(s_j) on the same pair, 0 otherwise; f = 1 + f1 |s - s0| + f2 (s - s0)^2.
  */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The eight-node brick with incompatible modes (Wilson, Taylor, Doherty, Ghaboussi 1973; made to pass the patch test as
    by Taylor, Beresford, Wilson 1976: the modes' derivatives use the Jacobian of the element's centre). It does not lock
    in bending. 2 x 2 x 2 Gauss points; the nine internal modes are condensed. */

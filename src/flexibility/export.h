@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The finite-element model of one member as an input file of Abaqus and CalculiX, to check our solver on its own mesh.
    Lengths in m, forces in N. A sector, or all teeth of a ring that is held; node set FLANK lists the
    loaded flank, rows in ascending s, layers in ascending eta within a row; FIXED is what is held. One

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Flexibility of a gear pair: 3-D finite elements of both members' bodies, once per pair, kept on disk; then the
    compliance between any points of the flanks and the stress in the roots, from cubic tensor splines (physics: Chang,
    Liu, Wu 2015). The body is the ring of all teeth, exact by its cyclic symmetry (flexibility/ring.h), or a sector of a

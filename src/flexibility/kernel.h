@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The one form in which a compliance reaches the contact solver: a matrix between points on the flanks of neighbouring
    tooth pairs. */
 #ifndef EASEOFF_FLEXIBILITY_KERNEL_H

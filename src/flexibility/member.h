@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* One member's finite-element results: compliance of its flank, coupling with the teeth around it, and root stress, all
    under unit normal loads on the nodes of the flank. Of a sector (the loaded tooth and its neighbours between fixed
    cuts), or of the whole ring from one tooth's sector (flexibility/ring.h). */

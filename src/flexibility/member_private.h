@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What the two ways to a member's flexibility share. */
 #ifndef EASEOFF_FLEXIBILITY_MEMBER_PRIVATE_H
 #define EASEOFF_FLEXIBILITY_MEMBER_PRIVATE_H

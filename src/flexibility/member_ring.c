@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "base/clock.h"
 #include "base/parallel.h"
 #include "flexibility/member_private.h"

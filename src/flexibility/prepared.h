@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The inside of a prepared flexibility, shared by its making and its evaluation. */
 #ifndef EASEOFF_FLEXIBILITY_PREPARED_H
 #define EASEOFF_FLEXIBILITY_PREPARED_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A whole gear body from one tooth's sector: z equal teeth between cut faces, each seen in a frame of its own that is
    turned by the pitch angle alpha = 2 pi / z from tooth to tooth (clockwise, as teeth are counted here). One set of
    matrices then serves all teeth, the ring's matrix is block circulant, and every harmonic k = 0 .. z/2 of the tooth

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Root stress of many load distributions at once: the stress influence of flank loads in the form coefficient x shape
    with a few dozen shapes, so that a history over the mesh cycle costs a small matrix product. The shapes are the
    stresses of some flank points, picked by pivoted Cholesky, and every other point is a combination of them. In single

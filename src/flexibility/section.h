@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The finite-element mesh of a transverse section: a sector of a few teeth, quadrilaterals. Per tooth a core block
    (columns across the tooth, rows from the tip down to the start of the active profile and on down to the bore) and two
    side blocks whose upper edge is the root from there to the middle of the tooth space (after the division of a tooth

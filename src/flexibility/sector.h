@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A section swept along the helix: bricks between layers, each layer the section turned by eta tan(beta)/r. Every layer
    uses its own turned frame; in it all layers are alike, so one layer of elements is computed and put in everywhere. */
 #ifndef EASEOFF_FLEXIBILITY_SECTOR_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Cubic splines through values at given points, with the not-a-knot end condition (de Boor 1978), as coefficients of
    B-splines: four of them are different from zero at any place. */
 #ifndef EASEOFF_FLEXIBILITY_SPLINE_H

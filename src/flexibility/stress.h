@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Stress in the free surface of the loaded root, from the strains of that surface: no stress acts across it, so plane
    stress holds in it. First and second order of the surface by central differences of the nodes; exact for any linear
    displacement. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Everything that is wrong with an input, not only the first thing. */
 #ifndef EASEOFF_FORMAT_FAULTS_H
 #define EASEOFF_FORMAT_FAULTS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Several files that belong together: composed in memory, written under temporary names, then renamed, so that a folder
    holds all of them or none of them anew. */
 #ifndef EASEOFF_FORMAT_FILE_SET_H

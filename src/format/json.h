@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* JSON text in and out, on top of jansson (RFC 8259). Reading is strict: bounded size and depth, no duplicate keys,
    every number a finite double or a 64 bit integer. Writing gives the shortest decimals that read back as the same
    doubles. */

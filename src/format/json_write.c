@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
@@ -6,8 +7,6 @@
 #include "format/json.h"
 
 enum { LINE = 110 }; /* columns up to which a value stays on one line */
-
-/* ---- numbers ---- */
 
 enum { EXACT_POWER = 22 }; /* the largest power of ten that is a double */
 static const double power[EXACT_POWER + 1] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8,  1e9,  1e10, 1e11,

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* JSON objects as they are written: numbers with their unit and digits, keys in the order of an outline. */
 #ifndef EASEOFF_FORMAT_OBJECT_H
 #define EASEOFF_FORMAT_OBJECT_H

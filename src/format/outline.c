@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "format/outline.h"
 
 #include <math.h>
@@ -24,8 +25,6 @@ const struct eo_outline_row *eo_outline_at(const struct eo_outline *outline, int
 {
   return walk(outline, &index);
 }
-
-/* ---- writing ---- */
 
 static bool may_be_null(const struct eo_outline_row *row)
 {
@@ -129,8 +128,6 @@ json_t *eo_outline_encode(const struct eo_outline *outline, const void *source)
   return eo_object_close(&object);
 }
 
-/* ---- parts of documents ---- */
-
 static json_t *take_each(const struct eo_outline *outline, const json_t *array)
 {
   struct eo_object list = {.json = json_array()};
@@ -155,8 +152,6 @@ json_t *eo_outline_take(const struct eo_outline *outline, const json_t *document
   }
   return eo_object_close(&o);
 }
-
-/* ---- schema ---- */
 
 static json_t *reference(const struct eo_outline_row *row)
 {

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Outlines: what stands in a document that the program writes, one outline per object, its rows in the order of
    writing. A row says of which member of a struct its value is, or names the function that writes it; so the same row
    writes a key (eo_outline_encode()) and describes it in the API. Where code must put the values itself (a part of a

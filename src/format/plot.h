@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Line plots as SVG (1.1) that stands alone or inside an HTML page: axes with round numbers, grid, legend; colours by
    CSS classes with attributes as a fallback, so that a page may restyle them. */
 #ifndef EASEOFF_FORMAT_PLOT_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "format/schema.h"
 
 #include <math.h>
@@ -67,8 +68,6 @@ static json_t *list_choices(const struct eo_field *field)
   return NULL;
 }
 
-/* ---- for the form ---- */
-
 static json_t *list_fields(const struct eo_table *table);
 
 static void put_range(struct eo_object *o, const struct eo_field *field)
@@ -133,8 +132,6 @@ json_t *eo_table_fields(const struct eo_table *table)
   eo_object_put(&o, "fields", list_fields(table));
   return eo_object_close(&o);
 }
-
-/* ---- JSON Schema ---- */
 
 static void put_type(struct eo_object *o, const char *type, bool nullable)
 {

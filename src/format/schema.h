@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Field tables described for programs: the page's form and the API's description. Both say what decode() accepts and
    encode() writes. */
 #ifndef EASEOFF_FORMAT_SCHEMA_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Field tables: one table per struct says how its members stand in a JSON object. The same table decodes, encodes,
    checks ranges, fills in defaults and describes itself (the page's form, the API's description, --help). Units are
    converted here and nowhere else. */

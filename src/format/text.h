@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A text that grows, and its way to a file: everything is composed first and written in one go, so that no reader ever
    finds half of it. */
 #ifndef EASEOFF_FORMAT_TEXT_H

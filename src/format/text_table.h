@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Rows and columns for people (aligned text) and for spreadsheets (CSV, RFC 4180). */
 #ifndef EASEOFF_FORMAT_TEXT_TABLE_H
 #define EASEOFF_FORMAT_TEXT_TABLE_H

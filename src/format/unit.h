@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Units of the document. Inside the program everything is SI; a key's suffix names the unit outside. */
 #ifndef EASEOFF_FORMAT_UNIT_H
 #define EASEOFF_FORMAT_UNIT_H

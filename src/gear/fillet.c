@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The root of a generated tooth: the trochoid of the rack's rounded tip and the root circle between two trochoids. */
 #include "gear/geometry.h"
 

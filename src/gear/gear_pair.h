@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A gear pair as its drawing states it, and its material. */
 #ifndef EASEOFF_GEAR_GEAR_PAIR_H
 #define EASEOFF_GEAR_GEAR_PAIR_H

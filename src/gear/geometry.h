@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Macro-geometry of a cylindrical involute pair (ISO 21771:2007; basic rack ISO 53:1998). One end; both ends share it
    but for the hand. */
 #ifndef EASEOFF_GEAR_GEOMETRY_H

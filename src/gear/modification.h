@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Micro-geometry: what is taken off a flank, as one function delta(u, x) ((F1) to (F4) of doc/theory.md: three
    parabolas and a lead parabola). u: profile coordinate k_u sigma, m from the pitch point, + towards the member's own
    tip; x = eta / cos(beta), m from mid face. */

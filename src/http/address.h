@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Where to listen: "127.0.0.1:8080", "[::1]:0", "localhost:8080". */
 #ifndef EASEOFF_HTTP_ADDRESS_H
 #define EASEOFF_HTTP_ADDRESS_H

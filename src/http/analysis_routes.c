@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Questions about a design that are answered at once: checking it, analysing it, sweeping it. */
 #include <stdio.h>
 #include <stdlib.h>
@@ -32,8 +33,6 @@ static void check(struct eo_request *request)
                             "prepared", eo_service_is_prepared(request->http->service, &design)));
 }
 
-/* ---- analyses ---- */
-
 static void put_analysis(struct eo_request *request, const struct eo_design *design, const struct eo_warnings *warnings)
 {
   enum eo_admission admission;
@@ -62,8 +61,6 @@ static void analyze(struct eo_request *request)
   if (body && eo_request_design(request, body, "", &design, &geometry, &warnings))
     put_analysis(request, &design, &warnings);
 }
-
-/* ---- sweeps ---- */
 
 struct sweep_order {
   const json_t *design;

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Requests that take longer than a moment but need no gear pair (histories, exported files): one thread with a
    connection to the database of its own works them off, so that the HTTP thread need not. */
 #ifndef EASEOFF_HTTP_BACKGROUND_H

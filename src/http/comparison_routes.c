@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Measurements beside the prediction, the fit of inputs that nobody knows, and recordings of a rig that does not exist.
  */
 #include <math.h>
@@ -30,8 +31,6 @@ static void ask(struct eo_request *request, const struct eo_design *design, stru
   enum eo_code code = eo_service_compute(request->http->service, &question, work, &admission, &job, &error);
   eo_reply_unless_accepted(request, code, admission, job, &error);
 }
-
-/* ---- measurements of a design ---- */
 
 struct collected {
   struct eo_rig_points points;
@@ -125,8 +124,6 @@ static void compare_one(struct eo_request *request)
   eo_rig_points_done(&c.points);
 }
 
-/* ---- fit ---- */
-
 /* What a fit works on besides its unknowns. */
 struct basis {
   json_t *wanted; /* owned; NULL: all measurements */
@@ -202,8 +199,6 @@ static void fit(struct eo_request *request)
   json_decref(basis.wanted);
   json_decref(basis.given);
 }
-
-/* ---- synthetic recordings ---- */
 
 struct rig_order {
   const json_t *design;

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Between requests, for header fields, for a body, for taking a reply there is a time. The library's own timeout starts
    again with every byte, so that a client which drips would stay for ever. */
 #include "http/connection.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Who is connected, and for how long a client may keep a connection busy. */
 #ifndef EASEOFF_HTTP_CONNECTION_H
 #define EASEOFF_HTTP_CONNECTION_H

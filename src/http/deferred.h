@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Replies that come later: a handler defers its request and hands it to somebody who finishes it once, from any thread;
    the connection sleeps meanwhile. */
 #ifndef EASEOFF_HTTP_DEFERRED_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Stored designs. The revision is the entity tag, so that nobody overwrites what he has not seen. */
 #include <stdio.h>
 #include <stdlib.h>
@@ -28,8 +29,6 @@ static void reply_found(struct eo_request *request, unsigned status, struct eo_f
   snprintf(request->reply.tag, sizeof request->reply.tag, "%s", found->tag);
   request->reply.revalidate = true;
 }
-
-/* ---- reading ---- */
 
 static void get_one(struct eo_request *request)
 {
@@ -81,8 +80,6 @@ static void list(struct eo_request *request)
   eo_reply_json(&request->reply, 200,
                 json_pack("{s:o, s:o}", "items", page.items, "next", page.more ? json_string(cursor) : json_null()));
 }
-
-/* ---- writing ---- */
 
 /* A body is a design, or a design with a name. */
 struct order {

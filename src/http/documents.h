@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Documents that do not change while the server runs: OpenAPI, the field tables for the form, the examples. */
 #ifndef EASEOFF_HTTP_DOCUMENTS_H
 #define EASEOFF_HTTP_DOCUMENTS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Job events as Server-Sent Events. */
 #include "http/route.h"
 #include "http/http_private.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "http/guard.h"
 
 #include <math.h>
@@ -27,8 +28,6 @@ enum eo_code eo_guard_new(struct eo_guard **result, const struct eo_http_setting
   return EO_OK;
 }
 
-/* ---- token ---- */
-
 static bool bears_token(const struct eo_request *request, const char *token)
 {
   const char *given = eo_request_header(request, "Authorization");
@@ -47,8 +46,6 @@ bool eo_guard_knows(const struct eo_request *request)
   const struct eo_guard *guard = request->http->guard;
   return !guard->token || bears_token(request, guard->token) || has_session(request, guard->session);
 }
-
-/* ---- names ---- */
 
 static bool is_own_name(const struct eo_guard *guard, const char *host)
 {
@@ -95,8 +92,6 @@ bool eo_guard_admits(struct eo_request *request)
     return true;
   return false;
 }
-
-/* ---- rates ---- */
 
 /* What may come at once, and how many more every second. */
 static const struct {

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Who may ask for what. Without a token: only what comes for this machine by its own name (a page of another site
    cannot get through by bending its name to this address), and nothing that changes something from another site's page.
    With one: whoever has it. */

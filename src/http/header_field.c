@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "http/header_field.h"
 
 #include <arpa/inet.h>
@@ -41,8 +42,6 @@ bool eo_field_is_visible(const char *text, size_t size)
       return false;
   return length > 0 && length < size;
 }
-
-/* ---- lists ---- */
 
 struct item {
   const char *text; /* borrowed */
@@ -140,8 +139,6 @@ int eo_field_wait(const char *header)
   return 0;
 }
 
-/* ---- host ---- */
-
 static bool is_port(const char *text)
 {
   size_t digits = strspn(text, "0123456789");
@@ -174,8 +171,6 @@ bool eo_field_host_is_address(const char *host)
   return inet_pton(AF_INET, host, &address) == 1 || inet_pton(AF_INET6, host, &address) == 1;
 }
 
-/* ---- secrets ---- */
-
 bool eo_field_cookie(const char *header, const char *name, char *value, size_t size)
 {
   size_t length = strlen(name);
@@ -202,8 +197,6 @@ bool eo_field_equal_secret(const char *given, const char *expected)
     different |= (unsigned char)(expected[i] ^ given[have ? i % have : 0]);
   return !different && length > 0;
 }
-
-/* ---- paths ---- */
 
 bool eo_field_path_is_plain(const char *path)
 {

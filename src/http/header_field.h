@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What stands in header fields, paths and queries, read without trust: no allocation, no state, any bytes may come. */
 #ifndef EASEOFF_HTTP_HEADER_FIELD_H
 #define EASEOFF_HTTP_HEADER_FIELD_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What the server says about itself. */
 #include <stdio.h>
 #include <string.h>
@@ -28,8 +29,6 @@ static void get_health(struct eo_request *request)
                              good ? "ok" : "failing", "warnings", warnings);
   eo_reply_json(&request->reply, good ? 200 : 503, health);
 }
-
-/* ---- metrics: the text format of Prometheus ---- */
 
 static void describe(struct eo_text *text, const char *name, const char *type, const char *help)
 {

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What was evaluated: by one job, and by all. */
 #include "http/job_reply.h"
 #include "http/route.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The HTTP server: the only user of libmicrohttpd. One thread serves all connections and never computes or waits;
    designs, jobs and what-if questions go to the service (service/service.h), which answers from its own threads. */
 #ifndef EASEOFF_HTTP_HTTP_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What the files of src/http/ share of the running server. */
 #ifndef EASEOFF_HTTP_HTTP_PRIVATE_H
 #define EASEOFF_HTTP_HTTP_PRIVATE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What several groups of endpoints say about jobs. */
 #ifndef EASEOFF_HTTP_JOB_REPLY_H
 #define EASEOFF_HTTP_JOB_REPLY_H

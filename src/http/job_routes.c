@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Jobs: ordering them, looking at them, stopping them. */
 #include <math.h>
 #include <stdio.h>
@@ -23,8 +24,6 @@ static void reply_job(struct eo_request *request, unsigned status, enum eo_code 
   }
   eo_job_view_done(job);
 }
-
-/* ---- ordering ---- */
 
 struct order {
   int kind; /* enum eo_job_kind */
@@ -104,8 +103,6 @@ static void repeat(struct eo_request *request)
   reply_job(request, 202, code, outcome, &job, &error);
 }
 
-/* ---- looking ---- */
-
 /* -1: any. */
 static int find(const char *name, int (*find_named)(const char *name))
 {
@@ -183,8 +180,6 @@ static void get_generations(struct eo_request *request)
     eo_reply_json(&request->reply, 200, eo_job_convergence_encode(&convergence));
   eo_job_convergence_done(&convergence);
 }
-
-/* ---- changing ---- */
 
 typedef enum eo_code change_function(struct eo_service *, int64_t, enum eo_job_outcome *, struct eo_job_view *,
                                      struct eo_error *);

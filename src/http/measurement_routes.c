@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Stored measurements of a rig: lists, results, the files as they came. */
 #include <errno.h>
 #include <fcntl.h>
@@ -13,8 +14,6 @@
 #include "http/upload.h"
 
 enum { MOST_LISTED = 200 };
-
-/* ---- reading ---- */
 
 static void get_one(struct eo_request *request)
 {
@@ -86,8 +85,6 @@ static void take_out(struct eo_request *request)
   else
     eo_reply_empty(&request->reply, 204);
 }
-
-/* ---- the file as it came ---- */
 
 static enum eo_code visit_files(void *context, const struct eo_stored_measurement *row, struct eo_error *error)
 {

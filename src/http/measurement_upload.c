@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What is uploaded is read and measured on a thread of its own, and kept only when that gave a result. */
 #include "http/measurement_upload.h"
 
@@ -76,8 +77,6 @@ static bool find_design(struct eo_request *request, struct asked *asked)
   return false;
 }
 
-/* ---- check sums ---- */
-
 static enum eo_code hash_file(const char *path, char sha256[EO_HASH_LENGTH + 1], struct eo_error *error)
 {
   enum { BLOCK = 64 << 10 };
@@ -128,8 +127,6 @@ static void write_request_digest(const struct asked *asked, const struct eo_uplo
   eo_hash_finish(&hash, digest);
   eo_text_done(&layout);
 }
-
-/* ---- reading and keeping ---- */
 
 static int watch(void *context, const char *what, double fraction)
 {

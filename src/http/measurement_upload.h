@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* POST /measurements. */
 #ifndef EASEOFF_HTTP_MEASUREMENT_UPLOAD_H
 #define EASEOFF_HTTP_MEASUREMENT_UPLOAD_H

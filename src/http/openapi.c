@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "http/openapi.h"
 
 #include <ctype.h>
@@ -24,8 +25,6 @@ static json_t *reference_any(const char *names)
     return reference(names, length);
   return json_pack("{s:[o, o]}", "anyOf", reference(names, length), reference_any(names + length + 1));
 }
-
-/* ---- parameters ---- */
 
 static json_t *encode_parameter(const char *name, size_t length, const char *place, json_t *schema, const char *help)
 {
@@ -72,8 +71,6 @@ static void add_queries(json_t *list, const struct eo_route *route)
                                                  query->help));
 }
 
-/* ---- names in lists: "If-Match, Prefer"; "200 Result, 202 Preparing" ---- */
-
 static bool next_name(const char **list, const char **name, size_t *length)
 {
   *list += strspn(*list, ", ");
@@ -103,8 +100,6 @@ static void add_headers(json_t *list, const char *headers)
         json_array_append_new(
             list, encode_parameter(name, length, "header", json_pack("{s:s}", "type", "string"), known[i].help));
 }
-
-/* ---- answers ---- */
 
 static json_t *encode_content(const char *what, size_t length, bool csv)
 {
@@ -142,8 +137,6 @@ static json_t *encode_answers(const struct eo_route *route)
                                 "application/problem+json", "schema", reference("Problem", 7)));
   return answers;
 }
-
-/* ---- operations ---- */
 
 static json_t *encode_operation(const struct eo_route *route)
 {

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The page's files: read into memory when the server starts, served from this list and nothing else. */
 #ifndef EASEOFF_HTTP_PAGES_H
 #define EASEOFF_HTTP_PAGES_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "http/reply.h"
 
 #include <stdarg.h>
@@ -44,8 +45,6 @@ void eo_reply_empty(struct eo_reply *reply, unsigned status)
   reply->status = status;
   reply->type = NULL;
 }
-
-/* ---- problems ---- */
 
 static const char *title_of(unsigned status)
 {

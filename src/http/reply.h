@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A reply while it is made: what it says and the header fields beside. It knows no request; send.h hands it to the
    connection. This header is for src/http/ alone. */
 #ifndef EASEOFF_HTTP_REPLY_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* One request on its way: what came, and the reply that is being made. A handler reads the one, fills the other and
    returns; it runs on the HTTP thread and never waits. What takes longer is deferred (deferred.h). This header is for
    src/http/ alone. */

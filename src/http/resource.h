@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Something that is served as it was made when the server started: bytes, and the same bytes compressed. */
 #ifndef EASEOFF_HTTP_RESOURCE_H
 #define EASEOFF_HTTP_RESOURCE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "http/route.h"
 
 #include <stdio.h>
@@ -65,8 +66,6 @@ bool eo_route_find(struct eo_request *request)
   return false;
 }
 
-/* ---- query ---- */
-
 static bool is_word_of(const char *words, const char *word)
 {
   size_t length = strlen(word);
@@ -129,8 +128,6 @@ double eo_route_number(const struct eo_request *request, const char *name)
       return query->fallback;
   return 0;
 }
-
-/* ---- handler ---- */
 
 void eo_route_run(struct eo_request *request)
 {

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Every address of the API, in one table: from it come the dispatch, 405 and Allow, OPTIONS, the check of query
    parameters and the OpenAPI document. Each group of endpoints has its own file with its own part of the table. */
 #ifndef EASEOFF_HTTP_ROUTE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "http/routes.h"
 
 const struct eo_route *const eo_routes[] = {eo_routes_service,      eo_routes_session,    eo_routes_examples,

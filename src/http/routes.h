@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* All tables of routes. */
 #ifndef EASEOFF_HTTP_ROUTES_H
 #define EASEOFF_HTTP_ROUTES_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The documents of the API as JSON Schemas, "components" of OpenAPI: what comes in is described by the field tables of
    the routes, what goes out by outlines. */
 #ifndef EASEOFF_HTTP_SCHEMAS_H

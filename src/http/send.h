@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The reply on its way: header fields, compression, and what the connection may take for it. */
 #ifndef EASEOFF_HTTP_SEND_H
 #define EASEOFF_HTTP_SEND_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "http/http_private.h"
 
 #include <stdio.h>
@@ -25,8 +26,6 @@
 #include "http/ticker.h"
 #include "http/upload.h"
 #include "store/measurements.h"
-
-/* ---- one request ---- */
 
 static bool is_for_api(const char *path)
 {
@@ -181,8 +180,6 @@ static void complete(void *context, struct MHD_Connection *connection, void **pl
   eo_request_free(request);
   *place = NULL;
 }
-
-/* ---- life ---- */
 
 static enum eo_code check_access(const struct eo_http_settings *settings, struct eo_error *error)
 {

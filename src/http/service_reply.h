@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Between endpoints and the service: questions that are answered from its threads, and what its answers are as replies.
  */
 #ifndef EASEOFF_HTTP_SERVICE_REPLY_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The token of a page: given once, kept by the browser as a cookie that no script can read and no other site can send.
  */
 #include <stdio.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Stored designs as documents, and as designs. */
 #ifndef EASEOFF_HTTP_STORED_DESIGN_H
 #define EASEOFF_HTTP_STORED_DESIGN_H

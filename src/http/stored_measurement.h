@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Stored measurements as documents: written as text, since their results are kept as text. */
 #ifndef EASEOFF_HTTP_STORED_MEASUREMENT_H
 #define EASEOFF_HTTP_STORED_MEASUREMENT_H

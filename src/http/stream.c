@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "http/connection.h"
 #include "http/http_private.h"
 #include "http/stream.h"
@@ -17,8 +18,6 @@ struct eo_stream {
   bool opened; /* what was missed is there, from here on the backlog counts */
   bool suspended, ended;
 };
-
-/* ---- with the server's lock held ---- */
 
 static void wake(struct eo_stream *stream)
 {
@@ -75,8 +74,6 @@ static void forget_taken(struct eo_stream *stream)
   stream->waiting.size = left;
   stream->taken = 0;
 }
-
-/* ---- what the library and the service call ---- */
 
 static ssize_t read_stream(void *context, uint64_t position, char *buffer, size_t most)
 {
@@ -136,8 +133,6 @@ static void take_event(void *context, const struct eo_service_event *event)
   pthread_mutex_unlock(&stream->http->lock);
   eo_text_done(&text);
 }
-
-/* ---- opening ---- */
 
 static const char hello[] = "retry: 2000\n\n"; /* ms until a client comes back */
 

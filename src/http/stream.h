@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Server-Sent Events (HTML Living Standard 9.2): each client's stream listens to the service by itself and keeps what
    it has not taken yet. */
 #ifndef EASEOFF_HTTP_STREAM_H

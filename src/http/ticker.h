@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The thread that looks once a second whose time is over, and keeps event streams alive. */
 #ifndef EASEOFF_HTTP_TICKER_H
 #define EASEOFF_HTTP_TICKER_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "http/connection.h"
 #include "http/upload.h"
 
@@ -18,8 +19,6 @@
 
 enum { BUFFER = 64 << 10, SLOWEST = 64 << 10 }; /* bytes; bytes per second */
 
-/* ---- names ---- */
-
 /* A file's name without folders of any system, in one line, within its place. */
 static void clean_name(char *target, size_t size, const char *name)
 {
@@ -33,8 +32,6 @@ static void clean_name(char *target, size_t size, const char *name)
   if (!*target || strcmp(target, ".") == 0 || strcmp(target, "..") == 0)
     snprintf(target, size, "recording");
 }
-
-/* ---- parts ---- */
 
 static enum MHD_Result refuse(struct eo_request *request, unsigned status, const char *what)
 {
@@ -155,8 +152,6 @@ static enum MHD_Result take_part(void *context, enum MHD_ValueKind kind, const c
     return MHD_YES;
   return upload->in_file ? add_to_file(request, data, size) : add_to_field(request, data, size);
 }
-
-/* ---- the whole ---- */
 
 static bool has_room(struct eo_request *request, const struct eo_upload *upload, int64_t size)
 {

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A multipart/form-data body (RFC 7578) on its way to the disk: its files go to a folder of their own as they come, its
    other parts are kept as texts. Nothing of it counts until the store takes the folder over; it goes away with the
    request otherwise. */

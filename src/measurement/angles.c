@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "measurement/angles_private.h"
 
 #include <math.h>
@@ -18,8 +19,6 @@ struct eo_finding *eo_angles_at_row(const struct eo_angles_maker *m, struct eo_f
   finding->line = line_of(m, row);
   return finding;
 }
-
-/* ---- before anything is converted ---- */
 
 static void judge_time(struct eo_angles_maker *m)
 {
@@ -136,8 +135,6 @@ static void judge_turns(struct eo_angles_maker *m, int channel)
                   turn / m->sampler.scale[channel], c->jumps);
 }
 
-/* ---- raw tracks ---- */
-
 static enum eo_code fit_ellipses(struct eo_angles_maker *m, struct eo_angles *a, struct eo_error *error)
 {
   struct eo_ellipse_sums sums[2];
@@ -244,8 +241,6 @@ static enum eo_code convert(struct eo_angles_maker *m, struct eo_angles *a, stru
   free(out);
   return code;
 }
-
-/* ---- afterwards ---- */
 
 /* The median over the blocks that move. */
 static double usual_rate(double *rate, int blocks)

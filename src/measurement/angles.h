@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* From columns to two angles over time: raw tracks corrected and interpolated, turns counted, rows without numbers left
    out, gaps and jumps found. What can be repaired without a guess is repaired and said; what cannot is a refusing
    finding. */

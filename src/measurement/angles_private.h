@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The making of angles from the inside: angles.c reads, corrects and concludes, jumps.c finds what is missing, doubled
    or far off between one sample and the next. */
 #ifndef EASEOFF_MEASUREMENT_ANGLES_PRIVATE_H

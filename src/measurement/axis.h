@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The order axis: the angle that the pinion was measured at. Orders belong to the angle, not to the time, so no change
    of speed smears them. What the pinion's encoder itself does to the axis is taken out again: the shaft orders of an
    eccentric encoder move the mesh by a phase e(theta), which takes the mesh order h down to J0(h z |e|) of itself;

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The residual of the fit beside every mesh order: noise between the orders of the shafts, what repeats with them,
    sidebands. */
 #ifndef EASEOFF_MEASUREMENT_BESIDE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "measurement/comparison.h"
 
 #include <math.h>
@@ -20,8 +21,6 @@ void eo_measured_take(struct eo_measured *m, const struct eo_transmission *t, co
   for (int i = 0; i < findings->count && i < EO_MAX_FINDINGS; i++)
     m->warnings += findings->finding[i].severity >= EO_SEVERITY_WARNING;
 }
-
-/* ---- phase ---- */
 
 static double likeness_at(const struct eo_measured *m, const struct eo_rig_prediction *p, double shift)
 {
@@ -70,8 +69,6 @@ void eo_comparison_curves(const struct eo_measured *m, const struct eo_compared 
       predicted_curve[i] += creal(c->prediction.order[h - 1] * cexp(2 * M_PI * I * h * (phase + c->shift)));
   }
 }
-
-/* ---- outliers ---- */
 
 static int ascending(const void *a, const void *b)
 {
@@ -136,8 +133,6 @@ static void judge_point(struct eo_comparison *c, const struct eo_measured *m, in
     snprintf(p->reason + strlen(p->reason), sizeof p->reason - strlen(p->reason),
              " The recording itself carries %d warnings.", m[at].warnings);
 }
-
-/* ---- reductions ---- */
 
 static bool reduce(const struct eo_comparison *c, const struct eo_measured *m, int at, struct eo_reduction *r)
 {

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The ellipse that the sine and cosine tracks of an encoder draw, and the angle on it (Heydemann 1981): offsets,
    unequal gain and a phase that is not 90 degrees, from a least squares conic through the samples. */
 #ifndef EASEOFF_MEASUREMENT_ELLIPSE_H

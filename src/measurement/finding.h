@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What the checks of a recording found: each with its evidence, in plain words. A recording with a refusing finding has
    no result. */
 #ifndef EASEOFF_MEASUREMENT_FINDING_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "measurement/load.h"
 
 #include <math.h>
@@ -93,8 +94,6 @@ enum eo_code eo_load_read(struct eo_load *load, const struct eo_recording *recor
   free(block);
   return code;
 }
-
-/* ---- judgement ---- */
 
 static void judge_torque(struct eo_load *load, const struct eo_load_known *known, struct eo_findings *findings)
 {

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Torque and speed columns of a recording over the part that is measured, and what they say against what was stated. */
 #ifndef EASEOFF_MEASUREMENT_LOAD_H
 #define EASEOFF_MEASUREMENT_LOAD_H

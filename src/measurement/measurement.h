@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A rig recording to its result: the one place where the order angles -> which is which -> transmission error -> orders
    is written. */
 #ifndef EASEOFF_MEASUREMENT_MEASUREMENT_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Which channel is which: the ratio of the speeds against the tooth numbers, directions, units and the stated speed. */
 #ifndef EASEOFF_MEASUREMENT_ORIENTATION_H
 #define EASEOFF_MEASUREMENT_ORIENTATION_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "measurement/parts.h"
 
 #include <math.h>
@@ -37,8 +38,6 @@ struct finder {
   int turns;
   double turns_each; /* pinion turns between them */
 };
-
-/* ---- rows in order ---- */
 
 typedef void row_function(struct finder *f, int64_t index, const double row[3]);
 
@@ -132,8 +131,6 @@ static void find_runs(struct finder *f, double fast)
   }
 }
 
-/* ---- whole turns ---- */
-
 static void add_turn(struct finder *f, int64_t index, const double row[3])
 {
   double angle = fabs(row[1] - f->turn[0].angle);
@@ -190,8 +187,6 @@ static void find_steady(const struct finder *f, int *from, int *to)
     begin = i + 1;
   }
 }
-
-/* ---- the choice ---- */
 
 static const double RPM = 30 / M_PI;
 

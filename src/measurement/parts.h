@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Which rows of a recording are measured: the shafts may stand still at its start and end, turn back, run up, or change
    from one steady state to another. Everything here is said in findings; the caller may choose. */
 #ifndef EASEOFF_MEASUREMENT_PARTS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What two encoders at one end of a design would measure: the mesh orders of the transmission error from the simulated
    vibration. */
 #ifndef EASEOFF_MEASUREMENT_PREDICTION_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The pulses of one encoder with the line that each of them is: pulses that are there twice left out, lines that gave
    none counted on, the gap of a wheel with missing teeth recognised. */
 #ifndef EASEOFF_MEASUREMENT_PULSE_TRAIN_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Pulse times as angles: line k of an encoder with N lines passes at the angle 2 pi k / N. The samples stand at
    the pulses of the pinion; the angle of the gear there comes from Lagrange's polynomial through the twelve gear pulses
    around (below 1e-4 of a harmonic that has seven pulses per period); none stands where a line of the gear is missing.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The rows of a recording as time and two continuous angles, one after the other: the inside of eo_angles_make(). */
 #ifndef EASEOFF_MEASUREMENT_SAMPLER_H
 #define EASEOFF_MEASUREMENT_SAMPLER_H

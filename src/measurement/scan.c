@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "measurement/scan.h"
 
 #include <math.h>
@@ -21,8 +22,6 @@ double eo_scan_quantile(double *value, int count, double share)
   qsort(value, (size_t)count, sizeof *value, ascending);
   return value[(int)(share * (count - 1) + 0.5)];
 }
-
-/* ---- samples of all rows: what is usual ---- */
 
 static void learn_column(struct eo_scan_column *c, const double *rows, int count, int columns, int column,
                          double *scratch)
@@ -64,8 +63,6 @@ static double typical_interval(const struct eo_tracks *t, const double *rows, in
   }
   return eo_scan_quantile(scratch, steps, 0.5);
 }
-
-/* ---- every row ---- */
 
 static bool usable(const struct eo_tracks *t, const double *row)
 {
@@ -216,8 +213,6 @@ enum eo_code eo_scan_run(struct eo_scan *s, const struct eo_recording *recording
   free(rows);
   return code;
 }
-
-/* ---- what it tells ---- */
 
 double eo_scan_period(const struct eo_scan_column *c, double turn)
 {

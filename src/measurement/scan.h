@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* One pass over a recording before anything is made of it: ranges, steps, turns, rows that cannot be used. */
 #ifndef EASEOFF_MEASUREMENT_SCAN_H
 #define EASEOFF_MEASUREMENT_SCAN_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "measurement/synchronous.h"
 
 #include <math.h>
@@ -108,8 +109,6 @@ void eo_synchronous_add(struct eo_synchronous *s, int64_t row, double theta, dou
   }
   interpolate(s, theta, residual);
 }
-
-/* ---- afterwards ---- */
 
 static void average(int bins, const double *sum, const int64_t *count, double *mean)
 {

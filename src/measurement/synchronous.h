@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What is read from the samples beside the fit: averages over mesh cycle and turns, the spectrum over whole turns by
    interpolation and FFT, changes of level. Fed row by row. */
 #ifndef EASEOFF_MEASUREMENT_SYNCHRONOUS_H

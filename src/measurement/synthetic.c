@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "measurement/synthetic.h"
 
 #include <math.h>
@@ -158,8 +159,6 @@ static double channel_angle(const struct eo_synthetic *s, int64_t row, int chann
     angle -= 2 * M_PI * (double)s->size / s->lines[EO_GEAR];
   return channel == EO_GEAR && s->fault == EO_FAULT_REVERSED ? -angle : angle;
 }
-
-/* ---- rows ---- */
 
 /* The angle at the index pulse before it. */
 static double turn_begin(double angle)

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The terms of the least squares fit and their values along the rows: the inside of eo_transmission_measure(). */
 #ifndef EASEOFF_MEASUREMENT_TERMS_H
 #define EASEOFF_MEASUREMENT_TERMS_H

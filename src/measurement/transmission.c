@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "measurement/transmission.h"
 
 #include <math.h>
@@ -66,8 +67,6 @@ static double error_of(const struct worker *w, const double row[3])
 {
   return w->axis.sign * (w->settings->base_radius[EO_GEAR] * row[2] - w->settings->base_radius[EO_PINION] * row[1]);
 }
-
-/* ---- the axis ---- */
 
 static int greatest_divisor(int a, int b)
 {
@@ -172,8 +171,6 @@ static void judge_axis(struct worker *w)
                     per_turn, r->harmonics, w->settings->teeth[EO_PINION], r->asked);
 }
 
-/* ---- the fit ---- */
-
 static enum eo_code add_to_fit(struct worker *w, const double row[3], int64_t index, struct eo_error *error)
 {
   double theta = eo_axis_angle(&w->axis, row[1]), *terms = eo_normal_row(&w->normal);
@@ -204,8 +201,6 @@ static double complex amplitude_of(const struct worker *w, int at)
   const double *c = w->coefficient + w->terms.drift + 2 * at;
   return c[0] - I * c[1];
 }
-
-/* ---- the residual ---- */
 
 /* The parts of the transmission error at a row: drift, mesh orders, shaft orders. */
 static void parts_at(const struct worker *w, const double row[3], double theta, double part[3])
@@ -242,8 +237,6 @@ static enum eo_code add_residual(struct worker *w, const double row[3], int64_t 
     eo_waterfall_add(w->waterfall, row[0] - w->origin, theta, residual);
   return EO_OK;
 }
-
-/* ---- the encoder's own swing ---- */
 
 /* The fit of the share: what is left of the transmission error against what the swing would do to the mesh orders. */
 static enum eo_code add_swing(struct worker *w, const double row[3], int64_t index, struct eo_error *error)
@@ -296,8 +289,6 @@ static enum eo_code settle_axis(struct worker *w, struct eo_error *error)
   axis->share = fmax(0, 1 - off);
   return fit_terms(w, error);
 }
-
-/* ---- what it says ---- */
 
 static struct eo_order_line line_of(const struct worker *w, int at)
 {

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Transmission error of two measured angles, TE = r_b,gear phi_gear - r_b,pinion phi_pinion (transverse, along the line
    of action; the paper's (24) as printed exchanges the radii: a plausible signal, for 17:44 two to three times too
    large), and what least squares on its samples tell: drift, shaft orders and mesh orders together, over the measured

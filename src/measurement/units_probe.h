@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Degrees or radians, when neither turns nor a stated speed tell: in the right unit the transmission error has lines at
    the shaft and mesh orders, in the wrong one it has none there. */
 #ifndef EASEOFF_MEASUREMENT_UNITS_PROBE_H

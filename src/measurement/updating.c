@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "measurement/updating_private.h"
 
 #include <math.h>
@@ -11,8 +12,6 @@ static const double LEAST_MODEL_ERROR = 1e-4; /* no model of a gear pair is bett
 static const double POOR = 0.2; /* model error that the misfit would need: beyond, the inputs do not explain the data */
 static const double TWIN = 0.95, OPEN = 0.5;
 enum { ROUNDS = 3 }; /* of the model error with the minima */
-
-/* ---- the unknowns ---- */
 
 const char *const eo_unknown_names[EO_UNKNOWNS + 1] = {"pinion_bearing_stiffness_N_per_um",
                                                        "gear_bearing_stiffness_N_per_um",
@@ -84,8 +83,6 @@ double eo_fit_to_unit(const struct eo_update_range *r, double value)
   return fmin(1, fmax(0, x));
 }
 
-/* ---- residuals ---- */
-
 void eo_fit_begin(struct eo_fit *f, const char *stage, double from, double to, int expected)
 {
   f->stage = stage;
@@ -132,8 +129,8 @@ enum eo_code eo_fit_residuals(void *context, const double *x, double *residual, 
     return eo_error_set(error, EO_ERROR_CANCELLED, "", "Stopped.");
   for (int i = 0; i < f->count; i++) {
     const struct eo_measured *m = &f->measured[f->order[i]];
-    enum eo_code code = eo_prediction_run(&prediction, f->evaluator[f->with[i]], &f->trial, m->unmodified, m->torque, m->speed,
-                                          m->end, m->harmonics, error);
+    enum eo_code code = eo_prediction_run(&prediction, f->evaluator[f->with[i]], &f->trial, m->unmodified, m->torque,
+                                          m->speed, m->end, m->harmonics, error);
     if (code)
       return code;
     for (int h = 0; h < m->harmonics; h++) /* a state that is not found counts as none at all */
@@ -173,8 +170,6 @@ static enum eo_code make_evaluators(struct eo_fit *f, struct eo_error *error)
   return code;
 }
 
-/* ---- how good the model is ---- */
-
 static double sum_of_squares(int count, const double *value)
 {
   double sum = 0;
@@ -205,8 +200,6 @@ static double student(int freedom)
   return z + (pow(z, 3) + z) / (4 * v) + (5 * pow(z, 5) + 16 * pow(z, 3) + 3 * z) / (96 * v * v) +
          (3 * pow(z, 7) + 19 * pow(z, 5) + 17 * pow(z, 3) - 15 * z) / (384 * v * v * v);
 }
-
-/* ---- what the data tell ---- */
 
 /* Covariance (J'J)^-1 at the best values, with differences of a thousandth of the ranges. */
 static enum eo_code find_covariance(struct eo_fit *f, struct eo_update *u, const double *x, double *covariance,

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Inputs of a design that nobody knows, from measurements: least squares on the accelerations of the mesh orders within
    given ranges. Resonances make many minima: the search starts at many points and lists what it finds. The intervals
    come from the profile of the misfit, its least value over all other inputs; where the data cannot tell, that is

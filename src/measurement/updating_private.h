@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The fit of inputs from the inside: updating.c evaluates, updating_search.c looks for minima, updating_profile.c says
    how far the data let an input go. Everything happens in the unit cube of the ranges. */
 #ifndef EASEOFF_MEASUREMENT_UPDATING_PRIVATE_H
@@ -12,10 +13,10 @@ struct eo_fit {
   const struct eo_measured *measured;
   const struct eo_update_settings *settings;
   const struct eo_progress *progress;
-  struct eo_pair pair;            /* with an impact patch of its own */
+  struct eo_pair pair; /* with an impact patch of its own */
   int evaluators;
-  struct eo_evaluator *evaluator[EO_FIT_EVALUATORS]; /* on it, one for each loaded contact: supports and damping leave it
-                                                        as it was, and then it is not solved again */
+  struct eo_evaluator *evaluator[EO_FIT_EVALUATORS]; /* on it, one for each loaded contact: supports and damping leave
+                                                        it as it was, and then it is not solved again */
   struct eo_design trial;
   int with[EO_MOST_MEASURED];  /* evaluator of each place in the order */
   int order[EO_MOST_MEASURED]; /* measurements with the same loaded contact after each other: the evaluator solves it

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "measurement/updating_private.h"
 
 #include <math.h>

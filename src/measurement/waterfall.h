@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Order tracks: the mesh orders of successive stretches of a recording, with the speed of each, from the residual of
    the fit over all of it. */
 #ifndef EASEOFF_MEASUREMENT_WATERFALL_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Small dense matrices by LAPACK and BLAS: linear systems, products, eigenvalues. Row-major everywhere. No allocation
    but where stated. The functions are pure; a caller that wants the same bytes on every machine load keeps BLAS on one
    thread. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What the users of SUNDIALS share: a context, the unknowns, and the dense matrix of Newton's method with its solver.
    For one thread. */
 #ifndef EASEOFF_NUMERICS_DENSE_NEWTON_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Small dense systems (a few hundred unknowns) by LAPACK. Matrices are column-major. One object per thread; results
    repeat bit for bit as long as BLAS runs on one thread. */
 #ifndef EASEOFF_NUMERICS_FACTOR_H

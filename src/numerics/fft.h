@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Fast Fourier transform of 2^k samples (Cooley and Tukey 1965). */
 #ifndef EASEOFF_NUMERICS_FFT_H
 #define EASEOFF_NUMERICS_FFT_H

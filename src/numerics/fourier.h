@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Real Fourier series over a phase of period 1: series[1 + 2 order] = mean, cos 1, sin 1, cos 2, sin 2, ...
    f(phase) = series[0] + sum_k series[2k-1] cos(2 pi k phase) + series[2k] sin(2 pi k phase). */
 #ifndef EASEOFF_NUMERICS_FOURIER_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The small dense kernel of loaded contact and root stress, for matrices of a few dozen columns where a general library
    spends its time on being general: products with F, Newton's matrix H = I + F' W F bordered by one row, its inverse,
    and a product of matrices whose rows do not depend on each other. Vector code, compiled for the instruction sets a

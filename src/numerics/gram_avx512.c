@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* For processors with AVX-512: thirty-two registers of 64 bytes. */
 #if defined(__x86_64__)
 #include <immintrin.h>

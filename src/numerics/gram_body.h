@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The kernel for one width of vectors, compiled once per version: the file that includes this one says
    VERSION, NAME        what the version is called
    TARGET               what the processor must have
@@ -36,8 +37,6 @@ typedef float quad __attribute__((vector_size(16), aligned(16), may_alias));
 #endif
 
 #define INLINE TARGET static inline __attribute__((always_inline))
-
-/* ---- products with a vector ---- */
 
 /* Eight partial sums to two. */
 INLINE pair fold(const lane part[PARTS])
@@ -155,8 +154,6 @@ TARGET static void blend(int rows, int stride, const float *f, const double *loa
     memcpy(sum + column, part, sizeof part);
   }
 }
-
-/* ---- Newton's matrix ---- */
 
 /* `rows` rows of A'A from `row` on over `lanes` vectors of columns from `column` on. */
 INLINE void square_tile(int rows, int lanes, int points, int stride, const float *a, int row, int column, float *matrix)
@@ -333,8 +330,6 @@ TARGET static void solve(int n, const float *inverse, const double *b, double *x
   for (int k = 0; k < n; k++)
     x[k] = (double)sum[k];
 }
-
-/* ---- product of matrices ---- */
 
 /* c = a b, or c += a b, over `rows` rows and `lanes` vectors of columns; the sums stay in registers over all of b's
    rows. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* For any processor: vectors of 16 bytes, which every x86-64 and every 64-bit ARM has. */
 #if defined(__SSE2__)
 #include <emmintrin.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The versions of the kernel, one file each: gram_plain.c, gram_avx2.c, gram_avx512.c. */
 #ifndef EASEOFF_NUMERICS_GRAM_PRIVATE_H
 #define EASEOFF_NUMERICS_GRAM_PRIVATE_H

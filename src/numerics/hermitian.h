@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Dense Hermitian positive definite systems by LAPACK. */
 #ifndef EASEOFF_NUMERICS_HERMITIAN_H
 #define EASEOFF_NUMERICS_HERMITIAN_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Nonlinear least squares in the unit cube: Levenberg and Marquardt with difference quotients, for expensive residuals.
  */
 #ifndef EASEOFF_NUMERICS_LEAST_SQUARES_H

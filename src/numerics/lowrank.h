@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Low-rank factor of a positive semi-definite matrix. */
 #ifndef EASEOFF_NUMERICS_LOWRANK_H
 #define EASEOFF_NUMERICS_LOWRANK_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Local minimum of a smooth function in a box. */
 #ifndef EASEOFF_NUMERICS_MINIMISE_H
 #define EASEOFF_NUMERICS_MINIMISE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "numerics/nonlinear.h"
 
 #include "numerics/dense_newton.h"

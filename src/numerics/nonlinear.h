@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Small dense systems of nonlinear equations r(x) = 0: Newton with line search (KINSOL). The only user of KINSOL.
    Newton's matrix is formed afresh in every iteration (Dennis and Schnabel 1983, chapter 6). */
 #ifndef EASEOFF_NUMERICS_NONLINEAR_H

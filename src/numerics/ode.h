@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Ordinary differential equations y' = f(t, y) of small size, not stiff but lightly damped: variable-order Adams with a
    dense Newton corrector (CVODE). The only user of CVODE. */
 #ifndef EASEOFF_NUMERICS_ODE_H

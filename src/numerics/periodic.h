@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Functions of the mesh phase given at equally spaced positions: periodic cubic spline, and harmonics. */
 #ifndef EASEOFF_NUMERICS_PERIODIC_H
 #define EASEOFF_NUMERICS_PERIODIC_H

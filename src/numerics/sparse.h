@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A sparse symmetric positive definite system and the part of its inverse that belongs to a few unknowns (CHOLMOD,
    supernodal L L'; Chen, Davis, Hager, Rajamanickam 2008). The few unknowns are ordered last: the last columns of L are
    then the Cholesky factor of their Schur complement, whose inverse is that part of the inverse of the whole matrix. */

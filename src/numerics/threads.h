@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Threads of the libraries below: none. Parallel work is ours alone (both members of a pair, candidates of a
    generation), so that a result does not depend on the machine and a busy one is not made busier. */
 #ifndef EASEOFF_NUMERICS_THREADS_H

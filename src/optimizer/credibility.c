@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* `credibility-ga`: a genetic algorithm whose true evaluations go where a surrogate promises most, doubted as far as it
    has not earned its credibility by leave-one-out (surrogate.h). Every member of its population is a true row.
 

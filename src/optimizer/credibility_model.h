@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What credibility-ga believes of the objective: a surrogate of some rows of the archive, their values cut off at the
    median (what is bad need not be known exactly), and its credibility by leave-one-out (surrogate.h). */
 #ifndef EASEOFF_OPTIMIZER_CREDIBILITY_MODEL_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Points that credibility-ga lets its model score before a few of them are truly evaluated: bred, or sampled. */
 #ifndef EASEOFF_OPTIMIZER_CREDIBILITY_POOL_H
 #define EASEOFF_OPTIMIZER_CREDIBILITY_POOL_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Evolution strategy with covariance matrix adaptation (CMA-ES; Hansen and Ostermeier 2001, parameters of Hansen 2016),
    one generation at a time: it goes along valleys whose floor has a kink, where a smooth surrogate sees no way down.
    Points are clipped to the unit cube, and it learns from what they became. */

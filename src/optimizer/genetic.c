@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* `ga` and `fpga`, the paper's fitness-predicted genetic algorithm (section 4); ga is fpga that never predicts: the
    same operators on the same random numbers. What was settled where the paper is silent:
    - decisions in batch order see the history as it was before the generation; sequential order is as the paper prints

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* `nsga2`: the Pareto front of the raw objectives, after Deb, Pratap, Agarwal, Meyarivan 2002, with surrogates between
    the generations: each cycle evolves a population on one surrogate per objective (and one of the constraint
    violation), starting from the best true rows, then verifies those of its best that add most to the true front. Only

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Real-coded genetic operators over the unit cube and the latin hypercube, all on the counter's random numbers. */
 #ifndef EASEOFF_OPTIMIZER_OPERATORS_H
 #define EASEOFF_OPTIMIZER_OPERATORS_H

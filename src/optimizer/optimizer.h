@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Optimizers over the unit cube, ask and tell: they know x[n] -> value, no gear, no file, no clock.
 
      eo_optimizer_defaults(&settings, EO_CREDIBILITY_GA, n);

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What every algorithm shares: the true rows, the pending batch, counters. Included by the algorithms only.
 
    An algorithm is a state machine of two calls. propose() runs until it has requested at least one true evaluation or

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Pareto dominance with constraints, all objectives minimised: a row with less violation dominates, among equals (two
    feasible rows) the usual order decides. Sorting and crowding after Deb, Pratap, Agarwal, Meyarivan 2002. */
 #ifndef EASEOFF_OPTIMIZER_PARETO_H

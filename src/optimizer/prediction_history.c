@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "optimizer/prediction_history.h"
 
 #include "optimizer/operators.h"

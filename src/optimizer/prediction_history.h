@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The history of the fitness-predicted genetic algorithm: rows with a credibility that predict their neighbourhood, and
    how they age: (H1) to (H5) of doc/theory.md. What was settled:
    - the region is closed (e <= r_share); an empty one has credibility 0;

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What an optimizer can be told: each setting once, in EO_OPTIMIZER_SETTINGS, with its range, default and help. The
    struct below, its defaults and its check are made of that list, and so is the part of the document that states them
    (document/design_tables.c). Paper: section 4 and Table 2; the paper's values are the defaults. */

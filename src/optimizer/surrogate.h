@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Cubic radial basis functions with a polynomial tail, and how far they can be believed: leave-one-out residuals and
    the credibility made of them. The tail is centred on the mean of the rows.
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "optimizer/trust_region.h"
 
 #include "numerics/minimise.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Trust region round the best row: a local surrogate in coordinates scaled by the radius, its minimum in the box
    |x - centre| <= radius, and the radius that follows how well this went (Powell 2009, Regis and Shoemaker 2013). What
    a batch has room for beyond the minimum are points on the way to it, where the surrogate promises a gain too: they

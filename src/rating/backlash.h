@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Backlash of an external pair from thickness allowances and centre distance (ISO 21771, DIN 3967). Neither heat nor
    runout nor bearing play is in it. Checked against published reports. Lengths in m, angles in rad. */
 #ifndef EASEOFF_RATING_BACKLASH_H

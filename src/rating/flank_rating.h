@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Surface durability by ISO 6336-2, method B: contact stress, permissible stress, safety. SI: Pa, N, m, m/s, rad.
 
    Checked by reports: Z_H, Z_E, Z_eps, Z_beta, Z_B, Z_D, sigma_H0, sigma_H; Z_L, Z_v, Z_R; Z_W of a soft wheel with a
@@ -44,8 +45,6 @@ double eo_contact_ratio_factor(double transverse_contact_ratio, double overlap_r
 enum eo_code eo_contact_stress(struct eo_contact_stress *contact, const struct eo_rating_pair *pair,
                                const struct eo_rating_geometry *geometry, const struct eo_contact_input *input,
                                struct eo_error *error);
-
-/* ---- permissible stress ---- */
 
 double eo_lubricant_factor(double softer_limit, double viscosity_40); /* Z_L; sigma_Hlim of the softer member; mm2/s */
 double eo_velocity_factor(double softer_limit, double velocity);      /* Z_v */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Flank tolerances of cylindrical gears: ISO 1328-1:1995 by accuracy grade and ISO 1328-1:2013 by tolerance class. The
    classes of 2013 are not the grades of 1995; nothing here converts one into the other. Lengths in m.
 

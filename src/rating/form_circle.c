@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The form circle of a tooth cut by a rack, with undercut where there is one. */
 #include <math.h>
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Life factors Z_NT, Y_NT (ISO 6336-2, -3: 2006 and 2019 agree) and cumulative damage (ISO 6336-6). Lines through
    points in double logarithms. Checked by reports: steel Z_NT without pitting, Y_NT of St, V and Eh beyond the knee,
    the standard's own damage example. Unchecked: pitting allowed, nitrided, nitrocarburised. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* General factors of ISO 6336-1: K_V method B, K_Hbeta method C, K_Halpha method B and their root counterparts. Written
    for the 2006 edition with the corrigenda of 2008; the formulae here are the same in 2019, whose deviations come from
    ISO 1328-1:2013 instead of 1995. A rating never mixes the two. SI: m, N/m, Pa.
@@ -11,8 +12,6 @@
 #include <stdbool.h>
 
 #include "rating/material_class.h"
-
-/* ---- K_V (6.5) ---- */
 
 struct eo_wheel_blank {
   double tip_diameter, root_diameter, base_diameter, bore, density;
@@ -50,15 +49,11 @@ enum eo_code eo_dynamic_factor(struct eo_dynamic_factor *dynamic, const struct e
 /* C_ay = (sigma_Hlim/97 - 18.45)^2/18 + 1.5 um, of one member; take the mean of both. */
 double eo_running_in_relief(double flank_limit);
 
-/* ---- running-in (8.3, 7.4) ---- */
-
 /* y_alpha from f_pb (or y_f from f_falpha): surface hardened 0.075 f, at most 3 um; else by sigma_Hlim and speed v,
  * m/s. */
 double eo_pitch_running_in(enum eo_rating_material material, double flank_limit, double velocity, double deviation);
 /* y_beta from F_beta_x; surface hardened 0.15 F, at most 6 um. Unlike members: the mean of the two. */
 double eo_helix_running_in(enum eo_rating_material material, double flank_limit, double velocity, double deviation);
-
-/* ---- K_Hbeta method C, K_Fbeta (7.6, 7.7) ---- */
 
 /* Arrangements of figure 13. */
 enum eo_bearing_arrangement {
@@ -105,8 +100,6 @@ double eo_helix_deviation_proven(double shaft_deviation, double slope_grade_five
 double eo_face_load_factor(double effective_deviation, double mesh_stiffness, double mean_load);
 /* K_Fbeta = K_Hbeta^N_F with the smaller b/h of the two members; double helical: b_B (69), (70). */
 double eo_root_face_factor(double face_load_factor, double width_over_depth);
-
-/* ---- K_Halpha, K_Falpha (8.3) ---- */
 
 struct eo_transverse_input {
   double transverse_contact_ratio, total_contact_ratio;

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Materials: what the rating formulae distinguish, and the strengths of ISO 6336-5:2016 table 1 (unchecked: one source,
    no report). Stresses in Pa. */
 #ifndef EASEOFF_RATING_MATERIAL_CLASS_H

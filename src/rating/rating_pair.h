@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The numbers of an external pair that rating formulae share (ISO 21771): without refusals, so that a rating also holds
    for undercut teeth. Lengths in m, angles in rad. */
 #ifndef EASEOFF_RATING_RATING_PAIR_H

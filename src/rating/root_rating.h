@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Tooth root strength by ISO 6336-3, method B: nominal and local root stress, permissible stress. SI: Pa, N, m, rad.
 
    Checked by reports: Y_F, Y_S, Y_beta of 2006, sigma_F0 (a helical report has h_F 0.15 to 0.19 % longer, cause
@@ -40,8 +41,6 @@ enum eo_code eo_tooth_root(struct eo_tooth_root *root, const struct eo_rating_pa
 enum eo_code eo_rim_factor(double *factor, double rim_over_depth, struct eo_error *error);
 /* Y_Sg of a grinding notch t_g deep with radius rho_g in the fillet. */
 double eo_grinding_notch(double stress_correction, double depth_over_radius);
-
-/* ---- permissible stress ---- */
 
 /* proof_stress (sigma_0.2 or sigma_S, Pa): of through hardened and structural steel; others do not need it. NaN there:
    EO_ERROR_INPUT. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Tooth thickness allowances by DIN 3967:1978: a series of the upper allowance (a .. h) and a series of the tolerance
    (21 .. 30), as in "cd25". The rows cd and c with 25 are checked at 11 places of published reports; the others are
    from one table, unchecked. */

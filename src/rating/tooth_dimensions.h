@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What is measured on one external gear: thickness, span, balls and pins, chord, tip, and the circles that cutting
    leaves (ISO 21771:2007, DIN 3960). All checked against numbers of published reports. Lengths in m, angles in rad. */
 #ifndef EASEOFF_RATING_TOOTH_DIMENSIONS_H

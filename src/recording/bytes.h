@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Bytes of binary rig files: reads of a file at a place, numbers of either byte order. Internal to the readers. */
 #ifndef EASEOFF_RECORDING_BYTES_H
 #define EASEOFF_RECORDING_BYTES_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What one column of a recording looks like: its name in words and its values in a few figures. Internal to the layout.
  */
 #ifndef EASEOFF_RECORDING_COLUMN_H

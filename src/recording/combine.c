@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Two recordings of one run are put side by side, each column with the clock of its file. */
 #include "recording/layout_private.h"
 

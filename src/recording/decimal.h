@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Decimal numbers as rig software writes them, read to the nearest double (round half to even) and quickly.
    Up to 19 significant digits are read exactly without the C library: a mantissa below 2^53 with at most 22 powers of
    ten takes one rounded operation (Clinger 1990), other ones a product or quotient of 128 bits by a power of five. What

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* HDF5 files, MATLAB's 7.3 among them: data sets of one dimension, of two with one channel per column, of records with
    one channel per field, and references to such. Runs in a process of its own. */
 #define H5_USE_110_API
@@ -34,8 +35,6 @@ struct hdf5 {
   struct eo_tree *tree; /* owned */
   struct eo_notes *notes;
 };
-
-/* ---- facts ---- */
 
 static bool join(char *path, const char *group, const char *name)
 {
@@ -120,8 +119,6 @@ static void add_attributes(struct hdf5 *h, hid_t object, const char *path)
   struct attributes a = {h, path};
   H5Aiterate2(object, H5_INDEX_NAME, H5_ITER_NATIVE, NULL, visit_attribute, &a);
 }
-
-/* ---- data sets ---- */
 
 /* Data of other files are not ours to read, whatever the file says. */
 static bool reads_other_files(hid_t set)

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Readers that rest on libraries which were not written for hostile files run in a process of their own: when it
    crashes, runs out of memory or time, that is an error of the file and nothing more. Internal to the readers. */
 #ifndef EASEOFF_RECORDING_ISOLATE_H

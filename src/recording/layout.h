@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What the columns of a recording mean: guessed from names, units and values, said in sentences, overridden by the
    caller. */
 #ifndef EASEOFF_RECORDING_LAYOUT_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Channels with clocks of their own become one recording: the gear's values are brought to the times of the pinion's.
    Increments are summed up on the way. */
 #include "recording/layout_private.h"
@@ -36,8 +37,6 @@ struct aligner {
   double *rows; /* [BLOCK][columns] */
   int64_t filled, kept;
 };
-
-/* ---- whether ---- */
 
 static bool same_clock(const struct eo_layout_clock *a, const struct eo_layout_clock *b)
 {
@@ -81,8 +80,6 @@ bool eo_layout_needs_align(const struct eo_guess *g)
   bool same = same_clock(&g->clock[0], &g->clock[1]) || (columns && g->equal);
   return g->kind != EO_LAYOUT_PULSES && (!same || !g->together || g->increments[0] || g->increments[1]);
 }
-
-/* ---- reading one side ---- */
 
 static enum eo_code open_side(struct side *s, const struct eo_guess *g, int member, struct eo_error *error)
 {
@@ -168,8 +165,6 @@ static enum eo_code fill(struct side *s, int64_t keep, struct eo_error *error)
   }
   return code;
 }
-
-/* ---- bringing them together ---- */
 
 /* Values of all columns at a time inside samples from .. from + POINTS - 1, by the polynomial through them. */
 static void interpolate(const struct side *s, int64_t from, double t, double *values)

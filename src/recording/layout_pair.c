@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Which columns are the encoders, seen from the columns themselves, and which hold torque and speed beside them. */
 #include "recording/layout_private.h"
 

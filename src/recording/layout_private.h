@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The parts of the layout: times, columns, and bringing channels to one clock. Internal to the layout. */
 #ifndef EASEOFF_RECORDING_LAYOUT_PRIVATE_H
 #define EASEOFF_RECORDING_LAYOUT_PRIVATE_H
@@ -47,8 +48,6 @@ enum eo_code eo_layout_chosen(const struct eo_guess *g, const char *chosen, cons
 /* Values go one way, but for resets, and do go. */
 bool eo_layout_turns(const struct eo_column *look);
 
-/* ---- times (layout_time.c) ---- */
-
 /* Fills time[] and number[]. */
 void eo_layout_mark_times(struct eo_guess *g);
 /* Of several columns of time the one whose name shares most words with the channel's; of equals the nearest before it,
@@ -64,14 +63,10 @@ enum eo_code eo_layout_make_even(struct eo_guess *g, struct eo_error *error);
 /* Values per second of a column by its clock, without the resets, in the column's unit. */
 double eo_layout_rate(const struct eo_guess *g, int column, const struct eo_layout_clock *clock);
 
-/* ---- columns (layout_pair.c) ---- */
-
 /* Of many candidates the two that turn in the ratio of the teeth; true when there are such. */
 bool eo_layout_find_pair(struct eo_guess *g);
 /* Columns of torque and speed beside the channels. */
 void eo_layout_find_beside(struct eo_guess *g);
-
-/* ---- one clock (layout_align.c) ---- */
 
 /* Fills equal and together. */
 enum eo_code eo_layout_compare(struct eo_guess *g, struct eo_error *error);

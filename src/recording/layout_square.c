@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Square waves, as counters get them, recorded by a voltage input: the times at which they pass the middle between
    their levels are pulses. Of two tracks of an encoder all edges count. */
 #include "recording/layout_private.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Which columns are times, which belong to which channel, in what unit, and whether the rows are even within what they
    tell. */
 #include "recording/layout_private.h"
@@ -26,8 +27,6 @@ static const char *unit_name(double scale)
          : scale == 86400 ? "days"
                           : "seconds";
 }
-
-/* ---- which columns ---- */
 
 /* Dates as numbers give themselves away by their size: days since 1900 or since year 0 with steps below 0.2 s,
    milliseconds, microseconds, nanoseconds and tenths of a microsecond since 1970, 1601 or year 1. 0: no date. */
@@ -116,8 +115,6 @@ void eo_layout_mark_times(struct eo_guess *g)
     any = g->time[c] = is_abscissa(g, c);
 }
 
-/* ---- of which channel ---- */
-
 int eo_layout_pick_time(const struct eo_guess *g, int channel)
 {
   int best = -1, most = -1;
@@ -201,8 +198,6 @@ enum eo_code eo_layout_find_clocks(struct eo_guess *g, struct eo_error *error)
     g->clock[1].shift = (double)(epoch[1] - epoch[0]) * 1e-9;
   return EO_OK;
 }
-
-/* ---- units of time ---- */
 
 static double time_at(const struct eo_guess *g, const struct eo_layout_clock *clock, int64_t row)
 {
@@ -290,8 +285,6 @@ enum eo_code eo_layout_judge_speed(struct eo_guess *g, struct eo_error *error)
       "to %.4g rpm): state the unit of the time or the sampling rate, and the unit of the angles.",
       speed * 60 / EO_TURN, low * 60 / EO_TURN, high * 60 / EO_TURN);
 }
-
-/* ---- even rows ---- */
 
 /* Straight line through the times over the number of the row, by least squares, and what it leaves. */
 struct line {

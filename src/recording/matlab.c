@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* MATLAB files of versions 4, 5 and 7 by libmatio: numeric vectors, matrices with one channel per column, the same in
    structs, arrays of structs and cells at any depth. Runs in a process of its own. Version 7.3 is HDF5 and read as
    such. */

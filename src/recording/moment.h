@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Dates and times of day as loggers, spreadsheets and tools write them. Internal to the readers. */
 #ifndef EASEOFF_RECORDING_MOMENT_H
 #define EASEOFF_RECORDING_MOMENT_H

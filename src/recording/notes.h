@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a reader or a guess has to say to people: a short list of full sentences. */
 #ifndef EASEOFF_RECORDING_NOTES_H
 #define EASEOFF_RECORDING_NOTES_H

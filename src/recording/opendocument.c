@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The largest table of an OpenDocument spreadsheet as text with tabs. Source: OASIS OpenDocument 1.2, part 1:
    table:table, table:table-row, table:table-cell with office:value-type. */
 #include "recording/archive.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Rig files of every kind, told apart by their content and read into a recording: the one entry to the readers.
    Files are hostile until read: every length is checked, memory is bounded, and what is wrong is said with its line or
    byte. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A recording: rows x columns of doubles as one rig file holds them, in the file's own units. The last rows stay in
    memory; what does not fit goes to a temporary file that has no name, so that a gigabyte of text can be read on a
    small machine. Threads: one thread appends; once that is over any number of threads may read. */

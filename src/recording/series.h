@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Files that hold each channel in one piece (TDMS, UFF, MATLAB, HDF5): which channels make a table, and copying them
    into rows. Internal to the readers. */
 #ifndef EASEOFF_RECORDING_SERIES_H

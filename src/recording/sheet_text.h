@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Rows of a spreadsheet as lines of text, cells parted by tabs. Internal to the readers. */
 #ifndef EASEOFF_RECORDING_SHEET_TEXT_H
 #define EASEOFF_RECORDING_SHEET_TEXT_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The bytes of a file, inflated when it is a gzip file, from its beginning to its end. One thread. */
 #ifndef EASEOFF_RECORDING_SOURCE_H
 #define EASEOFF_RECORDING_SOURCE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "recording/stated.h"
 #include "recording/column.h"
 #include "recording/unit.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a file states about its sampling beside its numbers: one list of words for headings of text, properties of TDMS,
    variables of MATLAB and attributes of HDF5. Internal to the readers. */
 #ifndef EASEOFF_RECORDING_STATED_H

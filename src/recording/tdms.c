@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The values of NI TDMS files. */
 #include "recording/tdms.h"
 #include "recording/bytes.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The structure of an NI TDMS file: segments, the channels in them and where their values are.
    Source: NI, "TDMS File Format Internal Structure" (public description of versions 4712 and 4713). Internal to the
    reader. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The metadata of a TDMS segment: objects, where their raw data are, properties. */
 #include "recording/bytes.h"
 #include "recording/decimal.h"

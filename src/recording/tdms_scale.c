@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The scales of raw TDMS values: each takes what another one gives, the first ones the raw value. */
 #include "recording/tdms.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The segments of a TDMS file: lead-ins, layouts of chunks, where each begins. */
 #include "recording/bytes.h"
 #include "recording/tdms.h"

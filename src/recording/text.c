@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #define _GNU_SOURCE /* memrchr */
 /* The rows of a text file, block by block: cells go straight from the text to doubles; only lines that are not plain
    numbers are looked at twice. */

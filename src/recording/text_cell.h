@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* One cell of a line of delimited text. Internal to the text reader. */
 #ifndef EASEOFF_RECORDING_TEXT_CELL_H
 #define EASEOFF_RECORDING_TEXT_CELL_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "recording/text_facts.h"
 #include "recording/decimal.h"
 #include "recording/moment.h"

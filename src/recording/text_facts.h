@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Lines before the first row of a text file and the facts in them. Internal to the text reader. */
 #ifndef EASEOFF_RECORDING_TEXT_FACTS_H
 #define EASEOFF_RECORDING_TEXT_FACTS_H

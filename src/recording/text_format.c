@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "recording/text_format.h"
 #include "recording/moment.h"
 #include "recording/text_cell.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* How a text file is laid out, found from its first lines. Internal to the text reader. */
 #ifndef EASEOFF_RECORDING_TEXT_FORMAT_H
 #define EASEOFF_RECORDING_TEXT_FORMAT_H

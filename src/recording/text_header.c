@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Names, units and what else a text file states before its first row. Lines of facts, names and units come in any order
    and number; names are the line that reads most like names. */
 #include "recording/column.h"

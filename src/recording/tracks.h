@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What the columns of a recording mean, as the signal chain needs it: where the time is, what each encoder gave and
    which columns beside them are torque and speed. Both encoders stand on one clock here: where a recording has a clock
    for each, eo_layout_find() has brought the gear's channel to the times of the pinion's. */

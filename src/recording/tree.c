@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "recording/tree.h"
 #include "recording/column.h"
 #include "recording/unit.h"
@@ -115,8 +116,6 @@ void eo_tree_add_list(struct eo_tree *tree, const char *path, const char *texts)
 {
   add_leaf(tree, LIST, path, texts);
 }
-
-/* ---- paths ---- */
 
 static const char *base_of(const char *path)
 {
@@ -250,8 +249,6 @@ static bool about_abscissa(const struct leaf *fact, size_t outer)
   return false;
 }
 
-/* ---- numbers ---- */
-
 /* "scale" of "pinion_scale" and "scale_pinion" beside "pinion"; false when the key does not hold the name. */
 static bool strip_name(const char *key, const char *name, char *rest, size_t size)
 {
@@ -348,8 +345,6 @@ static void use_number(struct eo_tree *t, const struct leaf *fact, const struct 
     own->depth[s.kind] = depth;
   }
 }
-
-/* ---- texts ---- */
 
 /* A vector named like a time, or the only one of a group named like an abscissa. */
 static bool is_time(const struct leaf *l)
@@ -452,8 +447,6 @@ static void use_list(struct eo_tree *t, const struct leaf *fact, const struct le
     p += n + (p[n] == '\n');
   }
 }
-
-/* ---- names and times ---- */
 
 /* A name that says nothing gives way to that of its group; channels of one table are numbered. */
 static void name_series(struct eo_tree *t, const struct leaf *series)

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Files that keep channels in groups or structs with facts beside them (HDF5, MATLAB): which name, unit, rate, scale
    and times belong to which channel. Readers add what they find under its path, parts separated by '/', then settle.
    Internal to the readers. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The data sets of a universal file as channels. Text is read once, into one column each; binary data are read where
    they are. */
 #include "recording/uff.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Data sets 58 and 58b of universal files: functions at nodal degrees of freedom, as text or binary.
    Source: Structural Dynamics Research Laboratory, University of Cincinnati, "Universal File Datasets 58 and 58b".
    Internal to the reader. */

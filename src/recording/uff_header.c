@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Lines and headers of universal files. */
 #include "recording/uff.h"
 #include "recording/decimal.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Units as rig software writes them. */
 #ifndef EASEOFF_RECORDING_UNIT_H
 #define EASEOFF_RECORDING_UNIT_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The largest sheet of an Excel workbook as text with tabs. Source: ECMA-376, SpreadsheetML: sheets in
    xl/worksheets/sheetN.xml, texts in xl/sharedStrings.xml, formats of cells in xl/styles.xml. */
 #include "recording/archive.h"
@@ -62,8 +63,6 @@ static void XMLCALL take_characters(void *context, const char *text, int length)
   w->value[w->length] = '\0';
 }
 
-/* ---- shared texts ---- */
-
 static void keep_text(struct workbook *w)
 {
   size_t size = w->length + 1;
@@ -106,8 +105,6 @@ static void XMLCALL end_text(void *context, const char *name)
   if (!strcmp(local(name), "si"))
     keep_text(w);
 }
-
-/* ---- formats ---- */
 
 /* A format with letters of dates and times outside quotes and brackets shows numbers as dates. */
 static bool shows_date(const char *code)
@@ -157,8 +154,6 @@ static void XMLCALL end_nothing(void *context, const char *name)
   (void)context;
   (void)name;
 }
-
-/* ---- sheets ---- */
 
 /* "AB12" is column 27, from 0. */
 static int column_of(const char *reference)
@@ -223,8 +218,6 @@ static void XMLCALL end_cell(void *context, const char *name)
   } else if (!strcmp(element, "row") && w->writing)
     eo_sheet_text_row(&w->out);
 }
-
-/* ---- the parts of the archive ---- */
 
 static bool parse(struct workbook *w, XML_StartElementHandler begin, XML_EndElementHandler end)
 {

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "reference/case_file.h"
 
 #include <math.h>
@@ -23,8 +24,6 @@ struct tree {
 };
 
 enum { POINTER_SIZE = 160 };
-
-/* ---- the tree ---- */
 
 static size_t members_of(const json_t *json)
 {
@@ -83,8 +82,6 @@ void eo_case_close(struct eo_case *file)
   free(file->tree);
 }
 
-/* ---- faults ---- */
-
 const struct eo_faults *eo_case_faults(const struct eo_case *value)
 {
   return &value->tree->faults;
@@ -114,8 +111,6 @@ void eo_case_fault(const struct eo_case *value, const char *format, ...)
   eo_case_pointer(value, pointer, sizeof pointer);
   eo_faults_add(&value->tree->faults, pointer, "%s", text);
 }
-
-/* ---- the way down ---- */
 
 static struct eo_case *member_named(struct eo_case *object, const char *key)
 {
@@ -222,8 +217,6 @@ bool eo_case_is_null(const struct eo_case *value)
 {
   return value && json_is_null(value->json);
 }
-
-/* ---- values ---- */
 
 double eo_case_real(struct eo_case *value)
 {
@@ -378,8 +371,6 @@ double eo_case_largest(struct eo_case *list)
     largest = fmax(largest, eo_case_largest(&list->member[i]));
   return largest;
 }
-
-/* ---- what was read ---- */
 
 void eo_case_skip(struct eo_case *value)
 {

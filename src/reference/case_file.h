@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A case file as a tree that remembers what was read of it: what nobody read is a fault in the end, so a misspelt key
    cannot pass unnoticed. Faults (wrong type, missing or unread key) are collected with their JSON pointers; a function
    that meets one returns NaN, NULL or 0, and the caller asks eo_case_faulty() before it computes. Every function takes

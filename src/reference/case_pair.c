@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "reference/case_pair.h"
 
 #include <ctype.h>
@@ -146,8 +147,6 @@ void eo_case_named_modification(struct eo_case *mods, const char *name, struct e
     eo_case_fault(where, "\"%.40s\" is no modification of this file.", name ? name : "");
   eo_case_modification(block, pair, flank);
 }
-
-/* ---- misalignment in words ---- */
 
 /* Moves *text behind the first of the words that stands there; its index, or -1. */
 static int take_word(const char **text, const char *const *words)

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What the contact, CalculiX and evaluation cases share: gear pairs, modifications and closed-form compliances in the
    case files' words (mm, N, rad; "z", "mn", "alpha_n_deg" ...). What cannot be understood is a fault of the file. */
 #ifndef EASEOFF_REFERENCE_CASE_PAIR_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "reference/contact_case.h"
 
 #include <stdio.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A file of kind `contact` and what its blocks share. */
 #ifndef EASEOFF_REFERENCE_CONTACT_CASE_H
 #define EASEOFF_REFERENCE_CONTACT_CASE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Formulas of test problems in case files, for instance "1/(1+sum((x-c)^2)), c=[0.3,0.6,0.45]": an expression in the
    point x, evaluated element by element, and definitions of scalars or vectors after it. Operators + - * / ^ and
    brackets; sum, mean, prod, min, max, norm make a number of a vector; exp, log, sqrt, abs, sin, cos, tanh act on each

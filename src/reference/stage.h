@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* One stage of the chain alone, with explicit input: a pair of structs with field tables, and the function between
    them. */
 #ifndef EASEOFF_REFERENCE_STAGE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #include <math.h>
 
 #include "reference/stage.h"
@@ -15,8 +16,6 @@ static const struct eo_field input[] = {
     EO_FLAG(struct input, points, "points", 0, "also every point of the contact lines with its gap and load"),
 };
 static const struct eo_table input_table = EO_TABLE("the input", struct input, input);
-
-/* ---- output: one end under one load ---- */
 
 struct pair_output {
   int pair;
@@ -117,8 +116,6 @@ static const struct eo_field output[] = {
     EO_LIST(struct output, load, loads, "loads", &load_table, 0, EO_STAGE_LOADS, "one row per load"),
 };
 static const struct eo_table output_table = EO_TABLE("the output", struct output, output);
-
-/* ---- reading the solution ---- */
 
 static void pair_range(const struct eo_contact_grid *grid, int range[2])
 {

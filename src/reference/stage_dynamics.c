@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #include <complex.h>
 #include <math.h>
 #include <stdlib.h>
@@ -31,8 +32,6 @@ struct input {
   int harmonics;
   enum eo_solver solver;
 };
-
-/* ---- input ---- */
 
 #define SI(member_, key_, low_, high_, help_) \
   EO_NUMBER_REQUIRED(struct explicit_parameters, of.member_, key_, NULL, low_, high_, help_)
@@ -133,8 +132,6 @@ static const struct eo_field input[] = {
     EO_CHOICE(struct input, solver, "solver", solvers, EO_SOLVER_HARMONIC_BALANCE, "of the equations of motion"),
 };
 static const struct eo_table input_table = EO_TABLE("the input", struct input, input);
-
-/* ---- output ---- */
 
 struct spectrum {
   struct eo_series deflection_real, deflection_imaginary, acceleration;
@@ -240,8 +237,6 @@ static const struct eo_field output[] = {
     EO_OBJECT(struct output, parameters, "params", &parameters_table, "the parameters used, SI"),
 };
 static const struct eo_table output_table = EO_TABLE("the output", struct output, output);
-
-/* ---- run ---- */
 
 /* A vibration problem under construction. */
 struct problem {

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The stages of one flank: what a modification takes off it, and its exact surface. */
 #include <math.h>
 
@@ -39,8 +40,6 @@ static enum eo_code check_profile(const struct input *given, struct eo_error *er
                 "places: path coordinate from the pitch point, + to the pinion's tip"),                         \
       EO_SERIES(struct input, u, "u_mm", &eo_unit_mm, EO_STAGE_MOST, -1e3, 1e3, 0,                              \
                 "instead of s_mm: profile coordinate, + to the member's own tip")
-
-/* ---- modification ---- */
 
 static const struct eo_field modification_input[] = {
     PLACES,
@@ -112,8 +111,6 @@ const struct eo_stage eo_stage_modification = {"modification",
                                                &modification_output_table,
                                                true,
                                                run_modification};
-
-/* ---- surface ---- */
 
 static const struct eo_field surface_input[] = {
     PLACES,

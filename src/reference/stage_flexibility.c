@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -76,8 +77,6 @@ static const struct eo_field input[] = {
 };
 static const struct eo_table input_table = EO_TABLE("the input", struct input, input);
 
-/* ---- output ---- */
-
 static const struct eo_field times[] = {
     EO_OUT(struct eo_member_times, unknowns, "unknowns", NULL,
            "of the sector's matrix; these are 0 when it came from the cache"),
@@ -129,8 +128,6 @@ static const struct eo_field output[] = {
     EO_OUT_SERIES(struct output, deflection[EO_GEAR], "gear_point_um", &eo_unit_um, "likewise of the gear's"),
 };
 static const struct eo_table output_table = EO_TABLE("the output", struct output, output);
-
-/* ---- deflections ---- */
 
 /* Trapezoidal rule with the nodes of the layers; compliance: scratch [n][n]. */
 static void deflect_row(struct row_output *out, const struct eo_flexibility *flexibility, const struct eo_series *eta,
@@ -192,8 +189,6 @@ static enum eo_code deflect_points(struct output *found, const struct input *giv
   return code;
 }
 
-/* ---- mesh ---- */
-
 static int write_text(void *context, const char *text, size_t length)
 {
   struct eo_text *all = context;
@@ -226,8 +221,6 @@ static enum eo_code export_mesh(const struct input *given, const struct eo_desig
   free(load);
   return code;
 }
-
-/* ---- the stage ---- */
 
 static enum eo_code choose_places(struct eo_series *eta, const struct eo_series *given, double width,
                                   struct eo_error *error)

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What several stages read and write alike: parts of a design, places on a flank, columns of numbers. */
 #ifndef EASEOFF_REFERENCE_STAGE_INPUT_H
 #define EASEOFF_REFERENCE_STAGE_INPUT_H

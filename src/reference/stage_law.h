@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A mesh law as stages take it: columns of numbers in the document's units. */
 #ifndef EASEOFF_REFERENCE_STAGE_LAW_H
 #define EASEOFF_REFERENCE_STAGE_LAW_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A gear pair made ready for loaded contact from a stage's input: what the stages contact, impact, root-stress and
    evaluation share. */
 #ifndef EASEOFF_REFERENCE_STAGE_MESH_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #include <math.h>
 #include <stdlib.h>
 
@@ -35,8 +36,6 @@ static const struct eo_field input[] = {
     EO_INTEGER(struct input, tooth, "tooth", -1000, 1000, 0, "of the loads in points: tooth whose root is asked for"),
 };
 static const struct eo_table input_table = EO_TABLE("the input", struct input, input);
-
-/* ---- output ---- */
 
 enum { PHASE, STRESS, ARC, ALONG, ETA, ACROSS, COLUMNS };
 struct member_output {
@@ -122,8 +121,6 @@ static const struct eo_field output[] = {
 };
 static const struct eo_table output_table = EO_TABLE("the output", struct output, output);
 
-/* ---- under given loads ---- */
-
 static enum eo_code read_field(struct member_output *out, const struct eo_root *root, const struct eo_root_place *place,
                                const double *stress, struct eo_error *error)
 {
@@ -182,8 +179,6 @@ static enum eo_code run_points(const struct input *given, struct output *found, 
   free(point);
   return code;
 }
-
-/* ---- through the mesh ---- */
 
 static enum eo_code read_history(struct member_output *out, const struct eo_stage_mesh *mesh, int member, int end,
                                  struct eo_error *error)

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #include <math.h>
 #include <stdarg.h>
 #include <stdlib.h>
@@ -8,8 +9,6 @@
 #include "reference/verify.h"
 
 enum { NAME_SIZE = 200 };
-
-/* ---- names ---- */
 
 /* "rows[0].Z_um[1]": the way from above to the value. */
 static void print_way(struct eo_text *text, const struct eo_case *above, const struct eo_case *value)
@@ -77,8 +76,6 @@ static bool name_check(struct eo_check *check, struct eo_case *value, const char
   check->quantity = way.data;
   return check->block && check->pointer && check->label && check->quantity && !label.failed && !way.failed;
 }
-
-/* ---- checks ---- */
 
 static void done_check(struct eo_check *check)
 {
@@ -251,8 +248,6 @@ void eo_verification_done(struct eo_verification *v)
   json_decref(v->notes);
   *v = (struct eo_verification){0};
 }
-
-/* ---- blocks ---- */
 
 static enum eo_code run_one(struct eo_verification *v, struct eo_case *item, bool checks, eo_verify_function *run,
                             void *context, struct eo_error *error)

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Reference cases: files whose "kind" says which function reads them; each number computed by the code that analyses
    designs, beside the number expected. A check belongs to a value of the file and is named after where it stands. */
 #ifndef EASEOFF_REFERENCE_VERIFY_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "reference/verify_contact.h"
 
 #include <math.h>
@@ -8,8 +9,6 @@
 #include "contact/iso6336.h"
 #include "contact/unloaded.h"
 #include "reference/contact_case.h"
-
-/* ---- macro ---- */
 
 static enum eo_code check_macro(void *context, struct eo_case *macro, struct eo_error *error)
 {
@@ -34,8 +33,6 @@ static enum eo_code check_macro(void *context, struct eo_case *macro, struct eo_
   }
   return EO_OK;
 }
-
-/* ---- flanks ---- */
 
 static void name_shape(struct eo_contact_case *c, const char *name, struct eo_case *where,
                        struct eo_modification_shape *shape)
@@ -117,8 +114,6 @@ static enum eo_code check_slice_gap(void *context, struct eo_case *block, struct
   free(table);
   return EO_OK;
 }
-
-/* ---- unloaded contact ---- */
 
 enum { MOST_PHASES = 512 };
 
@@ -202,8 +197,6 @@ static enum eo_code check_unloaded(void *context, struct eo_case *item, struct e
   free(field);
   return code;
 }
-
-/* ---- local contact and standards ---- */
 
 static enum eo_code check_hertz(void *context, struct eo_case *block, struct eo_error *error)
 {

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* `easeoff verify` for files of kind `contact` (geometry, modification, surfaces, gaps, unloaded and loaded contact,
    impact, flexibility of one gear pair, an independent computation) and `calculix` (three-dimensional contact finite
    elements). */

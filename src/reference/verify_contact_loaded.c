@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "reference/verify_contact.h"
 
 #include <math.h>
@@ -6,8 +7,6 @@
 #include <string.h>
 
 #include "reference/contact_case.h"
-
-/* ---- ltca_synthetic ---- */
 
 struct synthetic {
   struct eo_contact_case *c;
@@ -134,8 +133,6 @@ enum eo_code eo_verify_contact_synthetic(void *context, struct eo_case *block, s
   return eo_verify_each(s.c->v, eo_case_need(block, "cases"), check_synthetic, &s, error);
 }
 
-/* ---- impact ---- */
-
 struct impacts {
   struct eo_contact_case *c;
   double speed;
@@ -238,8 +235,6 @@ enum eo_code eo_verify_contact_impact(void *context, struct eo_case *block, stru
   enum eo_code code = check_corners(all.c, eo_case_find(block, "corner_gap_unmod"), error);
   return code ? code : eo_verify_each(all.c->v, eo_case_find(block, "cases"), check_impact, &all, error);
 }
-
-/* ---- finite elements: fe_bulk, ltca_table ---- */
 
 /* As the files' reference has it: sectors of 3 teeth, each tooth pair with its own flexibility only unless the table
    says otherwise, no contact of tip edges. */

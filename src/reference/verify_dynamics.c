@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Kind "dynamics": the lumped model through the functions that analyse designs. Blocks, each optional and of any
    length: geometry (z1: pinion teeth; a whole pair is compared), defaults and torsional_coupling (parameters for the
    cases that carry none), law_NAME and table_NAME (what cases name), eigen[] (eigenfrequencies, damping ratios, number
@@ -46,8 +47,6 @@ static void read_parameters(const struct dynamics *d, struct eo_case *item, stru
   eo_verify_read_parameters(given ? given : eo_case_need(d->file, "defaults"), p, tau);
   eo_verify_couple(d->file, item, p);
 }
-
-/* ---- input blocks ---- */
 
 /* A block that describes the whole pair, in m and rad, is compared with our geometry; else it states the pinion's
  * teeth.
@@ -105,8 +104,6 @@ static enum eo_code check_law(void *context, struct eo_case *block, struct eo_er
   return code == EO_ERROR_INPUT ? (eo_case_fault(block, "%s", error->text), EO_OK) : code;
 }
 
-/* ---- eigenvalues ---- */
-
 static enum eo_code check_modes(void *context, struct eo_case *item, struct eo_error *error)
 {
   const struct dynamics *d = context;
@@ -154,8 +151,6 @@ static enum eo_code check_printed_signs(void *context, struct eo_case *item, str
   eo_verify_member(d->v, item, "imag_hz", fabs(cimag(pole)) / (2 * M_PI), of_frequency, 0);
   return EO_OK;
 }
-
-/* ---- periodic responses ---- */
 
 struct verified {
   struct eo_verification *v;
@@ -361,8 +356,6 @@ static enum eo_code check_responses(void *context, struct eo_case *items, struct
   eo_vibration_free(d->solver);
   return code;
 }
-
-/* ---- single degree of freedom ---- */
 
 static struct eo_sdof read_sdof(struct eo_case *item)
 {

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Reference recordings of two encoders: findings, RMS and orders of the mesh against the truth they were made from. */
 #include <ctype.h>
 #include <math.h>
@@ -168,8 +169,6 @@ static enum eo_code set_pair(struct run *r, struct eo_error *error)
   return EO_OK;
 }
 
-/* ---- what is expected ---- */
-
 /* Every finding of the list, and none besides that repairs or refuses. */
 static void check_findings(struct eo_verification *v, struct eo_case *list, const struct eo_findings *found)
 {
@@ -262,8 +261,6 @@ static void check_numbers(struct eo_verification *v, struct eo_case *item, const
   eo_verify_member(v, truth, "mean_rpm", t->speed * 30 / M_PI, of_speed, 0);
   check_orders(v, truth, relative, t);
 }
-
-/* ---- one recording ---- */
 
 static const char *temporary_folder(void)
 {

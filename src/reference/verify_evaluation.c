@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "reference/verify_evaluation.h"
 
 #include <complex.h>
@@ -27,8 +28,6 @@ struct bench {
 };
 
 static const char *const flexibilities[] = {"fe", "synthetic", NULL};
-
-/* ---- the lumped model's numbers ---- */
 
 static void replace(struct eo_case *block, const char *key, double *value)
 {
@@ -90,8 +89,6 @@ static enum eo_code check_parameters(struct eo_verification *v, struct eo_case *
     eo_verify_member(v, block, row[i].key, row[i].value, relative, 0);
   return EO_OK;
 }
-
-/* ---- pairs ---- */
 
 /* The pair's design with the file's defaults, as far as it does not depend on the flexibility. */
 static void read_pair(const struct bench *b, struct eo_case *pair, struct eo_design *d)
@@ -197,8 +194,6 @@ static enum eo_code read_defaults(void *context, struct eo_case *block, struct e
   return EO_OK;
 }
 
-/* ---- preparation ---- */
-
 static enum eo_code make_pair(struct bench *b, struct eo_error *error)
 {
   struct eo_contact_grid_settings grid = eo_contact_grid_default(&b->design.resolution);
@@ -251,8 +246,6 @@ static enum eo_code prepare(struct bench *b, struct eo_case *item, struct eo_err
   eo_design_resolve(&b->design, &geometry);
   return make_pair(b, error);
 }
-
-/* ---- expected numbers ---- */
 
 /* What a case expects, and how close: tol_rel, where it does not say 0.5 %. */
 struct expected {
@@ -353,8 +346,6 @@ static void check_harmonics(const struct expected *e, struct eo_case *item, cons
   eo_verify_member(e->v, item, "Fmin_over_P", fmin(c->vibration.force_min[0], c->vibration.force_min[1]) / c->force,
                    0.005, 0);
 }
-
-/* ---- the stage arrays alone: Z and k_tan of the file through the dynamics ---- */
 
 enum { MOST_POSITIONS = 4096 };
 
@@ -465,8 +456,6 @@ static enum eo_code check_stage(const struct bench *b, struct eo_case *item, con
   free(stage);
   return code;
 }
-
-/* ---- one case ---- */
 
 /* The case's own design: misalignment, flanks, load, stagger and what it changes of the lumped model. */
 static enum eo_code read_case(struct bench *b, struct eo_case *item, struct eo_design *design, struct eo_error *error)

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* `easeoff verify` for files of kind `evaluation`: modification -> loaded contact -> impact -> vibration of whole gear
    pairs, with the finite-element or the closed-form compliance the file states, against an independent computation; and
    its stage arrays through the dynamics alone. */

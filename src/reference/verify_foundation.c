@@ -1,6 +1,7 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Teeth on an uncoupled elastic foundation, where the loaded contact has closed-form answers. The solver is the one
-   that analyses designs; only the compliance is prescribed, and the local approach made a hundred thousand times stiffer than
-   steel's so that it does not count. */
+   that analyses designs; only the compliance is prescribed, and the local approach made a hundred thousand times
+   stiffer than steel's so that it does not count. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

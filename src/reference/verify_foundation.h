@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Loaded contact on an uncoupled foundation, solved by the loaded contact of the program, for cases with closed-form
    answers. */
 #ifndef EASEOFF_REFERENCE_VERIFY_FOUNDATION_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Mesh laws and parameters of the lumped model in the way case files of kind "dynamics" write them.
    Laws: stiffness {k0, a, b}; power {p, K: {k0, a, b}, e: {k0, a, b}} or flat {p, k0, a, b, e0, ea, eb}; table {P, Z};
    tangent {P, Z, kt} and secant {P, Z, Zd}, Z and kt sampled over one cycle. SI. */

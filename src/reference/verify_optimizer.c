@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Kind "optimizer": the counter, prediction, redundancy, decay, clean-up, operators, whole runs, and the successor's
    latin hypercube, surrogate and credibility. */
 #include <math.h>
@@ -21,8 +22,6 @@ struct verifier {
   double usual;    /* relative tolerance of the file */
   double relative; /* of the case under work */
 };
-
-/* ---- reading ---- */
 
 static void begin(struct verifier *v, struct eo_case *item)
 {
@@ -95,8 +94,6 @@ static double *numbers(struct eo_case *list, int *rows, int *columns)
   return result;
 }
 
-/* ---- the counter ---- */
-
 static enum eo_code check_random(void *context, struct eo_case *item, struct eo_error *error)
 {
   const struct verifier *v = context;
@@ -115,8 +112,6 @@ static enum eo_code check_random(void *context, struct eo_case *item, struct eo_
   eo_verify_number(v->v, eo_case_need(item, "u01"), eo_random_unit(random, draw), 0, unit / 2);
   return EO_OK;
 }
-
-/* ---- the history ---- */
 
 /* Rows from {x, fit, R, pred}; rows without R and pred are true ones. */
 static enum eo_code load_history(struct eo_case *object, struct eo_history *history, struct eo_error *error)
@@ -355,8 +350,6 @@ static enum eo_code check_clean_up(void *context, struct eo_case *item, struct e
   return code;
 }
 
-/* ---- operators and runs ---- */
-
 static void replace(struct eo_case *object, const char *key, double *value)
 {
   *value = eo_case_number_or(object, key, *value);
@@ -490,8 +483,6 @@ static enum eo_code check_run(void *context, struct eo_case *item, struct eo_err
   eo_optimizer_free(optimizer);
   return code;
 }
-
-/* ---- the successor ---- */
 
 /* Reads "... ridge 1e-9" from the description of the surrogate. */
 static double ridge_of(struct eo_case *item)

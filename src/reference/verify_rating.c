@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Kind "rating": drawing dimensions and rating by ISO 6336, row by row. */
 #include "reference/verify_rating.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Rows of the kind "rating": inputs, expected numbers as a report prints them, and where known as formulae give them at
    full precision. Readers shared by the files that know the quantities. */
 #ifndef EASEOFF_REFERENCE_VERIFY_RATING_H

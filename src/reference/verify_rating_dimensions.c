@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Rows of the kind "rating" that stand on drawings: geometry, thickness, backlash, tolerances. */
 #include <math.h>
 #include <stdio.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Rows of the kind "rating" with the general factors of ISO 6336-1. */
 #include <math.h>
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Rows of the kind "rating" with stresses, permissible stresses, life and materials (ISO 6336-2, -3, -5, -6). */
 #include <math.h>
 #include <stdio.h>
@@ -45,8 +46,6 @@ static bool read_material(struct eo_rating_row *row, enum eo_rating_material *ma
     eo_case_fault(value, "\"%.60s\" is not a material that is known here.", name);
   return false;
 }
-
-/* ---- flank ---- */
 
 enum eo_code eo_row_contact(struct eo_rating_row *row, struct eo_error *error)
 {
@@ -160,8 +159,6 @@ enum eo_code eo_row_flank_strength(struct eo_rating_row *row, struct eo_error *e
   return EO_OK;
 }
 
-/* ---- root ---- */
-
 enum eo_code eo_row_root(struct eo_rating_row *row, struct eo_error *error)
 {
   struct eo_rating_pair pair;
@@ -251,8 +248,6 @@ enum eo_code eo_row_root_strength(struct eo_rating_row *row, struct eo_error *er
   eo_row_check(row, "S_F", strength / stress);
   return EO_OK;
 }
-
-/* ---- life ---- */
 
 /* Groups of materials as the standard's tables of life factors name them. */
 static bool read_group(struct eo_rating_row *row, enum eo_rating_material *material, bool *some_pitting)
@@ -384,8 +379,6 @@ enum eo_code eo_row_damage(struct eo_rating_row *row, struct eo_error *error)
   free(room);
   return code;
 }
-
-/* ---- materials ---- */
 
 enum eo_code eo_row_material(struct eo_rating_row *row, struct eo_error *error)
 {

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "reference/verify_ring.h"
 
 #include <math.h>
@@ -71,8 +72,6 @@ void eo_ring_support(const struct eo_ring_case *c, const char *name, struct eo_c
   eo_case_fault(where, "This program does not have the support \"%.60s\"; it has floating, held, solid, sector5.",
                 name);
 }
-
-/* ---- compliance ---- */
 
 /* A whole number of pairs as the key of a value; 0 and a fault when it is none. */
 static int distance_of(struct eo_case *value)
@@ -165,8 +164,6 @@ static enum eo_code check_points(void *context, struct eo_case *block, struct eo
   }
   return code;
 }
-
-/* ---- a line under a uniform load ---- */
 
 /* Deflection of pair d at (s, eta), m, under 1 N/m on the row s of pair 0, by the trapezoidal rule. */
 static enum eo_code deflect(const struct eo_ring_case *c, int member, double s, double eta, int d, double *deflection,
@@ -266,8 +263,6 @@ static enum eo_code check_lines(void *context, struct eo_case *block, struct eo_
   }
   return code;
 }
-
-/* ---- the whole ---- */
 
 /* "max(0.03 um, 6 %)" */
 static void read_swing(struct eo_case *block, const char *key, double swing[2])

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Cases of kind "ring": compliance of whole gear bodies, and what the loaded contact makes of it. */
 #ifndef EASEOFF_REFERENCE_VERIFY_RING_H
 #define EASEOFF_REFERENCE_VERIFY_RING_H

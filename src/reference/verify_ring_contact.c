@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -250,8 +251,6 @@ enum eo_code eo_ring_check_ltca(void *context, struct eo_case *block, struct eo_
   free(run);
   return code;
 }
-
-/* ---- the list of pairs ---- */
 
 /* "17/44 24": teeth and helix. */
 static void read_pair(struct run *run, struct eo_case *row)

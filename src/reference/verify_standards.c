@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Kind "standards": worked numbers of standards and published reports. */
 #include <math.h>
 #include <stdio.h>

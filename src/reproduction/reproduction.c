@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "reproduction/reproduction_private.h"
 
 #include <math.h>
@@ -10,8 +11,6 @@
 #include "evaluation/analysis.h"
 
 #include <config.h>
-
-/* ---- before ---- */
 
 static enum eo_code build_designs(struct reproduction *r, struct eo_error *error)
 {
@@ -44,8 +43,6 @@ static enum eo_code prepare_pair(struct reproduction *r, struct eo_error *error)
   return eo_pair_new(&r->pair, r->design[UNMODIFIED], &options, &progress, error);
 }
 
-/* ---- analyses ---- */
-
 static enum eo_code analyse_variant(struct reproduction *r, struct eo_analysis *analysis, int law, int variant,
                                     struct eo_error *error)
 {
@@ -77,8 +74,6 @@ static enum eo_code analyse(struct reproduction *r, struct eo_error *error)
   eo_analysis_free(analysis);
   return code;
 }
-
-/* ---- the document ---- */
 
 static json_t *encode_summary(const struct reproduction *r)
 {

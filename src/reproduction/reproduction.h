@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The paper once more: its gear pair unmodified, with Table 3 as given, and with our own optimizations of its two
    cases; every table and the data of every figure with the printed numbers beside ours, and what our assumptions do to
    them.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The paper's figures of the theory: over torque (8, 9, 17), over the mesh cycle (10 to 12), of the root (14, 15), over
    speed (18). */
 #include "reproduction/reproduction_private.h"
@@ -22,8 +23,6 @@ void eo_reproduction_series(json_t *figure, const char *name, int count, const d
                              eo_json_reals(count, y, 1, NULL, EO_DIGITS_CURVE));
   json_array_append_new(json_object_get(figure, "series"), series);
 }
-
-/* ---- over torque and speed ---- */
 
 static const double RPM = M_PI / 30;
 enum { MOST = 200 };
@@ -180,8 +179,6 @@ static enum eo_code over_speed(struct reproduction *r, const struct grid *g, str
   free(c);
   return code;
 }
-
-/* ---- over the mesh cycle, from the analyses ---- */
 
 enum { SAMPLES = 1024 };
 

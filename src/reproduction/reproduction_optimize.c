@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Case A and case B with the paper's algorithm, the plain one it is compared with, and ours. */
 #include "reproduction/reproduction_private.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The reproduction as files, as one page, and in short. */
 #include <math.h>
 #include <stdlib.h>
@@ -13,8 +14,6 @@ static const char *find_text(const json_t *value, const char *path)
   const char *text = json_string_value(eo_json_find(value, path));
   return text ? text : "";
 }
-
-/* ---- tables, for CSV, page and terminal alike ---- */
 
 static void add_verdict(struct eo_text_table *sheet, const json_t *row, const char *key)
 {
@@ -149,8 +148,6 @@ static const struct table {
 };
 enum { TABLES = sizeof tables / sizeof tables[0] };
 
-/* ---- files ---- */
-
 static void file_name(const char *number, char *name, size_t size)
 {
   snprintf(name, size, "figure-%s.csv", number);
@@ -202,8 +199,6 @@ void eo_reproduction_files(const json_t *document, struct eo_file_set *bundle)
     write_figure(figure, text);
   }
 }
-
-/* ---- the page ---- */
 
 static const char style[] =
     "body{font:15px/1.5 system-ui,sans-serif;max-width:1100px;margin:2em auto;padding:0 1em;color:#111;background:#fff}"
@@ -336,8 +331,6 @@ void eo_reproduction_page(const json_t *document, struct eo_text *text)
   write_list(json_object_get(document, "readings"), text);
   eo_text_add(text, "</body></html>\n");
 }
-
-/* ---- in short ---- */
 
 void eo_reproduction_summary(const json_t *document, struct eo_text *text)
 {

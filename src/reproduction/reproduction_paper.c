@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The numbers the paper prints, ours beside them, and what it leaves open. */
 #include "reproduction/reproduction_private.h"
 
@@ -13,8 +14,6 @@ static const double torque[TORQUES] = {621, 828, 1035};
 
 /* A reduction agrees within so many percentage points, a level within this part of the printed one. */
 static const double POINTS = 10, LEVEL = 0.1;
-
-/* ---- Table 3 ---- */
 
 static json_t *four(double a, double left, double right, const char *key, json_t *own_a, json_t *own_left,
                     json_t *own_right)
@@ -55,8 +54,6 @@ json_t *eo_reproduction_table(const struct reproduction *r)
                                       value_of(r, OWN_B, EO_LEFT, i), value_of(r, OWN_B, EO_RIGHT, i)));
   return array;
 }
-
-/* ---- comparisons ---- */
 
 static double reduction(double before, double after)
 {

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What the parts of the reproduction share. */
 #ifndef EASEOFF_REPRODUCTION_REPRODUCTION_PRIVATE_H
 #define EASEOFF_REPRODUCTION_REPRODUCTION_PRIVATE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* One assumption changed at a time: what it does to the unmodified pair and to Table 3, case A. */
 #include "reproduction/reproduction_private.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What each part of the reproduction calls: the names of the variants, and progress. */
 #include "reproduction/reproduction_private.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The last events and those who listen to them. Any thread may call. */
 #ifndef EASEOFF_SERVICE_EVENTS_H
 #define EASEOFF_SERVICE_EVENTS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #define _GNU_SOURCE
 #include "service/lane.h"
 
@@ -36,8 +37,6 @@ void eo_lane_stand_back(int nice)
   id_t self = (id_t)gettid();
   setpriority(PRIO_PROCESS, self, getpriority(PRIO_PROCESS, self) + nice);
 }
-
-/* ---- lists, with the mutex held ---- */
 
 static void append(struct eo_lane_task **list, struct eo_lane_task *task)
 {
@@ -94,8 +93,6 @@ static bool overtake(struct eo_lane *lane, struct eo_lane_task *task)
   append(&lane->dropped, older);
   return true;
 }
-
-/* ---- threads ---- */
 
 static double earliest(const struct eo_lane *lane)
 {

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A short queue with its own threads, for requests that somebody waits for. A request with a token takes the place of
    one with the same token that has not begun (newest wins), so a user who drags a slider never waits for what he no
    longer wants. Any thread may call. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "service/pairs.h"
 
 #include <pthread.h>
@@ -74,8 +75,6 @@ void eo_pairs_key(const struct eo_design *design, char key[EO_HASH_LENGTH + 1])
   eo_pair_identity_key(&identity, key);
 }
 
-/* ---- with the mutex held ---- */
-
 static struct eo_held_pair *find(struct eo_pairs *pairs, const char *key)
 {
   struct eo_held_pair *held = pairs->first;
@@ -113,8 +112,6 @@ static struct eo_held_pair *take_surplus(struct eo_pairs *pairs)
   take_out(pairs, oldest);
   return oldest;
 }
-
-/* ---- finding and preparing ---- */
 
 /* Frees outside the mutex: a pair is large. */
 static void evict(struct eo_pairs *pairs)
@@ -256,8 +253,6 @@ int eo_pairs_count(struct eo_pairs *pairs)
   pthread_mutex_unlock(&pairs->mutex);
   return count;
 }
-
-/* ---- analyses ---- */
 
 /* The idle analysis of this user; else the one that was used last, whoever by, when there is no room for more. */
 static struct idle *choose(struct eo_held_pair *held, uint64_t user)

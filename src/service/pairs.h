@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Prepared gear pairs, shared: each is prepared once however many threads ask for it, kept as long as somebody uses it,
    and a few beyond that. With a pair go the analyses made on it, so that a user who changes one thing after another
    finds what the last request left. Any thread may call. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "service/rig_tasks.h"
 
 #include <math.h>
@@ -15,8 +16,6 @@ void eo_rig_pair_hash(const struct eo_geometry *geometry, char key[EO_HASH_LENGT
   }
   eo_hash_finish(&hash, key);
 }
-
-/* ---- measurements on their way ---- */
 
 enum eo_code eo_rig_points_add(struct eo_rig_points *points, int64_t id, const char *summary, const char *pair,
                                struct eo_error *error)
@@ -86,8 +85,6 @@ static enum eo_code make(struct eo_work *work, struct eo_rig_points *points, str
   work->release = release;
   return EO_OK;
 }
-
-/* ---- comparison ---- */
 
 static void leave_out(struct work *w, int64_t id, const char *reason)
 {
@@ -168,8 +165,6 @@ enum eo_code eo_rig_comparison(struct eo_work *work, struct eo_rig_points *point
   return EO_OK;
 }
 
-/* ---- fit ---- */
-
 static void drop_outliers(struct work *w)
 {
   struct eo_rig_selection *selection = &w->selection;
@@ -219,8 +214,6 @@ enum eo_code eo_rig_fit(struct eo_work *work, struct eo_rig_points *points, cons
   release(order);
   return eo_error_memory(error);
 }
-
-/* ---- synthetic recording ---- */
 
 static enum eo_code respond(struct eo_rig_request *rig, const struct eo_pair *pair, const struct eo_design *design,
                             struct eo_error *error)

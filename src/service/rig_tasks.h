@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What the service computes from stored measurements and a prepared gear pair: comparison, the fit of unknown inputs, a
    synthetic recording. Each is a struct eo_work for eo_service_compute(), which owns its data. */
 #ifndef EASEOFF_SERVICE_RIG_TASKS_H

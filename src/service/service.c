@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "service/service_private.h"
 
 #include <stdlib.h>
@@ -7,8 +8,6 @@
 #include "store/lock.h"
 
 enum { ANALYSIS_THREADS = 2, MOST_QUEUED = 100, MOST_WAITING = 64, MOST_PAIRS = 4, SWEEP_NICE = 5 };
-
-/* ---- begin and end ---- */
 
 static int or_standard(int value, int standard)
 {
@@ -157,8 +156,6 @@ void eo_service_wake(struct eo_service *s)
   pthread_mutex_unlock(&s->work_mutex);
 }
 
-/* ---- events ---- */
-
 /* From before a job's row is read until it is copied: a job that ends in between would show its end with what was
    noted of it a while before. */
 static void lock_jobs(struct eo_service *s)
@@ -284,8 +281,6 @@ void eo_service_unsubscribe(struct eo_service *s, int64_t subscription)
   eo_events_unsubscribe(s->events, subscription);
 }
 
-/* ---- reading jobs ---- */
-
 enum eo_code eo_service_job(struct eo_service *s, int64_t id, bool with_design, enum eo_job_outcome *outcome,
                             struct eo_job_view *job, struct eo_error *error)
 {
@@ -396,8 +391,6 @@ enum eo_code eo_service_convergence(struct eo_service *s, int64_t id, enum eo_jo
   eo_text_done(&text);
   return code;
 }
-
-/* ---- changing jobs ---- */
 
 static bool is_closed(struct eo_service *s, enum eo_job_outcome *outcome)
 {

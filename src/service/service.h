@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What stands behind the server: the queue of jobs and the threads that work it off, prepared gear pairs, what-if
    analyses, events.
 
@@ -46,8 +47,6 @@ void eo_service_stop(struct eo_service *service);
 
 /* Stops, waits for the threads, closes the database. NULL is fine. No callback comes after it. */
 void eo_service_free(struct eo_service *service);
-
-/* ---- jobs ---- */
 
 /* Outcomes: enum eo_job_outcome of store/queue.h. */
 struct eo_job_order {
@@ -101,8 +100,6 @@ enum eo_code eo_service_remove(struct eo_service *service, int64_t id, enum eo_j
 enum eo_code eo_service_convergence(struct eo_service *service, int64_t id, enum eo_job_outcome *outcome,
                                     struct eo_job_convergence *convergence, struct eo_error *error);
 
-/* ---- events ---- */
-
 /* Calls the listener for every event from now on, of one job or of all (0), one at a time and in the order of their
    numbers, beginning before this returns with those after the number `after` (0: none; those that are there now). Where
    they are no longer all kept (the last 1024 are), with the state of every job that has not ended, under the newest
@@ -111,8 +108,6 @@ enum eo_code eo_service_convergence(struct eo_service *service, int64_t id, enum
 enum eo_code eo_service_subscribe(struct eo_service *service, int64_t job, int64_t after, eo_service_listener *listener,
                                   void *context, int64_t *subscription, struct eo_error *error);
 void eo_service_unsubscribe(struct eo_service *service, int64_t subscription);
-
-/* ---- what-if ---- */
 
 enum eo_admission {
   EO_ADMISSION_ACCEPTED,  /* the answer comes through the callback, exactly once, from another thread, maybe before this
@@ -182,8 +177,6 @@ enum eo_code eo_service_compute(struct eo_service *service, const struct eo_ques
 
 /* Whether the design's pair is in memory (an analysis would be answered at once). */
 bool eo_service_is_prepared(struct eo_service *service, const struct eo_design *design);
-
-/* ---- for /health and /metrics ---- */
 
 struct eo_service_status {
   int64_t jobs[EO_JOB_STATES]; /* by state */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The inside of the service, shared by the files it is made of; see service.h. Where two mutexes are held, the one that
    stands first below was taken first. */
 #ifndef EASEOFF_SERVICE_SERVICE_PRIVATE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What-if analyses and sweeps: from the question over the lane to the answer. */
 #include "service/service_private.h"
 
@@ -50,8 +51,6 @@ static uint64_t user_of(const char *token)
     hash = (hash ^ (unsigned char)*c) * 1099511628211u;
   return *token ? hash | 1 : 0;
 }
-
-/* ---- computing ---- */
 
 static enum eo_code write_analysis(const struct asked *asked, const struct eo_analysis *analysis,
                                    struct eo_answer *answer)
@@ -126,8 +125,6 @@ static enum eo_code run_work(struct asked *asked, struct eo_held_pair *held, str
   note_parts(answer, start, eo_clock_milliseconds());
   return code;
 }
-
-/* ---- asking ---- */
 
 static struct asked *copy_question(struct eo_service *s, const struct eo_question *q, run_function *run,
                                    struct eo_error *error)
@@ -253,8 +250,6 @@ bool eo_service_is_prepared(struct eo_service *s, const struct eo_design *design
   return is_ready(s, design);
 }
 
-/* ---- answering ---- */
-
 /* What a fate other than running means; false: it runs. */
 static bool answer_at_once(struct eo_service *s, const struct asked *asked, enum eo_lane_fate fate,
                            struct eo_answer *answer)
@@ -347,8 +342,6 @@ void eo_service_run_task(void *context, struct eo_lane_task *task, enum eo_lane_
   asked->answer(asked->context, &answer);
   eo_text_done(&answer.text);
 }
-
-/* ---- status ---- */
 
 enum eo_code eo_service_status(struct eo_service *s, struct eo_service_status *status, struct eo_error *error)
 {

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The threads that work jobs off. */
 #include "service/service_private.h"
 
@@ -9,8 +10,6 @@
 #include "base/clock.h"
 
 enum { EVENT_MS = 120, NOTE_MS = 1000, OPTIMIZE_NICE = 10, PREPARE_NICE = 3 };
-
-/* ---- the job in work ---- */
 
 static bool must_stop(struct eo_service_worker *w)
 {
@@ -85,8 +84,6 @@ static int follow_study(void *context, const struct eo_study_report *report)
   spread(w);
   return must_stop(w);
 }
-
-/* ---- one job ---- */
 
 struct task {
   int64_t id;
@@ -213,8 +210,6 @@ static void work_off(struct eo_service_worker *w, int64_t id)
   eo_text_done(&task.text);
   free(task.design);
 }
-
-/* ---- the thread ---- */
 
 /* Until somebody says that there is work; at most for a while, so that a database that failed is tried again. */
 static void wait_for_work(struct eo_service *s, uint64_t *calls)

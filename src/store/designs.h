@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Stored designs: a name and a document (JSON is text to this floor), each with a revision that every change raises.
    Functions that write open their own transaction. Texts that a visit gets are borrowed until it returns. */
 #ifndef EASEOFF_STORE_DESIGNS_H

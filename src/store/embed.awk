@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Numbered SQL files -> a C array, so that the program carries its schema and nothing can be missing at run time.
 function quote(line) {
   gsub(/\\/, "\\\\", line)

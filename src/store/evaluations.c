@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "store/evaluations.h"
 
 #include "base/hash.h"
@@ -22,8 +23,6 @@ static enum eo_evaluation_outcome find_outcome(const char *name)
     i++;
   return (enum eo_evaluation_outcome)i;
 }
-
-/* ---- check sums ---- */
 
 static void add_raw(struct eo_hash *hash, const struct eo_objective_case *c)
 {
@@ -57,8 +56,6 @@ static enum eo_code damaged(const struct eo_store *store, int64_t id, struct eo_
       "%.150s: row %lld of the history is damaged; \"easeoff history prune --damaged\" removes such rows.", store->path,
       (long long)id);
 }
-
-/* ---- problems ---- */
 
 enum eo_code eo_store_find_problem(struct eo_store *store, const struct eo_stored_problem *problem, int64_t *id,
                                    struct eo_error *error)
@@ -102,8 +99,6 @@ enum eo_code eo_store_each_problem(struct eo_store *store, eo_store_visit_proble
   enum eo_code end = eo_statement_end(&s, code ? NULL : error);
   return code ? code : end;
 }
-
-/* ---- rows ---- */
 
 /* Columns from first: scenario, load case, then the values. Rows come in order. */
 static bool read_raw(const struct eo_statement *s, int first, int expected, const struct eo_stored_evaluation *row)
@@ -261,8 +256,6 @@ enum eo_code eo_store_last_evaluation(struct eo_store *store, int64_t *last, str
   return eo_statement_end(&s, error);
 }
 
-/* ---- all rows of a problem ---- */
-
 struct walk {
   struct eo_store *store;
   struct eo_stored_evaluation row;
@@ -349,8 +342,6 @@ enum eo_code eo_store_each_evaluation(struct eo_store *store, int64_t problem, i
   free(w.x);
   return code;
 }
-
-/* ---- removing ---- */
 
 enum eo_code eo_store_remove_problem(struct eo_store *store, int64_t problem, int64_t *removed, struct eo_error *error)
 {

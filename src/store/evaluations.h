@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The history: true evaluations, each once, raw values before weights. A row is never changed; its check sum is
    verified whenever it is read. Adding needs a transaction (eo_store_begin()). */
 #ifndef EASEOFF_STORE_EVALUATIONS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* How a job stands in a SELECT, for this floor alone. */
 #ifndef EASEOFF_STORE_JOB_ROW_H
 #define EASEOFF_STORE_JOB_ROW_H

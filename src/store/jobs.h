@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Optimization jobs and the path each took: which evaluations it asked for, in its order, and what it predicted. Adding
    needs a transaction (eo_store_begin()). */
 #ifndef EASEOFF_STORE_JOBS_H

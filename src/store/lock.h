@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Who works on which job: one byte of DIR/easeoff.lock per job, locked by the open file. The kernel lets go of it when
    the process ends in whatever way, so a job that says "running" and is not locked was interrupted. */
 #ifndef EASEOFF_STORE_LOCK_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "store/measurements.h"
 
 #include <dirent.h>
@@ -86,8 +87,6 @@ void eo_measurement_folder_remove(const char *path)
     closedir(folder);
   rmdir(path);
 }
-
-/* ---- to the disk ---- */
 
 static enum eo_code flush(const char *path, int flags, struct eo_error *error)
 {

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The files behind measurements on their way to the disk; for this floor alone. In DATA/measurements: ID, the files of
    a row; incoming-XXXXXX, an upload on its way; deleted-ID, a row's files whose deletion was asked for. */
 #ifndef EASEOFF_STORE_MEASUREMENT_FILES_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a start does about folders in DATA/measurements that do not stand as they should. Recordings are the one thing
    that cannot be computed again, so nothing is removed here but unfinished uploads and what somebody asked to have
    deleted; recordings without a row are set aside, and what is not ours is left where it is. */
@@ -51,8 +52,6 @@ static int64_t read_number(const char *name, const char **end)
   return digits && digits <= MOST_DIGITS && *name != '0' ? strtoll(name, NULL, 10) : 0;
 }
 
-/* ---- what an entry is ---- */
-
 static bool is_a(const char *path, mode_t type)
 {
   struct stat status;
@@ -103,8 +102,6 @@ static enum eo_code has_row(struct eo_store *store, int64_t id, bool *there, str
   *there = eo_statement_step(&s);
   return eo_statement_end(&s, error);
 }
-
-/* ---- setting aside ---- */
 
 /* DATA/measurements/lost+found/NAME, or NAME-2, NAME-3, ... when that is taken. A folder renamed onto one that holds
    anything stays where it is, so nothing can be overwritten even by somebody who comes between. */
@@ -159,8 +156,6 @@ static enum eo_code settle(struct eo_store *store, const char *root, const char 
   return set_aside(root, name, entry.path, error);
 }
 
-/* ---- the database that does not belong to them ---- */
-
 /* Every recording belongs to a design, and numbers are never forgotten: a database that never had a design cannot be
    the one that these recordings came with. */
 static enum eo_code expect_own_database(struct eo_store *store, const char *root, int recordings,
@@ -205,8 +200,6 @@ enum eo_code eo_measurement_folder_tidy(struct eo_store *store, int *aside, stru
   free(names);
   return code;
 }
-
-/* ---- numbers in use ---- */
 
 /* Of an entry here, or of one that was set aside ("7", "7-2", "deleted-7"). */
 static int64_t number_of(const char *root, const char *name, bool aside)

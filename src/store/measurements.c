@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "store/measurements.h"
 
 #include <math.h>
@@ -17,8 +18,6 @@ static enum eo_code close(struct eo_store *store, enum eo_code code, struct eo_e
     eo_store_rollback(store);
   return code;
 }
-
-/* ---- reading ---- */
 
 static enum eo_code read_files(struct eo_store *store, struct eo_stored_measurement *m, struct eo_error *error)
 {
@@ -101,8 +100,6 @@ enum eo_code eo_store_measured_bytes(struct eo_store *store, int64_t *bytes, str
   *bytes = eo_statement_step(&s) ? eo_column_integer(&s, 0) : 0;
   return eo_statement_end(&s, error);
 }
-
-/* ---- writing ---- */
 
 static enum eo_code has_design(struct eo_store *store, int64_t design, bool *there, struct eo_error *error)
 {

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Recordings of a rig: rows, and the files they stand for. A measurement is there once its row is; its files are then
    complete in DATA/measurements/ID/0 (and 1), brought to the disk before the row. What a process left that ended in
    between is put in order by eo_measurement_folder_tidy(). Functions that write open their own transaction;
@@ -68,8 +69,6 @@ enum eo_code eo_store_remove_measurement(struct eo_store *store, int64_t id, enu
 
 /* Bytes of all files. */
 enum eo_code eo_store_measured_bytes(struct eo_store *store, int64_t *bytes, struct eo_error *error);
-
-/* ---- files ---- */
 
 /* Puts DATA/measurements in order after whatever ended the process before. Unfinished uploads go away, and so does what
    somebody asked to have deleted. A recording without a row (an older database was put back, or an upload ended before

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The schema's steps, in order: sql/NNNN_name.sql as text. */
 #ifndef EASEOFF_STORE_MIGRATIONS_H
 #define EASEOFF_STORE_MIGRATIONS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "store/queue.h"
 
 #include "store/job_row.h"
@@ -15,8 +16,6 @@ static enum eo_code close(struct eo_store *store, enum eo_code code, struct eo_e
     eo_store_rollback(store);
   return code;
 }
-
-/* ---- adding ---- */
 
 static enum eo_code find_repeated(struct eo_store *store, const struct eo_queue_entry *entry, int64_t *id,
                                   enum eo_job_outcome *outcome, struct eo_error *error)
@@ -90,8 +89,6 @@ enum eo_code eo_queue_add(struct eo_store *store, const struct eo_queue_entry *e
   enum eo_code code = eo_store_begin(store, error);
   return code ? code : close(store, add(store, entry, most, id, outcome, error), error);
 }
-
-/* ---- begin and end ---- */
 
 enum eo_code eo_queue_claim(struct eo_store *store, enum eo_job_kind kind, int64_t *id, struct eo_error *error)
 {
@@ -167,8 +164,6 @@ enum eo_code eo_queue_recover(struct eo_store *store, int64_t *queued, struct eo
   }
   return close(store, code, error);
 }
-
-/* ---- changing ---- */
 
 static enum eo_code find_state(struct eo_store *store, int64_t id, enum eo_job_state *state, enum eo_job_kind *kind,
                                enum eo_job_outcome *outcome, struct eo_error *error)
@@ -310,8 +305,6 @@ enum eo_code eo_queue_tidy(struct eo_store *store, int keep, struct eo_error *er
       " (SELECT id FROM job WHERE kind = 'prepare' AND state = 'done' ORDER BY id DESC LIMIT ?)",
       "n", keep);
 }
-
-/* ---- reading ---- */
 
 enum eo_code eo_queue_find(struct eo_store *store, int64_t id, eo_store_visit_job *visit, void *context,
                            enum eo_job_outcome *outcome, struct eo_error *error)

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The server's queue, on the table of jobs. Every function that writes is one transaction of its own, so any number of
    threads and processes may work on it, each with its own store: no job is claimed twice.
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* SQL statements with their values, for this floor alone. A fault is kept and told once, by eo_statement_end(). */
 #ifndef EASEOFF_STORE_STATEMENT_H
 #define EASEOFF_STORE_STATEMENT_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The data folder's database: one file, DIR/easeoff.db, SQLite in WAL mode. This floor is its only user; JSON is text
    to it.
 

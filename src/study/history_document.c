@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "study/history_document.h"
 
 #include <math.h>
@@ -15,8 +16,6 @@ static enum eo_code append(json_t *array, json_t *value, struct eo_error *error)
 {
   return json_array_append_new(array, value) ? eo_error_memory(error) : EO_OK;
 }
-
-/* ---- list ---- */
 
 static const struct eo_outline_row problem_rows[] = {
     EO_KEY("id", "integer", "number of the problem", EO_AT(struct eo_stored_problem, id)),
@@ -116,8 +115,6 @@ enum eo_code eo_records_list(struct eo_store *store, json_t **document, struct e
   return code;
 }
 
-/* ---- one result ---- */
-
 struct wanted_job {
   int64_t job;
   bool found;
@@ -147,8 +144,6 @@ enum eo_code eo_records_result(struct eo_store *store, int64_t job, json_t **doc
   eo_text_done(&wanted.result);
   return code;
 }
-
-/* ---- true rows ---- */
 
 struct row_list {
   int64_t problem;
@@ -231,8 +226,6 @@ enum eo_code eo_records_rows(struct eo_store *store, int64_t problem, json_t **d
     *document = all;
   return code;
 }
-
-/* ---- comma-separated values ---- */
 
 /* All "pinion/left/tip_relief_um" of a modification into a set (an object with true for each). */
 static void collect_paths(const json_t *value, const char *path, json_t *set)
@@ -334,8 +327,6 @@ enum eo_code eo_records_rows_csv(const json_t *document, struct eo_text *text, s
   json_decref(paths);
   return text->failed ? eo_error_memory(error) : EO_OK;
 }
-
-/* ---- the path of a job ---- */
 
 struct path_list {
   struct eo_text *text;

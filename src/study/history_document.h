@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What the data folder knows, as documents: problems, jobs, true rows, the path of a job. */
 #ifndef EASEOFF_STUDY_HISTORY_DOCUMENT_H
 #define EASEOFF_STUDY_HISTORY_DOCUMENT_H

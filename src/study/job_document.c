@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "study/job_document.h"
 
 #include <math.h>
@@ -12,8 +13,6 @@ void eo_job_live_done(struct eo_job_live *live)
   free(live->history);
   *live = (struct eo_job_live){0};
 }
-
-/* ---- what a study reports ---- */
 
 static double pfc_percent(int true_evaluations, int individuals)
 {
@@ -91,8 +90,6 @@ void eo_job_live_conclude(struct eo_job_live *live, const struct eo_study_result
     live->best_evaluation = result->best.evaluation;
   }
 }
-
-/* ---- how far it is ---- */
 
 /* NaN: not known. */
 struct progress {
@@ -237,8 +234,6 @@ static void put_counts(json_t *progress, const struct eo_stored_job *job)
                       eo_json_quantity(pfc_percent(job->true_evaluations, job->individuals), NULL));
 }
 
-/* ---- why it failed ---- */
-
 static const struct eo_outline_row error_rows[] = {
     EO_KEY("detail", "text", "why it failed, for people", EO_AT(struct eo_error, text)),
     EO_KEY("pointer", "text", "to the key of the design that is to blame, or empty", EO_AT(struct eo_error, pointer)),
@@ -253,8 +248,6 @@ void eo_job_error_write(const struct eo_error *error, struct eo_text *text)
     snprintf(shown.text, sizeof shown.text, "The server's data cannot be read or written.");
   write(text, eo_outline_encode(&error_outline, &shown));
 }
-
-/* ---- a job at a moment ---- */
 
 enum { TEXTS = 10 };
 
@@ -416,8 +409,6 @@ void eo_job_view_write(const struct eo_job_view *view, struct eo_text *text)
 {
   write(text, eo_job_view_encode(view));
 }
-
-/* ---- convergence ---- */
 
 enum eo_code eo_job_convergence_copy(struct eo_job_convergence *convergence, const struct eo_job_live *live,
                                      struct eo_error *error)

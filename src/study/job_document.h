@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A job as the service shows it, and as a document: what the table of jobs says, and what is known of one that is being
    worked on. */
 #ifndef EASEOFF_STUDY_JOB_DOCUMENT_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "study/job_history.h"
 
 #include <limits.h>
@@ -33,8 +34,6 @@ static void done(struct history *h)
   free(h);
 }
 
-/* ---- the job ---- */
-
 static enum eo_code take_job(void *context, const struct eo_stored_job *job, struct eo_error *error)
 {
   struct history *h = context;
@@ -61,8 +60,6 @@ static enum eo_code find_unmodified(struct history *h, struct eo_error *error)
     h->unmodified[i].failed = true;
   return code;
 }
-
-/* ---- a row ---- */
 
 static enum eo_code weigh(struct history *h, const char *modification, struct eo_objective_value *value,
                           struct eo_error *error)
@@ -124,8 +121,6 @@ static enum eo_code take_candidate(void *context, const struct eo_stored_candida
   return code;
 }
 
-/* ---- all ---- */
-
 static enum eo_code collect(struct history *h, int64_t job, int after, int limit, enum eo_job_outcome *outcome,
                             struct eo_error *error)
 {
@@ -169,8 +164,6 @@ enum eo_code eo_job_history(struct eo_store *store, int64_t job, int after, int 
   done(h);
   return code;
 }
-
-/* ---- comma-separated values ---- */
 
 /* All "pinion/left/tip_relief_um" of a modification into a set. */
 static void collect_paths(const json_t *value, const char *path, json_t *set)

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a job evaluated, row by row in its order. */
 #ifndef EASEOFF_STUDY_JOB_HISTORY_H
 #define EASEOFF_STUDY_JOB_HISTORY_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "study/study_private.h"
 
 #include <math.h>
@@ -11,8 +12,6 @@ static double wall(void)
 {
   return 1e-3 * eo_clock_milliseconds();
 }
-
-/* ---- watching ---- */
 
 static double budget_fraction(const struct study *s, int extra)
 {
@@ -60,8 +59,6 @@ static int report_within(void *context, const char *what, double fraction)
   (void)what;
   return report(s, s->batch.count - s->missing_count + (int)(fraction * s->missing_count + 0.5));
 }
-
-/* ---- the loop ---- */
 
 static enum eo_code work(void *context, int thread, int item, struct eo_error *error)
 {
@@ -251,8 +248,6 @@ static enum eo_code run_batch(struct study *s, bool *more, struct eo_error *erro
     code = eo_error_set(error, EO_ERROR_CANCELLED, "", "The study was stopped.");
   return code;
 }
-
-/* ---- after the loop ---- */
 
 static enum eo_code collect_generations(struct study *s, struct eo_error *error)
 {

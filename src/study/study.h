@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The study loop: ask -> history -> evaluate -> save -> tell. The optimizer knows no gears, the evaluators no history;
    here they meet.
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Before the first ask. */
 #include "study/study_private.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A study as the document that is kept with its job. */
 #include "study/study.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A running study and the parts it is made of; see study.h. */
 #ifndef EASEOFF_STUDY_STUDY_PRIVATE_H
 #define EASEOFF_STUDY_STUDY_PRIVATE_H

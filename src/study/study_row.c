@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* One row of a study: looked up, computed, saved, weighed. */
 #include "study/study_private.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The true rows of a running study, in the order the optimizer has them. */
 #ifndef EASEOFF_STUDY_STUDY_ROWS_H
 #define EASEOFF_STUDY_STUDY_ROWS_H

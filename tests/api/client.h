@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A real server on a free port with a data folder of its own, and a small HTTP client that sends what it is told, right
    or wrong. */
 #ifndef EASEOFF_TESTS_API_CLIENT_H
@@ -33,8 +34,6 @@
 #include "document/examples.h"
 
 #define API "/api/v1"
-
-/* ---- server ---- */
 
 static struct {
   pid_t pid;
@@ -121,8 +120,6 @@ __attribute__((unused)) static int stop_server(int signal)
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
 
-/* ---- connections ---- */
-
 __attribute__((unused)) static int open_connection(void)
 {
   struct sockaddr_in address = {
@@ -153,8 +150,6 @@ __attribute__((unused)) static bool send_text(int connection, const char *text)
 {
   return send_bytes(connection, text, strlen(text));
 }
-
-/* ---- replies ---- */
 
 struct reply {
   int status; /* 0: none came */
@@ -317,8 +312,6 @@ __attribute__((unused)) static json_t *call_json(const char *method, const char 
   free_reply(&reply);
   return document;
 }
-
-/* ---- designs ---- */
 
 /* The paper's pair so coarse that everything takes a moment. The caller frees it. */
 __attribute__((unused)) static json_t *coarse_document(const char *algorithm, int budget)

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Holds every reply to call() against the OpenAPI document that the server gives. Programs that listen must end with
    tell_what_was_heard(). */
 #ifndef EASEOFF_TESTS_API_DESCRIPTION_H
@@ -82,8 +83,6 @@ static bool listen_to_replies(void)
   listener = check_reply;
   return status == 200 && description;
 }
-
-/* ---- the other way round ---- */
 
 static int count_unseen(const char *name, json_t *visited);
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* As much of JSON Schema 2020-12 as the API's own description uses, and stricter: every key that comes must be
    described, also where more may come one day, and so must every object. */
 #ifndef EASEOFF_TESTS_API_SCHEMA_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The API as a table of commands against a real server; every reply is held against the OpenAPI document that the
    server gives, which is held against what the server does. */
 #include "api/client.h"
@@ -7,8 +8,6 @@
 #include <math.h>
 
 static char *coarse, *order, *named, *sweep;
-
-/* ---- commands ---- */
 
 struct command {
   const char *what, *method, *path, *headers;
@@ -273,8 +272,6 @@ static const struct command after[] = {
   for (size_t i = 0; i < sizeof table / sizeof table[0]; i++) \
   run_command(&table[i])
 
-/* ---- both ways ---- */
-
 /* What OPTIONS allows at a path is what the description lists there. */
 static void check_path(const char *path, const json_t *item)
 {
@@ -351,8 +348,6 @@ static void check_description(void)
   ok(check_references(description) == 0, "every schema that is named is there");
 }
 
-/* ---- the terminal and the API say the same ---- */
-
 static char *read_command(const char *command)
 {
   char *text = NULL;
@@ -409,8 +404,6 @@ static void check_token(void)
   ok(reply.status == 200, "the cookie opens: %d", reply.status);
   free_reply(&reply);
 }
-
-/* ---- pages ---- */
 
 static void put_file(const char *folder, const char *name, const char *text)
 {

@@ -1,8 +1,7 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The API's description against what every kind of work really answers: nothing comes that is not described, nothing
    described stays away for ever. */
 #include "api/description.h"
-
-/* ---- designs ---- */
 
 /* The coarse pair with what `patch` (JSON) says otherwise. */
 static json_t *design_with(const char *algorithm, int budget, const char *patch)
@@ -73,8 +72,6 @@ static void test_sweeps(void)
                             json_loads(row[i].torque, JSON_DECODE_ANY, NULL), "speed",
                             json_loads(row[i].speed, JSON_DECODE_ANY, NULL)));
 }
-
-/* ---- jobs ---- */
 
 static void look_at(int id)
 {

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Jobs from outside: their events, stopping and resuming them, a server that is killed, questions that overtake each
    other. */
 #include "api/description.h"
@@ -36,8 +37,6 @@ static int count_true(int id)
   json_decref(job);
   return count;
 }
-
-/* ---- events ---- */
 
 static int open_stream(const char *path, long long last)
 {
@@ -106,8 +105,6 @@ static void test_events(void)
   close(stream);
 }
 
-/* ---- stopping ---- */
-
 static void wait_for_evaluations(int id, int count)
 {
   for (double end = seconds_now() + 60; count_true(id) < count && seconds_now() < end;)
@@ -163,8 +160,6 @@ static void test_park(void)
   json_decref(job);
   ok(post_to_job(id, "cancel") == 202 && wait_for_job(id, "cancelled", 30), "it can be stopped for good");
 }
-
-/* ---- overtaking ---- */
 
 static void test_overtaking(void)
 {

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Rig files over the API: uploads that are whole, broken, too large or cut off, a server that dies in the middle, and
    what the recordings say beside the prediction. The recordings come from the API itself, with known faults. */
 #include "api/description.h"
@@ -7,8 +8,6 @@
 
 #define EDGE "----edge"
 static const char form_type[] = "Content-Type: multipart/form-data; boundary=" EDGE "\r\n";
-
-/* ---- forms ---- */
 
 struct form {
   char *text;
@@ -96,8 +95,6 @@ static json_t *body_of(const struct reply *reply)
   return reply->size ? json_loadb(reply->body, reply->size, 0, NULL) : NULL;
 }
 
-/* ---- what is there ---- */
-
 static int count_kept(void)
 {
   json_t *list = call_json("GET", API "/measurements", NULL, NULL, NULL);
@@ -136,8 +133,6 @@ static bool is_discreet(const struct reply *reply)
   return !reply->body || (!strstr(reply->body, server.folder) && !strstr(reply->body, "incoming"));
 }
 
-/* ---- recordings ---- */
-
 static json_t *design;
 
 /* settings: JSON of the synthetic rig. */
@@ -173,8 +168,6 @@ static void test_rig(void)
   ok(again.status == 422 && strstr(again.body, "/rig/turn"), "and one with a misspelt key");
   free_reply(&again);
 }
-
-/* ---- uploads ---- */
 
 static double number_of(const json_t *document, const char *a, const char *b)
 {
@@ -315,8 +308,6 @@ static void test_kinds(void)
   ok(count_kept() == 1, "they go again");
 }
 
-/* ---- what is refused ---- */
-
 static const struct refusal {
   const char *what, *settings;
   int status;
@@ -400,8 +391,6 @@ static void test_words(void)
          201, "\"speed\"");
   ok(count_kept() == before + 1 && folders_become(before + 1), "of these only the last one is kept");
 }
-
-/* ---- bodies ---- */
 
 static void expect(const char *what, struct reply reply, int status)
 {
@@ -502,8 +491,6 @@ static void test_kill(void)
   free_reply(&reply);
   free(form.text);
 }
-
-/* ---- beside the prediction ---- */
 
 static void test_comparison(void)
 {

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Clients that do it wrong, slowly, all at once or too much; and a server that stops while they are there. */
 #include "api/client.h"
 #include "support/tap.h"
@@ -232,8 +233,6 @@ static void test_rate(void)
      refused, REQUESTS, allowed);
   ok(says_when, "and told when to come again");
 }
-
-/* ---- streams ---- */
 
 enum { STREAMS = 200 };
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Speed of the dynamics alone: three torques under the tangent law, mirror and unequal ends, contact loss, a speed
    sweep. */
 #include <stdio.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Times true evaluations of the paper pair (three torques, default resolution) on finite elements: by stage, for equal
    and different ends, when one value of the modification changes, and on one and two threads; and the memory of a
    worker. Then, for every version of the kernel that this processor can run, the figure of one evaluation: its
@@ -126,8 +127,6 @@ static void time_design(const char *what, const struct eo_pair *pair, struct eo_
   eo_evaluator_free(evaluator);
 }
 
-/* ---- threads ---- */
-
 struct worker {
   const struct eo_pair *pair;
   struct eo_design design;
@@ -169,8 +168,6 @@ static void time_threads(const struct eo_pair *pair, const struct eo_design *des
   }
 }
 
-/* ---- memory and work ---- */
-
 static double allocated(void)
 {
   struct mallinfo2 info = mallinfo2();
@@ -188,8 +185,6 @@ static void measure_memory(const struct eo_pair *pair, const struct eo_design *d
   printf("a worker holds %.2f MB, what all share %.1f MB\n", allocated() - before, before);
   eo_evaluator_free(evaluator);
 }
-
-/* ---- the figure of one evaluation ---- */
 
 /* Gflop/s of one core on c = a b of 512 rows. */
 static double product_rate(void)

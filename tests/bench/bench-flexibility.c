@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Times the preparation of the paper pair by step and the evaluation of the kernel and of the root stress. */
 #include "flexibility/flexibility.h"
 #include "support/paper-pair.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Every version of the kernel that this processor can run, on the sizes of loaded contact (110 points, 36 modes) and of
    root stress, in Gflop/s of processor time beside the matrix library's product in the same run. */
 #include "numerics/gram.h"

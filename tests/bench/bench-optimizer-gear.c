@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Optimizers on the real objective of the paper's pair, Case A (5 variables, both ends alike) and Case B (10): J after
    100, 200, 400 and all of 1000 true evaluations (--budget), beside NLopt's and pagmo's when they are there.
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Optimizers on test problems, beside NLopt's and pagmo's when they are there: medians (quartiles) of the best value
    found after 100, 200, 400 and all of 1000 true evaluations (--budget), and the time per evaluation, the problem's own
    included. Prints a table; asserts nothing.

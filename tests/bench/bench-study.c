@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Wall time of searches on the paper pair, and what of it is not the model: bench-study [CACHE-DIRECTORY
    [GENERATIONS]]. Prints: case, algorithm, J, true evaluations, individuals, PFC, seconds, and the shares of optimizer
    and history. */

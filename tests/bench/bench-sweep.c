@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Times a sweep of 200 speeds and one of 50 torques of a prepared example pair: make bench-sweep, then
    bench-sweep [EXAMPLE [CACHE-DIRECTORY]]. */
 #include "document/design_document.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* How fast and in how much memory text is read: bench-text [MB [FOLDER]]. Writes a file of that size there, reads it,
    removes it. */
 #include "recording/reader.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* How long POST /analyze takes over the loopback, in a real server, on the paper's pair as it is by default with all
    curves: alone, beside connections that ask for what they have already, beside an optimization, beside both.
    bench-whatif [CACHE-DIRECTORY [REQUESTS]]; $EASEOFF is the program. The processor time is the server's, so the first
@@ -23,8 +24,6 @@ static int compare(const void *a, const void *b)
   double x = *(const double *)a, y = *(const double *)b;
   return (x > y) - (x < y);
 }
-
-/* ---- one client that changes its design ---- */
 
 /* No two requests are the same. right: the right end changes too. */
 static char *next_design(bool right)
@@ -91,8 +90,6 @@ static void measure(const char *what, const char *headers, bool right)
   fflush(stdout);
 }
 
-/* ---- what else goes on ---- */
-
 /* A process with many connections that ask in turn whether something has changed. */
 static pid_t start_crowd(void)
 {
@@ -148,8 +145,6 @@ static void stop_job(int id)
   free_reply(&reply);
   wait_for_job(id, "cancelled", 60);
 }
-
-/* ---- the server ---- */
 
 static void start(const char *cache)
 {

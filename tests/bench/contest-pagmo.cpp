@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 // pagmo's optimizers in the contest; built where pagmo is installed. One generation per call, so that the budget is
 // watched.
 #include <pagmo/algorithm.hpp>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A contest of optimizers on functions over the unit cube: best value after so many evaluations, over many seeds. */
 #ifndef EASEOFF_BENCH_CONTEST_H
 #define EASEOFF_BENCH_CONTEST_H

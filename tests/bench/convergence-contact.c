@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* How far an evaluation depends on its discretisation, for `make convergence`: one property changed at a time, the
    paper pair with and without modification and shaft error, on finite elements. Deviations are against the finest row
    of each table. Last, whether the default resolution keeps the stated noise: 2 nm of transmission error, 0.5 % of RMS.

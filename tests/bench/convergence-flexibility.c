@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* How far the compliance and the root stress depend on the mesh: one property changed at a time, for `make
    convergence`. Last, what the micro-geometry changes when it is put into the mesh. */
 #include "flexibility/flexibility.h"

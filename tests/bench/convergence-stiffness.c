@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The level of mesh stiffness over tooth numbers and helix angles, ring and sector, beside ISO 6336-1 with and without
    C_M: unmodified pairs of m_n 6, b 55 mm under 135 N/mm, 16 positions, 14 layers. c = mean of (P/Z) cos^2(beta_b)/b.
  */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Test problems over the unit cube, shifted and turned anew for every instance; the least value is 0 (ripple: its
    value at the known design, about the optimum). Definitions: Hansen, Finck, Ros, Auger 2009 (BBOB), simplified. */
 #ifndef EASEOFF_BENCH_PROBLEMS_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A server with its own data folder, a browser, and TAP.
 import { spawn } from 'node:child_process';
 import { mkdtemp, rm } from 'node:fs/promises';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Modules of the page that need no browser: numbers as people write them, documents, addresses, the tooth's section.
 import { readPlace, writePlace, putDifference, takeDifference } from '../../web/src/base/address.js';
 import { change, changeText, duration, labelOf, parseNumber, plain, sig } from '../../web/src/base/format.js';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A rig engineer's day: recordings come in, one of them is broken, they lie beside the prediction, an input is fitted,
 // one is deleted.
 import { readFile } from 'node:fs/promises';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A designer's day: look, drag, mistype, search, close the laptop, come back, compare, print; and a server that goes
 // away.
 import { readFile } from 'node:fs/promises';

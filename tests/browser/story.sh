@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
 # A day of a designer in a real browser against a real server.
 if [ -z "$NODE" ] || [ ! -f "$PAGE/index.html" ]; then
   echo "1..0 # SKIP the page is not built here"

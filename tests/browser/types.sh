@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
 # The types in the page's comments agree with its code.
 if [ ! -f "$MODULES/node_modules/typescript/bin/tsc" ] || [ -z "$NODE" ]; then
   echo "1..0 # SKIP the page is not built here"

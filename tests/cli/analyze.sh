@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
 # easeoff analyze from outside: every example, the result document's names, files, the same bytes again, exit status, bad input.
 . "$(dirname "$0")/../support/tap.sh"
 : "${CHECK_RESULT:=tests/support/check-result}"

@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
 # The program from outside: exit status, one-line errors, output that is whole or missing.
 . "$(dirname "$0")/../support/tap.sh"
 

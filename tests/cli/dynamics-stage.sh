@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
 # The stages dynamics and sdof from outside: the reference cases put together by hand, parameters derived from a gear pair, wrong input.
 . "$(dirname "$0")/../support/stages.sh"
 reference=$CASES/dynamics.json

@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
 # The property of tests/unit/evaluation/history on every processor that this one can stand for: each version of our own kernel, with the matrix
 # library's kernels of such a processor.
 . "${SOURCES:-.}/tests/support/tap.sh"

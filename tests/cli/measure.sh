@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
 # easeoff rig, verify and measure from outside: recordings of a simulated pair, whole and faulty, and what is made of them.
 . "$(dirname "$0")/../support/tap.sh"
 

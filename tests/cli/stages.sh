@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Every stage alone, from outside: its numbers against the reference cases, and what it says to wrong input.
 . "$(dirname "$0")/../support/stages.sh"
 reference=$CASES/contact.json evaluations=$CASES/evaluation.json

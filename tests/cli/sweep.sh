@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
 # easeoff sweep from outside, on the paper pair, case A, at a coarse resolution.
 . "$(dirname "$0")/../support/tap.sh"
 

@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
 # optimize and history from outside: exit status, one-line errors, folders that cannot be written, full disks, files that are wrong.
 . "$(dirname "$0")/../support/tap.sh"
 mounted=

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A study killed many times at random moments ends with the result of an undisturbed one, and computes nothing twice
    that was saved. KILLS=N sets how often (default 10); SEED=N the moments. */
 #include <signal.h>

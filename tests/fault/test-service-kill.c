@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A service killed in the middle of an optimization: the next one on the same folder goes on with it, evaluates nothing
    twice and ends with the result of an undisturbed run. KILLS=N sets how often it is killed (default 4). */
 #include <signal.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a client sends, piece by piece: the first byte says which reader gets the rest. With clang's fuzzer:
      clang -fsanitize=fuzzer,address,undefined -DFUZZER ... ; without it the program replays the files it is given and
    prints TAP. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Any bytes as a rig file: an error with a sentence, or a recording whose columns can be looked at. For libFuzzer, and
    replayed by replay.c. */
 #define _GNU_SOURCE

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Any bytes as an upload: the first line is what follows multipart/form-data in the Content-Type (another never comes
    here), the rest the body. It is handed over in pieces of several sizes, so that every boundary is cut at every place,
    and each time the same must come out of it. A real connection carries the type, as the library wants it; the body
@@ -35,8 +36,6 @@ static void demand(bool good, const char *what)
   fprintf(stderr, "fuzz-upload: %s\n", what);
   abort();
 }
-
-/* ---- one upload ---- */
 
 static void hash_file(const struct eo_upload *upload, int number, struct eo_hash *hash)
 {
@@ -107,8 +106,6 @@ static enum MHD_Result handle(void *context, struct MHD_Connection *connection, 
   *(bool *)context = true;
   return MHD_NO;
 }
-
-/* ---- the connection ---- */
 
 static char folder[200];
 

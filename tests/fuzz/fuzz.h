@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #ifndef EASEOFF_TESTS_FUZZ_H
 #define EASEOFF_TESTS_FUZZ_H
 

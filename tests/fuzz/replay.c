@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Runs a fuzz target over every file of a folder, and over each with its end cut off: replay FOLDER. A crash ends the
    test. */
 #include "fuzz/fuzz.h"

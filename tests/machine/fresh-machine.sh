@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
 # A fresh Debian 12 with nothing but a clone of this repository, in a chroot: ./bootstrap serve answers on /health, ./bootstrap check is
 # green. By hand and as root; needs debootstrap, some gigabytes and most of an hour.
 #

@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
 # The image of docker/Dockerfile, built and used as its users do: an unprivileged user, a read-only root, no capabilities, a volume. It
 # analyses, keeps its jobs over stop and start, asks for its token, tells its health and ends when told. By hand; needs docker or podman,
 # some gigabytes and ten minutes.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Bytes of binary files for the tests, number by number in either byte order. */
 #ifndef EASEOFF_TESTS_SUPPORT_BYTE_WRITER_H
 #define EASEOFF_TESTS_SUPPORT_BYTE_WRITER_H

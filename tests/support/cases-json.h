@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Reading reference files in tests. */
 #ifndef EASEOFF_TESTS_SUPPORT_CASES_JSON_H
 #define EASEOFF_TESTS_SUPPORT_CASES_JSON_H

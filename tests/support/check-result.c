@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Exit 0 when standard input is a result document with every name that is relied on: check-result ENDS. */
 #include <stdlib.h>
 

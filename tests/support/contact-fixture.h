@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What the tests of gap, contact and excitation share: modifications of the paper, random ones, and compliances without
    finite elements. */
 #ifndef EASEOFF_TESTS_SUPPORT_CONTACT_FIXTURE_H

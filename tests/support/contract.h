@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The names of the result document that others rely on (product description, "The result document"): present, of the
    right kind and length, finite. */
 #ifndef EASEOFF_TESTS_SUPPORT_CONTRACT_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Synthetic recordings of every kind, drawn at random with their truth. */
 #ifndef EASEOFF_TESTS_DRAWN_RECORDINGS_H
 #define EASEOFF_TESTS_DRAWN_RECORDINGS_H

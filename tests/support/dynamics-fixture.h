@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The paper's pair as the reference files describe it (dynamics.json: defaults, law_K1), shared by the tests of the
    dynamics. */
 #ifndef EASEOFF_TESTS_SUPPORT_DYNAMICS_FIXTURE_H

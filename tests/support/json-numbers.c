@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Numbers in JSON files, for the shell's tests.
      json-numbers FILE PLACE                                        prints them as an array
      json-numbers FILE PLACE FILE PLACE TOLERANCE [KIND [FACTOR]]   compares: the second times FACTOR is expected

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The gear pair of the paper's Table 1, for tests of the floors below the design document. */
 #ifndef EASEOFF_TESTS_SUPPORT_PAPER_PAIR_H
 #define EASEOFF_TESTS_SUPPORT_PAPER_PAIR_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Files for the tests of the readers, in a temporary folder that goes when the test ends. */
 #ifndef EASEOFF_TESTS_SUPPORT_READER_FIXTURE_H
 #define EASEOFF_TESTS_SUPPORT_READER_FIXTURE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A service on a folder of its own, with coarse pairs, and what is needed to wait for it. */
 #ifndef EASEOFF_TESTS_SUPPORT_SERVICE_FIXTURE_H
 #define EASEOFF_TESTS_SUPPORT_SERVICE_FIXTURE_H
@@ -96,8 +97,6 @@ __attribute__((unused)) static bool wait_for_evaluations(struct eo_service *serv
     pause_for(2);
   return progress_of(service, id, "true_evaluations") >= count;
 }
-
-/* ---- answers ---- */
 
 struct answered {
   int count;

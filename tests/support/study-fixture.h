@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The paper pair on a coarse mesh and few positions, and folders for its history: for tests of the study loop. */
 #ifndef EASEOFF_TESTS_SUPPORT_STUDY_FIXTURE_H
 #define EASEOFF_TESTS_SUPPORT_STUDY_FIXTURE_H

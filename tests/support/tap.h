@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The Test Anything Protocol in a few lines: ok(condition, "what"), close_to(...), and tap_done() at the end. */
 #ifndef EASEOFF_TESTS_SUPPORT_TAP_H
 #define EASEOFF_TESTS_SUPPORT_TAP_H

@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
 # The reference cases of the dynamics and of the optimizer through `easeoff verify`: every number within tolerance, wrong ones
 # noticed, other files of the same kinds read.
 . "$(dirname "$0")/../support/tap.sh"

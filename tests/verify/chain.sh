@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
 # The reference cases of the whole chain through `easeoff verify`: standards, contact, CalculiX, evaluation.
 : "${EASEOFF:=./easeoff}" "${CASES:=tests/cases}"
 folder=$(mktemp -d) || exit 99

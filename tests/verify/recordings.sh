@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Recordings in the shapes that rigs write, each with a known answer: the right number, or a question. A refusal names what
 # is open; a wrong number never comes out.
 . "$(dirname "$0")/../support/tap.sh"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Linear bricks with incompatible modes (ours) against quadratic bricks with reduced integration (C3D20R of CalculiX)
    on the same meshes, refined step by step: which of the two moves, and where both go. A line load along one row, the
    mean normal deflection of another row: so no dent under a point load comes in. For `make check-slow`. */

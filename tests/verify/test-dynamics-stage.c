@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The dynamics fed with the static arrays of evaluation.json (case S02), its default parameters for two gear pairs, and
    the harmonic balance against time integration on the same arrays. */
 #include "support/cases-json.h"

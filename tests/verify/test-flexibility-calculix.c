@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Our solver against CalculiX on our own mesh: same nodes, same loads, C3D8I. The two elements are the same for
    parallelepipeds (see test-element); elsewhere CalculiX leaves the ratio of the Jacobians out of the incompatible
    modes, which ours has so that it passes the patch test. That is the whole of the difference seen here. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Bulk compliance against an independent computation (tests/cases/contact.json, fe_bulk: deflection under a line load
    along a row). One tooth pair pressed together by 7.2 um: load and root stress against the three-dimensional contact
    analysis of CalculiX (tests/cases/calculix.json: unmodified pair, 3-tooth sectors, no neighbour coupling). The

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* End to end against an independent computation of the same model on the paper's pair, with the boundary of that
    computation: 3-tooth sector, no coupling between neighbouring teeth, mesh damping from 1100 N/um, no torsion through
    the groove. Its stated uncertainty is max(0.15 um, 20 %) for peak to peak; the two agree far closer, and the

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The single degree of freedom where closed forms exist: grazing, the linear response, the folds of case A. */
 #include "support/tap.h"
 #include "dynamics/sdof.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* `easeoff verify` cannot be fooled: every key of a case file misspelt, every number as text, as null and in brackets,
    every text as a number, and every expected number moved by three tolerances, one at a time. A file must then be
    refused or fail. The check takes the blocks that compute in milliseconds; STRICT=all takes every block. */

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What the views share, and the way from one to another.
 import { readPlace, writePlace } from './base/address.js';
 

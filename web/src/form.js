@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Fields built from the field tables: label, unit, range, help, live check; comma or point.
 import { fill, h, newId } from './base/dom.js';
 import { choiceText, labelOf, parseNumber, plain, unitText } from './base/format.js';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The few large numbers, each with its change against what the design is compared with.
 import { fill, h } from './base/dom.js';
 import { change, changeText, sig } from './base/format.js';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The bar below every view: the search that runs, how far it is, how long it still takes.
 import { post } from './base/api.js';
 import { fill, h } from './base/dom.js';

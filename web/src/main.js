@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Starts the page: field tables, the design of the address, the views.
 import { Analyst } from './base/analyst.js';
 import { putDifference, readPlace, takeDifference } from './base/address.js';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What a report has that the screen has not: title, date, version, hash, and every assumption of the design.
 import { h } from './base/dom.js';
 import { labelOf, plain, unitText } from './base/format.js';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Round the views: title bar with the design's menu, what it is compared with, tabs, state; below, the job bar;
 // between, a word when the service is away.
 import { Refusal, ask, connection, get, list } from './base/api.js';

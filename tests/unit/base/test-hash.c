@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The key of a cache file: SHA-256 against the examples of FIPS 180-4, and what counts as the same number. */
 #include "base/hash.h"
 #include "support/tap.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The parallel loop: every item once, the lowest failure, cancellation, progress. */
 #include "base/parallel.h"
 

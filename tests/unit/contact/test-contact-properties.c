@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What holds for every loaded contact: complementarity and equilibrium computed anew from the full compliance, the
    tangent, mirrored input, warm starts, axially held pinions, threads, and three hundred random gear pairs under any
    load. */
@@ -86,8 +87,6 @@ static struct eo_geometry paper_geometry(void)
   return g;
 }
 
-/* ---- complementarity, from the kernel itself ---- */
-
 struct residuals {
   double closed;  /* largest |d| where a point carries load, m */
   double open;    /* smallest d where it does not, m */
@@ -156,8 +155,6 @@ static void test_complementarity(void)
     bench_close(&b);
   }
 }
-
-/* ---- partial cells ---- */
 
 /* Largest mismatch of the local law, m: a cell carries what the mean of the positive part of its local approach asks
    for, the approach changing over the cell as it does between its neighbours on the line. */
@@ -239,8 +236,6 @@ static void test_partial_cells(void)
   ok(partial < 0.5 * whole, "30 cells a line: %.2f nm of noise instead of %.2f", 1e9 * partial, 1e9 * whole);
 }
 
-/* ---- tangent and monotony ---- */
-
 /* The load at which a cell enters bends Z(P); differences that stay on one side of all bends are what the tangent has
    to equal. */
 static void test_tangent(void)
@@ -296,8 +291,6 @@ static void test_monotony(void)
   ok(softer, "more compliance, more approach");
   bench_close(&b);
 }
-
-/* ---- symmetry, warm starts, determinism ---- */
 
 static bool same_end(const struct bench *b, const struct eo_loaded_end *x, const struct eo_loaded_end *y)
 {
@@ -399,8 +392,6 @@ static void test_threads(void)
   bench_close(&b);
 }
 
-/* ---- axially held pinion ---- */
-
 /* Both ends of case A under a small shaft error, with an axial support. result[0], [1]: the ends. */
 static void hold(struct bench *b, double angle, double stiffness, int stagger, double load)
 {
@@ -492,8 +483,6 @@ static void test_released_end(void)
   ok(b.result[0].failures == 0 && b.result[1].failures == 0, "which is no failure");
   bench_close(&b);
 }
-
-/* ---- any gear, any load ---- */
 
 static void test_random(void)
 {

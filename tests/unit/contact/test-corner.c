@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Shaft angle errors in the gap field against brute force: the exact, generated flanks and tip edges of a pair are
    placed in mesh, the gear is rotated as a rigid body (Rodrigues), and one member is turned about its own axis until
    the two touch in the slice. Nothing of the field is used for it. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Loaded contact on bodies that twist and bend: that the coupled solution is one (against plain iteration, and by
    putting it back), what must hold for any drive side, support and stagger, and that the option leaves no trace when it
    is off. Teeth have a compliance in closed form, so that no finite elements are needed. */
@@ -111,8 +112,6 @@ static double difference(int n, const double *a, const double *b)
   return most;
 }
 
-/* ---- the gap field ---- */
-
 /* A small rotation of a rigid body in the plane of action is a shaft angle error; at tip corners but for the cosine by
    which the normal there is turned. */
 static void test_field(void)
@@ -157,8 +156,6 @@ static void test_field(void)
   ok(lowest > -1e-12 && lowest < 5e-7, "no gap is below the datum, %.2g m", lowest);
   clear_bench(&b);
 }
-
-/* ---- the coupled solution ---- */
 
 static void set_load(const struct bench *b, int end, int j, struct eo_deflection *load)
 {
@@ -400,8 +397,6 @@ static void test_response(void)
   free(before);
   clear_bench(&b);
 }
-
-/* ---- the option in the evaluation ---- */
 
 static void set_design(struct eo_design *d)
 {

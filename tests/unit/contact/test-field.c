@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The gap field: its sum, its ends, its tip corners and its smallest values. */
 #include "support/contact-fixture.h"
 

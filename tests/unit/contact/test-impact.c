@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The entering impact: against tests/cases/contact.json (block impact), the half sine's closed form, and what may and
    may not move it. */
 #include "support/contact-fixture.h"

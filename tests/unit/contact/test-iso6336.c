@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* ISO 6336 and the local contact law against tests/cases/contact.json, and Hertz's forms against FZG C14. */
 #include <stdio.h>
 #include <stdlib.h>

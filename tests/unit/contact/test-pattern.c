@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The contact pattern and the sharing of load against what they are made of: balance of forces, and closed forms on a
    flank whose contact lines stay whole. */
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The influence of twisting and bending bodies, against textbook beams.
 
    Uniform bars: simply supported Timoshenko beam of length L, unit force at z (b = L - z), x <= z, from the left
@@ -98,8 +99,6 @@ static void test_sections(void)
   near(tube.shear / (1e11 * M_PI / 4 * (1e-2 - 0.09999 * 0.09999)), 2 * 1.3 / (4 + 3 * 0.3), 1e-7,
        "thin tube: 2 (1 + nu) / (4 + 3 nu)");
 }
-
-/* ---- uniform bars ---- */
 
 struct bar {
   double length, left;
@@ -260,8 +259,6 @@ static void test_double_helical_twist(void)
   near(chord[EO_RIGHT] / single, 1, 1e-10, "and at the far end");
 }
 
-/* ---- stepped, hollow bodies ---- */
-
 static double diameter_at(int member, double x)
 {
   double half = pair.groove_width / 2, end = half + geometry.face_width;
@@ -364,8 +361,6 @@ static void test_mirror(void)
   ok(worst < 1e-12 * largest, "mirrored bearings and drive sides exchange the ends, off by %.2g", worst / largest);
   free(first);
 }
-
-/* ---- the effective diameter ---- */
 
 enum { CELLS = 260 };
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Unloaded contact in its two independent forms, pair by pair: Litvin's equations on exact surfaces and the smallest
    gap. */
 #include "support/contact-fixture.h"

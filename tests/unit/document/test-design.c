@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The design document: every way to get a key wrong, defaults against the product's description, derived defaults
    against the model's printed figures, and keys that contradict each other. */
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Exported flanks against what is known of involute helicoids, and against each other: turned into mesh, pinion and
    gear touch. */
 #include "document/design_export.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Properties of the equations of motion: symmetry, zero modes, loads on them, reciprocity, the printed signs. */
 #include "support/dynamics-fixture.h"
 #include "support/tap.h"
@@ -218,8 +219,6 @@ static void modes_and_signs(void)
   ok(failed, "%s", error.text);
 }
 
-/* ---- pinions held along their axis ---- */
-
 static struct eo_dynamics_parameters held(double stiffness, bool coupled)
 {
   struct eo_dynamics_parameters p = coupled ? lopsided(1.2e7, 8.4e8) : lopsided(0, 0);
@@ -322,8 +321,6 @@ static void held_at_rest(void)
   eo_dynamics_model_init(&m, &p, NULL);
   ok(eo_dynamics_model_axial_stiffness(&m) == 0, "a floating pinion's ends carry the same");
 }
-
-/* ---- driver and load ---- */
 
 /* Everything rigid but the meshes and the machines' shafts: four inertias in a row, the gear's reduced by nothing. */
 static void driver_and_load(void)

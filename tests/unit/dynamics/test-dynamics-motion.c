@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Properties of the motion: energy, power, both solvers with contact loss, convergence, both directions of a sweep, the
    same bytes from every thread. */
 #include <pthread.h>
@@ -18,8 +19,6 @@ static struct eo_vibration_solver *solver_for(const struct eo_dynamics_parameter
   ok(!failed, "the solver of %d harmonics is made %s", harmonics, error.text);
   return solver;
 }
-
-/* ---- energy of free vibration ---- */
 
 struct free_run {
   const struct eo_oscillator *oscillator;
@@ -93,8 +92,6 @@ static void energy(void)
   eo_ode_free(ode);
   eo_law_done(&law);
 }
-
-/* ---- both solvers ---- */
 
 static void check_finite(const struct eo_vibration *r)
 {
@@ -266,8 +263,6 @@ static void single_end(void)
   eo_law_done(&law);
 }
 
-/* ---- sweeps ---- */
-
 enum { SPEEDS = 60 };
 struct sweep_run {
   struct eo_vibration up[SPEEDS], down[SPEEDS];
@@ -345,8 +340,6 @@ static void trace(void)
   eo_law_done(&law);
 }
 
-/* ---- held pinions ---- */
-
 static double held_rms(double stiffness, struct eo_vibration *r)
 {
   struct eo_dynamics_parameters p = paper_pair();
@@ -381,8 +374,6 @@ static void held_limits(void)
   ok(fabs(m / f - 1) > 1e-2 && fabs(m / x - 1) > 1e-2, "between: %.3f, %.3f, %.3f m/s2", f, m, x);
   ok(floating.pinion_thrust_max == 0, "a floating pinion has no thrust");
 }
-
-/* ---- stable states ---- */
 
 /* Where the balance finds a state that is not stable: what motion settles to, integrated here once more from elsewhere.
  */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The mesh laws: values against hand calculation, slopes against differences, separation, back contact, refusals. */
 #include <string.h>
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Bad input to the dynamics: every refusal has a sentence and a pointer, every outcome finite numbers. */
 #include <string.h>
 

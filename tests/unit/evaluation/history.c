@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* An answer depends on what is asked, not on what was asked before, with whom it shares a batch or on how many threads:
    one analysis is led through many designs in a mixed order, and every document is that of an analysis made for it
    alone on one thread, to the last byte. With finite elements, so that root stress is among it. Says which version of

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The analysis and its result document, on a compliance in closed form: what it must not depend on, what must agree
    with what, and every name that is relied on. */
 #include <stdlib.h>

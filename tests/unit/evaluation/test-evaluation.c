@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What holds for every evaluation, on a coarse finite-element pair: equal ends once or twice, no memory, scenarios,
    laws, bands, threads. */
 #include "document/design_document.h"
@@ -129,8 +130,6 @@ static bool finite_record(const struct record *record)
   return finite;
 }
 
-/* ---- the ends ---- */
-
 static void test_equal_ends(void)
 {
   struct eo_design design = design_of("paper-case-a");
@@ -194,8 +193,6 @@ static void test_mirror(void)
   near(r->load_case[1].vibration.rms[0][1], rms[0], 1e-6, "on both ends");
 }
 
-/* ---- no memory ---- */
-
 static void test_no_memory(void)
 {
   struct eo_design a = design_of("paper-case-a"), b = design_of("paper-case-b"), plain = design_of("paper");
@@ -257,8 +254,6 @@ static void test_threads(void)
   }
 }
 
-/* ---- scenarios ---- */
-
 static void test_scenarios(void)
 {
   struct eo_design plain = design_of("paper");
@@ -316,8 +311,6 @@ static void test_robust(void)
   ok(worst.fitness == EO_FITNESS_WORST && mean.fitness == EO_FITNESS_WORST,
      "one scenario that failed spoils mean and worst");
 }
-
-/* ---- laws, bands, curves ---- */
 
 static double rms_with(struct eo_design design, enum eo_mesh_law law, enum eo_solver solver)
 {
@@ -411,8 +404,6 @@ static void test_root_stress_moves(void)
        1e-6 * moved[0], 1e-6 * moved[1], 1e-6 * alone[0], 1e-6 * alone[1]);
   }
 }
-
-/* ---- axially held pinions ---- */
 
 static void test_axial(void)
 {

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Objectives, constraints and fitness against their formulae, paper equations (19)-(23). */
 #include "evaluation/objective.h"
 #include "support/tap.h"

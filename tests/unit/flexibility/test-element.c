@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The brick with incompatible modes: rigid motions, the patch test, bending without locking, and one element against
    CalculiX. */
 #include "flexibility/element.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What must hold for any prepared flexibility: symmetry, semi-definiteness, the same bytes each time, a cache that is
    believed only when it is whole, and a preparation that can be stopped. A coarse mesh keeps it quick. */
 #include "flexibility/flexibility.h"

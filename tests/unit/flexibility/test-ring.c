@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The ring of all teeth by harmonics against the same ring assembled tooth by tooth and solved at once; a chain of such
    teeth against the sector; symmetry, positive definiteness, number of threads. */
 #include <math.h>
@@ -20,8 +21,6 @@ static const struct eo_flexibility_settings coarse = {.neighbour_coupling = true
                                                       .columns = 4,
                                                       .rim_elements = 3,
                                                       .reach = 7};
-
-/* ---- many teeth as one matrix ---- */
 
 struct entry {
   int row, column;
@@ -215,8 +214,6 @@ static double *solve_body(struct body *b, int kept, const int *keep)
   return inverse;
 }
 
-/* ---- rigid motions, in real numbers: rotation, translations along x and y of tooth 0 ---- */
-
 static void rigid_at(const struct body *b, int t, int node, int layer, double field[3][3])
 {
   const double *p = b->section->point + 2 * node;
@@ -328,8 +325,6 @@ static void float_load(const struct floating *f, const double *inverse, int load
     for (int a = 0; a < 3; a++)
       u[i] -= q[a] * f->field[a * f->kept + i];
 }
-
-/* ---- the comparisons ---- */
 
 static int *list_kept(const struct body *b, int flank, bool faces, int *kept)
 {

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The mesh of a section and of a sector: where its nodes lie, on which side the neighbours are, and that no brick folds
    on gears of very different shape. */
 #include "flexibility/sector.h"

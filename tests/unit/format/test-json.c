@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* JSON in and out, texts, sheets: hostile bytes, exact numbers, files that are never half-written. */
 #include <math.h>
 #include <stdint.h>

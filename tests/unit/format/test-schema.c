@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The descriptions of the design for programs against the design itself: every example obeys its schema as it is
    written and as it is read, what the tables refuse the schema refuses too, and the form's fields are the keys of the
    document with its defaults. */
@@ -15,8 +16,6 @@
 #include "document/study_result.h"
 #include "document/sweep_document.h"
 #include "support/tap.h"
-
-/* ---- as much of JSON Schema 2020-12 as the descriptions use ---- */
 
 static bool has_type(const json_t *value, const char *type)
 {
@@ -82,8 +81,6 @@ static int count_wrong(const json_t *schema, const json_t *value, const char *wh
   return wrong;
 }
 
-/* ---- designs ---- */
-
 static void check_examples(const json_t *input, const json_t *output)
 {
   struct eo_design design;
@@ -133,8 +130,6 @@ static void check_refusals(const json_t *input)
   }
 }
 
-/* ---- the form ---- */
-
 static int count_strange(const json_t *fields, const struct eo_table *table, const json_t *defaults)
 {
   int strange = json_array_size(fields) != (size_t)table->count;
@@ -170,8 +165,6 @@ static void check_form(void)
   json_decref(form);
   json_decref(defaults);
 }
-
-/* ---- outlines ---- */
 
 static const struct eo_unit *const units[] = {
     &eo_unit_N_per_mm_um, &eo_unit_um_mm_per_N, &eo_unit_mm_per_s, &eo_unit_m_per_s2,
@@ -288,8 +281,6 @@ static void check_taking(void)
   json_decref(wanted);
   json_decref(whole);
 }
-
-/* ---- outlines ---- */
 
 struct part {
   double length;

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The field tables themselves, and units: what the document says is what the program gets, bit for bit. */
 #include <stdint.h>
 #include <stdlib.h>

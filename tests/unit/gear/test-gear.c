@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Macro-geometry, fillet, modification, exact surface and slice gap. Numbers: tests/cases/contact.json (an independent
    computation) and closed forms. */
 #include "gear/surface.h"
@@ -172,8 +173,6 @@ static void test_slice_gap(const struct eo_geometry *g)
              "relief on the gear mirrors relief on the pinion, um");
   }
 }
-
-/* ---- slice gap by turning one slice until it touches the other ---- */
 
 enum { FINE = 4000 };
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Header fields, paths and queries. Expected values are those of RFC 9110, 6265, 7240 and
    3986. */
 #include "http/header_field.h"

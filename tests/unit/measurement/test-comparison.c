@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Measured beside predicted, and inputs found again from recordings of a rig whose inputs are known. The coarse pair of
    the study tests. */
 #include "measurement/comparison.h"
@@ -98,8 +99,6 @@ static void test_comparison(void)
      100 * c.reduction[1].measured_sigma, 100 * c.reduction[1].predicted);
   eo_comparison_done(&c);
 }
-
-/* ---- updating ---- */
 
 static enum eo_code bent_line(void *context, const double *x, double *residual, struct eo_error *e)
 {

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Synthetic recordings of known truth through the whole chain: the truth stands within the stated uncertainty, and
    every fault is found. */
 #include "measurement/measurement.h"
@@ -73,8 +74,6 @@ static void show(const struct eo_measurement *m)
            m->findings.finding[i].text);
 }
 
-/* ---- truth ---- */
-
 struct tally {
   int recordings, refused, one, two, lines, lines_inside;
   double square;
@@ -135,8 +134,6 @@ static void check_truth(int recordings)
   ok(t.lines_inside >= 0.95 * t.lines,
      "%d of %d amplitudes of orders within two standard deviations of their noise and 0.3 %%", t.lines_inside, t.lines);
 }
-
-/* ---- faults ---- */
 
 static void check_clean(const struct eo_synthetic *s, const char *what)
 {
@@ -279,8 +276,6 @@ static void check_printed_radii(void)
   eo_recording_free(recording);
 }
 
-/* ---- speed ---- */
-
 static void check_speed(const char *what, struct eo_synthetic s, double tolerance, bool said)
 {
   const struct eo_measurement *m = measure(&s);
@@ -355,8 +350,6 @@ static void check_parts(void)
          fabs(m->transmission.parts.measured.to - 0.8) < 0.01,
      "from 0.1 to 0.8 s when that is asked for");
 }
-
-/* ---- torque and speed columns ---- */
 
 static bool said(const struct eo_measurement *m, enum eo_finding_kind kind, enum eo_severity severity)
 {

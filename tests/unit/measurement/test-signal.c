@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The parts of the signal chain, each against a closed form. */
 #include "measurement/axis.h"
 #include "measurement/beside.h"

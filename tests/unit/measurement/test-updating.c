@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Inputs found again from measurements of a rig whose inputs are known: over many drawn rigs the stated intervals cover
    the truth as often as they say. The coarse pair of the study tests; the measurements are the prediction with noise
    and, in every second rig, an error of the model on each order. */

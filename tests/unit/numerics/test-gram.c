@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The small dense kernel, in every version this processor has, against plain loops in long double. */
 #include "base/random.h"
 #include "numerics/gram.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Low-rank factor: remainders, exact ranks, refusals. */
 #include "base/random.h"
 #include "numerics/gram.h"

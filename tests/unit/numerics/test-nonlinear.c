@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The nonlinear solver on systems whose solutions are known in closed form. */
 #include <string.h>
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Dense solves, eigenvalues, Fourier series and the differential equation solver on problems with known answers. */
 #include <string.h>
 

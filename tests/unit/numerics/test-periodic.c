@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Periodic spline and harmonics against functions in closed form. */
 #include "numerics/periodic.h"
 #include "support/tap.h"

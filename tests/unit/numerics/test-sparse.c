@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The part of an inverse through the Schur complement, against a dense inverse; matrices that must be refused. */
 #include "numerics/sparse.h"
 #include "support/tap.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The parts of the optimizers against closed forms: random numbers, saddle points, minimisation, surrogates, history,
    Pareto. */
 #include "base/random.h"
@@ -271,8 +272,6 @@ static void test_pareto(void)
   close_to(eo_pareto_hypervolume(three, 3, 3, corner), 7, 1e-12,
            "volume of three boxes of 3 x 1 x 1 that share a cube");
 }
-
-/* ---- evolution strategy ---- */
 
 enum { AXES = 4, OFFSPRING = 8 };
 

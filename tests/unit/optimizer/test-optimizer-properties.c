@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What holds for every algorithm whatever it finds: repeatable, independent of threads and the order of telling,
    resumable, never twice the same point, within its budget, honest about failures. */
 #include "base/random.h"

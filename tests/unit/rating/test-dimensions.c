@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Tolerances and drawing dimensions against published numbers, and properties that no formula shares with them. */
 #include <stdio.h>
 #include <string.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Rating factors: continuity, limits and worked numbers that the reference rows do not hold. */
 #include <string.h>
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Recordings whose channels have clocks of their own, times in every unit, counters and square waves: the right angles
    on one clock, or a question. */
 #include "recording/layout.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Decimal numbers against the C library's strtod, which rounds correctly. */
 #include "recording/decimal.h"
 #include "support/tap.h"

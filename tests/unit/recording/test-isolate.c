@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Readers in a process of their own: what they send arrives, and their end of whatever kind is an error of the file. */
 #include "recording/isolate.h"
 #include "support/tap.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What columns mean: guesses from names, units and values, and what settles them when they cannot be made; two files of
    one run. */
 #include "recording/layout.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Zip files and spreadsheets, made here byte by byte without compression. */
 #include "support/reader-fixture.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* HDF5 files written by the library itself: one data set per channel, tables, units, other files that must not be read.
  */
 #include "support/reader-fixture.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* MATLAB files written by libmatio, the versions 4, 5, 7 (compressed) and 7.3. */
 #include "support/reader-fixture.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* NI TDMS: segments written here byte by byte after NI's public description of the format. */
 #include "support/byte-writer.h"
 #include "support/reader-fixture.h"

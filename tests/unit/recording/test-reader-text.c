@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Delimited text of the kinds rigs write: every way of separating, headers, gaps, faults with their place, gzip,
    limits. */
 #include "support/reader-fixture.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 #define _GNU_SOURCE /* memmem */
 /* Universal files, data sets 58 and 58b: written here after the public description of the format. */
 #include "support/byte-writer.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Dates and times, units, and what a number under a key states, in the spellings that are in use. */
 #include "recording/moment.h"
 #include "recording/stated.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What reference cases say about shaft angle errors at tip corners. */
 #include "reference/case_file.h"
 #include "reference/case_pair.h"

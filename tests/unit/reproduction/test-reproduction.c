@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The paper once more, on a coarse mesh and for three generations: the printed numbers, every figure with its data,
    files and page. */
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The lane of what-if requests: order, newest wins, limits, waiting for a job, stopping. The stream of events: order,
    filters, resuming. */
 #include <pthread.h>
@@ -11,8 +12,6 @@
 #include "support/tap.h"
 
 static struct eo_error error;
-
-/* ---- a lane whose tasks wait until they are let go ---- */
 
 struct work {
   struct eo_lane_task task;
@@ -178,8 +177,6 @@ static void test_stop(void)
   ok(book.told == 3 && book.marked && told(1, 1, EO_LANE_STOPPED) && told(2, 2, EO_LANE_STOPPED),
      "and tells everybody who waits");
 }
-
-/* ---- events ---- */
 
 static struct {
   int count;

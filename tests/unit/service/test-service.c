@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The service on a coarse pair: what-if answers are those of an analysis made by hand, newest wins, pairs are prepared
    once and forgotten in order, jobs run, stop, go on and are told about, and a graceful stop loses nothing. */
 #include <stdatomic.h>
@@ -51,8 +52,6 @@ static char *analyse_by_hand(const struct eo_design *about)
   eo_pair_free(pair);
   return lasting;
 }
-
-/* ---- what-if ---- */
 
 static void test_analysis(void)
 {
@@ -204,8 +203,6 @@ static void test_pairs(void)
   eo_text_done(&answered.last.text);
   eo_service_free(service);
 }
-
-/* ---- jobs ---- */
 
 struct heard {
   int count;
@@ -462,8 +459,6 @@ static void test_stale_note(void)
      "what was noted of a job does not hide what its row knows");
   json_decref(document);
 }
-
-/* ---- end and begin ---- */
 
 static void test_park(void)
 {

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Measurements in the data folder: rows and files together, what a killed process leaves, and what belongs to what. */
 #include <dirent.h>
 #include <math.h>
@@ -305,8 +306,6 @@ static void test_failing(void)
   eo_store_list_measurements(store, 0, 0, 10, count, &all, &error);
   ok(all == 4 && count_entries() == entries, "nothing of them stays");
 }
-
-/* ---- databases that do not belong to the recordings ---- */
 
 static bool is_refused(const char *words)
 {

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The server's queue and the stored designs on a real database: order, limits, idempotency, every state, many threads,
    revisions, pages. */
 #include <pthread.h>
@@ -35,8 +36,6 @@ static void empty(void)
     unlink(name);
   }
 }
-
-/* ---- adding ---- */
 
 static const char some_hash[] = "0123456789abcdef0123456789abcdef0123456789abcdef0123456789abcdef";
 static const char other_hash[] = "f123456789abcdef0123456789abcdef0123456789abcdef0123456789abcdef";
@@ -199,8 +198,6 @@ static void test_preparations(void)
   eo_store_close(store);
 }
 
-/* ---- every state ---- */
-
 static const enum eo_job_state every_state[] = {EO_JOB_QUEUED, EO_JOB_PREPARING, EO_JOB_DONE, EO_JOB_FAILED,
                                                 EO_JOB_CANCELLED};
 
@@ -279,8 +276,6 @@ static void test_recovery(void)
   eo_store_close(terminal);
 }
 
-/* ---- begin, as the study does ---- */
-
 static int64_t add_problem(struct eo_store *store)
 {
   const struct eo_stored_problem problem = {
@@ -335,8 +330,6 @@ static void test_begin(void)
   eo_store_close(store);
 }
 
-/* ---- threads ---- */
-
 enum { THREADS = 4, JOBS = 200 };
 static int taken_by[JOBS + 1][THREADS];
 static pthread_mutex_t mutex = PTHREAD_MUTEX_INITIALIZER;
@@ -381,8 +374,6 @@ static void test_threads(void)
   eo_store_close(store);
 }
 
-/* ---- pages ---- */
-
 static void test_pages(void)
 {
   struct eo_store *store = open_store();
@@ -411,8 +402,6 @@ static void test_pages(void)
   eo_store_close(store);
 }
 
-/* ---- one server ---- */
-
 static void test_server_lock(void)
 {
   struct eo_store *one = open_store(), *two = open_store();
@@ -425,8 +414,6 @@ static void test_server_lock(void)
   ok(second, "until it is gone");
   eo_store_close(two);
 }
-
-/* ---- designs ---- */
 
 struct seen_design {
   int count;

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The data folder's database: schema steps, rows and their check sums, two connections, locks, and every way a file can
    be wrong. */
 #include <math.h>
@@ -134,8 +135,6 @@ static int64_t add_problem(struct eo_store *store)
   return good ? id : -1;
 }
 
-/* ---- schema ---- */
-
 static void test_new(void)
 {
   clean();
@@ -224,8 +223,6 @@ static void test_failed_step(void)
   ok(read_integer("PRAGMA user_version") == 0 && read_integer("SELECT count(*) FROM sqlite_schema") == 1,
      "leaves nothing behind");
 }
-
-/* ---- rows ---- */
 
 static void test_rows(void)
 {
@@ -340,8 +337,6 @@ static void test_garbage(void)
   ok(refused + whole == 60 && refused > 20 && !wrong,
      "garbage in 60 files: %d refused, %d untouched where it matters, %d with a wrong row", refused, whole, wrong);
 }
-
-/* ---- two at once ---- */
 
 static void test_two(void)
 {

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The study loop: threads, history, interruption, other weights, bounds and variables, failures, and what the documents
    say. */
 #include <math.h>
@@ -32,8 +33,6 @@ static char *run(const struct eo_study_plan *wanted, struct eo_study_result *r)
   eo_store_close(plan.store);
   return text;
 }
-
-/* ---- same path ---- */
 
 static void test_threads(const char *algorithm)
 {
@@ -138,8 +137,6 @@ static void test_removed_job(const char *algorithm)
   free(text[0]);
   free(text[1]);
 }
-
-/* ---- the history ---- */
 
 static void test_reuse(void)
 {
@@ -255,8 +252,6 @@ static void test_front(void)
   eo_study_result_done(&result);
 }
 
-/* ---- failures ---- */
-
 /* A seventh of all points fails: outcomes, kept and never the optimum. The history is filled before the search with
    rows as a model would have left them that did not converge. */
 static void test_failures(void)
@@ -345,8 +340,6 @@ static void test_constraints(void)
      "a constraint is weighed anew over known rows and held: %.4g of %.4g MPa", held / 1e6, 0.97 * pressure / 1e6);
   eo_study_result_done(&result);
 }
-
-/* ---- variables ---- */
 
 static enum eo_code with_list(int count, const struct eo_listed_variable *list)
 {

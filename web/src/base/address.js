@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The state of the page in its address: #view?from=paper&modification.pinion.left.tip_relief_um=14
 import { leaves, same, withValue } from './pointer.js';
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Keeps results in step with the design: its own, the unmodified pair's and the pinned design's.
 import { Refusal, connection } from './api.js';
 import { Lane } from './lane.js';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The public API, and whether it answers.
 
 /** @typedef {{ pointer: string, detail: string }} Fault */

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Elements without markup strings: h('button.quiet', { onclick }, 'Text').
 
 /** @typedef {Node | string | number | null | undefined | false | readonly any[]} Child */

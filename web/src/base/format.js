@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Numbers and words for people.
 
 const SYMBOLS = /** @type {Record<string, string>} */ ({

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The transverse section of a generated tooth, from the geometry the service reports: involute, fillet of the rack's
 // rounded tip, root circle.
 // The formulas are those of ISO 21771 and of the trochoid in src/gear/fillet.c; lengths in mm, angles in rad.

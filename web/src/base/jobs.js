@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The jobs of the service, live from one stream of events for all pages of this browser.
 import { address, connection, list } from './api.js';
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Requests that a newer one makes pointless: one in flight, the newest waiting.
 import { Away, Refusal, ask, connection, token } from './api.js';
 

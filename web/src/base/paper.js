@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The page as paper: tells every figure to draw itself, in sight or not, in the size and colours of a report.
 import { theme } from './theme.js';
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The phase of the mesh cycle that the pointer is on (0..1), or null: shown by every figure that has one.
 
 class Phase extends EventTarget {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Values inside a document by JSON pointer ("/gear_pair/pinion_teeth").
 
 /** @param {any} document @param {string} pointer */

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What the name of a rig file says about the run.
 
 /** "mod_828Nm_2000rpm.csv", "u-828-2000.tdms"; "" where it says nothing. @param {string} name */

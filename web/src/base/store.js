@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The design on the table, what it is compared with, and the way back.
 import { same, valueAt, withValue } from './pointer.js';
 

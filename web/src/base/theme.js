@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Light or dark: the reader's choice, else the system's.
 
 const KEY = 'easeoff-theme';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A form with files on its way to the service, with its progress; only XMLHttpRequest tells that.
 import { Away, Refusal, address, connection } from './api.js';
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // A figure painted on a canvas: sharp on any screen, repainted when its size, the theme or its data change.
 import { h } from '../base/dom.js';
 import { paper } from '../base/paper.js';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Curves over one abscissa, drawn by uPlot: live, with a reading at the pointer, zoom by dragging, reset by a double
 // click.
 import uPlot from 'uplot';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Colour scale of pressures: dark blue through green to yellow, even in lightness (viridis, sampled), nothing at zero.
 const STOPS = [
   [68, 1, 84],

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Contact pattern and pressure of both ends on the plane of action's flank coordinates: the face across, root to tip
 // upwards.
 import { fill, h } from '../base/dom.js';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What the figures show: one result, beside what it is compared with.
 
 /** @typedef {{ label: string, result: any, line: 'dashed' | 'dotted' }} Reference */

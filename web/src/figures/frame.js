@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What every figure has: a title, its switches, a menu (large, PNG, CSV, copy), and a body that keeps its size.
 import { copyText, download, fileName, fill, h, newId } from '../base/dom.js';
 

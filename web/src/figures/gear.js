@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Transverse section at mid face: teeth in mesh, line of action, points of contact; the modification drawn larger than
 // it is.
 import { halfAngle, halfTooth } from '../base/involute.js';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Entering impact of each end at each torque, as a table.
 import { fill, h } from '../base/dom.js';
 import { change, changeText, sig } from '../base/format.js';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Measured points with their uncertainty beside predicted ones.
 import { fill, h } from '../base/dom.js';
 import { sig } from '../base/format.js';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Mesh stiffness, load sharing between the tooth pairs, and the root stress of a tooth on its way through the mesh.
 import { Chart } from './chart.js';
 import { endsOf, sameCase } from './context.js';

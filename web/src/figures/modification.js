@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What is taken off the flanks, as on an inspection sheet: profile traces upright from root to tip, lead traces along
 // the face.
 import { sig } from '../base/format.js';

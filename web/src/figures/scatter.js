@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Points of a search: any column against any other, or all of them as parallel axes; new evaluations, known ones and
 // the best told apart.
 import { fill, h } from '../base/dom.js';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The surfaces of the topography. Heights are exaggerated; the picture is drawn when something changes, never by
 // itself.
 import {

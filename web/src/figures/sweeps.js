@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Over speed and over torque: asked for once the design rests, kept on show until the answer comes.
 import { h } from '../base/dom.js';
 import { labelOf, parseNumber, plain } from '../base/format.js';

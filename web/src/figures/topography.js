@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The ease-off of both ends in space, with the load of the mesh cycle moving over it. three.js is fetched when this is
 // first seen.
 import { h } from '../base/dom.js';

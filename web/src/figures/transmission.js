@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Loaded transmission error over the mesh cycle, of the pair or one end, at every torque, and its orders.
 import { Chart } from './chart.js';
 import { caseColour, caseText, counting, endsOf, sameCase } from './context.js';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Vibration acceleration over the mesh cycle and its orders.
 import { Chart } from './chart.js';
 import { caseColour, caseText, counting, endsOf, sameCase } from './context.js';

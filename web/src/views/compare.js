@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The Compare view: designs, stored designs and optima side by side: one table, curves over one another.
 import { get, list } from '../base/api.js';
 import { fill, h } from '../base/dom.js';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The Design view: parameters left, numbers above, figures right; on a narrow screen one below the other.
 import { fill, h } from '../base/dom.js';
 import { mainCase } from '../figures/context.js';

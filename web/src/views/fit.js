@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The fit of inputs that nobody knows to the measurements: which, within what, what came out, and taking it over.
 import { fill, h, newId } from '../base/dom.js';
 import { labelOf, parseNumber, plain, sig, unitText } from '../base/format.js';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The Optimize view: what is searched for and how; the searches; what the chosen one has found so far.
 import { Refusal, ask, get, list, post, token } from '../base/api.js';
 import { fill, h } from '../base/dom.js';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The form of the Design view: what pair, what load, what flank.
 import { fill, h } from '../base/dom.js';
 import { labelOf, unitText } from '../base/format.js';

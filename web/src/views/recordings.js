@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Rig files on their way: what is dropped or chosen, what is known of each, its upload and what the service found in
 // it.
 import { Refusal } from '../base/api.js';

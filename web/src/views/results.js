@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Every figure of a result, kept in step.
 import { fill, h } from '../base/dom.js';
 import { Contact } from '../figures/contact.js';

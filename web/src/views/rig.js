@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The Rig view: what a rig recorded, what was found in it, and how it compares with the prediction for the design on the
 // table.
 import { Away, address, ask, get, list } from '../base/api.js';
