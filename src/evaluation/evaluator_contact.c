@@ -3,11 +3,6 @@
 
 #include <string.h>
 
-int eo_evaluator_stagger(const struct eo_design *design, int positions)
-{
-  return (int)lround(design->alignment.stagger * positions) % positions;
-}
-
 /* Forgets what belongs to the last run alone. */
 static void clear_case(struct eo_case_result *load_case)
 {

@@ -3,33 +3,6 @@
 
 #include <string.h>
 
-/* The worst of the ends, but for the RMS, which is the mean of theirs. */
-static struct eo_objective_case objective_of(const struct eo_case_result *load_case, int ends, bool root)
-{
-  struct eo_objective_case objective = {.peak_to_peak = load_case->peak_to_peak,
-                                        .rms = load_case->vibration.rms_pair[EO_READING_NORMAL],
-                                        .root_stress = root ? 0 : NAN,
-                                        .failed = load_case->contact_failures > 0 ||
-                                                  load_case->vibration.outcome == EO_VIBRATION_NOT_CONVERGED};
-  for (int end = 0; end < ends; end++) {
-    const struct eo_end_result *result = &load_case->end[end];
-    objective.impact = fmax(objective.impact, result->impact.force);
-    objective.contact_pressure = fmax(objective.contact_pressure, result->max_pressure);
-    objective.edge_load_share = fmax(objective.edge_load_share, result->edge_share);
-    objective.contact_loss = fmax(objective.contact_loss, load_case->vibration.contact_loss[end]);
-    for (int member = 0; root && member < 2; member++)
-      objective.root_stress = fmax(objective.root_stress, result->root[member].maximum);
-  }
-  return objective;
-}
-
-void eo_evaluator_collect_objectives(struct eo_evaluator *evaluator, const struct eo_run *run)
-{
-  struct eo_evaluation *result = &evaluator->result;
-  for (int k = 0; k < result->cases; k++)
-    result->objective[k] = objective_of(&result->load_case[k], result->ends, run->root);
-}
-
 static bool is_robust(const struct eo_design *design)
 {
   return design->objective.robust != EO_ROBUST_OFF && design->objective.scenarios > 0;

@@ -6,6 +6,16 @@
 #include <stdlib.h>
 #include <string.h>
 
+enum eo_code eo_evaluator_parameters(const struct eo_evaluator *evaluator, const struct eo_design *design,
+                                     double stiffness, struct eo_dynamics_parameters *parameters,
+                                     struct eo_error *error)
+{
+  bool differ = design->gear_pair.ends == 2 && !eo_reuse_same_flanks(&design->modification);
+  return eo_dynamics_parameters_init(parameters, &evaluator->pair->geometry, design->gear_pair.ends,
+                                     eo_alignment_axial_stiffness(&design->alignment), &design->supports, differ,
+                                     stiffness, error);
+}
+
 /* Loads of the table law over P: close together where contact lines grow from nothing and about P, where the straight
    pieces between them have to have the slope of the curve. */
 static const double TABLE_LOAD[EO_EVALUATOR_TABLE_LOADS] = {1e-4, 0.03, 0.1,  0.25, 0.5, 0.75,

@@ -3,16 +3,6 @@
 
 #include "numerics/periodic.h"
 
-enum eo_code eo_evaluator_parameters(const struct eo_evaluator *evaluator, const struct eo_design *design,
-                                     double stiffness, struct eo_dynamics_parameters *parameters,
-                                     struct eo_error *error)
-{
-  bool differ = design->gear_pair.ends == 2 && !eo_reuse_same_flanks(&design->modification);
-  return eo_dynamics_parameters_init(parameters, &evaluator->pair->geometry, design->gear_pair.ends,
-                                     eo_alignment_axial_stiffness(&design->alignment), &design->supports, differ,
-                                     stiffness, error);
-}
-
 /* A half sine from the first touch, as long as the impact, at most a mesh period. */
 void eo_evaluator_pulses(const struct eo_pair *pair, const struct eo_impact *impact, double speed,
                          struct eo_pulse *pulse)

@@ -1,7 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "evaluation/evaluator_private.h"
 
+#include <math.h>
 #include <string.h>
+
+int eo_evaluator_stagger(const struct eo_design *design, int positions)
+{
+  return (int)lround(design->alignment.stagger * positions) % positions;
+}
 
 bool eo_reuse_same_flanks(const struct eo_modification *modification)
 {

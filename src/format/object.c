@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "format/json.h"
-#include "format/outline.h"
+#include "format/outline_row.h"
 
 json_t *eo_json_quantity(double value, const struct eo_unit *unit)
 {

@@ -12,78 +12,11 @@
 #ifndef EASEOFF_FORMAT_OUTLINE_H
 #define EASEOFF_FORMAT_OUTLINE_H
 
-#include <stdbool.h>
-
 #include <jansson.h>
 
-#include "format/table.h"
+#include "format/outline_row.h"
 
-struct eo_outline;
 struct eo_object;
-
-/* How a row's value lies in the struct that is written. */
-enum eo_outline_member {
-  EO_MEMBER_NONE,    /* `write` gives it */
-  EO_MEMBER_NUMBER,  /* double */
-  EO_MEMBER_INTEGER, /* int, or an enum; of a word its index */
-  EO_MEMBER_LONG,    /* int64_t or uint64_t */
-  EO_MEMBER_FLAG,    /* bool */
-  EO_MEMBER_TEXT,    /* char[] */
-  EO_MEMBER_STRING,  /* const char * */
-  EO_MEMBER_PART,    /* a struct that the row's outline or table writes */
-  EO_MEMBER_ROWS,    /* pointer to `stride` bytes each, as many as the int at count_offset says: an array */
-};
-
-struct eo_outline_row {
-  const char *key; /* NULL: the rows of outline stand here, of the part at offset */
-  const char *shape, *help;
-  const struct eo_unit *unit;       /* NULL: dimensionless, or said in help */
-  const char *when;                 /* NULL: the key is always there; else when it is */
-  const struct eo_outline *outline; /* object */
-  const struct eo_table *table;     /* object that a field table encodes */
-  const char *name;                 /* of the table's schema, or of one that stands elsewhere */
-  bool sparse;                      /* table: keys with their default may be missing */
-  const char *const *words;         /* word: ends with NULL */
-  enum eo_outline_member member;
-  size_t offset, count_offset, stride;
-  bool column; /* an array: the member at column_offset of each of the rows at offset */
-  size_t column_offset;
-  json_t *(*write)(const void *source); /* new; NULL without memory */
-  bool (*there)(const void *source);    /* NULL: always; see `when` */
-  bool (*known)(const void *source);    /* number: false: it means nothing and is null; NULL: always known */
-};
-
-struct eo_outline {
-  const char *name; /* of its schema */
-  int count;
-  const struct eo_outline_row *row;
-};
-/* A row: key, shape, help, and what else there is, as .unit = ... */
-#define EO_KEY(key_, shape_, ...)                     \
-  {                                                   \
-    .key = key_, .shape = shape_, .help = __VA_ARGS__ \
-  }
-/* ... of a member; plain ones are told by their type. */
-#define EO_KIND_OF(type, member_) \
-  _Generic(((type *)0)->member_, double: EO_MEMBER_NUMBER, int: EO_MEMBER_INTEGER, unsigned: EO_MEMBER_INTEGER,     \
-           long: EO_MEMBER_LONG, unsigned long: EO_MEMBER_LONG, bool: EO_MEMBER_FLAG, char *: EO_MEMBER_TEXT,       \
-           const char *: EO_MEMBER_STRING, default: EO_MEMBER_PART)
-#define EO_AT(type, member_) .offset = offsetof(type, member_), .member = EO_KIND_OF(type, member_)
-/* ... of an array that the struct points to. */
-#define EO_ROWS_AT(type, member_, count)                                                              \
-  .offset = offsetof(type, member_), .count_offset = offsetof(type, count), .member = EO_MEMBER_ROWS, \
-  .stride = sizeof *((type *)0)->member_
-/* ... of a member of each of these: a column. */
-#define EO_COLUMN_AT(type, rows_, count, row_type, member_)                                                           \
-  .offset = offsetof(type, rows_), .count_offset = offsetof(type, count), .column = true, .stride = sizeof(row_type), \
-  .column_offset = offsetof(row_type, member_), .member = EO_KIND_OF(row_type, member_)
-#define EO_OUTLINE(name_, rows)                                                \
-  {                                                                            \
-    .name = name_, .count = (int)(sizeof(rows) / sizeof(rows)[0]), .row = rows \
-  }
-
-/* Row number `index` with included rows counted in place; NULL behind the last. */
-const struct eo_outline_row *eo_outline_at(const struct eo_outline *outline, int index);
 
 /* A new object with every row of the outline that is there, from the struct it is about; NULL without memory, and when
    a row says neither member nor function. */

@@ -1,0 +1,65 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What the parts of a result are written from: the scratch of one thread, and columns over the mesh cycle. */
+#include "document/result_private.h"
+
+#include <stdlib.h>
+
+const char *const eo_result_end[2] = {"left", "right"};
+const char *const eo_result_member[2] = {"pinion", "gear"};
+
+json_t *eo_result_end_column(const struct eo_result_source *source, int end, const double *value, double scale,
+                             const struct eo_unit *unit)
+{
+  int n = source->positions, lag = end == EO_RIGHT ? source->lag : 0;
+  for (int j = 0; j < n; j++)
+    source->scratch[j] = value[(j + n - lag) % n];
+  return eo_json_column(n, source->scratch, scale, unit, EO_DIGITS_CURVE);
+}
+
+json_t *eo_result_map(const struct eo_result_source *source, int rows, int columns, const double *value,
+                      const struct eo_unit *unit)
+{
+  if (source->left_out & EO_RESULT_NO_MAPS)
+    return json_null();
+  json_t *map = json_array();
+  for (int i = 0; i < rows && map; i++)
+    if (json_array_append_new(map, eo_json_reals(columns, value + i * columns, 1, unit, EO_DIGITS_MAP)) != 0) {
+      json_decref(map);
+      map = NULL;
+    }
+  return map;
+}
+
+json_t *eo_result_position(const struct eo_result_source *source)
+{
+  for (int j = 0; j < source->positions; j++)
+    source->scratch[j] = source->pair->grid->position[j].phase;
+  return eo_json_column(source->positions, source->scratch, 1 / source->pair->geometry.transverse_base_pitch, NULL,
+                        EO_DIGITS_CURVE);
+}
+
+bool eo_result_source_init(struct eo_result_source *source, const struct eo_analysis *analysis,
+                           const struct eo_design *design, unsigned left_out)
+{
+  const struct eo_evaluation *r = analysis->evaluation;
+  *source = (struct eo_result_source){.analysis = analysis,
+                                      .evaluation = r,
+                                      .pair = analysis->pair,
+                                      .design = design,
+                                      .ends = r->ends,
+                                      .positions = r->positions,
+                                      .lag = eo_evaluator_stagger(design, r->positions),
+                                      .normal = cos(analysis->pair->geometry.base_helix_angle),
+                                      .left_out = left_out};
+  source->pattern = malloc(sizeof *source->pattern);
+  source->scratch = calloc((size_t)r->positions, sizeof *source->scratch);
+  if (source->pattern)
+    eo_contact_pattern_init(source->pattern, source->pair->grid);
+  return source->pattern && source->scratch;
+}
+
+void eo_result_source_done(struct eo_result_source *source)
+{
+  free(source->pattern);
+  free(source->scratch);
+}

@@ -1,0 +1,55 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What both ways to solve a member share: progress, the unknowns of flank and root, displacements in the root. */
+#include "flexibility/member_private.h"
+#include "base/clock.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum eo_code eo_member_report(const struct eo_member_job *job, const char *step, double fraction)
+{
+  static const char *const name[2] = {"pinion", "gear"};
+  char what[64];
+  if (!job->progress)
+    return EO_OK;
+  what[0] = 0;
+  strcat(strcat(strcat(what, name[job->member]), ": "), step);
+  if (eo_progress_report(job->progress, what, fraction))
+    return eo_error_set(job->error, EO_ERROR_CANCELLED, "", "The preparation of the flexibility was stopped.");
+  return EO_OK;
+}
+
+int eo_member_list_flank(const struct eo_sector *sector, const struct eo_flank_nodes *flank, int *unknown)
+{
+  int count = 0;
+  for (int k = 0; k < flank->count; k++)
+    for (int l = 0; l <= sector->layers; l++)
+      unknown[count++] = eo_sector_unknown(sector, flank->node[k], l, 0);
+  return count;
+}
+
+int eo_member_list_root(const struct eo_sector *sector, int nodes, int *unknown)
+{
+  int count = 0;
+  for (int i = 0; i < nodes; i++)
+    for (int l = 0; l <= sector->layers; l++)
+      for (int c = i == 0; c < 3; c++)
+        unknown[count++] = eo_sector_unknown(sector, sector->section->root[i], l, c);
+  return count;
+}
+
+void eo_member_root_displacement(const struct eo_sector *sector, int nodes, const double *root, const double *flank,
+                                 double *displacement)
+{
+  const struct eo_section *s = sector->section;
+  int across = sector->layers + 1, corner_row = 0;
+  while (s->flank.node[corner_row] != s->root[0])
+    corner_row++;
+  const double(*frame)[3] = (const double(*)[3])sector->frame[s->root[0]];
+  for (int l = 0; l < across; l++) {
+    double local[3] = {flank[corner_row * across + l], root[2 * l], root[2 * l + 1]};
+    for (int c = 0; c < 3; c++)
+      displacement[3 * l + c] = frame[0][c] * local[0] + frame[1][c] * local[1] + frame[2][c] * local[2];
+  }
+  memcpy(displacement + 3 * across, root + 2 * across, (size_t)(3 * across * (nodes - 1)) * sizeof *displacement);
+}
