@@ -51,13 +51,14 @@ static void take_fewer_loads(struct eo_design *d)
 }
 static void lose_contact(struct eo_design *d)
 {
+  d->load_cases = 1; /* the search for stable states takes a second or more for each */
   d->load_case[0].torque = 20;
   d->load_case[0].speed *= 1.3;
+  d->load_case[0].share = 1;
 }
 static void take_table(struct eo_design *d)
 {
   d->resolution.mesh_law = EO_LAW_TABLE;
-  d->load_case[0].torque = 30;
 }
 static void strike(struct eo_design *d)
 {
@@ -138,8 +139,8 @@ static void test_order(const struct eo_pair *pair)
 {
   struct eo_analysis *analysis = NULL;
   struct eo_text expected[QUESTIONS];
-  enum { LAPS = 4 };
-  static const int stride[LAPS] = {1, 5, 11, 3}; /* no divisors of the number of questions */
+  enum { LAPS = 3 };
+  static const int stride[LAPS] = {1, 5, 11}; /* no divisors of the number of questions */
   int wrong[QUESTIONS] = {0}, asked[QUESTIONS] = {0};
   for (int i = 0; i < QUESTIONS; i++)
     expected[i] = ask_anew(pair, &questions[i]);
