@@ -140,9 +140,9 @@ static enum eo_code factor_position(struct eo_contact_position *p, struct eo_ker
   if (code)
     return code;
   p->stride = eo_gram_width(p->rank - (p->rank > 0));
-  p->factor = (float *)eo_gram_allocate((long)p->points * p->stride / 2);
+  p->factor = eo_gram_allocate((long)p->points * p->stride / 2);
   p->remainder_stride = (p->points + EO_GRAM_FLOATS - 1) / EO_GRAM_FLOATS * EO_GRAM_FLOATS;
-  p->remainder = (float *)eo_gram_allocate((long)p->points * p->remainder_stride / 2);
+  p->remainder = eo_gram_allocate((long)p->points * p->remainder_stride / 2);
   for (int i = 0; p->factor && i < p->points; i++)
     for (int k = 0; k < p->rank; k++)
       p->factor[i * p->stride + k] = (float)factor[i * stride + k];

@@ -18,9 +18,9 @@ enum eo_code eo_loaded_workspace_new(struct eo_loaded_workspace **result, const 
     complete = (*vector[i] = eo_gram_allocate(points)) && complete;
   for (int i = 0; i < 5; i++)
     complete = (*modal[i] = eo_gram_allocate(width)) && complete;
-  complete = (ws->matrix = (float *)eo_gram_allocate(width * width / 2)) && complete;
-  complete = (ws->packed = (float *)eo_gram_allocate(points * width / 2)) && complete;
-  complete = (ws->blend = (float *)eo_gram_allocate(points + EO_GRAM_FLOATS)) && complete;
+  complete = (ws->matrix = eo_gram_allocate(width * width / 2)) && complete;
+  complete = (ws->packed = eo_gram_allocate(points * width / 2)) && complete;
+  complete = (ws->blend = eo_gram_allocate(points + EO_GRAM_FLOATS)) && complete;
   if (!complete) {
     eo_loaded_workspace_free(ws);
     return eo_error_memory(error);

@@ -12,7 +12,7 @@ enum eo_code eo_root_history_init(struct eo_root_history *history, const struct 
 {
   int range[2];
   eo_contact_grid_pairs(grid, range);
-  size_t most = (size_t)((range[1] - range[0] + 1) * grid->positions);
+  size_t most = ((size_t)range[1] - range[0] + 1) * grid->positions;
   *history = (struct eo_root_history){.phase = calloc(most, sizeof(double)), .stress = calloc(most, sizeof(double))};
   if (history->phase && history->stress)
     return EO_OK;
@@ -92,8 +92,8 @@ enum eo_code eo_root_workspace_new(struct eo_root_workspace **result, const stru
   size_t rows = (size_t)ws->count * (size_t)ends;
   ws->force = malloc(sizeof(double) * (size_t)grid->most_points * (size_t)ends);
   ws->load = malloc(sizeof *ws->load * rows * slots);
-  ws->scratch = (float *)eo_gram_allocate((long)(rows * rank / 2));
-  ws->stress = (float *)eo_gram_allocate((long)(rows * length / 2));
+  ws->scratch = eo_gram_allocate((long)(rows * rank / 2));
+  ws->stress = eo_gram_allocate((long)(rows * length / 2));
   ws->touched = malloc(sizeof *ws->touched * (size_t)ws->count);
   if (!ws->weights[0] || !ws->weights[1] || !ws->force || !ws->load || !ws->scratch || !ws->stress || !ws->touched) {
     eo_root_workspace_free(ws);

@@ -56,7 +56,7 @@ static int padded(int count)
 /* Zeros; NULL without memory. */
 static float *make_floats(int rows, int stride)
 {
-  return (float *)eo_gram_allocate(((long)rows * stride + 1) / 2);
+  return eo_gram_allocate(((long)rows * stride + 1) / 2);
 }
 
 /* stack = factor x shape in the least-squares sense: (factor' factor) shape = factor' stack. */
@@ -111,7 +111,7 @@ enum eo_code eo_root_modes_new(struct eo_root_modes **result, const struct eo_fl
   modes->length = (root.points - root.first) * (root.layers + 1) * EO_STRESSES;
   count_slots(modes);
   int rows = modes->slots, stride = 0;
-  double *stack = stack_rows(modes, (size_t)(root.first * (root.layers + 1) * EO_STRESSES)), *factor = NULL;
+  double *stack = stack_rows(modes, (size_t)root.first * (root.layers + 1) * EO_STRESSES), *factor = NULL;
   double *gram = malloc(sizeof *gram * (size_t)rows * (size_t)rows);
   enum eo_code code = stack && gram ? EO_OK : eo_error_memory(error);
   if (!code) {
@@ -240,7 +240,7 @@ void eo_root_modes_stress(const struct eo_root_modes *modes, int count, int sets
         add_part(modes, part, first, last, sets, load, scratch);
     }
   for (int first = 0, last; first < count; first = last) {
-    size_t row = (size_t)(first * sets);
+    size_t row = (size_t)first * sets;
     last = run_end(first, count, touched, ~(uint64_t)0);
     if (touched[first])
       modes->gram->multiply((last - first) * sets, modes->rank, modes->shape_stride, scratch + row * rank,

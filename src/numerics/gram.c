@@ -34,10 +34,10 @@ const struct eo_gram *eo_gram_select(void)
   return eo_gram_version(0);
 }
 
-double *eo_gram_allocate(long count)
+void *eo_gram_allocate(long count)
 {
   size_t bytes = ((size_t)(count > 0 ? count : 1) * sizeof(double) + EO_GRAM_ALIGN - 1) / EO_GRAM_ALIGN * EO_GRAM_ALIGN;
-  double *memory = aligned_alloc(EO_GRAM_ALIGN, bytes);
+  void *memory = aligned_alloc(EO_GRAM_ALIGN, bytes);
   if (memory)
     memset(memory, 0, bytes);
   return memory;

@@ -60,7 +60,7 @@ const struct eo_gram *eo_gram_select(void);
    -AVX512F,-AVX2 (CONTRIBUTING.md). */
 const struct eo_gram *eo_gram_version(int index);
 
-/* Memory for count doubles, aligned; free() it. NULL without memory. */
-double *eo_gram_allocate(long count);
+/* Memory for count doubles, or twice as many floats, aligned and zero; free() it. NULL without memory. */
+void *eo_gram_allocate(long count);
 
 #endif
