@@ -171,8 +171,8 @@ static enum eo_code read_entries(struct request *r, int files, const char *const
                         EO_MOST_MEASURED);
   if (r->gear && files + listed != 1)
     return eo_error_set(error, EO_ERROR_INPUT, "", "--gear goes with one recording.");
-  r->entry = calloc((size_t)(files + listed), sizeof *r->entry);
-  r->measured = calloc((size_t)(files + listed), sizeof *r->measured);
+  r->entry = calloc((size_t)files + listed, sizeof *r->entry);
+  r->measured = calloc((size_t)files + listed, sizeof *r->measured);
   if (!r->entry || !r->measured)
     return eo_error_memory(error);
   r->entries = files + listed;

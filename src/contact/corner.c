@@ -224,7 +224,7 @@ static void advance(struct eo_corner_gap *table)
   enum { NEAR = 4, FAR = 8 };
   for (int axis = 0; axis < 2; axis++)
     for (int part = 0; part < 2; part++) {
-      double value[EO_CORNER_NODES];
+      double value[EO_CORNER_NODES] = {0};
       for (int i = NEAR; i < EO_CORNER_NODES; i++) {
         const struct eo_tilt *share = &table->advance[i];
         double rise = part ? share->shift[axis] : share->lever[axis];

@@ -194,8 +194,8 @@ enum eo_code eo_shaft_influence_init(struct eo_shaft_influence *influence, const
   int n = pair->ends * VECTOR;
   struct eo_shaft_influence made = {.ends = pair->ends,
                                     .size = n,
-                                    .matrix = calloc((size_t)(n * n), sizeof(double)),
-                                    .mode = calloc((size_t)(EO_SHAFT_MODES * n), sizeof(double))};
+                                    .matrix = calloc((size_t)n * n, sizeof(double)),
+                                    .mode = calloc((size_t)EO_SHAFT_MODES * n, sizeof(double))};
   struct body *body = malloc(sizeof *body);
   enum eo_code code = made.matrix && made.mode && body ? EO_OK : eo_error_memory(error);
   for (int member = 0; member < 2 && !code; member++) {

@@ -381,7 +381,7 @@ json_t *eo_result_contact(struct eo_result_source *source, int k)
   struct contact contact = {.source = source, .load_case = c, .pattern = encode_pattern(source, k)};
   struct of_ends *const ends[] = {&contact.load, &contact.pressure, &contact.line_load, &contact.edge_share,
                                   &contact.edge_pressure};
-  for (size_t i = 0; i < sizeof ends / sizeof *ends; i++)
+  for (size_t i = 0; i < sizeof ends / sizeof ends[0]; i++)
     ends[i]->two = source->ends == 2;
   for (int end = 0; end < source->ends; end++) {
     contact.load.end[end] = eo_result_mean_load(source, c, end);

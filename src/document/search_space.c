@@ -78,12 +78,12 @@ static void set_value(const struct eo_study_variable *v, struct eo_modification 
 {
   for (int end = 0; end < 2; end++)
     if (v->end == end || v->end == EO_BOTH_ENDS)
-      *(double *)((char *)&modification->flank[v->member][end] + v->field->offset) = value;
+      *(double *)(void *)((char *)&modification->flank[v->member][end] + v->field->offset) = value;
 }
 
 static double value_at(const struct eo_study_variable *v, const struct eo_modification *modification, int end)
 {
-  return *(const double *)((const char *)&modification->flank[v->member][end] + v->field->offset);
+  return *(const double *)(const void *)((const char *)&modification->flank[v->member][end] + v->field->offset);
 }
 
 static bool is_length(const struct eo_study_variable *v)
@@ -145,8 +145,8 @@ static bool same_flank(const struct eo_flank_modification *a, const struct eo_fl
 {
   for (int i = 0; i < eo_flank_modification_table.count; i++) {
     const struct eo_field *field = &eo_flank_modification_table.field[i];
-    if (field->kind == EO_FIELD_NUMBER &&
-        *(const double *)((const char *)a + field->offset) != *(const double *)((const char *)b + field->offset))
+    if (field->kind == EO_FIELD_NUMBER && *(const double *)(const void *)((const char *)a + field->offset) !=
+                                              *(const double *)(const void *)((const char *)b + field->offset))
       return false;
   }
   return a->shape == b->shape;
@@ -165,7 +165,7 @@ bool eo_study_space_locate(const struct eo_study_space *space, const struct eo_m
     x[i] = fmin(fmax(x[i], 0), 1);
     for (int end = 0; end < 2; end++)
       if (v->end == end || v->end == EO_BOTH_ENDS)
-        *(double *)((char *)&rest.flank[v->member][end] + v->field->offset) = value_at(v, base, end);
+        *(double *)(void *)((char *)&rest.flank[v->member][end] + v->field->offset) = value_at(v, base, end);
   }
   for (int member = 0; member < 2; member++)
     for (int end = 0; end < 2; end++)

@@ -331,7 +331,7 @@ static void add_all_headings(const struct eo_sweep *s, struct eo_text_table *she
   eo_text_table_string(sheet, "speed_rpm");
   for (int v = 0; v < EO_SWEEP_VARIANTS; v++) {
     add_headings(s, TORQUE_COLUMNS, torque_columns, prefix[v][0], sheet);
-    for (int d = 0; d <= s->branches[v]; d++) {
+    for (int d = 0; d < (s->branches[v] ? 2 : 1); d++) {
       add_headings(s, 1, &outcome, prefix[v][d], sheet);
       add_headings(s, POINT_COLUMNS, point_columns, prefix[v][d], sheet);
     }
@@ -357,7 +357,7 @@ void eo_sweep_csv(const struct eo_sweep *s, struct eo_text *text)
     eo_text_table_number(&sheet, s->speed[i % s->speeds], &eo_unit_rpm, EO_DIGITS_NUMBER);
     for (int v = 0; v < EO_SWEEP_VARIANTS; v++) {
       add_row(s, TORQUE_COLUMNS, torque_columns, &s->at_torque[v][i / s->speeds], &sheet);
-      for (int d = 0; d <= s->branches[v]; d++) {
+      for (int d = 0; d < (s->branches[v] ? 2 : 1); d++) {
         eo_text_table_string(&sheet, outcome_of(&s->point[v][d][i]));
         add_row(s, POINT_COLUMNS, point_columns, &s->point[v][d][i], &sheet);
       }

@@ -249,8 +249,10 @@ static enum eo_code run_periods(struct eo_ode *ode, const struct run *run, const
   result->periodic = repeat > 0;
   result->repeat = repeat > 0 ? repeat : 1;
   enum eo_code code = EO_OK;
-  for (int i = 0; i < result->repeat && !code; i++)
-    code = one_period(ode, run, period++, options->samples, y, &(double){0}, result, i * options->samples, error);
+  for (int i = 0; i < result->repeat && !code; i++) {
+    double swing = 0;
+    code = one_period(ode, run, period++, options->samples, y, &swing, result, i * options->samples, error);
+  }
   result->periods = period;
   unpack(run, y, result->state, result->state + s.n);
   return code;

@@ -200,7 +200,9 @@ static enum eo_code solve_torque(void *context, int thread, int item, struct eo_
   if (code)
     return code;
   w->design->load_case[0] = (struct eo_load_case){.torque = s->torque[k], .speed = s->speed[0], .share = 1};
-  w->design->modification = variant == EO_SWEEP_UNMODIFIED ? (struct eo_modification){0} : job->design->modification;
+  w->design->modification = job->design->modification;
+  if (variant == EO_SWEEP_UNMODIFIED)
+    w->design->modification = (struct eo_modification){0};
   code = eo_evaluator_run(w->evaluator, w->design, NULL, 0, &r, error);
   if (!code)
     code = keep_problem(&job->problem[item], w->evaluator, r, error);
@@ -294,7 +296,7 @@ static enum eo_code solve_branch(void *context, int thread, int item, struct eo_
 
 static enum eo_code make_job(struct job *job, struct eo_error *error)
 {
-  size_t problems = (size_t)(EO_SWEEP_VARIANTS * job->sweep->torques);
+  size_t problems = (size_t)EO_SWEEP_VARIANTS * job->sweep->torques;
   job->worker = calloc((size_t)job->threads, sizeof *job->worker);
   job->problem = calloc(problems, sizeof *job->problem);
   job->alone = calloc(problems * (size_t)job->sweep->speeds, sizeof *job->alone);

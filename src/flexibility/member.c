@@ -39,7 +39,7 @@ static enum eo_code split_inverse(struct eo_member_job *job, const struct wanted
   struct eo_member_result *r = job->result;
   const struct eo_section *s = &job->section;
   int across = r->layers + 1, flank = r->rows * across, next = r->next_rows * across;
-  size_t stresses = (size_t)(r->root_points * across * EO_STRESSES);
+  size_t stresses = (size_t)r->root_points * across * EO_STRESSES;
   struct eo_stress_operator operator= {0};
   double *displacement = malloc((size_t)(s->root_nodes * across * 3) * sizeof *displacement);
   enum eo_code code = eo_stress_operator_init(&operator, & job->sector, job->material, job->error);

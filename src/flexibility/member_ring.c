@@ -174,7 +174,7 @@ static void stress_of(const struct eo_member_job *job, const struct kept *kept, 
 {
   const struct eo_section *s = &job->section;
   int layers = job->result->layers, inner = kept->root + kept->flank;
-  size_t stresses = (size_t)(job->result->root_points * (layers + 1) * EO_STRESSES);
+  size_t stresses = (size_t)job->result->root_points * (layers + 1) * EO_STRESSES;
   double alpha = 2 * M_PI / job->geometry->teeth[job->member], c = cos(alpha), sine = sin(alpha);
   const double *face = motion->left + (size_t)(t + 1 + motion->reach) * (size_t)kept->flank * (size_t)kept->face;
   for (int j = 0; j < kept->flank; j++, face += kept->face) {
@@ -201,8 +201,8 @@ static enum eo_code answer_tooth(struct eo_member_job *job, const struct kept *k
                                  const struct eo_ring_motion *motion, int t, struct answer *answer)
 {
   struct eo_member_result *r = job->result;
-  size_t flank = (size_t)kept->flank, inner = (size_t)tooth->inner, next = (size_t)(r->next_rows * (r->layers + 1));
-  size_t stresses = (size_t)(r->root_points * (r->layers + 1) * EO_STRESSES);
+  size_t flank = (size_t)kept->flank, inner = (size_t)tooth->inner, next = (size_t)r->next_rows * (r->layers + 1);
+  size_t stresses = (size_t)r->root_points * (r->layers + 1) * EO_STRESSES;
   int ahead = job->member == EO_PINION ? t : -t, d = abs(t);
   enum eo_code code = eo_ring_displacement(tooth, motion, t, answer->all, job->error);
   if (code)

@@ -263,7 +263,8 @@ static enum eo_code make_room(struct job *job, int rooms, struct eo_error *error
 enum eo_ring_method eo_ring_cheapest(const struct eo_ring_tooth *tooth, int reach, double *operations)
 {
   double n = tooth->face, m = tooth->flank, chains = eo_chain_cost(tooth, reach);
-  double harmonics = (tooth->teeth / 2 + 1) * (4.0 / 3 * n * n * n + 8 * n * n * m);
+  int orders = tooth->teeth / 2 + 1;
+  double harmonics = orders * (4.0 / 3 * n * n * n + 8 * n * n * m);
   if (operations)
     *operations = fmin(chains, harmonics);
   return chains < harmonics ? EO_RING_CHAINS : EO_RING_HARMONICS;

@@ -158,7 +158,7 @@ static enum eo_code refine(const struct eo_flank_table *table, size_t coupled, c
    In a ring both agree to rounding. */
 static enum eo_code fill_ahead(struct eo_flank_table *table, const struct eo_member_result *result)
 {
-  size_t n = (size_t)table->flank.points, coupled = (size_t)(result->coupled_rows * (result->layers + 1));
+  size_t n = (size_t)table->flank.points, coupled = (size_t)result->coupled_rows * (result->layers + 1);
   double *behind = malloc(n * n * sizeof *behind);
   enum eo_code code = behind ? EO_OK : EO_ERROR_MEMORY;
   for (size_t d = 0; d < (size_t)table->reach && !code; d++) {
@@ -210,7 +210,7 @@ static enum eo_code measure(const struct eo_flank_table *table, double *smallest
 
 static void copy_values(struct eo_flank_table *table, const struct eo_member_result *result)
 {
-  size_t n = (size_t)(result->rows * (result->layers + 1)), next = (size_t)(result->next_rows * (result->layers + 1));
+  size_t n = (size_t)result->rows * (result->layers + 1), next = (size_t)result->next_rows * (result->layers + 1);
   size_t reach = (size_t)table->reach;
   memcpy(table->s, result->s, (size_t)table->rows * sizeof *table->s);
   memcpy(table->next_s, result->next_s, (size_t)table->next_rows * sizeof *table->next_s);

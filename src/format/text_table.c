@@ -13,17 +13,18 @@ static void add_cell(struct eo_text_table *sheet, const char *text, bool number)
     return;
   if (sheet->cells == sheet->capacity) {
     int capacity = sheet->capacity ? 2 * sheet->capacity : 64;
-    struct eo_cell *cell = realloc(sheet->cell, (size_t)capacity * sizeof *cell);
-    if (!cell) {
+    struct eo_cell *more = realloc(sheet->cell, (size_t)capacity * sizeof *more);
+    if (!more) {
       sheet->failed = true;
       return;
     }
-    sheet->cell = cell;
+    sheet->cell = more;
     sheet->capacity = capacity;
   }
-  char *copy = strdup(text);
-  if (copy)
-    sheet->cell[sheet->cells++] = (struct eo_cell){copy, number};
+  struct eo_cell *cell = &sheet->cell[sheet->cells];
+  *cell = (struct eo_cell){.text = strdup(text), .number = number};
+  if (cell->text)
+    sheet->cells++;
   else
     sheet->failed = true;
 }

@@ -126,7 +126,7 @@ static int collect_vertices(const struct eo_modification_shape *shape, double ve
 static void walk_init(struct walk *walk, const struct eo_geometry *g, int member,
                       const struct eo_modification_shape *shape)
 {
-  double margin = 0.3 * (g->rack_top - g->rack_bottom), vertex[2];
+  double margin = 0.3 * (g->rack_top - g->rack_bottom), vertex[2] = {0};
   *walk = (struct walk){.geometry = g, .shape = shape, .member = member};
   walk->low = (member == EO_PINION ? g->rack_bottom : -g->rack_top) - margin;
   walk->high = (member == EO_PINION ? g->rack_top : -g->rack_bottom) + margin;
@@ -259,7 +259,7 @@ static void sort(int count, double *value)
 static int collect_breaks(const struct walk *lead, const struct walk *other, double breaks[MOST_BREAKS])
 {
   const struct eo_geometry *g = lead->geometry;
-  double margin = 0.15 * (g->rack_top - g->rack_bottom), vertex[2];
+  double margin = 0.15 * (g->rack_top - g->rack_bottom), vertex[2] = {0};
   double low = walk_place(lead, (lead->member == EO_PINION ? g->rack_bottom : -g->rack_top) - margin, 0);
   double high = walk_place(lead, (lead->member == EO_PINION ? g->rack_top : -g->rack_bottom) + margin, 1);
   int count = 0, kept = 0, vertices = collect_vertices(lead->shape, vertex);
@@ -389,7 +389,7 @@ double eo_slice_gap_within(const struct eo_slice_gap *table, int i, double t, do
 
 double eo_slice_gap_at(const struct eo_slice_gap *table, double c, double *slope)
 {
-  double unused, part;
+  double unused = 0, part;
   slope = slope ? slope : &unused;
   *slope = 0;
   if (table->nodes == 0)

@@ -25,7 +25,7 @@ static void get_health(struct eo_request *request)
                              PACKAGE_STRING, "uptime_s",
                              (double)(long)(eo_clock_milliseconds() - request->http->started) / 1e3, "jobs", "queued",
                              (json_int_t)status.jobs[EO_JOB_QUEUED], "running",
-                             (json_int_t)(status.jobs[EO_JOB_PREPARING] + status.jobs[EO_JOB_RUNNING]), "database",
+                             (json_int_t)status.jobs[EO_JOB_PREPARING] + status.jobs[EO_JOB_RUNNING], "database",
                              good ? "ok" : "failing", "warnings", warnings);
   eo_reply_json(&request->reply, good ? 200 : 503, health);
 }

@@ -87,10 +87,11 @@ static int ascending(const void *a, const void *b)
    has the mean 1/n + ... + 1/(n - r + 1) of theirs (Renyi 1953); ln 2 for many. */
 static double mean_power(double *power, int n)
 {
+  int upper = n - n / 2;
   double expected = 0;
-  for (int k = n - n / 2 + 1; k <= n; k++)
+  for (int k = upper + 1; k <= n; k++)
     expected += 1.0 / k;
-  expected += (n % 2 ? 1.0 : 0.5) / (n - n / 2);
+  expected += (n % 2 ? 1.0 : 0.5) / upper;
   qsort(power, (size_t)n, sizeof *power, ascending);
   return (power[(n - 1) / 2] + power[n / 2]) / (2 * expected);
 }

@@ -87,7 +87,7 @@ static bool lies_between(const struct eo_usual *before, const struct eo_usual *a
 static bool odd_beside(const struct eo_angles_maker *m, const struct eo_usual *u, const struct eo_sample *s, int left,
                        struct eo_usual *here, double excess[2])
 {
-  struct eo_usual after;
+  struct eo_usual after = {0};
   int ahead = left - 1 < EO_AHEAD - 1 ? left - 1 : EO_AHEAD - 1;
   const struct eo_sample *oldest = &m->recent[m->kept < EO_AHEAD ? 0 : m->kept % EO_AHEAD];
   bool before = m->kept > 1;

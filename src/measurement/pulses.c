@@ -110,7 +110,7 @@ static enum eo_code advance(struct eo_pulses *p, double time, struct eo_error *e
 static enum eo_code sample_at(struct eo_pulses *p, struct eo_sample *sample, bool *taken, struct eo_error *error)
 {
   const double *pulse;
-  double time, own, line, low[2], high[2];
+  double time, own, line, low[2] = {0}, high[2] = {0};
   *taken = false;
   enum eo_code code = pulse_at(&p->train[0], p->next, &pulse, error);
   if (code)

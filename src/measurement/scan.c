@@ -191,10 +191,10 @@ enum eo_code eo_scan_run(struct eo_scan *s, const struct eo_recording *recording
                          const struct eo_progress *progress, struct eo_error *error)
 {
   int columns = eo_recording_columns(recording);
-  double *rows = malloc(sizeof *rows * BLOCK * (size_t)(columns + 1)),
-         *scratch = rows + (size_t)BLOCK * (size_t)columns;
+  double *rows = malloc(sizeof *rows * BLOCK * (size_t)(columns + 1));
   if (!rows)
     return eo_error_memory(error);
+  double *scratch = rows + (size_t)BLOCK * (size_t)columns;
   memset(s, 0, sizeof *s);
   s->rows = eo_recording_rows(recording);
   for (int i = 0; i < 4; i++)

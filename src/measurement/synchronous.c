@@ -43,7 +43,7 @@ enum eo_code eo_synchronous_new(struct eo_synchronous **synchronous, const struc
   double per_turn = (double)r->rows / turns;
   int whole = turns >= r->hunting ? r->hunting : (int)(turns + 1e-9);
   while (whole > 0 && turns >= r->hunting && whole + r->hunting <= turns + 1e-9 &&
-         (whole + r->hunting) * per_turn < MOST_SAMPLES / 2)
+         (whole + r->hunting) * per_turn < 0.5 * MOST_SAMPLES)
     whole += r->hunting;
   s->teeth[0] = teeth[0];
   s->teeth[1] = teeth[1];

@@ -253,8 +253,8 @@ static double pulse_time(const struct eo_synthetic *s, int channel, int64_t puls
     extra = pulse == s->row + 1 ? DOUBLE_PULSE : 0;
     pulse--;
   }
-  double line = (double)(pulse / teeth * s->lines[channel] + pulse % teeth) + extra;
-  return passing_time(s, channel, line) + s->jitter * draw(s, STREAM_JITTER, pulse, channel);
+  long line = pulse / teeth * s->lines[channel] + pulse % teeth;
+  return passing_time(s, channel, (double)line + extra) + s->jitter * draw(s, STREAM_JITTER, pulse, channel);
 }
 
 static int64_t rows_of(const struct eo_synthetic *s, int channel)

@@ -61,7 +61,7 @@ void eo_terms_at(const struct eo_terms *t, double time, double theta, double *va
 enum eo_code eo_normal_init(struct eo_normal *n, int terms, struct eo_error *error)
 {
   *n = (struct eo_normal){.columns = terms + 1};
-  n->gram = calloc((size_t)(n->columns * n->columns), sizeof *n->gram);
+  n->gram = calloc((size_t)n->columns * n->columns, sizeof *n->gram);
   n->block = malloc(sizeof *n->block * (size_t)(EO_NORMAL_BLOCK * n->columns));
   return n->gram && n->block ? EO_OK : eo_error_memory(error);
 }
@@ -95,10 +95,10 @@ enum eo_code eo_normal_solve(struct eo_normal *n, double *coefficient, double *c
 {
   int terms = n->columns - 1;
   flush(n);
-  double *matrix = malloc(sizeof *matrix * (size_t)(terms * terms + 3 * terms)), *values = matrix + terms * terms,
-         *scale = values + terms;
+  double *matrix = malloc(sizeof *matrix * (size_t)(terms * terms + 3 * terms));
   if (!matrix)
     return eo_error_memory(error);
+  double *values = matrix + terms * terms, *scale = values + terms;
   for (int i = 0; i < terms; i++)
     scale[i] = 1 / sqrt(fmax(n->gram[i * n->columns + i], 1e-300));
   for (int i = 0; i < terms; i++)

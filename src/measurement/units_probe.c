@@ -64,7 +64,8 @@ static double lines_seen(const struct probe *p, const int teeth[2], double facto
   for (int k = 0; k < LINES && order[k] < 0.45 * p->rows / turns; k++) {
     double floor = 0;
     for (int j = 0; j < FLOOR; j++) {
-      double aside = (j % 2 ? 1 : -1) * (2.5 + 1.0 * (j / 2)) / turns;
+      int step = j / 2;
+      double aside = (j % 2 ? 1 : -1) * (2.5 + step) / turns;
       floor += power_at(p, (order[k] + aside) * factor) / FLOOR;
     }
     seen += log10(1 + power_at(p, order[k] * factor) / fmax(floor, 1e-300)) * (order[k] > 3 / turns);

@@ -72,7 +72,7 @@ static double distance(int n, const double *a, const double *b)
 /* Lower than its nearest neighbours: fewer of those are lower than a valley would leave. */
 static bool is_promising(const struct sample *sample, int count, int at, int n)
 {
-  double nearest[NEIGHBOURS_PER_UNKNOWN * EO_UNKNOWNS], square[NEIGHBOURS_PER_UNKNOWN * EO_UNKNOWNS];
+  double nearest[NEIGHBOURS_PER_UNKNOWN * EO_UNKNOWNS] = {0}, square[NEIGHBOURS_PER_UNKNOWN * EO_UNKNOWNS];
   int wanted = NEIGHBOURS_PER_UNKNOWN * n, kept = 0;
   for (int i = 0; i < count; i++) {
     double far = distance(n, sample[i].x, sample[at].x);

@@ -47,6 +47,7 @@ void eo_dense_newton_put(const struct eo_dense_newton *newton, SUNMatrix matrix)
   }
 }
 
+/* NOLINTNEXTLINE(readability-non-const-parameter): the type of a handler of SUNDIALS */
 void eo_dense_newton_quiet(int code, const char *module, const char *function, char *message, void *user)
 {
   (void)code, (void)module, (void)function, (void)message, (void)user;

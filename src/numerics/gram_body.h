@@ -58,17 +58,19 @@ INLINE void apply_rows(int rows, int units, int stride, const float *f, const do
 {
   lane sum[APPLY_ROWS][PARTS];
   UNROLL
-  for (int r = 0; r < rows; r++)
+  for (int r = 0; r < rows; r++) {
     UNROLL
-  for (int p = 0; p < PARTS; p++)
-    sum[r][p] = (lane){0};
-  for (int k = 0; k < units * UNIT; k += UNIT)
+    for (int p = 0; p < PARTS; p++)
+      sum[r][p] = (lane){0};
+  }
+  for (int k = 0; k < units * UNIT; k += UNIT) {
     UNROLL
-  for (int p = 0; p < PARTS; p++) {
-    lane v = *(const lane *)(x + k + p * WIDTH);
-    UNROLL
-    for (int r = 0; r < rows; r++)
-      sum[r][p] = MADD(WIDEN(f + (long)r * stride + k + p * WIDTH), v, sum[r][p]);
+    for (int p = 0; p < PARTS; p++) {
+      lane v = *(const lane *)(x + k + p * WIDTH);
+      UNROLL
+      for (int r = 0; r < rows; r++)
+        sum[r][p] = MADD(WIDEN(f + (long)r * stride + k + p * WIDTH), v, sum[r][p]);
+    }
   }
   UNROLL
   for (int r = 0; r < rows; r += 2) {
@@ -256,14 +258,15 @@ INLINE bool invert_block(float block[PIVOTS][PIVOTS])
 INLINE void sweep(int first, int n, int width, float block[PIVOTS][PIVOTS], float *matrix, float *kept, float *rows)
 {
   memcpy(kept, matrix + (long)first * width, sizeof *kept * PIVOTS * (size_t)width);
-  for (int c = 0; c < n; c += FLOATS)
+  for (int c = 0; c < n; c += FLOATS) {
     UNROLL
-  for (int a = 0; a < PIVOTS; a++) {
-    float_lane sum = {0};
-    UNROLL
-    for (int b = 0; b < PIVOTS; b++)
-      sum = MADD_FLOAT(SPLAT_FLOAT(-block[a][b]), *(const float_lane *)(kept + b * width + c), sum);
-    *(float_lane *)(rows + a * width + c) = sum;
+    for (int a = 0; a < PIVOTS; a++) {
+      float_lane sum = {0};
+      UNROLL
+      for (int b = 0; b < PIVOTS; b++)
+        sum = MADD_FLOAT(SPLAT_FLOAT(-block[a][b]), *(const float_lane *)(kept + b * width + c), sum);
+      *(float_lane *)(rows + a * width + c) = sum;
+    }
   }
   for (int i = 0; i < n; i++) {
     if (i >= first && i < first + PIVOTS)
@@ -338,10 +341,11 @@ INLINE void multiply_tile(int rows, int lanes, int inner, const float *a, int a_
 {
   float_lane sum[TILE_ROWS][TILE_LANES];
   UNROLL
-  for (int r = 0; r < rows; r++)
+  for (int r = 0; r < rows; r++) {
     UNROLL
-  for (int l = 0; l < lanes; l++)
-    sum[r][l] = add ? *(const float_lane *)(c + (long)r * c_stride + l * FLOATS) : (float_lane){0};
+    for (int l = 0; l < lanes; l++)
+      sum[r][l] = add ? *(const float_lane *)(c + (long)r * c_stride + l * FLOATS) : (float_lane){0};
+  }
   for (int k = 0; k < inner; k++) {
     float_lane right[TILE_LANES];
     UNROLL

@@ -83,7 +83,7 @@ void eo_nonlinear_free(struct eo_nonlinear *w)
   if (w->kinsol)
     KINFree(&w->kinsol);
   N_Vector vector[] = {w->x_scale, w->residual_scale, w->residual};
-  for (size_t i = 0; i < sizeof vector / sizeof *vector; i++)
+  for (size_t i = 0; i < sizeof vector / sizeof vector[0]; i++)
     if (vector[i])
       N_VDestroy(vector[i]);
   eo_dense_newton_done(&w->newton);

@@ -49,8 +49,10 @@ static void chain(struct eo_archive *archive, int row)
 static void *grow(void *array, size_t count, size_t size, bool *failed)
 {
   void *larger = realloc(array, count * size + 1);
-  *failed |= !larger;
-  return larger ? larger : array;
+  if (larger)
+    return larger;
+  *failed = true;
+  return array;
 }
 
 enum eo_code eo_archive_reserve(struct eo_archive *archive, int rows, struct eo_error *error)

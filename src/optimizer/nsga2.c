@@ -65,13 +65,17 @@ static enum eo_code reserve(struct nsga2 *g, int capacity, struct eo_error *erro
     return EO_OK;
   const size_t c = 2 * (size_t)capacity;
   double *crowding = realloc(g->crowding, c * sizeof *crowding);
-  g->crowding = crowding ? crowding : g->crowding;
+  if (crowding)
+    g->crowding = crowding;
   int *rank = realloc(g->rank, c * sizeof *rank);
-  g->rank = rank ? rank : g->rank;
+  if (rank)
+    g->rank = rank;
   int *order = realloc(g->order, c * sizeof *order);
-  g->order = order ? order : g->order;
+  if (order)
+    g->order = order;
   int *scratch = realloc(g->scratch, 2 * c * sizeof *scratch);
-  g->scratch = scratch ? scratch : g->scratch;
+  if (scratch)
+    g->scratch = scratch;
   if (!crowding || !rank || !order || !scratch)
     return eo_error_memory(error);
   g->capacity = 2 * capacity;

@@ -75,7 +75,7 @@ void eo_breed(const struct eo_optimizer_settings *settings, const double *parent
       memcpy(pair[side], parents + (size_t)tournament(choice, 2 * (uint64_t)side, fitness, size) * n, bytes);
     cross(settings, eo_random_at(seed, EO_STREAM_CROSSOVER, g, p), pair[0], pair[1]);
     for (int side = 0; side < 2 && i + side < count; side++) {
-      mutate(settings, eo_random_at(seed, EO_STREAM_MUTATION, g, (uint64_t)(first_child + i + side)), pair[side]);
+      mutate(settings, eo_random_at(seed, EO_STREAM_MUTATION, g, (uint64_t)first_child + i + side), pair[side]);
       memcpy(children + (size_t)(i + side) * n, pair[side], bytes);
     }
   }
@@ -85,7 +85,7 @@ static int rank_of(const double *keys, int count, int i)
 {
   int rank = 0;
   for (int j = 0; j < count; j++)
-    rank += keys[j] < keys[i] || (keys[j] == keys[i] && j < i);
+    rank += keys[j] < keys[i] || (j < i && keys[j] == keys[i]);
   return rank;
 }
 

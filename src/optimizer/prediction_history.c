@@ -37,8 +37,10 @@ void eo_history_done(struct eo_history *history)
 static void *grow(void *array, size_t count, size_t size, bool *failed)
 {
   void *larger = realloc(array, count * size + 1);
-  *failed |= !larger;
-  return larger ? larger : array;
+  if (larger)
+    return larger;
+  *failed = true;
+  return array;
 }
 
 static enum eo_code enlarge(struct eo_history *history, int capacity, struct eo_error *error)

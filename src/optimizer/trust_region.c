@@ -211,7 +211,7 @@ static void wander(struct eo_local *local, const double *low, const double *high
                    double *u)
 {
   for (int step = 0; step < WANDER_STEPS; step++)
-    step_along(local, low, high, level, random, (uint64_t)(step * (local->variables + SHRINK_STEPS)), u);
+    step_along(local, low, high, level, random, (uint64_t)step * (local->variables + SHRINK_STEPS), u);
 }
 
 /* Where the proposals are made: u[count][variables] so far, and what they are made from. */

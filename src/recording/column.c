@@ -153,7 +153,7 @@ static const char *next_word(const char *name, const char **word)
 
 static bool is_listed(const char *word, size_t length, const char *words)
 {
-  char lower[EO_RECORDING_NAME];
+  char lower[EO_RECORDING_NAME] = "";
   for (size_t i = 0; i < length; i++)
     lower[i] = (char)tolower((unsigned char)word[i]);
   for (const char *p = words; *p;) {

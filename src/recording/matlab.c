@@ -363,6 +363,7 @@ static enum eo_code read_file(struct matlab *m, const struct eo_reader_options *
   return eo_series_copy(&content, sink, notes, error);
 }
 
+/* NOLINTNEXTLINE(readability-non-const-parameter): the type of a handler of matio */
 static void ignore_message(int level, char *text)
 {
   (void)level;

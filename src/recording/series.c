@@ -144,7 +144,7 @@ static enum eo_code copy_all(const struct eo_series_file *file, const int *chose
 enum eo_code eo_series_copy(const struct eo_series_file *file, const struct eo_series_sink *sink,
                             struct eo_notes *notes, struct eo_error *error)
 {
-  int chosen[EO_RECORDING_COLUMNS];
+  int chosen[EO_RECORDING_COLUMNS] = {0};
   int count = choose(file, chosen, notes);
   int64_t rows = 0;
   for (int c = 0; c < count; c++)

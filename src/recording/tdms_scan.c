@@ -172,7 +172,7 @@ static enum eo_code add_segment(struct eo_tdms *tdms, int64_t at, const struct l
 
 enum eo_code eo_tdms_scan(struct eo_tdms *tdms, struct eo_error *error)
 {
-  struct eo_error own;
+  struct eo_error own = {0};
   error = error ? error : &own;
   bool cut = false;
   for (int64_t at = 0; at + LEAD_IN <= tdms->size;) {

@@ -153,7 +153,7 @@ static enum eo_code deflect_rows(struct output *found, const struct input *given
 {
   int n = layers + 1 + found->eta.count;
   struct eo_flank_point *point = calloc((size_t)n, sizeof *point);
-  double *compliance = calloc((size_t)(n * n), sizeof *compliance);
+  double *compliance = calloc((size_t)n * n, sizeof *compliance);
   enum eo_code code = point && compliance ? EO_OK : eo_error_memory(error);
   for (int i = 0; i < given->s.count && !code; i++) {
     found->row[i].s = given->s.value[i];
@@ -171,8 +171,8 @@ static enum eo_code deflect_points(struct output *found, const struct input *giv
                                    const struct eo_flexibility *flexibility, struct eo_error *error)
 {
   int n = given->points;
-  struct eo_flank_point *point = calloc((size_t)(n + 1), sizeof *point);
-  double *compliance = calloc((size_t)(n * n + 1), sizeof *compliance);
+  struct eo_flank_point *point = calloc((size_t)n + 1, sizeof *point);
+  double *compliance = calloc((size_t)n * n + 1, sizeof *compliance);
   enum eo_code code = point && compliance ? eo_stage_columns(2, found->deflection, n, error) : eo_error_memory(error);
   for (int i = 0; i < n && !code; i++)
     point[i] =

@@ -105,7 +105,7 @@ static enum eo_code run(const void *in, void *out, struct eo_error *error)
   struct eo_design design = given->design;
   struct eo_stage_field field;
   int rows = given->phase.count;
-  struct eo_unloaded *result = calloc((size_t)(2 * rows + 1), sizeof *result);
+  struct eo_unloaded *result = calloc((size_t)2 * rows + 1, sizeof *result);
   enum eo_code code = result ? eo_stage_field_init(&field, &design, given->end, given->pivot, error)
                              : eo_error_memory(error);
   if (!code) {

@@ -205,7 +205,7 @@ static void check_orders(struct eo_verification *v, struct eo_case *truth, doubl
   struct eo_case *amplitude = eo_case_find(truth, "line_amp_um"), *acceleration = eo_case_find(truth, "line_acc"),
                  *rms = eo_case_find(truth, "rms_by_H");
   struct eo_case *const lists[] = {amplitude, acceleration, rms};
-  for (size_t i = 0; i < sizeof lists / sizeof *lists; i++)
+  for (size_t i = 0; i < sizeof lists / sizeof lists[0]; i++)
     if (lists[i] && (!eo_case_is_list(lists[i]) || eo_case_size(lists[i]) > t->harmonics))
       eo_case_fault(lists[i], "A list of at most %d numbers, the orders measured, is expected here.", t->harmonics);
   for (int h = 0; h < t->harmonics && !eo_case_faulty(truth); h++) {

@@ -65,9 +65,10 @@ static enum eo_code read_table(struct eo_case *object, double tau, struct eo_law
     eo_case_fault(object, "A table has loads P[n] and deflections Z[n][positions].");
   if (eo_case_faulty(object))
     return EO_OK;
-  double *load = malloc(sizeof *load * (size_t)rows * (1 + (size_t)positions)), *deflection = load + rows;
+  double *load = malloc(sizeof *load * (size_t)rows * (1 + (size_t)positions));
   if (!load)
     return eo_error_memory(error);
+  double *deflection = load + rows;
   eo_case_numbers(p, rows, rows, load);
   for (int i = 0; i < rows; i++)
     eo_case_numbers(eo_case_at(z, i), positions, positions, deflection + (size_t)i * positions);

@@ -364,7 +364,7 @@ enum eo_code eo_row_damage(struct eo_rating_row *row, struct eo_error *error)
                  *stress = eo_case_find(row->inputs, "sigma_H_times_S_MPa");
   struct eo_case *const lists[] = {torque, factor, cycles, eo_case_is_list(stress) ? stress : NULL};
   int count = eo_case_size(torque ? torque : stress);
-  for (size_t i = 0; i < sizeof lists / sizeof *lists; i++) {
+  for (size_t i = 0; i < sizeof lists / sizeof lists[0]; i++) {
     if (lists[i] && eo_case_size(lists[i]) != count)
       eo_case_fault(lists[i], "A list of %d numbers is expected here, one for each class.", count);
     for (int k = 0; k < eo_case_size(lists[i]); k++)

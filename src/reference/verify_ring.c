@@ -104,7 +104,7 @@ static enum eo_code check_distance(struct eo_ring_case *c, int member, int n, co
                                    struct eo_case *matrix, struct eo_error *error)
 {
   struct eo_flank_point point[2 * MOST_POINTS];
-  double *compliance = calloc((size_t)(4 * n * n), sizeof *compliance), largest = eo_case_largest(matrix);
+  double *compliance = calloc((size_t)4 * n * n, sizeof *compliance), largest = eo_case_largest(matrix);
   int d = distance_of(matrix);
   if (!compliance)
     return eo_error_memory(error);
@@ -172,7 +172,7 @@ static enum eo_code deflect(const struct eo_ring_case *c, int member, double s, 
   int layers = mesh_count(c, false, " layers", c->design.resolution.layers), n = layers + 2;
   double width = c->geometry.face_width;
   struct eo_flank_point *point = calloc((size_t)n, sizeof *point);
-  double *compliance = calloc((size_t)(n * n), sizeof *compliance);
+  double *compliance = calloc((size_t)n * n, sizeof *compliance);
   enum eo_code code = point && compliance ? EO_OK : eo_error_memory(error);
   *deflection = 0;
   if (!code) {

@@ -67,11 +67,11 @@ static enum eo_code plot(const struct eo_study_result *s, const char *name, json
                          struct eo_error *error)
 {
   size_t n = (size_t)s->generations;
-  double *column = calloc(4 * n + 1, sizeof *column), *generation = column, *share = column + n,
-         *count = column + 2 * n, *best = column + 3 * n;
+  double *column = calloc(4 * n + 1, sizeof *column);
   int evaluated = 0, individuals = 0;
   if (!column)
     return eo_error_memory(error);
+  double *generation = column, *share = column + n, *count = column + 2 * n, *best = column + 3 * n;
   for (int i = 0; i < s->generations; i++) {
     const struct eo_study_generation *g = &s->generation[i];
     evaluated += g->true_count;

@@ -232,9 +232,10 @@ static void write_table(const struct eo_text_table *sheet, struct eo_text *text)
 static bool read_series(const json_t *series, struct eo_plot_series *line, double **store)
 {
   size_t count = json_array_size(json_object_get(series, "x"));
-  double *x = *store = malloc((2 * count + 1) * sizeof *x), *y = x + count;
+  double *x = *store = malloc((2 * count + 1) * sizeof *x);
   if (!x)
     return false;
+  double *y = x + count;
   for (size_t j = 0; j < count; j++) {
     const json_t *number = json_array_get(json_object_get(series, "y"), j);
     x[j] = json_number_value(json_array_get(json_object_get(series, "x"), j));

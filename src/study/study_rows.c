@@ -8,7 +8,7 @@ static enum eo_code reserve(struct eo_rows *rows, struct eo_error *error)
   if (rows->count < rows->capacity)
     return EO_OK;
   int capacity = 2 * rows->capacity + 64;
-  struct eo_row_data **more = realloc(rows->row, sizeof *more * (size_t)capacity);
+  struct eo_row_data **more = realloc(rows->row, sizeof(struct eo_row_data *) * (size_t)capacity);
   if (!more)
     return eo_error_memory(error);
   rows->row = more;
