@@ -1,4 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
+# shellcheck shell=sh
 # What the tests of the stages share, read by them: stage, near, prints, and tap.sh.
 . "$(dirname "$0")/../support/tap.sh"
 

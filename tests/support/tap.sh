@@ -1,4 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
+# shellcheck shell=sh disable=SC2034 # its readers use these variables
 # What tests in shell share, read by them: EASEOFF, the program; CASES, the reference cases; numbers, json-numbers.c; a folder that goes with the
 # test; result, which counts. A test ends with: echo "1..$count"; exit $failed
 : "${EASEOFF:=./easeoff}" "${CASES:=tests/cases}"
