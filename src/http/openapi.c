@@ -171,7 +171,7 @@ static json_t *encode_paths(const struct eo_route *const *routes)
         path = json_object();
         json_object_set_new(paths, route->pattern, path);
       }
-      for (size_t k = 0; name[k] && k < sizeof method - 1; k++)
+      for (size_t k = 0; k < sizeof method - 1 && name[k]; k++)
         method[k] = (char)tolower((unsigned char)name[k]);
       json_object_set_new(path, method, encode_operation(route));
     }
