@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Reads the whole source with tools that find what compilers and tests do not: clang-format, clang-tidy, cppcheck, shellcheck, eslint, tsc,
 # and the licence line of each file. Called by `make lint`; a tool that is not installed is named and passed over.
 #   SOURCES  the source's folder      FLAGS  the compiler's flags      MODULES  the page's work folder      JOBS  processes at a time

@@ -274,7 +274,7 @@ static enum eo_code check_iso_root(void *context, struct eo_case *block, struct 
   struct eo_contact_case *c = context;
   const double relative = 5e-3, module = c->geometry.normal_module;
   int member;
-  double torque;
+  double torque = 0;
   struct eo_iso_root root;
   (void)error;
   if (!read_root_name(block, &member, &torque))
