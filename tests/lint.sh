@@ -51,6 +51,6 @@ reads "$node" 'eslint has nothing to say' node "$eslint" -c "$MODULES/eslint.con
 echo "$MODULES/tsconfig.json" >"$list"
 reads "$node" 'the types of the page agree with its code' node "$tsc" --noEmit --strict -p
 files '*.c' '*.h' '*.cpp' '*.sh' '*.js' '*.mjs' '*.am'
-reads grep 'each file states its licence' sh -c '! grep -L "SPDX-License-Identifier: GPL-3.0-or-later" "$@"' sh
+reads grep 'each file states its licence' sh -c '! grep -L "SPDX-License-Identifier: GPL-3.0-or-later" "$@" | grep .' sh
 echo "1..$count"
 exit $failed

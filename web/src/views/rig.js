@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The Rig view: what a rig recorded, what was found in it, and how it compares with the prediction for the design on the
-// table.
+// The Rig view: what a rig recorded, what was found in it, and how it compares with the prediction for the design on
+// the table.
 import { Away, address, ask, get, list } from '../base/api.js';
 import { download, fill, h } from '../base/dom.js';
 import { dateText, plain, sig } from '../base/format.js';
