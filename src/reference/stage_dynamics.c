@@ -181,11 +181,18 @@ static const struct eo_table spectrum_table = EO_TABLE("harmonics", struct spect
 
 static const char *const outcomes[] = {"converged", "contact_lost", "not_converged", NULL};
 
+static const struct eo_field state_rms[] = {
+    EO_OUT(struct eo_vibration_state, rms[EO_READING_NORMAL], "normal", &eo_unit_m_per_s2, "along the normal"),
+    EO_OUT(struct eo_vibration_state, rms[EO_READING_TRANSVERSE], "transverse", &eo_unit_m_per_s2,
+           "along the line of action"),
+    EO_OUT(struct eo_vibration_state, rms[EO_READING_ROTATIONAL], "rotational", &eo_unit_m_per_s2,
+           "of the rotations, on the base circles"),
+};
+static const struct eo_table state_rms_table = EO_TABLE("RMS of a state", struct eo_vibration_state, state_rms);
+
 static const struct eo_field state_fields[] = {
     EO_INTEGER(struct eo_vibration_state, repeat, "mesh_periods", 1, 4, 1, "after which the motion repeats"),
-    EO_OUT(struct eo_vibration_state, rms[EO_READING_NORMAL], "normal", &eo_unit_m_per_s2, "RMS of the pair"),
-    EO_OUT(struct eo_vibration_state, rms[EO_READING_TRANSVERSE], "transverse", &eo_unit_m_per_s2, "likewise"),
-    EO_OUT(struct eo_vibration_state, rms[EO_READING_ROTATIONAL], "rotational", &eo_unit_m_per_s2, "likewise"),
+    EO_GROUP("rms_m_per_s2", &state_rms_table, "RMS of the pair"),
     EO_OUT(struct eo_vibration_state, contact_loss, "contact_loss", NULL, "share of the cycle, worse end"),
     EO_NUMBER_DERIVED(struct eo_vibration_state, multiplier, "largest_multiplier", NULL, -INFINITY, INFINITY,
                       "not computed", "size of the largest Floquet multiplier"),

@@ -62,10 +62,14 @@ static void take_table(struct eo_design *d)
 }
 static void strike(struct eo_design *d)
 {
+  d->load_cases = 1;
+  d->load_case[0].share = 1;
   d->resolution.impact_in_dynamics = EO_IMPACT_CONSISTENT;
 }
 static void want_robust(struct eo_design *d)
 {
+  d->load_cases = 1;
+  d->load_case[0].share = 1;
   d->objective.robust = EO_ROBUST_WORST;
 }
 static void take_more_harmonics(struct eo_design *d)
@@ -73,14 +77,14 @@ static void take_more_harmonics(struct eo_design *d)
   d->resolution.harmonics = 9;
 }
 
-enum { ALL = EO_WANT_ROOT | EO_WANT_BAND | EO_WANT_CURVES };
+enum { ALL = EO_WANT_ROOT | EO_WANT_CURVES };
 
 static const struct question {
   const char *what;
   void (*change)(struct eo_design *design);
   int want;
 } questions[] = {
-    {"a design", leave, ALL},
+    {"a design", leave, ALL | EO_WANT_BAND},
     {"its left end changed", change_left, ALL},
     {"its right end changed", change_right, ALL},
     {"both ends alike", align, ALL},
@@ -139,8 +143,8 @@ static void test_order(const struct eo_pair *pair)
 {
   struct eo_analysis *analysis = NULL;
   struct eo_text expected[QUESTIONS];
-  enum { LAPS = 3 };
-  static const int stride[LAPS] = {1, 5, 11}; /* no divisors of the number of questions */
+  enum { LAPS = 2 };
+  static const int stride[LAPS] = {1, 5}; /* no divisors of the number of questions */
   int wrong[QUESTIONS] = {0}, asked[QUESTIONS] = {0};
   for (int i = 0; i < QUESTIONS; i++)
     expected[i] = ask_anew(pair, &questions[i]);
