@@ -287,7 +287,7 @@ enum eo_code eo_row_backlash(struct eo_rating_row *row, struct eo_error *error)
     if (code)
       return code;
     check_backlash(row, &j, places[i].suffix);
-    if (!places[i].at_nominal && places[i].limit == 1)
+    if (places[i].at_nominal == 0 && places[i].limit == 1)
       eo_row_check(row, "j_wt_of_Aa_mm", 1e3 * j.of_distance);
   }
   return EO_OK;

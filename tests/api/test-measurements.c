@@ -152,7 +152,7 @@ static struct reply modified, unmodified;
 static void test_rig(void)
 {
   modified = record("{" POINT "}");
-  unmodified = record("{" POINT ",\"unmodified\":true}");
+  unmodified = record("{" POINT ",\"unmodified\":true,\"torque_column\":true,\"speed_column\":true}");
   ok(modified.status == 200 && strncmp(modified.body, "t_s,angle1_deg", 14) == 0,
      "a recording of a rig that does not exist: %d", modified.status);
   const char *header = header_of(&modified, "Content-Disposition");
