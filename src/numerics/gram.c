@@ -9,7 +9,16 @@
 #if defined(__x86_64__) && defined(__has_include)
 #if __has_include(<sys/platform/x86.h>)
 #include <sys/platform/x86.h>
-#define HAS(library_name, compiler_name) (CPU_FEATURE_ACTIVE(library_name) != 0)
+#define HAS(library_name, compiler_name) is_active(x86_cpu_##library_name)
+
+/* CPU_FEATURE_ACTIVE of the C library, whose shift into the sign bit is undefined. */
+static bool is_active(unsigned index)
+{
+  enum { WORD = 8 * sizeof(unsigned), LEAF = 4 * WORD };
+  const struct cpuid_feature *leaf = __x86_get_cpuid_feature_leaf(index / LEAF);
+  unsigned bit = index % LEAF;
+  return (leaf->active_array[bit / WORD] >> bit % WORD & 1) != 0;
+}
 #endif
 #endif
 #ifndef HAS
