@@ -285,7 +285,8 @@ INLINE void sweep(int first, int n, int width, float block[PIVOTS][PIVOTS], floa
     }
     *(quad *)(row + first) = (quad){rows[i], rows[width + i], rows[2 * width + i], rows[3 * width + i]};
   }
-  memcpy(matrix + (long)first * width, rows, sizeof *rows * PIVOTS * (size_t)width);
+  for (int a = 0; a < PIVOTS; a++) /* what stands behind the matrix stays */
+    memcpy(matrix + (long)(first + a) * width, rows + a * width, sizeof *rows * (size_t)n);
   for (int a = 0; a < PIVOTS; a++)
     for (int b = 0; b < PIVOTS; b++)
       matrix[(long)(first + a) * width + first + b] = block[a][b];
