@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "contact/loaded-internal.h"
+#include "contact/loaded_private.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What loaded contact works in and fills, made and freed. */
-#include "contact/loaded-internal.h"
+#include "contact/loaded_private.h"
 
 #include <stdlib.h>
 

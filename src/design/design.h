@@ -10,7 +10,7 @@
 
 #include "contact/shaft.h"
 #include "dynamics/parameters.h"
-#include "flexibility/body.h"
+#include "flexibility/body_model.h"
 #include "gear/gear_pair.h"
 #include "gear/modification.h"
 #include "optimizer/settings.h"

@@ -15,7 +15,7 @@
 #include "document/design_document.h"
 #include "format/outline.h"
 #include "format/text.h"
-#include "evaluation/sweep.h"
+#include "evaluation/design_sweep.h"
 
 enum { EO_SWEEP_MOST_STEPS = 2000 };
 

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "dynamics/vibration-internal.h"
+#include "dynamics/vibration_private.h"
 #include "numerics/fourier.h"
 
 enum { MAX_TERMS = 1 + 2 * EO_MAX_HARMONICS };

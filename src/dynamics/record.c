@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "dynamics/vibration-internal.h"
+#include "dynamics/vibration_private.h"
 #include "numerics/dense.h"
 #include "numerics/fourier.h"
 

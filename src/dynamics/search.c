@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "dynamics/stability.h"
-#include "dynamics/vibration-internal.h"
+#include "dynamics/vibration_private.h"
 
 enum { PERIODS = 300, MOST_PERIODS = 1500, LEAST_SAMPLES = 1024, MAX_REPEAT = 4, STEPS = 3 };
 /* Two states by time integration whose RMS differ by less are taken for the same, and one by harmonic balance is taken

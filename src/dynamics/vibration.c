@@ -7,7 +7,7 @@
 
 #include "dynamics/balance.h"
 #include "dynamics/stability.h"
-#include "dynamics/vibration-internal.h"
+#include "dynamics/vibration_private.h"
 #include "numerics/fourier.h"
 
 enum { RESCUE_PERIODS = 60, RESCUE_SAMPLES = 256 };

@@ -16,7 +16,7 @@
 #include "base/error.h"
 #include "base/hash.h"
 #include "base/progress.h"
-#include "flexibility/body.h"
+#include "flexibility/body_model.h"
 #include "flexibility/kernel.h"
 #include "flexibility/member.h"
 #include "gear/geometry.h"

@@ -4,7 +4,7 @@
 #define EASEOFF_FLEXIBILITY_PREPARED_H
 
 #include "flexibility/flexibility.h"
-#include "flexibility/table.h"
+#include "flexibility/member_table.h"
 
 struct eo_flexibility {
   struct eo_flexibility_settings settings;

@@ -6,7 +6,7 @@
 
 #include "document/geometry_table.h"
 #include "evaluation/evaluator.h"
-#include "http/body.h"
+#include "http/request_body.h"
 #include "http/deferred.h"
 #include "http/service_reply.h"
 #include "http/route.h"

@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "http/service_reply.h"
-#include "http/body.h"
+#include "http/request_body.h"
 #include "http/deferred.h"
 #include "http/stored_design.h"
 #include "http/stored_measurement.h"

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "http/body.h"
+#include "http/request_body.h"
 #include "http/stored_design.h"
 #include "http/route.h"
 #include "http/http_private.h"

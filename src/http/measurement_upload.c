@@ -11,7 +11,7 @@
 #include <unistd.h>
 
 #include "format/json.h"
-#include "http/body.h"
+#include "http/request_body.h"
 #include "http/stored_design.h"
 #include "http/stored_measurement.h"
 #include "http/route.h"

@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "http/body.h"
+#include "http/request_body.h"
 #include "http/guard.h"
 #include "http/route.h"
 #include "http/http_private.h"

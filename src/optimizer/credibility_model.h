@@ -4,7 +4,7 @@
 #ifndef EASEOFF_OPTIMIZER_CREDIBILITY_MODEL_H
 #define EASEOFF_OPTIMIZER_CREDIBILITY_MODEL_H
 
-#include "optimizer/archive.h"
+#include "optimizer/true_rows.h"
 #include "optimizer/settings.h"
 #include "optimizer/surrogate.h"
 

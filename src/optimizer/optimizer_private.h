@@ -6,7 +6,7 @@
 #ifndef EASEOFF_OPTIMIZER_OPTIMIZER_PRIVATE_H
 #define EASEOFF_OPTIMIZER_OPTIMIZER_PRIVATE_H
 
-#include "optimizer/archive.h"
+#include "optimizer/true_rows.h"
 #include "optimizer/optimizer.h"
 
 struct eo_algorithm_functions {

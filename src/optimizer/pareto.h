@@ -4,7 +4,7 @@
 #ifndef EASEOFF_OPTIMIZER_PARETO_H
 #define EASEOFF_OPTIMIZER_PARETO_H
 
-#include "optimizer/archive.h"
+#include "optimizer/true_rows.h"
 #include "optimizer/optimizer.h"
 
 bool eo_pareto_dominates(const double *a, double violation_a, const double *b, double violation_b, int objectives);

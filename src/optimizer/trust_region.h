@@ -6,7 +6,7 @@
 #ifndef EASEOFF_OPTIMIZER_TRUST_REGION_H
 #define EASEOFF_OPTIMIZER_TRUST_REGION_H
 
-#include "optimizer/archive.h"
+#include "optimizer/true_rows.h"
 #include "optimizer/surrogate.h"
 
 struct eo_local {

@@ -5,7 +5,7 @@
 #define EASEOFF_RECORDING_COLUMN_H
 
 #include "recording/recording.h"
-#include "recording/unit.h"
+#include "recording/recorded_unit.h"
 
 #include <stdbool.h>
 

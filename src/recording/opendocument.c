@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The largest table of an OpenDocument spreadsheet as text with tabs. Source: OASIS OpenDocument 1.2, part 1:
    table:table, table:table-row, table:table-cell with office:value-type. */
-#include "recording/archive.h"
+#include "recording/zip_files.h"
 #include "recording/sheet_text.h"
 
 #include <expat.h>

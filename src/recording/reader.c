@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #define _GNU_SOURCE /* mkostemp */
 #include "recording/reader.h"
-#include "recording/archive.h"
+#include "recording/zip_files.h"
 #include "recording/isolate.h"
 #include "recording/readers.h"
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "recording/stated.h"
 #include "recording/column.h"
-#include "recording/unit.h"
+#include "recording/recorded_unit.h"
 
 #include <ctype.h>
 #include <math.h>

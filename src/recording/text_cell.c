@@ -3,7 +3,7 @@
 #include "recording/decimal.h"
 #include "recording/moment.h"
 #include "recording/recording.h"
-#include "recording/unit.h"
+#include "recording/recorded_unit.h"
 
 #include <ctype.h>
 #include <math.h>

@@ -7,7 +7,7 @@
 #include "recording/text_cell.h"
 #include "recording/text_facts.h"
 #include "recording/text_format.h"
-#include "recording/unit.h"
+#include "recording/recorded_unit.h"
 
 #include <stdio.h>
 #include <stdlib.h>

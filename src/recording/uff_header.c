@@ -2,7 +2,7 @@
 /* Lines and headers of universal files. */
 #include "recording/uff.h"
 #include "recording/decimal.h"
-#include "recording/unit.h"
+#include "recording/recorded_unit.h"
 
 #include <math.h>
 #include <stdio.h>

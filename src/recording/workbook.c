@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The largest sheet of an Excel workbook as text with tabs. Source: ECMA-376, SpreadsheetML: sheets in
    xl/worksheets/sheetN.xml, texts in xl/sharedStrings.xml, formats of cells in xl/styles.xml. */
-#include "recording/archive.h"
+#include "recording/zip_files.h"
 #include "recording/sheet_text.h"
 
 #include <ctype.h>

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 
 #include "format/json.h"
-#include "evaluation/sweep.h"
+#include "evaluation/design_sweep.h"
 
 json_t *eo_reproduction_figure(const char *number, const char *title, const char *x_label, const char *y_label,
                                bool from_zero)

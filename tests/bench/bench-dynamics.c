@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <time.h>
 
-#include "dynamics/sweep.h"
+#include "dynamics/speed_sweep.h"
 #include "support/dynamics-fixture.h"
 
 enum { REPEATS = 200, SPEEDS = 200, HARMONICS = 24 };

@@ -3,7 +3,7 @@
    bench-sweep [EXAMPLE [CACHE-DIRECTORY]]. */
 #include "document/design_document.h"
 #include "document/examples.h"
-#include "evaluation/sweep.h"
+#include "evaluation/design_sweep.h"
 
 #include <stdio.h>
 #include <stdlib.h>

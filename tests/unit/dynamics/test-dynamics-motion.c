@@ -6,7 +6,7 @@
 
 #include "support/dynamics-fixture.h"
 #include "support/tap.h"
-#include "dynamics/sweep.h"
+#include "dynamics/speed_sweep.h"
 #include "numerics/ode.h"
 
 enum { HARMONICS = 32 };

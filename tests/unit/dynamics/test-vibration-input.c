@@ -5,7 +5,7 @@
 #include "support/dynamics-fixture.h"
 #include "support/tap.h"
 #include "dynamics/sdof.h"
-#include "dynamics/sweep.h"
+#include "dynamics/speed_sweep.h"
 
 static void refused(enum eo_code code, const struct eo_error *error, const char *pointer)
 {

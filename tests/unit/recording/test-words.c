@@ -2,7 +2,7 @@
 /* Dates and times, units, and what a number under a key states, in the spellings that are in use. */
 #include "recording/moment.h"
 #include "recording/stated.h"
-#include "recording/unit.h"
+#include "recording/recorded_unit.h"
 #include "support/tap.h"
 
 #include <math.h>

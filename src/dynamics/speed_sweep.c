@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "dynamics/sweep.h"
+#include "dynamics/speed_sweep.h"
 
 #include <math.h>
 #include <stdlib.h>
 
-#include "dynamics/vibration-internal.h"
+#include "dynamics/vibration_private.h"
 #include "numerics/fourier.h"
 
 static enum eo_code check_speeds(int count, const struct eo_vibration_case *load, struct eo_error *error)

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Shared by the files of the vibration solver; nobody else includes it. */
-#ifndef EASEOFF_DYNAMICS_VIBRATION_INTERNAL_H
-#define EASEOFF_DYNAMICS_VIBRATION_INTERNAL_H
+#ifndef EASEOFF_DYNAMICS_VIBRATION_PRIVATE_H
+#define EASEOFF_DYNAMICS_VIBRATION_PRIVATE_H
 
 #include "dynamics/balance.h"
 #include "dynamics/vibration.h"

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Vibration over speed: the branches that an upward and a downward sweep meet, and a branch traced through its folds.
  */
-#ifndef EASEOFF_DYNAMICS_SWEEP_H
-#define EASEOFF_DYNAMICS_SWEEP_H
+#ifndef EASEOFF_DYNAMICS_SPEED_SWEEP_H
+#define EASEOFF_DYNAMICS_SPEED_SWEEP_H
 
 #include "dynamics/continuation.h"
 #include "dynamics/vibration.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "recording/archive.h"
+#include "recording/zip_files.h"
 #include "recording/source.h"
 
 #include <archive.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "optimizer/archive.h"
+#include "optimizer/true_rows.h"
 
 #include <math.h>
 #include <stdlib.h>

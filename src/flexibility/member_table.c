@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "flexibility/table.h"
+#include "flexibility/member_table.h"
 
 #include <math.h>
 #include <stdlib.h>

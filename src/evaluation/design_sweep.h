@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A design over torque and speed, and the same design without modification beside it:
    loaded contact and mesh laws once per torque, vibration at every speed, upwards and downwards. */
-#ifndef EASEOFF_EVALUATION_SWEEP_H
-#define EASEOFF_EVALUATION_SWEEP_H
+#ifndef EASEOFF_EVALUATION_DESIGN_SWEEP_H
+#define EASEOFF_EVALUATION_DESIGN_SWEEP_H
 
 #include "evaluation/evaluator.h"
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The true rows of a run, each x once: found again by its bits. */
-#ifndef EASEOFF_OPTIMIZER_ARCHIVE_H
-#define EASEOFF_OPTIMIZER_ARCHIVE_H
+#ifndef EASEOFF_OPTIMIZER_TRUE_ROWS_H
+#define EASEOFF_OPTIMIZER_TRUE_ROWS_H
 
 #include "base/error.h"
 

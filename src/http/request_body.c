@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "http/body.h"
+#include "http/request_body.h"
 
 #include <stdlib.h>
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Units as rig software writes them. */
-#ifndef EASEOFF_RECORDING_UNIT_H
-#define EASEOFF_RECORDING_UNIT_H
+#ifndef EASEOFF_RECORDING_RECORDED_UNIT_H
+#define EASEOFF_RECORDING_RECORDED_UNIT_H
 #include <stdbool.h>
 
 enum eo_quantity {

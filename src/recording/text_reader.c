@@ -7,7 +7,7 @@
 #include "recording/readers.h"
 #include "recording/text_cell.h"
 #include "recording/text_format.h"
-#include "recording/unit.h"
+#include "recording/recorded_unit.h"
 
 #include <math.h>
 #include <stdio.h>

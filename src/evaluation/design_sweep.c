@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "evaluation/sweep.h"
+#include "evaluation/design_sweep.h"
 
 #include "numerics/periodic.h"
 #include <math.h>
@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "base/parallel.h"
-#include "dynamics/sweep.h"
+#include "dynamics/speed_sweep.h"
 
 /* What the speeds of one torque share. */
 struct problem {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What is kept of one member: spline coefficients over (path coordinate, eta) of compliance and root stress. */
-#ifndef EASEOFF_FLEXIBILITY_TABLE_H
-#define EASEOFF_FLEXIBILITY_TABLE_H
+#ifndef EASEOFF_FLEXIBILITY_MEMBER_TABLE_H
+#define EASEOFF_FLEXIBILITY_MEMBER_TABLE_H
 
 #include "flexibility/member.h"
 #include "flexibility/spline.h"

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The workspace of loaded contact, shared by the files that make it and work in it. */
-#ifndef EASEOFF_CONTACT_LOADED_INTERNAL_H
-#define EASEOFF_CONTACT_LOADED_INTERNAL_H
+#ifndef EASEOFF_CONTACT_LOADED_PRIVATE_H
+#define EASEOFF_CONTACT_LOADED_PRIVATE_H
 
 #include "contact/loaded.h"
 #include "contact/local_inverse.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "recording/unit.h"
+#include "recording/recorded_unit.h"
 
 #include <ctype.h>
 #include <stdio.h>

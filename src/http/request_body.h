@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The body of a request, read by the field table of its route. */
-#ifndef EASEOFF_HTTP_BODY_H
-#define EASEOFF_HTTP_BODY_H
+#ifndef EASEOFF_HTTP_REQUEST_BODY_H
+#define EASEOFF_HTTP_REQUEST_BODY_H
 
 #include "http/request.h"
 
