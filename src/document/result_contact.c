@@ -76,10 +76,40 @@ static const struct eo_outline_row lte_rows[] = {
            .unit = &eo_unit_um),
     EO_KEY("orders_um", "[number?]", "the mean, then the amplitudes of the mesh harmonics 1, 2, ... of the pair",
            .unit = &eo_unit_um),
+    EO_KEY(
+        "second_derivative_m_per_s2", "[number?]",
+        "of the pair's error by time at the speed of the load case, from the mesh harmonics up to te_harmonics, over "
+        "the positions",
+        .unit = &eo_unit_m_per_s2),
+    EO_KEY("second_derivative_rms_m_per_s2", "number?", "RMS of it", .unit = &eo_unit_m_per_s2),
     EO_KEY("axial_float_um", "[number?]", "where the pinion settles along its axis, over the positions",
            .unit = &eo_unit_um, .when = "with two ends and a floating pinion"),
 };
 const struct eo_outline eo_outline_lte = EO_OUTLINE("TransmissionError", lte_rows);
+
+/* The second derivative by time of the transmission error, whose mesh harmonics are known: -(2 pi f_mesh h)^2 times
+   each (finer ones are noise of the positions). Its RMS comes from the same amplitudes. */
+static void put_second_derivative(struct eo_object *o, const struct eo_result_source *source,
+                                  const struct eo_case_result *c)
+{
+  enum { MOST = 128 };
+  double amplitude[MOST][2], squares = 0;
+  int n = source->positions, most = (n - 1) / 2, harmonics = source->design->resolution.te_harmonics;
+  harmonics = harmonics < most ? harmonics : most;
+  double mesh = c->load_case.speed * source->pair->geometry.teeth[EO_PINION]; /* rad/s */
+  eo_periodic_harmonics(n, c->transmission, harmonics, amplitude);
+  for (int j = 0; j < n; j++)
+    source->scratch[j] = 0;
+  for (int h = 1; h <= harmonics; h++) {
+    double factor = -pow(h * mesh, 2), re = factor * amplitude[h - 1][0], im = factor * amplitude[h - 1][1];
+    squares += (re * re + im * im) / 2;
+    for (int j = 0; j < n; j++)
+      source->scratch[j] += re * cos(2 * M_PI * h * j / n) - im * sin(2 * M_PI * h * j / n);
+  }
+  eo_object_put(o, "second_derivative_m_per_s2",
+                eo_json_column(n, source->scratch, 1, &eo_unit_m_per_s2, EO_DIGITS_CURVE));
+  eo_object_put_number(o, "second_derivative_rms_m_per_s2", sqrt(squares));
+}
 
 json_t *eo_result_lte(struct eo_result_source *source, const struct eo_case_result *c)
 {
@@ -95,6 +125,7 @@ json_t *eo_result_lte(struct eo_result_source *source, const struct eo_case_resu
                        (eo_result_hub_windup(source, EO_PINION) + eo_result_hub_windup(source, EO_GEAR)) * c->force /
                            source->pair->geometry.face_width / source->normal);
   eo_object_put(&o, "orders_um", encode_orders(source->positions, c->transmission, &eo_unit_um));
+  put_second_derivative(&o, source, c);
   if (source->ends == 2 && source->design->alignment.pinion_axial == EO_AXIAL_FLOATING)
     eo_object_put(&o, "axial_float_um", encode_float(source, approach));
   return eo_object_close(&o);
@@ -122,6 +153,9 @@ static const struct eo_outline_row stiffness_rows[] = {
            "change of load over change of approach, normal, left end, over the positions", .unit = &eo_unit_N_per_um),
     EO_KEY("tangent_right_N_per_um", "[number?]", "the same, right end", .unit = &eo_unit_N_per_um,
            .when = EO_TWO_ENDS),
+    EO_KEY("left_orders_N_per_um", "[number?]",
+           "mean of left_N_per_um, then the amplitudes of its mesh harmonics 1, 2, ...", .unit = &eo_unit_N_per_um),
+    EO_KEY("right_orders_N_per_um", "[number?]", "the same, right end", .unit = &eo_unit_N_per_um, .when = EO_TWO_ENDS),
     EO_KEY("mean", "object", "means over the mesh cycle", .outline = &stiffness_mean),
 };
 const struct eo_outline eo_outline_stiffness = EO_OUTLINE("MeshStiffness", stiffness_rows);
@@ -133,6 +167,9 @@ json_t *eo_result_stiffness(struct eo_result_source *source, const struct eo_cas
   struct eo_object o = eo_object_open_as(&eo_outline_stiffness), means = eo_object_open_as(&stiffness_mean);
   put_end_columns(&o, source, "%s_N_per_um", secant, 1, &eo_unit_N_per_um);
   put_end_columns(&o, source, "tangent_%s_N_per_um", tangent, 1, &eo_unit_N_per_um);
+  for (int end = 0; end < source->ends; end++)
+    eo_object_put(&o, end ? "right_orders_N_per_um" : "left_orders_N_per_um",
+                  encode_orders(source->positions, secant[end], &eo_unit_N_per_um));
   for (int end = 0; end < source->ends; end++) {
     eo_object_put_number(&means, end ? "right_N_per_um" : "left_N_per_um", mean(source->positions, secant[end]));
     eo_object_put_number(&means, end ? "tangent_right_N_per_um" : "tangent_left_N_per_um",
@@ -359,6 +396,12 @@ static json_t *write_pattern(const void *source)
   return json_incref(((const struct contact *)source)->pattern);
 }
 
+static json_t *write_face_load(const void *source)
+{
+  const struct contact *contact = source;
+  return eo_result_face_load(contact->source, contact->load_case);
+}
+
 static const struct eo_outline_row contact_rows[] = {
     EO_KEY("mean_load_N", "object", "normal force that an end carries, mean over the mesh cycle",
            .outline = &force_ends, EO_AT(struct contact, load)),
@@ -370,6 +413,8 @@ static const struct eo_outline_row contact_rows[] = {
            EO_AT(struct contact, edge_share)),
     EO_KEY("edge_pressure_MPa", "object", "largest pressure of the tip edges (nominal)", .outline = &pressure_ends,
            EO_AT(struct contact, edge_pressure)),
+    EO_KEY("face_load", "object", "load over the face, load distribution factors", .outline = &eo_outline_face_load,
+           .write = write_face_load),
     EO_KEY("load_share", "object", "shares of the tooth pairs", .outline = &shares, .write = write_shares),
     EO_KEY("pattern", "object", "contact pattern", .outline = &contact_pattern, .write = write_pattern),
 };

@@ -6,6 +6,7 @@
 #define EASEOFF_EVALUATION_EVALUATOR_H
 
 #include "contact/elastic.h"
+#include "contact/face_load.h"
 #include "contact/loaded.h"
 #include "dynamics/vibration.h"
 #include "evaluation/pair.h"
@@ -32,6 +33,7 @@ struct eo_end_result {
   double loaded_datum; /* the same with the bodies as the load holds them */
   struct eo_deflection deflection; /* of elastic bodies, mean over the mesh cycle; 0: rigid */
   struct eo_impact impact;
+  struct eo_face_load face;                 /* over the face, among the pairs */
   double max_pressure;                      /* Pa */
   double max_line_load;                     /* N/m */
   double edge_share;                        /* largest share of P on tip-edge points over the cycle */

@@ -65,6 +65,7 @@ static void summarise(const struct eo_evaluator *evaluator, struct eo_case_resul
     low = fmin(low, result->loaded.approach[j]);
     high = fmax(high, result->loaded.approach[j]);
   }
+  eo_face_load_find(&result->face, grid, &result->loaded);
   result->transmission_peak = (high - low) / cos(grid->geometry.base_helix_angle);
 }
 

@@ -42,7 +42,7 @@ static enum eo_code follow_order(struct eo_evaluator *evaluator, const struct eo
   eo_evaluator_bend_cases(evaluator, run);
   /* a held pinion: the ends share the torque as the springs have it */
   eo_evaluator_balance_cases(evaluator, run);
-  /* first contact, secant stiffness, pressure, edge load of each end */
+  /* first contact, secant stiffness, pressure, edge load, load over the face of each end */
   EO_TRY(eo_evaluator_each_end(evaluator, run, (eo_end_step *const[]){eo_end_summarise, NULL}, error));
   /* transmission error of the pair */
   eo_evaluator_summarise_pairs(evaluator, run);

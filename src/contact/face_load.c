@@ -1,0 +1,86 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "contact/face_load.h"
+
+#include <math.h>
+
+/* Adds a force that lies evenly over `width` around eta to the slices it covers; what hangs over a face end counts in
+   the last slice. */
+static void spread(struct eo_face_load *face, double face_width, double eta, double width, double force)
+{
+  double slice = face_width / EO_FACE_SLICES;
+  double from = (eta - width / 2 + face_width / 2) / slice, to = (eta + width / 2 + face_width / 2) / slice;
+  from = fmin(fmax(from, 0), EO_FACE_SLICES - 1e-9);
+  to = fmin(fmax(to, from + 1e-9), EO_FACE_SLICES);
+  for (int i = (int)from; i < EO_FACE_SLICES && i < to; i++)
+    face->load[i] += force * (fmin(to, i + 1) - fmax(from, i)) / (to - from);
+}
+
+/* What one mesh position adds: forces to the slices, lengths of its lines, the largest load of a pair on the real
+   flanks and on flanks that share evenly. */
+struct sums {
+  double force, length, line_load;
+  double pair, even_pair; /* shares of the end's load */
+};
+
+/* Load of the pair that line number `first` begins, over all its lines; 0 when an earlier line has counted it. */
+static double pair_load(const struct eo_contact_position *p, const double *line_load, int first)
+{
+  double sum = 0;
+  for (int l = 0; l < p->lines; l++) {
+    const struct eo_contact_line *line = &p->line[l];
+    if (line->pair != p->line[first].pair)
+      continue;
+    if (l < first)
+      return 0;
+    for (int i = line->first; i < line->first + line->cells; i++)
+      sum += line_load[i] * p->length[i];
+  }
+  return sum;
+}
+
+static void add_position(struct eo_face_load *face, struct sums *sums, const struct eo_contact_grid *grid,
+                         const struct eo_loaded_end *end, int position)
+{
+  const struct eo_contact_position *p = &grid->position[position];
+  const double *line_load = end->line_load + p->first;
+  double axial = cos(grid->geometry.base_helix_angle), lines = 0, longest = 0, heaviest = 0;
+  for (int i = 0; i < p->points; i++) {
+    double force = line_load[i] * p->length[i];
+    spread(face, grid->geometry.face_width, p->point[i].eta, p->length[i] * axial, force);
+    sums->force += force;
+    sums->line_load = fmax(sums->line_load, line_load[i]);
+  }
+  for (int l = 0; l < p->lines; l++) {
+    double length = 0;
+    for (int i = p->line[l].first; i < p->line[l].first + p->line[l].cells; i++)
+      length += p->line[l].kind == EO_POINT_LINE ? p->length[i] : 0;
+    lines += length;
+    longest = fmax(longest, length);
+    heaviest = fmax(heaviest, pair_load(p, line_load, l));
+  }
+  sums->length += lines;
+  if (lines > 0)
+    sums->even_pair = fmax(sums->even_pair, longest / lines);
+  if (end->load[position] > 0)
+    sums->pair = fmax(sums->pair, heaviest / end->load[position]);
+}
+
+void eo_face_load_find(struct eo_face_load *face, const struct eo_contact_grid *grid, const struct eo_loaded_end *end)
+{
+  double slice = grid->geometry.face_width / EO_FACE_SLICES, most = 0;
+  struct sums sums = {0};
+  *face = (struct eo_face_load){.face_factor = NAN, .share_factor = NAN, .line_factor = NAN};
+  for (int i = 0; i < EO_FACE_SLICES; i++)
+    face->eta[i] = (i + 0.5) * slice - grid->geometry.face_width / 2;
+  for (int j = 0; j < grid->positions; j++)
+    add_position(face, &sums, grid, end, j);
+  for (int i = 0; i < EO_FACE_SLICES; i++) {
+    face->load[i] /= grid->positions * slice;
+    most = fmax(most, face->load[i]);
+  }
+  if (!(sums.force > 0))
+    return;
+  face->face_factor = most * grid->geometry.face_width * grid->positions / sums.force;
+  face->share_factor = fmax(1, sums.pair / sums.even_pair);
+  face->line_factor = sums.line_load * sums.length / sums.force;
+}
