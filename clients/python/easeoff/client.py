@@ -1,0 +1,377 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""One method per operation of the API; tests/test_client.py compares them with /openapi.json."""
+
+from __future__ import annotations
+
+import os
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Callable, Generic, Iterator, Mapping, Sequence, TypeVar, Union, cast
+from urllib.parse import quote
+
+from .transport import Event, Reply, Transport, encode_form
+
+if TYPE_CHECKING:
+    from . import documents as doc
+
+T = TypeVar("T")
+Design = Mapping[str, Any]
+Recording = Union[str, "os.PathLike[str]", "tuple[str, bytes]"]
+
+# The longest that the service lets one request wait for a gear pair, seconds.
+LONGEST_WAIT = 60
+ENDED = ("done", "failed", "cancelled")
+
+
+def operation(identity: str) -> Callable[[T], T]:
+    """Names the operation of the API that a method calls."""
+
+    def mark(method: T) -> T:
+        method.operation = identity  # type: ignore[attr-defined]
+        return method
+
+    return mark
+
+
+class JobFailed(Exception):
+    """A job ended without a result. job: its document."""
+
+    def __init__(self, job: Mapping[str, Any]):
+        self.job = job
+        error = job.get("error") or {}
+        super().__init__(f"job {job['id']} {job['state']}: {error.get('detail') or 'no result'}")
+
+
+class Stored(Generic[T]):
+    """A document with the version it has: put it back with `replace_design(stored)`."""
+
+    def __init__(self, document: T, tag: str | None):
+        self.document = document
+        self.tag = tag
+
+
+class Client:
+    """A service at an address.
+
+    address: of the server, as `easeoff serve` prints it. token: when the server asks for one; else $EASEOFF_TOKEN.
+    timeout: seconds that one reply may take. What takes a prepared gear pair waits for its preparation up to
+    `patience` seconds, then raises TimeoutError; the preparation goes on.
+    """
+
+    def __init__(
+        self,
+        address: str = "http://127.0.0.1:8080",
+        token: str | None = None,
+        timeout: float = 120,
+        patience: float = 900,
+    ):
+        self.transport = Transport(address, token or os.environ.get("EASEOFF_TOKEN"), timeout)
+        self.patience = patience
+
+    # -- the service
+
+    @operation("getHealth")
+    def health(self) -> doc.Health:
+        """Whether the service works; raises Problem 503 when it does not."""
+        return self._json("GET", "/health")
+
+    @operation("getMetrics")
+    def metrics(self) -> str:
+        """Counters in the text format of Prometheus."""
+        return self.transport.request("GET", "/metrics", accept="text/plain").text
+
+    @operation("getOpenapi")
+    def openapi(self) -> dict[str, Any]:
+        """The description of the API."""
+        return self._json("GET", "/openapi.json")
+
+    @operation("getSchema")
+    def schema(self) -> doc.Form:
+        """The fields of a design with units, ranges, defaults and help."""
+        return self._json("GET", "/schema")
+
+    @operation("getSession")
+    def session(self) -> doc.Session:
+        """Whether the service asks for a token, and whether this client has given it."""
+        return self._json("GET", "/session")
+
+    # -- designs
+
+    @operation("listExamples")
+    def examples(self) -> doc.Examples:
+        """The designs to start from."""
+        return self._json("GET", "/examples")
+
+    @operation("getExample")
+    def example(self, name: str) -> dict[str, Any]:
+        """A design to start from, with every key; None where the value is derived from the others."""
+        return self._json("GET", f"/examples/{quote(name, safe='')}")
+
+    @operation("listDesigns")
+    def designs(self) -> Iterator[doc.ListedDesign]:
+        """All stored designs, newest first."""
+        return self._pages("/designs")
+
+    @operation("addDesign")
+    def add_design(self, design: Design, name: str | None = None) -> Stored[doc.StoredDesign]:
+        """Stores a design, under a name of its own if one is given."""
+        body = design if name is None else {"name": name, "design": design}
+        return self._stored(self.transport.request("POST", "/designs", document=body))
+
+    @operation("getDesign")
+    def design(self, id: int) -> Stored[doc.StoredDesign]:
+        """A stored design as it came."""
+        return self._stored(self.transport.request("GET", f"/designs/{id}"))
+
+    @operation("replaceDesign")
+    def replace_design(
+        self, id: int, design: Design, name: str | None = None, if_match: str | None = None
+    ) -> Stored[doc.StoredDesign]:
+        """Replaces a stored design. if_match: the tag of the version that is meant; Problem 412 when it is another."""
+        body = design if name is None else {"name": name, "design": design}
+        return self._stored(
+            self.transport.request("PUT", f"/designs/{id}", document=body, headers={"If-Match": if_match})
+        )
+
+    @operation("removeDesign")
+    def remove_design(self, id: int, if_match: str | None = None) -> None:
+        """Removes a stored design."""
+        self.transport.request("DELETE", f"/designs/{id}", headers={"If-Match": if_match})
+
+    @operation("checkDesign")
+    def check(self, design: Design) -> doc.Check:
+        """Fills in every default and works out the geometry; Problem 422 names everything that is wrong."""
+        return self._json("POST", "/check", document=design)
+
+    # -- computations
+
+    @operation("analyze")
+    def analyze(
+        self,
+        design: Design,
+        *,
+        root_stress: bool = True,
+        band: bool = False,
+        maps: bool = True,
+        histories: bool = False,
+        easeoff_lane: str | None = None,
+    ) -> doc.Result:
+        """One true evaluation. easeoff_lane: a newer question with the same word takes the place of one that waits."""
+        flags = {"root_stress": root_stress, "band": band, "maps": maps, "histories": histories}
+        query = {name: int(value) for name, value in flags.items()}
+        return self._computed("POST", "/analyze", document=design, query=query, lane=easeoff_lane).json
+
+    @operation("sweep")
+    def sweep(self, request: Mapping[str, Any], *, easeoff_lane: str | None = None) -> doc.Sweep:
+        """A design over torque, speed or both, beside the unmodified pair.
+
+        request: {"design": .., "speed_rpm": {"from": .., "to": .., "points": ..}, "torque_Nm": the same}.
+        """
+        return self._computed("POST", "/sweep", document=request, lane=easeoff_lane).json
+
+    @operation("listExports")
+    def exports(self) -> doc.Exports:
+        """The formats of exported files."""
+        return self._json("GET", "/export")
+
+    @operation("exportDesign")
+    def export(self, format: str, design: Design) -> bytes:
+        """A file for another program, as `easeoff export` writes it."""
+        path = f"/export/{quote(format, safe='')}"
+        return self.transport.request("POST", path, document=design, accept="*/*").body
+
+    # -- jobs
+
+    @operation("addJob")
+    def add_job(self, order: Mapping[str, Any], idempotency_key: str | None = None) -> doc.Job:
+        """Orders an optimization or the preparation of a gear pair: {"kind": "optimize", "design": ..}."""
+        return self._json("POST", "/jobs", document=order, headers={"Idempotency-Key": idempotency_key})
+
+    @operation("listJobs")
+    def jobs(self, state: str | None = None, kind: str | None = None) -> Iterator[doc.Job]:
+        """All jobs, newest first."""
+        return self._pages("/jobs", state=state, kind=kind)
+
+    @operation("getJob")
+    def job(self, id: int) -> doc.Job:
+        """A job with its design."""
+        return self._json("GET", f"/jobs/{id}")
+
+    @operation("removeJob")
+    def remove_job(self, id: int) -> None:
+        """Removes a job that has ended."""
+        self.transport.request("DELETE", f"/jobs/{id}")
+
+    @operation("getJobResult")
+    def job_result(self, id: int) -> doc.OptimizationResult:
+        """What an optimization found."""
+        return self._json("GET", f"/jobs/{id}/result")
+
+    @operation("getJobGenerations")
+    def job_generations(self, id: int) -> doc.Generations:
+        """The convergence of an optimization as columns, also while it runs."""
+        return self._json("GET", f"/jobs/{id}/generations")
+
+    @operation("cancelJob")
+    def cancel_job(self, id: int) -> doc.Job:
+        """Stops a job; one that runs keeps what it found."""
+        return self._json("POST", f"/jobs/{id}/cancel")
+
+    @operation("retryJob")
+    def retry_job(self, id: int) -> doc.Job:
+        """Queues a failed or cancelled job again."""
+        return self._json("POST", f"/jobs/{id}/retry")
+
+    @operation("cloneJob")
+    def clone_job(self, id: int, change: Mapping[str, Any] | None = None) -> doc.Job:
+        """Orders the same once more, with what `change` says."""
+        return self._json("POST", f"/jobs/{id}/clone", document=change or {})
+
+    @operation("getJobHistory")
+    def job_history(self, id: int) -> Iterator[doc.JobHistoryRow]:
+        """The true evaluations of an optimization in its order."""
+        return self._pages(f"/jobs/{id}/history")
+
+    @operation("getEvents")
+    def events(self, last_event_id: str | None = None) -> Iterator[Event]:
+        """Every change of any job, as it happens; the stream ends with the service."""
+        return self.transport.events("/events", last_event_id)
+
+    @operation("getJobEvents")
+    def job_events(self, id: int, last_event_id: str | None = None) -> Iterator[Event]:
+        """Every change of one job, as it happens; ends with the service, or when you stop reading."""
+        return self.transport.events(f"/jobs/{id}/events", last_event_id)
+
+    @operation("getHistory")
+    def history(self) -> doc.History:
+        """The problems that were worked on with the number of their evaluations, and all jobs."""
+        return self._json("GET", "/history")
+
+    def follow(self, id: int) -> Iterator[doc.Job]:
+        """The job each time it changes, its last state included; a broken connection is taken up again."""
+        last: str | None = None
+        while True:
+            try:
+                for event in self.job_events(id, last):
+                    last = event.id or last
+                    yield event.data
+                    if event.data["state"] in ENDED:
+                        return
+            except (OSError, TimeoutError):
+                time.sleep(1)
+            else:
+                job = self.job(id)
+                if job["state"] in ENDED:
+                    yield job
+                    return
+
+    def optimize(
+        self, design: Design, *, fresh: bool = False, progress: Callable[[doc.Job], None] | None = None
+    ) -> doc.OptimizationResult:
+        """Orders a search and waits for what it finds. progress: called with the job whenever it changes."""
+        job = self.add_job({"kind": "optimize", "design": design, "fresh": fresh})
+        for state in self.follow(job["id"]):
+            job = state
+            if progress is not None:
+                progress(state)
+        if not job["has_result"]:
+            raise JobFailed(cast("Mapping[str, Any]", job))
+        return self.job_result(job["id"])
+
+    # -- the rig
+
+    @operation("listMeasurements")
+    def measurements(self, design: int | None = None) -> Iterator[doc.ListedMeasurement]:
+        """All measurements, newest first, without their curves; of one design, or of all."""
+        return self._pages("/measurements", design=design)
+
+    @operation("addMeasurement")
+    def add_measurement(self, *recordings: Recording, **stated: Any) -> doc.Measurement:
+        """A recording of two encoders: one file, or the pinion's and then the gear's; what is known of it as keywords.
+
+        A recording is a path, or (file name, content). stated: design (its number), torque_Nm, speed_rpm and the other
+        fields of the form MeasurementForm. Problem 422 holds the findings of a recording without a result.
+        """
+        files = [
+            recording if isinstance(recording, tuple) else (Path(recording).name, Path(recording).read_bytes())
+            for recording in recordings
+        ]
+        return self._json("POST", "/measurements", form=encode_form(stated, files))
+
+    @operation("getMeasurement")
+    def measurement(self, id: int) -> doc.Measurement:
+        """What was found in a recording: findings, transmission error, orders, RMS."""
+        return self._json("GET", f"/measurements/{id}")
+
+    @operation("removeMeasurement")
+    def remove_measurement(self, id: int) -> None:
+        """Removes a measurement with its files."""
+        self.transport.request("DELETE", f"/measurements/{id}")
+
+    @operation("getMeasurementFile")
+    def measurement_file(self, id: int, part: int | None = None) -> bytes:
+        """The recording as it came."""
+        return self.transport.request("GET", f"/measurements/{id}/file", query={"part": part}, accept="*/*").body
+
+    @operation("compareMeasurement")
+    def compare_measurement(self, id: int, *, easeoff_lane: str | None = None) -> doc.Comparison:
+        """A measurement beside the prediction at its torque and measured speed."""
+        return self._computed("GET", f"/measurements/{id}/comparison", lane=easeoff_lane).json
+
+    @operation("compareDesign")
+    def compare_design(self, id: int, *, easeoff_lane: str | None = None) -> doc.Comparison:
+        """All measurements of a design beside the prediction."""
+        return self._computed("GET", f"/designs/{id}/comparison", lane=easeoff_lane).json
+
+    @operation("compareWhatIf")
+    def compare_what_if(self, id: int, design: Design, *, easeoff_lane: str | None = None) -> doc.Comparison:
+        """What the measurements of a stored design say about another one."""
+        return self._computed("POST", f"/designs/{id}/comparison", document=design, lane=easeoff_lane).json
+
+    @operation("fitDesign")
+    def fit(self, id: int, order: Mapping[str, Any], *, easeoff_lane: str | None = None) -> doc.Fit:
+        """Inputs that nobody knows, fitted to the measurements of a design within ranges."""
+        return self._computed("POST", f"/designs/{id}/fit", document=order, lane=easeoff_lane).json
+
+    @operation("recordRig")
+    def synthetic_recording(self, order: Mapping[str, Any], *, easeoff_lane: str | None = None) -> str:
+        """What two encoders would record of a design: a text file with known truth."""
+        return self._computed("POST", "/rig", document=order, lane=easeoff_lane, accept="text/csv").text
+
+    # -- below the methods
+
+    def _json(self, method: str, path: str, **request: Any) -> Any:
+        return self.transport.request(method, path, **request).json
+
+    def _stored(self, reply: Reply) -> Stored[Any]:
+        return Stored(reply.json, reply.headers.get("ETag"))
+
+    def _pages(self, path: str, **query: Any) -> Iterator[Any]:
+        """The items of all pages; each page names the next one."""
+        cursor = None
+        while True:
+            page = self._json("GET", path, query={**query, "limit": 200, "cursor": cursor})
+            yield from page["items"]
+            cursor = page["next"]
+            if cursor is None:
+                return
+
+    def _computed(
+        self, method: str, path: str, *, lane: str | None, accept: str = "application/json", **request: Any
+    ) -> Reply:
+        """Asks until the gear pair is prepared: 202 says that it is not yet."""
+        end = time.monotonic() + self.patience
+        while True:
+            left = end - time.monotonic()
+            headers = {"Prefer": f"wait={max(1, min(LONGEST_WAIT, int(left)))}", "Easeoff-Lane": lane}
+            begun = time.monotonic()
+            reply = self.transport.request(method, path, headers=headers, accept=accept, **request)
+            if reply.status != 202:
+                return reply
+            job = (reply.json or {}).get("job") or {}
+            if job.get("state") in ("failed", "cancelled"):
+                raise JobFailed(job)
+            if time.monotonic() >= end:
+                raise TimeoutError(f"The gear pair was not prepared within {self.patience:g} s.")
+            if time.monotonic() - begun < 0.2:
+                time.sleep(0.2)
