@@ -1,8 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#define _GNU_SOURCE /* mkostemp */
 #include "recording/bytes.h"
 
 #include <errno.h>
 #include <fcntl.h>
+#include <stdio.h>
+#include <stdlib.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -38,5 +41,42 @@ enum eo_code eo_bytes_read(int file, int64_t at, void *bytes, size_t size, struc
     at += n;
     size -= (size_t)n;
   }
+  return EO_OK;
+}
+
+enum eo_code eo_bytes_write(int file, int64_t at, const void *bytes, size_t size, struct eo_error *error)
+{
+  const char *from = bytes;
+  while (size > 0) {
+    ssize_t n = pwrite(file, from, size, at);
+    if (n < 0 && errno == EINTR)
+      continue;
+    if (n <= 0)
+      return eo_error_set(error, EO_ERROR_FILE, "", "The temporary file of a recording could not be written: %s.",
+                          strerror(n < 0 ? errno : ENOSPC));
+    from += n;
+    at += n;
+    size -= (size_t)n;
+  }
+  return EO_OK;
+}
+
+enum eo_code eo_bytes_spool(const char *directory, int *file, struct eo_error *error)
+{
+  if (!directory)
+    return eo_error_set(error, EO_ERROR_INPUT, "", "There is no folder for a temporary file.");
+  size_t size = strlen(directory) + sizeof "/recording-XXXXXX";
+  char *path = malloc(size);
+  if (!path)
+    return eo_error_memory(error);
+  snprintf(path, size, "%s/recording-XXXXXX", directory);
+  *file = mkostemp(path, O_CLOEXEC);
+  int reason = errno;
+  if (*file >= 0)
+    unlink(path);
+  free(path);
+  if (*file < 0)
+    return eo_error_set(error, EO_ERROR_FILE, "", "No temporary file could be made in %s: %s.", directory,
+                        strerror(reason));
   return EO_OK;
 }

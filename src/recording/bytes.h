@@ -17,6 +17,13 @@ enum eo_code eo_bytes_open(const char *path, int *file, int64_t *size, struct eo
  */
 enum eo_code eo_bytes_read(int file, int64_t at, void *bytes, size_t size, struct eo_error *error);
 
+/* Writes all bytes at a place. Errors: EO_ERROR_FILE. */
+enum eo_code eo_bytes_write(int file, int64_t at, const void *bytes, size_t size, struct eo_error *error);
+
+/* Makes a temporary file in directory that has no name, so that it ends with the process. Errors: EO_ERROR_FILE;
+   EO_ERROR_INPUT when directory is NULL. The caller closes *file. */
+enum eo_code eo_bytes_spool(const char *directory, int *file, struct eo_error *error);
+
 static inline uint16_t eo_bytes_16(const unsigned char *p, bool big)
 {
   return (uint16_t)(big ? p[0] << 8 | p[1] : p[1] << 8 | p[0]);

@@ -15,8 +15,8 @@
 
 #define HEAD 4096 /* bytes from which a kind is told */
 
-static const char *const kind_names[EO_READER_KINDS] = {"delimited text",          "MATLAB .mat", "NI TDMS",
-                                                        "universal file (UFF 58)", "HDF5",        "zip or spreadsheet"};
+static const char *const kind_names[EO_READER_KINDS] = {
+    "delimited text", "MATLAB .mat", "NI TDMS", "universal file (UFF 58)", "HDF5", "ASAM MDF", "zip or spreadsheet"};
 
 const char *eo_reader_kind_name(enum eo_reader_kind kind)
 {
@@ -42,10 +42,6 @@ static enum eo_code refuse_others(const unsigned char *head, size_t size, struct
       {"RIFF", 4,
        "The file is a sound file (WAV): its numbers have no unit; save the channels as text, TDMS, MATLAB or "
        "HDF5, with their scale."},
-      {"MDF ", 4,
-       "The file is an ASAM MDF; export the channels as text, MATLAB or HDF5 (asammdf: Export; CANape, INCA, "
-       "vSignalyzer: convert to .mat)."},
-      {"UnFinMF ", 8, "The file is an ASAM MDF 4 that was not finalised; export the channels as text, MATLAB or HDF5."},
       {"PAR1", 4, "The file is a Parquet table; save it as text (pandas: read_parquet(...).to_csv(...))."},
       {"ARROW1", 6, "The file is an Arrow or Feather table; save it as text (pandas: read_feather(...).to_csv(...))."},
       {"FEA1", 4, "The file is a Feather table; save it as text (pandas: read_feather(...).to_csv(...))."},
@@ -100,7 +96,8 @@ static enum eo_code refuse_zeros(const unsigned char *head, size_t size, struct 
   if (!zero)
     return EO_OK;
   return eo_error_set(error, EO_ERROR_INPUT, "",
-                      "The file is of no known kind: it is no text (byte %zu is 0) and not MATLAB, TDMS, UFF or HDF5. "
+                      "The file is of no known kind: it is no text (byte %zu is 0) and not MATLAB, TDMS, UFF, HDF5 or "
+                      "MDF. "
                       "Save the channels as one of these.",
                       (size_t)(zero - head));
 }
@@ -164,6 +161,8 @@ static enum eo_code tell_kind(const unsigned char *head, size_t size, enum eo_re
     *kind = EO_READER_MATLAB;
   else if (is_hdf5(head, size))
     *kind = EO_READER_HDF5;
+  else if (begins(head, size, "MDF     ", 8) || begins(head, size, "UnFinMF ", 8))
+    *kind = EO_READER_MDF;
   else if (is_uff(head, size))
     *kind = EO_READER_UFF;
   else if (begins(head, size, "PK\003\004", 4))
@@ -276,10 +275,8 @@ static enum eo_code read_kind(const char *path, const struct sign *sign, const s
                               struct eo_recording **recording, struct eo_notes *notes, struct eo_error *error)
 {
   static eo_series_reader *const readers[EO_READER_KINDS] = {
-      [EO_READER_TDMS] = eo_tdms_read,
-      [EO_READER_UFF] = eo_uff_read,
-      [EO_READER_MATLAB] = read_isolated_matlab,
-      [EO_READER_HDF5] = read_isolated_hdf5,
+      [EO_READER_TDMS] = eo_tdms_read,           [EO_READER_UFF] = eo_uff_read,         [EO_READER_MDF] = eo_mdf_read,
+      [EO_READER_MATLAB] = read_isolated_matlab, [EO_READER_HDF5] = read_isolated_hdf5,
   };
   if (sign->kind == EO_READER_TEXT)
     return read_text(path, sign->wide, options, recording, notes, error);

@@ -18,6 +18,7 @@ enum eo_reader_kind {
   EO_READER_TDMS,   /* NI TDMS */
   EO_READER_UFF,    /* universal file, data sets 58 and 58b */
   EO_READER_HDF5,
+  EO_READER_MDF,     /* ASAM MDF 4 */
   EO_READER_ARCHIVE, /* zip with one of these in it, .xlsx, .ods */
   EO_READER_KINDS
 };

@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#define _GNU_SOURCE /* mkostemp */
 #include "recording/recording.h"
+#include "recording/bytes.h"
 
 #include <errno.h>
-#include <fcntl.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -206,37 +205,7 @@ static enum eo_code open_spool(struct eo_recording *r, struct eo_error *error)
     return eo_error_set(error, EO_ERROR_INPUT, "",
                         "The recording is larger than the %lld MB that may be held in memory.",
                         (long long)(r->limit * r->columns * (int64_t)sizeof(double) >> 20));
-  size_t size = strlen(r->directory) + sizeof "/recording-XXXXXX";
-  char *path = malloc(size);
-  if (!path)
-    return eo_error_memory(error);
-  snprintf(path, size, "%s/recording-XXXXXX", r->directory);
-  r->file = mkostemp(path, O_CLOEXEC);
-  int reason = errno;
-  if (r->file >= 0)
-    unlink(path);
-  free(path);
-  if (r->file < 0)
-    return eo_error_set(error, EO_ERROR_FILE, "", "No temporary file could be made in %s: %s.", r->directory,
-                        strerror(reason));
-  return EO_OK;
-}
-
-static enum eo_code write_all(int file, const void *bytes, size_t size, off_t at, struct eo_error *error)
-{
-  const char *from = bytes;
-  while (size > 0) {
-    ssize_t n = pwrite(file, from, size, at);
-    if (n < 0 && errno == EINTR)
-      continue;
-    if (n <= 0)
-      return eo_error_set(error, EO_ERROR_FILE, "", "The temporary file of a recording could not be written: %s.",
-                          strerror(n < 0 ? errno : ENOSPC));
-    from += n;
-    at += n;
-    size -= (size_t)n;
-  }
-  return EO_OK;
+  return eo_bytes_spool(r->directory, &r->file, error);
 }
 
 /* Moves the full buffer to the temporary file. */
@@ -246,7 +215,7 @@ static enum eo_code spill(struct eo_recording *r, struct eo_error *error)
   if (code)
     return code;
   size_t row_size = (size_t)r->columns * sizeof(double);
-  code = write_all(r->file, r->buffer, (size_t)r->buffer_rows * row_size, (off_t)r->file_rows * (off_t)row_size, error);
+  code = eo_bytes_write(r->file, r->file_rows * (int64_t)row_size, r->buffer, (size_t)r->buffer_rows * row_size, error);
   if (code)
     return code;
   r->file_rows += r->buffer_rows;

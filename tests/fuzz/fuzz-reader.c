@@ -19,7 +19,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size)
     abort();
   char path[64];
   snprintf(path, sizeof path, "/proc/%ld/fd/%d", (long)getpid(), file);
-  struct eo_reader_options options = {.max_bytes = 32 << 20};
+  struct eo_reader_options options = {.max_bytes = 32 << 20, .spool_directory = P_tmpdir};
   struct eo_recording *recording = NULL;
   struct eo_notes notes = {0};
   struct eo_error error = {0};

@@ -159,9 +159,11 @@ static void test_opendocument(void)
 
 static void test_names(void)
 {
-  static const char *const kinds[][2] = {
-      {"MDF     4.10", "ASAM MDF"}, {"PAR1", "Parquet"},           {"\x93NUMPY", "NumPy"}, {"|CF,2,1,1;", "imc FAMOS"},
-      {"RIFF....WAVE", "WAV"},      {"SQLite format 3", "SQLite"}, {"ARROW1", "Arrow"},    {"7z\xbc\xaf", "7z"}};
+  static const char *const kinds[][2] = {{"PAR1", "Parquet"},          {"FEA1", "Feather"},
+                                         {"\x93NUMPY", "NumPy"},       {"|CF,2,1,1;", "imc FAMOS"},
+                                         {"RIFF....WAVE", "WAV"},      {"SQLite format 3", "SQLite"},
+                                         {"ARROW1", "Arrow"},          {"7z\xbc\xaf", "7z"},
+                                         {"DEWESoft raw", "DEWESoft"}, {"DXD of version 7", "DEWESoft"}};
   for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
     write_text(kinds[i][0]);
     refuse(kinds[i][1], "a kind that is not read is called by its name");
