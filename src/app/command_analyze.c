@@ -42,7 +42,8 @@ static enum eo_code analyze(const struct request *request, const struct eo_pair 
   struct eo_analysis *analysis = NULL;
   enum eo_code code = eo_analysis_new(&analysis, pair, error);
   if (!code)
-    code = eo_analysis_run(analysis, &request->design, EO_WANT_ROOT | EO_WANT_BAND | EO_WANT_CURVES, error);
+    code = eo_analysis_run(analysis, &request->design, EO_WANT_ROOT | EO_WANT_BAND | EO_WANT_CURVES | EO_WANT_RATING,
+                           error);
   if (!code && !(*result = eo_result_encode(analysis, &request->design, &request->warnings)))
     code = eo_error_memory(error);
   eo_analysis_free(analysis);

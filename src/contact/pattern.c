@@ -120,6 +120,14 @@ void eo_contact_pattern_load(struct eo_contact_pattern *pattern, const struct eo
   load_edges(pattern, grid, end);
 }
 
+/* Hertz's pressure of line contact, p^2 = q/(pi rho K), K of the grid's local law: solved for q. */
+double eo_contact_pattern_line_load(const struct eo_contact_pattern *pattern, const struct eo_contact_grid *grid,
+                                    int place)
+{
+  double unit = eo_loaded_pressure(grid, 1, pattern->place[place].radius), ratio = pattern->pressure[place] / unit;
+  return ratio * ratio;
+}
+
 void eo_contact_pattern_unload(struct eo_contact_pattern *pattern, const struct eo_gap_field *field,
                                const double *unloaded)
 {

@@ -34,6 +34,10 @@ void eo_contact_pattern_init(struct eo_contact_pattern *pattern, const struct eo
 void eo_contact_pattern_load(struct eo_contact_pattern *pattern, const struct eo_contact_grid *grid,
                              const struct eo_loaded_end *end);
 
+/* Line load, N/m, behind the pressure at a place of the pattern. */
+double eo_contact_pattern_line_load(const struct eo_contact_pattern *pattern, const struct eo_contact_grid *grid,
+                                    int place);
+
 /* clearance, from the gap field of the end and its unloaded approach Z0 [positions]. Marking compound of a thickness
    above it is wiped off there. */
 void eo_contact_pattern_unload(struct eo_contact_pattern *pattern, const struct eo_gap_field *field,

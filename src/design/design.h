@@ -14,6 +14,7 @@
 #include "gear/gear_pair.h"
 #include "gear/modification.h"
 #include "optimizer/settings.h"
+#include "rating/rating_settings.h"
 
 enum { EO_MAX_LOAD_CASES = 64, EO_NAME_LENGTH = 200, EO_MAX_SCENARIOS = 64 };
 
@@ -111,6 +112,7 @@ struct eo_design {
   int load_cases;
   struct eo_load_case load_case[EO_MAX_LOAD_CASES];
   struct eo_modification modification;
+  struct eo_rating_settings rating;
   struct eo_objective objective;
   struct eo_optimization optimization;
   struct eo_resolution resolution;

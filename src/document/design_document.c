@@ -180,7 +180,7 @@ static enum eo_code hash_without(const struct eo_design *design, const char *con
 enum eo_code eo_design_evaluation_hash(const struct eo_design *design, char hex[EO_HASH_LENGTH + 1],
                                        struct eo_error *error)
 {
-  static const char *const without[] = {"name", "objective", "optimization", NULL};
+  static const char *const without[] = {"name", "rating", "objective", "optimization", NULL};
   return hash_without(design, without, hex, error);
 }
 
@@ -204,7 +204,7 @@ static json_t *encode_wants(const struct eo_design *design)
 
 static json_t *encode_problem(const struct eo_design *design)
 {
-  static const char *const without[] = {"name", "modification", "objective", "optimization"};
+  static const char *const without[] = {"name", "modification", "rating", "objective", "optimization"};
   json_t *document = eo_design_encode(design), *load_case;
   bool failed = !document;
   size_t i;

@@ -188,7 +188,7 @@ static json_t *encode_objectives(const struct eo_result_source *source)
 }
 
 struct timing {
-  double preparation, unmodified, contact, impact, root, dynamics, evaluation; /* s */
+  double preparation, unmodified, contact, impact, root, dynamics, evaluation, rating; /* s */
 };
 
 static const struct eo_outline_row timing_rows[] = {
@@ -199,6 +199,8 @@ static const struct eo_outline_row timing_rows[] = {
     EO_KEY("impact", "number", "entering impact", .unit = &eo_unit_ms, EO_AT(struct timing, impact)),
     EO_KEY("root", "number", "root stress", .unit = &eo_unit_ms, EO_AT(struct timing, root)),
     EO_KEY("dynamics", "number", "vibration", .unit = &eo_unit_ms, EO_AT(struct timing, dynamics)),
+    EO_KEY("rating", "number", "rating and tribology, beside the evaluation", .unit = &eo_unit_ms,
+           EO_AT(struct timing, rating)),
     EO_KEY("evaluation", "number", "of the design altogether", .unit = &eo_unit_ms, EO_AT(struct timing, evaluation)),
 };
 static const struct eo_outline timing = EO_OUTLINE("Timing", timing_rows);
@@ -218,6 +220,7 @@ static json_t *encode_timing(const struct eo_result_source *source)
                                  .impact = seconds_of(r->impact_ms),
                                  .root = seconds_of(r->root_ms),
                                  .dynamics = seconds_of(r->dynamics_ms),
+                                 .rating = seconds_of(source->analysis->rating_ms),
                                  .evaluation = seconds_of(source->analysis->design_ms)};
   return eo_outline_encode(&timing, &seconds);
 }
@@ -226,7 +229,7 @@ static const struct eo_outline_row result_rows[] = {
     EO_KEY("program", "text", "name and version"),
     EO_KEY("design", "object", "with every default resolved", .table = &eo_design_table, .name = "ResolvedDesign"),
     EO_KEY("design_hash", "text", "SHA-256 of the canonical design"),
-    EO_KEY("evaluation_hash", "text", "the same without name, objective and optimization"),
+    EO_KEY("evaluation_hash", "text", "the same without name, rating, objective and optimization"),
     EO_KEY("resolution", "object", "of the design, once more", .table = &eo_resolution_table, .name = "Resolution"),
     EO_KEY("geometry", "object", "macro-geometry", .table = &eo_geometry_table, .name = "Geometry"),
     EO_KEY("flexibility", "object", "how the teeth's flexibility was modelled", .outline = &eo_outline_flexibility),
@@ -237,6 +240,10 @@ static const struct eo_outline_row result_rows[] = {
     EO_KEY("eigenfrequencies_Hz", "[number?]?", "with the mean mesh stiffness of the load case with the heaviest share",
            .unit = &eo_unit_Hz),
     EO_KEY("damping_ratios", "[number?]?", "of these modes"),
+    EO_KEY("rating", "object?", "load capacity by ISO 6336; null when it was not asked for",
+           .outline = &eo_outline_rating),
+    EO_KEY("tribology", "object?", "sliding, flash temperature, film; null when it was not asked for",
+           .outline = &eo_outline_tribology),
     EO_KEY("warnings", "[text]", "in plain words"),
     EO_KEY("timing_ms", "object", "the only part that differs between two runs", .outline = &timing),
 };
@@ -275,6 +282,8 @@ json_t *eo_result_tail(const struct eo_result_source *source, const struct eo_wa
                 have_modes ? eo_json_reals(modes->n, modes->frequency, 1, &eo_unit_Hz, EO_DIGITS_CURVE) : json_null());
   eo_object_put(&o, "damping_ratios",
                 have_modes ? eo_json_reals(modes->n, modes->damping_ratio, 1, NULL, EO_DIGITS_CURVE) : json_null());
+  eo_object_put(&o, "rating", eo_result_rating(source));
+  eo_object_put(&o, "tribology", eo_result_tribology(source));
   eo_object_put(&o, "warnings", eo_result_warnings(source, warnings));
   eo_object_put(&o, "timing_ms", encode_timing(source));
   return eo_object_close(&o);

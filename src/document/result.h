@@ -3,7 +3,7 @@
    nothing else.
 
    Top level: program, design (every default resolved), design_hash (SHA-256 of the canonical design), evaluation_hash
-   (the same without name, objective and optimization), resolution, geometry, modification, unloaded_contact,
+   (the same without name, rating, objective and optimization), resolution, geometry, modification, unloaded_contact,
    load_cases, objectives, eigenfrequencies_Hz, damping_ratios, warnings, timing_ms (the only part that differs between
    two runs).
 

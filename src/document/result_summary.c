@@ -126,6 +126,40 @@ static void print_objectives(const json_t *result, struct eo_text *text)
   eo_text_add(text, "\n");
 }
 
+static void add_safety(struct eo_text_table *sheet, const char *name, double value, double least, double fixed)
+{
+  eo_text_table_string(sheet, name);
+  eo_text_table_number(sheet, value, NULL, 4);
+  eo_text_table_number(sheet, least, NULL, 4);
+  eo_text_table_number(sheet, fixed, NULL, 4);
+}
+
+/* Nothing where no rating was asked for. */
+static void print_rating(const json_t *result, struct eo_text *text)
+{
+  static const char *const headings[] = {"", "Miner", "required", "static"};
+  const json_t *rating = json_object_get(result, "rating"), *verdict = json_object_get(rating, "verdict");
+  struct eo_text_table sheet;
+  if (!json_is_object(rating))
+    return;
+  eo_text_print(text, "Rating, ISO 6336:%s: ", find_text(rating, "settings/edition"));
+  if (!json_is_boolean(json_object_get(verdict, "passes"))) {
+    eo_text_print(text, "not rated. %s\n\n", find_text(rating, "reason"));
+    return;
+  }
+  eo_text_print(text, "%s over %.6g h\n",
+                json_is_true(json_object_get(verdict, "passes")) ? "every safety reaches its minimum"
+                                                                 : "a safety does NOT reach its minimum",
+                find(verdict, "required_life_h"));
+  eo_text_table_init(&sheet, 4, headings);
+  add_safety(&sheet, "flank, least S_H", find(verdict, "S_H"), find(verdict, "S_Hmin"), find(verdict, "S_H_static"));
+  add_safety(&sheet, "root, least S_F", find(verdict, "S_F"), find(verdict, "S_Fmin"), find(verdict, "S_F_static"));
+  eo_text_table_print(&sheet, 2, text);
+  eo_text_table_done(&sheet);
+  eo_text_print(text, "  %zu points are unchecked; easeoff report lists them.\n\n",
+                json_array_size(json_object_get(rating, "unchecked")));
+}
+
 static void print_frequencies(const json_t *result, struct eo_text *text)
 {
   const json_t *frequencies = json_object_get(result, "eigenfrequencies_Hz");
@@ -160,6 +194,7 @@ void eo_result_summary(const json_t *result, struct eo_text *text)
   for (size_t k = 0; k < json_array_size(json_object_get(result, "load_cases")); k++)
     print_case(result, k, text);
   print_objectives(result, text);
+  print_rating(result, text);
   print_frequencies(result, text);
   print_warnings(result, text);
   print_timing(result, text);

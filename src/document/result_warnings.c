@@ -182,12 +182,31 @@ static void say_body(struct list *list, const struct eo_result_source *source)
   }
 }
 
+/* A rating that fails, or that could not be made. */
+static void say_rating(struct list *list, const struct eo_result_source *source)
+{
+  const struct eo_design_rating *r = source->analysis->rating;
+  const struct eo_rating_settings *s = &source->design->rating;
+  if (!(source->analysis->want & EO_WANT_RATING))
+    return;
+  if (!r->rated) {
+    say(list, "Not rated by ISO 6336: %s", r->reason.text);
+    return;
+  }
+  double flank = fmin(r->flank_safety, r->flank_static), root = fmin(r->root_safety, r->root_static);
+  if (flank < s->flank_safety)
+    say(list, "The flank safety S_H %.3g is below the required %.3g.", flank, s->flank_safety);
+  if (root < s->root_safety)
+    say(list, "The root safety S_F %.3g is below the required %.3g.", root, s->root_safety);
+}
+
 static void say_modelling(struct list *list, const struct eo_result_source *source)
 {
   const struct eo_geometry *g = &source->pair->geometry;
   const char *note = source->pair->flexibility ? eo_flexibility_report(source->pair->flexibility)->note : "";
   if (*note)
     say(list, "%s", note);
+  say_rating(list, source);
   say_held(list, source);
   say_supports(list, source);
   say_body(list, source);

@@ -21,11 +21,20 @@ enum eo_code eo_analysis_new(struct eo_analysis **result, const struct eo_pair *
   return EO_OK;
 }
 
+static void forget_rating(struct eo_analysis *analysis)
+{
+  eo_design_rating_free(analysis->rating);
+  eo_evaluator_free(analysis->leaning);
+  analysis->rating = NULL;
+  analysis->leaning = NULL;
+}
+
 void eo_analysis_free(struct eo_analysis *analysis)
 {
   if (!analysis)
     return;
   eo_evaluator_free(analysis->evaluator);
+  forget_rating(analysis);
   free(analysis->unmodified);
   free(analysis->raw);
   free(analysis->raw_unmodified);
@@ -40,6 +49,7 @@ static enum eo_code fit(struct eo_analysis *analysis, int cases, int scenarios, 
     return EO_OK;
   size_t n = (size_t)cases, all = n * (size_t)scenarios;
   eo_evaluator_free(analysis->evaluator);
+  forget_rating(analysis);
   free(analysis->unmodified);
   free(analysis->raw);
   free(analysis->raw_unmodified);
@@ -62,6 +72,7 @@ static void strip(struct eo_design *bare, const struct eo_design *design)
   memcpy(bare, design, sizeof *bare);
   memset(bare->name, 0, sizeof bare->name);
   memset(&bare->optimization, 0, sizeof bare->optimization);
+  memset(&bare->rating, 0, sizeof bare->rating);
   memset(&bare->modification, 0, sizeof bare->modification);
 }
 
@@ -105,6 +116,20 @@ static enum eo_code find_design(struct eo_analysis *analysis, const struct eo_de
   return EO_OK;
 }
 
+/* After the design's own run, on an evaluator beside it: what that one has solved stays for the next question. */
+static enum eo_code find_rating(struct eo_analysis *analysis, const struct eo_design *design, struct eo_error *error)
+{
+  EO_TIMED(analysis->rating_ms);
+  if (!analysis->leaning)
+    EO_TRY(eo_evaluator_new(&analysis->leaning, analysis->pair, analysis->most_cases, error));
+  if (!analysis->rating)
+    EO_TRY(eo_design_rating_new(&analysis->rating, analysis->most_cases, error));
+  EO_TRY(eo_evaluator_use_threads(analysis->leaning, analysis->threads, error));
+  EO_TRY(eo_design_rating_lean(analysis->rating, analysis->leaning, design, error));
+  eo_design_rating_find(analysis->rating, analysis->pair, design, analysis->evaluation);
+  return EO_OK;
+}
+
 /* An unmodified design is its own reference. */
 static void copy_reference(struct eo_analysis *analysis)
 {
@@ -130,12 +155,14 @@ static enum eo_code run_both(struct eo_analysis *analysis, const struct eo_desig
 {
   bool own_reference = is_unmodified(design);
   bool known = analysis->known_root >= analysis->root && memcmp(analysis->known, bare, sizeof *bare) == 0;
-  analysis->unmodified_ms = analysis->design_ms = 0;
+  analysis->unmodified_ms = analysis->design_ms = analysis->rating_ms = 0;
   if (known && analysis->known_root && !analysis->root)
     forget_root(analysis);
   if (!known && !own_reference)
     EO_TRY(find_unmodified(analysis, bare, want, error));
   EO_TRY(find_design(analysis, design, want, error));
+  if (want & EO_WANT_RATING)
+    EO_TRY(find_rating(analysis, design, error));
   if (own_reference)
     copy_reference(analysis);
   if (!known) {

@@ -4,18 +4,22 @@
 #ifndef EASEOFF_EVALUATION_ANALYSIS_H
 #define EASEOFF_EVALUATION_ANALYSIS_H
 
+#include "evaluation/design_rating.h"
 #include "evaluation/evaluator.h"
 
 struct eo_analysis {
   const struct eo_pair *pair;               /* borrowed */
   struct eo_evaluator *evaluator;           /* owned; NULL before the first run */
   const struct eo_evaluation *evaluation;   /* of the design at its nominal alignment; valid until the next run */
+  struct eo_design_rating *rating;          /* owned; NULL unless EO_WANT_RATING was ever asked for */
+  struct eo_evaluator *leaning;             /* owned, of the rating: keeps what the evaluator has solved */
   int cases, scenarios, want;               /* of the last run; want: as asked for */
   bool root;                                /* root stresses are there */
   struct eo_objective_case *unmodified;     /* [cases], without modification, nominal */
   struct eo_objective_case *raw;            /* [scenarios][cases], of the design: what J is made of */
   struct eo_objective_case *raw_unmodified; /* [scenarios][cases] */
   struct eo_objective_value value, unmodified_value;
+  double rating_ms;                /* of the rating, beside these: */
   double unmodified_ms, design_ms; /* wall time; unmodified_ms is 0 when it was known from the run before */
   struct eo_design *known;         /* owned: the design without modification that the unmodified values belong to */
   int most_cases, most_scenarios;

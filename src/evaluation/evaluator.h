@@ -21,6 +21,7 @@ enum {
   EO_WANT_ROOT = 1,   /* root stress (computed anyway when it is constrained) */
   EO_WANT_BAND = 2,   /* RMS at 0.9 and 1.1 times the compliance */
   EO_WANT_CURVES = 4, /* histories and orders of the vibration */
+  EO_WANT_RATING = 8, /* rating and tribology: two more contact analyses; of an analysis alone */
 };
 
 enum { EO_CURVE_CHANNELS = EO_CHANNELS };
@@ -114,6 +115,9 @@ void eo_evaluator_pulses(const struct eo_pair *pair, const struct eo_impact *imp
 
 /* The gap field of an end on rigid bodies in the last evaluation: borrowed, valid until the next run. */
 const struct eo_gap_field *eo_evaluator_field(const struct eo_evaluator *evaluator, int end);
+
+/* The pair it evaluates. */
+const struct eo_pair *eo_evaluator_pair(const struct eo_evaluator *evaluator);
 
 /* Positions by which the right end lags behind the left one. */
 int eo_evaluator_stagger(const struct eo_design *design, int positions);

@@ -115,6 +115,11 @@ static void done_results(struct eo_evaluator *evaluator)
   free(evaluator->problem);
 }
 
+const struct eo_pair *eo_evaluator_pair(const struct eo_evaluator *evaluator)
+{
+  return evaluator->pair;
+}
+
 void eo_evaluator_free(struct eo_evaluator *evaluator)
 {
   if (!evaluator)

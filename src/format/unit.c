@@ -29,6 +29,16 @@ const struct eo_unit eo_unit_per_um = {"per_um", "1/um", 1e6, false};
 const struct eo_unit eo_unit_mm_per_s = {"mm_per_s", "mm/s", 1e3, true};
 const struct eo_unit eo_unit_m_per_s2 = {"m_per_s2", "m/s2", 1, false};
 const struct eo_unit eo_unit_ms = {"ms", "ms", 1e3, true};
+const struct eo_unit eo_unit_h = {"h", "h", 3600, false};
+const struct eo_unit eo_unit_m_per_s = {"m_per_s", "m/s", 1, false};
+const struct eo_unit eo_unit_mm2_per_s = {"mm2_per_s", "mm2/s", 1e6, true};
+const struct eo_unit eo_unit_per_GPa = {"per_GPa", "1/GPa", 1e9, true};
+const struct eo_unit eo_unit_C = {"C", "deg C", 1, false};
+const struct eo_unit eo_unit_K = {"K", "K", 1, false};
+const struct eo_unit eo_unit_W = {"W", "W", 1, false};
+const struct eo_unit eo_unit_HV = {"HV", "HV", 1, false};
+const struct eo_unit eo_unit_W_per_m_K = {"W_per_m_K", "W/(m K)", 1, false};
+const struct eo_unit eo_unit_J_per_kg_K = {"J_per_kg_K", "J/(kg K)", 1, false};
 const struct eo_unit eo_unit_Hz = {"Hz", "Hz", 1, false};
 
 double eo_unit_in(const struct eo_unit *unit, double value)

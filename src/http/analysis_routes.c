@@ -42,6 +42,7 @@ static void put_analysis(struct eo_request *request, const struct eo_design *des
   struct eo_analysis_question question = {.common = eo_request_to_question(request, design, warnings),
                                           .want = EO_WANT_CURVES |
                                                   (eo_route_number(request, "root_stress") != 0 ? EO_WANT_ROOT : 0) |
+                                                  (eo_route_number(request, "rating") != 0 ? EO_WANT_RATING : 0) |
                                                   (eo_route_number(request, "band") != 0 ? EO_WANT_BAND : 0),
                                           .maps = eo_route_number(request, "maps") != 0,
                                           .histories = histories};
@@ -158,7 +159,9 @@ const struct eo_route eo_routes_analysis[] = {
                {"band", 0, 1, 0, NULL,
                 "1: RMS at 0.9 and 1.1 times the compliance too, which takes several times as long"},
                {"maps", 0, 1, 1, NULL, "1: pressure and clearance over the flanks"},
-               {"histories", 0, 1, 0, NULL, "1: vibration and root stress over time"}}},
+               {"histories", 0, 1, 0, NULL, "1: vibration and root stress over time"},
+               {"rating", 0, 1, 1, NULL,
+                "1: rating by ISO 6336 and tribology too, with two more contact analyses; 0 answers sooner"}}},
     {.method = EO_POST,
      .pattern = "/sweep",
      .handle = sweep,

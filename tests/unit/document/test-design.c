@@ -149,6 +149,7 @@ static void test_every_fault(void)
   eo_example_build("paper-case-b", &complete);
   complete.objective.robust = EO_ROBUST_MEAN;
   complete.modification.flank[EO_GEAR][EO_LEFT].lead_slope = 1e-6; /* so that the gear is in the document */
+  complete.rating.accuracy_grade = 5;                              /* and the rating */
   complete.optimization.variables = EO_VARIABLES_LISTED;
   complete.optimization.listed = 1;
   complete.optimization.list[0] =

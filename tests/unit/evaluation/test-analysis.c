@@ -9,7 +9,7 @@
 #include "flexibility/closed_form.h"
 #include "support/tap.h"
 
-enum { ALL = EO_WANT_ROOT | EO_WANT_BAND | EO_WANT_CURVES };
+enum { ALL = EO_WANT_ROOT | EO_WANT_BAND | EO_WANT_CURVES | EO_WANT_RATING };
 
 static const struct eo_closed_form form = {
     .compliance = 1.5e-9, .length = 12e-3, .centre = -0.8e-3, .linear = 20, .quadratic = 4000};
@@ -324,6 +324,53 @@ static void check_robust(void)
   end(s);
 }
 
+/* A number of the first load case's left end. */
+static double rated(const json_t *result, const char *path)
+{
+  return eo_json_find_number(json_array_get(eo_json_find(result, "rating/load_cases"), 0), path);
+}
+
+static void check_rating(void)
+{
+  struct subject *s = start("shifted");
+  json_t *result = result_of(s), *none;
+  const json_t *first = json_array_get(json_object_get(result, "load_cases"), 0);
+  double worse =
+      fmax(json_number_value(json_array_get(eo_json_find(json_array_get(eo_json_find(result, "rating/load_cases"), 0),
+                                                         "left/computed/K_Hbeta_tolerances"),
+                                            0)),
+           json_number_value(json_array_get(eo_json_find(json_array_get(eo_json_find(result, "rating/load_cases"), 0),
+                                                         "left/computed/K_Hbeta_tolerances"),
+                                            1)));
+  ok(json_is_true(eo_json_find(result, "rating/verdict/passes")), "a sound pair passes");
+  ok(rated(result, "left/computed/K_Hbeta") == eo_json_find_number(first, "contact/face_load/K_Hbeta/left"),
+     "K_Hbeta as designed is that of the load over the face");
+  ok(rated(result, "left/used/K_Hbeta") == worse && worse > rated(result, "left/computed/K_Hbeta"),
+     "the worse direction of the tolerances rates: %.4g", worse);
+  near(rated(result, "left/pinion/sigma_H_MPa"),
+       rated(result, "left/sigma_H0_MPa") * rated(result, "left/pinion/Z_BD") *
+           sqrt(rated(result, "left/K_gamma") * rated(result, "left/used/K_V") * rated(result, "left/used/K_Hbeta") *
+                rated(result, "left/used/K_Halpha")),
+       1e-9, "sigma_H is made of what stands beside it");
+  double loss = eo_json_find_number(json_array_get(eo_json_find(result, "tribology/load_cases"), 0), "power_loss_W");
+  double power = s->design.load_case[0].torque * s->design.load_case[0].speed;
+  ok(loss > 0.001 * power && loss < 0.03 * power, "friction takes %.3g %% of the power", 100 * loss / power);
+  json_decref(result);
+  s->design.rating.member[EO_GEAR].material = EO_THROUGH_HARDENED_ALLOY;
+  result = result_of(s);
+  const char *reason = json_string_value(eo_json_find(result, "rating/reason"));
+  ok(reason && json_is_null(eo_json_find(result, "rating/verdict/passes")) &&
+         json_is_null(eo_json_find(result, "rating/verdict/S_H")) &&
+         json_is_array(eo_json_find(result, "tribology/load_cases")),
+     "what cannot be rated says why: %s", reason ? reason : "nothing");
+  json_decref(result);
+  struct eo_error error;
+  none = eo_analysis_run(s->analysis, &s->design, 0, &error) ? NULL : eo_result_encode(s->analysis, &s->design, NULL);
+  ok(json_is_null(json_object_get(none, "rating")), "no rating where none was asked for");
+  json_decref(none);
+  end(s);
+}
+
 int main(void)
 {
   check_names("paper-case-b", 2);
@@ -337,5 +384,6 @@ int main(void)
   check_warnings();
   check_failure();
   check_robust();
+  check_rating();
   return tap_done();
 }

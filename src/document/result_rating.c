@@ -1,0 +1,475 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The rating of a result: every factor a reviewer follows, per load case, end and member; verdict and spectrum. Keys of
+   factors and stresses are the symbols of ISO 6336. */
+#include <math.h>
+
+#include "document/result_private.h"
+
+/* Lists of sentences, by edition. */
+static json_t *texts_of(const char *const *text)
+{
+  json_t *list = json_array();
+  for (; *text && list; text++)
+    if (json_array_append_new(list, json_string(*text)) != 0) {
+      json_decref(list);
+      return NULL;
+    }
+  return list;
+}
+
+static const char *const standards_2006[] = {
+    "ISO 6336-1:2006 with corrigendum 1:2008: K_V method B, K_Hbeta method C, K_Halpha method B",
+    "ISO 6336-2:2006 with corrigendum 1:2008: flank, method B; Z_beta = 1/sqrt(cos beta)",
+    "ISO 6336-3:2006 with corrigendum 1:2008: root, method B",
+    "ISO 6336-5: strengths by class, quality and hardness, as in its table 1 of 2016",
+    "ISO 6336-6:2006: Miner's sum",
+    "ISO 1328-1:1995: deviations by grade",
+    NULL};
+static const char *const standards_2019[] = {
+    "ISO 6336-1:2019: K_V method B, K_Hbeta method C, K_Halpha method B",
+    "ISO 6336-2:2019: flank, method B; f_ZCa = 1, the modification is verified by contact analysis",
+    "ISO 6336-3:2019: root, method B, with f_eps",
+    "ISO 6336-5:2016: strengths by class, quality and hardness",
+    "ISO 6336-6:2019: Miner's sum",
+    "ISO 1328-1:2013: deviations by tolerance class",
+    NULL};
+
+/* What no published report has confirmed and the standard's own text was not at hand for. */
+static const char *const unchecked_2006[] = {
+    "K_V at and above the main resonance (N above 0.85)",
+    "f_sh of method C and its constants K'; running-in of through hardened and nitrided teeth",
+    "Z_W with R_zH above 3 um and of two through hardened members; fading of Z_L, Z_v, Z_R, Z_W towards the static end",
+    "Y_drelT and Y_RrelT of other than case hardened teeth; Y_DT",
+    "life lines with pitting allowed, of nitrided and of nitrocarburised teeth",
+    "strengths of ISO 6336-5 (one source)",
+    "ISO 6336 for double helical pairs: no published report; each end is rated with half the torque and its own share",
+    "K_Hbeta from a contact analysis: the procedure of annex E is not public; the definition of 7.2 is followed",
+    NULL};
+static const char *const unchecked_2019[] = {
+    "K_V at and above the main resonance (N above 0.85)",
+    "f_sh of method C and its constants K'; running-in of through hardened and nitrided teeth",
+    "f_ZCa, f_eps and Y_beta of 2019 on helical pairs",
+    "F_pT, F_alphaT, F_betaT and their parts of ISO 1328-1:2013 (one source)",
+    "Z_W with R_zH above 3 um and of two through hardened members; fading of Z_L, Z_v, Z_R, Z_W towards the static end",
+    "Y_drelT and Y_RrelT of other than case hardened teeth; Y_DT",
+    "life lines with pitting allowed, of nitrided and of nitrocarburised teeth",
+    "strengths of ISO 6336-5 (one source)",
+    "ISO 6336 for double helical pairs: no published report; each end is rated with half the torque and its own share",
+    "K_Hbeta from a contact analysis: the procedure of annex E is not public; the definition of 7.2 is followed",
+    NULL};
+
+/* ---- verdict ---- */
+
+static bool passes(const struct eo_design_rating *r)
+{
+  const struct eo_rating_settings *s = r->basis.input.rating;
+  return r->rated && fmin(r->flank_safety, r->flank_static) >= s->flank_safety &&
+         fmin(r->root_safety, r->root_static) >= s->root_safety;
+}
+
+static json_t *write_passes(const void *source)
+{
+  const struct eo_design_rating *r = source;
+  return r->rated ? json_boolean(passes(r)) : json_null();
+}
+
+static json_t *write_least_flank(const void *source)
+{
+  return eo_json_quantity(((const struct eo_design_rating *)source)->basis.input.rating->flank_safety, NULL);
+}
+
+static json_t *write_least_root(const void *source)
+{
+  return eo_json_quantity(((const struct eo_design_rating *)source)->basis.input.rating->root_safety, NULL);
+}
+
+static json_t *write_required_life(const void *source)
+{
+  return eo_json_quantity(((const struct eo_design_rating *)source)->basis.input.rating->required_life, &eo_unit_h);
+}
+
+#define OF_RATING(member) EO_AT(struct eo_design_rating, member)
+static const struct eo_outline_row verdict_rows[] = {
+    EO_KEY("passes", "flag?", "every safety reaches its minimum; null when it is not rated", .write = write_passes),
+    EO_KEY("S_H", "number?", "least flank safety over members and ends, Miner over the required life",
+           OF_RATING(flank_safety)),
+    EO_KEY("S_Hmin", "number", "required", .write = write_least_flank),
+    EO_KEY("S_F", "number?", "least root safety over members and ends, Miner over the required life",
+           OF_RATING(root_safety)),
+    EO_KEY("S_Fmin", "number", "required", .write = write_least_root),
+    EO_KEY("S_H_static", "number?", "least static flank safety of the largest load", OF_RATING(flank_static)),
+    EO_KEY("S_F_static", "number?", "least static root safety of the largest load", OF_RATING(root_static)),
+    EO_KEY("life_h", "number?", "least life with S_Hmin and S_Fmin; null without end", .unit = &eo_unit_h,
+           OF_RATING(life)),
+    EO_KEY("required_life_h", "number", "as stated", .unit = &eo_unit_h, .write = write_required_life),
+};
+static const struct eo_outline verdict = EO_OUTLINE("RatingVerdict", verdict_rows);
+
+/* ---- what no load changes ---- */
+
+/* One member of the basis, flat. */
+struct basis_member {
+  double flank_limit, root_limit, hardness, shift, virtual_teeth;
+  struct eo_tooth_root root;
+  double nominal_shape, rim;
+  struct eo_root_influence influence;
+  struct eo_flank_tolerance tolerance;
+  double base_pitch;
+};
+
+#define OF_MEMBER(member) EO_AT(struct basis_member, member)
+static const struct eo_outline_row basis_member_rows[] = {
+    EO_KEY("sigma_Hlim_MPa", "number", "flank strength of the material", .unit = &eo_unit_MPa, OF_MEMBER(flank_limit)),
+    EO_KEY("sigma_Flim_MPa", "number", "root strength of the material", .unit = &eo_unit_MPa, OF_MEMBER(root_limit)),
+    EO_KEY("hardness_HV", "number?", "as stated or assumed", .unit = &eo_unit_HV, OF_MEMBER(hardness)),
+    EO_KEY("z_n", "number", "teeth of the virtual spur gear", OF_MEMBER(virtual_teeth)),
+    EO_KEY("x_form", "number", "shift behind the form factors: x_E, or x", OF_MEMBER(shift)),
+    EO_KEY("s_Fn_over_mn", "number", "chord of the critical section", OF_MEMBER(root.chord)),
+    EO_KEY("h_Fe_over_mn", "number", "bending arm", OF_MEMBER(root.arm)),
+    EO_KEY("rho_F_over_mn", "number", "fillet radius there", OF_MEMBER(root.fillet_radius)),
+    EO_KEY("alpha_Fen_deg", "number", "angle of the load", .unit = &eo_unit_deg, OF_MEMBER(root.load_angle)),
+    EO_KEY("q_s", "number", "notch parameter", OF_MEMBER(root.notch)),
+    EO_KEY("f_eps", "number", "load sharing of 2019; 1 with 2006", OF_MEMBER(root.load_share)),
+    EO_KEY("Y_F", "number", "form factor, f_eps in it", OF_MEMBER(root.form_factor)),
+    EO_KEY("Y_S", "number", "stress correction", OF_MEMBER(root.stress_correction)),
+    EO_KEY("Y_beta", "number", "helix factor", OF_MEMBER(root.helix_factor)),
+    EO_KEY("Y_B", "number", "rim factor", OF_MEMBER(rim)),
+    EO_KEY("Y_DT", "number", "deep tooth factor", OF_MEMBER(root.deep_tooth)),
+    EO_KEY("Y_drelT", "number", "notch sensitivity", OF_MEMBER(influence.notch)),
+    EO_KEY("Y_RrelT", "number", "surface of the fillet", OF_MEMBER(influence.surface)),
+    EO_KEY("Y_X", "number", "size", OF_MEMBER(influence.size)),
+    EO_KEY("Y_M", "number", "mean stress, as stated", OF_MEMBER(influence.mean)),
+    EO_KEY("f_pt_um", "number", "single pitch (2013: f_pT)", .unit = &eo_unit_um, OF_MEMBER(tolerance.single_pitch)),
+    EO_KEY("F_p_um", "number", "total pitch", .unit = &eo_unit_um, OF_MEMBER(tolerance.total_pitch)),
+    EO_KEY("f_falpha_um", "number", "profile form", .unit = &eo_unit_um, OF_MEMBER(tolerance.profile_form)),
+    EO_KEY("f_Halpha_um", "number", "profile slope", .unit = &eo_unit_um, OF_MEMBER(tolerance.profile_slope)),
+    EO_KEY("F_alpha_um", "number", "profile, total", .unit = &eo_unit_um, OF_MEMBER(tolerance.profile_total)),
+    EO_KEY("f_fbeta_um", "number", "helix form", .unit = &eo_unit_um, OF_MEMBER(tolerance.helix_form)),
+    EO_KEY("f_Hbeta_um", "number", "helix slope", .unit = &eo_unit_um, OF_MEMBER(tolerance.helix_slope)),
+    EO_KEY("F_beta_um", "number", "helix, total", .unit = &eo_unit_um, OF_MEMBER(tolerance.helix_total)),
+    EO_KEY("F_r_um", "number?", "runout; null where the edition states none", .unit = &eo_unit_um,
+           OF_MEMBER(tolerance.runout)),
+    EO_KEY("f_pb_um", "number", "base pitch", .unit = &eo_unit_um, OF_MEMBER(base_pitch)),
+};
+static const struct eo_outline basis_member = EO_OUTLINE("RatingMember", basis_member_rows);
+
+static json_t *encode_basis_member(const struct eo_rating_basis *basis, int i)
+{
+  const struct eo_geometry *g = basis->input.geometry;
+  double thinning = basis->input.rating->root_shift == EO_ROOT_SHIFT_NOMINAL ? 0 : basis->input.thickness_allowance[i];
+  const struct basis_member member = {.flank_limit = basis->strength[i].flank,
+                                      .root_limit = basis->strength[i].root,
+                                      .hardness = basis->hardness[i],
+                                      .shift = g->profile_shift[i] +
+                                               thinning / (2 * g->normal_module * tan(g->normal_pressure_angle)),
+                                      .virtual_teeth = basis->geometry.virtual_teeth[i],
+                                      .root = basis->root[i],
+                                      .rim = basis->rim_factor[i],
+                                      .influence = basis->endurance[i],
+                                      .tolerance = basis->tolerance[i],
+                                      .base_pitch = basis->base_pitch_tolerance[i]};
+  return eo_outline_encode(&basis_member, &member);
+}
+
+static json_t *write_basis_pinion(const void *source)
+{
+  return encode_basis_member(source, EO_PINION);
+}
+
+static json_t *write_basis_gear(const void *source)
+{
+  return encode_basis_member(source, EO_GEAR);
+}
+
+static json_t *write_basis_width(const void *source)
+{
+  return eo_json_quantity(((const struct eo_rating_basis *)source)->pair.face_width, &eo_unit_mm);
+}
+
+static json_t *write_total_ratio(const void *source)
+{
+  const struct eo_rating_geometry *g = &((const struct eo_rating_basis *)source)->geometry;
+  return eo_json_quantity(g->transverse_contact_ratio + g->overlap_ratio, NULL);
+}
+
+static json_t *write_resonance(const void *source)
+{
+  return eo_json_quantity(2 * M_PI * ((const struct eo_rating_basis *)source)->resonance_speed, &eo_unit_rpm);
+}
+
+#define OF_BASIS(member) EO_AT(struct eo_rating_basis, member)
+static const struct eo_outline_row basis_rows[] = {
+    EO_KEY("b_mm", "number", "face width that is rated: of one end", .unit = &eo_unit_mm, .write = write_basis_width),
+    EO_KEY("eps_alpha", "number", "transverse contact ratio", OF_BASIS(geometry.transverse_contact_ratio)),
+    EO_KEY("eps_beta", "number", "overlap ratio of one end", OF_BASIS(geometry.overlap_ratio)),
+    EO_KEY("eps_gamma", "number", "total contact ratio", .write = write_total_ratio),
+    EO_KEY("c_single_N_per_mm_um", "number", "c', solid discs, C_M = 0.8", .unit = &eo_unit_N_per_mm_um,
+           OF_BASIS(stiffness.single)),
+    EO_KEY("c_gamma_alpha_N_per_mm_um", "number", "mesh stiffness of K_V and K_Halpha", .unit = &eo_unit_N_per_mm_um,
+           OF_BASIS(stiffness.mesh_alpha)),
+    EO_KEY("c_gamma_beta_N_per_mm_um", "number", "mesh stiffness of K_Hbeta", .unit = &eo_unit_N_per_mm_um,
+           OF_BASIS(stiffness.mesh_beta)),
+    EO_KEY("m_red_kg_per_m", "number", "reduced mass per face width, rims down to the bores", OF_BASIS(reduced_mass)),
+    EO_KEY("n_E1_rpm", "number", "resonance speed of the pinion", .unit = &eo_unit_rpm, .write = write_resonance),
+    EO_KEY("f_ma_um", "number", "mesh misalignment: root of the sum of squares of both helix slope tolerances",
+           .unit = &eo_unit_um, OF_BASIS(mesh_deviation)),
+    EO_KEY("rho_red_mm", "number", "relative curvature radius of Z_R and Z_W", .unit = &eo_unit_mm,
+           OF_BASIS(relative_curvature)),
+    EO_KEY("b_over_h", "number", "of K_Fbeta, the smaller of both members", OF_BASIS(width_over_depth)),
+    EO_KEY("pinion", "object", "pinion", .outline = &basis_member, .write = write_basis_pinion),
+    EO_KEY("gear", "object", "gear", .outline = &basis_member, .write = write_basis_gear),
+};
+static const struct eo_outline basis = EO_OUTLINE("RatingBasis", basis_rows);
+
+/* ---- load cases ---- */
+
+#define OF_FACTORS(member) EO_AT(struct eo_rated_factors, member)
+static const struct eo_outline_row factor_rows[] = {
+    EO_KEY("K_V", "number?", "dynamic factor", OF_FACTORS(dynamic)),
+    EO_KEY("K_Hbeta", "number?", "face load factor, flank", OF_FACTORS(face)),
+    EO_KEY("K_Halpha", "number?", "transverse load factor, flank", OF_FACTORS(share)),
+    EO_KEY("K_Fbeta", "number?", "face load factor, root", OF_FACTORS(root_face)),
+    EO_KEY("K_Falpha", "number?", "transverse load factor, root", OF_FACTORS(root_share)),
+};
+static const struct eo_outline factors = EO_OUTLINE("LoadFactors", factor_rows);
+
+static const struct eo_outline_row computed_rows[] = {
+    EO_KEY("K_V", "number?", "largest dynamic over static mesh force of the vibration; null without a periodic one"),
+    EO_KEY("K_Hbeta", "number?", "of the load distribution as designed"),
+    EO_KEY("K_Hbeta_tolerances", "[number?]", "with f_ma laid on in each direction"),
+    EO_KEY("K_Halpha", "number?", "of the load distribution as designed, without pitch deviations"),
+};
+static const struct eo_outline computed = EO_OUTLINE("ComputedLoadFactors", computed_rows);
+
+/* One member under one load case, flat. */
+struct rated_member {
+  double single, cycles;
+  struct eo_flank_influence z;
+  double flank_life, stress, permissible, safety, flank_static;
+  double root_life, root_nominal, root_stress, root_permissible, root_safety, root_static;
+};
+
+#define OF_RATED(member) EO_AT(struct rated_member, member)
+static const struct eo_outline_row rated_member_rows[] = {
+    EO_KEY("N_L", "number", "load cycles of this load case over the required life", OF_RATED(cycles)),
+    EO_KEY("Z_BD", "number", "Z_B of the pinion, Z_D of the gear", OF_RATED(single)),
+    EO_KEY("Z_NT", "number", "life factor, flank", OF_RATED(flank_life)),
+    EO_KEY("Z_L", "number", "lubricant", OF_RATED(z.lubricant)),
+    EO_KEY("Z_v", "number", "velocity", OF_RATED(z.velocity)),
+    EO_KEY("Z_R", "number", "roughness", OF_RATED(z.roughness)),
+    EO_KEY("Z_W", "number", "work hardening", OF_RATED(z.work_hardening)),
+    EO_KEY("Z_X", "number", "size", OF_RATED(z.size)),
+    EO_KEY("sigma_H_MPa", "number", "contact stress", .unit = &eo_unit_MPa, OF_RATED(stress)),
+    EO_KEY("sigma_HG_MPa", "number", "limit at N_L, without S_Hmin", .unit = &eo_unit_MPa, OF_RATED(permissible)),
+    EO_KEY("S_H", "number", "of this load case alone over its own cycles", OF_RATED(safety)),
+    EO_KEY("S_H_static", "number", "against the static strength", OF_RATED(flank_static)),
+    EO_KEY("Y_NT", "number", "life factor, root", OF_RATED(root_life)),
+    EO_KEY("sigma_F0_MPa", "number", "nominal root stress", .unit = &eo_unit_MPa, OF_RATED(root_nominal)),
+    EO_KEY("sigma_F_MPa", "number", "root stress", .unit = &eo_unit_MPa, OF_RATED(root_stress)),
+    EO_KEY("sigma_FG_MPa", "number", "limit at N_L, without S_Fmin", .unit = &eo_unit_MPa, OF_RATED(root_permissible)),
+    EO_KEY("S_F", "number", "of this load case alone over its own cycles", OF_RATED(root_safety)),
+    EO_KEY("S_F_static", "number", "against the static strength", OF_RATED(root_static)),
+};
+static const struct eo_outline rated_member = EO_OUTLINE("RatedMember", rated_member_rows);
+
+static json_t *encode_rated_member(const struct eo_rated_case *c, int i)
+{
+  const struct rated_member member = {.single = c->contact.single_contact[i],
+                                      .cycles = c->cycles[i],
+                                      .z = c->influence[i],
+                                      .flank_life = c->flank_life_factor[i],
+                                      .stress = c->contact.stress[i],
+                                      .permissible = c->flank_permissible[i],
+                                      .safety = c->flank_safety[i],
+                                      .flank_static = c->flank_static[i],
+                                      .root_life = c->root_life_factor[i],
+                                      .root_nominal = c->root_nominal[i],
+                                      .root_stress = c->root_stress[i],
+                                      .root_permissible = c->root_permissible[i],
+                                      .root_safety = c->root_safety[i],
+                                      .root_static = c->root_static[i]};
+  return eo_outline_encode(&rated_member, &member);
+}
+
+static const char *const ranges[] = {"subcritical", "main_resonance", "between", "supercritical", NULL};
+
+static const struct eo_outline_row rated_end_rows[] = {
+    EO_KEY("F_t_N", "number", "tangential force at the reference cylinder, even share of the ends", .unit = &eo_unit_N),
+    EO_KEY("v_m_per_s", "number", "at the reference cylinder", .unit = &eo_unit_m_per_s),
+    EO_KEY("K_gamma", "number", "this end's mean load over that of an even share"),
+    EO_KEY("N", "number", "speed over n_E1"),
+    EO_KEY("speed_range", "word", "of K_V", .words = ranges),
+    EO_KEY("f_sh_um", "number?", "deflection of the pinion shaft, method C; null when it does not apply",
+           .unit = &eo_unit_um),
+    EO_KEY("F_beta_x_um", "number?", "helix deviation before running in, method C", .unit = &eo_unit_um),
+    EO_KEY("y_beta_um", "number?", "what running in takes off, method C", .unit = &eo_unit_um),
+    EO_KEY("method_c", "object", "K_V method B, K_Hbeta method C, K_Halpha method B", .outline = &factors),
+    EO_KEY("computed", "object", "of the contact analysis and the vibration", .outline = &computed),
+    EO_KEY("used", "object", "what rates", .outline = &factors),
+    EO_KEY("Z_H", "number", "zone"),
+    EO_KEY("Z_E_sqrt_MPa", "number", "elasticity"),
+    EO_KEY("Z_eps", "number", "contact ratio"),
+    EO_KEY("Z_beta", "number", "helix"),
+    EO_KEY("sigma_H0_MPa", "number", "nominal contact stress", .unit = &eo_unit_MPa),
+    EO_KEY("pinion", "object", "pinion", .outline = &rated_member),
+    EO_KEY("gear", "object", "gear", .outline = &rated_member),
+};
+static const struct eo_outline rated_end = EO_OUTLINE("RatedEnd", rated_end_rows);
+
+static json_t *encode_computed(const struct eo_rated_case *c, const struct eo_face_factors *face)
+{
+  struct eo_object o = eo_object_open_as(&computed);
+  eo_object_put_number(&o, "K_V", c->load.dynamic);
+  eo_object_put_number(&o, "K_Hbeta", face->nominal);
+  eo_object_put(&o, "K_Hbeta_tolerances", eo_json_reals(2, face->leaning, 1, NULL, EO_DIGITS_NUMBER));
+  eo_object_put_number(&o, "K_Halpha", c->load.share);
+  return eo_object_close(&o);
+}
+
+static json_t *encode_rated_end(const struct eo_rated_case *c, const struct eo_face_factors *face)
+{
+  const double per_root_of_MPa = 1e-3; /* sqrt(Pa) to sqrt(N/mm2) */
+  struct eo_object o = eo_object_open_as(&rated_end);
+  eo_object_put_number(&o, "F_t_N", c->tangential_force);
+  eo_object_put_number(&o, "v_m_per_s", c->velocity);
+  eo_object_put_number(&o, "K_gamma", c->load.sharing);
+  eo_object_put_number(&o, "N", c->resonance_ratio);
+  eo_object_put(&o, "speed_range", json_string(ranges[c->dynamic.range]));
+  eo_object_put_number(&o, "f_sh_um", c->shaft_deviation);
+  eo_object_put_number(&o, "F_beta_x_um", c->helix_deviation);
+  eo_object_put_number(&o, "y_beta_um", c->helix_running_in);
+  eo_object_put(&o, "method_c", eo_outline_encode(&factors, &c->method_c));
+  eo_object_put(&o, "computed", encode_computed(c, face));
+  eo_object_put(&o, "used", eo_outline_encode(&factors, &c->used));
+  eo_object_put_number(&o, "Z_H", c->contact.zone);
+  eo_object_put_number(&o, "Z_E_sqrt_MPa", c->contact.elasticity * per_root_of_MPa);
+  eo_object_put_number(&o, "Z_eps", c->contact.contact_ratio);
+  eo_object_put_number(&o, "Z_beta", c->contact.helix);
+  eo_object_put_number(&o, "sigma_H0_MPa", c->contact.nominal);
+  for (int i = 0; i < 2; i++)
+    eo_object_put(&o, eo_result_member[i], encode_rated_member(c, i));
+  return eo_object_close(&o);
+}
+
+static const struct eo_outline_row rated_case_rows[] = {
+    EO_KEY("torque_Nm", "number", "on the pinion shaft", .unit = &eo_unit_Nm),
+    EO_KEY("speed_rpm", "number", "of the pinion", .unit = &eo_unit_rpm),
+    EO_KEY("time_h", "number", "of the required life", .unit = &eo_unit_h),
+    EO_KEY("left", "object", "left end", .outline = &rated_end),
+    EO_KEY("right", "object", "right end", .when = EO_TWO_ENDS, .outline = &rated_end),
+};
+static const struct eo_outline rated_case = EO_OUTLINE("RatedLoadCase", rated_case_rows);
+
+static json_t *encode_rated_case(const struct eo_result_source *source, int k)
+{
+  const struct eo_design_rating *r = source->analysis->rating;
+  const struct eo_load_case *load_case = &source->evaluation->load_case[k].load_case;
+  struct eo_object o = eo_object_open_as(&rated_case);
+  eo_object_put_number(&o, "torque_Nm", load_case->torque);
+  eo_object_put_number(&o, "speed_rpm", load_case->speed);
+  eo_object_put_number(&o, "time_h", r->load_case[k].end[0].load.time);
+  for (int end = 0; end < source->ends; end++)
+    eo_object_put(&o, eo_result_end[end], encode_rated_end(&r->load_case[k].end[end], &r->load_case[k].face[end]));
+  return eo_object_close(&o);
+}
+
+/* ---- spectrum ---- */
+
+#define OF_SIDE(member) EO_AT(struct eo_rated_side, member)
+static const struct eo_outline_row side_rows[] = {
+    EO_KEY("S", "number?", "factor on all stresses that makes Miner's sum 1 over the required life; null without end",
+           OF_SIDE(safety)),
+    EO_KEY("damage", "number", "Miner's sum over the required life at S = 1", OF_SIDE(damage)),
+    EO_KEY("life_h", "number?", "until Miner's sum is 1; null without end", .unit = &eo_unit_h, OF_SIDE(life)),
+    EO_KEY("life_at_S_min_h", "number?", "the same with the required safety", .unit = &eo_unit_h,
+           OF_SIDE(life_at_least)),
+    EO_KEY("S_static", "number?", "static strength over the largest stress", OF_SIDE(static_safety)),
+};
+static const struct eo_outline side = EO_OUTLINE("RatedSide", side_rows);
+
+/* One member of a spectrum. */
+struct spectrum_member {
+  struct eo_rated_side flank, root;
+};
+static const struct eo_outline_row spectrum_member_rows[] = {
+    EO_KEY("flank", "object", "flank", .outline = &side, EO_AT(struct spectrum_member, flank)),
+    EO_KEY("root", "object", "root", .outline = &side, EO_AT(struct spectrum_member, root)),
+};
+static const struct eo_outline spectrum_member = EO_OUTLINE("RatedSpectrumMember", spectrum_member_rows);
+
+static const struct eo_outline_row spectrum_end_rows[] = {
+    EO_KEY("pinion", "object", "pinion", .outline = &spectrum_member),
+    EO_KEY("gear", "object", "gear", .outline = &spectrum_member),
+};
+static const struct eo_outline spectrum_end = EO_OUTLINE("RatedSpectrumEnd", spectrum_end_rows);
+
+static const struct eo_outline_row spectrum_rows[] = {
+    EO_KEY("left", "object", "left end", .outline = &spectrum_end),
+    EO_KEY("right", "object", "right end", .when = EO_TWO_ENDS, .outline = &spectrum_end),
+};
+static const struct eo_outline spectrum = EO_OUTLINE("RatedSpectrum", spectrum_rows);
+
+static json_t *encode_spectrum(const struct eo_result_source *source)
+{
+  struct eo_object o = eo_object_open_as(&spectrum);
+  for (int end = 0; end < source->ends; end++) {
+    const struct eo_rated_spectrum *s = &source->analysis->rating->end[end];
+    struct eo_object members = eo_object_open_as(&spectrum_end);
+    for (int i = 0; i < 2; i++) {
+      const struct spectrum_member member = {s->flank[i], s->root[i]};
+      eo_object_put(&members, eo_result_member[i], eo_outline_encode(&spectrum_member, &member));
+    }
+    eo_object_put(&o, eo_result_end[end], eo_object_close(&members));
+  }
+  return eo_object_close(&o);
+}
+
+/* ---- all ---- */
+
+static const char *const outcomes[] = {"rated", "not_rated", NULL};
+
+static const struct eo_outline_row rating_rows[] = {
+    EO_KEY("outcome", "word", "not_rated: ISO 6336 does not rate such a pair, or an input is missing",
+           .words = outcomes),
+    EO_KEY("reason", "text?", "of not_rated, for people"),
+    EO_KEY("settings", "object", "what it goes by, with every default", .table = &eo_rating_table,
+           .name = "RatingSettings"),
+    EO_KEY("standards", "[text]", "with their editions and methods"),
+    EO_KEY("unchecked", "[text]", "what no published report has confirmed"),
+    EO_KEY("verdict", "object", "what may be signed", .outline = &verdict),
+    EO_KEY("pair", "object?", "what no load changes; null when it is not rated", .outline = &basis),
+    EO_KEY("load_cases", "[object]?", "in the order of the design; null when it is not rated", .outline = &rated_case),
+    EO_KEY("spectrum", "object?", "all load cases together, ISO 6336-6; null when it is not rated",
+           .outline = &spectrum),
+};
+const struct eo_outline eo_outline_rating = EO_OUTLINE("Rating", rating_rows);
+
+static json_t *encode_cases(const struct eo_result_source *source)
+{
+  json_t *cases = json_array();
+  for (int k = 0; k < source->evaluation->cases && cases; k++)
+    if (json_array_append_new(cases, encode_rated_case(source, k)) != 0) {
+      json_decref(cases);
+      cases = NULL;
+    }
+  return cases;
+}
+
+json_t *eo_result_rating(const struct eo_result_source *source)
+{
+  const struct eo_design_rating *r = source->analysis->rating;
+  if (!(source->analysis->want & EO_WANT_RATING))
+    return json_null();
+  bool new = source->design->rating.edition == EO_ISO6336_2019;
+  struct eo_object o = eo_object_open_as(&eo_outline_rating);
+  eo_object_put(&o, "outcome", json_string(outcomes[r->rated ? 0 : 1]));
+  eo_object_put(&o, "reason", r->rated ? json_null() : json_string(r->reason.text));
+  eo_object_put(&o, "settings", eo_table_encode(&eo_rating_table, &source->design->rating));
+  eo_object_put(&o, "standards", texts_of(new ? standards_2019 : standards_2006));
+  eo_object_put(&o, "unchecked", texts_of(new ? unchecked_2019 : unchecked_2006));
+  eo_object_put(&o, "verdict", eo_outline_encode(&verdict, r));
+  eo_object_put(&o, "pair", r->rated ? eo_outline_encode(&basis, &r->basis) : json_null());
+  eo_object_put(&o, "load_cases", r->rated ? encode_cases(source) : json_null());
+  eo_object_put(&o, "spectrum", r->rated ? encode_spectrum(source) : json_null());
+  return eo_object_close(&o);
+}

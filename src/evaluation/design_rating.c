@@ -1,0 +1,181 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "evaluation/design_rating.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+enum eo_code eo_design_rating_new(struct eo_design_rating **result, int most_cases, struct eo_error *error)
+{
+  struct eo_design_rating *rating = calloc(1, sizeof *rating);
+  if (rating)
+    rating->load_case = calloc((size_t)most_cases, sizeof *rating->load_case);
+  if (!rating || !rating->load_case) {
+    eo_design_rating_free(rating);
+    return eo_error_memory(error);
+  }
+  rating->most_cases = most_cases;
+  *result = rating;
+  return EO_OK;
+}
+
+void eo_design_rating_free(struct eo_design_rating *rating)
+{
+  if (!rating)
+    return;
+  free(rating->load_case);
+  free(rating);
+}
+
+/* C_a: what is relieved where contact begins and where it ends, the smaller of the two; each the sum of one member's
+   tip relief and the root relief of its mate (ISO 6336-1 6.5.9). */
+static double tip_relief(const struct eo_design *design)
+{
+  double least = INFINITY;
+  for (int end = 0; end < design->gear_pair.ends; end++)
+    for (int m = 0; m < 2; m++)
+      least = fmin(least,
+                   design->modification.flank[m][end].tip_relief + design->modification.flank[1 - m][end].root_relief);
+  return least;
+}
+
+static struct eo_rating_input input_of(const struct eo_pair *pair, const struct eo_design *design)
+{
+  const struct eo_shafts *shafts = &design->shafts;
+  const double *bearing = shafts->bearing_position[EO_PINION];
+  /* half the stated backlash from each member, normal to the flank: A_sn = -j_bn/(2 cos alpha_n) */
+  double allowance = -design->gear_pair.backlash / 2 / cos(pair->geometry.normal_pressure_angle);
+  return (struct eo_rating_input){.geometry = &pair->geometry,
+                                  .pair = &design->gear_pair,
+                                  .material = &design->material,
+                                  .rating = &design->rating,
+                                  .thickness_allowance = {allowance, allowance},
+                                  .tip_relief = tip_relief(design),
+                                  .bearing_span = bearing[EO_RIGHT] - bearing[EO_LEFT],
+                                  .bearing_offset = fabs(bearing[EO_RIGHT] + bearing[EO_LEFT]) / 2,
+                                  .shaft_diameter = shafts->shaft_diameter[EO_PINION]};
+}
+
+/* The design with a helix slope deviation more on the pinion's flanks; transverse, over the face width, + takes off
+   where the teeth meet first. */
+static void lean(struct eo_design *leaning, const struct eo_design *design, const struct eo_geometry *geometry,
+                 double deviation)
+{
+  *leaning = *design;
+  for (int end = 0; end < design->gear_pair.ends; end++)
+    leaning->modification.flank[EO_PINION][end].lead_slope += deviation * cos(geometry->base_helix_angle) / 2;
+}
+
+static enum eo_code lean_both_ways(struct eo_design_rating *rating, struct eo_evaluator *evaluator,
+                                   const struct eo_design *design, struct eo_design *leaning, struct eo_error *error)
+{
+  double deviation = rating->basis.mesh_deviation;
+  for (int side = 0; side < 2; side++) {
+    const struct eo_evaluation *evaluation;
+    lean(leaning, design, &eo_evaluator_pair(evaluator)->geometry, side ? -deviation : deviation);
+    EO_TRY(eo_evaluator_contact(evaluator, leaning, &evaluation, error));
+    for (int k = 0; k < evaluation->cases; k++)
+      for (int end = 0; end < evaluation->ends; end++)
+        rating->load_case[k].face[end].leaning[side] = evaluation->load_case[k].end[end].face.face_factor;
+  }
+  return EO_OK;
+}
+
+enum eo_code eo_design_rating_lean(struct eo_design_rating *rating, struct eo_evaluator *evaluator,
+                                   const struct eo_design *design, struct eo_error *error)
+{
+  struct eo_rating_input input = input_of(eo_evaluator_pair(evaluator), design);
+  rating->rated = !eo_rating_basis_init(&rating->basis, &input, &rating->reason);
+  if (!rating->rated)
+    return EO_OK;
+  struct eo_design *leaning = malloc(sizeof *leaning);
+  enum eo_code code = leaning ? lean_both_ways(rating, evaluator, design, leaning, error) : eo_error_memory(error);
+  free(leaning);
+  return code;
+}
+
+static double mean(int count, const double *value)
+{
+  double sum = 0;
+  for (int i = 0; i < count; i++)
+    sum += value[i];
+  return sum / count;
+}
+
+static enum eo_code rate_end(struct eo_design_rating *rating, const struct eo_case_result *c, int k, int end,
+                             struct eo_error *error)
+{
+  const struct eo_rating_settings *settings = rating->basis.input.rating;
+  struct eo_face_factors *face = &rating->load_case[k].face[end];
+  bool periodic = c->vibration.outcome != EO_VIBRATION_NOT_CONVERGED;
+  const struct eo_rating_load load = {.torque = c->load_case.torque / rating->ends,
+                                      .speed = c->load_case.speed,
+                                      .time = settings->required_life * c->load_case.share,
+                                      .sharing = rating->load_case[k].sharing[end],
+                                      .dynamic = periodic ? c->vibration.dynamic_factor[end] : NAN,
+                                      .face = face->worse,
+                                      .share = c->end[end].face.share_factor};
+  return eo_rated_case_find(&rating->load_case[k].end[end], &rating->basis, &load, error);
+}
+
+/* The distribution of one end, its share of the load, and its tribology: what needs no standard. */
+static void describe_end(struct eo_design_rating *rating, const struct eo_pair *pair, const struct eo_design *design,
+                         const struct eo_case_result *c, int k, int end)
+{
+  struct eo_case_rating *r = &rating->load_case[k];
+  struct eo_face_factors *face = &r->face[end];
+  struct eo_tribology_state state;
+  face->nominal = c->end[end].face.face_factor;
+  if (!rating->rated)
+    face->leaning[0] = face->leaning[1] = NAN;
+  face->worse = rating->rated ? fmax(face->leaning[0], face->leaning[1]) : NAN;
+  r->sharing[end] = mean(pair->grid->positions, c->end[end].loaded.load) / c->force;
+  eo_tribology_state_init(&state, &pair->geometry, &design->material, &design->rating, c->load_case.speed);
+  eo_tribology_find(&r->tribology[end], &state, pair->grid, &c->end[end].loaded);
+}
+
+static void decide(struct eo_design_rating *rating)
+{
+  rating->flank_safety = rating->root_safety = rating->flank_static = rating->root_static = rating->life = INFINITY;
+  for (int end = 0; end < rating->ends; end++)
+    for (int m = 0; m < 2; m++) {
+      const struct eo_rated_side *flank = &rating->end[end].flank[m], *root = &rating->end[end].root[m];
+      rating->flank_safety = fmin(rating->flank_safety, flank->safety);
+      rating->root_safety = fmin(rating->root_safety, root->safety);
+      rating->flank_static = fmin(rating->flank_static, flank->static_safety);
+      rating->root_static = fmin(rating->root_static, root->static_safety);
+      rating->life = fmin(rating->life, fmin(flank->life_at_least, root->life_at_least));
+    }
+}
+
+static void find_spectra(struct eo_design_rating *rating)
+{
+  struct eo_rated_case cases[EO_MAX_LOAD_CASES];
+  for (int end = 0; end < rating->ends; end++) {
+    for (int k = 0; k < rating->cases; k++)
+      cases[k] = rating->load_case[k].end[end];
+    eo_rated_spectrum_find(&rating->end[end], &rating->basis, rating->cases, cases);
+  }
+  decide(rating);
+}
+
+void eo_design_rating_find(struct eo_design_rating *rating, const struct eo_pair *pair, const struct eo_design *design,
+                           const struct eo_evaluation *evaluation)
+{
+  rating->ends = evaluation->ends;
+  rating->cases = evaluation->cases;
+  rating->basis.input = input_of(pair, design);
+  rating->flank_safety = rating->root_safety = rating->flank_static = rating->root_static = rating->life = NAN;
+  rating->film_ratio = INFINITY;
+  rating->contact_temperature = -INFINITY;
+  for (int k = 0; k < rating->cases; k++)
+    for (int end = 0; end < rating->ends; end++) {
+      const struct eo_case_result *c = &evaluation->load_case[k];
+      const struct eo_tribology *t = &rating->load_case[k].tribology[end];
+      describe_end(rating, pair, design, c, k, end);
+      rating->film_ratio = fmin(rating->film_ratio, t->film_ratio);
+      rating->contact_temperature = fmax(rating->contact_temperature, t->contact_temperature);
+      rating->rated = rating->rated && !rate_end(rating, c, k, end, &rating->reason);
+    }
+  if (rating->rated)
+    find_spectra(rating);
+}
