@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "app/app.h"
+#include "app/number.h"
 #include "document/design_export.h"
 
 static int list_formats(void)
@@ -28,12 +29,28 @@ static const struct eo_export *find_format(const char *name, int *status)
   return NULL;
 }
 
+static bool read_grid(const char *rows, const char *columns, int grid[2], int *status)
+{
+  struct eo_error error;
+  const char *const value[2] = {rows, columns}, *const name[2] = {"--rows", "--columns"};
+  for (int i = 0; i < 2; i++) {
+    grid[i] = 0;
+    if (value[i] &&
+        !eo_app_read_whole(value[i], name[i], EO_EXPORT_GRID_LEAST, EO_EXPORT_GRID_MOST, &grid[i], &error)) {
+      *status = eo_app_fail(NULL, &error);
+      return false;
+    }
+  }
+  return true;
+}
+
 static int save(const struct eo_export *format, const struct eo_design *design, const struct eo_geometry *geometry,
-                const char *path)
+                const int grid[2], const char *path)
 {
   struct eo_text text = {0};
   struct eo_error error;
-  format->write(design, geometry, &text);
+  if (eo_export_write(format, design, geometry, grid[0], grid[1], &text, &error))
+    return eo_app_fail(NULL, &error);
   if (!path || strcmp(path, "-") == 0)
     return eo_app_print(&text);
   int status = EO_EXIT_DONE;
@@ -45,26 +62,32 @@ static int save(const struct eo_export *format, const struct eo_design *design, 
 
 static int run(const struct eo_command *command, int argc, char **argv)
 {
-  const char *file, *name = NULL, *path = NULL;
-  int operands, status;
+  const char *file, *name = NULL, *path = NULL, *rows = NULL, *columns = NULL;
+  int operands, status, grid[2];
   struct eo_design design;
   struct eo_geometry geometry;
   struct eo_warnings warnings = {0};
-  const struct eo_option options[] = {
-      {.name = "--format", .value = &name}, {.name = "-o", .value = &path}, {.name = NULL}};
+  const struct eo_option options[] = {{.name = "--format", .value = &name},
+                                      {.name = "-o", .value = &path},
+                                      {.name = "--rows", .value = &rows},
+                                      {.name = "--columns", .value = &columns},
+                                      {.name = NULL}};
   if (!eo_app_arguments(command, argc, argv, options, 0, 1, &file, &operands, &status))
     return status;
   if (!operands)
     return list_formats();
   const struct eo_export *format = find_format(name, &status);
-  if (!format || !eo_app_load_design(file, &design, &geometry, &warnings, &status))
+  if (!format || !read_grid(rows, columns, grid, &status) ||
+      !eo_app_load_design(file, &design, &geometry, &warnings, &status))
     return status;
-  return save(format, &design, &geometry, path);
+  return save(format, &design, &geometry, grid, path);
 }
 
 const struct eo_command eo_command_export = {
-    "export", "DESIGN.json --format NAME [-o FILE]", "a file for another program: flank points, charts, topography",
-    "Without a design, the list of formats. Without -o the file goes to standard output.\n\n"
+    "export", "DESIGN.json --format NAME [-o FILE] [--rows N] [--columns N]",
+    "a file for another program: flank points, charts, topography",
+    "Without a design, the list of formats. Without -o the file goes to standard output.\n"
+    "--rows and --columns: points of flank-points and topography from root to tip (21) and over the face (31).\n\n"
     "Points stand in the frame of each member: z along the axis, from the middle of the groove to the right; the "
     "working flank of a\n"
     "tooth faces +x and would, unmodified, pass through x = 0 at the working pitch radius in mid face. Normals point "

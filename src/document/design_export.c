@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "document/design_document.h"
+#include "document/flank_chart.h"
 #include "format/json.h"
 #include "gear/surface.h"
 
@@ -33,8 +34,9 @@ struct flank {
   const struct eo_geometry *geometry;
   int member, end;
   struct eo_modification_shape shape;
-  double offset; /* mid face of the end from the middle of the groove, m */
-  double turn;   /* to the frame below, from +x towards +y, rad */
+  double offset;     /* mid face of the end from the middle of the groove, m */
+  double turn;       /* to the frame below, from +x towards +y, rad */
+  int rows, columns; /* of a grid of points: root to tip, over the face */
 };
 
 typedef void flank_function(const struct flank *flank, struct eo_text *text);
@@ -52,12 +54,14 @@ static double pitch_angle(const struct eo_geometry *geometry, int member)
   return atan2(point.position[0], point.position[1]);
 }
 
-static void each_flank(const struct eo_design *design, const struct eo_geometry *geometry, flank_function *function,
-                       struct eo_text *text)
+static const int usual_grid[2] = {PROFILE_POINTS, FACE_POINTS};
+
+static void each_flank(const struct eo_design *design, const struct eo_geometry *geometry, const int grid[2],
+                       flank_function *function, struct eo_text *text)
 {
   for (int member = 0; member < 2; member++)
     for (int end = 0; end < design->gear_pair.ends; end++) {
-      struct flank flank = {.geometry = geometry, .member = member, .end = end};
+      struct flank flank = {.geometry = geometry, .member = member, .end = end, .rows = grid[0], .columns = grid[1]};
       eo_modification_init(&flank.shape, geometry, member, &design->modification.flank[member][end]);
       if (design->gear_pair.ends == 2)
         flank.offset = (design->gear_pair.groove_width + design->gear_pair.face_width) / 2;
@@ -130,10 +134,10 @@ static void write_point(const struct flank *flank, double s, double eta, struct 
 
 static void write_flank_points(const struct flank *flank, struct eo_text *text)
 {
-  for (int i = 0; i < PROFILE_POINTS; i++)
-    for (int j = 0; j < FACE_POINTS; j++) {
-      double s = path_at(flank, (double)i / (PROFILE_POINTS - 1));
-      double eta = flank->geometry->face_width * ((double)j / (FACE_POINTS - 1) - 0.5);
+  for (int i = 0; i < flank->rows; i++)
+    for (int j = 0; j < flank->columns; j++) {
+      double s = path_at(flank, (double)i / (flank->rows - 1));
+      double eta = flank->geometry->face_width * ((double)j / (flank->columns - 1) - 0.5);
       put_place(text, flank->member, flank->end);
       eo_text_print(text, ",%d,%d", i, j);
       write_point(flank, s, eta, text);
@@ -141,10 +145,16 @@ static void write_flank_points(const struct flank *flank, struct eo_text *text)
     }
 }
 
-static void write_points(const struct eo_design *design, const struct eo_geometry *geometry, struct eo_text *text)
+static void write_point_grid(const struct eo_design *design, const struct eo_geometry *geometry, const int grid[2],
+                             struct eo_text *text)
 {
   eo_text_add(text, "member,end,profile,face,x_mm,y_mm,z_mm,normal_x,normal_y,normal_z,modification_um\r\n");
-  each_flank(design, geometry, write_flank_points, text);
+  each_flank(design, geometry, grid, write_flank_points, text);
+}
+
+static void write_points(const struct eo_design *design, const struct eo_geometry *geometry, struct eo_text *text)
+{
+  write_point_grid(design, geometry, usual_grid, text);
 }
 
 static void write_profile_chart(const struct flank *flank, struct eo_text *text)
@@ -183,15 +193,15 @@ static void write_charts_of(const struct flank *flank, struct eo_text *text)
 static void write_charts(const struct eo_design *design, const struct eo_geometry *geometry, struct eo_text *text)
 {
   eo_text_add(text, "member,end,chart,coordinate_mm,radius_mm,roll_angle_deg,modification_um\r\n");
-  each_flank(design, geometry, write_charts_of, text);
+  each_flank(design, geometry, usual_grid, write_charts_of, text);
 }
 
 static void write_topography_of(const struct flank *flank, struct eo_text *text)
 {
-  for (int i = 0; i < PROFILE_POINTS; i++)
-    for (int j = 0; j < FACE_POINTS; j++) {
-      double s = path_at(flank, (double)i / (PROFILE_POINTS - 1));
-      double eta = flank->geometry->face_width * ((double)j / (FACE_POINTS - 1) - 0.5);
+  for (int i = 0; i < flank->rows; i++)
+    for (int j = 0; j < flank->columns; j++) {
+      double s = path_at(flank, (double)i / (flank->rows - 1));
+      double eta = flank->geometry->face_width * ((double)j / (flank->columns - 1) - 0.5);
       put_place(text, flank->member, flank->end);
       put(text, eo_geometry_radius_at(flank->geometry, flank->member, s), &eo_unit_mm);
       put(text, roll_at(flank, s), &eo_unit_deg);
@@ -201,10 +211,16 @@ static void write_topography_of(const struct flank *flank, struct eo_text *text)
     }
 }
 
-static void write_topography(const struct eo_design *design, const struct eo_geometry *geometry, struct eo_text *text)
+static void write_topography_grid(const struct eo_design *design, const struct eo_geometry *geometry, const int grid[2],
+                                  struct eo_text *text)
 {
   eo_text_add(text, "member,end,radius_mm,roll_angle_deg,face_mm,modification_um\r\n");
-  each_flank(design, geometry, write_topography_of, text);
+  each_flank(design, geometry, grid, write_topography_of, text);
+}
+
+static void write_topography(const struct eo_design *design, const struct eo_geometry *geometry, struct eo_text *text)
+{
+  write_topography_grid(design, geometry, usual_grid, text);
 }
 
 static void write_design(const struct eo_design *design, const struct eo_geometry *geometry, struct eo_text *text)
@@ -220,10 +236,15 @@ static void write_design(const struct eo_design *design, const struct eo_geometr
 
 static const struct eo_export formats[] = {
     {"flank-points", "points and normals of the working flanks, exactly as generated, with what is taken off",
-     "text/csv; charset=utf-8", "csv", write_points},
-    {"modification-chart", "profile and lead modification as curves", "text/csv; charset=utf-8", "csv", write_charts},
-    {"topography", "what is taken off, over profile and face", "text/csv; charset=utf-8", "csv", write_topography},
-    {"design", "the design with every default resolved", "application/json", "json", write_design},
+     "text/csv; charset=utf-8", "csv", write_points, write_point_grid},
+    {"modification-chart", "profile and lead modification as curves", "text/csv; charset=utf-8", "csv", write_charts,
+     NULL},
+    {"k-chart", "nominal profile and helix with tolerance bands, over roll length, roll angle, diameter, face",
+     "text/csv; charset=utf-8", "csv", eo_flank_charts_csv, NULL},
+    {"k-chart-drawing", "the same as drawings", "image/svg+xml", "svg", eo_flank_charts_svg, NULL},
+    {"topography", "what is taken off, over profile and face", "text/csv; charset=utf-8", "csv", write_topography,
+     write_topography_grid},
+    {"design", "the design with every default resolved", "application/json", "json", write_design, NULL},
 };
 enum { FORMATS = sizeof formats / sizeof formats[0] };
 
@@ -238,6 +259,22 @@ const struct eo_export *eo_export_find(const char *name)
     if (strcmp(formats[i].name, name) == 0)
       return &formats[i];
   return NULL;
+}
+
+enum eo_code eo_export_write(const struct eo_export *format, const struct eo_design *design,
+                             const struct eo_geometry *geometry, int rows, int columns, struct eo_text *text,
+                             struct eo_error *error)
+{
+  const int grid[2] = {rows ? rows : usual_grid[0], columns ? columns : usual_grid[1]};
+  bool usual = grid[0] == usual_grid[0] && grid[1] == usual_grid[1];
+  if (!usual && !format->write_grid)
+    return eo_error_set(error, EO_ERROR_INPUT, "", "The format \"%s\" has no rows and columns to choose.",
+                        format->name);
+  if (usual)
+    format->write(design, geometry, text);
+  else
+    format->write_grid(design, geometry, grid, text);
+  return EO_OK;
 }
 
 void eo_export_file_name(const struct eo_export *format, const struct eo_design *design, char *name, size_t size)

@@ -14,11 +14,22 @@ struct eo_export {
   const char *type;    /* media type */
   const char *ending;  /* "csv" */
   void (*write)(const struct eo_design *design, const struct eo_geometry *geometry, struct eo_text *text);
+  /* the same with other rows (from root to tip) and columns (over the face) than 21 and 31; NULL: it has no grid */
+  void (*write_grid)(const struct eo_design *design, const struct eo_geometry *geometry, const int grid[2],
+                     struct eo_text *text);
 };
+
+enum { EO_EXPORT_GRID_LEAST = 2, EO_EXPORT_GRID_MOST = 401 };
 
 /* NULL after the last; NULL: there is none of this name. */
 const struct eo_export *eo_export_at(int index);
 const struct eo_export *eo_export_find(const char *name);
+
+/* rows, columns: EO_EXPORT_GRID_LEAST .. EO_EXPORT_GRID_MOST, or 0 for the usual ones. EO_ERROR_INPUT where a format
+   has no grid to choose. */
+enum eo_code eo_export_write(const struct eo_export *format, const struct eo_design *design,
+                             const struct eo_geometry *geometry, int rows, int columns, struct eo_text *text,
+                             struct eo_error *error);
 
 /* A name for the file, made of the design's name: "paper-pair-flank-points.csv"; size >= 40. */
 void eo_export_file_name(const struct eo_export *format, const struct eo_design *design, char *name, size_t size);

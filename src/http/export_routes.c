@@ -18,7 +18,12 @@ static void export(struct eo_request *request)
   const json_t *body = eo_request_json(request);
   if (body && eo_request_design(request, body, "", &design, &geometry, NULL)) {
     struct eo_text text = {0};
-    format->write(&design, &geometry, &text);
+    struct eo_error error;
+    if (eo_export_write(format, &design, &geometry, (int)eo_route_number(request, "rows"),
+                        (int)eo_route_number(request, "columns"), &text, &error)) {
+      eo_reply_error(&request->reply, "", &error);
+      return;
+    }
     eo_reply_text(&request->reply, 200, format->type, &text);
     eo_export_file_name(format, &design, request->reply.file_name, sizeof request->reply.file_name);
   }
@@ -49,5 +54,7 @@ const struct eo_route eo_routes_export[] = {
      .rate = EO_RATE_START,
      .aside = true,
      .gives = "200 text/csv, 200 ResolvedDesign",
+     .query = {{"rows", EO_EXPORT_GRID_LEAST, EO_EXPORT_GRID_MOST, 21, NULL, "points of a flank from root to tip"},
+               {"columns", EO_EXPORT_GRID_LEAST, EO_EXPORT_GRID_MOST, 31, NULL, "points of a flank over the face"}},
      .summary = "A file for another program, as `easeoff export` writes it: points of the flanks, charts, the design."},
     {0}};

@@ -8,6 +8,7 @@
 
 #include "document/design_document.h"
 #include "document/examples.h"
+#include "document/flank_chart.h"
 #include "support/tap.h"
 
 struct point {
@@ -160,6 +161,64 @@ static void test_name(const char *given, const char *expected)
   ok(strcmp(name, expected) == 0, "\"%s\" is saved as %s", given, name);
 }
 
+/* The value of a chart's nominal curve at a place, between its points. */
+static double nominal_at(const struct eo_flank_chart *c, double x)
+{
+  int i = 0;
+  while (i < EO_FLANK_CHART_POINTS - 2 && c->x[i + 1] < x)
+    i++;
+  return c->nominal[i] + (x - c->x[i]) / (c->x[i + 1] - c->x[i]) * (c->nominal[i + 1] - c->nominal[i]);
+}
+
+/* The numbers of the paper's case A, Table 3, and of ISO 1328-1:1995, grade 6, where an inspector looks for them. */
+static void test_charts(void)
+{
+  struct eo_flank_chart c;
+  load("paper-case-a", false);
+  eo_flank_chart_find(&c, &design, &geometry, EO_PINION, EO_LEFT, false);
+  close_to(nominal_at(&c, c.active[0]), -17e-6, 0.02e-6, "root relief at d_Nf");
+  close_to(nominal_at(&c, c.active[1]), -14e-6, 1e-12, "tip relief at the tip");
+  close_to(nominal_at(&c, c.relief[1]), 0, 0.02e-6, "nothing where the tip relief begins");
+  close_to(hypot(c.active[1], geometry.base_radius[EO_PINION]), geometry.tip_radius[EO_PINION], 1e-12,
+           "the roll length at the tip");
+  close_to(hypot(c.active[0], geometry.base_radius[EO_PINION]), geometry.start_radius[EO_PINION], 1e-12,
+           "the roll length where the active profile begins");
+  double low = INFINITY, high = -INFINITY, wide = 0;
+  bool rising = true;
+  for (int i = 0; i < EO_FLANK_CHART_POINTS; i++) {
+    rising = rising && (i == 0 || c.x[i] > c.x[i - 1]);
+    if (isnan(c.band[i][0]))
+      continue;
+    low = fmin(low, c.x[i]);
+    high = fmax(high, c.x[i]);
+    wide = fmax(wide, c.band[i][0] - c.band[i][1]);
+  }
+  ok(rising && low == c.range[0] && high == c.range[1], "the band covers the evaluation range and nothing else");
+  close_to(high - low, 0.92 * (c.active[1] - c.active[0]), 1e-12, "92 % of the active length");
+  close_to(wide, 13e-6, 1e-12, "F_alpha of d 111.65 mm, m_n 6 mm, grade 6");
+  eo_flank_chart_find(&c, &design, &geometry, EO_GEAR, EO_RIGHT, true);
+  close_to(c.band[60][0] - c.band[60][1], 15e-6, 1e-12, "F_beta of the gear");
+  close_to(c.range[1] - c.range[0], 49.5e-3, 1e-12, "the face less 5 % at each end");
+  geometry.face_width = 1e-3;
+  eo_flank_chart_find(&c, &design, &geometry, EO_GEAR, EO_RIGHT, true);
+  ok(isnan(c.band[60][0]) && *c.note, "a face that ISO 1328-1 does not cover has no band: %s", c.note);
+}
+
+static void test_grid(void)
+{
+  struct eo_text text = {0};
+  struct eo_error error;
+  int lines = 0;
+  load("single", false);
+  ok(!eo_export_write(eo_export_find("topography"), &design, &geometry, 5, 7, &text, &error), "a grid of 5 by 7");
+  for (const char *c = text.data; (c = strchr(c, '\n')); c++)
+    lines++;
+  ok(lines == 1 + 2 * 5 * 7, "has a row for each of its points on each flank: %d", lines - 1);
+  ok(eo_export_write(eo_export_find("k-chart"), &design, &geometry, 5, 7, &text, &error) == EO_ERROR_INPUT,
+     "what has no grid refuses one: %s", error.text);
+  eo_text_done(&text);
+}
+
 int main(void)
 {
   ok(load("paper", true), "the paper's pair");
@@ -185,6 +244,8 @@ int main(void)
   ok(load("single", true), "a pair with one end");
   ok(read_points(plain) == MOST_POINTS / 2, "has half the points");
   test_mesh(MOST_POINTS / 2);
-  ok(!eo_export_find("picture") && !eo_export_at(4) && eo_export_at(0), "formats");
+  ok(!eo_export_find("picture") && !eo_export_at(6) && eo_export_at(0), "formats");
+  test_charts();
+  test_grid();
   return tap_done();
 }

@@ -1,0 +1,43 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Charts of a flank as an inspector reads them: nominal profile and helix with the band of the total tolerance of ISO
+   1328-1 (the edition of the rating) and the evaluation range, over roll length, roll angle, diameter, or the face. As
+   numbers, CSV and SVG. */
+#ifndef EASEOFF_DOCUMENT_FLANK_CHART_H
+#define EASEOFF_DOCUMENT_FLANK_CHART_H
+
+#include "design/design.h"
+#include "format/text.h"
+#include "gear/geometry.h"
+#include "rating/flank_tolerance.h"
+
+enum { EO_FLANK_CHART_POINTS = 121 };
+
+/* SI. y: metal beyond the unmodified flank, normal to it; what a modification takes off is below 0. A measured trace
+   may be moved along y: only its shape counts against the band, F_alpha or F_beta wide about the nominal curve. */
+struct eo_flank_chart {
+  int member, end;
+  bool helix;                      /* else the profile */
+  double x[EO_FLANK_CHART_POINTS]; /* roll length from the base circle, or place over the face from its middle, + on
+                                      the side that meets first, m */
+  double roll_angle[EO_FLANK_CHART_POINTS], diameter[EO_FLANK_CHART_POINTS]; /* profile: rad, m */
+  double nominal[EO_FLANK_CHART_POINTS];
+  double band[EO_FLANK_CHART_POINTS][2]; /* upper, lower; NaN outside the evaluation range, or without a tolerance */
+  double range[2];                       /* evaluation range along x */
+  double active[2];                      /* profile: roll lengths at d_Nf and at the tip; helix: face ends */
+  double form, relief[2];                /* profile: roll length at d_Ff, where root and tip relief begin (NaN: none) */
+  struct eo_flank_tolerance tolerance;   /* of the member; NaN: none, see note */
+  char note[sizeof((struct eo_error *)0)->text]; /* why there is no tolerance; "" */
+};
+
+/* At mid face (profile), at the pitch point (helix). */
+void eo_flank_chart_find(struct eo_flank_chart *chart, const struct eo_design *design,
+                         const struct eo_geometry *geometry, int member, int end, bool helix);
+
+/* One <svg>. */
+void eo_flank_chart_svg(const struct eo_flank_chart *chart, const struct eo_design *design, struct eo_text *text);
+
+/* Every chart of a design: rows of numbers; the drawings below each other in one SVG. */
+void eo_flank_charts_csv(const struct eo_design *design, const struct eo_geometry *geometry, struct eo_text *text);
+void eo_flank_charts_svg(const struct eo_design *design, const struct eo_geometry *geometry, struct eo_text *text);
+
+#endif
