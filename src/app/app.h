@@ -25,8 +25,8 @@ struct eo_command {
 };
 
 extern const struct eo_command eo_command_analyze, eo_command_example, eo_command_export, eo_command_history,
-    eo_command_measure, eo_command_optimize, eo_command_reproduce, eo_command_rig, eo_command_serve, eo_command_stage,
-    eo_command_sweep, eo_command_verify;
+    eo_command_measure, eo_command_optimize, eo_command_prepare, eo_command_reproduce, eo_command_rig, eo_command_serve,
+    eo_command_stage, eo_command_sweep, eo_command_verify;
 
 /* "easeoff 0.1.0" */
 extern const char eo_program[];

@@ -11,25 +11,33 @@
 
 #include "app/app.h"
 #include "app/data.h"
+#include "app/serve_settings.h"
 #include "http/http.h"
 
 #include <config.h>
 
 struct request {
-  const char *listen, *data, *token_file, *threads, *pages, *host;
-  bool allow_anyone, quiet;
+  struct eo_serve_settings settings;
   struct eo_text token, directory, cache;
 };
+
+/* NULL in the place of what was not said. */
+static const char *or_null(const char *text)
+{
+  return *text ? text : NULL;
+}
 
 static enum eo_code read_token(struct request *request, struct eo_error *error)
 {
   enum { LIMIT = 4096 };
-  const char *variable = getenv("EASEOFF_TOKEN");
-  if (!request->token_file) {
+  char *variable = getenv("EASEOFF_TOKEN");
+  if (!*request->settings.token_file) {
     eo_text_add(&request->token, variable ? variable : "");
+    if (variable)
+      explicit_bzero(variable, strlen(variable)); /* /proc/PID/environ shows what stands there */
     return request->token.failed ? eo_error_memory(error) : EO_OK;
   }
-  enum eo_code code = eo_text_read(&request->token, request->token_file, LIMIT, error);
+  enum eo_code code = eo_text_read(&request->token, request->settings.token_file, LIMIT, error);
   if (!code && request->token.data)
     request->token.data[strcspn(request->token.data, "\r\n")] = '\0';
   if (!code && (!request->token.data || !*request->token.data))
@@ -47,31 +55,29 @@ static bool is_folder(const char *path)
 static const char *find_pages(const struct request *request)
 {
   const char *variable = getenv("EASEOFF_WEB");
-  if (request->pages)
-    return request->pages;
+  if (*request->settings.web)
+    return request->settings.web;
   if (variable && *variable)
     return variable;
   return is_folder(PKGDATADIR "/web") ? PKGDATADIR "/web" : NULL;
 }
 
-static enum eo_code read_threads(const struct request *request, int *threads, struct eo_error *error)
-{
-  char *end = NULL;
-  long count = request->threads ? strtol(request->threads, &end, 10) : 0;
-  if (request->threads && (*end || end == request->threads || count < 1 || count > 256))
-    return eo_error_set(error, EO_ERROR_INPUT, "", "--threads %.20s is outside 1 .. 256.", request->threads);
-  *threads = (int)count;
-  return EO_OK;
-}
-
-/* The two signals are blocked in every thread from here on and taken by sigwait() alone. */
+/* Those that end the server are blocked in every thread from here on and taken by sigwait() alone: SIGHUP too, which is
+   a terminal that was closed. Those that mean nothing here would end it at once; a file that grows beyond a limit
+   (SIGXFSZ) is an error of whoever writes it. */
 static void block_signals(sigset_t *signals)
 {
+  static const int ends[] = {SIGINT, SIGTERM, SIGHUP},
+                   means_nothing[] = {SIGPIPE, SIGUSR1, SIGUSR2, SIGXFSZ, SIGALRM, SIGVTALRM, SIGPROF, SIGIO};
   sigemptyset(signals);
-  sigaddset(signals, SIGINT);
-  sigaddset(signals, SIGTERM);
+  for (size_t i = 0; i < sizeof ends / sizeof ends[0]; i++) {
+    struct sigaction action;
+    if (ends[i] != SIGHUP || sigaction(SIGHUP, NULL, &action) || action.sa_handler != SIG_IGN) /* nohup */
+      sigaddset(signals, ends[i]);
+  }
   pthread_sigmask(SIG_BLOCK, signals, NULL);
-  signal(SIGPIPE, SIG_IGN);
+  for (size_t i = 0; i < sizeof means_nothing / sizeof means_nothing[0]; i++)
+    signal(means_nothing[i], SIG_IGN);
 }
 
 /* Tells a service manager that waits for it that requests are answered (sd_notify(3): a datagram to $NOTIFY_SOCKET);
@@ -114,22 +120,27 @@ static enum eo_code serve(struct request *request, struct eo_error *error)
   sigset_t signals;
   struct eo_service *service = NULL;
   struct eo_http *http = NULL;
-  struct eo_service_settings settings = {.data = request->directory.data, .cache = request->cache.data};
-  enum eo_code code = read_threads(request, &settings.threads, error);
-  if (code)
-    return code;
+  const struct eo_serve_settings *own = &request->settings;
+  struct eo_service_settings settings = {.data = request->directory.data,
+                                         .cache = request->cache.data,
+                                         .program = "/proc/self/exe",
+                                         .threads = own->threads,
+                                         .limits = own->work};
   block_signals(&signals);
-  code = eo_service_new(&service, &settings, error);
-  struct eo_http_settings web = {.listen = request->listen ? request->listen : "127.0.0.1:8080",
+  enum eo_code code = eo_service_new(&service, &settings, error);
+  struct eo_http_settings web = {.listen = *own->listen ? own->listen : "127.0.0.1:8080",
                                  .token = request->token.data,
-                                 .allow_anyone = request->allow_anyone,
-                                 .host = {request->host},
+                                 .allow_anyone = own->allow_anyone,
+                                 .host = {or_null(own->host)},
                                  .pages = find_pages(request),
                                  .data = request->directory.data,
-                                 .quiet = request->quiet,
+                                 .quiet = own->quiet,
+                                 .limits = own->limits,
                                  .service = service};
   if (!code)
     code = eo_http_start(&http, &web, error);
+  if (request->token.data) /* its hash is all that is needed from here on */
+    explicit_bzero(request->token.data, request->token.size);
   if (!code)
     serve_until_told(http, service, &signals);
   eo_service_free(service);
@@ -141,9 +152,10 @@ static int run_request(struct request *request)
   struct eo_error error;
   enum eo_code code = read_token(request, &error);
   if (!code)
-    code = eo_app_data_directory(request->data, &request->directory, &error);
+    code = eo_app_data_directory(or_null(request->settings.data), &request->directory, &error);
   if (!code) {
-    eo_app_cache_directory(request->data, &request->cache);
+    if (!eo_app_cache_directory(or_null(request->settings.data), &request->cache))
+      eo_text_print(&request->cache, "%s/flexibility", request->directory.data);
     code = serve(request, &error);
   }
   eo_text_done(&request->token);
@@ -154,38 +166,33 @@ static int run_request(struct request *request)
 
 static int run(const struct eo_command *command, int argc, char **argv)
 {
-  struct request request = {0};
-  const char *none;
-  int operands, status;
-  const struct eo_option options[] = {{.name = "--listen", .value = &request.listen},
-                                      {.name = "--data", .value = &request.data},
-                                      {.name = "--token-file", .value = &request.token_file},
-                                      {.name = "--allow-anyone", .flag = &request.allow_anyone},
-                                      {.name = "--host", .value = &request.host},
-                                      {.name = "--web", .value = &request.pages},
-                                      {.name = "--threads", .value = &request.threads},
-                                      {.name = "--quiet", .flag = &request.quiet},
-                                      {.name = NULL}};
-  if (!eo_app_arguments(command, argc, argv, options, 0, 0, &none, &operands, &status))
-    return status;
-  return run_request(&request);
+  struct request *request = calloc(1, sizeof *request);
+  struct eo_error error;
+  int status;
+  if (!request)
+    return eo_app_fail(NULL, (eo_error_memory(&error), &error));
+  if (eo_serve_settings_read(command, argc, argv, &request->settings, &status))
+    status = run_request(request);
+  free(request);
+  return status;
 }
 
-const struct eo_command eo_command_serve = {"serve",
-                                            "[--listen ADDRESS:PORT] [--data DIR] [--token-file FILE | --allow-anyone] "
-                                            "[--host NAME] [--web DIR] [--threads N] [--quiet]",
-                                            "the page and the API, until SIGTERM or Ctrl-C",
-                                            "Listens at 127.0.0.1:8080 unless told otherwise; port 0 takes a free one. "
-                                            "The address is printed on standard output, one JSON line per\n"
-                                            "request goes to standard error (not with --quiet).\n\n"
-                                            "An address that others can reach needs a token, which every client then "
-                                            "has to give: the first line of --token-file, or\n"
-                                            "$EASEOFF_TOKEN. --allow-anyone does without. --host names the server as "
-                                            "clients call it, when that is neither localhost nor a\n"
-                                            "plain address and there is no token.\n\n"
-                                            "The page's files are read from --web DIR, else $EASEOFF_WEB, else where "
-                                            "they were installed.\n\n" EO_APP_HISTORY_HELP EO_APP_DATA_HELP
-                                            "A service manager that gives $NOTIFY_SOCKET hears when requests are "
-                                            "answered. On SIGTERM and Ctrl-C running jobs are parked; they go on\n"
-                                            "when the server starts again.\n",
-                                            run};
+const struct eo_command eo_command_serve = {
+    "serve",
+    "[--config FILE] [--listen ADDRESS:PORT] [--data DIR] [--token-file FILE | "
+    "--allow-anyone] [--host NAME] [--web DIR] [--threads N] [--quiet] [--KEY VALUE ...]",
+    "the page and the API, until SIGTERM or Ctrl-C",
+    "Listens at 127.0.0.1:8080 unless told otherwise; port 0 takes a free one. "
+    "The address is printed on standard output; requests, jobs\n"
+    "and errors go to standard error as JSON lines (with --quiet errors alone).\n\n"
+    "An address that others can reach needs a token, which every client then "
+    "has to give: the first line of --token-file, or\n"
+    "$EASEOFF_TOKEN. --allow-anyone does without. --host names the server as "
+    "clients call it, when that is neither localhost nor a\n"
+    "plain address and there is no token.\n\n"
+    "The page's files are read from --web DIR, else $EASEOFF_WEB, else where "
+    "they were installed.\n\n" EO_APP_HISTORY_HELP EO_APP_DATA_HELP
+    "A service manager that gives $NOTIFY_SOCKET hears when requests are "
+    "answered. On SIGTERM, SIGHUP and Ctrl-C running jobs are parked; they go on\n"
+    "when the server starts again.\n",
+    run};

@@ -11,6 +11,10 @@ enum eo_code {
   EO_ERROR_FILE,      /* reading or writing a file failed */
   EO_ERROR_NUMERIC,   /* a solver failed where the model says it cannot */
   EO_ERROR_CANCELLED, /* the caller asked to stop */
+  EO_ERROR_FULL,      /* there is no room on the disk: what is deleted makes some */
+  EO_ERROR_BUSY,      /* somebody else holds what is needed: the same may go well a moment later */
+  EO_ERROR_DAMAGED,   /* what was stored is not what was written */
+  EO_ERROR_LAST = EO_ERROR_DAMAGED,
 };
 
 struct eo_error {

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Questions about a design that are answered at once: checking it, analysing it, sweeping it. */
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,6 +12,7 @@
 #include "http/service_reply.h"
 #include "http/route.h"
 #include "http/http_private.h"
+#include "service/preparation.h"
 
 static json_t *encode_warnings(const struct eo_warnings *warnings)
 {
@@ -25,12 +27,19 @@ static void check(struct eo_request *request)
   struct eo_design design;
   struct eo_geometry geometry;
   struct eo_warnings warnings = {0};
+  struct eo_error error;
+  struct eo_preparation_cost cost;
   const json_t *body = eo_request_json(request);
-  if (body && eo_request_design(request, body, "", &design, &geometry, &warnings))
+  if (!body || !eo_request_design(request, body, "", &design, &geometry, &warnings))
+    return;
+  if (eo_preparation_cost_of(&design, &cost, &error))
+    eo_reply_error(&request->reply, "", &error);
+  else
     eo_reply_json(&request->reply, 200,
-                  json_pack("{s:o, s:o, s:o, s:b}", "design", eo_design_encode(&design), "geometry",
+                  json_pack("{s:o, s:o, s:o, s:b, s:{s:f, s:f}}", "design", eo_design_encode(&design), "geometry",
                             eo_table_encode(&eo_geometry_table, &geometry), "warnings", encode_warnings(&warnings),
-                            "prepared", eo_service_is_prepared(request->http->service, &design)));
+                            "prepared", eo_service_is_prepared(request->http->service, &design), "preparation",
+                            "memory_MB", round(cost.memory / 1e6), "seconds", 0.1 * ceil(10 * cost.seconds)));
 }
 
 static void put_analysis(struct eo_request *request, const struct eo_design *design, const struct eo_warnings *warnings)

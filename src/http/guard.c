@@ -2,7 +2,6 @@
 #include "http/guard.h"
 
 #include <math.h>
-#include <netinet/in.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
@@ -10,41 +9,60 @@
 #include "base/clock.h"
 #include "http/connection.h"
 #include "http/http_private.h"
+#include "http/log.h"
 
 const char eo_guard_cookie[] = "easeoff_session";
 
 enum eo_code eo_guard_new(struct eo_guard **result, const struct eo_http_settings *settings, struct eo_error *error)
 {
+  const struct eo_http_limits *limits = &settings->limits;
   struct eo_guard *guard = calloc(1, sizeof *guard);
-  struct eo_hash hash;
   if (!guard)
     return eo_error_memory(error);
-  guard->token = settings->token && *settings->token ? settings->token : NULL;
+  guard->asks = settings->token && *settings->token;
+  if (guard->asks)
+    eo_hash_hex(settings->token, strlen(settings->token), guard->token);
   guard->host = settings->host;
-  eo_hash_init(&hash);
-  eo_hash_add_text(&hash, "easeoff session", guard->token ? guard->token : "");
-  eo_hash_finish(&hash, guard->session);
+  guard->rate[EO_RATE_QUESTION] = (struct eo_rate_limit){limits->questions_at_once, limits->questions_per_second};
+  guard->rate[EO_RATE_START] = (struct eo_rate_limit){limits->starts_at_once, limits->starts_per_second};
+  guard->rate[EO_RATE_WRONG] = (struct eo_rate_limit){limits->wrong_tokens_per_minute,
+                                                      limits->wrong_tokens_per_minute / 60};
   *result = guard;
   return EO_OK;
 }
 
-static bool bears_token(const struct eo_request *request, const char *token)
+bool eo_guard_is_token(const struct eo_guard *guard, const char *text)
+{
+  char hash[EO_HASH_LENGTH + 1];
+  eo_hash_hex(text, strlen(text), hash);
+  return eo_field_equal_secret(hash, guard->token);
+}
+
+/* What stands behind "Bearer "; NULL: nothing. */
+static const char *find_bearer(const struct eo_request *request)
 {
   const char *given = eo_request_header(request, "Authorization");
-  return given && strncasecmp(given, "Bearer ", 7) == 0 && eo_field_equal_secret(given + 7, token);
+  return given && strncasecmp(given, "Bearer ", 7) == 0 ? given + 7 : NULL;
 }
 
-static bool has_session(const struct eo_request *request, const char *session)
+static bool has_session(const struct eo_request *request)
 {
-  char given[EO_HASH_LENGTH + 8];
+  char given[EO_SESSION_NAME + 8];
   return eo_field_cookie(eo_request_header(request, "Cookie"), eo_guard_cookie, given, sizeof given) &&
-         eo_field_equal_secret(given, session);
+         eo_session_holds(&request->http->guard->sessions, given);
 }
 
-bool eo_guard_knows(const struct eo_request *request)
+bool eo_guard_knows(struct eo_request *request)
 {
   const struct eo_guard *guard = request->http->guard;
-  return !guard->token || bears_token(request, guard->token) || has_session(request, guard->session);
+  const char *bearer = find_bearer(request);
+  if (!guard->asks)
+    return true;
+  if (bearer && eo_guard_is_token(guard, bearer))
+    request->user = "token";
+  else if (has_session(request))
+    request->user = "session";
+  return strcmp(request->user, "-") != 0;
 }
 
 static bool is_own_name(const struct eo_guard *guard, const char *host)
@@ -62,7 +80,7 @@ static bool host_is_right(const struct eo_request *request)
   char host[256];
   const char *header = eo_request_header(request, "Host");
   const struct eo_guard *guard = request->http->guard;
-  return header && eo_field_host(header, host, sizeof host) && (guard->token || is_own_name(guard, host));
+  return header && eo_field_host(header, host, sizeof host) && (guard->asks || is_own_name(guard, host));
 }
 
 /* A browser says where a request comes from; a script says nothing. */
@@ -85,26 +103,28 @@ bool eo_guard_admits(struct eo_request *request)
                      "This server does not answer under that name; --host NAME adds one.");
   else if ((request->method & (EO_POST | EO_PUT | EO_DELETE)) && is_cross_site(request))
     eo_reply_problem(&request->reply, 403, "cross-site", "A page of another site may not change anything here.");
-  else if (request->route && !request->route->open && !eo_guard_knows(request)) {
+  else if (eo_guard_knows(request) || !request->route || request->route->open)
+    return true;
+  else if (find_bearer(request))
+    eo_guard_refuse_token(request);
+  else {
     eo_reply_problem(&request->reply, 401, NULL, "This server asks for its token.");
     request->reply.authenticate = true;
-  } else
-    return true;
+  }
   return false;
 }
 
-/* What may come at once, and how many more every second. */
-static const struct {
-  double burst, per_second;
-} rates[EO_RATE_KINDS] = {{0, 0}, {400, 100}, {100, 2}};
-
-static void address_of(const struct sockaddr_storage *address, unsigned char key[16])
+void eo_guard_refuse_token(struct eo_request *request)
 {
-  memset(key, 0, 16);
-  if (address->ss_family == AF_INET)
-    memcpy(key, &((const struct sockaddr_in *)address)->sin_addr, 4);
-  else if (address->ss_family == AF_INET6)
-    memcpy(key, &((const struct sockaddr_in6 *)address)->sin6_addr, 8); /* a client has a whole /64 */
+  if (!eo_guard_spends(request, EO_RATE_WRONG))
+    request->reply.close = true;
+  else if (find_bearer(request)) {
+    eo_reply_problem(&request->reply, 401, "wrong-token", "That is not this server's token.");
+    request->reply.authenticate = true;
+  } else
+    eo_reply_problem(&request->reply, 403, "wrong-token", "That is not this server's token.");
+  eo_log_event(request->http->log, EO_LOG_WARNING, "wrong-token", "%s gave a token that is not this server's.",
+               request->client);
 }
 
 /* The address's row, or the one that was used longest ago. */
@@ -120,26 +140,25 @@ static struct eo_allowance *find_allowance(struct eo_guard *guard, const unsigne
   }
   memcpy(oldest->address, key, 16);
   for (int k = 0; k < EO_RATE_KINDS; k++)
-    oldest->left[k] = rates[k].burst;
+    oldest->left[k] = guard->rate[k].burst;
   oldest->at = 0;
   return oldest;
 }
 
 bool eo_guard_spends(struct eo_request *request, enum eo_rate rate)
 {
-  unsigned char key[16];
   double now = 1e-3 * eo_clock_milliseconds();
   if (rate == EO_RATE_FREE)
     return true;
-  address_of(&request->place->address, key);
-  struct eo_allowance *row = find_allowance(request->http->guard, key);
+  const struct eo_rate_limit *limit = request->http->guard->rate;
+  struct eo_allowance *row = find_allowance(request->http->guard, request->client_key);
   double passed = row->at > 0 ? now - row->at : 0;
   for (int k = 0; k < EO_RATE_KINDS; k++)
-    row->left[k] = fmin(row->left[k] + passed * rates[k].per_second, rates[k].burst);
+    row->left[k] = fmin(row->left[k] + passed * limit[k].per_second, limit[k].burst);
   row->at = now;
   if (row->left[rate] < 1) {
     eo_reply_problem(&request->reply, 429, NULL, "That is more than one client may ask for at once.");
-    request->reply.retry_after = (int)ceil((1 - row->left[rate]) / rates[rate].per_second);
+    request->reply.retry_after = (int)ceil((1 - row->left[rate]) / limit[rate].per_second);
     return false;
   }
   row->left[rate] -= 1;

@@ -7,11 +7,12 @@
 #include <stdbool.h>
 
 #include "base/error.h"
+#include "http/limits.h"
 #include "service/service.h"
 
 struct eo_http;
 
-enum { EO_HTTP_HOSTS = 8, EO_TOKEN_BYTES = 200 }; /* of a token, with its end */
+enum { EO_HTTP_HOSTS = 8, EO_LEAST_TOKEN = 16, EO_TOKEN_BYTES = 200 }; /* characters of a token; bytes, with its end */
 
 struct eo_http_settings {
   const char *listen;              /* "127.0.0.1:8080", "[::1]:0"; a port of 0 takes a free one */
@@ -22,7 +23,8 @@ struct eo_http_settings {
   const char *pages;               /* folder of the page's files; NULL: none */
   const char *data;                /* folder of the database */
   bool quiet;                      /* no line per request on standard error */
-  struct eo_service *service;      /* borrowed; outlives the server */
+  struct eo_http_limits limits;
+  struct eo_service *service; /* borrowed; outlives the server */
 };
 
 /* Starts answering. Errors: EO_ERROR_INPUT (address, token), EO_ERROR_FILE (the address is taken, pages or database

@@ -8,15 +8,15 @@
 
 #include <microhttpd.h>
 
+#include "http/client.h"
 #include "http/http.h"
 
 enum {
   EO_MOST_CONNECTIONS = 4000,
-  EO_MOST_CONNECTIONS_OF_ONE = 1500, /* per address; a reverse proxy is one address */
-  EO_IDLE_SECONDS = 30,              /* between requests, for all header fields of one, for a pause in a body */
-  EO_BODY_SECONDS = 120,             /* for a whole body, and for the client to take a reply */
-  EO_SLOWEST_READER = 64 << 10,      /* bytes per second: a long reply has more time */
-  EO_PARTING_SECONDS = 3,            /* at a stop, for clients to take what they are owed */
+  EO_IDLE_SECONDS = 30,         /* between requests, for all header fields of one, for a pause in a body */
+  EO_BODY_SECONDS = 120,        /* for a whole body, and for the client to take a reply */
+  EO_SLOWEST_READER = 64 << 10, /* bytes per second: a long reply has more time */
+  EO_PARTING_SECONDS = 3,       /* at a stop, for clients to take what they are owed */
   EO_HEARTBEAT_SECONDS = 10,
   EO_MOST_BODIES = 128 << 20, /* bytes of all bodies at once */
   EO_DRAINED = 64 << 10,      /* bytes of a refused body that are read so that the connection can go on */
@@ -26,6 +26,7 @@ struct eo_background;
 struct eo_connection;
 struct eo_documents;
 struct eo_guard;
+struct eo_log;
 struct eo_pages;
 struct eo_route;
 struct eo_store;
@@ -40,12 +41,14 @@ struct eo_http {
   double started;   /* ms */
   uint64_t run;     /* first half of request ids */
   struct eo_service *service;
-  struct eo_store *store;               /* of the HTTP thread */
-  struct eo_guard *guard;               /* of the HTTP thread but for its constants */
+  struct eo_store *store; /* of the HTTP thread */
+  struct eo_guard *guard; /* of the HTTP thread but for its constants */
+  struct eo_log *log;
+  struct eo_proxies proxies;
   const struct eo_route *const *routes; /* NULL after the last table */
   struct eo_background *aside;
   struct eo_background *readings; /* reads the rig files that were uploaded */
-  int uploads;                    /* on their way; HTTP thread */
+  struct eo_upload *uploads;      /* on their way; HTTP thread */
   struct eo_pages *pages;
   struct eo_documents *documents; /* made once: OpenAPI, field tables, examples */
   size_t bodies;                  /* bytes of bodies in memory; HTTP thread */

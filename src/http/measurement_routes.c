@@ -187,7 +187,6 @@ const struct eo_route eo_routes_measurements[] = {
      .form = true,
      .gives = "201 Measurement, 200 Measurement",
      .rate = EO_RATE_QUESTION,
-     .body = EO_UPLOAD_BYTES,
      .summary = "A recording of two encoders: one file, or the pinion's and then the gear's. 200 when it is known "
                 "already; 422 with the findings when "
                 "it gives no result, and nothing is kept then."},

@@ -7,6 +7,7 @@
 #include <microhttpd.h>
 
 #include "format/json.h"
+#include "http/log.h"
 
 void eo_reply_text(struct eo_reply *reply, unsigned status, const char *type, struct eo_text *text)
 {
@@ -120,9 +121,24 @@ void eo_reply_error(struct eo_reply *reply, const char *path, const struct eo_er
   } else if (error->code == EO_ERROR_MEMORY) {
     put_problem(reply, 503, NULL, "There is not enough memory at the moment.", NULL);
     reply->retry_after = 5;
+  } else if (error->code == EO_ERROR_FULL) {
+    eo_log_event(reply->log, EO_LOG_ERROR, "full", "%s: %s", reply->request, error->text);
+    put_problem(reply, 507, "full",
+                "The server's disk is full; what was saved before is kept, and what is deleted makes room.", NULL);
+  } else if (error->code == EO_ERROR_BUSY) {
+    eo_log_event(reply->log, EO_LOG_WARNING, "locked", "%s: %s", reply->request, error->text);
+    put_problem(reply, 503, "locked", "Another program keeps the server's database locked.", NULL);
+    reply->retry_after = 1;
+  } else if (error->code == EO_ERROR_DAMAGED) {
+    eo_log_event(reply->log, EO_LOG_ERROR, "damaged", "%s: %s", reply->request, error->text);
+    put_problem(
+        reply, 500, "damaged",
+        "What is stored there is damaged and is not given out; `easeoff doctor` says what is lost and what can be "
+        "computed again.",
+        NULL);
   } else if (error->code == EO_ERROR_FILE) {
-    fprintf(stderr, "easeoff: %s: %s\n", reply->request,
-            error->text); /* it names files of this machine: not for the client */
+    /* it names files of this machine: not for the client */
+    eo_log_event(reply->log, EO_LOG_ERROR, "storage", "%s: %s", reply->request, error->text);
     put_problem(reply, 500, "storage",
                 "The server's data cannot be read or written; its log says more under the request's id.", NULL);
   } else

@@ -12,19 +12,21 @@
 #include "format/text.h"
 
 struct MHD_Response;
+struct eo_log;
 struct eo_resource;
 
 enum { EO_TAG = 70 };
 
 struct eo_reply {
   const char *request;                            /* its id, borrowed; it stands in problems */
+  struct eo_log *log;                             /* borrowed; NULL: none */
   unsigned status;                                /* 0: there is no reply yet */
   const char *type;                               /* literal */
   struct eo_text body;                            /* owned */
   const struct eo_resource *resource;             /* in place of the body: borrowed from the server */
   struct MHD_Response *stream;                    /* in place of the body: owned until it is queued */
   char tag[EO_TAG];                               /* ETag without quotes; "": none */
-  char location[128], file_name[80], cookie[160]; /* "": none */
+  char location[240], file_name[80], cookie[320]; /* "": none */
   int retry_after;                                /* s; 0: none */
   unsigned allow;                                 /* methods; 0: no Allow */
   bool authenticate, revalidate; /* WWW-Authenticate; the client may keep a copy and ask whether it still holds */

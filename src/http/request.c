@@ -7,6 +7,7 @@
 
 #include "base/clock.h"
 #include "format/json.h"
+#include "http/connection.h"
 #include "http/http_private.h"
 #include "http/resource.h"
 
@@ -34,6 +35,24 @@ static unsigned method_of(const char *name, bool *head)
   return 0;
 }
 
+static void name_client(struct eo_request *request)
+{
+  struct eo_client client = eo_client_of(&request->http->proxies, &request->place->address,
+                                         eo_request_header(request, "X-Forwarded-For"),
+                                         eo_request_header(request, "X-Forwarded-Proto"));
+  memcpy(request->client, client.text, sizeof request->client);
+  memcpy(request->client_key, client.key, sizeof request->client_key);
+  request->secure = client.secure;
+}
+
+/* The path as the table of routes knows it: a proxy may hand on the path under which it shows the server, or not. */
+static const char *below_base(const struct eo_http *http, const char *path)
+{
+  const char *base = http->settings.limits.base_path;
+  size_t length = strlen(base);
+  return length && strncmp(path, base, length) == 0 && path[length] == '/' ? path + length : path;
+}
+
 struct eo_request *eo_request_new(struct eo_http *http, struct MHD_Connection *connection, const char *path,
                                   const char *method)
 {
@@ -46,7 +65,7 @@ struct eo_request *eo_request_new(struct eo_http *http, struct MHD_Connection *c
   request->connection = connection;
   request->place = info ? info->socket_context : NULL;
   request->started = eo_clock_milliseconds();
-  request->path = strdup(path);
+  request->path = strdup(below_base(http, path));
   request->method_name = strdup(method);
   if (!request->place || !request->path || !request->method_name) {
     eo_request_free(request);
@@ -54,6 +73,9 @@ struct eo_request *eo_request_new(struct eo_http *http, struct MHD_Connection *c
   }
   request->method = method_of(method, &request->head);
   request->reply.request = request->id;
+  request->reply.log = http->log;
+  request->user = "-";
+  name_client(request);
   snprintf(request->id, sizeof request->id, "%08x%08x", (unsigned)(http->run & 0xffffffff),
            (unsigned)(++http->requests & 0xffffffff));
   return request;

@@ -9,6 +9,7 @@
 
 #include "document/design_document.h"
 #include "format/text.h"
+#include "http/client.h"
 #include "http/header_field.h"
 #include "http/reply.h"
 
@@ -32,6 +33,10 @@ struct eo_request {
   char *method_name, *path; /* owned */
   unsigned method;          /* one of enum eo_method; 0: none that is known */
   bool head;
+  char client[EO_CLIENT_TEXT]; /* address of who asks, as the proxy says where there is one */
+  unsigned char client_key[16];
+  bool secure;                     /* he speaks TLS with a proxy */
+  const char *user;                /* "token", "session", or "-" */
   const struct eo_route *route;    /* NULL: a page, or nothing */
   char argument[EO_ARGUMENTS][64]; /* what stood in the places of the pattern */
   bool csv;                        /* asked for by Accept or by the suffix */

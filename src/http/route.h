@@ -10,7 +10,7 @@
 enum { EO_MOST_QUERIES = 6, EO_MOST_ANSWERS = 10 };
 
 /* What a request costs of what an address may start (guard.h). */
-enum eo_rate { EO_RATE_FREE, EO_RATE_QUESTION, EO_RATE_START, EO_RATE_KINDS };
+enum eo_rate { EO_RATE_FREE, EO_RATE_QUESTION, EO_RATE_START, EO_RATE_WRONG, EO_RATE_KINDS };
 
 /* A query parameter: a whole number, or one word of a list. */
 struct eo_query {

@@ -124,11 +124,18 @@ static const struct eo_outline_row form_rows[] = {
 };
 static const struct eo_outline form = EO_OUTLINE("Form", form_rows);
 
+static const struct eo_outline_row cost_rows[] = {
+    EO_KEY("memory_MB", "number", "estimated, at the most crowded moment"),
+    EO_KEY("seconds", "number", "estimated, of one processor"),
+};
+static const struct eo_outline cost = EO_OUTLINE("PreparationCost", cost_rows);
+
 static const struct eo_outline_row check_rows[] = {
     EO_KEY("design", "object", "with every default resolved", .name = "ResolvedDesign"),
     EO_KEY("geometry", "object", "macro-geometry", .name = "Geometry"),
     EO_KEY("warnings", "[text]", "in plain words"),
     EO_KEY("prepared", "flag", "an analysis would be answered at once"),
+    EO_KEY("preparation", "object", "what preparing the pair takes, where it is not kept already", .outline = &cost),
 };
 static const struct eo_outline check = EO_OUTLINE("Check", check_rows);
 

@@ -44,10 +44,13 @@ static void add_safety(struct MHD_Response *response, const struct eo_request *r
 static void add_headers(struct MHD_Response *response, const struct eo_request *request)
 {
   const struct eo_reply *reply = &request->reply;
-  char text[200];
+  char text[400];
   add(response, "X-Request-Id", request->id);
   add(response, "Content-Type", reply->type);
-  add(response, "Location", reply->location);
+  if (*reply->location) {
+    snprintf(text, sizeof text, "%s%s", request->http->settings.limits.base_path, reply->location);
+    add(response, "Location", text);
+  }
   add(response, "Set-Cookie", reply->cookie);
   add(response, "Cache-Control",
       reply->resource && reply->resource->lasting ? "public, max-age=31536000, immutable"

@@ -17,8 +17,10 @@
 #include "http/connection.h"
 #include "http/deferred.h"
 #include "http/documents.h"
+#include "http/framing.h"
 #include "http/guard.h"
 #include "http/log.h"
+#include "http/request_log.h"
 #include "http/pages.h"
 #include "http/routes.h"
 #include "http/send.h"
@@ -36,6 +38,8 @@ static bool is_for_api(const char *path)
 /* What can be said before the body is read; a reply is made when the answer is no. */
 static void look_at(struct eo_request *request)
 {
+  if (!eo_framing_is_sound(request))
+    return;
   if (!eo_field_path_is_plain(request->path))
     eo_reply_problem(&request->reply, 400, NULL, "The address is malformed.");
   else if (!is_for_api(request->path) && !(request->method & (EO_GET | EO_OPTIONS))) {
@@ -53,9 +57,12 @@ static void look_at_body(struct eo_request *request)
   if (length && !eo_field_integer(length, &size))
     size = INT64_MAX;
   bool has_body = size > 0 || eo_request_header(request, "Transfer-Encoding");
-  request->body_limit = !route ? 0 : route->body ? route->body : EO_JSON_DESIGN_BYTES;
+  request->body_limit = !route        ? 0
+                        : route->form ? (size_t)(1e6 * request->http->settings.limits.upload_MB)
+                        : route->body ? route->body
+                                      : EO_JSON_DESIGN_BYTES;
   if (has_body)
-    eo_connection_allow(request->http, request->place, EO_BODY_SECONDS);
+    eo_connection_allow(request->http, request->place, route && route->form ? EO_IDLE_SECONDS : EO_BODY_SECONDS);
   const char *expected = route && route->form ? "multipart/form-data" : "application/json";
   if (!request->reply.status && has_body && route && route->takes && type &&
       strncasecmp(type, expected, strlen(expected)) != 0)
@@ -65,7 +72,7 @@ static void look_at_body(struct eo_request *request)
   if (!request->reply.status && route && route->form)
     eo_upload_begin(request, size);
   /* A reply before the body costs the connection; a small body is read and thrown away instead. */
-  request->reply.close = request->reply.status && size > EO_DRAINED;
+  request->reply.close = request->reply.close || (request->reply.status && size > EO_DRAINED);
 }
 
 static void count_active(struct eo_http *http, int change)
@@ -172,8 +179,7 @@ static void complete(void *context, struct MHD_Connection *connection, void **pl
   if (!request)
     return;
   eo_connection_allow(http, request->place, EO_IDLE_SECONDS);
-  if (!http->settings.quiet)
-    eo_log_request(request);
+  eo_log_request(request);
   http->bodies -= request->held;
   count_active(http, -1);
   eo_upload_free(request);
@@ -186,8 +192,12 @@ static enum eo_code check_access(const struct eo_http_settings *settings, struct
   bool loopback;
   enum eo_code code = eo_listen_is_loopback(settings->listen, &loopback, error);
   bool token = settings->token && *settings->token;
-  if (!code && token && !eo_field_is_visible(settings->token, EO_TOKEN_BYTES))
-    code = eo_error_set(error, EO_ERROR_INPUT, "", "The token must be 1 to 199 printable characters without blanks.");
+  if (!code && token &&
+      (!eo_field_is_visible(settings->token, EO_TOKEN_BYTES) || strlen(settings->token) < EO_LEAST_TOKEN))
+    code = eo_error_set(error, EO_ERROR_INPUT, "",
+                        "The token must be %d to %d printable characters without blanks, for instance what `openssl "
+                        "rand -hex 20` prints.",
+                        EO_LEAST_TOKEN, EO_TOKEN_BYTES - 1);
   if (!code && !loopback && !token && !settings->allow_anyone)
     code = eo_error_set(
         error, EO_ERROR_INPUT, "",
@@ -220,6 +230,13 @@ static void ignore_messages(void *context, const char *format, va_list arguments
   (void)arguments;
 }
 
+/* A proxy is one address for the library: how many connections it may have is for the proxy to say. */
+static unsigned find_most_of_one(const struct eo_http *http, unsigned most)
+{
+  unsigned of_one = (unsigned)http->settings.limits.connections_per_client;
+  return http->proxies.count || most < of_one ? most : of_one;
+}
+
 static enum eo_code start_daemon(struct eo_http *http, bool version6, struct eo_error *error)
 {
   unsigned most = allow_descriptors();
@@ -227,9 +244,9 @@ static enum eo_code start_daemon(struct eo_http *http, bool version6, struct eo_
       MHD_USE_EPOLL_INTERNAL_THREAD | MHD_ALLOW_SUSPEND_RESUME | MHD_USE_ERROR_LOG | (version6 ? MHD_USE_IPv6 : 0u), 0,
       NULL, NULL, handle, http, MHD_OPTION_EXTERNAL_LOGGER, ignore_messages, NULL, MHD_OPTION_LISTEN_SOCKET,
       http->socket, MHD_OPTION_NOTIFY_COMPLETED, complete, http, MHD_OPTION_NOTIFY_CONNECTION, eo_connection_notify,
-      http, MHD_OPTION_CONNECTION_LIMIT, most, MHD_OPTION_PER_IP_CONNECTION_LIMIT,
-      most < EO_MOST_CONNECTIONS_OF_ONE ? most : EO_MOST_CONNECTIONS_OF_ONE, MHD_OPTION_CONNECTION_TIMEOUT,
-      (unsigned)EO_IDLE_SECONDS, MHD_OPTION_STRICT_FOR_CLIENT, 1, MHD_OPTION_END);
+      http, MHD_OPTION_CONNECTION_LIMIT, most, MHD_OPTION_PER_IP_CONNECTION_LIMIT, find_most_of_one(http, most),
+      MHD_OPTION_CONNECTION_TIMEOUT, (unsigned)EO_IDLE_SECONDS, MHD_OPTION_STRICT_FOR_CLIENT, 1,
+      MHD_OPTION_UNESCAPE_CALLBACK, eo_framing_unescape, NULL, MHD_OPTION_END);
   if (!http->daemon)
     return eo_error_set(error, EO_ERROR_MEMORY, "", "The HTTP server cannot be started.");
   return EO_OK;
@@ -259,6 +276,7 @@ static void done(struct eo_http *http)
   eo_pages_free(http->pages);
   eo_documents_free(http->documents);
   eo_store_close(http->store);
+  eo_log_free(http->log);
   if (http->socket >= 0)
     close(http->socket);
   pthread_cond_destroy(&http->changed);
@@ -282,6 +300,8 @@ static enum eo_code open_all(struct eo_http *http, struct eo_error *error)
 {
   const struct eo_http_settings *settings = &http->settings;
   EO_TRY(check_access(settings, error));
+  EO_TRY(eo_log_new(&http->log, settings->quiet ? EO_LOG_ERROR : (enum eo_log_level)settings->limits.log_level, error));
+  EO_TRY(eo_proxies_read(&http->proxies, settings->limits.trusted_proxies, error));
   EO_TRY(eo_guard_new(&http->guard, settings, error));
   EO_TRY(eo_store_open(&http->store, settings->data, EO_STORE_WRITE, error));
   EO_TRY(tidy(http, error));

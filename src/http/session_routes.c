@@ -11,9 +11,8 @@
 
 static void tell(struct eo_request *request)
 {
-  eo_reply_json(
-      &request->reply, 200,
-      json_pack("{s:b, s:b}", "required", request->http->guard->token != NULL, "authorized", eo_guard_knows(request)));
+  eo_reply_json(&request->reply, 200,
+                json_pack("{s:b, s:b}", "required", request->http->guard->asks, "authorized", eo_guard_knows(request)));
 }
 
 struct order {
@@ -29,28 +28,39 @@ static const struct eo_field order_fields[] = {
 };
 static const struct eo_table order_table = EO_TABLE("a token", struct order, order_fields);
 
+/* Behind TLS the browser keeps it for TLS alone. */
+static void put_cookie(struct eo_request *request, const char *name, long seconds)
+{
+  snprintf(request->reply.cookie, sizeof request->reply.cookie,
+           "%s=%s; Path=%s/; HttpOnly; SameSite=Strict; Max-Age=%ld%s", eo_guard_cookie, name,
+           request->http->settings.limits.base_path, seconds, request->secure ? "; Secure" : "");
+  eo_reply_empty(&request->reply, 204);
+}
+
 static void begin(struct eo_request *request)
 {
-  const struct eo_guard *guard = request->http->guard;
+  struct eo_guard *guard = request->http->guard;
   struct order order;
+  char name[EO_SESSION_NAME + 1];
+  double seconds = 3600 * request->http->settings.limits.session_hours;
   if (!eo_body_read(request, &order))
     return;
-  if (!guard->token)
+  if (!guard->asks)
     eo_reply_empty(&request->reply, 204);
-  else if (!eo_field_equal_secret(order.token, guard->token))
-    eo_reply_problem(&request->reply, 403, "wrong-token", "That is not this server's token.");
-  else {
-    snprintf(request->reply.cookie, sizeof request->reply.cookie, "%s=%s; Path=/; HttpOnly; SameSite=Strict",
-             eo_guard_cookie, guard->session);
-    eo_reply_empty(&request->reply, 204);
-  }
+  else if (!eo_guard_is_token(guard, order.token))
+    eo_guard_refuse_token(request);
+  else if (!eo_session_begin(&guard->sessions, seconds, name))
+    eo_reply_problem(&request->reply, 503, NULL, "The system has no random numbers at the moment.");
+  else
+    put_cookie(request, name, (long)seconds);
 }
 
 static void end(struct eo_request *request)
 {
-  snprintf(request->reply.cookie, sizeof request->reply.cookie, "%s=; Path=/; HttpOnly; SameSite=Strict; Max-Age=0",
-           eo_guard_cookie);
-  eo_reply_empty(&request->reply, 204);
+  char name[EO_SESSION_NAME + 8];
+  if (eo_field_cookie(eo_request_header(request, "Cookie"), eo_guard_cookie, name, sizeof name))
+    eo_session_end(&request->http->guard->sessions, name);
+  put_cookie(request, "", 0);
 }
 
 const struct eo_route eo_routes_session[] = {
@@ -66,7 +76,6 @@ const struct eo_route eo_routes_session[] = {
      .handle = begin,
      .name = "beginSession",
      .open = true,
-     .rate = EO_RATE_START,
      .body = 4096,
      .summary = "Gives the token and gets a cookie for it, as the page does; scripts send Authorization: Bearer TOKEN.",
      .takes = "Token",
@@ -77,6 +86,6 @@ const struct eo_route eo_routes_session[] = {
      .handle = end,
      .name = "endSession",
      .open = true,
-     .summary = "Forgets the cookie.",
+     .summary = "Ends the session and forgets its cookie.",
      .gives = "204 -"},
     {0}};

@@ -147,7 +147,7 @@ static void open_stream(struct eo_stream *stream)
 static bool enlist(struct eo_http *http, struct eo_stream *stream)
 {
   pthread_mutex_lock(&http->lock);
-  bool room = !http->closing && http->stream_count < EO_MOST_STREAMS;
+  bool room = !http->closing && http->stream_count < http->settings.limits.streams;
   if (room) {
     stream->after = http->streams;
     if (stream->after)

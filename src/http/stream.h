@@ -7,7 +7,7 @@
 #include "http/request.h"
 
 /* Bytes that one client, once its stream is open, and all of them may leave unread. */
-enum { EO_STREAM_BACKLOG = 1 << 20, EO_MOST_BACKLOG = 128 << 20, EO_MOST_STREAMS = 1000 };
+enum { EO_STREAM_BACKLOG = 1 << 20, EO_MOST_BACKLOG = 128 << 20 };
 
 /* Makes the reply a stream of the events of one job, or of all (0), after the number `after`. */
 void eo_stream_open(struct eo_request *request, int64_t job, int64_t after);

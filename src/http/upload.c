@@ -17,7 +17,12 @@
 #include "http/route.h"
 #include "http/http_private.h"
 
-enum { BUFFER = 64 << 10, SLOWEST = 64 << 10 }; /* bytes; bytes per second */
+enum {
+  BUFFER = 64 << 10,
+  SLOWEST = 4 << 10,  /* bytes per second that an upload has to bring on average, */
+  GRACE = 10,         /* s, after these; what is saved up counts up to EO_IDLE_SECONDS */
+  PROMISE = 16 << 20, /* bytes between questions for room while nobody knows how much comes */
+};
 
 /* A file's name without folders of any system, in one line, within its place. */
 static void clean_name(char *target, size_t size, const char *name)
@@ -153,51 +158,116 @@ static enum MHD_Result take_part(void *context, enum MHD_ValueKind kind, const c
   return upload->in_file ? add_to_file(request, data, size) : add_to_field(request, data, size);
 }
 
-static bool has_room(struct eo_request *request, const struct eo_upload *upload, int64_t size)
+/* Bytes that uploads on their way may come to, and those that they may still write. */
+static int64_t find_promised(const struct eo_http *http, int64_t *missing)
 {
+  int64_t sum = 0;
+  *missing = 0;
+  for (const struct eo_upload *upload = http->uploads; upload; upload = upload->next) {
+    int64_t written = 0;
+    for (int i = 0; i < upload->files; i++)
+      written += upload->file[i].size;
+    sum += upload->promised;
+    *missing += upload->promised > written ? upload->promised - written : 0;
+  }
+  return sum;
+}
+
+/* Whether the disk, and what the limits say of recordings, has room for all that is promised. */
+static bool has_room(struct eo_request *request, const struct eo_upload *upload)
+{
+  const struct eo_http_limits *limits = &request->http->settings.limits;
   struct statvfs disk;
   struct eo_error error;
-  int64_t kept;
+  int64_t kept, missing, promised = find_promised(request->http, &missing);
   if (eo_store_measured_bytes(request->store, &kept, &error)) {
     eo_reply_error(&request->reply, "", &error);
     return false;
   }
   bool free = statvfs(upload->folder, &disk) != 0 ||
-              (int64_t)disk.f_bavail * (int64_t)disk.f_frsize > size + EO_UPLOAD_SPARE_BYTES;
-  if (free && kept + size <= EO_UPLOADS_TOTAL_BYTES)
+              (double)disk.f_bavail * (double)disk.f_frsize > (double)missing + 1e6 * limits->spare_MB;
+  if (free && (double)(kept + promised) <= 1e9 * limits->recordings_GB)
     return true;
   refuse(request, 507, "The server has no room for more measurements.");
   return false;
 }
 
+static int count_uploads(const struct eo_http *http, const unsigned char *client)
+{
+  int count = 0;
+  for (const struct eo_upload *upload = http->uploads; upload; upload = upload->next)
+    count += !client || memcmp(upload->client, client, sizeof upload->client) == 0;
+  return count;
+}
+
+/* False: the reply says that there are too many. */
+static bool may_begin(struct eo_request *request)
+{
+  const struct eo_http_limits *limits = &request->http->settings.limits;
+  if (count_uploads(request->http, NULL) >= limits->uploads)
+    eo_reply_problem(&request->reply, 503, "busy", "%d uploads are on their way already.", limits->uploads);
+  else if (count_uploads(request->http, request->client_key) >= limits->uploads_per_client)
+    eo_reply_problem(&request->reply, 429, NULL, "%d uploads of this client are on their way already.",
+                     limits->uploads_per_client);
+  else
+    return true;
+  request->reply.retry_after = 5;
+  return false;
+}
+
+static void link_in(struct eo_request *request, struct eo_upload *upload)
+{
+  memcpy(upload->client, request->client_key, sizeof upload->client);
+  upload->next = request->http->uploads;
+  request->http->uploads = upload;
+}
+
+static void link_out(struct eo_http *http, const struct eo_upload *upload)
+{
+  struct eo_upload **link = &http->uploads;
+  while (*link != upload)
+    link = &(*link)->next;
+  *link = upload->next;
+}
+
 void eo_upload_begin(struct eo_request *request, int64_t size)
 {
   struct eo_error error;
-  if (request->http->uploads >= EO_MOST_UPLOADS) {
-    eo_reply_problem(&request->reply, 503, "busy", "%d uploads are on their way already.", EO_MOST_UPLOADS);
-    request->reply.retry_after = 5;
+  if (!may_begin(request))
     return;
-  }
   struct eo_upload *upload = calloc(1, sizeof *upload);
   if (!upload) {
     eo_reply_error(&request->reply, "", (eo_error_memory(&error), &error));
     return;
   }
   upload->output = -1;
+  upload->promised = size ? size : PROMISE;
   request->upload = upload;
-  request->http->uploads++;
+  link_in(request, upload);
   if (eo_measurement_folder_new(request->store, upload->folder, sizeof upload->folder, &error)) {
     *upload->folder = '\0';
     eo_reply_error(&request->reply, "", &error);
-  } else if (has_room(request, upload, size)) {
+  } else if (has_room(request, upload)) {
     upload->processor = MHD_create_post_processor(request->connection, BUFFER, take_part, request);
     if (!upload->processor)
       eo_reply_problem(&request->reply, 415, NULL, "The body must be multipart/form-data with a boundary.");
   }
 }
 
+/* Who does not say how much comes is asked for room a piece at a time. */
+static bool promise_more(struct eo_request *request)
+{
+  struct eo_upload *upload = request->upload;
+  if ((int64_t)request->received <= upload->promised)
+    return true;
+  upload->promised = (int64_t)request->received + PROMISE;
+  return has_room(request, upload);
+}
+
 void eo_upload_take(struct eo_request *request, const char *data, size_t size)
 {
+  if (!promise_more(request))
+    return;
   if (MHD_post_process(request->upload->processor, data, size) == MHD_NO)
     refuse(request, 400, "The body is no multipart/form-data.");
 }
@@ -219,9 +289,8 @@ bool eo_upload_end(struct eo_request *request)
 
 int eo_upload_patience(const struct eo_request *request)
 {
-  double left = EO_BODY_SECONDS + (double)request->received / SLOWEST -
-                1e-3 * (eo_clock_milliseconds() - request->started);
-  return left < 1 ? 1 : (int)left;
+  double left = GRACE + (double)request->received / SLOWEST - 1e-3 * (eo_clock_milliseconds() - request->started);
+  return left < 1 ? 1 : left > EO_IDLE_SECONDS ? EO_IDLE_SECONDS : (int)left;
 }
 
 void eo_upload_path(const struct eo_upload *upload, int file, char *path)
@@ -280,7 +349,7 @@ void eo_upload_free(struct eo_request *request)
     eo_measurement_folder_remove(upload->folder);
   for (int i = 0; i < upload->fields; i++)
     eo_text_done(&upload->field[i].value);
+  link_out(request->http, upload);
   free(upload);
   request->upload = NULL;
-  request->http->uploads--;
 }

@@ -13,12 +13,8 @@ enum {
   EO_UPLOAD_FIELDS = 12,
   EO_UPLOAD_PATH = 4096,
   EO_UPLOAD_FIELD_BYTES = 64 << 10,
-  EO_MOST_UPLOADS = 16,          /* on their way at once */
   EO_UPLOAD_DRAINED = 256 << 20, /* bytes of a refused upload that are read so that its sender hears why */
 };
-#define EO_UPLOAD_BYTES ((size_t)2 << 30)          /* of one body */
-#define EO_UPLOADS_TOTAL_BYTES ((int64_t)64 << 30) /* of all files that are kept */
-#define EO_UPLOAD_SPARE_BYTES ((int64_t)256 << 20) /* that stay free on the disk */
 
 struct eo_upload {
   struct MHD_PostProcessor *processor;
@@ -34,6 +30,9 @@ struct eo_upload {
   bool in_part, in_file; /* in_part: one has begun */
   char part[24];         /* name of the part that comes */
   size_t part_size;
+  int64_t promised;       /* bytes that the disk has to have room for */
+  struct eo_upload *next; /* of those on their way */
+  unsigned char client[16];
 };
 
 /* Before the body. A reply is made when it cannot be taken. size: what the client said, 0: nothing. */
@@ -48,7 +47,7 @@ bool eo_upload_end(struct eo_request *request);
 /* Where a file of the upload lies; path[EO_UPLOAD_PATH]. */
 void eo_upload_path(const struct eo_upload *upload, int file, char *path);
 
-/* Seconds that the rest of a body may take, so that who drips does not stay for ever. */
+/* Seconds that the rest of a body may take: who sends less than a few kB a second does not stay. */
 int eo_upload_patience(const struct eo_request *request);
 
 /* The parts that are no files as an object that the table can read: numbers and objects out of their texts, empty parts

@@ -235,8 +235,7 @@ static enum eo_code receive_end(const struct parent *p, struct eo_notes *notes, 
     eo_notes_add(notes, "%.*s", EO_NOTE_LENGTH - 1, noted.text[i]);
   if (verdict.code == EO_OK)
     return p->columns ? EO_OK : no_answer(ENDED, error);
-  return eo_error_set(error, verdict.code <= EO_ERROR_CANCELLED ? verdict.code : EO_ERROR_INPUT, "", "%s",
-                      verdict.text);
+  return eo_error_set(error, verdict.code <= EO_ERROR_LAST ? verdict.code : EO_ERROR_INPUT, "", "%s", verdict.text);
 }
 
 static enum eo_code receive_all(struct parent *p, struct eo_notes *notes, struct eo_error *error)

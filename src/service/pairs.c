@@ -8,6 +8,7 @@
 #include <time.h>
 
 #include "design/pair_identity.h"
+#include "service/cached_pairs.h"
 
 enum { MOST_ANALYSES = 4, LOOK_MS = 50 };
 
@@ -28,19 +29,16 @@ struct eo_pairs {
   pthread_mutex_t mutex;   /* guards everything below and in the list */
   pthread_cond_t prepared; /* a preparation ended */
   struct eo_held_pair *first;
-  char *cache;
-  int most;
+  struct eo_pairs_settings settings; /* strings borrowed */
   uint64_t uses;
 };
 
-enum eo_code eo_pairs_new(struct eo_pairs **result, const char *cache, int most, struct eo_error *error)
+enum eo_code eo_pairs_new(struct eo_pairs **result, const struct eo_pairs_settings *settings, struct eo_error *error)
 {
   struct eo_pairs *pairs = calloc(1, sizeof *pairs);
-  if (!pairs || (cache && !(pairs->cache = strdup(cache)))) {
-    free(pairs);
+  if (!pairs)
     return eo_error_memory(error);
-  }
-  pairs->most = most;
+  pairs->settings = *settings;
   pthread_mutex_init(&pairs->mutex, NULL);
   pthread_cond_init(&pairs->prepared, NULL);
   *result = pairs;
@@ -65,7 +63,6 @@ void eo_pairs_free(struct eo_pairs *pairs)
   }
   pthread_cond_destroy(&pairs->prepared);
   pthread_mutex_destroy(&pairs->mutex);
-  free(pairs->cache);
   free(pairs);
 }
 
@@ -107,7 +104,7 @@ static struct eo_held_pair *take_surplus(struct eo_pairs *pairs)
     if (held->pair && !held->users && (!oldest || held->used < oldest->used))
       oldest = held;
   }
-  if (count <= pairs->most || !oldest)
+  if (count <= pairs->settings.most || !oldest)
     return NULL;
   take_out(pairs, oldest);
   return oldest;
@@ -161,9 +158,14 @@ static enum eo_code prepare(struct eo_pairs *pairs, const struct eo_design *desi
 {
   struct preparation preparation = {pairs, held, progress};
   const struct eo_progress own = {report, &preparation};
-  const struct eo_pair_options options = {.cache_directory = pairs->cache};
+  const struct eo_preparation_settings *process = &pairs->settings.preparation;
+  const struct eo_pair_options options = {.cache_directory = process->cache};
   struct eo_pair *pair = NULL;
-  enum eo_code code = eo_pair_new(&pair, design, &options, &own, error);
+  enum eo_code code = process->program ? eo_preparation_run(process, design, &own, error) : EO_OK;
+  if (!code)
+    code = eo_pair_new(&pair, design, &options, &own, error);
+  if (!code)
+    eo_cached_pairs_use(process->cache, eo_flexibility_report(pair->flexibility)->key, pairs->settings.cache_bytes);
   pthread_mutex_lock(&pairs->mutex);
   if (code)
     take_out(pairs, held);

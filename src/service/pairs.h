@@ -7,13 +7,18 @@
 
 #include "base/hash.h"
 #include "evaluation/analysis.h"
+#include "service/preparation.h"
 
 struct eo_pairs;
 struct eo_held_pair; /* a reference: eo_pairs_release() gives it back */
 
-/* cache: folder of the flexibility cache, copied; NULL: none. most: pairs kept in memory; more only while they are
-   used. */
-enum eo_code eo_pairs_new(struct eo_pairs **pairs, const char *cache, int most, struct eo_error *error);
+struct eo_pairs_settings {
+  struct eo_preparation_settings preparation; /* strings borrowed for as long as the pairs live; cache NULL: none */
+  int most;                                   /* kept in memory; more only while they are used */
+  double cache_bytes;                         /* of all pairs that are kept on disk */
+};
+
+enum eo_code eo_pairs_new(struct eo_pairs **pairs, const struct eo_pairs_settings *settings, struct eo_error *error);
 void eo_pairs_free(struct eo_pairs *pairs); /* nothing may be held any more; NULL is fine */
 
 /* The key of the pair that a complete design needs (design/pair_identity.h). */

@@ -1,13 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "service/service_private.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "base/parallel.h"
 #include "store/lock.h"
 
-enum { ANALYSIS_THREADS = 2, MOST_QUEUED = 100, MOST_WAITING = 64, MOST_PAIRS = 4, SWEEP_NICE = 5 };
+enum { ANALYSIS_THREADS = 2, SWEEP_NICE = 5 };
 
 static int or_standard(int value, int standard)
 {
@@ -19,12 +21,23 @@ static bool resolve(struct eo_service_settings *own, const struct eo_service_set
   *own = *settings;
   own->threads = or_standard(settings->threads, eo_parallel_cores());
   own->analysis_threads = or_standard(settings->analysis_threads, ANALYSIS_THREADS);
-  own->most_queued = or_standard(settings->most_queued, MOST_QUEUED);
-  own->most_waiting = or_standard(settings->most_waiting, MOST_WAITING);
-  own->most_pairs = or_standard(settings->most_pairs, MOST_PAIRS);
+  if (!settings->limits.attempts) /* at least one in any table that was read */
+    eo_table_defaults(&eo_service_limits_table, &own->limits);
   own->data = strdup(settings->data);
   own->cache = settings->cache ? strdup(settings->cache) : NULL;
-  return own->data && (own->cache || !settings->cache);
+  own->program = settings->program ? strdup(settings->program) : NULL;
+  return own->data && (own->cache || !settings->cache) && (own->program || !settings->program);
+}
+
+struct eo_preparation_settings eo_service_preparation(const struct eo_service *s)
+{
+  const struct eo_service_limits *limits = &s->settings.limits;
+  double machine = (double)sysconf(_SC_PHYS_PAGES) * (double)sysconf(_SC_PAGESIZE);
+  return (struct eo_preparation_settings){.program = s->settings.cache ? s->settings.program : NULL,
+                                          .cache = s->settings.cache,
+                                          .memory = isnan(limits->pair_memory_MB) ? 0.5 * machine
+                                                                                  : 1e6 * limits->pair_memory_MB,
+                                          .seconds = 60 * limits->pair_minutes};
 }
 
 static enum eo_code open_store(struct eo_service *s, struct eo_error *error)
@@ -35,13 +48,25 @@ static enum eo_code open_store(struct eo_service *s, struct eo_error *error)
   EO_TRY(eo_store_claim_server(s->store, &taken, error));
   if (!taken)
     return eo_error_set(error, EO_ERROR_FILE, "", "Another server works on the data folder %.200s.", s->settings.data);
-  return eo_queue_recover(s->store, &queued, error);
+  struct eo_error why = {0};
+  struct eo_text fault = {0};
+  eo_error_set(
+      &why, EO_ERROR_NUMERIC, "",
+      "The server ended %d times in the middle of this job, which came no further: it may take more memory than "
+      "there is. It can be tried again.",
+      s->settings.limits.attempts);
+  eo_job_error_write(&why, &fault);
+  enum eo_code code = fault.failed
+                          ? eo_error_memory(error)
+                          : eo_queue_recover(s->store, s->settings.limits.attempts, fault.data, &queued, error);
+  eo_text_done(&fault);
+  return code;
 }
 
 static enum eo_code make_lanes(struct eo_service *s, struct eo_error *error)
 {
   struct eo_lane_settings settings = {.threads = s->settings.analysis_threads,
-                                      .most = s->settings.most_waiting,
+                                      .most = s->settings.limits.waiting_questions,
                                       .function = eo_service_run_task,
                                       .release = eo_service_release_task,
                                       .context = s};
@@ -85,7 +110,10 @@ static enum eo_code begin(struct eo_service *s, const struct eo_service_settings
   if (!resolve(&s->settings, settings))
     return eo_error_memory(error);
   EO_TRY(open_store(s, error));
-  EO_TRY(eo_pairs_new(&s->pairs, s->settings.cache, s->settings.most_pairs, error));
+  const struct eo_service_limits *limits = &s->settings.limits;
+  const struct eo_pairs_settings pairs = {
+      .preparation = eo_service_preparation(s), .most = limits->prepared_pairs, .cache_bytes = 1e9 * limits->cache_GB};
+  EO_TRY(eo_pairs_new(&s->pairs, &pairs, error));
   EO_TRY(eo_events_new(&s->events, error));
   EO_TRY(make_lanes(s, error));
   return make_workers(s, error);
@@ -145,6 +173,7 @@ void eo_service_free(struct eo_service *s)
   pthread_cond_destroy(&s->work);
   free((char *)s->settings.data);
   free((char *)s->settings.cache);
+  free((char *)s->settings.program);
   free(s);
 }
 
@@ -443,7 +472,7 @@ static enum eo_code add_job(struct eo_service *s, const struct eo_job_order *ord
       .fresh = order->fresh,
       .priority = order->priority};
   pthread_mutex_lock(&s->store_mutex);
-  enum eo_code code = eo_queue_add(s->store, &entry, s->settings.most_queued, id, outcome, error);
+  enum eo_code code = eo_queue_add(s->store, &entry, s->settings.limits.queued_jobs, id, outcome, error);
   pthread_mutex_unlock(&s->store_mutex);
   return code;
 }
@@ -453,6 +482,8 @@ static enum eo_code queue(struct eo_service *s, const struct eo_job_order *order
                           enum eo_job_outcome *outcome, struct eo_error *error)
 {
   struct eo_text design = {0};
+  const struct eo_preparation_settings preparation = eo_service_preparation(s);
+  EO_TRY(eo_preparation_admit(&preparation, order->design, error));
   eo_design_write(order->design, &design);
   enum eo_code code = design.failed ? eo_error_memory(error) : add_job(s, order, &design, id, outcome, error);
   eo_text_done(&design);
@@ -498,7 +529,7 @@ enum eo_code eo_service_retry(struct eo_service *s, int64_t id, enum eo_job_outc
   if (is_closed(s, outcome))
     return EO_OK;
   pthread_mutex_lock(&s->store_mutex);
-  enum eo_code code = eo_queue_retry(s->store, id, s->settings.most_queued, outcome, error);
+  enum eo_code code = eo_queue_retry(s->store, id, s->settings.limits.queued_jobs, outcome, error);
   pthread_mutex_unlock(&s->store_mutex);
   return code || *outcome ? code : publish_then_wake(s, id, job, error);
 }
@@ -511,7 +542,7 @@ enum eo_code eo_service_clone(struct eo_service *s, int64_t id, const int *prior
   if (is_closed(s, outcome))
     return EO_OK;
   pthread_mutex_lock(&s->store_mutex);
-  enum eo_code code = eo_queue_clone(s->store, id, priority, s->settings.most_queued, &clone, outcome, error);
+  enum eo_code code = eo_queue_clone(s->store, id, priority, s->settings.limits.queued_jobs, &clone, outcome, error);
   pthread_mutex_unlock(&s->store_mutex);
   return code || *outcome ? code : publish_then_wake(s, clone, job, error);
 }

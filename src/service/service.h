@@ -20,19 +20,23 @@
 #include "document/sweep_document.h"
 #include "evaluation/analysis.h"
 #include "service/events.h"
+#include "service/service_limits.h"
 #include "store/queue.h"
 #include "study/job_document.h"
 
 struct eo_service;
 
+/* Hears what happens to jobs, for a log. Called from any thread, with no lock held. state: what the job is now. */
+typedef void eo_service_note(void *context, int64_t job, const char *kind, const char *state, const char *detail);
+
 struct eo_service_settings {
   const char *data;     /* data folder: the database */
   const char *cache;    /* flexibility cache; NULL: keep none on disk */
+  const char *program;  /* easeoff, which prepares gear pairs in a process of its own (service/preparation.h); NULL, or
+                           no  cache: they are prepared in this one, which nobody can end then */
   int threads;          /* of an optimization or a sweep; 0: eo_parallel_cores() */
   int analysis_threads; /* 0: 2 */
-  int most_queued;      /* jobs waiting, 0: 100 */
-  int most_waiting;     /* analyses (and sweeps) waiting, each, 0: 64 */
-  int most_pairs;       /* prepared pairs kept in memory, 0: 4 */
+  struct eo_service_limits limits; /* all 0: the defaults of the table */
 };
 
 /* Opens the data folder, queues again what an earlier process left, starts the threads. Errors: EO_ERROR_FILE (folder,

@@ -11,7 +11,7 @@
 #include "service/pairs.h"
 #include "service/service.h"
 
-enum { EO_SERVICE_BUCKETS = 12, EO_PREPARATIONS_KEPT = 20 };
+enum { EO_SERVICE_BUCKETS = 12 };
 
 /* A thread that works off one kind of job. */
 struct eo_service_worker {
@@ -50,6 +50,9 @@ struct eo_service {
   double total_ms, most_ms;
   int64_t bucket[EO_SERVICE_BUCKETS];
 };
+
+/* How gear pairs are prepared here. */
+struct eo_preparation_settings eo_service_preparation(const struct eo_service *service);
 
 /* The workers' thread. */
 void *eo_service_work(void *worker);

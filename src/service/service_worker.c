@@ -170,7 +170,7 @@ static void end_job(struct eo_service_worker *w, int64_t id, enum eo_job_state s
   /* a database that fails here leaves the job as begun: the next start of the service queues it again */
   eo_queue_end(w->store, id, state, fault.failed ? NULL : fault.data, progress.failed ? NULL : progress.data, NULL);
   if (w->kind == EO_JOB_PREPARE)
-    eo_queue_tidy(w->store, EO_PREPARATIONS_KEPT, NULL);
+    eo_queue_tidy(w->store, w->service->settings.limits.kept_preparations, NULL);
   eo_text_done(&progress);
   eo_text_done(&fault);
 }

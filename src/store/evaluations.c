@@ -52,7 +52,7 @@ static void find_digest(const struct eo_stored_evaluation *row, char digest[EO_H
 static enum eo_code damaged(const struct eo_store *store, int64_t id, struct eo_error *error)
 {
   return eo_error_set(
-      error, EO_ERROR_FILE, "",
+      error, EO_ERROR_DAMAGED, "",
       "%.150s: row %lld of the history is damaged; \"easeoff history prune --damaged\" removes such rows.", store->path,
       (long long)id);
 }

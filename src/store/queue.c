@@ -127,21 +127,36 @@ enum eo_code eo_queue_note(struct eo_store *store, int64_t id, const char *progr
                           progress, id);
 }
 
+/* An unclean end counts from one again when the job has come further since the last. */
+static enum eo_code count_unclean(struct eo_store *store, int64_t id, struct eo_error *error)
+{
+  return EO_STATEMENT_RUN(store, error,
+                          "UPDATE job SET unclean = CASE WHEN now > reached THEN 1 ELSE unclean + 1 END, reached = now"
+                          " FROM (SELECT count(*) AS now FROM candidate WHERE job = ?1)"
+                          " WHERE id = ?1 AND stop = 0 AND state IN ('preparing', 'running')",
+                          "i", id);
+}
+
 /* Leaves alone what a terminal took up meanwhile. */
-static enum eo_code recover_one(struct eo_store *store, int64_t id, int64_t *queued, struct eo_error *error)
+static enum eo_code recover_one(struct eo_store *store, int64_t id, int attempts, const char *fault, int64_t *queued,
+                                struct eo_error *error)
 {
   if (eo_store_job_is_taken(store, id))
     return EO_OK;
-  enum eo_code code = EO_STATEMENT_RUN(
-      store, error,
-      "UPDATE job SET state = CASE stop WHEN 1 THEN 'cancelled' ELSE 'queued' END, updated = " EO_NOW ","
-      " finished = CASE stop WHEN 1 THEN " EO_NOW " END WHERE id = ?",
-      "i", id);
-  *queued += !code;
-  return code;
+  EO_TRY(count_unclean(store, id, error));
+  struct eo_statement s = eo_statement_begin(
+      store,
+      "UPDATE job SET state = CASE WHEN stop = 1 THEN 'cancelled' WHEN unclean >= ?2 THEN 'failed' ELSE 'queued' END,"
+      " error = CASE WHEN stop = 0 AND unclean >= ?2 THEN ?3 ELSE error END, updated = " EO_NOW ","
+      " finished = CASE WHEN stop = 1 OR unclean >= ?2 THEN " EO_NOW " END WHERE id = ?1 RETURNING state = 'failed'",
+      "int", id, attempts, fault);
+  while (eo_statement_step(&s))
+    *queued += !eo_column_integer(&s, 0);
+  return eo_statement_end(&s, error);
 }
 
-enum eo_code eo_queue_recover(struct eo_store *store, int64_t *queued, struct eo_error *error)
+enum eo_code eo_queue_recover(struct eo_store *store, int attempts, const char *fault, int64_t *queued,
+                              struct eo_error *error)
 {
   int64_t id = 0;
   *queued = 0;
@@ -160,7 +175,7 @@ enum eo_code eo_queue_recover(struct eo_store *store, int64_t *queued, struct eo
     id = more ? eo_column_integer(&s, 0) : 0;
     code = eo_statement_end(&s, error);
     if (!code && more)
-      code = recover_one(store, id, queued, error);
+      code = recover_one(store, id, attempts, fault, queued, error);
   }
   return close(store, code, error);
 }
@@ -233,6 +248,7 @@ static enum eo_code retry(struct eo_store *store, int64_t id, int64_t most, enum
               : EO_STATEMENT_RUN(
                     store, error,
                     "UPDATE job SET state = 'queued', served = 1, stop = 0, stopped = '', error = NULL, started = NULL,"
+                    " unclean = 0,"
                     " finished = NULL, updated = " EO_NOW " WHERE id = ?",
                     "i", id);
 }

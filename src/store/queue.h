@@ -64,9 +64,11 @@ enum eo_code eo_queue_clone(struct eo_store *store, int64_t id, const int *prior
 /* Removes a job that has ended, and its path; evaluations stay. Outcomes: DONE, MISSING, STATE. */
 enum eo_code eo_queue_remove(struct eo_store *store, int64_t id, enum eo_job_outcome *outcome, struct eo_error *error);
 
-/* After the server's process ended: what it had begun waits again, what was to be stopped is cancelled. Only for who
+/* After the server's process ended: what it had begun waits again, what was to be stopped is cancelled, and what was
+   begun so many times and came no further each time has failed, with fault (JSON). *queued: how many wait. Only for who
    holds the server's lock. */
-enum eo_code eo_queue_recover(struct eo_store *store, int64_t *queued, struct eo_error *error);
+enum eo_code eo_queue_recover(struct eo_store *store, int attempts, const char *fault, int64_t *queued,
+                              struct eo_error *error);
 
 /* Removes finished preparations but the newest ones: nobody asks for them. */
 enum eo_code eo_queue_tidy(struct eo_store *store, int keep, struct eo_error *error);

@@ -9,26 +9,32 @@ enum eo_code eo_store_fault(const struct eo_store *store, int fault, struct eo_e
 {
   static const struct {
     int fault;
+    enum eo_code code;
     const char *what;
   } known[] = {
-      {SQLITE_BUSY, "another process has kept it locked for too long"},
-      {SQLITE_LOCKED, "another process has kept it locked for too long"},
-      {SQLITE_READONLY, "it or its folder cannot be written"},
-      {SQLITE_PERM, "access is denied"},
-      {SQLITE_CANTOPEN, "it cannot be opened"},
-      {SQLITE_FULL, "the disk is full; what was saved before is kept"},
-      {SQLITE_CORRUPT, "it is damaged; move it away, or restore it from a copy"},
-      {SQLITE_NOTADB, "it is damaged or no database; move it away, or restore it from a copy"},
-      {SQLITE_IOERR, "reading or writing failed; what was saved before is kept"},
+      {SQLITE_BUSY, EO_ERROR_BUSY, "another process has kept it locked for too long"},
+      {SQLITE_LOCKED, EO_ERROR_BUSY, "another process has kept it locked for too long"},
+      {SQLITE_READONLY, EO_ERROR_FILE, "it or its folder cannot be written"},
+      {SQLITE_PERM, EO_ERROR_FILE, "access is denied"},
+      {SQLITE_CANTOPEN, EO_ERROR_FILE, "it cannot be opened"},
+      {SQLITE_FULL, EO_ERROR_FULL, "the disk is full; what was saved before is kept"},
+      {SQLITE_CORRUPT, EO_ERROR_DAMAGED, "it is damaged; easeoff doctor says more, easeoff restore puts a copy back"},
+      {SQLITE_NOTADB, EO_ERROR_DAMAGED, "it is damaged or no database; move it away, or restore it from a copy"},
+      {SQLITE_IOERR, EO_ERROR_FILE, "reading or writing failed; what was saved before is kept"},
+      {SQLITE_IOERR_DATA, EO_ERROR_DAMAGED, "a page is not what was written; easeoff doctor says more"},
+      {SQLITE_IOERR_CORRUPTFS, EO_ERROR_DAMAGED, "the file system gives other bytes than it was given"},
   };
   if ((fault & 0xff) == SQLITE_NOMEM)
     return eo_error_memory(error);
   const char *what = "the database refuses this";
+  enum eo_code code = EO_ERROR_FILE;
   for (size_t i = 0; i < sizeof known / sizeof known[0]; i++)
-    if (known[i].fault == (fault & 0xff))
+    if (known[i].fault == (fault & 0xff) || known[i].fault == fault) {
       what = known[i].what;
+      code = known[i].code;
+    }
   const char *detail = store->handle ? sqlite3_errmsg(store->handle) : sqlite3_errstr(fault);
-  return eo_error_set(error, EO_ERROR_FILE, "", "%.150s: %s (%.100s).", store->path, what, detail);
+  return eo_error_set(error, code, "", "%.150s: %s (%.100s).", store->path, what, detail);
 }
 
 /* The statement prepared before under the same address, or a new one in the first free place. */

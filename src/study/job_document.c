@@ -244,7 +244,8 @@ static const struct eo_outline error_outline = EO_OUTLINE("JobError", error_rows
 void eo_job_error_write(const struct eo_error *error, struct eo_text *text)
 {
   struct eo_error shown = *error;
-  if (error->code == EO_ERROR_FILE)
+  if (error->code == EO_ERROR_FILE || error->code == EO_ERROR_FULL || error->code == EO_ERROR_BUSY ||
+      error->code == EO_ERROR_DAMAGED) /* their sentences name files of this machine */
     snprintf(shown.text, sizeof shown.text, "The server's data cannot be read or written.");
   write(text, eo_outline_encode(&error_outline, &shown));
 }

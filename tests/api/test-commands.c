@@ -383,19 +383,19 @@ static void check_token(void)
   static const struct command guarded[] = {
       {"health is open", "GET", API "/health", .status = 200},
       {"the rest is not", "GET", API "/designs", .status = 401, .header = "WWW-Authenticate", .holds = "Bearer"},
-      {"a wrong token", "GET", API "/designs", "Authorization: Bearer sesame-seeds\r\n", .status = 401},
+      {"a wrong token", "GET", API "/designs", "Authorization: Bearer sesame-seed-sesame-seeds\r\n", .status = 401},
       {"half a token", "GET", API "/designs", "Authorization: Bearer sesame\r\n", .status = 401},
-      {"the token", "GET", API "/designs", "Authorization: Bearer sesame-seed\r\n", .status = 200},
-      {"any name with a token", "GET", API "/designs", "Host: gears.example\r\nAuthorization: Bearer sesame-seed\r\n",
-       .status = 200},
+      {"the token", "GET", API "/designs", "Authorization: Bearer sesame-seed-sesame-seed\r\n", .status = 200},
+      {"any name with a token", "GET", API "/designs",
+       "Host: gears.example\r\nAuthorization: Bearer sesame-seed-sesame-seed\r\n", .status = 200},
       {"a session is wanted", "GET", API "/session", .status = 200, .pointer = "required", .value = "true"},
       {"a wrong session", "POST", API "/session", .text = "{\"token\":\"x\"}", .status = 403},
-      {"a session", "POST", API "/session", .text = "{\"token\":\"sesame-seed\"}", .status = 204,
+      {"a session", "POST", API "/session", .text = "{\"token\":\"sesame-seed-sesame-seed\"}", .status = 204,
        .header = "Set-Cookie", .holds = "HttpOnly; SameSite=Strict"},
       {"a made-up cookie", "GET", API "/designs", "Cookie: easeoff_session=sesame-seed\r\n", .status = 401},
   };
   RUN(guarded);
-  struct reply reply = call("POST", API "/session", NULL, "{\"token\":\"sesame-seed\"}");
+  struct reply reply = call("POST", API "/session", NULL, "{\"token\":\"sesame-seed-sesame-seed\"}");
   char cookie[300];
   const char *set = header_of(&reply, "Set-Cookie");
   snprintf(cookie, sizeof cookie, "Cookie: a=b; %.*s\r\n", set ? (int)strcspn(set, ";") : 0, set ? set : "");
@@ -494,7 +494,7 @@ int main(void)
   RUN(after);
   check_export();
   ok(stop_server(SIGTERM) == 0, "it stops when told");
-  setenv("EASEOFF_TOKEN", "sesame-seed", 1);
+  setenv("EASEOFF_TOKEN", "sesame-seed-sesame-seed", 1);
   ok(start_server("--quiet"), "a server with a token");
   check_token();
   ok(stop_server(SIGINT) == 0, "it stops on Ctrl-C");

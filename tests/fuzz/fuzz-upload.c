@@ -89,7 +89,7 @@ static struct outcome upload_in_pieces(struct MHD_Connection *connection, size_t
   outcome.status = request.reply.status;
   eo_upload_free(&request);
   eo_text_done(&request.reply.body);
-  demand(http.uploads == 0, "an upload is still on its way");
+  demand(!http.uploads, "an upload is still on its way");
   return outcome;
 }
 
@@ -132,6 +132,7 @@ static void open_store(void)
 static struct MHD_Daemon *start(bool *handled)
 {
   open_store();
+  eo_table_defaults(&eo_http_limits_table, &http.settings.limits);
   struct MHD_Daemon *daemon = MHD_start_daemon(MHD_USE_NO_LISTEN_SOCKET, 0, NULL, NULL, handle, handled,
                                                MHD_OPTION_END);
   demand(daemon != NULL, "no daemon");

@@ -12,8 +12,12 @@
 
 __attribute__((unused)) static struct eo_service *start_with(int most_queued, int most_pairs)
 {
-  const struct eo_service_settings settings = {
-      .data = folder, .threads = 2, .most_queued = most_queued, .most_pairs = most_pairs};
+  struct eo_service_settings settings = {.data = folder, .threads = 2};
+  eo_table_defaults(&eo_service_limits_table, &settings.limits);
+  if (most_queued)
+    settings.limits.queued_jobs = most_queued;
+  if (most_pairs)
+    settings.limits.prepared_pairs = most_pairs;
   struct eo_service *service = NULL;
   if (eo_service_new(&service, &settings, &error)) {
     printf("Bail out! %s\n", error.text);

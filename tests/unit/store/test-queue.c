@@ -263,7 +263,8 @@ static void test_recovery(void)
   eo_store_keep_result(store, written, "{}", &error);
   eo_queue_cancel(store, stopping, &outcome, &error);
   eo_store_claim_job(terminal, taken, &there, &error);
-  ok(!eo_queue_recover(store, &queued, &error) && queued == 4, "%lld jobs are looked after", (long long)queued);
+  ok(!eo_queue_recover(store, 3, "{}", &queued, &error) && queued == 4, "%lld jobs are looked after",
+     (long long)queued);
   ok(look(store, begun).state == EO_JOB_QUEUED, "one that was begun waits again");
   ok(look(store, stopping).state == EO_JOB_CANCELLED && look(store, stopping).finished,
      "one that was to be stopped is cancelled");
@@ -274,6 +275,27 @@ static void test_recovery(void)
      "what a terminal works on and what failed stay");
   eo_store_close(store);
   eo_store_close(terminal);
+}
+
+/* One process after another ends in the middle of it. */
+static void test_unclean(void)
+{
+  struct eo_store *store = open_store();
+  enum eo_job_outcome outcome;
+  int64_t queued, id = add(store, 10);
+  for (int i = 0; i < 3; i++) {
+    ok(claim(store) == id, "attempt %d", i + 1);
+    eo_queue_recover(store, 3, "{\"detail\": \"thrice\"}", &queued, &error);
+  }
+  struct seen seen = look(store, id);
+  ok(seen.state == EO_JOB_FAILED && seen.finished && strstr(seen.error, "thrice"),
+     "after three a job that comes no further has failed: %s", seen.error);
+  ok(!eo_queue_retry(store, id, MOST, &outcome, &error) && outcome == EO_JOB_OUTCOME_DONE && claim(store) == id,
+     "and can be tried again");
+  eo_queue_recover(store, 3, "{}", &queued, &error);
+  ok(look(store, id).state == EO_JOB_QUEUED, "with three attempts");
+  eo_queue_cancel(store, id, &outcome, &error);
+  eo_store_close(store);
 }
 
 static int64_t add_problem(struct eo_store *store)
@@ -480,9 +502,9 @@ static void test_designs(void)
 
 int main(void)
 {
-  void (*const test[])(void) = {test_order,  test_full,        test_idempotency, test_preparations,
-                                test_states, test_recovery,    test_begin,       test_threads,
-                                test_pages,  test_server_lock, test_designs};
+  void (*const test[])(void) = {test_order,   test_full,     test_idempotency, test_preparations,
+                                test_states,  test_recovery, test_unclean,     test_begin,
+                                test_threads, test_pages,    test_server_lock, test_designs};
   snprintf(folder, sizeof folder, "%s/easeoff-queue-XXXXXX", getenv("TMPDIR") ? getenv("TMPDIR") : "/tmp");
   if (!mkdtemp(folder))
     return 99;
