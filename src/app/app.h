@@ -24,9 +24,20 @@ struct eo_command {
              char **argv); /* argv[0]: the sub-command; returns the exit status */
 };
 
-extern const struct eo_command eo_command_analyze, eo_command_example, eo_command_export, eo_command_history,
-    eo_command_measure, eo_command_optimize, eo_command_prepare, eo_command_reproduce, eo_command_rig, eo_command_serve,
-    eo_command_stage, eo_command_sweep, eo_command_verify;
+extern const struct eo_command eo_command_analyze;
+extern const struct eo_command eo_command_example;
+extern const struct eo_command eo_command_export;
+extern const struct eo_command eo_command_history;
+extern const struct eo_command eo_command_import;
+extern const struct eo_command eo_command_measure;
+extern const struct eo_command eo_command_optimize;
+extern const struct eo_command eo_command_prepare;
+extern const struct eo_command eo_command_reproduce;
+extern const struct eo_command eo_command_rig;
+extern const struct eo_command eo_command_serve;
+extern const struct eo_command eo_command_stage;
+extern const struct eo_command eo_command_sweep;
+extern const struct eo_command eo_command_verify;
 
 /* "easeoff 0.1.0" */
 extern const char eo_program[];

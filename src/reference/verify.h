@@ -105,6 +105,9 @@ void eo_verification_done(struct eo_verification *v);
 /* The lumped model: modes, periodic responses, the single degree of freedom. */
 enum eo_code eo_verify_dynamics(struct eo_case *file, struct eo_verification *v, struct eo_error *error);
 
+/* Files of other programs read into designs. */
+enum eo_code eo_verify_exchange(struct eo_case *file, struct eo_verification *v, struct eo_error *error);
+
 /* Recordings of two encoders with known truth. */
 enum eo_code eo_verify_encoder(struct eo_case *file, struct eo_verification *v, struct eo_error *error);
 

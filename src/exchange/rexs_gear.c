@@ -1,0 +1,358 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The macro-geometry of a pair, and which way it turns. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "document/design_document.h"
+#include "exchange/rexs_import.h"
+
+static const double degree = M_PI / 180;
+static const double same = 1e-9; /* relative: one number stated twice */
+
+static bool alike(double a, double b)
+{
+  return isnan(a) || isnan(b) || fabs(a - b) <= same * fmax(1, fabs(a));
+}
+
+static bool is_modified(const struct eo_rexs_import *import, const struct eo_rexs_component *flank)
+{
+  int at = 0;
+  return eo_rexs_related(import->model, "reference", "origin", flank, "referenced", &at) != NULL;
+}
+
+bool eo_rexs_find_rotation(struct eo_rexs_import *import)
+{
+  const struct eo_rexs_wheel *driver = &import->wheel[EO_PINION][EO_LEFT];
+  const struct eo_rexs_attribute *loaded = eo_rexs_attribute(driver->data, "loaded_tooth_flank");
+  struct eo_rexs_flow flow;
+  double axis[3], x[3], origin[3], sign = NAN;
+  if (import->options->flank)
+    import->rotation = driver->along * (import->options->flank == 2 ? 1 : -1);
+  else if (loaded)
+    import->rotation = driver->along * (strcmp(loaded->text, "right") == 0 ? 1 : -1);
+  if (import->rotation != 0)
+    return true;
+  eo_rexs_flow_find(import->train, import->model->load_cases ? 0 : -1, &flow);
+  if (driver->shaft >= 0) {
+    eo_rexs_axis(import->train->shaft[driver->shaft], axis, origin);
+    int first = import->train->mesh[import->pair->mesh[0]].wheel[0].shaft;
+    eo_rexs_axis(first < 0 ? NULL : import->train->shaft[first], x, origin);
+    sign = isnan(flow.torque[driver->shaft]) ? flow.speed[driver->shaft] : flow.torque[driver->shaft];
+    sign *= axis[0] * x[0] + axis[1] * x[1] + axis[2] * x[2] < 0 ? -1 : 1;
+  }
+  if (sign > 0 || sign < 0) {
+    import->rotation = sign < 0 ? -1 : 1;
+    return true;
+  }
+  /* without a direction the outer faces meet first, as in a design of its own */
+  import->rotation = driver->helix > 0 ? -1 : 1;
+  for (int member = 0; member < 2; member++)
+    for (int end = 0; end < import->pair->ends; end++)
+      for (int side = 0; side < 2; side++)
+        if (is_modified(import, import->wheel[member][end].flank[side])) {
+          eo_import_fault(import->out, "flank_not_stated",
+                          "The file does not say which flanks carry the load: it states neither loaded_tooth_flank nor "
+                          "torque nor speed. Say which flank of the driver is loaded (--flank left or right).");
+          return false;
+        }
+  return true;
+}
+
+int eo_rexs_loaded_side(const struct eo_rexs_import *import, int member, int end)
+{
+  bool right = import->rotation * import->wheel[EO_PINION][end].along > 0;
+  if (import->wheel[member][end].along != import->wheel[EO_PINION][end].along)
+    right = !right;
+  return right;
+}
+
+/* The common face of both members; false: they do not overlap. */
+static bool find_face(struct eo_rexs_import *import)
+{
+  const struct eo_rexs_wheel *pinion = &import->wheel[EO_PINION][EO_LEFT], *gear = &import->wheel[EO_GEAR][EO_LEFT];
+  struct eo_import *out = import->out;
+  import->left = fmax(pinion->left, gear->left);
+  import->right = fmin(pinion->right, gear->right);
+  if (isnan(import->left) || isnan(import->right) || import->right <= import->left) {
+    eo_import_say(out, out->assumed, "both members stand in mid face of each other: the file does not place them");
+    import->width = fmin(pinion->face_width, gear->face_width);
+    for (int member = 0; member < 2; member++)
+      for (int end = 0; end < 2; end++) {
+        import->wheel[member][end].left = -import->wheel[member][end].face_width / 2;
+        import->wheel[member][end].right = import->wheel[member][end].face_width / 2;
+      }
+    import->left = -import->width / 2;
+    import->right = import->width / 2;
+  }
+  import->width = import->right - import->left;
+  import->middle = (import->left + import->right) / 2;
+  if (import->pair->ends == 2) {
+    double other = fmin(import->wheel[EO_PINION][EO_RIGHT].right, import->wheel[EO_GEAR][EO_RIGHT].right);
+    import->middle = (import->left + other) / 2;
+  }
+  double stated = eo_rexs_value(import->train->mesh[import->pair->mesh[0]].stage, "common_face_width");
+  if (!isnan(stated) && !(fabs(stated - import->width) <= 1e-6 * stated))
+    eo_import_say(out, out->notes,
+                  "common_face_width is %.9g mm; the positions of the gears give %.9g mm, which was taken.", stated,
+                  import->width);
+  return true;
+}
+
+static double groove_width(const struct eo_rexs_import *import)
+{
+  double from = import->right,
+         to = fmax(import->wheel[EO_PINION][EO_RIGHT].left, import->wheel[EO_GEAR][EO_RIGHT].left);
+  return to - from;
+}
+
+/* The finished flank of a member: the tool and settings of the step of highest order; lowest: of the lowest. */
+static const struct eo_rexs_component *step_of(const struct eo_rexs_import *import, int member, const char *role,
+                                               bool lowest)
+{
+  const struct eo_rexs_wheel *wheel = &import->wheel[member][EO_LEFT];
+  const struct eo_rexs_component *flank = wheel->flank[eo_rexs_loaded_side(import, member, EO_LEFT)], *found = NULL;
+  int order = 0;
+  for (int i = 0; i < import->model->relations && flank; i++) {
+    const struct eo_rexs_relation *relation = &import->model->relation[i];
+    const struct eo_rexs_component *part = eo_rexs_find(import->model, eo_rexs_role(relation, role));
+    if (strcmp(relation->type, "manufacturing_step") != 0 || eo_rexs_role(relation, "workpiece") != flank->id || !part)
+      continue;
+    if (!found || (lowest ? relation->order < order : relation->order > order)) {
+      found = part;
+      order = relation->order;
+    }
+  }
+  return found;
+}
+
+static double first_number(double a, double b)
+{
+  return isnan(a) ? b : a;
+}
+
+/* Of one member: what its rack is. The tool of the first step makes the root. */
+struct rack {
+  double addendum, dedendum, fillet;
+  bool by_root_diameter;
+};
+
+static struct rack rack_of(struct eo_rexs_import *import, int member)
+{
+  const struct eo_rexs_wheel *wheel = &import->wheel[member][EO_LEFT];
+  const struct eo_rexs_component *tool = step_of(import, member, "tool", true),
+                                 *settings = step_of(import, member, "manufacturing_settings", true);
+  const struct eo_rexs_component *flank = wheel->flank[eo_rexs_loaded_side(import, member, EO_LEFT)];
+  double module = wheel->module;
+  struct rack rack = {eo_rexs_value(flank, "addendum_coefficient_basic_profile"), NAN, NAN, false};
+  rack.dedendum = first_number(eo_rexs_value(tool, "addendum_coefficient_reference_profile"),
+                               eo_rexs_value(tool, "addendum_reference_profile") / module);
+  rack.fillet = first_number(eo_rexs_value(tool, "tip_corner_radius_factor_reference_profile"),
+                             eo_rexs_value(tool, "tip_corner_radius_reference_profile") / module);
+  const struct eo_rexs_component *last = step_of(import, member, "tool", false);
+  double generated = eo_rexs_value(settings, "generated_addendum_modification_coefficient");
+  if (!isnan(rack.dedendum) && last != tool && !isnan(generated) && fabs(generated - wheel->shift) > same) {
+    rack.dedendum -= generated - wheel->shift; /* the roughing tool stands further out by so much */
+    eo_import_say(import->out, import->out->notes,
+                  "The %s's root is made by a tool before the finishing one, further out by %.6g of the module: the "
+                  "dedendum is less by that.",
+                  member == EO_PINION ? "pinion" : "gear", generated - wheel->shift);
+  }
+  double root = eo_rexs_value(wheel->gear, "root_diameter");
+  if (isnan(rack.dedendum) && root > 0) {
+    double reference = wheel->teeth * module / cos(wheel->helix * degree);
+    rack.dedendum = wheel->shift + (reference - root) / (2 * module);
+    rack.by_root_diameter = true;
+  }
+  return rack;
+}
+
+/* One common rack, or one per member where the design has keys for it. */
+static void put_rack(struct eo_rexs_import *import, json_t *gear_pair)
+{
+  static const struct {
+    const char *key, *own[2], *what;
+  } keys[] = {
+      {"addendum_coefficient", {"pinion_addendum_coefficient", "gear_addendum_coefficient"}, "addendum"},
+      {"dedendum_coefficient", {"pinion_dedendum_coefficient", "gear_dedendum_coefficient"}, "dedendum"},
+      {"fillet_radius_coefficient", {"pinion_fillet_radius_coefficient", "gear_fillet_radius_coefficient"}, "fillet"},
+  };
+  const struct rack rack[2] = {rack_of(import, EO_PINION), rack_of(import, EO_GEAR)};
+  for (int i = 0; i < 3; i++) {
+    const double value[2] = {
+        i == 0   ? rack[0].addendum
+        : i == 1 ? rack[0].dedendum
+                 : rack[0].fillet,
+        i == 0   ? rack[1].addendum
+        : i == 1 ? rack[1].dedendum
+                 : rack[1].fillet,
+    };
+    eo_rexs_put(import, &eo_gear_pair_table, gear_pair, keys[i].key, first_number(value[0], value[1]));
+    if (alike(value[0], value[1]))
+      continue;
+    if (!eo_rexs_put(import, &eo_gear_pair_table, gear_pair, keys[i].own[1], value[1]))
+      eo_import_say(import->out, import->out->not_used,
+                    "%s of cylindrical_gear %d: %.6g of the module; a design has one rack, the pinion's with %.6g",
+                    keys[i].what, import->wheel[EO_GEAR][EO_LEFT].gear->id, value[1], value[0]);
+  }
+  for (int member = 0; member < 2; member++)
+    if (rack[member].by_root_diameter)
+      eo_import_say(import->out, import->out->assumed, "the dedendum of the %s follows from its root diameter",
+                    member == EO_PINION ? "pinion" : "gear");
+}
+
+static void put_member(struct eo_rexs_import *import, json_t *gear_pair, int member)
+{
+  static const char *const teeth[2] = {"pinion_teeth", "gear_teeth"},
+                           *const shift[2] = {"pinion_profile_shift", "gear_profile_shift"},
+                           *const tip[2] = {"pinion_tip_diameter_mm", "gear_tip_diameter_mm"};
+  const struct eo_rexs_wheel *wheel = &import->wheel[member][EO_LEFT];
+  const struct eo_rexs_component *flank = wheel->flank[eo_rexs_loaded_side(import, member, EO_LEFT)];
+  double x = first_number(eo_rexs_value(flank, "addendum_modification_coefficient"),
+                          eo_rexs_value(flank, "addendum_modification") / wheel->module);
+  double diameter = eo_rexs_value(wheel->gear, "tip_diameter");
+  double reference = wheel->teeth * wheel->module / cos(wheel->helix * degree);
+  eo_rexs_put(import, &eo_gear_pair_table, gear_pair, teeth[member], wheel->teeth);
+  eo_rexs_put(import, &eo_gear_pair_table, gear_pair, shift[member], x);
+  if (isnan(x))
+    eo_import_say(import->out, import->out->assumed, "profile shift of the %s: the file states none",
+                  member == EO_PINION ? "pinion" : "gear");
+  /* less than the deepest root there can be: a placeholder */
+  if (diameter < reference - 2.5 * wheel->module)
+    eo_import_say(import->out, import->out->notes,
+                  "tip_diameter of cylindrical_gear %d is %.6g mm, less than its root: "
+                  "taken as a placeholder and left out.",
+                  wheel->gear->id, diameter);
+  else
+    eo_rexs_put(import, &eo_gear_pair_table, gear_pair, tip[member], diameter);
+}
+
+/* Both flanks of a gear have the same pressure angle and profile shift, or a design cannot say it. */
+static void demand_symmetry(struct eo_rexs_import *import, const struct eo_rexs_wheel *wheel)
+{
+  static const char *const what[] = {"normal_pressure_angle", "addendum_modification_coefficient"};
+  for (int i = 0; i < 2; i++)
+    if (!alike(eo_rexs_value(wheel->flank[0], what[i]), eo_rexs_value(wheel->flank[1], what[i])))
+      eo_import_fault(import->out, "asymmetric_flanks",
+                      "%s of the left and right flank of cylindrical_gear %d differ; Easeoff has symmetric teeth only.",
+                      what[i], wheel->gear->id);
+}
+
+static void demand_match(struct eo_rexs_import *import)
+{
+  const struct eo_rexs_wheel *pinion = &import->wheel[EO_PINION][EO_LEFT], *gear = &import->wheel[EO_GEAR][EO_LEFT];
+  demand_symmetry(import, pinion);
+  demand_symmetry(import, gear);
+  if (!(fabs(pinion->module - gear->module) <= 1e-6 * pinion->module))
+    eo_import_fault(import->out, "no_mesh",
+                    "The normal modules of cylindrical_gear %d and %d are %.9g and %.9g mm; gears "
+                    "in mesh have one.",
+                    pinion->gear->id, gear->gear->id, pinion->module, gear->module);
+  if (!alike(pinion->pressure_angle, gear->pressure_angle))
+    eo_import_fault(import->out, "no_mesh",
+                    "The normal pressure angles of cylindrical_gear %d and %d are %.9g and %.9g "
+                    "degrees; gears in mesh have one.",
+                    pinion->gear->id, gear->gear->id, pinion->pressure_angle, gear->pressure_angle);
+  if (!(fabs(pinion->helix + gear->helix) <= 1e-6))
+    eo_import_fault(import->out, "no_mesh",
+                    "The helix angles of cylindrical_gear %d and %d are %.9g and %.9g degrees; "
+                    "external gears on parallel shafts have opposite ones of one size.",
+                    pinion->gear->id, gear->gear->id, pinion->helix, gear->helix);
+}
+
+/* Reads gear_pair as the program will; without a backlash the default stands. */
+static bool make_geometry(struct eo_rexs_import *import, const json_t *gear_pair, struct eo_error *error)
+{
+  struct eo_faults *faults = calloc(1, sizeof *faults);
+  if (!faults) {
+    import->out->failed = true;
+    return false;
+  }
+  eo_table_decode(&eo_gear_pair_table, gear_pair, NULL, &import->gear_pair, faults);
+  enum eo_code code = eo_faults_first(faults, error);
+  free(faults);
+  return !code && !eo_geometry_init(&import->geometry, &import->gear_pair, error);
+}
+
+/* The backlash of the stage at its centre distance, less what the centre distance itself adds; or from the shift with
+   which the teeth were made, ISO 21771: j_bn = -2 m_n sin(alpha_n) sum(x_E - x). mm; NaN: not stated. */
+static double backlash_of(const struct eo_rexs_import *import)
+{
+  const struct eo_rexs_component *stage = import->train->mesh[import->pair->mesh[0]].stage;
+  double least = eo_rexs_value(stage, "minimum_normal_backlash"),
+         most = eo_rexs_value(stage, "maximum_normal_backlash");
+  double mean = (first_number(least, most) + first_number(most, least)) / 2, sum = 0;
+  if (!isnan(mean))
+    return mean - 1e3 * (import->geometry.normal_backlash - import->gear_pair.backlash);
+  for (int member = 0; member < 2; member++) {
+    const struct eo_rexs_component *settings = step_of(import, member, "manufacturing_settings", false);
+    sum += eo_rexs_value(settings, "generated_addendum_modification_coefficient") -
+           import->wheel[member][EO_LEFT].shift;
+  }
+  return sum < 0 ? -2 * 1e3 * import->geometry.normal_module * sin(import->geometry.normal_pressure_angle) * sum : NAN;
+}
+
+static void put_backlash(struct eo_rexs_import *import, json_t *gear_pair)
+{
+  double backlash = backlash_of(import);
+  if (isnan(backlash))
+    return;
+  backlash = round(backlash * 1e9) / 1e9; /* what the centre distance adds is a difference of large numbers */
+  if (backlash < 0.001)
+    eo_import_say(import->out, import->out->notes,
+                  "The stage states %.6g mm of backlash less than its centre distance "
+                  "gives: left out.",
+                  -backlash);
+  else
+    eo_rexs_put(import, &eo_gear_pair_table, gear_pair, "backlash_um", backlash * 1e3);
+}
+
+/* Beyond the common width nothing meshes; it matters where the modifications were laid out over all of it. */
+static void name_width(struct eo_rexs_import *import)
+{
+  struct eo_import *out = import->out;
+  for (int member = 0; member < 2; member++)
+    for (int end = 0; end < import->pair->ends; end++) {
+      const struct eo_rexs_wheel *wheel = &import->wheel[member][end];
+      bool modified = is_modified(import, wheel->flank[0]) || is_modified(import, wheel->flank[1]);
+      if (wheel->face_width > import->width * (1 + same))
+        eo_import_say(out, modified ? out->not_used : out->notes,
+                      "face_width of cylindrical_gear %d beyond the common width", wheel->gear->id);
+    }
+}
+
+bool eo_rexs_read_gear_pair(struct eo_rexs_import *import, json_t *design)
+{
+  struct eo_import *out = import->out;
+  struct eo_error error;
+  const struct eo_rexs_wheel *pinion = &import->wheel[EO_PINION][EO_LEFT];
+  const struct eo_rexs_mesh *mesh = &import->train->mesh[import->pair->mesh[0]];
+  json_t *gear_pair = eo_rexs_part(import, design, "gear_pair");
+  demand_match(import);
+  if (!gear_pair || json_array_size(out->faults) || !find_face(import))
+    return false;
+  eo_rexs_put(import, &eo_gear_pair_table, gear_pair, "ends", import->pair->ends);
+  for (int member = 0; member < 2; member++)
+    put_member(import, gear_pair, member);
+  eo_rexs_put(import, &eo_gear_pair_table, gear_pair, "normal_module_mm", pinion->module);
+  eo_rexs_put(import, &eo_gear_pair_table, gear_pair, "normal_pressure_angle_deg", pinion->pressure_angle);
+  eo_rexs_put(import, &eo_gear_pair_table, gear_pair, "helix_angle_deg", fabs(pinion->helix));
+  eo_rexs_put(import, &eo_gear_pair_table, gear_pair, "face_width_mm", import->width);
+  eo_rexs_put(import, &eo_gear_pair_table, gear_pair, "groove_width_mm",
+              import->pair->ends == 2 ? groove_width(import) : 0);
+  eo_rexs_put(import, &eo_gear_pair_table, gear_pair, "centre_distance_mm", mesh->centre_distance);
+  if (mesh->from_positions)
+    eo_import_say(out, out->notes, "The centre distance, %.9g mm, is the distance of the axes of both shafts.",
+                  mesh->centre_distance);
+  put_rack(import, gear_pair);
+  name_width(import);
+  if (!make_geometry(import, gear_pair, &error)) {
+    json_t *fault = eo_import_fault(out, "not_a_pair", "The pair cannot be made as the file states it: %s", error.text);
+    if (fault)
+      json_object_set_new(fault, "key", json_string(error.pointer));
+    return false;
+  }
+  put_backlash(import, gear_pair);
+  return true;
+}

@@ -1,0 +1,326 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "exchange/rexs_import.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "document/design_document.h"
+#include "exchange/rexs_read.h"
+#include "exchange/rexs_schema.h"
+
+json_t *eo_rexs_part(struct eo_rexs_import *import, json_t *document, const char *key)
+{
+  json_t *part = json_object_get(document, key);
+  if (!part && json_object_set_new(document, key, part = json_object()) != 0) {
+    import->out->failed = true;
+    return NULL;
+  }
+  return part;
+}
+
+bool eo_rexs_put(struct eo_rexs_import *import, const struct eo_table *table, json_t *object, const char *key,
+                 double value)
+{
+  if (!isfinite(value) || !eo_import_has_key(table, key))
+    return false;
+  bool whole = false;
+  for (int i = 0; i < table->count; i++)
+    whole = whole || (strcmp(table->field[i].key, key) == 0 && table->field[i].kind == EO_FIELD_INTEGER);
+  json_t *number = whole ? json_integer((json_int_t)value) : json_real(value);
+  import->out->failed = json_object_set_new(object, key, number) != 0 || import->out->failed;
+  return true;
+}
+
+bool eo_rexs_put_word(struct eo_rexs_import *import, const struct eo_table *table, json_t *object, const char *key,
+                      const char *word)
+{
+  if (!eo_import_has_key(table, key))
+    return false;
+  import->out->failed = json_object_set_new(object, key, json_string(word)) != 0 || import->out->failed;
+  return true;
+}
+
+const char *eo_rexs_name(const struct eo_rexs_component *component, char name[80])
+{
+  snprintf(name, 80, "%.60s %d", eo_rexs_type_today(component->type), component->id);
+  return name;
+}
+
+/* Faults of the model: */
+
+static void put_place(json_t *fault, const struct eo_rexs_model *model, const struct eo_rexs_fault *found)
+{
+  char pointer[100];
+  const struct eo_rexs_place *place = found->attribute   ? &found->attribute->place
+                                      : found->component ? &found->component->place
+                                                         : &found->relation->place;
+  if (!model->json) {
+    json_object_set_new(fault, "line", json_integer(place->line));
+    json_object_set_new(fault, "column", json_integer(place->column));
+    return;
+  }
+  if (found->attribute)
+    snprintf(pointer, sizeof pointer, "/model/components/%d/attributes/%d", found->component->place.index,
+             place->index);
+  else
+    snprintf(pointer, sizeof pointer, "/model/%s/%d", found->component ? "components" : "relations", place->index);
+  json_object_set_new(fault, "pointer", json_string(pointer));
+}
+
+/* The first component of a relation, which is what it is about: the gear of a flank relation, the stage of a stage. */
+static const struct eo_rexs_component *subject_of(const struct eo_rexs_model *model,
+                                                  const struct eo_rexs_relation *relation, int *missing)
+{
+  const struct eo_rexs_component *subject = NULL;
+  for (int i = 0; i < relation->count; i++) {
+    const struct eo_rexs_component *component = eo_rexs_find(model, relation->reference[i].id);
+    if (!component)
+      *missing = relation->reference[i].id;
+    else if (!subject)
+      subject = component;
+  }
+  return subject;
+}
+
+struct telling {
+  struct eo_import *out;
+  const struct eo_rexs_model *model;
+};
+
+static void tell(void *context, const struct eo_rexs_fault *found)
+{
+  const struct telling *t = context;
+  char name[80], of[120];
+  if (!found->severe) {
+    eo_import_say(t->out, t->out->notes, "%s: %s: %s", found->kind,
+                  found->component ? eo_rexs_name(found->component, name) : found->relation->type, found->text);
+    return;
+  }
+  json_t *fault = eo_import_fault(t->out, found->kind, "%s%s%s",
+                                  found->component ? eo_rexs_name(found->component, name) : "",
+                                  found->component ? ": " : "", found->text);
+  if (!fault)
+    return;
+  if (found->component) {
+    json_object_set_new(fault, "component", json_integer(found->component->id));
+    json_object_set_new(fault, "component_type", json_string(found->component->type));
+  }
+  if (found->attribute)
+    json_object_set_new(fault, "attribute", json_string(found->attribute->id));
+  if (found->relation) {
+    int missing = 0;
+    const struct eo_rexs_component *subject = subject_of(t->model, found->relation, &missing);
+    snprintf(of, sizeof of, "%.30s of %.80s", found->relation->type, subject ? eo_rexs_name(subject, name) : "nothing");
+    json_object_set_new(fault, "relation", json_string(of));
+    json_object_set_new(fault, "component", json_integer(missing));
+  }
+  put_place(fault, t->model, found);
+}
+
+/* What might be a misspelt name of an attribute that is missing. */
+static void name_unknown(struct eo_import *out, const struct eo_rexs_component *component)
+{
+  char name[80];
+  for (int i = 0; i < component->count; i++) {
+    const struct eo_rexs_rule *rule = eo_rexs_rule_of(component->attribute[i].id);
+    if (!rule || !eo_rexs_rule_on(rule, component->type))
+      eo_import_say(out, out->notes, "unknown_attribute: %s: %s (line %d) is no attribute that Easeoff reads.",
+                    eo_rexs_name(component, name), component->attribute[i].id, component->attribute[i].place.line);
+  }
+}
+
+/* A gear without one of these has no geometry. */
+static void demand_attributes(struct eo_import *out, const struct eo_rexs_model *model,
+                              const struct eo_rexs_component *gear)
+{
+  static const char *const needed[] = {"number_of_teeth", "normal_module", "helix_angle_reference_diameter",
+                                       "face_width"};
+  char name[80];
+  for (size_t i = 0; i < sizeof needed / sizeof *needed; i++) {
+    bool there = eo_rexs_attribute(gear, needed[i]) ||
+                 (strcmp(needed[i], "normal_module") == 0 && eo_rexs_attribute(gear, "transverse_module"));
+    json_t *fault = there ? NULL
+                          : eo_import_fault(out, "missing_attribute", "%s has no %s, and a design needs it.",
+                                            eo_rexs_name(gear, name), needed[i]);
+    if (!fault)
+      continue;
+    json_object_set_new(fault, "component", json_integer(gear->id));
+    json_object_set_new(fault, "component_type", json_string(gear->type));
+    json_object_set_new(fault, "attribute", json_string(needed[i]));
+    put_place(fault, model, &(struct eo_rexs_fault){.component = gear});
+    name_unknown(out, gear);
+  }
+}
+
+/* What can be chosen: */
+
+static json_t *wheel_ids(const struct eo_rexs_train *train, const struct eo_rexs_pair *pair, bool driver)
+{
+  json_t *list = json_array();
+  for (int end = 0; end < pair->ends; end++)
+    json_array_append_new(
+        list, json_integer(train->mesh[pair->mesh[end]].wheel[driver ? pair->driver : !pair->driver].gear->id));
+  return list;
+}
+
+static json_t *stage_ids(const struct eo_rexs_train *train, const struct eo_rexs_pair *pair)
+{
+  json_t *list = json_array();
+  int first = train->mesh[pair->mesh[0]].stage->id, last = train->mesh[pair->mesh[pair->ends - 1]].stage->id;
+  json_array_append_new(list, json_integer(first));
+  if (pair->ends == 2)
+    json_array_append_new(list, json_integer(last));
+  return list;
+}
+
+static void list_pairs(struct eo_import *out, const struct eo_rexs_train *train)
+{
+  for (int i = 0; i < train->pairs; i++) {
+    const struct eo_rexs_pair *pair = &train->pair[i];
+    const struct eo_rexs_mesh *mesh = &train->mesh[pair->mesh[0]];
+    char label[160];
+    int n = snprintf(label, sizeof label, pair->ends == 2 ? "stages %d and %d" : "stage %d", mesh->stage->id,
+                     train->mesh[pair->mesh[pair->ends - 1]].stage->id);
+    snprintf(label + n, sizeof label - (size_t)n, ": %.0f and %.0f teeth, module %.6g mm%s%.60s",
+             fmax(0, mesh->wheel[pair->driver].teeth), fmax(0, mesh->wheel[!pair->driver].teeth), mesh->wheel[0].module,
+             *mesh->stage->name ? ", " : "", mesh->stage->name);
+    json_t *row = json_pack("{s:i, s:s, s:i, s:o, s:o, s:o, s:b}", "number", i + 1, "label", label, "ends", pair->ends,
+                            "pinion", wheel_ids(train, pair, true), "gear", wheel_ids(train, pair, false), "stages",
+                            stage_ids(train, pair), "importable", !*pair->why);
+    if (*pair->why || *pair->remark)
+      json_object_set_new(row, "remark", json_string(*pair->why ? pair->why : pair->remark));
+    out->failed = json_array_append_new(out->pairs, row) != 0 || out->failed;
+  }
+}
+
+static const struct eo_rexs_pair *choose(struct eo_import *out, const struct eo_rexs_train *train, int wanted)
+{
+  if (!train->pairs) {
+    eo_import_fault(out, "no_pair", "The model has no cylindrical stage with two gears, so there is no pair to read.");
+    return NULL;
+  }
+  if (!wanted && train->pairs > 1) {
+    eo_import_fault(out, "choice_needed", "The model has %d pairs; choose one by its number (--pair N).", train->pairs);
+    return NULL;
+  }
+  if (wanted < 0 || wanted > train->pairs) {
+    eo_import_fault(out, "no_such_pair", "There is no pair %d; the model has 1 to %d.", wanted, train->pairs);
+    return NULL;
+  }
+  const struct eo_rexs_pair *pair = &train->pair[wanted ? wanted - 1 : 0];
+  if (*pair->why) {
+    eo_import_fault(out, "not_importable", "The pair cannot be read: %s.", pair->why);
+    return NULL;
+  }
+  out->pair = (int)(pair - train->pair) + 1;
+  return pair;
+}
+
+/* The pair: */
+
+static void gather_wheels(struct eo_rexs_import *import)
+{
+  for (int end = 0; end < import->pair->ends; end++)
+    for (int member = 0; member < 2; member++)
+      import->wheel[member][end] = import->train->mesh[import->pair->mesh[end]]
+                                       .wheel[member == EO_PINION ? import->pair->driver : !import->pair->driver];
+}
+
+static const struct eo_rexs_component *first_of(const struct eo_rexs_model *model, const char *type)
+{
+  for (int i = 0; i < model->components; i++)
+    if (eo_rexs_is(&model->component[i], type))
+      return &model->component[i];
+  return NULL;
+}
+
+static void read_name(struct eo_rexs_import *import, json_t *design)
+{
+  const struct eo_rexs_component *unit = first_of(import->model, "gear_unit");
+  const struct eo_rexs_attribute *model_name = eo_rexs_attribute(unit, "model_name");
+  const char *name = unit && *unit->name ? unit->name : model_name ? model_name->text : "";
+  char clean[EO_NAME_LENGTH];
+  eo_text_clean(clean, sizeof clean, name);
+  if (*clean)
+    import->out->failed = json_object_set_new(design, "name", json_string(clean)) != 0 || import->out->failed;
+}
+
+static void read_pair(struct eo_rexs_import *import)
+{
+  struct eo_import *out = import->out;
+  for (int end = 0; end < import->pair->ends; end++)
+    for (int member = 0; member < 2; member++)
+      demand_attributes(out, import->model, import->train->mesh[import->pair->mesh[end]].wheel[member].gear);
+  if (json_array_size(out->faults))
+    return;
+  gather_wheels(import);
+  if (!import->pair->driver_stated)
+    eo_import_say(out, out->assumed, "gear_1 of the stage drives: neither is_driving_gear nor a torque says which");
+  json_t *design = json_object();
+  out->design = design;
+  read_name(import, design);
+  if (!eo_rexs_read_gear_pair(import, design) || !eo_rexs_find_rotation(import))
+    return;
+  eo_rexs_read_bodies(import, design);
+  eo_rexs_read_loads(import, design);
+  eo_rexs_read_modification(import, design);
+  eo_rexs_name_unused(import);
+}
+
+static void read_model(struct eo_import *out, const struct eo_rexs_model *model,
+                       const struct eo_import_options *options)
+{
+  struct telling telling = {out, model};
+  struct eo_error error;
+  struct eo_rexs_train *train = calloc(1, sizeof *train);
+  struct eo_rexs_import *import = calloc(1, sizeof *import);
+  snprintf(out->format, sizeof out->format, "REXS %.20s (%s)", model->version, model->json ? "JSON" : "XML");
+  if (!eo_rexs_version(model->version))
+    eo_import_say(out, out->notes, "The version \"%.20s\" of REXS is not known; the file is read as 1.7.",
+                  model->version);
+  eo_rexs_check(model, tell, &telling);
+  out->failed = out->failed || !train || !import;
+  if (!out->failed && !eo_rexs_train_find(train, model, &error))
+    eo_import_fault(out, "too_large", "%s", error.text);
+  else if (!out->failed && json_array_size(out->faults)) {
+    for (int i = 0; i < train->meshes; i++)
+      for (int k = 0; k < 2; k++)
+        demand_attributes(out, model, train->mesh[i].wheel[k].gear);
+  } else if (!out->failed) {
+    list_pairs(out, train);
+    import->out = out;
+    import->options = options;
+    import->model = model;
+    import->train = train;
+    import->pair = choose(out, train, options->pair);
+    if (import->pair)
+      read_pair(import);
+  }
+  free(train);
+  free(import);
+}
+
+void eo_import_rexs(struct eo_import *out, const char *bytes, size_t size, const struct eo_import_options *options)
+{
+  struct eo_rexs_model *model = calloc(1, sizeof *model);
+  struct eo_rexs_problem problem;
+  if (!model)
+    out->failed = true;
+  else if (eo_rexs_read(model, bytes, size, &problem))
+    read_model(out, model, options);
+  else if (problem.error.code == EO_ERROR_MEMORY)
+    out->failed = true;
+  else {
+    snprintf(out->format, sizeof out->format, "REXS");
+    json_t *fault = eo_import_fault(out, problem.kind, "%s", problem.error.text);
+    if (fault && problem.line) {
+      json_object_set_new(fault, "line", json_integer(problem.line));
+      json_object_set_new(fault, "column", json_integer(problem.column));
+    }
+  }
+  if (model)
+    eo_rexs_done(model);
+  free(model);
+}

@@ -1,0 +1,94 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Files of other programs in and out, from outside: reference cases, what is told, hostile files.
+. "$(dirname "$0")/../support/tap.sh"
+
+files=$CASES/exchange
+
+run() # STATUS WHAT COMMAND...
+{
+  wanted=$1 what=$2
+  shift 2
+  "$@" >"$folder/out" 2>"$folder/err"
+  status=$?
+  [ "$status" -eq "$wanted" ]
+  result $? "$what: exit $status, expected $wanted"
+}
+
+says() # TEXT
+{
+  grep -qF -e "$1" "$folder/err"
+  result $? "says \"$1\""
+}
+
+prints() # TEXT
+{
+  grep -qF -e "$1" "$folder/out"
+  result $? "prints \"$1\""
+}
+
+# Every case: pairs, design, what is assumed, refused and not used, faults.
+run 0 "reference cases" "$EASEOFF" verify "$files/cases.json"
+prints "checks are within tolerance"
+mkdir "$folder/changed"
+cp "$files"/* "$folder/changed"
+sed 's/"tip_relief_start_mm": 1.45/"tip_relief_start_mm": 1.450001/' "$files/cases.json" >"$folder/changed/cases.json"
+run 1 "a wrong start of relief" "$EASEOFF" verify "$folder/changed/cases.json"
+prints "FAIL (1)"
+sed 's/"gear_casing 2"/"gear_casing 3"/' "$files/cases.json" >"$folder/changed/cases.json"
+run 1 "a wrong name of what is not used" "$EASEOFF" verify "$folder/changed/cases.json"
+
+# A model becomes a design that can be analysed as it is.
+run 0 "import" "$EASEOFF" import "$files/paper-case-b-1.7.rexs" -o "$folder/design.json"
+says "not used: gear_casing 2"
+run 0 "the design is one" "$EASEOFF" export "$folder/design.json" --format design
+prints '"tip_relief_start_mm": 1.31'
+run 0 "import through a pipe" "$EASEOFF" import - <"$files/paper-case-b-2.0.0.rexsj"
+prints '"pinion_teeth": 17'
+
+# Several pairs: listed, chosen by number; what does not exist is refused.
+run 1 "several pairs, no choice" "$EASEOFF" import "$files/two-stage-1.5.rexs"
+says "pair 2: stages 22 and 23"
+says "double helical"
+says "choose one by its number (--pair N)"
+run 0 "a pair by its number" "$EASEOFF" import "$files/two-stage-1.5.rexs" --pair 3
+prints '"pinion_teeth": 47'
+run 1 "no such pair" "$EASEOFF" import "$files/two-stage-1.5.rexs" --pair 4
+says "There is no pair 4"
+run 1 "a pair that is no number" "$EASEOFF" import "$files/two-stage-1.5.rexs" --pair two
+run 1 "a flank that is none" "$EASEOFF" import "$files/spur-1.0.rexs" --flank middle
+run 0 "amounts in the transverse section" "$EASEOFF" import "$files/paper-case-b-1.7.rexs" --transverse
+says "turned to the normal"
+prints '"tip_relief_um": 12.0' # 13 um cos(beta_b), beta_b = 22.47 deg
+
+# Faults: all at once, each with its place.
+run 1 "many faults" "$EASEOFF" import "$files/errors-1.6.rexs"
+says 'line 268, column 7: cylindrical_gear 11: normal_module states the unit "inch"'
+says "helix_angel"
+run 1 "cut off" "$EASEOFF" import "$files/not-xml.rexs"
+says "line 4, column 1: The XML is not well-formed"
+run 1 "a document type" "$EASEOFF" import "$files/entity.rexs"
+says "document type"
+run 1 "as a document" "$EASEOFF" import "$files/errors-1.6.rexs" --json
+prints '"kind": "not_a_boolean"'
+prints '"design": null'
+
+# Hostile files: a sentence, at once.
+deep=$(printf '<model version="1.7">'; for i in $(seq 1 200); do printf '<a>'; done)
+printf '%s' "$deep" >"$folder/deep.rexs"
+run 1 "elements without end" "$EASEOFF" import "$folder/deep.rexs"
+says "more than 16 deep"
+awk 'BEGIN { print "<model version=\"1.7\"><components><component id=\"1\" type=\"gear_unit\">"; for (i = 0; i < 200001; i++) print "<attribute id=\"a\"/>" }' >"$folder/many.rexs"
+run 1 "attributes without end" "$EASEOFF" import "$folder/many.rexs"
+says "more than 200000 attributes"
+printf '{"model":{"version":"1.7","components":[{"id":1e99}]}}' >"$folder/id.rexsj"
+run 1 "an id without end" "$EASEOFF" import "$folder/id.rexsj"
+printf '{"model":{"version":"1.7","relations":[{"id":1,"type":"stage","refs":[{"id":5,"role":"stage"}]}]}}' >"$folder/lost.rexsj"
+run 1 "a relation to nothing" "$EASEOFF" import "$folder/lost.rexsj"
+says "/model/relations/0: Relation 1 (stage) names component 5 as stage"
+run 1 "no file" "$EASEOFF" import "$folder/nothing.rexs"
+printf '' >"$folder/empty.rexs"
+run 1 "an empty file" "$EASEOFF" import "$folder/empty.rexs"
+
+echo "1..$count"
+exit $failed
