@@ -33,6 +33,7 @@ extern const struct eo_command eo_command_measure;
 extern const struct eo_command eo_command_optimize;
 extern const struct eo_command eo_command_prepare;
 extern const struct eo_command eo_command_reproduce;
+extern const struct eo_command eo_command_report;
 extern const struct eo_command eo_command_rig;
 extern const struct eo_command eo_command_serve;
 extern const struct eo_command eo_command_stage;

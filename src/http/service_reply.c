@@ -33,7 +33,11 @@ static void take_answer(struct eo_request *request, struct eo_answer *answer)
 {
   switch (answer->kind) {
   case EO_ANSWER_DONE:
-    eo_reply_text(&request->reply, 200, request->csv ? "text/csv; charset=utf-8" : "application/json", &answer->text);
+    eo_reply_text(&request->reply, 200,
+                  request->answer_type ? request->answer_type
+                  : request->csv       ? "text/csv; charset=utf-8"
+                                       : "application/json",
+                  &answer->text);
     break;
   case EO_ANSWER_OVERTAKEN:
     eo_reply_problem(&request->reply, 409, "overtaken", "A newer question of the same lane took this one's place.");

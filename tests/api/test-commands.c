@@ -213,6 +213,15 @@ static const struct command analyses[] = {
     {"chart", "POST", API "/export/modification-chart", .body = &coarse, .status = 200, .header = "Content-Type",
      .holds = "text/csv"},
     {"topography", "POST", API "/export/topography", .body = &coarse, .status = 200},
+    {"topography on a grid", "POST", API "/export/topography?rows=3&columns=4", .body = &coarse, .status = 200},
+    {"a grid of one row", "POST", API "/export/topography?rows=1", .body = &coarse, .status = 400},
+    {"a chart on a grid", "POST", API "/export/k-chart?rows=3", .body = &coarse, .status = 422},
+    {"K-charts", "POST", API "/export/k-chart-drawing", .body = &coarse, .status = 200, .header = "Content-Type",
+     .holds = "image/svg+xml"},
+    {"report", "POST", API "/report", .body = &coarse, .status = 200, .header = "Content-Type", .holds = "text/html"},
+    {"a report of nothing", "POST", API "/report", .text = "{}", .status = 422},
+    {"no rating", "POST", API "/analyze?maps=0&rating=0", .body = &coarse, .status = 200, .pointer = "rating",
+     .value = "null"},
     {"the design as a file", "POST", API "/export/design", .body = &coarse, .status = 200, .header = "Content-Type",
      .holds = "application/json"},
     {"no such format", "POST", API "/export/picture", .body = &coarse, .status = 404},
@@ -361,21 +370,29 @@ static char *read_command(const char *command)
   return text;
 }
 
+/* What a command says about the coarse pair, beside what the server says. */
+static void check_same(const char *arguments, const char *address)
+{
+  char command[900];
+  snprintf(command, sizeof command, "%s %s %s/coarse.json", getenv("EASEOFF") ? getenv("EASEOFF") : "./easeoff",
+           arguments, server.folder);
+  char *told = read_command(command);
+  struct reply reply = call("POST", address, NULL, coarse);
+  ok(told && reply.size > 10000 && strcmp(told, reply.body) == 0, "easeoff %s: the same bytes as %s, %zu", arguments,
+     address, reply.size);
+  free(told);
+  free_reply(&reply);
+}
+
 static void check_export(void)
 {
-  char file[300], command[800];
+  char file[300];
   snprintf(file, sizeof file, "%s/coarse.json", server.folder);
   FILE *stream = fopen(file, "w");
   fputs(coarse, stream);
   fclose(stream);
-  snprintf(command, sizeof command, "%s export %s --format flank-points",
-           getenv("EASEOFF") ? getenv("EASEOFF") : "./easeoff", file);
-  char *told = read_command(command);
-  struct reply reply = call("POST", API "/export/flank-points", NULL, coarse);
-  ok(told && reply.size > 10000 && strcmp(told, reply.body) == 0, "the terminal exports the same bytes: %zu",
-     reply.size);
-  free(told);
-  free_reply(&reply);
+  check_same("export --format flank-points", API "/export/flank-points");
+  check_same("report --no-cache", API "/report");
 }
 
 static void check_token(void)

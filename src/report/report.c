@@ -1,0 +1,192 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "report/report.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "document/flank_chart.h"
+#include "document/geometry_table.h"
+#include "document/result.h"
+#include "format/json.h"
+#include "format/plot.h"
+#include "report/figures.h"
+#include "report/page.h"
+#include "report/sheet.h"
+
+static const char *find_text(const json_t *value, const char *path)
+{
+  const char *text = json_string_value(eo_json_find(value, path));
+  return text ? text : "";
+}
+
+static void put_identity(const json_t *result, struct eo_text *text)
+{
+  const char *name = find_text(result, "design/name");
+  eo_text_add(text, "<h1>");
+  eo_plot_escape(text, *name ? name : "A gear pair without a name");
+  eo_text_add(text, "</h1>\n<p>Report of load capacity, contact and flanks, made by ");
+  eo_plot_escape(text, find_text(result, "program"));
+  eo_text_print(text,
+                "</p>\n<p class=\"hash\">design %s<br>evaluation %s</p>\n"
+                "<p>The design's hash is the SHA-256 of its canonical document (keys sorted, no spaces): the same hash "
+                "is the same design, and the same program gives the same report.</p>\n",
+                find_text(result, "design_hash"), find_text(result, "evaluation_hash"));
+}
+
+static void put_verdict(const json_t *result, struct eo_text *text)
+{
+  const json_t *rating = json_object_get(result, "rating"), *passes = eo_json_find(rating, "verdict/passes");
+  const struct eo_outline *outline = eo_sheet_part(&eo_result_outline, "rating");
+  eo_page_heading(text, 2, "Verdict");
+  if (json_is_true(passes))
+    eo_text_add(text, "<p class=\"yes\">Every safety reaches its minimum.</p>\n");
+  else if (json_is_false(passes))
+    eo_text_add(text, "<p class=\"no\">A safety does not reach its minimum.</p>\n");
+  else {
+    eo_text_add(text, "<p class=\"no\">Not rated: ");
+    eo_plot_escape(text, find_text(rating, "reason"));
+    eo_text_add(text, "</p>\n");
+  }
+  eo_sheet_outline(text, eo_sheet_part(outline, "verdict"), json_object_get(rating, "verdict"), 3, NULL);
+  if (json_array_size(json_object_get(result, "warnings"))) {
+    eo_page_heading(text, 3, "Warnings");
+    eo_page_list(text, json_object_get(result, "warnings"));
+  }
+}
+
+static void put_inputs(const json_t *result, struct eo_text *text)
+{
+  const json_t *assumed = json_object_get(result, "assumed");
+  json_t *design = json_copy(json_object_get(result, "design"));
+  json_object_del(design, "optimization"); /* how a flank was searched for is nothing to sign */
+  eo_page_heading(text, 2, "Inputs");
+  eo_sheet_table(text, &eo_design_table, design, "", assumed);
+  json_decref(design);
+  if (!eo_json_find(result, "design/rating")) {
+    eo_page_heading(text, 3, "Inputs of the rating, all assumed");
+    eo_sheet_table(text, &eo_rating_table, eo_json_find(result, "rating/settings"), "/rating", assumed);
+  }
+}
+
+static void put_standards(const json_t *result, struct eo_text *text)
+{
+  eo_page_heading(text, 2, "Standards and methods");
+  eo_page_list(text, eo_json_find(result, "rating/standards"));
+  eo_page_list(text, eo_json_find(result, "tribology/methods"));
+  eo_page_heading(text, 3, "Unchecked");
+  eo_page_paragraph(text, "Neither the standard's own text nor a published report was at hand for these; they must be "
+                          "checked before somebody signs on them alone.");
+  eo_page_list(text, eo_json_find(result, "rating/unchecked"));
+}
+
+static void put_geometry(const json_t *result, struct eo_text *text)
+{
+  eo_page_heading(text, 2, "Geometry");
+  eo_sheet_table(text, &eo_geometry_table, json_object_get(result, "geometry"), "/geometry", NULL);
+  if (json_is_object(json_object_get(result, "dimensions"))) {
+    eo_page_heading(text, 3, "Dimensions of the drawing");
+    eo_sheet_outline(text, eo_sheet_part(&eo_result_outline, "dimensions"), json_object_get(result, "dimensions"), 4,
+                     NULL);
+  }
+  eo_page_heading(text, 3, "Flexibility");
+  eo_sheet_outline(text, eo_sheet_part(&eo_result_outline, "flexibility"), json_object_get(result, "flexibility"), 4,
+                   NULL);
+}
+
+static void put_flanks(const struct eo_design *design, const struct eo_geometry *geometry, struct eo_text *text)
+{
+  struct eo_flank_chart *chart = malloc(sizeof *chart);
+  text->failed = text->failed || !chart;
+  eo_page_heading(text, 2, "Flanks");
+  eo_page_paragraph(text,
+                    "Nominal profile and helix; a modification takes metal off and lies below 0. The band is the "
+                    "total tolerance, centred on the nominal curve: a measured trace may be moved across it, only "
+                    "its shape and slope count.");
+  for (int member = 0; member < 2 && chart; member++)
+    for (int end = 0; end < design->gear_pair.ends; end++)
+      for (int helix = 0; helix < 2; helix++) {
+        eo_flank_chart_find(chart, design, geometry, member, end, helix != 0);
+        eo_flank_chart_svg(chart, design, text);
+        if (*chart->note && !helix && !end)
+          eo_page_paragraph(text, chart->note);
+      }
+  free(chart);
+}
+
+static void put_contact(const json_t *result, struct eo_text *text)
+{
+  static const char *const elsewhere[] = {"position", NULL};
+  const struct eo_outline *outline = eo_sheet_part(&eo_result_outline, "load_cases");
+  const json_t *cases = json_object_get(result, "load_cases");
+  eo_page_heading(text, 2, "Contact, stress and vibration");
+  eo_figure_transmission(result, text);
+  eo_figure_stiffness(result, text);
+  eo_figure_face_load(result, text);
+  eo_figure_maps(result, text);
+  for (size_t i = 0; i < json_array_size(cases); i++) {
+    const json_t *load_case = json_array_get(cases, i);
+    eo_text_print(text, "<h3>%.6g N m, %.6g rpm <code>load_cases/%zu</code></h3>\n",
+                  eo_json_find_number(load_case, "torque_Nm"), eo_json_find_number(load_case, "speed_rpm"), i);
+    eo_sheet_outline(text, outline, load_case, 4, elsewhere);
+  }
+  eo_page_heading(text, 3, "Objectives");
+  eo_sheet_outline(text, eo_sheet_part(&eo_result_outline, "objectives"), json_object_get(result, "objectives"), 4,
+                   NULL);
+}
+
+static void put_rating(const json_t *result, struct eo_text *text)
+{
+  static const char *const above[] = {"outcome", "reason", "settings", "standards", "unchecked", "verdict", NULL};
+  eo_page_heading(text, 2, "Rating");
+  eo_sheet_outline(text, eo_sheet_part(&eo_result_outline, "rating"), json_object_get(result, "rating"), 3, above);
+}
+
+static void put_tribology(const json_t *result, struct eo_text *text)
+{
+  eo_page_heading(text, 2, "Tribology");
+  eo_sheet_outline(text, eo_sheet_part(&eo_result_outline, "tribology"), json_object_get(result, "tribology"), 3, NULL);
+}
+
+void eo_report_write(const json_t *result, const struct eo_design *design, const struct eo_geometry *geometry,
+                     struct eo_text *text)
+{
+  const char *name = find_text(result, "design/name");
+  eo_page_begin(text, *name ? name : "Easeoff");
+  put_identity(result, text);
+  put_verdict(result, text);
+  put_inputs(result, text);
+  put_standards(result, text);
+  put_geometry(result, text);
+  put_flanks(design, geometry, text);
+  put_rating(result, text);
+  put_tribology(result, text);
+  put_contact(result, text);
+  eo_page_end(text);
+}
+
+static enum eo_code write_report(const struct eo_analysis *analysis, const struct eo_design *design,
+                                 const struct eo_warnings *warnings, struct eo_text *text, struct eo_error *error)
+{
+  json_t *result = eo_result_encode_part(analysis, design, warnings, EO_RESULT_NO_HISTORIES);
+  if (!result)
+    return eo_error_memory(error);
+  eo_report_write(result, design, &analysis->pair->geometry, text);
+  json_decref(result);
+  return text->failed ? eo_error_memory(error) : EO_OK;
+}
+
+enum eo_code eo_report_make(const struct eo_pair *pair, const struct eo_design *design,
+                            const struct eo_warnings *warnings, const struct eo_progress *progress,
+                            struct eo_text *text, struct eo_error *error)
+{
+  struct eo_analysis *analysis;
+  EO_TRY(eo_analysis_new(&analysis, pair, error));
+  enum eo_code code = eo_analysis_run(analysis, design, EO_WANT_ROOT | EO_WANT_BAND | EO_WANT_CURVES | EO_WANT_RATING,
+                                      error);
+  if (!code && eo_progress_report(progress, "report", 1))
+    code = eo_error_set(error, EO_ERROR_CANCELLED, "", "Stopped.");
+  if (!code)
+    code = write_report(analysis, design, warnings, text, error);
+  eo_analysis_free(analysis);
+  return code;
+}
