@@ -140,7 +140,7 @@ bool eo_app_load_design(const char *path, struct eo_design *design, struct eo_ge
   else if (eo_design_complete(design, geometry, &error))
     *status = eo_app_fail(path, &error);
   else if (warnings)
-    eo_design_note_assumptions(document, design, warnings);
+    eo_design_note_findings(design, geometry, warnings);
 out:
   json_decref(document);
   free(faults);

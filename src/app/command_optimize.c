@@ -9,6 +9,7 @@
 #include "app/number.h"
 #include "app/watch.h"
 #include "base/parallel.h"
+#include "document/search_space.h"
 #include "study/study.h"
 
 struct request {
@@ -122,6 +123,9 @@ static int run_request(struct request *q)
   int status;
   if (!apply_options(q, &error))
     return eo_app_fail(NULL, &error);
+  struct eo_study_space space;
+  if (eo_study_space_init(&space, &q->design, &q->geometry, &error))
+    return eo_app_fail(q->file, &error);
   enum eo_code code = eo_app_data_directory(q->data, &directory, &error);
   if (!code)
     code = eo_store_open(&store, directory.data, EO_STORE_WRITE, &error);

@@ -108,8 +108,8 @@ void eo_iso_root(struct eo_iso_root *root, const struct eo_geometry *geometry, i
       .virtual_teeth = r.virtual_teeth,
       .normal_pressure_angle = alpha,
       .profile_shift = geometry->profile_shift[member],
-      .dedendum_coefficient = geometry->dedendum / module,
-      .fillet_radius_coefficient = geometry->fillet_radius / module,
+      .dedendum_coefficient = geometry->dedendum[member] / module,
+      .fillet_radius_coefficient = geometry->fillet_radius[member] / module,
       .load_radius = load_radius(geometry, member, r.virtual_teeth, r.virtual_teeth / 2 * cos(alpha))};
   eo_iso_section(&section, &input);
   r.form_factor = section.form_factor;

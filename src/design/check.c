@@ -95,9 +95,10 @@ static enum eo_code check_start_bounds(const struct eo_range *range, double acti
       1e3 * range->low, 1e3 * range->high, 1e3 * active);
 }
 
-static enum eo_code check_optimization(const struct eo_optimization *optimization, const struct eo_geometry *geometry,
-                                       struct eo_error *error)
+enum eo_code eo_design_check_search(const struct eo_design *design, const struct eo_geometry *geometry,
+                                    struct eo_error *error)
 {
+  const struct eo_optimization *optimization = &design->optimization;
   if (optimization->variables != EO_VARIABLES_LISTED && optimization->listed)
     return eo_error_set(error, EO_ERROR_INPUT, "/optimization/variable_list",
                         "Variables are listed, but variables is not \"listed\".");
@@ -162,16 +163,17 @@ static enum eo_code check_shaft(const struct eo_shafts *shafts, const struct eo_
   return EO_OK;
 }
 
+/* Of elastic bodies alone: nothing else looks at the bearings' places. */
 static enum eo_code check_shafts(const struct eo_shafts *shafts, const struct eo_gear_pair *pair,
                                  struct eo_error *error)
 {
   enum eo_code code = EO_OK;
-  for (int i = 0; i < 2 && !code; i++)
+  for (int i = 0; i < 2 && !code && shafts->enabled; i++)
     if (!(shafts->bearing_position[i][EO_LEFT] < shafts->bearing_position[i][EO_RIGHT]))
       return eo_error_set(error, EO_ERROR_INPUT, i ? "/shafts/gear_left_bearing_mm" : "/shafts/pinion_left_bearing_mm",
                           "The left bearing at %.6g mm is not left of the right one at %.6g mm.",
                           1e3 * shafts->bearing_position[i][EO_LEFT], 1e3 * shafts->bearing_position[i][EO_RIGHT]);
-    else if (shafts->enabled)
+    else
       code = check_shaft(shafts, pair, i, error);
   return code;
 }
@@ -190,8 +192,6 @@ enum eo_code eo_design_check(const struct eo_design *design, const struct eo_geo
     code = check_body(&design->gear_pair, geometry, i, error);
   if (!code)
     code = eo_modification_check(design, geometry, error);
-  if (!code)
-    code = check_optimization(&design->optimization, geometry, error);
   if (!code)
     code = check_resolution(&design->resolution, geometry, error);
   if (!code)

@@ -7,12 +7,16 @@
 #include "design/design.h"
 #include "gear/geometry.h"
 
-/* design: resolved; geometry: of its gear pair. EO_ERROR_INPUT with the key: bore or groove that leaves no body, relief
-   that starts outside the active flank, end reliefs that overlap, bounds outside the active flank, thresholds, weights
-   and harmonics that contradict each other, bearings in the wrong order and, with elastic bodies, inside the toothed
-   body; a shaft thinner than its bore. */
+/* What an analysis uses. design: resolved; geometry: of its gear pair. EO_ERROR_INPUT with the key: bore or groove that
+   leaves no body, relief that starts outside the active flank, end reliefs that overlap, weights and harmonics that
+   contradict each other and, with elastic bodies, bearings in the wrong order or inside the toothed body, a shaft
+   thinner than its bore. Settings of the search are not looked at. */
 enum eo_code eo_design_check(const struct eo_design *design, const struct eo_geometry *geometry,
                              struct eo_error *error);
+
+/* What only a search uses: its settings, thresholds and variables, bounds outside the active flank. */
+enum eo_code eo_design_check_search(const struct eo_design *design, const struct eo_geometry *geometry,
+                                    struct eo_error *error);
 
 /* The part of it that concerns the flanks: reliefs that start outside the active flank, end reliefs that overlap or
    have no length. */

@@ -18,16 +18,28 @@ double eo_alignment_axial_stiffness(const struct eo_alignment *alignment)
                                                       : 0;
 }
 
+/* The rack of both members is the pinion's where nobody states one. */
+static void resolve_rack(struct eo_gear_pair *pair)
+{
+  struct eo_rack rack = eo_gear_pair_rack(pair, EO_PINION);
+  fill(&pair->addendum_coefficient, rack.addendum_coefficient);
+  fill(&pair->dedendum_coefficient, rack.dedendum_coefficient);
+  fill(&pair->fillet_radius_coefficient, rack.fillet_radius_coefficient);
+}
+
 static void resolve_gear_pair(struct eo_gear_pair *pair, const struct eo_geometry *geometry)
 {
   fill(&pair->groove_width, pair->ends == 2 ? 8 * pair->normal_module : 0);
   fill(&pair->centre_distance, geometry->centre_distance);
+  fill(&pair->backlash, geometry->stated_backlash);
   for (int i = 0; i < 2; i++) {
     double root = 2 * geometry->root_radius[i];
+    pair->rack[i] = eo_gear_pair_rack(pair, i);
     fill(&pair->tip_diameter[i], 2 * geometry->tip_radius[i]);
     fill(&pair->bore[i], i == EO_PINION ? 0 : fmin(15 * pair->normal_module, root / 2));
     fill(&pair->groove_diameter[i], fmax(root - 2e-3, 0.9 * root));
   }
+  resolve_rack(pair);
 }
 
 /* Solid pitch cylinder of one end and half the groove body, less the bore. */
@@ -42,6 +54,31 @@ static void resolve_inertia(struct eo_supports *supports, const struct eo_gear_p
                  pow(bore, 4) * (pair->face_width + groove);
   fill(&supports->mass[i], density * M_PI * area);
   fill(&supports->inertia[i], density * M_PI / 2 * polar);
+}
+
+/* Bearings grow with the shaft they carry. 1e10 N/m2 of seat diameter: a cylindrical roller bearing of medium series by
+   Palmgren's line contact has about twice that, housing and seat take the other half; bearings of published gearboxes
+   lie around it from 10 N/um (small rotors) to 10 kN/um (wind turbines). Seats of equal torsional stress grow with the
+   cube root of the torque. Axially a fifth, as a locating bearing's thrust part. */
+static void resolve_bearings(struct eo_supports *supports, const struct eo_gear_pair *pair)
+{
+  static const double PER_SEAT = 1e10, SEAT = 0.8, AXIAL = 0.2;
+  double pinion = SEAT * pair->groove_diameter[EO_PINION];
+  double gear = fmin(pinion * cbrt((double)pair->teeth[EO_GEAR] / pair->teeth[EO_PINION]),
+                     SEAT * pair->groove_diameter[EO_GEAR]);
+  fill(&supports->bearing_stiffness[EO_PINION], PER_SEAT * pinion);
+  fill(&supports->bearing_stiffness[EO_GEAR], PER_SEAT * gear);
+  for (int end = 0; end < 2; end++)
+    fill(&supports->gear_axial_stiffness[end], AXIAL * supports->bearing_stiffness[EO_GEAR]);
+}
+
+static void resolve_resolution(struct eo_resolution *resolution, const struct eo_gear_pair *pair)
+{
+  enum { USUAL_HARMONICS = 16 };
+  fill(&resolution->impact_patch, fmin(5 * pair->normal_module / 6, pair->face_width));
+  if (!resolution->te_harmonics)
+    resolution->te_harmonics = resolution->positions < 2 * USUAL_HARMONICS ? resolution->positions / 2
+                                                                           : USUAL_HARMONICS;
 }
 
 static void resolve_groove(struct eo_supports *supports, const struct eo_gear_pair *pair,
@@ -90,6 +127,12 @@ static void resolve_scenarios(struct eo_objective *objective, const struct eo_al
   }
 }
 
+static void resolve_amount(struct eo_range *range, double most)
+{
+  fill(&range->low, 0);
+  fill(&range->high, most);
+}
+
 static void resolve_start_range(struct eo_range *range, double active, double module)
 {
   double high = 0.9 * active;
@@ -117,6 +160,9 @@ static void resolve_optimization(struct eo_optimization *optimization, const str
   optimization->search.variables = count_variables(optimization, pair->ends);
   optimization->search.objectives = 3;
   optimization->search.share_radius = eo_optimizer_share_radius(&optimization->search);
+  resolve_amount(&optimization->tip_relief, 0.02 * pair->normal_module);
+  resolve_amount(&optimization->root_relief, 0.02 * pair->normal_module);
+  resolve_amount(&optimization->lead_crowning, 40e-6);
   resolve_start_range(&optimization->tip_relief_start, geometry->rack_top, pair->normal_module);
   resolve_start_range(&optimization->root_relief_start, -geometry->rack_bottom, pair->normal_module);
 }
@@ -129,7 +175,10 @@ void eo_design_resolve(struct eo_design *design, const struct eo_geometry *geome
     if (design->gear_pair.ends == 2 && design->gear_pair.groove_width > 0)
       resolve_groove(&design->supports, &design->gear_pair, &design->material, i);
   }
+  resolve_bearings(&design->supports, &design->gear_pair);
+  fill(&design->alignment.pinion_axial_stiffness, design->supports.gear_axial_stiffness[EO_LEFT]);
   resolve_shafts(&design->shafts, &design->gear_pair);
+  resolve_resolution(&design->resolution, &design->gear_pair);
   resolve_scenarios(&design->objective, &design->alignment);
   resolve_optimization(&design->optimization, &design->gear_pair, geometry);
 }

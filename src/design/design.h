@@ -24,7 +24,7 @@ struct eo_alignment {
   double shaft_angle_in_plane;     /* kappa, rad, in the plane of the axes */
   double shaft_angle_out_of_plane; /* gamma, rad */
   enum eo_axial pinion_axial;
-  double pinion_axial_stiffness; /* N/m, used with EO_AXIAL_SPRING */
+  double pinion_axial_stiffness; /* N/m, used with EO_AXIAL_SPRING; NaN: that of the gear's left end */
   double stagger;                /* right end behind the left, in transverse base pitches, 0..1 */
 };
 
@@ -35,6 +35,7 @@ struct eo_load_case {
   double torque; /* total on the pinion shaft, N m, > 0 */
   double speed;  /* pinion, rad/s, > 0 */
   double share;  /* of operating time; they sum to 1 */
+  double power;  /* W, entry alone: the torque is power over speed; NaN: the torque is stated */
 };
 
 enum eo_normalise { EO_NORMALISE_UNMODIFIED, EO_NORMALISE_NONE };
@@ -93,16 +94,19 @@ struct eo_resolution {
   int layers;                        /* of the finite-element mesh over the face width */
   int flank_rows;                    /* elements over the active profile */
   int fillet_elements;               /* along the loaded fillet */
-  double impact_patch;               /* length of the impact patch, m */
+  double impact_patch;               /* length of the impact patch, m; NaN: 5/6 m_n, at most the face width */
   double marking_thickness;          /* of the contact pattern, m */
   enum eo_mesh_law mesh_law;
   enum eo_solver solver;
   enum eo_impact_in_dynamics impact_in_dynamics;
   int harmonics;    /* of the harmonic balance */
-  int te_harmonics; /* mesh harmonics kept of Z and k_tan */
+  int te_harmonics; /* mesh harmonics kept of Z and k_tan; 0: 16, at most half the positions */
 };
 
+enum { EO_STATED_WORDS = 8 };
+
 struct eo_design {
+  int version; /* of the document it was read from */
   char name[EO_NAME_LENGTH];
   struct eo_gear_pair gear_pair;
   struct eo_material material;
@@ -116,6 +120,7 @@ struct eo_design {
   struct eo_objective objective;
   struct eo_optimization optimization;
   struct eo_resolution resolution;
+  uint64_t stated[EO_STATED_WORDS]; /* a bit for each key that the user stated: document/assumption.h */
 };
 
 struct eo_geometry;

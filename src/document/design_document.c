@@ -6,20 +6,53 @@
 #include <string.h>
 
 #include "format/json.h"
+#include "document/assumption.h"
+#include "document/design_migration.h"
 #include "document/search_space.h"
 #include "evaluation/evaluator.h"
 #include "design/check.h"
+#include "gear/entry.h"
 
-void eo_warnings_add(struct eo_warnings *warnings, const char *format, ...)
+static void add_warning(struct eo_warnings *warnings, const char *key, const char *format, va_list arguments)
 {
   int most = (int)(sizeof warnings->text / sizeof warnings->text[0]);
   if (!warnings || warnings->count >= most)
     return;
-  char *text = warnings->text[warnings->count++];
+  int i = warnings->count++;
+  snprintf(warnings->key[i], sizeof warnings->key[i], "%s", key);
+  vsnprintf(warnings->text[i], sizeof warnings->text[i], format, arguments);
+}
+
+void eo_warnings_add(struct eo_warnings *warnings, const char *format, ...)
+{
   va_list arguments;
   va_start(arguments, format);
-  vsnprintf(text, sizeof warnings->text[0], format, arguments);
+  add_warning(warnings, "", format, arguments);
   va_end(arguments);
+}
+
+void eo_warnings_at(struct eo_warnings *warnings, const char *key, const char *format, ...)
+{
+  va_list arguments;
+  va_start(arguments, format);
+  add_warning(warnings, key, format, arguments);
+  va_end(arguments);
+}
+
+/* T = P / omega. */
+static void settle_power(struct eo_load_case *load_case, int i, struct eo_faults *faults)
+{
+  char pointer[64];
+  double torque = load_case->power / load_case->speed;
+  if (!(load_case->power > 0))
+    return;
+  snprintf(pointer, sizeof pointer, "/load_cases/%d/power_kW", i);
+  if (!isnan(load_case->torque) && !(fabs(torque - load_case->torque) <= 1e-6 * torque))
+    eo_faults_add(faults, pointer,
+                  "%.9g kW at %.9g rpm is a torque of %.9g N m, but %.9g N m is stated: leave one of the two out.",
+                  load_case->power / 1e3, eo_unit_out(&eo_unit_rpm, load_case->speed), torque, load_case->torque);
+  load_case->torque = isnan(load_case->torque) ? torque : load_case->torque;
+  load_case->power = NAN;
 }
 
 void eo_load_cases_settle(struct eo_load_case *load_case, int count, struct eo_warnings *warnings,
@@ -28,6 +61,7 @@ void eo_load_cases_settle(struct eo_load_case *load_case, int count, struct eo_w
   double sum = 0;
   int stated = 0;
   for (int i = 0; i < count; i++) {
+    settle_power(&load_case[i], i, faults);
     stated += !isnan(load_case[i].share);
     sum += isnan(load_case[i].share) ? 0 : load_case[i].share;
   }
@@ -61,8 +95,8 @@ static void drop_right_end(const json_t *document, struct eo_design *design, str
   }
 }
 
-bool eo_design_decode(const json_t *document, struct eo_design *design, struct eo_warnings *warnings,
-                      struct eo_faults *faults)
+static bool decode_current(const json_t *document, struct eo_design *design, struct eo_warnings *warnings,
+                           struct eo_faults *faults)
 {
   struct eo_design read;
   int before = faults->count;
@@ -73,17 +107,20 @@ bool eo_design_decode(const json_t *document, struct eo_design *design, struct e
   if (faults->count != before)
     return false;
   drop_right_end(document, &read, warnings);
+  eo_assumptions_note(document, &read);
   *design = read;
   return true;
 }
 
-void eo_design_note_assumptions(const json_t *document, const struct eo_design *design, struct eo_warnings *warnings)
+bool eo_design_decode(const json_t *document, struct eo_design *design, struct eo_warnings *warnings,
+                      struct eo_faults *faults)
 {
-  if (!json_object_get(json_object_get(document, "alignment"), "shaft_angle_error_in_plane_deg"))
-    eo_warnings_add(warnings, "The shaft angle error is not stated: %.6g deg in the plane of the axes is assumed.",
-                    eo_unit_out(&eo_unit_deg, design->alignment.shaft_angle_in_plane));
-  if (!json_object_get(document, "load_cases"))
-    eo_warnings_add(warnings, "No load cases are stated: the paper's duty cycle is assumed.");
+  json_t *current = eo_design_migrate(document, warnings);
+  bool good = current && decode_current(current, design, warnings, faults);
+  if (!current)
+    eo_faults_add(faults, "", "There is not enough memory for the document.");
+  json_decref(current);
+  return good;
 }
 
 json_t *eo_design_encode(const struct eo_design *design)
@@ -125,15 +162,19 @@ enum eo_code eo_design_read(const char *text, size_t size, struct eo_design *des
     return error->code;
   enum eo_code code = decode(document, design, warnings, error);
   json_decref(document);
-  return code ? code : eo_design_complete(design, geometry, error);
+  code = code ? code : eo_design_complete(design, geometry, error);
+  if (!code)
+    eo_design_note_findings(design, geometry, warnings);
+  return code;
 }
 
 enum eo_code eo_design_complete(struct eo_design *design, struct eo_geometry *geometry, struct eo_error *error)
 {
   struct eo_design complete = *design;
   struct eo_geometry made;
-  struct eo_study_space space;
-  enum eo_code code = eo_geometry_init(&made, &complete.gear_pair, error);
+  enum eo_code code = eo_gear_pair_settle(&complete.gear_pair, error);
+  if (!code)
+    code = eo_geometry_init(&made, &complete.gear_pair, error);
   if (code)
     return code;
   eo_design_resolve(&complete, &made);
@@ -141,8 +182,6 @@ enum eo_code eo_design_complete(struct eo_design *design, struct eo_geometry *ge
   code = eo_geometry_init(&made, &complete.gear_pair, error);
   if (!code)
     code = eo_design_check(&complete, &made, error);
-  if (!code)
-    code = eo_study_space_init(&space, &complete, &made, error);
   if (!code) {
     *design = complete;
     *geometry = made;
@@ -180,7 +219,7 @@ static enum eo_code hash_without(const struct eo_design *design, const char *con
 enum eo_code eo_design_evaluation_hash(const struct eo_design *design, char hex[EO_HASH_LENGTH + 1],
                                        struct eo_error *error)
 {
-  static const char *const without[] = {"name", "rating", "objective", "optimization", NULL};
+  static const char *const without[] = {"version", "name", "rating", "objective", "optimization", NULL};
   return hash_without(design, without, hex, error);
 }
 
@@ -204,7 +243,7 @@ static json_t *encode_wants(const struct eo_design *design)
 
 static json_t *encode_problem(const struct eo_design *design)
 {
-  static const char *const without[] = {"name", "modification", "rating", "objective", "optimization"};
+  static const char *const without[] = {"version", "name", "modification", "rating", "objective", "optimization"};
   json_t *document = eo_design_encode(design), *load_case;
   bool failed = !document;
   size_t i;

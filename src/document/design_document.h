@@ -7,6 +7,7 @@
 
 #include "base/hash.h"
 #include "format/faults.h"
+#include "format/outline.h"
 #include "format/table.h"
 #include "design/design.h"
 #include "gear/geometry.h"
@@ -19,25 +20,37 @@ extern const struct eo_table eo_design_table, eo_gear_pair_table, eo_material_ta
 /* Keys of a flank's modification that may be optimized; ends with NULL. */
 extern const char *const eo_variable_parameters[];
 
-/* What was changed or left out in reading a design that is otherwise right. */
+/* What a designer should know of a design that is otherwise right: what was changed or left out in reading it, what is
+   unusual, what a search would refuse. */
 struct eo_warnings {
   int count;
-  char text[8][200];
+  char text[16][640];
+  char key[16][96]; /* JSON pointer of the field it belongs to, "" for none */
 };
 void eo_warnings_add(struct eo_warnings *warnings, const char *format, ...) __attribute__((format(printf, 2, 3)));
+void eo_warnings_at(struct eo_warnings *warnings, const char *key, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
 
-/* Reads a design: every key checked, defaults for what is absent; shares are scaled to the sum 1 and the modification
+/* Reads a design: an older document is migrated, every key checked, defaults for what is absent, a torque from its
+   power; shares are scaled to the sum 1 and the modification
    of an end that does not exist is dropped, each with a warning. False when there is a fault; *design is then
    untouched. warnings may be NULL. */
 bool eo_design_decode(const json_t *document, struct eo_design *design, struct eo_warnings *warnings,
                       struct eo_faults *faults);
 
-/* The load cases as part of another document than a design: all state their share or none does; scaled to the sum 1. */
+/* The load cases as part of another document than a design: the torque follows from a power; all state their share or
+   none does; scaled to the sum 1. */
 void eo_load_cases_settle(struct eo_load_case *load_case, int count, struct eo_warnings *warnings,
                           struct eo_faults *faults);
 
-/* Says which assumption stands in for a key that decides the result and that the document leaves out. */
-void eo_design_note_assumptions(const json_t *document, const struct eo_design *design, struct eo_warnings *warnings);
+/* Adds what can work but is unusual in a complete design, each with number, limit and remedy, at its field; and what a
+   search would be refused for. */
+void eo_design_note_findings(const struct eo_design *design, const struct eo_geometry *geometry,
+                             struct eo_warnings *warnings);
+
+/* The warnings that belong to a field. New array; NULL without memory. */
+extern const struct eo_outline eo_outline_finding;
+json_t *eo_design_findings(const struct eo_warnings *warnings);
 
 /* New document with every key; derived values that are not resolved are null. NULL without memory. */
 json_t *eo_design_encode(const struct eo_design *design);
@@ -49,9 +62,10 @@ void eo_design_write(const struct eo_design *design, struct eo_text *text);
 enum eo_code eo_design_read(const char *text, size_t size, struct eo_design *design, struct eo_geometry *geometry,
                             struct eo_warnings *warnings, struct eo_error *error);
 
-/* Resolves every derived default, moves each number to the nearest one that the document can express and checks what
-   needs more than one key. Afterwards analysing *design and analysing its document are the same thing, bit for bit.
-   Outputs untouched on failure. */
+/* Settles what was entered in another way (gear/entry.h), resolves every derived default, moves each number to the
+   nearest one that the document can express and checks what needs more than one key. Settings of a search are not
+   looked at: eo_design_check_search() and eo_study_space_init() do. Afterwards analysing *design and analysing its
+   document are the same thing, bit for bit. Outputs untouched on failure. */
 enum eo_code eo_design_complete(struct eo_design *design, struct eo_geometry *geometry, struct eo_error *error);
 
 /* SHA-256 of the canonical document (keys sorted, shortest decimals, no spaces). */

@@ -1,15 +1,28 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Field tables of the duty cycle, the objective, the optimization and the resolution, and of the whole design. */
 #include "document/design_document.h"
+#include "document/design_migration.h"
 
 /* clang-format off */
 #define NUMBERS(...) (const double[]){__VA_ARGS__}
 /* clang-format on */
 
+static const char *const power[] = {"power_kW", NULL};
+
 static const struct eo_field load_case[] = {
-    EO_NUMBER_REQUIRED(struct eo_load_case, torque, "torque_Nm", &eo_unit_Nm, 1e-3, 1e8,
-                       "total on the pinion shaft, half of it per end"),
-    EO_NUMBER(struct eo_load_case, speed, "speed_rpm", &eo_unit_rpm, 0.1, 1e6, 2000, "of the pinion"),
+    {.key = "torque_Nm",
+     .kind = EO_FIELD_NUMBER,
+     .flags = EO_FIELD_REQUIRED,
+     .offset = offsetof(struct eo_load_case, torque),
+     .unit = &eo_unit_Nm,
+     .low = 1e-3,
+     .high = 1e8,
+     .fallback = NAN,
+     .instead = power,
+     .help = "total on the pinion shaft, half of it per end"},
+    EO_NUMBER_ENTRY(struct eo_load_case, power, "power_kW", "torque_Nm", &eo_unit_kW, 1e-6, 1e6,
+                    "of the pinion shaft: the torque is power over speed"),
+    EO_NUMBER_REQUIRED(struct eo_load_case, speed, "speed_rpm", &eo_unit_rpm, 0.1, 1e6, "of the pinion"),
     EO_NUMBER_DERIVED(struct eo_load_case, share, "share", NULL, 0, 1e6, "equal, when no load case states its share",
                       "of operating time; shares that do not sum to 1 are scaled, with a warning"),
 };
@@ -104,17 +117,20 @@ const char *const eo_variable_parameters[] = {"tip_relief_um",
   EO_CHOICE(struct eo_optimization, search.member, #member, choices, fallback, help),
 /* clang-format on */
 
+#define MOST_RELIEF "0 .. 0.02 m_n, the largest tip relief of BS 436-2"
+
 static const struct eo_field bounds[] = {
-    EO_NUMBERS(struct eo_optimization, tip_relief, "tip_relief_um", 2, &eo_unit_um, 0, 1000, EO_FIELD_ASCENDING,
-               NUMBERS(0, 40), NULL, "d_tr"),
-    EO_NUMBERS(struct eo_optimization, root_relief, "root_relief_um", 2, &eo_unit_um, 0, 1000, EO_FIELD_ASCENDING,
-               NUMBERS(0, 40), NULL, "d_br"),
+    EO_NUMBERS(struct eo_optimization, tip_relief, "tip_relief_um", 2, &eo_unit_um, 0, 1000,
+               EO_FIELD_ASCENDING | EO_FIELD_NULLABLE, NULL, MOST_RELIEF, "d_tr"),
+    EO_NUMBERS(struct eo_optimization, root_relief, "root_relief_um", 2, &eo_unit_um, 0, 1000,
+               EO_FIELD_ASCENDING | EO_FIELD_NULLABLE, NULL, MOST_RELIEF, "d_br"),
     EO_NUMBERS(struct eo_optimization, tip_relief_start, "tip_relief_start_mm", 2, &eo_unit_mm, 0, 200,
                EO_FIELD_ASCENDING | EO_FIELD_NULLABLE, NULL, "0.05 m_n .. nine tenths of the active profile", "u_ts"),
     EO_NUMBERS(struct eo_optimization, root_relief_start, "root_relief_start_mm", 2, &eo_unit_mm, 0, 200,
                EO_FIELD_ASCENDING | EO_FIELD_NULLABLE, NULL, "0.05 m_n .. nine tenths of the active profile", "u_bs"),
-    EO_NUMBERS(struct eo_optimization, lead_crowning, "lead_crowning_um", 2, &eo_unit_um, 0, 1000, EO_FIELD_ASCENDING,
-               NUMBERS(0, 36), NULL, "at the face ends"),
+    EO_NUMBERS(struct eo_optimization, lead_crowning, "lead_crowning_um", 2, &eo_unit_um, 0, 1000,
+               EO_FIELD_ASCENDING | EO_FIELD_NULLABLE, NULL, "0 .. 40 um, the largest crowning of ISO 6336-1 annex B",
+               "at the face ends"),
 };
 static const struct eo_table bounds_table = EO_TABLE("bounds", struct eo_optimization, bounds);
 
@@ -179,8 +195,8 @@ static const struct eo_field resolution[] = {
     EO_INTEGER(struct eo_resolution, flank_rows, "flank_rows", 4, 60, 10, "finite elements over the active profile"),
     EO_INTEGER(struct eo_resolution, fillet_elements, "fillet_elements", 4, 80, 18,
                "finite elements along the loaded fillet"),
-    EO_NUMBER(struct eo_resolution, impact_patch, "impact_patch_mm", &eo_unit_mm, 0.1, 100, 5,
-              "length of the patch that an entering impact loads"),
+    EO_NUMBER_DERIVED(struct eo_resolution, impact_patch, "impact_patch_mm", &eo_unit_mm, 0.01, 100,
+                      "5/6 m_n, at most the face width", "length of the patch that an entering impact loads"),
     EO_NUMBER(struct eo_resolution, marking_thickness, "marking_thickness_um", &eo_unit_um, 0.1, 100, 6.35,
               "marking compound of the contact pattern"),
     EO_CHOICE(struct eo_resolution, mesh_law, "mesh_law", mesh_laws, EO_LAW_TANGENT, "mesh force in the dynamics"),
@@ -189,8 +205,15 @@ static const struct eo_field resolution[] = {
     EO_CHOICE(struct eo_resolution, impact_in_dynamics, "impact_in_dynamics", impacts, EO_IMPACT_NONE,
               "impact pulses in the equations of motion"),
     EO_INTEGER(struct eo_resolution, harmonics, "harmonics", 1, 256, 24, "mesh harmonics of the response"),
-    EO_INTEGER(struct eo_resolution, te_harmonics, "te_harmonics", 1, 128, 16,
-               "mesh harmonics kept of transmission error and stiffness"),
+    {.key = "te_harmonics",
+     .kind = EO_FIELD_INTEGER,
+     .flags = EO_FIELD_NULLABLE,
+     .offset = offsetof(struct eo_resolution, te_harmonics),
+     .low = 1,
+     .high = 128,
+     .fallback = NAN,
+     .derived = "16, at most half the positions",
+     .help = "mesh harmonics kept of transmission error and stiffness"},
 };
 
 const struct eo_table eo_load_case_table = EO_TABLE("a load case", struct eo_load_case, load_case);
@@ -198,10 +221,15 @@ const struct eo_table eo_objective_table = EO_TABLE("objective", struct eo_objec
 const struct eo_table eo_optimization_table = EO_TABLE("optimization", struct eo_optimization, optimization);
 const struct eo_table eo_resolution_table = EO_TABLE("resolution", struct eo_resolution, resolution);
 
-static const struct eo_load_case paper_duty_cycle[] = {
-    {621, 2000 * (M_PI / 30), 0.2}, {828, 2000 * (M_PI / 30), 0.5}, {1035, 2000 * (M_PI / 30), 0.3}};
-
 static const struct eo_field design[] = {
+    {.key = "version",
+     .kind = EO_FIELD_INTEGER,
+     .offset = offsetof(struct eo_design, version),
+     .low = 1,
+     .high = EO_DESIGN_VERSION,
+     .fallback = EO_DESIGN_VERSION,
+     .outside = "This document is of a later program.",
+     .help = "of the document: which defaults stand for what it leaves out; an older one is migrated, with a note"},
     {.key = "name",
      .kind = EO_FIELD_TEXT,
      .offset = offsetof(struct eo_design, name),
@@ -213,18 +241,8 @@ static const struct eo_field design[] = {
     EO_OBJECT(struct eo_design, supports, "supports", &eo_supports_table,
               "bearings, groove and masses for the dynamics"),
     EO_OBJECT(struct eo_design, shafts, "shafts", &eo_shafts_table, "elastic bodies, off by default"),
-    {.key = "load_cases",
-     .kind = EO_FIELD_LIST,
-     .offset = offsetof(struct eo_design, load_case),
-     .low = 1,
-     .high = EO_MAX_LOAD_CASES,
-     .count = EO_MAX_LOAD_CASES,
-     .count_offset = offsetof(struct eo_design, load_cases),
-     .table = &eo_load_case_table,
-     .rows = paper_duty_cycle,
-     .row_count = 3,
-     .derived = "the paper's: 621, 828 and 1035 N m at 2000 rpm for 0.2, 0.5 and 0.3 of the time",
-     .help = "the duty cycle"},
+    EO_LIST(struct eo_design, load_case, load_cases, "load_cases", &eo_load_case_table, 1, EO_MAX_LOAD_CASES,
+            "the duty cycle; none is assumed"),
     EO_OBJECT(struct eo_design, modification, "modification", &eo_modification_table, "material taken off the flanks"),
     {.key = "rating",
      .kind = EO_FIELD_OBJECT,

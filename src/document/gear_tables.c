@@ -5,38 +5,120 @@
 
 enum { TO_MM = 1000000 };
 
+#define TIP                                                                                                      \
+  "from addendum, profile shift and tip alteration; where that is not stated either, short enough to clear the " \
+  "mate's fillet or undercut and at least 0.2 m_n thick"
+#define NO_INTERNAL \
+  "Internal gears (a negative number of teeth) and planetary stages are not modelled: both members are external."
+static const char *const other_modules[] = {"transverse_module_mm", "normal_diametral_pitch_per_inch",
+                                            "transverse_diametral_pitch_per_inch", NULL};
+
+/* A coefficient of one member's basic rack. */
+#define RACK(member, name, key_, low_, high_, help_) \
+  EO_NUMBER_DERIVED(struct eo_gear_pair, rack[member].name, key_, NULL, low_, high_, "that of both members", help_)
+#define ENTRY(name, key_, states_, unit_, low_, high_, help_) \
+  EO_NUMBER_ENTRY(struct eo_gear_pair, entry.name, key_, states_, unit_, low_, high_, help_)
+
 static const struct eo_field gear_pair[] = {
     EO_INTEGER(struct eo_gear_pair, ends, "ends", 1, 2, 2,
                "2: herringbone; 1: single helical or spur (its only end is the left one)"),
-    EO_INTEGER_REQUIRED(struct eo_gear_pair, teeth[EO_PINION], "pinion_teeth", 4, 2000,
-                        "teeth of the pinion (driving)"),
-    EO_INTEGER_REQUIRED(struct eo_gear_pair, teeth[EO_GEAR], "gear_teeth", 4, 2000, "teeth of the gear"),
-    EO_NUMBER_REQUIRED(struct eo_gear_pair, normal_module, "normal_module_mm", &eo_unit_mm, 0.1, 100,
-                       "normal module m_n"),
-    EO_NUMBER(struct eo_gear_pair, normal_pressure_angle, "normal_pressure_angle_deg", &eo_unit_deg, 10, 35, 20,
-              "normal pressure angle alpha_n"),
+    {.key = "pinion_teeth",
+     .kind = EO_FIELD_INTEGER,
+     .flags = EO_FIELD_REQUIRED,
+     .offset = offsetof(struct eo_gear_pair, teeth[EO_PINION]),
+     .low = 4,
+     .high = 2000,
+     .fallback = NAN,
+     .outside = NO_INTERNAL,
+     .help = "teeth of the pinion (driving)"},
+    {.key = "gear_teeth",
+     .kind = EO_FIELD_INTEGER,
+     .flags = EO_FIELD_REQUIRED,
+     .offset = offsetof(struct eo_gear_pair, teeth[EO_GEAR]),
+     .low = 4,
+     .high = 2000,
+     .fallback = NAN,
+     .outside = NO_INTERNAL,
+     .help = "teeth of the gear"},
+    {.key = "normal_module_mm",
+     .kind = EO_FIELD_NUMBER,
+     .flags = EO_FIELD_REQUIRED,
+     .offset = offsetof(struct eo_gear_pair, normal_module),
+     .unit = &eo_unit_mm,
+     .low = 0.1,
+     .high = 100,
+     .fallback = NAN,
+     .instead = other_modules,
+     .help = "normal module m_n"},
+    ENTRY(transverse_module, "transverse_module_mm", "normal_module_mm", &eo_unit_mm, 0.1, 200,
+          "transverse module m_t = m_n / cos beta"),
+    ENTRY(normal_diametral_pitch, "normal_diametral_pitch_per_inch", "normal_module_mm", &eo_unit_per_inch, 0.254, 254,
+          "normal diametral pitch: m_n = 25.4 mm / it"),
+    ENTRY(transverse_diametral_pitch, "transverse_diametral_pitch_per_inch", "normal_module_mm", &eo_unit_per_inch,
+          0.127, 254, "transverse diametral pitch: m_t = 25.4 mm / it"),
+    {.key = "normal_pressure_angle_deg",
+     .kind = EO_FIELD_NUMBER,
+     .flags = EO_FIELD_NULLABLE,
+     .offset = offsetof(struct eo_gear_pair, normal_pressure_angle),
+     .unit = &eo_unit_deg,
+     .low = 10,
+     .high = 35,
+     .fallback = NAN,
+     .derived = "20 (ISO 53), or what the transverse pressure angle makes it",
+     .help = "normal pressure angle alpha_n"},
+    ENTRY(transverse_pressure_angle, "transverse_pressure_angle_deg", "normal_pressure_angle_deg", &eo_unit_deg, 10, 55,
+          "transverse pressure angle at the reference cylinder: tan alpha_n = tan alpha_t cos beta"),
     EO_NUMBER_REQUIRED(struct eo_gear_pair, helix_angle, "helix_angle_deg", &eo_unit_deg, 0, 60,
                        "helix angle beta at the pitch cylinder; 0: spur"),
     EO_NUMBER_REQUIRED(struct eo_gear_pair, face_width, "face_width_mm", &eo_unit_mm, 0.5, 5000,
                        "face width of one end"),
     EO_NUMBER_DERIVED(struct eo_gear_pair, groove_width, "groove_width_mm", &eo_unit_mm, 0, 5000,
                       "8 m_n with two ends, 0 with one", "tool withdrawal groove between the ends"),
-    EO_NUMBER(struct eo_gear_pair, addendum_coefficient, "addendum_coefficient", NULL, 0.2, 2, 1,
-              "addendum of the basic rack / m_n"),
-    EO_NUMBER(struct eo_gear_pair, dedendum_coefficient, "dedendum_coefficient", NULL, 0.3, 3, 1.25,
-              "dedendum of the basic rack / m_n, tip clearance included"),
-    EO_NUMBER(struct eo_gear_pair, fillet_radius_coefficient, "fillet_radius_coefficient", NULL, 0.02, 0.8, 0.38,
-              "root fillet radius of the basic rack / m_n"),
-    EO_NUMBER(struct eo_gear_pair, profile_shift[EO_PINION], "pinion_profile_shift", NULL, -2, 2, 0,
-              "profile shift coefficient x of the pinion"),
-    EO_NUMBER(struct eo_gear_pair, profile_shift[EO_GEAR], "gear_profile_shift", NULL, -2, 2, 0,
-              "profile shift coefficient x of the gear"),
+    EO_NUMBER_DERIVED(struct eo_gear_pair, addendum_coefficient, "addendum_coefficient", NULL, 0.2, 2,
+                      "1, profile A of ISO 53", "addendum of the basic rack of both members / m_n"),
+    EO_NUMBER_DERIVED(struct eo_gear_pair, dedendum_coefficient, "dedendum_coefficient", NULL, 0.3, 3,
+                      "1.25, profile A of ISO 53, or as deep as a rack of a larger pressure angle can be",
+                      "dedendum of the basic rack of both members / m_n, tip clearance included"),
+    EO_NUMBER_DERIVED(struct eo_gear_pair, fillet_radius_coefficient, "fillet_radius_coefficient", NULL, 0.02, 0.8,
+                      "0.38, profile A of ISO 53, or as round as the tip of the rack can be",
+                      "root fillet radius of the basic rack of both members / m_n"),
+    RACK(EO_PINION, addendum_coefficient, "pinion_addendum_coefficient", 0.2, 2, "addendum of the pinion's rack / m_n"),
+    RACK(EO_GEAR, addendum_coefficient, "gear_addendum_coefficient", 0.2, 2, "addendum of the gear's rack / m_n"),
+    RACK(EO_PINION, dedendum_coefficient, "pinion_dedendum_coefficient", 0.3, 3, "dedendum of the pinion's rack / m_n"),
+    RACK(EO_GEAR, dedendum_coefficient, "gear_dedendum_coefficient", 0.3, 3, "dedendum of the gear's rack / m_n"),
+    RACK(EO_PINION, fillet_radius_coefficient, "pinion_fillet_radius_coefficient", 0.02, 0.8,
+         "root fillet radius of the pinion's rack / m_n"),
+    RACK(EO_GEAR, fillet_radius_coefficient, "gear_fillet_radius_coefficient", 0.02, 0.8,
+         "root fillet radius of the gear's rack / m_n"),
+    EO_NUMBER_DERIVED(struct eo_gear_pair, profile_shift[EO_PINION], "pinion_profile_shift", NULL, -5, 10,
+                      "0, or what a stated gear shift leaves of the sum that the drawing implies",
+                      "profile shift coefficient x of the pinion"),
+    EO_NUMBER_DERIVED(struct eo_gear_pair, profile_shift[EO_GEAR], "gear_profile_shift", NULL, -5, 10,
+                      "free of backlash at the stated centre distance, working pressure angle or shift sum, else 0",
+                      "profile shift coefficient x of the gear"),
+    ENTRY(shift_length[EO_PINION], "pinion_profile_shift_mm", "pinion_profile_shift", &eo_unit_mm, -500, 1000,
+          "profile shift x m_n of the pinion"),
+    ENTRY(shift_length[EO_GEAR], "gear_profile_shift_mm", "gear_profile_shift", &eo_unit_mm, -500, 1000,
+          "profile shift x m_n of the gear"),
+    ENTRY(shift_sum, "profile_shift_sum", "centre_distance_mm", NULL, -10, 20,
+          "sum of both profile shift coefficients"),
     EO_NUMBER_DERIVED(struct eo_gear_pair, centre_distance, "centre_distance_mm", &eo_unit_mm, 0.01, TO_MM,
                       "free of backlash for the profile shifts", "working centre distance"),
+    ENTRY(working_pressure_angle, "working_pressure_angle_deg", "centre_distance_mm", &eo_unit_deg, 2, 65,
+          "transverse working pressure angle alpha_wt"),
+    EO_NUMBER_DERIVED(
+        struct eo_gear_pair, tip_alteration, "tip_alteration_coefficient", NULL, -2, 1,
+        "the tips are shortened so that the clearance of the basic rack is kept at the centre distance, k "
+        "m_n = a - a_d - m_n (x1 + x2), never above 0 (ISO 21771)",
+        "tip alteration k: d_a = d + 2 m_n (x + h_aP + k)"),
     EO_NUMBER_DERIVED(struct eo_gear_pair, tip_diameter[EO_PINION], "pinion_tip_diameter_mm", &eo_unit_mm, 0.01, TO_MM,
-                      "from addendum and profile shift", "tip diameter of the pinion"),
-    EO_NUMBER_DERIVED(struct eo_gear_pair, tip_diameter[EO_GEAR], "gear_tip_diameter_mm", &eo_unit_mm, 0.01, TO_MM,
-                      "from addendum and profile shift", "tip diameter of the gear"),
+                      TIP, "tip diameter of the pinion"),
+    EO_NUMBER_DERIVED(struct eo_gear_pair, tip_diameter[EO_GEAR], "gear_tip_diameter_mm", &eo_unit_mm, 0.01, TO_MM, TIP,
+                      "tip diameter of the gear"),
+    ENTRY(addendum[EO_PINION], "pinion_addendum_mm", "pinion_tip_diameter_mm", &eo_unit_mm, -1000, 1000,
+          "addendum of the pinion above its reference circle: d_a = d + 2 h_a"),
+    ENTRY(addendum[EO_GEAR], "gear_addendum_mm", "gear_tip_diameter_mm", &eo_unit_mm, -1000, 1000,
+          "addendum of the gear above its reference circle: d_a = d + 2 h_a"),
     EO_NUMBER_DERIVED(struct eo_gear_pair, bore[EO_PINION], "pinion_bore_mm", &eo_unit_mm, 0, TO_MM, "0: solid",
                       "bore diameter of the pinion"),
     EO_NUMBER_DERIVED(struct eo_gear_pair, bore[EO_GEAR], "gear_bore_mm", &eo_unit_mm, 0, TO_MM,
@@ -49,8 +131,9 @@ static const struct eo_field gear_pair[] = {
                       "diameter of the gear's body between its ends"),
     EO_NUMBER(struct eo_gear_pair, rim_thickness_coefficient, "rim_thickness_coefficient", NULL, 1, 20, 3.5,
               "rim below the root that flexes / m_n, of a sector or a held ring; a larger bore cuts it shorter"),
-    EO_NUMBER(struct eo_gear_pair, backlash, "backlash_um", &eo_unit_um, 1, 10000, 100,
-              "normal backlash at the reference centre distance"),
+    EO_NUMBER_DERIVED(struct eo_gear_pair, backlash, "backlash_um", &eo_unit_um, 1, 10000,
+                      "2/3 (0.06 mm + 0.0005 a + 0.03 m_n), the least that ISO/TR 10064-2 recommends",
+                      "normal backlash by thickness, at the centre distance that is free of backlash without it"),
 };
 
 static const struct eo_field material[] = {
@@ -63,7 +146,7 @@ static const struct eo_field material[] = {
 static const char *const axial[] = {"floating", "fixed", "spring", NULL};
 
 static const struct eo_field alignment[] = {
-    EO_NUMBER(struct eo_alignment, shaft_angle_in_plane, "shaft_angle_error_in_plane_deg", &eo_unit_deg, -2, 2, 0.1,
+    EO_NUMBER(struct eo_alignment, shaft_angle_in_plane, "shaft_angle_error_in_plane_deg", &eo_unit_deg, -2, 2, 0,
               "shaft angle error in the plane of the axes, pivot in the middle of the groove"),
     EO_NUMBER(struct eo_alignment, shaft_angle_out_of_plane, "shaft_angle_error_out_of_plane_deg", &eo_unit_deg, -2, 2,
               0, "shaft angle error out of the plane of the axes"),
@@ -71,23 +154,30 @@ static const struct eo_field alignment[] = {
         struct eo_alignment, pinion_axial, "pinion_axial", axial, EO_AXIAL_FLOATING,
         "how the pinion is held along its axis, in contact and vibration alike; with one end \"floating\" means held "
         "like the gear"),
-    EO_NUMBER(struct eo_alignment, pinion_axial_stiffness, "pinion_axial_stiffness_N_per_um", &eo_unit_N_per_um, 1e-3,
-              1e6, 200, "from the pinion's mean axial motion to the ground, used with \"spring\""),
+    EO_NUMBER_DERIVED(struct eo_alignment, pinion_axial_stiffness, "pinion_axial_stiffness_N_per_um", &eo_unit_N_per_um,
+                      1e-3, 1e6, "that of the gear's left end",
+                      "from the pinion's mean axial motion to the ground, used with \"spring\""),
     EO_NUMBER(struct eo_alignment, stagger, "stagger", NULL, 0, 1, 0,
               "right end behind the left, in transverse base pitches"),
 };
 
+/* Rules of eo_design_resolve(). */
+#define SEAT                                                                                                         \
+  "10 kN/um per metre of bearing seat: a medium roller bearing and its housing; seat 0.8 of the pinion's body, the " \
+  "gear's thicker by the cube root of the gear ratio"
+#define AXIAL "0.2 of the gear's transverse bearing stiffness"
+
 static const char *const coupling[] = {"paper", "off", "on", NULL};
 
 static const struct eo_field supports[] = {
-    EO_NUMBER(struct eo_supports, bearing_stiffness[EO_PINION], "pinion_bearing_stiffness_N_per_um", &eo_unit_N_per_um,
-              1e-3, 1e6, 800, "transverse, per end of the pinion (k_py)"),
-    EO_NUMBER(struct eo_supports, bearing_stiffness[EO_GEAR], "gear_bearing_stiffness_N_per_um", &eo_unit_N_per_um,
-              1e-3, 1e6, 1000, "transverse, per end of the gear (k_gy)"),
-    EO_NUMBER(struct eo_supports, gear_axial_stiffness[EO_LEFT], "gear_axial_stiffness_left_N_per_um",
-              &eo_unit_N_per_um, 1e-3, 1e6, 200, "axial bearing stiffness at the gear's left end (k_g1z)"),
-    EO_NUMBER(struct eo_supports, gear_axial_stiffness[EO_RIGHT], "gear_axial_stiffness_right_N_per_um",
-              &eo_unit_N_per_um, 1e-3, 1e6, 200, "axial bearing stiffness at the gear's right end (k_g2z)"),
+    EO_NUMBER_DERIVED(struct eo_supports, bearing_stiffness[EO_PINION], "pinion_bearing_stiffness_N_per_um",
+                      &eo_unit_N_per_um, 1e-3, 1e6, SEAT, "transverse, per end of the pinion (k_py)"),
+    EO_NUMBER_DERIVED(struct eo_supports, bearing_stiffness[EO_GEAR], "gear_bearing_stiffness_N_per_um",
+                      &eo_unit_N_per_um, 1e-3, 1e6, SEAT, "transverse, per end of the gear (k_gy)"),
+    EO_NUMBER_DERIVED(struct eo_supports, gear_axial_stiffness[EO_LEFT], "gear_axial_stiffness_left_N_per_um",
+                      &eo_unit_N_per_um, 1e-3, 1e6, AXIAL, "axial bearing stiffness at the gear's left end (k_g1z)"),
+    EO_NUMBER_DERIVED(struct eo_supports, gear_axial_stiffness[EO_RIGHT], "gear_axial_stiffness_right_N_per_um",
+                      &eo_unit_N_per_um, 1e-3, 1e6, AXIAL, "axial bearing stiffness at the gear's right end (k_g2z)"),
     EO_NUMBER_DERIVED(struct eo_supports, groove_axial_stiffness[EO_PINION], "pinion_groove_axial_stiffness_N_per_um",
                       &eo_unit_N_per_um, 1e-6, 1e15, "E A / L of the groove body", "between the pinion's ends (k_pz)"),
     EO_NUMBER_DERIVED(struct eo_supports, groove_axial_stiffness[EO_GEAR], "gear_groove_axial_stiffness_N_per_um",
@@ -187,7 +277,21 @@ static const struct eo_field flank[] = {
               0, "axial, from that face end"),
 };
 
-const struct eo_table eo_gear_pair_table = EO_TABLE("gear_pair", struct eo_gear_pair, gear_pair);
+static const struct eo_refused_key not_modelled[] = {
+    {"planets",
+     "Planetary stages are not modelled: enter sun and planet, or planet and planet, as a pair of their own."},
+    {"planet_count", "Planetary stages are not modelled: enter sun and planet as a pair of its own."},
+    {"number_of_planets", "Planetary stages are not modelled: enter sun and planet as a pair of its own."},
+    {"sun_teeth", "Planetary stages are not modelled: enter sun and planet as a pair of its own."},
+    {"planet_teeth", "Planetary stages are not modelled: enter sun and planet as a pair of its own."},
+    {"ring_teeth", "Internal gears are not modelled: both members are external."},
+    {"internal", "Internal gears are not modelled: both members are external."},
+    {NULL, NULL}};
+const struct eo_table eo_gear_pair_table = {.name = "gear_pair",
+                                            .refused = not_modelled,
+                                            .size = sizeof(struct eo_gear_pair),
+                                            .count = (int)(sizeof gear_pair / sizeof *gear_pair),
+                                            .field = gear_pair};
 const struct eo_table eo_material_table = EO_TABLE("material", struct eo_material, material);
 const struct eo_table eo_alignment_table = EO_TABLE("alignment", struct eo_alignment, alignment);
 const struct eo_table eo_supports_table = EO_TABLE("supports", struct eo_supports, supports);

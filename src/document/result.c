@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "document/assumption.h"
 #include "document/geometry_table.h"
 #include "document/result_private.h"
 
@@ -230,6 +231,8 @@ static const struct eo_outline_row result_rows[] = {
     EO_KEY("design", "object", "with every default resolved", .table = &eo_design_table, .name = "ResolvedDesign"),
     EO_KEY("design_hash", "text", "SHA-256 of the canonical design"),
     EO_KEY("evaluation_hash", "text", "the same without name, rating, objective and optimization"),
+    EO_KEY("assumed", "[object]", "what the design does not state, the value taken, and by which rule",
+           .outline = &eo_outline_assumption),
     EO_KEY("resolution", "object", "of the design, once more", .table = &eo_resolution_table, .name = "Resolution"),
     EO_KEY("geometry", "object", "macro-geometry", .table = &eo_geometry_table, .name = "Geometry"),
     EO_KEY("flexibility", "object", "how the teeth's flexibility was modelled", .outline = &eo_outline_flexibility),
@@ -245,10 +248,12 @@ static const struct eo_outline_row result_rows[] = {
     EO_KEY("tribology", "object?", "sliding, flash temperature, film; null when it was not asked for",
            .outline = &eo_outline_tribology),
     EO_KEY("warnings", "[text]", "in plain words"),
+    EO_KEY("findings", "[object]", "those of them that belong to a field of the design",
+           .outline = &eo_outline_finding),
     EO_KEY("timing_ms", "object", "the only part that differs between two runs", .outline = &timing),
 };
 const struct eo_outline eo_result_outline = EO_OUTLINE("Result", result_rows);
-enum { CASES_ROW = 9 }; /* load_cases: the head ends, the tail begins behind it */
+enum { CASES_ROW = 10 }; /* load_cases: the head ends, the tail begins behind it */
 
 static void put_identity(struct eo_object *o, const struct eo_design *design)
 {
@@ -257,6 +262,7 @@ static void put_identity(struct eo_object *o, const struct eo_design *design)
   eo_object_put(o, "design", eo_design_encode(design));
   eo_object_put(o, "design_hash", eo_design_hash(design, hash, NULL) ? NULL : json_string(hash));
   eo_object_put(o, "evaluation_hash", eo_design_evaluation_hash(design, hash, NULL) ? NULL : json_string(hash));
+  eo_object_put(o, "assumed", eo_assumptions_encode(design));
   eo_object_put(o, "resolution", eo_table_encode(&eo_resolution_table, &design->resolution));
 }
 
@@ -285,6 +291,7 @@ json_t *eo_result_tail(const struct eo_result_source *source, const struct eo_wa
   eo_object_put(&o, "rating", eo_result_rating(source));
   eo_object_put(&o, "tribology", eo_result_tribology(source));
   eo_object_put(&o, "warnings", eo_result_warnings(source, warnings));
+  eo_object_put(&o, "findings", eo_design_findings(warnings));
   eo_object_put(&o, "timing_ms", encode_timing(source));
   return eo_object_close(&o);
 }

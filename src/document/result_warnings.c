@@ -15,7 +15,7 @@ static void say(struct list *list, const char *format, ...) __attribute__((forma
 
 static void say(struct list *list, const char *format, ...)
 {
-  char text[400];
+  char text[640];
   va_list arguments;
   va_start(arguments, format);
   vsnprintf(text, sizeof text, format, arguments);

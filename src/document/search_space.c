@@ -116,7 +116,9 @@ enum eo_code eo_study_space_init(struct eo_study_space *result, const struct eo_
 {
   const struct eo_optimization *o = &design->optimization;
   struct eo_study_space space = {0};
-  enum eo_code code = EO_OK;
+  enum eo_code code = eo_design_check_search(design, geometry, error);
+  if (code)
+    return code;
   if (o->variables == EO_VARIABLES_SHARED)
     add_preset(&space, o, design->gear_pair.ends == 2 ? EO_BOTH_ENDS : EO_LEFT);
   for (int end = 0; end < design->gear_pair.ends && o->variables == EO_VARIABLES_PER_END; end++)

@@ -21,8 +21,8 @@ struct eo_study_space {
 };
 
 /* The variables of a resolved design. Shared and per end: the five parameters of the paper on the pinion, of both ends
-   or of the left and then the right one. EO_ERROR_INPUT, with the key: two variables for one parameter, bounds that a
-   flank cannot have, an end that is not there. */
+   or of the left and then the right one. EO_ERROR_INPUT, with the key: what eo_design_check_search() refuses, two
+   variables for one parameter, bounds that a flank cannot have, an end that is not there. */
 enum eo_code eo_study_space_init(struct eo_study_space *space, const struct eo_design *design,
                                  const struct eo_geometry *geometry, struct eo_error *error);
 

@@ -15,8 +15,8 @@ enum eo_torsional_coupling { EO_COUPLING_PAPER, EO_COUPLING_OFF, EO_COUPLING_ON 
 enum eo_impact_in_dynamics { EO_IMPACT_NONE, EO_IMPACT_PAPER, EO_IMPACT_CONSISTENT };
 
 struct eo_supports {
-  double bearing_stiffness[2];                   /* k_py, k_gy per end, N/m */
-  double gear_axial_stiffness[2];                /* k_g1z, k_g2z [end], N/m */
+  double bearing_stiffness[2];                   /* k_py, k_gy per end, N/m; NaN: by the size of the bodies */
+  double gear_axial_stiffness[2];                /* k_g1z, k_g2z [end], N/m; NaN: by k_gy */
   double groove_axial_stiffness[2];              /* k_pz, k_gz, N/m; NaN: E A / L of the groove body */
   double groove_torsional_stiffness[2];          /* N m/rad; NaN: G J / L of the groove body */
   enum eo_torsional_coupling torsional_coupling; /* paper: off for equal ends, on when they differ or

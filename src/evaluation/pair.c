@@ -82,7 +82,9 @@ struct eo_iso_stiffness_input eo_pair_iso_stiffness_input(const struct eo_pair *
                                          .normal_pressure_angle = p->normal_pressure_angle,
                                          .helix_angle = p->helix_angle,
                                          .profile_shift = {p->profile_shift[0], p->profile_shift[1]},
-                                         .dedendum_coefficient = p->dedendum_coefficient,
+                                         .dedendum_coefficient = (eo_gear_pair_rack(p, EO_PINION).dedendum_coefficient +
+                                                                  eo_gear_pair_rack(p, EO_GEAR).dedendum_coefficient) /
+                                                                 2, /* ISO 6336-1 C_B of unlike racks: the mean */
                                          .transverse_contact_ratio = pair->geometry.transverse_contact_ratio,
                                          .blank_factor = 1,
                                          .theory_factor = 0.8,

@@ -146,10 +146,14 @@ static void make_key(const struct eo_geometry *g, const struct eo_material *mate
                 {"centre_distance", g->centre_distance},
                 {"path_start", g->path_start},
                 {"path_end", g->path_end},
-                {"dedendum", g->dedendum},
-                {"fillet_radius", g->fillet_radius}};
+                {"dedendum", g->dedendum[EO_PINION]},
+                {"fillet_radius", g->fillet_radius[EO_PINION]}};
   for (size_t i = 0; i < sizeof number / sizeof *number; i++)
     eo_hash_add_number(&hash, number[i].name, number[i].value);
+  if (g->dedendum[EO_GEAR] != g->dedendum[EO_PINION] || g->fillet_radius[EO_GEAR] != g->fillet_radius[EO_PINION]) {
+    eo_hash_add_number(&hash, "gear_dedendum", g->dedendum[EO_GEAR]);
+    eo_hash_add_number(&hash, "gear_fillet_radius", g->fillet_radius[EO_GEAR]);
+  }
   for (int m = 0; m < 2; m++) {
     eo_hash_add_number(&hash, "teeth", g->teeth[m]);
     eo_hash_add_number(&hash, "profile_shift", g->profile_shift[m]);

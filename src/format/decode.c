@@ -109,7 +109,8 @@ static bool read_number(const json_t *value, const struct eo_field *field, doubl
   *number = json_number_value(value);
   const char *symbol = field->unit ? field->unit->symbol : "";
   if (!isfinite(*number) || *number < low || *number > high) {
-    eo_faults_at(faults, path, "%.15g is outside %.15g .. %.15g%s%s.", *number, low, high, *symbol ? " " : "", symbol);
+    eo_faults_at(faults, path, "%.15g is outside %.15g .. %.15g%s%s.%s%s", *number, low, high, *symbol ? " " : "",
+                 symbol, field->outside ? " " : "", field->outside ? field->outside : "");
     return false;
   }
   return true;
@@ -357,6 +358,11 @@ static int key_distance(const char *a, const char *b)
 static void report_unknown(const struct eo_table *table, const char *key, const struct eo_path *path,
                            struct eo_faults *faults)
 {
+  for (const struct eo_refused_key *refused = table->refused; refused && refused->key; refused++)
+    if (strcmp(refused->key, key) == 0) {
+      eo_faults_at(faults, path, "%s", refused->text);
+      return;
+    }
   const char *nearest = NULL;
   int best = (int)strnlen(key, 63) / 3 + 1;
   for (int i = 0; i < table->count; i++) {
@@ -372,16 +378,36 @@ static void report_unknown(const struct eo_table *table, const char *key, const 
     eo_faults_at(faults, path, "Unknown key in %s.", table->name);
 }
 
+/* One of the keys that may stand in the place of a required one is there. */
+static bool is_replaced(const struct eo_field *field, const json_t *object)
+{
+  for (int i = 0; field->instead && field->instead[i]; i++) {
+    const json_t *value = json_object_get(object, field->instead[i]);
+    if (value && !json_is_null(value))
+      return true;
+  }
+  return false;
+}
+
+static void report_missing(const struct eo_field *field, const struct eo_path *path, struct eo_faults *faults)
+{
+  struct eo_text keys = {0};
+  for (int i = 0; field->instead && field->instead[i]; i++)
+    eo_text_print(&keys, "%s%s", i ? ", " : " In its place: ", field->instead[i]);
+  eo_faults_at(faults, path, "This key is required.%s%s", keys.data ? keys.data : "", keys.data ? "." : "");
+  eo_text_done(&keys);
+}
+
 /* Objects that are absent are read as empty ones, so that each required key in them is named. */
-static void decode_absent(const struct eo_field *field, const struct eo_path *path, void *target,
+static void decode_absent(const struct eo_field *field, const json_t *object, const struct eo_path *path, void *target,
                           struct eo_faults *faults)
 {
   if (field->kind == EO_FIELD_OBJECT && !may_be_null(field)) {
     json_t *empty = json_object();
     eo_table_decode(field->table, empty, path, member(target, field), faults);
     json_decref(empty);
-  } else if (field->flags & EO_FIELD_REQUIRED)
-    eo_faults_at(faults, path, "This key is required.");
+  } else if (field->flags & EO_FIELD_REQUIRED && !is_replaced(field, object))
+    report_missing(field, path, faults);
 }
 
 /* What stands under the key, or under its other name. */
@@ -412,7 +438,7 @@ void eo_table_decode(const struct eo_table *table, const json_t *object, const s
     else if (field->elder_key && json_object_get(object, field->elder_key))
       *(int *)member(target, field) = field->elder_choice;
     else
-      decode_absent(field, &place, target, faults);
+      decode_absent(field, object, &place, target, faults);
   }
   const char *key;
   json_t *value;

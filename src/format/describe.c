@@ -64,8 +64,12 @@ static void describe_type(const struct eo_field *field, struct eo_text *text)
 static void describe_default(const struct eo_field *field, struct eo_text *text)
 {
   bool plain = field->kind == EO_FIELD_NUMBER || field->kind == EO_FIELD_INTEGER || field->kind == EO_FIELD_SEED;
-  if (field->flags & EO_FIELD_REQUIRED)
+  if (field->flags & EO_FIELD_REQUIRED) {
     eo_text_add(text, "; required");
+    for (int i = 0; field->instead && field->instead[i]; i++)
+      eo_text_print(text, "%s%s", i ? ", " : ", or ", field->instead[i]);
+  } else if (field->flags & EO_FIELD_ENTRY)
+    eo_text_print(text, "; another way to state %s", field->states);
   else if (field->derived)
     eo_text_print(text, "; default %s%s", field->flags & EO_FIELD_NULLABLE ? "null: " : "", field->derived);
   else if (plain)
@@ -79,6 +83,8 @@ static void describe_default(const struct eo_field *field, struct eo_text *text)
   else if (field->kind == EO_FIELD_NUMBERS && field->fallbacks)
     for (int i = 0; i < field->count; i++)
       eo_text_print(text, "%s%.15g%s", i ? ", " : "; default [", field->fallbacks[i], i == field->count - 1 ? "]" : "");
+  if (field->basis)
+    eo_text_print(text, ", %s", field->basis);
 }
 
 /* Tables that were described already, and under which key. */

@@ -89,6 +89,8 @@ json_t *eo_table_encode(const struct eo_table *table, const void *source)
   bool failed = !object;
   for (int i = 0; i < table->count && !failed; i++) {
     const struct eo_field *field = &table->field[i];
+    if (field->flags & EO_FIELD_ENTRY)
+      continue;
     json_t *value = encode_field(field, source);
     if (value && field->flags & EO_FIELD_OMIT && is_default(field->table, value))
       json_decref(value);

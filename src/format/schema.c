@@ -25,6 +25,7 @@ static json_t *encode_defaults(const struct eo_table *table)
   return document;
 }
 
+/* Of what is read and never written: none. */
 static json_t *default_of(const struct eo_field *field, const json_t *defaults)
 {
   json_t *value = json_object_get(defaults, field->key);
@@ -56,12 +57,12 @@ static void put_bound(struct eo_object *o, const char *key, double bound)
                   fabs(bound) < 1e15 && bound == floor(bound) ? json_integer((json_int_t)bound) : json_real(bound));
 }
 
-static json_t *list_choices(const struct eo_field *field)
+static json_t *list_texts(const char *const *text)
 {
   json_t *list = json_array();
   bool failed = !list;
-  for (int i = 0; field->choices[i]; i++)
-    failed = json_array_append_new(list, json_string(field->choices[i])) != 0 || failed;
+  for (int i = 0; text[i]; i++)
+    failed = json_array_append_new(list, json_string(text[i])) != 0 || failed;
   if (!failed)
     return list;
   json_decref(list);
@@ -100,13 +101,19 @@ static json_t *encode_field(const struct eo_field *field, const json_t *defaults
   if (has_default(field))
     eo_object_put(&o, "default", default_of(field, defaults));
   if (field->choices)
-    eo_object_put(&o, "choices", list_choices(field));
+    eo_object_put(&o, "choices", list_texts(field->choices));
   if (field->help)
     eo_object_put(&o, "help", json_string(field->help));
   eo_object_put(&o, "required", json_boolean(field->flags & EO_FIELD_REQUIRED));
   eo_object_put(&o, "nullable", json_boolean(field->flags & EO_FIELD_NULLABLE));
   if (field->derived)
     eo_object_put(&o, "derived", json_string(field->derived));
+  if (field->basis)
+    eo_object_put(&o, "basis", json_string(field->basis));
+  if (field->states)
+    eo_object_put(&o, "entry", json_string(field->states));
+  if (field->instead)
+    eo_object_put(&o, "instead", list_texts(field->instead));
   if (field->table)
     eo_object_put(&o, "fields", list_fields(field->table));
   return eo_object_close(&o);
@@ -162,7 +169,7 @@ static void put_text(struct eo_object *o, const struct eo_field *field)
   if (!field->choices && field->low > 0)
     eo_object_put(o, "minLength", json_integer((json_int_t)field->low));
   if (field->choices)
-    eo_object_put(o, "enum", list_choices(field));
+    eo_object_put(o, "enum", list_texts(field->choices));
   else
     eo_object_put(o, "maxLength", json_integer(field->count - 1));
 }
@@ -243,10 +250,11 @@ static json_t *property(const struct eo_field *field, const json_t *defaults, bo
   return eo_object_close(&o);
 }
 
-/* An object that is absent is read as an empty one, in which a required key is missing. */
+/* An object that is absent is read as an empty one, in which a required key is missing. What another key may stand for
+   is required by nobody alone. */
 static bool must_be_there(const struct eo_field *field)
 {
-  bool required = field->flags & EO_FIELD_REQUIRED;
+  bool required = field->flags & EO_FIELD_REQUIRED && !field->instead;
   for (int i = 0;
        field->kind == EO_FIELD_OBJECT && !(field->flags & EO_FIELD_NULLABLE) && i < field->table->count && !required;
        i++)
@@ -262,6 +270,8 @@ static void put_object(struct eo_object *o, const struct eo_table *table, bool n
   put_type(o, "object", nullable);
   for (int i = 0; i < table->count && !o->failed; i++) {
     const struct eo_field *field = &table->field[i];
+    if (!input && field->flags & EO_FIELD_ENTRY)
+      continue;
     eo_object_put(&properties, field->key, property(field, defaults, input));
     if (input && field->alias)
       eo_object_put(&properties, field->alias, property(field, defaults, input));

@@ -37,6 +37,7 @@ enum {
   EO_FIELD_OMIT = 8,       /* OBJECT: left out of the encoded document while everything in it has its default */
   EO_FIELD_SOMETIMES = 16, /* OBJECT: whoever encodes the document may take it out; said in the schema alone */
   EO_FIELD_WHOLE = 32,     /* NUMBER, SERIES: whole numbers alone */
+  EO_FIELD_ENTRY = 64,     /* read and never written: another way to say what a key beside it holds */
 };
 
 /* A list of numbers of any length. */
@@ -67,16 +68,26 @@ struct eo_field {
   int row_count;
   double series_low, series_high; /* SERIES: range of each number */
   const struct eo_table *table;   /* OBJECT, LIST */
-  const char *elder_key; /* CHOICE: a document that names this key but not the choice is older than the choice */
-  int elder_choice;      /* and means this one */
-  const char *derived;   /* what stands in place of null */
-  const char *help;      /* one line for people */
+  const char *elder_key;      /* CHOICE: a document that names this key but not the choice is older than the choice */
+  int elder_choice;           /* and means this one */
+  const char *derived;        /* what stands in place of null */
+  const char *basis;          /* where a default that is a number comes from; NULL: it is the program's own */
+  const char *outside;        /* a sentence more for a number out of its range; NULL: none */
+  const char *states;         /* ENTRY: the key beside it that it states */
+  const char *const *instead; /* REQUIRED: keys beside it of which one may stand in its place; ends with NULL */
+  const char *help;           /* one line for people */
+};
+
+/* A key that is refused with its reason. */
+struct eo_refused_key {
+  const char *key, *text;
 };
 
 struct eo_table {
-  const char *name; /* for people */
-  size_t size;      /* of the struct */
-  int count;        /* iterate: for (int i = 0; i < table->count; i++) table->field[i] */
+  const char *name;                     /* for people */
+  const struct eo_refused_key *refused; /* ends with a key NULL; NULL: none */
+  size_t size;                          /* of the struct */
+  int count;                            /* iterate: for (int i = 0; i < table->count; i++) table->field[i] */
   const struct eo_field *field;
 };
 
@@ -117,6 +128,13 @@ void eo_table_describe(const struct eo_table *table, bool output, struct eo_text
   {                                                                                                                    \
     .key = key_, .kind = EO_FIELD_NUMBER, .flags = EO_FIELD_NULLABLE, .offset = offsetof(type, member), .unit = unit_, \
     .low = low_, .high = high_, .fallback = NAN, .derived = derived_, .help = help_                                    \
+  }
+/* Another way to say what a key beside it holds. */
+#define EO_NUMBER_ENTRY(type, member, key_, states_, unit_, low_, high_, help_)                   \
+  {                                                                                               \
+    .key = key_, .kind = EO_FIELD_NUMBER, .flags = EO_FIELD_NULLABLE | EO_FIELD_ENTRY,            \
+    .offset = offsetof(type, member), .unit = unit_, .low = low_, .high = high_, .fallback = NAN, \
+    .derived = "not stated", .states = states_, .help = help_                                     \
   }
 #define EO_INTEGER(type, member, key_, low_, high_, fallback_, help_)                                    \
   {                                                                                                      \

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The root of a generated tooth: the trochoid of the rack's rounded tip and the root circle between two trochoids. */
-#include "gear/geometry.h"
+#include "gear/fillet.h"
 
 #include <math.h>
 
@@ -15,8 +15,8 @@ static struct tip rack_tip(const struct eo_geometry *g, int member)
   double shift = g->profile_shift[member] * g->normal_module, slope = tan(g->normal_pressure_angle);
   double half_thickness = M_PI * g->normal_module / 4 + shift * slope; /* of the generated tooth on the pitch line */
   struct tip tip;
-  tip.centre[1] = shift - g->dedendum + g->fillet_radius;
-  tip.centre[0] = half_thickness - tip.centre[1] * slope + g->fillet_radius / cos(g->normal_pressure_angle);
+  tip.centre[1] = shift - g->dedendum[member] + g->fillet_radius[member];
+  tip.centre[0] = half_thickness - tip.centre[1] * slope + g->fillet_radius[member] / cos(g->normal_pressure_angle);
   tip.land_angle = fmax(0, M_PI / g->teeth[member] - tip.centre[0] / cos(g->helix_angle) / g->reference_radius[member]);
   return tip;
 }
@@ -26,7 +26,8 @@ static void trochoid(const struct eo_geometry *g, int member, const struct tip *
                      double normal[2])
 {
   double r = g->reference_radius[member], stretch = 1 / cos(g->helix_angle);
-  double x = (tip->centre[0] - g->fillet_radius * cos(psi)) * stretch, y = tip->centre[1] - g->fillet_radius * sin(psi);
+  double x = (tip->centre[0] - g->fillet_radius[member] * cos(psi)) * stretch,
+         y = tip->centre[1] - g->fillet_radius[member] * sin(psi);
   double n[2] = {cos(psi), sin(psi) * stretch}; /* out of the generated tooth, into the rack */
   double roll = x - y * n[0] / n[1], angle = roll / r, c = cos(angle), s = sin(angle), length = hypot(n[0], n[1]);
   point[0] = (x - roll) * c + (y + r) * s;
@@ -35,12 +36,47 @@ static void trochoid(const struct eo_geometry *g, int member, const struct tip *
   normal[1] = (-n[0] * s + n[1] * c) / length;
 }
 
+/* How far the trochoid stands inside the involute's tooth, rad; NaN below the base circle. */
+static double cut_inside(const struct eo_geometry *g, int member, const struct tip *tip, double psi, double *radius)
+{
+  double point[2], normal[2];
+  trochoid(g, member, tip, psi, point, normal);
+  *radius = hypot(point[0], point[1]);
+  return *radius < g->base_radius[member] ? NAN
+                                          : eo_geometry_half_angle(g, member, *radius) - atan2(point[0], point[1]);
+}
+
+/* The trochoid of an undercut tooth begins outside the tooth (psi = alpha_n) and cuts through the involute on its way
+   down; where it first falls below the base circle, the involute reaches down to that. */
+double eo_fillet_undercut(const struct eo_geometry *g, int member, double *form_radius)
+{
+  enum { STEPS = 400, HALVINGS = 60 };
+  struct tip tip = rack_tip(g, member);
+  double low = g->normal_pressure_angle, high = low, radius = g->base_radius[member];
+  for (int i = 1; i <= STEPS; i++) {
+    high = g->normal_pressure_angle + (M_PI / 2 - g->normal_pressure_angle) * i / STEPS;
+    double inside = cut_inside(g, member, &tip, high, &radius);
+    if (isnan(inside) || inside > 0)
+      break;
+    low = high;
+  }
+  for (int i = 0; i < HALVINGS; i++) {
+    double middle = (low + high) / 2, inside = cut_inside(g, member, &tip, middle, &radius);
+    if (isnan(inside) || inside > 0)
+      high = middle;
+    else
+      low = middle;
+  }
+  *form_radius = fmax(radius, g->base_radius[member]);
+  return high;
+}
+
 enum { PIECES = 256 };
 
 void eo_geometry_fillet(const struct eo_geometry *g, int member, double t, double point[2], double normal[2])
 {
   struct tip tip = rack_tip(g, member);
-  double land = tip.land_angle * g->root_radius[member], low = M_PI / 2, high = g->normal_pressure_angle;
+  double land = tip.land_angle * g->root_radius[member], low = M_PI / 2, high = g->fillet_end[member];
   double length[PIECES + 1], last[2], unused[2];
   length[0] = 0;
   trochoid(g, member, &tip, low, last, unused);

@@ -6,28 +6,50 @@
 enum { EO_PINION = 0, EO_GEAR = 1 };
 enum { EO_LEFT = 0, EO_RIGHT = 1 };
 
+/* What a drawing may state in place of a member of struct eo_gear_pair; NaN: not stated. eo_gear_pair_settle()
+   (gear/entry.h) puts the member itself in its place and NaN here. */
+struct eo_gear_entry {
+  double transverse_module;                                  /* m_t, m */
+  double normal_diametral_pitch, transverse_diametral_pitch; /* 1/m_n, 1/m_t, 1/m */
+  double transverse_pressure_angle;                          /* alpha_t, rad */
+  double shift_sum;                                          /* x1 + x2 */
+  double working_pressure_angle;                             /* alpha_wt, rad */
+  double shift_length[2];                                    /* [member] x m_n, m */
+  double addendum[2];                                        /* [member] h_a above the reference circle, m */
+};
+
 /* A number the user may leave out (JSON null) is NaN here until eo_design_resolve() (design/) puts the derived default
-   in its place. */
+   in its place. [2] is [member]: pinion, gear. */
 struct eo_gear_pair {
   int ends;                     /* 2: herringbone; 1: single helical or spur */
   int teeth[2];                 /* [member]: pinion, gear */
   double normal_module;         /* m_n, m */
-  double normal_pressure_angle; /* alpha_n, rad */
+  double normal_pressure_angle; /* alpha_n, rad; NaN: 20 deg (settled) */
   double helix_angle;           /* beta at the pitch cylinder, rad, >= 0 (right end; the left end has the other hand) */
   double face_width;            /* b of one end, m */
   double groove_width;          /* tool withdrawal groove between the ends, m; NaN: 8 m_n with two ends, 0 with one */
-  double addendum_coefficient;  /* h_aP* */
+  double addendum_coefficient;  /* h_aP*; NaN, of all three: profile A of ISO 53 */
   double dedendum_coefficient;  /* h_fP* = h_aP* + c* */
   double fillet_radius_coefficient; /* rho_fP* of the basic rack */
-  double profile_shift[2];          /* x */
-  double centre_distance; /* working centre distance a_w, m; NaN: without backlash for the given profile shift */
-  double tip_diameter[2]; /* d_a, m; NaN: from addendum, profile shift and centre distance */
+  struct eo_rack {                  /* what one member's basic rack has otherwise; not above 0, or NaN: as above */
+    double addendum_coefficient, dedendum_coefficient, fillet_radius_coefficient;
+  } rack[2];
+  double profile_shift[2]; /* x; NaN: of the gear what the centre distance asks for, else 0 (settled) */
+  double centre_distance;  /* working centre distance a_w, m; NaN: without backlash for the given profile shift */
+  double tip_alteration;   /* k of d_a = d + 2 m_n (x + h_aP* + k); NaN: the clearance of the basic rack is kept at the
+                              centre distance, k = a_w/m_n - (z1 + z2)/(2 cos beta) - (x1 + x2), never above 0 */
+  double tip_diameter[2];  /* d_a, m; NaN: as above and, where k is not stated either, short enough to clear the
+                              mate's fillet or undercut and to be no sharper than 0.2 m_n */
   double bore[2]; /* bore diameter, m, 0: solid; NaN: pinion solid, gear 15 m_n (at most half its root diameter) */
   double groove_diameter[2]; /* body diameter between the ends, m; NaN: root diameter - 2 mm, at least 0.9 of it */
   double rim_thickness_coefficient; /* rim below the root that flexes, times m_n; a larger bore cuts it shorter.
                                        Of a sector and a ring that is held */
-  double backlash;                  /* 2 tau, normal, m */
+  double backlash;                  /* 2 tau, normal, m; NaN: eo_gear_pair_backlash() */
+  struct eo_gear_entry entry;
 };
+
+/* The member's own basic rack; alpha_n must be settled. */
+struct eo_rack eo_gear_pair_rack(const struct eo_gear_pair *pair, int member);
 
 struct eo_material {
   double youngs_modulus; /* Pa */

@@ -5,6 +5,9 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "gear/entry.h"
+#include "gear/fillet.h"
+
 static const char *const name[2] = {"pinion", "gear"};
 static const char *const shift_key[2] = {"/gear_pair/pinion_profile_shift", "/gear_pair/gear_profile_shift"};
 static const char *const tip_key[2] = {"/gear_pair/pinion_tip_diameter_mm", "/gear_pair/gear_tip_diameter_mm"};
@@ -39,11 +42,6 @@ double eo_geometry_involute_inverse(double value)
   return angle;
 }
 
-static enum eo_code refuse(struct eo_error *error, const char *key, const char *text)
-{
-  return eo_error_set(error, EO_ERROR_INPUT, key, "%s", text);
-}
-
 static void set_basics(struct eo_geometry *g, const struct eo_gear_pair *pair)
 {
   g->normal_module = pair->normal_module;
@@ -53,22 +51,34 @@ static void set_basics(struct eo_geometry *g, const struct eo_gear_pair *pair)
   g->transverse_pressure_angle = atan(tan(g->normal_pressure_angle) / cos(g->helix_angle));
   g->base_helix_angle = asin(sin(g->helix_angle) * cos(g->normal_pressure_angle));
   g->face_width = pair->face_width;
-  g->dedendum = pair->dedendum_coefficient * g->normal_module;
-  g->fillet_radius = pair->fillet_radius_coefficient * g->normal_module;
   for (int i = 0; i < 2; i++) {
+    struct eo_rack rack = eo_gear_pair_rack(pair, i);
+    g->dedendum[i] = rack.dedendum_coefficient * g->normal_module;
+    g->fillet_radius[i] = rack.fillet_radius_coefficient * g->normal_module;
     g->teeth[i] = pair->teeth[i];
     g->profile_shift[i] = pair->profile_shift[i];
     g->reference_radius[i] = g->transverse_module * g->teeth[i] / 2;
     g->base_radius[i] = g->reference_radius[i] * cos(g->transverse_pressure_angle);
-    g->root_radius[i] = g->reference_radius[i] - g->dedendum + g->profile_shift[i] * g->normal_module;
-    g->tip_radius[i] = isnan(pair->tip_diameter[i])
-                           ? g->reference_radius[i] +
-                                 (pair->addendum_coefficient + g->profile_shift[i]) * g->normal_module
-                           : pair->tip_diameter[i] / 2;
+    g->root_radius[i] = g->reference_radius[i] - g->dedendum[i] + g->profile_shift[i] * g->normal_module;
   }
   g->transverse_base_pitch = M_PI * g->transverse_module * cos(g->transverse_pressure_angle);
   g->normal_base_pitch = g->transverse_base_pitch * cos(g->base_helix_angle);
   g->rack_factor = sin(g->transverse_pressure_angle) / cos(g->normal_pressure_angle);
+}
+
+/* What the distance takes from the backlash, and which shifts it would suit. */
+static enum eo_code refuse_jam(const struct eo_geometry *g, const struct eo_gear_pair *pair, double tight,
+                               struct eo_error *error)
+{
+  if (isnan(pair->centre_distance))
+    return eo_error_set(error, EO_ERROR_INPUT, "/gear_pair/backlash_um",
+                        "The normal backlash %.6g um is not positive: the teeth would jam.", 1e6 * g->normal_backlash);
+  return eo_error_set(error, EO_ERROR_INPUT, "/gear_pair/centre_distance_mm",
+                      "At %.9g mm the normal backlash is %.6g um, not positive: the teeth would jam. Without backlash "
+                      "the profile shifts ask for %.9g mm, and this distance for a sum of the shifts of %.6g.",
+                      1e3 * g->centre_distance, 1e6 * g->normal_backlash, 1e3 * tight,
+                      eo_geometry_shift_sum(g->teeth, g->normal_pressure_angle, g->transverse_pressure_angle,
+                                            g->working_pressure_angle));
 }
 
 /* Working centre distance and pressure angle; the backlash that a larger centre distance adds. */
@@ -79,14 +89,19 @@ static enum eo_code set_working(struct eo_geometry *g, const struct eo_gear_pair
                  2 * (pair->profile_shift[0] + pair->profile_shift[1]) * tan(g->normal_pressure_angle) /
                      (g->teeth[0] + g->teeth[1]);
   if (value <= 0)
-    return refuse(error, "/gear_pair/pinion_profile_shift",
-                  "The sum of the profile shifts is so negative that the pair has no working pressure angle.");
+    return eo_error_set(error, EO_ERROR_INPUT, shift_key[EO_PINION],
+                        "The profile shifts sum to %.6g, so negative that the pair has no working pressure angle.",
+                        pair->profile_shift[0] + pair->profile_shift[1]);
   /* Exactly the reference values when nothing shifts them. */
   double tight = pair->profile_shift[0] + pair->profile_shift[1] == 0 ? g->transverse_pressure_angle
                                                                       : eo_geometry_involute_inverse(value);
   g->working_pressure_angle = tight;
   g->centre_distance = pair->profile_shift[0] + pair->profile_shift[1] == 0 ? sum : base / cos(tight);
-  g->normal_backlash = pair->backlash;
+  double stated = isnan(pair->backlash)
+                      ? eo_gear_pair_backlash(isnan(pair->centre_distance) ? g->centre_distance : pair->centre_distance,
+                                              g->normal_module)
+                      : pair->backlash;
+  g->normal_backlash = g->stated_backlash = stated;
   if (!isnan(pair->centre_distance)) {
     if (pair->centre_distance <= base)
       return eo_error_set(error, EO_ERROR_INPUT, "/gear_pair/centre_distance_mm",
@@ -100,10 +115,10 @@ static enum eo_code set_working(struct eo_geometry *g, const struct eo_gear_pair
         (eo_geometry_involute_function(g->working_pressure_angle) - eo_geometry_involute_function(tight));
   }
   if (g->normal_backlash <= 0)
-    return eo_error_set(error, EO_ERROR_INPUT,
-                        isnan(pair->centre_distance) ? "/gear_pair/backlash_um" : "/gear_pair/centre_distance_mm",
-                        "The normal backlash %.6g um is not positive: the teeth would jam.", 1e6 * g->normal_backlash);
+    return refuse_jam(g, pair, base / cos(tight), error);
   for (int i = 0; i < 2; i++) {
+    g->tip_radius[i] = isnan(pair->tip_diameter[i]) ? eo_gear_pair_tip_diameter(pair, g->centre_distance, i) / 2
+                                                    : pair->tip_diameter[i] / 2;
     g->working_radius[i] = g->centre_distance * g->teeth[i] / (g->teeth[0] + g->teeth[1]);
     g->tangent_length[i] = g->base_radius[i] * tan(g->working_pressure_angle);
     g->rack_offset[i] = g->rack_factor * g->base_radius[i] *
@@ -112,14 +127,99 @@ static enum eo_code set_working(struct eo_geometry *g, const struct eo_gear_pair
   return EO_OK;
 }
 
-static enum eo_code set_path(struct eo_geometry *g, struct eo_error *error)
+double eo_geometry_half_angle(const struct eo_geometry *g, int member, double radius)
+{
+  double reference = M_PI / 2 / g->teeth[member] +
+                     2 * g->profile_shift[member] * tan(g->normal_pressure_angle) / g->teeth[member];
+  return reference + eo_geometry_involute_function(g->transverse_pressure_angle) -
+         eo_geometry_involute_function(acos(fmin(1, g->base_radius[member] / radius)));
+}
+
+/* The root of the generated tooth: the rounding must fit into the rack's tip. Where the involute starts: at the point
+   that the end of the rack's straight flank cuts or, with undercut, where the trochoid cuts the involute. */
+static enum eo_code set_root(struct eo_geometry *g, int i, struct eo_error *error)
+{
+  double flank_end = g->dedendum[i] - g->fillet_radius[i] * (1 - sin(g->normal_pressure_angle)) -
+                     g->profile_shift[i] * g->normal_module;
+  double roll = g->base_radius[i] * tan(g->transverse_pressure_angle) - flank_end / sin(g->transverse_pressure_angle);
+  if (g->root_radius[i] <= 0)
+    return eo_error_set(error, EO_ERROR_INPUT, "/gear_pair/dedendum_coefficient",
+                        "The root radius of the %s, %.6g mm, is not positive.", name[i], 1e3 * g->root_radius[i]);
+  double tip_half = M_PI * g->normal_module / 4 -
+                    (g->dedendum[i] - g->fillet_radius[i]) * tan(g->normal_pressure_angle);
+  if (tip_half - g->fillet_radius[i] / cos(g->normal_pressure_angle) < -1e-9 * g->normal_module)
+    return eo_error_set(error, EO_ERROR_INPUT, "/gear_pair/fillet_radius_coefficient",
+                        "The fillet radius of the %s, %.6g m_n, does not fit into the tip of the basic rack: with a "
+                        "dedendum of %.6g m_n at most %.4g m_n.",
+                        name[i], g->fillet_radius[i] / g->normal_module, g->dedendum[i] / g->normal_module,
+                        eo_gear_rack_largest_fillet(g->dedendum[i] / g->normal_module, g->normal_pressure_angle));
+  g->undercut[i] = roll <= 0;
+  g->least_shift[i] = g->profile_shift[i] - roll * sin(g->transverse_pressure_angle) / g->normal_module;
+  g->fillet_end[i] = g->normal_pressure_angle;
+  if (g->undercut[i])
+    g->fillet_end[i] = eo_fillet_undercut(g, i, &g->form_radius[i]);
+  else
+    g->form_radius[i] = hypot(g->base_radius[i], roll);
+  return EO_OK;
+}
+
+/* Tip radius of the other member at which the active profile starts so far beyond the start of the involute along the
+   line of action. */
+static double clearing_tip(const struct eo_geometry *g, int i, double spare)
+{
+  double roll = sqrt(fmax(0, g->form_radius[i] * g->form_radius[i] - g->base_radius[i] * g->base_radius[i])) + spare;
+  return hypot(g->base_radius[1 - i], fmax(0, g->tangent_length[0] + g->tangent_length[1] - roll));
+}
+
+/* Tip radius at which the tooth is no thicker than a share of m_n in its transverse section; the radius itself where
+   it is thicker. */
+static double blunt_tip(const struct eo_geometry *g, int i, double radius)
+{
+  static const double LEAST = 0.2; /* m_n: what ISO and shops take as the least */
+  enum { HALVINGS = 60 };
+  double low = g->base_radius[i], high = radius, least = LEAST * g->normal_module;
+  if (2 * high * eo_geometry_half_angle(g, i, high) >= least)
+    return radius;
+  for (int k = 0; k < HALVINGS; k++) {
+    double middle = (low + high) / 2;
+    if (2 * middle * eo_geometry_half_angle(g, i, middle) >= least)
+      low = middle;
+    else
+      high = middle;
+  }
+  return low;
+}
+
+/* A tip that nobody stated clears the mate's root with a hundredth of a module to spare. */
+static void shorten_tips(struct eo_geometry *g, const struct eo_gear_pair *pair)
+{
+  for (int i = 0; i < 2; i++) {
+    double usual = g->tip_radius[i];
+    if (isnan(pair->tip_diameter[i]) && isnan(pair->tip_alteration))
+      g->tip_radius[i] = fmin(blunt_tip(g, i, usual), clearing_tip(g, 1 - i, 0.01 * g->normal_module));
+    g->shortened[i] = usual - g->tip_radius[i];
+  }
+}
+
+/* Where the tip of the other member reaches too deep: at its diameter when that is stated, else at the shift of the
+   member that has too little, or at the addendum. */
+static const char *tip_or_shift(const struct eo_geometry *g, const struct eo_gear_pair *pair, int i)
+{
+  return !isnan(pair->tip_diameter[1 - i]) ? tip_key[1 - i]
+         : g->undercut[i]                  ? shift_key[i]
+                                           : "/gear_pair/addendum_coefficient";
+}
+
+static enum eo_code set_path(struct eo_geometry *g, const struct eo_gear_pair *pair, struct eo_error *error)
 {
   double length[2];
   for (int i = 0; i < 2; i++) {
     if (g->tip_radius[i] <= g->working_radius[i])
-      return eo_error_set(error, EO_ERROR_INPUT, tip_key[i],
-                          "The tip radius of the %s, %.6g mm, is not above its working pitch radius, %.6g mm.", name[i],
-                          1e3 * g->tip_radius[i], 1e3 * g->working_radius[i]);
+      return eo_error_set(
+          error, EO_ERROR_INPUT, isnan(pair->tip_diameter[i]) ? shift_key[i] : tip_key[i],
+          "The tip radius of the %s, %.6g mm, is not above its working pitch radius, %.6g mm: more profile "
+          "shift on this member and less on the other.",
+          name[i], 1e3 * g->tip_radius[i], 1e3 * g->working_radius[i]);
     length[i] = sqrt(g->tip_radius[i] * g->tip_radius[i] - g->base_radius[i] * g->base_radius[i]) -
                 g->tangent_length[i];
   }
@@ -132,66 +232,46 @@ static enum eo_code set_path(struct eo_geometry *g, struct eo_error *error)
   for (int i = 0; i < 2; i++) {
     double roll = g->tangent_length[i] - length[1 - i];
     if (roll <= 0)
-      return eo_error_set(error, EO_ERROR_INPUT, tip_key[1 - i],
-                          "The tip of the %s reaches below the base circle of the %s.", name[1 - i], name[i]);
+      return eo_error_set(
+          error, EO_ERROR_INPUT, tip_or_shift(g, pair, i),
+          "The tip of the %s reaches %.4g mm below the end of the line of action at the base circle of the "
+          "%s: at most %.6g mm of tip radius.",
+          name[1 - i], -1e3 * roll, name[i],
+          1e3 * hypot(g->base_radius[1 - i], g->tangent_length[0] + g->tangent_length[1]));
     g->start_radius[i] = hypot(g->base_radius[i], roll);
   }
   if (g->transverse_contact_ratio + g->overlap_ratio < 1)
-    return eo_error_set(error, EO_ERROR_INPUT, "/gear_pair/face_width_mm",
-                        "The total contact ratio %.4g is below 1: the teeth do not mesh continuously.",
-                        g->transverse_contact_ratio + g->overlap_ratio);
-  return EO_OK;
-}
-
-/* Angle from the tooth's centre line to the involute at a radius. */
-static double half_thickness_angle(const struct eo_geometry *g, int member, double radius)
-{
-  double reference = M_PI / 2 / g->teeth[member] +
-                     2 * g->profile_shift[member] * tan(g->normal_pressure_angle) / g->teeth[member];
-  return reference + eo_geometry_involute_function(g->transverse_pressure_angle) -
-         eo_geometry_involute_function(acos(fmin(1, g->base_radius[member] / radius)));
-}
-
-/* The root of the generated tooth: no undercut, and the rounding fits into the rack's tip. */
-static enum eo_code set_root(struct eo_geometry *g, int i, struct eo_error *error)
-{
-  /* The straight flank of the rack ends where its rounded tip begins; that point generates the form radius. */
-  double flank_end = g->dedendum - g->fillet_radius * (1 - sin(g->normal_pressure_angle)) -
-                     g->profile_shift[i] * g->normal_module;
-  double roll = g->base_radius[i] * tan(g->transverse_pressure_angle) - flank_end / sin(g->transverse_pressure_angle);
-  if (roll <= 0)
-    return eo_error_set(error, EO_ERROR_INPUT, shift_key[i],
-                        "The %s is undercut: it needs a profile shift of at least %.4g.", name[i],
-                        g->profile_shift[i] - roll * sin(g->transverse_pressure_angle) / g->normal_module);
-  g->form_radius[i] = hypot(g->base_radius[i], roll);
-  if (g->root_radius[i] <= 0)
-    return refuse(error, "/gear_pair/dedendum_coefficient", "The root radius is not positive.");
-  double tip_half = M_PI * g->normal_module / 4 - (g->dedendum - g->fillet_radius) * tan(g->normal_pressure_angle);
-  if (tip_half - g->fillet_radius / cos(g->normal_pressure_angle) < -1e-9 * g->normal_module)
-    return refuse(error, "/gear_pair/fillet_radius_coefficient",
-                  "The fillet radius does not fit into the tip of the basic rack.");
+    return eo_error_set(
+        error, EO_ERROR_INPUT, "/gear_pair/face_width_mm",
+        "The total contact ratio %.4g is below 1: the teeth do not mesh continuously. A wider face, a larger "
+        "helix angle or a longer addendum adds to it.",
+        g->transverse_contact_ratio + g->overlap_ratio);
   return EO_OK;
 }
 
 static enum eo_code check_tip(struct eo_geometry *g, int i, const struct eo_gear_pair *pair, struct eo_error *error)
 {
   int other = 1 - i;
-  g->tip_thickness[i] = 2 * g->tip_radius[i] * half_thickness_angle(g, i, g->tip_radius[i]);
+  g->tip_thickness[i] = 2 * g->tip_radius[i] * eo_geometry_half_angle(g, i, g->tip_radius[i]);
   if (g->tip_thickness[i] <= 0)
-    return eo_error_set(error, EO_ERROR_INPUT, shift_key[i],
-                        "The teeth of the %s are pointed below the tip radius %.6g mm.", name[i],
-                        1e3 * g->tip_radius[i]);
+    return eo_error_set(
+        error, EO_ERROR_INPUT, shift_key[i],
+        "The teeth of the %s are pointed below the tip radius %.6g mm: less profile shift, or a smaller tip "
+        "diameter.",
+        name[i], 1e3 * g->tip_radius[i]);
   if (g->start_radius[i] < g->form_radius[i])
-    return eo_error_set(error, EO_ERROR_INPUT,
-                        isnan(pair->tip_diameter[other]) ? "/gear_pair/addendum_coefficient" : tip_key[other],
+    return eo_error_set(error, EO_ERROR_INPUT, tip_or_shift(g, pair, i),
                         "The tip of the %s interferes with the fillet of the %s: the active profile would start at "
-                        "radius %.6g mm, the involute at %.6g mm.",
-                        name[other], name[i], 1e3 * g->start_radius[i], 1e3 * g->form_radius[i]);
+                        "radius %.6g mm, the involute at %.6g mm%s: a tip radius of at most %.6g mm clears it.",
+                        name[other], name[i], 1e3 * g->start_radius[i], 1e3 * g->form_radius[i],
+                        g->undercut[i] ? ", where the undercut ends" : "", 1e3 * clearing_tip(g, i, 0));
   g->tip_clearance[i] = g->centre_distance - g->tip_radius[i] - g->root_radius[other];
   if (g->tip_clearance[i] <= 0)
-    return eo_error_set(error, EO_ERROR_INPUT, "/gear_pair/dedendum_coefficient",
-                        "The tip of the %s touches the root of the %s (clearance %.4g mm).", name[i], name[other],
-                        1e3 * g->tip_clearance[i]);
+    return eo_error_set(
+        error, EO_ERROR_INPUT, "/gear_pair/dedendum_coefficient",
+        "The tip of the %s touches the root of the %s (clearance %.4g mm): a smaller tip diameter, a deeper "
+        "dedendum of the %s, or a larger centre distance.",
+        name[i], name[other], 1e3 * g->tip_clearance[i], name[other]);
   return EO_OK;
 }
 
@@ -203,7 +283,9 @@ enum eo_code eo_geometry_init(struct eo_geometry *geometry, const struct eo_gear
   for (int i = 0; i < 2 && !code; i++)
     code = set_root(&g, i, error);
   if (!code)
-    code = set_path(&g, error);
+    shorten_tips(&g, pair);
+  if (!code)
+    code = set_path(&g, pair, error);
   for (int i = 0; i < 2 && !code; i++)
     code = check_tip(&g, i, pair, error);
   if (!code)
@@ -230,7 +312,7 @@ double eo_geometry_relative_radius(const struct eo_geometry *g, double s)
 
 void eo_geometry_involute(const struct eo_geometry *g, int member, double radius, double point[2], double normal[2])
 {
-  double angle = half_thickness_angle(g, member, radius), pressure = acos(fmin(1, g->base_radius[member] / radius));
+  double angle = eo_geometry_half_angle(g, member, radius), pressure = acos(fmin(1, g->base_radius[member] / radius));
   point[0] = radius * sin(angle);
   point[1] = radius * cos(angle);
   normal[0] = cos(angle - pressure);

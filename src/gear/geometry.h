@@ -4,6 +4,8 @@
 #ifndef EASEOFF_GEAR_GEOMETRY_H
 #define EASEOFF_GEAR_GEOMETRY_H
 
+#include <stdbool.h>
+
 #include "base/error.h"
 #include "gear/gear_pair.h"
 
@@ -19,6 +21,7 @@ struct eo_geometry {
   double working_radius[2];     /* r_w */
   double base_radius[2];        /* r_b */
   double tip_radius[2];         /* r_a */
+  double shortened[2];          /* by how much the tip radius is below d_a/2 of the rack so that it clears the mate */
   double root_radius[2];        /* r_f */
   double form_radius[2];        /* r_Ff, where the generated fillet meets the involute */
   double start_radius[2];       /* r_SAP, where the active profile starts (contact with the other member's tip) */
@@ -34,15 +37,21 @@ struct eo_geometry {
   double rack_factor;    /* k_u = sin(alpha_t)/cos(alpha_n): u = k_u s, the profile coordinate of modifications */
   double rack_offset[2]; /* generating rack coordinate of the pitch point: 0 without profile shift */
   double rack_bottom, rack_top; /* u_A, u_E of the pinion; of the gear -u_E, -u_A */
-  double dedendum;              /* h_fP, m, of the basic rack */
-  double fillet_radius;         /* rho_fP, m */
+  double dedendum[2];           /* h_fP, m, of the member's basic rack */
+  double fillet_radius[2];      /* rho_fP, m */
+  bool undercut[2];             /* the trochoid cuts the involute at r_Ff instead of touching it there */
+  double least_shift[2];        /* x from which on there is no undercut */
+  double fillet_end[2];         /* angle of the rack's rounding at which the trochoid ends at r_Ff, rad: alpha_n without
+                                   undercut */
   double tip_thickness[2];      /* transverse arc at the tip, m */
   double tip_clearance[2];      /* between the member's tip and the other's root, m */
+  double stated_backlash;       /* of the pair; eo_gear_pair_backlash() where it states none */
   double normal_backlash;       /* the stated backlash and what the centre distance adds, m */
 };
 
-/* Computes everything above. Errors (EO_ERROR_INPUT with the key): undercut, pointed tip, interference with a fillet,
-   no continuous contact (eps_gamma < 1), a centre distance that leaves no backlash, no tip clearance. */
+/* Computes everything above. pair: settled (eo_gear_pair_settle()). Errors (EO_ERROR_INPUT with the key): pointed tip,
+   interference with a fillet or with undercut, no continuous contact (eps_gamma < 1), a centre distance that leaves no
+   backlash, no tip clearance. */
 enum eo_code eo_geometry_init(struct eo_geometry *geometry, const struct eo_gear_pair *pair, struct eo_error *error);
 
 /* Sum of the profile shift coefficients without backlash at the working pressure angle alpha_wt (ISO 21771 (56)). */
@@ -69,7 +78,7 @@ void eo_geometry_involute(const struct eo_geometry *geometry, int member, double
 
 /* Point of the root: t = 0 in the middle of the tooth space, t = 1 at the form radius, t in proportion to the arc
    length; root circle first, then the trochoid that the rack's rounded tip generates (both meshed exactly in the normal
-   section). */
+   section); with undercut it ends where it cuts the involute. */
 void eo_geometry_fillet(const struct eo_geometry *geometry, int member, double t, double point[2], double normal[2]);
 
 /* Radius on the member's flank that contacts at transverse path coordinate s, and back. */

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "document/assumption.h"
 #include "document/geometry_table.h"
 #include "evaluation/evaluator.h"
 #include "http/request_body.h"
@@ -36,8 +37,9 @@ static void check(struct eo_request *request)
     eo_reply_error(&request->reply, "", &error);
   else
     eo_reply_json(&request->reply, 200,
-                  json_pack("{s:o, s:o, s:o, s:b, s:{s:f, s:f}}", "design", eo_design_encode(&design), "geometry",
-                            eo_table_encode(&eo_geometry_table, &geometry), "warnings", encode_warnings(&warnings),
+                  json_pack("{s:o, s:o, s:o, s:o, s:o, s:b, s:{s:f, s:f}}", "design", eo_design_encode(&design), "geometry",
+                            eo_table_encode(&eo_geometry_table, &geometry), "assumed", eo_assumptions_encode(&design), "warnings", encode_warnings(&warnings), "findings",
+                            eo_design_findings(&warnings),
                             "prepared", eo_service_is_prepared(request->http->service, &design), "preparation",
                             "memory_MB", round(cost.memory / 1e6), "seconds", 0.1 * ceil(10 * cost.seconds)));
 }

@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "document/search_space.h"
 #include "http/request_body.h"
 #include "http/job_reply.h"
 #include "http/route.h"
@@ -84,7 +85,13 @@ static void add(struct eo_request *request)
   struct order order;
   struct eo_design design;
   struct eo_geometry geometry;
-  if (eo_body_read(request, &order) && eo_request_design(request, order.design, "/design", &design, &geometry, NULL))
+  struct eo_study_space space;
+  struct eo_error error;
+  if (!eo_body_read(request, &order) || !eo_request_design(request, order.design, "/design", &design, &geometry, NULL))
+    return;
+  if (order.kind == EO_JOB_OPTIMIZE && eo_study_space_init(&space, &design, &geometry, &error))
+    eo_reply_error(&request->reply, "/design", &error);
+  else
     submit(request, &order, &design);
 }
 

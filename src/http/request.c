@@ -131,7 +131,7 @@ bool eo_request_design(struct eo_request *request, const json_t *document, const
   else
     good = true;
   if (good && warnings)
-    eo_design_note_assumptions(document, design, warnings);
+    eo_design_note_findings(design, geometry, warnings);
   free(faults);
   return good;
 }

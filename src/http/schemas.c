@@ -108,6 +108,11 @@ static const struct eo_outline_row field_rows[] = {
     EO_KEY("required", "flag", "there is no default"),
     EO_KEY("nullable", "flag", "null is allowed"),
     EO_KEY("derived", "text", "what null means", .when = "where it applies"),
+    EO_KEY("basis", "text", "where a default that is a number comes from", .when = "where it is not the program's own"),
+    EO_KEY("entry", "text", "the key beside it that it is another way to state; read and never written",
+           .when = "where it is"),
+    EO_KEY("instead", "[text]", "keys beside a required one of which one may stand in its place",
+           .when = "where there are"),
     EO_KEY("fields", "[object]", "of the object, or of each row", .when = "where it applies", .name = "Field"),
 };
 static const struct eo_outline field = EO_OUTLINE("Field", field_rows);

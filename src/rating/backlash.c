@@ -3,11 +3,12 @@
 
 #include <math.h>
 
+#include "gear/entry.h"
 #include "gear/geometry.h"
 
 double eo_backlash_recommended(double centre_distance, double normal_module)
 {
-  return 2.0 / 3 * (0.06e-3 + 0.0005 * centre_distance + 0.03 * normal_module);
+  return eo_gear_pair_backlash(centre_distance, normal_module);
 }
 
 /* inv alpha = inv alpha_t + (2 tan alpha_n sum x + sum A_sn/m_n)/sum z: where the (thinned) teeth touch on both flanks

@@ -54,6 +54,20 @@ static double positive(struct eo_case *input, const char *key, double value)
   return value;
 }
 
+/* What the reference computations took where a file says nothing: bearings and backlash of the paper's rig, tips that
+   are not shortened. */
+static void state_rig(struct eo_design *design)
+{
+  design->gear_pair.backlash = 100e-6;
+  design->gear_pair.tip_alteration = 0;
+  design->supports.bearing_stiffness[EO_PINION] = 8e8;
+  design->supports.bearing_stiffness[EO_GEAR] = 1e9;
+  design->supports.gear_axial_stiffness[EO_LEFT] = design->supports.gear_axial_stiffness[EO_RIGHT] = 2e8;
+  design->alignment.pinion_axial_stiffness = 2e8;
+  design->resolution.impact_patch = 5e-3;
+  design->resolution.te_harmonics = 16;
+}
+
 void eo_case_design(struct eo_case *input, struct eo_design *design)
 {
   memset(design, 0, sizeof *design);
@@ -61,6 +75,7 @@ void eo_case_design(struct eo_case *input, struct eo_design *design)
   struct eo_gear_pair *pair = &design->gear_pair;
   double degree = M_PI / 180;
   design->alignment.shaft_angle_in_plane = design->alignment.shaft_angle_out_of_plane = 0;
+  state_rig(design);
   read_teeth(input, pair->teeth);
   read_shifts(input, pair->profile_shift);
   pair->ends = 2;

@@ -2,6 +2,7 @@
 #include "reference/stage.h"
 #include "document/design_document.h"
 #include "document/geometry_table.h"
+#include "gear/entry.h"
 
 struct input {
   struct eo_gear_pair gear_pair;
@@ -14,7 +15,9 @@ static const struct eo_table input_table = EO_TABLE("the input", struct input, i
 
 static enum eo_code run(const void *in, void *out, struct eo_error *error)
 {
-  return eo_geometry_init(out, &((const struct input *)in)->gear_pair, error);
+  struct eo_gear_pair pair = ((const struct input *)in)->gear_pair;
+  EO_TRY(eo_gear_pair_settle(&pair, error));
+  return eo_geometry_init(out, &pair, error);
 }
 
 const struct eo_stage eo_stage_geometry = {

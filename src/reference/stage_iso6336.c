@@ -2,6 +2,7 @@
 #include "reference/stage.h"
 #include "contact/iso6336.h"
 #include "document/design_document.h"
+#include "gear/entry.h"
 
 struct input {
   struct eo_gear_pair gear_pair;
@@ -69,10 +70,12 @@ static enum eo_code run(const void *in, void *out, struct eo_error *error)
 {
   const struct input *given = in;
   struct output *found = out;
-  const struct eo_gear_pair *pair = &given->gear_pair;
-  struct eo_design design = {.gear_pair = *pair, .material = given->material};
+  struct eo_design design = {.gear_pair = given->gear_pair, .material = given->material};
+  const struct eo_gear_pair *pair = &design.gear_pair;
   struct eo_geometry geometry;
-  enum eo_code code = eo_geometry_init(&geometry, pair, error);
+  enum eo_code code = eo_gear_pair_settle(&design.gear_pair, error);
+  if (!code)
+    code = eo_geometry_init(&geometry, pair, error);
   if (code)
     return code;
   eo_design_resolve(&design, &geometry);

@@ -410,7 +410,7 @@ static enum eo_code check_row_of_table(void *context, struct eo_case *row, struc
   const struct table *t = context;
   struct eo_design *design = &t->c->sector.design;
   const struct eo_evaluation *r;
-  design->load_case[0] = (struct eo_load_case){eo_case_number(row, "T"), t->speed, 1};
+  design->load_case[0] = (struct eo_load_case){.torque = eo_case_number(row, "T"), .speed = t->speed, .share = 1};
   eo_case_misalignment(eo_case_need(row, "mis"), &design->alignment);
   eo_contact_case_modify(t->c, row, design);
   if (eo_case_faulty(row))

@@ -467,8 +467,8 @@ static enum eo_code read_case(struct bench *b, struct eo_case *item, struct eo_d
   for (int end = 0; end < 2; end++)
     eo_case_named_modification(mods, eo_case_word(item, end_name[end]), eo_case_find(item, end_name[end]),
                                &design->gear_pair, &design->modification.flank[EO_PINION][end]);
-  design->load_case[0] = (struct eo_load_case){eo_case_number(item, "T_Nm"), eo_case_number(item, "rpm") * M_PI / 30,
-                                               1};
+  design->load_case[0] = (struct eo_load_case){
+      .torque = eo_case_number(item, "T_Nm"), .speed = eo_case_number(item, "rpm") * M_PI / 30, .share = 1};
   design->alignment.stagger = fmod(2 - eo_case_number_or(item, "shift_right", 0), 1);
   set_supports(&design->supports, usual, usual);
   set_supports(&design->supports, changes, usual);

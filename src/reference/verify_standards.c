@@ -7,6 +7,7 @@
 #include "contact/hertz.h"
 #include "contact/iso6336.h"
 #include "document/design_document.h"
+#include "gear/entry.h"
 #include "reference/verify.h"
 #include "reference/verify_foundation.h"
 
@@ -48,6 +49,10 @@ static void read_pair(struct eo_case *block, struct eo_gear_pair *pair)
   memset(pair, 0, sizeof *pair);
   eo_table_defaults(&eo_gear_pair_table, pair);
   pair->ends = 1;
+  pair->tip_alteration = 0;
+  pair->addendum_coefficient = 1;
+  pair->dedendum_coefficient = 1.25;
+  pair->fillet_radius_coefficient = 0.38;
   pair->normal_module = eo_case_number(block, "mn_mm") / 1e3;
   pair->normal_pressure_angle = radians(eo_case_number_or(block, "alpha_n_deg", 20));
   pair->helix_angle = radians(eo_case_number_or(block, "beta_deg", 0));
@@ -216,7 +221,9 @@ static enum eo_code overlap_geometry(struct eo_geometry *geometry, double helix,
   pair.helix_angle = helix;
   pair.face_width = helix > 0 ? overlap * M_PI * pair.normal_module / sin(helix) : 0.03;
   pair.dedendum_coefficient = 1.4;
-  enum eo_code code = eo_geometry_init(geometry, &pair, error);
+  enum eo_code code = eo_gear_pair_settle(&pair, error);
+  if (!code)
+    code = eo_geometry_init(geometry, &pair, error);
   if (code || helix > 0)
     return code;
   for (int i = 0; i < 2; i++)

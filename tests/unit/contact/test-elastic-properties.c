@@ -415,7 +415,7 @@ static void set_design(struct eo_design *d)
                                      .mesh_damping_stiffness = NAN};
   d->shafts = (struct eo_shafts){.bearing_position = {{NAN, NAN}, {NAN, NAN}}, .shaft_diameter = {NAN, NAN}};
   d->load_cases = 1;
-  d->load_case[0] = (struct eo_load_case){828, 2000 * M_PI / 30, 1};
+  d->load_case[0] = (struct eo_load_case){.torque = 828, .speed = 2000 * M_PI / 30, .share = 1};
   d->objective.weight[0] = 1;
   d->resolution = (struct eo_resolution){.positions = POSITIONS,
                                          .cells_per_line = 20,

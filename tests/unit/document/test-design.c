@@ -24,7 +24,8 @@ static json_t *parse(const char *text)
 }
 
 static const char *minimal = "{\"gear_pair\":{\"pinion_teeth\":17,\"gear_teeth\":44,\"normal_module_mm\":6,\"helix_"
-                             "angle_deg\":24,\"face_width_mm\":55}}";
+                             "angle_deg\":24,\"face_width_mm\":55},\"load_cases\":[{\"torque_Nm\":828,\"speed_rpm\":"
+                             "2000}]}";
 
 /* Number of faults of a document; releases it. */
 static int count_faults(json_t *document)
@@ -175,6 +176,7 @@ static void test_all_at_once(void)
                                          "/gear_pair/normal_modul_mm",
                                          "/alignment",
                                          "/load_cases/0/torque_Nm",
+                                         "/load_cases/0/speed_rpm",
                                          "/load_cases/1/torque_Nm",
                                          "/load_cases/1/speed_rpm",
                                          "/nonsense"};
@@ -186,8 +188,10 @@ static void test_all_at_once(void)
      faults.fault[5].text);
   ok(strcmp(faults.fault[3].text, "99 is outside 0 .. 60 deg.") == 0, "value and range are named: %s",
      faults.fault[3].text);
-  ok(count_faults(parse("{}")) == 5, "an empty document misses five keys");
-  ok(count_faults(parse("{\"gear_pair\":{\"a~b/"
+  ok(count_faults(parse("{}")) == 6, "an empty document misses six keys");
+  ok(strcmp(faults.fault[5].pointer, "/load_cases") == 0 && strstr(faults.fault[2].text, "transverse_module_mm"),
+     "a load case among them; the module may be stated in other ways: %s", faults.fault[2].text);
+  ok(count_faults(parse("{\"load_cases\":[{\"torque_Nm\":1,\"speed_rpm\":1}],\"gear_pair\":{\"a~b/"
                         "c\\n\":1,\"pinion_teeth\":17,\"gear_teeth\":44,\"normal_module_mm\":6,\"helix_angle_deg\":24,"
                         "\"face_width_mm\":55}}")) == 1 &&
          strcmp(faults.fault[0].pointer, "/gear_pair/a~0b~1c?") == 0,
@@ -211,25 +215,26 @@ static void test_many_faults(void)
 
 static void test_defaults(void)
 {
-  ok(count_faults(parse(minimal)) == 0, "teeth, module, helix angle and face width are enough");
+  struct eo_geometry geometry;
+  ok(count_faults(parse(minimal)) == 0, "teeth, module, helix angle, face width and a load case are enough");
+  ok(design.load_cases == 1 && design.load_case[0].share == 1, "no load case is added");
+  ok(eo_design_complete(&design, &geometry, NULL) == EO_OK, "it can be completed");
   ok(design.gear_pair.ends == 2 && design.gear_pair.dedendum_coefficient == 1.25 &&
          design.gear_pair.fillet_radius_coefficient == 0.38,
      "basic rack");
   close_to(design.gear_pair.normal_pressure_angle, 0.3490658503988659, 1e-16, "pressure angle 20 deg");
-  close_to(design.gear_pair.backlash, 100e-6, 0, "backlash 100 um");
   ok(design.material.youngs_modulus == 206e9 && design.material.poissons_ratio == 0.3 &&
          design.material.density == 7850,
      "steel");
-  close_to(design.alignment.shaft_angle_in_plane, 0.1 / 57.29577951308232, 1e-18, "0.1 deg in the plane of the axes");
-  ok(design.supports.bearing_stiffness[0] == 8e8 && design.supports.bearing_stiffness[1] == 1e9 &&
-         design.supports.gear_axial_stiffness[0] == 2e8,
-     "bearings");
+  ok(design.alignment.shaft_angle_in_plane == 0 && design.alignment.shaft_angle_out_of_plane == 0, "aligned");
+  close_to(design.gear_pair.backlash, 2. / 3 * (60e-6 + 0.0005 * 0.2003184389666066 + 0.03 * 6e-3), 1e-12,
+           "backlash of ISO/TR 10064-2");
+  near(design.supports.bearing_stiffness[0], 7.572e8, 1e-3, "bearings by the size of the pinion");
+  near(design.supports.bearing_stiffness[1], 7.572e8 * cbrt(44. / 17), 1e-3, "and of the gear");
+  near(design.supports.gear_axial_stiffness[0], 0.2 * 7.572e8 * cbrt(44. / 17), 1e-3, "along the axis a fifth");
   ok(design.supports.bearing_damping_ratio == 0.05 && design.supports.groove_damping_ratio == 0.02 &&
          design.supports.mesh_damping_ratio == 0.07,
      "damping");
-  ok(design.load_cases == 3 && design.load_case[1].torque == 828 && design.load_case[1].share == 0.5,
-     "the paper's duty cycle");
-  close_to(design.load_case[2].speed, 2000 * 2 * 3.14159265358979323846 / 60, 1e-12, "at 2000 rpm");
   ok(design.objective.weight[0] == 0.4 && design.objective.weight[1] == 0.15 && design.objective.weight[2] == 0.45,
      "weights of section 5.2");
   ok(design.optimization.search.population == 50 && design.optimization.search.generations == 200 &&
@@ -241,8 +246,8 @@ static void test_defaults(void)
          design.resolution.neighbour_coupling && design.resolution.mesh_law == EO_LAW_TANGENT &&
          design.resolution.harmonics == 24 && design.resolution.te_harmonics == 16,
      "resolution");
-  close_to(design.optimization.tip_relief.high, 40e-6, 0, "reliefs up to 40 um");
-  close_to(design.optimization.lead_crowning.high, 36e-6, 0, "crowning up to 36 um");
+  close_to(design.optimization.tip_relief.high, 120e-6, 1e-18, "reliefs up to 0.02 m_n");
+  close_to(design.optimization.lead_crowning.high, 40e-6, 1e-18, "crowning up to 40 um");
 }
 
 static json_t *with_cases(const char *cases)
@@ -256,21 +261,24 @@ static void test_shares(void)
 {
   struct eo_warnings warnings = {0};
   faults.count = 0;
-  json_t *document = with_cases("[{\"torque_Nm\":100,\"share\":3},{\"torque_Nm\":200,\"share\":1}]");
+  json_t *document =
+      with_cases("[{\"speed_rpm\":9,\"torque_Nm\":100,\"share\":3},{\"speed_rpm\":9,\"torque_Nm\":200,\"share\":1}]");
   ok(eo_design_decode(document, &design, &warnings, &faults) && design.load_case[0].share == 0.75 &&
          design.load_case[1].share == 0.25,
      "shares are scaled to the sum 1");
   ok(warnings.count == 1 && strstr(warnings.text[0], "summed to 4"), "and it is said: %s", warnings.text[0]);
   json_decref(document);
   warnings.count = 0;
-  document = with_cases("[{\"torque_Nm\":100},{\"torque_Nm\":200},{\"torque_Nm\":300}]");
+  document = with_cases(
+      "[{\"speed_rpm\":9,\"torque_Nm\":100},{\"speed_rpm\":9,\"torque_Nm\":200},{\"speed_rpm\":9,\"torque_Nm\":300}]");
   ok(eo_design_decode(document, &design, &warnings, &faults) && design.load_case[2].share == 1. / 3 && !warnings.count,
      "no shares: equal ones, without a word");
   json_decref(document);
-  ok(count_faults(with_cases("[{\"torque_Nm\":100,\"share\":1},{\"torque_Nm\":200}]")) == 1 &&
+  ok(count_faults(
+         with_cases("[{\"speed_rpm\":9,\"torque_Nm\":100,\"share\":1},{\"speed_rpm\":9,\"torque_Nm\":200}]")) == 1 &&
          strcmp(faults.fault[0].pointer, "/load_cases") == 0,
      "some shares stated, some not");
-  ok(count_faults(with_cases("[{\"torque_Nm\":100,\"share\":0}]")) == 1, "shares that sum to 0");
+  ok(count_faults(with_cases("[{\"speed_rpm\":9,\"torque_Nm\":100,\"share\":0}]")) == 1, "shares that sum to 0");
   ok(count_faults(with_cases("[]")) == 1, "no load case");
 }
 
@@ -389,6 +397,22 @@ static void high_floor(struct eo_design *d)
 {
   d->optimization.search.removal_threshold = 0.6;
 }
+static void whole_elite(struct eo_design *d)
+{
+  d->optimization.search.algorithm = EO_GA;
+  d->optimization.search.elite = d->optimization.search.population;
+}
+static void same_variable(struct eo_design *d)
+{
+  d->optimization.variables = EO_VARIABLES_LISTED;
+  d->optimization.listed = 2;
+  d->optimization.list[0] = d->optimization.list[1] =
+      (struct eo_listed_variable){.member = EO_PINION, .end = EO_BOTH_ENDS, .bounds = {0, 40}};
+}
+static void no_variables(struct eo_design *d)
+{
+  d->optimization.variables = EO_VARIABLES_LISTED;
+}
 static void even_sector(struct eo_design *d)
 {
   d->resolution.body = EO_BODY_SECTOR;
@@ -400,6 +424,7 @@ static void many_harmonics(struct eo_design *d)
 }
 static void crossed_bearings(struct eo_design *d)
 {
+  d->shafts.enabled = true;
   d->shafts.bearing_position[EO_GEAR][EO_LEFT] = 0.2;
 }
 static void bearing_inside(struct eo_design *d)
@@ -455,9 +480,6 @@ static const struct contradiction contradictions[] = {
     {"the gear's tip relief beyond its active flank", "/modification/gear/left/tip_relief_start_mm", late_gear_tip},
     {"end relief without a length", "/modification/pinion/left/leading_end_relief_length_mm", no_relief_length},
     {"end reliefs that overlap", "/modification/pinion/left/leading_end_relief_length_mm", long_end_reliefs},
-    {"tip start bounds outside the flank", "/optimization/bounds/tip_relief_start_mm", wide_bounds},
-    {"root start bounds outside the flank", "/optimization/bounds/root_relief_start_mm", wide_root_bounds},
-    {"R_0 >= R*", "/optimization/removal_threshold", high_floor},
     {"a sector without a middle tooth", "/resolution/sector_teeth", even_sector},
     {"more harmonics than positions resolve", "/resolution/te_harmonics", many_harmonics},
     {"bearings in the wrong order", "/shafts/gear_left_bearing_mm", crossed_bearings},
@@ -465,7 +487,7 @@ static const struct contradiction contradictions[] = {
     {"left bearing inside the toothed body", "/shafts/gear_left_bearing_mm", left_bearing_inside},
     {"a shaft no thicker than its bore", "/shafts/gear_shaft_diameter_mm", thin_shaft},
     {"no weight", "/objective/weights", no_weights},
-    {"undercut", "/gear_pair/pinion_profile_shift", undercut},
+    {"undercut into the active flank", "/gear_pair/pinion_profile_shift", undercut},
     {"pointed or interfering tip", NULL, pointed},
     {"tip in the fillet", "/gear_pair/addendum_coefficient", tip_in_fillet},
     {"no continuous contact", "/gear_pair/face_width_mm", narrow_face},
@@ -485,6 +507,36 @@ static void test_contradictions(void)
     ok(code == EO_ERROR_INPUT && (!contradictions[i].key || strcmp(error.pointer, contradictions[i].key) == 0) &&
            error.text[0] && memcmp(&before, &design, sizeof before) == 0,
        "%s: %s: %s", contradictions[i].what, error.pointer, error.text);
+  }
+}
+
+/* What only a search uses: no analysis is refused for it, a search is, and whoever reads the design is told. */
+static const struct contradiction search_contradictions[] = {
+    {"tip start bounds outside the flank", "/optimization/bounds/tip_relief_start_mm", wide_bounds},
+    {"root start bounds outside the flank", "/optimization/bounds/root_relief_start_mm", wide_root_bounds},
+    {"R_0 >= R*", "/optimization/removal_threshold", high_floor},
+    {"an elite of everybody", "/optimization/elite", whole_elite},
+    {"a variable twice", "/optimization/variable_list/1", same_variable},
+    {"variables that nobody lists", "/optimization/variable_list", no_variables},
+};
+
+static void test_search_contradictions(void)
+{
+  for (size_t i = 0; i < sizeof search_contradictions / sizeof *search_contradictions; i++) {
+    const struct contradiction *row = &search_contradictions[i];
+    struct eo_geometry geometry;
+    struct eo_error error = {0};
+    static struct eo_study_space space;
+    static struct eo_warnings warnings;
+    eo_example_build("paper-case-a", &design);
+    row->apply(&design);
+    ok(eo_design_complete(&design, &geometry, &error) == EO_OK, "%s: no matter of an analysis", row->what);
+    ok(eo_study_space_init(&space, &design, &geometry, &error) == EO_ERROR_INPUT &&
+           strcmp(error.pointer, row->key) == 0,
+       "but a search is refused: %s: %s", error.pointer, error.text);
+    warnings.count = 0;
+    eo_design_note_findings(&design, &geometry, &warnings);
+    ok(warnings.count == 1 && strcmp(warnings.key[0], row->key) == 0, "and it is said: %s", warnings.text[0]);
   }
 }
 
@@ -553,13 +605,25 @@ static int count_identifying(const struct eo_table *table, size_t group, const c
 static void test_pair_identity(void)
 {
   struct eo_geometry geometry;
-  static const char *const none[] = {NULL}, *const kept[] = {"hub_windup",         "marking_thickness_um",
-                                                             "mesh_law",           "solver",
-                                                             "impact_in_dynamics", "harmonics",
-                                                             "te_harmonics",       NULL};
+  static const char *const none[] = {NULL},
+                           *const entries[] = {"transverse_module_mm",
+                                               "normal_diametral_pitch_per_inch",
+                                               "transverse_diametral_pitch_per_inch",
+                                               "transverse_pressure_angle_deg",
+                                               "pinion_profile_shift_mm",
+                                               "gear_profile_shift_mm",
+                                               "profile_shift_sum",
+                                               "working_pressure_angle_deg",
+                                               "pinion_addendum_mm",
+                                               "gear_addendum_mm",
+                                               "tip_alteration_coefficient",
+                                               NULL},
+                           *const kept[] = {
+                               "hub_windup", "marking_thickness_um", "mesh_law", "solver", "impact_in_dynamics",
+                               "harmonics",  "te_harmonics",         NULL};
   eo_example_build("paper", &design);
   eo_design_complete(&design, &geometry, NULL);
-  int count = count_identifying(&eo_gear_pair_table, offsetof(struct eo_design, gear_pair), none) +
+  int count = count_identifying(&eo_gear_pair_table, offsetof(struct eo_design, gear_pair), entries) +
               count_identifying(&eo_material_table, offsetof(struct eo_design, material), none) +
               count_identifying(&eo_resolution_table, offsetof(struct eo_design, resolution), kept);
   ok(count == EO_PAIR_MEMBERS, "and that is all that identifies a pair: %d members", count);
@@ -583,11 +647,6 @@ static void test_search(void)
   ok(eo_design_complete(&design, &geometry, &error) == EO_OK && search->variables == 10 && search->objectives == 3 &&
          search->share_radius == eo_optimizer_share_radius(&standard),
      "a complete design says how many variables there are");
-  design.optimization.search.algorithm = EO_GA;
-  design.optimization.search.elite = design.optimization.search.population;
-  ok(eo_design_complete(&design, &geometry, &error) == EO_ERROR_INPUT &&
-         strcmp(error.pointer, "/optimization/elite") == 0,
-     "what the optimizer would refuse is refused with the design: %s", error.text);
 }
 
 /* A resolution that names the sector's teeth but no body is older than the ring. */
@@ -623,6 +682,7 @@ int main(void)
   test_derived();
   test_robust();
   test_contradictions();
+  test_search_contradictions();
   test_hashes();
   test_pair_identity();
   test_search();

@@ -113,7 +113,8 @@ static void check_refusals(const json_t *input)
       "width_mm\":55},\"extra\":1}",
       "{\"gear_pair\":{\"pinion_teeth\":17,\"gear_teeth\":44,\"normal_module_mm\":6,\"helix_angle_deg\":24,\"face_"
       "width_mm\":55},\"load_cases\":{}}",
-      "{\"gear_pair\":{\"pinion_teeth\":17,\"gear_teeth\":44,\"normal_module_mm\":6,\"helix_angle_deg\":24,\"face_"
+      "{\"load_cases\":[{\"torque_Nm\":1,\"speed_rpm\":1}],\"gear_pair\":{\"pinion_teeth\":17,\"gear_teeth\":44,"
+      "\"normal_module_mm\":6,\"helix_angle_deg\":24,\"face_"
       "width_mm\":55},"
       "\"alignment\":{\"pinion_axial\":\"glued\"}}",
       "{\"gear_pair\":{\"pinion_teeth\":17,\"gear_teeth\":44,\"normal_module_mm\":6,\"helix_angle_deg\":24,\"face_"
@@ -142,7 +143,9 @@ static int count_strange(const json_t *fields, const struct eo_table *table, con
                !json_is_string(json_object_get(field, "kind")) ||
                json_is_true(json_object_get(field, "required")) != required || (required && value) ||
                !json_is_string(json_object_get(field, "help"));
-    strange += value && defaults && !json_equal(value, json_object_get(defaults, row->key));
+    strange += (row->flags & EO_FIELD_ENTRY && !json_is_string(json_object_get(field, "entry")));
+    strange += value && defaults && !(row->flags & EO_FIELD_ENTRY) &&
+               !json_equal(value, json_object_get(defaults, row->key));
     strange += (row->kind == EO_FIELD_NUMBER && json_number_value(json_object_get(field, "low")) != row->low);
     strange += (row->table != NULL) != (below != NULL);
     if (below)
