@@ -25,6 +25,7 @@ struct eo_command {
 };
 
 extern const struct eo_command eo_command_analyze;
+extern const struct eo_command eo_command_design;
 extern const struct eo_command eo_command_example;
 extern const struct eo_command eo_command_export;
 extern const struct eo_command eo_command_history;

@@ -2,8 +2,13 @@
 #include "design/design.h"
 
 #include <math.h>
+#include <stdlib.h>
+#include <string.h>
 
+#include "gear/entry.h"
 #include "gear/geometry.h"
+#include "rating/pair_dimensions.h"
+#include "rating/thickness_allowance.h"
 
 static void fill(double *value, double derived)
 {
@@ -27,6 +32,64 @@ static void resolve_rack(struct eo_gear_pair *pair)
   fill(&pair->fillet_radius_coefficient, rack.fillet_radius_coefficient);
 }
 
+/* "cd25": the letters, then the tolerance. */
+static enum eo_code settle_series(struct eo_gear_pair *pair, struct eo_error *error)
+{
+  char letters[sizeof pair->thickness_series] = "";
+  size_t length = strcspn(pair->thickness_series, "0123456789");
+  if (!*pair->thickness_series)
+    return EO_OK;
+  memcpy(letters, pair->thickness_series, length);
+  for (int i = 0; i < 2; i++) {
+    struct eo_thickness_allowance of;
+    struct eo_error found;
+    double diameter = pair->normal_module / cos(pair->helix_angle) * pair->teeth[i];
+    if (eo_thickness_allowance(&of, letters, atoi(pair->thickness_series + length), diameter, &found))
+      return eo_error_set(error, EO_ERROR_INPUT, "/gear_pair/thickness_series", "%.380s", found.text);
+    fill(&pair->thickness_allowance[i][0], of.upper);
+    fill(&pair->thickness_allowance[i][1], of.lower);
+  }
+  return EO_OK;
+}
+
+/* The mean of both allowances of both members, normal to the flank: j_bn = -(A_sn1 + A_sn2) cos alpha_n (DIN 3967). */
+static enum eo_code settle_allowances(struct eo_gear_pair *pair, struct eo_error *error)
+{
+  static const char *const key[2] = {"/gear_pair/pinion_thickness_allowance_um",
+                                     "/gear_pair/gear_thickness_allowance_um"};
+  double sum = 0;
+  EO_TRY(settle_series(pair, error));
+  for (int i = 0; i < 2; i++) {
+    const double *allowance = pair->thickness_allowance[i];
+    sum += allowance[0] + allowance[1];
+    if (allowance[1] > allowance[0])
+      return eo_error_set(error, EO_ERROR_INPUT, key[i],
+                          "The lower allowance, %.6g um, is above the upper one, %.6g um: state [upper, lower].",
+                          1e6 * allowance[1], 1e6 * allowance[0]);
+  }
+  if (isnan(pair->backlash) && !isnan(sum))
+    pair->backlash = -sum / 2 * cos(pair->normal_pressure_angle);
+  return EO_OK;
+}
+
+enum eo_code eo_design_settle(struct eo_design *design, struct eo_error *error)
+{
+  EO_TRY(eo_gear_pair_settle(&design->gear_pair, error));
+  return settle_allowances(&design->gear_pair, error);
+}
+
+/* What no series and no allowance says: the backlash, half from each member or what the other leaves of it. */
+static void resolve_allowances(struct eo_gear_pair *pair)
+{
+  double sum = -pair->backlash / cos(pair->normal_pressure_angle);
+  for (int i = 0; i < 2; i++) {
+    const double *other = pair->thickness_allowance[1 - i];
+    double own = isnan(other[0]) ? sum / 2 : fmin(0, sum - (other[0] + other[1]) / 2);
+    for (int k = 0; k < 2; k++)
+      fill(&pair->thickness_allowance[i][k], own);
+  }
+}
+
 static void resolve_gear_pair(struct eo_gear_pair *pair, const struct eo_geometry *geometry)
 {
   fill(&pair->groove_width, pair->ends == 2 ? 8 * pair->normal_module : 0);
@@ -40,6 +103,8 @@ static void resolve_gear_pair(struct eo_gear_pair *pair, const struct eo_geometr
     fill(&pair->groove_diameter[i], fmax(root - 2e-3, 0.9 * root));
   }
   resolve_rack(pair);
+  resolve_allowances(pair);
+  fill(&pair->centre_distance_allowance, eo_centre_distance_allowance(pair->centre_distance));
 }
 
 /* Solid pitch cylinder of one end and half the groove body, less the bore. */

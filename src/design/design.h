@@ -16,6 +16,8 @@
 #include "optimizer/settings.h"
 #include "rating/rating_settings.h"
 
+#include "base/error.h"
+
 enum { EO_MAX_LOAD_CASES = 64, EO_NAME_LENGTH = 200, EO_MAX_SCENARIOS = 64 };
 
 enum eo_axial { EO_AXIAL_FLOATING, EO_AXIAL_FIXED, EO_AXIAL_SPRING };
@@ -124,6 +126,11 @@ struct eo_design {
 };
 
 struct eo_geometry;
+
+/* Before there is a geometry: what was entered in another way becomes the members themselves (gear/entry.h), allowances
+   come from their series, the backlash from stated allowances. EO_ERROR_INPUT with the key: statements that contradict
+   each other, no such series. */
+enum eo_code eo_design_settle(struct eo_design *design, struct eo_error *error);
 
 /* Puts the derived default in place of every NaN whose rule does not need the loaded contact (mesh_damping_stiffness
    stays NaN: it is the mean mesh stiffness of each load case). geometry: of design->gear_pair. Idempotent; cannot fail.

@@ -100,9 +100,12 @@ static const char *rule_of(const struct eo_field *field)
   return field->derived ? field->derived : field->basis ? field->basis : "the program's default";
 }
 
-static bool is_listed(const struct eo_field *field)
+/* Nothing is assumed where nothing is taken (the groove of a pair with one end, balls that the dimensions choose), but
+   for the mesh damping, which follows from each load case. */
+static bool is_listed(const struct eo_field *field, const json_t *value)
 {
-  return !(field->flags & (EO_FIELD_ENTRY | EO_FIELD_REQUIRED));
+  return !(field->flags & (EO_FIELD_ENTRY | EO_FIELD_REQUIRED)) &&
+         (!json_is_null(value) || strcmp(field->key, "mesh_damping_stiffness_N_per_um") == 0);
 }
 
 static void add_group(json_t *list, const struct eo_design *design, const struct group *group, int bit, bool *failed)
@@ -115,8 +118,8 @@ static void add_group(json_t *list, const struct eo_design *design, const struct
     char key[128];
     json_t *value = json_object_get(encoded, field->key);
     snprintf(key, sizeof key, "/%.40s/%.80s", group->key, field->key);
-    if (is_listed(field) && !bit_of(design, bit + i))
-      add(list, key, value ? json_incref(value) : json_null(), rule_of(field), failed);
+    if (is_listed(field, value) && !bit_of(design, bit + i))
+      add(list, key, json_incref(value), rule_of(field), failed);
   }
   json_decref(encoded);
 }

@@ -11,7 +11,6 @@
 #include "document/search_space.h"
 #include "evaluation/evaluator.h"
 #include "design/check.h"
-#include "gear/entry.h"
 
 static void add_warning(struct eo_warnings *warnings, const char *key, const char *format, va_list arguments)
 {
@@ -172,7 +171,7 @@ enum eo_code eo_design_complete(struct eo_design *design, struct eo_geometry *ge
 {
   struct eo_design complete = *design;
   struct eo_geometry made;
-  enum eo_code code = eo_gear_pair_settle(&complete.gear_pair, error);
+  enum eo_code code = eo_design_settle(&complete, error);
   if (!code)
     code = eo_geometry_init(&made, &complete.gear_pair, error);
   if (code)

@@ -228,7 +228,6 @@ static const struct eo_field design[] = {
      .low = 1,
      .high = EO_DESIGN_VERSION,
      .fallback = EO_DESIGN_VERSION,
-     .outside = "This document is of a later program.",
      .help = "of the document: which defaults stand for what it leaves out; an older one is migrated, with a note"},
     {.key = "name",
      .kind = EO_FIELD_TEXT,

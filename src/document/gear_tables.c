@@ -19,6 +19,13 @@ static const char *const other_modules[] = {"transverse_module_mm", "normal_diam
 #define ENTRY(name, key_, states_, unit_, low_, high_, help_) \
   EO_NUMBER_ENTRY(struct eo_gear_pair, entry.name, key_, states_, unit_, low_, high_, help_)
 
+#define SPANNED(member, key_, help_)                                                                         \
+  {                                                                                                          \
+    .key = key_, .kind = EO_FIELD_INTEGER, .flags = EO_FIELD_NULLABLE,                                       \
+    .offset = offsetof(struct eo_gear_pair, teeth_spanned[member]), .low = 1, .high = 1000, .fallback = NAN, \
+    .derived = "those whose contact lies nearest to mid flank", .help = help_                                \
+  }
+
 static const struct eo_field gear_pair[] = {
     EO_INTEGER(struct eo_gear_pair, ends, "ends", 1, 2, 2,
                "2: herringbone; 1: single helical or spur (its only end is the left one)"),
@@ -29,7 +36,7 @@ static const struct eo_field gear_pair[] = {
      .low = 4,
      .high = 2000,
      .fallback = NAN,
-     .outside = NO_INTERNAL,
+     .below = NO_INTERNAL,
      .help = "teeth of the pinion (driving)"},
     {.key = "gear_teeth",
      .kind = EO_FIELD_INTEGER,
@@ -38,7 +45,7 @@ static const struct eo_field gear_pair[] = {
      .low = 4,
      .high = 2000,
      .fallback = NAN,
-     .outside = NO_INTERNAL,
+     .below = NO_INTERNAL,
      .help = "teeth of the gear"},
     {.key = "normal_module_mm",
      .kind = EO_FIELD_NUMBER,
@@ -68,8 +75,18 @@ static const struct eo_field gear_pair[] = {
      .help = "normal pressure angle alpha_n"},
     ENTRY(transverse_pressure_angle, "transverse_pressure_angle_deg", "normal_pressure_angle_deg", &eo_unit_deg, 10, 55,
           "transverse pressure angle at the reference cylinder: tan alpha_n = tan alpha_t cos beta"),
-    EO_NUMBER_REQUIRED(struct eo_gear_pair, helix_angle, "helix_angle_deg", &eo_unit_deg, 0, 60,
-                       "helix angle beta at the pitch cylinder; 0: spur"),
+    {.key = "helix_angle_deg",
+     .kind = EO_FIELD_NUMBER,
+     .flags = EO_FIELD_REQUIRED,
+     .offset = offsetof(struct eo_gear_pair, helix_angle),
+     .unit = &eo_unit_deg,
+     .low = 0,
+     .high = 60,
+     .fallback = NAN,
+     .below = "The angle has no sign here: a single helical pair of the other hand is the mirror image, enter it "
+              "without the sign and exchange left and right; of a herringbone pair the hand decides whether the apex "
+              "leads or trails: see alignment.apex.",
+     .help = "helix angle beta at the pitch cylinder; 0: spur"},
     EO_NUMBER_REQUIRED(struct eo_gear_pair, face_width, "face_width_mm", &eo_unit_mm, 0.5, 5000,
                        "face width of one end"),
     EO_NUMBER_DERIVED(struct eo_gear_pair, groove_width, "groove_width_mm", &eo_unit_mm, 0, 5000,
@@ -131,25 +148,49 @@ static const struct eo_field gear_pair[] = {
                       "diameter of the gear's body between its ends"),
     EO_NUMBER(struct eo_gear_pair, rim_thickness_coefficient, "rim_thickness_coefficient", NULL, 1, 20, 3.5,
               "rim below the root that flexes / m_n, of a sector or a held ring; a larger bore cuts it shorter"),
-    EO_NUMBER_DERIVED(struct eo_gear_pair, backlash, "backlash_um", &eo_unit_um, 1, 10000,
-                      "2/3 (0.06 mm + 0.0005 a + 0.03 m_n), the least that ISO/TR 10064-2 recommends",
-                      "normal backlash by thickness, at the centre distance that is free of backlash without it"),
+    EO_NUMBER_DERIVED(
+        struct eo_gear_pair, backlash, "backlash_um", &eo_unit_um, 1, 10000,
+        "the mean of stated thickness allowances, else 2/3 (0.06 mm + 0.0005 a + 0.03 m_n), the least that "
+        "ISO/TR 10064-2 recommends",
+        "normal backlash by thickness, at the centre distance that is free of backlash without it"),
+    EO_TEXT_DERIVED(struct eo_gear_pair, thickness_series, "thickness_series", 3, "none: allowances or backlash",
+                    "tooth thickness allowances of both members by DIN 3967: series and tolerance, as \"cd25\""),
+    EO_NUMBERS(struct eo_gear_pair, thickness_allowance[EO_PINION], "pinion_thickness_allowance_um", 2, &eo_unit_um,
+               -20000, 0, EO_FIELD_NULLABLE, NULL, "of the series, else half of what makes the backlash",
+               "[A_sne, A_sni] of the pinion: upper and lower allowance of the normal thickness"),
+    EO_NUMBERS(struct eo_gear_pair, thickness_allowance[EO_GEAR], "gear_thickness_allowance_um", 2, &eo_unit_um, -20000,
+               0, EO_FIELD_NULLABLE, NULL, "of the series, else half of what makes the backlash",
+               "[A_sne, A_sni] of the gear: upper and lower allowance of the normal thickness"),
+    EO_NUMBER_DERIVED(struct eo_gear_pair, centre_distance_allowance, "centre_distance_allowance_um", &eo_unit_um, 0,
+                      10000, "js7 of ISO 286-1, as DIN 3964 has it for usual drives",
+                      "centre distance allowance, both ways"),
+    SPANNED(EO_PINION, "pinion_teeth_spanned", "teeth that the span over the pinion takes"),
+    SPANNED(EO_GEAR, "gear_teeth_spanned", "teeth that the span over the gear takes"),
+    EO_NUMBER_DERIVED(struct eo_gear_pair, measuring_ball[EO_PINION], "pinion_measuring_ball_mm", &eo_unit_mm, 0.01,
+                      500, "the smallest usual one that touches near the reference circle and stands above the tip",
+                      "diameter of balls or pins over which the pinion is measured"),
+    EO_NUMBER_DERIVED(struct eo_gear_pair, measuring_ball[EO_GEAR], "gear_measuring_ball_mm", &eo_unit_mm, 0.01, 500,
+                      "the smallest usual one that touches near the reference circle and stands above the tip",
+                      "diameter of balls or pins over which the gear is measured"),
 };
 
 static const struct eo_field material[] = {
-    EO_NUMBER(struct eo_material, youngs_modulus, "youngs_modulus_GPa", &eo_unit_GPa, 0.1, 1000, 206,
-              "Young's modulus of both members"),
-    EO_NUMBER(struct eo_material, poissons_ratio, "poissons_ratio", NULL, 0, 0.49, 0.3, "Poisson's ratio"),
-    EO_NUMBER(struct eo_material, density, "density_kg_per_m3", &eo_unit_kg_per_m3, 100, 25000, 7850, "density"),
+    EO_NUMBER_BASED(struct eo_material, youngs_modulus, "youngs_modulus_GPa", &eo_unit_GPa, 0.1, 1000, 206,
+                    "steel, ISO 6336-1", "Young's modulus of both members"),
+    EO_NUMBER_BASED(struct eo_material, poissons_ratio, "poissons_ratio", NULL, 0, 0.49, 0.3, "steel, ISO 6336-2",
+                    "Poisson's ratio of both members"),
+    EO_NUMBER_BASED(struct eo_material, density, "density_kg_per_m3", &eo_unit_kg_per_m3, 100, 25000, 7850, "steel",
+                    "density of both members"),
 };
 
 static const char *const axial[] = {"floating", "fixed", "spring", NULL};
 
 static const struct eo_field alignment[] = {
-    EO_NUMBER(struct eo_alignment, shaft_angle_in_plane, "shaft_angle_error_in_plane_deg", &eo_unit_deg, -2, 2, 0,
-              "shaft angle error in the plane of the axes, pivot in the middle of the groove"),
-    EO_NUMBER(struct eo_alignment, shaft_angle_out_of_plane, "shaft_angle_error_out_of_plane_deg", &eo_unit_deg, -2, 2,
-              0, "shaft angle error out of the plane of the axes"),
+    EO_NUMBER_BASED(struct eo_alignment, shaft_angle_in_plane, "shaft_angle_error_in_plane_deg", &eo_unit_deg, -2, 2, 0,
+                    "aligned: no error is assumed",
+                    "shaft angle error in the plane of the axes, pivot in the middle of the groove"),
+    EO_NUMBER_BASED(struct eo_alignment, shaft_angle_out_of_plane, "shaft_angle_error_out_of_plane_deg", &eo_unit_deg,
+                    -2, 2, 0, "aligned: no error is assumed", "shaft angle error out of the plane of the axes"),
     EO_CHOICE(
         struct eo_alignment, pinion_axial, "pinion_axial", axial, EO_AXIAL_FLOATING,
         "how the pinion is held along its axis, in contact and vibration alike; with one end \"floating\" means held "

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "document/assumption.h"
+#include "document/completion.h"
 #include "document/geometry_table.h"
 #include "document/result_private.h"
 
@@ -235,6 +236,8 @@ static const struct eo_outline_row result_rows[] = {
            .outline = &eo_outline_assumption),
     EO_KEY("resolution", "object", "of the design, once more", .table = &eo_resolution_table, .name = "Resolution"),
     EO_KEY("geometry", "object", "macro-geometry", .table = &eo_geometry_table, .name = "Geometry"),
+    EO_KEY("dimensions", "object?", "what is measured on the members and between them",
+           .outline = &eo_outline_dimensions),
     EO_KEY("flexibility", "object", "how the teeth's flexibility was modelled", .outline = &eo_outline_flexibility),
     EO_KEY("modification", "object", "as curves", .outline = &eo_outline_modification),
     EO_KEY("unloaded_contact", "object", "the same for every load case", .outline = &eo_outline_unloaded),
@@ -253,7 +256,7 @@ static const struct eo_outline_row result_rows[] = {
     EO_KEY("timing_ms", "object", "the only part that differs between two runs", .outline = &timing),
 };
 const struct eo_outline eo_result_outline = EO_OUTLINE("Result", result_rows);
-enum { CASES_ROW = 10 }; /* load_cases: the head ends, the tail begins behind it */
+enum { CASES_ROW = 11 }; /* load_cases: the head ends, the tail begins behind it */
 
 static void put_identity(struct eo_object *o, const struct eo_design *design)
 {
@@ -271,6 +274,7 @@ json_t *eo_result_head(struct eo_result_source *source)
   struct eo_object o = eo_object_open_as(&eo_result_outline);
   put_identity(&o, source->design);
   eo_object_put(&o, "geometry", eo_table_encode(&eo_geometry_table, &source->pair->geometry));
+  eo_object_put(&o, "dimensions", eo_dimensions_encode(&source->design->gear_pair, &source->pair->geometry));
   eo_object_put(&o, "flexibility", eo_result_flexibility(source));
   eo_object_put(&o, "modification", eo_result_modification(source));
   eo_object_put(&o, "unloaded_contact", eo_result_unloaded(source));

@@ -107,10 +107,10 @@ static bool read_number(const json_t *value, const struct eo_field *field, doubl
     return false;
   }
   *number = json_number_value(value);
-  const char *symbol = field->unit ? field->unit->symbol : "";
+  const char *symbol = field->unit ? field->unit->symbol : "", *hint = *number < low ? field->below : NULL;
   if (!isfinite(*number) || *number < low || *number > high) {
     eo_faults_at(faults, path, "%.15g is outside %.15g .. %.15g%s%s.%s%s", *number, low, high, *symbol ? " " : "",
-                 symbol, field->outside ? " " : "", field->outside ? field->outside : "");
+                 symbol, hint ? " " : "", hint ? hint : "");
     return false;
   }
   return true;

@@ -72,7 +72,7 @@ struct eo_field {
   int elder_choice;           /* and means this one */
   const char *derived;        /* what stands in place of null */
   const char *basis;          /* where a default that is a number comes from; NULL: it is the program's own */
-  const char *outside;        /* a sentence more for a number out of its range; NULL: none */
+  const char *below;          /* a sentence more for a number below its range; NULL: none */
   const char *states;         /* ENTRY: the key beside it that it states */
   const char *const *instead; /* REQUIRED: keys beside it of which one may stand in its place; ends with NULL */
   const char *help;           /* one line for people */
@@ -118,6 +118,12 @@ void eo_table_describe(const struct eo_table *table, bool output, struct eo_text
   {                                                                                                                    \
     .key = key_, .kind = EO_FIELD_NUMBER, .offset = offsetof(type, member), .unit = unit_, .low = low_, .high = high_, \
     .fallback = fallback_, .help = help_                                                                               \
+  }
+/* ... whose default comes from somewhere. */
+#define EO_NUMBER_BASED(type, member, key_, unit_, low_, high_, fallback_, basis_, help_)                              \
+  {                                                                                                                    \
+    .key = key_, .kind = EO_FIELD_NUMBER, .offset = offsetof(type, member), .unit = unit_, .low = low_, .high = high_, \
+    .fallback = fallback_, .basis = basis_, .help = help_                                                              \
   }
 #define EO_NUMBER_REQUIRED(type, member, key_, unit_, low_, high_, help_)                                              \
   {                                                                                                                    \

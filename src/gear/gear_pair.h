@@ -45,6 +45,12 @@ struct eo_gear_pair {
   double rim_thickness_coefficient; /* rim below the root that flexes, times m_n; a larger bore cuts it shorter.
                                        Of a sector and a ring that is held */
   double backlash;                  /* 2 tau, normal, m; NaN: eo_gear_pair_backlash() */
+  char thickness_series[8]; /* of DIN 3967, as "cd25"; "": the allowances are stated, or follow from the backlash */
+  double thickness_allowance[2][2]; /* [member] A_sne, A_sni, normal at the reference cylinder, m, <= 0; NaN: of the
+                                       series, else what makes the backlash, half on each member */
+  double centre_distance_allowance; /* +- A_a, m; NaN: js7 */
+  int teeth_spanned[2];             /* k of the span; 0: nearest to mid flank */
+  double measuring_ball[2];         /* D_M, m; NaN: of the usual ones the smallest that fits */
   struct eo_gear_entry entry;
 };
 

@@ -5,8 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "document/assumption.h"
-#include "document/geometry_table.h"
+#include "document/completion.h"
 #include "evaluation/evaluator.h"
 #include "http/request_body.h"
 #include "http/deferred.h"
@@ -14,14 +13,6 @@
 #include "http/route.h"
 #include "http/http_private.h"
 #include "service/preparation.h"
-
-static json_t *encode_warnings(const struct eo_warnings *warnings)
-{
-  json_t *list = json_array();
-  for (int i = 0; i < warnings->count; i++)
-    json_array_append_new(list, json_string(warnings->text[i]));
-  return list;
-}
 
 static void check(struct eo_request *request)
 {
@@ -33,15 +24,17 @@ static void check(struct eo_request *request)
   const json_t *body = eo_request_json(request);
   if (!body || !eo_request_design(request, body, "", &design, &geometry, &warnings))
     return;
-  if (eo_preparation_cost_of(&design, &cost, &error))
+  if (eo_preparation_cost_of(&design, &cost, &error)) {
     eo_reply_error(&request->reply, "", &error);
-  else
-    eo_reply_json(&request->reply, 200,
-                  json_pack("{s:o, s:o, s:o, s:o, s:o, s:b, s:{s:f, s:f}}", "design", eo_design_encode(&design), "geometry",
-                            eo_table_encode(&eo_geometry_table, &geometry), "assumed", eo_assumptions_encode(&design), "warnings", encode_warnings(&warnings), "findings",
-                            eo_design_findings(&warnings),
-                            "prepared", eo_service_is_prepared(request->http->service, &design), "preparation",
-                            "memory_MB", round(cost.memory / 1e6), "seconds", 0.1 * ceil(10 * cost.seconds)));
+    return;
+  }
+  json_t *reply = eo_completion_encode(&design, &geometry, &warnings),
+         *own = json_pack("{s:b, s:{s:f, s:f}}", "prepared", eo_service_is_prepared(request->http->service, &design),
+                          "preparation", "memory_MB", round(cost.memory / 1e6), "seconds",
+                          0.1 * ceil(10 * cost.seconds));
+  json_object_update(reply, own);
+  json_decref(own);
+  eo_reply_json(&request->reply, 200, reply);
 }
 
 static void put_analysis(struct eo_request *request, const struct eo_design *design, const struct eo_warnings *warnings)

@@ -3,6 +3,7 @@
 
 #include <string.h>
 
+#include "document/completion.h"
 #include "document/design_document.h"
 #include "document/geometry_table.h"
 #include "document/measurement_document.h"
@@ -136,9 +137,7 @@ static const struct eo_outline_row cost_rows[] = {
 static const struct eo_outline cost = EO_OUTLINE("PreparationCost", cost_rows);
 
 static const struct eo_outline_row check_rows[] = {
-    EO_KEY("design", "object", "with every default resolved", .name = "ResolvedDesign"),
-    EO_KEY("geometry", "object", "macro-geometry", .name = "Geometry"),
-    EO_KEY("warnings", "[text]", "in plain words"),
+    {.outline = &eo_outline_completion},
     EO_KEY("prepared", "flag", "an analysis would be answered at once"),
     EO_KEY("preparation", "object", "what preparing the pair takes, where it is not kept already", .outline = &cost),
 };

@@ -34,7 +34,8 @@ static void set_stiffness(struct eo_rating_basis *basis)
                                                .normal_pressure_angle = g->normal_pressure_angle,
                                                .helix_angle = g->helix_angle,
                                                .profile_shift = {g->profile_shift[0], g->profile_shift[1]},
-                                               .dedendum_coefficient = g->dedendum / g->normal_module,
+                                               .dedendum_coefficient = (g->dedendum[EO_PINION] + g->dedendum[EO_GEAR]) /
+                                                                       (2 * g->normal_module), /* C_B: the mean */
                                                .transverse_contact_ratio = basis->geometry.transverse_contact_ratio,
                                                .blank_factor = 1,
                                                .theory_factor = 0.8,
@@ -101,8 +102,8 @@ static enum eo_code set_root(struct eo_rating_basis *basis, int i, struct eo_err
   struct eo_tooth_root_input in = {
       .edition = r->edition,
       .generating_shift = g->profile_shift[i] + thinning / (2 * g->normal_module * tan(g->normal_pressure_angle)),
-      .dedendum_coefficient = g->dedendum / g->normal_module,
-      .fillet_radius_coefficient = g->fillet_radius / g->normal_module,
+      .dedendum_coefficient = g->dedendum[i] / g->normal_module,
+      .fillet_radius_coefficient = g->fillet_radius[i] / g->normal_module,
       .tangential_force = 1,
       .grade = r->accuracy_grade};
   EO_TRY(eo_tooth_root(&basis->root[i], &basis->pair, &basis->geometry, i, &in, error));

@@ -8,6 +8,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "document/search_space.h"
 #include "document/design_document.h"
 #include "document/examples.h"
 #include "format/json.h"
@@ -36,10 +37,13 @@ __attribute__((unused)) static void coarse_design(struct eo_design *design, cons
   design->optimization.search.population = 20;
 }
 
+/* For an analysis and for a search. */
 __attribute__((unused)) static bool complete(struct eo_design *design)
 {
   struct eo_geometry geometry;
-  return eo_design_complete(design, &geometry, &error) == EO_OK;
+  struct eo_study_space space;
+  return eo_design_complete(design, &geometry, &error) == EO_OK &&
+         eo_study_space_init(&space, design, &geometry, &error) == EO_OK;
 }
 
 /* The pair of coarse_design(); alignment, load cases and modification may differ. */

@@ -188,6 +188,8 @@ static void test_older(int version)
      "and its schema is that of a new one");
   ok(version < 2 || read_integer("SELECT count(*) FROM candidate c JOIN job j ON j.id = c.job") == 3,
      "and what refers to a table that was replaced is still there");
+  ok(read_integer("SELECT count(*) FROM design WHERE json_extract(document, '$.version') IS NOT 1") == 0,
+     "and its stored designs are documents of version 1");
   free(fresh);
   free(migrated);
   eo_text_done(&sql);

@@ -348,8 +348,7 @@ static enum eo_code with_list(int count, const struct eo_listed_variable *list)
   design.optimization.listed = count;
   memcpy(design.optimization.list, list, sizeof *list * (size_t)count);
   memset(&error, 0, sizeof error);
-  struct eo_geometry geometry;
-  return eo_design_complete(&design, &geometry, &error);
+  return complete(&design) ? EO_OK : error.code;
 }
 
 static int parameter(const char *key)

@@ -1,0 +1,71 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include <stdlib.h>
+#include <string.h>
+
+#include "app/app.h"
+#include "document/completion.h"
+
+struct request {
+  const char *file, *units;
+  bool json, complete;
+  struct eo_design design;
+  struct eo_geometry geometry;
+  struct eo_warnings warnings;
+};
+
+static int show(const struct request *request, bool inches)
+{
+  if (request->complete)
+    return eo_app_print_json(eo_design_encode(&request->design), false);
+  json_t *completion = eo_completion_encode(&request->design, &request->geometry, &request->warnings);
+  struct eo_text text = {0};
+  if (request->json || !completion)
+    return eo_app_print_json(completion, false);
+  eo_completion_summary(completion, inches, &text);
+  json_decref(completion);
+  return eo_app_print(&text);
+}
+
+static int run_request(const struct request *request)
+{
+  struct eo_error error;
+  bool inches = request->units && strcmp(request->units, "inch") == 0;
+  if (!request->units || inches || strcmp(request->units, "mm") == 0)
+    return show(request, inches);
+  eo_error_set(&error, EO_ERROR_INPUT, "", "--units takes mm or inch, not \"%.40s\".", request->units);
+  return eo_app_fail(NULL, &error);
+}
+
+static int run(const struct eo_command *command, int argc, char **argv)
+{
+  struct request *request = calloc(1, sizeof *request);
+  struct eo_error error;
+  int operands, status;
+  if (!request) {
+    eo_error_memory(&error);
+    return eo_app_fail(NULL, &error);
+  }
+  const struct eo_option options[] = {{.name = "--json", .flag = &request->json},
+                                      {.name = "--complete", .flag = &request->complete},
+                                      {.name = "--units", .value = &request->units},
+                                      {.name = NULL}};
+  if (eo_app_arguments(command, argc, argv, options, 1, 1, &request->file, &operands, &status) &&
+      eo_app_load_design(request->file, &request->design, &request->geometry, &request->warnings, &status))
+    status = run_request(request);
+  free(request);
+  return status;
+}
+
+const struct eo_command eo_command_design = {
+    "design", "DESIGN.json [--json] [--complete] [--units mm|inch]",
+    "completes a terse design: every derived value, and what was assumed",
+    "A design needs its teeth, module, helix angle, face width and a load case; all else follows from the pair by "
+    "rules "
+    "of the\nfield, and each may be stated in other ways (easeoff stage geometry --help lists the keys): diametral "
+    "pitch "
+    "or transverse\nmodule; centre distance, working pressure angle or sum of the profile shifts; shifts in mm; tip "
+    "diameter or addendum;\npower instead of torque. --json prints the document that POST /api/v1/check returns, less "
+    "what the service knows beyond\nit; --complete the completed design alone. --units inch shows lengths in inches "
+    "and "
+    "micrometres in thousandths of an inch;\ndocuments keep mm.\n",
+    run};

@@ -1,0 +1,158 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "document/completion.h"
+
+#include <string.h>
+
+#include "document/assumption.h"
+#include "document/geometry_table.h"
+#include "format/object.h"
+#include "format/text_table.h"
+
+static const struct eo_outline_row completion_rows[] = {
+    EO_KEY("design", "object", "with every default resolved", .table = &eo_design_table, .name = "ResolvedDesign"),
+    EO_KEY("geometry", "object", "macro-geometry", .table = &eo_geometry_table, .name = "Geometry"),
+    EO_KEY("dimensions", "object?", "what is measured on the members and between them",
+           .outline = &eo_outline_dimensions),
+    EO_KEY("assumed", "[object]", "what the design does not state, the value taken, and by which rule",
+           .outline = &eo_outline_assumption),
+    EO_KEY("warnings", "[text]", "in plain words"),
+    EO_KEY("findings", "[object]", "those of them that belong to a field of the design",
+           .outline = &eo_outline_finding),
+};
+const struct eo_outline eo_outline_completion = EO_OUTLINE("Completion", completion_rows);
+
+static json_t *encode_warnings(const struct eo_warnings *warnings)
+{
+  json_t *list = json_array();
+  for (int i = 0; list && warnings && i < warnings->count; i++)
+    json_array_append_new(list, json_string(warnings->text[i]));
+  return list;
+}
+
+json_t *eo_completion_encode(const struct eo_design *design, const struct eo_geometry *geometry,
+                             const struct eo_warnings *warnings)
+{
+  struct eo_object o = eo_object_open_as(&eo_outline_completion);
+  eo_object_put(&o, "design", eo_design_encode(design));
+  eo_object_put(&o, "geometry", eo_table_encode(&eo_geometry_table, geometry));
+  eo_object_put(&o, "dimensions", eo_dimensions_encode(&design->gear_pair, geometry));
+  eo_object_put(&o, "assumed", eo_assumptions_encode(design));
+  eo_object_put(&o, "warnings", encode_warnings(warnings));
+  eo_object_put(&o, "findings", eo_design_findings(warnings));
+  return eo_object_close(&o);
+}
+
+/* How the key's unit reads: length in inches where they are asked for. */
+struct shown_unit {
+  const char *suffix; /* of the key */
+  const char *symbol, *inch_symbol;
+  double per_inch;
+};
+static const struct shown_unit shown_units[] = {{"_mm", "mm", "in", 25.4},        {"_um", "um", "thou", 25.4},
+                                                {"_deg", "deg", "deg", 1},        {"_kg", "kg", "kg", 1},
+                                                {"_N_per_um", "N/um", "N/um", 1}, {"", "", "", 1}};
+
+static bool ends_with(const char *key, const char *suffix)
+{
+  size_t whole = strlen(key), length = strlen(suffix);
+  return whole >= length && strcmp(key + whole - length, suffix) == 0;
+}
+
+static const struct shown_unit *unit_of(const char *key)
+{
+  const struct shown_unit *unit = shown_units;
+  if (ends_with(key, "_N_per_um"))
+    return &shown_units[4];
+  while (!ends_with(key, unit->suffix))
+    unit++;
+  return unit;
+}
+
+static void print_value(const json_t *value, double divisor, struct eo_text *text)
+{
+  const json_t *element;
+  size_t i;
+  if (json_is_number(value))
+    eo_text_print(text, "%.9g", json_number_value(value) / divisor);
+  else if (json_is_string(value))
+    eo_text_add(text, json_string_value(value));
+  else if (json_is_boolean(value))
+    eo_text_add(text, json_is_true(value) ? "yes" : "no");
+  else if (json_is_array(value))
+    json_array_foreach(value, i, element)
+    {
+      eo_text_add(text, i ? "  " : "");
+      print_value(element, divisor, text);
+    }
+  else
+    eo_text_add(text, json_is_null(value) ? "-" : "unmodified");
+}
+
+static void add_row(struct eo_text_table *sheet, const char *key, const json_t *value, const char *rule, bool inches)
+{
+  const struct shown_unit *unit = unit_of(key);
+  struct eo_text text = {0};
+  print_value(value, inches ? unit->per_inch : 1, &text);
+  eo_text_table_string(sheet, key);
+  eo_text_table_string(sheet, text.data ? text.data : "");
+  eo_text_table_string(sheet, inches ? unit->inch_symbol : unit->symbol);
+  if (rule)
+    eo_text_table_string(sheet, rule);
+  eo_text_done(&text);
+}
+
+/* The members of an object, one a line; objects in it under their own heading. */
+static void print_object(const json_t *object, const char *title, bool inches, struct eo_text *text)
+{
+  static const char *const headings[] = {"", "", ""};
+  struct eo_text_table sheet;
+  const char *key;
+  json_t *value;
+  eo_text_table_init(&sheet, 3, headings);
+  json_object_foreach((json_t *)object, key, value)
+  {
+    if (!json_is_object(value))
+      add_row(&sheet, key, value, NULL, inches);
+  }
+  eo_text_print(text, "\n%s\n", title);
+  eo_text_table_print(&sheet, 2, text);
+  eo_text_table_done(&sheet);
+  json_object_foreach((json_t *)object, key, value)
+  {
+    if (json_is_object(value))
+      print_object(value, key, inches, text);
+  }
+}
+
+static void print_assumed(const json_t *list, bool inches, struct eo_text *text)
+{
+  static const char *const headings[] = {"key", "value", "", "rule"};
+  struct eo_text_table sheet;
+  const json_t *row;
+  size_t i;
+  eo_text_table_init(&sheet, 4, headings);
+  json_array_foreach(list, i, row)
+  {
+    add_row(&sheet, json_string_value(json_object_get(row, "key")), json_object_get(row, "value"),
+            json_string_value(json_object_get(row, "rule")), inches);
+  }
+  eo_text_print(text, "\nassumed: not stated by the design, %zu values\n", json_array_size(list));
+  eo_text_table_print(&sheet, 2, text);
+  eo_text_table_done(&sheet);
+}
+
+void eo_completion_summary(const json_t *completion, bool inches, struct eo_text *text)
+{
+  const json_t *warnings = json_object_get(completion, "warnings"), *row;
+  const char *name = json_string_value(json_object_get(json_object_get(completion, "design"), "name"));
+  size_t i;
+  eo_text_print(text, "%s\n", name && *name ? name : "unnamed design");
+  print_object(json_object_get(completion, "geometry"), "geometry", inches, text);
+  if (json_is_object(json_object_get(completion, "dimensions")))
+    print_object(json_object_get(completion, "dimensions"),
+                 "dimensions; of three numbers: nominal, with the upper, with the lower allowance", inches, text);
+  print_assumed(json_object_get(completion, "assumed"), inches, text);
+  if (json_array_size(warnings))
+    eo_text_add(text, "\nnotes\n");
+  json_array_foreach(warnings, i, row) eo_text_print(text, "  %s\n", json_string_value(row));
+}
