@@ -8,7 +8,7 @@
 
 #include <complex.h>
 
-#include "measurement/transmission.h"
+#include "measurement/orders.h"
 
 struct eo_axis {
   double sign;                           /* -1: the part turns backwards */

@@ -4,7 +4,7 @@
 #ifndef EASEOFF_MEASUREMENT_BESIDE_H
 #define EASEOFF_MEASUREMENT_BESIDE_H
 
-#include "measurement/transmission.h"
+#include "measurement/orders.h"
 
 enum {
   EO_BESIDE_BINS = 16,   /* between the orders, on either side */

@@ -4,7 +4,7 @@
 #ifndef EASEOFF_MEASUREMENT_SYNCHRONOUS_H
 #define EASEOFF_MEASUREMENT_SYNCHRONOUS_H
 
-#include "measurement/transmission.h"
+#include "measurement/orders.h"
 
 struct eo_synchronous; /* opaque */
 

@@ -3,7 +3,7 @@
 #ifndef EASEOFF_MEASUREMENT_TERMS_H
 #define EASEOFF_MEASUREMENT_TERMS_H
 
-#include "measurement/transmission.h"
+#include "measurement/orders.h"
 
 enum { EO_DRIFT_TERMS = 4, EO_MOST_TERMS = EO_DRIFT_TERMS + 2 * (2 * EO_SHAFT_ORDERS + EO_MESH_ORDERS) };
 

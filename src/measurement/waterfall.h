@@ -4,7 +4,7 @@
 #ifndef EASEOFF_MEASUREMENT_WATERFALL_H
 #define EASEOFF_MEASUREMENT_WATERFALL_H
 
-#include "measurement/transmission.h"
+#include "measurement/orders.h"
 
 struct eo_waterfall; /* opaque */
 

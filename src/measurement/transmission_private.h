@@ -1,0 +1,65 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The fit of the orders over the rows of a part, shared by the files that make it: rows and terms (transmission.c), the
+   axis (transmission_axis.c), what is read from the coefficients (transmission_lines.c). */
+#ifndef EASEOFF_MEASUREMENT_TRANSMISSION_PRIVATE_H
+#define EASEOFF_MEASUREMENT_TRANSMISSION_PRIVATE_H
+
+#include "measurement/axis.h"
+#include "measurement/beside.h"
+#include "measurement/synchronous.h"
+#include "measurement/terms.h"
+#include "measurement/transmission.h"
+#include "measurement/waterfall.h"
+
+enum { EO_FIT_BLOCK = 4096 }; /* rows read at once */
+
+struct eo_fit {
+  const struct eo_angles *angles;
+  const struct eo_transmission_settings *settings;
+  struct eo_findings *findings;
+  const struct eo_progress *progress;
+  struct eo_transmission *result;
+  int64_t first, last; /* rows that are measured, both inside */
+  double origin;       /* s, time of the first row of the recording */
+  double start, end;   /* s, of the rows that count */
+  struct eo_axis axis;
+  struct eo_axis_noise noise;
+  double share_sigma; /* of the swing that is taken out of the axis */
+  double swing_sums[2];
+  struct eo_terms terms;
+  struct eo_normal normal;
+  double coefficient[EO_MOST_TERMS];
+  double mean_speed; /* of all rows of the part, rad/s */
+  double from, to;   /* pinion angle of the rows that count, rad */
+  double turns;      /* between them */
+  double rows[EO_FIT_BLOCK][3];
+  struct eo_synchronous *synchronous;
+  struct eo_waterfall *waterfall;
+  struct eo_beside beside;
+};
+
+typedef enum eo_code eo_fit_row(struct eo_fit *fit, const double row[3], int64_t index, struct eo_error *error);
+
+/* Calls function with each row of the part (time, both angles). Errors: of reading, of function, cancelled. */
+enum eo_code eo_fit_each_row(struct eo_fit *fit, eo_fit_row *function, const char *what, struct eo_error *error);
+
+/* Least squares of all terms on the rows that count, over the axis as it is. */
+enum eo_code eo_fit_solve(struct eo_fit *fit, struct eo_error *error);
+
+/* Transmission error of a row, m. */
+double eo_fit_error(const struct eo_fit *fit, const double row[3]);
+
+/* Amplitude of the order number `at` of the terms, m. */
+double complex eo_fit_amplitude(const struct eo_fit *fit, int at);
+
+/* The parts of the transmission error at a row: drift, mesh orders, shaft orders, m. */
+void eo_fit_parts(const struct eo_fit *fit, const double row[3], double theta, double part[3]);
+
+/* What the encoder of the pinion, and what moves the pinion, do to the axis is told from the first fit and taken out;
+   then it is fitted again. */
+enum eo_code eo_fit_settle_axis(struct eo_fit *fit, struct eo_error *error);
+
+/* Fills what the coefficients and the residual say of the orders. */
+void eo_fit_read_lines(struct eo_fit *fit);
+
+#endif
