@@ -5,30 +5,36 @@
 
 #include "measurement/scan.h"
 
-double eo_axis_swing(const struct eo_axis *axis, double theta)
+double eo_axis_swing(const struct eo_axis *axis, int member, double theta)
 {
-  double complex turn = cexp(I * theta), power = 1, sum = 0;
+  double complex turn = cexp(I * axis->ratio[member] * theta), power = 1, sum = 0;
   for (int k = 0; k < EO_SHAFT_ORDERS; k++)
-    sum += axis->swing[k] * (power *= turn);
+    sum += axis->swing[member][k] * (power *= turn);
   return creal(sum);
 }
 
-/* theta + share e(theta) = reading, by two steps of the fixed point iteration: e is some 1e-3 rad, what is left 1e-9.
- */
+static double taken_out(const struct eo_axis *axis, double theta)
+{
+  double sum = 0;
+  for (int member = 0; member < 2; member++)
+    if (axis->share[member] > 0)
+      sum += axis->share[member] * eo_axis_swing(axis, member, theta);
+  return sum;
+}
+
+/* theta + e(theta) = reading, by two steps of the fixed point iteration: e is some 1e-3 rad, what is left 1e-9. */
 double eo_axis_angle(const struct eo_axis *axis, double reading)
 {
   double angle = axis->sign * reading;
-  if (axis->share == 0)
-    return angle;
-  double theta = angle - axis->share * eo_axis_swing(axis, angle);
-  return angle - axis->share * eo_axis_swing(axis, theta);
+  return angle - taken_out(axis, angle - taken_out(axis, angle));
 }
 
-double eo_axis_loss(const struct eo_axis *axis, double order, double share)
+double eo_axis_loss(const struct eo_axis *axis, double order, const double share[2])
 {
   double left = 1;
-  for (int k = 0; k < EO_SHAFT_ORDERS; k++)
-    left *= fabs(j0(order * share * cabs(axis->swing[k])));
+  for (int member = 0; member < 2; member++)
+    for (int k = 0; k < EO_SHAFT_ORDERS; k++)
+      left *= fabs(j0(order * share[member] * cabs(axis->swing[member][k])));
   return left;
 }
 

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The order axis: the angle that the pinion was measured at. Orders belong to the angle, not to the time, so no change
-   of speed smears them. What the pinion's encoder itself does to the axis is taken out again: the shaft orders of an
-   eccentric encoder move the mesh by a phase e(theta), which takes the mesh order h down to J0(h z |e|) of itself;
-   noise of standard deviation s takes it down to exp(-(h z s)^2 / 2). */
+   of speed smears them. What moves the reading but not the mesh is taken out again: the shaft orders of an eccentric
+   encoder, and of run-out of either gear, which a light pinion follows, move the mesh by a phase e(theta), which takes
+   the mesh order h down to J0(h z |e|) of itself; noise of standard deviation s takes it down to
+   exp(-(h z s)^2 / 2). */
 #ifndef EASEOFF_MEASUREMENT_AXIS_H
 #define EASEOFF_MEASUREMENT_AXIS_H
 
@@ -11,19 +12,21 @@
 #include "measurement/orders.h"
 
 struct eo_axis {
-  double sign;                           /* -1: the part turns backwards */
-  double complex swing[EO_SHAFT_ORDERS]; /* rad: the encoder shows theta + Re sum swing[k] exp(i (k + 1) theta) */
-  double share;                          /* of the swing that is taken out, 0..1 */
+  double sign;     /* -1: the part turns backwards */
+  double ratio[2]; /* [member]: turns of the shaft per turn of the pinion */
+  /* rad, [member]: the encoder shows theta + sum over members of share Re sum swing[k] exp(i (k + 1) ratio theta) */
+  double complex swing[2][EO_SHAFT_ORDERS];
+  double share[2]; /* [member]: of the swing that is taken out, 0..1 */
 };
 
 /* The pinion's angle at a reading of its encoder, both rad. */
 double eo_axis_angle(const struct eo_axis *axis, double reading);
 
-/* The swing at an angle, rad. */
-double eo_axis_swing(const struct eo_axis *axis, double theta);
+/* The swing with one shaft at an angle, all of it, rad. */
+double eo_axis_swing(const struct eo_axis *axis, int member, double theta);
 
-/* What is left of an order on an axis that still has the part `share` of the swing in it, 0..1. */
-double eo_axis_loss(const struct eo_axis *axis, double order, double share);
+/* What is left of an order on an axis that still has these shares of the swings in it, 0..1. */
+double eo_axis_loss(const struct eo_axis *axis, double order, const double share[2]);
 
 /* Noise of the readings from their third differences, which no steady change of speed reaches: of white noise they have
    20 times the variance. The median over blocks of rows, so that a gap does not count. Rows one after the other. */

@@ -110,6 +110,13 @@ static double vibration(const struct eo_synthetic *s, double theta)
   return sum;
 }
 
+/* First order of a shaft at its angle, m. */
+static double shaft_order(const struct eo_synthetic *s, int member, double turn)
+{
+  double place = 2 * M_PI * eo_random_unit(eo_random_at(s->seed, STREAM_PLACES, 0, 1), (uint64_t)member);
+  return s->eccentricity[member] * cos(turn + place);
+}
+
 /* What the shaft's encoder would show at a time if it were without noise and steps. */
 static double shown_angle(const struct eo_synthetic *s, int member, double time)
 {
@@ -117,10 +124,11 @@ static double shown_angle(const struct eo_synthetic *s, int member, double time)
          share = member == EO_GEAR ? 1 - s->pinion_share : s->pinion_share;
   int gear_teeth = s->teeth[EO_GEAR] + (s->fault == EO_FAULT_TEETH ? (int)s->size : 0);
   double turn = member == EO_GEAR ? theta * s->teeth[EO_PINION] / gear_teeth : theta;
-  double place = 2 * M_PI * eo_random_unit(eo_random_at(s->seed, STREAM_PLACES, 0, 1), (uint64_t)member);
   double start = member == EO_GEAR ? 2 * M_PI * eo_random_unit(eo_random_at(s->seed, STREAM_PLACES, 0, 2), 0) : 0;
-  return start + turn +
-         sign * (share * vibration(s, theta) + s->eccentricity[member] * cos(turn + place)) / s->base_radius[member];
+  double own = s->run_out ? share * (shaft_order(s, EO_PINION, theta) +
+                                     shaft_order(s, EO_GEAR, theta * s->teeth[EO_PINION] / gear_teeth))
+                          : shaft_order(s, member, turn);
+  return start + turn + sign * (share * vibration(s, theta) + own) / s->base_radius[member];
 }
 
 static double draw(const struct eo_synthetic *s, uint64_t stream, int64_t row, int channel)

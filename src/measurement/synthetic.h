@@ -60,7 +60,8 @@ struct eo_synthetic {
   bool turn_back;            /* the pinion then turns back to where it began */
   double turns;              /* of the pinion, one way */
   double sample_rate;        /* Hz */
-  double eccentricity[2];    /* amplitude of the first shaft order, m along the line of action */
+  double eccentricity[2];    /* amplitude of the first shaft order, m along the line of action, of each encoder */
+  bool run_out;              /* of the gears instead: the shafts share it as they share the vibration */
   double noise;              /* of each angle, standard deviation, rad */
   double jitter, skew;       /* of the sampling: of both channels, of the gear alone, s */
   double gear_rate;          /* samples per second of the gear, with a time column of its own; 0: the same clock */

@@ -76,7 +76,8 @@ static enum eo_code choose_rows(struct eo_fit *fit, struct eo_error *error)
   if (code)
     return code;
   fit->origin = begin[0];
-  fit->axis = (struct eo_axis){.sign = last[1] < first[1] ? -1 : 1};
+  fit->axis = (struct eo_axis){.sign = last[1] < first[1] ? -1 : 1,
+                               .ratio = {1, (double)fit->settings->teeth[EO_PINION] / fit->settings->teeth[EO_GEAR]}};
   fit->from = eo_axis_angle(&fit->axis, first[1]);
   fit->to = eo_axis_angle(&fit->axis, last[1]);
   fit->start = first[0];

@@ -5,6 +5,7 @@
 
 static const double SWING_KNOWN = 0.3; /* standard deviation of its share up to which the sidebands settle it */
 static const double SWING_PRIOR = 0.5; /* standard deviation of the share where they do not */
+static const double SURE = 3;          /* standard deviations by which a share must differ to be believed */
 
 /* What a phase of the axis does to the mesh orders: their derivative, m/rad. */
 static double mesh_slope(const struct eo_fit *fit, double theta)
@@ -25,44 +26,69 @@ static enum eo_code add_swing(struct eo_fit *fit, const double row[3], int64_t i
     return EO_OK;
   eo_fit_parts(fit, row, theta, part);
   double residual = eo_fit_error(fit, row) - part[0] - part[1] - part[2];
-  double effect = mesh_slope(fit, theta) * eo_axis_swing(&fit->axis, theta);
-  fit->swing_sums[0] += residual * effect;
-  fit->swing_sums[1] += effect * effect;
+  double slope = mesh_slope(fit, theta);
+  for (int member = 0; member < 2; member++) {
+    double effect = slope * eo_axis_swing(&fit->axis, member, theta);
+    fit->swing_sums[member][0] += residual * effect;
+    fit->swing_sums[member][1] += effect * effect;
+  }
   eo_beside_add(&fit->beside, theta, residual);
   return EO_OK;
 }
 
-/* Shaft orders of the pinion in the transmission error come from its encoder, and then the axis has them too, or from
-   the gears, and then it has not. The sidebands of the mesh orders tell: with the wrong axis the swing e leaves
-   (d TE / d theta) e in the residual. Where they are too weak the encoder is taken for the cause, and what that changes
-   is part of the uncertainty. */
-enum eo_code eo_fit_settle_axis(struct eo_fit *fit, struct eo_error *error)
+/* The swings: shaft orders of the transmission error, as angles of the pinion. */
+static void find_swings(struct eo_fit *fit)
 {
   struct eo_axis *axis = &fit->axis;
-  for (int k = 0; k < EO_SHAFT_ORDERS; k++)
-    axis->swing[k] = fit->terms.shaft_at[EO_PINION][k] < 0 ? 0
-                                                           : -eo_fit_amplitude(fit, fit->terms.shaft_at[EO_PINION][k]) /
-                                                                 fit->settings->base_radius[EO_PINION];
-  axis->share = 1;
+  for (int member = 0; member < 2; member++)
+    for (int k = 0; k < EO_SHAFT_ORDERS; k++) {
+      int at = fit->terms.shaft_at[member][k];
+      axis->swing[member][k] = at < 0 ? 0 : -eo_fit_amplitude(fit, at) / fit->settings->base_radius[EO_PINION];
+    }
+}
+
+/* Variance of a row's noise, from that beside the orders which feel a swing most. */
+static double noise_of_rows(const struct eo_fit *fit)
+{
+  double noise = 0, wanted = 0;
+  for (int h = 0; h < fit->result->harmonics; h++) {
+    double weight = pow(fit->terms.order[h] * cabs(eo_fit_amplitude(fit, h)), 2);
+    noise += weight * pow(eo_beside_sigma(&fit->beside, h, 0), 2) * (double)fit->result->rows / 2;
+    wanted += weight;
+  }
+  return wanted > 0 ? noise / wanted : INFINITY;
+}
+
+/* The share of one shaft's swing by the least squares of what was left; true when it is clearly another one. */
+static bool settle_share(struct eo_fit *fit, int member, double noise)
+{
+  const double *sums = fit->swing_sums[member];
+  double sigma = sums[1] > 0 ? sqrt(noise / sums[1]) : INFINITY;
+  fit->share_sigma[member] = SWING_PRIOR;
+  if (!(sigma < SWING_KNOWN))
+    return false;
+  double off = sums[0] / sums[1], share = fmin(fmax(fit->axis.share[member] - off, 0), 1);
+  bool other = fabs(share - fit->axis.share[member]) > SURE * sigma;
+  fit->share_sigma[member] = sigma;
+  if (other)
+    fit->axis.share[member] = share;
+  return other;
+}
+
+/* Shaft orders in the transmission error come from an encoder or from the gears. Those of the pinion's encoder the axis
+   has too; run-out of the gears turns the shafts, and the axis has the part that the pinion follows. The sidebands of
+   the mesh orders tell: with the wrong axis the swing e leaves (d TE / d theta) e in the residual. Where they are too
+   weak the encoders are taken for the cause, and what that changes is part of the uncertainty. */
+enum eo_code eo_fit_settle_axis(struct eo_fit *fit, struct eo_error *error)
+{
+  find_swings(fit);
+  fit->axis.share[EO_PINION] = 1;
   enum eo_code code = eo_fit_solve(fit, error);
   if (!code)
     code = eo_fit_each_row(fit, add_swing, "axis", error);
   if (code)
     return code;
-  double noise = 0, wanted = 0;
-  for (int h = 0; h < fit->result->harmonics; h++) { /* of a row, from the noise beside the strongest orders */
-    double weight = pow(fit->terms.order[h] * cabs(eo_fit_amplitude(fit, h)), 2);
-    noise += weight * pow(eo_beside_sigma(&fit->beside, h, 0), 2) * (double)fit->result->rows / 2;
-    wanted += weight;
-  }
-  double sigma = wanted > 0 && fit->swing_sums[1] > 0 ? sqrt(noise / wanted / fit->swing_sums[1]) : INFINITY;
-  fit->share_sigma = SWING_PRIOR;
-  if (!(sigma < SWING_KNOWN))
-    return EO_OK;
-  double off = fit->swing_sums[0] / fit->swing_sums[1];
-  fit->share_sigma = sigma;
-  if (off < 3 * sigma)
-    return EO_OK;
-  axis->share = fmax(0, 1 - off);
-  return eo_fit_solve(fit, error);
+  double noise = noise_of_rows(fit);
+  bool pinion = settle_share(fit, EO_PINION, noise), gear = settle_share(fit, EO_GEAR, noise);
+  return pinion || gear ? eo_fit_solve(fit, error) : EO_OK;
 }

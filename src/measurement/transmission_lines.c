@@ -83,7 +83,7 @@ void eo_fit_read_lines(struct eo_fit *fit)
 {
   struct eo_transmission *result = fit->result;
   result->axis_noise = eo_axis_noise_sigma(&fit->noise);
-  result->axis_swing = fit->axis.share * cabs(fit->axis.swing[0]);
+  result->axis_swing = fit->axis.share[EO_PINION] * cabs(fit->axis.swing[EO_PINION][0]);
   for (int h = 0; h < result->harmonics; h++) {
     result->mesh[h] = mesh_line(fit, h);
     result->rms_upto[h] = eo_transmission_rms(result->mesh, h + 1, result->speed, &result->rms_sigma);

@@ -24,8 +24,8 @@ struct eo_fit {
   double start, end;   /* s, of the rows that count */
   struct eo_axis axis;
   struct eo_axis_noise noise;
-  double share_sigma; /* of the swing that is taken out of the axis */
-  double swing_sums[2];
+  double share_sigma[2];   /* [member]: of the swing that is taken out of the axis */
+  double swing_sums[2][2]; /* [member]: products of the residual with what the swing does, and squares of that */
   struct eo_terms terms;
   struct eo_normal normal;
   double coefficient[EO_MOST_TERMS];
