@@ -287,6 +287,7 @@ enum eo_code eo_angles_make(struct eo_angles *a, const struct eo_recording *reco
     free(m);
     return eo_error_memory(error);
   }
+  a->interpolated = tracks->interpolated;
   m->recording = recording;
   m->tracks = tracks;
   m->findings = findings;

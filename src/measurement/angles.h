@@ -21,7 +21,8 @@ struct eo_angles {
   int64_t dropped;              /* rows missing from both channels */
   struct eo_ellipse ellipse[2]; /* [channel] of raw tracks */
   bool raw[2], wrapped[2];
-  bool units_in_doubt; /* one channel is in degrees, the other in radians, and it is open which */
+  struct eo_interpolation interpolated; /* of the second channel, whose values were brought to the first one's times */
+  bool units_in_doubt;                  /* one channel is in degrees, the other in radians, and it is open which */
 };
 
 /* spool_directory: see eo_recording_new(). Findings are added; a refusal leaves angles->series NULL and is no error.

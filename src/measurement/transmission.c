@@ -7,11 +7,12 @@
 
 static const double UNSTEADY = 0.02; /* range of the speed of whole turns, relative: an acceleration changes by 4 % */
 
-enum eo_code eo_fit_each_row(struct eo_fit *fit, eo_fit_row *function, const char *what, struct eo_error *error)
+enum eo_code eo_order_fit_each_row(struct eo_order_fit *fit, eo_order_fit_row *function, const char *what,
+                                   struct eo_error *error)
 {
   int64_t total = fit->last - fit->first + 1;
-  for (int64_t done = 0; done < total; done += EO_FIT_BLOCK) {
-    int count = total - done < EO_FIT_BLOCK ? (int)(total - done) : EO_FIT_BLOCK;
+  for (int64_t done = 0; done < total; done += EO_ORDER_FIT_BLOCK) {
+    int count = total - done < EO_ORDER_FIT_BLOCK ? (int)(total - done) : EO_ORDER_FIT_BLOCK;
     enum eo_code code = eo_angles_read(fit->angles, fit->first + done, count, fit->rows[0], error);
     if (!code && eo_progress_report(fit->progress, what, (double)done / (double)total))
       code = eo_error_set(error, EO_ERROR_CANCELLED, "", "Stopped.");
@@ -23,7 +24,7 @@ enum eo_code eo_fit_each_row(struct eo_fit *fit, eo_fit_row *function, const cha
   return EO_OK;
 }
 
-double eo_fit_error(const struct eo_fit *fit, const double row[3])
+double eo_order_fit_error(const struct eo_order_fit *fit, const double row[3])
 {
   return fit->axis.sign *
          (fit->settings->base_radius[EO_GEAR] * row[2] - fit->settings->base_radius[EO_PINION] * row[1]);
@@ -35,7 +36,7 @@ static int greatest_divisor(int a, int b)
 }
 
 /* Whole hunting periods, or whole turns of the gear, keep shaft orders and sidebands out of the mesh orders. */
-static void choose_turns(struct eo_fit *fit)
+static void choose_turns(struct eo_order_fit *fit)
 {
   const int *teeth = fit->settings->teeth;
   double turns = (fit->to - fit->from) / (2 * M_PI), gear = turns * teeth[EO_PINION] / teeth[EO_GEAR], whole = turns;
@@ -50,7 +51,7 @@ static void choose_turns(struct eo_fit *fit)
 }
 
 /* The time at which the counted turns end, between the last two rows around it; noise of the readings. */
-static enum eo_code look(struct eo_fit *fit, const double row[3], int64_t index, struct eo_error *error)
+static enum eo_code look(struct eo_order_fit *fit, const double row[3], int64_t index, struct eo_error *error)
 {
   double theta = eo_axis_angle(&fit->axis, row[1]);
   (void)index;
@@ -62,7 +63,7 @@ static enum eo_code look(struct eo_fit *fit, const double row[3], int64_t index,
 }
 
 /* The rows of the part, their direction, and the turns that count. */
-static enum eo_code choose_rows(struct eo_fit *fit, struct eo_error *error)
+static enum eo_code choose_rows(struct eo_order_fit *fit, struct eo_error *error)
 {
   const struct eo_part *part = &fit->result->parts.measured;
   double first[3], last[3], begin[3];
@@ -87,10 +88,10 @@ static enum eo_code choose_rows(struct eo_fit *fit, struct eo_error *error)
     eo_findings_add(
         fit->findings, EO_FINDING_REVERSED, EO_SEVERITY_NOTE, -1, part->turns,
         "The part that is measured turns the other way: the flanks that carry there may be the other ones.");
-  return eo_fit_each_row(fit, look, "axis", error);
+  return eo_order_fit_each_row(fit, look, "axis", error);
 }
 
-static void measure_speed(struct eo_fit *fit)
+static void measure_speed(struct eo_order_fit *fit)
 {
   struct eo_transmission *result = fit->result;
   result->seconds = fit->end - fit->start;
@@ -101,10 +102,11 @@ static void measure_speed(struct eo_fit *fit)
   result->speed_high = fmax(result->parts.measured.speed_high, result->speed);
 }
 
-static void judge_axis(struct eo_fit *fit)
+static void judge_axis(struct eo_order_fit *fit)
 {
   struct eo_transmission *result = fit->result;
-  double per_turn = 2 * M_PI / (fit->angles->interval * result->speed_high); /* where the shaft is fastest */
+  double interval = fmax(fit->angles->interval, fit->angles->interpolated.step);
+  double per_turn = 2 * M_PI / (interval * result->speed_high); /* where the shaft is fastest */
   double turns = result->revolutions[EO_PINION], gear = result->revolutions[EO_GEAR],
          swing = (result->speed_high - result->speed_low) / result->speed;
   int possible = (int)(0.45 * per_turn / fit->settings->teeth[EO_PINION]);
@@ -134,7 +136,7 @@ static void judge_axis(struct eo_fit *fit)
                     per_turn, result->harmonics, fit->settings->teeth[EO_PINION], result->asked);
 }
 
-static enum eo_code add_to_fit(struct eo_fit *fit, const double row[3], int64_t index, struct eo_error *error)
+static enum eo_code add_to_fit(struct eo_order_fit *fit, const double row[3], int64_t index, struct eo_error *error)
 {
   double theta = eo_axis_angle(&fit->axis, row[1]), *terms = eo_normal_row(&fit->normal);
   (void)index;
@@ -142,16 +144,16 @@ static enum eo_code add_to_fit(struct eo_fit *fit, const double row[3], int64_t 
   if (theta < fit->from || theta > fit->to)
     return EO_OK;
   eo_terms_at(&fit->terms, row[0], theta, terms);
-  terms[fit->terms.count] = eo_fit_error(fit, row);
+  terms[fit->terms.count] = eo_order_fit_error(fit, row);
   eo_normal_add(&fit->normal);
   return EO_OK;
 }
 
-enum eo_code eo_fit_solve(struct eo_fit *fit, struct eo_error *error)
+enum eo_code eo_order_fit_solve(struct eo_order_fit *fit, struct eo_error *error)
 {
   enum eo_code code = eo_normal_init(&fit->normal, fit->terms.count, error);
   if (!code)
-    code = eo_fit_each_row(fit, add_to_fit, "orders", error);
+    code = eo_order_fit_each_row(fit, add_to_fit, "orders", error);
   if (!code)
     code = eo_normal_solve(&fit->normal, fit->coefficient, &fit->result->condition, error);
   fit->result->rows = fit->normal.rows;
@@ -159,14 +161,14 @@ enum eo_code eo_fit_solve(struct eo_fit *fit, struct eo_error *error)
   return code;
 }
 
-double complex eo_fit_amplitude(const struct eo_fit *fit, int at)
+double complex eo_order_fit_amplitude(const struct eo_order_fit *fit, int at)
 {
   const double *c = fit->coefficient + fit->terms.drift + 2 * at;
   return c[0] - I * c[1];
 }
 
 /* The parts of the transmission error at a row: drift, mesh orders, shaft orders. */
-void eo_fit_parts(const struct eo_fit *fit, const double row[3], double theta, double part[3])
+void eo_order_fit_parts(const struct eo_order_fit *fit, const double row[3], double theta, double part[3])
 {
   double value[EO_MOST_TERMS];
   int mesh_end = fit->terms.drift + 2 * fit->result->harmonics;
@@ -176,14 +178,14 @@ void eo_fit_parts(const struct eo_fit *fit, const double row[3], double theta, d
     part[i < fit->terms.drift ? 0 : i < mesh_end ? 1 : 2] += value[i] * fit->coefficient[i];
 }
 
-static enum eo_code add_residual(struct eo_fit *fit, const double row[3], int64_t index, struct eo_error *error)
+static enum eo_code add_residual(struct eo_order_fit *fit, const double row[3], int64_t index, struct eo_error *error)
 {
   double theta = eo_axis_angle(&fit->axis, row[1]), part[3];
   (void)error;
   if (theta < fit->from || theta > fit->to)
     return EO_OK;
-  eo_fit_parts(fit, row, theta, part);
-  double residual = eo_fit_error(fit, row) - part[0] - part[1] - part[2];
+  eo_order_fit_parts(fit, row, theta, part);
+  double residual = eo_order_fit_error(fit, row) - part[0] - part[1] - part[2];
   fit->result->residual += residual * residual;
   eo_beside_add(&fit->beside, theta, residual);
   eo_synchronous_add(fit->synchronous, index, theta, part[1], part[2], residual);
@@ -192,7 +194,7 @@ static enum eo_code add_residual(struct eo_fit *fit, const double row[3], int64_
   return EO_OK;
 }
 
-static void judge_result(struct eo_fit *fit)
+static void judge_result(struct eo_order_fit *fit)
 {
   struct eo_transmission *result = fit->result;
   double low = INFINITY, high = -INFINITY;
@@ -214,27 +216,27 @@ static void judge_result(struct eo_fit *fit)
         ->row = result->step_row;
 }
 
-static bool refused(const struct eo_fit *fit)
+static bool refused(const struct eo_order_fit *fit)
 {
   return eo_findings_worst(fit->findings) == EO_SEVERITY_REFUSED;
 }
 
-static enum eo_code run_fit(struct eo_fit *fit, struct eo_error *error)
+static enum eo_code run_fit(struct eo_order_fit *fit, struct eo_error *error)
 {
   eo_terms_init(&fit->terms, fit->settings->teeth, fit->result->harmonics, fit->turns, fit->start, fit->end);
   eo_beside_init(&fit->beside, fit->settings->teeth, fit->result->harmonics, fit->turns);
-  enum eo_code code = eo_fit_solve(fit, error);
+  enum eo_code code = eo_order_fit_solve(fit, error);
   if (!code)
-    code = eo_fit_settle_axis(fit, error);
+    code = eo_order_fit_settle_axis(fit, error);
   eo_beside_init(&fit->beside, fit->settings->teeth, fit->result->harmonics, fit->turns);
   if (!code)
     code = eo_synchronous_new(&fit->synchronous, fit->result, fit->settings->teeth, fit->from, fit->turns, error);
   if (!code)
     code = eo_waterfall_new(&fit->waterfall, fit->result, fit->settings->teeth, fit->from, error);
-  return code ? code : eo_fit_each_row(fit, add_residual, "residual", error);
+  return code ? code : eo_order_fit_each_row(fit, add_residual, "residual", error);
 }
 
-static enum eo_code measure(struct eo_fit *fit, struct eo_error *error)
+static enum eo_code measure(struct eo_order_fit *fit, struct eo_error *error)
 {
   struct eo_transmission *result = fit->result;
   enum eo_code code = eo_parts_find(&result->parts, fit->angles, &fit->settings->part, fit->findings, fit->progress,
@@ -252,7 +254,7 @@ static enum eo_code measure(struct eo_fit *fit, struct eo_error *error)
   if (code)
     return code;
   result->residual = sqrt(result->residual / (double)result->rows);
-  eo_fit_read_lines(fit);
+  eo_order_fit_read_lines(fit);
   code = eo_synchronous_finish(fit->synchronous, result, error);
   if (!code)
     code = eo_waterfall_finish(fit->waterfall, result, error);
@@ -265,7 +267,7 @@ enum eo_code eo_transmission_measure(struct eo_transmission *result, const struc
                                      const struct eo_transmission_settings *settings, struct eo_findings *findings,
                                      const struct eo_progress *progress, struct eo_error *error)
 {
-  struct eo_fit *fit = calloc(1, sizeof *fit);
+  struct eo_order_fit *fit = calloc(1, sizeof *fit);
   memset(result, 0, sizeof *result);
   if (!fit)
     return eo_error_memory(error);

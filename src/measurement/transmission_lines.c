@@ -10,34 +10,38 @@ static const double NOISE_KNOWN = 0.3; /* relative: noise from third differences
 
 static const int sideband_turns[EO_SIDEBANDS] = {-2, -1, 1, 2};
 
-static struct eo_order_line line_of(const struct eo_fit *fit, int at)
+static struct eo_order_line line_of(const struct eo_order_fit *fit, int at)
 {
   double order = fit->terms.order[at], speed = fit->result->speed;
-  double complex amplitude = eo_fit_amplitude(fit, at);
+  double complex amplitude = eo_order_fit_amplitude(fit, at);
   return (struct eo_order_line){
       .order = order, .amplitude = amplitude, .acceleration = order * order * speed * speed * cabs(amplitude)};
 }
 
 /* The axis shows the pinion's share s of the vibration f too, theta = reading + s f / r_b: what is fitted is
    f + s (f^2)' / (2 r_b). Its part at mesh order h + 1 for s = 1, m. */
-static double complex own_vibration(const struct eo_fit *fit, int h)
+static double complex own_vibration(const struct eo_order_fit *fit, int h)
 {
   int orders = fit->result->harmonics;
   double complex square = 0; /* of f^2 at that order */
   for (int j = 0; j < h; j++)
-    square += eo_fit_amplitude(fit, j) * eo_fit_amplitude(fit, h - 1 - j) / 2;
+    square += eo_order_fit_amplitude(fit, j) * eo_order_fit_amplitude(fit, h - 1 - j) / 2;
   for (int j = 0; j + h + 1 < orders; j++)
-    square += conj(eo_fit_amplitude(fit, j)) * eo_fit_amplitude(fit, j + h + 1);
+    square += conj(eo_order_fit_amplitude(fit, j)) * eo_order_fit_amplitude(fit, j + h + 1);
   return I * fit->terms.order[h] * square / (2 * fit->settings->base_radius[EO_PINION]);
 }
 
-/* A mesh order, what noise of the axis takes away put back; how sure the axis is. */
-static struct eo_order_line mesh_line(const struct eo_fit *fit, int h)
+/* A mesh order, what noise of the axis and values between samples take away put back; how sure that is. Only the gear's
+   part of the vibration, 1 - s, is lost between the gear's samples. */
+static struct eo_order_line mesh_line(const struct eo_order_fit *fit, int h)
 {
   struct eo_order_line line = line_of(fit, h);
   double complex own = own_vibration(fit, h);
+  const struct eo_interpolation *between = &fit->angles->interpolated;
   double in_phase = creal(own * conj(line.amplitude)) / fmax(cabs(line.amplitude), 1e-300);
-  line.amplitude -= OWN_SHARE * own;
+  double complex lost = 1 - eo_interpolation_gain(between, line.order * fit->result->speed * between->step);
+  in_phase += creal(lost) * cabs(line.amplitude);
+  line.amplitude = (line.amplitude - OWN_SHARE * own) * (1 + (1 - OWN_SHARE) * lost);
   line.acceleration = pow(line.order * fit->result->speed, 2) * cabs(line.amplitude);
   double phase = line.order * fit->result->axis_noise, left = exp(-phase * phase / 2);
   line.amplitude /= left;
@@ -49,7 +53,7 @@ static struct eo_order_line mesh_line(const struct eo_fit *fit, int h)
   return line;
 }
 
-static void read_sidebands(struct eo_fit *fit, int h)
+static void read_sidebands(struct eo_order_fit *fit, int h)
 {
   struct eo_transmission *result = fit->result;
   for (int k = 0; k < 2 * EO_SIDEBANDS; k++) {
@@ -66,7 +70,7 @@ static void read_sidebands(struct eo_fit *fit, int h)
 }
 
 /* How much smaller the RMS would be on the axis as it was read. */
-static double axis_bias(const struct eo_fit *fit)
+static double axis_bias(const struct eo_order_fit *fit)
 {
   const struct eo_transmission *result = fit->result;
   double with = 0, without = 0;
@@ -79,7 +83,7 @@ static double axis_bias(const struct eo_fit *fit)
   return with > 0 ? 1 - sqrt(without / with) : 0;
 }
 
-void eo_fit_read_lines(struct eo_fit *fit)
+void eo_order_fit_read_lines(struct eo_order_fit *fit)
 {
   struct eo_transmission *result = fit->result;
   result->axis_noise = eo_axis_noise_sigma(&fit->noise);

@@ -11,9 +11,9 @@
 #include "measurement/transmission.h"
 #include "measurement/waterfall.h"
 
-enum { EO_FIT_BLOCK = 4096 }; /* rows read at once */
+enum { EO_ORDER_FIT_BLOCK = 4096 }; /* rows read at once */
 
-struct eo_fit {
+struct eo_order_fit {
   const struct eo_angles *angles;
   const struct eo_transmission_settings *settings;
   struct eo_findings *findings;
@@ -32,34 +32,36 @@ struct eo_fit {
   double mean_speed; /* of all rows of the part, rad/s */
   double from, to;   /* pinion angle of the rows that count, rad */
   double turns;      /* between them */
-  double rows[EO_FIT_BLOCK][3];
+  double rows[EO_ORDER_FIT_BLOCK][3];
   struct eo_synchronous *synchronous;
   struct eo_waterfall *waterfall;
   struct eo_beside beside;
 };
 
-typedef enum eo_code eo_fit_row(struct eo_fit *fit, const double row[3], int64_t index, struct eo_error *error);
+typedef enum eo_code eo_order_fit_row(struct eo_order_fit *fit, const double row[3], int64_t index,
+                                      struct eo_error *error);
 
 /* Calls function with each row of the part (time, both angles). Errors: of reading, of function, cancelled. */
-enum eo_code eo_fit_each_row(struct eo_fit *fit, eo_fit_row *function, const char *what, struct eo_error *error);
+enum eo_code eo_order_fit_each_row(struct eo_order_fit *fit, eo_order_fit_row *function, const char *what,
+                                   struct eo_error *error);
 
 /* Least squares of all terms on the rows that count, over the axis as it is. */
-enum eo_code eo_fit_solve(struct eo_fit *fit, struct eo_error *error);
+enum eo_code eo_order_fit_solve(struct eo_order_fit *fit, struct eo_error *error);
 
 /* Transmission error of a row, m. */
-double eo_fit_error(const struct eo_fit *fit, const double row[3]);
+double eo_order_fit_error(const struct eo_order_fit *fit, const double row[3]);
 
 /* Amplitude of the order number `at` of the terms, m. */
-double complex eo_fit_amplitude(const struct eo_fit *fit, int at);
+double complex eo_order_fit_amplitude(const struct eo_order_fit *fit, int at);
 
 /* The parts of the transmission error at a row: drift, mesh orders, shaft orders, m. */
-void eo_fit_parts(const struct eo_fit *fit, const double row[3], double theta, double part[3]);
+void eo_order_fit_parts(const struct eo_order_fit *fit, const double row[3], double theta, double part[3]);
 
 /* What the encoder of the pinion, and what moves the pinion, do to the axis is told from the first fit and taken out;
    then it is fitted again. */
-enum eo_code eo_fit_settle_axis(struct eo_fit *fit, struct eo_error *error);
+enum eo_code eo_order_fit_settle_axis(struct eo_order_fit *fit, struct eo_error *error);
 
 /* Fills what the coefficients and the residual say of the orders. */
-void eo_fit_read_lines(struct eo_fit *fit);
+void eo_order_fit_read_lines(struct eo_order_fit *fit);
 
 #endif

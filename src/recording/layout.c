@@ -92,16 +92,25 @@ static bool swings(const struct eo_column *look)
   return less - look->resets > (look->rises + look->falls) / 10;
 }
 
+/* A voltage, or nobody says what. Counts since the row before may have two values, too, but these are neighbours, and
+   the lower one is not 0. */
+static bool may_be_square(const struct eo_column *look)
+{
+  bool voltage = look->quantity == EO_QUANTITY_VOLTAGE || look->quantity == EO_QUANTITY_NONE ||
+                 look->quantity == EO_QUANTITY_CURRENT;
+  bool counts = look->whole && look->high - look->low <= 2 && (look->low > 0 || look->high < 0);
+  return look->levels && voltage && !counts;
+}
+
 /* Two or four columns with two levels each, and no angle beside them, are square waves. */
 static bool find_squares(struct eo_guess *g)
 {
   int squares = 0, square[EO_RECORDING_COLUMNS];
-  for (int i = 0; i < g->candidates; i++) {
-    const struct eo_column *look = &g->look[g->candidate[i]];
-    if (look->levels && (look->quantity == EO_QUANTITY_VOLTAGE || look->quantity == EO_QUANTITY_NONE ||
-                         look->quantity == EO_QUANTITY_CURRENT))
+  if (g->choice->unit == EO_LAYOUT_COUNT)
+    return false;
+  for (int i = 0; i < g->candidates; i++)
+    if (may_be_square(&g->look[g->candidate[i]]))
       square[squares++] = g->candidate[i];
-  }
   if (squares != 2 && squares != 4)
     return false;
   g->candidates = squares;
@@ -279,7 +288,8 @@ static enum eo_code find_scale(struct eo_guess *g, int member, struct eo_error *
   return EO_OK;
 }
 
-/* Counts since the row before go neither up nor down, but stay on one side of 0. */
+/* Counts since the row before go up as often as down, and stay on one side of 0. (Where they have two values, every
+   step looks like a reset.) */
 static bool are_increments(const struct eo_guess *g, int member)
 {
   int column = g->tracks->channel[member].column[0];
@@ -287,8 +297,9 @@ static bool are_increments(const struct eo_guess *g, int member)
   bool named = eo_column_named(eo_recording_name(g->recording, column), INCREMENT_WORDS);
   bool counts = g->choice->unit == EO_LAYOUT_COUNT || look->quantity == EO_QUANTITY_COUNT;
   double middle = fabs(look->low + look->high) / 2;
-  return g->kind == EO_LAYOUT_ANGLES && !g->square && (named || (counts && look->whole)) &&
-         look->rises + look->falls > 20 && swings(look) && look->high - look->low < middle;
+  int less = look->rises < look->falls ? look->rises : look->falls, all = look->rises + look->falls;
+  return g->kind == EO_LAYOUT_ANGLES && !g->square && (named || (counts && look->whole)) && 4 * less > all &&
+         all > 20 && look->high - look->low < middle;
 }
 
 static void note_angle(const struct eo_guess *g, int member)

@@ -9,7 +9,7 @@
 #include <string.h>
 
 #define BLOCK 4096
-#define POINTS 16 /* samples of a polynomial */
+#define POINTS EO_INTERPOLATION_POINTS
 #define HELD (3 * BLOCK)
 #define SAME 1e-6  /* of an interval: times that differ less are equal */
 #define WIDEST 1.8 /* usual intervals: a polynomial over a longer gap swings */
@@ -26,6 +26,7 @@ struct side {
   int64_t next, rows;                 /* of the recording */
   int64_t first, held;                /* samples: number of the first that is held, how many are */
   bool ended;
+  double begin;         /* s, of the first sample */
   double *block;        /* [BLOCK][columns of the recording] */
   double *time, *value; /* [HELD], [HELD][columns] */
 };
@@ -36,6 +37,7 @@ struct aligner {
   int columns;
   double *rows; /* [BLOCK][columns] */
   int64_t filled, kept;
+  int64_t places[EO_INTERPOLATION_PLACES + 1]; /* values by their place between two samples, see eo_interpolation */
 };
 
 static bool same_clock(const struct eo_layout_clock *a, const struct eo_layout_clock *b)
@@ -138,6 +140,8 @@ static void take_row(struct side *s, const double *row, int64_t number)
       value[k] -= turns * s->period[k];
       s->shift[k] -= turns * s->period[k];
     }
+  if (!s->first && !s->held)
+    s->begin = time;
   s->time[s->held++] = time;
 }
 
@@ -169,14 +173,8 @@ static enum eo_code fill(struct side *s, int64_t keep, struct eo_error *error)
 /* Values of all columns at a time inside samples from .. from + POINTS - 1, by the polynomial through them. */
 static void interpolate(const struct side *s, int64_t from, double t, double *values)
 {
-  const double *time = s->time + from;
   double weight[POINTS];
-  for (int i = 0; i < POINTS; i++) {
-    weight[i] = 1;
-    for (int k = 0; k < POINTS; k++)
-      if (k != i)
-        weight[i] *= (t - time[k]) / (time[i] - time[k]);
-  }
+  eo_interpolation_weights(s->time + from, t, weight);
   for (int c = 0; c < s->columns; c++) {
     const double *column = s->value + from * CARRIED + c;
     double base = column[(long)POINTS / 2 * CARRIED], sum = 0;
@@ -219,17 +217,20 @@ static enum eo_code put_row(struct aligner *a, double t, const double *first, co
 
 /* The gear's values at a time: those of a sample that stands there, else between samples; NULL where it has none. at:
    number of the last sample not after t. */
-static const double *values_at(const struct side *b, int64_t at, double t, double *values)
+static const double *values_at(struct aligner *m, int64_t at, double t, double *values)
 {
+  const struct side *b = &m->side[1];
   int64_t i = at - b->first, from = i - POINTS / 2 + 1;
   double before = b->time[i], step = i + 1 < b->held ? b->time[i + 1] - before : before - b->time[i - 1];
-  if (fabs(t - before) <= SAME * step)
-    return b->value + i * CARRIED;
-  if (i + 1 < b->held && fabs(t - before - step) <= SAME * step)
-    return b->value + (i + 1) * CARRIED;
+  bool here = fabs(t - before) <= SAME * step, next = i + 1 < b->held && fabs(t - before - step) <= SAME * step;
+  if (here || next) {
+    m->places[EO_INTERPOLATION_PLACES]++;
+    return b->value + (here ? i : i + 1) * CARRIED;
+  }
   if (t < before || from < 0 || from + POINTS > b->held || !is_dense(b, from))
     return NULL; /* at the ends a polynomial swings: only its middle is used */
   interpolate(b, from, t, values);
+  m->places[(int)((t - before) / step * EO_INTERPOLATION_PLACES) % EO_INTERPOLATION_PLACES]++;
   return values;
 }
 
@@ -253,7 +254,7 @@ static enum eo_code align_rows(struct aligner *m, struct eo_error *error)
         break;
       at++;
     }
-    const double *second = !code && b->held > POINTS ? values_at(b, at, t, values) : NULL;
+    const double *second = !code && b->held > POINTS ? values_at(m, at, t, values) : NULL;
     if (!second && m->kept + m->filled < POINTS)
       m->filled = 0; /* a lone sample at the beginning makes a gap */
     if (second)
@@ -283,6 +284,21 @@ static void carry_beside(struct eo_guess *g, struct aligner *m)
     }
     m->side[side].column[m->side[side].columns++] = beside[i]->column;
   }
+}
+
+/* How the gear's values stand between its samples, for those who ask what became of its vibration. */
+static void state_places(struct eo_guess *g, const struct aligner *m)
+{
+  struct eo_interpolation *interpolated = &g->tracks->interpolated;
+  int64_t exact = m->places[EO_INTERPOLATION_PLACES], all = exact;
+  for (int i = 0; i < EO_INTERPOLATION_PLACES; i++)
+    all += m->places[i];
+  if (exact == all)
+    return;
+  const struct side *gear = &m->side[1]; /* all of it has been read */
+  interpolated->step = (gear->time[gear->held - 1] - gear->begin) / (double)(gear->first + gear->held - 1);
+  for (int i = 0; i <= EO_INTERPOLATION_PLACES; i++)
+    interpolated->share[i] = (double)m->places[i] / (double)all;
 }
 
 /* The tracks now speak of the new columns, whose names and units are the old ones. */
@@ -329,6 +345,7 @@ static enum eo_code align(struct eo_guess *g, struct aligner *m, const char *spo
         "Pinion and gear have times of their own: the gear's values were brought to the times of the pinion's, "
         "which leaves %lld of %lld rows.",
         (long long)m->kept, (long long)m->side[0].rows);
+  state_places(g, m);
   rename_tracks(g, m);
   return EO_OK;
 }

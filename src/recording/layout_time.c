@@ -10,6 +10,7 @@
 #define BLOCK 2048  /* rows read at once */
 #define STEPS 20000 /* steps from which the resolution of times is told */
 #define FEW 20      /* fewer odd steps than this are gaps or repeated rows, not the resolution of the times */
+#define ODD_ROWS 2  /* times that start again more often are no times of one recording */
 #define FAR 100.0   /* times a load case: no speed of this pair */
 #define NEAR 30.0   /* times a load case: a unit of time is believed; units differ by more than the square of it */
 
@@ -43,10 +44,15 @@ static double scale_by_size(const struct eo_column *look)
   return 0;
 }
 
-/* Goes up and never starts again. */
+/* Goes up and starts again so many times at most. */
+static bool rises_but(const struct eo_column *look, int resets)
+{
+  return look->count > 1 && look->step > 0 && look->resets <= resets && look->falls <= look->rises / 10;
+}
+
 static bool rises(const struct eo_column *look)
 {
-  return look->count > 1 && look->step > 0 && !look->resets && look->falls <= look->rises / 10;
+  return rises_but(look, 0);
 }
 
 static bool is_referred(const struct eo_guess *g, int column)
@@ -80,17 +86,26 @@ static bool leads_evenly(const struct eo_guess *g, int column)
   return look->spread < 1e-3 && look->step < 0.1 && !look->whole && behind >= 2;
 }
 
+/* By its unit or its name. */
+static bool is_called_time(const struct eo_guess *g, int column)
+{
+  const struct eo_column *look = &g->look[column];
+  bool free_of_unit = look->quantity == EO_QUANTITY_NONE || look->quantity == EO_QUANTITY_COUNT;
+  return look->quantity == EO_QUANTITY_TIME ||
+         (free_of_unit && eo_column_named(eo_recording_name(g->recording, column), STRONG_WORDS));
+}
+
 /* A column of time goes up by nearly equal steps and never starts again; a unit, a name, its size or another column
    that refers to it says so. */
 static bool is_time(const struct eo_guess *g, int column)
 {
   const struct eo_column *look = &g->look[column];
-  bool free_of_unit = look->quantity == EO_QUANTITY_NONE || look->quantity == EO_QUANTITY_COUNT;
-  if (!rises(look) || g->number[column])
+  if (g->number[column])
     return false;
-  return look->quantity == EO_QUANTITY_TIME || is_referred(g, column) ||
-         (free_of_unit && eo_column_named(eo_recording_name(g->recording, column), STRONG_WORDS)) ||
-         (look->quantity == EO_QUANTITY_NONE && scale_by_size(look) > 0 && look->spread < 0.5);
+  if (is_called_time(g, column)) /* a row that was cut off, or one out of order, does not make it something else */
+    return rises_but(look, ODD_ROWS);
+  return rises(look) && (is_referred(g, column) ||
+                         (look->quantity == EO_QUANTITY_NONE && scale_by_size(look) > 0 && look->spread < 0.5));
 }
 
 /* An abscissa without a name of time, where nothing better is there. */
@@ -139,15 +154,35 @@ int eo_layout_pick_time(const struct eo_guess *g, int channel)
   return best;
 }
 
+/* Nothing tells when the rows were taken; a column whose times do not go on is named. */
+static enum eo_code refuse_times(const struct eo_guess *g, struct eo_error *error)
+{
+  char text[80];
+  for (int c = 0; c < g->columns; c++) {
+    const struct eo_column *look = &g->look[c];
+    if (!is_called_time(g, c) || g->number[c] || !(look->falls > 0))
+      continue;
+    eo_layout_label(g, c, text, sizeof text);
+    if (look->falls > 9 * look->rises)
+      return eo_error_set(error, EO_ERROR_INPUT, "/time",
+                          "The times in %s fall from row to row: the last row stands first. Turn the rows round.",
+                          text);
+    return eo_error_set(
+        error, EO_ERROR_INPUT, "/time",
+        "The times in %s go back in %d rows: sort the rows by time, or choose \"none\" as time and give "
+        "the sampling rate.",
+        text, look->falls);
+  }
+  return eo_error_set(error, EO_ERROR_INPUT, "/sample_rate_Hz",
+                      "No column holds the time and the file states no sampling rate; give one.");
+}
+
 static enum eo_code even_clock(struct eo_guess *g, int channel, struct eo_layout_clock *clock, struct eo_error *error)
 {
   struct eo_clock stated = eo_recording_clock(g->recording, channel);
   clock->interval = g->choice->sample_rate > 0 ? 1 / g->choice->sample_rate : stated.interval;
   clock->start = stated.start;
-  if (!(clock->interval > 0))
-    return eo_error_set(error, EO_ERROR_INPUT, "/sample_rate_Hz",
-                        "No column holds the time and the file states no sampling rate; give one.");
-  return EO_OK;
+  return clock->interval > 0 ? EO_OK : refuse_times(g, error);
 }
 
 static enum eo_code find_clock(struct eo_guess *g, int member, struct eo_error *error)

@@ -29,19 +29,27 @@ static const char *closing_quote(const char *at, const char *end)
   return end;
 }
 
-static bool ends_cell(char c, char separator)
+/* Runs of blanks separate, all of them or those wider than one. */
+static bool is_run(char separator)
 {
-  return separator == ' ' ? eo_text_blank(c) : c == separator;
+  return separator == ' ' || separator == EO_TEXT_WIDE;
+}
+
+static bool ends_cell(const char *at, const char *end, char separator)
+{
+  if (separator == EO_TEXT_WIDE)
+    return *at == '\t' || (eo_text_blank(*at) && at + 1 < end && eo_text_blank(at[1]));
+  return separator == ' ' ? eo_text_blank(*at) : *at == separator;
 }
 
 bool eo_text_next_cell(const char **at, const char *end, char separator, struct eo_cell *cell)
 {
   if (!*at)
     return false;
-  const char *p = separator == ' ' ? *at : skip_blanks(*at, end, separator);
-  while (separator == ' ' && p < end && eo_text_blank(*p))
+  const char *p = is_run(separator) ? *at : skip_blanks(*at, end, separator);
+  while (is_run(separator) && p < end && eo_text_blank(*p))
     p++;
-  if (separator == ' ' && p == end)
+  if (is_run(separator) && p == end)
     return false;
   cell->quoted = p < end && *p == '"';
   cell->text = p + cell->quoted;
@@ -49,7 +57,7 @@ bool eo_text_next_cell(const char **at, const char *end, char separator, struct 
     p = closing_quote(cell->text, end);
     cell->length = (size_t)(p - cell->text);
   }
-  while (p < end && !ends_cell(*p, separator))
+  while (p < end && !ends_cell(p, end, separator))
     p++;
   if (!cell->quoted) {
     const char *last = p;

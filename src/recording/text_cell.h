@@ -27,6 +27,9 @@ static inline bool eo_text_blank(char c)
   return c == ' ' || c == '\t' || c == '\r';
 }
 
+/* A separator: runs of two blanks or more, or with a tab in them; names between them have blanks of their own. */
+#define EO_TEXT_WIDE '\v'
+
 /* Takes the next cell of the line that ends at end; *at moves behind its separator. False when the line has no more
    cells. A line that ends with a separator has one more, empty cell, unless the separator is a run of blanks. The byte
    at end must belong to no number. */

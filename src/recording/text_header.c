@@ -40,7 +40,7 @@ static int count_cells(const struct eo_header_line *line, char separator)
    with the rows' own separator may have more cells. 0: none does. */
 static char header_separator(const struct eo_text_format *f, const struct eo_header_line *line)
 {
-  const char separators[] = {f->separator, '\t', ';', ',', '|', ' '};
+  const char separators[] = {f->separator, '\t', ';', ',', '|', ' ', EO_TEXT_WIDE};
   for (size_t i = 0; i < sizeof separators; i++)
     if (count_cells(line, separators[i]) == f->cells)
       return separators[i];

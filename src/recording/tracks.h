@@ -6,6 +6,7 @@
 #define EASEOFF_RECORDING_TRACKS_H
 
 #include "gear/gear_pair.h"
+#include "recording/interpolation.h"
 
 #include <stdbool.h>
 
@@ -39,6 +40,7 @@ struct eo_tracks {
   double interval;   /* s between rows without a time column */
   struct eo_track_channel channel[2];         /* [member] */
   struct eo_track_beside torque[2], speed[2]; /* [member]; torque in N m, speed in rad/s */
+  struct eo_interpolation interpolated;       /* of the gear's channel */
   struct eo_track_source { /* [member]: where the values were in the file, whatever the recording is now */
     int time, column[2];
     double time_scale;

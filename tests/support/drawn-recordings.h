@@ -26,11 +26,17 @@ enum drawn_kind {
   DRAWN_JITTER,
   DRAWN_SKEW,
   DRAWN_WRAPPED,
+  DRAWN_OWN_RATE,   /* each encoder with its own clock and rate */
+  DRAWN_OWN_START,  /* the gear is sampled between the rows of the pinion */
+  DRAWN_INCREMENTS, /* counts since the row before */
+  DRAWN_SQUARES,    /* A and B tracks in volts */
+  DRAWN_RUN_OUT,    /* of the gears instead of the encoders */
   DRAWN_KINDS
 };
 static const char *const drawn_names[DRAWN_KINDS] = {
-    "steady", "drift",  "slow swing", "swing per turn", "run-up", "two states", "rest", "turn back",
-    "steps",  "counts", "index",      "raw tracks",     "pulses", "jitter",     "skew", "wrapped"};
+    "steady",    "drift",   "slow swing", "swing per turn", "run-up",     "two states",   "rest",
+    "turn back", "steps",   "counts",     "index",          "raw tracks", "pulses",       "jitter",
+    "skew",      "wrapped", "own rate",   "own start",      "increments", "square waves", "run-out"};
 
 static double between(struct eo_random random, uint64_t draw, double low, double high)
 {
@@ -97,13 +103,16 @@ static void draw_speed(struct eo_synthetic *s, enum drawn_kind kind, struct eo_r
 static void draw_encoder(struct eo_synthetic *s, enum drawn_kind kind, struct eo_random r)
 {
   static const int lines[] = {1024, 2048, 5000, 9000, 18000, 36000}, steps[] = {4, 64, 256, 1024, 4096};
-  bool stepped = kind == DRAWN_STEPS || kind == DRAWN_COUNTS || kind == DRAWN_INDEX;
+  bool increments = kind == DRAWN_INCREMENTS,
+       stepped = kind == DRAWN_STEPS || kind == DRAWN_COUNTS || kind == DRAWN_INDEX || increments;
   for (int i = 0; i < 2 && stepped; i++)
     s->lines[i] = lines[eo_random_index(r, 32 + (uint64_t)i, 6)];
   if (stepped)
     s->interpolation = steps[eo_random_index(r, 34, 5)];
   if (kind == DRAWN_COUNTS || kind == DRAWN_INDEX)
     s->output = EO_SYNTHETIC_COUNTS;
+  if (increments)
+    s->output = EO_SYNTHETIC_INCREMENTS;
   s->index = kind == DRAWN_INDEX;
   if (kind == DRAWN_TRACKS) {
     s->output = EO_SYNTHETIC_SINE_COSINE;
@@ -127,16 +136,33 @@ static void draw_encoder(struct eo_synthetic *s, enum drawn_kind kind, struct eo
   if (kind == DRAWN_SKEW)
     s->skew = 1e-7 / s->speed * between(r, 31, 0, 20);
   s->wrapped = kind == DRAWN_WRAPPED;
+  s->run_out = kind == DRAWN_RUN_OUT;
+  if (kind == DRAWN_SQUARES) { /* a fast converter: some 12000 samples per turn */
+    s->output = EO_SYNTHETIC_SQUARE;
+    s->lines[0] = 360;
+    s->lines[1] = 720;
+    s->sample_rate *= 30;
+    s->turns = between(r, 3, 9, 14);
+  }
+}
+
+static void draw_clocks(struct eo_synthetic *s, enum drawn_kind kind, struct eo_random r)
+{
+  if (kind == DRAWN_OWN_RATE)
+    s->gear_rate = s->sample_rate * between(r, 40, 0.8, 1.3);
+  if (kind == DRAWN_OWN_RATE || kind == DRAWN_OWN_START)
+    s->gear_delay = between(r, 41, 0.05, 0.95) / s->sample_rate;
 }
 
 /* The seed-th recording; the kinds take turns. */
-static struct eo_synthetic drawn(uint64_t seed, enum drawn_kind *kind)
+__attribute__((unused)) static struct eo_synthetic drawn(uint64_t seed, enum drawn_kind *kind)
 {
   struct eo_random r = eo_random_at(2016, 0, 0, seed);
   struct eo_synthetic s = drawn_base(r, seed);
   *kind = (enum drawn_kind)(seed % DRAWN_KINDS);
   draw_speed(&s, *kind, r);
   draw_encoder(&s, *kind, r);
+  draw_clocks(&s, *kind, r);
   return s;
 }
 
