@@ -1,26 +1,26 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "recording/interpolation.h"
 
-void eo_interpolation_weights(const double *time, double t, double *weight)
+void eo_interpolation_weights(int points, const double *time, double t, double *weight)
 {
-  for (int i = 0; i < EO_INTERPOLATION_POINTS; i++) {
+  for (int i = 0; i < points; i++) {
     weight[i] = 1;
-    for (int k = 0; k < EO_INTERPOLATION_POINTS; k++)
+    for (int k = 0; k < points; k++)
       if (k != i)
         weight[i] *= (t - time[k]) / (time[i] - time[k]);
   }
 }
 
 /* Sum of the weights times the wave's values at the samples, over its value at the place x behind the middle one. */
-static double complex gain_at(double x, double phase)
+static double complex gain_at(int points, double x, double phase)
 {
-  double time[EO_INTERPOLATION_POINTS], weight[EO_INTERPOLATION_POINTS];
-  double middle = EO_INTERPOLATION_POINTS / 2 - 1 + x;
+  double time[EO_INTERPOLATION_EVEN] = {0}, weight[EO_INTERPOLATION_EVEN];
+  double middle = points / 2 - 1 + x;
   double complex sum = 0;
-  for (int i = 0; i < EO_INTERPOLATION_POINTS; i++)
+  for (int i = 0; i < points; i++)
     time[i] = i;
-  eo_interpolation_weights(time, middle, weight);
-  for (int i = 0; i < EO_INTERPOLATION_POINTS; i++)
+  eo_interpolation_weights(points, time, middle, weight);
+  for (int i = 0; i < points; i++)
     sum += weight[i] * cexp(I * phase * (i - middle));
   return sum;
 }
@@ -32,6 +32,6 @@ double complex eo_interpolation_gain(const struct eo_interpolation *interpolatio
   double complex gain = interpolation->share[EO_INTERPOLATION_PLACES];
   for (int i = 0; i < EO_INTERPOLATION_PLACES; i++)
     if (interpolation->share[i] > 0)
-      gain += interpolation->share[i] * gain_at((i + 0.5) / EO_INTERPOLATION_PLACES, phase);
+      gain += interpolation->share[i] * gain_at(interpolation->points, (i + 0.5) / EO_INTERPOLATION_PLACES, phase);
   return gain;
 }

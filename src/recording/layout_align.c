@@ -9,7 +9,7 @@
 #include <string.h>
 
 #define BLOCK 4096
-#define POINTS EO_INTERPOLATION_POINTS
+#define EVEN 0.02 /* standard deviation of steps over their mean: samples are even */
 #define HELD (3 * BLOCK)
 #define SAME 1e-6  /* of an interval: times that differ less are equal */
 #define WIDEST 1.8 /* usual intervals: a polynomial over a longer gap swings */
@@ -26,6 +26,7 @@ struct side {
   int64_t next, rows;                 /* of the recording */
   int64_t first, held;                /* samples: number of the first that is held, how many are */
   bool ended;
+  int points;           /* of the polynomial between the samples */
   double begin;         /* s, of the first sample */
   double *block;        /* [BLOCK][columns of the recording] */
   double *time, *value; /* [HELD], [HELD][columns] */
@@ -93,6 +94,8 @@ static enum eo_code open_side(struct side *s, const struct eo_guess *g, int memb
   for (int k = 0; k < s->keys; k++)
     s->column[s->columns++] = channel->column[k];
   s->rows = eo_recording_length(g->recording, channel->column[0]);
+  s->points = s->clock.column < 0 || g->look[s->clock.column].spread < EVEN ? EO_INTERPOLATION_EVEN
+                                                                            : EO_INTERPOLATION_UNEVEN;
   if (g->kind == EO_LAYOUT_ANGLES && !s->sum && g->look[channel->column[0]].resets) {
     double turn = eo_column_turn(&g->look[channel->column[0]]);
     s->period[0] = turn > 0 ? turn : EO_TURN / channel->scale;
@@ -170,15 +173,15 @@ static enum eo_code fill(struct side *s, int64_t keep, struct eo_error *error)
   return code;
 }
 
-/* Values of all columns at a time inside samples from .. from + POINTS - 1, by the polynomial through them. */
+/* Values of all columns at a time inside samples from .. from + points - 1, by the polynomial through them. */
 static void interpolate(const struct side *s, int64_t from, double t, double *values)
 {
-  double weight[POINTS];
-  eo_interpolation_weights(s->time + from, t, weight);
+  double weight[EO_INTERPOLATION_EVEN];
+  eo_interpolation_weights(s->points, s->time + from, t, weight);
   for (int c = 0; c < s->columns; c++) {
     const double *column = s->value + from * CARRIED + c;
-    double base = column[(long)POINTS / 2 * CARRIED], sum = 0;
-    for (int i = 0; i < POINTS; i++)
+    double base = column[(long)s->points / 2 * CARRIED], sum = 0;
+    for (int i = 0; i < s->points; i++)
       sum += weight[i] * (column[(long)i * CARRIED] - base);
     values[c] = base + sum;
   }
@@ -187,8 +190,8 @@ static void interpolate(const struct side *s, int64_t from, double t, double *va
 /* No two neighbours of the samples are far from each other. */
 static bool is_dense(const struct side *s, int64_t from)
 {
-  double usual = (s->time[from + POINTS - 1] - s->time[from]) / (POINTS - 1), widest = 0, least = INFINITY;
-  for (int i = 1; i < POINTS; i++) {
+  double usual = (s->time[from + s->points - 1] - s->time[from]) / (s->points - 1), widest = 0, least = INFINITY;
+  for (int i = 1; i < s->points; i++) {
     widest = fmax(widest, s->time[from + i] - s->time[from + i - 1]);
     least = fmin(least, s->time[from + i] - s->time[from + i - 1]);
   }
@@ -220,14 +223,14 @@ static enum eo_code put_row(struct aligner *a, double t, const double *first, co
 static const double *values_at(struct aligner *m, int64_t at, double t, double *values)
 {
   const struct side *b = &m->side[1];
-  int64_t i = at - b->first, from = i - POINTS / 2 + 1;
+  int64_t i = at - b->first, from = i - b->points / 2 + 1;
   double before = b->time[i], step = i + 1 < b->held ? b->time[i + 1] - before : before - b->time[i - 1];
   bool here = fabs(t - before) <= SAME * step, next = i + 1 < b->held && fabs(t - before - step) <= SAME * step;
   if (here || next) {
     m->places[EO_INTERPOLATION_PLACES]++;
     return b->value + (here ? i : i + 1) * CARRIED;
   }
-  if (t < before || from < 0 || from + POINTS > b->held || !is_dense(b, from))
+  if (t < before || from < 0 || from + b->points > b->held || !is_dense(b, from))
     return NULL; /* at the ends a polynomial swings: only its middle is used */
   interpolate(b, from, t, values);
   m->places[(int)((t - before) / step * EO_INTERPOLATION_PLACES) % EO_INTERPOLATION_PLACES]++;
@@ -248,14 +251,14 @@ static enum eo_code align_rows(struct aligner *m, struct eo_error *error)
     }
     double t = a->time[n - a->first];
     for (;;) {
-      if (at + 2 + POINTS > b->first + b->held && !b->ended)
-        code = fill(b, at > POINTS ? at - POINTS : 0, error);
+      if (at + 2 + b->points > b->first + b->held && !b->ended)
+        code = fill(b, at > b->points ? at - b->points : 0, error);
       if (code || at + 1 >= b->first + b->held || !(b->time[at + 1 - b->first] <= t))
         break;
       at++;
     }
-    const double *second = !code && b->held > POINTS ? values_at(m, at, t, values) : NULL;
-    if (!second && m->kept + m->filled < POINTS)
+    const double *second = !code && b->held > b->points ? values_at(m, at, t, values) : NULL;
+    if (!second && m->kept + m->filled < b->points)
       m->filled = 0; /* a lone sample at the beginning makes a gap */
     if (second)
       code = put_row(m, t, a->value + (n - a->first) * CARRIED, second, error);
@@ -296,6 +299,7 @@ static void state_places(struct eo_guess *g, const struct aligner *m)
   if (exact == all)
     return;
   const struct side *gear = &m->side[1]; /* all of it has been read */
+  interpolated->points = gear->points;
   interpolated->step = (gear->time[gear->held - 1] - gear->begin) / (double)(gear->first + gear->held - 1);
   for (int i = 0; i <= EO_INTERPOLATION_PLACES; i++)
     interpolated->share[i] = (double)m->places[i] / (double)all;
@@ -335,7 +339,8 @@ static enum eo_code align(struct eo_guess *g, struct aligner *m, const char *spo
     return code;
   if (!m->kept)
     return eo_error_set(error, EO_ERROR_INPUT, "/time",
-                        "The times of pinion and gear do not overlap, or one has fewer than %d values.", POINTS + 1);
+                        "The times of pinion and gear do not overlap, or one has fewer than %d values.",
+                        m->side[1].points + 1);
   for (int s = 0; s < 2; s++)
     if (g->increments[s])
       eo_notes_add(g->notes, "The increments of the %s were summed up.", s ? "gear" : "pinion");
