@@ -9,13 +9,11 @@
 #include "format/outline.h"
 #include "measurement/measurement.h"
 
+extern const struct eo_outline eo_measured_head;           /* what the whole result and the brief one begin with */
+extern const struct eo_outline eo_measured_result_outline; /* of a struct eo_transmission */
 extern const struct eo_outline eo_part_outline, eo_axis_outline, eo_order_tracks_outline, eo_load_outline;
 
 /* New; NULL without memory. */
-json_t *eo_part_encode(const struct eo_part *part);
 json_t *eo_parts_encode(const struct eo_parts *parts);
-json_t *eo_axis_encode(const struct eo_transmission *transmission);
-json_t *eo_order_tracks_encode(const struct eo_transmission *transmission);
-json_t *eo_load_encode(const struct eo_load *load);
 
 #endif
