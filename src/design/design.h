@@ -46,11 +46,14 @@ struct eo_objective {
   double weight[3];
   enum eo_normalise normalise;
   /* Limits; NaN: off. */
-  double contact_pressure; /* Pa */
-  double root_stress;      /* Pa */
-  double peak_to_peak;     /* PPLTE, m */
-  double edge_load_share;  /* static load on tip-edge points, share of P */
-  double contact_loss;     /* fraction of the mesh cycle out of contact */
+  double contact_pressure;          /* Pa */
+  double root_stress;               /* Pa */
+  double peak_to_peak;              /* PPLTE, m */
+  double edge_load_share;           /* static load on tip-edge points, share of P */
+  double contact_loss;              /* fraction of the mesh cycle out of contact */
+  double flank_safety, root_safety; /* least S_H, S_F of the duty cycle */
+  double film_ratio;                /* least specific film thickness */
+  double contact_temperature;       /* degrees Celsius */
   bool relief_inside_active_flank;
   bool no_worse_than_unmodified;
   double penalty; /* factor on every violated constraint */

@@ -232,6 +232,8 @@ static json_t *encode_wants(const struct eo_design *design)
     eo_json_put(wants, "scenarios", json_incref(json_object_get(objective, "scenarios")), &failed);
     json_decref(objective);
   }
+  if (eo_objective_wants_rating(&design->objective))
+    eo_json_put(wants, "rating", eo_table_encode(&eo_rating_table, &design->rating), &failed);
   eo_json_put(wants, "root_stress", json_boolean(!isnan(design->objective.root_stress)), &failed);
   eo_json_put(wants, "evaluator", json_integer(EO_EVALUATOR_VERSION), &failed);
   if (!failed)
@@ -249,7 +251,8 @@ static json_t *encode_problem(const struct eo_design *design)
   for (i = 0; i < sizeof without / sizeof without[0]; i++)
     json_object_del(document, without[i]);
   json_object_del(json_object_get(document, "resolution"), "marking_thickness_um");
-  json_array_foreach(json_object_get(document, "load_cases"), i, load_case) json_object_del(load_case, "share");
+  if (!eo_objective_wants_rating(&design->objective)) /* a damage sum asks how long each load lasts */
+    json_array_foreach(json_object_get(document, "load_cases"), i, load_case) json_object_del(load_case, "share");
   eo_json_put(document, "wants", encode_wants(design), &failed);
   if (!failed)
     return document;

@@ -123,6 +123,12 @@ static const struct eo_outline_row raw_case_rows[] = {
            EO_RAW(root_stress)),
     EO_KEY("edge_load_share", "number?", "share of the load on tip edges", EO_RAW(edge_load_share)),
     EO_KEY("contact_loss", "number?", "share of the mesh cycle without contact", EO_RAW(contact_loss)),
+    EO_KEY("flank_safety", "number?",
+           "least S_H of the duty cycle, at its first load case; null elsewhere, and when no limit asks for the rating",
+           EO_RAW(flank_safety)),
+    EO_KEY("root_safety", "number?", "least S_F, the same", EO_RAW(root_safety)),
+    EO_KEY("film_ratio", "number?", "least specific film thickness, the same", EO_RAW(film_ratio)),
+    EO_KEY("contact_temperature_C", "number?", "largest, the same", .unit = &eo_unit_C, EO_RAW(contact_temperature)),
 };
 const struct eo_outline eo_outline_raw_case = EO_OUTLINE("RawCase", raw_case_rows);
 

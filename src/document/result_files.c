@@ -193,8 +193,10 @@ static void save_unloaded(const json_t *result, struct eo_text *text)
 /* One line per load case: what stands in "objectives", before and after, and what it is in. */
 static void save_summary(const json_t *result, struct eo_text *text)
 {
-  static const char *const design[] = {"peak_to_peak_um", "impact_N",        "rms_m_per_s2", "contact_pressure_MPa",
-                                       "root_stress_MPa", "edge_load_share", "contact_loss"};
+  static const char *const design[] = {
+      "peak_to_peak_um", "impact_N",        "rms_m_per_s2",         "contact_pressure_MPa",
+      "root_stress_MPa", "edge_load_share", "contact_loss",         "flank_safety",
+      "root_safety",     "film_ratio",      "contact_temperature_C"};
   enum { VALUES = sizeof design / sizeof *design, COLUMNS = 5 + 2 * VALUES };
   const char *heading[COLUMNS] = {"load_case", "torque_Nm", "speed_rpm", "share", "outcome"};
   char before[VALUES][HEADING];

@@ -114,6 +114,13 @@ static void say_limit(struct list *list, double limit, double value, const char 
       unit ? " " : "", unit ? unit->symbol : "", eo_unit_out(unit, limit));
 }
 
+/* Of the duty cycle as a whole. */
+static void say_least(struct list *list, double limit, double value, const char *what)
+{
+  if (value < limit)
+    say(list, "The limit on the %s is not reached: %.4g, at least %.4g wanted.", what, value, limit);
+}
+
 static void say_limits(struct list *list, const struct eo_result_source *source, int k)
 {
   const struct eo_objective *o = &source->design->objective;
@@ -124,6 +131,11 @@ static void say_limits(struct list *list, const struct eo_result_source *source,
   say_limit(list, o->peak_to_peak, v->peak_to_peak, "peak-to-peak transmission error", &eo_unit_um, place.text);
   say_limit(list, o->edge_load_share, v->edge_load_share, "load share of the tip edges", NULL, place.text);
   say_limit(list, o->contact_loss, v->contact_loss, "loss of contact", NULL, place.text);
+  say_least(list, o->flank_safety, v->flank_safety, "flank safety S_H");
+  say_least(list, o->root_safety, v->root_safety, "root safety S_F");
+  say_least(list, o->film_ratio, v->film_ratio, "specific film thickness");
+  say_limit(list, o->contact_temperature, v->contact_temperature, "contact temperature", &eo_unit_C,
+            "over the duty cycle");
   if (o->no_worse_than_unmodified &&
       (v->peak_to_peak > before->peak_to_peak || v->impact > before->impact || v->rms > before->rms))
     say(list, "The design is worse than the unmodified pair %s.", place.text);

@@ -125,7 +125,7 @@ static enum eo_code find_rating(struct eo_analysis *analysis, const struct eo_de
   if (!analysis->rating)
     EO_TRY(eo_design_rating_new(&analysis->rating, analysis->most_cases, error));
   EO_TRY(eo_evaluator_use_threads(analysis->leaning, analysis->threads, error));
-  EO_TRY(eo_design_rating_lean(analysis->rating, analysis->leaning, design, error));
+  EO_TRY(eo_design_rating_lean(analysis->rating, analysis->leaning, design, NULL, error));
   eo_design_rating_find(analysis->rating, analysis->pair, design, analysis->evaluation);
   return EO_OK;
 }

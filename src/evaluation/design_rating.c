@@ -66,13 +66,14 @@ static void lean(struct eo_design *leaning, const struct eo_design *design, cons
 }
 
 static enum eo_code lean_both_ways(struct eo_design_rating *rating, struct eo_evaluator *evaluator,
-                                   const struct eo_design *design, struct eo_design *leaning, struct eo_error *error)
+                                   const struct eo_design *design, const struct eo_scenario *scenario,
+                                   struct eo_design *leaning, struct eo_error *error)
 {
   double deviation = rating->basis.mesh_deviation;
   for (int side = 0; side < 2; side++) {
     const struct eo_evaluation *evaluation;
     lean(leaning, design, &eo_evaluator_pair(evaluator)->geometry, side ? -deviation : deviation);
-    EO_TRY(eo_evaluator_contact(evaluator, leaning, &evaluation, error));
+    EO_TRY(eo_evaluator_contact_at(evaluator, leaning, scenario, &evaluation, error));
     for (int k = 0; k < evaluation->cases; k++)
       for (int end = 0; end < evaluation->ends; end++)
         rating->load_case[k].face[end].leaning[side] = evaluation->load_case[k].end[end].face.face_factor;
@@ -81,14 +82,16 @@ static enum eo_code lean_both_ways(struct eo_design_rating *rating, struct eo_ev
 }
 
 enum eo_code eo_design_rating_lean(struct eo_design_rating *rating, struct eo_evaluator *evaluator,
-                                   const struct eo_design *design, struct eo_error *error)
+                                   const struct eo_design *design, const struct eo_scenario *scenario,
+                                   struct eo_error *error)
 {
   struct eo_rating_input input = input_of(eo_evaluator_pair(evaluator), design);
   rating->rated = !eo_rating_basis_init(&rating->basis, &input, &rating->reason);
   if (!rating->rated)
     return EO_OK;
   struct eo_design *leaning = malloc(sizeof *leaning);
-  enum eo_code code = leaning ? lean_both_ways(rating, evaluator, design, leaning, error) : eo_error_memory(error);
+  enum eo_code code = leaning ? lean_both_ways(rating, evaluator, design, scenario, leaning, error)
+                              : eo_error_memory(error);
   free(leaning);
   return code;
 }

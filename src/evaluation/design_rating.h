@@ -38,10 +38,12 @@ struct eo_design_rating {
 enum eo_code eo_design_rating_new(struct eo_design_rating **rating, int most_cases, struct eo_error *error);
 void eo_design_rating_free(struct eo_design_rating *rating);
 
-/* First: the load distribution with f_ma laid on, two contact analyses on an evaluator whose own result is lost.
-   Errors: of the evaluator. A pair that ISO 6336 does not rate gets nominal distributions alone. */
+/* scenario: NULL for the nominal alignment. First: the load distribution with f_ma laid on, two contact analyses on an
+   evaluator whose own result is lost. Errors: of the evaluator. A pair that ISO 6336 does not rate gets nominal
+   distributions alone. */
 enum eo_code eo_design_rating_lean(struct eo_design_rating *rating, struct eo_evaluator *evaluator,
-                                   const struct eo_design *design, struct eo_error *error);
+                                   const struct eo_design *design, const struct eo_scenario *scenario,
+                                   struct eo_error *error);
 
 /* Then: from the evaluation of the design at its nominal alignment. */
 void eo_design_rating_find(struct eo_design_rating *rating, const struct eo_pair *pair, const struct eo_design *design,

@@ -89,6 +89,10 @@ enum eo_code eo_evaluator_run(struct eo_evaluator *evaluator, const struct eo_de
 /* The static half alone: loaded contact and entering impact, no vibration. */
 enum eo_code eo_evaluator_contact(struct eo_evaluator *evaluator, const struct eo_design *design,
                                   const struct eo_evaluation **evaluation, struct eo_error *error);
+/* The same under a scenario; NULL: the nominal one. */
+enum eo_code eo_evaluator_contact_at(struct eo_evaluator *evaluator, const struct eo_design *design,
+                                     const struct eo_scenario *scenario, const struct eo_evaluation **evaluation,
+                                     struct eo_error *error);
 
 /* Raw values over the scenarios that count (the nominal one, or those of a robust objective):
    raw[eo_evaluator_scenarios()][cases]. */

@@ -23,6 +23,7 @@ struct eo_run {
   struct eo_scenario scenario;    /* with shaft angle errors as numbers */
   int want;                       /* EO_WANT_... */
   bool root;                      /* with root stress */
+  bool rating;                    /* with the rating: a limit asks for it */
 };
 
 /* What the gap field, the gaps and the loads of one end depend on beside the pair. */
@@ -32,6 +33,8 @@ struct eo_end_key {
   int cases; /* 0: nothing is stored */
   double force[EO_MAX_LOAD_CASES];
 };
+
+struct eo_design_rating;
 
 struct eo_evaluator {
   const struct eo_pair *pair;
@@ -69,6 +72,8 @@ struct eo_evaluator {
     struct eo_vibration_case load;
     bool solvable; /* false: no mesh law, or no converged contact to make one from */
   } * problem;     /* [most_cases], as last solved */
+
+  struct eo_design_rating *rating; /* NULL until a limit asks for it */
 
   struct eo_evaluation result;
 };
@@ -176,6 +181,11 @@ double eo_evaluator_law_reach(const struct eo_evaluator *evaluator, const struct
 /* In evaluator_fitness.c. */
 
 void eo_evaluator_collect_objectives(struct eo_evaluator *evaluator, const struct eo_run *run);
+
+/* In evaluator_rating.c: what the limits on the rating look at. First, on the evaluator itself, whose results are lost;
+   then from its result, into the objective of the first load case. */
+enum eo_code eo_evaluator_lean(struct eo_evaluator *evaluator, const struct eo_run *run, struct eo_error *error);
+void eo_evaluator_rate(struct eo_evaluator *evaluator, const struct eo_run *run);
 
 /* In reuse.c. */
 

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "evaluation/design_rating.h"
 #include "evaluation/evaluator_private.h"
 
 #include <stdlib.h>
@@ -124,6 +125,7 @@ void eo_evaluator_free(struct eo_evaluator *evaluator)
 {
   if (!evaluator)
     return;
+  eo_design_rating_free(evaluator->rating);
   done_results(evaluator);
   for (int end = 0; end < 2; end++) {
     eo_loaded_gaps_done(&evaluator->gaps[end]);

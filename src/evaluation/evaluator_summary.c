@@ -137,6 +137,10 @@ static struct eo_objective_case objective_of(const struct eo_case_result *load_c
   struct eo_objective_case objective = {.peak_to_peak = load_case->peak_to_peak,
                                         .rms = load_case->vibration.rms_pair[EO_READING_NORMAL],
                                         .root_stress = root ? 0 : NAN,
+                                        .flank_safety = NAN,
+                                        .root_safety = NAN,
+                                        .film_ratio = NAN,
+                                        .contact_temperature = NAN,
                                         .failed = load_case->contact_failures > 0 ||
                                                   load_case->vibration.outcome == EO_VIBRATION_NOT_CONVERGED};
   for (int end = 0; end < ends; end++) {

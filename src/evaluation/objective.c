@@ -25,6 +25,13 @@ static double excess(double limit, double value)
   return limit > 0 ? value / limit - 1 : value;
 }
 
+/* By how much of itself a value falls short of a limit from below. */
+static double shortfall(double limit, double value)
+{
+  const double nothing = 1e-3; /* of the limit: what is not rated counts as next to none */
+  return value < limit ? limit / fmax(value, nothing * limit) - 1 : 0;
+}
+
 static double worse(double value, double before)
 {
   return before > 0 && value > before ? value / before - 1 : 0;
@@ -35,7 +42,9 @@ static double violation(const struct eo_objective *o, const struct eo_objective_
 {
   double sum = excess(o->contact_pressure, v->contact_pressure) + excess(o->root_stress, v->root_stress) +
                excess(o->peak_to_peak, v->peak_to_peak) + excess(o->edge_load_share, v->edge_load_share) +
-               excess(o->contact_loss, v->contact_loss);
+               excess(o->contact_loss, v->contact_loss) + shortfall(o->flank_safety, v->flank_safety) +
+               shortfall(o->root_safety, v->root_safety) + shortfall(o->film_ratio, v->film_ratio) +
+               excess(o->contact_temperature, v->contact_temperature);
   if (o->no_worse_than_unmodified)
     sum += worse(v->peak_to_peak, before->peak_to_peak) + worse(v->impact, before->impact) + worse(v->rms, before->rms);
   return sum;
@@ -67,6 +76,11 @@ void eo_objective_value(const struct eo_objective *objective, int cases, const s
     return;
   }
   result->fitness = 1 / result->objective - objective->penalty * result->violation;
+}
+
+bool eo_objective_wants_rating(const struct eo_objective *o)
+{
+  return !isnan(o->flank_safety) || !isnan(o->root_safety) || !isnan(o->film_ratio) || !isnan(o->contact_temperature);
 }
 
 bool eo_objective_relief_outside(const struct eo_modification *modification, double bottom, double top)

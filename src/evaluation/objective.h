@@ -14,7 +14,11 @@ struct eo_objective_case {
   double root_stress;      /* largest, Pa; NaN when it was not computed */
   double edge_load_share;  /* largest share of P on tip-edge points */
   double contact_loss;     /* largest fraction of the cycle out of contact */
-  bool failed;             /* contact or vibration did not converge: the numbers above mean nothing */
+  /* Of the duty cycle as a whole, at its first load case; NaN at the others, and where no limit asks for the rating. */
+  double flank_safety, root_safety; /* least S_H and S_F over members and ends, Miner and static; 0: not rated */
+  double film_ratio;                /* least specific film thickness */
+  double contact_temperature;       /* largest, degrees Celsius */
+  bool failed;                      /* contact or vibration did not converge: the numbers above mean nothing */
 };
 
 /* f_i = sum_k share_k value_ik / 3: the /3 is kept as printed, for three cases; n cases divide by n. */
@@ -41,6 +45,9 @@ void eo_objective_sum(int cases, const struct eo_load_case *load_case, const str
 void eo_objective_value(const struct eo_objective *objective, int cases, const struct eo_load_case *load_case,
                         const struct eo_objective_case *value, const struct eo_objective_case *unmodified,
                         bool relief_outside, struct eo_objective_value *result);
+
+/* Whether a limit asks for what only the rating gives. */
+bool eo_objective_wants_rating(const struct eo_objective *objective);
 
 /* True when a relief of the modification starts at or beyond the end of the active profile; bottom, top: u_A < 0 < u_E
    of the pinion, m. */

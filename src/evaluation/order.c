@@ -14,6 +14,7 @@ static struct eo_run run_of(const struct eo_evaluator *evaluator, const struct e
     run.scenario.out_of_plane = design->alignment.shaft_angle_out_of_plane;
   run.root = evaluator->pair->flexibility && !(want & EO_WANT_CONTACT_ALONE) &&
              (want & EO_WANT_ROOT || !isnan(design->objective.root_stress));
+  run.rating = !(want & EO_WANT_CONTACT_ALONE) && eo_objective_wants_rating(&design->objective);
   return run;
 }
 
@@ -80,7 +81,11 @@ static enum eo_code follow(struct eo_evaluator *evaluator, const struct eo_desig
                            struct eo_error *error)
 {
   struct eo_run run = run_of(evaluator, design, scenario, want);
-  enum eo_code code = follow_order(evaluator, &run, error);
+  enum eo_code code = run.rating ? eo_evaluator_lean(evaluator, &run, error) : EO_OK;
+  if (!code)
+    code = follow_order(evaluator, &run, error);
+  if (!code && run.rating)
+    eo_evaluator_rate(evaluator, &run);
   if (code)
     eo_reuse_forget(evaluator);
   else
@@ -98,5 +103,12 @@ enum eo_code eo_evaluator_run(struct eo_evaluator *evaluator, const struct eo_de
 enum eo_code eo_evaluator_contact(struct eo_evaluator *evaluator, const struct eo_design *design,
                                   const struct eo_evaluation **evaluation, struct eo_error *error)
 {
-  return follow(evaluator, design, NULL, EO_WANT_CONTACT_ALONE, evaluation, error);
+  return eo_evaluator_contact_at(evaluator, design, NULL, evaluation, error);
+}
+
+enum eo_code eo_evaluator_contact_at(struct eo_evaluator *evaluator, const struct eo_design *design,
+                                     const struct eo_scenario *scenario, const struct eo_evaluation **evaluation,
+                                     struct eo_error *error)
+{
+  return follow(evaluator, design, scenario, EO_WANT_CONTACT_ALONE, evaluation, error);
 }

@@ -23,6 +23,12 @@ static const struct eo_field raw[] = {
               "largest part of an end's load on tip edges"),
     EO_NUMBER(struct eo_objective_case, contact_loss, "contact_loss", NULL, 0, 1, 0,
               "largest part of the cycle out of contact"),
+    EO_NUMBER_DERIVED(struct eo_objective_case, flank_safety, "flank_safety", NULL, 0, 1e9, "not rated", "least S_H"),
+    EO_NUMBER_DERIVED(struct eo_objective_case, root_safety, "root_safety", NULL, 0, 1e9, "not rated", "least S_F"),
+    EO_NUMBER_DERIVED(struct eo_objective_case, film_ratio, "film_ratio", NULL, 0, 1e9, "not rated",
+                      "least specific film thickness"),
+    EO_NUMBER_DERIVED(struct eo_objective_case, contact_temperature, "contact_temperature_C", &eo_unit_C, -300, 1e5,
+                      "not rated", "largest"),
     EO_FLAG(struct eo_objective_case, failed, "failed", 0, "contact or vibration did not converge"),
 };
 const struct eo_table eo_stage_raw_table = EO_TABLE("raw values", struct eo_objective_case, raw);

@@ -34,6 +34,16 @@ static void add_raw(struct eo_hash *hash, const struct eo_objective_case *c)
   eo_hash_add_number(hash, "edge_load_share", c->edge_load_share);
   eo_hash_add_number(hash, "contact_loss", c->contact_loss);
   eo_hash_add_number(hash, "failed", c->failed);
+  const struct {
+    const char *name;
+    double value;
+  } rating[] = {{"flank_safety", c->flank_safety},
+                {"root_safety", c->root_safety},
+                {"film_ratio", c->film_ratio},
+                {"contact_temperature", c->contact_temperature}};
+  for (size_t i = 0; i < sizeof rating / sizeof rating[0]; i++)
+    if (!isnan(rating[i].value)) /* rows of before there was a rating have the check sum they had */
+      eo_hash_add_number(hash, rating[i].name, rating[i].value);
 }
 
 static void find_digest(const struct eo_stored_evaluation *row, char digest[EO_HASH_LENGTH + 1])
@@ -112,7 +122,11 @@ static bool read_raw(const struct eo_statement *s, int first, int expected, cons
                                                   .root_stress = eo_column_number(s, first + 6),
                                                   .edge_load_share = eo_column_number(s, first + 7),
                                                   .contact_loss = eo_column_number(s, first + 8),
-                                                  .failed = eo_column_integer(s, first + 9) != 0};
+                                                  .failed = eo_column_integer(s, first + 9) != 0,
+                                                  .flank_safety = eo_column_number(s, first + 10),
+                                                  .root_safety = eo_column_number(s, first + 11),
+                                                  .film_ratio = eo_column_number(s, first + 12),
+                                                  .contact_temperature = eo_column_number(s, first + 13)};
   return true;
 }
 
@@ -122,7 +136,8 @@ static enum eo_code read_all_raw(struct eo_store *store, struct eo_stored_evalua
   struct eo_statement s = eo_statement_begin(
       store,
       "SELECT scenario, load_case, peak_to_peak_m, impact_N, rms_m_per_s2, contact_pressure_Pa, root_stress_Pa,"
-      " edge_load_share, contact_loss, failed FROM raw WHERE evaluation = ? ORDER BY scenario, load_case",
+      " edge_load_share, contact_loss, failed, flank_safety, root_safety, film_ratio, contact_temperature_C"
+      " FROM raw WHERE evaluation = ? ORDER BY scenario, load_case",
       "i", row->id);
   bool good = true;
   while (good && eo_statement_step(&s)) {
@@ -210,9 +225,10 @@ static enum eo_code add_values(struct eo_store *store, const struct eo_stored_ev
   enum eo_code code = EO_OK;
   for (int i = 0; i < row->scenarios * row->cases && !code; i++) {
     const struct eo_objective_case *c = &row->raw[i];
-    code = EO_STATEMENT_RUN(store, error, "INSERT INTO raw VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)", "innrrrrrrrn",
-                            row->id, i / row->cases, i % row->cases, c->peak_to_peak, c->impact, c->rms,
-                            c->contact_pressure, c->root_stress, c->edge_load_share, c->contact_loss, (int)c->failed);
+    code = EO_STATEMENT_RUN(store, error, "INSERT INTO raw VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
+                            "innrrrrrrrnrrrr", row->id, i / row->cases, i % row->cases, c->peak_to_peak, c->impact,
+                            c->rms, c->contact_pressure, c->root_stress, c->edge_load_share, c->contact_loss,
+                            (int)c->failed, c->flank_safety, c->root_safety, c->film_ratio, c->contact_temperature);
   }
   return code;
 }
@@ -221,9 +237,17 @@ static enum eo_code add_values(struct eo_store *store, const struct eo_stored_ev
 static void blank(struct eo_stored_evaluation *row)
 {
   for (int i = 0; i < row->scenarios * row->cases; i++) {
-    double *value[] = {&row->raw[i].peak_to_peak,     &row->raw[i].impact,      &row->raw[i].rms,
-                       &row->raw[i].contact_pressure, &row->raw[i].root_stress, &row->raw[i].edge_load_share,
-                       &row->raw[i].contact_loss};
+    double *value[] = {&row->raw[i].peak_to_peak,
+                       &row->raw[i].impact,
+                       &row->raw[i].rms,
+                       &row->raw[i].contact_pressure,
+                       &row->raw[i].root_stress,
+                       &row->raw[i].edge_load_share,
+                       &row->raw[i].contact_loss,
+                       &row->raw[i].flank_safety,
+                       &row->raw[i].root_safety,
+                       &row->raw[i].film_ratio,
+                       &row->raw[i].contact_temperature};
     for (size_t k = 0; k < sizeof value / sizeof value[0]; k++)
       if (!isfinite(*value[k]))
         *value[k] = NAN;
@@ -325,7 +349,8 @@ enum eo_code eo_store_each_evaluation(struct eo_store *store, int64_t problem, i
                          " (SELECT p.x FROM point p WHERE p.evaluation = e.id AND p.space = ?3),"
                          " r.scenario, r.load_case, r.peak_to_peak_m, r.impact_N, r.rms_m_per_s2, "
                          "r.contact_pressure_Pa, r.root_stress_Pa, r.edge_load_share,"
-                         " r.contact_loss, r.failed"
+                         " r.contact_loss, r.failed, r.flank_safety, r.root_safety, r.film_ratio,"
+                         " r.contact_temperature_C"
                          " FROM evaluation e LEFT JOIN raw r ON r.evaluation = e.id WHERE e.problem = ?1 AND (?2 = 0 "
                          "OR e.id <= ?2) ORDER BY e.id, r.scenario, r.load_case",
                          "iit", problem, upto, space);

@@ -243,8 +243,10 @@ static void collect_paths(const json_t *value, const char *path, json_t *set)
   }
 }
 
-static const char *const value_keys[] = {"peak_to_peak_um", "impact_N",        "rms_m_per_s2", "contact_pressure_MPa",
-                                         "root_stress_MPa", "edge_load_share", "contact_loss"};
+static const char *const value_keys[] = {
+    "peak_to_peak_um", "impact_N",        "rms_m_per_s2",         "contact_pressure_MPa",
+    "root_stress_MPa", "edge_load_share", "contact_loss",         "flank_safety",
+    "root_safety",     "film_ratio",      "contact_temperature_C"};
 enum { VALUES = sizeof value_keys / sizeof value_keys[0] };
 
 static const json_t *first_scenario(const json_t *row)

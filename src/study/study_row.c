@@ -33,7 +33,7 @@ static void refuse(struct eo_row_data *row, int count, const struct eo_error *er
   row->outcome = EO_EVALUATION_REFUSED;
   snprintf(row->reason, sizeof row->reason, "%.*s", (int)sizeof row->reason - 1, error->text);
   for (int i = 0; i < count; i++)
-    row->point.raw[i] = (struct eo_objective_case){NAN, NAN, NAN, NAN, NAN, NAN, NAN, true};
+    row->point.raw[i] = (struct eo_objective_case){NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, true};
 }
 
 static void judge(struct eo_row_data *row, int scenarios, int cases)

@@ -371,6 +371,41 @@ static void check_rating(void)
   end(s);
 }
 
+/* A limit on the rating: the objective sees what the rating says, and the evaluation stays what it was. */
+static void check_rating_limit(void)
+{
+  struct subject *s = start("shifted");
+  json_t *free_result = result_of(s);
+  double safety = fmin(eo_json_find_number(free_result, "rating/verdict/S_H"),
+                       eo_json_find_number(free_result, "rating/verdict/S_H_static"));
+  double rms = last(free_result, "vibration/rms_m_per_s2/normal");
+  ok(json_is_null(eo_json_find(json_array_get(eo_json_find(free_result, "objectives/load_cases"), 0), "flank_safety")),
+     "no safety in the objective where no limit asks for it");
+  json_decref(free_result);
+  s->design.objective.flank_safety = 2 * safety;
+  json_t *result = result_of(s);
+  const json_t *cases = eo_json_find(result, "objectives/load_cases");
+  near(eo_json_find_number(json_array_get(cases, 0), "flank_safety"), safety, 1e-9,
+       "the limited safety is the rated one");
+  ok(json_is_null(json_object_get(json_array_get(cases, 1), "flank_safety")), "once, at the first load case");
+  near(eo_json_find_number(result, "objectives/violation"), 1, 1e-9, "half of what is wanted violates by one");
+  ok(warns(result, "The limit on the flank safety S_H is not reached"), "and is said");
+  ok(last(result, "vibration/rms_m_per_s2/normal") == rms, "the vibration is the same number");
+  json_decref(result);
+  s->design.objective.flank_safety = NAN;
+  s->design.objective.film_ratio = 1e-3;
+  s->design.objective.contact_temperature = 1000;
+  result = result_of(s);
+  ok(eo_json_find_number(result, "objectives/violation") == 0, "limits that are kept violate nothing");
+  json_decref(result);
+  s->design.rating.member[EO_GEAR].material = EO_STRUCTURAL;
+  s->design.objective.root_safety = 1;
+  result = result_of(s);
+  ok(eo_json_find_number(result, "objectives/violation") > 100, "what cannot be rated keeps no limit on it");
+  json_decref(result);
+  end(s);
+}
+
 int main(void)
 {
   check_names("paper-case-b", 2);
@@ -385,5 +420,6 @@ int main(void)
   check_failure();
   check_robust();
   check_rating();
+  check_rating_limit();
   return tap_done();
 }

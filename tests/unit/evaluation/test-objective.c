@@ -8,12 +8,12 @@
 static const struct eo_load_case load_case[3] = {{.torque = 621, .speed = 209, .share = 0.2},
                                                  {.torque = 828, .speed = 209, .share = 0.5},
                                                  {.torque = 1035, .speed = 209, .share = 0.3}};
-static const struct eo_objective_case before[3] = {{2.05e-6, 2900, 62, 900e6, 48e6, 0.1, 0, false},
-                                                   {1.78e-6, 3300, 66, 1000e6, 52e6, 0.1, 0, false},
-                                                   {1.53e-6, 3700, 68, 1100e6, 60e6, 0.1, 0, false}};
-static const struct eo_objective_case after[3] = {{0.77e-6, 700, 22.2, 800e6, 47e6, 0, 0, false},
-                                                  {0.71e-6, 800, 27.9, 950e6, 51e6, 0.02, 0.01, false},
-                                                  {0.57e-6, 900, 28.9, 1050e6, 59e6, 0.05, 0, false}};
+static const struct eo_objective_case before[3] = {{2.05e-6, 2900, 62, 900e6, 48e6, 0.1, 0, .failed = false},
+                                                   {1.78e-6, 3300, 66, 1000e6, 52e6, 0.1, 0, .failed = false},
+                                                   {1.53e-6, 3700, 68, 1100e6, 60e6, 0.1, 0, .failed = false}};
+static const struct eo_objective_case after[3] = {{0.77e-6, 700, 22.2, 800e6, 47e6, 0, 0, .failed = false},
+                                                  {0.71e-6, 800, 27.9, 950e6, 51e6, 0.02, 0.01, .failed = false},
+                                                  {0.57e-6, 900, 28.9, 1050e6, 59e6, 0.05, 0, .failed = false}};
 
 static struct eo_objective plain(void)
 {
@@ -24,7 +24,11 @@ static struct eo_objective plain(void)
                                .root_stress = NAN,
                                .peak_to_peak = NAN,
                                .edge_load_share = NAN,
-                               .contact_loss = NAN};
+                               .contact_loss = NAN,
+                               .flank_safety = NAN,
+                               .root_safety = NAN,
+                               .film_ratio = NAN,
+                               .contact_temperature = NAN};
 }
 
 static struct eo_objective_value value_of(const struct eo_objective *objective, const struct eo_objective_case *value,
@@ -96,6 +100,27 @@ static void test_constraints(void)
     *limit = 1e12;
     ok(value_of(&objective, after, false).violation == 0, "%s: a generous limit is kept", row[i].what);
   }
+}
+
+/* Limits from below: by how much of itself a value falls short; of the first load case alone. */
+static void test_shortfall(void)
+{
+  struct eo_objective objective = plain();
+  struct eo_objective_case rated[3] = {after[0], after[1], after[2]};
+  for (int k = 0; k < 3; k++)
+    rated[k].flank_safety = rated[k].root_safety = rated[k].film_ratio = rated[k].contact_temperature = NAN;
+  rated[0].flank_safety = 0.8;
+  rated[0].contact_temperature = 150;
+  ok(!eo_objective_wants_rating(&objective) && value_of(&objective, rated, false).violation == 0,
+     "safety: off by default");
+  objective.flank_safety = 1.2;
+  ok(eo_objective_wants_rating(&objective), "a limit on it asks for the rating");
+  near(value_of(&objective, rated, false).violation, 0.5, 1e-12, "1.2 wanted, 0.8 there");
+  objective.contact_temperature = 120;
+  near(value_of(&objective, rated, false).violation, 0.75, 1e-12, "and too hot by a quarter");
+  rated[0].flank_safety = 1.3;
+  objective.contact_temperature = 160;
+  ok(value_of(&objective, rated, false).violation == 0, "what is kept violates nothing");
 }
 
 static void test_no_worse(void)
@@ -179,6 +204,7 @@ int main(void)
   test_sums();
   test_objective();
   test_constraints();
+  test_shortfall();
   test_no_worse();
   test_relief();
   test_failures();

@@ -98,7 +98,8 @@ static struct eo_stored_evaluation make_row(const char *modification, struct eo_
 {
   for (int k = 0; k < CASES; k++)
     raw[k] = (struct eo_objective_case){
-        1e-6 / (seed + k), 1e3 / 7 * seed, 20.1 + seed, 1e9 / 3, k == 1 ? NAN : 1.5e8, 0.1, 0, k == 2};
+        1e-6 / (seed + k), 1e3 / 7 * seed, 20.1 + seed,    1e9 / 3, k == 1 ? NAN : 1.5e8, 0.1, 0, k ? NAN : 1.2 / 7,
+        k ? NAN : seed,    k ? NAN : 0.7,  k ? NAN : 99.9, k == 2};
   return (struct eo_stored_evaluation){.modification = modification,
                                        .outcome = EO_EVALUATION_NOT_CONVERGED,
                                        .reason = "It did not.",
@@ -115,8 +116,10 @@ static bool same_raw(const struct eo_objective_case *a, const struct eo_objectiv
     same = same && a[k].peak_to_peak == b[k].peak_to_peak && a[k].impact == b[k].impact && a[k].rms == b[k].rms &&
            a[k].contact_pressure == b[k].contact_pressure &&
            (a[k].root_stress == b[k].root_stress || (isnan(a[k].root_stress) && isnan(b[k].root_stress))) &&
-           a[k].edge_load_share == b[k].edge_load_share && a[k].contact_loss == b[k].contact_loss &&
-           a[k].failed == b[k].failed;
+           (k || (a[k].flank_safety == b[k].flank_safety && a[k].root_safety == b[k].root_safety &&
+                  a[k].film_ratio == b[k].film_ratio && a[k].contact_temperature == b[k].contact_temperature)) &&
+           isnan(a[1].flank_safety) && isnan(b[1].flank_safety) && a[k].edge_load_share == b[k].edge_load_share &&
+           a[k].contact_loss == b[k].contact_loss && a[k].failed == b[k].failed;
   return same;
 }
 
