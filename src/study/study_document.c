@@ -23,7 +23,7 @@ static enum eo_code analyse(const struct eo_study_plan *plan, const struct eo_de
   struct eo_analysis *analysis = NULL;
   enum eo_code code = eo_analysis_new(&analysis, plan->pair, error);
   if (!code)
-    code = eo_analysis_run(analysis, design, EO_WANT_ROOT | EO_WANT_BAND | EO_WANT_CURVES, error);
+    code = eo_analysis_run(analysis, design, EO_WANT_ROOT | EO_WANT_BAND | EO_WANT_CURVES | EO_WANT_RATING, error);
   if (!code && !(*document = eo_result_encode(analysis, design, NULL)))
     code = eo_error_memory(error);
   eo_analysis_free(analysis);
