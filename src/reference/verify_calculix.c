@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "contact/root.h"
 #include "design/resolution.h"
 #include "evaluation/evaluator.h"
 #include "reference/case_pair.h"
@@ -127,38 +128,138 @@ static double load_at(struct eo_evaluator *evaluator, struct eo_design *design, 
   return NAN;
 }
 
-/* Loads of single pairs when all stand at one prescribed transverse approach: the pairs of a case have no coupling, so
-   each carries its own. Tolerance: the level of the curve, what the file states of its own, and that of the shares. */
-static void check_pair_loads(const struct calculix *x, struct eo_case *block, struct eo_evaluator *evaluator,
-                             const struct eo_pair *pair, const struct eo_design *given, struct eo_error *error)
+/* Position of the grid at which all pairs of a case stand at the prescribed approach. */
+struct standing {
+  const struct calculix *x;
+  const struct eo_pair *pair;
+  const struct eo_contact_position *p;
+  const double *line_load; /* of the position's points */
+  double total;            /* load of all pairs, N */
+};
+
+/* Number of the pair that stands at the phase which the key names, mm; false: none of this position. */
+static bool pair_of(const struct standing *at, struct eo_case *value, int *pair)
 {
-  const double of_level = 0.03, of_total = 0.015, near = 1e-2, pitch = pair->geometry.transverse_base_pitch;
-  struct eo_case *loads = eo_case_find(block, "pair_load_N");
-  if (!loads)
+  static const double NEAR = 1e-2;
+  double whole = (1e-3 * eo_case_key_number(value) - at->p->phase) / at->pair->geometry.transverse_base_pitch;
+  *pair = (int)round(whole);
+  return fabs(whole - round(whole)) <= NEAR;
+}
+
+/* Loads of single pairs: the pairs of a case have no coupling, so each carries its own. Tolerance: the level of the
+   curve, what the file states of its own, and that of the shares. */
+static void check_pair_loads(const struct standing *at, struct eo_case *loads, double stated)
+{
+  static const double OF_LEVEL = 0.03, OF_TOTAL = 0.015;
+  for (int k = 0; k < eo_case_size(loads); k++) {
+    struct eo_case *one = eo_case_at(loads, k);
+    double load = 0;
+    int pair;
+    if (!pair_of(at, one, &pair))
+      continue;
+    for (int i = 0; i < at->p->points; i++)
+      if (at->p->point[i].pair == pair)
+        load += at->line_load[i] * at->p->length[i];
+    eo_verify_number(at->x->v, one, load, OF_LEVEL + stated, OF_TOTAL * at->total);
+  }
+}
+
+/* The largest principal stress over the profile, below the start of the critical section, at one place of the face, Pa:
+   straight between the layers. */
+static double largest_at(const struct eo_root *root, const double *stress, double eta)
+{
+  double largest = 0, layer = fmin(fmax((eta / root->width + 0.5) * root->layers, 0), root->layers);
+  int across = root->layers + 1, below = (int)fmin(floor(layer), root->layers - 1);
+  for (int i = root->first; i < root->points; i++) {
+    const double *at = stress + (size_t)(i * across + below) * EO_STRESSES;
+    double way = layer - below;
+    largest = fmax(largest, (1 - way) * eo_stress_principal(at) + way * eo_stress_principal(at + EO_STRESSES));
+  }
+  return largest;
+}
+
+/* Whether a place of the face lies where the line of contact leaves the active profile at the member's root: the dent
+   of the contact is in the figure there, which is not counted as root stress (struct eo_root, first). */
+static bool is_at_contact(const struct standing *at, int member, int pair, double eta)
+{
+  static const double LAYER = 5e-3; /* of a mesh of about 12 layers over the paper's face */
+  const struct eo_geometry *g = &at->pair->geometry;
+  double end = member == EO_PINION ? g->path_start : g->path_end, c = at->p->phase + pair * g->transverse_base_pitch;
+  return fabs(end - c - eta * tan(g->base_helix_angle)) < LAYER * tan(g->base_helix_angle);
+}
+
+/* [largest principal stress of the root, MPa; where over the face, mm]. A maximum over the face is flat, so its place
+   is compared by the stress that we have there. Tolerance: what the elements of both leave open, of the value; and of
+   the table's largest, because where a corner of the flank alone carries little its load is the less certain. */
+static void check_root_of(const struct standing *at, struct eo_case *one, int member, int pair, double *force,
+                          double *stress, double scale)
+{
+  static const double OF_VALUE = 0.05, OF_LARGEST = 0.05;
+  const struct eo_flexibility *flexibility = at->pair->flexibility;
+  struct eo_root root = eo_flexibility_root(flexibility, member);
+  struct eo_root_place place;
+  double wanted[2];
+  if (eo_case_numbers(one, 2, 2, wanted) < 0)
     return;
-  const double approach = 1e-6 * eo_case_number(block, "Z_prescribed_um") * cos(pair->geometry.base_helix_angle);
-  const double stated = eo_case_number_or(block, "pair_load_uncertainty_rel", 0);
+  for (int i = 0; i < at->p->points; i++)
+    force[i] = at->p->point[i].pair == pair ? at->line_load[i] * at->p->length[i] : 0;
+  eo_root_find_largest(flexibility, member, pair, at->p->points, at->p->point, force, stress, &place);
+  double tolerance = OF_VALUE * fabs(wanted[0]) + OF_LARGEST * scale;
+  eo_verify_number(at->x->v, eo_case_at(one, 0), 1e-6 * place.stress, 0, tolerance);
+  if (!is_at_contact(at, member, pair, 1e-3 * wanted[1]))
+    eo_verify_derived(at->x->v, eo_case_at(one, 1), "stress at this place, MPa",
+                      1e-6 * largest_at(&root, stress, 1e-3 * wanted[1]), wanted[0], tolerance);
+}
+
+static enum eo_code check_roots(const struct standing *at, struct eo_case *block, struct eo_error *error)
+{
+  static const char *const table[2] = {"root_pinion_MPa_at_prescribed_Z", "root_gear_MPa_at_prescribed_Z"};
+  enum eo_code code = EO_OK;
+  for (int member = 0; member < 2 && !code; member++) {
+    struct eo_case *roots = eo_case_find(block, table[member]);
+    struct eo_root root = eo_flexibility_root(at->pair->flexibility, member);
+    double *stress = malloc(sizeof *stress * (size_t)(root.points * (root.layers + 1) * EO_STRESSES));
+    double *force = malloc(sizeof *force * (size_t)at->p->points), scale = 0, value[2];
+    if (!stress || !force)
+      code = eo_error_memory(error);
+    for (int k = 0; k < eo_case_size(roots); k++)
+      if (eo_case_numbers(eo_case_at(roots, k), 2, 2, value) == 2)
+        scale = fmax(scale, value[0]);
+    for (int k = 0; k < eo_case_size(roots) && !code; k++) {
+      int pair;
+      if (pair_of(at, eo_case_at(roots, k), &pair))
+        check_root_of(at, eo_case_at(roots, k), member, pair, force, stress, scale);
+    }
+    free(stress);
+    free(force);
+  }
+  return code;
+}
+
+/* Loads and root stresses of single pairs when all stand at one prescribed transverse approach. */
+static enum eo_code check_prescribed(const struct calculix *x, struct eo_case *block, struct eo_evaluator *evaluator,
+                                     const struct eo_pair *pair, const struct eo_design *given, struct eo_error *error)
+{
+  struct eo_case *loads = eo_case_find(block, "pair_load_N");
   struct eo_design design = *given;
   const struct eo_evaluation *r;
-  for (int j = 0; j < pair->grid->positions; j++) {
-    const struct eo_contact_position *p = &pair->grid->position[j];
-    double total = load_at(evaluator, &design, pair, j, approach, &r, error);
-    if (isnan(total)) {
-      eo_verify_diverged(x->v, loads);
-      return;
+  enum eo_code code = EO_OK;
+  if (!eo_case_find(block, "Z_prescribed_um"))
+    return EO_OK;
+  const double approach = 1e-6 * eo_case_number(block, "Z_prescribed_um") * cos(pair->geometry.base_helix_angle);
+  const double stated = eo_case_number_or(block, "pair_load_uncertainty_rel", 0);
+  for (int j = 0; j < pair->grid->positions && !code; j++) {
+    struct standing at = {x, pair, &pair->grid->position[j], NULL, 0};
+    at.total = load_at(evaluator, &design, pair, j, approach, &r, error);
+    if (isnan(at.total)) {
+      eo_verify_diverged(x->v, block);
+      return EO_OK;
     }
-    const double *line_load = r->load_case[0].end[0].loaded.line_load + p->first;
-    for (int k = 0; k < eo_case_size(loads); k++) {
-      struct eo_case *one = eo_case_at(loads, k);
-      double load = 0, whole = (1e-3 * eo_case_key_number(one) - p->phase) / pitch;
-      if (fabs(whole - round(whole)) > near)
-        continue;
-      for (int i = 0; i < p->points; i++)
-        if (p->point[i].pair == (int)round(whole))
-          load += line_load[i] * p->length[i];
-      eo_verify_number(x->v, one, load, of_level + stated, of_total * total);
-    }
+    at.line_load = r->load_case[0].end[0].loaded.line_load + at.p->first;
+    check_pair_loads(&at, loads, stated);
+    code = check_roots(&at, block, error);
   }
+  return code;
 }
 
 /* The level within 3 %; the curve, less the difference of the means, within 0.1 um; its sampled range as the two
@@ -206,7 +307,7 @@ static enum eo_code solve_block(struct calculix *x, struct eo_case *block, struc
       eo_verify_size(x->v, share, n);
     for (int j = 0; j < n && j < eo_case_size(share); j++)
       check_shares(x, eo_case_at(share, j), pair, r, j);
-    check_pair_loads(x, block, evaluator, pair, design, error);
+    code = check_prescribed(x, block, evaluator, pair, design, error);
   }
   eo_evaluator_free(evaluator);
   eo_pair_free(pair);
@@ -215,15 +316,11 @@ static enum eo_code solve_block(struct calculix *x, struct eo_case *block, struc
 
 static enum eo_code check_block(void *context, struct eo_case *block, struct eo_error *error)
 {
-  static const char *const prescribed[] = {"root_pinion_MPa_at_prescribed_Z", "root_gear_MPa_at_prescribed_Z"};
   struct calculix *x = context;
   struct eo_design design = x->design;
   double phase[MOST_PHASES];
   int n = eo_case_numbers(eo_case_need(block, "phases_mm"), -1, MOST_PHASES, phase);
   read_modification(x, block, &design);
-  for (size_t i = 0; i < sizeof prescribed / sizeof *prescribed; i++)
-    eo_verify_uncompared(x->v, eo_case_find(block, prescribed[i]),
-                         "the root stress of one pair of teeth under a prescribed approach is not computed.");
   if (n == 0)
     eo_case_fault(eo_case_find(block, "phases_mm"), "Phases are expected here.");
   if (eo_case_faulty(block))

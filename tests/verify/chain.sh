@@ -29,5 +29,15 @@ result $? "evaluation.json changed"
 [ $? -eq 1 ] && grep -q 'S01 .*FAIL' "$folder/out"
 result $? "a wrong PPLTE is noticed"
 
+# So is a wrong root stress of one pair of teeth, and a place of the face where it is not.
+for change in 's/50.3908,/56.3908,/' '/50.3908,/{n;s/9.1667/-22.9/}'; do
+  sed "$change" "$CASES/calculix.json" >"$folder/calculix.json"
+  ! cmp -s "$CASES/calculix.json" "$folder/calculix.json"
+  result $? "calculix.json changed by $change"
+  "$EASEOFF" verify "$folder/calculix.json" >"$folder/out" 2>"$folder/err"
+  [ $? -eq 1 ] && grep -q 'root_pinion_MPa_at_prescribed_Z.2.396.*FAIL' "$folder/out"
+  result $? "and noticed"
+done
+
 echo "1..$count"
 exit $failed
