@@ -245,7 +245,7 @@ static const struct eo_outline_row result_rows[] = {
     EO_KEY("dimensions", "object?", "what is measured on the members and between them",
            .outline = &eo_outline_dimensions),
     EO_KEY("flexibility", "object", "how the teeth's flexibility was modelled", .outline = &eo_outline_flexibility),
-    EO_KEY("modification", "object", "as curves", .outline = &eo_outline_modification),
+    EO_KEY("modification", "object?", "as curves; null when left out", .outline = &eo_outline_modification),
     EO_KEY("unloaded_contact", "object", "the same for every load case", .outline = &eo_outline_unloaded),
     EO_KEY("load_cases", "[object]", "in the order of the design", .outline = &case_outline),
     EO_KEY("objectives", "object", "of the duty cycle", .outline = &objectives_outline),
@@ -282,7 +282,8 @@ json_t *eo_result_head(struct eo_result_source *source)
   eo_object_put(&o, "geometry", eo_table_encode(&eo_geometry_table, &source->pair->geometry));
   eo_object_put(&o, "dimensions", eo_dimensions_encode(&source->design->gear_pair, &source->pair->geometry));
   eo_object_put(&o, "flexibility", eo_result_flexibility(source));
-  eo_object_put(&o, "modification", eo_result_modification(source));
+  eo_object_put(&o, "modification",
+                eo_result_has(source, EO_RESULT_NO_MODIFICATION, NULL) ? eo_result_modification(source) : json_null());
   eo_object_put(&o, "unloaded_contact", eo_result_unloaded(source));
   return eo_object_close_part(&o);
 }

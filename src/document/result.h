@@ -29,11 +29,28 @@ extern const struct eo_outline eo_result_outline;
 json_t *eo_result_encode(const struct eo_analysis *analysis, const struct eo_design *design,
                          const struct eo_warnings *warnings);
 
-/* The same without what is long: null stands in its place. */
+/* The same without what is long: null stands in its place. Numbers are always there. */
 enum {
   EO_RESULT_NO_MAPS = 1,      /* pressure and clearance over the flank */
   EO_RESULT_NO_HISTORIES = 2, /* of the vibration and of the root stress */
+  /* The curves of a part each, in the order of EO_RESULT_PART_WORDS. */
+  EO_RESULT_NO_MODIFICATION = 4,
+  EO_RESULT_NO_UNLOADED = 8,
+  EO_RESULT_NO_LTE = 16,
+  EO_RESULT_NO_STIFFNESS = 32,
+  EO_RESULT_NO_FACE_LOAD = 64,
+  EO_RESULT_NO_SHARES = 128,
+  EO_RESULT_NO_PATTERN = 256,
+  EO_RESULT_NO_ORDERS = 512,
+  EO_RESULT_NO_TRIBOLOGY = 1024,
+  EO_RESULT_FIRST_PART = EO_RESULT_NO_MODIFICATION,
+  EO_RESULT_PARTS = 9,
 };
+#define EO_RESULT_PART_WORDS \
+  "modification|unloaded_contact|lte|mesh_stiffness|face_load|load_share|pattern|orders|tribology"
+
+/* Added to what is left out: of all load cases only number k (from 0) has curves, maps and histories. */
+#define EO_RESULT_CURVES_OF(k) ((unsigned)((k) + 1) << 16)
 json_t *eo_result_encode_part(const struct eo_analysis *analysis, const struct eo_design *design,
                               const struct eo_warnings *warnings, unsigned left_out);
 

@@ -44,12 +44,12 @@ static json_t *encode_orders(int n, const double *value, const struct eo_unit *u
 }
 
 static void put_end_columns(struct eo_object *o, const struct eo_result_source *source, const char *format,
-                            const double *const value[2], double scale, const struct eo_unit *unit)
+                            const double *const value[2], double scale, const struct eo_unit *unit, bool wanted)
 {
   for (int end = 0; end < source->ends; end++) {
     char key[64];
     snprintf(key, sizeof key, format, eo_result_end[end]);
-    eo_object_put(o, key, eo_result_end_column(source, end, value[end], scale, unit));
+    eo_object_put(o, key, wanted ? eo_result_end_column(source, end, value[end], scale, unit) : json_null());
   }
 }
 
@@ -64,9 +64,9 @@ static json_t *encode_float(const struct eo_result_source *source, const double 
 }
 
 static const struct eo_outline_row lte_rows[] = {
-    EO_KEY("pair_um", "[number?]", "mean of the ends, over the positions", .unit = &eo_unit_um),
-    EO_KEY("left_um", "[number?]", "left end, over the positions", .unit = &eo_unit_um),
-    EO_KEY("right_um", "[number?]", "right end, over the positions", .unit = &eo_unit_um, .when = EO_TWO_ENDS),
+    EO_KEY("pair_um", "[number?]?", "mean of the ends, over the positions", .unit = &eo_unit_um),
+    EO_KEY("left_um", "[number?]?", "left end, over the positions", .unit = &eo_unit_um),
+    EO_KEY("right_um", "[number?]?", "right end, over the positions", .unit = &eo_unit_um, .when = EO_TWO_ENDS),
     EO_KEY("peak_to_peak_um", "number?", "of the pair", .unit = &eo_unit_um),
     EO_KEY("left_peak_to_peak_um", "number?", "of the left end", .unit = &eo_unit_um),
     EO_KEY("right_peak_to_peak_um", "number?", "of the right end", .unit = &eo_unit_um, .when = EO_TWO_ENDS),
@@ -74,15 +74,15 @@ static const struct eo_outline_row lte_rows[] = {
     EO_KEY("hub_windup_um", "number?",
            "what hubs that take their torque through a bore add to the mean, not in it; null unless hub_windup is on",
            .unit = &eo_unit_um),
-    EO_KEY("orders_um", "[number?]", "the mean, then the amplitudes of the mesh harmonics 1, 2, ... of the pair",
+    EO_KEY("orders_um", "[number?]?", "the mean, then the amplitudes of the mesh harmonics 1, 2, ... of the pair",
            .unit = &eo_unit_um),
     EO_KEY(
-        "second_derivative_m_per_s2", "[number?]",
+        "second_derivative_m_per_s2", "[number?]?",
         "of the pair's error by time at the speed of the load case, from the mesh harmonics up to te_harmonics, over "
         "the positions",
         .unit = &eo_unit_m_per_s2),
     EO_KEY("second_derivative_rms_m_per_s2", "number?", "RMS of it", .unit = &eo_unit_m_per_s2),
-    EO_KEY("axial_float_um", "[number?]", "where the pinion settles along its axis, over the positions",
+    EO_KEY("axial_float_um", "[number?]?", "where the pinion settles along its axis, over the positions",
            .unit = &eo_unit_um, .when = "with two ends and a floating pinion"),
 };
 const struct eo_outline eo_outline_lte = EO_OUTLINE("TransmissionError", lte_rows);
@@ -107,7 +107,9 @@ static void put_second_derivative(struct eo_object *o, const struct eo_result_so
       source->scratch[j] += re * cos(2 * M_PI * h * j / n) - im * sin(2 * M_PI * h * j / n);
   }
   eo_object_put(o, "second_derivative_m_per_s2",
-                eo_json_column(n, source->scratch, 1, &eo_unit_m_per_s2, EO_DIGITS_CURVE));
+                eo_result_has(source, EO_RESULT_NO_LTE, c)
+                    ? eo_json_column(n, source->scratch, 1, &eo_unit_m_per_s2, EO_DIGITS_CURVE)
+                    : json_null());
   eo_object_put_number(o, "second_derivative_rms_m_per_s2", sqrt(squares));
 }
 
@@ -115,8 +117,11 @@ json_t *eo_result_lte(struct eo_result_source *source, const struct eo_case_resu
 {
   const double *const approach[2] = {c->end[0].loaded.approach, c->end[1].loaded.approach};
   struct eo_object o = eo_object_open_as(&eo_outline_lte);
-  eo_object_put(&o, "pair_um", eo_json_column(source->positions, c->transmission, 1, &eo_unit_um, EO_DIGITS_CURVE));
-  put_end_columns(&o, source, "%s_um", approach, 1 / source->normal, &eo_unit_um);
+  bool curves = eo_result_has(source, EO_RESULT_NO_LTE, c);
+  eo_object_put(&o, "pair_um",
+                curves ? eo_json_column(source->positions, c->transmission, 1, &eo_unit_um, EO_DIGITS_CURVE)
+                       : json_null());
+  put_end_columns(&o, source, "%s_um", approach, 1 / source->normal, &eo_unit_um, curves);
   eo_object_put_number(&o, "peak_to_peak_um", c->peak_to_peak);
   for (int end = 0; end < source->ends; end++)
     eo_object_put_number(&o, end ? "right_peak_to_peak_um" : "left_peak_to_peak_um", c->end[end].transmission_peak);
@@ -124,10 +129,10 @@ json_t *eo_result_lte(struct eo_result_source *source, const struct eo_case_resu
   eo_object_put_number(&o, "hub_windup_um",
                        (eo_result_hub_windup(source, EO_PINION) + eo_result_hub_windup(source, EO_GEAR)) * c->force /
                            source->pair->geometry.face_width / source->normal);
-  eo_object_put(&o, "orders_um", encode_orders(source->positions, c->transmission, &eo_unit_um));
+  eo_object_put(&o, "orders_um", curves ? encode_orders(source->positions, c->transmission, &eo_unit_um) : json_null());
   put_second_derivative(&o, source, c);
   if (source->ends == 2 && source->design->alignment.pinion_axial == EO_AXIAL_FLOATING)
-    eo_object_put(&o, "axial_float_um", encode_float(source, approach));
+    eo_object_put(&o, "axial_float_um", curves ? encode_float(source, approach) : json_null());
   return eo_object_close(&o);
 }
 
@@ -146,12 +151,12 @@ static const struct eo_outline_row stiffness_mean_rows[] = {
 static const struct eo_outline stiffness_mean = EO_OUTLINE("MeanMeshStiffness", stiffness_mean_rows);
 
 static const struct eo_outline_row stiffness_rows[] = {
-    EO_KEY("left_N_per_um", "[number?]", "load over approach from first contact, normal, left end, over the positions",
+    EO_KEY("left_N_per_um", "[number?]?", "load over approach from first contact, normal, left end, over the positions",
            .unit = &eo_unit_N_per_um),
-    EO_KEY("right_N_per_um", "[number?]", "the same, right end", .unit = &eo_unit_N_per_um, .when = EO_TWO_ENDS),
-    EO_KEY("tangent_left_N_per_um", "[number?]",
+    EO_KEY("right_N_per_um", "[number?]?", "the same, right end", .unit = &eo_unit_N_per_um, .when = EO_TWO_ENDS),
+    EO_KEY("tangent_left_N_per_um", "[number?]?",
            "change of load over change of approach, normal, left end, over the positions", .unit = &eo_unit_N_per_um),
-    EO_KEY("tangent_right_N_per_um", "[number?]", "the same, right end", .unit = &eo_unit_N_per_um,
+    EO_KEY("tangent_right_N_per_um", "[number?]?", "the same, right end", .unit = &eo_unit_N_per_um,
            .when = EO_TWO_ENDS),
     EO_KEY("left_orders_N_per_um", "[number?]",
            "mean of left_N_per_um, then the amplitudes of its mesh harmonics 1, 2, ...", .unit = &eo_unit_N_per_um),
@@ -165,8 +170,9 @@ json_t *eo_result_stiffness(struct eo_result_source *source, const struct eo_cas
   const double *const secant[2] = {c->end[0].stiffness, c->end[1].stiffness};
   const double *const tangent[2] = {c->end[0].loaded.tangent, c->end[1].loaded.tangent};
   struct eo_object o = eo_object_open_as(&eo_outline_stiffness), means = eo_object_open_as(&stiffness_mean);
-  put_end_columns(&o, source, "%s_N_per_um", secant, 1, &eo_unit_N_per_um);
-  put_end_columns(&o, source, "tangent_%s_N_per_um", tangent, 1, &eo_unit_N_per_um);
+  bool curves = eo_result_has(source, EO_RESULT_NO_STIFFNESS, c);
+  put_end_columns(&o, source, "%s_N_per_um", secant, 1, &eo_unit_N_per_um, curves);
+  put_end_columns(&o, source, "tangent_%s_N_per_um", tangent, 1, &eo_unit_N_per_um, curves);
   for (int end = 0; end < source->ends; end++)
     eo_object_put(&o, end ? "right_orders_N_per_um" : "left_orders_N_per_um",
                   encode_orders(source->positions, secant[end], &eo_unit_N_per_um));
@@ -183,7 +189,7 @@ json_t *eo_result_stiffness(struct eo_result_source *source, const struct eo_cas
 }
 
 static const struct eo_outline_row unloaded_end_rows[] = {
-    EO_KEY("te_um", "[number?]", "unloaded transmission error, over the positions", .unit = &eo_unit_um),
+    EO_KEY("te_um", "[number?]?", "unloaded transmission error, over the positions", .unit = &eo_unit_um),
     EO_KEY("peak_to_peak_um", "number?", "of the end", .unit = &eo_unit_um),
     EO_KEY("smallest_gap_um", "number?", "smallest gap anywhere on the flank", .unit = &eo_unit_um),
     EO_KEY("clearance_um", "[[number?]]?",
@@ -202,29 +208,35 @@ static json_t *encode_unloaded_end(struct eo_result_source *source, int end)
   eo_contact_pattern_unload(pattern, eo_evaluator_field(source->analysis->evaluator, end), r->unloaded);
   for (int i = 0; i < points; i++)
     marked += pattern->clearance[i] < source->design->resolution.marking_thickness;
-  eo_object_put(&o, "te_um", eo_result_end_column(source, end, r->unloaded, 1 / source->normal, &eo_unit_um));
+  bool curves = eo_result_has(source, EO_RESULT_NO_UNLOADED, NULL);
+  eo_object_put(&o, "te_um",
+                curves ? eo_result_end_column(source, end, r->unloaded, 1 / source->normal, &eo_unit_um) : json_null());
   eo_object_put_number(&o, "peak_to_peak_um", swing(source->positions, r->unloaded) / source->normal);
   eo_object_put_number(&o, "smallest_gap_um", r->datum);
   eo_object_put(&o, "clearance_um",
-                eo_result_map(source, EO_PATTERN_ROWS, EO_PATTERN_COLUMNS, pattern->clearance, &eo_unit_um));
+                curves ? eo_result_map(source, EO_PATTERN_ROWS, EO_PATTERN_COLUMNS, pattern->clearance, &eo_unit_um)
+                       : json_null());
   eo_object_put_number(&o, "marked_share", (double)marked / points);
   return eo_object_close(&o);
 }
 
 static const struct eo_outline_row place_rows[] = {
-    EO_KEY("s_mm", "[number]",
+    EO_KEY("s_mm", "[number]?",
            "roll along the line of action from the pitch point, + towards the pinion's tip: rows of the maps",
            .unit = &eo_unit_mm),
-    EO_KEY("eta_mm", "[number]",
+    EO_KEY("eta_mm", "[number]?",
            "place along the face from its middle, + on the side that meets first: columns of the maps",
            .unit = &eo_unit_mm),
 };
 static const struct eo_outline places = EO_OUTLINE("Places", place_rows);
 
-static void put_places(struct eo_object *o, const struct eo_result_source *source)
+static void put_places(struct eo_object *o, const struct eo_contact_pattern *pattern, bool wanted)
 {
-  eo_object_put(o, "s_mm", eo_json_reals(EO_PATTERN_ROWS, source->pattern->path, 1, &eo_unit_mm, EO_DIGITS_CURVE));
-  eo_object_put(o, "eta_mm", eo_json_reals(EO_PATTERN_COLUMNS, source->pattern->eta, 1, &eo_unit_mm, EO_DIGITS_CURVE));
+  eo_object_put(o, "s_mm",
+                wanted ? eo_json_reals(EO_PATTERN_ROWS, pattern->path, 1, &eo_unit_mm, EO_DIGITS_CURVE) : json_null());
+  eo_object_put(o, "eta_mm",
+                wanted ? eo_json_reals(EO_PATTERN_COLUMNS, pattern->eta, 1, &eo_unit_mm, EO_DIGITS_CURVE)
+                       : json_null());
 }
 
 static json_t *encode_unloaded_pair(struct eo_result_source *source, double *peak)
@@ -238,8 +250,8 @@ static json_t *encode_unloaded_pair(struct eo_result_source *source, double *pea
 }
 
 static const struct eo_outline_row unloaded_rows[] = {
-    EO_KEY("position", "[number]", "phase of the mesh cycle, 0..1"),
-    EO_KEY("pair_te_um", "[number?]", "unloaded transmission error of the pair, over the positions",
+    EO_KEY("position", "[number]?", "phase of the mesh cycle, 0..1"),
+    EO_KEY("pair_te_um", "[number?]?", "unloaded transmission error of the pair, over the positions",
            .unit = &eo_unit_um),
     EO_KEY("peak_to_peak_um", "number?", "of the pair", .unit = &eo_unit_um),
     EO_KEY("marking_thickness_um", "number", "of the marking compound, as the design states it", .unit = &eo_unit_um),
@@ -253,11 +265,14 @@ json_t *eo_result_unloaded(struct eo_result_source *source)
 {
   struct eo_object o = eo_object_open_as(&eo_outline_unloaded);
   double peak;
-  eo_object_put(&o, "position", eo_result_position(source));
-  eo_object_put(&o, "pair_te_um", encode_unloaded_pair(source, &peak));
+  bool curves = eo_result_has(source, EO_RESULT_NO_UNLOADED, NULL);
+  json_t *of_pair = encode_unloaded_pair(source, &peak);
+  eo_object_put(&o, "position", curves ? eo_result_position(source) : json_null());
+  eo_object_put(&o, "pair_te_um", curves ? json_incref(of_pair) : json_null());
+  json_decref(of_pair);
   eo_object_put_number(&o, "peak_to_peak_um", peak);
   eo_object_put_number(&o, "marking_thickness_um", source->design->resolution.marking_thickness);
-  put_places(&o, source);
+  put_places(&o, source->pattern, curves);
   for (int end = 0; end < source->ends; end++)
     eo_object_put(&o, eo_result_end[end], encode_unloaded_end(source, end));
   return eo_object_close(&o);
@@ -307,23 +322,24 @@ static const struct eo_outline_row pattern_end_rows[] = {
            "largest contact pressure of the mesh cycle, a row for every s_mm, a number for every eta_mm; null without "
            "maps",
            .unit = &eo_unit_MPa),
-    EO_KEY("gear_tip_edge_MPa", "[number?]", "the same at the gear's tip edge, over eta_mm (nominal)",
+    EO_KEY("gear_tip_edge_MPa", "[number?]?", "the same at the gear's tip edge, over eta_mm (nominal)",
            .unit = &eo_unit_MPa),
-    EO_KEY("pinion_tip_edge_MPa", "[number?]", "the same at the pinion's tip edge, over eta_mm (nominal)",
+    EO_KEY("pinion_tip_edge_MPa", "[number?]?", "the same at the pinion's tip edge, over eta_mm (nominal)",
            .unit = &eo_unit_MPa),
 };
 static const struct eo_outline pattern_end = EO_OUTLINE("ContactPatternEnd", pattern_end_rows);
 
-static json_t *encode_pattern_end(const struct eo_result_source *source)
+static json_t *encode_pattern_end(const struct eo_result_source *source, bool wanted)
 {
   const struct eo_contact_pattern *pattern = source->pattern;
   struct eo_object o = eo_object_open_as(&pattern_end);
   eo_object_put(&o, "pressure_MPa",
-                eo_result_map(source, EO_PATTERN_ROWS, EO_PATTERN_COLUMNS, pattern->pressure, &eo_unit_MPa));
-  eo_object_put(&o, "gear_tip_edge_MPa",
-                eo_json_reals(EO_PATTERN_COLUMNS, pattern->edge[0], 1, &eo_unit_MPa, EO_DIGITS_MAP));
-  eo_object_put(&o, "pinion_tip_edge_MPa",
-                eo_json_reals(EO_PATTERN_COLUMNS, pattern->edge[1], 1, &eo_unit_MPa, EO_DIGITS_MAP));
+                wanted ? eo_result_map(source, EO_PATTERN_ROWS, EO_PATTERN_COLUMNS, pattern->pressure, &eo_unit_MPa)
+                       : json_null());
+  for (int edge = 0; edge < 2; edge++)
+    eo_object_put(&o, edge ? "pinion_tip_edge_MPa" : "gear_tip_edge_MPa",
+                  wanted ? eo_json_reals(EO_PATTERN_COLUMNS, pattern->edge[edge], 1, &eo_unit_MPa, EO_DIGITS_MAP)
+                         : json_null());
   return eo_object_close(&o);
 }
 
@@ -337,15 +353,16 @@ static const struct eo_outline contact_pattern = EO_OUTLINE("ContactPattern", pa
 static json_t *encode_pattern(struct eo_result_source *source, int k)
 {
   const struct eo_case_result *c = &source->evaluation->load_case[k];
+  bool wanted = eo_result_has(source, EO_RESULT_NO_PATTERN, c);
   struct eo_object o = eo_object_open_as(&contact_pattern);
-  put_places(&o, source);
+  put_places(&o, source->pattern, wanted);
   for (int end = 0; end < source->ends; end++) {
     eo_contact_pattern_load(source->pattern, source->pair->grid, &c->end[end].loaded);
     source->edge_pressure[k][end] = 0;
     for (int edge = 0; edge < 2; edge++)
       for (int j = 0; j < EO_PATTERN_COLUMNS; j++)
         source->edge_pressure[k][end] = fmax(source->edge_pressure[k][end], source->pattern->edge[edge][j]);
-    eo_object_put(&o, eo_result_end[end], encode_pattern_end(source));
+    eo_object_put(&o, eo_result_end[end], encode_pattern_end(source, wanted));
   }
   return eo_object_close(&o);
 }
@@ -388,7 +405,9 @@ struct contact {
 static json_t *write_shares(const void *source)
 {
   const struct contact *contact = source;
-  return encode_shares(contact->source, contact->load_case);
+  return eo_result_has(contact->source, EO_RESULT_NO_SHARES, contact->load_case)
+             ? encode_shares(contact->source, contact->load_case)
+             : json_null();
 }
 
 static json_t *write_pattern(const void *source)
@@ -415,7 +434,8 @@ static const struct eo_outline_row contact_rows[] = {
            EO_AT(struct contact, edge_pressure)),
     EO_KEY("face_load", "object", "load over the face, load distribution factors", .outline = &eo_outline_face_load,
            .write = write_face_load),
-    EO_KEY("load_share", "object", "shares of the tooth pairs", .outline = &shares, .write = write_shares),
+    EO_KEY("load_share", "object?", "shares of the tooth pairs; null when left out", .outline = &shares,
+           .write = write_shares),
     EO_KEY("pattern", "object", "contact pattern", .outline = &contact_pattern, .write = write_pattern),
 };
 const struct eo_outline eo_outline_contact = EO_OUTLINE("LoadedContact", contact_rows);
@@ -522,23 +542,21 @@ json_t *eo_result_impact(struct eo_result_source *source, const struct eo_case_r
   return eo_object_close(&o);
 }
 
-static json_t *encode_root_history(const struct eo_result_source *source, const struct eo_root_history *history)
+static json_t *encode_root_history(const struct eo_root_history *history, bool wanted)
 {
-  return source->left_out & EO_RESULT_NO_HISTORIES
-             ? json_null()
-             : eo_json_reals(history->phases, history->stress, 1, &eo_unit_MPa, EO_DIGITS_CURVE);
+  return wanted ? eo_json_reals(history->phases, history->stress, 1, &eo_unit_MPa, EO_DIGITS_CURVE) : json_null();
 }
 
 struct root_end {
-  const struct eo_result_source *source;
   const struct eo_root_history *history;
+  bool wanted;                       /* the history itself */
   double maximum, dynamic, arc, eta; /* Pa, m */
 };
 
 static json_t *write_root_history(const void *source)
 {
   const struct root_end *end = source;
-  return encode_root_history(end->source, end->history);
+  return encode_root_history(end->history, end->wanted);
 }
 
 static const struct eo_outline_row root_end_rows[] = {
@@ -554,10 +572,9 @@ static const struct eo_outline_row root_end_rows[] = {
 };
 static const struct eo_outline root_end = EO_OUTLINE("RootStressEnd", root_end_rows);
 
-static json_t *encode_root_end(const struct eo_result_source *source, const struct eo_root_history *history,
-                               double factor)
+static json_t *encode_root_end(const struct eo_root_history *history, double factor, bool wanted)
 {
-  const struct root_end end = {source,       history,     history->maximum, history->maximum * factor,
+  const struct root_end end = {history,      wanted,      history->maximum, history->maximum * factor,
                                history->arc, history->eta};
   return eo_outline_encode(&root_end, &end);
 }
@@ -571,7 +588,7 @@ static const struct eo_outline_row root_member_rows[] = {
     EO_KEY("max_MPa", "number?", "largest static root stress, worse end", .unit = &eo_unit_MPa),
     EO_KEY("max_dynamic_MPa", "number?", "times the dynamic factor of its end; null without a periodic vibration",
            .unit = &eo_unit_MPa),
-    EO_KEY("position", "[number]", "phase of the tooth's way through the mesh, in mesh cycles"),
+    EO_KEY("position", "[number]?", "phase of the tooth's way through the mesh, in mesh cycles"),
     EO_KEY("history_MPa", "[number?]?", "of the worse end; null without histories", .unit = &eo_unit_MPa),
     EO_KEY("left", "object", "left end", .outline = &root_end),
     EO_KEY("right", "object", "right end", .when = EO_TWO_ENDS, .outline = &root_end),
@@ -583,15 +600,17 @@ static json_t *encode_root_member(const struct eo_result_source *source, const s
   const struct eo_root_history *history[2] = {&c->end[0].root[member], &c->end[1].root[member]};
   int worst = source->ends == 2 && history[1]->maximum > history[0]->maximum ? EO_RIGHT : EO_LEFT;
   double dynamic = 0;
+  bool wanted = eo_result_has(source, EO_RESULT_NO_HISTORIES, c), place = eo_result_has(source, 0, c);
   struct eo_object o = eo_object_open_as(&root_member);
   for (int end = 0; end < source->ends; end++)
     dynamic = isnan(force_factor(c, end)) ? NAN : fmax(dynamic, history[end]->maximum * force_factor(c, end));
   eo_object_put_number(&o, "max_MPa", history[worst]->maximum);
   eo_object_put_number(&o, "max_dynamic_MPa", dynamic);
-  eo_object_put(&o, "position", eo_json_reals(history[0]->phases, history[0]->phase, 1, NULL, EO_DIGITS_CURVE));
-  eo_object_put(&o, "history_MPa", encode_root_history(source, history[worst]));
+  eo_object_put(&o, "position",
+                place ? eo_json_reals(history[0]->phases, history[0]->phase, 1, NULL, EO_DIGITS_CURVE) : json_null());
+  eo_object_put(&o, "history_MPa", encode_root_history(history[worst], wanted));
   for (int end = 0; end < source->ends; end++)
-    eo_object_put(&o, eo_result_end[end], encode_root_end(source, history[end], force_factor(c, end)));
+    eo_object_put(&o, eo_result_end[end], encode_root_end(history[end], force_factor(c, end), wanted));
   return eo_object_close(&o);
 }
 

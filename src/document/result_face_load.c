@@ -21,12 +21,12 @@ static const struct eo_outline_row factor_rows[] = {
 static const struct eo_outline factor_of_ends = EO_OUTLINE("FactorOfEnds", factor_rows);
 
 static const struct eo_outline_row face_rows[] = {
-    EO_KEY("eta_mm", "[number]", "middles of slices of the face, from its middle, + on the side that meets first",
+    EO_KEY("eta_mm", "[number]?", "middles of slices of the face, from its middle, + on the side that meets first",
            .unit = &eo_unit_mm),
-    EO_KEY("left_N_per_mm", "[number?]",
+    EO_KEY("left_N_per_mm", "[number?]?",
            "normal force per face width, all tooth pairs together, mean over the mesh cycle, over eta_mm, left end",
            .unit = &eo_unit_N_per_mm),
-    EO_KEY("right_N_per_mm", "[number?]", "the same, right end", .unit = &eo_unit_N_per_mm, .when = EO_TWO_ENDS),
+    EO_KEY("right_N_per_mm", "[number?]?", "the same, right end", .unit = &eo_unit_N_per_mm, .when = EO_TWO_ENDS),
     EO_KEY("K_Hbeta", "object",
            "face load factor: the largest of these over their mean; of the flanks as designed, without tolerances",
            .outline = &factor_of_ends),
@@ -44,14 +44,18 @@ json_t *eo_result_face_load(const struct eo_result_source *source, const struct 
 {
   struct eo_object o = eo_object_open_as(&eo_outline_face_load);
   struct factor_of_ends face = {.two = source->ends == 2}, share = face, line = face;
-  eo_object_put(&o, "eta_mm", eo_json_reals(EO_FACE_SLICES, c->end[0].face.eta, 1, &eo_unit_mm, EO_DIGITS_CURVE));
+  bool curves = eo_result_has(source, EO_RESULT_NO_FACE_LOAD, c);
+  eo_object_put(&o, "eta_mm",
+                curves ? eo_json_reals(EO_FACE_SLICES, c->end[0].face.eta, 1, &eo_unit_mm, EO_DIGITS_CURVE)
+                       : json_null());
   for (int end = 0; end < source->ends; end++) {
     const struct eo_face_load *found = &c->end[end].face;
     face.end[end] = found->face_factor;
     share.end[end] = found->share_factor;
     line.end[end] = found->line_factor;
     eo_object_put(&o, end ? "right_N_per_mm" : "left_N_per_mm",
-                  eo_json_reals(EO_FACE_SLICES, found->load, 1, &eo_unit_N_per_mm, EO_DIGITS_CURVE));
+                  curves ? eo_json_reals(EO_FACE_SLICES, found->load, 1, &eo_unit_N_per_mm, EO_DIGITS_CURVE)
+                         : json_null());
   }
   eo_object_put(&o, "K_Hbeta", eo_outline_encode(&factor_of_ends, &face));
   eo_object_put(&o, "K_Halpha", eo_outline_encode(&factor_of_ends, &share));

@@ -7,6 +7,12 @@
 const char *const eo_result_end[2] = {"left", "right"};
 const char *const eo_result_member[2] = {"pinion", "gear"};
 
+bool eo_result_has(const struct eo_result_source *source, unsigned part, const struct eo_case_result *load_case)
+{
+  int only = (int)(source->left_out >> 16) - 1;
+  return !(source->left_out & part) && (!load_case || only < 0 || load_case == &source->evaluation->load_case[only]);
+}
+
 json_t *eo_result_end_column(const struct eo_result_source *source, int end, const double *value, double scale,
                              const struct eo_unit *unit)
 {

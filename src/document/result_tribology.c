@@ -24,6 +24,7 @@ static const struct eo_outline_row figure_rows[] = {
 struct tribology_end {
   struct eo_tribology figures;
   const struct eo_result_source *source;
+  const struct eo_case_result *load_case;
   struct eo_tribology_state state;
 };
 
@@ -32,6 +33,8 @@ static json_t *write_map(const struct tribology_end *end, double (*value)(const 
 {
   const struct eo_contact_pattern *pattern = end->source->pattern;
   double map[EO_PATTERN_ROWS * EO_PATTERN_COLUMNS];
+  if (!eo_result_has(end->source, EO_RESULT_NO_TRIBOLOGY | EO_RESULT_NO_MAPS, end->load_case))
+    return json_null();
   for (int i = 0; i < EO_PATTERN_ROWS * EO_PATTERN_COLUMNS; i++) {
     double q = eo_contact_pattern_line_load(pattern, end->source->pair->grid, i);
     struct eo_tribology_point point = eo_tribology_at(&end->state, pattern->path[i / EO_PATTERN_COLUMNS], q);
@@ -87,8 +90,10 @@ static const struct eo_outline tribology_case = EO_OUTLINE("TribologyLoadCase", 
 static json_t *encode_end(const struct eo_result_source *source, const struct eo_case_result *c, int k, int end,
                           const struct eo_tribology_state *state)
 {
-  const struct tribology_end view = {
-      .figures = source->analysis->rating->load_case[k].tribology[end], .source = source, .state = *state};
+  const struct tribology_end view = {.figures = source->analysis->rating->load_case[k].tribology[end],
+                                     .source = source,
+                                     .load_case = c,
+                                     .state = *state};
   eo_contact_pattern_load(source->pattern, source->pair->grid, &c->end[end].loaded);
   return eo_outline_encode(&tribology_end, &view);
 }

@@ -139,24 +139,24 @@ static json_t *encode_end(const struct eo_result_source *source, const struct eo
     eo_object_put_number(&o, member ? "max_gear_bearing_N" : "max_pinion_bearing_N",
                          known * v->bearing_force_max[member][end]);
   }
-  bool histories = !(source->left_out & EO_RESULT_NO_HISTORIES);
-  eo_object_put(&o, "history",
-                histories && has_curves(source, c) ? encode_curves(source, &c->end[end], false) : json_null());
-  eo_object_put(&o, "orders", has_curves(source, c) ? encode_curves(source, &c->end[end], true) : json_null());
+  bool histories = has_curves(source, c) && eo_result_has(source, EO_RESULT_NO_HISTORIES, c);
+  bool orders = has_curves(source, c) && eo_result_has(source, EO_RESULT_NO_ORDERS, c);
+  eo_object_put(&o, "history", histories ? encode_curves(source, &c->end[end], false) : json_null());
+  eo_object_put(&o, "orders", orders ? encode_curves(source, &c->end[end], true) : json_null());
   return eo_object_close(&o);
 }
 
 /* Mean of the ends' amplitudes, as the RMS of the pair is the mean of theirs. */
 static void put_pair_orders(struct eo_object *o, const struct eo_result_source *source, const struct eo_case_result *c)
 {
+  bool wanted = has_curves(source, c) && eo_result_has(source, EO_RESULT_NO_ORDERS, c);
   for (int i = EO_CHANNEL_NORMAL; i <= EO_CHANNEL_ROTATIONAL; i++) {
     char key[64];
     double complex *const order[2] = {c->end[0].order[i], c->end[1].order[i]};
     snprintf(key, sizeof key, "orders_%s", channels[i].key);
     eo_object_put(o, key,
-                  has_curves(source, c)
-                      ? encode_amplitudes(source->evaluation->harmonics, order, source->ends, channels[i].unit)
-                      : json_null());
+                  wanted ? encode_amplitudes(source->evaluation->harmonics, order, source->ends, channels[i].unit)
+                         : json_null());
   }
 }
 
@@ -227,7 +227,7 @@ static const struct eo_outline_row vibration_rows[] = {
     EO_KEY("mean_pinion_thrust_N", "number?", "of the pinion's axial support, + to the right; 0: floating",
            .unit = &eo_unit_N),
     EO_KEY("max_pinion_thrust_N", "number?", "largest size of it", .unit = &eo_unit_N),
-    EO_KEY("position", "[number]", "phase of the mesh cycle, 0..1, of the histories"),
+    EO_KEY("position", "[number]?", "phase of the mesh cycle, 0..1, of the histories"),
     EO_KEY("orders_normal_m_per_s2", "[number?]?",
            "mean of the ends' amplitudes: the mean, then mesh harmonics 1, 2, ...; null without a periodic state",
            .unit = &eo_unit_m_per_s2),
@@ -268,7 +268,9 @@ json_t *eo_result_vibration(struct eo_result_source *source, const struct eo_cas
   eo_object_put(&o, "back_contact", json_boolean(v->back_contact));
   eo_object_put_number(&o, "mean_pinion_thrust_N", known * v->pinion_thrust_mean);
   eo_object_put_number(&o, "max_pinion_thrust_N", known * v->pinion_thrust_max);
-  eo_object_put(&o, "position", encode_samples(source));
+  /* A request that names no parts has it without histories too. */
+  bool place = eo_result_has(source, EO_RESULT_NO_ORDERS, c) || eo_result_has(source, EO_RESULT_NO_HISTORIES, c);
+  eo_object_put(&o, "position", place ? encode_samples(source) : json_null());
   put_pair_orders(&o, source, c);
   for (int end = 0; end < source->ends; end++)
     eo_object_put(&o, eo_result_end[end], encode_end(source, c, end, known));

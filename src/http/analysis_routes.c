@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "document/completion.h"
+#include "document/result.h"
 #include "evaluation/evaluator.h"
 #include "http/request_body.h"
 #include "http/deferred.h"
@@ -37,20 +38,43 @@ static void check(struct eo_request *request)
   eo_reply_json(&request->reply, 200, reply);
 }
 
+/* What the answer leaves out: the curves of parts that are not named, where any are. */
+static unsigned left_out_of(const struct eo_request *request)
+{
+  enum { MAPS = EO_RESULT_PARTS, HISTORIES };
+  bool some;
+  unsigned named = eo_route_words(request, "parts", &some), left_out = 0;
+  for (int i = 0; i < EO_RESULT_PARTS && some; i++)
+    left_out |= named & 1u << i ? 0 : EO_RESULT_FIRST_PART << i;
+  bool maps = some ? named >> MAPS & 1 : eo_route_number(request, "maps") != 0;
+  bool histories = some ? named >> HISTORIES & 1 : eo_route_number(request, "histories") != 0;
+  int of = (int)eo_route_number(request, "curves_of");
+  return left_out | (maps ? 0 : EO_RESULT_NO_MAPS) | (histories ? 0 : EO_RESULT_NO_HISTORIES) |
+         (of < 0 ? 0 : EO_RESULT_CURVES_OF(of));
+}
+
+/* Whether there is the load case whose curves are asked for. */
+static bool has_load_case(struct eo_request *request, const struct eo_design *design)
+{
+  int of = (int)eo_route_number(request, "curves_of");
+  if (of >= design->load_cases)
+    eo_reply_problem(&request->reply, 400, "query", "The query parameter curves_of is %d, but there are %d load cases.",
+                     of, design->load_cases);
+  return of < design->load_cases;
+}
+
 static void put_analysis(struct eo_request *request, const struct eo_design *design, const struct eo_warnings *warnings)
 {
   enum eo_admission admission;
   struct eo_error error;
   int64_t job = 0;
-  bool histories = eo_route_number(request, "histories") != 0;
   struct eo_analysis_question question = {.common = eo_request_to_question(request, design, warnings),
                                           .want = EO_WANT_CURVES |
                                                   (eo_route_number(request, "root_stress") != 0 ? EO_WANT_ROOT : 0) |
                                                   (eo_route_number(request, "rating") != 0 ? EO_WANT_RATING : 0) |
                                                   (eo_route_number(request, "band") != 0 ? EO_WANT_BAND : 0),
-                                          .maps = eo_route_number(request, "maps") != 0,
-                                          .histories = histories};
-  if (!eo_request_lane(request, &question.common))
+                                          .left_out = left_out_of(request)};
+  if (!has_load_case(request, design) || !eo_request_lane(request, &question.common))
     return;
   eo_request_defer(request);
   enum eo_code code = eo_service_analyze(request->http->service, &question, &admission, &job, &error);
@@ -165,7 +189,13 @@ const struct eo_route eo_routes_analysis[] = {
                {"maps", 0, 1, 1, NULL, "1: pressure and clearance over the flanks"},
                {"histories", 0, 1, 0, NULL, "1: vibration and root stress over time"},
                {"rating", 0, 1, 1, NULL,
-                "1: rating by ISO 6336 and tribology too, with two more contact analyses; 0 answers sooner"}}},
+                "1: rating by ISO 6336 and tribology too, with two more contact analyses; 0 answers sooner"},
+               {"parts", 0, 0, 0, EO_RESULT_PART_WORDS "|maps|histories",
+                "only these have their curves, maps and histories, the others null; all numbers stand in any case. "
+                "Absent: all parts, with maps and histories as those parameters say",
+                .many = true},
+               {"curves_of", -1, EO_MAX_LOAD_CASES - 1, -1, NULL,
+                "number of the only load case, from 0, that has curves; -1: all"}}},
     {.method = EO_POST,
      .pattern = "/sweep",
      .handle = sweep,

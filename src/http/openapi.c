@@ -54,6 +54,12 @@ static json_t *encode_words(const char *words)
   return json_pack("{s:s, s:o}", "type", "string", "enum", list);
 }
 
+/* Words with commas between them, in one parameter. */
+static json_t *encode_many(const char *words)
+{
+  return json_pack("{s:s, s:o}", "type", "array", "items", encode_words(words));
+}
+
 static json_t *encode_range(const struct eo_query *query)
 {
   json_t *schema = json_pack("{s:s, s:I, s:I}", "type", "integer", "minimum", (json_int_t)query->low, "maximum",
@@ -63,12 +69,23 @@ static json_t *encode_range(const struct eo_query *query)
   return schema;
 }
 
+static json_t *encode_query(const struct eo_query *query)
+{
+  json_t *schema = query->many    ? encode_many(query->words)
+                   : query->words ? encode_words(query->words)
+                                  : encode_range(query);
+  json_t *parameter = encode_parameter(query->name, strlen(query->name), "query", schema, query->help);
+  if (query->many) {
+    json_object_set_new(parameter, "style", json_string("form"));
+    json_object_set_new(parameter, "explode", json_false());
+  }
+  return parameter;
+}
+
 static void add_queries(json_t *list, const struct eo_route *route)
 {
   for (const struct eo_query *query = route->query; query < route->query + EO_MOST_QUERIES && query->name; query++)
-    json_array_append_new(list, encode_parameter(query->name, strlen(query->name), "query",
-                                                 query->words ? encode_words(query->words) : encode_range(query),
-                                                 query->help));
+    json_array_append_new(list, encode_query(query));
 }
 
 static bool next_name(const char **list, const char **name, size_t *length)

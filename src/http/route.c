@@ -66,23 +66,39 @@ bool eo_route_find(struct eo_request *request)
   return false;
 }
 
-static bool is_word_of(const char *words, const char *word)
+/* Which word of the list this is; -1: none. */
+static int word_of(const char *words, const char *word, size_t length)
 {
-  size_t length = strlen(word);
-  while (*words) {
+  for (int i = 0; *words; i++) {
     size_t next = strcspn(words, "|");
     if (length == next && strncmp(words, word, length) == 0)
-      return true;
+      return i;
     words += next + (words[next] == '|');
   }
-  return false;
+  return -1;
+}
+
+/* Bits of the words of a list with commas; false: one is unknown. */
+static bool words_of(const char *words, const char *value, unsigned *bits)
+{
+  *bits = 0;
+  while (*value) {
+    size_t length = strcspn(value, ",");
+    int i = word_of(words, value, length);
+    if (i < 0)
+      return false;
+    *bits |= 1u << i;
+    value += length + (value[length] == ',');
+  }
+  return true;
 }
 
 static bool is_allowed(const struct eo_query *query, const char *value)
 {
   int64_t number;
+  unsigned bits;
   if (query->words)
-    return is_word_of(query->words, value);
+    return query->many ? words_of(query->words, value, &bits) : word_of(query->words, value, strlen(value)) >= 0;
   return eo_field_integer(value, &number) && (double)number >= query->low && (double)number <= query->high;
 }
 
@@ -99,8 +115,8 @@ static enum MHD_Result check_one(void *context, enum MHD_ValueKind kind, const c
     if (value && is_allowed(query, value))
       return MHD_YES;
     if (query->words)
-      eo_reply_problem(&request->reply, 400, "query", "The query parameter %s takes one of %s.", query->name,
-                       query->words);
+      eo_reply_problem(&request->reply, 400, "query", "The query parameter %s takes %s %s.", query->name,
+                       query->many ? "a list, with commas, of" : "one of", query->words);
     else
       eo_reply_problem(&request->reply, 400, "query", "The query parameter %s takes a whole number from %.0f to %.0f.",
                        query->name, query->low, query->high);
@@ -114,6 +130,18 @@ bool eo_route_check_query(struct eo_request *request)
 {
   MHD_get_connection_values(request->connection, MHD_GET_ARGUMENT_KIND, check_one, request);
   return !request->reply.status;
+}
+
+unsigned eo_route_words(const struct eo_request *request, const char *name, bool *given)
+{
+  const char *text = eo_request_query(request, name);
+  unsigned bits = 0;
+  *given = text != NULL;
+  for (const struct eo_query *query = request->route->query;
+       text && query < request->route->query + EO_MOST_QUERIES && query->name; query++)
+    if (strcmp(query->name, name) == 0)
+      words_of(query->words, text, &bits);
+  return bits;
 }
 
 double eo_route_number(const struct eo_request *request, const char *name)

@@ -7,17 +7,18 @@
 #include "format/table.h"
 #include "http/request.h"
 
-enum { EO_MOST_QUERIES = 6, EO_MOST_ANSWERS = 10 };
+enum { EO_MOST_QUERIES = 8, EO_MOST_ANSWERS = 10 };
 
 /* What a request costs of what an address may start (guard.h). */
 enum eo_rate { EO_RATE_FREE, EO_RATE_QUESTION, EO_RATE_START, EO_RATE_WRONG, EO_RATE_KINDS };
 
-/* A query parameter: a whole number, or one word of a list. */
+/* A query parameter: a whole number, or one word of a list, or several. */
 struct eo_query {
   const char *name;           /* NULL ends the list */
   double low, high, fallback; /* numbers */
   const char *words;          /* "queued|running"; NULL: a number */
   const char *help;
+  bool many; /* words with commas between them; none is allowed too */
 };
 
 struct eo_route {
@@ -51,6 +52,9 @@ bool eo_route_check_query(struct eo_request *request);
 
 /* Query numbers, checked against their rows in the route's table before the handler runs: the value or its default. */
 double eo_route_number(const struct eo_request *request, const char *name);
+
+/* Words of a query parameter that takes several: bit i is set for word i of its row's list. *given: it is there. */
+unsigned eo_route_words(const struct eo_request *request, const char *name, bool *given);
 
 /* Runs the handler, and lets go of what it has read. */
 void eo_route_run(struct eo_request *request);

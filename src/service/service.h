@@ -17,6 +17,7 @@
 #ifndef EASEOFF_SERVICE_SERVICE_H
 #define EASEOFF_SERVICE_SERVICE_H
 
+#include "document/result.h"
 #include "document/sweep_document.h"
 #include "evaluation/analysis.h"
 #include "service/events.h"
@@ -151,12 +152,11 @@ struct eo_question {
   void *context; /* borrowed */
 };
 
-/* want: EO_WANT_... of evaluator.h. maps: pressure and clearance over the flank; histories: vibration and root stress
-   over time. What is left out is null in the document. */
+/* want: EO_WANT_... of evaluator.h. left_out: EO_RESULT_NO_... of result.h: null in the document. */
 struct eo_analysis_question {
   struct eo_question common;
   int want;
-  bool maps, histories;
+  unsigned left_out;
 };
 
 enum eo_code eo_service_analyze(struct eo_service *service, const struct eo_analysis_question *question,

@@ -201,7 +201,7 @@ enum eo_code eo_service_analyze(struct eo_service *s, const struct eo_analysis_q
   if (!asked)
     return EO_ERROR_MEMORY;
   asked->want = q->want;
-  asked->left_out = (q->maps ? 0u : EO_RESULT_NO_MAPS) | (q->histories ? 0u : EO_RESULT_NO_HISTORIES);
+  asked->left_out = q->left_out;
   return admit(s, s->analyses, asked, q->common.wait, admission, job, error);
 }
 

@@ -44,6 +44,8 @@ static void test_analyses(void)
   } row[] = {{"analysis", API "/analyze", plain},
              {"analysis with everything", API "/analyze?histories=1&band=1", plain},
              {"analysis with the least", API "/analyze?root_stress=0&maps=0", plain},
+             {"analysis with one part", API "/analyze?parts=lte&curves_of=1", plain},
+             {"analysis with no part", API "/analyze?parts=", plain},
              {"one end", API "/analyze?histories=1&band=1", single},
              {"a pinion that is held", API "/analyze", held},
              {"elastic shafts", API "/analyze", shafts},

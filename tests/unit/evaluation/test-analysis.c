@@ -129,7 +129,10 @@ static void check_writing(void)
   struct eo_error error;
   s->analysis->threads = 2;
   eo_analysis_run(s->analysis, &s->design, ALL, &error);
-  for (unsigned left_out = 0; left_out < 4; left_out++) {
+  static const unsigned lean = EO_RESULT_NO_HISTORIES | EO_RESULT_NO_LTE | EO_RESULT_NO_SHARES | EO_RESULT_NO_TRIBOLOGY;
+  const unsigned some[] = {0, 1, 2, 3, lean, lean | EO_RESULT_CURVES_OF(1), ~EO_RESULT_NO_LTE & 0x7ff};
+  for (size_t i = 0; i < sizeof some / sizeof *some; i++) {
+    unsigned left_out = some[i];
     struct eo_text whole = {0}, parts = {0};
     json_t *document = eo_result_encode_part(s->analysis, &s->design, NULL, left_out);
     eo_json_write(&whole, document, EO_JSON_COMPACT);
@@ -138,6 +141,54 @@ static void check_writing(void)
     ok(!code && same(&whole, &parts), "written by parts: the same %zu bytes", size);
     json_decref(document);
   }
+  end(s);
+}
+
+/* What two documents have in common is the same, but for nulls in the leaner one. Returns the number of faults. */
+static int differences(const json_t *full, const json_t *lean)
+{
+  int count = 0;
+  const char *key;
+  json_t *value;
+  size_t index;
+  if (json_is_null(lean))
+    return 0;
+  if (json_is_object(full) && json_is_object(lean)) {
+    json_object_foreach((json_t *)full, key, value) count += differences(value, json_object_get(lean, key));
+    return count;
+  }
+  if (json_is_array(full) && json_array_size(full) == json_array_size(lean)) {
+    json_array_foreach((json_t *)full, index, value) count += differences(value, json_array_get(lean, index));
+    return count;
+  }
+  return !json_equal(full, lean);
+}
+
+/* A slider's step: the curves on screen of one load case. Every number is still there. */
+static void check_lean(void)
+{
+  struct subject *s = start("paper-case-b");
+  struct eo_error error;
+  struct eo_text text = {0};
+  eo_analysis_run(s->analysis, &s->design, EO_WANT_CURVES | EO_WANT_ROOT, &error);
+  const unsigned lean = EO_RESULT_NO_HISTORIES | EO_RESULT_NO_TRIBOLOGY | EO_RESULT_NO_FACE_LOAD |
+                        EO_RESULT_NO_UNLOADED | EO_RESULT_CURVES_OF(1);
+  json_t *full = eo_result_encode(s->analysis, &s->design, NULL);
+  json_t *part = eo_result_encode_part(s->analysis, &s->design, NULL, lean);
+  json_t *cases = json_object_get(part, "load_cases");
+  eo_json_write(&text, part, EO_JSON_COMPACT);
+  ok(text.size < 60000, "a slider's step takes %zu bytes, at most 60000", text.size);
+  json_object_del(full, "timing_ms");
+  ok(differences(full, part) == 0, "and what stands in it is what the full answer says");
+  for (int k = 0; k < 3; k++) {
+    json_t *one = json_array_get(cases, (size_t)k), *lte = json_object_get(one, "lte");
+    ok(json_is_array(json_object_get(lte, "pair_um")) == (k == 1) &&
+           json_is_number(json_object_get(lte, "peak_to_peak_um")),
+       "load case %d: its numbers, and curves only of number 1", k);
+  }
+  eo_text_done(&text);
+  json_decref(full);
+  json_decref(part);
   end(s);
 }
 
@@ -412,6 +463,7 @@ int main(void)
   check_names("single", 1);
   check_memory();
   check_writing();
+  check_lean();
   check_threads();
   check_unmodified();
   check_objectives();

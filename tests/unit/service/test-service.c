@@ -18,8 +18,7 @@ static enum eo_admission ask(struct eo_service *service, const struct eo_design 
   const struct eo_analysis_question question = {
       .common = {.design = about, .token = token, .wait = wait, .answer = take_answer, .context = answered},
       .want = EO_WANT_ROOT | EO_WANT_CURVES,
-      .maps = true,
-      .histories = true};
+  };
   enum eo_admission admission = EO_ADMISSION_CLOSED;
   if (eo_service_analyze(service, &question, &admission, job, &error))
     printf("# %s\n", error.text);
@@ -96,7 +95,8 @@ static void test_left_out(void)
   wait_for_answers(&answered, 1);
   size_t whole = answered.last.text.size;
   struct eo_analysis_question question = {.common = {.design = &design, .answer = take_answer, .context = &answered},
-                                          .want = EO_WANT_CURVES};
+                                          .want = EO_WANT_CURVES,
+                                          .left_out = EO_RESULT_NO_MAPS | EO_RESULT_NO_HISTORIES};
   enum eo_admission admission;
   eo_service_analyze(service, &question, &admission, &job, &error);
   wait_for_answers(&answered, 2);
