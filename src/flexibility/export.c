@@ -2,6 +2,7 @@
 #include "flexibility/export.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -19,6 +20,8 @@ struct output {
   int own_nodes, own_edges; /* of a tooth */
   int *node_place;          /* [nodes]: number among the tooth's own, or -1 - node of the left cut */
   int *edge_place;          /* [edges]: likewise */
+  bool floating;
+  double *weight; /* [cut_nodes][layers + 1], m3: see eo_member_cut_weights() */
 };
 
 __attribute__((format(printf, 2, 3))) static void put(struct output *out, const char *format, ...)
@@ -147,17 +150,95 @@ static void put_elements(struct output *out, enum eo_mesh_element element)
 static void put_fixed(struct output *out, enum eo_mesh_element element, int tooth)
 {
   const struct eo_section *s = out->sector->section;
+  unsigned char held = out->floating ? EO_HELD_AXIAL : EO_HELD_ALL;
   for (int l = 0; l <= out->sector->layers; l++) {
     for (int a = 0; a < s->nodes; a++)
-      if (s->fixed[a] == EO_HELD_ALL && out->node_place[a] >= 0)
+      if (s->fixed[a] == held && out->node_place[a] >= 0)
         put(out, "%d,\n", corner_number(out, tooth, l, a));
     for (int e = 0; e < out->edges && element == EO_MESH_C3D20R; e++)
       if (s->fixed[out->ends[2 * e]] && s->fixed[out->ends[2 * e + 1]] && out->edge_place[e] >= 0)
         put(out, "%d,\n", edge_number(out, tooth, l, e));
     for (int a = 0; a < s->nodes && element == EO_MESH_C3D20R && l < out->sector->layers; a++)
-      if (s->fixed[a] == EO_HELD_ALL && out->node_place[a] >= 0)
+      if (s->fixed[a] == held && out->node_place[a] >= 0)
         put(out, "%d,\n", upright_number(out, tooth, l, a));
   }
+}
+
+/* Calls for every node of every cut. */
+typedef void cut_function(struct output *out, int number, const double p[3], double weight, void *context);
+static void each_cut_node(struct output *out, cut_function *call, void *context)
+{
+  const struct eo_section *s = out->sector->section;
+  int across = out->sector->layers + 1;
+  for (int t = 0; t < out->teeth; t++)
+    for (int i = 0; i < s->cut_nodes; i++)
+      for (int l = 0; l < across; l++) {
+        double p[3];
+        place_node(out, t, l, s->cut[0][i], p);
+        call(out, corner_number(out, t, l, s->cut[0][i]), p, out->weight[i * across + l], context);
+      }
+}
+
+/* Force and moment in the plane, mass and its moment of inertia about the axis. */
+struct balance {
+  double force[2], moment, mass, inertia;
+};
+
+static void add_mass(struct output *out, int number, const double p[3], double weight, void *context)
+{
+  struct balance *b = context;
+  (void)out;
+  (void)number;
+  b->mass += weight;
+  b->inertia += weight * (p[0] * p[0] + p[1] * p[1]);
+}
+
+static void put_balance(struct output *out, int number, const double p[3], double weight, void *context)
+{
+  const struct balance *b = context;
+  double turn = b->moment / b->inertia;
+  put(out, "%d, 1, %.12e\n%d, 2, %.12e\n", number, -weight * (b->force[0] / b->mass - turn * p[1]), number,
+      -weight * (b->force[1] / b->mass + turn * p[0]));
+}
+
+/* Forces in proportion to mass against what the loads pull in the plane. */
+static void put_balances(struct output *out, const struct eo_mesh_case *load_case)
+{
+  struct balance b = {0};
+  for (int i = 0; i < load_case->loads; i++) {
+    const struct eo_mesh_load *load = &load_case->load[i];
+    int node = out->sector->section->flank.node[load->row];
+    double normal[3], p[3];
+    eo_sector_direction(out->sector, node, load->layer, 0, normal);
+    eo_sector_position(out->sector, node, load->layer, p);
+    b.force[0] += load->force * normal[0];
+    b.force[1] += load->force * normal[1];
+    b.moment += load->force * (p[0] * normal[1] - p[1] * normal[0]);
+  }
+  each_cut_node(out, add_mass, &b);
+  each_cut_node(out, put_balance, &b);
+}
+
+static void put_number(struct output *out, int number, const double p[3], double weight, void *context)
+{
+  (void)p;
+  (void)weight;
+  (void)context;
+  put(out, "%d,\n", number);
+}
+
+/* Two nodes of the innermost ring, half a turn apart, hold what the balanced body does not pull at: the first both
+   ways, the second across the line between them. */
+static void put_pins(struct output *out)
+{
+  const struct eo_section *s = out->sector->section;
+  int node = s->cut[0][s->cut_nodes - 1], other = out->teeth / 2;
+  double p[3], q[3];
+  place_node(out, 0, 0, node, p);
+  place_node(out, other, 0, node, q);
+  int across = fabs(q[0] - p[0]) > fabs(q[1] - p[1]) ? 2 : 1;
+  put(out, "*BOUNDARY\nAXIAL, 3, 3, 0\n%d, 1, 2, 0\n%d, %d, %d, 0\n", corner_number(out, 0, 0, node),
+      corner_number(out, other, 0, node), across, across);
 }
 
 static void put_step(struct output *out, const struct eo_mesh_case *load_case)
@@ -172,7 +253,9 @@ static void put_step(struct output *out, const struct eo_mesh_case *load_case)
       put(out, "%d, %d, %.12e\n", corner_number(out, 0, load->layer, flank->node[load->row]), c + 1,
           load->force * normal[c]);
   }
-  put(out, "*NODE PRINT, NSET=FLANK\nU\n*END STEP\n");
+  if (out->floating)
+    put_balances(out, load_case);
+  put(out, "*NODE PRINT, NSET=FLANK\nU\n%s*END STEP\n", out->floating ? "*NODE PRINT, NSET=CUTS\nU\n" : "");
 }
 
 static void put_model(struct output *out, const struct eo_material *material, enum eo_mesh_element element, int cases,
@@ -183,16 +266,23 @@ static void put_model(struct output *out, const struct eo_material *material, en
                           : "*HEADING\nsector of a gear, loaded flank of the middle tooth\n");
   put_nodes(out, element);
   put_elements(out, element);
-  put(out, "*NSET, NSET=FIXED\n");
+  put(out, "*NSET, NSET=%s\n", out->floating ? "AXIAL" : "FIXED");
   for (int t = 0; t < out->teeth; t++)
     put_fixed(out, element, t);
+  if (out->floating) {
+    put(out, "*NSET, NSET=CUTS, UNSORTED\n");
+    each_cut_node(out, put_number, NULL);
+  }
   put(out, "*NSET, NSET=FLANK, UNSORTED\n");
   for (int row = 0; row < flank->count; row++)
     for (int l = 0; l <= out->sector->layers; l++)
       put(out, "%d,\n", corner_number(out, 0, l, flank->node[row]));
   put(out, "*MATERIAL, NAME=STEEL\n*ELASTIC\n%.12e, %.12e\n*SOLID SECTION, ELSET=SECTOR, MATERIAL=STEEL\n",
       material->youngs_modulus, material->poissons_ratio);
-  put(out, "*BOUNDARY\nFIXED, 1, 3, 0\n");
+  if (out->floating)
+    put_pins(out);
+  else
+    put(out, "*BOUNDARY\nFIXED, 1, 3, 0\n");
   for (int i = 0; i < cases; i++)
     put_step(out, &load_case[i]);
 }
@@ -260,6 +350,13 @@ static enum eo_code number_own(struct output *out, const struct eo_section *s)
   return EO_OK;
 }
 
+static enum eo_code weigh_cuts(struct output *out, const struct eo_section *s)
+{
+  size_t count = (size_t)s->cut_nodes * (size_t)(out->sector->layers + 1);
+  out->weight = malloc((count + 1) * sizeof *out->weight);
+  return out->weight ? eo_member_cut_weights(out->sector, out->teeth, out->weight) : EO_ERROR_MEMORY;
+}
+
 enum eo_code eo_mesh_export(const struct eo_geometry *geometry, int member, const struct eo_material *material,
                             const struct eo_member_settings *settings, enum eo_mesh_element element, int cases,
                             const struct eo_mesh_case *load_case, eo_writer_function *writer, void *context,
@@ -269,15 +366,12 @@ enum eo_code eo_mesh_export(const struct eo_geometry *geometry, int member, cons
   struct eo_sector sector = {0};
   struct output out = {.sector = &sector, .writer = writer, .context = context};
   out.teeth = settings->section.open ? geometry->teeth[member] : 1;
-  if (settings->section.floating)
-    return eo_error_set(error, EO_ERROR_INPUT, "/resolution/body_support",
-                        "A floating body is balanced by inertia, which the mesh's file cannot say: choose body_support "
-                        "\"held\" for all teeth, or body \"sector\".");
+  out.floating = settings->section.floating;
   enum eo_code code = eo_section_init(&section, geometry, member, settings->bore_radius, &settings->section, error);
   if (!code)
     code = eo_sector_init(&sector, &section, settings->layers, geometry->face_width, eo_sector_twist(geometry, member),
                           material, EO_WHOLE_SECTOR, error);
-  if (!code && (find_edges(&out, &section) || number_own(&out, &section)))
+  if (!code && (find_edges(&out, &section) || number_own(&out, &section) || weigh_cuts(&out, &section)))
     code = eo_error_memory(error);
   if (!code) {
     put_model(&out, material, element, cases, load_case);
@@ -288,6 +382,7 @@ enum eo_code eo_mesh_export(const struct eo_geometry *geometry, int member, cons
   free(out.ends);
   free(out.node_place);
   free(out.edge_place);
+  free(out.weight);
   eo_sector_done(&sector);
   eo_section_done(&section);
   return code;

@@ -46,6 +46,10 @@ struct eo_member_result {
   double *arc;     /* [root_points]: along the root from the start of the active profile, m */
 };
 
+/* What the nodes of a ring's cut stand for when a floating body is balanced: weight[cut_nodes][layers + 1], share of
+   the volume of a tooth, m3, by the trapezoidal rule over radius and face. Errors: memory. */
+enum eo_code eo_member_cut_weights(const struct eo_sector *sector, int teeth, double *weight);
+
 /* Of a ring's rows, every how many carry the loads on other teeth: a cubic spline needs four. */
 static inline int eo_member_row_step(int rows)
 {

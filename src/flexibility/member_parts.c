@@ -53,3 +53,27 @@ void eo_member_root_displacement(const struct eo_sector *sector, int nodes, cons
   }
   memcpy(displacement + 3 * across, root + 2 * across, (size_t)(3 * across * (nodes - 1)) * sizeof *displacement);
 }
+
+/* What node i of a row of nodes stands for by the trapezoidal rule. */
+static double share_of(const double *place, int count, int i)
+{
+  double before = i > 0 ? place[i - 1] : place[i], after = i < count - 1 ? place[i + 1] : place[i];
+  return 0.5 * fabs(after - before);
+}
+
+enum eo_code eo_member_cut_weights(const struct eo_sector *sector, int teeth, double *weight)
+{
+  const struct eo_section *s = sector->section;
+  double *radius = malloc(sizeof *radius * (size_t)s->cut_nodes);
+  if (!radius)
+    return EO_ERROR_MEMORY;
+  for (int i = 0; i < s->cut_nodes; i++)
+    radius[i] = hypot(s->point[2 * s->cut[0][i]], s->point[2 * s->cut[0][i] + 1]);
+  for (int i = 0; i < s->cut_nodes; i++)
+    for (int l = 0; l <= sector->layers; l++) {
+      double height = sector->width / sector->layers * (l == 0 || l == sector->layers ? 0.5 : 1);
+      *weight++ = 2 * M_PI / teeth * radius[i] * share_of(radius, s->cut_nodes, i) * height;
+    }
+  free(radius);
+  return EO_OK;
+}

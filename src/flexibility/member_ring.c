@@ -81,28 +81,21 @@ static void rigid_motion(const struct eo_sector *sector, int k, int node, int la
   motion[2] = 0;
 }
 
-/* What node i of a row of nodes stands for by the trapezoidal rule. */
-static double share_of(const double *place, int count, int i)
-{
-  double before = i > 0 ? place[i - 1] : place[i], after = i < count - 1 ? place[i + 1] : place[i];
-  return 0.5 * fabs(after - before);
-}
-
 /* Weights and rigid motions of the left face and the flank. */
 static enum eo_code set_rigid(const struct eo_member_job *job, const struct kept *kept, struct eo_ring_tooth *tooth)
 {
   const struct eo_sector *sector = &job->sector;
   const struct eo_section *s = &job->section;
-  double *radius = malloc(sizeof *radius * (size_t)s->cut_nodes);
+  int across = sector->layers + 1;
+  double *weight = malloc(sizeof *weight * (size_t)(s->cut_nodes * across));
   double complex motion[3];
-  if (!radius)
+  if (!weight || eo_member_cut_weights(sector, tooth->teeth, weight)) {
+    free(weight);
     return EO_ERROR_MEMORY;
-  for (int i = 0; i < s->cut_nodes; i++)
-    radius[i] = hypot(s->point[2 * s->cut[0][i]], s->point[2 * s->cut[0][i] + 1]);
+  }
   for (int i = 0; i < kept->face; i++) {
     int node = kept->node[i], layer = kept->layer[i];
-    double height = sector->width / sector->layers * (layer == 0 || layer == sector->layers ? 0.5 : 1);
-    tooth->weight[i] = 2 * M_PI / tooth->teeth * radius[node] * share_of(radius, s->cut_nodes, node) * height;
+    tooth->weight[i] = weight[node * across + layer];
     for (int k = 0; k < EO_RING_RIGID; k++) {
       rigid_motion(sector, k, s->cut[0][node], layer, motion);
       tooth->rigid[k][i] = motion[kept->direction[i]];
@@ -110,12 +103,12 @@ static enum eo_code set_rigid(const struct eo_member_job *job, const struct kept
   }
   for (int j = 0; j < kept->flank; j++)
     for (int k = 0; k < EO_RING_RIGID; k++) {
-      int node = s->flank.node[j / (sector->layers + 1)];
+      int node = s->flank.node[j / across];
       const double *into = sector->frame[node][0];
-      rigid_motion(sector, k, node, j % (sector->layers + 1), motion);
+      rigid_motion(sector, k, node, j % across, motion);
       tooth->rigid_flank[k][j] = into[0] * motion[0] + into[1] * motion[1] + into[2] * motion[2];
     }
-  free(radius);
+  free(weight);
   return EO_OK;
 }
 

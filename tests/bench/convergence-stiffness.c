@@ -71,6 +71,7 @@ static void print_pair(const int z[2], double degrees)
     return;
   }
   eo_design_resolve(&design, &geometry);
+  design.load_cases = 1;
   design.load_case[0].torque = 2 * 135e3 * design.gear_pair.face_width * geometry.reference_radius[0];
   for (int i = 0; i < MODELS; i++) {
     design.resolution.body = model[i].body;

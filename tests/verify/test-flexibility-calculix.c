@@ -25,11 +25,17 @@ static const struct eo_mesh_load inside[] = {{3, 4, 1000}}, corner[] = {{8, 0, 2
                                            {1, 10, 1000}, {1, 11, 1000}, {1, 12, 500}};
 static const struct eo_mesh_case load_case[CASES_COUNT] = {{1, inside}, {6, corner}, {13, line}};
 
+/* What is modelled. */
+struct body {
+  enum eo_body body;
+  enum eo_body_support support;
+};
+
 static struct eo_member_settings coarse(const struct eo_geometry *g, const struct eo_gear_pair *pair, int member,
-                                        enum eo_body body)
+                                        const struct body *body)
 {
-  struct eo_flexibility_settings settings = {.body = body,
-                                             .support = EO_SUPPORT_HELD,
+  struct eo_flexibility_settings settings = {.body = body->body,
+                                             .support = body->support,
                                              .sector_teeth = 3,
                                              .layers = LAYERS,
                                              .flank_rows = ROWS,
@@ -39,12 +45,38 @@ static struct eo_member_settings coarse(const struct eo_geometry *g, const struc
   return eo_flexibility_member_settings(&settings, g, pair, member);
 }
 
-/* Runs CalculiX on the exported mesh; displacement[case][flank node][3], m. Returns 0 when all numbers were read. */
-static int run_calculix(const struct eo_geometry *g, int member, const struct eo_material *material,
-                        const struct eo_member_settings *settings, const char *directory, int nodes,
-                        double *displacement)
+/* Displacements, m. */
+struct found {
+  int nodes, cuts; /* of the flank; of all cuts of a floating ring, else 0 */
+  double *flank;   /* [case][nodes][3] */
+  double *cut;     /* [case][cuts][3] */
+};
+
+/* Each set of nodes of each step has a head of its own. Returns 0 when all numbers were read. */
+static int read_displacements(FILE *file, const struct found *found)
 {
-  char path[300], command[400], text[300];
+  char text[300];
+  int flank = 0, cuts = 0, number;
+  bool in_cuts = false;
+  while (fgets(text, sizeof text, file)) {
+    double u[3];
+    if (strstr(text, "set "))
+      in_cuts = strstr(text, "CUTS") != NULL;
+    if (sscanf(text, "%d %lf %lf %lf", &number, &u[0], &u[1], &u[2]) != 4)
+      continue;
+    if (in_cuts && cuts < CASES_COUNT * found->cuts)
+      memcpy(found->cut + (size_t)(3 * cuts++), u, sizeof u);
+    else if (!in_cuts && flank < CASES_COUNT * found->nodes)
+      memcpy(found->flank + (size_t)(3 * flank++), u, sizeof u);
+  }
+  return flank == CASES_COUNT * found->nodes && cuts == CASES_COUNT * found->cuts ? 0 : -1;
+}
+
+/* Runs CalculiX on the exported mesh. Returns 0 when all numbers were read. */
+static int run_calculix(const struct eo_geometry *g, int member, const struct eo_material *material,
+                        const struct eo_member_settings *settings, const char *directory, const struct found *found)
+{
+  char path[300], command[400];
   snprintf(path, sizeof path, "%s/sector.inp", directory);
   FILE *file = fopen(path, "w");
   if (!file)
@@ -60,14 +92,36 @@ static int run_calculix(const struct eo_geometry *g, int member, const struct eo
   file = fopen(path, "r");
   if (!file)
     return -1;
-  int found = 0, number;
-  while (fgets(text, sizeof text, file) && found < CASES_COUNT * nodes) {
-    double *u = displacement + 3 * found;
-    if (sscanf(text, "%d %lf %lf %lf", &number, &u[0], &u[1], &u[2]) == 4)
-      found++;
-  }
+  int missing = read_displacements(file, found);
   fclose(file);
-  return found == CASES_COUNT * nodes ? 0 : -1;
+  return missing;
+}
+
+/* Takes the weighted mean rigid motion in the plane of the cuts out of the flank's displacements. */
+static void take_mean_out(const struct eo_sector *sector, int teeth, const struct found *found, double *flank,
+                          const double *cut)
+{
+  const struct eo_section *s = sector->section;
+  int across = LAYERS + 1, each = s->cut_nodes * across;
+  double *weight = calloc((size_t)each, sizeof *weight), sum[3] = {0}, mass = 0, inertia = 0;
+  ok(weight && !eo_member_cut_weights(sector, teeth, weight), "the cuts have weights");
+  for (int i = 0; i < found->cuts && weight; i++) {
+    double p[3], w = weight[i % each], angle = 2 * M_PI * (i / each) / teeth;
+    eo_sector_position(sector, s->cut[0][i % each / across], i % across, p);
+    double x = cos(angle) * p[0] + sin(angle) * p[1], y = cos(angle) * p[1] - sin(angle) * p[0];
+    sum[0] += w * cut[3 * i];
+    sum[1] += w * cut[3 * i + 1];
+    sum[2] += w * (x * cut[3 * i + 1] - y * cut[3 * i]);
+    mass += w;
+    inertia += w * (x * x + y * y);
+  }
+  for (int i = 0; i < found->nodes; i++) {
+    double p[3];
+    eo_sector_position(sector, s->flank.node[i / across], i % across, p);
+    flank[3 * i] -= sum[0] / mass - p[1] * sum[2] / inertia;
+    flank[3 * i + 1] -= sum[1] / mass + p[0] * sum[2] / inertia;
+  }
+  free(weight);
 }
 
 static void compare(int member, const struct eo_member_result *result, const struct eo_sector *sector,
@@ -95,8 +149,8 @@ static void compare(int member, const struct eo_member_result *result, const str
   }
 }
 
-static void check_member(const struct eo_geometry *g, const struct eo_gear_pair *pair, int member, enum eo_body body,
-                         const char *directory)
+static void check_member(const struct eo_geometry *g, const struct eo_gear_pair *pair, int member,
+                         const struct body *body, const char *directory)
 {
   struct eo_material material = paper_steel();
   struct eo_member_settings settings = coarse(g, pair, member, body);
@@ -105,26 +159,36 @@ static void check_member(const struct eo_geometry *g, const struct eo_gear_pair 
   struct eo_section section = {0};
   struct eo_sector sector = {0};
   struct eo_error error = {0};
-  static double displacement[CASES_COUNT * (ROWS + 1) * (LAYERS + 1) * 3];
+  struct found found = {.nodes = (ROWS + 1) * (LAYERS + 1)};
   enum eo_code code = eo_member_compute(&result, g, member, &material, &settings, NULL, &times, &error);
   if (!code)
     code = eo_section_init(&section, g, member, settings.bore_radius, &settings.section, &error);
   if (!code)
     code = eo_sector_init(&sector, &section, LAYERS, g->face_width, eo_sector_twist(g, member), &material,
                           EO_WHOLE_SECTOR, &error);
-  if (ok(!code, "the coarse model is computed %s", error.text) &&
-      ok(!run_calculix(g, member, &material, &settings, directory, (ROWS + 1) * (LAYERS + 1), displacement),
-         "CalculiX runs"))
-    compare(member, &result, &sector, displacement);
+  bool floating = settings.section.floating;
+  found.cuts = floating ? g->teeth[member] * section.cut_nodes * (LAYERS + 1) : 0;
+  found.flank = calloc((size_t)(3 * CASES_COUNT * found.nodes), sizeof(double));
+  found.cut = calloc((size_t)(3 * CASES_COUNT * found.cuts + 1), sizeof(double));
+  if (ok(!code && found.flank && found.cut, "the coarse model is computed %s", error.text) &&
+      ok(!run_calculix(g, member, &material, &settings, directory, &found), "CalculiX runs")) {
+    for (int k = 0; k < CASES_COUNT && floating; k++)
+      take_mean_out(&sector, g->teeth[member], &found, found.flank + 3 * k * found.nodes,
+                    found.cut + 3 * k * found.cuts);
+    compare(member, &result, &sector, found.flank);
+  }
+  free(found.flank);
+  free(found.cut);
   eo_sector_done(&sector);
   eo_section_done(&section);
   eo_member_result_done(&result);
 }
 
-/* With an argument, all teeth of a held ring: minutes. */
+/* With "ring" all teeth of a held ring, with "floating" of one that floats: minutes. */
 int main(int argc, char **argv)
 {
-  enum eo_body body = argc > 1 && argv[1] ? EO_BODY_RING : EO_BODY_SECTOR;
+  bool ring = argc > 1, floating = ring && strcmp(argv[1], "floating") == 0;
+  const struct body body = {ring ? EO_BODY_RING : EO_BODY_SECTOR, floating ? EO_SUPPORT_FLOATING : EO_SUPPORT_HELD};
   char directory[] = "/tmp/easeoff-ccx-XXXXXX", command[100];
   struct eo_gear_pair pair = paper_pair();
   struct eo_geometry geometry;
@@ -136,9 +200,9 @@ int main(int argc, char **argv)
   ok(!eo_geometry_init(&geometry, &pair, &error), "the paper's pair is accepted");
   if (!ok(mkdtemp(directory) != NULL, "a working directory is made"))
     return tap_done();
-  check_member(&geometry, &pair, EO_PINION, body, directory);
-  if (body == EO_BODY_SECTOR)
-    check_member(&geometry, &pair, EO_GEAR, body, directory);
+  check_member(&geometry, &pair, EO_PINION, &body, directory);
+  if (!ring)
+    check_member(&geometry, &pair, EO_GEAR, &body, directory);
   snprintf(command, sizeof command, "rm -r '%s'", directory);
   ok(!system(command), "the working directory is removed");
   return tap_done();
