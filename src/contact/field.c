@@ -6,7 +6,7 @@
 #include <string.h>
 
 /* The slices in mesh with the share of shaft angle errors, z from their pivot; *slope by s. */
-static double slices_at(const struct eo_gap_field *field, double s, double z, double *slope)
+static double even_slices_at(const struct eo_gap_field *field, double s, double z, double *slope)
 {
   const struct eo_slice_gap *slice = &field->slice;
   double part;
@@ -23,6 +23,46 @@ static double slices_at(const struct eo_gap_field *field, double s, double z, do
   return gap + from + part * (to - from);
 }
 
+/* Where profiles vary over the face: the slice at z - pivot on its own. Without a touch, reliefs too steep for any, the
+   gap is the sum of what is taken off. */
+static double own_slice_at(const struct eo_gap_field *field, double s, double z, double *slope)
+{
+  const struct eo_geometry *g = field->geometry;
+  struct eo_modification_shape slice[2];
+  struct eo_slice_touch touch;
+  for (int member = 0; member < 2; member++)
+    eo_modification_slice(&field->shape[member], z - field->pivot, &slice[member]);
+  if (!eo_slice_touch_at(g, slice, s, &touch)) {
+    double rate[2][2], place = g->rack_factor * s;
+    touch = (struct eo_slice_touch){.tilt = eo_slice_tilt_at(NULL, g, s)};
+    touch.gap = eo_modification_profile(&slice[EO_PINION], place, rate[EO_PINION]) +
+                eo_modification_profile(&slice[EO_GEAR], -place, rate[EO_GEAR]);
+    touch.slope = g->rack_factor * (rate[EO_PINION][0] - rate[EO_GEAR][0]);
+  }
+  if (field->corner[0].rule != EO_TILT_ROTATED)
+    touch.tilt = eo_slice_tilt_at(NULL, g, s);
+  *slope = touch.slope + field->misalignment * field->lean;
+  return touch.gap + field->errors[0] * (touch.tilt.shift[0] + z * touch.tilt.lever[0]) +
+         field->errors[1] * (touch.tilt.shift[1] + z * touch.tilt.lever[1]);
+}
+
+static double slices_at(const struct eo_gap_field *field, double s, double z, double *slope)
+{
+  return field->varies ? own_slice_at(field, s, z, slope) : even_slices_at(field, s, z, slope);
+}
+
+/* Excess of the tip corner between two stations. */
+static double corner_between(const struct eo_gap_field *field, int side, double d, double z, double *slope)
+{
+  double at = ((z - field->pivot) / field->geometry->face_width + 0.5) * (EO_CORNER_STATIONS - 1), rate[2];
+  int i = (int)fmax(0, fmin(EO_CORNER_STATIONS - 2, floor(at)));
+  const struct eo_corner_station *from = &field->station[i], *to = from + 1;
+  double below = eo_corner_gap_at(&from->corner[side], &from->tilted[side], d, z, &rate[0]),
+         above = eo_corner_gap_at(&to->corner[side], &to->tilted[side], d, z, &rate[1]), part = at - i;
+  *slope = rate[0] + part * (rate[1] - rate[0]);
+  return below + part * (above - below);
+}
+
 /* What the tip corner at the nearer end of the path has over the slices; *slope by s. It strikes from where shaft angle
    errors have moved its start, inside the path too. */
 static double corner_at(const struct eo_gap_field *field, double s, double z, double *slope)
@@ -33,7 +73,8 @@ static double corner_at(const struct eo_gap_field *field, double s, double z, do
   *slope = 0;
   if (d < field->takes_over[side])
     return 0;
-  double excess = eo_corner_gap_at(&field->corner[side], &field->tilted[side], d, z, slope);
+  double excess = field->varies ? corner_between(field, side, d, z, slope)
+                                : eo_corner_gap_at(&field->corner[side], &field->tilted[side], d, z, slope);
   *slope *= side == 0 ? -1 : 1;
   return excess;
 }
@@ -75,9 +116,18 @@ double eo_deflection_at(const struct eo_deflection *deflection, double face_widt
   return part[0] + s * part[1];
 }
 
-/* errors: kappa, gamma as the end sees them. */
-static void set_errors(struct eo_gap_field *field, const double errors[2])
+/* The corner under the errors, and the least d at which it can strike anywhere on the face. */
+static double tilt_corner(const struct eo_gap_field *field, const struct eo_corner_gap *corner,
+                          struct eo_tilted_corner *tilted)
 {
+  double most = fabs(field->pivot) + field->geometry->face_width / 2;
+  eo_corner_gap_tilt(tilted, corner, field->errors);
+  return corner->start - fabs(tilted->shift[0]) - most * fabs(tilted->lever[0]);
+}
+
+static void set_errors(struct eo_gap_field *field)
+{
+  const double *errors = field->errors;
   struct eo_tilt even = eo_slice_tilt_at(NULL, field->geometry, 0);
   field->misalignment = errors[0] * even.lever[0] + errors[1] * even.lever[1];
   for (int i = 0; i < field->slice.nodes; i++) {
@@ -85,35 +135,73 @@ static void set_errors(struct eo_gap_field *field, const double errors[2])
     field->lever[i] = errors[0] * tilt->lever[0] + errors[1] * tilt->lever[1];
     field->shift[i] = errors[0] * tilt->shift[0] + errors[1] * tilt->shift[1];
   }
-  for (int side = 0; side < 2; side++) {
-    struct eo_tilted_corner *tilted = &field->tilted[side];
-    double most = fabs(field->pivot) + field->geometry->face_width / 2;
-    eo_corner_gap_tilt(tilted, &field->corner[side], errors);
-    field->takes_over[side] = field->corner[side].start - fabs(tilted->shift[0]) - most * fabs(tilted->lever[0]);
+  for (int side = 0; side < 2; side++)
+    field->takes_over[side] = tilt_corner(field, &field->corner[side], &field->tilted[side]);
+}
+
+/* The slice gap of both members' profiles and the corners that go with it. */
+static void set_slices(const struct eo_geometry *g, const struct eo_modification_shape shape[2],
+                       struct eo_slice_gap *slice, struct eo_corner_gap corner[2])
+{
+  enum eo_tilt_rule rule = corner[0].rule;
+  eo_slice_gap_init(slice, g, shape);
+  if (rule == EO_TILT_AT_RADIUS)
+    eo_corner_gap_at_radius(corner, g, shape, slice);
+  else if (slice->nodes > 0)
+    eo_corner_gap_modified(corner, g, shape, slice);
+  for (int i = 0; rule != EO_TILT_ROTATED && i < slice->nodes; i++)
+    slice->tilt[i] = eo_slice_tilt_at(NULL, g, slice->phase[i]);
+}
+
+/* Corners at stations over the face, each with its own slice. */
+static void set_stations(struct eo_gap_field *field, const struct eo_corner_gap even[2])
+{
+  const struct eo_geometry *g = field->geometry;
+  for (int i = 0; i < EO_CORNER_STATIONS; i++) {
+    struct eo_corner_station *station = &field->station[i];
+    struct eo_modification_shape profile[2];
+    struct eo_slice_gap slice;
+    double eta = g->face_width * ((double)i / (EO_CORNER_STATIONS - 1) - 0.5);
+    for (int member = 0; member < 2; member++)
+      eo_modification_slice(&field->shape[member], eta, &profile[member]);
+    memcpy(station->corner, even, sizeof station->corner);
+    set_slices(g, profile, &slice, station->corner);
+    for (int side = 0; side < 2; side++)
+      field->takes_over[side] = fmin(field->takes_over[side],
+                                     tilt_corner(field, &station->corner[side], &station->tilted[side]));
   }
+}
+
+void eo_gap_field_init_shapes(struct eo_gap_field *field, const struct eo_geometry *g,
+                              const struct eo_modification_shape shape[2], int end, double in_plane,
+                              double out_of_plane, double pivot, const struct eo_corner_gap corner[2])
+{
+  double sign = end == EO_LEFT ? -1 : 1;
+  field->geometry = g;
+  field->lean = tan(g->base_helix_angle);
+  field->stretch = 1 / cos(g->helix_angle);
+  memcpy(field->shape, shape, sizeof field->shape);
+  memcpy(field->corner, corner, sizeof field->corner);
+  field->pivot = pivot;
+  field->offset = 0;
+  field->deflection = NULL;
+  field->errors[0] = sign * in_plane;
+  field->errors[1] = sign * out_of_plane;
+  field->varies = shape[EO_PINION].varies || shape[EO_GEAR].varies;
+  set_slices(g, field->shape, &field->slice, field->corner);
+  set_errors(field);
+  if (field->varies)
+    set_stations(field, corner);
 }
 
 void eo_gap_field_init(struct eo_gap_field *field, const struct eo_geometry *g,
                        const struct eo_flank_modification *pinion, const struct eo_flank_modification *gear, int end,
                        double in_plane, double out_of_plane, double pivot, const struct eo_corner_gap corner[2])
 {
-  double sign = end == EO_LEFT ? -1 : 1;
-  field->geometry = g;
-  field->lean = tan(g->base_helix_angle);
-  field->stretch = 1 / cos(g->helix_angle);
-  eo_modification_init(&field->shape[EO_PINION], g, EO_PINION, pinion);
-  eo_modification_init(&field->shape[EO_GEAR], g, EO_GEAR, gear);
-  eo_slice_gap_init(&field->slice, g, field->shape);
-  memcpy(field->corner, corner, sizeof field->corner);
-  if (corner[0].rule == EO_TILT_AT_RADIUS)
-    eo_corner_gap_at_radius(field->corner, g, field->shape, &field->slice);
-  else if (field->slice.nodes > 0)
-    eo_corner_gap_modified(field->corner, g, field->shape, &field->slice);
-  for (int i = 0; corner[0].rule != EO_TILT_ROTATED && i < field->slice.nodes; i++)
-    field->slice.tilt[i] = eo_slice_tilt_at(NULL, g, field->slice.phase[i]);
-  field->pivot = pivot;
-  field->deflection = NULL;
-  set_errors(field, (const double[]){sign * in_plane, sign * out_of_plane});
+  struct eo_modification_shape shape[2];
+  eo_modification_init(&shape[EO_PINION], g, EO_PINION, pinion);
+  eo_modification_init(&shape[EO_GEAR], g, EO_GEAR, gear);
+  eo_gap_field_init_shapes(field, g, shape, end, in_plane, out_of_plane, pivot, corner);
 }
 
 double eo_gap_field_at(const struct eo_gap_field *field, double s, double eta, double *slope, double path[2])
@@ -129,7 +217,7 @@ double eo_gap_field_at(const struct eo_gap_field *field, double s, double eta, d
   if (path)
     set_path(field, s, path);
   gap += eo_modification_lead(&field->shape[EO_PINION], x, &unused) +
-         eo_modification_lead(&field->shape[EO_GEAR], x, &unused);
+         eo_modification_lead(&field->shape[EO_GEAR], x, &unused) + field->offset;
   if (slope)
     *slope = rate;
   return gap;
@@ -250,9 +338,47 @@ static void prune(const struct eo_gap_field *field, struct profile *profile)
   profile->samples = kept;
 }
 
+/* The lowest of a grid of places and of a search about it with ever smaller steps. */
+static double varying_datum(const struct eo_gap_field *field)
+{
+  enum { SAMPLES = 61, ROUNDS = 24 };
+  const struct eo_geometry *g = field->geometry;
+  const double low[2] = {g->path_start, -g->face_width / 2}, high[2] = {g->path_end, g->face_width / 2};
+  double best[2] = {0, 0}, lowest = INFINITY, step[2];
+  for (int k = 0; k < 2; k++)
+    step[k] = (high[k] - low[k]) / (SAMPLES - 1);
+  for (int i = 0; i < SAMPLES * SAMPLES; i++) {
+    double s = low[0] + step[0] * (i / SAMPLES), eta = low[1] + step[1] * (i % SAMPLES),
+           gap = eo_gap_field_at(field, s, eta, NULL, NULL);
+    if (gap < lowest) {
+      lowest = gap;
+      best[0] = s;
+      best[1] = eta;
+    }
+  }
+  for (int round = 0; round < ROUNDS; round++) {
+    double before = lowest, centre[2] = {best[0], best[1]};
+    for (int i = 0; i < 9; i++) {
+      double s = fmin(high[0], fmax(low[0], centre[0] + step[0] * (i / 3 - 1))),
+             eta = fmin(high[1], fmax(low[1], centre[1] + step[1] * (i % 3 - 1))),
+             gap = eo_gap_field_at(field, s, eta, NULL, NULL);
+      if (gap < lowest) {
+        lowest = gap;
+        best[0] = s;
+        best[1] = eta;
+      }
+    }
+    for (int k = 0; k < 2 && lowest == before; k++)
+      step[k] /= 2;
+  }
+  return lowest;
+}
+
 double eo_gap_field_datum(const struct eo_gap_field *field)
 {
   enum { SAMPLES = DATUM_SAMPLES };
+  if (field->varies)
+    return varying_datum(field);
   const struct eo_geometry *g = field->geometry;
   struct profile profile;
   double unused, lowest = INFINITY;
@@ -267,5 +393,5 @@ double eo_gap_field_datum(const struct eo_gap_field *field)
       deflection_parts(field->deflection, g->face_width, eta, body);
     lowest = fmin(lowest, lead + body[0] + lowest_profile(field, &profile, eta + field->pivot, body[1]));
   }
-  return lowest;
+  return lowest + field->offset;
 }

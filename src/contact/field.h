@@ -16,6 +16,14 @@ struct eo_deflection {
 
 double eo_deflection_at(const struct eo_deflection *deflection, double face_width, double s, double eta);
 
+/* The tip corners of flanks whose profile changes over the face: at equal steps from eta = -b/2 to +b/2, linear between
+   them. */
+enum { EO_CORNER_STATIONS = 9 };
+struct eo_corner_station {
+  struct eo_corner_gap corner[2];
+  struct eo_tilted_corner tilted[2];
+};
+
 struct eo_gap_field {
   const struct eo_geometry *geometry;    /* borrowed */
   struct eo_modification_shape shape[2]; /* [member] */
@@ -27,6 +35,10 @@ struct eo_gap_field {
   double lever[EO_SLICE_NODES], shift[EO_SLICE_NODES]; /* the errors' share at the nodes of the slice gap */
   struct eo_tilted_corner tilted[2];                   /* the corners under them */
   double takes_over[2];                                /* the least d at which a corner can strike anywhere, m */
+  double errors[2];                                    /* kappa, gamma as the end sees them, rad */
+  double offset;                          /* on every gap, m: what displaces a whole flank */
+  bool varies;                            /* profiles differ from slice to slice: each is met on its own */
+  struct eo_corner_station station[EO_CORNER_STATIONS]; /* of such flanks */
   const struct eo_deflection *deflection; /* of the bodies; borrowed; NULL: rigid, as eo_gap_field_init() leaves it */
 };
 
@@ -55,12 +67,18 @@ void eo_gap_field_init(struct eo_gap_field *field, const struct eo_geometry *geo
                        const struct eo_flank_modification *pinion, const struct eo_flank_modification *gear, int end,
                        double in_plane, double out_of_plane, double pivot, const struct eo_corner_gap corner[2]);
 
+/* The same for flanks of any kind: shape [member], complete, each with y along or against eta; grids stay borrowed. */
+void eo_gap_field_init_shapes(struct eo_gap_field *field, const struct eo_geometry *geometry,
+                              const struct eo_modification_shape shape[2], int end, double in_plane,
+                              double out_of_plane, double pivot, const struct eo_corner_gap corner[2]);
+
 /* Gap at (s, eta), m, normal; beyond the path of contact the tip corner's against the modified flank, from where the
    slices no longer meet inside the tip. *slope (may be NULL): its derivative along s at constant eta.
    path (may be NULL): [member] place on each flank. */
 double eo_gap_field_at(const struct eo_gap_field *field, double s, double eta, double *slope, double path[2]);
 
-/* The smallest gap anywhere on the active flank (rectangle s_A..s_E x face width), m. */
+/* The smallest gap anywhere on the active flank (rectangle s_A..s_E x face width), m; where profiles vary over the face,
+   of a grid of places and a search about the lowest of them. */
 double eo_gap_field_datum(const struct eo_gap_field *field);
 
 /* The smallest gap along the contact line s = c + eta tan(beta_b), over the face width and, when edges is set, the tip

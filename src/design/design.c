@@ -90,6 +90,36 @@ static void resolve_allowances(struct eo_gear_pair *pair)
   }
 }
 
+static int usual_driver(const struct eo_design *design)
+{
+  for (int k = 0; k < design->load_cases; k++)
+    if (design->load_case[k].driver != EO_GEAR)
+      return EO_PINION;
+  return design->load_cases ? EO_GEAR : EO_PINION;
+}
+
+enum eo_flank_side eo_design_flank_of(const struct eo_design *design, int load_case)
+{
+  const struct eo_load_case *c = &design->load_case[load_case];
+  return (c->direction == EO_ASTERN) != (c->driver != usual_driver(design)) ? EO_COAST_FLANK : EO_DRIVE_FLANK;
+}
+
+struct eo_running eo_design_running(const struct eo_design *design, int load_case)
+{
+  const struct eo_load_case *c = &design->load_case[load_case];
+  const struct eo_alignment *a = &design->alignment;
+  struct eo_running running = {.flank = c->flank,
+                               .backwards = c->driver == EO_GEAR,
+                               .inwards = (c->flank == EO_COAST_FLANK) != (a->apex == EO_APEX_LEADING),
+                               .in_plane = a->shaft_angle_in_plane,
+                               .out_of_plane = a->shaft_angle_out_of_plane};
+  if (c->has_alignment && !isnan(c->alignment.in_plane))
+    running.in_plane = c->alignment.in_plane;
+  if (c->has_alignment && !isnan(c->alignment.out_of_plane))
+    running.out_of_plane = c->alignment.out_of_plane;
+  return running;
+}
+
 static void resolve_gear_pair(struct eo_gear_pair *pair, const struct eo_geometry *geometry)
 {
   fill(&pair->groove_width, pair->ends == 2 ? 8 * pair->normal_module : 0);
@@ -232,8 +262,31 @@ static void resolve_optimization(struct eo_optimization *optimization, const str
   resolve_start_range(&optimization->root_relief_start, -geometry->rack_bottom, pair->normal_module);
 }
 
+/* An angle stated as a deviation over the face width. */
+static void resolve_angle(double *angle, double deviation, double face_width)
+{
+  if (!isnan(deviation))
+    *angle = atan(deviation / face_width);
+}
+
+static void resolve_alignment(struct eo_design *design, double face_width)
+{
+  struct eo_alignment *a = &design->alignment;
+  resolve_angle(&a->shaft_angle_in_plane, a->deviation_in_plane, face_width);
+  resolve_angle(&a->shaft_angle_out_of_plane, a->deviation_out_of_plane, face_width);
+  for (int k = 0; k < design->load_cases; k++) {
+    struct eo_case_alignment *own = &design->load_case[k].alignment;
+    design->load_case[k].flank = eo_design_flank_of(design, k);
+    if (design->load_case[k].has_alignment) {
+      resolve_angle(&own->in_plane, own->deviation_in_plane, face_width);
+      resolve_angle(&own->out_of_plane, own->deviation_out_of_plane, face_width);
+    }
+  }
+}
+
 void eo_design_resolve(struct eo_design *design, const struct eo_geometry *geometry)
 {
+  resolve_alignment(design, geometry->face_width);
   resolve_gear_pair(&design->gear_pair, geometry);
   for (int i = 0; i < 2; i++) {
     resolve_inertia(&design->supports, &design->gear_pair, design->material.density, i, geometry->reference_radius[i]);

@@ -20,7 +20,11 @@
 
 enum { EO_MAX_LOAD_CASES = 64, EO_NAME_LENGTH = 200, EO_MAX_SCENARIOS = 64 };
 
-enum eo_axial { EO_AXIAL_FLOATING, EO_AXIAL_FIXED, EO_AXIAL_SPRING };
+enum eo_axial { EO_AXIAL_FLOATING, EO_AXIAL_FIXED, EO_AXIAL_SPRING, EO_AXIAL_STOPS };
+
+/* Which face ends of the drive flanks meet first: with the apex trailing the outer ones, with the apex leading those at
+   the groove. */
+enum eo_apex { EO_APEX_TRAILING, EO_APEX_LEADING };
 
 struct eo_alignment {
   double shaft_angle_in_plane;     /* kappa, rad, in the plane of the axes */
@@ -28,16 +32,43 @@ struct eo_alignment {
   enum eo_axial pinion_axial;
   double pinion_axial_stiffness; /* N/m, used with EO_AXIAL_SPRING; NaN: that of the gear's left end */
   double stagger;                /* right end behind the left, in transverse base pitches, 0..1 */
+  double deviation_in_plane;     /* f_Sigma_delta over the face width of one end, m; NaN: the angle is stated */
+  double deviation_out_of_plane; /* f_Sigma_beta over the face width of one end, m */
+  double pinion_axial_clearance; /* between the stops, m, used with EO_AXIAL_STOPS */
+  double coupling_thrust;        /* on the pinion, + to the right, N */
+  double apex_offset[2];         /* [member] of the right end away from the left one beyond the nominal distance, m */
+  enum eo_apex apex;
 };
 
 /* Stiffness with which the pinion is held along its axis, N/m: 0 floating, INFINITY fixed. */
 double eo_alignment_axial_stiffness(const struct eo_alignment *alignment);
+
+/* Which way the shafts turn, against each other's: ahead is what the design is made for. */
+enum eo_direction { EO_AHEAD, EO_ASTERN };
 
 struct eo_load_case {
   double torque; /* total on the pinion shaft, N m, > 0 */
   double speed;  /* pinion, rad/s, > 0 */
   double share;  /* of operating time; they sum to 1 */
   double power;  /* W, entry alone: the torque is power over speed; NaN: the torque is stated */
+  enum eo_flank_side flank; /* that carries; from direction and driver by eo_design_resolve() */
+  double hours;  /* of operating time, h; not above 0 (or NaN): shares are stated */
+  enum eo_direction direction;
+  int driver; /* member */
+  int has_alignment;
+  struct eo_case_alignment {
+    double in_plane, out_of_plane;                     /* rad; NaN: as the design's */
+    double deviation_in_plane, deviation_out_of_plane; /* over the face width, m; NaN: the angle is stated */
+  } alignment;
+  char name[64];
+};
+
+/* How the teeth of a load case meet. */
+struct eo_running {
+  enum eo_flank_side flank;      /* that carries */
+  bool backwards;                /* the gear drives: contact runs from the pinion's tip to its root */
+  bool inwards;                  /* the face ends at the groove meet first: eta runs inwards on both ends */
+  double in_plane, out_of_plane; /* shaft angle errors, rad */
 };
 
 enum eo_normalise { EO_NORMALISE_UNMODIFIED, EO_NORMALISE_NONE };
@@ -71,10 +102,12 @@ struct eo_range {
 };
 
 /* A modification parameter to be optimized, chosen by its key, on one end or alike on both. */
+enum { EO_BOTH_FLANKS = 2 };
 struct eo_listed_variable {
   int member, end;        /* end: EO_LEFT, EO_RIGHT, EO_BOTH_ENDS */
   int parameter;          /* index of eo_variable_parameters in document/design_document.h */
   struct eo_range bounds; /* in the unit of the parameter's key; NaN: the bounds of the optimization */
+  int flank;              /* EO_DRIVE_FLANK, EO_COAST_FLANK, EO_BOTH_FLANKS */
 };
 
 struct eo_optimization {
@@ -122,6 +155,7 @@ struct eo_design {
   struct eo_load_case load_case[EO_MAX_LOAD_CASES];
   struct eo_modification modification;
   struct eo_rating_settings rating;
+  struct eo_flank_grids grids; /* beside it: what a search varies stays small */
   struct eo_objective objective;
   struct eo_optimization optimization;
   struct eo_resolution resolution;
@@ -134,6 +168,12 @@ struct eo_geometry;
    come from their series, the backlash from stated allowances. EO_ERROR_INPUT with the key: statements that contradict
    each other, no such series. */
 enum eo_code eo_design_settle(struct eo_design *design, struct eo_error *error);
+/* The drive flanks carry ahead with the member driving that drives in every load case, or with the pinion driving when
+   both do; turning round either of torque or rotation brings the coast flanks into contact. */
+struct eo_running eo_design_running(const struct eo_design *design, int load_case);
+
+/* The flank that carries a load case; eo_design_resolve() notes it there, so that the case may stand alone afterwards. */
+enum eo_flank_side eo_design_flank_of(const struct eo_design *design, int load_case);
 
 /* Puts the derived default in place of every NaN whose rule does not need the loaded contact (mesh_damping_stiffness
    stays NaN: it is the mean mesh stiffness of each load case). geometry: of design->gear_pair. Idempotent; cannot fail.

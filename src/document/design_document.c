@@ -8,6 +8,7 @@
 #include "format/json.h"
 #include "document/assumption.h"
 #include "document/design_migration.h"
+#include "document/flank_grid_document.h"
 #include "document/search_space.h"
 #include "evaluation/evaluator.h"
 #include "design/check.h"
@@ -54,11 +55,43 @@ static void settle_power(struct eo_load_case *load_case, int i, struct eo_faults
   load_case->power = NAN;
 }
 
+/* Shares of load cases that state their hours. */
+static void share_hours(struct eo_load_case *load_case, int count, struct eo_faults *faults)
+{
+  double sum = 0;
+  int stated = 0, shares = 0;
+  for (int i = 0; i < count; i++) {
+    stated += load_case[i].hours > 0 || load_case[i].hours == 0;
+    shares += !isnan(load_case[i].share);
+    sum += load_case[i].hours > 0 ? load_case[i].hours : 0;
+  }
+  if (stated == 0)
+    return;
+  if (stated < count)
+    eo_faults_add(faults, "/load_cases", "Either every load case states its hours or none does; %d of %d do.", stated,
+                  count);
+  else if (sum <= 0)
+    eo_faults_add(faults, "/load_cases", "The hours of operating time sum to 0.");
+  for (int i = 0; i < count && stated == count && sum > 0; i++) {
+    double share = load_case[i].hours / sum;
+    if (shares == count && fabs(load_case[i].share - share) > 1e-6) {
+      eo_faults_add(faults, "/load_cases",
+                    "Load case %d states %.9g hours, %.6g of all, and a share of %.6g: state hours or shares.", i + 1,
+                    load_case[i].hours, share, load_case[i].share);
+      return;
+    }
+    load_case[i].share = share;
+  }
+}
+
 void eo_load_cases_settle(struct eo_load_case *load_case, int count, struct eo_warnings *warnings,
                           struct eo_faults *faults)
 {
   double sum = 0;
-  int stated = 0;
+  int stated = 0, before = faults->count;
+  share_hours(load_case, count, faults);
+  if (faults->count != before)
+    return;
   for (int i = 0; i < count; i++) {
     settle_power(&load_case[i], i, faults);
     stated += !isnan(load_case[i].share);
@@ -91,6 +124,60 @@ static void drop_right_end(const json_t *document, struct eo_design *design, str
                       "The modification of the %s's right end is ignored: the pair has one end, the left one.",
                       member[i]);
     eo_table_defaults(&eo_flank_modification_table, &design->modification.flank[i][EO_RIGHT]);
+    eo_table_defaults(&eo_flank_modification_table, &design->modification.coast[i][EO_RIGHT]);
+  }
+}
+
+/* A key that stands beside the one that says the same in another measure. */
+static void check_twice(const json_t *object, const struct eo_path *path, const char *deg, const char *um,
+                        double face_width, struct eo_faults *faults)
+{
+  const json_t *angle = json_object_get(object, deg), *deviation = json_object_get(object, um);
+  struct eo_path place = {path, um, 0};
+  if (!json_is_number(angle) || !json_is_number(deviation))
+    return;
+  double stated = json_number_value(angle),
+         follows = eo_unit_out(&eo_unit_deg, atan(eo_unit_in(&eo_unit_um, json_number_value(deviation)) / face_width));
+  if (fabs(stated - follows) > 1e-9 + 1e-6 * fabs(stated))
+    eo_faults_at(faults, &place, "This is %.9g deg over the face width, but %s says %.9g: state one of them.", follows,
+                 deg, stated);
+}
+
+static void check_alignment(const json_t *alignment, const struct eo_path *path, double face_width,
+                            struct eo_faults *faults)
+{
+  check_twice(alignment, path, "shaft_angle_error_in_plane_deg", "shaft_angle_error_in_plane_um", face_width, faults);
+  check_twice(alignment, path, "shaft_angle_error_out_of_plane_deg", "shaft_angle_error_out_of_plane_um", face_width,
+              faults);
+}
+
+static void check_alignments(const json_t *document, const struct eo_design *design, struct eo_faults *faults)
+{
+  struct eo_path path = {NULL, "alignment", 0}, list = {NULL, "load_cases", 0};
+  double face_width = design->gear_pair.face_width;
+  const json_t *row;
+  size_t i;
+  check_alignment(json_object_get(document, "alignment"), &path, face_width, faults);
+  json_array_foreach(json_object_get(document, "load_cases"), i, row)
+  {
+    struct eo_path of_row = {&list, NULL, (int)i}, of_alignment = {&of_row, "alignment", 0};
+    check_alignment(json_object_get(row, "alignment"), &of_alignment, face_width, faults);
+  }
+}
+
+/* A search that varies the slope by its earlier name varies twice as much by its present one. */
+static void migrate_variables(struct eo_optimization *optimization)
+{
+  int last = 0, helix = 0;
+  for (; eo_variable_parameters[last + 1]; last++)
+    helix = strcmp(eo_variable_parameters[last], "helix_slope_um") == 0 ? last : helix;
+  for (int i = 0; i < optimization->listed; i++) {
+    struct eo_listed_variable *v = &optimization->list[i];
+    if (v->parameter == last) {
+      v->parameter = helix;
+      v->bounds.low *= 2;
+      v->bounds.high *= 2;
+    }
   }
 }
 
@@ -103,9 +190,15 @@ static bool decode_current(const json_t *document, struct eo_design *design, str
   eo_table_decode(&eo_design_table, document, NULL, &read, faults);
   if (faults->count == before)
     eo_load_cases_settle(read.load_case, read.load_cases, warnings, faults);
+  if (faults->count == before)
+    check_alignments(document, &read, faults);
+  if (faults->count == before)
+    eo_flank_grids_decode(json_object_get(document, "modification"), read.gear_pair.ends, &read.grids, faults);
   if (faults->count != before)
     return false;
   drop_right_end(document, &read, warnings);
+  migrate_variables(&read.optimization);
+  eo_design_note_migrations(document, warnings);
   eo_assumptions_note(document, &read);
   *design = read;
   return true;
@@ -122,10 +215,29 @@ bool eo_design_decode(const json_t *document, struct eo_design *design, struct e
   return good;
 }
 
+void eo_design_note_migrations(const json_t *document, struct eo_warnings *warnings)
+{
+  const char *member, *end;
+  json_t *ends, *flank;
+  bool found = false;
+  json_object_foreach(json_object_get(document, "modification"), member, ends)
+    json_object_foreach(ends, end, flank) found |= json_object_get(flank, "lead_slope_um") != NULL;
+  if (found)
+    eo_warnings_add(warnings, "lead_slope_um was read as twice its value in helix_slope_um (C_Hbeta, over the face "
+                              "width): the same flank.");
+}
+
 json_t *eo_design_encode(const struct eo_design *design)
 {
   json_t *document = eo_table_encode(&eo_design_table, design),
          *modification = json_object_get(document, "modification");
+  bool failed = false;
+  if (document)
+    eo_flank_grids_encode(&design->grids, design->gear_pair.ends, modification, &failed);
+  if (failed) {
+    json_decref(document);
+    return NULL;
+  }
   if (design->gear_pair.ends == 1) {
     json_object_del(json_object_get(modification, "pinion"), "right");
     json_object_del(json_object_get(modification, "gear"), "right");
@@ -254,6 +366,11 @@ static json_t *encode_problem(const struct eo_design *design)
   if (!eo_objective_wants_rating(&design->objective)) /* a damage sum asks how long each load lasts */
     json_array_foreach(json_object_get(document, "load_cases"), i, load_case) json_object_del(load_case, "share");
   eo_json_put(document, "wants", encode_wants(design), &failed);
+  if (design->grids.used > 0 && !failed) { /* what no row varies */
+    json_t *grids = json_object();
+    eo_flank_grids_encode(&design->grids, design->gear_pair.ends, grids, &failed);
+    eo_json_put(document, "grids", grids, &failed);
+  }
   if (!failed)
     return document;
   json_decref(document);

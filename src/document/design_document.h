@@ -14,8 +14,8 @@
 
 extern const struct eo_table eo_design_table, eo_gear_pair_table, eo_material_table, eo_alignment_table,
     eo_supports_table, eo_shafts_table, eo_load_case_table, eo_flank_modification_table, eo_member_modification_table,
-    eo_modification_table, eo_rating_table, eo_objective_table, eo_scenario_table, eo_optimization_table,
-    eo_resolution_table;
+    eo_modification_table, eo_modification_terms_table, eo_rating_table, eo_objective_table, eo_scenario_table,
+    eo_optimization_table, eo_resolution_table;
 
 /* Keys of a flank's modification that may be optimized; ends with NULL. */
 extern const char *const eo_variable_parameters[];
@@ -51,6 +51,9 @@ void eo_design_note_findings(const struct eo_design *design, const struct eo_geo
 /* The warnings that belong to a field. New array; NULL without memory. */
 extern const struct eo_outline eo_outline_finding;
 json_t *eo_design_findings(const struct eo_warnings *warnings);
+
+/* Says which keys of an earlier form were read as what. */
+void eo_design_note_migrations(const json_t *document, struct eo_warnings *warnings);
 
 /* New document with every key; derived values that are not resolved are null. NULL without memory. */
 json_t *eo_design_encode(const struct eo_design *design);

@@ -8,6 +8,22 @@
 /* clang-format on */
 
 static const char *const power[] = {"power_kW", NULL};
+static const char *const directions[] = {"ahead", "astern", NULL};
+static const char *const drivers[] = {"pinion", "gear", NULL};
+
+static const struct eo_field case_alignment[] = {
+    EO_NUMBER_DERIVED(struct eo_case_alignment, in_plane, "shaft_angle_error_in_plane_deg", &eo_unit_deg, -2, 2,
+                      "as the design's alignment", "shaft angle error in the plane of the axes"),
+    EO_NUMBER_DERIVED(struct eo_case_alignment, out_of_plane, "shaft_angle_error_out_of_plane_deg", &eo_unit_deg, -2, 2,
+                      "as the design's alignment", "shaft angle error out of the plane of the axes"),
+    EO_NUMBER_DERIVED(struct eo_case_alignment, deviation_in_plane, "shaft_angle_error_in_plane_um", &eo_unit_um, -1e5,
+                      1e5, "as shaft_angle_error_in_plane_deg says", "the same over the face width of one end"),
+    EO_NUMBER_DERIVED(struct eo_case_alignment, deviation_out_of_plane, "shaft_angle_error_out_of_plane_um",
+                      &eo_unit_um, -1e5, 1e5, "as shaft_angle_error_out_of_plane_deg says",
+                      "the same over the face width of one end"),
+};
+static const struct eo_table case_alignment_table = EO_TABLE("a load case's alignment", struct eo_case_alignment,
+                                                             case_alignment);
 
 static const struct eo_field load_case[] = {
     {.key = "torque_Nm",
@@ -25,6 +41,16 @@ static const struct eo_field load_case[] = {
     EO_NUMBER_REQUIRED(struct eo_load_case, speed, "speed_rpm", &eo_unit_rpm, 0.1, 1e6, "of the pinion"),
     EO_NUMBER_DERIVED(struct eo_load_case, share, "share", NULL, 0, 1e6, "equal, when no load case states its share",
                       "of operating time; shares that do not sum to 1 are scaled, with a warning"),
+    EO_NUMBER_DERIVED(struct eo_load_case, hours, "hours", NULL, 0, 1e7, "shares are stated",
+                      "of operating time, in all load cases or in none; shares follow from them"),
+    EO_TEXT(struct eo_load_case, name, "name", "for people"),
+    EO_CHOICE(struct eo_load_case, direction, "direction", directions, EO_AHEAD,
+              "of rotation; astern the coast flanks carry"),
+    EO_CHOICE(struct eo_load_case, driver, "driver", drivers, EO_PINION,
+              "which member drives; a gear that drives only here, as in overrun, does so with the coast flanks, one that "
+              "drives in every load case, as in a speed increaser, with the drive flanks"),
+    EO_OPTIONAL(struct eo_load_case, alignment, has_alignment, "alignment", &case_alignment_table,
+                "as the design's alignment", "shaft angle errors of this load case"),
 };
 
 static const char *const normalise[] = {"unmodified", "none", NULL};
@@ -91,19 +117,7 @@ static const struct eo_field objective[] = {
 static const char *const variables[] = {"shared", "per_end", "listed", NULL};
 static const char *const variable_members[] = {"pinion", "gear", NULL};
 static const char *const variable_ends[] = {"left", "right", "both", NULL};
-const char *const eo_variable_parameters[] = {"tip_relief_um",
-                                              "root_relief_um",
-                                              "tip_relief_start_mm",
-                                              "root_relief_start_mm",
-                                              "lead_crowning_um",
-                                              "lead_slope_um",
-                                              "lead_offset_um",
-                                              "profile_crowning_per_mm",
-                                              "leading_end_relief_um",
-                                              "leading_end_relief_length_mm",
-                                              "trailing_end_relief_um",
-                                              "trailing_end_relief_length_mm",
-                                              NULL};
+static const char *const variable_flanks[] = {"drive", "coast", "both", NULL};
 /* clang-format off */
 /* What a row of EO_OPTIMIZER_SETTINGS (optimizer/settings.h) becomes here. */
 #define SEED(member, fallback_, help_)                                                                     \
@@ -145,6 +159,8 @@ static const struct eo_field listed_variable[] = {
     EO_CHOICE(struct eo_listed_variable, member, "member", variable_members, EO_PINION, "whose flank"),
     EO_CHOICE(struct eo_listed_variable, end, "end", variable_ends, EO_BOTH_ENDS,
               "which end; both: one variable for both ends"),
+    EO_CHOICE(struct eo_listed_variable, flank, "flank", variable_flanks, EO_DRIVE_FLANK,
+              "which flank; both: one variable for the drive and the coast flank"),
     {.key = "parameter",
      .kind = EO_FIELD_CHOICE,
      .flags = EO_FIELD_REQUIRED,
@@ -152,7 +168,7 @@ static const struct eo_field listed_variable[] = {
      .choices = eo_variable_parameters,
      .fallback = NAN,
      .help = "key of the flank's modification"},
-    EO_NUMBERS(struct eo_listed_variable, bounds, "bounds", 2, NULL, -5000, 5000,
+    EO_NUMBERS(struct eo_listed_variable, bounds, "bounds", 2, NULL, -10000, 1e6,
                EO_FIELD_ASCENDING | EO_FIELD_NULLABLE, NULL, "those of the same key in bounds",
                "lowest and highest value in the unit of the parameter's key"),
 };

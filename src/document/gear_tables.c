@@ -183,7 +183,8 @@ static const struct eo_field material[] = {
                     "density of both members"),
 };
 
-static const char *const axial[] = {"floating", "fixed", "spring", NULL};
+static const char *const axial[] = {"floating", "fixed", "spring", "stops", NULL};
+static const char *const apex[] = {"trailing", "leading", NULL};
 
 static const struct eo_field alignment[] = {
     EO_NUMBER_BASED(struct eo_alignment, shaft_angle_in_plane, "shaft_angle_error_in_plane_deg", &eo_unit_deg, -2, 2, 0,
@@ -200,6 +201,24 @@ static const struct eo_field alignment[] = {
                       "from the pinion's mean axial motion to the ground, used with \"spring\""),
     EO_NUMBER(struct eo_alignment, stagger, "stagger", NULL, 0, 1, 0,
               "right end behind the left, in transverse base pitches"),
+    EO_NUMBER_DERIVED(struct eo_alignment, deviation_in_plane, "shaft_angle_error_in_plane_um", &eo_unit_um, -1e5, 1e5,
+                      "as shaft_angle_error_in_plane_deg says",
+                      "the error in the plane of the axes as a deviation over the face width of one end (f_Sigma_delta)"),
+    EO_NUMBER_DERIVED(struct eo_alignment, deviation_out_of_plane, "shaft_angle_error_out_of_plane_um", &eo_unit_um,
+                      -1e5, 1e5, "as shaft_angle_error_out_of_plane_deg says",
+                      "the error out of that plane as a deviation over the face width of one end (f_Sigma_beta)"),
+    EO_NUMBER(struct eo_alignment, pinion_axial_clearance, "pinion_axial_clearance_um", &eo_unit_um, 0, 1e5, 200,
+              "whole play of the pinion between its stops, half to each side of where its apex meets the gear's, used "
+              "with \"stops\"; at a stop pinion_axial_stiffness_N_per_um holds it"),
+    EO_NUMBER(struct eo_alignment, coupling_thrust, "coupling_thrust_N", &eo_unit_N, -1e7, 1e7, 0,
+              "axial force of the coupling on the pinion, + to the right"),
+    EO_NUMBER(struct eo_alignment, apex_offset[EO_PINION], "pinion_apex_offset_um", &eo_unit_um, -1e4, 1e4, 0,
+              "how far the pinion's right end stands away from its left one beyond the nominal distance"),
+    EO_NUMBER(struct eo_alignment, apex_offset[EO_GEAR], "gear_apex_offset_um", &eo_unit_um, -1e4, 1e4, 0,
+              "how far the gear's right end stands away from its left one beyond the nominal distance"),
+    EO_CHOICE(struct eo_alignment, apex, "apex", apex, EO_APEX_TRAILING,
+              "where the helices of both ends would meet, running ahead on the drive flanks: trailing, the outer face "
+              "ends meet first, or leading, those at the groove"),
 };
 
 /* Rules of eo_design_resolve(). */
@@ -287,37 +306,6 @@ static const struct eo_field shafts[] = {
               "where torque leaves the gear"),
 };
 
-static const char *const relief_shape[] = {"parabolic", "linear", "circular", NULL};
-
-static const struct eo_field flank[] = {
-    EO_CHOICE(struct eo_flank_modification, shape, "relief_shape", relief_shape, EO_RELIEF_PARABOLIC,
-              "of tip and root relief"),
-    EO_NUMBER(struct eo_flank_modification, tip_relief, "tip_relief_um", &eo_unit_um, 0, 1000, 0,
-              "at the tip end of the active profile, normal (d_tr)"),
-    EO_NUMBER(struct eo_flank_modification, tip_relief_start, "tip_relief_start_mm", &eo_unit_mm, 0, 200, 0,
-              "distance of its start from the pitch point along the rack profile (u_ts)"),
-    EO_NUMBER(struct eo_flank_modification, root_relief, "root_relief_um", &eo_unit_um, 0, 1000, 0,
-              "at the root end of the active profile, normal (d_br)"),
-    EO_NUMBER(struct eo_flank_modification, root_relief_start, "root_relief_start_mm", &eo_unit_mm, 0, 200, 0,
-              "distance of its start from the pitch point along the rack profile (u_bs)"),
-    EO_NUMBER(struct eo_flank_modification, profile_crowning, "profile_crowning_per_mm", &eo_unit_per_mm, -1, 1, 0,
-              "coefficient a_m of the parabola a_m u^2 between the starts"),
-    EO_NUMBER(struct eo_flank_modification, lead_crowning, "lead_crowning_um", &eo_unit_um, -1000, 1000, 0,
-              "at the face ends: a_l (b/(2 cos beta))^2"),
-    EO_NUMBER(struct eo_flank_modification, lead_slope, "lead_slope_um", &eo_unit_um, -1000, 1000, 0,
-              "at the face end that meets first, minus as much at the other (b_l)"),
-    EO_NUMBER(struct eo_flank_modification, lead_offset, "lead_offset_um", &eo_unit_um, -1000, 1000, 0,
-              "over the whole flank (c_l)"),
-    EO_NUMBER(struct eo_flank_modification, end_relief[1], "leading_end_relief_um", &eo_unit_um, 0, 1000, 0,
-              "at the face end that meets first, parabolic"),
-    EO_NUMBER(struct eo_flank_modification, end_relief_length[1], "leading_end_relief_length_mm", &eo_unit_mm, 0, 5000,
-              0, "axial, from that face end"),
-    EO_NUMBER(struct eo_flank_modification, end_relief[0], "trailing_end_relief_um", &eo_unit_um, 0, 1000, 0,
-              "at the face end that meets last, parabolic"),
-    EO_NUMBER(struct eo_flank_modification, end_relief_length[0], "trailing_end_relief_length_mm", &eo_unit_mm, 0, 5000,
-              0, "axial, from that face end"),
-};
-
 static const struct eo_refused_key not_modelled[] = {
     {"planets",
      "Planetary stages are not modelled: enter sun and planet, or planet and planet, as a pair of their own."},
@@ -337,33 +325,3 @@ const struct eo_table eo_material_table = EO_TABLE("material", struct eo_materia
 const struct eo_table eo_alignment_table = EO_TABLE("alignment", struct eo_alignment, alignment);
 const struct eo_table eo_supports_table = EO_TABLE("supports", struct eo_supports, supports);
 const struct eo_table eo_shafts_table = EO_TABLE("shafts", struct eo_shafts, shafts);
-const struct eo_table eo_flank_modification_table = EO_TABLE("a flank's modification", struct eo_flank_modification,
-                                                             flank);
-
-/* One member: its left and right flank. */
-struct member_flanks {
-  struct eo_flank_modification flank[2];
-};
-static const struct eo_field member_flanks[] = {
-    EO_OBJECT(struct member_flanks, flank[EO_LEFT], "left", &eo_flank_modification_table,
-              "left end; absent: unmodified"),
-    {.key = "right",
-     .kind = EO_FIELD_OBJECT,
-     .flags = EO_FIELD_SOMETIMES,
-     .offset = offsetof(struct member_flanks, flank[EO_RIGHT]),
-     .table = &eo_flank_modification_table,
-     .help = "right end; absent: unmodified"},
-};
-const struct eo_table eo_member_modification_table = EO_TABLE("a member's modification", struct member_flanks,
-                                                              member_flanks);
-
-static const struct eo_field modification[] = {
-    EO_OBJECT(struct eo_modification, flank[EO_PINION], "pinion", &eo_member_modification_table, "the pinion's flanks"),
-    {.key = "gear",
-     .kind = EO_FIELD_OBJECT,
-     .flags = EO_FIELD_OMIT,
-     .offset = offsetof(struct eo_modification, flank[EO_GEAR]),
-     .table = &eo_member_modification_table,
-     .help = "the gear's flanks; absent: unmodified"},
-};
-const struct eo_table eo_modification_table = EO_TABLE("modification", struct eo_modification, modification);

@@ -2,6 +2,7 @@
 #include "document/search_space.h"
 
 #include <math.h>
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -17,27 +18,67 @@ static const struct eo_field *flank_field(const char *key)
   return NULL;
 }
 
-/* The paper's five, in the order of eo_variable_parameters. */
+/* The paper's five come first among eo_variable_parameters. */
 enum { PRESET = 5 };
 
-static struct eo_range preset_bounds(const struct eo_optimization *o, int parameter)
+static struct eo_range preset_bounds(const struct eo_optimization *o, const char *key)
 {
-  const struct eo_range range[PRESET] = {o->tip_relief, o->root_relief, o->tip_relief_start, o->root_relief_start,
-                                         o->lead_crowning};
-  const struct eo_field *field = flank_field(eo_variable_parameters[parameter]);
-  if (parameter >= PRESET)
-    return (struct eo_range){NAN, NAN};
-  return (struct eo_range){eo_unit_out(field->unit, range[parameter].low),
-                           eo_unit_out(field->unit, range[parameter].high)};
+  const struct {
+    const char *key;
+    struct eo_range range;
+  } preset[PRESET] = {{"tip_relief_um", o->tip_relief},
+                      {"root_relief_um", o->root_relief},
+                      {"tip_relief_start_mm", o->tip_relief_start},
+                      {"root_relief_start_mm", o->root_relief_start},
+                      {"lead_crowning_um", o->lead_crowning}};
+  for (int i = 0; i < PRESET; i++)
+    if (strcmp(preset[i].key, key) == 0) {
+      const struct eo_unit *unit = flank_field(key)->unit;
+      return (struct eo_range){eo_unit_out(unit, preset[i].range.low), eo_unit_out(unit, preset[i].range.high)};
+    }
+  return (struct eo_range){NAN, NAN};
 }
 
 static void add_preset(struct eo_study_space *space, const struct eo_optimization *o, int end)
 {
   for (int i = 0; i < PRESET; i++) {
-    struct eo_range bounds = preset_bounds(o, i);
-    space->variable[space->count++] = (struct eo_study_variable){EO_PINION, end, flank_field(eo_variable_parameters[i]),
-                                                                 bounds.low, bounds.high};
+    const char *key = eo_variable_parameters[i];
+    struct eo_range bounds = preset_bounds(o, key);
+    space->variable[space->count++] = (struct eo_study_variable){
+        .member = EO_PINION, .end = end, .field = flank_field(key), .low = bounds.low, .high = bounds.high};
   }
+}
+
+/* Which relief a variable starts, EO_ROOT_SIDE or EO_TIP_SIDE, and by what; -1: none. The rack coordinate is way 0. */
+static int start_of(const struct eo_field *field, int *way)
+{
+  for (int side = 0; side < 2; side++) {
+    size_t rack = side == EO_TIP_SIDE ? offsetof(struct eo_flank_modification, tip_relief_start)
+                                      : offsetof(struct eo_flank_modification, root_relief_start),
+           place = offsetof(struct eo_flank_modification, place) + (size_t)side * sizeof(struct eo_relief_place);
+    *way = field->offset == rack ? 0 : (int)((field->offset - place) / sizeof(double)) + 1;
+    if (field->offset == rack || (field->offset >= place && field->offset < place + sizeof(struct eo_relief_place)))
+      return side;
+  }
+  return -1;
+}
+
+static struct eo_flank_modification *flank_of(struct eo_modification *modification, int side, int member, int end)
+{
+  return side == EO_DRIVE_FLANK ? &modification->flank[member][end] : &modification->coast[member][end];
+}
+
+static bool covers(const struct eo_study_variable *v, int side, int end)
+{
+  return (v->end == end || v->end == EO_BOTH_ENDS) && (v->side == side || v->side == EO_BOTH_FLANKS);
+}
+
+static bool overlap(const struct eo_study_variable *a, const struct eo_study_variable *b)
+{
+  int unused, start = start_of(a->field, &unused);
+  bool same = a->field == b->field || (start >= 0 && start == start_of(b->field, &unused));
+  return same && a->member == b->member && (a->end == b->end || a->end == EO_BOTH_ENDS || b->end == EO_BOTH_ENDS) &&
+         (a->side == b->side || a->side == EO_BOTH_FLANKS || b->side == EO_BOTH_FLANKS);
 }
 
 static enum eo_code fault(const char *pointer_format, int i, struct eo_error *error, const char *text, double a,
@@ -54,7 +95,7 @@ static enum eo_code add_listed(struct eo_study_space *space, const struct eo_des
 {
   const struct eo_listed_variable *row = &design->optimization.list[i];
   const struct eo_field *field = flank_field(eo_variable_parameters[row->parameter]);
-  struct eo_range bounds = isnan(row->bounds.low) ? preset_bounds(&design->optimization, row->parameter) : row->bounds;
+  struct eo_range bounds = isnan(row->bounds.low) ? preset_bounds(&design->optimization, field->key) : row->bounds;
   int end = row->end == EO_BOTH_ENDS && design->gear_pair.ends == 1 ? EO_LEFT : row->end;
   if (end == EO_RIGHT && design->gear_pair.ends == 1)
     return fault("/optimization/variable_list/%d/end", i, error, "The pair has one end, the left one.", 0, 0);
@@ -64,32 +105,61 @@ static enum eo_code add_listed(struct eo_study_space *space, const struct eo_des
   if (!(bounds.low < bounds.high) || bounds.low < field->low || bounds.high > field->high)
     return fault("/optimization/variable_list/%d/bounds", i, error,
                  "The bounds must increase and stay inside %.6g .. %.6g.", field->low, field->high);
-  for (int j = 0; j < space->count; j++) {
-    const struct eo_study_variable *other = &space->variable[j];
-    if (other->field == field && other->member == row->member &&
-        (other->end == end || other->end == EO_BOTH_ENDS || end == EO_BOTH_ENDS))
+  struct eo_study_variable variable = {row->member, end, row->flank, field, bounds.low, bounds.high};
+  for (int j = 0; j < space->count; j++)
+    if (overlap(&variable, &space->variable[j]))
       return fault("/optimization/variable_list/%d", i, error, "This parameter is a variable already.", 0, 0);
-  }
-  space->variable[space->count++] = (struct eo_study_variable){row->member, end, field, bounds.low, bounds.high};
+  space->variable[space->count++] = variable;
   return EO_OK;
+}
+
+static void set_number(struct eo_flank_modification *flank, const struct eo_field *field, double value)
+{
+  *(double *)(void *)((char *)flank + field->offset) = value;
+}
+
+static double number_at(const struct eo_flank_modification *flank, const struct eo_field *field)
+{
+  return *(const double *)(const void *)((const char *)flank + field->offset);
+}
+
+/* A start that varies takes the place of the one that is stated, in whichever way. */
+static void clear_start(struct eo_flank_modification *flank, const struct eo_field *field)
+{
+  int way, side = start_of(field, &way);
+  if (side < 0)
+    return;
+  *(side == EO_TIP_SIDE ? &flank->tip_relief_start : &flank->root_relief_start) = 0;
+  flank->place[side] = (struct eo_relief_place){NAN, NAN, NAN, NAN};
 }
 
 static void set_value(const struct eo_study_variable *v, struct eo_modification *modification, double value)
 {
-  for (int end = 0; end < 2; end++)
-    if (v->end == end || v->end == EO_BOTH_ENDS)
-      *(double *)(void *)((char *)&modification->flank[v->member][end] + v->field->offset) = value;
+  for (int side = 0; side < 2; side++)
+    for (int end = 0; end < 2; end++)
+      if (covers(v, side, end)) {
+        struct eo_flank_modification *flank = flank_of(modification, side, v->member, end);
+        clear_start(flank, v->field);
+        set_number(flank, v->field, value);
+      }
 }
 
-static double value_at(const struct eo_study_variable *v, const struct eo_modification *modification, int end)
+/* Of the first flank that it covers. */
+static double value_of(const struct eo_study_variable *v, const struct eo_modification *modification)
 {
-  return *(const double *)(const void *)((const char *)&modification->flank[v->member][end] + v->field->offset);
+  const struct eo_flank_modification *flank = v->side == EO_COAST_FLANK ? modification->coast[v->member]
+                                                                        : modification->flank[v->member];
+  return number_at(&flank[v->end == EO_RIGHT], v->field);
 }
 
-static bool is_length(const struct eo_study_variable *v)
+/* Whether a flank comes nearer to an impossible one as the number falls: lengths of reliefs, and starts of root reliefs
+   from the axis. */
+static bool is_tight_when_low(const struct eo_study_variable *v)
 {
-  return v->field == flank_field("leading_end_relief_length_mm") ||
-         v->field == flank_field("trailing_end_relief_length_mm");
+  int way, side = start_of(v->field, &way);
+  if (side >= 0 && way > 0)
+    return side == EO_ROOT_SIDE || v->field->offset == offsetof(struct eo_flank_modification, place[EO_TIP_SIDE].length);
+  return strstr(v->field->key, "_length_mm") != NULL;
 }
 
 /* Both extremes must be flanks: everything at its upper bound, and the same with the shortest end reliefs. */
@@ -102,7 +172,7 @@ static enum eo_code check_extremes(const struct eo_study_space *space, const str
     struct eo_error found;
     for (int i = 0; i < space->count; i++) {
       const struct eo_study_variable *v = &space->variable[i];
-      set_value(v, &extreme.modification, eo_unit_in(v->field->unit, shortest && is_length(v) ? v->low : v->high));
+      set_value(v, &extreme.modification, eo_unit_in(v->field->unit, shortest && is_tight_when_low(v) ? v->low : v->high));
     }
     if (eo_modification_check(&extreme, geometry, &found))
       code = eo_error_set(error, EO_ERROR_INPUT, "/optimization/variable_list",
@@ -143,15 +213,39 @@ void eo_study_space_apply(const struct eo_study_space *space, const struct eo_mo
   }
 }
 
-static bool same_flank(const struct eo_flank_modification *a, const struct eo_flank_modification *b)
+/* Whether all flanks that the variable covers have one value. */
+static bool is_tied(const struct eo_study_variable *v, const struct eo_modification *modification)
 {
-  for (int i = 0; i < eo_flank_modification_table.count; i++) {
-    const struct eo_field *field = &eo_flank_modification_table.field[i];
-    if (field->kind == EO_FIELD_NUMBER && *(const double *)(const void *)((const char *)a + field->offset) !=
-                                              *(const double *)(const void *)((const char *)b + field->offset))
-      return false;
-  }
-  return a->shape == b->shape;
+  double value = value_of(v, modification);
+  bool same = true;
+  for (int side = 0; side < 2; side++)
+    for (int end = 0; end < 2; end++) {
+      const struct eo_flank_modification(*flank)[2] = side == EO_DRIVE_FLANK ? modification->flank
+                                                                             : modification->coast;
+      same = same && (!covers(v, side, end) || number_at(&flank[v->member][end], v->field) == value);
+    }
+  return same;
+}
+
+/* Puts back what the base has in place of the variable. */
+static void restore(const struct eo_study_variable *v, const struct eo_modification *base, struct eo_modification *rest)
+{
+  int way, start = start_of(v->field, &way);
+  for (int side = 0; side < 2; side++)
+    for (int end = 0; end < 2; end++) {
+      const struct eo_flank_modification *from = side == EO_DRIVE_FLANK ? &base->flank[v->member][end]
+                                                                        : &base->coast[v->member][end];
+      struct eo_flank_modification *to = flank_of(rest, side, v->member, end);
+      if (!covers(v, side, end))
+        continue;
+      set_number(to, v->field, number_at(from, v->field));
+      if (start == EO_TIP_SIDE)
+        to->tip_relief_start = from->tip_relief_start;
+      if (start == EO_ROOT_SIDE)
+        to->root_relief_start = from->root_relief_start;
+      if (start >= 0)
+        to->place[start] = from->place[start];
+    }
 }
 
 bool eo_study_space_locate(const struct eo_study_space *space, const struct eo_modification *base,
@@ -161,30 +255,28 @@ bool eo_study_space_locate(const struct eo_study_space *space, const struct eo_m
   for (int i = 0; i < space->count; i++) {
     const struct eo_study_variable *v = &space->variable[i];
     x[i] = (eo_study_variable_value(v, modification) - v->low) / (v->high - v->low);
-    if (!(x[i] > -1e-12 && x[i] < 1 + 1e-12) ||
-        (v->end == EO_BOTH_ENDS && value_at(v, modification, 0) != value_at(v, modification, 1)))
+    if (!(x[i] > -1e-12 && x[i] < 1 + 1e-12) || !is_tied(v, modification))
       return false;
     x[i] = fmin(fmax(x[i], 0), 1);
-    for (int end = 0; end < 2; end++)
-      if (v->end == end || v->end == EO_BOTH_ENDS)
-        *(double *)(void *)((char *)&rest.flank[v->member][end] + v->field->offset) = value_at(v, base, end);
+    restore(v, base, &rest);
   }
-  for (int member = 0; member < 2; member++)
-    for (int end = 0; end < 2; end++)
-      if (!same_flank(&rest.flank[member][end], &base->flank[member][end]))
-        return false;
+  for (int i = 0; i < 4; i++)
+    if (!eo_modification_equal(&rest.flank[i / 2][i % 2], &base->flank[i / 2][i % 2]) ||
+        !eo_modification_equal(&rest.coast[i / 2][i % 2], &base->coast[i / 2][i % 2]))
+      return false;
   return true;
 }
 
 double eo_study_variable_value(const struct eo_study_variable *v, const struct eo_modification *modification)
 {
-  return eo_unit_out(v->field->unit, value_at(v, modification, v->end == EO_RIGHT));
+  return eo_unit_out(v->field->unit, value_of(v, modification));
 }
 
 void eo_study_variable_name(const struct eo_study_variable *v, char *name, size_t size)
 {
   static const char *const member[2] = {"pinion", "gear"}, *const end[3] = {"left", "right", "both"};
-  snprintf(name, size, "%s/%s/%s", member[v->member], end[v->end], v->field->key);
+  static const char *const flank[3] = {"", "coast/", "drive+coast/"};
+  snprintf(name, size, "%s/%s/%s%s", member[v->member], end[v->end], flank[v->side], v->field->key);
 }
 
 void eo_study_space_hash(const struct eo_study_space *space, char hex[EO_HASH_LENGTH + 1])
@@ -201,6 +293,13 @@ void eo_study_space_hash(const struct eo_study_space *space, char hex[EO_HASH_LE
   eo_hash_finish(&hash, hex);
 }
 
+/* A number at its default, or 0 where that stands for it. */
+static bool is_as_meant(const char *key, const json_t *value, const json_t *standard)
+{
+  bool stands = json_is_null(json_object_get(standard, key)) || strstr(key, "_exponent");
+  return json_equal(value, json_object_get(standard, key)) || (stands && json_number_value(value) == 0);
+}
+
 /* What differs from the defaults of a flank; NULL without memory. */
 static json_t *encode_flank(const struct eo_flank_modification *flank)
 {
@@ -211,7 +310,7 @@ static json_t *encode_flank(const struct eo_flank_modification *flank)
   const char *key;
   void *next;
   if (object && other)
-    json_object_foreach_safe(object, next, key, value) if (json_equal(value, json_object_get(other, key)))
+    json_object_foreach_safe(object, next, key, value) if (is_as_meant(key, value, other))
         json_object_del(object, key);
   if (!other) {
     json_decref(object);
@@ -238,8 +337,12 @@ enum eo_code eo_modification_write(const struct eo_modification *modification, i
   for (int i = 0; i < 2; i++) {
     json_t *member = json_object();
     failed |= !member;
-    for (int end = 0; end < ends; end++)
-      put_unless_empty(member, end_name[end], encode_flank(&modification->flank[i][end]), &failed);
+    for (int end = 0; end < ends; end++) {
+      json_t *flank = encode_flank(&modification->flank[i][end]);
+      failed |= !flank;
+      put_unless_empty(flank, "coast", encode_flank(&modification->coast[i][end]), &failed);
+      put_unless_empty(member, end_name[end], flank, &failed);
+    }
     put_unless_empty(document, member_name[i], member, &failed);
   }
   if (!failed)
@@ -255,7 +358,7 @@ enum eo_code eo_modification_read(const char *text, struct eo_modification *modi
   enum eo_code code = faults ? EO_ERROR_INPUT : eo_error_memory(error);
   if (document) {
     memset(modification, 0, sizeof *modification);
-    eo_table_decode(&eo_modification_table, document, NULL, modification, faults);
+    eo_table_decode(&eo_modification_terms_table, document, NULL, modification, faults);
     code = eo_faults_first(faults, error);
   }
   json_decref(document);

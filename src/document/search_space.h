@@ -11,6 +11,7 @@
 /* One coordinate of the unit cube. */
 struct eo_study_variable {
   int member, end;              /* end: EO_LEFT, EO_RIGHT or EO_BOTH_ENDS (the same on both) */
+  int side;                     /* EO_DRIVE_FLANK, EO_COAST_FLANK or EO_BOTH_FLANKS (the same on both) */
   const struct eo_field *field; /* of eo_flank_modification_table */
   double low, high;             /* in the unit of its key */
 };

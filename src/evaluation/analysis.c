@@ -66,7 +66,7 @@ static enum eo_code fit(struct eo_analysis *analysis, int cases, int scenarios, 
   return eo_evaluator_new(&analysis->evaluator, analysis->pair, cases, error);
 }
 
-/* The same design without modification; what the evaluation does not look at is blank, so that it can be compared. */
+/* The same design without the terms of its modification (grids, which state how flanks are, stay); what the evaluation does not look at is blank, so that it can be compared. */
 static void strip(struct eo_design *bare, const struct eo_design *design)
 {
   memcpy(bare, design, sizeof *bare);
@@ -80,7 +80,8 @@ static bool is_unmodified(const struct eo_design *design)
 {
   for (int member = 0; member < 2; member++)
     for (int end = 0; end < design->gear_pair.ends; end++)
-      if (!eo_modification_is_none(&design->modification.flank[member][end]))
+      if (!eo_modification_is_none(&design->modification.flank[member][end]) ||
+          !eo_modification_is_none(&design->modification.coast[member][end]))
         return false;
   return true;
 }

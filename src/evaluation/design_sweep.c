@@ -199,7 +199,10 @@ static enum eo_code solve_torque(void *context, int thread, int item, struct eo_
   enum eo_code code = make_worker(job, w, error);
   if (code)
     return code;
-  w->design->load_case[0] = (struct eo_load_case){.torque = s->torque[k], .speed = s->speed[0], .share = 1};
+  w->design->load_case[0] = job->design->load_case[0]; /* its direction, driver and alignment */
+  w->design->load_case[0].torque = s->torque[k];
+  w->design->load_case[0].speed = s->speed[0];
+  w->design->load_case[0].share = 1;
   w->design->modification = job->design->modification;
   if (variant == EO_SWEEP_UNMODIFIED)
     w->design->modification = (struct eo_modification){0};

@@ -78,6 +78,9 @@ static void default_field(const struct eo_field *field, void *target)
   case EO_FIELD_SERIES:
     *(struct eo_series *)place = (struct eo_series){0};
     break;
+  case EO_FIELD_MATRIX:
+    *(struct eo_matrix *)place = (struct eo_matrix){0};
+    break;
   case EO_FIELD_DOCUMENT:
     *(const json_t **)place = NULL;
     break;
@@ -87,7 +90,8 @@ static void default_field(const struct eo_field *field, void *target)
 void eo_table_defaults(const struct eo_table *table, void *target)
 {
   for (int i = 0; i < table->count; i++)
-    default_field(&table->field[i], target);
+    if (!(table->field[i].flags & EO_FIELD_ELSEWHERE))
+      default_field(&table->field[i], target);
 }
 
 static const char *type_name(const json_t *value)
@@ -241,6 +245,29 @@ static void decode_series(const struct eo_field *field, const json_t *value, con
   *series = (struct eo_series){count, number};
 }
 
+static void decode_matrix(const struct eo_field *field, const json_t *value, const struct eo_path *path,
+                          struct eo_matrix *matrix, struct eo_faults *faults)
+{
+  if (!check_length(field, value, path, faults))
+    return;
+  size_t rows = json_array_size(value), columns = json_array_size(json_array_get(value, 0));
+  double *number = calloc(rows * columns + 1, sizeof *number);
+  if (!number) {
+    eo_faults_at(faults, path, "Not enough memory for %zu numbers.", rows * columns);
+    return;
+  }
+  for (size_t i = 0; i < rows; i++) {
+    const json_t *row = json_array_get(value, i);
+    struct eo_path place = {path, NULL, (int)i};
+    if (!json_is_array(row) || json_array_size(row) != columns)
+      eo_faults_at(faults, &place, "Must be an array of %zu numbers, as the first row is.", columns);
+    else
+      read_numbers(row, field, field->series_low, field->series_high, &place, (int)columns, number + i * columns,
+                   faults);
+  }
+  *matrix = (struct eo_matrix){(int)rows, (int)columns, number};
+}
+
 static void decode_list(const struct eo_field *field, const json_t *value, const struct eo_path *path, void *target,
                         struct eo_faults *faults)
 {
@@ -319,6 +346,9 @@ static void decode_field(const struct eo_field *field, const json_t *value, cons
     break;
   case EO_FIELD_SERIES:
     decode_series(field, value, path, place, faults);
+    break;
+  case EO_FIELD_MATRIX:
+    decode_matrix(field, value, path, place, faults);
     break;
   case EO_FIELD_DOCUMENT:
     if (json_is_object(value))
@@ -421,6 +451,23 @@ static const json_t *find_value(const struct eo_field *field, const json_t *obje
   return value ? value : other;
 }
 
+/* A number under an older name that counted in another measure. */
+static bool is_scaled(const struct eo_field *field, const json_t *object, const json_t *value)
+{
+  return field->alias && field->alias_factor != 0 && json_is_number(value) && !json_object_get(object, field->key);
+}
+
+static void decode_scaled(const struct eo_field *field, const json_t *value, const struct eo_path *path, void *target,
+                          struct eo_faults *faults)
+{
+  json_t *scaled = json_real(json_number_value(value) * field->alias_factor);
+  if (scaled)
+    decode_field(field, scaled, path, target, faults);
+  else
+    eo_faults_at(faults, path, "Not enough memory.");
+  json_decref(scaled);
+}
+
 void eo_table_decode(const struct eo_table *table, const json_t *object, const struct eo_path *path, void *target,
                      struct eo_faults *faults)
 {
@@ -433,7 +480,11 @@ void eo_table_decode(const struct eo_table *table, const json_t *object, const s
     const struct eo_field *field = &table->field[i];
     struct eo_path place = {path, field->key, 0};
     const json_t *value = find_value(field, object, &place, faults);
-    if (value)
+    if (field->flags & EO_FIELD_ELSEWHERE)
+      continue;
+    if (value && is_scaled(field, object, value))
+      decode_scaled(field, value, &place, target, faults);
+    else if (value)
       decode_field(field, value, &place, target, faults);
     else if (field->elder_key && json_object_get(object, field->elder_key))
       *(int *)member(target, field) = field->elder_choice;

@@ -51,6 +51,10 @@ static void describe_type(const struct eo_field *field, struct eo_text *text)
     if (field->unit || isfinite(field->series_low))
       describe_range(field, field->series_low, field->series_high, text);
     break;
+  case EO_FIELD_MATRIX:
+    eo_text_add(text, "rows of numbers, ");
+    describe_range(field, field->series_low, field->series_high, text);
+    break;
   case EO_FIELD_OBJECT:
   case EO_FIELD_DOCUMENT:
     eo_text_add(text, "object");

@@ -36,6 +36,18 @@ static json_t *encode_integer(const struct eo_field *field, int value)
   return value == 0 && field->flags & EO_FIELD_NULLABLE ? json_null() : json_integer(value);
 }
 
+static json_t *encode_matrix(const struct eo_field *field, const struct eo_matrix *matrix)
+{
+  json_t *rows = json_array();
+  for (int i = 0; i < matrix->rows && rows; i++)
+    if (json_array_append_new(rows, eo_json_reals(matrix->columns, matrix->value + (size_t)i * (size_t)matrix->columns,
+                                                  1, field->unit, 0)) != 0) {
+      json_decref(rows);
+      rows = NULL;
+    }
+  return rows;
+}
+
 static json_t *encode_field(const struct eo_field *field, const void *source)
 {
   const void *place = member(source, field);
@@ -63,6 +75,8 @@ static json_t *encode_field(const struct eo_field *field, const void *source)
     return encode_list(field, source);
   case EO_FIELD_SERIES:
     return eo_json_reals(series->count, series->value, 1, field->unit, 0);
+  case EO_FIELD_MATRIX:
+    return encode_matrix(field, place);
   case EO_FIELD_DOCUMENT:
     return *(json_t *const *)place ? json_incref(*(json_t *const *)place) : json_null();
   }
@@ -89,7 +103,7 @@ json_t *eo_table_encode(const struct eo_table *table, const void *source)
   bool failed = !object;
   for (int i = 0; i < table->count && !failed; i++) {
     const struct eo_field *field = &table->field[i];
-    if (field->flags & EO_FIELD_ENTRY)
+    if (field->flags & (EO_FIELD_ENTRY | EO_FIELD_ELSEWHERE))
       continue;
     json_t *value = encode_field(field, source);
     if (value && field->flags & EO_FIELD_OMIT && is_default(field->table, value))
@@ -114,7 +128,10 @@ static void settle_field(const struct eo_field *field, void *target)
 {
   void *place = (char *)target + field->offset;
   struct eo_series *series = place;
+  struct eo_matrix *matrix = place;
   int rows;
+  if (field->flags & EO_FIELD_ELSEWHERE)
+    return;
   switch (field->kind) {
   case EO_FIELD_NUMBER:
     settle_numbers(field->unit, 1, place);
@@ -132,6 +149,9 @@ static void settle_field(const struct eo_field *field, void *target)
     break;
   case EO_FIELD_SERIES:
     settle_numbers(field->unit, series->count, series->value);
+    break;
+  case EO_FIELD_MATRIX:
+    settle_numbers(field->unit, matrix->rows * matrix->columns, matrix->value);
     break;
   case EO_FIELD_INTEGER:
   case EO_FIELD_SEED:
@@ -154,6 +174,8 @@ void eo_table_done(const struct eo_table *table, void *target)
   for (int i = 0; i < table->count; i++) {
     const struct eo_field *field = &table->field[i];
     char *place = (char *)target + field->offset;
+    if (field->flags & EO_FIELD_ELSEWHERE)
+      continue;
     int rows = field->kind == EO_FIELD_OBJECT ? 1
                : field->kind == EO_FIELD_LIST ? *(const int *)((const char *)target + field->count_offset)
                                               : 0;
@@ -163,6 +185,10 @@ void eo_table_done(const struct eo_table *table, void *target)
       struct eo_series *series = (void *)place;
       free(series->value);
       *series = (struct eo_series){0};
+    } else if (field->kind == EO_FIELD_MATRIX) {
+      struct eo_matrix *matrix = (void *)place;
+      free(matrix->value);
+      *matrix = (struct eo_matrix){0};
     }
   }
 }

@@ -10,7 +10,7 @@ static const char *const kind_names[] = {
     [EO_FIELD_NUMBER] = "number",   [EO_FIELD_INTEGER] = "integer",  [EO_FIELD_SEED] = "seed",
     [EO_FIELD_FLAG] = "flag",       [EO_FIELD_TEXT] = "text",        [EO_FIELD_CHOICE] = "choice",
     [EO_FIELD_NUMBERS] = "numbers", [EO_FIELD_OBJECT] = "object",    [EO_FIELD_LIST] = "list",
-    [EO_FIELD_SERIES] = "series",   [EO_FIELD_DOCUMENT] = "document"};
+    [EO_FIELD_SERIES] = "series",   [EO_FIELD_MATRIX] = "matrix",    [EO_FIELD_DOCUMENT] = "document"};
 
 /* What the document says where every key is absent: the defaults, as the tables themselves write them. */
 static json_t *encode_defaults(const struct eo_table *table)
@@ -34,8 +34,8 @@ static json_t *default_of(const struct eo_field *field, const json_t *defaults)
 
 static bool has_default(const struct eo_field *field)
 {
-  return !(field->flags & EO_FIELD_REQUIRED) && field->kind != EO_FIELD_SERIES && field->kind != EO_FIELD_DOCUMENT &&
-         (field->kind != EO_FIELD_OBJECT || field->flags & EO_FIELD_NULLABLE);
+  return !(field->flags & (EO_FIELD_REQUIRED | EO_FIELD_ELSEWHERE)) && field->kind != EO_FIELD_SERIES && field->kind != EO_FIELD_MATRIX &&
+         field->kind != EO_FIELD_DOCUMENT && (field->kind != EO_FIELD_OBJECT || field->flags & EO_FIELD_NULLABLE);
 }
 
 static bool is_whole(const struct eo_field *field)
@@ -73,12 +73,13 @@ static json_t *list_fields(const struct eo_table *table);
 
 static void put_range(struct eo_object *o, const struct eo_field *field)
 {
-  bool rows = field->kind == EO_FIELD_LIST || field->kind == EO_FIELD_SERIES;
+  bool numbers = field->kind == EO_FIELD_SERIES || field->kind == EO_FIELD_MATRIX;
+  bool rows = field->kind == EO_FIELD_LIST || numbers;
   if (is_numeric(field) || rows) {
     put_bound(o, "low", field->low);
     put_bound(o, "high", field->high);
   }
-  if (field->kind == EO_FIELD_SERIES) {
+  if (numbers) {
     put_bound(o, "number_low", field->series_low);
     put_bound(o, "number_high", field->series_high);
   }
@@ -200,6 +201,15 @@ static void put_reference(struct eo_object *o, const struct eo_field *field)
     eo_object_put(o, "$ref", reference);
 }
 
+/* Rows of numbers. */
+static json_t *matrix_row(const struct eo_field *field, bool input)
+{
+  struct eo_object o = eo_object_open();
+  eo_object_put(&o, "type", json_string("array"));
+  eo_object_put(&o, "items", number_items(field, field->series_low, field->series_high, input));
+  return eo_object_close(&o);
+}
+
 static void put_constraints(struct eo_object *o, const struct eo_field *field, bool input)
 {
   bool nullable = field->flags & EO_FIELD_NULLABLE || (!input && field->kind == EO_FIELD_NUMBER);
@@ -222,6 +232,9 @@ static void put_constraints(struct eo_object *o, const struct eo_field *field, b
   case EO_FIELD_SERIES:
     put_array(o, field, number_items(field, field->series_low, field->series_high, input), input ? field->low : NAN,
               input ? field->high : NAN);
+    break;
+  case EO_FIELD_MATRIX:
+    put_array(o, field, matrix_row(field, input), input ? field->low : NAN, input ? field->high : NAN);
     break;
   case EO_FIELD_LIST:
     put_array(o, field, row_schema(field->table, input), field->low, field->high);
@@ -275,7 +288,7 @@ static void put_object(struct eo_object *o, const struct eo_table *table, bool n
     eo_object_put(&properties, field->key, property(field, defaults, input));
     if (input && field->alias)
       eo_object_put(&properties, field->alias, property(field, defaults, input));
-    if (input ? must_be_there(field) : !(field->flags & (EO_FIELD_OMIT | EO_FIELD_SOMETIMES)))
+    if (input ? must_be_there(field) : !(field->flags & (EO_FIELD_OMIT | EO_FIELD_SOMETIMES | EO_FIELD_ELSEWHERE)))
       o->failed = json_array_append_new(required, json_string(field->key)) != 0;
   }
   eo_object_put(o, "properties", eo_object_close(&properties));

@@ -26,6 +26,7 @@ enum eo_field_kind {
   EO_FIELD_OBJECT,   /* a struct with its own table */
   EO_FIELD_LIST,     /* array of structs with their own table; the number of rows stands in an int at count_offset */
   EO_FIELD_SERIES,   /* struct eo_series */
+  EO_FIELD_MATRIX,   /* struct eo_matrix */
   EO_FIELD_DOCUMENT, /* const json_t *: an object that somebody else reads, borrowed from what is decoded; NULL: absent
                       */
 };
@@ -38,6 +39,7 @@ enum {
   EO_FIELD_SOMETIMES = 16, /* OBJECT: whoever encodes the document may take it out; said in the schema alone */
   EO_FIELD_WHOLE = 32,     /* NUMBER, SERIES: whole numbers alone */
   EO_FIELD_ENTRY = 64,     /* read and never written: another way to say what a key beside it holds */
+  EO_FIELD_ELSEWHERE = 128, /* other code reads and writes it: here it is known and described alone */
 };
 
 /* A list of numbers of any length. */
@@ -46,16 +48,23 @@ struct eo_series {
   double *value; /* [count], owned by the struct the table fills: eo_table_done() frees it */
 };
 
+/* Numbers in rows of one length. */
+struct eo_matrix {
+  int rows, columns;
+  double *value; /* [rows][columns], owned as in a series */
+};
+
 struct eo_table;
 
 struct eo_field {
   const char *key;
   const char *alias; /* another name under which the key is taken; NULL: none. Faults name the key */
+  double alias_factor; /* NUMBER: times which a number under that name is taken; 0: as it is */
   enum eo_field_kind kind;
   unsigned flags;
   size_t offset;
   const struct eo_unit *unit; /* NULL: dimensionless */
-  double low, high;           /* inclusive, in the document's unit; of a LIST or SERIES: number of rows; see `series_*`;
+  double low, high;           /* inclusive, in the document's unit; of a LIST, SERIES or MATRIX: number of rows; see `series_*`;
                                  TEXT: low is the least number of bytes */
   double fallback;            /* default in the document's unit; NaN: null. CHOICE: the index, FLAG: 0 or 1 */
   const double *fallbacks;    /* NUMBERS: [count]; NULL: null */
@@ -106,7 +115,7 @@ json_t *eo_table_encode(const struct eo_table *table, const void *source);
 /* Moves every number to the nearest one the document can express, so that decode(encode(x)) is x bit for bit. */
 void eo_table_round_to_document(const struct eo_table *table, void *target);
 
-/* Frees SERIES members, in the rows of lists too. */
+/* Frees SERIES and MATRIX members, in the rows of lists too. */
 void eo_table_done(const struct eo_table *table, void *target);
 
 /* Adds one line per key to the text: path, type, unit, range, default, help; nested tables follow indented, each once.
@@ -203,6 +212,12 @@ void eo_table_describe(const struct eo_table *table, bool output, struct eo_text
   {                                                                                                                   \
     .key = key_, .kind = EO_FIELD_DOCUMENT, .flags = flags_, .offset = offsetof(type, member), .document = document_, \
     .help = help_                                                                                                     \
+  }
+/* Rows of one length, up to most_ of them and most_ numbers each. */
+#define EO_MATRIX(type, member, key_, unit_, most_, low_, high_, help_)                                         \
+  {                                                                                                             \
+    .key = key_, .kind = EO_FIELD_MATRIX, .offset = offsetof(type, member), .unit = unit_, .low = 0,            \
+    .high = most_, .series_low = low_, .series_high = high_, .help = help_                                      \
   }
 #define EO_SERIES(type, member, key_, unit_, most_, low_, high_, flags_, help_)                                       \
   {                                                                                                                   \

@@ -5,23 +5,92 @@
 #include <stddef.h>
 #include <string.h>
 
+/* Numbers that may be left out: not above 0 stands for the one that is meant. */
+static bool same_stated(int count, const double *a, const double *b, double meant)
+{
+  for (int i = 0; i < count; i++)
+    if ((a[i] > 0 ? a[i] : meant) != (b[i] > 0 ? b[i] : meant))
+      return false;
+  return true;
+}
+
+static bool same_triangles(const struct eo_flank_modification *a, const struct eo_flank_modification *b)
+{
+  for (int i = 0; i < 4; i++) {
+    const struct eo_triangular_relief *x = &a->triangular[i / 2][i % 2], *y = &b->triangular[i / 2][i % 2];
+    if (x->amount != y->amount || x->profile_length != y->profile_length || x->face_length != y->face_length ||
+        !same_stated(1, &x->exponent, &y->exponent, 1))
+      return false;
+  }
+  return true;
+}
+
 bool eo_modification_equal(const struct eo_flank_modification *a, const struct eo_flank_modification *b)
 {
-  /* behind the shape there are doubles only: no padding */
-  size_t from = offsetof(struct eo_flank_modification, tip_relief);
-  return a->shape == b->shape && memcmp((const char *)a + from, (const char *)b + from, sizeof *a - from) == 0;
+  /* from the tip relief to the exponents there are doubles only: no padding */
+  size_t from = offsetof(struct eo_flank_modification, tip_relief),
+         to = offsetof(struct eo_flank_modification, end_exponent);
+  return a->shape == b->shape && memcmp(a->own_shape, b->own_shape, sizeof a->own_shape) == 0 &&
+         memcmp(a->end_shape, b->end_shape, sizeof a->end_shape) == 0 &&
+         memcmp((const char *)a + from, (const char *)b + from, to - from) == 0 &&
+         same_stated(2, a->end_exponent, b->end_exponent, 2) && same_stated(2, a->exponent, b->exponent, 2) &&
+         same_stated(8, &a->place[0].diameter, &b->place[0].diameter, 0) && same_triangles(a, b);
 }
 
 bool eo_modification_is_none(const struct eo_flank_modification *m)
 {
-  return m->tip_relief == 0 && m->root_relief == 0 && m->profile_crowning == 0 && m->lead_crowning == 0 &&
-         m->lead_slope == 0 && m->lead_offset == 0 && m->end_relief[0] == 0 && m->end_relief[1] == 0;
+  bool none = m->tip_relief == 0 && m->root_relief == 0 && m->profile_crowning == 0 && m->lead_crowning == 0 &&
+              m->helix_slope == 0 && m->lead_offset == 0 && m->end_relief[0] == 0 && m->end_relief[1] == 0 &&
+              m->profile_slope == 0 && m->profile_barrel == 0 && m->twist == 0;
+  for (int i = 0; i < 4 && none; i++)
+    none = m->triangular[i / 2][i % 2].amount == 0;
+  return none;
 }
 
 double eo_modification_lead_coefficient(const struct eo_geometry *g, double crowning)
 {
   double half = g->face_width / 2 / cos(g->helix_angle);
   return crowning / (half * half);
+}
+
+void eo_active_profile(const struct eo_geometry *g, int member, double end[2])
+{
+  end[EO_ROOT_SIDE] = member == EO_PINION ? g->rack_bottom : -g->rack_top;
+  end[EO_TIP_SIDE] = member == EO_PINION ? g->rack_top : -g->rack_bottom;
+}
+
+/* u = k_u sigma; roll length L = T C + sigma, radius^2 = r_b^2 + L^2. */
+struct eo_profile_place eo_profile_place_at(const struct eo_geometry *g, int member, double u)
+{
+  double sigma = u / g->rack_factor, roll = g->tangent_length[member] + sigma, base = g->base_radius[member], end[2];
+  eo_active_profile(g, member, end);
+  return (struct eo_profile_place){.rack = u,
+                                   .diameter = 2 * hypot(base, roll),
+                                   .roll_length = roll,
+                                   .roll_angle = roll / base,
+                                   .length = {sigma - end[EO_ROOT_SIDE] / g->rack_factor,
+                                              end[EO_TIP_SIDE] / g->rack_factor - sigma}};
+}
+
+int eo_relief_places_stated(const struct eo_relief_place *place)
+{
+  return (place->diameter > 0) + (place->roll_length > 0) + (place->roll_angle > 0) + (place->length > 0);
+}
+
+double eo_relief_start_at(const struct eo_geometry *g, int member, const struct eo_flank_modification *flank, int side)
+{
+  const struct eo_relief_place *place = &flank->place[side];
+  double roll, end[2], base = g->base_radius[member];
+  if (eo_relief_places_stated(place) == 0)
+    return side == EO_TIP_SIDE ? flank->tip_relief_start : -flank->root_relief_start;
+  if (place->length > 0) {
+    eo_active_profile(g, member, end);
+    return end[side] + (side == EO_TIP_SIDE ? -1 : 1) * g->rack_factor * place->length;
+  }
+  roll = place->roll_length > 0  ? place->roll_length
+         : place->roll_angle > 0 ? place->roll_angle * base
+                                 : sqrt(place->diameter * place->diameter / 4 - base * base);
+  return g->rack_factor * (roll - g->tangent_length[member]);
 }
 
 static struct eo_relief relief(double start, double end, double amount, double crowning)
@@ -35,30 +104,102 @@ static struct eo_relief relief(double start, double end, double amount, double c
   return r;
 }
 
-void eo_modification_init(struct eo_modification_shape *shape, const struct eo_geometry *g, int member,
-                          const struct eo_flank_modification *flank)
+static void init_reliefs(struct eo_modification_shape *shape, const struct eo_geometry *g, int member,
+                         const struct eo_flank_modification *flank, const double end[2])
 {
-  double top = member == EO_PINION ? g->rack_top : -g->rack_bottom;
-  double bottom = member == EO_PINION ? -g->rack_bottom : g->rack_top;
-  double half = g->face_width / 2 / cos(g->helix_angle);
-  *shape =
-      (struct eo_modification_shape){.relief = flank->shape, .crowning = flank->profile_crowning, .half_width = half};
-  shape->side[0] = relief(flank->root_relief_start, bottom, flank->root_relief, flank->profile_crowning);
-  shape->side[1] = relief(flank->tip_relief_start, top, flank->tip_relief, flank->profile_crowning);
-  shape->lead[0] = flank->lead_offset;
-  shape->lead[1] = flank->lead_slope / half;
-  shape->lead[2] = eo_modification_lead_coefficient(g, flank->lead_crowning);
-  for (int i = 0; i < 2; i++) {
-    shape->end_relief[i] = flank->end_relief[i];
-    shape->end_start[i] = half - flank->end_relief_length[i] / cos(g->helix_angle);
+  for (int side = 0; side < 2; side++) {
+    int outwards = side == EO_TIP_SIDE ? 1 : -1, own = flank->own_shape[side];
+    double amount = side == EO_TIP_SIDE ? flank->tip_relief : flank->root_relief;
+    double start = outwards * eo_relief_start_at(g, member, flank, side);
+    shape->side[side] = relief(start, outwards * end[side], amount, flank->profile_crowning);
+    shape->side[side].shape = own == EO_RELIEF_AS_SHARED ? flank->shape : (enum eo_relief_shape)(own - 1);
+    shape->side[side].exponent = flank->exponent[side] > 0 ? flank->exponent[side] : 2;
   }
 }
 
-/* Relief at distance t >= 0 beyond its vertex; *slope along t. */
-static double relief_value(const struct eo_relief *r, enum eo_relief_shape form, double t, double *slope)
+static void init_lead(struct eo_modification_shape *shape, const struct eo_geometry *g,
+                      const struct eo_flank_modification *flank)
 {
-  double tangent = r->value + r->slope * t;
-  switch (form) {
+  shape->lead[0] = flank->lead_offset;
+  shape->lead[1] = flank->helix_slope / 2 / shape->half_width;
+  shape->lead[2] = eo_modification_lead_coefficient(g, flank->lead_crowning);
+  for (int i = 0; i < 2; i++)
+    shape->end[i] =
+        (struct eo_end_relief){.shape = flank->end_shape[i],
+                               .exponent = flank->end_exponent[i] > 0 ? flank->end_exponent[i] : 2,
+                               .amount = flank->end_relief[i],
+                               .start = shape->half_width - flank->end_relief_length[i] / cos(g->helix_angle)};
+}
+
+void eo_modification_init(struct eo_modification_shape *shape, const struct eo_geometry *g, int member,
+                          const struct eo_flank_modification *flank)
+{
+  double end[2];
+  eo_active_profile(g, member, end);
+  *shape = (struct eo_modification_shape){.crowning = flank->profile_crowning,
+                                          .half_width = g->face_width / 2 / cos(g->helix_angle),
+                                          .lengthen = 1 / cos(g->helix_angle),
+                                          .middle = (end[0] + end[1]) / 2,
+                                          .half_profile = (end[1] - end[0]) / 2};
+  double half = shape->half_profile;
+  init_reliefs(shape, g, member, flank, end);
+  init_lead(shape, g, flank);
+  shape->incline = flank->profile_slope / 2 / half;
+  shape->barrel = flank->profile_barrel / (half * half);
+  shape->twist = flank->twist / 4 / (half * g->face_width / 2);
+  memcpy(shape->triangular, flank->triangular, sizeof shape->triangular);
+  shape->varies = shape->twist != 0;
+  for (int i = 0; i < 4; i++)
+    shape->varies = shape->varies || flank->triangular[i / 2][i % 2].amount != 0;
+  shape->has_terms = shape->incline != 0 || shape->barrel != 0;
+  if (shape->varies)
+    eo_modification_slice(shape, 0, shape);
+}
+
+void eo_modification_complete(struct eo_modification_shape *shape, const struct eo_flank_spline *grid, bool mirrored)
+{
+  shape->grid = grid;
+  shape->mirrored = mirrored;
+  shape->varies = shape->varies || grid;
+  shape->has_terms = shape->has_terms || grid;
+}
+
+/* The line along which the plane of a triangular relief cuts the slice at distance q from the face end: at the profile's
+   end 1 - q/L_y of it is left, and it starts L_u times that before. */
+static void cut_triangles(struct eo_modification_shape *slice, double y)
+{
+  double half_face = slice->half_width / slice->lengthen;
+  slice->wedges = 0;
+  for (int side = 0; side < 2; side++)
+    for (int face = 0; face < 2; face++) {
+      const struct eo_triangular_relief *t = &slice->triangular[side][face];
+      double left = 1 - (half_face - (face == EO_LEADING_SIDE ? y : -y)) / t->face_length;
+      int outwards = side == EO_TIP_SIDE ? 1 : -1;
+      double end = outwards * slice->middle + slice->half_profile;
+      if (t->amount != 0 && left > 0)
+        slice->wedge[slice->wedges++] = (struct eo_wedge){.start = end - t->profile_length * left,
+                                                          .length = outwards * t->profile_length,
+                                                          .amount = t->amount,
+                                                          .exponent = t->exponent > 0 ? t->exponent : 1};
+    }
+}
+
+void eo_modification_slice(const struct eo_modification_shape *shape, double eta, struct eo_modification_shape *slice)
+{
+  double y = shape->mirrored ? -eta : eta;
+  if (slice != shape)
+    *slice = *shape;
+  slice->incline += shape->twist * (y - slice->y);
+  slice->y = y;
+  cut_triangles(slice, y);
+  slice->has_terms = slice->has_terms || slice->incline != 0 || slice->wedges > 0 || slice->grid;
+}
+
+/* Relief at distance t >= 0 beyond its vertex; *slope along t. */
+static double relief_value(const struct eo_relief *r, double t, double *slope)
+{
+  double tangent = r->value + r->slope * t, ratio = t / r->length;
+  switch (r->shape) {
   case EO_RELIEF_LINEAR:
     *slope = r->slope + r->depth / r->length;
     return tangent + r->depth * t / r->length;
@@ -71,46 +212,159 @@ static double relief_value(const struct eo_relief *r, enum eo_relief_shape form,
     *slope = r->slope + sign * t / root;
     return tangent + sign * t * t / (radius + root);
   }
+  case EO_RELIEF_EXPONENT:
+    *slope = r->slope + r->exponent * r->depth * pow(ratio, r->exponent - 1) / r->length;
+    return tangent + r->depth * pow(ratio, r->exponent);
   case EO_RELIEF_PARABOLIC:
     break;
   }
-  double ratio = t / r->length;
   *slope = r->slope + 2 * r->depth * ratio / r->length;
   return tangent + r->depth * ratio * ratio;
 }
 
-double eo_modification_profile(const struct eo_modification_shape *shape, double u, double slope[2])
+/* Reliefs and crowning: the parabola between the vertices. */
+static double relieved_profile(const struct eo_modification_shape *shape, double u, double slope[2])
 {
-  int tip = u >= 0, direction = tip ? 1 : -1;
-  const struct eo_relief *r = &shape->side[tip];
-  double beyond = fabs(u) - r->start, middle = 2 * shape->crowning * u, unused;
+  double middle = 2 * shape->crowning * u, unused;
+  const struct eo_relief *root = &shape->side[EO_ROOT_SIDE], *tip = &shape->side[EO_TIP_SIDE];
+  int on_tip = u >= 0;
+  if (tip->length > 0 && tip->start < 0) /* a relief may begin beyond the pitch point */
+    on_tip = u >= tip->start;
+  else if (root->length > 0 && root->start < 0)
+    on_tip = -u < root->start;
+  int direction = on_tip ? 1 : -1;
+  const struct eo_relief *r = &shape->side[on_tip];
+  double beyond = direction * u - r->start;
   if (r->length == 0 || beyond < 0) {
     slope[0] = slope[1] = middle;
     return shape->crowning * u * u;
   }
-  double outer, value = relief_value(r, shape->relief, beyond, &outer);
+  double outer, value = relief_value(r, beyond, &outer);
   slope[0] = slope[1] = direction * outer;
   if (beyond == 0) { /* at the vertex: the inner side belongs to the middle parabola */
-    slope[tip ? 0 : 1] = middle;
-    if (r->start == 0 && shape->side[1 - tip].length > 0 && shape->side[1 - tip].start == 0) {
-      relief_value(&shape->side[1 - tip], shape->relief, 0, &unused);
-      slope[tip ? 0 : 1] = -direction * unused;
+    slope[on_tip ? 0 : 1] = middle;
+    const struct eo_relief *other = &shape->side[1 - on_tip];
+    if (other->length > 0 && other->start == -r->start) {
+      relief_value(other, 0, &unused);
+      slope[on_tip ? 0 : 1] = -direction * unused;
     }
   }
   return value;
 }
 
+static double wedge_value(const struct eo_wedge *w, double u, double slope[2])
+{
+  int direction = w->length > 0 ? 1 : -1;
+  double length = fabs(w->length), beyond = direction * u - w->start, ratio = beyond / length;
+  if (beyond < 0 || (beyond == 0 && w->exponent != 1))
+    return 0;
+  double rate = direction * w->amount / length * w->exponent * (beyond > 0 ? pow(ratio, w->exponent - 1) : 1);
+  if (beyond > 0 || direction < 0)
+    slope[0] += rate;
+  if (beyond > 0 || direction > 0)
+    slope[1] += rate;
+  return beyond > 0 ? w->amount * pow(ratio, w->exponent) : 0;
+}
+
+double eo_modification_profile(const struct eo_modification_shape *shape, double u, double slope[2])
+{
+  double value = relieved_profile(shape, u, slope);
+  if (!shape->has_terms)
+    return value;
+  double from_middle = u - shape->middle, rate = shape->incline + 2 * shape->barrel * from_middle, by_u[2];
+  value += from_middle * (shape->incline + shape->barrel * from_middle);
+  slope[0] += rate;
+  slope[1] += rate;
+  for (int i = 0; i < shape->wedges; i++)
+    value += wedge_value(&shape->wedge[i], u, slope);
+  if (shape->grid) {
+    value += eo_flank_spline_at(shape->grid, u, shape->y, by_u);
+    slope[0] += by_u[0];
+    slope[1] += by_u[1];
+  }
+  return value;
+}
+
+bool eo_modification_has_profile(const struct eo_modification_shape *slice)
+{
+  return slice->crowning != 0 || slice->side[0].length > 0 || slice->side[1].length > 0 || slice->has_terms;
+}
+
+static int add_vertex(double vertex[EO_MOST_VERTICES], int count, double u)
+{
+  int at = count;
+  while (at > 0 && vertex[at - 1] >= u) {
+    if (vertex[at - 1] == u)
+      return count;
+    at--;
+  }
+  if (count == EO_MOST_VERTICES)
+    return count;
+  memmove(vertex + at + 1, vertex + at, sizeof *vertex * (size_t)(count - at));
+  vertex[at] = u;
+  return count + 1;
+}
+
+int eo_modification_vertices(const struct eo_modification_shape *slice, double vertex[EO_MOST_VERTICES])
+{
+  int count = 0;
+  for (int side = 0; side < 2; side++)
+    if (slice->side[side].length > 0)
+      count = add_vertex(vertex, count, (side ? 1 : -1) * slice->side[side].start);
+  for (int i = 0; i < slice->wedges; i++)
+    count = add_vertex(vertex, count, (slice->wedge[i].length > 0 ? 1 : -1) * slice->wedge[i].start);
+  for (int border = 0; slice->grid && border < 2; border++)
+    count = add_vertex(vertex, count, slice->grid->u[border * (slice->grid->u_knots - 1)]);
+  return count;
+}
+
+/* End relief at the part t > 0 of its length; *slope by t. The arc is tangent where it starts. */
+static double end_relief_value(const struct eo_end_relief *relief, double length, double t, double *slope)
+{
+  double depth = fabs(relief->amount), sign = relief->amount < 0 ? -1 : 1;
+  switch (relief->shape) {
+  case EO_RELIEF_LINEAR:
+    *slope = relief->amount;
+    return relief->amount * t;
+  case EO_RELIEF_EXPONENT:
+    *slope = relief->amount * relief->exponent * pow(t, relief->exponent - 1);
+    return relief->amount * pow(t, relief->exponent);
+  case EO_RELIEF_CIRCULAR: {
+    double radius = (length * length + depth * depth) / (2 * depth), at = t * length,
+           root = sqrt(fmax(radius * radius - at * at, 1e-6 * radius * radius));
+    *slope = sign * at / root * length;
+    return sign * at * at / (radius + root);
+  }
+  case EO_RELIEF_PARABOLIC:
+    break;
+  }
+  *slope = 2 * relief->amount * t;
+  return relief->amount * t * t;
+}
+
 double eo_modification_lead(const struct eo_modification_shape *shape, double x, double *slope)
 {
-  int side = x > 0;
-  double value = shape->lead[0] + x * (shape->lead[1] + x * shape->lead[2]);
-  double derivative = shape->lead[1] + 2 * x * shape->lead[2];
-  double beyond = fabs(x) - shape->end_start[side], length = shape->half_width - shape->end_start[side];
-  if (shape->end_relief[side] != 0 && beyond > 0 && length > 0) {
-    double ratio = beyond / length;
-    value += shape->end_relief[side] * ratio * ratio;
-    derivative += (side ? 2 : -2) * shape->end_relief[side] * ratio / length;
+  double place = shape->mirrored ? -x : x;
+  int side = place > 0;
+  const struct eo_end_relief *end = &shape->end[side];
+  double value = shape->lead[0] + place * (shape->lead[1] + place * shape->lead[2]);
+  double derivative = shape->lead[1] + 2 * place * shape->lead[2];
+  double beyond = fabs(place) - end->start, length = shape->half_width - end->start;
+  if (end->amount != 0 && beyond > 0 && length > 0) {
+    double rate;
+    value += end_relief_value(end, length, beyond / length, &rate);
+    derivative += (side ? 1 : -1) * rate / length;
   }
-  *slope = derivative;
+  *slope = shape->mirrored ? -derivative : derivative;
   return value;
+}
+
+double eo_modification_at(const struct eo_modification_shape *shape, double u, double eta)
+{
+  struct eo_modification_shape slice;
+  double unused, slopes[2], lead = eo_modification_lead(shape, eta * shape->lengthen, &unused);
+  if (!shape->varies)
+    return lead + eo_modification_profile(shape, u, slopes);
+  eo_modification_slice(shape, eta, &slice);
+  return lead + eo_modification_profile(&slice, u, slopes);
 }

@@ -4,6 +4,16 @@
 #include <math.h>
 #include <stddef.h>
 
+/* The profile at x = eta / cos(beta). */
+static double profile_at(const struct eo_modification_shape *shape, double u, double x, double slope[2])
+{
+  struct eo_modification_shape slice;
+  if (!shape->varies)
+    return eo_modification_profile(shape, u, slope);
+  eo_modification_slice(shape, x / shape->lengthen, &slice);
+  return eo_modification_profile(&slice, u, slope);
+}
+
 void eo_surface_evaluate(const struct eo_geometry *g, int member, const struct eo_modification_shape *shape, double u,
                          double v, struct eo_surface_point *point)
 {
@@ -12,8 +22,14 @@ void eo_surface_evaluate(const struct eo_geometry *g, int member, const struct e
   const double e[3] = {cb, 0, -sb}, t[3] = {sb, 0, cb}, across[3] = {0, 1, 0};
   double rack = u + g->rack_offset[member], r = g->reference_radius[member];
   double skew = sa * sb / cb, side = member == EO_PINION ? 1 : -1, profile_slope[2], lead_slope;
-  double delta = eo_modification_profile(shape, u, profile_slope) +
-                 eo_modification_lead(shape, side * (v + rack * skew), &lead_slope);
+  double across_face = side * (v + rack * skew);
+  double delta = profile_at(shape, u, across_face, profile_slope) + eo_modification_lead(shape, across_face, &lead_slope);
+  if (shape->varies) {
+    const double step = 1e-6;
+    double unused[2];
+    lead_slope += (profile_at(shape, u, across_face + step, unused) - profile_at(shape, u, across_face - step, unused)) /
+                  (2 * step);
+  }
   lead_slope *= side;
   double du = (profile_slope[0] + profile_slope[1]) / 2 + lead_slope * skew, dv = lead_slope, x[3], n[3];
   for (int i = 0; i < 3; i++) {
@@ -100,7 +116,7 @@ static double common_angle(const struct eo_geometry *g, const struct ray *p, con
    ---- The coordinate w is u, stretched at each kink by the width of a fan in which the normal turns about the vertex.
  */
 
-enum { MOST_KINKS = 3, MOST_BREAKS = 12 };
+enum { MOST_KINKS = EO_MOST_VERTICES, MOST_BREAKS = 2 + 4 * EO_MOST_VERTICES };
 static const double FAN = 1e-3;
 
 struct walk {
@@ -111,26 +127,14 @@ struct walk {
   double low, high;        /* w at the ends */
 };
 
-/* Vertices of a shape, increasing: where its curvature jumps, and perhaps its slope. */
-static int collect_vertices(const struct eo_modification_shape *shape, double vertex[2])
-{
-  int count = 0;
-  for (int side = 0; side < 2; side++) {
-    double u = (side ? 1 : -1) * shape->side[side].start;
-    if (shape->side[side].length > 0 && !(count == 1 && vertex[0] == u))
-      vertex[count++] = u;
-  }
-  return count;
-}
-
 static void walk_init(struct walk *walk, const struct eo_geometry *g, int member,
                       const struct eo_modification_shape *shape)
 {
-  double margin = 0.3 * (g->rack_top - g->rack_bottom), vertex[2] = {0};
+  double margin = 0.3 * (g->rack_top - g->rack_bottom), vertex[EO_MOST_VERTICES];
   *walk = (struct walk){.geometry = g, .shape = shape, .member = member};
   walk->low = (member == EO_PINION ? g->rack_bottom : -g->rack_top) - margin;
   walk->high = (member == EO_PINION ? g->rack_top : -g->rack_bottom) + margin;
-  int vertices = collect_vertices(shape, vertex);
+  int vertices = eo_modification_vertices(shape, vertex);
   for (int i = 0; i < vertices; i++) {
     double slope[2];
     eo_modification_profile(shape, vertex[i], slope);
@@ -239,11 +243,6 @@ static struct node node_of(const struct eo_geometry *g, const struct ray *p, con
                        eo_tilt_at(g, common, turned, place)};
 }
 
-static bool profile_is_modified(const struct eo_modification_shape *shape)
-{
-  return shape->crowning != 0 || shape->side[0].length > 0 || shape->side[1].length > 0;
-}
-
 static void sort(int count, double *value)
 {
   for (int i = 1; i < count; i++)
@@ -259,15 +258,15 @@ static void sort(int count, double *value)
 static int collect_breaks(const struct walk *lead, const struct walk *other, double breaks[MOST_BREAKS])
 {
   const struct eo_geometry *g = lead->geometry;
-  double margin = 0.15 * (g->rack_top - g->rack_bottom), vertex[2] = {0};
+  double margin = 0.15 * (g->rack_top - g->rack_bottom), vertex[EO_MOST_VERTICES];
   double low = walk_place(lead, (lead->member == EO_PINION ? g->rack_bottom : -g->rack_top) - margin, 0);
   double high = walk_place(lead, (lead->member == EO_PINION ? g->rack_top : -g->rack_bottom) + margin, 1);
-  int count = 0, kept = 0, vertices = collect_vertices(lead->shape, vertex);
+  int count = 0, kept = 0, vertices = eo_modification_vertices(lead->shape, vertex);
   breaks[count++] = low;
   breaks[count++] = high;
   for (int i = 0; i < 2 * vertices; i++)
     breaks[count++] = walk_place(lead, vertex[i / 2], i % 2);
-  vertices = other ? collect_vertices(other->shape, vertex) : 0;
+  vertices = other ? eo_modification_vertices(other->shape, vertex) : 0;
   for (int i = 0; i < 2 * vertices; i++) {
     struct ray q = walk_ray(other, walk_place(other, vertex[i / 2], i % 2)), p;
     double w = walk_place(lead, -vertex[i / 2], 0);
@@ -328,10 +327,105 @@ static int follow(const struct walk *lead, const struct walk *other, int places,
   return count;
 }
 
+/* Where the gear's flank is in line with the pinion's ray, and what both make; *w: a place near it on the gear. */
+static bool meet(const struct eo_geometry *g, const struct walk walk[2], const bool modified[2], double place, double *w,
+                 struct node *node)
+{
+  struct ray p = modified[EO_PINION] ? walk_ray(&walk[EO_PINION], place)
+                                     : involute_ray(g, EO_PINION, g->tangent_length[EO_PINION] + place / g->rack_factor),
+             q;
+  if (!modified[EO_GEAR])
+    q = involute_in_line_with(g, EO_GEAR, &p);
+  else if (!in_line_with(&walk[EO_GEAR], &p, w, &q))
+    return false;
+  *node = node_of(g, &p, &q);
+  return isfinite(node->phase + node->gap + node->slope);
+}
+
+/* The slow way, for slices that touch at a kink: the pinion's place whose phase is c, between two that bracket it
+   (regula falsi with halving). */
+static bool touch_at_kink(const struct eo_geometry *g, const struct eo_modification_shape slice[2],
+                          const bool modified[2], double c, struct node *node)
+{
+  enum { STEPS = 60 };
+  struct walk walk[2];
+  double w = -g->rack_factor * c, span = 0.02 * (g->rack_top - g->rack_bottom), end[2], miss[2] = {1, -1};
+  for (int member = 0; member < 2; member++)
+    walk_init(&walk[member], g, member, &slice[member]);
+  double place = modified[EO_PINION] ? walk_place(&walk[EO_PINION], g->rack_factor * c, 0) : g->rack_factor * c;
+  for (int widen = 0; widen < 6 && !(miss[0] <= 0 && miss[1] >= 0); widen++, span *= 2)
+    for (int i = 0; i < 2; i++) {
+      end[i] = place + (i ? span : -span);
+      if (!meet(g, walk, modified, end[i], &w, node))
+        return false;
+      miss[i] = node->phase - c;
+    }
+  if (!(miss[0] <= 0 && miss[1] >= 0))
+    return false;
+  for (int i = 0, last = -1; i < STEPS && end[1] - end[0] > 1e-15; i++) {
+    double at = (end[0] * miss[1] - end[1] * miss[0]) / (miss[1] - miss[0]);
+    if (!meet(g, walk, modified, at, &w, node))
+      return false;
+    double here = node->phase - c;
+    if (fabs(here) < 1e-11)
+      return true;
+    int side = here > 0 ? 1 : 0;
+    end[side] = at;
+    miss[side] = here;
+    if (side == last)
+      miss[1 - side] /= 2;
+    last = side;
+  }
+  return fabs(node->phase - c) < 1e-8;
+}
+
+/* Newton for the places of both flanks with the derivatives of the involutes: phase = c, and the distances along the
+   common normal add up. What the phase is off by in the end costs its square times the bend of the gap. */
+static bool touch_smoothly(const struct eo_geometry *g, const struct eo_modification_shape slice[2],
+                           const bool modified[2], double c, struct node *node)
+{
+  enum { STEPS = 12 };
+  static const double DONE = 2e-8;
+  double u[2] = {g->rack_factor * c, -g->rack_factor * c};
+  for (int i = 0; i < STEPS; i++) {
+    struct ray p = modified[EO_PINION]
+                       ? slice_ray(g, EO_PINION, &slice[EO_PINION], u[EO_PINION], 0)
+                       : involute_ray(g, EO_PINION, g->tangent_length[EO_PINION] + u[EO_PINION] / g->rack_factor);
+    struct ray q = modified[EO_GEAR] ? slice_ray(g, EO_GEAR, &slice[EO_GEAR], u[EO_GEAR], 0)
+                                     : involute_in_line_with(g, EO_GEAR, &p);
+    double miss = modified[EO_GEAR] ? miss_of(g, &p, &q) : 0;
+    *node = node_of(g, &p, &q);
+    double off = c - node->phase;
+    if (!(isfinite(off) && isfinite(miss)))
+      return false;
+    if (fabs(off) < DONE && fabs(miss) < DONE)
+      return true;
+    u[EO_PINION] += g->rack_factor * off;
+    u[EO_GEAR] += g->rack_factor * (miss - off);
+  }
+  return false;
+}
+
+bool eo_slice_touch_at(const struct eo_geometry *g, const struct eo_modification_shape slice[2], double c,
+                       struct eo_slice_touch *touch)
+{
+  const bool modified[2] = {eo_modification_has_profile(&slice[EO_PINION]),
+                            eo_modification_has_profile(&slice[EO_GEAR])};
+  double margin = 0.15 * (g->path_end - g->path_start),
+         inside = fmin(g->path_end + margin, fmax(g->path_start - margin, c));
+  struct node node;
+  if (!touch_smoothly(g, slice, modified, inside, &node) && !touch_at_kink(g, slice, modified, inside, &node))
+    return false;
+  touch->gap = node.gap + node.slope * (c - node.phase);
+  touch->slope = node.slope;
+  touch->tilt = node.tilt;
+  return true;
+}
+
 void eo_slice_gap_init(struct eo_slice_gap *table, const struct eo_geometry *g,
                        const struct eo_modification_shape shape[2])
 {
-  bool pinion = profile_is_modified(&shape[EO_PINION]), gear = profile_is_modified(&shape[EO_GEAR]);
+  bool pinion = eo_modification_has_profile(&shape[EO_PINION]), gear = eo_modification_has_profile(&shape[EO_GEAR]);
   table->nodes = 0;
   if (!pinion && !gear)
     return;

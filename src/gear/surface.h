@@ -70,6 +70,17 @@ struct eo_slice_gap {
   unsigned char bucket[EO_SLICE_BUCKETS]; /* the piece in which each of equal stretches of c starts */
 };
 
+/* The same without a table, for slices that differ from their neighbours: where the slices touch at phase c. slice:
+   [member], from eo_modification_slice(). Beyond a margin at both ends of the path of contact the gap goes on in a line.
+   False when there is no place where the flanks' normals are in line: reliefs so steep that they leave the mesh. */
+struct eo_slice_touch {
+  double gap;          /* m, normal */
+  double slope;        /* d gap / dc */
+  struct eo_tilt tilt; /* share of shaft angle errors there */
+};
+bool eo_slice_touch_at(const struct eo_geometry *geometry, const struct eo_modification_shape slice[2], double c,
+                       struct eo_slice_touch *touch);
+
 /* shape: [member] of one end. The table covers [s_A, s_E] and a margin beyond (the relief parabolas go on); outside it
    the last piece goes on in a line. */
 void eo_slice_gap_init(struct eo_slice_gap *table, const struct eo_geometry *geometry,

@@ -44,7 +44,9 @@ enum eo_code eo_prediction_run(struct eo_rig_prediction *p, struct eo_evaluator 
     return eo_error_memory(error);
   *one = *design;
   one->load_cases = 1;
-  one->load_case[0] = (struct eo_load_case){.torque = torque, .speed = speed, .share = 1};
+  one->load_case[0].torque = torque;
+  one->load_case[0].speed = speed;
+  one->load_case[0].share = 1;
   if (unmodified)
     memset(&one->modification, 0, sizeof one->modification);
   enum eo_code code = eo_evaluator_run(evaluator, one, NULL, EO_WANT_CURVES, &r, error);

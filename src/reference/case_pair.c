@@ -146,7 +146,7 @@ void eo_case_modification(struct eo_case *block, const struct eo_gear_pair *pair
   flank->profile_crowning = 1e3 * either(block, "a_m", "a_m_per_mm", 0);
   flank->lead_crowning =
       half * half * (per_um ? 1e6 * eo_case_number(block, "a_l_per_um") : 1e3 * eo_case_number_or(block, "a_l", 0));
-  flank->lead_slope = half * eo_case_number_or(block, "b_l", 0);
+  flank->helix_slope = 2 * half * eo_case_number_or(block, "b_l", 0);
   flank->lead_offset = mm * eo_case_number_or(block, "c_l", 0);
 }
 

@@ -15,7 +15,7 @@
 #define EO_STAGE_ALIGNMENT(type) \
   EO_OBJECT(type, design.alignment, "alignment", &eo_alignment_table, "as in a design document")
 #define EO_STAGE_MODIFICATION(type) \
-  EO_OBJECT(type, design.modification, "modification", &eo_modification_table, "as in a design document")
+  EO_OBJECT(type, design.modification, "modification", &eo_modification_terms_table, "as in a design document")
 #define EO_STAGE_RESOLUTION(type) \
   EO_OBJECT(type, design.resolution, "resolution", &eo_resolution_table, "as in a design document")
 

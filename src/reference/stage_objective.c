@@ -44,7 +44,7 @@ static const struct eo_field input[] = {
     EO_LIST(struct input, design.load_case, design.load_cases, "load_cases", &eo_load_case_table, 1, EO_MAX_LOAD_CASES,
             "as in a design document"),
     EO_OBJECT(struct input, design.objective, "objective", &eo_objective_table, "as in a design document"),
-    EO_OBJECT(struct input, design.modification, "modification", &eo_modification_table,
+    EO_OBJECT(struct input, design.modification, "modification", &eo_modification_terms_table,
               "as in a design document; only where reliefs start is used"),
     EO_NUMBER(struct input, bottom, "rack_bottom_mm", &eo_unit_mm, -1e4, 0, -1e4,
               "u_A, the end of the pinion's active profile, as stage geometry prints it"),

@@ -92,7 +92,7 @@ static enum eo_code check_surface(void *context, struct eo_case *block, struct e
 static enum eo_code check_slice_gap(void *context, struct eo_case *block, struct eo_error *error)
 {
   struct eo_contact_case *c = context;
-  struct eo_modification_shape shape[2] = {{0}, {0}};
+  struct eo_modification_shape shape[2] = {0};
   struct eo_slice_gap *table = malloc(sizeof *table);
   struct eo_case *phase = eo_case_need(block, "c"), *exact = eo_case_need(block, "exact_um"),
                  *first = eo_case_find(block, "first_order_um");

@@ -63,7 +63,7 @@ __attribute__((unused)) static struct eo_flank_modification random_modification(
       .root_relief_start = bottom * random_between(index, first + 4, 0, 0.9),
       .profile_crowning = random_between(index, first + 5, 0, 0.3) / m,
       .lead_crowning = m * random_between(index, first + 6, 0, 20e-6),
-      .lead_slope = m * random_between(index, first + 7, -10e-6, 10e-6),
+      .helix_slope = m * random_between(index, first + 7, -20e-6, 20e-6),
       .lead_offset = m * random_between(index, first + 8, 0, 5e-6),
       .end_relief = {m * random_between(index, first + 9, 0, 10e-6), m * random_between(index, first + 10, 0, 10e-6)},
       .end_relief_length = {g->face_width * random_between(index, first + 11, 0.05, 0.4),

@@ -126,6 +126,7 @@ static void provoke_field(const json_t *complete, const char *pointer, const str
     provoke_table(complete, inner, field->table);
     break;
   case EO_FIELD_SERIES:
+  case EO_FIELD_MATRIX:
   case EO_FIELD_DOCUMENT:
     break;
   }
@@ -136,7 +137,8 @@ static void provoke_table(const json_t *complete, const char *pointer, const str
   char inner[300];
   for (int i = 0; i < table->count; i++) {
     snprintf(inner, sizeof inner, "%.200s/%.80s", pointer, table->field[i].key);
-    provoke_field(complete, inner, &table->field[i]);
+    if (!(table->field[i].flags & EO_FIELD_ELSEWHERE))
+      provoke_field(complete, inner, &table->field[i]);
   }
   snprintf(inner, sizeof inner, "%.250s/no_such_key", pointer);
   provoke(complete, inner, json_integer(1));
@@ -149,8 +151,11 @@ static void test_every_fault(void)
   memset(long_text, 'x', sizeof long_text - 1);
   eo_example_build("paper-case-b", &complete);
   complete.objective.robust = EO_ROBUST_MEAN;
-  complete.modification.flank[EO_GEAR][EO_LEFT].lead_slope = 1e-6; /* so that the gear is in the document */
-  complete.rating.accuracy_grade = 5;                              /* and the rating */
+  complete.rating.accuracy_grade = 5; /* so that the rating is in the document */
+  for (int i = 0; i < 4; i++) /* and all flanks */
+    complete.modification.coast[i / 2][i % 2].helix_slope = 1e-6;
+  complete.load_case[0].has_alignment = 1;
+  complete.load_case[0].alignment = (struct eo_case_alignment){NAN, NAN, NAN, NAN};
   complete.optimization.variables = EO_VARIABLES_LISTED;
   complete.optimization.listed = 1;
   complete.optimization.list[0] =

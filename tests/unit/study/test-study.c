@@ -367,12 +367,12 @@ static void refuse(const char *what, const char *pointer, int count, const struc
 
 static void test_variables(void)
 {
-  const int tip = parameter("tip_relief_um"), slope = parameter("lead_slope_um"),
+  const int tip = parameter("tip_relief_um"), slope = parameter("helix_slope_um"),
             start = parameter("tip_relief_start_mm");
   const int end = parameter("leading_end_relief_um"), length = parameter("leading_end_relief_length_mm");
   const struct eo_range open = {NAN, NAN};
   struct eo_listed_variable three[] = {
-      {EO_PINION, EO_BOTH_ENDS, tip, open}, {EO_GEAR, EO_LEFT, slope, {-5, 10}}, {EO_GEAR, EO_RIGHT, slope, {-10, 5}}};
+      {EO_PINION, EO_BOTH_ENDS, tip, open, 0}, {EO_GEAR, EO_LEFT, slope, {-5, 10}, 0}, {EO_GEAR, EO_RIGHT, slope, {-10, 5}, 0}};
   ok(with_list(3, three) == EO_OK, "tip relief of the pinion, lead slope of each gear end %s", error.text);
   design.modification.flank[EO_PINION][EO_LEFT].tip_relief_start =
       design.modification.flank[EO_PINION][EO_RIGHT].tip_relief_start = 1e-3;
@@ -382,7 +382,7 @@ static void test_variables(void)
   const struct eo_flank_modification *gear = result.best.modification.flank[EO_GEAR],
                                      *pinion = result.best.modification.flank[EO_PINION];
   ok(result.space.count == 3 && pinion[0].tip_relief == pinion[1].tip_relief && pinion[0].tip_relief_start == 1e-3 &&
-         gear[0].lead_slope != gear[1].lead_slope && gear[0].lead_slope >= -5e-6 && gear[1].lead_slope <= 5e-6,
+         gear[0].helix_slope != gear[1].helix_slope && gear[0].helix_slope >= -5e-6 && gear[1].helix_slope <= 5e-6,
      "are searched for, the rest stays");
   struct eo_modification applied;
   double x[3] = {0.123456789, 1, 0}, back[3];
@@ -390,7 +390,7 @@ static void test_variables(void)
   ok(eo_study_space_locate(&result.space, &design.modification, &applied, back) && fabs(back[0] - x[0]) < 1e-15 &&
          back[1] == 1 && back[2] == 0,
      "there and back");
-  ok(applied.flank[EO_GEAR][0].lead_slope == 10e-6 && applied.flank[EO_GEAR][1].lead_slope == -10e-6,
+  ok(applied.flank[EO_GEAR][0].helix_slope == 10e-6 && applied.flank[EO_GEAR][1].helix_slope == -10e-6,
      "bounds are reached exactly");
   applied.flank[EO_PINION][0].root_relief = 1e-6;
   ok(!eo_study_space_locate(&result.space, &design.modification, &applied, back),
@@ -403,28 +403,28 @@ static void test_variables(void)
   eo_text_done(&text);
   eo_study_result_done(&result);
 
-  struct eo_listed_variable twice[] = {{EO_PINION, EO_BOTH_ENDS, tip, open}, {EO_PINION, EO_RIGHT, tip, {0, 10}}};
+  struct eo_listed_variable twice[] = {{EO_PINION, EO_BOTH_ENDS, tip, open, 0}, {EO_PINION, EO_RIGHT, tip, {0, 10}, 0}};
   refuse("the same parameter twice", "/optimization/variable_list/1", 2, twice);
-  struct eo_listed_variable unbounded = {EO_PINION, EO_BOTH_ENDS, slope, open};
+  struct eo_listed_variable unbounded = {EO_PINION, EO_BOTH_ENDS, slope, open, 0};
   refuse("no bounds", "/optimization/variable_list/0/bounds", 1, &unbounded);
-  struct eo_listed_variable fixed = {EO_PINION, EO_BOTH_ENDS, slope, {5, 5}};
+  struct eo_listed_variable fixed = {EO_PINION, EO_BOTH_ENDS, slope, {5, 5}, 0};
   refuse("a fixed variable", "/optimization/variable_list/0/bounds", 1, &fixed);
-  struct eo_listed_variable negative = {EO_PINION, EO_BOTH_ENDS, tip, {-1, 5}};
+  struct eo_listed_variable negative = {EO_PINION, EO_BOTH_ENDS, tip, {-1, 5}, 0};
   refuse("bounds outside the parameter's range", "/optimization/variable_list/0/bounds", 1, &negative);
-  struct eo_listed_variable late[] = {{EO_PINION, EO_BOTH_ENDS, tip, open}, {EO_PINION, EO_BOTH_ENDS, start, {1, 5.5}}};
+  struct eo_listed_variable late[] = {{EO_PINION, EO_BOTH_ENDS, tip, open, 0}, {EO_PINION, EO_BOTH_ENDS, start, {1, 5.5}, 0}};
   refuse("a relief that may start outside the active flank", "/optimization/variable_list", 2, late);
-  struct eo_listed_variable endless = {EO_PINION, EO_LEFT, end, {0, 10}};
+  struct eo_listed_variable endless = {EO_PINION, EO_LEFT, end, {0, 10}, 0};
   refuse("an end relief without a length", "/optimization/variable_list", 1, &endless);
-  struct eo_listed_variable zero[] = {{EO_PINION, EO_LEFT, end, {0, 10}}, {EO_PINION, EO_LEFT, length, {0, 10}}};
+  struct eo_listed_variable zero[] = {{EO_PINION, EO_LEFT, end, {0, 10}, 0}, {EO_PINION, EO_LEFT, length, {0, 10}, 0}};
   refuse("an end relief whose length may vanish", "/optimization/variable_list", 2, zero);
-  struct eo_listed_variable good[] = {{EO_PINION, EO_LEFT, end, {0, 10}}, {EO_PINION, EO_LEFT, length, {1, 10}}};
+  struct eo_listed_variable good[] = {{EO_PINION, EO_LEFT, end, {0, 10}, 0}, {EO_PINION, EO_LEFT, length, {1, 10}, 0}};
   ok(with_list(2, good) == EO_OK, "an end relief with a length");
   refuse("no variable", "/optimization/variable_list", 0, good);
   with_list(1, good);
   design.optimization.variables = EO_VARIABLES_SHARED;
   ok(!complete(&design) && strcmp(error.pointer, "/optimization/variable_list") == 0, "a list beside a preset: %s",
      error.text);
-  struct eo_listed_variable right = {EO_PINION, EO_RIGHT, tip, open};
+  struct eo_listed_variable right = {EO_PINION, EO_RIGHT, tip, open, 0};
   coarse_design(&design, "ga", 20);
   design.gear_pair.ends = 1;
   design.gear_pair.groove_width = NAN;

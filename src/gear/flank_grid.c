@@ -1,0 +1,213 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "gear/flank_grid.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static int numbers_of(int u_knots, int y_knots)
+{
+  return u_knots ? u_knots + y_knots + u_knots * y_knots : 0;
+}
+
+static struct eo_flank_grid grid_of(const struct eo_flank_grids *grids, const struct eo_grid_place *place)
+{
+  const double *number = grids->number + place->first;
+  if (place->u_knots == 0)
+    return (struct eo_flank_grid){0};
+  return (struct eo_flank_grid){place->u_knots, place->y_knots, number, number + place->u_knots,
+                                number + place->u_knots + place->y_knots};
+}
+
+struct eo_flank_grid eo_flank_grid_at(const struct eo_flank_grids *grids, enum eo_flank_side side, int member, int end)
+{
+  return grid_of(grids, &grids->place[side][member][end]);
+}
+
+/* Takes a grid away and closes the gap that it leaves. */
+static void remove_grid(struct eo_flank_grids *grids, struct eo_grid_place *place)
+{
+  struct eo_grid_place *all = &grids->place[0][0][0];
+  int size = numbers_of(place->u_knots, place->y_knots), behind = place->first + size;
+  if (size == 0)
+    return;
+  memmove(grids->number + place->first, grids->number + behind, sizeof(double) * (size_t)(grids->used - behind));
+  for (int i = 0; i < 8; i++)
+    all[i].first -= all[i].first >= behind ? size : 0;
+  grids->used -= size;
+  *place = (struct eo_grid_place){0};
+}
+
+enum eo_code eo_flank_grids_put(struct eo_flank_grids *grids, enum eo_flank_side side, int member, int end,
+                                const struct eo_flank_grid *grid, struct eo_error *error)
+{
+  struct eo_grid_place *place = &grids->place[side][member][end];
+  int size = numbers_of(grid->u_knots, grid->y_knots);
+  remove_grid(grids, place);
+  if (size > EO_GRID_NUMBERS - grids->used)
+    return eo_error_set(error, EO_ERROR_INPUT, NULL,
+                        "The grids of a design hold at most %d numbers together; this one of %d x %d knots leaves no "
+                        "room: take every other knot.",
+                        EO_GRID_NUMBERS, grid->u_knots, grid->y_knots);
+  if (size == 0)
+    return EO_OK;
+  double *number = grids->number + grids->used;
+  *place = (struct eo_grid_place){grid->u_knots, grid->y_knots, grids->used};
+  memcpy(number, grid->u, sizeof(double) * (size_t)grid->u_knots);
+  memcpy(number + grid->u_knots, grid->y, sizeof(double) * (size_t)grid->y_knots);
+  memcpy(number + grid->u_knots + grid->y_knots, grid->delta,
+         sizeof(double) * (size_t)grid->u_knots * (size_t)grid->y_knots);
+  grids->used += size;
+  return EO_OK;
+}
+
+bool eo_flank_grid_equal(const struct eo_flank_grid *a, const struct eo_flank_grid *b)
+{
+  if (a->u_knots != b->u_knots || a->y_knots != b->y_knots)
+    return false;
+  /* the numbers of a grid stand together, u first */
+  return a->u_knots == 0 || memcmp(a->u, b->u, sizeof(double) * (size_t)numbers_of(a->u_knots, a->y_knots)) == 0;
+}
+
+bool eo_flank_grids_equal(const struct eo_flank_grids *a, const struct eo_flank_grids *b)
+{
+  const struct eo_grid_place *of_a = &a->place[0][0][0], *of_b = &b->place[0][0][0];
+  bool same = true;
+  for (int i = 0; i < 8 && same; i++) {
+    struct eo_flank_grid x = grid_of(a, &of_a[i]), y = grid_of(b, &of_b[i]);
+    same = eo_flank_grid_equal(&x, &y);
+  }
+  return same;
+}
+
+/* Second derivatives of the natural cubic spline through value[n], `stride` apart, at the knots: the tridiagonal system
+   h_(i-1) m_(i-1) + 2 (h_(i-1) + h_i) m_i + h_i m_(i+1) = 6 (difference quotients' difference), m = 0 at both ends. */
+static void bend(int n, const double *knot, const double *value, double *second, size_t stride)
+{
+  double factor[EO_GRID_KNOTS], right[EO_GRID_KNOTS];
+  factor[0] = right[0] = 0;
+  for (int i = 1; i < n - 1; i++) {
+    double before = knot[i] - knot[i - 1], after = knot[i + 1] - knot[i];
+    double here = value[(size_t)i * stride];
+    double rise = (value[(size_t)(i + 1) * stride] - here) / after - (here - value[(size_t)(i - 1) * stride]) / before;
+    double pivot = 2 * (before + after) - before * factor[i - 1];
+    factor[i] = after / pivot;
+    right[i] = (6 * rise - before * right[i - 1]) / pivot;
+  }
+  second[0] = second[(size_t)(n - 1) * stride] = 0;
+  for (int i = n - 2; i > 0; i--)
+    second[(size_t)i * stride] = right[i] - factor[i] * second[(size_t)(i + 1) * stride];
+}
+
+enum { VALUE, BY_U, BY_Y, BY_BOTH, PARTS };
+
+static void fit(struct eo_flank_spline *spline)
+{
+  size_t row = (size_t)spline->y_knots * PARTS;
+  for (int j = 0; j < spline->y_knots; j++) {
+    double *column = spline->coefficient + (size_t)j * PARTS;
+    bend(spline->u_knots, spline->u, column + VALUE, column + BY_U, row);
+  }
+  for (int i = 0; i < spline->u_knots; i++) {
+    double *line = spline->coefficient + (size_t)i * row;
+    bend(spline->y_knots, spline->y, line + VALUE, line + BY_Y, PARTS);
+    bend(spline->y_knots, spline->y, line + BY_U, line + BY_BOTH, PARTS);
+  }
+}
+
+enum eo_code eo_flank_spline_new(struct eo_flank_spline **result, const struct eo_flank_grid *grid,
+                                 struct eo_error *error)
+{
+  size_t u = (size_t)grid->u_knots, y = (size_t)grid->y_knots;
+  struct eo_flank_spline *spline = calloc(1, sizeof *spline);
+  if (!spline)
+    return eo_error_memory(error);
+  spline->u_knots = grid->u_knots;
+  spline->y_knots = grid->y_knots;
+  spline->u = malloc(u * sizeof(double));
+  spline->y = malloc(y * sizeof(double));
+  spline->coefficient = malloc(u * y * PARTS * sizeof(double));
+  if (!spline->u || !spline->y || !spline->coefficient) {
+    eo_flank_spline_free(spline);
+    return eo_error_memory(error);
+  }
+  memcpy(spline->u, grid->u, u * sizeof(double));
+  memcpy(spline->y, grid->y, y * sizeof(double));
+  for (size_t i = 0; i < u * y; i++)
+    spline->coefficient[i * PARTS + VALUE] = grid->delta[i];
+  fit(spline);
+  *result = spline;
+  return EO_OK;
+}
+
+void eo_flank_spline_free(struct eo_flank_spline *spline)
+{
+  if (!spline)
+    return;
+  free(spline->u);
+  free(spline->y);
+  free(spline->coefficient);
+  free(spline);
+}
+
+/* The piece that holds x, which lies between the outermost knots. */
+static int piece_of(int n, const double *knot, double x)
+{
+  int low = 0, high = n - 1;
+  while (high - low > 1) {
+    int middle = (low + high) / 2;
+    if (knot[middle] <= x)
+      low = middle;
+    else
+      high = middle;
+  }
+  return low;
+}
+
+/* Weights of the values and second derivatives at both ends of a piece, h wide, at the part t of it. */
+static void weigh(double h, double t, double weight[4])
+{
+  double r = 1 - t;
+  weight[0] = r;
+  weight[1] = t;
+  weight[2] = h * h / 6 * r * (r * r - 1);
+  weight[3] = h * h / 6 * t * (t * t - 1);
+}
+
+static void weigh_slope(double h, double t, double weight[4])
+{
+  double r = 1 - t;
+  weight[0] = -1 / h;
+  weight[1] = 1 / h;
+  weight[2] = -h / 6 * (3 * r * r - 1);
+  weight[3] = h / 6 * (3 * t * t - 1);
+}
+
+static double clamp(double x, double low, double high)
+{
+  return x < low ? low : x > high ? high : x;
+}
+
+double eo_flank_spline_at(const struct eo_flank_spline *spline, double u, double y, double slope[2])
+{
+  const double *us = spline->u, *ys = spline->y;
+  int last_u = spline->u_knots - 1, last_y = spline->y_knots - 1;
+  double inside = clamp(u, us[0], us[last_u]), across = clamp(y, ys[0], ys[last_y]), by_y[4], by_u[4];
+  int i = piece_of(spline->u_knots, us, inside), j = piece_of(spline->y_knots, ys, across);
+  double h = us[i + 1] - us[i], t = (inside - us[i]) / h, width = ys[j + 1] - ys[j];
+  weigh(width, (across - ys[j]) / width, by_y);
+  double row[4]; /* delta and its second derivative by u at both knots: [delta below, above, second below, above] */
+  for (int k = 0; k < 2; k++) {
+    const double *c = spline->coefficient + ((size_t)(i + k) * (size_t)spline->y_knots + (size_t)j) * PARTS;
+    row[k] = by_y[0] * c[VALUE] + by_y[1] * c[PARTS + VALUE] + by_y[2] * c[BY_Y] + by_y[3] * c[PARTS + BY_Y];
+    row[2 + k] = by_y[0] * c[BY_U] + by_y[1] * c[PARTS + BY_U] + by_y[2] * c[BY_BOTH] + by_y[3] * c[PARTS + BY_BOTH];
+  }
+  weigh(h, t, by_u);
+  if (slope) {
+    double rate[4];
+    weigh_slope(h, t, rate);
+    double inner = rate[0] * row[0] + rate[1] * row[1] + rate[2] * row[2] + rate[3] * row[3];
+    slope[0] = u <= us[0] || u > us[last_u] ? 0 : inner;
+    slope[1] = u < us[0] || u >= us[last_u] ? 0 : inner;
+  }
+  return by_u[0] * row[0] + by_u[1] * row[1] + by_u[2] * row[2] + by_u[3] * row[3];
+}
