@@ -180,13 +180,20 @@ static double departure(const struct eo_elastic *el)
 
 /* Z_L - Z_R against the support; 0 when the pinion floats, or when an end is already as good as unloaded and would let
    go. */
-static double axial_miss(const struct eo_elastic *el, const struct eo_elastic_case *c, double soft, const int at[2],
+static double axial_miss(struct eo_elastic *el, const struct eo_elastic_case *c, double soft, const int at[2],
                          const struct eo_loaded_end *result, bool *held)
 {
-  *held = el->influence.ends == 2 && c->axial_stiffness > 0;
+  *held = el->influence.ends == 2 && c->hold.stiffness > 0;
   if (!*held)
     return 0;
-  double miss = result[EO_LEFT].approach[at[EO_LEFT]] - result[EO_RIGHT].approach[at[EO_RIGHT]] + soft * el->shift;
+  double apart = result[EO_LEFT].approach[at[EO_LEFT]] - result[EO_RIGHT].approach[at[EO_RIGHT]], stopped;
+  stopped = eo_axial_beyond_play(&c->hold, apart);
+  double miss = stopped + soft * (el->shift - c->hold.shift);
+  if (c->hold.play > 0 && stopped == 0) { /* free between the stops: the thrust alone decides */
+    *held = false;
+    el->shift = c->hold.shift;
+    return fabs(miss) > 1e-12 ? miss : 0;
+  }
   *held = fabs(el->shift) < MOST_SHIFT * c->load || miss * el->shift > 0;
   return *held ? miss : 0;
 }
@@ -261,9 +268,9 @@ void eo_elastic_solve(struct eo_elastic *el, struct eo_loaded_workspace *ws, con
                       const struct eo_elastic_case *c, struct eo_loaded_end *result, struct eo_elastic_report *report)
 {
   double lean = sin(el->grid->geometry.base_helix_angle);
-  double soft = c->axial_stiffness > 0 && isfinite(c->axial_stiffness) ? 4 * lean * lean / c->axial_stiffness : 0;
+  double stiffness = c->hold.stiffness, soft = stiffness > 0 && isfinite(stiffness) ? 4 * lean * lean / stiffness : 0;
   *report = (struct eo_elastic_report){0};
-  el->shift = 0;
+  el->shift = c->hold.shift;
   for (int j = 0; j < el->grid->positions; j++) {
     int at[2] = {j, other_position(el, j, c->stagger)};
     extrapolate(el, j, c->stagger);
@@ -307,13 +314,14 @@ static enum eo_code allocate(struct eo_elastic *el, struct eo_error *error)
 }
 
 enum eo_code eo_elastic_new(struct eo_elastic **result, const struct eo_contact_grid *grid,
-                            const struct eo_gear_pair *pair, const struct eo_shafts *shafts, struct eo_error *error)
+                            const struct eo_gear_pair *pair, const struct eo_shafts *shafts, bool inwards,
+                            struct eo_error *error)
 {
   struct eo_elastic *el = calloc(1, sizeof *el);
   if (!el)
     return eo_error_memory(error);
   el->grid = grid;
-  enum eo_code code = eo_shaft_influence_init(&el->influence, &grid->geometry, pair, &grid->material, shafts, error);
+  enum eo_code code = eo_shaft_influence_init(&el->influence, &grid->geometry, pair, &grid->material, shafts, inwards, error);
   if (!code)
     code = allocate(el, error);
   if (code)

@@ -20,16 +20,17 @@
 /* The bodies of one design on one grid, and scratch of one thread. */
 struct eo_elastic;
 
-/* The grid is borrowed. */
+/* The grid is borrowed; inwards: see eo_shaft_influence_init(). */
 enum eo_code eo_elastic_new(struct eo_elastic **elastic, const struct eo_contact_grid *grid,
-                            const struct eo_gear_pair *pair, const struct eo_shafts *shafts, struct eo_error *error);
+                            const struct eo_gear_pair *pair, const struct eo_shafts *shafts, bool inwards,
+                            struct eo_error *error);
 void eo_elastic_free(struct eo_elastic *elastic);
 
 struct eo_elastic_case {
   double load;              /* P per end, normal, N */
   double compliance_factor; /* of the teeth, as in eo_loaded_solve(); the bodies stay as they are */
-  double axial_stiffness;   /* of the pinion's support, N/m: 0 floating, INFINITY fixed */
-  int stagger;              /* positions by which the right end lags */
+  struct eo_axial_hold hold; /* of the pinion; stiffness 0: floating */
+  int stagger;               /* positions by which the right end lags */
 };
 
 struct eo_elastic_report {

@@ -20,6 +20,7 @@ double eo_impact_mass(const struct eo_geometry *g, const double inertia[2])
 
 /* The search for the first touch: the incoming line's smallest gap against the loaded approach. */
 struct search {
+  int sense; /* 1: the pinion drives, phases grow; -1: backwards */
   const struct eo_contact_grid *grid;
   const struct eo_gap_field *field;
   const struct eo_periodic *approach;
@@ -33,8 +34,10 @@ static double sampled_minimum(const struct search *search, double c, double *eta
   double best = INFINITY, reach = search->field->corner[0].reach / 2;
   for (int i = 0; i < search->stations; i++) {
     double at = g->face_width * ((double)i / (search->stations - 1) - 0.5), s = c + at * tan(g->base_helix_angle);
-    double gap = s < g->path_start - reach || s > g->path_end ? INFINITY
-                                                              : eo_gap_field_at(search->field, s, at, NULL, NULL);
+    double before = search->sense > 0 ? reach : 0, behind = search->sense > 0 ? 0 : reach;
+    double gap = s < g->path_start - before || s > g->path_end + behind
+                     ? INFINITY
+                     : eo_gap_field_at(search->field, s, at, NULL, NULL);
     if (gap < best) {
       best = gap;
       *eta = at;
@@ -59,9 +62,10 @@ static bool first_touch(const struct search *search, double *c, double *eta)
   enum { STEPS_PER_PITCH = 48, BISECTIONS = 60 };
   const struct eo_geometry *g = &search->grid->geometry;
   double lean = g->face_width / 2 * tan(g->base_helix_angle), reach = search->field->corner[0].reach / 2;
-  double low = g->path_start - lean - reach, end = g->path_end + lean,
-         step = g->transverse_base_pitch / STEPS_PER_PITCH, high = low + step;
-  while (high < end && clearance(search, high, eta) > 0) {
+  double from = search->sense > 0 ? g->path_start : -g->path_end, to = search->sense > 0 ? g->path_end : -g->path_start;
+  double low = from - lean - reach, end = to + lean, step = g->transverse_base_pitch / STEPS_PER_PITCH,
+         high = low + step; /* along the way it runs */
+  while (high < end && clearance(search, search->sense * high, eta) > 0) {
     low = high;
     high += step;
   }
@@ -69,13 +73,13 @@ static bool first_touch(const struct search *search, double *c, double *eta)
     return false;
   for (int i = 0; i < BISECTIONS && high - low > 1e-10; i++) {
     double middle = (low + high) / 2;
-    if (clearance(search, middle, eta) > 0)
+    if (clearance(search, search->sense * middle, eta) > 0)
       low = middle;
     else
       high = middle;
   }
-  *c = high;
-  clearance(search, high, eta);
+  *c = search->sense * high;
+  clearance(search, *c, eta);
   return true;
 }
 
@@ -122,7 +126,7 @@ void eo_impact_strike(struct eo_impact *impact, const struct eo_contact_grid *gr
                       const struct eo_impact_settings *settings, double speed, double compliance_factor)
 {
   const struct eo_geometry *g = &grid->geometry;
-  double s = fmax(impact->path, g->path_start),
+  double s = settings->backwards ? fmin(impact->path, g->path_end) : fmax(impact->path, g->path_start),
          length = fmin(settings->patch, g->face_width) / cos(g->base_helix_angle);
   double law = eo_contact_local_constant(g, &grid->material, s), mass = eo_impact_mass(g, settings->inertia);
   if (!impact->touched)
@@ -153,16 +157,19 @@ void eo_impact_find(struct eo_impact *impact, const struct eo_contact_grid *grid
   double place[2];
   *impact = (struct eo_impact){0};
   eo_periodic_init(&spline, grid->positions, approach);
-  struct search search = {grid, field, &spline, settings->stations};
+  struct search search = {settings->backwards ? -1 : 1, grid, field, &spline, settings->stations};
   impact->touched = first_touch(&search, &impact->phase, &impact->eta);
   if (!impact->touched)
     return;
   impact->path = impact->phase + impact->eta * tan(g->base_helix_angle);
-  impact->off_line = impact->path < g->path_start - place_error;
-  impact->slope = closing_slope(&search, impact->path, impact->eta);
+  impact->off_line = settings->backwards ? impact->path > g->path_end + place_error
+                                         : impact->path < g->path_start - place_error;
+  impact->slope = search.sense * closing_slope(&search, impact->path, impact->eta);
   eo_gap_field_at(field, impact->path, impact->eta, NULL, place);
   impact->pinion_radius = eo_geometry_radius_at(g, EO_PINION, place[EO_PINION]);
-  impact->start = impact->phase / g->transverse_base_pitch - floor(impact->phase / g->transverse_base_pitch);
-  impact->bulk = patch_bulk(g, kernel, settings->patch, fmax(impact->path, g->path_start), impact->eta);
+  double phase = search.sense * impact->phase / g->transverse_base_pitch;
+  impact->start = phase - floor(phase);
+  double place_of_patch = settings->backwards ? fmin(impact->path, g->path_end) : fmax(impact->path, g->path_start);
+  impact->bulk = patch_bulk(g, kernel, settings->patch, place_of_patch, impact->eta);
   eo_impact_strike(impact, grid, settings, speed, compliance_factor);
 }

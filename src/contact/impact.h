@@ -9,6 +9,7 @@
 struct eo_impact_settings {
   double patch;      /* length of the impact patch along the face, m */
   double inertia[2]; /* of one end about its axis, kg m2; see eo_impact_inertia() */
+  bool backwards;    /* the gear drives: the pinion's tip edge comes in, at the other end of the path */
   int stations;      /* 0: the touch is found anywhere on the face; n > 1: at n stations over the face, as a sampled
                         reference does */
 };
@@ -21,12 +22,13 @@ double eo_impact_mass(const struct eo_geometry *geometry, const double inertia[2
 
 struct eo_impact {
   bool touched;         /* false: the incoming pair never touches (no load reaches it) */
-  bool off_line;        /* first touch before s_A, with the tip corner: the classical entering impact */
+  bool off_line;        /* first touch before s_A (backwards: behind s_E), with the tip corner: the classical entering
+                           impact */
   double phase;         /* c of the incoming pair at first touch, m */
   double eta;           /* where on the face, m */
   double path;          /* s of the touch, m: path_start - s is the lead before A */
   double pinion_radius; /* of the touch, m */
-  double slope;         /* of the gap there over the roll distance, negative while closing */
+  double slope;         /* of the gap there over the roll distance as it runs, negative while closing */
   double bulk;          /* compliance of the patch without the Hertz part, m/N */
   double speed;         /* closing, normal, m/s, at the given pinion speed */
   double compliance;    /* q_s of the patch, bulk + Hertz, m/N */

@@ -56,14 +56,30 @@ void eo_loaded_solve(struct eo_loaded_workspace *workspace, const struct eo_cont
                      const struct eo_loaded_gaps *gaps, double compliance_factor, int loads, const double *load,
                      struct eo_loaded_end *result);
 
-/* Both ends of an axially held pinion: P_L + P_R = 2 load. stiffness: of the axial support, N/m; INFINITY: fixed (one Z
-   for both ends). A displacement z towards + loads the left end less and the right end more: Z_L = Z_m + sin(beta_b) z,
-   Z_R = Z_m - sin(beta_b) z. stagger: positions by which the right end lags. Works on results of eo_loaded_solve() for
-   the same load. An end that does not touch although the other one carries 2 load has load, tangent and line loads 0,
-   and the approach that the axial condition gives it. */
-void eo_loaded_balance(struct eo_loaded_workspace *workspace, const struct eo_contact_grid *grid,
-                       const struct eo_loaded_gaps gaps[2], double compliance_factor, double stiffness, int stagger,
-                       double load, struct eo_loaded_end result[2]);
+/* How the pinion is held along its axis. A force A on it moves P_L - P to the shift at which the teeth alone carry it;
+   between stops it floats. */
+struct eo_axial_hold {
+  double stiffness; /* of the axial support, N/m: 0 floating, INFINITY fixed (one Z for both ends) */
+  double shift;     /* P_L - P of a floating pinion, N: A / (2 sin(beta_b)), with the sign of A's axis as eta runs */
+  double play;      /* of Z_L - Z_R to either side before a stop is met: sin(beta_b) times the clearance, m; 0: none */
+};
+
+/* What is left of Z_L - Z_R beyond the play, m. */
+double eo_axial_beyond_play(const struct eo_axial_hold *hold, double apart);
+
+/* What one end is solved on; halves of unequal width have grids of their own, with as many positions. Borrowed. */
+struct eo_loaded_half {
+  struct eo_loaded_workspace *workspace;
+  const struct eo_contact_grid *grid;
+  const struct eo_loaded_gaps *gaps;
+};
+
+/* Both ends of an axially held pinion: P_L + P_R = 2 load. A displacement z towards + loads the left end less and the
+   right end more: Z_L = Z_m + sin(beta_b) z, Z_R = Z_m - sin(beta_b) z. stagger: positions by which the right end lags.
+   Works on results of eo_loaded_solve() for the same load. An end that does not touch although the other one carries
+   2 load has load, tangent and line loads 0, and the approach that the axial condition gives it. */
+void eo_loaded_balance(const struct eo_loaded_half half[2], double compliance_factor, const struct eo_axial_hold *hold,
+                       int stagger, double load, struct eo_loaded_end result[2]);
 
 /* Position j of one end again, at gaps [grid->points] and a load that may have changed a little, from the result it has
    there. */

@@ -33,6 +33,7 @@ struct body {
   double bearing[2];
   double clamp; /* z where twist is measured from */
   double arm;   /* xi of the pitch point */
+  bool inwards; /* eta runs towards the groove */
   int pieces;
   struct piece piece[MOST_PIECES];
 };
@@ -53,11 +54,11 @@ double eo_shaft_effective_diameter(const struct eo_geometry *geometry, int membe
   return 2 * geometry->root_radius[member] + 0.75 * geometry->normal_module;
 }
 
-/* z of a node: eta runs to the left on the left end, to the right on the right one. */
+/* z of a node: eta runs to the left on the left end, to the right on the right one, or the other way round. */
 static double node_place(const struct body *body, int end, int node)
 {
   double eta = body->geometry->face_width * ((double)node / (NODES - 1) - 0.5);
-  return body->mid[end] + (end == EO_LEFT ? -eta : eta);
+  return body->mid[end] + ((end == EO_LEFT) != body->inwards ? -eta : eta);
 }
 
 static void add_piece(struct body *body, double from, double to, struct eo_shaft_section section)
@@ -126,7 +127,7 @@ static void internal_forces(const struct body *body, double x, double row[KINDS]
   double normal = cos(g->base_helix_angle), lean = sin(g->base_helix_angle), radius = g->base_radius[body->member];
   for (int end = 0; end < body->ends; end++)
     for (int node = 0; node < NODES; node++) {
-      double z = node_place(body, end, node), hand = end == EO_LEFT ? lean : -lean;
+      double z = node_place(body, end, node), hand = (end == EO_LEFT) != body->inwards ? lean : -lean;
       double moment = moment_of_moment(body->bearing, z, x), shear = shear_of_moment(body->bearing);
       int level = end * VECTOR + node, tilt = level + NODES;
       row[BENDING][level] = normal * moment_of_force(body->bearing, z, x) - hand * body->arm * moment;
@@ -189,7 +190,7 @@ static enum eo_code find_modes(struct eo_shaft_influence *influence, double reac
 
 enum eo_code eo_shaft_influence_init(struct eo_shaft_influence *influence, const struct eo_geometry *geometry,
                                      const struct eo_gear_pair *pair, const struct eo_material *material,
-                                     const struct eo_shafts *shafts, struct eo_error *error)
+                                     const struct eo_shafts *shafts, bool inwards, struct eo_error *error)
 {
   int n = pair->ends * VECTOR;
   struct eo_shaft_influence made = {.ends = pair->ends,
@@ -200,6 +201,7 @@ enum eo_code eo_shaft_influence_init(struct eo_shaft_influence *influence, const
   enum eo_code code = made.matrix && made.mode && body ? EO_OK : eo_error_memory(error);
   for (int member = 0; member < 2 && !code; member++) {
     init_body(body, geometry, pair, material, shafts, member);
+    body->inwards = inwards; /* the pieces, set by now, are the same */
     for (int i = 0; i < body->pieces; i++)
       add_piece_work(body, &body->piece[i], n, made.matrix);
   }

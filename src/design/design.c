@@ -19,8 +19,8 @@ static void fill(double *value, double derived)
 double eo_alignment_axial_stiffness(const struct eo_alignment *alignment)
 {
   return alignment->pinion_axial == EO_AXIAL_FIXED    ? INFINITY
-         : alignment->pinion_axial == EO_AXIAL_SPRING ? alignment->pinion_axial_stiffness
-                                                      : 0;
+         : alignment->pinion_axial == EO_AXIAL_FLOATING ? 0
+                                                        : alignment->pinion_axial_stiffness;
 }
 
 /* The rack of both members is the pinion's where nobody states one. */

@@ -30,7 +30,8 @@ struct eo_alignment {
   double shaft_angle_in_plane;     /* kappa, rad, in the plane of the axes */
   double shaft_angle_out_of_plane; /* gamma, rad */
   enum eo_axial pinion_axial;
-  double pinion_axial_stiffness; /* N/m, used with EO_AXIAL_SPRING; NaN: that of the gear's left end */
+  double pinion_axial_stiffness; /* N/m, used with EO_AXIAL_SPRING and, at a stop, with EO_AXIAL_STOPS; NaN: that of the
+                                    gear's left end */
   double stagger;                /* right end behind the left, in transverse base pitches, 0..1 */
   double deviation_in_plane;     /* f_Sigma_delta over the face width of one end, m; NaN: the angle is stated */
   double deviation_out_of_plane; /* f_Sigma_beta over the face width of one end, m */
@@ -40,7 +41,8 @@ struct eo_alignment {
   enum eo_apex apex;
 };
 
-/* Stiffness with which the pinion is held along its axis, N/m: 0 floating, INFINITY fixed. */
+/* Stiffness with which the pinion is held along its axis, at a stop where it has play, N/m: 0 floating, INFINITY
+   fixed. */
 double eo_alignment_axial_stiffness(const struct eo_alignment *alignment);
 
 /* Which way the shafts turn, against each other's: ahead is what the design is made for. */

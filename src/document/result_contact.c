@@ -205,7 +205,7 @@ static json_t *encode_unloaded_end(struct eo_result_source *source, int end)
   struct eo_contact_pattern *pattern = source->pattern;
   struct eo_object o = eo_object_open_as(&unloaded_end);
   int marked = 0, points = EO_PATTERN_ROWS * EO_PATTERN_COLUMNS;
-  eo_contact_pattern_unload(pattern, eo_evaluator_field(source->analysis->evaluator, end), r->unloaded);
+  eo_contact_pattern_unload(pattern, eo_evaluator_field(source->analysis->evaluator, 0, end), r->unloaded);
   for (int i = 0; i < points; i++)
     marked += pattern->clearance[i] < source->design->resolution.marking_thickness;
   bool curves = eo_result_has(source, EO_RESULT_NO_UNLOADED, NULL);

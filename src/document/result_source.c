@@ -54,7 +54,7 @@ bool eo_result_source_init(struct eo_result_source *source, const struct eo_anal
                                       .design = design,
                                       .ends = r->ends,
                                       .positions = r->positions,
-                                      .lag = eo_evaluator_stagger(design, r->positions),
+                                      .lag = eo_evaluator_stagger(design, r->load_case[0].running.flank, r->positions),
                                       .normal = cos(analysis->pair->geometry.base_helix_angle),
                                       .left_out = left_out};
   source->pattern = malloc(sizeof *source->pattern);

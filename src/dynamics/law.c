@@ -332,6 +332,14 @@ double eo_law_least(const struct eo_law *law)
   return least;
 }
 
+/* Sines change their sign. */
+void eo_law_reverse(struct eo_law *law)
+{
+  for (int row = 0; row < law->rows; row++)
+    for (int k = 1; k <= law->order; k++)
+      law->series[row * eo_fourier_terms(law->order) + 2 * k] *= -1;
+}
+
 int eo_law_equal(const struct eo_law *a, const struct eo_law *b)
 {
   if (a == b)

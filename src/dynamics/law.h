@@ -73,6 +73,9 @@ enum eo_code eo_law_set_back(struct eo_law *law, double back, double stiffness, 
 enum eo_code eo_law_set_secant(struct eo_law *law, int positions, const double *deflection, double nominal,
                                double datum, int order, double back, struct eo_error *error);
 
+/* The law of a cycle that runs the other way: F(X, -phi). */
+void eo_law_reverse(struct eo_law *law);
+
 /* The same law in memory of its own. Errors: EO_ERROR_MEMORY. */
 enum eo_code eo_law_copy(struct eo_law *law, const struct eo_law *source, struct eo_error *error);
 

@@ -7,6 +7,7 @@
 static void clear_case(struct eo_case_result *load_case)
 {
   load_case->body_iterations = 0;
+  load_case->at_stop = false;
   for (int reading = 0; reading < EO_READINGS; reading++)
     load_case->band[reading][0] = load_case->band[reading][1] = NAN;
   for (int end = 0; end < 2; end++) {
@@ -29,26 +30,60 @@ void eo_evaluator_set_cases(struct eo_evaluator *evaluator, const struct eo_run 
     load_case->load_case = run->design->load_case[k];
     load_case->force = load_case->load_case.torque /
                        (result->ends * geometry->base_radius[EO_PINION] * cos(geometry->base_helix_angle));
+    load_case->end_force[EO_LEFT] = load_case->end_force[EO_RIGHT] = load_case->force;
     clear_case(load_case);
   }
 }
 
-/* Makes the bodies' influence when the design asks for elastic bodies and they have changed. */
+static void drop_bodies(struct eo_evaluator *evaluator)
+{
+  for (int inwards = 0; inwards < 2; inwards++) {
+    eo_elastic_free(evaluator->elastic_bodies[inwards]);
+    evaluator->elastic_bodies[inwards] = NULL;
+  }
+}
+
+/* Makes the bodies' influence when the design asks for elastic bodies and they have changed, for each way in which eta
+   runs. */
 enum eo_code eo_evaluator_fit_bodies(struct eo_evaluator *evaluator, const struct eo_run *run, struct eo_error *error)
 {
   EO_TIMED(evaluator->result.static_ms);
   const struct eo_shafts *shafts = &run->design->shafts;
   const struct eo_pair *pair = evaluator->pair;
-  if (shafts->enabled && evaluator->elastic_bodies && eo_shafts_equal(shafts, &evaluator->shafts))
-    return EO_OK;
-  eo_elastic_free(evaluator->elastic_bodies);
-  evaluator->elastic_bodies = NULL;
+  evaluator->bodies_are_elastic = shafts->enabled;
   if (!shafts->enabled)
     return EO_OK;
   if (!evaluator->gaps_on_bent_bodies.gap)
     EO_TRY(eo_loaded_gaps_init(&evaluator->gaps_on_bent_bodies, pair->grid, error));
+  if (!eo_shafts_equal(shafts, &evaluator->shafts))
+    drop_bodies(evaluator);
   evaluator->shafts = *shafts;
-  return eo_elastic_new(&evaluator->elastic_bodies, pair->grid, &pair->gear_pair, shafts, error);
+  for (int m = 0; m < evaluator->meetings; m++) {
+    bool inwards = evaluator->meeting[m]->running.inwards;
+    if (!evaluator->elastic_bodies[inwards])
+      EO_TRY(eo_elastic_new(&evaluator->elastic_bodies[inwards], pair->grid, &pair->gear_pair, shafts, inwards, error));
+  }
+  return EO_OK;
+}
+
+/* A floating pinion passes a coupling's thrust on to the teeth, as far as both ends stay loaded. */
+static enum eo_code share_thrust(struct eo_evaluator *evaluator, const struct eo_design *design, struct eo_error *error)
+{
+  struct eo_evaluation *result = &evaluator->result;
+  for (int k = 0; k < result->cases; k++) {
+    struct eo_case_result *load_case = &result->load_case[k];
+    struct eo_axial_hold hold = eo_meeting_hold(evaluator, design, &load_case->running);
+    if (fabs(hold.shift) >= load_case->force)
+      return eo_error_set(error, EO_ERROR_INPUT, "/alignment/coupling_thrust_N",
+                          "A thrust of %.6g N takes all load off one end of the pinion at %.6g N m: at most %.6g N.",
+                          design->alignment.coupling_thrust, load_case->load_case.torque,
+                          2 * load_case->force * sin(evaluator->pair->geometry.base_helix_angle));
+    if (hold.stiffness == 0) {
+      load_case->end_force[EO_LEFT] = load_case->force + hold.shift;
+      load_case->end_force[EO_RIGHT] = load_case->force - hold.shift;
+    }
+  }
+  return EO_OK;
 }
 
 /* How stiffly the ends are held to one axial position of the pinion: the springs of the dynamic model at rest, so that
@@ -61,8 +96,8 @@ enum eo_code eo_evaluator_find_hold(struct eo_evaluator *evaluator, const struct
   struct eo_dynamics_model model;
   evaluator->axial_stiffness = 0;
   if (design->gear_pair.ends == 1 || eo_alignment_axial_stiffness(&design->alignment) == 0)
-    return EO_OK;
-  EO_TRY(eo_evaluator_parameters(evaluator, design, 1, &parameters, error));
+    return share_thrust(evaluator, design, error);
+  EO_TRY(eo_evaluator_parameters(evaluator, design, 1, true, &parameters, error));
   for (int member = 0; member < 2; member++)
     if (design->shafts.enabled && parameters.groove_torsional_stiffness[member] > 0) {
       parameters.groove_torsional_stiffness[member] = INFINITY;
@@ -70,37 +105,48 @@ enum eo_code eo_evaluator_find_hold(struct eo_evaluator *evaluator, const struct
     }
   EO_TRY(eo_dynamics_model_init(&model, &parameters, error));
   evaluator->axial_stiffness = eo_dynamics_model_axial_stiffness(&model);
-  return EO_OK;
+  return share_thrust(evaluator, design, error);
 }
 
 void eo_end_set_gaps(struct eo_evaluator *evaluator, const struct eo_run *run, int thread, int end)
 {
-  const struct eo_pair *pair = evaluator->pair;
-  const struct eo_modification *modification = &run->design->modification;
   (void)thread;
   if (!evaluator->needs_solving[end])
     return;
-  eo_gap_field_init(&evaluator->field[end], &pair->geometry, &modification->flank[EO_PINION][end],
-                    &modification->flank[EO_GEAR][end], end, run->scenario.in_plane, run->scenario.out_of_plane,
-                    pair->pivot[end], pair->grid->corner);
-  eo_loaded_gaps_set(&evaluator->gaps[end], pair->grid, &evaluator->field[end]);
+  for (int m = 0; m < evaluator->meetings; m++) {
+    struct eo_meeting *meeting = evaluator->meeting[m];
+    const enum eo_flank_side side = meeting->running.flank;
+    const struct eo_flank_spline *const spline[2] = {evaluator->spline[side][EO_PINION][end],
+                                                     evaluator->spline[side][EO_GEAR][end]};
+    eo_meeting_field_init(&meeting->field[end], evaluator->pair, run->design, spline, &meeting->running, end);
+    eo_loaded_gaps_set(&meeting->gaps[end], evaluator->pair->grid, &meeting->field[end]);
+    meeting->datum[end] = eo_gap_field_datum(&meeting->field[end]);
+  }
+}
+
+/* The load cases of one meeting. */
+static void solve_meeting(struct eo_evaluator *evaluator, const struct eo_run *run, int thread, int end, int m)
+{
+  struct eo_evaluation *result = &evaluator->result;
+  double force[EO_MAX_LOAD_CASES] = {0};
+  struct eo_loaded_end loaded[EO_MAX_LOAD_CASES];
+  int loads = 0, of[EO_MAX_LOAD_CASES];
+  for (int k = 0; k < result->cases; k++)
+    if (evaluator->meeting_of[k] == m) {
+      of[loads] = k;
+      force[loads] = result->load_case[k].end_force[end];
+      loaded[loads++] = result->load_case[k].end[end].loaded;
+    }
+  eo_loaded_solve(evaluator->loaded[thread], evaluator->pair->grid, &evaluator->meeting[m]->gaps[end],
+                  run->scenario.compliance, loads, force, loaded);
+  for (int i = 0; i < loads; i++)
+    result->load_case[of[i]].end[end].loaded.failures = loaded[i].failures;
 }
 
 void eo_end_solve(struct eo_evaluator *evaluator, const struct eo_run *run, int thread, int end)
 {
-  struct eo_evaluation *result = &evaluator->result;
-  double force[EO_MAX_LOAD_CASES];
-  struct eo_loaded_end loaded[EO_MAX_LOAD_CASES];
-  if (!evaluator->needs_solving[end])
-    return;
-  for (int k = 0; k < result->cases; k++) {
-    force[k] = result->load_case[k].force;
-    loaded[k] = result->load_case[k].end[end].loaded;
-  }
-  eo_loaded_solve(evaluator->loaded[thread], evaluator->pair->grid, &evaluator->gaps[end], run->scenario.compliance,
-                  result->cases, force, loaded);
-  for (int k = 0; k < result->cases; k++)
-    result->load_case[k].end[end].loaded.failures = loaded[k].failures;
+  for (int m = 0; m < evaluator->meetings && evaluator->needs_solving[end]; m++)
+    solve_meeting(evaluator, run, thread, end, m);
 }
 
 static void copy_loads(const struct eo_contact_grid *grid, struct eo_loaded_end *to, const struct eo_loaded_end *from)
@@ -123,12 +169,16 @@ void eo_evaluator_copy_equal_end(struct eo_evaluator *evaluator)
 }
 
 /* A solution that failed to converge on elastic bodies is counted at the left end. */
-void eo_evaluator_bend_bodies(struct eo_evaluator *evaluator, const struct eo_run *run, double force,
-                              struct eo_loaded_end both[2], struct eo_elastic_report *report)
+void eo_evaluator_bend_bodies(struct eo_evaluator *evaluator, const struct eo_run *run,
+                              const struct eo_case_result *load_case, struct eo_loaded_end both[2],
+                              struct eo_elastic_report *report)
 {
-  struct eo_elastic_case load = {force, run->scenario.compliance, evaluator->axial_stiffness,
-                                 eo_evaluator_stagger(run->design, evaluator->pair->grid->positions)};
-  eo_elastic_solve(evaluator->elastic_bodies, evaluator->loaded[0], evaluator->gaps, &load, both, report);
+  const struct eo_running *running = &load_case->running;
+  struct eo_elastic_case load = {
+      load_case->force, run->scenario.compliance, eo_meeting_hold(evaluator, run->design, running),
+      eo_evaluator_stagger(run->design, running->flank, evaluator->pair->grid->positions)};
+  eo_elastic_solve(eo_meeting_bodies(evaluator, running), evaluator->loaded[0],
+                   eo_meeting_of(evaluator, load_case)->gaps, &load, both, report);
   both[EO_LEFT].failures += report->failures;
 }
 
@@ -136,13 +186,13 @@ void eo_evaluator_bend_cases(struct eo_evaluator *evaluator, const struct eo_run
 {
   struct eo_evaluation *result = &evaluator->result;
   EO_TIMED(result->static_ms);
-  if (!evaluator->elastic_bodies)
+  if (!evaluator->bodies_are_elastic)
     return;
   for (int k = 0; k < result->cases; k++) {
     struct eo_case_result *load_case = &result->load_case[k];
     struct eo_loaded_end both[2] = {load_case->end[EO_LEFT].loaded, load_case->end[EO_RIGHT].loaded};
     struct eo_elastic_report report;
-    eo_evaluator_bend_bodies(evaluator, run, load_case->force, both, &report);
+    eo_evaluator_bend_bodies(evaluator, run, load_case, both, &report);
     load_case->body_iterations = report.most_iterations;
     for (int end = 0; end < result->ends; end++) {
       load_case->end[end].loaded.failures = both[end].failures;
@@ -151,22 +201,41 @@ void eo_evaluator_bend_cases(struct eo_evaluator *evaluator, const struct eo_run
   }
 }
 
-/* On elastic bodies the springs have had their say already. */
+/* Both ends of one load case from what they are alone; on elastic bodies the springs have had their say already. */
+static void balance_case(struct eo_evaluator *evaluator, const struct eo_run *run, struct eo_case_result *load_case)
+{
+  const struct eo_meeting *meeting = eo_meeting_of(evaluator, load_case);
+  const struct eo_contact_grid *grid = evaluator->pair->grid;
+  const struct eo_loaded_half half[2] = {
+      {evaluator->loaded[0], grid, &meeting->gaps[EO_LEFT]},
+      {evaluator->loaded[0], grid, &meeting->gaps[eo_reuse_stored_at(evaluator, EO_RIGHT)]}};
+  struct eo_loaded_end both[2] = {load_case->end[EO_LEFT].loaded, load_case->end[EO_RIGHT].loaded};
+  struct eo_axial_hold hold = eo_meeting_hold(evaluator, run->design, &load_case->running);
+  int stagger = eo_evaluator_stagger(run->design, load_case->running.flank, evaluator->result.positions);
+  eo_loaded_balance(half, run->scenario.compliance, &hold, stagger, load_case->force, both);
+  for (int end = 0; end < 2; end++)
+    load_case->end[end].loaded.failures = both[end].failures;
+}
+
+/* Whether a pinion with play is at a stop, on the mean over the mesh cycle. */
+static bool is_at_stop(const struct eo_evaluator *evaluator, const struct eo_run *run,
+                       const struct eo_case_result *load_case)
+{
+  struct eo_axial_hold hold = eo_meeting_hold(evaluator, run->design, &load_case->running);
+  double apart = 0;
+  for (int j = 0; j < evaluator->result.positions && hold.play > 0; j++)
+    apart += load_case->end[EO_LEFT].loaded.approach[j] - load_case->end[EO_RIGHT].loaded.approach[j];
+  return hold.play > 0 && fabs(apart) >= hold.play * evaluator->result.positions;
+}
+
 void eo_evaluator_balance_cases(struct eo_evaluator *evaluator, const struct eo_run *run)
 {
   struct eo_evaluation *result = &evaluator->result;
   EO_TIMED(result->static_ms);
-  int stagger = eo_evaluator_stagger(run->design, result->positions);
-  if (evaluator->elastic_bodies || !eo_reuse_shares_unevenly(evaluator, run->design))
-    return;
+  bool rigid = !evaluator->bodies_are_elastic && eo_reuse_shares_unevenly(evaluator, run->design);
   for (int k = 0; k < result->cases; k++) {
-    struct eo_case_result *load_case = &result->load_case[k];
-    struct eo_loaded_gaps gaps[2] = {evaluator->gaps[EO_LEFT],
-                                     evaluator->gaps[eo_reuse_stored_at(evaluator, EO_RIGHT)]};
-    struct eo_loaded_end both[2] = {load_case->end[EO_LEFT].loaded, load_case->end[EO_RIGHT].loaded};
-    eo_loaded_balance(evaluator->loaded[0], evaluator->pair->grid, gaps, run->scenario.compliance,
-                      evaluator->axial_stiffness, stagger, load_case->force, both);
-    for (int end = 0; end < 2; end++)
-      load_case->end[end].loaded.failures = both[end].failures;
+    if (rigid)
+      balance_case(evaluator, run, &result->load_case[k]);
+    result->load_case[k].at_stop = result->ends == 2 && is_at_stop(evaluator, run, &result->load_case[k]);
   }
 }

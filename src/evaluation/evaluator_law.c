@@ -7,13 +7,13 @@
 #include <string.h>
 
 enum eo_code eo_evaluator_parameters(const struct eo_evaluator *evaluator, const struct eo_design *design,
-                                     double stiffness, struct eo_dynamics_parameters *parameters,
+                                     double stiffness, bool held, struct eo_dynamics_parameters *parameters,
                                      struct eo_error *error)
 {
-  bool differ = design->gear_pair.ends == 2 && !eo_reuse_same_flanks(&design->modification);
+  bool differ = design->gear_pair.ends == 2 && !eo_reuse_same_flanks(design);
   return eo_dynamics_parameters_init(parameters, &evaluator->pair->geometry, design->gear_pair.ends,
-                                     eo_alignment_axial_stiffness(&design->alignment), &design->supports, differ,
-                                     stiffness, error);
+                                     held ? eo_alignment_axial_stiffness(&design->alignment) : 0, &design->supports,
+                                     differ, stiffness, error);
 }
 
 /* Loads of the table law over P: close together where contact lines grow from nothing and about P, where the straight
@@ -58,11 +58,13 @@ static const struct eo_loaded_gaps *gaps_of(struct eo_evaluator *evaluator, cons
                                             const struct eo_case_result *load_case, int end)
 {
   struct eo_loaded_gaps *bent = &evaluator->gaps_on_bent_bodies;
-  if (!evaluator->elastic_bodies)
-    return &evaluator->gaps[eo_reuse_stored_at(evaluator, end)];
+  const struct eo_meeting *meeting = eo_meeting_of(evaluator, load_case);
+  if (!evaluator->bodies_are_elastic)
+    return &meeting->gaps[eo_reuse_stored_at(evaluator, end)];
   const struct eo_loaded_end both[2] = {load_case->end[EO_LEFT].loaded, load_case->end[EO_RIGHT].loaded};
-  eo_elastic_gaps(evaluator->elastic_bodies, evaluator->gaps,
-                  eo_evaluator_stagger(run->design, evaluator->result.positions), both, end, bent->gap);
+  eo_elastic_gaps(eo_meeting_bodies(evaluator, &load_case->running), meeting->gaps,
+                  eo_evaluator_stagger(run->design, load_case->running.flank, evaluator->result.positions), both, end,
+                  bent->gap);
   return bent;
 }
 
@@ -163,8 +165,8 @@ static const double *secant_deflections(struct eo_evaluator *evaluator, const st
 }
 
 /* back: where the other flanks meet, behind the backlash. */
-enum eo_code eo_evaluator_set_law(struct eo_evaluator *evaluator, const struct eo_run *run,
-                                  const struct eo_law_request *request, struct eo_law *law, struct eo_error *error)
+static enum eo_code set_law(struct eo_evaluator *evaluator, const struct eo_run *run,
+                            const struct eo_law_request *request, struct eo_law *law, struct eo_error *error)
 {
   const struct eo_design *design = run->design;
   const struct eo_loaded_end *loaded = request->loaded;
@@ -181,4 +183,13 @@ enum eo_code eo_evaluator_set_law(struct eo_evaluator *evaluator, const struct e
   if (tangent_form(evaluator, design, request->parameters) == FORM_BENT)
     return set_bent_law(evaluator, run, request, order, back, law, error);
   return eo_law_set_tangent(law, n, loaded->approach, loaded->tangent, force, order, back, error);
+}
+
+enum eo_code eo_evaluator_set_law(struct eo_evaluator *evaluator, const struct eo_run *run,
+                                  const struct eo_law_request *request, struct eo_law *law, struct eo_error *error)
+{
+  EO_TRY(set_law(evaluator, run, request, law, error));
+  if (request->load_case->running.backwards)
+    eo_law_reverse(law);
+  return EO_OK;
 }

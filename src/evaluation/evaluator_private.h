@@ -6,6 +6,7 @@
 
 #include "base/clock.h"
 #include "evaluation/evaluator.h"
+#include "evaluation/meeting_field.h"
 
 #include <math.h>
 #include <pthread.h>
@@ -26,15 +27,24 @@ struct eo_run {
   bool rating;                    /* with the rating: a limit asks for it */
 };
 
-/* What the gap field, the gaps and the loads of one end depend on beside the pair. */
+/* What the gap fields, the gaps and the loads of one end depend on beside the pair and the grids. */
 struct eo_end_key {
-  struct eo_flank_modification flank[2]; /* [member] */
-  double in_plane, out_of_plane, compliance;
+  struct eo_flank_modification flank[2][2]; /* [flank side][member] */
+  double offset, compliance;
   int cases; /* 0: nothing is stored */
+  struct eo_running running[EO_MAX_LOAD_CASES];
   double force[EO_MAX_LOAD_CASES];
 };
 
 struct eo_design_rating;
+
+/* One way in which the teeth meet, with all load cases that do so: a flank, a sense, an alignment. */
+struct eo_meeting {
+  struct eo_running running;
+  struct eo_gap_field field[2]; /* [end] */
+  double datum[2];              /* [end] smallest gap anywhere on the flank, m */
+  struct eo_loaded_gaps gaps[2];
+};
 
 struct eo_evaluator {
   const struct eo_pair *pair;
@@ -47,11 +57,15 @@ struct eo_evaluator {
   bool root_valid[2];              /* [end]: its root stress belongs to the loads that are stored */
 
   /* contact */
-  struct eo_gap_field field[2];          /* [end] */
-  struct eo_loaded_gaps gaps[2];         /* [end] */
-  struct eo_loaded_workspace *loaded[2]; /* [thread]; the second NULL until asked for */
+  int meetings;
+  struct eo_meeting *meeting[EO_MAX_LOAD_CASES]; /* owned; NULL until there is one */
+  int meeting_of[EO_MAX_LOAD_CASES];             /* [load case] */
+  struct eo_flank_grids grids;                   /* those of the splines */
+  struct eo_flank_spline *spline[2][2][2];       /* [flank side][member][end]; owned; NULL: no grid */
+  struct eo_loaded_workspace *loaded[2];         /* [thread]; the second NULL until asked for */
   double axial_stiffness; /* between the ends and one axial position of the pinion, N/m: 0 floating, INFINITY rigid */
-  struct eo_elastic *elastic_bodies;         /* NULL: rigid */
+  bool bodies_are_elastic;
+  struct eo_elastic *elastic_bodies[2];      /* [inwards]; NULL: rigid, or not asked for */
   struct eo_shafts shafts;                   /* those of the bodies */
   struct eo_loaded_gaps gaps_on_bent_bodies; /* of one end at a time, on bodies that stay as they are */
   struct eo_loaded_end spare[2];             /* [end]: for the compliance band */
@@ -78,6 +92,24 @@ struct eo_evaluator {
   struct eo_evaluation result;
 };
 
+/* In meeting.c. */
+
+/* Which load cases meet in one way, and the splines of grids that have changed. */
+enum eo_code eo_evaluator_find_meetings(struct eo_evaluator *evaluator, const struct eo_run *run,
+                                        struct eo_error *error);
+
+/* How a load case of the evaluator meets. */
+struct eo_meeting *eo_meeting_of(const struct eo_evaluator *evaluator, const struct eo_case_result *load_case);
+
+/* How the pinion is held in a load case. */
+struct eo_axial_hold eo_meeting_hold(const struct eo_evaluator *evaluator, const struct eo_design *design,
+                                     const struct eo_running *running);
+
+/* The bodies of a load case; NULL: rigid. */
+struct eo_elastic *eo_meeting_bodies(const struct eo_evaluator *evaluator, const struct eo_running *running);
+
+void eo_meetings_done(struct eo_evaluator *evaluator);
+
 /* In evaluator_contact.c. */
 
 void eo_evaluator_set_cases(struct eo_evaluator *evaluator, const struct eo_run *run);
@@ -93,12 +125,14 @@ void eo_evaluator_bend_cases(struct eo_evaluator *evaluator, const struct eo_run
 void eo_evaluator_balance_cases(struct eo_evaluator *evaluator, const struct eo_run *run);
 
 /* Both ends of one load case on elastic bodies, from their solution on rigid ones. */
-void eo_evaluator_bend_bodies(struct eo_evaluator *evaluator, const struct eo_run *run, double force,
-                              struct eo_loaded_end both[2], struct eo_elastic_report *report);
+void eo_evaluator_bend_bodies(struct eo_evaluator *evaluator, const struct eo_run *run,
+                              const struct eo_case_result *load_case, struct eo_loaded_end both[2],
+                              struct eo_elastic_report *report);
 
-/* Parameters of the dynamic model, mesh damping of the given mean mesh stiffness, N/m. */
+/* Parameters of the dynamic model, mesh damping of the given mean mesh stiffness, N/m. held: between stops the pinion
+   is not. */
 enum eo_code eo_evaluator_parameters(const struct eo_evaluator *evaluator, const struct eo_design *design,
-                                     double stiffness, struct eo_dynamics_parameters *parameters,
+                                     double stiffness, bool held, struct eo_dynamics_parameters *parameters,
                                      struct eo_error *error);
 
 /* In evaluator_summary.c. */
@@ -195,8 +229,8 @@ void eo_reuse_compare(struct eo_evaluator *evaluator, const struct eo_run *run);
 /* Nothing that is stored is valid. */
 void eo_reuse_forget(struct eo_evaluator *evaluator);
 
-/* Modification of both ends alike. */
-bool eo_reuse_same_flanks(const struct eo_modification *modification);
+/* Flanks of both ends alike, grids included. */
+bool eo_reuse_same_flanks(const struct eo_design *design);
 
 /* Where the gaps and the field of an end are stored: equal ends share the left one's. */
 int eo_reuse_stored_at(const struct eo_evaluator *evaluator, int end);

@@ -64,7 +64,6 @@ static enum eo_code init_storage(struct eo_evaluator *evaluator, struct eo_error
   for (int k = 0; k < evaluator->most_cases; k++)
     EO_TRY(init_case(&result->load_case[k], grid, error));
   for (int end = 0; end < 2; end++) {
-    EO_TRY(eo_loaded_gaps_init(&evaluator->gaps[end], grid, error));
     EO_TRY(eo_loaded_end_init(&evaluator->spare[end], grid, error));
   }
   return eo_loaded_workspace_new(&evaluator->loaded[0], grid, error);
@@ -95,9 +94,9 @@ enum eo_code eo_evaluator_use_threads(struct eo_evaluator *evaluator, int thread
   return EO_OK;
 }
 
-const struct eo_gap_field *eo_evaluator_field(const struct eo_evaluator *evaluator, int end)
+const struct eo_gap_field *eo_evaluator_field(const struct eo_evaluator *evaluator, int load_case, int end)
 {
-  return &evaluator->field[eo_reuse_stored_at(evaluator, end)];
+  return &evaluator->meeting[evaluator->meeting_of[load_case]]->field[eo_reuse_stored_at(evaluator, end)];
 }
 
 static void done_results(struct eo_evaluator *evaluator)
@@ -128,7 +127,6 @@ void eo_evaluator_free(struct eo_evaluator *evaluator)
   eo_design_rating_free(evaluator->rating);
   done_results(evaluator);
   for (int end = 0; end < 2; end++) {
-    eo_loaded_gaps_done(&evaluator->gaps[end]);
     eo_loaded_end_done(&evaluator->spare[end]);
   }
   for (int i = 0; evaluator->table && i < EO_EVALUATOR_TABLE_LOADS; i++)
@@ -141,7 +139,7 @@ void eo_evaluator_free(struct eo_evaluator *evaluator)
     eo_root_workspace_free(evaluator->root[thread]);
   }
   free(evaluator->peaks);
-  eo_elastic_free(evaluator->elastic_bodies);
+  eo_meetings_done(evaluator);
   eo_loaded_gaps_done(&evaluator->gaps_on_bent_bodies);
   eo_vibration_free(evaluator->vibration);
   free(evaluator);

@@ -3,13 +3,17 @@
 
 #include <string.h>
 
-/* The gap field of an end as the bodies of a load case hold it. */
-static struct eo_gap_field loaded_field(const struct eo_evaluator *evaluator, const struct eo_case_result *load_case,
-                                        int end)
+/* The gap field of an end as the bodies of a load case hold it; *bent is made where they are elastic. */
+static const struct eo_gap_field *loaded_field(const struct eo_evaluator *evaluator,
+                                               const struct eo_case_result *load_case, int end,
+                                               struct eo_gap_field *bent)
 {
-  struct eo_gap_field field = evaluator->field[eo_reuse_stored_at(evaluator, end)];
-  field.deflection = evaluator->elastic_bodies ? &load_case->end[end].deflection : NULL;
-  return field;
+  const struct eo_gap_field *field = &eo_meeting_of(evaluator, load_case)->field[eo_reuse_stored_at(evaluator, end)];
+  if (!evaluator->bodies_are_elastic)
+    return field;
+  *bent = *field;
+  bent->deflection = &load_case->end[end].deflection;
+  return bent;
 }
 
 /* Z0 and the datum on rigid bodies, the datum again with the bodies as the load holds them; first_contact[positions]
@@ -19,14 +23,16 @@ static void find_first_contact(const struct eo_evaluator *evaluator, struct eo_c
 {
   struct eo_end_result *result = &load_case->end[end];
   int stored = eo_reuse_stored_at(evaluator, end);
+  const struct eo_meeting *meeting = eo_meeting_of(evaluator, load_case);
   size_t bytes = sizeof *result->unloaded * (size_t)evaluator->pair->grid->positions;
-  memcpy(result->unloaded, evaluator->gaps[stored].unloaded, bytes);
-  result->datum = result->loaded_datum = eo_gap_field_datum(&evaluator->field[stored]);
+  memcpy(result->unloaded, meeting->gaps[stored].unloaded, bytes);
+  result->datum = result->loaded_datum = meeting->datum[stored];
   memcpy(first_contact, result->unloaded, bytes);
-  if (evaluator->elastic_bodies) {
-    struct eo_gap_field field = loaded_field(evaluator, load_case, end);
-    result->loaded_datum = eo_gap_field_datum(&field);
-    eo_loaded_first_contact(evaluator->pair->grid, &field, first_contact);
+  if (evaluator->bodies_are_elastic) {
+    struct eo_gap_field bent;
+    const struct eo_gap_field *field = loaded_field(evaluator, load_case, end, &bent);
+    result->loaded_datum = eo_gap_field_datum(field);
+    eo_loaded_first_contact(evaluator->pair->grid, field, first_contact);
   }
 }
 
@@ -82,7 +88,7 @@ static void summarise_pair(const struct eo_evaluator *evaluator, const struct eo
                            struct eo_case_result *load_case)
 {
   int n = evaluator->result.positions, last = evaluator->result.ends - 1;
-  int stagger = eo_evaluator_stagger(run->design, n);
+  int stagger = eo_evaluator_stagger(run->design, load_case->running.flank, n);
   const double *left = load_case->end[EO_LEFT].loaded.approach, *right = load_case->end[last].loaded.approach;
   double low = INFINITY, high = -INFINITY, normal = cos(evaluator->pair->geometry.base_helix_angle);
   load_case->mean = 0;
@@ -110,8 +116,11 @@ static void find_impact(const struct eo_evaluator *evaluator, const struct eo_ru
                         struct eo_case_result *load_case, int end)
 {
   const struct eo_pair *pair = evaluator->pair;
-  struct eo_gap_field field = loaded_field(evaluator, load_case, end);
-  eo_impact_find(&load_case->end[end].impact, pair->grid, &field, pair->kernel, &pair->impact,
+  struct eo_impact_settings settings = pair->impact;
+  struct eo_gap_field bent;
+  settings.backwards = load_case->running.backwards;
+  eo_impact_find(&load_case->end[end].impact, pair->grid, loaded_field(evaluator, load_case, end, &bent), pair->kernel,
+                 &settings,
                  load_case->end[end].loaded.approach, load_case->load_case.speed * run->scenario.speed,
                  run->scenario.compliance);
 }

@@ -34,10 +34,12 @@ static bool carries_throughout(const struct eo_loaded_end *end, int positions, b
 static struct eo_vibration_case loads_of(const struct eo_evaluator *evaluator, const struct eo_run *run,
                                          const struct eo_case_result *load_case)
 {
+  double stagger = run->design->alignment.stagger;
+  bool on_coast = load_case->running.flank == EO_COAST_FLANK;
   struct eo_vibration_case load = {.torque = load_case->load_case.torque,
                                    .speed = load_case->load_case.speed * run->scenario.speed,
                                    .pinion_teeth = evaluator->pair->geometry.teeth[EO_PINION],
-                                   .phase_right = -run->design->alignment.stagger,
+                                   .phase_right = load_case->running.backwards != on_coast ? stagger : -stagger,
                                    .gated = true,
                                    .impact = run->design->resolution.impact_in_dynamics};
   const struct eo_impact impact[2] = {load_case->end[EO_LEFT].impact, load_case->end[EO_RIGHT].impact};
@@ -81,8 +83,9 @@ static enum eo_code set_problem(struct eo_evaluator *evaluator, const struct eo_
 {
   struct eo_case_result *load_case = &evaluator->result.load_case[k];
   struct eo_vibration_problem problem = {.load = loads_of(evaluator, run, load_case)};
-  EO_TRY(
-      eo_evaluator_parameters(evaluator, run->design, mean_stiffness(evaluator, loaded), &problem.parameters, error));
+  bool held = load_case->at_stop || run->design->alignment.pinion_axial != EO_AXIAL_STOPS;
+  EO_TRY(eo_evaluator_parameters(evaluator, run->design, mean_stiffness(evaluator, loaded), held, &problem.parameters,
+                                 error));
   load_case->law_reach = eo_evaluator_law_reach(evaluator, run->design, &problem.parameters);
   EO_TRY(set_laws_of_ends(evaluator, run, k, &problem.parameters, loaded, &problem.load, &problem.solvable, error));
   evaluator->problem[k] = problem;
@@ -200,11 +203,11 @@ static void load_spare_ends(struct eo_evaluator *evaluator, const struct eo_run 
     int stored = eo_reuse_stored_at(evaluator, end);
     loaded[end] = &spare[stored];
     if (stored == end)
-      eo_loaded_solve(evaluator->loaded[0], evaluator->pair->grid, &evaluator->gaps[end], run->scenario.compliance, 1,
-                      &load_case->force, &spare[end]);
+      eo_loaded_solve(evaluator->loaded[0], evaluator->pair->grid, &eo_meeting_of(evaluator, load_case)->gaps[end],
+                      run->scenario.compliance, 1, &load_case->end_force[end], &spare[end]);
   }
-  if (evaluator->elastic_bodies)
-    eo_evaluator_bend_bodies(evaluator, run, load_case->force, spare, &(struct eo_elastic_report){0});
+  if (evaluator->bodies_are_elastic)
+    eo_evaluator_bend_bodies(evaluator, run, load_case, spare, &(struct eo_elastic_report){0});
 }
 
 /* RMS at 0.9 and 1.1 times the compliance: contact and vibration again. */

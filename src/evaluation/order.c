@@ -23,6 +23,8 @@ static enum eo_code follow_order(struct eo_evaluator *evaluator, const struct eo
 {
   /* P of every load case: the torque over the base radius, shared by the ends */
   eo_evaluator_set_cases(evaluator, run);
+  /* which flanks meet in each, in which sense and under which alignment; splines of grids that have changed */
+  EO_TRY(eo_evaluator_find_meetings(evaluator, run, error));
   /* elastic shafts and bodies, made anew when they have changed */
   EO_TRY(eo_evaluator_fit_bodies(evaluator, run, error));
   /* springs that hold both ends to one axial position of the pinion */

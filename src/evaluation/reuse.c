@@ -4,16 +4,27 @@
 #include <math.h>
 #include <string.h>
 
-int eo_evaluator_stagger(const struct eo_design *design, int positions)
+/* On the coast flanks phases grow the other way round the shafts. */
+int eo_evaluator_stagger(const struct eo_design *design, enum eo_flank_side flank, int positions)
 {
-  return (int)lround(design->alignment.stagger * positions) % positions;
+  int behind = (int)lround(design->alignment.stagger * positions) % positions;
+  return flank == EO_COAST_FLANK ? (positions - behind) % positions : behind;
 }
 
-bool eo_reuse_same_flanks(const struct eo_modification *modification)
+bool eo_reuse_same_flanks(const struct eo_design *design)
 {
-  const struct eo_flank_modification(*flank)[2] = modification->flank;
-  return eo_modification_equal(&flank[EO_PINION][EO_LEFT], &flank[EO_PINION][EO_RIGHT]) &&
-         eo_modification_equal(&flank[EO_GEAR][EO_LEFT], &flank[EO_GEAR][EO_RIGHT]);
+  const struct eo_modification *m = &design->modification;
+  bool same = true;
+  for (int member = 0; member < 2 && same; member++) {
+    same = eo_modification_equal(&m->flank[member][EO_LEFT], &m->flank[member][EO_RIGHT]) &&
+           eo_modification_equal(&m->coast[member][EO_LEFT], &m->coast[member][EO_RIGHT]);
+    for (int side = 0; side < 2 && same; side++) {
+      struct eo_flank_grid left = eo_flank_grid_at(&design->grids, (enum eo_flank_side)side, member, EO_LEFT),
+                           right = eo_flank_grid_at(&design->grids, (enum eo_flank_side)side, member, EO_RIGHT);
+      same = eo_flank_grid_equal(&left, &right);
+    }
+  }
+  return same;
 }
 
 int eo_reuse_stored_at(const struct eo_evaluator *evaluator, int end)
@@ -21,10 +32,11 @@ int eo_reuse_stored_at(const struct eo_evaluator *evaluator, int end)
   return evaluator->result.equal_ends ? EO_LEFT : end;
 }
 
-/* Equal ends that run in step carry equal loads however the pinion is held. */
+/* Equal ends that run in step, without a thrust, carry equal loads however the pinion is held. */
 bool eo_reuse_shares_unevenly(const struct eo_evaluator *evaluator, const struct eo_design *design)
 {
-  bool in_step = eo_evaluator_stagger(design, evaluator->pair->grid->positions) == 0;
+  bool in_step = eo_evaluator_stagger(design, EO_DRIVE_FLANK, evaluator->pair->grid->positions) == 0 &&
+                 (design->alignment.coupling_thrust == 0 || design->alignment.pinion_axial == EO_AXIAL_FIXED);
   return evaluator->result.ends == 2 && evaluator->axial_stiffness > 0 && !(evaluator->result.equal_ends && in_step);
 }
 
@@ -35,31 +47,47 @@ bool eo_reuse_copies_left(const struct eo_evaluator *evaluator, const struct eo_
 
 static bool equal_ends(const struct eo_evaluator *evaluator, const struct eo_run *run)
 {
-  return evaluator->result.ends == 2 && eo_reuse_same_flanks(&run->design->modification) &&
-         run->scenario.in_plane == 0 && run->scenario.out_of_plane == 0 && !evaluator->elastic_bodies;
+  const double *offset = run->design->alignment.apex_offset;
+  bool equal = evaluator->result.ends == 2 && eo_reuse_same_flanks(run->design) && !evaluator->bodies_are_elastic &&
+               offset[EO_PINION] == offset[EO_GEAR];
+  for (int k = 0; k < evaluator->result.cases && equal; k++) {
+    const struct eo_case_result *c = &evaluator->result.load_case[k];
+    equal = c->running.in_plane == 0 && c->running.out_of_plane == 0 && c->end_force[EO_LEFT] == c->end_force[EO_RIGHT];
+  }
+  return equal;
 }
 
 static struct eo_end_key key_of(const struct eo_evaluator *evaluator, const struct eo_run *run, int end)
 {
   const struct eo_modification *modification = &run->design->modification;
-  struct eo_end_key key = {.flank = {modification->flank[EO_PINION][end], modification->flank[EO_GEAR][end]},
-                           .in_plane = run->scenario.in_plane,
-                           .out_of_plane = run->scenario.out_of_plane,
+  const double *offset = run->design->alignment.apex_offset;
+  struct eo_end_key key = {.offset = end == EO_LEFT ? 0 : offset[EO_PINION] - offset[EO_GEAR],
                            .compliance = run->scenario.compliance,
                            .cases = evaluator->result.cases};
-  for (int k = 0; k < key.cases; k++)
-    key.force[k] = evaluator->result.load_case[k].force;
+  for (int member = 0; member < 2; member++) {
+    key.flank[EO_DRIVE_FLANK][member] = modification->flank[member][end];
+    key.flank[EO_COAST_FLANK][member] = modification->coast[member][end];
+  }
+  for (int k = 0; k < key.cases; k++) {
+    key.running[k] = evaluator->result.load_case[k].running;
+    key.force[k] = evaluator->result.load_case[k].end_force[end];
+  }
   return key;
+}
+
+static bool same_running(const struct eo_running *a, const struct eo_running *b)
+{
+  return a->flank == b->flank && a->backwards == b->backwards && a->inwards == b->inwards &&
+         a->in_plane == b->in_plane && a->out_of_plane == b->out_of_plane;
 }
 
 static bool differs_from_solved(const struct eo_end_key *key, const struct eo_end_key *solved)
 {
-  bool same = key->cases == solved->cases && key->in_plane == solved->in_plane &&
-              key->out_of_plane == solved->out_of_plane && key->compliance == solved->compliance &&
-              eo_modification_equal(&key->flank[EO_PINION], &solved->flank[EO_PINION]) &&
-              eo_modification_equal(&key->flank[EO_GEAR], &solved->flank[EO_GEAR]);
+  bool same = key->cases == solved->cases && key->offset == solved->offset && key->compliance == solved->compliance;
+  for (int i = 0; i < 4 && same; i++)
+    same = eo_modification_equal(&key->flank[i / 2][i % 2], &solved->flank[i / 2][i % 2]);
   for (int k = 0; k < key->cases && same; k++)
-    same = key->force[k] == solved->force[k];
+    same = key->force[k] == solved->force[k] && same_running(&key->running[k], &solved->running[k]);
   return !same;
 }
 
@@ -69,7 +97,7 @@ static bool differs_from_solved(const struct eo_end_key *key, const struct eo_en
 void eo_reuse_compare(struct eo_evaluator *evaluator, const struct eo_run *run)
 {
   evaluator->result.equal_ends = equal_ends(evaluator, run);
-  bool alone = !evaluator->elastic_bodies && !eo_reuse_shares_unevenly(evaluator, run->design);
+  bool alone = !evaluator->bodies_are_elastic && !eo_reuse_shares_unevenly(evaluator, run->design);
   for (int end = 0; end < evaluator->result.ends; end++) {
     bool copied = end == EO_RIGHT && evaluator->result.equal_ends;
     struct eo_end_key key = key_of(evaluator, run, end);

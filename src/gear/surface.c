@@ -395,6 +395,7 @@ static bool touch_smoothly(const struct eo_geometry *g, const struct eo_modifica
                                      : involute_in_line_with(g, EO_GEAR, &p);
     double miss = modified[EO_GEAR] ? miss_of(g, &p, &q) : 0;
     *node = node_of(g, &p, &q);
+    node->gap += miss * cos(g->base_helix_angle); /* what is missing along the normal is missing in the gap */
     double off = c - node->phase;
     if (!(isfinite(off) && isfinite(miss)))
       return false;

@@ -143,10 +143,14 @@ double eo_stage_mesh_force(const struct eo_stage_mesh *mesh, const struct eo_sta
 void eo_stage_mesh_solve(struct eo_stage_mesh *mesh, double force)
 {
   const struct eo_alignment *alignment = &mesh->design.alignment;
+  double lean = sin(mesh->pair->geometry.base_helix_angle);
+  const struct eo_loaded_half half[2] = {{mesh->workspace, mesh->pair->grid, &mesh->gaps[EO_LEFT]},
+                                         {mesh->workspace, mesh->pair->grid, &mesh->gaps[EO_RIGHT]}};
+  struct eo_axial_hold hold = {
+      .stiffness = eo_alignment_axial_stiffness(alignment),
+      .play = alignment->pinion_axial == EO_AXIAL_STOPS ? lean * alignment->pinion_axial_clearance : 0};
   for (int end = 0; end < mesh->design.gear_pair.ends; end++)
     eo_loaded_solve(mesh->workspace, mesh->pair->grid, &mesh->gaps[end], mesh->factor, 1, &force, &mesh->end[end]);
   if (mesh->design.gear_pair.ends == 2 && alignment->pinion_axial != EO_AXIAL_FLOATING)
-    eo_loaded_balance(mesh->workspace, mesh->pair->grid, mesh->gaps, mesh->factor,
-                      alignment->pinion_axial == EO_AXIAL_FIXED ? INFINITY : alignment->pinion_axial_stiffness,
-                      mesh->stagger, force, mesh->end);
+    eo_loaded_balance(half, mesh->factor, &hold, mesh->stagger, force, mesh->end);
 }

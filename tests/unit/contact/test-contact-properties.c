@@ -10,6 +10,11 @@
 
 enum { POSITIONS = 12, CELLS = 15, MOST_LOADS = 6, MOST_POINTS = 400 };
 
+/* Both ends of a bench. */
+#define HALVES(b)                                                                          \
+  (const struct eo_loaded_half[]){{(b)->workspace, (b)->grid, &(b)->gaps[EO_LEFT]},         \
+                                  {(b)->workspace, (b)->grid, &(b)->gaps[EO_RIGHT]}}
+
 static const double degree = M_PI / 180;
 
 /* One end of a pair: geometry, grid with its kernel, gap field, gaps and results. */
@@ -311,12 +316,12 @@ static void test_mirror(void)
   set_gaps(&b, EO_RIGHT, &other, &none, 0.02 * degree, 0.01 * degree);
   for (int end = 0; end < 2; end++)
     eo_loaded_solve(b.workspace, b.grid, &b.gaps[end], 1, 1, &load, &b.result[end]);
-  eo_loaded_balance(b.workspace, b.grid, b.gaps, 1, stiffness, 0, load, &b.result[0]);
+  eo_loaded_balance(HALVES(&b), 1, &(struct eo_axial_hold){.stiffness = stiffness}, 0, load, &b.result[0]);
   set_gaps(&b, EO_RIGHT, &a, &none, -0.02 * degree, -0.01 * degree);
   set_gaps(&b, EO_LEFT, &other, &none, -0.02 * degree, -0.01 * degree);
   for (int end = 0; end < 2; end++)
     eo_loaded_solve(b.workspace, b.grid, &b.gaps[end], 1, 1, &load, &b.result[2 + end]);
-  eo_loaded_balance(b.workspace, b.grid, b.gaps, 1, stiffness, 0, load, &b.result[2]);
+  eo_loaded_balance(HALVES(&b), 1, &(struct eo_axial_hold){.stiffness = stiffness}, 0, load, &b.result[2]);
   double worst = 0;
   for (int j = 0; j < b.grid->positions; j++)
     for (int end = 0; end < 2; end++)
@@ -400,7 +405,7 @@ static void hold(struct bench *b, double angle, double stiffness, int stagger, d
     set_gaps(b, end, &a, &none, angle, 0);
     eo_loaded_solve(b->workspace, b->grid, &b->gaps[end], 1, 1, &load, &b->result[end]);
   }
-  eo_loaded_balance(b->workspace, b->grid, b->gaps, 1, stiffness, stagger, load, b->result);
+  eo_loaded_balance(HALVES(b), 1, &(struct eo_axial_hold){.stiffness = stiffness}, stagger, load, b->result);
 }
 
 /* Largest difference of load and approach between two pairs of ends, relative to P and 10 um. */

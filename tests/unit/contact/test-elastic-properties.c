@@ -79,7 +79,7 @@ static void solve(struct bench *b, const struct eo_shafts *shafts, const struct 
 {
   struct eo_error error = {0};
   struct eo_elastic *elastic;
-  if (eo_elastic_new(&elastic, b->grid, &b->pair, shafts, &error))
+  if (eo_elastic_new(&elastic, b->grid, &b->pair, shafts, false, &error))
     printf("# %s\n", error.text);
   for (int end = 0; end < b->pair.ends; end++)
     eo_loaded_solve(b->workspace, b->grid, &b->gaps[end], load->compliance_factor, 1, &load->load, &b->result[end]);
@@ -175,7 +175,7 @@ static int iterate(struct bench *b, const struct eo_shafts *shafts, double most)
   struct eo_loaded_gaps bent[2];
   double change = 1, load = LOAD;
   int count = 0;
-  eo_shaft_influence_init(&influence, &b->geometry, &b->pair, &b->steel, shafts, &error);
+  eo_shaft_influence_init(&influence, &b->geometry, &b->pair, &b->steel, shafts, false, &error);
   for (int end = 0; end < 2; end++) {
     eo_loaded_gaps_init(&bent[end], b->grid, &error);
     memcpy(bent[end].gap, b->gaps[end].gap, sizeof(double) * (size_t)b->grid->points);
@@ -212,7 +212,7 @@ static void test_against_iteration(void)
   struct eo_elastic_report report;
   build(&b, 2, 0.02, 0);
   build(&plain, 2, 0.02, 0);
-  solve(&b, &shafts, &(struct eo_elastic_case){LOAD, 1, 0, 0}, &report, NULL);
+  solve(&b, &shafts, &(struct eo_elastic_case){LOAD, 1, {.stiffness = 0}, 0}, &report, NULL);
   int count = iterate(&plain, &shafts, 1e-12);
   double approach = 0, load = 0;
   for (int end = 0; end < 2; end++) {
@@ -237,7 +237,7 @@ static void test_ends_differ(void)
   struct eo_shafts shafts = paper_shafts(EO_DRIVE_LEFT, EO_DRIVE_LEFT);
   struct eo_elastic_report report;
   build(&b, 2, 0, 0);
-  solve(&b, &shafts, &(struct eo_elastic_case){LOAD, 1, 0, 0}, &report, NULL);
+  solve(&b, &shafts, &(struct eo_elastic_case){LOAD, 1, {.stiffness = 0}, 0}, &report, NULL);
   double left = outer_share(&b, EO_LEFT), right = outer_share(&b, EO_RIGHT);
   ok(left > 0.53 && left > right + 0.02,
      "torque from the left: %.3f of the left end's load, %.3f of the right one's on its outer half", left, right);
@@ -257,8 +257,8 @@ static void test_mirror(void)
   right.bearing_position[EO_PINION][EO_LEFT] = -0.15;
   build(&b, 2, 0, 3e-6);
   build(&mirrored, 2, 0, 3e-6);
-  solve(&b, &left, &(struct eo_elastic_case){LOAD, 1, 0, 0}, &report, NULL);
-  solve(&mirrored, &right, &(struct eo_elastic_case){LOAD, 1, 0, 0}, &report, NULL);
+  solve(&b, &left, &(struct eo_elastic_case){LOAD, 1, {.stiffness = 0}, 0}, &report, NULL);
+  solve(&mirrored, &right, &(struct eo_elastic_case){LOAD, 1, {.stiffness = 0}, 0}, &report, NULL);
   double most = 0, ends = difference(POSITIONS, b.result[0].approach, b.result[1].approach);
   for (int end = 0; end < 2; end++)
     most = fmax(most, difference(POSITIONS, b.result[end].approach, mirrored.result[1 - end].approach));
@@ -275,7 +275,7 @@ static void test_put_back(const char *what, double stiffness, int stagger, doubl
   struct eo_shafts shafts = paper_shafts(EO_DRIVE_LEFT, EO_DRIVE_LEFT);
   struct eo_elastic_report report;
   struct eo_elastic *elastic;
-  struct eo_elastic_case load = {LOAD, factor, stiffness, stagger};
+  struct eo_elastic_case load = {LOAD, factor, {.stiffness = stiffness}, stagger};
   struct eo_error error;
   build(&b, 2, in_plane_deg, 0);
   solve(&b, &shafts, &load, &report, &elastic);
@@ -315,7 +315,7 @@ static void test_one_end_lifted(void)
   struct eo_shafts shafts = paper_shafts(EO_DRIVE_LEFT, EO_DRIVE_LEFT);
   struct eo_elastic_report report;
   build(&b, 2, 0.15, 0);
-  solve(&b, &shafts, &(struct eo_elastic_case){LOAD, 1, INFINITY, 0}, &report, NULL);
+  solve(&b, &shafts, &(struct eo_elastic_case){LOAD, 1, {.stiffness = INFINITY}, 0}, &report, NULL);
   ok(report.failures == 0 && b.result[0].load[0] < 0.01 * LOAD, "one end lifted off: %d failures, %.3g N left on it",
      report.failures, b.result[0].load[0]);
   clear_bench(&b);
@@ -332,7 +332,7 @@ static void test_slender(void)
     shafts.bearing_position[i][EO_LEFT] = -(shafts.bearing_position[i][EO_RIGHT] = 0.6);
   build(&b, 2, 0.1, 0);
   build(&plain, 2, 0.1, 0);
-  solve(&b, &shafts, &(struct eo_elastic_case){LOAD, 1, 0, 0}, &report, NULL);
+  solve(&b, &shafts, &(struct eo_elastic_case){LOAD, 1, {.stiffness = 0}, 0}, &report, NULL);
   int count = iterate(&plain, &shafts, 1e-10);
   ok(report.failures == 0 && report.most_iterations <= 12 && count == 200,
      "slender shafts: %d iterations at most; plain iteration gave up after %d", report.most_iterations, count);
@@ -353,7 +353,7 @@ static void test_single_end(void)
       shafts.bearing_position[i][EO_LEFT] = -0.055;
       shafts.bearing_position[i][EO_RIGHT] = 0.055;
     }
-    solve(&b, &shafts, &(struct eo_elastic_case){2 * LOAD, 1, INFINITY, 0}, &report, NULL);
+    solve(&b, &shafts, &(struct eo_elastic_case){2 * LOAD, 1, {.stiffness = INFINITY}, 0}, &report, NULL);
     share[side] = outer_share(&b, EO_LEFT);
   }
   /* outer: + eta, to the left on the only end */

@@ -57,7 +57,7 @@ static void check(const char *example, double shaft_angle, double tolerance)
          *share = calloc((size_t)pair->grid->positions, sizeof *share);
   eo_contact_pattern_init(pattern, pair->grid);
   eo_contact_pattern_load(pattern, pair->grid, &c->end[0].loaded);
-  eo_contact_pattern_unload(pattern, eo_evaluator_field(analysis->evaluator, 0), c->end[0].unloaded);
+  eo_contact_pattern_unload(pattern, eo_evaluator_field(analysis->evaluator, 0, 0), c->end[0].unloaded);
   for (int i = 0; i < EO_PATTERN_ROWS * EO_PATTERN_COLUMNS; i++) {
     highest = fmax(highest, pattern->pressure[i]);
     widest = fmin(widest, pattern->clearance[i]);

@@ -72,7 +72,7 @@ static void make(void)
 {
   struct eo_error error = {0};
   eo_shaft_influence_done(&influence);
-  if (eo_shaft_influence_init(&influence, &geometry, &pair, &steel, &shafts, &error))
+  if (eo_shaft_influence_init(&influence, &geometry, &pair, &steel, &shafts, false, &error))
     printf("# %s\n", error.text);
 }
 

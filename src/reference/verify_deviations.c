@@ -1,0 +1,543 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "reference/verify_deviations.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "contact/pattern.h"
+#include "design/resolution.h"
+#include "evaluation/meeting_field.h"
+#include "rating/flank_tolerance.h"
+#include "reference/case_pair.h"
+
+enum { MOST_POSITIONS = 4096, MOST_POINTS = 4096 };
+
+/* One half of the pair as it was prepared last; kept while the next case wants the same one. */
+struct half {
+  const char *pair_name;
+  int flexibility;
+  double face_width, phase; /* m */
+  struct eo_pair *pair;
+  struct eo_loaded_workspace *workspace;
+};
+
+struct bench {
+  struct eo_case *file;
+  struct eo_verification *v;
+  struct eo_closed_form form;
+  struct half half[2];
+};
+
+/* A case at work: [end]. */
+struct trial {
+  struct bench *bench;
+  struct eo_case *item, *tolerance;
+  int ends;
+  struct eo_design design;
+  struct eo_running running;
+  struct eo_axial_hold hold;
+  struct eo_flank_spline *spline[2][2]; /* [member][end] */
+  struct eo_gap_field field[2];
+  struct eo_loaded_gaps gaps[2];
+  struct eo_loaded_end loaded[2];
+  double constant[2]; /* of the gaps, m */
+};
+
+static const char *const end_name[3] = {"left", "right", "single"};
+static const char *const member_name[2] = {"pinion", "gear"};
+static const char *const flexibilities[] = {"closed_form", "fe", NULL};
+
+static void read_pair(struct eo_case *pair, struct eo_design *d)
+{
+  struct eo_case *input = eo_case_need(pair, "input");
+  eo_case_design(input, d);
+  d->gear_pair.ends = eo_case_whole_or(input, "ends", 1, 2, 2);
+  d->gear_pair.bore[EO_PINION] = 0;
+  d->resolution.positions = 64;
+  d->resolution.cells_per_line = 30;
+  d->resolution.tip_edge_contact = false;
+  d->resolution.body = EO_BODY_SECTOR;
+  d->resolution.sector_teeth = 3;
+  d->resolution.neighbour_coupling = false;
+}
+
+static enum eo_code check_pair(void *context, struct eo_case *pair, struct eo_error *error)
+{
+  const struct bench *b = context;
+  struct eo_case *output = eo_case_find(pair, "check");
+  struct eo_design design;
+  struct eo_geometry geometry;
+  double torque[EO_MAX_LOAD_CASES];
+  read_pair(pair, &design);
+  if (eo_case_find(pair, "torques_Nm"))
+    eo_case_numbers(eo_case_find(pair, "torques_Nm"), -1, EO_MAX_LOAD_CASES, torque);
+  if (eo_case_faulty(pair))
+    return EO_OK;
+  EO_TRY(eo_geometry_init(&geometry, &design.gear_pair, error));
+  if (output)
+    eo_case_check_geometry(b->v, output, &geometry, 1e3, 1e-9);
+  eo_verify_member(b->v, output, "aw", geometry.working_pressure_angle, 1e-9, 0);
+  return EO_OK;
+}
+
+static enum eo_code check_pairs(void *context, struct eo_case *pairs, struct eo_error *error)
+{
+  for (int i = 0; i < eo_case_size(pairs); i++)
+    EO_TRY(check_pair(context, eo_case_at(pairs, i), error));
+  return EO_OK;
+}
+
+/* Rounded as the standard prints them. */
+static enum eo_code check_tolerance_row(const struct bench *b, struct eo_case *row, struct eo_error *error)
+{
+  struct eo_tolerance_input in = {.reference_diameter = 1e-3 * eo_case_number(row, "d_mm"),
+                                  .normal_module = 1e-3 * eo_case_number(row, "mn_mm"),
+                                  .face_width = 1e-3 * eo_case_number(row, "b_mm"),
+                                  .teeth = eo_case_whole(row, "z", 1, 100000),
+                                  .grade = eo_case_whole(row, "tolerance_class", 1, 11),
+                                  .total_contact_ratio = NAN};
+  struct eo_case *rounded = eo_case_need(row, "rounded_um");
+  struct eo_flank_tolerance t;
+  if (eo_case_faulty(row))
+    return EO_OK;
+  EO_TRY(eo_flank_tolerance(&t, EO_ISO1328_2013, &in, error));
+  const struct {
+    const char *key;
+    double value;
+  } all[] = {{"f_pT", t.single_pitch},    {"F_pT", t.total_pitch},       {"f_HalphaT", t.profile_slope},
+             {"f_falphaT", t.profile_form}, {"f_HbetaT", t.helix_slope}, {"f_fbetaT", t.helix_form},
+             {"F_alphaT", t.profile_total}, {"F_betaT", t.helix_total}, {"F_rT", t.runout}};
+  for (size_t i = 0; i < sizeof all / sizeof *all; i++)
+    eo_verify_member(b->v, rounded, all[i].key, 1e6 * all[i].value, 0, 1e-6);
+  if (eo_case_find(row, "unrounded_um"))
+    eo_verify_uncompared(b->v, eo_case_find(row, "unrounded_um"), "tolerances are computed as the standard rounds them");
+  return EO_OK;
+}
+
+static enum eo_code check_tolerances(void *context, struct eo_case *block, struct eo_error *error)
+{
+  struct eo_case *rows = eo_case_need(block, "rows");
+  eo_case_number_or(block, "tolerance_um", 0);
+  for (int i = 0; i < eo_case_size(rows); i++)
+    EO_TRY(check_tolerance_row(context, eo_case_at(rows, i), error));
+  return EO_OK;
+}
+
+static void drop(struct half *half)
+{
+  eo_loaded_workspace_free(half->workspace);
+  eo_pair_free(half->pair);
+  *half = (struct half){0};
+}
+
+/* phase: of mid face ahead of the left half's, m. */
+static enum eo_code prepare_half(struct bench *b, struct half *half, const struct half *wanted,
+                                 const struct eo_design *design, struct eo_error *error)
+{
+  struct eo_design own = *design;
+  struct eo_geometry geometry;
+  double phase[MOST_POSITIONS];
+  int n = own.resolution.positions;
+  if (half->pair && strcmp(half->pair_name, wanted->pair_name) == 0 && half->flexibility == wanted->flexibility &&
+      half->face_width == wanted->face_width && half->phase == wanted->phase)
+    return EO_OK;
+  drop(half);
+  own.gear_pair.face_width = wanted->face_width;
+  EO_TRY(eo_geometry_init(&geometry, &own.gear_pair, error));
+  eo_design_resolve(&own, &geometry);
+  for (int j = 0; j < n; j++)
+    phase[j] = j * geometry.transverse_base_pitch / n + wanted->phase;
+  struct eo_contact_grid_settings grid = eo_contact_grid_default(&own.resolution);
+  grid.partial_cells = false; /* the references load a cell by its middle */
+  struct eo_pair_options options = {.grid = &grid,
+                                    .phase = wanted->phase != 0 ? phase : NULL,
+                                    .own_pivots = true,
+                                    .tilt_rule = eo_case_tilt_rule(b->file)};
+  if (wanted->flexibility == 0)
+    options.kernel = (struct eo_kernel){eo_closed_form_kernel, &b->form};
+  *half = *wanted;
+  EO_TRY(eo_pair_new(&half->pair, &own, &options, NULL, error));
+  return eo_loaded_workspace_new(&half->workspace, half->pair->grid, error);
+}
+
+static struct eo_case *end_of(struct eo_case *object, const struct trial *t, int end)
+{
+  return object ? eo_case_find(object, end_name[t->ends == 1 ? 2 : end]) : NULL;
+}
+
+/* How the pinion is held. The constants of the gaps that a file gives are those of its apex offset. */
+static void read_axial(struct trial *t, double lean)
+{
+  static const char *const ways[] = {"floating", "fixed", "spring", "single", NULL};
+  struct eo_case *offset = eo_case_find(t->item, "apex_offset_um");
+  int way = eo_case_need(t->item, "pinion_axial") ? eo_case_choice(t->item, "pinion_axial", ways, 0) : 0;
+  double spring = way == 2 ? eo_case_number(t->item, "pinion_axial_stiffness_N_per_m") : 0;
+  t->hold.stiffness = way == 1 ? INFINITY : spring;
+  for (int member = 0; member < 2 && offset; member++)
+    t->design.alignment.apex_offset[member] = 1e-6 * eo_case_number(offset, member_name[member]);
+  if (offset)
+    eo_case_remark(offset, "definition");
+  struct eo_case *constant = eo_case_find(t->item, "gap_constant_um");
+  for (int end = 0; end < 2 && constant; end++) {
+    double *a = t->design.alignment.apex_offset, sign = t->running.inwards ? -1 : 1;
+    t->constant[end] = 1e-6 * eo_case_element(constant, end);
+    if (offset)
+      eo_verify_number(t->bench->v, eo_case_at(constant, end), end ? 1e6 * sign * lean * (a[0] - a[1]) : 0, 0, 1e-4);
+  }
+  if (offset)
+    t->constant[0] = t->constant[1] = 0;
+}
+
+static void read_flanks(struct trial *t)
+{
+  struct eo_case *flanks = eo_case_need(t->item, "flanks");
+  bool coast = t->running.flank == EO_COAST_FLANK;
+  for (int end = 0; end < t->ends; end++) {
+    struct eo_case *of_end = end_of(flanks, t, end);
+    if (!of_end)
+      eo_case_fault(flanks, "The flanks of every end are expected here.");
+    for (int member = 0; member < 2; member++)
+      eo_case_flank(eo_case_find(of_end, member_name[member]), t->running.flank, member, end,
+                    coast ? &t->design.modification.coast[member][end] : &t->design.modification.flank[member][end],
+                    &t->design.grids);
+  }
+}
+
+static enum eo_code read_case(struct trial *t, struct eo_error *error)
+{
+  static const char *const flanks[] = {"drive", "coast", NULL};
+  struct bench *b = t->bench;
+  struct eo_case *name = eo_case_need(t->item, "pair"), *errors = eo_case_find(t->item, "shaft_error_deg"),
+                 *widths = eo_case_find(t->item, "face_width_mm");
+  struct eo_case *pair = eo_case_is_text(name) ? eo_case_find(eo_case_need(b->file, "pairs"), eo_case_text(name)) : NULL;
+  struct half wanted = {.pair_name = eo_case_is_text(name) ? eo_case_text(name) : "",
+                        .flexibility = eo_case_choice(t->item, "flexibility", flexibilities, 0)};
+  if (!pair) {
+    eo_case_fault(name ? name : t->item, "There is no such pair.");
+    return EO_OK;
+  }
+  read_pair(pair, &t->design);
+  t->ends = t->design.gear_pair.ends;
+  t->running.flank = eo_case_choice(t->item, "flank_used", flanks, 0) == 1 ? EO_COAST_FLANK : EO_DRIVE_FLANK;
+  t->running.inwards = t->running.flank == EO_COAST_FLANK;
+  t->running.in_plane = eo_case_number_or(errors, "inplane", 0) * M_PI / 180;
+  t->running.out_of_plane = eo_case_number_or(errors, "crossing", 0) * M_PI / 180;
+  double width = t->design.gear_pair.face_width, lag = 1e-3 * eo_case_number_or(t->item, "phase_right_minus_left_mm", 0);
+  read_flanks(t);
+  struct eo_geometry geometry;
+  if (!eo_case_faulty(t->item))
+    EO_TRY(eo_geometry_init(&geometry, &t->design.gear_pair, error));
+  read_axial(t, eo_case_faulty(t->item) ? 0 : sin(geometry.base_helix_angle));
+  for (int end = 0; end < t->ends && !eo_case_faulty(t->item); end++) {
+    wanted.face_width = widths ? 1e-3 * eo_case_number(widths, end_name[end]) : width;
+    wanted.phase = end == EO_RIGHT ? lag : 0;
+    if (!eo_case_faulty(t->item))
+      EO_TRY(prepare_half(b, &b->half[end], &wanted, &t->design, error));
+  }
+  return EO_OK;
+}
+
+static enum eo_code set_gaps(struct trial *t, struct eo_error *error)
+{
+  for (int end = 0; end < t->ends; end++) {
+    const struct eo_pair *pair = t->bench->half[end].pair;
+    for (int member = 0; member < 2; member++) {
+      struct eo_flank_grid grid = eo_flank_grid_at(&t->design.grids, t->running.flank, member, end);
+      if (grid.u_knots)
+        EO_TRY(eo_flank_spline_new(&t->spline[member][end], &grid, error));
+    }
+    const struct eo_flank_spline *const spline[2] = {t->spline[EO_PINION][end], t->spline[EO_GEAR][end]};
+    eo_meeting_field_init(&t->field[end], pair, &t->design, spline, &t->running, end);
+    t->field[end].offset += t->constant[end];
+    EO_TRY(eo_loaded_gaps_init(&t->gaps[end], pair->grid, error));
+    EO_TRY(eo_loaded_end_init(&t->loaded[end], pair->grid, error));
+    eo_loaded_gaps_set(&t->gaps[end], pair->grid, &t->field[end]);
+  }
+  return EO_OK;
+}
+
+/* Both ends under a torque; returns P of an end. */
+static double solve(struct trial *t, double torque)
+{
+  const struct eo_geometry *g = &t->bench->half[0].pair->geometry;
+  double force = torque / (t->ends * g->base_radius[EO_PINION] * cos(g->base_helix_angle));
+  struct eo_loaded_half half[2] = {{0}};
+  for (int end = 0; end < t->ends; end++) {
+    const struct half *own = &t->bench->half[end];
+    half[end] = (struct eo_loaded_half){own->workspace, own->pair->grid, &t->gaps[end]};
+    eo_loaded_solve(own->workspace, own->pair->grid, &t->gaps[end], 1, 1, &force, &t->loaded[end]);
+  }
+  if (t->ends == 2)
+    eo_loaded_balance(half, 1, &t->hold, 0, force, t->loaded);
+  return force;
+}
+
+/* Mean and swing of numbers. */
+struct span {
+  double mean, low, high;
+};
+
+static struct span span_of(int n, const double *value)
+{
+  struct span span = {0, INFINITY, -INFINITY};
+  for (int j = 0; j < n; j++) {
+    span.mean += value[j] / n;
+    span.low = fmin(span.low, value[j]);
+    span.high = fmax(span.high, value[j]);
+  }
+  return span;
+}
+
+static double relative(const struct trial *t, const char *key, double usual)
+{
+  return eo_case_relative_or(t->tolerance, key, usual);
+}
+
+static double absolute(const struct trial *t, const char *key, double usual)
+{
+  return eo_case_absolute_or(t->tolerance, key, usual);
+}
+
+static void check_ends(const struct trial *t, struct eo_case *row, const char *key, const double value[2], double unit,
+                       double rel, double abs)
+{
+  if (eo_case_find(row, key))
+    eo_verify_list(t->bench->v, eo_case_find(row, key), t->ends, value, unit, rel, abs);
+}
+
+static double highest_pressure(const struct eo_contact_grid *grid, const struct eo_loaded_end *end)
+{
+  double highest = 0;
+  for (int j = 0; j < grid->positions; j++)
+    for (int i = 0; i < grid->position[j].points; i++)
+      highest = fmax(highest, eo_loaded_pressure(grid, end->line_load[grid->position[j].first + i],
+                                                 grid->position[j].radius[i]));
+  return highest;
+}
+
+/* Loads of tooth pairs at some positions, within a share of P. */
+static void check_pair_loads(const struct trial *t, struct eo_case *rows, double force)
+{
+  double within = relative(t, "pair_loads_rel_of_P", 0.003) * force;
+  double share[MOST_POSITIONS];
+  for (int i = 0; i < eo_case_size(rows); i++) {
+    struct eo_case *row = eo_case_at(rows, i), *hands = eo_case_need(row, "hands");
+    int j = eo_case_whole(row, "position", 0, t->bench->half[0].pair->grid->positions - 1);
+    for (int end = 0; end < t->ends && !eo_case_faulty(row); end++) {
+      struct eo_case *pairs = eo_case_at(hands, end);
+      const struct eo_contact_grid *grid = t->bench->half[end].pair->grid;
+      for (int k = 0; k < eo_case_size(pairs); k++) {
+        struct eo_case *expected = eo_case_at(pairs, k);
+        eo_contact_pair_share(grid, &t->loaded[end], (int)eo_case_key_number(expected), share);
+        eo_verify_number(t->bench->v, expected, share[j] * t->loaded[end].load[j], 0, within);
+      }
+    }
+  }
+}
+
+/* Transmission errors, transverse, of the ends and of the pair: curve[2] is their mean. */
+static void set_curves(const struct trial *t, double curve[3][MOST_POSITIONS])
+{
+  int n = t->bench->half[0].pair->grid->positions, last = t->ends - 1;
+  double normal = cos(t->bench->half[0].pair->geometry.base_helix_angle);
+  for (int j = 0; j < n; j++) {
+    for (int end = 0; end < t->ends; end++)
+      curve[end][j] = t->loaded[end].approach[j] / normal;
+    curve[2][j] = (curve[0][j] + curve[last][j]) / 2;
+  }
+}
+
+/* Displacement of the pinion as the files have it, (Z_L - Z_R) / (2 sin beta_b) on either flank. */
+static void check_float(const struct trial *t, struct eo_case *row)
+{
+  const struct eo_contact_grid *grid = t->bench->half[0].pair->grid;
+  double z[MOST_POSITIONS], lean = sin(grid->geometry.base_helix_angle), within = absolute(t, "float_um", 0.03);
+  for (int j = 0; j < grid->positions && t->ends == 2; j++)
+    z[j] = (t->loaded[EO_LEFT].approach[j] - t->loaded[EO_RIGHT].approach[j]) / (2 * lean);
+  if (t->ends == 1)
+    return;
+  struct span span = span_of(grid->positions, z);
+  eo_verify_member(t->bench->v, row, "float_mean_um", 1e6 * span.mean, 0, within);
+  eo_verify_member(t->bench->v, row, "float_pp_um", 1e6 * (span.high - span.low), 0, within);
+}
+
+static enum eo_code check_result(struct trial *t, struct eo_case *row)
+{
+  static double curve[3][MOST_POSITIONS];
+  struct eo_verification *v = t->bench->v;
+  double force = solve(t, eo_case_number(row, "T_Nm")), swing[2] = {0}, mean[2] = {0}, pressure[2] = {0},
+         tangent[2] = {0}, least[2] = {0}, most[2] = {0}, load[2] = {0};
+  int n = t->bench->half[0].pair->grid->positions;
+  double pp_rel = relative(t, "PPLTE_rel", 0.005), pp_um = absolute(t, "PPLTE_um", 0.01),
+         mean_rel = relative(t, "LTE_mean_rel", 0.002), load_rel = relative(t, "load_rel", 0.003);
+  set_curves(t, curve);
+  for (int end = 0; end < t->ends; end++) {
+    struct span lte = span_of(n, curve[end]), loads = span_of(n, t->loaded[end].load);
+    swing[end] = lte.high - lte.low;
+    mean[end] = lte.mean;
+    pressure[end] = highest_pressure(t->bench->half[end].pair->grid, &t->loaded[end]);
+    tangent[end] = span_of(n, t->loaded[end].tangent).mean;
+    least[end] = loads.low;
+    most[end] = loads.high;
+    load[end] = loads.mean;
+  }
+  struct span pair = span_of(n, curve[2]);
+  eo_verify_member(v, row, "PPLTE_um", 1e6 * (pair.high - pair.low), pp_rel, pp_um);
+  eo_verify_member(v, row, "LTE_mean_um", 1e6 * pair.mean, mean_rel, 0);
+  check_ends(t, row, "PPLTE_hands_um", swing, 1e6, pp_rel, pp_um);
+  check_ends(t, row, "LTE_mean_hands_um", mean, 1e6, mean_rel, 0);
+  check_ends(t, row, "max_pressure_MPa", pressure, 1e-6, relative(t, "max_pressure_rel", 0.005), 0);
+  check_ends(t, row, "k_tan_mean_N_um", tangent, 1e-6, relative(t, "k_tan_rel", 0.005), 0);
+  check_ends(t, row, "load_min_N", least, 1, 0, load_rel * force);
+  check_ends(t, row, "load_max_N", most, 1, 0, load_rel * force);
+  check_ends(t, row, "load_mean_N", load, 1, 0, load_rel * force);
+  check_float(t, row);
+  check_pair_loads(t, eo_case_find(row, "pair_loads_N"), force);
+  if (t->loaded[0].failures + t->loaded[1].failures)
+    eo_verify_diverged(v, row);
+  return EO_OK;
+}
+
+static void check_curve(struct trial *t, struct eo_case *block)
+{
+  static double curve[3][MOST_POSITIONS];
+  static const char *const key[3] = {"LTE_left_um", "LTE_right_um", "LTE_pair_um"};
+  int n = t->bench->half[0].pair->grid->positions;
+  double force = solve(t, eo_case_number(block, "T_Nm")), within = absolute(t, "curve_um", 0.015);
+  set_curves(t, curve);
+  for (int i = 0; i < 3; i++)
+    if (eo_case_find(block, key[i]))
+      eo_verify_list(t->bench->v, eo_case_find(block, key[i]), n, curve[i], 1e6, 0, within);
+  check_pair_loads(t, eo_case_find(block, "pair_loads_N"), force);
+}
+
+static int end_index(const struct trial *t, struct eo_case *row)
+{
+  static const char *const names[] = {"left", "right", "single", NULL};
+  int end = eo_case_need(row, "hand") ? eo_case_choice(row, "hand", names, -1) : -1;
+  return end == 2 ? 0 : end < t->ends ? end : -1;
+}
+
+/* Gaps of the flanks alone: without shaft errors and constants. */
+static void check_gap_points(struct trial *t, struct eo_case *rows)
+{
+  for (int i = 0; i < eo_case_size(rows); i++) {
+    struct eo_case *row = eo_case_at(rows, i), *gap = eo_case_need(row, "gap_um"), *s = eo_case_need(row, "s_mm"),
+                   *eta = eo_case_need(row, "eta_mm");
+    int end = end_index(t, row), count = eo_case_size(gap);
+    struct eo_gap_field *field = &t->field[end < 0 ? 0 : end];
+    const struct eo_pair *pair = t->bench->half[end < 0 ? 0 : end].pair;
+    eo_gap_field_init_shapes(field, &pair->geometry, field->shape, end, 0, 0, 0, pair->grid->corner);
+    eo_verify_size(t->bench->v, s, count);
+    for (int k = 0; k < count && !eo_case_faulty(row); k++)
+      eo_verify_number(
+          t->bench->v, eo_case_at(gap, k),
+          1e6 * eo_gap_field_at(field, 1e-3 * eo_case_element(s, k), 1e-3 * eo_case_element(eta, k), NULL, NULL), 0,
+          absolute(t, "gap_um", 0.02));
+    if (eo_case_find(row, "first_order_um"))
+      eo_case_skip(eo_case_find(row, "first_order_um"));
+    if (eo_case_find(row, "laid_on_involute_um"))
+      eo_case_skip(eo_case_find(row, "laid_on_involute_um"));
+    eo_verify_note(t->bench->v, "first_order_um and laid_on_involute_um are for information and are not compared.");
+  }
+}
+
+static void check_interpolation(const struct trial *t, struct eo_case *rows)
+{
+  static const char *const members[] = {"pinion", "gear", NULL};
+  for (int i = 0; i < eo_case_size(rows); i++) {
+    struct eo_case *row = eo_case_at(rows, i), *delta = eo_case_need(row, "delta_um"), *u = eo_case_need(row, "u_mm"),
+                   *y = eo_case_need(row, "y_mm");
+    int end = end_index(t, row),
+        member = eo_case_need(row, "member") ? eo_case_choice(row, "member", members, -1) : -1;
+    const struct eo_flank_spline *spline = end < 0 || member < 0 ? NULL : t->spline[member][end];
+    if (!spline)
+      eo_case_fault(row, "This flank has no grid.");
+    for (int k = 0; k < eo_case_size(delta) && !eo_case_faulty(row); k++)
+      eo_verify_number(
+          t->bench->v, eo_case_at(delta, k),
+          1e6 * eo_flank_spline_at(spline, 1e-3 * eo_case_element(u, k), 1e-3 * eo_case_element(y, k), NULL), 0, 1e-4);
+  }
+}
+
+static enum eo_code run_trial(struct trial *t, struct eo_error *error)
+{
+  struct eo_case *expected = eo_case_need(t->item, "expected"), *results = eo_case_find(expected, "results");
+  EO_TRY(read_case(t, error));
+  if (eo_case_find(t->item, "discretisation"))
+    eo_case_skip(eo_case_find(t->item, "discretisation"));
+  static const char *const remarks[] = {"curve_note", "gap_points_note", "interpolation_note"};
+  for (int i = 0; i < 3; i++)
+    eo_case_remark(expected, remarks[i]);
+  if (eo_case_faulty(t->item))
+    return EO_OK;
+  EO_TRY(set_gaps(t, error));
+  for (int i = 0; i < eo_case_size(results); i++)
+    EO_TRY(check_result(t, eo_case_at(results, i)));
+  if (eo_case_find(expected, "curve"))
+    check_curve(t, eo_case_find(expected, "curve"));
+  check_interpolation(t, eo_case_find(expected, "interpolation"));
+  check_gap_points(t, eo_case_find(expected, "gap_points"));
+  return EO_OK;
+}
+
+static enum eo_code run_case(void *context, struct eo_case *item, struct eo_error *error)
+{
+  struct bench *b = context;
+  if (eo_case_find(item, "pitch")) {
+    struct eo_error why;
+    eo_error_set(&why, EO_ERROR_INPUT, NULL, "Pitch deviations over the hunting period are not computed here.");
+    eo_verify_broken(b->v, item, &why);
+    return EO_OK;
+  }
+  struct trial *t = calloc(1, sizeof *t);
+  if (!t)
+    return eo_error_memory(error);
+  t->bench = b;
+  t->item = item;
+  t->tolerance = eo_case_find(item, "tolerance");
+  enum eo_code code = run_trial(t, error);
+  for (int end = 0; end < 2; end++) {
+    eo_loaded_gaps_done(&t->gaps[end]);
+    eo_loaded_end_done(&t->loaded[end]);
+    for (int member = 0; member < 2; member++)
+      eo_flank_spline_free(t->spline[member][end]);
+  }
+  free(t);
+  return code;
+}
+
+static enum eo_code read_conventions(struct bench *b)
+{
+  struct eo_case *words = eo_case_find(b->file, "conventions");
+  struct eo_case *form = words ? eo_case_find(words, "closed_form_flexibility") : NULL;
+  if (form)
+    eo_case_closed_form(form, &b->form);
+  else
+    eo_case_fault(b->file, "The closed-form flexibility is stated in \"conventions\".");
+  return EO_OK;
+}
+
+static const struct eo_verify_block blocks[] = {
+    {"pairs", EO_BLOCK_EITHER, check_pairs},
+    {"iso_1328_1_2013", EO_BLOCK_WHOLE, check_tolerances},
+    {"cases", EO_BLOCK_EACH, run_case},
+    {NULL, EO_BLOCK_INPUT, NULL},
+};
+
+enum eo_code eo_verify_deviations(struct eo_case *file, struct eo_verification *v, struct eo_error *error)
+{
+  struct bench *b = calloc(1, sizeof *b);
+  if (!b)
+    return eo_error_memory(error);
+  b->file = file;
+  b->v = v;
+  eo_case_need(file, "cases");
+  read_conventions(b);
+  enum eo_code code = eo_case_faulty(file) ? EO_OK : eo_verify_blocks(v, file, blocks, b, error);
+  for (int end = 0; end < 2; end++)
+    drop(&b->half[end]);
+  free(b);
+  return code;
+}
