@@ -321,7 +321,8 @@ enum eo_code eo_elastic_new(struct eo_elastic **result, const struct eo_contact_
   if (!el)
     return eo_error_memory(error);
   el->grid = grid;
-  enum eo_code code = eo_shaft_influence_init(&el->influence, &grid->geometry, pair, &grid->material, shafts, inwards, error);
+  enum eo_code code = eo_shaft_influence_init(&el->influence, &grid->geometry, pair, &grid->material, shafts, inwards,
+                                              error);
   if (!code)
     code = allocate(el, error);
   if (code)

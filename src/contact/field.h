@@ -36,8 +36,8 @@ struct eo_gap_field {
   struct eo_tilted_corner tilted[2];                   /* the corners under them */
   double takes_over[2];                                /* the least d at which a corner can strike anywhere, m */
   double errors[2];                                    /* kappa, gamma as the end sees them, rad */
-  double offset;                          /* on every gap, m: what displaces a whole flank */
-  bool varies;                            /* profiles differ from slice to slice: each is met on its own */
+  double offset;                                       /* on every gap, m: what displaces a whole flank */
+  bool varies;                                         /* profiles differ from slice to slice: each is met on its own */
   struct eo_corner_station station[EO_CORNER_STATIONS]; /* of such flanks */
   const struct eo_deflection *deflection; /* of the bodies; borrowed; NULL: rigid, as eo_gap_field_init() leaves it */
 };
@@ -77,8 +77,8 @@ void eo_gap_field_init_shapes(struct eo_gap_field *field, const struct eo_geomet
    path (may be NULL): [member] place on each flank. */
 double eo_gap_field_at(const struct eo_gap_field *field, double s, double eta, double *slope, double path[2]);
 
-/* The smallest gap anywhere on the active flank (rectangle s_A..s_E x face width), m; where profiles vary over the face,
-   of a grid of places and a search about the lowest of them. */
+/* The smallest gap anywhere on the active flank (rectangle s_A..s_E x face width), m; where profiles vary over the
+   face, of a grid of places and a search about the lowest of them. */
 double eo_gap_field_datum(const struct eo_gap_field *field);
 
 /* The smallest gap along the contact line s = c + eta tan(beta_b), over the face width and, when edges is set, the tip

@@ -35,28 +35,97 @@ static enum eo_code check_groove(const struct eo_gear_pair *pair, struct eo_erro
   return EO_OK;
 }
 
-/* Relief on one side of the pitch point must start before the active profile ends. */
-static enum eo_code check_relief(double relief, double start, double active, int member, int end, const char *side,
-                                 struct eo_error *error)
+/* Where a flank stands in a document. */
+struct flank_place {
+  const struct eo_geometry *geometry;
+  enum eo_flank_side side;
+  int member, end;
+};
+
+/* Pointer to a key of the flank; prefix and key make its name. */
+static void point_to(const struct flank_place *place, const char *prefix, const char *key, char pointer[128])
 {
-  if (relief == 0 || start < active)
-    return EO_OK;
-  char key[96];
-  snprintf(key, sizeof key, "/modification/%s/%s/%s_relief_start_mm", member_name[member], end_name[end], side);
-  return eo_error_set(error, EO_ERROR_INPUT, key,
-                      "%.6g mm is not inside the active profile, which ends %.6g mm from the pitch point on this side.",
-                      1e3 * start, 1e3 * active);
+  snprintf(pointer, 128, "/modification/%s/%s/%s%s%s", member_name[place->member], end_name[place->end],
+           place->side == EO_COAST_FLANK ? "coast/" : "", prefix, key);
 }
 
-static enum eo_code check_end_reliefs(const struct eo_flank_modification *flank, double face_width, int member, int end,
+static const char *const relief_side[2] = {"root", "tip"};
+
+/* The key of the way in which a start is stated. */
+static const char *stated_key(const struct eo_relief_place *stated)
+{
+  return stated->diameter > 0      ? "_relief_diameter_mm"
+         : stated->roll_length > 0 ? "_relief_roll_length_mm"
+         : stated->roll_angle > 0  ? "_relief_roll_angle_deg"
+         : stated->length > 0      ? "_relief_length_mm"
+                                   : "_relief_start_mm";
+}
+
+/* One way to state a start at most, at a place on the active profile, before it ends on this side. */
+static enum eo_code check_relief(const struct eo_flank_modification *flank, int side, const struct flank_place *place,
+                                 struct eo_error *error)
+{
+  double amount = side == EO_TIP_SIDE ? flank->tip_relief : flank->root_relief, end[2],
+         rack = side == EO_TIP_SIDE ? flank->tip_relief_start : flank->root_relief_start;
+  const struct eo_relief_place *stated = &flank->place[side];
+  int ways = eo_relief_places_stated(stated);
+  char key[128];
+  point_to(place, relief_side[side], stated_key(stated), key);
+  if (ways > 1 || (ways == 1 && rack != 0))
+    return eo_error_set(error, EO_ERROR_INPUT, key,
+                        "The start of a relief is stated in one way: %s_relief_start_mm (0 where another is taken), "
+                        "_diameter_mm, _roll_length_mm, _roll_angle_deg or _length_mm; here are %d.",
+                        relief_side[side], ways + (rack != 0));
+  if (amount == 0)
+    return EO_OK;
+  double start = eo_relief_start_at(place->geometry, place->member, flank, side);
+  eo_active_profile(place->geometry, place->member, end);
+  bool inside = side == EO_TIP_SIDE ? start < end[EO_TIP_SIDE] : start > end[EO_ROOT_SIDE];
+  if (ways == 0) {
+    double active = side == EO_TIP_SIDE ? end[EO_TIP_SIDE] : -end[EO_ROOT_SIDE];
+    return inside ? EO_OK
+                  : eo_error_set(error, EO_ERROR_INPUT, key,
+                                 "%.6g mm is not inside the active profile, which ends %.6g mm from the pitch point on "
+                                 "this side.",
+                                 1e3 * rack, 1e3 * active);
+  }
+  if (inside && start > end[EO_ROOT_SIDE] && start < end[EO_TIP_SIDE])
+    return EO_OK;
+  struct eo_profile_place from = eo_profile_place_at(place->geometry, place->member, end[EO_ROOT_SIDE]),
+                          to = eo_profile_place_at(place->geometry, place->member, end[EO_TIP_SIDE]);
+  return eo_error_set(error, EO_ERROR_INPUT, key,
+                      "The relief does not start on the active profile, which reaches from diameter %.6g to %.6g mm, "
+                      "length of roll %.6g to %.6g mm, roll angle %.6g to %.6g deg.",
+                      1e3 * from.diameter, 1e3 * to.diameter, 1e3 * from.roll_length, 1e3 * to.roll_length,
+                      from.roll_angle * 180 / M_PI, to.roll_angle * 180 / M_PI);
+}
+
+/* Between its vertices a profile has one middle part. */
+static enum eo_code check_vertices(const struct eo_flank_modification *flank, const struct flank_place *place,
+                                   struct eo_error *error)
+{
+  char key[128];
+  if (flank->tip_relief == 0 || flank->root_relief == 0)
+    return EO_OK;
+  double root = eo_relief_start_at(place->geometry, place->member, flank, EO_ROOT_SIDE),
+         tip = eo_relief_start_at(place->geometry, place->member, flank, EO_TIP_SIDE);
+  if (root <= tip)
+    return EO_OK;
+  point_to(place, "root", stated_key(&flank->place[EO_ROOT_SIDE]), key);
+  return eo_error_set(error, EO_ERROR_INPUT, key,
+                      "The root relief starts at diameter %.6g mm, beyond the tip relief, which starts at %.6g mm.",
+                      1e3 * eo_profile_place_at(place->geometry, place->member, root).diameter,
+                      1e3 * eo_profile_place_at(place->geometry, place->member, tip).diameter);
+}
+
+static enum eo_code check_end_reliefs(const struct eo_flank_modification *flank, const struct flank_place *place,
                                       struct eo_error *error)
 {
   static const char *const which[2] = {"trailing", "leading"};
-  char key[96];
-  double length = 0;
+  char key[128];
+  double length = 0, face_width = place->geometry->face_width;
   for (int k = 0; k < 2; k++) {
-    snprintf(key, sizeof key, "/modification/%s/%s/%s_end_relief_length_mm", member_name[member], end_name[end],
-             which[k]);
+    point_to(place, which[k], "_end_relief_length_mm", key);
     if (flank->end_relief[k] > 0 && flank->end_relief_length[k] <= 0)
       return eo_error_set(error, EO_ERROR_INPUT, key, "An end relief needs a length above 0.");
     length += flank->end_relief_length[k];
@@ -67,21 +136,45 @@ static enum eo_code check_end_reliefs(const struct eo_flank_modification *flank,
   return EO_OK;
 }
 
+static enum eo_code check_triangles(const struct eo_flank_modification *flank, const struct flank_place *place,
+                                    struct eo_error *error)
+{
+  static const char *const face[2] = {"_trailing", "_leading"};
+  for (int i = 0; i < 4; i++) {
+    const struct eo_triangular_relief *t = &flank->triangular[i / 2][i % 2];
+    char corner[32], key[128];
+    snprintf(corner, sizeof corner, "%s%s", relief_side[i / 2], face[i % 2]);
+    point_to(place, corner, t->profile_length > 0 ? "_triangular_face_length_mm" : "_triangular_profile_length_mm",
+             key);
+    if (t->amount != 0 && !(t->profile_length > 0 && t->face_length > 0))
+      return eo_error_set(error, EO_ERROR_INPUT, key,
+                          "A triangular relief needs a length above 0 along the profile and along the face.");
+  }
+  return EO_OK;
+}
+
+static enum eo_code check_flank(const struct eo_flank_modification *flank, const struct flank_place *place,
+                                struct eo_error *error)
+{
+  EO_TRY(check_relief(flank, EO_TIP_SIDE, place, error));
+  EO_TRY(check_relief(flank, EO_ROOT_SIDE, place, error));
+  EO_TRY(check_vertices(flank, place, error));
+  EO_TRY(check_end_reliefs(flank, place, error));
+  return check_triangles(flank, place, error);
+}
+
 enum eo_code eo_modification_check(const struct eo_design *design, const struct eo_geometry *geometry,
                                    struct eo_error *error)
 {
-  const double tip[2] = {geometry->rack_top, -geometry->rack_bottom}; /* the pinion's tip meets the gear's root */
-  enum eo_code code = EO_OK;
-  for (int i = 0; i < 2; i++)
-    for (int end = 0; end < design->gear_pair.ends && !code; end++) {
-      const struct eo_flank_modification *flank = &design->modification.flank[i][end];
-      code = check_relief(flank->tip_relief, flank->tip_relief_start, tip[i], i, end, "tip", error);
-      if (!code)
-        code = check_relief(flank->root_relief, flank->root_relief_start, tip[1 - i], i, end, "root", error);
-      if (!code)
-        code = check_end_reliefs(flank, geometry->face_width, i, end, error);
-    }
-  return code;
+  for (int side = 0; side < 2; side++)
+    for (int i = 0; i < 2; i++)
+      for (int end = 0; end < design->gear_pair.ends; end++) {
+        const struct flank_place place = {geometry, (enum eo_flank_side)side, i, end};
+        EO_TRY(check_flank(side == EO_DRIVE_FLANK ? &design->modification.flank[i][end]
+                                                  : &design->modification.coast[i][end],
+                           &place, error));
+      }
+  return EO_OK;
 }
 
 static enum eo_code check_start_bounds(const struct eo_range *range, double active, const char *key,

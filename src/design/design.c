@@ -18,7 +18,7 @@ static void fill(double *value, double derived)
 
 double eo_alignment_axial_stiffness(const struct eo_alignment *alignment)
 {
-  return alignment->pinion_axial == EO_AXIAL_FIXED    ? INFINITY
+  return alignment->pinion_axial == EO_AXIAL_FIXED      ? INFINITY
          : alignment->pinion_axial == EO_AXIAL_FLOATING ? 0
                                                         : alignment->pinion_axial_stiffness;
 }

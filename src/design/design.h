@@ -49,12 +49,12 @@ double eo_alignment_axial_stiffness(const struct eo_alignment *alignment);
 enum eo_direction { EO_AHEAD, EO_ASTERN };
 
 struct eo_load_case {
-  double torque; /* total on the pinion shaft, N m, > 0 */
-  double speed;  /* pinion, rad/s, > 0 */
-  double share;  /* of operating time; they sum to 1 */
-  double power;  /* W, entry alone: the torque is power over speed; NaN: the torque is stated */
+  double torque;            /* total on the pinion shaft, N m, > 0 */
+  double speed;             /* pinion, rad/s, > 0 */
+  double share;             /* of operating time; they sum to 1 */
+  double power;             /* W, entry alone: the torque is power over speed; NaN: the torque is stated */
   enum eo_flank_side flank; /* that carries; from direction and driver by eo_design_resolve() */
-  double hours;  /* of operating time, h; not above 0 (or NaN): shares are stated */
+  double hours;             /* of operating time, h; not above 0 (or NaN): shares are stated */
   enum eo_direction direction;
   int driver; /* member */
   int has_alignment;
@@ -174,7 +174,8 @@ enum eo_code eo_design_settle(struct eo_design *design, struct eo_error *error);
    both do; turning round either of torque or rotation brings the coast flanks into contact. */
 struct eo_running eo_design_running(const struct eo_design *design, int load_case);
 
-/* The flank that carries a load case; eo_design_resolve() notes it there, so that the case may stand alone afterwards. */
+/* The flank that carries a load case; eo_design_resolve() notes it there, so that the case may stand alone afterwards.
+ */
 enum eo_flank_side eo_design_flank_of(const struct eo_design *design, int load_case);
 
 /* Puts the derived default in place of every NaN whose rule does not need the loaded contact (mesh_damping_stiffness

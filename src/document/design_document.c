@@ -220,8 +220,8 @@ void eo_design_note_migrations(const json_t *document, struct eo_warnings *warni
   const char *member, *end;
   json_t *ends, *flank;
   bool found = false;
-  json_object_foreach(json_object_get(document, "modification"), member, ends)
-    json_object_foreach(ends, end, flank) found |= json_object_get(flank, "lead_slope_um") != NULL;
+  json_object_foreach(json_object_get(document, "modification"), member, ends) json_object_foreach(ends, end, flank)
+      found |= json_object_get(flank, "lead_slope_um") != NULL;
   if (found)
     eo_warnings_add(warnings, "lead_slope_um was read as twice its value in helix_slope_um (C_Hbeta, over the face "
                               "width): the same flank.");

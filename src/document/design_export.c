@@ -5,6 +5,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "document/flank_grid_document.h"
 #include "document/design_document.h"
 #include "document/flank_chart.h"
 #include "format/json.h"
@@ -62,12 +63,15 @@ static void each_flank(const struct eo_design *design, const struct eo_geometry 
   for (int member = 0; member < 2; member++)
     for (int end = 0; end < design->gear_pair.ends; end++) {
       struct flank flank = {.geometry = geometry, .member = member, .end = end, .rows = grid[0], .columns = grid[1]};
-      eo_modification_init(&flank.shape, geometry, member, &design->modification.flank[member][end]);
+      struct eo_flank_spline *spline = NULL;
+      text->failed = text->failed ||
+                     eo_flank_shape(design, geometry, EO_DRIVE_FLANK, member, end, &flank.shape, &spline);
       if (design->gear_pair.ends == 2)
         flank.offset = (design->gear_pair.groove_width + design->gear_pair.face_width) / 2;
       double behind = end == EO_RIGHT ? design->alignment.stagger * 2 * M_PI / geometry->teeth[member] : 0;
       flank.turn = pitch_angle(geometry, member) + (member == EO_PINION ? behind : -behind);
       function(&flank, text);
+      eo_flank_spline_free(spline);
     }
 }
 
@@ -99,7 +103,9 @@ static double profile_part(const struct flank *flank, double s)
 
 static double lead_part(const struct flank *flank, double eta)
 {
-  double slope;
+  double slope, slopes[2];
+  if (flank->shape.varies)
+    return eo_modification_at(&flank->shape, 0, eta) - eo_modification_profile(&flank->shape, 0, slopes);
   return eo_modification_lead(&flank->shape, eta / cos(flank->geometry->helix_angle), &slope);
 }
 
@@ -129,7 +135,7 @@ static void write_point(const struct flank *flank, double s, double eta, struct 
     put(text, position[i], &eo_unit_mm);
   for (int i = 0; i < 3; i++)
     put(text, normal[i], NULL);
-  put(text, profile_part(flank, s) + lead_part(flank, eta), &eo_unit_um);
+  put(text, eo_modification_at(&flank->shape, rack_at(flank, s), eta), &eo_unit_um);
 }
 
 static void write_flank_points(const struct flank *flank, struct eo_text *text)
@@ -206,7 +212,7 @@ static void write_topography_of(const struct flank *flank, struct eo_text *text)
       put(text, eo_geometry_radius_at(flank->geometry, flank->member, s), &eo_unit_mm);
       put(text, roll_at(flank, s), &eo_unit_deg);
       put(text, eta, &eo_unit_mm);
-      put(text, profile_part(flank, s) + lead_part(flank, eta), &eo_unit_um);
+      put(text, eo_modification_at(&flank->shape, rack_at(flank, s), eta), &eo_unit_um);
       end_row(text);
     }
 }

@@ -46,9 +46,10 @@ static const struct eo_field load_case[] = {
     EO_TEXT(struct eo_load_case, name, "name", "for people"),
     EO_CHOICE(struct eo_load_case, direction, "direction", directions, EO_AHEAD,
               "of rotation; astern the coast flanks carry"),
-    EO_CHOICE(struct eo_load_case, driver, "driver", drivers, EO_PINION,
-              "which member drives; a gear that drives only here, as in overrun, does so with the coast flanks, one that "
-              "drives in every load case, as in a speed increaser, with the drive flanks"),
+    EO_CHOICE(
+        struct eo_load_case, driver, "driver", drivers, EO_PINION,
+        "which member drives; a gear that drives only here, as in overrun, does so with the coast flanks, one that "
+        "drives in every load case, as in a speed increaser, with the drive flanks"),
     EO_OPTIONAL(struct eo_load_case, alignment, has_alignment, "alignment", &case_alignment_table,
                 "as the design's alignment", "shaft angle errors of this load case"),
 };

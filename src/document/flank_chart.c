@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "document/flank_chart.h"
 
+#include "document/flank_grid_document.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -86,6 +87,8 @@ static void set_helix(struct eo_flank_chart *c, const struct eo_geometry *g, con
     double slope;
     c->roll_angle[i] = c->diameter[i] = NAN;
     c->nominal[i] = -eo_modification_lead(shape, c->x[i] / cos(g->helix_angle), &slope);
+    if (shape->varies)
+      c->nominal[i] = -eo_modification_at(shape, 0, c->x[i]);
   }
 }
 
@@ -110,12 +113,16 @@ void eo_flank_chart_find(struct eo_flank_chart *c, const struct eo_design *desig
 {
   struct eo_modification_shape shape;
   *c = (struct eo_flank_chart){.member = member, .end = end, .helix = helix};
-  eo_modification_init(&shape, geometry, member, &design->modification.flank[member][end]);
+  struct eo_flank_spline *spline;
+  bool failed = eo_flank_shape(design, geometry, EO_DRIVE_FLANK, member, end, &shape, &spline);
   if (helix)
     set_helix(c, geometry, &shape);
   else
     set_profile(c, geometry, &shape);
+  eo_flank_spline_free(spline);
   set_tolerance(c, design, geometry);
+  if (failed)
+    snprintf(c->note, sizeof c->note, "There was no memory for the flank's grid: it is not in this chart.");
   double half = (helix ? c->tolerance.helix_total : c->tolerance.profile_total) / 2;
   const double slack = 1e-9; /* m, of rounding at the ends of the range */
   for (int i = 0; i < POINTS; i++) {

@@ -38,7 +38,7 @@ const struct eo_table eo_flank_grid_table = EO_TABLE("a flank's grid", struct gr
 /* Where the reading of a table stands. */
 struct cursor {
   const char *at;
-  int line, column;     /* from 1 */
+  int line, column; /* from 1 */
   const char *separators;
   bool decimal_comma;
 };
@@ -188,8 +188,9 @@ static const char *const member_name[2] = {"pinion", "gear"}, *const end_name[2]
 static bool fits(const struct grid_document *g, const struct eo_path *path, struct eo_faults *faults)
 {
   if (g->u.count < 2 || g->y.count < 2)
-    eo_faults_at(faults, path, "A grid needs at least 2 places u_mm and 2 places y_mm (4 of each to bend), not %d x %d.",
-                 g->u.count, g->y.count);
+    eo_faults_at(faults, path,
+                 "A grid needs at least 2 places u_mm and 2 places y_mm (4 of each to bend), not %d x %d.", g->u.count,
+                 g->y.count);
   else if (g->delta.rows != g->u.count || g->delta.columns != g->y.count)
     eo_faults_at(faults, path, "delta_um is %d x %d, but there are %d places u_mm (rows) and %d places y_mm (columns).",
                  g->delta.rows, g->delta.columns, g->u.count, g->y.count);
@@ -291,4 +292,18 @@ void eo_flank_grids_encode(const struct eo_flank_grids *grids, int ends, json_t 
         flank = side == EO_COAST_FLANK ? reach(flank, "coast", failed) : flank;
         eo_json_put(flank, "grid", encode_grid(&grid), failed);
       }
+}
+
+bool eo_flank_shape(const struct eo_design *design, const struct eo_geometry *geometry, enum eo_flank_side side,
+                    int member, int end, struct eo_modification_shape *shape, struct eo_flank_spline **spline)
+{
+  const struct eo_modification *m = &design->modification;
+  struct eo_flank_grid grid = eo_flank_grid_at(&design->grids, side, member, end);
+  struct eo_error error;
+  *spline = NULL;
+  bool failed = grid.u_knots && eo_flank_spline_new(spline, &grid, &error);
+  eo_modification_init(shape, geometry, member,
+                       side == EO_DRIVE_FLANK ? &m->flank[member][end] : &m->coast[member][end]);
+  eo_modification_complete(shape, *spline, false);
+  return failed;
 }

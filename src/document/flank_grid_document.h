@@ -8,7 +8,8 @@
 
 #include "format/faults.h"
 #include "format/table.h"
-#include "gear/flank_grid.h"
+#include "design/design.h"
+#include "gear/geometry.h"
 
 extern const struct eo_table eo_flank_grid_table;
 
@@ -24,6 +25,11 @@ void eo_flank_grids_encode(const struct eo_flank_grids *grids, int ends, json_t 
    or tabs separate; lines that begin with # are left out. Fills u_mm, y_mm and delta_um of a grid's object; a fault
    names line and column. */
 json_t *eo_flank_grid_from_text(const char *text, struct eo_error *error);
+
+/* A flank of a design with all that is taken off it, y along eta; *spline, owned by the caller, is its grid or NULL.
+   True when there is no memory for it. */
+bool eo_flank_shape(const struct eo_design *design, const struct eo_geometry *geometry, enum eo_flank_side side,
+                    int member, int end, struct eo_modification_shape *shape, struct eo_flank_spline **spline);
 
 /* The same text from a grid. */
 void eo_flank_grid_to_text(const struct eo_flank_grid *grid, struct eo_text *text);

@@ -201,9 +201,10 @@ static const struct eo_field alignment[] = {
                       "from the pinion's mean axial motion to the ground, used with \"spring\""),
     EO_NUMBER(struct eo_alignment, stagger, "stagger", NULL, 0, 1, 0,
               "right end behind the left, in transverse base pitches"),
-    EO_NUMBER_DERIVED(struct eo_alignment, deviation_in_plane, "shaft_angle_error_in_plane_um", &eo_unit_um, -1e5, 1e5,
-                      "as shaft_angle_error_in_plane_deg says",
-                      "the error in the plane of the axes as a deviation over the face width of one end (f_Sigma_delta)"),
+    EO_NUMBER_DERIVED(
+        struct eo_alignment, deviation_in_plane, "shaft_angle_error_in_plane_um", &eo_unit_um, -1e5, 1e5,
+        "as shaft_angle_error_in_plane_deg says",
+        "the error in the plane of the axes as a deviation over the face width of one end (f_Sigma_delta)"),
     EO_NUMBER_DERIVED(struct eo_alignment, deviation_out_of_plane, "shaft_angle_error_out_of_plane_um", &eo_unit_um,
                       -1e5, 1e5, "as shaft_angle_error_out_of_plane_deg says",
                       "the error out of that plane as a deviation over the face width of one end (f_Sigma_beta)"),

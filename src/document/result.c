@@ -19,10 +19,23 @@ static const char *outcome_of(const struct eo_case_result *c)
   return outcomes[c->contact_failures > 0 ? EO_VIBRATION_NOT_CONVERGED : c->vibration.outcome];
 }
 
+static const char *const directions[] = {"ahead", "astern", NULL};
+static const char *const drivers[] = {"pinion", "gear", NULL};
+static const char *const flank_sides[] = {"drive", "coast", NULL};
+static const char *const sequences[] = {"forwards", "backwards", NULL};
+
 static const struct eo_outline_row contact_rows[] = {
     EO_KEY("torque_Nm", "number", "on the pinion shaft, both ends together", .unit = &eo_unit_Nm),
     EO_KEY("speed_rpm", "number", "of the pinion", .unit = &eo_unit_rpm),
     EO_KEY("share", "number", "of the operating time"),
+    EO_KEY("name", "text", "for people"),
+    EO_KEY("direction", "word", "of rotation", .words = directions),
+    EO_KEY("driver", "word", "which member drives", .words = drivers),
+    EO_KEY("flank", "word", "which flanks carry", .words = flank_sides),
+    EO_KEY("sequence", "word",
+           "forwards: positions follow each other in time; backwards: the gear drives, time runs "
+           "against position",
+           .words = sequences),
     EO_KEY("normal_force_N", "number", "of one end, normal to the teeth", .unit = &eo_unit_N),
     EO_KEY("outcome", "word", "not_converged: of the contact or of the vibration; contact_lost: teeth separate",
            .words = outcomes),
@@ -49,9 +62,15 @@ json_t *eo_result_case_contact(struct eo_result_source *source, int k)
 {
   const struct eo_case_result *c = &source->evaluation->load_case[k];
   struct eo_object o = eo_object_open_as(&contact_half);
+  source->lag = eo_evaluator_stagger(source->design, c->running.flank, source->positions);
   eo_object_put_number(&o, "torque_Nm", c->load_case.torque);
   eo_object_put_number(&o, "speed_rpm", c->load_case.speed);
   eo_object_put_number(&o, "share", c->load_case.share);
+  eo_object_put(&o, "name", json_string(c->load_case.name));
+  eo_object_put(&o, "direction", json_string(directions[c->load_case.direction]));
+  eo_object_put(&o, "driver", json_string(drivers[c->load_case.driver]));
+  eo_object_put(&o, "flank", json_string(flank_sides[c->running.flank]));
+  eo_object_put(&o, "sequence", json_string(sequences[c->running.backwards]));
   eo_object_put_number(&o, "normal_force_N", c->force);
   eo_object_put(&o, "outcome", json_string(outcome_of(c)));
   eo_object_put(&o, "position", eo_result_position(source));

@@ -212,6 +212,22 @@ static void say_rating(struct list *list, const struct eo_result_source *source)
     say(list, "The root safety S_F %.3g is below the required %.3g.", root, s->root_safety);
 }
 
+/* Flanks that carry and that nobody has modified, beside others that somebody has. */
+static void say_coast(struct list *list, const struct eo_result_source *source)
+{
+  const struct eo_modification *m = &source->design->modification;
+  bool coast = false;
+  for (int i = 0; i < 8; i++)
+    coast = coast || !eo_modification_is_none(&m->coast[i / 2 % 2][i % 2]) ||
+            source->design->grids.place[EO_COAST_FLANK][i / 2 % 2][i % 2].u_knots > 0;
+  for (int k = 0; k < source->evaluation->cases && !coast; k++)
+    if (source->evaluation->load_case[k].running.flank == EO_COAST_FLANK) {
+      say(list, "Load case %d runs on the coast flanks, which are unmodified: state them in \"coast\" of each end.",
+          k + 1);
+      return;
+    }
+}
+
 static void say_modelling(struct list *list, const struct eo_result_source *source)
 {
   const struct eo_geometry *g = &source->pair->geometry;
@@ -219,6 +235,7 @@ static void say_modelling(struct list *list, const struct eo_result_source *sour
   if (*note)
     say(list, "%s", note);
   say_rating(list, source);
+  say_coast(list, source);
   say_held(list, source);
   say_supports(list, source);
   say_body(list, source);

@@ -158,7 +158,8 @@ static bool is_tight_when_low(const struct eo_study_variable *v)
 {
   int way, side = start_of(v->field, &way);
   if (side >= 0 && way > 0)
-    return side == EO_ROOT_SIDE || v->field->offset == offsetof(struct eo_flank_modification, place[EO_TIP_SIDE].length);
+    return side == EO_ROOT_SIDE ||
+           v->field->offset == offsetof(struct eo_flank_modification, place[EO_TIP_SIDE].length);
   return strstr(v->field->key, "_length_mm") != NULL;
 }
 
@@ -172,7 +173,8 @@ static enum eo_code check_extremes(const struct eo_study_space *space, const str
     struct eo_error found;
     for (int i = 0; i < space->count; i++) {
       const struct eo_study_variable *v = &space->variable[i];
-      set_value(v, &extreme.modification, eo_unit_in(v->field->unit, shortest && is_tight_when_low(v) ? v->low : v->high));
+      set_value(v, &extreme.modification,
+                eo_unit_in(v->field->unit, shortest && is_tight_when_low(v) ? v->low : v->high));
     }
     if (eo_modification_check(&extreme, geometry, &found))
       code = eo_error_set(error, EO_ERROR_INPUT, "/optimization/variable_list",
@@ -310,8 +312,7 @@ static json_t *encode_flank(const struct eo_flank_modification *flank)
   const char *key;
   void *next;
   if (object && other)
-    json_object_foreach_safe(object, next, key, value) if (is_as_meant(key, value, other))
-        json_object_del(object, key);
+    json_object_foreach_safe(object, next, key, value) if (is_as_meant(key, value, other)) json_object_del(object, key);
   if (!other) {
     json_decref(object);
     object = NULL;

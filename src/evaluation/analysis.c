@@ -66,7 +66,8 @@ static enum eo_code fit(struct eo_analysis *analysis, int cases, int scenarios, 
   return eo_evaluator_new(&analysis->evaluator, analysis->pair, cases, error);
 }
 
-/* The same design without the terms of its modification (grids, which state how flanks are, stay); what the evaluation does not look at is blank, so that it can be compared. */
+/* The same design without the terms of its modification (grids, which state how flanks are, stay); what the evaluation
+ * does not look at is blank, so that it can be compared. */
 static void strip(struct eo_design *bare, const struct eo_design *design)
 {
   memcpy(bare, design, sizeof *bare);

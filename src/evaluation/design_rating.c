@@ -61,8 +61,10 @@ static void lean(struct eo_design *leaning, const struct eo_design *design, cons
                  double deviation)
 {
   *leaning = *design;
-  for (int end = 0; end < design->gear_pair.ends; end++)
-    leaning->modification.flank[EO_PINION][end].lead_slope += deviation * cos(geometry->base_helix_angle) / 2;
+  for (int end = 0; end < design->gear_pair.ends; end++) {
+    leaning->modification.flank[EO_PINION][end].helix_slope += deviation * cos(geometry->base_helix_angle);
+    leaning->modification.coast[EO_PINION][end].helix_slope -= deviation * cos(geometry->base_helix_angle);
+  }
 }
 
 static enum eo_code lean_both_ways(struct eo_design_rating *rating, struct eo_evaluator *evaluator,

@@ -46,8 +46,8 @@ struct eo_end_result {
 
 struct eo_case_result {
   struct eo_load_case load_case;
-  double force; /* P per end, normal, N */
-  double end_force[2];       /* [end] of a floating pinion: P, and what a coupling's thrust moves from one to the other */
+  double force;        /* P per end, normal, N */
+  double end_force[2]; /* [end] of a floating pinion: P, and what a coupling's thrust moves from one to the other */
   struct eo_running running; /* flank, sense, alignment */
   bool at_stop;              /* the pinion has play, and on the mean it is at a stop */
   struct eo_end_result end[2];
@@ -126,8 +126,6 @@ const struct eo_gap_field *eo_evaluator_field(const struct eo_evaluator *evaluat
 /* The pair it evaluates. */
 const struct eo_pair *eo_evaluator_pair(const struct eo_evaluator *evaluator);
 
-/* Positions by which the right end lags behind the left one. */
-int eo_evaluator_stagger(const struct eo_design *design, int positions);
 /* Positions by which the right end lags behind the left one as phases grow. */
 int eo_evaluator_stagger(const struct eo_design *design, enum eo_flank_side flank, int positions);
 

@@ -174,9 +174,9 @@ void eo_evaluator_bend_bodies(struct eo_evaluator *evaluator, const struct eo_ru
                               struct eo_elastic_report *report)
 {
   const struct eo_running *running = &load_case->running;
-  struct eo_elastic_case load = {
-      load_case->force, run->scenario.compliance, eo_meeting_hold(evaluator, run->design, running),
-      eo_evaluator_stagger(run->design, running->flank, evaluator->pair->grid->positions)};
+  struct eo_elastic_case load = {load_case->force, run->scenario.compliance,
+                                 eo_meeting_hold(evaluator, run->design, running),
+                                 eo_evaluator_stagger(run->design, running->flank, evaluator->pair->grid->positions)};
   eo_elastic_solve(eo_meeting_bodies(evaluator, running), evaluator->loaded[0],
                    eo_meeting_of(evaluator, load_case)->gaps, &load, both, report);
   both[EO_LEFT].failures += report->failures;

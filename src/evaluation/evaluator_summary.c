@@ -120,8 +120,7 @@ static void find_impact(const struct eo_evaluator *evaluator, const struct eo_ru
   struct eo_gap_field bent;
   settings.backwards = load_case->running.backwards;
   eo_impact_find(&load_case->end[end].impact, pair->grid, loaded_field(evaluator, load_case, end, &bent), pair->kernel,
-                 &settings,
-                 load_case->end[end].loaded.approach, load_case->load_case.speed * run->scenario.speed,
+                 &settings, load_case->end[end].loaded.approach, load_case->load_case.speed * run->scenario.speed,
                  run->scenario.compliance);
 }
 

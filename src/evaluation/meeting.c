@@ -16,7 +16,8 @@ static struct eo_running running_of(const struct eo_run *run, int k)
   const struct eo_alignment *alignment = &run->design->alignment;
   struct eo_running running = eo_design_running(run->design, k);
   running.in_plane = error_of(running.in_plane, alignment->shaft_angle_in_plane, run->scenario.in_plane);
-  running.out_of_plane = error_of(running.out_of_plane, alignment->shaft_angle_out_of_plane, run->scenario.out_of_plane);
+  running.out_of_plane = error_of(running.out_of_plane, alignment->shaft_angle_out_of_plane,
+                                  run->scenario.out_of_plane);
   return running;
 }
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* On coast flanks, or with the apex leading, eta runs inwards on both ends; all else is as on the drive flanks of an apex
-   that trails, with shaft angle errors, offsets and thrusts of the sign that this brings (doc/theory.md, (F5) to (F7)). */
+/* On coast flanks, or with the apex leading, eta runs inwards on both ends; all else is as on the drive flanks of an
+   apex that trails, with shaft angle errors, offsets and thrusts of the sign that this brings (doc/theory.md, (F5) to
+   (F7)). */
 #include "evaluation/meeting_field.h"
 
 #include "contact/loaded.h"
@@ -12,7 +13,8 @@ static double outwards(const struct eo_running *running)
   return running->inwards ? -1 : 1;
 }
 
-/* What moves the right end's flanks apart, m, normal: an apex offset opens the gap of outer face ends that meet first. */
+/* What moves the right end's flanks apart, m, normal: an apex offset opens the gap of outer face ends that meet first.
+ */
 static double offset_of(const struct eo_pair *pair, const struct eo_design *design, const struct eo_running *running,
                         int end)
 {

@@ -5,8 +5,8 @@
 
 #include "evaluation/pair.h"
 
-/* design: resolved; its modification and alignment count. spline: [member], of the grids of the flanks that carry; NULL:
-   none; borrowed by the field. */
+/* design: resolved; its modification and alignment count. spline: [member], of the grids of the flanks that carry;
+   NULL: none; borrowed by the field. */
 void eo_meeting_field_init(struct eo_gap_field *field, const struct eo_pair *pair, const struct eo_design *design,
                            const struct eo_flank_spline *const spline[2], const struct eo_running *running, int end);
 

@@ -7,10 +7,10 @@
 #include "format/object.h"
 
 static const char *const kind_names[] = {
-    [EO_FIELD_NUMBER] = "number",   [EO_FIELD_INTEGER] = "integer",  [EO_FIELD_SEED] = "seed",
-    [EO_FIELD_FLAG] = "flag",       [EO_FIELD_TEXT] = "text",        [EO_FIELD_CHOICE] = "choice",
-    [EO_FIELD_NUMBERS] = "numbers", [EO_FIELD_OBJECT] = "object",    [EO_FIELD_LIST] = "list",
-    [EO_FIELD_SERIES] = "series",   [EO_FIELD_MATRIX] = "matrix",    [EO_FIELD_DOCUMENT] = "document"};
+    [EO_FIELD_NUMBER] = "number",   [EO_FIELD_INTEGER] = "integer", [EO_FIELD_SEED] = "seed",
+    [EO_FIELD_FLAG] = "flag",       [EO_FIELD_TEXT] = "text",       [EO_FIELD_CHOICE] = "choice",
+    [EO_FIELD_NUMBERS] = "numbers", [EO_FIELD_OBJECT] = "object",   [EO_FIELD_LIST] = "list",
+    [EO_FIELD_SERIES] = "series",   [EO_FIELD_MATRIX] = "matrix",   [EO_FIELD_DOCUMENT] = "document"};
 
 /* What the document says where every key is absent: the defaults, as the tables themselves write them. */
 static json_t *encode_defaults(const struct eo_table *table)
@@ -34,8 +34,9 @@ static json_t *default_of(const struct eo_field *field, const json_t *defaults)
 
 static bool has_default(const struct eo_field *field)
 {
-  return !(field->flags & (EO_FIELD_REQUIRED | EO_FIELD_ELSEWHERE)) && field->kind != EO_FIELD_SERIES && field->kind != EO_FIELD_MATRIX &&
-         field->kind != EO_FIELD_DOCUMENT && (field->kind != EO_FIELD_OBJECT || field->flags & EO_FIELD_NULLABLE);
+  return !(field->flags & (EO_FIELD_REQUIRED | EO_FIELD_ELSEWHERE)) && field->kind != EO_FIELD_SERIES &&
+         field->kind != EO_FIELD_MATRIX && field->kind != EO_FIELD_DOCUMENT &&
+         (field->kind != EO_FIELD_OBJECT || field->flags & EO_FIELD_NULLABLE);
 }
 
 static bool is_whole(const struct eo_field *field)

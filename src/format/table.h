@@ -58,15 +58,15 @@ struct eo_table;
 
 struct eo_field {
   const char *key;
-  const char *alias; /* another name under which the key is taken; NULL: none. Faults name the key */
+  const char *alias;   /* another name under which the key is taken; NULL: none. Faults name the key */
   double alias_factor; /* NUMBER: times which a number under that name is taken; 0: as it is */
   enum eo_field_kind kind;
   unsigned flags;
   size_t offset;
   const struct eo_unit *unit; /* NULL: dimensionless */
-  double low, high;           /* inclusive, in the document's unit; of a LIST, SERIES or MATRIX: number of rows; see `series_*`;
-                                 TEXT: low is the least number of bytes */
-  double fallback;            /* default in the document's unit; NaN: null. CHOICE: the index, FLAG: 0 or 1 */
+  double low, high; /* inclusive, in the document's unit; of a LIST, SERIES or MATRIX: number of rows; see `series_*`;
+                       TEXT: low is the least number of bytes */
+  double fallback;  /* default in the document's unit; NaN: null. CHOICE: the index, FLAG: 0 or 1 */
   const double *fallbacks;    /* NUMBERS: [count]; NULL: null */
   const char *fallback_text;  /* TEXT */
   const char *const *choices; /* CHOICE, TEXT: ends with NULL */
@@ -214,10 +214,10 @@ void eo_table_describe(const struct eo_table *table, bool output, struct eo_text
     .help = help_                                                                                                     \
   }
 /* Rows of one length, up to most_ of them and most_ numbers each. */
-#define EO_MATRIX(type, member, key_, unit_, most_, low_, high_, help_)                                         \
-  {                                                                                                             \
-    .key = key_, .kind = EO_FIELD_MATRIX, .offset = offsetof(type, member), .unit = unit_, .low = 0,            \
-    .high = most_, .series_low = low_, .series_high = high_, .help = help_                                      \
+#define EO_MATRIX(type, member, key_, unit_, most_, low_, high_, help_)                                             \
+  {                                                                                                                 \
+    .key = key_, .kind = EO_FIELD_MATRIX, .offset = offsetof(type, member), .unit = unit_, .low = 0, .high = most_, \
+    .series_low = low_, .series_high = high_, .help = help_                                                         \
   }
 #define EO_SERIES(type, member, key_, unit_, most_, low_, high_, flags_, help_)                                       \
   {                                                                                                                   \

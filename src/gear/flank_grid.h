@@ -47,8 +47,8 @@ bool eo_flank_grids_equal(const struct eo_flank_grids *a, const struct eo_flank_
    the outermost knots the value of the nearest border point, along u and along y separately. */
 struct eo_flank_spline {
   int u_knots, y_knots;
-  double *u, *y;        /* owned */
-  double *coefficient;  /* owned [u_knots][y_knots][4]: delta, its second derivative by u, by y, and both */
+  double *u, *y;       /* owned */
+  double *coefficient; /* owned [u_knots][y_knots][4]: delta, its second derivative by u, by y, and both */
 };
 
 /* The grid is copied. Errors: memory. */

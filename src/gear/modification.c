@@ -64,12 +64,12 @@ struct eo_profile_place eo_profile_place_at(const struct eo_geometry *g, int mem
 {
   double sigma = u / g->rack_factor, roll = g->tangent_length[member] + sigma, base = g->base_radius[member], end[2];
   eo_active_profile(g, member, end);
-  return (struct eo_profile_place){.rack = u,
-                                   .diameter = 2 * hypot(base, roll),
-                                   .roll_length = roll,
-                                   .roll_angle = roll / base,
-                                   .length = {sigma - end[EO_ROOT_SIDE] / g->rack_factor,
-                                              end[EO_TIP_SIDE] / g->rack_factor - sigma}};
+  return (struct eo_profile_place){
+      .rack = u,
+      .diameter = 2 * hypot(base, roll),
+      .roll_length = roll,
+      .roll_angle = roll / base,
+      .length = {sigma - end[EO_ROOT_SIDE] / g->rack_factor, end[EO_TIP_SIDE] / g->rack_factor - sigma}};
 }
 
 int eo_relief_places_stated(const struct eo_relief_place *place)
@@ -164,8 +164,8 @@ void eo_modification_complete(struct eo_modification_shape *shape, const struct 
   shape->has_terms = shape->has_terms || grid;
 }
 
-/* The line along which the plane of a triangular relief cuts the slice at distance q from the face end: at the profile's
-   end 1 - q/L_y of it is left, and it starts L_u times that before. */
+/* The line along which the plane of a triangular relief cuts the slice at distance q from the face end: at the
+   profile's end 1 - q/L_y of it is left, and it starts L_u times that before. */
 static void cut_triangles(struct eo_modification_shape *slice, double y)
 {
   double half_face = slice->half_width / slice->lengthen;

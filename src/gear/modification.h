@@ -42,22 +42,22 @@ struct eo_flank_modification {
   enum eo_relief_shape shape;        /* of both reliefs */
   int own_shape[2];                  /* [root, tip]: EO_RELIEF_AS_SHARED or 1 + enum eo_relief_shape */
   enum eo_relief_shape end_shape[2]; /* of the end reliefs [trailing, leading] */
-  double tip_relief;           /* C_alphaa, d_tr at the end of the active profile, m */
-  double tip_relief_start;     /* u_ts, distance from the pitch line along the rack profile, m, >= 0 */
-  double root_relief;          /* C_alphaf, d_br, m */
-  double root_relief_start;    /* u_bs, m, >= 0 */
-  double profile_crowning;     /* a_m, 1/m: a_m u^2 over the middle part */
-  double lead_crowning;        /* C_beta, a_l (b / (2 cos beta))^2: at the face ends, m */
-  double helix_slope;          /* C_Hbeta: over the face width, 0 at mid face, m; + takes more off on the leading side */
-  double lead_offset;          /* c_l, m */
-  double end_relief[2];        /* [trailing, at y = -b/2; leading, at y = +b/2], m */
+  double tip_relief;                 /* C_alphaa, d_tr at the end of the active profile, m */
+  double tip_relief_start;           /* u_ts, distance from the pitch line along the rack profile, m, >= 0 */
+  double root_relief;                /* C_alphaf, d_br, m */
+  double root_relief_start;          /* u_bs, m, >= 0 */
+  double profile_crowning;           /* a_m, 1/m: a_m u^2 over the middle part */
+  double lead_crowning;              /* C_beta, a_l (b / (2 cos beta))^2: at the face ends, m */
+  double helix_slope;   /* C_Hbeta: over the face width, 0 at mid face, m; + takes more off on the leading side */
+  double lead_offset;   /* c_l, m */
+  double end_relief[2]; /* [trailing, at y = -b/2; leading, at y = +b/2], m */
   double end_relief_length[2]; /* from the face end, axial, m */
   double profile_slope;        /* C_Halpha: over the active profile, 0 in its middle, m; + takes more off at the tip */
   double profile_barrel;       /* C_alpha: at both ends of the active profile, 0 in its middle, m */
   double twist;                /* S_alpha: change of C_Halpha from the trailing to the leading face end, m */
   double end_exponent[2];      /* with EO_RELIEF_EXPONENT; 0: 2 */
   double exponent[2];          /* of the reliefs [root, tip] with EO_RELIEF_EXPONENT; 0: 2 */
-  struct eo_relief_place place[2]; /* [root, tip] */
+  struct eo_relief_place place[2];              /* [root, tip] */
   struct eo_triangular_relief triangular[2][2]; /* [root, tip][trailing, leading] */
 };
 
@@ -87,21 +87,21 @@ struct eo_modification_shape {
   double middle, half_profile;      /* u in the middle of the active profile and half its length, m */
 
   /* beside reliefs and crowning, in the profile of one slice: */
-  bool has_terms;          /* any of these */
-  double incline;          /* per m of u from the middle: profile slope, and the slice's share of twist */
-  double barrel;           /* 1/m, times (u - middle)^2 */
-  struct eo_wedge {        /* a triangular relief, cut by the slice */
-    double start, length;  /* along u away from the middle, m */
-    double amount;         /* per exponent-th power of (distance from start / length), m */
+  bool has_terms;         /* any of these */
+  double incline;         /* per m of u from the middle: profile slope, and the slice's share of twist */
+  double barrel;          /* 1/m, times (u - middle)^2 */
+  struct eo_wedge {       /* a triangular relief, cut by the slice */
+    double start, length; /* along u away from the middle, m */
+    double amount;        /* per exponent-th power of (distance from start / length), m */
     double exponent;
   } wedge[4];
   int wedges;
-  double y;                /* the slice */
+  double y; /* the slice */
 
   /* what differs from slice to slice: */
   bool varies;
-  bool mirrored;           /* a coast flank: y = -eta */
-  double twist;            /* incline per m of y, 1/m */
+  bool mirrored; /* a coast flank: y = -eta */
+  double twist;  /* incline per m of y, 1/m */
   struct eo_triangular_relief triangular[2][2];
   const struct eo_flank_spline *grid; /* borrowed; NULL: none */
 };

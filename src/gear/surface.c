@@ -23,12 +23,14 @@ void eo_surface_evaluate(const struct eo_geometry *g, int member, const struct e
   double rack = u + g->rack_offset[member], r = g->reference_radius[member];
   double skew = sa * sb / cb, side = member == EO_PINION ? 1 : -1, profile_slope[2], lead_slope;
   double across_face = side * (v + rack * skew);
-  double delta = profile_at(shape, u, across_face, profile_slope) + eo_modification_lead(shape, across_face, &lead_slope);
+  double delta = profile_at(shape, u, across_face, profile_slope) +
+                 eo_modification_lead(shape, across_face, &lead_slope);
   if (shape->varies) {
     const double step = 1e-6;
     double unused[2];
-    lead_slope += (profile_at(shape, u, across_face + step, unused) - profile_at(shape, u, across_face - step, unused)) /
-                  (2 * step);
+    lead_slope +=
+        (profile_at(shape, u, across_face + step, unused) - profile_at(shape, u, across_face - step, unused)) /
+        (2 * step);
   }
   lead_slope *= side;
   double du = (profile_slope[0] + profile_slope[1]) / 2 + lead_slope * skew, dv = lead_slope, x[3], n[3];
@@ -328,11 +330,12 @@ static int follow(const struct walk *lead, const struct walk *other, int places,
 }
 
 /* Where the gear's flank is in line with the pinion's ray, and what both make; *w: a place near it on the gear. */
-static bool meet(const struct eo_geometry *g, const struct walk walk[2], const bool modified[2], double place, double *w,
-                 struct node *node)
+static bool meet(const struct eo_geometry *g, const struct walk walk[2], const bool modified[2], double place,
+                 double *w, struct node *node)
 {
-  struct ray p = modified[EO_PINION] ? walk_ray(&walk[EO_PINION], place)
-                                     : involute_ray(g, EO_PINION, g->tangent_length[EO_PINION] + place / g->rack_factor),
+  struct ray p = modified[EO_PINION]
+                     ? walk_ray(&walk[EO_PINION], place)
+                     : involute_ray(g, EO_PINION, g->tangent_length[EO_PINION] + place / g->rack_factor),
              q;
   if (!modified[EO_GEAR])
     q = involute_in_line_with(g, EO_GEAR, &p);

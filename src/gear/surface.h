@@ -71,8 +71,9 @@ struct eo_slice_gap {
 };
 
 /* The same without a table, for slices that differ from their neighbours: where the slices touch at phase c. slice:
-   [member], from eo_modification_slice(). Beyond a margin at both ends of the path of contact the gap goes on in a line.
-   False when there is no place where the flanks' normals are in line: reliefs so steep that they leave the mesh. */
+   [member], from eo_modification_slice(). Beyond a margin at both ends of the path of contact the gap goes on in a
+   line. False when there is no place where the flanks' normals are in line: reliefs so steep that they leave the mesh.
+ */
 struct eo_slice_touch {
   double gap;          /* m, normal */
   double slope;        /* d gap / dc */

@@ -15,8 +15,8 @@ static const char *const shapes[] = {"parabolic", "linear", "circular", NULL};
 
 static void read_relief(struct eo_case *block, int side, struct eo_flank_modification *flank)
 {
-  static const char *const amount[2] = {"root_relief_um", "tip_relief_um"}, *const start[2] = {"root_start_mm",
-                                                                                              "tip_start_mm"},
+  static const char *const amount[2] = {"root_relief_um", "tip_relief_um"},
+                           *const start[2] = {"root_start_mm", "tip_start_mm"},
                            *const shape[2] = {"root_shape", "tip_shape"};
   double depth = UM * eo_case_number_or(block, amount[side], 0), from = MM * eo_case_number_or(block, start[side], 0);
   *(side == EO_TIP_SIDE ? &flank->tip_relief : &flank->root_relief) = depth;

@@ -35,7 +35,8 @@ struct eo_stage_mesh_input {
   EO_OBJECT(type, mesh.design.gear_pair, "gear_pair", &eo_gear_pair_table, "as in a design document"),                \
       EO_OBJECT(type, mesh.design.material, "material", &eo_material_table, "as in a design document"),               \
       EO_OBJECT(type, mesh.design.alignment, "alignment", &eo_alignment_table, "as in a design document"),            \
-      EO_OBJECT(type, mesh.design.modification, "modification", &eo_modification_terms_table, "as in a design document"),   \
+      EO_OBJECT(type, mesh.design.modification, "modification", &eo_modification_terms_table,                         \
+                "as in a design document"),                                                                           \
       EO_OBJECT(type, mesh.design.resolution, "resolution", &eo_resolution_table,                                     \
                 "as in a design document; what the stage does not compute is not used"),                              \
       EO_STAGE_KERNEL(type, mesh.kernel), EO_STAGE_PIVOT(type, mesh.pivot),                                           \

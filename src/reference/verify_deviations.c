@@ -105,13 +105,14 @@ static enum eo_code check_tolerance_row(const struct bench *b, struct eo_case *r
   const struct {
     const char *key;
     double value;
-  } all[] = {{"f_pT", t.single_pitch},    {"F_pT", t.total_pitch},       {"f_HalphaT", t.profile_slope},
+  } all[] = {{"f_pT", t.single_pitch},      {"F_pT", t.total_pitch},     {"f_HalphaT", t.profile_slope},
              {"f_falphaT", t.profile_form}, {"f_HbetaT", t.helix_slope}, {"f_fbetaT", t.helix_form},
-             {"F_alphaT", t.profile_total}, {"F_betaT", t.helix_total}, {"F_rT", t.runout}};
+             {"F_alphaT", t.profile_total}, {"F_betaT", t.helix_total},  {"F_rT", t.runout}};
   for (size_t i = 0; i < sizeof all / sizeof *all; i++)
     eo_verify_member(b->v, rounded, all[i].key, 1e6 * all[i].value, 0, 1e-6);
   if (eo_case_find(row, "unrounded_um"))
-    eo_verify_uncompared(b->v, eo_case_find(row, "unrounded_um"), "tolerances are computed as the standard rounds them");
+    eo_verify_uncompared(b->v, eo_case_find(row, "unrounded_um"),
+                         "tolerances are computed as the standard rounds them");
   return EO_OK;
 }
 
@@ -210,7 +211,8 @@ static enum eo_code read_case(struct trial *t, struct eo_error *error)
   struct bench *b = t->bench;
   struct eo_case *name = eo_case_need(t->item, "pair"), *errors = eo_case_find(t->item, "shaft_error_deg"),
                  *widths = eo_case_find(t->item, "face_width_mm");
-  struct eo_case *pair = eo_case_is_text(name) ? eo_case_find(eo_case_need(b->file, "pairs"), eo_case_text(name)) : NULL;
+  struct eo_case *pair = eo_case_is_text(name) ? eo_case_find(eo_case_need(b->file, "pairs"), eo_case_text(name))
+                                               : NULL;
   struct half wanted = {.pair_name = eo_case_is_text(name) ? eo_case_text(name) : "",
                         .flexibility = eo_case_choice(t->item, "flexibility", flexibilities, 0)};
   if (!pair) {
@@ -223,7 +225,8 @@ static enum eo_code read_case(struct trial *t, struct eo_error *error)
   t->running.inwards = t->running.flank == EO_COAST_FLANK;
   t->running.in_plane = eo_case_number_or(errors, "inplane", 0) * M_PI / 180;
   t->running.out_of_plane = eo_case_number_or(errors, "crossing", 0) * M_PI / 180;
-  double width = t->design.gear_pair.face_width, lag = 1e-3 * eo_case_number_or(t->item, "phase_right_minus_left_mm", 0);
+  double width = t->design.gear_pair.face_width,
+         lag = 1e-3 * eo_case_number_or(t->item, "phase_right_minus_left_mm", 0);
   read_flanks(t);
   struct eo_geometry geometry;
   if (!eo_case_faulty(t->item))
@@ -311,8 +314,8 @@ static double highest_pressure(const struct eo_contact_grid *grid, const struct 
   double highest = 0;
   for (int j = 0; j < grid->positions; j++)
     for (int i = 0; i < grid->position[j].points; i++)
-      highest = fmax(highest, eo_loaded_pressure(grid, end->line_load[grid->position[j].first + i],
-                                                 grid->position[j].radius[i]));
+      highest = fmax(
+          highest, eo_loaded_pressure(grid, end->line_load[grid->position[j].first + i], grid->position[j].radius[i]));
   return highest;
 }
 
@@ -449,8 +452,7 @@ static void check_interpolation(const struct trial *t, struct eo_case *rows)
   for (int i = 0; i < eo_case_size(rows); i++) {
     struct eo_case *row = eo_case_at(rows, i), *delta = eo_case_need(row, "delta_um"), *u = eo_case_need(row, "u_mm"),
                    *y = eo_case_need(row, "y_mm");
-    int end = end_index(t, row),
-        member = eo_case_need(row, "member") ? eo_case_choice(row, "member", members, -1) : -1;
+    int end = end_index(t, row), member = eo_case_need(row, "member") ? eo_case_choice(row, "member", members, -1) : -1;
     const struct eo_flank_spline *spline = end < 0 || member < 0 ? NULL : t->spline[member][end];
     if (!spline)
       eo_case_fault(row, "This flank has no grid.");

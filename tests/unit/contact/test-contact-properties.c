@@ -11,9 +11,14 @@
 enum { POSITIONS = 12, CELLS = 15, MOST_LOADS = 6, MOST_POINTS = 400 };
 
 /* Both ends of a bench. */
-#define HALVES(b)                                                                          \
-  (const struct eo_loaded_half[]){{(b)->workspace, (b)->grid, &(b)->gaps[EO_LEFT]},         \
-                                  {(b)->workspace, (b)->grid, &(b)->gaps[EO_RIGHT]}}
+#define HALVES(b)                                     \
+  (const struct eo_loaded_half[])                     \
+  {                                                   \
+    {(b)->workspace, (b)->grid, &(b)->gaps[EO_LEFT]}, \
+    {                                                 \
+      (b)->workspace, (b)->grid, &(b)->gaps[EO_RIGHT] \
+    }                                                 \
+  }
 
 static const double degree = M_PI / 180;
 

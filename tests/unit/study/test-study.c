@@ -371,8 +371,9 @@ static void test_variables(void)
             start = parameter("tip_relief_start_mm");
   const int end = parameter("leading_end_relief_um"), length = parameter("leading_end_relief_length_mm");
   const struct eo_range open = {NAN, NAN};
-  struct eo_listed_variable three[] = {
-      {EO_PINION, EO_BOTH_ENDS, tip, open, 0}, {EO_GEAR, EO_LEFT, slope, {-5, 10}, 0}, {EO_GEAR, EO_RIGHT, slope, {-10, 5}, 0}};
+  struct eo_listed_variable three[] = {{EO_PINION, EO_BOTH_ENDS, tip, open, 0},
+                                       {EO_GEAR, EO_LEFT, slope, {-5, 10}, 0},
+                                       {EO_GEAR, EO_RIGHT, slope, {-10, 5}, 0}};
   ok(with_list(3, three) == EO_OK, "tip relief of the pinion, lead slope of each gear end %s", error.text);
   design.modification.flank[EO_PINION][EO_LEFT].tip_relief_start =
       design.modification.flank[EO_PINION][EO_RIGHT].tip_relief_start = 1e-3;
@@ -411,7 +412,8 @@ static void test_variables(void)
   refuse("a fixed variable", "/optimization/variable_list/0/bounds", 1, &fixed);
   struct eo_listed_variable negative = {EO_PINION, EO_BOTH_ENDS, tip, {-1, 5}, 0};
   refuse("bounds outside the parameter's range", "/optimization/variable_list/0/bounds", 1, &negative);
-  struct eo_listed_variable late[] = {{EO_PINION, EO_BOTH_ENDS, tip, open, 0}, {EO_PINION, EO_BOTH_ENDS, start, {1, 5.5}, 0}};
+  struct eo_listed_variable late[] = {{EO_PINION, EO_BOTH_ENDS, tip, open, 0},
+                                      {EO_PINION, EO_BOTH_ENDS, start, {1, 5.5}, 0}};
   refuse("a relief that may start outside the active flank", "/optimization/variable_list", 2, late);
   struct eo_listed_variable endless = {EO_PINION, EO_LEFT, end, {0, 10}, 0};
   refuse("an end relief without a length", "/optimization/variable_list", 1, &endless);
