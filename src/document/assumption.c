@@ -135,6 +135,22 @@ static void add_flanks(json_t *list, const struct eo_design *design, bool *faile
     }
 }
 
+/* Coast flanks that a load case needs. */
+static void add_coast_flanks(json_t *list, const struct eo_design *design, bool *failed)
+{
+  bool needed = false;
+  for (int k = 0; k < design->load_cases; k++)
+    needed = needed || design->load_case[k].flank == EO_COAST_FLANK;
+  for (int i = 0; i < 2 && needed; i++)
+    for (int end = 0; end < design->gear_pair.ends; end++) {
+      char key[64];
+      snprintf(key, sizeof key, "/modification/%s/%s/coast", member_name[i], end_name[end]);
+      if (eo_modification_is_none(&design->modification.coast[i][end]) &&
+          design->grids.place[EO_COAST_FLANK][i][end].u_knots == 0)
+        add(list, key, json_object(), "unmodified", failed);
+    }
+}
+
 json_t *eo_assumptions_encode(const struct eo_design *design)
 {
   json_t *list = json_array();
@@ -147,6 +163,8 @@ json_t *eo_assumptions_encode(const struct eo_design *design)
         &failed);
   if (!failed)
     add_flanks(list, design, &failed);
+  if (!failed)
+    add_coast_flanks(list, design, &failed);
   if (!failed)
     return list;
   json_decref(list);

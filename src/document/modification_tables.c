@@ -113,8 +113,8 @@ const char *const eo_variable_parameters[] = {FLANK_NUMBERS(NUMBER_KEY, PLACE_KE
 
 static const struct eo_field flank[] = {FLANK_ROWS, GRID_ROW};
 enum { TERMS = sizeof flank / sizeof *flank - 1 };
-const struct eo_table eo_flank_modification_table = {"a flank's modification", sizeof(struct eo_flank_modification),
-                                                     TERMS, flank};
+const struct eo_table eo_flank_modification_table = {
+    .name = "a flank's modification", .size = sizeof(struct eo_flank_modification), .count = TERMS, .field = flank};
 static const struct eo_table coast_table = EO_TABLE("a coast flank's modification", struct eo_flank_modification,
                                                     flank);
 
