@@ -181,10 +181,10 @@ static enum eo_code prune(struct request *q, int64_t *rows, int64_t *predictions
   enum eo_code code = eo_store_each_job(q->store, 0, refuse_running, q->store, error);
   if (!code && q->problem)
     code = read_id(q->problem, "--problem", &problem, error);
+  if (!code && (q->predictions || (!q->outdated && !q->damaged && !q->problem))) /* in steps: others write between */
+    code = eo_store_remove_predictions(q->store, predictions, error);
   if (!code)
     code = eo_store_begin(q->store, error);
-  if (!code && (q->predictions || (!q->outdated && !q->damaged && !q->problem)))
-    code = eo_store_remove_predictions(q->store, predictions, error);
   if (!code && q->outdated)
     code = remove_outdated(q->store, rows, error);
   if (!code && q->problem) {

@@ -20,6 +20,7 @@ struct eo_measure_request {
   const json_t *layout; /* borrowed; NULL: guessed */
   const struct eo_geometry *geometry;
   const char *spool_directory; /* NULL: recordings beyond EO_RECORDING_MEMORY are refused */
+  double seconds;              /* see struct eo_reader_options; 0: its own */
 };
 
 /* *document: new. summary may be NULL: what people read is added to it. *outcome (may be NULL): what a comparison

@@ -4,30 +4,65 @@
 
 #include <pthread.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "http/route.h"
 #include "http/http_private.h"
 
+enum { MOST_THREADS = 8, CLIENT = sizeof((struct eo_request *)0)->client_key };
+
 struct eo_background {
-  struct eo_store *store;
-  pthread_t thread;
+  int threads;
+  struct worker {
+    struct eo_background *aside;
+    struct eo_store *store;
+    pthread_t thread;
+    bool running, busy; /* busy, client: under the lock */
+    unsigned char client[CLIENT];
+  } worker[MOST_THREADS];
   pthread_mutex_t lock;
   pthread_cond_t changed;
-  struct eo_request *waiting[EO_MOST_BACKGROUND]; /* a ring */
-  int first, count;
+  struct eo_request *waiting[EO_MOST_BACKGROUND]; /* in their order */
+  int count;
   bool ending;
 };
 
-static struct eo_request *next(struct eo_background *aside)
+/* Whether a client's request may take a thread: the last free one is for others than those that are served already. */
+static bool may_begin(const struct eo_background *aside, const struct eo_request *request)
 {
+  int busy = 0;
+  bool served = false;
+  for (int i = 0; i < aside->threads; i++) {
+    busy += aside->worker[i].busy;
+    served = served || (aside->worker[i].busy && memcmp(aside->worker[i].client, request->client_key, CLIENT) == 0);
+  }
+  return aside->threads == 1 || !served || busy < aside->threads - 1;
+}
+
+static struct eo_request *take_out(struct eo_background *aside)
+{
+  for (int i = 0; i < aside->count; i++) {
+    struct eo_request *request = aside->waiting[i];
+    if (!may_begin(aside, request))
+      continue;
+    memmove(aside->waiting + i, aside->waiting + i + 1, (size_t)(--aside->count - i) * sizeof *aside->waiting);
+    return request;
+  }
+  return NULL;
+}
+
+static struct eo_request *next(struct worker *worker)
+{
+  struct eo_background *aside = worker->aside;
   struct eo_request *request = NULL;
   pthread_mutex_lock(&aside->lock);
-  while (!aside->count && !aside->ending)
+  worker->busy = false;
+  pthread_cond_broadcast(&aside->changed);
+  while (!(request = take_out(aside)) && !(aside->ending && !aside->count))
     pthread_cond_wait(&aside->changed, &aside->lock);
-  if (aside->count) {
-    request = aside->waiting[aside->first];
-    aside->first = (aside->first + 1) % EO_MOST_BACKGROUND;
-    aside->count--;
+  if (request) {
+    worker->busy = true;
+    memcpy(worker->client, request->client_key, CLIENT);
   }
   pthread_mutex_unlock(&aside->lock);
   return request;
@@ -35,32 +70,39 @@ static struct eo_request *next(struct eo_background *aside)
 
 static void *work(void *context)
 {
-  struct eo_background *aside = context;
+  struct worker *worker = context;
   struct eo_request *request;
-  while ((request = next(aside))) {
-    request->store = aside->store;
+  while ((request = next(worker))) {
+    request->store = worker->store;
     eo_route_run(request);
     eo_request_finish(request);
   }
   return NULL;
 }
 
-enum eo_code eo_background_new(struct eo_background **aside, const char *data, struct eo_error *error)
+static enum eo_code start(struct eo_background *aside, struct worker *worker, const char *data, struct eo_error *error)
+{
+  worker->aside = aside;
+  EO_TRY(eo_store_open(&worker->store, data, EO_STORE_WRITE, error));
+  worker->running = pthread_create(&worker->thread, NULL, work, worker) == 0;
+  return worker->running ? EO_OK : eo_error_set(error, EO_ERROR_MEMORY, "", "A thread cannot be started.");
+}
+
+enum eo_code eo_background_new(struct eo_background **aside, const char *data, int threads, struct eo_error *error)
 {
   struct eo_background *made = calloc(1, sizeof *made);
+  enum eo_code code = EO_OK;
   if (!made)
     return eo_error_memory(error);
-  enum eo_code code = eo_store_open(&made->store, data, EO_STORE_WRITE, error);
   pthread_mutex_init(&made->lock, NULL);
   pthread_cond_init(&made->changed, NULL);
-  if (!code && pthread_create(&made->thread, NULL, work, made) != 0)
-    code = eo_error_set(error, EO_ERROR_MEMORY, "", "A thread cannot be started.");
-  if (!code) {
+  made->threads = threads < MOST_THREADS ? threads : MOST_THREADS; /* before any of them looks */
+  for (int i = 0; i < made->threads && !code; i++)
+    code = start(made, &made->worker[i], data, error);
+  if (code)
+    eo_background_free(made);
+  else
     *aside = made;
-    return EO_OK;
-  }
-  eo_store_close(made->store);
-  free(made);
   return code;
 }
 
@@ -70,8 +112,8 @@ void eo_background_take(struct eo_background *aside, struct eo_request *request)
   pthread_mutex_lock(&aside->lock);
   bool room = aside->count < EO_MOST_BACKGROUND;
   if (room) {
-    aside->waiting[(aside->first + aside->count++) % EO_MOST_BACKGROUND] = request;
-    pthread_cond_signal(&aside->changed);
+    aside->waiting[aside->count++] = request;
+    pthread_cond_broadcast(&aside->changed);
   }
   pthread_mutex_unlock(&aside->lock);
   if (room)
@@ -81,16 +123,27 @@ void eo_background_take(struct eo_background *aside, struct eo_request *request)
   eo_request_finish(request);
 }
 
+int eo_background_waiting(struct eo_background *aside)
+{
+  pthread_mutex_lock(&aside->lock);
+  int count = aside->count;
+  pthread_mutex_unlock(&aside->lock);
+  return count;
+}
+
 void eo_background_free(struct eo_background *aside)
 {
   if (!aside)
     return;
   pthread_mutex_lock(&aside->lock);
   aside->ending = true;
-  pthread_cond_signal(&aside->changed);
+  pthread_cond_broadcast(&aside->changed);
   pthread_mutex_unlock(&aside->lock);
-  pthread_join(aside->thread, NULL);
-  eo_store_close(aside->store);
+  for (int i = 0; i < aside->threads; i++) {
+    if (aside->worker[i].running)
+      pthread_join(aside->worker[i].thread, NULL);
+    eo_store_close(aside->worker[i].store);
+  }
   pthread_cond_destroy(&aside->changed);
   pthread_mutex_destroy(&aside->lock);
   free(aside);

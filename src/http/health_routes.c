@@ -1,33 +1,64 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What the server says about itself. */
+#include <dirent.h>
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "base/clock.h"
+#include "http/background.h"
 #include "http/documents.h"
+#include "http/log.h"
 #include "http/route.h"
 #include "http/http_private.h"
+#include "http/storage_watch.h"
+#include "http/upload.h"
 
 #include <config.h>
 
-static void get_health(struct eo_request *request)
+static json_t *encode_warnings(const struct eo_http *http, const struct eo_storage *storage)
 {
-  struct eo_service_status status;
-  struct eo_error error;
-  bool good = eo_service_status(request->http->service, &status, &error) == EO_OK && status.database;
-  if (!good)
-    memset(&status, 0, sizeof status);
-  const char *notice = eo_http_notice(request->http);
   json_t *warnings = json_array();
+  const char *notice = eo_http_notice(http);
   if (*notice)
     json_array_append_new(warnings, json_string(notice));
-  json_t *health = json_pack("{s:s, s:s, s:f, s:{s:I, s:I}, s:s, s:o}", "status", good ? "ok" : "failing", "program",
-                             PACKAGE_STRING, "uptime_s",
-                             (double)(long)(eo_clock_milliseconds() - request->http->started) / 1e3, "jobs", "queued",
+  if (*storage->damage) /* the sentence names files of this machine */
+    json_array_append_new(warnings,
+                          json_string("Stored data are damaged and not given out; `easeoff doctor` says what is "
+                                      "lost and what can be computed again."));
+  return warnings;
+}
+
+/* Whether what is sent now can be worked on and kept. */
+static void get_health(struct eo_request *request)
+{
+  struct eo_http *http = request->http;
+  struct eo_service_status status;
+  struct eo_error error;
+  struct eo_storage storage = eo_storage_now(http->storage);
+  bool good = eo_service_status(http->service, &status, &error) == EO_OK && status.database;
+  if (!good)
+    memset(&status, 0, sizeof status);
+  if (!good && storage.state == EO_STORAGE_OK)
+    storage.state = error.code == EO_ERROR_DAMAGED ? EO_STORAGE_DAMAGED : EO_STORAGE_FAILING;
+  good = storage.state == EO_STORAGE_OK;
+  json_t *health = json_pack("{s:s, s:s, s:f, s:{s:I, s:I}, s:s, s:f, s:o}", "status", good ? "ok" : "failing",
+                             "program", PACKAGE_STRING, "uptime_s",
+                             (double)(long)(eo_clock_milliseconds() - http->started) / 1e3, "jobs", "queued",
                              (json_int_t)status.jobs[EO_JOB_QUEUED], "running",
                              (json_int_t)status.jobs[EO_JOB_PREPARING] + status.jobs[EO_JOB_RUNNING], "database",
-                             good ? "ok" : "failing", "warnings", warnings);
+                             eo_storage_states[storage.state], "free_MB", round((double)storage.free_bytes / 1e6),
+                             "warnings", encode_warnings(http, &storage));
   eo_reply_json(&request->reply, good ? 200 : 503, health);
+}
+
+/* That this thread answers is all that is asked. */
+static void get_live(struct eo_request *request)
+{
+  eo_reply_json(&request->reply, 200,
+                json_pack("{s:s, s:s, s:f}", "status", "ok", "program", PACKAGE_STRING, "uptime_s",
+                          (double)(long)(eo_clock_milliseconds() - request->http->started) / 1e3));
 }
 
 static void describe(struct eo_text *text, const char *name, const char *type, const char *help)
@@ -68,6 +99,52 @@ static void put_analyses(struct eo_text *text, const struct eo_service_status *s
                 1e-3 * status->analysis_ms_total, (long long)status->analyses);
 }
 
+/* Resident memory, bytes. */
+static double find_memory(void)
+{
+  unsigned long long all = 0, resident = 0;
+  FILE *file = fopen("/proc/self/statm", "re");
+  if (file && fscanf(file, "%llu %llu", &all, &resident) != 2)
+    resident = 0;
+  if (file)
+    fclose(file);
+  return (double)resident * (double)sysconf(_SC_PAGESIZE);
+}
+
+static int count_descriptors(void)
+{
+  DIR *folder = opendir("/proc/self/fd");
+  int count = -3; /* the folder itself and its two names of folders */
+  while (folder && readdir(folder))
+    count++;
+  if (folder)
+    closedir(folder);
+  return count > 0 ? count : 0;
+}
+
+static void put_storage(struct eo_text *text, const struct eo_storage *storage)
+{
+  describe(text, "storage_state", "gauge", "1 for what the storage is now.");
+  for (int i = 0; eo_storage_states[i]; i++)
+    eo_text_print(text, "easeoff_storage_state{state=\"%s\"} %d\n", eo_storage_states[i], (int)storage->state == i);
+  describe(text, "storage_failures_total", "counter", "Requests that failed, by what was wrong with the storage.");
+  for (int i = 1; eo_storage_states[i]; i++)
+    eo_text_print(text, "easeoff_storage_failures_total{state=\"%s\"} %lld\n", eo_storage_states[i],
+                  (long long)storage->failures[i]);
+  put(text, "disk_free_bytes", "gauge", "Of the data folder's disk.", (double)storage->free_bytes);
+  put(text, "database_bytes", "gauge", "Size of the database.", (double)storage->database_bytes);
+  put(text, "journal_bytes", "gauge", "Size of its journal.", (double)storage->journal_bytes);
+}
+
+static void put_process(struct eo_text *text, struct eo_http *http)
+{
+  put(text, "resident_memory_bytes", "gauge", "Of this process.", find_memory());
+  put(text, "open_descriptors", "gauge", "Of this process.", count_descriptors());
+  put(text, "log_lines_dropped_total", "counter", "Lines that nobody read in time.", (double)eo_log_dropped(http->log));
+  put(text, "uploads", "gauge", "Uploads on their way.", eo_uploads_count(http));
+  put(text, "readings_waiting", "gauge", "Recordings that wait to be read.", eo_background_waiting(http->readings));
+}
+
 static void get_metrics(struct eo_request *request)
 {
   struct eo_http *http = request->http;
@@ -97,6 +174,10 @@ static void get_metrics(struct eo_request *request)
   put(&text, "reused_evaluations_total", "counter", "Evaluations that the history knew.",
       (double)status.reused_evaluations);
   put(&text, "events_total", "counter", "Events published.", (double)status.events);
+  put(&text, "cached_pairs_bytes", "gauge", "Prepared gear pairs on disk.", (double)status.cache_bytes);
+  const struct eo_storage storage = eo_storage_now(http->storage);
+  put_storage(&text, &storage);
+  put_process(&text, http);
   eo_reply_text(&request->reply, 200, "text/plain; version=0.0.4; charset=utf-8", &text);
 }
 
@@ -116,8 +197,23 @@ const struct eo_route eo_routes_service[] = {
      .handle = get_health,
      .name = "getHealth",
      .open = true,
-     .summary = "Whether the server works; 503 when its database does not.",
+     .summary = "Whether the server can work and keep what it is sent (readiness); 503 when not: the disk is full, the "
+                "database locked or damaged.",
      .gives = "200 Health, 503 Health"},
+    {.method = EO_GET,
+     .pattern = "/health/ready",
+     .handle = get_health,
+     .name = "getReady",
+     .open = true,
+     .summary = "The same.",
+     .gives = "200 Health, 503 Health"},
+    {.method = EO_GET,
+     .pattern = "/health/live",
+     .handle = get_live,
+     .name = "getLive",
+     .open = true,
+     .summary = "Whether the server answers at all (liveness).",
+     .gives = "200 Live"},
     {.method = EO_GET,
      .pattern = "/metrics",
      .handle = get_metrics,

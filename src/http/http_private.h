@@ -18,6 +18,7 @@ enum {
   EO_SLOWEST_READER = 64 << 10, /* bytes per second: a long reply has more time */
   EO_PARTING_SECONDS = 3,       /* at a stop, for clients to take what they are owed */
   EO_HEARTBEAT_SECONDS = 10,
+  EO_LOCK_MS = 250,           /* that this thread waits while another program writes */
   EO_MOST_BODIES = 128 << 20, /* bytes of all bodies at once */
   EO_DRAINED = 64 << 10,      /* bytes of a refused body that are read so that the connection can go on */
 };
@@ -29,6 +30,7 @@ struct eo_guard;
 struct eo_log;
 struct eo_pages;
 struct eo_route;
+struct eo_storage_watch;
 struct eo_store;
 struct eo_stream;
 
@@ -45,6 +47,7 @@ struct eo_http {
   struct eo_guard *guard; /* of the HTTP thread but for its constants */
   struct eo_log *log;
   struct eo_proxies proxies;
+  struct eo_storage_watch *storage;
   const struct eo_route *const *routes; /* NULL after the last table */
   struct eo_background *aside;
   struct eo_background *readings; /* reads the rig files that were uploaded */

@@ -157,7 +157,8 @@ static enum eo_code measure(struct eo_request *request, const struct asked *aske
                                     .harmonics = asked->harmonics,
                                     .layout = asked->layout,
                                     .geometry = &asked->geometry,
-                                    .spool_directory = upload->folder};
+                                    .spool_directory = upload->folder,
+                                    .seconds = request->http->settings.limits.reading_seconds};
   for (int i = 0; i < asked->parsed.load_cases; i++) {
     double speed = asked->parsed.load_case[i].speed;
     work.speed[0] = i ? fmin(work.speed[0], speed) : speed;

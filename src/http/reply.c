@@ -8,6 +8,7 @@
 
 #include "format/json.h"
 #include "http/log.h"
+#include "http/storage_watch.h"
 
 void eo_reply_text(struct eo_reply *reply, unsigned status, const char *type, struct eo_text *text)
 {
@@ -114,6 +115,8 @@ void eo_reply_faults(struct eo_reply *reply, const char *path, const struct eo_f
 
 void eo_reply_error(struct eo_reply *reply, const char *path, const struct eo_error *error)
 {
+  if (error->code == EO_ERROR_FILE || error->code > EO_ERROR_CANCELLED)
+    eo_storage_note(reply->storage, error);
   if (error->code == EO_ERROR_INPUT) {
     json_t *errors = json_array();
     json_array_append_new(errors, encode_fault(path, error));

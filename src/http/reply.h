@@ -13,6 +13,7 @@
 
 struct MHD_Response;
 struct eo_log;
+struct eo_storage_watch;
 struct eo_resource;
 
 enum { EO_TAG = 70 };
@@ -20,6 +21,7 @@ enum { EO_TAG = 70 };
 struct eo_reply {
   const char *request;                            /* its id, borrowed; it stands in problems */
   struct eo_log *log;                             /* borrowed; NULL: none */
+  struct eo_storage_watch *storage;               /* the same: hears of what cannot be kept */
   unsigned status;                                /* 0: there is no reply yet */
   const char *type;                               /* literal */
   struct eo_text body;                            /* owned */

@@ -74,6 +74,7 @@ struct eo_request *eo_request_new(struct eo_http *http, struct MHD_Connection *c
   request->method = method_of(method, &request->head);
   request->reply.request = request->id;
   request->reply.log = http->log;
+  request->reply.storage = http->storage;
   request->user = "-";
   name_client(request);
   snprintf(request->id, sizeof request->id, "%08x%08x", (unsigned)(http->run & 0xffffffff),

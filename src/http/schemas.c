@@ -12,6 +12,7 @@
 #include "format/schema.h"
 #include "document/study_result.h"
 #include "http/route.h"
+#include "http/storage_watch.h"
 #include "study/job_document.h"
 #include "study/job_history.h"
 #include "study/history_document.h"
@@ -59,10 +60,18 @@ static const struct eo_outline_row health_rows[] = {
     EO_KEY("program", "text", "name and version"),
     EO_KEY("uptime_s", "number", "since the start, s"),
     EO_KEY("jobs", "object", "by state", .outline = &health_jobs),
-    EO_KEY("database", "word", "whether it can be read", .words = states),
+    EO_KEY("database", "word", "whether it can be read and written", .words = eo_storage_states),
+    EO_KEY("free_MB", "number", "that its disk has left"),
     EO_KEY("warnings", "[text]", "what the start found"),
 };
 static const struct eo_outline health = EO_OUTLINE("Health", health_rows);
+
+static const struct eo_outline_row live_rows[] = {
+    EO_KEY("status", "word", "that it answers", .words = states),
+    EO_KEY("program", "text", "name and version"),
+    EO_KEY("uptime_s", "number", "since the start, s"),
+};
+static const struct eo_outline live = EO_OUTLINE("Live", live_rows);
 
 static const struct eo_outline_row session_rows[] = {
     EO_KEY("required", "flag", "the server asks for a token"),
@@ -234,6 +243,7 @@ static const struct eo_outline *const outlines[] = {&eo_result_outline,
                                                     &description,
                                                     &problem,
                                                     &health,
+                                                    &live,
                                                     &session,
                                                     &examples,
                                                     &exports,

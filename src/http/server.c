@@ -24,6 +24,7 @@
 #include "http/pages.h"
 #include "http/routes.h"
 #include "http/send.h"
+#include "http/storage_watch.h"
 #include "http/stream.h"
 #include "http/ticker.h"
 #include "http/upload.h"
@@ -273,6 +274,7 @@ static void done(struct eo_http *http)
 {
   eo_background_free(http->aside);
   eo_background_free(http->readings);
+  eo_storage_watch_free(http->storage);
   eo_pages_free(http->pages);
   eo_documents_free(http->documents);
   eo_store_close(http->store);
@@ -304,9 +306,11 @@ static enum eo_code open_all(struct eo_http *http, struct eo_error *error)
   EO_TRY(eo_proxies_read(&http->proxies, settings->limits.trusted_proxies, error));
   EO_TRY(eo_guard_new(&http->guard, settings, error));
   EO_TRY(eo_store_open(&http->store, settings->data, EO_STORE_WRITE, error));
+  eo_store_wait(http->store, EO_LOCK_MS);
   EO_TRY(tidy(http, error));
-  EO_TRY(eo_background_new(&http->aside, settings->data, error));
-  EO_TRY(eo_background_new(&http->readings, settings->data, error));
+  EO_TRY(eo_storage_watch_new(&http->storage, settings->data, 1e6 * settings->limits.spare_MB, error));
+  EO_TRY(eo_background_new(&http->aside, settings->data, 1, error));
+  EO_TRY(eo_background_new(&http->readings, settings->data, EO_READERS, error));
   EO_TRY(eo_pages_new(&http->pages, settings->pages, error));
   return eo_documents_new(&http->documents, http->routes, error);
 }

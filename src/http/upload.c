@@ -200,6 +200,11 @@ static int count_uploads(const struct eo_http *http, const unsigned char *client
   return count;
 }
 
+int eo_uploads_count(const struct eo_http *http)
+{
+  return count_uploads(http, NULL);
+}
+
 /* False: the reply says that there are too many. */
 static bool may_begin(struct eo_request *request)
 {

@@ -56,4 +56,7 @@ json_t *eo_upload_document(const struct eo_upload *upload, const struct eo_table
 
 void eo_upload_free(struct eo_request *request);
 
+/* On their way; HTTP thread. */
+int eo_uploads_count(const struct eo_http *http);
+
 #endif

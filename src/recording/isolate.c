@@ -4,6 +4,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <math.h>
 #include <poll.h>
 #include <signal.h>
 #include <stdbool.h>
@@ -127,7 +128,7 @@ static void run_child(int pipe, eo_series_reader *reader, const char *path, cons
   sigset_t none;
   sigemptyset(&none);
   sigprocmask(SIG_SETMASK, &none, NULL);
-  set_limit(RLIMIT_CPU, EO_ISOLATE_SECONDS);
+  set_limit(RLIMIT_CPU, options->seconds > 0 ? (rlim_t)ceil(options->seconds) : EO_ISOLATE_SECONDS);
   set_limit(RLIMIT_CORE, 0);
   limit_memory();
   struct eo_reader_options own = *options;

@@ -33,6 +33,7 @@ struct eo_text_choice {
 struct eo_reader_options {
   const char *spool_directory; /* for temporary files; NULL: none, larger recordings are then refused */
   int64_t max_bytes;           /* of content, inflated; 0: EO_READER_BYTES */
+  double seconds;              /* of a processor, for formats that are read in a process of their own; 0: ten minutes */
   struct eo_text_choice text;
   const struct eo_progress *progress; /* NULL: nobody watches */
   const char *unpack_to;              /* only between the readers: file for what comes out of an archive */

@@ -9,7 +9,7 @@
 #include "base/parallel.h"
 #include "store/lock.h"
 
-enum { ANALYSIS_THREADS = 2, SWEEP_NICE = 5 };
+enum { ANALYSIS_THREADS = 2, SWEEP_NICE = 5, LOCK_MS = 250 /* that those who ask wait while another program writes */ };
 
 static int or_standard(int value, int standard)
 {
@@ -60,6 +60,7 @@ static enum eo_code open_store(struct eo_service *s, struct eo_error *error)
                           ? eo_error_memory(error)
                           : eo_queue_recover(s->store, s->settings.limits.attempts, fault.data, &queued, error);
   eo_text_done(&fault);
+  eo_store_wait(s->store, LOCK_MS);
   return code;
 }
 

@@ -191,7 +191,7 @@ struct eo_service_status {
   int64_t analysis_ms_bucket[12]; /* answered within 5, 10, 15, 20, 25, 50, 100, 250, 500, 1000, 5000 ms, and all:
                                      cumulative */
   int64_t true_evaluations, reused_evaluations; /* of this service's jobs since the start */
-  int64_t events;
+  int64_t events, cache_bytes;                  /* cache_bytes: of prepared pairs on disk */
 };
 enum eo_code eo_service_status(struct eo_service *service, struct eo_service_status *status, struct eo_error *error);
 

@@ -7,6 +7,7 @@
 
 #include "base/clock.h"
 #include "document/result.h"
+#include "service/cached_pairs.h"
 
 static const double bucket_ms[EO_SERVICE_BUCKETS - 1] = {5, 10, 15, 20, 25, 50, 100, 250, 500, 1000, 5000};
 
@@ -355,7 +356,8 @@ enum eo_code eo_service_status(struct eo_service *s, struct eo_service_status *s
                                        .refused = atomic_load(&s->refused),
                                        .true_evaluations = atomic_load(&s->true_evaluations),
                                        .reused_evaluations = atomic_load(&s->reused_evaluations),
-                                       .events = eo_events_published(s->events)};
+                                       .events = eo_events_published(s->events),
+                                       .cache_bytes = eo_cached_pairs_size(s->settings.cache)};
   pthread_mutex_lock(&s->timing_mutex);
   status->analysis_ms_total = s->total_ms;
   status->analysis_ms_most = s->most_ms;

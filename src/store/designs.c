@@ -67,7 +67,7 @@ enum eo_code eo_store_add_design(struct eo_store *store, const char *name, const
                                  eo_store_visit_design *visit, void *context, enum eo_design_outcome *outcome,
                                  struct eo_error *error)
 {
-  enum eo_code code = eo_store_begin(store, error);
+  enum eo_code code = eo_store_begin_lasting(store, error);
   return code ? code : close(store, add(store, name, document, most, visit, context, outcome, error), error);
 }
 
@@ -102,7 +102,7 @@ enum eo_code eo_store_change_design(struct eo_store *store, int64_t id, int64_t 
                                     const char *document, eo_store_visit_design *visit, void *context,
                                     enum eo_design_outcome *outcome, struct eo_error *error)
 {
-  enum eo_code code = eo_store_begin(store, error);
+  enum eo_code code = eo_store_begin_lasting(store, error);
   return code ? code : close(store, change(store, id, expected, name, document, visit, context, outcome, error), error);
 }
 
@@ -128,7 +128,7 @@ static enum eo_code remove_design(struct eo_store *store, int64_t id, int64_t ex
 enum eo_code eo_store_remove_design(struct eo_store *store, int64_t id, int64_t expected,
                                     enum eo_design_outcome *outcome, struct eo_error *error)
 {
-  enum eo_code code = eo_store_begin(store, error);
+  enum eo_code code = eo_store_begin_lasting(store, error);
   return code ? code : close(store, remove_design(store, id, expected, outcome, error), error);
 }
 

@@ -299,10 +299,23 @@ enum eo_code eo_store_each_prediction(struct eo_store *store, int64_t job, eo_st
   return code ? code : end;
 }
 
+/* One generation of one job: a few thousand rows, after which others can write. */
+static enum eo_code remove_generation(struct eo_store *store, struct eo_error *error)
+{
+  return EO_STATEMENT_RUN(
+      store, error,
+      "DELETE FROM prediction WHERE (job, generation) = (SELECT p.job, p.generation FROM job j JOIN prediction p"
+      " ON p.job = j.id WHERE j.state IN ('done', 'failed') LIMIT 1)",
+      "");
+}
+
 enum eo_code eo_store_remove_predictions(struct eo_store *store, int64_t *removed, struct eo_error *error)
 {
-  enum eo_code code = EO_STATEMENT_RUN(
-      store, error, "DELETE FROM prediction WHERE job IN (SELECT id FROM job WHERE state IN ('done', 'failed'))", "");
-  *removed = code ? 0 : sqlite3_changes64(store->handle);
+  enum eo_code code = EO_OK;
+  int64_t step = 1;
+  for (*removed = 0; step && !code; *removed += step) {
+    code = remove_generation(store, error);
+    step = code ? 0 : sqlite3_changes64(store->handle);
+  }
   return code;
 }

@@ -114,7 +114,8 @@ enum eo_code eo_store_page_candidates(struct eo_store *store, int64_t job, int a
 enum eo_code eo_store_each_prediction(struct eo_store *store, int64_t job, eo_store_visit_prediction *visit,
                                       void *context, struct eo_error *error);
 
-/* Removes the predictions of jobs that have ended; *removed: how many. */
+/* Removes the predictions of jobs that have ended, a generation at a time, each in a transaction of its own unless one
+   is open; *removed: how many. */
 enum eo_code eo_store_remove_predictions(struct eo_store *store, int64_t *removed, struct eo_error *error);
 
 #endif

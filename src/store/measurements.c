@@ -171,7 +171,7 @@ enum eo_code eo_store_add_measurement(struct eo_store *store, const struct eo_st
   int64_t kept = 0;
   enum eo_code code = eo_measurement_folder_flush(folder, m->files, error);
   if (!code)
-    code = eo_store_begin(store, error);
+    code = eo_store_begin_lasting(store, error);
   if (code)
     return code;
   code = close(store, add(store, m, folder, &kept, visit, context, outcome, error), error);
@@ -194,7 +194,7 @@ static enum eo_code remove_row(struct eo_store *store, int64_t id, enum eo_measu
 enum eo_code eo_store_remove_measurement(struct eo_store *store, int64_t id, enum eo_measurement_outcome *outcome,
                                          struct eo_error *error)
 {
-  enum eo_code code = eo_store_begin(store, error);
+  enum eo_code code = eo_store_begin_lasting(store, error);
   if (code)
     return code;
   code = close(store, remove_row(store, id, outcome, error), error);

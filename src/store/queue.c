@@ -86,7 +86,7 @@ enum eo_code eo_queue_add(struct eo_store *store, const struct eo_queue_entry *e
 {
   *id = 0;
   *outcome = EO_JOB_OUTCOME_DONE;
-  enum eo_code code = eo_store_begin(store, error);
+  enum eo_code code = eo_store_begin_lasting(store, error);
   return code ? code : close(store, add(store, entry, most, id, outcome, error), error);
 }
 
@@ -222,7 +222,7 @@ static enum eo_code cancel(struct eo_store *store, int64_t id, enum eo_job_outco
 
 enum eo_code eo_queue_cancel(struct eo_store *store, int64_t id, enum eo_job_outcome *outcome, struct eo_error *error)
 {
-  enum eo_code code = eo_store_begin(store, error);
+  enum eo_code code = eo_store_begin_lasting(store, error);
   return code ? code : close(store, cancel(store, id, outcome, error), error);
 }
 
@@ -256,7 +256,7 @@ static enum eo_code retry(struct eo_store *store, int64_t id, int64_t most, enum
 enum eo_code eo_queue_retry(struct eo_store *store, int64_t id, int64_t most, enum eo_job_outcome *outcome,
                             struct eo_error *error)
 {
-  enum eo_code code = eo_store_begin(store, error);
+  enum eo_code code = eo_store_begin_lasting(store, error);
   return code ? code : close(store, retry(store, id, most, outcome, error), error);
 }
 
@@ -289,7 +289,7 @@ enum eo_code eo_queue_clone(struct eo_store *store, int64_t id, const int *prior
                             enum eo_job_outcome *outcome, struct eo_error *error)
 {
   *copy = 0;
-  enum eo_code code = eo_store_begin(store, error);
+  enum eo_code code = eo_store_begin_lasting(store, error);
   return code ? code : close(store, clone(store, id, priority, most, copy, outcome, error), error);
 }
 
@@ -309,7 +309,7 @@ static enum eo_code remove_job(struct eo_store *store, int64_t id, enum eo_job_o
 
 enum eo_code eo_queue_remove(struct eo_store *store, int64_t id, enum eo_job_outcome *outcome, struct eo_error *error)
 {
-  enum eo_code code = eo_store_begin(store, error);
+  enum eo_code code = eo_store_begin_lasting(store, error);
   return code ? code : close(store, remove_job(store, id, outcome, error), error);
 }
 

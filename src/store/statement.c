@@ -21,7 +21,7 @@ enum eo_code eo_store_fault(const struct eo_store *store, int fault, struct eo_e
       {SQLITE_CORRUPT, EO_ERROR_DAMAGED, "it is damaged; easeoff doctor says more, easeoff restore puts a copy back"},
       {SQLITE_NOTADB, EO_ERROR_DAMAGED, "it is damaged or no database; move it away, or restore it from a copy"},
       {SQLITE_IOERR, EO_ERROR_FILE, "reading or writing failed; what was saved before is kept"},
-      {SQLITE_IOERR_DATA, EO_ERROR_DAMAGED, "a page is not what was written; easeoff doctor says more"},
+      {SQLITE_IOERR_DATA, EO_ERROR_DAMAGED, "it is damaged, a page is not what was written; easeoff doctor says more"},
       {SQLITE_IOERR_CORRUPTFS, EO_ERROR_DAMAGED, "the file system gives other bytes than it was given"},
   };
   if ((fault & 0xff) == SQLITE_NOMEM)

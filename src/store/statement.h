@@ -13,6 +13,7 @@ enum { EO_STATEMENTS_KEPT = 64 };
 struct eo_store {
   sqlite3 *handle;
   char *directory, *path; /* of the database; owned */
+  bool lasting;           /* the transaction that is open began with eo_store_begin_lasting() */
   int lock;               /* file descriptor of the job locks, -1: not open yet */
   struct eo_prepared {
     const char *sql;

@@ -1,10 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "store/store.h"
 
+#include "format/text.h"
 #include "store/migrations.h"
+#include "store/page_sums.h"
 #include "store/statement.h"
 
 #include <errno.h>
+#include <fcntl.h>
+#include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -142,14 +146,48 @@ static enum eo_code make_folder(const char *directory, struct eo_error *error)
 
 static enum eo_code connect(struct eo_store *store, const char *name, int flags, struct eo_error *error)
 {
-  int fault = sqlite3_open_v2(name, &store->handle, flags | SQLITE_OPEN_NOMUTEX, NULL);
+  int fault = eo_page_sums_register(), reserved = EO_PAGE_SUM;
+  if (!fault)
+    fault = sqlite3_open_v2(name, &store->handle, flags | SQLITE_OPEN_NOMUTEX, eo_page_sums_vfs);
   if (fault)
     return eo_store_fault(store, fault, error);
   sqlite3_extended_result_codes(store->handle, 1);
+  sqlite3_file_control(store->handle, "main", SQLITE_FCNTL_RESERVE_BYTES, &reserved); /* of a new file */
   eo_store_wait(store, WAIT_MS);
   /* NORMAL: a commit survives the death of the process; after a power failure the last ones may be missing, whole, and
-     are computed anew. */
-  return execute(store, "PRAGMA foreign_keys = ON; PRAGMA synchronous = NORMAL", error);
+     are computed anew. What was promised to somebody goes through eo_store_begin_lasting(). No page of a transaction
+     goes to the journal before its end: see page_sums.h. */
+  return execute(store,
+                 "PRAGMA foreign_keys = ON; PRAGMA synchronous = NORMAL; PRAGMA cache_spill = OFF;"
+                 " PRAGMA auto_vacuum = INCREMENTAL",
+                 error);
+}
+
+static bool has_sums(struct eo_store *store)
+{
+  int reserved = -1;
+  sqlite3_file_control(store->handle, "main", SQLITE_FCNTL_RESERVE_BYTES, &reserved);
+  return reserved == EO_PAGE_SUM;
+}
+
+/* Everything into new pages. What it writes may be more than fits into memory. */
+static enum eo_code rebuild(struct eo_store *store, struct eo_error *error)
+{
+  eo_page_sums_compare(store->handle, false);
+  enum eo_code code = execute(store, "PRAGMA cache_spill = ON; VACUUM; PRAGMA cache_spill = OFF", error);
+  execute(store, "PRAGMA cache_spill = OFF", NULL);
+  eo_page_sums_compare(store->handle, true);
+  return code ? code : execute(store, "PRAGMA wal_checkpoint(TRUNCATE)", error);
+}
+
+static enum eo_code flush(const char *path, struct eo_error *error)
+{
+  int file = open(path, O_RDONLY | O_CLOEXEC);
+  bool good = file >= 0 && fsync(file) == 0;
+  enum eo_code code = good ? EO_OK : eo_error_set(error, EO_ERROR_FILE, "", "%.250s: %s.", path, strerror(errno));
+  if (file >= 0)
+    close(file);
+  return code;
 }
 
 /* The journal's mode can change only while nobody else is there, and SQLite then does not wait on its own. */
@@ -182,6 +220,32 @@ static enum eo_code expect_no_lone_journal(const struct eo_store *store, struct 
                : EO_OK;
 }
 
+/* DIR/easeoff.db.schema-N, as it was: a newer schema cannot be read by an older program. One that is there is of an
+   attempt before, and as good. */
+static enum eo_code keep_copy(struct eo_store *store, int schema, struct eo_error *error)
+{
+  struct eo_text path = {0};
+  eo_text_print(&path, "%s.schema-%d", store->path, schema);
+  if (path.failed)
+    return eo_error_memory(error);
+  enum eo_code code = EO_OK;
+  if (access(path.data, F_OK) != 0)
+    code = eo_store_copy(store, path.data, error);
+  eo_text_done(&path);
+  return code;
+}
+
+/* A file of an earlier version has no room for sums: it is written anew, once, while nobody else works on it. Where
+   that cannot be done it goes on without them until the next time. */
+static void use_sums(struct eo_store *store)
+{
+  int reserved = EO_PAGE_SUM;
+  if (has_sums(store))
+    return;
+  sqlite3_file_control(store->handle, "main", SQLITE_FCNTL_RESERVE_BYTES, &reserved);
+  rebuild(store, NULL);
+}
+
 static enum eo_code open_for_writing(struct eo_store *store, int flags, struct eo_error *error)
 {
   int schema = 0;
@@ -192,7 +256,13 @@ static enum eo_code open_for_writing(struct eo_store *store, int flags, struct e
     code = identify(store, &schema, error);
   if (!code)
     code = use_journal(store, error);
-  return code ? code : migrate(store, error);
+  if (!code && schema && schema < eo_store_schema)
+    code = keep_copy(store, schema, error);
+  if (!code)
+    code = migrate(store, error);
+  if (!code)
+    use_sums(store);
+  return code;
 }
 
 /* "file:PATH?immutable=1": a database in WAL mode cannot be read in the usual way where its journal cannot be made. */
@@ -281,6 +351,24 @@ void eo_store_wait(struct eo_store *store, int milliseconds)
   sqlite3_busy_timeout(store->handle, milliseconds);
 }
 
+enum eo_code eo_store_begin_lasting(struct eo_store *store, struct eo_error *error)
+{
+  EO_TRY(execute(store, "PRAGMA synchronous = FULL", error));
+  enum eo_code code = eo_store_begin(store, error);
+  if (code)
+    execute(store, "PRAGMA synchronous = NORMAL", NULL);
+  else
+    store->lasting = true;
+  return code;
+}
+
+static void end_lasting(struct eo_store *store)
+{
+  if (store->lasting)
+    execute(store, "PRAGMA synchronous = NORMAL", NULL);
+  store->lasting = false;
+}
+
 /* Immediate: a transaction that begins as a reader cannot become a writer once somebody else has written. */
 enum eo_code eo_store_begin(struct eo_store *store, struct eo_error *error)
 {
@@ -289,27 +377,61 @@ enum eo_code eo_store_begin(struct eo_store *store, struct eo_error *error)
 
 enum eo_code eo_store_commit(struct eo_store *store, struct eo_error *error)
 {
-  return execute(store, "COMMIT", error);
+  enum eo_code code = execute(store, "COMMIT", error);
+  if (!code)
+    end_lasting(store);
+  return code;
 }
 
 void eo_store_rollback(struct eo_store *store)
 {
   if (!sqlite3_get_autocommit(store->handle))
     sqlite3_exec(store->handle, "ROLLBACK", NULL, NULL, NULL);
+  end_lasting(store);
 }
 
+/* Pages a step: a few milliseconds, after which others have their turn. */
 enum eo_code eo_store_compact(struct eo_store *store, struct eo_error *error)
 {
-  enum eo_code code = execute(store, "VACUUM", error);
-  return code ? code : execute(store, "PRAGMA wal_checkpoint(TRUNCATE)", error);
+  int before = INT_MAX, left = 0, mode = 0;
+  EO_TRY(read_integer(store, "PRAGMA auto_vacuum", &mode, error));
+  if (mode != 2) /* of an earlier version, with somebody beside it all the time */
+    EO_TRY(rebuild(store, error));
+  EO_TRY(read_integer(store, "PRAGMA freelist_count", &left, error));
+  for (; left && left < before; sqlite3_sleep(1)) {
+    before = left;
+    EO_TRY(execute(store, "PRAGMA incremental_vacuum(500)", error));
+    EO_TRY(read_integer(store, "PRAGMA freelist_count", &left, error));
+  }
+  return execute(store, "PRAGMA wal_checkpoint(TRUNCATE)", error);
 }
 
-enum eo_code eo_store_inspect(struct eo_store *store, struct eo_error *error)
+enum eo_code eo_store_copy(struct eo_store *store, const char *path, struct eo_error *error)
+{
+  struct eo_statement s = eo_statement_begin(store, "VACUUM INTO ?", "t", path);
+  enum eo_code code = eo_statement_finish(s, error);
+  if (code)
+    unlink(path);
+  return code ? code : flush(path, error);
+}
+
+enum eo_code eo_store_inspect(struct eo_store *store, bool quickly, struct eo_error *error)
 {
   enum eo_code code = EO_OK;
-  struct eo_statement s = eo_statement_begin(store, "PRAGMA integrity_check(1)", "");
+  struct eo_statement s = quickly ? eo_statement_begin(store, "PRAGMA quick_check(1)", "")
+                                  : eo_statement_begin(store, "PRAGMA integrity_check(1)", "");
   if (eo_statement_step(&s) && strcmp(eo_column_text(&s, 0), "ok") != 0)
-    code = eo_error_set(error, EO_ERROR_FILE, "", "%.150s is damaged: %.200s.", store->path, eo_column_text(&s, 0));
+    code = eo_error_set(error, EO_ERROR_DAMAGED, "", "%.150s is damaged: %.200s.", store->path, eo_column_text(&s, 0));
   enum eo_code end = eo_statement_end(&s, code ? NULL : error);
   return code ? code : end;
+}
+
+int64_t eo_store_size(const struct eo_store *store, int64_t *journal)
+{
+  struct stat status;
+  struct eo_text name = {0};
+  eo_text_print(&name, "%s-wal", store->path);
+  *journal = !name.failed && stat(name.data, &status) == 0 ? status.st_size : 0;
+  eo_text_done(&name);
+  return stat(store->path, &status) == 0 ? status.st_size : 0;
 }

@@ -11,6 +11,7 @@
 
 #include "base/error.h"
 
+#include <stdbool.h>
 #include <stdint.h>
 
 struct eo_store;
@@ -34,10 +35,21 @@ enum eo_code eo_store_begin(struct eo_store *store, struct eo_error *error);
 enum eo_code eo_store_commit(struct eo_store *store, struct eo_error *error);
 void eo_store_rollback(struct eo_store *store);
 
-/* Gives room that was freed back to the file system. */
+/* The same for what somebody is told that it is kept: its commit is on the disk when it returns, whatever happens to
+   the power. */
+enum eo_code eo_store_begin_lasting(struct eo_store *store, struct eo_error *error);
+
+/* A copy of the database as it is at this moment, in one file that was not there; others may write meanwhile. */
+enum eo_code eo_store_copy(struct eo_store *store, const char *path, struct eo_error *error);
+
+/* Gives room that was freed back to the file system, in steps between which others can write. */
 enum eo_code eo_store_compact(struct eo_store *store, struct eo_error *error);
 
-/* Reads the whole file and says what is damaged, if anything. */
-enum eo_code eo_store_inspect(struct eo_store *store, struct eo_error *error);
+/* Reads the whole file and says what is damaged, if anything: EO_ERROR_DAMAGED. quickly: without comparing tables and
+   their indexes. */
+enum eo_code eo_store_inspect(struct eo_store *store, bool quickly, struct eo_error *error);
+
+/* Bytes of the database and of its journal. */
+int64_t eo_store_size(const struct eo_store *store, int64_t *journal);
 
 #endif

@@ -315,7 +315,8 @@ static bool is_refused(const char *words)
   if (!code)
     code = eo_measurement_folder_tidy(other, &aside, &error);
   eo_store_close(other);
-  return code == EO_ERROR_FILE && strstr(error.text, words) && holds("1/0", "1,2,3") && holds("41/0", "1,2,3");
+  return (code == EO_ERROR_FILE || code == EO_ERROR_DAMAGED) && strstr(error.text, words) && holds("1/0", "1,2,3") &&
+         holds("41/0", "1,2,3");
 }
 
 static void overwrite(const char *path, long at, const void *bytes, size_t size)
