@@ -124,8 +124,7 @@ static json_t *encode_case(const struct eo_result_source *source, int k)
 
 static const char *const methods[] = {
     "flash temperature: Blok 1937, two equal bodies, semi-elliptic heat source",
-    "film thickness: Dowson and Higginson 1966, line contact, isothermal, fully flooded, at the temperature of the "
-    "teeth",
+    "film thickness: Dowson and Higginson 1966, line contact, isothermal, fully flooded, oil as warm as the teeth",
     "viscosity over temperature: Walther, ASTM D341",
     "friction: the coefficient that is stated, the same everywhere",
     "no safety against scuffing or micropitting: ISO/TS 6336-20, -21 and -22 are not public and are not followed",
