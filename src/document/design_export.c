@@ -8,6 +8,7 @@
 #include "document/flank_grid_document.h"
 #include "document/design_document.h"
 #include "document/flank_chart.h"
+#include "document/tolerance_export.h"
 #include "format/json.h"
 #include "gear/surface.h"
 
@@ -248,6 +249,8 @@ static const struct eo_export formats[] = {
     {"k-chart", "nominal profile and helix with tolerance bands, over roll length, roll angle, diameter, face",
      "text/csv; charset=utf-8", "csv", eo_flank_charts_csv, NULL},
     {"k-chart-drawing", "the same as drawings", "image/svg+xml", "svg", eo_flank_charts_svg, NULL},
+    {"tolerances", "flank tolerances by ISO 1328-1, edition and grade of the rating", "text/csv; charset=utf-8", "csv",
+     eo_tolerances_csv, NULL},
     {"topography", "what is taken off, over profile and face", "text/csv; charset=utf-8", "csv", write_topography,
      write_topography_grid},
     {"design", "the design with every default resolved", "application/json", "json", write_design, NULL},

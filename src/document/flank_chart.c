@@ -92,20 +92,21 @@ static void set_helix(struct eo_flank_chart *c, const struct eo_geometry *g, con
   }
 }
 
-static void set_tolerance(struct eo_flank_chart *c, const struct eo_design *design, const struct eo_geometry *g)
+void eo_flank_tolerance_of(const struct eo_design *design, const struct eo_geometry *g, int member,
+                           struct eo_flank_tolerance *tolerance, char *note, size_t size)
 {
   const struct eo_rating_settings *r = &design->rating;
   struct eo_error error = {.text = ""};
-  const struct eo_tolerance_input in = {.reference_diameter = 2 * g->reference_radius[c->member],
+  const struct eo_tolerance_input in = {.reference_diameter = 2 * g->reference_radius[member],
                                         .normal_module = g->normal_module,
                                         .face_width = g->face_width,
-                                        .teeth = g->teeth[c->member],
+                                        .teeth = g->teeth[member],
                                         .grade = r->accuracy_grade,
                                         .total_contact_ratio = g->transverse_contact_ratio + g->overlap_ratio};
   enum eo_tolerance_edition edition = r->edition == EO_ISO6336_2019 ? EO_ISO1328_2013 : EO_ISO1328_1995;
-  if (eo_flank_tolerance(&c->tolerance, edition, &in, &error))
-    c->tolerance.profile_total = c->tolerance.helix_total = NAN;
-  snprintf(c->note, sizeof c->note, "%s", error.text);
+  *tolerance = (struct eo_flank_tolerance){NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN};
+  eo_flank_tolerance(tolerance, edition, &in, &error);
+  snprintf(note, size, "%s", error.text);
 }
 
 void eo_flank_chart_find(struct eo_flank_chart *c, const struct eo_design *design, const struct eo_geometry *geometry,
@@ -120,7 +121,7 @@ void eo_flank_chart_find(struct eo_flank_chart *c, const struct eo_design *desig
   else
     set_profile(c, geometry, &shape);
   eo_flank_spline_free(spline);
-  set_tolerance(c, design, geometry);
+  eo_flank_tolerance_of(design, geometry, member, &c->tolerance, c->note, sizeof c->note);
   if (failed)
     snprintf(c->note, sizeof c->note, "There was no memory for the flank's grid: it is not in this chart.");
   double half = (helix ? c->tolerance.helix_total : c->tolerance.profile_total) / 2;

@@ -29,6 +29,11 @@ struct eo_flank_chart {
   char note[sizeof((struct eo_error *)0)->text]; /* why there is no tolerance; "" */
 };
 
+/* The tolerances of a member by the edition and grade of the rating; NaN where there is none, note ("" else) says why.
+ */
+void eo_flank_tolerance_of(const struct eo_design *design, const struct eo_geometry *geometry, int member,
+                           struct eo_flank_tolerance *tolerance, char *note, size_t size);
+
 /* At mid face (profile), at the pitch point (helix). */
 void eo_flank_chart_find(struct eo_flank_chart *chart, const struct eo_design *design,
                          const struct eo_geometry *geometry, int member, int end, bool helix);

@@ -246,6 +246,7 @@ struct rated_member {
   double single, cycles;
   struct eo_flank_influence z;
   double flank_life, stress, permissible, safety, flank_static;
+  double local_stress, local_safety, local_root, local_root_safety;
   double root_life, root_nominal, root_stress, root_permissible, root_safety, root_static;
 };
 
@@ -263,12 +264,24 @@ static const struct eo_outline_row rated_member_rows[] = {
     EO_KEY("sigma_HG_MPa", "number", "limit at N_L, without S_Hmin", .unit = &eo_unit_MPa, OF_RATED(permissible)),
     EO_KEY("S_H", "number", "flank safety of this load case alone over its own cycles", OF_RATED(safety)),
     EO_KEY("S_H_static", "number", "flank, against the static strength", OF_RATED(flank_static)),
+    EO_KEY("sigma_H_local_MPa", "number?",
+           "beside it, method A: largest pressure of the analysis as designed, without tolerances, tip edges included, "
+           "times "
+           "sqrt(K_A K_V); does not rate",
+           .unit = &eo_unit_MPa, OF_RATED(local_stress)),
+    EO_KEY("S_H_local", "number?", "limit at N_L over it", OF_RATED(local_safety)),
     EO_KEY("Y_NT", "number", "life factor, root", OF_RATED(root_life)),
     EO_KEY("sigma_F0_MPa", "number", "nominal root stress", .unit = &eo_unit_MPa, OF_RATED(root_nominal)),
     EO_KEY("sigma_F_MPa", "number", "root stress", .unit = &eo_unit_MPa, OF_RATED(root_stress)),
     EO_KEY("sigma_FG_MPa", "number", "limit at N_L, without S_Fmin", .unit = &eo_unit_MPa, OF_RATED(root_permissible)),
     EO_KEY("S_F", "number", "root safety of this load case alone over its own cycles", OF_RATED(root_safety)),
     EO_KEY("S_F_static", "number", "root, against the static strength", OF_RATED(root_static)),
+    EO_KEY(
+        "sigma_F_local_MPa", "number?",
+        "beside it, method A: largest root stress of the analysis as designed, without tolerances, times K_A K_V; does "
+        "not rate; null without root stress",
+        .unit = &eo_unit_MPa, OF_RATED(local_root)),
+    EO_KEY("S_F_local", "number?", "limit at N_L over it", OF_RATED(local_root_safety)),
 };
 static const struct eo_outline rated_member = EO_OUTLINE("RatedMember", rated_member_rows);
 
@@ -282,6 +295,10 @@ static json_t *encode_rated_member(const struct eo_rated_case *c, int i)
                                       .permissible = c->flank_permissible[i],
                                       .safety = c->flank_safety[i],
                                       .flank_static = c->flank_static[i],
+                                      .local_stress = c->local_flank,
+                                      .local_safety = c->local_flank_safety[i],
+                                      .local_root = c->local_root[i],
+                                      .local_root_safety = c->local_root_safety[i],
                                       .root_life = c->root_life_factor[i],
                                       .root_nominal = c->root_nominal[i],
                                       .root_stress = c->root_stress[i],

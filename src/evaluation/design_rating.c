@@ -106,19 +106,28 @@ static double mean(int count, const double *value)
   return sum / count;
 }
 
+/* NaN where it was not computed. */
+static double root_stress(const struct eo_end_result *end, int member)
+{
+  return end->root[member].maximum > 0 ? end->root[member].maximum : NAN;
+}
+
 static enum eo_code rate_end(struct eo_design_rating *rating, const struct eo_case_result *c, int k, int end,
                              struct eo_error *error)
 {
   const struct eo_rating_settings *settings = rating->basis.input.rating;
   struct eo_face_factors *face = &rating->load_case[k].face[end];
   bool periodic = c->vibration.outcome != EO_VIBRATION_NOT_CONVERGED;
-  const struct eo_rating_load load = {.torque = c->load_case.torque / rating->ends,
-                                      .speed = c->load_case.speed,
-                                      .time = settings->required_life * c->load_case.share,
-                                      .sharing = rating->load_case[k].sharing[end],
-                                      .dynamic = periodic ? c->vibration.dynamic_factor[end] : NAN,
-                                      .face = face->worse,
-                                      .share = c->end[end].face.share_factor};
+  const struct eo_rating_load load = {
+      .torque = c->load_case.torque / rating->ends,
+      .speed = c->load_case.speed,
+      .time = settings->required_life * c->load_case.share,
+      .sharing = rating->load_case[k].sharing[end],
+      .dynamic = periodic ? c->vibration.dynamic_factor[end] : NAN,
+      .face = face->worse,
+      .share = c->end[end].face.share_factor,
+      .pressure = c->end[end].max_pressure,
+      .root = {root_stress(&c->end[end], EO_PINION), root_stress(&c->end[end], EO_GEAR)}};
   return eo_rated_case_find(&rating->load_case[k].end[end], &rating->basis, &load, error);
 }
 

@@ -54,11 +54,13 @@ struct eo_rating_load {
   double torque;  /* on the pinion, of this end with an even share, N m */
   double speed;   /* of the pinion, rad/s */
   double time;    /* of the required life, s */
+  int side;       /* which flank of the teeth carries, 0 or 1: damage of one side is none of the other */
   double sharing; /* K_gamma */
   /* of the contact analysis; NaN: not known */
-  double dynamic; /* largest dynamic over static mesh force */
-  double face;    /* K_Hbeta with the worse direction of f_ma */
-  double share;   /* K_Halpha of the nominal flanks */
+  double dynamic;           /* largest dynamic over static mesh force */
+  double face;              /* K_Hbeta with the worse direction of f_ma */
+  double share;             /* K_Halpha of the nominal flanks */
+  double pressure, root[2]; /* largest contact pressure, root stress [member], Pa */
 };
 
 struct eo_rated_factors {
@@ -84,7 +86,11 @@ struct eo_rated_case {
   double flank_life_factor[2], root_life_factor[2]; /* Z_NT, Y_NT at `cycles` */
   double flank_permissible[2], root_permissible[2]; /* sigma_HG, sigma_FG at `cycles`, without S_min */
   double flank_safety[2], root_safety[2];           /* of this load case alone over its own cycles */
-  double flank_static[2], root_static[2];           /* static strength over its stress */
+  /* Beside the formulae (method A): the local stresses of the analysis times sqrt(K_A K_V) and K_A K_V, without
+     K_Hbeta, K_Halpha, Z_eps, Y_eps, which they hold already; they do not rate. */
+  double local_flank, local_root[2];
+  double local_flank_safety[2], local_root_safety[2];
+  double flank_static[2], root_static[2]; /* static strength over its stress */
 };
 
 enum eo_code eo_rated_case_find(struct eo_rated_case *rated, const struct eo_rating_basis *basis,

@@ -204,6 +204,18 @@ static void find_root_strength(struct eo_rated_case *c, const struct eo_rating_b
   c->root_static[i] = c->root_endurance[i] * basis->root_life[i].factor[0] / c->root_stress[i];
 }
 
+/* Local stresses of the analysis against the same limits. */
+static void find_local(struct eo_rated_case *c, const struct eo_rating_basis *basis)
+{
+  double load = basis->input.rating->application_factor * c->used.dynamic;
+  c->local_flank = c->load.pressure * sqrt(load);
+  for (int i = 0; i < 2; i++) {
+    c->local_root[i] = c->load.root[i] * load;
+    c->local_flank_safety[i] = c->flank_permissible[i] / c->local_flank;
+    c->local_root_safety[i] = c->root_permissible[i] / c->local_root[i];
+  }
+}
+
 enum eo_code eo_rated_case_find(struct eo_rated_case *c, const struct eo_rating_basis *basis,
                                 const struct eo_rating_load *load, struct eo_error *error)
 {
@@ -227,6 +239,7 @@ enum eo_code eo_rated_case_find(struct eo_rated_case *c, const struct eo_rating_
     find_flank_strength(c, basis, i);
     find_root_strength(c, basis, i);
   }
+  find_local(c, basis);
   return EO_OK;
 }
 
@@ -250,30 +263,37 @@ static struct load_class root_class(const struct eo_rating_basis *basis, const s
                              c->cycles[member]};
 }
 
+/* The classes of one side of a member's teeth: damage of one side is none of the other. */
+struct spectrum {
+  const struct eo_rating_basis *basis;
+  int cases;
+  const struct eo_rated_case *rated; /* [cases] */
+  int member, side;
+  class_of *find;
+};
+
 /* Miner's sum with all stresses times a safety. */
-static double damage(const struct eo_rating_basis *basis, int cases, const struct eo_rated_case *c, int member,
-                     class_of *find, double safety)
+static double damage(const struct spectrum *s, double safety)
 {
   double sum = 0;
-  for (int k = 0; k < cases; k++) {
-    struct load_class class = find(basis, &c[k], member);
-    if (class.ratio > 0 && class.cycles > 0)
+  for (int k = 0; k < s->cases; k++) {
+    struct load_class class = s->find(s->basis, &s->rated[k], s->member);
+    if (s->rated[k].load.side == s->side && class.ratio > 0 && class.cycles > 0)
       sum += class.cycles / eo_life_cycles(class.line, safety * class.ratio);
   }
   return sum;
 }
 
 /* Bisection on the logarithm, as eo_life_safety() does for one line. */
-static double spectrum_safety(const struct eo_rating_basis *basis, int cases, const struct eo_rated_case *c, int member,
-                              class_of *find)
+static double spectrum_safety(const struct spectrum *s)
 {
   enum { HALVINGS = 60 };
   double low = log(1e-6), high = log(1e6);
-  if (!(damage(basis, cases, c, member, find, exp(high)) > 1))
+  if (!(damage(s, exp(high)) > 1))
     return INFINITY;
   for (int i = 0; i < HALVINGS; i++) {
     double middle = (low + high) / 2;
-    if (damage(basis, cases, c, member, find, exp(middle)) > 1)
+    if (damage(s, exp(middle)) > 1)
       high = middle;
     else
       low = middle;
@@ -281,28 +301,43 @@ static double spectrum_safety(const struct eo_rating_basis *basis, int cases, co
   return exp((low + high) / 2);
 }
 
-static struct eo_rated_side side_of(const struct eo_rating_basis *basis, int cases, const struct eo_rated_case *c,
-                                    int member, class_of *find, double least)
+static double static_safety(const struct spectrum *s)
 {
-  double life = basis->input.rating->required_life;
-  struct eo_rated_side side = {.safety = spectrum_safety(basis, cases, c, member, find),
-                               .damage = damage(basis, cases, c, member, find, 1),
-                               .static_safety = INFINITY};
-  side.life = life / side.damage;
-  side.life_at_least = life / damage(basis, cases, c, member, find, least);
-  for (int k = 0; k < cases; k++) {
-    struct load_class class = find(basis, &c[k], member);
-    side.static_safety = fmin(side.static_safety, class.line->factor[0] / class.ratio);
+  double least = INFINITY;
+  for (int k = 0; k < s->cases; k++) {
+    struct load_class class = s->find(s->basis, &s->rated[k], s->member);
+    least = fmin(least, class.line->factor[0] / class.ratio);
   }
-  return side;
+  return least;
+}
+
+/* The worse of both sides. least: S_min. */
+static struct eo_rated_side side_of(struct spectrum s, double least)
+{
+  double time = 0;
+  for (int k = 0; k < s.cases; k++)
+    time += s.rated[k].load.time;
+  struct eo_rated_side worse = {.safety = INFINITY, .life = INFINITY, .life_at_least = INFINITY};
+  worse.static_safety = static_safety(&s);
+  for (s.side = 0; s.side < 2; s.side++) {
+    double sum = damage(&s, 1);
+    worse.safety = fmin(worse.safety, spectrum_safety(&s));
+    worse.damage = fmax(worse.damage, sum);
+    worse.life = fmin(worse.life, time / sum);
+    worse.life_at_least = fmin(worse.life_at_least, time / damage(&s, least));
+  }
+  return worse;
 }
 
 void eo_rated_spectrum_find(struct eo_rated_spectrum *spectrum, const struct eo_rating_basis *basis, int cases,
                             const struct eo_rated_case *rated)
 {
   const struct eo_rating_settings *r = basis->input.rating;
-  for (int i = 0; i < 2; i++) {
-    spectrum->flank[i] = side_of(basis, cases, rated, i, flank_class, r->flank_safety);
-    spectrum->root[i] = side_of(basis, cases, rated, i, root_class, r->root_safety);
+  struct spectrum s = {.basis = basis, .cases = cases, .rated = rated};
+  for (s.member = 0; s.member < 2; s.member++) {
+    s.find = flank_class;
+    spectrum->flank[s.member] = side_of(s, r->flank_safety);
+    s.find = root_class;
+    spectrum->root[s.member] = side_of(s, r->root_safety);
   }
 }

@@ -204,6 +204,30 @@ static void test_charts(void)
   ok(isnan(c.band[60][0]) && *c.note, "a face that ISO 1328-1 does not cover has no band: %s", c.note);
 }
 
+/* The row of a symbol of the pinion. */
+static double tolerance(const char *symbol)
+{
+  struct eo_text text = {0};
+  struct eo_error error;
+  char key[40];
+  eo_export_write(eo_export_find("tolerances"), &design, &geometry, 0, 0, &text, &error);
+  snprintf(key, sizeof key, ",%s,", symbol);
+  const char *row = text.data ? strstr(text.data, key) : NULL;
+  double value = row ? strtod(row + strlen(key), NULL) : NAN;
+  eo_text_done(&text);
+  return value;
+}
+
+static void test_tolerances(void)
+{
+  load("paper", true);
+  design.rating.accuracy_grade = 6;
+  close_to(tolerance("F_alpha"), 13, 1e-9, "F_alpha, um");
+  close_to(tolerance("f_Hbeta"), 10, 1e-9, "f_Hbeta, um");
+  design.rating.edition = EO_ISO6336_2019;
+  ok(isnan(tolerance("F_alpha")) && tolerance("F_alphaT") > 5, "the other edition has symbols of its own");
+}
+
 static void test_grid(void)
 {
   struct eo_text text = {0};
@@ -244,8 +268,9 @@ int main(void)
   ok(load("single", true), "a pair with one end");
   ok(read_points(plain) == MOST_POINTS / 2, "has half the points");
   test_mesh(MOST_POINTS / 2);
-  ok(!eo_export_find("picture") && !eo_export_at(6) && eo_export_at(0), "formats");
+  ok(!eo_export_find("picture") && !eo_export_at(7) && eo_export_at(0), "formats");
   test_charts();
   test_grid();
+  test_tolerances();
   return tap_done();
 }

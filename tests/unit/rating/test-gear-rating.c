@@ -169,7 +169,7 @@ static void check_spectrum(void)
   for (int i = 0; i < 2; i++) {
     near(one.flank[i].safety, c[0].flank_safety[i], 1e-9, "Miner's safety of one class is its S_H");
     near(one.root[i].safety, c[0].root_safety[i], 1e-9, "and its S_F");
-    near(one.flank[i].life, settings.required_life / one.flank[i].damage, 1e-12, "life over damage");
+    near(one.flank[i].life, load.time / one.flank[i].damage, 1e-12, "life over damage");
   }
   load.time /= 2;
   eo_rated_case_find(&c[0], &basis, &load, &error);
@@ -178,6 +178,11 @@ static void check_spectrum(void)
   near(two.flank[0].safety, one.flank[0].safety, 1e-9, "two halves are the whole");
   eo_rated_spectrum_find(&two, &basis, 1, c);
   near(two.root[1].damage, one.root[1].damage / 2, 1e-9, "half the time, half the damage");
+  c[1].load.side = 1;
+  struct eo_rated_spectrum apart;
+  eo_rated_spectrum_find(&apart, &basis, 2, c);
+  near(apart.root[1].damage, two.root[1].damage, 1e-12, "damage of the other side of the teeth is not added");
+  near(apart.flank[0].life, 2 * two.flank[0].life, 1e-9, "each side wears for half of the time");
 }
 
 static void check_refusals(void)
