@@ -14,7 +14,7 @@ static const struct eo_outline_row assumption_rows[] = {
 };
 const struct eo_outline eo_outline_assumption = EO_OUTLINE("Assumption", assumption_rows);
 
-/* The groups whose keys an analysis uses, in the order of the document; each of them is flat. */
+/* The groups whose keys an analysis or a rating uses; what lies deeper in one of them is a group of its own. */
 static const struct group {
   const char *key;
   const struct eo_table *table;
@@ -26,6 +26,10 @@ static const struct group {
     {"supports", &eo_supports_table, offsetof(struct eo_design, supports)},
     {"shafts", &eo_shafts_table, offsetof(struct eo_design, shafts)},
     {"resolution", &eo_resolution_table, offsetof(struct eo_design, resolution)},
+    {"rating", &eo_rating_table, offsetof(struct eo_design, rating)},
+    {"rating/pinion", &eo_rating_member_table, offsetof(struct eo_design, rating.member[EO_PINION])},
+    {"rating/gear", &eo_rating_member_table, offsetof(struct eo_design, rating.member[EO_GEAR])},
+    {"rating/lubricant", &eo_lubricant_table, offsetof(struct eo_design, rating.lubricant)},
 };
 enum { GROUPS = sizeof groups / sizeof *groups, MODIFICATION_BITS = 4, WORD = 64 };
 
@@ -79,7 +83,7 @@ void eo_assumptions_note(const json_t *document, struct eo_design *design)
   for (int g = 0; g < GROUPS; g++) {
     const struct eo_table *table = groups[g].table;
     for (int i = 0; i < table->count; i++)
-      set_bit(design, bit++, is_stated(table, &table->field[i], json_object_get(document, groups[g].key)));
+      set_bit(design, bit++, is_stated(table, &table->field[i], eo_json_find(document, groups[g].key)));
   }
   note_flanks(document, design);
   set_bit(design, SHARE_BIT,
@@ -104,7 +108,7 @@ static const char *rule_of(const struct eo_field *field)
    for the mesh damping, which follows from each load case. */
 static bool is_listed(const struct eo_field *field, const json_t *value)
 {
-  return !(field->flags & (EO_FIELD_ENTRY | EO_FIELD_REQUIRED)) &&
+  return !(field->flags & (EO_FIELD_ENTRY | EO_FIELD_REQUIRED)) && field->kind != EO_FIELD_OBJECT &&
          (!json_is_null(value) || strcmp(field->key, "mesh_damping_stiffness_N_per_um") == 0);
 }
 

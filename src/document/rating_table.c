@@ -44,7 +44,7 @@ static const struct eo_field member[] = {
     MEMBER(mean_stress, "mean_stress_factor", NULL, 0.3, 1, 1,
            "Y_M: 1 pulsating, 0.7 an idler that bends both ways, 0.9 occasional reversal"),
 };
-static const struct eo_table member_table = EO_TABLE("a member's rating", struct eo_rating_member, member);
+const struct eo_table eo_rating_member_table = EO_TABLE("a member's rating", struct eo_rating_member, member);
 
 #define OIL(member, key, unit, low, high, fallback, help) \
   EO_NUMBER(struct eo_lubricant, member, key, unit, low, high, fallback, help)
@@ -59,7 +59,7 @@ static const struct eo_field lubricant[] = {
     OIL(tooth_temperature, "tooth_temperature_C", &eo_unit_C, -40, 250, 70, "of the flanks before the flash"),
     OIL(friction, "friction_coefficient", NULL, 1e-3, 0.5, 0.05, "the same over the whole mesh"),
 };
-static const struct eo_table lubricant_table = EO_TABLE("lubricant", struct eo_lubricant, lubricant);
+const struct eo_table eo_lubricant_table = EO_TABLE("lubricant", struct eo_lubricant, lubricant);
 
 static const struct eo_field rating[] = {
     EO_CHOICE(struct eo_rating_settings, edition, "edition", editions, EO_ISO6336_2006,
@@ -89,9 +89,10 @@ static const struct eo_field rating[] = {
     EO_CHOICE(struct eo_rating_settings, helix_measure, "helix_measure", measures, EO_HELIX_AS_IS,
               "what is done to the helix, for method C: nothing, crowning of half f_ma or half of f_ma + f_sh, a "
               "correction for the computed deflection, both, or end relief"),
-    EO_OBJECT(struct eo_rating_settings, member[EO_PINION], "pinion", &member_table, "material of the pinion"),
-    EO_OBJECT(struct eo_rating_settings, member[EO_GEAR], "gear", &member_table, "material of the gear"),
-    EO_OBJECT(struct eo_rating_settings, lubricant, "lubricant", &lubricant_table, "oil between the flanks"),
+    EO_OBJECT(struct eo_rating_settings, member[EO_PINION], "pinion", &eo_rating_member_table,
+              "material of the pinion"),
+    EO_OBJECT(struct eo_rating_settings, member[EO_GEAR], "gear", &eo_rating_member_table, "material of the gear"),
+    EO_OBJECT(struct eo_rating_settings, lubricant, "lubricant", &eo_lubricant_table, "oil between the flanks"),
     EO_NUMBER(struct eo_rating_settings, thermal_conductivity, "thermal_conductivity_W_per_m_K", &eo_unit_W_per_m_K, 1,
               500, 45, "of the teeth"),
     EO_NUMBER(struct eo_rating_settings, specific_heat, "specific_heat_J_per_kg_K", &eo_unit_J_per_kg_K, 100, 2000, 460,

@@ -42,13 +42,12 @@ static struct eo_rating_input input_of(const struct eo_pair *pair, const struct 
 {
   const struct eo_shafts *shafts = &design->shafts;
   const double *bearing = shafts->bearing_position[EO_PINION];
-  /* half the stated backlash from each member, normal to the flank: A_sn = -j_bn/(2 cos alpha_n) */
-  double allowance = -design->gear_pair.backlash / 2 / cos(pair->geometry.normal_pressure_angle);
   return (struct eo_rating_input){.geometry = &pair->geometry,
                                   .pair = &design->gear_pair,
                                   .material = &design->material,
                                   .rating = &design->rating,
-                                  .thickness_allowance = {allowance, allowance},
+                                  .thickness_allowance = {design->gear_pair.thickness_allowance[EO_PINION][0],
+                                                          design->gear_pair.thickness_allowance[EO_GEAR][0]},
                                   .tip_relief = tip_relief(design),
                                   .bearing_span = bearing[EO_RIGHT] - bearing[EO_LEFT],
                                   .bearing_offset = fabs(bearing[EO_RIGHT] + bearing[EO_LEFT]) / 2,

@@ -63,7 +63,7 @@ static void put_inputs(const json_t *result, struct eo_text *text)
   eo_sheet_table(text, &eo_design_table, design, "", assumed);
   json_decref(design);
   if (!eo_json_find(result, "design/rating")) {
-    eo_page_heading(text, 3, "Inputs of the rating, all assumed");
+    eo_page_heading(text, 3, "Inputs of the rating");
     eo_sheet_table(text, &eo_rating_table, eo_json_find(result, "rating/settings"), "/rating", assumed);
   }
 }
