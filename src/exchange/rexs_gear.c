@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "gear/entry.h"
 #include "document/design_document.h"
 #include "exchange/rexs_import.h"
 
@@ -272,6 +273,7 @@ static bool make_geometry(struct eo_rexs_import *import, const json_t *gear_pair
   eo_table_decode(&eo_gear_pair_table, gear_pair, NULL, &import->gear_pair, faults);
   enum eo_code code = eo_faults_first(faults, error);
   free(faults);
+  code = code ? code : eo_gear_pair_settle(&import->gear_pair, error);
   return !code && !eo_geometry_init(&import->geometry, &import->gear_pair, error);
 }
 
@@ -284,7 +286,7 @@ static double backlash_of(const struct eo_rexs_import *import)
          most = eo_rexs_value(stage, "maximum_normal_backlash");
   double mean = (first_number(least, most) + first_number(most, least)) / 2, sum = 0;
   if (!isnan(mean))
-    return mean - 1e3 * (import->geometry.normal_backlash - import->gear_pair.backlash);
+    return mean - 1e3 * (import->geometry.normal_backlash - import->geometry.stated_backlash);
   for (int member = 0; member < 2; member++) {
     const struct eo_rexs_component *settings = step_of(import, member, "manufacturing_settings", false);
     sum += eo_rexs_value(settings, "generated_addendum_modification_coefficient") -

@@ -232,12 +232,12 @@ static enum eo_code set_path(struct eo_geometry *g, const struct eo_gear_pair *p
   for (int i = 0; i < 2; i++) {
     double roll = g->tangent_length[i] - length[1 - i];
     if (roll <= 0)
-      return eo_error_set(
-          error, EO_ERROR_INPUT, tip_or_shift(g, pair, i),
-          "The tip of the %s reaches %.4g mm below the end of the line of action at the base circle of the "
-          "%s: at most %.6g mm of tip radius.",
-          name[1 - i], -1e3 * roll, name[i],
-          1e3 * hypot(g->base_radius[1 - i], g->tangent_length[0] + g->tangent_length[1]));
+      return eo_error_set(error, EO_ERROR_INPUT, tip_or_shift(g, pair, i),
+                          "The tip of the %s reaches %.4g mm below the end of the line of action at the base circle of "
+                          "the %s%s: at most "
+                          "%.6g mm of tip radius.",
+                          name[1 - i], -1e3 * roll, name[i], g->undercut[i] ? ", which is undercut" : "",
+                          1e3 * hypot(g->base_radius[1 - i], g->tangent_length[0] + g->tangent_length[1]));
     g->start_radius[i] = hypot(g->base_radius[i], roll);
   }
   if (g->transverse_contact_ratio + g->overlap_ratio < 1)

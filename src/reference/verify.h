@@ -108,6 +108,9 @@ enum eo_code eo_verify_dynamics(struct eo_case *file, struct eo_verification *v,
 /* Files of other programs read into designs. */
 enum eo_code eo_verify_exchange(struct eo_case *file, struct eo_verification *v, struct eo_error *error);
 
+/* Designs as drawings state them. */
+enum eo_code eo_verify_gear(struct eo_case *file, struct eo_verification *v, struct eo_error *error);
+
 /* Recordings of two encoders with known truth. */
 enum eo_code eo_verify_encoder(struct eo_case *file, struct eo_verification *v, struct eo_error *error);
 

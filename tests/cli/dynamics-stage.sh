@@ -63,8 +63,9 @@ near "RMS under the table law" /rms_m_per_s2/normal "$reference" /dynamics/2/exp
 # ---- parameters of a gear pair; laws by columns ----
 
 pair='"gear_pair":{"pinion_teeth":17,"gear_teeth":44,"normal_module_mm":6,"helix_angle_deg":24,"face_width_mm":55,"groove_width_mm":50,"gear_bore_mm":90}'
+rig='"supports":{"pinion_bearing_stiffness_N_per_um":800,"gear_bearing_stiffness_N_per_um":1000,"gear_axial_stiffness_left_N_per_um":200,"gear_axial_stiffness_right_N_per_um":200}'
 derived='"torque_Nm":828,"speed_rpm":2000'
-stage dynamics "{$pair,$fourier,$derived}"
+stage dynamics "{$pair,$rig,$fourier,$derived}"
 for key in Rp Rg beta mp mg Ip Ig kpz kgz cpy cgy cg1z cpz cgz; do
   near "$key of the paper pair" "/params/$key" "$reference" "/defaults/$key" 2e-4 relative
 done

@@ -7,7 +7,7 @@ design=$folder/design.json
 coarse='"resolution": {"positions": 16, "cells_per_line": 8, "sector_teeth": 3, "neighbour_coupling": false, "layers": 8, "flank_rows": 4, "fillet_elements": 6, "harmonics": 12, "te_harmonics": 8}'
 flank='{"tip_relief_um": 14, "tip_relief_start_mm": 1.6, "root_relief_um": 17, "root_relief_start_mm": 3.5, "lead_crowning_um": 12}'
 cat >"$design" <<END
-{"gear_pair": {"pinion_teeth": 17, "gear_teeth": 44, "normal_module_mm": 6, "helix_angle_deg": 24, "face_width_mm": 55, "groove_width_mm": 50},
+{"version": 1, "gear_pair": {"pinion_teeth": 17, "gear_teeth": 44, "normal_module_mm": 6, "helix_angle_deg": 24, "face_width_mm": 55, "groove_width_mm": 50},
  "modification": {"pinion": {"left": $flank, "right": $flank}}, $coarse}
 END
 

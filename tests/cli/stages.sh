@@ -179,7 +179,7 @@ near "the largest is the largest over the face, MPa" /points/pinion/max_MPa "$fo
 # ---- objectives ----
 
 cat >"$folder/objective" <<'INPUT'
-{"load_cases":[{"torque_Nm":621,"share":0.2},{"torque_Nm":828,"share":0.5},{"torque_Nm":1035,"share":0.3}],
+{"load_cases":[{"speed_rpm":2000,"torque_Nm":621,"share":0.2},{"speed_rpm":2000,"torque_Nm":828,"share":0.5},{"speed_rpm":2000,"torque_Nm":1035,"share":0.3}],
 "values":[{"peak_to_peak_um":1,"impact_N":500,"rms_m_per_s2":20},{"peak_to_peak_um":2,"impact_N":600,"rms_m_per_s2":30,"root_stress_MPa":60},
 {"peak_to_peak_um":3,"impact_N":700,"rms_m_per_s2":40}],
 "unmodified":[{"peak_to_peak_um":2,"impact_N":1000,"rms_m_per_s2":50},{"peak_to_peak_um":4,"impact_N":1200,"rms_m_per_s2":60},
@@ -196,8 +196,8 @@ near "f3, m/s2" /objectives/f3_m_per_s2 "$folder/expected" /f/2 1e-12 relative
 near "J" /objectives/J "$folder/expected" /J 1e-12 relative
 near "fitness" /objectives/fitness "$folder/expected" /fitness 1e-12 relative
 
-damping='"supports":{"mesh_damping_stiffness_N_per_um":1100,"torsional_coupling":"off"}'
-stage evaluation "{$pair,$aligned,$closed,$damping,\"load_cases\":[{\"torque_Nm\":828}],\"resolution\":{\"tip_edge_contact\":false,\"te_harmonics\":10}}"
+damping='"supports":{"pinion_bearing_stiffness_N_per_um":800,"gear_bearing_stiffness_N_per_um":1000,"gear_axial_stiffness_left_N_per_um":200,"gear_axial_stiffness_right_N_per_um":200,"mesh_damping_stiffness_N_per_um":1100,"torsional_coupling":"off"}'
+stage evaluation "{$pair,$aligned,$closed,$damping,\"load_cases\":[{\"torque_Nm\":828,\"speed_rpm\":2000}],\"resolution\":{\"tip_edge_contact\":false,\"te_harmonics\":10}}"
 near "PPLTE, um" /load_cases/0/values/peak_to_peak_um "$evaluations" /cases/2/out/PPLTE_um 1e-3 relative
 near "mean, um" /load_cases/0/mean_um "$evaluations" /cases/2/out/LTE_mean_um 1e-3 relative
 near "impact, N" /load_cases/0/values/impact_N "$evaluations" /cases/2/out/F_gen_N 1e-3 relative
@@ -225,7 +225,7 @@ valid() # NAME: what follows the gear pair
   contact | impact) echo "$closed,\"torque_Nm\":[828]" ;;
   root-stress) echo "$elements,\"torque_Nm\":[828]" ;;
   iso6336) echo '"torque_Nm":828' ;;
-  evaluation) echo "$closed,\"load_cases\":[{\"torque_Nm\":828}]" ;;
+  evaluation) echo "$closed,\"load_cases\":[{\"torque_Nm\":828,\"speed_rpm\":2000}]" ;;
   esac
 }
 for name in modification surface gap tca flexibility contact impact root-stress iso6336 evaluation; do
@@ -233,7 +233,7 @@ for name in modification surface gap tca flexibility contact impact root-stress 
   refuses 1 $name "{$pair,$rest,\"frobnicate\":1}" "/frobnicate: Unknown key"
   refuses 1 $name "{\"gear_pair\":{$(echo "$gear" | sed 's/"pinion_teeth":17/"pinion_teeth":"17"/')},$rest}" "/gear_pair/pinion_teeth: Must be a number, not a string"
   refuses 1 $name "{\"gear_pair\":{$(echo "$gear" | sed 's/"face_width_mm":55/"face_width_mm":0/')},$rest}" "/gear_pair/face_width_mm: 0 is outside"
-  refuses 1 $name "{\"gear_pair\":{$(echo "$gear" | sed 's/"pinion_teeth":17/"pinion_teeth":9/')},$rest}" "undercut"
+  refuses 1 $name "{\"gear_pair\":{$(echo "$gear" | sed 's/"pinion_teeth":17/"tip_alteration_coefficient":0,"pinion_teeth":9/')},$rest}" "undercut"
 done
 for name in modification surface gap tca contact impact evaluation; do
   refuses 1 $name "{$pair,$(valid $name),\"modification\":{\"pinion\":{\"left\":{\"tip_relief_um\":10,\"tip_relief_start_mm\":9}}}}" \

@@ -48,7 +48,7 @@ write_design() # MORE KEYS
   crowning='"lead_crowning_um": 12.23'
   flank='{"tip_relief_um": 14, "tip_relief_start_mm": 1.6, "root_relief_um": 17, "root_relief_start_mm": 3.5, '$crowning'}'
   cat >"$design" <<END
-{"gear_pair": {"pinion_teeth": 17, "gear_teeth": 44, "normal_module_mm": 6, "helix_angle_deg": 24, "face_width_mm": 55, "groove_width_mm": 50},
+{"version": 1, "gear_pair": {"pinion_teeth": 17, "gear_teeth": 44, "normal_module_mm": 6, "helix_angle_deg": 24, "face_width_mm": 55, "groove_width_mm": 50},
  $1 "modification": {"pinion": {"left": $flank, "right": $flank}}, $coarse}
 END
 }
@@ -141,7 +141,7 @@ same "$folder/out" "$folder/loss.json" "the same bytes with one thread"
 # ---- one end; extremes; wrong input ----
 
 cat >"$folder/single.json" <<END
-{"gear_pair": {"ends": 1, "pinion_teeth": 23, "gear_teeth": 37, "normal_module_mm": 4, "helix_angle_deg": 12, "face_width_mm": 30}, $coarse}
+{"version": 1, "gear_pair": {"ends": 1, "pinion_teeth": 23, "gear_teeth": 37, "normal_module_mm": 4, "helix_angle_deg": 12, "face_width_mm": 30}, $coarse}
 END
 "$EASEOFF" sweep "$folder/single.json" --torque 50:200:3 --speed 1000:2000:2 --json --data "$folder/data" >"$folder/out" 2>"$folder/err"
 result $? "a pair with one end"

@@ -38,7 +38,7 @@ skip() # WHAT
 }
 
 cat >"$folder/design.json" <<'DESIGN'
-{ "name": "coarse", "gear_pair": { "pinion_teeth": 17, "gear_teeth": 44, "normal_module_mm": 6, "helix_angle_deg": 24, "face_width_mm": 55 },
+{ "version": 1, "name": "coarse", "gear_pair": { "pinion_teeth": 17, "gear_teeth": 44, "normal_module_mm": 6, "helix_angle_deg": 24, "face_width_mm": 55 },
   "alignment": { "shaft_angle_error_in_plane_deg": 0.1 }, "load_cases": [ { "torque_Nm": 828 } ],
   "optimization": { "true_evaluations": 40 },
   "resolution": { "positions": 16, "cells_per_line": 6, "sector_teeth": 3, "neighbour_coupling": false, "layers": 6, "flank_rows": 4,
