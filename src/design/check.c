@@ -208,17 +208,34 @@ enum eo_code eo_design_check_search(const struct eo_design *design, const struct
 }
 
 /* Contact points at one mesh position, roughly: every contact line across the face, and the pieces of tip edges. */
-static double contact_points(const struct eo_resolution *resolution, const struct eo_geometry *geometry)
+static double contact_points(const struct eo_resolution *resolution, const struct eo_geometry *geometry, int cells)
 {
   return (geometry->transverse_contact_ratio + geometry->overlap_ratio + 1) *
-         (resolution->cells_per_line + (resolution->tip_edge_contact ? 24 : 0));
+         (cells + (resolution->tip_edge_contact ? 24 : 0));
+}
+
+/* At most 2000 points at a position and 1 GiB in all. */
+static bool is_too_fine(const struct eo_resolution *resolution, const struct eo_geometry *geometry, int cells)
+{
+  static const double MOST_POINTS = 2000, MOST_BYTES = 1 << 30;
+  double points = contact_points(resolution, geometry, cells);
+  return points > MOST_POINTS || sizeof(float) * points * points * resolution->positions > MOST_BYTES;
+}
+
+enum { LEAST_CELLS = 4, USUAL_CELLS = 30 };
+
+int eo_resolution_usual_cells(const struct eo_resolution *resolution, const struct eo_geometry *geometry)
+{
+  int cells = USUAL_CELLS;
+  while (cells > LEAST_CELLS && is_too_fine(resolution, geometry, cells))
+    cells--;
+  return cells;
 }
 
 static enum eo_code check_resolution(const struct eo_resolution *resolution, const struct eo_geometry *geometry,
                                      struct eo_error *error)
 {
-  static const double MOST_POINTS = 2000, MOST_BYTES = 1 << 30;
-  double points = contact_points(resolution, geometry), bytes = sizeof(float) * points * points * resolution->positions;
+  double lines = ceil(geometry->transverse_contact_ratio + geometry->overlap_ratio);
   if (resolution->body == EO_BODY_SECTOR && resolution->sector_teeth == 4)
     return eo_error_set(error, EO_ERROR_INPUT, "/resolution/sector_teeth",
                         "The sector has its loaded tooth in the middle: 3 or 5 teeth, not 4.");
@@ -226,12 +243,18 @@ static enum eo_code check_resolution(const struct eo_resolution *resolution, con
     return eo_error_set(error, EO_ERROR_INPUT, "/resolution/te_harmonics",
                         "%d harmonics cannot be told apart on %d mesh positions: at most %d.", resolution->te_harmonics,
                         resolution->positions, resolution->positions / 2);
-  if (points > MOST_POINTS || bytes > MOST_BYTES)
-    return eo_error_set(error, EO_ERROR_INPUT, "/resolution/cells_per_line",
-                        "%d cells on each of up to %.0f contact lines, at %d mesh positions, are too many: at most "
-                        "%.0f points at a position and 1 GiB in all.",
-                        resolution->cells_per_line, ceil(geometry->transverse_contact_ratio + geometry->overlap_ratio),
-                        resolution->positions, MOST_POINTS);
+  if (is_too_fine(resolution, geometry, LEAST_CELLS))
+    return eo_error_set(
+        error, EO_ERROR_INPUT, "/gear_pair/face_width_mm",
+        "The face of %.6g mm holds up to %.0f contact lines at once, more than can be computed with at "
+        "%d mesh positions (about 70 at 64): a narrower face, a smaller helix angle or a larger module.",
+        1e3 * geometry->face_width, lines, resolution->positions);
+  if (is_too_fine(resolution, geometry, resolution->cells_per_line))
+    return eo_error_set(
+        error, EO_ERROR_INPUT, "/resolution/cells_per_line",
+        "%d cells on each of up to %.0f contact lines, at %d mesh positions, are too many: at most 2000 "
+        "points at a position and 1 GiB in all, which %d cells keep.",
+        resolution->cells_per_line, lines, resolution->positions, eo_resolution_usual_cells(resolution, geometry));
   return EO_OK;
 }
 

@@ -14,6 +14,9 @@
 enum eo_code eo_design_check(const struct eo_design *design, const struct eo_geometry *geometry,
                              struct eo_error *error);
 
+/* Cells of a contact line where nobody states them: 30, fewer where they would be more than can be computed with. */
+int eo_resolution_usual_cells(const struct eo_resolution *resolution, const struct eo_geometry *geometry);
+
 /* What only a search uses: its settings, thresholds and variables, bounds outside the active flank. */
 enum eo_code eo_design_check_search(const struct eo_design *design, const struct eo_geometry *geometry,
                                     struct eo_error *error);

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "design/check.h"
 #include "gear/entry.h"
 #include "gear/geometry.h"
 #include "rating/pair_dimensions.h"
@@ -167,9 +168,12 @@ static void resolve_bearings(struct eo_supports *supports, const struct eo_gear_
     fill(&supports->gear_axial_stiffness[end], AXIAL * supports->bearing_stiffness[EO_GEAR]);
 }
 
-static void resolve_resolution(struct eo_resolution *resolution, const struct eo_gear_pair *pair)
+static void resolve_resolution(struct eo_resolution *resolution, const struct eo_gear_pair *pair,
+                               const struct eo_geometry *geometry)
 {
   enum { USUAL_HARMONICS = 16 };
+  if (!resolution->cells_per_line)
+    resolution->cells_per_line = eo_resolution_usual_cells(resolution, geometry);
   fill(&resolution->impact_patch, fmin(5 * pair->normal_module / 6, pair->face_width));
   if (!resolution->te_harmonics)
     resolution->te_harmonics = resolution->positions < 2 * USUAL_HARMONICS ? resolution->positions / 2
@@ -296,7 +300,7 @@ void eo_design_resolve(struct eo_design *design, const struct eo_geometry *geome
   resolve_bearings(&design->supports, &design->gear_pair);
   fill(&design->alignment.pinion_axial_stiffness, design->supports.gear_axial_stiffness[EO_LEFT]);
   resolve_shafts(&design->shafts, &design->gear_pair);
-  resolve_resolution(&design->resolution, &design->gear_pair);
+  resolve_resolution(&design->resolution, &design->gear_pair, geometry);
   resolve_scenarios(&design->objective, &design->alignment);
   resolve_optimization(&design->optimization, &design->gear_pair, geometry);
 }

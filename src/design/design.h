@@ -123,8 +123,8 @@ struct eo_optimization {
 enum eo_mesh_law { EO_LAW_TANGENT, EO_LAW_SECANT, EO_LAW_TABLE };
 enum eo_solver { EO_SOLVER_HARMONIC_BALANCE, EO_SOLVER_TIME_INTEGRATION };
 struct eo_resolution {
-  int positions; /* mesh positions over one base pitch */
-  int cells_per_line;
+  int positions;      /* mesh positions over one base pitch */
+  int cells_per_line; /* 0: 30, fewer on faces that hold very many contact lines */
   bool tip_edge_contact;
   enum eo_body body;
   enum eo_body_support body_support; /* of a ring */

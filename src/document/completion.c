@@ -11,7 +11,7 @@
 static const struct eo_outline_row completion_rows[] = {
     EO_KEY("design", "object", "with every default resolved", .table = &eo_design_table, .name = "ResolvedDesign"),
     EO_KEY("geometry", "object", "macro-geometry", .table = &eo_geometry_table, .name = "Geometry"),
-    EO_KEY("dimensions", "object?", "what is measured on the members and between them",
+    EO_KEY("dimensions", "object", "what is measured on the members and between them",
            .outline = &eo_outline_dimensions),
     EO_KEY("assumed", "[object]", "what the design does not state, the value taken, and by which rule",
            .outline = &eo_outline_assumption),
@@ -148,9 +148,8 @@ void eo_completion_summary(const json_t *completion, bool inches, struct eo_text
   size_t i;
   eo_text_print(text, "%s\n", name && *name ? name : "unnamed design");
   print_object(json_object_get(completion, "geometry"), "geometry", inches, text);
-  if (json_is_object(json_object_get(completion, "dimensions")))
-    print_object(json_object_get(completion, "dimensions"),
-                 "dimensions; of three numbers: nominal, with the upper, with the lower allowance", inches, text);
+  print_object(json_object_get(completion, "dimensions"),
+               "dimensions; of three numbers: nominal, with the upper, with the lower allowance", inches, text);
   print_assumed(json_object_get(completion, "assumed"), inches, text);
   if (json_array_size(warnings))
     eo_text_add(text, "\nnotes\n");

@@ -24,6 +24,7 @@ static const struct {
     {"supports", "gear_bearing_stiffness_N_per_um", 1000},
     {"supports", "gear_axial_stiffness_left_N_per_um", 200},
     {"supports", "gear_axial_stiffness_right_N_per_um", 200},
+    {"resolution", "cells_per_line", 30},
     {"resolution", "impact_patch_mm", 5},
     {"resolution", "te_harmonics", 16},
 };

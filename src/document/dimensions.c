@@ -37,10 +37,10 @@ static const struct eo_outline_row member_rows[] = {
 static const struct eo_outline member_outline = EO_OUTLINE("MemberDimensions", member_rows);
 
 static const struct eo_outline_row backlash_rows[] = {
-    EO_KEY("normal_um", "[number]", "j_bn: of a feeler gauge; [smallest, mean, largest]", .unit = &eo_unit_um),
-    EO_KEY("circumferential_um", "[number]", "j_wt at the working pitch circles; [smallest, mean, largest]",
+    EO_KEY("normal_um", "[number?]", "j_bn: of a feeler gauge; [smallest, mean, largest]", .unit = &eo_unit_um),
+    EO_KEY("circumferential_um", "[number?]", "j_wt at the working pitch circles; [smallest, mean, largest]",
            .unit = &eo_unit_um),
-    EO_KEY("radial_um", "[number]", "j_r: how far the axes may approach; [smallest, mean, largest]",
+    EO_KEY("radial_um", "[number?]", "j_r: how far the axes may approach; [smallest, mean, largest]",
            .unit = &eo_unit_um),
 };
 static const struct eo_outline backlash_outline = EO_OUTLINE("BacklashRange", backlash_rows);
@@ -117,12 +117,11 @@ json_t *eo_dimensions_encode(const struct eo_gear_pair *pair, const struct eo_ge
 {
   struct eo_pair_dimensions *d = calloc(1, sizeof *d);
   struct eo_object o = eo_object_open_as(&eo_outline_dimensions);
-  bool known = d && eo_pair_dimensions_init(d, pair, geometry, NULL) == EO_OK;
-  if (!known) {
-    free(d);
+  if (!d) {
     json_decref(o.json);
-    return json_null();
+    return NULL;
   }
+  eo_pair_dimensions_init(d, pair, geometry);
   eo_object_put(&o, "pinion", encode_member(&d->member[EO_PINION]));
   eo_object_put(&o, "gear", encode_member(&d->member[EO_GEAR]));
   eo_object_put_number(&o, "centre_distance_mm", geometry->centre_distance);

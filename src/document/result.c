@@ -261,7 +261,7 @@ static const struct eo_outline_row result_rows[] = {
            .outline = &eo_outline_assumption),
     EO_KEY("resolution", "object", "of the design, once more", .table = &eo_resolution_table, .name = "Resolution"),
     EO_KEY("geometry", "object", "macro-geometry", .table = &eo_geometry_table, .name = "Geometry"),
-    EO_KEY("dimensions", "object?", "what is measured on the members and between them",
+    EO_KEY("dimensions", "object", "what is measured on the members and between them",
            .outline = &eo_outline_dimensions),
     EO_KEY("flexibility", "object", "how the teeth's flexibility was modelled", .outline = &eo_outline_flexibility),
     EO_KEY("modification", "object?", "as curves; null when left out", .outline = &eo_outline_modification),

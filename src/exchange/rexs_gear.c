@@ -273,7 +273,9 @@ static bool make_geometry(struct eo_rexs_import *import, const json_t *gear_pair
   eo_table_decode(&eo_gear_pair_table, gear_pair, NULL, &import->gear_pair, faults);
   enum eo_code code = eo_faults_first(faults, error);
   free(faults);
+  double distance = import->gear_pair.centre_distance; /* its digits decide those of what is converted with it */
   code = code ? code : eo_gear_pair_settle(&import->gear_pair, error);
+  import->gear_pair.centre_distance = distance;
   return !code && !eo_geometry_init(&import->geometry, &import->gear_pair, error);
 }
 

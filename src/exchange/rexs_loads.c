@@ -64,7 +64,7 @@ static void put_load_case(struct eo_rexs_import *import, json_t *list, const str
   json_t *row = json_object();
   eo_rexs_put(import, &eo_load_case_table, row, "torque_Nm", fabs(state->torque));
   if (isnan(state->speed) || state->speed == 0)
-    eo_import_say(import->out, import->out->assumed, "speed of the load cases: the file states none");
+    eo_import_say(import->out, import->out->notes, "The file states no speed of the load cases: add speed_rpm.");
   else
     eo_rexs_put(import, &eo_load_case_table, row, "speed_rpm", fabs(state->speed));
   if (with_share)
@@ -110,7 +110,7 @@ void eo_rexs_read_loads(struct eo_rexs_import *import, json_t *design)
   if (kept)
     json_object_set(design, "load_cases", list);
   else
-    eo_import_say(out, out->assumed, "load cases: the file states none for the pair");
+    eo_import_say(out, out->notes, "The file states no load for the pair: add load_cases.");
   json_decref(list);
   free(state);
   free(flow);

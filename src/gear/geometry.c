@@ -190,13 +190,20 @@ static double blunt_tip(const struct eo_geometry *g, int i, double radius)
   return low;
 }
 
+/* Down to whole nanometres, so that the last bits of the angles do not show; the usual radius stays what it is. */
+static double whole_nanometres(double radius, double usual)
+{
+  return radius < usual ? floor(radius * 1e9) / 1e9 : usual;
+}
+
 /* A tip that nobody stated clears the mate's root with a hundredth of a module to spare. */
 static void shorten_tips(struct eo_geometry *g, const struct eo_gear_pair *pair)
 {
   for (int i = 0; i < 2; i++) {
     double usual = g->tip_radius[i];
     if (isnan(pair->tip_diameter[i]) && isnan(pair->tip_alteration))
-      g->tip_radius[i] = fmin(blunt_tip(g, i, usual), clearing_tip(g, 1 - i, 0.01 * g->normal_module));
+      g->tip_radius[i] = whole_nanometres(fmin(blunt_tip(g, i, usual), clearing_tip(g, 1 - i, 0.01 * g->normal_module)),
+                                          usual);
     g->shortened[i] = usual - g->tip_radius[i];
   }
 }

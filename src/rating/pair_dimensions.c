@@ -97,9 +97,11 @@ static void set_member(struct eo_member_dimensions *m, const struct eo_gear_pair
   set_balls(m, g, i, pair->measuring_ball[i]);
 }
 
-static enum eo_code set_backlash(struct eo_backlash *backlash, const struct eo_geometry *g, double pinion, double gear,
-                                 double distance, struct eo_error *error)
+/* NaN where the flanks of so thinned teeth never touch on both sides. */
+static void set_backlash(struct eo_backlash *backlash, const struct eo_geometry *g, double pinion, double gear,
+                         double distance)
 {
+  struct eo_error error;
   const struct eo_backlash_input input = {.teeth = {g->teeth[0], g->teeth[1]},
                                           .normal_module = g->normal_module,
                                           .normal_pressure_angle = g->normal_pressure_angle,
@@ -108,20 +110,19 @@ static enum eo_code set_backlash(struct eo_backlash *backlash, const struct eo_g
                                           .centre_distance = g->centre_distance,
                                           .allowance = {pinion, gear},
                                           .centre_distance_allowance = distance};
-  return eo_backlash(backlash, &input, error);
+  if (eo_backlash(backlash, &input, &error))
+    *backlash = (struct eo_backlash){NAN, NAN, NAN, NAN, NAN, NAN};
 }
 
-enum eo_code eo_pair_dimensions_init(struct eo_pair_dimensions *dimensions, const struct eo_gear_pair *pair,
-                                     const struct eo_geometry *g, struct eo_error *error)
+void eo_pair_dimensions_init(struct eo_pair_dimensions *dimensions, const struct eo_gear_pair *pair,
+                             const struct eo_geometry *g)
 {
   const double(*allowance)[2] = pair->thickness_allowance, distance = pair->centre_distance_allowance;
-  struct eo_pair_dimensions made = {.centre_distance_allowance = distance};
+  dimensions->centre_distance_allowance = distance;
   for (int i = 0; i < 2; i++)
-    set_member(&made.member[i], pair, g, i);
-  EO_TRY(set_backlash(&made.smallest, g, allowance[0][0], allowance[1][0], -distance, error));
-  EO_TRY(set_backlash(&made.mean, g, (allowance[0][0] + allowance[0][1]) / 2, (allowance[1][0] + allowance[1][1]) / 2,
-                      0, error));
-  EO_TRY(set_backlash(&made.largest, g, allowance[0][1], allowance[1][1], distance, error));
-  *dimensions = made;
-  return EO_OK;
+    set_member(&dimensions->member[i], pair, g, i);
+  set_backlash(&dimensions->smallest, g, allowance[0][0], allowance[1][0], -distance);
+  set_backlash(&dimensions->mean, g, (allowance[0][0] + allowance[0][1]) / 2, (allowance[1][0] + allowance[1][1]) / 2,
+               0);
+  set_backlash(&dimensions->largest, g, allowance[0][1], allowance[1][1], distance);
 }

@@ -36,10 +36,9 @@ struct eo_pair_dimensions {
                                                  with +A_a */
 };
 
-/* pair: resolved, of the geometry. What cannot be measured is said in the reasons. EO_ERROR_INPUT with the design's
-   key: allowances that leave no distance. */
-enum eo_code eo_pair_dimensions_init(struct eo_pair_dimensions *dimensions, const struct eo_gear_pair *pair,
-                                     const struct eo_geometry *geometry, struct eo_error *error);
+/* pair: resolved, of the geometry. What cannot be measured is NaN, with its reason where there is one to tell. */
+void eo_pair_dimensions_init(struct eo_pair_dimensions *dimensions, const struct eo_gear_pair *pair,
+                             const struct eo_geometry *geometry);
 
 /* js7 of a nominal distance (ISO 286-1, IT7/2), m; above 3150 mm in proportion. DIN 3964 takes it for usual drives. */
 double eo_centre_distance_allowance(double centre_distance);

@@ -64,6 +64,7 @@ static void state_rig(struct eo_design *design)
   design->supports.bearing_stiffness[EO_GEAR] = 1e9;
   design->supports.gear_axial_stiffness[EO_LEFT] = design->supports.gear_axial_stiffness[EO_RIGHT] = 2e8;
   design->alignment.pinion_axial_stiffness = 2e8;
+  design->resolution.cells_per_line = 30;
   design->resolution.impact_patch = 5e-3;
   design->resolution.te_harmonics = 16;
 }

@@ -255,7 +255,7 @@ static enum eo_code complete(struct gear_case *c, const json_t *document, struct
   if (!code)
     code = eo_design_complete(&c->design, &c->geometry, error);
   if (!code)
-    code = eo_pair_dimensions_init(&c->dimensions, &c->design.gear_pair, &c->geometry, error);
+    eo_pair_dimensions_init(&c->dimensions, &c->design.gear_pair, &c->geometry);
   return code;
 }
 

@@ -1,0 +1,423 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Every way to state one gear ends in the same design, bit for bit; what contradicts is refused at its key; a hundred
+   drawn gears are completed or refused with number, limit and remedy; the first edit of any field of any example leads
+   to a design or to a fault that names the field. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/random.h"
+#include "document/assumption.h"
+#include "document/completion.h"
+#include "document/design_document.h"
+#include "document/examples.h"
+#include "format/json.h"
+#include "gear/entry.h"
+#include "rating/pair_dimensions.h"
+#include "support/tap.h"
+
+static struct eo_faults faults;
+static struct eo_design design;
+static struct eo_geometry geometry;
+static struct eo_error error;
+
+static bool complete(json_t *document)
+{
+  faults.count = 0;
+  memset(&error, 0, sizeof error);
+  bool good = eo_design_decode(document, &design, NULL, &faults);
+  if (!good)
+    eo_faults_first(&faults, &error);
+  good = good && eo_design_complete(&design, &geometry, &error) == EO_OK;
+  json_decref(document);
+  return good;
+}
+
+static json_t *with_pair(const char *pair)
+{
+  struct eo_error fault;
+  char text[2000];
+  snprintf(text, sizeof text, "{\"load_cases\":[{\"torque_Nm\":100,\"speed_rpm\":1000}],\"gear_pair\":{%s}}", pair);
+  json_t *document = eo_json_parse(text, strlen(text), &fault);
+  if (!document)
+    printf("# %s\n", fault.text);
+  return document;
+}
+
+/* The same gear in several drawings' words; the first row has the canonical keys. Numbers are as the completed design
+   prints them. */
+#define TEETH "\"ends\":1,\"pinion_teeth\":23,\"gear_teeth\":71,\"helix_angle_deg\":18,\"face_width_mm\":40,"
+
+/* Paths by which a completed design is stated again; %s: key and number of each. */
+static const char *const paths[] = {
+    "%m,%x1,%x2",         "%mt,%x1,%x2",        "%dp,%x1,%x2",
+    "%dpt,%x1,%x2",       "%m,%at,%x1,%x2",     "%m,%x1,%a",
+    "%m,%x2,%a",          "%m,%x1,%sum",        "%m,%x2,%aw",
+    "%m,%x1,%aw",         "%m,%x1,%x2,%a",      "%m,%x1,%x2,%aw",
+    "%m,%x1,%x2,%sum",    "%m,%l1,%l2",         "%m,%l1,%a",
+    "%m,%x1,%x2,%d1,%d2", "%m,%x1,%x2,%h1,%h2", "%mt,%at,%l1,%aw,%h1,%d2",
+    "%dp,%x1,%sum,%h1",   "%m,%x1,%x2,%a,%k0",
+};
+
+static void add_number(struct eo_text *text, const char *key, double value, int digits)
+{
+  eo_text_print(text, "\"%s\":%.*g", key, digits, value);
+}
+
+/* What stands for a word of a path in a drawing of the geometry. */
+static void add_word(struct eo_text *text, const char *word, const struct eo_geometry *g)
+{
+  const double degree = M_PI / 180, inch = 25.4e-3;
+  double sum = g->profile_shift[0] + g->profile_shift[1];
+  const struct {
+    const char *word, *key;
+    double value;
+    int digits;
+  } row[] = {
+      {"m", "normal_module_mm", 1e3 * g->normal_module, 15},
+      {"mt", "transverse_module_mm", 1e3 * g->transverse_module, 17},
+      {"dp", "normal_diametral_pitch_per_inch", inch / g->normal_module, 17},
+      {"dpt", "transverse_diametral_pitch_per_inch", inch / g->transverse_module, 17},
+      {"at", "transverse_pressure_angle_deg", g->transverse_pressure_angle / degree, 17},
+      {"x1", "pinion_profile_shift", g->profile_shift[0], 15},
+      {"x2", "gear_profile_shift", g->profile_shift[1], 15},
+      {"a", "centre_distance_mm", eo_unit_out(&eo_unit_mm, g->centre_distance), 17},
+      {"sum", "profile_shift_sum", sum, 15},
+      {"aw", "working_pressure_angle_deg", g->working_pressure_angle / degree, 17},
+      {"l1", "pinion_profile_shift_mm", 1e3 * g->profile_shift[0] * g->normal_module, 15},
+      {"l2", "gear_profile_shift_mm", 1e3 * g->profile_shift[1] * g->normal_module, 15},
+      {"d1", "pinion_tip_diameter_mm", 2e3 * g->tip_radius[0], 17},
+      {"d2", "gear_tip_diameter_mm", 2e3 * g->tip_radius[1], 17},
+      {"h1", "pinion_addendum_mm", 1e3 * (g->tip_radius[0] - g->reference_radius[0]), 15},
+      {"h2", "gear_addendum_mm", 1e3 * (g->tip_radius[1] - g->reference_radius[1]), 15},
+      {"k0", "tip_alteration_coefficient",
+       (g->centre_distance - g->reference_radius[0] - g->reference_radius[1]) / g->normal_module - sum, 17},
+  };
+  for (size_t i = 0; i < sizeof row / sizeof *row; i++)
+    if (strcmp(word, row[i].word) == 0)
+      add_number(text, row[i].key, row[i].value, row[i].digits);
+}
+
+static json_t *along(const char *path, const struct eo_geometry *g)
+{
+  struct eo_text text = {0};
+  char copy[200], *rest = copy, *word;
+  snprintf(copy, sizeof copy, "%s", path);
+  for (bool first = true; (word = strtok_r(rest, ",", &rest)); first = false) {
+    eo_text_add(&text, first ? TEETH : ",");
+    add_word(&text, word + 1, g);
+  }
+  json_t *document = with_pair(text.data);
+  eo_text_done(&text);
+  return document;
+}
+
+/* As text: the last bit that the document can hold. */
+static char *as_text(void)
+{
+  struct eo_text text = {0};
+  json_t *document = eo_design_encode(&design);
+  json_object_del(json_object_get(document, "gear_pair"), "tip_alteration_coefficient"); /* stated or not */
+  eo_json_write(&text, document, EO_JSON_CANONICAL);
+  json_decref(document);
+  return text.data;
+}
+
+static void test_paths(const char *start, const char *what)
+{
+  int same = 0, count = (int)(sizeof paths / sizeof *paths);
+  ok(complete(with_pair(start)), "%s %s", what, error.text);
+  struct eo_geometry first = geometry;
+  char *expected = as_text();
+  for (int i = 0; i < count; i++) {
+    bool good = complete(along(paths[i], &first));
+    char *found = good ? as_text() : NULL;
+    if (found && strcmp(found, expected) == 0)
+      same++;
+    else {
+      size_t at = 0;
+      while (found && found[at] == expected[at])
+        at++;
+      printf("# %s: %s%s: %.80s\n", paths[i], error.pointer, error.text, found ? found + (at > 40 ? at - 40 : 0) : "");
+    }
+    free(found);
+  }
+  ok(same == count, "%d of %d ways to state it give the same document", same, count);
+  free(expected);
+}
+
+/* Statements that contradict each other: each refused at a key that is one of them, with both numbers. */
+static void test_contradictions(void)
+{
+  static const struct {
+    const char *pair, *key, *text;
+  } row[] = {
+      {"\"normal_module_mm\":3,\"normal_diametral_pitch_per_inch\":8", "/gear_pair/normal_diametral_pitch_per_inch",
+       "3.175"},
+      {"\"normal_module_mm\":3,\"normal_pressure_angle_deg\":20,\"transverse_pressure_angle_deg\":20",
+       "/gear_pair/transverse_pressure_angle_deg", "leave one"},
+      {"\"normal_module_mm\":3,\"pinion_profile_shift\":0.2,\"pinion_profile_shift_mm\":0.7",
+       "/gear_pair/pinion_profile_shift_mm", "0.2333"},
+      {"\"normal_module_mm\":3,\"pinion_profile_shift\":0.2,\"gear_profile_shift\":0.1,\"profile_shift_sum\":0.4",
+       "/gear_pair/profile_shift_sum", "sum to 0.3"},
+      {"\"normal_module_mm\":3,\"centre_distance_mm\":149,\"working_pressure_angle_deg\":25",
+       "/gear_pair/working_pressure_angle_deg", "leave one"},
+      {"\"normal_module_mm\":3,\"pinion_profile_shift\":0.4,\"gear_profile_shift\":0.4,\"centre_distance_mm\":149",
+       "/gear_pair/centre_distance_mm", "sum of the shifts"},
+      {"\"normal_module_mm\":3,\"pinion_addendum_mm\":3,\"pinion_tip_diameter_mm\":80",
+       "/gear_pair/pinion_tip_diameter_mm", "leave one"},
+      {"\"normal_module_mm\":3,\"centre_distance_mm\":100", "/gear_pair/centre_distance_mm", "base radii"},
+      {"\"normal_module_mm\":3,\"profile_shift_sum\":-9", "/gear_pair/pinion_profile_shift", "-9"},
+      {"\"normal_module_mm\":3,\"fillet_radius_coefficient\":0.7", "/gear_pair/fillet_radius_coefficient", "at most"},
+      {"\"normal_module_mm\":3,\"thickness_series\":\"zz25\"", "/gear_pair/thickness_series", "DIN 3967"},
+      {"\"normal_module_mm\":3,\"pinion_thickness_allowance_um\":[-90,-60]", "/gear_pair/pinion_thickness_allowance_um",
+       "[upper, lower]"},
+      {"\"normal_diametral_pitch_per_inch\":0.1", "/gear_pair/normal_diametral_pitch_per_inch", "outside"},
+      {"\"face\":1", "/gear_pair/normal_module_mm", "transverse_diametral_pitch_per_inch"},
+      {"\"normal_module_mm\":3,\"planet_count\":3", "/gear_pair/planet_count", "Planetary"},
+  };
+  for (size_t i = 0; i < sizeof row / sizeof *row; i++) {
+    char pair[600];
+    snprintf(pair, sizeof pair, TEETH "%s", row[i].pair);
+    ok(!complete(with_pair(pair)) && strcmp(error.pointer, row[i].key) == 0 && strstr(error.text, row[i].text),
+       "%s: %s: %s", row[i].pair, error.pointer, error.text);
+  }
+}
+
+static double between(int index, int draw, double low, double high)
+{
+  return low + (high - low) * eo_random_unit(eo_random_at(1328, 0, 0, (uint64_t)index), (uint64_t)draw);
+}
+
+static json_t *drawn(int i)
+{
+  double module = exp(between(i, 0, log(0.3), log(30))), helix = between(i, 1, 0, 1) < 0.2 ? 0 : between(i, 2, 0, 40);
+  int pinion = (int)exp(between(i, 3, log(8), log(120))), gear = (int)exp(between(i, 4, log(pinion), log(401)));
+  double reference = module / cos(helix * M_PI / 180) * (pinion + gear) / 2;
+  json_t *pair = json_pack("{s:i,s:i,s:i,s:f,s:f,s:f}", "ends", between(i, 5, 0, 1) < 0.5 ? 1 : 2, "pinion_teeth",
+                           pinion, "gear_teeth", gear, "normal_module_mm", module, "helix_angle_deg", helix,
+                           "face_width_mm", module * between(i, 6, 5, 25));
+  if (between(i, 7, 0, 1) < 0.6)
+    json_object_set_new(pair, "centre_distance_mm", json_real(reference + between(i, 8, -2, 2) * module));
+  if (between(i, 9, 0, 1) < 0.6)
+    json_object_set_new(pair, "pinion_profile_shift", json_real(between(i, 10, -0.3, 0.8)));
+  return json_pack("{s:o,s:[{s:f,s:i}]}", "gear_pair", pair, "load_cases", "torque_Nm", module * module * 10,
+                   "speed_rpm", 500);
+}
+
+static bool has_number(const char *text)
+{
+  return strpbrk(text, "0123456789") != NULL;
+}
+
+/* Refusals of what nobody states or an analysis does not use would be the program's, not the designer's. */
+static bool is_own_fault(const char *pointer)
+{
+  static const char *const not_stated[] = {"/optimization",
+                                           "/objective",
+                                           "/supports",
+                                           "/resolution",
+                                           "/shafts",
+                                           "/gear_pair/backlash_um",
+                                           "/gear_pair/dedendum_coefficient",
+                                           "/gear_pair/fillet_radius_coefficient",
+                                           "/gear_pair/pinion_tip_diameter_mm",
+                                           "/gear_pair/gear_tip_diameter_mm"};
+  for (size_t i = 0; i < sizeof not_stated / sizeof *not_stated; i++)
+    if (strncmp(pointer, not_stated[i], strlen(not_stated[i])) == 0)
+      return true;
+  return false;
+}
+
+static void test_drawn(void)
+{
+  enum { DRAWN = 400 };
+  int completed = 0, refused = 0, wrong = 0, unmeasured = 0;
+  for (int i = 0; i < DRAWN; i++) {
+    static struct eo_pair_dimensions dimensions;
+    if (complete(drawn(i))) {
+      completed++;
+      eo_pair_dimensions_init(&dimensions, &design.gear_pair, &geometry);
+      for (int k = 0; k < 2; k++) {
+        const struct eo_member_dimensions *m = &dimensions.member[k];
+        unmeasured += !(m->normal_thickness[EO_LOWER] > 0) || (!m->teeth_spanned && !*m->span_reason) ||
+                      (isnan(m->ball) && !*m->ball_reason);
+      }
+      continue;
+    }
+    refused++;
+    bool good = has_number(error.text) && strncmp(error.pointer, "/gear_pair/", 11) == 0 &&
+                !is_own_fault(error.pointer);
+    wrong += !good;
+    if (!good)
+      printf("# %d: %s: %s\n", i, error.pointer, error.text);
+  }
+  ok(wrong == 0, "%d drawn gears: %d completed, %d refused with a number at a key that was stated", DRAWN, completed,
+     refused);
+  ok(completed > DRAWN / 2 && unmeasured == 0, "most are gears, and can be measured");
+}
+
+/* A value beside the one that stands there; NULL: none to be had. */
+static json_t *edited(const struct eo_field *field, const json_t *value, int way)
+{
+  double low = fmax(field->low, -1e9), high = fmin(field->high, 1e9), now = json_number_value(value);
+  double wanted = way == 0   ? (json_is_number(value) && now != 0 ? now * 0.8 : low + 0.25 * (high - low))
+                  : way == 1 ? (json_is_number(value) && now != 0 ? now * 1.3 : low + 0.01 * (high - low))
+                  : way == 2 ? low
+                             : high;
+  wanted = fmin(fmax(wanted, low), high);
+  if (field->kind == EO_FIELD_INTEGER || field->kind == EO_FIELD_SEED)
+    return json_integer((json_int_t)round(wanted));
+  if (field->kind == EO_FIELD_NUMBER)
+    return json_real(wanted);
+  if (field->kind == EO_FIELD_FLAG)
+    return json_boolean(!json_is_true(value));
+  if (field->kind == EO_FIELD_CHOICE)
+    return json_string(field->choices[way % 2 && field->choices[1] ? 1 : 0]);
+  return NULL;
+}
+
+static int edits, strange;
+
+/* The refusal names the key itself, or is about the geometry, where each of its keys mends it. */
+static bool is_at(const char *pointer)
+{
+  if (strcmp(error.pointer, pointer) == 0)
+    return true;
+  bool geometry_key = strncmp(pointer, "/gear_pair/", 11) == 0;
+  return geometry_key &&
+         (strncmp(error.pointer, "/gear_pair/", 11) == 0 || strncmp(error.pointer, "/modification/", 14) == 0);
+}
+
+static void edit_table(const json_t *document, const struct eo_table *table, const char *group)
+{
+  for (int i = 0; i < table->count; i++)
+    for (int way = 0; way < 4; way++) {
+      const struct eo_field *field = &table->field[i];
+      char pointer[200];
+      json_t *copy = json_deep_copy(document), *object = json_object_get(copy, group),
+             *value = edited(field, json_object_get(object, field->key), way);
+      snprintf(pointer, sizeof pointer, "/%s/%s", group, field->key);
+      if (!value) {
+        json_decref(copy);
+        continue;
+      }
+      json_object_set_new(object, field->key, value);
+      edits++;
+      if (complete(copy) || is_at(pointer))
+        continue;
+      strange++;
+      printf("# %s, way %d: %s: %s\n", pointer, way, error.pointer, error.text);
+    }
+}
+
+static void test_first_edit(void)
+{
+  static const struct {
+    const struct eo_table *table;
+    const char *group;
+  } groups[] = {
+      {&eo_gear_pair_table, "gear_pair"},       {&eo_material_table, "material"},    {&eo_alignment_table, "alignment"},
+      {&eo_supports_table, "supports"},         {&eo_shafts_table, "shafts"},        {&eo_objective_table, "objective"},
+      {&eo_optimization_table, "optimization"}, {&eo_resolution_table, "resolution"}};
+  const struct eo_example *example;
+  for (int i = 0; (example = eo_example_at(i)); i++) {
+    struct eo_design start;
+    eo_example_build(example->name, &start);
+    json_t *document = eo_design_encode(&start);
+    for (size_t g = 0; g < sizeof groups / sizeof *groups; g++)
+      edit_table(document, groups[g].table, groups[g].group);
+    json_decref(document);
+  }
+  ok(strange == 0, "%d first edits of the examples lead to a design or to a fault at the field", edits);
+}
+
+/* Version 1: the defaults of the paper's rig, with a note; the same document of version 2 has its own. */
+static void test_migration(void)
+{
+  static struct eo_warnings warnings;
+  json_t *document = with_pair("\"pinion_teeth\":17,\"gear_teeth\":44,\"normal_module_mm\":3,\"helix_angle_deg\":24,"
+                               "\"face_width_mm\":30,\"pinion_profile_shift\":0.3,\"centre_distance_mm\":101");
+  json_object_del(document, "load_cases");
+  json_object_set_new(document, "version", json_integer(1));
+  faults.count = warnings.count = 0;
+  ok(eo_design_decode(document, &design, &warnings, &faults) && eo_design_complete(&design, &geometry, &error) == EO_OK,
+     "a document of version 1 is read %s%s", faults.count ? faults.fault[0].text : "", error.text);
+  ok(design.load_cases == 3 && design.load_case[1].torque == 828 && design.gear_pair.backlash == 100e-6 &&
+         design.gear_pair.profile_shift[EO_GEAR] == 0 && design.supports.bearing_stiffness[0] == 8e8 &&
+         design.optimization.tip_relief.high == 40e-6,
+     "with what it left out then");
+  close_to(design.alignment.shaft_angle_in_plane, 0.1 * M_PI / 180, 1e-18, "0.1 deg of shaft angle error");
+  close_to(2 * geometry.tip_radius[0], 1e-3 * (3 / cos(24 * M_PI / 180) * 17 + 6 * 1.3), 1e-15, "and tips of the rack");
+  ok(warnings.count == 1 && strstr(warnings.text[0], "version 1"), "and a note says so: %s", warnings.text[0]);
+  json_decref(document);
+}
+
+/* Documents that the program of version 1 wrote whole are recognised without a version. */
+static void test_written_by_first(void)
+{
+  static struct eo_warnings warnings;
+  struct eo_design start;
+  eo_example_build("shifted", &start);
+  json_t *document = eo_design_encode(&start), *pair = json_object_get(document, "gear_pair");
+  static const char *const newer[] = {"tip_alteration_coefficient", "pinion_addendum_coefficient", "thickness_series",
+                                      NULL};
+  json_object_del(document, "version");
+  for (int i = 0; newer[i]; i++)
+    json_object_del(pair, newer[i]);
+  json_object_set_new(json_object_get(document, "resolution"), "te_harmonics", json_integer(16));
+  warnings.count = faults.count = 0;
+  ok(eo_design_decode(document, &design, &warnings, &faults) && design.gear_pair.tip_alteration == 0 &&
+         warnings.count == 1,
+     "a whole document of version 1 keeps its tips");
+  json_decref(document);
+}
+
+static void test_assumed(void)
+{
+  ok(complete(with_pair("\"pinion_teeth\":20,\"gear_teeth\":60,\"transverse_module_mm\":5,\"helix_angle_deg\":20,"
+                        "\"face_width_mm\":50,\"profile_shift_sum\":0.4,\"pinion_addendum_mm\":5")),
+     "a terse design %s", error.text);
+  json_t *assumed = eo_assumptions_encode(&design), *row;
+  struct eo_text keys = {0};
+  size_t i;
+  json_array_foreach(assumed, i, row) eo_text_print(&keys, "%s;", json_string_value(json_object_get(row, "key")));
+  ok(strstr(keys.data, "/gear_pair/backlash_um;") && strstr(keys.data, "/gear_pair/gear_profile_shift;") &&
+         strstr(keys.data, "/gear_pair/gear_tip_diameter_mm;") && strstr(keys.data, "/alignment/stagger;") &&
+         strstr(keys.data, "/supports/pinion_mass_kg;") && strstr(keys.data, "/modification/gear/right;"),
+     "what it does not state is listed");
+  ok(!strstr(keys.data, "normal_module_mm") && !strstr(keys.data, "centre_distance_mm;") &&
+         !strstr(keys.data, "pinion_tip_diameter_mm") && !strstr(keys.data, "pinion_teeth;") &&
+         !strstr(keys.data, "/optimization"),
+     "what it states in another way is not, nor what an analysis does not use");
+  eo_text_done(&keys);
+  json_decref(assumed);
+}
+
+static void test_power(void)
+{
+  json_t *document = with_pair(TEETH "\"normal_module_mm\":3");
+  json_object_set_new(document, "load_cases", json_pack("[{s:i,s:f}]", "power_kW", 5000, "speed_rpm", 1165.9));
+  ok(complete(document), "a power stands for a torque %s", error.text);
+  near(design.load_case[0].torque, 40953, 2e-5, "5000 kW at 1165.9 rpm, N m");
+  document = with_pair(TEETH "\"normal_module_mm\":3");
+  json_object_set_new(document, "load_cases",
+                      json_pack("[{s:i,s:f,s:i}]", "power_kW", 5, "speed_rpm", 1000., "torque_Nm", 40));
+  ok(!complete(document) && strcmp(error.pointer, "/load_cases/0/power_kW") == 0 && strstr(error.text, "47.7464829"),
+     "and contradicts another: %s", error.text);
+}
+
+int main(void)
+{
+  test_paths(TEETH "\"normal_module_mm\":2.5,\"pinion_profile_shift\":0.35,\"gear_profile_shift\":0.12", "shifted");
+  test_paths(TEETH "\"normal_diametral_pitch_per_inch\":6,\"pinion_profile_shift\":-0.1,\"gear_profile_shift\":0.3",
+             "in inches");
+  test_paths(TEETH "\"normal_module_mm\":7,\"pinion_profile_shift\":0.4,\"gear_profile_shift\":-0.4", "zero sum");
+  test_contradictions();
+  test_drawn();
+  test_first_edit();
+  test_migration();
+  test_written_by_first();
+  test_assumed();
+  test_power();
+  return tap_done();
+}
