@@ -62,7 +62,7 @@ static double load_radius(const struct eo_geometry *geometry, int member, double
 {
   double module = geometry->normal_module, cos_base = cos(geometry->base_helix_angle);
   double contact_ratio = geometry->transverse_contact_ratio / (cos_base * cos_base);
-  double tip = zn / 2 + (geometry->tip_radius[member] - geometry->reference_radius[member]) / module;
+  double tip = zn / 2 + (geometry->tip_form_radius[member] - geometry->reference_radius[member]) / module;
   double roll = sqrt(tip * tip - base * base) - M_PI * cos(geometry->normal_pressure_angle) * (contact_ratio - 1);
   return hypot(base, roll);
 }
@@ -107,7 +107,7 @@ void eo_iso_root(struct eo_iso_root *root, const struct eo_geometry *geometry, i
   struct eo_iso_section_input input = {
       .virtual_teeth = r.virtual_teeth,
       .normal_pressure_angle = alpha,
-      .profile_shift = geometry->profile_shift[member],
+      .profile_shift = geometry->generating_shift[member],
       .dedendum_coefficient = geometry->dedendum[member] / module,
       .fillet_radius_coefficient = geometry->fillet_radius[member] / module,
       .load_radius = load_radius(geometry, member, r.virtual_teeth, r.virtual_teeth / 2 * cos(alpha))};

@@ -22,6 +22,14 @@
   ROW("gear_addendum_coefficient", pair->rack[EO_GEAR].addendum_coefficient)               \
   ROW("gear_dedendum_coefficient", pair->rack[EO_GEAR].dedendum_coefficient)               \
   ROW("gear_fillet_radius_coefficient", pair->rack[EO_GEAR].fillet_radius_coefficient)     \
+  ROW("pinion_generating_offset", pair->generating_offset[EO_PINION])                      \
+  ROW("pinion_protuberance", pair->protuberance[EO_PINION])                                \
+  ROW("pinion_grinding_stock", pair->grinding_stock[EO_PINION])                            \
+  ROW("pinion_tip_chamfer", pair->tip_chamfer[EO_PINION])                                  \
+  ROW("gear_generating_offset", pair->generating_offset[EO_GEAR])                          \
+  ROW("gear_protuberance", pair->protuberance[EO_GEAR])                                    \
+  ROW("gear_grinding_stock", pair->grinding_stock[EO_GEAR])                                \
+  ROW("gear_tip_chamfer", pair->tip_chamfer[EO_GEAR])                                      \
   ROW("pinion_profile_shift", pair->profile_shift[EO_PINION])                              \
   ROW("gear_profile_shift", pair->profile_shift[EO_GEAR])                                  \
   ROW("centre_distance", pair->centre_distance)                                            \

@@ -47,6 +47,19 @@ static void note_undercut(const struct eo_geometry *g, int i, struct eo_warnings
                    member_name[i], 1e3 * g->form_radius[i], 1e3 * g->start_radius[i], g->least_shift[i]);
 }
 
+/* Stock that grinding takes from below the protuberance's reach leaves a step in the fillet. */
+static void note_notch(const struct eo_design *design, int i, struct eo_warnings *warnings)
+{
+  static const char *const key[2] = {"/gear_pair/pinion_grinding_stock_um", "/gear_pair/gear_grinding_stock_um"};
+  double beyond = design->gear_pair.grinding_stock[i] - design->gear_pair.protuberance[i];
+  if (beyond > 0)
+    eo_warnings_at(warnings, key[i],
+                   "The stock of the %s, %.4g um, is %.4g um more than the protuberance of its tool: grinding leaves a "
+                   "notch in the fillet, which is not modelled; the root is taken as cut at once. A protuberance of at "
+                   "least the stock avoids it.",
+                   member_name[i], 1e6 * design->gear_pair.grinding_stock[i], 1e6 * beyond);
+}
+
 /* A distance far from what the shifts ask for: backlash that no thickness allowance makes. */
 static void note_distance(const struct eo_geometry *g, struct eo_warnings *warnings)
 {
@@ -61,6 +74,22 @@ static void note_distance(const struct eo_geometry *g, struct eo_warnings *warni
         eo_geometry_shift_sum(g->teeth, g->normal_pressure_angle, g->transverse_pressure_angle,
                               g->working_pressure_angle),
         g->profile_shift[0] + g->profile_shift[1]);
+}
+
+/* Stated allowances whose mean makes another backlash than the stated one, which is what the contact is computed with. */
+static void note_allowances(const struct eo_design *design, struct eo_warnings *warnings)
+{
+  static const double NOTABLE = 0.05;
+  const struct eo_gear_pair *pair = &design->gear_pair;
+  double sum = 0;
+  for (int i = 0; i < 2; i++)
+    sum += pair->thickness_allowance[i][0] + pair->thickness_allowance[i][1];
+  double mean = -sum / 2 * cos(pair->normal_pressure_angle);
+  if (fabs(mean - pair->backlash) > NOTABLE * pair->backlash)
+    eo_warnings_at(warnings, "/gear_pair/backlash_um",
+                   "The thickness allowances make %.4g um of normal backlash in the mean, but %.4g um is stated and "
+                   "used: leave one of the two out.",
+                   1e6 * mean, 1e6 * pair->backlash);
 }
 
 /* Clearance of the basic rack: c = h_fP of the mate - h_aP. */
@@ -156,11 +185,13 @@ void eo_design_note_findings(const struct eo_design *design, const struct eo_geo
 {
   for (int i = 0; i < 2; i++) {
     note_undercut(geometry, i, warnings);
+    note_notch(design, i, warnings);
     note_clearance(design, geometry, i, warnings);
     note_shortened(geometry, i, warnings);
     note_tip(geometry, i, warnings);
   }
   note_distance(geometry, warnings);
+  note_allowances(design, warnings);
   note_proportions(design, geometry, warnings);
   note_thrust(design, warnings);
   note_search(design, geometry, warnings);

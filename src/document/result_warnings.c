@@ -121,6 +121,25 @@ static void say_least(struct list *list, double limit, double value, const char 
     say(list, "The limit on the %s is not reached: %.4g, at least %.4g wanted.", what, value, limit);
 }
 
+/* What no gear steel stands even once: the static limits of the best case hardened steel, 1.6 sigma_Hlim of 1650 MPa and
+   2.5 sigma_FE of 1050 MPa (ISO 6336-2, -3, -5, quality ME). */
+static void say_strength(struct list *list, const struct eo_result_source *source, int k)
+{
+  static const double MOST_PRESSURE = 2640e6, MOST_ROOT = 2625e6;
+  const struct eo_objective_case *v = &source->evaluation->objective[k];
+  struct place place = place_of(&source->design->load_case[k]);
+  if (v->contact_pressure > MOST_PRESSURE)
+    say(list,
+        "The contact pressure %s is %.4g MPa; the best case hardened steel stands %.4g MPa once. Less torque, a wider "
+        "face or larger gears bring it down.",
+        place.text, v->contact_pressure / 1e6, MOST_PRESSURE / 1e6);
+  if (v->root_stress > MOST_ROOT)
+    say(list,
+        "The root stress %s is %.4g MPa; the best case hardened steel stands %.4g MPa once. Less torque, a wider face "
+        "or a larger module bring it down.",
+        place.text, v->root_stress / 1e6, MOST_ROOT / 1e6);
+}
+
 static void say_limits(struct list *list, const struct eo_result_source *source, int k)
 {
   const struct eo_objective *o = &source->design->objective;
@@ -256,6 +275,7 @@ json_t *eo_result_warnings(const struct eo_result_source *source, const struct e
     say_contact(&list, source, k);
     say_vibration(&list, source, &source->evaluation->load_case[k]);
     say_limits(&list, source, k);
+    say_strength(&list, source, k);
   }
   say_modelling(&list, source);
   if (!list.failed)

@@ -154,6 +154,11 @@ static void make_key(const struct eo_geometry *g, const struct eo_material *mate
     eo_hash_add_number(&hash, "gear_dedendum", g->dedendum[EO_GEAR]);
     eo_hash_add_number(&hash, "gear_fillet_radius", g->fillet_radius[EO_GEAR]);
   }
+  for (int m = 0; m < 2; m++)
+    if (g->generating_shift[m] != g->profile_shift[m] || g->residual_undercut[m] > 0) {
+      eo_hash_add_number(&hash, m ? "gear_generating_shift" : "pinion_generating_shift", g->generating_shift[m]);
+      eo_hash_add_number(&hash, m ? "gear_residual_undercut" : "pinion_residual_undercut", g->residual_undercut[m]);
+    }
   for (int m = 0; m < 2; m++) {
     eo_hash_add_number(&hash, "teeth", g->teeth[m]);
     eo_hash_add_number(&hash, "profile_shift", g->profile_shift[m]);

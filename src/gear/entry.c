@@ -281,7 +281,10 @@ enum eo_code eo_gear_pair_settle(struct eo_gear_pair *pair, struct eo_error *err
                         settled.profile_shift[0] + settled.profile_shift[1]);
   for (int i = 0; i < 2; i++)
     EO_TRY(settle_tip(&settled, i, error));
-  settled.entry = (struct eo_gear_entry){NAN, NAN, NAN, NAN, NAN, NAN, {NAN, NAN}, {NAN, NAN}};
+  for (int i = 0; i < 2; i++)
+    if (!isnan(settled.entry.generating_shift[i]))
+      settled.generating_offset[i] = as_coefficient(settled.entry.generating_shift[i] - settled.profile_shift[i]);
+  settled.entry = (struct eo_gear_entry){NAN, NAN, NAN, NAN, NAN, NAN, {NAN, NAN}, {NAN, NAN}, {NAN, NAN}};
   *pair = settled;
   return EO_OK;
 }

@@ -12,11 +12,13 @@ struct tip {
 
 static struct tip rack_tip(const struct eo_geometry *g, int member)
 {
-  double shift = g->profile_shift[member] * g->normal_module, slope = tan(g->normal_pressure_angle);
-  double half_thickness = M_PI * g->normal_module / 4 + shift * slope; /* of the generated tooth on the pitch line */
+  double nominal = g->profile_shift[member] * g->normal_module, shift = g->generating_shift[member] * g->normal_module,
+         slope = tan(g->normal_pressure_angle);
+  double half_thickness = M_PI * g->normal_module / 4 + nominal * slope; /* of the generated tooth on the pitch line */
   struct tip tip;
   tip.centre[1] = shift - g->dedendum[member] + g->fillet_radius[member];
-  tip.centre[0] = half_thickness - tip.centre[1] * slope + g->fillet_radius[member] / cos(g->normal_pressure_angle);
+  tip.centre[0] = half_thickness - tip.centre[1] * slope +
+                  (g->fillet_radius[member] - g->residual_undercut[member]) / cos(g->normal_pressure_angle);
   tip.land_angle = fmax(0, M_PI / g->teeth[member] - tip.centre[0] / cos(g->helix_angle) / g->reference_radius[member]);
   return tip;
 }
@@ -46,15 +48,23 @@ static double cut_inside(const struct eo_geometry *g, int member, const struct t
                                           : eo_geometry_half_angle(g, member, *radius) - atan2(point[0], point[1]);
 }
 
-/* The trochoid of an undercut tooth begins outside the tooth (psi = alpha_n) and cuts through the involute on its way
+/* Angle at which the rounding leaves the flank of the finished tooth: alpha_n, and before that where it stands out by
+   the residual undercut, s_pr = rho (1 - cos(alpha_n - psi)). */
+static double rounding_start(const struct eo_geometry *g, int member)
+{
+  double share = g->fillet_radius[member] > 0 ? fmin(1, g->residual_undercut[member] / g->fillet_radius[member]) : 0;
+  return g->normal_pressure_angle - acos(1 - share);
+}
+
+/* The trochoid of an undercut tooth begins outside the tooth and cuts through the involute on its way
    down; where it first falls below the base circle, the involute reaches down to that. */
 double eo_fillet_undercut(const struct eo_geometry *g, int member, double *form_radius)
 {
   enum { STEPS = 400, HALVINGS = 60 };
   struct tip tip = rack_tip(g, member);
-  double low = g->normal_pressure_angle, high = low, radius = g->base_radius[member];
+  double start = rounding_start(g, member), low = start, high = start, radius = g->base_radius[member];
   for (int i = 1; i <= STEPS; i++) {
-    high = g->normal_pressure_angle + (M_PI / 2 - g->normal_pressure_angle) * i / STEPS;
+    high = start + (M_PI / 2 - start) * i / STEPS;
     double inside = cut_inside(g, member, &tip, high, &radius);
     if (isnan(inside) || inside > 0)
       break;

@@ -15,6 +15,7 @@ struct eo_gear_entry {
   double shift_sum;                                          /* x1 + x2 */
   double working_pressure_angle;                             /* alpha_wt, rad */
   double shift_length[2];                                    /* [member] x m_n, m */
+  double generating_shift[2];                                /* [member] x_E */
   double addendum[2];                                        /* [member] h_a above the reference circle, m */
 };
 
@@ -45,6 +46,10 @@ struct eo_gear_pair {
   double rim_thickness_coefficient; /* rim below the root that flexes, times m_n; a larger bore cuts it shorter.
                                        Of a sector and a ring that is held */
   double backlash;                  /* 2 tau, normal, m; NaN: eo_gear_pair_backlash() */
+  double generating_offset[2];      /* x_E - x: the root is cut with the shift x_E; 0: without thickness allowance */
+  double protuberance[2];           /* of the cutting tool beyond its flank, m */
+  double grinding_stock[2];         /* left on each flank by it, normal, m */
+  double tip_chamfer[2];    /* radial height of a tip chamfer or rounding: the flank ends that much below d_a/2, m */
   char thickness_series[8]; /* of DIN 3967, as "cd25"; "": the allowances are stated, or follow from the backlash */
   double thickness_allowance[2][2]; /* [member] A_sne, A_sni, normal at the reference cylinder, m, <= 0; NaN: of the
                                        series, else what makes the backlash, half on each member */

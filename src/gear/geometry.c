@@ -59,7 +59,9 @@ static void set_basics(struct eo_geometry *g, const struct eo_gear_pair *pair)
     g->profile_shift[i] = pair->profile_shift[i];
     g->reference_radius[i] = g->transverse_module * g->teeth[i] / 2;
     g->base_radius[i] = g->reference_radius[i] * cos(g->transverse_pressure_angle);
-    g->root_radius[i] = g->reference_radius[i] - g->dedendum[i] + g->profile_shift[i] * g->normal_module;
+    g->generating_shift[i] = g->profile_shift[i] + pair->generating_offset[i];
+    g->residual_undercut[i] = fmax(0, pair->protuberance[i] - pair->grinding_stock[i]);
+    g->root_radius[i] = g->reference_radius[i] - g->dedendum[i] + g->generating_shift[i] * g->normal_module;
   }
   g->transverse_base_pitch = M_PI * g->transverse_module * cos(g->transverse_pressure_angle);
   g->normal_base_pitch = g->transverse_base_pitch * cos(g->base_helix_angle);
@@ -140,7 +142,7 @@ double eo_geometry_half_angle(const struct eo_geometry *g, int member, double ra
 static enum eo_code set_root(struct eo_geometry *g, int i, struct eo_error *error)
 {
   double flank_end = g->dedendum[i] - g->fillet_radius[i] * (1 - sin(g->normal_pressure_angle)) -
-                     g->profile_shift[i] * g->normal_module;
+                     g->generating_shift[i] * g->normal_module;
   double roll = g->base_radius[i] * tan(g->transverse_pressure_angle) - flank_end / sin(g->transverse_pressure_angle);
   if (g->root_radius[i] <= 0)
     return eo_error_set(error, EO_ERROR_INPUT, "/gear_pair/dedendum_coefficient",
@@ -156,7 +158,7 @@ static enum eo_code set_root(struct eo_geometry *g, int i, struct eo_error *erro
   g->undercut[i] = roll <= 0;
   g->least_shift[i] = g->profile_shift[i] - roll * sin(g->transverse_pressure_angle) / g->normal_module;
   g->fillet_end[i] = g->normal_pressure_angle;
-  if (g->undercut[i])
+  if (g->undercut[i] || g->residual_undercut[i] > 0)
     g->fillet_end[i] = eo_fillet_undercut(g, i, &g->form_radius[i]);
   else
     g->form_radius[i] = hypot(g->base_radius[i], roll);
@@ -205,6 +207,7 @@ static void shorten_tips(struct eo_geometry *g, const struct eo_gear_pair *pair)
       g->tip_radius[i] = whole_nanometres(fmin(blunt_tip(g, i, usual), clearing_tip(g, 1 - i, 0.01 * g->normal_module)),
                                           usual);
     g->shortened[i] = usual - g->tip_radius[i];
+    g->tip_form_radius[i] = g->tip_radius[i] - pair->tip_chamfer[i];
   }
 }
 
@@ -221,13 +224,13 @@ static enum eo_code set_path(struct eo_geometry *g, const struct eo_gear_pair *p
 {
   double length[2];
   for (int i = 0; i < 2; i++) {
-    if (g->tip_radius[i] <= g->working_radius[i])
+    if (g->tip_form_radius[i] <= g->working_radius[i])
       return eo_error_set(
           error, EO_ERROR_INPUT, isnan(pair->tip_diameter[i]) ? shift_key[i] : tip_key[i],
-          "The tip radius of the %s, %.6g mm, is not above its working pitch radius, %.6g mm: more profile "
+          "The flank of the %s ends at %.6g mm, not above its working pitch radius, %.6g mm: more profile "
           "shift on this member and less on the other.",
-          name[i], 1e3 * g->tip_radius[i], 1e3 * g->working_radius[i]);
-    length[i] = sqrt(g->tip_radius[i] * g->tip_radius[i] - g->base_radius[i] * g->base_radius[i]) -
+          name[i], 1e3 * g->tip_form_radius[i], 1e3 * g->working_radius[i]);
+    length[i] = sqrt(g->tip_form_radius[i] * g->tip_form_radius[i] - g->base_radius[i] * g->base_radius[i]) -
                 g->tangent_length[i];
   }
   g->path_start = -length[EO_GEAR];

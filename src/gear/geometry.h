@@ -22,6 +22,7 @@ struct eo_geometry {
   double base_radius[2];        /* r_b */
   double tip_radius[2];         /* r_a */
   double shortened[2];          /* by how much the tip radius is below d_a/2 of the rack so that it clears the mate */
+  double tip_form_radius[2];    /* r_Fa, where a tip chamfer ends the flank; r_a without one */
   double root_radius[2];        /* r_f */
   double form_radius[2];        /* r_Ff, where the generated fillet meets the involute */
   double start_radius[2];       /* r_SAP, where the active profile starts (contact with the other member's tip) */
@@ -39,7 +40,9 @@ struct eo_geometry {
   double rack_bottom, rack_top; /* u_A, u_E of the pinion; of the gear -u_E, -u_A */
   double dedendum[2];           /* h_fP, m, of the member's basic rack */
   double fillet_radius[2];      /* rho_fP, m */
-  bool undercut[2];             /* the trochoid cuts the involute at r_Ff instead of touching it there */
+  double generating_shift[2];   /* x_E: of the tool that cuts the root */
+  double residual_undercut[2];  /* s_pr: protuberance of the tool beyond the stock it leaves, >= 0, m */
+  bool undercut[2];             /* the rack cuts into the involute, protuberance aside */
   double least_shift[2];        /* x from which on there is no undercut */
   double fillet_end[2];         /* angle of the rack's rounding at which the trochoid ends at r_Ff, rad: alpha_n without
                                    undercut */

@@ -612,6 +612,8 @@ static void test_pair_identity(void)
   struct eo_geometry geometry;
   static const char *const none[] = {NULL},
                            *const entries[] = {"transverse_module_mm",
+                                               "pinion_generating_shift",
+                                               "gear_generating_shift",
                                                "normal_diametral_pitch_per_inch",
                                                "transverse_diametral_pitch_per_inch",
                                                "transverse_pressure_angle_deg",

@@ -239,8 +239,12 @@ static void test_drawn(void)
       eo_pair_dimensions_init(&dimensions, &design.gear_pair, &geometry);
       for (int k = 0; k < 2; k++) {
         const struct eo_member_dimensions *m = &dimensions.member[k];
-        unmeasured += !(m->normal_thickness[EO_LOWER] > 0) || (!m->teeth_spanned && !*m->span_reason) ||
-                      (isnan(m->ball) && !*m->ball_reason);
+        bool odd = !isfinite(m->normal_thickness[EO_LOWER]) || (!m->teeth_spanned && !*m->span_reason) ||
+                   (isnan(m->ball) && !*m->ball_reason);
+        unmeasured += odd;
+        if (odd)
+          printf("# %d, member %d: s_n %.4g mm, k %d, ball %.4g mm\n", i, k, 1e3 * m->normal_thickness[EO_LOWER],
+                 m->teeth_spanned, 1e3 * m->ball);
       }
       continue;
     }
@@ -393,6 +397,91 @@ static void test_assumed(void)
   json_decref(assumed);
 }
 
+/* Where the fillet ends the involute begins: at the place of both curves, which the rating room finds in its own way
+   from the tooth alone. */
+static void test_roots(void)
+{
+  static const struct {
+    const char *pair, *what;
+    double published; /* d_Ff, mm; 0: none */
+  } row[] = {
+      {"\"ends\":1,\"pinion_teeth\":9,\"gear_teeth\":44,\"normal_module_mm\":6,\"helix_angle_deg\":24,\"face_width_"
+       "mm\":55",
+       "undercut", 0},
+      {"\"ends\":1,\"pinion_teeth\":17,\"gear_teeth\":60,\"normal_module_mm\":4,\"helix_angle_deg\":0,\"face_width_"
+       "mm\":20,"
+       "\"pinion_profile_shift\":-0.35,\"gear_profile_shift\":0.35,\"fillet_radius_coefficient\":0.25",
+       "undercut by negative shift", 0},
+      {"\"ends\":1,\"pinion_teeth\":24,\"gear_teeth\":95,\"normal_module_mm\":14,\"helix_angle_deg\":10,\"face_width_"
+       "mm\":360,"
+       "\"pinion_profile_shift\":0.48,\"centre_distance_mm\":861,\"pinion_generating_shift\":0.4672",
+       "cut with its upper allowance", 328.754},
+  };
+  for (size_t i = 0; i < sizeof row / sizeof *row; i++) {
+    double end[2], start[2], normal[2];
+    ok(complete(with_pair(row[i].pair)), "%s %s", row[i].what, error.text);
+    const struct eo_tooth tooth = {.teeth = geometry.teeth[0],
+                                   .normal_module = geometry.normal_module,
+                                   .normal_pressure_angle = geometry.normal_pressure_angle,
+                                   .helix_angle = geometry.helix_angle,
+                                   .profile_shift = geometry.generating_shift[0],
+                                   .dedendum_coefficient = geometry.dedendum[0] / geometry.normal_module,
+                                   .fillet_radius_coefficient = geometry.fillet_radius[0] / geometry.normal_module};
+    eo_geometry_fillet(&geometry, EO_PINION, 1, end, normal);
+    eo_geometry_involute(&geometry, EO_PINION, geometry.form_radius[0], start, normal);
+    close_to(hypot(end[0] - start[0], end[1] - start[1]), 0, 1e-9, "the fillet meets the involute, m");
+    close_to(2 * geometry.form_radius[0], eo_tooth_form_diameter(&tooth, NULL), 1e-9, "at the form circle, m");
+    if (row[i].published > 0)
+      close_to(2e3 * geometry.form_radius[0], row[i].published, 1e-3, "as published, mm");
+  }
+}
+
+/* A tool with 100 um of protuberance and 60 um of stock: the fillet runs 40 um inside the flank of a tool without, ends
+   where its rounding has come back to the flank, and weakens the root. */
+static void test_protuberance(void)
+{
+  const char *pair = "\"ends\":1,\"pinion_teeth\":24,\"gear_teeth\":95,\"normal_module_mm\":6,\"helix_angle_deg\":10,"
+                     "\"face_width_mm\":60,\"pinion_protuberance_um\":%g,\"pinion_grinding_stock_um\":60";
+  char text[600];
+  double plain[2], cut[2], end[2], start[2], normal[2], plain_form;
+  snprintf(text, sizeof text, pair, 60.);
+  complete(with_pair(text));
+  plain_form = geometry.form_radius[0];
+  eo_geometry_fillet(&geometry, EO_PINION, 0.75, plain, normal);
+  snprintf(text, sizeof text, pair, 100.);
+  ok(complete(with_pair(text)) && geometry.residual_undercut[0] == 40e-6 && !geometry.undercut[0], "protuberance %s",
+     error.text);
+  double nearest = INFINITY;
+  for (int i = 0; i <= 4000; i++) {
+    eo_geometry_fillet(&geometry, EO_PINION, i / 4000., cut, normal);
+    nearest = fmin(nearest, hypot(cut[0] - plain[0], cut[1] - plain[1]));
+  }
+  ok(nearest > 20e-6 && nearest < 45e-6, "the fillet lies %.1f um further in", 1e6 * nearest);
+  eo_geometry_fillet(&geometry, EO_PINION, 1, end, normal);
+  eo_geometry_involute(&geometry, EO_PINION, geometry.form_radius[0], start, normal);
+  close_to(hypot(end[0] - start[0], end[1] - start[1]), 0, 1e-9, "and meets the involute, m");
+  ok(geometry.form_radius[0] > plain_form, "further out: %.4f instead of %.4f mm", 1e3 * geometry.form_radius[0],
+     1e3 * plain_form);
+}
+
+/* A chamfer ends the flank: contact begins and ends there, the clearance stays that of the tip. */
+static void test_chamfer(void)
+{
+  const char *plain = TEETH "\"normal_module_mm\":3";
+  ok(complete(with_pair(plain)), "without a chamfer");
+  struct eo_geometry before = geometry;
+  ok(complete(with_pair(TEETH "\"normal_module_mm\":3,\"gear_tip_chamfer_mm\":0.3")), "with one %s", error.text);
+  close_to(geometry.tip_form_radius[EO_GEAR], before.tip_radius[EO_GEAR] - 0.3e-3, 1e-15,
+           "the flank ends below the tip");
+  close_to(-geometry.path_start,
+           sqrt(pow(geometry.tip_form_radius[EO_GEAR], 2) - pow(geometry.base_radius[EO_GEAR], 2)) -
+               geometry.tangent_length[EO_GEAR],
+           1e-15, "and contact starts there");
+  ok(geometry.tip_clearance[EO_GEAR] == before.tip_clearance[EO_GEAR] &&
+         geometry.transverse_contact_ratio < before.transverse_contact_ratio,
+     "less contact, the same clearance");
+}
+
 static void test_power(void)
 {
   json_t *document = with_pair(TEETH "\"normal_module_mm\":3");
@@ -418,6 +507,9 @@ int main(void)
   test_migration();
   test_written_by_first();
   test_assumed();
+  test_roots();
+  test_protuberance();
+  test_chamfer();
   test_power();
   return tap_done();
 }
