@@ -4,13 +4,13 @@
 
 #include "app/app.h"
 #include "app/number.h"
-#include "document/design_export.h"
+#include "exchange/exports.h"
 
 static int list_formats(void)
 {
   struct eo_text text = {0};
   const struct eo_export *format;
-  for (int i = 0; (format = eo_export_at(i)); i++)
+  for (int i = 0; (format = eo_exports_at(i)); i++)
     eo_text_print(&text, "%-20s %s\n", format->name, format->summary);
   return eo_app_print(&text);
 }
@@ -18,7 +18,7 @@ static int list_formats(void)
 static const struct eo_export *find_format(const char *name, int *status)
 {
   struct eo_error error;
-  const struct eo_export *format = name ? eo_export_find(name) : NULL;
+  const struct eo_export *format = name ? eo_exports_find(name) : NULL;
   if (format)
     return format;
   eo_error_set(&error, EO_ERROR_INPUT, "",

@@ -152,8 +152,7 @@ void eo_import_done(struct eo_import *import)
   }
 }
 
-enum eo_code eo_import_read(struct eo_import *import, const char *bytes, size_t size,
-                            const struct eo_import_options *options_, struct eo_error *error)
+bool eo_import_begin(struct eo_import *import)
 {
   memset(import, 0, sizeof *import);
   json_t **const list[] = {&import->pairs,   &import->not_used, &import->refused,
@@ -162,6 +161,13 @@ enum eo_code eo_import_read(struct eo_import *import, const char *bytes, size_t 
     *list[i] = json_array();
     import->failed = import->failed || !*list[i];
   }
+  return !import->failed;
+}
+
+enum eo_code eo_import_read(struct eo_import *import, const char *bytes, size_t size,
+                            const struct eo_import_options *options_, struct eo_error *error)
+{
+  eo_import_begin(import);
   if (!import->failed)
     eo_import_rexs(import, bytes, size, options_);
   if (json_array_size(import->faults) > 0) {

@@ -42,7 +42,10 @@ void eo_import_done(struct eo_import *import);
 /* The answer as a document; NULL without memory. */
 json_t *eo_import_encode(const struct eo_import *import);
 
-/* For the readers: an entry of a list of texts. */
+/* For the readers: an empty answer; false: no memory. */
+bool eo_import_begin(struct eo_import *import);
+
+/* An entry of a list of texts. */
 void eo_import_say(struct eo_import *import, json_t *list, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 /* A fault; returns it for more members, borrowed, NULL without memory. */

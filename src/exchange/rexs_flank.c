@@ -205,7 +205,7 @@ static void set_up(struct eo_rexs_flank *flank, struct eo_rexs_import *import, i
   flank->end = end;
   flank->coast = coast;
   flank->amount = import->options->transverse ? cos(import->geometry.base_helix_angle) : 1;
-  flank->leading = import->wheel[EO_PINION][end].helix * import->rotation > 0 ? 1 : -1;
+  flank->leading = import->wheel[EO_PINION][end].helix * import->rotation < 0 ? -1 : 1;
   flank->datum = datum && strcmp(datum->text, "positive") == 0 ? wheel->along : -wheel->along;
   double left = end == EO_LEFT ? import->left : 2 * import->middle - import->right;
   flank->shift = (wheel->left + wheel->right) / 2 - (left + import->width / 2);

@@ -7,8 +7,10 @@
 #include <string.h>
 
 #include "document/design_document.h"
+#include "exchange/rexs_export.h"
 #include "exchange/rexs_read.h"
 #include "exchange/rexs_schema.h"
+#include "format/json.h"
 
 json_t *eo_rexs_part(struct eo_rexs_import *import, json_t *document, const char *key)
 {
@@ -269,6 +271,91 @@ static void read_pair(struct eo_rexs_import *import)
   eo_rexs_name_unused(import);
 }
 
+/* A file of Easeoff's own carries the design it was made of. It holds where the model still says what that design says:
+   where the design, written again and read as any model, gives what this file gives. */
+static bool alike(const json_t *a, const json_t *b)
+{
+  const double same = 1e-9;
+  const char *key;
+  json_t *value;
+  size_t i;
+  if (json_is_number(a) && json_is_number(b)) {
+    double x = json_number_value(a), y = json_number_value(b);
+    return fabs(x - y) <= same * fmax(1, fabs(x));
+  }
+  if (json_typeof(a) != json_typeof(b) || json_object_size(a) != json_object_size(b) ||
+      json_array_size(a) != json_array_size(b))
+    return false;
+  json_object_foreach((json_t *)a, key, value)
+  {
+    const json_t *other = json_object_get(b, key);
+    if (!other || !alike(value, other))
+      return false;
+  }
+  json_array_foreach(a, i, value) if (!alike(value, json_array_get(b, i))) return false;
+  return json_is_object(a) || json_is_array(a) || json_equal(a, b);
+}
+
+static json_t *carried_design(const struct eo_rexs_model *model)
+{
+  struct eo_error error;
+  for (int i = 0; i < model->components; i++) {
+    const struct eo_rexs_attribute *a = eo_rexs_attribute(&model->component[i], "custom_easeoff_design");
+    if (a)
+      return eo_json_parse(a->text, strlen(a->text), &error);
+  }
+  return NULL;
+}
+
+static void read_model(struct eo_import *out, const struct eo_rexs_model *model,
+                       const struct eo_import_options *options);
+
+/* What a model of the design would be read as; false: it can no longer be read or completed. */
+static bool read_again(const json_t *carried, struct eo_import *again)
+{
+  struct eo_design *design = calloc(1, sizeof *design);
+  struct eo_faults *faults = calloc(1, sizeof *faults);
+  struct eo_rexs_model *model = calloc(1, sizeof *model);
+  struct eo_geometry geometry;
+  struct eo_error error;
+  const struct eo_import_options options = {0};
+  bool good = design && faults && model && eo_import_begin(again) && eo_design_decode(carried, design, NULL, faults) &&
+              !eo_design_complete(design, &geometry, &error);
+  if (good) {
+    eo_rexs_export(design, &geometry, EO_REXS_EXPORT_VERSION, false, model);
+    read_model(again, model, &options);
+    good = !model->failed && !again->failed && again->design && !json_array_size(again->faults);
+  }
+  if (model)
+    eo_rexs_done(model);
+  free(model);
+  free(design);
+  free(faults);
+  return good;
+}
+
+static void take_carried_design(struct eo_import *out, const struct eo_rexs_model *model)
+{
+  json_t *carried = out->design && !json_array_size(out->faults) ? carried_design(model) : NULL;
+  struct eo_import again = {0};
+  if (!carried)
+    return;
+  if (read_again(carried, &again) && alike(out->design, again.design)) {
+    json_decref(out->design);
+    out->design = json_incref(carried);
+    json_array_clear(out->assumed);
+    json_array_clear(out->refused);
+    eo_import_say(out, out->notes,
+                  "The file carries the design that it was made of and still says the same: that design "
+                  "was taken, whole.");
+  } else
+    eo_import_say(out, out->notes,
+                  "The file carries an Easeoff design, but its model says something else by now: the "
+                  "model was read.");
+  eo_import_done(&again);
+  json_decref(carried);
+}
+
 static void read_model(struct eo_import *out, const struct eo_rexs_model *model,
                        const struct eo_import_options *options)
 {
@@ -308,9 +395,10 @@ void eo_import_rexs(struct eo_import *out, const char *bytes, size_t size, const
   struct eo_rexs_problem problem;
   if (!model)
     out->failed = true;
-  else if (eo_rexs_read(model, bytes, size, &problem))
+  else if (eo_rexs_read(model, bytes, size, &problem)) {
     read_model(out, model, options);
-  else if (problem.error.code == EO_ERROR_MEMORY)
+    take_carried_design(out, model);
+  } else if (problem.error.code == EO_ERROR_MEMORY)
     out->failed = true;
   else {
     snprintf(out->format, sizeof out->format, "REXS");

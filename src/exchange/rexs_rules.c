@@ -175,6 +175,8 @@ const struct eo_rexs_rule eo_rexs_rules[] = {
      false, NULL, 102, false},
     {"type_of_interpolation_topographical_modification", "topographical_modification", EO_REXS_WORD, "none", -INFINITY,
      INFINITY, false, "linear spline", 102, false},
+    {"custom_easeoff_lead_offset", "cylindrical_gear_flank", EO_REXS_NUMBER, "mm", -INFINITY, INFINITY, false, NULL,
+     100, false},
     {"custom_easeoff_design", "gear_unit", EO_REXS_STRING, "none", -INFINITY, INFINITY, false, NULL, 100, false},
 };
 const int eo_rexs_rule_count = sizeof eo_rexs_rules / sizeof eo_rexs_rules[0];

@@ -2,13 +2,13 @@
 /* Files for other programs. */
 #include <stdio.h>
 
-#include "document/design_export.h"
+#include "exchange/exports.h"
 #include "http/route.h"
 #include "http/http_private.h"
 
 static void export(struct eo_request *request)
 {
-  const struct eo_export *format = eo_export_find(request->argument[0]);
+  const struct eo_export *format = eo_exports_find(request->argument[0]);
   struct eo_design design;
   struct eo_geometry geometry;
   if (!format) {
@@ -33,7 +33,7 @@ static void list(struct eo_request *request)
 {
   json_t *items = json_array();
   const struct eo_export *format;
-  for (int i = 0; (format = eo_export_at(i)); i++)
+  for (int i = 0; (format = eo_exports_at(i)); i++)
     json_array_append_new(
         items, json_pack("{s:s, s:s, s:s}", "name", format->name, "title", format->summary, "type", format->type));
   eo_reply_json(&request->reply, 200, json_pack("{s:o}", "items", items));
