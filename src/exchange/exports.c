@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "exchange/rexs_export.h"
+#include "exchange/step.h"
 
 static void write_rexs(const struct eo_design *design, const struct eo_geometry *geometry, int version,
                        enum eo_rexs_form form, struct eo_text *text)
@@ -45,12 +46,27 @@ static void write_newest_json(const struct eo_design *design, const struct eo_ge
   write_rexs(design, geometry, 200, EO_REXS_JSON, text);
 }
 
+#define STEP(name, member, whole)                                                                                    \
+  static void write_##name(const struct eo_design *design, const struct eo_geometry *geometry, struct eo_text *text) \
+  {                                                                                                                  \
+    eo_step_write(design, geometry, member, whole, text);                                                            \
+  }
+STEP(pinion_tooth, EO_PINION, false)
+STEP(gear_tooth, EO_GEAR, false)
+STEP(pinion_teeth, EO_PINION, true)
+STEP(gear_teeth, EO_GEAR, true)
+
 static const struct eo_export formats[] = {
     {"rexs", "the pair as a REXS 1.7 model, for other gear programs", "application/xml", "rexs", write_xml, NULL},
     {"rexs-json", "the same as JSON", "application/json", "rexsj", write_json, NULL},
     {"rexs-zip", "the same in a zip archive", "application/zip", "rexsz", write_zip, NULL},
     {"rexs-2.0.0", "the pair as a REXS 2.0.0 model", "application/xml", "rexs", write_newest, NULL},
     {"rexs-2.0.0-json", "the same as JSON", "application/json", "rexsj", write_newest_json, NULL},
+    {"step-pinion", "one tooth of each end of the pinion for CAD: B-spline faces within 5 nm, STEP AP242", "model/step",
+     "step", write_pinion_tooth, NULL},
+    {"step-gear", "the same of the gear", "model/step", "step", write_gear_tooth, NULL},
+    {"step-pinion-whole", "all teeth of the pinion", "model/step", "step", write_pinion_teeth, NULL},
+    {"step-gear-whole", "all teeth of the gear", "model/step", "step", write_gear_teeth, NULL},
 };
 enum { FORMATS = sizeof formats / sizeof formats[0] };
 

@@ -1,0 +1,16 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* One member as STEP (ISO 10303-21 with the schema of AP242): open shells of B-spline faces, one face per smooth piece,
+   neighbours with common edges; flanks within 5 nm of the exact surface. Lengths in mm, frame as in tooth.h. */
+#ifndef EASEOFF_EXCHANGE_STEP_H
+#define EASEOFF_EXCHANGE_STEP_H
+
+#include "design/design.h"
+#include "format/text.h"
+#include "gear/geometry.h"
+
+/* whole: every tooth, else one of each end. Without memory, and where a surface cannot be fitted, the text has failed.
+ */
+void eo_step_write(const struct eo_design *design, const struct eo_geometry *geometry, int member, bool whole,
+                   struct eo_text *text);
+
+#endif

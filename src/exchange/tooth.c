@@ -1,0 +1,203 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "exchange/tooth.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "gear/surface.h"
+
+const char *const eo_tooth_part_names[EO_TOOTH_PARTS] = {"drive flank", "coast flank", "tip land",
+                                                         "root at drive flank", "root at coast flank"};
+
+/* Angle from +y towards +x of the unmodified flank at the pitch radius, as eo_surface_evaluate() has it. */
+static double pitch_angle(const struct eo_geometry *geometry, int member, double eta)
+{
+  const struct eo_flank_modification none = {0};
+  struct eo_modification_shape shape;
+  struct eo_surface_point point;
+  double u, v;
+  eo_modification_init(&shape, geometry, member, &none);
+  eo_surface_coordinates(geometry, member, 0, eta, &u, &v);
+  eo_surface_evaluate(geometry, member, &shape, u, v, &point);
+  return atan2(point.position[0], point.position[1]);
+}
+
+/* Parameter where the root circle ends and the trochoid begins. */
+static double find_circle(const struct eo_geometry *geometry, int member)
+{
+  const double above = 1e-9; /* m */
+  double low = 0, high = 1, point[2], normal[2];
+  for (int i = 0; i < 50; i++) {
+    double middle = (low + high) / 2;
+    eo_geometry_fillet(geometry, member, middle, point, normal);
+    if (hypot(point[0], point[1]) - geometry->root_radius[member] > above)
+      high = middle;
+    else
+      low = middle;
+  }
+  return low;
+}
+
+void eo_tooth_init(struct eo_tooth *tooth, const struct eo_design *design, const struct eo_geometry *geometry,
+                   int member, int end)
+{
+  const struct eo_flank_modification none = {0};
+  double point[2], normal[2], eta = geometry->face_width / 4;
+  memset(tooth, 0, sizeof *tooth);
+  tooth->geometry = geometry;
+  tooth->member = member;
+  tooth->end = end;
+  tooth->two_ends = design->gear_pair.ends == 2;
+  eo_modification_init(&tooth->shape[0], geometry, member, &design->modification.flank[member][end]);
+  eo_modification_init(&tooth->shape[1], geometry, member, &none);
+  if (tooth->two_ends)
+    tooth->offset = (design->gear_pair.groove_width + design->gear_pair.face_width) / 2;
+  double behind = end == EO_RIGHT ? design->alignment.stagger * 2 * M_PI / geometry->teeth[member] : 0;
+  tooth->turn = pitch_angle(geometry, member, 0) + (member == EO_PINION ? behind : -behind);
+  double along = member == EO_PINION ? eta : -eta; /* z of the surface's own frame */
+  tooth->twist = (pitch_angle(geometry, member, eta) - pitch_angle(geometry, member, 0)) / along;
+  eo_geometry_involute(geometry, member, geometry->working_radius[member], point, normal);
+  tooth->half = atan2(point[0], point[1]);
+  tooth->form_path = eo_geometry_own_path(member, eo_geometry_path_at(geometry, member, geometry->form_radius[member]));
+  tooth->tip_path = eo_geometry_own_path(member, eo_geometry_path_at(geometry, member, geometry->tip_radius[member]));
+  tooth->circle_share = find_circle(geometry, member);
+}
+
+static bool is_flank(enum eo_tooth_part part)
+{
+  return part == EO_TOOTH_DRIVE || part == EO_TOOTH_COAST;
+}
+
+static int add_break(double at[EO_TOOTH_PIECES + 1], int count, double value)
+{
+  const double least = 1e-6; /* a piece smaller than this would be no face */
+  if (value <= at[count - 1] + least || value >= 1 - least)
+    return count;
+  at[count] = value;
+  return count + 1;
+}
+
+/* Of a flank: the vertices of its reliefs. */
+static int profile_breaks(const struct eo_tooth *tooth, const struct eo_modification_shape *shape,
+                          double at[EO_TOOTH_PIECES + 1])
+{
+  double from = tooth->form_path, length = tooth->tip_path - from, factor = tooth->geometry->rack_factor;
+  int count = 1;
+  if (shape->side[0].length > 0)
+    count = add_break(at, count, (-shape->side[0].start / factor - from) / length);
+  if (shape->side[1].length > 0)
+    count = add_break(at, count, (shape->side[1].start / factor - from) / length);
+  return count;
+}
+
+/* Of a flank: where its end reliefs start, from left to right. */
+static int face_breaks(const struct eo_tooth *tooth, const struct eo_modification_shape *shape,
+                       double at[EO_TOOTH_PIECES + 1])
+{
+  double width = tooth->geometry->face_width, beta = tooth->geometry->helix_angle, part[2];
+  bool mirrored = tooth->two_ends && tooth->end == EO_LEFT;
+  int count = 1;
+  for (int i = 0; i < 2; i++) {
+    double y = shape->end_start[i] * cos(beta) * (i ? 1 : -1);
+    part[i] = shape->end_relief[i] != 0 ? 0.5 + (mirrored ? -y : y) / width : -1;
+  }
+  for (int i = 0; i < 2; i++)
+    count = add_break(at, count, part[mirrored ? 1 - i : i]);
+  return count;
+}
+
+int eo_tooth_breaks(const struct eo_tooth *tooth, enum eo_tooth_part part, int direction,
+                    double at[EO_TOOTH_PIECES + 1])
+{
+  int count = 1;
+  at[0] = 0;
+  if (is_flank(part) && direction == 0)
+    count = profile_breaks(tooth, &tooth->shape[part == EO_TOOTH_COAST], at);
+  else if (is_flank(part))
+    count = face_breaks(tooth, &tooth->shape[part == EO_TOOTH_COAST], at);
+  else if (part != EO_TOOTH_TIP && direction == 0)
+    count = add_break(at, count, tooth->circle_share);
+  at[count] = 1;
+  return count + 1;
+}
+
+static void turn_vector(double vector[3], double angle) /* from +y towards +x */
+{
+  double c = cos(angle), s = sin(angle), x = vector[0], y = vector[1];
+  vector[0] = c * x + s * y;
+  vector[1] = c * y - s * x;
+}
+
+/* A flank in the frame of its own end with its tooth's centre on +y in mid face. eta: + to the face that meets first.
+ */
+static void flank_point(const struct eo_tooth *tooth, bool coast, double path, double eta, double point[3],
+                        double normal[3])
+{
+  struct eo_surface_point exact;
+  double u, v, s = eo_geometry_own_path(tooth->member, path), own = coast ? -eta : eta;
+  eo_surface_coordinates(tooth->geometry, tooth->member, s, own, &u, &v);
+  eo_surface_evaluate(tooth->geometry, tooth->member, &tooth->shape[coast], u, v, &exact);
+  memcpy(point, exact.position, sizeof exact.position);
+  memcpy(normal, exact.normal, sizeof exact.normal);
+  double *const both[2] = {point, normal};
+  for (int i = 0; i < 2; i++) {
+    turn_vector(both[i], tooth->half - pitch_angle(tooth->geometry, tooth->member, 0));
+    if (coast) { /* half a turn about the tooth's centre */
+      both[i][0] = -both[i][0];
+      both[i][2] = -both[i][2];
+    }
+  }
+}
+
+/* What is no flank: a transverse profile that turns with z. */
+static void swept_point(const struct eo_tooth *tooth, enum eo_tooth_part part, double p, double z, double point[3],
+                        double normal[3])
+{
+  const struct eo_geometry *g = tooth->geometry;
+  if (part == EO_TOOTH_TIP) {
+    double tip[2], across[2];
+    eo_geometry_involute(g, tooth->member, g->tip_radius[tooth->member], tip, across);
+    double angle = (2 * p - 1) * atan2(tip[0], tip[1]);
+    normal[0] = sin(angle);
+    normal[1] = cos(angle);
+    for (int i = 0; i < 2; i++)
+      point[i] = g->tip_radius[tooth->member] * normal[i];
+  } else {
+    eo_geometry_fillet(g, tooth->member, p, point, normal);
+    if (part == EO_TOOTH_COAST_ROOT) {
+      point[0] = -point[0];
+      normal[0] = -normal[0];
+    }
+  }
+  point[2] = z;
+  /* the tangent along z, (dx/dz, dy/dz, 1) with the tooth's twist, is at right angles to the normal */
+  normal[2] = -tooth->twist * (normal[0] * point[1] - normal[1] * point[0]);
+  double length = sqrt(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]);
+  for (int i = 0; i < 3; i++)
+    normal[i] /= length;
+  turn_vector(point, tooth->twist * z);
+  turn_vector(normal, tooth->twist * z);
+}
+
+void eo_tooth_point(const struct eo_tooth *tooth, enum eo_tooth_part part, int number, double p, double q,
+                    double point[3], double normal[3])
+{
+  const struct eo_geometry *g = tooth->geometry;
+  bool mirrored = tooth->two_ends && tooth->end == EO_LEFT;
+  double outwards = g->face_width * (mirrored ? 0.5 - q : q - 0.5), unused[3];
+  double *across = normal ? normal : unused;
+  if (is_flank(part))
+    flank_point(tooth, part == EO_TOOTH_COAST, tooth->form_path + p * (tooth->tip_path - tooth->form_path), outwards,
+                point, across);
+  else
+    swept_point(tooth, part, p, tooth->member == EO_PINION ? outwards : -outwards, point, across);
+  double behind = tooth->turn - pitch_angle(g, tooth->member, 0);
+  double angle = -tooth->half - behind + number * 2 * M_PI / g->teeth[tooth->member];
+  double *const both[2] = {point, across};
+  for (int i = 0; i < 2; i++) {
+    turn_vector(both[i], angle);
+    double outward = tooth->member == EO_PINION ? both[i][2] : -both[i][2];
+    outward += i == 0 ? tooth->offset : 0;
+    both[i][2] = mirrored ? -outward : outward;
+  }
+}

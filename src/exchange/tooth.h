@@ -1,0 +1,53 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The surfaces of one tooth in the frame of the member (that of flank-points): z the axis, from the middle of the
+   groove to the right; the drive flank faces +x and would, unmodified, pass through x = 0 at the working pitch radius
+   in mid face. Teeth have no thickness allowance. */
+#ifndef EASEOFF_EXCHANGE_TOOTH_H
+#define EASEOFF_EXCHANGE_TOOTH_H
+
+#include <stdbool.h>
+
+#include "design/design.h"
+#include "gear/geometry.h"
+#include "gear/modification.h"
+
+enum eo_tooth_part {
+  EO_TOOTH_DRIVE,
+  EO_TOOTH_COAST,
+  EO_TOOTH_TIP,
+  EO_TOOTH_DRIVE_ROOT,
+  EO_TOOTH_COAST_ROOT,
+  EO_TOOTH_PARTS
+};
+extern const char *const eo_tooth_part_names[EO_TOOTH_PARTS];
+
+enum { EO_TOOTH_PIECES = 5 };
+
+struct eo_tooth {
+  const struct eo_geometry *geometry;
+  int member, end;
+  bool two_ends;
+  struct eo_modification_shape shape[2]; /* [drive, coast] */
+  double offset;                         /* mid face from the middle of the groove, m */
+  double turn;                           /* of what eo_surface_evaluate() gives, from +x towards +y, rad */
+  double half;                /* from the tooth's centre to the drive flank at the working pitch radius, rad */
+  double twist;               /* of the tooth per m of z in its own end, from +y towards +x, rad/m */
+  double form_path, tip_path; /* own path coordinate where the flank begins and ends, m */
+  double circle_share;        /* of the root's parameter that is the root circle */
+};
+
+void eo_tooth_init(struct eo_tooth *tooth, const struct eo_design *design, const struct eo_geometry *geometry,
+                   int member, int end);
+
+/* Where a part is cut into smooth pieces: parameters 0..1 along (0: profile, 1: face); 0 and 1 among them. Returns how
+   many, at least 2. */
+int eo_tooth_breaks(const struct eo_tooth *tooth, enum eo_tooth_part part, int direction,
+                    double at[EO_TOOTH_PIECES + 1]);
+
+/* Point (m) and unit normal (may be NULL), out of the tooth. p: profile, from root to tip, of the tip land from the
+   coast to the drive flank, of a root from the middle of the tooth space to the flank; q: face, from left to right.
+   number: of the tooth, 0 the one described above, the others behind it from +y towards +x. */
+void eo_tooth_point(const struct eo_tooth *tooth, enum eo_tooth_part part, int number, double p, double q,
+                    double point[3], double normal[3]);
+
+#endif
