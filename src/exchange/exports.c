@@ -6,6 +6,7 @@
 
 #include "exchange/rexs_export.h"
 #include "exchange/step.h"
+#include "exchange/stl.h"
 
 static void write_rexs(const struct eo_design *design, const struct eo_geometry *geometry, int version,
                        enum eo_rexs_form form, struct eo_text *text)
@@ -56,6 +57,16 @@ STEP(gear_tooth, EO_GEAR, false)
 STEP(pinion_teeth, EO_PINION, true)
 STEP(gear_teeth, EO_GEAR, true)
 
+static void write_pinion_stl(const struct eo_design *design, const struct eo_geometry *geometry, struct eo_text *text)
+{
+  eo_stl_write(design, geometry, EO_PINION, text);
+}
+
+static void write_gear_stl(const struct eo_design *design, const struct eo_geometry *geometry, struct eo_text *text)
+{
+  eo_stl_write(design, geometry, EO_GEAR, text);
+}
+
 static const struct eo_export formats[] = {
     {"rexs", "the pair as a REXS 1.7 model, for other gear programs", "application/xml", "rexs", write_xml, NULL},
     {"rexs-json", "the same as JSON", "application/json", "rexsj", write_json, NULL},
@@ -67,6 +78,10 @@ static const struct eo_export formats[] = {
     {"step-gear", "the same of the gear", "model/step", "step", write_gear_tooth, NULL},
     {"step-pinion-whole", "all teeth of the pinion", "model/step", "step", write_pinion_teeth, NULL},
     {"step-gear-whole", "all teeth of the gear", "model/step", "step", write_gear_teeth, NULL},
+    {"stl-pinion", "the pinion as a closed surface of triangles, for view and print", "model/stl", "stl",
+     write_pinion_stl, NULL},
+    {"stl-gear", "the gear as a closed surface of triangles, for view and print", "model/stl", "stl", write_gear_stl,
+     NULL},
 };
 enum { FORMATS = sizeof formats / sizeof formats[0] };
 
