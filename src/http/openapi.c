@@ -155,6 +155,17 @@ static json_t *encode_answers(const struct eo_route *route)
   return answers;
 }
 
+static const char *body_type(const struct eo_route *route)
+{
+  return strchr(route->takes, '/') ? route->takes : route->form ? "multipart/form-data" : "application/json";
+}
+
+static json_t *body_schema(const struct eo_route *route)
+{
+  return strchr(route->takes, '/') ? json_pack("{s:s, s:s}", "type", "string", "format", "binary")
+                                   : reference_any(route->takes);
+}
+
 static json_t *encode_operation(const struct eo_route *route)
 {
   json_t *parameters = json_array();
@@ -165,9 +176,8 @@ static json_t *encode_operation(const struct eo_route *route)
                                 "parameters", parameters, "responses", encode_answers(route));
   if (route->takes)
     json_object_set_new(operation, "requestBody",
-                        json_pack("{s:b, s:{s:{s:o}}}", "required", !route->takes_nothing, "content",
-                                  route->form ? "multipart/form-data" : "application/json", "schema",
-                                  reference_any(route->takes)));
+                        json_pack("{s:b, s:{s:{s:o}}}", "required", !route->takes_nothing, "content", body_type(route),
+                                  "schema", body_schema(route)));
   if (route->csv)
     json_object_set_new(operation, "description",
                         json_sprintf("As text/csv by the Accept header, or at %s%s.csv.", EO_API, route->pattern));

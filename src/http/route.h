@@ -27,7 +27,7 @@ struct eo_route {
   void (*handle)(struct eo_request *request);
   const char *name;             /* operationId */
   const char *summary;          /* one line */
-  const char *takes;            /* name of the body's schema, "A|B": either; NULL: no body */
+  const char *takes;            /* name of the body's schema, "A|B": either; a media type: any bytes; NULL: no body */
   const struct eo_table *order; /* describes the last name of `takes` and reads it: eo_body_read(); NULL: a design */
   const char *design_at;        /* where the body holds the design; NULL: it is the body */
   bool takes_nothing;           /* the body may be left out */
@@ -62,6 +62,6 @@ void eo_route_run(struct eo_request *request);
 /* The parts of the table, each in the file of its endpoints; each ends with a row without pattern. routes.h has all. */
 extern const struct eo_route eo_routes_service[], eo_routes_session[], eo_routes_examples[], eo_routes_designs[],
     eo_routes_analysis[], eo_routes_jobs[], eo_routes_events[], eo_routes_history[], eo_routes_export[],
-    eo_routes_report[], eo_routes_measurements[], eo_routes_comparison[];
+    eo_routes_report[], eo_routes_import[], eo_routes_measurements[], eo_routes_comparison[];
 
 #endif

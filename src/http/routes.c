@@ -11,6 +11,7 @@ const struct eo_route *const eo_routes[] = {eo_routes_service,
                                             eo_routes_history,
                                             eo_routes_export,
                                             eo_routes_report,
+                                            eo_routes_import,
                                             eo_routes_measurements,
                                             eo_routes_comparison,
                                             NULL};

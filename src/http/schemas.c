@@ -9,6 +9,7 @@
 #include "document/measurement_document.h"
 #include "document/result.h"
 #include "document/sweep_document.h"
+#include "exchange/import.h"
 #include "format/schema.h"
 #include "document/study_result.h"
 #include "http/route.h"
@@ -46,6 +47,7 @@ static const struct eo_outline_row problem_rows[] = {
     EO_KEY("notes", "[text]", "of reading it", .when = "of a recording without a result"),
     EO_KEY("layout", "object?", "of its columns", .when = "of a recording without a result", .name = "Layout"),
     EO_KEY("signal", "object", "its quality", .when = "of a recording without a result", .name = "Signal"),
+    EO_KEY("import", "object", "what was found in the file", .when = "of an import", .name = "Import"),
 };
 static const struct eo_outline problem = EO_OUTLINE("Problem", problem_rows);
 
@@ -255,7 +257,8 @@ static const struct eo_outline *const outlines[] = {&eo_result_outline,
                                                     &jobs,
                                                     &job_history,
                                                     &storage,
-                                                    &measurements};
+                                                    &measurements,
+                                                    &eo_import_outline};
 
 /* A stored measurement is what was measured, behind what is known of its storage. */
 static json_t *stored(const json_t *schemas, const char *measured)

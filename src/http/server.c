@@ -65,7 +65,8 @@ static void look_at_body(struct eo_request *request)
   if (has_body)
     eo_connection_allow(request->http, request->place, route && route->form ? EO_IDLE_SECONDS : EO_BODY_SECONDS);
   const char *expected = route && route->form ? "multipart/form-data" : "application/json";
-  if (!request->reply.status && has_body && route && route->takes && type &&
+  bool any = route && route->takes && strchr(route->takes, '/');
+  if (!request->reply.status && has_body && route && route->takes && !any && type &&
       strncasecmp(type, expected, strlen(expected)) != 0)
     eo_reply_problem(&request->reply, 415, NULL, "The body must be %s.", expected);
   if (!request->reply.status && (uint64_t)size > request->body_limit)

@@ -7,7 +7,7 @@
 
 #include <math.h>
 
-static char *coarse, *order, *named, *sweep;
+static char *coarse, *order, *named, *sweep, *spur, *stages;
 
 struct command {
   const char *what, *method, *path, *headers;
@@ -228,6 +228,21 @@ static const struct command analyses[] = {
      .value = "null"},
     {"the design as a file", "POST", API "/export/design", .body = &coarse, .status = 200, .header = "Content-Type",
      .holds = "application/json"},
+    {"a REXS model as a file", "POST", API "/export/rexs", .body = &coarse, .status = 200, .header = "Content-Type",
+     .holds = "application/xml"},
+    {"a tooth for CAD", "POST", API "/export/step-pinion", .body = &coarse, .status = 200, .header = "Content-Type",
+     .holds = "model/step"},
+    {"a model read", "POST", API "/import", "Content-Type: application/octet-stream\r\n", .body = &spur, .status = 200,
+     .pointer = "design/gear_pair/pinion_teeth", .value = "18"},
+    {"a model of several pairs", "POST", API "/import", "Content-Type: text/xml\r\n", .body = &stages, .status = 422,
+     .pointer = "import/pairs/1/ends", .value = "2"},
+    {"one of several pairs", "POST", API "/import?pair=2", "Content-Type: text/xml\r\n", .body = &stages, .status = 200,
+     .pointer = "design/gear_pair/ends", .value = "2"},
+    {"no such pair", "POST", API "/import?pair=9", .body = &stages, .status = 422, .pointer = "import/faults/0/kind",
+     .value = "no_such_pair"},
+    {"a flank that is none", "POST", API "/import?flank=upper", .body = &spur, .status = 400},
+    {"no model", "POST", API "/import", .text = "<a>", .status = 422, .pointer = "import/faults/0/kind",
+     .value = "not_rexs"},
     {"no such format", "POST", API "/export/picture", .body = &coarse, .status = 404},
 };
 
@@ -490,8 +505,25 @@ static void check_refusals(void)
   waitpid(server.pid, NULL, 0);
 }
 
+/* A file of the reference cases. */
+static char *case_file(const char *name)
+{
+  char path[4096];
+  const char *cases = getenv("CASES");
+  snprintf(path, sizeof path, "%s/exchange/%s", cases ? cases : "tests/cases", name);
+  FILE *file = fopen(path, "rb");
+  char *text = calloc(1, 1 << 17);
+  if (!file || !text || fread(text, 1, (1 << 17) - 1, file) == 0)
+    printf("Bail out! %s cannot be read\n", path);
+  if (file)
+    fclose(file);
+  return text;
+}
+
 int main(void)
 {
+  spur = case_file("spur-1.0.rexs");
+  stages = case_file("two-stage-1.5.rexs");
   json_t *document = coarse_document("ga", 60);
   coarse = coarse_text();
   order = order_text("optimize", "ga", 60, 1);
@@ -532,5 +564,7 @@ int main(void)
   free(order);
   free(named);
   free(sweep);
+  free(spur);
+  free(stages);
   return tap_done();
 }

@@ -180,6 +180,23 @@ class Client:
         path = f"/export/{quote(format, safe='')}"
         return self.transport.request("POST", path, document=design, accept="*/*").body
 
+    @operation("importDesign")
+    def import_design(
+        self,
+        file: str | Path | bytes,
+        pair: int = 0,
+        flank: str | None = None,
+        transverse: bool = False,
+        reversed: bool = False,
+    ) -> doc.Import:
+        """A design out of a REXS model or a table (a path, or its content); of several pairs one by its number.
+
+        Problem 422 holds the faults, and under "import" the pairs to choose from.
+        """
+        content = file if isinstance(file, bytes) else Path(file).read_bytes()
+        query = {"pair": pair, "flank": flank, "transverse": int(transverse), "reversed": int(reversed)}
+        return self._json("POST", "/import", query=query, form=("application/octet-stream", content))
+
     # -- jobs
 
     @operation("addJob")

@@ -1,0 +1,67 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Files of other programs. The body is the file itself, as it is. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "exchange/import.h"
+#include "http/http_private.h"
+#include "http/route.h"
+
+static int flank_of(const char *word)
+{
+  return !word ? 0 : strcmp(word, "left") == 0 ? 1 : 2;
+}
+
+/* 422, with each fault as an error and the whole answer beside: the pairs to choose from stand in it. */
+static void refuse(struct eo_request *request, const struct eo_import *import)
+{
+  json_t *errors = json_array();
+  const json_t *fault;
+  size_t i;
+  json_array_foreach(import->faults, i, fault)
+  {
+    const char *pointer = json_string_value(json_object_get(fault, "pointer"));
+    json_array_append_new(
+        errors, json_pack("{s:s, s:O}", "pointer", pointer ? pointer : "", "detail", json_object_get(fault, "text")));
+  }
+  json_t *more = json_pack("{s:o, s:o}", "errors", errors, "import", eo_import_encode(import));
+  eo_reply_problem_with(&request->reply, 422, "import", more,
+                        json_string_value(json_object_get(json_array_get(import->faults, 0), "text")));
+}
+
+static void import(struct eo_request *request)
+{
+  struct eo_import_options options = {
+      .pair = (int)eo_route_number(request, "pair"),
+      .transverse = eo_route_number(request, "transverse") != 0,
+      .reversed = eo_route_number(request, "reversed") != 0,
+      .flank = flank_of(eo_request_query(request, "flank")),
+  };
+  struct eo_import answer;
+  struct eo_error error;
+  if (eo_import_read(&answer, request->body.size ? request->body.data : "", request->body.size, &options, &error))
+    eo_reply_error(&request->reply, "", &error);
+  else if (json_array_size(answer.faults))
+    refuse(request, &answer);
+  else
+    eo_reply_json(&request->reply, 200, eo_import_encode(&answer));
+  eo_import_done(&answer);
+}
+
+const struct eo_route eo_routes_import[] = {
+    {.method = EO_POST,
+     .pattern = "/import",
+     .handle = import,
+     .name = "importDesign",
+     .takes = "application/octet-stream",
+     .body = (size_t)32 << 20,
+     .rate = EO_RATE_START,
+     .aside = true,
+     .gives = "200 Import",
+     .query = {{"pair", 0, 100000, 0, NULL,
+                "which of the pairs, or of the designs of a table, from 1; 0: the only one"},
+               {"flank", 0, 0, 0, "left|right", "loaded flank of the driver, where the file leaves it open"},
+               {"transverse", 0, 1, 0, NULL, "1: amounts of modifications stand in the transverse section"},
+               {"reversed", 0, 1, 0, NULL, "1: a positive helix slope takes material off towards the datum face"}},
+     .summary = "A design out of a REXS model or a table; the body is the file. Of several pairs one is chosen."},
+    {0}};
