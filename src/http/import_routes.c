@@ -24,7 +24,7 @@ static void refuse(struct eo_request *request, const struct eo_import *import)
     json_array_append_new(
         errors, json_pack("{s:s, s:O}", "pointer", pointer ? pointer : "", "detail", json_object_get(fault, "text")));
   }
-  json_t *more = json_pack("{s:o, s:o}", "errors", errors, "import", eo_import_encode(import));
+  json_t *more = json_pack("{s:o, s:o}", "errors", errors, "imported", eo_import_encode(import));
   eo_reply_problem_with(&request->reply, 422, "import", more,
                         json_string_value(json_object_get(json_array_get(import->faults, 0), "text")));
 }

@@ -47,7 +47,7 @@ static const struct eo_outline_row problem_rows[] = {
     EO_KEY("notes", "[text]", "of reading it", .when = "of a recording without a result"),
     EO_KEY("layout", "object?", "of its columns", .when = "of a recording without a result", .name = "Layout"),
     EO_KEY("signal", "object", "its quality", .when = "of a recording without a result", .name = "Signal"),
-    EO_KEY("import", "object", "what was found in the file", .when = "of an import", .name = "Import"),
+    EO_KEY("imported", "object", "what was found in the file", .when = "of an import", .name = "Import"),
 };
 static const struct eo_outline problem = EO_OUTLINE("Problem", problem_rows);
 

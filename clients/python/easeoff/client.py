@@ -191,7 +191,7 @@ class Client:
     ) -> doc.Import:
         """A design out of a REXS model or a table (a path, or its content); of several pairs one by its number.
 
-        Problem 422 holds the faults, and under "import" the pairs to choose from.
+        Problem 422 holds the faults, and under "imported" the pairs to choose from.
         """
         content = file if isinstance(file, bytes) else Path(file).read_bytes()
         query = {"pair": pair, "flank": flank, "transverse": int(transverse), "reversed": int(reversed)}
