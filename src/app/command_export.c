@@ -6,6 +6,8 @@
 #include "app/number.h"
 #include "exchange/exports.h"
 
+enum { MOST_DESIGNS = 200 };
+
 static int list_formats(void)
 {
   struct eo_text text = {0};
@@ -44,6 +46,16 @@ static bool read_grid(const char *rows, const char *columns, int grid[2], int *s
   return true;
 }
 
+static int save_text(struct eo_text *text, const char *path)
+{
+  struct eo_error error;
+  if (!path || strcmp(path, "-") == 0)
+    return eo_app_print(text);
+  int status = eo_text_save(text, path, &error) ? eo_app_fail(NULL, &error) : EO_EXIT_DONE;
+  eo_text_done(text);
+  return status;
+}
+
 static int save(const struct eo_export *format, const struct eo_design *design, const struct eo_geometry *geometry,
                 const int grid[2], const char *path)
 {
@@ -51,18 +63,33 @@ static int save(const struct eo_export *format, const struct eo_design *design, 
   struct eo_error error;
   if (eo_export_write(format, design, geometry, grid[0], grid[1], &text, &error))
     return eo_app_fail(NULL, &error);
-  if (!path || strcmp(path, "-") == 0)
-    return eo_app_print(&text);
-  int status = EO_EXIT_DONE;
-  if (eo_text_save(&text, path, &error))
+  return save_text(&text, path);
+}
+
+/* Several designs into one table. */
+static int save_many(const struct eo_export *format, const char *const *file, int files, const char *path)
+{
+  json_t *documents[MOST_DESIGNS] = {NULL};
+  struct eo_text text = {0};
+  struct eo_error error;
+  int status = EO_EXIT_DONE, read = 0;
+  for (; read < files && !status; read++) {
+    struct eo_design design;
+    struct eo_geometry geometry;
+    struct eo_warnings warnings = {0};
+    if (eo_app_load_design(file[read], &design, &geometry, &warnings, &status))
+      documents[read] = eo_design_encode(&design);
+  }
+  if (!status && eo_exports_write_many(format, (const json_t *const *)documents, files, &text, &error))
     status = eo_app_fail(NULL, &error);
-  eo_text_done(&text);
-  return status;
+  for (int i = 0; i < read; i++)
+    json_decref(documents[i]);
+  return status ? status : save_text(&text, path);
 }
 
 static int run(const struct eo_command *command, int argc, char **argv)
 {
-  const char *file, *name = NULL, *path = NULL, *rows = NULL, *columns = NULL;
+  const char *file[MOST_DESIGNS], *name = NULL, *path = NULL, *rows = NULL, *columns = NULL;
   int operands, status, grid[2];
   struct eo_design design;
   struct eo_geometry geometry;
@@ -72,24 +99,34 @@ static int run(const struct eo_command *command, int argc, char **argv)
                                       {.name = "--rows", .value = &rows},
                                       {.name = "--columns", .value = &columns},
                                       {.name = NULL}};
-  if (!eo_app_arguments(command, argc, argv, options, 0, 1, &file, &operands, &status))
+  if (!eo_app_arguments(command, argc, argv, options, 0, MOST_DESIGNS, file, &operands, &status))
     return status;
   if (!operands)
     return list_formats();
   const struct eo_export *format = find_format(name, &status);
-  if (!format || !read_grid(rows, columns, grid, &status) ||
-      !eo_app_load_design(file, &design, &geometry, &warnings, &status))
+  if (!format || !read_grid(rows, columns, grid, &status))
+    return status;
+  if (operands > 1)
+    return save_many(format, file, operands, path);
+  if (!eo_app_load_design(file[0], &design, &geometry, &warnings, &status))
     return status;
   return save(format, &design, &geometry, grid, path);
 }
 
 const struct eo_command eo_command_export = {
-    "export", "DESIGN.json --format NAME [-o FILE] [--rows N] [--columns N]",
-    "a file for another program: flank points, charts, topography",
+    "export", "DESIGN.json... --format NAME [-o FILE] [--rows N] [--columns N]",
+    "a file for another program: REXS, STEP, STL, tables, flank points, charts",
     "Without a design, the list of formats. Without -o the file goes to standard output.\n"
     "--rows and --columns: points of flank-points and topography from root to tip (21) and over the face (31).\n\n"
     "Points stand in the frame of each member: z along the axis, from the middle of the groove to the right; the "
     "working flank of a\n"
     "tooth faces +x and would, unmodified, pass through x = 0 at the working pitch radius in mid face. Normals point "
-    "out of the tooth.\n",
+    "out of the tooth. STEP and STL stand in the same frame, in mm, without thickness allowance; STL is for view and "
+    "print.\n\n"
+    "Several designs go into one table (table, table-comma, table-rows, workbook). Gear programs read rexs; GDE "
+    "(VDI/VDE "
+    "2610) and the\n"
+    "files of measuring and grinding machines have no public layout: flank-points, topography and charts hold what "
+    "they "
+    "need.\n",
     run};

@@ -4,9 +4,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "document/design_document.h"
 #include "exchange/rexs_export.h"
 #include "exchange/step.h"
 #include "exchange/stl.h"
+#include "exchange/table_export.h"
 
 static void write_rexs(const struct eo_design *design, const struct eo_geometry *geometry, int version,
                        enum eo_rexs_form form, struct eo_text *text)
@@ -67,6 +69,27 @@ static void write_gear_stl(const struct eo_design *design, const struct eo_geome
   eo_stl_write(design, geometry, EO_GEAR, text);
 }
 
+static void write_table(const struct eo_design *design, enum eo_table_layout layout, struct eo_text *text)
+{
+  json_t *document = eo_design_encode(design);
+  const json_t *const documents[] = {document};
+  if (document)
+    eo_table_write(documents, 1, layout, text);
+  text->failed = text->failed || !document;
+  json_decref(document);
+}
+
+#define TABLE(name, layout)                                                                                          \
+  static void write_##name(const struct eo_design *design, const struct eo_geometry *geometry, struct eo_text *text) \
+  {                                                                                                                  \
+    (void)geometry;                                                                                                  \
+    write_table(design, layout, text);                                                                               \
+  }
+TABLE(point_table, EO_TABLE_POINT)
+TABLE(comma_table, EO_TABLE_COMMA)
+TABLE(workbook, EO_TABLE_WORKBOOK)
+TABLE(rows, EO_TABLE_ROWS)
+
 static const struct eo_export formats[] = {
     {"rexs", "the pair as a REXS 1.7 model, for other gear programs", "application/xml", "rexs", write_xml, NULL},
     {"rexs-json", "the same as JSON", "application/json", "rexsj", write_json, NULL},
@@ -82,6 +105,12 @@ static const struct eo_export formats[] = {
      write_pinion_stl, NULL},
     {"stl-gear", "the gear as a closed surface of triangles, for view and print", "model/stl", "stl", write_gear_stl,
      NULL},
+    {"table", "the design as a table key;pinion;gear;unit for spreadsheets, read back by easeoff import",
+     "text/csv; charset=utf-8", "csv", write_point_table, NULL},
+    {"table-comma", "the same with decimal comma", "text/csv; charset=utf-8", "csv", write_comma_table, NULL},
+    {"workbook", "the same as .xlsx", "application/vnd.openxmlformats-officedocument.spreadsheetml.sheet", "xlsx",
+     write_workbook, NULL},
+    {"table-rows", "one design per row below its keys", "text/csv; charset=utf-8", "csv", write_rows, NULL},
 };
 enum { FORMATS = sizeof formats / sizeof formats[0] };
 
@@ -101,4 +130,24 @@ const struct eo_export *eo_exports_find(const char *name)
     if (strcmp(formats[i].name, name) == 0)
       return &formats[i];
   return eo_export_find(name);
+}
+
+enum eo_code eo_exports_write_many(const struct eo_export *format, const json_t *const *documents, int count,
+                                   struct eo_text *text, struct eo_error *error)
+{
+  static const struct {
+    const char *name;
+    enum eo_table_layout layout;
+  } tables[] = {{"table", EO_TABLE_POINT},
+                {"table-comma", EO_TABLE_COMMA},
+                {"workbook", EO_TABLE_WORKBOOK},
+                {"table-rows", EO_TABLE_ROWS}};
+  for (size_t i = 0; i < sizeof tables / sizeof *tables; i++)
+    if (strcmp(tables[i].name, format->name) == 0) {
+      eo_table_write(documents, count, tables[i].layout, text);
+      return EO_OK;
+    }
+  return eo_error_set(error, EO_ERROR_INPUT, "",
+                      "The format \"%s\" takes one design; several go into table, table-comma, table-rows or workbook.",
+                      format->name);
 }

@@ -3,10 +3,17 @@
 #ifndef EASEOFF_EXCHANGE_EXPORTS_H
 #define EASEOFF_EXCHANGE_EXPORTS_H
 
+#include <jansson.h>
+
 #include "document/design_export.h"
 
 /* NULL after the last; NULL: there is none of this name. */
 const struct eo_export *eo_exports_at(int index);
 const struct eo_export *eo_exports_find(const char *name);
+
+/* Several designs in one file, of the formats that are tables. documents: [count] of eo_design_encode(). Errors:
+   EO_ERROR_INPUT for another format. */
+enum eo_code eo_exports_write_many(const struct eo_export *format, const json_t *const *documents, int count,
+                                   struct eo_text *text, struct eo_error *error);
 
 #endif

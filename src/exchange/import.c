@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#define _GNU_SOURCE
 #include "exchange/import.h"
 
 #include <stdarg.h>
@@ -7,6 +8,7 @@
 #include <string.h>
 
 #include "document/design_document.h"
+#include "exchange/table_import.h"
 
 static const char *const flanks[] = {"stated", "left", "right", NULL};
 
@@ -164,12 +166,29 @@ bool eo_import_begin(struct eo_import *import)
   return !import->failed;
 }
 
+/* By the first bytes: XML and JSON are models, a zip archive is one too unless a workbook stands in it, all else is a
+   table. */
+static void read_any(struct eo_import *import, const char *bytes, size_t size, const struct eo_import_options *options_)
+{
+  static const char sheet[] = "xl/workbook.xml", mark[] = "\xEF\xBB\xBF";
+  size_t at = size >= 3 && memcmp(bytes, mark, 3) == 0 ? 3 : 0;
+  while (at < size && strchr(" \t\r\n", bytes[at]) && bytes[at])
+    at++;
+  bool zip = size > 4 && memcmp(bytes, "PK", 2) == 0;
+  bool workbook = zip && memmem(bytes, size, sheet, sizeof sheet - 1);
+  bool model = at == size || bytes[at] == '<' || bytes[at] == '{' || (unsigned char)bytes[0] >= 0xFE;
+  if (workbook || (!zip && !model))
+    eo_import_table(import, bytes, size, workbook, options_);
+  else
+    eo_import_rexs(import, bytes, size, options_);
+}
+
 enum eo_code eo_import_read(struct eo_import *import, const char *bytes, size_t size,
                             const struct eo_import_options *options_, struct eo_error *error)
 {
   eo_import_begin(import);
   if (!import->failed)
-    eo_import_rexs(import, bytes, size, options_);
+    read_any(import, bytes, size, options_);
   if (json_array_size(import->faults) > 0) {
     json_decref(import->design);
     import->design = NULL;

@@ -54,7 +54,8 @@ const struct eo_route eo_routes_export[] = {
      .rate = EO_RATE_START,
      .aside = true,
      .gives =
-         "200 text/csv, 200 ResolvedDesign, 200 application/xml, 200 application/zip, 200 model/step, 200 model/stl",
+         "200 text/csv, 200 ResolvedDesign, 200 application/xml, 200 application/zip, 200 model/step, 200 model/stl, "
+         "200 application/vnd.openxmlformats-officedocument.spreadsheetml.sheet",
      .query = {{"rows", EO_EXPORT_GRID_LEAST, EO_EXPORT_GRID_MOST, 21, NULL, "points of a flank from root to tip"},
                {"columns", EO_EXPORT_GRID_LEAST, EO_EXPORT_GRID_MOST, 31, NULL, "points of a flank over the face"}},
      .summary = "A file for another program, as `easeoff export` writes it: points of the flanks, charts, the design."},

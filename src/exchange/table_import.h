@@ -1,0 +1,11 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Tables of designs: CSV and workbooks. */
+#ifndef EASEOFF_EXCHANGE_TABLE_IMPORT_H
+#define EASEOFF_EXCHANGE_TABLE_IMPORT_H
+
+#include "exchange/import.h"
+
+void eo_import_table(struct eo_import *import, const char *bytes, size_t size, bool workbook,
+                     const struct eo_import_options *options);
+
+#endif
