@@ -103,7 +103,7 @@ static void write_relief(struct writer *w, bool tip)
                        diameter_of(w, reach));
   /* without what the crowning has taken off there already */
   eo_rexs_build_number(w->builder, tip ? "tip_relief_depth" : "root_relief_depth",
-                       amount * 1e-3 - number(w, "profile_crowning_per_mm") * reach * reach);
+                       amount / 1e3 - number(w, "profile_crowning_per_mm") * reach * reach);
   eo_rexs_build_word(w->builder, "shape_of_relief",
                      word(w, tip ? "tip_relief_shape" : "root_relief_shape", word(w, "relief_shape", "parabolic")));
   eo_rexs_build_flag(w->builder, "specify_tangential_transition", false);
@@ -127,7 +127,7 @@ static void write_crowning(struct writer *w, double coefficient, double highest)
 
 static void write_slope_and_twist(struct writer *w)
 {
-  double slope = number(w, "profile_slope_um") * 1e-3, twist = number(w, "twist_um") * 1e-3;
+  double slope = number(w, "profile_slope_um") / 1e3, twist = number(w, "twist_um") / 1e3;
   double half = 1e3 * w->flank->geometry->face_width / 2;
   if (slope != 0) {
     begin(w, "profile_slope");
@@ -149,8 +149,8 @@ static void write_slope_and_twist(struct writer *w)
 
 static void write_lead(struct writer *w)
 {
-  double half = 1e3 * w->flank->geometry->face_width / 2, crowning = number(w, "lead_crowning_um") * 1e-3;
-  double slope = (number(w, "helix_slope_um") + 2 * number(w, "lead_slope_um")) * 1e-3;
+  double half = 1e3 * w->flank->geometry->face_width / 2, crowning = number(w, "lead_crowning_um") / 1e3;
+  double slope = (number(w, "helix_slope_um") + 2 * number(w, "lead_slope_um")) / 1e3;
   if (crowning != 0) {
     begin(w, "helix_crowning");
     eo_rexs_build_number(w->builder, "helix_crowning_amount_datum_face", crowning);
@@ -180,7 +180,7 @@ static void write_end_relief(struct writer *w, bool leading)
     return;
   begin(w, datum ? "end_relief_datum_face" : "end_relief_non_datum_face");
   eo_rexs_build_number(w->builder, datum ? "end_relief_depth_datum_face" : "end_relief_depth_non_datum_face",
-                       amount * 1e-3);
+                       amount / 1e3);
   eo_rexs_build_number(w->builder, datum ? "end_relief_length_datum_face" : "end_relief_length_non_datum_face", length);
   eo_rexs_build_word(w->builder, "shape_of_relief",
                      word(w, leading ? "leading_end_relief_shape" : "trailing_end_relief_shape", "parabolic"));

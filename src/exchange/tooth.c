@@ -53,9 +53,10 @@ void eo_tooth_init(struct eo_tooth *tooth, const struct eo_design *design, const
   if (tooth->two_ends)
     tooth->offset = (design->gear_pair.groove_width + design->gear_pair.face_width) / 2;
   double behind = end == EO_RIGHT ? design->alignment.stagger * 2 * M_PI / geometry->teeth[member] : 0;
-  tooth->turn = pitch_angle(geometry, member, 0) + (member == EO_PINION ? behind : -behind);
+  tooth->pitch = pitch_angle(geometry, member, 0);
+  tooth->behind = member == EO_PINION ? behind : -behind;
   double along = member == EO_PINION ? eta : -eta; /* z of the surface's own frame */
-  tooth->twist = (pitch_angle(geometry, member, eta) - pitch_angle(geometry, member, 0)) / along;
+  tooth->twist = (pitch_angle(geometry, member, eta) - tooth->pitch) / along;
   eo_geometry_involute(geometry, member, geometry->working_radius[member], point, normal);
   tooth->half = atan2(point[0], point[1]);
   tooth->form_path = eo_geometry_own_path(member, eo_geometry_path_at(geometry, member, geometry->form_radius[member]));
@@ -141,7 +142,7 @@ static void flank_point(const struct eo_tooth *tooth, bool coast, double path, d
   memcpy(normal, exact.normal, sizeof exact.normal);
   double *const both[2] = {point, normal};
   for (int i = 0; i < 2; i++) {
-    turn_vector(both[i], tooth->half - pitch_angle(tooth->geometry, tooth->member, 0));
+    turn_vector(both[i], tooth->half - tooth->pitch);
     if (coast) { /* half a turn about the tooth's centre */
       both[i][0] = -both[i][0];
       both[i][2] = -both[i][2];
@@ -191,8 +192,7 @@ void eo_tooth_point(const struct eo_tooth *tooth, enum eo_tooth_part part, int n
                 point, across);
   else
     swept_point(tooth, part, p, tooth->member == EO_PINION ? outwards : -outwards, point, across);
-  double behind = tooth->turn - pitch_angle(g, tooth->member, 0);
-  double angle = -tooth->half - behind + number * 2 * M_PI / g->teeth[tooth->member];
+  double angle = -tooth->half - tooth->behind + number * 2 * M_PI / g->teeth[tooth->member];
   double *const both[2] = {point, across};
   for (int i = 0; i < 2; i++) {
     turn_vector(both[i], angle);

@@ -29,7 +29,9 @@ struct eo_tooth {
   bool two_ends;
   struct eo_modification_shape shape[2]; /* [drive, coast] */
   double offset;                         /* mid face from the middle of the groove, m */
-  double turn;                           /* of what eo_surface_evaluate() gives, from +x towards +y, rad */
+  double pitch;                          /* angle of the unmodified flank at the pitch radius in mid face as
+                                            eo_surface_evaluate() has it, from +y towards +x, rad */
+  double behind;                         /* a stagger: turn from +x towards +y, rad */
   double half;                /* from the tooth's centre to the drive flank at the working pitch radius, rad */
   double twist;               /* of the tooth per m of z in its own end, from +y towards +x, rad/m */
   double form_path, tip_path; /* own path coordinate where the flank begins and ends, m */

@@ -1,0 +1,47 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Any bytes as a file of another program: an answer with faults that are sentences, or a design that can be decoded. For
+   libFuzzer, and replayed by replay.c. */
+#include "document/design_document.h"
+#include "exchange/import.h"
+#include "fuzz/fuzz.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static void demand(bool good, const char *what)
+{
+  if (good)
+    return;
+  fprintf(stderr, "fuzz-import: %s\n", what);
+  abort();
+}
+
+static void look(const struct eo_import *import)
+{
+  const json_t *fault;
+  size_t i;
+  json_array_foreach(import->faults, i, fault)
+  {
+    const char *text = json_string_value(json_object_get(fault, "text"));
+    demand(text && *text && !strchr(text, '\n'), "a fault without a sentence");
+  }
+  demand(!import->design || json_array_size(import->faults) == 0, "a design beside faults");
+  demand(import->design || json_array_size(import->faults) > 0, "neither a design nor a fault");
+  json_t *answer = eo_import_encode(import);
+  demand(answer != NULL, "no answer");
+  json_decref(answer);
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size)
+{
+  for (int pair = 0; pair < 2; pair++) {
+    const struct eo_import_options options = {.pair = pair, .flank = pair, .transverse = pair};
+    struct eo_import import;
+    struct eo_error error;
+    if (eo_import_read(&import, (const char *)bytes, size, &options, &error) == EO_OK)
+      look(&import);
+    eo_import_done(&import);
+  }
+  return 0;
+}

@@ -1,0 +1,129 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Tables of designs: out and in again without loss, symbols, units, and what is asked instead of guessed. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "document/design_document.h"
+#include "document/examples.h"
+#include "exchange/import.h"
+#include "exchange/table_export.h"
+#include "format/json.h"
+#include "support/tap.h"
+
+static struct eo_import read_table(const char *bytes, size_t size, int pair)
+{
+  const struct eo_import_options options = {.pair = pair};
+  struct eo_import import;
+  struct eo_error error;
+  eo_import_read(&import, bytes, size, &options, &error);
+  return import;
+}
+
+static json_t *example(const char *name)
+{
+  struct eo_design design;
+  struct eo_geometry geometry;
+  struct eo_error error;
+  if (!eo_example_build(name, &design) || eo_design_complete(&design, &geometry, &error))
+    printf("Bail out! example %s\n", name);
+  return eo_design_encode(&design);
+}
+
+static json_t *decoded(const json_t *document)
+{
+  static struct eo_design design;
+  static struct eo_faults faults;
+  memset(&faults, 0, sizeof faults);
+  if (!document || !eo_design_decode(document, &design, NULL, &faults))
+    return NULL;
+  return eo_design_encode(&design);
+}
+
+/* Two designs of different kinds in one file, each chosen. */
+static void check_round_trip(enum eo_table_layout layout, const char *what)
+{
+  json_t *made[2] = {example("paper-case-b"), example("single")};
+  struct eo_text text = {0};
+  eo_table_write((const json_t *const *)made, 2, layout, &text);
+  struct eo_import import = read_table(text.data, text.size, 0);
+  ok(json_array_size(import.pairs) == 2 && !import.design, "%s: two designs, and a choice is asked for", what);
+  eo_import_done(&import);
+  for (int i = 0; i < 2; i++) {
+    import = read_table(text.data, text.size, i + 1);
+    json_t *found = decoded(import.design);
+    ok(found && json_equal(found, made[i]), "%s: design %d is the same", what, i + 1);
+    json_decref(found);
+    eo_import_done(&import);
+    json_decref(made[i]);
+  }
+  eo_text_done(&text);
+}
+
+static double number_in(const char *table, const char *path)
+{
+  struct eo_import import = read_table(table, strlen(table), 0);
+  double value = eo_json_find_number(import.design, path);
+  eo_import_done(&import);
+  return value;
+}
+
+static bool is_faulty(const char *table, const char *kind, int line)
+{
+  struct eo_import import = read_table(table, strlen(table), 0);
+  const json_t *fault = json_array_get(import.faults, 0);
+  bool right = !import.design && fault && strcmp(json_string_value(json_object_get(fault, "kind")), kind) == 0 &&
+               json_integer_value(json_object_get(fault, "line")) == line;
+  if (!right)
+    printf("# %s\n", fault ? json_string_value(json_object_get(fault, "text")) : "no fault");
+  eo_import_done(&import);
+  return right;
+}
+
+#define HEAD "key;pinion;gear;unit\n"
+
+static void check_symbols(void)
+{
+  static const char table[] = HEAD
+      "z;17;44;\nm_n;6;;mm\nbeta;24;;°\nb;5,5;;m\nx;0,1;-0,1;\nC_a;14;9;um\nC_b;0,012;;mm\n"
+      "a;8;;inch\nT;0,8;;kNm\nd;103;;mm\n";
+  close_to(number_in(table, "gear_pair/gear_teeth"), 44, 0, "z of the gear");
+  close_to(number_in(table, "gear_pair/face_width_mm"), 5500, 0, "b in m with a decimal comma");
+  close_to(number_in(table, "gear_pair/gear_profile_shift"), -0.1, 0, "x of the gear");
+  close_to(number_in(table, "modification/pinion/right/tip_relief_um"), 14, 0, "C_a is that of both ends");
+  close_to(number_in(table, "modification/gear/left/tip_relief_um"), 9, 0, "C_a of the gear");
+  close_to(number_in(table, "modification/pinion/left/lead_crowning_um"), 12, 1e-12, "C_b in mm");
+  close_to(number_in(table, "gear_pair/centre_distance_mm"), 203.2, 1e-12, "a in inch");
+  static const char spelt[] = HEAD "beta;24°30'36\";;\nC_a [um];14;;\nmodification.left.root_relief_um;0.5;;\n";
+  close_to(number_in(spelt, "gear_pair/helix_angle_deg"), 24.51, 1e-12, "degrees, minutes and seconds");
+  close_to(number_in(spelt, "modification/pinion/left/root_relief_um"), 0.5, 0, "a key says its own unit");
+  static const char tabs[] = "key\tpinion\tunit\nz\t17\t\n";
+  close_to(number_in(tabs, "gear_pair/pinion_teeth"), 17, 0, "tabs");
+  static const char wide[] = "name,gear_pair.pinion_teeth,m_n [mm],C_a\n\"a, b\",19,4,\n";
+  close_to(number_in(wide, "gear_pair/normal_module_mm"), 4, 0, "a design as a row, commas");
+}
+
+static void check_questions(void)
+{
+  ok(is_faulty(HEAD "z;17;44;\nC_a;0.1;;\n", "unit_needed", 3), "a relief of 0.1 could be mm or um");
+  ok(is_faulty(HEAD "C_a;14;;deg\n", "wrong_unit", 2), "a relief in degrees");
+  ok(is_faulty(HEAD "x;2;;mm\n", "wrong_unit", 2), "a profile shift in mm");
+  ok(is_faulty(HEAD "m_n;4.5;;\nb;40,5;;\n", "two_decimal_signs", 2), "points and commas");
+  ok(is_faulty(HEAD "m_n;1.234,5;;\n", "two_decimal_signs", 2) || is_faulty(HEAD "m_n;1.234,5;;\n", "not_a_number", 2),
+     "a point for thousands");
+  ok(is_faulty(HEAD "zz;17;;\n", "unknown_key", 2), "a symbol that is none");
+  ok(is_faulty(HEAD "m_n;6;5;mm\n", "one_value", 2), "two modules");
+  ok(is_faulty("key;pinion;wheel\nz;1;2\n", "unknown_column", 1), "a column that is none");
+  ok(is_faulty("m_n,C_a\n4,3\n", "member_needed", 2), "a row that does not say whose relief it is");
+  ok(is_faulty(HEAD "gear_pair.ends;two;;\n", "not_a_number", 2), "a number in words");
+}
+
+int main(void)
+{
+  check_round_trip(EO_TABLE_POINT, "points");
+  check_round_trip(EO_TABLE_COMMA, "commas");
+  check_round_trip(EO_TABLE_WORKBOOK, "workbook");
+  check_round_trip(EO_TABLE_ROWS, "rows");
+  check_symbols();
+  check_questions();
+  return tap_done();
+}
