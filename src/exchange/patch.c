@@ -104,10 +104,12 @@ void eo_patch_at(const struct eo_patch *patch, double p, double q, double point[
 
 double eo_patch_error(const struct eo_patch *patch, eo_patch_surface *surface, const void *context)
 {
+  enum { BETWEEN = 4 }; /* places per step between points, those on the edges among them */
   double largest = 0;
-  for (int i = 0; i < patch->count[0] - 1; i++)
-    for (int j = 0; j < patch->count[1] - 1; j++) {
-      double p = (i + 0.5) / (patch->count[0] - 1), q = (j + 0.5) / (patch->count[1] - 1), off = 0;
+  int steps[2] = {BETWEEN * (patch->count[0] - 1), BETWEEN * (patch->count[1] - 1)};
+  for (int i = 0; i <= steps[0]; i++)
+    for (int j = 0; j <= steps[1]; j += i % BETWEEN ? BETWEEN / 2 : 1) {
+      double p = (double)i / steps[0], q = (double)j / steps[1], off = 0;
       double exact[3], normal[3], point[3];
       surface(context, p, q, exact, normal);
       eo_patch_at(patch, p, q, point);

@@ -23,7 +23,7 @@ bool eo_patch_fit(struct eo_patch *patch, const int count[2], eo_patch_surface *
 /* The spline's point. */
 void eo_patch_at(const struct eo_patch *patch, double p, double q, double point[3]);
 
-/* Largest distance along the exact normal at the middles between the points, m. */
+/* Largest distance along the exact normal at places between the points and on the edges, m. */
 double eo_patch_error(const struct eo_patch *patch, eo_patch_surface *surface, const void *context);
 
 #endif

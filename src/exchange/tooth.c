@@ -42,6 +42,7 @@ void eo_tooth_init(struct eo_tooth *tooth, const struct eo_design *design, const
                    int member, int end)
 {
   const struct eo_flank_modification none = {0};
+  const double least = 1e-6; /* m: less is no piece of its own */
   double point[2], normal[2], eta = geometry->face_width / 4;
   memset(tooth, 0, sizeof *tooth);
   tooth->geometry = geometry;
@@ -60,6 +61,9 @@ void eo_tooth_init(struct eo_tooth *tooth, const struct eo_design *design, const
   eo_geometry_involute(geometry, member, geometry->working_radius[member], point, normal);
   tooth->half = atan2(point[0], point[1]);
   tooth->form_path = eo_geometry_own_path(member, eo_geometry_path_at(geometry, member, geometry->form_radius[member]));
+  tooth->start_path = eo_geometry_own_path(member,
+                                           eo_geometry_path_at(geometry, member, geometry->start_radius[member]));
+  tooth->fillet_share = tooth->start_path - tooth->form_path > least ? 0.8 : 1;
   tooth->tip_path = eo_geometry_own_path(member, eo_geometry_path_at(geometry, member, geometry->tip_radius[member]));
   tooth->circle_share = find_circle(geometry, member);
 }
@@ -82,7 +86,7 @@ static int add_break(double at[EO_TOOTH_PIECES + 1], int count, double value)
 static int profile_breaks(const struct eo_tooth *tooth, const struct eo_modification_shape *shape,
                           double at[EO_TOOTH_PIECES + 1])
 {
-  double from = tooth->form_path, length = tooth->tip_path - from, factor = tooth->geometry->rack_factor;
+  double from = tooth->start_path, length = tooth->tip_path - from, factor = tooth->geometry->rack_factor;
   int count = 1;
   if (shape->side[0].length > 0)
     count = add_break(at, count, (-shape->side[0].start / factor - from) / length);
@@ -117,7 +121,7 @@ int eo_tooth_breaks(const struct eo_tooth *tooth, enum eo_tooth_part part, int d
   else if (is_flank(part))
     count = face_breaks(tooth, &tooth->shape[part == EO_TOOTH_COAST], at);
   else if (part != EO_TOOTH_TIP && direction == 0)
-    count = add_break(at, count, tooth->circle_share);
+    count = add_break(at, add_break(at, count, tooth->circle_share * tooth->fillet_share), tooth->fillet_share);
   at[count] = 1;
   return count + 1;
 }
@@ -164,7 +168,14 @@ static void swept_point(const struct eo_tooth *tooth, enum eo_tooth_part part, d
     for (int i = 0; i < 2; i++)
       point[i] = g->tip_radius[tooth->member] * normal[i];
   } else {
-    eo_geometry_fillet(g, tooth->member, p, point, normal);
+    double share = tooth->fillet_share;
+    if (p <= share)
+      eo_geometry_fillet(g, tooth->member, p / share, point, normal);
+    else {
+      double path = tooth->form_path + (p - share) / (1 - share) * (tooth->start_path - tooth->form_path);
+      double radius = eo_geometry_radius_at(g, tooth->member, eo_geometry_own_path(tooth->member, path));
+      eo_geometry_involute(g, tooth->member, fmax(radius, g->base_radius[tooth->member]), point, normal);
+    }
     if (part == EO_TOOTH_COAST_ROOT) {
       point[0] = -point[0];
       normal[0] = -normal[0];
@@ -188,7 +199,7 @@ void eo_tooth_point(const struct eo_tooth *tooth, enum eo_tooth_part part, int n
   double outwards = g->face_width * (mirrored ? 0.5 - q : q - 0.5), unused[3];
   double *across = normal ? normal : unused;
   if (is_flank(part))
-    flank_point(tooth, part == EO_TOOTH_COAST, tooth->form_path + p * (tooth->tip_path - tooth->form_path), outwards,
+    flank_point(tooth, part == EO_TOOTH_COAST, tooth->start_path + p * (tooth->tip_path - tooth->start_path), outwards,
                 point, across);
   else
     swept_point(tooth, part, p, tooth->member == EO_PINION ? outwards : -outwards, point, across);

@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The surfaces of one tooth in the frame of the member (that of flank-points): z the axis, from the middle of the
    groove to the right; the drive flank faces +x and would, unmodified, pass through x = 0 at the working pitch radius
-   in mid face. Teeth have no thickness allowance. */
+   in mid face. Teeth have no thickness allowance. Flanks are modified over their active profile, tip included; what
+   lies below it belongs to the root, unmodified: a relief is not defined there, and going on it can fold near the base
+   circle. */
 #ifndef EASEOFF_EXCHANGE_TOOTH_H
 #define EASEOFF_EXCHANGE_TOOTH_H
 
@@ -32,10 +34,12 @@ struct eo_tooth {
   double pitch;                          /* angle of the unmodified flank at the pitch radius in mid face as
                                             eo_surface_evaluate() has it, from +y towards +x, rad */
   double behind;                         /* a stagger: turn from +x towards +y, rad */
-  double half;                /* from the tooth's centre to the drive flank at the working pitch radius, rad */
-  double twist;               /* of the tooth per m of z in its own end, from +y towards +x, rad/m */
-  double form_path, tip_path; /* own path coordinate where the flank begins and ends, m */
-  double circle_share;        /* of the root's parameter that is the root circle */
+  double half;  /* from the tooth's centre to the drive flank at the working pitch radius, rad */
+  double twist; /* of the tooth per m of z in its own end, from +y towards +x, rad/m */
+  double form_path, start_path, tip_path; /* own path coordinate of the form circle, of the start of the active profile
+                                             and of the tip, m */
+  double fillet_share;                    /* of the root's parameter up to the form circle; behind it the involute */
+  double circle_share;                    /* of that part, the root circle */
 };
 
 void eo_tooth_init(struct eo_tooth *tooth, const struct eo_design *design, const struct eo_geometry *geometry,

@@ -73,6 +73,26 @@ run 1 "as a document" "$EASEOFF" import "$files/errors-1.6.rexs" --json
 prints '"kind": "not_a_boolean"'
 prints '"design": null'
 
+# Out and in again: models, tables, several designs in one table.
+for format in rexs rexs-json rexs-zip rexs-2.0.0 rexs-2.0.0-json table table-comma table-rows workbook; do
+  run 0 "export as $format" "$EASEOFF" export "$folder/design.json" --format "$format" -o "$folder/file"
+  run 0 "import of $format" "$EASEOFF" import "$folder/file" -o "$folder/back.json"
+  "$EASEOFF" export "$folder/design.json" --format design >"$folder/one"
+  "$EASEOFF" export "$folder/back.json" --format design >"$folder/two"
+  cmp -s "$folder/one" "$folder/two"
+  result $? "$format: the same design"
+done
+"$EASEOFF" example single >"$folder/single.json"
+run 0 "two designs in one table" "$EASEOFF" export "$folder/design.json" "$folder/single.json" --format table -o "$folder/two.csv"
+run 0 "the second of them" "$EASEOFF" import "$folder/two.csv" --pair 2
+prints '"ends": 1'
+run 1 "two designs in one model" "$EASEOFF" export "$folder/design.json" "$folder/single.json" --format rexs
+says "takes one design"
+run 0 "what exists in place of GDE" "$EASEOFF" export --help
+prints "GDE"
+run 0 "a tooth for CAD" "$EASEOFF" export "$folder/design.json" --format step-gear
+prints "AP242_MANAGED_MODEL_BASED_3D_ENGINEERING_MIM_LF"
+
 # Hostile files: a sentence, at once.
 deep=$(printf '<model version="1.7">'; for i in $(seq 1 200); do printf '<a>'; done)
 printf '%s' "$deep" >"$folder/deep.rexs"

@@ -124,7 +124,7 @@ static void check_frame(const char *name)
     bool mirrored = tooth.two_ends && tooth.end == EO_LEFT;
     double s = geometry.path_start +
                (geometry.path_end - geometry.path_start) * (tooth.member == EO_PINION ? row / 20. : 1 - row / 20.);
-    double p = (eo_geometry_own_path(tooth.member, s) - tooth.form_path) / (tooth.tip_path - tooth.form_path);
+    double p = (eo_geometry_own_path(tooth.member, s) - tooth.start_path) / (tooth.tip_path - tooth.start_path);
     eo_tooth_point(&tooth, EO_TOOTH_DRIVE, 0, p, mirrored ? 1 - column / 30. : column / 30., point, NULL);
     largest = fmax(largest, hypot(hypot(1e3 * point[0] - x, 1e3 * point[1] - y), 1e3 * point[2] - z));
     compared++;
@@ -156,8 +156,8 @@ static void check_tooth(const char *name)
       }
     double p =
         (eo_geometry_own_path(member, eo_geometry_path_at(&geometry, member, geometry.reference_radius[member])) -
-         tooth.form_path) /
-        (tooth.tip_path - tooth.form_path);
+         tooth.start_path) /
+        (tooth.tip_path - tooth.start_path);
     eo_tooth_point(&tooth, EO_TOOTH_DRIVE, 0, p, 0.5, a, NULL);
     eo_tooth_point(&tooth, EO_TOOTH_COAST, 0, p, 0.5, b, NULL);
     double angle = fabs(atan2(a[0], a[1]) - atan2(b[0], b[1]));
@@ -181,6 +181,30 @@ static double clamp(double value)
   return fmin(1, fmax(0, value));
 }
 
+/* One step of Gauss and Newton on the parameters of the nearest point. */
+static void refine(const struct eo_tooth *tooth, enum eo_tooth_part part, const double node[3], double *p, double *q)
+{
+  const double step = 1e-5;
+  double point[3], other[3], along[2][3], gram[3] = {0}, right[2] = {0};
+  eo_tooth_point(tooth, part, 0, *p, *q, point, NULL);
+  for (int d = 0; d < 2; d++) {
+    double to = (d ? *q : *p) > 0.5 ? -step : step;
+    eo_tooth_point(tooth, part, 0, d ? *p : *p + to, d ? *q + to : *q, other, NULL);
+    for (int c = 0; c < 3; c++)
+      along[d][c] = (other[c] - point[c]) / to;
+  }
+  for (int c = 0; c < 3; c++) {
+    gram[0] += along[0][c] * along[0][c];
+    gram[1] += along[0][c] * along[1][c];
+    gram[2] += along[1][c] * along[1][c];
+    right[0] += along[0][c] * (node[c] - point[c]);
+    right[1] += along[1][c] * (node[c] - point[c]);
+  }
+  double determinant = gram[0] * gram[2] - gram[1] * gram[1];
+  *p = clamp(*p + (gram[2] * right[0] - gram[1] * right[1]) / determinant);
+  *q = clamp(*q + (gram[0] * right[1] - gram[1] * right[0]) / determinant);
+}
+
 /* Distance of a point from the exact part, m: along its normal where the part is nearest, found step by step. */
 static double distance_from(const struct eo_tooth *tooth, enum eo_tooth_part part, const double node[3])
 {
@@ -197,7 +221,7 @@ static double distance_from(const struct eo_tooth *tooth, enum eo_tooth_part par
     }
   if (best > 20e-3)
     return best;
-  for (double step = 1 / 24.; step > 1e-9;) { /* to the neighbour that is nearer, else closer around */
+  for (double step = 1 / 24.; step > 1e-6;) { /* to the neighbour that is nearer, else closer around */
     double to[2] = {p, q}, nearest = best;
     for (int i = -1; i <= 1; i++)
       for (int k = -1; k <= 1; k++) {
@@ -213,6 +237,8 @@ static double distance_from(const struct eo_tooth *tooth, enum eo_tooth_part par
     p = to[0];
     q = to[1];
   }
+  for (int round = 0; round < 6; round++)
+    refine(tooth, part, node, &p, &q);
   eo_tooth_point(tooth, part, 0, p, q, point, normal);
   double along_normal = 0, whole = apart(node, point);
   for (int c = 0; c < 3; c++)
@@ -325,8 +351,8 @@ static void check_stl(const char *name, const char *format, double low, double h
 
 int main(void)
 {
-  check_file("paper-case-b", 2 * (3 + 1 + 1 + 2 + 2), 10);
-  check_file("single", 3 + 1 + 1 + 2 + 2, 5);
+  check_file("paper-case-b", 2 * (3 + 1 + 1 + 3 + 3), 10);
+  check_file("single", 3 + 1 + 1 + 3 + 3, 5);
   check_frame("paper-case-b");
   check_frame("single");
   check_tooth("paper");
