@@ -6,63 +6,80 @@
 #include <string.h>
 
 #include "format/json.h"
+#include "format/table.h"
 #include "document/result_private.h"
 #include "format/text_table.h"
 
 static const double LARGE_CONDITION = 1e6;
 
+/* The range of each input that can be fitted, as the document has it; NaN where it is not asked for. */
+struct ranges {
+  double range[EO_UNKNOWNS][2];
+};
+#define RANGE(unknown, key, unit, low, high, help)                                                                 \
+  EO_NUMBERS(struct ranges, range[unknown], key, 2, unit, low, high, EO_FIELD_ASCENDING | EO_FIELD_NULLABLE, NULL, \
+             "not fitted", help)
+static const struct eo_field range_fields[] = {
+    RANGE(EO_UNKNOWN_PINION_BEARING, "pinion_bearing_stiffness_N_per_um", &eo_unit_N_per_um, 1e-3, 1e6,
+          "lowest, highest; transverse, per end of the pinion"),
+    RANGE(EO_UNKNOWN_GEAR_BEARING, "gear_bearing_stiffness_N_per_um", &eo_unit_N_per_um, 1e-3, 1e6,
+          "lowest, highest; transverse, per end of the gear"),
+    RANGE(EO_UNKNOWN_MESH_DAMPING, "mesh_damping_ratio", NULL, 1e-6, 1, "lowest, highest; of the mesh"),
+    RANGE(EO_UNKNOWN_GEAR_AXIAL, "gear_axial_stiffness_N_per_um", &eo_unit_N_per_um, 1e-3, 1e6,
+          "lowest, highest; at either end of the gear"),
+    RANGE(EO_UNKNOWN_PINION_AXIAL, "pinion_axial_stiffness_N_per_um", &eo_unit_N_per_um, 1e-3, 1e6,
+          "lowest, highest; from the pinion to the ground"),
+    RANGE(EO_UNKNOWN_IN_PLANE, "shaft_angle_error_in_plane_deg", &eo_unit_deg, -2, 2, "lowest, highest"),
+    RANGE(EO_UNKNOWN_OUT_OF_PLANE, "shaft_angle_error_out_of_plane_deg", &eo_unit_deg, -2, 2, "lowest, highest"),
+    RANGE(EO_UNKNOWN_IMPACT_PATCH, "impact_patch_mm", &eo_unit_mm, 0.1, 100,
+          "lowest, highest; length of the patch at entering impacts"),
+};
+static const struct eo_table range_table = EO_TABLE("the inputs to be fitted", struct ranges, range_fields);
+
 static const struct eo_unit *unit_of(enum eo_unknown unknown)
 {
-  static const struct eo_unit *const unit[EO_UNKNOWNS] = {&eo_unit_N_per_um, &eo_unit_N_per_um, NULL,
-                                                          &eo_unit_N_per_um, &eo_unit_N_per_um, &eo_unit_deg,
-                                                          &eo_unit_deg,      &eo_unit_mm};
-  return unit[unknown];
+  return range_fields[unknown].unit; /* in the order of the inputs */
 }
 
-static void add_unknown(const char *key, const json_t *range, struct eo_update_settings *s, struct eo_faults *faults)
+struct order {
+  struct ranges ranges;
+  double model_error;
+  uint64_t seed;
+};
+static const struct eo_field order_fields[] = {
+    EO_OBJECT(struct order, ranges, "unknowns", &range_table, "at least one input with its range"),
+    EO_NUMBER_DERIVED(struct order, model_error, "model_error", NULL, 1e-4, 1, "found from the misfit",
+                      "of an order's acceleration in parts of the measured RMS"),
+    {.key = "seed",
+     .kind = EO_FIELD_SEED,
+     .offset = offsetof(struct order, seed),
+     .high = 9007199254740991,
+     .fallback = 1,
+     .help = "of the points where the search starts"},
+};
+const struct eo_table eo_update_table = EO_TABLE("an order of a fit", struct order, order_fields);
+
+static void take_range(const char *key, const struct ranges *ranges, struct eo_update_settings *settings)
 {
-  char pointer[140];
-  snprintf(pointer, sizeof pointer, "/unknowns/%.100s", key);
-  double low = json_number_value(json_array_get(range, 0)), high = json_number_value(json_array_get(range, 1));
   for (int i = 0; i < EO_UNKNOWNS; i++)
-    if (strcmp(key, eo_unknown_name((enum eo_unknown)i)) == 0) {
-      bool good = json_array_size(range) == 2 && json_is_number(json_array_get(range, 0)) &&
-                  json_is_number(json_array_get(range, 1)) && low < high;
-      if (!good)
-        eo_faults_add(faults, pointer, "A range is two numbers, the lower one first.");
-      s->range[s->unknowns++] = (struct eo_update_range){(enum eo_unknown)i,
-                                                         eo_unit_in(unit_of((enum eo_unknown)i), low),
-                                                         eo_unit_in(unit_of((enum eo_unknown)i), high)};
-      return;
-    }
-  eo_faults_add(faults, pointer, "This is no input that can be fitted.");
+    if (strcmp(key, range_fields[i].key) == 0 && !isnan(ranges->range[i][0]))
+      settings->range[settings->unknowns++] = (struct eo_update_range){(enum eo_unknown)i, ranges->range[i][0],
+                                                                       ranges->range[i][1]};
 }
 
-void eo_update_decode(const json_t *document, struct eo_update_settings *s, struct eo_faults *faults)
+/* Inputs are fitted in the order in which they were named. */
+void eo_update_decode(const json_t *document, struct eo_update_settings *settings, struct eo_faults *faults)
 {
   const char *key;
   json_t *value;
-  const json_t *unknowns = json_object_get(document, "unknowns"),
-               *model_error = json_object_get(document, "model_error"), *seed = json_object_get(document, "seed");
-  *s = (struct eo_update_settings){.seed = 1};
-  if (!json_is_object(unknowns) || json_object_size(unknowns) == 0)
-    eo_faults_add(faults, "/unknowns", "An update names at least one input with its range.");
-  json_object_foreach((json_t *)unknowns, key, value) add_unknown(key, value, s, faults);
-  json_object_foreach((json_t *)document, key, value) if (strcmp(key, "unknowns") != 0 &&
-                                                          strcmp(key, "model_error") != 0 && strcmp(key, "seed") != 0)
-  {
-    char pointer[120];
-    snprintf(pointer, sizeof pointer, "/%.80s", key);
-    eo_faults_add(faults, pointer, "Unknown key in an update.");
-  }
-  if (model_error && !(json_number_value(model_error) >= 1e-4 && json_number_value(model_error) <= 1))
-    eo_faults_add(faults, "/model_error", "The error of the model is 0.0001 to 1 of the RMS.");
-  else if (model_error)
-    s->model_error = json_number_value(model_error);
-  if (seed && !(json_is_integer(seed) && json_integer_value(seed) >= 0))
-    eo_faults_add(faults, "/seed", "A seed is a whole number, not negative.");
-  else if (seed)
-    s->seed = (uint64_t)json_integer_value(seed);
+  struct order order;
+  int before = faults->count;
+  eo_table_decode(&eo_update_table, document, NULL, &order, faults);
+  *settings = (struct eo_update_settings){.seed = order.seed,
+                                          .model_error = isnan(order.model_error) ? 0 : order.model_error};
+  json_object_foreach(json_object_get(document, "unknowns"), key, value) take_range(key, &order.ranges, settings);
+  if (!settings->unknowns && faults->count == before)
+    eo_faults_add(faults, "/unknowns", "A fit names at least one input with its range.");
 }
 
 typedef void warning_function(void *context, const char *text);

@@ -11,9 +11,12 @@
 
 #include "format/faults.h"
 #include "format/outline.h"
+#include "format/table.h"
 #include "format/text.h"
 #include "measurement/updating.h"
 
+/* What a request may say; the terminal and the service read it with eo_update_decode(). */
+extern const struct eo_table eo_update_table;
 void eo_update_decode(const json_t *document, struct eo_update_settings *settings, struct eo_faults *faults);
 
 extern const struct eo_outline eo_update_outline;

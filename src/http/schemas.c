@@ -10,6 +10,7 @@
 #include "document/result.h"
 #include "document/sweep_document.h"
 #include "exchange/import.h"
+#include "document/update_document.h"
 #include "format/schema.h"
 #include "document/study_result.h"
 #include "http/route.h"
@@ -270,19 +271,15 @@ static json_t *stored(const json_t *schemas, const char *measured)
   return good ? schema : (json_decref(schema), NULL);
 }
 
-/* Any of the inputs that can be fitted, each with its range. */
+/* What a fit takes, with what it works on. */
 static json_t *fit_order(void)
 {
-  json_t *unknowns = json_object();
-  for (int i = 0; eo_unknown_names[i]; i++)
-    json_object_set_new(unknowns, eo_unknown_names[i],
-                        json_pack("{s:s, s:{s:s}, s:i, s:i, s:s}", "type", "array", "items", "type", "number",
-                                  "minItems", 2, "maxItems", 2, "description", "lowest, highest"));
-  return json_pack("{s:s, s:{s:{s:s, s:o, s:b}, s:{s:s}, s:{s:s}, s:{s:s, s:{s:s}}, s:{s:s}}, s:[s], s:b}", "type",
-                   "object", "properties", "unknowns", "type", "object", "properties", unknowns, "additionalProperties",
-                   0, "model_error", "type", "number", "seed", "type", "integer", "measurements", "type", "array",
-                   "items", "type", "integer", "design", "$ref", "#/components/schemas/Design", "required", "unknowns",
-                   "additionalProperties", 0);
+  json_t *schema = eo_table_json_schema(&eo_update_table, true), *more = json_object_get(schema, "properties");
+  bool good = json_object_set_new(more, "measurements",
+                                  json_pack("{s:s, s:{s:s}}", "type", "array", "items", "type", "integer")) == 0 &&
+              json_object_set_new(more, "design", json_pack("{s:s}", "$ref", "#/components/schemas/Design")) == 0 &&
+              json_object_set_new(schema, "required", json_pack("[s]", "unknowns")) == 0;
+  return good ? schema : (json_decref(schema), NULL);
 }
 
 /* What a route takes, under the last of its names; a form has files too. */

@@ -126,7 +126,7 @@ refuses "/layout/colums: Unknown key" measure "$design" "$folder/one.csv" --layo
 refuses "has no column \"nix\"" measure "$design" "$folder/one.csv" --layout '{"columns": {"pinion": "nix"}}'
 refuses "\"modified\" or \"unmodified\"" measure "$design" "$folder/one.csv" --label best
 refuses "no positive number" measure "$design" "$folder/one.csv" --torque 0
-refuses "This is no input that can be fitted" measure "$design" "$folder/one.csv" --update '{"unknowns": {"colour": [1, 2]}}'
+refuses "unknowns/colour" measure "$design" "$folder/one.csv" --update '{"unknowns": {"colour": [1, 2]}}'
 refuses "goes with --update" measure "$design" "$folder/one.csv" --apply x.json
 refuses "Unknown key\|not JSON\|expected\|JSON" measure "$design" "$folder/one.csv" --layout '{"lines" 5}'
 measure "$folder/one.csv" --no-prediction
