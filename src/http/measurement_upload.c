@@ -24,12 +24,16 @@
 struct asked {
   uint64_t design;
   int label, end, harmonics; /* label: as in labels; harmonics 0: 8 */
-  double torque, speed;      /* speed: rad/s, NaN: not stated */
-  const json_t *layout;      /* NULL: to be found */
+  double torque, speed;      /* N m and rad/s, NaN: not stated */
+  int part, whole;           /* of the recording: as in eo_part_choice */
+  double from, to;
+  const json_t *layout; /* NULL: to be found */
   struct eo_design parsed;
   struct eo_geometry geometry;
 };
 enum { MODIFIED, UNMODIFIED };
+enum { LEFT_OUT, INCLUDED };
+static const char *const run_ups[] = {"left out", "included", NULL};
 static const char *const labels[] = {"modified", "unmodified", NULL}, *const ends[] = {"left", "right", NULL};
 
 static const struct eo_field form_fields[] = {
@@ -47,7 +51,8 @@ static const struct eo_field form_fields[] = {
      .choices = labels,
      .fallback = NAN,
      .help = "whether the pair had its modification"},
-    EO_NUMBER_REQUIRED(struct asked, torque, "torque_Nm", &eo_unit_Nm, 1e-3, 1e8, "on the pinion"),
+    EO_NUMBER_DERIVED(struct asked, torque, "torque_Nm", &eo_unit_Nm, 1e-3, 1e8, "as recorded, else asked for",
+                      "on the pinion"),
     EO_NUMBER_DERIVED(struct asked, speed, "speed_rpm", &eo_unit_rpm, 0.1, 1e6, "as measured", "of the pinion"),
     EO_CHOICE(struct asked, end, "end", ends, EO_RIGHT, "where the encoders sit"),
     {.key = "harmonics",
@@ -59,6 +64,19 @@ static const struct eo_field form_fields[] = {
      .fallback = NAN,
      .derived = "8",
      .help = "mesh orders that are measured"},
+    {.key = "part",
+     .kind = EO_FIELD_INTEGER,
+     .flags = EO_FIELD_NULLABLE,
+     .offset = offsetof(struct asked, part),
+     .low = 1,
+     .high = EO_PARTS,
+     .fallback = NAN,
+     .derived = "the one with the most turns",
+     .help = "which stretch without a stop is measured, as `parts` of the result counts them"},
+    EO_CHOICE(struct asked, whole, "run_up", run_ups, LEFT_OUT,
+              "what leads to a long steady state: left out, or measured with it"),
+    EO_NUMBER(struct asked, from, "from_s", NULL, 0, 1e9, 0, "where what is measured begins, after the first row"),
+    EO_NUMBER_DERIVED(struct asked, to, "to_s", NULL, 0, 1e9, "the end", "where it ends, after the first row"),
     EO_DOCUMENT(struct asked, layout, "layout", "AskedLayout", EO_FIELD_NULLABLE,
                 "what the columns are; without it they are recognised"),
 };
@@ -120,6 +138,12 @@ static void write_request_digest(const struct asked *asked, const struct eo_uplo
   eo_hash_add_number(&hash, "harmonics", asked->harmonics);
   eo_hash_add_number(&hash, "torque", asked->torque);
   eo_hash_add_number(&hash, "speed", asked->speed);
+  if (asked->part || asked->whole || asked->from > 0 || asked->to > 0) { /* what was stored before has none */
+    eo_hash_add_number(&hash, "part", asked->part);
+    eo_hash_add_number(&hash, "whole", asked->whole);
+    eo_hash_add_number(&hash, "from", asked->from);
+    eo_hash_add_number(&hash, "to", asked->to);
+  }
   eo_hash_add_text(&hash, "layout", layout.data ? layout.data : "");
   eo_hash_add_text(&hash, "pair", pair);
   for (int i = 0; i < upload->files; i++)
@@ -139,7 +163,8 @@ static int watch(void *context, const char *what, double fraction)
   return closing;
 }
 
-static enum eo_code measure(struct eo_request *request, const struct asked *asked, json_t **document,
+/* torque: as stated, or as the recording has it. */
+static enum eo_code measure(struct eo_request *request, const struct asked *asked, json_t **document, double *torque,
                             struct eo_error *error)
 {
   const struct eo_upload *upload = request->upload;
@@ -155,6 +180,10 @@ static enum eo_code measure(struct eo_request *request, const struct asked *aske
                                     .stated_speed = asked->speed,
                                     .end = asked->end,
                                     .harmonics = asked->harmonics,
+                                    .part = {.part = asked->part,
+                                             .whole = asked->whole == INCLUDED,
+                                             .from = asked->from,
+                                             .to = asked->to > 0 ? asked->to : 0},
                                     .layout = asked->layout,
                                     .geometry = &asked->geometry,
                                     .spool_directory = upload->folder,
@@ -164,7 +193,13 @@ static enum eo_code measure(struct eo_request *request, const struct asked *aske
     work.speed[0] = i ? fmin(work.speed[0], speed) : speed;
     work.speed[1] = fmax(work.speed[1], speed);
   }
-  return eo_measure_file(&work, &progress, document, NULL, NULL, error);
+  struct eo_measured *outcome = calloc(1, sizeof *outcome);
+  if (!outcome)
+    return eo_error_memory(error);
+  enum eo_code code = eo_measure_file(&work, &progress, document, NULL, outcome, error);
+  *torque = outcome->torque;
+  free(outcome);
+  return code;
 }
 
 static void reply_refused(struct eo_request *request, const json_t *document)
@@ -199,8 +234,8 @@ static char *dump(const json_t *document)
   return text.failed ? (eo_text_done(&text), NULL) : text.data;
 }
 
-static enum eo_code keep(struct eo_request *request, const struct asked *asked, const char *pair, const char *digest,
-                         const json_t *document, struct eo_found_measurement *found,
+static enum eo_code keep(struct eo_request *request, const struct asked *asked, double torque, const char *pair,
+                         const char *digest, const json_t *document, struct eo_found_measurement *found,
                          enum eo_measurement_outcome *outcome, struct eo_error *error)
 {
   const struct eo_upload *upload = request->upload;
@@ -209,7 +244,7 @@ static enum eo_code keep(struct eo_request *request, const struct asked *asked, 
   struct eo_stored_measurement row = {.design = (int64_t)asked->design,
                                       .digest = digest,
                                       .unmodified = asked->label == UNMODIFIED,
-                                      .torque = asked->torque,
+                                      .torque = torque,
                                       .speed = asked->speed,
                                       .layout = texts[2],
                                       .pair = pair,
@@ -234,7 +269,8 @@ static void measure_and_keep(struct eo_request *request, const struct asked *ask
   struct eo_error error;
   enum eo_measurement_outcome outcome;
   json_t *document = NULL;
-  enum eo_code code = measure(request, asked, &document, &error);
+  double torque = NAN;
+  enum eo_code code = measure(request, asked, &document, &torque, &error);
   if (code == EO_ERROR_CANCELLED) {
     eo_reply_problem(&request->reply, 503, "stopping", "The server is stopping.");
     request->reply.retry_after = 5;
@@ -242,7 +278,11 @@ static void measure_and_keep(struct eo_request *request, const struct asked *ask
     eo_reply_error(&request->reply, "", &error);
   else if (json_is_true(json_object_get(document, "refused")))
     reply_refused(request, document);
-  else if (keep(request, asked, pair, digest, document, &found, &outcome, &error))
+  else if (!(torque > 0)) {
+    eo_error_set(&error, EO_ERROR_INPUT, "/torque_Nm",
+                 "No column of the recording holds a torque; state that of the pinion.");
+    eo_reply_error(&request->reply, "", &error);
+  } else if (keep(request, asked, torque, pair, digest, document, &found, &outcome, &error))
     eo_reply_error(&request->reply, "", &error);
   else if (outcome == EO_MEASUREMENT_NO_DESIGN)
     eo_reply_problem(&request->reply, 409, NULL, "The design was removed meanwhile.");

@@ -472,7 +472,7 @@ static void test_bodies(void)
 /* The server dies while a file comes in: the next one knows nothing of it. */
 static void test_kill(void)
 {
-  const struct upload u = {"1", "unmodified", "828", NULL, NULL, NULL, &unmodified, NULL};
+  const struct upload u = {"1", "unmodified", NULL, NULL, NULL, NULL, &unmodified, NULL};
   struct form form = make_form(&u);
   char head[300];
   int before = count_kept(), connection = open_connection();
@@ -487,7 +487,11 @@ static void test_kill(void)
   ok(start_server("--quiet", "--threads", "2"), "another one starts");
   ok(count_folders() == before && count_kept() == before, "nothing half-stored is there");
   struct reply reply = post(&u);
+  json_t *document = body_of(&reply);
   ok(reply.status == 201, "sent again it is taken: %d", reply.status);
+  ok(fabs(json_number_value(json_object_get(document, "torque_Nm")) - 828) < 0.5,
+     "and its column of torque stands for the one that was not stated");
+  json_decref(document);
   free_reply(&reply);
   free(form.text);
 }
