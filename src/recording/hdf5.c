@@ -18,6 +18,7 @@
 #define TEXTS 64                  /* texts of a list */
 #define REFERENCES 4096           /* elements of an array of structs or a cell that are looked at */
 #define CACHE ((size_t)256 << 20) /* bytes of chunks kept for all data sets together */
+#define AHEAD ((size_t)192 << 20) /* bytes of values that are read at once where chunks are too large to be kept */
 #define PATH EO_TREE_PATH
 
 struct channel {
@@ -25,11 +26,16 @@ struct channel {
   int width, place; /* values of one element in memory, and which of them is the channel's */
   int rank, along;  /* dimensions; the one along which values follow each other */
   hsize_t across;   /* place in the other one */
+  bool large;       /* its chunks are too large to be kept */
+  double *ahead;    /* owned: values that were read ahead, NULL: none */
+  int64_t first, count;
 };
 
 struct hdf5 {
   int sets, left_out;
   size_t cache; /* bytes promised so far */
+  bool large;   /* the chunks of the set that is looked at are too large for it */
+  int larges;   /* channels in such sets */
   hid_t file, set[CHANNELS];
   struct channel channel[CHANNELS];
   struct eo_tree *tree; /* owned */
@@ -163,6 +169,13 @@ static void add_number(struct hdf5 *h, hid_t set, const char *path)
     eo_tree_add_number(h->tree, path, value);
 }
 
+static void keep_channel(struct hdf5 *h, int number, struct channel channel)
+{
+  channel.large = h->large;
+  h->larges += h->large;
+  h->channel[number] = channel;
+}
+
 /* One channel per column, columns lying across the longer dimension. type: of a value in memory. */
 static bool add_channels(struct hdf5 *h, hid_t set, hid_t type, bool whole, const char *path, int rank,
                          const hsize_t *length)
@@ -173,7 +186,8 @@ static bool add_channels(struct hdf5 *h, hid_t set, hid_t type, bool whole, cons
                  ? -1
                  : eo_tree_add_series(h->tree, path, (int)across, (int64_t)length[along], whole);
   for (hsize_t k = 0; base >= 0 && k < across; k++)
-    h->channel[base + (int)k] = (struct channel){set, type, 1, 0, rank, along, k};
+    keep_channel(h, base + (int)k,
+                 (struct channel){.set = set, .type = type, .width = 1, .rank = rank, .along = along, .across = k});
   return base >= 0;
 }
 
@@ -191,7 +205,7 @@ static bool add_array(struct hdf5 *h, hid_t set, hid_t memory, int width, bool w
   int base = width > WIDE || length > INT64_MAX / 16 ? -1
                                                      : eo_tree_add_series(h->tree, path, width, (int64_t)length, whole);
   for (int k = 0; base >= 0 && k < width; k++)
-    h->channel[base + k] = (struct channel){set, memory, width, k, 1, 0, 0};
+    keep_channel(h, base + k, (struct channel){.set = set, .type = memory, .width = width, .place = k, .rank = 1});
   return base >= 0;
 }
 
@@ -297,8 +311,8 @@ static hid_t open_cached(struct hdf5 *h, hid_t set)
     bytes = chunk[i] < CACHE && bytes < CACHE ? bytes * chunk[i] : CACHE;
   H5Tclose(type);
   H5Pclose(list);
-  if (rank < 1 || rank > 8 || bytes <= (1 << 20) || bytes >= CACHE - h->cache ||
-      H5Iget_name(set, name, sizeof name) <= 0)
+  h->large = rank > 0 && bytes > (1 << 20) && bytes >= CACHE - h->cache;
+  if (rank < 1 || rank > 8 || bytes <= (1 << 20) || h->large || H5Iget_name(set, name, sizeof name) <= 0)
     return set;
   hid_t access = H5Pcreate(H5P_DATASET_ACCESS);
   H5Pset_chunk_cache(access, 521, bytes + 1024, 1);
@@ -402,17 +416,15 @@ static herr_t visit_root(hid_t group, const char *name, const H5L_info_t *info, 
   return *name == '#' ? 0 : visit_link(group, name, info, context);
 }
 
-static enum eo_code read_values(void *context, int series, int64_t first, int64_t count, double *values,
-                                struct eo_error *error)
+/* Stored values from the file; false: they cannot be read, or there is no memory. */
+static bool read_stored(const struct channel *c, int64_t first, int64_t count, double *values)
 {
-  const struct hdf5 *h = context;
-  const struct channel *c = &h->channel[series];
   hsize_t start[2] = {c->across, c->across}, size[2] = {1, 1}, length = (hsize_t)count;
   start[c->along] = (hsize_t)first;
   size[c->along] = length;
   double *all = c->width > 1 ? malloc((size_t)count * (size_t)c->width * sizeof *all) : values;
   if (!all)
-    return eo_error_memory(error);
+    return false;
   hid_t space = H5Dget_space(c->set), memory = H5Screate_simple(1, &length, NULL);
   herr_t status = H5Sselect_hyperslab(space, H5S_SELECT_SET, start, NULL, size, NULL);
   if (status >= 0)
@@ -423,7 +435,38 @@ static enum eo_code read_values(void *context, int series, int64_t first, int64_
     free(all);
   H5Sclose(memory);
   H5Sclose(space);
-  if (status < 0)
+  return status >= 0;
+}
+
+/* Each piece that is read of a chunk too large to be kept unpacks all of it: many values are read at once then. */
+static bool read_ahead(const struct hdf5 *h, struct channel *c, int64_t first, int64_t count, int64_t length,
+                       double *values)
+{
+  int64_t room = (int64_t)(AHEAD / sizeof *values) / h->larges;
+  if (count > room)
+    return read_stored(c, first, count, values);
+  if (!c->ahead && !(c->ahead = malloc((size_t)room * sizeof *values)))
+    return false;
+  if (first < c->first || first + count > c->first + c->count) {
+    c->first = first;
+    c->count = 0;
+    int64_t wanted = length - first < room ? length - first : room;
+    if (!read_stored(c, first, wanted, c->ahead))
+      return false;
+    c->count = wanted;
+  }
+  memcpy(values, c->ahead + (first - c->first), (size_t)count * sizeof *values);
+  return true;
+}
+
+static enum eo_code read_values(void *context, int series, int64_t first, int64_t count, double *values,
+                                struct eo_error *error)
+{
+  struct hdf5 *h = context;
+  struct channel *c = &h->channel[series];
+  bool good = c->large ? read_ahead(h, c, first, count, eo_tree_series(h->tree)[series].length, values)
+                       : read_stored(c, first, count, values);
+  if (!good)
     return eo_error_set(
         error, EO_ERROR_INPUT, "",
         "HDF5: the values of \"%s\" from %lld on cannot be read; the file is damaged or uses an unknown filter.",
@@ -473,6 +516,8 @@ enum eo_code eo_hdf5_read(const char *path, const struct eo_reader_options *opti
                           : read_file(h, file, state.st_size, options, sink, notes, error);
   for (int i = 0; i < h->sets; i++)
     H5Dclose(h->set[i]);
+  for (int i = 0; i < CHANNELS; i++)
+    free(h->channel[i].ahead);
   eo_tree_free(h->tree);
   if (file >= 0)
     H5Fclose(file);
