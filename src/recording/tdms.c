@@ -15,37 +15,10 @@ static double value_at(struct eo_tdms_channel *channel, const struct eo_tdms_par
 {
   if (part->bit >= 0)
     return p[0] >> part->bit & 1;
-  switch (part->type) {
-  case EO_TDMS_INT8:
-    return (int8_t)p[0];
-  case EO_TDMS_INT16:
-    return (int16_t)eo_bytes_16(p, big);
-  case EO_TDMS_INT32:
-    return (int32_t)eo_bytes_32(p, big);
-  case EO_TDMS_INT64:
-    return (double)(int64_t)eo_bytes_64(p, big);
-  case EO_TDMS_UINT8:
-  case EO_TDMS_BOOLEAN:
+  if (part->type == EO_TDMS_BOOLEAN)
     return p[0];
-  case EO_TDMS_UINT16:
-    return eo_bytes_16(p, big);
-  case EO_TDMS_UINT32:
-    return eo_bytes_32(p, big);
-  case EO_TDMS_UINT64:
-    return (double)eo_bytes_64(p, big);
-  case EO_TDMS_SINGLE:
-  case EO_TDMS_SINGLE_UNIT:
-    return eo_bytes_float(p, big);
-  case EO_TDMS_DOUBLE:
-  case EO_TDMS_DOUBLE_UNIT:
-    return eo_bytes_double(p, big);
-  case EO_TDMS_TIMESTAMP:
-    break;
-  case EO_TDMS_COMPLEX_SINGLE:
-  case EO_TDMS_COMPLEX_DOUBLE:
-  case EO_TDMS_STRING:
-    return 0;
-  }
+  if (part->type != EO_TDMS_TIMESTAMP)
+    return eo_tdms_number(part->type, p, big);
   /* Seconds since 1904 and fractions of 2^-64 s; only the distance from the first one fits a double without loss. */
   uint64_t seconds = eo_bytes_64(big ? p : p + 8, big);
   double fraction = (double)eo_bytes_64(big ? p + 8 : p, big) * 0x1p-64;

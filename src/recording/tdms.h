@@ -129,6 +129,8 @@ double eo_tdms_scaled(const struct eo_tdms_channel *channel, double raw);
 /* False when one of the scales is of a kind that is not known. */
 bool eo_tdms_can_scale(const struct eo_tdms_channel *channel);
 
+/* A number of this type; NaN for other types. */
+double eo_tdms_number(uint32_t type, const unsigned char *p, bool big);
 int64_t eo_tdms_type_size(uint32_t type); /* bytes of a value, 0 when it has no fixed size or is not read */
 
 /* Reads all metadata of an open file. tdms is zeroed but for file and size. Errors: EO_ERROR_INPUT with the byte,
