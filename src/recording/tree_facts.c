@@ -1,0 +1,278 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Which facts belong to which series, and what they mean for it. */
+#include "recording/tree_private.h"
+#include "recording/column.h"
+#include "recording/recorded_unit.h"
+
+#include <ctype.h>
+#include <stdio.h>
+#include <string.h>
+#include <strings.h>
+
+/* The part of the path behind the group of that size, up to the next slash. */
+static size_t part_behind(const char *path, size_t size, const char **part)
+{
+  *part = path + size + (size > 0);
+  return strcspn(*part, "/");
+}
+
+/* "Channel_1_" of "Channel_1_Header"; 0 when there is no such beginning. */
+static size_t prefix_of(const char *word, size_t length)
+{
+  while (length > 1 && word[length - 1] != '_' && word[length - 1] != '.')
+    length--;
+  return length > 1 ? length : 0;
+}
+
+/* A group without channels speaks for the channel that begins like it, when there is one in the same group. */
+static bool prefix_admits(const struct eo_tree *tree, const struct eo_leaf *fact, size_t outer,
+                          const struct eo_leaf *series)
+{
+  const char *part, *other;
+  size_t length = part_behind(fact->path, outer, &part), prefix = prefix_of(part, length);
+  if (!prefix)
+    return true;
+  bool any = false, mine = false;
+  for (int i = 0; i < tree->sets; i++) {
+    const struct eo_leaf *leaf = &tree->leaf[tree->set[i]];
+    if (!eo_tree_holds(fact->path, outer, leaf->path))
+      continue;
+    size_t n = part_behind(leaf->path, outer, &other);
+    bool same = n > prefix && !strncmp(part, other, prefix);
+    any = any || same;
+    mine = mine || (same && leaf == series);
+  }
+  return mine || !any;
+}
+
+/* How near a fact is to a series: the depth of the group it speaks for, one more for an attribute; -1: it says nothing
+   about the series. *outer: size of the path of that group. */
+static int nearness(const struct eo_tree *tree, const struct eo_leaf *fact, const struct eo_leaf *series, size_t *outer)
+{
+  size_t group = eo_tree_group_size(fact->path), length = strlen(series->path);
+  if (group == length && !strncmp(fact->path, series->path, length)) {
+    *outer = group;
+    return 100;
+  }
+  *outer = group;
+  while (*outer && !eo_tree_holds(fact->path, *outer, series->path)) {
+    if (eo_tree_has_series(tree, fact->path, *outer))
+      return -1;
+    while (*outer && fact->path[*outer - 1] != '/')
+      --*outer;
+    *outer -= *outer > 0;
+  }
+  if (*outer < group && !prefix_admits(tree, fact, *outer, series))
+    return -1;
+  return eo_tree_depth_of(fact->path, *outer);
+}
+
+/* True when a fact stands in a part that describes the abscissa: its unit and name are not those of the values. */
+static bool about_abscissa(const struct eo_leaf *fact, size_t outer)
+{
+  const char *part;
+  size_t group = eo_tree_group_size(fact->path);
+  for (size_t at = outer; at < group;) {
+    size_t length = part_behind(fact->path, at, &part);
+    if (eo_tree_is_one_of(part, length, EO_TREE_X_NAMES))
+      return true;
+    at = (size_t)(part - fact->path) + length;
+  }
+  return false;
+}
+
+/* "scale" of "pinion_scale" and "scale_pinion" beside "pinion"; false when the key does not hold the name. */
+static bool strip_name(const char *key, const char *name, char *rest, size_t size)
+{
+  size_t n = strlen(name), length = strlen(key);
+  if (n < 1 || length <= n + 1)
+    return false;
+  if (!strncasecmp(key, name, n) && !isalnum((unsigned char)key[n]))
+    snprintf(rest, size, "%s", key + n + 1);
+  else if (!strcasecmp(key + length - n, name) && !isalnum((unsigned char)key[length - n - 1]))
+    snprintf(rest, size, "%.*s", (int)(length - n - 1), key);
+  else
+    return false;
+  return true;
+}
+
+/* The key belongs to another channel by its name. */
+static bool names_other(const struct eo_tree *tree, const struct eo_leaf *fact, const struct eo_leaf *series)
+{
+  char rest[64];
+  size_t group = eo_tree_group_size(fact->path);
+  for (int i = 0; i < tree->sets; i++) {
+    const struct eo_leaf *leaf = &tree->leaf[tree->set[i]];
+    if (leaf != series && eo_tree_group_size(leaf->path) == group && eo_tree_holds(fact->path, group, leaf->path) &&
+        strip_name(eo_tree_base_of(fact->path), eo_tree_base_of(leaf->path), rest, sizeof rest))
+      return true;
+  }
+  return false;
+}
+
+/* "ms" under "SampleIntervalUnit" beside "SampleInterval"; "" when there is none. */
+static const char *unit_named_after(const struct eo_tree *tree, const struct eo_leaf *number)
+{
+  char key[64], other[64];
+  size_t group = eo_tree_group_size(number->path);
+  eo_tree_fold(eo_tree_base_of(number->path), strlen(eo_tree_base_of(number->path)), key, sizeof key);
+  for (int i = 0; i < tree->leaves; i++) {
+    const struct eo_leaf *leaf = &tree->leaf[i];
+    if (leaf->kind != EO_LEAF_TEXT || eo_tree_group_size(leaf->path) != group ||
+        strncmp(leaf->path, number->path, group))
+      continue;
+    eo_tree_fold(eo_tree_base_of(leaf->path), strlen(eo_tree_base_of(leaf->path)), other, sizeof other);
+    size_t length = strlen(key);
+    if (!strncmp(key, other, length) && (!strcmp(other + length, "unit") || !strcmp(other + length, "units")))
+      return leaf->text;
+  }
+  return "";
+}
+
+/* The unit of a number: a text beside it that is a unit of time or frequency, or one below its group. */
+static const char *unit_beside(const struct eo_tree *tree, const struct eo_leaf *number)
+{
+  size_t group = eo_tree_group_size(number->path);
+  double factor;
+  for (int i = 0; group && i < tree->leaves; i++) {
+    const struct eo_leaf *leaf = &tree->leaf[i];
+    if (leaf->kind != EO_LEAF_TEXT || !eo_tree_holds(number->path, group, leaf->path))
+      continue;
+    enum eo_quantity quantity = eo_unit_find(leaf->text, &factor);
+    if (quantity == EO_QUANTITY_TIME)
+      return leaf->text;
+  }
+  return "";
+}
+
+static void use_number(struct eo_tree *tree, const struct eo_leaf *fact, const struct eo_leaf *series)
+{
+  char key[64];
+  size_t outer;
+  int depth = nearness(tree, fact, series, &outer);
+  if (depth < 0)
+    return;
+  bool mine = strip_name(eo_tree_base_of(fact->path), eo_tree_base_of(series->path), key, sizeof key);
+  if (!mine && names_other(tree, fact, series))
+    return;
+  if (!mine)
+    snprintf(key, sizeof key, "%s", eo_tree_base_of(fact->path));
+  depth += mine ? 50 : 0;
+  const char *unit = unit_named_after(tree, fact);
+  struct eo_stated s = eo_stated_read(key, fact->number,
+                                      !*unit && about_abscissa(fact, outer) ? unit_beside(tree, fact) : unit);
+  int member = eo_stated_member(eo_tree_base_of(series->path));
+  if (!s.kind || (s.member >= 0 && member >= 0 && s.member != member))
+    return;
+  for (int c = series->first; c < series->first + series->channels; c++) {
+    struct eo_own *own = &tree->own[c];
+    if (depth <= own->depth[s.kind])
+      continue;
+    bool direct = depth >= 50 || own->whole;
+    if (s.kind == EO_STATED_SCALE && direct)
+      own->scale = s.value;
+    else if (s.kind == EO_STATED_OFFSET && direct)
+      own->offset = s.value;
+    else if (!eo_series_state(&tree->series[c], &s))
+      continue;
+    own->depth[s.kind] = depth;
+  }
+}
+
+/* A name is that of the only channel, beside its times, that the fact speaks for. */
+static bool speaks_for_one(const struct eo_tree *tree, const struct eo_leaf *fact)
+{
+  int count = 0;
+  size_t outer;
+  for (int i = 0; i < tree->sets; i++) {
+    const struct eo_leaf *leaf = &tree->leaf[tree->set[i]];
+    count += nearness(tree, fact, leaf, &outer) >= 0 && !eo_tree_is_time(leaf);
+  }
+  return count <= 1;
+}
+
+static void use_text(struct eo_tree *tree, const struct eo_leaf *fact, const struct eo_leaf *series)
+{
+  static const char unit_keys[] = "unit|units|unitstring|engunit|engineeringunit|engunits|engineeringunits|einheit|"
+                                  "yunit|yunits|unitsy|unitname|physicalunit|dimension";
+  static const char name_keys[] = "name|signalname|channelname|longname|label|title|signal|channel|displayname|"
+                                  "kanalname|varname|tag|variablename|desc|description|functionname";
+  size_t outer;
+  const char *key = eo_tree_base_of(fact->path);
+  int depth = nearness(tree, fact, series, &outer);
+  char rest[64];
+  double factor;
+  if (depth < 0 || about_abscissa(fact, outer) ||
+      (outer < eo_tree_group_size(fact->path) && depth == 0 && !strchr(key, '_') &&
+       !prefix_of(fact->path, strcspn(fact->path, "/"))))
+    return;
+  bool mine = strip_name(key, eo_tree_base_of(series->path), rest, sizeof rest);
+  key = mine ? rest : key;
+  if (!mine && names_other(tree, fact, series))
+    return;
+  depth += mine ? 50 : 0;
+  size_t length = strlen(key);
+  bool quantity = strstr(fact->path, "quantity/") != NULL;
+  bool unit = eo_tree_is_one_of(key, length, unit_keys) || (quantity && eo_tree_is_one_of(key, length, "label"));
+  bool name = !unit && eo_tree_is_one_of(key, length, name_keys) &&
+              eo_unit_find(fact->text, &factor) == EO_QUANTITY_NONE;
+  for (int c = series->first; c < series->first + series->channels; c++) {
+    struct eo_own *own = &tree->own[c];
+    if (unit && depth > own->unit_depth) {
+      snprintf(tree->series[c].unit, sizeof tree->series[c].unit, "%.*s", EO_RECORDING_UNIT - 1, fact->text);
+      own->unit_depth = depth;
+    }
+    if (name && depth > own->name_depth && series->channels == 1 && (depth >= 50 || speaks_for_one(tree, fact))) {
+      snprintf(tree->series[c].name, sizeof tree->series[c].name, "%.*s", EO_RECORDING_NAME - 1, fact->text);
+      own->name_depth = depth;
+    }
+  }
+}
+
+static int count_lines(const char *texts)
+{
+  int count = *texts != '\0';
+  for (; *texts; texts++)
+    count += *texts == '\n';
+  return count;
+}
+
+/* A list with a text for each channel of a table holds their names, or their units. */
+static void use_list(struct eo_tree *tree, const struct eo_leaf *fact, const struct eo_leaf *series)
+{
+  size_t outer;
+  int depth = nearness(tree, fact, series, &outer);
+  if (depth < 0 || about_abscissa(fact, outer) || series->channels < 2 || count_lines(fact->text) != series->channels)
+    return;
+  const char *key = eo_tree_base_of(fact->path), *base = eo_tree_base_of(series->path);
+  size_t block = strcspn(key, "_");
+  if (key[block] == '_' && eo_tree_is_one_of(key + block + 1, strlen(key) - block - 1, "items") &&
+      strncmp(key, base, block + 1))
+    return;
+  const char *p = fact->text;
+  for (int c = series->first; c < series->first + series->channels; c++) {
+    char word[EO_RECORDING_NAME];
+    double factor;
+    size_t n = strcspn(p, "\n");
+    snprintf(word, sizeof word, "%.*s", (int)(n < sizeof word ? n : sizeof word - 1), p);
+    bool unit = eo_tree_is_one_of(key, strlen(key), "unit|units|einheiten") ||
+                (eo_unit_find(word, &factor) != EO_QUANTITY_NONE && strlen(word) > 1);
+    if (unit && depth > tree->own[c].unit_depth)
+      snprintf(tree->series[c].unit, sizeof tree->series[c].unit, "%.*s", EO_RECORDING_UNIT - 1, word);
+    else if (!unit && depth > tree->own[c].name_depth) {
+      snprintf(tree->series[c].name, sizeof tree->series[c].name, "%s", word);
+      tree->own[c].name_depth = depth;
+    }
+    p += n + (p[n] == '\n');
+  }
+}
+
+void eo_tree_use(struct eo_tree *tree, const struct eo_leaf *fact, const struct eo_leaf *series)
+{
+  if (fact->kind == EO_LEAF_NUMBER)
+    use_number(tree, fact, series);
+  else if (fact->kind == EO_LEAF_TEXT)
+    use_text(tree, fact, series);
+  else if (fact->kind == EO_LEAF_LIST)
+    use_list(tree, fact, series);
+}
