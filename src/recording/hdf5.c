@@ -3,44 +3,20 @@
    one channel per field, and references to such. Runs in a process of its own. */
 #define H5_USE_110_API
 #include "recording/readers.h"
-#include "recording/tree.h"
+#include "recording/hdf5_private.h"
 
-#include <hdf5.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 
-#define CHANNELS EO_TREE_CHANNELS
 #define WIDE 64                   /* a data set with more columns is no table of channels */
 #define FIELDS 64                 /* fields of a record that are looked at */
 #define TEXTS 64                  /* texts of a list */
 #define REFERENCES 4096           /* elements of an array of structs or a cell that are looked at */
 #define CACHE ((size_t)256 << 20) /* bytes of chunks kept for all data sets together */
-#define AHEAD ((size_t)192 << 20) /* bytes of values that are read at once where chunks are too large to be kept */
 #define PATH EO_TREE_PATH
-
-struct channel {
-  hid_t set, type;  /* borrowed from sets; of a value in memory: a double, or a record with one field */
-  int width, place; /* values of one element in memory, and which of them is the channel's */
-  int rank, along;  /* dimensions; the one along which values follow each other */
-  hsize_t across;   /* place in the other one */
-  bool large;       /* its chunks are too large to be kept */
-  double *ahead;    /* owned: values that were read ahead, NULL: none */
-  int64_t first, count;
-};
-
-struct hdf5 {
-  int sets, left_out;
-  size_t cache; /* bytes promised so far */
-  bool large;   /* the chunks of the set that is looked at are too large for it */
-  int larges;   /* channels in such sets */
-  hid_t file, set[CHANNELS];
-  struct channel channel[CHANNELS];
-  struct eo_tree *tree; /* owned */
-  struct eo_notes *notes;
-};
 
 static bool join(char *path, const char *group, const char *name)
 {
@@ -85,7 +61,7 @@ static bool read_texts(hid_t object, bool set, hid_t type, hid_t space, char *li
   return done;
 }
 
-static void add_texts(struct hdf5 *h, const char *path, const char *list)
+static void add_texts(struct eo_hdf5 *h, const char *path, const char *list)
 {
   if (strchr(list, '\n'))
     eo_tree_add_list(h->tree, path, list);
@@ -94,7 +70,7 @@ static void add_texts(struct hdf5 *h, const char *path, const char *list)
 }
 
 struct attributes {
-  struct hdf5 *h;
+  struct eo_hdf5 *h;
   const char *path;
 };
 
@@ -120,7 +96,7 @@ static herr_t visit_attribute(hid_t object, const char *name, const H5A_info_t *
   return 0;
 }
 
-static void add_attributes(struct hdf5 *h, hid_t object, const char *path)
+static void add_attributes(struct eo_hdf5 *h, hid_t object, const char *path)
 {
   struct attributes a = {h, path};
   H5Aiterate2(object, H5_INDEX_NAME, H5_ITER_NATIVE, NULL, visit_attribute, &a);
@@ -150,7 +126,7 @@ static void matlab_class(hid_t set, char *class, size_t size)
 }
 
 /* MATLAB's texts are numbers of two bytes. */
-static void add_characters(struct hdf5 *h, hid_t set, hsize_t count, const char *path)
+static void add_characters(struct eo_hdf5 *h, hid_t set, hsize_t count, const char *path)
 {
   uint16_t wide[128];
   char text[129];
@@ -162,14 +138,14 @@ static void add_characters(struct hdf5 *h, hid_t set, hsize_t count, const char 
   eo_tree_add_text(h->tree, path, text);
 }
 
-static void add_number(struct hdf5 *h, hid_t set, const char *path)
+static void add_number(struct eo_hdf5 *h, hid_t set, const char *path)
 {
   double value = 0;
   if (H5Dread(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, &value) >= 0)
     eo_tree_add_number(h->tree, path, value);
 }
 
-static void keep_channel(struct hdf5 *h, int number, struct channel channel)
+static void keep_channel(struct eo_hdf5 *h, int number, struct eo_hdf5_channel channel)
 {
   channel.large = h->large;
   h->larges += h->large;
@@ -177,7 +153,7 @@ static void keep_channel(struct hdf5 *h, int number, struct channel channel)
 }
 
 /* One channel per column, columns lying across the longer dimension. type: of a value in memory. */
-static bool add_channels(struct hdf5 *h, hid_t set, hid_t type, bool whole, const char *path, int rank,
+static bool add_channels(struct eo_hdf5 *h, hid_t set, hid_t type, bool whole, const char *path, int rank,
                          const hsize_t *length)
 {
   int along = rank == 2 && length[1] > length[0];
@@ -186,8 +162,9 @@ static bool add_channels(struct hdf5 *h, hid_t set, hid_t type, bool whole, cons
                  ? -1
                  : eo_tree_add_series(h->tree, path, (int)across, (int64_t)length[along], whole);
   for (hsize_t k = 0; base >= 0 && k < across; k++)
-    keep_channel(h, base + (int)k,
-                 (struct channel){.set = set, .type = type, .width = 1, .rank = rank, .along = along, .across = k});
+    keep_channel(
+        h, base + (int)k,
+        (struct eo_hdf5_channel){.set = set, .type = type, .width = 1, .rank = rank, .along = along, .across = k});
   return base >= 0;
 }
 
@@ -200,12 +177,14 @@ static hid_t field_type(const char *name, hid_t field)
 }
 
 /* A field that is an array: one channel per element. */
-static bool add_array(struct hdf5 *h, hid_t set, hid_t memory, int width, bool whole, const char *path, hsize_t length)
+static bool add_array(struct eo_hdf5 *h, hid_t set, hid_t memory, int width, bool whole, const char *path,
+                      hsize_t length)
 {
   int base = width > WIDE || length > INT64_MAX / 16 ? -1
                                                      : eo_tree_add_series(h->tree, path, width, (int64_t)length, whole);
   for (int k = 0; base >= 0 && k < width; k++)
-    keep_channel(h, base + k, (struct channel){.set = set, .type = memory, .width = width, .place = k, .rank = 1});
+    keep_channel(h, base + k,
+                 (struct eo_hdf5_channel){.set = set, .type = memory, .width = width, .place = k, .rank = 1});
   return base >= 0;
 }
 
@@ -226,12 +205,12 @@ static hid_t nested_type(const struct nest *nest, hid_t inner)
   return memory;
 }
 
-static bool add_records(struct hdf5 *h, hid_t set, hid_t type, const struct nest *outer, const char *path,
+static bool add_records(struct eo_hdf5 *h, hid_t set, hid_t type, const struct nest *outer, const char *path,
                         hsize_t length, int depth);
 
 /* A field that is a number, an array of numbers, or a record. */
-static bool add_field(struct hdf5 *h, hid_t set, hid_t field, const struct nest *nest, const char *path, hsize_t length,
-                      int depth)
+static bool add_field(struct eo_hdf5 *h, hid_t set, hid_t field, const struct nest *nest, const char *path,
+                      hsize_t length, int depth)
 {
   H5T_class_t class = H5Tget_class(field);
   hsize_t width = 1;
@@ -257,7 +236,7 @@ static bool add_field(struct hdf5 *h, hid_t set, hid_t field, const struct nest 
 }
 
 /* Records: each field that is a number is a channel. */
-static bool add_records(struct hdf5 *h, hid_t set, hid_t type, const struct nest *outer, const char *path,
+static bool add_records(struct eo_hdf5 *h, hid_t set, hid_t type, const struct nest *outer, const char *path,
                         hsize_t length, int depth)
 {
   bool any = false;
@@ -274,10 +253,10 @@ static bool add_records(struct hdf5 *h, hid_t set, hid_t type, const struct nest
   return any;
 }
 
-static void add_object(struct hdf5 *h, hid_t object, const char *path, int depth);
+static void add_object(struct eo_hdf5 *h, hid_t object, const char *path, int depth);
 
 /* What MATLAB refers to: the elements of a cell, or one field of all elements of an array of structs, "ch(2)/y". */
-static void add_references(struct hdf5 *h, hid_t set, hsize_t count, bool cell, const char *path, int depth)
+static void add_references(struct eo_hdf5 *h, hid_t set, hsize_t count, bool cell, const char *path, int depth)
 {
   hobj_ref_t *reference = count && count <= REFERENCES ? malloc(count * sizeof *reference) : NULL;
   const char *slash = strrchr(path, '/');
@@ -300,7 +279,7 @@ static void add_references(struct hdf5 *h, hid_t set, hsize_t count, bool cell, 
 /* The cache holds a whole chunk of each data set as long as all together stay small: without it a chunk would be
    unpacked again for every piece that is read of it. The set is opened anew for that; a set that is open keeps the
    cache it has. */
-static hid_t open_cached(struct hdf5 *h, hid_t set)
+static hid_t open_cached(struct eo_hdf5 *h, hid_t set)
 {
   hid_t list = H5Dget_create_plist(set), type = H5Dget_type(set);
   hsize_t chunk[8];
@@ -323,15 +302,15 @@ static hid_t open_cached(struct hdf5 *h, hid_t set)
   return set;
 }
 
-static bool keep_set(struct hdf5 *h, hid_t set)
+static bool keep_set(struct eo_hdf5 *h, hid_t set)
 {
-  if (h->sets < CHANNELS)
+  if (h->sets < EO_HDF5_CHANNELS)
     h->set[h->sets++] = set;
-  return h->sets <= CHANNELS;
+  return h->sets <= EO_HDF5_CHANNELS;
 }
 
 /* A data set with numbers, texts or references; it is closed unless channels read it. */
-static void add_set(struct hdf5 *h, hid_t set, const char *path, int depth)
+static void add_set(struct eo_hdf5 *h, hid_t set, const char *path, int depth)
 {
   hsize_t length[2] = {0, 0};
   char class_name[32], list[4096];
@@ -359,7 +338,7 @@ static void add_set(struct hdf5 *h, hid_t set, const char *path, int depth)
     add_texts(h, path, list);
   else if (number && count == 1)
     add_number(h, set, path);
-  else if (h->sets < CHANNELS &&
+  else if (h->sets < EO_HDF5_CHANNELS &&
            ((number && add_channels(h, set, H5T_NATIVE_DOUBLE, class == H5T_INTEGER, path, rank ? rank : 1, length)) ||
             (class == H5T_COMPOUND && rank == 1 && add_records(h, set, type, NULL, path, length[0], 0))))
     kept = keep_set(h, set);
@@ -377,7 +356,7 @@ static void add_set(struct hdf5 *h, hid_t set, const char *path, int depth)
 }
 
 struct group {
-  struct hdf5 *h;
+  struct eo_hdf5 *h;
   const char *path;
   int depth;
 };
@@ -395,7 +374,7 @@ static herr_t visit_link(hid_t group, const char *name, const H5L_info_t *info, 
 }
 
 /* A group or data set; closes it. */
-static void add_object(struct hdf5 *h, hid_t object, const char *path, int depth)
+static void add_object(struct eo_hdf5 *h, hid_t object, const char *path, int depth)
 {
   H5I_type_t kind = H5Iget_type(object);
   if (kind == H5I_DATASET) {
@@ -416,67 +395,7 @@ static herr_t visit_root(hid_t group, const char *name, const H5L_info_t *info, 
   return *name == '#' ? 0 : visit_link(group, name, info, context);
 }
 
-/* Stored values from the file; false: they cannot be read, or there is no memory. */
-static bool read_stored(const struct channel *c, int64_t first, int64_t count, double *values)
-{
-  hsize_t start[2] = {c->across, c->across}, size[2] = {1, 1}, length = (hsize_t)count;
-  start[c->along] = (hsize_t)first;
-  size[c->along] = length;
-  double *all = c->width > 1 ? malloc((size_t)count * (size_t)c->width * sizeof *all) : values;
-  if (!all)
-    return false;
-  hid_t space = H5Dget_space(c->set), memory = H5Screate_simple(1, &length, NULL);
-  herr_t status = H5Sselect_hyperslab(space, H5S_SELECT_SET, start, NULL, size, NULL);
-  if (status >= 0)
-    status = H5Dread(c->set, c->type, memory, space, H5P_DEFAULT, all);
-  for (int64_t i = 0; c->width > 1 && i < count; i++)
-    values[i] = all[i * c->width + c->place];
-  if (c->width > 1)
-    free(all);
-  H5Sclose(memory);
-  H5Sclose(space);
-  return status >= 0;
-}
-
-/* Each piece that is read of a chunk too large to be kept unpacks all of it: many values are read at once then. */
-static bool read_ahead(const struct hdf5 *h, struct channel *c, int64_t first, int64_t count, int64_t length,
-                       double *values)
-{
-  int64_t room = (int64_t)(AHEAD / sizeof *values) / h->larges;
-  if (count > room)
-    return read_stored(c, first, count, values);
-  if (!c->ahead && !(c->ahead = malloc((size_t)room * sizeof *values)))
-    return false;
-  if (first < c->first || first + count > c->first + c->count) {
-    c->first = first;
-    c->count = 0;
-    int64_t wanted = length - first < room ? length - first : room;
-    if (!read_stored(c, first, wanted, c->ahead))
-      return false;
-    c->count = wanted;
-  }
-  memcpy(values, c->ahead + (first - c->first), (size_t)count * sizeof *values);
-  return true;
-}
-
-static enum eo_code read_values(void *context, int series, int64_t first, int64_t count, double *values,
-                                struct eo_error *error)
-{
-  struct hdf5 *h = context;
-  struct channel *c = &h->channel[series];
-  bool good = c->large ? read_ahead(h, c, first, count, eo_tree_series(h->tree)[series].length, values)
-                       : read_stored(c, first, count, values);
-  if (!good)
-    return eo_error_set(
-        error, EO_ERROR_INPUT, "",
-        "HDF5: the values of \"%s\" from %lld on cannot be read; the file is damaged or uses an unknown filter.",
-        eo_tree_series(h->tree)[series].name, (long long)first);
-  for (int64_t i = 0; i < count; i++)
-    values[i] = eo_tree_value(h->tree, series, values[i]);
-  return EO_OK;
-}
-
-static enum eo_code read_file(struct hdf5 *h, hid_t file, int64_t bytes, const struct eo_reader_options *options,
+static enum eo_code read_file(struct eo_hdf5 *h, hid_t file, int64_t bytes, const struct eo_reader_options *options,
                               const struct eo_series_sink *sink, struct eo_notes *notes, struct eo_error *error)
 {
   struct group root = {h, "", 0};
@@ -492,8 +411,8 @@ static enum eo_code read_file(struct hdf5 *h, hid_t file, int64_t bytes, const s
   if (h->left_out)
     eo_notes_add(notes, "%d data set%s %s no channel of numbers and %s left out.", h->left_out,
                  h->left_out == 1 ? "" : "s", h->left_out == 1 ? "is" : "are", h->left_out == 1 ? "was" : "were");
-  struct eo_series_file content = {
-      eo_tree_series(h->tree), eo_tree_count(h->tree), bytes, options->max_bytes, read_values, h};
+  struct eo_series_file content = {eo_tree_series(h->tree), eo_tree_count(h->tree), bytes,
+                                   options->max_bytes,      eo_hdf5_values,         h};
   return eo_series_copy(&content, sink, notes, error);
 }
 
@@ -505,7 +424,7 @@ enum eo_code eo_hdf5_read(const char *path, const struct eo_reader_options *opti
     return eo_error_set(error, EO_ERROR_FILE, "", "The file %s could not be opened.", path);
   H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
   H5PLset_loading_state(0); /* no code from outside, whatever filter the file asks for */
-  struct hdf5 *h = calloc(1, sizeof *h);
+  struct eo_hdf5 *h = calloc(1, sizeof *h);
   if (!h)
     return eo_error_memory(error);
   hid_t file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
@@ -516,7 +435,7 @@ enum eo_code eo_hdf5_read(const char *path, const struct eo_reader_options *opti
                           : read_file(h, file, state.st_size, options, sink, notes, error);
   for (int i = 0; i < h->sets; i++)
     H5Dclose(h->set[i]);
-  for (int i = 0; i < CHANNELS; i++)
+  for (int i = 0; i < EO_HDF5_CHANNELS; i++)
     free(h->channel[i].ahead);
   eo_tree_free(h->tree);
   if (file >= 0)
