@@ -50,177 +50,353 @@ static double predicted_peak(const struct eo_measured *m, const struct eo_compar
   return (void)m, p->prediction.peak_to_peak;
 }
 
+enum { TORQUE, SPEED, MEASURED_RMS, MEASURED_SIGMA, PREDICTED_RMS, RATIO, LIKENESS, PREDICTED_PEAK, COLUMNS };
 static const struct column {
-  const char *key;
   column_function *value;
   const struct eo_unit *unit;
-} columns[] = {{"torque_Nm", torque, &eo_unit_Nm},
-               {"speed_rpm", speed, &eo_unit_rpm},
-               {"measured_rms_m_per_s2", measured_rms, &eo_unit_m_per_s2},
-               {"measured_sigma_m_per_s2", measured_sigma, &eo_unit_m_per_s2},
-               {"predicted_rms_m_per_s2", predicted_rms, &eo_unit_m_per_s2},
-               {"ratio", ratio, NULL},
-               {"likeness", likeness, NULL},
-               {"predicted_te_peak_to_peak_um", predicted_peak, &eo_unit_um}};
-enum { COLUMNS = sizeof columns / sizeof *columns };
+} columns[COLUMNS] = {
+    [TORQUE] = {torque, &eo_unit_Nm},
+    [SPEED] = {speed, &eo_unit_rpm},
+    [MEASURED_RMS] = {measured_rms, &eo_unit_m_per_s2},
+    [MEASURED_SIGMA] = {measured_sigma, &eo_unit_m_per_s2},
+    [PREDICTED_RMS] = {predicted_rms, &eo_unit_m_per_s2},
+    [RATIO] = {ratio, NULL},
+    [LIKENESS] = {likeness, NULL},
+    [PREDICTED_PEAK] = {predicted_peak, &eo_unit_um},
+};
 
 static const char *const labels[] = {"modified", "unmodified", NULL}, *const ends[] = {"left", "right", NULL};
 
+/* What a document is written from. */
+struct source {
+  const struct eo_comparison *comparison;
+  const struct eo_measured *measured; /* [count] */
+};
+
+static json_t *write_column(const void *source, int column)
+{
+  const struct source *s = source;
+  double value[EO_MOST_MEASURED];
+  for (int i = 0; i < s->comparison->count; i++)
+    value[i] = columns[column].value(&s->measured[i], &s->comparison->point[i]);
+  return eo_json_reals(s->comparison->count, value, 1, columns[column].unit, EO_DIGITS_NUMBER);
+}
+
+static json_t *write_torques(const void *source)
+{
+  return write_column(source, TORQUE);
+}
+
+static json_t *write_speeds(const void *source)
+{
+  return write_column(source, SPEED);
+}
+
+static json_t *write_measured_rms(const void *source)
+{
+  return write_column(source, MEASURED_RMS);
+}
+
+static json_t *write_measured_sigma(const void *source)
+{
+  return write_column(source, MEASURED_SIGMA);
+}
+
+static json_t *write_predicted_rms(const void *source)
+{
+  return write_column(source, PREDICTED_RMS);
+}
+
+static json_t *write_ratios(const void *source)
+{
+  return write_column(source, RATIO);
+}
+
+static json_t *write_likeness(const void *source)
+{
+  return write_column(source, LIKENESS);
+}
+
+static json_t *write_predicted_peaks(const void *source)
+{
+  return write_column(source, PREDICTED_PEAK);
+}
+
+/* A list with one value for each measurement. */
+typedef json_t *word_function(const struct eo_measured *m, const struct eo_compared *p);
+
+static json_t *write_words(const void *source, word_function *word)
+{
+  const struct source *s = source;
+  struct eo_object list = {.json = json_array()};
+  for (int i = 0; i < s->comparison->count; i++)
+    list.failed = json_array_append_new(list.json, word(&s->measured[i], &s->comparison->point[i])) || list.failed;
+  return eo_object_close(&list);
+}
+
+static json_t *file_of(const struct eo_measured *m, const struct eo_compared *p)
+{
+  return (void)p, json_string(m->name);
+}
+
+static json_t *label_of(const struct eo_measured *m, const struct eo_compared *p)
+{
+  return (void)p, json_string(labels[m->unmodified]);
+}
+
+static json_t *end_of(const struct eo_measured *m, const struct eo_compared *p)
+{
+  return (void)p, json_string(ends[m->end]);
+}
+
+static json_t *outlier_of(const struct eo_measured *m, const struct eo_compared *p)
+{
+  return (void)m, json_boolean(p->outlier);
+}
+
+static json_t *reason_of(const struct eo_measured *m, const struct eo_compared *p)
+{
+  return (void)m, *p->reason ? json_string(p->reason) : json_null();
+}
+
+static json_t *write_files(const void *source)
+{
+  return write_words(source, file_of);
+}
+
+static json_t *write_labels(const void *source)
+{
+  return write_words(source, label_of);
+}
+
+static json_t *write_ends(const void *source)
+{
+  return write_words(source, end_of);
+}
+
+static json_t *write_outliers(const void *source)
+{
+  return write_words(source, outlier_of);
+}
+
+static json_t *write_reasons(const void *source)
+{
+  return write_words(source, reason_of);
+}
+
+enum { FIRST_NUMBER = 3 }; /* row of the first of the numbers, which stand in the order of `columns` */
 static const struct eo_outline_row column_rows[] = {
-    EO_KEY("file", "[text]", "as it was uploaded"),
-    EO_KEY("label", "[word]", "which pair was measured", .words = labels),
-    EO_KEY("end", "[word]", "where the encoders sat", .words = ends),
-    EO_KEY("torque_Nm", "[number]", "on the pinion shaft", .unit = &eo_unit_Nm),
-    EO_KEY("speed_rpm", "[number]", "measured mean speed of the pinion", .unit = &eo_unit_rpm),
+    EO_KEY("file", "[text]", "as it was uploaded", .write = write_files),
+    EO_KEY("label", "[word]", "which pair was measured", .words = labels, .write = write_labels),
+    EO_KEY("end", "[word]", "where the encoders sat", .words = ends, .write = write_ends),
+    EO_KEY("torque_Nm", "[number]", "on the pinion shaft", .unit = &eo_unit_Nm, .write = write_torques),
+    EO_KEY("speed_rpm", "[number]", "measured mean speed of the pinion", .unit = &eo_unit_rpm, .write = write_speeds),
     EO_KEY("measured_rms_m_per_s2", "[number?]", "rotational acceleration of the mesh orders",
-           .unit = &eo_unit_m_per_s2),
-    EO_KEY("measured_sigma_m_per_s2", "[number?]", "its standard deviation", .unit = &eo_unit_m_per_s2),
+           .unit = &eo_unit_m_per_s2, .write = write_measured_rms),
+    EO_KEY("measured_sigma_m_per_s2", "[number?]", "its standard deviation", .unit = &eo_unit_m_per_s2,
+           .write = write_measured_sigma),
     EO_KEY("predicted_rms_m_per_s2", "[number?]", "of the same orders; null without a periodic vibration",
-           .unit = &eo_unit_m_per_s2),
-    EO_KEY("ratio", "[number?]", "measured over predicted"),
+           .unit = &eo_unit_m_per_s2, .write = write_predicted_rms),
+    EO_KEY("ratio", "[number?]", "measured over predicted", .write = write_ratios),
     EO_KEY("likeness", "[number?]",
-           "correlation of both curves of the transmission error when they are in phase, -1..1"),
+           "correlation of both curves of the transmission error when they are in phase, -1..1",
+           .write = write_likeness),
     EO_KEY("predicted_te_peak_to_peak_um", "[number?]", "of the predicted dynamic transmission error",
-           .unit = &eo_unit_um),
-    EO_KEY("outlier", "[flag]", "does not fit the others"),
-    EO_KEY("reason", "[text?]", "why"),
+           .unit = &eo_unit_um, .write = write_predicted_peaks),
+    EO_KEY("outlier", "[flag]", "does not fit the others", .write = write_outliers),
+    EO_KEY("reason", "[text?]", "why", .write = write_reasons),
 };
 static const struct eo_outline column_outline = EO_OUTLINE("ComparedColumns", column_rows);
 
-static json_t *encode_columns(const struct eo_comparison *c, const struct eo_measured *m)
+/* One measurement beside its prediction. */
+struct detail {
+  const struct eo_measured *measured;
+  const struct eo_compared *compared;
+  double measured_te[CURVE], predicted_te[CURVE]; /* in phase */
+};
+
+static json_t *write_measured_orders(const void *source)
 {
-  struct eo_object o = eo_object_open_as(&column_outline);
-  json_t *file = json_array(), *label = json_array(), *end = json_array(), *outlier = json_array(),
-         *reason = json_array();
-  double *value = malloc(sizeof *value * ((size_t)c->count + 1));
-  o.failed = o.failed || !value;
-  for (int i = 0; i < c->count && !o.failed; i++)
-    o.failed = json_array_append_new(file, json_string(m[i].name)) ||
-               json_array_append_new(label, json_string(labels[m[i].unmodified])) ||
-               json_array_append_new(end, json_string(ends[m[i].end])) ||
-               json_array_append_new(outlier, json_boolean(c->point[i].outlier)) ||
-               json_array_append_new(reason, *c->point[i].reason ? json_string(c->point[i].reason) : json_null());
-  eo_object_put(&o, "file", file);
-  eo_object_put(&o, "label", label);
-  eo_object_put(&o, "end", end);
-  for (int k = 0; k < COLUMNS && !o.failed; k++) {
-    for (int i = 0; i < c->count; i++)
-      value[i] = columns[k].value(&m[i], &c->point[i]);
-    eo_object_put(&o, columns[k].key, eo_json_reals(c->count, value, 1, columns[k].unit, EO_DIGITS_NUMBER));
-  }
-  eo_object_put(&o, "outlier", outlier);
-  eo_object_put(&o, "reason", reason);
-  free(value);
-  return eo_object_close(&o);
+  const struct eo_measured *m = ((const struct detail *)source)->measured;
+  double value[EO_MESH_ORDERS];
+  for (int h = 0; h < m->harmonics; h++)
+    value[h] = m->order[h].acceleration;
+  return eo_json_reals(m->harmonics, value, 1, &eo_unit_m_per_s2, EO_DIGITS_CURVE);
+}
+
+static json_t *write_predicted_orders(const void *source)
+{
+  const struct detail *d = source;
+  return eo_json_reals(d->measured->harmonics, d->compared->prediction.acceleration, 1, &eo_unit_m_per_s2,
+                       EO_DIGITS_CURVE);
+}
+
+static json_t *write_measured_amplitudes(const void *source)
+{
+  const struct eo_measured *m = ((const struct detail *)source)->measured;
+  double value[EO_MESH_ORDERS];
+  for (int h = 0; h < m->harmonics; h++)
+    value[h] = cabs(m->order[h].amplitude);
+  return eo_json_reals(m->harmonics, value, 1, &eo_unit_um, EO_DIGITS_CURVE);
+}
+
+static json_t *write_predicted_amplitudes(const void *source)
+{
+  const struct detail *d = source;
+  double value[EO_MESH_ORDERS];
+  for (int h = 0; h < d->measured->harmonics; h++)
+    value[h] = cabs(d->compared->prediction.order[h]);
+  return eo_json_reals(d->measured->harmonics, value, 1, &eo_unit_um, EO_DIGITS_CURVE);
 }
 
 static const struct eo_outline_row order_rows[] = {
-    EO_KEY("measured_m_per_s2", "[number?]", "acceleration of mesh orders 1, 2, ...", .unit = &eo_unit_m_per_s2),
-    EO_KEY("predicted_m_per_s2", "[number?]", "the same, predicted", .unit = &eo_unit_m_per_s2),
-    EO_KEY("measured_um", "[number?]", "amplitude of the transmission error at these orders", .unit = &eo_unit_um),
-    EO_KEY("predicted_um", "[number?]", "the same, predicted", .unit = &eo_unit_um),
+    EO_KEY("measured_m_per_s2", "[number?]", "acceleration of mesh orders 1, 2, ...", .unit = &eo_unit_m_per_s2,
+           .write = write_measured_orders),
+    EO_KEY("predicted_m_per_s2", "[number?]", "the same, predicted", .unit = &eo_unit_m_per_s2,
+           .write = write_predicted_orders),
+    EO_KEY("measured_um", "[number?]", "amplitude of the transmission error at these orders", .unit = &eo_unit_um,
+           .write = write_measured_amplitudes),
+    EO_KEY("predicted_um", "[number?]", "the same, predicted", .unit = &eo_unit_um,
+           .write = write_predicted_amplitudes),
 };
 static const struct eo_outline order_outline = EO_OUTLINE("ComparedOrders", order_rows);
 
+static json_t *write_positions(const void *source)
+{
+  double position[CURVE];
+  (void)source;
+  for (int i = 0; i < CURVE; i++)
+    position[i] = (double)i / CURVE;
+  return eo_json_reals(CURVE, position, 1, NULL, EO_DIGITS_CURVE);
+}
+
+static json_t *write_measured_te(const void *source)
+{
+  return eo_json_reals(CURVE, ((const struct detail *)source)->measured_te, 1, &eo_unit_um, EO_DIGITS_CURVE);
+}
+
+static json_t *write_predicted_te(const void *source)
+{
+  return eo_json_reals(CURVE, ((const struct detail *)source)->predicted_te, 1, &eo_unit_um, EO_DIGITS_CURVE);
+}
+
+static json_t *write_shift(const void *source)
+{
+  return eo_json_quantity(((const struct detail *)source)->compared->shift, NULL);
+}
+
 static const struct eo_outline_row curve_rows[] = {
-    EO_KEY("position", "[number]", "phase of the mesh cycle, 0..1"),
-    EO_KEY("measured_um", "[number?]", "transmission error of the mesh, over position", .unit = &eo_unit_um),
-    EO_KEY("predicted_um", "[number?]", "the same, predicted, shifted to the phase that fits best",
-           .unit = &eo_unit_um),
-    EO_KEY("shift", "number?", "by how much, in mesh cycles"),
+    EO_KEY("position", "[number]", "phase of the mesh cycle, 0..1", .write = write_positions),
+    EO_KEY("measured_um", "[number?]", "transmission error of the mesh, over position", .unit = &eo_unit_um,
+           .write = write_measured_te),
+    EO_KEY("predicted_um", "[number?]", "the same, predicted, shifted to the phase that fits best", .unit = &eo_unit_um,
+           .write = write_predicted_te),
+    EO_KEY("shift", "number?", "by how much, in mesh cycles", .write = write_shift),
 };
 static const struct eo_outline curve_outline = EO_OUTLINE("ComparedCurves", curve_rows);
 
+static json_t *write_detail_orders(const void *detail)
+{
+  return eo_outline_encode(&order_outline, detail);
+}
+
+static json_t *write_detail_curves(const void *detail)
+{
+  return eo_outline_encode(&curve_outline, detail);
+}
+
 static const struct eo_outline_row detail_rows[] = {
-    EO_KEY("orders", "object", "side by side", .outline = &order_outline),
-    EO_KEY("te", "object", "in phase", .outline = &curve_outline),
+    EO_KEY("orders", "object", "side by side", .outline = &order_outline, .write = write_detail_orders),
+    EO_KEY("te", "object", "in phase", .outline = &curve_outline, .write = write_detail_curves),
 };
 static const struct eo_outline detail_outline = EO_OUTLINE("ComparedDetail", detail_rows);
 
-/* Orders side by side and the curves in phase, one object per measurement. */
-static json_t *encode_detail(const struct eo_measured *m, const struct eo_compared *p)
+static json_t *write_columns(const void *source)
 {
-  double measured[EO_MESH_ORDERS], amplitude[2][EO_MESH_ORDERS], curve[2][CURVE], position[CURVE];
-  struct eo_object o = eo_object_open_as(&detail_outline), orders = eo_object_open_as(&order_outline),
-                   curves = eo_object_open_as(&curve_outline);
-  for (int h = 0; h < m->harmonics; h++) {
-    measured[h] = m->order[h].acceleration;
-    amplitude[0][h] = cabs(m->order[h].amplitude);
-    amplitude[1][h] = cabs(p->prediction.order[h]);
+  return eo_outline_encode(&column_outline, source);
+}
+
+static json_t *write_details(const void *source)
+{
+  const struct source *s = source;
+  struct eo_object list = {.json = json_array()};
+  for (int i = 0; i < s->comparison->count; i++) {
+    struct detail detail = {&s->measured[i], &s->comparison->point[i], {0}, {0}};
+    eo_comparison_curves(detail.measured, detail.compared, CURVE, detail.measured_te, detail.predicted_te);
+    list.failed = json_array_append_new(list.json, eo_outline_encode(&detail_outline, &detail)) || list.failed;
   }
-  for (int i = 0; i < CURVE; i++)
-    position[i] = (double)i / CURVE;
-  eo_comparison_curves(m, p, CURVE, curve[0], curve[1]);
-  eo_object_put(&orders, "measured_m_per_s2",
-                eo_json_reals(m->harmonics, measured, 1, &eo_unit_m_per_s2, EO_DIGITS_CURVE));
-  eo_object_put(&orders, "predicted_m_per_s2",
-                eo_json_reals(m->harmonics, p->prediction.acceleration, 1, &eo_unit_m_per_s2, EO_DIGITS_CURVE));
-  eo_object_put(&orders, "measured_um", eo_json_reals(m->harmonics, amplitude[0], 1, &eo_unit_um, EO_DIGITS_CURVE));
-  eo_object_put(&orders, "predicted_um", eo_json_reals(m->harmonics, amplitude[1], 1, &eo_unit_um, EO_DIGITS_CURVE));
-  eo_object_put(&curves, "position", eo_json_reals(CURVE, position, 1, NULL, EO_DIGITS_CURVE));
-  eo_object_put(&curves, "measured_um", eo_json_reals(CURVE, curve[0], 1, &eo_unit_um, EO_DIGITS_CURVE));
-  eo_object_put(&curves, "predicted_um", eo_json_reals(CURVE, curve[1], 1, &eo_unit_um, EO_DIGITS_CURVE));
-  eo_object_put_number(&curves, "shift", p->shift);
-  eo_object_put(&o, "orders", eo_object_close(&orders));
-  eo_object_put(&o, "te", eo_object_close(&curves));
-  return eo_object_close(&o);
+  return eo_object_close(&list);
+}
+
+/* A reduction with the name of its file. */
+struct named_reduction {
+  struct eo_reduction reduction;
+  const char *file;
+};
+
+/* The number of a measurement is known to who stores it, and put in there. */
+static bool is_stored(const void *reduction)
+{
+  (void)reduction;
+  return false;
 }
 
 static const struct eo_outline_row reduction_rows[] = {
-    EO_KEY("file", "text", "of the modified pair"),
-    EO_KEY("torque_Nm", "number", "on the pinion shaft", .unit = &eo_unit_Nm),
-    EO_KEY("speed_rpm", "number", "of the pinion", .unit = &eo_unit_rpm),
-    EO_KEY("unmodified_measurements", "integer", "that it is compared with"),
+    EO_KEY("file", "text", "of the modified pair", EO_AT(struct named_reduction, file)),
+    EO_KEY("torque_Nm", "number", "on the pinion shaft", .unit = &eo_unit_Nm,
+           EO_AT(struct named_reduction, reduction.torque)),
+    EO_KEY("speed_rpm", "number", "of the pinion", .unit = &eo_unit_rpm,
+           EO_AT(struct named_reduction, reduction.speed)),
+    EO_KEY("unmodified_measurements", "integer", "that it is compared with",
+           EO_AT(struct named_reduction, reduction.unmodified)),
     EO_KEY("measured_percent", "number?", "how much less the modified pair vibrates, per cent of the unmodified one",
-           .unit = &percent),
-    EO_KEY("sigma_percent", "number?", "standard deviation of it", .unit = &percent),
-    EO_KEY("predicted_percent", "number?", "the same, predicted", .unit = &percent),
-    EO_KEY("id", "integer", "number of the measurement", .when = "of stored measurements"),
+           .unit = &percent, EO_AT(struct named_reduction, reduction.measured)),
+    EO_KEY("sigma_percent", "number?", "standard deviation of it", .unit = &percent,
+           EO_AT(struct named_reduction, reduction.measured_sigma)),
+    EO_KEY("predicted_percent", "number?", "the same, predicted", .unit = &percent,
+           EO_AT(struct named_reduction, reduction.predicted)),
+    EO_KEY("id", "integer", "number of the measurement", .when = "of stored measurements", .there = is_stored),
 };
 static const struct eo_outline reduction_outline = EO_OUTLINE("ComparedReduction", reduction_rows);
 
-static json_t *encode_reductions(const struct eo_comparison *c, const struct eo_measured *m)
+static json_t *write_reductions(const void *source)
 {
-  json_t *list = json_array();
-  bool failed = !list;
-  for (int i = 0; i < c->reductions && !failed; i++) {
-    const struct eo_reduction *r = &c->reduction[i];
-    struct eo_object o = eo_object_open_as(&reduction_outline);
-    eo_object_put(&o, "file", json_string(m[r->modified].name));
-    eo_object_put_number(&o, "torque_Nm", r->torque);
-    eo_object_put_number(&o, "speed_rpm", r->speed);
-    eo_object_put(&o, "unmodified_measurements", json_integer(r->unmodified));
-    eo_object_put_number(&o, "measured_percent", r->measured);
-    eo_object_put_number(&o, "sigma_percent", r->measured_sigma);
-    eo_object_put_number(&o, "predicted_percent", r->predicted);
-    failed = json_array_append_new(list, eo_object_close(&o)) != 0;
+  const struct source *s = source;
+  struct eo_object list = {.json = json_array()};
+  for (int i = 0; i < s->comparison->reductions; i++) {
+    const struct eo_reduction *r = &s->comparison->reduction[i];
+    const struct named_reduction named = {*r, s->measured[r->modified].name};
+    list.failed = json_array_append_new(list.json, eo_outline_encode(&reduction_outline, &named)) || list.failed;
   }
-  return failed ? (json_decref(list), NULL) : list;
+  return eo_object_close(&list);
+}
+
+static json_t *write_ratio(const void *source)
+{
+  return eo_json_quantity(((const struct source *)source)->comparison->ratio, NULL);
+}
+
+static json_t *write_spread(const void *source)
+{
+  return eo_json_quantity(((const struct source *)source)->comparison->spread, NULL);
 }
 
 static const struct eo_outline_row comparison_rows[] = {
-    EO_KEY("measurements", "object", "columns over the measurements", .outline = &column_outline),
-    EO_KEY("details", "[object]", "one for each measurement", .outline = &detail_outline),
+    EO_KEY("measurements", "object", "columns over the measurements", .outline = &column_outline,
+           .write = write_columns),
+    EO_KEY("details", "[object]", "one for each measurement", .outline = &detail_outline, .write = write_details),
     EO_KEY("reductions", "[object]",
            "one for each measurement of the modified pair with one of the unmodified pair at its torque and speed",
-           .outline = &reduction_outline),
-    EO_KEY("ratio", "number?", "median of measured over predicted RMS"),
-    EO_KEY("spread", "number?", "robust relative standard deviation about it"),
+           .outline = &reduction_outline, .write = write_reductions),
+    EO_KEY("ratio", "number?", "median of measured over predicted RMS", .write = write_ratio),
+    EO_KEY("spread", "number?", "robust relative standard deviation about it", .write = write_spread),
 };
 const struct eo_outline eo_comparison_outline = EO_OUTLINE("ComparisonOfFiles", comparison_rows);
 
 json_t *eo_comparison_encode(const struct eo_comparison *c, const struct eo_measured *m)
 {
-  struct eo_object o = eo_object_open_as(&eo_comparison_outline);
-  json_t *details = json_array();
-  for (int i = 0; i < c->count && !o.failed; i++)
-    o.failed = json_array_append_new(details, encode_detail(&m[i], &c->point[i])) != 0;
-  eo_object_put(&o, "measurements", encode_columns(c, m));
-  eo_object_put(&o, "details", details);
-  eo_object_put(&o, "reductions", encode_reductions(c, m));
-  eo_object_put_number(&o, "ratio", c->ratio);
-  eo_object_put_number(&o, "spread", c->spread);
-  return eo_object_close(&o);
+  const struct source source = {c, m};
+  return eo_outline_encode(&eo_comparison_outline, &source);
 }
 
 /* The stretches of a recording whose speed changes. */
@@ -311,7 +487,7 @@ void eo_comparison_csv(const struct eo_comparison *c, const struct eo_measured *
   const char *headings[COLUMNS + 3] = {"file", "label"};
   struct eo_text_table sheet;
   for (int k = 0; k < COLUMNS; k++)
-    headings[2 + k] = columns[k].key;
+    headings[2 + k] = column_rows[FIRST_NUMBER + k].key;
   headings[COLUMNS + 2] = "reason";
   eo_text_table_init(&sheet, COLUMNS + 3, headings);
   fill_sheet(c, m, &sheet, EO_DIGITS_NUMBER);
