@@ -133,116 +133,177 @@ static void append_warning(void *context, const char *text)
   o->failed = json_array_append_new(o->json, json_string(text)) != 0 || o->failed;
 }
 
+/* One input with the fit that it belongs to. */
+struct fitted {
+  const struct eo_update *update;
+  struct eo_updated input;
+};
+
+static json_t *write_key(const void *source)
+{
+  return json_string(eo_unknown_name(((const struct fitted *)source)->input.unknown));
+}
+
+static json_t *write_before(const void *source)
+{
+  const struct eo_updated *input = &((const struct fitted *)source)->input;
+  return eo_json_quantity(input->before, unit_of(input->unknown));
+}
+
+static json_t *write_value(const void *source)
+{
+  const struct eo_updated *input = &((const struct fitted *)source)->input;
+  return eo_json_quantity(input->value, unit_of(input->unknown));
+}
+
+static json_t *write_range(const void *source)
+{
+  const struct eo_updated *input = &((const struct fitted *)source)->input;
+  return eo_json_reals(2, (double[]){input->low, input->high}, 1, unit_of(input->unknown), EO_DIGITS_NUMBER);
+}
+
+static json_t *write_confidence(const void *source)
+{
+  const struct eo_updated *input = &((const struct fitted *)source)->input;
+  return eo_json_reals(2, input->confidence, 1, unit_of(input->unknown), EO_DIGITS_CURVE);
+}
+
+static json_t *write_twin(const void *source)
+{
+  const struct fitted *f = source;
+  return f->input.twin < 0 ? json_null() : json_string(eo_unknown_name(f->update->unknown[f->input.twin].unknown));
+}
+
 static const struct eo_outline_row unknown_rows[] = {
-    EO_KEY("key", "word", "the input, with the unit of all its numbers", .words = eo_unknown_names),
-    EO_KEY("before", "number?", "as the design had it"),
-    EO_KEY("value", "number?", "found"),
-    EO_KEY("range", "[number]", "lowest, highest, as asked for"),
-    EO_KEY("confidence_95", "[number?]", "lowest, highest: the interval of 95 %, over all minima within reach"),
-    EO_KEY("at_bound", "flag", "stands at an end of its range"),
-    EO_KEY("undetermined", "flag", "the measurements do not determine it"),
-    EO_KEY("same_as", "word?", "an input that it cannot be told apart from", .words = eo_unknown_names),
-    EO_KEY("correlation", "number?", "with that input, or the one nearest to that"),
+    EO_KEY("key", "word", "the input, with the unit of all its numbers", .words = eo_unknown_names, .write = write_key),
+    EO_KEY("before", "number?", "as the design had it", .write = write_before),
+    EO_KEY("value", "number?", "found", .write = write_value),
+    EO_KEY("range", "[number]", "lowest, highest, as asked for", .write = write_range),
+    EO_KEY("confidence_95", "[number?]", "lowest, highest: the interval of 95 %, over all minima within reach",
+           .write = write_confidence),
+    EO_KEY("at_bound", "flag", "stands at an end of its range", EO_AT(struct fitted, input.at_bound)),
+    EO_KEY("undetermined", "flag", "the measurements do not determine it", EO_AT(struct fitted, input.undetermined)),
+    EO_KEY("same_as", "word?", "an input that it cannot be told apart from", .words = eo_unknown_names,
+           .write = write_twin),
+    EO_KEY("correlation", "number?", "with that input, or the one nearest to that",
+           EO_AT(struct fitted, input.correlation)),
 };
 static const struct eo_outline unknown_outline = EO_OUTLINE("FittedInput", unknown_rows);
 
-static json_t *encode_unknown(const struct eo_update *u, const struct eo_updated *p)
+/* One minimum with the fit that it belongs to. */
+struct found {
+  const struct eo_update *update;
+  struct eo_update_minimum minimum;
+};
+
+static json_t *write_values(const void *source)
 {
-  const struct eo_unit *unit = unit_of(p->unknown);
-  struct eo_object o = eo_object_open_as(&unknown_outline);
-  eo_object_put(&o, "key", json_string(eo_unknown_name(p->unknown)));
-  eo_object_put(&o, "before", eo_json_quantity(p->before, unit));
-  eo_object_put(&o, "value", eo_json_quantity(p->value, unit));
-  eo_object_put(&o, "range", eo_json_reals(2, (double[]){p->low, p->high}, 1, unit, EO_DIGITS_NUMBER));
-  eo_object_put(&o, "confidence_95", eo_json_reals(2, p->confidence, 1, unit, EO_DIGITS_CURVE));
-  eo_object_put(&o, "at_bound", json_boolean(p->at_bound));
-  eo_object_put(&o, "undetermined", json_boolean(p->undetermined));
-  eo_object_put(&o, "same_as", p->twin < 0 ? json_null() : json_string(eo_unknown_name(u->unknown[p->twin].unknown)));
-  eo_object_put_number(&o, "correlation", p->correlation);
-  return eo_object_close(&o);
+  const struct found *f = source;
+  struct eo_object list = {.json = json_array()};
+  for (int i = 0; i < f->update->unknowns; i++) {
+    const struct eo_unit *unit = unit_of(f->update->unknown[i].unknown);
+    list.failed = json_array_append_new(list.json, eo_json_quantity(f->minimum.value[i], unit)) || list.failed;
+  }
+  return eo_object_close(&list);
+}
+
+static json_t *write_intervals(const void *source)
+{
+  const struct found *f = source;
+  struct eo_object list = {.json = json_array()};
+  for (int i = 0; i < f->update->unknowns; i++) {
+    const struct eo_unit *unit = unit_of(f->update->unknown[i].unknown);
+    json_t *interval = f->minimum.within ? eo_json_reals(2, f->minimum.confidence[i], 1, unit, EO_DIGITS_CURVE)
+                                         : json_null();
+    list.failed = json_array_append_new(list.json, interval) || list.failed;
+  }
+  return eo_object_close(&list);
 }
 
 static const struct eo_outline_row minimum_rows[] = {
-    EO_KEY("values", "[number?]", "of the inputs, in their order and units"),
-    EO_KEY("confidence_95", "[[number?]]", "lowest, highest of each, about this minimum alone; null: out of reach"),
-    EO_KEY("misfit", "number?", "root mean square of measured less predicted acceleration over its standard deviation"),
-    EO_KEY("within", "flag", "the measurements do not rule it out at 95 %"),
+    EO_KEY("values", "[number?]", "of the inputs, in their order and units", .write = write_values),
+    EO_KEY("confidence_95", "[[number?]]", "lowest, highest of each, about this minimum alone; null: out of reach",
+           .write = write_intervals),
+    EO_KEY("misfit", "number?", "root mean square of measured less predicted acceleration over its standard deviation",
+           EO_AT(struct found, minimum.misfit)),
+    EO_KEY("within", "flag", "the measurements do not rule it out at 95 %", EO_AT(struct found, minimum.within)),
 };
 static const struct eo_outline minimum_outline = EO_OUTLINE("FitMinimum", minimum_rows);
 
-static json_t *encode_minimum(const struct eo_update *u, const struct eo_update_minimum *m)
-{
-  struct eo_object o = eo_object_open_as(&minimum_outline);
-  json_t *values = json_array(), *confidence = json_array();
-  for (int i = 0; i < u->unknowns; i++) {
-    const struct eo_unit *unit = unit_of(u->unknown[i].unknown);
-    json_t *interval = m->within ? eo_json_reals(2, m->confidence[i], 1, unit, EO_DIGITS_CURVE) : json_null();
-    o.failed = json_array_append_new(values, eo_json_quantity(m->value[i], unit)) != 0 ||
-               json_array_append_new(confidence, interval) != 0 || o.failed;
-  }
-  eo_object_put(&o, "values", values);
-  eo_object_put(&o, "confidence_95", confidence);
-  eo_object_put_number(&o, "misfit", m->misfit);
-  eo_object_put(&o, "within", json_boolean(m->within));
-  return eo_object_close(&o);
-}
-
-static json_t *encode_minima(const struct eo_update *u)
-{
-  json_t *list = json_array();
-  bool failed = !list;
-  for (int i = 0; i < u->minima; i++)
-    failed = failed || json_array_append_new(list, encode_minimum(u, &u->minimum[i])) != 0;
-  return failed ? (json_decref(list), NULL) : list;
-}
-
 static const struct eo_outline_row misfit_rows[] = {
-    EO_KEY("before", "number?", "root mean square of measured less predicted acceleration over its standard deviation"),
-    EO_KEY("after", "number?", "the same with the values found"),
+    EO_KEY("before", "number?", "root mean square of measured less predicted acceleration over its standard deviation",
+           EO_AT(struct eo_update, before)),
+    EO_KEY("after", "number?", "the same with the values found", EO_AT(struct eo_update, after)),
 };
 static const struct eo_outline misfit_outline = EO_OUTLINE("Misfit", misfit_rows);
 
+static json_t *write_unknowns(const void *source)
+{
+  const struct eo_update *u = source;
+  struct eo_object list = {.json = json_array()};
+  for (int i = 0; i < u->unknowns; i++) {
+    const struct fitted fitted = {u, u->unknown[i]};
+    list.failed = json_array_append_new(list.json, eo_outline_encode(&unknown_outline, &fitted)) || list.failed;
+  }
+  return eo_object_close(&list);
+}
+
+static json_t *write_correlation(const void *source)
+{
+  const struct eo_update *u = source;
+  struct eo_object list = {.json = json_array()};
+  for (int i = 0; i < u->unknowns; i++)
+    list.failed = json_array_append_new(list.json,
+                                        eo_json_reals(u->unknowns, u->correlation[i], 1, NULL, EO_DIGITS_MAP)) ||
+                  list.failed;
+  return eo_object_close(&list);
+}
+
+static json_t *write_misfit(const void *update)
+{
+  return eo_outline_encode(&misfit_outline, update);
+}
+
+static json_t *write_minima(const void *source)
+{
+  const struct eo_update *u = source;
+  struct eo_object list = {.json = json_array()};
+  for (int i = 0; i < u->minima; i++) {
+    const struct found found = {u, u->minimum[i]};
+    list.failed = json_array_append_new(list.json, eo_outline_encode(&minimum_outline, &found)) || list.failed;
+  }
+  return eo_object_close(&list);
+}
+
+static json_t *write_warnings(const void *update)
+{
+  struct eo_object list = {.json = json_array()};
+  each_warning(update, append_warning, &list);
+  return eo_object_close(&list);
+}
+
 static const struct eo_outline_row update_rows[] = {
-    EO_KEY("unknowns", "[object]", "one for each input that was fitted", .outline = &unknown_outline),
-    EO_KEY("correlation", "[[number?]]", "of the inputs with each other"),
-    EO_KEY("condition", "number?", "of the fit: how much worse its worst direction is determined than its best"),
-    EO_KEY("misfit", "object", "before and after", .outline = &misfit_outline),
-    EO_KEY("model_error", "number?", "of an order's acceleration in parts of the measured RMS: stated, or found"),
-    EO_KEY("minima", "[object]", "places where the misfit has a minimum, the lowest first",
-           .outline = &minimum_outline),
-    EO_KEY("measurements", "integer", "used"),
-    EO_KEY("orders", "integer", "compared"),
-    EO_KEY("evaluations", "integer", "of all measurements"),
-    EO_KEY("converged", "flag", "the fit ended by itself"),
-    EO_KEY("warnings", "[text]", "in plain words"),
+    EO_KEY("unknowns", "[object]", "one for each input that was fitted", .outline = &unknown_outline,
+           .write = write_unknowns),
+    EO_KEY("correlation", "[[number?]]", "of the inputs with each other", .write = write_correlation),
+    EO_KEY("condition", "number?", "of the fit: how much worse its worst direction is determined than its best",
+           EO_AT(struct eo_update, condition)),
+    EO_KEY("misfit", "object", "before and after", .outline = &misfit_outline, .write = write_misfit),
+    EO_KEY("model_error", "number?", "of an order's acceleration in parts of the measured RMS: stated, or found",
+           EO_AT(struct eo_update, model_error)),
+    EO_KEY("minima", "[object]", "places where the misfit has a minimum, the lowest first", .outline = &minimum_outline,
+           .write = write_minima),
+    EO_KEY("measurements", "integer", "used", EO_AT(struct eo_update, used)),
+    EO_KEY("orders", "integer", "compared", EO_AT(struct eo_update, residuals)),
+    EO_KEY("evaluations", "integer", "of all measurements", EO_AT(struct eo_update, evaluations)),
+    EO_KEY("converged", "flag", "the fit ended by itself", EO_AT(struct eo_update, converged)),
+    EO_KEY("warnings", "[text]", "in plain words", .write = write_warnings),
 };
 const struct eo_outline eo_update_outline = EO_OUTLINE("FitOfFiles", update_rows);
 
 json_t *eo_update_encode(const struct eo_update *u)
 {
-  struct eo_object o = eo_object_open_as(&eo_update_outline), misfit = eo_object_open_as(&misfit_outline),
-                   warnings = {.json = json_array()};
-  json_t *unknowns = json_array(), *correlation = json_array();
-  for (int i = 0; i < u->unknowns; i++)
-    o.failed = json_array_append_new(unknowns, encode_unknown(u, &u->unknown[i])) != 0 ||
-               json_array_append_new(correlation,
-                                     eo_json_reals(u->unknowns, u->correlation[i], 1, NULL, EO_DIGITS_MAP)) != 0 ||
-               o.failed;
-  each_warning(u, append_warning, &warnings);
-  eo_object_put_number(&misfit, "before", u->before);
-  eo_object_put_number(&misfit, "after", u->after);
-  eo_object_put(&o, "unknowns", unknowns);
-  eo_object_put(&o, "correlation", correlation);
-  eo_object_put_number(&o, "condition", u->condition);
-  eo_object_put(&o, "misfit", eo_object_close(&misfit));
-  eo_object_put_number(&o, "model_error", u->model_error);
-  eo_object_put(&o, "minima", encode_minima(u));
-  eo_object_put(&o, "measurements", json_integer(u->used));
-  eo_object_put(&o, "orders", json_integer(u->residuals));
-  eo_object_put(&o, "evaluations", json_integer(u->evaluations));
-  eo_object_put(&o, "converged", json_boolean(u->converged));
-  eo_object_put(&o, "warnings", eo_object_close(&warnings));
-  return eo_object_close(&o);
+  return eo_outline_encode(&eo_update_outline, u);
 }
 
 static void print_warning(void *context, const char *text)
