@@ -95,19 +95,19 @@ static enum eo_code read_part(const char *part, const char *from, const char *to
 }
 
 /* The options hold for every file; an entry of the list may say otherwise. */
-static enum eo_code set_usual(const struct request *r, struct entry *e, struct eo_error *error)
+static enum eo_code set_usual(const struct request *request, struct entry *e, struct eo_error *error)
 {
   int unmodified;
-  enum eo_code code = read_positive("--torque", r->torque, &e->torque, error);
+  enum eo_code code = read_positive("--torque", request->torque, &e->torque, error);
   if (!code)
-    code = read_positive("--speed", r->speed, &e->speed, error);
+    code = read_positive("--speed", request->speed, &e->speed, error);
   if (!code)
-    code = read_word("--label", r->label, label_words, 0, &unmodified, error);
+    code = read_word("--label", request->label, label_words, 0, &unmodified, error);
   if (!code)
-    code = read_word("--end", r->end, end_words, EO_RIGHT, &e->end, error);
+    code = read_word("--end", request->end, end_words, EO_RIGHT, &e->end, error);
   if (!code)
-    code = read_part(r->part, r->from, r->to, &e->part, error);
-  if (!code && r->layout && !(e->layout = load_json(r->layout, error)))
+    code = read_part(request->part, request->from, request->to, &e->part, error);
+  if (!code && request->layout && !(e->layout = load_json(request->layout, error)))
     code = error->code;
   if (code)
     return code;
@@ -123,14 +123,15 @@ static double stated(const json_t *item, const char *key, double fallback, doubl
 }
 
 /* A row of the list: file relative to it, label, torque_Nm, speed_rpm, end, part, from_s, to_s, layout. */
-static enum eo_code read_item(const struct request *r, const json_t *item, struct entry *e, struct eo_error *error)
+static enum eo_code read_item(const struct request *request, const json_t *item, struct entry *e,
+                              struct eo_error *error)
 {
-  const char *file = json_string_value(json_object_get(item, "file")), *slash = strrchr(r->list, '/');
+  const char *file = json_string_value(json_object_get(item, "file")), *slash = strrchr(request->list, '/');
   int unmodified;
   if (!file)
     return eo_error_set(error, EO_ERROR_INPUT, "/measurements", "Each entry of the list names its file.");
   struct eo_text path = {0};
-  eo_text_print(&path, "%.*s%s", *file == '/' || !slash ? 0 : (int)(slash - r->list + 1), r->list, file);
+  eo_text_print(&path, "%.*s%s", *file == '/' || !slash ? 0 : (int)(slash - request->list + 1), request->list, file);
   if (path.failed)
     return eo_error_memory(error);
   e->path = e->joined = path.data;
@@ -158,54 +159,54 @@ static enum eo_code read_item(const struct request *r, const json_t *item, struc
   return code;
 }
 
-static enum eo_code read_entries(struct request *r, int files, const char *const *file, struct eo_error *error)
+static enum eo_code read_entries(struct request *request, int files, const char *const *file, struct eo_error *error)
 {
   const json_t *list = NULL;
-  if (r->list && !(r->list_document = load_json(r->list, error)))
+  if (request->list && !(request->list_document = load_json(request->list, error)))
     return error->code;
-  if (r->list && !json_is_array(list = json_object_get(r->list_document, "measurements")))
+  if (request->list && !json_is_array(list = json_object_get(request->list_document, "measurements")))
     return eo_error_set(error, EO_ERROR_INPUT, "/measurements", "The list holds an array \"measurements\".");
   int listed = (int)json_array_size(list);
   if (files + listed < 1 || files + listed > EO_MOST_MEASURED)
     return eo_error_set(error, EO_ERROR_INPUT, "", "Between 1 and %d recordings are measured at once.",
                         EO_MOST_MEASURED);
-  if (r->gear && files + listed != 1)
+  if (request->gear && files + listed != 1)
     return eo_error_set(error, EO_ERROR_INPUT, "", "--gear goes with one recording.");
-  r->entry = calloc((size_t)files + listed, sizeof *r->entry);
-  r->measured = calloc((size_t)files + listed, sizeof *r->measured);
-  if (!r->entry || !r->measured)
+  request->entry = calloc((size_t)files + listed, sizeof *request->entry);
+  request->measured = calloc((size_t)files + listed, sizeof *request->measured);
+  if (!request->entry || !request->measured)
     return eo_error_memory(error);
-  r->entries = files + listed;
+  request->entries = files + listed;
   enum eo_code code = EO_OK;
-  for (int i = 0; i < r->entries && !code; i++) {
-    code = set_usual(r, &r->entry[i], error);
-    r->entry[i].gear_path = r->gear;
+  for (int i = 0; i < request->entries && !code; i++) {
+    code = set_usual(request, &request->entry[i], error);
+    request->entry[i].gear_path = request->gear;
     if (!code && i < files)
-      r->entry[i].path = file[i];
+      request->entry[i].path = file[i];
     else if (!code)
-      code = read_item(r, json_array_get(list, (size_t)(i - files)), &r->entry[i], error);
+      code = read_item(request, json_array_get(list, (size_t)(i - files)), &request->entry[i], error);
   }
   return code;
 }
 
-static enum eo_code read_update(struct request *r, struct eo_error *error)
+static enum eo_code read_update(struct request *request, struct eo_error *error)
 {
   double harmonics;
-  enum eo_code code = read_positive("--harmonics", r->harmonics, &harmonics, error);
+  enum eo_code code = read_positive("--harmonics", request->harmonics, &harmonics, error);
   if (code)
     return code;
-  if (r->harmonics && (harmonics > EO_MESH_ORDERS || harmonics != floor(harmonics)))
+  if (request->harmonics && (harmonics > EO_MESH_ORDERS || harmonics != floor(harmonics)))
     return eo_error_set(error, EO_ERROR_INPUT, "", "--harmonics is a whole number up to %d.", EO_MESH_ORDERS);
-  r->harmonic_count = r->harmonics ? (int)harmonics : 0;
-  if (!r->update)
-    return r->apply ? eo_error_set(error, EO_ERROR_INPUT, "", "--apply goes with --update.") : EO_OK;
+  request->harmonic_count = request->harmonics ? (int)harmonics : 0;
+  if (!request->update)
+    return request->apply ? eo_error_set(error, EO_ERROR_INPUT, "", "--apply goes with --update.") : EO_OK;
   struct eo_faults *faults = calloc(1, sizeof *faults);
   if (!faults)
     return eo_error_memory(error);
-  r->update_document = load_json(r->update, error);
-  if (r->update_document)
-    eo_update_decode(r->update_document, &r->update_settings, faults);
-  code = r->update_document ? eo_faults_first(faults, error) : error->code;
+  request->update_document = load_json(request->update, error);
+  if (request->update_document)
+    eo_update_decode(request->update_document, &request->update_settings, faults);
+  code = request->update_document ? eo_faults_first(faults, error) : error->code;
   free(faults);
   return code;
 }
@@ -220,73 +221,74 @@ static void find_speeds(const struct eo_design *design, double speed[2])
   }
 }
 
-static enum eo_code measure_all(struct request *r, const struct eo_progress *progress, const char **failed_at,
+static enum eo_code measure_all(struct request *request, const struct eo_progress *progress, const char **failed_at,
                                 struct eo_error *error)
 {
   const char *folder = getenv("TMPDIR");
-  for (int i = 0; i < r->entries; i++) {
-    const struct entry *e = &r->entry[i];
+  for (int i = 0; i < request->entries; i++) {
+    const struct entry *e = &request->entry[i];
     struct eo_measure_request one = {.path = e->path,
                                      .gear_path = e->gear_path,
                                      .unmodified = e->unmodified,
                                      .torque = e->torque,
                                      .stated_speed = e->speed,
                                      .end = e->end,
-                                     .harmonics = r->harmonic_count,
+                                     .harmonics = request->harmonic_count,
                                      .part = e->part,
                                      .layout = e->layout,
-                                     .geometry = &r->geometry,
+                                     .geometry = &request->geometry,
                                      .spool_directory = folder ? folder : "/tmp"};
-    struct eo_measured *measured = &r->measured[r->measured_count];
+    struct eo_measured *measured = &request->measured[request->measured_count];
     json_t *document;
-    find_speeds(&r->design, one.speed);
+    find_speeds(&request->design, one.speed);
     *failed_at = e->path;
-    enum eo_code code = eo_measure_file(&one, progress, &document, &r->text, measured, error);
-    if (!code && json_array_append_new(r->documents, document))
+    enum eo_code code = eo_measure_file(&one, progress, &document, &request->text, measured, error);
+    if (!code && json_array_append_new(request->documents, document))
       code = eo_error_memory(error);
     if (code)
       return code;
     bool result = measured->harmonics > 0, loaded = measured->torque > 0;
-    if (result && !loaded && !r->alone)
-      eo_text_add(&r->text,
+    if (result && !loaded && !request->alone)
+      eo_text_add(&request->text,
                   "  note: no torque was stated and no column of the recording tells it; nothing is compared. "
                   "State it (--torque).\n");
-    r->results += result;
-    r->measured_count += result && loaded;
+    request->results += result;
+    request->measured_count += result && loaded;
   }
   *failed_at = NULL;
   return EO_OK;
 }
 
-static enum eo_code compare(struct request *r, const struct eo_progress *progress, struct eo_error *error)
+static enum eo_code compare(struct request *request, const struct eo_progress *progress, struct eo_error *error)
 {
   struct eo_text directory = {0};
-  bool keep = !r->no_cache && eo_app_cache_directory(r->data, &directory);
+  bool keep = !request->no_cache && eo_app_cache_directory(request->data, &directory);
   struct eo_pair_options options = {.cache_directory = keep ? directory.data : NULL};
   struct eo_pair *pair = NULL;
   struct eo_evaluator *evaluator = NULL;
-  enum eo_code code = eo_pair_new(&pair, &r->design, &options, progress, error);
+  enum eo_code code = eo_pair_new(&pair, &request->design, &options, progress, error);
   if (!code)
     code = eo_evaluator_new(&evaluator, pair, 1, error);
   if (!code)
-    code = eo_comparison_run(&r->comparison, evaluator, &r->design, r->measured_count, r->measured, progress, error);
-  if (!code && r->update)
-    code = eo_update_run(&r->fit, pair, &r->design, r->measured_count, r->measured, &r->update_settings, &r->updated,
-                         progress, error);
+    code = eo_comparison_run(&request->comparison, evaluator, &request->design, request->measured_count,
+                             request->measured, progress, error);
+  if (!code && request->update)
+    code = eo_update_run(&request->fit, pair, &request->design, request->measured_count, request->measured,
+                         &request->update_settings, &request->updated, progress, error);
   eo_evaluator_free(evaluator);
   eo_pair_free(pair);
   eo_text_done(&directory);
   return code;
 }
 
-static enum eo_code save_design(const struct request *r, struct eo_error *error)
+static enum eo_code save_design(const struct request *request, struct eo_error *error)
 {
   struct eo_text text = {0};
-  json_t *document = eo_design_encode(&r->updated);
+  json_t *document = eo_design_encode(&request->updated);
   enum eo_code code = document ? EO_OK : eo_error_memory(error);
   if (!code) {
     eo_json_write(&text, document, EO_JSON_PRETTY);
-    code = eo_text_save(&text, r->apply, error);
+    code = eo_text_save(&text, request->apply, error);
   }
   json_decref(document);
   eo_text_done(&text);
@@ -302,17 +304,18 @@ static enum eo_code save_csv(const struct request *r, struct eo_error *error)
   return code;
 }
 
-static json_t *encode(const struct request *r)
+static json_t *encode(const struct request *request)
 {
   char hash[EO_HASH_LENGTH + 1];
   json_t *document = json_object();
-  bool failed = !document, compared = r->comparison.count > 0;
+  bool failed = !document, compared = request->comparison.count > 0;
   eo_json_put(document, "program", json_string(eo_program), &failed);
-  eo_json_put(document, "design_hash", eo_design_hash(&r->design, hash, NULL) ? NULL : json_string(hash), &failed);
-  eo_json_put(document, "measurements", json_incref(r->documents), &failed);
-  eo_json_put(document, "comparison", compared ? eo_comparison_encode(&r->comparison, r->measured) : json_null(),
+  eo_json_put(document, "design_hash", eo_design_hash(&request->design, hash, NULL) ? NULL : json_string(hash),
               &failed);
-  eo_json_put(document, "update", r->update && compared ? eo_update_encode(&r->fit) : json_null(), &failed);
+  eo_json_put(document, "measurements", json_incref(request->documents), &failed);
+  eo_json_put(document, "comparison",
+              compared ? eo_comparison_encode(&request->comparison, request->measured) : json_null(), &failed);
+  eo_json_put(document, "update", request->update && compared ? eo_update_encode(&request->fit) : json_null(), &failed);
   return failed ? (json_decref(document), NULL) : document;
 }
 
@@ -327,84 +330,84 @@ static int show(struct request *r)
   return eo_app_print(&r->text);
 }
 
-static int run_request(struct request *r)
+static int run_request(struct request *request)
 {
   struct eo_watch watch;
   struct eo_error error;
   const char *failed_at = NULL;
   eo_watch_start(&watch);
-  enum eo_code code = measure_all(r, &watch.progress, &failed_at, &error);
-  if (!code && r->measured_count && !r->alone)
-    code = compare(r, &watch.progress, &error);
+  enum eo_code code = measure_all(request, &watch.progress, &failed_at, &error);
+  if (!code && request->measured_count && !request->alone)
+    code = compare(request, &watch.progress, &error);
   eo_watch_clear(&watch);
   if (watch.stopped)
     code = eo_error_set(&error, EO_ERROR_CANCELLED, "", "Stopped.");
-  if (!code && r->apply && r->comparison.count)
-    code = save_design(r, &error);
-  if (!code && r->csv)
-    code = save_csv(r, &error);
-  int status = code ? eo_app_fail(failed_at, &error) : show(r);
+  if (!code && request->apply && request->comparison.count)
+    code = save_design(request, &error);
+  if (!code && request->csv)
+    code = save_csv(request, &error);
+  int status = code ? eo_app_fail(failed_at, &error) : show(request);
   eo_watch_end(&watch);
-  return status ? status : r->results ? EO_EXIT_DONE : EO_EXIT_INPUT;
+  return status ? status : request->results ? EO_EXIT_DONE : EO_EXIT_INPUT;
 }
 
-static void done(struct request *r)
+static void done(struct request *request)
 {
-  for (int i = 0; i < r->entries; i++) {
-    free(r->entry[i].joined);
-    json_decref(r->entry[i].layout);
+  for (int i = 0; i < request->entries; i++) {
+    free(request->entry[i].joined);
+    json_decref(request->entry[i].layout);
   }
-  free(r->entry);
-  free(r->measured);
-  json_decref(r->list_document);
-  json_decref(r->update_document);
-  json_decref(r->documents);
-  eo_comparison_done(&r->comparison);
-  eo_text_done(&r->text);
-  free(r);
+  free(request->entry);
+  free(request->measured);
+  json_decref(request->list_document);
+  json_decref(request->update_document);
+  json_decref(request->documents);
+  eo_comparison_done(&request->comparison);
+  eo_text_done(&request->text);
+  free(request);
 }
 
 static int run(const struct eo_command *command, int argc, char **argv)
 {
-  struct request *r = calloc(1, sizeof *r);
+  struct request *request = calloc(1, sizeof *request);
   const char **operand = calloc((size_t)argc, sizeof *operand);
   struct eo_error error;
   int operands, status;
-  if (!r || !operand || !(r->documents = json_array())) {
-    free(r);
+  if (!request || !operand || !(request->documents = json_array())) {
+    free(request);
     free(operand);
     eo_error_memory(&error);
     return eo_app_fail(NULL, &error);
   }
-  const struct eo_option options[] = {{.name = "--label", .value = &r->label},
-                                      {.name = "--torque", .value = &r->torque},
-                                      {.name = "--speed", .value = &r->speed},
-                                      {.name = "--end", .value = &r->end},
-                                      {.name = "--harmonics", .value = &r->harmonics},
-                                      {.name = "--layout", .value = &r->layout},
-                                      {.name = "--gear", .value = &r->gear},
-                                      {.name = "--part", .value = &r->part},
-                                      {.name = "--from", .value = &r->from},
-                                      {.name = "--to", .value = &r->to},
-                                      {.name = "--list", .value = &r->list},
-                                      {.name = "--csv", .value = &r->csv},
-                                      {.name = "--update", .value = &r->update},
-                                      {.name = "--apply", .value = &r->apply},
-                                      {.name = "--data", .value = &r->data},
-                                      {.name = "--json", .flag = &r->json},
-                                      {.name = "--no-cache", .flag = &r->no_cache},
-                                      {.name = "--no-prediction", .flag = &r->alone},
+  const struct eo_option options[] = {{.name = "--label", .value = &request->label},
+                                      {.name = "--torque", .value = &request->torque},
+                                      {.name = "--speed", .value = &request->speed},
+                                      {.name = "--end", .value = &request->end},
+                                      {.name = "--harmonics", .value = &request->harmonics},
+                                      {.name = "--layout", .value = &request->layout},
+                                      {.name = "--gear", .value = &request->gear},
+                                      {.name = "--part", .value = &request->part},
+                                      {.name = "--from", .value = &request->from},
+                                      {.name = "--to", .value = &request->to},
+                                      {.name = "--list", .value = &request->list},
+                                      {.name = "--csv", .value = &request->csv},
+                                      {.name = "--update", .value = &request->update},
+                                      {.name = "--apply", .value = &request->apply},
+                                      {.name = "--data", .value = &request->data},
+                                      {.name = "--json", .flag = &request->json},
+                                      {.name = "--no-cache", .flag = &request->no_cache},
+                                      {.name = "--no-prediction", .flag = &request->alone},
                                       {.name = NULL}};
   if (!eo_app_arguments(command, argc, argv, options, 1, argc, operand, &operands, &status))
     goto out;
-  r->design_file = operand[0];
-  if (read_update(r, &error) || read_entries(r, operands - 1, operand + 1, &error))
+  request->design_file = operand[0];
+  if (read_update(request, &error) || read_entries(request, operands - 1, operand + 1, &error))
     status = eo_app_fail(NULL, &error);
-  else if (eo_app_load_design(r->design_file, &r->design, &r->geometry, &r->warnings, &status))
-    status = run_request(r);
+  else if (eo_app_load_design(request->design_file, &request->design, &request->geometry, &request->warnings, &status))
+    status = run_request(request);
 out:
   free(operand);
-  done(r);
+  done(request);
   return status;
 }
 

@@ -29,13 +29,13 @@ struct options {
   const char *value[MOST_OPTIONS];
 };
 
-static void make_options(struct request *r, struct options *o)
+static void make_options(struct request *request, struct options *o)
 {
   const struct eo_option own[OWN_OPTIONS] = {
-      {.name = "--design", .value = &r->design_file}, {.name = "-o", .value = &r->output},
-      {.name = "--truth", .value = &r->truth},        {.name = "--settings", .value = &r->settings},
-      {.name = "--torque", .value = &r->torque},      {.name = "--speed", .value = &r->speed},
-      {.name = "--data", .value = &r->data},          {.name = "--no-cache", .flag = &r->no_cache}};
+      {.name = "--design", .value = &request->design_file}, {.name = "-o", .value = &request->output},
+      {.name = "--truth", .value = &request->truth},        {.name = "--settings", .value = &request->settings},
+      {.name = "--torque", .value = &request->torque},      {.name = "--speed", .value = &request->speed},
+      {.name = "--data", .value = &request->data},          {.name = "--no-cache", .flag = &request->no_cache}};
   memcpy(o->option, own, sizeof own);
   for (int i = 0; i < eo_rig_table.count; i++) {
     snprintf(o->name[i], NAME_SIZE, "--%s", eo_rig_table.field[i].key);
@@ -61,17 +61,17 @@ static json_t *value_of(const struct eo_field *field, const char *text)
   return whole && number == floor(number) && fabs(number) < 9e15 ? json_integer((json_int_t)number) : json_real(number);
 }
 
-static json_t *settings_document(struct request *r, const struct options *o, struct eo_error *error)
+static json_t *settings_document(struct request *request, const struct options *o, struct eo_error *error)
 {
-  json_t *document = r->settings ? eo_json_load(r->settings, EO_JSON_DESIGN_BYTES, error) : json_object();
+  json_t *document = request->settings ? eo_json_load(request->settings, EO_JSON_DESIGN_BYTES, error) : json_object();
   bool failed = false;
   for (int i = 0; i < eo_rig_table.count && document; i++) {
     const struct eo_field *field = &eo_rig_table.field[i];
     const char *text = o->value[i];
     if (!text && strcmp(field->key, "torque_Nm") == 0)
-      text = r->torque;
+      text = request->torque;
     if (!text && strcmp(field->key, "speed_rpm") == 0)
-      text = r->speed;
+      text = request->speed;
     if (text)
       eo_json_put(document, field->key, value_of(field, text), &failed);
   }
@@ -80,40 +80,40 @@ static json_t *settings_document(struct request *r, const struct options *o, str
   return failed ? (json_decref(document), NULL) : document;
 }
 
-static bool read_settings(struct request *r, const struct options *o, int *status)
+static bool read_settings(struct request *request, const struct options *o, int *status)
 {
   struct eo_error error = {0};
   struct eo_faults *faults = calloc(1, sizeof *faults);
-  json_t *document = faults ? settings_document(r, o, &error) : NULL;
+  json_t *document = faults ? settings_document(request, o, &error) : NULL;
   *status = EO_EXIT_DONE;
   if (!document)
-    *status = eo_app_fail(r->settings, error.code ? &error : (eo_error_memory(&error), &error));
+    *status = eo_app_fail(request->settings, error.code ? &error : (eo_error_memory(&error), &error));
   else
-    eo_table_decode(&eo_rig_table, document, NULL, &r->rig, faults);
+    eo_table_decode(&eo_rig_table, document, NULL, &request->rig, faults);
   if (document && faults->count)
-    *status = eo_app_fail_all(r->settings, faults);
+    *status = eo_app_fail_all(request->settings, faults);
   json_decref(document);
   free(faults);
   return *status == EO_EXIT_DONE;
 }
 
-static enum eo_code respond(struct request *r, const struct eo_progress *progress, struct eo_rig_prediction *prediction,
-                            struct eo_error *error)
+static enum eo_code respond(struct request *request, const struct eo_progress *progress,
+                            struct eo_rig_prediction *prediction, struct eo_error *error)
 {
   struct eo_text directory = {0};
-  bool keep = !r->no_cache && eo_app_cache_directory(r->data, &directory);
+  bool keep = !request->no_cache && eo_app_cache_directory(request->data, &directory);
   struct eo_pair_options options = {.cache_directory = keep ? directory.data : NULL};
   struct eo_pair *pair = NULL;
   struct eo_evaluator *evaluator = NULL;
-  enum eo_code code = eo_pair_new(&pair, &r->design, &options, progress, error);
+  enum eo_code code = eo_pair_new(&pair, &request->design, &options, progress, error);
   if (!code)
     code = eo_evaluator_new(&evaluator, pair, 1, error);
   if (!code)
-    code = eo_prediction_run(prediction, evaluator, &r->design, r->rig.unmodified, r->rig.torque, r->rig.speed,
-                             r->rig.end, r->rig.harmonics, error);
+    code = eo_prediction_run(prediction, evaluator, &request->design, request->rig.unmodified, request->rig.torque,
+                             request->rig.speed, request->rig.end, request->rig.harmonics, error);
   if (!code && !prediction->valid)
     code = eo_error_set(error, EO_ERROR_INPUT, "", "The design has no periodic vibration at %g N m and %g rpm.",
-                        r->rig.torque, r->rig.speed * 30 / M_PI);
+                        request->rig.torque, request->rig.speed * 30 / M_PI);
   eo_evaluator_free(evaluator);
   eo_pair_free(pair);
   eo_text_done(&directory);
@@ -121,91 +121,92 @@ static enum eo_code respond(struct request *r, const struct eo_progress *progres
 }
 
 /* Beside the file and then in its place, so that nobody finds half of it. */
-static enum eo_code write_file(const struct request *r, const struct eo_progress *progress, struct eo_error *error)
+static enum eo_code write_file(const struct request *request, const struct eo_progress *progress,
+                               struct eo_error *error)
 {
-  if (strcmp(r->output, "-") == 0)
-    return eo_rig_write(&r->rig, progress, stdout, error);
+  if (strcmp(request->output, "-") == 0)
+    return eo_rig_write(&request->rig, progress, stdout, error);
   struct eo_text part = {0};
-  eo_text_print(&part, "%s.%ld.part", r->output, (long)getpid());
+  eo_text_print(&part, "%s.%ld.part", request->output, (long)getpid());
   FILE *stream = part.failed ? NULL : fopen(part.data, "wx"); /* never over, and then away with, a file of somebody's */
-  enum eo_code code = stream ? eo_rig_write(&r->rig, progress, stream, error)
-                             : eo_error_set(error, EO_ERROR_FILE, "", "%.200s cannot be written: %s.", r->output,
+  enum eo_code code = stream ? eo_rig_write(&request->rig, progress, stream, error)
+                             : eo_error_set(error, EO_ERROR_FILE, "", "%.200s cannot be written: %s.", request->output,
                                             strerror(errno));
   if (stream && fclose(stream) && !code)
-    code = eo_error_set(error, EO_ERROR_FILE, "", "%.200s cannot be written: %s.", r->output, strerror(errno));
-  if (!code && rename(part.data, r->output))
-    code = eo_error_set(error, EO_ERROR_FILE, "", "%.200s cannot be written: %s.", r->output, strerror(errno));
+    code = eo_error_set(error, EO_ERROR_FILE, "", "%.200s cannot be written: %s.", request->output, strerror(errno));
+  if (!code && rename(part.data, request->output))
+    code = eo_error_set(error, EO_ERROR_FILE, "", "%.200s cannot be written: %s.", request->output, strerror(errno));
   if (code && stream)
     remove(part.data);
   eo_text_done(&part);
   return code;
 }
 
-static enum eo_code write_truth(const struct request *r, struct eo_error *error)
+static enum eo_code write_truth(const struct request *request, struct eo_error *error)
 {
-  const char *slash = strrchr(r->output, '/');
+  const char *slash = strrchr(request->output, '/');
   struct eo_text text = {0};
-  json_t *document = eo_rig_truth(&r->rig, slash ? slash + 1 : r->output);
+  json_t *document = eo_rig_truth(&request->rig, slash ? slash + 1 : request->output);
   enum eo_code code = document ? EO_OK : eo_error_memory(error);
   if (!code) {
     eo_json_write(&text, document, EO_JSON_PRETTY);
-    code = eo_text_save(&text, r->truth, error);
+    code = eo_text_save(&text, request->truth, error);
   }
   json_decref(document);
   eo_text_done(&text);
   return code;
 }
 
-static int run_request(struct request *r)
+static int run_request(struct request *request)
 {
   struct eo_watch watch;
   struct eo_error error;
   struct eo_rig_prediction prediction;
-  enum eo_code code = eo_rig_complete(&r->rig, &r->design, &error);
+  enum eo_code code = eo_rig_complete(&request->rig, &request->design, &error);
   if (code)
-    return eo_app_fail(r->settings, &error);
+    return eo_app_fail(request->settings, &error);
   eo_watch_start(&watch);
-  code = respond(r, &watch.progress, &prediction, &error);
+  code = respond(request, &watch.progress, &prediction, &error);
   if (!code) {
-    eo_rig_set_pair(&r->rig, &r->geometry, &r->design.supports, &prediction);
-    code = eo_synthetic_check(&r->rig.synthetic, &error);
+    eo_rig_set_pair(&request->rig, &request->geometry, &request->design.supports, &prediction);
+    code = eo_synthetic_check(&request->rig.synthetic, &error);
   }
   if (!code)
-    code = write_file(r, &watch.progress, &error);
-  if (!code && r->truth)
-    code = write_truth(r, &error);
+    code = write_file(request, &watch.progress, &error);
+  if (!code && request->truth)
+    code = write_truth(request, &error);
   eo_watch_clear(&watch);
   if (watch.stopped)
     code = eo_error_set(&error, EO_ERROR_CANCELLED, "", "Stopped.");
   eo_watch_end(&watch);
-  return code ? eo_app_fail(code == EO_ERROR_INPUT ? r->design_file : NULL, &error) : EO_EXIT_DONE;
+  return code ? eo_app_fail(code == EO_ERROR_INPUT ? request->design_file : NULL, &error) : EO_EXIT_DONE;
 }
 
 static int run(const struct eo_command *command, int argc, char **argv)
 {
-  struct request *r = calloc(1, sizeof *r);
+  struct request *request = calloc(1, sizeof *request);
   struct options *o = calloc(1, sizeof *o);
   struct eo_error error;
   const char *operand;
   int operands, status;
-  if (!r || !o) {
+  if (!request || !o) {
     eo_error_memory(&error);
     status = eo_app_fail(NULL, &error);
     goto out;
   }
-  make_options(r, o);
+  make_options(request, o);
   if (!eo_app_arguments(command, argc, argv, o->option, 0, 0, &operand, &operands, &status))
     goto out;
-  if (!r->design_file || !r->output) {
+  if (!request->design_file || !request->output) {
     eo_error_set(&error, EO_ERROR_INPUT, "", "A rig needs --design FILE and -o FILE.");
     status = eo_app_fail(NULL, &error);
-  } else if (read_settings(r, o, &status) &&
-             eo_app_load_design(r->design_file, &r->design, &r->geometry, NULL, &status)) {
-    status = run_request(r);
+  } else if (read_settings(request, o, &status) &&
+             eo_app_load_design(request->design_file, &request->design, &request->geometry, NULL, &status)) {
+    status = run_request(request);
   }
 out:
   free(o);
-  free(r);
+  free(request);
   return status;
 }
 

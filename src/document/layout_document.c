@@ -42,7 +42,7 @@ static const char *column_of(const json_t *value, char *room, const char *pointe
   return room;
 }
 
-static void read_columns(const json_t *columns, struct eo_layout_request *r, struct eo_faults *faults)
+static void read_columns(const json_t *columns, struct eo_layout_request *request, struct eo_faults *faults)
 {
   const char *key;
   json_t *value;
@@ -59,10 +59,10 @@ static void read_columns(const json_t *columns, struct eo_layout_request *r, str
       if (json_array_size(value) != 2)
         eo_faults_add(faults, pointer, "Raw tracks are two columns, sine and cosine.");
       for (size_t k = 0; k < 2; k++)
-        r->choice.column[member][k] = column_of(json_array_get(value, k), r->name[1 + 2 * member + (int)k], pointer,
-                                                faults);
+        request->choice.column[member][k] = column_of(json_array_get(value, k), request->name[1 + 2 * member + (int)k],
+                                                      pointer, faults);
     } else {
-      r->choice.column[member][0] = column_of(value, r->name[1 + 2 * member], pointer, faults);
+      request->choice.column[member][0] = column_of(value, request->name[1 + 2 * member], pointer, faults);
     }
   }
 }
@@ -88,29 +88,29 @@ static void read_lines(const json_t *lines, double target[2], struct eo_faults *
 }
 
 /* The column of the times, or the pinion's and the gear's; their unit as a word or as seconds. */
-static void read_time(const json_t *document, struct eo_layout_request *r, struct eo_faults *faults)
+static void read_time(const json_t *document, struct eo_layout_request *request, struct eo_faults *faults)
 {
   static const double time_scale[] = {1, 1e-3, 1e-6, 1e-9, 60, 86400};
   const json_t *time = json_object_get(document, "time"), *unit = json_object_get(document, "time_unit");
   if (json_is_array(time) && json_array_size(time) != 2)
     eo_faults_add(faults, "/time", "Times are one column or two, the pinion's and the gear's.");
   else if (json_is_array(time)) {
-    r->choice.time = column_of(json_array_get(time, 0), r->name[0], "/time", faults);
-    r->choice.gear_time = column_of(json_array_get(time, 1), r->name[5], "/time", faults);
+    request->choice.time = column_of(json_array_get(time, 0), request->name[0], "/time", faults);
+    request->choice.gear_time = column_of(json_array_get(time, 1), request->name[5], "/time", faults);
   } else
-    r->choice.time = column_of(time, r->name[0], "/time", faults);
+    request->choice.time = column_of(time, request->name[0], "/time", faults);
   if (json_is_number(unit))
-    r->choice.time_scale = positive(unit, "/time_unit", faults);
+    request->choice.time_scale = positive(unit, "/time_unit", faults);
   else if (unit)
-    r->choice.time_scale = time_scale[choice_of(unit, times, "/time_unit", faults)];
+    request->choice.time_scale = time_scale[choice_of(unit, times, "/time_unit", faults)];
 }
 
-void eo_layout_decode(const json_t *document, struct eo_layout_request *r, struct eo_faults *faults)
+void eo_layout_decode(const json_t *document, struct eo_layout_request *request, struct eo_faults *faults)
 {
   static const char *const known[] = {"kind", "unit", "time", "time_unit", "columns", "sample_rate_Hz", "lines", NULL};
   const char *key;
   json_t *value;
-  memset(r, 0, sizeof *r);
+  memset(request, 0, sizeof *request);
   if (!document || json_is_null(document))
     return;
   if (!json_is_object(document)) {
@@ -127,12 +127,12 @@ void eo_layout_decode(const json_t *document, struct eo_layout_request *r, struc
     if (!found)
       eo_faults_add(faults, pointer, "Unknown key in a layout.");
   }
-  r->choice.kind = (enum eo_layout_kind)choice_of(json_object_get(document, "kind"), kinds, "/kind", faults);
-  r->choice.unit = (enum eo_layout_unit)choice_of(json_object_get(document, "unit"), units, "/unit", faults);
-  read_time(document, r, faults);
-  r->choice.sample_rate = positive(json_object_get(document, "sample_rate_Hz"), "/sample_rate_Hz", faults);
-  read_lines(json_object_get(document, "lines"), r->choice.lines, faults);
-  read_columns(json_object_get(document, "columns"), r, faults);
+  request->choice.kind = (enum eo_layout_kind)choice_of(json_object_get(document, "kind"), kinds, "/kind", faults);
+  request->choice.unit = (enum eo_layout_unit)choice_of(json_object_get(document, "unit"), units, "/unit", faults);
+  read_time(document, request, faults);
+  request->choice.sample_rate = positive(json_object_get(document, "sample_rate_Hz"), "/sample_rate_Hz", faults);
+  read_lines(json_object_get(document, "lines"), request->choice.lines, faults);
+  read_columns(json_object_get(document, "columns"), request, faults);
 }
 
 static const char *unit_of(const struct eo_track_channel *c)
@@ -170,19 +170,20 @@ static const struct eo_outline_row layout_rows[] = {
 };
 const struct eo_outline eo_layout_outline = EO_OUTLINE("Layout", layout_rows);
 
-json_t *eo_layout_encode(const struct eo_tracks *t)
+json_t *eo_layout_encode(const struct eo_tracks *tracks)
 {
-  const struct eo_track_channel *c = t->channel;
+  const struct eo_track_channel *channel = tracks->channel;
   struct eo_object o = eo_object_open_as(&eo_layout_outline), columns = eo_object_open_as(&column_outline);
-  bool angles = c[0].track == EO_TRACK_ANGLE, counts = angles && strcmp(unit_of(&c[0]), "count") == 0;
-  double lines[2] = {angles ? 2 * M_PI / c[0].scale : c[0].lines, angles ? 2 * M_PI / c[1].scale : c[1].lines};
+  bool angles = channel[0].track == EO_TRACK_ANGLE, counts = angles && strcmp(unit_of(&channel[0]), "count") == 0;
+  double lines[2] = {angles ? 2 * M_PI / channel[0].scale : channel[0].lines,
+                     angles ? 2 * M_PI / channel[1].scale : channel[1].lines};
   static const double time_scale[] = {1, 1e-3, 1e-6, 1e-9, 60, 86400};
-  const struct eo_track_source *source = t->source;
+  const struct eo_track_source *source = tracks->source;
   bool one = source[0].time == source[1].time || source[0].time < 0 || source[1].time < 0;
-  eo_object_put(&o, "kind", json_string(kinds[1 + (int)c[0].track]));
+  eo_object_put(&o, "kind", json_string(kinds[1 + (int)channel[0].track]));
   if (angles)
-    eo_object_put(&o, "unit", json_string(unit_of(&c[0])));
-  if (c[0].track != EO_TRACK_PULSES)
+    eo_object_put(&o, "unit", json_string(unit_of(&channel[0])));
+  if (channel[0].track != EO_TRACK_PULSES)
     eo_object_put(&o, "time",
                   source[0].time < 0 ? json_string(no_time[0])
                   : one              ? json_integer(source[0].time + 1)
@@ -190,10 +191,10 @@ json_t *eo_layout_encode(const struct eo_tracks *t)
   for (int i = 0; times[i]; i++)
     if (fabs(source[0].time_scale / time_scale[i] - 1) < 1e-9)
       eo_object_put(&o, "time_unit", json_string(times[i]));
-  if (source[0].time < 0 && t->interval > 0)
-    eo_object_put(&o, "sample_rate_Hz", eo_json_real(1 / t->interval, NULL));
+  if (source[0].time < 0 && tracks->interval > 0)
+    eo_object_put(&o, "sample_rate_Hz", eo_json_real(1 / tracks->interval, NULL));
   for (int i = 0; i < 2; i++)
-    eo_object_put(&columns, member_key[i], encode_column(&source[i], c[i].track));
+    eo_object_put(&columns, member_key[i], encode_column(&source[i], channel[i].track));
   eo_object_put(&o, "columns", eo_object_close(&columns));
   if (!angles || counts)
     eo_object_put(&o, "lines", eo_json_reals(2, lines, 1, NULL, EO_DIGITS_NUMBER));

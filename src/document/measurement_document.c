@@ -267,33 +267,33 @@ static int count_warnings(const json_t *document)
   return warnings;
 }
 
-enum eo_code eo_measured_decode(const json_t *document, struct eo_measured *m, struct eo_error *error)
+enum eo_code eo_measured_decode(const json_t *document, struct eo_measured *measured, struct eo_error *error)
 {
   const char *file = json_string_value(json_object_get(document, "file")),
              *label = json_string_value(json_object_get(document, "label"));
   const char *end = json_string_value(json_object_get(document, "end"));
-  memset(m, 0, sizeof *m);
+  memset(measured, 0, sizeof *measured);
   if (!json_is_object(json_object_get(document, "result")))
     return eo_error_set(error, EO_ERROR_INPUT, "/result", "The measurement has no result: its recording was refused.");
-  snprintf(m->name, sizeof m->name, "%s", file ? file : "");
-  m->unmodified = label && strcmp(label, label_name(true)) == 0;
-  m->end = end && strcmp(end, eo_result_end[EO_LEFT]) == 0 ? EO_LEFT : EO_RIGHT;
-  m->torque = eo_unit_in(&eo_unit_Nm, number_at(document, "torque_Nm", -1));
-  m->speed = eo_unit_in(&eo_unit_rpm, number_at(document, "result/speed_rpm/mean", -1));
-  m->rms = number_at(document, "result/rms_m_per_s2/value", -1);
-  m->rms_sigma = number_at(document, "result/rms_m_per_s2/sigma", -1);
-  m->harmonics = (int)json_array_size(eo_json_find(document, "result/mesh/amplitude_um"));
-  m->harmonics = m->harmonics < EO_MESH_ORDERS ? m->harmonics : EO_MESH_ORDERS;
-  for (int h = 0; h < m->harmonics; h++) {
+  snprintf(measured->name, sizeof measured->name, "%s", file ? file : "");
+  measured->unmodified = label && strcmp(label, label_name(true)) == 0;
+  measured->end = end && strcmp(end, eo_result_end[EO_LEFT]) == 0 ? EO_LEFT : EO_RIGHT;
+  measured->torque = eo_unit_in(&eo_unit_Nm, number_at(document, "torque_Nm", -1));
+  measured->speed = eo_unit_in(&eo_unit_rpm, number_at(document, "result/speed_rpm/mean", -1));
+  measured->rms = number_at(document, "result/rms_m_per_s2/value", -1);
+  measured->rms_sigma = number_at(document, "result/rms_m_per_s2/sigma", -1);
+  measured->harmonics = (int)json_array_size(eo_json_find(document, "result/mesh/amplitude_um"));
+  measured->harmonics = measured->harmonics < EO_MESH_ORDERS ? measured->harmonics : EO_MESH_ORDERS;
+  for (int h = 0; h < measured->harmonics; h++) {
     double amplitude = eo_unit_in(&eo_unit_um, number_at(document, "result/mesh/amplitude_um", h));
-    m->order[h] =
+    measured->order[h] =
         (struct eo_order_line){.order = number_at(document, "result/mesh/order", h),
                                .amplitude = amplitude * cexp(I * number_at(document, "result/mesh/phase_rad", h)),
                                .sigma = eo_unit_in(&eo_unit_um, number_at(document, "result/mesh/sigma_um", h)),
                                .acceleration = number_at(document, "result/mesh/acceleration_m_per_s2", h)};
   }
-  m->warnings = count_warnings(document);
-  if (!(m->torque > 0) || !(m->speed > 0) || !(m->rms >= 0) || m->harmonics < 1)
+  measured->warnings = count_warnings(document);
+  if (!(measured->torque > 0) || !(measured->speed > 0) || !(measured->rms >= 0) || measured->harmonics < 1)
     return eo_error_set(error, EO_ERROR_INPUT, "/result",
                         "The document is no measurement: torque, speed, RMS or mesh orders are missing.");
   return EO_OK;

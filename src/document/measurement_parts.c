@@ -56,13 +56,13 @@ static json_t *write_track_rms(const void *t)
 
 static json_t *write_track_amplitudes(const void *source)
 {
-  const struct eo_transmission *t = source;
+  const struct eo_transmission *transmission = source;
   double amplitude[EO_MESH_ORDERS];
   struct eo_object list = {.json = json_array()};
-  for (int i = 0; i < t->tracks; i++) {
-    for (int h = 0; h < t->harmonics; h++)
-      amplitude[h] = cabs(t->track[i].amplitude[h]);
-    json_t *orders = eo_json_reals(t->harmonics, amplitude, 1, &eo_unit_um, EO_DIGITS_CURVE);
+  for (int i = 0; i < transmission->tracks; i++) {
+    for (int h = 0; h < transmission->harmonics; h++)
+      amplitude[h] = cabs(transmission->track[i].amplitude[h]);
+    json_t *orders = eo_json_reals(transmission->harmonics, amplitude, 1, &eo_unit_um, EO_DIGITS_CURVE);
     list.failed = json_array_append_new(list.json, orders) || list.failed;
   }
   return eo_object_close(&list);

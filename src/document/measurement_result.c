@@ -112,12 +112,12 @@ static const struct eo_outline sideband_outline = EO_OUTLINE("Sideband", sideban
 static json_t *write_sidebands(const void *source)
 {
   static const int turns[EO_SIDEBANDS] = {-2, -1, 1, 2};
-  const struct eo_transmission *t = source;
+  const struct eo_transmission *transmission = source;
   struct eo_object list = {.json = json_array()};
-  for (int h = 0; h < t->harmonics; h++)
+  for (int h = 0; h < transmission->harmonics; h++)
     for (int k = 0; k < 2 * EO_SIDEBANDS; k++) {
       int shaft = k / EO_SIDEBANDS, at = k % EO_SIDEBANDS;
-      const struct sideband sideband = {h + 1, shaft, turns[at], t->sideband[h][shaft][at]};
+      const struct sideband sideband = {h + 1, shaft, turns[at], transmission->sideband[h][shaft][at]};
       if (cabs(sideband.line.amplitude) < 4 * sideband.line.sigma)
         continue;
       list.failed = json_array_append_new(list.json, eo_outline_encode(&sideband_outline, &sideband)) || list.failed;
@@ -170,13 +170,14 @@ static const struct eo_outline spectrum_outline = EO_OUTLINE("OrderSpectrum", sp
 
 static json_t *write_spectrum(const void *source)
 {
-  const struct eo_transmission *t = source;
-  struct spectrum s = {.turns = t->spectrum_turns};
-  int stretch = t->spectrum_lines / SPECTRUM_POINTS + 1;
-  for (int first = 1; first < t->spectrum_lines && s.count < SPECTRUM_POINTS; first += stretch, s.count++) {
+  const struct eo_transmission *transmission = source;
+  struct spectrum s = {.turns = transmission->spectrum_turns};
+  int stretch = transmission->spectrum_lines / SPECTRUM_POINTS + 1;
+  for (int first = 1; first < transmission->spectrum_lines && s.count < SPECTRUM_POINTS; first += stretch, s.count++) {
     s.acceleration[s.count] = -1;
-    for (int k = first; k < first + stretch && k < t->spectrum_lines; k++) {
-      double at = (double)k / t->spectrum_turns, value = pow(at * t->speed, 2) * t->spectrum[k];
+    for (int k = first; k < first + stretch && k < transmission->spectrum_lines; k++) {
+      double at = (double)k / transmission->spectrum_turns,
+             value = pow(at * transmission->speed, 2) * transmission->spectrum[k];
       if (value > s.acceleration[s.count]) {
         s.acceleration[s.count] = value;
         s.order[s.count] = at;

@@ -133,43 +133,43 @@ enum eo_code eo_rig_complete(struct eo_rig_request *request, const struct eo_des
 void eo_rig_set_pair(struct eo_rig_request *request, const struct eo_geometry *geometry,
                      const struct eo_supports *supports, const struct eo_rig_prediction *prediction)
 {
-  struct eo_synthetic *s = &request->synthetic;
+  struct eo_synthetic *synthetic = &request->synthetic;
   for (int i = 0; i < 2; i++) {
-    s->teeth[i] = geometry->teeth[i];
-    s->base_radius[i] = geometry->base_radius[i];
+    synthetic->teeth[i] = geometry->teeth[i];
+    synthetic->base_radius[i] = geometry->base_radius[i];
   }
-  s->pinion_share = eo_prediction_pinion_share(supports, geometry);
-  s->speed = prediction->speed;
-  s->orders = prediction->harmonics;
-  memcpy(s->order, prediction->order, sizeof *s->order * (size_t)prediction->harmonics);
-  s->row = (int64_t)request->fault_row;
-  s->size = (int64_t)request->fault_size;
-  s->torque = request->shows_torque ? request->torque : 0;
-  s->torque_change = request->shown_torque_change;
+  synthetic->pinion_share = eo_prediction_pinion_share(supports, geometry);
+  synthetic->speed = prediction->speed;
+  synthetic->orders = prediction->harmonics;
+  memcpy(synthetic->order, prediction->order, sizeof *synthetic->order * (size_t)prediction->harmonics);
+  synthetic->row = (int64_t)request->fault_row;
+  synthetic->size = (int64_t)request->fault_size;
+  synthetic->torque = request->shows_torque ? request->torque : 0;
+  synthetic->torque_change = request->shown_torque_change;
 }
 
 static const char separator_of[] = {',', ';', '\t', ' '};
 
-static void write_heading(const struct eo_rig_request *r, FILE *stream)
+static void write_heading(const struct eo_rig_request *request, FILE *stream)
 {
-  const struct eo_synthetic *s = &r->synthetic;
-  const char *end = r->carriage_return ? "\r\n" : "\n";
-  int columns = eo_synthetic_columns(s);
-  if (r->byte_order_mark)
+  const struct eo_synthetic *synthetic = &request->synthetic;
+  const char *end = request->carriage_return ? "\r\n" : "\n";
+  int columns = eo_synthetic_columns(synthetic);
+  if (request->byte_order_mark)
     fputs("\xef\xbb\xbf", stream);
-  if (r->heading == EO_RIG_BLOCK)
-    fprintf(stream, "# synthetic rig%s# torque: %g N m%s# speed: %g rpm%s# sampling rate: %g Hz%s%s", end, r->torque,
-            end, r->speed * 30 / M_PI, end, s->sample_rate, end, end);
-  for (int pass = 0; pass < (r->heading == EO_RIG_UNITS_ROW ? 2 : 1) && r->heading != EO_RIG_BARE; pass++)
+  if (request->heading == EO_RIG_BLOCK)
+    fprintf(stream, "# synthetic rig%s# torque: %g N m%s# speed: %g rpm%s# sampling rate: %g Hz%s%s", end,
+            request->torque, end, request->speed * 30 / M_PI, end, synthetic->sample_rate, end, end);
+  for (int pass = 0; pass < (request->heading == EO_RIG_UNITS_ROW ? 2 : 1) && request->heading != EO_RIG_BARE; pass++)
     for (int c = 0; c < columns; c++) {
-      const char *name = eo_synthetic_heading(s, c), *unit = strrchr(name, '_');
-      if (r->heading != EO_RIG_UNITS_ROW)
+      const char *name = eo_synthetic_heading(synthetic, c), *unit = strrchr(name, '_');
+      if (request->heading != EO_RIG_UNITS_ROW)
         fputs(name, stream);
       else if (pass)
         fputs(unit ? unit + 1 : "", stream);
       else
         fprintf(stream, "%.*s", (int)(unit ? unit - name : (long)strlen(name)), name);
-      fputs(c + 1 < columns ? (char[]){separator_of[r->separator], 0} : end, stream);
+      fputs(c + 1 < columns ? (char[]){separator_of[request->separator], 0} : end, stream);
     }
 }
 
@@ -184,35 +184,35 @@ static void write_cell(const struct eo_rig_request *r, double value, int decimal
 }
 
 /* The shorter column of pulse times ends with empty cells. */
-static void write_row(const struct eo_rig_request *r, const double *row, FILE *stream)
+static void write_row(const struct eo_rig_request *request, const double *row, FILE *stream)
 {
-  int columns = eo_synthetic_columns(&r->synthetic);
+  int columns = eo_synthetic_columns(&request->synthetic);
   for (int c = 0; c < columns; c++) {
     if (isnan(row[c]))
-      fputs(r->synthetic.output == EO_SYNTHETIC_PULSES ? "" : "NaN", stream);
+      fputs(request->synthetic.output == EO_SYNTHETIC_PULSES ? "" : "NaN", stream);
     else
-      write_cell(r, row[c], eo_synthetic_decimals(&r->synthetic, c), stream);
+      write_cell(request, row[c], eo_synthetic_decimals(&request->synthetic, c), stream);
     if (c + 1 < columns)
-      fputc(separator_of[r->separator], stream);
+      fputc(separator_of[request->separator], stream);
   }
-  fputs(r->carriage_return ? "\r\n" : "\n", stream);
+  fputs(request->carriage_return ? "\r\n" : "\n", stream);
 }
 
-enum eo_code eo_rig_write(const struct eo_rig_request *r, const struct eo_progress *progress, FILE *stream,
+enum eo_code eo_rig_write(const struct eo_rig_request *request, const struct eo_progress *progress, FILE *stream,
                           struct eo_error *error)
 {
   enum { BLOCK = 1024 };
   double rows[BLOCK * EO_SYNTHETIC_COLUMNS];
-  int64_t total = eo_synthetic_rows(&r->synthetic);
-  int columns = eo_synthetic_columns(&r->synthetic);
-  write_heading(r, stream);
+  int64_t total = eo_synthetic_rows(&request->synthetic);
+  int columns = eo_synthetic_columns(&request->synthetic);
+  write_heading(request, stream);
   for (int64_t first = 0; first < total && !ferror(stream); first += BLOCK) {
     int64_t count = total - first < BLOCK ? total - first : BLOCK;
     if (eo_progress_report(progress, "recording", (double)first / (double)total))
       return eo_error_set(error, EO_ERROR_CANCELLED, "", "Stopped.");
-    eo_synthetic_fill(&r->synthetic, first, count, rows);
+    eo_synthetic_fill(&request->synthetic, first, count, rows);
     for (int64_t i = 0; i < count; i++)
-      write_row(r, rows + i * columns, stream);
+      write_row(request, rows + i * columns, stream);
   }
   if (fflush(stream) || ferror(stream))
     return eo_error_set(error, EO_ERROR_FILE, "", "The recording could not be written.");
@@ -224,16 +224,16 @@ static json_t *column(int count, const double *value)
   return eo_json_reals(count, value, 1, NULL, EO_DIGITS_NUMBER);
 }
 
-static json_t *encode_truth(const struct eo_synthetic *s, int orders)
+static json_t *encode_truth(const struct eo_synthetic *synthetic, int orders)
 {
   double amplitude[EO_SYNTHETIC_ORDERS], acceleration[EO_SYNTHETIC_ORDERS], rms[EO_SYNTHETIC_ORDERS];
   struct eo_object o = eo_object_open();
-  double speed = eo_synthetic_speed(s);
+  double speed = eo_synthetic_speed(synthetic);
   char key[40];
   for (int h = 1; h <= orders; h++) {
-    amplitude[h - 1] = 1e6 * cabs(s->order[h - 1]);
-    acceleration[h - 1] = cabs(s->order[h - 1]) * pow(h * s->teeth[EO_PINION] * speed, 2);
-    rms[h - 1] = eo_synthetic_rms(s, h);
+    amplitude[h - 1] = 1e6 * cabs(synthetic->order[h - 1]);
+    acceleration[h - 1] = cabs(synthetic->order[h - 1]) * pow(h * synthetic->teeth[EO_PINION] * speed, 2);
+    rms[h - 1] = eo_synthetic_rms(synthetic, h);
   }
   snprintf(key, sizeof key, "rms_mesh_lines_H%d", orders);
   eo_object_put(&o, "mean_rpm", eo_json_quantity(speed, &eo_unit_rpm));
@@ -252,33 +252,35 @@ static const char *expected_finding(enum eo_synthetic_fault fault)
   return expected[fault];
 }
 
-json_t *eo_rig_truth(const struct eo_rig_request *r, const char *file)
+json_t *eo_rig_truth(const struct eo_rig_request *request, const char *file)
 {
-  const struct eo_synthetic *s = &r->synthetic;
+  const struct eo_synthetic *synthetic = &request->synthetic;
   struct eo_object top = eo_object_open(), entry = eo_object_open();
   json_t *findings = json_array(), *files = json_array(), *radii = json_array(), *teeth = json_array();
-  int orders = s->orders < 8 ? s->orders : 8;
-  const char *fault = expected_finding(s->fault);
+  int orders = synthetic->orders < 8 ? synthetic->orders : 8;
+  const char *fault = expected_finding(synthetic->fault);
   if (fault)
     entry.failed = json_array_append_new(findings, json_string(fault)) != 0;
-  else if (s->wrapped)
+  else if (synthetic->wrapped)
     entry.failed = json_array_append_new(findings, json_string("wrapped")) != 0;
-  if (eo_synthetic_swing(s) > SPEED_CHANGES || s->rest[0] > 0 || s->rest[1] > 0 || s->turn_back || s->run_up > 0)
+  if (eo_synthetic_swing(synthetic) > SPEED_CHANGES || synthetic->rest[0] > 0 || synthetic->rest[1] > 0 ||
+      synthetic->turn_back || synthetic->run_up > 0)
     entry.failed = json_array_append_new(findings, json_string("unsteady")) != 0 || entry.failed;
-  if (s->torque != 0 && fabs(s->torque_change) > TORQUE_CHANGES)
+  if (synthetic->torque != 0 && fabs(synthetic->torque_change) > TORQUE_CHANGES)
     entry.failed = json_array_append_new(findings, json_string("torque")) != 0 || entry.failed;
   for (int i = 0; i < 2; i++)
-    top.failed = json_array_append_new(radii, eo_json_real(s->base_radius[i], &eo_unit_mm)) ||
-                 json_array_append_new(teeth, json_integer(s->teeth[i])) || top.failed;
+    top.failed = json_array_append_new(radii, eo_json_real(synthetic->base_radius[i], &eo_unit_mm)) ||
+                 json_array_append_new(teeth, json_integer(synthetic->teeth[i])) || top.failed;
   eo_object_put(&entry, "file", json_string(file));
-  eo_object_put(&entry, "truth", encode_truth(s, orders));
+  eo_object_put(&entry, "truth", encode_truth(synthetic, orders));
   eo_object_put(&entry, "tolerance_rms_rel", eo_json_quantity(0.01, NULL));
   eo_object_put(&entry, "expected_findings", findings);
-  if (s->output != EO_SYNTHETIC_ANGLES) {
-    bool counted = s->output == EO_SYNTHETIC_COUNTS || s->output == EO_SYNTHETIC_INCREMENTS;
-    int per_line = counted ? s->interpolation : 1;
-    json_t *layout = json_pack("{s:[i,i]}", "lines", s->lines[EO_PINION] * per_line, s->lines[EO_GEAR] * per_line);
-    if (s->output == EO_SYNTHETIC_INCREMENTS)
+  if (synthetic->output != EO_SYNTHETIC_ANGLES) {
+    bool counted = synthetic->output == EO_SYNTHETIC_COUNTS || synthetic->output == EO_SYNTHETIC_INCREMENTS;
+    int per_line = counted ? synthetic->interpolation : 1;
+    json_t *layout = json_pack("{s:[i,i]}", "lines", synthetic->lines[EO_PINION] * per_line,
+                               synthetic->lines[EO_GEAR] * per_line);
+    if (synthetic->output == EO_SYNTHETIC_INCREMENTS)
       entry.failed = json_object_set_new(layout, "unit", json_string("count")) != 0 || entry.failed;
     eo_object_put(&entry, "layout", layout);
   }

@@ -88,17 +88,17 @@ static void each_warning(const struct eo_update *u, warning_function *take, void
 {
   char text[320];
   for (int i = 0; i < u->unknowns; i++) {
-    const struct eo_updated *p = &u->unknown[i];
-    const char *name = eo_unknown_name(p->unknown);
-    if (p->undetermined)
+    const struct eo_updated *updated = &u->unknown[i];
+    const char *name = eo_unknown_name(updated->unknown);
+    if (updated->undetermined)
       snprintf(text, sizeof text, "The measurements do not determine %s: its 95 %% interval covers most of its range.",
                name);
-    else if (p->at_bound)
+    else if (updated->at_bound)
       snprintf(text, sizeof text, "%s stands at an end of its range; the measurements want it beyond.", name);
-    else if (p->twin >= 0)
+    else if (updated->twin >= 0)
       snprintf(text, sizeof text,
                "%s and %s cannot be told apart (correlation %.3f): only their combination is determined.", name,
-               eo_unknown_name(u->unknown[p->twin].unknown), p->correlation);
+               eo_unknown_name(u->unknown[updated->twin].unknown), updated->correlation);
     else
       continue;
     take(context, text);
@@ -337,11 +337,11 @@ void eo_update_summary(const struct eo_update *u, struct eo_text *text)
       u->residuals, u->used, u->before, u->after);
   eo_text_table_init(&sheet, 5, headings);
   for (int i = 0; i < u->unknowns; i++) {
-    const struct eo_updated *p = &u->unknown[i];
-    eo_text_table_string(&sheet, eo_unknown_name(p->unknown));
-    const double value[] = {p->before, p->value, p->confidence[0], p->confidence[1]};
+    const struct eo_updated *updated = &u->unknown[i];
+    eo_text_table_string(&sheet, eo_unknown_name(updated->unknown));
+    const double value[] = {updated->before, updated->value, updated->confidence[0], updated->confidence[1]};
     for (int k = 0; k < 4; k++)
-      eo_text_table_number(&sheet, value[k], unit_of(p->unknown), 4);
+      eo_text_table_number(&sheet, value[k], unit_of(updated->unknown), 4);
   }
   eo_text_table_print(&sheet, 2, text);
   print_minima(u, text);

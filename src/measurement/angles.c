@@ -20,55 +20,56 @@ struct eo_finding *eo_angles_at_row(const struct eo_angles_maker *m, struct eo_f
   return finding;
 }
 
-static void judge_time(struct eo_angles_maker *m)
+static void judge_time(struct eo_angles_maker *maker)
 {
-  const struct eo_scan *s = m->scan;
-  int64_t wrong = s->backward + s->standing - s->duplicate;
-  m->sampler.interval = s->interval;
-  m->sampler.count_rows = m->tracks->time_column < 0;
-  if (s->backward + s->standing == 0)
+  const struct eo_scan *scan = maker->scan;
+  int64_t wrong = scan->backward + scan->standing - scan->duplicate;
+  maker->sampler.interval = scan->interval;
+  maker->sampler.count_rows = maker->tracks->time_column < 0;
+  if (scan->backward + scan->standing == 0)
     return;
   if (wrong == 0) {
-    eo_angles_at_row(m,
-                     eo_findings_add(m->findings, EO_FINDING_TIME, EO_SEVERITY_REPAIRED, -1, (double)s->duplicate,
+    eo_angles_at_row(maker,
+                     eo_findings_add(maker->findings, EO_FINDING_TIME, EO_SEVERITY_REPAIRED, -1,
+                                     (double)scan->duplicate,
                                      "%lld rows repeat the row before them, the first is row %lld; they were left out.",
-                                     (long long)s->duplicate, (long long)s->time_row + 1),
-                     s->time_row);
-  } else if ((double)s->steady >= 0.9 * (double)wrong) {
-    if (!s->backward && s->used > 1)
-      m->sampler.interval = (s->time_last - s->time_first) / (double)(s->used - 1);
-    m->sampler.count_rows = true;
+                                     (long long)scan->duplicate, (long long)scan->time_row + 1),
+                     scan->time_row);
+  } else if ((double)scan->steady >= 0.9 * (double)wrong) {
+    if (!scan->backward && scan->used > 1)
+      maker->sampler.interval = (scan->time_last - scan->time_first) / (double)(scan->used - 1);
+    maker->sampler.count_rows = true;
     eo_angles_at_row(
-        m,
-        eo_findings_add(m->findings, EO_FINDING_TIME, EO_SEVERITY_REPAIRED, -1, (double)wrong,
+        maker,
+        eo_findings_add(maker->findings, EO_FINDING_TIME, EO_SEVERITY_REPAIRED, -1, (double)wrong,
                         "Time stands still or runs backwards in %lld rows (first in row %lld) while the angles go "
                         "on evenly; it was counted from the rows, "
                         "%.6g ms each.",
-                        (long long)wrong, (long long)s->time_row + 1, 1e3 * m->sampler.interval),
-        s->time_row);
+                        (long long)wrong, (long long)scan->time_row + 1, 1e3 * maker->sampler.interval),
+        scan->time_row);
   } else {
     eo_angles_at_row(
-        m,
-        eo_findings_add(m->findings, EO_FINDING_TIME, EO_SEVERITY_REFUSED, -1, (double)wrong,
+        maker,
+        eo_findings_add(maker->findings, EO_FINDING_TIME, EO_SEVERITY_REFUSED, -1, (double)wrong,
                         "Time does not rise in %lld rows, the first is row %lld, and the angles are no help there.",
-                        (long long)wrong, (long long)s->time_row + 1),
-        s->time_row);
+                        (long long)wrong, (long long)scan->time_row + 1),
+        scan->time_row);
   }
 }
 
-static void judge_gaps(struct eo_angles_maker *m)
+static void judge_gaps(struct eo_angles_maker *maker)
 {
-  const struct eo_scan *s = m->scan;
-  if (!s->unusable)
+  const struct eo_scan *scan = maker->scan;
+  if (!scan->unusable)
     return;
-  bool most = s->unusable > s->rows / 2;
-  eo_angles_at_row(m,
-                   eo_findings_add(m->findings, EO_FINDING_NAN, most ? EO_SEVERITY_REFUSED : EO_SEVERITY_REPAIRED, -1,
-                                   (double)s->unusable,
+  bool most = scan->unusable > scan->rows / 2;
+  eo_angles_at_row(maker,
+                   eo_findings_add(maker->findings, EO_FINDING_NAN, most ? EO_SEVERITY_REFUSED : EO_SEVERITY_REPAIRED,
+                                   -1, (double)scan->unusable,
                                    "%lld of %lld rows hold a value that is no number, the first is row %lld; %s.",
-                                   (long long)s->unusable, (long long)s->rows, (long long)s->unusable_row + 1,
+                                   (long long)scan->unusable, (long long)scan->rows, (long long)scan->unusable_row + 1,
                                    most ? "too many to go on" : "they were left out"),
-                   s->unusable_row);
+                   scan->unusable_row);
 }
 
 /* A channel that stands still altogether or for a part of a turn while the other moves on. */
@@ -96,63 +97,64 @@ static void judge_still(struct eo_angles_maker *m, int channel)
 }
 
 /* Where an angle starts again and what that says about its unit. */
-static void judge_turns(struct eo_angles_maker *m, int channel)
+static void judge_turns(struct eo_angles_maker *maker, int channel)
 {
-  const struct eo_scan_column *c = &m->scan->column[channel][0];
-  double scale = m->tracks->channel[channel].scale, period = eo_scan_period(c, 2 * M_PI / scale), turn = period * scale;
-  m->sampler.scale[channel] = scale;
+  const struct eo_scan_column *c = &maker->scan->column[channel][0];
+  double scale = maker->tracks->channel[channel].scale, period = eo_scan_period(c, 2 * M_PI / scale),
+         turn = period * scale;
+  maker->sampler.scale[channel] = scale;
   if (fabs(scale - 1) < 1e-9)
-    eo_findings_add(m->findings, EO_FINDING_UNITS, EO_SEVERITY_NOTE, channel, scale, "The %s angle is read as radians.",
-                    eo_channel_name(channel));
+    eo_findings_add(maker->findings, EO_FINDING_UNITS, EO_SEVERITY_NOTE, channel, scale,
+                    "The %s angle is read as radians.", eo_channel_name(channel));
   if (isnan(period))
     return;
   double degrees = turn / (2 * M_PI) * (1 / DEGREES), radians = turn / (2 * M_PI) * DEGREES;
   const char *unit = fabs(degrees - 1) < 0.05 ? "degrees" : fabs(radians - 1) < 0.05 ? "radians" : NULL;
   if (unit) {
-    m->sampler.scale[channel] *= fabs(degrees - 1) < 0.05 ? 1 / DEGREES : DEGREES;
-    eo_findings_add(m->findings, EO_FINDING_UNITS, EO_SEVERITY_REPAIRED, channel, period,
+    maker->sampler.scale[channel] *= fabs(degrees - 1) < 0.05 ? 1 / DEGREES : DEGREES;
+    eo_findings_add(maker->findings, EO_FINDING_UNITS, EO_SEVERITY_REPAIRED, channel, period,
                     "The %s angle starts again after %.6g: it is in %s, not in the stated unit; read so.",
                     eo_channel_name(channel), period, unit);
     turn = 2 * M_PI;
   } else if (fabs(turn / (2 * M_PI) - 1) < 0.05) {
     turn = 2 * M_PI;
   }
-  int64_t index = eo_scan_index_row(c, turn / m->sampler.scale[channel]);
+  int64_t index = eo_scan_index_row(c, turn / maker->sampler.scale[channel]);
   if (index) {
-    m->sampler.begin = index > m->sampler.begin ? index : m->sampler.begin;
+    maker->sampler.begin = index > maker->sampler.begin ? index : maker->sampler.begin;
     eo_angles_at_row(
-        m,
-        eo_findings_add(m->findings, EO_FINDING_WRAPPED, EO_SEVERITY_NOTE, channel, (double)index,
+        maker,
+        eo_findings_add(maker->findings, EO_FINDING_WRAPPED, EO_SEVERITY_NOTE, channel, (double)index,
                         "The %s counter starts anew at its index pulse before row %lld; what stands before that is "
                         "part of a turn without a zero and is left out.",
                         eo_channel_name(channel), (long long)index + 1),
         index);
   }
-  m->sampler.period[channel] = turn;
-  m->wrapped[channel] = true;
-  eo_findings_add(m->findings, EO_FINDING_WRAPPED, EO_SEVERITY_NOTE, channel, (double)c->jumps,
+  maker->sampler.period[channel] = turn;
+  maker->wrapped[channel] = true;
+  eo_findings_add(maker->findings, EO_FINDING_WRAPPED, EO_SEVERITY_NOTE, channel, (double)c->jumps,
                   "The %s angle starts again every %.6g, %d times; its turns were counted.", eo_channel_name(channel),
-                  turn / m->sampler.scale[channel], c->jumps);
+                  turn / maker->sampler.scale[channel], c->jumps);
 }
 
-static enum eo_code fit_ellipses(struct eo_angles_maker *m, struct eo_angles *a, struct eo_error *error)
+static enum eo_code fit_ellipses(struct eo_angles_maker *maker, struct eo_angles *angles, struct eo_error *error)
 {
   struct eo_ellipse_sums sums[2];
-  int columns = eo_recording_columns(m->recording);
-  int64_t rows = m->scan->rows;
+  int columns = eo_recording_columns(maker->recording);
+  int64_t rows = maker->scan->rows;
   double *block = malloc(sizeof *block * EO_SAMPLER_BLOCK * (size_t)columns);
   enum eo_code code = block ? EO_OK : eo_error_memory(error);
   for (int channel = 0; channel < 2; channel++) {
-    const struct eo_scan_column *c = m->scan->column[channel];
+    const struct eo_scan_column *c = maker->scan->column[channel];
     eo_ellipse_start(&sums[channel], (double[]){(c[0].low + c[0].high) / 2, (c[1].low + c[1].high) / 2},
                      fmax(c[0].high - c[0].low, 1e-300) / 2);
   }
   for (int64_t first = 0; first < rows && !code; first += EO_SAMPLER_BLOCK) {
     int count = rows - first < EO_SAMPLER_BLOCK ? (int)(rows - first) : EO_SAMPLER_BLOCK;
-    code = eo_recording_read(m->recording, first, count, block, error);
+    code = eo_recording_read(maker->recording, first, count, block, error);
     for (int i = 0; i < count && !code; i++)
       for (int channel = 0; channel < 2; channel++) {
-        const struct eo_track_channel *c = &m->tracks->channel[channel];
+        const struct eo_track_channel *c = &maker->tracks->channel[channel];
         double sine = block[(size_t)i * (size_t)columns + (size_t)c->column[0]],
                cosine = block[(size_t)i * (size_t)columns + (size_t)c->column[1]];
         if (c->track == EO_TRACK_SINE_COSINE && isfinite(sine) && isfinite(cosine))
@@ -160,84 +162,84 @@ static enum eo_code fit_ellipses(struct eo_angles_maker *m, struct eo_angles *a,
       }
   }
   for (int channel = 0; channel < 2 && !code; channel++)
-    if (m->tracks->channel[channel].track == EO_TRACK_SINE_COSINE &&
-        !eo_ellipse_fit(&sums[channel], &a->ellipse[channel]))
-      eo_findings_add(m->findings, EO_FINDING_TRACK, EO_SEVERITY_REFUSED, channel, NAN,
+    if (maker->tracks->channel[channel].track == EO_TRACK_SINE_COSINE &&
+        !eo_ellipse_fit(&sums[channel], &angles->ellipse[channel]))
+      eo_findings_add(maker->findings, EO_FINDING_TRACK, EO_SEVERITY_REFUSED, channel, NAN,
                       "The sine and cosine of the %s draw no ellipse.", eo_channel_name(channel));
   free(block);
   return code;
 }
 
 /* Usual limits of 1 Vpp and 11 uA encoders: 0.6..1.2 Vpp, 7..16 uApp, ratio 0.8..1.25, phase 90 +- 10 degrees. */
-static void judge_ellipse(struct eo_angles_maker *m, const struct eo_ellipse *e, int channel)
+static void judge_ellipse(struct eo_angles_maker *maker, const struct eo_ellipse *ellipse, int channel)
 {
-  const struct eo_track_channel *c = &m->tracks->channel[channel];
-  double ratio = e->amplitude[0] / e->amplitude[1], phase = DEGREES * e->skew;
-  eo_findings_add(m->findings, EO_FINDING_TRACK, EO_SEVERITY_NOTE, channel, ratio,
+  const struct eo_track_channel *c = &maker->tracks->channel[channel];
+  double ratio = ellipse->amplitude[0] / ellipse->amplitude[1], phase = DEGREES * ellipse->skew;
+  eo_findings_add(maker->findings, EO_FINDING_TRACK, EO_SEVERITY_NOTE, channel, ratio,
                   "Offsets (%.2g, %.2g), ratio %.4g and phase %.2f degrees of the %s tracks were corrected.",
-                  e->offset[0], e->offset[1], ratio, 90 + phase, eo_channel_name(channel));
+                  ellipse->offset[0], ellipse->offset[1], ratio, 90 + phase, eo_channel_name(channel));
   for (int k = 0; k < 2 && c->unit != EO_TRACK_UNKNOWN; k++) {
     bool volt = c->unit == EO_TRACK_VOLT;
-    double size = 2 * e->amplitude[k] * c->factor, low = volt ? 0.6 : 7, high = volt ? 1.2 : 16;
+    double size = 2 * ellipse->amplitude[k] * c->factor, low = volt ? 0.6 : 7, high = volt ? 1.2 : 16;
     if (size < low || size > high)
-      eo_findings_add(m->findings, EO_FINDING_TRACK, EO_SEVERITY_WARNING, channel, size,
+      eo_findings_add(maker->findings, EO_FINDING_TRACK, EO_SEVERITY_WARNING, channel, size,
                       "The %s of the %s has an amplitude of %.3g %s, outside the usual %.3g..%.3g.",
                       k ? "cosine" : "sine", eo_channel_name(channel), size, volt ? "Vpp" : "uApp", low, high);
   }
   if (ratio < 0.8 || ratio > 1.25)
-    eo_findings_add(m->findings, EO_FINDING_TRACK, EO_SEVERITY_WARNING, channel, ratio,
+    eo_findings_add(maker->findings, EO_FINDING_TRACK, EO_SEVERITY_WARNING, channel, ratio,
                     "The sine of the %s is %.3g times its cosine, outside the usual 0.8..1.25; corrected.",
                     eo_channel_name(channel), ratio);
   if (fabs(phase) > 10)
-    eo_findings_add(m->findings, EO_FINDING_TRACK, EO_SEVERITY_WARNING, channel, 90 + phase,
+    eo_findings_add(maker->findings, EO_FINDING_TRACK, EO_SEVERITY_WARNING, channel, 90 + phase,
                     "The tracks of the %s are %.1f degrees apart, outside the usual 80..100; corrected.",
                     eo_channel_name(channel), 90 + phase);
 }
 
-static enum eo_code prepare_tracks(struct eo_angles_maker *m, struct eo_angles *a, struct eo_error *error)
+static enum eo_code prepare_tracks(struct eo_angles_maker *maker, struct eo_angles *angles, struct eo_error *error)
 {
   bool any = false;
   for (int channel = 0; channel < 2; channel++) {
-    a->raw[channel] = m->tracks->channel[channel].track == EO_TRACK_SINE_COSINE;
-    any = any || a->raw[channel];
-    if (a->raw[channel])
-      m->sampler.period[channel] = 2 * M_PI / m->tracks->channel[channel].lines;
+    angles->raw[channel] = maker->tracks->channel[channel].track == EO_TRACK_SINE_COSINE;
+    any = any || angles->raw[channel];
+    if (angles->raw[channel])
+      maker->sampler.period[channel] = 2 * M_PI / maker->tracks->channel[channel].lines;
     else
-      judge_turns(m, channel);
-    judge_still(m, channel);
+      judge_turns(maker, channel);
+    judge_still(maker, channel);
   }
-  if (!any || eo_findings_worst(m->findings) == EO_SEVERITY_REFUSED)
+  if (!any || eo_findings_worst(maker->findings) == EO_SEVERITY_REFUSED)
     return EO_OK;
-  enum eo_code code = fit_ellipses(m, a, error);
+  enum eo_code code = fit_ellipses(maker, angles, error);
   for (int channel = 0; channel < 2 && !code; channel++)
-    if (a->raw[channel] && eo_findings_worst(m->findings) != EO_SEVERITY_REFUSED)
-      judge_ellipse(m, &a->ellipse[channel], channel);
-  m->sampler.ellipse = a->ellipse;
+    if (angles->raw[channel] && eo_findings_worst(maker->findings) != EO_SEVERITY_REFUSED)
+      judge_ellipse(maker, &angles->ellipse[channel], channel);
+  maker->sampler.ellipse = angles->ellipse;
   return code;
 }
 
-static enum eo_code convert(struct eo_angles_maker *m, struct eo_angles *a, struct eo_error *error)
+static enum eo_code convert(struct eo_angles_maker *maker, struct eo_angles *angles, struct eo_error *error)
 {
   double(*out)[3] = malloc(sizeof *out * EO_SAMPLER_BLOCK);
   int count = 1, written = 0;
   enum eo_code code = out ? EO_OK : eo_error_memory(error);
   for (int c = 0; c < 2; c++) {
-    const struct eo_scan_column *column = &m->scan->column[c][0];
-    bool coarse = !a->raw[c] && column->typical < 0.5 * column->quantum; /* most rows repeat the one before */
-    m->quantum[c] = coarse ? column->quantum * fabs(m->sampler.scale[c]) : 0;
-    m->sampler.step[c] = 0;
+    const struct eo_scan_column *column = &maker->scan->column[c][0];
+    bool coarse = !angles->raw[c] && column->typical < 0.5 * column->quantum; /* most rows repeat the one before */
+    maker->quantum[c] = coarse ? column->quantum * fabs(maker->sampler.scale[c]) : 0;
+    maker->sampler.step[c] = 0;
   }
   while (!code && count) {
-    code = eo_sampler_next(&m->sampler, m->sample + m->held, &count, error);
-    m->held += code ? 0 : count;
-    if (!code && eo_progress_report(m->progress, "angles",
-                                    (double)m->sampler.next / (double)(m->scan->rows ? m->scan->rows : 1)))
+    code = eo_sampler_next(&maker->sampler, maker->sample + maker->held, &count, error);
+    maker->held += code ? 0 : count;
+    if (!code && eo_progress_report(maker->progress, "angles",
+                                    (double)maker->sampler.next / (double)(maker->scan->rows ? maker->scan->rows : 1)))
       code = eo_error_set(error, EO_ERROR_CANCELLED, "", "Stopped.");
     if (!code)
-      code = eo_jumps_pass_on(m, a, count == 0, out, &written, error);
+      code = eo_jumps_pass_on(maker, angles, count == 0, out, &written, error);
   }
   if (!code && written)
-    code = eo_recording_append(a->series, out[0], written, error);
+    code = eo_recording_append(angles->series, out[0], written, error);
   free(out);
   return code;
 }
@@ -255,69 +257,70 @@ static double usual_rate(double *rate, int blocks)
   return eo_scan_quantile(rate, moving, 0.5);
 }
 
-static void conclude(struct eo_angles_maker *m, struct eo_angles *a)
+static void conclude(struct eo_angles_maker *maker, struct eo_angles *angles)
 {
-  double advance = m->high.angle[0] - m->low.angle[0];
-  a->rows = eo_recording_rows(a->series);
-  a->interval = m->usual.interval;
-  a->from[0] = 0;
-  a->from[1] = 1;
-  a->factor[0] = a->factor[1] = 1;
-  bool even = a->slips == 0 && advance > 0;
-  a->ratio = even ? (m->high.angle[1] - m->low.angle[1]) / advance : eo_scan_quantile(m->proportion, m->blocks, 0.5);
+  double advance = maker->high.angle[0] - maker->low.angle[0];
+  angles->rows = eo_recording_rows(angles->series);
+  angles->interval = maker->usual.interval;
+  angles->from[0] = 0;
+  angles->from[1] = 1;
+  angles->factor[0] = angles->factor[1] = 1;
+  bool even = angles->slips == 0 && advance > 0;
+  angles->ratio = even ? (maker->high.angle[1] - maker->low.angle[1]) / advance
+                       : eo_scan_quantile(maker->proportion, maker->blocks, 0.5);
   for (int c = 0; c < 2; c++) {
-    a->rate[c] = usual_rate(m->rate[c], m->blocks);
-    a->wrapped[c] = m->wrapped[c];
+    angles->rate[c] = usual_rate(maker->rate[c], maker->blocks);
+    angles->wrapped[c] = maker->wrapped[c];
   }
   if (!even)
-    advance = fabs(a->rate[0]) * a->interval * EO_SAMPLER_BLOCK;
-  a->ratio_tolerance = fmax(1e-6, 0.02 / fmax(advance, 0.1));
-  eo_jumps_judge(m, a);
+    advance = fabs(angles->rate[0]) * angles->interval * EO_SAMPLER_BLOCK;
+  angles->ratio_tolerance = fmax(1e-6, 0.02 / fmax(advance, 0.1));
+  eo_jumps_judge(maker, angles);
 }
 
-enum eo_code eo_angles_make(struct eo_angles *a, const struct eo_recording *recording, const struct eo_tracks *tracks,
-                            const char *spool_directory, struct eo_findings *findings,
+enum eo_code eo_angles_make(struct eo_angles *angles, const struct eo_recording *recording,
+                            const struct eo_tracks *tracks, const char *spool_directory, struct eo_findings *findings,
                             const struct eo_progress *progress, struct eo_error *error)
 {
-  struct eo_angles_maker *m = calloc(1, sizeof *m);
-  memset(a, 0, sizeof *a);
-  if (m)
-    m->scan = calloc(1, sizeof *m->scan);
-  if (!m || !m->scan) {
-    free(m);
+  struct eo_angles_maker *maker = calloc(1, sizeof *maker);
+  memset(angles, 0, sizeof *angles);
+  if (maker)
+    maker->scan = calloc(1, sizeof *maker->scan);
+  if (!maker || !maker->scan) {
+    free(maker);
     return eo_error_memory(error);
   }
-  a->interpolated = tracks->interpolated;
-  m->recording = recording;
-  m->tracks = tracks;
-  m->findings = findings;
-  m->progress = progress;
+  angles->interpolated = tracks->interpolated;
+  maker->recording = recording;
+  maker->tracks = tracks;
+  maker->findings = findings;
+  maker->progress = progress;
   bool pulses = tracks->channel[0].track == EO_TRACK_PULSES;
-  enum eo_code code = eo_sampler_init(&m->sampler, recording, tracks, spool_directory, error);
+  enum eo_code code = eo_sampler_init(&maker->sampler, recording, tracks, spool_directory, error);
   if (!code && !pulses)
-    code = eo_scan_run(m->scan, recording, tracks, progress, error);
+    code = eo_scan_run(maker->scan, recording, tracks, progress, error);
   if (!code && !pulses) {
-    judge_time(m);
-    judge_gaps(m);
-    code = prepare_tracks(m, a, error);
+    judge_time(maker);
+    judge_gaps(maker);
+    code = prepare_tracks(maker, angles, error);
   }
   if (pulses && !code)
-    eo_pulses_judge(m->sampler.pulses, findings);
+    eo_pulses_judge(maker->sampler.pulses, findings);
   if (pulses)
-    m->scan->rows = eo_recording_rows(recording);
+    maker->scan->rows = eo_recording_rows(recording);
   if (!code && eo_findings_worst(findings) != EO_SEVERITY_REFUSED) {
-    code = eo_recording_new(&a->series, 3, spool_directory, error);
+    code = eo_recording_new(&angles->series, 3, spool_directory, error);
     if (!code)
-      code = convert(m, a, error);
+      code = convert(maker, angles, error);
     if (!code)
-      conclude(m, a);
+      conclude(maker, angles);
   }
-  if (a->series && (code || eo_findings_worst(findings) == EO_SEVERITY_REFUSED))
-    eo_angles_done(a);
-  eo_sampler_done(&m->sampler);
-  free(m->rate[0]);
-  free(m->scan);
-  free(m);
+  if (angles->series && (code || eo_findings_worst(findings) == EO_SEVERITY_REFUSED))
+    eo_angles_done(angles);
+  eo_sampler_done(&maker->sampler);
+  free(maker->rate[0]);
+  free(maker->scan);
+  free(maker);
   return code;
 }
 

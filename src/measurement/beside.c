@@ -37,13 +37,13 @@ static void put_powers(double complex step, double complex start, int count, dou
 }
 
 /* exp(-i offset theta) of every offset above; those below are their conjugates. */
-static void find_phasors(const struct eo_beside *b, double theta, double *real, double *imaginary)
+static void find_phasors(const struct eo_beside *beside, double theta, double *real, double *imaginary)
 {
-  double complex bin = cexp(-I * theta / b->turns);
+  double complex bin = cexp(-I * theta / beside->turns);
   put_powers(bin, bin, EO_BESIDE_BINS, real + bin_at(1, 0), imaginary + bin_at(1, 0));
   put_powers(cexp(-I * theta), 1, EO_BESIDE_TURNS, real + turn_at(EO_PINION, 1, 1),
              imaginary + turn_at(EO_PINION, 1, 1));
-  put_powers(cexp(-I * theta * b->gear), 1, EO_BESIDE_TURNS, real + turn_at(EO_GEAR, 1, 1),
+  put_powers(cexp(-I * theta * beside->gear), 1, EO_BESIDE_TURNS, real + turn_at(EO_GEAR, 1, 1),
              imaginary + turn_at(EO_GEAR, 1, 1));
   for (int i = 0; i < EO_BESIDE_BINS; i++) {
     real[bin_at(0, i)] = real[bin_at(1, i)];
@@ -56,20 +56,20 @@ static void find_phasors(const struct eo_beside *b, double theta, double *real, 
     }
 }
 
-void eo_beside_add(struct eo_beside *b, double theta, double residual)
+void eo_beside_add(struct eo_beside *beside, double theta, double residual)
 {
   double real[EO_BESIDE_PHASORS], imaginary[EO_BESIDE_PHASORS];
-  double complex unit = cexp(-I * b->teeth * theta), mesh = residual;
-  find_phasors(b, theta, real, imaginary);
-  for (int h = 0; h < b->harmonics; h++) {
+  double complex unit = cexp(-I * beside->teeth * theta), mesh = residual;
+  find_phasors(beside, theta, real, imaginary);
+  for (int h = 0; h < beside->harmonics; h++) {
     mesh *= unit;
-    double x = creal(mesh), y = cimag(mesh), *sum_x = b->real[h], *sum_y = b->imaginary[h];
+    double x = creal(mesh), y = cimag(mesh), *sum_x = beside->real[h], *sum_y = beside->imaginary[h];
     for (int i = 0; i < EO_BESIDE_PHASORS; i++) {
       sum_x[i] += x * real[i] - y * imaginary[i];
       sum_y[i] += x * imaginary[i] + y * real[i];
     }
   }
-  b->rows++;
+  beside->rows++;
 }
 
 static double power_at(const struct eo_beside *b, int h, int i)
@@ -114,15 +114,15 @@ static bool is_sideband(const struct eo_beside *b, double distance)
   return near;
 }
 
-double eo_beside_sigma(const struct eo_beside *b, int h, double residual)
+double eo_beside_sigma(const struct eo_beside *beside, int h, double residual)
 {
-  double power[2 * EO_BESIDE_BINS], rows = (double)b->rows, most = rows * residual * residual;
+  double power[2 * EO_BESIDE_BINS], rows = (double)beside->rows, most = rows * residual * residual;
   int n = 0;
   for (int i = 0; i < 2 * EO_BESIDE_BINS; i++)
-    if (!is_sideband(b, (i % EO_BESIDE_BINS + EO_BESIDE_NEAREST) / b->turns))
-      power[n++] = power_at(b, h, i);
+    if (!is_sideband(beside, (i % EO_BESIDE_BINS + EO_BESIDE_NEAREST) / beside->turns))
+      power[n++] = power_at(beside, h, i);
   if (n >= 6) {
-    double repeating = fmax(repeating_power(b, h, EO_PINION), repeating_power(b, h, EO_GEAR));
+    double repeating = fmax(repeating_power(beside, h, EO_PINION), repeating_power(beside, h, EO_GEAR));
     most = mean_power(power, n);
     most = repeating > REPEATS * most ? repeating : most;
   }

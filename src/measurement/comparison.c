@@ -34,27 +34,27 @@ static double likeness_at(const struct eo_measured *m, const struct eo_rig_predi
   return size[0] > 0 && size[1] > 0 ? sum / sqrt(size[0] * size[1]) : 0;
 }
 
-static void align(const struct eo_measured *m, struct eo_compared *c)
+static void align(const struct eo_measured *measured, struct eo_compared *compared)
 {
   enum { STEPS = 512 };
   double width = 1.0 / STEPS;
-  c->likeness = -2;
+  compared->likeness = -2;
   for (int i = 0; i < STEPS; i++) {
-    double likeness = likeness_at(m, &c->prediction, i * width);
-    if (likeness > c->likeness) {
-      c->likeness = likeness;
-      c->shift = i * width;
+    double likeness = likeness_at(measured, &compared->prediction, i * width);
+    if (likeness > compared->likeness) {
+      compared->likeness = likeness;
+      compared->shift = i * width;
     }
   }
   for (; width > 1e-7; width /= 2)
     for (int side = -1; side <= 1; side += 2) {
-      double likeness = likeness_at(m, &c->prediction, c->shift + side * width);
-      if (likeness > c->likeness) {
-        c->likeness = likeness;
-        c->shift += side * width;
+      double likeness = likeness_at(measured, &compared->prediction, compared->shift + side * width);
+      if (likeness > compared->likeness) {
+        compared->likeness = likeness;
+        compared->shift += side * width;
       }
     }
-  c->shift -= floor(c->shift);
+  compared->shift -= floor(compared->shift);
 }
 
 void eo_comparison_curves(const struct eo_measured *m, const struct eo_compared *c, int count, double *measured_curve,
@@ -88,21 +88,21 @@ static bool same_point(const struct eo_measured *a, const struct eo_measured *b)
          fabs(a->speed / b->speed - 1) < SAME_SPEED;
 }
 
-static enum eo_code find_ratios(struct eo_comparison *c, struct eo_error *error)
+static enum eo_code find_ratios(struct eo_comparison *comparison, struct eo_error *error)
 {
-  double *value = malloc(sizeof *value * (size_t)(c->count + 1));
+  double *value = malloc(sizeof *value * (size_t)(comparison->count + 1));
   int n = 0;
-  c->ratio = c->spread = NAN;
+  comparison->ratio = comparison->spread = NAN;
   if (!value)
     return eo_error_memory(error);
-  for (int i = 0; i < c->count; i++)
-    if (c->point[i].ratio > 0)
-      value[n++] = log(c->point[i].ratio);
+  for (int i = 0; i < comparison->count; i++)
+    if (comparison->point[i].ratio > 0)
+      value[n++] = log(comparison->point[i].ratio);
   double middle = median(value, n);
   for (int i = 0; i < n; i++)
     value[i] = fabs(value[i] - middle);
-  c->ratio = exp(middle);
-  c->spread = n > 2 ? 1.4826 * median(value, n) : NAN;
+  comparison->ratio = exp(middle);
+  comparison->spread = n > 2 ? 1.4826 * median(value, n) : NAN;
   free(value);
   return EO_OK;
 }
@@ -118,75 +118,77 @@ static double nearest_repeat(const struct eo_measured *m, int count, int at)
   return nearest;
 }
 
-static void judge_point(struct eo_comparison *c, const struct eo_measured *m, int at)
+static void judge_point(struct eo_comparison *c, const struct eo_measured *measured, int at)
 {
-  struct eo_compared *p = &c->point[at];
-  double off = fabs(log(p->ratio / c->ratio)), repeat = nearest_repeat(m, c->count, at);
+  struct eo_compared *compared = &c->point[at];
+  double off = fabs(log(compared->ratio / c->ratio)), repeat = nearest_repeat(measured, c->count, at);
   if (c->count >= 4 && isfinite(off) && off > LEAST_FAR && off > FAR * c->spread)
-    snprintf(p->reason, sizeof p->reason, "Its RMS is %.3g times the prediction, that of the others about %.3g times.",
-             p->ratio, c->ratio);
+    snprintf(compared->reason, sizeof compared->reason,
+             "Its RMS is %.3g times the prediction, that of the others about %.3g times.", compared->ratio, c->ratio);
   else if (isfinite(repeat) && repeat > 4)
-    snprintf(p->reason, sizeof p->reason,
-             "No other recording at this torque and speed comes near its RMS of %.4g m/s2.", m[at].rms);
-  p->outlier = *p->reason != 0;
-  if (p->outlier && m[at].warnings)
-    snprintf(p->reason + strlen(p->reason), sizeof p->reason - strlen(p->reason),
-             " The recording itself carries %d warnings.", m[at].warnings);
+    snprintf(compared->reason, sizeof compared->reason,
+             "No other recording at this torque and speed comes near its RMS of %.4g m/s2.", measured[at].rms);
+  compared->outlier = *compared->reason != 0;
+  if (compared->outlier && measured[at].warnings)
+    snprintf(compared->reason + strlen(compared->reason), sizeof compared->reason - strlen(compared->reason),
+             " The recording itself carries %d warnings.", measured[at].warnings);
 }
 
-static bool reduce(const struct eo_comparison *c, const struct eo_measured *m, int at, struct eo_reduction *r)
+static bool reduce(const struct eo_comparison *comparison, const struct eo_measured *measured, int at,
+                   struct eo_reduction *reduction)
 {
   double rms = 0, variance = 0, predicted = 0;
-  *r = (struct eo_reduction){.modified = at, .torque = m[at].torque, .speed = m[at].speed};
-  for (int i = 0; i < c->count; i++)
-    if (m[i].unmodified && same_point(&m[i], &m[at])) {
-      r->unmodified++;
-      rms += m[i].rms;
-      variance += m[i].rms_sigma * m[i].rms_sigma;
-      predicted += c->point[i].prediction.rms;
+  *reduction = (struct eo_reduction){.modified = at, .torque = measured[at].torque, .speed = measured[at].speed};
+  for (int i = 0; i < comparison->count; i++)
+    if (measured[i].unmodified && same_point(&measured[i], &measured[at])) {
+      reduction->unmodified++;
+      rms += measured[i].rms;
+      variance += measured[i].rms_sigma * measured[i].rms_sigma;
+      predicted += comparison->point[i].prediction.rms;
     }
-  if (!r->unmodified || m[at].unmodified)
+  if (!reduction->unmodified || measured[at].unmodified)
     return false;
-  rms /= r->unmodified;
-  r->measured = 1 - m[at].rms / rms;
-  r->measured_sigma = hypot(m[at].rms_sigma / rms, m[at].rms / (rms * rms) * sqrt(variance) / r->unmodified);
-  r->predicted = 1 - c->point[at].prediction.rms / (predicted / r->unmodified);
+  rms /= reduction->unmodified;
+  reduction->measured = 1 - measured[at].rms / rms;
+  reduction->measured_sigma = hypot(measured[at].rms_sigma / rms,
+                                    measured[at].rms / (rms * rms) * sqrt(variance) / reduction->unmodified);
+  reduction->predicted = 1 - comparison->point[at].prediction.rms / (predicted / reduction->unmodified);
   return true;
 }
 
-enum eo_code eo_comparison_run(struct eo_comparison *c, struct eo_evaluator *evaluator, const struct eo_design *design,
-                               int count, const struct eo_measured *measured, const struct eo_progress *progress,
-                               struct eo_error *error)
+enum eo_code eo_comparison_run(struct eo_comparison *comparison, struct eo_evaluator *evaluator,
+                               const struct eo_design *design, int count, const struct eo_measured *measured,
+                               const struct eo_progress *progress, struct eo_error *error)
 {
   enum eo_code code = EO_OK;
-  *c = (struct eo_comparison){.count = count};
+  *comparison = (struct eo_comparison){.count = count};
   if (count < 0 || count > EO_MOST_MEASURED)
     return eo_error_set(error, EO_ERROR_INPUT, "", "%d measurements are more than the %d that are compared at once.",
                         count, EO_MOST_MEASURED);
-  c->point = calloc((size_t)count + 1, sizeof *c->point);
-  c->reduction = calloc((size_t)count + 1, sizeof *c->reduction);
-  if (!c->point || !c->reduction)
+  comparison->point = calloc((size_t)count + 1, sizeof *comparison->point);
+  comparison->reduction = calloc((size_t)count + 1, sizeof *comparison->reduction);
+  if (!comparison->point || !comparison->reduction)
     return eo_error_memory(error);
   for (int i = 0; i < count && !code; i++) {
     const struct eo_measured *m = &measured[i];
-    struct eo_compared *p = &c->point[i];
+    struct eo_compared *compared = &comparison->point[i];
     if (eo_progress_report(progress, "predictions", (double)i / count))
       return eo_error_set(error, EO_ERROR_CANCELLED, "", "Stopped.");
-    code = eo_prediction_run(&p->prediction, evaluator, design, m->unmodified, m->torque, m->speed, m->end,
+    code = eo_prediction_run(&compared->prediction, evaluator, design, m->unmodified, m->torque, m->speed, m->end,
                              m->harmonics, error);
-    p->ratio = p->likeness = p->shift = NAN;
-    if (!code && p->prediction.valid) {
-      p->ratio = m->rms / p->prediction.rms;
-      align(m, p);
+    compared->ratio = compared->likeness = compared->shift = NAN;
+    if (!code && compared->prediction.valid) {
+      compared->ratio = m->rms / compared->prediction.rms;
+      align(m, compared);
     }
   }
   if (!code)
-    code = find_ratios(c, error);
+    code = find_ratios(comparison, error);
   if (code)
     return code;
   for (int i = 0; i < count; i++) {
-    judge_point(c, measured, i);
-    c->reductions += reduce(c, measured, i, &c->reduction[c->reductions]);
+    judge_point(comparison, measured, i);
+    comparison->reductions += reduce(comparison, measured, i, &comparison->reduction[comparison->reductions]);
   }
   return EO_OK;
 }

@@ -14,29 +14,30 @@ static double step_of(const struct eo_sample *from, const struct eo_sample *to, 
   return to->angle[channel] - from->angle[channel];
 }
 
-static void learn(struct eo_angles_maker *m, const struct eo_sample *s, int count, struct eo_usual *u)
+static void learn(struct eo_angles_maker *maker, const struct eo_sample *sample, int count, struct eo_usual *usual)
 {
   int lag = count / 8 > 0 ? count / 8 : 1, n = 0;
   bool uneven = false;
   for (int i = 1; i < count; i++)
-    m->scratch[n++] = s[i].time - s[i - 1].time;
-  u->interval = eo_scan_quantile(m->scratch, n, 0.5);
+    maker->scratch[n++] = sample[i].time - sample[i - 1].time;
+  usual->interval = eo_scan_quantile(maker->scratch, n, 0.5);
   for (int c = 0; c < 2; c++) {
     n = 0;
     for (int i = lag; i < count; i++)
-      m->scratch[n++] = step_of(&s[i - lag], &s[i], c) / (s[i].time - s[i - lag].time);
-    u->rate[c] = eo_scan_quantile(m->scratch, n, 0.5);
-    double slow = m->scratch[(int)(0.05 * (n - 1))], fast = m->scratch[(int)(0.95 * (n - 1))];
+      maker->scratch[n++] = step_of(&sample[i - lag], &sample[i], c) / (sample[i].time - sample[i - lag].time);
+    usual->rate[c] = eo_scan_quantile(maker->scratch, n, 0.5);
+    double slow = maker->scratch[(int)(0.05 * (n - 1))], fast = maker->scratch[(int)(0.95 * (n - 1))];
     uneven = uneven || fast - slow > UNEVEN * fmax(fabs(slow), fabs(fast));
     n = 0;
     for (int i = 1; i < count; i++)
-      m->scratch[n++] = fabs(step_of(&s[i - 1], &s[i], c) - u->rate[c] * (s[i].time - s[i - 1].time));
-    double spread = eo_scan_quantile(m->scratch, n, 0.9), most = m->scratch[(int)(0.995 * (n - 1))];
-    double row = fabs(u->rate[c]) * u->interval;
-    u->limit[c] = fmax(fmax(4 * spread, 0.4 * row), 1.6 * m->quantum[c]);
-    u->fine[c] = fmax(fmax(8 * spread, 3 * most), 1.6 * m->quantum[c]);
+      maker->scratch[n++] =
+          fabs(step_of(&sample[i - 1], &sample[i], c) - usual->rate[c] * (sample[i].time - sample[i - 1].time));
+    double spread = eo_scan_quantile(maker->scratch, n, 0.9), most = maker->scratch[(int)(0.995 * (n - 1))];
+    double row = fabs(usual->rate[c]) * usual->interval;
+    usual->limit[c] = fmax(fmax(4 * spread, 0.4 * row), 1.6 * maker->quantum[c]);
+    usual->fine[c] = fmax(fmax(8 * spread, 3 * most), 1.6 * maker->quantum[c]);
   }
-  u->uneven = uneven;
+  usual->uneven = uneven;
 }
 
 /* How far the step between two samples is from the usual one. */
@@ -84,88 +85,88 @@ static bool lies_between(const struct eo_usual *before, const struct eo_usual *a
 
 /* Where the speed changes within a block, a step that goes on as those before it or as those after it is none. *here:
    what is usual there. */
-static bool odd_beside(const struct eo_angles_maker *m, const struct eo_usual *u, const struct eo_sample *s, int left,
-                       struct eo_usual *here, double excess[2])
+static bool odd_beside(const struct eo_angles_maker *maker, const struct eo_usual *usual,
+                       const struct eo_sample *sample, int left, struct eo_usual *here, double excess[2])
 {
   struct eo_usual after = {0};
   int ahead = left - 1 < EO_AHEAD - 1 ? left - 1 : EO_AHEAD - 1;
-  const struct eo_sample *oldest = &m->recent[m->kept < EO_AHEAD ? 0 : m->kept % EO_AHEAD];
-  bool before = m->kept > 1;
-  *here = *u;
-  if (before && fits_beside(u, &m->last, s, oldest, &m->last, here))
+  const struct eo_sample *oldest = &maker->recent[maker->kept < EO_AHEAD ? 0 : maker->kept % EO_AHEAD];
+  bool before = maker->kept > 1;
+  *here = *usual;
+  if (before && fits_beside(usual, &maker->last, sample, oldest, &maker->last, here))
     return false;
-  if (ahead > 0 && fits_beside(u, &m->last, s, s, s + ahead, &after))
+  if (ahead > 0 && fits_beside(usual, &maker->last, sample, sample, sample + ahead, &after))
     return false;
-  if (before && ahead > 0 && u->uneven && lies_between(here, &after, &m->last, s))
+  if (before && ahead > 0 && usual->uneven && lies_between(here, &after, &maker->last, sample))
     return false;
-  return odd_step(here, here->limit, &m->last, s, excess);
+  return odd_step(here, here->limit, &maker->last, sample, excess);
 }
 
 /* Both channels went on by the same time: rows are missing, and time was written on as if they were not. Else one
    slipped. */
-static void judge_jump(struct eo_angles_maker *m, struct eo_angles *a, const struct eo_usual *u, const double excess[2],
-                       struct eo_sample *s)
+static void judge_jump(struct eo_angles_maker *maker, struct eo_angles *angles, const struct eo_usual *usual,
+                       const double excess[2], struct eo_sample *sample)
 {
-  double ratio = u->rate[1] / u->rate[0], rows = excess[0] / (u->rate[0] * u->interval);
-  bool both = fabs(excess[1] - ratio * excess[0]) < fmax(u->limit[1], fabs(ratio) * u->limit[0]);
+  double ratio = usual->rate[1] / usual->rate[0], rows = excess[0] / (usual->rate[0] * usual->interval);
+  bool both = fabs(excess[1] - ratio * excess[0]) < fmax(usual->limit[1], fabs(ratio) * usual->limit[0]);
   if (both) {
-    m->delay += excess[0] / u->rate[0];
-    a->dropped += llround(fabs(rows));
-    if (!m->gaps++)
-      m->gap_row = s->row;
+    maker->delay += excess[0] / usual->rate[0];
+    angles->dropped += llround(fabs(rows));
+    if (!maker->gaps++)
+      maker->gap_row = sample->row;
     return;
   }
-  int channel = fabs(excess[0]) / u->limit[0] > fabs(excess[1]) / u->limit[1] ? 0 : 1;
-  if (a->slips++ < 4) {
-    rows = excess[channel] / (u->rate[channel] * u->interval);
+  int channel = fabs(excess[0]) / usual->limit[0] > fabs(excess[1]) / usual->limit[1] ? 0 : 1;
+  if (angles->slips++ < 4) {
+    rows = excess[channel] / (usual->rate[channel] * usual->interval);
     eo_angles_at_row(
-        m,
-        eo_findings_add(m->findings, EO_FINDING_SLIP, EO_SEVERITY_REFUSED, channel, DEGREES * excess[channel],
+        maker,
+        eo_findings_add(maker->findings, EO_FINDING_SLIP, EO_SEVERITY_REFUSED, channel, DEGREES * excess[channel],
                         "The %s channel jumps by %.5g degrees (%.3g rows) at row %lld and the other does not: rows "
                         "or counts were lost in one channel.",
-                        eo_channel_name(channel), DEGREES * excess[channel], rows, (long long)s->row + 1),
-        s->row);
+                        eo_channel_name(channel), DEGREES * excess[channel], rows, (long long)sample->row + 1),
+        sample->row);
   }
 }
 
-static enum eo_code keep(struct eo_angles_maker *m, struct eo_angles *a, struct eo_sample *s, double (*out)[3],
-                         int *count, struct eo_error *error)
+static enum eo_code keep(struct eo_angles_maker *maker, struct eo_angles *angles, struct eo_sample *sample,
+                         double (*out)[3], int *count, struct eo_error *error)
 {
   double *row = out[*count];
-  if (!m->begun || s->angle[0] < m->low.angle[0])
-    m->low = *s;
-  if (!m->begun || s->angle[0] > m->high.angle[0])
-    m->high = *s;
-  m->begun = true;
-  m->last = m->recent[m->kept++ % EO_AHEAD] = *s;
-  row[0] = s->time + m->delay;
-  row[1] = s->angle[0];
-  row[2] = s->angle[1];
+  if (!maker->begun || sample->angle[0] < maker->low.angle[0])
+    maker->low = *sample;
+  if (!maker->begun || sample->angle[0] > maker->high.angle[0])
+    maker->high = *sample;
+  maker->begun = true;
+  maker->last = maker->recent[maker->kept++ % EO_AHEAD] = *sample;
+  row[0] = sample->time + maker->delay;
+  row[1] = sample->angle[0];
+  row[2] = sample->angle[1];
   if (++*count < EO_SAMPLER_BLOCK)
     return EO_OK;
   *count = 0;
-  return eo_recording_append(a->series, out[0], EO_SAMPLER_BLOCK, error);
+  return eo_recording_append(angles->series, out[0], EO_SAMPLER_BLOCK, error);
 }
 
-static bool note_block(struct eo_angles_maker *m, const struct eo_usual *u)
+static bool note_block(struct eo_angles_maker *maker, const struct eo_usual *usual)
 {
-  if (u->rate[0] == 0 || u->rate[1] == 0)
+  if (usual->rate[0] == 0 || usual->rate[1] == 0)
     return true;
-  if (m->blocks == m->block_room) {
-    int room = m->block_room ? 2 * m->block_room : 64;
-    double *bigger = realloc(m->rate[0], sizeof *bigger * (size_t)room * 3);
+  if (maker->blocks == maker->block_room) {
+    int room = maker->block_room ? 2 * maker->block_room : 64;
+    double *bigger = realloc(maker->rate[0], sizeof *bigger * (size_t)room * 3);
     if (!bigger)
       return false;
-    memmove(bigger + 2 * room, bigger + 2 * m->block_room, sizeof *bigger * (size_t)m->blocks);
-    memmove(bigger + room, bigger + m->block_room, sizeof *bigger * (size_t)m->blocks);
-    m->rate[0] = bigger;
-    m->rate[1] = bigger + room;
-    m->proportion = bigger + 2 * room;
-    m->block_room = room;
+    memmove(bigger + 2 * room, bigger + 2 * maker->block_room, sizeof *bigger * (size_t)maker->blocks);
+    memmove(bigger + room, bigger + maker->block_room, sizeof *bigger * (size_t)maker->blocks);
+    maker->rate[0] = bigger;
+    maker->rate[1] = bigger + room;
+    maker->proportion = bigger + 2 * room;
+    maker->block_room = room;
   }
-  m->rate[0][m->blocks] = u->rate[0];
-  m->rate[1][m->blocks] = u->rate[1];
-  m->proportion[m->blocks++] = u->rate[1] / u->rate[0];
+  maker->rate[0][maker->blocks] = usual->rate[0];
+  maker->rate[1][maker->blocks] = usual->rate[1];
+  maker->proportion[maker->blocks++] = usual->rate[1] / usual->rate[0];
   return true;
 }
 
@@ -194,76 +195,77 @@ static void note_lost_counts(struct eo_angles_maker *m, const struct eo_usual *u
   m->losses++;
 }
 
-enum eo_code eo_jumps_pass_on(struct eo_angles_maker *m, struct eo_angles *a, bool final, double (*out)[3],
+enum eo_code eo_jumps_pass_on(struct eo_angles_maker *maker, struct eo_angles *angles, bool final, double (*out)[3],
                               int *written, struct eo_error *error)
 {
-  const struct eo_usual *u = &m->usual;
+  const struct eo_usual *usual = &maker->usual;
   double excess[2];
-  int until = final ? m->held : m->held - EO_AHEAD, i = 0;
+  int until = final ? maker->held : maker->held - EO_AHEAD, i = 0;
   enum eo_code code = EO_OK;
-  if (m->held >= 512 || (!m->known && m->held >= 32)) {
-    learn(m, m->sample, m->held, &m->usual);
-    m->known = true;
-    if (!note_block(m, u))
+  if (maker->held >= 512 || (!maker->known && maker->held >= 32)) {
+    learn(maker, maker->sample, maker->held, &maker->usual);
+    maker->known = true;
+    if (!note_block(maker, usual))
       return eo_error_memory(error);
   }
   for (; i < until && !code; i++) {
-    struct eo_sample *s = &m->sample[i];
-    struct eo_usual here = *u;
-    bool judge = m->known && m->begun;
-    if (judge && (u->uneven || odd_step(u, u->limit, &m->last, s, excess)) &&
-        odd_beside(m, u, s, m->held - i, &here, excess)) {
-      int skip = spike_length(&here, here.limit, &m->last, s, m->held - i);
+    struct eo_sample *sample = &maker->sample[i];
+    struct eo_usual here = *usual;
+    bool judge = maker->known && maker->begun;
+    if (judge && (usual->uneven || odd_step(usual, usual->limit, &maker->last, sample, excess)) &&
+        odd_beside(maker, usual, sample, maker->held - i, &here, excess)) {
+      int skip = spike_length(&here, here.limit, &maker->last, sample, maker->held - i);
       if (skip) {
-        if (!m->spikes)
-          m->spike_row = s->row;
-        m->spikes += skip;
+        if (!maker->spikes)
+          maker->spike_row = sample->row;
+        maker->spikes += skip;
         i += skip - 1;
         continue;
       }
-      judge_jump(m, a, &here, excess, s);
-    } else if (judge && !u->uneven && odd_step(u, u->fine, &m->last, s, excess)) {
-      note_lost_counts(m, u, excess, s, m->held - i);
-    } else if (judge && s->time - m->last.time > 1.5 * u->interval && s->row - m->last.row == 1) {
-      a->dropped += llround((s->time - m->last.time) / u->interval) - 1;
-      if (!m->gaps++)
-        m->gap_row = s->row;
+      judge_jump(maker, angles, &here, excess, sample);
+    } else if (judge && !usual->uneven && odd_step(usual, usual->fine, &maker->last, sample, excess)) {
+      note_lost_counts(maker, usual, excess, sample, maker->held - i);
+    } else if (judge && sample->time - maker->last.time > 1.5 * usual->interval && sample->row - maker->last.row == 1) {
+      angles->dropped += llround((sample->time - maker->last.time) / usual->interval) - 1;
+      if (!maker->gaps++)
+        maker->gap_row = sample->row;
     }
-    code = keep(m, a, s, out, written, error);
+    code = keep(maker, angles, sample, out, written, error);
   }
-  i = i < m->held ? i : m->held;
-  memmove(m->sample, m->sample + i, sizeof *m->sample * (size_t)(m->held - i));
-  m->held -= i;
+  i = i < maker->held ? i : maker->held;
+  memmove(maker->sample, maker->sample + i, sizeof *maker->sample * (size_t)(maker->held - i));
+  maker->held -= i;
   return code;
 }
 
-void eo_jumps_judge(struct eo_angles_maker *m, const struct eo_angles *a)
+void eo_jumps_judge(struct eo_angles_maker *maker, const struct eo_angles *angles)
 {
-  for (int i = 0; i < m->losses && m->losses <= EO_MOST_LOSSES; i++)
+  for (int i = 0; i < maker->losses && maker->losses <= EO_MOST_LOSSES; i++)
     eo_angles_at_row(
-        m,
-        eo_findings_add(m->findings, EO_FINDING_SLIP, EO_SEVERITY_REFUSED, m->loss[i].channel,
-                        DEGREES * m->loss[i].jump,
+        maker,
+        eo_findings_add(maker->findings, EO_FINDING_SLIP, EO_SEVERITY_REFUSED, maker->loss[i].channel,
+                        DEGREES * maker->loss[i].jump,
                         "The %s channel jumps by %.5g degrees at row %lld and stays there while the other does not: "
                         "counts were lost in one channel.",
-                        eo_channel_name(m->loss[i].channel), DEGREES * m->loss[i].jump, (long long)m->loss[i].row + 1),
-        m->loss[i].row);
-  if (m->gaps)
+                        eo_channel_name(maker->loss[i].channel), DEGREES * maker->loss[i].jump,
+                        (long long)maker->loss[i].row + 1),
+        maker->loss[i].row);
+  if (maker->gaps)
     eo_angles_at_row(
-        m,
-        eo_findings_add(m->findings, EO_FINDING_DROPPED, EO_SEVERITY_REPAIRED, -1, (double)a->dropped,
+        maker,
+        eo_findings_add(maker->findings, EO_FINDING_DROPPED, EO_SEVERITY_REPAIRED, -1, (double)angles->dropped,
                         "About %lld rows are missing from both channels in %lld places, the first before row %lld; "
                         "the angles say for how long, and time was "
                         "set by them.",
-                        (long long)a->dropped, (long long)m->gaps, (long long)m->gap_row + 1),
-        m->gap_row);
-  if (m->spikes)
-    eo_angles_at_row(m,
-                     eo_findings_add(m->findings, EO_FINDING_SPIKE, EO_SEVERITY_REPAIRED, -1, (double)m->spikes,
+                        (long long)angles->dropped, (long long)maker->gaps, (long long)maker->gap_row + 1),
+        maker->gap_row);
+  if (maker->spikes)
+    eo_angles_at_row(maker,
+                     eo_findings_add(maker->findings, EO_FINDING_SPIKE, EO_SEVERITY_REPAIRED, -1, (double)maker->spikes,
                                      "%lld single rows are far off, the first is row %lld; they were left out.",
-                                     (long long)m->spikes, (long long)m->spike_row + 1),
-                     m->spike_row);
-  if (a->slips > 4)
-    eo_findings_add(m->findings, EO_FINDING_SLIP, EO_SEVERITY_REFUSED, -1, a->slips,
-                    "There are %d such jumps altogether.", a->slips);
+                                     (long long)maker->spikes, (long long)maker->spike_row + 1),
+                     maker->spike_row);
+  if (angles->slips > 4)
+    eo_findings_add(maker->findings, EO_FINDING_SLIP, EO_SEVERITY_REFUSED, -1, angles->slips,
+                    "There are %d such jumps altogether.", angles->slips);
 }

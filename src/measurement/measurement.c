@@ -15,51 +15,52 @@ static bool unit_is_open(const struct eo_angles *a, const struct eo_tracks *trac
 }
 
 /* Torque and speed beside the encoders; a speed that cannot be forbids the result. */
-static enum eo_code judge_load(struct eo_measurement *m, const struct eo_recording *recording,
+static enum eo_code judge_load(struct eo_measurement *measurement, const struct eo_recording *recording,
                                const struct eo_tracks *tracks, const struct eo_measurement_settings *settings,
                                struct eo_error *error)
 {
-  const struct eo_part *part = &m->transmission.parts.measured;
+  const struct eo_part *part = &measurement->transmission.parts.measured;
   struct eo_load_known known = {.torque = settings->stated_torque > 0 ? settings->stated_torque : NAN,
                                 .speed = settings->stated_speed,
-                                .measured = m->transmission.speed,
+                                .measured = measurement->transmission.speed,
                                 .expected = {settings->expected_speed[0], settings->expected_speed[1]}};
   for (int i = 0; i < 2; i++)
     known.teeth[i] = settings->transmission.teeth[i];
-  enum eo_code code = eo_load_read(&m->load, recording, tracks, part->from, part->to, error);
+  enum eo_code code = eo_load_read(&measurement->load, recording, tracks, part->from, part->to, error);
   if (!code)
-    eo_load_judge(&m->load, &known, &m->findings);
+    eo_load_judge(&measurement->load, &known, &measurement->findings);
   return code;
 }
 
-enum eo_code eo_measurement_run(struct eo_measurement *m, const struct eo_recording *recording,
+enum eo_code eo_measurement_run(struct eo_measurement *measurement, const struct eo_recording *recording,
                                 const struct eo_tracks *tracks, const struct eo_measurement_settings *settings,
                                 const struct eo_progress *progress, struct eo_error *error)
 {
   struct eo_angles angles = {0};
-  memset(m, 0, sizeof *m);
-  m->load.pinion_torque = NAN;
-  m->rows = eo_recording_rows(recording);
-  m->ratio = NAN;
-  enum eo_code code = eo_angles_make(&angles, recording, tracks, settings->spool_directory, &m->findings, progress,
-                                     error);
-  m->interval = angles.interval;
+  memset(measurement, 0, sizeof *measurement);
+  measurement->load.pinion_torque = NAN;
+  measurement->rows = eo_recording_rows(recording);
+  measurement->ratio = NAN;
+  enum eo_code code = eo_angles_make(&angles, recording, tracks, settings->spool_directory, &measurement->findings,
+                                     progress, error);
+  measurement->interval = angles.interval;
   for (int channel = 0; channel < 2; channel++) {
-    m->raw[channel] = angles.raw[channel];
-    m->ellipse[channel] = angles.ellipse[channel];
+    measurement->raw[channel] = angles.raw[channel];
+    measurement->ellipse[channel] = angles.ellipse[channel];
   }
   if (!code && angles.series && angles.rows >= 64) {
-    m->ratio = angles.ratio;
-    eo_orientation_judge(&angles, settings->transmission.teeth, settings->stated_speed, &m->findings);
+    measurement->ratio = angles.ratio;
+    eo_orientation_judge(&angles, settings->transmission.teeth, settings->stated_speed, &measurement->findings);
   }
-  if (!code && angles.series && eo_findings_worst(&m->findings) != EO_SEVERITY_REFUSED &&
+  if (!code && angles.series && eo_findings_worst(&measurement->findings) != EO_SEVERITY_REFUSED &&
       unit_is_open(&angles, tracks, settings->stated_speed))
-    code = eo_units_judge(&angles, &settings->transmission, &m->findings, error);
-  if (!code && angles.series && eo_findings_worst(&m->findings) != EO_SEVERITY_REFUSED)
-    code = eo_transmission_measure(&m->transmission, &angles, &settings->transmission, &m->findings, progress, error);
-  if (!code && m->transmission.harmonics > 0)
-    code = judge_load(m, recording, tracks, settings, error);
-  m->refused = eo_findings_worst(&m->findings) == EO_SEVERITY_REFUSED;
+    code = eo_units_judge(&angles, &settings->transmission, &measurement->findings, error);
+  if (!code && angles.series && eo_findings_worst(&measurement->findings) != EO_SEVERITY_REFUSED)
+    code = eo_transmission_measure(&measurement->transmission, &angles, &settings->transmission, &measurement->findings,
+                                   progress, error);
+  if (!code && measurement->transmission.harmonics > 0)
+    code = judge_load(measurement, recording, tracks, settings, error);
+  measurement->refused = eo_findings_worst(&measurement->findings) == EO_SEVERITY_REFUSED;
   eo_angles_done(&angles);
   return code;
 }

@@ -34,11 +34,11 @@ static bool matches(const struct eo_angles *a, double ratio, double expected)
   return fabs(ratio / expected - 1) < a->ratio_tolerance;
 }
 
-static void refuse_teeth(const struct eo_angles *a, const int teeth[2], struct eo_findings *findings)
+static void refuse_teeth(const struct eo_angles *angles, const int teeth[2], struct eo_findings *findings)
 {
   int nearest[2];
-  double ratio = fabs(a->ratio);
-  if (eo_orientation_nearest(ratio, a->ratio_tolerance, teeth, nearest))
+  double ratio = fabs(angles->ratio);
+  if (eo_orientation_nearest(ratio, angles->ratio_tolerance, teeth, nearest))
     eo_findings_add(
         findings, EO_FINDING_TEETH, EO_SEVERITY_REFUSED, -1, ratio,
         "The gear turns %.6f times as far as the pinion, which is %d/%d, not the %d/%d = %.6f of the design.", ratio,
@@ -52,75 +52,75 @@ static void refuse_teeth(const struct eo_angles *a, const int teeth[2], struct e
 
 /* One channel in degrees, one in radians: the one that starts again every turn, or the stated speed, tells which is
    right. excess: gear over pinion beyond the ratio of the teeth, 57.3 or its inverse. */
-static void settle_units(struct eo_angles *a, double excess, double stated, struct eo_findings *findings)
+static void settle_units(struct eo_angles *angles, double excess, double stated, struct eo_findings *findings)
 {
   int wrong = -1;
-  double speed = fabs(a->rate[a->from[0]]);
-  if (a->wrapped[0] != a->wrapped[1])
-    wrong = a->wrapped[a->from[0]] ? 1 : 0;
+  double speed = fabs(angles->rate[angles->from[0]]);
+  if (angles->wrapped[0] != angles->wrapped[1])
+    wrong = angles->wrapped[angles->from[0]] ? 1 : 0;
   else if (!isnan(stated))
     wrong = fabs(log(speed / stated)) < 1 ? 1 : 0;
   if (wrong < 0) {
     wrong = 1; /* for the time being: the lines of the spectrum decide about both */
-    a->units_in_doubt = true;
+    angles->units_in_doubt = true;
   }
   double factor = wrong == 1 ? 1 / excess : excess;
-  a->factor[wrong] *= factor;
+  angles->factor[wrong] *= factor;
   eo_findings_add(findings, EO_FINDING_UNITS, EO_SEVERITY_REPAIRED, wrong, excess,
                   "One channel is in degrees and the other in radians: their ratio is off by %.5g. The %s was brought "
                   "to the unit of the %s.",
                   excess, wrong ? "gear" : "pinion", wrong ? "pinion" : "gear");
 }
 
-static bool settle_ratio(struct eo_angles *a, const int teeth[2], double stated, struct eo_findings *findings)
+static bool settle_ratio(struct eo_angles *angles, const int teeth[2], double stated, struct eo_findings *findings)
 {
   static const double unit[3] = {1, 180 / M_PI, M_PI / 180};
-  double expected = (double)teeth[0] / teeth[1], ratio = fabs(a->ratio);
+  double expected = (double)teeth[0] / teeth[1], ratio = fabs(angles->ratio);
   for (int u = 0; u < 3; u++)
     for (int swap = 0; swap < 2; swap++) {
-      if (!matches(a, swap ? 1 / ratio : ratio, expected * unit[u]))
+      if (!matches(angles, swap ? 1 / ratio : ratio, expected * unit[u]))
         continue;
-      a->from[0] = swap;
-      a->from[1] = !swap;
+      angles->from[0] = swap;
+      angles->from[1] = !swap;
       if (swap)
         eo_findings_add(findings, EO_FINDING_SWAPPED, EO_SEVERITY_REPAIRED, -1, ratio,
                         "Pinion and gear are swapped: the second channel turns %.6f times as far as the first, which "
                         "is %d/%d; exchanged.",
                         ratio, teeth[1], teeth[0]);
       if (u > 0)
-        settle_units(a, unit[u], stated, findings);
+        settle_units(angles, unit[u], stated, findings);
       return true;
     }
-  refuse_teeth(a, teeth, findings);
+  refuse_teeth(angles, teeth, findings);
   return false;
 }
 
-static void settle_directions(struct eo_angles *a, struct eo_findings *findings)
+static void settle_directions(struct eo_angles *angles, struct eo_findings *findings)
 {
-  int sign[2] = {a->rate[a->from[0]] < 0 ? -1 : 1, a->rate[a->from[1]] < 0 ? -1 : 1};
-  a->factor[0] *= sign[0];
-  a->factor[1] *= sign[1];
+  int sign[2] = {angles->rate[angles->from[0]] < 0 ? -1 : 1, angles->rate[angles->from[1]] < 0 ? -1 : 1};
+  angles->factor[0] *= sign[0];
+  angles->factor[1] *= sign[1];
   if (sign[0] != sign[1]) {
     int wrong = sign[0] < 0 ? 0 : 1;
     eo_findings_add(
-        findings, EO_FINDING_REVERSED, EO_SEVERITY_REPAIRED, wrong, a->ratio,
+        findings, EO_FINDING_REVERSED, EO_SEVERITY_REPAIRED, wrong, angles->ratio,
         "The %s encoder counts backwards while the other counts forwards (ratio %.6f); its sign was changed.",
-        wrong ? "gear" : "pinion", a->ratio);
+        wrong ? "gear" : "pinion", angles->ratio);
   } else if (sign[0] < 0) {
-    eo_findings_add(findings, EO_FINDING_REVERSED, EO_SEVERITY_NOTE, -1, a->ratio,
+    eo_findings_add(findings, EO_FINDING_REVERSED, EO_SEVERITY_NOTE, -1, angles->ratio,
                     "Both angles fall: the pair runs backwards; both signs were changed.");
   }
 }
 
-static void settle_speed(struct eo_angles *a, double stated, struct eo_findings *findings)
+static void settle_speed(struct eo_angles *angles, double stated, struct eo_findings *findings)
 {
-  double speed = fabs(a->rate[a->from[0]] * a->factor[0]), off = speed / stated;
+  double speed = fabs(angles->rate[angles->from[0]] * angles->factor[0]), off = speed / stated;
   if (isnan(stated) || fabs(off - 1) < 0.05)
     return;
   double factor = fabs(off * DEGREES - 1) < 0.05 ? DEGREES : fabs(off / DEGREES - 1) < 0.05 ? 1 / DEGREES : 1;
   if (factor != 1) {
-    a->factor[0] *= factor;
-    a->factor[1] *= factor;
+    angles->factor[0] *= factor;
+    angles->factor[1] *= factor;
     eo_findings_add(
         findings, EO_FINDING_UNITS, EO_SEVERITY_REPAIRED, -1, off,
         "Both angles are in %s, not in the stated unit: the speed would be %.5g rpm instead of %.5g rpm; read so.",

@@ -41,18 +41,18 @@ struct finder {
 
 typedef void row_function(struct finder *f, int64_t index, const double row[3]);
 
-static enum eo_code each_row(struct finder *f, int64_t first, int64_t last, row_function *function,
+static enum eo_code each_row(struct finder *finder, int64_t first, int64_t last, row_function *function,
                              struct eo_error *error)
 {
   double(*rows)[3] = malloc(sizeof *rows * BLOCK);
   enum eo_code code = rows ? EO_OK : eo_error_memory(error);
   for (int64_t at = first; at <= last && !code; at += BLOCK) {
     int count = last - at + 1 < BLOCK ? (int)(last - at + 1) : BLOCK;
-    code = eo_angles_read(f->angles, at, count, rows[0], error);
-    if (!code && eo_progress_report(f->progress, "speed", (double)at / (double)f->angles->rows))
+    code = eo_angles_read(finder->angles, at, count, rows[0], error);
+    if (!code && eo_progress_report(finder->progress, "speed", (double)at / (double)finder->angles->rows))
       code = eo_error_set(error, EO_ERROR_CANCELLED, "", "Stopped.");
     for (int i = 0; i < count && !code; i++)
-      function(f, at + i, rows[i]);
+      function(finder, at + i, rows[i]);
   }
   free(rows);
   return code;
@@ -64,19 +64,19 @@ static int64_t rows_each(const struct finder *f)
   return each > least ? each : least > 1 ? least : 1;
 }
 
-static void add_stretch(struct finder *f, int64_t index, const double row[3])
+static void add_stretch(struct finder *finder, int64_t index, const double row[3])
 {
-  double time = row[0] - f->origin;
-  bool outside = time < f->choice->from || (f->choice->to > 0 && time > f->choice->to);
-  if (index == 0 && f->choice->from <= 0)
+  double time = row[0] - finder->origin;
+  bool outside = time < finder->choice->from || (finder->choice->to > 0 && time > finder->choice->to);
+  if (index == 0 && finder->choice->from <= 0)
     outside = false;
   if (outside)
     return;
-  if (f->first < 0)
-    f->first = index;
-  f->last = index;
-  if ((index - f->first) % rows_each(f) == 0 && f->stretches < MOST_STRETCHES)
-    f->stretch[f->stretches++] = (struct stretch){index, row[0], row[1]};
+  if (finder->first < 0)
+    finder->first = index;
+  finder->last = index;
+  if ((index - finder->first) % rows_each(finder) == 0 && finder->stretches < MOST_STRETCHES)
+    finder->stretch[finder->stretches++] = (struct stretch){index, row[0], row[1]};
 }
 
 /* The speed of every stretch and the size of the fast ones. */
@@ -107,20 +107,20 @@ static struct eo_part part_between(const struct finder *f, const struct stretch 
 
 /* Runs of stretches that turn one way. Beside a stop or a turn back the stretch at the border moves only in part and is
    left out. */
-static void find_runs(struct finder *f, double fast)
+static void find_runs(struct finder *finder, double fast)
 {
-  struct eo_parts *p = f->parts;
-  int n = f->stretches;
+  struct eo_parts *p = finder->parts;
+  int n = finder->stretches;
   for (int from = 0, to; from < n; from = to) {
-    int way = direction_of(f->speed[from], fast);
-    for (to = from + 1; to < n && direction_of(f->speed[to], fast) == way;)
+    int way = direction_of(finder->speed[from], fast);
+    for (to = from + 1; to < n && direction_of(finder->speed[to], fast) == way;)
       to++;
     int begin = from > 0 ? from + 1 : from, end = to < n ? to - 1 : to;
     if (!way || end <= begin)
       continue;
-    struct eo_part part = part_between(f, &f->stretch[begin], &f->stretch[end]);
+    struct eo_part part = part_between(finder, &finder->stretch[begin], &finder->stretch[end]);
     if (to == n)
-      part.last = f->last;
+      part.last = finder->last;
     if (fabs(part.turns) < LEAST_TURNS && p->count)
       continue;
     if (p->count && fabs(p->part[0].turns) < LEAST_TURNS)
@@ -190,22 +190,22 @@ static void find_steady(const struct finder *f, int *from, int *to)
 
 static const double RPM = 30 / M_PI;
 
-static void say_parts(const struct finder *f)
+static void say_parts(const struct finder *finder)
 {
-  const struct eo_parts *p = f->parts;
+  const struct eo_parts *p = finder->parts;
   const struct eo_part *used = &p->part[p->used];
-  double all = f->stretch[f->stretches].time - f->stretch[0].time;
+  double all = finder->stretch[finder->stretches].time - finder->stretch[0].time;
   int kept = p->count < EO_PARTS ? p->count : EO_PARTS;
-  if (f->choice->part || (p->count == 1 && used->first == f->first && used->last == f->last))
+  if (finder->choice->part || (p->count == 1 && used->first == finder->first && used->last == finder->last))
     return;
   if (kept == 1)
-    eo_findings_add(f->findings, EO_FINDING_UNSTEADY, EO_SEVERITY_REPAIRED, -1, used->from,
+    eo_findings_add(finder->findings, EO_FINDING_UNSTEADY, EO_SEVERITY_REPAIRED, -1, used->from,
                     "The shafts stand still or turn back in %.3g s of %.4g s; what is measured goes from %.4g s to "
                     "%.4g s.",
                     all - (used->to - used->from), all, used->from, used->to)
         ->row = used->first;
   else
-    eo_findings_add(f->findings, EO_FINDING_UNSTEADY, EO_SEVERITY_WARNING, -1, p->count,
+    eo_findings_add(finder->findings, EO_FINDING_UNSTEADY, EO_SEVERITY_WARNING, -1, p->count,
                     "The shafts stop or turn back between %d parts; part %d with the most turns, %.4g s to %.4g s, is "
                     "measured. Choose another one by its number.",
                     p->count, p->used + 1, used->from, used->to)
@@ -224,23 +224,23 @@ static void say_steady(const struct finder *f, const struct eo_part *whole)
 }
 
 /* Run-up and run-down beside a long steady state are left out; the caller may keep them. */
-static enum eo_code settle_part(struct finder *f, struct eo_error *error)
+static enum eo_code settle_part(struct finder *finder, struct eo_error *error)
 {
-  struct eo_parts *p = f->parts;
+  struct eo_parts *p = finder->parts;
   struct eo_part *whole = &p->part[p->used];
   int from, to;
-  enum eo_code code = find_turns(f, whole, error);
+  enum eo_code code = find_turns(finder, whole, error);
   p->measured = *whole;
-  if (code || f->choice->whole || whole->speed_high < RUN_UP * whole->speed_low)
+  if (code || finder->choice->whole || whole->speed_high < RUN_UP * whole->speed_low)
     return code;
-  find_steady(f, &from, &to);
-  if ((to - from) * f->turns_each < fmax(MOSTLY * fabs(whole->turns), LEAST_TURNS))
+  find_steady(finder, &from, &to);
+  if ((to - from) * finder->turns_each < fmax(MOSTLY * fabs(whole->turns), LEAST_TURNS))
     return EO_OK;
-  p->measured = part_between(f, &f->turn[from], &f->turn[to]);
-  if (to == f->turns)
+  p->measured = part_between(finder, &finder->turn[from], &finder->turn[to]);
+  if (to == finder->turns)
     p->measured.last = whole->last;
-  find_range(f, from, to, &p->measured);
-  say_steady(f, whole);
+  find_range(finder, from, to, &p->measured);
+  say_steady(finder, whole);
   return EO_OK;
 }
 
@@ -249,48 +249,48 @@ static void refuse(const struct finder *f, const char *why, double value)
   eo_findings_add(f->findings, EO_FINDING_TOO_SHORT, EO_SEVERITY_REFUSED, -1, value, "%s", why);
 }
 
-static enum eo_code choose(struct finder *f, struct eo_error *error)
+static enum eo_code choose(struct finder *finder, struct eo_error *error)
 {
-  struct eo_parts *p = f->parts;
+  struct eo_parts *p = finder->parts;
   int kept = p->count < EO_PARTS ? p->count : EO_PARTS;
   if (!kept) {
-    refuse(f, "The pinion does not turn far enough for a measurement.", 0);
+    refuse(finder, "The pinion does not turn far enough for a measurement.", 0);
     return EO_OK;
   }
-  if (f->choice->part > kept) {
-    eo_findings_add(f->findings, EO_FINDING_TOO_SHORT, EO_SEVERITY_REFUSED, -1, f->choice->part,
-                    "There is no part %d: the shafts turn without a stop in %d part%s.", f->choice->part, kept,
+  if (finder->choice->part > kept) {
+    eo_findings_add(finder->findings, EO_FINDING_TOO_SHORT, EO_SEVERITY_REFUSED, -1, finder->choice->part,
+                    "There is no part %d: the shafts turn without a stop in %d part%s.", finder->choice->part, kept,
                     kept == 1 ? "" : "s");
     return EO_OK;
   }
   enum eo_code code = EO_OK;
-  p->used = f->choice->part > 0 ? f->choice->part - 1 : 0;
-  for (int i = 0; i < kept && !f->choice->part; i++)
+  p->used = finder->choice->part > 0 ? finder->choice->part - 1 : 0;
+  for (int i = 0; i < kept && !finder->choice->part; i++)
     if (fabs(p->part[i].turns) > LONGER * fabs(p->part[p->used].turns))
       p->used = i;
   for (int i = 0; i < kept && !code; i++)
     if (i != p->used)
-      code = find_turns(f, &p->part[i], error);
-  say_parts(f);
-  return code ? code : settle_part(f, error);
+      code = find_turns(finder, &p->part[i], error);
+  say_parts(finder);
+  return code ? code : settle_part(finder, error);
 }
 
-static enum eo_code find(struct finder *f, struct eo_error *error)
+static enum eo_code find(struct finder *finder, struct eo_error *error)
 {
   double first[3];
-  enum eo_code code = eo_angles_read(f->angles, 0, 1, first, error);
-  f->origin = first[0];
-  f->first = f->last = -1;
+  enum eo_code code = eo_angles_read(finder->angles, 0, 1, first, error);
+  finder->origin = first[0];
+  finder->first = finder->last = -1;
   if (!code)
-    code = each_row(f, 0, f->angles->rows - 1, add_stretch, error);
+    code = each_row(finder, 0, finder->angles->rows - 1, add_stretch, error);
   if (code)
     return code;
-  if (f->stretches < 2 || f->last - f->first < LEAST_ROWS) {
-    refuse(f, "Hardly a row of the recording lies in the times asked for.", (double)f->stretches);
+  if (finder->stretches < 2 || finder->last - finder->first < LEAST_ROWS) {
+    refuse(finder, "Hardly a row of the recording lies in the times asked for.", (double)finder->stretches);
     return EO_OK;
   }
-  find_runs(f, find_speeds(f));
-  return choose(f, error);
+  find_runs(finder, find_speeds(finder));
+  return choose(finder, error);
 }
 
 enum eo_code eo_parts_find(struct eo_parts *parts, const struct eo_angles *angles, const struct eo_part_choice *choice,

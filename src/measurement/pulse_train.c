@@ -60,12 +60,12 @@ static void note_gap(struct maker *m, int size, int64_t row)
 }
 
 /* One pulse: time[0] is judged, time[1..ahead] are those after it. */
-static enum eo_code take(struct maker *m, const double *time, int ahead, int64_t row, struct eo_error *error)
+static enum eo_code take(struct maker *maker, const double *time, int ahead, int64_t row, struct eo_error *error)
 {
-  struct eo_pulse_train *t = m->train;
-  double distance = time[0] - m->before, lines = 1;
-  if (m->seen > 0) {
-    double usual = usual_distance(m, time, ahead), share = distance / usual;
+  struct eo_pulse_train *t = maker->train;
+  double distance = time[0] - maker->before, lines = 1;
+  if (maker->seen > 0) {
+    double usual = usual_distance(maker, time, ahead), share = distance / usual;
     if (share < DOUBLE) {
       if (!t->doubled++)
         t->doubled_at = row;
@@ -78,29 +78,29 @@ static enum eo_code take(struct maker *m, const double *time, int ahead, int64_t
       t->unclear = true;
     }
     if (lines > 1)
-      note_gap(m, (int)lines - 1, row);
-    m->usual[(m->seen - 1) % SIDE] = distance / lines;
-    m->line += lines;
+      note_gap(maker, (int)lines - 1, row);
+    maker->usual[(maker->seen - 1) % SIDE] = distance / lines;
+    maker->line += lines;
   }
-  m->before = time[0];
-  m->seen++;
-  m->out[m->held][0] = time[0];
-  m->out[m->held++][1] = m->line;
-  return m->held == BLOCK ? flush(m, error) : EO_OK;
+  maker->before = time[0];
+  maker->seen++;
+  maker->out[maker->held][0] = time[0];
+  maker->out[maker->held++][1] = maker->line;
+  return maker->held == BLOCK ? flush(maker, error) : EO_OK;
 }
 
 /* Gaps of one size, each a turn after the one before: teeth that are missing of the wheel. Lines per turn may have been
    stated with them or without. */
-static void find_wheel(struct maker *m, double stated)
+static void find_wheel(struct maker *maker, double stated)
 {
-  struct eo_pulse_train *t = m->train;
-  int gaps = m->gaps < MOST_GAPS ? (int)m->gaps : MOST_GAPS, size = m->gap_size[0];
+  struct eo_pulse_train *t = maker->train;
+  int gaps = maker->gaps < MOST_GAPS ? (int)maker->gaps : MOST_GAPS, size = maker->gap_size[0];
   t->lines = stated;
   for (int with = 0; with < 2 && gaps >= 2; with++) {
     double turn = stated + (with ? size : 0);
     bool each = true;
     for (int i = 1; i < gaps; i++)
-      each = each && m->gap_size[i] == size && fabs(m->gap_line[i] - m->gap_line[i - 1] - turn) < 0.5;
+      each = each && maker->gap_size[i] == size && fabs(maker->gap_line[i] - maker->gap_line[i - 1] - turn) < 0.5;
     if (!each)
       continue;
     t->lines = turn;
@@ -110,24 +110,24 @@ static void find_wheel(struct maker *m, double stated)
   }
 }
 
-static enum eo_code read_all(struct maker *m, int64_t length, struct eo_error *error)
+static enum eo_code read_all(struct maker *maker, int64_t length, struct eo_error *error)
 {
-  int columns = eo_recording_columns(m->recording), ahead = 0;
+  int columns = eo_recording_columns(maker->recording), ahead = 0;
   double time[SIDE + 1], *block = malloc(sizeof *block * BLOCK * (size_t)columns);
   int64_t row[SIDE + 1];
   enum eo_code code = block ? EO_OK : eo_error_memory(error);
   for (int64_t first = 0; first < length && !code; first += BLOCK) {
     int count = length - first < BLOCK ? (int)(length - first) : BLOCK;
-    code = eo_recording_read(m->recording, first, count, block, error);
+    code = eo_recording_read(maker->recording, first, count, block, error);
     for (int i = 0; i < count && !code; i++) {
-      double value = block[(size_t)i * (size_t)columns + (size_t)m->column] * m->scale;
+      double value = block[(size_t)i * (size_t)columns + (size_t)maker->column] * maker->scale;
       if (!isfinite(value))
         continue;
       row[ahead] = first + i;
       time[ahead++] = value;
       if (ahead <= SIDE)
         continue;
-      code = take(m, time, SIDE, row[0], error);
+      code = take(maker, time, SIDE, row[0], error);
       for (int k = 1; k < ahead; k++) {
         time[k - 1] = time[k];
         row[k - 1] = row[k];
@@ -136,27 +136,27 @@ static enum eo_code read_all(struct maker *m, int64_t length, struct eo_error *e
     }
   }
   for (int k = 0; k < ahead && !code; k++)
-    code = take(m, time + k, ahead - k - 1, row[k], error);
+    code = take(maker, time + k, ahead - k - 1, row[k], error);
   free(block);
-  return code ? code : flush(m, error);
+  return code ? code : flush(maker, error);
 }
 
 enum eo_code eo_pulse_train_make(struct eo_pulse_train *train, const struct eo_recording *recording,
                                  const struct eo_tracks *tracks, int channel, const char *spool_directory,
                                  struct eo_error *error)
 {
-  struct maker *m = calloc(1, sizeof *m);
+  struct maker *maker = calloc(1, sizeof *maker);
   *train = (struct eo_pulse_train){.missed_at = -1, .doubled_at = -1, .unclear_at = -1};
-  enum eo_code code = m ? eo_recording_new(&train->pulses, 2, spool_directory, error) : eo_error_memory(error);
+  enum eo_code code = maker ? eo_recording_new(&train->pulses, 2, spool_directory, error) : eo_error_memory(error);
   if (!code) {
-    m->recording = recording;
-    m->train = train;
-    m->column = tracks->channel[channel].column[0];
-    m->scale = tracks->time_scale;
-    code = read_all(m, eo_recording_length(recording, m->column), error);
-    find_wheel(m, tracks->channel[channel].lines);
+    maker->recording = recording;
+    maker->train = train;
+    maker->column = tracks->channel[channel].column[0];
+    maker->scale = tracks->time_scale;
+    code = read_all(maker, eo_recording_length(recording, maker->column), error);
+    find_wheel(maker, tracks->channel[channel].lines);
   }
-  free(m);
+  free(maker);
   return code;
 }
 

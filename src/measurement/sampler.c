@@ -31,46 +31,50 @@ static double raw_angle(const struct eo_sampler *s, int channel, const double *r
 }
 
 /* The step is the one nearest to the usual one; whole turns are counted so that rounding does not grow. */
-static double unwrap(struct eo_sampler *s, int channel, double angle)
+static double unwrap(struct eo_sampler *sampler, int channel, double angle)
 {
-  double period = s->period[channel];
-  if (s->started && period > 0) {
-    double step = angle - s->raw[channel], turns = round((s->step[channel] - step) / period);
-    s->turns[channel] += (int64_t)turns;
+  double period = sampler->period[channel];
+  if (sampler->started && period > 0) {
+    double step = angle - sampler->raw[channel], turns = round((sampler->step[channel] - step) / period);
+    sampler->turns[channel] += (int64_t)turns;
     step += turns * period;
     if (fabs(step) < 0.45 * period)
-      s->step[channel] += 0.02 * (step - s->step[channel]);
+      sampler->step[channel] += 0.02 * (step - sampler->step[channel]);
   }
-  s->raw[channel] = angle;
-  return angle + (double)s->turns[channel] * period;
+  sampler->raw[channel] = angle;
+  return angle + (double)sampler->turns[channel] * period;
 }
 
-enum eo_code eo_sampler_next(struct eo_sampler *s, struct eo_sample *sample, int *count, struct eo_error *error)
+enum eo_code eo_sampler_next(struct eo_sampler *sampler, struct eo_sample *sample, int *count, struct eo_error *error)
 {
-  const struct eo_tracks *t = s->tracks;
-  if (s->pulses)
-    return eo_pulses_next(s->pulses, sample, count, error);
+  const struct eo_tracks *tracks = sampler->tracks;
+  if (sampler->pulses)
+    return eo_pulses_next(sampler->pulses, sample, count, error);
   *count = 0;
-  while (!*count && s->next < eo_recording_rows(s->recording)) {
-    int64_t left = eo_recording_rows(s->recording) - s->next;
-    int columns = eo_recording_columns(s->recording), rows = left < EO_SAMPLER_BLOCK ? (int)left : EO_SAMPLER_BLOCK;
-    enum eo_code code = eo_recording_read(s->recording, s->next, rows, s->rows, error);
+  while (!*count && sampler->next < eo_recording_rows(sampler->recording)) {
+    int64_t left = eo_recording_rows(sampler->recording) - sampler->next;
+    int columns = eo_recording_columns(sampler->recording),
+        rows = left < EO_SAMPLER_BLOCK ? (int)left : EO_SAMPLER_BLOCK;
+    enum eo_code code = eo_recording_read(sampler->recording, sampler->next, rows, sampler->rows, error);
     if (code)
       return code;
     for (int i = 0; i < rows; i++) {
-      const double *row = s->rows + (size_t)i * (size_t)columns;
-      double time = s->count_rows ? s->interval * (double)(s->next + i) : row[t->time_column] * t->time_scale;
-      double angle[2] = {raw_angle(s, 0, row), raw_angle(s, 1, row)};
+      const double *row = sampler->rows + (size_t)i * (size_t)columns;
+      double time = sampler->count_rows ? sampler->interval * (double)(sampler->next + i)
+                                        : row[tracks->time_column] * tracks->time_scale;
+      double angle[2] = {raw_angle(sampler, 0, row), raw_angle(sampler, 1, row)};
       bool usable = isfinite(time) && isfinite(angle[0]) && isfinite(angle[1]);
-      bool repeated = s->started && time == s->time && angle[0] == s->raw[0] && angle[1] == s->raw[1];
-      if (!usable || repeated || s->next + i < s->begin)
+      bool repeated = sampler->started && time == sampler->time && angle[0] == sampler->raw[0] &&
+                      angle[1] == sampler->raw[1];
+      if (!usable || repeated || sampler->next + i < sampler->begin)
         continue;
-      sample[*count] = (struct eo_sample){time, {unwrap(s, 0, angle[0]), unwrap(s, 1, angle[1])}, s->next + i};
-      s->time = time;
-      s->started = true;
+      sample[*count] =
+          (struct eo_sample){time, {unwrap(sampler, 0, angle[0]), unwrap(sampler, 1, angle[1])}, sampler->next + i};
+      sampler->time = time;
+      sampler->started = true;
       ++*count;
     }
-    s->next += rows;
+    sampler->next += rows;
   }
   return EO_OK;
 }

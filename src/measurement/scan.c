@@ -48,16 +48,17 @@ static void learn_column(struct eo_scan_column *c, const double *rows, int count
     c->quantum = 0;
 }
 
-static double typical_interval(const struct eo_tracks *t, const double *rows, int count, int columns, double *scratch)
+static double typical_interval(const struct eo_tracks *tracks, const double *rows, int count, int columns,
+                               double *scratch)
 {
   int steps = 0;
-  if (t->time_column < 0)
-    return t->interval;
+  if (tracks->time_column < 0)
+    return tracks->interval;
   for (int i = 1; i < count; i++) {
     if (i % CHUNK == 0)
       continue;
-    const double *row = rows + (size_t)i * (size_t)columns + t->time_column;
-    double step = (row[0] - row[-columns]) * t->time_scale;
+    const double *row = rows + (size_t)i * (size_t)columns + tracks->time_column;
+    double step = (row[0] - row[-columns]) * tracks->time_scale;
     if (step > 0)
       scratch[steps++] = step;
   }
@@ -73,85 +74,86 @@ static bool usable(const struct eo_tracks *t, const double *row)
   return good;
 }
 
-static bool add_value(struct eo_scan_column *c, double value, int64_t at, int64_t used)
+static bool add_value(struct eo_scan_column *column, double value, int64_t at, int64_t used)
 {
-  double step = used ? value - c->before : 0;
-  if (!used || value < c->low) {
-    c->low = value;
-    c->at_low = 0;
+  double step = used ? value - column->before : 0;
+  if (!used || value < column->low) {
+    column->low = value;
+    column->at_low = 0;
   }
-  if (!used || value > c->high) {
-    c->high = value;
-    c->at_high = 0;
+  if (!used || value > column->high) {
+    column->high = value;
+    column->at_high = 0;
   }
-  c->at_low += value == c->low;
-  c->at_high += value == c->high;
-  c->run = used && step == 0 ? c->run + 1 : 1;
-  c->travel = c->run > 1 ? c->travel : 0;
-  if (used && fabs(step) > 10 * c->typical && c->typical > 0) {
-    if (c->jumps < EO_SCAN_JUMPS)
-      c->jump[c->jumps] = fabs(step) + c->typical;
-    c->jumps++;
-    c->falls += step < 0;
+  column->at_low += value == column->low;
+  column->at_high += value == column->high;
+  column->run = used && step == 0 ? column->run + 1 : 1;
+  column->travel = column->run > 1 ? column->travel : 0;
+  if (used && fabs(step) > 10 * column->typical && column->typical > 0) {
+    if (column->jumps < EO_SCAN_JUMPS)
+      column->jump[column->jumps] = fabs(step) + column->typical;
+    column->jumps++;
+    column->falls += step < 0;
   }
   for (int below = 0; below < 2 && used; below++) {
     double size = below ? step : -step, from_zero = below ? -value : value;
-    if (c->landing[below] < 0 && size > LANDING * c->typical && from_zero >= 0 && from_zero <= NEAR_ZERO * c->typical) {
-      c->landing[below] = at;
-      c->landed[below] = size;
+    if (column->landing[below] < 0 && size > LANDING * column->typical && from_zero >= 0 &&
+        from_zero <= NEAR_ZERO * column->typical) {
+      column->landing[below] = at;
+      column->landed[below] = size;
     }
   }
-  c->before = value;
+  column->before = value;
   return step == 0;
 }
 
 /* Runs of equal values count where the other channel goes on at no less than half its usual pace: a rig may rest. */
-static void note_runs(struct eo_scan *s, const struct eo_tracks *t, const double step[2], int64_t at)
+static void note_runs(struct eo_scan *scan, const struct eo_tracks *tracks, const double step[2], int64_t at)
 {
   for (int member = 0; member < 2; member++)
-    for (int k = 0; k < eo_track_columns(&t->channel[member]); k++) {
-      struct eo_scan_column *c = &s->column[member][k];
-      const struct eo_scan_column *other = &s->column[!member][0];
+    for (int k = 0; k < eo_track_columns(&tracks->channel[member]); k++) {
+      struct eo_scan_column *column = &scan->column[member][k];
+      const struct eo_scan_column *other = &scan->column[!member][0];
       double steps = other->typical > 0 ? fabs(step[!member]) / other->typical : 0;
-      if (c->run > 1)
-        c->travel += steps < 10 ? steps : 1;
-      if (c->run > c->longest && 2 * c->travel >= (double)c->run) {
-        c->longest = c->run;
-        c->longest_row = at - c->run + 1;
+      if (column->run > 1)
+        column->travel += steps < 10 ? steps : 1;
+      if (column->run > column->longest && 2 * column->travel >= (double)column->run) {
+        column->longest = column->run;
+        column->longest_row = at - column->run + 1;
       }
     }
 }
 
-static void add_row(struct eo_scan *s, const struct eo_tracks *t, const double *row, int64_t at)
+static void add_row(struct eo_scan *scan, const struct eo_tracks *tracks, const double *row, int64_t at)
 {
-  if (!usable(t, row)) {
-    if (!s->unusable++)
-      s->unusable_row = at;
+  if (!usable(tracks, row)) {
+    if (!scan->unusable++)
+      scan->unusable_row = at;
     return;
   }
-  double time = t->time_column < 0 ? t->interval * (double)at : row[t->time_column] * t->time_scale;
-  double before = s->column[0][0].before;
-  bool same = s->used > 0;
+  double time = tracks->time_column < 0 ? tracks->interval * (double)at : row[tracks->time_column] * tracks->time_scale;
+  double before = scan->column[0][0].before;
+  bool same = scan->used > 0;
   double step[2];
   for (int member = 0; member < 2; member++)
-    step[member] = s->used ? row[t->channel[member].column[0]] - s->column[member][0].before : 0;
+    step[member] = scan->used ? row[tracks->channel[member].column[0]] - scan->column[member][0].before : 0;
   for (int member = 0; member < 2; member++)
-    for (int k = 0; k < eo_track_columns(&t->channel[member]); k++)
-      same = add_value(&s->column[member][k], row[t->channel[member].column[k]], at, s->used) && same;
-  note_runs(s, t, step, at);
-  if (s->used && time <= s->time_last) {
-    double pace = fabs(row[t->channel[0].column[0]] - before), usual = s->column[0][0].typical;
-    if (s->backward + s->standing == 0)
-      s->time_row = at;
-    s->backward += time < s->time_last;
-    s->standing += time == s->time_last;
-    s->duplicate += time == s->time_last && same;
-    s->steady += pace > 0.5 * usual && pace < 1.5 * usual;
+    for (int k = 0; k < eo_track_columns(&tracks->channel[member]); k++)
+      same = add_value(&scan->column[member][k], row[tracks->channel[member].column[k]], at, scan->used) && same;
+  note_runs(scan, tracks, step, at);
+  if (scan->used && time <= scan->time_last) {
+    double pace = fabs(row[tracks->channel[0].column[0]] - before), usual = scan->column[0][0].typical;
+    if (scan->backward + scan->standing == 0)
+      scan->time_row = at;
+    scan->backward += time < scan->time_last;
+    scan->standing += time == scan->time_last;
+    scan->duplicate += time == scan->time_last && same;
+    scan->steady += pace > 0.5 * usual && pace < 1.5 * usual;
   }
-  s->time_last = time;
-  if (!s->used)
-    s->time_first = time;
-  s->used++;
+  scan->time_last = time;
+  if (!scan->used)
+    scan->time_first = time;
+  scan->used++;
 }
 
 /* rows[BLOCK][columns] from chunks spread over the recording: its start alone may be a rest. */
@@ -187,7 +189,7 @@ static enum eo_code learn(struct eo_scan *s, const struct eo_recording *recordin
   return code;
 }
 
-enum eo_code eo_scan_run(struct eo_scan *s, const struct eo_recording *recording, const struct eo_tracks *tracks,
+enum eo_code eo_scan_run(struct eo_scan *scan, const struct eo_recording *recording, const struct eo_tracks *tracks,
                          const struct eo_progress *progress, struct eo_error *error)
 {
   int columns = eo_recording_columns(recording);
@@ -195,40 +197,40 @@ enum eo_code eo_scan_run(struct eo_scan *s, const struct eo_recording *recording
   if (!rows)
     return eo_error_memory(error);
   double *scratch = rows + (size_t)BLOCK * (size_t)columns;
-  memset(s, 0, sizeof *s);
-  s->rows = eo_recording_rows(recording);
+  memset(scan, 0, sizeof *scan);
+  scan->rows = eo_recording_rows(recording);
   for (int i = 0; i < 4; i++)
-    s->column[i / 2][i % 2].landing[0] = s->column[i / 2][i % 2].landing[1] = -1;
-  enum eo_code code = learn(s, recording, tracks, rows, scratch, error);
-  for (int64_t first = 0; first < s->rows && !code; first += BLOCK) {
-    int count = s->rows - first < BLOCK ? (int)(s->rows - first) : BLOCK;
-    if (eo_progress_report(progress, "first look", (double)first / (double)s->rows)) {
+    scan->column[i / 2][i % 2].landing[0] = scan->column[i / 2][i % 2].landing[1] = -1;
+  enum eo_code code = learn(scan, recording, tracks, rows, scratch, error);
+  for (int64_t first = 0; first < scan->rows && !code; first += BLOCK) {
+    int count = scan->rows - first < BLOCK ? (int)(scan->rows - first) : BLOCK;
+    if (eo_progress_report(progress, "first look", (double)first / (double)scan->rows)) {
       code = eo_error_set(error, EO_ERROR_CANCELLED, "", "Stopped.");
       break;
     }
     code = eo_recording_read(recording, first, count, rows, error);
     for (int i = 0; i < count && !code; i++)
-      add_row(s, tracks, rows + (size_t)i * (size_t)columns, first + i);
+      add_row(scan, tracks, rows + (size_t)i * (size_t)columns, first + i);
   }
   free(rows);
   return code;
 }
 
-double eo_scan_period(const struct eo_scan_column *c, double turn)
+double eo_scan_period(const struct eo_scan_column *column, double turn)
 {
-  int kept = c->jumps < EO_SCAN_JUMPS ? c->jumps : EO_SCAN_JUMPS, wide = 0, alike = 0;
-  double range = c->high - c->low, *sorted = malloc(sizeof *sorted * (size_t)(kept + 1)), period;
+  int kept = column->jumps < EO_SCAN_JUMPS ? column->jumps : EO_SCAN_JUMPS, wide = 0, alike = 0;
+  double range = column->high - column->low, *sorted = malloc(sizeof *sorted * (size_t)(kept + 1)), period;
   if (!sorted)
     return NAN;
   for (int i = 0; i < kept; i++)
-    if (c->jump[i] > 0.5 * range)
-      sorted[wide++] = c->jump[i];
+    if (column->jump[i] > 0.5 * range)
+      sorted[wide++] = column->jump[i];
   period = eo_scan_quantile(sorted, wide, 0.5);
   if (wide == 2 && turn > 0 && fabs(sorted[1] / turn - 1) < 0.05)
     period = sorted[1];
   for (int i = 0; i < wide; i++)
     alike += fabs(sorted[i] / period - 1) < 0.1;
-  bool first_differs = kept > 1 && alike == wide - 1 && fabs(c->jump[0] / period - 1) >= 0.1;
+  bool first_differs = kept > 1 && alike == wide - 1 && fabs(column->jump[0] / period - 1) >= 0.1;
   free(sorted);
   return wide && (alike >= 0.8 * wide || first_differs) && range < 1.05 * period ? period : NAN;
 }

@@ -34,23 +34,23 @@ static int power_of_two(double least)
   return n;
 }
 
-enum eo_code eo_synchronous_new(struct eo_synchronous **synchronous, const struct eo_transmission *r,
+enum eo_code eo_synchronous_new(struct eo_synchronous **synchronous, const struct eo_transmission *transmission,
                                 const int teeth[2], double from, double turns, struct eo_error *error)
 {
   struct eo_synchronous *s = calloc(1, sizeof *s);
   if (!s)
     return eo_error_memory(error);
-  double per_turn = (double)r->rows / turns;
-  int whole = turns >= r->hunting ? r->hunting : (int)(turns + 1e-9);
-  while (whole > 0 && turns >= r->hunting && whole + r->hunting <= turns + 1e-9 &&
-         (whole + r->hunting) * per_turn < 0.5 * MOST_SAMPLES)
-    whole += r->hunting;
+  double per_turn = (double)transmission->rows / turns;
+  int whole = turns >= transmission->hunting ? transmission->hunting : (int)(turns + 1e-9);
+  while (whole > 0 && turns >= transmission->hunting && whole + transmission->hunting <= turns + 1e-9 &&
+         (whole + transmission->hunting) * per_turn < 0.5 * MOST_SAMPLES)
+    whole += transmission->hunting;
   s->teeth[0] = teeth[0];
   s->teeth[1] = teeth[1];
   s->from = from;
   s->turns = whole > 0 ? whole : 1;
-  s->samples = power_of_two(fmax(per_turn, 2.2 * (r->harmonics + 1) * teeth[0]) * s->turns);
-  s->rows_per_level = (int64_t)fmax(fmax(16, 2 * per_turn / teeth[0]), (double)r->rows / MOST_LEVELS + 1);
+  s->samples = power_of_two(fmax(per_turn, 2.2 * (transmission->harmonics + 1) * teeth[0]) * s->turns);
+  s->rows_per_level = (int64_t)fmax(fmax(16, 2 * per_turn / teeth[0]), (double)transmission->rows / MOST_LEVELS + 1);
   s->grid = calloc((size_t)s->samples, sizeof *s->grid);
   if (!s->grid) {
     free(s);
@@ -117,21 +117,22 @@ static void average(int bins, const double *sum, const int64_t *count, double *m
 }
 
 /* The lines of interpolated residual and exact mesh orders. */
-static enum eo_code make_spectrum(struct eo_synchronous *s, struct eo_transmission *r, struct eo_error *error)
+static enum eo_code make_spectrum(struct eo_synchronous *s, struct eo_transmission *transmission,
+                                  struct eo_error *error)
 {
-  int lines = s->turns * (r->harmonics + 1) * s->teeth[EO_PINION] + 1;
+  int lines = s->turns * (transmission->harmonics + 1) * s->teeth[EO_PINION] + 1;
   if (lines > s->samples / 2)
     lines = s->samples / 2;
-  r->spectrum = malloc(sizeof *r->spectrum * (size_t)lines);
-  if (!r->spectrum)
+  transmission->spectrum = malloc(sizeof *transmission->spectrum * (size_t)lines);
+  if (!transmission->spectrum)
     return eo_error_memory(error);
   for (int i = 0; i < s->samples; i++)
-    s->grid[i] += eo_transmission_mesh(r, grid_angle(s, i) * s->teeth[EO_PINION] / (2 * M_PI));
+    s->grid[i] += eo_transmission_mesh(transmission, grid_angle(s, i) * s->teeth[EO_PINION] / (2 * M_PI));
   eo_fft_forward(s->samples, s->grid);
-  r->spectrum_turns = s->turns;
-  r->spectrum_lines = lines;
+  transmission->spectrum_turns = s->turns;
+  transmission->spectrum_lines = lines;
   for (int k = 0; k < lines; k++)
-    r->spectrum[k] = (float)(cabs(s->grid[k]) * (k ? 2.0 : 1.0) / s->samples);
+    transmission->spectrum[k] = (float)(cabs(s->grid[k]) * (k ? 2.0 : 1.0) / s->samples);
   return EO_OK;
 }
 
@@ -141,19 +142,19 @@ static double squared_acceleration(const struct eo_transmission *r, int line)
   return pow(order * r->speed, 4) * r->spectrum[line] * r->spectrum[line] / 2;
 }
 
-static void read_spectrum(const struct eo_synchronous *s, struct eo_transmission *r)
+static void read_spectrum(const struct eo_synchronous *s, struct eo_transmission *transmission)
 {
   double lines = 0, band = 0;
-  for (int h = 1; h <= r->harmonics; h++) {
+  for (int h = 1; h <= transmission->harmonics; h++) {
     int centre = h * s->teeth[EO_PINION] * s->turns, width = (int)(fmin(BAND, 0.49 * s->teeth[EO_PINION]) * s->turns);
     for (int k = centre - width; k <= centre + width; k++)
-      if (k > 0 && k < r->spectrum_lines)
-        band += squared_acceleration(r, k);
-    if (centre < r->spectrum_lines)
-      lines += squared_acceleration(r, centre);
+      if (k > 0 && k < transmission->spectrum_lines)
+        band += squared_acceleration(transmission, k);
+    if (centre < transmission->spectrum_lines)
+      lines += squared_acceleration(transmission, centre);
   }
-  r->rms_spectrum = sqrt(lines);
-  r->rms_band = sqrt(band);
+  transmission->rms_spectrum = sqrt(lines);
+  transmission->rms_band = sqrt(band);
 }
 
 static int ascending(const void *a, const void *b)
@@ -163,7 +164,8 @@ static int ascending(const void *a, const void *b)
 }
 
 /* A change of level between two pairs of neighbouring means that stands out of all others. */
-static enum eo_code find_step(const struct eo_synchronous *s, struct eo_transmission *r, struct eo_error *error)
+static enum eo_code find_step(const struct eo_synchronous *s, struct eo_transmission *transmission,
+                              struct eo_error *error)
 {
   int n = s->levels - 3, at = 0;
   if (n < 16)
@@ -181,23 +183,24 @@ static enum eo_code find_step(const struct eo_synchronous *s, struct eo_transmis
   }
   qsort(size, (size_t)n, sizeof *size, ascending);
   if (fabs(largest) > STEP_LIMIT * 1.4826 * size[n / 2] && fabs(largest) > 1e-7) {
-    r->step = largest;
-    r->step_row = s->level_row[at + 1];
+    transmission->step = largest;
+    transmission->step_row = s->level_row[at + 1];
   }
   free(size);
   return EO_OK;
 }
 
-enum eo_code eo_synchronous_finish(struct eo_synchronous *s, struct eo_transmission *r, struct eo_error *error)
+enum eo_code eo_synchronous_finish(struct eo_synchronous *s, struct eo_transmission *transmission,
+                                   struct eo_error *error)
 {
-  average(EO_CYCLE_BINS, s->cycle, s->in_cycle, r->cycle);
+  average(EO_CYCLE_BINS, s->cycle, s->in_cycle, transmission->cycle);
   for (int member = 0; member < 2; member++)
-    average(EO_TURN_BINS, s->turn[member], s->in_turn[member], r->turn[member]);
+    average(EO_TURN_BINS, s->turn[member], s->in_turn[member], transmission->turn[member]);
   for (; s->filled < s->samples; s->filled++)
     s->grid[s->filled] = s->residual;
-  enum eo_code code = make_spectrum(s, r, error);
+  enum eo_code code = make_spectrum(s, transmission, error);
   if (code)
     return code;
-  read_spectrum(s, r);
-  return find_step(s, r, error);
+  read_spectrum(s, transmission);
+  return find_step(s, transmission, error);
 }

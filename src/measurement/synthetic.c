@@ -27,19 +27,20 @@ static bool own_clock(const struct eo_synthetic *s)
   return s->gear_rate > 0 || s->gear_delay != 0;
 }
 
-static int list_columns(const struct eo_synthetic *s, struct column list[EO_SYNTHETIC_COLUMNS])
+static int list_columns(const struct eo_synthetic *synthetic, struct column list[EO_SYNTHETIC_COLUMNS])
 {
-  int count = 0, tracks = s->output == EO_SYNTHETIC_SINE_COSINE || s->output == EO_SYNTHETIC_SQUARE ? 2 : 1;
-  bool pulses = s->output == EO_SYNTHETIC_PULSES;
+  int count = 0,
+      tracks = synthetic->output == EO_SYNTHETIC_SINE_COSINE || synthetic->output == EO_SYNTHETIC_SQUARE ? 2 : 1;
+  bool pulses = synthetic->output == EO_SYNTHETIC_PULSES;
   for (int channel = 0; channel < 2; channel++) {
-    if (!pulses && (channel == 0 || own_clock(s)))
+    if (!pulses && (channel == 0 || own_clock(synthetic)))
       list[count++] = (struct column){TIME, channel, 0};
     for (int track = 0; track < tracks; track++)
       list[count++] = (struct column){pulses ? PULSE : tracks == 2 ? TRACK : ANGLE, channel, track};
   }
-  if (s->torque != 0 && !pulses)
+  if (synthetic->torque != 0 && !pulses)
     list[count++] = (struct column){TORQUE, 0, 0};
-  if (s->shows_speed && !pulses)
+  if (synthetic->shows_speed && !pulses)
     list[count++] = (struct column){SPEED, 0, 0};
   return count;
 }
@@ -86,19 +87,19 @@ static double way(const struct eo_synthetic *s, double time)
 
 /* The same with rests, run through backwards on the way back, slower in the run-up: there time goes by as the integral
    of a speed that rises evenly. */
-static double smooth(const struct eo_synthetic *s, double time)
+static double smooth(const struct eo_synthetic *synthetic, double time)
 {
-  double ramp = run_up_duration(s), total = duration(s) + ramp * (1 - RUN_UP_FROM) / 2;
-  time -= s->rest[0];
-  if (s->turn_back && time > total)
+  double ramp = run_up_duration(synthetic), total = duration(synthetic) + ramp * (1 - RUN_UP_FROM) / 2;
+  time -= synthetic->rest[0];
+  if (synthetic->turn_back && time > total)
     time = 2 * total - time;
-  if (s->rest[0] > 0 || s->turn_back || ramp > 0)
+  if (synthetic->rest[0] > 0 || synthetic->turn_back || ramp > 0)
     time = fmax(time, 0);
-  if (s->rest[1] > 0 && !s->turn_back)
+  if (synthetic->rest[1] > 0 && !synthetic->turn_back)
     time = fmin(time, total);
   if (ramp > 0 && time < ramp)
-    return way(s, RUN_UP_FROM * time + (1 - RUN_UP_FROM) * time * time / (2 * ramp));
-  return way(s, time - ramp * (1 - RUN_UP_FROM) / 2);
+    return way(synthetic, RUN_UP_FROM * time + (1 - RUN_UP_FROM) * time * time / (2 * ramp));
+  return way(synthetic, time - ramp * (1 - RUN_UP_FROM) / 2);
 }
 
 static double vibration(const struct eo_synthetic *s, double theta)
@@ -137,35 +138,35 @@ static double draw(const struct eo_synthetic *s, uint64_t stream, int64_t row, i
 }
 
 /* The row of the undisturbed recording that a channel shows. */
-static int64_t shown_row(const struct eo_synthetic *s, int64_t row, int channel)
+static int64_t shown_row(const struct eo_synthetic *synthetic, int64_t row, int channel)
 {
-  if (row < s->row)
+  if (row < synthetic->row)
     return row;
-  switch (s->fault) {
+  switch (synthetic->fault) {
   case EO_FAULT_DROPPED:
   case EO_FAULT_DROPPED_SILENT:
-    return row + s->size;
+    return row + synthetic->size;
   case EO_FAULT_SLIP:
-    return channel == EO_GEAR ? row + s->size : row;
+    return channel == EO_GEAR ? row + synthetic->size : row;
   case EO_FAULT_STUCK:
-    return channel == EO_GEAR ? s->row : row;
+    return channel == EO_GEAR ? synthetic->row : row;
   default:
-    return s->fault == EO_FAULT_CONSTANT && channel == EO_GEAR ? 0 : row;
+    return synthetic->fault == EO_FAULT_CONSTANT && channel == EO_GEAR ? 0 : row;
   }
 }
 
-static double channel_angle(const struct eo_synthetic *s, int64_t row, int channel)
+static double channel_angle(const struct eo_synthetic *synthetic, int64_t row, int channel)
 {
-  int64_t at = s->fault == EO_FAULT_CONSTANT && channel == EO_GEAR ? 0 : shown_row(s, row, channel);
-  double time = (double)at / rate_of(s, channel) + s->jitter * draw(s, STREAM_JITTER, at, 0);
+  int64_t at = synthetic->fault == EO_FAULT_CONSTANT && channel == EO_GEAR ? 0 : shown_row(synthetic, row, channel);
+  double time = (double)at / rate_of(synthetic, channel) + synthetic->jitter * draw(synthetic, STREAM_JITTER, at, 0);
   if (channel == EO_GEAR)
-    time += s->gear_delay + s->skew * draw(s, STREAM_SKEW, at, 0);
-  double angle = shown_angle(s, channel, time) + s->noise * draw(s, STREAM_NOISE, at, channel);
-  if (channel == EO_GEAR && s->fault == EO_FAULT_SPIKE && row == s->row)
+    time += synthetic->gear_delay + synthetic->skew * draw(synthetic, STREAM_SKEW, at, 0);
+  double angle = shown_angle(synthetic, channel, time) + synthetic->noise * draw(synthetic, STREAM_NOISE, at, channel);
+  if (channel == EO_GEAR && synthetic->fault == EO_FAULT_SPIKE && row == synthetic->row)
     angle += 0.1;
-  if (channel == EO_GEAR && s->fault == EO_FAULT_LOST_COUNT && row >= s->row)
-    angle -= 2 * M_PI * (double)s->size / s->lines[EO_GEAR];
-  return channel == EO_GEAR && s->fault == EO_FAULT_REVERSED ? -angle : angle;
+  if (channel == EO_GEAR && synthetic->fault == EO_FAULT_LOST_COUNT && row >= synthetic->row)
+    angle -= 2 * M_PI * (double)synthetic->size / synthetic->lines[EO_GEAR];
+  return channel == EO_GEAR && synthetic->fault == EO_FAULT_REVERSED ? -angle : angle;
 }
 
 /* The angle at the index pulse before it. */
@@ -188,19 +189,19 @@ static double written_count(const struct eo_synthetic *s, double angle, int chan
   return s->index ? floor((angle - begin) / step) : floor(angle / step + 0.5);
 }
 
-static double written_angle(const struct eo_synthetic *s, int64_t row, int channel)
+static double written_angle(const struct eo_synthetic *synthetic, int64_t row, int channel)
 {
-  double angle = channel_angle(s, row, channel), step = step_of(s, channel);
-  if (s->output == EO_SYNTHETIC_COUNTS)
-    return written_count(s, step * floor(angle / step), channel);
-  if (s->output == EO_SYNTHETIC_INCREMENTS)
-    return floor(angle / step) - floor(channel_angle(s, row - 1, channel) / step);
+  double angle = channel_angle(synthetic, row, channel), step = step_of(synthetic, channel);
+  if (synthetic->output == EO_SYNTHETIC_COUNTS)
+    return written_count(synthetic, step * floor(angle / step), channel);
+  if (synthetic->output == EO_SYNTHETIC_INCREMENTS)
+    return floor(angle / step) - floor(channel_angle(synthetic, row - 1, channel) / step);
   if (step > 0)
     angle = step * floor(angle / step);
-  if (s->wrapped)
+  if (synthetic->wrapped)
     angle -= turn_begin(angle);
-  bool in_radians = s->radians || s->fault == EO_FAULT_RADIANS ||
-                    (s->fault == EO_FAULT_RADIANS_GEAR && channel == EO_GEAR);
+  bool in_radians = synthetic->radians || synthetic->fault == EO_FAULT_RADIANS ||
+                    (synthetic->fault == EO_FAULT_RADIANS_GEAR && channel == EO_GEAR);
   return in_radians ? angle : DEGREES * angle;
 }
 
@@ -251,18 +252,19 @@ static int64_t pulses_of(const struct eo_synthetic *s, int channel)
 }
 
 /* The pulse-th time that the wheel gives: teeth that are missing and faults left out or put in. */
-static double pulse_time(const struct eo_synthetic *s, int channel, int64_t pulse)
+static double pulse_time(const struct eo_synthetic *synthetic, int channel, int64_t pulse)
 {
-  int64_t teeth = s->lines[channel] - s->missing[channel];
+  int64_t teeth = synthetic->lines[channel] - synthetic->missing[channel];
   double extra = 0;
-  if (channel == EO_GEAR && pulse >= s->row && s->fault == EO_FAULT_MISSED_PULSE)
-    pulse += s->size;
-  if (channel == EO_GEAR && pulse > s->row && s->fault == EO_FAULT_DOUBLE_PULSE) {
-    extra = pulse == s->row + 1 ? DOUBLE_PULSE : 0;
+  if (channel == EO_GEAR && pulse >= synthetic->row && synthetic->fault == EO_FAULT_MISSED_PULSE)
+    pulse += synthetic->size;
+  if (channel == EO_GEAR && pulse > synthetic->row && synthetic->fault == EO_FAULT_DOUBLE_PULSE) {
+    extra = pulse == synthetic->row + 1 ? DOUBLE_PULSE : 0;
     pulse--;
   }
-  long line = pulse / teeth * s->lines[channel] + pulse % teeth;
-  return passing_time(s, channel, (double)line + extra) + s->jitter * draw(s, STREAM_JITTER, pulse, channel);
+  long line = pulse / teeth * synthetic->lines[channel] + pulse % teeth;
+  return passing_time(synthetic, channel, (double)line + extra) +
+         synthetic->jitter * draw(synthetic, STREAM_JITTER, pulse, channel);
 }
 
 static int64_t rows_of(const struct eo_synthetic *s, int channel)
@@ -272,38 +274,39 @@ static int64_t rows_of(const struct eo_synthetic *s, int channel)
                                           : (int64_t)((whole_duration(s) - delay) * rate_of(s, channel)) + 1;
 }
 
-static double cell(const struct eo_synthetic *s, const struct column *c, int64_t row)
+static double cell(const struct eo_synthetic *synthetic, const struct column *column, int64_t row)
 {
-  int channel = c->content == TIME ? c->channel : c->channel ^ (s->fault == EO_FAULT_SWAPPED);
-  double time = (double)row / s->sample_rate, moment = 1e-3 / s->speed;
-  if (row >= rows_of(s, channel))
+  int channel = column->content == TIME ? column->channel : column->channel ^ (synthetic->fault == EO_FAULT_SWAPPED);
+  double time = (double)row / synthetic->sample_rate, moment = 1e-3 / synthetic->speed;
+  if (row >= rows_of(synthetic, channel))
     return NAN;
-  switch (c->content) {
+  switch (column->content) {
   case TIME:
-    return written_time(s, row, channel);
+    return written_time(synthetic, row, channel);
   case ANGLE:
-    return written_angle(s, row, channel);
+    return written_angle(synthetic, row, channel);
   case TRACK:
-    return written_track(s, row, channel, c->track);
+    return written_track(synthetic, row, channel, column->track);
   case PULSE:
-    return pulse_time(s, channel, row);
+    return pulse_time(synthetic, channel, row);
   case TORQUE:
-    return s->torque * (1 + s->torque_change * (time / whole_duration(s) - 0.5));
+    return synthetic->torque * (1 + synthetic->torque_change * (time / whole_duration(synthetic) - 0.5));
   case SPEED:
     break;
   }
-  return 30 / M_PI * (smooth(s, time + moment) - smooth(s, time - moment)) / (2 * moment);
+  return 30 / M_PI * (smooth(synthetic, time + moment) - smooth(synthetic, time - moment)) / (2 * moment);
 }
 
-void eo_synthetic_fill(const struct eo_synthetic *s, int64_t first, int64_t count, double *rows)
+void eo_synthetic_fill(const struct eo_synthetic *synthetic, int64_t first, int64_t count, double *rows)
 {
   struct column list[EO_SYNTHETIC_COLUMNS];
-  int columns = list_columns(s, list);
+  int columns = list_columns(synthetic, list);
   for (int64_t i = 0; i < count; i++) {
     int64_t row = first + i;
-    bool empty = s->fault == EO_FAULT_NAN && row >= s->row && row < s->row + (s->size > 0 ? s->size : 1);
+    bool empty = synthetic->fault == EO_FAULT_NAN && row >= synthetic->row &&
+                 row < synthetic->row + (synthetic->size > 0 ? synthetic->size : 1);
     for (int c = 0; c < columns; c++)
-      rows[i * columns + c] = cell(s, &list[c], row);
+      rows[i * columns + c] = cell(synthetic, &list[c], row);
     if (empty && columns > 2)
       rows[i * columns + 2] = NAN;
   }
@@ -320,7 +323,7 @@ int eo_synthetic_columns(const struct eo_synthetic *s)
   return list_columns(s, list);
 }
 
-const char *eo_synthetic_heading(const struct eo_synthetic *s, int column)
+const char *eo_synthetic_heading(const struct eo_synthetic *synthetic, int column)
 {
   static const char *const time[] = {"t_s", "t2_s"}, *const pulses[] = {"pinion_pulse_s", "gear_pulse_s"};
   static const char *const degrees[] = {"angle1_deg", "angle2_deg"}, *const radians[] = {"angle1_rad", "angle2_rad"};
@@ -328,16 +331,16 @@ const char *eo_synthetic_heading(const struct eo_synthetic *s, int column)
   static const char *const sines[2][2] = {{"pinion_sin_V", "pinion_cos_V"}, {"gear_sin_V", "gear_cos_V"}};
   static const char *const squares[2][2] = {{"pinion_A_V", "pinion_B_V"}, {"gear_A_V", "gear_B_V"}};
   struct column list[EO_SYNTHETIC_COLUMNS];
-  list_columns(s, list);
+  list_columns(synthetic, list);
   const struct column *c = &list[column];
-  bool counted = s->output == EO_SYNTHETIC_COUNTS || s->output == EO_SYNTHETIC_INCREMENTS;
+  bool counted = synthetic->output == EO_SYNTHETIC_COUNTS || synthetic->output == EO_SYNTHETIC_INCREMENTS;
   switch (c->content) {
   case TIME:
     return time[c->channel];
   case PULSE:
     return pulses[c->channel];
   case TRACK:
-    return (s->output == EO_SYNTHETIC_SQUARE ? squares : sines)[c->channel][c->track];
+    return (synthetic->output == EO_SYNTHETIC_SQUARE ? squares : sines)[c->channel][c->track];
   case TORQUE:
     return "torque1_Nm";
   case SPEED:
@@ -345,14 +348,14 @@ const char *eo_synthetic_heading(const struct eo_synthetic *s, int column)
   case ANGLE:
     break;
   }
-  return (counted ? counts : s->radians ? radians : degrees)[c->channel];
+  return (counted ? counts : synthetic->radians ? radians : degrees)[c->channel];
 }
 
-int eo_synthetic_decimals(const struct eo_synthetic *s, int column)
+int eo_synthetic_decimals(const struct eo_synthetic *synthetic, int column)
 {
   struct column list[EO_SYNTHETIC_COLUMNS];
-  list_columns(s, list);
-  bool counted = s->output == EO_SYNTHETIC_COUNTS || s->output == EO_SYNTHETIC_INCREMENTS;
+  list_columns(synthetic, list);
+  bool counted = synthetic->output == EO_SYNTHETIC_COUNTS || synthetic->output == EO_SYNTHETIC_INCREMENTS;
   switch (list[column].content) {
   case TIME:
     return 9;
@@ -366,7 +369,7 @@ int eo_synthetic_decimals(const struct eo_synthetic *s, int column)
   case ANGLE:
     break;
   }
-  return counted ? 0 : s->radians ? 11 : 9;
+  return counted ? 0 : synthetic->radians ? 11 : 9;
 }
 
 static int column_of(const struct eo_synthetic *s, enum content content, int channel)
@@ -379,79 +382,84 @@ static int column_of(const struct eo_synthetic *s, enum content content, int cha
   return -1;
 }
 
-void eo_synthetic_tracks(const struct eo_synthetic *s, struct eo_tracks *tracks)
+void eo_synthetic_tracks(const struct eo_synthetic *synthetic, struct eo_tracks *tracks)
 {
-  bool pulses = s->output == EO_SYNTHETIC_PULSES, raw = s->output == EO_SYNTHETIC_SINE_COSINE;
-  *tracks = (struct eo_tracks){.time_column = pulses ? -1 : 0, .time_scale = 1, .interval = 1 / s->sample_rate};
+  bool pulses = synthetic->output == EO_SYNTHETIC_PULSES, raw = synthetic->output == EO_SYNTHETIC_SINE_COSINE;
+  *tracks = (struct eo_tracks){.time_column = pulses ? -1 : 0, .time_scale = 1, .interval = 1 / synthetic->sample_rate};
   for (int i = 0; i < 2; i++) {
     struct eo_track_channel *c = &tracks->channel[i];
     c->track = pulses ? EO_TRACK_PULSES : raw ? EO_TRACK_SINE_COSINE : EO_TRACK_ANGLE;
-    c->column[0] = column_of(s, pulses ? PULSE : raw ? TRACK : ANGLE, i);
+    c->column[0] = column_of(synthetic, pulses ? PULSE : raw ? TRACK : ANGLE, i);
     c->column[1] = c->column[0] + 1;
-    c->scale = s->output == EO_SYNTHETIC_COUNTS ? step_of(s, i) : s->radians ? 1 : M_PI / 180;
-    c->lines = s->lines[i];
+    c->scale = synthetic->output == EO_SYNTHETIC_COUNTS ? step_of(synthetic, i) : synthetic->radians ? 1 : M_PI / 180;
+    c->lines = synthetic->lines[i];
     c->unit = EO_TRACK_VOLT;
     c->factor = 1;
   }
-  if (s->torque != 0 && !pulses)
-    tracks->torque[EO_PINION] = (struct eo_track_beside){.scale = 1, .column = column_of(s, TORQUE, 0), .stated = true};
-  if (s->shows_speed && !pulses)
+  if (synthetic->torque != 0 && !pulses)
+    tracks->torque[EO_PINION] =
+        (struct eo_track_beside){.scale = 1, .column = column_of(synthetic, TORQUE, 0), .stated = true};
+  if (synthetic->shows_speed && !pulses)
     tracks->speed[EO_PINION] =
-        (struct eo_track_beside){.scale = M_PI / 30, .column = column_of(s, SPEED, 0), .stated = true};
+        (struct eo_track_beside){.scale = M_PI / 30, .column = column_of(synthetic, SPEED, 0), .stated = true};
 }
 
-static enum eo_code check_kind(const struct eo_synthetic *s, struct eo_error *error)
+static enum eo_code check_kind(const struct eo_synthetic *synthetic, struct eo_error *error)
 {
-  bool pulses = s->output == EO_SYNTHETIC_PULSES, counted = s->output == EO_SYNTHETIC_COUNTS;
-  if (pulses && (s->turn_back || s->run_up > 0))
+  bool pulses = synthetic->output == EO_SYNTHETIC_PULSES, counted = synthetic->output == EO_SYNTHETIC_COUNTS;
+  if (pulses && (synthetic->turn_back || synthetic->run_up > 0))
     return eo_error_set(error, EO_ERROR_INPUT, "", "Pulses are recorded without a way back and without a run-up.");
-  if (s->run_up < 0 || s->run_up > s->turns)
+  if (synthetic->run_up < 0 || synthetic->run_up > synthetic->turns)
     return eo_error_set(error, EO_ERROR_INPUT, "", "The run-up is longer than the recording.");
-  if (s->index && !counted)
+  if (synthetic->index && !counted)
     return eo_error_set(error, EO_ERROR_INPUT, "", "An index pulse goes with counts.");
   for (int i = 0; i < 2; i++)
-    if (s->missing[i] && (!pulses || s->missing[i] > s->lines[i] / 3))
+    if (synthetic->missing[i] && (!pulses || synthetic->missing[i] > synthetic->lines[i] / 3))
       return eo_error_set(error, EO_ERROR_INPUT, "",
                           "Missing teeth go with pulses, and leave two thirds of the wheel.");
-  if (fabs(s->drift) / 2 + s->swing + fabs(s->step) / 2 >= 1)
+  if (fabs(synthetic->drift) / 2 + synthetic->swing + fabs(synthetic->step) / 2 >= 1)
     return eo_error_set(error, EO_ERROR_INPUT, "", "Drift, swing and step of the speed would stop the shaft.");
   return EO_OK;
 }
 
-enum eo_code eo_synthetic_check(const struct eo_synthetic *s, struct eo_error *error)
+enum eo_code eo_synthetic_check(const struct eo_synthetic *synthetic, struct eo_error *error)
 {
-  bool lines = s->output == EO_SYNTHETIC_ANGLES && !s->interpolation,
-       counted = s->output == EO_SYNTHETIC_COUNTS || s->output == EO_SYNTHETIC_INCREMENTS;
-  if (!(s->speed > 0) || !(s->turns > 0) || !(s->sample_rate > 0) || s->orders < 0 || s->orders > EO_SYNTHETIC_ORDERS)
+  bool lines = synthetic->output == EO_SYNTHETIC_ANGLES && !synthetic->interpolation,
+       counted = synthetic->output == EO_SYNTHETIC_COUNTS || synthetic->output == EO_SYNTHETIC_INCREMENTS;
+  if (!(synthetic->speed > 0) || !(synthetic->turns > 0) || !(synthetic->sample_rate > 0) || synthetic->orders < 0 ||
+      synthetic->orders > EO_SYNTHETIC_ORDERS)
     return eo_error_set(error, EO_ERROR_INPUT, "", "Speed, turns and sample rate of a rig are positive.");
-  if (!lines && (s->lines[0] < 1 || s->lines[1] < 1 || (counted && s->interpolation < 1)))
+  if (!lines && (synthetic->lines[0] < 1 || synthetic->lines[1] < 1 || (counted && synthetic->interpolation < 1)))
     return eo_error_set(error, EO_ERROR_INPUT, "",
                         "Counts, pulses and raw tracks need lines per turn, counts and steps an interpolation.");
-  if (counted && ((double)s->lines[0] * s->interpolation > 1e9 || (double)s->lines[1] * s->interpolation > 1e9))
+  if (counted && ((double)synthetic->lines[0] * synthetic->interpolation > 1e9 ||
+                  (double)synthetic->lines[1] * synthetic->interpolation > 1e9))
     return eo_error_set(error, EO_ERROR_INPUT, "", "More than 1e9 counts per turn are no counts any more.");
-  enum eo_code code = check_kind(s, error);
-  if (!code && whole_duration(s) * rate_of(s, EO_GEAR) > 1e9)
+  enum eo_code code = check_kind(synthetic, error);
+  if (!code && whole_duration(synthetic) * rate_of(synthetic, EO_GEAR) > 1e9)
     return eo_error_set(error, EO_ERROR_INPUT, "", "The recording would have more than 1e9 rows.");
-  if (!code && whole_duration(s) * s->sample_rate > 1e9)
+  if (!code && whole_duration(synthetic) * synthetic->sample_rate > 1e9)
     return eo_error_set(error, EO_ERROR_INPUT, "", "The recording would have %.3g rows, more than 1e9.",
-                        whole_duration(s) * s->sample_rate);
+                        whole_duration(synthetic) * synthetic->sample_rate);
   return code;
 }
 
-enum eo_code eo_synthetic_record(const struct eo_synthetic *s, struct eo_recording **recording, struct eo_error *error)
+enum eo_code eo_synthetic_record(const struct eo_synthetic *synthetic, struct eo_recording **recording,
+                                 struct eo_error *error)
 {
   enum { BLOCK = 1024 };
   double rows[BLOCK * EO_SYNTHETIC_COLUMNS];
-  int64_t total = eo_synthetic_rows(s);
-  enum eo_code code = eo_recording_new(recording, eo_synthetic_columns(s), NULL, error);
+  int64_t total = eo_synthetic_rows(synthetic);
+  enum eo_code code = eo_recording_new(recording, eo_synthetic_columns(synthetic), NULL, error);
   for (int64_t first = 0; first < total && !code; first += BLOCK) {
     int64_t count = total - first < BLOCK ? total - first : BLOCK;
-    eo_synthetic_fill(s, first, count, rows);
+    eo_synthetic_fill(synthetic, first, count, rows);
     code = eo_recording_append(*recording, rows, count, error);
   }
-  if (!code && s->output == EO_SYNTHETIC_PULSES)
+  if (!code && synthetic->output == EO_SYNTHETIC_PULSES)
     for (int channel = 0; channel < 2; channel++)
-      eo_recording_set_length(*recording, channel ^ (s->fault == EO_FAULT_SWAPPED), pulses_of(s, channel));
+      eo_recording_set_length(*recording, channel ^ (synthetic->fault == EO_FAULT_SWAPPED),
+                              pulses_of(synthetic, channel));
   return code;
 }
 

@@ -91,19 +91,19 @@ void eo_normal_add(struct eo_normal *n)
     flush(n);
 }
 
-enum eo_code eo_normal_solve(struct eo_normal *n, double *coefficient, double *condition, struct eo_error *error)
+enum eo_code eo_normal_solve(struct eo_normal *normal, double *coefficient, double *condition, struct eo_error *error)
 {
-  int terms = n->columns - 1;
-  flush(n);
+  int terms = normal->columns - 1;
+  flush(normal);
   double *matrix = malloc(sizeof *matrix * (size_t)(terms * terms + 3 * terms));
   if (!matrix)
     return eo_error_memory(error);
   double *values = matrix + terms * terms, *scale = values + terms;
   for (int i = 0; i < terms; i++)
-    scale[i] = 1 / sqrt(fmax(n->gram[i * n->columns + i], 1e-300));
+    scale[i] = 1 / sqrt(fmax(normal->gram[i * normal->columns + i], 1e-300));
   for (int i = 0; i < terms; i++)
     for (int j = 0; j < terms; j++)
-      matrix[i * terms + j] = scale[i] * scale[j] * n->gram[(i < j ? i : j) * n->columns + (i < j ? j : i)];
+      matrix[i * terms + j] = scale[i] * scale[j] * normal->gram[(i < j ? i : j) * normal->columns + (i < j ? j : i)];
   int failed = eo_dense_symmetric_eigen(terms, matrix, values);
   for (int i = 0; i < terms; i++)
     coefficient[i] = 0;
@@ -112,7 +112,7 @@ enum eo_code eo_normal_solve(struct eo_normal *n, double *coefficient, double *c
     if (values[k] < 1e-11 * values[terms - 1])
       continue;
     for (int i = 0; i < terms; i++)
-      sum += matrix[k * terms + i] * scale[i] * n->gram[i * n->columns + terms];
+      sum += matrix[k * terms + i] * scale[i] * normal->gram[i * normal->columns + terms];
     for (int i = 0; i < terms; i++)
       coefficient[i] += scale[i] * matrix[k * terms + i] * sum / values[k];
   }

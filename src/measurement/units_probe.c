@@ -22,24 +22,24 @@ static void drift_terms(double x, double value[EO_DRIFT_TERMS])
   value[3] = (5 * x * x - 3) * x / 2;
 }
 
-static enum eo_code flatten(struct probe *p, struct eo_error *error)
+static enum eo_code flatten(struct probe *probe, struct eo_error *error)
 {
   struct eo_normal normal;
   double coefficient[EO_DRIFT_TERMS], condition, value[EO_DRIFT_TERMS + 1];
   enum eo_code code = eo_normal_init(&normal, EO_DRIFT_TERMS, error);
-  for (int i = 0; i < p->rows && !code; i++) {
+  for (int i = 0; i < probe->rows && !code; i++) {
     double *row = eo_normal_row(&normal);
-    drift_terms(2.0 * i / (p->rows - 1) - 1, row);
-    row[EO_DRIFT_TERMS] = p->row[i][2];
+    drift_terms(2.0 * i / (probe->rows - 1) - 1, row);
+    row[EO_DRIFT_TERMS] = probe->row[i][2];
     eo_normal_add(&normal);
   }
   if (!code)
     code = eo_normal_solve(&normal, coefficient, &condition, error);
-  for (int i = 0; i < p->rows && !code; i++) {
-    drift_terms(2.0 * i / (p->rows - 1) - 1, value);
+  for (int i = 0; i < probe->rows && !code; i++) {
+    drift_terms(2.0 * i / (probe->rows - 1) - 1, value);
     for (int k = 0; k < EO_DRIFT_TERMS; k++)
-      p->row[i][2] -= coefficient[k] * value[k];
-    p->row[i][2] *= 1 - cos(2 * M_PI * i / (p->rows - 1));
+      probe->row[i][2] -= coefficient[k] * value[k];
+    probe->row[i][2] *= 1 - cos(2 * M_PI * i / (probe->rows - 1));
   }
   eo_normal_done(&normal);
   return code;
@@ -55,26 +55,26 @@ static double power_at(const struct probe *p, double order)
 
 /* How much the lines stand out when both angles are multiplied by the factor, in decades; 0 when they cannot be seen.
  */
-static double lines_seen(const struct probe *p, const int teeth[2], double factor)
+static double lines_seen(const struct probe *probe, const int teeth[2], double factor)
 {
   const double order[LINES] = {(double)teeth[0] / teeth[1], 1, teeth[0], 2.0 * teeth[0], 3.0 * teeth[0]};
-  double turns = fabs(p->row[p->rows - 1][1] - p->row[0][1]) * factor / (2 * M_PI), seen = 0;
-  if (turns < 3 || (double)p->rows / turns < 2.5)
+  double turns = fabs(probe->row[probe->rows - 1][1] - probe->row[0][1]) * factor / (2 * M_PI), seen = 0;
+  if (turns < 3 || (double)probe->rows / turns < 2.5)
     return 0;
-  for (int k = 0; k < LINES && order[k] < 0.45 * p->rows / turns; k++) {
+  for (int k = 0; k < LINES && order[k] < 0.45 * probe->rows / turns; k++) {
     double floor = 0;
     for (int j = 0; j < FLOOR; j++) {
       int step = j / 2;
       double aside = (j % 2 ? 1 : -1) * (2.5 + step) / turns;
-      floor += power_at(p, (order[k] + aside) * factor) / FLOOR;
+      floor += power_at(probe, (order[k] + aside) * factor) / FLOOR;
     }
-    seen += log10(1 + power_at(p, order[k] * factor) / fmax(floor, 1e-300)) * (order[k] > 3 / turns);
+    seen += log10(1 + power_at(probe, order[k] * factor) / fmax(floor, 1e-300)) * (order[k] > 3 / turns);
   }
   return seen;
 }
 
-enum eo_code eo_units_probe(const struct eo_angles *angles, const struct eo_transmission_settings *s, double *factor,
-                            struct eo_error *error)
+enum eo_code eo_units_probe(const struct eo_angles *angles, const struct eo_transmission_settings *settings,
+                            double *factor, struct eo_error *error)
 {
   static const double unit[3] = {1, 180 / M_PI, M_PI / 180};
   struct probe p = {.rows = angles->rows < MOST_ROWS ? (int)angles->rows : MOST_ROWS};
@@ -83,11 +83,11 @@ enum eo_code eo_units_probe(const struct eo_angles *angles, const struct eo_tran
   p.row = malloc(sizeof *p.row * (size_t)p.rows);
   enum eo_code code = p.row ? eo_angles_read(angles, 0, p.rows, p.row[0], error) : eo_error_memory(error);
   for (int i = 0; i < p.rows && !code; i++)
-    p.row[i][2] = s->base_radius[EO_GEAR] * p.row[i][2] - s->base_radius[EO_PINION] * p.row[i][1];
+    p.row[i][2] = settings->base_radius[EO_GEAR] * p.row[i][2] - settings->base_radius[EO_PINION] * p.row[i][1];
   if (!code)
     code = flatten(&p, error);
   for (int i = 0; i < 3 && !code; i++) {
-    seen[i] = lines_seen(&p, s->teeth, unit[i]);
+    seen[i] = lines_seen(&p, settings->teeth, unit[i]);
     best = seen[i] > seen[best] ? i : best;
   }
   if (!code)
@@ -96,19 +96,19 @@ enum eo_code eo_units_probe(const struct eo_angles *angles, const struct eo_tran
   return code;
 }
 
-enum eo_code eo_units_judge(struct eo_angles *a, const struct eo_transmission_settings *settings,
+enum eo_code eo_units_judge(struct eo_angles *angles, const struct eo_transmission_settings *settings,
                             struct eo_findings *findings, struct eo_error *error)
 {
-  double factor, speed = fabs(a->rate[a->from[0]] * a->factor[0]) * 30 / M_PI;
-  enum eo_code code = eo_units_probe(a, settings, &factor, error);
+  double factor, speed = fabs(angles->rate[angles->from[0]] * angles->factor[0]) * 30 / M_PI;
+  enum eo_code code = eo_units_probe(angles, settings, &factor, error);
   if (code)
     return code;
-  if (isnan(factor) && a->units_in_doubt)
+  if (isnan(factor) && angles->units_in_doubt)
     eo_findings_add(findings, EO_FINDING_UNITS, EO_SEVERITY_REFUSED, -1, NAN,
                     "Which channel is in degrees and which in radians cannot be told; state the speed.");
   else if (!isnan(factor) && factor != 1) {
-    a->factor[0] *= factor;
-    a->factor[1] *= factor;
+    angles->factor[0] *= factor;
+    angles->factor[1] *= factor;
     eo_findings_add(findings, EO_FINDING_UNITS, EO_SEVERITY_REPAIRED, -1, factor,
                     "Both angles are in %s, not in the stated unit: shaft and mesh orders only show at %.6g rpm, not "
                     "at %.6g rpm; read so.",

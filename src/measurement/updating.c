@@ -28,28 +28,28 @@ const char *eo_unknown_name(enum eo_unknown unknown)
   return eo_unknown_names[unknown];
 }
 
-static double *member_of(struct eo_design *d, enum eo_unknown unknown)
+static double *member_of(struct eo_design *design, enum eo_unknown unknown)
 {
   switch (unknown) {
   case EO_UNKNOWN_PINION_BEARING:
-    return &d->supports.bearing_stiffness[EO_PINION];
+    return &design->supports.bearing_stiffness[EO_PINION];
   case EO_UNKNOWN_GEAR_BEARING:
-    return &d->supports.bearing_stiffness[EO_GEAR];
+    return &design->supports.bearing_stiffness[EO_GEAR];
   case EO_UNKNOWN_MESH_DAMPING:
-    return &d->supports.mesh_damping_ratio;
+    return &design->supports.mesh_damping_ratio;
   case EO_UNKNOWN_GEAR_AXIAL:
-    return &d->supports.gear_axial_stiffness[EO_LEFT];
+    return &design->supports.gear_axial_stiffness[EO_LEFT];
   case EO_UNKNOWN_PINION_AXIAL:
-    return &d->alignment.pinion_axial_stiffness;
+    return &design->alignment.pinion_axial_stiffness;
   case EO_UNKNOWN_IN_PLANE:
-    return &d->alignment.shaft_angle_in_plane;
+    return &design->alignment.shaft_angle_in_plane;
   case EO_UNKNOWN_OUT_OF_PLANE:
-    return &d->alignment.shaft_angle_out_of_plane;
+    return &design->alignment.shaft_angle_out_of_plane;
   case EO_UNKNOWN_IMPACT_PATCH:
   case EO_UNKNOWNS:
     break;
   }
-  return &d->resolution.impact_patch;
+  return &design->resolution.impact_patch;
 }
 
 double eo_unknown_get(const struct eo_design *design, enum eo_unknown unknown)
@@ -120,52 +120,54 @@ static void weigh(const struct eo_fit *f, double *residual)
 
 enum eo_code eo_fit_residuals(void *context, const double *x, double *residual, struct eo_error *error)
 {
-  struct eo_fit *f = context;
+  struct eo_fit *fit = context;
   struct eo_rig_prediction prediction;
-  double done = fmin(1, (double)(f->evaluations - f->begun) / f->expected), *predicted = f->predicted;
-  eo_fit_set_trial(f, x);
-  f->evaluations++;
-  if (eo_progress_report(f->progress, f->stage, f->from + done * (f->to - f->from)))
+  double done = fmin(1, (double)(fit->evaluations - fit->begun) / fit->expected), *predicted = fit->predicted;
+  eo_fit_set_trial(fit, x);
+  fit->evaluations++;
+  if (eo_progress_report(fit->progress, fit->stage, fit->from + done * (fit->to - fit->from)))
     return eo_error_set(error, EO_ERROR_CANCELLED, "", "Stopped.");
-  for (int i = 0; i < f->count; i++) {
-    const struct eo_measured *m = &f->measured[f->order[i]];
-    enum eo_code code = eo_prediction_run(&prediction, f->evaluator[f->with[i]], &f->trial, m->unmodified, m->torque,
-                                          m->speed, m->end, m->harmonics, error);
+  for (int i = 0; i < fit->count; i++) {
+    const struct eo_measured *measured = &fit->measured[fit->order[i]];
+    enum eo_code code = eo_prediction_run(&prediction, fit->evaluator[fit->with[i]], &fit->trial, measured->unmodified,
+                                          measured->torque, measured->speed, measured->end, measured->harmonics, error);
     if (code)
       return code;
-    for (int h = 0; h < m->harmonics; h++) /* a state that is not found counts as none at all */
+    for (int h = 0; h < measured->harmonics; h++) /* a state that is not found counts as none at all */
       *predicted++ = prediction.valid ? prediction.acceleration[h] : 0;
   }
-  weigh(f, residual);
+  weigh(fit, residual);
   return EO_OK;
 }
 
-static void sort_measurements(struct eo_fit *f)
+static void sort_measurements(struct eo_fit *fit)
 {
-  for (int i = 0; i < f->count; i++) {
-    const struct eo_measured *m = &f->measured[i];
+  for (int i = 0; i < fit->count; i++) {
+    const struct eo_measured *measured = &fit->measured[i];
     int at = i;
     for (; at > 0; at--) {
-      const struct eo_measured *before = &f->measured[f->order[at - 1]];
-      if (before->unmodified < m->unmodified || (before->unmodified == m->unmodified && before->torque <= m->torque))
+      const struct eo_measured *before = &fit->measured[fit->order[at - 1]];
+      if (before->unmodified < measured->unmodified ||
+          (before->unmodified == measured->unmodified && before->torque <= measured->torque))
         break;
-      f->order[at] = f->order[at - 1];
+      fit->order[at] = fit->order[at - 1];
     }
-    f->order[at] = i;
+    fit->order[at] = i;
   }
 }
 
 /* An evaluator for each label and torque, in turns where there are many. */
-static enum eo_code make_evaluators(struct eo_fit *f, struct eo_error *error)
+static enum eo_code make_evaluators(struct eo_fit *fit, struct eo_error *error)
 {
   int group = 0;
   enum eo_code code = EO_OK;
-  for (int i = 0; i < f->count && !code; i++) {
-    const struct eo_measured *m = &f->measured[f->order[i]], *before = &f->measured[f->order[i ? i - 1 : 0]];
-    group += m->unmodified != before->unmodified || m->torque != before->torque;
-    f->with[i] = group % EO_FIT_EVALUATORS;
-    if (f->with[i] == f->evaluators)
-      code = eo_evaluator_new(&f->evaluator[f->evaluators++], &f->pair, 1, error);
+  for (int i = 0; i < fit->count && !code; i++) {
+    const struct eo_measured *measured = &fit->measured[fit->order[i]],
+                             *before = &fit->measured[fit->order[i ? i - 1 : 0]];
+    group += measured->unmodified != before->unmodified || measured->torque != before->torque;
+    fit->with[i] = group % EO_FIT_EVALUATORS;
+    if (fit->with[i] == fit->evaluators)
+      code = eo_evaluator_new(&fit->evaluator[fit->evaluators++], &fit->pair, 1, error);
   }
   return code;
 }
@@ -202,17 +204,17 @@ static double student(int freedom)
 }
 
 /* Covariance (J'J)^-1 at the best values, with differences of a thousandth of the ranges. */
-static enum eo_code find_covariance(struct eo_fit *f, struct eo_update *u, const double *x, double *covariance,
+static enum eo_code find_covariance(struct eo_fit *fit, struct eo_update *u, const double *x, double *covariance,
                                     double *room, struct eo_error *error)
 {
-  int n = u->unknowns, m = f->residuals;
+  int n = u->unknowns, m = fit->residuals;
   double matrix[EO_UNKNOWNS * EO_UNKNOWNS] = {0}, values[EO_UNKNOWNS], moved[EO_UNKNOWNS], *here = room;
-  enum eo_code code = eo_fit_residuals(f, x, here, error);
+  enum eo_code code = eo_fit_residuals(fit, x, here, error);
   for (int j = 0; j < n && !code; j++) {
     double step = x[j] < 0.5 ? 2e-4 : -2e-4, *there = room + (size_t)(j + 1) * (size_t)m;
     memcpy(moved, x, sizeof moved);
     moved[j] += step;
-    code = eo_fit_residuals(f, moved, there, error);
+    code = eo_fit_residuals(fit, moved, there, error);
     for (int i = 0; i < m && !code; i++)
       there[i] = (there[i] - here[i]) / step;
   }
@@ -252,20 +254,21 @@ static void read_twins(struct eo_update *u, const double *covariance)
 }
 
 /* One minimum in the units of the inputs; within reach, with the profile of every input. */
-static enum eo_code read_minimum(struct eo_fit *f, struct eo_update *u, const struct eo_minimum *minimum, double limit,
-                                 const double *covariance, double hull[][2], struct eo_error *error)
+static enum eo_code read_minimum(struct eo_fit *fit, struct eo_update *u, const struct eo_minimum *minimum,
+                                 double limit, const double *covariance, double hull[][2], struct eo_error *error)
 {
   struct eo_update_minimum *out = &u->minimum[u->minima++];
-  *out = (struct eo_update_minimum){.misfit = sqrt(minimum->square / f->residuals), .within = minimum->square <= limit};
+  *out = (struct eo_update_minimum){.misfit = sqrt(minimum->square / fit->residuals),
+                                    .within = minimum->square <= limit};
   enum eo_code code = EO_OK;
   u->within += out->within;
   for (int i = 0; i < u->unknowns && !code; i++) {
     double reach[2] = {minimum->x[i], minimum->x[i]}, sigma = sqrt(covariance[i * u->unknowns + i]);
     if (out->within)
-      code = eo_fit_profile(f, minimum, i, sigma, limit, reach, error);
-    out->value[i] = eo_fit_from_unit(&f->settings->range[i], minimum->x[i]);
+      code = eo_fit_profile(fit, minimum, i, sigma, limit, reach, error);
+    out->value[i] = eo_fit_from_unit(&fit->settings->range[i], minimum->x[i]);
     for (int side = 0; side < 2; side++)
-      out->confidence[i][side] = eo_fit_from_unit(&f->settings->range[i], reach[side]);
+      out->confidence[i][side] = eo_fit_from_unit(&fit->settings->range[i], reach[side]);
     if (out->within) {
       hull[i][0] = fmin(hull[i][0], reach[0]);
       hull[i][1] = fmax(hull[i][1], reach[1]);
@@ -274,17 +277,17 @@ static enum eo_code read_minimum(struct eo_fit *f, struct eo_update *u, const st
   return code;
 }
 
-static void read_unknowns(const struct eo_fit *f, struct eo_update *u, const double *x, double hull[][2])
+static void read_unknowns(const struct eo_fit *fit, struct eo_update *u, const double *x, double hull[][2])
 {
   for (int i = 0; i < u->unknowns; i++) {
-    const struct eo_update_range *r = &f->settings->range[i];
+    const struct eo_update_range *range = &fit->settings->range[i];
     u->unknown[i] =
-        (struct eo_updated){.unknown = r->unknown,
-                            .before = eo_unknown_get(f->design, r->unknown),
-                            .value = eo_fit_from_unit(r, x[i]),
-                            .low = r->low,
-                            .high = r->high,
-                            .confidence = {eo_fit_from_unit(r, hull[i][0]), eo_fit_from_unit(r, hull[i][1])},
+        (struct eo_updated){.unknown = range->unknown,
+                            .before = eo_unknown_get(fit->design, range->unknown),
+                            .value = eo_fit_from_unit(range, x[i]),
+                            .low = range->low,
+                            .high = range->high,
+                            .confidence = {eo_fit_from_unit(range, hull[i][0]), eo_fit_from_unit(range, hull[i][1])},
                             .at_bound = x[i] < 1e-6 || x[i] > 1 - 1e-6,
                             .undetermined = !(hull[i][1] - hull[i][0] < OPEN),
                             .twin = -1};
@@ -293,45 +296,45 @@ static void read_unknowns(const struct eo_fit *f, struct eo_update *u, const dou
 
 /* The sum of squares up to which values are not ruled out: the best one plus the square of Student's quantile, in units
    of what the fit leaves where that is more than the standard deviations say. */
-static enum eo_code judge(struct eo_fit *f, struct eo_update *u, const struct eo_minima *minima, double *room,
+static enum eo_code judge(struct eo_fit *fit, struct eo_update *u, const struct eo_minima *minima, double *room,
                           struct eo_error *error)
 {
-  int freedom = f->residuals - u->unknowns;
+  int freedom = fit->residuals - u->unknowns;
   double covariance[EO_UNKNOWNS * EO_UNKNOWNS], hull[EO_UNKNOWNS][2];
   double widen = fmax(1, minima->minimum[0].square / freedom),
          limit = minima->minimum[0].square + widen * pow(student(freedom > 2 ? freedom : 3), 2);
   const double *x = minima->minimum[0].x;
-  enum eo_code code = find_covariance(f, u, x, covariance, room, error);
+  enum eo_code code = find_covariance(fit, u, x, covariance, room, error);
   for (int i = 0; i < u->unknowns; i++)
     hull[i][0] = hull[i][1] = x[i];
   int reachable = 0;
   for (int i = 0; i < minima->count; i++)
     reachable += minima->minimum[i].square <= limit;
-  eo_fit_begin(f, "fit: how sure", 0.7, 1, reachable * u->unknowns * 40 * (u->unknowns > 1 ? 3 * u->unknowns : 1));
+  eo_fit_begin(fit, "fit: how sure", 0.7, 1, reachable * u->unknowns * 40 * (u->unknowns > 1 ? 3 * u->unknowns : 1));
   for (int i = 0; i < minima->count && !code; i++)
-    code = read_minimum(f, u, &minima->minimum[i], limit, covariance, hull, error);
-  read_unknowns(f, u, x, hull);
+    code = read_minimum(fit, u, &minima->minimum[i], limit, covariance, hull, error);
+  read_unknowns(fit, u, x, hull);
   read_twins(u, covariance);
   return code;
 }
 
-static enum eo_code check(const struct eo_update_settings *s, int count, int residuals, struct eo_error *error)
+static enum eo_code check(const struct eo_update_settings *settings, int count, int residuals, struct eo_error *error)
 {
-  if (s->unknowns < 1 || s->unknowns > EO_UNKNOWNS)
+  if (settings->unknowns < 1 || settings->unknowns > EO_UNKNOWNS)
     return eo_error_set(error, EO_ERROR_INPUT, "/unknowns", "An update takes 1 to %d unknowns.", EO_UNKNOWNS);
-  for (int i = 0; i < s->unknowns; i++) {
-    const struct eo_update_range *r = &s->range[i];
+  for (int i = 0; i < settings->unknowns; i++) {
+    const struct eo_update_range *range = &settings->range[i];
     for (int j = 0; j < i; j++)
-      if (s->range[j].unknown == r->unknown)
+      if (settings->range[j].unknown == range->unknown)
         return eo_error_set(error, EO_ERROR_INPUT, "/unknowns", "%s stands in the list twice.",
-                            eo_unknown_name(r->unknown));
-    if (!(r->high > r->low) || (logarithmic(r->unknown) && !(r->low > 0)))
+                            eo_unknown_name(range->unknown));
+    if (!(range->high > range->low) || (logarithmic(range->unknown) && !(range->low > 0)))
       return eo_error_set(error, EO_ERROR_INPUT, "/unknowns", "The range of %s is empty or not positive.",
-                          eo_unknown_name(r->unknown));
+                          eo_unknown_name(range->unknown));
   }
-  if (count < 1 || residuals <= s->unknowns)
+  if (count < 1 || residuals <= settings->unknowns)
     return eo_error_set(error, EO_ERROR_INPUT, "", "%d measured orders cannot determine %d unknowns.", residuals,
-                        s->unknowns);
+                        settings->unknowns);
   return EO_OK;
 }
 
@@ -341,46 +344,46 @@ static int usual_starts(int unknowns)
 }
 
 /* The model error and the minima belong to each other: the one that leaves least says how good the model is. */
-static enum eo_code settle(struct eo_fit *f, struct eo_minima *minima, double *room, struct eo_error *error)
+static enum eo_code settle(struct eo_fit *fit, struct eo_minima *minima, double *room, struct eo_error *error)
 {
   enum eo_code code = EO_OK;
-  if (f->settings->model_error > 0)
+  if (fit->settings->model_error > 0)
     return EO_OK;
-  eo_fit_begin(f, "fit: how good the model is", 0.6, 0.7, ROUNDS * minima->count * 3 * (f->settings->unknowns + 1));
+  eo_fit_begin(fit, "fit: how good the model is", 0.6, 0.7, ROUNDS * minima->count * 3 * (fit->settings->unknowns + 1));
   for (int i = 0; i < ROUNDS && !code; i++) {
-    code = find_model_error(f, minima->minimum[0].x, room, error);
+    code = find_model_error(fit, minima->minimum[0].x, room, error);
     if (!code)
-      code = eo_fit_refine(f, minima, error);
+      code = eo_fit_refine(fit, minima, error);
   }
   return code;
 }
 
-static enum eo_code search(struct eo_fit *f, struct eo_update *u, struct eo_design *updated, struct eo_error *error)
+static enum eo_code search(struct eo_fit *fit, struct eo_update *u, struct eo_design *updated, struct eo_error *error)
 {
-  int n = u->unknowns, starts = f->settings->starts > 0 ? f->settings->starts : usual_starts(n);
+  int n = u->unknowns, starts = fit->settings->starts > 0 ? fit->settings->starts : usual_starts(n);
   struct eo_minima *minima = malloc(sizeof *minima);
-  double *room = malloc(sizeof *room * (size_t)(f->residuals * (n + 1))), start[EO_UNKNOWNS];
-  enum eo_code code = minima && room ? eo_fit_search(f, starts, minima, &u->before, error) : eo_error_memory(error);
+  double *room = malloc(sizeof *room * (size_t)(fit->residuals * (n + 1))), start[EO_UNKNOWNS];
+  enum eo_code code = minima && room ? eo_fit_search(fit, starts, minima, &u->before, error) : eo_error_memory(error);
   if (!code)
-    code = settle(f, minima, room, error);
+    code = settle(fit, minima, room, error);
   for (int i = 0; i < n; i++)
-    start[i] = eo_fit_to_unit(&f->settings->range[i], eo_unknown_get(f->design, f->settings->range[i].unknown));
+    start[i] = eo_fit_to_unit(&fit->settings->range[i], eo_unknown_get(fit->design, fit->settings->range[i].unknown));
   if (!code)
-    code = eo_fit_residuals(f, start, room, error);
+    code = eo_fit_residuals(fit, start, room, error);
   if (!code) {
-    u->before = sqrt(sum_of_squares(f->residuals, room) / f->residuals);
-    u->after = sqrt(minima->minimum[0].square / f->residuals);
-    u->model_error = f->model_error;
+    u->before = sqrt(sum_of_squares(fit->residuals, room) / fit->residuals);
+    u->after = sqrt(minima->minimum[0].square / fit->residuals);
+    u->model_error = fit->model_error;
     u->converged = minima->minimum[0].converged;
-    code = judge(f, u, minima, room, error);
+    code = judge(fit, u, minima, room, error);
   }
   if (!code) {
-    double spent = f->settings->model_error > 0 ? u->after * f->model_error : f->model_error;
+    double spent = fit->settings->model_error > 0 ? u->after * fit->model_error : fit->model_error;
     u->poor = spent > POOR;
-    u->evaluations = f->evaluations;
-    eo_fit_set_trial(f, minima->minimum[0].x);
+    u->evaluations = fit->evaluations;
+    eo_fit_set_trial(fit, minima->minimum[0].x);
     if (updated)
-      *updated = f->trial;
+      *updated = fit->trial;
   }
   free(minima);
   free(room);
@@ -391,37 +394,37 @@ enum eo_code eo_update_run(struct eo_update *update, const struct eo_pair *pair,
                            int count, const struct eo_measured *measured, const struct eo_update_settings *settings,
                            struct eo_design *updated, const struct eo_progress *progress, struct eo_error *error)
 {
-  struct eo_fit *f = calloc(1, sizeof *f);
+  struct eo_fit *fit = calloc(1, sizeof *fit);
   *update = (struct eo_update){.unknowns = settings->unknowns, .used = count};
-  if (!f)
+  if (!fit)
     return eo_error_memory(error);
-  f->design = design;
-  f->measured = measured;
-  f->settings = settings;
-  f->progress = progress;
-  f->pair = *pair;
-  f->count = count;
-  f->model_error = settings->model_error > 0 ? settings->model_error : FIRST_MODEL_ERROR;
+  fit->design = design;
+  fit->measured = measured;
+  fit->settings = settings;
+  fit->progress = progress;
+  fit->pair = *pair;
+  fit->count = count;
+  fit->model_error = settings->model_error > 0 ? settings->model_error : FIRST_MODEL_ERROR;
   for (int i = 0; i < count; i++)
-    f->residuals += measured[i].harmonics;
-  update->residuals = f->residuals;
+    fit->residuals += measured[i].harmonics;
+  update->residuals = fit->residuals;
   enum eo_code code = count > EO_MOST_MEASURED
                           ? eo_error_set(error, EO_ERROR_INPUT, "", "%d measurements are too many.", count)
                           : EO_OK;
   if (!code)
-    sort_measurements(f);
-  code = code ? code : check(settings, count, f->residuals, error);
+    sort_measurements(fit);
+  code = code ? code : check(settings, count, fit->residuals, error);
   if (!code) {
-    f->predicted = calloc((size_t)f->residuals, sizeof *f->predicted);
-    code = f->predicted ? EO_OK : eo_error_memory(error);
+    fit->predicted = calloc((size_t)fit->residuals, sizeof *fit->predicted);
+    code = fit->predicted ? EO_OK : eo_error_memory(error);
   }
   if (!code)
-    code = make_evaluators(f, error);
+    code = make_evaluators(fit, error);
   if (!code)
-    code = search(f, update, updated, error);
-  for (int i = 0; i < f->evaluators; i++)
-    eo_evaluator_free(f->evaluator[i]);
-  free(f->predicted);
-  free(f);
+    code = search(fit, update, updated, error);
+  for (int i = 0; i < fit->evaluators; i++)
+    eo_evaluator_free(fit->evaluator[i]);
+  free(fit->predicted);
+  free(fit);
   return code;
 }

@@ -35,38 +35,38 @@ static enum eo_code residuals_of_others(void *context, const double *others, dou
 }
 
 /* The least sum of squares over the others with the unknown held at a place; others[n - 1] go along. */
-static enum eo_code least_at(struct held *h, double at, double *others, double *residual, double *square,
+static enum eo_code least_at(struct held *held, double at, double *others, double *residual, double *square,
                              struct eo_error *error)
 {
   const struct eo_least_squares_options options = {.iterations = ITERATIONS, .step = STEP, .tolerance = TOLERANCE};
   struct eo_least_squares_report report = {0};
   enum eo_code code;
-  h->at = at;
-  if (h->n > 1) {
-    code = eo_least_squares(residuals_of_others, h, h->n - 1, h->fit->residuals, &options, others, NULL, &report,
-                            error);
+  held->at = at;
+  if (held->n > 1) {
+    code = eo_least_squares(residuals_of_others, held, held->n - 1, held->fit->residuals, &options, others, NULL,
+                            &report, error);
     *square = report.square;
     return code;
   }
-  code = eo_fit_residuals(h->fit, &h->at, residual, error);
+  code = eo_fit_residuals(held->fit, &held->at, residual, error);
   *square = 0;
-  for (int i = 0; i < h->fit->residuals && !code; i++)
+  for (int i = 0; i < held->fit->residuals && !code; i++)
     *square += residual[i] * residual[i];
   return code;
 }
 
 /* The place beyond which the profile leaves the limit, in one direction: growing steps out, then halvings between the
    last inside and the first outside. */
-static enum eo_code walk(struct held *h, const struct eo_minimum *minimum, int way, double first, double limit,
+static enum eo_code walk(struct held *held, const struct eo_minimum *minimum, int way, double first, double limit,
                          double *residual, double *reach, struct eo_error *error)
 {
-  double others[EO_UNKNOWNS], inside = minimum->x[h->held], outside = NAN, step = first, square;
-  for (int j = 0, k = 0; j < h->n; j++)
-    if (j != h->held)
+  double others[EO_UNKNOWNS], inside = minimum->x[held->held], outside = NAN, step = first, square;
+  for (int j = 0, k = 0; j < held->n; j++)
+    if (j != held->held)
       others[k++] = minimum->x[j];
   for (int i = 0; i < MOST_STEPS && isnan(outside) && inside != (way > 0); i++) {
     double at = fmin(1, fmax(0, inside + way * step));
-    enum eo_code code = least_at(h, at, others, residual, &square, error);
+    enum eo_code code = least_at(held, at, others, residual, &square, error);
     if (code)
       return code;
     if (square > limit)
@@ -77,7 +77,7 @@ static enum eo_code walk(struct held *h, const struct eo_minimum *minimum, int w
   }
   for (int i = 0; i < HALVINGS && !isnan(outside) && fabs(outside - inside) > SHORTEST; i++) {
     double at = (inside + outside) / 2;
-    enum eo_code code = least_at(h, at, others, residual, &square, error);
+    enum eo_code code = least_at(held, at, others, residual, &square, error);
     if (code)
       return code;
     *(square > limit ? &outside : &inside) = at;

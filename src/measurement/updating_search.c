@@ -40,23 +40,23 @@ static double sum_of_squares(int count, const double *value)
 }
 
 /* Points with one in each slice of every unknown (McKay, Beckman, Conover 1979), and what the design says now. */
-static enum eo_code look_around(struct eo_fit *f, int starts, struct sample *sample, double *residual,
+static enum eo_code look_around(struct eo_fit *fit, int starts, struct sample *sample, double *residual,
                                 struct eo_error *error)
 {
-  int n = f->settings->unknowns;
-  eo_fit_begin(f, "fit: looking over the ranges", 0, 0.3, starts + 1);
+  int n = fit->settings->unknowns;
+  eo_fit_begin(fit, "fit: looking over the ranges", 0, 0.3, starts + 1);
   for (int i = 0; i <= starts; i++) {
     for (int j = 0; j < n; j++) {
-      struct eo_random r = eo_random_at(f->settings->seed, 1, (uint64_t)i, (uint64_t)j);
+      struct eo_random r = eo_random_at(fit->settings->seed, 1, (uint64_t)i, (uint64_t)j);
       int slice = (int)(((int64_t)i * permuting_factor(7 * j, starts) + j) % starts);
       sample[i].x[j] = i < starts ? (slice + eo_random_unit(r, 0)) / starts
-                                  : eo_fit_to_unit(&f->settings->range[j],
-                                                   eo_unknown_get(f->design, f->settings->range[j].unknown));
+                                  : eo_fit_to_unit(&fit->settings->range[j],
+                                                   eo_unknown_get(fit->design, fit->settings->range[j].unknown));
     }
-    enum eo_code code = eo_fit_residuals(f, sample[i].x, residual, error);
+    enum eo_code code = eo_fit_residuals(fit, sample[i].x, residual, error);
     if (code)
       return code;
-    sample[i].square = sum_of_squares(f->residuals, residual);
+    sample[i].square = sum_of_squares(fit->residuals, residual);
   }
   return EO_OK;
 }
@@ -130,10 +130,10 @@ static int ascending(const void *a, const void *b)
 }
 
 /* Downhill from the lowest of the promising points, and from the lowest points of all. */
-static enum eo_code go_down(struct eo_fit *f, int count, struct sample *sample, struct eo_minima *minima,
+static enum eo_code go_down(struct eo_fit *fit, int count, struct sample *sample, struct eo_minima *minima,
                             struct eo_error *error)
 {
-  int n = f->settings->unknowns, most = DESCENTS + DESCENTS_PER_UNKNOWN * n, chosen = 0;
+  int n = fit->settings->unknowns, most = DESCENTS + DESCENTS_PER_UNKNOWN * n, chosen = 0;
   struct sample *start = malloc(sizeof *start * (size_t)(count + 1));
   if (!start)
     return eo_error_memory(error);
@@ -145,12 +145,12 @@ static enum eo_code go_down(struct eo_fit *f, int count, struct sample *sample, 
   chosen = chosen < most ? chosen : most;
   for (int i = 0; i < count && chosen < most && i < most / 2; i++)
     start[chosen++] = sample[i];
-  eo_fit_begin(f, "fit: downhill", 0.3, 0.6, chosen * (n + 2) * 6);
+  eo_fit_begin(fit, "fit: downhill", 0.3, 0.6, chosen * (n + 2) * 6);
   enum eo_code code = EO_OK;
   for (int i = 0; i < chosen && !code; i++) {
     struct eo_minimum found = {.square = start[i].square};
     memcpy(found.x, start[i].x, sizeof found.x);
-    code = descend(f, &found, error);
+    code = descend(fit, &found, error);
     if (!code)
       keep(minima, &found, n);
   }
@@ -158,31 +158,31 @@ static enum eo_code go_down(struct eo_fit *f, int count, struct sample *sample, 
   return code;
 }
 
-enum eo_code eo_fit_search(struct eo_fit *f, int starts, struct eo_minima *minima, double *before,
+enum eo_code eo_fit_search(struct eo_fit *fit, int starts, struct eo_minima *minima, double *before,
                            struct eo_error *error)
 {
   struct sample *sample = malloc(sizeof *sample * (size_t)(starts + 1));
-  double *residual = malloc(sizeof *residual * (size_t)f->residuals);
+  double *residual = malloc(sizeof *residual * (size_t)fit->residuals);
   *minima = (struct eo_minima){0};
-  enum eo_code code = sample && residual ? look_around(f, starts, sample, residual, error) : eo_error_memory(error);
+  enum eo_code code = sample && residual ? look_around(fit, starts, sample, residual, error) : eo_error_memory(error);
   if (!code) {
     *before = sample[starts].square;
-    code = go_down(f, starts + 1, sample, minima, error);
+    code = go_down(fit, starts + 1, sample, minima, error);
   }
   free(sample);
   free(residual);
   return code;
 }
 
-enum eo_code eo_fit_refine(struct eo_fit *f, struct eo_minima *minima, struct eo_error *error)
+enum eo_code eo_fit_refine(struct eo_fit *fit, struct eo_minima *minima, struct eo_error *error)
 {
   struct eo_minima again = {0};
   for (int i = 0; i < minima->count; i++) {
     struct eo_minimum found = minima->minimum[i];
-    enum eo_code code = descend(f, &found, error);
+    enum eo_code code = descend(fit, &found, error);
     if (code)
       return code;
-    keep(&again, &found, f->settings->unknowns);
+    keep(&again, &found, fit->settings->unknowns);
   }
   *minima = again;
   return EO_OK;

@@ -18,10 +18,10 @@ struct eo_waterfall {
   struct cell *cell;   /* owned, [count] */
 };
 
-enum eo_code eo_waterfall_new(struct eo_waterfall **waterfall, const struct eo_transmission *r, const int teeth[2],
-                              double from, struct eo_error *error)
+enum eo_code eo_waterfall_new(struct eo_waterfall **waterfall, const struct eo_transmission *transmission,
+                              const int teeth[2], double from, struct eo_error *error)
 {
-  double least = GEAR_TURNS * (double)teeth[EO_GEAR] / teeth[EO_PINION], turns = r->revolutions[EO_PINION];
+  double least = GEAR_TURNS * (double)teeth[EO_GEAR] / teeth[EO_PINION], turns = transmission->revolutions[EO_PINION];
   double each = least * fmax(1, ceil(turns / least / EO_TRACKS - 1e-9));
   int count = (int)(turns / each + 1e-6);
   *waterfall = NULL;
@@ -35,7 +35,7 @@ enum eo_code eo_waterfall_new(struct eo_waterfall **waterfall, const struct eo_t
     return eo_error_memory(error);
   }
   w->teeth = teeth[EO_PINION];
-  w->harmonics = r->harmonics;
+  w->harmonics = transmission->harmonics;
   w->count = count;
   w->from = from;
   w->length = 2 * M_PI * each;
@@ -67,16 +67,16 @@ void eo_waterfall_add(struct eo_waterfall *w, double time, double theta, double 
   c->theta[1] = theta;
 }
 
-enum eo_code eo_waterfall_finish(struct eo_waterfall *w, struct eo_transmission *r, struct eo_error *error)
+enum eo_code eo_waterfall_finish(struct eo_waterfall *w, struct eo_transmission *transmission, struct eo_error *error)
 {
   if (!w)
     return EO_OK;
-  r->track = calloc((size_t)w->count, sizeof *r->track);
-  if (!r->track)
+  transmission->track = calloc((size_t)w->count, sizeof *transmission->track);
+  if (!transmission->track)
     return eo_error_memory(error);
   for (int i = 0; i < w->count; i++) {
     const struct cell *c = &w->cell[i];
-    struct eo_order_track *track = &r->track[r->tracks];
+    struct eo_order_track *track = &transmission->track[transmission->tracks];
     if (c->rows < 2 * w->harmonics || !(c->time[1] > c->time[0]))
       continue;
     double square = 0;
@@ -86,11 +86,11 @@ enum eo_code eo_waterfall_finish(struct eo_waterfall *w, struct eo_transmission 
     track->speed = (c->theta[1] - c->theta[0]) / (c->time[1] - c->time[0]);
     track->rows = c->rows;
     for (int h = 0; h < w->harmonics; h++) {
-      track->amplitude[h] = r->mesh[h].amplitude + 2 * c->sum[h] / (double)c->rows;
-      square += pow(cabs(track->amplitude[h]) * pow(r->mesh[h].order * track->speed, 2), 2) / 2;
+      track->amplitude[h] = transmission->mesh[h].amplitude + 2 * c->sum[h] / (double)c->rows;
+      square += pow(cabs(track->amplitude[h]) * pow(transmission->mesh[h].order * track->speed, 2), 2) / 2;
     }
     track->rms = sqrt(square);
-    r->tracks++;
+    transmission->tracks++;
   }
   return EO_OK;
 }

@@ -23,57 +23,57 @@ static enum eo_code find_time(const struct eo_recording *recording, const struct
                               const char *chosen, int *column, struct eo_error *error)
 {
   static const struct eo_layout_choice none;
-  struct eo_guess *g = calloc(1, sizeof *g);
-  enum eo_code code = g ? EO_OK : eo_error_memory(error);
+  struct eo_guess *guess = calloc(1, sizeof *guess);
+  enum eo_code code = guess ? EO_OK : eo_error_memory(error);
   *column = -1;
   if (!code) {
-    g->recording = recording;
-    g->choice = choice ? choice : &none;
-    g->columns = eo_recording_columns(recording);
+    guess->recording = recording;
+    guess->choice = choice ? choice : &none;
+    guess->columns = eo_recording_columns(recording);
   }
-  for (int c = 0; !code && c < g->columns; c++)
-    code = eo_column_look(recording, c, &g->look[c], error);
+  for (int c = 0; !code && c < guess->columns; c++)
+    code = eo_column_look(recording, c, &guess->look[c], error);
   if (!code && chosen && strcmp(chosen, "none"))
-    code = eo_layout_chosen(g, chosen, "/time", column, error);
-  else if (!code && !chosen && g->columns > 1 && !(g->choice->sample_rate > 0)) {
-    eo_layout_mark_times(g);
-    *column = eo_layout_pick_time(g, g->columns - 1);
-    if (*column < 0 && !(eo_recording_clock(recording, 0).interval > 0) && g->look[0].spread < 1e-3 &&
-        g->look[0].step > 0 && !g->look[0].resets && !g->number[0])
+    code = eo_layout_chosen(guess, chosen, "/time", column, error);
+  else if (!code && !chosen && guess->columns > 1 && !(guess->choice->sample_rate > 0)) {
+    eo_layout_mark_times(guess);
+    *column = eo_layout_pick_time(guess, guess->columns - 1);
+    if (*column < 0 && !(eo_recording_clock(recording, 0).interval > 0) && guess->look[0].spread < 1e-3 &&
+        guess->look[0].step > 0 && !guess->look[0].resets && !guess->number[0])
       *column = 0; /* the first of two columns */
   }
-  free(g);
+  free(guess);
   return code;
 }
 
 /* Names, units, lengths and clocks of one file's columns. */
-static void describe(const struct pair *p, int side, struct eo_recording *out)
+static void describe(const struct pair *pair, int side, struct eo_recording *out)
 {
-  const struct eo_recording *r = p->side[side];
-  int base = side ? p->columns[0] : 0;
-  for (int c = 0; c < p->columns[side]; c++) {
+  const struct eo_recording *recording = pair->side[side];
+  int base = side ? pair->columns[0] : 0;
+  for (int c = 0; c < pair->columns[side]; c++) {
     char name[EO_RECORDING_NAME + 16];
-    struct eo_clock clock = eo_recording_clock(r, c);
-    const char *unit = eo_recording_unit(r, c);
-    bool pulses = p->columns[side] == 1 && !(clock.interval > 0);
-    if (clock.column < 0 && c != p->time[side])
-      clock.column = p->time[side];
+    struct eo_clock clock = eo_recording_clock(recording, c);
+    const char *unit = eo_recording_unit(recording, c);
+    bool pulses = pair->columns[side] == 1 && !(clock.interval > 0);
+    if (clock.column < 0 && c != pair->time[side])
+      clock.column = pair->time[side];
     clock.column += clock.column < 0 ? 0 : base;
-    snprintf(name, sizeof name, "%.40s%s%s", eo_recording_name(r, c), *eo_recording_name(r, c) ? " " : "",
-             member_names[side]);
+    snprintf(name, sizeof name, "%.40s%s%s", eo_recording_name(recording, c),
+             *eo_recording_name(recording, c) ? " " : "", member_names[side]);
     eo_recording_set_column(out, base + c, name, pulses && !*unit ? "s" : unit);
-    eo_recording_set_length(out, base + c, eo_recording_length(r, c));
+    eo_recording_set_length(out, base + c, eo_recording_length(recording, c));
     eo_recording_set_clock(out, base + c, &clock);
-    eo_recording_set_turn(out, base + c, eo_recording_turn(r, c));
-    if (eo_recording_tick(r) > 0)
-      eo_recording_set_tick(out, eo_recording_tick(r));
+    eo_recording_set_turn(out, base + c, eo_recording_turn(recording, c));
+    if (eo_recording_tick(recording) > 0)
+      eo_recording_set_tick(out, eo_recording_tick(recording));
   }
 }
 
-static enum eo_code copy_rows(const struct pair *p, struct eo_recording *out, struct eo_error *error)
+static enum eo_code copy_rows(const struct pair *pair, struct eo_recording *out, struct eo_error *error)
 {
-  int columns = p->columns[0] + p->columns[1], base = 0;
-  int64_t most = p->rows[0] > p->rows[1] ? p->rows[0] : p->rows[1];
+  int columns = pair->columns[0] + pair->columns[1], base = 0;
+  int64_t most = pair->rows[0] > pair->rows[1] ? pair->rows[0] : pair->rows[1];
   double *rows = malloc(BLOCK * (size_t)columns * sizeof *rows),
          *block = malloc(BLOCK * (size_t)columns * sizeof *block);
   enum eo_code code = rows && block ? EO_OK : eo_error_memory(error);
@@ -81,13 +81,13 @@ static enum eo_code copy_rows(const struct pair *p, struct eo_recording *out, st
     int64_t n = most - first < BLOCK ? most - first : BLOCK;
     base = 0;
     for (int s = 0; s < 2 && !code; s++) {
-      int64_t left = p->rows[s] - first, got = left < 0 ? 0 : left < n ? left : n;
+      int64_t left = pair->rows[s] - first, got = left < 0 ? 0 : left < n ? left : n;
       if (got)
-        code = eo_recording_read(p->side[s], first, got, block, error);
+        code = eo_recording_read(pair->side[s], first, got, block, error);
       for (int64_t i = 0; i < n; i++)
-        for (int c = 0; c < p->columns[s]; c++)
-          rows[i * columns + base + c] = i < got ? block[i * p->columns[s] + c] : NAN;
-      base += p->columns[s];
+        for (int c = 0; c < pair->columns[s]; c++)
+          rows[i * columns + base + c] = i < got ? block[i * pair->columns[s] + c] : NAN;
+      base += pair->columns[s];
     }
     if (!code)
       code = eo_recording_append(out, rows, n, error);

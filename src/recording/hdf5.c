@@ -76,20 +76,20 @@ struct attributes {
 
 static herr_t visit_attribute(hid_t object, const char *name, const H5A_info_t *info, void *context)
 {
-  const struct attributes *a = context;
+  const struct attributes *attributes = context;
   char path[PATH], list[4096];
   double value = 0;
   hid_t attribute = H5Aopen(object, name, H5P_DEFAULT);
   (void)info;
-  if (attribute < 0 || !join(path, a->path, name))
+  if (attribute < 0 || !join(path, attributes->path, name))
     return 0;
   hid_t type = H5Aget_type(attribute), space = H5Aget_space(attribute);
   H5T_class_t class = H5Tget_class(type);
   if (read_texts(attribute, false, type, space, list, sizeof list))
-    add_texts(a->h, path, list);
+    add_texts(attributes->h, path, list);
   else if ((class == H5T_INTEGER || class == H5T_FLOAT) && H5Sget_simple_extent_npoints(space) == 1 &&
            H5Aread(attribute, H5T_NATIVE_DOUBLE, &value) >= 0)
-    eo_tree_add_number(a->h->tree, path, value);
+    eo_tree_add_number(attributes->h->tree, path, value);
   H5Sclose(space);
   H5Tclose(type);
   H5Aclose(attribute);
@@ -153,17 +153,17 @@ static void keep_channel(struct eo_hdf5 *h, int number, struct eo_hdf5_channel c
 }
 
 /* One channel per column, columns lying across the longer dimension. type: of a value in memory. */
-static bool add_channels(struct eo_hdf5 *h, hid_t set, hid_t type, bool whole, const char *path, int rank,
+static bool add_channels(struct eo_hdf5 *hdf5, hid_t set, hid_t type, bool whole, const char *path, int rank,
                          const hsize_t *length)
 {
   int along = rank == 2 && length[1] > length[0];
   hsize_t across = rank == 2 ? length[!along] : 1;
   int base = across > WIDE || length[along] > INT64_MAX / 16
                  ? -1
-                 : eo_tree_add_series(h->tree, path, (int)across, (int64_t)length[along], whole);
+                 : eo_tree_add_series(hdf5->tree, path, (int)across, (int64_t)length[along], whole);
   for (hsize_t k = 0; base >= 0 && k < across; k++)
     keep_channel(
-        h, base + (int)k,
+        hdf5, base + (int)k,
         (struct eo_hdf5_channel){.set = set, .type = type, .width = 1, .rank = rank, .along = along, .across = k});
   return base >= 0;
 }
@@ -209,7 +209,7 @@ static bool add_records(struct eo_hdf5 *h, hid_t set, hid_t type, const struct n
                         hsize_t length, int depth);
 
 /* A field that is a number, an array of numbers, or a record. */
-static bool add_field(struct eo_hdf5 *h, hid_t set, hid_t field, const struct nest *nest, const char *path,
+static bool add_field(struct eo_hdf5 *hdf5, hid_t set, hid_t field, const struct nest *nest, const char *path,
                       hsize_t length, int depth)
 {
   H5T_class_t class = H5Tget_class(field);
@@ -217,7 +217,7 @@ static bool add_field(struct eo_hdf5 *h, hid_t set, hid_t field, const struct ne
   hid_t inner = H5Tcopy(H5T_NATIVE_DOUBLE), element = -1;
   if (class == H5T_COMPOUND && depth < 4) {
     H5Tclose(inner);
-    return add_records(h, set, field, nest, path, length, depth + 1);
+    return add_records(hdf5, set, field, nest, path, length, depth + 1);
   }
   if (class == H5T_ARRAY && H5Tget_array_ndims(field) == 1 && H5Tget_array_dims2(field, &width) == 1) {
     element = H5Tget_super(field);
@@ -229,14 +229,14 @@ static bool add_field(struct eo_hdf5 *h, hid_t set, hid_t field, const struct ne
   hid_t memory = nested_type(nest, inner);
   H5Tclose(inner);
   bool added = (class == H5T_INTEGER || class == H5T_FLOAT) && width >= 1 &&
-               add_array(h, set, memory, width <= WIDE ? (int)width : WIDE + 1, class == H5T_INTEGER, path, length);
+               add_array(hdf5, set, memory, width <= WIDE ? (int)width : WIDE + 1, class == H5T_INTEGER, path, length);
   if (!added)
     H5Tclose(memory);
   return added;
 }
 
 /* Records: each field that is a number is a channel. */
-static bool add_records(struct eo_hdf5 *h, hid_t set, hid_t type, const struct nest *outer, const char *path,
+static bool add_records(struct eo_hdf5 *hdf5, hid_t set, hid_t type, const struct nest *outer, const char *path,
                         hsize_t length, int depth)
 {
   bool any = false;
@@ -246,7 +246,7 @@ static bool add_records(struct eo_hdf5 *h, hid_t set, hid_t type, const struct n
     hid_t field = H5Tget_member_type(type, (unsigned)i);
     struct nest nest = {outer, name};
     if (name && join(below, path, name))
-      any = add_field(h, set, field, &nest, below, length, depth) || any;
+      any = add_field(hdf5, set, field, &nest, below, length, depth) || any;
     H5Tclose(field);
     H5free_memory(name);
   }
@@ -256,7 +256,7 @@ static bool add_records(struct eo_hdf5 *h, hid_t set, hid_t type, const struct n
 static void add_object(struct eo_hdf5 *h, hid_t object, const char *path, int depth);
 
 /* What MATLAB refers to: the elements of a cell, or one field of all elements of an array of structs, "ch(2)/y". */
-static void add_references(struct eo_hdf5 *h, hid_t set, hsize_t count, bool cell, const char *path, int depth)
+static void add_references(struct eo_hdf5 *hdf5, hid_t set, hsize_t count, bool cell, const char *path, int depth)
 {
   hobj_ref_t *reference = count && count <= REFERENCES ? malloc(count * sizeof *reference) : NULL;
   const char *slash = strrchr(path, '/');
@@ -269,7 +269,7 @@ static void add_references(struct eo_hdf5 *h, hid_t set, hsize_t count, bool cel
                 : snprintf(below, sizeof below, "%.*s(%d)/%s", (int)(slash - path), path, (int)i + 1, slash + 1);
     hid_t object = H5Rdereference2(set, H5P_DEFAULT, H5R_OBJECT, &reference[i]);
     if (object >= 0 && n < (int)sizeof below)
-      add_object(h, object, below, depth + 1);
+      add_object(hdf5, object, below, depth + 1);
     else if (object >= 0)
       H5Oclose(object);
   }
@@ -279,7 +279,7 @@ static void add_references(struct eo_hdf5 *h, hid_t set, hsize_t count, bool cel
 /* The cache holds a whole chunk of each data set as long as all together stay small: without it a chunk would be
    unpacked again for every piece that is read of it. The set is opened anew for that; a set that is open keeps the
    cache it has. */
-static hid_t open_cached(struct eo_hdf5 *h, hid_t set)
+static hid_t open_cached(struct eo_hdf5 *hdf5, hid_t set)
 {
   hid_t list = H5Dget_create_plist(set), type = H5Dget_type(set);
   hsize_t chunk[8];
@@ -290,14 +290,14 @@ static hid_t open_cached(struct eo_hdf5 *h, hid_t set)
     bytes = chunk[i] < CACHE && bytes < CACHE ? bytes * chunk[i] : CACHE;
   H5Tclose(type);
   H5Pclose(list);
-  h->large = rank > 0 && bytes > (1 << 20) && bytes >= CACHE - h->cache;
-  if (rank < 1 || rank > 8 || bytes <= (1 << 20) || h->large || H5Iget_name(set, name, sizeof name) <= 0)
+  hdf5->large = rank > 0 && bytes > (1 << 20) && bytes >= CACHE - hdf5->cache;
+  if (rank < 1 || rank > 8 || bytes <= (1 << 20) || hdf5->large || H5Iget_name(set, name, sizeof name) <= 0)
     return set;
   hid_t access = H5Pcreate(H5P_DATASET_ACCESS);
   H5Pset_chunk_cache(access, 521, bytes + 1024, 1);
   H5Dclose(set);
-  set = H5Dopen2(h->file, name, access);
-  h->cache += set >= 0 ? bytes : 0;
+  set = H5Dopen2(hdf5->file, name, access);
+  hdf5->cache += set >= 0 ? bytes : 0;
   H5Pclose(access);
   return set;
 }
@@ -310,11 +310,11 @@ static bool keep_set(struct eo_hdf5 *h, hid_t set)
 }
 
 /* A data set with numbers, texts or references; it is closed unless channels read it. */
-static void add_set(struct eo_hdf5 *h, hid_t set, const char *path, int depth)
+static void add_set(struct eo_hdf5 *hdf5, hid_t set, const char *path, int depth)
 {
   hsize_t length[2] = {0, 0};
   char class_name[32], list[4096];
-  if ((set = open_cached(h, set)) < 0)
+  if ((set = open_cached(hdf5, set)) < 0)
     return;
   hid_t type = H5Dget_type(set), space = H5Dget_space(set);
   H5T_class_t class = H5Tget_class(type);
@@ -327,25 +327,26 @@ static void add_set(struct eo_hdf5 *h, hid_t set, const char *path, int depth)
   bool object = H5Aexists(set, "MATLAB_object_decode") > 0;
   if (rank == 0)
     length[0] = 1;
-  add_attributes(h, set, path);
+  add_attributes(hdf5, set, path);
   if (!plain || object)
-    h->left_out++;
+    hdf5->left_out++;
   else if (!strcmp(class_name, "char"))
-    add_characters(h, set, (hsize_t)count, path);
+    add_characters(hdf5, set, (hsize_t)count, path);
   else if (class == H5T_REFERENCE && depth < 8)
-    add_references(h, set, (hsize_t)count, !strcmp(class_name, "cell"), path, depth);
+    add_references(hdf5, set, (hsize_t)count, !strcmp(class_name, "cell"), path, depth);
   else if (read_texts(set, true, type, space, list, sizeof list))
-    add_texts(h, path, list);
+    add_texts(hdf5, path, list);
   else if (number && count == 1)
-    add_number(h, set, path);
-  else if (h->sets < EO_HDF5_CHANNELS &&
-           ((number && add_channels(h, set, H5T_NATIVE_DOUBLE, class == H5T_INTEGER, path, rank ? rank : 1, length)) ||
-            (class == H5T_COMPOUND && rank == 1 && add_records(h, set, type, NULL, path, length[0], 0))))
-    kept = keep_set(h, set);
+    add_number(hdf5, set, path);
+  else if (hdf5->sets < EO_HDF5_CHANNELS &&
+           ((number &&
+             add_channels(hdf5, set, H5T_NATIVE_DOUBLE, class == H5T_INTEGER, path, rank ? rank : 1, length)) ||
+            (class == H5T_COMPOUND && rank == 1 && add_records(hdf5, set, type, NULL, path, length[0], 0))))
+    kept = keep_set(hdf5, set);
   else
-    h->left_out++;
+    hdf5->left_out++;
   if (object)
-    eo_notes_add(h->notes,
+    eo_notes_add(hdf5->notes,
                  "\"%.60s\" is an object (a table, timetable, timeseries or the like) whose numbers only MATLAB reads; "
                  "save s = table2struct(T, 'ToScalar', true) with the times in seconds instead.",
                  path);
@@ -374,16 +375,16 @@ static herr_t visit_link(hid_t group, const char *name, const H5L_info_t *info, 
 }
 
 /* A group or data set; closes it. */
-static void add_object(struct eo_hdf5 *h, hid_t object, const char *path, int depth)
+static void add_object(struct eo_hdf5 *hdf5, hid_t object, const char *path, int depth)
 {
   H5I_type_t kind = H5Iget_type(object);
   if (kind == H5I_DATASET) {
-    add_set(h, object, path, depth);
+    add_set(hdf5, object, path, depth);
     return;
   }
   if (kind == H5I_GROUP && depth < 16) {
-    struct group group = {h, path, depth};
-    add_attributes(h, object, path);
+    struct group group = {hdf5, path, depth};
+    add_attributes(hdf5, object, path);
     H5Literate(object, H5_INDEX_NAME, H5_ITER_NATIVE, NULL, visit_link, &group);
   }
   H5Oclose(object);
@@ -395,24 +396,25 @@ static herr_t visit_root(hid_t group, const char *name, const H5L_info_t *info, 
   return *name == '#' ? 0 : visit_link(group, name, info, context);
 }
 
-static enum eo_code read_file(struct eo_hdf5 *h, hid_t file, int64_t bytes, const struct eo_reader_options *options,
+static enum eo_code read_file(struct eo_hdf5 *hdf5, hid_t file, int64_t bytes, const struct eo_reader_options *options,
                               const struct eo_series_sink *sink, struct eo_notes *notes, struct eo_error *error)
 {
-  struct group root = {h, "", 0};
-  h->file = file;
-  h->notes = notes;
-  enum eo_code code = eo_tree_new(&h->tree, error);
+  struct group root = {hdf5, "", 0};
+  hdf5->file = file;
+  hdf5->notes = notes;
+  enum eo_code code = eo_tree_new(&hdf5->tree, error);
   if (code)
     return code;
-  add_attributes(h, file, "");
+  add_attributes(hdf5, file, "");
   if (H5Literate(file, H5_INDEX_NAME, H5_ITER_NATIVE, NULL, visit_root, &root) < 0)
     return eo_error_set(error, EO_ERROR_INPUT, "", "HDF5: the groups of the file cannot be read; it is damaged.");
-  eo_tree_settle(h->tree, notes);
-  if (h->left_out)
-    eo_notes_add(notes, "%d data set%s %s no channel of numbers and %s left out.", h->left_out,
-                 h->left_out == 1 ? "" : "s", h->left_out == 1 ? "is" : "are", h->left_out == 1 ? "was" : "were");
-  struct eo_series_file content = {eo_tree_series(h->tree), eo_tree_count(h->tree), bytes,
-                                   options->max_bytes,      eo_hdf5_values,         h};
+  eo_tree_settle(hdf5->tree, notes);
+  if (hdf5->left_out)
+    eo_notes_add(notes, "%d data set%s %s no channel of numbers and %s left out.", hdf5->left_out,
+                 hdf5->left_out == 1 ? "" : "s", hdf5->left_out == 1 ? "is" : "are",
+                 hdf5->left_out == 1 ? "was" : "were");
+  struct eo_series_file content = {
+      eo_tree_series(hdf5->tree), eo_tree_count(hdf5->tree), bytes, options->max_bytes, eo_hdf5_values, hdf5};
   return eo_series_copy(&content, sink, notes, error);
 }
 
@@ -424,22 +426,22 @@ enum eo_code eo_hdf5_read(const char *path, const struct eo_reader_options *opti
     return eo_error_set(error, EO_ERROR_FILE, "", "The file %s could not be opened.", path);
   H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
   H5PLset_loading_state(0); /* no code from outside, whatever filter the file asks for */
-  struct eo_hdf5 *h = calloc(1, sizeof *h);
-  if (!h)
+  struct eo_hdf5 *hdf5 = calloc(1, sizeof *hdf5);
+  if (!hdf5)
     return eo_error_memory(error);
   hid_t file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
   enum eo_code code = file < 0
                           ? eo_error_set(error, EO_ERROR_INPUT, "",
                                          "HDF5: the file cannot be opened; it is damaged or was cut off at byte %lld.",
                                          (long long)state.st_size)
-                          : read_file(h, file, state.st_size, options, sink, notes, error);
-  for (int i = 0; i < h->sets; i++)
-    H5Dclose(h->set[i]);
+                          : read_file(hdf5, file, state.st_size, options, sink, notes, error);
+  for (int i = 0; i < hdf5->sets; i++)
+    H5Dclose(hdf5->set[i]);
   for (int i = 0; i < EO_HDF5_CHANNELS; i++)
-    free(h->channel[i].ahead);
-  eo_tree_free(h->tree);
+    free(hdf5->channel[i].ahead);
+  eo_tree_free(hdf5->tree);
   if (file >= 0)
     H5Fclose(file);
-  free(h);
+  free(hdf5);
   return code;
 }

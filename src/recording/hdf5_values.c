@@ -7,21 +7,21 @@
 #define AHEAD ((size_t)192 << 20) /* bytes of values that are read at once where chunks are too large to be kept */
 
 /* Stored values from the file; false: they cannot be read, or there is no memory. */
-static bool read_stored(const struct eo_hdf5_channel *c, int64_t first, int64_t count, double *values)
+static bool read_stored(const struct eo_hdf5_channel *channel, int64_t first, int64_t count, double *values)
 {
-  hsize_t start[2] = {c->across, c->across}, size[2] = {1, 1}, length = (hsize_t)count;
-  start[c->along] = (hsize_t)first;
-  size[c->along] = length;
-  double *all = c->width > 1 ? malloc((size_t)count * (size_t)c->width * sizeof *all) : values;
+  hsize_t start[2] = {channel->across, channel->across}, size[2] = {1, 1}, length = (hsize_t)count;
+  start[channel->along] = (hsize_t)first;
+  size[channel->along] = length;
+  double *all = channel->width > 1 ? malloc((size_t)count * (size_t)channel->width * sizeof *all) : values;
   if (!all)
     return false;
-  hid_t space = H5Dget_space(c->set), memory = H5Screate_simple(1, &length, NULL);
+  hid_t space = H5Dget_space(channel->set), memory = H5Screate_simple(1, &length, NULL);
   herr_t status = H5Sselect_hyperslab(space, H5S_SELECT_SET, start, NULL, size, NULL);
   if (status >= 0)
-    status = H5Dread(c->set, c->type, memory, space, H5P_DEFAULT, all);
-  for (int64_t i = 0; c->width > 1 && i < count; i++)
-    values[i] = all[i * c->width + c->place];
-  if (c->width > 1)
+    status = H5Dread(channel->set, channel->type, memory, space, H5P_DEFAULT, all);
+  for (int64_t i = 0; channel->width > 1 && i < count; i++)
+    values[i] = all[i * channel->width + channel->place];
+  if (channel->width > 1)
     free(all);
   H5Sclose(memory);
   H5Sclose(space);
@@ -29,39 +29,39 @@ static bool read_stored(const struct eo_hdf5_channel *c, int64_t first, int64_t 
 }
 
 /* Each piece that is read of a chunk too large to be kept unpacks all of it: many values are read at once then. */
-static bool read_ahead(const struct eo_hdf5 *h, struct eo_hdf5_channel *c, int64_t first, int64_t count, int64_t length,
-                       double *values)
+static bool read_ahead(const struct eo_hdf5 *hdf5, struct eo_hdf5_channel *channel, int64_t first, int64_t count,
+                       int64_t length, double *values)
 {
-  int64_t room = (int64_t)(AHEAD / sizeof *values) / h->larges;
+  int64_t room = (int64_t)(AHEAD / sizeof *values) / hdf5->larges;
   if (count > room)
-    return read_stored(c, first, count, values);
-  if (!c->ahead && !(c->ahead = malloc((size_t)room * sizeof *values)))
+    return read_stored(channel, first, count, values);
+  if (!channel->ahead && !(channel->ahead = malloc((size_t)room * sizeof *values)))
     return false;
-  if (first < c->first || first + count > c->first + c->count) {
-    c->first = first;
-    c->count = 0;
+  if (first < channel->first || first + count > channel->first + channel->count) {
+    channel->first = first;
+    channel->count = 0;
     int64_t wanted = length - first < room ? length - first : room;
-    if (!read_stored(c, first, wanted, c->ahead))
+    if (!read_stored(channel, first, wanted, channel->ahead))
       return false;
-    c->count = wanted;
+    channel->count = wanted;
   }
-  memcpy(values, c->ahead + (first - c->first), (size_t)count * sizeof *values);
+  memcpy(values, channel->ahead + (first - channel->first), (size_t)count * sizeof *values);
   return true;
 }
 
 enum eo_code eo_hdf5_values(void *context, int series, int64_t first, int64_t count, double *values,
                             struct eo_error *error)
 {
-  struct eo_hdf5 *h = context;
-  struct eo_hdf5_channel *c = &h->channel[series];
-  bool good = c->large ? read_ahead(h, c, first, count, eo_tree_series(h->tree)[series].length, values)
+  struct eo_hdf5 *hdf5 = context;
+  struct eo_hdf5_channel *c = &hdf5->channel[series];
+  bool good = c->large ? read_ahead(hdf5, c, first, count, eo_tree_series(hdf5->tree)[series].length, values)
                        : read_stored(c, first, count, values);
   if (!good)
     return eo_error_set(
         error, EO_ERROR_INPUT, "",
         "HDF5: the values of \"%s\" from %lld on cannot be read; the file is damaged or uses an unknown filter.",
-        eo_tree_series(h->tree)[series].name, (long long)first);
+        eo_tree_series(hdf5->tree)[series].name, (long long)first);
   for (int64_t i = 0; i < count; i++)
-    values[i] = eo_tree_value(h->tree, series, values[i]);
+    values[i] = eo_tree_value(hdf5->tree, series, values[i]);
   return EO_OK;
 }

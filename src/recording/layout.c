@@ -33,55 +33,55 @@ const char *eo_layout_label(const struct eo_guess *g, int column, char *text, si
   return text;
 }
 
-enum eo_code eo_layout_chosen(const struct eo_guess *g, const char *chosen, const char *pointer, int *column,
+enum eo_code eo_layout_chosen(const struct eo_guess *guess, const char *chosen, const char *pointer, int *column,
                               struct eo_error *error)
 {
-  for (int c = 0; c < g->columns; c++)
-    if (!strcmp(eo_recording_name(g->recording, c), chosen)) {
+  for (int c = 0; c < guess->columns; c++)
+    if (!strcmp(eo_recording_name(guess->recording, c), chosen)) {
       *column = c;
       return EO_OK;
     }
   char *end;
   long number = strtol(chosen, &end, 10);
-  if (end == chosen || *end || number < 1 || number > g->columns)
+  if (end == chosen || *end || number < 1 || number > guess->columns)
     return eo_error_set(error, EO_ERROR_INPUT, pointer, "The recording has no column \"%.60s\"; it has %d columns.",
-                        chosen, g->columns);
+                        chosen, guess->columns);
   *column = (int)number - 1;
   return EO_OK;
 }
 
 /* Several columns of times with different lengths, and nothing else, are pulses. */
-static bool looks_like_pulses(const struct eo_guess *g)
+static bool looks_like_pulses(const struct eo_guess *guess)
 {
   int times = 0;
   bool uneven = false;
-  for (int c = 0; c < g->columns; c++) {
-    const struct eo_column *look = &g->look[c];
-    bool ticks = look->quantity == EO_QUANTITY_COUNT && eo_recording_tick(g->recording) > 0;
-    if (look->falls || look->resets || look->rises < 2 || eo_recording_clock(g->recording, c).column >= 0 ||
+  for (int c = 0; c < guess->columns; c++) {
+    const struct eo_column *look = &guess->look[c];
+    bool ticks = look->quantity == EO_QUANTITY_COUNT && eo_recording_tick(guess->recording) > 0;
+    if (look->falls || look->resets || look->rises < 2 || eo_recording_clock(guess->recording, c).column >= 0 ||
         (look->quantity != EO_QUANTITY_TIME && look->quantity != EO_QUANTITY_NONE && !ticks))
       return false;
     times++;
-    uneven = uneven || eo_recording_length(g->recording, c) != eo_recording_length(g->recording, 0) ||
+    uneven = uneven || eo_recording_length(guess->recording, c) != eo_recording_length(guess->recording, 0) ||
              look->quantity == EO_QUANTITY_TIME;
   }
-  return times == 2 && uneven && g->look[1].quantity == g->look[0].quantity &&
-         !(eo_recording_clock(g->recording, 0).interval > 0);
+  return times == 2 && uneven && guess->look[1].quantity == guess->look[0].quantity &&
+         !(eo_recording_clock(guess->recording, 0).interval > 0);
 }
 
 /* What is neither time nor empty, constant or of another quantity. */
-static void find_candidates(struct eo_guess *g)
+static void find_candidates(struct eo_guess *guess)
 {
-  for (int c = 0; c < g->columns; c++) {
-    const struct eo_column *look = &g->look[c];
+  for (int c = 0; c < guess->columns; c++) {
+    const struct eo_column *look = &guess->look[c];
     enum eo_quantity q = look->quantity;
-    bool pulses = g->kind == EO_LAYOUT_PULSES;
-    if (!look->count || (!pulses && (g->time[c] || g->number[c] || q == EO_QUANTITY_TIME)) || q == EO_QUANTITY_OTHER ||
-        q == EO_QUANTITY_TORQUE || q == EO_QUANTITY_SPEED || q == EO_QUANTITY_FREQUENCY)
+    bool pulses = guess->kind == EO_LAYOUT_PULSES;
+    if (!look->count || (!pulses && (guess->time[c] || guess->number[c] || q == EO_QUANTITY_TIME)) ||
+        q == EO_QUANTITY_OTHER || q == EO_QUANTITY_TORQUE || q == EO_QUANTITY_SPEED || q == EO_QUANTITY_FREQUENCY)
       continue;
-    if (q != EO_QUANTITY_ANGLE && eo_column_named(eo_recording_name(g->recording, c), OTHER_WORDS))
+    if (q != EO_QUANTITY_ANGLE && eo_column_named(eo_recording_name(guess->recording, c), OTHER_WORDS))
       continue;
-    g->candidate[g->candidates++] = c;
+    guess->candidate[guess->candidates++] = c;
   }
 }
 
@@ -103,40 +103,40 @@ static bool may_be_square(const struct eo_column *look)
 }
 
 /* Two or four columns with two levels each, and no angle beside them, are square waves. */
-static bool find_squares(struct eo_guess *g)
+static bool find_squares(struct eo_guess *guess)
 {
   int squares = 0, square[EO_RECORDING_COLUMNS];
-  if (g->choice->unit == EO_LAYOUT_COUNT)
+  if (guess->choice->unit == EO_LAYOUT_COUNT)
     return false;
-  for (int i = 0; i < g->candidates; i++)
-    if (may_be_square(&g->look[g->candidate[i]]))
-      square[squares++] = g->candidate[i];
+  for (int i = 0; i < guess->candidates; i++)
+    if (may_be_square(&guess->look[guess->candidate[i]]))
+      square[squares++] = guess->candidate[i];
   if (squares != 2 && squares != 4)
     return false;
-  g->candidates = squares;
-  memcpy(g->candidate, square, (size_t)squares * sizeof *square);
+  guess->candidates = squares;
+  memcpy(guess->candidate, square, (size_t)squares * sizeof *square);
   return true;
 }
 
 /* Angles where two columns turn together, whatever swings beside them; else what most columns look like. */
-static void guess_kind(struct eo_guess *g)
+static void guess_kind(struct eo_guess *guess)
 {
   int tracks = 0;
-  bool pair = (!g->kind || g->kind == EO_LAYOUT_ANGLES) && eo_layout_find_pair(g);
-  if (!g->kind && !pair && find_squares(g)) {
-    g->square = true;
-    g->kind = g->candidates == 4 ? EO_LAYOUT_SINE_COSINE : EO_LAYOUT_ANGLES;
+  bool pair = (!guess->kind || guess->kind == EO_LAYOUT_ANGLES) && eo_layout_find_pair(guess);
+  if (!guess->kind && !pair && find_squares(guess)) {
+    guess->square = true;
+    guess->kind = guess->candidates == 4 ? EO_LAYOUT_SINE_COSINE : EO_LAYOUT_ANGLES;
     return;
   }
-  for (int i = 0; i < g->candidates; i++) {
-    int c = g->candidate[i];
-    const char *name = eo_recording_name(g->recording, c);
+  for (int i = 0; i < guess->candidates; i++) {
+    int c = guess->candidate[i];
+    const char *name = eo_recording_name(guess->recording, c);
     bool named = eo_column_named(name, "sin|sine|sinus|cos|cosine|kosinus|cosinus");
-    bool measured = g->look[c].quantity == EO_QUANTITY_VOLTAGE || g->look[c].quantity == EO_QUANTITY_CURRENT;
-    tracks += g->look[c].quantity != EO_QUANTITY_ANGLE && (named || measured || swings(&g->look[c]));
+    bool measured = guess->look[c].quantity == EO_QUANTITY_VOLTAGE || guess->look[c].quantity == EO_QUANTITY_CURRENT;
+    tracks += guess->look[c].quantity != EO_QUANTITY_ANGLE && (named || measured || swings(&guess->look[c]));
   }
-  if (!g->kind)
-    g->kind = !pair && tracks >= 4 ? EO_LAYOUT_SINE_COSINE : EO_LAYOUT_ANGLES;
+  if (!guess->kind)
+    guess->kind = !pair && tracks >= 4 ? EO_LAYOUT_SINE_COSINE : EO_LAYOUT_ANGLES;
 }
 
 /* 1: the name says sine, -1: cosine, 0: neither. */
@@ -237,54 +237,54 @@ static double counts_per_turn(const struct eo_guess *g, int member)
 }
 
 /* A unit that the file states must be known: a guess in its place would be a wrong speed. */
-static enum eo_code check_unit(const struct eo_guess *g, int member, struct eo_error *error)
+static enum eo_code check_unit(const struct eo_guess *guess, int member, struct eo_error *error)
 {
-  int column = g->tracks->channel[member].column[0];
-  const char *unit = eo_recording_unit(g->recording, column);
-  enum eo_quantity q = g->look[column].quantity;
+  int column = guess->tracks->channel[member].column[0];
+  const char *unit = eo_recording_unit(guess->recording, column);
+  enum eo_quantity q = guess->look[column].quantity;
   char text[80];
   bool none = !*unit || !strcmp(unit, "-") || !strcmp(unit, "1") || !strcasecmp(unit, "none") || !strcmp(unit, "--");
-  if (g->choice->unit || none || q == EO_QUANTITY_ANGLE || q == EO_QUANTITY_COUNT)
+  if (guess->choice->unit || none || q == EO_QUANTITY_ANGLE || q == EO_QUANTITY_COUNT)
     return EO_OK;
   if (q == EO_QUANTITY_NONE)
     return eo_error_set(error, EO_ERROR_INPUT, "/unit",
                         "The file states \"%s\" as the unit of %s, which is not known here: give the unit (deg, rad, "
                         "turn, or count with the counts per turn).",
-                        unit, eo_layout_label(g, column, text, sizeof text));
+                        unit, eo_layout_label(guess, column, text, sizeof text));
   return eo_error_set(
       error, EO_ERROR_INPUT, "/unit",
       "%s is in %s, which is no angle: choose other columns, or the kind (sine-cosine for raw tracks), or "
       "give the unit of an angle.",
-      eo_layout_label(g, column, text, sizeof text), unit);
+      eo_layout_label(guess, column, text, sizeof text), unit);
 }
 
-static enum eo_code find_scale(struct eo_guess *g, int member, struct eo_error *error)
+static enum eo_code find_scale(struct eo_guess *guess, int member, struct eo_error *error)
 {
-  struct eo_track_channel *channel = &g->tracks->channel[member];
-  const struct eo_column *look = &g->look[channel->column[0]];
-  bool counts = g->choice->unit == EO_LAYOUT_COUNT || (!g->choice->unit && look->quantity == EO_QUANTITY_COUNT);
-  double turn = counts_per_turn(g, member);
-  bool stated = g->choice->lines[member] > 0 || eo_recording_turn(g->recording, channel->column[0]) > 0;
-  enum eo_code code = check_unit(g, member, error);
+  struct eo_track_channel *channel = &guess->tracks->channel[member];
+  const struct eo_column *look = &guess->look[channel->column[0]];
+  bool counts = guess->choice->unit == EO_LAYOUT_COUNT || (!guess->choice->unit && look->quantity == EO_QUANTITY_COUNT);
+  double turn = counts_per_turn(guess, member);
+  bool stated = guess->choice->lines[member] > 0 || eo_recording_turn(guess->recording, channel->column[0]) > 0;
+  enum eo_code code = check_unit(guess, member, error);
   if (code)
     return code;
-  channel->scale = g->choice->unit == EO_LAYOUT_DEGREE   ? TURN / 360
-                   : g->choice->unit == EO_LAYOUT_RADIAN ? 1
-                   : g->choice->unit == EO_LAYOUT_TURN   ? TURN
-                                                         : 0;
-  if (!g->choice->unit && look->quantity == EO_QUANTITY_ANGLE)
+  channel->scale = guess->choice->unit == EO_LAYOUT_DEGREE   ? TURN / 360
+                   : guess->choice->unit == EO_LAYOUT_RADIAN ? 1
+                   : guess->choice->unit == EO_LAYOUT_TURN   ? TURN
+                                                             : 0;
+  if (!guess->choice->unit && look->quantity == EO_QUANTITY_ANGLE)
     channel->scale = look->factor;
-  else if (turn > 0 && (counts || (!g->choice->unit && (!stated || look->whole))))
+  else if (turn > 0 && (counts || (!guess->choice->unit && (!stated || look->whole))))
     channel->scale = TURN / turn;
   if (channel->scale > 0)
     return EO_OK;
   char text[80];
   if (counts || look->whole)
     return eo_error_set(error, EO_ERROR_INPUT, "/lines", "%s counts; give the counts per turn of the %s's encoder.",
-                        eo_layout_label(g, channel->column[0], text, sizeof text), member_names[member]);
-  channel->scale = scale_by_speed(g, member);
-  eo_notes_add(g->notes, "Nothing states the unit of %s; %s are a guess from its speed.",
-               eo_layout_label(g, channel->column[0], text, sizeof text), scale_name(channel->scale));
+                        eo_layout_label(guess, channel->column[0], text, sizeof text), member_names[member]);
+  channel->scale = scale_by_speed(guess, member);
+  eo_notes_add(guess->notes, "Nothing states the unit of %s; %s are a guess from its speed.",
+               eo_layout_label(guess, channel->column[0], text, sizeof text), scale_name(channel->scale));
   return EO_OK;
 }
 
@@ -315,20 +315,20 @@ static void note_angle(const struct eo_guess *g, int member)
                scale_name(channel->scale), channel->scale, turns);
 }
 
-static enum eo_code settle_lines(struct eo_guess *g, int member, struct eo_error *error)
+static enum eo_code settle_lines(struct eo_guess *guess, int member, struct eo_error *error)
 {
-  struct eo_track_channel *channel = &g->tracks->channel[member];
+  struct eo_track_channel *channel = &guess->tracks->channel[member];
   char text[80], second[80];
-  const struct eo_column *look = &g->look[channel->column[0]];
-  channel->lines = g->choice->lines[member] > 0 ? g->choice->lines[member]
-                                                : eo_recording_turn(g->recording, channel->column[0]);
+  const struct eo_column *look = &guess->look[channel->column[0]];
+  channel->lines = guess->choice->lines[member] > 0 ? guess->choice->lines[member]
+                                                    : eo_recording_turn(guess->recording, channel->column[0]);
   channel->factor = 1;
   if (!(channel->lines > 0))
     return eo_error_set(error, EO_ERROR_INPUT, "/lines", "Give the %s per turn of the %s's encoder.",
-                        g->kind == EO_LAYOUT_PULSES ? "pulses" : "lines (sine periods)", member_names[member]);
-  if (g->kind == EO_LAYOUT_PULSES) {
-    eo_notes_add(g->notes, "%s is taken as the times of the pulses of the %s.",
-                 eo_layout_label(g, channel->column[0], text, sizeof text), member_names[member]);
+                        guess->kind == EO_LAYOUT_PULSES ? "pulses" : "lines (sine periods)", member_names[member]);
+  if (guess->kind == EO_LAYOUT_PULSES) {
+    eo_notes_add(guess->notes, "%s is taken as the times of the pulses of the %s.",
+                 eo_layout_label(guess, channel->column[0], text, sizeof text), member_names[member]);
     return EO_OK;
   }
   if (look->quantity == EO_QUANTITY_VOLTAGE) {
@@ -338,9 +338,9 @@ static enum eo_code settle_lines(struct eo_guess *g, int member, struct eo_error
     channel->unit = EO_TRACK_MICROAMPERE;
     channel->factor = look->factor * 1e6;
   }
-  eo_notes_add(g->notes, "%s and %s are taken as the sine and cosine tracks of the %s.",
-               eo_layout_label(g, channel->column[0], text, sizeof text),
-               eo_layout_label(g, channel->column[1], second, sizeof second), member_names[member]);
+  eo_notes_add(guess->notes, "%s and %s are taken as the sine and cosine tracks of the %s.",
+               eo_layout_label(guess, channel->column[0], text, sizeof text),
+               eo_layout_label(guess, channel->column[1], second, sizeof second), member_names[member]);
   return EO_OK;
 }
 
@@ -355,115 +355,119 @@ static void note_source(struct eo_guess *g)
   }
 }
 
-static void note_time(const struct eo_guess *g)
+static void note_time(const struct eo_guess *guess)
 {
   char text[80];
   for (int member = 0; member < 2; member++) {
-    const struct eo_layout_clock *clock = &g->clock[member];
-    if (member && clock->column == g->clock[0].column && clock->interval == g->clock[0].interval)
+    const struct eo_layout_clock *clock = &guess->clock[member];
+    if (member && clock->column == guess->clock[0].column && clock->interval == guess->clock[0].interval)
       continue;
     if (clock->column >= 0)
-      eo_notes_add(g->notes, "%s is taken as time in units of %g s: steps of %.6g s.",
-                   eo_layout_label(g, clock->column, text, sizeof text), clock->scale, clock->interval);
-    else if (!(g->choice->sample_rate > 0))
-      eo_notes_add(g->notes, "The file states a sampling rate of %.8g Hz.", 1 / clock->interval);
+      eo_notes_add(guess->notes, "%s is taken as time in units of %g s: steps of %.6g s.",
+                   eo_layout_label(guess, clock->column, text, sizeof text), clock->scale, clock->interval);
+    else if (!(guess->choice->sample_rate > 0))
+      eo_notes_add(guess->notes, "The file states a sampling rate of %.8g Hz.", 1 / clock->interval);
   }
 }
 
-static enum eo_code settle(struct eo_guess *g, struct eo_error *error)
+static enum eo_code settle(struct eo_guess *guess, struct eo_error *error)
 {
   static const enum eo_track tracks[] = {[EO_LAYOUT_ANGLES] = EO_TRACK_ANGLE,
                                          [EO_LAYOUT_SINE_COSINE] = EO_TRACK_SINE_COSINE,
                                          [EO_LAYOUT_PULSES] = EO_TRACK_PULSES};
   for (int member = 0; member < 2; member++) {
-    g->tracks->channel[member].track = tracks[g->kind];
-    enum eo_code code = g->kind == EO_LAYOUT_ANGLES ? find_scale(g, member, error) : settle_lines(g, member, error);
+    guess->tracks->channel[member].track = tracks[guess->kind];
+    enum eo_code code = guess->kind == EO_LAYOUT_ANGLES ? find_scale(guess, member, error)
+                                                        : settle_lines(guess, member, error);
     if (code)
       return code;
-    if (g->kind == EO_LAYOUT_ANGLES)
-      note_angle(g, member);
+    if (guess->kind == EO_LAYOUT_ANGLES)
+      note_angle(guess, member);
   }
   return EO_OK;
 }
 
 /* Pulse times are the values themselves: of a stated clock's ticks, in the unit of the column, or in seconds. */
-static enum eo_code find_pulse_time(struct eo_guess *g, struct eo_error *error)
+static enum eo_code find_pulse_time(struct eo_guess *guess, struct eo_error *error)
 {
-  const struct eo_column *look = &g->look[g->tracks->channel[0].column[0]];
-  double tick = eo_recording_tick(g->recording);
+  const struct eo_column *look = &guess->look[guess->tracks->channel[0].column[0]];
+  double tick = eo_recording_tick(guess->recording);
   char text[80];
-  g->tracks->time_scale = g->choice->time_scale > 0             ? g->choice->time_scale
-                          : look->quantity == EO_QUANTITY_TIME  ? look->factor
-                          : tick > 0                            ? tick
-                          : look->quantity == EO_QUANTITY_COUNT ? 0
-                                                                : 1;
+  guess->tracks->time_scale = guess->choice->time_scale > 0         ? guess->choice->time_scale
+                              : look->quantity == EO_QUANTITY_TIME  ? look->factor
+                              : tick > 0                            ? tick
+                              : look->quantity == EO_QUANTITY_COUNT ? 0
+                                                                    : 1;
   for (int member = 0; member < 2; member++)
-    g->clock[member] = (struct eo_layout_clock){.column = -1, .scale = g->tracks->time_scale};
-  if (g->tracks->time_scale > 0)
+    guess->clock[member] = (struct eo_layout_clock){.column = -1, .scale = guess->tracks->time_scale};
+  if (guess->tracks->time_scale > 0)
     return EO_OK;
   return eo_error_set(error, EO_ERROR_INPUT, "/time_unit",
                       "%s holds ticks of a clock that the file does not state; give "
                       "the seconds of one tick.",
-                      eo_layout_label(g, g->tracks->channel[0].column[0], text, sizeof text));
+                      eo_layout_label(guess, guess->tracks->channel[0].column[0], text, sizeof text));
 }
 
 /* Clocks and scales of the channels that were found. */
-static enum eo_code settle_channels(struct eo_guess *g, struct eo_error *error)
+static enum eo_code settle_channels(struct eo_guess *guess, struct eo_error *error)
 {
-  enum eo_code code = g->kind == EO_LAYOUT_PULSES ? find_pulse_time(g, error) : eo_layout_find_clocks(g, error);
+  enum eo_code code = guess->kind == EO_LAYOUT_PULSES ? find_pulse_time(guess, error)
+                                                      : eo_layout_find_clocks(guess, error);
   for (int member = 0; member < 2; member++)
-    g->increments[member] = are_increments(g, member);
-  note_source(g);
-  if (!code && !g->square)
-    code = settle(g, error);
-  if (!code && !g->square)
-    code = eo_layout_judge_speed(g, error);
-  if (code || g->kind == EO_LAYOUT_PULSES)
+    guess->increments[member] = are_increments(guess, member);
+  note_source(guess);
+  if (!code && !guess->square)
+    code = settle(guess, error);
+  if (!code && !guess->square)
+    code = eo_layout_judge_speed(guess, error);
+  if (code || guess->kind == EO_LAYOUT_PULSES)
     return code;
-  note_time(g);
-  code = eo_layout_compare(g, error);
-  if (!code && g->together) /* a joint column of times is uneven by its nature */
-    code = eo_layout_make_even(g, error);
-  eo_layout_find_beside(g);
-  g->tracks->time_column = g->clock[0].column;
-  g->tracks->time_scale = g->clock[0].column >= 0 ? g->clock[0].scale : 1;
-  g->tracks->interval = g->clock[0].interval;
+  note_time(guess);
+  code = eo_layout_compare(guess, error);
+  if (!code && guess->together) /* a joint column of times is uneven by its nature */
+    code = eo_layout_make_even(guess, error);
+  eo_layout_find_beside(guess);
+  guess->tracks->time_column = guess->clock[0].column;
+  guess->tracks->time_scale = guess->clock[0].column >= 0 ? guess->clock[0].scale : 1;
+  guess->tracks->interval = guess->clock[0].interval;
   return code;
 }
 
-static enum eo_code find(struct eo_guess *g, struct eo_error *error)
+static enum eo_code find(struct eo_guess *guess, struct eo_error *error)
 {
   enum eo_code code = EO_OK;
-  for (int c = 0; !code && c < g->columns; c++)
-    code = eo_column_look(g->recording, c, &g->look[c], error);
+  for (int c = 0; !code && c < guess->columns; c++)
+    code = eo_column_look(guess->recording, c, &guess->look[c], error);
   if (code)
     return code;
-  g->kind = g->choice->kind ? g->choice->kind : looks_like_pulses(g) ? EO_LAYOUT_PULSES : EO_LAYOUT_GUESS_KIND;
-  g->tracks->time_column = -1;
-  eo_layout_mark_times(g);
-  if (g->choice->time && strcmp(g->choice->time, "none") && g->kind != EO_LAYOUT_PULSES) {
+  guess->kind = guess->choice->kind        ? guess->choice->kind
+                : looks_like_pulses(guess) ? EO_LAYOUT_PULSES
+                                           : EO_LAYOUT_GUESS_KIND;
+  guess->tracks->time_column = -1;
+  eo_layout_mark_times(guess);
+  if (guess->choice->time && strcmp(guess->choice->time, "none") && guess->kind != EO_LAYOUT_PULSES) {
     int chosen;
-    code = eo_layout_chosen(g, g->choice->time, "/time", &chosen, error);
+    code = eo_layout_chosen(guess, guess->choice->time, "/time", &chosen, error);
     if (code)
       return code;
-    g->time[chosen] = true;
+    guess->time[chosen] = true;
   }
-  find_candidates(g);
-  guess_kind(g);
-  code = assign(g, error);
-  return code ? code : settle_channels(g, error);
+  find_candidates(guess);
+  guess_kind(guess);
+  code = assign(guess, error);
+  return code ? code : settle_channels(guess, error);
 }
 
 /* Brings the channels to one clock, or decodes them, where that is needed. */
-static enum eo_code replace(struct eo_guess *g, const char *spool_directory, struct eo_recording **recording,
+static enum eo_code replace(struct eo_guess *guess, const char *spool_directory, struct eo_recording **recording,
                             struct eo_error *error)
 {
   struct eo_recording *made = NULL;
   enum eo_code code = EO_OK;
-  if (g->square)
-    code = eo_layout_decode_squares(g, spool_directory, &made, error);
-  else if (eo_layout_needs_align(g))
-    code = eo_layout_align(g, spool_directory, &made, error);
+  if (guess->square)
+    code = eo_layout_decode_squares(guess, spool_directory, &made, error);
+  else if (eo_layout_needs_align(guess))
+    code = eo_layout_align(guess, spool_directory, &made, error);
   if (!code && made) {
     eo_recording_free(*recording);
     *recording = made;
@@ -476,21 +480,21 @@ enum eo_code eo_layout_find(struct eo_recording **recording, const struct eo_lay
                             struct eo_notes *notes, struct eo_error *error)
 {
   static const struct eo_layout_choice none;
-  struct eo_guess *g = calloc(1, sizeof *g);
-  if (!g)
+  struct eo_guess *guess = calloc(1, sizeof *guess);
+  if (!guess)
     return eo_error_memory(error);
   struct eo_tracks found = {0};
-  g->recording = *recording;
-  g->choice = choice ? choice : &none;
-  g->pair = pair;
-  g->tracks = &found;
-  g->notes = notes;
-  g->columns = eo_recording_columns(*recording);
-  enum eo_code code = find(g, error);
+  guess->recording = *recording;
+  guess->choice = choice ? choice : &none;
+  guess->pair = pair;
+  guess->tracks = &found;
+  guess->notes = notes;
+  guess->columns = eo_recording_columns(*recording);
+  enum eo_code code = find(guess, error);
   if (!code)
-    code = replace(g, spool_directory, recording, error);
+    code = replace(guess, spool_directory, recording, error);
   if (!code)
     *tracks = found;
-  free(g);
+  free(guess);
   return code;
 }

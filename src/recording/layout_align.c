@@ -51,29 +51,29 @@ static bool same_clock(const struct eo_layout_clock *a, const struct eo_layout_c
 
 /* Whether two columns of times are equal, and whether rows hold both channels' values: a table with the times of both
    channels has one of them in each row. */
-enum eo_code eo_layout_compare(struct eo_guess *g, struct eo_error *error)
+enum eo_code eo_layout_compare(struct eo_guess *guess, struct eo_error *error)
 {
-  const struct eo_layout_clock *a = &g->clock[0], *b = &g->clock[1];
-  int first_column = g->tracks->channel[0].column[0], second_column = g->tracks->channel[1].column[0];
-  int64_t rows = eo_recording_rows(g->recording), both = 0, one = 0;
-  double *block = malloc(BLOCK * (size_t)g->columns * sizeof *block);
+  const struct eo_layout_clock *a = &guess->clock[0], *b = &guess->clock[1];
+  int first_column = guess->tracks->channel[0].column[0], second_column = guess->tracks->channel[1].column[0];
+  int64_t rows = eo_recording_rows(guess->recording), both = 0, one = 0;
+  double *block = malloc(BLOCK * (size_t)guess->columns * sizeof *block);
   enum eo_code code = block ? EO_OK : eo_error_memory(error);
-  g->equal = true;
+  guess->equal = true;
   for (int64_t first = 0; !code && first < rows; first += BLOCK) {
     int64_t n = rows - first < BLOCK ? rows - first : BLOCK;
-    code = eo_recording_read(g->recording, first, n, block, error);
+    code = eo_recording_read(guess->recording, first, n, block, error);
     for (int64_t i = 0; !code && i < n; i++) {
-      const double *row = block + i * g->columns;
+      const double *row = block + i * guess->columns;
       bool here = !isnan(row[first_column]), there = !isnan(row[second_column]);
       both += here && there;
       one += here != there;
       if (a->column >= 0 && b->column >= 0 && here && there &&
           fabs(row[a->column] * a->scale - row[b->column] * b->scale - b->shift) > 1e-4 * a->interval)
-        g->equal = false;
+        guess->equal = false;
     }
   }
   free(block);
-  g->together = both >= one;
+  guess->together = both >= one;
   return code;
 }
 
@@ -84,23 +84,23 @@ bool eo_layout_needs_align(const struct eo_guess *g)
   return g->kind != EO_LAYOUT_PULSES && (!same || !g->together || g->increments[0] || g->increments[1]);
 }
 
-static enum eo_code open_side(struct side *s, const struct eo_guess *g, int member, struct eo_error *error)
+static enum eo_code open_side(struct side *s, const struct eo_guess *guess, int member, struct eo_error *error)
 {
-  const struct eo_track_channel *channel = &g->tracks->channel[member];
-  s->recording = g->recording;
-  s->clock = g->clock[member];
-  s->sum = g->increments[member];
-  s->keys = g->kind == EO_LAYOUT_SINE_COSINE ? 2 : 1;
+  const struct eo_track_channel *channel = &guess->tracks->channel[member];
+  s->recording = guess->recording;
+  s->clock = guess->clock[member];
+  s->sum = guess->increments[member];
+  s->keys = guess->kind == EO_LAYOUT_SINE_COSINE ? 2 : 1;
   for (int k = 0; k < s->keys; k++)
     s->column[s->columns++] = channel->column[k];
-  s->rows = eo_recording_length(g->recording, channel->column[0]);
-  s->points = s->clock.column < 0 || g->look[s->clock.column].spread < EVEN ? EO_INTERPOLATION_EVEN
-                                                                            : EO_INTERPOLATION_UNEVEN;
-  if (g->kind == EO_LAYOUT_ANGLES && !s->sum && g->look[channel->column[0]].resets) {
-    double turn = eo_column_turn(&g->look[channel->column[0]]);
+  s->rows = eo_recording_length(guess->recording, channel->column[0]);
+  s->points = s->clock.column < 0 || guess->look[s->clock.column].spread < EVEN ? EO_INTERPOLATION_EVEN
+                                                                                : EO_INTERPOLATION_UNEVEN;
+  if (guess->kind == EO_LAYOUT_ANGLES && !s->sum && guess->look[channel->column[0]].resets) {
+    double turn = eo_column_turn(&guess->look[channel->column[0]]);
     s->period[0] = turn > 0 ? turn : EO_TURN / channel->scale;
   }
-  s->block = malloc(BLOCK * (size_t)g->columns * sizeof *s->block);
+  s->block = malloc(BLOCK * (size_t)guess->columns * sizeof *s->block);
   s->time = malloc(HELD * sizeof *s->time);
   s->value = malloc(HELD * CARRIED * sizeof *s->value);
   return s->block && s->time && s->value ? EO_OK : eo_error_memory(error);
@@ -220,26 +220,26 @@ static enum eo_code put_row(struct aligner *a, double t, const double *first, co
 
 /* The gear's values at a time: those of a sample that stands there, else between samples; NULL where it has none. at:
    number of the last sample not after t. */
-static const double *values_at(struct aligner *m, int64_t at, double t, double *values)
+static const double *values_at(struct aligner *aligner, int64_t at, double t, double *values)
 {
-  const struct side *b = &m->side[1];
+  const struct side *b = &aligner->side[1];
   int64_t i = at - b->first, from = i - b->points / 2 + 1;
   double before = b->time[i], step = i + 1 < b->held ? b->time[i + 1] - before : before - b->time[i - 1];
   bool here = fabs(t - before) <= SAME * step, next = i + 1 < b->held && fabs(t - before - step) <= SAME * step;
   if (here || next) {
-    m->places[EO_INTERPOLATION_PLACES]++;
+    aligner->places[EO_INTERPOLATION_PLACES]++;
     return b->value + (here ? i : i + 1) * CARRIED;
   }
   if (t < before || from < 0 || from + b->points > b->held || !is_dense(b, from))
     return NULL; /* at the ends a polynomial swings: only its middle is used */
   interpolate(b, from, t, values);
-  m->places[(int)((t - before) / step * EO_INTERPOLATION_PLACES) % EO_INTERPOLATION_PLACES]++;
+  aligner->places[(int)((t - before) / step * EO_INTERPOLATION_PLACES) % EO_INTERPOLATION_PLACES]++;
   return values;
 }
 
-static enum eo_code align_rows(struct aligner *m, struct eo_error *error)
+static enum eo_code align_rows(struct aligner *aligner, struct eo_error *error)
 {
-  struct side *a = &m->side[0], *b = &m->side[1];
+  struct side *a = &aligner->side[0], *b = &aligner->side[1];
   double values[CARRIED];
   int64_t at = 0;
   enum eo_code code = fill(b, 0, error);
@@ -257,122 +257,125 @@ static enum eo_code align_rows(struct aligner *m, struct eo_error *error)
         break;
       at++;
     }
-    const double *second = !code && b->held > b->points ? values_at(m, at, t, values) : NULL;
-    if (!second && m->kept + m->filled < b->points)
-      m->filled = 0; /* a lone sample at the beginning makes a gap */
+    const double *second = !code && b->held > b->points ? values_at(aligner, at, t, values) : NULL;
+    if (!second && aligner->kept + aligner->filled < b->points)
+      aligner->filled = 0; /* a lone sample at the beginning makes a gap */
     if (second)
-      code = put_row(m, t, a->value + (n - a->first) * CARRIED, second, error);
+      code = put_row(aligner, t, a->value + (n - a->first) * CARRIED, second, error);
   }
-  return code ? code : flush(m, error);
+  return code ? code : flush(aligner, error);
 }
 
 /* Torque and speed go with the side whose clock they share; others are left behind. */
-static void carry_beside(struct eo_guess *g, struct aligner *m)
+static void carry_beside(struct eo_guess *guess, struct aligner *aligner)
 {
-  struct eo_track_beside *beside[4] = {&g->tracks->torque[0], &g->tracks->torque[1], &g->tracks->speed[0],
-                                       &g->tracks->speed[1]};
+  struct eo_track_beside *beside[4] = {&guess->tracks->torque[0], &guess->tracks->torque[1], &guess->tracks->speed[0],
+                                       &guess->tracks->speed[1]};
   for (int i = 0; i < 4; i++) {
     int side = -1;
     for (int s = 0; beside[i]->scale != 0 && s < 2 && side < 0; s++) {
-      struct eo_clock own = eo_recording_clock(g->recording, beside[i]->column);
-      int time = own.column >= 0 ? own.column : eo_layout_pick_time(g, beside[i]->column);
-      bool same = g->tracks->source[s].time >= 0 ? time == g->tracks->source[s].time
-                                                 : fabs(own.interval / g->clock[s].interval - 1) < 1e-6;
-      bool whole = eo_recording_length(g->recording, beside[i]->column) >= m->side[s].rows;
-      side = same && whole && m->side[s].columns < CARRIED ? s : -1;
+      struct eo_clock own = eo_recording_clock(guess->recording, beside[i]->column);
+      int time = own.column >= 0 ? own.column : eo_layout_pick_time(guess, beside[i]->column);
+      bool same = guess->tracks->source[s].time >= 0 ? time == guess->tracks->source[s].time
+                                                     : fabs(own.interval / guess->clock[s].interval - 1) < 1e-6;
+      bool whole = eo_recording_length(guess->recording, beside[i]->column) >= aligner->side[s].rows;
+      side = same && whole && aligner->side[s].columns < CARRIED ? s : -1;
     }
     if (side < 0) {
       beside[i]->scale = 0;
       continue;
     }
-    m->side[side].column[m->side[side].columns++] = beside[i]->column;
+    aligner->side[side].column[aligner->side[side].columns++] = beside[i]->column;
   }
 }
 
 /* How the gear's values stand between its samples, for those who ask what became of its vibration. */
-static void state_places(struct eo_guess *g, const struct aligner *m)
+static void state_places(struct eo_guess *guess, const struct aligner *aligner)
 {
-  struct eo_interpolation *interpolated = &g->tracks->interpolated;
-  int64_t exact = m->places[EO_INTERPOLATION_PLACES], all = exact;
+  struct eo_interpolation *interpolated = &guess->tracks->interpolated;
+  int64_t exact = aligner->places[EO_INTERPOLATION_PLACES], all = exact;
   for (int i = 0; i < EO_INTERPOLATION_PLACES; i++)
-    all += m->places[i];
+    all += aligner->places[i];
   if (exact == all)
     return;
-  const struct side *gear = &m->side[1]; /* all of it has been read */
+  const struct side *gear = &aligner->side[1]; /* all of it has been read */
   interpolated->points = gear->points;
   interpolated->step = (gear->time[gear->held - 1] - gear->begin) / (double)(gear->first + gear->held - 1);
   for (int i = 0; i <= EO_INTERPOLATION_PLACES; i++)
-    interpolated->share[i] = (double)m->places[i] / (double)all;
+    interpolated->share[i] = (double)aligner->places[i] / (double)all;
 }
 
 /* The tracks now speak of the new columns, whose names and units are the old ones. */
-static void rename_tracks(struct eo_guess *g, const struct aligner *m)
+static void rename_tracks(struct eo_guess *guess, const struct aligner *aligner)
 {
   int to = 1, moved[EO_RECORDING_COLUMNS] = {0};
-  eo_recording_set_column(m->out, 0, "time", "s");
+  eo_recording_set_column(aligner->out, 0, "time", "s");
   for (int s = 0; s < 2; s++)
-    for (int c = 0; c < m->side[s].columns; c++) {
-      int old = m->side[s].column[c];
-      eo_recording_set_column(m->out, to, eo_recording_name(g->recording, old), eo_recording_unit(g->recording, old));
+    for (int c = 0; c < aligner->side[s].columns; c++) {
+      int old = aligner->side[s].column[c];
+      eo_recording_set_column(aligner->out, to, eo_recording_name(guess->recording, old),
+                              eo_recording_unit(guess->recording, old));
       moved[old] = to++;
     }
   for (int s = 0; s < 2; s++) {
-    for (int k = 0; k < m->side[s].keys; k++)
-      g->tracks->channel[s].column[k] = moved[g->tracks->channel[s].column[k]];
-    g->tracks->torque[s].column = moved[g->tracks->torque[s].column];
-    g->tracks->speed[s].column = moved[g->tracks->speed[s].column];
+    for (int k = 0; k < aligner->side[s].keys; k++)
+      guess->tracks->channel[s].column[k] = moved[guess->tracks->channel[s].column[k]];
+    guess->tracks->torque[s].column = moved[guess->tracks->torque[s].column];
+    guess->tracks->speed[s].column = moved[guess->tracks->speed[s].column];
   }
-  g->tracks->time_column = 0;
-  g->tracks->time_scale = 1;
-  g->tracks->interval = g->clock[0].interval;
+  guess->tracks->time_column = 0;
+  guess->tracks->time_scale = 1;
+  guess->tracks->interval = guess->clock[0].interval;
 }
 
-static enum eo_code align(struct eo_guess *g, struct aligner *m, const char *spool_directory, struct eo_error *error)
+static enum eo_code align(struct eo_guess *guess, struct aligner *aligner, const char *spool_directory,
+                          struct eo_error *error)
 {
-  carry_beside(g, m);
-  m->columns = 1 + m->side[0].columns + m->side[1].columns;
-  m->rows = malloc(BLOCK * (size_t)m->columns * sizeof *m->rows);
-  enum eo_code code = m->rows ? eo_recording_new(&m->out, m->columns, spool_directory, error) : eo_error_memory(error);
+  carry_beside(guess, aligner);
+  aligner->columns = 1 + aligner->side[0].columns + aligner->side[1].columns;
+  aligner->rows = malloc(BLOCK * (size_t)aligner->columns * sizeof *aligner->rows);
+  enum eo_code code = aligner->rows ? eo_recording_new(&aligner->out, aligner->columns, spool_directory, error)
+                                    : eo_error_memory(error);
   if (!code)
-    code = align_rows(m, error);
+    code = align_rows(aligner, error);
   if (code)
     return code;
-  if (!m->kept)
+  if (!aligner->kept)
     return eo_error_set(error, EO_ERROR_INPUT, "/time",
                         "The times of pinion and gear do not overlap, or one has fewer than %d values.",
-                        m->side[1].points + 1);
+                        aligner->side[1].points + 1);
   for (int s = 0; s < 2; s++)
-    if (g->increments[s])
-      eo_notes_add(g->notes, "The increments of the %s were summed up.", s ? "gear" : "pinion");
-  if (!same_clock(&g->clock[0], &g->clock[1]) || m->kept < m->side[0].rows)
+    if (guess->increments[s])
+      eo_notes_add(guess->notes, "The increments of the %s were summed up.", s ? "gear" : "pinion");
+  if (!same_clock(&guess->clock[0], &guess->clock[1]) || aligner->kept < aligner->side[0].rows)
     eo_notes_add(
-        g->notes,
+        guess->notes,
         "Pinion and gear have times of their own: the gear's values were brought to the times of the pinion's, "
         "which leaves %lld of %lld rows.",
-        (long long)m->kept, (long long)m->side[0].rows);
-  state_places(g, m);
-  rename_tracks(g, m);
+        (long long)aligner->kept, (long long)aligner->side[0].rows);
+  state_places(guess, aligner);
+  rename_tracks(guess, aligner);
   return EO_OK;
 }
 
-enum eo_code eo_layout_align(struct eo_guess *g, const char *spool_directory, struct eo_recording **aligned,
+enum eo_code eo_layout_align(struct eo_guess *guess, const char *spool_directory, struct eo_recording **aligned,
                              struct eo_error *error)
 {
-  struct aligner *m = calloc(1, sizeof *m);
-  if (!m)
+  struct aligner *aligner = calloc(1, sizeof *aligner);
+  if (!aligner)
     return eo_error_memory(error);
-  enum eo_code code = open_side(&m->side[0], g, 0, error);
+  enum eo_code code = open_side(&aligner->side[0], guess, 0, error);
   if (!code)
-    code = open_side(&m->side[1], g, 1, error);
+    code = open_side(&aligner->side[1], guess, 1, error);
   if (!code)
-    code = align(g, m, spool_directory, error);
+    code = align(guess, aligner, spool_directory, error);
   if (code)
-    eo_recording_free(m->out);
+    eo_recording_free(aligner->out);
   else
-    *aligned = m->out;
-  close_side(&m->side[0]);
-  close_side(&m->side[1]);
-  free(m->rows);
-  free(m);
+    *aligned = aligner->out;
+  close_side(&aligner->side[0]);
+  close_side(&aligner->side[1]);
+  free(aligner->rows);
+  free(aligner);
   return code;
 }

@@ -40,19 +40,19 @@ static double factor_of(const struct eo_guess *g, int column)
 }
 
 /* Speed by the clock of the column itself. */
-static double speed_of(const struct eo_guess *g, int column)
+static double speed_of(const struct eo_guess *guess, int column)
 {
-  struct eo_clock stated = eo_recording_clock(g->recording, column);
-  const struct eo_column *look = &g->look[column];
+  struct eo_clock stated = eo_recording_clock(guess->recording, column);
+  const struct eo_column *look = &guess->look[column];
   struct eo_layout_clock clock = {.column = stated.column, .scale = 1, .interval = stated.interval};
   double rows = (double)(look->last - look->first);
   if (clock.column < 0 && !(stated.interval > 0))
-    clock.column = eo_layout_pick_time(g, column);
+    clock.column = eo_layout_pick_time(guess, column);
   if (clock.column < 0 && !(stated.interval > 0))
     return look->step * (double)(look->count - 1) / rows;
-  if (clock.column >= 0 && g->look[clock.column].quantity == EO_QUANTITY_TIME)
-    clock.scale = g->look[clock.column].factor;
-  return eo_layout_rate(g, column, &clock);
+  if (clock.column >= 0 && guess->look[clock.column].quantity == EO_QUANTITY_TIME)
+    clock.scale = guess->look[clock.column].factor;
+  return eo_layout_rate(guess, column, &clock);
 }
 
 /* True when two columns turn in the ratio of the teeth, the first faster or the second. */
@@ -76,16 +76,16 @@ static int unit_points(const struct eo_guess *g, int column)
                              "phi|angle|winkel|encoder|enc|pos|position|theta");
 }
 
-bool eo_layout_find_pair(struct eo_guess *g)
+bool eo_layout_find_pair(struct eo_guess *guess)
 {
   int best = -1, pair[2] = {-1, -1};
-  if (!g->pair || g->pair->teeth[0] < 1 || g->pair->teeth[0] == g->pair->teeth[1])
+  if (!guess->pair || guess->pair->teeth[0] < 1 || guess->pair->teeth[0] == guess->pair->teeth[1])
     return false;
-  for (int i = 0; i < g->candidates; i++)
-    for (int k = i + 1; k < g->candidates; k++) {
-      int a = g->candidate[i], b = g->candidate[k];
-      int points = unit_points(g, a) + unit_points(g, b);
-      if (points <= best || !may_turn(g, a) || !may_turn(g, b) || !fits_teeth(g, a, b))
+  for (int i = 0; i < guess->candidates; i++)
+    for (int k = i + 1; k < guess->candidates; k++) {
+      int a = guess->candidate[i], b = guess->candidate[k];
+      int points = unit_points(guess, a) + unit_points(guess, b);
+      if (points <= best || !may_turn(guess, a) || !may_turn(guess, b) || !fits_teeth(guess, a, b))
         continue;
       best = points;
       pair[0] = a;
@@ -93,14 +93,15 @@ bool eo_layout_find_pair(struct eo_guess *g)
     }
   if (best < 0)
     return false;
-  if (g->candidates > 2) {
+  if (guess->candidates > 2) {
     char text[80], second[80];
-    eo_notes_add(g->notes, "Of %d columns %s and %s turn in the ratio of the teeth.", g->candidates,
-                 eo_layout_label(g, pair[0], text, sizeof text), eo_layout_label(g, pair[1], second, sizeof second));
+    eo_notes_add(guess->notes, "Of %d columns %s and %s turn in the ratio of the teeth.", guess->candidates,
+                 eo_layout_label(guess, pair[0], text, sizeof text),
+                 eo_layout_label(guess, pair[1], second, sizeof second));
   }
-  g->candidates = 2;
-  g->candidate[0] = pair[0];
-  g->candidate[1] = pair[1];
+  guess->candidates = 2;
+  guess->candidate[0] = pair[0];
+  guess->candidate[1] = pair[1];
   return true;
 }
 
@@ -119,16 +120,16 @@ static void take_beside(struct eo_guess *g, int column, enum eo_quantity quantit
   beside[member] = (struct eo_track_beside){stated ? look->factor : usual, column, stated};
 }
 
-void eo_layout_find_beside(struct eo_guess *g)
+void eo_layout_find_beside(struct eo_guess *guess)
 {
-  for (int c = 0; c < g->columns; c++) {
-    bool used = g->time[c] || g->number[c];
+  for (int c = 0; c < guess->columns; c++) {
+    bool used = guess->time[c] || guess->number[c];
     for (int member = 0; member < 2; member++)
-      used = used || c == g->clock[member].column || c == g->tracks->channel[member].column[0] ||
-             (g->kind == EO_LAYOUT_SINE_COSINE && c == g->tracks->channel[member].column[1]);
+      used = used || c == guess->clock[member].column || c == guess->tracks->channel[member].column[0] ||
+             (guess->kind == EO_LAYOUT_SINE_COSINE && c == guess->tracks->channel[member].column[1]);
     if (used)
       continue;
-    take_beside(g, c, EO_QUANTITY_TORQUE, TORQUE_WORDS, 1, g->tracks->torque);
-    take_beside(g, c, EO_QUANTITY_SPEED, SPEED_WORDS, EO_TURN / 60, g->tracks->speed);
+    take_beside(guess, c, EO_QUANTITY_TORQUE, TORQUE_WORDS, 1, guess->tracks->torque);
+    take_beside(guess, c, EO_QUANTITY_SPEED, SPEED_WORDS, EO_TURN / 60, guess->tracks->speed);
   }
 }

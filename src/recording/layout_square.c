@@ -60,29 +60,29 @@ static enum eo_code take_row(struct encoder *e, const double *row, double time, 
   return code;
 }
 
-static enum eo_code find_edges(const struct eo_guess *g, struct encoder encoder[2], struct eo_error *error)
+static enum eo_code find_edges(const struct eo_guess *guess, struct encoder encoder[2], struct eo_error *error)
 {
-  int64_t rows = eo_recording_rows(g->recording);
-  double *block = malloc(BLOCK * (size_t)g->columns * sizeof *block);
+  int64_t rows = eo_recording_rows(guess->recording);
+  double *block = malloc(BLOCK * (size_t)guess->columns * sizeof *block);
   enum eo_code code = block ? EO_OK : eo_error_memory(error);
   for (int64_t first = 0; !code && first < rows; first += BLOCK) {
     int64_t n = rows - first < BLOCK ? rows - first : BLOCK;
-    code = eo_recording_read(g->recording, first, n, block, error);
+    code = eo_recording_read(guess->recording, first, n, block, error);
     for (int64_t i = 0; !code && i < n; i++)
       for (int s = 0; s < 2 && !code; s++) {
-        const double *row = block + i * g->columns;
-        code = take_row(&encoder[s], row, time_of(&g->clock[s], row, first + i) + g->clock[s].shift, error);
+        const double *row = block + i * guess->columns;
+        code = take_row(&encoder[s], row, time_of(&guess->clock[s], row, first + i) + guess->clock[s].shift, error);
       }
   }
   free(block);
   return code;
 }
 
-static enum eo_code check(const struct eo_guess *g, const struct encoder *e, int member, struct eo_error *error)
+static enum eo_code check(const struct eo_guess *guess, const struct encoder *e, int member, struct eo_error *error)
 {
   const char *whose = member ? "gear" : "pinion";
-  double lines = (double)e->edges / (e->tracks == 2 ? 4 : 1), rows = (double)eo_recording_rows(g->recording);
-  if (!(g->choice->lines[member] > 0) && !(eo_recording_turn(g->recording, e->column[0]) > 0))
+  double lines = (double)e->edges / (e->tracks == 2 ? 4 : 1), rows = (double)eo_recording_rows(guess->recording);
+  if (!(guess->choice->lines[member] > 0) && !(eo_recording_turn(guess->recording, e->column[0]) > 0))
     return eo_error_set(error, EO_ERROR_INPUT, "/lines",
                         "The %s's encoder was recorded as a square wave; give its lines per turn.", whose);
   if (lines < 3 || rows / lines < ROWS_PER_LINE)
@@ -129,45 +129,45 @@ static enum eo_code join(const struct encoder encoder[2], const char *spool_dire
   return code;
 }
 
-static void set_tracks(struct eo_guess *g, const struct encoder encoder[2])
+static void set_tracks(struct eo_guess *guess, const struct encoder encoder[2])
 {
   for (int s = 0; s < 2; s++) {
-    double stated = eo_recording_turn(g->recording, encoder[s].column[0]);
-    double lines = g->choice->lines[s] > 0 ? g->choice->lines[s] : stated;
-    g->tracks->channel[s] = (struct eo_track_channel){
+    double stated = eo_recording_turn(guess->recording, encoder[s].column[0]);
+    double lines = guess->choice->lines[s] > 0 ? guess->choice->lines[s] : stated;
+    guess->tracks->channel[s] = (struct eo_track_channel){
         .track = EO_TRACK_PULSES, .column = {s, s}, .lines = lines * (encoder[s].tracks == 2 ? 4 : 1), .factor = 1};
-    g->tracks->torque[s].scale = g->tracks->speed[s].scale = 0;
-    eo_notes_add(g->notes, "%lld edges of the square wave%s of the %s are its pulses, %.6g per turn.",
+    guess->tracks->torque[s].scale = guess->tracks->speed[s].scale = 0;
+    eo_notes_add(guess->notes, "%lld edges of the square wave%s of the %s are its pulses, %.6g per turn.",
                  (long long)encoder[s].edges, encoder[s].tracks == 2 ? "s" : "", s ? "gear" : "pinion",
-                 g->tracks->channel[s].lines);
+                 guess->tracks->channel[s].lines);
   }
-  g->tracks->time_column = -1;
-  g->tracks->time_scale = 1;
-  g->kind = EO_LAYOUT_PULSES;
+  guess->tracks->time_column = -1;
+  guess->tracks->time_scale = 1;
+  guess->kind = EO_LAYOUT_PULSES;
 }
 
-enum eo_code eo_layout_decode_squares(struct eo_guess *g, const char *spool_directory, struct eo_recording **pulses,
+enum eo_code eo_layout_decode_squares(struct eo_guess *guess, const char *spool_directory, struct eo_recording **pulses,
                                       struct eo_error *error)
 {
   struct encoder encoder[2] = {0};
   enum eo_code code = EO_OK;
   for (int s = 0; s < 2 && !code; s++) {
-    encoder[s].tracks = g->kind == EO_LAYOUT_SINE_COSINE ? 2 : 1;
+    encoder[s].tracks = guess->kind == EO_LAYOUT_SINE_COSINE ? 2 : 1;
     for (int k = 0; k < encoder[s].tracks; k++) {
-      int column = g->tracks->channel[s].column[k];
+      int column = guess->tracks->channel[s].column[k];
       encoder[s].column[k] = column;
-      encoder[s].middle[k] = (g->look[column].low + g->look[column].high) / 2;
+      encoder[s].middle[k] = (guess->look[column].low + guess->look[column].high) / 2;
     }
     code = eo_recording_new(&encoder[s].pulses, 1, spool_directory, error);
   }
   if (!code)
-    code = find_edges(g, encoder, error);
+    code = find_edges(guess, encoder, error);
   for (int s = 0; s < 2 && !code; s++)
-    code = check(g, &encoder[s], s, error);
+    code = check(guess, &encoder[s], s, error);
   if (!code)
     code = join(encoder, spool_directory, pulses, error);
   if (!code)
-    set_tracks(g, encoder);
+    set_tracks(guess, encoder);
   eo_recording_free(encoder[0].pulses);
   eo_recording_free(encoder[1].pulses);
   return code;

@@ -130,17 +130,17 @@ void eo_layout_mark_times(struct eo_guess *g)
     any = g->time[c] = is_abscissa(g, c);
 }
 
-int eo_layout_pick_time(const struct eo_guess *g, int channel)
+int eo_layout_pick_time(const struct eo_guess *guess, int channel)
 {
   int best = -1, most = -1;
-  for (int c = 0; c < g->columns; c++) {
-    if (!g->time[c] || eo_recording_length(g->recording, c) < 2)
+  for (int c = 0; c < guess->columns; c++) {
+    if (!guess->time[c] || eo_recording_length(guess->recording, c) < 2)
       continue;
-    int shared = eo_column_shared_words(eo_recording_name(g->recording, c), eo_recording_name(g->recording, channel),
-                                        EO_TIME_WORDS);
-    bool fits = eo_recording_length(g->recording, c) >= eo_recording_length(g->recording, channel);
-    const struct eo_column *look = &g->look[c];
-    double stated = eo_recording_clock(g->recording, channel).interval;
+    int shared = eo_column_shared_words(eo_recording_name(guess->recording, c),
+                                        eo_recording_name(guess->recording, channel), EO_TIME_WORDS);
+    bool fits = eo_recording_length(guess->recording, c) >= eo_recording_length(guess->recording, channel);
+    const struct eo_column *look = &guess->look[c];
+    double stated = eo_recording_clock(guess->recording, channel).interval;
     bool agrees = stated > 0 &&
                   fabs(look->step * (look->quantity == EO_QUANTITY_TIME ? look->factor : 1) / stated - 1) < 0.01;
     bool moves = look->rises > look->count * 9 / 10;
@@ -155,14 +155,14 @@ int eo_layout_pick_time(const struct eo_guess *g, int channel)
 }
 
 /* Nothing tells when the rows were taken; a column whose times do not go on is named. */
-static enum eo_code refuse_times(const struct eo_guess *g, struct eo_error *error)
+static enum eo_code refuse_times(const struct eo_guess *guess, struct eo_error *error)
 {
   char text[80];
-  for (int c = 0; c < g->columns; c++) {
-    const struct eo_column *look = &g->look[c];
-    if (!is_called_time(g, c) || g->number[c] || !(look->falls > 0))
+  for (int c = 0; c < guess->columns; c++) {
+    const struct eo_column *look = &guess->look[c];
+    if (!is_called_time(guess, c) || guess->number[c] || !(look->falls > 0))
       continue;
-    eo_layout_label(g, c, text, sizeof text);
+    eo_layout_label(guess, c, text, sizeof text);
     if (look->falls > 9 * look->rises)
       return eo_error_set(error, EO_ERROR_INPUT, "/time",
                           "The times in %s fall from row to row: the last row stands first. Turn the rows round.",
@@ -185,30 +185,31 @@ static enum eo_code even_clock(struct eo_guess *g, int channel, struct eo_layout
   return clock->interval > 0 ? EO_OK : refuse_times(g, error);
 }
 
-static enum eo_code find_clock(struct eo_guess *g, int member, struct eo_error *error)
+static enum eo_code find_clock(struct eo_guess *guess, int member, struct eo_error *error)
 {
-  struct eo_layout_clock *clock = &g->clock[member];
-  int channel = g->tracks->channel[member].column[0];
-  const char *chosen = member && g->choice->gear_time ? g->choice->gear_time : g->choice->time;
-  *clock = (struct eo_layout_clock){.column = -1, .scale = g->choice->time_scale > 0 ? g->choice->time_scale : 1};
+  struct eo_layout_clock *clock = &guess->clock[member];
+  int channel = guess->tracks->channel[member].column[0];
+  const char *chosen = member && guess->choice->gear_time ? guess->choice->gear_time : guess->choice->time;
+  *clock = (struct eo_layout_clock){.column = -1,
+                                    .scale = guess->choice->time_scale > 0 ? guess->choice->time_scale : 1};
   if (chosen && strcmp(chosen, "none")) {
-    enum eo_code code = eo_layout_chosen(g, chosen, "/time", &clock->column, error);
+    enum eo_code code = eo_layout_chosen(guess, chosen, "/time", &clock->column, error);
     if (code)
       return code;
-  } else if (!chosen && !(g->choice->sample_rate > 0)) {
-    clock->column = eo_recording_clock(g->recording, channel).column;
+  } else if (!chosen && !(guess->choice->sample_rate > 0)) {
+    clock->column = eo_recording_clock(guess->recording, channel).column;
     if (clock->column < 0)
-      clock->column = eo_layout_pick_time(g, channel);
+      clock->column = eo_layout_pick_time(guess, channel);
   }
   if (clock->column < 0)
-    return even_clock(g, channel, clock, error);
-  const struct eo_column *look = &g->look[clock->column];
-  if (!(g->choice->time_scale > 0) && look->quantity == EO_QUANTITY_TIME)
+    return even_clock(guess, channel, clock, error);
+  const struct eo_column *look = &guess->look[clock->column];
+  if (!(guess->choice->time_scale > 0) && look->quantity == EO_QUANTITY_TIME)
     clock->scale = look->factor;
-  else if (!(g->choice->time_scale > 0) && eo_recording_tick(g->recording) > 0 &&
+  else if (!(guess->choice->time_scale > 0) && eo_recording_tick(guess->recording) > 0 &&
            (look->quantity == EO_QUANTITY_COUNT || look->whole))
-    clock->scale = eo_recording_tick(g->recording);
-  if (clock->scale == 1 && !(g->choice->time_scale > 0) && look->quantity == EO_QUANTITY_NONE &&
+    clock->scale = eo_recording_tick(guess->recording);
+  if (clock->scale == 1 && !(guess->choice->time_scale > 0) && look->quantity == EO_QUANTITY_NONE &&
       scale_by_size(look) > 0)
     clock->scale = scale_by_size(look);
   clock->interval = look->step * clock->scale;
@@ -289,33 +290,34 @@ static double scale_by_speed(const struct eo_guess *g, double speed)
   return found > 0 ? found : 0;
 }
 
-enum eo_code eo_layout_judge_speed(struct eo_guess *g, struct eo_error *error)
+enum eo_code eo_layout_judge_speed(struct eo_guess *guess, struct eo_error *error)
 {
   char text[80];
-  bool open[2] = {is_open(g, 0), is_open(g, 1)};
-  if (g->clock[0].column >= 0 && g->look[g->clock[0].column].quantity == EO_QUANTITY_NONE && g->clock[0].scale != 1 &&
-      g->clock[0].scale == scale_by_size(&g->look[g->clock[0].column]))
-    eo_notes_add(g->notes, "%s holds dates as numbers, in %s.",
-                 eo_layout_label(g, g->clock[0].column, text, sizeof text), unit_name(g->clock[0].scale));
-  double speed = pinion_speed(g), low = g->pair ? g->pair->speed[0] : 0, high = g->pair ? g->pair->speed[1] : 0;
+  bool open[2] = {is_open(guess, 0), is_open(guess, 1)};
+  if (guess->clock[0].column >= 0 && guess->look[guess->clock[0].column].quantity == EO_QUANTITY_NONE &&
+      guess->clock[0].scale != 1 && guess->clock[0].scale == scale_by_size(&guess->look[guess->clock[0].column]))
+    eo_notes_add(guess->notes, "%s holds dates as numbers, in %s.",
+                 eo_layout_label(guess, guess->clock[0].column, text, sizeof text), unit_name(guess->clock[0].scale));
+  double speed = pinion_speed(guess), low = guess->pair ? guess->pair->speed[0] : 0,
+         high = guess->pair ? guess->pair->speed[1] : 0;
   if (!(high > 0) || isnan(speed) || (speed > low / FAR && speed < high * FAR))
     return EO_OK;
-  double scale = open[0] ? scale_by_speed(g, speed) : 0;
+  double scale = open[0] ? scale_by_speed(guess, speed) : 0;
   if (scale > 0) {
     for (int member = 0; member < 2; member++)
       if (open[member])
-        set_scale(g, member, scale);
+        set_scale(guess, member, scale);
     eo_notes_add(
-        g->notes,
+        guess->notes,
         "Nothing states the unit of %s; in seconds the pinion would turn at %.3g rpm, far from every load case: "
         "read in %s.",
-        eo_layout_label(g, g->clock[0].column, text, sizeof text), speed * 60 / EO_TURN, unit_name(scale));
+        eo_layout_label(guess, guess->clock[0].column, text, sizeof text), speed * 60 / EO_TURN, unit_name(scale));
     return EO_OK;
   }
-  if (g->choice->time_scale > 0 || g->choice->sample_rate > 0)
+  if (guess->choice->time_scale > 0 || guess->choice->sample_rate > 0)
     return EO_OK;
   return eo_error_set(
-      error, EO_ERROR_INPUT, g->clock[0].column < 0 ? "/sample_rate_Hz" : "/time_unit",
+      error, EO_ERROR_INPUT, guess->clock[0].column < 0 ? "/sample_rate_Hz" : "/time_unit",
       "The pinion would turn at %.3g rpm, a hundred times away from every load case of the design (%.4g "
       "to %.4g rpm): state the unit of the time or the sampling rate, and the unit of the angles.",
       speed * 60 / EO_TURN, low * 60 / EO_TURN, high * 60 / EO_TURN);
@@ -339,16 +341,16 @@ static void add_time(struct line *l, double row, double time)
   l->product += before * (time - l->time);
 }
 
-static enum eo_code pass(const struct eo_guess *g, int column, struct line *l, bool fit, struct eo_error *error)
+static enum eo_code pass(const struct eo_guess *guess, int column, struct line *l, bool fit, struct eo_error *error)
 {
-  int64_t rows = eo_recording_length(g->recording, column);
-  double *block = malloc(BLOCK * (size_t)g->columns * sizeof *block);
+  int64_t rows = eo_recording_length(guess->recording, column);
+  double *block = malloc(BLOCK * (size_t)guess->columns * sizeof *block);
   enum eo_code code = block ? EO_OK : eo_error_memory(error);
   for (int64_t first = 0; !code && first < rows; first += BLOCK) {
     int64_t n = rows - first < BLOCK ? rows - first : BLOCK;
-    code = eo_recording_read(g->recording, first, n, block, error);
+    code = eo_recording_read(guess->recording, first, n, block, error);
     for (int64_t i = 0; !code && i < n; i++) {
-      double time = block[i * g->columns + column];
+      double time = block[i * guess->columns + column];
       if (isnan(time))
         continue;
       if (fit)
@@ -386,18 +388,18 @@ static double resolution(double *step, int64_t count)
   return odd >= FEW ? least : 0;
 }
 
-static enum eo_code find_resolution(const struct eo_guess *g, int column, double *quantum, struct eo_error *error)
+static enum eo_code find_resolution(const struct eo_guess *guess, int column, double *quantum, struct eo_error *error)
 {
-  int64_t rows = eo_recording_length(g->recording, column), count = 0;
+  int64_t rows = eo_recording_length(guess->recording, column), count = 0;
   rows = rows < STEPS ? rows : STEPS;
-  double *step = malloc((size_t)(rows + 1) * sizeof *step), *row = malloc((size_t)g->columns * sizeof *row * BLOCK),
+  double *step = malloc((size_t)(rows + 1) * sizeof *step), *row = malloc((size_t)guess->columns * sizeof *row * BLOCK),
          before = NAN;
   enum eo_code code = step && row ? EO_OK : eo_error_memory(error);
   for (int64_t first = 0; !code && first < rows; first += BLOCK) {
     int64_t n = rows - first < BLOCK ? rows - first : BLOCK;
-    code = eo_recording_read(g->recording, first, n, row, error);
+    code = eo_recording_read(guess->recording, first, n, row, error);
     for (int64_t i = 0; !code && i < n; i++) {
-      double time = row[i * g->columns + column];
+      double time = row[i * guess->columns + column];
       if (!isnan(time - before))
         step[count++] = time - before;
       before = time;
@@ -409,21 +411,21 @@ static enum eo_code find_resolution(const struct eo_guess *g, int column, double
   return code;
 }
 
-enum eo_code eo_layout_make_even(struct eo_guess *g, struct eo_error *error)
+enum eo_code eo_layout_make_even(struct eo_guess *guess, struct eo_error *error)
 {
   char text[80];
   for (int member = 0; member < 2; member++) {
-    struct eo_layout_clock *clock = &g->clock[member];
+    struct eo_layout_clock *clock = &guess->clock[member];
     struct line line = {0};
     double quantum;
     int column = clock->column;
     if (column < 0)
       continue;
-    enum eo_code code = find_resolution(g, column, &quantum, error);
+    enum eo_code code = find_resolution(guess, column, &quantum, error);
     if (!code && quantum > 0)
-      code = pass(g, column, &line, true, error);
+      code = pass(guess, column, &line, true, error);
     if (!code && quantum > 0)
-      code = pass(g, column, &line, false, error);
+      code = pass(guess, column, &line, false, error);
     if (code)
       return code;
     if (!(quantum > 0) || !(line.slope > 0) || line.most > 1.01 * quantum)
@@ -431,10 +433,10 @@ enum eo_code eo_layout_make_even(struct eo_guess *g, struct eo_error *error)
     clock->interval = line.slope * clock->scale;
     clock->start = (line.time - line.slope * line.row) * clock->scale;
     clock->column = -1;
-    if (!member || g->clock[0].start != clock->start)
-      eo_notes_add(g->notes,
+    if (!member || guess->clock[0].start != clock->start)
+      eo_notes_add(guess->notes,
                    "%s only tells steps of %.3g s; within that its rows are even, %.9g s each: the rows count.",
-                   eo_layout_label(g, column, text, sizeof text), quantum * clock->scale, clock->interval);
+                   eo_layout_label(guess, column, text, sizeof text), quantum * clock->scale, clock->interval);
   }
   return EO_OK;
 }

@@ -108,18 +108,19 @@ static enum eo_code read_values(struct matlab *m, matvar_t *v, int64_t first, in
 
 /* Gives each value of a piece to its channel. Only pieces that begin and end with whole runs of channels reach here
    when along > 1. */
-static enum eo_code keep_values(struct matlab *m, const struct table *t, int base, int64_t first, int64_t count,
-                                const void *data, enum matio_classes class, double *values, struct eo_error *error)
+static enum eo_code keep_values(struct matlab *matlab, const struct table *table, int base, int64_t first,
+                                int64_t count, const void *data, enum matio_classes class, double *values,
+                                struct eo_error *error)
 {
-  for (int64_t c = 0; c < t->channels; c++) {
-    int64_t from = t->along == 1 ? c * t->length : c, n = 0;
-    if (t->along == 1)
-      for (int64_t i = first > from ? first : from; i < first + count && i < from + t->length; i++)
+  for (int64_t c = 0; c < table->channels; c++) {
+    int64_t from = table->along == 1 ? c * table->length : c, n = 0;
+    if (table->along == 1)
+      for (int64_t i = first > from ? first : from; i < first + count && i < from + table->length; i++)
         values[n++] = value_at(data, class, i - first);
     else
-      for (int64_t i = 0; i + c < count; i += t->along)
+      for (int64_t i = 0; i + c < count; i += table->along)
         values[n++] = value_at(data, class, i + c);
-    enum eo_code code = eo_recording_append(m->column[base + c], values, n, error);
+    enum eo_code code = eo_recording_append(matlab->column[base + c], values, n, error);
     if (code)
       return code;
   }
@@ -127,24 +128,25 @@ static enum eo_code keep_values(struct matlab *m, const struct table *t, int bas
 }
 
 /* Compressed variables can only be read at once; their size is bounded by that of the file. */
-static enum eo_code copy_values(struct matlab *m, matvar_t *v, const struct table *t, int base, struct eo_error *error)
+static enum eo_code copy_values(struct matlab *matlab, matvar_t *v, const struct table *table, int base,
+                                struct eo_error *error)
 {
-  int64_t total = t->length * t->channels, size = class_size(v->class_type);
-  int64_t piece = v->compression == MAT_COMPRESSION_NONE ? PIECE / t->channels * t->channels : total;
+  int64_t total = table->length * table->channels, size = class_size(v->class_type);
+  int64_t piece = v->compression == MAT_COMPRESSION_NONE ? PIECE / table->channels * table->channels : total;
   if (piece > total)
     piece = total;
-  if (total * size > EO_SOURCE_FREE && total * size / EO_SOURCE_EXPANSION > m->bytes)
+  if (total * size > EO_SOURCE_FREE && total * size / EO_SOURCE_EXPANSION > matlab->bytes)
     return eo_error_set(error, EO_ERROR_INPUT, "",
                         "MATLAB: \"%.60s\" states %lld values; the file has only %lld bytes.", v->name,
-                        (long long)total, (long long)m->bytes);
+                        (long long)total, (long long)matlab->bytes);
   void *data = calloc((size_t)piece, (size_t)size);
   double *values = malloc((size_t)piece * sizeof *values);
   enum eo_code code = data && values ? EO_OK : eo_error_memory(error);
   for (int64_t first = 0; !code && first < total; first += piece) {
     int64_t n = total - first < piece ? total - first : piece;
-    code = read_values(m, v, first, n, data, error);
+    code = read_values(matlab, v, first, n, data, error);
     if (!code)
-      code = keep_values(m, t, base, first, n, data, v->class_type, values, error);
+      code = keep_values(matlab, table, base, first, n, data, v->class_type, values, error);
   }
   free(values);
   free(data);
@@ -157,12 +159,12 @@ static bool is_whole(enum matio_classes class)
 }
 
 /* A text of one row; characters of two bytes beyond ASCII become '?'. */
-static bool text_of(struct matlab *m, matvar_t *v, char *text, size_t size)
+static bool text_of(struct matlab *matlab, matvar_t *v, char *text, size_t size)
 {
   *text = '\0';
   if (!v || v->class_type != MAT_C_CHAR || v->rank != 2 || !v->dims || v->dims[0] > 1 || v->dims[1] >= size)
     return false;
-  if (!v->data && Mat_VarReadDataAll(m->file, v))
+  if (!v->data && Mat_VarReadDataAll(matlab->file, v))
     return false;
   size_t n = v->dims[1];
   if (!v->data || v->nbytes < n * (size_t)v->data_size)
@@ -184,35 +186,35 @@ static void add_number(struct matlab *m, matvar_t *v, const char *path)
     eo_tree_add_number(m->tree, path, value_at(data, v->class_type, 0));
 }
 
-static enum eo_code add_channels(struct matlab *m, matvar_t *v, const char *path, struct eo_error *error)
+static enum eo_code add_channels(struct matlab *matlab, matvar_t *v, const char *path, struct eo_error *error)
 {
   struct table t;
   if (!find_table(v, &t)) {
-    m->left_out++;
+    matlab->left_out++;
     return EO_OK;
   }
   if (t.length == 1) {
-    add_number(m, v, path);
+    add_number(matlab, v, path);
     return EO_OK;
   }
-  int base = eo_tree_add_series(m->tree, path, (int)t.channels, t.length, is_whole(v->class_type));
+  int base = eo_tree_add_series(matlab->tree, path, (int)t.channels, t.length, is_whole(v->class_type));
   if (base < 0) {
-    m->left_out++;
+    matlab->left_out++;
     return EO_OK;
   }
   enum eo_code code = EO_OK;
   for (int c = 0; !code && c < t.channels; c++) {
-    code = eo_recording_new(&m->column[base + c], 1, m->spool_directory, error);
-    if (!code && m->spool_directory)
-      eo_recording_set_memory(m->column[base + c], MEMORY);
+    code = eo_recording_new(&matlab->column[base + c], 1, matlab->spool_directory, error);
+    if (!code && matlab->spool_directory)
+      eo_recording_set_memory(matlab->column[base + c], MEMORY);
   }
-  return code ? code : copy_values(m, v, &t, base, error);
+  return code ? code : copy_values(matlab, v, &t, base, error);
 }
 
 static enum eo_code add_variable(struct matlab *m, matvar_t *v, const char *path, int depth, struct eo_error *error);
 
 /* Structs: "name/field", arrays of them "name(2)/field". */
-static enum eo_code add_struct(struct matlab *m, matvar_t *v, const char *path, int depth, struct eo_error *error)
+static enum eo_code add_struct(struct matlab *matlab, matvar_t *v, const char *path, int depth, struct eo_error *error)
 {
   char *const *names = Mat_VarGetStructFieldnames(v);
   unsigned fields = Mat_VarGetNumberOfFields(v);
@@ -227,76 +229,77 @@ static enum eo_code add_struct(struct matlab *m, matvar_t *v, const char *path, 
                            : snprintf(below, sizeof below, "%s/%s", path, names[i]);
       matvar_t *field = Mat_VarGetStructFieldByName(v, names[i], e);
       if (field && n < (int)sizeof below)
-        code = add_variable(m, field, below, depth + 1, error);
+        code = add_variable(matlab, field, below, depth + 1, error);
     }
   return code;
 }
 
 /* A cell of texts is a list; other cells are channels "name 1", "name 2". */
-static enum eo_code add_cell(struct matlab *m, matvar_t *v, const char *path, int depth, struct eo_error *error)
+static enum eo_code add_cell(struct matlab *matlab, matvar_t *v, const char *path, int depth, struct eo_error *error)
 {
   size_t elements = v->data_size ? v->nbytes / (size_t)v->data_size : 0, used = 0;
   matvar_t **cell = v->data;
   char list[4096] = "", text[EO_RECORDING_NAME];
   bool texts = elements > 0 && cell;
   for (size_t i = 0; texts && i < elements; i++) {
-    texts = text_of(m, cell[i], text, sizeof text) && used + strlen(text) + 2 < sizeof list;
+    texts = text_of(matlab, cell[i], text, sizeof text) && used + strlen(text) + 2 < sizeof list;
     if (texts)
       used += (size_t)snprintf(list + used, sizeof list - used, "%s%s", i ? "\n" : "", text);
   }
   if (texts) {
-    eo_tree_add_list(m->tree, path, list);
+    eo_tree_add_list(matlab->tree, path, list);
     return EO_OK;
   }
   enum eo_code code = EO_OK;
   for (size_t i = 0; !code && cell && i < elements && i < ELEMENTS; i++) {
     char below[EO_TREE_PATH];
     if (cell[i] && snprintf(below, sizeof below, "%s %zu", path, i + 1) < (int)sizeof below)
-      code = add_variable(m, cell[i], below, depth + 1, error);
+      code = add_variable(matlab, cell[i], below, depth + 1, error);
   }
   return code;
 }
 
-static enum eo_code add_variable(struct matlab *m, matvar_t *v, const char *path, int depth, struct eo_error *error)
+static enum eo_code add_variable(struct matlab *matlab, matvar_t *v, const char *path, int depth,
+                                 struct eo_error *error)
 {
   char text[256];
   if (!v || depth > DEPTH)
     return EO_OK;
   switch (v->class_type) {
   case MAT_C_STRUCT:
-    return add_struct(m, v, path, depth, error);
+    return add_struct(matlab, v, path, depth, error);
   case MAT_C_CELL:
-    return add_cell(m, v, path, depth, error);
+    return add_cell(matlab, v, path, depth, error);
   case MAT_C_CHAR:
-    if (text_of(m, v, text, sizeof text))
-      eo_tree_add_text(m->tree, path, text);
+    if (text_of(matlab, v, text, sizeof text))
+      eo_tree_add_text(matlab->tree, path, text);
     return EO_OK;
   case MAT_C_OBJECT:
   case MAT_C_OPAQUE:
   case MAT_C_FUNCTION:
-    eo_notes_add(m->notes,
+    eo_notes_add(matlab->notes,
                  "The variable \"%.60s\" is an object (a table, timetable, timeseries or the like) whose numbers only "
                  "MATLAB reads; save s = table2struct(T, 'ToScalar', true) with the times in seconds instead.",
                  path);
     return EO_OK;
   default:
-    return add_channels(m, v, path, error);
+    return add_channels(matlab, v, path, error);
   }
 }
 
 /* All variables are found before the first is read: reading moves the place where libmatio looks for the next one. */
-static enum eo_code read_variables(struct matlab *m, struct eo_error *error)
+static enum eo_code read_variables(struct matlab *matlab, struct eo_error *error)
 {
   enum eo_code code = EO_OK;
   matvar_t **list = calloc(VARIABLES, sizeof(matvar_t *));
   int count = 0;
   if (!list)
     return eo_error_memory(error);
-  while (count < VARIABLES && (list[count] = Mat_VarReadNextInfo(m->file)))
+  while (count < VARIABLES && (list[count] = Mat_VarReadNextInfo(matlab->file)))
     count++;
   for (int i = 0; !code && i < count; i++)
     if (list[i]->name)
-      code = add_variable(m, list[i], list[i]->name, 0, error);
+      code = add_variable(matlab, list[i], list[i]->name, 0, error);
   for (int i = 0; i < count; i++)
     Mat_VarFree(list[i]);
   free(list);
@@ -345,21 +348,26 @@ static enum eo_code read_column(void *context, int series, int64_t first, int64_
   return code;
 }
 
-static enum eo_code read_file(struct matlab *m, const struct eo_reader_options *options,
+static enum eo_code read_file(struct matlab *matlab, const struct eo_reader_options *options,
                               const struct eo_series_sink *sink, struct eo_notes *notes, struct eo_error *error)
 {
-  m->notes = notes;
-  enum eo_code code = eo_tree_new(&m->tree, error);
+  matlab->notes = notes;
+  enum eo_code code = eo_tree_new(&matlab->tree, error);
   if (!code)
-    code = read_variables(m, error);
+    code = read_variables(matlab, error);
   if (code)
     return code;
-  eo_tree_settle(m->tree, notes);
-  if (m->left_out)
-    eo_notes_add(notes, "%d variable%s %s no channel of real numbers and %s left out.", m->left_out,
-                 m->left_out == 1 ? "" : "s", m->left_out == 1 ? "is" : "are", m->left_out == 1 ? "was" : "were");
-  struct eo_series_file content = {
-      eo_tree_series(m->tree), eo_tree_count(m->tree), m->bytes, options->max_bytes, read_column, m};
+  eo_tree_settle(matlab->tree, notes);
+  if (matlab->left_out)
+    eo_notes_add(notes, "%d variable%s %s no channel of real numbers and %s left out.", matlab->left_out,
+                 matlab->left_out == 1 ? "" : "s", matlab->left_out == 1 ? "is" : "are",
+                 matlab->left_out == 1 ? "was" : "were");
+  struct eo_series_file content = {eo_tree_series(matlab->tree),
+                                   eo_tree_count(matlab->tree),
+                                   matlab->bytes,
+                                   options->max_bytes,
+                                   read_column,
+                                   matlab};
   return eo_series_copy(&content, sink, notes, error);
 }
 
@@ -377,20 +385,21 @@ enum eo_code eo_matlab_read(const char *path, const struct eo_reader_options *op
   enum eo_code code = check_elements(path, &size, error);
   if (code)
     return code;
-  struct matlab *m = calloc(1, sizeof *m);
-  if (!m)
+  struct matlab *matlab = calloc(1, sizeof *matlab);
+  if (!matlab)
     return eo_error_memory(error);
-  m->bytes = size;
-  m->spool_directory = options->spool_directory;
+  matlab->bytes = size;
+  matlab->spool_directory = options->spool_directory;
   Mat_LogInitFunc("easeoff", ignore_message);
-  m->file = Mat_Open(path, MAT_ACC_RDONLY);
-  code = m->file ? read_file(m, options, sink, notes, error)
-                 : eo_error_set(error, EO_ERROR_INPUT, "", "MATLAB: the file cannot be opened; its header is damaged.");
-  if (m->file)
-    Mat_Close(m->file);
+  matlab->file = Mat_Open(path, MAT_ACC_RDONLY);
+  code = matlab->file
+             ? read_file(matlab, options, sink, notes, error)
+             : eo_error_set(error, EO_ERROR_INPUT, "", "MATLAB: the file cannot be opened; its header is damaged.");
+  if (matlab->file)
+    Mat_Close(matlab->file);
   for (int i = 0; i < CHANNELS; i++)
-    eo_recording_free(m->column[i]);
-  eo_tree_free(m->tree);
-  free(m);
+    eo_recording_free(matlab->column[i]);
+  eo_tree_free(matlab->tree);
+  free(matlab);
   return code;
 }

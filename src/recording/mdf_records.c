@@ -245,36 +245,36 @@ static enum eo_code flush(const struct sorter *s, struct region *region, struct 
   return code;
 }
 
-static enum eo_code put_record(const struct sorter *s, struct region *region, struct eo_error *error)
+static enum eo_code put_record(const struct sorter *sorter, struct region *region, struct eo_error *error)
 {
   size_t size = (size_t)region->group->record;
-  enum eo_code code = region->waiting + size > BUFFER ? flush(s, region, error) : EO_OK;
+  enum eo_code code = region->waiting + size > BUFFER ? flush(sorter, region, error) : EO_OK;
   if (!code && size > BUFFER) {
-    code = eo_bytes_write(s->mdf->spool, region->at, s->record, size, error);
+    code = eo_bytes_write(sorter->mdf->spool, region->at, sorter->record, size, error);
     region->at += (int64_t)size;
   } else if (!code) {
-    memcpy(region->buffer + region->waiting, s->record, size);
+    memcpy(region->buffer + region->waiting, sorter->record, size);
     region->waiting += size;
   }
   return code;
 }
 
 /* The kind of the next record; NULL at the end. */
-static enum eo_code next_kind(struct sorter *s, struct region **region, struct eo_error *error)
+static enum eo_code next_kind(struct sorter *sorter, struct region **region, struct eo_error *error)
 {
   unsigned char bytes[8] = {0};
   size_t got;
   *region = NULL;
-  if (!s->number) {
-    *region = s->region;
+  if (!sorter->number) {
+    *region = sorter->region;
     return EO_OK;
   }
-  enum eo_code code = take(&s->stream, bytes, (size_t)s->number, &got, error);
+  enum eo_code code = take(&sorter->stream, bytes, (size_t)sorter->number, &got, error);
   uint64_t number = eo_bytes_64(bytes, false);
-  for (int i = 0; !code && got == (size_t)s->number && i < s->count && !*region; i++)
-    if (s->region[i].group->number == number)
-      *region = &s->region[i];
-  if (!code && got == (size_t)s->number && !*region)
+  for (int i = 0; !code && got == (size_t)sorter->number && i < sorter->count && !*region; i++)
+    if (sorter->region[i].group->number == number)
+      *region = &sorter->region[i];
+  if (!code && got == (size_t)sorter->number && !*region)
     return eo_error_set(error, EO_ERROR_INPUT, "",
                         "MDF: a record has the number %llu, which no group has: the data are damaged.",
                         (unsigned long long)number);
@@ -283,27 +283,27 @@ static enum eo_code next_kind(struct sorter *s, struct region **region, struct e
 
 /* Goes through all records; place: puts them into their regions, else only counts them. A last one that is cut off is
    left out. */
-static enum eo_code pass(struct sorter *s, bool place, struct eo_error *error)
+static enum eo_code pass(struct sorter *sorter, bool place, struct eo_error *error)
 {
   for (;;) {
     struct region *region;
     size_t got;
     unsigned char length[4] = {0};
-    enum eo_code code = next_kind(s, &region, error);
+    enum eo_code code = next_kind(sorter, &region, error);
     if (code || !region)
       return code;
     size_t size = (size_t)region->group->record;
     if (region->group->variable) {
-      code = take(&s->stream, length, sizeof length, &got, error);
+      code = take(&sorter->stream, length, sizeof length, &got, error);
       size = eo_bytes_32(length, false);
     }
     if (!code)
-      code = take(&s->stream, region->group->variable || !place ? NULL : s->record, size, &got, error);
-    if (code || got < size || (!size && !s->number))
+      code = take(&sorter->stream, region->group->variable || !place ? NULL : sorter->record, size, &got, error);
+    if (code || got < size || (!size && !sorter->number))
       return code;
     region->rows++;
     if (place && !region->group->variable)
-      code = put_record(s, region, error);
+      code = put_record(sorter, region, error);
     if (code)
       return code;
   }
@@ -321,33 +321,34 @@ static enum eo_code set_piece(struct eo_mdf_group *group, int file, int64_t at, 
 }
 
 /* Between the passes: each kind gets a region that holds exactly its records. */
-static enum eo_code make_regions(struct sorter *s, struct eo_error *error)
+static enum eo_code make_regions(struct sorter *sorter, struct eo_error *error)
 {
-  enum eo_code code = s->mdf->spool < 0 ? eo_bytes_spool(s->mdf->spool_directory, &s->mdf->spool, error) : EO_OK;
-  for (int i = 0; !code && i < s->count; i++) {
-    struct region *region = &s->region[i];
-    region->at = s->mdf->spooled;
+  enum eo_code code = sorter->mdf->spool < 0 ? eo_bytes_spool(sorter->mdf->spool_directory, &sorter->mdf->spool, error)
+                                             : EO_OK;
+  for (int i = 0; !code && i < sorter->count; i++) {
+    struct region *region = &sorter->region[i];
+    region->at = sorter->mdf->spooled;
     region->group->rows = region->rows;
     if (region->group->variable)
       continue;
-    code = set_piece(region->group, s->mdf->spool, region->at, error);
-    s->mdf->spooled += region->rows * region->group->record;
+    code = set_piece(region->group, sorter->mdf->spool, region->at, error);
+    sorter->mdf->spooled += region->rows * region->group->record;
   }
   return code;
 }
 
-static enum eo_code sort(struct sorter *s, const struct blocks *blocks, struct eo_error *error)
+static enum eo_code sort(struct sorter *sorter, const struct blocks *blocks, struct eo_error *error)
 {
-  enum eo_code code = pass(s, false, error);
+  enum eo_code code = pass(sorter, false, error);
   if (!code)
-    code = make_regions(s, error);
-  s->stream.next = s->stream.in_next = 0;
-  s->stream.at = s->stream.filled = 0;
-  s->stream.blocks = blocks;
+    code = make_regions(sorter, error);
+  sorter->stream.next = sorter->stream.in_next = 0;
+  sorter->stream.at = sorter->stream.filled = 0;
+  sorter->stream.blocks = blocks;
   if (!code)
-    code = pass(s, true, error);
-  for (int i = 0; !code && i < s->count; i++)
-    code = flush(s, &s->region[i], error);
+    code = pass(sorter, true, error);
+  for (int i = 0; !code && i < sorter->count; i++)
+    code = flush(sorter, &sorter->region[i], error);
   return code;
 }
 

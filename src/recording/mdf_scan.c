@@ -106,19 +106,21 @@ static struct numbers numbers_of(const struct eo_mdf_block *block)
 }
 
 /* One number per record, within the record: integers of any width, floating values of 16, 32 or 64 bits. */
-static bool is_number(const struct numbers *n, const struct eo_mdf_group *group)
+static bool is_number(const struct numbers *numbers, const struct eo_mdf_group *group)
 {
-  bool virtual = n->kind == EO_MDF_VIRTUAL_MASTER || n->kind == EO_MDF_VIRTUAL;
-  bool floating = n->type >= 4;
-  if (n->flags & ALL_INVALID)
+  bool virtual = numbers->kind == EO_MDF_VIRTUAL_MASTER || numbers->kind == EO_MDF_VIRTUAL;
+  bool floating = numbers->type >= 4;
+  if (numbers->flags & ALL_INVALID)
     return false;
   if (virtual)
     return true;
-  if ((n->kind != EO_MDF_VALUE && n->kind != EO_MDF_MASTER) || n->type > LAST_TYPE || n->bits < 1 || n->bits > 64)
+  if ((numbers->kind != EO_MDF_VALUE && numbers->kind != EO_MDF_MASTER) || numbers->type > LAST_TYPE ||
+      numbers->bits < 1 || numbers->bits > 64)
     return false;
-  if (floating && n->bits != 16 && n->bits != 32 && n->bits != 64)
+  if (floating && numbers->bits != 16 && numbers->bits != 32 && numbers->bits != 64)
     return false;
-  return n->bit < 8 && (!floating || !n->bit) && n->byte + (n->bit + (int64_t)n->bits + 7) / 8 <= group->data;
+  return numbers->bit < 8 && (!floating || !numbers->bit) &&
+         numbers->byte + (numbers->bit + (int64_t)numbers->bits + 7) / 8 <= group->data;
 }
 
 static void name_unit(struct eo_mdf *mdf, const struct eo_mdf_block *block, const struct numbers *n,

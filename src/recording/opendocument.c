@@ -65,42 +65,42 @@ static double duration(const char *text)
   return seconds;
 }
 
-static void begin_cell(struct document *d, const char **attributes)
+static void begin_cell(struct document *document, const char **attributes)
 {
   const char *type = attribute(attributes, "office:value-type"), *value = attribute(attributes, "office:value"),
              *date = attribute(attributes, "office:date-value"), *time = attribute(attributes, "office:time-value"),
              *repeat = attribute(attributes, "table:number-columns-repeated");
-  d->in_cell = true;
-  d->repeat = repeat ? (int)strtol(repeat, NULL, 10) : 1;
-  d->repeat = d->repeat < 1 ? 1 : d->repeat;
-  snprintf(d->type, sizeof d->type, "%s", type ? type : "");
-  set_value(d, "");
+  document->in_cell = true;
+  document->repeat = repeat ? (int)strtol(repeat, NULL, 10) : 1;
+  document->repeat = document->repeat < 1 ? 1 : document->repeat;
+  snprintf(document->type, sizeof document->type, "%s", type ? type : "");
+  set_value(document, "");
   if (value)
-    set_value(d, value);
+    set_value(document, value);
   else if (date)
-    set_value(d, date);
+    set_value(document, date);
   else if (time) {
     char text[40];
     snprintf(text, sizeof text, "%.9f", duration(time));
-    set_value(d, text);
+    set_value(document, text);
   }
-  d->filled = d->length > 0;
+  document->filled = document->length > 0;
 }
 
 static void XMLCALL begin(void *context, const char *name, const char **attributes)
 {
-  struct document *d = context;
+  struct document *document = context;
   if (!strcmp(name, "table:table")) {
     const char *label = attribute(attributes, "table:name");
-    d->table++;
-    d->numbers = 0;
-    snprintf(d->name, sizeof d->name, "%s", label ? label : "");
+    document->table++;
+    document->numbers = 0;
+    snprintf(document->name, sizeof document->name, "%s", label ? label : "");
   } else if (!strcmp(name, "table:table-row")) {
-    d->column = 0;
+    document->column = 0;
   } else if (!strcmp(name, "table:table-cell") || !strcmp(name, "table:covered-table-cell")) {
-    begin_cell(d, attributes);
+    begin_cell(document, attributes);
   } else if (!strcmp(name, "text:p")) {
-    d->in_paragraph = !d->filled;
+    document->in_paragraph = !document->filled;
   }
 }
 
@@ -117,43 +117,43 @@ static void end_cell(struct document *d)
 
 static void XMLCALL end(void *context, const char *name)
 {
-  struct document *d = context;
+  struct document *document = context;
   if (!strcmp(name, "table:table-cell") || !strcmp(name, "table:covered-table-cell"))
-    end_cell(d);
-  else if (!strcmp(name, "table:table-row") && d->writing && d->table == d->best)
-    eo_sheet_text_row(&d->out);
+    end_cell(document);
+  else if (!strcmp(name, "table:table-row") && document->writing && document->table == document->best)
+    eo_sheet_text_row(&document->out);
   else if (!strcmp(name, "text:p"))
-    d->in_paragraph = false;
-  else if (!strcmp(name, "table:table") && d->numbers > d->most) {
-    d->most = d->numbers;
-    if (!d->writing) {
-      d->best = d->table;
-      memcpy(d->best_name, d->name, sizeof d->name);
+    document->in_paragraph = false;
+  else if (!strcmp(name, "table:table") && document->numbers > document->most) {
+    document->most = document->numbers;
+    if (!document->writing) {
+      document->best = document->table;
+      memcpy(document->best_name, document->name, sizeof document->name);
     }
   }
 }
 
 static bool parse(void *context, struct eo_archive *archive, const char *name)
 {
-  struct document *d = context;
+  struct document *document = context;
   if (strcmp(name, "content.xml"))
     return true;
   XML_Parser parser = XML_ParserCreate(NULL);
   char *bytes = malloc(EO_ARCHIVE_PIECE);
   int64_t got = 1;
-  d->failed = !parser || !bytes;
+  document->failed = !parser || !bytes;
   if (parser) {
-    XML_SetUserData(parser, d);
+    XML_SetUserData(parser, document);
     XML_SetElementHandler(parser, begin, end);
     XML_SetCharacterDataHandler(parser, take_characters);
   }
-  while (!d->failed && got > 0 && (got = eo_archive_read(archive, bytes, EO_ARCHIVE_PIECE)) >= 0)
+  while (!document->failed && got > 0 && (got = eo_archive_read(archive, bytes, EO_ARCHIVE_PIECE)) >= 0)
     if (XML_Parse(parser, bytes, (int)got, got == 0) != XML_STATUS_OK) {
       eo_error_set(archive->error, EO_ERROR_INPUT, "", "The spreadsheet is damaged: %s in line %lu of its content.",
                    XML_ErrorString(XML_GetErrorCode(parser)), (unsigned long)XML_GetCurrentLineNumber(parser));
       got = -1;
     }
-  if (d->failed)
+  if (document->failed)
     eo_error_memory(archive->error);
   if (parser)
     XML_ParserFree(parser);
@@ -163,20 +163,20 @@ static bool parse(void *context, struct eo_archive *archive, const char *name)
 
 enum eo_code eo_opendocument_write(struct eo_archive *archive, FILE *file, char *name, size_t size)
 {
-  struct document *d = calloc(1, sizeof *d);
-  if (!d)
+  struct document *document = calloc(1, sizeof *document);
+  if (!document)
     return eo_error_memory(archive->error);
-  d->archive = archive;
-  d->out.file = file;
-  enum eo_code code = eo_archive_visit(archive, parse, d);
-  if (!code && !d->most)
+  document->archive = archive;
+  document->out.file = file;
+  enum eo_code code = eo_archive_visit(archive, parse, document);
+  if (!code && !document->most)
     code = eo_error_set(archive->error, EO_ERROR_INPUT, "", "No table of the spreadsheet holds numbers.");
   if (!code) {
-    d->writing = true;
-    d->table = 0;
-    code = eo_archive_visit(archive, parse, d);
+    document->writing = true;
+    document->table = 0;
+    code = eo_archive_visit(archive, parse, document);
   }
-  snprintf(name, size, "%s", d->best_name);
-  free(d);
+  snprintf(name, size, "%s", document->best_name);
+  free(document);
   return code;
 }

@@ -182,20 +182,20 @@ bool eo_series_state(struct eo_series *series, const struct eo_stated *stated)
 
 static enum eo_code begin_recording(void *context, const struct eo_series *column, int columns, struct eo_error *error)
 {
-  struct eo_series_recorder *r = context;
-  enum eo_code code = eo_recording_new(&r->recording, columns, r->spool_directory, error);
+  struct eo_series_recorder *recorder = context;
+  enum eo_code code = eo_recording_new(&recorder->recording, columns, recorder->spool_directory, error);
   if (code)
     return code;
-  r->total = 0;
+  recorder->total = 0;
   for (int c = 0; c < columns; c++) {
-    eo_recording_set_column(r->recording, c, column[c].name, column[c].unit);
-    eo_recording_set_length(r->recording, c, column[c].length);
-    eo_recording_set_clock(r->recording, c, &column[c].clock);
-    eo_recording_set_turn(r->recording, c, column[c].turn);
+    eo_recording_set_column(recorder->recording, c, column[c].name, column[c].unit);
+    eo_recording_set_length(recorder->recording, c, column[c].length);
+    eo_recording_set_clock(recorder->recording, c, &column[c].clock);
+    eo_recording_set_turn(recorder->recording, c, column[c].turn);
     if (column[c].tick > 0)
-      eo_recording_set_tick(r->recording, column[c].tick);
-    if (column[c].length > r->total)
-      r->total = column[c].length;
+      eo_recording_set_tick(recorder->recording, column[c].tick);
+    if (column[c].length > recorder->total)
+      recorder->total = column[c].length;
   }
   return EO_OK;
 }

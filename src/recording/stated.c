@@ -259,23 +259,24 @@ static bool is_turn_unit(const char *unit)
 
 /* What a key of one meaning says; folded: in lower case, its unit taken off. */
 static void judge_key(const char *folded, double number, enum eo_quantity quantity, double factor, bool turn_unit,
-                      struct eo_stated *s)
+                      struct eo_stated *stated)
 {
   bool positive = number > 0, time = quantity == EO_QUANTITY_TIME, frequency = quantity == EO_QUANTITY_FREQUENCY;
   bool plain = quantity == EO_QUANTITY_NONE || quantity == EO_QUANTITY_OTHER || quantity == EO_QUANTITY_COUNT;
   bool rate = is_rate(folded), interval = is_interval(folded), tick = is_tick(folded);
   if (plain && (is_turn(folded) || turn_unit) && positive && number < 1e12)
-    s->kind = EO_STATED_TURN, s->value = number;
+    stated->kind = EO_STATED_TURN, stated->value = number;
   else if (tick && positive && (time || frequency || number > 1000))
-    s->kind = EO_STATED_TICK, s->value = time ? number * factor : 1 / (number * factor);
+    stated->kind = EO_STATED_TICK, stated->value = time ? number * factor : 1 / (number * factor);
   else if ((rate || interval) && positive && (time || frequency || plain))
-    s->kind = EO_STATED_INTERVAL, s->value = time || (interval && !frequency) ? number * factor : 1 / (number * factor);
+    stated->kind = EO_STATED_INTERVAL,
+    stated->value = time || (interval && !frequency) ? number * factor : 1 / (number * factor);
   else if (is_start(folded) && (time || plain))
-    s->kind = EO_STATED_START, s->value = number * factor;
+    stated->kind = EO_STATED_START, stated->value = number * factor;
   else if (is_scale(folded) && number != 0)
-    s->kind = EO_STATED_SCALE, s->value = number;
+    stated->kind = EO_STATED_SCALE, stated->value = number;
   else if (is_offset(folded))
-    s->kind = EO_STATED_OFFSET, s->value = number;
+    stated->kind = EO_STATED_OFFSET, stated->value = number;
 }
 
 struct eo_stated eo_stated_read(const char *key, double number, const char *unit)

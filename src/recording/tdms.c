@@ -101,7 +101,7 @@ static enum eo_code read_values(void *context, int number, int64_t first, int64_
 /* Facts of the group, then of the file, for what the channel does not say itself. */
 static void inherit(struct eo_tdms *tdms, int c)
 {
-  struct eo_series *s = &tdms->series[c];
+  struct eo_series *series = &tdms->series[c];
   for (int pass = 0; pass < 2; pass++)
     for (int i = 0; i < tdms->groups; i++) {
       const struct eo_tdms_group *group = &tdms->group[i];
@@ -111,12 +111,12 @@ static void inherit(struct eo_tdms *tdms, int c)
                              tdms->channel[c].path[length] == '/';
       if (!mine)
         continue;
-      if (!(s->clock.interval > 0))
-        s->clock.interval = group->stated.clock.interval;
-      if (s->clock.epoch == EO_CLOCK_NO_EPOCH)
-        s->clock.epoch = group->stated.clock.epoch;
-      s->turn = s->turn > 0 ? s->turn : group->stated.turn;
-      s->tick = s->tick > 0 ? s->tick : group->stated.tick;
+      if (!(series->clock.interval > 0))
+        series->clock.interval = group->stated.clock.interval;
+      if (series->clock.epoch == EO_CLOCK_NO_EPOCH)
+        series->clock.epoch = group->stated.clock.epoch;
+      series->turn = series->turn > 0 ? series->turn : group->stated.turn;
+      series->tick = series->tick > 0 ? series->tick : group->stated.tick;
     }
 }
 

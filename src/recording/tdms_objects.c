@@ -39,14 +39,14 @@ int64_t eo_tdms_type_size(uint32_t type)
 
 /* The scaler of raw DAQmx data: type of the values, their buffer and place in a row of it. Types are numbered on their
    own; the last is a time stamp. */
-static bool take_scaler(struct eo_tdms_reader *r, bool digital, struct eo_tdms_part *part, uint32_t *buffer)
+static bool take_scaler(struct eo_tdms_reader *reader, bool digital, struct eo_tdms_part *part, uint32_t *buffer)
 {
   static const enum eo_tdms_type types[] = {EO_TDMS_UINT8,  EO_TDMS_INT8,  EO_TDMS_UINT16, EO_TDMS_INT16,
                                             EO_TDMS_UINT32, EO_TDMS_INT32, EO_TDMS_UINT64, EO_TDMS_INT64,
                                             EO_TDMS_SINGLE, EO_TDMS_DOUBLE};
   uint32_t type, offset;
-  if (!eo_tdms_take_32(r, &type) || !eo_tdms_take_32(r, buffer) || !eo_tdms_take_32(r, &offset) ||
-      !eo_tdms_take(r, digital ? 5 : 8))
+  if (!eo_tdms_take_32(reader, &type) || !eo_tdms_take_32(reader, buffer) || !eo_tdms_take_32(reader, &offset) ||
+      !eo_tdms_take(reader, digital ? 5 : 8))
     return false;
   part->type = type < sizeof types / sizeof *types ? types[type] : EO_TDMS_TIMESTAMP;
   part->bit = digital ? (int)(offset % 8) : -1;
@@ -58,26 +58,27 @@ static bool take_scaler(struct eo_tdms_reader *r, bool digital, struct eo_tdms_p
 
 /* Where raw DAQmx data are: rows of one or more buffers, one after the other in the chunk. Of several scalers of a
    channel the first counts. */
-static bool take_raw_index(struct eo_tdms_reader *r, bool digital, struct eo_tdms_channel *channel, int number)
+static bool take_raw_index(struct eo_tdms_reader *reader, bool digital, struct eo_tdms_channel *channel, int number)
 {
-  int64_t at = r->at;
+  int64_t at = reader->at;
   uint32_t type, dimension, scalers, widths, width, buffer = 0, other;
   struct eo_tdms_part part = {.channel = number}, ignored;
   const unsigned char *p;
-  if (!channel || !eo_tdms_take_32(r, &type) || !eo_tdms_take_32(r, &dimension) || !(p = eo_tdms_take(r, 8)))
+  if (!channel || !eo_tdms_take_32(reader, &type) || !eo_tdms_take_32(reader, &dimension) ||
+      !(p = eo_tdms_take(reader, 8)))
     goto damaged;
-  uint64_t count = eo_bytes_64(p, r->big);
-  if (!eo_tdms_take_32(r, &scalers) || !scalers || scalers > 64 || count > INT64_MAX >> 24 || dimension != 1)
+  uint64_t count = eo_bytes_64(p, reader->big);
+  if (!eo_tdms_take_32(reader, &scalers) || !scalers || scalers > 64 || count > INT64_MAX >> 24 || dimension != 1)
     goto damaged;
   for (uint32_t i = 0; i < scalers; i++)
-    if (!take_scaler(r, digital, i ? &ignored : &part, i ? &other : &buffer))
+    if (!take_scaler(reader, digital, i ? &ignored : &part, i ? &other : &buffer))
       goto damaged;
-  if (!eo_tdms_take_32(r, &widths) || !widths || widths > 64 || buffer >= widths)
+  if (!eo_tdms_take_32(reader, &widths) || !widths || widths > 64 || buffer >= widths)
     goto damaged;
   int64_t row = 0, place = part.offset;
   part.count = (int64_t)count;
   for (uint32_t i = 0; i < widths; i++) {
-    if (!eo_tdms_take_32(r, &width) || width > 1 << 16)
+    if (!eo_tdms_take_32(reader, &width) || width > 1 << 16)
       goto damaged;
     if (i == buffer)
       part.width = width, part.offset += row * part.count;
@@ -90,7 +91,7 @@ static bool take_raw_index(struct eo_tdms_reader *r, bool digital, struct eo_tdm
   channel->index_known = true;
   return true;
 damaged:
-  eo_error_set(r->error, EO_ERROR_INPUT, "",
+  eo_error_set(reader->error, EO_ERROR_INPUT, "",
                "TDMS: the index of raw DAQmx data at byte %lld is damaged or of a kind that is not read; save the "
                "channels converted (as double).",
                (long long)at);
@@ -98,44 +99,45 @@ damaged:
 }
 
 /* Where the raw data of a channel are: a new index, the one it had (length 0), or none in this segment. */
-static bool take_index(struct eo_tdms_reader *r, struct eo_tdms_channel *channel, int number, bool *data)
+static bool take_index(struct eo_tdms_reader *reader, struct eo_tdms_channel *channel, int number, bool *data)
 {
-  int64_t at = r->at;
+  int64_t at = reader->at;
   uint32_t length, type, dimension;
-  if (!eo_tdms_take_32(r, &length))
+  if (!eo_tdms_take_32(reader, &length))
     return false;
   *data = length != 0xffffffffu;
   if (!*data || (length == 0 && channel && channel->index_known))
     return true;
   if (length == 0x1269 || length == 0x126a)
-    return take_raw_index(r, length == 0x126a, channel, number);
+    return take_raw_index(reader, length == 0x126a, channel, number);
   const unsigned char *p;
   if (length != 20 && length != 28) {
-    eo_error_set(r->error, EO_ERROR_INPUT, "", "TDMS: the index of raw data at byte %lld has a length of %u bytes.",
-                 (long long)at, length);
+    eo_error_set(reader->error, EO_ERROR_INPUT, "",
+                 "TDMS: the index of raw data at byte %lld has a length of %u bytes.", (long long)at, length);
     return false;
   }
-  if (!eo_tdms_take_32(r, &type) || !eo_tdms_take_32(r, &dimension) || !(p = eo_tdms_take(r, 8)))
+  if (!eo_tdms_take_32(reader, &type) || !eo_tdms_take_32(reader, &dimension) || !(p = eo_tdms_take(reader, 8)))
     return false;
-  uint64_t count = eo_bytes_64(p, r->big);
+  uint64_t count = eo_bytes_64(p, reader->big);
   uint64_t size = (uint64_t)eo_tdms_type_size(type) * count;
-  if (length == 28 && (p = eo_tdms_take(r, 8)))
-    size = eo_bytes_64(p, r->big);
+  if (length == 28 && (p = eo_tdms_take(reader, 8)))
+    size = eo_bytes_64(p, reader->big);
   if (!p)
     return false;
   if (count > INT64_MAX / 32 || size > INT64_MAX / 32 || dimension != 1 ||
       (type != EO_TDMS_STRING && !eo_tdms_type_size(type)) || (type == EO_TDMS_STRING) != (length == 28)) {
-    eo_error_set(r->error, EO_ERROR_INPUT, "",
+    eo_error_set(reader->error, EO_ERROR_INPUT, "",
                  "TDMS: the channel at byte %lld has %llu values of type 0x%x in %u dimensions; that is not read.",
                  (long long)at, (unsigned long long)count, type, dimension);
     return false;
   }
   if (!channel) {
-    eo_error_set(r->error, EO_ERROR_INPUT, "", "TDMS: a group at byte %lld holds values of its own.", (long long)at);
+    eo_error_set(reader->error, EO_ERROR_INPUT, "", "TDMS: a group at byte %lld holds values of its own.",
+                 (long long)at);
     return false;
   }
   if (channel->index_known && channel->index.type != type) {
-    eo_error_set(r->error, EO_ERROR_INPUT, "", "TDMS: the channel at byte %lld changes the type of its values.",
+    eo_error_set(reader->error, EO_ERROR_INPUT, "", "TDMS: the channel at byte %lld changes the type of its values.",
                  (long long)at);
     return false;
   }

@@ -9,17 +9,18 @@
 #include <stdlib.h>
 #include <strings.h>
 
-const unsigned char *eo_tdms_take(struct eo_tdms_reader *r, size_t size)
+const unsigned char *eo_tdms_take(struct eo_tdms_reader *reader, size_t size)
 {
-  if (size > r->left) {
-    eo_error_set(r->error, EO_ERROR_INPUT, "",
-                 "TDMS: the metadata at byte %lld end where %zu bytes more should follow.", (long long)r->at, size);
+  if (size > reader->left) {
+    eo_error_set(reader->error, EO_ERROR_INPUT, "",
+                 "TDMS: the metadata at byte %lld end where %zu bytes more should follow.", (long long)reader->at,
+                 size);
     return NULL;
   }
-  const unsigned char *bytes = r->bytes;
-  r->bytes += size;
-  r->left -= size;
-  r->at += (int64_t)size;
+  const unsigned char *bytes = reader->bytes;
+  reader->bytes += size;
+  reader->left -= size;
+  reader->at += (int64_t)size;
   return bytes;
 }
 
@@ -86,26 +87,26 @@ static int64_t epoch_of(const unsigned char *p, bool big)
                                                        : EO_CLOCK_NO_EPOCH;
 }
 
-static bool take_value(struct eo_tdms_reader *r, struct property *value)
+static bool take_value(struct eo_tdms_reader *reader, struct property *value)
 {
   uint32_t type;
   *value = (struct property){.number = NAN, .epoch = EO_CLOCK_NO_EPOCH};
-  if (!eo_tdms_take_32(r, &type))
+  if (!eo_tdms_take_32(reader, &type))
     return false;
   if (type == EO_TDMS_STRING)
-    return eo_tdms_take_string(r, &value->text, &value->length);
+    return eo_tdms_take_string(reader, &value->text, &value->length);
   int64_t size = eo_tdms_type_size(type);
   if (!size) {
-    eo_error_set(r->error, EO_ERROR_INPUT, "", "TDMS: the property before byte %lld is of the unknown type %u.",
-                 (long long)r->at, type);
+    eo_error_set(reader->error, EO_ERROR_INPUT, "", "TDMS: the property before byte %lld is of the unknown type %u.",
+                 (long long)reader->at, type);
     return false;
   }
-  const unsigned char *p = eo_tdms_take(r, (size_t)size);
+  const unsigned char *p = eo_tdms_take(reader, (size_t)size);
   if (!p)
     return false;
-  value->number = eo_tdms_number(type, p, r->big);
+  value->number = eo_tdms_number(type, p, reader->big);
   if (type == EO_TDMS_TIMESTAMP)
-    value->epoch = epoch_of(p, r->big);
+    value->epoch = epoch_of(p, reader->big);
   return true;
 }
 
@@ -225,17 +226,17 @@ static void use_property(struct eo_tdms_channel *channel, struct eo_series *seri
     use_fact(series, name, value);
 }
 
-bool eo_tdms_take_properties(struct eo_tdms_reader *r, struct eo_tdms_channel *channel, struct eo_series *series)
+bool eo_tdms_take_properties(struct eo_tdms_reader *reader, struct eo_tdms_channel *channel, struct eo_series *series)
 {
   uint32_t count;
-  if (!eo_tdms_take_32(r, &count))
+  if (!eo_tdms_take_32(reader, &count))
     return false;
   for (uint32_t i = 0; i < count; i++) {
     const char *text;
     char name[128];
     uint32_t length;
     struct property value;
-    if (!eo_tdms_take_string(r, &text, &length) || !take_value(r, &value))
+    if (!eo_tdms_take_string(reader, &text, &length) || !take_value(reader, &value))
       return false;
     snprintf(name, sizeof name, "%.*s", (int)(length < sizeof name ? length : 0), text);
     if (channel)

@@ -12,18 +12,18 @@
 #define KEY 96
 #define MARKS " \t:=;,|\"([{<>)]}'"
 
-void eo_header_split(struct eo_header *h, const struct eo_text_format *f, const char *head)
+void eo_header_split(struct eo_header *header, const struct eo_text_format *f, const char *head)
 {
   const char *last = head + f->first_byte;
-  h->lines = 0;
+  header->lines = 0;
   for (const char *start = head + f->header_byte; start < last;) {
     const char *end = memchr(start, f->line_end, (size_t)(last - start));
     end = end ? end : last;
     const char *comment = eo_text_comment(start, end, f->separator), *from = comment ? comment : start;
     if (!eo_text_empty(from, end)) {
-      if (h->lines == EO_HEADER_LINES)
-        memmove(h->line, h->line + 1, (size_t)--h->lines * sizeof *h->line);
-      h->line[h->lines++] = (struct eo_header_line){from, end};
+      if (header->lines == EO_HEADER_LINES)
+        memmove(header->line, header->line + 1, (size_t)--header->lines * sizeof *header->line);
+      header->line[header->lines++] = (struct eo_header_line){from, end};
     }
     start = end + 1;
   }
@@ -38,15 +38,15 @@ static const char *skip_digits(const char *p, const char *end)
 
 /* A number of the header. A comma with digits behind it is a decimal comma wherever commas part no cells or nothing
    else makes sense of "0,00025"; before groups of three of a file with decimal points it marks thousands. */
-static const char *number_at(const struct eo_text_format *f, const char *p, const char *end, double *value)
+static const char *number_at(const struct eo_text_format *format, const char *p, const char *end, double *value)
 {
   const char *after = eo_decimal_read(p, '.', value);
   if (!after || after >= end || *after != ',' || !isdigit((unsigned char)after[1]) ||
       memchr(p, '.', (size_t)(after - p)))
     return after;
   const char *group = skip_digits(after + 1, end);
-  bool thousands = group - after == 4 && *value >= 1 && *value < 1000 && f->point == '.';
-  if (f->separator == ',' && *value != 0)
+  bool thousands = group - after == 4 && *value >= 1 && *value < 1000 && format->point == '.';
+  if (format->separator == ',' && *value != 0)
     return after;
   if (!thousands)
     return eo_decimal_read(p, ',', value);
@@ -80,21 +80,21 @@ static const char *unit_behind(const char *p, const char *end, char *unit, size_
   return last;
 }
 
-static void use_fact(struct eo_text_format *f, const struct eo_stated *s)
+static void use_fact(struct eo_text_format *format, const struct eo_stated *s)
 {
-  for (int c = 0; c < f->cells; c++) {
-    int member = eo_stated_member(f->name[c]);
+  for (int c = 0; c < format->cells; c++) {
+    int member = eo_stated_member(format->name[c]);
     if (s->member >= 0 && member >= 0 && member != s->member)
       continue;
-    if (s->kind == EO_STATED_INTERVAL && !(f->clock[c].interval > 0))
-      f->clock[c].interval = s->value;
+    if (s->kind == EO_STATED_INTERVAL && !(format->clock[c].interval > 0))
+      format->clock[c].interval = s->value;
     else if (s->kind == EO_STATED_START)
-      f->clock[c].start = s->value;
-    else if (s->kind == EO_STATED_TURN && !(f->turn[c] > 0))
-      f->turn[c] = s->value;
+      format->clock[c].start = s->value;
+    else if (s->kind == EO_STATED_TURN && !(format->turn[c] > 0))
+      format->turn[c] = s->value;
   }
   if (s->kind == EO_STATED_TICK)
-    f->tick = s->value;
+    format->tick = s->value;
 }
 
 /* The key as it stands in its cell, else with what is before it in the line. */
@@ -144,7 +144,7 @@ static void use_moment(struct begin *begin, const char *from, const char *at, co
 }
 
 /* Every number of a line with the words before and behind it. */
-static void take_facts(struct eo_text_format *f, const struct eo_header_line *line, struct begin *begin)
+static void take_facts(struct eo_text_format *format, const struct eo_header_line *line, struct begin *begin)
 {
   const char *from = line->start;
   for (const char *p = line->start; p < line->end; p++) {
@@ -160,7 +160,7 @@ static void take_facts(struct eo_text_format *f, const struct eo_header_line *li
       from = p = after;
       continue;
     }
-    after = number_at(f, p, line->end, &value);
+    after = number_at(format, p, line->end, &value);
     if (!after || after > line->end)
       continue;
     behind = unit_behind(after, line->end, unit, sizeof unit);
@@ -168,7 +168,7 @@ static void take_facts(struct eo_text_format *f, const struct eo_header_line *li
     if (!s.kind)
       s = read_fact(from, p, value, "");
     if (s.kind) {
-      use_fact(f, &s);
+      use_fact(format, &s);
       from = behind;
     }
     p = after - 1;
@@ -181,81 +181,81 @@ static void copy_cell(char *to, size_t size, const struct eo_cell *cell)
 }
 
 /* Names in one line and their numbers in the next: "..., Start, Increment" over "..., 0, 2.5e-4". */
-static void take_below(struct eo_text_format *f, const struct eo_header_line *names,
+static void take_below(struct eo_text_format *format, const struct eo_header_line *names,
                        const struct eo_header_line *values)
 {
   struct eo_cell name, value;
   const char *at = names->start, *below = values->start;
-  while (eo_text_next_cell(&at, names->end, f->separator, &name) &&
-         eo_text_next_cell(&below, values->end, f->separator, &value)) {
+  while (eo_text_next_cell(&at, names->end, format->separator, &name) &&
+         eo_text_next_cell(&below, values->end, format->separator, &value)) {
     char key[KEY];
     double number;
-    const char *end = value.length ? number_at(f, value.text, value.text + value.length, &number) : NULL;
+    const char *end = value.length ? number_at(format, value.text, value.text + value.length, &number) : NULL;
     copy_cell(key, sizeof key, &name);
     if (end != value.text + value.length)
       continue;
     struct eo_stated s = eo_stated_read(key, number, "");
-    use_fact(f, &s);
+    use_fact(format, &s);
   }
 }
 
 /* "Delta_X  2.5E-4    3E-4": a key and a number for each column, in the places of the columns. */
-static void take_for_columns(struct eo_text_format *f, const struct eo_header_line *line)
+static void take_for_columns(struct eo_text_format *format, const struct eo_header_line *line)
 {
   struct eo_cell cell;
   char key[KEY];
   struct eo_stated stated[EO_TEXT_CELLS] = {0};
   int count = 0;
   const char *at = line->start;
-  if (f->separator == ' ' || !eo_text_next_cell(&at, line->end, f->separator, &cell))
+  if (format->separator == ' ' || !eo_text_next_cell(&at, line->end, format->separator, &cell))
     return;
   copy_cell(key, sizeof key, &cell);
-  for (int c = 1; c < f->cells && eo_text_next_cell(&at, line->end, f->separator, &cell); c++) {
+  for (int c = 1; c < format->cells && eo_text_next_cell(&at, line->end, format->separator, &cell); c++) {
     double number;
-    if (!cell.length || number_at(f, cell.text, cell.text + cell.length, &number) != cell.text + cell.length)
+    if (!cell.length || number_at(format, cell.text, cell.text + cell.length, &number) != cell.text + cell.length)
       continue;
     stated[c] = eo_stated_read(key, number, "");
     count += stated[c].kind != EO_STATED_NOTHING;
   }
-  for (int c = 1; c < f->cells && count > 1; c++) {
+  for (int c = 1; c < format->cells && count > 1; c++) {
     if (stated[c].kind == EO_STATED_INTERVAL)
-      f->clock[c].interval = stated[c].value;
+      format->clock[c].interval = stated[c].value;
     if (stated[c].kind == EO_STATED_START)
-      f->clock[c].start = stated[c].value;
+      format->clock[c].start = stated[c].value;
     if (stated[c].kind == EO_STATED_TURN)
-      f->turn[c] = stated[c].value;
+      format->turn[c] = stated[c].value;
   }
 }
 
 /* What is stated for one channel only holds for those of which nothing is said. */
-static void fill_clocks(struct eo_text_format *f)
+static void fill_clocks(struct eo_text_format *format)
 {
   double interval = 0, turn = 0;
-  for (int c = 0; c < f->cells; c++) {
-    interval = interval > 0 ? interval : f->clock[c].interval;
-    turn = turn > 0 ? turn : f->turn[c];
+  for (int c = 0; c < format->cells; c++) {
+    interval = interval > 0 ? interval : format->clock[c].interval;
+    turn = turn > 0 ? turn : format->turn[c];
   }
-  for (int c = 0; c < f->cells; c++) {
-    if (!(f->clock[c].interval > 0))
-      f->clock[c].interval = interval;
-    if (!(f->turn[c] > 0) && eo_stated_member(f->name[c]) < 0)
-      f->turn[c] = turn;
+  for (int c = 0; c < format->cells; c++) {
+    if (!(format->clock[c].interval > 0))
+      format->clock[c].interval = interval;
+    if (!(format->turn[c] > 0) && eo_stated_member(format->name[c]) < 0)
+      format->turn[c] = turn;
   }
 }
 
-void eo_header_facts(const struct eo_header *h, struct eo_text_format *f, int names)
+void eo_header_facts(const struct eo_header *header, struct eo_text_format *format, int names)
 {
   struct begin begin = {0};
-  for (int i = 0; i < h->lines; i++) {
+  for (int i = 0; i < header->lines; i++) {
     if (i != names)
-      take_facts(f, &h->line[i], &begin);
-    if (i + 1 < h->lines && f->separator != ' ')
-      take_below(f, &h->line[i], &h->line[i + 1]);
+      take_facts(format, &header->line[i], &begin);
+    if (i + 1 < header->lines && format->separator != ' ')
+      take_below(format, &header->line[i], &header->line[i + 1]);
   }
-  for (int i = 0; i < h->lines; i++)
-    take_for_columns(f, &h->line[i]);
-  fill_clocks(f);
+  for (int i = 0; i < header->lines; i++)
+    take_for_columns(format, &header->line[i]);
+  fill_clocks(format);
   if (begin.moment.has_day)
-    for (int c = 0; c < f->cells; c++)
-      f->clock[c].epoch = eo_moment_epoch(&begin.moment);
+    for (int c = 0; c < format->cells; c++)
+      format->clock[c].epoch = eo_moment_epoch(&begin.moment);
 }

@@ -194,72 +194,74 @@ static enum eo_code no_table(const struct lines *lines, const char *head, struct
 
 /* What each place holds, by the rows of the run: the first cell that is not empty decides, and one hexadecimal number
    makes a place hexadecimal. */
-static void find_content(struct eo_text_format *f, const struct lines *lines, const struct run *run)
+static void find_content(struct eo_text_format *format, const struct lines *lines, const struct run *run)
 {
   bool known[EO_TEXT_CELLS] = {false};
-  for (int c = 0; c < f->cells; c++)
-    f->content[c] = EO_TEXT_NUMBER;
+  for (int c = 0; c < format->cells; c++)
+    format->content[c] = EO_TEXT_NUMBER;
   for (int i = run->first; i < lines->count && i < run->first + run->lines; i++) {
-    struct shape shape = shape_of(&lines->line[i], f->separator, f->point);
+    struct shape shape = shape_of(&lines->line[i], format->separator, format->point);
     struct eo_cell cell;
     double value;
     const char *at = lines->line[i].start;
     if (!same_shape(&run->shape, &shape))
       continue;
-    for (int c = 0; c < f->cells && eo_text_next_cell(&at, lines->line[i].end, f->separator, &cell); c++) {
-      enum eo_cell_kind kind = eo_text_cell_value(&cell, f->point, &value);
+    for (int c = 0; c < format->cells && eo_text_next_cell(&at, lines->line[i].end, format->separator, &cell); c++) {
+      enum eo_cell_kind kind = eo_text_cell_value(&cell, format->point, &value);
       if (kind == EO_CELL_HEX)
-        f->content[c] = EO_TEXT_HEX;
+        format->content[c] = EO_TEXT_HEX;
       else if (!known[c] && kind != EO_CELL_MISSING)
-        f->content[c] = kind == EO_CELL_TEXT     ? EO_TEXT_WORDS
-                        : kind == EO_CELL_MOMENT ? EO_TEXT_MOMENT
-                        : kind == EO_CELL_UNIT   ? EO_TEXT_UNIT
-                                                 : EO_TEXT_NUMBER;
+        format->content[c] = kind == EO_CELL_TEXT     ? EO_TEXT_WORDS
+                             : kind == EO_CELL_MOMENT ? EO_TEXT_MOMENT
+                             : kind == EO_CELL_UNIT   ? EO_TEXT_UNIT
+                                                      : EO_TEXT_NUMBER;
       known[c] = known[c] || kind != EO_CELL_MISSING;
     }
   }
 }
 
 /* A date beside a time of day makes one moment with it. Dates alone tell no time between rows. */
-static void join_dates(struct eo_text_format *f, const struct line *row)
+static void join_dates(struct eo_text_format *format, const struct line *row)
 {
   struct eo_moment moment[EO_TEXT_CELLS] = {0};
   struct eo_cell cell;
   const char *at = row->start;
-  for (int c = 0; c < f->cells && eo_text_next_cell(&at, row->end, f->separator, &cell); c++) {
-    f->date[c] = -1;
-    if (f->content[c] == EO_TEXT_MOMENT)
+  for (int c = 0; c < format->cells && eo_text_next_cell(&at, row->end, format->separator, &cell); c++) {
+    format->date[c] = -1;
+    if (format->content[c] == EO_TEXT_MOMENT)
       eo_moment_read(cell.text, cell.length, &moment[c]);
   }
-  for (int c = 0; c < f->cells; c++)
+  for (int c = 0; c < format->cells; c++)
     if (moment[c].has_day && !moment[c].has_time) {
-      int time = c + 1 < f->cells && moment[c + 1].has_time && !moment[c + 1].has_day ? c + 1
-                 : c > 0 && moment[c - 1].has_time && !moment[c - 1].has_day          ? c - 1
-                                                                                      : -1;
-      f->content[c] = time < 0 ? EO_TEXT_WORDS : EO_TEXT_DATE;
+      int time = c + 1 < format->cells && moment[c + 1].has_time && !moment[c + 1].has_day ? c + 1
+                 : c > 0 && moment[c - 1].has_time && !moment[c - 1].has_day               ? c - 1
+                                                                                           : -1;
+      format->content[c] = time < 0 ? EO_TEXT_WORDS : EO_TEXT_DATE;
       if (time >= 0)
-        f->date[time] = c;
+        format->date[time] = c;
     }
 }
 
-static void settle_content(struct eo_text_format *f, const struct lines *lines, const struct run *run)
+static void settle_content(struct eo_text_format *format, const struct lines *lines, const struct run *run)
 {
-  find_content(f, lines, run);
-  join_dates(f, &lines->line[run->first]);
-  f->plain = true;
+  find_content(format, lines, run);
+  join_dates(format, &lines->line[run->first]);
+  format->plain = true;
   struct eo_cell cell;
   const char *at = lines->line[run->first].start;
-  for (int c = 0; c < f->cells && eo_text_next_cell(&at, lines->line[run->first].end, f->separator, &cell); c++)
-    if (f->content[c] == EO_TEXT_UNIT)
-      eo_text_cell_unit(&cell, f->point, f->unit[c], (int)sizeof f->unit[c]);
-  for (int c = 0; c < f->cells; c++) {
-    f->columns += f->content[c] != EO_TEXT_WORDS && f->content[c] != EO_TEXT_DATE;
-    f->plain = f->plain && f->content[c] == EO_TEXT_NUMBER;
+  for (int c = 0; c < format->cells && eo_text_next_cell(&at, lines->line[run->first].end, format->separator, &cell);
+       c++)
+    if (format->content[c] == EO_TEXT_UNIT)
+      eo_text_cell_unit(&cell, format->point, format->unit[c], (int)sizeof format->unit[c]);
+  for (int c = 0; c < format->cells; c++) {
+    format->columns += format->content[c] != EO_TEXT_WORDS && format->content[c] != EO_TEXT_DATE;
+    format->plain = format->plain && format->content[c] == EO_TEXT_NUMBER;
   }
 }
 
 /* Tries every way of reading that the choice leaves; the earlier one wins when two are as good. */
-static struct run best_run(struct eo_text_format *f, const struct lines *lines, const struct eo_text_choice *choice)
+static struct run best_run(struct eo_text_format *format, const struct lines *lines,
+                           const struct eo_text_choice *choice)
 {
   static const char ways[][2] = {{'\t', '.'}, {';', '.'}, {'|', '.'}, {',', '.'}, {' ', '.'},
                                  {'\t', ','}, {';', ','}, {'|', ','}, {' ', ','}, {',', ','}};
@@ -271,13 +273,13 @@ static struct run best_run(struct eo_text_format *f, const struct lines *lines, 
     if (run.score <= best.score)
       continue;
     best = run;
-    f->separator = ways[i][0];
-    f->point = ways[i][1];
+    format->separator = ways[i][0];
+    format->point = ways[i][1];
   }
   return best;
 }
 
-static enum eo_code guess_from(struct eo_text_format *f, struct lines *lines, const char *head,
+static enum eo_code guess_from(struct eo_text_format *format, struct lines *lines, const char *head,
                                const struct eo_text_choice *choice, struct eo_error *error)
 {
   int skipped = 0;
@@ -290,17 +292,17 @@ static enum eo_code guess_from(struct eo_text_format *f, struct lines *lines, co
     lines->count -= skipped;
     memmove(lines->line, lines->line + skipped, (size_t)lines->count * sizeof *lines->line);
   }
-  struct run run = best_run(f, lines, choice);
+  struct run run = best_run(format, lines, choice);
   if (!run.lines)
     return no_table(lines, head, error);
-  f->cells = run.shape.cells;
-  settle_content(f, lines, &run);
-  if (f->columns < 1 || f->columns > EO_RECORDING_COLUMNS || f->cells >= EO_TEXT_CELLS)
+  format->cells = run.shape.cells;
+  settle_content(format, lines, &run);
+  if (format->columns < 1 || format->columns > EO_RECORDING_COLUMNS || format->cells >= EO_TEXT_CELLS)
     return eo_error_set(error, EO_ERROR_INPUT, "",
-                        "The rows of the text have %d cells from line %d on; at most %d columns are read.", f->cells,
-                        run.first + skipped + 1, EO_RECORDING_COLUMNS);
-  f->first_line = run.first + skipped + 1;
-  f->first_byte = (size_t)(lines->line[run.first].start - head);
+                        "The rows of the text have %d cells from line %d on; at most %d columns are read.",
+                        format->cells, run.first + skipped + 1, EO_RECORDING_COLUMNS);
+  format->first_line = run.first + skipped + 1;
+  format->first_byte = (size_t)(lines->line[run.first].start - head);
   return EO_OK;
 }
 

@@ -108,11 +108,11 @@ static int names_score(const struct eo_header_line *line, char separator, int ce
   return filled > 1 && equal == filled ? 0 : score;
 }
 
-static void take_units(struct eo_text_format *f, const struct eo_header_line *line, char separator)
+static void take_units(struct eo_text_format *format, const struct eo_header_line *line, char separator)
 {
   struct eo_cell cell;
   const char *at = line->start;
-  for (int c = 0; c < f->cells && eo_text_next_cell(&at, line->end, separator, &cell); c++) {
+  for (int c = 0; c < format->cells && eo_text_next_cell(&at, line->end, separator, &cell); c++) {
     char text[EO_RECORDING_UNIT + 2];
     double factor;
     copy_cell(text, sizeof text, &cell);
@@ -120,35 +120,35 @@ static void take_units(struct eo_text_format *f, const struct eo_header_line *li
     bool bracketed = length >= 2 && text[0] == '[' && text[length - 1] == ']';
     if (!cell.length || (!bracketed && eo_unit_find(text, &factor) == EO_QUANTITY_NONE))
       continue;
-    snprintf(f->unit[c], sizeof f->unit[c], "%.*s", (int)(bracketed ? length - 2 : length), text + bracketed);
+    snprintf(format->unit[c], sizeof format->unit[c], "%.*s", (int)(bracketed ? length - 2 : length), text + bracketed);
   }
 }
 
-static void take_names(struct eo_text_format *f, const struct eo_header_line *line, char separator)
+static void take_names(struct eo_text_format *format, const struct eo_header_line *line, char separator)
 {
   struct eo_cell cell;
   const char *at = line->start;
-  for (int c = 0; c < f->cells && eo_text_next_cell(&at, line->end, separator, &cell); c++) {
+  for (int c = 0; c < format->cells && eo_text_next_cell(&at, line->end, separator, &cell); c++) {
     char label[EO_RECORDING_NAME + EO_RECORDING_UNIT], unit[EO_RECORDING_UNIT];
     copy_cell(label, sizeof label, &cell);
-    if (*f->unit[c])
-      snprintf(f->name[c], sizeof f->name[c], "%.*s", (int)sizeof f->name[c] - 1, label);
+    if (*format->unit[c])
+      snprintf(format->name[c], sizeof format->name[c], "%.*s", (int)sizeof format->name[c] - 1, label);
     else {
-      eo_unit_split(label, f->name[c], (int)sizeof f->name[c], unit, (int)sizeof unit);
-      memcpy(f->unit[c], unit, sizeof unit);
+      eo_unit_split(label, format->name[c], (int)sizeof format->name[c], unit, (int)sizeof unit);
+      memcpy(format->unit[c], unit, sizeof unit);
     }
   }
 }
 
 /* The lines of names and units; of equally good ones the last. */
-static int find_names(const struct eo_text_format *f, const struct eo_header *h, int *units)
+static int find_names(const struct eo_text_format *f, const struct eo_header *header, int *units)
 {
   int names = -1, best = 0, most = 0;
   *units = -1;
-  for (int i = 0; i < h->lines; i++) {
-    char separator = header_separator(f, &h->line[i]);
-    int as_units = units_score(&h->line[i], separator ? separator : f->separator, f->cells);
-    int as_names = separator ? names_score(&h->line[i], separator, f->cells, f->point) : 0;
+  for (int i = 0; i < header->lines; i++) {
+    char separator = header_separator(f, &header->line[i]);
+    int as_units = units_score(&header->line[i], separator ? separator : f->separator, f->cells);
+    int as_names = separator ? names_score(&header->line[i], separator, f->cells, f->point) : 0;
     if (as_units >= (separator ? 3 : 2) || (as_units && i > 0 && names == i - 1)) {
       if (as_units >= most)
         most = as_units, *units = i;

@@ -57,18 +57,18 @@ static enum eo_code flush(struct text *t, struct eo_error *error)
 }
 
 /* Takes the row that was read to the end of the batch. */
-static enum eo_code keep_row(struct text *t, struct eo_error *error)
+static enum eo_code keep_row(struct text *text, struct eo_error *error)
 {
-  if (t->line != t->expected) {
-    const double *row = next_row(t);
-    enum eo_code code = flush(t, error);
+  if (text->line != text->expected) {
+    const double *row = next_row(text);
+    enum eo_code code = flush(text, error);
     if (code)
       return code;
-    memmove(t->batch, row, (size_t)t->format.columns * sizeof *row);
-    eo_recording_set_line(t->recording, t->line);
+    memmove(text->batch, row, (size_t)text->format.columns * sizeof *row);
+    eo_recording_set_line(text->recording, text->line);
   }
-  t->expected = t->line + 1;
-  return ++t->batched == t->batch_rows ? flush(t, error) : EO_OK;
+  text->expected = text->line + 1;
+  return ++text->batched == text->batch_rows ? flush(text, error) : EO_OK;
 }
 
 /* An odd row or cell: said once with its place; too many of them are an error. */
@@ -127,60 +127,61 @@ static bool only_empty_cells(const char *at, const char *end, char separator)
 }
 
 /* A number with a unit behind it, in the unit of the column's first one. */
-static enum eo_cell_kind unit_value(const struct text *t, int c, double *value)
+static enum eo_cell_kind unit_value(const struct text *text, int c, double *value)
 {
   char unit[EO_RECORDING_UNIT];
   double own, first;
-  enum eo_cell_kind kind = eo_text_cell_value(&t->cell[c], t->format.point, value);
+  enum eo_cell_kind kind = eo_text_cell_value(&text->cell[c], text->format.point, value);
   if (kind != EO_CELL_UNIT)
     return kind;
-  eo_text_cell_unit(&t->cell[c], t->format.point, unit, (int)sizeof unit);
-  if (eo_unit_find(unit, &own) != eo_unit_find(t->format.unit[c], &first))
+  eo_text_cell_unit(&text->cell[c], text->format.point, unit, (int)sizeof unit);
+  if (eo_unit_find(unit, &own) != eo_unit_find(text->format.unit[c], &first))
     return EO_CELL_TEXT;
   *value *= own / first;
   return EO_CELL_NUMBER;
 }
 
 /* Seconds from the beginning of the first row's day. A time of day without a date goes on over midnight. */
-static enum eo_cell_kind moment_value(struct text *t, int c, double *value)
+static enum eo_cell_kind moment_value(struct text *text, int c, double *value)
 {
-  const struct eo_cell *cell = &t->cell[c], *date = t->format.date[c] < 0 ? NULL : &t->cell[t->format.date[c]];
+  const struct eo_cell *cell = &text->cell[c],
+                       *date = text->format.date[c] < 0 ? NULL : &text->cell[text->format.date[c]];
   struct eo_moment m, day;
   if (!cell->length || !eo_moment_read(cell->text, cell->length, &m))
-    return eo_text_cell_value(cell, t->format.point, value) == EO_CELL_MISSING ? EO_CELL_MISSING : EO_CELL_TEXT;
+    return eo_text_cell_value(cell, text->format.point, value) == EO_CELL_MISSING ? EO_CELL_MISSING : EO_CELL_TEXT;
   if (date && eo_moment_read(date->text, date->length, &day) && day.has_day)
     m.has_day = true, m.day = day.day;
-  if (!t->based[c]) {
+  if (!text->based[c]) {
     struct eo_clock clock = {.column = -1, .epoch = EO_CLOCK_NO_EPOCH};
-    t->day[c] = m.day;
+    text->day[c] = m.day;
     if (m.has_day)
       clock.epoch = m.day * 86400000000000LL;
-    t->format.clock[c] = clock;
+    text->format.clock[c] = clock;
   }
-  *value = (double)(m.day - t->day[c]) * EO_MOMENT_DAY + m.seconds;
-  if (t->based[c] && !m.has_day) {
+  *value = (double)(m.day - text->day[c]) * EO_MOMENT_DAY + m.seconds;
+  if (text->based[c] && !m.has_day) {
     double turn = m.minutes ? 3600 : EO_MOMENT_DAY;
-    *value = m.seconds + (double)t->day[c] * turn; /* whole days, or hours, passed so far */
-    if (*value < t->before[c] - turn / 2) {
+    *value = m.seconds + (double)text->day[c] * turn; /* whole days, or hours, passed so far */
+    if (*value < text->before[c] - turn / 2) {
       *value += turn;
-      t->day[c]++;
+      text->day[c]++;
     }
   }
-  t->based[c] = true;
-  t->before[c] = *value;
+  text->based[c] = true;
+  text->before[c] = *value;
   return EO_CELL_NUMBER;
 }
 
-static enum eo_cell_kind cell_value(struct text *t, int c, double *value)
+static enum eo_cell_kind cell_value(struct text *text, int c, double *value)
 {
   *value = NAN;
-  if (t->format.content[c] == EO_TEXT_MOMENT)
-    return moment_value(t, c, value);
-  if (t->format.content[c] == EO_TEXT_UNIT)
-    return unit_value(t, c, value);
-  if (t->format.content[c] == EO_TEXT_HEX && eo_text_cell_hex(&t->cell[c], value))
+  if (text->format.content[c] == EO_TEXT_MOMENT)
+    return moment_value(text, c, value);
+  if (text->format.content[c] == EO_TEXT_UNIT)
+    return unit_value(text, c, value);
+  if (text->format.content[c] == EO_TEXT_HEX && eo_text_cell_hex(&text->cell[c], value))
     return EO_CELL_NUMBER;
-  enum eo_cell_kind kind = eo_text_cell_value(&t->cell[c], t->format.point, value);
+  enum eo_cell_kind kind = eo_text_cell_value(&text->cell[c], text->format.point, value);
   bool number = kind == EO_CELL_NUMBER || kind == EO_CELL_GROUPED;
   if (!number)
     *value = NAN;
@@ -188,17 +189,17 @@ static enum eo_cell_kind cell_value(struct text *t, int c, double *value)
 }
 
 /* Converts the cells of the row that was split; returns the place of the first that is no number, -1: none is. */
-static int convert_cells(struct text *t)
+static int convert_cells(struct text *text)
 {
-  const struct eo_text_format *f = &t->format;
-  double *row = next_row(t);
+  const struct eo_text_format *f = &text->format;
+  double *row = next_row(text);
   int odd = -1;
   for (int c = 0; c < f->cells; c++) {
     if (f->content[c] == EO_TEXT_WORDS || f->content[c] == EO_TEXT_DATE)
       continue;
-    enum eo_cell_kind kind = cell_value(t, c, row++);
+    enum eo_cell_kind kind = cell_value(text, c, row++);
     if (kind == EO_CELL_MISSING)
-      count_missing(t, c);
+      count_missing(text, c);
     if (kind == EO_CELL_TEXT && odd < 0)
       odd = c;
   }
@@ -207,29 +208,29 @@ static int convert_cells(struct text *t)
 
 /* Reads a line cell by cell, with quotes, empty cells and everything that is not a plain number. last: the file ends
    without a line end. */
-static enum eo_code read_slowly(struct text *t, const char *line, const char *end, bool last, struct eo_error *error)
+static enum eo_code read_slowly(struct text *text, const char *line, const char *end, bool last, struct eo_error *error)
 {
-  const struct eo_text_format *f = &t->format;
+  const struct eo_text_format *f = &text->format;
   if (eo_text_empty(line, end) || eo_text_comment(line, end, f->separator))
     return EO_OK;
   const char *at = line;
   int c = 0;
-  while (c < f->cells && eo_text_next_cell(&at, end, f->separator, &t->cell[c]))
+  while (c < f->cells && eo_text_next_cell(&at, end, f->separator, &text->cell[c]))
     c++;
   if (c < f->cells && last) {
-    eo_notes_add(t->notes, "The last row, in line %lld, is cut off and was left out.", (long long)t->line);
+    eo_notes_add(text->notes, "The last row, in line %lld, is cut off and was left out.", (long long)text->line);
     return EO_OK;
   }
   if (c < f->cells || !only_empty_cells(at, end, f->separator))
-    return odd_length(t, c < f->cells ? c : c + 1, error);
+    return odd_length(text, c < f->cells ? c : c + 1, error);
   enum eo_code code = EO_OK;
-  int odd = convert_cells(t);
+  int odd = convert_cells(text);
   if (odd >= 0) {
     char what[64];
-    describe_cell(&t->cell[odd], what, sizeof what);
-    code = add_fault(t, odd, what, error);
+    describe_cell(&text->cell[odd], what, sizeof what);
+    code = add_fault(text, odd, what, error);
   }
-  return code ? code : keep_row(t, error);
+  return code ? code : keep_row(text, error);
 }
 
 static inline const char *skip_blanks(const char *p)
@@ -276,30 +277,30 @@ static const char *read_quickly(const struct eo_text_format *f, const char *p, d
 }
 
 /* Reads all whole lines of the block and moves what is left to its beginning. */
-static enum eo_code read_lines(struct text *t, size_t from, struct eo_error *error)
+static enum eo_code read_lines(struct text *text, size_t from, struct eo_error *error)
 {
-  char line_end = t->format.line_end;
-  bool open = t->ended && t->filled > from && t->block[t->filled - 1] != line_end;
+  char line_end = text->format.line_end;
+  bool open = text->ended && text->filled > from && text->block[text->filled - 1] != line_end;
   if (open)
-    t->block[t->filled++] = line_end;
-  const char *at = t->block + from, *end = memrchr(at, line_end, t->filled - from);
+    text->block[text->filled++] = line_end;
+  const char *at = text->block + from, *end = memrchr(at, line_end, text->filled - from);
   end = end ? end + 1 : at;
-  if (end == at && t->filled - from >= BLOCK)
+  if (end == at && text->filled - from >= BLOCK)
     return eo_error_set(error, EO_ERROR_INPUT, "", "Line %lld is longer than the %zu kB that are read at most.",
-                        (long long)t->line, BLOCK >> 10);
+                        (long long)text->line, BLOCK >> 10);
   while (at < end) {
-    const char *last = read_quickly(&t->format, at, next_row(t));
+    const char *last = read_quickly(&text->format, at, next_row(text));
     bool quick = last;
     if (!quick)
       last = memchr(at, line_end, (size_t)(end - at));
-    enum eo_code code = quick ? keep_row(t, error) : read_slowly(t, at, last, open && last + 1 == end, error);
+    enum eo_code code = quick ? keep_row(text, error) : read_slowly(text, at, last, open && last + 1 == end, error);
     if (code)
       return code;
-    t->line++;
+    text->line++;
     at = last + 1;
   }
-  t->filled -= (size_t)(at - t->block);
-  memmove(t->block, at, t->filled);
+  text->filled -= (size_t)(at - text->block);
+  memmove(text->block, at, text->filled);
   return EO_OK;
 }
 
@@ -325,19 +326,20 @@ static enum eo_code read_rows(struct text *t, struct eo_error *error)
   return code ? code : flush(t, error);
 }
 
-static enum eo_code make_recording(struct text *t, const char *spool_directory, struct eo_error *error)
+static enum eo_code make_recording(struct text *text, const char *spool_directory, struct eo_error *error)
 {
-  const struct eo_text_format *f = &t->format;
-  enum eo_code code = eo_recording_new(&t->recording, f->columns, spool_directory, error);
+  const struct eo_text_format *f = &text->format;
+  enum eo_code code = eo_recording_new(&text->recording, f->columns, spool_directory, error);
   if (code)
     return code;
   for (int c = 0, column = 0; c < f->cells; c++)
     if (f->content[c] == EO_TEXT_WORDS)
-      eo_notes_add(t->notes, "Column %d \"%s\" is text and was left out.", c + 1, f->name[c]);
+      eo_notes_add(text->notes, "Column %d \"%s\" is text and was left out.", c + 1, f->name[c]);
     else if (f->content[c] != EO_TEXT_DATE)
-      eo_recording_set_column(t->recording, column++, f->name[c], f->content[c] == EO_TEXT_MOMENT ? "s" : f->unit[c]);
-  t->batch_rows = BATCH / f->columns;
-  t->line = f->first_line;
+      eo_recording_set_column(text->recording, column++, f->name[c],
+                              f->content[c] == EO_TEXT_MOMENT ? "s" : f->unit[c]);
+  text->batch_rows = BATCH / f->columns;
+  text->line = f->first_line;
   return EO_OK;
 }
 
@@ -362,42 +364,43 @@ static const char *separator_name(char separator)
                              : "blanks";
 }
 
-static void note_format(const struct text *t)
+static void note_format(const struct text *text)
 {
-  const struct eo_text_format *f = &t->format;
-  int64_t rows = eo_recording_rows(t->recording);
-  eo_notes_add(t->notes, "Text with %d column%s%s%s and a decimal %s; the first of %lld rows is line %lld.", f->cells,
-               f->cells == 1 ? "" : "s", f->cells == 1 ? "" : " separated by ",
+  const struct eo_text_format *f = &text->format;
+  int64_t rows = eo_recording_rows(text->recording);
+  eo_notes_add(text->notes, "Text with %d column%s%s%s and a decimal %s; the first of %lld rows is line %lld.",
+               f->cells, f->cells == 1 ? "" : "s", f->cells == 1 ? "" : " separated by ",
                f->cells == 1 ? "" : separator_name(f->separator), f->point == ',' ? "comma" : "point", (long long)rows,
                (long long)f->first_line);
-  if (t->missing)
-    eo_notes_add(t->notes, "%lld cell%s without a number, the first in line %lld, column %d.", (long long)t->missing,
-                 t->missing == 1 ? " is" : "s are", (long long)t->missing_line, t->missing_cell + 1);
-  if (t->faults > FAULTS_NAMED)
-    eo_notes_add(t->notes, "%lld rows are odd in all; the first %d are named above.", (long long)t->faults,
+  if (text->missing)
+    eo_notes_add(text->notes, "%lld cell%s without a number, the first in line %lld, column %d.",
+                 (long long)text->missing, text->missing == 1 ? " is" : "s are", (long long)text->missing_line,
+                 text->missing_cell + 1);
+  if (text->faults > FAULTS_NAMED)
+    eo_notes_add(text->notes, "%lld rows are odd in all; the first %d are named above.", (long long)text->faults,
                  FAULTS_NAMED);
 }
 
-static enum eo_code read_text(struct text *t, const struct eo_reader_options *options, struct eo_error *error)
+static enum eo_code read_text(struct text *text, const struct eo_reader_options *options, struct eo_error *error)
 {
-  enum eo_code code = fill(t, error);
+  enum eo_code code = fill(text, error);
   if (code)
     return code;
-  bool whole = t->filled <= EO_TEXT_HEAD;
-  size_t size = whole ? t->filled : EO_TEXT_HEAD;
-  char next = t->block[size];
-  t->block[size] = '\0';
-  code = eo_text_guess(&t->format, t->block, size, whole && t->ended, &options->text, error);
+  bool whole = text->filled <= EO_TEXT_HEAD;
+  size_t size = whole ? text->filled : EO_TEXT_HEAD;
+  char next = text->block[size];
+  text->block[size] = '\0';
+  code = eo_text_guess(&text->format, text->block, size, whole && text->ended, &options->text, error);
   if (code)
     return code;
-  eo_text_read_header(&t->format, t->block);
-  t->block[size] = next;
-  code = make_recording(t, options->spool_directory, error);
+  eo_text_read_header(&text->format, text->block);
+  text->block[size] = next;
+  code = make_recording(text, options->spool_directory, error);
   if (!code)
-    code = read_rows(t, error);
+    code = read_rows(text, error);
   if (!code) {
-    state_columns(t);
-    note_format(t);
+    state_columns(text);
+    note_format(text);
   }
   return code;
 }
@@ -405,19 +408,19 @@ static enum eo_code read_text(struct text *t, const struct eo_reader_options *op
 enum eo_code eo_delimited_read(struct eo_source *source, const struct eo_reader_options *options,
                                struct eo_recording **recording, struct eo_notes *notes, struct eo_error *error)
 {
-  struct text *t = malloc(sizeof *t);
-  if (!t)
+  struct text *text = malloc(sizeof *text);
+  if (!text)
     return eo_error_memory(error);
-  memset(t, 0, offsetof(struct text, batch));
-  t->filled = 0;
-  t->source = source;
-  t->progress = options->progress;
-  t->notes = notes;
-  enum eo_code code = read_text(t, options, error);
+  memset(text, 0, offsetof(struct text, batch));
+  text->filled = 0;
+  text->source = source;
+  text->progress = options->progress;
+  text->notes = notes;
+  enum eo_code code = read_text(text, options, error);
   if (code)
-    eo_recording_free(t->recording);
+    eo_recording_free(text->recording);
   else
-    *recording = t->recording;
-  free(t);
+    *recording = text->recording;
+  free(text);
   return code;
 }

@@ -74,11 +74,11 @@ static enum eo_code next_number(struct stream *s, int64_t taken, double *value, 
 }
 
 /* Reads the numbers of text into column and, for an uneven abscissa, time. */
-static enum eo_code read_text(struct uff *u, const struct eo_uff_header *h, struct eo_recording *time,
+static enum eo_code read_text(struct uff *uff, const struct eo_uff_header *h, struct eo_recording *time,
                               struct eo_recording *column, struct eo_error *error)
 {
-  struct stream stream = {&u->lines, NULL, h};
-  double *times = u->batch, *ordinates = u->batch + BATCH;
+  struct stream stream = {&uff->lines, NULL, h};
+  double *times = uff->batch, *ordinates = uff->batch + BATCH;
   for (int64_t first = 0; first < h->count; first += BATCH) {
     int64_t n = h->count - first < BATCH ? h->count - first : BATCH;
     enum eo_code code = EO_OK;
@@ -108,14 +108,14 @@ static enum eo_code add_text(struct uff *u, const struct eo_uff_header *h, int t
 }
 
 /* True when the line that ends a data set follows at a place. */
-static bool ends_at(const struct uff *u, int64_t at)
+static bool ends_at(const struct uff *uff, int64_t at)
 {
   char text[16] = "";
-  int64_t left = u->lines.size - at;
+  int64_t left = uff->lines.size - at;
   if (at < 0 || left < 0)
     return false;
   size_t size = left < (int64_t)sizeof text - 1 ? (size_t)left : sizeof text - 1, i = 0;
-  if (eo_bytes_read(u->lines.file, at, text, size, NULL))
+  if (eo_bytes_read(uff->lines.file, at, text, size, NULL))
     return false;
   while (text[i] == ' ' || text[i] == '\r' || text[i] == '\n')
     i++;
@@ -134,21 +134,21 @@ static int64_t count_bytes(const struct uff *u, const struct eo_uff_header *h)
 }
 
 /* An uneven abscissa is single or, as some write it, as wide as the values; the number of bytes tells which. */
-static enum eo_code add_binary(struct uff *u, const struct eo_uff_header *h, int time, int ordinate,
+static enum eo_code add_binary(struct uff *uff, const struct eo_uff_header *h, int time, int ordinate,
                                struct eo_error *error)
 {
   int size = h->type == 4 ? 8 : 4;
-  int64_t bytes = count_bytes(u, h);
+  int64_t bytes = count_bytes(uff, h);
   int abscissa = h->even ? 0 : bytes == h->count * (4 + size) ? 4 : size;
-  struct values *v = &u->values[ordinate];
-  *v = (struct values){.at = u->lines.at + abscissa, .stride = abscissa + size, .size = size, .big = h->big};
-  if (bytes < h->count * v->stride || bytes > u->lines.size - u->lines.at)
+  struct values *v = &uff->values[ordinate];
+  *v = (struct values){.at = uff->lines.at + abscissa, .stride = abscissa + size, .size = size, .big = h->big};
+  if (bytes < h->count * v->stride || bytes > uff->lines.size - uff->lines.at)
     return eo_error_set(error, EO_ERROR_INPUT, "",
                         "UFF: the binary data set in line %lld has %lld bytes for %lld values.", (long long)h->line,
                         (long long)bytes, (long long)h->count);
   if (time >= 0)
-    u->values[time] = (struct values){.at = u->lines.at, .stride = v->stride, .size = abscissa, .big = h->big};
-  eo_uff_seek(&u->lines, u->lines.at + bytes);
+    uff->values[time] = (struct values){.at = uff->lines.at, .stride = v->stride, .size = abscissa, .big = h->big};
+  eo_uff_seek(&uff->lines, uff->lines.at + bytes);
   return EO_OK;
 }
 
@@ -172,70 +172,70 @@ static bool is_record(const struct eo_uff_header *h)
          (!h->even || h->increment > 0);
 }
 
-static enum eo_code add_set(struct uff *u, const struct eo_uff_header *h, struct eo_error *error)
+static enum eo_code add_set(struct uff *uff, const struct eo_uff_header *h, struct eo_error *error)
 {
   int time = -1;
-  if (u->count + 2 > CHANNELS)
+  if (uff->count + 2 > CHANNELS)
     return eo_error_set(error, EO_ERROR_INPUT, "", "UFF: the file has more than %d data sets.", CHANNELS);
   if (!h->even) {
-    time = u->count++;
-    eo_series_init(&u->series[time], "time", h->count);
-    snprintf(u->series[time].unit, sizeof u->series[time].unit, "%s", *h->time_unit ? h->time_unit : "s");
+    time = uff->count++;
+    eo_series_init(&uff->series[time], "time", h->count);
+    snprintf(uff->series[time].unit, sizeof uff->series[time].unit, "%s", *h->time_unit ? h->time_unit : "s");
   }
-  int ordinate = u->count++;
-  name_series(&u->series[ordinate], h);
-  u->series[ordinate].clock.column = time;
-  return h->binary ? add_binary(u, h, time, ordinate, error) : add_text(u, h, time, ordinate, error);
+  int ordinate = uff->count++;
+  name_series(&uff->series[ordinate], h);
+  uff->series[ordinate].clock.column = time;
+  return h->binary ? add_binary(uff, h, time, ordinate, error) : add_text(uff, h, time, ordinate, error);
 }
 
 /* The data set whose number stands in the current line, up to the line "    -1" that ends it. */
-static enum eo_code read_set(struct uff *u, struct eo_error *error)
+static enum eo_code read_set(struct uff *uff, struct eo_error *error)
 {
   enum eo_code code = EO_OK;
-  const char *p = u->lines.line;
+  const char *p = uff->lines.line;
   while (*p == ' ')
     p++;
   if (p[0] == '5' && p[1] == '8' && (!p[2] || p[2] == ' ' || (p[2] | 0x20) == 'b')) {
     struct eo_uff_header header;
-    code = eo_uff_read_header(&u->lines, &header, error);
+    code = eo_uff_read_header(&uff->lines, &header, error);
     if (!code && is_record(&header))
-      code = add_set(u, &header, error);
+      code = add_set(uff, &header, error);
     else if (!code) {
-      u->skipped++;
+      uff->skipped++;
       if (header.binary)
-        eo_uff_seek(&u->lines,
-                    u->lines.at +
-                        (header.bytes < u->lines.size - u->lines.at ? header.bytes : u->lines.size - u->lines.at));
+        eo_uff_seek(&uff->lines,
+                    uff->lines.at + (header.bytes < uff->lines.size - uff->lines.at ? header.bytes
+                                                                                    : uff->lines.size - uff->lines.at));
     }
   }
-  while (!code && eo_uff_next(&u->lines, error, &code) && !eo_uff_is_end(&u->lines))
+  while (!code && eo_uff_next(&uff->lines, error, &code) && !eo_uff_is_end(&uff->lines))
     ;
   return code;
 }
 
-static enum eo_code read_sets(struct uff *u, struct eo_error *error)
+static enum eo_code read_sets(struct uff *uff, struct eo_error *error)
 {
   enum eo_code code = EO_OK;
-  while (!code && eo_uff_next(&u->lines, error, &code)) {
-    if (!eo_uff_is_end(&u->lines))
+  while (!code && eo_uff_next(&uff->lines, error, &code)) {
+    if (!eo_uff_is_end(&uff->lines))
       continue;
-    if (eo_uff_next(&u->lines, error, &code))
-      code = read_set(u, error);
+    if (eo_uff_next(&uff->lines, error, &code))
+      code = read_set(uff, error);
   }
-  if (!code && u->skipped)
-    eo_notes_add(u->notes, "%d data set%s that %s no real record over time %s left out.", u->skipped,
-                 u->skipped == 1 ? "" : "s", u->skipped == 1 ? "is" : "are", u->skipped == 1 ? "was" : "were");
+  if (!code && uff->skipped)
+    eo_notes_add(uff->notes, "%d data set%s that %s no real record over time %s left out.", uff->skipped,
+                 uff->skipped == 1 ? "" : "s", uff->skipped == 1 ? "is" : "are", uff->skipped == 1 ? "was" : "were");
   return code;
 }
 
-static enum eo_code read_binary(const struct uff *u, const struct values *v, int64_t first, int64_t count,
+static enum eo_code read_binary(const struct uff *uff, const struct values *v, int64_t first, int64_t count,
                                 double *values, struct eo_error *error)
 {
   unsigned char bytes[PIECE];
   int64_t most = ((int64_t)PIECE - v->size) / v->stride + 1;
   while (count > 0) {
     int64_t n = count < most ? count : most;
-    enum eo_code code = eo_bytes_read(u->lines.file, v->at + first * v->stride, bytes,
+    enum eo_code code = eo_bytes_read(uff->lines.file, v->at + first * v->stride, bytes,
                                       (size_t)((n - 1) * v->stride + v->size), error);
     if (code)
       return code;
@@ -261,24 +261,24 @@ static enum eo_code read_values(void *context, int series, int64_t first, int64_
 enum eo_code eo_uff_read(const char *path, const struct eo_reader_options *options, const struct eo_series_sink *sink,
                          struct eo_notes *notes, struct eo_error *error)
 {
-  struct uff *u = calloc(1, sizeof *u);
-  if (!u)
+  struct uff *uff = calloc(1, sizeof *uff);
+  if (!uff)
     return eo_error_memory(error);
-  u->spool_directory = options->spool_directory;
-  u->notes = notes;
-  enum eo_code code = eo_bytes_open(path, &u->lines.file, &u->lines.size, error);
+  uff->spool_directory = options->spool_directory;
+  uff->notes = notes;
+  enum eo_code code = eo_bytes_open(path, &uff->lines.file, &uff->lines.size, error);
   if (code) {
-    free(u);
+    free(uff);
     return code;
   }
-  code = read_sets(u, error);
+  code = read_sets(uff, error);
   if (!code) {
-    struct eo_series_file file = {u->series, u->count, u->lines.size, options->max_bytes, read_values, u};
+    struct eo_series_file file = {uff->series, uff->count, uff->lines.size, options->max_bytes, read_values, uff};
     code = eo_series_copy(&file, sink, notes, error);
   }
-  close(u->lines.file);
-  for (int i = 0; i < u->count; i++)
-    eo_recording_free(u->values[i].column);
-  free(u);
+  close(uff->lines.file);
+  for (int i = 0; i < uff->count; i++)
+    eo_recording_free(uff->values[i].column);
+  free(uff);
   return code;
 }

@@ -102,75 +102,75 @@ static void text_field(const struct eo_uff_lines *l, size_t first, size_t width,
 }
 
 /* "    58b     1     2          11       40000 ...": byte order 1 is little-endian, floating point 2 is IEEE. */
-static enum eo_code read_binary(const struct eo_uff_lines *l, struct eo_uff_header *h, struct eo_error *error)
+static enum eo_code read_binary(const struct eo_uff_lines *lines, struct eo_uff_header *header, struct eo_error *error)
 {
-  int64_t order = integer_field(l, 7, 6), floating = integer_field(l, 13, 6);
-  h->big = order == 2;
-  h->bytes = integer_field(l, 31, 12);
+  int64_t order = integer_field(lines, 7, 6), floating = integer_field(lines, 13, 6);
+  header->big = order == 2;
+  header->bytes = integer_field(lines, 31, 12);
   if (order < 1 || order > 2 || floating != 2)
     return eo_error_set(
         error, EO_ERROR_INPUT, "",
         "UFF: the binary data set in line %lld has byte order %lld and number format %lld; only IEEE is read.",
-        (long long)l->number, (long long)order, (long long)floating);
-  if (h->bytes < 0 || h->bytes > l->size - l->at)
+        (long long)lines->number, (long long)order, (long long)floating);
+  if (header->bytes < 0 || header->bytes > lines->size - lines->at)
     return eo_error_set(error, EO_ERROR_INPUT, "",
                         "UFF: the binary data set in line %lld states %lld bytes of data; the file has %lld.",
-                        (long long)l->number, (long long)h->bytes, (long long)(l->size - l->at));
+                        (long long)lines->number, (long long)header->bytes, (long long)(lines->size - lines->at));
   return EO_OK;
 }
 
 /* The fields of record 7 by the blanks between them. */
-static void read_fields(const struct eo_uff_lines *l, struct eo_uff_header *h)
+static void read_fields(const struct eo_uff_lines *lines, struct eo_uff_header *header)
 {
   double field[6] = {0};
   int n = 0;
-  for (const char *p = l->line; *p && n < 6; n++) {
+  for (const char *p = lines->line; *p && n < 6; n++) {
     while (*p == ' ')
       p++;
     p = eo_decimal_read(p, '.', &field[n]);
     if (!p)
       break;
   }
-  if (n < 5 || !(field[1] > 0) || field[1] > (double)l->size)
+  if (n < 5 || !(field[1] > 0) || field[1] > (double)lines->size)
     return;
-  h->type = (int)field[0];
-  h->count = (int64_t)field[1];
-  h->even = field[2] == 1;
-  h->start = field[3];
-  h->increment = field[4];
+  header->type = (int)field[0];
+  header->count = (int64_t)field[1];
+  header->even = field[2] == 1;
+  header->start = field[3];
+  header->increment = field[4];
 }
 
-static void read_record(const struct eo_uff_lines *l, int record, struct eo_uff_header *h)
+static void read_record(const struct eo_uff_lines *lines, int record, struct eo_uff_header *header)
 {
   switch (record) {
   case 1:
-    text_field(l, 0, 80, h->title);
+    text_field(lines, 0, 80, header->title);
     break;
   case 6:
-    h->function = (int)integer_field(l, 0, 5);
-    h->node = (int)integer_field(l, 41, 10);
-    h->direction = (int)integer_field(l, 51, 4);
+    header->function = (int)integer_field(lines, 0, 5);
+    header->node = (int)integer_field(lines, 41, 10);
+    header->direction = (int)integer_field(lines, 51, 4);
     break;
   case 7:
-    h->type = (int)integer_field(l, 0, 10);
-    h->count = integer_field(l, 10, 10);
-    h->even = integer_field(l, 20, 10) == 1;
-    h->start = number_field(l, 30, 13);
-    h->increment = number_field(l, 43, 13);
-    if (h->count <= 0) /* fields that were moved: their order tells them */
-      read_fields(l, h);
+    header->type = (int)integer_field(lines, 0, 10);
+    header->count = integer_field(lines, 10, 10);
+    header->even = integer_field(lines, 20, 10) == 1;
+    header->start = number_field(lines, 30, 13);
+    header->increment = number_field(lines, 43, 13);
+    if (header->count <= 0) /* fields that were moved: their order tells them */
+      read_fields(lines, header);
     break;
   case 8:
-    h->abscissa = (int)integer_field(l, 0, 10);
-    text_field(l, 47, 20, h->time_unit);
-    if (eo_unit_find(h->time_unit, &h->time_scale) != EO_QUANTITY_TIME) {
-      h->time_unit[0] = '\0';
-      h->time_scale = 1;
+    header->abscissa = (int)integer_field(lines, 0, 10);
+    text_field(lines, 47, 20, header->time_unit);
+    if (eo_unit_find(header->time_unit, &header->time_scale) != EO_QUANTITY_TIME) {
+      header->time_unit[0] = '\0';
+      header->time_scale = 1;
     }
     break;
   case 9:
-    text_field(l, 26, 20, h->label);
-    text_field(l, 47, 20, h->unit);
+    text_field(lines, 26, 20, header->label);
+    text_field(lines, 47, 20, header->unit);
     break;
   default:
     break;

@@ -63,30 +63,30 @@ static void XMLCALL take_characters(void *context, const char *text, int length)
   w->value[w->length] = '\0';
 }
 
-static void keep_text(struct workbook *w)
+static void keep_text(struct workbook *workbook)
 {
-  size_t size = w->length + 1;
-  if (w->texts == w->texts_room) {
-    int room = w->texts_room ? 2 * w->texts_room : 256;
-    size_t *at = realloc(w->text_at, (size_t)room * sizeof *at);
-    w->failed = w->failed || !at;
+  size_t size = workbook->length + 1;
+  if (workbook->texts == workbook->texts_room) {
+    int room = workbook->texts_room ? 2 * workbook->texts_room : 256;
+    size_t *at = realloc(workbook->text_at, (size_t)room * sizeof *at);
+    workbook->failed = workbook->failed || !at;
     if (!at)
       return;
-    w->text_at = at;
-    w->texts_room = room;
+    workbook->text_at = at;
+    workbook->texts_room = room;
   }
-  if (w->text_used + size > w->text_room) {
-    size_t room = 2 * w->text_room + size + 4096;
-    char *text = room <= TEXTS ? realloc(w->text, room) : NULL;
-    w->failed = w->failed || !text;
+  if (workbook->text_used + size > workbook->text_room) {
+    size_t room = 2 * workbook->text_room + size + 4096;
+    char *text = room <= TEXTS ? realloc(workbook->text, room) : NULL;
+    workbook->failed = workbook->failed || !text;
     if (!text)
       return;
-    w->text = text;
-    w->text_room = room;
+    workbook->text = text;
+    workbook->text_room = room;
   }
-  w->text_at[w->texts++] = w->text_used;
-  memcpy(w->text + w->text_used, w->value, size);
-  w->text_used += size;
+  workbook->text_at[workbook->texts++] = workbook->text_used;
+  memcpy(workbook->text + workbook->text_used, workbook->value, size);
+  workbook->text_used += size;
 }
 
 static void XMLCALL begin_text(void *context, const char *name, const char **attributes)
@@ -122,16 +122,16 @@ static bool shows_date(const char *code)
 
 static void XMLCALL begin_style(void *context, const char *name, const char **attributes)
 {
-  struct workbook *w = context;
+  struct workbook *workbook = context;
   const char *id = attribute(attributes, "numFmtId"), *code = attribute(attributes, "formatCode");
   long number = id ? strtol(id, NULL, 10) : 0;
   if (!strcmp(local(name), "cellXfs"))
-    w->in_formats = true;
+    workbook->in_formats = true;
   else if (!strcmp(local(name), "numFmt") && code && number >= 0 && number < FORMATS)
-    w->custom[number] = shows_date(code);
-  else if (!strcmp(local(name), "xf") && w->in_formats && w->formats < FORMATS)
-    w->date[w->formats++] = (number >= 14 && number <= 22) || (number >= 45 && number <= 47) ||
-                            (number >= 0 && number < FORMATS && w->custom[number]);
+    workbook->custom[number] = shows_date(code);
+  else if (!strcmp(local(name), "xf") && workbook->in_formats && workbook->formats < FORMATS)
+    workbook->date[workbook->formats++] = (number >= 14 && number <= 22) || (number >= 45 && number <= 47) ||
+                                          (number >= 0 && number < FORMATS && workbook->custom[number]);
 }
 
 static void XMLCALL end_style(void *context, const char *name)
@@ -166,21 +166,21 @@ static int column_of(const char *reference)
 
 static void XMLCALL begin_cell(void *context, const char *name, const char **attributes)
 {
-  struct workbook *w = context;
+  struct workbook *workbook = context;
   const char *element = local(name);
   if (!strcmp(element, "c")) {
     const char *reference = attribute(attributes, "r"), *type = attribute(attributes, "t"),
                *style = attribute(attributes, "s");
-    w->column = reference ? column_of(reference) : w->column + 1;
-    w->style = style ? (int)strtol(style, NULL, 10) : 0;
-    snprintf(w->type, sizeof w->type, "%s", type ? type : "n");
-    w->length = 0;
-    w->value[0] = '\0';
+    workbook->column = reference ? column_of(reference) : workbook->column + 1;
+    workbook->style = style ? (int)strtol(style, NULL, 10) : 0;
+    snprintf(workbook->type, sizeof workbook->type, "%s", type ? type : "n");
+    workbook->length = 0;
+    workbook->value[0] = '\0';
   } else if (!strcmp(element, "row")) {
-    w->column = -1;
+    workbook->column = -1;
   }
-  w->in_value = !strcmp(element, "v");
-  w->in_text = !strcmp(element, "t");
+  workbook->in_value = !strcmp(element, "v");
+  workbook->in_text = !strcmp(element, "t");
 }
 
 /* Days since the end of 1899 as a date, a fraction of a day as a time. */
@@ -192,18 +192,18 @@ static void write_date(struct workbook *w, double days)
     eo_sheet_text_time(&w->out, w->column, days);
 }
 
-static void write_cell(struct workbook *w)
+static void write_cell(struct workbook *workbook)
 {
-  bool number = !strcmp(w->type, "n"), shared = !strcmp(w->type, "s");
-  long index = shared ? strtol(w->value, NULL, 10) : 0;
-  if (!w->length || !strcmp(w->type, "e"))
+  bool number = !strcmp(workbook->type, "n"), shared = !strcmp(workbook->type, "s");
+  long index = shared ? strtol(workbook->value, NULL, 10) : 0;
+  if (!workbook->length || !strcmp(workbook->type, "e"))
     return;
-  if (number && w->style >= 0 && w->style < w->formats && w->date[w->style])
-    write_date(w, strtod(w->value, NULL));
-  else if (shared && index >= 0 && index < w->texts)
-    eo_sheet_text_cell(&w->out, w->column, w->text + w->text_at[index]);
+  if (number && workbook->style >= 0 && workbook->style < workbook->formats && workbook->date[workbook->style])
+    write_date(workbook, strtod(workbook->value, NULL));
+  else if (shared && index >= 0 && index < workbook->texts)
+    eo_sheet_text_cell(&workbook->out, workbook->column, workbook->text + workbook->text_at[index]);
   else if (!shared)
-    eo_sheet_text_cell(&w->out, w->column, w->value);
+    eo_sheet_text_cell(&workbook->out, workbook->column, workbook->value);
 }
 
 static void XMLCALL end_cell(void *context, const char *name)
@@ -219,30 +219,30 @@ static void XMLCALL end_cell(void *context, const char *name)
     eo_sheet_text_row(&w->out);
 }
 
-static bool parse(struct workbook *w, XML_StartElementHandler begin, XML_EndElementHandler end)
+static bool parse(struct workbook *workbook, XML_StartElementHandler begin, XML_EndElementHandler end)
 {
   XML_Parser parser = XML_ParserCreate(NULL);
   char *bytes = malloc(EO_ARCHIVE_PIECE);
   int64_t got = 1;
-  w->failed = w->failed || !parser || !bytes;
+  workbook->failed = workbook->failed || !parser || !bytes;
   if (parser) {
-    XML_SetUserData(parser, w);
+    XML_SetUserData(parser, workbook);
     XML_SetElementHandler(parser, begin, end);
     XML_SetCharacterDataHandler(parser, take_characters);
   }
-  while (!w->failed && got > 0 && (got = eo_archive_read(w->archive, bytes, EO_ARCHIVE_PIECE)) >= 0)
+  while (!workbook->failed && got > 0 && (got = eo_archive_read(workbook->archive, bytes, EO_ARCHIVE_PIECE)) >= 0)
     if (XML_Parse(parser, bytes, (int)got, got == 0) != XML_STATUS_OK) {
-      eo_error_set(w->archive->error, EO_ERROR_INPUT, "",
+      eo_error_set(workbook->archive->error, EO_ERROR_INPUT, "",
                    "The workbook is damaged: %s in line %lu of one of its parts.",
                    XML_ErrorString(XML_GetErrorCode(parser)), (unsigned long)XML_GetCurrentLineNumber(parser));
       got = -1;
     }
-  if (w->failed)
-    eo_error_memory(w->archive->error);
+  if (workbook->failed)
+    eo_error_memory(workbook->archive->error);
   if (parser)
     XML_ParserFree(parser);
   free(bytes);
-  return !w->failed && got == 0;
+  return !workbook->failed && got == 0;
 }
 
 static bool is_sheet(const char *name)
@@ -252,21 +252,21 @@ static bool is_sheet(const char *name)
 
 static bool look(void *context, struct eo_archive *archive, const char *name)
 {
-  struct workbook *w = context;
+  struct workbook *workbook = context;
   (void)archive;
   if (!strcmp(name, "xl/sharedStrings.xml"))
-    return parse(w, begin_text, end_text);
+    return parse(workbook, begin_text, end_text);
   if (!strcmp(name, "xl/styles.xml"))
-    return parse(w, begin_style, end_style);
+    return parse(workbook, begin_style, end_style);
   if (!strcmp(name, "xl/workbook.xml"))
-    return parse(w, begin_book, end_nothing);
+    return parse(workbook, begin_book, end_nothing);
   if (!is_sheet(name))
     return true;
-  w->numbers = 0;
-  bool good = parse(w, begin_cell, end_cell);
-  if (w->numbers > w->most) {
-    w->most = w->numbers;
-    snprintf(w->best, sizeof w->best, "%s", name);
+  workbook->numbers = 0;
+  bool good = parse(workbook, begin_cell, end_cell);
+  if (workbook->numbers > workbook->most) {
+    workbook->most = workbook->numbers;
+    snprintf(workbook->best, sizeof workbook->best, "%s", name);
   }
   return good;
 }
@@ -284,20 +284,20 @@ static bool write_best(void *context, struct eo_archive *archive, const char *na
 
 enum eo_code eo_workbook_write(struct eo_archive *archive, FILE *file, char *name, size_t size)
 {
-  struct workbook *w = calloc(1, sizeof *w);
-  if (!w)
+  struct workbook *workbook = calloc(1, sizeof *workbook);
+  if (!workbook)
     return eo_error_memory(archive->error);
-  w->archive = archive;
-  w->out.file = file;
-  enum eo_code code = eo_archive_visit(archive, look, w);
-  if (!code && !w->most)
+  workbook->archive = archive;
+  workbook->out.file = file;
+  enum eo_code code = eo_archive_visit(archive, look, workbook);
+  if (!code && !workbook->most)
     code = eo_error_set(archive->error, EO_ERROR_INPUT, "", "No sheet of the workbook holds numbers.");
   if (!code)
-    code = eo_archive_visit(archive, write_best, w);
-  const char *base = strrchr(w->best, '/');
-  snprintf(name, size, "%s", base ? base + 1 : w->best);
-  free(w->text);
-  free(w->text_at);
-  free(w);
+    code = eo_archive_visit(archive, write_best, workbook);
+  const char *base = strrchr(workbook->best, '/');
+  snprintf(name, size, "%s", base ? base + 1 : workbook->best);
+  free(workbook->text);
+  free(workbook->text_at);
+  free(workbook);
   return code;
 }

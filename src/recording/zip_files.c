@@ -79,20 +79,20 @@ static bool is_by_the_way(const char *name)
 
 static bool look(void *context, struct eo_archive *archive, const char *name)
 {
-  struct contents *c = context;
+  struct contents *contents = context;
   size_t length = strlen(name);
   (void)archive;
-  c->workbook = c->workbook || !strcmp(name, "xl/workbook.xml");
-  c->opendocument = c->opendocument || !strcmp(name, "content.xml");
+  contents->workbook = contents->workbook || !strcmp(name, "xl/workbook.xml");
+  contents->opendocument = contents->opendocument || !strcmp(name, "content.xml");
   if (is_by_the_way(name))
     return true;
-  c->numpy = c->numpy || (length > 4 && !strcmp(name + length - 4, ".npy"));
-  size_t used = strlen(c->list);
-  if (c->files < 4)
-    snprintf(c->list + used, sizeof c->list - used, "%s%.30s", used ? ", " : "", name);
-  c->files++;
-  snprintf(c->name, sizeof c->name, "%s", name);
-  return c->files < 10000;
+  contents->numpy = contents->numpy || (length > 4 && !strcmp(name + length - 4, ".npy"));
+  size_t used = strlen(contents->list);
+  if (contents->files < 4)
+    snprintf(contents->list + used, sizeof contents->list - used, "%s%.30s", used ? ", " : "", name);
+  contents->files++;
+  snprintf(contents->name, sizeof contents->name, "%s", name);
+  return contents->files < 10000;
 }
 
 struct copy {
