@@ -382,6 +382,39 @@ static void check_speeds(void)
   ok(measurement.transmission.parts.count == 2, "two parts");
 }
 
+/* Run-out of the gears turns both shafts: neither may smear the high orders. */
+static void check_run_out(void)
+{
+  struct eo_synthetic s = usual();
+  s.speed = 600 * M_PI / 30;
+  s.turns = 7.5;
+  s.sample_rate = 4000;
+  s.noise = 2e-9;
+  s.pinion_share = 0.5;
+  s.eccentricity[EO_GEAR] = 60e-6;
+  s.run_out = true;
+  const struct eo_measurement *m = measure(&s);
+  double off = m->transmission.rms / eo_synthetic_rms(&s, 8) - 1;
+  ok(m->transmission.harmonics == 8 && fabs(off) < 1e-4, "run-out of 60 um in the gear: RMS off by %.2g of it", off);
+}
+
+/* Orders that a slower encoder of the gear cannot carry are left out with a word. */
+static void check_slow_clock(void)
+{
+  struct eo_synthetic s = usual();
+  const struct eo_measurement_settings settings = {
+      .transmission = {.teeth = {17, 44}, .base_radius = {radius[0], radius[1]}}, .stated_speed = NAN};
+  s.gear_rate = s.sample_rate / 3;
+  s.gear_delay = 1e-5;
+  const struct eo_measurement *m = measure_columns(&s, &settings);
+  const struct eo_transmission *t = &m->transmission;
+  double truth = eo_synthetic_rms(&s, t->harmonics);
+  ok(t->harmonics > 0 && t->harmonics < 8 && eo_findings_find(&m->findings, EO_FINDING_SAMPLE_RATE) &&
+         fabs(t->rms - truth) < 2 * t->rms_sigma,
+     "a gear sampled at a third of the rate carries %d orders: RMS %.4f +- %.4f, truth %.4f", t->harmonics, t->rms,
+     t->rms_sigma, truth);
+}
+
 /* Another part, or other times, when they are asked for. */
 static void check_parts(void)
 {
@@ -453,6 +486,8 @@ int main(int argc, char **argv)
   check_speeds();
   check_parts();
   check_load();
+  check_run_out();
+  check_slow_clock();
   check_truth(recordings);
   eo_measurement_done(&measurement);
   return tap_done();

@@ -90,6 +90,29 @@ static void test_axis(void)
   free(noise);
 }
 
+/* What interpolation leaves of a wave is what it leaves of its samples. */
+static void test_interpolation(void)
+{
+  struct eo_interpolation between = {.points = EO_INTERPOLATION_UNEVEN, .step = 1};
+  between.share[3] = 0.5;
+  between.share[EO_INTERPOLATION_PLACES] = 0.5;
+  const double phase = 2.2, x = 3.5 / EO_INTERPOLATION_PLACES;
+  double time[EO_INTERPOLATION_UNEVEN], weight[EO_INTERPOLATION_UNEVEN];
+  double complex left = 0;
+  for (int i = 0; i < EO_INTERPOLATION_UNEVEN; i++)
+    time[i] = i;
+  eo_interpolation_weights(EO_INTERPOLATION_UNEVEN, time, 7 + x, weight);
+  for (int i = 0; i < EO_INTERPOLATION_UNEVEN; i++)
+    left += weight[i] * cexp(I * phase * i) / cexp(I * phase * (7 + x));
+  double complex gain = eo_interpolation_gain(&between, phase);
+  ok(cabs(gain - 0.5 - 0.5 * left) < 1e-12 && creal(gain) < 0.999, "values between samples: %.4f of a wave is left",
+     creal(gain));
+  between.points = EO_INTERPOLATION_EVEN;
+  ok(cabs(eo_interpolation_gain(&between, phase) - 1) < cabs(gain - 1) / 3, "more of it by a longer polynomial");
+  between.step = 0;
+  ok(eo_interpolation_gain(&between, phase) == 1, "all where nothing is interpolated");
+}
+
 static void test_nearest(void)
 {
   const int teeth[2] = {17, 44};
@@ -160,6 +183,7 @@ int main(void)
   test_fft();
   test_ellipse();
   test_axis();
+  test_interpolation();
   test_nearest();
   test_noise();
   test_rms();
