@@ -44,7 +44,7 @@ wrong=$(grep -lE '\bjson_[a-z]' service/*.[ch])
 result $? "the service speaks structs and text, no JSON values:$wrong"
 only libmatio 'matio' recording
 only HDF5 'hdf5' recording
-only libarchive 'archive' 'recording|exchange'
+only libarchive 'archive' 'recording|exchange|store'
 only expat 'expat' 'recording|exchange'
 only SQLite 'sqlite3' store
 only libmicrohttpd 'microhttpd' http

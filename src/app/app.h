@@ -25,6 +25,8 @@ struct eo_command {
 };
 
 extern const struct eo_command eo_command_analyze;
+extern const struct eo_command eo_command_backup;
+extern const struct eo_command eo_command_doctor;
 extern const struct eo_command eo_command_design;
 extern const struct eo_command eo_command_example;
 extern const struct eo_command eo_command_export;
@@ -35,6 +37,7 @@ extern const struct eo_command eo_command_optimize;
 extern const struct eo_command eo_command_prepare;
 extern const struct eo_command eo_command_reproduce;
 extern const struct eo_command eo_command_report;
+extern const struct eo_command eo_command_restore;
 extern const struct eo_command eo_command_rig;
 extern const struct eo_command eo_command_serve;
 extern const struct eo_command eo_command_stage;

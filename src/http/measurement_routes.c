@@ -123,14 +123,28 @@ static void name_download(char *target, size_t size, const char *name)
       *c = '_';
 }
 
+/* Whether the bytes are those that were uploaded; false: the reply says that they are not. */
+static bool is_what_came(struct eo_request *request, const struct eo_measurement_file *file, const char *path)
+{
+  char sum[EO_HASH_LENGTH + 1];
+  struct eo_error error;
+  enum eo_code code = eo_measurement_file_hash(path, sum, &error);
+  if (!code && strcmp(sum, file->sha256) != 0)
+    code = eo_error_set(&error, EO_ERROR_DAMAGED, "", "%.250s is not what was uploaded.", path);
+  if (code)
+    eo_reply_error(&request->reply, "", &error);
+  return !code;
+}
+
 static void send_file(struct eo_request *request, const struct eo_stored_measurement *row, int number)
 {
   char path[4200], digest[80];
   struct eo_error error;
   const struct eo_measurement_file *file = &row->file[number];
-  int descriptor = eo_measurement_file_path(request->store, row->id, number, path, sizeof path)
-                       ? open(path, O_RDONLY | O_CLOEXEC)
-                       : -1;
+  bool named = eo_measurement_file_path(request->store, row->id, number, path, sizeof path);
+  if (named && !is_what_came(request, file, path))
+    return;
+  int descriptor = named ? open(path, O_RDONLY | O_CLOEXEC) : -1;
   struct MHD_Response *response = descriptor < 0 ? NULL
                                                  : MHD_create_response_from_fd64((uint64_t)file->size, descriptor);
   if (!response) {
@@ -209,6 +223,7 @@ const struct eo_route eo_routes_measurements[] = {
      .name = "getMeasurementFile",
      .gives = "200 application/octet-stream",
      .headers = "If-None-Match",
-     .summary = "The recording as it came; its SHA-256 is the ETag.",
+     .aside = true,
+     .summary = "The recording as it came, compared with its SHA-256, which is the ETag, before it is sent.",
      .query = {{"part", 1, EO_MEASUREMENT_FILES, 1, NULL, "2: the gear's file, where each encoder had one"}}},
     {0}};

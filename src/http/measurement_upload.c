@@ -2,13 +2,10 @@
 /* What is uploaded is read and measured on a thread of its own, and kept only when that gave a result. */
 #include "http/measurement_upload.h"
 
-#include <errno.h>
-#include <fcntl.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "format/json.h"
 #include "http/request_body.h"
@@ -95,30 +92,13 @@ static bool find_design(struct eo_request *request, struct asked *asked)
   return false;
 }
 
-static enum eo_code hash_file(const char *path, char sha256[EO_HASH_LENGTH + 1], struct eo_error *error)
-{
-  enum { BLOCK = 64 << 10 };
-  unsigned char *block = malloc(BLOCK);
-  struct eo_hash hash;
-  int file = open(path, O_RDONLY | O_CLOEXEC);
-  ssize_t got = -1;
-  eo_hash_init(&hash);
-  while (block && file >= 0 && (got = read(file, block, BLOCK)) > 0)
-    eo_hash_add(&hash, block, (size_t)got);
-  eo_hash_finish(&hash, sha256);
-  if (file >= 0)
-    close(file);
-  free(block);
-  return got < 0 ? eo_error_set(error, EO_ERROR_FILE, "", "%.250s: %s.", path, strerror(errno)) : EO_OK;
-}
-
 static enum eo_code hash_files(struct eo_upload *upload, struct eo_error *error)
 {
   char path[EO_UPLOAD_PATH];
   enum eo_code code = EO_OK;
   for (int i = 0; i < upload->files && !code; i++) {
     eo_upload_path(upload, i, path);
-    code = hash_file(path, upload->file[i].sha256, error);
+    code = eo_measurement_file_hash(path, upload->file[i].sha256, error);
   }
   return code;
 }

@@ -391,11 +391,13 @@ static enum eo_code is_damaged(struct eo_store *store, const struct eo_statement
   return EO_OK;
 }
 
-enum eo_code eo_store_remove_damaged(struct eo_store *store, int64_t *removed, struct eo_error *error)
+/* Every row once; those that do not have their sum are removed, or counted alone. */
+static enum eo_code look_at_all(struct eo_store *store, bool removes, int64_t *rows, int64_t *damaged_rows,
+                                struct eo_error *error)
 {
   enum eo_code code = EO_OK;
   int64_t last = 0;
-  *removed = 0;
+  *rows = *damaged_rows = 0;
   for (;;) {
     struct eo_statement s = eo_statement_begin(
         store,
@@ -409,10 +411,22 @@ enum eo_code eo_store_remove_damaged(struct eo_store *store, int64_t *removed, s
     }
     enum eo_code end = eo_statement_end(&s, code ? NULL : error);
     code = code ? code : end;
-    if (!code && wrong)
+    if (!code && wrong && removes)
       code = EO_STATEMENT_RUN(store, error, "DELETE FROM evaluation WHERE id = ?", "i", last);
-    *removed += !code && wrong;
+    *rows += !code && more;
+    *damaged_rows += !code && wrong;
     if (code || !more)
       return code;
   }
+}
+
+enum eo_code eo_store_remove_damaged(struct eo_store *store, int64_t *removed, struct eo_error *error)
+{
+  int64_t rows;
+  return look_at_all(store, true, &rows, removed, error);
+}
+
+enum eo_code eo_store_count_damaged(struct eo_store *store, int64_t *rows, int64_t *wrong, struct eo_error *error)
+{
+  return look_at_all(store, false, rows, wrong, error);
 }

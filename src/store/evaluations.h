@@ -83,6 +83,9 @@ enum eo_code eo_store_each_problem(struct eo_store *store, eo_store_visit_proble
 
 /* Removes a problem with its rows and jobs; rows whose check sum is wrong. *removed: how many. */
 enum eo_code eo_store_remove_problem(struct eo_store *store, int64_t problem, int64_t *removed, struct eo_error *error);
+/* Looks at every row: how many there are, how many do not have their sum. */
+enum eo_code eo_store_count_damaged(struct eo_store *store, int64_t *rows, int64_t *wrong, struct eo_error *error);
+
 enum eo_code eo_store_remove_damaged(struct eo_store *store, int64_t *removed, struct eo_error *error);
 
 #endif

@@ -15,7 +15,8 @@
 
 static enum eo_code fault(const char *path, struct eo_error *error)
 {
-  return eo_error_set(error, EO_ERROR_FILE, "", "%.250s: %s.", path, strerror(errno));
+  enum eo_code code = errno == ENOSPC || errno == EDQUOT || errno == EFBIG ? EO_ERROR_FULL : EO_ERROR_FILE;
+  return eo_error_set(error, code, "", "%.250s: %s.", path, strerror(errno));
 }
 
 static bool fits(int length, size_t size)
@@ -151,4 +152,24 @@ void eo_measurement_folder_drop(const struct eo_store *store, int64_t id)
   char path[EO_STORE_PATH];
   if (eo_measurement_folder_path(store, EO_MEASUREMENT_DELETED, id, path, sizeof path))
     eo_measurement_folder_remove(path);
+}
+
+enum eo_code eo_measurement_file_hash(const char *path, char sha256[EO_HASH_LENGTH + 1], struct eo_error *error)
+{
+  enum { BLOCK = 64 << 10 };
+  unsigned char *block = malloc(BLOCK);
+  struct eo_hash hash;
+  if (!block)
+    return eo_error_memory(error);
+  int file = open(path, O_RDONLY | O_CLOEXEC);
+  ssize_t got = -1;
+  eo_hash_init(&hash);
+  while (file >= 0 && (got = read(file, block, BLOCK)) > 0)
+    eo_hash_add(&hash, block, (size_t)got);
+  enum eo_code code = got < 0 ? fault(path, error) : EO_OK;
+  eo_hash_finish(&hash, sha256);
+  if (file >= 0)
+    close(file);
+  free(block);
+  return code;
 }

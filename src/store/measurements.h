@@ -83,6 +83,9 @@ enum eo_code eo_measurement_folder_new(struct eo_store *store, char *path, size_
 /* With the files in it that we put there; it stays when it holds anything else, or cannot be removed. */
 void eo_measurement_folder_remove(const char *path);
 
+/* SHA-256 of a file's bytes. */
+enum eo_code eo_measurement_file_hash(const char *path, char sha256[EO_HASH_LENGTH + 1], struct eo_error *error);
+
 /* "DATA/measurements/ID/FILE"; false: it does not fit. */
 bool eo_measurement_file_path(const struct eo_store *store, int64_t id, int file, char *path, size_t size);
 

@@ -1,10 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "store/page_sums.h"
 
+#include <errno.h>
+#include <fcntl.h>
 #include <pthread.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include <zlib.h>
 
@@ -293,4 +295,42 @@ int eo_page_sums_register(void)
 void eo_page_sums_compare(sqlite3 *handle, bool compared)
 {
   sqlite3_file_control(handle, "main", COMPARE, &compared);
+}
+
+static int64_t renew(int file, struct file *known)
+{
+  unsigned char *page = malloc(known->page_size);
+  int64_t changed = 0;
+  if (!page)
+    return -1;
+  for (unsigned number = 1; changed >= 0; number++) {
+    off_t at = (off_t)(number - 1) * (off_t)known->page_size;
+    if (pread(file, page, known->page_size, at) != (ssize_t)known->page_size)
+      break;
+    if (eo_page_sum_holds(page, known->page_size, number))
+      continue;
+    find_sum(page, known->page_size, number, page + known->page_size - EO_PAGE_SUM);
+    changed = pwrite(file, page, known->page_size, at) == (ssize_t)known->page_size ? changed + 1 : -1;
+  }
+  free(page);
+  return changed;
+}
+
+int64_t eo_page_sums_renew(const char *path)
+{
+  struct file known = {.page_size = 0};
+  unsigned char header[HEADER];
+  int64_t changed = -1;
+  int file = open(path, O_RDWR | O_CLOEXEC);
+  if (file < 0)
+    return -1;
+  errno = 0;
+  if (pread(file, header, HEADER, 0) == HEADER)
+    look_at_header(&known, header);
+  if (known.sums)
+    changed = renew(file, &known);
+  if (changed > 0 && fsync(file))
+    changed = -1;
+  close(file);
+  return changed;
 }

@@ -9,6 +9,7 @@
 
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdint.h>
 
 #include <sqlite3.h>
 
@@ -26,5 +27,10 @@ void eo_page_sums_compare(sqlite3 *handle, bool compare);
 
 /* Whether a page, number from 1, is as it was written. All zeros: it never was. */
 bool eo_page_sum_holds(const unsigned char *page, size_t size, unsigned number);
+
+/* Gives every page of a file the sum that belongs to what it holds now, and brings it to the disk. How many had another
+   one; -1 with errno: it cannot be read or written (0: there is no room for sums in it). Nobody else may have it open.
+ */
+int64_t eo_page_sums_renew(const char *path);
 
 #endif

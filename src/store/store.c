@@ -410,6 +410,9 @@ enum eo_code eo_store_copy(struct eo_store *store, const char *path, struct eo_e
 {
   struct eo_statement s = eo_statement_begin(store, "VACUUM INTO ?", "t", path);
   enum eo_code code = eo_statement_finish(s, error);
+  if (!code && has_sums(store) && eo_page_sums_renew(path) < 0) /* SQLite wrote pages before the first one, which says
+                                                                   that they have sums */
+    code = eo_error_set(error, EO_ERROR_FILE, "", "%.250s: %s.", path, strerror(errno));
   if (code)
     unlink(path);
   return code ? code : flush(path, error);
