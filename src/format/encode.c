@@ -83,14 +83,18 @@ static json_t *encode_field(const struct eo_field *field, const void *source)
   return NULL;
 }
 
-/* True when an encoded object is what the table's defaults give. */
-static bool is_default(const struct eo_table *table, const json_t *encoded)
+/* Whether an encoded object is what the table's defaults give, and may be left out. Without memory nobody knows:
+   *failed, since with it or without it the document has another hash. */
+static bool is_default(const struct eo_table *table, const json_t *encoded, bool *failed)
 {
   void *defaults = calloc(1, table->size);
-  if (!defaults)
+  if (!defaults) {
+    *failed = true;
     return false;
+  }
   eo_table_defaults(table, defaults);
   json_t *other = eo_table_encode(table, defaults);
+  *failed = *failed || !other;
   bool same = other && json_equal(encoded, other);
   json_decref(other);
   free(defaults);
@@ -106,7 +110,7 @@ json_t *eo_table_encode(const struct eo_table *table, const void *source)
     if (field->flags & (EO_FIELD_ENTRY | EO_FIELD_ELSEWHERE))
       continue;
     json_t *value = encode_field(field, source);
-    if (value && field->flags & EO_FIELD_OMIT && is_default(field->table, value))
+    if (value && field->flags & EO_FIELD_OMIT && is_default(field->table, value, &failed))
       json_decref(value);
     else
       eo_json_put(object, field->key, value, &failed);
