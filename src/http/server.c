@@ -30,6 +30,8 @@
 #include "http/upload.h"
 #include "store/measurements.h"
 
+#include <config.h>
+
 static bool is_for_api(const char *path)
 {
   size_t length = strlen(EO_API);
@@ -273,6 +275,7 @@ static void init(struct eo_http *http, const struct eo_http_settings *settings)
 
 static void done(struct eo_http *http)
 {
+  eo_service_tell(http->service, NULL, NULL);
   eo_background_free(http->aside);
   eo_background_free(http->readings);
   eo_storage_watch_free(http->storage);
@@ -316,6 +319,13 @@ static enum eo_code open_all(struct eo_http *http, struct eo_error *error)
   return eo_documents_new(&http->documents, http->routes, error);
 }
 
+static void log_job(void *context, int64_t job, const char *kind, const char *what, const char *detail)
+{
+  struct eo_http *http = context;
+  enum eo_log_level level = strcmp(what, "failed") == 0 ? EO_LOG_WARNING : EO_LOG_INFO;
+  eo_log_event(http->log, level, "job", "%s %lld: %s%s%s", kind, (long long)job, what, *detail ? ": " : "", detail);
+}
+
 static enum eo_code start(struct eo_http *http, struct eo_error *error)
 {
   struct eo_listening listening;
@@ -324,6 +334,9 @@ static enum eo_code start(struct eo_http *http, struct eo_error *error)
   http->socket = listening.socket;
   snprintf(http->url, sizeof http->url, "%s", listening.url);
   EO_TRY(eo_ticker_start(http, error));
+  eo_service_tell(http->service, log_job, http);
+  eo_log_event(http->log, EO_LOG_INFO, "start", "%s at %s, data in %.300s", PACKAGE_STRING, http->url,
+               http->settings.data);
   enum eo_code code = start_daemon(http, listening.version6, error);
   if (code) {
     eo_http_quiesce(http);
@@ -389,6 +402,7 @@ void eo_http_stop(struct eo_http *http)
   let_replies_go(http);
   pthread_mutex_unlock(&http->lock);
   eo_ticker_stop(http);
+  eo_log_event(http->log, EO_LOG_INFO, "stop", "every request has its answer");
   MHD_stop_daemon(http->daemon);
   done(http);
 }

@@ -7,9 +7,15 @@
 #include <unistd.h>
 
 #include "base/parallel.h"
+#include "numerics/threads.h"
 #include "store/lock.h"
 
-enum { ANALYSIS_THREADS = 2, SWEEP_NICE = 5, LOCK_MS = 250 /* that those who ask wait while another program writes */ };
+enum {
+  ANALYSIS_THREADS = 2,
+  SWEEP_NICE = 5,
+  OTHER_THREADS = 4,
+  LOCK_MS = 250 /* that those who ask wait while another program writes */
+};
 
 static int or_standard(int value, int standard)
 {
@@ -96,8 +102,8 @@ static enum eo_code make_workers(struct eo_service *s, struct eo_error *error)
 static void make_mutexes(struct eo_service *s)
 {
   pthread_condattr_t attributes;
-  pthread_mutex_t *const mutex[] = {&s->preparing_mutex, &s->publish_mutex, &s->store_mutex,
-                                    &s->live_mutex,      &s->work_mutex,    &s->timing_mutex};
+  pthread_mutex_t *const mutex[] = {&s->preparing_mutex, &s->publish_mutex, &s->store_mutex, &s->live_mutex,
+                                    &s->note_mutex,      &s->work_mutex,    &s->timing_mutex};
   for (size_t i = 0; i < sizeof mutex / sizeof mutex[0]; i++)
     pthread_mutex_init(mutex[i], NULL);
   pthread_condattr_init(&attributes);
@@ -110,6 +116,8 @@ static enum eo_code begin(struct eo_service *s, const struct eo_service_settings
 {
   if (!resolve(&s->settings, settings))
     return eo_error_memory(error);
+  /* workers, an analysis and its second thread, sweeps, works, the members of a pair */
+  EO_TRY(eo_threads_reserve(2 * s->settings.threads + 2 * s->settings.analysis_threads + OTHER_THREADS, error));
   EO_TRY(open_store(s, error));
   const struct eo_service_limits *limits = &s->settings.limits;
   const struct eo_pairs_settings pairs = {
@@ -167,8 +175,8 @@ void eo_service_free(struct eo_service *s)
   eo_pairs_free(s->pairs);
   eo_events_free(s->events);
   eo_store_close(s->store);
-  pthread_mutex_t *const mutex[] = {&s->preparing_mutex, &s->publish_mutex, &s->store_mutex,
-                                    &s->live_mutex,      &s->work_mutex,    &s->timing_mutex};
+  pthread_mutex_t *const mutex[] = {&s->preparing_mutex, &s->publish_mutex, &s->store_mutex, &s->live_mutex,
+                                    &s->note_mutex,      &s->work_mutex,    &s->timing_mutex};
   for (size_t i = 0; i < sizeof mutex / sizeof mutex[0]; i++)
     pthread_mutex_destroy(mutex[i]);
   pthread_cond_destroy(&s->work);
@@ -176,6 +184,14 @@ void eo_service_free(struct eo_service *s)
   free((char *)s->settings.cache);
   free((char *)s->settings.program);
   free(s);
+}
+
+void eo_service_tell(struct eo_service *s, eo_service_note *note, void *context)
+{
+  pthread_mutex_lock(&s->note_mutex);
+  s->note = note;
+  s->note_context = context;
+  pthread_mutex_unlock(&s->note_mutex);
 }
 
 void eo_service_wake(struct eo_service *s)

@@ -27,8 +27,9 @@
 
 struct eo_service;
 
-/* Hears what happens to jobs, for a log. Called from any thread, with no lock held. state: what the job is now. */
-typedef void eo_service_note(void *context, int64_t job, const char *kind, const char *state, const char *detail);
+/* Hears what happens to jobs, for a log: what is "begun" or a state, detail an error or "". Called from the workers'
+   threads; it must not call the service. */
+typedef void eo_service_note(void *context, int64_t job, const char *kind, const char *what, const char *detail);
 
 struct eo_service_settings {
   const char *data;     /* data folder: the database */
@@ -52,6 +53,9 @@ void eo_service_stop(struct eo_service *service);
 
 /* Stops, waits for the threads, closes the database. NULL is fine. No callback comes after it. */
 void eo_service_free(struct eo_service *service);
+
+/* Who hears of jobs from now on; NULL: nobody. Once it returns the one before is not called any more. */
+void eo_service_tell(struct eo_service *service, eo_service_note *note, void *context);
 
 /* Outcomes: enum eo_job_outcome of store/queue.h. */
 struct eo_job_order {

@@ -41,6 +41,9 @@ struct eo_service {
   pthread_mutex_t store_mutex; /* guards store */
   struct eo_store *store;
   pthread_mutex_t live_mutex; /* guards the workers' live */
+  pthread_mutex_t note_mutex; /* guards note; held while it is called */
+  eo_service_note *note;
+  void *note_context;
   pthread_mutex_t work_mutex; /* guards calls */
   pthread_cond_t work;        /* calls has grown, or stopping */
   uint64_t calls;             /* how often somebody said that there is work */

@@ -188,6 +188,14 @@ static void wake(struct eo_service *s, int64_t id, enum eo_job_state state, cons
   eo_lane_wake(s->works, id, &why);
 }
 
+static void tell(struct eo_service *s, int64_t id, enum eo_job_kind kind, const char *what, const char *detail)
+{
+  pthread_mutex_lock(&s->note_mutex);
+  if (s->note)
+    s->note(s->note_context, id, eo_store_job_kind_name(kind), what, detail);
+  pthread_mutex_unlock(&s->note_mutex);
+}
+
 static void work_off(struct eo_service_worker *w, int64_t id)
 {
   struct eo_service *s = w->service;
@@ -196,6 +204,7 @@ static void work_off(struct eo_service_worker *w, int64_t id)
   bool stopped = false;
   begin_live(w, id);
   eo_service_publish(s, id);
+  tell(s, id, w->kind, "begun", "");
   enum eo_code code = run_job(w, &task, &stopped, &error);
   if (code && !error.code)
     error.code = code;
@@ -206,6 +215,7 @@ static void work_off(struct eo_service_worker *w, int64_t id)
   wake(s, id, state, &error);
   pthread_mutex_unlock(&s->preparing_mutex);
   eo_service_publish(s, id);
+  tell(s, id, w->kind, eo_store_job_state_name(state), error.text);
   eo_pairs_release(s->pairs, task.held);
   eo_text_done(&task.text);
   free(task.design);
@@ -225,19 +235,34 @@ static void wait_for_work(struct eo_service *s, uint64_t *calls)
   pthread_mutex_unlock(&s->work_mutex);
 }
 
+/* Now and then, on the thread of preparations: what is no longer to be kept goes. */
+static void retain(struct eo_service_worker *w, double *last)
+{
+  static const double INTERVAL_MS = 600e3;
+  const struct eo_service_limits *limits = &w->service->settings.limits;
+  double now = eo_clock_milliseconds();
+  if (w->kind != EO_JOB_PREPARE || (*last > 0 && now - *last < INTERVAL_MS))
+    return;
+  *last = now;
+  eo_queue_retain(w->store, limits->kept_jobs, limits->kept_predictions_days, NULL); /* tried again the next time */
+}
+
 void *eo_service_work(void *argument)
 {
   struct eo_service_worker *w = argument;
   struct eo_service *s = w->service;
   uint64_t calls = 0;
+  double retained = 0;
   eo_lane_stand_back(w->kind == EO_JOB_OPTIMIZE ? OPTIMIZE_NICE : PREPARE_NICE);
   while (!atomic_load(&s->stopping)) {
     int64_t id;
     enum eo_code code = eo_queue_claim(w->store, w->kind, &id, NULL);
     if (!code && id)
       work_off(w, id);
-    else
+    else {
+      retain(w, &retained);
       wait_for_work(s, &calls);
+    }
   }
   return NULL;
 }

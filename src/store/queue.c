@@ -322,6 +322,44 @@ enum eo_code eo_queue_tidy(struct eo_store *store, int keep, struct eo_error *er
       "n", keep);
 }
 
+/* The oldest job beyond those that are kept; 0: none. */
+static enum eo_code find_surplus(struct eo_store *store, int keep, int64_t *id, struct eo_error *error)
+{
+  struct eo_statement s = eo_statement_begin(
+      store,
+      "SELECT min(id) FROM job WHERE kind = 'optimize' AND served = 1 AND state IN ('done', 'failed', 'cancelled')"
+      " AND id NOT IN (SELECT id FROM job WHERE kind = 'optimize' AND served = 1 AND state IN ('done', 'failed',"
+      " 'cancelled') ORDER BY id DESC LIMIT ?)",
+      "n", keep);
+  *id = eo_statement_step(&s) ? eo_column_integer(&s, 0) : 0;
+  return eo_statement_end(&s, error);
+}
+
+static enum eo_code remove_old_generation(struct eo_store *store, double days, struct eo_error *error)
+{
+  return EO_STATEMENT_RUN(
+      store, error,
+      "DELETE FROM prediction WHERE (job, generation) = (SELECT p.job, p.generation FROM job j JOIN prediction p"
+      " ON p.job = j.id WHERE j.finished < strftime('%Y-%m-%dT%H:%M:%fZ', julianday('now') - ?) LIMIT 1)",
+      "r", days);
+}
+
+enum eo_code eo_queue_retain(struct eo_store *store, int keep, double prediction_days, struct eo_error *error)
+{
+  enum eo_job_outcome outcome = EO_JOB_OUTCOME_DONE;
+  int64_t id = keep > 0, changes = prediction_days > 0;
+  while (id && outcome == EO_JOB_OUTCOME_DONE) {
+    EO_TRY(find_surplus(store, keep, &id, error));
+    if (id)
+      EO_TRY(eo_queue_remove(store, id, &outcome, error));
+  }
+  while (changes) {
+    EO_TRY(remove_old_generation(store, prediction_days, error));
+    changes = sqlite3_changes64(store->handle);
+  }
+  return EO_OK;
+}
+
 enum eo_code eo_queue_find(struct eo_store *store, int64_t id, eo_store_visit_job *visit, void *context,
                            enum eo_job_outcome *outcome, struct eo_error *error)
 {

@@ -73,6 +73,11 @@ enum eo_code eo_queue_recover(struct eo_store *store, int attempts, const char *
 /* Removes finished preparations but the newest ones: nobody asks for them. */
 enum eo_code eo_queue_tidy(struct eo_store *store, int keep, struct eo_error *error);
 
+/* What somebody who runs a server does not want to keep: of optimizations that have ended all but the newest (keep 0:
+   none goes), and predictions of jobs that ended so many days ago (0: none). Evaluations stay. In steps between which
+   others can write. */
+enum eo_code eo_queue_retain(struct eo_store *store, int keep, double prediction_days, struct eo_error *error);
+
 /* One job with everything; the texts are borrowed until visit returns. Outcomes: DONE, MISSING. */
 enum eo_code eo_queue_find(struct eo_store *store, int64_t id, eo_store_visit_job *visit, void *context,
                            enum eo_job_outcome *outcome, struct eo_error *error);

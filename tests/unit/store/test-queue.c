@@ -298,6 +298,20 @@ static void test_unclean(void)
   eo_store_close(store);
 }
 
+static void test_retention(void)
+{
+  struct eo_store *store = open_store();
+  int64_t id[5];
+  for (int i = 0; i < 5; i++)
+    id[i] = make(store, i == 4 ? EO_JOB_PREPARING : EO_JOB_DONE);
+  ok(!eo_queue_retain(store, 0, 0, &error) && look(store, id[0]).count,
+     "all jobs are kept unless somebody says otherwise");
+  ok(!eo_queue_retain(store, 2, 0, &error) && !look(store, id[1]).count && look(store, id[2]).count &&
+         look(store, id[3]).count && look(store, id[4]).count,
+     "the newest two that have ended are kept, and one that has not");
+  eo_store_close(store);
+}
+
 static int64_t add_problem(struct eo_store *store)
 {
   const struct eo_stored_problem problem = {
@@ -502,9 +516,9 @@ static void test_designs(void)
 
 int main(void)
 {
-  void (*const test[])(void) = {test_order,   test_full,     test_idempotency, test_preparations,
-                                test_states,  test_recovery, test_unclean,     test_begin,
-                                test_threads, test_pages,    test_server_lock, test_designs};
+  void (*const test[])(void) = {test_order,    test_full,        test_idempotency, test_preparations, test_states,
+                                test_recovery, test_unclean,     test_retention,   test_begin,        test_threads,
+                                test_pages,    test_server_lock, test_designs};
   snprintf(folder, sizeof folder, "%s/easeoff-queue-XXXXXX", getenv("TMPDIR") ? getenv("TMPDIR") : "/tmp");
   if (!mkdtemp(folder))
     return 99;
