@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a client sends, piece by piece: the first byte says which reader gets the rest. With clang's fuzzer:
-     clang -fsanitize=fuzzer,address,undefined -DFUZZER ... ; without it the program replays the files it is given and
-   prints TAP. */
+/* What a client sends, piece by piece: the first byte says which reader gets the rest. For libFuzzer, and replayed by
+   replay.c. */
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
@@ -9,9 +8,11 @@
 #include "document/design_document.h"
 #include "format/json.h"
 #include "document/sweep_document.h"
+#include "fuzz/fuzz.h"
+#include "http/client.h"
+#include "http/framing.h"
 #include "http/header_field.h"
-
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
+#include "service/preparation_line.h"
 
 static void read_design(const char *text, size_t size)
 {
@@ -71,6 +72,24 @@ static void read_fields(const char *text)
   eo_field_match("/export/{format}.csv", text, sizeof argument[0], argument, 2);
 }
 
+/* Lists of proxies, what they say of clients, paths with %XX, lines of a process. */
+static void read_lists(char *text)
+{
+  struct eo_proxies proxies;
+  struct eo_preparation_line line;
+  const struct sockaddr_storage peer = {.ss_family = AF_INET};
+  if (eo_proxies_read(&proxies, text, NULL) == EO_OK && proxies.count > EO_PROXIES)
+    abort();
+  eo_proxies_read(&proxies, "0.0.0.0/0, ::/0", NULL);
+  struct eo_client client = eo_client_of(&proxies, &peer, text, text);
+  if (strlen(client.text) >= sizeof client.text)
+    abort();
+  eo_preparation_line_read(text, &line);
+  size_t length = strlen(text);
+  if (eo_framing_unescape(NULL, NULL, text) > length || strlen(text) > length)
+    abort();
+}
+
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
   if (!size)
@@ -84,30 +103,10 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     read_design(text, size - 1);
   else if (data[0] == 's')
     read_sweep(text, size - 1);
+  else if (data[0] == 'l')
+    read_lists(text);
   else
     read_fields(text);
   free(text);
   return 0;
 }
-
-#ifndef FUZZER
-#include "support/tap.h"
-
-static void replay(const char *path)
-{
-  static uint8_t data[1 << 20];
-  FILE *stream = fopen(path, "rb");
-  size_t size = stream ? fread(data, 1, sizeof data, stream) : 0;
-  if (stream)
-    fclose(stream);
-  const char *name = strrchr(path, '/');
-  ok(size > 0 && LLVMFuzzerTestOneInput(data, size) == 0, "%s: %zu bytes", name ? name + 1 : path, size);
-}
-
-int main(int argc, char **argv)
-{
-  for (int i = 1; i < argc; i++)
-    replay(argv[i]);
-  return tap_done();
-}
-#endif
