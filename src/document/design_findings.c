@@ -15,7 +15,7 @@ static const struct eo_outline_row finding_rows[] = {
     EO_KEY("key", "text", "JSON pointer of the field it belongs to"),
     EO_KEY("text", "text", "in plain words: number, limit, remedy"),
 };
-const struct eo_outline eo_outline_finding = EO_OUTLINE("Finding", finding_rows);
+const struct eo_outline eo_outline_finding = EO_OUTLINE("DesignFinding", finding_rows);
 
 json_t *eo_design_findings(const struct eo_warnings *warnings)
 {
