@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "http/guard.h"
+#include "http/problems.h"
 #include "http/route.h"
 #include "http/schemas.h"
 
@@ -97,7 +98,14 @@ static bool next_name(const char **list, const char **name, size_t *length)
   return *length > 0;
 }
 
-static void add_headers(json_t *list, const char *headers)
+static json_t *require(json_t *parameter, bool required)
+{
+  if (required)
+    json_object_set_new(parameter, "required", json_true());
+  return parameter;
+}
+
+static void add_headers(json_t *list, const char *headers, unsigned method)
 {
   static const struct {
     const char *name, *help;
@@ -115,7 +123,8 @@ static void add_headers(json_t *list, const char *headers)
     for (size_t i = 0; i < sizeof known / sizeof known[0]; i++)
       if (strlen(known[i].name) == length && strncmp(known[i].name, name, length) == 0)
         json_array_append_new(
-            list, encode_parameter(name, length, "header", json_pack("{s:s}", "type", "string"), known[i].help));
+            list, require(encode_parameter(name, length, "header", json_pack("{s:s}", "type", "string"), known[i].help),
+                          method == EO_PUT && strcmp(known[i].name, "If-Match") == 0));
 }
 
 static json_t *encode_content(const char *what, size_t length, bool csv)
@@ -130,6 +139,94 @@ static json_t *encode_content(const char *what, size_t length, bool csv)
   return content;
 }
 
+/* What a request can come to beside what it asked for. */
+static bool can_come(const struct eo_route *route, unsigned status)
+{
+  bool changes = route->method & (EO_POST | EO_PUT | EO_DELETE),
+       conditional = route->headers && strstr(route->headers, "If-Match");
+  switch (status) {
+  case 401:
+    return !route->open;
+  case 403:
+    return changes;
+  case 404:
+    return strchr(route->pattern, '{');
+  case 409:
+    return changes || strstr(route->pattern, "/result") || (route->headers && strstr(route->headers, "Easeoff-Lane"));
+  case 412:
+    return conditional;
+  case 413:
+  case 415:
+  case 422:
+    return route->takes;
+  case 428:
+    return conditional && route->method == EO_PUT;
+  case 429:
+    return route->rate != EO_RATE_FREE || route->form;
+  case 507:
+    return changes;
+  default:
+    return true;
+  }
+}
+
+static void add_problems(json_t *answers, const struct eo_route *route)
+{
+  static const struct {
+    unsigned status;
+    const char *what;
+  } known[] = {{400, "the request is malformed"},
+               {401, "the token is missing or wrong"},
+               {403, "not from a page of another site"},
+               {404, "there is nothing with this number"},
+               {409, "not in its present state"},
+               {412, "the design has changed"},
+               {413, "the body is too long"},
+               {415, "another type of body is expected"},
+               {421, "not under this name"},
+               {422, "values are wrong; errors points at each"},
+               {428, "If-Match is missing"},
+               {429, "more than one client may ask for at once; Retry-After"},
+               {500, "the server failed"},
+               {503, "not now; Retry-After"},
+               {507, "there is no room"}};
+  for (size_t i = 0; i < sizeof known / sizeof known[0]; i++) {
+    char status[8];
+    struct eo_text text = {0};
+    snprintf(status, sizeof status, "%u", known[i].status);
+    if (!can_come(route, known[i].status))
+      continue;
+    eo_text_print(&text, "%s: ", known[i].what);
+    if (!eo_problems_list(known[i].status, &text))
+      text.data[text.size -= 2] = '\0';
+    json_t *answer = json_object_get(answers, status),
+           *problem = json_pack("{s:{s:o}}", "application/problem+json", "schema", reference("Problem", 7));
+    if (!answer)
+      json_object_set_new(answers, status,
+                          json_pack("{s:s, s:o}", "description", text.failed ? "" : text.data, "content", problem));
+    else {
+      json_object_update(problem, json_object_get(answer, "content"));
+      json_object_set_new(answer, "content", problem);
+    }
+    eo_text_done(&text);
+  }
+}
+
+static const char *describe_success(const char *status)
+{
+  static const struct {
+    const char *status, *what;
+  } known[] = {{"200", "what was asked for"},
+               {"201", "stored; Location says where"},
+               {"202", "taken; Location names the job that works on it"},
+               {"204", "done; there is nothing to say"},
+               {"503", "not now"}};
+  for (size_t i = 0; i < sizeof known / sizeof known[0]; i++)
+    if (strncmp(known[i].status, status, 3) == 0)
+      return known[i].what;
+  return "done";
+}
+
 static json_t *encode_answers(const struct eo_route *route)
 {
   json_t *answers = json_object();
@@ -138,7 +235,7 @@ static json_t *encode_answers(const struct eo_route *route)
   while (next_name(&list, &name, &length)) {
     json_t *answer = json_object_getn(answers, name, 3), *content;
     if (!answer) {
-      answer = json_pack("{s:s}", "description", *name == '2' ? "done" : "not now");
+      answer = json_pack("{s:s}", "description", describe_success(name));
       json_object_setn_new(answers, name, 3, answer);
     }
     if (name[4] == '-')
@@ -149,6 +246,7 @@ static json_t *encode_answers(const struct eo_route *route)
   }
   if (route->headers && strstr(route->headers, "If-None-Match"))
     json_object_set_new(answers, "304", json_pack("{s:s}", "description", "the known version still holds"));
+  add_problems(answers, route);
   json_object_set_new(answers, "default",
                       json_pack("{s:s, s:{s:{s:o}}}", "description", "a problem (RFC 9457)", "content",
                                 "application/problem+json", "schema", reference("Problem", 7)));
@@ -171,7 +269,7 @@ static json_t *encode_operation(const struct eo_route *route)
   json_t *parameters = json_array();
   add_path_parameters(parameters, route->pattern);
   add_queries(parameters, route);
-  add_headers(parameters, route->headers);
+  add_headers(parameters, route->headers, route->method);
   json_t *operation = json_pack("{s:s, s:s, s:o, s:o}", "operationId", route->name, "summary", route->summary,
                                 "parameters", parameters, "responses", encode_answers(route));
   if (route->takes)

@@ -8,6 +8,7 @@
 
 #include "format/json.h"
 #include "http/log.h"
+#include "http/problems.h"
 #include "http/storage_watch.h"
 
 void eo_reply_text(struct eo_reply *reply, unsigned status, const char *type, struct eo_text *text)
@@ -66,7 +67,7 @@ static void put_problem_with(struct eo_reply *reply, unsigned status, const char
                              json_t *errors, json_t *more)
 {
   char type[80] = "about:blank";
-  if (name)
+  if (name && eo_problem_find(name)) /* each has a page */
     snprintf(type, sizeof type, "/problems/%s", name);
   json_t *problem = json_pack("{s:s, s:s, s:i, s:s, s:o, s:s}", "type", type, "title", title_of(status), "status",
                               (int)status, "detail", detail, "errors", errors ? errors : json_array(), "request_id",

@@ -282,12 +282,20 @@ static json_t *fit_order(void)
   return good ? schema : (json_decref(schema), NULL);
 }
 
+/* Bytes of a recording; the name of the part may come twice. */
+static json_t *file_part(void)
+{
+  return json_pack("{s:s, s:s, s:s}", "type", "string", "format", "binary", "description",
+                   "the recording as it is, of any kind that is read; twice where each encoder has its own file, the "
+                   "pinion's first");
+}
+
 /* What a route takes, under the last of its names; a form has files too. */
 static bool add_order(json_t *schemas, const struct eo_route *route)
 {
   const char *other = strrchr(route->takes, '|');
   json_t *schema = eo_table_json_schema(route->order, true);
-  bool good = !route->form || (json_object_set_new(json_object_get(schema, "properties"), "file", json_object()) == 0 &&
+  bool good = !route->form || (json_object_set_new(json_object_get(schema, "properties"), "file", file_part()) == 0 &&
                                json_array_append_new(json_object_get(schema, "required"), json_string("file")) == 0);
   return json_object_set_new(schemas, other ? other + 1 : route->takes, schema) == 0 && good;
 }

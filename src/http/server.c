@@ -22,6 +22,7 @@
 #include "http/log.h"
 #include "http/request_log.h"
 #include "http/pages.h"
+#include "http/problem_page.h"
 #include "http/routes.h"
 #include "http/send.h"
 #include "http/storage_watch.h"
@@ -137,9 +138,10 @@ static void run_handler(struct eo_request *request)
     request->reply.retry_after = 5;
     return;
   }
-  if (!request->route)
-    eo_pages_reply(request->http->pages, request);
-  else if (eo_guard_spends(request, request->route->rate)) {
+  if (!request->route) {
+    if (!eo_problem_page_reply(request))
+      eo_pages_reply(request->http->pages, request);
+  } else if (eo_guard_spends(request, request->route->rate)) {
     if (request->route->aside || request->route->form)
       eo_background_take(request->route->form ? request->http->readings : request->http->aside, request);
     else
