@@ -55,6 +55,50 @@ static void get_all(struct eo_request *request)
     eo_reply_json(&request->reply, 200, document);
 }
 
+/* A sentence of the core about a number that is not there is a 404 here. */
+static void reply_no_record(struct eo_request *request, const struct eo_error *error)
+{
+  if (error->code == EO_ERROR_INPUT)
+    eo_reply_problem(&request->reply, 404, NULL, "%s", error->text);
+  else
+    eo_reply_error(&request->reply, "", error);
+}
+
+static void get_problem(struct eo_request *request)
+{
+  struct eo_error error;
+  struct eo_text text = {0};
+  json_t *rows = NULL;
+  int64_t id;
+  if (!eo_request_id_at(request, 0, &id))
+    return;
+  enum eo_code code = eo_records_rows(request->store, id, &rows, &error);
+  if (!code && request->csv)
+    code = eo_records_rows_csv(rows, &text, &error);
+  if (code)
+    reply_no_record(request, &error);
+  else if (request->csv)
+    eo_reply_text(&request->reply, 200, "text/csv; charset=utf-8", &text);
+  else
+    eo_reply_json(&request->reply, 200, json_incref(rows));
+  json_decref(rows);
+  eo_text_done(&text);
+}
+
+static void get_path(struct eo_request *request)
+{
+  struct eo_error error;
+  struct eo_text text = {0};
+  int64_t id;
+  if (!eo_request_id_at(request, 0, &id))
+    return;
+  if (eo_records_path_csv(request->store, id, &text, &error))
+    reply_no_record(request, &error);
+  else
+    eo_reply_text(&request->reply, 200, "text/csv; charset=utf-8", &text);
+  eo_text_done(&text);
+}
+
 const struct eo_route eo_routes_history[] = {
     {.method = EO_GET,
      .pattern = "/jobs/{id}/history",
@@ -65,6 +109,22 @@ const struct eo_route eo_routes_history[] = {
      .aside = true,
      .summary = "The true evaluations of an optimization in its order; as CSV all of them.",
      .query = {{"limit", 1, 200, 50, NULL, "most rows"}, {"cursor", 0, 2e9, -1, NULL, "`next` of the page before"}}},
+    {.method = EO_GET,
+     .pattern = "/jobs/{id}/path",
+     .handle = get_path,
+     .name = "getJobPath",
+     .gives = "200 text/csv",
+     .aside = true,
+     .summary = "The path of a search as CSV, each individual, whether computed, known or predicted: `easeoff history "
+                "export --job`."},
+    {.method = EO_GET,
+     .pattern = "/history/{id}/rows",
+     .handle = get_problem,
+     .name = "getProblem",
+     .gives = "200 ProblemRows",
+     .csv = true,
+     .aside = true,
+     .summary = "Every true evaluation of a problem, modification and values per load case: `easeoff history export`."},
     {.method = EO_GET,
      .pattern = "/history",
      .handle = get_all,

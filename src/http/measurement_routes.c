@@ -204,6 +204,16 @@ const struct eo_route eo_routes_measurements[] = {
      .summary = "A recording of two encoders: one file, or the pinion's and then the gear's. 200 when it is known "
                 "already; 422 with the findings when "
                 "it gives no result, and nothing is kept then."},
+    {.method = EO_POST,
+     .pattern = "/measure",
+     .handle = eo_measurement_try,
+     .name = "tryMeasurement",
+     .takes = "MeasurementForm",
+     .order = &eo_measurement_form,
+     .form = true,
+     .gives = "200 MeasurementOfFile",
+     .rate = EO_RATE_QUESTION,
+     .summary = "The same without keeping anything: what `easeoff measure --json` prints."},
     {.method = EO_GET,
      .pattern = "/measurements/{id}",
      .handle = get_one,

@@ -242,6 +242,16 @@ static enum eo_code keep(struct eo_request *request, const struct asked *asked, 
   return code;
 }
 
+static void reply_unmeasured(struct eo_request *request, enum eo_code code, const struct eo_error *error)
+{
+  if (code != EO_ERROR_CANCELLED) {
+    eo_reply_error(&request->reply, "", error);
+    return;
+  }
+  eo_reply_problem(&request->reply, 503, "stopping", "The server is stopping.");
+  request->reply.retry_after = 5;
+}
+
 static void measure_and_keep(struct eo_request *request, const struct asked *asked, const char *pair,
                              const char *digest)
 {
@@ -251,11 +261,8 @@ static void measure_and_keep(struct eo_request *request, const struct asked *ask
   json_t *document = NULL;
   double torque = NAN;
   enum eo_code code = measure(request, asked, &document, &torque, &error);
-  if (code == EO_ERROR_CANCELLED) {
-    eo_reply_problem(&request->reply, 503, "stopping", "The server is stopping.");
-    request->reply.retry_after = 5;
-  } else if (code)
-    eo_reply_error(&request->reply, "", &error);
+  if (code)
+    reply_unmeasured(request, code, &error);
   else if (json_is_true(json_object_get(document, "refused")))
     reply_refused(request, document);
   else if (!(torque > 0)) {
@@ -294,6 +301,36 @@ static void answer_upload(struct eo_request *request, struct asked *asked)
   else
     measure_and_keep(request, asked, pair, digest);
   eo_text_done(&found.text);
+}
+
+/* What was measured, as `easeoff measure --json` prints it; the upload goes away with the request. */
+static void answer_trial(struct eo_request *request, struct asked *asked)
+{
+  struct eo_error error;
+  json_t *document = NULL;
+  if (!eo_body_read(request, asked) || !find_design(request, asked))
+    return;
+  double torque = NAN;
+  enum eo_code code = measure(request, asked, &document, &torque, &error);
+  if (code)
+    reply_unmeasured(request, code, &error);
+  else if (json_is_true(json_object_get(document, "refused")))
+    reply_refused(request, document);
+  else
+    eo_reply_json(&request->reply, 200, json_incref(document));
+  json_decref(document);
+}
+
+void eo_measurement_try(struct eo_request *request)
+{
+  struct asked *asked = calloc(1, sizeof *asked);
+  struct eo_error error;
+  if (!asked) {
+    eo_reply_error(&request->reply, "", (eo_error_memory(&error), &error));
+    return;
+  }
+  answer_trial(request, asked);
+  free(asked);
 }
 
 void eo_measurement_add(struct eo_request *request)

@@ -10,4 +10,7 @@
 void eo_measurement_add(struct eo_request *request);
 extern const struct eo_table eo_measurement_form;
 
+/* The same without keeping anything: 200 with what was measured. */
+void eo_measurement_try(struct eo_request *request);
+
 #endif

@@ -21,8 +21,8 @@
 #include "document/rig_answer.h"
 
 static const char *const states[] = {"ok", "failing", NULL};
-static const char *const kinds[] = {"number",  "integer", "seed",   "flag", "text",   "choice",
-                                    "numbers", "limit",   "object", "list", "series", NULL};
+static const char *const kinds[] = {"number", "integer", "seed", "flag",   "text",   "choice", "numbers",
+                                    "limit",  "object",  "list", "series", "matrix", NULL};
 
 static const struct eo_outline_row description_rows[] = {
     EO_KEY("openapi", "text", "version of OpenAPI"), EO_KEY("info", "any", "as OpenAPI says"),
@@ -192,6 +192,12 @@ static const struct eo_outline_row job_history_rows[] = {
 };
 static const struct eo_outline job_history = EO_OUTLINE("JobHistory", job_history_rows);
 
+static const struct eo_outline_row problem_history_rows[] = {
+    EO_KEY("problem", "any", "what its evaluations have in common, as it is hashed"),
+    EO_KEY("rows", "any", "every true evaluation: id, outcome, reason, cost_s, modification, scenarios"),
+};
+static const struct eo_outline problem_history = EO_OUTLINE("ProblemRows", problem_history_rows);
+
 static const struct eo_outline_row asked_columns_rows[] = {
     EO_KEY("pinion", "any", "of the pinion", .when = "where it is chosen"),
     EO_KEY("gear", "any", "of the gear", .when = "where it is chosen"),
@@ -257,6 +263,7 @@ static const struct eo_outline *const outlines[] = {&eo_result_outline,
                                                     &preparing,
                                                     &jobs,
                                                     &job_history,
+                                                    &problem_history,
                                                     &storage,
                                                     &measurements,
                                                     &eo_import_outline};

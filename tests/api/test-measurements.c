@@ -62,14 +62,16 @@ static struct form make_form(const struct upload *u)
   return form;
 }
 
+static const char *target = API "/measurements";
+
 /* size: bytes of the form that are sent; length: what is said of it. */
 static struct reply post_bytes(const struct form *form, size_t size, size_t length)
 {
   struct reply reply = {0};
   char head[300];
   int connection = open_connection();
-  snprintf(head, sizeof head, "POST " API "/measurements HTTP/1.1\r\nHost: localhost\r\n%sContent-Length: %zu\r\n\r\n",
-           form_type, length);
+  snprintf(head, sizeof head, "POST %s HTTP/1.1\r\nHost: localhost\r\n%sContent-Length: %zu\r\n\r\n", target, form_type,
+           length);
   send_text(connection, head);
   send_bytes(connection, form->text, size);
   bool whole = size == length || size == 0; /* else the client goes away in the middle */
@@ -78,7 +80,7 @@ static struct reply post_bytes(const struct form *form, size_t size, size_t leng
   if (!whole || !read_reply(connection, &reply, false))
     reply.status = 0;
   close(connection);
-  hear("POST", API "/measurements", &reply);
+  hear("POST", target, &reply);
   return reply;
 }
 
@@ -172,6 +174,21 @@ static void test_rig(void)
 static double number_of(const json_t *document, const char *a, const char *b)
 {
   return json_number_value(json_object_get(json_object_get(json_object_get(document, "result"), a), b));
+}
+
+/* What the terminal measures without keeping anything. */
+static void test_trial(void)
+{
+  const struct upload u = {"1", "modified", "828", "2000", NULL, "run.csv", &modified, NULL};
+  target = API "/measure";
+  struct reply reply = post(&u);
+  target = API "/measurements";
+  json_t *document = body_of(&reply);
+  ok(reply.status == 200 && fabs(number_of(document, "speed_rpm", "mean") - 2000) < 0.1,
+     "a recording is measured without being kept: %d", reply.status);
+  ok(count_kept() == 0 && folders_become(0), "nothing of it stays");
+  json_decref(document);
+  free_reply(&reply);
 }
 
 static void test_upload(void)
@@ -622,6 +639,7 @@ int main(void)
   char *text = json_dumps(design, JSON_COMPACT);
   expect("a design", call("POST", API "/designs", NULL, text), 201);
   test_rig();
+  test_trial();
   test_upload();
   test_kinds();
   test_two_files();
