@@ -75,6 +75,16 @@ class Client:
         """Whether the service works; raises Problem 503 when it does not."""
         return self._json("GET", "/health")
 
+    @operation("getReady")
+    def ready(self) -> doc.Health:
+        """The same: whether the service can work and keep what it is sent."""
+        return self._json("GET", "/health/ready")
+
+    @operation("getLive")
+    def live(self) -> doc.Live:
+        """That the service answers at all."""
+        return self._json("GET", "/health/live")
+
     @operation("getMetrics")
     def metrics(self) -> str:
         """Counters in the text format of Prometheus."""
@@ -197,6 +207,11 @@ class Client:
         query = {"pair": pair, "flank": flank, "transverse": int(transverse), "reversed": int(reversed)}
         return self._json("POST", "/import", query=query, form=("application/octet-stream", content))
 
+    @operation("reportDesign")
+    def report(self, design: Design, *, easeoff_lane: str | None = None) -> str:
+        """One HTML file a reviewer can check, as `easeoff report` writes it; waits while the pair is prepared."""
+        return self._computed("POST", "/report", document=design, lane=easeoff_lane, accept="text/html").text
+
     # -- jobs
 
     @operation("addJob")
@@ -249,6 +264,11 @@ class Client:
         """The true evaluations of an optimization in its order."""
         return self._pages(f"/jobs/{id}/history")
 
+    @operation("getJobPath")
+    def job_path(self, id: int) -> str:
+        """The path of a search as CSV: each individual, whether computed, known or predicted."""
+        return self.transport.request("GET", f"/jobs/{id}/path", accept="text/csv").text
+
     @operation("getEvents")
     def events(self, last_event_id: str | None = None) -> Iterator[Event]:
         """Every change of any job, as it happens; the stream ends with the service."""
@@ -263,6 +283,11 @@ class Client:
     def history(self) -> doc.History:
         """The problems that were worked on with the number of their evaluations, and all jobs."""
         return self._json("GET", "/history")
+
+    @operation("getProblem")
+    def problem_rows(self, id: int) -> doc.ProblemRows:
+        """Every true evaluation of a problem of the history."""
+        return self._json("GET", f"/history/{id}/rows")
 
     def follow(self, id: int) -> Iterator[doc.Job]:
         """The job each time it changes, its last state included; a broken connection is taken up again."""
@@ -309,11 +334,12 @@ class Client:
         A recording is a path, or (file name, content). stated: design (its number), torque_Nm, speed_rpm and the other
         fields of the form MeasurementForm. Problem 422 holds the findings of a recording without a result.
         """
-        files = [
-            recording if isinstance(recording, tuple) else (Path(recording).name, Path(recording).read_bytes())
-            for recording in recordings
-        ]
-        return self._json("POST", "/measurements", form=encode_form(stated, files))
+        return self._json("POST", "/measurements", form=encode_form(stated, self._files(recordings)))
+
+    @operation("tryMeasurement")
+    def try_measurement(self, *recordings: Recording, **stated: Any) -> doc.MeasurementOfFile:
+        """What add_measurement() would find, without keeping anything."""
+        return self._json("POST", "/measure", form=encode_form(stated, self._files(recordings)))
 
     @operation("getMeasurement")
     def measurement(self, id: int) -> doc.Measurement:
@@ -356,6 +382,13 @@ class Client:
         return self._computed("POST", "/rig", document=order, lane=easeoff_lane, accept="text/csv").text
 
     # -- below the methods
+
+    @staticmethod
+    def _files(recordings: Sequence[Recording]) -> list[tuple[str, bytes]]:
+        return [
+            recording if isinstance(recording, tuple) else (Path(recording).name, Path(recording).read_bytes())
+            for recording in recordings
+        ]
 
     def _json(self, method: str, path: str, **request: Any) -> Any:
         return self.transport.request(method, path, **request).json
