@@ -155,12 +155,28 @@ static void add_coast_flanks(json_t *list, const struct eo_design *design, bool 
     }
 }
 
+/* Shafts that are rigid are nobody's assumption. */
+static bool is_used(const struct eo_design *design, const struct group *group)
+{
+  return group->table != &eo_shafts_table || design->shafts.enabled;
+}
+
+bool eo_assumptions_cover(const struct eo_design *design, const char *pointer)
+{
+  for (int g = 0; g < GROUPS; g++) {
+    size_t length = strlen(groups[g].key);
+    if (is_used(design, &groups[g]) && strncmp(pointer + 1, groups[g].key, length) == 0 && pointer[length + 1] == '/')
+      return true;
+  }
+  return false;
+}
+
 json_t *eo_assumptions_encode(const struct eo_design *design)
 {
   json_t *list = json_array();
   bool failed = !list;
   for (int g = 0, bit = 0; g < GROUPS && !failed; bit += groups[g++].table->count)
-    if (groups[g].table != &eo_shafts_table || design->shafts.enabled)
+    if (is_used(design, &groups[g]))
       add_group(list, design, &groups[g], bit, &failed);
   if (!failed && !bit_of(design, SHARE_BIT))
     add(list, "/load_cases/*/share", json_real(1. / design->load_cases), "equal, as no load case states its share",

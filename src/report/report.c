@@ -54,17 +54,17 @@ static void put_verdict(const json_t *result, struct eo_text *text)
   }
 }
 
-static void put_inputs(const json_t *result, struct eo_text *text)
+static void put_inputs(const json_t *result, const struct eo_design *from, struct eo_text *text)
 {
-  const json_t *assumed = json_object_get(result, "assumed");
+  const struct eo_sheet_source source = {from, json_object_get(result, "assumed")};
   json_t *design = json_copy(json_object_get(result, "design"));
   json_object_del(design, "optimization"); /* how a flank was searched for is nothing to sign */
   eo_page_heading(text, 2, "Inputs");
-  eo_sheet_table(text, &eo_design_table, design, "", assumed);
+  eo_sheet_groups(text, &eo_design_table, design, &source);
   json_decref(design);
   if (!eo_json_find(result, "design/rating")) {
     eo_page_heading(text, 3, "Inputs of the rating");
-    eo_sheet_table(text, &eo_rating_table, eo_json_find(result, "rating/settings"), "/rating", assumed);
+    eo_sheet_table(text, &eo_rating_table, eo_json_find(result, "rating/settings"), "/rating", &source);
   }
 }
 
@@ -154,7 +154,7 @@ void eo_report_write(const json_t *result, const struct eo_design *design, const
   eo_page_begin(text, *name ? name : "Easeoff");
   put_identity(result, text);
   put_verdict(result, text);
-  put_inputs(result, text);
+  put_inputs(result, design, text);
   put_standards(result, text);
   put_geometry(result, text);
   put_flanks(design, geometry, text);

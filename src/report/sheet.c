@@ -277,29 +277,30 @@ static const char *rule_of(const json_t *assumed, const char *path)
 }
 
 static void put_field(struct eo_text *text, const struct eo_field *field, const json_t *value, const char *path,
-                      const json_t *assumed)
+                      const struct eo_sheet_source *source)
 {
-  const char *rule = rule_of(assumed, path);
+  const char *rule = source ? rule_of(source->assumed, path) : NULL;
   eo_text_add(text, "<tr><td>");
   eo_plot_escape(text, field->help ? field->help : "");
   eo_text_print(text, "</td><td><code>%s</code></td><td class=\"n\">", path);
   eo_page_value(text, value);
   eo_text_print(text, "</td><td>%s</td>", field->unit ? field->unit->symbol : "");
-  if (assumed && rule) {
+  if (rule) {
     eo_text_add(text, "<td class=\"assumed\">assumed: ");
     eo_plot_escape(text, rule);
     eo_text_add(text, "</td>");
-  } else if (assumed)
-    eo_text_add(text, "<td>stated</td>");
+  } else if (source)
+    eo_text_print(text, "<td>%s</td>",
+                  !json_is_null(value) && eo_assumptions_cover(source->design, path) ? "stated" : "");
   eo_text_add(text, "</tr>\n");
 }
 
 static void put_fields(struct eo_text *text, const struct eo_table *table, const json_t *object, const char *path,
-                       const json_t *assumed);
+                       const struct eo_sheet_source *source);
 
 /* One key, with all below it. */
 static void put_key(struct eo_text *text, const struct eo_field *field, const json_t *value, const char *path,
-                    const json_t *assumed)
+                    const struct eo_sheet_source *source)
 {
   char place[300];
   snprintf(place, sizeof place, "%s/%s", path, field->key);
@@ -307,29 +308,61 @@ static void put_key(struct eo_text *text, const struct eo_field *field, const js
     for (size_t i = 0; i < json_array_size(value); i++) {
       char row[340];
       snprintf(row, sizeof row, "%s/%zu", place, i);
-      put_fields(text, field->table, json_array_get(value, i), row, assumed);
+      put_fields(text, field->table, json_array_get(value, i), row, source);
     }
   else if (field->kind == EO_FIELD_OBJECT)
-    put_fields(text, field->table, value, place, assumed);
+    put_fields(text, field->table, value, place, source);
   else
-    put_field(text, field, value, place, assumed);
+    put_field(text, field, value, place, source);
 }
 
 static void put_fields(struct eo_text *text, const struct eo_table *table, const json_t *object, const char *path,
-                       const json_t *assumed)
+                       const struct eo_sheet_source *source)
 {
   for (int i = 0; i < table->count; i++) {
     const json_t *value = json_object_get(object, table->field[i].key);
     if (value)
-      put_key(text, &table->field[i], value, path, assumed);
+      put_key(text, &table->field[i], value, path, source);
   }
 }
 
-void eo_sheet_table(struct eo_text *text, const struct eo_table *table, const json_t *object, const char *path,
-                    const json_t *assumed)
+static void put_fields_head(struct eo_text *text, const struct eo_sheet_source *source)
 {
   eo_text_print(text, "<table><tr><th>quantity</th><th>key</th><th class=\"n\">value</th><th>unit</th>%s</tr>\n",
-                assumed ? "<th>stated or assumed</th>" : "");
-  put_fields(text, table, object, path, assumed);
+                source ? "<th>stated or assumed</th>" : "");
+}
+
+void eo_sheet_table(struct eo_text *text, const struct eo_table *table, const json_t *object, const char *path,
+                    const struct eo_sheet_source *source)
+{
+  put_fields_head(text, source);
+  put_fields(text, table, object, path, source);
   eo_text_add(text, "</table>\n");
+}
+
+static bool is_group(const struct eo_field *field)
+{
+  return field->kind == EO_FIELD_OBJECT || field->kind == EO_FIELD_LIST;
+}
+
+void eo_sheet_groups(struct eo_text *text, const struct eo_table *table, const json_t *object,
+                     const struct eo_sheet_source *source)
+{
+  put_fields_head(text, source);
+  for (int i = 0; i < table->count; i++)
+    if (!is_group(&table->field[i]) && json_object_get(object, table->field[i].key))
+      put_key(text, &table->field[i], json_object_get(object, table->field[i].key), "", source);
+  eo_text_add(text, "</table>\n");
+  for (int i = 0; i < table->count; i++) {
+    const struct eo_field *field = &table->field[i];
+    const json_t *value = json_object_get(object, field->key);
+    if (!is_group(field) || !value)
+      continue;
+    eo_text_add(text, "<h3>");
+    eo_plot_escape(text, field->help);
+    eo_text_print(text, " <code>%s</code></h3>\n", field->key);
+    put_fields_head(text, source);
+    put_key(text, field, value, "", source);
+    eo_text_add(text, "</table>\n");
+  }
 }

@@ -7,6 +7,7 @@
 
 #include <jansson.h>
 
+#include "document/assumption.h"
 #include "format/outline.h"
 #include "format/table.h"
 #include "format/text.h"
@@ -16,10 +17,20 @@
 void eo_sheet_outline(struct eo_text *text, const struct eo_outline *outline, const json_t *object, int level,
                       const char *const *skip);
 
-/* An object that the field table encodes. assumed: the list of keys that the user did not state, with the rule of each
-   ({key, value, rule}, key a JSON pointer); NULL: it is not said. path: of the object, "" at the top. */
+/* Which keys the user stated. */
+struct eo_sheet_source {
+  const struct eo_design *design; /* borrowed */
+  const json_t *assumed;          /* keys that were not stated, {key, value, rule}, key a JSON pointer; borrowed */
+};
+
+/* An object that the field table encodes. source: NULL: what is stated is not said. path: of the object, "" at the top.
+ */
 void eo_sheet_table(struct eo_text *text, const struct eo_table *table, const json_t *object, const char *path,
-                    const json_t *assumed);
+                    const struct eo_sheet_source *source);
+
+/* The same with a heading and a table for each group of keys. */
+void eo_sheet_groups(struct eo_text *text, const struct eo_table *table, const json_t *object,
+                     const struct eo_sheet_source *source);
 
 /* The outline behind a key of an outline; NULL: there is none. */
 const struct eo_outline *eo_sheet_part(const struct eo_outline *outline, const char *key);
