@@ -171,12 +171,12 @@ bool eo_assumptions_cover(const struct eo_design *design, const char *pointer)
   return false;
 }
 
-json_t *eo_assumptions_encode(const struct eo_design *design)
+json_t *eo_assumptions_encode(const struct eo_design *design, bool rating)
 {
   json_t *list = json_array();
   bool failed = !list;
   for (int g = 0, bit = 0; g < GROUPS && !failed; bit += groups[g++].table->count)
-    if (is_used(design, &groups[g]))
+    if (is_used(design, &groups[g]) && (rating || strncmp(groups[g].key, "rating", 6) != 0))
       add_group(list, design, &groups[g], bit, &failed);
   if (!failed && !bit_of(design, SHARE_BIT))
     add(list, "/load_cases/*/share", json_real(1. / design->load_cases), "equal, as no load case states its share",

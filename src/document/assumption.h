@@ -15,9 +15,9 @@ extern const struct eo_outline eo_outline_assumption;
 void eo_assumptions_note(const json_t *document, struct eo_design *design);
 
 /* The keys of gear pair, material, alignment, supports, elastic shafts, resolution and rating that are not stated, in
-   the order of the document, and what else was taken where nothing is said: flanks, shares. design: complete. New
-   array; NULL without memory. */
-json_t *eo_assumptions_encode(const struct eo_design *design);
+   the order of the document, and what else was taken where nothing is said: flanks, shares. design: complete.
+   rating: with the keys of that block. New array; NULL without memory. */
+json_t *eo_assumptions_encode(const struct eo_design *design, bool rating);
 
 /* Whether the list above would name the key with this pointer if it were not stated. */
 bool eo_assumptions_cover(const struct eo_design *design, const char *pointer);

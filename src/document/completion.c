@@ -36,7 +36,7 @@ json_t *eo_completion_encode(const struct eo_design *design, const struct eo_geo
   eo_object_put(&o, "design", eo_design_encode(design));
   eo_object_put(&o, "geometry", eo_table_encode(&eo_geometry_table, geometry));
   eo_object_put(&o, "dimensions", eo_dimensions_encode(&design->gear_pair, geometry));
-  eo_object_put(&o, "assumed", eo_assumptions_encode(design));
+  eo_object_put(&o, "assumed", eo_assumptions_encode(design, true));
   eo_object_put(&o, "warnings", encode_warnings(warnings));
   eo_object_put(&o, "findings", eo_design_findings(warnings));
   return eo_object_close(&o);

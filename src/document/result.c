@@ -283,21 +283,21 @@ static const struct eo_outline_row result_rows[] = {
 const struct eo_outline eo_result_outline = EO_OUTLINE("Result", result_rows);
 enum { CASES_ROW = 11 }; /* load_cases: the head ends, the tail begins behind it */
 
-static void put_identity(struct eo_object *o, const struct eo_design *design)
+static void put_identity(struct eo_object *o, const struct eo_design *design, bool rating)
 {
   char hash[EO_HASH_LENGTH + 1];
   eo_object_put(o, "program", json_string(PACKAGE_STRING));
   eo_object_put(o, "design", eo_design_encode(design));
   eo_object_put(o, "design_hash", eo_design_hash(design, hash, NULL) ? NULL : json_string(hash));
   eo_object_put(o, "evaluation_hash", eo_design_evaluation_hash(design, hash, NULL) ? NULL : json_string(hash));
-  eo_object_put(o, "assumed", eo_assumptions_encode(design));
+  eo_object_put(o, "assumed", eo_assumptions_encode(design, rating));
   eo_object_put(o, "resolution", eo_table_encode(&eo_resolution_table, &design->resolution));
 }
 
 json_t *eo_result_head(struct eo_result_source *source)
 {
   struct eo_object o = eo_object_open_as(&eo_result_outline);
-  put_identity(&o, source->design);
+  put_identity(&o, source->design, source->analysis->want & EO_WANT_RATING);
   eo_object_put(&o, "geometry", eo_table_encode(&eo_geometry_table, &source->pair->geometry));
   eo_object_put(&o, "dimensions", eo_dimensions_encode(&source->design->gear_pair, &source->pair->geometry));
   eo_object_put(&o, "flexibility", eo_result_flexibility(source));
