@@ -76,7 +76,7 @@ static const struct eo_field rating[] = {
     EO_NUMBER(struct eo_rating_settings, application_factor, "application_factor", NULL, 0.1, 10, 1,
               "K_A; 1 where the load cases are the loads"),
     EO_NUMBER(struct eo_rating_settings, required_life, "required_life_h", &eo_unit_h, 0.01, 1e7, 20000,
-              "operating time of all load cases together"),
+              "operating time of all load cases together, where they do not state their hours"),
     EO_NUMBER(struct eo_rating_settings, flank_safety, "flank_safety_min", NULL, 0.1, 10, 1,
               "S_Hmin, agreed between maker and user"),
     EO_NUMBER(struct eo_rating_settings, root_safety, "root_safety_min", NULL, 0.1, 10, 1.4,

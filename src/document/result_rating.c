@@ -85,7 +85,7 @@ static json_t *write_least_root(const void *source)
 
 static json_t *write_required_life(const void *source)
 {
-  return eo_json_quantity(((const struct eo_design_rating *)source)->basis.input.rating->required_life, &eo_unit_h);
+  return eo_json_quantity(((const struct eo_design_rating *)source)->time, &eo_unit_h);
 }
 
 #define OF_RATING(member) EO_AT(struct eo_design_rating, member)
@@ -101,7 +101,8 @@ static const struct eo_outline_row verdict_rows[] = {
     EO_KEY("S_F_static", "number?", "least static root safety of the largest load", OF_RATING(root_static)),
     EO_KEY("life_h", "number?", "least life with S_Hmin and S_Fmin; null without end", .unit = &eo_unit_h,
            OF_RATING(life)),
-    EO_KEY("required_life_h", "number", "as stated", .unit = &eo_unit_h, .write = write_required_life),
+    EO_KEY("required_life_h", "number", "hours of the load cases, or as stated for all of them", .unit = &eo_unit_h,
+           .write = write_required_life),
 };
 static const struct eo_outline verdict = EO_OUTLINE("RatingVerdict", verdict_rows);
 

@@ -105,6 +105,13 @@ static double mean(int count, const double *value)
   return sum / count;
 }
 
+/* Hours that the load case states, else its share of the required life. */
+static double time_of(const struct eo_rating_settings *settings, const struct eo_load_case *load_case)
+{
+  const double hour = 3600;
+  return load_case->hours > 0 ? load_case->hours * hour : settings->required_life * load_case->share;
+}
+
 /* NaN where it was not computed. */
 static double root_stress(const struct eo_end_result *end, int member)
 {
@@ -120,7 +127,8 @@ static enum eo_code rate_end(struct eo_design_rating *rating, const struct eo_ca
   const struct eo_rating_load load = {
       .torque = c->load_case.torque / rating->ends,
       .speed = c->load_case.speed,
-      .time = settings->required_life * c->load_case.share,
+      .time = time_of(settings, &c->load_case),
+      .side = c->load_case.flank == EO_COAST_FLANK,
       .sharing = rating->load_case[k].sharing[end],
       .dynamic = periodic ? c->vibration.dynamic_factor[end] : NAN,
       .face = face->worse,
@@ -180,6 +188,9 @@ void eo_design_rating_find(struct eo_design_rating *rating, const struct eo_pair
   rating->flank_safety = rating->root_safety = rating->flank_static = rating->root_static = rating->life = NAN;
   rating->film_ratio = INFINITY;
   rating->contact_temperature = -INFINITY;
+  rating->time = 0;
+  for (int k = 0; k < rating->cases; k++)
+    rating->time += time_of(&design->rating, &evaluation->load_case[k].load_case);
   for (int k = 0; k < rating->cases; k++)
     for (int end = 0; end < rating->ends; end++) {
       const struct eo_case_result *c = &evaluation->load_case[k];

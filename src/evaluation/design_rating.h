@@ -31,6 +31,7 @@ struct eo_design_rating {
   struct eo_rated_spectrum end[2];
   /* What decides: least S_H and S_F of the spectrum, and of the static strength, over members and ends. */
   double flank_safety, root_safety, flank_static, root_static;
+  double time;                            /* s: of all load cases, hours as stated or the required life */
   double life;                            /* s: least life at S_min */
   double film_ratio, contact_temperature; /* least and largest over load cases and ends */
 };

@@ -407,6 +407,15 @@ static void check_rating(void)
   double power = s->design.load_case[0].torque * s->design.load_case[0].speed;
   ok(loss > 0.001 * power && loss < 0.03 * power, "friction takes %.3g %% of the power", 100 * loss / power);
   json_decref(result);
+  for (int k = 0; k < s->design.load_cases; k++)
+    s->design.load_case[k].hours = 100 * (k + 1);
+  result = result_of(s);
+  double hours = 100. * s->design.load_cases * (s->design.load_cases + 1) / 2;
+  near(eo_json_find_number(result, "rating/verdict/required_life_h"), hours, 1e-9,
+       "hours of the load cases are the life");
+  near(rated(result, "left/pinion/N_L"), 60 * 100 * s->design.load_case[0].speed * 30 / M_PI, 1e-9,
+       "and the load cycles");
+  json_decref(result);
   s->design.rating.member[EO_GEAR].material = EO_THROUGH_HARDENED_ALLOY;
   result = result_of(s);
   const char *reason = json_string_value(eo_json_find(result, "rating/reason"));

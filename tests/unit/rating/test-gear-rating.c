@@ -18,8 +18,8 @@ static struct eo_geometry geometry_of(const int teeth[2], double module, double 
                           .helix_angle = helix,
                           .face_width = width,
                           .centre_distance = distance,
-                          .dedendum = dedendum * module,
-                          .fillet_radius = fillet * module};
+                          .dedendum = {dedendum * module, dedendum * module},
+                          .fillet_radius = {fillet * module, fillet * module}};
   for (int i = 0; i < 2; i++) {
     double d = module * teeth[i] / cos(helix);
     g.profile_shift[i] = shift[i];
