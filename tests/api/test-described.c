@@ -34,6 +34,8 @@ static const char
     plain[] = "{}",
     single[] = "{\"gear_pair\": {\"ends\": 1, \"groove_width_mm\": 0}}",
     held[] = "{\"alignment\": {\"pinion_axial\": \"fixed\"}}", shafts[] = "{\"shafts\": {\"enabled\": true}}",
+    coast[] = "{\"modification\": {\"pinion\": {\"left\": {\"twist_um\": 3, \"coast\": {\"tip_relief_um\": 9, "
+              "\"root_relief_um\": 9, \"twist_um\": 4}}}}}",
     fast[] =
         "{\"alignment\": {\"shaft_angle_error_in_plane_deg\": 0.2}, \"supports\": {\"mesh_damping_ratio\": 0.005}}";
 
@@ -49,6 +51,7 @@ static void test_analyses(void)
              {"one end", API "/analyze?histories=1&band=1", single},
              {"a pinion that is held", API "/analyze", held},
              {"elastic shafts", API "/analyze", shafts},
+             {"coast flanks with twist", API "/analyze", coast},
              {"a noisy pair", API "/analyze?histories=1", fast}};
   for (size_t i = 0; i < sizeof row / sizeof row[0]; i++)
     expect_answer(row[i].what, row[i].path, design_with("ga", 10, row[i].patch));

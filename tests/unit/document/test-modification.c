@@ -22,8 +22,9 @@ static json_t *document_of(const char *modification, const char *more)
   json_error_t error;
   snprintf(text, sizeof text,
            "{\"gear_pair\":{\"pinion_teeth\":17,\"gear_teeth\":44,\"normal_module_mm\":6,\"helix_angle_deg\":24,"
-           "\"face_width_mm\":55},\"alignment\":{\"shaft_angle_error_in_plane_deg\":0},\"modification\":%s%s}",
-           modification, more);
+           "\"face_width_mm\":55},\"modification\":%s%s%s}",
+           modification, more,
+           strstr(more, "load_cases") ? "" : ",\"load_cases\":[{\"torque_Nm\":828,\"speed_rpm\":2000}]");
   json_t *document = json_loads(text, 0, &error);
   if (!document)
     printf("# %s\n", error.text);
@@ -121,10 +122,11 @@ static void test_refusals(void)
          "{\"pinion\":{\"right\":{\"coast\":{\"grid\":{\"csv\":\"u,-20,20\\n-3,1,2\\n0,1,x\\n\"}}}}}", "",
          "/modification/pinion/right/coast/grid/csv");
   refuse("an alignment stated twice", "{}",
-         ",\"load_cases\":[{\"torque_Nm\":1,\"alignment\":{\"shaft_angle_error_in_plane_deg\":0.1,"
+         ",\"load_cases\":[{\"torque_Nm\":1,\"speed_rpm\":9,\"alignment\":{\"shaft_angle_error_in_plane_deg\":0.1,"
          "\"shaft_angle_error_in_plane_um\":27}}]",
          "/load_cases/0/alignment/shaft_angle_error_in_plane_um");
-  refuse("hours in one load case alone", "{}", ",\"load_cases\":[{\"torque_Nm\":1,\"hours\":3},{\"torque_Nm\":2}]",
+  refuse("hours in one load case alone", "{}",
+         ",\"load_cases\":[{\"torque_Nm\":1,\"speed_rpm\":9,\"hours\":3},{\"torque_Nm\":2,\"speed_rpm\":9}]",
          "/load_cases");
 }
 
@@ -274,8 +276,9 @@ static void test_hours(void)
 {
   struct eo_design design;
   ok(read_text("{}",
-               ",\"load_cases\":[{\"torque_Nm\":1,\"hours\":300,\"name\":\"astern\",\"direction\":\"astern\"},"
-               "{\"torque_Nm\":2,\"hours\":900}]",
+               ",\"load_cases\":[{\"torque_Nm\":1,\"speed_rpm\":9,\"hours\":300,\"name\":\"astern\",\"direction\":"
+               "\"astern\"},"
+               "{\"torque_Nm\":2,\"speed_rpm\":9,\"hours\":900}]",
                &design, NULL) &&
          design.load_case[0].share == 0.25 && design.load_case[1].share == 0.75 &&
          design.load_case[0].flank == EO_COAST_FLANK && strcmp(design.load_case[0].name, "astern") == 0,
@@ -288,14 +291,14 @@ static void test_space(void)
   static struct eo_design design;
   struct eo_study_space space;
   struct eo_error error;
-  ok(read_text(
-         "{\"pinion\":{\"left\":{\"tip_relief_start_mm\":1},\"right\":{\"tip_relief_start_mm\":1}}}",
-         ",\"optimization\":{\"variables\":\"listed\",\"variable_list\":["
-         "{\"parameter\":\"tip_relief_um\"},{\"parameter\":\"root_relief_um\"},{\"parameter\":\"lead_crowning_um\"},"
-         "{\"parameter\":\"tip_relief_diameter_mm\",\"bounds\":[111.9,122.4]},"
-         "{\"parameter\":\"root_relief_diameter_mm\",\"bounds\":[104.8,111.5]},"
-         "{\"flank\":\"both\",\"parameter\":\"twist_um\",\"bounds\":[-5,5]}]}",
-         &design, NULL),
+  ok(read_text("{\"pinion\":{\"left\":{\"tip_relief_start_mm\":1},\"right\":{\"tip_relief_start_mm\":1}}}",
+               ",\"optimization\":{\"variables\":\"listed\",\"variable_list\":["
+               "{\"parameter\":\"tip_relief_um\",\"bounds\":[0,40]},{\"parameter\":\"root_relief_um\",\"bounds\":[0,40]"
+               "},{\"parameter\":\"lead_crowning_um\",\"bounds\":[0,36]},"
+               "{\"parameter\":\"tip_relief_diameter_mm\",\"bounds\":[111.9,122.4]},"
+               "{\"parameter\":\"root_relief_diameter_mm\",\"bounds\":[104.8,111.5]},"
+               "{\"flank\":\"both\",\"parameter\":\"twist_um\",\"bounds\":[-5,5]}]}",
+               &design, NULL),
      "a search over diameters %s", faults.count ? faults.fault[0].text : "");
   ok(eo_study_space_init(&space, &design, &geometry, &error) == EO_OK && space.count == 6, "has its variables");
   const double wanted[6] = {14e-6, 17e-6, 12e-6, 1.6e-3, -3.5e-3, 2e-6};
