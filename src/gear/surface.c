@@ -65,12 +65,23 @@ struct ray {
   double arm, distance, angle;
 };
 
+/* Angles of the generating rack. */
+struct rack {
+  double sa, ca, sb, cb; /* sin and cos of alpha_n and beta */
+};
+
+static struct rack rack_of(const struct eo_geometry *g)
+{
+  return (struct rack){sin(g->normal_pressure_angle), cos(g->normal_pressure_angle), sin(g->helix_angle),
+                       cos(g->helix_angle)};
+}
+
 /* delta, d: relief at u and its slope (at a kink any slope between those of its two sides: the normal there turns about
    the vertex). */
-static struct ray sloped_ray(const struct eo_geometry *g, int member, double u, double delta, double d)
+static struct ray sloped_ray_on(const struct rack *t, const struct eo_geometry *g, int member, double u, double delta,
+                                double d)
 {
-  double sa = sin(g->normal_pressure_angle), ca = cos(g->normal_pressure_angle), sb = sin(g->helix_angle),
-         cb = cos(g->helix_angle);
+  double sa = t->sa, ca = t->ca, sb = t->sb, cb = t->cb;
   double rack = u + g->rack_offset[member], r = g->reference_radius[member];
   /* Moved along the rack's trace back into the slice: the gap would come out sin^2(beta_b) too small without. */
   double z = (rack * sa + delta * ca) * sb, x = -(rack * sa + delta * ca) * cb - z * sb / cb,
@@ -80,6 +91,12 @@ static struct ray sloped_ray(const struct eo_geometry *g, int member, double u, 
   ny /= length;
   double roll = (y * nx / ny - x) / r, qx = x + r * roll, qy = y + r;
   return (struct ray){.arm = qy * nx - qx * ny, .distance = qx * nx + qy * ny, .angle = roll + atan2(ny, nx)};
+}
+
+static struct ray sloped_ray(const struct eo_geometry *g, int member, double u, double delta, double d)
+{
+  struct rack rack = rack_of(g);
+  return sloped_ray_on(&rack, g, member, u, delta, d);
 }
 
 /* side: 0 takes the slope just below u, 1 just above. */
@@ -215,11 +232,16 @@ static struct ray involute_in_line_with(const struct eo_geometry *g, int member,
   return involute_ray(g, member, g->centre_distance * sin(common_angle(g, other, &q)) - other->distance);
 }
 
-/* Base-circle phase of a member whose ray lies in the common normal. */
-static double phase_of(const struct eo_geometry *g, int member, const struct ray *ray, double common)
+/* By how much the pitch point's angle on the working circles is ahead of that on the reference circles. */
+static double angle_ahead(const struct eo_geometry *g)
 {
-  double offset = eo_geometry_involute_function(g->working_pressure_angle) -
-                  eo_geometry_involute_function(g->transverse_pressure_angle);
+  return eo_geometry_involute_function(g->working_pressure_angle) -
+         eo_geometry_involute_function(g->transverse_pressure_angle);
+}
+
+/* Base-circle phase of a member whose ray lies in the common normal. */
+static double phase_of(const struct eo_geometry *g, int member, const struct ray *ray, double common, double offset)
+{
   return g->base_radius[member] * (ray->angle - common - offset);
 }
 
@@ -237,11 +259,12 @@ struct node {
 
 static struct node node_of(const struct eo_geometry *g, const struct ray *p, const struct ray *q)
 {
-  double common = common_angle(g, p, q), c = phase_of(g, EO_PINION, p, common), normal = cos(g->base_helix_angle);
+  double offset = angle_ahead(g), common = common_angle(g, p, q), c = phase_of(g, EO_PINION, p, common, offset),
+         normal = cos(g->base_helix_angle);
   double turned = g->base_radius[EO_GEAR] / q->arm, rate = p->arm * turned / g->base_radius[EO_PINION];
   double along[2] = {cos(common), sin(common)},
          place[2] = {q->arm * along[1] - q->distance * along[0], -q->arm * along[0] - q->distance * along[1]};
-  return (struct node){c, (c + phase_of(g, EO_GEAR, q, common)) * normal, (1 - rate) * normal,
+  return (struct node){c, (c + phase_of(g, EO_GEAR, q, common, offset)) * normal, (1 - rate) * normal,
                        eo_tilt_at(g, common, turned, place)};
 }
 
@@ -383,27 +406,35 @@ static bool touch_at_kink(const struct eo_geometry *g, const struct eo_modificat
 }
 
 /* Newton for the places of both flanks with the derivatives of the involutes: phase = c, and the distances along the
-   common normal add up. What the phase is off by in the end costs its square times the bend of the gap. */
+   common normal add up. What either is off by in the end costs its square times the bend of the gap: DONE is a
+   picometre at a bend of 4 per metre. */
 static bool touch_smoothly(const struct eo_geometry *g, const struct eo_modification_shape slice[2],
                            const bool modified[2], double c, struct node *node)
 {
   enum { STEPS = 12 };
-  static const double DONE = 2e-8;
-  double u[2] = {g->rack_factor * c, -g->rack_factor * c};
+  static const double DONE = 5e-7;
+  const struct rack rack = rack_of(g);
+  double u[2] = {g->rack_factor * c, -g->rack_factor * c}, offset = angle_ahead(g), slope[2], miss = 0;
   for (int i = 0; i < STEPS; i++) {
-    struct ray p = modified[EO_PINION]
-                       ? slice_ray(g, EO_PINION, &slice[EO_PINION], u[EO_PINION], 0)
-                       : involute_ray(g, EO_PINION, g->tangent_length[EO_PINION] + u[EO_PINION] / g->rack_factor);
-    struct ray q = modified[EO_GEAR] ? slice_ray(g, EO_GEAR, &slice[EO_GEAR], u[EO_GEAR], 0)
-                                     : involute_in_line_with(g, EO_GEAR, &p);
-    double miss = modified[EO_GEAR] ? miss_of(g, &p, &q) : 0;
-    *node = node_of(g, &p, &q);
-    node->gap += miss * cos(g->base_helix_angle); /* what is missing along the normal is missing in the gap */
-    double off = c - node->phase;
+    struct ray p = involute_ray(g, EO_PINION, g->tangent_length[EO_PINION] + u[EO_PINION] / g->rack_factor), q;
+    if (modified[EO_PINION]) {
+      double delta = eo_modification_profile(&slice[EO_PINION], u[EO_PINION], slope);
+      p = sloped_ray_on(&rack, g, EO_PINION, u[EO_PINION], delta, slope[0]);
+    }
+    if (modified[EO_GEAR]) {
+      double delta = eo_modification_profile(&slice[EO_GEAR], u[EO_GEAR], slope);
+      q = sloped_ray_on(&rack, g, EO_GEAR, u[EO_GEAR], delta, slope[0]);
+      miss = miss_of(g, &p, &q);
+    } else
+      q = involute_in_line_with(g, EO_GEAR, &p);
+    double off = c - phase_of(g, EO_PINION, &p, common_angle(g, &p, &q), offset);
     if (!(isfinite(off) && isfinite(miss)))
       return false;
-    if (fabs(off) < DONE && fabs(miss) < DONE)
-      return true;
+    if (fabs(off) < DONE && fabs(miss) < DONE) {
+      *node = node_of(g, &p, &q);
+      node->gap += miss * cos(g->base_helix_angle); /* what is missing along the normal is missing in the gap */
+      return isfinite(node->gap + node->slope);
+    }
     u[EO_PINION] += g->rack_factor * off;
     u[EO_GEAR] += g->rack_factor * (miss - off);
   }
