@@ -53,11 +53,12 @@ static void put_end_columns(struct eo_object *o, const struct eo_result_source *
   }
 }
 
-/* Where a floating pinion settles: z = (Z_L - Z_R)/(2 sin beta_b). */
-static json_t *encode_float(const struct eo_result_source *source, const double *const approach[2])
+/* Where a floating pinion settles, + to the right: z = (Z_L - Z_R)/(2 sin beta_b), with the other sign where the face
+   ends at the groove meet first. */
+static json_t *encode_float(const struct eo_result_source *source, const double *const approach[2], bool inwards)
 {
   int n = source->positions;
-  double scale = 1 / (2 * sqrt(fmax(0, 1 - source->normal * source->normal)));
+  double scale = (inwards ? -1 : 1) / (2 * sqrt(fmax(0, 1 - source->normal * source->normal)));
   for (int j = 0; j < n; j++)
     source->scratch[j] = approach[0][j] - approach[1][(j + n - source->lag) % n];
   return eo_json_column(n, source->scratch, scale, &eo_unit_um, EO_DIGITS_CURVE);
@@ -83,7 +84,7 @@ static const struct eo_outline_row lte_rows[] = {
         .unit = &eo_unit_m_per_s2),
     EO_KEY("second_derivative_rms_m_per_s2", "number?", "RMS of it", .unit = &eo_unit_m_per_s2),
     EO_KEY("axial_float_um", "[number?]?", "where the pinion settles along its axis, over the positions",
-           .unit = &eo_unit_um, .when = "with two ends and a floating pinion"),
+           .unit = &eo_unit_um, .when = "with two ends and a pinion that can move"),
 };
 const struct eo_outline eo_outline_lte = EO_OUTLINE("TransmissionError", lte_rows);
 
@@ -131,8 +132,8 @@ json_t *eo_result_lte(struct eo_result_source *source, const struct eo_case_resu
                            source->pair->geometry.face_width / source->normal);
   eo_object_put(&o, "orders_um", curves ? encode_orders(source->positions, c->transmission, &eo_unit_um) : json_null());
   put_second_derivative(&o, source, c);
-  if (source->ends == 2 && source->design->alignment.pinion_axial == EO_AXIAL_FLOATING)
-    eo_object_put(&o, "axial_float_um", curves ? encode_float(source, approach) : json_null());
+  if (source->ends == 2 && source->design->alignment.pinion_axial != EO_AXIAL_FIXED)
+    eo_object_put(&o, "axial_float_um", curves ? encode_float(source, approach, c->running.inwards) : json_null());
   return eo_object_close(&o);
 }
 
