@@ -3,6 +3,7 @@
 
 #include <ctype.h>
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "document/flank_grid_document.h"
@@ -230,6 +231,48 @@ static void write_topography(const struct eo_design *design, const struct eo_geo
   write_topography_grid(design, geometry, usual_grid, text);
 }
 
+/* Everything that is taken off a flank as a table that the key grid of a flank takes as csv: u over rows, y over
+   columns. */
+static void write_flank_grid(const struct eo_design *design, const struct eo_geometry *geometry,
+                             enum eo_flank_side side, int member, int end, const int size[2], struct eo_text *text)
+{
+  double u[EO_EXPORT_GRID_MOST], y[EO_EXPORT_GRID_MOST], ends[2];
+  struct eo_modification_shape shape;
+  struct eo_flank_spline *spline = NULL;
+  double *delta = malloc(sizeof *delta * (size_t)size[0] * (size_t)size[1]);
+  text->failed = text->failed || !delta || eo_flank_shape(design, geometry, side, member, end, &shape, &spline);
+  eo_active_profile(geometry, member, ends);
+  for (int j = 0; j < size[1]; j++)
+    y[j] = geometry->face_width * ((double)j / (size[1] - 1) - 0.5);
+  for (int i = 0; i < size[0] && !text->failed; i++) {
+    u[i] = ends[EO_ROOT_SIDE] + (ends[EO_TIP_SIDE] - ends[EO_ROOT_SIDE]) * i / (size[0] - 1);
+    for (int j = 0; j < size[1]; j++)
+      delta[i * size[1] + j] = eo_modification_at(&shape, u[i], y[j]);
+  }
+  struct eo_flank_grid grid = {size[0], size[1], u, y, delta};
+  eo_text_print(text, "# %s, %s, %s\n", member_name[member], end_name[end],
+                side == EO_DRIVE_FLANK ? "drive flank" : "coast flank");
+  if (!text->failed)
+    eo_flank_grid_to_text(&grid, text);
+  eo_flank_spline_free(spline);
+  free(delta);
+}
+
+static void write_flank_grids(const struct eo_design *design, const struct eo_geometry *geometry, const int size[2],
+                              struct eo_text *text)
+{
+  for (int side = 0; side < 2; side++)
+    for (int member = 0; member < 2; member++)
+      for (int end = 0; end < design->gear_pair.ends; end++)
+        write_flank_grid(design, geometry, (enum eo_flank_side)side, member, end, size, text);
+}
+
+static void write_usual_flank_grids(const struct eo_design *design, const struct eo_geometry *geometry,
+                                    struct eo_text *text)
+{
+  write_flank_grids(design, geometry, usual_grid, text);
+}
+
 static void write_design(const struct eo_design *design, const struct eo_geometry *geometry, struct eo_text *text)
 {
   (void)geometry;
@@ -253,6 +296,9 @@ static const struct eo_export formats[] = {
      eo_tolerances_csv, NULL},
     {"topography", "what is taken off, over profile and face", "text/csv; charset=utf-8", "csv", write_topography,
      write_topography_grid},
+    {"flank-grids",
+     "what is taken off each drive and coast flank, one table after the other, as a flank's grid takes it",
+     "text/csv; charset=utf-8", "csv", write_usual_flank_grids, write_flank_grids},
     {"design", "the design with every default resolved", "application/json", "json", write_design, NULL},
 };
 enum { FORMATS = sizeof formats / sizeof formats[0] };

@@ -4,6 +4,7 @@
    (roll length L = sqrt(r^2 - r_b^2), u = k_u (L - L_C)) for the paper's pair. */
 #include "document/design_document.h"
 #include "document/examples.h"
+#include "document/design_export.h"
 #include "document/flank_grid_document.h"
 #include "document/search_space.h"
 #include "format/json.h"
@@ -246,6 +247,43 @@ static void test_grid_document(void)
   eo_text_done(&spec[1]);
 }
 
+/* A flank with reliefs and twist, exported as a table, read as a grid: the same deviation at its knots. */
+static void test_export(void)
+{
+  static struct eo_design design, back;
+  struct eo_text text = {0};
+  struct eo_error error;
+  struct eo_modification_shape shape, again;
+  struct eo_flank_spline *spline;
+  double worst = 0, end[2];
+  ok(read_text("{\"gear\":{\"left\":{\"coast\":{\"tip_relief_um\":9,\"twist_um\":8,\"lead_crowning_um\":4}}}}", "",
+               &design, NULL) &&
+         !eo_export_write(eo_export_find("flank-grids"), &design, &geometry, 15, 9, &text, &error),
+     "flanks as tables");
+  char *from = text.data ? strstr(text.data, "# gear, left, coast") : NULL,
+       *to = from ? strstr(from + 1, "\n# ") : NULL;
+  if (!ok(from && to, "one for each"))
+    return;
+  *to = 0;
+  json_t *csv = json_pack("{s:s}", "csv", from),
+         *dumped = json_pack("{s:{s:{s:{s:o}}}}", "gear", "left", "coast", "grid", csv);
+  char *written = json_dumps(dumped, JSON_COMPACT);
+  ok(read_text(written, "", &back, NULL), "its table is a grid %s", faults.count ? faults.fault[0].text : "");
+  eo_modification_init(&shape, &geometry, EO_GEAR, &design.modification.coast[EO_GEAR][EO_LEFT]);
+  eo_flank_shape(&back, &geometry, EO_COAST_FLANK, EO_GEAR, EO_LEFT, &again, &spline);
+  eo_active_profile(&geometry, EO_GEAR, end);
+  for (int i = 0; i < 15; i++)
+    for (int j = 0; j < 9; j++) {
+      double u = end[0] + (end[1] - end[0]) * i / 14, y = geometry.face_width * (j / 8. - 0.5);
+      worst = fmax(worst, fabs(eo_modification_at(&shape, u, y) - eo_modification_at(&again, u, y)));
+    }
+  close_to(1e6 * worst, 0, 1e-4, "and takes off the same at its knots, um");
+  eo_flank_spline_free(spline);
+  free(written);
+  json_decref(dumped);
+  eo_text_done(&text);
+}
+
 static void test_migration(void)
 {
   struct eo_design design;
@@ -339,6 +377,7 @@ int main(void)
   test_terms();
   test_spline();
   test_grid_document();
+  test_export();
   test_migration();
   test_hours();
   test_space();
