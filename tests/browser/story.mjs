@@ -17,7 +17,7 @@ const COARSE = {
 const START = `#design?from=paper-case-a&${Object.entries(COARSE)
   .map(([key, value]) => `resolution.${key}=${value}`)
   .join('&')}`;
-const WAIT = 60000;
+const WAIT = Number(process.env.EASEOFF_WAIT ?? 60000); // ms for anything
 const MOST_BYTES = 1e6; // of the first view
 
 const server = await Server.start();
@@ -87,8 +87,8 @@ await chapter('open', async () => {
   await settled();
   ok(page_bytes > 0 && page_bytes < MOST_BYTES, 'the first view is light');
   ok(
-    !(await page.evaluate(() => performance.getEntriesByType('resource').some(entry => entry.name.includes('scene')))),
-    'three.js is not fetched before it is seen',
+    !(await page.evaluate(() => performance.getEntriesByType('resource').some(entry => /rig-|compare-/.test(entry.name)))),
+    'other views are not fetched before they are opened',
   );
   ok(/paper pair/.test(await page.title()), 'the title names the design');
   await page.waitForFunction(() => /−\d/.test(document.querySelector('.delta').textContent));
@@ -96,7 +96,7 @@ await chapter('open', async () => {
     /−\d+ %/.test(await page.locator('.number-cell').first().innerText()),
     'the change against the unmodified pair stands beside the number',
   );
-  ok((await page.locator('.figure .uplot').count()) >= 5, 'curves are drawn');
+  ok((await page.locator('.figure .uplot').count()) >= 3, 'curves are drawn');
   ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), 'nothing is wider than the screen');
   ok(
     await page.evaluate(() => document.documentElement.scrollHeight <= innerHeight),
@@ -142,7 +142,7 @@ await chapter('type numbers', async () => {
   await page.locator('.field .fault:not(:empty)').first().waitFor();
   ok((await tip.getAttribute('aria-invalid')) === 'true', 'what is no number is said at its field');
   await tip.fill('2000');
-  await page.getByText('2000 is outside 0 … 1000.').waitFor();
+  await page.getByText('2000 is outside 0 … 1000.', { exact: true }).waitFor();
   ok(true, 'so is what is out of range');
   await tip.fill('14');
   await tip.press('Enter');
@@ -181,13 +181,17 @@ await chapter('figures', async () => {
     page.getByRole('menuitem', { name: 'Save as CSV' }).click(),
   ]);
   const lines = (await readFile(await csv.path(), 'utf8')).trim().split('\n');
-  ok(lines.length === 33 && lines[0].startsWith('mesh cycle,'), 'a figure as CSV');
+  ok(lines.length === 35 && lines[2].startsWith('mesh cycle,'), 'a figure as CSV');
+  ok(/paper pair/.test(lines[0]) && lines[1].startsWith('# Loaded transmission error'), 'which says whose it is');
+  ok(/^paper-pair.*-loaded-te\.csv$/.test(csv.suggestedFilename()), 'in its name too');
+  ok(lines.slice(3).every(line => line.split(',').every(cell => cell.replace(/[-.]/g, '').length <= 12)), 'with six digits');
   await figure.getByRole('button', { name: /menu/ }).click();
   const [png] = await Promise.all([
     page.waitForEvent('download'),
     page.getByRole('menuitem', { name: 'Save as PNG' }).click(),
   ]);
-  ok((await readFile(await png.path())).subarray(1, 4).toString() === 'PNG', 'a figure as PNG');
+  const picture = await readFile(await png.path());
+  ok(picture.readUInt32BE(16) >= 1200, `a figure as PNG, ${picture.readUInt32BE(16)} px wide`);
   await figure.getByRole('button', { name: /menu/ }).click();
   await page.getByRole('menuitem', { name: 'Open large' }).click();
   ok((await page.locator('dialog .figure-body').boundingBox()).height > 400, 'a figure opens large');
@@ -197,15 +201,11 @@ await chapter('figures', async () => {
   const box = await figure.locator('.u-over').boundingBox();
   await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
   await figure.locator('.tip:not([hidden])').waitFor();
-  ok((await figure.locator('.tip-row').count()) >= 6, 'the pointer reads every curve');
+  ok((await figure.locator('.tip-row').count()) === 3, 'the pointer reads the nearest curves');
   await page.mouse.move(5, 5);
-  await page.evaluate(() => document.querySelector('.figure-pane').scrollTo(0, 99999));
-  await page.waitForFunction(
-    () =>
-      document.querySelector('.figure.tall canvas') ||
-      document.querySelector('.figure.tall .figure-note:not([hidden])'),
-  );
-  ok((await page.locator('.figure.tall canvas').count()) === 1, 'the topography is drawn in space');
+  await page.locator('.figure.tall').scrollIntoViewIfNeeded();
+  await page.locator('.figure.tall').getByRole('button', { name: 'front' }).click();
+  ok((await page.locator('.figure.tall canvas').count()) === 1, 'the ease-off is drawn in space');
   await page.locator('.figure.wide').first().scrollIntoViewIfNeeded();
   await page.locator('.figure.wide .uplot').first().waitFor();
   ok(true, 'the speed sweep is drawn');
@@ -232,7 +232,6 @@ await chapter('keep a design', async () => {
   ok((await readFile(await points.path(), 'utf8')).split('\n').length > 100, 'points of the flanks');
   document.name = 'from a file';
   document.modification.pinion.left.tip_relief_um = document.modification.pinion.right.tip_relief_um = 11;
-  await page.locator('.design-button').click();
   await page.locator('input[type=file]').setInputFiles({
     name: 'design.json',
     mimeType: 'application/json',
@@ -268,7 +267,7 @@ await chapter('search', async () => {
   await page.getByRole('button', { name: 'Open the best' }).click();
   await settled();
   ok((await field('Tip relief').inputValue()) !== '11', 'the optimum opens in the design view');
-  ok(/J\s*0\.[1-9]/.test(await page.locator('.number-cell').last().innerText()), 'with its objective');
+  ok(/0\.[1-9]/.test(await page.locator('.number-cell').last().locator('.value').innerText()), 'with its objective');
 });
 
 await chapter('compare and print', async () => {
@@ -277,7 +276,7 @@ await chapter('compare and print', async () => {
   );
   await page.waitForFunction(
     () =>
-      document.querySelectorAll('.comparison thead th').length === 3 &&
+      document.querySelectorAll('.comparison thead th').length === 4 &&
       !/…/.test(document.querySelector('.comparison').textContent),
     null,
     { timeout: 3 * WAIT },

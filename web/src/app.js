@@ -1,44 +1,50 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the views share, and the way from one to another.
 import { readPlace, writePlace } from './base/address.js';
+import { Refusal } from './base/api.js';
+import { choose } from './base/dialog.js';
+import { Missing } from './base/library.js';
+import { notice } from './base/notice.js';
 
 /**
  * @typedef {object} View
  * @property {HTMLElement} element
  * @property {(parameters: URLSearchParams) => void} show
- * @property {() => void} [hide]
- * @property {() => void} [print]
+ * @property {() => import('./report.js').Parts | null} [report] what goes to paper
  */
 
 /**
- * @typedef {{ id: string, title: string, make: (app: App) => View }} Entry one tab; make is called when it is first
- * opened
+ * @typedef {{ id: string, title: string, load: () => Promise<(app: App) => View> }} Entry one tab; fetched and made when
+ * it is first opened
  */
+
+const OWN_KEYS = ['job', 'items', 'tab']; // of views, in the address
 
 export class App extends EventTarget {
   /** @type {Map<string, View>} */ #views = new Map();
+  /** The address is right as it is. */
   #following = false;
+  #turn = 0;
   current = '';
+  /** The view before this one. */
+  previous = '';
 
   /**
    * @param {Entry[]} entries
    * @param {{ store: import('./base/store.js').DesignStore, analyst: import('./base/analyst.js').Analyst,
-   *   form: import('./form.js').Form,
-   *   fields: import('./base/schema.js').Field[], examples: { name: string, title: string }[],
-   *   jobs: import('./base/jobs.js').Jobs,
-   *   addressOf: () => URLSearchParams, openPlace: (parameters: URLSearchParams) => Promise<void> }} shared
+   *   form: import('./form/form.js').Form, fields: import('./base/schema.js').Field[],
+   *   library: import('./base/library.js').Library, jobs: import('./base/jobs.js').Jobs }} shared
    */
-  constructor(entries, shared) {
+  constructor(entries, { store, analyst, form, fields, library, jobs }) {
     super();
     this.entries = entries;
-    this.store = shared.store;
-    this.analyst = shared.analyst;
-    this.form = shared.form;
-    this.fields = shared.fields;
-    this.examples = shared.examples;
-    this.jobs = shared.jobs;
-    this.addressOf = shared.addressOf;
-    this.openPlace = shared.openPlace;
+    this.store = store;
+    this.analyst = analyst;
+    this.form = form;
+    this.fields = fields;
+    this.library = library;
+    this.examples = library.examples;
+    this.jobs = jobs;
     this.stage = document.createElement('main');
     this.stage.id = 'stage';
     window.addEventListener('popstate', () => this.follow());
@@ -50,19 +56,30 @@ export class App extends EventTarget {
    * @param {Record<string, string>} [own] parameters of the view itself
    */
   go(id, own = {}) {
-    const parameters = this.addressOf();
+    const parameters = this.library.address();
     for (const [key, value] of Object.entries(own)) parameters.set(key, value);
     const place = writePlace(id, parameters);
     if (place !== location.hash) history.pushState(null, '', place);
-    this.show(id, parameters);
+    this.attempt(() => this.show(id, parameters));
+  }
+
+  /** Opens another design, as a step of its own in the browser's history. @param {() => Promise<unknown>} act */
+  async opening(act, view = this.entries.find(entry => entry.id === this.current)?.title ? this.current : 'design') {
+    this.#following = true;
+    try {
+      await act();
+    } finally {
+      this.#following = false;
+    }
+    this.go(view);
   }
 
   /** Writes the design into the address without a step. */
   note() {
     if (!this.current || this.#following) return;
-    const parameters = this.addressOf();
+    const parameters = this.library.address();
     for (const [key, value] of readPlace(location.hash).parameters)
-      if (['job', 'items', 'tab'].includes(key)) parameters.set(key, value);
+      if (OWN_KEYS.includes(key)) parameters.set(key, value);
     history.replaceState(null, '', writePlace(this.current, parameters));
   }
 
@@ -71,24 +88,56 @@ export class App extends EventTarget {
     const { view, parameters } = readPlace(location.hash);
     this.#following = true; // the address is right already
     try {
-      await this.openPlace(parameters);
+      await this.library.openAddress(parameters);
+      await this.show(view, parameters);
+    } catch (error) {
+      await this.show(view, parameters);
+      if (error instanceof Missing) await this.#askInstead(error);
+      else notice.say(/** @type {Error} */ (error).message);
     } finally {
       this.#following = false;
     }
-    this.show(view, parameters);
     this.note();
   }
 
-  /** @param {string} id @param {URLSearchParams} parameters */
-  show(id, parameters) {
+  /** An address leads to nothing: what instead? @param {Missing} missing */
+  async #askInstead(missing) {
+    const answer = await choose(
+      missing.message,
+      ['It was deleted, or the link is of another server. Nothing on this page has changed.'],
+      [
+        { value: 'stored', text: 'Look through the stored designs', primary: true },
+        { value: '', text: `Go on with ${this.store.design.name || 'what is on the table'}` },
+      ],
+    );
+    if (answer) this.dispatchEvent(new Event('stored'));
+  }
+
+  /** A view, fetched and made when it is not there yet. @param {string} id */
+  async view(id) {
     const entry = this.entries.find(candidate => candidate.id === id) ?? this.entries[0];
     let view = this.#views.get(entry.id);
     if (!view) {
-      view = entry.make(this);
+      const make = await entry.load();
+      view = this.#views.get(entry.id) ?? make(this); // two may have waited
       this.#views.set(entry.id, view);
     }
+    return { entry, view };
+  }
+
+  /** What the open view gives to paper; of the Design view when it has nothing of its own. */
+  reportParts() {
+    const id = this.current === 'report' ? this.previous : this.current;
+    return this.#views.get(id)?.report?.() ?? this.#views.get('design')?.report?.() ?? null;
+  }
+
+  /** @param {string} id @param {URLSearchParams} parameters */
+  async show(id, parameters) {
+    const turn = ++this.#turn;
+    const { entry, view } = await this.view(id);
+    if (turn !== this.#turn) return; // another one was asked for meanwhile
     if (this.current !== entry.id) {
-      this.#views.get(this.current)?.hide?.();
+      if (this.current !== 'glossary') this.previous = this.current;
       this.current = entry.id;
       this.stage.replaceChildren(view.element);
     }
@@ -96,8 +145,17 @@ export class App extends EventTarget {
     this.dispatchEvent(new Event('view'));
   }
 
-  /** The open view makes itself ready for paper. */
-  print() {
-    this.#views.get(this.current)?.print?.();
+  /** Tells what went wrong instead of nothing. @param {() => unknown} act */
+  async attempt(act) {
+    try {
+      await act();
+    } catch (error) {
+      const faults = error instanceof Refusal ? error.faults : [];
+      notice.say(
+        faults.length
+          ? faults.map(fault => `${fault.pointer} ${fault.detail}`).join(' ')
+          : /** @type {Error} */ (error).message,
+      );
+    }
   }
 }

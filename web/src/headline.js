@@ -2,18 +2,73 @@
 // The few large numbers, each with its change against what the design is compared with.
 import { fill, h } from './base/dom.js';
 import { change, changeText, sig } from './base/format.js';
-import { caseText, sameCase } from './figures/context.js';
+import { openPopover } from './base/popover.js';
+import { caseLong, caseNames, sameCase } from './figures/context.js';
 
-/** @typedef {{ key: string, label: string, unit: string, help: string, scale?: number }} Number_ */
+/**
+ * @typedef {{ key: string, name: string, label: string, sub: string, unit: string, help: string, good: string,
+ *   scale?: number }} Number_
+ */
 
 /** @type {Number_[]} */
 export const NUMBERS = [
-  { key: 'peak_to_peak_um', label: 'PPLTE', unit: 'µm', help: 'peak-to-peak loaded transmission error of the pair' },
-  { key: 'impact_N', label: 'Impact', unit: 'kN', help: 'entering impact force, the larger of both ends', scale: 1e-3 },
-  { key: 'rms_m_per_s2', label: 'Vibration', unit: 'm/s²', help: 'RMS of the normal acceleration' },
-  { key: 'root_stress_MPa', label: 'Root stress', unit: 'MPa', help: 'largest bending stress in the root' },
-  { key: 'contact_pressure_MPa', label: 'Pressure', unit: 'MPa', help: 'largest contact pressure' },
+  {
+    key: 'peak_to_peak_um',
+    name: 'Peak-to-peak transmission error',
+    label: 'Transmission error',
+    sub: 'peak to peak (PPLTE)',
+    unit: 'µm',
+    help: 'How much the gear lags behind the pinion at most, less how much at least, over one mesh cycle under load.',
+    good: 'Small is good: it is what makes gears whine.',
+  },
+  {
+    key: 'impact_N',
+    name: 'Entering impact force',
+    label: 'Entering impact',
+    sub: 'force, worse end',
+    unit: 'kN',
+    help: 'The blow of the tooth that comes into mesh too early because the loaded teeth before it are bent.',
+    good: 'Small is good; tip relief makes room for the bending.',
+    scale: 1e-3,
+  },
+  {
+    key: 'rms_m_per_s2',
+    name: 'Vibration acceleration, RMS',
+    label: 'Vibration',
+    sub: 'normal, RMS',
+    unit: 'm/s²',
+    help: 'Root mean square of the relative acceleration of the teeth along the line of action, normal to the flank.',
+    good: 'Small is good.',
+  },
+  {
+    key: 'root_stress_MPa',
+    name: 'Largest root stress',
+    label: 'Root stress',
+    sub: 'largest',
+    unit: 'MPa',
+    help: 'Largest bending stress in the fillets of both members.',
+    good: 'Small is good; what a material bears stands in ISO 6336-5.',
+  },
+  {
+    key: 'contact_pressure_MPa',
+    name: 'Largest contact pressure',
+    label: 'Contact pressure',
+    sub: 'largest',
+    unit: 'MPa',
+    help: 'Largest Hertzian pressure on the flanks, edges included.',
+    good: 'Small is good; a peak on an edge says that the relief there is too little.',
+  },
 ];
+
+const TOTAL = {
+  key: 'J',
+  name: 'Objective J of the duty cycle',
+  label: 'Objective J',
+  sub: 'all load cases',
+  unit: '',
+  help: 'Transmission error, impact and vibration over the duty cycle, each divided by that of the unmodified pair and weighted; what a search makes small.',
+  good: '1 is the unmodified pair; 0.4 is much better.',
+};
 
 /**
  * Numbers of one load case as the objectives list them; the root stress where they leave it out.
@@ -36,8 +91,10 @@ export class Headline {
   /** @param {import('./base/store.js').DesignStore} store */
   constructor(store) {
     this.store = store;
-    this.cells = NUMBERS.map(({ label, unit, help }) => cell(label, unit, help));
-    this.total = cell('J', '', 'weighted objective over the duty cycle; 1 is the unmodified pair');
+    this.cells = NUMBERS.map(number => cell(number, () => this.about));
+    this.total = cell(TOTAL, () => 'all load cases');
+    /** Load case and what it is compared with. */
+    this.about = '';
     this.cases = h('.cases', { role: 'radiogroup', 'aria-label': 'Load case of the numbers and figures' });
     this.warnings = h('button.warn', {
       type: 'button',
@@ -71,13 +128,15 @@ export class Headline {
   /** @param {import('./figures/context.js').Context} context */
   set({ result, references, loadCase: k }) {
     const reference = references[0]?.result;
+    const against = references[0]?.label ?? '';
+    this.about = `${caseLong(result.load_cases[k])}${against ? `, against ${against}` : ''}`;
     const at = reference ? reference.load_cases.indexOf(sameCase(reference, result.load_cases[k], k)) : -1;
     const own = numbersOf(result, k);
     const before = at >= 0 ? numbersOf(reference, at) : {};
     NUMBERS.forEach(({ key, scale = 1 }, i) =>
-      show(this.cells[i], own[key] === null ? null : own[key] * scale, change(own[key], before[key])),
+      show(this.cells[i], own[key] === null ? null : own[key] * scale, change(own[key], before[key]), against),
     );
-    show(this.total, result.objectives?.J, change(result.objectives?.J, reference?.objectives?.J));
+    show(this.total, result.objectives?.J, change(result.objectives?.J, reference?.objectives?.J), against);
     this.#drawCases(result, k);
     const warnings = result.warnings ?? [];
     this.warnings.hidden = warnings.length === 0;
@@ -90,19 +149,20 @@ export class Headline {
 
   /** @param {any} result @param {number} chosen */
   #drawCases(result, chosen) {
-    const shape = JSON.stringify(result.load_cases.map((/** @type {any} */ c) => [c.torque_Nm, c.speed_rpm]));
+    const shape = JSON.stringify(result.load_cases.map((/** @type {any} */ c) => [c.torque_Nm, c.speed_rpm, c.name]));
     if (shape !== this.#shape) {
       this.#shape = shape;
+      const names = caseNames(result.load_cases);
       fill(
         this.cases,
         result.load_cases.map((/** @type {any} */ c, /** @type {number} */ i) => {
           const mark = h('span.dot');
-          mark.style.setProperty('--swatch', `var(--c${(i % 8) + 1})`);
+          mark.style.setProperty('--swatch', `var(--case${(i % 8) + 1})`);
           return h(
             'label.chip',
-            { title: `${caseText(c)} at ${c.speed_rpm} rpm` },
+            { title: caseLong(c) },
             h('input', { type: 'radio', name: 'load-case', value: i, onchange: () => this.store.setLoadCase(i) }),
-            h('span', null, mark, caseText(c)),
+            h('span', null, mark, names[i]),
           );
         }),
       );
@@ -113,14 +173,32 @@ export class Headline {
   }
 }
 
-/** @param {string} label @param {string} unit @param {string} help */
-function cell(label, unit, help) {
+/** @param {Number_} number @param {() => string} about */
+function cell({ name, label, sub, unit, help, good }, about) {
   const value = h('span.value', null, '–');
   const delta = h('span.delta');
+  const button = h(
+    'button.explain',
+    { type: 'button', 'aria-label': `What is this: ${name}`, 'aria-expanded': 'false' },
+    h('span.label', null, label),
+    h('span.sub', null, sub),
+  );
+  button.addEventListener('click', () =>
+    openPopover(button, 'explanation', panel =>
+      fill(
+        panel,
+        h('h4', null, unit ? `${name}, ${unit}` : name),
+        h('p', null, help),
+        h('p', null, good),
+        about() ? h('p', null, `Here: ${about()}.`) : null,
+        h('p', null, h('a', { href: '#glossary' }, 'All words explained')),
+      ),
+    ),
+  );
   const element = h(
     '.number-cell',
-    { title: help },
-    h('span.label', null, label),
+    null,
+    button,
     h('span.figure-value', null, value, unit ? h('span.unit', null, ` ${unit}`) : null),
     delta,
   );
@@ -131,10 +209,12 @@ function cell(label, unit, help) {
  * @param {{ value: HTMLElement, delta: HTMLElement }} cell
  * @param {number | null | undefined} value
  * @param {number | undefined} percent
+ * @param {string} against what it is compared with
  */
-function show(cell, value, percent) {
+function show(cell, value, percent, against) {
   cell.value.textContent = sig(value, 3);
   cell.delta.textContent =
     percent === undefined ? '' : `${percent < -0.05 ? '▼' : percent > 0.05 ? '▲' : ''} ${changeText(percent)}`;
   cell.delta.className = `delta${percent === undefined || Math.abs(percent) < 1 ? '' : percent < 0 ? ' better' : ' worse'}`;
+  cell.delta.title = percent === undefined ? '' : `against ${against}`;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The bar below every view: the search that runs, how far it is, how long it still takes.
-import { post } from './base/api.js';
+import { connection, post } from './base/api.js';
 import { fill, h } from './base/dom.js';
 import { choiceText, duration, sig } from './base/format.js';
 import { ACTIVE } from './base/jobs.js';
@@ -40,12 +40,20 @@ export function progressBar(job) {
   return bar;
 }
 
+/** @param {any} job */
+function leftText(job) {
+  if (connection.away) return 'no connection';
+  const left = job.progress?.seconds_left;
+  return typeof left === 'number' ? `${duration(left)} left` : '';
+}
+
 export class JobBar {
   /** @param {import('./app.js').App} app */
   constructor(app) {
     this.app = app;
     this.element = h('footer.job-bar', { 'aria-label': 'Jobs' });
     app.jobs.addEventListener('change', () => this.draw());
+    connection.addEventListener('change', () => this.draw());
     this.draw();
   }
 
@@ -83,13 +91,13 @@ export class JobBar {
       h(
         'span.left',
         null,
-        typeof job.progress?.seconds_left === 'number' ? `${duration(job.progress.seconds_left)} left` : '',
+        leftText(job),
       ),
       h(
         'button.small',
         {
           type: 'button',
-          disabled: Boolean(job.stopping),
+          disabled: Boolean(job.stopping) || connection.away,
           onclick: () =>
             post(`jobs/${job.id}/cancel`)
               .then(answer => this.app.jobs.put(answer))

@@ -1,103 +1,69 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Starts the page: field tables, the design of the address, the views.
 import { Analyst } from './base/analyst.js';
-import { putDifference, readPlace, takeDifference } from './base/address.js';
+import { readPlace } from './base/address.js';
 import { Away, Refusal, connection, get, post } from './base/api.js';
 import { h } from './base/dom.js';
 import { Jobs } from './base/jobs.js';
+import { Library, Missing } from './base/library.js';
 import { complete, designFields } from './base/schema.js';
 import { DesignStore } from './base/store.js';
-import { paper } from './base/paper.js';
 import { App } from './app.js';
-import { Form } from './form.js';
-import { Shell } from './shell.js';
-import { compareView } from './views/compare.js';
+import { Form } from './form/form.js';
+import { Shell } from './shell/shell.js';
 import { designView } from './views/design.js';
-import { optimizeView } from './views/optimize.js';
-import { rigView } from './views/rig.js';
 
-/** The tabs, in their order; one module each. @type {import('./app.js').Entry[]} */
+/**
+ * The tabs, in their order; those without a title are reached otherwise. What is not the first view is fetched when it is
+ * first opened. @type {import('./app.js').Entry[]}
+ */
 const VIEWS = [
-  { id: 'design', title: 'Design', make: designView },
-  { id: 'optimize', title: 'Optimize', make: optimizeView },
-  { id: 'compare', title: 'Compare', make: compareView },
-  { id: 'rig', title: 'Rig', make: rigView },
+  { id: 'design', title: 'Design', load: async () => designView },
+  { id: 'optimize', title: 'Optimize', load: async () => (await import('./views/optimize.js')).optimizeView },
+  { id: 'compare', title: 'Compare', load: async () => (await import('./views/compare.js')).compareView },
+  { id: 'rig', title: 'Rig', load: async () => (await import('./views/rig/rig.js')).rigView },
+  { id: 'report', title: '', load: async () => (await import('./report.js')).reportView },
+  { id: 'glossary', title: '', load: async () => (await import('./welcome/glossary.js')).glossaryView },
 ];
 
-const store = new DesignStore();
-/** Documents that addresses start from. @type {Map<string, any>} */
-const bases = new Map();
-/** @type {import('./base/schema.js').Field[]} */
-let fields = [];
-
-/** @param {{ example?: string, id?: string }} from @returns {Promise<{ design: any, etag: string }>} */
-async function baseOf({ example, id }) {
-  const key = id ? `id:${id}` : `example:${example}`;
-  let base = bases.get(key);
-  if (!base) {
-    const document = id
-      ? (await get(`designs/${encodeURIComponent(id)}`)).design
-      : await get(`examples/${encodeURIComponent(example || 'paper')}`);
-    base = complete(fields, document);
-    bases.set(key, base);
-  }
-  return { design: base, etag: '' };
-}
-
-/** The parameters of the address that say what the design is. */
-function addressOf() {
-  const parameters = new URLSearchParams();
-  const { example, id } = store.from;
-  if (id) parameters.set('id', id);
-  else parameters.set('from', example || 'paper');
-  const base = bases.get(id ? `id:${id}` : `example:${example || 'paper'}`);
-  if (base) putDifference(base, store.design, parameters);
-  return parameters;
-}
-
-/** Opens what an address says, unless it is open already. @param {URLSearchParams} parameters */
-async function openPlace(parameters) {
-  const now = addressOf();
-  const wanted = new URLSearchParams(
-    [...parameters].filter(
-      ([key]) => key === 'id' || key === 'from' || key === 'name' || key === 'load_cases' || key.includes('.'),
-    ),
-  );
-  if (store.design.gear_pair && (wanted.toString() === now.toString() || wanted.size === 0)) return;
-  const from = { example: parameters.get('from') ?? 'paper', id: parameters.get('id') ?? '' };
+/** The design of the address, or the first example when there is nothing at it. @param {Library} library */
+async function openFirst(library) {
   try {
-    const { design } = await baseOf(from);
-    store.open(takeDifference(design, wanted), from.id ? { id: from.id } : from, { fresh: !store.design.gear_pair });
+    await library.openAddress(readPlace(location.hash).parameters);
   } catch (error) {
-    if (error instanceof Away) throw error;
-    const { design } = await baseOf({ example: 'paper' });
-    store.open(design, { example: 'paper' }, { fresh: true });
+    if (!(error instanceof Missing)) throw error;
+    await library.openFirst();
   }
+}
+
+/** The report is fetched after everything else, so that printing at once has it. @param {App} app */
+async function prepareReport(app) {
+  const { Paper } = await import('./report.js');
+  new Paper(app).start();
 }
 
 /** @param {HTMLElement} page */
 async function start(page) {
-  const { parameters } = readPlace(location.hash);
   const [description, examples] = await Promise.all([get('schema'), get('examples')]);
-  fields = designFields(description);
-  await baseOf({ example: 'paper' });
-  await openPlace(parameters);
+  const fields = designFields(description);
+  const store = new DesignStore(design => complete(fields, design));
+  const library = new Library(store, examples.items);
+  await openFirst(library);
   const analyst = new Analyst(store);
+  analyst.update();
   const form = new Form(store, fields);
   const jobs = new Jobs();
-  const app = new App(VIEWS, { store, analyst, form, fields, examples: examples.items, jobs, addressOf, openPlace });
-  page.replaceChildren(...new Shell(app, bases).elements);
-  analyst.update();
-  await app.follow();
+  const app = new App(VIEWS, { store, analyst, form, fields, library, jobs });
+  const shell = new Shell(app);
+  app.addEventListener('stored', () => shell.menu.open());
+  page.replaceChildren(...shell.elements);
+  page.removeAttribute('aria-busy');
   store.addEventListener('change', event => {
     if (/** @type {CustomEvent} */ (event).detail === 'design') app.note();
   });
-  app.note();
   jobs.start();
-  paper.addEventListener('change', () => {
-    if (paper.on) app.print();
-  });
-  paper.start();
+  await app.follow();
+  prepareReport(app);
 }
 
 /** Asks for the token of a server that has one; a cookie keeps it. @param {HTMLElement} page */

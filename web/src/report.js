@@ -1,10 +1,26 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a report has that the screen has not: title, date, version, hash, and every assumption of the design.
-import { h } from './base/dom.js';
+// The report: the verdict first, then every figure drawn for paper from its numbers, then data and assumptions. It is
+// the same on the screen and on paper, and does not depend on what has been seen.
+import { fill, h } from './base/dom.js';
 import { labelOf, plain, unitText } from './base/format.js';
 import { valueAt } from './base/pointer.js';
+import { sheetAsSvg } from './figures/sheet.js';
+import { tableOf } from './verdict.js';
 
-const LEFT_OUT = ['optimization', 'name', 'modification'];
+/** @typedef {import('./base/schema.js').Field} Field */
+/**
+ * @typedef {object} Parts what a view gives to its report
+ * @property {string} title
+ * @property {any} result whose data and assumptions stand at the end
+ * @property {HTMLElement[]} lead tables before the figures
+ * @property {import('./figures/frame.js').Frame[]} figures
+ * @property {string[]} missing what is still being computed
+ */
+
+const LEFT_OUT = ['optimization', 'name', 'modification', 'version'];
+const NARROW = { width: 470, height: 220, foot: false };
+const WIDE = { width: 960, height: 300, foot: false };
+const LOOK = 500; // ms between two looks at what is missing
 
 /** @param {any} value @returns {string} */
 function valueText(value) {
@@ -12,29 +28,26 @@ function valueText(value) {
   if (typeof value === 'number') return plain(Number(value.toPrecision(6)));
   if (typeof value === 'boolean') return value ? 'yes' : 'no';
   if (Array.isArray(value)) return value.map(valueText).join(', ');
-  return String(value);
+  return typeof value === 'object' ? JSON.stringify(value) : String(value);
 }
 
-/** @param {import('./base/schema.js').Field} field @param {any} value @returns {HTMLElement} */
-function line(field, value) {
-  return h(
-    'div.report-line',
-    null,
-    h('dt', null, labelOf(field.key)),
-    h('dd', null, `${valueText(value)} ${unitText(field.unit)}`.trim()),
-  );
-}
-
-/** @param {import('./base/schema.js').Field[]} fields @param {any} value @returns {HTMLElement[]} */
+/** @param {Field[]} fields @param {any} value @returns {HTMLElement[]} */
 function lines(fields, value) {
   return fields.flatMap(field => {
+    if (field.entry || field.kind === 'list') return [];
     if (field.kind === 'object') return lines(field.fields ?? [], value?.[field.key]);
-    if (field.kind === 'list') return [];
-    return [line(field, value?.[field.key])];
+    return [
+      h(
+        'div.report-line',
+        null,
+        h('dt', null, labelOf(field.key)),
+        h('dd', null, `${valueText(value?.[field.key])} ${unitText(field.unit)}`.trim()),
+      ),
+    ];
   });
 }
 
-/** @param {import('./base/schema.js').Field[]} fields @param {any} design @returns {HTMLElement} */
+/** @param {Field[]} fields @param {any} design */
 function modification(fields, design) {
   const flanks = ['pinion', 'gear']
     .flatMap(member =>
@@ -42,86 +55,47 @@ function modification(fields, design) {
     )
     .filter(flank => flank.value);
   const keys = fields.find(field => field.key === 'modification')?.fields?.[0]?.fields?.[0]?.fields ?? [];
-  return h(
-    'table.numbers',
-    null,
-    h(
-      'thead',
-      null,
-      h(
-        'tr',
-        null,
-        h('th', null, 'Modification'),
-        flanks.map(({ member, end }) => h('th', { scope: 'col' }, `${member}, ${end}`)),
-      ),
-    ),
-    h(
-      'tbody',
-      null,
-      keys.map(field =>
-        h(
-          'tr',
-          null,
-          h('th', { scope: 'row' }, `${labelOf(field.key)} ${field.unit ? `(${unitText(field.unit)})` : ''}`),
-          flanks.map(({ value }) => h('td.number', null, valueText(value[field.key]))),
-        ),
-      ),
-    ),
+  const shown = keys.filter(
+    field => field.kind !== 'object' && !field.entry && flanks.some(({ value }) => value[field.key]),
+  );
+  return tableOf(
+    ['Modification', ...flanks.map(({ member, end }) => `${member}, ${end}`)],
+    shown.map(field => [
+      `${labelOf(field.key)} ${field.unit ? `(${unitText(field.unit)})` : ''}`,
+      ...flanks.map(({ value }) => valueText(value[field.key])),
+    ]),
   );
 }
 
-/** @param {any} design @returns {HTMLElement} */
+/** @param {any} design */
 function loadCases(design) {
+  return tableOf(
+    ['Load case', 'Torque (N m)', 'Speed (rpm)', 'Share of time'],
+    design.load_cases.map((/** @type {any} */ row, /** @type {number} */ k) => [
+      row.name || String(k + 1),
+      valueText(row.torque_Nm),
+      valueText(row.speed_rpm),
+      valueText(row.share),
+    ]),
+  );
+}
+
+/** What was not stated, with the value taken and its rule. @param {any[]} assumed */
+function assumptions(assumed) {
+  if (!assumed?.length) return null;
   return h(
-    'table.numbers',
+    'section',
     null,
-    h(
-      'thead',
-      null,
-      h(
-        'tr',
-        null,
-        ['Torque (N m)', 'Speed (rpm)', 'Share of time'].map(text => h('th', { scope: 'col' }, text)),
-      ),
-    ),
-    h(
-      'tbody',
-      null,
-      design.load_cases.map((/** @type {any} */ row) =>
-        h(
-          'tr',
-          null,
-          h('td.number', null, valueText(row.torque_Nm)),
-          h('td.number', null, valueText(row.speed_rpm)),
-          h('td.number', null, valueText(row.share)),
-        ),
-      ),
+    h('h3', null, 'Assumed'),
+    tableOf(
+      ['', 'value', 'rule'],
+      assumed.map(({ key, value, rule }) => [key.split('/').slice(1).map(labelOf).join(', '), valueText(value), rule]),
     ),
   );
 }
 
-/** @param {string} title @param {any} result @returns {HTMLElement} */
-export function reportHead(title, result) {
-  return h(
-    'header.report-head',
-    null,
-    h('h1', null, title),
-    h(
-      'p',
-      null,
-      `${result?.program ?? 'easeoff'} · ${new Date().toLocaleString(undefined, { dateStyle: 'long', timeStyle: 'short' })}`,
-    ),
-    result?.design_hash ? h('p.hash', null, `design ${result.design_hash}`) : null,
-  );
-}
-
-/**
- * Every assumption of a result.
- * @param {import('./base/schema.js').Field[]} fields
- * @param {any} result
- * @returns {HTMLElement}
- */
-export function reportData(fields, result) {
+/** Every assumption of a result. @param {Field[]} fields @param {any} result */
+function reportData(fields, result) {
   const { design } = result;
   return h(
     'section.report-data',
@@ -129,6 +103,7 @@ export function reportData(fields, result) {
     h('h2', null, 'Data and assumptions'),
     loadCases(design),
     modification(fields, design),
+    assumptions(result.assumed),
     fields
       .filter(field => field.kind === 'object' && !LEFT_OUT.includes(field.key))
       .map(field =>
@@ -140,4 +115,96 @@ export function reportData(fields, result) {
         ),
       ),
   );
+}
+
+/** @param {import('./figures/frame.js').Frame} frame */
+function pictureOf(frame) {
+  const wide = frame.element.classList.contains('wide') || frame.element.classList.contains('tall');
+  const content = frame.content();
+  const kind = wide ? 'figure.report-figure.wide' : 'figure.report-figure';
+  if (content) return h(kind, null, sheetAsSvg(content, wide ? WIDE : NARROW));
+  const table = frame.body.querySelector('table');
+  return table ? h(kind, null, h('h3', null, frame.title), table.cloneNode(true)) : null;
+}
+
+/** @param {Parts} parts @param {Field[]} fields @returns {HTMLElement} */
+function reportOf(parts, fields) {
+  const { title, result, lead, figures, missing } = parts;
+  return h(
+    'article.report',
+    { 'data-theme': 'light' },
+    h(
+      'header.report-head',
+      null,
+      h('h1', null, title),
+      h(
+        'p',
+        null,
+        `${result?.program ?? 'easeoff'} · ${new Date().toLocaleString(undefined, { dateStyle: 'long', timeStyle: 'short' })}`,
+      ),
+      result?.design_hash ? h('p.hash', null, `design number ${result.design_hash}`) : null,
+    ),
+    missing.length ? h('p.report-missing', null, `Not in this report, still being computed: ${missing.join(', ')}.`) : null,
+    lead,
+    h('section.report-figures', null, figures.map(pictureOf)),
+    result ? reportData(fields, result) : null,
+  );
+}
+
+/** Puts the report of the open view in the place of the page while it is printed. */
+export class Paper {
+  /** @param {import('./app.js').App} app */
+  constructor(app) {
+    this.app = app;
+    this.element = h('div', { id: 'paper' });
+  }
+
+  start() {
+    document.body.append(this.element);
+    window.addEventListener('beforeprint', () => {
+      const parts = this.app.reportParts();
+      if (parts) fill(this.element, reportOf(parts, this.app.fields));
+    });
+    window.addEventListener('afterprint', () => this.element.replaceChildren());
+  }
+}
+
+/** The report on the screen, and what it still waits for. @param {import('./app.js').App} app @returns {import('./app.js').View} */
+export function reportView(app) {
+  const state = h('span.report-state', { role: 'status' });
+  const print = h('button.primary', { type: 'button', onclick: () => window.print() }, 'Print, or save as PDF');
+  const sheet = h('.report-sheet');
+  const element = h(
+    '.report-view',
+    null,
+    h(
+      '.report-bar',
+      null,
+      h('button', { type: 'button', onclick: () => history.back() }, '← Back'),
+      state,
+      print,
+    ),
+    sheet,
+  );
+  let drawn = '';
+  const draw = () => {
+    if (app.current !== 'report') return;
+    const parts = app.reportParts();
+    const missing = parts ? parts.missing : ['the result'];
+    state.textContent = missing.length ? `Still being computed: ${missing.join(', ')}` : 'The report is whole.';
+    print.disabled = !parts;
+    const shape = JSON.stringify([parts?.title, parts?.result?.evaluation_hash, missing, app.store.pin?.label]);
+    if (parts && shape !== drawn) fill(sheet, reportOf(parts, app.fields));
+    drawn = shape;
+    if (missing.length) setTimeout(draw, LOOK);
+  };
+  app.analyst.addEventListener('result', draw);
+  return {
+    element,
+    async show() {
+      drawn = '';
+      await app.view('design');
+      draw();
+    },
+  };
 }

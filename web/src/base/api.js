@@ -31,6 +31,17 @@ const LONGEST_RETRY = 5000;
 class Connection extends EventTarget {
   away = false;
 
+  /** A stream has broken: is the service still there? */
+  async doubt() {
+    if (this.away) return;
+    try {
+      const response = await fetch(new URL('health', BASE), { cache: 'no-store' });
+      if (!response.ok) throw new Error();
+    } catch {
+      this.lost();
+    }
+  }
+
   /** Starts asking until the service is back; listeners of "change" hear both turns. */
   lost() {
     if (this.away) return;

@@ -21,11 +21,16 @@ export function unitText(unit) {
 }
 
 const SUFFIX = /_(um|mm|deg|Nm|rpm|MPa|GPa|N|N_per_um|Nm_per_rad|kg|kg_m2|kg_per_m3|per_mm|m_per_s2|Hz)$/;
-const ACRONYMS = /** @type {Record<string, string>} */ ({
-  ga: 'GA',
-  fpga: 'FPGA',
-  nsga2: 'NSGA-II',
-  'credibility-ga': 'credibility GA',
+const CHOICES = /** @type {Record<string, string>} */ ({
+  ga: 'plain genetic (GA)',
+  fpga: 'published method (FPGA)',
+  nsga2: 'Pareto front (NSGA-II)',
+  'credibility-ga': 'fast (credibility GA)',
+  shared: 'one flank for both ends (5 variables)',
+  per_end: 'a flank for each end (10 variables)',
+  listed: 'variables of a list',
+  unmodified: 'that of the unmodified pair',
+  harmonic_balance: 'harmonic balance',
 });
 
 /** "tip_relief_start_mm" -> "Tip relief start". @param {string} key */
@@ -36,7 +41,7 @@ export function labelOf(key) {
 
 /** @param {string} choice */
 export function choiceText(choice) {
-  return ACRONYMS[choice] ?? choice.replaceAll('_', ' ');
+  return CHOICES[choice] ?? choice.replaceAll('_', ' ');
 }
 
 /**
@@ -61,22 +66,6 @@ export function sig(value, digits = 3) {
 export function plain(value) {
   if (typeof value !== 'number' || !Number.isFinite(value)) return '';
   return Number.isInteger(value) ? String(value) : String(Number(value.toPrecision(6)));
-}
-
-/**
- * "1,5" and "1.5" are the same; undefined when it is not a number.
- * @param {string} text
- * @returns {number | undefined}
- */
-export function parseNumber(text) {
-  const clean = text
-    .trim()
-    .replace(/[\s\u00a0\u202f]/g, '')
-    .replace('−', '-')
-    .replace(',', '.');
-  if (!/^[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?$/i.test(clean)) return undefined;
-  const value = Number(clean);
-  return Number.isFinite(value) ? value : undefined;
 }
 
 /**

@@ -8,6 +8,8 @@ export const ACTIVE = ['queued', 'preparing', 'running'];
 
 export class Jobs extends EventTarget {
   /** @type {Map<string, any>} */ all = new Map();
+  /** The list has been read. */
+  known = false;
   /** @type {EventSource | null} */ #source = null;
   #channel = 'BroadcastChannel' in window ? new BroadcastChannel(CHANNEL) : null;
 
@@ -54,6 +56,7 @@ export class Jobs extends EventTarget {
       this.#take(job);
     });
     source.addEventListener('error', () => {
+      connection.doubt();
       if (source.readyState !== EventSource.CLOSED) return;
       connection.lost();
       const again = () => {
@@ -69,6 +72,7 @@ export class Jobs extends EventTarget {
     try {
       const items = await list('jobs', 400);
       this.all = new Map(items.map(job => [job.id, job]));
+      this.known = true;
       this.dispatchEvent(new CustomEvent('change', { detail: null }));
     } catch {
       // comes again with the connection

@@ -8,6 +8,8 @@
  * @property {string} [unit] @property {number | null} [low] @property {number | null} [high] @property {any} [default]
  * @property {string[]} [choices] @property {string} [help] @property {boolean} [required]
  * @property {boolean} [nullable]
+ * @property {boolean} [entry] another way to state a value: read, never written
+ * @property {string} [basis] where a default comes from
  * @property {string} [derived] @property {number} [count] @property {Field[]} [fields]
  */
 
@@ -43,20 +45,26 @@ export function fallbackOf(field) {
   return field.default === undefined ? null : field.default;
 }
 
+/** Objects that are no part of a document when it does not state them: an unmodified flank, a case without its own. */
+const ABSENT = ['gear', 'coast'];
+
 /**
- * The document with every key that has a default; what the service would assume is written out.
+ * The document with every key that has a default; what the service would assume is written out. Entry keys are other
+ * ways to state a value and stand in no document.
  * @param {Field[]} fields @param {any} document
  */
 export function complete(fields, document) {
   const whole = { ...document };
   for (const field of fields) {
+    const missing = whole[field.key] === undefined;
+    if (field.entry) continue;
     if (field.kind === 'object' && field.fields) {
-      if (whole[field.key] === undefined && field.key === 'gear') continue; // absent: unmodified
-      whole[field.key] = complete(field.fields, whole[field.key] ?? {});
+      if (missing && (ABSENT.includes(field.key) || field.nullable)) continue;
+      if (whole[field.key] !== null) whole[field.key] = complete(field.fields, whole[field.key] ?? {});
     } else if (field.kind === 'list') {
       if (Array.isArray(whole[field.key]))
         whole[field.key] = whole[field.key].map((/** @type {any} */ row) => complete(field.fields ?? [], row));
-    } else if (whole[field.key] === undefined && !field.required) {
+    } else if (missing && !field.required) {
       whole[field.key] = fallbackOf(field);
     }
   }

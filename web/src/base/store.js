@@ -1,25 +1,40 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The design on the table, what it is compared with, and the way back.
+// The design on the table, whose it is, what it is compared with, and the way back.
 import { same, valueAt, withValue } from './pointer.js';
 
 /** @typedef {{ label: string, design: any }} Pin */
+/**
+ * Whose a design is: an example's, a stored one's or nobody's yet; and what stands there, to see whether it differs.
+ * @typedef {{ example: string, id: string, etag: string, base: any }} Identity
+ */
+/** @typedef {{ design: any, from: Identity }} Step what undo brings back */
 
 const DEPTH = 200;
 const ENDS = ['left', 'right'];
 
+/** @param {Partial<Identity>} [from] @returns {Identity} */
+function identity({ example = '', id = '', etag = '', base = null } = {}) {
+  return { example, id, etag, base };
+}
+
 export class DesignStore extends EventTarget {
   /** @type {any} */ design = {};
-  /** Where it came from: an example's name or a stored design's id. */
-  from = { example: 'paper', id: '', etag: '' };
+  from = identity({ example: 'paper' });
   tied = true;
   /** null: the unmodified pair. @type {Pin | null} */ pin = null;
   /** Load case whose numbers are shown large; -1: the one with the largest share. */
   loadCase = -1;
   /** Faults of texts that could not become values. @type {Map<string, string>} */ faults = new Map();
 
-  /** @type {any[]} */ #past = [];
-  /** @type {any[]} */ #future = [];
+  /** @type {Step[]} */ #past = [];
+  /** @type {Step[]} */ #future = [];
   #stroke = '';
+
+  /** @param {(design: any) => any} [whole] a design with every default written out, so that equal ones are the same */
+  constructor(whole = design => design) {
+    super();
+    this.whole = whole;
+  }
 
   /** @param {string} what "design", "live" (more to come), "view", "fault" */
   #tell(what) {
@@ -29,6 +44,12 @@ export class DesignStore extends EventTarget {
   /** @param {string} pointer */
   get(pointer) {
     return valueAt(this.design, pointer);
+  }
+
+  /** Whether the design differs from what is stored, or from the example. */
+  get changed() {
+    const { base } = this.from;
+    return base === null || (base !== this.design && !same(this.whole(this.design), this.whole(base)));
   }
 
   /**
@@ -48,6 +69,20 @@ export class DesignStore extends EventTarget {
     this.#tell(live ? 'live' : 'design');
   }
 
+  /** Several values as one step. @param {[string, any][]} changes */
+  setAll(changes) {
+    let { design } = this;
+    for (const [pointer, value] of changes) {
+      design = withValue(design, pointer, value);
+      const twin = this.#twin(pointer);
+      if (twin) design = withValue(design, twin, value);
+    }
+    if (same(design, this.design)) return;
+    this.#remember('');
+    this.design = design;
+    this.#tell('design');
+  }
+
   /** The same key of the other end, when the ends are tied. @param {string} pointer */
   #twin(pointer) {
     const match = /^(\/modification\/[a-z]+\/)(left|right)(\/.*)?$/.exec(pointer);
@@ -58,7 +93,7 @@ export class DesignStore extends EventTarget {
   /** @param {string} stroke */
   #remember(stroke) {
     if (stroke === '' || stroke !== this.#stroke) {
-      this.#past.push(this.design);
+      this.#past.push({ design: this.design, from: this.from });
       if (this.#past.length > DEPTH) this.#past.shift();
     }
     this.#stroke = stroke;
@@ -75,8 +110,8 @@ export class DesignStore extends EventTarget {
   /**
    * Another design altogether.
    * @param {any} design
-   * @param {{ example?: string, id?: string, etag?: string }} from
-   * @param {{ fresh?: boolean }} [options]
+   * @param {Partial<Identity>} from base: what stands there, the design itself when it is left out and somebody's
+   * @param {{ fresh?: boolean }} [options] fresh: nothing to go back to
    */
   open(design, from, { fresh = false } = {}) {
     if (!fresh) this.#remember('');
@@ -85,12 +120,35 @@ export class DesignStore extends EventTarget {
       this.#future = [];
     }
     this.design = design;
-    this.from = { example: from.example ?? '', id: from.id ?? '', etag: from.etag ?? '' };
-    this.faults.clear();
+    this.from = identity({ ...from, base: from.base ?? (from.example || from.id ? design : null) });
     this.tied = this.#endsEqual();
     this.loadCase = -1;
+    this.#forgetTyped();
     this.dispatchEvent(new Event('open'));
     this.#tell('design');
+  }
+
+  /**
+   * What is on the table is stored now. A design stored as a new one takes its steps back with it, so that undo does
+   * not lead to the one that it came from.
+   * @param {string} id
+   * @param {string} etag
+   */
+  kept(id, etag) {
+    if (this.from.id === id) Object.assign(this.from, { etag, base: this.design });
+    else {
+      const [before, now] = [this.from, identity({ id, etag, base: this.design })];
+      for (const step of [...this.#past, ...this.#future]) if (step.from === before) step.from = now;
+      this.from = now;
+    }
+    this.#tell('view');
+  }
+
+  /** The stored one is gone; what is on the table stays. @param {string} id */
+  orphaned(id) {
+    for (const from of new Set([this.from, ...[...this.#past, ...this.#future].map(step => step.from)]))
+      if (from.id === id) Object.assign(from, identity());
+    this.#tell('view');
   }
 
   #endsEqual() {
@@ -129,16 +187,25 @@ export class DesignStore extends EventTarget {
     this.#step(this.#future, this.#past);
   }
 
-  /** @param {any[]} from @param {any[]} to */
-  #step(from, to) {
-    const design = from.pop();
-    if (design === undefined) return;
-    to.push(this.design);
-    this.design = design;
+  /** @param {Step[]} source @param {Step[]} target */
+  #step(source, target) {
+    const step = source.pop();
+    if (step === undefined) return;
+    target.push({ design: this.design, from: this.from });
+    const other = step.from !== this.from;
+    this.design = step.design;
+    this.from = step.from;
     this.#stroke = '';
-    this.faults.clear();
     this.tied = this.tied && this.#endsEqual();
+    this.#forgetTyped();
+    if (other) this.dispatchEvent(new Event('open'));
     this.#tell('design');
+  }
+
+  /** What is typed and not yet a value ends with the design that it was typed for. */
+  #forgetTyped() {
+    this.faults.clear();
+    this.dispatchEvent(new Event('reset'));
   }
 
   /** @param {Pin | null} pin */
@@ -155,8 +222,9 @@ export class DesignStore extends EventTarget {
 
   /** @param {string} pointer @param {string} fault "" when there is none */
   setFault(pointer, fault) {
+    if (fault ? this.faults.get(pointer) === fault : !this.faults.has(pointer)) return;
     if (fault) this.faults.set(pointer, fault);
-    else if (!this.faults.delete(pointer)) return;
+    else this.faults.delete(pointer);
     this.#tell('fault');
   }
 }

@@ -1,11 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Light or dark: the reader's choice, else the system's.
+// Light or dark: the reader's choice, else the system's. What goes to paper is always light.
+import { h } from './dom.js';
 
 const KEY = 'easeoff-theme';
 const dark = matchMedia('(prefers-color-scheme: dark)');
 
 /** @type {Map<string, string>} */
 const colours = new Map();
+/** @type {Map<string, string>} */
+const printed = new Map();
+/** Has the colours of the light theme, whatever the page has. */
+const sheet = h('div', { 'data-theme': 'light', hidden: true });
+let onSheet = false;
 
 class Theme extends EventTarget {
   constructor() {
@@ -46,12 +52,24 @@ class Theme extends EventTarget {
 
 export const theme = new Theme();
 
-/** A colour of the style sheet for canvases: colour("c1"). @param {string} name */
+/** A colour of the style sheet for canvases: colour("case1"). @param {string} name */
 export function colour(name) {
-  let value = colours.get(name);
+  const known = onSheet ? printed : colours;
+  let value = known.get(name);
   if (value === undefined) {
-    value = getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
-    colours.set(name, value);
+    if (onSheet && !sheet.isConnected) document.body.append(sheet);
+    value = getComputedStyle(onSheet ? sheet : document.documentElement).getPropertyValue(`--${name}`).trim();
+    known.set(name, value);
   }
   return value;
+}
+
+/** Paints with the colours of paper. @template T @param {() => T} paint @returns {T} */
+export function withPaperColours(paint) {
+  onSheet = true;
+  try {
+    return paint();
+  } finally {
+    onSheet = false;
+  }
 }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A figure painted on a canvas: sharp on any screen, repainted when its size, the theme or its data change.
 import { h } from '../base/dom.js';
-import { paper } from '../base/paper.js';
 import { theme } from '../base/theme.js';
 import { Frame, whenSeen } from './frame.js';
 
@@ -9,20 +8,36 @@ export const FONT = '11px system-ui, sans-serif';
 export const SMALL = '10px system-ui, sans-serif';
 
 /** @typedef {(pen: CanvasRenderingContext2D, width: number, height: number) => void} Paint */
+/**
+ * @typedef {object} More
+ * @property {() => import('./table.js').Rows} [table] @property {string} [label] a sentence
+ * @property {() => boolean} [empty] @property {() => import('./sheet.js').Key[]} [keys] @property {() => void} [reset]
+ */
 
 export class Painting {
   #seen = false;
   #asked = false;
 
-  /**
-   * @param {ConstructorParameters<typeof Frame>[0] extends infer T ? Omit<T, 'drawing'> : never} options
-   * @param {Paint} paint
-   * @param {{ table?: () => (string | number | null)[][], label?: string }} [more]
-   */
-  constructor(options, paint, { table, label } = {}) {
+  /** @param {Omit<import('./frame.js').FrameOptions, 'drawing'>} options @param {Paint} paint @param {More} [more] */
+  constructor(options, paint, { table, label, empty, keys, reset } = {}) {
     this.paint = paint;
-    this.canvas = h('canvas', { role: 'img', 'aria-label': label ?? options.title });
-    this.frame = new Frame({ ...options, drawing: { picture: () => this.#picture(), table } });
+    this.canvas = h('canvas', { role: 'img', 'aria-label': label ?? options.name ?? options.title });
+    this.frame = new Frame({
+      ...options,
+      drawing: {
+        paint: (pen, width, height) => {
+          pen.font = FONT;
+          paint(pen, width, height);
+          this.repaint(); // places of the screen, which painting has noted, are those of the screen again
+        },
+        table,
+        keys,
+        reset,
+        get empty() {
+          return empty?.() ?? false;
+        },
+      },
+    });
     this.element = this.frame.element;
     this.element.classList.add('keyless');
     this.frame.body.append(this.canvas);
@@ -32,7 +47,11 @@ export class Painting {
     });
     new ResizeObserver(() => this.repaint()).observe(this.frame.body);
     theme.addEventListener('change', () => this.now());
-    paper.addEventListener('change', () => this.now());
+  }
+
+  /** One sentence for those who do not see it. @param {string} text */
+  describe(text) {
+    this.canvas.setAttribute('aria-label', text);
   }
 
   /** Once before the next frame, if it can be seen. */
@@ -49,38 +68,16 @@ export class Painting {
   now() {
     const { clientWidth: width, clientHeight: height } = this.frame.body;
     if (width === 0 || height === 0) return;
-    this.#paintOn(this.canvas, width, height, devicePixelRatio);
-  }
-
-  /** @param {HTMLCanvasElement} canvas @param {number} width @param {number} height @param {number} ratio */
-  #paintOn(canvas, width, height, ratio) {
-    const [columns, rows] = [Math.round(width * ratio), Math.round(height * ratio)];
+    const { canvas } = this;
+    const [columns, rows] = [Math.round(width * devicePixelRatio), Math.round(height * devicePixelRatio)];
     if (canvas.width !== columns || canvas.height !== rows) {
       canvas.width = columns;
       canvas.height = rows;
     }
     const pen = /** @type {CanvasRenderingContext2D} */ (canvas.getContext('2d'));
-    pen.setTransform(ratio, 0, 0, ratio, 0, 0);
+    pen.setTransform(devicePixelRatio, 0, 0, devicePixelRatio, 0, 0);
     pen.clearRect(0, 0, width, height);
     pen.font = FONT;
     this.paint(pen, width, height);
-  }
-
-  #picture() {
-    const { clientWidth: width, clientHeight: height } = this.frame.body;
-    const inner = document.createElement('canvas');
-    this.#paintOn(inner, width, height, 2);
-    const canvas = document.createElement('canvas');
-    canvas.width = inner.width;
-    canvas.height = inner.height + 48;
-    const pen = /** @type {CanvasRenderingContext2D} */ (canvas.getContext('2d'));
-    const style = getComputedStyle(document.documentElement);
-    pen.fillStyle = style.getPropertyValue('--panel');
-    pen.fillRect(0, 0, canvas.width, canvas.height);
-    pen.fillStyle = style.getPropertyValue('--text');
-    pen.font = '600 24px system-ui, sans-serif';
-    pen.fillText(this.frame.title, 16, 32);
-    pen.drawImage(inner, 0, 48);
-    return canvas;
   }
 }

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Curves over one abscissa, drawn by uPlot: live, with a reading at the pointer, zoom by dragging, reset by a double
-// click.
+// Curves over one abscissa, drawn by uPlot: live, with a reading by pointer and arrow keys, a legend that switches
+// them, zoom by dragging, reset by a double click.
 import uPlot from 'uplot';
-import { fill, h } from '../base/dom.js';
-import { sig } from '../base/format.js';
-import { paper } from '../base/paper.js';
 import { phase } from '../base/phase.js';
 import { colour, theme } from '../base/theme.js';
-import { Frame, placeTip, whenSeen } from './frame.js';
+import { Legend, keyOf } from './chart_legend.js';
+import { paintChart, yRange } from './chart_picture.js';
+import { Reading } from './chart_reading.js';
+import { Frame, whenSeen } from './frame.js';
+import { tickText } from './ticks.js';
 
 /**
  * @typedef {object} Curve
@@ -23,16 +24,21 @@ import { Frame, placeTip, whenSeen } from './frame.js';
 /** @typedef {{ x: ArrayLike<number>, curves: Curve[], marks?: Mark[] }} ChartData */
 /**
  * @typedef {object} ChartOptions
- * @property {string} title @property {string} [unit] @property {string} [help] @property {string} xLabel
- * @property {string} [xUnit]
+ * @property {string} title @property {string} [name] in full @property {string} [unit]
+ * @property {string} [help] @property {string} [good] what is good
+ * @property {string} xLabel @property {string} [xUnit]
  * @property {boolean} [bars] groups of bars at whole x; dashed curves become ticks across them
  * @property {boolean} [cycle] x is the phase of the mesh cycle
  * @property {boolean} [zero] y starts at zero
+ * @property {boolean} [whole] x counts: no fractions along the axis
  * @property {boolean} [wide] @property {HTMLElement[]} [controls]
  */
 
 const DASHES = { solid: undefined, dashed: [5, 4], dotted: [1.5, 3] };
 const FONT = '11px system-ui, sans-serif';
+const COUNTS = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10000];
+const CLICK = 280; // ms in which a second click makes a double one
+const STILL = 4; // px that a click may move
 
 /** Values of a curve at the places of another abscissa. @param {Curve} curve @param {ArrayLike<number>} x */
 function onAbscissa(curve, x) {
@@ -63,22 +69,31 @@ export class Chart {
   #seen = false;
   #stale = false;
   #shape = '';
-  #hover = false;
   #click = 0;
 
   /** @param {ChartOptions} options */
   constructor(options) {
     this.options = options;
+    const { title, name, unit, help, good, wide, controls } = options;
+    const chart = this;
     this.frame = new Frame({
-      title: options.title,
-      unit: options.unit,
-      help: options.help,
-      wide: options.wide,
-      controls: options.controls,
-      drawing: { picture: () => this.#picture(), table: () => this.#table(), reset: () => this.#reset() },
+      ...{ title, name, unit, help, good, wide, controls },
+      drawing: {
+        paint: (pen, width, height) => this.#paint(pen, width, height),
+        keys: () => this.legend.keys(),
+        table: () => this.#table(),
+        reset: () => this.#reset(),
+        get empty() {
+          return !chart.#data?.x.length;
+        },
+      },
     });
     this.element = this.frame.element;
-    this.tip = h('.tip', { hidden: true });
+    this.legend = new Legend(this.frame.legend, {
+      toggled: () => this.#switch(),
+      pointed: key => this.#emphasise(key),
+    });
+    this.reading = new Reading(this.frame, options);
     whenSeen(this.element, visible => {
       this.#seen = visible;
       if (visible && this.#stale) this.#draw();
@@ -88,22 +103,23 @@ export class Chart {
       this.#shape = '';
       this.#draw();
     });
-    paper.addEventListener('change', () => this.force());
     if (options.cycle) phase.addEventListener('change', () => this.#followPhase());
+  }
+
+  /** Other words for the abscissa and for what is shown. @param {string} xLabel @param {string} shown */
+  name(xLabel, shown) {
+    if (this.options.xLabel === xLabel && this.frame.about === shown) return;
+    this.options = { ...this.options, xLabel };
+    this.reading.options = this.options;
+    this.frame.setCase(shown);
+    this.#shape = '';
   }
 
   /** @param {ChartData} data */
   set(data) {
     this.#data = data;
-    if (this.#seen || paper.on) this.#draw();
+    if (this.#seen) this.#draw();
     else this.#stale = true;
-  }
-
-  /** Draws even out of sight, in the size of now. */
-  force() {
-    this.#shape = '';
-    this.#draw();
-    this.element.classList.toggle('blank', !this.#data?.x.length);
   }
 
   #draw() {
@@ -123,14 +139,16 @@ export class Chart {
       const zoomed = this.#zoom();
       this.#plot.setData(columns, !zoomed);
       if (zoomed) this.#plot.setScale('x', zoomed);
+      this.reading.describe(data);
       return;
     }
     this.#plot?.destroy();
     this.#shape = shape;
     this.#plot = new uPlot(this.#settings(data, width, height), columns, this.frame.body);
-    this.frame.body.append(this.tip);
     this.#listen(this.#plot);
-    this.#drawLegend(data);
+    this.legend.draw(data.curves);
+    this.reading.describe(data);
+    this.reading.attach(this.#plot, data);
   }
 
   #clear() {
@@ -152,49 +170,25 @@ export class Chart {
 
   /** @param {ChartData} data @param {number} width @param {number} height @returns {uPlot.Options} */
   #settings(data, width, height) {
-    const { bars, zero, xLabel, xUnit } = this.options;
-    const axis = {
-      stroke: colour('muted'),
-      grid: { stroke: colour('grid'), width: 1 },
-      ticks: { show: false },
-      font: FONT,
-      gap: 4,
-    };
+    const { bars, zero } = this.options;
     return {
       width,
       height,
       pxAlign: 0,
-      padding: [6, 8, 0, 0],
+      padding: [8, 18, 0, 0],
       legend: { show: false },
-      cursor: { sync: undefined, drag: { x: !bars, y: false, dist: 6 }, points: { size: 5 }, y: false },
+      focus: { alpha: 0.25 },
+      cursor: { drag: { x: !bars, y: false, dist: 6 }, points: { size: 5 }, y: false },
       scales: {
         x: { time: false, range: (_plot, low, high) => (bars ? [low - 0.6, high + 0.6] : [low, high]) },
         y: { range: (_plot, low, high) => yRange(low, high, Boolean(zero || bars)) },
       },
-      axes: [
-        {
-          ...axis,
-          size: 18,
-          label: xUnit ? `${xLabel}, ${xUnit}` : xLabel,
-          labelFont: FONT,
-          labelSize: 15,
-          labelGap: 0,
-          space: 44,
-          grid: bars ? { show: false } : axis.grid,
-          splits: bars ? () => Array.from(data.x) : undefined,
-        },
-        {
-          ...axis,
-          size: (_plot, texts) => 12 + 6.4 * Math.max(2, ...(texts ?? []).map(text => text.length)),
-          space: 24,
-          values: (_plot, splits) =>
-            splits.map(value => (value === null ? '' : String(Number(value.toPrecision(6))).replace('-', '−'))),
-        },
-      ],
+      axes: this.#axes(data),
       series: [
         {},
         ...data.curves.map(curve => ({
           label: curve.label,
+          show: !this.legend.hidden.has(keyOf(curve)),
           stroke: colour(curve.colour),
           width: curve.width ?? (curve.line ? 1.25 : 1.75),
           dash: DASHES[curve.line ?? 'solid'],
@@ -206,80 +200,77 @@ export class Chart {
       hooks: {
         drawClear: [plot => drawMarks(plot, this.#data?.marks ?? [])],
         draw: bars ? [plot => drawBars(plot, this.#data?.curves ?? [])] : [],
-        setCursor: [plot => this.#read(plot)],
+        setCursor: [plot => this.reading.read(plot, this.#data)],
       },
     };
   }
 
+  /** @param {ChartData} data @returns {uPlot.Axis[]} */
+  #axes(data) {
+    const { bars, xLabel, xUnit, whole } = this.options;
+    /** @param {uPlot} _plot @param {number[]} splits */
+    const values = (_plot, splits) => splits.map(value => (value === null ? '' : tickText(value)));
+    const axis = {
+      stroke: colour('muted'),
+      grid: { stroke: colour('grid'), width: 1 },
+      ticks: { show: false },
+      font: FONT,
+      gap: 4,
+      values,
+    };
+    return [
+      {
+        ...axis,
+        size: 18,
+        label: xUnit ? `${xLabel}, ${xUnit}` : xLabel,
+        labelFont: FONT,
+        labelSize: 15,
+        labelGap: 0,
+        space: 44,
+        grid: bars ? { show: false } : axis.grid,
+        splits: bars ? () => Array.from(data.x) : undefined,
+        ...(whole ? { incrs: COUNTS } : {}),
+      },
+      {
+        ...axis,
+        size: (_plot, texts) => 12 + 6.4 * Math.max(2, ...(texts ?? []).map(text => text.length)),
+        space: 24,
+      },
+    ];
+  }
+
   /** @param {uPlot} plot */
   #listen(plot) {
-    plot.over.addEventListener('mouseenter', () => {
-      this.#hover = true;
-    });
-    plot.over.addEventListener('mouseleave', () => {
-      this.#hover = false;
-      this.tip.hidden = true;
-      if (this.options.cycle) phase.set(null);
-    });
     let from = [0, 0];
     plot.over.addEventListener('pointerdown', event => {
       from = [event.clientX, event.clientY];
     });
     plot.over.addEventListener('click', event => {
-      if (Math.hypot(event.clientX - from[0], event.clientY - from[1]) > 4 || event.detail > 1) return;
-      this.#click = window.setTimeout(() => this.frame.enlarge(), 280);
+      if (Math.hypot(event.clientX - from[0], event.clientY - from[1]) > STILL || event.detail > 1) return;
+      this.#click = window.setTimeout(() => this.frame.enlarge(), CLICK);
     });
     plot.over.addEventListener('dblclick', () => clearTimeout(this.#click));
   }
 
-  /** @param {uPlot} plot */
-  #read(plot) {
-    const at = plot.cursor.idx;
-    if (!this.#hover || at === null || at === undefined || !this.#data) {
-      this.tip.hidden = true;
-      return;
-    }
-    const x = this.#data.x[at];
-    const order = this.#data.curves
-      .map((curve, k) => ({ curve, k }))
-      .sort((a, b) => Number(Boolean(a.curve.line)) - Number(Boolean(b.curve.line)));
-    const rows = order.map(({ curve, k }) => {
-      const value = /** @type {number | null | undefined} */ (plot.data[k + 1][at]);
-      return h('.tip-row', null, swatch(curve), h('span', null, curve.label), h('b', null, sig(value, 4)));
+  /** Shows what the legend has on. */
+  #switch() {
+    this.#data?.curves.forEach((curve, i) => {
+      this.#plot?.setSeries(i + 1, { show: !this.legend.hidden.has(keyOf(curve)) });
     });
-    fill(
-      this.tip,
-      h('.tip-x', null, `${this.options.xLabel} ${sig(x, 4)}${this.options.xUnit ? ` ${this.options.xUnit}` : ''}`),
-      rows,
-    );
-    this.tip.hidden = false;
-    const left = (plot.cursor.left ?? 0) + plot.over.offsetLeft;
-    placeTip(this.tip, left, this.frame.body.clientWidth);
-    if (this.options.cycle && this.#hover) phase.set(x);
+  }
+
+  /** @param {string | null} key pointed at in the legend */
+  #emphasise(key) {
+    const curves = this.#data?.curves ?? [];
+    const at = key === null ? -1 : curves.findIndex(curve => keyOf(curve) === key);
+    this.#plot?.setSeries(at < 0 ? null : at + 1, { focus: true });
   }
 
   #followPhase() {
     const plot = this.#plot;
-    if (!plot || this.#hover || !this.#seen) return;
+    if (!plot || this.reading.busy || !this.#seen) return;
     const left = phase.value === null ? -10 : plot.valToPos(phase.value, 'x');
     plot.setCursor({ left, top: phase.value === null ? -10 : 4 }, false);
-  }
-
-  /** @param {ChartData} data */
-  #drawLegend(data) {
-    const solid = data.curves.filter(curve => !curve.line);
-    // one key for all curves of a reference: "828 N m, unmodified" and its like
-    const others = new Map(
-      data.curves.filter(curve => curve.line).map(curve => [curve.label.replace(/^.*, /, ''), curve]),
-    );
-    const mixed = new Set(data.curves.map(curve => curve.colour)).size > 1;
-    fill(
-      this.frame.legend,
-      solid.map(curve => h('span.key', null, swatch(curve), curve.label)),
-      [...others].map(([label, curve]) =>
-        h('span.key', null, swatch(mixed ? { ...curve, colour: 'muted' } : curve), label),
-      ),
-    );
   }
 
   #resize() {
@@ -295,36 +286,17 @@ export class Chart {
   #reset() {
     const x = this.#data?.x;
     if (x) this.#plot?.setScale('x', { min: x[0], max: x[x.length - 1] });
+    this.legend.showAll();
   }
 
-  #picture() {
-    this.force();
-    const plot = /** @type {uPlot} */ (this.#plot);
-    const source = plot.ctx.canvas;
-    const scale = source.width / plot.width;
-    const canvas = h('canvas', { width: source.width, height: source.height + 44 * scale });
-    const pen = /** @type {CanvasRenderingContext2D} */ (canvas.getContext('2d'));
-    pen.fillStyle = colour('panel');
-    pen.fillRect(0, 0, canvas.width, canvas.height);
-    pen.drawImage(source, 0, 22 * scale);
-    pen.scale(scale, scale);
-    pen.fillStyle = colour('text');
-    pen.font = `600 12px system-ui, sans-serif`;
-    pen.fillText(`${this.options.title}${this.options.unit ? `, ${this.options.unit}` : ''}`, 8, 15);
-    let left = 8;
-    pen.font = FONT;
-    for (const curve of this.#data?.curves ?? []) {
-      pen.strokeStyle = colour(curve.colour);
-      pen.lineWidth = 2;
-      pen.setLineDash(DASHES[curve.line ?? 'solid'] ?? []);
-      pen.beginPath();
-      pen.moveTo(left, source.height / scale + 33);
-      pen.lineTo(left + 18, source.height / scale + 33);
-      pen.stroke();
-      pen.fillText(curve.label, left + 22, source.height / scale + 37);
-      left += 36 + pen.measureText(curve.label).width;
-    }
-    return canvas;
+  /** @param {CanvasRenderingContext2D} pen @param {number} width @param {number} height */
+  #paint(pen, width, height) {
+    const data = this.#data;
+    if (!data?.x.length) return;
+    const curves = data.curves
+      .filter(curve => !this.legend.hidden.has(keyOf(curve)))
+      .map(curve => ({ ...curve, shown: onAbscissa(curve, data.x) }));
+    paintChart(pen, width, height, { x: data.x, curves, marks: data.marks ?? [] }, this.options);
   }
 
   #table() {
@@ -341,20 +313,6 @@ export class Chart {
       ...rows,
     ];
   }
-}
-
-/** @param {number | null} low @param {number | null} high @param {boolean} zero @returns {[number, number]} */
-function yRange(low, high, zero) {
-  if (low === null || high === null || !Number.isFinite(low) || !Number.isFinite(high)) return [0, 1];
-  const span = Math.max(high - low, 1e-3 * Math.max(Math.abs(low), Math.abs(high)), 1e-9);
-  return [zero && low >= 0 ? 0 : low - 0.06 * span, high + 0.06 * span];
-}
-
-/** @param {Curve} curve */
-function swatch(curve) {
-  const mark = h(`span.swatch.${curve.line ?? 'solid'}`);
-  mark.style.setProperty('--swatch', `var(--${curve.colour})`);
-  return mark;
 }
 
 /** @param {uPlot} plot @param {Mark[]} marks */
@@ -376,9 +334,11 @@ function drawMarks(plot, marks) {
     ctx.lineTo(x, bbox.top + bbox.height);
     ctx.stroke();
     if (!mark.label || x < edge) continue;
+    const width = ctx.measureText(mark.label).width;
+    if (x + width + 3 * ratio > bbox.left + bbox.width) continue;
     ctx.fillStyle = colour('muted');
     ctx.fillText(mark.label, x + 3 * ratio, bbox.top + 1);
-    edge = x + ctx.measureText(mark.label).width + 8 * ratio;
+    edge = x + width + 8 * ratio;
   }
   ctx.restore();
 }
@@ -398,6 +358,7 @@ function drawBars(plot, curves) {
   const floor = plot.valToPos(0, 'y', true);
   ctx.save();
   curves.forEach((curve, k) => {
+    if (plot.series[k + 1].show === false) return;
     const pale = Boolean(curve.line) && curve.line !== 'solid';
     const slot = pale ? solid.findIndex(other => other.colour === curve.colour) : solid.indexOf(curve);
     ctx.fillStyle = ctx.strokeStyle = colour(curve.colour);

@@ -7,7 +7,7 @@ import { phase } from '../base/phase.js';
 import { colour } from '../base/theme.js';
 import { Painting, SMALL } from './canvas.js';
 import { gridValue, scaleColour } from './colours.js';
-import { endsOf, sameCase } from './context.js';
+import { caseLong, endsOf, sameCase } from './context.js';
 import { placeTip } from './frame.js';
 
 const PIXELS = [132, 76]; // of one end's picture
@@ -26,10 +26,15 @@ export class Contact {
       {
         title: 'Contact pressure',
         unit: 'MPa',
-        help: 'Largest at each place of the pinion flank over the mesh cycle; the lines are the contact lines at the pointer',
+        help: 'Largest contact pressure at each place of the pinion flank over the mesh cycle. Dashed: where the pair it is compared with carries load; lines: the contact lines at the pointer.',
+        good: 'Load in the middle of the flank, none on tip, root and face ends.',
       },
       (pen, width, height) => this.#paint(pen, width, height),
-      { table: () => this.#table(), label: 'Map of the contact pressure on both ends' },
+      {
+        table: () => this.#table(),
+        label: 'Map of the contact pressure on both ends',
+        empty: () => !this.#pattern(),
+      },
     );
     this.elements = [this.painting.element];
     this.tip = h('.tip', { hidden: true });
@@ -53,6 +58,10 @@ export class Contact {
       context.loadCase,
     );
     this.#most = Math.max(peak(context.result.load_cases[context.loadCase]), before ? peak(before) : 0, 1);
+    const row = context.result.load_cases[context.loadCase];
+    const peaks = endsOf(context.result).map(end => `${end} end ${sig(row.contact.max_pressure_MPa[end], 4)} MPa`);
+    this.painting.frame.setCase(caseLong(row));
+    this.painting.describe(`Contact pressure on the pinion flank, largest: ${peaks.join(', ')}.`);
     this.painting.repaint();
   }
 

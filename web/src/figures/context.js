@@ -10,9 +10,26 @@ export function mainCase(design) {
   return shares.indexOf(Math.max(...shares));
 }
 
-/** @param {any} loadCase */
-export function caseText(loadCase) {
-  return `${Number(loadCase.torque_Nm.toPrecision(5))} N m`;
+/**
+ * Names of load cases that tell them apart: their own, else the torque, with the speed where the torque alone does not.
+ * @param {any[]} cases
+ * @returns {string[]}
+ */
+export function caseNames(cases) {
+  const torques = cases.map(row => `${Number(row.torque_Nm.toPrecision(5))} N m`);
+  const full = cases.map((row, i) => `${torques[i]}, ${Number(row.speed_rpm.toPrecision(6))} rpm`);
+  return cases.map((row, i) => {
+    if (row.name) return row.name;
+    const twins = torques.map((_, k) => k).filter(k => torques[k] === torques[i]);
+    if (twins.length === 1) return torques[i];
+    return twins.filter(k => full[k] === full[i]).length === 1 ? full[i] : `${full[i]} (${twins.indexOf(i) + 1})`;
+  });
+}
+
+/** The torque and the speed of a load case. @param {any} row */
+export function caseLong(row) {
+  const text = `${Number(row.torque_Nm.toPrecision(5))} N m at ${Number(row.speed_rpm.toPrecision(6))} rpm`;
+  return row.name ? `${row.name}: ${text}` : text;
 }
 
 /** Names of the ends that there are. @param {any} result @returns {('left' | 'right')[]} */
@@ -22,7 +39,7 @@ export function endsOf(result) {
 
 /** @param {number} index */
 export function caseColour(index) {
-  return `c${(index % 8) + 1}`;
+  return `case${(index % 8) + 1}`;
 }
 
 /**
@@ -43,3 +60,10 @@ export function sameCase(result, loadCase, index) {
 export function counting(count, start = 0) {
   return Array.from({ length: count }, (_, i) => i + start);
 }
+
+/** Colours of the ends: apart from those of the load cases, everywhere. */
+export const END_COLOUR = { left: 'end-left', right: 'end-right' };
+/** What a design is compared with. */
+export const REFERENCE_COLOUR = 'reference';
+/** The design on the table where there is but one curve of it. */
+export const OWN_COLOUR = 'own';

@@ -1,127 +1,123 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What every figure has: a title, its switches, a menu (large, PNG, CSV, copy), and a body that keeps its size.
+// What every figure has: a title, what it means, its load case, its switches, a menu (large, pictures, numbers), and a
+// body that keeps its size.
 import { copyText, download, fileName, fill, h, newId } from '../base/dom.js';
+import { notice } from '../base/notice.js';
+import { openPopover } from '../base/popover.js';
+import { sheetAsCanvas, sheetAsSvg } from './sheet.js';
+import { subject } from './subject.js';
+import { csvOf, joinRows } from './table.js';
 
 /**
  * @typedef {object} Drawing
- * @property {() => HTMLCanvasElement | Promise<HTMLCanvasElement>} [picture]
- * @property {() => (string | number | null)[][]} [table] heading first
+ * @property {(pen: CanvasRenderingContext2D, width: number, height: number) => void} [paint] as it goes to paper
+ * @property {() => import('./sheet.js').Key[]} [keys] of the legend
+ * @property {() => import('./table.js').Rows} [table] heading first
  * @property {() => void} [reset]
+ * @property {boolean} [empty] nothing to show yet
+ */
+/**
+ * @typedef {object} FrameOptions
+ * @property {string} title @property {string} [unit] @property {string} [name] in full, where the title is short
+ * @property {string} [help] what is shown @property {string} [good] what is good
+ * @property {boolean} [wide] @property {HTMLElement[]} [controls] @property {Drawing} drawing
  */
 
-/** @param {(string | number | null)[][]} rows @param {string} mark */
-function joinRows(rows, mark) {
-  return (
-    rows
-      .map(row =>
-        row
-          .map(cell => {
-            if (cell === null || cell === undefined) return '';
-            const text = String(cell);
-            return typeof cell === 'string' && /[",\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text;
-          })
-          .join(mark),
-      )
-      .join('\n') + '\n'
-  );
-}
-
 export class Frame {
-  /**
-   * @param {{ title: string, unit?: string, help?: string, wide?: boolean, drawing: Drawing, controls?: HTMLElement[]
-   * }} options
-   */
-  constructor({ title, unit, help, wide, drawing, controls = [] }) {
+  /** @type {string} load case or cases, and what else is chosen */ about = '';
+
+  /** @param {FrameOptions} options */
+  constructor({ title, unit, name, help, good, wide, drawing, controls = [] }) {
     this.title = title;
+    this.unit = unit;
     this.drawing = drawing;
+    this.texts = [name ?? title, help, good].filter(text => text !== undefined);
     const id = newId('figure');
-    this.heading = h('h3', { id, title: help ?? null }, title, unit ? h('span.unit', null, ` ${unit}`) : null);
+    this.heading = h('h3', { id }, title, unit ? h('span.unit', null, ` ${unit}`) : null);
+    this.chip = h('span.case-chip', { hidden: true });
     this.body = h('.figure-body');
     this.legend = h('.legend');
     this.note = h('.figure-note', { hidden: true });
-    this.menu = this.#menu();
     this.element = h(
       wide ? 'section.figure.wide' : 'section.figure',
       { 'aria-labelledby': id },
-      h('.figure-head', null, this.heading, h('.figure-controls', null, ...controls), this.menu),
+      h(
+        '.figure-head',
+        null,
+        this.heading,
+        this.#aboutButton(),
+        this.chip,
+        h('.figure-controls', null, ...controls),
+        this.#menuButton(),
+      ),
       this.body,
       this.legend,
       this.note,
     );
   }
 
-  #menu() {
-    const list = h('.menu-list', { role: 'menu', hidden: true });
+  /** For which load case it is. @param {string} text of one case; "" for all of them */
+  setCase(text) {
+    this.about = text;
+    this.chip.textContent = text;
+    this.chip.hidden = text === '';
+  }
+
+  #aboutButton() {
+    const [name, ...sentences] = this.texts;
+    const button = h(
+      'button.icon.about',
+      { type: 'button', 'aria-label': `What is this: ${name}`, 'aria-expanded': 'false' },
+      'i',
+    );
+    button.addEventListener('click', () =>
+      openPopover(button, 'explanation', panel =>
+        fill(
+          panel,
+          h('h4', null, this.unit ? `${name}, ${this.unit}` : name),
+          sentences.map(text => h('p', null, text)),
+          this.about ? h('p', null, `Load case: ${this.about}.`) : null,
+          h('p', null, h('a', { href: '#glossary' }, 'All words explained')),
+        ),
+      ),
+    );
+    return button;
+  }
+
+  #menuButton() {
     const button = h(
       'button.icon',
       { type: 'button', 'aria-label': `${this.title}: menu`, 'aria-haspopup': 'menu', 'aria-expanded': 'false' },
       '⋯',
     );
-    const close = () => {
-      list.hidden = true;
-      button.setAttribute('aria-expanded', 'false');
-      document.removeEventListener('pointerdown', outside);
-    };
-    /** @param {Event} event */
-    const outside = event => {
-      if (!holder.contains(/** @type {Node} */ (event.target))) close();
-    };
-    /** @param {string} label @param {() => void} act */
-    const item = (label, act) =>
-      h(
-        'button',
-        {
-          type: 'button',
-          role: 'menuitem',
-          onclick: () => {
-            close();
-            act();
-          },
+    button.addEventListener('click', () =>
+      openPopover(
+        button,
+        'menu',
+        (panel, close) => {
+          /** @param {string} label @param {() => unknown} act */
+          const item = (label, act) =>
+            h('button', { type: 'button', role: 'menuitem', onclick: () => (close(), act()) }, label);
+          fill(
+            panel,
+            item('Open large', () => this.enlarge()),
+            this.drawing.paint && item('Save as PNG', () => this.savePicture()),
+            this.drawing.paint && item('Save as SVG', () => this.saveDrawing()),
+            this.drawing.table && item('Save as CSV', () => this.saveTable()),
+            this.drawing.table && item('Copy the numbers', () => this.copyTable()),
+            this.drawing.reset && item('Reset the view', () => this.drawing.reset?.()),
+          );
         },
-        label,
-      );
-    button.addEventListener('click', () => {
-      if (!list.hidden) return close();
-      fill(
-        list,
-        item('Open large', () => this.enlarge()),
-        this.drawing.picture && item('Save as PNG', () => this.savePicture()),
-        this.drawing.table && item('Save as CSV', () => this.saveTable()),
-        this.drawing.table && item('Copy the numbers', () => this.copyTable()),
-        this.drawing.reset && item('Reset the view', () => this.drawing.reset?.()),
-      );
-      list.hidden = false;
-      button.setAttribute('aria-expanded', 'true');
-      document.addEventListener('pointerdown', outside);
-      /** @type {HTMLElement} */ (list.firstElementChild)?.focus();
-    });
-    const holder = h(
-      '.menu',
-      {
-        onkeydown: (/** @type {KeyboardEvent} */ event) => {
-          if (event.key === 'Escape' && !list.hidden) {
-            event.stopPropagation();
-            close();
-            button.focus();
-          }
-          if (event.key !== 'ArrowDown' && event.key !== 'ArrowUp') return;
-          const items = /** @type {HTMLElement[]} */ ([...list.children]);
-          const at = items.indexOf(/** @type {HTMLElement} */ (document.activeElement));
-          items[(at + (event.key === 'ArrowDown' ? 1 : items.length - 1)) % items.length]?.focus();
-          event.preventDefault();
-        },
-      },
-      button,
-      list,
+      ),
     );
-    return holder;
+    return h('.menu', null, button);
   }
 
   /** The figure fills a dialog until it is closed. */
   enlarge() {
     if (this.element.closest('dialog')) return;
     const place = h('.figure.placeholder', { css: { height: `${this.element.offsetHeight}px` } });
-    if (this.element.classList.contains('wide')) place.classList.add('wide');
+    for (const kind of ['wide', 'tall']) place.classList.toggle(kind, this.element.classList.contains(kind));
     const dialog = h('dialog', { 'aria-label': this.title, class: 'large' });
     this.element.replaceWith(place);
     dialog.append(
@@ -137,19 +133,54 @@ export class Frame {
     dialog.showModal();
   }
 
-  async savePicture() {
-    const canvas = await this.drawing.picture?.();
-    canvas?.toBlob(blob => blob && download(`${fileName(this.title)}.png`, blob));
+  /** The figure as it goes to paper; null when there is nothing to show. @returns {import('./sheet.js').Content | null} */
+  content() {
+    const { paint, keys, empty } = this.drawing;
+    if (!paint || empty) return null;
+    return {
+      title: this.texts[0] ?? this.title,
+      unit: this.unit,
+      about: this.about,
+      keys: keys?.() ?? [],
+      paint,
+    };
+  }
+
+  /** @param {string} kind of the file */
+  #fileName(kind) {
+    return `${fileName(subject.name)}-${fileName(this.title)}.${kind}`;
+  }
+
+  /** What to save, or a word why there is nothing. */
+  #whole() {
+    const content = this.content();
+    if (!content) notice.say(`${this.title}: there is nothing to save yet.`);
+    return content;
+  }
+
+  savePicture() {
+    const content = this.#whole();
+    if (content) sheetAsCanvas(content).toBlob(blob => blob && download(this.#fileName('png'), blob));
+  }
+
+  saveDrawing() {
+    const content = this.#whole();
+    if (!content) return;
+    const text = new XMLSerializer().serializeToString(sheetAsSvg(content));
+    download(this.#fileName('svg'), new Blob([text], { type: 'image/svg+xml' }));
   }
 
   saveTable() {
-    const rows = this.drawing.table?.();
-    if (rows) download(`${fileName(this.title)}.csv`, new Blob([joinRows(rows, ',')], { type: 'text/csv' }));
+    const rows = this.drawing.table?.() ?? [];
+    const text = csvOf(this.texts[0] ?? this.title, this.about, rows);
+    if (rows.length) download(this.#fileName('csv'), new Blob([text], { type: 'text/csv' }));
+    else notice.say(`${this.title}: there are no numbers yet.`);
   }
 
   async copyTable() {
-    const rows = this.drawing.table?.();
-    if (rows) await copyText(joinRows(rows, '\t'));
+    const rows = this.drawing.table?.() ?? [];
+    if (rows.length) await copyText(joinRows(rows, '\t'));
+    notice.say(rows.length ? `Copied: ${rows.length - 1} rows.` : `${this.title}: there are no numbers yet.`);
   }
 
   /** A sentence in place of the drawing; "" takes it away. @param {string} text */

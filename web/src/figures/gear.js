@@ -19,9 +19,12 @@ export class GearDrawing {
 
   constructor() {
     this.painting = new Painting(
-      { title: 'Teeth in mesh', help: 'Transverse section at mid face; pinion above, driving' },
+      {
+        title: 'Teeth in mesh',
+        help: 'Transverse section at mid face; the pinion above drives. The line of action with the points of contact; in colour what the modification takes off, drawn larger.',
+      },
       (pen, width, height) => this.#paint(pen, width, height),
-      { label: 'Transverse section of the teeth in mesh' },
+      { label: 'Transverse section of the teeth in mesh', empty: () => this.#result === null },
     );
     this.elements = [this.painting.element];
     phase.addEventListener('change', () => this.painting.repaint());
@@ -124,7 +127,7 @@ export class GearDrawing {
     pen.lineWidth = 1;
     pen.stroke();
     // what the modification takes off the loaded flank
-    pen.fillStyle = colour('c2');
+    pen.fillStyle = colour('taken');
     for (let k = -AROUND; k <= AROUND; k++) {
       pen.beginPath();
       for (const point of [...turned(teeth.active[member], 1, k), ...turned(teeth.modified[member], 1, k).reverse()])

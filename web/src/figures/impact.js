@@ -2,14 +2,14 @@
 // Entering impact of each end at each torque, as a table.
 import { fill, h } from '../base/dom.js';
 import { change, changeText, sig } from '../base/format.js';
-import { caseText, endsOf, sameCase } from './context.js';
+import { caseNames, endsOf, sameCase } from './context.js';
 import { Frame } from './frame.js';
 
-const COLUMNS = /** @type {[string, string][]} */ ([
-  ['general_force_N', 'force, N'],
-  ['speed_mm_per_s', 'speed, mm/s'],
-  ['duration_ms', 'time, ms'],
-  ['lead_before_A_mm', 'early, mm'],
+const COLUMNS = /** @type {[string, string, string][]} */ ([
+  ['general_force_N', 'force', 'N'],
+  ['speed_mm_per_s', 'speed', 'mm/s'],
+  ['duration_ms', 'time', 'ms'],
+  ['lead_before_A_mm', 'early', 'mm'],
 ]);
 const SHOWN = 3; // on the page; the rest is in the CSV
 
@@ -19,7 +19,8 @@ export class Impact {
   constructor() {
     this.frame = new Frame({
       title: 'Entering impact',
-      help: 'Where the incoming tooth touches first: force, approach speed, duration, and how far before the path of contact',
+      help: 'The blow of the incoming tooth, which touches before its time because the teeth before it are bent: force, approach speed and duration.',
+      good: 'A small force is good; tip relief makes room for the bending.',
       drawing: { table: () => this.#rows },
     });
     this.elements = [this.frame.element];
@@ -28,7 +29,8 @@ export class Impact {
 
   /** @param {import('./context.js').Context} context */
   set({ result, references, loadCase: chosen }) {
-    this.#rows = [['torque (N m)', 'end', ...COLUMNS.map(([, text]) => text), 'change (%)']];
+    const names = caseNames(result.load_cases);
+    this.#rows = [['load case', 'end', ...COLUMNS.map(([, text, unit]) => `${text} (${unit})`), 'change (%)']];
     const body = h('tbody');
     result.load_cases.forEach((/** @type {any} */ loadCase, /** @type {number} */ k) => {
       for (const end of endsOf(result)) {
@@ -36,12 +38,12 @@ export class Impact {
         const before = sameCase(references[0]?.result, loadCase, k)?.impact?.[end];
         const percent = change(impact?.general_force_N, before?.general_force_N);
         const values = COLUMNS.map(([key]) => (impact && typeof impact[key] === 'number' ? impact[key] : null));
-        this.#rows.push([loadCase.torque_Nm, end, ...values, percent ?? null]);
+        this.#rows.push([names[k], end, ...values, percent ?? null]);
         body.append(
           h(
             k === chosen ? 'tr.chosen' : 'tr',
             null,
-            h('th', { scope: 'row' }, end === 'left' ? caseText(loadCase) : ''),
+            h('th', { scope: 'row' }, end === 'left' ? names[k] : ''),
             h('td', null, end),
             values.slice(0, SHOWN).map(value => h('td.number', null, sig(value, 3))),
             h('td.number.change', null, changeText(percent)),
@@ -55,9 +57,9 @@ export class Impact {
       h(
         'tr',
         null,
-        h('th', { scope: 'col' }, 'torque'),
+        h('th', { scope: 'col' }, 'load case'),
         h('th', { scope: 'col' }, 'end'),
-        COLUMNS.slice(0, SHOWN).map(([, text]) => h('th', { scope: 'col' }, text)),
+        COLUMNS.slice(0, SHOWN).map(([, text, unit]) => h('th', { scope: 'col' }, text, h('span.unit', null, ` ${unit}`))),
         h('th', { scope: 'col' }, 'change'),
       ),
     );

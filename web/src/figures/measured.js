@@ -242,9 +242,9 @@ export class MeasuredOrders {
       table: () => this.#table(),
     });
     const measured = h('span.dot');
-    measured.style.setProperty('--swatch', 'var(--c1)');
+    measured.style.setProperty('--swatch', 'var(--measured)');
     const predicted = h('span.dot.pale');
-    predicted.style.setProperty('--swatch', 'var(--c2)');
+    predicted.style.setProperty('--swatch', 'var(--predicted)');
     fill(
       this.painting.frame.legend,
       h('span.key', null, measured, 'measured, ±σ'),
@@ -284,11 +284,11 @@ export class MeasuredOrders {
     measured.forEach((value, i) => {
       const x = across(i + 1);
       const size = 0.36 * step;
-      pen.fillStyle = colour('c1');
+      pen.fillStyle = colour('measured');
       pen.fillRect(x - size, down(value), size - 1, down(0) - down(value));
       const other = predicted[i];
       if (other !== null && other !== undefined) {
-        pen.fillStyle = pen.strokeStyle = colour('c2');
+        pen.fillStyle = pen.strokeStyle = colour('predicted');
         pen.globalAlpha = 0.3;
         pen.fillRect(x + 1, down(other), size - 1, down(0) - down(other));
         pen.globalAlpha = 1;

@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Mesh stiffness, load sharing between the tooth pairs, and the root stress of a tooth on its way through the mesh.
 import { Chart } from './chart.js';
-import { endsOf, sameCase } from './context.js';
+import { END_COLOUR, caseLong, endsOf, sameCase } from './context.js';
 import { switcher } from './frame.js';
-
-const END_COLOUR = { left: 'c1', right: 'c2' };
 
 export class Stiffness {
   #kind = 'tangent';
@@ -14,7 +12,8 @@ export class Stiffness {
     this.chart = new Chart({
       title: 'Mesh stiffness',
       unit: 'N/µm',
-      help: 'Normal to the flank, of each end',
+      help: 'Force that turns the teeth by one micrometre, normal to the flank, of each end: tangent for a small change of load, secant from zero load.',
+      good: 'High and even is good.',
       xLabel: 'mesh cycle',
       cycle: true,
       controls: [
@@ -56,8 +55,9 @@ export class Stiffness {
     }
     for (const end of endsOf(result)) {
       const y = loadCase.mesh_stiffness?.[`${prefix}${end}_N_per_um`];
-      if (y) curves.push({ label: end, y, colour: END_COLOUR[end] });
+      if (y) curves.push({ label: `${end} end`, y, colour: END_COLOUR[end] });
     }
+    this.chart.frame.setCase(caseLong(loadCase));
     this.chart.set({ x: loadCase.position, curves });
   }
 }
@@ -82,7 +82,8 @@ export class Sharing {
     this.chart = new Chart({
       title: 'Load sharing',
       unit: '%',
-      help: 'Part of the end’s load that one tooth pair carries on its way through the mesh',
+      help: 'Part of the end’s load that one tooth pair carries on its way through the mesh.',
+      good: 'Rising and falling gently is good; a step is an impact.',
       xLabel: 'mesh cycles',
       controls: [this.choose],
     });
@@ -103,6 +104,7 @@ export class Sharing {
         curves.push({ label: reference.label, x: other.x, y: other.y, colour: END_COLOUR[end], line: reference.line });
     }
     curves.push({ label: `one pair, ${end} end`, x: own.x, y: own.y, colour: END_COLOUR[end] });
+    this.chart.frame.setCase(caseLong(loadCase));
     this.chart.set({ x: own.x, curves });
   }
 }
@@ -135,7 +137,9 @@ export class RootStress {
     this.chart = new Chart({
       title: 'Root stress',
       unit: 'MPa',
-      help: 'Largest over the face in the most stressed fillet, while one tooth passes through the mesh',
+      name: 'Root stress of a tooth on its way through the mesh',
+      help: 'Largest principal stress over the face in the more stressed fillet, while one tooth passes through the mesh.',
+      good: 'Low is good; the largest value is the one at the top of the page.',
       xLabel: 'mesh cycles',
       controls: [
         switcher(
@@ -174,7 +178,8 @@ export class RootStress {
           });
     }
     for (const end of endsOf(result))
-      if (own[end]) curves.push({ label: end, y: own[end].history_MPa, colour: END_COLOUR[end] });
+      if (own[end]) curves.push({ label: `${end} end`, y: own[end].history_MPa, colour: END_COLOUR[end] });
+    this.chart.frame.setCase(caseLong(loadCase));
     this.chart.set({ x: own.position, curves });
   }
 }

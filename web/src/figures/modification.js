@@ -4,10 +4,9 @@
 import { sig } from '../base/format.js';
 import { colour } from '../base/theme.js';
 import { Painting, SMALL } from './canvas.js';
-import { endsOf } from './context.js';
+import { END_COLOUR, endsOf } from './context.js';
 import { switcher } from './frame.js';
 
-const END_COLOUR = { left: 'c1', right: 'c2' };
 const LINES = { dashed: [5, 4], dotted: [1.5, 3] };
 
 /** @typedef {{ at: number[], value: number[] }} Trace */
@@ -37,16 +36,28 @@ export class ModificationCharts {
       {
         title: 'Profile modification',
         unit: 'µm',
-        help: 'Material taken off, to the right; K-chart form, root below, tip above',
+        help: 'Material taken off along the profile, to the right, as on an inspection sheet (K-chart): root below, tip above.',
         controls: controls(),
       },
       (pen, width, height) => this.#paintProfile(pen, width, height),
-      { table: () => this.#table('profile_um', 'u_mm') },
+      {
+        table: () => this.#table('profile_um', 'from the pitch point (mm)'),
+        keys: () => this.#keys(),
+        empty: () => this.#context === null,
+      },
     );
     this.lead = new Painting(
-      { title: 'Lead modification', unit: 'µm', help: 'Material taken off, downwards, over the face of each end' },
+      {
+        title: 'Lead modification',
+        unit: 'µm',
+        help: 'Material taken off along the face of each end, downwards.',
+      },
       (pen, width, height) => this.#paintLead(pen, width, height),
-      { table: () => this.#table('lead_um', 'eta_mm') },
+      {
+        table: () => this.#table('lead_um', 'from mid face (mm)'),
+        keys: () => this.#keys(),
+        empty: () => this.#context === null,
+      },
     );
     this.elements = [this.profile.element, this.lead.element];
   }
@@ -57,7 +68,18 @@ export class ModificationCharts {
     this.#repaint();
   }
 
+  /** @returns {import('./sheet.js').Key[]} */
+  #keys() {
+    const context = this.#context;
+    if (!context) return [];
+    return [
+      ...endsOf(context.result).map(end => ({ label: `${end} end`, colour: END_COLOUR[end] })),
+      ...context.references.map(({ label, line }) => ({ label, line, colour: 'reference' })),
+    ];
+  }
+
   #repaint() {
+    for (const { frame } of [this.profile, this.lead]) frame.about = this.#member;
     this.profile.repaint();
     this.lead.repaint();
   }
@@ -249,7 +271,7 @@ export class ModificationCharts {
     const first = traces[0];
     if (!first) return [];
     return [
-      [place, ...ends.map(end => `${this.#member} ${end} (um)`)],
+      [place, ...ends.map(end => `${this.#member} ${end} (µm)`)],
       ...first.at.map((at, i) => [at, ...traces.map(trace => trace?.value[i] ?? null)]),
     ];
   }

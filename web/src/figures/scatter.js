@@ -112,11 +112,11 @@ export class Scatter {
       pen.arc(place.x, place.y, dot.mark ? 5.5 : dot.kind === 'front' ? 4 : 2.5, 0, 2 * Math.PI);
       pen.globalAlpha = dot.mark || dot.kind === 'front' ? 1 : 0.7;
       if (dot.kind === 'known' && !dot.mark) {
-        pen.strokeStyle = colour('c2');
+        pen.strokeStyle = colour('known');
         pen.lineWidth = 1;
         pen.stroke();
       } else {
-        pen.fillStyle = colour(dot.mark ? 'bad' : 'c1');
+        pen.fillStyle = colour(dot.mark ? 'best' : 'evaluated');
         pen.fill();
       }
       pen.globalAlpha = 1;
@@ -244,7 +244,7 @@ export class Parallel {
       const part = ordered.length > 1 ? rank / (ordered.length - 1) : 1;
       const best = rank === ordered.length - 1;
       const [r, g, b] = scaleColour(0.9 * part);
-      pen.strokeStyle = best ? colour('bad') : `rgb(${r} ${g} ${b})`;
+      pen.strokeStyle = best ? colour('best') : `rgb(${r} ${g} ${b})`;
       pen.globalAlpha = best ? 1 : 0.15 + 0.4 * part;
       pen.lineWidth = best ? 2 : 1;
       pen.beginPath();

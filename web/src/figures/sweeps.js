@@ -1,22 +1,25 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Over speed and over torque: asked for once the design rests, kept on show until the answer comes.
 import { h } from '../base/dom.js';
-import { labelOf, parseNumber, plain } from '../base/format.js';
+import { labelOf, plain } from '../base/format.js';
 import { Lane } from '../base/lane.js';
+import { readQuantity } from '../base/quantity.js';
 import { Chart } from './chart.js';
-import { caseText } from './context.js';
+import { OWN_COLOUR, REFERENCE_COLOUR, caseColour } from './context.js';
 import { whenSeen } from './frame.js';
 
-const REST = 350; // ms without a change before a sweep is asked for
+const REST = 350; // ms without a change before a sweep in sight is asked for
+const IDLE = 3000; // ms before one out of sight is, so that a report is whole
 const SPEEDS = 140;
 const TORQUES = 24;
+const SHOWN_ORDERS = 3; // crossings of higher orders are not marked
+const NAMED_ORDERS = 2;
 
 class Sweep {
   /** @type {any} */ #design = null;
   /** @type {import('../base/store.js').Pin | null} */ #pin = null;
   #timer = 0;
   #seen = false;
-  #stale = false;
   #asked = '';
   /** @type {any} */ own = null;
   /** @type {any} */ pinned = null;
@@ -35,8 +38,14 @@ class Sweep {
     });
     whenSeen(chart.element, visible => {
       this.#seen = visible;
-      if (visible && this.#stale) this.later();
+      if (visible) this.later();
     });
+  }
+
+  /** Nothing more is to come for the design of now. */
+  get settled() {
+    const waiting = this.chart.element.classList.contains('waiting');
+    return this.#design !== null && !waiting && JSON.stringify(this.#body('own')) === this.#asked;
   }
 
   /** @param {any} design @param {import('../base/store.js').Pin | null} pin */
@@ -52,24 +61,33 @@ class Sweep {
   }
 
   later() {
-    this.#stale = true;
     clearTimeout(this.#timer);
-    if (this.#seen && this.#design) this.#timer = window.setTimeout(() => this.#ask('own'), REST);
+    if (this.#design) this.#timer = window.setTimeout(() => this.#ask('own'), this.#seen ? REST : IDLE);
+  }
+
+  /** At once, in sight or not. */
+  now() {
+    clearTimeout(this.#timer);
+    if (this.#design) this.#ask('own');
+  }
+
+  /** @param {'own' | 'pin'} which */
+  #body(which) {
+    const design = which === 'own' ? this.#design : { ...this.#pin?.design, load_cases: this.#design.load_cases };
+    return [this.request(design), this.#pin?.label];
   }
 
   /** @param {'own' | 'pin'} which */
   #ask(which) {
-    const design = which === 'own' ? this.#design : { ...this.#pin?.design, load_cases: this.#design.load_cases };
-    const body = this.request(design);
-    const text = JSON.stringify([body, this.#pin?.label]);
+    const body = this.#body(which);
+    const text = JSON.stringify(body);
     if (which === 'own') {
-      this.#stale = false;
       if (text === this.#asked) return;
       this.#asked = text;
       this.chart.element.classList.add('waiting');
     }
     this.chart.frame.say('');
-    this.lane.submit({ path: 'sweep', body, note: which });
+    this.lane.submit({ path: 'sweep', body: body[0], note: which });
   }
 
   /** @param {any} design @returns {any} */
@@ -78,10 +96,40 @@ class Sweep {
   }
 
   draw() {}
+
+  /**
+   * Curves of what it is compared with, then its own.
+   * @param {(half: any) => number[]} read a curve of one half of an answer
+   * @param {'speed_rpm' | 'torque_Nm'} abscissa
+   * @param {string} label of the design's own
+   * @param {string} colour
+   */
+  curves(read, abscissa, label, colour) {
+    /** @type {import('./chart.js').Curve[]} */
+    const curves = [];
+    const { own, pinned } = this;
+    if (own.unmodified)
+      curves.push({
+        label: 'unmodified',
+        y: read(own.unmodified),
+        colour: REFERENCE_COLOUR,
+        line: pinned ? 'dotted' : 'dashed',
+      });
+    if (pinned)
+      curves.push({
+        label: this.pinLabel,
+        x: pinned[abscissa],
+        y: read(pinned.modified),
+        colour: REFERENCE_COLOUR,
+        line: 'dashed',
+      });
+    curves.push({ label, y: read(own.modified), colour });
+    return curves;
+  }
 }
 
 /**
- * Two fields for a range.
+ * Two fields for a range; what cannot be taken is marked and stays until it can.
  * @param {string} unit
  * @param {() => [number, number]} read
  * @param {(low: number, high: number) => void} take
@@ -93,14 +141,14 @@ function rangeFields(unit, read, take) {
       inputmode: 'decimal',
       'aria-label': `${labelOf(name)}, ${unit}`,
       value: plain(read()[i]),
-      onchange: (/** @type {Event} */ event) => {
-        const field = /** @type {HTMLInputElement} */ (event.target);
-        const range = read();
-        const value = parseNumber(field.value);
-        if (value !== undefined && value > 0) range[i] = value;
-        if (range[0] < range[1]) take(range[0], range[1]);
-        fields.forEach((each, k) => {
-          /** @type {HTMLInputElement} */ (each).value = plain(read()[k]);
+      onchange: () => {
+        const values = fields.map(field => readQuantity(field.value, unit).value ?? NaN);
+        const good = values[0] > 0 && values[0] < values[1];
+        for (const field of fields) field.setAttribute('aria-invalid', String(!good));
+        if (!good) return;
+        take(values[0], values[1]);
+        fields.forEach((field, k) => {
+          field.value = plain(read()[k]);
         });
       },
     }),
@@ -125,8 +173,10 @@ export class SpeedSweep extends Sweep {
     super(
       new Chart({
         title: 'Vibration over speed',
+        name: 'Vibration acceleration over the speed',
         unit: 'm/s²',
-        help: 'RMS of the normal acceleration; upright lines: a mesh order meets an eigenfrequency',
+        help: 'RMS of the normal acceleration of the teeth at each speed, at the torque of the chosen load case; upright lines: a multiple of the mesh frequency meets a natural frequency.',
+        good: 'Low at the speeds you run at, and no peak near them.',
         xLabel: 'pinion speed',
         xUnit: 'rpm',
         zero: true,
@@ -140,7 +190,9 @@ export class SpeedSweep extends Sweep {
 
   /** @param {import('./context.js').Context} context */
   show(context) {
+    if (this.#case === context.loadCase) return;
     this.#case = context.loadCase;
+    this.later();
   }
 
   /** @param {any} design */
@@ -154,41 +206,27 @@ export class SpeedSweep extends Sweep {
   }
 
   draw() {
-    const { own, pinned } = this;
+    const { own } = this;
     if (!own) return;
-    const curves = [];
-    const before = own.unmodified?.points?.rms_m_per_s2?.normal;
-    if (before)
-      curves.push({
-        label: 'unmodified',
-        y: before,
-        colour: 'c1',
-        line: pinned ? /** @type {const} */ ('dotted') : /** @type {const} */ ('dashed'),
-      });
-    if (pinned)
-      curves.push({
-        label: this.pinLabel,
-        x: pinned.speed_rpm,
-        y: pinned.modified.points.rms_m_per_s2.normal,
-        colour: 'c1',
-        line: /** @type {const} */ ('dashed'),
-      });
-    curves.push({
-      label: `this design, ${caseText({ torque_Nm: own.torque_Nm[0] })}`,
-      y: own.modified.points.rms_m_per_s2.normal,
-      colour: 'c1',
-    });
+    const torque = `${plain(own.torque_Nm[0])} N m`;
+    this.chart.frame.setCase(torque);
+    const curves = this.curves(
+      half => half.points.rms_m_per_s2.normal,
+      'speed_rpm',
+      'this design',
+      caseColour(this.#case),
+    );
     if (own.modified.down)
-      curves.push({ label: 'slowing down', y: own.modified.down.rms_m_per_s2.normal, colour: 'c2' });
+      curves.push({ label: 'slowing down', y: own.modified.down.rms_m_per_s2.normal, colour: OWN_COLOUR });
     const { mode = [], order = [], speed_rpm: speed = [] } = own.crossings ?? {};
     const marks = speed
       .map((/** @type {number} */ x, /** @type {number} */ i) => ({
         x,
-        label: order[i] <= 2 ? `${order[i]}× mode ${mode[i]}` : '',
+        label: order[i] <= NAMED_ORDERS ? `${order[i]}× mode ${mode[i]}` : '',
         strong: order[i] === 1,
         order: order[i],
       }))
-      .filter((/** @type {any} */ mark) => mark.order <= 3)
+      .filter((/** @type {any} */ mark) => mark.order <= SHOWN_ORDERS)
       .sort((/** @type {any} */ a, /** @type {any} */ b) => a.order - b.order || a.x - b.x);
     this.chart.set({ x: own.speed_rpm, curves, marks });
   }
@@ -199,8 +237,10 @@ export class TorqueSweep extends Sweep {
     super(
       new Chart({
         title: 'PPLTE over torque',
+        name: 'Peak-to-peak loaded transmission error over the torque',
         unit: 'µm',
-        help: 'Peak-to-peak loaded transmission error from light to heavy load; upright lines: the load cases',
+        help: 'From light to heavy load; upright lines: the load cases.',
+        good: 'Low at every load case; a relief that is right at one torque is too much or too little at another.',
         xLabel: 'torque',
         xUnit: 'N m',
         zero: true,
@@ -216,30 +256,15 @@ export class TorqueSweep extends Sweep {
   }
 
   draw() {
-    const { own, pinned } = this;
+    const { own } = this;
     if (!own) return;
-    const curves = [];
-    if (own.unmodified)
-      curves.push({
-        label: 'unmodified',
-        y: own.unmodified.by_torque.peak_to_peak_um,
-        colour: 'c1',
-        line: pinned ? /** @type {const} */ ('dotted') : /** @type {const} */ ('dashed'),
-      });
-    if (pinned)
-      curves.push({
-        label: this.pinLabel,
-        x: pinned.torque_Nm,
-        y: pinned.modified.by_torque.peak_to_peak_um,
-        colour: 'c1',
-        line: /** @type {const} */ ('dashed'),
-      });
-    curves.push({ label: 'this design', y: own.modified.by_torque.peak_to_peak_um, colour: 'c1' });
+    const curves = this.curves(half => half.by_torque.peak_to_peak_um, 'torque_Nm', 'this design', OWN_COLOUR);
     const marks = own.design.load_cases.map((/** @type {any} */ row) => ({
       x: row.torque_Nm,
       label: '',
       strong: true,
     }));
+    this.chart.frame.about = 'all load cases';
     this.chart.set({ x: own.torque_Nm, curves, marks });
   }
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Loaded transmission error over the mesh cycle, of the pair or one end, at every torque, and its orders.
 import { Chart } from './chart.js';
-import { caseColour, caseText, counting, endsOf, sameCase } from './context.js';
+import { caseColour, caseNames, counting, endsOf, sameCase } from './context.js';
 import { switcher } from './frame.js';
 
 const ORDERS = 8;
@@ -33,16 +33,20 @@ export class Transmission {
     );
     this.chart = new Chart({
       title: 'Loaded TE',
+      name: 'Loaded transmission error',
       unit: 'µm',
-      help: 'Loaded transmission error along the transverse line of action, less its mean over the cycle',
+      help: 'How far the gear lags behind the pinion under load, along the transverse line of action, less its mean over the mesh cycle; one curve for each load case.',
+      good: 'Flat is good: the distance from lowest to highest, peak to peak, excites vibration.',
       xLabel: 'mesh cycle',
       cycle: true,
       controls: [choose],
     });
     this.orders = new Chart({
       title: 'Orders of the loaded TE',
+      name: 'Mesh orders of the loaded transmission error',
       unit: 'µm',
-      help: 'Amplitudes of the mesh orders of the pair',
+      help: 'Amplitude of each multiple of the mesh frequency, of the pair; pale behind each bar: what it is compared with.',
+      good: 'Small is good, the first orders most of all.',
       xLabel: 'mesh order',
       bars: true,
     });
@@ -55,6 +59,7 @@ export class Transmission {
     const cases = result.load_cases;
     this.choose.hidden = endsOf(result).length === 1;
     const which = endsOf(result).length === 1 ? 'left' : this.#which;
+    const names = caseNames(cases);
     /** @type {import('./chart.js').Curve[]} */
     const curves = [];
     /** @type {import('./chart.js').Curve[]} */
@@ -63,7 +68,7 @@ export class Transmission {
       cases.forEach((/** @type {any} */ loadCase, /** @type {number} */ k) => {
         const other = sameCase(reference.result, loadCase, k);
         if (!other?.lte) return;
-        const label = `${caseText(loadCase)}, ${reference.label}`;
+        const label = `${names[k]}, ${reference.label}`;
         curves.push({
           label,
           x: other.position,
@@ -82,17 +87,19 @@ export class Transmission {
     cases.forEach((/** @type {any} */ loadCase, /** @type {number} */ k) => {
       if (!loadCase.lte) return;
       curves.push({
-        label: caseText(loadCase),
+        label: names[k],
         x: loadCase.position,
         y: aboutMean(loadCase.lte[`${which}_um`]),
         colour: caseColour(k),
       });
       bars.push({
-        label: caseText(loadCase),
+        label: names[k],
         y: (loadCase.lte.orders_um ?? []).slice(1, ORDERS + 1),
         colour: caseColour(k),
       });
     });
+    this.chart.frame.about = `${which === 'pair' ? 'the pair' : `${which} end`}, all load cases`;
+    this.orders.frame.about = 'all load cases';
     this.chart.set({ x: cases[0].position, curves });
     this.orders.set({ x: counting(ORDERS, 1), curves: bars });
   }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Vibration acceleration over the mesh cycle and its orders.
 import { Chart } from './chart.js';
-import { caseColour, caseText, counting, endsOf, sameCase } from './context.js';
+import { END_COLOUR, caseColour, caseLong, caseNames, counting, endsOf, sameCase } from './context.js';
 import { switcher } from './frame.js';
 
 const READINGS = /** @type {[string, string][]} */ ([
@@ -10,7 +10,6 @@ const READINGS = /** @type {[string, string][]} */ ([
   ['rotational', 'rotat.'],
 ]);
 const ORDERS = 12;
-const END_COLOUR = { left: 'c1', right: 'c2' };
 
 export class Vibration {
   #reading = 'normal';
@@ -19,8 +18,10 @@ export class Vibration {
   constructor(again) {
     this.cycle = new Chart({
       title: 'Vibration',
+      name: 'Vibration acceleration of the teeth',
       unit: 'm/s²',
-      help: 'Relative acceleration of the teeth of each end along the line of action: normal, transverse, or by rotation alone',
+      help: 'Relative acceleration of the teeth of each end along the line of action in steady running: normal, transverse, or by rotation alone.',
+      good: 'Small is good.',
       xLabel: 'mesh cycle',
       cycle: true,
       controls: [
@@ -33,7 +34,8 @@ export class Vibration {
     this.orders = new Chart({
       title: 'Orders of the vibration',
       unit: 'm/s²',
-      help: 'Amplitudes of the mesh orders, mean of the ends',
+      help: 'Amplitude of each multiple of the mesh frequency, mean of the ends; pale behind each bar: what it is compared with.',
+      good: 'Small is good.',
       xLabel: 'mesh order',
       bars: true,
     });
@@ -44,6 +46,7 @@ export class Vibration {
   set({ result, references, loadCase: k }) {
     const loadCase = result.load_cases[k];
     const reading = `${this.#reading}_m_per_s2`;
+    const names = caseNames(result.load_cases);
     /** @type {import('./chart.js').Curve[]} */
     const curves = [];
     /** @type {import('./chart.js').Curve[]} */
@@ -65,7 +68,7 @@ export class Vibration {
         const orders = sameCase(reference.result, c, i)?.vibration?.[`orders_${reading}`];
         if (orders)
           bars.push({
-            label: `${caseText(c)}, ${reference.label}`,
+            label: `${names[i]}, ${reference.label}`,
             y: orders.slice(1, ORDERS + 1),
             colour: caseColour(i),
             line: reference.line,
@@ -74,11 +77,13 @@ export class Vibration {
     }
     const own = loadCase.vibration;
     for (const end of endsOf(result))
-      if (own?.[end]?.history) curves.push({ label: end, y: own[end].history[reading], colour: END_COLOUR[end] });
+      if (own?.[end]?.history) curves.push({ label: `${end} end`, y: own[end].history[reading], colour: END_COLOUR[end] });
     result.load_cases.forEach((/** @type {any} */ c, /** @type {number} */ i) => {
       const orders = c.vibration?.[`orders_${reading}`];
-      if (orders) bars.push({ label: caseText(c), y: orders.slice(1, ORDERS + 1), colour: caseColour(i) });
+      if (orders) bars.push({ label: names[i], y: orders.slice(1, ORDERS + 1), colour: caseColour(i) });
     });
+    this.cycle.frame.setCase(caseLong(loadCase));
+    this.orders.frame.about = 'all load cases';
     this.cycle.frame.say(curves.length ? '' : 'No periodic vibration was found.');
     if (own?.position && curves.length) this.cycle.set({ x: own.position, curves });
     this.orders.set({ x: counting(ORDERS, 1), curves: bars });

@@ -1,86 +1,156 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The Design view: parameters left, numbers above, figures right; on a narrow screen one below the other.
 import { fill, h } from '../base/dom.js';
-import { mainCase } from '../figures/context.js';
+import { caseLong, mainCase } from '../figures/context.js';
+import { Sensitivity } from '../figures/sensitivity.js';
+import { subject } from '../figures/subject.js';
 import { Headline } from '../headline.js';
-import { reportData, reportHead } from '../report.js';
+import { verdict, warningList } from '../verdict.js';
+import { leadLine } from '../welcome/lead.js';
 import { Parameters } from './parameters.js';
 import { Results } from './results.js';
 
-/** @param {import('../app.js').App} app @returns {import('../app.js').View} */
-export function designView(app) {
-  const { store, analyst, form } = app;
-  const parameters = new Parameters(store, form);
-  const headline = new Headline(store);
-  const results = new Results();
-  const trouble = h('p.trouble', { role: 'alert', hidden: true });
-  const top = h('.report');
-  const end = h('.report');
-  const foot = h('div');
-  const element = h(
-    '.design-view',
-    null,
-    top,
-    h(
-      'aside.form-pane',
-      { 'aria-label': 'Parameters' },
-      h('.form-scroll', null, parameters.element),
-      foot,
-      h('.form-foot', null, h('button.primary', { type: 'button', onclick: () => app.go('optimize') }, 'Optimize…')),
-    ),
-    h('.head-pane', null, headline.element, trouble),
-    h('.figure-pane', null, results.element, end),
-  );
+/** What is not possible, each with the way to its field. */
+class TroubleLine {
+  constructor() {
+    this.element = h('.trouble', { role: 'alert', hidden: true });
+  }
 
-  const drawResult = () => {
+  /** @param {import('../form/form.js').Trouble[]} troubles @param {string} message without a field */
+  show(troubles, message) {
+    this.element.hidden = troubles.length === 0 && message === '';
+    fill(
+      this.element,
+      troubles.map(({ name, detail, lead }) =>
+        h(
+          'p',
+          null,
+          lead ? h('button.link', { type: 'button', onclick: lead }, name) : name,
+          `: ${detail}`,
+        ),
+      ),
+      troubles.length ? null : message,
+      this.element.hidden ? null : h('small', null, 'The figures show the last design that was possible.'),
+    );
+  }
+}
+
+class DesignView {
+  #drawn = false;
+
+  /** @param {import('../app.js').App} app */
+  constructor(app) {
+    this.app = app;
+    this.headline = new Headline(app.store);
+    this.sensitivity = new Sensitivity(app.store);
+    this.results = new Results(this.sensitivity);
+    this.trouble = new TroubleLine();
+    this.foot = h('div');
+    this.progress = h('.preparing-note', { role: 'status', hidden: true });
+    this.element = h(
+      '.design-view',
+      null,
+      h(
+        'aside.form-pane',
+        { 'aria-label': 'Parameters' },
+        h('.form-scroll', null, new Parameters(app.store, app.form).element),
+        this.foot,
+        h('.form-foot', null, h('button.primary', { type: 'button', onclick: () => app.go('optimize') }, 'Optimize…')),
+      ),
+      h('.head-pane', null, leadLine(app), this.headline.element, this.sensitivity.strip, this.trouble.element),
+      h('.figure-pane', null, this.progress, this.results.element),
+    );
+    app.analyst.addEventListener('result', () => {
+      this.#drawResult();
+      this.#sweep();
+    });
+    app.analyst.addEventListener('state', () => this.#drawState());
+    app.form.finders.push(pointer => this.#find(pointer));
+  }
+
+  /** Fields of the design stand here; those of the search elsewhere. @param {string} pointer */
+  #find(pointer) {
+    const search = pointer.startsWith('/optimization') || pointer.startsWith('/objective');
+    if (!search && this.app.current !== 'design') this.app.go('design');
+  }
+
+  /** @returns {import('../figures/context.js').Context | null} */
+  #context() {
+    const { analyst, store } = this.app;
     const { result } = analyst;
-    if (!result) return;
+    if (!result) return null;
     const count = result.load_cases.length;
     const chosen = store.loadCase >= 0 && store.loadCase < count ? store.loadCase : mainCase(result.design);
-    const context = { result, references: analyst.references(), loadCase: chosen };
-    form.resolved = result.design;
-    headline.set(context);
-    results.set(context);
-  };
-  const drawState = () => {
-    const stray = form.showFaults(analyst.state === 'refused' ? analyst.faults : []);
+    return { result, references: analyst.references(), loadCase: chosen };
+  }
+
+  #drawResult() {
+    const context = this.#context();
+    if (!context) return;
+    const { form, store } = this.app;
+    subject.set(store.design.name, context.result);
+    form.resolved = context.result.design;
+    this.headline.set(context);
+    this.results.set(context);
+    if (this.#drawn) return;
+    this.#drawn = true;
+    form.refresh();
+  }
+
+  #drawState() {
+    const { analyst, form } = this.app;
     const refused = analyst.state === 'refused';
-    trouble.hidden = !refused;
-    if (refused) {
-      const faulty = store.faults.size + analyst.faults.length;
-      trouble.textContent = stray.length
-        ? stray.map(({ pointer, detail }) => `${pointer} ${detail}`).join(' ')
-        : faulty
-          ? `${faulty === 1 ? 'One value is' : `${faulty} values are`} not possible, see the form. The figures show the last design that was.`
-          : analyst.message;
-    }
-    element.classList.toggle('refused', refused);
-    element.classList.toggle('preparing', analyst.state === 'preparing');
-  };
-  const sweep = () => {
+    const preparing = analyst.state === 'preparing';
+    const troubles = form.showFaults(refused ? analyst.faults : []);
+    this.trouble.show(troubles, refused && !troubles.length ? analyst.message : '');
+    this.element.classList.toggle('refused', refused);
+    this.element.classList.toggle('preparing', preparing);
+    const fraction = analyst.job?.progress?.fraction;
+    this.progress.hidden = !preparing;
+    if (preparing)
+      this.progress.textContent = `Preparing the teeth of this pair, once${typeof fraction === 'number' ? `: ${Math.round(100 * fraction)} %` : '…'}`;
+  }
+
+  #sweep() {
+    const { store, analyst } = this.app;
     if (store.faults.size || analyst.state === 'refused') return;
-    results.speed.set(store.design, store.pin);
-    results.torque.set(store.design, store.pin);
-  };
-  analyst.addEventListener('result', () => {
-    drawResult();
-    sweep();
-  });
-  analyst.addEventListener('state', drawState);
-  return {
-    element,
-    show() {
-      foot.append(form.help);
-      form.refresh();
-      drawResult();
-      drawState();
-    },
-    print() {
-      const { result } = analyst;
-      if (!result) return;
-      fill(top, reportHead(store.design.name || 'Gear pair', result));
-      fill(end, reportData(app.fields, result));
-      results.draw();
-    },
-  };
+    this.results.speed.set(store.design, store.pin);
+    this.results.torque.set(store.design, store.pin);
+    this.sensitivity.set(store.design);
+  }
+
+  show() {
+    this.foot.append(this.app.form.help);
+    this.app.form.refresh();
+    this.#drawResult();
+    this.#drawState();
+  }
+
+  /** @returns {import('../report.js').Parts | null} */
+  report() {
+    const context = this.#context();
+    if (!context) return null;
+    const { store, analyst } = this.app;
+    this.results.draw();
+    const { speed, torque } = this.results;
+    for (const sweep of [speed, torque]) if (!sweep.settled) sweep.now();
+    const missing = [speed, torque].filter(sweep => !sweep.settled).map(sweep => sweep.chart.frame.title.toLowerCase());
+    if (analyst.state === 'preparing') missing.push('the teeth of the pair');
+    return {
+      title: store.design.name || 'Gear pair',
+      result: context.result,
+      lead: [
+        verdict(context.result, context.references[0]),
+        h('section', null, warningList(context.result.warnings ?? [])),
+        h('p', null, `Figures of one load case are those of ${caseLong(context.result.load_cases[context.loadCase])}.`),
+      ],
+      figures: this.results.frames,
+      missing,
+    };
+  }
+}
+
+/** @param {import('../app.js').App} app @returns {import('../app.js').View} */
+export function designView(app) {
+  return new DesignView(app);
 }

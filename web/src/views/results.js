@@ -10,12 +10,15 @@ import { SpeedSweep, TorqueSweep } from '../figures/sweeps.js';
 import { Topography } from '../figures/topography.js';
 import { Transmission } from '../figures/transmission.js';
 import { Vibration } from '../figures/vibration.js';
+import { warningList } from '../verdict.js';
 
 export class Results {
   /** @type {import('../figures/context.js').Context | null} */ #context = null;
   #asked = false;
+  #warnings = '';
 
-  constructor() {
+  /** @param {import('../figures/sensitivity.js').Sensitivity} sensitivity */
+  constructor(sensitivity) {
     const again = () => this.#later();
     const transmission = new Transmission(again);
     const contact = new Contact();
@@ -31,22 +34,31 @@ export class Results {
     this.torque = new TorqueSweep();
     this.figures = [transmission, contact, stiffness, sharing, impact, vibration, root, charts, topography, drawing];
     this.notes = h('section.notes', { 'aria-label': 'Warnings' });
-    const ordered = [
-      transmission.elements[0],
-      contact.elements[0],
-      transmission.elements[1],
-      stiffness.elements[0],
-      sharing.elements[0],
-      impact.elements[0],
-      ...vibration.elements,
-      ...root.elements,
-      ...this.speed.elements,
-      ...this.torque.elements,
-      ...charts.elements,
-      ...drawing.elements,
-      ...topography.elements,
+    /** In the order of the page and of the report. */
+    this.frames = [
+      transmission.chart.frame,
+      contact.painting.frame,
+      transmission.orders.frame,
+      vibration.cycle.frame,
+      vibration.orders.frame,
+      impact.frame,
+      sensitivity.chart.frame,
+      this.speed.chart.frame,
+      this.torque.chart.frame,
+      stiffness.chart.frame,
+      sharing.chart.frame,
+      root.chart.frame,
+      charts.profile.frame,
+      charts.lead.frame,
+      drawing.painting.frame,
+      topography.painting.frame,
     ];
-    this.element = h('.figures', null, ordered, this.notes);
+    this.element = h(
+      '.figures',
+      null,
+      this.frames.map(frame => frame.element),
+      this.notes,
+    );
   }
 
   /** @param {import('../figures/context.js').Context} context */
@@ -71,18 +83,9 @@ export class Results {
     for (const figure of this.figures) figure.set(context);
     this.speed.show(context);
     const warnings = context.result.warnings ?? [];
-    fill(
-      this.notes,
-      warnings.length
-        ? [
-            h('h3', null, 'What to know about this result'),
-            h(
-              'ul',
-              null,
-              warnings.map((/** @type {string} */ text) => h('li', null, text)),
-            ),
-          ]
-        : null,
-    );
+    const text = warnings.join('\n');
+    if (text === this.#warnings) return;
+    this.#warnings = text;
+    fill(this.notes, warningList(warnings));
   }
 }

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The fit of inputs that nobody knows to the measurements: which, within what, what came out, and taking it over.
-import { fill, h, newId } from '../base/dom.js';
-import { labelOf, parseNumber, plain, sig, unitText } from '../base/format.js';
-import { Lane } from '../base/lane.js';
-import { valueAt } from '../base/pointer.js';
-import { group } from '../form.js';
+import { fill, h, newId } from '../../base/dom.js';
+import { labelOf, plain, sig, unitText } from '../../base/format.js';
+import { parseNumber } from '../../base/quantity.js';
+import { Lane } from '../../base/lane.js';
+import { valueAt } from '../../base/pointer.js';
+import { group } from '../../form/group.js';
 
 /** Unknowns: key, unit, where it stands in the design, usual range. */
 const UNKNOWNS = /** @type {{ key: string, unit: string, pointers: string[], low: number, high: number }[]} */ ([
@@ -60,7 +61,7 @@ const rangeText = range => `${sig(range[0], 4)} … ${sig(range[1], 4)}`;
 export class FitPanel {
   /** @type {any} */ #answer = null;
 
-  /** @param {import('../app.js').App} app @param {() => string} designId */
+  /** @param {import('../../app.js').App} app @param {() => string} designId */
   constructor(app, designId) {
     this.app = app;
     this.designId = designId;

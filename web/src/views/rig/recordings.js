@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Rig files on their way: what is dropped or chosen, what is known of each, its upload and what the service found in
 // it.
-import { Refusal } from '../base/api.js';
-import { fill, h, newId } from '../base/dom.js';
-import { parseNumber, plain } from '../base/format.js';
-import { guess } from '../base/recording.js';
-import { RefusedRecording, upload } from '../base/upload.js';
-import { group } from '../form.js';
+import { Refusal } from '../../base/api.js';
+import { fill, h, newId } from '../../base/dom.js';
+import { plain } from '../../base/format.js';
+import { parseNumber } from '../../base/quantity.js';
+import { guess } from '../../base/recording.js';
+import { RefusedRecording, upload } from '../../base/upload.js';
+import { group } from '../../form/group.js';
 
 /**
  * @typedef {{ file: File, gear: File | null, label: string, torque: string, speed: string, state: 'waiting' |
@@ -165,8 +166,8 @@ export class Recordings {
   /** @type {Recording[]} */ #queue = [];
 
   /**
-   * @param {{ designId: () => Promise<string>, kept: (measurement: any, known: boolean) => void, loadCase: () => any
-   * }} host
+   * @param {{ designId: () => Promise<string>, kept: (measurement: any, known: boolean) => void,
+   *   loadCases: () => any[] }} host
    */
   constructor(host) {
     this.host = host;
@@ -237,7 +238,6 @@ export class Recordings {
 
   /** @param {File[]} files @param {Partial<Recording>} [known] */
   add(files, known = {}) {
-    const usual = this.host.loadCase();
     const ordered = [...files].sort((a, b) => a.name.localeCompare(b.name, undefined, { numeric: true }));
     for (let i = 0; i < ordered.length; i += this.two.checked ? 2 : 1) {
       const said = guess(ordered[i].name);
@@ -245,7 +245,7 @@ export class Recordings {
         file: ordered[i],
         gear: this.two.checked ? (ordered[i + 1] ?? null) : null,
         label: said.label || 'modified',
-        torque: said.torque || plain(usual?.torque_Nm),
+        torque: said.torque || this.#certainTorque(),
         speed: said.speed,
         state: 'waiting',
         part: 0,
@@ -255,6 +255,12 @@ export class Recordings {
       });
     }
     this.draw();
+  }
+
+  /** The torque when all load cases have the same: else only who recorded it knows. */
+  #certainTorque() {
+    const torques = new Set(this.host.loadCases().map(row => row.torque_Nm));
+    return torques.size === 1 ? plain([...torques][0]) : '';
   }
 
   draw() {
@@ -284,6 +290,7 @@ export class Recordings {
           inputmode: 'decimal',
           'aria-label': `${label} of ${item.file.name}, ${unit}`,
           title: label,
+          placeholder: key === 'torque' ? '?' : '',
           value: item[key],
           disabled: !idle,
           onchange: (/** @type {Event} */ event) => {
@@ -397,6 +404,8 @@ export class Recordings {
     item.error = null;
     this.draw();
     try {
+      if (item.torque.trim() === '')
+        throw new Error('At which torque was it recorded? The name does not say it; type it above.');
       const form = new FormData();
       form.set('design', await this.host.designId());
       form.set('label', item.label);

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// All fields of the design on the page: what stands in them, which faults they have, how one is found.
+import { fill, h } from '../base/dom.js';
+import { labelOf, plain, unitText } from '../base/format.js';
+import { isNumeric } from '../base/schema.js';
+import { FieldSet } from './fieldset.js';
+import { unfold } from './group.js';
+
+/** @typedef {import('../base/schema.js').Field} Field */
+/** @typedef {import('./entry.js').Entry} Entry */
+/**
+ * @typedef {object} Control one field on the page
+ * @property {string} pointer @property {string} name
+ * @property {HTMLElement} element @property {HTMLElement} input @property {HTMLElement} fault
+ * @property {() => void} refresh
+ * @property {Entry} [entry] of what is typed
+ */
+/** @typedef {{ pointer: string, detail: string, name: string, lead: (() => void) | null }} Trouble */
+
+export class Form {
+  /** @type {Set<Control>} */ #controls = new Set();
+  /** What null stands for. @type {any} */ resolved = null;
+  /** Brings a field to the page that is not there now: another member, end or view. @type {((pointer: string) => void)[]} */
+  finders = [];
+
+  /** @param {import('../base/store.js').DesignStore} store @param {Field[]} fields of the design */
+  constructor(store, fields) {
+    this.store = store;
+    this.fields = fields;
+    this.help = h(
+      'p.help-line',
+      { 'aria-live': 'off' },
+      'Point at a field to read what it means and which values it takes.',
+    );
+    store.addEventListener('change', () => this.refresh());
+    store.addEventListener('reset', () => this.#controls.forEach(control => control.entry?.forget()));
+  }
+
+  /** Fields that come and go together. */
+  set() {
+    return new FieldSet(this);
+  }
+
+  /** @param {Control} control */
+  add(control) {
+    this.#controls.add(control);
+    control.refresh();
+  }
+
+  /** The fields leave the page, and what is typed in them with its faults. @param {Iterable<Control>} controls */
+  release(controls) {
+    for (const control of controls) {
+      this.#controls.delete(control);
+      control.entry?.forget();
+    }
+  }
+
+  refresh() {
+    for (const control of this.#controls) control.refresh();
+  }
+
+  /** What is typed becomes part of the design, before it is stored or searched from. */
+  flush() {
+    for (const control of this.#controls) control.entry?.flush();
+  }
+
+  /** What is typed in this field and not yet a value is given up. @param {EventTarget | null} target */
+  giveUp(target) {
+    for (const { entry, pointer } of this.#controls) {
+      const here = entry?.host.inputs.some(input => input === target);
+      if (!entry || !here || !(entry.waiting || this.store.faults.has(pointer))) continue;
+      entry.forget();
+      return true;
+    }
+    return false;
+  }
+
+  /**
+   * Faults of typed texts and of the service at their fields.
+   * @param {import('../base/api.js').Fault[]} faults of the service
+   * @returns {Trouble[]} all of them, with the way to their field
+   */
+  showFaults(faults) {
+    const texts = new Map([
+      ...faults.map(fault => /** @type {[string, string]} */ ([fault.pointer, fault.detail])),
+      ...this.store.faults,
+    ]);
+    for (const { pointer, fault, input } of this.#controls) {
+      const text = texts.get(pointer) ?? '';
+      if (fault.textContent !== text) fault.textContent = text;
+      input.setAttribute('aria-invalid', String(text !== ''));
+    }
+    return [...texts].map(([pointer, detail]) => ({
+      pointer,
+      detail,
+      name: this.#find(pointer)?.name ?? labelOf(pointer.split('/').pop() ?? ''),
+      lead: pointer && this.finders.length ? () => this.lead(pointer) : null,
+    }));
+  }
+
+  /** The field of a value: its own, or the same one of the other end that stands for both. @param {string} pointer */
+  #find(pointer) {
+    const places = [pointer, pointer.replace('/right/', '/left/')];
+    const found = [...this.#controls].filter(control => places.includes(control.pointer));
+    return found.find(control => control.element.isConnected) ?? found[0];
+  }
+
+  /** Shows a field and puts the cursor into it. @param {string} pointer */
+  lead(pointer) {
+    for (const find of this.finders) find(pointer);
+    const control = this.#find(pointer) ?? [...this.#controls].find(each => each.pointer.startsWith(`${pointer}/`));
+    if (!control) return;
+    unfold(control.element);
+    control.element.scrollIntoView({ block: 'center' });
+    control.input.focus();
+    if (control.input instanceof HTMLInputElement && control.input.type === 'text') control.input.select();
+  }
+
+  /** The help line while a field is pointed at. @param {HTMLElement} row @param {Field} field @param {string} name */
+  explain(row, field, name) {
+    const unit = unitText(field.unit);
+    const range =
+      isNumeric(field) && typeof field.low === 'number' && typeof field.high === 'number'
+        ? `${plain(field.low)} … ${plain(field.high)}${unit ? ` ${unit}` : ''}`
+        : '';
+    const empty = field.nullable && field.derived ? `empty: ${field.derived}` : '';
+    const show = () =>
+      fill(this.help, h('b', null, name), ` ${[field.help, range, empty].filter(Boolean).join(' · ')}`);
+    row.addEventListener('focusin', show);
+    row.addEventListener('pointerenter', show);
+  }
+}

@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Round the views: title bar with the design's menu, what it is compared with, tabs, state; below, the job bar;
+// between, a word when the service is away.
+import { connection } from '../base/api.js';
+import { h } from '../base/dom.js';
+import { sig } from '../base/format.js';
+import { notice } from '../base/notice.js';
+import { openPopover } from '../base/popover.js';
+import { theme } from '../base/theme.js';
+import { JobBar } from '../jobbar.js';
+import { DesignMenu } from './design_menu.js';
+import { Pins } from './pins.js';
+import { openExamples, openOwnGear, startTour } from '../welcome/open.js';
+
+const THEMES = /** @type {Record<string, [string, string]>} */ ({
+  system: ['◐', 'as the system'],
+  light: ['○', 'light'],
+  dark: ['●', 'dark'],
+});
+const SHOWN = 6000; // ms of a notice
+
+export class Shell {
+  #timer = 0;
+
+  /** @param {import('../app.js').App} app */
+  constructor(app) {
+    this.app = app;
+    this.menu = new DesignMenu(app);
+    this.pins = new Pins(app);
+    this.undo = this.#icon('↶', 'Undo', 'Ctrl+Z', () => app.store.undo());
+    this.redo = this.#icon('↷', 'Redo', 'Ctrl+Shift+Z', () => app.store.redo());
+    this.tabs = h(
+      'nav.tabs',
+      { 'aria-label': 'Views' },
+      app.entries
+        .filter(entry => entry.title)
+        .map(entry =>
+          h('button', { type: 'button', 'data-view': entry.id, onclick: () => app.go(entry.id) }, entry.title),
+        ),
+    );
+    this.state = h('span.state', { role: 'status', 'aria-live': 'off' });
+    this.theme = h('button.icon', { type: 'button', onclick: () => this.#nextTheme() });
+    this.away = h(
+      'p.away-banner',
+      { role: 'alert', hidden: true },
+      'The service does not answer. Your design stays here; the page goes on by itself when it is back.',
+    );
+    this.notice = h('p.notice', { role: 'status', hidden: true });
+    this.elements = [
+      this.#skip(),
+      this.#bar(),
+      this.away,
+      this.notice,
+      app.stage,
+      new JobBar(app).element,
+    ];
+    app.store.addEventListener('change', () => this.#refresh());
+    app.addEventListener('view', () => this.#refresh());
+    app.analyst.addEventListener('state', () => this.#drawState());
+    connection.addEventListener('change', () => this.#drawState());
+    notice.addEventListener('change', () => this.#say(notice.text));
+    document.addEventListener('keydown', event => this.#key(event));
+    this.#drawTheme();
+    this.#refresh();
+  }
+
+  /** @param {string} mark @param {string} name @param {string} keys @param {() => void} act */
+  #icon(mark, name, keys, act) {
+    return h('button.icon', { type: 'button', title: `${name} (${keys})`, 'aria-label': name, onclick: act }, mark);
+  }
+
+  #skip() {
+    return h(
+      'a.skip',
+      {
+        href: '#stage',
+        onclick: (/** @type {Event} */ event) => {
+          event.preventDefault();
+          this.app.stage.querySelector('input')?.focus();
+        },
+      },
+      'To the parameters',
+    );
+  }
+
+  #bar() {
+    const { app } = this;
+    return h(
+      'header.bar',
+      null,
+      h(
+        'h1.brand',
+        null,
+        h(
+          'a',
+          { href: '#design', 'aria-label': 'Easeoff' },
+          h('img', { src: 'icon.svg', alt: '', width: 20, height: 20 }),
+          h('span', null, 'Easeoff'),
+        ),
+      ),
+      h('button.own-gear', { type: 'button', onclick: () => openOwnGear(app) }, 'Your own gear…'),
+      this.menu.element,
+      this.undo,
+      this.redo,
+      this.pins.element,
+      this.tabs,
+      this.state,
+      this.#help(),
+      this.theme,
+    );
+  }
+
+  #help() {
+    const { app } = this;
+    const button = h(
+      'button.icon',
+      { type: 'button', 'aria-label': 'Help', title: 'Tour, examples, words', 'aria-expanded': 'false' },
+      '?',
+    );
+    button.addEventListener('click', () =>
+      openPopover(button, 'menu', (panel, close) => {
+        /** @param {string} text @param {() => unknown} act */
+        const item = (text, act) =>
+          h('button', { type: 'button', role: 'menuitem', onclick: () => (close(), act()) }, text);
+        panel.replaceChildren(
+          item('A tour in three steps', () => startTour(app)),
+          item('Examples', () => openExamples(app)),
+          item('All words explained', () => app.go('glossary')),
+        );
+      }),
+    );
+    return h('.menu', null, button);
+  }
+
+  #refresh() {
+    const { store, current } = this.app;
+    this.menu.refresh();
+    this.pins.refresh();
+    document.title = `${store.design.name || 'unnamed'} – Easeoff`;
+    this.undo.disabled = !store.canUndo;
+    this.redo.disabled = !store.canRedo;
+    for (const tab of this.tabs.children)
+      tab.setAttribute('aria-current', String(/** @type {HTMLElement} */ (tab).dataset.view === current));
+  }
+
+  #drawState() {
+    const { analyst } = this.app;
+    this.away.hidden = !connection.away;
+    this.state.classList.toggle('busy', analyst.state === 'preparing');
+    if (connection.away) this.state.textContent = 'away';
+    else if (analyst.state === 'preparing') {
+      const fraction = analyst.job?.progress?.fraction;
+      this.state.textContent = `preparing the teeth${typeof fraction === 'number' ? ` ${Math.round(100 * fraction)} %` : '…'}`;
+    } else if (analyst.state === 'refused') this.state.textContent = 'not possible';
+    else if (analyst.ms) this.state.textContent = `${sig(analyst.ms, 2)} ms`;
+  }
+
+  /** @param {string} text */
+  #say(text) {
+    this.notice.textContent = text;
+    this.notice.hidden = false;
+    clearTimeout(this.#timer);
+    this.#timer = window.setTimeout(() => {
+      this.notice.hidden = true;
+    }, SHOWN);
+  }
+
+  #nextTheme() {
+    const choices = Object.keys(THEMES);
+    theme.choice = choices[(choices.indexOf(theme.choice) + 1) % choices.length];
+    this.#drawTheme();
+  }
+
+  #drawTheme() {
+    const [mark, text] = THEMES[theme.choice] ?? THEMES.system;
+    this.theme.textContent = mark;
+    this.theme.title = `Colours: ${text}`;
+    this.theme.setAttribute('aria-label', `Colours: ${text}`);
+  }
+
+  /** @param {KeyboardEvent} event */
+  #key(event) {
+    if (!(event.ctrlKey || event.metaKey) || event.altKey) return;
+    const key = event.key.toLowerCase();
+    const { store, form } = this.app;
+    if (key === 's') {
+      event.preventDefault();
+      this.app.attempt(() => this.menu.save());
+      return;
+    }
+    if (key !== 'z' && key !== 'y') return;
+    event.preventDefault();
+    if (key === 'y' || event.shiftKey) store.redo();
+    else if (!form.giveUp(event.target)) store.undo(); // what is typed and no value yet is taken back first
+  }
+}

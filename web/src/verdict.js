@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The verdict of a result: before and after for every load case, and what to know about it.
+import { h } from './base/dom.js';
+import { change, changeText, sig } from './base/format.js';
+import { caseLong, sameCase } from './figures/context.js';
+import { NUMBERS, numbersOf } from './headline.js';
+
+/** @param {string[]} head @param {(string | HTMLElement)[][]} rows first cell of a row is its heading */
+export function tableOf(head, rows) {
+  return h(
+    'table.numbers',
+    null,
+    h(
+      'thead',
+      null,
+      h(
+        'tr',
+        null,
+        head.map(text => h('th', { scope: 'col' }, text)),
+      ),
+    ),
+    h(
+      'tbody',
+      null,
+      rows.map(([name, ...cells]) =>
+        h(
+          'tr',
+          null,
+          h('th', { scope: 'row' }, name),
+          cells.map(cell => h('td.number', null, cell)),
+        ),
+      ),
+    ),
+  );
+}
+
+/**
+ * Before and after, for every load case.
+ * @param {any} result
+ * @param {import('./figures/context.js').Reference | undefined} reference
+ */
+export function verdict(result, reference) {
+  const rows = result.load_cases.flatMap((/** @type {any} */ row, /** @type {number} */ k) => {
+    const own = numbersOf(result, k);
+    const other = reference?.result;
+    const at = other ? other.load_cases.indexOf(sameCase(other, row, k)) : -1;
+    const before = at >= 0 ? numbersOf(other, at) : {};
+    return NUMBERS.map(({ key, name, unit, scale = 1 }, i) => [
+      i === 0 ? caseLong(row) : '',
+      `${name}, ${unit}`,
+      typeof before[key] === 'number' ? sig(before[key] * scale, 3) : '–',
+      sig(own[key] === null ? null : own[key] * scale, 3),
+      changeText(change(own[key], before[key])),
+    ]);
+  });
+  const total = [
+    'All load cases',
+    'objective J',
+    sig(reference?.result?.objectives?.J, 3),
+    sig(result.objectives?.J, 3),
+    changeText(change(result.objectives?.J, reference?.result?.objectives?.J)),
+  ];
+  return h(
+    'section.verdict',
+    null,
+    h('h2', null, 'Result'),
+    tableOf(['load case', '', reference?.label ?? 'before', 'this design', 'change'], [...rows, total]),
+  );
+}
+
+/** @param {string[]} texts */
+export function warningList(texts) {
+  if (!texts.length) return [];
+  return [
+    h('h2', null, 'What to know about this result'),
+    h(
+      'ul',
+      null,
+      texts.map(text => h('li', null, text)),
+    ),
+  ];
+}

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Designs beside each other in numbers: for each load case, then their flanks and what differs of the pairs.
+import { fill, h } from '../base/dom.js';
+import { change, changeText, labelOf, plain, sig, unitText } from '../base/format.js';
+import { valueAt } from '../base/pointer.js';
+import { caseLong } from '../figures/context.js';
+import { NUMBERS, numbersOf } from '../headline.js';
+
+/** @typedef {{ key: string, label: string, title?: string, design: any, result: any, missing?: string }} Item */
+
+const DATA = [
+  '/gear_pair/pinion_teeth',
+  '/gear_pair/gear_teeth',
+  '/gear_pair/normal_module_mm',
+  '/gear_pair/helix_angle_deg',
+  '/gear_pair/face_width_mm',
+  '/gear_pair/centre_distance_mm',
+  '/alignment/shaft_angle_error_in_plane_deg',
+];
+const ENDS = ['left', 'right'];
+
+/** @param {number} i */
+export function designColour(i) {
+  return `design${(i % 8) + 1}`;
+}
+
+/** @param {Item[]} items @param {string} text */
+function sectionRow(items, text) {
+  return h('tr.section', null, h('th', { scope: 'rowgroup', colspan: items.length + 1 }, text));
+}
+
+/**
+ * Numbers of a row; the smallest is marked.
+ * @param {Item[]} items
+ * @param {HTMLElement[]} head
+ * @param {(item: Item) => number | null | undefined} read
+ */
+function numberRow(items, head, read) {
+  const values = items.map(item => (item.result && !item.result.error ? (read(item) ?? null) : null));
+  const known = values.filter(value => value !== null);
+  const least = known.length > 1 ? Math.min(...known) : null;
+  return h(
+    'tr',
+    null,
+    h('th', { scope: 'row' }, head),
+    items.map((item, i) => {
+      const best = least !== null && values[i] === least;
+      const waits = !item.result && !item.missing;
+      return h(
+        best ? 'td.number.best' : 'td.number',
+        { title: best ? 'least of the row' : null },
+        waits ? '…' : sig(values[i], 3),
+        i > 0 ? h('small', null, ` ${changeText(change(values[i], values[0]))}`) : null,
+      );
+    }),
+  );
+}
+
+/** @param {Item} item @param {string} member @param {string} key */
+function endsOfKey(item, member, key) {
+  return ENDS.map(end => valueAt(item.result?.design ?? item.design, `/modification/${member}/${end}/${key}`) ?? 0);
+}
+
+/** What is taken off, of the keys that any of the designs has. @param {Item[]} items */
+function flankRows(items) {
+  const rows = [];
+  for (const member of ['pinion', 'gear']) {
+    const keys = new Set(
+      items.flatMap(item => Object.keys(valueAt(item.result?.design ?? item.design, `/modification/${member}/left`) ?? {})),
+    );
+    for (const key of keys) {
+      const values = items.map(item => endsOfKey(item, member, key));
+      if (values.every(ends => ends.every(value => typeof value !== 'number' || value === 0))) continue;
+      const unit = unitText(/_(um|mm|per_mm)$/.exec(key)?.[1]);
+      rows.push(
+        h(
+          'tr',
+          null,
+          h('th', { scope: 'row' }, `${labelOf(key)}, ${member}`, h('span.unit', null, ` ${unit}`)),
+          values.map(([left, right]) =>
+            h('td.number', null, left === right ? sig(left, 4) : `${sig(left, 4)} / ${sig(right, 4)}`),
+          ),
+        ),
+      );
+    }
+  }
+  return rows.length ? [sectionRow(items, 'Modification, left / right'), ...rows] : [];
+}
+
+/** @param {Item[]} items */
+function dataRows(items) {
+  return DATA.map(pointer => {
+    const key = pointer.split('/')[2];
+    const unit = /_(mm|deg)$/.exec(key)?.[1];
+    return h(
+      'tr',
+      null,
+      h('th', { scope: 'row' }, labelOf(key), unit ? h('span.unit', null, ` ${unitText(unit)}`) : null),
+      items.map(item => h('td.number', null, plain(valueAt(item.result?.design ?? item.design, pointer)))),
+    );
+  });
+}
+
+/** @param {Item} item @param {number} i */
+function headCell(item, i) {
+  const fault = item.missing ?? item.result?.error;
+  return h(
+    'th',
+    { scope: 'col', title: item.title ?? null },
+    h('span.dot', { css: { '--swatch': `var(--${designColour(i)})` } }),
+    ` ${item.label}`,
+    fault ? h('span.fault', null, ` ${fault}`) : item.result ? null : h('span.unit', null, ' is being computed…'),
+  );
+}
+
+/** @param {HTMLElement} place @param {Item[]} items @param {any[]} cases load cases of the design on the table */
+export function drawComparison(place, items, cases) {
+  if (!items.length) {
+    fill(place, h('p.empty', null, 'Choose at least one design.'));
+    return;
+  }
+  /** @param {string} name @param {string} [unit] */
+  const head = (name, unit) => [h('span', null, name), unit ? h('span.unit', null, ` ${unit}`) : h('span')];
+  const body = [numberRow(items, head('Objective J, all load cases'), item => item.result.objectives?.J)];
+  cases.forEach((row, k) => {
+    body.push(sectionRow(items, caseLong(row)));
+    for (const { key, name, unit, scale = 1 } of NUMBERS)
+      body.push(
+        numberRow(items, head(name, unit), item => {
+          const value = numbersOf(item.result, k)[key];
+          return typeof value === 'number' ? value * scale : null;
+        }),
+      );
+  });
+  body.push(...flankRows(items), sectionRow(items, 'Pair'), ...dataRows(items));
+  fill(
+    place,
+    h(
+      'table.numbers.comparison',
+      null,
+      h('thead', null, h('tr', null, h('th', { scope: 'col' }, h('span.unseen', null, 'number')), items.map(headCell))),
+      h('tbody', null, body),
+    ),
+  );
+}

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The modification of the flanks: which member, which end, sliders for what is moved most.
+import { fill, h } from '../base/dom.js';
+import { fieldAt } from '../base/schema.js';
+import { switcher } from '../figures/frame.js';
+import { more } from '../form/group.js';
+
+const MAIN = ['tip_relief_um', 'tip_relief_start_mm', 'root_relief_um', 'root_relief_start_mm', 'lead_crowning_um'];
+const MEMBERS = ['pinion', 'gear'];
+const ENDS = ['left', 'right'];
+const USUAL = { um: 50, mm: 5 }; // ends of sliders without bounds of their own
+const CURVATURE = 0.001; // 1/mm, of a profile crowning stated as a coefficient
+
+export class Flank {
+  #member = 'pinion';
+  #end = 'left';
+  #shape = '';
+
+  /** @param {import('../base/store.js').DesignStore} store @param {import('../form/form.js').Form} form */
+  constructor(store, form) {
+    this.store = store;
+    this.form = form;
+    this.fields = form.set();
+    this.element = h('.flank');
+    this.tie = h('input', { type: 'checkbox', id: 'tie', onchange: () => store.tie(this.tie.checked) });
+    this.tieLabel = h('label.tie', { for: 'tie' }, this.tie, 'left = right');
+    form.finders.push(pointer => this.#turnTo(pointer));
+  }
+
+  /** Turns to the member and end of a value. @param {string} pointer */
+  #turnTo(pointer) {
+    const [, group, member, end] = pointer.split('/');
+    if (group !== 'modification' || !MEMBERS.includes(member)) return;
+    this.#member = member;
+    if (ENDS.includes(end)) this.#end = end;
+    this.refresh();
+  }
+
+  refresh() {
+    const two = (this.store.design.gear_pair?.ends ?? 2) === 2;
+    this.tie.checked = this.store.tied;
+    this.tieLabel.hidden = !two;
+    const split = two && !this.store.tied;
+    const end = split ? this.#end : 'left';
+    const shape = JSON.stringify([this.#member, split, end]);
+    if (shape === this.#shape) return;
+    this.#shape = shape;
+    this.#draw(`/modification/${this.#member}/${end}`, split, end);
+  }
+
+  /** @param {string} base pointer of the flank @param {boolean} split each end for itself @param {string} end */
+  #draw(base, split, end) {
+    this.fields.release();
+    /** @param {string[]} names @returns {[string, string][]} */
+    const pairs = names => names.map(name => [name, name]);
+    const switches = h(
+      '.switches',
+      null,
+      switcher('Member', pairs(MEMBERS), this.#member, value => {
+        this.#member = value;
+        this.refresh();
+      }),
+      split
+        ? switcher('End', pairs(ENDS), end, value => {
+            this.#end = value;
+            this.refresh();
+          })
+        : null,
+      this.tieLabel,
+    );
+    const all = fieldAt(this.form.fields, base)?.fields ?? [];
+    const main = all.filter(field => MAIN.includes(field.key));
+    main.sort((a, b) => MAIN.indexOf(a.key) - MAIN.indexOf(b.key));
+    const rest = all.filter(field => !MAIN.includes(field.key) && !field.entry);
+    fill(
+      this.element,
+      switches,
+      main.map(field => this.#entry(base, field)),
+      more(
+        'More of the flank',
+        rest.flatMap(field => this.#entry(base, field)),
+      ),
+    );
+  }
+
+  /** @param {string} base @param {import('../base/schema.js').Field} field @returns {HTMLElement[]} */
+  #entry(base, field) {
+    const pointer = `${base}/${field.key}`;
+    if (field.kind === 'number' && !field.nullable)
+      return [this.fields.slider(pointer, () => this.#range(pointer, field))];
+    if (field.kind === 'object' || field.kind === 'list') return [];
+    return [this.fields.field(pointer)];
+  }
+
+  /**
+   * The bounds of the optimization where it has some, else what is usual.
+   * @param {string} pointer
+   * @param {import('../base/schema.js').Field} field
+   */
+  #range(pointer, field) {
+    const bounds =
+      this.store.get(`/optimization/bounds/${field.key}`) ?? this.form.resolved?.optimization?.bounds?.[field.key];
+    const { face_width_mm: width = 10 * USUAL.mm, normal_module_mm: module = USUAL.mm } =
+      this.store.design.gear_pair ?? {};
+    const negative = typeof field.low === 'number' && field.low < 0;
+    if (field.unit === 'per_mm') return { low: -CURVATURE, high: CURVATURE, step: CURVATURE / 100 };
+    if (field.unit === 'mm') {
+      const high = /length/.test(field.key) ? width / 2 : module;
+      return { low: 0, high: Array.isArray(bounds) ? bounds[1] : high, step: 0.01 };
+    }
+    if (Array.isArray(bounds)) return { low: Math.min(0, bounds[0]), high: bounds[1], step: 0.1 };
+    return { low: negative ? -USUAL.um : 0, high: USUAL.um, step: 0.1 };
+  }
+}

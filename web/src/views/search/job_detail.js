@@ -1,0 +1,257 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// One search: what it is doing, its best in numbers, its figures, and what can be done with it.
+import { ask, get, list, post } from '../../base/api.js';
+import { fill, h } from '../../base/dom.js';
+import { change, changeText, choiceText, duration, sig } from '../../base/format.js';
+import { ACTIVE } from '../../base/jobs.js';
+import { progressText } from '../../jobbar.js';
+import { JobFigures } from './job_figures.js';
+import { MEASURES, footnote, meanOf } from './measures.js';
+import { changedValues, withValues } from './variables.js';
+
+const PAUSE = 700; // ms between two looks at a running search
+const MOST_ROWS = 4000;
+
+export class JobDetail {
+  /** @type {any} */ #job = null;
+  /** @type {any} */ #result = null;
+  /** The design that it started from, resolved. @type {any} */ #design = null;
+  /** @type {any[]} */ #rows = [];
+  #timer = 0;
+  #last = 0;
+
+  /** @param {import('../../app.js').App} app */
+  constructor(app) {
+    this.app = app;
+    this.head = h('.job-head');
+    this.best = h('section.figure.with-table', { 'aria-label': 'Best so far' });
+    this.figures = new JobFigures(values => this.#openValues(values));
+    this.element = h('.job-detail', { hidden: true }, this.head, this.figures.elements(this.best));
+  }
+
+  /** @param {any} job */
+  choose(job) {
+    const before = this.#job;
+    this.#job = job;
+    this.element.hidden = !job;
+    if (before?.id !== job?.id) {
+      this.#result = this.#design = null;
+      this.#rows = [];
+      this.figures.clear();
+    }
+    if (!job) return;
+    this.#drawHead();
+    this.#drawBest();
+    if (before?.id !== job.id || before.state !== job.state || performance.now() - this.#last > PAUSE) this.#look();
+    else if (!this.#timer) this.#timer = window.setTimeout(() => this.#look(), PAUSE);
+  }
+
+  async #look() {
+    clearTimeout(this.#timer);
+    this.#timer = 0;
+    this.#last = performance.now();
+    const job = this.#job;
+    const gone = () => this.#job?.id !== job.id;
+    try {
+      const columns = await get(`jobs/${job.id}/generations`);
+      if (gone()) return;
+      this.figures.drawGenerations(columns);
+      const design = this.#design ?? (await get(`jobs/${job.id}`)).design;
+      const rows = await list(`jobs/${job.id}/history`, MOST_ROWS);
+      const done = job.state === 'done' && job.has_result !== false;
+      const result = done ? (this.#result ?? (await get(`jobs/${job.id}/result`))) : null;
+      if (gone()) return;
+      this.#design = design;
+      this.#rows = rows;
+      this.#result = result;
+      this.#drawHead();
+      this.#drawBest();
+      this.figures.draw({ design, best: this.#bestOf(), rows, result, start: null });
+    } catch {
+      // the next event looks again
+    }
+  }
+
+  /**
+   * The best with its flank: the list of jobs has both for searches of the service; of those of the terminal the result
+   * has them, and the history as long as they run.
+   */
+  #bestOf() {
+    const { best } = this.#job;
+    if (!best) return null;
+    if (best.modification) return best;
+    const found = this.#result?.best;
+    if (found) return { ...found.objectives, modification: found.modification };
+    const rows = this.#rows.filter(row => typeof row.J === 'number');
+    const least = rows.reduce((low, row) => (low === null || row.J < low.J ? row : low), null);
+    if (!least || !this.#design) return best;
+    return { ...least, modification: withValues(this.#design, flatten(least.modification)).modification };
+  }
+
+  #unmodifiedOf() {
+    return this.#job.unmodified ?? this.#result?.unmodified?.objectives ?? this.#result?.unmodified ?? null;
+  }
+
+  #drawHead() {
+    const job = this.#job;
+    const active = ACTIVE.includes(job.state);
+    const { progress = {} } = job;
+    const facts = [
+      choiceText(job.algorithm ?? ''),
+      progressText(job),
+      typeof progress.true_evaluations === 'number' ? `${progress.true_evaluations} evaluations` : '',
+      typeof progress.predicted === 'number' && progress.predicted ? `${progress.predicted} predicted` : '',
+      typeof progress.pfc_percent === 'number' && !active ? `PFC ${sig(progress.pfc_percent, 3)} %` : '',
+      typeof progress.seconds === 'number' ? duration(progress.seconds) : '',
+      active && typeof progress.seconds_left === 'number' ? `${duration(progress.seconds_left)} left` : '',
+    ].filter(Boolean);
+    fill(
+      this.head,
+      h('h2', null, job.name || `Search ${job.id}`),
+      h('span.facts', null, facts.join(' · ')),
+      job.error ? h('span.fault', null, job.error.detail) : null,
+      h('span.actions', null, this.#actions(job, active)),
+    );
+  }
+
+  /** @param {any} job @param {boolean} active */
+  #actions(job, active) {
+    const { app } = this;
+    /** @param {string} text @param {() => unknown} act @param {string} [kind] */
+    const button = (text, act, kind = 'button') =>
+      h(kind, { type: 'button', onclick: () => app.attempt(act) }, text);
+    /** @param {string} verb */
+    const act = verb => async () => {
+      const answer = await post(`jobs/${job.id}/${verb}`);
+      app.jobs.put(answer);
+      if (verb === 'clone') app.go('optimize', { job: String(answer.id) });
+    };
+    const remove = async () => {
+      await ask('DELETE', `jobs/${job.id}`);
+      app.jobs.all.delete(job.id);
+      app.jobs.dispatchEvent(new CustomEvent('change', { detail: null }));
+      app.go('optimize');
+    };
+    const ready = Boolean(this.#bestOf()?.modification);
+    return [
+      ready ? button('Open the best', () => this.#openBest(), 'button.primary') : null,
+      job.best ? button('Compare', () => app.go('compare', { items: `unmodified,job:${job.id},current` })) : null,
+      active && !job.stopping ? button('Stop', act('cancel')) : null,
+      job.state === 'failed' || job.state === 'cancelled' ? button('Go on', act('retry')) : null,
+      button('Again', act('clone')),
+      active ? null : button('Delete', remove),
+    ];
+  }
+
+  #drawBest() {
+    const best = this.#bestOf();
+    const title = this.#job.state === 'done' ? 'The best' : 'Best so far';
+    if (!best) {
+      fill(this.best, h('h3', null, title), h('p.figure-note', null, 'Nothing is evaluated yet.'));
+      return;
+    }
+    const before = this.#unmodifiedOf();
+    const cases = this.#design?.load_cases?.length ?? 0;
+    const rows = MEASURES.map(measure => ({
+      name: measure.name,
+      unit: measure.unit,
+      own: cases ? meanOf(best, measure, cases) : null,
+      before: cases ? meanOf(before, measure, cases) : null,
+    }));
+    rows.push({ name: 'Objective J', unit: '', own: best.J, before: before?.J ?? 1 });
+    fill(
+      this.best,
+      h('.figure-head', null, h('h3', null, title), h('span.figure-note', null, 'duty-cycle means')),
+      h(
+        'table.numbers',
+        null,
+        h(
+          'thead',
+          null,
+          h(
+            'tr',
+            null,
+            ['', 'best', 'unmodified', 'change'].map(text =>
+              h('th', { scope: 'col' }, text || h('span.unseen', null, 'number')),
+            ),
+          ),
+        ),
+        h(
+          'tbody',
+          null,
+          rows.map(({ name, unit, own, before: plain }) =>
+            h(
+              'tr',
+              null,
+              h('th', { scope: 'row' }, name, unit ? h('span.unit', null, ` ${unit}`) : null),
+              h('td.number', null, sig(own, 3)),
+              h('td.number', null, sig(plain, 3)),
+              h('td.number', null, changeText(change(own, plain))),
+            ),
+          ),
+        ),
+      ),
+      this.#flankTable(best),
+      cases ? h('p.figure-note', null, footnote(cases)) : null,
+    );
+  }
+
+  /** @param {any} best */
+  #flankTable(best) {
+    const rows = changedValues(best.modification);
+    if (!rows.length) return null;
+    return h(
+      'table.numbers',
+      null,
+      h(
+        'tbody',
+        null,
+        rows.map(({ label, unit, values }) =>
+          h(
+            'tr',
+            null,
+            h('th', { scope: 'row' }, label, h('span.unit', null, ` ${unit}`)),
+            values.map(value => h('td.number', null, sig(value, 4))),
+          ),
+        ),
+      ),
+    );
+  }
+
+  async #openBest() {
+    const best = this.#bestOf();
+    if (this.#design && best?.modification) await this.#open({ ...this.#design, modification: best.modification });
+  }
+
+  /** @param {Record<string, number>} values of variables */
+  async #openValues(values) {
+    if (this.#design) await this.app.attempt(() => this.#open(withValues(this.#design, values)));
+  }
+
+  /**
+   * The design of the search with another modification. What the designer left open stays open when it is the same
+   * pair.
+   * @param {any} design
+   */
+  async #open(design) {
+    const { store, app } = { store: this.app.store, app: this.app };
+    /** @param {any} whole */
+    const pair = whole => JSON.stringify([whole.gear_pair, whole.material, whole.supports, whole.shafts]);
+    const resolved = app.analyst.result?.design ?? store.design;
+    const same = pair(resolved) === pair(design);
+    const { gear_pair, material, supports, shafts, optimization } = store.design;
+    const kept = same ? { gear_pair, material, supports, shafts, optimization } : {};
+    await app.opening(async () => store.open({ ...design, ...kept }, store.from), 'design');
+  }
+}
+
+/** Values of a history row by the names of variables. @param {any} modification */
+function flatten(modification) {
+  /** @type {Record<string, number>} */
+  const values = {};
+  for (const [member, ends] of Object.entries(modification ?? {}))
+    for (const [end, flank] of Object.entries(/** @type {any} */ (ends) ?? {}))
+      for (const [key, value] of Object.entries(/** @type {any} */ (flank) ?? {}))
+        if (typeof value === 'number') values[`${member}/${end}/${key}`] = value;
+  return values;
+}

@@ -1,0 +1,264 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The figures of a search: how it converges, what it has tried, and the best so far beside where it started.
+import { h } from '../../base/dom.js';
+import { Lane } from '../../base/lane.js';
+import { unmodified } from '../../base/store.js';
+import { Chart } from '../../figures/chart.js';
+import { OWN_COLOUR, REFERENCE_COLOUR, caseLong, mainCase } from '../../figures/context.js';
+import { Parallel, Scatter } from '../../figures/scatter.js';
+import { MEASURE_COLUMNS, meansOf } from './measures.js';
+import { shortName, valuesOf, variablesOf } from './variables.js';
+
+/** @typedef {import('../../figures/scatter.js').Dot} Dot */
+/**
+ * @typedef {object} Search
+ * @property {any} design that it started from @property {any} best modification and objectives
+ * @property {any[]} rows of its history @property {any} result when it is done
+ * @property {any} start objectives of the design that it started from
+ */
+
+/** @param {number[]} values */
+const lessMean = values => values.map(each => each - values.reduce((sum, other) => sum + other, 0) / values.length);
+
+/** Results of a few designs, asked for one after the other; those of a best that is no longer one are dropped. */
+class Compared {
+  /** @type {Map<string, any>} */ results = new Map();
+  /** @type {{ name: string, design: any }[]} */ #left = [];
+  #asked = '';
+
+  /** @param {() => void} tell */
+  constructor(tell) {
+    this.lane = new Lane({
+      result: (task, data) => {
+        this.results.set(task.note, data);
+        tell();
+        this.#next();
+      },
+      refused: () => this.#next(),
+    });
+  }
+
+  /** @param {{ name: string, design: any }[]} designs */
+  ask(designs) {
+    const text = JSON.stringify(designs);
+    if (text === this.#asked) return;
+    this.#asked = text;
+    this.#left = [...designs];
+    this.#next();
+  }
+
+  clear() {
+    this.results.clear();
+    this.#asked = '';
+  }
+
+  #next() {
+    const first = this.#left.shift();
+    if (first) this.lane.submit({ path: 'analyze?maps=0&root_stress=0', body: first.design, note: first.name });
+  }
+}
+
+export class JobFigures {
+  #rows = -1;
+  /** @type {Search | null} */ #search = null;
+  #drawnBest = '';
+
+  /** @param {(values: Record<string, number>) => void} open opens the design of a dot */
+  constructor(open) {
+    this.open = open;
+    this.convergence = new Chart({
+      title: 'Convergence',
+      unit: 'J',
+      help: 'Best and mean objective of each generation of the search.',
+      good: 'A curve that has become flat: more evaluations would gain little.',
+      xLabel: 'generation',
+      whole: true,
+    });
+    this.pfc = new Chart({
+      title: 'Evaluations by the model',
+      name: 'Percentage of fitness computed (PFC)',
+      unit: '%',
+      help: 'Evaluations by the model, of all values that the search needed so far; the others were predicted.',
+      good: 'Low: the search guesses well and computes little.',
+      xLabel: 'generation',
+      whole: true,
+      zero: true,
+    });
+    this.te = new Chart({
+      title: 'Loaded TE of the best',
+      name: 'Loaded transmission error of the best so far',
+      unit: 'µm',
+      help: 'Beside the design that the search started from and the unmodified pair, at the load case with the largest share.',
+      good: 'Flatter than both.',
+      xLabel: 'mesh cycle',
+    });
+    this.flank = new Chart({
+      title: 'Flank of the best',
+      name: 'Profile modification of the best so far',
+      unit: 'µm taken off',
+      help: 'Material taken off the pinion of the left end, from root to tip.',
+      xLabel: 'from the pitch point to the tip',
+      xUnit: 'mm',
+    });
+    this.history = new Scatter({
+      title: 'History',
+      help: 'Every design that the search computed (full) or took from earlier ones (open), with its start and its best; a click opens one.',
+      x: 'evaluation',
+      y: 'J',
+    });
+    this.parallel = new Parallel('All variables');
+    this.front = new Scatter({
+      title: 'Pareto front',
+      help: 'Designs of which none is better in every objective; a click opens one.',
+      x: MEASURE_COLUMNS[0],
+      y: MEASURE_COLUMNS[2],
+    });
+    this.compared = new Compared(() => this.#drawCompared());
+  }
+
+  /** @param {HTMLElement} best the table of the best */
+  elements(best) {
+    return h(
+      '.figures',
+      null,
+      best,
+      this.te.element,
+      this.flank.element,
+      this.convergence.element,
+      this.front.element,
+      this.history.element,
+      this.pfc.element,
+      this.parallel.element,
+    );
+  }
+
+  clear() {
+    this.#rows = -1;
+    this.#drawnBest = '';
+    this.#search = null;
+    this.compared.clear();
+    for (const chart of [this.convergence, this.pfc, this.te, this.flank]) chart.set({ x: [], curves: [] });
+    this.front.element.hidden = this.history.element.hidden = this.parallel.element.hidden = true;
+  }
+
+  /** @param {any} columns */
+  drawGenerations(columns) {
+    if (!columns.generation?.length) return;
+    const x = columns.generation.map((/** @type {number} */ value) => value + 1);
+    const curves = [{ label: 'best', y: columns.best, colour: 'best' }];
+    if (columns.mean?.some((/** @type {any} */ value) => value !== null))
+      curves.unshift({ label: 'mean', y: columns.mean, colour: 'mean' });
+    this.convergence.set({ x, curves });
+    this.pfc.set({ x, curves: [{ label: 'PFC', y: columns.pfc_percent, colour: OWN_COLOUR }] });
+  }
+
+  /** @param {Search} search */
+  draw(search) {
+    this.#search = search;
+    const best = JSON.stringify([search.best?.modification, Boolean(search.start)]);
+    const changed = search.rows.length !== this.#rows || best !== this.#drawnBest;
+    if (changed) this.#drawHistory(search);
+    if (search.result?.front?.length) this.#drawFront(search);
+    this.#rows = search.rows.length;
+    if (best === this.#drawnBest) return;
+    this.#drawnBest = best;
+    const { design } = search;
+    this.compared.ask([
+      ...(search.best?.modification ? [{ name: 'best', design: { ...design, modification: search.best.modification } }] : []),
+      { name: 'start', design },
+      { name: 'unmodified', design: unmodified(design) },
+    ]);
+  }
+
+  /** @param {Search} search */
+  #drawHistory({ rows, design, best, start }) {
+    const cases = design.load_cases.length;
+    const names = [...new Set(rows.flatMap(row => Object.keys(variablesOf(row))))];
+    const columns = ['evaluation', ...names.map(shortName), ...MEASURE_COLUMNS, 'J'];
+    const found = rows.find(row => typeof row.J === 'number' && best && Math.abs(row.J - best.J) <= 1e-9 * best.J);
+    /** @type {Dot[]} */
+    const dots = rows.map((row, i) => {
+      const values = variablesOf(row);
+      return {
+        kind: row.reused ? 'known' : 'new',
+        mark: row === found ? 'best' : undefined,
+        values: [row.ordinal ?? i + 1, ...names.map(name => values[name] ?? null), ...meansOf(row, cases), row.J ?? null],
+        pick: () => this.open(values),
+      };
+    });
+    /** @param {string} mark @param {any} modification @param {any} objectives @param {number} place */
+    const extra = (mark, modification, objectives, place) =>
+      dots.push({
+        kind: 'known',
+        mark,
+        values: [place, ...valuesOf(names, modification), ...meansOf(objectives, cases), objectives?.J ?? null],
+      });
+    if (start) extra('start', design.modification, start, 0);
+    if (best?.modification && !found) extra('best, known before', best.modification, best, rows.length);
+    this.history.element.hidden = this.parallel.element.hidden = rows.length === 0;
+    const known = rows.filter(row => row.reused).length;
+    this.history.painting.frame.note.hidden = false;
+    this.history.painting.frame.note.textContent = `${rows.length} designs${known ? `, ${known} of them known before` : ''}; equal ones stand once.`;
+    this.history.set({ columns, dots });
+    const shown = [...names.map((_, k) => k + 1), columns.length - 1];
+    this.parallel.set({
+      columns: shown.map(k => columns[k]),
+      dots: dots.map(dot => ({ ...dot, values: shown.map(k => dot.values[k]) })),
+    });
+  }
+
+  /** @param {Search} search */
+  #drawFront({ result, design }) {
+    const cases = design.load_cases.length;
+    const names = result.variables.map((/** @type {any} */ variable) => variable.name);
+    this.front.element.hidden = false;
+    this.front.set({
+      columns: [...MEASURE_COLUMNS, 'J', ...names.map(shortName)],
+      dots: result.front.map((/** @type {any} */ point) => ({
+        kind: 'front',
+        mark: point.weighted ? 'best J' : point.knee ? 'knee' : undefined,
+        values: [...meansOf(point, cases), point.J, ...point.values],
+        pick: () =>
+          this.open(
+            Object.fromEntries(
+              names.map((/** @type {string} */ name, /** @type {number} */ i) => [name, point.values[i]]),
+            ),
+          ),
+      })),
+    });
+  }
+
+  /** Best, start and unmodified beside each other. */
+  #drawCompared() {
+    const search = this.#search;
+    const { results } = this.compared;
+    const first = results.get('best') ?? results.get('start');
+    if (!search || !first) return;
+    const k = mainCase(search.design);
+    /** @type {{ name: string, colour: string, line?: 'dashed' | 'dotted' }[]} */
+    const looks = [
+      { name: 'unmodified', colour: REFERENCE_COLOUR, line: 'dashed' },
+      { name: 'start', colour: REFERENCE_COLOUR, line: 'dotted' },
+      { name: 'best', colour: 'best' },
+    ];
+    const shown = looks.filter(({ name }) => results.has(name));
+    this.te.frame.setCase(caseLong(search.design.load_cases[k]));
+    this.te.set({
+      x: first.load_cases[k].position,
+      curves: shown.map(({ name, colour, line }) => {
+        const row = results.get(name).load_cases[k];
+        return { label: name, x: row.position, y: lessMean(row.lte.pair_um), colour, line };
+      }),
+    });
+    const { pinion } = first.modification;
+    this.flank.set({
+      x: pinion?.u_mm ?? [],
+      curves: shown.flatMap(({ name, colour, line }) => {
+        const member = results.get(name).modification?.pinion;
+        return member?.left ? [{ label: name, x: member.u_mm, y: member.left.profile_um, colour, line }] : [];
+      }),
+    });
+    const start = results.get('start');
+    if (start && !search.start) this.draw({ ...search, start: start.objectives });
+  }
+}

@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What is searched for and how: variables, algorithm in words, budget with what it costs, bounds, objective.
+import { fill, h } from '../../base/dom.js';
+import { duration } from '../../base/format.js';
+import { fallbackOf, fieldAt } from '../../base/schema.js';
+import { group } from '../../form/group.js';
+
+const FIRST = ['variables', 'algorithm', 'true_evaluations', 'seed'];
+const ALGORITHMS = ['ga', 'fpga', 'credibility-ga', 'nsga2'];
+const LOOKS = {
+  variables: { label: 'Search for' },
+  algorithm: { label: 'Algorithm' },
+  true_evaluations: { label: 'Budget, evaluations' },
+  seed: { label: 'Seed' },
+};
+const WORDS = /** @type {Record<string, string>} */ ({
+  'credibility-ga': 'Fast: predicts most designs from those computed and computes only the promising ones.',
+  fpga: 'The published method: a genetic algorithm that predicts the fitness of designs near known ones.',
+  ga: 'A plain genetic algorithm: computes every design.',
+  nsga2: 'Finds the Pareto front: all designs of which none is better in every objective.',
+});
+const WEIGHTS = ['transmission error', 'impact', 'vibration'];
+const COUNTS = /** @type {Record<string, number>} */ ({ shared: 5, per_end: 10 });
+
+/** Algorithms that a key is for, from the end of its help; none: all. @param {string} help */
+function algorithmsOf(help) {
+  const words = /\(([^()]*)\)$/.exec(help)?.[1].split(/,\s*/) ?? [];
+  return words.every(word => ALGORITHMS.includes(word)) ? words : [];
+}
+
+export class SearchForm {
+  #shape = '';
+
+  /** @param {import('../../app.js').App} app @param {() => void} submit */
+  constructor(app, submit) {
+    this.app = app;
+    this.form = app.form;
+    this.store = app.store;
+    this.fields = app.form.set();
+    this.changing = app.form.set();
+    this.details = h('div');
+    this.listed = h('.listed');
+    this.algorithm = h('p.figure-note');
+    this.cost = h('p.figure-note', { role: 'status' });
+    this.weights = h('p.figure-note');
+    this.element = h(
+      'form.parameters',
+      {
+        'aria-label': 'Search',
+        id: 'search-form',
+        autocomplete: 'off',
+        onsubmit: (/** @type {Event} */ event) => {
+          event.preventDefault();
+          submit();
+        },
+      },
+      group('search', 'Search', true, this.#search()),
+      group('bounds', 'Bounds of the variables', true, this.fields.fieldsOf('/optimization/bounds')),
+      group('objective', 'What is good', true, [
+        ...this.fields.fieldsOf('/objective', {
+          skip: ['constraints'],
+          looks: { weights: { label: 'Weights', parts: WEIGHTS }, normalise: { label: 'Each divided by' } },
+        }),
+        this.weights,
+      ]),
+      group('constraints', 'Limits', false, this.fields.fieldsOf('/objective/constraints')),
+      group('algorithm', 'The algorithm in detail', false, [this.details]),
+    );
+    this.store.addEventListener('change', () => this.refresh());
+    app.form.finders.push(pointer => {
+      const own = pointer.startsWith('/optimization') || pointer.startsWith('/objective');
+      if (own && app.current !== 'optimize') app.go('optimize');
+    });
+    this.refresh();
+  }
+
+  #search() {
+    return [
+      ...FIRST.map(key =>
+        this.fields.field(`/optimization/${key}`, /** @type {Record<string, import('../../form/fieldset.js').Look>} */ (LOOKS)[key]),
+      ),
+      this.algorithm,
+      this.listed,
+      this.cost,
+    ];
+  }
+
+  /** The value of a key, or its default. @param {string} key of the optimization */
+  #value(key) {
+    const field = fieldAt(this.form.fields, `/optimization/${key}`);
+    return this.store.get(`/optimization/${key}`) ?? (field ? fallbackOf(field) : undefined);
+  }
+
+  refresh() {
+    const [algorithm, variables] = [this.#value('algorithm'), this.#value('variables')];
+    const rows = this.store.get('/optimization/variable_list') ?? [];
+    this.algorithm.textContent = WORDS[algorithm] ?? '';
+    const weights = this.store.get('/objective/weights') ?? [];
+    const sum = weights.reduce((/** @type {number} */ total, /** @type {number} */ value) => total + value, 0);
+    this.weights.textContent = sum
+      ? `That is ${weights.map((/** @type {number} */ value, /** @type {number} */ i) => `${Math.round((100 * value) / sum)} % ${WEIGHTS[i]}`).join(', ')}.`
+      : '';
+    this.#drawCost(algorithm, COUNTS[variables] ?? rows.length);
+    const shape = JSON.stringify([algorithm, variables, rows.length]);
+    if (shape === this.#shape) return;
+    this.#shape = shape;
+    this.changing.release();
+    this.#drawDetails(algorithm);
+    this.#drawListed(variables === 'listed' ? rows : null);
+  }
+
+  /** What the search costs, before it is started. @param {string} algorithm @param {number} count of variables */
+  #drawCost(algorithm, count) {
+    const budget = this.#value('true_evaluations');
+    const genetic = algorithm === 'ga' || algorithm === 'fpga';
+    const most = budget ?? (genetic ? this.#value('population') * this.#value('generations') : 500 + 100 * count);
+    const each = this.#secondsEach();
+    const time = each ? `, some ${duration(most * each)} on this machine as it is now` : '';
+    this.cost.textContent = `${count} variables, ${genetic && !budget ? 'at most' : 'about'} ${most} evaluations${time}.`;
+  }
+
+  /** Of an evaluation, as the last search of this pair took; else as the last result did. */
+  #secondsEach() {
+    const name = this.store.design.name;
+    const done = this.app.jobs
+      .searches()
+      .find(job => job.name === name && job.progress?.seconds > 1 && job.progress?.true_evaluations > 20);
+    if (done) return done.progress.seconds / done.progress.true_evaluations;
+    const ms = this.app.analyst.result?.timing_ms?.evaluation;
+    return typeof ms === 'number' ? ms / 1000 : 0;
+  }
+
+  /** @param {string} algorithm */
+  #drawDetails(algorithm) {
+    const fields = fieldAt(this.form.fields, '/optimization')?.fields ?? [];
+    const skip = fields
+      .filter(field => {
+        const own = algorithmsOf(field.help ?? '');
+        return FIRST.includes(field.key) || field.kind === 'object' || (own.length > 0 && !own.includes(algorithm));
+      })
+      .map(field => field.key);
+    fill(this.details, this.changing.fieldsOf('/optimization', { skip }));
+  }
+
+  /** @param {any[] | null} rows */
+  #drawListed(rows) {
+    if (!rows) return fill(this.listed);
+    const { store } = this;
+    /** @param {number} i */
+    const remove = i =>
+      store.set(
+        '/optimization/variable_list',
+        rows.filter((_row, k) => k !== i),
+      );
+    const add = () =>
+      store.set('/optimization/variable_list', [
+        ...rows,
+        { member: 'pinion', end: 'both', parameter: 'tip_relief_um', bounds: null },
+      ]);
+    fill(
+      this.listed,
+      rows.map((_row, i) =>
+        h(
+          'fieldset.listed-row',
+          null,
+          h(
+            'legend',
+            null,
+            `Variable ${i + 1} `,
+            h('button.icon', { type: 'button', 'aria-label': `Remove variable ${i + 1}`, onclick: () => remove(i) }, '✕'),
+          ),
+          ['member', 'end', 'parameter', 'bounds'].map(key =>
+            this.changing.field(`/optimization/variable_list/${i}/${key}`),
+          ),
+        ),
+      ),
+      h('button.small', { type: 'button', onclick: add }, '+ variable'),
+    );
+  }
+}
