@@ -1,18 +1,23 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Modules of the page that need no browser: numbers as people write them, documents, addresses, the tooth's section.
 import { readPlace, writePlace, putDifference, takeDifference } from '../../web/src/base/address.js';
-import { change, changeText, duration, labelOf, parseNumber, plain, sig } from '../../web/src/base/format.js';
+import { change, changeText, duration, labelOf, plain, sig } from '../../web/src/base/format.js';
 import { halfAngle, halfTooth } from '../../web/src/base/involute.js';
 import { leaves, same, valueAt, withValue } from '../../web/src/base/pointer.js';
 import { guess } from '../../web/src/base/recording.js';
+import { parseNumber, readQuantity } from '../../web/src/base/quantity.js';
 import { complete, fieldAt, numberFault } from '../../web/src/base/schema.js';
 
+globalThis.document ??= { baseURI: 'http://localhost/' };
+globalThis.sessionStorage ??= { getItem: () => null, setItem: () => {} };
+globalThis.localStorage ??= { getItem: () => null, setItem: () => {} };
 globalThis.CustomEvent ??= class extends Event {
   constructor(name, { detail } = {}) {
     super(name);
     this.detail = detail;
   }
 };
+const { readRows } = await import('../../web/src/base/case_rows.js');
 const { DesignStore } = await import('../../web/src/base/store.js');
 
 let count = 0;
@@ -52,6 +57,16 @@ is(parseNumber('1.2.3'), undefined, 'two points');
 is(parseNumber(''), undefined, 'nothing');
 is(parseNumber('12px'), undefined, 'a unit');
 is(parseNumber('1e999'), undefined, 'too large');
+is(parseNumber('1.234,5'), 1234.5, 'thousands with points');
+is(parseNumber('1,234.5'), 1234.5, 'thousands with commas');
+is(parseNumber('12,345,678'), 12345678, 'twice');
+is(parseNumber('0,125'), 0.125, 'no thousands begin with a nought');
+ok(/1250 or 1\.25/.test(readQuantity('1,250').fault), 'what can be read in two ways is asked about');
+is(readQuantity('0.5 in', 'mm').value, 12.7, 'inch');
+is(readQuantity('0,4 kN m', 'Nm').value, 400, 'kilo');
+is(readQuantity('828 N·m', 'Nm').value, 828, 'a dot between units');
+is(readQuantity("1'200 rpm", 'rpm').value, 1200, 'an apostrophe');
+ok(readQuantity('5 kg', 'mm').fault !== undefined, 'a unit of another kind');
 is(sig(0.60714, 3), '0.607', 'three digits');
 is(sig(1888.4, 3), '1888', 'never less than the whole part');
 is(sig(-0.05, 2), '−0.050', 'minus sign');
@@ -196,10 +211,37 @@ ok(
   'what is taken off is taken off the flank, square to it',
 );
 
+store.open({ gear_pair: { ends: 2 } }, { id: '1', etag: 'a' });
+store.set('/name', 'x');
+ok(store.changed, 'differs from what is stored');
+store.kept('1', 'b');
+ok(!store.changed && store.from.etag === 'b', 'stored again');
+store.set('/name', 'y');
+store.kept('2', 'c');
+store.undo();
+is([store.from.id, store.changed], ['2', true], 'stored as a new one: undo stays with it');
+store.open({ gear_pair: { ends: 2 } }, { id: '3' });
+store.setFault('/name', 'no');
+store.undo();
+is([store.from.id, store.faults.size], ['2', 0], 'undo brings back whose it was, and ends what was typed');
+
+// ---- rows of a spreadsheet ----
+is(
+  readRows('500\t1000\t0,5\n600\t2000\t0.5').rows,
+  [
+    { torque_Nm: 500, speed_rpm: 1000, share: 0.5 },
+    { torque_Nm: 600, speed_rpm: 2000, share: 0.5 },
+  ],
+  'torque, speed, share',
+);
+is(
+  readRows('case\tspeed\ttorque\nsea\t900\t1,5 kN m').rows,
+  [{ name: 'sea', speed_rpm: 900, torque_Nm: 1500 }],
+  'in the order of their headings, with units',
+);
+ok(/Row 2/.test(readRows('500\t1\n\tx').fault), 'a row without a torque is named');
+
 // ---- the lane of requests: whose preparation is waited for, left and asked for again ----
-globalThis.document ??= { baseURI: 'http://localhost/' };
-globalThis.sessionStorage ??= { getItem: () => null, setItem: () => {} };
-globalThis.localStorage ??= { getItem: () => null, setItem: () => {} };
 const { Lane } = await import('../../web/src/base/lane.js');
 
 /** A service that prepares the pair of `teeth`; stopped: numbers of jobs that somebody else stops. */
@@ -244,7 +286,14 @@ function follow(bodies) {
 }
 
 let log = serve();
-is(await follow([{ teeth: 17, harmonics: 24 }, { teeth: 17, harmonics: 12 }]), { teeth: 17, harmonics: 12 }, 'the newer');
+is(
+  await follow([
+    { teeth: 17, harmonics: 24 },
+    { teeth: 17, harmonics: 12 },
+  ]),
+  { teeth: 17, harmonics: 12 },
+  'the newer',
+);
 is(log, ['wait 1', 'wait 1'], 'a change that needs the same pair stops no preparation');
 log = serve();
 is(await follow([{ teeth: 19 }, { teeth: 17 }]), { teeth: 17 }, 'the newer pair');

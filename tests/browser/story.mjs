@@ -87,7 +87,9 @@ await chapter('open', async () => {
   await settled();
   ok(page_bytes > 0 && page_bytes < MOST_BYTES, 'the first view is light');
   ok(
-    !(await page.evaluate(() => performance.getEntriesByType('resource').some(entry => /rig-|compare-/.test(entry.name)))),
+    !(await page.evaluate(() =>
+      performance.getEntriesByType('resource').some(entry => /rig-|compare-/.test(entry.name)),
+    )),
     'other views are not fetched before they are opened',
   );
   ok(/paper pair/.test(await page.title()), 'the title names the design');
@@ -184,7 +186,10 @@ await chapter('figures', async () => {
   ok(lines.length === 35 && lines[2].startsWith('mesh cycle,'), 'a figure as CSV');
   ok(/paper pair/.test(lines[0]) && lines[1].startsWith('# Loaded transmission error'), 'which says whose it is');
   ok(/^paper-pair.*-loaded-te\.csv$/.test(csv.suggestedFilename()), 'in its name too');
-  ok(lines.slice(3).every(line => line.split(',').every(cell => cell.replace(/[-.]/g, '').length <= 12)), 'with six digits');
+  ok(
+    lines.slice(3).every(line => line.split(',').every(cell => cell.replace(/[-.]/g, '').length <= 12)),
+    'with six digits',
+  );
   await figure.getByRole('button', { name: /menu/ }).click();
   const [png] = await Promise.all([
     page.waitForEvent('download'),
@@ -272,7 +277,8 @@ await chapter('search', async () => {
 
 await chapter('compare and print', async () => {
   await page.goto(
-    `${server.address}#compare?from=paper-case-a&items=unmodified,current,job:${job}&${START.split('&').slice(1).join('&')}`,
+    `${server.address}#compare?from=paper-case-a&items=unmodified,current,job:${job}&` +
+      START.split('&').slice(1).join('&'),
   );
   await page.waitForFunction(
     () =>

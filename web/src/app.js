@@ -14,8 +14,8 @@ import { notice } from './base/notice.js';
  */
 
 /**
- * @typedef {{ id: string, title: string, load: () => Promise<(app: App) => View> }} Entry one tab; fetched and made when
- * it is first opened
+ * @typedef {{ id: string, title: string, load: () => Promise<(app: App) => View> }} Entry one tab; fetched and made
+ * when it is first opened
  */
 
 const OWN_KEYS = ['job', 'items', 'tab']; // of views, in the address

@@ -66,7 +66,9 @@ const TOTAL = {
   label: 'Objective J',
   sub: 'all load cases',
   unit: '',
-  help: 'Transmission error, impact and vibration over the duty cycle, each divided by that of the unmodified pair and weighted; what a search makes small.',
+  help:
+    'Transmission error, impact and vibration over the duty cycle, each divided by that of the unmodified pair ' +
+    'and weighted; what a search makes small.',
   good: '1 is the unmodified pair; 0.4 is much better.',
 };
 
@@ -215,6 +217,7 @@ function show(cell, value, percent, against) {
   cell.value.textContent = sig(value, 3);
   cell.delta.textContent =
     percent === undefined ? '' : `${percent < -0.05 ? '▼' : percent > 0.05 ? '▲' : ''} ${changeText(percent)}`;
-  cell.delta.className = `delta${percent === undefined || Math.abs(percent) < 1 ? '' : percent < 0 ? ' better' : ' worse'}`;
+  const clear = percent !== undefined && Math.abs(percent) >= 1;
+  cell.delta.className = clear ? `delta ${percent < 0 ? 'better' : 'worse'}` : 'delta';
   cell.delta.title = percent === undefined ? '' : `against ${against}`;
 }

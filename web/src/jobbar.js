@@ -88,11 +88,7 @@ export class JobBar {
       h('span', null, progressText(job)),
       h('span', null, job.best ? `best J ${sig(job.best.J, 3)}` : ''),
       progressBar(job),
-      h(
-        'span.left',
-        null,
-        leftText(job),
-      ),
+      h('span.left', null, leftText(job)),
       h(
         'button.small',
         {

@@ -14,8 +14,8 @@ import { Shell } from './shell/shell.js';
 import { designView } from './views/design.js';
 
 /**
- * The tabs, in their order; those without a title are reached otherwise. What is not the first view is fetched when it is
- * first opened. @type {import('./app.js').Entry[]}
+ * The tabs, in their order; those without a title are reached otherwise. What is not the first view is fetched when
+ * it is first opened. @type {import('./app.js').Entry[]}
  */
 const VIEWS = [
   { id: 'design', title: 'Design', load: async () => designView },

@@ -2,7 +2,7 @@
 // The report: the verdict first, then every figure drawn for paper from its numbers, then data and assumptions. It is
 // the same on the screen and on paper, and does not depend on what has been seen.
 import { fill, h } from './base/dom.js';
-import { labelOf, plain, unitText } from './base/format.js';
+import { dateText, labelOf, plain, unitText } from './base/format.js';
 import { valueAt } from './base/pointer.js';
 import { sheetAsSvg } from './figures/sheet.js';
 import { tableOf } from './verdict.js';
@@ -137,14 +137,12 @@ function reportOf(parts, fields) {
       'header.report-head',
       null,
       h('h1', null, title),
-      h(
-        'p',
-        null,
-        `${result?.program ?? 'easeoff'} · ${new Date().toLocaleString(undefined, { dateStyle: 'long', timeStyle: 'short' })}`,
-      ),
+      h('p', null, `${result?.program ?? 'easeoff'} · ${dateText(new Date().toISOString())}`),
       result?.design_hash ? h('p.hash', null, `design number ${result.design_hash}`) : null,
     ),
-    missing.length ? h('p.report-missing', null, `Not in this report, still being computed: ${missing.join(', ')}.`) : null,
+    missing.length
+      ? h('p.report-missing', null, `Not in this report, still being computed: ${missing.join(', ')}.`)
+      : null,
     lead,
     h('section.report-figures', null, figures.map(pictureOf)),
     result ? reportData(fields, result) : null,
@@ -169,7 +167,11 @@ export class Paper {
   }
 }
 
-/** The report on the screen, and what it still waits for. @param {import('./app.js').App} app @returns {import('./app.js').View} */
+/**
+ * The report on the screen, and what it still waits for.
+ * @param {import('./app.js').App} app
+ * @returns {import('./app.js').View}
+ */
 export function reportView(app) {
   const state = h('span.report-state', { role: 'status' });
   const print = h('button.primary', { type: 'button', onclick: () => window.print() }, 'Print, or save as PDF');
@@ -177,13 +179,7 @@ export function reportView(app) {
   const element = h(
     '.report-view',
     null,
-    h(
-      '.report-bar',
-      null,
-      h('button', { type: 'button', onclick: () => history.back() }, '← Back'),
-      state,
-      print,
-    ),
+    h('.report-bar', null, h('button', { type: 'button', onclick: () => history.back() }, '← Back'), state, print),
     sheet,
   );
   let drawn = '';

@@ -27,7 +27,7 @@ export function tableOf(head, rows) {
           'tr',
           null,
           h('th', { scope: 'row' }, name),
-          cells.map(cell => h('td.number', null, cell)),
+          cells.map(cell => h(/^[−\d–±+.]/.test(String(cell)) ? 'td.number' : 'td', null, cell)),
         ),
       ),
     ),

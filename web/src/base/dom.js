@@ -37,7 +37,7 @@ function append(element, children) {
  * The element type that "tag.class" makes.
  * @template {string} T
  * @typedef {T extends keyof HTMLElementTagNameMap ? HTMLElementTagNameMap[T]
- *   : T extends `${infer Tag}.${string}` 
+ *   : T extends `${infer Tag}.${string}`
  *   ? (Tag extends keyof HTMLElementTagNameMap ? HTMLElementTagNameMap[Tag] : HTMLElement) : HTMLElement} ElementOf
  */
 

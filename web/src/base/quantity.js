@@ -75,7 +75,9 @@ export function readQuantity(text, unit) {
   const units = TAKEN[unit ?? ''] ?? {};
   const factor = rest === unitText(unit).replace(SPACES, '').toLowerCase() ? 1 : units[rest];
   if (factor === undefined)
-    return { fault: unit ? `The unit here is ${unitText(unit)}, not ${rest}.` : `A number without a unit, not “${rest}”.` };
+    return {
+      fault: unit ? `The unit here is ${unitText(unit)}, not ${rest}.` : `A number without a unit, not “${rest}”.`,
+    };
   return { value: factor === 1 ? value : Number((value * factor).toPrecision(12)) };
 }
 

@@ -58,7 +58,9 @@ export function colour(name) {
   let value = known.get(name);
   if (value === undefined) {
     if (onSheet && !sheet.isConnected) document.body.append(sheet);
-    value = getComputedStyle(onSheet ? sheet : document.documentElement).getPropertyValue(`--${name}`).trim();
+    value = getComputedStyle(onSheet ? sheet : document.documentElement)
+      .getPropertyValue(`--${name}`)
+      .trim();
     known.set(name, value);
   }
   return value;

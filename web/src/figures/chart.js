@@ -118,6 +118,7 @@ export class Chart {
   /** @param {ChartData} data */
   set(data) {
     this.#data = data;
+    this.legend.set(data.curves);
     if (this.#seen) this.#draw();
     else this.#stale = true;
   }

@@ -4,7 +4,10 @@ import { fill, h } from '../base/dom.js';
 
 /** @typedef {import('./chart.js').Curve} Curve */
 
-/** What a curve is switched by: its label; of a reference what it is compared with ("828 N m, unmodified"). @param {Curve} curve */
+/**
+ * What a curve is switched by: its label; of a reference what it is compared with ("828 N m, unmodified").
+ * @param {Curve} curve
+ */
 export function keyOf(curve) {
   return curve.line ? curve.label.replace(/^.*, /, '') : curve.label;
 }
@@ -36,6 +39,11 @@ export class Legend {
         line: curve.line ?? 'dashed',
       })),
     ];
+  }
+
+  /** What it is a legend of, drawn or not. @param {Curve[]} curves */
+  set(curves) {
+    this.#curves = curves;
   }
 
   /** @param {Curve[]} curves */

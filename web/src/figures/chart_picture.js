@@ -100,7 +100,7 @@ function line(pen, from, to) {
 }
 
 /** @param {Plot} plot */
-function paintMarks({ pen, height, marks, across, xs }) {
+function paintMarks({ pen, width, height, marks, across, xs }) {
   let edge = -Infinity;
   pen.font = SMALL;
   for (const mark of marks) {
@@ -111,9 +111,11 @@ function paintMarks({ pen, height, marks, across, xs }) {
     line(pen, [x, BOX.top], [x, height - BOX.bottom]);
     if (!mark.label || x < edge) continue;
     pen.fillStyle = colour('muted');
-    pen.textAlign = 'left';
-    pen.fillText(mark.label, x + 3, BOX.top + 10);
-    edge = x + pen.measureText(mark.label).width + 8;
+    const own = pen.measureText(mark.label).width;
+    const beyond = x + own + 3 > width - BOX.right;
+    pen.textAlign = beyond ? 'right' : 'left';
+    pen.fillText(mark.label, beyond ? x - 3 : x + 3, BOX.top + 10);
+    edge = x + own + 8;
   }
   pen.setLineDash([]);
 }

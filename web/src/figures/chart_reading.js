@@ -69,7 +69,8 @@ export class Reading {
       const values = Array.from(curve.y).filter(value => typeof value === 'number');
       return values.length ? `${curve.label} ${sig(Math.min(...values), 3)} to ${sig(Math.max(...values), 3)}` : '';
     });
-    const text = `${title} over ${xLabel}${unit ? ` in ${unit}` : ''}: ${ranges.filter(Boolean).join('; ')}. Arrow keys read it.`;
+    const name = `${title} over ${xLabel}${unit ? ` in ${unit}` : ''}`;
+    const text = `${name}: ${ranges.filter(Boolean).join('; ')}. Arrow keys read it.`;
     this.frame.body.setAttribute('aria-label', text);
   }
 

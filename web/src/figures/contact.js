@@ -26,7 +26,9 @@ export class Contact {
       {
         title: 'Contact pressure',
         unit: 'MPa',
-        help: 'Largest contact pressure at each place of the pinion flank over the mesh cycle. Dashed: where the pair it is compared with carries load; lines: the contact lines at the pointer.',
+        help:
+          'Largest contact pressure at each place of the pinion flank over the mesh cycle. Dashed: where the ' +
+          'pair it is compared with carries load; lines: the contact lines at the pointer.',
         good: 'Load in the middle of the flank, none on tip, root and face ends.',
       },
       (pen, width, height) => this.#paint(pen, width, height),

@@ -91,24 +91,20 @@ export class Frame {
       '⋯',
     );
     button.addEventListener('click', () =>
-      openPopover(
-        button,
-        'menu',
-        (panel, close) => {
-          /** @param {string} label @param {() => unknown} act */
-          const item = (label, act) =>
-            h('button', { type: 'button', role: 'menuitem', onclick: () => (close(), act()) }, label);
-          fill(
-            panel,
-            item('Open large', () => this.enlarge()),
-            this.drawing.paint && item('Save as PNG', () => this.savePicture()),
-            this.drawing.paint && item('Save as SVG', () => this.saveDrawing()),
-            this.drawing.table && item('Save as CSV', () => this.saveTable()),
-            this.drawing.table && item('Copy the numbers', () => this.copyTable()),
-            this.drawing.reset && item('Reset the view', () => this.drawing.reset?.()),
-          );
-        },
-      ),
+      openPopover(button, 'menu', (panel, close) => {
+        /** @param {string} label @param {() => unknown} act */
+        const item = (label, act) =>
+          h('button', { type: 'button', role: 'menuitem', onclick: () => (close(), act()) }, label);
+        fill(
+          panel,
+          item('Open large', () => this.enlarge()),
+          this.drawing.paint && item('Save as PNG', () => this.savePicture()),
+          this.drawing.paint && item('Save as SVG', () => this.saveDrawing()),
+          this.drawing.table && item('Save as CSV', () => this.saveTable()),
+          this.drawing.table && item('Copy the numbers', () => this.copyTable()),
+          this.drawing.reset && item('Reset the view', () => this.drawing.reset?.()),
+        );
+      }),
     );
     return h('.menu', null, button);
   }
@@ -133,7 +129,10 @@ export class Frame {
     dialog.showModal();
   }
 
-  /** The figure as it goes to paper; null when there is nothing to show. @returns {import('./sheet.js').Content | null} */
+  /**
+   * The figure as it goes to paper; null when there is nothing to show.
+   * @returns {import('./sheet.js').Content | null}
+   */
   content() {
     const { paint, keys, empty } = this.drawing;
     if (!paint || empty) return null;

@@ -21,7 +21,9 @@ export class GearDrawing {
     this.painting = new Painting(
       {
         title: 'Teeth in mesh',
-        help: 'Transverse section at mid face; the pinion above drives. The line of action with the points of contact; in colour what the modification takes off, drawn larger.',
+        help:
+          'Transverse section at mid face; the pinion above drives. The line of action with the points of ' +
+          'contact; in colour what the modification takes off, drawn larger.',
       },
       (pen, width, height) => this.#paint(pen, width, height),
       { label: 'Transverse section of the teeth in mesh', empty: () => this.#result === null },

@@ -19,7 +19,9 @@ export class Impact {
   constructor() {
     this.frame = new Frame({
       title: 'Entering impact',
-      help: 'The blow of the incoming tooth, which touches before its time because the teeth before it are bent: force, approach speed and duration.',
+      help:
+        'The blow of the incoming tooth, which touches before its time because the teeth before it are bent: ' +
+        'force, approach speed and duration.',
       good: 'A small force is good; tip relief makes room for the bending.',
       drawing: { table: () => this.#rows },
     });
@@ -59,7 +61,9 @@ export class Impact {
         null,
         h('th', { scope: 'col' }, 'load case'),
         h('th', { scope: 'col' }, 'end'),
-        COLUMNS.slice(0, SHOWN).map(([, text, unit]) => h('th', { scope: 'col' }, text, h('span.unit', null, ` ${unit}`))),
+        COLUMNS.slice(0, SHOWN).map(([, text, unit]) =>
+          h('th', { scope: 'col' }, text, h('span.unit', null, ` ${unit}`)),
+        ),
         h('th', { scope: 'col' }, 'change'),
       ),
     );

@@ -4,6 +4,7 @@ import { fill, h } from '../base/dom.js';
 import { sig } from '../base/format.js';
 import { colour } from '../base/theme.js';
 import { Painting, SMALL } from './canvas.js';
+import { tickText, ticks } from './ticks.js';
 
 /**
  * @typedef {{ x: number, measured: number, sigma: number, predicted: number | null, label: string, outlier?: boolean,
@@ -16,17 +17,6 @@ import { Painting, SMALL } from './canvas.js';
 
 const NEAR = 14; // px
 const BOX = { left: 42, top: 10, right: 14, bottom: 30 };
-
-/** Four or five round numbers of a range. @param {number} low @param {number} high */
-function ticks(low, high) {
-  const raw = (high - low) / 4;
-  const power = 10 ** Math.floor(Math.log10(raw));
-  const step = [1, 2, 2.5, 5, 10].map(factor => factor * power).find(candidate => candidate >= raw) ?? raw;
-  const values = [];
-  for (let value = Math.ceil(low / step) * step; value <= high * (1 + 1e-9); value += step)
-    values.push(Number(value.toPrecision(10)));
-  return values;
-}
 
 /**
  * @param {CanvasRenderingContext2D} pen @param {number} width @param {number} height
@@ -44,10 +34,10 @@ function axes(pen, width, height, xs, ys, across, down, xLabel) {
     pen.lineTo(width - BOX.right, down(value));
     pen.stroke();
     pen.textAlign = 'right';
-    pen.fillText(String(value), BOX.left - 5, down(value) + 3);
+    pen.fillText(tickText(value), BOX.left - 5, down(value) + 3);
   }
   pen.textAlign = 'center';
-  for (const value of xs) pen.fillText(String(value), across(value), height - BOX.bottom + 12);
+  for (const value of xs) pen.fillText(tickText(value), across(value), height - BOX.bottom + 12);
   pen.fillText(xLabel, BOX.left + (width - BOX.left - BOX.right) / 2, height - 3);
 }
 

@@ -12,7 +12,9 @@ export class Stiffness {
     this.chart = new Chart({
       title: 'Mesh stiffness',
       unit: 'N/µm',
-      help: 'Force that turns the teeth by one micrometre, normal to the flank, of each end: tangent for a small change of load, secant from zero load.',
+      help:
+        'Force that turns the teeth by one micrometre, normal to the flank, of each end: tangent for a small ' +
+        'change of load, secant from zero load.',
       good: 'High and even is good.',
       xLabel: 'mesh cycle',
       cycle: true,
@@ -138,7 +140,9 @@ export class RootStress {
       title: 'Root stress',
       unit: 'MPa',
       name: 'Root stress of a tooth on its way through the mesh',
-      help: 'Largest principal stress over the face in the more stressed fillet, while one tooth passes through the mesh.',
+      help:
+        'Largest principal stress over the face in the more stressed fillet, while one tooth passes through the ' +
+        'mesh.',
       good: 'Low is good; the largest value is the one at the top of the page.',
       xLabel: 'mesh cycles',
       controls: [

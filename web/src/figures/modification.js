@@ -36,7 +36,9 @@ export class ModificationCharts {
       {
         title: 'Profile modification',
         unit: 'µm',
-        help: 'Material taken off along the profile, to the right, as on an inspection sheet (K-chart): root below, tip above.',
+        help:
+          'Material taken off along the profile, to the right, as on an inspection sheet (K-chart): root below, ' +
+          'tip above.',
         controls: controls(),
       },
       (pen, width, height) => this.#paintProfile(pen, width, height),

@@ -26,9 +26,18 @@ const ROOM = { left: 16, right: 74, top: 16, bottom: 16 };
  * @property {'left' | 'right'} end
  * @property {Float32Array} taken um @property {Float32Array} pressure MPa @property {Float32Array} cycle of touching
  */
-/** @typedef {{ surfaces: Surface[], most: number, depth: number, two: boolean, face: number, path: [number, number] }} Relief */
+/**
+ * @typedef {{ surfaces: Surface[], most: number, depth: number, two: boolean, face: number, path: [number, number] }}
+ *   Relief
+ */
 
-/** Of all flanks of an end together. @param {any} result @param {any} loadCase @param {'left' | 'right'} end @returns {Surface} */
+/**
+ * Of all flanks of an end together.
+ * @param {any} result
+ * @param {any} loadCase
+ * @param {'left' | 'right'} end
+ * @returns {Surface}
+ */
 function surfaceOf(result, loadCase, end) {
   const { geometry: g, modification } = result;
   const { pinion, gear, eta_mm: faces } = modification;
@@ -132,7 +141,8 @@ function placeOf(relief, surface, i, j) {
 
 /** @param {number[]} colour @param {number[]} ground @param {number} part @param {number} light */
 function mixed(colour, ground, part, light) {
-  return `rgb(${colour.map((value, k) => Math.round(Math.min(255, (ground[k] + (value - ground[k]) * part) * light))).join()})`;
+  const parts = colour.map((value, k) => (ground[k] + (value - ground[k]) * part) * light);
+  return `rgb(${parts.map(value => Math.round(Math.min(255, value))).join()})`;
 }
 
 /** "#eceff2" @param {string} text */
@@ -170,7 +180,9 @@ function paintSurface(pen, projection, relief, surface, phase) {
     pen.fillStyle = mixed(scaleColour(part), ground, bright, Math.min(1.04, Math.max(0.78, 1 + LIGHT * slope)));
     pen.strokeStyle = pen.fillStyle;
     pen.beginPath();
-    corners.forEach((corner, k) => (k === 0 ? pen.moveTo(...projection.at(corner)) : pen.lineTo(...projection.at(corner))));
+    corners.forEach((corner, k) =>
+      k === 0 ? pen.moveTo(...projection.at(corner)) : pen.lineTo(...projection.at(corner)),
+    );
     pen.closePath();
     pen.fill();
     pen.stroke();
@@ -178,7 +190,12 @@ function paintSurface(pen, projection, relief, surface, phase) {
   paintWires(pen, projection, relief, surface);
 }
 
-/** @param {CanvasRenderingContext2D} pen @param {Projection} projection @param {Relief} relief @param {Surface} surface */
+/**
+ * @param {CanvasRenderingContext2D} pen
+ * @param {Projection} projection
+ * @param {Relief} relief
+ * @param {Surface} surface
+ */
 function paintWires(pen, projection, relief, surface) {
   pen.strokeStyle = colour('muted');
   pen.globalAlpha = 0.5;
@@ -287,7 +304,7 @@ function paintScale(pen, most, width, height) {
 
 /** How much the heights are drawn larger than the lengths. @param {Relief} relief */
 export function exaggeration(relief) {
-  return (TALL / (relief.depth / 1000)) / (FACE / relief.face);
+  return TALL / (relief.depth / 1000) / (FACE / relief.face);
 }
 
 /**

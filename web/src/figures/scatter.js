@@ -7,6 +7,7 @@ import { colour } from '../base/theme.js';
 import { Painting, SMALL } from './canvas.js';
 import { scaleColour } from './colours.js';
 import { placeTip } from './frame.js';
+import { tickText, ticks } from './ticks.js';
 
 /** @typedef {{ values: (number | null)[], kind: 'new' | 'known' | 'front', mark?: string, pick?: () => void }} Dot */
 /** @typedef {{ columns: string[], dots: Dot[] }} Cloud */
@@ -116,7 +117,7 @@ export class Scatter {
         pen.lineWidth = 1;
         pen.stroke();
       } else {
-        pen.fillStyle = colour(dot.mark ? 'best' : 'evaluated');
+        pen.fillStyle = colour(dot.mark === 'start' ? 'reference' : dot.mark ? 'best' : 'evaluated');
         pen.fill();
       }
       pen.globalAlpha = 1;
@@ -174,33 +175,22 @@ function axes(pen, width, height, xs, ys, across, down) {
   pen.lineWidth = 1;
   pen.strokeStyle = colour('grid');
   pen.fillStyle = colour('muted');
-  for (const value of ticks(xs)) {
+  for (const value of ticks(...xs)) {
     pen.beginPath();
     pen.moveTo(across(value), BOX.top);
     pen.lineTo(across(value), height - BOX.bottom);
     pen.stroke();
     pen.textAlign = 'center';
-    pen.fillText(String(value), across(value), height - BOX.bottom + 12);
+    pen.fillText(tickText(value), across(value), height - BOX.bottom + 12);
   }
-  for (const value of ticks(ys)) {
+  for (const value of ticks(...ys)) {
     pen.beginPath();
     pen.moveTo(BOX.left, down(value));
     pen.lineTo(width - BOX.right, down(value));
     pen.stroke();
     pen.textAlign = 'right';
-    pen.fillText(String(value), BOX.left - 5, down(value) + 3);
+    pen.fillText(tickText(value), BOX.left - 5, down(value) + 3);
   }
-}
-
-/** Four or five round numbers of a range. @param {[number, number]} range */
-function ticks([low, high]) {
-  const raw = (high - low) / 4;
-  const power = 10 ** Math.floor(Math.log10(raw));
-  const step = [1, 2, 5, 10].map(factor => factor * power).find(candidate => candidate >= raw) ?? raw;
-  const values = [];
-  for (let value = Math.ceil(low / step) * step; value <= high; value += step)
-    values.push(Number(value.toPrecision(10)));
-  return values;
 }
 
 export class Parallel {
@@ -236,7 +226,7 @@ export class Parallel {
       ),
     );
     const last = columns.length - 1;
-    const [left, right, top, bottom] = [34, width - 34, 16, height - 22];
+    const [left, right, top, bottom] = [34, width - 34, 16, height - 36];
     /** @param {number} k */
     const across = k => left + ((right - left) * k) / last;
     const ordered = [...dots].sort((a, b) => (b.values[last] ?? Infinity) - (a.values[last] ?? Infinity));
@@ -269,7 +259,8 @@ export class Parallel {
       pen.fillStyle = colour('muted');
       pen.fillText(sig(ranges[k][1], 3), across(k), top - 5);
       pen.fillText(sig(ranges[k][0], 3), across(k), bottom + 10);
-      pen.fillText(name, Math.min(Math.max(across(k), 40), width - 30), height - 2);
+      const half = pen.measureText(name).width / 2;
+      pen.fillText(name, Math.min(Math.max(across(k), half + 2), width - half - 2), height - 2 - (k % 2) * 11);
     });
   }
 }

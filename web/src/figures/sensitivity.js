@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How much the shown design depends on what no drawing holds: misalignment first, then load and relief as a small figure
-// that is always in sight; any number of the design as a figure of its own.
+// How much the shown design depends on what no drawing holds: misalignment first, then load and relief as a small
+// figure that is always in sight; any number of the design as a figure of its own.
 import { fill, h } from '../base/dom.js';
 import { labelOf, plain, sig, unitText } from '../base/format.js';
 import { Lane } from '../base/lane.js';
@@ -143,8 +143,11 @@ function pictureOf(points) {
   const values = points.map(point => point.value);
   const [low, high] = [Math.min(...values, 0), Math.max(...values)];
   const [from, to] = [points[0].at, points[points.length - 1].at];
-  const place = (/** @type {Point} */ { at, value }) =>
-    `${(((at - from) / (to - from || 1)) * (WIDTH - 4) + 2).toFixed(1)} ${(HEIGHT - 2 - ((value - low) / (high - low || 1)) * (HEIGHT - 4)).toFixed(1)}`;
+  const place = (/** @type {Point} */ { at, value }) => {
+    const x = ((at - from) / (to - from || 1)) * (WIDTH - 4) + 2;
+    const y = HEIGHT - 2 - ((value - low) / (high - low || 1)) * (HEIGHT - 4);
+    return `${x.toFixed(1)} ${y.toFixed(1)}`;
+  };
   const svg = document.createElementNS('http://www.w3.org/2000/svg', 'svg');
   svg.setAttribute('viewBox', `0 0 ${WIDTH} ${HEIGHT}`);
   svg.setAttribute('aria-hidden', 'true');
@@ -160,6 +163,7 @@ export class Sensitivity {
   #key = IN_PLANE;
   #measure = MEASURES[0][0];
   #asked = '';
+  #drawn = '';
 
   /** @param {import('../base/store.js').DesignStore} store */
   constructor(store) {
@@ -172,7 +176,11 @@ export class Sensitivity {
       { role: 'group', 'aria-label': 'Sensitivity of the transmission error' },
       h('span.sensitivity-title', null, 'TE, peak to peak, with'),
       this.cells,
-      h('button.link', { type: 'button', onclick: () => this.chart.element.scrollIntoView({ block: 'center' }) }, 'more'),
+      h(
+        'button.link',
+        { type: 'button', onclick: () => this.chart.element.scrollIntoView({ block: 'center' }) },
+        'more',
+      ),
     );
     const keys = h(
       'select.small-select',
@@ -200,8 +208,12 @@ export class Sensitivity {
     this.chart = new Chart({
       title: 'Sensitivity',
       name: 'Sensitivity of the design to one number',
-      help: 'One number of the design varied, all others as they are, at the load case with the largest share; the unmodified pair beside it.',
-      good: 'Flat and below the unmodified pair over the whole range that your shafts, housing and grinding machine bring.',
+      help:
+        'One number of the design varied, all others as they are, at the load case with the largest share; the ' +
+        'unmodified pair beside it.',
+      good:
+        'Flat and below the unmodified pair over the whole range that your shafts, housing and grinding machine ' +
+        'bring.',
       xLabel: 'value',
       zero: true,
       wide: true,
@@ -216,6 +228,24 @@ export class Sensitivity {
     this.#later();
   }
 
+  /** Nothing more is to come for the design of now. */
+  get settled() {
+    return this.#design !== null && this.#asked === this.#question() && this.#drawn === this.#asked;
+  }
+
+  /** At once. */
+  now() {
+    clearTimeout(this.#timer);
+    this.#ask();
+  }
+
+  /** What the curves depend on. */
+  #question() {
+    const { gear_pair, modification, alignment, load_cases, supports, shafts, resolution } = this.#design ?? {};
+    const parts = [gear_pair, modification, alignment, load_cases, supports, shafts, resolution];
+    return JSON.stringify([...parts, this.#key, this.#measure]);
+  }
+
   #later() {
     clearTimeout(this.#timer);
     this.#timer = window.setTimeout(() => this.#ask(), REST);
@@ -224,7 +254,7 @@ export class Sensitivity {
   #ask() {
     const design = this.#design;
     if (!design?.gear_pair) return;
-    const text = JSON.stringify([design.gear_pair, design.modification, design.alignment, design.load_cases, design.supports, design.shafts, design.resolution, this.#key, this.#measure]);
+    const text = this.#question();
     if (text === this.#asked) return;
     this.#asked = text;
     const k = mainCase(design);
@@ -251,7 +281,13 @@ export class Sensitivity {
       const [first, last] = [points[0], points[points.length - 1]];
       fill(
         this.cells[i],
-        h('span.sensitivity-name', null, points.length ? `${name} ${plain(Number(first.at.toPrecision(3)))} … ${plain(Number(last.at.toPrecision(3)))} ${unit}` : name),
+        h(
+          'span.sensitivity-name',
+          null,
+          points.length
+            ? `${name} ${plain(Number(first.at.toPrecision(3)))} … ${plain(Number(last.at.toPrecision(3)))} ${unit}`
+            : name,
+        ),
         points.length ? pictureOf(points) : h('span.sensitivity-blank'),
         h('b', null, points.length ? `${sig(Math.min(...values), 2)} … ${sig(Math.max(...values), 2)} µm` : '–'),
       );
@@ -271,7 +307,8 @@ export class Sensitivity {
     const both = [this.#key, this.#key.replace('/left/', '/right/')];
     const values = Array.from({ length: STEPS }, (_, i) => low + ((high - low) * i) / (STEPS - 1));
     /** @param {any} base */
-    const varied = base => values.map(at => ({ at, design: both.reduce((each, pointer) => withValue(each, pointer, at), base) }));
+    const varied = base =>
+      values.map(at => ({ at, design: both.reduce((each, pointer) => withValue(each, pointer, at), base) }));
     const flank = this.#key.startsWith('/modification');
     const plainPair = flank ? [{ at: NaN, design: unmodified(design) }] : varied(unmodified(design));
     this.large.ask([...varied(design), ...plainPair], found => {
@@ -301,6 +338,7 @@ export class Sensitivity {
       });
     curves.push({ label: 'this design', y: own.map(each => read(each.result)), colour: OWN_COLOUR });
     this.chart.name(`${labelOf(key)}${unit ? `, ${unit}` : ''}`, `${measure[1]}, ${measure[2]}`);
+    this.#drawn = this.#asked;
     this.chart.set({ x, curves, marks: [{ x: numberAt(this.#design, this.#key), label: 'now', strong: true }] });
   }
 }

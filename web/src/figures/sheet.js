@@ -67,7 +67,13 @@ function measure(content, ruler, size) {
   return { ...size, places, rows, whole: HEAD + size.height + rows * LINE + 8 + (size.foot ? FOOT : 0) };
 }
 
-/** A line in a smaller font when it would not fit. @param {Pen} pen @param {string} text @param {number} y @param {number} room */
+/**
+ * A line in a smaller font when it would not fit.
+ * @param {Pen} pen
+ * @param {string} text
+ * @param {number} y
+ * @param {number} room
+ */
 function paintLine(pen, text, y, room) {
   const size = Number(/([\d.]+)px/.exec(pen.font)?.[1] ?? 11);
   const wide = pen.measureText(text).width;

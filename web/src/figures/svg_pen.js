@@ -102,7 +102,14 @@ export class SvgPen {
     this.#path += `M${this.#at(x, y)}h${short(width)}v${short(height)}h${short(-width)}Z`;
   }
 
-  /** Whole circles and arcs. @param {number} x @param {number} y @param {number} radius @param {number} from @param {number} to */
+  /**
+   * Whole circles and arcs.
+   * @param {number} x
+   * @param {number} y
+   * @param {number} radius
+   * @param {number} from
+   * @param {number} to
+   */
   arc(x, y, radius, from, to) {
     const half = (from + to) / 2;
     for (const [i, angle] of [from, half, to].entries()) {
@@ -191,7 +198,13 @@ export class SvgPen {
     element.textContent = text;
   }
 
-  /** @param {HTMLCanvasElement} picture @param {number} x @param {number} y @param {number} width @param {number} height */
+  /**
+   * @param {HTMLCanvasElement} picture
+   * @param {number} x
+   * @param {number} y
+   * @param {number} width
+   * @param {number} height
+   */
   drawImage(picture, x, y, width, height) {
     const [left, top] = this.#at(x, y).split(' ');
     this.#element('image', {

@@ -175,7 +175,9 @@ export class SpeedSweep extends Sweep {
         title: 'Vibration over speed',
         name: 'Vibration acceleration over the speed',
         unit: 'm/s²',
-        help: 'RMS of the normal acceleration of the teeth at each speed, at the torque of the chosen load case; upright lines: a multiple of the mesh frequency meets a natural frequency.',
+        help:
+          'RMS of the normal acceleration of the teeth at each speed, at the torque of the chosen load case; ' +
+          'upright lines: a multiple of the mesh frequency meets a natural frequency.',
         good: 'Low at the speeds you run at, and no peak near them.',
         xLabel: 'pinion speed',
         xUnit: 'rpm',

@@ -34,15 +34,15 @@ export class Topography {
     const views = h(
       'span.views',
       { role: 'group', 'aria-label': 'View from' },
-      VIEWS.map(([name, view]) =>
-        h('button.small', { type: 'button', onclick: () => this.#look(view) }, name),
-      ),
+      VIEWS.map(([name, view]) => h('button.small', { type: 'button', onclick: () => this.#look(view) }, name)),
     );
     this.painting = new Painting(
       {
         title: 'Ease-off',
         name: 'Ease-off of both flanks together',
-        help: 'Material taken off pinion and gear together, over the face and from root to tip of the pinion flank; the colour is the contact pressure, bright on the contact lines of one mesh position.',
+        help:
+          'Material taken off pinion and gear together, over the face and from root to tip of the pinion flank; ' +
+          'the colour is the contact pressure, bright on the contact lines of one mesh position.',
         good: 'Load in the middle of the face, none on its edges.',
         controls: [views, this.play],
       },

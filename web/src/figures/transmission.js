@@ -35,7 +35,9 @@ export class Transmission {
       title: 'Loaded TE',
       name: 'Loaded transmission error',
       unit: 'µm',
-      help: 'How far the gear lags behind the pinion under load, along the transverse line of action, less its mean over the mesh cycle; one curve for each load case.',
+      help:
+        'How far the gear lags behind the pinion under load, along the transverse line of action, less its mean ' +
+        'over the mesh cycle; one curve for each load case.',
       good: 'Flat is good: the distance from lowest to highest, peak to peak, excites vibration.',
       xLabel: 'mesh cycle',
       cycle: true,
@@ -45,7 +47,9 @@ export class Transmission {
       title: 'Orders of the loaded TE',
       name: 'Mesh orders of the loaded transmission error',
       unit: 'µm',
-      help: 'Amplitude of each multiple of the mesh frequency, of the pair; pale behind each bar: what it is compared with.',
+      help:
+        'Amplitude of each multiple of the mesh frequency, of the pair; pale behind each bar: what it is ' +
+        'compared with.',
       good: 'Small is good, the first orders most of all.',
       xLabel: 'mesh order',
       bars: true,

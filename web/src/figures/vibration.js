@@ -20,7 +20,9 @@ export class Vibration {
       title: 'Vibration',
       name: 'Vibration acceleration of the teeth',
       unit: 'm/s²',
-      help: 'Relative acceleration of the teeth of each end along the line of action in steady running: normal, transverse, or by rotation alone.',
+      help:
+        'Relative acceleration of the teeth of each end along the line of action in steady running: normal, ' +
+        'transverse, or by rotation alone.',
       good: 'Small is good.',
       xLabel: 'mesh cycle',
       cycle: true,
@@ -34,7 +36,9 @@ export class Vibration {
     this.orders = new Chart({
       title: 'Orders of the vibration',
       unit: 'm/s²',
-      help: 'Amplitude of each multiple of the mesh frequency, mean of the ends; pale behind each bar: what it is compared with.',
+      help:
+        'Amplitude of each multiple of the mesh frequency, mean of the ends; pale behind each bar: what it is ' +
+        'compared with.',
       good: 'Small is good.',
       xLabel: 'mesh order',
       bars: true,
@@ -77,7 +81,8 @@ export class Vibration {
     }
     const own = loadCase.vibration;
     for (const end of endsOf(result))
-      if (own?.[end]?.history) curves.push({ label: `${end} end`, y: own[end].history[reading], colour: END_COLOUR[end] });
+      if (own?.[end]?.history)
+        curves.push({ label: `${end} end`, y: own[end].history[reading], colour: END_COLOUR[end] });
     result.load_cases.forEach((/** @type {any} */ c, /** @type {number} */ i) => {
       const orders = c.vibration?.[`orders_${reading}`];
       if (orders) bars.push({ label: names[i], y: orders.slice(1, ORDERS + 1), colour: caseColour(i) });

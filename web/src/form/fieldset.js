@@ -275,7 +275,11 @@ export class FieldSet {
     return this.#add({ pointer, name, element: row, input, fault, entry, refresh: both });
   }
 
-  /** The slider itself; a run of keys is one step to undo, as a drag is. @param {string} pointer @param {string} name */
+  /**
+   * The slider itself; a run of keys is one step to undo, as a drag is.
+   * @param {string} pointer
+   * @param {string} name
+   */
   #range(pointer, name) {
     let timer = 0;
     let keys = false;

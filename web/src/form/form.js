@@ -20,7 +20,10 @@ import { unfold } from './group.js';
 export class Form {
   /** @type {Set<Control>} */ #controls = new Set();
   /** What null stands for. @type {any} */ resolved = null;
-  /** Brings a field to the page that is not there now: another member, end or view. @type {((pointer: string) => void)[]} */
+  /**
+   * Brings a field to the page that is not there now: another member, end or view.
+   * @type {((pointer: string) => void)[]}
+   */
   finders = [];
 
   /** @param {import('../base/store.js').DesignStore} store @param {Field[]} fields of the design */

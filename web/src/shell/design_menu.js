@@ -63,7 +63,10 @@ export class DesignMenu {
     const name = `${store.design.name || 'unnamed'}${store.changed ? ' *' : ''}`;
     this.name.textContent = name;
     const where = store.from.id ? 'stored' : store.from.example ? `example ${store.from.example}` : 'not stored';
-    const state = store.changed && (store.from.id || store.from.example) ? `changed since it was ${store.from.id ? 'stored' : 'opened'}` : '';
+    const state =
+      store.changed && (store.from.id || store.from.example)
+        ? `changed since it was ${store.from.id ? 'stored' : 'opened'}`
+        : '';
     this.button.title = [name.replace(/ \*$/, ''), where, state].filter(Boolean).join(', ');
   }
 
@@ -131,7 +134,8 @@ export class DesignMenu {
   #storedColumn(item) {
     const { app } = this;
     const all = this.#stored;
-    if (!all?.length) return h('.menu-column', null, h('h2', null, 'Stored'), h('p.figure-note', null, all ? 'None yet.' : '…'));
+    if (!all?.length)
+      return h('.menu-column', null, h('h2', null, 'Stored'), h('p.figure-note', null, all ? 'None yet.' : '…'));
     const rows = h('.menu-rows');
     const draw = () => {
       const words = this.#wanted.toLowerCase().split(/\s+/).filter(Boolean);
@@ -153,20 +157,27 @@ export class DesignMenu {
       },
     });
     draw();
-    return h('.menu-column', null, h('h2', null, 'Stored'), all.length >= MANY || app.store.from.id ? search : null, rows);
+    return h(
+      '.menu-column',
+      null,
+      h('h2', null, 'Stored'),
+      all.length >= MANY || app.store.from.id ? search : null,
+      rows,
+    );
   }
 
   /** @param {any} design @param {(text: string, act: () => unknown, note?: string) => HTMLElement} item */
   #row(design, item) {
     const { app } = this;
     const name = design.name || 'unnamed';
+    const here = String(design.id) === app.store.from.id;
     return h(
       '.menu-row',
       null,
       item(
         name,
         () => app.opening(() => app.library.openStored(String(design.id))),
-        `${dateText(design.updated ?? design.created)}${String(design.id) === app.store.from.id ? ', on the table' : ''}`,
+        `${dateText(design.updated ?? design.created)}${here ? ', on the table' : ''}`,
       ),
       h(
         'button.icon',
@@ -207,19 +218,29 @@ export class DesignMenu {
     const { app } = this;
     const [mine, theirs] = [leaves(app.store.design), leaves(conflict.theirs)];
     const keys = [...new Set([...mine.keys(), ...theirs.keys()])].filter(key => !same(mine.get(key), theirs.get(key)));
-    const rows = keys.slice(0, MOST_DIFFERENCES).map(key =>
-      h(
-        'tr',
-        null,
-        h('th', { scope: 'row' }, key.split('.').map(labelOf).join(', ')),
-        h('td.number', null, valueText(mine.get(key))),
-        h('td.number', null, valueText(theirs.get(key))),
-      ),
-    );
+    const rows = keys
+      .slice(0, MOST_DIFFERENCES)
+      .map(key =>
+        h(
+          'tr',
+          null,
+          h('th', { scope: 'row' }, key.split('.').map(labelOf).join(', ')),
+          h('td.number', null, valueText(mine.get(key))),
+          h('td.number', null, valueText(theirs.get(key))),
+        ),
+      );
     const table = h(
       'table.numbers',
       null,
-      h('thead', null, h('tr', null, ['', 'yours', 'stored now'].map(text => h('th', { scope: 'col' }, text)))),
+      h(
+        'thead',
+        null,
+        h(
+          'tr',
+          null,
+          ['', 'yours', 'stored now'].map(text => h('th', { scope: 'col' }, text)),
+        ),
+      ),
       h('tbody', null, rows),
     );
     const more = keys.length - rows.length;

@@ -46,14 +46,7 @@ export class Shell {
       'The service does not answer. Your design stays here; the page goes on by itself when it is back.',
     );
     this.notice = h('p.notice', { role: 'status', hidden: true });
-    this.elements = [
-      this.#skip(),
-      this.#bar(),
-      this.away,
-      this.notice,
-      app.stage,
-      new JobBar(app).element,
-    ];
+    this.elements = [this.#skip(), this.#bar(), this.away, this.notice, app.stage, new JobBar(app).element];
     app.store.addEventListener('change', () => this.#refresh());
     app.addEventListener('view', () => this.#refresh());
     app.analyst.addEventListener('state', () => this.#drawState());
@@ -150,7 +143,8 @@ export class Shell {
     if (connection.away) this.state.textContent = 'away';
     else if (analyst.state === 'preparing') {
       const fraction = analyst.job?.progress?.fraction;
-      this.state.textContent = `preparing the teeth${typeof fraction === 'number' ? ` ${Math.round(100 * fraction)} %` : '…'}`;
+      const part = typeof fraction === 'number' ? ` ${Math.round(100 * fraction)} %` : '…';
+      this.state.textContent = `preparing the teeth${part}`;
     } else if (analyst.state === 'refused') this.state.textContent = 'not possible';
     else if (analyst.ms) this.state.textContent = `${sig(analyst.ms, 2)} ms`;
   }

@@ -72,7 +72,9 @@ class CompareCurves {
     this.vibration = chart('Vibration', 'm/s²', 'mesh cycle', { cycle: true });
     this.vibrationOrders = chart('Orders of the vibration', 'm/s²', 'mesh order', { bars: true });
     this.root = chart('Root stress of the pinion', 'MPa', 'mesh cycles');
-    this.profile = chart('Profile modification of the pinion', 'µm', 'from the pitch point to the tip', { xUnit: 'mm' });
+    this.profile = chart('Profile modification of the pinion', 'µm', 'from the pitch point to the tip', {
+      xUnit: 'mm',
+    });
     this.lead = chart('Lead modification of the pinion', 'µm', 'from mid face', { xUnit: 'mm' });
     this.charts = [
       this.lte,
@@ -128,18 +130,37 @@ class CompareCurves {
     const text = caseLong(row);
     const one = `${text}, ${end} end`;
     const first = cases[0];
-    put(this.lte, first.position, curves(c => lessMean(c.lte.pair_um), c => c.position), text);
-    put(this.orders, counting(ORDERS.te, 1), curves(c => c.lte.orders_um.slice(1, ORDERS.te + 1)), text);
+    put(
+      this.lte,
+      first.position,
+      curves(
+        c => lessMean(c.lte.pair_um),
+        c => c.position,
+      ),
+      text,
+    );
+    put(
+      this.orders,
+      counting(ORDERS.te, 1),
+      curves(c => c.lte.orders_um.slice(1, ORDERS.te + 1)),
+      text,
+    );
     put(
       this.stiffness,
       first.position,
-      curves(c => c.mesh_stiffness[`tangent_${end}_N_per_um`], c => c.position),
+      curves(
+        c => c.mesh_stiffness[`tangent_${end}_N_per_um`],
+        c => c.position,
+      ),
       one,
     );
     put(
       this.vibration,
       first.vibration?.position,
-      curves(c => c.vibration?.[end]?.history?.normal_m_per_s2, c => c.vibration?.position),
+      curves(
+        c => c.vibration?.[end]?.history?.normal_m_per_s2,
+        c => c.vibration?.position,
+      ),
       one,
     );
     put(
@@ -151,20 +172,29 @@ class CompareCurves {
     put(
       this.root,
       first.root_stress?.pinion?.position,
-      curves(c => c.root_stress?.pinion?.[end]?.history_MPa, c => c.root_stress?.pinion?.position),
+      curves(
+        c => c.root_stress?.pinion?.[end]?.history_MPa,
+        c => c.root_stress?.pinion?.position,
+      ),
       one,
     );
     const { modification } = items[0].result;
     put(
       this.profile,
       modification.pinion.u_mm,
-      curves((_c, result) => result.modification.pinion[end]?.profile_um, (_c, result) => result.modification.pinion.u_mm),
+      curves(
+        (_c, result) => result.modification.pinion[end]?.profile_um,
+        (_c, result) => result.modification.pinion.u_mm,
+      ),
       `${end} end`,
     );
     put(
       this.lead,
       modification.eta_mm,
-      curves((_c, result) => result.modification.pinion[end]?.lead_um, (_c, result) => result.modification.eta_mm),
+      curves(
+        (_c, result) => result.modification.pinion[end]?.lead_um,
+        (_c, result) => result.modification.eta_mm,
+      ),
       `${end} end`,
     );
   }

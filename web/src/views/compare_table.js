@@ -66,7 +66,9 @@ function flankRows(items) {
   const rows = [];
   for (const member of ['pinion', 'gear']) {
     const keys = new Set(
-      items.flatMap(item => Object.keys(valueAt(item.result?.design ?? item.design, `/modification/${member}/left`) ?? {})),
+      items.flatMap(item =>
+        Object.keys(valueAt(item.result?.design ?? item.design, `/modification/${member}/left`) ?? {}),
+      ),
     );
     for (const key of keys) {
       const values = items.map(item => endsOfKey(item, member, key));

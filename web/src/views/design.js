@@ -22,12 +22,7 @@ class TroubleLine {
     fill(
       this.element,
       troubles.map(({ name, detail, lead }) =>
-        h(
-          'p',
-          null,
-          lead ? h('button.link', { type: 'button', onclick: lead }, name) : name,
-          `: ${detail}`,
-        ),
+        h('p', null, lead ? h('button.link', { type: 'button', onclick: lead }, name) : name, `: ${detail}`),
       ),
       troubles.length ? null : message,
       this.element.hidden ? null : h('small', null, 'The figures show the last design that was possible.'),
@@ -60,6 +55,10 @@ class DesignView {
       h('.head-pane', null, leadLine(app), this.headline.element, this.sensitivity.strip, this.trouble.element),
       h('.figure-pane', null, this.progress, this.results.element),
     );
+    new ResizeObserver(() => {
+      const height = `${this.headline.element.offsetHeight}px`;
+      this.element.style.setProperty('--headline-height', height);
+    }).observe(this.headline.element);
     app.analyst.addEventListener('result', () => {
       this.#drawResult();
       this.#sweep();
@@ -108,7 +107,9 @@ class DesignView {
     const fraction = analyst.job?.progress?.fraction;
     this.progress.hidden = !preparing;
     if (preparing)
-      this.progress.textContent = `Preparing the teeth of this pair, once${typeof fraction === 'number' ? `: ${Math.round(100 * fraction)} %` : '…'}`;
+      this.progress.textContent = `Preparing the teeth of this pair, once${
+        typeof fraction === 'number' ? `: ${Math.round(100 * fraction)} %` : '…'
+      }`;
   }
 
   #sweep() {
@@ -131,10 +132,12 @@ class DesignView {
     const context = this.#context();
     if (!context) return null;
     const { store, analyst } = this.app;
+    this.#drawResult();
     this.results.draw();
-    const { speed, torque } = this.results;
-    for (const sweep of [speed, torque]) if (!sweep.settled) sweep.now();
-    const missing = [speed, torque].filter(sweep => !sweep.settled).map(sweep => sweep.chart.frame.title.toLowerCase());
+    this.#sweep();
+    const late = [this.results.speed, this.results.torque, this.sensitivity].filter(each => !each.settled);
+    for (const each of late) each.now();
+    const missing = late.map(each => each.chart.frame.title);
     if (analyst.state === 'preparing') missing.push('the teeth of the pair');
     return {
       title: store.design.name || 'Gear pair',

@@ -2,63 +2,14 @@
 // The table of load cases: rows by hand or pasted from a spreadsheet.
 import { fill, h } from '../base/dom.js';
 import { labelOf, sig, unitText } from '../base/format.js';
-import { readQuantity } from '../base/quantity.js';
+import { readRows } from '../base/case_rows.js';
 import { fieldAt } from '../base/schema.js';
 import { caseNames } from '../figures/context.js';
 
 const COLUMNS = ['name', 'torque_Nm', 'speed_rpm', 'share'];
-const NUMBERS = COLUMNS.slice(1);
 const FIRST = { torque_Nm: 100, speed_rpm: 2000, share: null };
 
 /** @typedef {import('../base/schema.js').Field} Field */
-
-/**
- * Rows of a spreadsheet: torque, speed and share in this order or as their headings say; what is no number is a name.
- * @param {string} text
- * @returns {{ rows: Record<string, any>[], fault: string }}
- */
-export function readRows(text) {
-  const lines = text.split(/\r?\n/).filter(line => line.trim() !== '');
-  const cells = lines.map(line => line.split(/\t|;|\s{2,}/).map(cell => cell.trim()));
-  let order = NUMBERS;
-  const isHead = cells[0]?.every(cell => readQuantity(cell).value === undefined);
-  if (isHead) {
-    const keys = cells.shift()?.map(cell => NUMBERS.find(key => cell.toLowerCase().includes(key.split('_')[0])) ?? 'name');
-    if (keys?.includes('torque_Nm')) order = keys;
-  }
-  const rows = [];
-  for (const [i, line] of cells.entries()) {
-    const row = isHead ? rowByHead(line, order) : rowByOrder(line);
-    if (row.torque_Nm === undefined) return { rows: [], fault: `Row ${i + 1} has no torque: “${line.join(' ')}”.` };
-    rows.push(row);
-  }
-  return { rows, fault: '' };
-}
-
-/** @param {string[]} line @param {string[]} order */
-function rowByHead(line, order) {
-  /** @type {Record<string, any>} */
-  const row = {};
-  line.forEach((cell, i) => {
-    const key = order[i];
-    if (!key || cell === '') return;
-    row[key] = key === 'name' ? cell : readQuantity(cell, key.split('_')[1] ?? '%').value;
-  });
-  return row;
-}
-
-/** @param {string[]} line */
-function rowByOrder(line) {
-  /** @type {Record<string, any>} */
-  const row = {};
-  const numbers = line.filter(cell => /\d/.test(cell) && readQuantity(cell, 'any').fault !== 'Not a number.');
-  NUMBERS.forEach((key, i) => {
-    if (numbers[i] !== undefined) row[key] = readQuantity(numbers[i], key.split('_')[1] ?? '%').value;
-  });
-  const name = line.find(cell => cell !== '' && !numbers.includes(cell));
-  if (name) row.name = name;
-  return row;
-}
 
 export class LoadCases {
   #rows = -1;
@@ -92,9 +43,10 @@ export class LoadCases {
   #drawShares(rows) {
     const stated = rows.map(row => row.share).filter(share => typeof share === 'number');
     const sum = stated.reduce((total, share) => total + share, 0);
+    const parts = rows.map(row => `${sig((100 * row.share) / sum, 3)} %`);
     const off = stated.length === rows.length && stated.length > 0 && Math.abs(sum - 1) > 1e-6;
     this.note.textContent = off
-      ? `The shares add up to ${sig(sum, 4)}; as parts of the whole they are ${rows.map(row => `${sig((100 * row.share) / sum, 3)} %`).join(', ')}.`
+      ? `The shares add up to ${sig(sum, 4)}; as parts of the whole they are ${parts.join(', ')}.`
       : 'Rows copied from a spreadsheet can be pasted here.';
   }
 

@@ -26,7 +26,8 @@ class OptimizeView {
     this.empty = h(
       'p.empty',
       null,
-      'No search has been started yet. What is searched for stands on the left; the pair, its load and everything else are those of the Design view.',
+      'No search has been started yet. What is searched for stands on the left; the pair, its load and ' +
+        'everything else are those of the Design view.',
     );
     this.missing = h('p.trouble', { role: 'alert', hidden: true });
     this.foot = h('div');
@@ -72,7 +73,10 @@ class OptimizeView {
     this.start.disabled = false;
   }
 
-  /** What keeps a search from starting, each with the way to its field. @param {import('../base/api.js').Fault[]} faults */
+  /**
+   * What keeps a search from starting, each with the way to its field.
+   * @param {import('../base/api.js').Fault[]} faults
+   */
   #drawFaults(faults) {
     if (this.app.current !== 'optimize') return false;
     const troubles = this.app.form.showFaults(faults);

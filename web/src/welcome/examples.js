@@ -128,7 +128,12 @@ class Examples {
     const design = await this.app.library.example(name);
     const { geometry: g, design: whole } = await post('check', design);
     drawTeeth(canvas, g, whole.gear_pair);
-    facts.textContent = `${g.pinion_teeth}/${g.gear_teeth} teeth, module ${plain(g.normal_module_mm)} mm, ${plain(g.helix_angle_deg)}°, face ${plain(g.face_width_mm)} mm`;
+    facts.textContent = [
+      `${g.pinion_teeth}/${g.gear_teeth} teeth`,
+      `module ${plain(g.normal_module_mm)} mm`,
+      `${plain(g.helix_angle_deg)}°`,
+      `face ${plain(g.face_width_mm)} mm`,
+    ].join(', ');
     if (!hasModification(design)) gain.textContent = 'Unmodified: a search finds its flank.';
     else {
       gain.textContent = '…';

@@ -7,37 +7,78 @@ const WORDS = [
   [
     'The pair',
     [
-      ['Herringbone gear', 'Two helical halves of opposite hand on one body, with a groove between them; their axial forces cancel. Each half is called an end here, left and right.'],
+      [
+        'Herringbone gear',
+        'Two helical halves of opposite hand on one body, with a groove between them; their axial forces ' +
+          'cancel. Each half is called an end here, left and right.',
+      ],
       ['Pinion, gear', 'The smaller and the larger member; the pinion drives unless a load case says otherwise.'],
       ['Normal module', 'Size of the teeth: reference diameter × cos(helix angle) / number of teeth.'],
       ['Helix angle', 'Slope of the teeth against the axis at the reference cylinder.'],
       ['Groove', 'Room between the two ends in which the tool runs out.'],
-      ['Profile shift', 'By how many modules the tool stands away from where it would cut a plain tooth; thickens the root of a small pinion.'],
-      ['Mesh cycle', 'The time from one tooth taking its place to the next one taking the same; one base pitch of rolling.'],
+      [
+        'Profile shift',
+        'By how many modules the tool stands away from where it would cut a plain tooth; thickens the root of ' +
+          'a small pinion.',
+      ],
+      [
+        'Mesh cycle',
+        'The time from one tooth taking its place to the next one taking the same; one base pitch of rolling.',
+      ],
     ],
   ],
   [
     'The flank',
     [
-      ['Modification', 'Micrometres taken off the exact flank on purpose, so that teeth bent by load still meet gently.'],
+      [
+        'Modification',
+        'Micrometres taken off the exact flank on purpose, so that teeth bent by load still meet gently.',
+      ],
       ['Ease-off', 'What is taken off both flanks together, over the face and the height of the teeth.'],
-      ['Tip relief, root relief', 'Material taken off near the tip or the root, from a start towards the end of the flank.'],
-      ['Lead crowning', 'Material taken off towards both face ends, so that the middle carries when the shafts are not parallel.'],
-      ['K-chart', 'The profile drawn upright from root to tip, with what is taken off to the side, as an inspection sheet has it.'],
+      [
+        'Tip relief, root relief',
+        'Material taken off near the tip or the root, from a start towards the end of the flank.',
+      ],
+      [
+        'Lead crowning',
+        'Material taken off towards both face ends, so that the middle carries when the shafts are not parallel.',
+      ],
+      [
+        'K-chart',
+        'The profile drawn upright from root to tip, with what is taken off to the side, as an inspection ' +
+          'sheet has it.',
+      ],
       ['Misalignment', 'Angle between the shafts that should be zero: in the plane of the axes and out of it.'],
     ],
   ],
   [
     'What it does',
     [
-      ['Transmission error (TE)', 'How far the gear is behind or ahead of where a perfect, rigid pair would be, measured along the line of action.'],
-      ['Loaded TE, PPLTE', 'The same under load; PPLTE is its peak-to-peak value over one mesh cycle, the excitation of gear noise.'],
+      [
+        'Transmission error (TE)',
+        'How far the gear is behind or ahead of where a perfect, rigid pair would be, measured along the line ' +
+          'of action.',
+      ],
+      [
+        'Loaded TE, PPLTE',
+        'The same under load; PPLTE is its peak-to-peak value over one mesh cycle, the excitation of gear noise.',
+      ],
       ['Mesh stiffness', 'Force that pushes the teeth together by one micrometre; it changes as pairs come and go.'],
-      ['Entering impact', 'The blow of a tooth that meets its partner before its time because the teeth before it are bent.'],
+      [
+        'Entering impact',
+        'The blow of a tooth that meets its partner before its time because the teeth before it are bent.',
+      ],
       ['Load sharing', 'Which part of the load one tooth pair carries on its way through the mesh.'],
-      ['Vibration', 'Acceleration of the teeth relative to each other in steady running, normal to the flank, transverse, or by rotation alone.'],
+      [
+        'Vibration',
+        'Acceleration of the teeth relative to each other in steady running, normal to the flank, transverse, ' +
+          'or by rotation alone.',
+      ],
       ['Mesh order', 'A multiple of the mesh frequency, which is speed × number of teeth.'],
-      ['Mode', 'One of the natural ways in which the pair on its bearings swings; a mesh order that meets one is a resonance.'],
+      [
+        'Mode',
+        'One of the natural ways in which the pair on its bearings swings; a mesh order that meets one is a resonance.',
+      ],
       ['Root stress, contact pressure', 'Largest stress in the fillet and largest Hertzian pressure on the flank.'],
       ['Edge contact', 'Load on the sharp edge of a tip, where there should be none.'],
     ],
@@ -46,9 +87,20 @@ const WORDS = [
     'The search',
     [
       ['Duty cycle', 'The load cases together, each with its share of operating time.'],
-      ['Objective J', 'Transmission error, impact and vibration over the duty cycle, each divided by that of the unmodified pair, weighted and added; 1 is the unmodified pair.'],
-      ['f1, f2, f3', 'The three objectives in the form of the published method: means weighted by share of time, divided by the number of load cases.'],
-      ['Evaluation', 'One design computed in full by the model; a predicted value is one that the search only expects.'],
+      [
+        'Objective J',
+        'Transmission error, impact and vibration over the duty cycle, each divided by that of the unmodified ' +
+          'pair, weighted and added; 1 is the unmodified pair.',
+      ],
+      [
+        'f1, f2, f3',
+        'The three objectives in the form of the published method: means weighted by share of time, divided by ' +
+          'the number of load cases.',
+      ],
+      [
+        'Evaluation',
+        'One design computed in full by the model; a predicted value is one that the search only expects.',
+      ],
       ['PFC', 'Percentage of fitness computed: evaluations by the model, of all values that the search needed.'],
       ['Pareto front', 'Designs of which none is better than another in every objective.'],
     ],
@@ -58,7 +110,10 @@ const WORDS = [
     [
       ['Encoder', 'Measures the angle of a shaft; one on each shaft gives the transmission error.'],
       ['Recording, measurement', 'What the rig wrote, and what is found in it.'],
-      ['Reduction', 'By how many per cent the modified pair vibrates less than the unmodified one, measured and predicted.'],
+      [
+        'Reduction',
+        'By how many per cent the modified pair vibrates less than the unmodified one, measured and predicted.',
+      ],
     ],
   ],
 ];

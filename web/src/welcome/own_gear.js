@@ -88,7 +88,11 @@ class OwnGear {
       { class: 'own-gear-dialog', 'aria-label': 'Your own gear' },
       h('button.icon.close', { type: 'button', 'aria-label': 'Close', onclick: () => this.dialog.close() }, '✕'),
       h('h2', null, 'Your own gear'),
-      h('p.figure-note', null, 'Five numbers and a load. Everything else has a usual value, which you can change afterwards.'),
+      h(
+        'p.figure-note',
+        null,
+        'Five numbers and a load. Everything else has a usual value, which you can change afterwards.',
+      ),
       this.#form(),
     );
     this.dialog.addEventListener('close', () => this.dialog.remove());
@@ -120,7 +124,12 @@ class OwnGear {
         ),
         this.finding,
       ),
-      h('.dialog-foot', null, this.start, h('button', { type: 'button', onclick: () => this.#fillExample() }, 'Fill in an example')),
+      h(
+        '.dialog-foot',
+        null,
+        this.start,
+        h('button', { type: 'button', onclick: () => this.#fillExample() }, 'Fill in an example'),
+      ),
     );
   }
 
@@ -152,7 +161,10 @@ class OwnGear {
     this.#changed();
   }
 
-  /** The values that can be taken; a fault at each that cannot. @returns {Record<string, number> | null} null: not all */
+  /**
+   * The values that can be taken; a fault at each that cannot.
+   * @returns {Record<string, number> | null} null: not all
+   */
   #values() {
     /** @type {Record<string, number>} */
     const values = {};
@@ -210,7 +222,11 @@ class OwnGear {
     fill(
       this.finding,
       h('h3', null, 'What follows and what is assumed'),
-      h('p.figure-note', null, 'stands here as soon as the seven numbers do. A comma or a point, mm or inch, N m or lbf ft: as you write it.'),
+      h(
+        'p.figure-note',
+        null,
+        'stands here as soon as the seven numbers do. A comma or a point, mm or inch, N m or lbf ft: as you write it.',
+      ),
     );
   }
 
@@ -222,7 +238,10 @@ class OwnGear {
       ['Centre distance', `${sig(g.centre_distance_mm, 6)} mm`],
       ['Transverse contact ratio', sig(g.transverse_contact_ratio, 3)],
       ['Overlap ratio', sig(g.overlap_ratio, 3)],
-      ['Pitch line speed', `${sig((g.working_radius_mm[0] * 2 * Math.PI * (answer.design.load_cases[0].speed_rpm / 60)) / 1000, 3)} m/s`],
+      [
+        'Pitch line speed',
+        `${sig((g.working_radius_mm[0] * 2 * Math.PI * (answer.design.load_cases[0].speed_rpm / 60)) / 1000, 3)} m/s`,
+      ],
     ];
     /** @param {string[][]} rows */
     const table = rows =>
@@ -232,7 +251,14 @@ class OwnGear {
         h(
           'tbody',
           null,
-          rows.map(([name, ...cells]) => h('tr', null, h('th', { scope: 'row' }, name), cells.map(cell => h('td', null, cell)))),
+          rows.map(([name, ...cells]) =>
+            h(
+              'tr',
+              null,
+              h('th', { scope: 'row' }, name),
+              cells.map(cell => h('td', null, cell)),
+            ),
+          ),
         ),
       );
     fill(
@@ -240,11 +266,21 @@ class OwnGear {
       h('h3', null, 'It follows'),
       table(facts),
       answer.warnings?.length
-        ? h('ul.findings', null, answer.warnings.map((/** @type {string} */ text) => h('li', null, text)))
+        ? h(
+            'ul.findings',
+            null,
+            answer.warnings.map((/** @type {string} */ text) => h('li', null, text)),
+          )
         : null,
       h('h3', null, 'Assumed, until you state it'),
-      h('.own-assumed', { tabindex: '0', role: 'region', 'aria-label': 'Assumed' }, table(assumptionsOf(answer, this.app.fields))),
-      answer.prepared ? null : h('p.figure-note', null, 'Its teeth are new here and are prepared first: some seconds, once.'),
+      h(
+        '.own-assumed',
+        { tabindex: '0', role: 'region', 'aria-label': 'Assumed' },
+        table(assumptionsOf(answer, this.app.fields)),
+      ),
+      answer.prepared
+        ? null
+        : h('p.figure-note', null, 'Its teeth are new here and are prepared first: some seconds, once.'),
     );
   }
 

@@ -9,17 +9,23 @@ const STEPS = [
   {
     target: '.flank',
     title: '1 of 3: move the flank',
-    text: 'Each slider takes micrometres off the teeth: tip relief, where it starts, crowning. Drag one; everything on the right follows.',
+    text:
+      'Each slider takes micrometres off the teeth: tip relief, where it starts, crowning. Drag one; everything ' +
+      'on the right follows.',
   },
   {
     target: '.headline',
     title: '2 of 3: watch the numbers',
-    text: 'Transmission error, impact and vibration beside those of the unmodified pair: green and ▼ is quieter. Press a name to read what it is. Choose the load case on the left of them.',
+    text:
+      'Transmission error, impact and vibration beside those of the unmodified pair: green and ▼ is quieter. ' +
+      'Press a name to read what it is. Choose the load case on the left of them.',
   },
   {
     target: '.form-foot .primary',
     title: '3 of 3: let the search do it',
-    text: 'Optimize tries some hundred flanks and keeps the best over all load cases. It goes on when the page is closed.',
+    text:
+      'Optimize tries some hundred flanks and keeps the best over all load cases. It goes on when the page is ' +
+      'closed.',
   },
 ];
 

@@ -9,6 +9,12 @@ const SAME_TORQUE = 0.01;
 const SAME_SPEED = 0.02;
 
 /** Measurements of a design with their comparison. */
+/** @param {any} job */
+function fractionText(job) {
+  const fraction = job?.progress?.fraction;
+  return typeof fraction === 'number' ? `: ${Math.round(100 * fraction)} %` : '…';
+}
+
 export class Bench extends EventTarget {
   /** @type {any[]} */ items = [];
   /** @type {any} */ comparison = null;
@@ -27,10 +33,7 @@ export class Bench extends EventTarget {
         this.#say('');
       },
       refused: (_task, error) => this.#say(error.message),
-      preparing: (_task, job) =>
-        this.#say(
-          `The prediction waits for the teeth${typeof job?.progress?.fraction === 'number' ? `: ${Math.round(100 * job.progress.fraction)} %` : '…'}`,
-        ),
+      preparing: (_task, job) => this.#say(`The prediction waits for the teeth${fractionText(job)}`),
     });
   }
 

@@ -55,6 +55,9 @@ const UNKNOWNS = /** @type {{ key: string, unit: string, pointers: string[], low
   { key: 'impact_patch_mm', unit: 'mm', pointers: ['/resolution/impact_patch_mm'], low: 0.5, high: 10 },
 ]);
 
+/** Why a measurement was left out. @param {any} item */
+const reasonOf = item => `measurement ${item.id} (${item.reason})`;
+
 /** "12.3 … 14.5" @param {number[]} range */
 const rangeText = range => `${sig(range[0], 4)} … ${sig(range[1], 4)}`;
 
@@ -191,7 +194,8 @@ export class FitPanel {
       h(
         'p.figure-note',
         null,
-        `${answer.measurements} measurements, ${answer.orders} orders; misfit ${sig(answer.misfit?.before, 3)} before, ${sig(answer.misfit?.after, 3)} after (1: as large as its uncertainty).`,
+        `${answer.measurements} measurements, ${answer.orders} orders; misfit ` +
+          `${sig(answer.misfit?.before, 3)} before, ${sig(answer.misfit?.after, 3)} after (1: as large as its uncertainty).`,
       ),
       answer.warnings.length
         ? h(
@@ -202,13 +206,7 @@ export class FitPanel {
             ),
           )
         : null,
-      answer.left_out.length
-        ? h(
-            'p.figure-note',
-            null,
-            `Left out: ${answer.left_out.map((/** @type {any} */ item) => `measurement ${item.id} (${item.reason})`).join(' ')}`,
-          )
-        : null,
+      answer.left_out.length ? h('p.figure-note', null, `Left out: ${answer.left_out.map(reasonOf).join(' ')}`) : null,
     );
   }
 

@@ -89,7 +89,8 @@ class LayoutForm {
       h(
         'p.figure-note',
         null,
-        'Guessed from names, units and values. Say it where the guess is wrong: a name, or a number from 1; two with a comma for raw tracks.',
+        'Guessed from names, units and values. Say it where the guess is wrong: a name, or a number from 1; ' +
+          'two with a comma for raw tracks.',
       ),
       row('Columns hold', this.kind),
       row('Unit', this.unit),
@@ -142,7 +143,15 @@ class LayoutForm {
     if (!layout) return;
     /** @param {any} value */
     const text = value => (Array.isArray(value) ? value.join(', ') : String(value ?? '–'));
-    this.guessed.textContent = `Last file: ${layout.kind ?? ''}${layout.unit ? ` in ${layout.unit}` : ''}, pinion ${text(layout.columns?.pinion)}, gear ${text(layout.columns?.gear)}, time ${text(layout.time)}${layout.time_unit ? ` in ${layout.time_unit}` : ''}${layout.lines ? `, lines ${text(layout.lines)}` : ''}.`;
+    const { kind = '', unit, columns, time, time_unit: timeUnit, lines } = layout;
+    const parts = [
+      `${kind}${unit ? ` in ${unit}` : ''}`,
+      `pinion ${text(columns?.pinion)}`,
+      `gear ${text(columns?.gear)}`,
+      `time ${text(time)}${timeUnit ? ` in ${timeUnit}` : ''}`,
+      lines ? `lines ${text(lines)}` : '',
+    ];
+    this.guessed.textContent = `Last file: ${parts.filter(Boolean).join(', ')}.`;
   }
 
   open() {

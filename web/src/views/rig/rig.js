@@ -5,7 +5,7 @@ import { Away, ask, get } from '../../base/api.js';
 import { choose } from '../../base/dialog.js';
 import { h } from '../../base/dom.js';
 import { plain } from '../../base/format.js';
-import { mainCase } from '../../figures/context.js';
+
 import { Bench } from './bench.js';
 import { FitPanel } from './fit.js';
 import { Recordings } from './recordings.js';
@@ -192,7 +192,8 @@ class RigView {
     const { store, analyst } = this.app;
     const tables = [this.table, this.reductions, this.about].filter(each => !each.hidden && each.childElementCount);
     const copies = tables.map(table => /** @type {HTMLElement} */ (table.cloneNode(true)));
-    for (const copy of copies) for (const control of copy.querySelectorAll('.actions, .figure-controls')) control.remove();
+    for (const copy of copies)
+      for (const control of copy.querySelectorAll('.actions, .figure-controls')) control.remove();
     return {
       title: `Rig measurements of ${store.design.name || 'this design'}`,
       result: analyst.result,
@@ -211,7 +212,9 @@ function emptyBench() {
     h(
       'p',
       null,
-      'Drop recordings of two encoders here, on the pinion and the gear shaft: one file for each torque and speed, of the unmodified and of the modified pair. They are kept with the design and shown beside its prediction at their torque and measured speed.',
+      'Drop recordings of two encoders here, on the pinion and the gear shaft: one file for each torque and ' +
+        'speed, of the unmodified and of the modified pair. They are kept with the design and shown beside its ' +
+        'prediction at their torque and measured speed.',
     ),
     h('p', null, 'Without a rig at hand, make one under “Synthetic recording”.'),
   );

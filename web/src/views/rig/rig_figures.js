@@ -7,7 +7,9 @@ import { caseColour } from '../../figures/context.js';
 import { MeasuredOrders, MeasuredPoints } from '../../figures/measured.js';
 
 export const WHAT =
-  'Rotational acceleration where the encoders sit, of the mesh orders alone: the second derivative of r_b φ of the gear less that of the pinion. Not the normal or transverse acceleration that the Design view shows first.';
+  'Rotational acceleration where the encoders sit, of the mesh orders alone: the second derivative of r_b φ of ' +
+  'the gear less that of the pinion. Not the normal or transverse acceleration that the Design view shows ' +
+  'first.';
 const SAME_SPEED = 20; // rpm: recordings whose speeds differ by less stand together
 
 /** @typedef {import('./bench.js').Bench} Bench */
@@ -81,7 +83,9 @@ export class RigFigures {
     this.te = new Chart({
       title: 'Transmission error in phase',
       unit: 'µm',
-      help: 'Mesh orders of the transmission error over one mesh cycle, moved to where the prediction lies: the zero of the encoders is arbitrary.',
+      help:
+        'Mesh orders of the transmission error over one mesh cycle, moved to where the prediction lies: the zero ' +
+        'of the encoders is arbitrary.',
       xLabel: 'mesh cycle',
       cycle: true,
     });

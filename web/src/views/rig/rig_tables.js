@@ -184,7 +184,10 @@ function factsOf(whole) {
   const stated = whole.stated_speed_rpm ? `, stated ${plain(whole.stated_speed_rpm)}` : '';
   /** @type {[string, string][]} */
   const facts = [
-    ['Recorded', `${signal.rows} rows, ${sig(result.seconds, 3)} s, ${sig(result.turns.pinion, 4)} turns of the pinion`],
+    [
+      'Recorded',
+      `${signal.rows} rows, ${sig(result.seconds, 3)} s, ${sig(result.turns.pinion, 4)} turns of the pinion`,
+    ],
     ['Speed', `${sig(speed.mean, 6)} rpm (${sig(speed.lowest, 6)} … ${sig(speed.highest, 6)})${stated}`],
     [
       'Eccentricity',

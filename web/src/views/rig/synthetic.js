@@ -45,7 +45,8 @@ export class Synthetic {
       h(
         'p.figure-note',
         null,
-        'Records what two encoders would see of this design, with noise and eccentricity, to try things out. Torque and speed left empty are those of the load case with the largest share.',
+        'Records what two encoders would see of this design, with noise and eccentricity, to try things out. ' +
+          'Torque and speed left empty are those of the load case with the largest share.',
       ),
       row('Pair', this.pair),
       row('Torque, N m', this.torque),
@@ -67,7 +68,12 @@ export class Synthetic {
     this.note.textContent = text;
   }
 
-  /** What is typed, or what is usual when nothing is. @param {HTMLInputElement} input @param {string} unit @param {number} usual */
+  /**
+   * What is typed, or what is usual when nothing is.
+   * @param {HTMLInputElement} input
+   * @param {string} unit
+   * @param {number} usual
+   */
   #read(input, unit, usual) {
     if (input.value.trim() === '') return usual;
     const { value = NaN } = readQuantity(input.value, unit);

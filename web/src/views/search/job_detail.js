@@ -66,7 +66,7 @@ export class JobDetail {
       this.#result = result;
       this.#drawHead();
       this.#drawBest();
-      this.figures.draw({ design, best: this.#bestOf(), rows, result, start: null });
+      this.figures.draw({ design, best: this.#bestOf(), rows, result });
     } catch {
       // the next event looks again
     }
@@ -118,8 +118,7 @@ export class JobDetail {
   #actions(job, active) {
     const { app } = this;
     /** @param {string} text @param {() => unknown} act @param {string} [kind] */
-    const button = (text, act, kind = 'button') =>
-      h(kind, { type: 'button', onclick: () => app.attempt(act) }, text);
+    const button = (text, act, kind = 'button') => h(kind, { type: 'button', onclick: () => app.attempt(act) }, text);
     /** @param {string} verb */
     const act = verb => async () => {
       const answer = await post(`jobs/${job.id}/${verb}`);
@@ -163,7 +162,7 @@ export class JobDetail {
       this.best,
       h('.figure-head', null, h('h3', null, title), h('span.figure-note', null, 'duty-cycle means')),
       h(
-        'table.numbers',
+        'table.numbers.wrapping',
         null,
         h(
           'thead',

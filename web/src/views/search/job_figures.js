@@ -14,7 +14,6 @@ import { shortName, valuesOf, variablesOf } from './variables.js';
  * @typedef {object} Search
  * @property {any} design that it started from @property {any} best modification and objectives
  * @property {any[]} rows of its history @property {any} result when it is done
- * @property {any} start objectives of the design that it started from
  */
 
 /** @param {number[]} values */
@@ -88,7 +87,9 @@ export class JobFigures {
       title: 'Loaded TE of the best',
       name: 'Loaded transmission error of the best so far',
       unit: 'µm',
-      help: 'Beside the design that the search started from and the unmodified pair, at the load case with the largest share.',
+      help:
+        'Beside the design that the search started from and the unmodified pair, at the load case with the ' +
+        'largest share.',
       good: 'Flatter than both.',
       xLabel: 'mesh cycle',
     });
@@ -102,7 +103,9 @@ export class JobFigures {
     });
     this.history = new Scatter({
       title: 'History',
-      help: 'Every design that the search computed (full) or took from earlier ones (open), with its start and its best; a click opens one.',
+      help:
+        'Every design that the search computed (full) or took from earlier ones (open), with its start and its ' +
+        'best; a click opens one.',
       x: 'evaluation',
       y: 'J',
     });
@@ -155,7 +158,7 @@ export class JobFigures {
   /** @param {Search} search */
   draw(search) {
     this.#search = search;
-    const best = JSON.stringify([search.best?.modification, Boolean(search.start)]);
+    const best = JSON.stringify(search.best?.modification ?? null);
     const changed = search.rows.length !== this.#rows || best !== this.#drawnBest;
     if (changed) this.#drawHistory(search);
     if (search.result?.front?.length) this.#drawFront(search);
@@ -164,14 +167,17 @@ export class JobFigures {
     this.#drawnBest = best;
     const { design } = search;
     this.compared.ask([
-      ...(search.best?.modification ? [{ name: 'best', design: { ...design, modification: search.best.modification } }] : []),
+      ...(search.best?.modification
+        ? [{ name: 'best', design: { ...design, modification: search.best.modification } }]
+        : []),
       { name: 'start', design },
       { name: 'unmodified', design: unmodified(design) },
     ]);
   }
 
   /** @param {Search} search */
-  #drawHistory({ rows, design, best, start }) {
+  #drawHistory({ rows, design, best }) {
+    const start = this.compared.results.get('start')?.objectives;
     const cases = design.load_cases.length;
     const names = [...new Set(rows.flatMap(row => Object.keys(variablesOf(row))))];
     const columns = ['evaluation', ...names.map(shortName), ...MEASURE_COLUMNS, 'J'];
@@ -182,7 +188,12 @@ export class JobFigures {
       return {
         kind: row.reused ? 'known' : 'new',
         mark: row === found ? 'best' : undefined,
-        values: [row.ordinal ?? i + 1, ...names.map(name => values[name] ?? null), ...meansOf(row, cases), row.J ?? null],
+        values: [
+          row.ordinal ?? i + 1,
+          ...names.map(name => values[name] ?? null),
+          ...meansOf(row, cases),
+          row.J ?? null,
+        ],
         pick: () => this.open(values),
       };
     });
@@ -198,7 +209,8 @@ export class JobFigures {
     this.history.element.hidden = this.parallel.element.hidden = rows.length === 0;
     const known = rows.filter(row => row.reused).length;
     this.history.painting.frame.note.hidden = false;
-    this.history.painting.frame.note.textContent = `${rows.length} designs${known ? `, ${known} of them known before` : ''}; equal ones stand once.`;
+    const before = known ? `, ${known} of them known before` : '';
+    this.history.painting.frame.note.textContent = `${rows.length} designs${before}; equal ones stand once.`;
     this.history.set({ columns, dots });
     const shown = [...names.map((_, k) => k + 1), columns.length - 1];
     this.parallel.set({
@@ -258,7 +270,6 @@ export class JobFigures {
         return member?.left ? [{ label: name, x: member.u_mm, y: member.left.profile_um, colour, line }] : [];
       }),
     });
-    const start = results.get('start');
-    if (start && !search.start) this.draw({ ...search, start: start.objectives });
+    if (results.has('start')) this.#drawHistory(search);
   }
 }

@@ -34,6 +34,7 @@ export function meansOf(objectives, cases) {
 /** "0.62 µm" of f1 is a third of it with three load cases: said once, below the table. @param {number} cases */
 export function footnote(cases) {
   return cases > 1
-    ? `Means over the duty cycle, weighted by share of time. f1, f2, f3 of the method, in files and in the API, are these divided by the ${cases} load cases.`
+    ? 'Means over the duty cycle, weighted by share of time. f1, f2, f3 of the method, in files and in the API, ' +
+        `are these divided by the ${cases} load cases.`
     : 'Of the one load case; f1, f2, f3 of the method are the same.';
 }

@@ -77,7 +77,10 @@ export class SearchForm {
   #search() {
     return [
       ...FIRST.map(key =>
-        this.fields.field(`/optimization/${key}`, /** @type {Record<string, import('../../form/fieldset.js').Look>} */ (LOOKS)[key]),
+        this.fields.field(
+          `/optimization/${key}`,
+          /** @type {Record<string, import('../../form/fieldset.js').Look>} */ (LOOKS)[key],
+        ),
       ),
       this.algorithm,
       this.listed,
@@ -97,9 +100,10 @@ export class SearchForm {
     this.algorithm.textContent = WORDS[algorithm] ?? '';
     const weights = this.store.get('/objective/weights') ?? [];
     const sum = weights.reduce((/** @type {number} */ total, /** @type {number} */ value) => total + value, 0);
-    this.weights.textContent = sum
-      ? `That is ${weights.map((/** @type {number} */ value, /** @type {number} */ i) => `${Math.round((100 * value) / sum)} % ${WEIGHTS[i]}`).join(', ')}.`
-      : '';
+    const parts = weights.map(
+      (/** @type {number} */ value, /** @type {number} */ i) => `${Math.round((100 * value) / sum)} % ${WEIGHTS[i]}`,
+    );
+    this.weights.textContent = sum ? `That is ${parts.join(', ')}.` : '';
     this.#drawCost(algorithm, COUNTS[variables] ?? rows.length);
     const shape = JSON.stringify([algorithm, variables, rows.length]);
     if (shape === this.#shape) return;
@@ -113,10 +117,11 @@ export class SearchForm {
   #drawCost(algorithm, count) {
     const budget = this.#value('true_evaluations');
     const genetic = algorithm === 'ga' || algorithm === 'fpga';
+    const limit = genetic && !budget ? 'at most' : 'about';
     const most = budget ?? (genetic ? this.#value('population') * this.#value('generations') : 500 + 100 * count);
     const each = this.#secondsEach();
     const time = each ? `, some ${duration(most * each)} on this machine as it is now` : '';
-    this.cost.textContent = `${count} variables, ${genetic && !budget ? 'at most' : 'about'} ${most} evaluations${time}.`;
+    this.cost.textContent = `${count} variables, ${limit} ${most} evaluations${time}.`;
   }
 
   /** Of an evaluation, as the last search of this pair took; else as the last result did. */
@@ -167,7 +172,11 @@ export class SearchForm {
             'legend',
             null,
             `Variable ${i + 1} `,
-            h('button.icon', { type: 'button', 'aria-label': `Remove variable ${i + 1}`, onclick: () => remove(i) }, '✕'),
+            h(
+              'button.icon',
+              { type: 'button', 'aria-label': `Remove variable ${i + 1}`, onclick: () => remove(i) },
+              '✕',
+            ),
           ),
           ['member', 'end', 'parameter', 'bounds'].map(key =>
             this.changing.field(`/optimization/variable_list/${i}/${key}`),

@@ -42,7 +42,12 @@ export function variablesOf(row) {
   return values;
 }
 
-/** The same variables of any modification. @param {string[]} names @param {any} modification @returns {(number | null)[]} */
+/**
+ * The same variables of any modification.
+ * @param {string[]} names
+ * @param {any} modification
+ * @returns {(number | null)[]}
+ */
 export function valuesOf(names, modification) {
   return names.map(name => {
     const [member, end, key] = name.split('/');
