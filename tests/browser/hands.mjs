@@ -460,8 +460,8 @@ await chapter('a preparation that others wait for', async () => {
   const wanted = `${START}&gear_pair.pinion_teeth=19`;
   const other = await (await browser.newContext()).newPage();
   other.setDefaultTimeout(WAIT);
-  await open(wanted.replaceAll('layers=6', 'layers=12'), page);
-  await open(wanted.replaceAll('layers=6', 'layers=12'), other);
+  await open(wanted.replaceAll('layers=6', 'layers=8'), page);
+  await open(wanted.replaceAll('layers=6', 'layers=8'), other);
   await other.locator('.preparing').waitFor();
   await field('Pinion teeth').fill('17');
   await field('Pinion teeth').press('Enter');

@@ -2,6 +2,7 @@
 // The few large numbers, each with its change against what the design is compared with.
 import { fill, h } from './base/dom.js';
 import { change, changeText, sig } from './base/format.js';
+import { verdictText } from './figures/rating.js';
 import { openPopover } from './base/popover.js';
 import { caseLong, caseNames, sameCase } from './figures/context.js';
 
@@ -104,11 +105,12 @@ export class Headline {
       'aria-expanded': 'false',
       onclick: () => this.#toggle(),
     });
+    this.capacity = h('p.capacity');
     this.list = h('ul.warning-list', { hidden: true });
     this.element = h(
       'section.headline',
       { 'aria-label': 'Results in short' },
-      h('.case-box', null, this.cases, this.warnings),
+      h('.case-box', null, this.cases, this.capacity, this.warnings),
       [...this.cells, this.total].map(each => each.element),
       this.list,
     );
@@ -147,6 +149,16 @@ export class Headline {
       this.list,
       warnings.map((/** @type {string} */ text) => h('li', null, text)),
     );
+  }
+
+  /** The load capacity in short. @param {any} result with its rating */
+  rate({ rating }) {
+    const verdict = rating?.outcome === 'rated' ? rating.verdict : null;
+    this.capacity.title = verdictText(rating);
+    this.capacity.textContent = verdict
+      ? `${verdict.passes ? '✓' : '✗'} S_H ${sig(verdict.S_H, 3)}, S_F ${sig(verdict.S_F, 3)}`
+      : 'not rated';
+    this.capacity.classList.toggle('worse', verdict?.passes === false);
   }
 
   /** @param {any} result @param {number} chosen */

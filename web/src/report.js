@@ -2,8 +2,9 @@
 // The report: the verdict first, then every figure drawn for paper from its numbers, then data and assumptions. It is
 // the same on the screen and on paper, and does not depend on what has been seen.
 import { fill, h } from './base/dom.js';
-import { dateText, labelOf, plain, unitText } from './base/format.js';
+import { dateText, labelOf, plain } from './base/format.js';
 import { valueAt } from './base/pointer.js';
+import { unitOf } from './base/schema.js';
 import { sheetAsSvg } from './figures/sheet.js';
 import { tableOf } from './verdict.js';
 
@@ -41,7 +42,7 @@ function lines(fields, value) {
         'div.report-line',
         null,
         h('dt', null, labelOf(field.key)),
-        h('dd', null, `${valueText(value?.[field.key])} ${unitText(field.unit)}`.trim()),
+        h('dd', null, `${valueText(value?.[field.key])} ${unitOf(field)}`.trim()),
       ),
     ];
   });
@@ -61,7 +62,7 @@ function modification(fields, design) {
   return tableOf(
     ['Modification', ...flanks.map(({ member, end }) => `${member}, ${end}`)],
     shown.map(field => [
-      `${labelOf(field.key)} ${field.unit ? `(${unitText(field.unit)})` : ''}`,
+      `${labelOf(field.key)} ${field.unit ? `(${unitOf(field)})` : ''}`,
       ...flanks.map(({ value }) => valueText(value[field.key])),
     ]),
   );

@@ -4,7 +4,9 @@ import { Refusal, connection } from './api.js';
 import { Lane } from './lane.js';
 import { unmodified } from './store.js';
 
-const ANALYZE = 'analyze?histories=1';
+const ANALYZE = 'analyze?histories=1&rating=0';
+const RATE = 'analyze?maps=0'; // with the rating, which takes two more contact analyses
+const REST = 900; // ms without a change before the design is rated
 
 /** What the results of a reference depend on. @param {any} design */
 function loadKey(design) {
@@ -21,6 +23,8 @@ export class Analyst extends EventTarget {
   /** @type {import('./api.js').Fault[]} */ faults = [];
   message = '';
   ms = 0;
+  /** The last result with a rating. @type {any} */ rated = null;
+  #rest = 0;
   #plainKey = '';
   #pinKey = '';
 
@@ -36,6 +40,8 @@ export class Analyst extends EventTarget {
         this.message = '';
         this.#state('');
         this.#tell('result');
+        clearTimeout(this.#rest);
+        this.#rest = window.setTimeout(() => this.rating.submit({ path: RATE, body: this.store.design }), REST);
       },
       preparing: (_task, job) => {
         this.job = job;
@@ -55,6 +61,12 @@ export class Analyst extends EventTarget {
       },
       refused: task => {
         this[task.note === 'pin' ? 'pinned' : 'plain'] = null;
+      },
+    });
+    this.rating = new Lane({
+      result: (_task, data) => {
+        this.rated = data;
+        this.#tell('rating');
       },
     });
     store.addEventListener('change', event => {

@@ -11,6 +11,8 @@ const SYMBOLS = /** @type {Record<string, string>} */ ({
   kg_per_m3: 'kg/m³',
   Nm_per_rad: 'N m/rad',
   per_mm: '1/mm',
+  mm2_per_s: 'mm²/s',
+  C: '°C',
   per_um: '1/µm',
 });
 

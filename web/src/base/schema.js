@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The field tables that the service describes its documents with.
+import { unitText } from './format.js';
 
 /**
  * @typedef {object} Field
@@ -8,6 +9,7 @@
  * @property {string} [unit] @property {number | null} [low] @property {number | null} [high] @property {any} [default]
  * @property {string[]} [choices] @property {string} [help] @property {boolean} [required]
  * @property {boolean} [nullable]
+ * @property {string} [symbol] the unit as it is printed
  * @property {boolean} [entry] another way to state a value: read, never written
  * @property {string} [basis] where a default comes from
  * @property {string} [derived] @property {number} [count] @property {Field[]} [fields]
@@ -32,6 +34,12 @@ export function fieldAt(fields, pointer) {
     level = field.fields;
   }
   return field;
+}
+
+/** The unit as it is printed. @param {Field | undefined} field */
+export function unitOf(field) {
+  const text = unitText(field?.unit);
+  return text === field?.unit ? field?.symbol || text : text;
 }
 
 /** @param {Field} field */

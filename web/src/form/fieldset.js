@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Fields made from the field tables: label, unit, range, help, live check. A set comes and goes as a whole.
 import { h, newId } from '../base/dom.js';
-import { choiceText, labelOf, plain, unitText } from '../base/format.js';
+import { choiceText, labelOf, plain } from '../base/format.js';
 import { valueAt } from '../base/pointer.js';
 import { readQuantity } from '../base/quantity.js';
-import { fallbackOf, fieldAt, isNumeric, numberFault } from '../base/schema.js';
+import { fallbackOf, fieldAt, isNumeric, numberFault, unitOf } from '../base/schema.js';
 import { Entry } from './entry.js';
 
 const REST = 700; // ms between two keys on a slider that make two steps to undo
@@ -133,11 +133,7 @@ export class FieldSet {
     if (field.kind === 'text') return this.#text(row, pointer, field, name, id);
     const { input, entry, refresh } = this.#number(pointer, field, id);
     const fault = this.#faultOf(field, input);
-    row.append(
-      h('label', { for: id }, name),
-      h('span.entry', null, input, h('span.unit', null, unitText(field.unit))),
-      fault,
-    );
+    row.append(h('label', { for: id }, name), h('span.entry', null, input, h('span.unit', null, unitOf(field))), fault);
     return this.#add({ pointer, name, element: row, input, fault, entry, refresh });
   }
 
@@ -226,7 +222,7 @@ export class FieldSet {
         'span.entry',
         null,
         parts ? names.map((part, i) => h('label.part', null, inputs[i], h('small', null, part))) : inputs,
-        h('span.unit', null, unitText(field.unit)),
+        h('span.unit', null, unitOf(field)),
       ),
       fault,
     );
@@ -257,7 +253,7 @@ export class FieldSet {
     const fault = this.#faultOf(field, input);
     row.append(
       h('label', { for: id }, name),
-      h('span.entry', null, input, h('span.unit', null, unitText(field.unit))),
+      h('span.entry', null, input, h('span.unit', null, unitOf(field))),
       slider,
       fault,
     );

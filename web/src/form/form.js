@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // All fields of the design on the page: what stands in them, which faults they have, how one is found.
 import { fill, h } from '../base/dom.js';
-import { labelOf, plain, unitText } from '../base/format.js';
-import { isNumeric } from '../base/schema.js';
+import { labelOf, plain } from '../base/format.js';
+import { isNumeric, unitOf } from '../base/schema.js';
 import { FieldSet } from './fieldset.js';
 import { unfold } from './group.js';
 
@@ -121,7 +121,7 @@ export class Form {
 
   /** The help line while a field is pointed at. @param {HTMLElement} row @param {Field} field @param {string} name */
   explain(row, field, name) {
-    const unit = unitText(field.unit);
+    const unit = unitOf(field);
     const range =
       isNumeric(field) && typeof field.low === 'number' && typeof field.high === 'number'
         ? `${plain(field.low)} … ${plain(field.high)}${unit ? ` ${unit}` : ''}`

@@ -1,22 +1,24 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The design's menu: your own gear, stored designs with a search by name, examples, files, links, the report.
-import { ask, list } from '../base/api.js';
+import { ask, get, list } from '../base/api.js';
 import { choose } from '../base/dialog.js';
 import { copyText, download, fileName, fill, h } from '../base/dom.js';
 import { dateText, labelOf, sig } from '../base/format.js';
+import { Lane } from '../base/lane.js';
 import { Conflict } from '../base/library.js';
 import { notice } from '../base/notice.js';
 import { leaves, same } from '../base/pointer.js';
 import { openPopover } from '../base/popover.js';
 import { openOwnGear } from '../welcome/open.js';
 
-const EXPORTS = [
-  ['flank-points', 'Flank points (CSV)'],
-  ['modification-chart', 'Modification chart (CSV)'],
-  ['topography', 'Topography (CSV)'],
-];
+const ENDINGS = /** @type {Record<string, string>} */ ({ 'text/csv': 'csv', 'image/svg+xml': 'svg' });
 const MANY = 6; // stored designs that need a search
 const MOST_DIFFERENCES = 12; // shown of a conflict
+
+/** "k-chart drawing (SVG)" @param {string} name @param {string} type */
+function exportName(name, type) {
+  return `${name.replaceAll('-', ' ')} (${(ENDINGS[type.split(';')[0]] ?? 'json').toUpperCase()})`;
+}
 
 /** @param {unknown} value */
 function valueText(value) {
@@ -26,6 +28,7 @@ function valueText(value) {
 
 export class DesignMenu {
   /** @type {any[] | null} */ #stored = null;
+  /** What the service exports: name, title, type. @type {any[]} */ #exports = [];
   #wanted = '';
 
   /** @param {import('../app.js').App} app */
@@ -56,6 +59,11 @@ export class DesignMenu {
       },
     });
     this.element = h('.menu', null, this.button, this.upload);
+    this.reports = new Lane({
+      result: (task, data) => download(task.note, new Blob([data], { type: 'text/html' })),
+      refused: (_task, error) => notice.say(error.message),
+      preparing: () => notice.say('The report waits for the teeth to be prepared.'),
+    });
   }
 
   refresh() {
@@ -76,6 +84,7 @@ export class DesignMenu {
     if (!again) return;
     try {
       this.#stored = await list('designs');
+      if (!this.#exports.length) this.#exports = (await get('export')).items;
       again();
     } catch {
       // the examples are there all the same
@@ -111,11 +120,14 @@ export class DesignMenu {
         item('Store as new', () => this.saveNew()),
         item('Import JSON…', () => this.upload.click()),
         item('Export JSON', () => this.#export()),
-        EXPORTS.map(([format, text]) =>
-          item(`Export ${text.charAt(0).toLowerCase()}${text.slice(1)}`, () => this.#exportAs(format)),
-        ),
+        this.#exports
+          .filter(({ name }) => name !== 'design')
+          .map(({ name, title, type }) =>
+            item(`Export ${exportName(name, type)}`, () => this.#exportAs(name, type), title),
+          ),
         item('Copy a link to it', () => this.#copyLink()),
         item('Print a report…', () => app.go('report')),
+        item('Save the report to sign', () => this.#saveReport(), 'one HTML file: rating, tables, figures'),
       ),
       h(
         '.menu-column',
@@ -289,12 +301,21 @@ export class DesignMenu {
     );
   }
 
-  /** @param {string} format */
-  async #exportAs(format) {
+  /** @param {string} format @param {string} type */
+  async #exportAs(format, type) {
     const { design } = this.app.store;
     const answer = await ask('POST', `export/${format}`, { body: design });
     const text = typeof answer.data === 'string' ? answer.data : JSON.stringify(answer.data, null, 2);
-    download(`${fileName(design.name || 'design')}-${format}.csv`, new Blob([text], { type: 'text/csv' }));
+    const kind = type.split(';')[0];
+    const name = `${fileName(design.name || 'design')}-${format}.${ENDINGS[kind] ?? 'json'}`;
+    download(name, new Blob([text], { type: kind }));
+  }
+
+  /** The document of the service, which one signs and sends. */
+  #saveReport() {
+    const { design } = this.app.store;
+    notice.say('The report is being written…');
+    this.reports.submit({ path: 'report', body: design, note: `${fileName(design.name || 'design')}-report.html` });
   }
 
   async #copyLink() {

@@ -63,6 +63,7 @@ class DesignView {
       this.#drawResult();
       this.#sweep();
     });
+    app.analyst.addEventListener('rating', () => this.#drawRating());
     app.analyst.addEventListener('state', () => this.#drawState());
     app.form.finders.push(pointer => this.#find(pointer));
   }
@@ -94,6 +95,12 @@ class DesignView {
     if (this.#drawn) return;
     this.#drawn = true;
     form.refresh();
+  }
+
+  #drawRating() {
+    const { rated } = this.app.analyst;
+    this.results.rating.set(rated);
+    this.headline.rate(rated);
   }
 
   #drawState() {

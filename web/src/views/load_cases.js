@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The table of load cases: rows by hand or pasted from a spreadsheet.
 import { fill, h } from '../base/dom.js';
-import { labelOf, sig, unitText } from '../base/format.js';
+import { labelOf, sig } from '../base/format.js';
 import { readRows } from '../base/case_rows.js';
-import { fieldAt } from '../base/schema.js';
+import { fieldAt, unitOf } from '../base/schema.js';
 import { caseNames } from '../figures/context.js';
 
 const COLUMNS = ['name', 'torque_Nm', 'speed_rpm', 'share'];
@@ -87,7 +87,7 @@ export class LoadCases {
       null,
       h('th', { scope: 'col' }, h('span.unseen', null, 'colour')),
       this.columns.map(field => {
-        const unit = unitText(field.unit);
+        const unit = unitOf(field);
         return h('th', { scope: 'col' }, labelOf(field.key), unit ? h('span.unit', null, ` ${unit}`) : null);
       }),
       h('th', { scope: 'col' }, h('span.unseen', null, 'remove')),

@@ -8,6 +8,7 @@ import { RootStress, Sharing, Stiffness } from '../figures/mesh.js';
 import { ModificationCharts } from '../figures/modification.js';
 import { SpeedSweep, TorqueSweep } from '../figures/sweeps.js';
 import { Topography } from '../figures/topography.js';
+import { Rating } from '../figures/rating.js';
 import { Transmission } from '../figures/transmission.js';
 import { Vibration } from '../figures/vibration.js';
 import { warningList } from '../verdict.js';
@@ -30,6 +31,7 @@ export class Results {
     const charts = new ModificationCharts();
     const topography = new Topography();
     const drawing = new GearDrawing();
+    this.rating = new Rating();
     this.speed = new SpeedSweep();
     this.torque = new TorqueSweep();
     this.figures = [transmission, contact, stiffness, sharing, impact, vibration, root, charts, topography, drawing];
@@ -48,6 +50,7 @@ export class Results {
       stiffness.chart.frame,
       sharing.chart.frame,
       root.chart.frame,
+      this.rating.frame,
       charts.profile.frame,
       charts.lead.frame,
       drawing.painting.frame,

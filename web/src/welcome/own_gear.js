@@ -3,9 +3,9 @@
 // typed.
 import { Refusal, post } from '../base/api.js';
 import { fill, h, newId } from '../base/dom.js';
-import { labelOf, plain, sig, unitText } from '../base/format.js';
+import { labelOf, plain, sig } from '../base/format.js';
 import { readQuantity } from '../base/quantity.js';
-import { fieldAt, numberFault } from '../base/schema.js';
+import { fieldAt, numberFault, unitOf } from '../base/schema.js';
 
 const PAUSE = 350; // ms after the last key before the service is asked
 
@@ -62,7 +62,7 @@ function assumptionsOf(answer, fields) {
 function valueText(value, field) {
   if (value === null || value === undefined) return '–';
   const text = typeof value === 'number' ? plain(Number(value.toPrecision(5))) : String(value);
-  return `${text} ${unitText(field?.unit)}`.trim();
+  return `${text} ${unitOf(field)}`.trim();
 }
 
 class OwnGear {
@@ -150,7 +150,7 @@ class OwnGear {
       '.field',
       null,
       h('label', { for: id }, label),
-      h('span.entry', null, input, h('span.unit', null, unitText(field.unit))),
+      h('span.entry', null, input, h('span.unit', null, unitOf(field))),
       fault,
     );
     return { pointer, field, input, fault, row, example };

@@ -185,7 +185,9 @@ export class FitPanel {
             h(
               'tr',
               null,
-              ['', 'before', 'found', '95 % interval', 'range', ''].map(text => h('th', { scope: 'col' }, text)),
+              ['input', 'before', 'found', '95 % interval', 'range', 'remark'].map(text =>
+                h('th', { scope: 'col' }, text),
+              ),
             ),
           ),
           h('tbody', null, rows),
@@ -194,8 +196,8 @@ export class FitPanel {
       h(
         'p.figure-note',
         null,
-        `${answer.measurements} measurements, ${answer.orders} orders; misfit ` +
-          `${sig(answer.misfit?.before, 3)} before, ${sig(answer.misfit?.after, 3)} after (1: as large as its uncertainty).`,
+        `${answer.measurements} measurements, ${answer.orders} orders; misfit ${sig(answer.misfit?.before, 3)} ` +
+          `before, ${sig(answer.misfit?.after, 3)} after (1: as large as its uncertainty).`,
       ),
       answer.warnings.length
         ? h(
