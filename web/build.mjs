@@ -20,7 +20,7 @@ await build({
   ],
   outdir: target,
   bundle: true,
-  splitting: true, // three.js is loaded when it is first seen
+  splitting: true, // views and dialogs are loaded when they are first opened
   format: 'esm',
   target: 'es2022',
   minify: true,

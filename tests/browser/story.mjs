@@ -299,6 +299,7 @@ await chapter('two pages share one stream', async () => {
   await other.goto(`${server.address}#optimize?from=paper-case-a`);
   await other.locator('.job-list tbody tr').first().waitFor();
   const rows = await other.locator('.job-list tbody tr').count();
+  await page.bringToFront(); // a page behind another one draws nothing
   await page.getByRole('navigation').getByRole('button', { name: 'Optimize' }).click();
   await page.getByRole('button', { name: 'Again' }).click();
   await other.waitForFunction(before => document.querySelectorAll('.job-list tbody tr').length === before + 1, rows);

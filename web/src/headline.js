@@ -1,65 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The few large numbers, each with its change against what the design is compared with.
+import { NUMBERS, numbersOf } from './numbers.js';
+import { groupedWarnings } from './verdict.js';
 import { fill, h } from './base/dom.js';
 import { change, changeText, sig } from './base/format.js';
 import { verdictText } from './figures/rating.js';
 import { openPopover } from './base/popover.js';
 import { caseLong, caseNames, sameCase } from './figures/context.js';
-
-/**
- * @typedef {{ key: string, name: string, label: string, sub: string, unit: string, help: string, good: string,
- *   scale?: number }} Number_
- */
-
-/** @type {Number_[]} */
-export const NUMBERS = [
-  {
-    key: 'peak_to_peak_um',
-    name: 'Peak-to-peak transmission error',
-    label: 'Transmission error',
-    sub: 'peak to peak (PPLTE)',
-    unit: 'µm',
-    help: 'How much the gear lags behind the pinion at most, less how much at least, over one mesh cycle under load.',
-    good: 'Small is good: it is what makes gears whine.',
-  },
-  {
-    key: 'impact_N',
-    name: 'Entering impact force',
-    label: 'Entering impact',
-    sub: 'force, worse end',
-    unit: 'kN',
-    help: 'The blow of the tooth that comes into mesh too early because the loaded teeth before it are bent.',
-    good: 'Small is good; tip relief makes room for the bending.',
-    scale: 1e-3,
-  },
-  {
-    key: 'rms_m_per_s2',
-    name: 'Vibration acceleration, RMS',
-    label: 'Vibration',
-    sub: 'normal, RMS',
-    unit: 'm/s²',
-    help: 'Root mean square of the relative acceleration of the teeth along the line of action, normal to the flank.',
-    good: 'Small is good.',
-  },
-  {
-    key: 'root_stress_MPa',
-    name: 'Largest root stress',
-    label: 'Root stress',
-    sub: 'largest',
-    unit: 'MPa',
-    help: 'Largest bending stress in the fillets of both members.',
-    good: 'Small is good; what a material bears stands in ISO 6336-5.',
-  },
-  {
-    key: 'contact_pressure_MPa',
-    name: 'Largest contact pressure',
-    label: 'Contact pressure',
-    sub: 'largest',
-    unit: 'MPa',
-    help: 'Largest Hertzian pressure on the flanks, edges included.',
-    good: 'Small is good; a peak on an edge says that the relief there is too little.',
-  },
-];
 
 const TOTAL = {
   key: 'J',
@@ -72,23 +19,6 @@ const TOTAL = {
     'and weighted; what a search makes small.',
   good: '1 is the unmodified pair; 0.4 is much better.',
 };
-
-/**
- * Numbers of one load case as the objectives list them; the root stress where they leave it out.
- * @param {any} result
- * @param {number} k
- */
-export function numbersOf(result, k) {
-  const loadCase = result?.load_cases?.[k];
-  const row = { ...(result?.objectives?.load_cases?.[k] ?? {}) };
-  if (typeof row.root_stress_MPa !== 'number') {
-    const stresses = ['pinion', 'gear']
-      .map(member => loadCase?.root_stress?.[member]?.max_MPa)
-      .filter(value => typeof value === 'number');
-    row.root_stress_MPa = stresses.length ? Math.max(...stresses) : null;
-  }
-  return row;
-}
 
 export class Headline {
   /** @param {import('./base/store.js').DesignStore} store */
@@ -145,10 +75,7 @@ export class Headline {
     const warnings = result.warnings ?? [];
     this.warnings.hidden = warnings.length === 0;
     this.warnings.textContent = warnings.length === 1 ? '⚠ 1 warning' : `⚠ ${warnings.length} warnings`;
-    fill(
-      this.list,
-      warnings.map((/** @type {string} */ text) => h('li', null, text)),
-    );
+    fill(this.list, groupedWarnings(warnings));
   }
 
   /** The load capacity in short. @param {any} result with its rating */
@@ -187,7 +114,7 @@ export class Headline {
   }
 }
 
-/** @param {Number_} number @param {() => string} about */
+/** @param {import('./numbers.js').Number_} number @param {() => string} about */
 function cell({ name, label, sub, unit, help, good }, about) {
   const value = h('span.value', null, '–');
   const delta = h('span.delta');

@@ -3,7 +3,7 @@
 import { h } from './base/dom.js';
 import { change, changeText, sig } from './base/format.js';
 import { caseLong, sameCase } from './figures/context.js';
-import { NUMBERS, numbersOf } from './headline.js';
+import { NUMBERS, numbersOf } from './numbers.js';
 
 /** @param {string[]} head @param {(string | HTMLElement)[][]} rows first cell of a row is its heading */
 export function tableOf(head, rows) {
@@ -68,15 +68,43 @@ export function verdict(result, reference) {
   );
 }
 
-/** @param {string[]} texts */
-export function warningList(texts) {
+/**
+ * Warnings that differ only in their numbers stand together: the first, and the others below it.
+ * @param {string[]} texts
+ */
+export function groupedWarnings(texts) {
+  /** @type {Map<string, string[]>} */
+  const groups = new Map();
+  for (const text of texts) {
+    const key = text.replace(/[\d.,]+/g, '#').replace(/\b(left|right)\b/g, '#');
+    groups.set(key, [...(groups.get(key) ?? []), text]);
+  }
+  return [...groups.values()].map(([first, ...others]) =>
+    h(
+      'li',
+      null,
+      first,
+      others.length
+        ? h(
+            'details.more',
+            null,
+            h('summary', null, `and ${others.length} more of this kind`),
+            h(
+              'ul',
+              null,
+              others.map(text => h('li', null, text)),
+            ),
+          )
+        : null,
+    ),
+  );
+}
+
+/** @param {string[]} texts @param {boolean} [all] none folded, as on paper */
+export function warningList(texts, all = false) {
   if (!texts.length) return [];
   return [
     h('h2', null, 'What to know about this result'),
-    h(
-      'ul',
-      null,
-      texts.map(text => h('li', null, text)),
-    ),
+    h('ul', null, all ? texts.map(text => h('li', null, text)) : groupedWarnings(texts)),
   ];
 }

@@ -6,7 +6,7 @@ import { labelOf, plain, sig, unitText } from '../base/format.js';
 import { Lane } from '../base/lane.js';
 import { valueAt, withValue } from '../base/pointer.js';
 import { unmodified } from '../base/store.js';
-import { numbersOf } from '../headline.js';
+import { numbersOf } from '../numbers.js';
 import { Chart } from './chart.js';
 import { OWN_COLOUR, REFERENCE_COLOUR, mainCase } from './context.js';
 

@@ -101,6 +101,17 @@ export class Form {
     }));
   }
 
+  /** What the service remarks about a value, at its field. @param {{ key: string, text: string }[]} findings */
+  showFindings(findings) {
+    const texts = new Map(findings.map(({ key, text }) => [key, text]));
+    for (const { pointer, element } of this.#controls) {
+      const text = texts.get(pointer) ?? '';
+      let remark = element.querySelector('.remark');
+      if (!remark && text) element.append((remark = h('span.remark')));
+      if (remark && remark.textContent !== text) remark.textContent = text;
+    }
+  }
+
   /** The field of a value: its own, or the same one of the other end that stands for both. @param {string} pointer */
   #find(pointer) {
     const places = [pointer, pointer.replace('/right/', '/left/')];

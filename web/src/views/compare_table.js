@@ -4,7 +4,7 @@ import { fill, h } from '../base/dom.js';
 import { change, changeText, labelOf, plain, sig, unitText } from '../base/format.js';
 import { valueAt } from '../base/pointer.js';
 import { caseLong } from '../figures/context.js';
-import { NUMBERS, numbersOf } from '../headline.js';
+import { NUMBERS, numbersOf } from '../numbers.js';
 
 /** @typedef {{ key: string, label: string, title?: string, design: any, result: any, missing?: string }} Item */
 

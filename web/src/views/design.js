@@ -90,6 +90,7 @@ class DesignView {
     const { form, store } = this.app;
     subject.set(store.design.name, context.result);
     form.resolved = context.result.design;
+    form.showFindings(context.result.findings ?? []);
     this.headline.set(context);
     this.results.set(context);
     if (this.#drawn) return;
@@ -151,7 +152,7 @@ class DesignView {
       result: context.result,
       lead: [
         verdict(context.result, context.references[0]),
-        h('section', null, warningList(context.result.warnings ?? [])),
+        h('section', null, warningList(context.result.warnings ?? [], true)),
         h('p', null, `Figures of one load case are those of ${caseLong(context.result.load_cases[context.loadCase])}.`),
       ],
       figures: this.results.frames,

@@ -8,12 +8,14 @@ import { more } from '../form/group.js';
 const MAIN = ['tip_relief_um', 'tip_relief_start_mm', 'root_relief_um', 'root_relief_start_mm', 'lead_crowning_um'];
 const MEMBERS = ['pinion', 'gear'];
 const ENDS = ['left', 'right'];
+const COAST = 'coast';
 const USUAL = { um: 50, mm: 5 }; // ends of sliders without bounds of their own
 const CURVATURE = 0.001; // 1/mm, of a profile crowning stated as a coefficient
 
 export class Flank {
   #member = 'pinion';
   #end = 'left';
+  #side = 'drive';
   #shape = '';
 
   /** @param {import('../base/store.js').DesignStore} store @param {import('../form/form.js').Form} form */
@@ -29,10 +31,11 @@ export class Flank {
 
   /** Turns to the member and end of a value. @param {string} pointer */
   #turnTo(pointer) {
-    const [, group, member, end] = pointer.split('/');
+    const [, group, member, end, side] = pointer.split('/');
     if (group !== 'modification' || !MEMBERS.includes(member)) return;
     this.#member = member;
     if (ENDS.includes(end)) this.#end = end;
+    this.#side = side === COAST ? COAST : 'drive';
     this.refresh();
   }
 
@@ -42,10 +45,11 @@ export class Flank {
     this.tieLabel.hidden = !two;
     const split = two && !this.store.tied;
     const end = split ? this.#end : 'left';
-    const shape = JSON.stringify([this.#member, split, end]);
+    const shape = JSON.stringify([this.#member, split, end, this.#side]);
     if (shape === this.#shape) return;
     this.#shape = shape;
-    this.#draw(`/modification/${this.#member}/${end}`, split, end);
+    const flank = `/modification/${this.#member}/${end}`;
+    this.#draw(this.#side === COAST ? `${flank}/${COAST}` : flank, split, end);
   }
 
   /** @param {string} base pointer of the flank @param {boolean} split each end for itself @param {string} end */
@@ -66,6 +70,7 @@ export class Flank {
             this.refresh();
           })
         : null,
+      this.#sides(end),
       this.tieLabel,
     );
     const all = fieldAt(this.form.fields, base)?.fields ?? [];
@@ -80,6 +85,23 @@ export class Flank {
         'More of the flank',
         rest.flatMap(field => this.#entry(base, field)),
       ),
+    );
+  }
+
+  /** Drive or coast flank, where the service knows both. @param {string} end */
+  #sides(end) {
+    if (!fieldAt(this.form.fields, `/modification/${this.#member}/${end}/${COAST}`)) return null;
+    return switcher(
+      'Flank',
+      [
+        ['drive', 'drive'],
+        [COAST, 'coast'],
+      ],
+      this.#side,
+      value => {
+        this.#side = value;
+        this.refresh();
+      },
     );
   }
 

@@ -6,7 +6,7 @@ import { change, changeText, plain } from '../base/format.js';
 import { halfTooth } from '../base/involute.js';
 import { Lane } from '../base/lane.js';
 import { colour } from '../base/theme.js';
-import { numbersOf } from '../headline.js';
+import { numbersOf } from '../numbers.js';
 
 const [WIDTH, HEIGHT] = [200, 96];
 const TEETH = 3; // on either side of the middle one
