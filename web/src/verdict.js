@@ -16,7 +16,7 @@ export function tableOf(head, rows) {
       h(
         'tr',
         null,
-        head.map(text => h('th', { scope: 'col' }, text)),
+        head.map(text => h('th', { scope: 'col' }, text || h('span.unseen', null, 'name'))),
       ),
     ),
     h(
@@ -26,7 +26,7 @@ export function tableOf(head, rows) {
         h(
           'tr',
           null,
-          h('th', { scope: 'row' }, name),
+          name ? h('th', { scope: 'row' }, name) : h('td'),
           cells.map(cell => h(/^[−\d–±+.]/.test(String(cell)) ? 'td.number' : 'td', null, cell)),
         ),
       ),

@@ -24,7 +24,9 @@ export function openPopover(button, kind, draw) {
   closeOpen?.();
   const panel = h(
     `div.menu-list.popover-${kind}`,
-    kind === 'menu' ? { role: 'menu' } : { role: 'dialog', 'aria-label': button.getAttribute('aria-label') ?? '' },
+    kind === 'menu'
+      ? { role: 'menu' }
+      : { role: 'dialog', 'aria-label': button.getAttribute('aria-label') ?? button.title },
   );
   const close = () => {
     if (closeOpen !== close) return;

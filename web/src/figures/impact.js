@@ -45,7 +45,7 @@ export class Impact {
           h(
             k === chosen ? 'tr.chosen' : 'tr',
             null,
-            h('th', { scope: 'row' }, end === 'left' ? names[k] : ''),
+            end === 'left' ? h('th', { scope: 'row', rowspan: endsOf(result).length }, names[k]) : null,
             h('td', null, end),
             values.slice(0, SHOWN).map(value => h('td.number', null, sig(value, 3))),
             h('td.number.change', null, changeText(percent)),

@@ -72,12 +72,12 @@ export class Rating {
       }),
     );
     this.#rows = [HEAD, ...rows];
-    fill(this.frame.body, h('p', null, verdictText(rating)), table(rows), unchecked(rating));
+    fill(this.frame.body, h('p', null, verdictText(rating)), table(rows, endsOf(result).length), unchecked(rating));
   }
 }
 
-/** @param {any[][]} rows */
-function table(rows) {
+/** @param {any[][]} rows @param {number} ends */
+function table(rows, ends) {
   return h(
     'table.numbers',
     null,
@@ -97,7 +97,7 @@ function table(rows) {
         h(
           'tr',
           null,
-          h('th', { scope: 'row' }, end === 'left' ? name : ''),
+          end === 'left' ? h('th', { scope: 'row', rowspan: ends }, name) : null,
           h('td', null, end),
           numbers.map(value => h('td.number', null, sig(value, 3))),
         ),

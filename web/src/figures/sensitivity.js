@@ -174,7 +174,7 @@ export class Sensitivity {
     this.strip = h(
       '.sensitivity',
       { role: 'group', 'aria-label': 'Sensitivity of the transmission error' },
-      h('span.sensitivity-title', null, 'TE, peak to peak, with'),
+      h('span.sensitivity-title', null, 'Transmission error with'),
       this.cells,
       h(
         'button.link',

@@ -237,6 +237,7 @@ class CompareView {
         h(
           'div',
           null,
+          h('h2.unseen', null, 'Curves of the designs'),
           this.curves.ends,
           h(
             '.figures',
