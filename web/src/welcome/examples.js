@@ -126,7 +126,7 @@ class Examples {
   /** @param {string} name @param {HTMLCanvasElement} canvas @param {HTMLElement} facts @param {HTMLElement} gain */
   async #describe(name, canvas, facts, gain) {
     const design = await this.app.library.example(name);
-    const { geometry: g, design: whole } = await post('check', design);
+    const { geometry: g, design: whole, prepared } = await post('check', design);
     drawTeeth(canvas, g, whole.gear_pair);
     facts.textContent = [
       `${g.pinion_teeth}/${g.gear_teeth} teeth`,
@@ -135,6 +135,7 @@ class Examples {
       `face ${plain(g.face_width_mm)} mm`,
     ].join(', ');
     if (!hasModification(design)) gain.textContent = 'Unmodified: a search finds its flank.';
+    else if (!prepared) gain.textContent = 'Modified: its gain is computed when it is opened.';
     else {
       gain.textContent = '…';
       this.waiting.push({ design, gain });
