@@ -5,6 +5,8 @@ import { Lane } from './lane.js';
 import { unmodified } from './store.js';
 
 const ANALYZE = 'analyze?histories=1&rating=0';
+/** While a slider moves: without histories over time, which are half of an answer. */
+const STROKE = 'analyze?rating=0&parts=modification,lte,mesh_stiffness,load_share,pattern,orders,maps';
 const RATE = 'analyze?maps=0'; // with the rating, which takes two more contact analyses
 const REST = 900; // ms without a change before the design is rated
 
@@ -33,7 +35,7 @@ export class Analyst extends EventTarget {
     super();
     this.store = store;
     this.own = new Lane({
-      result: (_task, data, ms) => {
+      result: (task, data, ms) => {
         this.result = data;
         this.ms = ms;
         this.faults = [];
@@ -41,6 +43,7 @@ export class Analyst extends EventTarget {
         this.#state('');
         this.#tell('result');
         clearTimeout(this.#rest);
+        if (task.path === STROKE) return;
         this.#rest = window.setTimeout(() => this.rating.submit({ path: RATE, body: this.store.design }), REST);
       },
       preparing: (_task, job) => {
@@ -72,12 +75,13 @@ export class Analyst extends EventTarget {
     store.addEventListener('change', event => {
       const what = /** @type {CustomEvent} */ (event).detail;
       if (what === 'view') this.#tell('result');
-      else this.update();
+      else this.update(what === 'live');
     });
     connection.addEventListener('change', () => this.#tell('state'));
   }
 
-  update() {
+  /** @param {boolean} [stroke] more changes are to come at once */
+  update(stroke = false) {
     const { store } = this;
     if (store.faults.size) {
       this.faults = [];
@@ -86,7 +90,7 @@ export class Analyst extends EventTarget {
     }
     const { design } = store;
     if (this.state !== 'preparing') this.#state('busy');
-    this.own.submit({ path: ANALYZE, body: design });
+    this.own.submit({ path: stroke ? STROKE : ANALYZE, body: design });
     const key = loadKey(design);
     if (key !== this.#plainKey) {
       this.#plainKey = key;

@@ -167,6 +167,7 @@ export class RootStress {
   set({ result, references, loadCase: k }) {
     const loadCase = result.load_cases[k];
     const own = loadCase.root_stress?.[this.#member];
+    this.chart.element.classList.toggle('waiting', Boolean(own) && !own.position);
     if (!own?.position) return;
     const curves = [];
     for (const reference of references) {

@@ -87,10 +87,13 @@ export class Vibration {
       const orders = c.vibration?.[`orders_${reading}`];
       if (orders) bars.push({ label: names[i], y: orders.slice(1, ORDERS + 1), colour: caseColour(i) });
     });
+    // a stroke's answers have no histories: the last ones stay until it rests
+    const late = endsOf(result).some(end => own?.[end] && !own[end].history);
+    this.cycle.element.classList.toggle('waiting', late);
     this.cycle.frame.setCase(caseLong(loadCase));
     this.orders.frame.about = 'all load cases';
     this.cycle.frame.say(curves.length ? '' : 'No periodic vibration was found.');
-    if (own?.position && curves.length) this.cycle.set({ x: own.position, curves });
+    if (!late && own?.position && curves.length) this.cycle.set({ x: own.position, curves });
     this.orders.set({ x: counting(ORDERS, 1), curves: bars });
   }
 }
