@@ -42,12 +42,15 @@ const field = (name, where = page) =>
 const torque = i => field(`Torque of load case ${i}`);
 const banner = page.locator('.design-view > .head-pane > .trouble, .trouble').first();
 const settled = (where = page) =>
-  where.waitForFunction(() => {
-    const values = [...document.querySelectorAll('.number-cell .value')];
-    return (
-      values.length && values.every(value => /\d/.test(value.textContent)) && !document.querySelector('.preparing')
-    );
-  });
+  where.waitForFunction(
+    () => {
+      const values = [...document.querySelectorAll('.number-cell .value')];
+      const known = values.length > 0 && values.every(value => /\d/.test(value.textContent));
+      return known && !document.querySelector('.preparing');
+    },
+    null,
+    { polling: 100 }, // a page behind another one has no frames
+  );
 /** Opens an address afresh. */
 const open = async (hash = START, where = page) => {
   await where.goto('about:blank');

@@ -6,6 +6,14 @@ import { switcher } from '../figures/frame.js';
 import { more } from '../form/group.js';
 
 const MAIN = ['tip_relief_um', 'tip_relief_start_mm', 'root_relief_um', 'root_relief_start_mm', 'lead_crowning_um'];
+/** What is moved less often, by what it is about; the first pattern that fits. @type {[string, RegExp][]} */
+const GROUPS = [
+  ['Shape of the reliefs', /_(shape|exponent)$/],
+  ['Triangular relief of the corners', /triangular/],
+  ['Relief of the face ends', /^(leading|trailing)_end/],
+  ['Start of the reliefs, stated otherwise', /^(tip|root)_relief_(diameter|roll|length)/],
+  ['Profile, helix and twist', /./],
+];
 const MEMBERS = ['pinion', 'gear'];
 const ENDS = ['left', 'right'];
 const COAST = 'coast';
@@ -45,7 +53,8 @@ export class Flank {
     this.tieLabel.hidden = !two;
     const split = two && !this.store.tied;
     const end = split ? this.#end : 'left';
-    const shape = JSON.stringify([this.#member, split, end, this.#side]);
+    const grid = Boolean(this.store.get(`/modification/${this.#member}/${end}/grid`));
+    const shape = JSON.stringify([this.#member, split, end, this.#side, grid]);
     if (shape === this.#shape) return;
     this.#shape = shape;
     const flank = `/modification/${this.#member}/${end}`;
@@ -81,11 +90,51 @@ export class Flank {
       this.element,
       switches,
       main.map(field => this.#entry(base, field)),
-      more(
-        'More of the flank',
-        rest.flatMap(field => this.#entry(base, field)),
-      ),
+      this.#groups(base, rest),
+      this.#grid(base, all),
     );
+  }
+
+  /** @param {string} base @param {import('../base/schema.js').Field[]} fields */
+  #groups(base, fields) {
+    /** @param {import('../base/schema.js').Field} field */
+    const groupOf = field => GROUPS.find(([, pattern]) => pattern.test(field.key))?.[0];
+    return [...GROUPS].reverse().flatMap(([title]) => {
+      const own = fields.filter(field => groupOf(field) === title).flatMap(field => this.#entry(base, field));
+      return own.length ? [more(title, own)] : [];
+    });
+  }
+
+  /** Points of the flank from a table. @param {string} base @param {import('../base/schema.js').Field[]} fields */
+  #grid(base, fields) {
+    const field = fields.find(each => each.key === 'grid');
+    if (!field) return null;
+    const pointer = `${base}/grid`;
+    const now = this.store.get(pointer);
+    const text = h('textarea', {
+      rows: 4,
+      'aria-label': 'Grid of the flank as CSV',
+      placeholder: 'u\\y, -20, 0, 20\n-5, 3, 0, 3\n5, 8, 0, 8',
+    });
+    const take = () => this.store.set(pointer, text.value.trim() === '' ? null : { csv: text.value });
+    return more('Points from a table', [
+      h('p.figure-note', null, field.help ?? ''),
+      h(
+        'p.figure-note',
+        null,
+        'First row: places along the face in mm; each further row: its place on the profile, then µm.',
+      ),
+      h('p.figure-note', null, now ? 'This flank has a grid.' : 'This flank has no grid.'),
+      text,
+      h(
+        '.switches',
+        null,
+        h('button.small', { type: 'button', onclick: take }, 'Take the table'),
+        now
+          ? h('button.small', { type: 'button', onclick: () => this.store.set(pointer, null) }, 'Remove the grid')
+          : null,
+      ),
+    ]);
   }
 
   /** Drive or coast flank, where the service knows both. @param {string} end */
@@ -108,7 +157,7 @@ export class Flank {
   /** @param {string} base @param {import('../base/schema.js').Field} field @returns {HTMLElement[]} */
   #entry(base, field) {
     const pointer = `${base}/${field.key}`;
-    if (field.kind === 'number' && !field.nullable)
+    if (field.kind === 'number' && !field.nullable && field.unit)
       return [this.fields.slider(pointer, () => this.#range(pointer, field))];
     if (field.kind === 'object' || field.kind === 'list') return [];
     return [this.fields.field(pointer)];

@@ -5,6 +5,7 @@ import { labelOf, sig } from '../base/format.js';
 import { readRows } from '../base/case_rows.js';
 import { fieldAt, unitOf } from '../base/schema.js';
 import { caseNames } from '../figures/context.js';
+import { more } from '../form/group.js';
 
 const COLUMNS = ['name', 'torque_Nm', 'speed_rpm', 'share'];
 const FIRST = { torque_Nm: 100, speed_rpm: 2000, share: null };
@@ -24,12 +25,14 @@ export class LoadCases {
     this.others = this.fields.filter(field => !COLUMNS.includes(field.key) && !field.entry);
     this.table = h('table.load-cases', { onpaste: (/** @type {ClipboardEvent} */ event) => this.#paste(event) });
     this.note = h('p.figure-note', { role: 'status' });
+    this.more = h('div');
     this.element = h(
       'div',
       null,
       this.table,
       h('button.small', { type: 'button', onclick: () => this.#add() }, '+ load case'),
       this.note,
+      this.more,
     );
   }
 
@@ -101,6 +104,15 @@ export class LoadCases {
         this.#sets.map((set, i) => this.#row(set, i, count)),
       ),
     );
+    fill(
+      this.more,
+      this.others.length
+        ? more(
+            `${this.others.map(field => labelOf(field.key)).join(', ')} of each`,
+            this.#sets.map((set, i) => this.#rest(set, i)),
+          )
+        : null,
+    );
     for (const [pointer, texts] of typed) for (const set of this.#sets) set.retype(pointer, texts);
   }
 
@@ -121,26 +133,34 @@ export class LoadCases {
       },
       '✕',
     );
-    const row = h(
+    return h(
       'tr',
       null,
       h('td', null, mark),
       this.columns.map(field => h('td', null, entry(field))),
       h('td', null, remove),
     );
-    if (!this.others.length) return [row];
+  }
+
+  /**
+   * What a load case seldom states for itself.
+   * @param {import('../form/fieldset.js').FieldSet} set
+   * @param {number} i
+   */
+  #rest(set, i) {
+    const place = `/load_cases/${i}`;
     const simple = this.others.filter(field => field.kind !== 'object' && field.kind !== 'list');
     const nested = this.others.filter(field => field.kind === 'object');
-    const rest = h(
-      'details.more',
+    return h(
+      'fieldset',
       null,
-      h('summary', null, `More of load case ${i + 1}`),
-      simple.map(field => set.field(`/load_cases/${i}/${field.key}`)),
-      nested.map(field =>
-        h('fieldset', null, h('legend', null, labelOf(field.key)), set.fieldsOf(`/load_cases/${i}/${field.key}`)),
-      ),
+      h('legend', null, `Load case ${i + 1}`),
+      simple.map(field => set.field(`${place}/${field.key}`)),
+      nested.map(field => [
+        h('legend', null, `${labelOf(field.key)} of load case ${i + 1}`),
+        set.fieldsOf(`${place}/${field.key}`),
+      ]),
     );
-    return [row, h('tr', null, h('td'), h('td', { colspan: this.columns.length + 1 }, rest))];
   }
 
   /** The row goes with what is typed in it; what is typed in the others moves with them. @param {number} index */
