@@ -37,7 +37,7 @@ page.on('pageerror', error => troubles.push(error.message));
 
 const rows = page.locator('section[aria-label="Measurements"] tbody tr');
 /** Records without a rig and puts the recording into the queue. */
-const record = async ({ pair = '', speed = '', fault = 'none' }) => {
+const record = async ({ pair = 'modified', speed = '', fault = 'none' }) => {
   const before = await page.locator('.recording').count();
   await page.getByLabel('Synthetic pair').selectOption(pair);
   await page.getByLabel('Synthetic speed, rpm').fill(speed);
@@ -161,11 +161,11 @@ await chapter('for everybody', async () => {
 });
 
 await chapter('delete', async () => {
-  page.on('dialog', dialog => dialog.accept());
   await rows
     .first()
     .getByRole('button', { name: /^Delete/ })
     .click();
+  await page.locator('dialog.question').getByRole('button', { name: 'Delete' }).click();
   await page.waitForFunction(
     () => document.querySelectorAll('section[aria-label="Measurements"] tbody tr').length === 2,
   );

@@ -153,7 +153,7 @@ await chapter('type numbers', async () => {
   await teeth.fill('9');
   await teeth.press('Enter');
   const trouble = page.locator('.head-pane .trouble');
-  await trouble.filter({ hasText: /undercut|interferes|pointed/ }).waitFor();
+  await trouble.filter({ hasText: /undercut|interferes|pointed|line of action/ }).waitFor();
   ok(true, 'what the gears refuse is said in words');
   await page.keyboard.press('Control+z');
   await teeth.fill('17');
