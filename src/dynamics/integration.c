@@ -5,16 +5,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "dynamics/settling.h"
 #include "numerics/fourier.h"
 #include "numerics/ode.h"
 
-enum { MAX_LAW_ROWS = 1024, PATIENCE = 30, LONGEST = 4 };
-/* Where the integration's own noise keeps the state from settling further. */
-static const double noise = 1e-5, progress_factor = 0.9;
-/* Unless the state comes back so much nearer after several periods than after fewer, it may still be on its way to
-   repeating after fewer: a slow decay that alternates looks like twice the period. */
-static const double distinct = 1e-3;
-
+enum { MAX_LAW_ROWS = 1024 };
 const struct eo_integration_options eo_integration_defaults = {
     .relative_tolerance = 1e-8, .settled = 1e-7, .max_periods = 1000, .samples = 1024, .max_repeat = 1};
 
@@ -176,73 +171,21 @@ static enum eo_code one_period(struct eo_ode *ode, const struct run *run, int pe
   return EO_OK;
 }
 
-/* How nearly the state comes back after 1, 2, 3 and 4 periods, by number less one. */
-struct settling {
-  int n, seen;                                    /* coordinates; periods so far */
-  double before[LONGEST][2 * EO_MAX_COORDINATES]; /* states at the beginning of the last periods, by period % LONGEST */
-  double swing[LONGEST];                          /* of these periods */
-  double change[LONGEST], best[LONGEST];          /* shares of the swing */
-  int idle[LONGEST];                              /* periods since the best was last bettered */
-};
-
-/* Change of the state over the last `repeat` periods against the largest swing within them. */
-static double change_over(const struct settling *s, int repeat, const double *y)
-{
-  const double *before = s->before[(s->seen - repeat) % LONGEST];
-  double change = 0, swing = 0;
-  for (int i = 0; i < s->n; i++)
-    change = fmax(change, fmax(fabs(y[i] - before[i]), fabs(y[s->n + i] - before[s->n + i]) / (2 * M_PI)));
-  for (int i = 1; i <= repeat; i++)
-    swing = fmax(swing, s->swing[(s->seen - i) % LONGEST]);
-  return swing > 0 ? change / swing : 0;
-}
-
-/* Notes a period that ended in y; returns after how many periods the state repeats, or 0. */
-static int note_period(struct settling *s, const struct eo_integration_options *options, const double *y)
-{
-  int found = 0;
-  double sooner = INFINITY; /* smallest change after fewer periods */
-  s->seen++;
-  for (int i = 0; i < options->max_repeat && i < s->seen && !found; i++) {
-    double change = s->change[i] = change_over(s, i + 1, y);
-    s->idle[i]++;
-    if (change < progress_factor * s->best[i]) {
-      s->best[i] = change;
-      s->idle[i] = 0;
-    }
-    bool still = s->idle[i] >= PATIENCE && change <= noise && change < sooner / 2;
-    if ((change <= options->settled && change <= distinct * sooner) || still)
-      found = i + 1;
-    sooner = fmin(sooner, change);
-  }
-  return found;
-}
-
-/* Smallest change over any of the times allowed. */
-static double nearest_return(const struct settling *s, const struct eo_integration_options *options)
-{
-  double change = s->change[0];
-  for (int i = 1; i < options->max_repeat && i < s->seen; i++)
-    change = fmin(change, s->change[i]);
-  return change;
-}
-
 static enum eo_code run_periods(struct eo_ode *ode, const struct run *run, const struct eo_integration_options *options,
                                 double *y, struct eo_integration *result, const struct eo_progress *progress,
                                 struct eo_error *error)
 {
-  struct settling s = {.n = run->oscillator->n, .best = {INFINITY, INFINITY, INFINITY, INFINITY}};
+  struct eo_settling s;
   int period = 0, repeat = 0;
+  eo_settling_init(&s, run->oscillator->n, options->settled, options->max_repeat);
   result->change = 0;
   while (period < options->max_periods - 1 && !repeat) {
-    memcpy(s.before[period % LONGEST], y, sizeof *y * 2 * (size_t)s.n);
-    s.swing[period % LONGEST] = 0;
-    enum eo_code code = one_period(ode, run, period, 8, y, &s.swing[period % LONGEST], NULL, 0, error);
+    enum eo_code code = one_period(ode, run, period, 8, y, eo_settling_begin(&s, y), NULL, 0, error);
     if (code)
       return code;
     period++;
-    repeat = note_period(&s, options, y);
-    result->change = nearest_return(&s, options);
+    repeat = eo_settling_end(&s, y);
+    result->change = eo_settling_change(&s);
     if (eo_progress_report(progress, "time integration", (double)period / options->max_periods))
       return eo_error_set(error, EO_ERROR_CANCELLED, "", "The time integration was cancelled.");
   }

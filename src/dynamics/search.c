@@ -6,16 +6,29 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "dynamics/march.h"
 #include "dynamics/stability.h"
 #include "dynamics/vibration_private.h"
 
-enum { PERIODS = 300, MOST_PERIODS = 1500, LEAST_SAMPLES = 1024, MAX_REPEAT = 4, STEPS = 3 };
+enum {
+  PERIODS = 100,
+  MOST_PERIODS = 1500,
+  LEAST_MARCHED = 1000,
+  MOST_MARCHED = 2000,
+  LEAST_SAMPLES = 1024,
+  MAX_REPEAT = 4,
+  STEPS = 3
+};
 /* Two states by time integration whose RMS differ by less are taken for the same, and one by harmonic balance is taken
    for one of them when all that is read off it agrees so nearly: it leaves the highest harmonics out. */
 static const double same_state = 1e-3, alike = 0.03;
 /* A motion that comes back as nearly as this after some hundred periods is on its way, if slowly; others never settle.
  */
 static const double on_its_way = 0.02;
+/* By equal steps, which are cheap, it has longer, and near doublings of the period it needs longer. */
+static const double ever_settling = 0.1, step_angle = 0.15;
+/* Change over a period that the integration itself makes where contact comes and goes many times. */
+static const double noise = 1e-4;
 /* Contact comes and goes many times a period; what is found is good for four digits. */
 static const double relative_tolerance = 1e-7, settled = 1e-5;
 /* Share of the velocities by which an unstable state is disturbed before it is left to itself. */
@@ -100,27 +113,35 @@ static bool is_known(const struct search *q, const struct eo_vibration *v)
   return known;
 }
 
-/* Periods of time integration as long as the motion seems to settle. */
+/* By equal steps as long as the motion seems to settle, which takes the transient off it; from there time integration
+   as long as it comes nearer to repeating, or until it is lost in the integration's own noise where the steps repeat.
+   Where these would be too many, at low speeds, motions settle within a few periods anyway. */
 static enum eo_code integrate_from(struct search *q, const double *start, struct eo_integration *run,
                                    struct eo_error *error)
 {
-  struct eo_integration_options options = eo_integration_defaults;
+  const struct eo_march_options march = {step_angle, settled, MAX_REPEAT, MOST_MARCHED, LEAST_MARCHED, ever_settling};
+  const struct eo_integration_options options = {relative_tolerance, settled, PERIODS, q->samples, MAX_REPEAT};
+  struct eo_march found = {.periodic = false};
+  struct eo_error reason;
   double state[2 * EO_MAX_COORDINATES];
-  enum eo_code code = EO_OK;
-  options.relative_tolerance = relative_tolerance;
-  options.settled = settled;
-  options.max_periods = PERIODS;
-  options.samples = q->samples;
-  options.max_repeat = MAX_REPEAT;
-  memcpy(state, start, sizeof *state * 2 * (size_t)q->solver->model.oscillator.n);
+  enum eo_code code = eo_march(&q->solver->model.oscillator, &q->cycle, &march, start, &found, &reason);
   run->periodic = false;
+  q->periods += found.periods;
+  if (code == EO_ERROR_MEMORY)
+    return eo_error_memory(error);
+  if (!code && found.change > ever_settling)
+    return EO_OK;
+  memcpy(state, code ? start : found.state, sizeof *state * 2 * (size_t)q->solver->model.oscillator.n);
+  code = EO_OK;
   for (int periods = 0; !code && !run->periodic && periods < MOST_PERIODS; periods += run->periods) {
     code = eo_integrate(&q->solver->model.oscillator, &q->cycle, &options, state, run, NULL, error);
     memcpy(state, run->state, sizeof state);
-    if (!code)
-      q->periods += run->periods;
-    if (!code && !run->periodic && run->change > on_its_way)
+    if (code)
+      return code;
+    q->periods += run->periods;
+    if (!run->periodic && run->change > on_its_way)
       break;
+    run->periodic = run->periodic || (found.periodic && found.repeat == 1 && run->change <= noise);
   }
   return code;
 }

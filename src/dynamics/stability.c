@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "dynamics/propagator.h"
 #include "numerics/dense.h"
 #include "numerics/fourier.h"
 
@@ -165,70 +166,9 @@ enum eo_code eo_floquet(const struct eo_oscillator *oscillator, const struct eo_
   return EO_OK;
 }
 
-enum { LEAST_KICKS = 64, MOST_KICKS = 2048, KICKS_PER_HARMONIC = 4, TAYLOR = 12 };
+enum { LEAST_KICKS = 64, MOST_KICKS = 2048, KICKS_PER_HARMONIC = 4 };
 /* Largest angle by which the meshes alone would turn between two kicks, rad: 1e-5 in the multipliers. */
 static const double kick_angle = 0.5;
-
-/* c = a b, all [size][size] */
-static void multiply(int size, const double *a, const double *b, double *c)
-{
-  memset(c, 0, sizeof *c * (size_t)(size * size));
-  for (int i = 0; i < size; i++)
-    for (int k = 0; k < size; k++) {
-      double factor = a[i * size + k];
-      for (int j = 0; j < size; j++)
-        c[i * size + j] += factor * b[k * size + j];
-    }
-}
-
-/* exp(a) by a Taylor polynomial of a / 2^n and n squarings, in place. */
-static void exponential(int size, double *a, struct work *w)
-{
-  double norm = 0, *sum = w->k[0], *power = w->k[1], *next = w->k[2];
-  int squarings = 0;
-  for (int i = 0; i < size; i++) {
-    double row = 0;
-    for (int j = 0; j < size; j++)
-      row += fabs(a[i * size + j]);
-    norm = fmax(norm, row);
-  }
-  while (ldexp(norm, -squarings) > 0.25)
-    squarings++;
-  for (int i = 0; i < size * size; i++) {
-    a[i] = ldexp(a[i], -squarings);
-    sum[i] = power[i] = i % (size + 1) == 0;
-  }
-  for (int term = 1; term <= TAYLOR; term++) {
-    multiply(size, power, a, next);
-    for (int i = 0; i < size * size; i++)
-      sum[i] += power[i] = next[i] / term;
-  }
-  memcpy(a, sum, sizeof *a * (size_t)(size * size));
-  for (int i = 0; i < squarings; i++) {
-    multiply(size, a, a, next);
-    memcpy(a, next, sizeof *a * (size_t)(size * size));
-  }
-}
-
-/* First-order form of the oscillator over a time step, velocities per `rate`: [0 rate; -K/rate -C] step. */
-static void linear_motion(const struct eo_oscillator *o, double mesh_damping, const double mean[2], double rate,
-                          double step, double *a)
-{
-  int n = o->n, size = 2 * n;
-  memset(a, 0, sizeof *a * (size_t)(size * size));
-  for (int i = 0; i < n; i++) {
-    a[i * size + n + i] = rate * step;
-    for (int j = 0; j < n; j++) {
-      double k = o->stiffness[i * n + j], c = o->damping[i * n + j];
-      for (int end = 0; end < o->ends; end++) {
-        k += mean[end] * o->mesh[end][i] * o->mesh[end][j];
-        c += mesh_damping * o->mesh[end][i] * o->mesh[end][j];
-      }
-      a[(n + i) * size + j] = -k * step / rate;
-      a[(n + i) * size + n + j] = -c * step;
-    }
-  }
-}
 
 /* Velocities changed at once by what a mesh is stiffer than the mean over one step. */
 static void kick(const struct eo_oscillator *o, int end, double impulse, double *y)
@@ -241,16 +181,6 @@ static void kick(const struct eo_oscillator *o, int end, double impulse, double 
     for (int i = 0; i < n; i++)
       y[(n + i) * columns + l] -= impulse * o->mesh[end][i] * x;
   }
-}
-
-/* Angular frequency of the meshes alone, all their stiffness together. */
-static double mesh_rate(const struct eo_oscillator *o, const double mean[2])
-{
-  double square = 0;
-  for (int end = 0; end < o->ends; end++)
-    for (int i = 0; i < o->n; i++)
-      square += mean[end] * o->mesh[end][i] * o->mesh[end][i];
-  return sqrt(square);
 }
 
 enum eo_code eo_floquet_attached(const struct eo_oscillator *o, const struct eo_cycle *cycle, int harmonics,
@@ -268,7 +198,7 @@ enum eo_code eo_floquet_attached(const struct eo_oscillator *o, const struct eo_
     return eo_error_memory(error);
   }
   struct mesh_slope first = slope_at(&orbit, 0);
-  double angle = orbit.period * mesh_rate(o, first.stiffness) / kick_angle;
+  double angle = orbit.period * eo_propagator_mesh_rate(o, first.stiffness) / kick_angle;
   double least = fmax(LEAST_KICKS, KICKS_PER_HARMONIC * fmax(cycle->law[0]->order, cycle->law[o->ends - 1]->order));
   int kicks = (int)fmin(MOST_KICKS, fmax(least, angle));
   for (int i = 0; i < kicks; i++) {
@@ -278,15 +208,14 @@ enum eo_code eo_floquet_attached(const struct eo_oscillator *o, const struct eo_
       mean[end] += m.stiffness[end] / kicks;
     }
   }
-  double rate = mesh_rate(o, mean), step = orbit.period / kicks;
-  linear_motion(o, cycle->mesh_damping, mean, rate, step, w->trial);
-  exponential(size, w->trial, w);
+  double rate = eo_propagator_mesh_rate(o, mean), step = orbit.period / kicks;
+  eo_propagator_fill(o, cycle->mesh_damping, mean, rate, step, w->trial);
   for (int i = 0; i < size; i++)
     w->y[i * size + i] = 1;
   for (int i = 0; i < kicks; i++) {
     for (int end = 0; end < o->ends; end++)
       kick(o, end, (stiffness[i][end] - mean[end]) * step / rate, w->y);
-    multiply(size, w->trial, w->y, w->k[3]);
+    eo_propagator_multiply(size, w->trial, w->y, w->k[3]);
     memcpy(w->y, w->k[3], sizeof *w->y * (size_t)(size * size));
   }
   int failed = eo_dense_eigenvalues(size, w->y, multiplier);

@@ -53,22 +53,10 @@ static enum eo_code init(struct rig *rig, const struct eo_geometry *geometry, in
   return code;
 }
 
-enum { MOST_LOADS = 41 };
-
-/* decades > 0: comes down from a load 10^decades times as high, at which every cell is in contact from the start: on
-   springs this stiff the solver's own start, with undeflected teeth, would see the first cells alone. All loads share
-   one result; the last, the wanted one, stays. */
-static enum eo_code solve(struct rig *rig, double load, int decades, struct eo_error *error)
+static enum eo_code solve(struct rig *rig, double load, struct eo_error *error)
 {
-  double descent[MOST_LOADS];
-  struct eo_loaded_end end[MOST_LOADS];
-  int loads = 5 * decades + 1;
-  for (int i = 0; i < loads; i++) {
-    descent[i] = load * pow(10, (loads - 1 - i) / 5.);
-    end[i] = rig->end;
-  }
-  eo_loaded_solve(rig->workspace, rig->grid, &rig->gaps, 1, loads, descent, end);
-  int failures = end[loads - 1].failures;
+  eo_loaded_solve(rig->workspace, rig->grid, &rig->gaps, 1, 1, &load, &rig->end);
+  int failures = rig->end.failures;
   return failures ? eo_error_set(error, EO_ERROR_NUMERIC, "", "The loaded contact did not converge at %d positions.",
                                  failures)
                   : EO_OK;
@@ -114,7 +102,7 @@ enum eo_code eo_verify_load_distribution(double stiffness, double line_load, dou
   for (int i = 0; i < CELLS && !code; i++)
     rig.gaps.gap[i] = misalignment * (rig.grid->position[0].point[i].eta / face_width + 0.5);
   if (!code)
-    code = solve(&rig, line_load * face_width, 8, error);
+    code = solve(&rig, line_load * face_width, error);
   if (!code)
     *factor = edge_load(&rig) / line_load;
   done(&rig);
@@ -145,7 +133,7 @@ enum eo_code eo_verify_overlap(const struct eo_geometry *geometry, double *peak_
   spread_positions(geometry, POSITIONS, phase);
   enum eo_code code = init(&rig, geometry, POSITIONS, CELLS, phase, &stiffness, error);
   if (!code)
-    code = solve(&rig, load, 0, error);
+    code = solve(&rig, load, error);
   for (int i = 0; i < POSITIONS && !code; i++) {
     double length = 0, deflection = rig.end.approach[i] / cos(geometry->base_helix_angle);
     for (int k = 0; k < rig.grid->position[i].points; k++)

@@ -1,0 +1,76 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "dynamics/propagator.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { N = EO_MAX_COORDINATES, TAYLOR = 12 };
+
+void eo_propagator_multiply(int size, const double *a, const double *b, double *c)
+{
+  memset(c, 0, sizeof *c * (size_t)(size * size));
+  for (int i = 0; i < size; i++)
+    for (int k = 0; k < size; k++) {
+      double factor = a[i * size + k];
+      for (int j = 0; j < size; j++)
+        c[i * size + j] += factor * b[k * size + j];
+    }
+}
+
+/* exp(a) by a Taylor polynomial of a / 2^n and n squarings, in place. */
+static void exponential(int size, double *a)
+{
+  double norm = 0, sum[4 * N * N], power[4 * N * N], next[4 * N * N];
+  int squarings = 0;
+  for (int i = 0; i < size; i++) {
+    double row = 0;
+    for (int j = 0; j < size; j++)
+      row += fabs(a[i * size + j]);
+    norm = fmax(norm, row);
+  }
+  while (ldexp(norm, -squarings) > 0.25)
+    squarings++;
+  for (int i = 0; i < size * size; i++) {
+    a[i] = ldexp(a[i], -squarings);
+    sum[i] = power[i] = i % (size + 1) == 0;
+  }
+  for (int term = 1; term <= TAYLOR; term++) {
+    eo_propagator_multiply(size, power, a, next);
+    for (int i = 0; i < size * size; i++)
+      sum[i] += power[i] = next[i] / term;
+  }
+  memcpy(a, sum, sizeof *a * (size_t)(size * size));
+  for (int i = 0; i < squarings; i++) {
+    eo_propagator_multiply(size, a, a, next);
+    memcpy(a, next, sizeof *a * (size_t)(size * size));
+  }
+}
+
+void eo_propagator_fill(const struct eo_oscillator *o, double mesh_damping, const double mean[2], double rate,
+                        double step, double *a)
+{
+  int n = o->n, size = 2 * n;
+  memset(a, 0, sizeof *a * (size_t)(size * size));
+  for (int i = 0; i < n; i++) {
+    a[i * size + n + i] = rate * step;
+    for (int j = 0; j < n; j++) {
+      double k = o->stiffness[i * n + j], c = o->damping[i * n + j];
+      for (int end = 0; end < o->ends; end++) {
+        k += mean[end] * o->mesh[end][i] * o->mesh[end][j];
+        c += mesh_damping * o->mesh[end][i] * o->mesh[end][j];
+      }
+      a[(n + i) * size + j] = -k * step / rate;
+      a[(n + i) * size + n + j] = -c * step;
+    }
+  }
+  exponential(size, a);
+}
+
+double eo_propagator_mesh_rate(const struct eo_oscillator *o, const double mean[2])
+{
+  double square = 0;
+  for (int end = 0; end < o->ends; end++)
+    for (int i = 0; i < o->n; i++)
+      square += mean[end] * o->mesh[end][i] * o->mesh[end][i];
+  return sqrt(square);
+}
