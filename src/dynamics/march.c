@@ -147,7 +147,7 @@ static void kick(struct marching *m, int i, double time)
 static void drift(struct marching *m)
 {
   int size = 2 * m->oscillator->n;
-  double next[2 * N];
+  double next[2 * N] = {0};
   for (int i = 0; i < size; i++) {
     const double *row = m->propagator + (size_t)i * (size_t)size;
     double sum = 0;

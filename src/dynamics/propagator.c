@@ -20,7 +20,7 @@ void eo_propagator_multiply(int size, const double *a, const double *b, double *
 /* exp(a) by a Taylor polynomial of a / 2^n and n squarings, in place. */
 static void exponential(int size, double *a)
 {
-  double norm = 0, sum[4 * N * N], power[4 * N * N], next[4 * N * N];
+  double norm = 0, sum[4 * N * N] = {0}, power[4 * N * N] = {0}, next[4 * N * N];
   int squarings = 0;
   for (int i = 0; i < size; i++) {
     double row = 0;

@@ -148,7 +148,7 @@ static bool pair_of(const struct standing *at, struct eo_case *value, int *pair)
 
 /* Loads of single pairs: the pairs of a case have no coupling, so each carries its own. Tolerance: the level of the
    curve, what the file states of its own, and that of the shares. */
-static void check_pair_loads(const struct standing *at, struct eo_case *loads, double stated)
+static void check_pair_loads(const struct standing *at, struct eo_case *loads, double uncertainty)
 {
   static const double OF_LEVEL = 0.03, OF_TOTAL = 0.015;
   for (int k = 0; k < eo_case_size(loads); k++) {
@@ -160,7 +160,7 @@ static void check_pair_loads(const struct standing *at, struct eo_case *loads, d
     for (int i = 0; i < at->p->points; i++)
       if (at->p->point[i].pair == pair)
         load += at->line_load[i] * at->p->length[i];
-    eo_verify_number(at->x->v, one, load, OF_LEVEL + stated, OF_TOTAL * at->total);
+    eo_verify_number(at->x->v, one, load, OF_LEVEL + uncertainty, OF_TOTAL * at->total);
   }
 }
 
@@ -247,7 +247,7 @@ static enum eo_code check_prescribed(const struct calculix *x, struct eo_case *b
   if (!eo_case_find(block, "Z_prescribed_um"))
     return EO_OK;
   const double approach = 1e-6 * eo_case_number(block, "Z_prescribed_um") * cos(pair->geometry.base_helix_angle);
-  const double stated = eo_case_number_or(block, "pair_load_uncertainty_rel", 0);
+  const double uncertainty = eo_case_number_or(block, "pair_load_uncertainty_rel", 0);
   for (int j = 0; j < pair->grid->positions && !code; j++) {
     struct standing at = {x, pair, &pair->grid->position[j], NULL, 0};
     at.total = load_at(evaluator, &design, pair, j, approach, &r, error);
@@ -256,7 +256,7 @@ static enum eo_code check_prescribed(const struct calculix *x, struct eo_case *b
       return EO_OK;
     }
     at.line_load = r->load_case[0].end[0].loaded.line_load + at.p->first;
-    check_pair_loads(&at, loads, stated);
+    check_pair_loads(&at, loads, uncertainty);
     code = check_roots(&at, block, error);
   }
   return code;
