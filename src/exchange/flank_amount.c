@@ -3,16 +3,17 @@
 
 #include <math.h>
 
+#include "document/flank_grid_document.h"
 #include "gear/modification.h"
 
 double eo_flank_amount(const struct eo_design *design, const struct eo_geometry *geometry, int member, int end,
                        bool coast, double u, double y)
 {
   struct eo_modification_shape shape;
-  double slope[2], unused;
-  if (coast) /* unmodified */
-    return 0;
-  eo_modification_init(&shape, geometry, member, &design->modification.flank[member][end]);
-  return eo_modification_profile(&shape, u, slope) +
-         eo_modification_lead(&shape, y / cos(geometry->helix_angle), &unused);
+  struct eo_flank_spline *spline = NULL;
+  if (eo_flank_shape(design, geometry, coast ? EO_COAST_FLANK : EO_DRIVE_FLANK, member, end, &shape, &spline))
+    return NAN;
+  double amount = eo_modification_at(&shape, u, coast ? -y : y);
+  eo_flank_spline_free(spline);
+  return amount;
 }

@@ -7,7 +7,7 @@
 #include "gear/geometry.h"
 
 /* m, normal to the flank. u: profile coordinate, m from the pitch point, + to the own tip; y: axial, m from mid face, +
-   to the face that meets first. */
+   to the face that meets first on the drive flank. NaN without memory. */
 double eo_flank_amount(const struct eo_design *design, const struct eo_geometry *geometry, int member, int end,
                        bool coast, double u, double y);
 

@@ -262,9 +262,11 @@ static void demand_match(struct eo_rexs_import *import)
                     pinion->gear->id, gear->gear->id, pinion->helix, gear->helix);
 }
 
-/* Reads gear_pair as the program will; without a backlash the default stands. */
+/* Reads gear_pair as the program will, with some backlash: what the centre distance adds to it does not depend on it.
+ */
 static bool make_geometry(struct eo_rexs_import *import, const json_t *gear_pair, struct eo_error *error)
 {
+  const double some_backlash = 1e-4; /* m */
   struct eo_faults *faults = calloc(1, sizeof *faults);
   if (!faults) {
     import->out->failed = true;
@@ -276,6 +278,7 @@ static bool make_geometry(struct eo_rexs_import *import, const json_t *gear_pair
   double distance = import->gear_pair.centre_distance; /* its digits decide those of what is converted with it */
   code = code ? code : eo_gear_pair_settle(&import->gear_pair, error);
   import->gear_pair.centre_distance = distance;
+  import->gear_pair.backlash = some_backlash;
   return !code && !eo_geometry_init(&import->geometry, &import->gear_pair, error);
 }
 

@@ -29,6 +29,7 @@ struct part {
   int pieces[2];
   double at[2][EO_TOOTH_PIECES + 1];
   int count[2][EO_TOOTH_PIECES]; /* points of each piece */
+  double error;                  /* m off the exact surface at most, between the points */
   struct eo_patch *patch;        /* [pieces[0]][pieces[1]] */
   int vertex[EO_TOOTH_PIECES + 1][EO_TOOTH_PIECES + 1];
   int along[EO_TOOTH_PIECES][EO_TOOTH_PIECES + 1];  /* edges with p, [piece][boundary of q] */
@@ -90,13 +91,16 @@ static bool fit_pieces(struct part *part, bool *failed)
   bool good = true;
   int count[2][EO_TOOTH_PIECES];
   memcpy(count, part->count, sizeof count);
+  part->error = 0;
   for (int i = 0; i < part->pieces[0]; i++)
     for (int j = 0; j < part->pieces[1]; j++) {
       const struct piece piece = {part, i, j};
       const int points[2] = {part->count[0][i], part->count[1][j]};
       struct eo_patch *patch = &part->patch[i * part->pieces[1] + j];
       *failed = *failed || !eo_patch_fit(patch, points, piece_point, &piece);
-      if (!*failed && eo_patch_error(patch, piece_point, &piece) > tolerance) {
+      double error = *failed ? 0 : eo_patch_error(patch, piece_point, &piece);
+      part->error = fmax(part->error, error);
+      if (error > tolerance) {
         count[0][i] = part->count[0][i] + MORE;
         count[1][j] = part->count[1][j] + MORE;
         good = false;
@@ -114,10 +118,10 @@ static bool prepare(struct part *part, const struct eo_tooth *tooth, enum eo_too
   part->flipped = points_in(part);
   cut_pieces(part);
   part->patch = calloc((size_t)(part->pieces[0] * part->pieces[1]), sizeof *part->patch);
-  bool failed = !part->patch, good = false;
-  for (int points = FIRST_COUNT; !failed && !good && points <= EO_PATCH_MOST - MORE; points += MORE)
-    good = fit_pieces(part, &failed);
-  return good;
+  bool failed = !part->patch, near = false;
+  for (int points = FIRST_COUNT; !failed && !near && points <= EO_PATCH_MOST - MORE; points += MORE)
+    near = fit_pieces(part, &failed);
+  return !failed;
 }
 
 /* Instances: */
@@ -333,6 +337,9 @@ static bool write_shells(struct writer *w, const struct eo_tooth *tooth, bool wh
   struct part part;
   for (int kind = 0; kind < EO_TOOTH_PARTS; kind++) {
     bool good = prepare(&part, tooth, (enum eo_tooth_part)kind);
+    if (good && part.error > tolerance)
+      eo_text_print(w->text, "/* %s: a kink across its pieces; up to %.3g nm off the exact surface */\n",
+                    eo_tooth_part_names[kind], 1e9 * part.error);
     for (int number = 0; good && number < teeth; number++)
       shell[(*shells)++] = put_shell(w, &part, number);
     free(part.patch);
@@ -357,8 +364,12 @@ void eo_step_write(const struct eo_design *design, const struct eo_geometry *geo
   int shape = write_product(&w, product, &context);
   for (int end = 0; end < ends && good; end++) {
     struct eo_tooth tooth;
-    eo_tooth_init(&tooth, design, geometry, member, end);
-    good = write_shells(&w, &tooth, whole, shell, &shells);
+    struct eo_error error;
+    good = !eo_tooth_init(&tooth, design, geometry, member, end, &error);
+    if (good) {
+      good = write_shells(&w, &tooth, whole, shell, &shells);
+      eo_tooth_done(&tooth);
+    }
   }
   if (good) {
     eo_text_print(text, "#%d=SHELL_BASED_SURFACE_MODEL('',", ++w.last);

@@ -23,6 +23,7 @@ struct skin {
   const struct eo_design *design;
   const struct eo_geometry *geometry;
   int member, points, rings;
+  bool failed;
   double (*ring)[3]; /* [RINGS][points] */
 };
 
@@ -62,12 +63,17 @@ static void add_circle(struct skin *skin, int like, double radius)
 static void add_end(struct skin *skin, int end)
 {
   struct eo_tooth tooth;
-  eo_tooth_init(&tooth, skin->design, skin->geometry, skin->member, end);
+  struct eo_error error;
+  if (eo_tooth_init(&tooth, skin->design, skin->geometry, skin->member, end, &error)) {
+    skin->failed = true;
+    return;
+  }
   for (int row = 0; row < FACE_ROWS; row++) {
     double(*ring)[3] = ring_at(skin, skin->rings++);
     for (int number = 0; number < skin->geometry->teeth[skin->member]; number++)
       put_tooth(&tooth, number, (double)row / (FACE_ROWS - 1), ring + (size_t)number * TOOTH_POINTS);
   }
+  eo_tooth_done(&tooth);
 }
 
 static void build(struct skin *skin)
@@ -157,6 +163,7 @@ void eo_stl_write(const struct eo_design *design, const struct eo_geometry *geom
     return;
   }
   build(&skin);
+  text->failed = text->failed || skin.failed;
   size_t start = text->size;
   eo_text_add_bytes(text, header, HEADER);
   eo_text_add_bytes(text, "\0\0\0", 4);

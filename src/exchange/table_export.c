@@ -44,6 +44,7 @@ static void add_leaf(struct leaves *leaves, const char *path, const json_t *valu
 static void collect(struct leaves *leaves, const char *path, const json_t *value)
 {
   char deeper[EO_KEY_PATH];
+  struct eo_design_key found;
   const char *key;
   json_t *part;
   size_t i;
@@ -59,7 +60,7 @@ static void collect(struct leaves *leaves, const char *path, const json_t *value
       snprintf(deeper, sizeof deeper, "%s.%zu", path, i + 1);
       collect(leaves, deeper, part);
     }
-  } else
+  } else if (!json_is_null(value) || eo_design_key_find(&found, path, 0, 2)) /* null of an object: it is not there */
     add_leaf(leaves, path, value);
 }
 
@@ -75,26 +76,25 @@ static void put_quoted(struct eo_text *text, const char *string)
   eo_text_add(text, "\"");
 }
 
-/* What a cell says. */
-static void cell_text(const json_t *value, bool comma, char *cell, size_t size)
+/* What a cell says; owned by the caller, NULL without memory. */
+static char *cell_text(const json_t *value, bool comma)
 {
-  *cell = '\0';
+  char number[40];
   if (json_is_string(value))
-    snprintf(cell, size, "%s", json_string_value(value));
-  else if (json_is_boolean(value))
-    snprintf(cell, size, json_is_true(value) ? "true" : "false");
-  else if (json_is_integer(value))
-    snprintf(cell, size, "%lld", (long long)json_integer_value(value));
+    return strdup(json_string_value(value));
+  if (json_is_array(value))
+    return json_dumps(value, JSON_COMPACT);
+  if (json_is_boolean(value))
+    return strdup(json_is_true(value) ? "true" : "false");
+  if (json_is_integer(value))
+    snprintf(number, sizeof number, "%lld", (long long)json_integer_value(value));
   else if (json_is_number(value)) {
-    eo_json_number(cell, (int)size, json_number_value(value));
-    for (char *c = cell; *c && comma; c++)
+    eo_json_number(number, sizeof number, json_number_value(value));
+    for (char *c = number; *c && comma; c++)
       *c = *c == '.' ? ',' : *c;
-  } else if (json_is_array(value)) {
-    char *written = json_dumps(value, JSON_COMPACT | JSON_REAL_PRECISION(17));
-    snprintf(cell, size, "%s", written ? written : "");
-    free(written);
-  } else if (json_is_null(value))
-    snprintf(cell, size, "null");
+  } else
+    return strdup("null");
+  return strdup(number);
 }
 
 /* The unit is the end of the key. */
@@ -126,7 +126,6 @@ static void each_row(const json_t *document, bool comma, row_writer *write, void
 {
   static const char *const header[COLUMNS] = {"key", "pinion", "gear", "unit"};
   struct leaves leaves = {0};
-  char value[2][1200];
   collect(&leaves, "", document);
   bool *done = calloc((size_t)leaves.count + 1, sizeof *done);
   *failed = *failed || leaves.failed || !done;
@@ -136,12 +135,15 @@ static void each_row(const json_t *document, bool comma, row_writer *write, void
     if (done[i])
       continue;
     bool second = leaf->member == 1;
-    cell_text(leaf->value, comma, value[second], sizeof value[0]);
-    value[!second][0] = '\0';
-    if (twin)
-      cell_text(twin->value, comma, value[!second], sizeof value[0]);
+    char *value[2] = {NULL, NULL};
+    value[second] = cell_text(leaf->value, comma);
+    value[!second] = twin ? cell_text(twin->value, comma) : strdup("");
     const char *const cell[COLUMNS] = {leaf->name, value[0], value[1], unit_of(leaf)};
-    write(context, cell, json_is_number(leaf->value));
+    *failed = *failed || !value[0] || !value[1];
+    if (value[0] && value[1])
+      write(context, cell, json_is_number(leaf->value));
+    free(value[0]);
+    free(value[1]);
   }
   free(done);
   free(leaves.leaf);
@@ -162,7 +164,6 @@ static void write_line(void *context, const char *const cell[COLUMNS], bool numb
 static void write_rows(const json_t *const *documents, int count, struct eo_text *text)
 {
   struct leaves columns = {0}, leaves;
-  char value[1200];
   for (int i = 0; i < count; i++) {
     leaves = (struct leaves){0};
     collect(&leaves, "", documents[i]);
@@ -188,8 +189,10 @@ static void write_rows(const json_t *const *documents, int count, struct eo_text
       eo_text_add(text, c ? ";" : "");
       for (int k = 0; k < leaves.count; k++)
         if (strcmp(leaves.leaf[k].path, columns.leaf[c].path) == 0) {
-          cell_text(leaves.leaf[k].value, false, value, sizeof value);
-          put_quoted(text, value);
+          char *value = cell_text(leaves.leaf[k].value, false);
+          text->failed = text->failed || !value;
+          put_quoted(text, value ? value : "");
+          free(value);
         }
     }
     eo_text_add(text, "\r\n");

@@ -138,21 +138,29 @@ static double read_quantity(struct reader *r, const struct eo_design_key *key, c
 
 /* Cells: */
 
+/* A list as JSON; NULL: it is none. */
+static json_t *read_list(const char *cell)
+{
+  struct eo_text wrapped = {0};
+  struct eo_error error;
+  eo_text_print(&wrapped, "{\"value\":%s}", cell);
+  json_t *document = wrapped.failed ? NULL : eo_json_parse(wrapped.data, wrapped.size, &error);
+  json_t *value = json_incref(json_object_get(document, "value"));
+  json_decref(document);
+  eo_text_done(&wrapped);
+  return value;
+}
+
 static json_t *read_value(struct reader *r, const struct eo_design_key *key, const char *name, const char *cell,
                           const char *unit, int column)
 {
-  struct eo_error error;
-  char wrapped[1200];
   if (strcmp(cell, "null") == 0)
     return json_null();
-  if (*cell == '[' || *cell == '{') { /* a list, as JSON */
-    snprintf(wrapped, sizeof wrapped, "{\"value\":%s}", cell);
-    json_t *document = strlen(cell) < sizeof wrapped - 20 ? eo_json_parse(wrapped, strlen(wrapped), &error) : NULL;
-    json_t *value = json_incref(json_object_get(document, "value"));
-    json_decref(document);
-    if (!value)
+  if (*cell == '[' || *cell == '{') {
+    json_t *list = read_list(cell);
+    if (!list)
       fault(r, column, "not_a_list", "%s is \"%.60s\"; a list as [1, 2] is needed.", name, cell);
-    return value;
+    return list;
   }
   switch (key->field->kind) {
   case EO_FIELD_FLAG:

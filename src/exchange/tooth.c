@@ -2,8 +2,10 @@
 #include "exchange/tooth.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
+#include "document/flank_grid_document.h"
 #include "gear/surface.h"
 
 const char *const eo_tooth_part_names[EO_TOOTH_PARTS] = {"drive flank", "coast flank", "tip land",
@@ -38,10 +40,15 @@ static double find_circle(const struct eo_geometry *geometry, int member)
   return low;
 }
 
-void eo_tooth_init(struct eo_tooth *tooth, const struct eo_design *design, const struct eo_geometry *geometry,
-                   int member, int end)
+void eo_tooth_done(struct eo_tooth *tooth)
 {
-  const struct eo_flank_modification none = {0};
+  for (int side = 0; side < 2; side++)
+    eo_flank_spline_free(tooth->spline[side]);
+}
+
+enum eo_code eo_tooth_init(struct eo_tooth *tooth, const struct eo_design *design, const struct eo_geometry *geometry,
+                           int member, int end, struct eo_error *error)
+{
   const double least = 1e-6; /* m: less is no piece of its own */
   double point[2], normal[2], eta = geometry->face_width / 4;
   memset(tooth, 0, sizeof *tooth);
@@ -49,8 +56,12 @@ void eo_tooth_init(struct eo_tooth *tooth, const struct eo_design *design, const
   tooth->member = member;
   tooth->end = end;
   tooth->two_ends = design->gear_pair.ends == 2;
-  eo_modification_init(&tooth->shape[0], geometry, member, &design->modification.flank[member][end]);
-  eo_modification_init(&tooth->shape[1], geometry, member, &none);
+  for (int side = 0; side < 2; side++)
+    if (eo_flank_shape(design, geometry, (enum eo_flank_side)side, member, end, &tooth->shape[side],
+                       &tooth->spline[side])) {
+      eo_tooth_done(tooth);
+      return eo_error_memory(error);
+    }
   if (tooth->two_ends)
     tooth->offset = (design->gear_pair.groove_width + design->gear_pair.face_width) / 2;
   double behind = end == EO_RIGHT ? design->alignment.stagger * 2 * M_PI / geometry->teeth[member] : 0;
@@ -66,6 +77,7 @@ void eo_tooth_init(struct eo_tooth *tooth, const struct eo_design *design, const
   tooth->fillet_share = tooth->start_path - tooth->form_path > least ? 0.8 : 1;
   tooth->tip_path = eo_geometry_own_path(member, eo_geometry_path_at(geometry, member, geometry->tip_radius[member]));
   tooth->circle_share = find_circle(geometry, member);
+  return EO_OK;
 }
 
 static bool is_flank(enum eo_tooth_part part)
@@ -86,28 +98,35 @@ static int add_break(double at[EO_TOOTH_PIECES + 1], int count, double value)
 static int profile_breaks(const struct eo_tooth *tooth, const struct eo_modification_shape *shape,
                           double at[EO_TOOTH_PIECES + 1])
 {
-  double from = tooth->start_path, length = tooth->tip_path - from, factor = tooth->geometry->rack_factor;
+  double from = tooth->start_path, length = tooth->tip_path - from, vertex[EO_MOST_VERTICES];
+  struct eo_modification_shape slice;
   int count = 1;
-  if (shape->side[0].length > 0)
-    count = add_break(at, count, (-shape->side[0].start / factor - from) / length);
-  if (shape->side[1].length > 0)
-    count = add_break(at, count, (shape->side[1].start / factor - from) / length);
+  eo_modification_slice(shape, 0, &slice);
+  int vertices = eo_modification_vertices(&slice, vertex);
+  for (int i = 0; i < vertices; i++)
+    count = add_break(at, count, (vertex[i] / tooth->geometry->rack_factor - from) / length);
   return count;
 }
 
-/* Of a flank: where its end reliefs start, from left to right. */
+static int compare_numbers(const void *a, const void *b)
+{
+  double x = *(const double *)a, y = *(const double *)b;
+  return (x > y) - (x < y);
+}
+
+/* Of a flank: where its end reliefs start, and the same place on the other side of the face. */
 static int face_breaks(const struct eo_tooth *tooth, const struct eo_modification_shape *shape,
                        double at[EO_TOOTH_PIECES + 1])
 {
-  double width = tooth->geometry->face_width, beta = tooth->geometry->helix_angle, part[2];
-  bool mirrored = tooth->two_ends && tooth->end == EO_LEFT;
-  int count = 1;
-  for (int i = 0; i < 2; i++) {
-    double y = shape->end_start[i] * cos(beta) * (i ? 1 : -1);
-    part[i] = shape->end_relief[i] != 0 ? 0.5 + (mirrored ? -y : y) / width : -1;
-  }
+  double part[4];
+  int parts = 0, count = 1;
   for (int i = 0; i < 2; i++)
-    count = add_break(at, count, part[mirrored ? 1 - i : i]);
+    for (int side = -1; side <= 1 && shape->end[i].amount != 0; side += 2)
+      part[parts++] = 0.5 +
+                      side * shape->end[i].start * cos(tooth->geometry->helix_angle) / tooth->geometry->face_width;
+  qsort(part, (size_t)parts, sizeof *part, compare_numbers);
+  for (int i = 0; i < parts; i++)
+    count = add_break(at, count, part[i]);
   return count;
 }
 

@@ -23,13 +23,14 @@ enum eo_tooth_part {
 };
 extern const char *const eo_tooth_part_names[EO_TOOTH_PARTS];
 
-enum { EO_TOOTH_PIECES = 5 };
+enum { EO_TOOTH_PIECES = EO_MOST_VERTICES + 1 };
 
 struct eo_tooth {
   const struct eo_geometry *geometry;
   int member, end;
   bool two_ends;
   struct eo_modification_shape shape[2]; /* [drive, coast] */
+  struct eo_flank_spline *spline[2];     /* owned: their grids; NULL: none */
   double offset;                         /* mid face from the middle of the groove, m */
   double pitch;                          /* angle of the unmodified flank at the pitch radius in mid face as
                                             eo_surface_evaluate() has it, from +y towards +x, rad */
@@ -42,8 +43,10 @@ struct eo_tooth {
   double circle_share;                    /* of that part, the root circle */
 };
 
-void eo_tooth_init(struct eo_tooth *tooth, const struct eo_design *design, const struct eo_geometry *geometry,
-                   int member, int end);
+/* Release with eo_tooth_done(). Errors: memory. */
+enum eo_code eo_tooth_init(struct eo_tooth *tooth, const struct eo_design *design, const struct eo_geometry *geometry,
+                           int member, int end, struct eo_error *error);
+void eo_tooth_done(struct eo_tooth *tooth);
 
 /* Where a part is cut into smooth pieces: parameters 0..1 along (0: profile, 1: face); 0 and 1 among them. Returns how
    many, at least 2. */

@@ -60,6 +60,12 @@ static void compare(struct eo_verification *v, struct eo_case *where, const json
       if (strcmp(name, "name") != 0)
         compare(v, where, json_object_get(stated, key), value, json_object_get(found, key), name);
     }
+    json_object_foreach((json_t *)found, key, value)
+    {
+      snprintf(name, sizeof name, "%s%s%s: not expected", path, *path ? "." : "", key);
+      if (!json_object_get(expected, key))
+        eo_verify_fact(v, where, name, false);
+    }
   } else if (json_is_array(expected)) {
     eo_verify_fact(v, where, path, json_array_size(expected) == json_array_size(found));
     json_array_foreach(expected, i, value)

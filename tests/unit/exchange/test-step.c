@@ -26,6 +26,13 @@ static void build(const char *name)
     printf("Bail out! example %s\n", name);
 }
 
+static void init(struct eo_tooth *tooth, int member, int end)
+{
+  struct eo_error error;
+  if (eo_tooth_init(tooth, &design, &geometry, member, end, &error))
+    printf("Bail out! %s\n", error.text);
+}
+
 /* The file: */
 
 struct listing {
@@ -120,7 +127,7 @@ static void check_frame(const char *name)
     if (sscanf(line, "%7[a-z],%7[a-z],%d,%d,%lf,%lf,%lf", member, end, &row, &column, &x, &y, &z) != 7 || column % 5)
       continue;
     struct eo_tooth tooth;
-    eo_tooth_init(&tooth, &design, &geometry, strcmp(member, "gear") == 0, strcmp(end, end_name[1]) == 0);
+    init(&tooth, strcmp(member, "gear") == 0, strcmp(end, end_name[1]) == 0);
     bool mirrored = tooth.two_ends && tooth.end == EO_LEFT;
     double s = geometry.path_start +
                (geometry.path_end - geometry.path_start) * (tooth.member == EO_PINION ? row / 20. : 1 - row / 20.);
@@ -143,7 +150,7 @@ static void check_tooth(const char *name)
   build(name);
   memset(&design.modification, 0, sizeof design.modification);
   for (int member = 0; member < 2; member++) {
-    eo_tooth_init(&tooth, &design, &geometry, member, EO_LEFT);
+    init(&tooth, member, EO_LEFT);
     for (int i = 0; i < 4; i++)
       for (int k = 0; k < 5; k++) {
         static const enum eo_tooth_part pairs[4][2] = {{EO_TOOTH_DRIVE, EO_TOOTH_DRIVE_ROOT},
@@ -286,7 +293,7 @@ static void check_loaded(const char *name, int member)
   FILE *mesh = made ? fopen(path, "r") : NULL;
   struct eo_tooth tooth[2];
   for (int end = 0; end < ends; end++)
-    eo_tooth_init(&tooth[end], &design, &geometry, member, end);
+    init(&tooth[end], member, end);
   while (mesh && fgets(line, sizeof line, mesh) && strncmp(line, "$Nodes", 6) != 0)
     continue;
   while (mesh && fgets(line, sizeof line, mesh) && *line != '$') {
