@@ -341,3 +341,23 @@ enum eo_code eo_vibration_settle_integrated(struct eo_vibration_solver *s, const
     code = eo_vibration_solve(s, load, EO_START_COLD, &balance, error);
   return code ? code : search_states(s, load, &balance, result, error);
 }
+
+enum eo_code eo_vibration_keep_stable(struct eo_vibration_solver *s, const struct eo_vibration_case *load,
+                                      struct eo_vibration *result, struct eo_error *error)
+{
+  struct search *q = malloc(sizeof *q);
+  if (!q)
+    return eo_error_memory(error);
+  enum eo_code code = begin_search(q, s, load, error);
+  if (!code)
+    result->multiplier = largest_multiplier(q, error, &code);
+  const double multiplier = result->multiplier;
+  if (!code && multiplier > 1 + margin) {
+    code = follow_balance(q, result, false, error);
+    if (!code)
+      code = end_search(q, multiplier, result, error);
+  }
+  free_search(q);
+  free(q);
+  return code;
+}

@@ -19,12 +19,23 @@ static enum eo_code check_speeds(int count, const struct eo_vibration_case *load
   return EO_OK;
 }
 
+/* No motion keeps to an unstable state, in a sweep neither. holds: the solver has the result's solution. */
+static enum eo_code keep_stable(struct eo_vibration_solver *s, const struct eo_vibration_case *load, bool holds,
+                                struct eo_vibration *result, struct eo_error *error)
+{
+  struct eo_vibration again;
+  enum eo_code code = holds ? EO_OK : eo_vibration_solve(s, load, EO_START_COLD, &again, error);
+  if (code || (!holds && again.outcome == EO_VIBRATION_NOT_CONVERGED))
+    return code;
+  return eo_vibration_keep_stable(s, load, result, error);
+}
+
 enum eo_code eo_vibration_follow(struct eo_vibration_solver *s, int count, const struct eo_vibration_case *load,
                                  const struct eo_vibration *alone, int direction, struct eo_vibration *result,
                                  struct eo_error *error)
 {
   enum eo_code code = check_speeds(count, load, error);
-  bool separated = false, holds = false; /* at the neighbour; the solver holds its solution */
+  bool separated = false, holds = false; /* at the neighbour; the solver holds its stable solution */
   for (int step = 0, before = 0; step < count && !code; step++) {
     int i = direction > 0 ? step : count - 1 - step;
     struct eo_vibration again;
@@ -35,7 +46,10 @@ enum eo_code eo_vibration_follow(struct eo_vibration_solver *s, int count, const
     holds = separated && !code && result[i].outcome != EO_VIBRATION_NOT_CONVERGED;
     if (!holds)
       result[i] = alone[i];
+    if (!code && result[i].outcome == EO_VIBRATION_CONTACT_LOST)
+      code = keep_stable(s, &load[i], holds, &result[i], error);
     separated = result[i].outcome == EO_VIBRATION_CONTACT_LOST;
+    holds = s->solved;
     before = i;
   }
   return code;

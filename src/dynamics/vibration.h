@@ -120,6 +120,12 @@ enum eo_code eo_vibration_settle(struct eo_vibration_solver *solver, const struc
 enum eo_code eo_vibration_settle_integrated(struct eo_vibration_solver *solver, const struct eo_vibration_case *load,
                                             struct eo_vibration *result, struct eo_error *error);
 
+/* Of a state by harmonic balance that the solver holds, with contact lost: sets its multiplier, and where it is not
+   stable puts in its place what the motion comes to when it is left, by one time integration, or
+   EO_VIBRATION_NOT_CONVERGED where that repeats after no four periods. Errors: as eo_vibration_solve(). */
+enum eo_code eo_vibration_keep_stable(struct eo_vibration_solver *solver, const struct eo_vibration_case *load,
+                                      struct eo_vibration *result, struct eo_error *error);
+
 /* Time integration from the static state to the periodic one; NULL options: eo_integration_defaults. */
 enum eo_code eo_vibration_integrate(struct eo_vibration_solver *solver, const struct eo_vibration_case *load,
                                     const struct eo_integration_options *options, struct eo_vibration *result,
