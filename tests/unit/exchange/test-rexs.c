@@ -140,6 +140,7 @@ static void check_plain(const char *name, int version)
   json_t *expected = eo_design_encode(&design), *found = complete(import.design);
   json_object_del(json_object_get(expected, "shafts"), "enabled");
   json_object_del(json_object_get(expected, "gear_pair"), "rim_thickness_coefficient");
+  json_object_del(json_object_get(expected, "gear_pair"), "tip_alteration_coefficient"); /* the tip diameters say it */
   for (size_t i = 0; i < sizeof parts / sizeof *parts; i++)
     close_to(found ? difference(json_object_get(expected, parts[i]), json_object_get(found, parts[i])) : 1, 0, 1e-9,
              parts[i]);
