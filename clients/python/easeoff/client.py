@@ -164,11 +164,16 @@ class Client:
         band: bool = False,
         maps: bool = True,
         histories: bool = False,
+        rating: bool = True,
+        parts: str | None = None,
+        curves_of: int | None = None,
         easeoff_lane: str | None = None,
     ) -> doc.Result:
-        """One true evaluation. easeoff_lane: a newer question with the same word takes the place of one that waits."""
-        flags = {"root_stress": root_stress, "band": band, "maps": maps, "histories": histories}
-        query = {name: int(value) for name, value in flags.items()}
+        """One true evaluation. parts, curves_of: leave the rest of a long answer out. easeoff_lane: a newer question with
+        the same word takes the place of one that waits."""
+        flags = {"root_stress": root_stress, "band": band, "maps": maps, "histories": histories, "rating": rating}
+        query: dict[str, Any] = {name: int(value) for name, value in flags.items()}
+        query.update(parts=parts, curves_of=curves_of)
         return self._computed("POST", "/analyze", document=design, query=query, lane=easeoff_lane).json
 
     @operation("sweep")
@@ -185,10 +190,16 @@ class Client:
         return self._json("GET", "/export")
 
     @operation("exportDesign")
-    def export(self, format: str, design: Design) -> bytes:
-        """A file for another program, as `easeoff export` writes it."""
+    def export(self, format: str, design: Design, rows: int | None = None, columns: int | None = None) -> bytes:
+        """A file for another program, as `easeoff export` writes it; rows and columns of a grid of points."""
         path = f"/export/{quote(format, safe='')}"
-        return self.transport.request("POST", path, document=design, accept="*/*").body
+        query = {"rows": rows, "columns": columns}
+        return self.transport.request("POST", path, document=design, query=query, accept="*/*").body
+
+    @operation("reportDesign")
+    def report(self, design: Design, *, easeoff_lane: str | None = None) -> str:
+        """One HTML file a reviewer can check, as `easeoff report` writes it; waits while the pair is prepared."""
+        return self._computed("POST", "/report", document=design, lane=easeoff_lane, accept="text/html").text
 
     @operation("importDesign")
     def import_design(
