@@ -302,7 +302,11 @@ class Client:
 
     def follow(self, id: int) -> Iterator[doc.Job]:
         """The job each time it changes, its last state included; a broken connection is taken up again."""
-        last: str | None = None
+        job = self.job(id)
+        if job["state"] in ENDED:
+            yield job
+            return
+        last = "1"  # from the first event that is kept: the job may end before the stream begins
         while True:
             try:
                 for event in self.job_events(id, last):
