@@ -162,7 +162,7 @@ static int64_t count_evaluated(struct eo_store *store)
 /* In the usual mode the last rows may be gone: that the failure is one. */
 static void test_usual(struct eo_store *store)
 {
-  struct eo_objective_case raw = {1, 1, 1, 1, 1, 0, 0, false};
+  struct eo_objective_case raw = {.peak_to_peak = 1, .impact = 1, .rms = 1};
   const struct eo_stored_problem problem = {
       .hash = hash, .spec = "{}", .name = "", .evaluator = 1, .scenarios = 1, .cases = 1};
   struct eo_stored_evaluation row = {.scenarios = 1, .cases = 1, .raw = &raw, .modification = "{}"};

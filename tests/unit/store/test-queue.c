@@ -323,7 +323,7 @@ static int64_t add_problem(struct eo_store *store)
 
 static enum eo_code log_one(struct eo_store *store, int64_t problem, int64_t job)
 {
-  struct eo_objective_case raw = {1, 1, 1, 1, 1, 0, 0, false};
+  struct eo_objective_case raw = {.peak_to_peak = 1, .impact = 1, .rms = 1, .contact_pressure = 1, .root_stress = 1};
   struct eo_stored_evaluation row = {.modification = "{}", .scenarios = 1, .cases = 1, .raw = &raw};
   const double x = 0.5;
   struct eo_stored_candidate candidate = {.job = job, .x = &x, .size = 1};
