@@ -300,7 +300,7 @@ is(await follow([{ teeth: 19 }, { teeth: 17 }]), { teeth: 17 }, 'the newer pair'
 is(log, ['wait 1', 'wait 2', 'cancel 1'], 'a preparation that is of no use any more is stopped');
 log = serve({ stopped: [1] });
 is(await follow([{ teeth: 19 }]), { teeth: 19 }, 'stopped by somebody else, the preparation is asked for once more');
-log = serve({ stopped: [1, 2] });
+log = serve({ stopped: [1, 2, 3, 4] });
 is(await follow([{ teeth: 19 }]), 'The preparation of the teeth was stopped.', 'but not for ever');
 
 console.log(`1..${count}`);

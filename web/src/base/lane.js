@@ -3,12 +3,24 @@
 import { Away, Refusal, ask, connection, token } from './api.js';
 
 const POLL = 400; // ms between two looks at a preparation
+const TRIES = 3; // times that a preparation is asked for again when somebody else stops it
+
+/** How many lanes of this page wait for a preparation. @type {Map<number, number>} */
+const waiting = new Map();
+
+/** One lane less; whether it was the last one. @param {number} id */
+function isLastToLeave(id) {
+  const others = (waiting.get(id) ?? 1) - 1;
+  if (others > 0) waiting.set(id, others);
+  else waiting.delete(id);
+  return others <= 0;
+}
 
 /**
  * @typedef {object} Task
  * @property {string} path
  * @property {any} body
- * @property {boolean} [again] asked once more because somebody else stopped its preparation
+ * @property {number} [tries] asked again because somebody else stopped its preparation
  * @property {any} [note] handed back with the result
  */
 
@@ -87,13 +99,15 @@ export class Lane {
 
   /**
    * The service says which preparation a task waits for: a change that needs the same pair has the same one. Another is
-   * of no use here any more and is stopped.
+   * of no use here any more and is stopped by the last lane of this page that leaves it.
    * @param {number} id of the preparation to wait for now; 0: none
    */
   #leave(id) {
     const left = this.#preparation;
     this.#preparation = id;
-    if (left && left !== id) ask('POST', `jobs/${left}/cancel`, { body: {} }).catch(() => {});
+    if (left === id) return;
+    if (id) waiting.set(id, (waiting.get(id) ?? 0) + 1);
+    if (left && isLastToLeave(left)) ask('POST', `jobs/${left}/cancel`, { body: {} }).catch(() => {});
   }
 
   /**
@@ -110,11 +124,13 @@ export class Lane {
       state = (await ask('GET', `jobs/${job.id}`)).data;
     }
     this.#preparation = 0;
+    isLastToLeave(job.id);
     if (state.state === 'failed') throw new Refusal(422, state.error ?? { title: 'The pair could not be prepared.' });
     // another page that no longer needs the pair may have stopped it
     const stopped = state.state === 'cancelled';
-    if (stopped && task.again && !this.#waiting)
+    const tries = task.tries ?? 0;
+    if (stopped && tries >= TRIES && !this.#waiting)
       throw new Refusal(409, { title: 'The preparation of the teeth was stopped.' });
-    if (!this.#waiting) this.#waiting = stopped ? { ...task, again: true } : task;
+    if (!this.#waiting) this.#waiting = stopped ? { ...task, tries: tries + 1 } : task;
   }
 }
