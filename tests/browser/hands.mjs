@@ -436,6 +436,10 @@ await chapter('your own gear', async () => {
   await page.waitForFunction(() => /my gear/.test(document.title));
   ok((await torque(1).inputValue()) === '400', 'five numbers and a load are a design');
   ok((await field('Module').inputValue()) === '4.5', 'as they were typed');
+  // its teeth are finely meshed; nothing below waits for them
+  await page.goto('about:blank');
+  for (const job of (await api('jobs')).items)
+    if (job.kind === 'prepare' && job.state !== 'done') await api(`jobs/${job.id}/cancel`, 'POST', {});
 });
 
 await chapter('a recording does not say its torque', async () => {
