@@ -413,6 +413,25 @@ static void show(const struct plan *p, const json_t *document, const char *path)
   json_array_foreach(json_object_get(document, "notes"), i, note) printf("#     %s\n", json_string_value(note));
 }
 
+/* What the recording itself gives, before anything is written: noise may lie beyond three standard deviations, too. */
+static double value_unwritten(const struct plan *p)
+{
+  const struct eo_measurement_settings settings = {
+      .stated_speed = NAN, .transmission = {.teeth = {17, 44}, .base_radius = {0.0518616, 0.1342300}}};
+  struct eo_recording *recording = NULL;
+  struct eo_measurement m = {0};
+  struct eo_tracks tracks;
+  struct eo_error error;
+  eo_synthetic_tracks(&p->truth, &tracks);
+  if (eo_synthetic_record(&p->truth, &recording, &error) ||
+      eo_measurement_run(&m, recording, &tracks, &settings, NULL, &error))
+    m.transmission.rms = NAN;
+  double value = m.transmission.rms;
+  eo_measurement_done(&m);
+  eo_recording_free(recording);
+  return value;
+}
+
 static void judge(struct tally *t, uint64_t seed, const struct plan *p, const json_t *document, const char *path)
 {
   const json_t *rms = json_object_get(json_object_get(document, "result"), "rms_m_per_s2");
@@ -425,9 +444,12 @@ static void judge(struct tally *t, uint64_t seed, const struct plan *p, const js
   t->said += rms && said;
   if (!rms || fabs(value - truth) <= 3 * sigma)
     return;
-  t->wrong += !said;
+  bool chance = fabs(value - value_unwritten(p)) <= sigma;
+  t->wrong += !said && !chance;
   printf("# %llu: RMS %.5f, truth %.5f, standard deviation %.5f, %s\n", (unsigned long long)seed, value, truth, sigma,
-         said ? "with a finding" : "WITHOUT A WORD");
+         said     ? "with a finding"
+         : chance ? "as the recording itself gives"
+                  : "WITHOUT A WORD");
   show(p, document, path);
 }
 
