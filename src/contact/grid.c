@@ -8,8 +8,29 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* (1 - nu^2)/(pi E) of a member: its share of what a line load brings the members together. */
+static double local_compliance(const struct eo_material *m)
+{
+  return (1 - m->poissons_ratio * m->poissons_ratio) / (M_PI * m->youngs_modulus);
+}
+
+/* Weber and Banaschek's members one by one: A_i q (2 ln(2 h_i/b) - nu_i/(1 - nu_i)), b^2 = 4 q rho (A_1 + A_2). */
+static double unlike_constant(const struct eo_geometry *g, const struct eo_material *material, double s)
+{
+  double compliance[2], sum = 0, constant = 0;
+  for (int i = 0; i < 2; i++) {
+    struct eo_material own = eo_material_of(material, i);
+    sum += compliance[i] = local_compliance(&own);
+    constant += compliance[i] *
+                (2 * log(2 * eo_geometry_depth(g, i, s)) - own.poissons_ratio / (1 - own.poissons_ratio));
+  }
+  return constant / sum - log(4 * eo_geometry_relative_radius(g, s) * sum);
+}
+
 double eo_contact_local_constant(const struct eo_geometry *g, const struct eo_material *material, double s)
 {
+  if (!eo_material_is_one(material))
+    return unlike_constant(g, material, s);
   double nu = material->poissons_ratio, modulus = material->youngs_modulus / (1 - nu * nu);
   double depth = eo_geometry_depth(g, EO_PINION, s) * eo_geometry_depth(g, EO_GEAR, s);
   return log(4 * depth * M_PI * modulus / (8 * eo_geometry_relative_radius(g, s))) - nu / (1 - nu);
@@ -246,7 +267,7 @@ enum eo_code eo_contact_grid_new(struct eo_contact_grid **result, const struct e
   grid->geometry = *geometry;
   grid->material = *material;
   eo_corner_gap_init(grid->corner, geometry);
-  grid->compliance_scale = 2 * (1 - nu * nu) / (M_PI * material->youngs_modulus);
+  grid->compliance_scale = 2 * (1 - nu * nu) / (M_PI * eo_material_contact_modulus(material));
   grid->partial_cells = settings->partial_cells;
   grid->positions = settings->positions;
   grid->position = calloc((size_t)settings->positions, sizeof *grid->position);

@@ -77,8 +77,9 @@ static void add_end(struct body *body, int end, struct eo_shaft_section section)
 }
 
 static void init_body(struct body *body, const struct eo_geometry *g, const struct eo_gear_pair *pair,
-                      const struct eo_material *material, const struct eo_shafts *shafts, int member)
+                      const struct eo_material *both, const struct eo_shafts *shafts, int member)
 {
+  const struct eo_material own = eo_material_of(both, member), *material = &own;
   double bore = pair->bore[member], offset = pair->ends == 2 ? (g->face_width + pair->groove_width) / 2 : 0,
          half = offset + g->face_width / 2;
   struct eo_shaft_section shaft = eo_shaft_section_of(material, shafts->shaft_diameter[member], bore);

@@ -181,8 +181,9 @@ static void resolve_resolution(struct eo_resolution *resolution, const struct eo
 }
 
 static void resolve_groove(struct eo_supports *supports, const struct eo_gear_pair *pair,
-                           const struct eo_material *material, int i)
+                           const struct eo_material *both, int i)
 {
+  const struct eo_material own = eo_material_of(both, i), *material = &own;
   double body = pair->groove_diameter[i] / 2, bore = pair->bore[i] / 2;
   double shear_modulus = material->youngs_modulus / (2 * (1 + material->poissons_ratio));
   fill(&supports->groove_axial_stiffness[i],
@@ -288,12 +289,22 @@ static void resolve_alignment(struct eo_design *design, double face_width)
   }
 }
 
+static void resolve_material(struct eo_material *material)
+{
+  struct eo_material gear = eo_material_of(material, EO_GEAR);
+  material->gear_youngs_modulus = gear.youngs_modulus;
+  material->gear_poissons_ratio = gear.poissons_ratio;
+  material->gear_density = gear.density;
+}
+
 void eo_design_resolve(struct eo_design *design, const struct eo_geometry *geometry)
 {
   resolve_alignment(design, geometry->face_width);
   resolve_gear_pair(&design->gear_pair, geometry);
+  resolve_material(&design->material);
   for (int i = 0; i < 2; i++) {
-    resolve_inertia(&design->supports, &design->gear_pair, design->material.density, i, geometry->reference_radius[i]);
+    resolve_inertia(&design->supports, &design->gear_pair, eo_material_of(&design->material, i).density, i,
+                    geometry->reference_radius[i]);
     if (design->gear_pair.ends == 2 && design->gear_pair.groove_width > 0)
       resolve_groove(&design->supports, &design->gear_pair, &design->material, i);
   }

@@ -43,6 +43,9 @@
   ROW("backlash", pair->backlash)                                                          \
   ROW("youngs_modulus", material->youngs_modulus)                                          \
   ROW("poissons_ratio", material->poissons_ratio)                                          \
+  ROW("gear_youngs_modulus", material->gear_youngs_modulus)                                \
+  ROW("gear_poissons_ratio", material->gear_poissons_ratio)                                \
+  ROW("gear_density", material->gear_density)                                              \
   ROW("density", material->density)                                                        \
   ROW("positions", resolution->positions)                                                  \
   ROW("cells_per_line", resolution->cells_per_line)                                        \

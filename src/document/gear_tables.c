@@ -206,11 +206,17 @@ static const struct eo_field gear_pair[] = {
 
 static const struct eo_field material[] = {
     EO_NUMBER_BASED(struct eo_material, youngs_modulus, "youngs_modulus_GPa", &eo_unit_GPa, 0.1, 1000, 206,
-                    "steel, ISO 6336-1", "Young's modulus of both members"),
+                    "steel, ISO 6336-1", "Young's modulus of both members, or of the pinion"),
     EO_NUMBER_BASED(struct eo_material, poissons_ratio, "poissons_ratio", NULL, 0, 0.49, 0.3, "steel, ISO 6336-2",
-                    "Poisson's ratio of both members"),
+                    "Poisson's ratio of both members, or of the pinion"),
     EO_NUMBER_BASED(struct eo_material, density, "density_kg_per_m3", &eo_unit_kg_per_m3, 100, 25000, 7850, "steel",
-                    "density of both members"),
+                    "density of both members, or of the pinion"),
+    EO_NUMBER_DERIVED(struct eo_material, gear_youngs_modulus, "gear_youngs_modulus_GPa", &eo_unit_GPa, 0.1, 1000,
+                      "that of both members", "Young's modulus of the gear"),
+    EO_NUMBER_DERIVED(struct eo_material, gear_poissons_ratio, "gear_poissons_ratio", NULL, 0, 0.49,
+                      "that of both members", "Poisson's ratio of the gear"),
+    EO_NUMBER_DERIVED(struct eo_material, gear_density, "gear_density_kg_per_m3", &eo_unit_kg_per_m3, 100, 25000,
+                      "that of both members", "density of the gear"),
 };
 
 static const char *const axial[] = {"floating", "fixed", "spring", "stops", NULL};

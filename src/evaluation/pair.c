@@ -88,7 +88,7 @@ struct eo_iso_stiffness_input eo_pair_iso_stiffness_input(const struct eo_pair *
                                          .transverse_contact_ratio = pair->geometry.transverse_contact_ratio,
                                          .blank_factor = 1,
                                          .theory_factor = 0.8,
-                                         .youngs_modulus = pair->material.youngs_modulus};
+                                         .youngs_modulus = eo_material_mean_modulus(&pair->material)};
 }
 
 bool eo_pair_serves(const struct eo_pair *pair, const struct eo_design *design)

@@ -192,7 +192,8 @@ void eo_flexibility_parts(const struct eo_flexibility *flexibility, int member, 
 double eo_flexibility_hub_windup(const struct eo_geometry *geometry, const struct eo_material *material, int member,
                                  double bore_radius)
 {
-  double shear = material->youngs_modulus / (2 * (1 + material->poissons_ratio));
+  struct eo_material own = eo_material_of(material, member);
+  double shear = own.youngs_modulus / (2 * (1 + own.poissons_ratio));
   double arm = geometry->base_radius[member] * cos(geometry->base_helix_angle), root = geometry->root_radius[member];
   if (!(bore_radius > 0))
     return 0;

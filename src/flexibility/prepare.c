@@ -27,7 +27,7 @@ struct worker {
   struct shared *shared;
   struct eo_flexibility *flexibility;
   const struct eo_geometry *geometry;
-  const struct eo_material *material;
+  struct eo_material material; /* of the member */
   struct eo_member_settings settings;
   int member;
   enum eo_code code;
@@ -150,6 +150,10 @@ static void make_key(const struct eo_geometry *g, const struct eo_material *mate
                 {"fillet_radius", g->fillet_radius[EO_PINION]}};
   for (size_t i = 0; i < sizeof number / sizeof *number; i++)
     eo_hash_add_number(&hash, number[i].name, number[i].value);
+  if (!eo_material_is_one(material)) {
+    eo_hash_add_number(&hash, "gear_youngs_modulus", worker[EO_GEAR].material.youngs_modulus);
+    eo_hash_add_number(&hash, "gear_poissons_ratio", worker[EO_GEAR].material.poissons_ratio);
+  }
   if (g->dedendum[EO_GEAR] != g->dedendum[EO_PINION] || g->fillet_radius[EO_GEAR] != g->fillet_radius[EO_PINION]) {
     eo_hash_add_number(&hash, "gear_dedendum", g->dedendum[EO_GEAR]);
     eo_hash_add_number(&hash, "gear_fillet_radius", g->fillet_radius[EO_GEAR]);
@@ -199,7 +203,7 @@ static void *compute_member(void *context)
   struct eo_member_result result = {0};
   struct eo_flexibility_report *report = &w->flexibility->report;
   struct eo_progress progress = {.report = forward_progress, .context = w};
-  w->code = eo_member_compute(&result, w->geometry, w->member, w->material, &w->settings, &progress,
+  w->code = eo_member_compute(&result, w->geometry, w->member, &w->material, &w->settings, &progress,
                               &report->times[w->member], &w->error);
   if (!w->code)
     w->code = eo_flank_table_fill(&w->flexibility->table[w->member], &result, w->flexibility->width,
@@ -277,7 +281,7 @@ enum eo_code eo_flexibility_prepare(const struct eo_geometry *geometry, const st
     worker[m] = (struct worker){.shared = &shared,
                                 .flexibility = f,
                                 .geometry = geometry,
-                                .material = material,
+                                .material = eo_material_of(material, m),
                                 .member = m,
                                 .settings = eo_flexibility_member_settings(settings, geometry, pair, m)};
     f->report.support[m] = eo_flexibility_support(settings, pair, m);

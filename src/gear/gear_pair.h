@@ -3,6 +3,8 @@
 #ifndef EASEOFF_GEAR_GEAR_PAIR_H
 #define EASEOFF_GEAR_GEAR_PAIR_H
 
+#include <stdbool.h>
+
 enum { EO_PINION = 0, EO_GEAR = 1 };
 enum { EO_LEFT = 0, EO_RIGHT = 1 };
 
@@ -62,10 +64,23 @@ struct eo_gear_pair {
 /* The member's own basic rack; alpha_n must be settled. */
 struct eo_rack eo_gear_pair_rack(const struct eo_gear_pair *pair, int member);
 
+/* Of both members; what the gear has otherwise stands beside it. */
 struct eo_material {
   double youngs_modulus; /* Pa */
   double poissons_ratio;
-  double density; /* kg/m3 */
+  double density;             /* kg/m3 */
+  double gear_youngs_modulus; /* of the gear; not above 0, of the density too, or NaN: as above */
+  double gear_poissons_ratio; /* below 0 or NaN, or 0 beside no gear_youngs_modulus: as above */
+  double gear_density;
 };
+
+/* One member's material, with nothing beside it. */
+struct eo_material eo_material_of(const struct eo_material *material, int member);
+/* Both members are of the same. */
+bool eo_material_is_one(const struct eo_material *material);
+/* The modulus with which both members, at the pinion's Poisson's ratio, would touch as they do (Hertz): (1 - nu^2)/E is
+   the mean of both; and 2 E_1 E_2/(E_1 + E_2) of ISO 6336-1. */
+double eo_material_contact_modulus(const struct eo_material *material);
+double eo_material_mean_modulus(const struct eo_material *material);
 
 #endif

@@ -39,7 +39,7 @@ static void set_stiffness(struct eo_rating_basis *basis)
                                                .transverse_contact_ratio = basis->geometry.transverse_contact_ratio,
                                                .blank_factor = 1,
                                                .theory_factor = 0.8,
-                                               .youngs_modulus = basis->input.material->youngs_modulus};
+                                               .youngs_modulus = eo_material_mean_modulus(basis->input.material)};
   eo_iso_stiffness(&basis->stiffness, &input);
 }
 
@@ -53,7 +53,7 @@ static void set_resonance(struct eo_rating_basis *basis)
                                        .root_diameter = 2 * g->root_radius[i],
                                        .base_diameter = 2 * g->base_radius[i],
                                        .bore = basis->input.pair->bore[i],
-                                       .density = basis->input.material->density};
+                                       .density = eo_material_of(basis->input.material, i).density};
   basis->reduced_mass = eo_reduced_mass(blank, (double)g->teeth[1] / g->teeth[0]);
   basis->resonance_speed = eo_resonance_speed(g->teeth[0], basis->stiffness.mesh_alpha, basis->reduced_mass);
 }

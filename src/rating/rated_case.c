@@ -220,18 +220,18 @@ enum eo_code eo_rated_case_find(struct eo_rated_case *c, const struct eo_rating_
                                 const struct eo_rating_load *load, struct eo_error *error)
 {
   const struct eo_rating_settings *r = basis->input.rating;
-  const struct eo_material *material = basis->input.material;
+  const struct eo_material pinion = eo_material_of(basis->input.material, EO_PINION),
+                           gear = eo_material_of(basis->input.material, EO_GEAR);
   *c = (struct eo_rated_case){.load = *load};
   c->tangential_force = 2 * load->torque / basis->geometry.reference_diameter[0];
   c->velocity = load->speed * basis->geometry.reference_diameter[0] / 2;
   EO_TRY(find_factors(c, basis, error));
-  const struct eo_contact_input contact = {.edition = r->edition,
-                                           .proof = EO_PROOF_ANALYSIS,
-                                           .tangential_force = c->tangential_force,
-                                           .load_factor = r->application_factor * load->sharing * c->used.dynamic *
-                                                          c->used.face * c->used.share,
-                                           .elastic = {{material->youngs_modulus, material->youngs_modulus},
-                                                       {material->poissons_ratio, material->poissons_ratio}}};
+  const struct eo_contact_input contact = {
+      .edition = r->edition,
+      .proof = EO_PROOF_ANALYSIS,
+      .tangential_force = c->tangential_force,
+      .load_factor = r->application_factor * load->sharing * c->used.dynamic * c->used.face * c->used.share,
+      .elastic = {{pinion.youngs_modulus, gear.youngs_modulus}, {pinion.poissons_ratio, gear.poissons_ratio}}};
   EO_TRY(eo_contact_stress(&c->contact, &basis->pair, &basis->geometry, &contact, error));
   for (int i = 0; i < 2; i++) {
     double turns = load->speed / (2 * M_PI) * load->time * basis->pair.teeth[0] / basis->pair.teeth[i];

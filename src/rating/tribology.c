@@ -33,9 +33,12 @@ void eo_tribology_state_init(struct eo_tribology_state *state, const struct eo_g
       .pressure_viscosity = oil->pressure_viscosity,
       .friction = oil->friction,
       .tooth_temperature = oil->tooth_temperature,
-      .youngs_modulus = material->youngs_modulus,
+      .youngs_modulus = eo_material_contact_modulus(material),
       .poissons_ratio = material->poissons_ratio,
-      .thermal_contact = sqrt(rating->thermal_conductivity * material->density * rating->specific_heat),
+      .thermal_contact = eo_material_is_one(material)
+                             ? sqrt(rating->thermal_conductivity * material->density * rating->specific_heat)
+                             : (sqrt(material->density) + sqrt(eo_material_of(material, EO_GEAR).density)) / 2 *
+                                   sqrt(rating->thermal_conductivity * rating->specific_heat),
       .roughness = hypot(height_of(m[0].flank_roughness), height_of(m[1].flank_roughness))};
 }
 

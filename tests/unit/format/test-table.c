@@ -397,8 +397,9 @@ static json_t *random_value(const struct eo_field *field)
   case EO_FIELD_FLAG:
     return json_boolean(uniform() < 0.5);
   case EO_FIELD_TEXT:
-    return json_string(choices ? field->choices[(int)(choices * uniform())]
-                               : "Stirnradgetriebe \xc3\xa4\xe2\x82\xac \"x\" \\ \n");
+    return json_string(choices             ? field->choices[(int)(choices * uniform())]
+                       : field->count < 40 ? "cd25"
+                                           : "Stirnradgetriebe \xc3\xa4\xe2\x82\xac \"x\" \\ \n");
   case EO_FIELD_CHOICE:
     return json_string(field->choices[(int)(choices * uniform())]);
   case EO_FIELD_NUMBERS:

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/random.h"
+#include "contact/grid.h"
 #include "document/assumption.h"
 #include "document/completion.h"
 #include "document/design_document.h"
@@ -482,6 +483,36 @@ static void test_chamfer(void)
      "less contact, the same clearance");
 }
 
+/* An iron wheel on a steel pinion: closed forms of Hertz and of ISO 6336-1, and a law that does not jump where unlike
+   materials become alike. */
+static void test_materials(void)
+{
+  struct eo_material unlike = {206e9, 0.3, 7850, 110e9, 0.26, 7200},
+                     nearly = {206e9, 0.3, 7850, 206e9 * (1 + 1e-12), NAN, NAN},
+                     alike = {206e9, 0.3, 7850, NAN, NAN, NAN};
+  double sum = 0.91 / 206e9 + (1 - 0.26 * 0.26) / 110e9;
+  near(0.91 / eo_material_contact_modulus(&unlike), sum / 2, 1e-12, "mean of (1 - nu^2)/E");
+  near(eo_material_mean_modulus(&unlike), 2 / (1 / 206e9 + 1 / 110e9), 1e-12, "2 E1 E2/(E1 + E2)");
+  ok(eo_material_is_one(&alike) && !eo_material_is_one(&unlike), "one material, two materials");
+  complete(with_pair(TEETH "\"normal_module_mm\":3"));
+  near(eo_contact_local_constant(&geometry, &nearly, 1e-3), eo_contact_local_constant(&geometry, &alike, 1e-3), 1e-11,
+       "nearly the same material, nearly the same law");
+  /* Weber and Banaschek's two terms, written out at a load: delta = sum A_i q (2 ln(2 h_i/b) - nu_i/(1 - nu_i)). */
+  double q = 2e5, s = -2e-3, compliance[2] = {0.91 / (M_PI * 206e9), (1 - 0.26 * 0.26) / (M_PI * 110e9)}, delta = 0;
+  double nu[2] = {0.3, 0.26}, all = compliance[0] + compliance[1];
+  double b = sqrt(4 * q * eo_geometry_relative_radius(&geometry, s) * all);
+  for (int i = 0; i < 2; i++)
+    delta += compliance[i] * q * (2 * log(2 * eo_geometry_depth(&geometry, i, s) / b) - nu[i] / (1 - nu[i]));
+  near(all * q * (eo_contact_local_constant(&geometry, &unlike, s) - log(q)), delta, 1e-12, "the local approach, m");
+  json_t *document = with_pair(TEETH "\"normal_module_mm\":3");
+  json_object_set_new(document, "material",
+                      json_pack("{s:f,s:f}", "gear_youngs_modulus_GPa", 3., "gear_density_kg_per_m3", 1410.));
+  complete(document);
+  double steel = design.supports.mass[EO_GEAR];
+  complete(with_pair(TEETH "\"normal_module_mm\":3"));
+  near(steel / design.supports.mass[EO_GEAR], 1410. / 7850, 1e-12, "a polymer wheel is lighter");
+}
+
 static void test_power(void)
 {
   json_t *document = with_pair(TEETH "\"normal_module_mm\":3");
@@ -510,6 +541,7 @@ int main(void)
   test_roots();
   test_protuberance();
   test_chamfer();
+  test_materials();
   test_power();
   return tap_done();
 }
