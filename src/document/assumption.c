@@ -86,8 +86,8 @@ void eo_assumptions_note(const json_t *document, struct eo_design *design)
       set_bit(design, bit++, is_stated(table, &table->field[i], eo_json_find(document, groups[g].key)));
   }
   note_flanks(document, design);
-  set_bit(design, SHARE_BIT,
-          design->load_cases == 1 || is_there(json_array_get(json_object_get(document, "load_cases"), 0), "share"));
+  const json_t *first = json_array_get(json_object_get(document, "load_cases"), 0);
+  set_bit(design, SHARE_BIT, design->load_cases == 1 || is_there(first, "share") || is_there(first, "hours"));
 }
 
 static void add(json_t *list, const char *key, json_t *value, const char *rule, bool *failed)

@@ -222,6 +222,14 @@ static const struct eo_field material[] = {
 static const char *const axial[] = {"floating", "fixed", "spring", "stops", NULL};
 static const char *const apex[] = {"trailing", "leading", NULL};
 
+/* An angle as a deviation: it states the angle, and stays in the document beside it. */
+#define DEVIATION(member, key_, states_, derived_, help_)                                                              \
+  {                                                                                                                    \
+    .key = key_, .kind = EO_FIELD_NUMBER, .flags = EO_FIELD_NULLABLE, .offset = offsetof(struct eo_alignment, member), \
+    .unit = &eo_unit_um, .low = -1e5, .high = 1e5, .fallback = NAN, .derived = derived_, .states = states_,            \
+    .help = help_                                                                                                      \
+  }
+
 static const struct eo_field alignment[] = {
     EO_NUMBER_BASED(struct eo_alignment, shaft_angle_in_plane, "shaft_angle_error_in_plane_deg", &eo_unit_deg, -2, 2, 0,
                     "aligned: no error is assumed",
@@ -237,13 +245,12 @@ static const struct eo_field alignment[] = {
                       "from the pinion's mean axial motion to the ground, used with \"spring\""),
     EO_NUMBER(struct eo_alignment, stagger, "stagger", NULL, 0, 1, 0,
               "right end behind the left, in transverse base pitches"),
-    EO_NUMBER_DERIVED(
-        struct eo_alignment, deviation_in_plane, "shaft_angle_error_in_plane_um", &eo_unit_um, -1e5, 1e5,
-        "as shaft_angle_error_in_plane_deg says",
-        "the error in the plane of the axes as a deviation over the face width of one end (f_Sigma_delta)"),
-    EO_NUMBER_DERIVED(struct eo_alignment, deviation_out_of_plane, "shaft_angle_error_out_of_plane_um", &eo_unit_um,
-                      -1e5, 1e5, "as shaft_angle_error_out_of_plane_deg says",
-                      "the error out of that plane as a deviation over the face width of one end (f_Sigma_beta)"),
+    DEVIATION(deviation_in_plane, "shaft_angle_error_in_plane_um", "shaft_angle_error_in_plane_deg",
+              "as shaft_angle_error_in_plane_deg says",
+              "the error in the plane of the axes as a deviation over the face width of one end (f_Sigma_delta)"),
+    DEVIATION(deviation_out_of_plane, "shaft_angle_error_out_of_plane_um", "shaft_angle_error_out_of_plane_deg",
+              "as shaft_angle_error_out_of_plane_deg says",
+              "the error out of that plane as a deviation over the face width of one end (f_Sigma_beta)"),
     EO_NUMBER(struct eo_alignment, pinion_axial_clearance, "pinion_axial_clearance_um", &eo_unit_um, 0, 1e5, 200,
               "whole play of the pinion between its stops, half to each side of where its apex meets the gear's, used "
               "with \"stops\"; at a stop pinion_axial_stiffness_N_per_um holds it"),

@@ -112,7 +112,7 @@ static json_t *encode_field(const struct eo_field *field, const json_t *defaults
     eo_object_put(&o, "derived", json_string(field->derived));
   if (field->basis)
     eo_object_put(&o, "basis", json_string(field->basis));
-  if (field->states)
+  if (field->flags & EO_FIELD_ENTRY)
     eo_object_put(&o, "entry", json_string(field->states));
   if (field->instead)
     eo_object_put(&o, "instead", list_texts(field->instead));

@@ -32,13 +32,13 @@ enum eo_field_kind {
 };
 
 enum {
-  EO_FIELD_REQUIRED = 1,   /* no default */
-  EO_FIELD_NULLABLE = 2,   /* null is allowed: NaN inside (OBJECT: see count_offset); `derived` says what it means */
-  EO_FIELD_ASCENDING = 4,  /* NUMBERS: strictly increasing */
-  EO_FIELD_OMIT = 8,       /* OBJECT: left out of the encoded document while everything in it has its default */
-  EO_FIELD_SOMETIMES = 16, /* OBJECT: whoever encodes the document may take it out; said in the schema alone */
-  EO_FIELD_WHOLE = 32,     /* NUMBER, SERIES: whole numbers alone */
-  EO_FIELD_ENTRY = 64,     /* read and never written: another way to say what a key beside it holds */
+  EO_FIELD_REQUIRED = 1,    /* no default */
+  EO_FIELD_NULLABLE = 2,    /* null is allowed: NaN inside (OBJECT: see count_offset); `derived` says what it means */
+  EO_FIELD_ASCENDING = 4,   /* NUMBERS: strictly increasing */
+  EO_FIELD_OMIT = 8,        /* OBJECT: left out of the encoded document while everything in it has its default */
+  EO_FIELD_SOMETIMES = 16,  /* OBJECT: whoever encodes the document may take it out; said in the schema alone */
+  EO_FIELD_WHOLE = 32,      /* NUMBER, SERIES: whole numbers alone */
+  EO_FIELD_ENTRY = 64,      /* read and never written: another way to say what a key beside it holds */
   EO_FIELD_ELSEWHERE = 128, /* other code reads and writes it: here it is known and described alone */
 };
 
@@ -82,7 +82,7 @@ struct eo_field {
   const char *derived;        /* what stands in place of null */
   const char *basis;          /* where a default that is a number comes from; NULL: it is the program's own */
   const char *below;          /* a sentence more for a number below its range; NULL: none */
-  const char *states;         /* ENTRY: the key beside it that it states */
+  const char *states;         /* the key beside it that it states in another way; NULL: none */
   const char *const *instead; /* REQUIRED: keys beside it of which one may stand in its place; ends with NULL */
   const char *help;           /* one line for people */
 };
