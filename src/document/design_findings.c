@@ -76,7 +76,8 @@ static void note_distance(const struct eo_geometry *g, struct eo_warnings *warni
         g->profile_shift[0] + g->profile_shift[1]);
 }
 
-/* Stated allowances whose mean makes another backlash than the stated one, which is what the contact is computed with. */
+/* Stated allowances whose mean makes another backlash than the stated one, which is what the contact is computed with.
+ */
 static void note_allowances(const struct eo_design *design, struct eo_warnings *warnings)
 {
   static const double NOTABLE = 0.05;

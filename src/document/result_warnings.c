@@ -121,8 +121,8 @@ static void say_least(struct list *list, double limit, double value, const char 
     say(list, "The limit on the %s is not reached: %.4g, at least %.4g wanted.", what, value, limit);
 }
 
-/* What no gear steel stands even once: the static limits of the best case hardened steel, 1.6 sigma_Hlim of 1650 MPa and
-   2.5 sigma_FE of 1050 MPa (ISO 6336-2, -3, -5, quality ME). */
+/* What no gear steel stands even once: the static limits of the best case hardened steel, 1.6 sigma_Hlim of 1650 MPa
+   and 2.5 sigma_FE of 1050 MPa (ISO 6336-2, -3, -5, quality ME). */
 static void say_strength(struct list *list, const struct eo_result_source *source, int k)
 {
   static const double MOST_PRESSURE = 2640e6, MOST_ROOT = 2625e6;

@@ -13,10 +13,11 @@ double eo_centre_distance_allowance(double centre_distance)
   } row[] = {{3, 10},   {6, 12},    {10, 15},    {18, 18},    {30, 21},    {50, 25},    {80, 30},
              {120, 35}, {180, 40},  {250, 46},   {315, 52},   {400, 57},   {500, 63},   {630, 70},
              {800, 80}, {1000, 90}, {1250, 105}, {1600, 125}, {2000, 150}, {2500, 175}, {3150, 210}};
-  for (size_t i = 0; i < sizeof row / sizeof *row; i++)
+  enum { ROWS = sizeof row / sizeof *row };
+  for (int i = 0; i < ROWS; i++)
     if (1e3 * centre_distance <= row[i].size)
       return 0.5e-6 * row[i].tolerance;
-  return 0.5e-6 * row[sizeof row / sizeof *row - 1].tolerance * centre_distance / 3.15;
+  return 0.5e-6 * row[ROWS - 1].tolerance * centre_distance / (1e-3 * row[ROWS - 1].size);
 }
 
 static struct eo_tooth tooth_of(const struct eo_geometry *g, int i, double allowance)
