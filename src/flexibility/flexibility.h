@@ -62,8 +62,8 @@ struct eo_flexibility;
 /* Prepares or reads from the cache. pair: bores and rim. cache_directory: NULL for none; it is made when missing (its
    parent must exist). Two processes that prepare the same pair at once are safe: the second waits and reads. A cache
    file that does not fit or is damaged is thrown away; a directory that cannot be written only leaves a note. progress
-   may be NULL; it is called by one thread at a time. Errors: EO_ERROR_INPUT (settings, sector that does not fit),
-   memory, EO_ERROR_NUMERIC, EO_ERROR_CANCELLED. */
+   may be NULL; it is called by one thread at a time. Errors: EO_ERROR_INPUT (settings, sector that does not fit, a root
+   so undercut that its mesh folds), memory, EO_ERROR_NUMERIC, EO_ERROR_CANCELLED. */
 enum eo_code eo_flexibility_prepare(const struct eo_geometry *geometry, const struct eo_gear_pair *pair,
                                     const struct eo_material *material, const struct eo_flexibility_settings *settings,
                                     const char *cache_directory, const struct eo_progress *progress,

@@ -197,6 +197,18 @@ static int forward_progress(void *context, const char *what, double fraction)
   return stop;
 }
 
+/* The mesh of a tooth whose foot undercut has cut away folds; a shop would not make it either. */
+static enum eo_code refuse_undercut(struct worker *w)
+{
+  const struct eo_geometry *g = w->geometry;
+  int m = w->member;
+  return eo_error_set(
+      &w->error, EO_ERROR_INPUT, m == EO_PINION ? "/gear_pair/pinion_profile_shift" : "/gear_pair/gear_profile_shift",
+      "The %s is undercut so far that finite elements of its tooth root fold: its profile shift is %.4g, and from %.4g "
+      "on there is no undercut. A shift nearer to that, more teeth, or a shallower dedendum helps.",
+      m == EO_PINION ? "pinion" : "gear", g->profile_shift[m], g->least_shift[m]);
+}
+
 static void *compute_member(void *context)
 {
   struct worker *w = context;
@@ -205,6 +217,8 @@ static void *compute_member(void *context)
   struct eo_progress progress = {.report = forward_progress, .context = w};
   w->code = eo_member_compute(&result, w->geometry, w->member, &w->material, &w->settings, &progress,
                               &report->times[w->member], &w->error);
+  if (w->code == EO_ERROR_NUMERIC && w->geometry->undercut[w->member])
+    w->code = refuse_undercut(w);
   if (!w->code)
     w->code = eo_flank_table_fill(&w->flexibility->table[w->member], &result, w->flexibility->width,
                                   &report->smallest_eigenvalue[w->member], &w->error);

@@ -5,6 +5,7 @@
 #define EASEOFF_TESTS_SUPPORT_DRAWN_GEARS_H
 
 #include <math.h>
+#include <stdbool.h>
 #include <string.h>
 
 #include <jansson.h>

@@ -28,7 +28,6 @@ static bool is_finite(const struct eo_analysis *analysis)
   return isfinite(c->peak_to_peak) && isfinite(c->impact) && isfinite(c->contact_pressure) && c->contact_pressure > 0;
 }
 
-/* "" when all went well. */
 static void run(int i, bool *analysed, bool *fair, struct eo_error *error)
 {
   const struct eo_pair_options options = {0};
@@ -41,13 +40,13 @@ static void run(int i, bool *analysed, bool *fair, struct eo_error *error)
   json_decref(document);
   if (!code)
     code = eo_design_complete(&design, &geometry, error);
-  *fair = code && is_fair_refusal(error);
   if (!code)
     code = eo_pair_new(&pair, &design, &options, NULL, error);
   if (!code)
     code = eo_analysis_new(&analysis, pair, error);
   if (!code)
     code = eo_analysis_run(analysis, &design, EO_WANT_ROOT, error);
+  *fair = code && is_fair_refusal(error);
   *analysed = !code && is_finite(analysis);
   eo_analysis_free(analysis);
   eo_pair_free(pair);
