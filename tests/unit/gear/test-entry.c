@@ -336,7 +336,7 @@ static void test_assumed(void)
   ok(complete(with_pair("\"pinion_teeth\":20,\"gear_teeth\":60,\"transverse_module_mm\":5,\"helix_angle_deg\":20,"
                         "\"face_width_mm\":50,\"profile_shift_sum\":0.4,\"pinion_addendum_mm\":5")),
      "a terse design %s", error.text);
-  json_t *assumed = eo_assumptions_encode(&design), *row;
+  json_t *assumed = eo_assumptions_encode(&design, false), *row;
   struct eo_text keys = {0};
   size_t i;
   json_array_foreach(assumed, i, row) eo_text_print(&keys, "%s;", json_string_value(json_object_get(row, "key")));
@@ -478,7 +478,7 @@ static void test_deviation(void)
   json_object_set_new(document, "alignment", json_pack("{s:i}", "shaft_angle_error_out_of_plane_um", 27));
   complete(document);
   near(design.alignment.shaft_angle_out_of_plane * 180 / M_PI, 0.004297, 1e-4, "27 um over 360 mm, deg");
-  json_t *assumed = eo_assumptions_encode(&design);
+  json_t *assumed = eo_assumptions_encode(&design, false);
   json_array_foreach(assumed, i, row) eo_text_print(&keys, "%s;", json_string_value(json_object_get(row, "key")));
   ok(!strstr(keys.data, "out_of_plane_deg") && strstr(keys.data, "in_plane_deg"), "the other angle is assumed to be 0");
   eo_text_done(&keys);
