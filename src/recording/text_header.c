@@ -40,11 +40,16 @@ static int count_cells(const struct eo_header_line *line, char separator)
    with the rows' own separator may have more cells. 0: none does. */
 static char header_separator(const struct eo_text_format *f, const struct eo_header_line *line)
 {
-  const char separators[] = {f->separator, '\t', ';', ',', '|', ' ', EO_TEXT_WIDE};
-  for (size_t i = 0; i < sizeof separators; i++)
-    if (count_cells(line, separators[i]) == f->cells)
-      return separators[i];
-  return f->cells > 1 && f->separator != ' ' && count_cells(line, f->separator) > f->cells ? f->separator : '\0';
+  const char marks[] = {f->separator, '\t', ';', ',', '|'}, blanks[] = {' ', EO_TEXT_WIDE};
+  for (size_t i = 0; i < sizeof marks; i++)
+    if (count_cells(line, marks[i]) == f->cells)
+      return marks[i];
+  if (f->cells > 1 && f->separator != ' ' && count_cells(line, f->separator) > f->cells)
+    return f->separator; /* before blanks, which names have inside */
+  for (size_t i = 0; i < sizeof blanks; i++)
+    if (count_cells(line, blanks[i]) == f->cells)
+      return blanks[i];
+  return '\0';
 }
 
 static bool is_unit(const struct eo_cell *cell)
