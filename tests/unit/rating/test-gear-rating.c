@@ -64,7 +64,7 @@ static void check_spur(void)
   struct eo_error error = {0};
   struct eo_rating_basis basis;
   struct eo_rated_case c;
-  const struct eo_material steel = {210e9, 0.3, 7830};
+  const struct eo_material steel = {.youngs_modulus = 210e9, .poissons_ratio = 0.3, .density = 7830};
   struct eo_geometry g = geometry_of((const int[]){16, 24}, 4.5e-3, 0, 14e-3, 91.5e-3,
                                      (const double[]){0.1818, 0.17138}, (const double[]){82.45e-3, 118.35e-3}, 1.39,
                                      0.25);
@@ -126,7 +126,7 @@ static void check_helical(void)
   struct eo_error error = {0};
   struct eo_geometry g;
   struct eo_rating_settings settings;
-  const struct eo_material steel = {206e9, 0.3, 7800};
+  const struct eo_material steel = {.youngs_modulus = 206e9, .poissons_ratio = 0.3, .density = 7800};
   struct eo_rating_basis basis = helical_basis(&g, &settings, &steel);
   struct eo_rated_case c;
   double speed = 20.83 / (341.183e-3 / 2), cycles = 12255788000.;
@@ -158,7 +158,7 @@ static void check_spectrum(void)
   struct eo_error error = {0};
   struct eo_geometry g;
   struct eo_rating_settings settings;
-  const struct eo_material steel = {206e9, 0.3, 7800};
+  const struct eo_material steel = {.youngs_modulus = 206e9, .poissons_ratio = 0.3, .density = 7800};
   struct eo_rating_basis basis = helical_basis(&g, &settings, &steel);
   struct eo_rated_case c[2];
   struct eo_rated_spectrum one, two;
@@ -189,7 +189,7 @@ static void check_refusals(void)
 {
   struct eo_error error = {0};
   struct eo_rating_basis basis;
-  const struct eo_material steel = {206e9, 0.3, 7800};
+  const struct eo_material steel = {.youngs_modulus = 206e9, .poissons_ratio = 0.3, .density = 7800};
   struct eo_geometry g;
   struct eo_rating_settings settings;
   basis = helical_basis(&g, &settings, &steel);
@@ -225,7 +225,7 @@ static void check_tribology(void)
 {
   struct eo_geometry g = {
       .teeth = {20, 40}, .tangent_length = {20e-3, 40e-3}, .base_helix_angle = 0, .normal_module = 5e-3};
-  const struct eo_material steel = {206e9, 0.3, 7850};
+  const struct eo_material steel = {.youngs_modulus = 206e9, .poissons_ratio = 0.3, .density = 7850};
   struct eo_rating_settings settings = settings_of(EO_ISO6336_2006, 1500e6, 430e6);
   struct eo_tribology_state t;
   eo_tribology_state_init(&t, &g, &steel, &settings, 200);
