@@ -157,10 +157,9 @@ static enum eo_code connect(struct eo_store *store, const char *name, int flags,
   /* NORMAL: a commit survives the death of the process; after a power failure the last ones may be missing, whole, and
      are computed anew. What was promised to somebody goes through eo_store_begin_lasting(). No page of a transaction
      goes to the journal before its end: see page_sums.h. */
-  return execute(store,
-                 "PRAGMA foreign_keys = ON; PRAGMA synchronous = NORMAL; PRAGMA cache_spill = OFF;"
-                 " PRAGMA auto_vacuum = INCREMENTAL",
-                 error);
+  EO_TRY(execute(store, "PRAGMA foreign_keys = ON; PRAGMA synchronous = NORMAL; PRAGMA cache_spill = OFF", error));
+  bool reads = flags & SQLITE_OPEN_READONLY; /* the mode of a file is written even where it is that already */
+  return reads ? EO_OK : execute(store, "PRAGMA auto_vacuum = INCREMENTAL", error);
 }
 
 static bool has_sums(struct eo_store *store)
