@@ -81,12 +81,10 @@ static const struct eo_outline_row order_track_rows[] = {
 };
 const struct eo_outline eo_order_tracks_outline = EO_OUTLINE("OrderTracks", order_track_rows);
 
-static const struct eo_unit urad = {"urad", "urad", 1e6, true};
-
 static const struct eo_outline_row axis_rows[] = {
     EO_KEY("swing_urad", "number?", "first order of the pinion's encoder that was taken out of its angle",
-           .unit = &urad, EO_AT(struct eo_transmission, axis_swing)),
-    EO_KEY("noise_urad", "number?", "of a reading of the pinion's encoder, standard deviation", .unit = &urad,
+           .unit = &eo_unit_urad, EO_AT(struct eo_transmission, axis_swing)),
+    EO_KEY("noise_urad", "number?", "of a reading of the pinion's encoder, standard deviation", .unit = &eo_unit_urad,
            EO_AT(struct eo_transmission, axis_noise)),
     EO_KEY("bias", "number?", "part of the RMS that both would have taken away; put right",
            EO_AT(struct eo_transmission, axis_bias)),

@@ -325,7 +325,7 @@ static const struct eo_outline_row rated_end_rows[] = {
     EO_KEY("computed", "object", "of the contact analysis and the vibration", .outline = &computed),
     EO_KEY("used", "object", "what rates", .outline = &factors),
     EO_KEY("Z_H", "number", "zone"),
-    EO_KEY("Z_E_sqrt_MPa", "number", "elasticity"),
+    EO_KEY("Z_E_sqrt_MPa", "number", "elasticity", .unit = &eo_unit_sqrt_MPa),
     EO_KEY("Z_eps", "number", "contact ratio"),
     EO_KEY("Z_beta", "number", "helix"),
     EO_KEY("sigma_H0_MPa", "number", "nominal contact stress", .unit = &eo_unit_MPa),
@@ -346,7 +346,6 @@ static json_t *encode_computed(const struct eo_rated_case *c, const struct eo_fa
 
 static json_t *encode_rated_end(const struct eo_rated_case *c, const struct eo_face_factors *face)
 {
-  const double per_root_of_MPa = 1e-3; /* sqrt(Pa) to sqrt(N/mm2) */
   struct eo_object o = eo_object_open_as(&rated_end);
   eo_object_put_number(&o, "F_t_N", c->tangential_force);
   eo_object_put_number(&o, "v_m_per_s", c->velocity);
@@ -360,7 +359,7 @@ static json_t *encode_rated_end(const struct eo_rated_case *c, const struct eo_f
   eo_object_put(&o, "computed", encode_computed(c, face));
   eo_object_put(&o, "used", eo_outline_encode(&factors, &c->used));
   eo_object_put_number(&o, "Z_H", c->contact.zone);
-  eo_object_put_number(&o, "Z_E_sqrt_MPa", c->contact.elasticity * per_root_of_MPa);
+  eo_object_put_number(&o, "Z_E_sqrt_MPa", eo_unit_out(&eo_unit_sqrt_MPa, c->contact.elasticity));
   eo_object_put_number(&o, "Z_eps", c->contact.contact_ratio);
   eo_object_put_number(&o, "Z_beta", c->contact.helix);
   eo_object_put_number(&o, "sigma_H0_MPa", c->contact.nominal);

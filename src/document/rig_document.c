@@ -7,8 +7,8 @@
 #include "format/json.h"
 #include "document/result_private.h"
 
-static const struct eo_unit unit_urad = {"urad", "urad", 1e6, true}, unit_us = {"us", "us", 1e6, true},
-                            unit_mV = {"mV", "mV", 1e3, true}, unit_V = {"V", "V", 1, false};
+static const struct eo_unit unit_us = {"us", "us", 1e6, true}, unit_mV = {"mV", "mV", 1e3, true},
+                            unit_V = {"V", "V", 1, false};
 
 static const double SPEED_CHANGES = 0.02, TORQUE_CHANGES = 0.1; /* relative, over the recording: said by a finding */
 
@@ -53,7 +53,7 @@ static const struct eo_field fields[] = {
               20, "first order of the pinion shaft, along the line of action"),
     EO_NUMBER(struct eo_rig_request, SYNTHETIC(eccentricity[EO_GEAR]), "gear_eccentricity_um", &eo_unit_um, 0, 1000, 30,
               "first order of the gear shaft"),
-    EO_NUMBER(struct eo_rig_request, SYNTHETIC(noise), "noise_urad", &unit_urad, 0, 1e4, 0.02,
+    EO_NUMBER(struct eo_rig_request, SYNTHETIC(noise), "noise_urad", &eo_unit_urad, 0, 1e4, 0.02,
               "noise of each angle, standard deviation"),
     EO_NUMBER(struct eo_rig_request, SYNTHETIC(jitter), "jitter_us", &unit_us, 0, 1e4, 0,
               "jitter of the sampling, both channels alike"),

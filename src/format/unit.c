@@ -41,6 +41,8 @@ const struct eo_unit eo_unit_W = {"W", "W", 1, false};
 const struct eo_unit eo_unit_HV = {"HV", "HV", 1, false};
 const struct eo_unit eo_unit_W_per_m_K = {"W_per_m_K", "W/(m K)", 1, false};
 const struct eo_unit eo_unit_J_per_kg_K = {"J_per_kg_K", "J/(kg K)", 1, false};
+const struct eo_unit eo_unit_urad = {"urad", "urad", 1e6, true};
+const struct eo_unit eo_unit_sqrt_MPa = {"sqrt_MPa", "MPa^0.5", 1e3, false};
 const struct eo_unit eo_unit_Hz = {"Hz", "Hz", 1, false};
 
 double eo_unit_in(const struct eo_unit *unit, double value)

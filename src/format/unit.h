@@ -17,7 +17,7 @@ extern const struct eo_unit eo_unit_mm, eo_unit_um, eo_unit_nm, eo_unit_deg, eo_
     eo_unit_Nm_per_rad, eo_unit_kg, eo_unit_kg_m2, eo_unit_kg_per_m3, eo_unit_um_per_N, eo_unit_per_mm, eo_unit_per_mm2,
     eo_unit_per_um, eo_unit_per_inch, eo_unit_kW, eo_unit_mm_per_s, eo_unit_m_per_s2, eo_unit_ms, eo_unit_Hz, eo_unit_h,
     eo_unit_m_per_s, eo_unit_mm2_per_s, eo_unit_per_GPa, eo_unit_C, eo_unit_K, eo_unit_W, eo_unit_HV, eo_unit_W_per_m_K,
-    eo_unit_J_per_kg_K;
+    eo_unit_J_per_kg_K, eo_unit_urad, eo_unit_sqrt_MPa;
 
 /* Document -> SI. unit NULL: dimensionless, the value itself. */
 double eo_unit_in(const struct eo_unit *unit, double value);

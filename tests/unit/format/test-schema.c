@@ -170,10 +170,11 @@ static void check_form(void)
 }
 
 static const struct eo_unit *const units[] = {
-    &eo_unit_N_per_mm_um, &eo_unit_um_mm_per_N, &eo_unit_mm_per_s, &eo_unit_m_per_s2,
-    &eo_unit_N_per_um,    &eo_unit_N_per_mm,    &eo_unit_per_um,   &eo_unit_mm,
-    &eo_unit_um,          &eo_unit_deg,         &eo_unit_rpm,      &eo_unit_Nm,
-    &eo_unit_N,           &eo_unit_MPa,         &eo_unit_ms,       &eo_unit_Hz};
+    &eo_unit_N_per_mm_um, &eo_unit_um_mm_per_N, &eo_unit_mm_per_s, &eo_unit_m_per_s2, &eo_unit_m_per_s,
+    &eo_unit_sqrt_MPa,    &eo_unit_N_per_um,    &eo_unit_N_per_mm, &eo_unit_per_um,   &eo_unit_mm,
+    &eo_unit_um,          &eo_unit_deg,         &eo_unit_rpm,      &eo_unit_Nm,       &eo_unit_N,
+    &eo_unit_MPa,         &eo_unit_ms,          &eo_unit_Hz,       &eo_unit_h,        &eo_unit_C,
+    &eo_unit_K,           &eo_unit_W,           &eo_unit_HV,       &eo_unit_urad};
 
 /* The unit that a key ends with; the longer ones come first. */
 static const struct eo_unit *unit_of(const char *key)
@@ -186,6 +187,12 @@ static const struct eo_unit *unit_of(const char *key)
   return NULL;
 }
 
+/* Ends like a unit and has none. */
+static bool has_no_unit(const char *key)
+{
+  return strcmp(key, "Z_W") == 0 || strcmp(key, "b_over_h") == 0;
+}
+
 /* above: the unit that the key of the object names. */
 static int count_odd_units(const struct eo_outline *outline, const struct eo_unit *above)
 {
@@ -195,7 +202,7 @@ static int count_odd_units(const struct eo_outline *outline, const struct eo_uni
     const struct eo_unit *named = unit_of(row->key) ? unit_of(row->key) : above;
     if (row->outline)
       odd += count_odd_units(row->outline, unit_of(row->key));
-    else if (!row->table && row->unit != named && strchr("[n", *row->shape)) {
+    else if (!row->table && row->unit != named && strchr("[n", *row->shape) && !has_no_unit(row->key)) {
       printf("# %s/%s\n", outline->name, row->key);
       odd++;
     }
