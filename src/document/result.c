@@ -254,14 +254,16 @@ static json_t *encode_timing(const struct eo_result_source *source)
 
 static const struct eo_outline_row result_rows[] = {
     EO_KEY("program", "text", "name and version"),
-    EO_KEY("design", "object", "with every default resolved", .table = &eo_design_table, .name = "ResolvedDesign"),
+    EO_KEY("design", "object?", "with every default resolved; null when left out", .table = &eo_design_table,
+           .name = "ResolvedDesign"),
     EO_KEY("design_hash", "text", "SHA-256 of the canonical design"),
     EO_KEY("evaluation_hash", "text", "the same without name, rating, objective and optimization"),
-    EO_KEY("assumed", "[object]", "what the design does not state, the value taken, and by which rule",
+    EO_KEY("assumed", "[object]?",
+           "what the design does not state, the value taken, and by which rule; null when left out",
            .outline = &eo_outline_assumption),
     EO_KEY("resolution", "object", "of the design, once more", .table = &eo_resolution_table, .name = "Resolution"),
     EO_KEY("geometry", "object", "macro-geometry", .table = &eo_geometry_table, .name = "Geometry"),
-    EO_KEY("dimensions", "object", "what is measured on the members and between them",
+    EO_KEY("dimensions", "object?", "what is measured on the members and between them; null when left out",
            .outline = &eo_outline_dimensions),
     EO_KEY("flexibility", "object", "how the teeth's flexibility was modelled", .outline = &eo_outline_flexibility),
     EO_KEY("modification", "object?", "as curves; null when left out", .outline = &eo_outline_modification),
@@ -283,23 +285,25 @@ static const struct eo_outline_row result_rows[] = {
 const struct eo_outline eo_result_outline = EO_OUTLINE("Result", result_rows);
 enum { CASES_ROW = 11 }; /* load_cases: the head ends, the tail begins behind it */
 
-static void put_identity(struct eo_object *o, const struct eo_design *design, bool rating)
+static void put_identity(struct eo_object *o, const struct eo_design *design, bool rating, bool whole)
 {
   char hash[EO_HASH_LENGTH + 1];
   eo_object_put(o, "program", json_string(PACKAGE_STRING));
-  eo_object_put(o, "design", eo_design_encode(design));
+  eo_object_put(o, "design", whole ? eo_design_encode(design) : json_null());
   eo_object_put(o, "design_hash", eo_design_hash(design, hash, NULL) ? NULL : json_string(hash));
   eo_object_put(o, "evaluation_hash", eo_design_evaluation_hash(design, hash, NULL) ? NULL : json_string(hash));
-  eo_object_put(o, "assumed", eo_assumptions_encode(design, rating));
+  eo_object_put(o, "assumed", whole ? eo_assumptions_encode(design, rating) : json_null());
   eo_object_put(o, "resolution", eo_table_encode(&eo_resolution_table, &design->resolution));
 }
 
 json_t *eo_result_head(struct eo_result_source *source)
 {
   struct eo_object o = eo_object_open_as(&eo_result_outline);
-  put_identity(&o, source->design, source->analysis->want & EO_WANT_RATING);
+  bool whole = eo_result_has(source, EO_RESULT_NO_DESIGN, NULL);
+  put_identity(&o, source->design, source->analysis->want & EO_WANT_RATING, whole);
   eo_object_put(&o, "geometry", eo_table_encode(&eo_geometry_table, &source->pair->geometry));
-  eo_object_put(&o, "dimensions", eo_dimensions_encode(&source->design->gear_pair, &source->pair->geometry));
+  eo_object_put(&o, "dimensions",
+                whole ? eo_dimensions_encode(&source->design->gear_pair, &source->pair->geometry) : json_null());
   eo_object_put(&o, "flexibility", eo_result_flexibility(source));
   eo_object_put(&o, "modification",
                 eo_result_has(source, EO_RESULT_NO_MODIFICATION, NULL) ? eo_result_modification(source) : json_null());

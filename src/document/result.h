@@ -43,11 +43,12 @@ enum {
   EO_RESULT_NO_PATTERN = 256,
   EO_RESULT_NO_ORDERS = 512,
   EO_RESULT_NO_TRIBOLOGY = 1024,
+  EO_RESULT_NO_DESIGN = 2048, /* resolved, what is assumed of it, dimensions */
   EO_RESULT_FIRST_PART = EO_RESULT_NO_MODIFICATION,
-  EO_RESULT_PARTS = 9,
+  EO_RESULT_PARTS = 10,
 };
 #define EO_RESULT_PART_WORDS \
-  "modification|unloaded_contact|lte|mesh_stiffness|face_load|load_share|pattern|orders|tribology"
+  "modification|unloaded_contact|lte|mesh_stiffness|face_load|load_share|pattern|orders|tribology|design"
 
 /* Added to what is left out: of all load cases only number k (from 0) has curves, maps and histories. */
 #define EO_RESULT_CURVES_OF(k) ((unsigned)((k) + 1) << 16)
