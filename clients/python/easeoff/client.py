@@ -286,9 +286,12 @@ class Client:
         return self.transport.events("/events", last_event_id)
 
     @operation("getJobEvents")
-    def job_events(self, id: int, last_event_id: str | None = None) -> Iterator[Event]:
-        """Every change of one job, as it happens; ends with the service, or when you stop reading."""
-        return self.transport.events(f"/jobs/{id}/events", last_event_id)
+    def job_events(self, id: int, last_event_id: str | None = None, beats: bool = False) -> Iterator[Event]:
+        """Every change of one job, as it happens; ends with the service, or when you stop reading.
+
+        beats: also an event without data when the stream begins and each time the service says that it is still there.
+        """
+        return self.transport.events(f"/jobs/{id}/events", last_event_id, beats)
 
     @operation("getHistory")
     def history(self) -> doc.History:
@@ -302,25 +305,18 @@ class Client:
 
     def follow(self, id: int) -> Iterator[doc.Job]:
         """The job each time it changes, its last state included; a broken connection is taken up again."""
-        job = self.job(id)
-        if job["state"] in ENDED:
-            yield job
-            return
-        last = "1"  # from the first event that is kept: the job may end before the stream begins
+        last: str | None = None
         while True:
             try:
-                for event in self.job_events(id, last):
+                for event in self.job_events(id, last, beats=True):
                     last = event.id or last
-                    yield event.data
-                    if event.data["state"] in ENDED:
+                    job = self.job(id) if event.data is None else event.data  # it may have ended between two streams
+                    if event.data is not None or job["state"] in ENDED:
+                        yield job
+                    if job["state"] in ENDED:
                         return
-            except (OSError, TimeoutError):
+            except OSError:
                 time.sleep(1)
-            else:
-                job = self.job(id)
-                if job["state"] in ENDED:
-                    yield job
-                    return
 
     def optimize(
         self, design: Design, *, fresh: bool = False, progress: Callable[[doc.Job], None] | None = None

@@ -151,15 +151,16 @@ class ClientTest(unittest.TestCase):
         job = client.add_job({"kind": "prepare", "design": self.design()})
         calls = []
 
-        def broken(identity, last):
+        def broken(identity, last, beats):
             calls.append(last)
             if len(calls) == 1:
                 raise ConnectionResetError
-            return original(identity, last)
+            return original(identity, last, beats)
 
         original, client.job_events = client.job_events, broken
         self.assertEqual(list(client.follow(job["id"]))[-1]["state"], "done")
         self.assertEqual(len(calls), 2)
+        self.assertEqual([state["state"] for state in client.follow(job["id"])], ["done"])
 
     def test_events_as_they_are_written(self):
         stream = io.BytesIO(b": comment\n\nid: 7\nevent: job\ndata: {\"a\":\ndata: 1}\n\ndata: 2\n\n")
