@@ -463,8 +463,8 @@ await chapter('a preparation that others wait for', async () => {
   const wanted = `${START}&gear_pair.pinion_teeth=19`;
   const other = await (await browser.newContext()).newPage();
   other.setDefaultTimeout(WAIT);
-  await open(wanted.replaceAll('layers=6', 'layers=8'), page);
-  await open(wanted.replaceAll('layers=6', 'layers=8'), other);
+  await open(wanted.replaceAll('layers=6', 'layers=32'), page);
+  await open(wanted.replaceAll('layers=6', 'layers=32'), other);
   await other.locator('.preparing').waitFor();
   await field('Pinion teeth').fill('17');
   await field('Pinion teeth').press('Enter');

@@ -266,11 +266,11 @@ refuses 1 flexibility "{$pair,$elements,\"mesh\":{\"member\":\"gear\"}}" "/mesh/
 refuses 1 flexibility "{$pair,$elements,\"mesh\":{\"file\":\"$folder/x\",\"row\":7}}" "/mesh/row: The flank has rows 0 to 6"
 refuses 1 objective "$(sed 's/"rms_m_per_s2":20/"rms_m_per_s2":-20/' "$folder/objective")" "/values/0/rms_m_per_s2: -20 is outside"
 refuses 1 objective "$(sed 's/,"rms_m_per_s2":20//' "$folder/objective")" "/values/0/rms_m_per_s2: This key is required"
-refuses 1 objective "$(sed 's/,{"torque_Nm":1035,"share":0.3}//' "$folder/objective")" "/values: 3 rows, but 2 load cases"
+refuses 1 objective "$(sed 's/,{"speed_rpm":2000,"torque_Nm":1035,"share":0.3}//' "$folder/objective")" "/values: 3 rows, but 2 load cases"
 refuses 1 objective "$(sed 's/,"share":0.3//' "$folder/objective")" "/load_cases: Either every load case"
 refuses 1 evaluation "{$pair,$closed}" "/load_cases: This key is required"
 refuses 1 evaluation "{$pair,$closed,\"load_cases\":[]}" "/load_cases: 0 entries"
-refuses 1 evaluation "{$pair,$closed,\"load_cases\":[{\"torque_Nm\":1}],\"root_stress\":true}" "/root_stress"
+refuses 1 evaluation "{$pair,$closed,\"load_cases\":[{\"torque_Nm\":1,\"speed_rpm\":1}],\"root_stress\":true}" "/root_stress"
 
 for name in $("$EASEOFF" stage | cut -d' ' -f1); do
   "$EASEOFF" stage "$name" --help >"$folder/out" 2>"$folder/err"
