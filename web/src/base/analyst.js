@@ -6,7 +6,7 @@ import { unmodified } from './store.js';
 
 const ANALYZE = 'analyze?histories=1&rating=0';
 /** While a slider moves: without histories over time, which are half of an answer. */
-const STROKE = 'analyze?rating=0&parts=modification,lte,mesh_stiffness,load_share,pattern,orders,maps';
+const STROKE = 'analyze?rating=0&parts=design,modification,lte,mesh_stiffness,load_share,pattern,orders,maps';
 const RATE = 'analyze?maps=0'; // with the rating, which takes two more contact analyses
 const REST = 900; // ms without a change before the design is rated
 
