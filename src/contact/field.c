@@ -348,7 +348,8 @@ static double varying_datum(const struct eo_gap_field *field)
   for (int k = 0; k < 2; k++)
     step[k] = (high[k] - low[k]) / (SAMPLES - 1);
   for (int i = 0; i < SAMPLES * SAMPLES; i++) {
-    double s = low[0] + step[0] * (i / SAMPLES), eta = low[1] + step[1] * (i % SAMPLES),
+    int row = i / SAMPLES, column = i % SAMPLES;
+    double s = low[0] + step[0] * row, eta = low[1] + step[1] * column,
            gap = eo_gap_field_at(field, s, eta, NULL, NULL);
     if (gap < lowest) {
       lowest = gap;
@@ -359,8 +360,9 @@ static double varying_datum(const struct eo_gap_field *field)
   for (int round = 0; round < ROUNDS; round++) {
     double before = lowest, centre[2] = {best[0], best[1]};
     for (int i = 0; i < 9; i++) {
-      double s = fmin(high[0], fmax(low[0], centre[0] + step[0] * (i / 3 - 1))),
-             eta = fmin(high[1], fmax(low[1], centre[1] + step[1] * (i % 3 - 1))),
+      int row = i / 3 - 1, column = i % 3 - 1;
+      double s = fmin(high[0], fmax(low[0], centre[0] + step[0] * row)),
+             eta = fmin(high[1], fmax(low[1], centre[1] + step[1] * column)),
              gap = eo_gap_field_at(field, s, eta, NULL, NULL);
       if (gap < lowest) {
         lowest = gap;

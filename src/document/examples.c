@@ -40,11 +40,8 @@ static void size(struct eo_gear_pair *pair, int pinion_teeth, int gear_teeth, do
 
 static void load(struct eo_design *design, int i, double torque, double rpm, double share)
 {
-  design->load_case[i] = (struct eo_load_case){.torque = torque,
-                                               .speed = eo_unit_in(&eo_unit_rpm, rpm),
-                                               .share = share,
-                                               .power = NAN,
-                                               .hours = NAN};
+  design->load_case[i] = (struct eo_load_case){
+      .torque = torque, .speed = eo_unit_in(&eo_unit_rpm, rpm), .share = share, .power = NAN, .hours = NAN};
   design->load_cases = i + 1;
 }
 

@@ -31,7 +31,8 @@ static enum eo_code below_layout(enum eo_code code, struct eo_error *error)
 static enum eo_code read_recordings(struct work *w, const struct eo_measure_request *r,
                                     const struct eo_progress *progress, struct eo_error *error)
 {
-  const struct eo_reader_options options = {.spool_directory = r->spool_directory, .seconds = r->seconds, .progress = progress};
+  const struct eo_reader_options options = {
+      .spool_directory = r->spool_directory, .seconds = r->seconds, .progress = progress};
   struct eo_recording *both[2] = {NULL, NULL};
   enum eo_code code = eo_reader_read(r->path, &options, &both[0], &w->notes, error);
   if (!code && r->gear_path) {

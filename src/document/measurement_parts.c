@@ -2,6 +2,7 @@
 #include "document/measurement_parts.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "format/json.h"
 #include "format/object.h"
@@ -30,7 +31,7 @@ static json_t *track_column(const struct eo_transmission *t, size_t offset, cons
 {
   double value[EO_TRACKS];
   for (int i = 0; i < t->tracks; i++)
-    value[i] = *(const double *)((const char *)&t->track[i] + offset);
+    memcpy(&value[i], (const char *)&t->track[i] + offset, sizeof value[i]);
   return eo_json_reals(t->tracks, value, 1, unit, EO_DIGITS_CURVE);
 }
 

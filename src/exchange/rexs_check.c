@@ -167,7 +167,7 @@ void eo_rexs_check(const struct eo_rexs_model *model, teller *teller_, void *con
     c.id[i] = model->component[i].id;
   qsort(c.id, (size_t)model->components, sizeof *c.id, compare);
   for (int i = 1; i < model->components; i++)
-    if (c.id[i] == c.id[i - 1] && (i < 2 || c.id[i - 2] != c.id[i]))
+    if ((i < 2 || c.id[i - 2] != c.id[i]) && c.id[i] == c.id[i - 1])
       tell(&c, "duplicate_id", true, eo_rexs_find(model, c.id[i]), NULL, NULL,
            "Two components have the id %d, so relations to it can mean either.", c.id[i]);
   for (int i = 0; i < model->relations; i++)

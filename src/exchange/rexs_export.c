@@ -110,7 +110,7 @@ static void write_unit(struct writer *w, bool with_design)
     eo_text_done(&text);
   }
   eo_rexs_build(&w->builder, CASING, "gear_casing", "casing");
-  eo_rexs_relate(&w->builder, "assembly", 0, "assembly", UNIT, "part", CASING, NULL);
+  eo_rexs_relate(&w->builder, "assembly", 0, "assembly", UNIT, "part", CASING, (char *)NULL);
 }
 
 static void write_section(struct writer *w, int member, int place, double u, double length, double outer, double inner)
@@ -125,7 +125,7 @@ static void write_section(struct writer *w, int member, int place, double u, dou
   eo_rexs_build_number(&w->builder, "outer_diameter_end", outer);
   eo_rexs_build_number(&w->builder, "inner_diameter_begin", inner);
   eo_rexs_build_number(&w->builder, "inner_diameter_end", inner);
-  eo_rexs_relate(&w->builder, "assembly", 0, "assembly", SHAFT + member, "part", id, NULL);
+  eo_rexs_relate(&w->builder, "assembly", 0, "assembly", SHAFT + member, "part", id, (char *)NULL);
 }
 
 static void write_bearings(struct writer *w, int member)
@@ -143,7 +143,8 @@ static void write_bearings(struct writer *w, int member)
                          shaft_length(w) / 2 + json_number_value(value));
     eo_rexs_build_flag(&w->builder, "radial_force_absorption", true);
     eo_rexs_build_word(&w->builder, "axial_force_absorption", fixed && !side ? "both_directions" : "no_direction");
-    eo_rexs_relate(&w->builder, "side", 0, "assembly", id, "inner_part", SHAFT + member, "outer_part", CASING, NULL);
+    eo_rexs_relate(&w->builder, "side", 0, "assembly", id, "inner_part", SHAFT + member, "outer_part", CASING,
+                   (char *)NULL);
   }
 }
 
@@ -156,7 +157,7 @@ static void write_load(struct writer *w, int member)
   eo_rexs_build_number(&w->builder, "u_coordinate_on_shaft", side && !strcmp(side, "right") ? shaft_length(w) : 0);
   eo_rexs_build_flag(&w->builder, "transmits_torque", true);
   eo_rexs_build_flag(&w->builder, "defines_torque", member == EO_PINION);
-  eo_rexs_relate(&w->builder, "assembly", 0, "assembly", SHAFT + member, "part", LOAD + member, NULL);
+  eo_rexs_relate(&w->builder, "assembly", 0, "assembly", SHAFT + member, "part", LOAD + member, (char *)NULL);
 }
 
 static void write_shaft(struct writer *w, int member)
@@ -167,7 +168,7 @@ static void write_shaft(struct writer *w, int member)
   if (member == EO_PINION)
     eo_rexs_build_flag(&w->builder, "defines_speed", true);
   put_place(w, 0, distance_of(w, member));
-  eo_rexs_relate(&w->builder, "assembly", 0, "assembly", UNIT, "part", SHAFT + member, NULL);
+  eo_rexs_relate(&w->builder, "assembly", 0, "assembly", UNIT, "part", SHAFT + member, (char *)NULL);
   write_section(w, member, 0, 0, w->overhang, outer, bore);
   write_section(w, member, 1, face_at(w, 0) + face_width(w), groove_width(w),
                 number_of(w->gear_pair, member, "groove_diameter_mm"), bore);
@@ -202,9 +203,9 @@ static void write_flank(struct writer *w, int member, int end, int side, int *mo
                            ? json_number_value(json_object_get(block, "lead_offset_um")) * 1e-3
                            : NAN);
   eo_rexs_relate(&w->builder, "manufacturing_step", 1, "workpiece", id, "tool", tool, "manufacturing_settings",
-                 SETTINGS, NULL);
+                 SETTINGS, (char *)NULL);
   if (side == 1)
-    eo_rexs_relate(&w->builder, "flank", 0, "gear", gear, "left", id - 1, "right", id, NULL);
+    eo_rexs_relate(&w->builder, "flank", 0, "gear", gear, "left", id - 1, "right", id, (char *)NULL);
   *modification = eo_rexs_export_flank(&w->builder, &flank, loaded ? block : json_object_get(block, "coast"), id,
                                        *modification);
 }
@@ -225,8 +226,8 @@ static void write_gear(struct writer *w, int member, int end, int *modification)
   eo_rexs_build_number(&w->builder, "inner_diameter", number_of(w->gear_pair, member, "bore_mm"));
   eo_rexs_build_word(&w->builder, "datum_face_orientation", "negative");
   put_place(w, face_at(w, end), distance_of(w, member));
-  eo_rexs_relate(&w->builder, "assembly", 0, "assembly", SHAFT + member, "part", id, NULL);
-  eo_rexs_relate(&w->builder, "reference", 0, "origin", id, "referenced", MATERIAL, NULL);
+  eo_rexs_relate(&w->builder, "assembly", 0, "assembly", SHAFT + member, "part", id, (char *)NULL);
+  eo_rexs_relate(&w->builder, "reference", 0, "origin", id, "referenced", MATERIAL, (char *)NULL);
   for (int side = 0; side < 2; side++)
     write_flank(w, member, end, side, modification);
 }
@@ -240,15 +241,15 @@ static void write_stage(struct writer *w, int end)
   eo_rexs_build_number(&w->builder, "common_face_width", face_width(w));
   eo_rexs_build_number(&w->builder, "minimum_normal_backlash", backlash);
   eo_rexs_build_number(&w->builder, "maximum_normal_backlash", backlash);
-  eo_rexs_relate(&w->builder, "assembly", 0, "assembly", UNIT, "part", id, NULL);
-  eo_rexs_relate(&w->builder, "stage", 0, "stage", id, "gear_1", GEAR + end, "gear_2", GEAR + 2 + end, NULL);
+  eo_rexs_relate(&w->builder, "assembly", 0, "assembly", UNIT, "part", id, (char *)NULL);
+  eo_rexs_relate(&w->builder, "stage", 0, "stage", id, "gear_1", GEAR + end, "gear_2", GEAR + 2 + end, (char *)NULL);
   for (int member = 0; member < 2; member++) {
     int data = DATA + 2 * end + member;
     eo_rexs_build(&w->builder, data, "cylindrical_stage_gear_data", "");
     eo_rexs_build_flag(&w->builder, "is_driving_gear", member == EO_PINION);
     eo_rexs_build_word(&w->builder, "loaded_tooth_flank", w->mirror < 0 ? "right" : "left");
     eo_rexs_relate(&w->builder, "stage_gear_data", 0, "stage", id, "gear", GEAR + 2 * member + end, "stage_gear_data",
-                   data, NULL);
+                   data, (char *)NULL);
   }
 }
 

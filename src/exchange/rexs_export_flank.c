@@ -61,7 +61,7 @@ static double diameter_of(const struct writer *w, double u)
 static void begin(struct writer *w, const char *type)
 {
   eo_rexs_build(w->builder, w->id, type, "");
-  eo_rexs_relate(w->builder, "reference", 0, "origin", w->flank_id, "referenced", w->id, NULL);
+  eo_rexs_relate(w->builder, "reference", 0, "origin", w->flank_id, "referenced", w->id, (char *)NULL);
   w->id++;
 }
 

@@ -64,7 +64,8 @@ static const struct {
 
 static double *number_at(struct eo_rexs_flank *flank, size_t offset)
 {
-  return (double *)((char *)flank + offset);
+  void *at = (char *)flank + offset;
+  return at;
 }
 
 static void refuse(struct eo_rexs_flank *flank, const struct eo_rexs_component *modification, const char *why)

@@ -117,7 +117,7 @@ static bool prepare(struct part *part, const struct eo_tooth *tooth, enum eo_too
   part->part = kind;
   part->flipped = points_in(part);
   cut_pieces(part);
-  part->patch = calloc((size_t)(part->pieces[0] * part->pieces[1]), sizeof *part->patch);
+  part->patch = calloc((size_t)part->pieces[0] * (size_t)part->pieces[1], sizeof *part->patch);
   bool failed = !part->patch, near = false;
   for (int points = FIRST_COUNT; !failed && !near && points <= EO_PATCH_MOST - MORE; points += MORE)
     near = fit_pieces(part, &failed);

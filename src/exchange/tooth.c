@@ -118,7 +118,7 @@ static int compare_numbers(const void *a, const void *b)
 static int face_breaks(const struct eo_tooth *tooth, const struct eo_modification_shape *shape,
                        double at[EO_TOOTH_PIECES + 1])
 {
-  double part[4];
+  double part[4] = {0};
   int parts = 0, count = 1;
   for (int i = 0; i < 2; i++)
     for (int side = -1; side <= 1 && shape->end[i].amount != 0; side += 2)

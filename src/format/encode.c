@@ -84,7 +84,7 @@ static json_t *encode_field(const struct eo_field *field, const void *source)
 }
 
 /* Whether an encoded object is what the table's defaults give, and may be left out. Without memory nobody knows:
-   *failed, since with it or without it the document has another hash. */
+ *failed, since with it or without it the document has another hash. */
 static bool is_default(const struct eo_table *table, const json_t *encoded, bool *failed)
 {
   void *defaults = calloc(1, table->size);

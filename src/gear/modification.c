@@ -14,6 +14,12 @@ static bool same_stated(int count, const double *a, const double *b, double mean
   return true;
 }
 
+static bool same_places(const struct eo_relief_place *a, const struct eo_relief_place *b)
+{
+  return same_stated(1, &a->diameter, &b->diameter, 0) && same_stated(1, &a->roll_length, &b->roll_length, 0) &&
+         same_stated(1, &a->roll_angle, &b->roll_angle, 0) && same_stated(1, &a->length, &b->length, 0);
+}
+
 static bool same_triangles(const struct eo_flank_modification *a, const struct eo_flank_modification *b)
 {
   for (int i = 0; i < 4; i++) {
@@ -34,7 +40,7 @@ bool eo_modification_equal(const struct eo_flank_modification *a, const struct e
          memcmp(a->end_shape, b->end_shape, sizeof a->end_shape) == 0 &&
          memcmp((const char *)a + from, (const char *)b + from, to - from) == 0 &&
          same_stated(2, a->end_exponent, b->end_exponent, 2) && same_stated(2, a->exponent, b->exponent, 2) &&
-         same_stated(8, &a->place[0].diameter, &b->place[0].diameter, 0) && same_triangles(a, b);
+         same_places(&a->place[0], &b->place[0]) && same_places(&a->place[1], &b->place[1]) && same_triangles(a, b);
 }
 
 bool eo_modification_is_none(const struct eo_flank_modification *m)

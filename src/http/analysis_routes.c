@@ -190,10 +190,9 @@ const struct eo_route eo_routes_analysis[] = {
                {"histories", 0, 1, 0, NULL, "1: vibration and root stress over time"},
                {"rating", 0, 1, 1, NULL,
                 "1: rating by ISO 6336 and tribology too, with two more contact analyses; 0 answers sooner"},
-               {"parts", 0, 0, 0, EO_RESULT_PART_WORDS "|maps|histories",
+               {"parts", 0, EO_SEVERAL_WORDS, 0, EO_RESULT_PART_WORDS "|maps|histories",
                 "only these have their curves, maps and histories, the others null; all numbers stand in any case. "
-                "Absent: all parts, with maps and histories as those parameters say",
-                .many = true},
+                "Absent: all parts, with maps and histories as those parameters say"},
                {"curves_of", -1, EO_MAX_LOAD_CASES - 1, -1, NULL,
                 "number of the only load case, from 0, that has curves; -1: all"}}},
     {.method = EO_POST,

@@ -45,7 +45,8 @@ static struct eo_request *take_out(struct eo_background *aside)
     struct eo_request *request = aside->waiting[i];
     if (!may_begin(aside, request))
       continue;
-    memmove(aside->waiting + i, aside->waiting + i + 1, (size_t)(--aside->count - i) * sizeof *aside->waiting);
+    for (aside->count--; i < aside->count; i++)
+      aside->waiting[i] = aside->waiting[i + 1];
     return request;
   }
   return NULL;

@@ -57,10 +57,10 @@ static bool wait_for_reader(struct eo_log *log, double *end)
     if (poll(&reader, 1, LOOK_MS) > 0)
       return true;
     pthread_mutex_lock(&log->lock);
-    if (log->ending && !*end)
+    if (log->ending && *end == 0)
       *end = eo_clock_milliseconds() + PARTING_MS;
     pthread_mutex_unlock(&log->lock);
-    if (*end && eo_clock_milliseconds() > *end)
+    if (*end > 0 && eo_clock_milliseconds() > *end)
       return false;
   }
 }

@@ -72,11 +72,11 @@ static json_t *encode_range(const struct eo_query *query)
 
 static json_t *encode_query(const struct eo_query *query)
 {
-  json_t *schema = query->many    ? encode_many(query->words)
-                   : query->words ? encode_words(query->words)
-                                  : encode_range(query);
+  json_t *schema = eo_query_is_list(query) ? encode_many(query->words)
+                   : query->words          ? encode_words(query->words)
+                                           : encode_range(query);
   json_t *parameter = encode_parameter(query->name, strlen(query->name), "query", schema, query->help);
-  if (query->many) {
+  if (eo_query_is_list(query)) {
     json_object_set_new(parameter, "style", json_string("form"));
     json_object_set_new(parameter, "explode", json_false());
   }

@@ -101,7 +101,8 @@ static bool is_allowed(const struct eo_query *query, const char *value)
   int64_t number;
   unsigned bits;
   if (query->words)
-    return query->many ? words_of(query->words, value, &bits) : word_of(query->words, value, strlen(value)) >= 0;
+    return eo_query_is_list(query) ? words_of(query->words, value, &bits)
+                                   : word_of(query->words, value, strlen(value)) >= 0;
   return eo_field_integer(value, &number) && (double)number >= query->low && (double)number <= query->high;
 }
 
@@ -119,7 +120,7 @@ static enum MHD_Result check_one(void *context, enum MHD_ValueKind kind, const c
       return MHD_YES;
     if (query->words)
       eo_reply_problem(&request->reply, 400, "query", "The query parameter %s takes %s %s.", query->name,
-                       query->many ? "a list, with commas, of" : "one of", query->words);
+                       eo_query_is_list(query) ? "a list, with commas, of" : "one of", query->words);
     else
       eo_reply_problem(&request->reply, 400, "query", "The query parameter %s takes a whole number from %.0f to %.0f.",
                        query->name, query->low, query->high);

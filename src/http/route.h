@@ -15,11 +15,16 @@ enum eo_rate { EO_RATE_FREE, EO_RATE_QUESTION, EO_RATE_START, EO_RATE_WRONG, EO_
 /* A query parameter: a whole number, or one word of a list, or several. */
 struct eo_query {
   const char *name;           /* NULL ends the list */
-  double low, high, fallback; /* numbers */
+  double low, high, fallback; /* of a number; high of words: EO_SEVERAL_WORDS, with commas between them, or none */
   const char *words;          /* "queued|running"; NULL: a number */
   const char *help;
-  bool many; /* words with commas between them; none is allowed too */
 };
+enum { EO_SEVERAL_WORDS = 1 };
+
+static inline bool eo_query_is_list(const struct eo_query *query)
+{
+  return query->words && query->high == EO_SEVERAL_WORDS;
+}
 
 struct eo_route {
   unsigned method;

@@ -15,7 +15,8 @@ void eo_interpolation_weights(int points, const double *time, double t, double *
 static double complex gain_at(int points, double x, double phase)
 {
   double time[EO_INTERPOLATION_EVEN] = {0}, weight[EO_INTERPOLATION_EVEN];
-  double middle = points / 2 - 1 + x;
+  const int whole = points / 2 - 1; /* of the sample before the place */
+  double middle = whole + x;
   double complex sum = 0;
   for (int i = 0; i < points; i++)
     time[i] = i;

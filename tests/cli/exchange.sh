@@ -94,7 +94,7 @@ run 0 "a tooth for CAD" "$EASEOFF" export "$folder/design.json" --format step-ge
 prints "AP242_MANAGED_MODEL_BASED_3D_ENGINEERING_MIM_LF"
 
 # Hostile files: a sentence, at once.
-deep=$(printf '<model version="1.7">'; for i in $(seq 1 200); do printf '<a>'; done)
+deep=$(printf '<model version="1.7">'; seq 1 200 | sed 's/.*/<a>/' | tr -d '\n')
 printf '%s' "$deep" >"$folder/deep.rexs"
 run 1 "elements without end" "$EASEOFF" import "$folder/deep.rexs"
 says "more than 16 deep"

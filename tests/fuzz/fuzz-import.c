@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Any bytes as a file of another program: an answer with faults that are sentences, or a design that can be decoded. For
-   libFuzzer, and replayed by replay.c. */
+/* Any bytes as a file of another program: an answer with faults that are sentences, or a design that can be decoded.
+   For libFuzzer, and replayed by replay.c. */
 #include "document/design_document.h"
 #include "exchange/import.h"
 #include "fuzz/fuzz.h"

@@ -158,7 +158,8 @@ static void pair_of(const json_t *pair, struct eo_geometry *g, struct eo_gear_pa
 static struct eo_supports resolved_supports(const struct eo_gear_pair *pair, const struct eo_geometry *geometry)
 {
   static struct eo_design design;
-  design = (struct eo_design){.gear_pair = *pair, .material = {206e9, 0.3, 7850}, .supports = default_supports()};
+  design = (struct eo_design){.gear_pair = *pair, .supports = default_supports()};
+  design.material = (struct eo_material){.youngs_modulus = 206e9, .poissons_ratio = 0.3, .density = 7850};
   eo_design_resolve(&design, geometry);
   return design.supports;
 }

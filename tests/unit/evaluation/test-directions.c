@@ -112,7 +112,7 @@ struct answer {
 
 static struct answer solve_case(struct eo_design *design, int k)
 {
-  const struct eo_evaluation *r;
+  const struct eo_evaluation *r = NULL;
   struct eo_geometry geometry;
   struct eo_error error;
   struct answer a;

@@ -104,7 +104,7 @@ static bool read_all(struct eo_store *store, struct seen *seen)
 
 static bool turn_bit(const char *path, off_t at, int bit)
 {
-  unsigned char byte;
+  unsigned char byte = 0;
   int file = open(path, O_RDWR | O_CLOEXEC);
   bool good = file >= 0 && pread(file, &byte, 1, at) == 1;
   byte ^= (unsigned char)(1 << bit);
@@ -184,7 +184,7 @@ static void test_earlier(void)
 {
   struct eo_text sql = {0};
   char file[400];
-  sqlite3 *handle;
+  sqlite3 *handle = NULL;
   empty();
   snprintf(file, sizeof file, "%s/tests/schema/0005.sql", getenv("SOURCES") ? getenv("SOURCES") : ".");
   ok(eo_text_read(&sql, file, 1 << 20, &error) == EO_OK && sqlite3_open(name_file(""), &handle) == SQLITE_OK &&
