@@ -124,8 +124,10 @@ static void test_restored(void)
   reply = call("GET", API "/measurements/1/file", NULL, NULL);
   ok(reply.status == 200 && reply.size > 10000, "and its file is there: %zu bytes", reply.size);
   free_reply(&reply);
-  char *text = json_dumps(json_pack("{s:s, s:o}", "name", "of this server", "design", coarse_document("ga", 10)), 0);
+  json_t *named = json_pack("{s:s, s:o}", "name", "of this server", "design", coarse_document("ga", 10));
+  char *text = json_dumps(named, 0);
   reply = call("POST", API "/designs", NULL, text);
+  json_decref(named);
   free(text);
   free_reply(&reply);
   char one[300];
