@@ -118,6 +118,26 @@ static enum eo_code check(const struct eo_flexibility_settings *settings, struct
   return EO_OK;
 }
 
+/* What of one member the key names: its size, and how much of it is modelled. */
+static void add_member(struct eo_hash *hash, const struct eo_geometry *g, int m, const struct worker *worker)
+{
+  eo_hash_add_number(hash, "teeth", g->teeth[m]);
+  eo_hash_add_number(hash, "profile_shift", g->profile_shift[m]);
+  eo_hash_add_number(hash, "reference_radius", g->reference_radius[m]);
+  eo_hash_add_number(hash, "base_radius", g->base_radius[m]);
+  eo_hash_add_number(hash, "start_radius", g->start_radius[m]);
+  eo_hash_add_number(hash, "form_radius", g->form_radius[m]);
+  eo_hash_add_number(hash, "root_radius", g->root_radius[m]);
+  eo_hash_add_number(hash, "tip_radius", g->tip_radius[m]);
+  eo_hash_add_number(hash, "tangent_length", g->tangent_length[m]);
+  eo_hash_add_number(hash, "section_teeth", worker->settings.section.teeth);
+  eo_hash_add_number(hash, "open", worker->settings.section.open);
+  eo_hash_add_number(hash, "floating", worker->settings.section.floating);
+  eo_hash_add_number(hash, "foot", worker->settings.section.foot_radius);
+  eo_hash_add_number(hash, "reach", worker->settings.reach);
+  eo_hash_add_number(hash, "bore", worker->settings.bore_radius);
+}
+
 /* Everything the numbers depend on. */
 static void make_key(const struct eo_geometry *g, const struct eo_material *material,
                      const struct eo_flexibility_settings *s, const struct worker worker[2],
@@ -163,23 +183,8 @@ static void make_key(const struct eo_geometry *g, const struct eo_material *mate
       eo_hash_add_number(&hash, m ? "gear_generating_shift" : "pinion_generating_shift", g->generating_shift[m]);
       eo_hash_add_number(&hash, m ? "gear_residual_undercut" : "pinion_residual_undercut", g->residual_undercut[m]);
     }
-  for (int m = 0; m < 2; m++) {
-    eo_hash_add_number(&hash, "teeth", g->teeth[m]);
-    eo_hash_add_number(&hash, "profile_shift", g->profile_shift[m]);
-    eo_hash_add_number(&hash, "reference_radius", g->reference_radius[m]);
-    eo_hash_add_number(&hash, "base_radius", g->base_radius[m]);
-    eo_hash_add_number(&hash, "start_radius", g->start_radius[m]);
-    eo_hash_add_number(&hash, "form_radius", g->form_radius[m]);
-    eo_hash_add_number(&hash, "root_radius", g->root_radius[m]);
-    eo_hash_add_number(&hash, "tip_radius", g->tip_radius[m]);
-    eo_hash_add_number(&hash, "tangent_length", g->tangent_length[m]);
-    eo_hash_add_number(&hash, "section_teeth", worker[m].settings.section.teeth);
-    eo_hash_add_number(&hash, "open", worker[m].settings.section.open);
-    eo_hash_add_number(&hash, "floating", worker[m].settings.section.floating);
-    eo_hash_add_number(&hash, "foot", worker[m].settings.section.foot_radius);
-    eo_hash_add_number(&hash, "reach", worker[m].settings.reach);
-    eo_hash_add_number(&hash, "bore", worker[m].settings.bore_radius);
-  }
+  for (int m = 0; m < 2; m++)
+    add_member(&hash, g, m, &worker[m]);
   eo_hash_finish(&hash, key);
 }
 
