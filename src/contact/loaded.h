@@ -81,6 +81,12 @@ struct eo_loaded_half {
 void eo_loaded_balance(const struct eo_loaded_half half[2], double compliance_factor, const struct eo_axial_hold *hold,
                        int stagger, double load, struct eo_loaded_end result[2]);
 
+/* The same at one position of each end, at[end], for a stiffness above 0 and teeth with a helix; false: it did not
+   converge. */
+bool eo_loaded_balance_position(const struct eo_loaded_half half[2], double compliance_factor,
+                                const struct eo_axial_hold *hold, const int at[2], double load,
+                                struct eo_loaded_end result[2]);
+
 /* Position j of one end again, at gaps [grid->points] and a load that may have changed a little, from the result it has
    there. */
 void eo_loaded_resolve(struct eo_loaded_workspace *workspace, const struct eo_contact_grid *grid, const double *gap,

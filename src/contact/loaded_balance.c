@@ -38,10 +38,13 @@ double eo_axial_beyond_play(const struct eo_axial_hold *hold, double apart)
    shift: Newton, kept between the shifts already known to be
    too small and too large. When even the whole load does not bring the other end into contact, that end carries
    nothing. */
-static bool balance_position(const struct eo_loaded_half half[2], double factor, const struct eo_axial_hold *hold,
-                             double soft, const int at[2], double load, struct eo_loaded_end result[2])
+bool eo_loaded_balance_position(const struct eo_loaded_half half[2], double factor, const struct eo_axial_hold *hold,
+                                const int at[2], double load, struct eo_loaded_end result[2])
 {
-  enum { STEPS = 60 };
+  enum { STEPS = 60, LONG = 20 };
+  static const double SOLVED = 1e-12; /* m, to which approaches are solved: what is left may never get smaller */
+  double lean = sin(half[EO_LEFT].grid->geometry.base_helix_angle),
+         soft = isinf(hold->stiffness) ? 0 : 4 * lean * lean / hold->stiffness;
   double shift = 0, bound[2] = {-load, load};
   bool tried[2] = {false, false};
   for (int i = 0; i < STEPS; i++) {
@@ -51,7 +54,7 @@ static bool balance_position(const struct eo_loaded_half half[2], double factor,
     double next = shift - miss / (give + soft);
     int up = miss < 0, heavy = up ? EO_LEFT : EO_RIGHT, light = 1 - heavy;
     bound[1 - up] = shift;
-    if (fabs(next - shift) < 1e-9 * load)
+    if (fabs(next - shift) < 1e-9 * load || (i >= LONG && fabs(miss) < SOLVED))
       return true;
     if (!(next > bound[0] && next < bound[1])) {
       if (fabs(bound[up]) == load && !tried[up]) {
@@ -77,12 +80,10 @@ void eo_loaded_balance(const struct eo_loaded_half half[2], double compliance_fa
                        int stagger, double load, struct eo_loaded_end result[2])
 {
   int positions = half[EO_LEFT].grid->positions;
-  double lean = sin(half[EO_LEFT].grid->geometry.base_helix_angle), stiffness = hold->stiffness,
-         soft = isinf(stiffness) ? 0 : 4 * lean * lean / stiffness;
-  if (stiffness <= 0 || lean == 0)
+  if (hold->stiffness <= 0 || half[EO_LEFT].grid->geometry.base_helix_angle == 0)
     return;
   for (int j = 0; j < positions; j++) {
     int at[2] = {j, (j + positions - stagger % positions) % positions};
-    result[EO_LEFT].failures += !balance_position(half, compliance_factor, hold, soft, at, load, result);
+    result[EO_LEFT].failures += !eo_loaded_balance_position(half, compliance_factor, hold, at, load, result);
   }
 }

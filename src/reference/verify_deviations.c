@@ -18,6 +18,7 @@ struct half {
   const char *pair_name;
   int flexibility;
   double face_width, phase; /* m */
+  int positions;
   struct eo_pair *pair;
   struct eo_loaded_workspace *workspace;
 };
@@ -141,7 +142,7 @@ static enum eo_code prepare_half(struct bench *b, struct half *half, const struc
   double phase[MOST_POSITIONS];
   int n = own.resolution.positions;
   if (half->pair && strcmp(half->pair_name, wanted->pair_name) == 0 && half->flexibility == wanted->flexibility &&
-      half->face_width == wanted->face_width && half->phase == wanted->phase)
+      half->face_width == wanted->face_width && half->phase == wanted->phase && half->positions == wanted->positions)
     return EO_OK;
   drop(half);
   own.gear_pair.face_width = wanted->face_width;
@@ -220,6 +221,7 @@ static enum eo_code read_case(struct trial *t, struct eo_error *error)
     return EO_OK;
   }
   read_pair(pair, &t->design);
+  t->design.resolution.positions = wanted.positions = eo_case_whole_or(t->item, "positions_per_cycle", 8, 1024, 64);
   t->ends = t->design.gear_pair.ends;
   t->running.flank = eo_case_choice(t->item, "flank_used", flanks, 0) == 1 ? EO_COAST_FLANK : EO_DRIVE_FLANK;
   t->running.inwards = t->running.flank == EO_COAST_FLANK;
@@ -463,6 +465,17 @@ static void check_interpolation(const struct trial *t, struct eo_case *rows)
   }
 }
 
+/* Deviations tooth by tooth on the flanks of the case. */
+static enum eo_code run_pitch(const struct trial *t, struct eo_error *error)
+{
+  struct eo_pitch_bench bench = {.ends = t->ends, .inwards = t->running.inwards, .hold = t->hold};
+  for (int end = 0; end < t->ends; end++) {
+    bench.grid[end] = t->bench->half[end].pair->grid;
+    bench.gap[end] = t->gaps[end].gap;
+  }
+  return eo_verify_pitch(t->bench->v, t->item, &bench, error);
+}
+
 static enum eo_code run_trial(struct trial *t, struct eo_error *error)
 {
   struct eo_case *expected = eo_case_need(t->item, "expected"), *results = eo_case_find(expected, "results");
@@ -478,6 +491,8 @@ static enum eo_code run_trial(struct trial *t, struct eo_error *error)
   if (eo_case_faulty(t->item))
     return EO_OK;
   EO_TRY(set_gaps(t, error));
+  if (eo_case_find(t->item, "pitch"))
+    return run_pitch(t, error);
   for (int i = 0; i < eo_case_size(results); i++)
     EO_TRY(check_result(t, eo_case_at(results, i)));
   if (eo_case_find(expected, "curve"))
@@ -490,12 +505,6 @@ static enum eo_code run_trial(struct trial *t, struct eo_error *error)
 static enum eo_code run_case(void *context, struct eo_case *item, struct eo_error *error)
 {
   struct bench *b = context;
-  if (eo_case_find(item, "pitch")) {
-    struct eo_error why;
-    eo_error_set(&why, EO_ERROR_INPUT, NULL, "Pitch deviations over the hunting period are not computed here.");
-    eo_verify_broken(b->v, item, &why);
-    return EO_OK;
-  }
   struct trial *t = calloc(1, sizeof *t);
   if (!t)
     return eo_error_memory(error);

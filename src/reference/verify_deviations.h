@@ -3,10 +3,24 @@
 #ifndef EASEOFF_REFERENCE_VERIFY_DEVIATIONS_H
 #define EASEOFF_REFERENCE_VERIFY_DEVIATIONS_H
 
+#include "contact/hunting.h"
 #include "gear/flank_grid.h"
 #include "reference/verify.h"
 
 enum eo_code eo_verify_deviations(struct eo_case *file, struct eo_verification *v, struct eo_error *error);
+
+/* What a case of pitch deviations is computed on: of each end its grid and the gaps of its flanks, m; borrowed. */
+struct eo_pitch_bench {
+  int ends;
+  const struct eo_contact_grid *grid[2];
+  const double *gap[2];
+  bool inwards;
+  struct eo_axial_hold hold;
+};
+
+/* Index deviations over the hunting period. */
+enum eo_code eo_verify_pitch(struct eo_verification *v, struct eo_case *item, const struct eo_pitch_bench *bench,
+                             struct eo_error *error);
 
 /* A flank of a case file (tip_relief_um, triangular, grid ...): its terms, and its grid in *grids. */
 struct eo_flank_modification;

@@ -54,14 +54,17 @@ prints "All [0-9]* checks are within tolerance"
 [ "$(grep -c 'note:' "$folder/out")" -eq 0 ]
 result $? "every key is read"
 
-verify 0 "flanks as made, coast flanks, apex offsets, unequal halves" --json "$CASES/deviations.json"
-checks 1600
+verify 0 "flanks as made, pitch, coast flanks, apex offsets, unequal halves" --json "$CASES/deviations.json"
+checks 2400
 changed deviations.json 's/"twist_um":4.0/"twist_um":4.4/'
 verify 1 "another twist" "$folder/deviations.json"
 prints "N2 .* FAIL"
 changed deviations.json 's/"flank_used":"coast"/"flank_used":"drive"/'
 verify 1 "the other flank" "$folder/deviations.json"
 prints "C1 .* FAIL"
+changed deviations.json 's/"pinion_um":\[4.533/"pinion_um":[4.733/'
+verify 1 "another tooth" "$folder/deviations.json"
+prints "P3 .* FAIL"
 
 verify 0 "encoder" --json "$CASES/encoder.json"
 checks 28

@@ -1,0 +1,144 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What the walk over the hunting period works in and fills, made and freed. */
+#include "contact/hunting_private.h"
+
+#include <stdlib.h>
+
+/* Of a cycle, at which root stress is read: twice as many change its maximum by 0.2 %, and it takes more time than the
+   contact. */
+enum { ROOT_POSITIONS = 16 };
+
+static struct eo_hunting_place *make_places(int count, bool *complete)
+{
+  struct eo_hunting_place *place = calloc((size_t)count, sizeof *place);
+  *complete = *complete && place;
+  return place;
+}
+
+static double *make_numbers(int count, bool *complete)
+{
+  double *number = calloc((size_t)count, sizeof *number);
+  *complete = *complete && number;
+  return number;
+}
+
+static void count_result(struct eo_hunting *r, const struct eo_hunting_input *input)
+{
+  const struct eo_geometry *g = &input->grid[0]->geometry;
+  int range[2];
+  eo_contact_grid_pairs(input->grid[0], range);
+  *r = (struct eo_hunting){.ends = input->ends,
+                           .positions = input->positions,
+                           .first_line = range[0],
+                           .teeth = {g->teeth[0], g->teeth[1]},
+                           .cycles = eo_hunting_cycles(g->teeth)};
+  for (int end = 1; end < input->ends; end++) {
+    int own[2];
+    eo_contact_grid_pairs(input->grid[end], own);
+    r->first_line = own[0] < r->first_line ? own[0] : r->first_line;
+    range[1] = own[1] > range[1] ? own[1] : range[1];
+  }
+  r->lines = range[1] - r->first_line + 1;
+}
+
+static enum eo_code make_result(struct eo_hunting *r, const struct eo_hunting_input *input, struct eo_error *error)
+{
+  bool complete = true;
+  count_result(r, input);
+  if ((double)r->cycles * r->positions > EO_HUNTING_MOST_INSTANTS)
+    return eo_error_set(error, EO_ERROR_INPUT, "/pitch/positions_per_cycle",
+                        "%d and %d teeth meet again after %d mesh cycles; with %d positions each that is more than the "
+                        "%d instants that are computed.",
+                        r->teeth[0], r->teeth[1], r->cycles, r->positions, EO_HUNTING_MOST_INSTANTS);
+  r->instants = r->cycles * r->positions;
+  for (int end = 0; end < r->ends; end++) {
+    r->load[end] = make_numbers(r->instants, &complete);
+    r->approach[end] = make_numbers(r->instants, &complete);
+    r->tangent[end] = make_numbers(r->instants, &complete);
+    r->pair_load[end] = calloc((size_t)r->instants * (size_t)r->lines, sizeof *r->pair_load[end]);
+    complete = complete && r->pair_load[end];
+    for (int member = 0; member < 2; member++)
+      r->tooth_load[end][member] = make_places(r->teeth[member], &complete);
+  }
+  for (int member = 0; member < 2 && input->root[0]; member++)
+    r->tooth_stress[member] = make_places(r->ends * r->teeth[member], &complete);
+  return complete ? EO_OK : eo_error_memory(error);
+}
+
+static enum eo_code make_find(struct eo_hunting_find *find, const struct eo_hunting *r, struct eo_error *error)
+{
+  bool complete = true;
+  for (int member = 0; member < 2; member++) {
+    for (int end = 0; end < r->ends; end++)
+      find->tooth_load[end][member] = make_places(r->teeth[member], &complete);
+    if (r->tooth_stress[member])
+      find->tooth_stress[member] = make_places(r->ends * r->teeth[member], &complete);
+  }
+  return complete ? EO_OK : eo_error_memory(error);
+}
+
+static enum eo_code make_walker(struct eo_hunting_walker *walker, const struct eo_hunt *hunt, struct eo_error *error)
+{
+  const struct eo_hunting_input *input = hunt->input;
+  bool complete = true;
+  EO_TRY(make_find(&walker->find, hunt->result, error));
+  for (int end = 0; end < input->ends; end++) {
+    EO_TRY(eo_loaded_workspace_new(&walker->loaded[end], input->grid[end], error));
+    EO_TRY(eo_loaded_end_init(&walker->solved[end], input->grid[end], error));
+    walker->gap[end] = make_numbers(input->grid[end]->points, &complete);
+  }
+  if (complete && input->root[0]) {
+    int step = input->positions > ROOT_POSITIONS ? input->positions / ROOT_POSITIONS * hunt->step : hunt->step;
+    EO_TRY(eo_root_workspace_new(&walker->root, input->grid[0], input->root, step, 1, error));
+    EO_TRY(eo_root_history_init(&walker->history, input->grid[0], error));
+  }
+  return complete ? EO_OK : eo_error_memory(error);
+}
+
+enum eo_code eo_hunt_begin(struct eo_hunt *hunt, struct eo_hunting *result, const struct eo_hunting_input *input,
+                           struct eo_error *error)
+{
+  *hunt = (struct eo_hunt){.input = input, .result = result, .step = input->grid[0]->positions / input->positions};
+  EO_TRY(make_result(result, input, error));
+  hunt->walker = calloc((size_t)input->threads, sizeof *hunt->walker);
+  if (!hunt->walker)
+    return eo_error_memory(error);
+  for (int thread = 0; thread < input->threads; thread++)
+    EO_TRY(make_walker(&hunt->walker[thread], hunt, error));
+  return EO_OK;
+}
+
+static void walker_done(struct eo_hunting_walker *walker)
+{
+  for (int end = 0; end < 2; end++) {
+    eo_loaded_workspace_free(walker->loaded[end]);
+    eo_loaded_end_done(&walker->solved[end]);
+    free(walker->gap[end]);
+    free(walker->find.tooth_stress[end]);
+    for (int member = 0; member < 2; member++)
+      free(walker->find.tooth_load[end][member]);
+  }
+  eo_root_workspace_free(walker->root);
+  eo_root_history_done(&walker->history);
+}
+
+void eo_hunt_end(struct eo_hunt *hunt)
+{
+  for (int thread = 0; hunt->walker && thread < hunt->input->threads; thread++)
+    walker_done(&hunt->walker[thread]);
+  free(hunt->walker);
+}
+
+void eo_hunting_done(struct eo_hunting *r)
+{
+  for (int end = 0; end < 2; end++) {
+    free(r->load[end]);
+    free(r->approach[end]);
+    free(r->tangent[end]);
+    free(r->pair_load[end]);
+    free(r->tooth_stress[end]);
+    for (int member = 0; member < 2; member++)
+      free(r->tooth_load[end][member]);
+  }
+  *r = (struct eo_hunting){0};
+}

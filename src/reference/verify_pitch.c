@@ -1,0 +1,317 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Index deviations over the hunting period: what a case of deviations.json expects of it. */
+#include "reference/verify_deviations.h"
+
+#include <complex.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "contact/hunting.h"
+
+enum { MOST_TEETH = 1024, CURVES = 4, PAIR = 2, FLOAT = 3 };
+
+/* A case at work. Curves [instants]: transmission errors of the ends and of the pair, transverse, and the float of the
+   pinion, m. */
+struct trial {
+  struct eo_verification *v;
+  struct eo_case *item, *tolerance;
+  const struct eo_pitch_bench *bench;
+  const struct eo_geometry *geometry;
+  int ends;
+  struct eo_tooth_deviation tooth[2][2][MOST_TEETH]; /* [end][member] */
+  struct eo_hunting hunting;
+  double *curve[CURVES];
+  double force; /* P of an end, N */
+};
+
+static const char *const member_key[2] = {"pinion_um", "gear_um"};
+static const char *const tooth_key[2] = {"pinion_tooth", "gear_tooth"};
+
+static const char *end_key(const struct trial *t, int end)
+{
+  return t->ends == 1 ? "single" : end == EO_LEFT ? "left" : "right";
+}
+
+static void read_tables(struct trial *t)
+{
+  struct eo_case *pitch = eo_case_need(t->item, "pitch"), *hands = eo_case_need(pitch, "hands");
+  double number[MOST_TEETH];
+  eo_case_remark(pitch, "definition");
+  for (int end = 0; end < t->ends; end++) {
+    struct eo_case *hand = eo_case_need(hands, end_key(t, end));
+    for (int member = 0; member < 2; member++) {
+      struct eo_case *list = eo_case_find(hand, member_key[member]);
+      int count = list ? eo_case_numbers(list, t->geometry->teeth[member], MOST_TEETH, number) : 0;
+      for (int i = 0; i < count; i++)
+        t->tooth[end][member][i].index = 1e-6 * number[i];
+    }
+  }
+}
+
+/* Which curve a key speaks of: of a hand, of the float (or shuttle) of the pinion, else of the pair. */
+static const double *curve_of(const struct trial *t, const char *key)
+{
+  if (strstr(key, "left"))
+    return t->curve[EO_LEFT];
+  if (strstr(key, "right"))
+    return t->curve[t->ends - 1];
+  return strstr(key, "float") || strstr(key, "shuttle") ? t->curve[FLOAT] : t->curve[PAIR];
+}
+
+static enum eo_code solve(struct trial *t, struct eo_error *error)
+{
+  const struct eo_pitch_bench *bench = t->bench;
+  double normal = cos(t->geometry->base_helix_angle), lean = sin(t->geometry->base_helix_angle);
+  t->force = eo_case_number(t->item, "T_Nm") / (t->ends * t->geometry->base_radius[EO_PINION] * normal);
+  struct eo_hunting_input input = {.ends = t->ends,
+                                   .grid = {bench->grid[0], bench->grid[1]},
+                                   .gap = {bench->gap[0], bench->gap[1]},
+                                   .inwards = bench->inwards,
+                                   .positions = bench->grid[0]->positions,
+                                   .compliance_factor = 1,
+                                   .load = {t->force, t->force},
+                                   .shared_load = t->force,
+                                   .hold = bench->hold,
+                                   .threads = 1};
+  for (int i = 0; i < 4; i++)
+    input.tooth[i / 2][i % 2] = t->tooth[i / 2][i % 2];
+  EO_TRY(eo_hunting_run(&t->hunting, &input, NULL, error));
+  for (int i = 0; i < CURVES; i++) {
+    t->curve[i] = malloc(sizeof(double) * (size_t)t->hunting.instants);
+    if (!t->curve[i])
+      return eo_error_memory(error);
+  }
+  for (int i = 0; i < t->hunting.instants; i++) {
+    double left = t->hunting.approach[0][i], right = t->hunting.approach[t->ends - 1][i];
+    t->curve[EO_LEFT][i] = left / normal;
+    t->curve[EO_RIGHT][i] = right / normal;
+    t->curve[PAIR][i] = (left + right) / (2 * normal);
+    t->curve[FLOAT][i] = t->ends == 2 ? (left - right) / (2 * lean) : 0;
+  }
+  return EO_OK;
+}
+
+static double swing(int n, const double *value)
+{
+  double low = INFINITY, high = -INFINITY;
+  for (int i = 0; i < n; i++) {
+    low = fmin(low, value[i]);
+    high = fmax(high, value[i]);
+  }
+  return high - low;
+}
+
+static double mean(int n, const double *value)
+{
+  double sum = 0;
+  for (int i = 0; i < n; i++)
+    sum += value[i];
+  return sum / n;
+}
+
+/* 2 |mean x exp(-2 pi i o t)|, t in pinion revolutions, n samples of which `per_turn` are one. */
+static double amplitude(int n, const double *value, double order, double per_turn)
+{
+  double complex sum = 0;
+  for (int i = 0; i < n; i++)
+    sum += value[i] * cexp(-2 * M_PI * I * order * i / per_turn);
+  return 2 * cabs(sum) / n;
+}
+
+/* A value of an order's row: of one curve, or a list of both hands. */
+static void check_order(const struct trial *t, struct eo_case *value, const char *key, double order)
+{
+  double relative = eo_case_relative_or(t->tolerance, "order_amplitude_rel", 0.005),
+         absolute = eo_case_absolute_or(t->tolerance, "order_amplitude_um", 0.005);
+  int n = t->hunting.instants, per_turn = t->hunting.positions * t->geometry->teeth[EO_PINION];
+  const double hands[2] = {amplitude(n, t->curve[EO_LEFT], order, per_turn),
+                           amplitude(n, t->curve[EO_RIGHT], order, per_turn)};
+  if (eo_case_is_list(value))
+    eo_verify_list(t->v, value, t->ends, hands, 1e6, relative, absolute);
+  else
+    eo_verify_number(t->v, value, 1e6 * amplitude(n, curve_of(t, key), order, per_turn), relative, absolute);
+}
+
+static void check_orders(const struct trial *t, struct eo_case *rows)
+{
+  for (int i = 0; i < eo_case_size(rows); i++) {
+    struct eo_case *row = eo_case_at(rows, i);
+    double order = eo_case_number(row, "order_per_pinion_revolution");
+    eo_case_remark(row, "name");
+    for (int k = 0; k < eo_case_size(row) && !eo_case_faulty(row); k++) {
+      const char *key = eo_case_key(eo_case_peek(row, k));
+      if (strncmp(key, "LTE", 3) == 0 || strstr(key, "float") || strstr(key, "shuttle"))
+        check_order(t, eo_case_at(row, k), key, order);
+    }
+  }
+}
+
+/* Of the tables alone: what a rigid pair does, one number for each mesh cycle. Keys name orders: "2 z1/z2". */
+static void check_kinematic(const struct trial *t, struct eo_case *hands)
+{
+  double x[EO_HUNTING_MOST_INSTANTS / 16], normal = cos(t->geometry->base_helix_angle),
+                                           ratio = (double)t->geometry->teeth[EO_PINION] / t->geometry->teeth[EO_GEAR];
+  const struct eo_flank_point pitch_point = {0};
+  eo_case_remark(hands, "note");
+  for (int end = 0; end < t->ends; end++) {
+    struct eo_case *hand = eo_case_find(hands, end_key(t, end));
+    for (int m = 0; m < t->hunting.cycles && m < EO_HUNTING_MOST_INSTANTS / 16; m++) {
+      const struct eo_tooth_deviation *const tooth[2] = {&t->tooth[end][0][m % t->geometry->teeth[0]],
+                                                         &t->tooth[end][1][m % t->geometry->teeth[1]]};
+      x[m] = eo_hunting_gap(t->geometry, &pitch_point, false, tooth) / normal;
+    }
+    for (int k = 0; hand && k < eo_case_size(hand); k++) {
+      struct eo_case *expected = eo_case_at(hand, k);
+      const char *key = eo_case_key(expected);
+      char *rest;
+      double order = strtod(key, &rest);
+      order = (rest == key ? 1 : order) * (strstr(key, "z1/z2") ? ratio : 1);
+      eo_verify_number(t->v, expected, 1e6 * amplitude(t->hunting.cycles, x, order, t->geometry->teeth[EO_PINION]), 0,
+                       2e-4);
+    }
+  }
+}
+
+/* Swing of the transmission error within each mesh cycle. */
+static void check_cycles(const struct trial *t, struct eo_case *block)
+{
+  double low = INFINITY, sum = 0, high = 0, within = eo_case_absolute_or(t->tolerance, "LTE_um", 0.02);
+  int n = t->hunting.positions,
+      stated = eo_case_find(block, "cycle_of_max") ? eo_case_whole(block, "cycle_of_max", 0, t->hunting.cycles - 1) : 0;
+  for (int cycle = 0; cycle < t->hunting.cycles; cycle++) {
+    double own = swing(n, t->curve[PAIR] + cycle * n);
+    low = fmin(low, own);
+    high = fmax(high, own);
+    sum += own;
+  }
+  eo_verify_member(t->v, block, "min", 1e6 * low, 0, within);
+  eo_verify_member(t->v, block, "mean", 1e6 * sum / t->hunting.cycles, 0, within);
+  eo_verify_member(t->v, block, "max", 1e6 * high, 0, within);
+  if (eo_case_find(block, "cycle_of_max"))
+    eo_verify_derived(t->v, block, "swing of the cycle of the largest one", 1e6 * swing(n, t->curve[PAIR] + stated * n),
+                      1e6 * high, within);
+}
+
+/* The largest load of a pair of teeth, and that the teeth and the place stated carry it: of places that differ by less
+   than the tolerance none is more right than another. */
+static void check_most_load(const struct trial *t, struct eo_case *block)
+{
+  const struct eo_hunting *r = &t->hunting;
+  static const char *const hands[] = {"left", "right", "single", NULL};
+  double relative = eo_case_relative_or(t->tolerance, "max_tooth_load_rel", 0.005),
+         most = fmax(r->most_load[0].value, r->most_load[1].value);
+  int hand = eo_case_find(block, "hand") ? eo_case_choice(block, "hand", hands, 0) : 0,
+      end = hand == 1 ? t->ends - 1 : 0;
+  int line = eo_case_whole(block, "line", r->first_line, r->first_line + r->lines - 1),
+      cycle = eo_case_whole(block, "cycle", 0, r->cycles - 1),
+      position = eo_case_whole(block, "position", 0, r->positions - 1);
+  eo_verify_member(t->v, block, "load_N", most, relative, 0);
+  eo_verify_member(t->v, block, "share_of_P", most / t->force, relative, 0);
+  if (eo_case_faulty(block))
+    return;
+  eo_verify_derived(t->v, block, "load of the pair stated",
+                    (double)r->pair_load[end][(cycle * r->positions + position) * r->lines + line - r->first_line],
+                    most, relative * most);
+  for (int member = 0; member < 2; member++)
+    if (eo_case_find(block, tooth_key[member])) {
+      int tooth = eo_case_whole(block, tooth_key[member], 0, r->teeth[member] - 1);
+      eo_verify_fact(t->v, block,
+                     member ? "the pair stated has the tooth stated of the gear"
+                            : "the pair stated has the tooth stated of the pinion",
+                     (cycle - line + r->cycles) % r->teeth[member] == tooth);
+      eo_verify_derived(t->v, block, "largest load of the tooth stated", r->tooth_load[end][member][tooth].value, most,
+                        relative * most);
+    }
+}
+
+static void check_means(const struct trial *t, struct eo_case *expected)
+{
+  double hands[2] = {mean(t->hunting.instants, t->curve[EO_LEFT]), mean(t->hunting.instants, t->curve[EO_RIGHT])};
+  double relative = eo_case_relative_or(t->tolerance, "LTE_mean_rel", 0.002),
+         within = eo_case_absolute_or(t->tolerance, "LTE_um", 0.02);
+  eo_verify_member(t->v, expected, "LTE_mean_um", 1e6 * mean(t->hunting.instants, t->curve[PAIR]), relative, 0);
+  eo_verify_member(t->v, expected, "LTE_range_um", 1e6 * swing(t->hunting.instants, t->curve[PAIR]), relative, within);
+  if (eo_case_find(expected, "LTE_mean_hands_um"))
+    eo_verify_list(t->v, eo_case_find(expected, "LTE_mean_hands_um"), t->ends, hands, 1e6, relative, 0);
+  for (int k = 0; k < eo_case_size(expected); k++) {
+    const char *key = eo_case_key(eo_case_peek(expected, k));
+    const double *curve = curve_of(t, key);
+    if ((strstr(key, "float") || strstr(key, "shuttle")) && !strstr(key, "revolutions_um")) {
+      struct eo_case *value = eo_case_at(expected, k);
+      bool is_mean = strstr(key, "mean") != NULL;
+      eo_verify_number(t->v, value,
+                       1e6 * (is_mean ? mean(t->hunting.instants, curve) : swing(t->hunting.instants, curve)), relative,
+                       within);
+    }
+  }
+}
+
+/* The first revolutions, sample by sample. */
+static void check_curves(const struct trial *t, struct eo_case *expected)
+{
+  double within = eo_case_absolute_or(t->tolerance, "LTE_um", 0.02);
+  for (int k = 0; k < eo_case_size(expected); k++) {
+    const char *key = eo_case_key(eo_case_peek(expected, k));
+    if (!strstr(key, "revolutions_um"))
+      continue;
+    struct eo_case *list = eo_case_at(expected, k);
+    int count = eo_case_size(list) <= t->hunting.instants ? eo_case_size(list) : t->hunting.instants;
+    eo_verify_list(t->v, list, count, curve_of(t, key), 1e6, 0, within);
+  }
+}
+
+static void check_pressure(const struct trial *t, struct eo_case *expected)
+{
+  struct eo_case *pressure = eo_case_find(expected, "max_pressure_MPa");
+  const double most[2] = {t->hunting.most_pressure[0].value, t->hunting.most_pressure[1].value};
+  double relative = eo_case_relative_or(t->tolerance, "max_pressure_rel", 0.01);
+  if (pressure && eo_case_is_list(pressure))
+    eo_verify_list(t->v, pressure, t->ends, most, 1e-6, relative, 0);
+  else if (pressure)
+    eo_verify_number(t->v, pressure, 1e-6 * fmax(most[0], most[1]), relative, 0);
+}
+
+static void check(const struct trial *t, struct eo_case *expected)
+{
+  eo_case_remark(t->item, "orders_note");
+  if (eo_case_find(expected, "cycles"))
+    eo_verify_exact(t->v, eo_case_find(expected, "cycles"), t->hunting.cycles);
+  eo_verify_member(t->v, expected, "pinion_revolutions", (double)t->hunting.cycles / t->geometry->teeth[EO_PINION],
+                   1e-9, 0);
+  check_means(t, expected);
+  check_curves(t, expected);
+  if (eo_case_find(expected, "PPLTE_of_one_cycle_um"))
+    check_cycles(t, eo_case_find(expected, "PPLTE_of_one_cycle_um"));
+  check_orders(t, eo_case_find(expected, "order_amplitude_um"));
+  check_kinematic(t, eo_case_find(expected, "kinematic_order_amplitude_um"));
+  if (eo_case_find(expected, "max_tooth_load"))
+    check_most_load(t, eo_case_find(expected, "max_tooth_load"));
+  check_pressure(t, expected);
+  if (t->hunting.failures)
+    eo_verify_diverged(t->v, expected);
+}
+
+enum eo_code eo_verify_pitch(struct eo_verification *v, struct eo_case *item, const struct eo_pitch_bench *bench,
+                             struct eo_error *error)
+{
+  struct trial *t = calloc(1, sizeof *t);
+  if (!t)
+    return eo_error_memory(error);
+  t->v = v;
+  t->item = item;
+  t->tolerance = eo_case_find(item, "tolerance");
+  t->bench = bench;
+  t->ends = bench->ends;
+  t->geometry = &bench->grid[0]->geometry;
+  read_tables(t);
+  struct eo_case *expected = eo_case_need(item, "expected");
+  enum eo_code code = eo_case_faulty(item) ? EO_OK : solve(t, error);
+  if (!code && !eo_case_faulty(item))
+    check(t, expected);
+  eo_hunting_done(&t->hunting);
+  for (int i = 0; i < CURVES; i++)
+    free(t->curve[i]);
+  free(t);
+  return code;
+}
