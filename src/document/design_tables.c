@@ -2,6 +2,7 @@
 /* Field tables of the duty cycle, the objective, the optimization and the resolution, and of the whole design. */
 #include "document/design_document.h"
 #include "document/design_migration.h"
+#include "flexibility/flexibility.h"
 
 /* clang-format off */
 #define NUMBERS(...) (const double[]){__VA_ARGS__}
@@ -223,10 +224,12 @@ static const struct eo_field resolution[] = {
                "teeth of the sector, 3 or 5; with body \"sector\""),
     EO_FLAG(struct eo_resolution, neighbour_coupling, "neighbour_coupling", 1,
             "compliance between tooth pairs: of a sector the next ones, of a ring all in contact at once"),
-    EO_INTEGER(struct eo_resolution, layers, "layers", 4, 120, 28, "finite elements over the face width"),
-    EO_INTEGER(struct eo_resolution, flank_rows, "flank_rows", 4, 60, 10, "finite elements over the active profile"),
-    EO_INTEGER(struct eo_resolution, fillet_elements, "fillet_elements", 4, 80, 18,
-               "finite elements along the loaded fillet"),
+    EO_INTEGER(struct eo_resolution, layers, "layers", EO_LAYERS_LEAST, EO_LAYERS_MOST, 28,
+               "finite elements over the face width"),
+    EO_INTEGER(struct eo_resolution, flank_rows, "flank_rows", EO_FLANK_ROWS_LEAST, EO_FLANK_ROWS_MOST, 10,
+               "finite elements over the active profile"),
+    EO_INTEGER(struct eo_resolution, fillet_elements, "fillet_elements", EO_FILLET_ELEMENTS_LEAST,
+               EO_FILLET_ELEMENTS_MOST, 18, "finite elements along the loaded fillet"),
     EO_NUMBER_DERIVED(struct eo_resolution, impact_patch, "impact_patch_mm", &eo_unit_mm, 0.01, 100,
                       "5/6 m_n, at most the face width", "length of the patch that an entering impact loads"),
     EO_NUMBER(struct eo_resolution, marking_thickness, "marking_thickness_um", &eo_unit_um, 0.1, 100, 6.35,

@@ -11,7 +11,7 @@
 enum { MOST_TEXT = 1 << 20 };
 
 struct grid_document {
-  struct eo_series u, y;
+  struct eo_numbers u, y;
   struct eo_matrix delta;
 };
 

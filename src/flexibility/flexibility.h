@@ -26,14 +26,25 @@
 /* Most pairs ahead and behind with which a pair is coupled. */
 enum { EO_FLEXIBILITY_REACH = 31 };
 
+/* Elements of a mesh that a stated resolution may ask for: below, the shape of a tooth is lost; above, the memory of
+   the factor is. */
+enum {
+  EO_LAYERS_LEAST = 4,
+  EO_LAYERS_MOST = 96,
+  EO_FLANK_ROWS_LEAST = 4,
+  EO_FLANK_ROWS_MOST = 32,
+  EO_FILLET_ELEMENTS_LEAST = 6,
+  EO_FILLET_ELEMENTS_MOST = 64,
+};
+
 struct eo_flexibility_settings {
   enum eo_body body;
   enum eo_body_support support; /* of a ring */
   int sector_teeth;             /* of a sector: 3 or 5 */
   bool neighbour_coupling;      /* compliance between tooth pairs; does not change what is computed and kept */
-  int layers;                   /* over the face width, 4..96 */
-  int flank_rows;               /* over the active profile, 4..32 */
-  int fillet_elements;          /* from the start of the active profile to the middle of the tooth space, 6..64 */
+  int layers;                   /* over the face width */
+  int flank_rows;               /* over the active profile */
+  int fillet_elements;          /* from the start of the active profile to the middle of the tooth space */
   int columns;                  /* across the loaded tooth, even, 4..32 */
   int rim_elements;             /* from the root to the bore, or to 3.5 m_n below it where rings go on, 3..32 */
   int reach; /* pairs ahead and behind that a ring couples, up to EO_FLEXIBILITY_REACH; 0: as many as are

@@ -97,9 +97,9 @@ static enum eo_code check(const struct eo_flexibility_settings *settings, struct
   const struct {
     int value, low, high;
     const char *key;
-  } range[] = {{settings->layers, 4, 96, "layers"},
-               {settings->flank_rows, 4, 32, "flank_rows"},
-               {settings->fillet_elements, 6, 64, "fillet_elements"},
+  } range[] = {{settings->layers, EO_LAYERS_LEAST, EO_LAYERS_MOST, "layers"},
+               {settings->flank_rows, EO_FLANK_ROWS_LEAST, EO_FLANK_ROWS_MOST, "flank_rows"},
+               {settings->fillet_elements, EO_FILLET_ELEMENTS_LEAST, EO_FILLET_ELEMENTS_MOST, "fillet_elements"},
                {settings->columns, 4, 32, "columns"},
                {settings->rim_elements, 3, 32, "rim_elements"},
                {settings->body == EO_BODY_SECTOR ? settings->sector_teeth : 3, 3, 5, "sector_teeth"}};

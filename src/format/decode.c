@@ -76,7 +76,7 @@ static void default_field(const struct eo_field *field, void *target)
     default_rows(field, target);
     break;
   case EO_FIELD_SERIES:
-    *(struct eo_series *)place = (struct eo_series){0};
+    *(struct eo_numbers *)place = (struct eo_numbers){0};
     break;
   case EO_FIELD_MATRIX:
     *(struct eo_matrix *)place = (struct eo_matrix){0};
@@ -231,7 +231,7 @@ static bool check_length(const struct eo_field *field, const json_t *value, cons
 }
 
 static void decode_series(const struct eo_field *field, const json_t *value, const struct eo_path *path,
-                          struct eo_series *series, struct eo_faults *faults)
+                          struct eo_numbers *series, struct eo_faults *faults)
 {
   if (!check_length(field, value, path, faults))
     return;
@@ -242,7 +242,7 @@ static void decode_series(const struct eo_field *field, const json_t *value, con
     return;
   }
   read_numbers(value, field, field->series_low, field->series_high, path, count, number, faults);
-  *series = (struct eo_series){count, number};
+  *series = (struct eo_numbers){count, number};
 }
 
 static void decode_matrix(const struct eo_field *field, const json_t *value, const struct eo_path *path,

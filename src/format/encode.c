@@ -51,7 +51,7 @@ static json_t *encode_matrix(const struct eo_field *field, const struct eo_matri
 static json_t *encode_field(const struct eo_field *field, const void *source)
 {
   const void *place = member(source, field);
-  const struct eo_series *series = place;
+  const struct eo_numbers *series = place;
   switch (field->kind) {
   case EO_FIELD_NUMBER:
     return eo_json_real(*(const double *)place, field->unit);
@@ -131,7 +131,7 @@ static void settle_numbers(const struct eo_unit *unit, int count, double *value)
 static void settle_field(const struct eo_field *field, void *target)
 {
   void *place = (char *)target + field->offset;
-  struct eo_series *series = place;
+  struct eo_numbers *series = place;
   struct eo_matrix *matrix = place;
   int rows;
   if (field->flags & EO_FIELD_ELSEWHERE)
@@ -186,9 +186,9 @@ void eo_table_done(const struct eo_table *table, void *target)
     for (int j = 0; j < rows; j++)
       eo_table_done(field->table, place + (size_t)j * field->table->size);
     if (field->kind == EO_FIELD_SERIES) {
-      struct eo_series *series = (void *)place;
+      struct eo_numbers *series = (void *)place;
       free(series->value);
-      *series = (struct eo_series){0};
+      *series = (struct eo_numbers){0};
     } else if (field->kind == EO_FIELD_MATRIX) {
       struct eo_matrix *matrix = (void *)place;
       free(matrix->value);

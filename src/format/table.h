@@ -25,7 +25,7 @@ enum eo_field_kind {
   EO_FIELD_NUMBERS,  /* double[count] */
   EO_FIELD_OBJECT,   /* a struct with its own table */
   EO_FIELD_LIST,     /* array of structs with their own table; the number of rows stands in an int at count_offset */
-  EO_FIELD_SERIES,   /* struct eo_series */
+  EO_FIELD_SERIES,   /* struct eo_numbers */
   EO_FIELD_MATRIX,   /* struct eo_matrix */
   EO_FIELD_DOCUMENT, /* const json_t *: an object that somebody else reads, borrowed from what is decoded; NULL: absent
                       */
@@ -43,7 +43,7 @@ enum {
 };
 
 /* A list of numbers of any length. */
-struct eo_series {
+struct eo_numbers {
   int count;
   double *value; /* [count], owned by the struct the table fills: eo_table_done() frees it */
 };
@@ -51,7 +51,7 @@ struct eo_series {
 /* Numbers in rows of one length. */
 struct eo_matrix {
   int rows, columns;
-  double *value; /* [rows][columns], owned as in a series */
+  double *value; /* [rows][columns], owned as in a list of numbers */
 };
 
 struct eo_table;

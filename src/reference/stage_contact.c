@@ -19,7 +19,7 @@ static const struct eo_table input_table = EO_TABLE("the input", struct input, i
 
 struct pair_output {
   int pair;
-  struct eo_series load;
+  struct eo_numbers load;
 };
 
 static const struct eo_field pair_output[] = {
@@ -30,7 +30,7 @@ static const struct eo_table pair_table = EO_TABLE("a tooth pair", struct pair_o
 
 enum { POSITION, PAIR, S, ETA, POINT_GAP, LENGTH, POINT_LOAD, POINT_PRESSURE, POINT_COLUMNS };
 struct points_output {
-  struct eo_series column[POINT_COLUMNS];
+  struct eo_numbers column[POINT_COLUMNS];
 };
 
 static const struct eo_field points_output[] = {
@@ -51,7 +51,7 @@ enum { UNLOADED, APPROACH, STIFFNESS, TANGENT, LOAD, LINE_LOAD, PRESSURE, EDGE, 
 struct end_output {
   double datum, line_load, pressure, edge_share, peak_to_peak;
   int failures;
-  struct eo_series column[END_COLUMNS];
+  struct eo_numbers column[END_COLUMNS];
   int pairs;
   struct pair_output pair[MOST_PAIRS];
   int has_points;
@@ -85,7 +85,7 @@ static const struct eo_table end_table = EO_TABLE("an end", struct end_output, e
 
 struct load_output {
   double force, torque, mean, peak_to_peak, float_mean;
-  struct eo_series transmission;
+  struct eo_numbers transmission;
   struct end_output left, right;
   int two;
 };
@@ -106,7 +106,7 @@ static const struct eo_field load_output[] = {
 static const struct eo_table load_table = EO_TABLE("a load", struct load_output, load_output);
 
 struct output {
-  struct eo_series phase;
+  struct eo_numbers phase;
   int loads;
   struct load_output load[EO_STAGE_LOADS];
 };

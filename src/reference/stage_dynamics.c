@@ -28,7 +28,7 @@ struct input {
     enum eo_impact_in_dynamics mode;
     double force[2], start[2], duration[2];
   } impact;
-  struct eo_series axial_cosine, axial_sine;
+  struct eo_numbers axial_cosine, axial_sine;
   int harmonics;
   enum eo_solver solver;
 };
@@ -134,7 +134,7 @@ static const struct eo_field input[] = {
 static const struct eo_table input_table = EO_TABLE("the input", struct input, input);
 
 struct spectrum {
-  struct eo_series deflection_real, deflection_imaginary, acceleration;
+  struct eo_numbers deflection_real, deflection_imaginary, acceleration;
 };
 
 struct output {
@@ -146,8 +146,8 @@ struct output {
   int repeat, states;
   struct eo_vibration_state state[EO_MAX_STATES];
   double stiffness[2], multiplier, unstable;
-  struct eo_series frequency, damping_ratio;
-  struct eo_series freedom_rms;
+  struct eo_numbers frequency, damping_ratio;
+  struct eo_numbers freedom_rms;
 };
 
 static const struct eo_field readings[] = {

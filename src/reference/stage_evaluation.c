@@ -38,7 +38,7 @@ enum { UNLOADED, APPROACH, TANGENT, END_COLUMNS };
 struct end_output {
   double peak_to_peak, datum, tangent_mean, rms[EO_READINGS];
   struct eo_impact impact;
-  struct eo_series column[END_COLUMNS];
+  struct eo_numbers column[END_COLUMNS];
 };
 
 static const struct eo_field end_output[] = {
@@ -70,7 +70,7 @@ struct case_output {
   struct eo_objective_case raw;
   double mean, rms[EO_READINGS], band[2];
   enum eo_vibration_outcome outcome;
-  struct eo_series transmission;
+  struct eo_numbers transmission;
   struct end_output left, right;
   int two;
 };
@@ -95,7 +95,7 @@ static const struct eo_field case_output[] = {
 static const struct eo_table case_table = EO_TABLE("a load case", struct case_output, case_output);
 
 struct output {
-  struct eo_series position;
+  struct eo_numbers position;
   int cases;
   struct case_output load_case[EO_MAX_LOAD_CASES];
 };

@@ -9,7 +9,7 @@
 struct input {
   struct eo_design design;
   int member, end;
-  struct eo_series s, u, eta, v;
+  struct eo_numbers s, u, eta, v;
 };
 
 /* The flank that was asked for. */
@@ -52,7 +52,7 @@ static const struct eo_table modification_input_table = EO_TABLE("the input", st
 enum { U, X, DELTA, PROFILE, LEAD, SLOPE_BELOW, SLOPE_ABOVE, LEAD_SLOPE, MODIFICATION_COLUMNS };
 struct modification_output {
   double lead_coefficient;
-  struct eo_series column[MODIFICATION_COLUMNS];
+  struct eo_numbers column[MODIFICATION_COLUMNS];
 };
 
 static const struct eo_field modification_output[] = {
@@ -123,7 +123,7 @@ static const struct eo_table surface_input_table = EO_TABLE("the input", struct 
 
 enum { SURFACE_U, SURFACE_V, POSITION, NORMAL = POSITION + 3, ROLL = NORMAL + 3, SURFACE_COLUMNS };
 struct surface_output {
-  struct eo_series column[SURFACE_COLUMNS];
+  struct eo_numbers column[SURFACE_COLUMNS];
 };
 
 static const struct eo_field surface_output[] = {

@@ -53,7 +53,7 @@ static const struct eo_table point_table = EO_TABLE("a point", struct point_inpu
 struct input {
   struct eo_design design;
   struct eo_stage_kernel kernel;
-  struct eo_series s, eta;
+  struct eo_numbers s, eta;
   int points;
   struct point_input point[MOST_POINTS];
   int export;
@@ -98,7 +98,7 @@ static const struct eo_table report_table = EO_TABLE("report", struct eo_flexibi
 
 struct row_output {
   double s;
-  struct eo_series member[2];
+  struct eo_numbers member[2];
 };
 
 static const struct eo_field row_output[] = {
@@ -112,7 +112,7 @@ static const struct eo_table row_table = EO_TABLE("a row", struct row_output, ro
 struct output {
   struct eo_flexibility_report report;
   double bore_radius[2];
-  struct eo_series eta, deflection[2];
+  struct eo_numbers eta, deflection[2];
   int rows;
   struct row_output row[MOST_ROWS];
 };
@@ -130,7 +130,7 @@ static const struct eo_field output[] = {
 static const struct eo_table output_table = EO_TABLE("the output", struct output, output);
 
 /* Trapezoidal rule with the nodes of the layers; compliance: scratch [n][n]. */
-static void deflect_row(struct row_output *out, const struct eo_flexibility *flexibility, const struct eo_series *eta,
+static void deflect_row(struct row_output *out, const struct eo_flexibility *flexibility, const struct eo_numbers *eta,
                         int layers, double width, struct eo_flank_point *point, double *compliance)
 {
   int n = layers + 1 + eta->count;
@@ -222,7 +222,7 @@ static enum eo_code export_mesh(const struct input *given, const struct eo_desig
   return code;
 }
 
-static enum eo_code choose_places(struct eo_series *eta, const struct eo_series *given, double width,
+static enum eo_code choose_places(struct eo_numbers *eta, const struct eo_numbers *given, double width,
                                   struct eo_error *error)
 {
   const double usual[3] = {-width / 2, 0, width / 2};

@@ -6,7 +6,7 @@ struct input {
   struct eo_design design;
   int end;
   enum eo_stage_pivot pivot;
-  struct eo_series s, eta, phase;
+  struct eo_numbers s, eta, phase;
 };
 
 static const struct eo_field input[] = {
@@ -29,7 +29,7 @@ enum { GAP, SLOPE, PINION, GEAR, PLACE_COLUMNS };
 enum { SLICE, SLICE_SLOPE, SLICE_COLUMNS };
 struct output {
   double datum;
-  struct eo_series place[PLACE_COLUMNS], slice[SLICE_COLUMNS];
+  struct eo_numbers place[PLACE_COLUMNS], slice[SLICE_COLUMNS];
 };
 
 static const struct eo_field output[] = {

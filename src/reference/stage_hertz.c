@@ -8,7 +8,7 @@
 struct input {
   struct eo_material material;
   double relative_radius, depth[2];
-  struct eo_series line_load;
+  struct eo_numbers line_load;
 };
 
 static const struct eo_field input[] = {
@@ -24,7 +24,7 @@ static const struct eo_table input_table = EO_TABLE("the input", struct input, i
 
 enum { HALF_WIDTH, PRESSURE, APPROACH, DERIVATIVE, INVERSE, QUANTITIES };
 struct output {
-  struct eo_series column[QUANTITIES];
+  struct eo_numbers column[QUANTITIES];
 };
 
 static const struct eo_field output[] = {
@@ -52,7 +52,7 @@ static enum eo_code run(const void *in, void *out, struct eo_error *error)
     double *value = malloc((size_t)(count ? count : 1) * sizeof *value);
     if (!value)
       return eo_error_memory(error);
-    found->column[i] = (struct eo_series){count, value};
+    found->column[i] = (struct eo_numbers){count, value};
   }
   for (int i = 0; i < count; i++) {
     double q = given->line_load.value[i], approach = eo_local_law_approach(&law, q);

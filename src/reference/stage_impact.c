@@ -8,7 +8,7 @@
 
 struct input {
   struct eo_stage_mesh_input mesh;
-  struct eo_series approach;
+  struct eo_numbers approach;
   double speed, inertia[2];
   int stations;
 };
@@ -78,7 +78,7 @@ static const struct eo_field output[] = {
 static const struct eo_table output_table = EO_TABLE("the output", struct output, output);
 
 /* Z is either computed, or given once for all phases or for each. */
-static enum eo_code set_approach(struct eo_stage_mesh *mesh, const struct eo_series *approach, struct eo_error *error)
+static enum eo_code set_approach(struct eo_stage_mesh *mesh, const struct eo_numbers *approach, struct eo_error *error)
 {
   int positions = mesh->pair->grid->positions;
   if (approach->count != 1 && approach->count != positions)

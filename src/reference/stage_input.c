@@ -31,8 +31,8 @@ enum eo_code eo_stage_field_init(struct eo_stage_field *field, struct eo_design 
   return EO_OK;
 }
 
-enum eo_code eo_stage_same_length(const struct eo_series *first, const char *first_key, const struct eo_series *second,
-                                  const char *key, struct eo_error *error)
+enum eo_code eo_stage_same_length(const struct eo_numbers *first, const char *first_key,
+                                  const struct eo_numbers *second, const char *key, struct eo_error *error)
 {
   if (first->count == second->count)
     return EO_OK;
@@ -40,18 +40,18 @@ enum eo_code eo_stage_same_length(const struct eo_series *first, const char *fir
                       first_key + 1);
 }
 
-enum eo_code eo_stage_columns(int columns, struct eo_series *series, int rows, struct eo_error *error)
+enum eo_code eo_stage_columns(int columns, struct eo_numbers *series, int rows, struct eo_error *error)
 {
   for (int i = 0; i < columns; i++) {
     double *value = calloc(rows ? (size_t)rows : 1, sizeof *value);
     if (!value)
       return eo_error_memory(error);
-    series[i] = (struct eo_series){rows, value};
+    series[i] = (struct eo_numbers){rows, value};
   }
   return EO_OK;
 }
 
-enum eo_code eo_stage_copy(struct eo_series *series, int rows, const double *value, struct eo_error *error)
+enum eo_code eo_stage_copy(struct eo_numbers *series, int rows, const double *value, struct eo_error *error)
 {
   enum eo_code code = eo_stage_columns(1, series, rows, error);
   if (!code)

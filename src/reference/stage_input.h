@@ -50,13 +50,13 @@ enum eo_code eo_stage_field_init(struct eo_stage_field *field, struct eo_design 
                                  enum eo_stage_pivot pivot, struct eo_error *error);
 
 /* EO_ERROR_INPUT naming `key` unless both columns have the same length. */
-enum eo_code eo_stage_same_length(const struct eo_series *first, const char *first_key, const struct eo_series *second,
-                                  const char *key, struct eo_error *error);
+enum eo_code eo_stage_same_length(const struct eo_numbers *first, const char *first_key,
+                                  const struct eo_numbers *second, const char *key, struct eo_error *error);
 
 /* Allocates columns of `rows` zeros for the output. */
-enum eo_code eo_stage_columns(int columns, struct eo_series *series, int rows, struct eo_error *error);
+enum eo_code eo_stage_columns(int columns, struct eo_numbers *series, int rows, struct eo_error *error);
 
 /* The same, and copies value[rows]. */
-enum eo_code eo_stage_copy(struct eo_series *series, int rows, const double *value, struct eo_error *error);
+enum eo_code eo_stage_copy(struct eo_numbers *series, int rows, const double *value, struct eo_error *error);
 
 #endif

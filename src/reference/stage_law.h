@@ -11,17 +11,17 @@ enum eo_stage_law_kind { EO_STAGE_LAW_TANGENT, EO_STAGE_LAW_SECANT, EO_STAGE_LAW
 
 struct eo_stage_law {
   enum eo_stage_law_kind kind;
-  struct eo_series approach, tangent; /* [positions] */
-  double load;                        /* N; NaN: of the torque */
-  double datum;                       /* m */
+  struct eo_numbers approach, tangent; /* [positions] */
+  double load;                         /* N; NaN: of the torque */
+  double datum;                        /* m */
   int order;
   int rows;
   struct eo_stage_law_row {
     double load;
-    struct eo_series approach;
+    struct eo_numbers approach;
   } row[EO_STAGE_LAW_ROWS];
-  double mean;                   /* N/m */
-  struct eo_series cosine, sine; /* [order] */
+  double mean;                    /* N/m */
+  struct eo_numbers cosine, sine; /* [order] */
 };
 
 extern const struct eo_table eo_stage_law_table;

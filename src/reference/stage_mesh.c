@@ -47,7 +47,7 @@ enum eo_code eo_stage_prepare(const struct eo_design *given, const struct eo_sta
 }
 
 /* Phases must lie within one cycle for the curves over it to mean anything. */
-static enum eo_code check_phases(const struct eo_series *phase, const struct eo_design *design,
+static enum eo_code check_phases(const struct eo_numbers *phase, const struct eo_design *design,
                                  const struct eo_geometry *geometry, struct eo_error *error)
 {
   for (int i = 1; i < phase->count; i++)

@@ -25,7 +25,7 @@ struct eo_stage_mesh_input {
   struct eo_design design;
   struct eo_stage_kernel kernel;
   enum eo_stage_pivot pivot;
-  struct eo_series phase, torque, force;
+  struct eo_numbers phase, torque, force;
   double edge_reach, compliance_factor;
   int edge_cells;
 };

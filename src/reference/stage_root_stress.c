@@ -40,7 +40,7 @@ static const struct eo_table input_table = EO_TABLE("the input", struct input, i
 enum { PHASE, STRESS, ARC, ALONG, ETA, ACROSS, COLUMNS };
 struct member_output {
   double maximum, arc, eta;
-  struct eo_series column[COLUMNS];
+  struct eo_numbers column[COLUMNS];
 };
 
 #define PLACE_FIELDS                                                        \

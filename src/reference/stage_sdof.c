@@ -44,10 +44,10 @@ struct output {
   struct eo_sdof_response response;
   int followed;
   struct folds {
-    struct eo_series up, down;
+    struct eo_numbers up, down;
     double contact_lost;
   } folds;
-  struct eo_series grazing;
+  struct eo_numbers grazing;
 };
 
 static const struct eo_field folds[] = {

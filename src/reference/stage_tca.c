@@ -12,7 +12,7 @@ struct input {
   struct eo_design design;
   int end;
   enum eo_stage_pivot pivot;
-  struct eo_series phase;
+  struct eo_numbers phase;
 };
 
 static const struct eo_field input[] = {

@@ -7,6 +7,7 @@
 #include "design/pair_identity.h"
 #include "document/design_document.h"
 #include "document/examples.h"
+#include "flexibility/flexibility.h"
 #include "format/json.h"
 #include "document/search_space.h"
 #include "support/tap.h"
@@ -285,6 +286,19 @@ static void test_shares(void)
      "some shares stated, some not");
   ok(count_faults(with_cases("[{\"speed_rpm\":9,\"torque_Nm\":100,\"share\":0}]")) == 1, "shares that sum to 0");
   ok(count_faults(with_cases("[]")) == 1, "no load case");
+}
+
+/* A mesh that the preparation would refuse is refused at its field. */
+static void test_mesh_of_a_resolution(void)
+{
+  const char *key[] = {"layers", "flank_rows", "fillet_elements"};
+  const int most[] = {EO_LAYERS_MOST, EO_FLANK_ROWS_MOST, EO_FILLET_ELEMENTS_MOST};
+  for (int i = 0; i < 3; i++)
+    for (int beyond = 0; beyond < 2; beyond++) {
+      json_t *document = parse(minimal);
+      json_object_set_new(document, "resolution", json_pack("{s:i}", key[i], most[i] + beyond));
+      ok(count_faults(document) == beyond, "%s = %d is %s", key[i], most[i] + beyond, beyond ? "refused" : "taken");
+    }
 }
 
 static void test_one_end(void)
@@ -693,6 +707,7 @@ int main(void)
   test_many_faults();
   test_defaults();
   test_shares();
+  test_mesh_of_a_resolution();
   test_one_end();
   test_derived();
   test_robust();

@@ -80,7 +80,7 @@ static void test_tables(void)
 /* An object that may be absent, with a series in it, alone and in a list. */
 struct inner {
   double number;
-  struct eo_series series;
+  struct eo_numbers series;
 };
 static const struct eo_field inner[] = {
     EO_NUMBER_REQUIRED(struct inner, number, "number", NULL, 0, 10, "a number"),
