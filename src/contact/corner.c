@@ -62,7 +62,7 @@ static double phase_at(const struct corner *corner, double d)
 /* A point of the tip member at phase c, about the flank member's centre. */
 static void place_tip(const struct corner *corner, int which, double c, double point[2])
 {
-  turn(corner->point[which], c * turning(corner, corner->tip), point);
+  turn(corner->point[which], c * turning(corner, corner->tip), point); /* theory (K6) (K7) */
   point[1] += corner->tip == EO_PINION ? -corner->geometry->centre_distance : corner->geometry->centre_distance;
 }
 
@@ -121,9 +121,10 @@ static struct eo_tilt tilt_at(const struct corner *corner, const double x[2], do
 {
   const struct eo_geometry *g = corner->geometry;
   double radius = hypot(x[0], x[1]), steep = radius * bend, arm = radius / sqrt(1 + steep * steep);
-  double turned = atan2(x[1], x[0]) + atan(steep), place[2] = {x[0], x[1]};
+  double turned = atan2(x[1], x[0]) + atan(steep), place[2] = {x[0], x[1]}; /* theory (K8) */
   if (corner->flank == EO_PINION)
     place[1] -= g->centre_distance;
+  /* theory (K9) */
   return eo_tilt_at(g, corner->flank == EO_PINION ? turned - M_PI / 2 : turned + M_PI / 2,
                     g->base_radius[corner->flank] / arm, place);
 }
@@ -228,7 +229,7 @@ static void advance(struct eo_corner_gap *table)
       for (int i = NEAR; i < EO_CORNER_NODES; i++) {
         const struct eo_tilt *share = &table->advance[i];
         double rise = part ? share->shift[axis] : share->lever[axis];
-        value[i] = table->slope[i] > 0 ? rise / table->slope[i] : i > NEAR ? value[i - 1] : 0;
+        value[i] = table->slope[i] > 0 ? rise / table->slope[i] : i > NEAR ? value[i - 1] : 0; /* theory (K10) */
       }
       for (int i = 0; i < EO_CORNER_NODES; i++) {
         double t = (node_distance(table, i) - node_distance(table, NEAR)) /
@@ -356,7 +357,7 @@ double eo_corner_gap_at(const struct eo_corner_gap *table, const struct eo_tilte
          rate = (tilted->shift[i + 1] + z * tilted->lever[i + 1] - from) / h;
   if (beyond < 0)
     rate = 0;
-  beyond += from + rate * (beyond - ends[0]);
+  beyond += from + rate * (beyond - ends[0]); /* theory (K11) */
   *slope = 0;
   if (beyond < 0)
     return 0;

@@ -80,7 +80,7 @@ void eo_face_load_find(struct eo_face_load *face, const struct eo_contact_grid *
   }
   if (!(sums.force > 0))
     return;
-  face->face_factor = most * grid->geometry.face_width * grid->positions / sums.force;
-  face->share_factor = fmax(1, sums.pair / sums.even_pair);
+  face->face_factor = most * grid->geometry.face_width * grid->positions / sums.force; /* theory (W1) */
+  face->share_factor = fmax(1, sums.pair / sums.even_pair);                            /* theory (W2) */
   face->line_factor = sums.line_load * sums.length / sums.force;
 }

@@ -113,7 +113,7 @@ double eo_deflection_at(const struct eo_deflection *deflection, double face_widt
 {
   double part[2];
   deflection_parts(deflection, face_width, eta, part);
-  return part[0] + s * part[1];
+  return part[0] + s * part[1]; /* theory (K12) */
 }
 
 /* The corner under the errors, and the least d at which it can strike anywhere on the face. */
@@ -216,6 +216,7 @@ double eo_gap_field_at(const struct eo_gap_field *field, double s, double eta, d
   }
   if (path)
     set_path(field, s, path);
+  /* theory (S6) */
   gap += eo_modification_lead(&field->shape[EO_PINION], x, &unused) +
          eo_modification_lead(&field->shape[EO_GEAR], x, &unused) + field->offset;
   if (slope)

@@ -33,7 +33,7 @@ double eo_contact_local_constant(const struct eo_geometry *g, const struct eo_ma
     return unlike_constant(g, material, s);
   double nu = material->poissons_ratio, modulus = material->youngs_modulus / (1 - nu * nu);
   double depth = eo_geometry_depth(g, EO_PINION, s) * eo_geometry_depth(g, EO_GEAR, s);
-  return log(4 * depth * M_PI * modulus / (8 * eo_geometry_relative_radius(g, s))) - nu / (1 - nu);
+  return log(4 * depth * M_PI * modulus / (8 * eo_geometry_relative_radius(g, s))) - nu / (1 - nu); /* theory (C2) */
 }
 
 /* The stretches of s that carry points: the path of contact, then the two corners. */
@@ -105,6 +105,7 @@ static void fill_line(struct eo_contact_position *p, int first, const struct eo_
     struct eo_flank_point *point = &p->point[first + i];
     point->pair = pair;
     point->eta = eta[0] + (i + 0.5) * width;
+    /* theory (Y1) */
     double s = p->phase + pair * g->transverse_base_pitch + point->eta * tangent,
            clamped = fmin(fmax(s, g->path_start), g->path_end);
     eo_gap_field_at(field, s, point->eta, NULL, point->s);

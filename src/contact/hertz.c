@@ -10,6 +10,7 @@ double eo_hertz_half_width(double line_load, double relative_radius, double youn
 
 double eo_hertz_pressure(double line_load, double relative_radius, double youngs_modulus, double poissons_ratio)
 {
+  /* theory (C7) */
   return sqrt(line_load * youngs_modulus / (2 * M_PI * relative_radius * (1 - poissons_ratio * poissons_ratio)));
 }
 

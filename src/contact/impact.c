@@ -15,7 +15,7 @@ void eo_impact_inertia(const struct eo_geometry *g, const struct eo_material *ma
 double eo_impact_mass(const struct eo_geometry *g, const double inertia[2])
 {
   double p = g->base_radius[EO_PINION], q = g->base_radius[EO_GEAR], c = cos(g->base_helix_angle);
-  return inertia[0] * inertia[1] / (inertia[0] * q * q + inertia[1] * p * p) / (c * c);
+  return inertia[0] * inertia[1] / (inertia[0] * q * q + inertia[1] * p * p) / (c * c); /* theory (I3) */
 }
 
 /* The search for the first touch: the incoming line's smallest gap against the loaded approach. */
@@ -52,7 +52,7 @@ static double clearance(const struct search *search, double c, double *eta)
   double phase = c / search->grid->geometry.transverse_base_pitch;
   double gap = search->stations > 1 ? sampled_minimum(search, c, eta)
                                     : eo_gap_field_line_minimum(search->field, c, true, eta);
-  return gap - eo_periodic_at(search->approach, phase - floor(phase), NULL);
+  return gap - eo_periodic_at(search->approach, phase - floor(phase), NULL); /* theory (I1) */
 }
 
 /* Marches the incoming line towards mesh until it touches, then bisects; false when it passes the whole path untouched.
@@ -131,7 +131,7 @@ void eo_impact_strike(struct eo_impact *impact, const struct eo_contact_grid *gr
   double law = eo_contact_local_constant(g, &grid->material, s), mass = eo_impact_mass(g, settings->inertia);
   if (!impact->touched)
     return;
-  impact->speed = fmax(0, -impact->slope) * speed * g->base_radius[EO_PINION];
+  impact->speed = fmax(0, -impact->slope) * speed * g->base_radius[EO_PINION]; /* theory (I2) */
   /* The Hertz part depends on the force it helps to make: fixed point on the secant of the local law. */
   double force = impact->speed * sqrt(mass / (compliance_factor * 2 * impact->bulk));
   for (int i = 0; i < 200; i++) {
@@ -145,7 +145,7 @@ void eo_impact_strike(struct eo_impact *impact, const struct eo_contact_grid *gr
   }
   impact->force = force;
   impact->classical = impact->off_line ? force : 0;
-  impact->duration = M_PI * sqrt(mass * impact->compliance);
+  impact->duration = M_PI * sqrt(mass * impact->compliance); /* theory (I4) */
 }
 
 void eo_impact_find(struct eo_impact *impact, const struct eo_contact_grid *grid, const struct eo_gap_field *field,

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Entering impact: where the incoming gear tip first touches the deflected pinion, how fast, and how hard ((I1) of
-   doc/theory.md: half sine of an effective mass on the compliance of a short patch; Seireg and Houser 1970). */
+/* Entering impact: where the incoming gear tip first touches the deflected pinion, how fast, and how hard
+   (doc/theory/entering-impact.md: half sine of an effective mass on the compliance of a short patch; Seireg and Houser
+   1970). */
 #ifndef EASEOFF_CONTACT_IMPACT_H
 #define EASEOFF_CONTACT_IMPACT_H
 

@@ -18,13 +18,14 @@ static void load_points(struct eo_loaded_workspace *ws, const struct problem *pr
   const struct eo_contact_position *p = problem->position;
   double approach = mode[p->rank], sum = 0;
   for (int i = 0; i < p->points; i++) {
+    /* theory (C1) */
     double local = ws->local[i] = approach - problem->gap[i] - ws->bend[i] - ws->correction[i], spread = ws->spread[i],
            share = 1;
     ws->load[i] = ws->rate[i] = 0;
     if (local <= -spread)
       continue;
     if (local < spread) {
-      share = (local + spread) / (2 * spread);
+      share = (local + spread) / (2 * spread); /* theory (C5) */
       local = share * share * spread;
     }
     double slope, carried = eo_local_inverse_at(&ws->inverse, local * p->per_depth[i], &slope);
@@ -308,7 +309,7 @@ static double tangent_compliance(struct eo_loaded_workspace *ws, const struct eo
   square += dot(p->rank, mode, mode);
   for (int i = 0; i < p->points; i++)
     square += ws->load[i] * ws->correction[i];
-  return square / (sum * sum);
+  return square / (sum * sum); /* theory (C4) */
 }
 
 static const struct eo_contact_line *same_line(const struct eo_contact_position *p, const struct eo_contact_line *line)

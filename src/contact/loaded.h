@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Loaded contact over the mesh cycle ((C1) to (C3) of doc/theory.md): exact complementarity with the nonlinear local
+/* Loaded contact over the mesh cycle (doc/theory/loaded-contact.md): exact complementarity with the nonlinear local
    part, both ends.
 
    Per end and mesh position, points i with loads p >= 0 and clearances d >= 0, p.d = 0, sum p = P:

@@ -49,7 +49,7 @@ bool eo_loaded_balance_position(const struct eo_loaded_half half[2], double fact
   bool tried[2] = {false, false};
   for (int i = 0; i < STEPS; i++) {
     double apart = eo_axial_beyond_play(hold, result[0].approach[at[0]] - result[1].approach[at[1]]);
-    double miss = apart + soft * (shift - hold->shift);
+    double miss = apart + soft * (shift - hold->shift); /* theory (C6) */
     double give = hold->play > 0 && apart == 0 ? 0 : 1 / result[0].tangent[at[0]] + 1 / result[1].tangent[at[1]];
     double next = shift - miss / (give + soft);
     int up = miss < 0, heavy = up ? EO_LEFT : EO_RIGHT, light = 1 - heavy;

@@ -154,7 +154,7 @@ static double largest_principal(int nodes, const float *stress, int *where)
       if (!passes(s[i], t[i], u[i], largest))
         continue;
       float difference = s[i] - t[i];
-      largest = (s[i] + t[i] + sqrtf(difference * difference + 4 * u[i] * u[i])) / 2;
+      largest = (s[i] + t[i] + sqrtf(difference * difference + 4 * u[i] * u[i])) / 2; /* theory (B11) */
       *where = i;
     }
   }

@@ -17,6 +17,7 @@ void eo_unloaded_minimum(const struct eo_gap_field *field, int n, const double *
       continue;
     eo_gap_field_line_range(g, phase[i], g->path_start, g->path_end, range);
     bool edge = eta - range[0] < near || range[1] - eta < near;
+    /* theory (S7) */
     result[i] = (struct eo_unloaded){.touch = edge ? EO_TOUCH_EDGE : EO_TOUCH_POINT,
                                      .transmission_error = -gap / cos(g->base_helix_angle),
                                      .path = phase[i] + eta * tangent,
@@ -98,7 +99,7 @@ static int residual(void *context, const double *x, double *r)
   struct placed p = in_mesh(contact->field, EO_PINION, x[0], x[1], contact->phase),
                 q = gear_point(contact, x[2], x[3], x[4]);
   for (int i = 0; i < 3; i++)
-    r[i] = p.position[i] - q.position[i];
+    r[i] = p.position[i] - q.position[i]; /* theory (S8) */
   /* Two directions across the common normal. */
   double ca = cos(g->working_pressure_angle), sa = sin(g->working_pressure_angle);
   r[3] = -sa * (p.normal[0] + q.normal[0]) + ca * (p.normal[1] + q.normal[1]);

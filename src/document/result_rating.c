@@ -359,7 +359,7 @@ static json_t *encode_rated_end(const struct eo_rated_case *c, const struct eo_f
   eo_object_put(&o, "computed", encode_computed(c, face));
   eo_object_put(&o, "used", eo_outline_encode(&factors, &c->used));
   eo_object_put_number(&o, "Z_H", c->contact.zone);
-  eo_object_put_number(&o, "Z_E_sqrt_MPa", eo_unit_out(&eo_unit_sqrt_MPa, c->contact.elasticity));
+  eo_object_put_number(&o, "Z_E_sqrt_MPa", c->contact.elasticity);
   eo_object_put_number(&o, "Z_eps", c->contact.contact_ratio);
   eo_object_put_number(&o, "Z_beta", c->contact.helix);
   eo_object_put_number(&o, "sigma_H0_MPa", c->contact.nominal);

@@ -133,7 +133,7 @@ static void condense_one(const struct eo_oscillator *o, double frequency, int k,
     mean[i] = product(n, o->mesh[i], b + 2 * ends * n);
   for (int i = 0; i < ends; i++)
     for (int j = 0; j < ends; j++) {
-      h->stiffness[i][j] = inverse[i][j] - (i == j ? shift : 0);
+      h->stiffness[i][j] = inverse[i][j] - (i == j ? shift : 0); /* theory (D4) */
       h->load[i] += inverse[i][j] * mean[j];
     }
   if (slopes)

@@ -233,7 +233,7 @@ void eo_law_rows(const struct eo_law *law, double phase, double *row)
 static struct eo_mesh_force stiffness_force(double k, double x, double front, double back, int attached)
 {
   if (x > front || attached)
-    return (struct eo_mesh_force){k * (x - front), k, x - front, 1};
+    return (struct eo_mesh_force){k * (x - front), k, x - front, 1}; /* theory (L1) */
   if (x < back)
     return (struct eo_mesh_force){k * (x - back), k, back - x, -1};
   if (x - front > back - x)
@@ -275,12 +275,12 @@ static struct eo_mesh_force table_force(const struct eo_law *law, const double *
       high = middle;
   }
   double slope = (law->load[low + 1] - law->load[low]) / (row[low + 1] - row[low]);
-  return (struct eo_mesh_force){law->load[low] + slope * (z - row[low]), slope, z - row[0], 1};
+  return (struct eo_mesh_force){law->load[low] + slope * (z - row[low]), slope, z - row[0], 1}; /* theory (L3) */
 }
 
 static struct eo_mesh_force tangent_force(const struct eo_law *law, const double *row, double x, int attached)
 {
-  double k = row[1], force = law->nominal + k * (x - law->front - row[0]);
+  double k = row[1], force = law->nominal + k * (x - law->front - row[0]); /* theory (L2) */
   if (force > 0 || attached)
     return (struct eo_mesh_force){force, k, force / k, 1};
   return behind(law, x, force / k);

@@ -8,7 +8,7 @@
 #include "base/error.h"
 
 enum eo_law_kind {
-  EO_MESH_STIFFNESS, /* F = k(phi) (X - front) while X > front: (L1) of doc/theory.md, the secant law; rows: k */
+  EO_MESH_STIFFNESS, /* F = k(phi) (X - front) while X > front: the secant law, theory (L1); rows: k */
   EO_MESH_POWER,     /* F = K(phi) (X - front - e(phi))^exponent; rows: K, e */
   EO_MESH_TABLE,     /* F piecewise linear through (Z_i(phi) + front, load_i), 0 below the first load; rows: Z_i */
   EO_MESH_TANGENT, /* F = P + k_tan(phi) (X - front - Z(phi)), 0 where that is negative: the teeth part; rows: Z, k_tan

@@ -14,7 +14,7 @@ static void add_element(struct eo_dynamics_model *m, const double *e, double k, 
   int n = m->freedoms;
   for (int i = 0; i < n; i++)
     for (int j = 0; j < n; j++) {
-      m->stiffness[i * n + j] += k * e[i] * e[j];
+      m->stiffness[i * n + j] += k * e[i] * e[j]; /* theory (D2) */
       m->damping[i * n + j] += c * e[i] * e[j];
     }
 }
@@ -111,7 +111,7 @@ static void set_readings(struct eo_dynamics_model *m)
       int z = eo_dynamics_freedom(p->ends, member, end, EO_MOTION_Z);
       int rotation = eo_dynamics_freedom(p->ends, member, end, EO_MOTION_ROTATION);
       double radius = p->base_radius[member];
-      m->reading[EO_READING_NORMAL][end][y] = sign * c;
+      m->reading[EO_READING_NORMAL][end][y] = sign * c; /* theory (D1) */
       m->reading[EO_READING_NORMAL][end][z] = sign * hand;
       m->reading[EO_READING_NORMAL][end][rotation] = sign * c * radius;
       m->reading[EO_READING_TRANSVERSE][end][y] = sign;

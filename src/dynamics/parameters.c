@@ -124,6 +124,7 @@ double eo_dynamics_equivalent_mass(const struct eo_dynamics_parameters *p)
 
 double eo_dynamics_mesh_damping(const struct eo_dynamics_parameters *p, double damping_ratio, double stiffness)
 {
+  /* theory (D3) */
   return 2 * damping_ratio * sqrt(stiffness * eo_dynamics_equivalent_mass(p)) / cos(p->base_helix_angle);
 }
 

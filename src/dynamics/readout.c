@@ -115,7 +115,7 @@ static double root_of_squares(int harmonics, const double complex *order)
 {
   double sum = 0;
   for (int k = 1; k <= harmonics; k++)
-    sum += (creal(order[k]) * creal(order[k]) + cimag(order[k]) * cimag(order[k])) / 2;
+    sum += (creal(order[k]) * creal(order[k]) + cimag(order[k]) * cimag(order[k])) / 2; /* theory (D5) */
   return sqrt(sum);
 }
 

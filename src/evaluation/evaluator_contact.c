@@ -28,6 +28,7 @@ void eo_evaluator_set_cases(struct eo_evaluator *evaluator, const struct eo_run 
   for (int k = 0; k < result->cases; k++) {
     struct eo_case_result *load_case = &result->load_case[k];
     load_case->load_case = run->design->load_case[k];
+    /* theory (Y3) */
     load_case->force = load_case->load_case.torque /
                        (result->ends * geometry->base_radius[EO_PINION] * cos(geometry->base_helix_angle));
     load_case->end_force[EO_LEFT] = load_case->end_force[EO_RIGHT] = load_case->force;

@@ -67,7 +67,7 @@ static void summarise(const struct eo_evaluator *evaluator, struct eo_case_resul
   find_first_contact(evaluator, load_case, end, first_contact);
   for (int j = 0; j < grid->positions; j++) {
     raise_peaks(result, grid, j, &steepest);
-    result->stiffness[j] = result->loaded.load[j] / (result->loaded.approach[j] - first_contact[j]);
+    result->stiffness[j] = result->loaded.load[j] / (result->loaded.approach[j] - first_contact[j]); /* theory (C3) */
     low = fmin(low, result->loaded.approach[j]);
     high = fmax(high, result->loaded.approach[j]);
   }
@@ -93,7 +93,7 @@ static void summarise_pair(const struct eo_evaluator *evaluator, const struct eo
   double low = INFINITY, high = -INFINITY, normal = cos(evaluator->pair->geometry.base_helix_angle);
   load_case->mean = 0;
   for (int j = 0; j < n; j++) {
-    double z = (left[j] + right[(j + n - stagger) % n]) / 2 / normal;
+    double z = (left[j] + right[(j + n - stagger) % n]) / 2 / normal; /* theory (Y2) */
     load_case->transmission[j] = z;
     load_case->mean += z / n;
     low = fmin(low, z);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* On coast flanks, or with the apex leading, eta runs inwards on both ends; all else is as on the drive flanks of an
-   apex that trails, with shaft angle errors, offsets and thrusts of the sign that this brings (doc/theory.md, (F5) to
-   (F7)). */
+   apex that trails, with shaft angle errors, offsets and thrusts of the sign that this brings (doc/theory/flank.md,
+   Directions). */
 #include "evaluation/meeting_field.h"
 
 #include "contact/loaded.h"
@@ -21,6 +21,7 @@ static double offset_of(const struct eo_pair *pair, const struct eo_design *desi
   const double *offset = design->alignment.apex_offset;
   if (end == EO_LEFT || offset[EO_PINION] == offset[EO_GEAR])
     return 0;
+  /* theory (F7) */
   return outwards(running) * sin(pair->geometry.base_helix_angle) * (offset[EO_PINION] - offset[EO_GEAR]);
 }
 
@@ -37,6 +38,7 @@ void eo_meeting_field_init(struct eo_gap_field *field, const struct eo_pair *pai
                          coast ? &all->coast[member][end] : &all->flank[member][end]);
     eo_modification_complete(&shape[member], spline[member], coast);
   }
+  /* theory (F6) */
   eo_gap_field_init_shapes(field, &pair->geometry, shape, end, out * running->in_plane, across * running->out_of_plane,
                            out * pair->pivot[end], pair->grid->corner);
   field->offset = offset_of(pair, design, running, end);
@@ -53,6 +55,6 @@ struct eo_axial_hold eo_meeting_axial_hold(const struct eo_pair *pair, const str
   if (alignment->pinion_axial == EO_AXIAL_STOPS)
     hold.play = lean * alignment->pinion_axial_clearance;
   if (alignment->pinion_axial != EO_AXIAL_FIXED)
-    hold.shift = outwards(running) * alignment->coupling_thrust / (2 * lean);
+    hold.shift = outwards(running) * alignment->coupling_thrust / (2 * lean); /* theory (F8) */
   return hold;
 }

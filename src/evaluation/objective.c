@@ -8,7 +8,7 @@ void eo_objective_sum(int cases, const struct eo_load_case *load_case, const str
 {
   *sums = (struct eo_objective_sums){0};
   for (int k = 0; k < cases; k++) {
-    sums->f[0] += load_case[k].share * fabs(value[k].peak_to_peak) / cases;
+    sums->f[0] += load_case[k].share * fabs(value[k].peak_to_peak) / cases; /* theory (O1) */
     sums->f[1] += load_case[k].share * fabs(value[k].impact) / cases;
     sums->f[2] += load_case[k].share * value[k].rms / cases;
     sums->failed |= value[k].failed;
@@ -64,6 +64,7 @@ void eo_objective_value(const struct eo_objective *objective, int cases, const s
       continue;
     /* An objective that the unmodified pair already has at zero cannot be normalised; it counts only once it is there.
      */
+    /* theory (O2) */
     result->objective += objective->weight[i] * (scale > 0 ? result->sums.f[i] / scale : result->sums.f[i] > 0);
   }
   for (int k = 0; k < cases; k++)
@@ -75,7 +76,7 @@ void eo_objective_value(const struct eo_objective *objective, int cases, const s
     result->fitness = EO_FITNESS_WORST;
     return;
   }
-  result->fitness = 1 / result->objective - objective->penalty * result->violation;
+  result->fitness = 1 / result->objective - objective->penalty * result->violation; /* theory (O3) */
 }
 
 bool eo_objective_wants_rating(const struct eo_objective *o)

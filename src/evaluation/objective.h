@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The three objectives, the constraints and the fitness: (O1) to (O3) of doc/theory.md. */
+/* The three objectives, the constraints and the fitness: theory (O1) (O2) (O3). */
 #ifndef EASEOFF_EVALUATION_OBJECTIVE_H
 #define EASEOFF_EVALUATION_OBJECTIVE_H
 

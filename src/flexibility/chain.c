@@ -151,7 +151,7 @@ static void combine(int n, const struct chain *a, const struct chain *b, double 
   memcpy(out->right, b->right, size * sizeof *out->right);
   memcpy(out->body[0], a->body[0], PATTERNS * (size_t)n * sizeof(double));
   memcpy(out->body[1], body[1], PATTERNS * (size_t)n * sizeof(double));
-  cblas_dsyrk(CblasColMajor, CblasLower, CblasNoTrans, n, n, -1, s->before, n, 1, out->left, n);
+  cblas_dsyrk(CblasColMajor, CblasLower, CblasNoTrans, n, n, -1, s->before, n, 1, out->left, n); /* theory (B8) */
   cblas_dsyrk(CblasColMajor, CblasLower, CblasTrans, n, n, -1, s->after, n, 1, out->right, n);
   mirror((size_t)n, out->left);
   mirror((size_t)n, out->right);

@@ -92,7 +92,7 @@ static void condense(double k[EO_BRICK_UNKNOWNS + MODES][EO_BRICK_UNKNOWNS + MOD
 {
   for (int m = EO_BRICK_UNKNOWNS + MODES - 1; m >= EO_BRICK_UNKNOWNS; m--)
     for (int i = 0; i < m; i++) {
-      double factor = k[i][m] / k[m][m];
+      double factor = k[i][m] / k[m][m]; /* theory (B1) */
       for (int j = 0; j < m; j++)
         k[i][j] -= factor * k[m][j];
     }

@@ -197,6 +197,7 @@ double eo_flexibility_hub_windup(const struct eo_geometry *geometry, const struc
   double arm = geometry->base_radius[member] * cos(geometry->base_helix_angle), root = geometry->root_radius[member];
   if (!(bore_radius > 0))
     return 0;
+  /* theory (B9) */
   return fmax(0, arm * arm / (4 * M_PI * shear) * (1 / (bore_radius * bore_radius) - 4 / (3 * root * root)));
 }
 

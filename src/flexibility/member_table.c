@@ -222,7 +222,7 @@ static void copy_values(struct eo_flank_table *table, const struct eo_member_res
     memcpy(table->part[k], result->part[k], (size_t)table->rows * sizeof *table->part[k]);
   }
   for (size_t i = 0; i < n * n; i++)
-    table->bulk[i] = result->full[i] - result->half[i];
+    table->bulk[i] = result->full[i] - result->half[i]; /* theory (B2) */
 }
 
 /* Everything but the parts, from values at nodes to coefficients. */

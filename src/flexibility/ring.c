@@ -121,7 +121,7 @@ static void fill_matrix(const struct eo_ring_tooth *tooth, double complex e, dou
     /* S is symmetric: its row j is its column j. */
     const double *left = s + j * row, *right = s + (n + j) * row;
     for (size_t i = j; i < n; i++)
-      matrix[j * n + i] = left[i] + right[n + i] + e * right[i] + conj(e) * left[n + i];
+      matrix[j * n + i] = left[i] + right[n + i] + e * right[i] + conj(e) * left[n + i]; /* theory (B4) */
   }
 }
 
@@ -161,7 +161,7 @@ static void balance(const struct eo_ring_tooth *tooth, int k, double complex *ma
   for (int j = 0; j < tooth->flank; j++) {
     double complex a = conj(tooth->rigid_flank[k][j]) / mass;
     for (size_t i = 0; i < n; i++)
-      load[(size_t)j * n + i] -= tooth->weight[i] * a * rigid[i];
+      load[(size_t)j * n + i] -= tooth->weight[i] * a * rigid[i]; /* theory (B6) */
   }
 }
 
@@ -176,7 +176,7 @@ static void take_mean_out(const struct eo_ring_tooth *tooth, int k, double compl
       mean += tooth->weight[i] * conj(rigid[i]) * motion[i];
     mean /= mass;
     for (int i = 0; i < tooth->face; i++)
-      motion[i] -= mean * rigid[i];
+      motion[i] -= mean * rigid[i]; /* theory (B7) */
   }
 }
 
@@ -239,7 +239,7 @@ static void add_harmonic(const struct job *job, int k, bool faces, const double 
   struct eo_ring_motion *sum = job->motion;
   size_t size = (size_t)tooth->flank * (size_t)tooth->face;
   for (int t = -sum->reach; t <= sum->reach + 1 && faces; t++) {
-    double complex turn = share_of(tooth, k) * step_of(tooth, k, t);
+    double complex turn = share_of(tooth, k) * step_of(tooth, k, t); /* theory (B5) */
     double c = creal(turn), s = cimag(turn), *left = sum->left + (size_t)(t + sum->reach) * size;
     for (size_t i = 0; i < size; i++)
       left[i] += c * creal(motion[i]) - s * cimag(motion[i]);
@@ -318,6 +318,7 @@ enum eo_code eo_ring_displacement(const struct eo_ring_tooth *tooth, const struc
   }
   if (t == 0)
     memcpy(displacement, tooth->compliance, sizeof *displacement * m * (size_t)tooth->inner);
+  /* theory (B3) */
   cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasTrans, tooth->flank, tooth->inner, 2 * tooth->face, -1, faces,
               2 * tooth->face, tooth->influence, 2 * tooth->face, t == 0 ? 1 : 0, displacement, tooth->inner);
   free(faces);

@@ -60,7 +60,7 @@ static void stress_of_strains(const double along[3], const double sweep[3], cons
                          {-p / (l * l * q), 0, 1 / (l * q)}};
   double nu = material->poissons_ratio, e = material->youngs_modulus / (1 - nu * nu);
   for (int k = 0; k < 3; k++) {
-    matrix[0][k] = e * (strain[0][k] + nu * strain[1][k]);
+    matrix[0][k] = e * (strain[0][k] + nu * strain[1][k]); /* theory (B10) */
     matrix[1][k] = e * (strain[1][k] + nu * strain[0][k]);
     matrix[2][k] = e * (1 - nu) * strain[2][k];
   }

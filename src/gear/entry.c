@@ -246,7 +246,7 @@ double eo_gear_pair_tip_diameter(const struct eo_gear_pair *pair, double centre_
   double coefficient = eo_gear_pair_rack(pair, member).addendum_coefficient + pair->profile_shift[member];
   double alteration = eo_gear_pair_tip_alteration(pair, centre_distance);
   return 2 * (pair->normal_module / cos(pair->helix_angle) * pair->teeth[member] / 2 +
-              (alteration == 0 ? coefficient : coefficient + alteration) * pair->normal_module);
+              (alteration == 0 ? coefficient : coefficient + alteration) * pair->normal_module); /* theory (G9) */
 }
 
 /* d_a = d + 2 h_a; a tip that the rack gives anyway is derived. */

@@ -47,9 +47,9 @@ static void set_basics(struct eo_geometry *g, const struct eo_gear_pair *pair)
   g->normal_module = pair->normal_module;
   g->normal_pressure_angle = pair->normal_pressure_angle;
   g->helix_angle = pair->helix_angle;
-  g->transverse_module = g->normal_module / cos(g->helix_angle);
-  g->transverse_pressure_angle = atan(tan(g->normal_pressure_angle) / cos(g->helix_angle));
-  g->base_helix_angle = asin(sin(g->helix_angle) * cos(g->normal_pressure_angle));
+  g->transverse_module = g->normal_module / cos(g->helix_angle);                            /* theory (G1) */
+  g->transverse_pressure_angle = atan(tan(g->normal_pressure_angle) / cos(g->helix_angle)); /* theory (G2) */
+  g->base_helix_angle = asin(sin(g->helix_angle) * cos(g->normal_pressure_angle));          /* theory (G3) */
   g->face_width = pair->face_width;
   for (int i = 0; i < 2; i++) {
     struct eo_rack rack = eo_gear_pair_rack(pair, i);
@@ -57,15 +57,15 @@ static void set_basics(struct eo_geometry *g, const struct eo_gear_pair *pair)
     g->fillet_radius[i] = rack.fillet_radius_coefficient * g->normal_module;
     g->teeth[i] = pair->teeth[i];
     g->profile_shift[i] = pair->profile_shift[i];
-    g->reference_radius[i] = g->transverse_module * g->teeth[i] / 2;
+    g->reference_radius[i] = g->transverse_module * g->teeth[i] / 2; /* theory (G4) */
     g->base_radius[i] = g->reference_radius[i] * cos(g->transverse_pressure_angle);
     g->generating_shift[i] = g->profile_shift[i] + pair->generating_offset[i];
     g->residual_undercut[i] = fmax(0, pair->protuberance[i] - pair->grinding_stock[i]);
     g->root_radius[i] = g->reference_radius[i] - g->dedendum[i] + g->generating_shift[i] * g->normal_module;
   }
-  g->transverse_base_pitch = M_PI * g->transverse_module * cos(g->transverse_pressure_angle);
+  g->transverse_base_pitch = M_PI * g->transverse_module * cos(g->transverse_pressure_angle); /* theory (G5) */
   g->normal_base_pitch = g->transverse_base_pitch * cos(g->base_helix_angle);
-  g->rack_factor = sin(g->transverse_pressure_angle) / cos(g->normal_pressure_angle);
+  g->rack_factor = sin(g->transverse_pressure_angle) / cos(g->normal_pressure_angle); /* theory (G14) */
 }
 
 /* What the distance takes from the backlash, and which shifts it would suit. */
@@ -87,6 +87,7 @@ static enum eo_code refuse_jam(const struct eo_geometry *g, const struct eo_gear
 static enum eo_code set_working(struct eo_geometry *g, const struct eo_gear_pair *pair, struct eo_error *error)
 {
   double sum = g->reference_radius[0] + g->reference_radius[1], base = g->base_radius[0] + g->base_radius[1];
+  /* theory (G6) */
   double value = eo_geometry_involute_function(g->transverse_pressure_angle) +
                  2 * (pair->profile_shift[0] + pair->profile_shift[1]) * tan(g->normal_pressure_angle) /
                      (g->teeth[0] + g->teeth[1]);
@@ -98,7 +99,7 @@ static enum eo_code set_working(struct eo_geometry *g, const struct eo_gear_pair
   double tight = pair->profile_shift[0] + pair->profile_shift[1] == 0 ? g->transverse_pressure_angle
                                                                       : eo_geometry_involute_inverse(value);
   g->working_pressure_angle = tight;
-  g->centre_distance = pair->profile_shift[0] + pair->profile_shift[1] == 0 ? sum : base / cos(tight);
+  g->centre_distance = pair->profile_shift[0] + pair->profile_shift[1] == 0 ? sum : base / cos(tight); /* theory (G7) */
   double stated = isnan(pair->backlash)
                       ? eo_gear_pair_backlash(isnan(pair->centre_distance) ? g->centre_distance : pair->centre_distance,
                                               g->normal_module)
@@ -112,6 +113,7 @@ static enum eo_code set_working(struct eo_geometry *g, const struct eo_gear_pair
     g->centre_distance = pair->centre_distance;
     g->working_pressure_angle = acos(base / pair->centre_distance);
     /* j_wt = 2 a_w (inv alpha_wt - inv alpha_tight) at the working circles, normal: times cos alpha_wt cos beta_b */
+    /* theory (G8) */
     g->normal_backlash +=
         2 * base * cos(g->base_helix_angle) *
         (eo_geometry_involute_function(g->working_pressure_angle) - eo_geometry_involute_function(tight));
@@ -131,6 +133,7 @@ static enum eo_code set_working(struct eo_geometry *g, const struct eo_gear_pair
 
 double eo_geometry_half_angle(const struct eo_geometry *g, int member, double radius)
 {
+  /* theory (G12) */
   double reference = M_PI / 2 / g->teeth[member] +
                      2 * g->profile_shift[member] * tan(g->normal_pressure_angle) / g->teeth[member];
   return reference + eo_geometry_involute_function(g->transverse_pressure_angle) -
@@ -143,6 +146,7 @@ static enum eo_code set_root(struct eo_geometry *g, int i, struct eo_error *erro
 {
   double flank_end = g->dedendum[i] - g->fillet_radius[i] * (1 - sin(g->normal_pressure_angle)) -
                      g->generating_shift[i] * g->normal_module;
+  /* theory (G13) */
   double roll = g->base_radius[i] * tan(g->transverse_pressure_angle) - flank_end / sin(g->transverse_pressure_angle);
   if (g->root_radius[i] <= 0)
     return eo_error_set(error, EO_ERROR_INPUT, "/gear_pair/dedendum_coefficient",
@@ -233,9 +237,9 @@ static enum eo_code set_path(struct eo_geometry *g, const struct eo_gear_pair *p
     length[i] = sqrt(g->tip_form_radius[i] * g->tip_form_radius[i] - g->base_radius[i] * g->base_radius[i]) -
                 g->tangent_length[i];
   }
-  g->path_start = -length[EO_GEAR];
+  g->path_start = -length[EO_GEAR]; /* theory (G10) */
   g->path_end = length[EO_PINION];
-  g->transverse_contact_ratio = (length[0] + length[1]) / g->transverse_base_pitch;
+  g->transverse_contact_ratio = (length[0] + length[1]) / g->transverse_base_pitch; /* theory (G11) */
   g->overlap_ratio = g->face_width * tan(g->base_helix_angle) / g->transverse_base_pitch;
   g->rack_bottom = g->rack_factor * g->path_start;
   g->rack_top = g->rack_factor * g->path_end;
@@ -317,6 +321,7 @@ double eo_geometry_path_at(const struct eo_geometry *g, int member, double radiu
 double eo_geometry_relative_radius(const struct eo_geometry *g, double s)
 {
   double length = g->tangent_length[0] + g->tangent_length[1];
+  /* theory (G15) */
   return (g->tangent_length[0] + s) * (g->tangent_length[1] - s) / (length * cos(g->base_helix_angle));
 }
 
@@ -333,5 +338,5 @@ double eo_geometry_depth(const struct eo_geometry *g, int member, double s)
 {
   double point[2], normal[2];
   eo_geometry_involute(g, member, eo_geometry_radius_at(g, member, s), point, normal);
-  return point[0] / normal[0] * cos(g->base_helix_angle);
+  return point[0] / normal[0] * cos(g->base_helix_angle); /* theory (G16) */
 }

@@ -213,6 +213,7 @@ static double relief_value(const struct eo_relief *r, double t, double *slope)
     double depth = fabs(r->depth), sign = r->depth < 0 ? -1 : 1;
     if (depth == 0)
       break;
+    /* theory (F3) */
     double radius = (r->length * r->length + depth * depth) / (2 * depth),
            root = sqrt(fmax(radius * radius - t * t, 1e-6 * radius * radius));
     *slope = r->slope + sign * t / root;
@@ -225,7 +226,7 @@ static double relief_value(const struct eo_relief *r, double t, double *slope)
     break;
   }
   *slope = r->slope + 2 * r->depth * ratio / r->length;
-  return tangent + r->depth * ratio * ratio;
+  return tangent + r->depth * ratio * ratio; /* theory (F2) */
 }
 
 /* Reliefs and crowning: the parabola between the vertices. */
@@ -243,7 +244,7 @@ static double relieved_profile(const struct eo_modification_shape *shape, double
   double beyond = direction * u - r->start;
   if (r->length == 0 || beyond < 0) {
     slope[0] = slope[1] = middle;
-    return shape->crowning * u * u;
+    return shape->crowning * u * u; /* theory (F1) */
   }
   double outer, value = relief_value(r, beyond, &outer);
   slope[0] = slope[1] = direction * outer;
@@ -278,7 +279,7 @@ double eo_modification_profile(const struct eo_modification_shape *shape, double
   if (!shape->has_terms)
     return value;
   double from_middle = u - shape->middle, rate = shape->incline + 2 * shape->barrel * from_middle, by_u[2];
-  value += from_middle * (shape->incline + shape->barrel * from_middle);
+  value += from_middle * (shape->incline + shape->barrel * from_middle); /* theory (F5) */
   slope[0] += rate;
   slope[1] += rate;
   for (int i = 0; i < shape->wedges; i++)
@@ -353,7 +354,7 @@ double eo_modification_lead(const struct eo_modification_shape *shape, double x,
   double place = shape->mirrored ? -x : x;
   int side = place > 0;
   const struct eo_end_relief *end = &shape->end[side];
-  double value = shape->lead[0] + place * (shape->lead[1] + place * shape->lead[2]);
+  double value = shape->lead[0] + place * (shape->lead[1] + place * shape->lead[2]); /* theory (F4) */
   double derivative = shape->lead[1] + 2 * place * shape->lead[2];
   double beyond = fabs(place) - end->start, length = shape->half_width - end->start;
   if (end->amount != 0 && beyond > 0 && length > 0) {

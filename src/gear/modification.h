@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Micro-geometry: what is taken off a flank, as one function delta(u, y) ((F1) to (F4) of doc/theory.md; terms by name
+/* Micro-geometry: what is taken off a flank, as one function delta(u, y) (doc/theory/flank.md; terms by name
    after ISO 21771, and a free grid). u: profile coordinate k_u sigma, m from the pitch point, + towards the member's
    own tip; y: axial, m from mid face, + towards the face end that meets first when the drive flank is used. It belongs
    to the body: on the coast flank y runs against eta. x = eta / cos(beta). */

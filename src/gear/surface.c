@@ -36,9 +36,10 @@ void eo_surface_evaluate(const struct eo_geometry *g, int member, const struct e
   double du = (profile_slope[0] + profile_slope[1]) / 2 + lead_slope * skew, dv = lead_slope, x[3], n[3];
   for (int i = 0; i < 3; i++) {
     double f = -sa * e[i] + ca * across[i], m = ca * e[i] + sa * across[i];
-    x[i] = rack * f + v * t[i] - delta * m;
+    x[i] = rack * f + v * t[i] - delta * m; /* theory (S1) */
     n[i] = m + du * f + dv * t[i];
   }
+  /* theory (S2) */
   double roll = (x[1] * n[0] / n[1] - x[0]) / r, c = cos(roll), s = sin(roll),
          length = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
   double y0 = x[0] + r * roll, y1 = x[1] + r;
@@ -128,7 +129,7 @@ static struct ray involute_ray(const struct eo_geometry *g, int member, double d
 /* Angle of the common normal for two arms. */
 static double common_angle(const struct eo_geometry *g, const struct ray *p, const struct ray *q)
 {
-  return acos((p->arm + q->arm) / g->centre_distance);
+  return acos((p->arm + q->arm) / g->centre_distance); /* theory (K5) (S3) */
 }
 
 /* ---- walks: every normal of a flank in order, so that the one in line with a given normal of the partner can be found
@@ -191,7 +192,7 @@ static double walk_place(const struct walk *walk, double u, int side)
 /* How far two normals are from lying in one line: their distances along it have to add up to a sin(alpha'). */
 static double miss_of(const struct eo_geometry *g, const struct ray *p, const struct ray *q)
 {
-  return g->centre_distance * sin(common_angle(g, p, q)) - p->distance - q->distance;
+  return g->centre_distance * sin(common_angle(g, p, q)) - p->distance - q->distance; /* theory (S4) */
 }
 
 /* The ray of the walk in line with that of the other member, near the place *w: the miss falls along a convex flank;
@@ -247,7 +248,8 @@ static double phase_of(const struct eo_geometry *g, int member, const struct ray
 
 struct eo_tilt eo_tilt_at(const struct eo_geometry *g, double angle, double ratio, const double place[2])
 {
-  double normal = ratio * cos(g->base_helix_angle), axial = sin(g->base_helix_angle);
+  double normal = ratio * cos(g->base_helix_angle), axial = sin(g->base_helix_angle); /* theory (K1) (K2) */
+  /* theory (K3) */
   return (struct eo_tilt){.lever = {-normal * sin(angle), normal * cos(angle)},
                           .shift = {-axial * (place[1] + g->working_radius[EO_GEAR]), axial * place[0]}};
 }
@@ -264,6 +266,7 @@ static struct node node_of(const struct eo_geometry *g, const struct ray *p, con
   double turned = g->base_radius[EO_GEAR] / q->arm, rate = p->arm * turned / g->base_radius[EO_PINION];
   double along[2] = {cos(common), sin(common)},
          place[2] = {q->arm * along[1] - q->distance * along[0], -q->arm * along[0] - q->distance * along[1]};
+  /* theory (S5) */
   return (struct node){c, (c + phase_of(g, EO_GEAR, q, common, offset)) * normal, (1 - rate) * normal,
                        eo_tilt_at(g, common, turned, place)};
 }
@@ -532,7 +535,7 @@ struct eo_tilt eo_slice_tilt_at(const struct eo_slice_gap *table, const struct e
   double along[2] = {cos(g->working_pressure_angle), sin(g->working_pressure_angle)},
          place[2] = {c * along[0], c * along[1] - g->working_radius[EO_GEAR]}, t;
   if (!table || table->nodes == 0)
-    return eo_tilt_at(g, g->working_pressure_angle, 1, place);
+    return eo_tilt_at(g, g->working_pressure_angle, 1, place); /* theory (K4) */
   int i = eo_slice_gap_piece(table, c, &t);
   struct eo_tilt tilt = table->tilt[i];
   t = fmin(1, fmax(0, t));

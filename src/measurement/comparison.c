@@ -27,7 +27,7 @@ static double likeness_at(const struct eo_measured *m, const struct eo_rig_predi
   double sum = 0, size[2] = {0, 0};
   int harmonics = m->harmonics < p->harmonics ? m->harmonics : p->harmonics;
   for (int h = 1; h <= harmonics; h++) {
-    sum += creal(conj(m->order[h - 1].amplitude) * p->order[h - 1] * cexp(2 * M_PI * I * h * shift));
+    sum += creal(conj(m->order[h - 1].amplitude) * p->order[h - 1] * cexp(2 * M_PI * I * h * shift)); /* theory (M5) */
     size[0] += pow(cabs(m->order[h - 1].amplitude), 2);
     size[1] += pow(cabs(p->order[h - 1]), 2);
   }

@@ -16,7 +16,7 @@ double eo_transmission_rms(const struct eo_order_line *line, int count, double o
 {
   double square = 0, variance = 0, shift[2] = {0, 0};
   for (int i = 0; i < count; i++) {
-    double weight = pow(line[i].order * omega, 4) / 2, noise = line[i].sigma * line[i].sigma;
+    double weight = pow(line[i].order * omega, 4) / 2, noise = line[i].sigma * line[i].sigma; /* theory (M3) */
     double signal = pow(cabs(line[i].amplitude), 2) - 2 * noise;
     square += weight * signal;
     variance += weight * weight * 4 * noise * (fmax(signal, 0) + noise);

@@ -19,6 +19,7 @@ static void read_orders(struct eo_rig_prediction *prediction, const struct eo_ev
   double mesh = teeth * prediction->speed, square = 0, low = INFINITY, high = -INFINITY;
   for (int h = 1; h <= prediction->harmonics; h++) {
     double complex acceleration = h <= evaluation->harmonics ? result->end[end].order[EO_CHANNEL_ROTATIONAL][h] : 0;
+    /* theory (M4) */
     prediction->order[h - 1] = acceleration / pow(h * mesh, 2); /* r_g phi_g - r_p phi_p is minus the reading */
     prediction->acceleration[h - 1] = cabs(acceleration);
     square += pow(cabs(acceleration), 2) / 2;

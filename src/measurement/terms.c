@@ -53,7 +53,7 @@ void eo_terms_at(const struct eo_terms *t, double time, double theta, double *va
   value[3] = (5 * x * x - 3) * x / 2;
   for (int i = 0; i < t->orders; i++) {
     turn[i] = t->part[i][0] >= 0 ? turn[t->part[i][0]] * turn[t->part[i][1]] : cexp(I * t->order[i] * theta);
-    value[t->drift + 2 * i] = creal(turn[i]);
+    value[t->drift + 2 * i] = creal(turn[i]); /* theory (M2) */
     value[t->drift + 2 * i + 1] = cimag(turn[i]);
   }
 }

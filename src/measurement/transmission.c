@@ -26,6 +26,7 @@ enum eo_code eo_order_fit_each_row(struct eo_order_fit *fit, eo_order_fit_row *f
 
 double eo_order_fit_error(const struct eo_order_fit *fit, const double row[3])
 {
+  /* theory (M1) */
   return fit->axis.sign *
          (fit->settings->base_radius[EO_GEAR] * row[2] - fit->settings->base_radius[EO_PINION] * row[1]);
 }

@@ -97,7 +97,7 @@ static int measure_weights(struct eo_history *history, const struct eo_history_l
     nearest = fmin(nearest, e[j]);
   for (int j = 0; j < history->count; j++) {
     const bool inside = e[j] <= law->share_radius;
-    const double w = inside || law->weights_over_all ? exp(-law->weight_decay * (e[j] - nearest)) : 0;
+    const double w = inside || law->weights_over_all ? exp(-law->weight_decay * (e[j] - nearest)) : 0; /* theory (H1) */
     sum += w;
     region += inside;
     history->weight[j] = inside ? w : 0;
@@ -119,8 +119,8 @@ struct eo_history_estimate eo_history_predict(struct eo_history *history, const 
   for (int j = 0; j < history->count; j++) {
     if (!(history->distance[j] <= law->share_radius))
       continue;
-    credibility += history->weight[j] * history->credibility[j];
-    fitness += history->weight[j] * history->fitness[j];
+    credibility += history->weight[j] * history->credibility[j]; /* theory (H2) */
+    fitness += history->weight[j] * history->fitness[j];         /* theory (H3) */
     low = fmin(low, history->credibility[j]);
     high = fmax(high, history->credibility[j]);
   }
@@ -152,6 +152,7 @@ void eo_history_measure_redundancy(struct eo_history *history)
       order[j] = (struct projection){history->x[(size_t)j * n + k], j};
     qsort(order, (size_t)count, sizeof *order, compare_projections);
     for (int j = 0; j < count; j++)
+      /* theory (H4) */
       history->redundancy[order[j].row] += j == 0 || j == count - 1 ? INFINITY
                                                                     : order[j + 1].value - order[j - 1].value;
   }
@@ -187,7 +188,7 @@ int eo_history_decay(struct eo_history *history, const struct eo_history_law *la
   for (int j = 0; j < history->count; j++) {
     if (!history->predicted[j] || history->removed[j])
       continue;
-    history->credibility[j] *= law->credibility_loss;
+    history->credibility[j] *= law->credibility_loss; /* theory (H5) */
     history->removed[j] = history->credibility[j] < law->removal_threshold;
     removed += history->removed[j];
   }

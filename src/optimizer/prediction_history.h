@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The history of the fitness-predicted genetic algorithm: rows with a credibility that predict their neighbourhood, and
-   how they age: (H1) to (H5) of doc/theory.md. What was settled:
+   how they age: theory (H1) to (H5). What was settled:
    - the region is closed (e <= r_share); an empty one has credibility 0;
    - (H1) sums over the m rows of the region (the printed n is a misprint; option all keeps every row);
    - (H4) as printed deletes rows that are unique in space when each coordinate has neighbours; unless literal is set, a

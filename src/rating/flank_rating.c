@@ -7,7 +7,7 @@
 double eo_zone_factor(const struct eo_rating_geometry *g)
 {
   double transverse = cos(g->transverse_pressure_angle), working = g->working_pressure_angle;
-  return sqrt(2 * cos(g->base_helix_angle) * cos(working) / (transverse * transverse * sin(working)));
+  return sqrt(2 * cos(g->base_helix_angle) * cos(working) / (transverse * transverse * sin(working))); /* theory (W4) */
 }
 
 /* ISO 6336-2 7: Z_E = sqrt(1/(pi sum (1 - nu^2)/E)). */
@@ -16,7 +16,7 @@ double eo_elasticity_factor(const struct eo_elastic *e)
   double compliance = 0;
   for (int i = 0; i < 2; i++)
     compliance += (1 - e->poissons_ratio[i] * e->poissons_ratio[i]) / e->youngs_modulus[i];
-  return sqrt(1 / (M_PI * compliance));
+  return sqrt(1 / (M_PI * compliance)); /* theory (W5) */
 }
 
 /* ISO 6336-2 8: Z_eps = sqrt((4 - eps_alpha)/3 (1 - eps_beta) + eps_beta/eps_alpha), eps_beta at most 1. */
@@ -70,6 +70,7 @@ enum eo_code eo_contact_stress(struct eo_contact_stress *c, const struct eo_rati
   c->elasticity = eo_elasticity_factor(&in->elastic);
   c->contact_ratio = eo_contact_ratio_factor(g->transverse_contact_ratio, g->overlap_ratio);
   c->helix = helix_factor(in->edition, p->helix_angle);
+  /* theory (W3) */
   c->nominal = c->zone * c->elasticity * c->contact_ratio * c->helix *
                sqrt(in->tangential_force * (u + 1) / (g->reference_diameter[0] * p->face_width * u)); /* 6.1 */
   c->pitch_point = c->nominal * sqrt(in->load_factor);

@@ -10,7 +10,7 @@ double eo_walther_viscosity(double viscosity_40, double viscosity_100, double te
 {
   const double zero = 273.15, low = log(40 + zero), high = log(100 + zero);
   double at_40 = log(log(1e6 * viscosity_40 + 0.7)), at_100 = log(log(1e6 * viscosity_100 + 0.7));
-  double value = at_40 + (at_100 - at_40) * (log(temperature + zero) - low) / (high - low);
+  double value = at_40 + (at_100 - at_40) * (log(temperature + zero) - low) / (high - low); /* theory (T3) */
   return 1e-6 * (exp(exp(value)) - 0.7);
 }
 
@@ -48,6 +48,7 @@ static double flash_of(const struct eo_tribology_state *t, const double velocity
   const double semi_elliptic = 1.11;
   double half = eo_hertz_half_width(line_load, radius, t->youngs_modulus, t->poissons_ratio);
   double carried = t->thermal_contact * (sqrt(fmax(velocity[0], 0)) + sqrt(fmax(velocity[1], 0)));
+  /* theory (T1) */
   return semi_elliptic * t->friction * line_load * fabs(velocity[0] - velocity[1]) / (carried * sqrt(2 * half));
 }
 
@@ -57,6 +58,7 @@ static double film_of(const struct eo_tribology_state *t, const double velocity[
 {
   double modulus = t->youngs_modulus / (1 - t->poissons_ratio * t->poissons_ratio), scale = modulus * radius;
   double rolling = (velocity[0] + velocity[1]) / 2;
+  /* theory (T2) */
   return radius * 2.65 * pow(t->pressure_viscosity * modulus, 0.54) * pow(t->viscosity * rolling / scale, 0.7) /
          pow(line_load / scale, 0.13);
 }
