@@ -209,7 +209,7 @@ bool eo_field_path_is_plain(const char *path)
       continue;
     size_t length = strcspn(c + 1, "/");
     bool last = !c[1 + length], dots = (length == 1 && c[1] == '.') || (length == 2 && c[1] == '.' && c[2] == '.');
-    if (dots || (length == 0 && !(last && c == path)))
+    if (dots || (length == 0 && !last))
       return false;
   }
   return true;

@@ -4,12 +4,13 @@
 #include <ctype.h>
 #include <errno.h>
 #include <fts.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "http/resource.h"
 
-enum { MOST_FILES = 2000, MOST_BYTES = 64 << 20, MOST_OF_ONE = 16 << 20 };
+enum { MOST_FILES = 2000, MOST_BYTES = 64 << 20, MOST_OF_ONE = 16 << 20, LONGEST_PATH = 120 };
 
 struct page {
   char *path; /* "/index.html", owned */
@@ -143,17 +144,49 @@ void eo_pages_free(struct eo_pages *pages)
   free(pages);
 }
 
+static const struct page *find(const struct eo_pages *pages, const char *path)
+{
+  const struct page wanted = {.path = (char *)path};
+  return pages->count ? bsearch(&wanted, pages->page, (size_t)pages->count, sizeof wanted, compare) : NULL;
+}
+
+/* The file at a path, or what a folder shows: its index.html, when the path has the slash behind it. */
+static const struct page *shown_at(const struct eo_pages *pages, const char *path)
+{
+  static const char index[] = "index.html";
+  char below[LONGEST_PATH + sizeof index];
+  size_t length = strlen(path);
+  if (length == 0 || length > LONGEST_PATH || path[length - 1] != '/')
+    return find(pages, path);
+  memcpy(below, path, length);
+  memcpy(below + length, index, sizeof index);
+  return find(pages, below);
+}
+
+/* A folder without its slash: the links of its page are relative, so the browser has to know where it is. */
+static bool is_folder(const struct eo_pages *pages, const char *path, char slashed[LONGEST_PATH + 2])
+{
+  size_t length = strlen(path);
+  if (length == 0 || length > LONGEST_PATH || path[length - 1] == '/')
+    return false;
+  memcpy(slashed, path, length);
+  memcpy(slashed + length, "/", 2);
+  return shown_at(pages, slashed);
+}
+
 void eo_pages_reply(const struct eo_pages *pages, struct eo_request *request)
 {
-  const struct page wanted = {.path = strcmp(request->path, "/") == 0 ? (char *)"/index.html" : request->path};
-  const struct page *page = pages->count ? bsearch(&wanted, pages->page, (size_t)pages->count, sizeof wanted, compare)
-                                         : NULL;
+  char slashed[LONGEST_PATH + 2];
+  const struct page *page = shown_at(pages, request->path);
   if (request->method == EO_OPTIONS) {
     eo_reply_empty(&request->reply, 204);
     request->reply.allow = EO_GET | EO_OPTIONS;
   } else if (page)
     eo_request_resource(request, &page->resource);
-  else if (!pages->count && strcmp(request->path, "/") == 0)
+  else if (is_folder(pages, request->path, slashed)) {
+    eo_reply_empty(&request->reply, 308);
+    snprintf(request->reply.location, sizeof request->reply.location, "%s", slashed);
+  } else if (!pages->count && strcmp(request->path, "/") == 0)
     eo_reply_problem(&request->reply, 404, NULL,
                      "This server was started without its page; the API is at /api/v1/openapi.json.");
   else

@@ -12,7 +12,7 @@ struct eo_pages;
 enum eo_code eo_pages_new(struct eo_pages **pages, const char *folder, struct eo_error *error);
 void eo_pages_free(struct eo_pages *pages);
 
-/* "/" is index.html. */
+/* A path that ends in a slash is that folder's index.html; a folder's name without the slash leads there. */
 void eo_pages_reply(const struct eo_pages *pages, struct eo_request *request);
 
 #endif

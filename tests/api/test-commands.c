@@ -468,6 +468,9 @@ static void make_pages(char folder[300])
   put_file(folder, "index.html", "<!doctype html><title>page</title>");
   put_file(folder, "chunk-44KD4V7L.js", "export const x = 1;");
   put_file(folder, "figures/chart.css", "p { color: red }");
+  snprintf(path, sizeof path, "%s/doc", folder);
+  mkdir(path, 0777);
+  put_file(folder, "doc/index.html", "<!doctype html><title>manuals</title>");
   put_file(folder, ".secret", "secret");
   snprintf(path, sizeof path, "%s/passwd.txt", folder);
   if (symlink("/etc/passwd", path) != 0)
@@ -488,6 +491,11 @@ static void check_pages(void)
        .holds = "immutable"},
       {"a file in a folder", "GET", "/figures/chart.css", .status = 200, .header = "Content-Type", .holds = "text/css"},
       {"no folder", "GET", "/figures", .status = 404},
+      {"nor its inside", "GET", "/figures/", .status = 404},
+      {"the manuals", "GET", "/doc/", .status = 200, .header = "Content-Type", .holds = "text/html"},
+      {"no more than any page", "GET", "/doc/", .status = 200, .header = "Content-Security-Policy",
+       .holds = "script-src 'self'; style-src 'self'"},
+      {"without the slash", "GET", "/doc", .status = 308, .header = "Location", .holds = "/doc/"},
       {"nothing hidden", "GET", "/.secret", .status = 404},
       {"no link out", "GET", "/passwd.txt", .status = 404},
       {"no way out", "GET", "/figures/..%2f..%2f..%2fetc/passwd", .status = 400},

@@ -9,6 +9,7 @@
 #include "document/design_document.h"
 #include "evaluation/evaluator.h"
 #include "evaluation/pair.h"
+#include "gear/entry.h"
 
 static const int teeth[][2] = {{17, 44}, {20, 60}, {24, 95}, {50, 50}};
 static const double helix[] = {0, 15, 24, 30};
@@ -46,7 +47,8 @@ static double stiffness_of(const struct eo_design *design, struct eo_iso_stiffne
   return sum;
 }
 
-static void print_pair(const int z[2], double degrees)
+/* False when a model could not be computed. */
+static bool print_pair(const int z[2], double degrees)
 {
   struct eo_design design = {0};
   struct eo_geometry geometry;
@@ -54,6 +56,7 @@ static void print_pair(const int z[2], double degrees)
   struct eo_iso_stiffness_input input = {.theory_factor = 0};
   struct eo_iso_stiffness low, high;
   double c[MODELS];
+  bool computed = true;
   eo_table_defaults(&eo_design_table, &design);
   design.gear_pair.teeth[0] = z[0];
   design.gear_pair.teeth[1] = z[1];
@@ -66,9 +69,9 @@ static void print_pair(const int z[2], double degrees)
   design.resolution.flank_rows = 8;
   design.resolution.tip_edge_contact = false;
   printf("%3d/%-3d %4g", z[0], z[1], degrees);
-  if (eo_geometry_init(&geometry, &design.gear_pair, &error)) {
+  if (eo_gear_pair_settle(&design.gear_pair, &error) || eo_geometry_init(&geometry, &design.gear_pair, &error)) {
     printf("  %s\n", error.text);
-    return;
+    return false;
   }
   eo_design_resolve(&design, &geometry);
   design.load_cases = 1;
@@ -77,6 +80,7 @@ static void print_pair(const int z[2], double degrees)
     design.resolution.body = model[i].body;
     design.resolution.body_support = model[i].support;
     c[i] = stiffness_of(&design, &input);
+    computed = computed && isfinite(c[i]);
   }
   input.theory_factor = 0.8;
   eo_iso_stiffness(&low, &input);
@@ -87,10 +91,12 @@ static void print_pair(const int z[2], double degrees)
     printf("  %8.2f (%+5.1f %%)", 1e-9 * c[i], 100 * (c[i] / low.mesh_alpha - 1));
   printf("\n");
   fflush(stdout);
+  return computed;
 }
 
 int main(void)
 {
+  bool computed = true;
   printf("\nMesh stiffness c_gamma, N/(mm um); in brackets against ISO 6336-1 with C_M = 0.8\n");
   printf("%-12s %8s %6s", "teeth, helix", "C_M 0.8", "1");
   for (int i = 0; i < MODELS; i++)
@@ -98,6 +104,6 @@ int main(void)
   printf("\n");
   for (size_t i = 0; i < sizeof teeth / sizeof *teeth; i++)
     for (size_t k = 0; k < sizeof helix / sizeof *helix; k++)
-      print_pair(teeth[i], helix[k]);
-  return 0;
+      computed &= print_pair(teeth[i], helix[k]);
+  return !computed;
 }

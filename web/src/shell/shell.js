@@ -107,7 +107,7 @@ export class Shell {
     const { app } = this;
     const button = h(
       'button.icon',
-      { type: 'button', 'aria-label': 'Help', title: 'Tour, examples, words', 'aria-expanded': 'false' },
+      { type: 'button', 'aria-label': 'Help', title: 'Tour, examples, words, manuals', 'aria-expanded': 'false' },
       '?',
     );
     button.addEventListener('click', () =>
@@ -119,6 +119,7 @@ export class Shell {
           item('A tour in three steps', () => startTour(app)),
           item('Examples', () => openExamples(app)),
           item('All words explained', () => app.go('glossary')),
+          h('a', { href: 'doc/', target: '_blank', rel: 'noopener', role: 'menuitem' }, 'Manuals: guide, API, theory'),
         );
       }),
     );
