@@ -6,8 +6,10 @@
 
 import json
 import math
+import os
 import subprocess
 import sys
+import tempfile
 from pathlib import Path
 
 INK, FAINT, BLUE, ORANGE, GREEN, GREY = "#1f2933", "#c4ccd4", "#1d5fa6", "#c2571a", "#2d7a46", "#7b8794"
@@ -333,9 +335,55 @@ def contact_pattern(program):
     return sheet
 
 
+def search(program):
+    """Best J over true evaluations: the default search with 200 of them, and the published flanks beside it."""
+    with tempfile.TemporaryDirectory() as folder:
+        design = Path(folder) / "design.json"
+        design.write_text(json.dumps(program.example("paper-case-a")), encoding="utf-8")
+        found = subprocess.run([program.path, "optimize", str(design), "--budget", "200", "--fresh", "--json", "--data", folder], capture_output=True,
+                               text=True, check=True, env=os.environ | {"XDG_DATA_HOME": folder})
+    spent, best = [], []
+    for generation in json.loads(found.stdout)["generations"]:
+        spent.append((spent[-1] if spent else 0) + generation["true"])
+        best.append(generation["best"])
+    sheet = Sheet(640, 300, "A search: best objective over true evaluations")
+    sheet.axes((70, 20, 610, 245), (0, 200), (0, 1))
+    sheet.frame("true evaluations", "best J (unmodified 1)", range(0, 201, 50), (0, 0.25, 0.5, 0.75, 1))
+    sheet.line([(x, y) for i, (x, y) in enumerate(zip(spent, best)) for x, y in (((x, best[i - 1]), (x, y)) if i else ((x, y),))], BLUE, 2)
+    for name, colour in (("paper-case-a", ORANGE), ("paper-case-b", GREEN)):
+        value = program.analysis(name)["objectives"]["J"]
+        sheet.line([(0, value), (200, value)], colour, 1.2, "6 4")
+        sheet.text(198, value, f"published case {name[-1].upper()}", colour, "end", (0, -4), 12)
+    return sheet
+
+
+def rig(program):
+    """A synthetic recording of case A with noise, measured, beside the prediction: orders of the rotational acceleration."""
+    with tempfile.TemporaryDirectory() as folder:
+        design, file = Path(folder) / "design.json", Path(folder) / "run.csv"
+        design.write_text(json.dumps(program.example("paper-case-a")), encoding="utf-8")
+        subprocess.run([program.path, "rig", "--design", str(design), "--torque", "828", "--speed", "2000", "--noise-urad", "5", "-o", str(file)],
+                       capture_output=True, check=True)
+        measured = subprocess.run([program.path, "measure", str(design), str(file), "--torque", "828", "--json"], capture_output=True, text=True, check=True)
+    answer = json.loads(measured.stdout)
+    result, orders = answer["measurements"][0]["result"], answer["comparison"]["details"][0]["orders"]
+    sheet = Sheet(640, 300, "Measured and predicted orders of a synthetic recording")
+    sheet.axes((70, 20, 610, 245), (0.4, 8.6), (0, 25))
+    sheet.frame("mesh order", "amplitude, m/s&#178;", range(1, 9), range(0, 26, 5))
+    for k in range(8):
+        sigma = result["mesh"]["sigma_um"][k] / result["mesh"]["amplitude_um"][k] * orders["measured_m_per_s2"][k]
+        sheet.line([(k + 1.16, 0), (k + 1.16, min(25, orders["predicted_m_per_s2"][k]))], BLUE, 12)
+        sheet.line([(k + 0.84, 0), (k + 0.84, min(25, orders["measured_m_per_s2"][k]))], ORANGE, 12)
+        sheet.line([(k + 0.84, max(0, orders["measured_m_per_s2"][k] - 2 * sigma)), (k + 0.84, min(25, orders["measured_m_per_s2"][k] + 2 * sigma))], INK, 1.5)
+    rms = result["rms_m_per_s2"]
+    sheet.text(8.5, 23, f"orange: measured, RMS {rms['value']:.1f} &#177; {rms['sigma']:.1f} m/s&#178;; blue: predicted; bars: two sigmas", GREY, "end", size=12)
+    return sheet
+
+
 QUICK = {"line-of-action": line_of_action, "ends": ends, "plane-of-action": plane_of_action, "modification": modification, "slice-gap": slice_gap,
          "lumped-model": lumped_model}
-ALL = QUICK | {"transmission-error": transmission_error, "vibration": vibration, "contact-pattern": contact_pattern}
+ALL = QUICK | {"transmission-error": transmission_error, "vibration": vibration, "contact-pattern": contact_pattern,
+               "search": search, "rig": rig}
 
 
 def main():

@@ -1,9 +1,10 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Reads the whole source with tools that find what compilers and tests do not: clang-format, clang-tidy, cppcheck, shellcheck, eslint, tsc,
-# and the licence line of each file. Called by `make lint`; a tool that is not installed is named and passed over.
-#   SOURCES  the source's folder      FLAGS  the compiler's flags      MODULES  the page's work folder      JOBS  processes at a time
-: "${SOURCES:=.}" "${FLAGS:=-Isrc}" "${MODULES:=$SOURCES/web}" "${JOBS:=2}"
+# codespell, links, the manual pages, and the licence line of each file. Called by `make lint`; a tool that is not installed is named and passed over.
+#   SOURCES  the source's folder      FLAGS  the compiler's flags      MODULES  the page's work folder      MANUAL  the manual pages
+#   JOBS  processes at a time
+: "${SOURCES:=.}" "${FLAGS:=-Isrc}" "${MODULES:=$SOURCES/web}" "${MANUAL:=doc/manual}" "${JOBS:=2}"
 cd "$SOURCES" || exit 99
 count=0 failed=0
 found=$(mktemp) list=$(mktemp) || exit 99
@@ -50,7 +51,14 @@ echo web/src tests/browser web/build.mjs >"$list"
 reads "$node" 'eslint has nothing to say' node "$eslint" -c "$MODULES/eslint.config.js"
 echo "$MODULES/tsconfig.json" >"$list"
 reads "$node" 'the types of the page agree with its code' node "$tsc" --noEmit --strict -p
-files '*.c' '*.h' '*.cpp' '*.sh' '*.js' '*.mjs' '*.am'
+files '*.md' '*.c' '*.h' '*.sh' '*.py' '*.js' '*.mjs' '*.css' '*.html' '*.am'
+reads codespell 'no word is misspelt' codespell -q 3 -I tests/lint.words
+files '*.md'
+reads python3 'every link inside leads somewhere' python3 tests/doc/links.py
+find "$MANUAL" -name '*.1' >"$list"
+# shellcheck disable=SC2016
+reads groff 'the manual pages are well formed' sh -c '! groff -man -ww -Tutf8 -z "$@" 2>&1 | grep .' sh
+files '*.c' '*.h' '*.cpp' '*.sh' '*.py' '*.js' '*.mjs' '*.am'
 reads grep 'each file states its licence' sh -c '! grep -L "SPDX-License-Identifier: GPL-3.0-or-later" "$@" | grep .' sh
 echo "1..$count"
 exit $failed

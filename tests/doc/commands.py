@@ -14,6 +14,7 @@ import signal
 import subprocess
 import sys
 import tempfile
+import time
 from pathlib import Path
 
 SOURCES = Path(os.environ.get("SOURCES", ".")).resolve()
@@ -94,7 +95,7 @@ def run(document):
                 status = shell.wait(PATIENCE)
             except subprocess.TimeoutExpired:
                 status = "none in time"
-            left = still_there(shell.pid)
+            left = not ends_soon(shell.pid)
             if left:
                 os.killpg(shell.pid, signal.SIGKILL)
         reached = (folder / "steps").read_text(encoding="utf-8").split()
@@ -102,12 +103,15 @@ def run(document):
         return count, status, reached[-1] if reached else "0", last, left
 
 
-def still_there(group):
-    try:
-        os.killpg(group, 0)
-        return True
-    except ProcessLookupError:
-        return False
+def ends_soon(group):
+    """What a text started and told to stop has some seconds for it."""
+    for _ in range(100):
+        try:
+            os.killpg(group, 0)
+        except ProcessLookupError:
+            return True
+        time.sleep(0.1)
+    return False
 
 
 def main():

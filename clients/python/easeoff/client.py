@@ -218,11 +218,6 @@ class Client:
         query = {"pair": pair, "flank": flank, "transverse": int(transverse), "reversed": int(reversed)}
         return self._json("POST", "/import", query=query, form=("application/octet-stream", content))
 
-    @operation("reportDesign")
-    def report(self, design: Design, *, easeoff_lane: str | None = None) -> str:
-        """One HTML file a reviewer can check, as `easeoff report` writes it; waits while the pair is prepared."""
-        return self._computed("POST", "/report", document=design, lane=easeoff_lane, accept="text/html").text
-
     # -- jobs
 
     @operation("addJob")
