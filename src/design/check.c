@@ -314,5 +314,7 @@ enum eo_code eo_design_check(const struct eo_design *design, const struct eo_geo
     code = check_shafts(&design->shafts, &design->gear_pair, error);
   if (!code)
     code = check_objective(&design->objective, error);
+  if (!code)
+    code = eo_pitch_check(&design->pitch, geometry, design->resolution.positions, error);
   return code;
 }

@@ -312,6 +312,8 @@ void eo_design_resolve(struct eo_design *design, const struct eo_geometry *geome
   fill(&design->alignment.pinion_axial_stiffness, design->supports.gear_axial_stiffness[EO_LEFT]);
   resolve_shafts(&design->shafts, &design->gear_pair);
   resolve_resolution(&design->resolution, &design->gear_pair, geometry);
+  if (design->pitch.stated && design->pitch.positions == 0)
+    design->pitch.positions = eo_pitch_usual_positions(design->resolution.positions);
   resolve_scenarios(&design->objective, &design->alignment);
   resolve_optimization(&design->optimization, &design->gear_pair, geometry);
 }

@@ -9,6 +9,7 @@
 #include "document/assumption.h"
 #include "document/design_migration.h"
 #include "document/flank_grid_document.h"
+#include "document/pitch_document.h"
 #include "document/search_space.h"
 #include "evaluation/evaluator.h"
 #include "design/check.h"
@@ -194,6 +195,8 @@ static bool decode_current(const json_t *document, struct eo_design *design, str
     check_alignments(document, &read, faults);
   if (faults->count == before)
     eo_flank_grids_decode(json_object_get(document, "modification"), read.gear_pair.ends, &read.grids, faults);
+  if (faults->count == before)
+    eo_pitch_decode(json_object_get(document, "pitch"), &read.gear_pair, &read.pitch, faults);
   if (faults->count != before)
     return false;
   drop_right_end(document, &read, warnings);
@@ -234,6 +237,8 @@ json_t *eo_design_encode(const struct eo_design *design)
   bool failed = false;
   if (document)
     eo_flank_grids_encode(&design->grids, design->gear_pair.ends, modification, &failed);
+  if (document && design->pitch.stated)
+    eo_json_put(document, "pitch", eo_pitch_encode(&design->pitch, design->gear_pair.ends), &failed);
   if (failed) {
     json_decref(document);
     return NULL;
@@ -330,7 +335,7 @@ static enum eo_code hash_without(const struct eo_design *design, const char *con
 enum eo_code eo_design_evaluation_hash(const struct eo_design *design, char hex[EO_HASH_LENGTH + 1],
                                        struct eo_error *error)
 {
-  static const char *const without[] = {"version", "name", "rating", "objective", "optimization", NULL};
+  static const char *const without[] = {"version", "name", "rating", "pitch", "objective", "optimization", NULL};
   return hash_without(design, without, hex, error);
 }
 
@@ -356,7 +361,7 @@ static json_t *encode_wants(const struct eo_design *design)
 
 static json_t *encode_problem(const struct eo_design *design)
 {
-  static const char *const without[] = {"version", "name", "modification", "rating", "objective", "optimization"};
+  static const char *const without[] = {"version", "name", "modification", "rating", "pitch", "objective", "optimization"};
   json_t *document = eo_design_encode(design), *load_case;
   bool failed = !document;
   size_t i;

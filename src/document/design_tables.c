@@ -2,6 +2,7 @@
 /* Field tables of the duty cycle, the objective, the optimization and the resolution, and of the whole design. */
 #include "document/design_document.h"
 #include "document/design_migration.h"
+#include "document/pitch_document.h"
 #include "flexibility/flexibility.h"
 
 /* clang-format off */
@@ -284,6 +285,12 @@ static const struct eo_field design[] = {
      .offset = offsetof(struct eo_design, rating),
      .table = &eo_rating_table,
      .help = "what the rating by ISO 6336 goes by; absent: the defaults"},
+    {.key = "pitch",
+     .kind = EO_FIELD_OBJECT,
+     .flags = EO_FIELD_ELSEWHERE | EO_FIELD_NULLABLE,
+     .table = &eo_pitch_table,
+     .derived = "teeth are alike",
+     .help = "deviations of single teeth: what they do over the hunting period stands in the result's pitch"},
     EO_OBJECT(struct eo_design, objective, "objective", &eo_objective_table, "what is good"),
     EO_OBJECT(struct eo_design, optimization, "optimization", &eo_optimization_table, "how the best is searched for"),
     EO_OBJECT(struct eo_design, resolution, "resolution", &eo_resolution_table, "how finely it is computed"),

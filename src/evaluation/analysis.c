@@ -35,6 +35,7 @@ void eo_analysis_free(struct eo_analysis *analysis)
     return;
   eo_evaluator_free(analysis->evaluator);
   forget_rating(analysis);
+  eo_pitch_analysis_done(&analysis->pitch);
   free(analysis->unmodified);
   free(analysis->raw);
   free(analysis->raw_unmodified);
@@ -74,6 +75,7 @@ static void strip(struct eo_design *bare, const struct eo_design *design)
   memset(bare->name, 0, sizeof bare->name);
   memset(&bare->optimization, 0, sizeof bare->optimization);
   memset(&bare->rating, 0, sizeof bare->rating);
+  memset(&bare->pitch, 0, sizeof bare->pitch);
   memset(&bare->modification, 0, sizeof bare->modification);
 }
 
@@ -163,6 +165,10 @@ static enum eo_code run_both(struct eo_analysis *analysis, const struct eo_desig
   if (!known && !own_reference)
     EO_TRY(find_unmodified(analysis, bare, want, error));
   EO_TRY(find_design(analysis, design, want, error));
+  eo_pitch_analysis_done(&analysis->pitch);
+  if (want & EO_WANT_PITCH && design->pitch.stated)
+    EO_TRY(eo_pitch_analysis_run(&analysis->pitch, analysis->evaluator, design, want & EO_WANT_ROOT, analysis->threads,
+                                 error));
   if (want & EO_WANT_RATING)
     EO_TRY(find_rating(analysis, design, error));
   if (own_reference)

@@ -6,6 +6,7 @@
 
 #include "evaluation/design_rating.h"
 #include "evaluation/evaluator.h"
+#include "evaluation/pitch_analysis.h"
 
 struct eo_analysis {
   const struct eo_pair *pair;               /* borrowed */
@@ -13,6 +14,7 @@ struct eo_analysis {
   const struct eo_evaluation *evaluation;   /* of the design at its nominal alignment; valid until the next run */
   struct eo_design_rating *rating;          /* owned; NULL unless EO_WANT_RATING was ever asked for */
   struct eo_evaluator *leaning;             /* owned, of the rating: keeps what the evaluator has solved */
+  struct eo_pitch_analysis pitch;           /* owned; no cases unless the last run was asked for it */
   int cases, scenarios, want;               /* of the last run; want: as asked for */
   bool root;                                /* root stresses are there */
   struct eo_objective_case *unmodified;     /* [cases], without modification, nominal */

@@ -22,6 +22,7 @@ enum {
   EO_WANT_BAND = 2,   /* RMS at 0.9 and 1.1 times the compliance */
   EO_WANT_CURVES = 4, /* histories and orders of the vibration */
   EO_WANT_RATING = 8, /* rating and tribology: two more contact analyses; of an analysis alone */
+  EO_WANT_PITCH = 16, /* the hunting period, where the design states single teeth; of an analysis alone */
 };
 
 enum { EO_CURVE_CHANNELS = EO_CHANNELS };

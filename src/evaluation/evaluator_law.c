@@ -53,9 +53,8 @@ double eo_evaluator_law_reach(const struct eo_evaluator *evaluator, const struct
   return form == FORM_BENT ? BENT : STRAIGHT;
 }
 
-/* The gaps at which an end is loaded: elastic bodies stay as the load case bends them. */
-static const struct eo_loaded_gaps *gaps_of(struct eo_evaluator *evaluator, const struct eo_run *run,
-                                            const struct eo_case_result *load_case, int end)
+const struct eo_loaded_gaps *eo_evaluator_gaps_of(struct eo_evaluator *evaluator, const struct eo_run *run,
+                                                  const struct eo_case_result *load_case, int end)
 {
   struct eo_loaded_gaps *bent = &evaluator->gaps_on_bent_bodies;
   const struct eo_meeting *meeting = eo_meeting_of(evaluator, load_case);
@@ -89,8 +88,8 @@ static enum eo_code solve_table(struct eo_evaluator *evaluator, const struct eo_
 {
   EO_TRY(make_table_storage(evaluator, error));
   eo_loaded_solve(evaluator->loaded[0], evaluator->pair->grid,
-                  gaps_of(evaluator, run, request->load_case, request->end), run->scenario.compliance, loads, load,
-                  evaluator->table);
+                  eo_evaluator_gaps_of(evaluator, run, request->load_case, request->end), run->scenario.compliance,
+                  loads, load, evaluator->table);
   return EO_OK;
 }
 

@@ -204,6 +204,11 @@ struct eo_law_request {
 enum eo_code eo_evaluator_set_law(struct eo_evaluator *evaluator, const struct eo_run *run,
                                   const struct eo_law_request *request, struct eo_law *law, struct eo_error *error);
 
+/* The gaps at which an end is loaded: elastic bodies stay as the load case bends them. Of those, until the next call.
+ */
+const struct eo_loaded_gaps *eo_evaluator_gaps_of(struct eo_evaluator *evaluator, const struct eo_run *run,
+                                                  const struct eo_case_result *load_case, int end);
+
 /* Whether the law is a table of loaded contact at many loads. */
 bool eo_evaluator_law_is_table(const struct eo_evaluator *evaluator, const struct eo_design *design,
                                const struct eo_dynamics_parameters *parameters);

@@ -1,0 +1,340 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "evaluation/pitch_analysis.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/parallel.h"
+#include "evaluation/evaluator_private.h"
+#include "numerics/fft.h"
+#include "numerics/periodic.h"
+
+/* What a run works with beside the result. */
+struct work {
+  struct eo_pitch_analysis *result;
+  struct eo_evaluator *evaluator;
+  const struct eo_design *design;
+  struct eo_tooth_deviation *ordered[2][2]; /* [end][member] in the order of meshing, of the case at hand */
+  double *gap[2];                           /* [end] of the case at hand */
+  bool root;
+  int threads;
+};
+
+/* Drive flanks carry ahead when the member drives that does so in every load case. */
+static int lead_driver(const struct eo_load_case *load_case, const struct eo_running *running)
+{
+  bool as_made = (running->flank == EO_DRIVE_FLANK) == (load_case->direction == EO_AHEAD);
+  return as_made ? load_case->driver : 1 - load_case->driver;
+}
+
+static struct eo_pitch_meeting meeting_of(const struct eo_case_result *load_case)
+{
+  return (struct eo_pitch_meeting){.side = load_case->running.flank,
+                                   .inwards = load_case->running.inwards,
+                                   .lead_driver = lead_driver(&load_case->load_case, &load_case->running)};
+}
+
+/* All teeth of the flanks of one side, once. */
+static enum eo_code compose(struct work *w, const struct eo_pitch_meeting *meeting, struct eo_error *error)
+{
+  const struct eo_geometry *g = &w->evaluator->pair->geometry;
+  if (w->result->used[meeting->side])
+    return EO_OK;
+  w->result->used[meeting->side] = true;
+  for (int member = 0; member < 2; member++)
+    for (int end = 0; end < w->design->gear_pair.ends; end++) {
+      int teeth = g->teeth[member];
+      struct eo_tooth_deviation *tooth = malloc(sizeof *tooth * (size_t)teeth);
+      double *index = malloc(sizeof *index * (size_t)teeth);
+      w->result->tooth[meeting->side][member][end] = tooth;
+      enum eo_code code = tooth && index ? eo_pitch_compose(&w->design->pitch, g, meeting, member, end, tooth, error)
+                                         : eo_error_memory(error);
+      for (int i = 0; i < teeth && !code; i++)
+        index[i] = tooth[i].index;
+      if (!code)
+        w->result->size[meeting->side][member][end] = eo_pitch_size_of(teeth, index);
+      free(index);
+      if (code)
+        return code;
+    }
+  return EO_OK;
+}
+
+/* Tables in the order of meshing and gaps of both ends, for one load case. */
+static void arrange(struct work *w, struct eo_case_result *load_case, const struct eo_pitch_case *own)
+{
+  const struct eo_contact_grid *grid = w->evaluator->pair->grid;
+  struct eo_run run = {.design = w->design};
+  for (int end = 0; end < w->design->gear_pair.ends; end++) {
+    memcpy(w->gap[end], eo_evaluator_gaps_of(w->evaluator, &run, load_case, end)->gap,
+           sizeof(double) * (size_t)grid->points);
+    for (int member = 0; member < 2; member++)
+      eo_pitch_order(&w->design->pitch, &own->meeting, member, grid->geometry.teeth[member],
+                     w->result->tooth[own->meeting.side][member][end], w->ordered[end][member]);
+  }
+}
+
+static enum eo_code hunt(struct work *w, const struct eo_case_result *load_case, struct eo_pitch_case *own,
+                         struct eo_error *error)
+{
+  const struct eo_pair *pair = w->evaluator->pair;
+  struct eo_hunting_input input = {
+      .ends = w->design->gear_pair.ends,
+      .grid = {pair->grid, pair->grid},
+      .gap = {w->gap[EO_LEFT], w->gap[EO_RIGHT]},
+      .inwards = load_case->running.inwards,
+      .positions = w->design->pitch.positions,
+      .stagger = eo_evaluator_stagger(w->design, load_case->running.flank, w->design->pitch.positions),
+      .compliance_factor = 1,
+      .load = {load_case->end_force[EO_LEFT], load_case->end_force[EO_RIGHT]},
+      .shared_load = load_case->force,
+      .hold = eo_meeting_hold(w->evaluator, w->design, &load_case->running),
+      .threads = w->threads};
+  for (int i = 0; i < 4; i++)
+    input.tooth[i / 2][i % 2] = w->ordered[i / 2][i % 2];
+  for (int member = 0; member < 2 && w->root; member++)
+    input.root[member] = pair->root[member];
+  return eo_hunting_run(&own->hunting, &input, NULL, error);
+}
+
+static double swing(int n, const double *value)
+{
+  double low = INFINITY, high = -INFINITY;
+  for (int i = 0; i < n; i++) {
+    low = fmin(low, value[i]);
+    high = fmax(high, value[i]);
+  }
+  return high - low;
+}
+
+/* Mean and swing over the period and of every cycle; what the pinion does along its axis. */
+static enum eo_code read_curves(const struct work *w, struct eo_pitch_case *own, struct eo_error *error)
+{
+  const struct eo_hunting *h = &own->hunting;
+  const struct eo_geometry *g = &w->evaluator->pair->geometry;
+  double normal = cos(g->base_helix_angle), lean = sin(g->base_helix_angle), outwards = own->meeting.inwards ? -1 : 1;
+  double low = INFINITY, high = -INFINITY;
+  own->transmission = malloc(sizeof(double) * (size_t)h->instants);
+  own->cycle_mean = malloc(sizeof(double) * (size_t)h->cycles);
+  own->cycle_swing = malloc(sizeof(double) * (size_t)h->cycles);
+  if (!own->transmission || !own->cycle_mean || !own->cycle_swing)
+    return eo_error_memory(error);
+  for (int i = 0; i < h->instants; i++) {
+    double left = h->approach[EO_LEFT][i], right = h->approach[h->ends - 1][i],
+           shift = h->ends == 2 && lean != 0 ? outwards * (left - right) / (2 * lean) : 0;
+    own->transmission[i] = (left + right) / (2 * normal);
+    own->float_mean += shift / h->instants;
+    low = fmin(low, shift);
+    high = fmax(high, shift);
+  }
+  own->float_swing = high - low;
+  own->mean = 0;
+  for (int cycle = 0; cycle < h->cycles; cycle++) {
+    const double *part = own->transmission + (size_t)cycle * (size_t)h->positions;
+    own->cycle_mean[cycle] = eo_periodic_mean(h->positions, part);
+    own->cycle_swing[cycle] = swing(h->positions, part);
+    own->mean += own->cycle_mean[cycle] / h->cycles;
+  }
+  own->peak_to_peak = swing(h->instants, own->transmission);
+  own->lines = h->instants / 2 + 1;
+  own->line = malloc(sizeof *own->line * (size_t)own->lines);
+  return own->line ? eo_fft_spectrum(h->instants, own->transmission, own->line, error) : eo_error_memory(error);
+}
+
+/* A member's tables of both hands are the same. */
+static bool hands_alike(const struct work *w, const struct eo_pitch_case *own)
+{
+  bool alike = true;
+  for (int member = 0; member < 2 && w->design->gear_pair.ends == 2; member++) {
+    struct eo_tooth_deviation *const *of = w->result->tooth[own->meeting.side][member];
+    for (int i = 0; i < w->evaluator->pair->geometry.teeth[member]; i++)
+      alike = alike && of[EO_LEFT][i].index == of[EO_RIGHT][i].index &&
+              of[EO_LEFT][i].profile_slope == of[EO_RIGHT][i].profile_slope &&
+              of[EO_LEFT][i].helix_slope == of[EO_RIGHT][i].helix_slope;
+  }
+  return alike;
+}
+
+/* Z at which an end would carry P, from the load it has; both in the order of time. */
+static void order_in_time(const struct eo_pitch_case *own, bool backwards, int end, double *deflection, double *tangent)
+{
+  const struct eo_hunting *h = &own->hunting;
+  for (int i = 0; i < h->instants; i++) {
+    int from = backwards ? (h->instants - i) % h->instants : i;
+    double k = h->tangent[end][from];
+    tangent[i] = k;
+    deflection[i] = h->approach[end][from] + (k > 0 ? (own->force - h->load[end][from]) / k : 0);
+  }
+}
+
+static enum eo_code respond_with(const struct work *w, const struct eo_case_result *load_case,
+                                 struct eo_pitch_case *own, double *const scratch[4], struct eo_error *error)
+{
+  const struct eo_design *design = w->design;
+  const struct eo_hunting *h = &own->hunting;
+  struct eo_dynamics_parameters parameters;
+  bool held = load_case->at_stop || design->alignment.pinion_axial != EO_AXIAL_STOPS,
+       differ = design->gear_pair.ends == 2 && !(eo_reuse_same_flanks(design) && hands_alike(w, own));
+  double stiffness = 0;
+  for (int end = 0; end < h->ends; end++) {
+    order_in_time(own, load_case->running.backwards, end, scratch[end], scratch[2 + end]);
+    for (int i = 0; i < h->instants; i++)
+      stiffness += scratch[2 + end][i] / (h->ends * h->instants);
+  }
+  EO_TRY(eo_dynamics_parameters_init(&parameters, &w->evaluator->pair->geometry, h->ends,
+                                     held ? eo_alignment_axial_stiffness(&design->alignment) : 0, &design->supports,
+                                     differ, stiffness, error));
+  int most = h->positions / 2 - 1, harmonics = design->resolution.te_harmonics;
+  const struct eo_long_case load = {.parameters = &parameters,
+                                    .torque = own->load_case.torque,
+                                    .speed = own->load_case.speed,
+                                    .pinion_teeth = h->teeth[EO_PINION],
+                                    .cycles = h->cycles,
+                                    .positions = h->positions,
+                                    .harmonics = harmonics < most ? harmonics : most,
+                                    .deflection = {scratch[0], scratch[1]},
+                                    .tangent = {scratch[2], scratch[3]},
+                                    .back = load_case->end[EO_LEFT].deflection.part[0][EO_DEFLECTION_NODES / 2] -
+                                            design->gear_pair.backlash};
+  return eo_long_response_find(&own->response, &load, error);
+}
+
+static void add_order(struct eo_pitch_case *own, double order, const char *name)
+{
+  struct eo_pitch_order *row = &own->order[own->orders];
+  long k = lround(order * own->hunting.cycles / own->hunting.teeth[EO_PINION]);
+  if (k <= 0 || k >= own->lines)
+    return;
+  *row = (struct eo_pitch_order){.order = order, .transmission = cabs(own->line[k])};
+  snprintf(row->name, sizeof row->name, "%s", name);
+  for (int reading = 0; reading < EO_READINGS; reading++)
+    row->acceleration[reading] = own->response.acceleration[reading] && k < own->response.lines
+                                     ? cabs(own->response.acceleration[reading][k])
+                                     : NAN;
+  own->orders++;
+}
+
+/* Orders of the shafts and of the mesh with its sidebands, by name. */
+static void list_orders(struct eo_pitch_case *own)
+{
+  static const char *const name[2] = {"pinion", "gear"};
+  const int *z = own->hunting.teeth;
+  char text[32];
+  own->orders = 0;
+  for (int i = 0; i < 2 * EO_PITCH_SHAFT_ORDERS; i++) {
+    int member = i / EO_PITCH_SHAFT_ORDERS, j = i % EO_PITCH_SHAFT_ORDERS + 1;
+    snprintf(text, sizeof text, "%s %d", name[member], j);
+    add_order(own, (double)j * z[EO_PINION] / z[member], text);
+  }
+  for (int h = 1; h <= EO_PITCH_MESH_ORDERS; h++) {
+    snprintf(text, sizeof text, "mesh %d", h);
+    add_order(own, (double)h * z[EO_PINION], text);
+    for (int i = 0; i < 4 * EO_PITCH_SIDEBANDS && h <= EO_PITCH_SIDED; i++) {
+      int member = i / (2 * EO_PITCH_SIDEBANDS), j = i % EO_PITCH_SIDEBANDS + 1,
+          side = i / EO_PITCH_SIDEBANDS % 2 ? 1 : -1;
+      snprintf(text, sizeof text, "mesh %d %c %s %d", h, side < 0 ? '-' : '+', name[member], j);
+      add_order(own, (double)h * z[EO_PINION] + side * (double)j * z[EO_PINION] / z[member], text);
+    }
+  }
+}
+
+/* The vibration of one load case, on any thread. */
+static enum eo_code respond(void *context, int thread, int k, struct eo_error *error)
+{
+  const struct work *w = context;
+  struct eo_pitch_case *own = &w->result->load_case[k];
+  double *scratch[4] = {NULL};
+  enum eo_code code = EO_OK;
+  (void)thread;
+  for (int i = 0; i < 4 && !code; i++) {
+    scratch[i] = malloc(sizeof(double) * (size_t)own->hunting.instants);
+    code = scratch[i] ? EO_OK : eo_error_memory(error);
+  }
+  own->response.outcome = EO_LONG_NO_LAW;
+  if (!code && own->hunting.failures == 0)
+    code = respond_with(w, &w->evaluator->result.load_case[k], own, scratch, error);
+  for (int i = 0; i < 4; i++)
+    free(scratch[i]);
+  if (!code)
+    list_orders(own);
+  return code;
+}
+
+static enum eo_code make_work(struct work *w, struct eo_error *error)
+{
+  const struct eo_contact_grid *grid = w->evaluator->pair->grid;
+  struct eo_pitch_analysis *result = w->result;
+  bool complete = true;
+  result->cases = w->evaluator->result.cases;
+  result->load_case = calloc((size_t)result->cases, sizeof *result->load_case);
+  for (int end = 0; end < 2; end++) {
+    w->gap[end] = malloc(sizeof(double) * (size_t)grid->points);
+    complete = complete && w->gap[end];
+    for (int member = 0; member < 2; member++) {
+      w->ordered[end][member] = calloc((size_t)grid->geometry.teeth[member], sizeof *w->ordered[end][member]);
+      complete = complete && w->ordered[end][member];
+    }
+  }
+  for (int member = 0; member < 2; member++) {
+    result->tolerance[member] = (struct eo_flank_tolerance){.single_pitch = NAN, .total_pitch = NAN};
+    if (w->design->pitch.member[member].tolerance_class > 0)
+      EO_TRY(eo_pitch_tolerance(&result->tolerance[member], &w->design->pitch.member[member], &grid->geometry, member,
+                                error));
+  }
+  return complete && result->load_case ? EO_OK : eo_error_memory(error);
+}
+
+static enum eo_code run_cases(struct work *w, struct eo_error *error)
+{
+  EO_TRY(make_work(w, error));
+  for (int k = 0; k < w->result->cases; k++) {
+    struct eo_case_result *load_case = &w->evaluator->result.load_case[k];
+    struct eo_pitch_case *own = &w->result->load_case[k];
+    own->load_case = load_case->load_case;
+    own->force = load_case->force;
+    own->meeting = meeting_of(load_case);
+    EO_TRY(compose(w, &own->meeting, error));
+    arrange(w, load_case, own);
+    EO_TRY(hunt(w, load_case, own, error));
+    EO_TRY(read_curves(w, own, error));
+  }
+  const struct eo_parallel parallel = {.threads = w->threads, .work = respond, .context = w};
+  return eo_parallel_run(&parallel, w->result->cases, error);
+}
+
+enum eo_code eo_pitch_analysis_run(struct eo_pitch_analysis *analysis, struct eo_evaluator *evaluator,
+                                   const struct eo_design *design, bool root, int threads, struct eo_error *error)
+{
+  struct work w = {.result = analysis,
+                   .evaluator = evaluator,
+                   .design = design,
+                   .root = root && evaluator->pair->root[0],
+                   .threads = threads};
+  *analysis = (struct eo_pitch_analysis){0};
+  EO_TIMED(analysis->milliseconds);
+  enum eo_code code = run_cases(&w, error);
+  for (int end = 0; end < 2; end++) {
+    free(w.gap[end]);
+    for (int member = 0; member < 2; member++)
+      free(w.ordered[end][member]);
+  }
+  return code;
+}
+
+void eo_pitch_analysis_done(struct eo_pitch_analysis *analysis)
+{
+  for (int k = 0; k < analysis->cases && analysis->load_case; k++) {
+    struct eo_pitch_case *own = &analysis->load_case[k];
+    eo_hunting_done(&own->hunting);
+    eo_long_response_done(&own->response);
+    free(own->transmission);
+    free(own->cycle_mean);
+    free(own->cycle_swing);
+    free(own->line);
+  }
+  free(analysis->load_case);
+  for (int i = 0; i < 8; i++)
+    free(analysis->tooth[i / 4][i / 2 % 2][i % 2]);
+  *analysis = (struct eo_pitch_analysis){0};
+}
