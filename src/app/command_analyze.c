@@ -5,12 +5,14 @@
 #include "app/app.h"
 #include "app/data.h"
 #include "app/watch.h"
+#include "base/parallel.h"
 #include "format/json.h"
+#include "document/pitch_document.h"
 #include "document/result.h"
 #include "evaluation/analysis.h"
 
 struct request {
-  const char *file, *csv, *data;
+  const char *file, *csv, *data, *pitch;
   bool json, no_cache;
   struct eo_design design;
   struct eo_geometry geometry;
@@ -41,9 +43,11 @@ static enum eo_code analyze(const struct request *request, const struct eo_pair 
 {
   struct eo_analysis *analysis = NULL;
   enum eo_code code = eo_analysis_new(&analysis, pair, error);
-  if (!code)
-    code = eo_analysis_run(analysis, &request->design, EO_WANT_ROOT | EO_WANT_BAND | EO_WANT_CURVES | EO_WANT_RATING,
-                           error);
+  if (!code) {
+    analysis->threads = eo_parallel_cores() > 1 ? 2 : 1;
+    code = eo_analysis_run(analysis, &request->design,
+                           EO_WANT_ROOT | EO_WANT_BAND | EO_WANT_CURVES | EO_WANT_RATING | EO_WANT_PITCH, error);
+  }
   if (!code && !(*result = eo_result_encode(analysis, &request->design, &request->warnings)))
     code = eo_error_memory(error);
   eo_analysis_free(analysis);
@@ -92,6 +96,30 @@ static int run_request(struct request *request)
   return status;
 }
 
+/* The deviations of a measured pair's teeth in place of those of the design. */
+static bool read_teeth(struct request *request, int *status)
+{
+  enum { MOST_TABLE = 1 << 20 };
+  struct eo_text text = {0};
+  struct eo_error error;
+  struct eo_faults *faults = calloc(1, sizeof *faults);
+  json_t *table = json_object();
+  enum eo_code code = faults && table ? eo_text_read(&text, request->pitch, MOST_TABLE, &error) : eo_error_memory(&error);
+  if (!code && json_object_set_new(table, "csv", json_string(text.data)) != 0)
+    code = eo_error_set(&error, EO_ERROR_INPUT, NULL, "The table is not text in UTF-8.");
+  if (!code) {
+    eo_pitch_decode(table, &request->design.gear_pair, &request->design.pitch, faults);
+    code = eo_faults_first(faults, &error);
+  }
+  if (!code)
+    code = eo_design_complete(&request->design, &request->geometry, &error);
+  *status = code ? eo_app_fail(request->pitch, &error) : EO_EXIT_DONE;
+  eo_text_done(&text);
+  json_decref(table);
+  free(faults);
+  return !code;
+}
+
 static int run(const struct eo_command *command, int argc, char **argv)
 {
   struct request *request = calloc(1, sizeof *request);
@@ -101,23 +129,26 @@ static int run(const struct eo_command *command, int argc, char **argv)
     eo_error_memory(&error);
     return eo_app_fail(NULL, &error);
   }
-  const struct eo_option options[] = {{.name = "--json", .flag = &request->json},
-                                      {.name = "--csv", .value = &request->csv},
-                                      {.name = "--data", .value = &request->data},
-                                      {.name = "--no-cache", .flag = &request->no_cache},
-                                      {.name = NULL}};
+  const struct eo_option options[] = {
+      {.name = "--json", .flag = &request->json},         {.name = "--csv", .value = &request->csv},
+      {.name = "--data", .value = &request->data},        {.name = "--pitch", .value = &request->pitch},
+      {.name = "--no-cache", .flag = &request->no_cache}, {.name = NULL}};
   if (eo_app_arguments(command, argc, argv, options, 1, 1, &request->file, &operands, &status) &&
-      eo_app_load_design(request->file, &request->design, &request->geometry, &request->warnings, &status))
+      eo_app_load_design(request->file, &request->design, &request->geometry, &request->warnings, &status) &&
+      (!request->pitch || read_teeth(request, &status)))
     status = run_request(request);
   free(request);
   return status;
 }
 
-const struct eo_command eo_command_analyze = {"analyze", "DESIGN.json [--json] [--csv DIR] [--data DIR] [--no-cache]",
-                                              "one true evaluation of a design, everything it computed",
-                                              "Without --json or --csv, a summary for people: every load case "
-                                              "unmodified and as designed, the objectives, notes, where the\n"
-                                              "time went. --json prints the result document; --csv writes its curves "
-                                              "as files into DIR, which is made when missing.\n\n" EO_APP_DATA_HELP
-                                              "--no-cache neither reads nor keeps it.\n",
-                                              run};
+const struct eo_command eo_command_analyze = {
+    "analyze", "DESIGN.json [--json] [--csv DIR] [--pitch FILE] [--data DIR] [--no-cache]",
+    "one true evaluation of a design, everything it computed",
+    "Without --json or --csv, a summary for people: every load case "
+    "unmodified and as designed, the objectives, notes, where the\n"
+    "time went. --json prints the result document; --csv writes its curves "
+    "as files into DIR, which is made when missing. --pitch takes the "
+    "deviations of single teeth from FILE, a table of a measuring\n"
+    "machine with headings member, end, flank, tooth and index_um or "
+    "single_um, in place of the design's.\n\n" EO_APP_DATA_HELP "--no-cache neither reads nor keeps it.\n",
+    run};

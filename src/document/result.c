@@ -215,7 +215,7 @@ static json_t *encode_objectives(const struct eo_result_source *source)
 }
 
 struct timing {
-  double preparation, unmodified, contact, impact, root, dynamics, evaluation, rating; /* s */
+  double preparation, unmodified, contact, impact, root, dynamics, evaluation, rating, pitch; /* s */
 };
 
 static const struct eo_outline_row timing_rows[] = {
@@ -228,6 +228,8 @@ static const struct eo_outline_row timing_rows[] = {
     EO_KEY("dynamics", "number", "vibration", .unit = &eo_unit_ms, EO_AT(struct timing, dynamics)),
     EO_KEY("rating", "number", "rating and tribology, beside the evaluation", .unit = &eo_unit_ms,
            EO_AT(struct timing, rating)),
+    EO_KEY("pitch", "number", "the hunting period, beside the evaluation", .unit = &eo_unit_ms,
+           EO_AT(struct timing, pitch)),
     EO_KEY("evaluation", "number", "of the design altogether", .unit = &eo_unit_ms, EO_AT(struct timing, evaluation)),
 };
 static const struct eo_outline timing = EO_OUTLINE("Timing", timing_rows);
@@ -248,6 +250,7 @@ static json_t *encode_timing(const struct eo_result_source *source)
                                  .root = seconds_of(r->root_ms),
                                  .dynamics = seconds_of(r->dynamics_ms),
                                  .rating = seconds_of(source->analysis->rating_ms),
+                                 .pitch = seconds_of(source->analysis->pitch.milliseconds),
                                  .evaluation = seconds_of(source->analysis->design_ms)};
   return eo_outline_encode(&timing, &seconds);
 }
@@ -277,6 +280,9 @@ static const struct eo_outline_row result_rows[] = {
            .outline = &eo_outline_rating),
     EO_KEY("tribology", "object?", "sliding, flash temperature, film; null when it was not asked for",
            .outline = &eo_outline_tribology),
+    EO_KEY("pitch", "object?",
+           "single teeth over the hunting period; null when the design states none or they were not asked for",
+           .outline = &eo_outline_pitch),
     EO_KEY("warnings", "[text]", "in plain words"),
     EO_KEY("findings", "[object]", "those of them that belong to a field of the design",
            .outline = &eo_outline_finding),
@@ -324,6 +330,7 @@ json_t *eo_result_tail(const struct eo_result_source *source, const struct eo_wa
                 have_modes ? eo_json_reals(modes->n, modes->damping_ratio, 1, NULL, EO_DIGITS_CURVE) : json_null());
   eo_object_put(&o, "rating", eo_result_rating(source));
   eo_object_put(&o, "tribology", eo_result_tribology(source));
+  eo_object_put(&o, "pitch", eo_result_pitch(source));
   eo_object_put(&o, "warnings", eo_result_warnings(source, warnings));
   eo_object_put(&o, "findings", eo_design_findings(warnings));
   eo_object_put(&o, "timing_ms", encode_timing(source));

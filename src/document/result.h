@@ -44,11 +44,12 @@ enum {
   EO_RESULT_NO_ORDERS = 512,
   EO_RESULT_NO_TRIBOLOGY = 1024,
   EO_RESULT_NO_DESIGN = 2048, /* resolved, what is assumed of it, dimensions */
+  EO_RESULT_NO_PITCH = 4096,  /* curves of the hunting period */
   EO_RESULT_FIRST_PART = EO_RESULT_NO_MODIFICATION,
-  EO_RESULT_PARTS = 10,
+  EO_RESULT_PARTS = 11,
 };
 #define EO_RESULT_PART_WORDS \
-  "modification|unloaded_contact|lte|mesh_stiffness|face_load|load_share|pattern|orders|tribology|design"
+  "modification|unloaded_contact|lte|mesh_stiffness|face_load|load_share|pattern|orders|tribology|design|pitch"
 
 /* Added to what is left out: of all load cases only number k (from 0) has curves, maps and histories. */
 #define EO_RESULT_CURVES_OF(k) ((unsigned)((k) + 1) << 16)

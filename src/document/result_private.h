@@ -43,7 +43,7 @@ json_t *eo_result_map(const struct eo_result_source *source, int rows, int colum
 /* The parts; each stands beside its writer. */
 extern const struct eo_outline eo_outline_lte, eo_outline_stiffness, eo_outline_unloaded, eo_outline_contact,
     eo_outline_face_load, eo_outline_bodies, eo_outline_flexibility, eo_outline_impact, eo_outline_root_stress,
-    eo_outline_vibration, eo_outline_modification, eo_outline_rating, eo_outline_tribology;
+    eo_outline_vibration, eo_outline_modification, eo_outline_rating, eo_outline_tribology, eo_outline_pitch;
 extern const struct eo_outline eo_outline_value;    /* of a struct eo_objective_value */
 extern const struct eo_outline eo_outline_raw_case; /* eo_result_raw_case() */
 
@@ -71,6 +71,8 @@ json_t *eo_result_modification(struct eo_result_source *source);
 /* null unless the analysis was asked for the rating. */
 json_t *eo_result_rating(const struct eo_result_source *source);
 json_t *eo_result_tribology(const struct eo_result_source *source);
+/* null unless the design states single teeth and the analysis was asked for them. */
+json_t *eo_result_pitch(const struct eo_result_source *source);
 json_t *eo_result_warnings(const struct eo_result_source *source, const struct eo_warnings *before);
 
 /* What one thread needs to write; false without memory. done() after either. */

@@ -160,6 +160,65 @@ static void print_rating(const json_t *result, struct eo_text *text)
                 json_array_size(json_object_get(rating, "unchecked")));
 }
 
+static void print_place(const json_t *place, struct eo_text *text)
+{
+  eo_text_print(text, "%s end, cycle %.0f, tooth %.0f of the pinion and %.0f of the gear\n", find_text(place, "end"),
+                find(place, "cycle"), find(place, "pinion_tooth"), find(place, "gear_tooth"));
+}
+
+static void print_pitch_case(const json_t *load_case, struct eo_text *text)
+{
+  static const char *const headings[] = {"order", "per turn", "LTE, um", "normal, m/s2", "rotational, m/s2"};
+  const json_t *orders = json_object_get(load_case, "orders"), *row;
+  struct eo_text_table sheet;
+  size_t i;
+  eo_text_print(text, "  %.6g N m: LTE mean %.5g um, peak to peak %.5g um, within a cycle %.3g to %.3g um\n",
+                find(load_case, "torque_Nm"), find(load_case, "lte/mean_um"), find(load_case, "lte/peak_to_peak_um"),
+                find(load_case, "lte/peak_to_peak_of_one_cycle_um/least_um"),
+                find(load_case, "lte/peak_to_peak_of_one_cycle_um/most_um"));
+  eo_text_print(text, "    vibration %.4g m/s2 normal, %.4g rotational: %s\n",
+                find(load_case, "vibration/rms_m_per_s2/normal"), find(load_case, "vibration/rms_m_per_s2/rotational"),
+                find_text(load_case, "vibration/outcome"));
+  eo_text_print(text, "    largest load %.5g N, %.3g of the end's: ", find(load_case, "largest/load/load_N"),
+                find(load_case, "largest/load/share_of_end"));
+  print_place(eo_json_find(load_case, "largest/load"), text);
+  eo_text_print(text, "    largest pressure %.5g MPa: ", find(load_case, "largest/pressure/pressure_MPa"));
+  print_place(eo_json_find(load_case, "largest/pressure"), text);
+  if (json_is_object(eo_json_find(load_case, "largest/root_stress")))
+    eo_text_print(text, "    largest root stress: pinion %.4g MPa on tooth %.0f, gear %.4g MPa on tooth %.0f\n",
+                  find(load_case, "largest/root_stress/pinion/stress_MPa"),
+                  find(load_case, "largest/root_stress/pinion/pinion_tooth"),
+                  find(load_case, "largest/root_stress/gear/stress_MPa"),
+                  find(load_case, "largest/root_stress/gear/gear_tooth"));
+  eo_text_table_init(&sheet, 5, headings);
+  json_array_foreach(orders, i, row)
+  {
+    const char *name = find_text(row, "name");
+    if (strchr(name, '-') || strchr(name, '+'))
+      continue;
+    eo_text_table_string(&sheet, name);
+    eo_text_table_number(&sheet, find(row, "order_per_pinion_revolution"), NULL, 5);
+    eo_text_table_number(&sheet, find(row, "lte_um"), NULL, 4);
+    eo_text_table_number(&sheet, find(row, "normal_m_per_s2"), NULL, 4);
+    eo_text_table_number(&sheet, find(row, "rotational_m_per_s2"), NULL, 4);
+  }
+  eo_text_table_print(&sheet, 4, text);
+  eo_text_table_done(&sheet);
+}
+
+/* Nothing where the design states no single teeth. */
+static void print_pitch(const json_t *result, struct eo_text *text)
+{
+  const json_t *pitch = json_object_get(result, "pitch"), *load_case;
+  size_t k;
+  if (!json_is_object(pitch))
+    return;
+  eo_text_print(text, "Single teeth: %.0f mesh cycles, %.0f turns of the pinion, %.0f of the gear\n",
+                find(pitch, "cycles"), find(pitch, "pinion_revolutions"), find(pitch, "gear_revolutions"));
+  json_array_foreach(json_object_get(pitch, "load_cases"), k, load_case) print_pitch_case(load_case, text);
+  eo_text_add(text, "\n");
+}
+
 static void print_frequencies(const json_t *result, struct eo_text *text)
 {
   const json_t *frequencies = json_object_get(result, "eigenfrequencies_Hz");
@@ -195,6 +254,7 @@ void eo_result_summary(const json_t *result, struct eo_text *text)
     print_case(result, k, text);
   print_objectives(result, text);
   print_rating(result, text);
+  print_pitch(result, text);
   print_frequencies(result, text);
   print_warnings(result, text);
   print_timing(result, text);

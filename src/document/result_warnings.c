@@ -247,6 +247,35 @@ static void say_coast(struct list *list, const struct eo_result_source *source)
     }
 }
 
+/* What the hunting period came to where it did not come to a plain answer. */
+static void say_pitch(struct list *list, const struct eo_result_source *source)
+{
+  const struct eo_pitch_analysis *a = &source->analysis->pitch;
+  for (int k = 0; k < a->cases; k++) {
+    const struct eo_pitch_case *own = &a->load_case[k];
+    const struct eo_long_response *r = &own->response;
+    if (own->hunting.failures)
+      say(list, "At %.6g N m the loaded contact of single teeth did not converge at %d of %d instants.",
+          own->load_case.torque, own->hunting.failures, own->hunting.ends * own->hunting.instants);
+    else if (r->outcome == EO_LONG_CONTACT_LOST)
+      say(list,
+          "With the deviations of single teeth contact is lost for %.3g %% of the time at %.6g N m: the tangent law is "
+          "then a rough one.",
+          100 * fmax(r->contact_loss[0], r->contact_loss[1]), own->load_case.torque);
+    else if (r->outcome == EO_LONG_NOT_SETTLED)
+      say(list, "At %.6g N m the vibration with single teeth does not repeat with the hunting period.",
+          own->load_case.torque);
+    else if (r->outcome == EO_LONG_NO_LAW)
+      say(list,
+          "At %.6g N m the stiffness with single teeth is too uneven for a mesh law: no vibration over the "
+          "hunting period.",
+          own->load_case.torque);
+    else if (r->outcome == EO_LONG_TOO_LONG)
+      say(list, "The hunting period of %d mesh cycles is too long for its vibration: at most %d.", own->hunting.cycles,
+          EO_LONG_MOST_CYCLES);
+  }
+}
+
 static void say_modelling(struct list *list, const struct eo_result_source *source)
 {
   const struct eo_geometry *g = &source->pair->geometry;
@@ -254,6 +283,7 @@ static void say_modelling(struct list *list, const struct eo_result_source *sour
   if (*note)
     say(list, "%s", note);
   say_rating(list, source);
+  say_pitch(list, source);
   say_coast(list, source);
   say_held(list, source);
   say_supports(list, source);

@@ -72,6 +72,7 @@ static void put_analysis(struct eo_request *request, const struct eo_design *des
                                           .want = EO_WANT_CURVES |
                                                   (eo_route_number(request, "root_stress") != 0 ? EO_WANT_ROOT : 0) |
                                                   (eo_route_number(request, "rating") != 0 ? EO_WANT_RATING : 0) |
+                                                  (eo_route_number(request, "pitch") != 0 ? EO_WANT_PITCH : 0) |
                                                   (eo_route_number(request, "band") != 0 ? EO_WANT_BAND : 0),
                                           .left_out = left_out_of(request)};
   if (!has_load_case(request, design) || !eo_request_lane(request, &question.common))
@@ -190,6 +191,8 @@ const struct eo_route eo_routes_analysis[] = {
                {"histories", 0, 1, 0, NULL, "1: vibration and root stress over time"},
                {"rating", 0, 1, 1, NULL,
                 "1: rating by ISO 6336 and tribology too, with two more contact analyses; 0 answers sooner"},
+               {"pitch", 0, 1, 1, NULL,
+                "1: the hunting period of a design that states single teeth too, a second or two; 0 answers sooner"},
                {"parts", 0, EO_SEVERAL_WORDS, 0, EO_RESULT_PART_WORDS "|maps|histories",
                 "only these have their curves, maps and histories, the others null; all numbers stand in any case. "
                 "Absent: all parts, with maps and histories as those parameters say"},

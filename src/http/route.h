@@ -7,7 +7,7 @@
 #include "format/table.h"
 #include "http/request.h"
 
-enum { EO_MOST_QUERIES = 8, EO_MOST_ANSWERS = 10 };
+enum { EO_MOST_QUERIES = 10, EO_MOST_ANSWERS = 10 };
 
 /* What a request costs of what an address may start (guard.h). */
 enum eo_rate { EO_RATE_FREE, EO_RATE_QUESTION, EO_RATE_START, EO_RATE_WRONG, EO_RATE_KINDS };
