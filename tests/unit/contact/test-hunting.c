@@ -220,7 +220,9 @@ static void test_averaging(void)
     struct eo_hunting h = run(&input);
     double gain = amplitude(h.instants, h.approach[0], (double)z * POSITIONS) / (0.2e-6 * normal),
            linear = averaging(z);
-    close_to(gain, linear, 5e-4, member ? "gain of the gear's first order by linear response" : "... of the pinion's");
+    close_to(gain, linear, 5e-4,
+             member ? "gain of the gear's first order by linear response"
+                    : "gain of the pinion's first order by linear response");
     close_to(gain, expected[member], 1.5e-3, member ? "0.998 for z = 44" : "0.984 for z = 17");
     eo_hunting_done(&h);
   }
