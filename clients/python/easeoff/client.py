@@ -165,13 +165,21 @@ class Client:
         maps: bool = True,
         histories: bool = False,
         rating: bool = True,
+        pitch: bool = True,
         parts: str | None = None,
         curves_of: int | None = None,
         easeoff_lane: str | None = None,
     ) -> doc.Result:
         """One true evaluation. parts, curves_of: leave the rest of a long answer out. easeoff_lane: a newer question with
         the same word takes the place of one that waits."""
-        flags = {"root_stress": root_stress, "band": band, "maps": maps, "histories": histories, "rating": rating}
+        flags = {
+            "root_stress": root_stress,
+            "band": band,
+            "maps": maps,
+            "histories": histories,
+            "rating": rating,
+            "pitch": pitch,
+        }
         query: dict[str, Any] = {name: int(value) for name, value in flags.items()}
         query.update(parts=parts, curves_of=curves_of)
         return self._computed("POST", "/analyze", document=design, query=query, lane=easeoff_lane).json
