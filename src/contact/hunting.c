@@ -115,7 +115,7 @@ static void guess(const struct eo_hunt *hunt, struct eo_loaded_end *solved, int 
     for (int i = 0; q[0] && i < p->line[l].cells; i++)
       load[i] = fmax(0, q[1] && q[2] ? 3 * (q[0][i] - q[1][i]) + q[2][i] : q[1] ? 2 * q[0][i] - q[1][i] : q[0][i]);
   }
-  solved->approach[j] = known == EO_HUNTING_BEFORE ? 3 * (z[0] - z[1]) + z[2] : known == 2 ? 2 * z[0] - z[1] : z[0];
+  solved->approach[j] = known > 2 ? 3 * (z[0] - z[1]) + z[2] : known == 2 ? 2 * z[0] - z[1] : z[0];
 }
 
 static void solve_end(const struct eo_hunt *hunt, struct eo_hunting_walker *walker, int end, int instant, int before)

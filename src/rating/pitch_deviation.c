@@ -59,8 +59,8 @@ void eo_pitch_draw(const struct eo_flank_tolerance *tolerance, double share, int
   double waves[EO_TOOTH_NUMBERS], scatter[EO_TOOTH_NUMBERS], total = share * tolerance->total_pitch,
                                                              single = share * tolerance->single_pitch;
   struct eo_random first = eo_random_at(seed, stream, WAVES, 0), each = eo_random_at(seed, stream, SCATTER, 0);
-  double phase[2] = {2 * M_PI * eo_random_unit(first, 0), 2 * M_PI * eo_random_unit(first, 1)},
-         second = SECOND * eo_random_unit(first, 2);
+  const double phase[2] = {2 * M_PI * eo_random_unit(first, 0), 2 * M_PI * eo_random_unit(first, 1)};
+  double second = SECOND * eo_random_unit(first, 2);
   for (int i = 0; i < teeth; i++) {
     double turn = 2 * M_PI * i / teeth;
     waves[i] = cos(turn - phase[0]) + second * cos(2 * turn - phase[1]);
@@ -171,7 +171,8 @@ enum eo_code eo_pitch_compose(const struct eo_pitch *pitch, const struct eo_geom
   for (int term = 0; term < EO_TOOTH_TERMS; term++)
     table[term] = eo_tooth_table_at(&pitch->tables, meeting->side, member, end, (enum eo_tooth_term)term);
   if (!code && !table[EO_TOOTH_INDEX] && own->tolerance_class > 0) {
-    code = draw_index(own, geometry, member, (uint64_t)(4 * meeting->side + 2 * member + end), drawn, error);
+    code = draw_index(own, geometry, member, 4 * (uint64_t)meeting->side + 2 * (uint64_t)member + (uint64_t)end, drawn,
+                      error);
     table[EO_TOOTH_INDEX] = drawn;
   }
   for (int i = 0; i < teeth && !code; i++) {

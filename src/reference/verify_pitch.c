@@ -227,7 +227,7 @@ static void check_most_load(const struct trial *t, struct eo_case *block)
 
 static void check_means(const struct trial *t, struct eo_case *expected)
 {
-  double hands[2] = {mean(t->hunting.instants, t->curve[EO_LEFT]), mean(t->hunting.instants, t->curve[EO_RIGHT])};
+  const double hands[2] = {mean(t->hunting.instants, t->curve[EO_LEFT]), mean(t->hunting.instants, t->curve[EO_RIGHT])};
   double relative = eo_case_relative_or(t->tolerance, "LTE_mean_rel", 0.002),
          within = eo_case_absolute_or(t->tolerance, "LTE_um", 0.02);
   eo_verify_member(t->v, expected, "LTE_mean_um", 1e6 * mean(t->hunting.instants, t->curve[PAIR]), relative, 0);
