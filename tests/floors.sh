@@ -4,8 +4,8 @@
 # nothing and reads no environment; each library has its one floor.
 : "${SOURCES:=.}"
 cd "$SOURCES/src" || exit 99
-floors="base numerics gear flexibility contact dynamics rating optimizer design evaluation recording measurement format document library exchange report store study reproduction service http reference app"
-core="base numerics gear flexibility contact dynamics rating optimizer design evaluation recording measurement"
+floors="base numerics gear flexibility contact dynamics rating optimizer tolerance design evaluation recording measurement format document library exchange report store study reproduction service http reference app"
+core="base numerics gear flexibility contact dynamics rating optimizer tolerance design evaluation recording measurement"
 count=0 failed=0
 
 result() # status, what

@@ -7,12 +7,14 @@
 #include "reference/verify_contact.h"
 #include "reference/verify_deviations.h"
 #include "reference/verify_evaluation.h"
+#include "reference/verify_tolerance.h"
 
 static const struct eo_verify_kind kinds[] = {
-    {"calculix", eo_verify_calculix}, {"contact", eo_verify_contact},  {"deviations", eo_verify_deviations},
-    {"dynamics", eo_verify_dynamics}, {"encoder", eo_verify_encoder},  {"evaluation", eo_verify_evaluation},
-    {"exchange", eo_verify_exchange}, {"gear-public", eo_verify_gear}, {"optimizer", eo_verify_optimizer},
-    {"rating", eo_verify_rating},     {"ring", eo_verify_ring},        {"standards", eo_verify_standards},
+    {"calculix", eo_verify_calculix},   {"contact", eo_verify_contact},  {"deviations", eo_verify_deviations},
+    {"dynamics", eo_verify_dynamics},   {"encoder", eo_verify_encoder},  {"evaluation", eo_verify_evaluation},
+    {"exchange", eo_verify_exchange},   {"gear-public", eo_verify_gear}, {"optimizer", eo_verify_optimizer},
+    {"rating", eo_verify_rating},       {"ring", eo_verify_ring},        {"standards", eo_verify_standards},
+    {"tolerance", eo_verify_tolerance},
 };
 
 const struct eo_verify_kind *eo_verify_kind_at(int index)

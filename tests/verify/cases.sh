@@ -66,6 +66,12 @@ changed deviations.json 's/"pinion_um":\[4.533/"pinion_um":[4.733/'
 verify 1 "another tooth" "$folder/deviations.json"
 prints "P3 .* FAIL"
 
+verify 0 "gears as made, their statistics, closed forms" --json "$CASES/tolerance.json"
+checks 1200
+changed tolerance.json 's/"std":0.47972/"std":0.48012/'
+verify 1 "another standard deviation" "$folder/tolerance.json"
+prints "MC-H1 .* FAIL"
+
 verify 0 "encoder" --json "$CASES/encoder.json"
 checks 28
 verify 0 "encoder, for people" "$CASES/encoder.json"

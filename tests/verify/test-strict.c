@@ -55,6 +55,8 @@ static const struct part parts[] = {
     {"ring", "line", {"macro", "supports", "tolerances"}, 61, true},
     {"calculix", "unmodified", {"what", "boundary"}, 61, true},
     {"deviations", "cases", {"pairs", "conventions"}, 211, true},
+    {"tolerance", "cases", {"pairs", "conventions", "statistics"}, 997, true},
+    {"tolerance", "analytic", {"pairs", "conventions", "statistics"}, 211, true},
     {"evaluation", "cases", {"defaults", "pairs", "dynamics_params", "mods"}, 61, true},
     {"rating", "rows", {NULL}, 1, false},
 };
@@ -282,8 +284,8 @@ static void refused(const char *text, const char *pointer, const char *sentence)
 static void check_sentences(void)
 {
 #define PAIR "\"macro\": {\"input\": {\"z\": [17, 44], \"mn\": 6, \"beta\": 24, \"b\": 55}}"
-  static const char *const kinds[] = {"calculix",   "contact",   "deviations", "dynamics", "encoder",
-                                      "evaluation", "optimizer", "rating",     "standards"};
+  static const char *const kinds[] = {"calculix",   "contact",   "deviations", "dynamics",  "encoder",
+                                      "evaluation", "optimizer", "rating",     "standards", "tolerance"};
   for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
     char text[60];
     struct eo_error error = {0};

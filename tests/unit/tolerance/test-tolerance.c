@@ -1,0 +1,215 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Distributions, evenly spread points, statistics, influences and surfaces against closed forms and published numbers.
+ */
+#include <stdbool.h>
+#include <string.h>
+
+#include "support/tap.h"
+#include "tolerance/distribution.h"
+#include "tolerance/influence.h"
+#include "tolerance/interval.h"
+#include "tolerance/sampler.h"
+#include "tolerance/sobol_sequence.h"
+#include "tolerance/statistics.h"
+#include "tolerance/surface.h"
+
+static void test_normal(void)
+{
+  double worst = 0;
+  for (int i = 1; i < 2000; i++)
+    worst = fmax(worst, fabs(eo_normal_probability(eo_normal_quantile(i / 2000.)) - i / 2000.));
+  close_to(worst, 0, 2e-15, "probability of a quantile");
+  close_to(eo_normal_quantile(0.975), 1.959963984540054, 1e-14, "97.5 %");
+  close_to(eo_normal_quantile(1e-12), -7.034483825301131, 1e-11, "far in the tail");
+}
+
+/* Moments against the quantile function, by the midpoint rule. */
+static void test_moments(const struct eo_distribution *d, double within, const char *what)
+{
+  enum { STEPS = 200000 };
+  struct eo_moments m = eo_distribution_moments(d);
+  double sum[5] = {0};
+  for (int i = 0; i < STEPS; i++) {
+    double z = (eo_distribution_quantile(d, (i + 0.5) / STEPS) - m.mean) / m.deviation;
+    for (int k = 1; k < 5; k++)
+      sum[k] += pow(z, k) / STEPS;
+  }
+  ok(fabs(sum[1]) < within && fabs(sum[2] - 1) < within && fabs(sum[3] - m.third) < 10 * within &&
+         fabs(sum[4] - m.fourth) < 10 * within,
+     "%s: moments %.6g %.6g %.6g, kurtosis %.6g", what, sum[1], sum[2], sum[3], m.fourth);
+}
+
+static void test_distributions(void)
+{
+  const double value[] = {1, 2, 2, 7};
+  test_moments(&(struct eo_distribution){.mean = 3, .sigma = 2, .cut = INFINITY}, 1e-4, "normal");
+  test_moments(&(struct eo_distribution){.mean = -1, .sigma = 0.5, .cut = 2.5}, 1e-6, "cut at 2.5 sigma");
+  test_moments(&(struct eo_distribution){.kind = EO_DISTRIBUTION_UNIFORM, .low = -2, .high = 5}, 1e-6, "uniform");
+  test_moments(&(struct eo_distribution){.kind = EO_DISTRIBUTION_LIST, .values = 4, .value = value}, 1e-9, "list");
+  close_to(eo_distribution_moments(&(struct eo_distribution){.sigma = 1, .cut = 2.5}).deviation, 0.954597, 5e-7,
+           "deviation left by a cut at 2.5 sigma");
+}
+
+/* The leading 2^k points have one in each 2^k-th of every dimension, and the first two dimensions are a net. */
+static void test_sequence(void)
+{
+  enum { DIMENSIONS = 96, POINTS = 256, SIDE = 16 };
+  struct eo_sobol_sequence sequence;
+  struct eo_error error;
+  bool filled = true;
+  int box[SIDE][SIDE] = {{0}};
+  ok(eo_sobol_sequence_init(&sequence, DIMENSIONS, &error) == EO_OK, "96 dimensions");
+  for (int d = 0; d < DIMENSIONS; d++) {
+    bool seen[POINTS] = {false};
+    for (uint32_t i = 0; i < POINTS; i++)
+      seen[(int)(POINTS * eo_sobol_sequence_at(&sequence, 7, i, d))] = true;
+    for (int i = 0; i < POINTS; i++)
+      filled = filled && seen[i];
+  }
+  ok(filled, "one point in each 256th of every dimension");
+  for (uint32_t i = 0; i < POINTS; i++)
+    box[(int)(SIDE * eo_sobol_sequence_at(&sequence, 7, i, 0))]
+       [(int)(SIDE * eo_sobol_sequence_at(&sequence, 7, i, 1))]++;
+  filled = true;
+  for (int i = 0; i < SIDE * SIDE; i++)
+    filled = filled && box[i / SIDE][i % SIDE] == 1;
+  ok(filled, "one point in each box of the plane");
+  ok(eo_sobol_sequence_at(&sequence, 7, 5, 3) != eo_sobol_sequence_at(&sequence, 8, 5, 3),
+     "another seed, other points");
+  eo_sobol_sequence_done(&sequence);
+  ok(eo_sobol_sequence_init(&sequence, 0, &error) == EO_ERROR_INPUT, "no dimension is refused");
+  eo_sobol_sequence_done(&sequence);
+}
+
+static void test_samplers(void)
+{
+  enum { POINTS = 100, INPUTS = 5 };
+  struct eo_sampler *latin, *random;
+  struct eo_error error;
+  double u[INPUTS], again[INPUTS];
+  int seen[INPUTS][POINTS] = {{0}};
+  bool filled = true;
+  eo_sampler_new(&latin, EO_SAMPLING_LATIN, INPUTS, POINTS, 3, &error);
+  eo_sampler_new(&random, EO_SAMPLING_RANDOM, INPUTS, POINTS, 3, &error);
+  for (int i = POINTS - 1; i >= 0; i--) {
+    eo_sampler_at(latin, i, u);
+    for (int d = 0; d < INPUTS; d++)
+      seen[d][(int)(POINTS * u[d])]++;
+  }
+  for (int i = 0; i < INPUTS * POINTS; i++)
+    filled = filled && seen[i / POINTS][i % POINTS] == 1;
+  ok(filled, "Latin: one point in each hundredth of every dimension");
+  eo_sampler_at(random, 17, u);
+  eo_sampler_at(random, 3, again);
+  eo_sampler_at(random, 17, again);
+  ok(memcmp(u, again, sizeof u) == 0, "a point does not depend on what was asked before");
+  eo_sampler_free(latin);
+  eo_sampler_free(random);
+  eo_sampler_free(NULL);
+  ok(eo_sampler_new(&latin, EO_SAMPLING_SOBOL, 1, 0, 1, &error) == EO_ERROR_INPUT, "no point is refused");
+}
+
+static void test_intervals(void)
+{
+  struct eo_rank_interval ranks = eo_order_statistic_ranks(200, 0.95, 0.95);
+  ok(ranks.low == 184 && ranks.high == 197, "ranks of the 95 %% percentile of 200: %d .. %d", ranks.low, ranks.high);
+  close_to(ranks.coverage, 0.9671521638567255, 1e-12, "coverage");
+  ranks = eo_order_statistic_ranks(20, 0.99, 0.95);
+  ok(ranks.high == 21, "20 values do not bound the 99 %% percentile from above");
+  /* Newcombe (1998), table II: 81 of 263, 15 of 148, 0 of 20 */
+  struct eo_share_interval share = eo_wilson(81, 263, 0.95);
+  close_to(share.low, 0.2553, 5e-5, "Wilson 81/263 from");
+  close_to(share.high, 0.3662, 5e-5, "Wilson 81/263 to");
+  share = eo_wilson(0, 20, 0.95);
+  close_to(share.high, 0.1611, 5e-5, "Wilson 0/20 to");
+  share = eo_clopper_pearson(15, 148, 0.95);
+  close_to(share.low, 0.0578, 5e-5, "Clopper-Pearson 15/148 from");
+  close_to(share.high, 0.1617, 5e-5, "Clopper-Pearson 15/148 to");
+  share = eo_clopper_pearson(0, 20, 0.95);
+  close_to(share.high, 0.1684, 5e-5, "Clopper-Pearson 0/20 to");
+}
+
+static void test_statistics(void)
+{
+  double sorted[] = {1, 2, 4, 8}, rank[4], interval[1][2];
+  const double tied[] = {3, 1, 3, 2}, percent = 50;
+  int count[2];
+  struct eo_error error;
+  close_to(eo_percentile(4, sorted, 95), 7.4, 1e-12, "type 7: rank 1 + 3 * 0.95");
+  close_to(eo_summary_of(4, sorted).deviation, sqrt(28.75 / 3), 1e-12, "deviation, divisor n - 1");
+  eo_ranks(4, tied, rank, &error);
+  ok(rank[0] == 3.5 && rank[1] == 1 && rank[2] == 3.5 && rank[3] == 2, "equal values share their rank");
+  eo_histogram(4, sorted, 1, 8, 2, count);
+  ok(count[0] == 3 && count[1] == 1, "histogram");
+  struct eo_bootstrap bootstrap = {.percentile = interval};
+  eo_bootstrap_run(&bootstrap, 4, sorted, 1, &percent, 0.95, 500, 1, &error);
+  ok(bootstrap.mean[0] < 3.75 && bootstrap.mean[1] > 3.75 && interval[0][0] >= 1 && interval[0][1] <= 8,
+     "bootstrap holds the mean: %.3g .. %.3g", bootstrap.mean[0], bootstrap.mean[1]);
+}
+
+/* y = 2 + z0 + 0.5 z0^2 + 2 z1 z2 of standard normals: V = 1 + 0.5 + 4. */
+static double quadratic(const double *x)
+{
+  return 2 + x[0] + 0.5 * x[0] * x[0] + 2 * x[1] * x[2];
+}
+
+static double quadratic_of_unit(void *context, const double *u)
+{
+  double x[3];
+  for (int i = 0; i < 3; i++)
+    x[i] = eo_distribution_quantile(context, u[i]);
+  return quadratic(x);
+}
+
+static void test_surface(void)
+{
+  enum { ROWS = 200, INPUTS = 4 };
+  struct eo_distribution normal = {.sigma = 1, .cut = INFINITY};
+  struct eo_moments moments[INPUTS];
+  struct eo_sampler *sampler;
+  struct eo_surface surface;
+  struct eo_error error;
+  static double input[ROWS][INPUTS], output[ROWS];
+  double first[INPUTS], total[INPUTS], coefficient[INPUTS];
+  eo_sampler_new(&sampler, EO_SAMPLING_SOBOL, INPUTS, ROWS, 1, &error);
+  for (int i = 0; i < ROWS; i++) {
+    eo_sampler_at(sampler, i, input[i]);
+    for (int d = 0; d < INPUTS; d++)
+      input[i][d] = d < 3 ? eo_distribution_quantile(&normal, input[i][d]) : 5; /* the last does not vary */
+    output[i] = quadratic(input[i]);
+  }
+  eo_sampler_free(sampler);
+  for (int d = 0; d < INPUTS; d++)
+    moments[d] = d < 3 ? eo_distribution_moments(&normal) : (struct eo_moments){.mean = 5, .fourth = 3};
+  ok(eo_surface_fit(&surface, ROWS, INPUTS, moments, input[0], output, &error) == EO_OK, "surface of 200 rows");
+  close_to(surface.q2, 1, 1e-9, "it carries a quadratic response");
+  close_to(eo_surface_at(&surface, (const double[]){1, 2, 3, 5}), quadratic((const double[]){1, 2, 3}), 1e-9, "value");
+  eo_surface_indices(&surface, first, total);
+  close_to(first[0], 1.5 / 5.5, 1e-9, "first index of z0");
+  close_to(total[1], 4 / 5.5, 1e-9, "total index of z1");
+  close_to(first[1], 0, 1e-9, "first index of z1");
+  ok(first[3] == 0 && total[3] == 0, "what does not vary has none");
+  eo_surface_done(&surface);
+  eo_sobol_indices(quadratic_of_unit, &normal, 3, 2048, 1, first, total, &error);
+  close_to(first[0], 1.5 / 5.5, 0.02, "the same sampled");
+  close_to(total[2], 4 / 5.5, 0.02, "the same sampled");
+  struct eo_regression regression = {.coefficient = coefficient};
+  ok(eo_regression_run(&regression, ROWS, INPUTS, input[0], output, &error) == EO_OK && isnan(coefficient[3]),
+     "regression passes over what does not vary");
+  ok(eo_regression_run(&regression, 5, INPUTS, input[0], output, &error) == EO_ERROR_NUMERIC, "too few rows");
+  ok(eo_surface_fit(&surface, 9, INPUTS, moments, input[0], output, &error) == EO_ERROR_NUMERIC,
+     "too few for a surface");
+  eo_surface_done(&surface);
+}
+
+int main(void)
+{
+  test_normal();
+  test_distributions();
+  test_sequence();
+  test_samplers();
+  test_intervals();
+  test_statistics();
+  test_surface();
+  return tap_done();
+}
